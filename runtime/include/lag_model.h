@@ -1,0 +1,147 @@
+/* lag_model.h: what emitted C and the runtime agree on. Includes only <stddef.h>.
+ *
+ * A model is a const struct of names, sizes and functions, emitted by lagc. Its state is q[nq]
+ * (generalised coordinates), v[nq] (their time derivatives) and z[nz] (states that are no
+ * coordinate); p[np] are its parameters, u[nu] its inputs, w[nw] work space for its functions.
+ * All values are in SI units. No function allocates, keeps state, or writes past the sizes here.
+ * Arrays passed to one call do not overlap.
+ *
+ * A function returns 0 when all went well, > 0 when a smaller step may help (the value left the
+ * model's domain), < 0 when nothing will. */
+#ifndef LAG_MODEL_H
+#define LAG_MODEL_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define LAG_ABI 1
+
+/* The scalar that a model is compiled for: double, float, long double or __float128. */
+#ifndef LAG_REAL
+#define LAG_REAL double
+#endif
+
+enum {
+  LAG_OK = 0,
+  LAG_ERETRY = 1,     /* outside the domain here: a smaller step may help */
+  LAG_ESINGULAR = -1  /* the mass matrix is singular at this state */
+};
+
+/* Facts about a model that the compiler proved. */
+enum {
+  LAG_CONSERVES_ENERGY = 1, /* no t in L, no force, no dissipation, no input */
+  LAG_CONSTANT_MASS = 2,    /* d2L/dq'2 depends on no coordinate, velocity or time */
+  LAG_AUTONOMOUS = 4,       /* the right-hand side does not contain t */
+  LAG_SMOOTH = 8            /* no if, abs, sign, min, max */
+};
+
+/* A named quantity. unit is as declared ("deg"), "" when none; one unit is `factor` in SI. */
+typedef struct lag_var {
+  const char *name;
+  const char *unit;
+  double factor;
+  int periodic; /* an angle: 2 pi later is the same place */
+  int sign;     /* of a parameter: 1 "> 0", 2 ">= 0", -1 "< 0", -2 "<= 0", 0 any */
+} lag_var;
+
+typedef struct lag_event {
+  const char *name;
+  int direction; /* 1 rising, -1 falling, 0 both */
+} lag_event;
+
+typedef struct lag_model {
+  int abi;           /* LAG_ABI */
+  size_t real_size;  /* sizeof(LAG_REAL) */
+  const char *name;
+  const char *doc;
+  const char *effects; /* names of the effects in this variant, separated by spaces */
+  unsigned flags;
+  int ops;           /* operations of one call of accel, counted */
+  int nq, nz, np, nu, nev, nw;
+  const lag_var *q;  /* [nq]; the velocity of q has the same name with a prime, unit per second */
+  const lag_var *z;  /* [nz] */
+  const lag_var *p;  /* [np] */
+  const lag_var *u;  /* [nu] */
+  const lag_event *ev; /* [nev] */
+
+  /* u[nu] at time t, where the model gives them a formula. */
+  int (*inputs)(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u);
+
+  /* Accelerations a[nq] from M(q) a = f(t, q, v), and rates zd[nz]. */
+  int (*accel)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+               const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w);
+
+  /* e[0] = energy p.v - L, e[1] = |p.v| + |L|, the scale against which its drift is judged. */
+  int (*energy)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *e, LAG_REAL *w);
+
+  /* g[nev]: the event functions. */
+  int (*events)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *g, LAG_REAL *w);
+
+  /* Applies the actions of event k: q1, v1, z1 hold the state after it (on entry: a copy of the
+   * state before it). *stop is set to 1 when the event ends the run. */
+  int (*act)(int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+             const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1,
+             int *stop, LAG_REAL *w);
+} lag_model;
+
+/* An option of a method: step = 1e-3, quadrature = trapezoid (then text is set). */
+typedef struct lag_option {
+  const char *name;
+  double value;
+  const char *text; /* or NULL */
+} lag_option;
+
+typedef struct lag_monitor {
+  const char *name;
+  int output;    /* index into outputs, or -1 for the energy */
+  double limit;  /* the run fails when the drift exceeds it */
+} lag_monitor;
+
+typedef struct lag_scene {
+  const char *name;
+  const char *doc;
+  const lag_model *model;
+
+  /* Parameters in order of declaration; those with fixed[i] != 0 keep what p[i] holds. */
+  void (*params)(LAG_REAL *p, const unsigned char *fixed);
+
+  /* The state at the start of the span. */
+  void (*start)(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z);
+
+  double t0, t1;      /* span */
+  int has_span;       /* 0: the scene gives none; t1 is then a default of 10 */
+  const char *method; /* or NULL: the runtime's choice */
+  int noptions;
+  const lag_option *options;
+  double tolerance;   /* 0: the runtime's default */
+
+  /* What a row of output holds besides t: out[nout]. */
+  int nout;
+  const lag_var *outputs;
+  double every;       /* 0: the runtime's choice */
+  int (*observe)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                 const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int nmonitors;
+  const lag_monitor *monitors;
+} lag_scene;
+
+/* A compiled .lag file: all of its scenes. Several scenes may share one model. */
+typedef struct lag_program {
+  const char *name;
+  const char *doc;
+  const char *source;  /* the .lag file's path as given to lagc */
+  const char *effects; /* names of all effects that the file declares, separated by spaces */
+  int nscenes;
+  const lag_scene *const *scenes;
+} lag_program;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

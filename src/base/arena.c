@@ -1,0 +1,123 @@
+/* Arena: a list of chunks, the newest first; requests larger than a chunk get one of their own. */
+#include "base/arena.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Chunk Chunk;
+struct Chunk {
+  Chunk *next;
+  size_t size, used;
+  max_align_t data[];
+};
+
+struct Arena {
+  ArenaConfig config;
+  Chunk *chunks;
+  jmp_buf *handler;
+  size_t used;
+  int hit_limit;
+};
+
+static void *system_alloc(void *user, size_t n) {
+  (void)user;
+  return malloc(n);
+}
+
+static void system_dealloc(void *user, void *p) {
+  (void)user;
+  free(p);
+}
+
+Arena *arena_new(const ArenaConfig *config) {
+  ArenaConfig c = config ? *config : (ArenaConfig){0};
+  if (!c.alloc) {
+    c.alloc = system_alloc;
+    c.dealloc = system_dealloc;
+  }
+  if (!c.chunk) c.chunk = 64 * 1024;
+  Arena *a = c.alloc(c.user, sizeof *a);
+  if (!a) return NULL;
+  *a = (Arena){.config = c};
+  return a;
+}
+
+void arena_free(Arena *a) {
+  if (!a) return;
+  for (Chunk *c = a->chunks; c;) {
+    Chunk *next = c->next;
+    a->config.dealloc(a->config.user, c);
+    c = next;
+  }
+  a->config.dealloc(a->config.user, a);
+}
+
+jmp_buf *arena_guard(Arena *a, jmp_buf *handler) {
+  jmp_buf *before = a->handler;
+  a->handler = handler;
+  return before;
+}
+
+_Noreturn void arena_fail(Arena *a) {
+  if (!a->handler) abort(); /* a bug: memory was asked for outside every guard */
+  longjmp(*a->handler, 1);
+}
+
+static Chunk *chunk_new(Arena *a, size_t n) {
+  size_t size = n > a->config.chunk ? n : a->config.chunk;
+  Chunk *c = a->config.alloc(a->config.user, sizeof *c + size);
+  if (!c) arena_fail(a);
+  c->size = size;
+  c->used = 0;
+  c->next = a->chunks;
+  a->chunks = c;
+  return c;
+}
+
+void *arena_alloc(Arena *a, size_t n) {
+  const size_t align = sizeof(max_align_t);
+  if (n > SIZE_MAX / 4) arena_fail(a);
+  n = (n + align - 1) / align * align;
+  if (a->config.max_bytes && a->used + n > a->config.max_bytes) {
+    a->hit_limit = 1;
+    arena_fail(a);
+  }
+  Chunk *c = a->chunks;
+  if (!c || c->size - c->used < n) c = chunk_new(a, n);
+  void *p = (char *)c->data + c->used;
+  c->used += n;
+  a->used += n;
+  return memset(p, 0, n);
+}
+
+char *arena_strndup(Arena *a, const char *s, size_t n) {
+  char *copy = arena_alloc(a, n + 1);
+  if (n) memcpy(copy, s, n);
+  return copy;
+}
+
+char *arena_strdup(Arena *a, const char *s) { return arena_strndup(a, s, strlen(s)); }
+
+char *arena_vprintf(Arena *a, const char *fmt, va_list ap) {
+  va_list again;
+  va_copy(again, ap);
+  int n = vsnprintf(NULL, 0, fmt, again);
+  va_end(again);
+  if (n < 0) n = 0;
+  char *s = arena_alloc(a, (size_t)n + 1);
+  vsnprintf(s, (size_t)n + 1, fmt, ap);
+  return s;
+}
+
+char *arena_printf(Arena *a, const char *fmt, ...) {
+  va_list ap;
+  va_start(ap, fmt);
+  char *s = arena_vprintf(a, fmt, ap);
+  va_end(ap);
+  return s;
+}
+
+size_t arena_used(const Arena *a) { return a->used; }
+int arena_hit_limit(const Arena *a) { return a->hit_limit; }

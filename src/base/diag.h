@@ -1,0 +1,52 @@
+/* Diagnostics: what the compiler tells its user. They accumulate, and are printed together:
+ *
+ *   pend.lag:3:27: error: unknown name `thh`
+ *      3 | lagrangian = m*l^2/2*thh'^2
+ *        |                      ^~~
+ *        = did you mean `th`?
+ */
+#ifndef LAGC_DIAG_H
+#define LAGC_DIAG_H
+
+#include "base/source.h"
+#include "base/strbuf.h"
+
+typedef enum { DIAG_NOTE, DIAG_WARNING, DIAG_ERROR } Severity;
+
+typedef struct Diag Diag;
+struct Diag {
+  Severity severity;
+  Span span;
+  const char *message;
+  const char *help;  /* a way out, or NULL */
+  Span note_span;    /* a second place ("first declared here"), or zero */
+  const char *note;
+};
+
+typedef struct {
+  Arena *arena;
+  const Sources *sources;
+  VEC(Diag) list;
+  uint32_t errors;  /* all of them */
+  uint32_t unshown; /* messages past the first DIAG_MAX + 1 */
+} Diags;
+
+enum { DIAG_MAX = 100 }; /* messages shown; the rest is counted, and said so */
+
+Diags *diags_new(Arena *a, const Sources *sources);
+
+/* Records a message about span; returns it so that help or a note can be added. */
+Diag *diag_error(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+Diag *diag_warning(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+
+/* A message that is neither error nor warning: verdicts of `lagc check`. */
+Diag *diag_note(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+
+/* Adds a way out, or a second place, to the message recorded last. */
+void diag_help(Diags *d, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+void diag_also(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+
+/* Appends every message, in order of place, as shown above. */
+void diags_print(const Diags *d, StrBuf *out);
+
+#endif

@@ -1,0 +1,90 @@
+#include "base/source.h"
+
+#include <errno.h>
+#include <stdio.h>
+
+Sources *sources_new(Arena *a) {
+  Sources *s = ARENA_NEW(a, Sources);
+  s->arena = a;
+  s->next_base = 1;
+  return s;
+}
+
+const Source *source_add(Sources *s, const char *path, const char *text, size_t len) {
+  if (len > SOURCE_MAX_BYTES || s->next_base > UINT32_MAX - SOURCE_MAX_BYTES - 2) return NULL;
+  Source file = {.path = path, .text = text, .len = (uint32_t)len, .base = s->next_base};
+  s->next_base += file.len + 1;
+  vec_push(s->arena, &s->files, file);
+  return &s->files.at[s->files.n - 1];
+}
+
+/* The bytes of a stream, at most max + 1 of them. */
+static char *read_all(Arena *a, FILE *f, size_t max, size_t *len) {
+  size_t n = 0, cap = 16 * 1024;
+  char *text = arena_alloc(a, cap);
+  for (;;) {
+    size_t got = fread(text + n, 1, cap - n - 1, f);
+    if (got == 0) break;
+    n += got;
+    if (n > max) break;
+    if (n + 1 == cap) {
+      char *bigger = arena_alloc(a, cap * 2);
+      memcpy(bigger, text, n);
+      text = bigger;
+      cap *= 2;
+    }
+  }
+  text[n] = '\0';
+  *len = n;
+  return text;
+}
+
+const Source *source_read(Sources *s, const char *path, const char **error) {
+  FILE *f = fopen(path, "rb");
+  if (!f) {
+    *error = strerror(errno);
+    return NULL;
+  }
+  /* Reading may run out of memory; the file must be closed before the failure goes on. */
+  jmp_buf here;
+  jmp_buf *before = arena_guard(s->arena, &here);
+  if (setjmp(here)) {
+    fclose(f);
+    arena_guard(s->arena, before);
+    arena_fail(s->arena);
+  }
+  size_t len = 0;
+  char *text = read_all(s->arena, f, SOURCE_MAX_BYTES, &len);
+  arena_guard(s->arena, before);
+  int failed = ferror(f);
+  fclose(f);
+  if (failed) {
+    *error = "it cannot be read (is it a directory?)";
+    return NULL;
+  }
+  const Source *file = source_add(s, arena_strdup(s->arena, path), text, len);
+  if (!file) *error = "it is larger than 64 MiB";
+  return file;
+}
+
+Place source_place(const Sources *s, uint32_t offset) {
+  for (uint32_t i = 0; i < s->files.n; i++) {
+    const Source *f = &s->files.at[i];
+    if (offset < f->base || offset > f->base + f->len) continue;
+    uint32_t at = offset - f->base, line = 1, start = 0;
+    for (uint32_t k = 0; k < at; k++)
+      if (f->text[k] == '\n') {
+        line++;
+        start = k + 1;
+      }
+    uint32_t column = 1;
+    for (uint32_t k = start; k < at; k++)
+      if (((unsigned char)f->text[k] & 0xC0) != 0x80) column++;
+    const char *text = f->text + start;
+    uint32_t len = 0;
+    while (start + len < f->len && text[len] != '\n' && text[len] != '\r') len++;
+    return (Place){.file = f, .line = line, .column = column, .line_text = text, .line_len = len,
+                   .line_byte = at - start};
+  }
+  return (Place){0};
+}

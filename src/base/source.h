@@ -1,0 +1,57 @@
+/* Sources: the texts of a compilation, and how an offset becomes file, line and column.
+ *
+ * All texts share one range of offsets (each starts where the one before ended, plus one), so that
+ * a Span of two numbers says file and place at once. Offset 0 is never used by a text: a zero Span
+ * means "no place". */
+#ifndef LAGC_SOURCE_H
+#define LAGC_SOURCE_H
+
+#include <stdint.h>
+
+#include "base/vec.h"
+
+typedef struct {
+  uint32_t begin, end; /* half open */
+} Span;
+
+static inline Span span_join(Span a, Span b) {
+  if (!a.end) return b;
+  if (!b.end) return a;
+  return (Span){a.begin < b.begin ? a.begin : b.begin, a.end > b.end ? a.end : b.end};
+}
+
+typedef struct {
+  const char *path; /* as the user named it */
+  const char *text; /* NUL-terminated */
+  uint32_t len;
+  uint32_t base; /* offset of text[0] */
+} Source;
+
+typedef struct {
+  Arena *arena;
+  VEC(Source) files;
+  uint32_t next_base;
+} Sources;
+
+typedef struct {
+  const Source *file;
+  uint32_t line, column;      /* from 1; the column counts characters, not bytes */
+  const char *line_text;      /* start of that line */
+  uint32_t line_len;          /* without its newline */
+  uint32_t line_byte;         /* byte index of the place in the line */
+} Place;
+
+enum { SOURCE_MAX_BYTES = 64 * 1024 * 1024 };
+
+Sources *sources_new(Arena *a);
+
+/* Adds a text (not copied: it must outlive the sources). Texts over SOURCE_MAX_BYTES: NULL. */
+const Source *source_add(Sources *s, const char *path, const char *text, size_t len);
+
+/* Reads a file into the arena. On failure NULL, and *error says why (an English sentence part). */
+const Source *source_read(Sources *s, const char *path, const char **error);
+
+/* Where an offset is; file NULL for offset 0 or one past all texts. */
+Place source_place(const Sources *s, uint32_t offset);
+
+#endif

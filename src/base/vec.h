@@ -1,0 +1,32 @@
+/* VEC(T): a growable array in an arena. Growing copies, so pointers into a VEC do not outlive a
+ * push; the arena keeps the old block until it is freed (at most as much again as the array). */
+#ifndef LAGC_VEC_H
+#define LAGC_VEC_H
+
+#include <stdint.h>
+#include <string.h>
+
+#include "base/arena.h"
+
+#define VEC(T)       \
+  struct {           \
+    T *at;           \
+    uint32_t n, cap; \
+  }
+
+/* Room for one more element of `size` bytes; returns the (possibly new) block. */
+static inline void *vec_grow(Arena *a, void *at, uint32_t n, uint32_t *cap, size_t size) {
+  if (n < *cap) return at;
+  if (*cap > UINT32_MAX / 2) arena_fail(a);
+  uint32_t bigger = *cap ? *cap * 2 : 8;
+  void *block = arena_alloc(a, (size_t)bigger * size);
+  if (n) memcpy(block, at, (size_t)n * size);
+  *cap = bigger;
+  return block;
+}
+
+#define vec_push(a, v, x)                                                            \
+  ((v)->at = vec_grow((a), (v)->at, (v)->n, &(v)->cap, sizeof *(v)->at), \
+   (v)->at[(v)->n++] = (x))
+
+#endif

@@ -1,0 +1,157 @@
+/* Ast: a .lag file as it was written. Names are not resolved, kinds are not checked, nothing is
+ * folded: every later pass can still point at the user's own text.
+ *
+ * Expressions live in one array and are named by AstId; children come before parents, and the
+ * nodes of one expression are contiguous (the parser builds bottom-up), so passes are loops.
+ * Statements are structs in lists. Id 0 means "absent". */
+#ifndef LAGC_AST_H
+#define LAGC_AST_H
+
+#include "base/diag.h"
+#include "base/intern.h"
+#include "base/num.h"
+
+typedef uint32_t AstId;
+
+/* X(kind, text of the operator or NULL) */
+#define AST_EXPR_KINDS(X)                                                                       \
+  X(AST_NUM, NULL)      /* 1.5              number                                           */ \
+  X(AST_STRING, NULL)   /* "file.csv"       name = the text without quotes                   */ \
+  X(AST_NAME, NULL)     /* th               name                                             */ \
+  X(AST_INDEX, NULL)    /* x[i, j]          a = what is indexed, args = indices              */ \
+  X(AST_MEMBER, NULL)   /* r.x              a, name = "x"                                    */ \
+  X(AST_PRIME, NULL)    /* th'              a; one node a prime                              */ \
+  X(AST_UNIT, NULL)     /* 90 [deg]         a, unit                                          */ \
+  X(AST_NEG, "-")       /* -a                                                                */ \
+  X(AST_NOT, "not")     /* not a                                                             */ \
+  X(AST_ADD, "+")       /* a + b                                                             */ \
+  X(AST_SUB, "-")                                                                               \
+  X(AST_MUL, "*")                                                                               \
+  X(AST_DIV, "/")                                                                               \
+  X(AST_POW, "^")                                                                               \
+  X(AST_LT, "<")                                                                                \
+  X(AST_LE, "<=")                                                                               \
+  X(AST_GT, ">")                                                                                \
+  X(AST_GE, ">=")                                                                               \
+  X(AST_EQ, "==")                                                                               \
+  X(AST_NE, "!=")                                                                               \
+  X(AST_AND, "and")                                                                             \
+  X(AST_OR, "or")                                                                               \
+  X(AST_CALL, NULL)     /* f(x, y)          name, args; also if(c, a, b)                     */ \
+  X(AST_SUM, NULL)      /* sum(i in 1..N, e)      name = i, a = lo, b = hi, c = e            */ \
+  X(AST_PRODUCT, NULL)  /* product(i in 1..N, e)  likewise                                   */ \
+  X(AST_TUPLE, NULL)    /* (a, b, c)        args; two or more                                */ \
+  X(AST_LIST, NULL)     /* {a, b, c}        args                                             */ \
+  X(AST_BIND, NULL)     /* i in 1..N        inside an index of let or start: name, a, b      */ \
+  X(AST_ERROR, NULL)    /* stands where the parser reported an error                         */
+
+#define AST_ENUM_(kind, text) kind,
+typedef enum { AST_EXPR_KINDS(AST_ENUM_) } AstKind;
+#undef AST_ENUM_
+
+/* One factor of a unit: [kg*m^2/s] is kg^1 m^2 s^-1. name "1" is the dimensionless unit. */
+typedef struct {
+  Name name;
+  Num exponent;
+  Span span;
+} AstUnitFactor;
+
+typedef struct {
+  const AstUnitFactor *at;
+  uint32_t n; /* 0: no unit was written */
+  Span span;
+  const char *text; /* as written, without brackets */
+} AstUnit;
+
+typedef struct {
+  AstKind kind;
+  Span span;     /* the whole expression, without surrounding parentheses */
+  Span op_span;  /* the operator, or the name of a call */
+  AstId a, b, c;
+  AstId next;    /* the next element of the list that this node is in (args), 0 at its end */
+  AstId args;    /* first of a list of arguments */
+  AstId first;   /* lowest id of this expression's nodes: they are first..own id */
+  Name name;
+  Num number;
+  AstUnit unit;
+} AstExpr;
+
+typedef enum {
+  /* declarations */
+  STMT_MODEL,       /* name, doc */
+  STMT_INCLUDE,     /* doc = the path */
+  STMT_COORD,       /* name, dims, type (vec2, vec3, rotation or NULL), unit, periodic */
+  STMT_PARAM,       /* name, dims, unit, rhs, sign */
+  STMT_CONST,       /* name, rhs */
+  STMT_INPUT,       /* name, unit, rhs */
+  STMT_STATE,       /* name, dims, unit */
+  STMT_LET,         /* name, dims (numbers, or AST_BINDs), rhs */
+  STMT_FUNCTION,    /* name, args (AST_NAMEs), rhs */
+  STMT_LAGRANGIAN,  /* rhs; likewise the next three */
+  STMT_KINETIC,
+  STMT_POTENTIAL,
+  STMT_DISSIPATION,
+  STMT_FORCE,       /* lhs, rhs */
+  STMT_FLOW,        /* lhs, rhs */
+  STMT_CONSTRAINT,  /* name, lhs, rhs */
+  STMT_SYMMETRY,    /* name, args (AST_NAMEs), doc, body of STMT_MAP and STMT_FOR */
+  STMT_MAP,         /* lhs -> rhs */
+  STMT_EXPECT,      /* name or NULL, lhs, rhs */
+  STMT_EVENT,       /* name, lhs, direction, body of STMT_SET and STMT_STOP */
+  STMT_CONTACT,     /* name, lhs (>= 0), rhs = restitution */
+  STMT_OBSERVE,     /* name, unit, rhs */
+  STMT_FOR,         /* name, lhs = lo, rhs = hi, body */
+  STMT_EFFECT,      /* name, doc, body */
+  STMT_REQUIRES,    /* name */
+  STMT_EXCLUDES,    /* name */
+  STMT_SCENE,       /* name, doc, body */
+  /* inside a scene */
+  STMT_START,       /* lhs, rhs, exactly */
+  STMT_EXACT,       /* lhs, rhs */
+  STMT_SET,         /* lhs = rhs: a parameter's value, an event's action, an option */
+  STMT_USE,         /* name, body of STMT_SET; "none" clears */
+  STMT_SPAN,        /* rhs */
+  STMT_METHOD,      /* name, body of STMT_SET */
+  STMT_TOLERANCE,   /* rhs */
+  STMT_OUTPUT,      /* args = what, rhs = every (0: absent) */
+  STMT_MONITOR,     /* lhs = what, rhs = limit */
+  STMT_LIKE,        /* name */
+  /* inside an event */
+  STMT_STOP
+} AstStmtKind;
+
+typedef enum { SIGN_ANY, SIGN_GT, SIGN_GE, SIGN_LT, SIGN_LE } AstSign; /* param ... > 0 */
+typedef enum { CROSS_BOTH, CROSS_RISING, CROSS_FALLING } AstDirection;
+
+typedef struct AstStmt AstStmt;
+struct AstStmt {
+  AstStmtKind kind;
+  Span span, name_span;
+  Name name;
+  const char *doc;  /* text without quotes, or NULL */
+  AstId lhs, rhs;
+  AstId dims;       /* first of a list of sizes or indices */
+  AstId args;       /* first of a list */
+  Name type;
+  AstUnit unit;
+  AstSign sign;
+  AstDirection direction;
+  int periodic, exactly;
+  AstStmt *body, *last; /* a list, and its end */
+  AstStmt *next;
+};
+
+typedef struct {
+  Arena *arena;
+  Interner *names;
+  Sources *sources;
+  Diags *diags;
+  VEC(AstExpr) exprs;        /* exprs.at[0] is unused */
+  AstStmt *first, *last;     /* the file's statements, includes already spliced in */
+} Ast;
+
+Ast *ast_new(Arena *a, Interner *names, Sources *sources, Diags *diags);
+
+static inline const AstExpr *ast_expr(const Ast *ast, AstId id) { return &ast->exprs.at[id]; }
+
+#endif
