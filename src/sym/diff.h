@@ -1,0 +1,22 @@
+/* Differentiation on the graph: never on a tree, each node once.
+ * Forward mode: Wengert (1964). Reverse mode: Linnainmaa (1976); Griewank & Walther, Evaluating
+ * Derivatives (2008), chapters 3.1 and 3.2. */
+#ifndef LAGC_DIFF_H
+#define LAGC_DIFF_H
+
+#include "sym/expr.h"
+
+/* de/dsym. */
+Expr expr_diff(ExprGraph *g, Expr e, SymId sym);
+
+/* out[i] = de/d(syms[i]) for all i in one reverse sweep. Adjoints of definitions that are sums
+ * become definitions themselves, so that a chain of lets keeps its length. */
+void expr_gradient(ExprGraph *g, Expr e, const SymId *syms, uint32_t n, Expr *out);
+
+/* Directional derivatives out[i] = sum over s of d(roots[i])/ds * seed[s]. seed has nseed entries,
+ * 0 meaning zero. The derivative of a definition `a` becomes the definition `a` + suffix
+ * ("'" for the total time derivative). */
+void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
+                  const char *suffix, Expr *out);
+
+#endif

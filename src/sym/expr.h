@@ -1,0 +1,147 @@
+/* The expression graph: hash-consed, canonical at construction.
+ *
+ * A node is a number (Expr); arguments have lower numbers than their node, so every pass is a loop
+ * over ids, and equal expressions are equal numbers. What construction guarantees:
+ *   - sums and products are flat; terms and factors are sorted by id, distinct, with collected
+ *     rational coefficients and exponents: x - x is 0, x*x is x^2, x/x is 1;
+ *   - a product holds no number except roots of numbers: 3*x is a SUM of one pair (x, 3);
+ *   - a sum raised to an integer power is primitive: its coefficients have no common factor, and
+ *     the first is positive;
+ *   - sin^2 u + cos^2 u with equal cofactors is 1, and 1 - sin^2 u is cos^2 u;
+ *   - odd and even functions take arguments whose first coefficient is positive;
+ *   - nothing is distributed except numbers over sums, and nothing crosses a DEF.
+ * The order of ids is the order of creation; a caller that wants the same text everywhere names
+ * intermediate results instead of nesting calls (C fixes no order of argument evaluation).
+ *
+ * Ownership: all in the arena given to expr_graph. Errors: none; running out of memory jumps to
+ * the arena's handler. */
+#ifndef LAGC_EXPR_H
+#define LAGC_EXPR_H
+
+#include "base/intern.h"
+#include "base/num.h"
+#include "base/vec.h"
+
+typedef uint32_t Expr; /* 0: none */
+
+#define X(NAME, arity, text) EX_##NAME,
+typedef enum {
+#include "sym/ops.def"
+  EX_COUNT
+} ExprOp;
+#undef X
+
+typedef enum {
+  SYM_TIME,
+  SYM_COORD, /* q */
+  SYM_VEL,   /* q' */
+  SYM_ACC,   /* q'' */
+  SYM_STATE, /* z */
+  SYM_RATE,  /* z' */
+  SYM_PARAM,
+  SYM_INPUT,
+  SYM_LOCAL  /* the group parameter of a symmetry; scratch symbols of a pass */
+} SymKind;
+
+/* What is known of a value's sign. */
+typedef enum { SIGN_UNKNOWN, SIGN_POSITIVE, SIGN_NONNEGATIVE, SIGN_NEGATIVE, SIGN_NONPOSITIVE } ExprSign;
+
+typedef uint32_t SymId;
+
+typedef struct {
+  SymKind kind;
+  uint32_t index; /* within its kind */
+  Name name;      /* as the user writes it: th, th', th'' */
+  ExprSign sign;
+  Expr node;
+} Symbol;
+
+typedef struct ExprGraph ExprGraph;
+
+ExprGraph *expr_graph(Arena *a, Interner *names);
+Arena *expr_arena(const ExprGraph *g);
+uint32_t expr_count(const ExprGraph *g); /* ids are 1 .. count */
+
+/* --- leaves --- */
+Expr expr_num(ExprGraph *g, Num n);
+Expr expr_int(ExprGraph *g, int64_t n);
+/* A new symbol; its node is expr_symbol(g, id)->node. */
+SymId expr_declare(ExprGraph *g, SymKind kind, uint32_t index, Name name, ExprSign sign);
+uint32_t expr_symbol_count(const ExprGraph *g);
+const Symbol *expr_symbol(const ExprGraph *g, SymId id);
+/* The definition `name = body`. Leaves are not worth a name: they are returned as they are. */
+Expr expr_def(ExprGraph *g, Name name, Expr body);
+
+/* --- construction; all return canonical nodes --- */
+Expr expr_add(ExprGraph *g, Expr a, Expr b);
+Expr expr_sub(ExprGraph *g, Expr a, Expr b);
+Expr expr_neg(ExprGraph *g, Expr a);
+Expr expr_mul(ExprGraph *g, Expr a, Expr b);
+Expr expr_div(ExprGraph *g, Expr a, Expr b);
+Expr expr_scale(ExprGraph *g, Num c, Expr a);
+Expr expr_add_n(ExprGraph *g, const Expr *terms, uint32_t n);
+Expr expr_mul_n(ExprGraph *g, const Expr *factors, uint32_t n);
+Expr expr_pow_num(ExprGraph *g, Expr base, Num exponent);
+Expr expr_pow(ExprGraph *g, Expr base, Expr exponent);
+Expr expr_sqrt(ExprGraph *g, Expr a);
+Expr expr_fn(ExprGraph *g, ExprOp op, Expr a);           /* SIN .. SIGN, NOT */
+Expr expr_fn2(ExprGraph *g, ExprOp op, Expr a, Expr b);  /* ATAN2 .. OR */
+Expr expr_select(ExprGraph *g, Expr condition, Expr a, Expr b);
+
+/* The node of the same operation with other arguments: for passes that rewrite bottom-up.
+ * args has expr_nargs(g, e) elements in the order of expr_arg. */
+Expr expr_rebuild(ExprGraph *g, Expr e, const Expr *args);
+
+/* --- inspection --- */
+ExprOp expr_op(const ExprGraph *g, Expr e);
+uint32_t expr_nargs(const ExprGraph *g, Expr e);
+Expr expr_arg(const ExprGraph *g, Expr e, uint32_t i); /* SUM, PROD: term or base at 2i, number at 2i+1 */
+Num expr_number(const ExprGraph *g, Expr e);           /* of a NUM */
+const Symbol *expr_sym_of(const ExprGraph *g, Expr e); /* of a SYM */
+SymId expr_sym_id(const ExprGraph *g, Expr e);         /* of a SYM */
+Name expr_def_name(const ExprGraph *g, Expr e);        /* of a DEF; its body is argument 0 */
+ExprSign expr_sign(const ExprGraph *g, Expr e);
+int expr_is_num(const ExprGraph *g, Expr e);
+int expr_is_zero(const ExprGraph *g, Expr e);
+int expr_is_bool(const ExprGraph *g, Expr e); /* a comparison or logical operation */
+const char *expr_op_text(ExprOp op);
+
+/* Pairs of a SUM, and any other node as the single pair (node, 1); likewise a PROD. */
+uint32_t expr_pairs(const ExprGraph *g, Expr e, ExprOp op);
+Expr expr_pair(const ExprGraph *g, Expr e, ExprOp op, uint32_t i, Num *number);
+
+/* --- sets of nodes --- */
+typedef struct {
+  const Expr *at;
+  uint32_t n;
+} ExprList;
+
+/* All nodes that the roots need, ascending: arguments before their nodes. Zero roots are skipped. */
+ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n);
+
+/* Whether e contains a symbol for which want() is true (definitions are looked through). */
+int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data);
+int expr_contains_sym(ExprGraph *g, Expr e, SymId sym);
+
+/* Scratch map from node to number, emptied in O(1) by expr_map_clear. */
+typedef struct {
+  Arena *arena;
+  uint32_t *value, *stamp;
+  uint32_t cap, epoch;
+} ExprMap;
+ExprMap expr_map(Arena *a);
+void expr_map_clear(ExprMap *m);
+void expr_map_set(ExprMap *m, Expr e, uint32_t value);
+uint32_t expr_map_get(const ExprMap *m, Expr e); /* 0 when not set */
+
+/* e with symbols replaced: with[s] stands for symbol s where it is not 0 (n entries).
+ * Definitions whose body changes are rebuilt under their name followed by suffix (may be ""). */
+Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const char *suffix);
+
+/* e with every definition replaced by its body. */
+Expr expr_expand_defs(ExprGraph *g, Expr e);
+
+/* Number of operations that evaluating the roots takes when every node is computed once. */
+uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n);
+
+#endif

@@ -1,0 +1,16 @@
+/* Expressions as a physicist writes them: as text and as LaTeX, in the user's names. */
+#ifndef LAGC_PRINT_H
+#define LAGC_PRINT_H
+
+#include "base/strbuf.h"
+#include "sym/expr.h"
+
+typedef enum { PRINT_TEXT, PRINT_LATEX } PrintStyle;
+
+/* Appends e. Definitions appear by name. Text is .lag syntax and parses back. */
+void expr_print(ExprGraph *g, Expr e, PrintStyle style, StrBuf *out);
+
+/* Appends a name: text as it is; LaTeX with Greek letters, subscripts and dots. */
+void name_print(Name name, PrintStyle style, StrBuf *out);
+
+#endif
