@@ -1,0 +1,222 @@
+#include "sym/diff.h"
+
+#include "base/strbuf.h"
+#include "sym/expr_impl.h"
+
+/* The partial derivative of node e with respect to its argument i (pairs: the i-th term or base). */
+static Expr partial_pair(ExprGraph *g, Expr e, uint32_t i) {
+  Num k;
+  ExprOp op = expr_op(g, e);
+  Expr x = expr_pair(g, e, op, i, &k);
+  if (op == EX_SUM) return expr_num(g, k);
+  Expr inverse = expr_pow_num(g, x, num_int(-1));
+  Expr p = expr_mul(g, e, inverse); /* the whole product over x */
+  return expr_scale(g, k, p);
+}
+
+static Expr one_over(ExprGraph *g, Expr a) { return expr_pow_num(g, a, num_int(-1)); }
+static Expr square(ExprGraph *g, Expr a) { return expr_pow_num(g, a, num_int(2)); }
+
+/* 1 / sqrt(1 - x^2) */
+static Expr arc_slope(ExprGraph *g, Expr x) {
+  Expr xx = square(g, x);
+  Expr rest = expr_sub(g, g->one, xx);
+  return expr_pow_num(g, rest, num_ratio(-1, 2));
+}
+
+static Expr partial_unary(ExprGraph *g, Expr e, Expr x) {
+  switch (expr_op(g, e)) {
+    case EX_DEF: return g->one;
+    case EX_SIN: return expr_fn(g, EX_COS, x);
+    case EX_COS: { Expr s = expr_fn(g, EX_SIN, x); return expr_neg(g, s); }
+    case EX_TAN: { Expr t2 = square(g, e); return expr_add(g, g->one, t2); }
+    case EX_ASIN: return arc_slope(g, x);
+    case EX_ACOS: { Expr s = arc_slope(g, x); return expr_neg(g, s); }
+    case EX_ATAN: {
+      Expr xx = square(g, x);
+      Expr d = expr_add(g, g->one, xx);
+      return one_over(g, d);
+    }
+    case EX_SINH: return expr_fn(g, EX_COSH, x);
+    case EX_COSH: return expr_fn(g, EX_SINH, x);
+    case EX_TANH: { Expr t2 = square(g, e); return expr_sub(g, g->one, t2); }
+    case EX_EXP: return e;
+    case EX_LOG: return one_over(g, x);
+    case EX_CBRT: { Expr p = expr_pow_num(g, e, num_int(-2)); return expr_scale(g, num_ratio(1, 3), p); }
+    case EX_ABS: return expr_fn(g, EX_SIGN, x);
+    case EX_SIGN: case EX_NOT: return g->zero;
+    case EX_NUM: case EX_SYM: case EX_SUM: case EX_PROD: case EX_POW: case EX_ATAN2: case EX_HYPOT:
+    case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ: case EX_AND: case EX_OR:
+    case EX_SELECT: case EX_COUNT: break;
+  }
+  return g->zero;
+}
+
+/* d(b^x)/db = x b^x / b, d(b^x)/dx = b^x log b. */
+static Expr partial_pow(ExprGraph *g, Expr e, Expr b, Expr x, uint32_t i) {
+  Expr factor;
+  if (i == 0) {
+    Expr inverse = one_over(g, b);
+    factor = expr_mul(g, x, inverse);
+  } else {
+    factor = expr_fn(g, EX_LOG, b);
+  }
+  return expr_mul(g, e, factor);
+}
+
+/* atan2(y, x): dy -> x/(x^2 + y^2), dx -> -y/(x^2 + y^2). */
+static Expr partial_atan2(ExprGraph *g, Expr y, Expr x, uint32_t i) {
+  Expr xx = square(g, x), yy = square(g, y);
+  Expr rr = expr_add(g, xx, yy);
+  Expr top = i == 0 ? x : expr_neg(g, y);
+  return expr_div(g, top, rr);
+}
+
+static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
+  Expr a = expr_arg(g, e, 0), b = expr_arg(g, e, 1);
+  switch (expr_op(g, e)) {
+    case EX_POW: return partial_pow(g, e, a, b, i);
+    case EX_ATAN2: return partial_atan2(g, a, b, i);
+    case EX_HYPOT: return expr_div(g, i == 0 ? a : b, e);
+    case EX_MIN: case EX_MAX: {
+      Expr less = expr_fn2(g, EX_LT, a, b);
+      int first = (expr_op(g, e) == EX_MIN) == (i == 0);
+      return expr_select(g, less, first ? g->one : g->zero, first ? g->zero : g->one);
+    }
+    case EX_SELECT: { /* i = 1: the value if true, 2: if false */
+      if (i == 0) return g->zero;
+      return expr_select(g, a, i == 1 ? g->one : g->zero, i == 1 ? g->zero : g->one);
+    }
+    case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_SIN: case EX_COS:
+    case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN: case EX_SINH: case EX_COSH: case EX_TANH:
+    case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_LT: case EX_LE:
+    case EX_EQ: case EX_NOT: case EX_AND: case EX_OR: case EX_COUNT: break;
+  }
+  return g->zero;
+}
+
+/* Number of arguments that carry a derivative, and the i-th of them with its partial derivative. */
+static uint32_t inputs(ExprGraph *g, Expr e) {
+  ExprOp op = expr_op(g, e);
+  return op == EX_SUM || op == EX_PROD ? expr_pairs(g, e, op) : expr_nargs(g, e);
+}
+
+static Expr input(ExprGraph *g, Expr e, uint32_t i) {
+  ExprOp op = expr_op(g, e);
+  return expr_arg(g, e, op == EX_SUM || op == EX_PROD ? 2 * i : i);
+}
+
+static Expr partial(ExprGraph *g, Expr e, uint32_t i) {
+  ExprOp op = expr_op(g, e);
+  if (op == EX_SUM || op == EX_PROD) return partial_pair(g, e, i);
+  return expr_nargs(g, e) == 1 ? partial_unary(g, e, expr_arg(g, e, 0)) : partial_binary(g, e, i);
+}
+
+/* A sum worth a name of its own when the definition it belongs to has one. */
+static Expr name_sum(ExprGraph *g, const char *before, Name name, const char *after, Expr body) {
+  if (expr_op(g, body) != EX_SUM || expr_pairs(g, body, EX_SUM) < 2) return body;
+  StrBuf b = strbuf(g->arena);
+  sb_printf(&b, "%s%s%s", before, name, after);
+  Name full = intern(g->names, sb_text(&b));
+  return expr_def(g, full, body);
+}
+
+/* --- forward --- */
+
+typedef VEC(Expr) Terms;
+
+static Expr add_terms(ExprGraph *g, const Terms *t) { return t->n ? expr_add_n(g, t->at, t->n) : g->zero; }
+
+void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
+                  const char *suffix, Expr *out) {
+  ExprList l = expr_topo(g, roots, n);
+  ExprMap dot = expr_map(g->arena); /* absent: zero */
+  Terms terms = {0};
+  for (uint32_t k = 0; k < l.n; k++) {
+    Expr e = l.at[k];
+    if (expr_op(g, e) == EX_SYM) {
+      SymId s = expr_sym_id(g, e);
+      if (s < nseed && seed[s]) expr_map_set(&dot, e, seed[s]);
+      continue;
+    }
+    terms.n = 0;
+    for (uint32_t i = 0; i < inputs(g, e); i++) {
+      Expr d = expr_map_get(&dot, input(g, e, i));
+      if (!d || d == g->zero) continue;
+      Expr p = partial(g, e, i);
+      Expr term = expr_mul(g, p, d);
+      vec_push(g->arena, &terms, term);
+    }
+    if (!terms.n) continue;
+    Expr sum = add_terms(g, &terms);
+    if (expr_op(g, e) == EX_DEF) {
+      StrBuf b = strbuf(g->arena);
+      sb_printf(&b, "%s%s", expr_def_name(g, e), suffix);
+      Name name = intern(g->names, sb_text(&b));
+      sum = expr_def(g, name, sum);
+    }
+    expr_map_set(&dot, e, sum);
+  }
+  for (uint32_t i = 0; i < n; i++) {
+    Expr d = roots[i] ? expr_map_get(&dot, roots[i]) : 0;
+    out[i] = d ? d : g->zero;
+  }
+}
+
+Expr expr_diff(ExprGraph *g, Expr e, SymId sym) {
+  Expr *seed = ARENA_ARRAY(g->arena, Expr, sym + 1), out;
+  seed[sym] = g->one;
+  StrBuf b = strbuf(g->arena);
+  sb_printf(&b, "_%s", expr_symbol(g, sym)->name);
+  expr_tangent(g, &e, 1, seed, sym + 1, sb_text(&b), &out);
+  return out;
+}
+
+/* --- reverse --- */
+
+/* Contributions to a node's adjoint: a list in a shared array. */
+typedef struct {
+  Expr value;
+  uint32_t next;
+} Contribution;
+
+typedef struct {
+  ExprGraph *g;
+  VEC(Contribution) pool; /* [0] unused */
+  ExprMap head;
+} Adjoints;
+
+static void contribute(Adjoints *a, Expr node, Expr value) {
+  if (value == a->g->zero || expr_is_num(a->g, node)) return;
+  Contribution c = {value, expr_map_get(&a->head, node)};
+  vec_push(a->g->arena, &a->pool, c);
+  expr_map_set(&a->head, node, a->pool.n - 1);
+}
+
+static Expr adjoint_of(Adjoints *a, Expr node) {
+  Terms terms = {0};
+  for (uint32_t i = expr_map_get(&a->head, node); i; i = a->pool.at[i].next)
+    vec_push(a->g->arena, &terms, a->pool.at[i].value);
+  return add_terms(a->g, &terms);
+}
+
+void expr_gradient(ExprGraph *g, Expr e, const SymId *syms, uint32_t n, Expr *out) {
+  ExprList l = expr_topo(g, &e, 1);
+  Adjoints a = {.g = g, .head = expr_map(g->arena)};
+  vec_push(g->arena, &a.pool, ((Contribution){0}));
+  if (l.n) contribute(&a, e, g->one);
+  for (uint32_t k = l.n; k-- > 0;) {
+    Expr x = l.at[k];
+    if (expr_op(g, x) == EX_SYM || expr_op(g, x) == EX_NUM) continue;
+    Expr bar = adjoint_of(&a, x);
+    if (bar == g->zero) continue;
+    if (expr_op(g, x) == EX_DEF) bar = name_sum(g, "d_", expr_def_name(g, x), "", bar);
+    for (uint32_t i = 0; i < inputs(g, x); i++) {
+      if (expr_is_num(g, input(g, x, i))) continue;
+      Expr p = partial(g, x, i);
+      Expr term = expr_mul(g, p, bar);
+      contribute(&a, input(g, x, i), term);
+    }
+  }
+  for (uint32_t i = 0; i < n; i++) out[i] = adjoint_of(&a, expr_symbol(g, syms[i])->node);
+}

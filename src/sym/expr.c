@@ -1,0 +1,236 @@
+/* Storage of the graph: nodes, hash-consing, leaves, inspection, and what is known of signs. */
+#include "sym/expr.h"
+
+#include <string.h>
+
+#include "sym/expr_impl.h"
+
+#define X(NAME, arity, text) text,
+static const char *const op_texts[EX_COUNT] = {
+#include "sym/ops.def"
+};
+#undef X
+
+ExprGraph *expr_graph(Arena *a, Interner *names) {
+  ExprGraph *g = ARENA_NEW(a, ExprGraph);
+  g->arena = a;
+  g->names = names;
+  g->seen = expr_map(a);
+  g->table_cap = 1024;
+  g->table = ARENA_ARRAY(a, Expr, g->table_cap);
+  vec_push(a, &g->nodes, ((Node){0}));
+  vec_push(a, &g->symbols, ((Symbol){0}));
+  g->zero = expr_int(g, 0);
+  g->one = expr_int(g, 1);
+  g->minus_one = expr_int(g, -1);
+  return g;
+}
+
+Arena *expr_arena(const ExprGraph *g) { return g->arena; }
+uint32_t expr_count(const ExprGraph *g) { return g->nodes.n - 1; }
+
+/* --- hash-consing --- */
+
+static uint32_t mix(uint32_t h, uint32_t x) {
+  h ^= x + 0x9e3779b9u + (h << 6) + (h >> 2);
+  return h * 0x85ebca6bu;
+}
+
+static uint32_t hash_parts(ExprOp op, const Expr *args, uint32_t n, Name name) {
+  uint32_t h = mix(0x811c9dc5u, (uint32_t)op);
+  for (uint32_t i = 0; i < n; i++) h = mix(h, args[i]);
+  for (const char *c = name; c && *c; c++) h = mix(h, (unsigned char)*c);
+  return h ^ (h >> 15);
+}
+
+static uint32_t hash_num(Num n) {
+  uint64_t bits = 0;
+  memcpy(&bits, &n.approx, sizeof bits);
+  uint32_t h = mix(mix(7, (uint32_t)n.num), (uint32_t)((uint64_t)n.num >> 32));
+  h = mix(mix(h, (uint32_t)n.den), (uint32_t)((uint64_t)n.den >> 32));
+  h = mix(mix(h, (uint32_t)bits), (uint32_t)(bits >> 32));
+  return h ^ (h >> 15);
+}
+
+static uint32_t hash_node(const ExprGraph *g, Expr e) {
+  const Node *n = &g->nodes.at[e];
+  if (n->op == EX_NUM) return hash_num(g->numbers.at[n->payload]);
+  return hash_parts((ExprOp)n->op, g->args.at + n->payload, n->nargs, n->name);
+}
+
+static void insert(ExprGraph *g, Expr e, uint32_t hash) {
+  uint32_t i = hash & (g->table_cap - 1);
+  while (g->table[i]) i = (i + 1) & (g->table_cap - 1);
+  g->table[i] = e;
+}
+
+/* Symbols are not looked up by content: each declaration is its own node. */
+static Expr add_node(ExprGraph *g, Node n, uint32_t hash) {
+  if (g->nodes.n >= UINT32_MAX / 2) arena_fail(g->arena);
+  vec_push(g->arena, &g->nodes, n);
+  Expr e = g->nodes.n - 1;
+  if (n.op == EX_SYM) return e;
+  if (g->nodes.n * 2 > g->table_cap) {
+    g->table_cap *= 2;
+    g->table = ARENA_ARRAY(g->arena, Expr, g->table_cap);
+    for (Expr i = 1; i < e; i++)
+      if (g->nodes.at[i].op != EX_SYM) insert(g, i, hash_node(g, i));
+  }
+  insert(g, e, hash);
+  return e;
+}
+
+static Expr make_named(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs, Name name) {
+  uint32_t hash = hash_parts(op, args, nargs, name);
+  for (uint32_t i = hash & (g->table_cap - 1); g->table[i]; i = (i + 1) & (g->table_cap - 1)) {
+    const Node *n = &g->nodes.at[g->table[i]];
+    if (n->op == op && n->nargs == nargs && n->name == name &&
+        memcmp(g->args.at + n->payload, args, nargs * sizeof *args) == 0)
+      return g->table[i];
+  }
+  Node n = {.op = (uint8_t)op, .nargs = nargs, .payload = g->args.n, .name = name};
+  n.sign = (uint8_t)expr_infer_sign(g, op, args, nargs);
+  for (uint32_t i = 0; i < nargs; i++) vec_push(g->arena, &g->args, args[i]);
+  return add_node(g, n, hash);
+}
+
+Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs) {
+  return make_named(g, op, args, nargs, NULL);
+}
+
+/* --- leaves --- */
+
+Expr expr_num(ExprGraph *g, Num v) {
+  uint32_t hash = hash_num(v);
+  for (uint32_t i = hash & (g->table_cap - 1); g->table[i]; i = (i + 1) & (g->table_cap - 1)) {
+    const Node *n = &g->nodes.at[g->table[i]];
+    if (n->op == EX_NUM && num_equal(g->numbers.at[n->payload], v)) return g->table[i];
+  }
+  int s = num_sign(v);
+  Node n = {.op = EX_NUM, .payload = g->numbers.n};
+  n.sign = s > 0 ? SIGN_POSITIVE : s < 0 ? SIGN_NEGATIVE : SIGN_NONNEGATIVE;
+  vec_push(g->arena, &g->numbers, v);
+  return add_node(g, n, hash);
+}
+
+Expr expr_int(ExprGraph *g, int64_t n) { return expr_num(g, num_int(n)); }
+
+SymId expr_declare(ExprGraph *g, SymKind kind, uint32_t index, Name name, ExprSign sign) {
+  SymId id = g->symbols.n;
+  Node n = {.op = EX_SYM, .payload = id, .sign = (uint8_t)sign};
+  Expr node = add_node(g, n, 0);
+  Symbol s = {.kind = kind, .index = index, .name = name, .sign = sign, .node = node};
+  vec_push(g->arena, &g->symbols, s);
+  return id;
+}
+
+uint32_t expr_symbol_count(const ExprGraph *g) { return g->symbols.n - 1; }
+const Symbol *expr_symbol(const ExprGraph *g, SymId id) { return &g->symbols.at[id]; }
+
+Expr expr_def(ExprGraph *g, Name name, Expr body) {
+  ExprOp op = expr_op(g, body);
+  if (op == EX_NUM || op == EX_SYM || op == EX_DEF) return body;
+  return make_named(g, EX_DEF, &body, 1, name);
+}
+
+/* --- inspection --- */
+
+ExprOp expr_op(const ExprGraph *g, Expr e) { return (ExprOp)g->nodes.at[e].op; }
+uint32_t expr_nargs(const ExprGraph *g, Expr e) { return g->nodes.at[e].nargs; }
+Expr expr_arg(const ExprGraph *g, Expr e, uint32_t i) { return g->args.at[g->nodes.at[e].payload + i]; }
+Num expr_number(const ExprGraph *g, Expr e) { return g->numbers.at[g->nodes.at[e].payload]; }
+SymId expr_sym_id(const ExprGraph *g, Expr e) { return g->nodes.at[e].payload; }
+const Symbol *expr_sym_of(const ExprGraph *g, Expr e) { return &g->symbols.at[g->nodes.at[e].payload]; }
+Name expr_def_name(const ExprGraph *g, Expr e) { return g->nodes.at[e].name; }
+ExprSign expr_sign(const ExprGraph *g, Expr e) { return (ExprSign)g->nodes.at[e].sign; }
+int expr_is_num(const ExprGraph *g, Expr e) { return g->nodes.at[e].op == EX_NUM; }
+int expr_is_zero(const ExprGraph *g, Expr e) { return e == g->zero; }
+const char *expr_op_text(ExprOp op) { return op_texts[op]; }
+
+int expr_is_bool(const ExprGraph *g, Expr e) {
+  ExprOp op = expr_op(g, e);
+  return op == EX_LT || op == EX_LE || op == EX_EQ || op == EX_NOT || op == EX_AND || op == EX_OR;
+}
+
+uint32_t expr_pairs(const ExprGraph *g, Expr e, ExprOp op) {
+  return expr_op(g, e) == op ? expr_nargs(g, e) / 2 : 1;
+}
+
+Expr expr_pair(const ExprGraph *g, Expr e, ExprOp op, uint32_t i, Num *number) {
+  if (expr_op(g, e) == op) {
+    *number = expr_number(g, expr_arg(g, e, 2 * i + 1));
+    return expr_arg(g, e, 2 * i);
+  }
+  *number = num_int(1);
+  return e;
+}
+
+/* --- signs --- */
+
+static int is_nonneg(ExprSign s) { return s == SIGN_POSITIVE || s == SIGN_NONNEGATIVE; }
+static int is_nonpos(ExprSign s) { return s == SIGN_NEGATIVE || s == SIGN_NONPOSITIVE; }
+
+static ExprSign flip(ExprSign s) {
+  switch (s) {
+    case SIGN_POSITIVE: return SIGN_NEGATIVE;
+    case SIGN_NONNEGATIVE: return SIGN_NONPOSITIVE;
+    case SIGN_NEGATIVE: return SIGN_POSITIVE;
+    case SIGN_NONPOSITIVE: return SIGN_NONNEGATIVE;
+    case SIGN_UNKNOWN: break;
+  }
+  return SIGN_UNKNOWN;
+}
+
+static ExprSign sum_sign(const ExprGraph *g, const Expr *args, uint32_t n) {
+  int all_nonneg = 1, all_nonpos = 1, strict = 0;
+  for (uint32_t i = 0; i < n; i += 2) {
+    ExprSign s = expr_sign(g, args[i]);
+    if (num_sign(expr_number(g, args[i + 1])) < 0) s = flip(s);
+    all_nonneg &= is_nonneg(s);
+    all_nonpos &= is_nonpos(s);
+    strict |= s == SIGN_POSITIVE || s == SIGN_NEGATIVE;
+  }
+  if (all_nonneg) return strict ? SIGN_POSITIVE : SIGN_NONNEGATIVE;
+  if (all_nonpos) return strict ? SIGN_NEGATIVE : SIGN_NONPOSITIVE;
+  return SIGN_UNKNOWN;
+}
+
+/* A factor's sign: even powers are at least 0, fractional powers are of values that are at least 0. */
+static ExprSign factor_sign(ExprSign base, Num e) {
+  if (base == SIGN_POSITIVE) return SIGN_POSITIVE;
+  if (num_is_exact(e) && e.den % 2 == 1) {
+    if (e.num % 2 == 0) return base == SIGN_NEGATIVE ? SIGN_POSITIVE : SIGN_NONNEGATIVE;
+    return base;
+  }
+  return SIGN_NONNEGATIVE;
+}
+
+static ExprSign prod_sign(const ExprGraph *g, const Expr *args, uint32_t n) {
+  int negative = 0, strict = 1;
+  for (uint32_t i = 0; i < n; i += 2) {
+    ExprSign s = factor_sign(expr_sign(g, args[i]), expr_number(g, args[i + 1]));
+    if (s == SIGN_UNKNOWN) return SIGN_UNKNOWN;
+    negative ^= is_nonpos(s);
+    strict &= s == SIGN_POSITIVE || s == SIGN_NEGATIVE;
+  }
+  ExprSign s = strict ? SIGN_POSITIVE : SIGN_NONNEGATIVE;
+  return negative ? flip(s) : s;
+}
+
+ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32_t n) {
+  switch (op) {
+    case EX_SUM: return sum_sign(g, args, n);
+    case EX_PROD: return prod_sign(g, args, n);
+    case EX_DEF: case EX_CBRT: case EX_SINH: case EX_TANH: case EX_ATAN: case EX_SIGN:
+      return expr_sign(g, args[0]);
+    case EX_EXP: case EX_COSH: return SIGN_POSITIVE;
+    case EX_POW: return expr_sign(g, args[0]) == SIGN_POSITIVE ? SIGN_POSITIVE : SIGN_UNKNOWN;
+    case EX_ABS: case EX_HYPOT: case EX_ACOS: return SIGN_NONNEGATIVE;
+    case EX_SELECT:
+      return expr_sign(g, args[1]) == expr_sign(g, args[2]) ? expr_sign(g, args[1]) : SIGN_UNKNOWN;
+    case EX_NUM: case EX_SYM: case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN: case EX_LOG:
+    case EX_ATAN2: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ: case EX_NOT:
+    case EX_AND: case EX_OR: case EX_COUNT: break;
+  }
+  return SIGN_UNKNOWN;
+}

@@ -1,0 +1,32 @@
+/* The inside of the expression graph, shared by expr.c, build.c and walk.c only. */
+#ifndef LAGC_EXPR_IMPL_H
+#define LAGC_EXPR_IMPL_H
+
+#include "sym/expr.h"
+
+typedef struct {
+  uint8_t op, sign;
+  uint32_t nargs;
+  uint32_t payload; /* first argument in g->args; NUM: index into numbers; SYM: SymId; DEF: see name */
+  Name name;        /* DEF only */
+} Node;
+
+struct ExprGraph {
+  Arena *arena;
+  Interner *names;
+  VEC(Node) nodes; /* [0] unused */
+  VEC(Expr) args;
+  VEC(Num) numbers;
+  VEC(Symbol) symbols;
+  Expr *table; /* hash of nodes, open addressing */
+  uint32_t table_cap;
+  ExprMap seen; /* scratch of expr_topo */
+  Expr zero, one, minus_one;
+};
+
+/* The node with these parts, new or found. The caller guarantees that it is canonical. */
+Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
+
+ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
+
+#endif

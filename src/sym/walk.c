@@ -1,0 +1,187 @@
+/* Sets of nodes, maps over them, substitution, counting. */
+#include <stdlib.h>
+
+#include "base/strbuf.h"
+#include "sym/expr.h"
+#include "sym/expr_impl.h"
+
+/* --- maps --- */
+
+ExprMap expr_map(Arena *a) { return (ExprMap){.arena = a, .epoch = 1}; }
+void expr_map_clear(ExprMap *m) { m->epoch++; }
+
+void expr_map_set(ExprMap *m, Expr e, uint32_t value) {
+  if (e >= m->cap) {
+    uint32_t cap = m->cap ? m->cap : 1024;
+    while (cap <= e) cap *= 2;
+    uint32_t *v = ARENA_ARRAY(m->arena, uint32_t, cap), *s = ARENA_ARRAY(m->arena, uint32_t, cap);
+    if (m->cap) {
+      memcpy(v, m->value, m->cap * sizeof *v);
+      memcpy(s, m->stamp, m->cap * sizeof *s);
+    }
+    m->value = v;
+    m->stamp = s;
+    m->cap = cap;
+  }
+  m->value[e] = value;
+  m->stamp[e] = m->epoch;
+}
+
+uint32_t expr_map_get(const ExprMap *m, Expr e) {
+  return e < m->cap && m->stamp[e] == m->epoch ? m->value[e] : 0;
+}
+
+/* --- reachable nodes --- */
+
+static int ascending(const void *a, const void *b) {
+  Expr x = *(const Expr *)a, y = *(const Expr *)b;
+  return (x > y) - (x < y);
+}
+
+ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) {
+  VEC(Expr) found = {0};
+  expr_map_clear(&g->seen);
+  for (uint32_t i = 0; i < n; i++)
+    if (roots[i] && !expr_map_get(&g->seen, roots[i])) {
+      expr_map_set(&g->seen, roots[i], 1);
+      vec_push(g->arena, &found, roots[i]);
+    }
+  for (uint32_t k = 0; k < found.n; k++) {
+    Expr e = found.at[k];
+    for (uint32_t i = 0; i < expr_nargs(g, e); i++) {
+      Expr a = expr_arg(g, e, i);
+      if (expr_map_get(&g->seen, a)) continue;
+      expr_map_set(&g->seen, a, 1);
+      vec_push(g->arena, &found, a);
+    }
+  }
+  if (found.n) qsort(found.at, found.n, sizeof *found.at, ascending);
+  return (ExprList){found.at, found.n};
+}
+
+int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data) {
+  ExprList l = expr_topo(g, &e, 1);
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_op(g, l.at[i]) == EX_SYM && want(expr_sym_of(g, l.at[i]), data)) return 1;
+  return 0;
+}
+
+static int same_symbol(const Symbol *s, const void *data) { return s->node == *(const Expr *)data; }
+
+int expr_contains_sym(ExprGraph *g, Expr e, SymId sym) {
+  Expr node = expr_symbol(g, sym)->node;
+  return expr_contains(g, e, same_symbol, &node);
+}
+
+/* --- rewriting bottom-up --- */
+
+/* The arguments of e as the map has them (numbers and untouched nodes stand for themselves).
+ * Returns 1 when any differs. */
+static int mapped_args(const ExprGraph *g, const ExprMap *m, Expr e, Expr *args) {
+  int changed = 0;
+  for (uint32_t k = 0; k < expr_nargs(g, e); k++) {
+    Expr a = expr_arg(g, e, k), b = expr_map_get(m, a);
+    args[k] = b ? b : a;
+    changed |= args[k] != a;
+  }
+  return changed;
+}
+
+Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const char *suffix) {
+  if (!e) return 0;
+  ExprList l = expr_topo(g, &e, 1);
+  ExprMap m = expr_map(g->arena);
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr x = l.at[i];
+    if (expr_op(g, x) == EX_SYM) {
+      SymId s = expr_sym_id(g, x);
+      if (s < n && with[s]) expr_map_set(&m, x, with[s]);
+      continue;
+    }
+    Expr *args = ARENA_ARRAY(g->arena, Expr, expr_nargs(g, x) + 1);
+    if (!mapped_args(g, &m, x, args)) continue;
+    Expr y;
+    if (expr_op(g, x) == EX_DEF) {
+      StrBuf name = strbuf(g->arena);
+      sb_printf(&name, "%s%s", expr_def_name(g, x), suffix);
+      Name interned = intern(g->names, sb_text(&name));
+      y = expr_def(g, interned, args[0]);
+    } else {
+      y = expr_rebuild(g, x, args);
+    }
+    expr_map_set(&m, x, y);
+  }
+  Expr r = expr_map_get(&m, e);
+  return r ? r : e;
+}
+
+Expr expr_expand_defs(ExprGraph *g, Expr e) {
+  if (!e) return 0;
+  ExprList l = expr_topo(g, &e, 1);
+  ExprMap m = expr_map(g->arena);
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr x = l.at[i];
+    Expr *args = ARENA_ARRAY(g->arena, Expr, expr_nargs(g, x) + 1);
+    int changed = mapped_args(g, &m, x, args);
+    if (expr_op(g, x) == EX_DEF) {
+      expr_map_set(&m, x, args[0]);
+    } else if (changed) {
+      Expr y = expr_rebuild(g, x, args);
+      expr_map_set(&m, x, y);
+    }
+  }
+  Expr r = expr_map_get(&m, e);
+  return r ? r : e;
+}
+
+/* --- counting --- */
+
+/* Multiplications of b^e: by squaring for integers, one square root for halves. */
+static uint32_t power_ops(Num e) {
+  if (!num_is_exact(e)) return 20;
+  int64_t n = e.num < 0 ? -e.num : e.num;
+  uint32_t ops = 0;
+  for (int64_t k = n; k > 1; k >>= 1) ops += 1 + (uint32_t)(k & 1);
+  if (e.den == 2) return ops + 1;
+  return e.den == 1 ? ops : 20;
+}
+
+static uint32_t sum_ops(const ExprGraph *g, Expr e) {
+  uint32_t n = expr_pairs(g, e, EX_SUM), ops = n - 1;
+  for (uint32_t i = 0; i < n; i++) {
+    Num c;
+    Expr t = expr_pair(g, e, EX_SUM, i, &c);
+    ops += !num_is_one(num_abs(c)) && !expr_is_num(g, t);
+  }
+  return ops;
+}
+
+static uint32_t prod_ops(const ExprGraph *g, Expr e) {
+  uint32_t n = expr_pairs(g, e, EX_PROD), ops = n - 1, inverse = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    Num k;
+    expr_pair(g, e, EX_PROD, i, &k);
+    ops += power_ops(k);
+    inverse += num_sign(k) < 0;
+  }
+  return ops + (inverse == n);
+}
+
+uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n) {
+  ExprList l = expr_topo(g, roots, n);
+  uint32_t ops = 0;
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr e = l.at[i];
+    switch (expr_op(g, e)) {
+      case EX_NUM: case EX_SYM: case EX_DEF: case EX_COUNT: break;
+      case EX_SUM: ops += sum_ops(g, e); break;
+      case EX_PROD: ops += prod_ops(g, e); break;
+      case EX_POW: case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN:
+      case EX_SINH: case EX_COSH: case EX_TANH: case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ATAN2:
+      case EX_HYPOT: ops += 20; break;
+      case EX_ABS: case EX_SIGN: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ:
+      case EX_NOT: case EX_AND: case EX_OR: case EX_SELECT: ops += 1; break;
+    }
+  }
+  return ops;
+}
