@@ -18,7 +18,8 @@
  *   - The first name that should be a word, and is none of its place, is a BADWORD.
  *   - `periodic`, `rising`, `falling`, `crossing` and `every` are words where an operand has just
  *     ended, in the statement that has the slot; `restitution` after the `,` of a contact, `exactly`
- *     after `start` when a name or `(` follows; `sum` and `product` before `(`.
+ *     after `start` when a name follows; `for` after the `:` or `,` of a symmetry when a name
+ *     follows; `sum` and `product` before `(`.
  * Everywhere else a name is a name: a coordinate may be called `force`, `every` or `sum`.
  *
  * Must hold: one raw token of lookahead, no recursion; the depth of blocks is limited. */
@@ -116,10 +117,12 @@ static TokKind slot_word(Filter *f, const Token *t) {
     TokKind statement, word;
   } slots[] = {{TOK_COORD, TOK_PERIODIC}, {TOK_EVENT, TOK_RISING}, {TOK_EVENT, TOK_FALLING},
                {TOK_EVENT, TOK_CROSSING}, {TOK_OUTPUT, TOK_EVERY}};
-  if (f->prev == TOK_START && (peek(f)->kind == TOK_IDENT || peek(f)->kind == TOK_LPAREN))
+  if (f->prev == TOK_START && peek(f)->kind == TOK_IDENT)
     return strcmp(t->name, "exactly") == 0 ? TOK_EXACTLY : TOK_IDENT;
   if (f->word == TOK_CONTACT && f->prev == TOK_COMMA && !f->brackets.n)
     return strcmp(t->name, "restitution") == 0 ? TOK_RESTITUTION : TOK_IDENT;
+  if (f->word == TOK_SYMMETRY && peek(f)->kind == TOK_IDENT && (f->prev == TOK_COLON || f->prev == TOK_COMMA))
+    return strcmp(t->name, "for") == 0 ? TOK_FOR : TOK_IDENT;
   if (peek(f)->kind == TOK_LPAREN && !ends_operand(f)) {
     if (strcmp(t->name, "sum") == 0) return TOK_SUM;
     if (strcmp(t->name, "product") == 0) return TOK_PRODUCT;
