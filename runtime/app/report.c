@@ -78,7 +78,7 @@ static void events(const App *app, FILE *f)
 
 static void energy(const App *app, const lag_stats *st, FILE *f)
 {
-  if (isnan(st->energy_drift) && app->scene->model->nq == 0) {
+  if (!app->scene->model->energy || app->scene->model->nq == 0) {
     return;
   }
   if (app->scene->model->flags & LAG_CONSERVES_ENERGY) {

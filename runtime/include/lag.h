@@ -66,8 +66,7 @@ int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
 /* The index of the first of x[n] that is not finite, -1 when all are. */
 int lag_not_finite(int n, const double *x);
 
-/* The state between two states: quintic in q and its derivative in v, from q, v and a at both ends; cubic
- * in z. y0, f0 = f(y0), y1, f1 are [n]; h = t1 - t0; s = (t - t0)/h in [0, 1]; y[n] is the result.
+/* The state between two states: quintic in q, from q, v and a at both ends; cubic in v and z. y0, f0 = f(y0), y1, f1 are [n]; h = t1 - t0; s = (t - t0)/h in [0, 1]; y[n] is the result.
  * With f of order p >= 4 the result has order 4. */
 void lag_hermite(int nq, int nz, double h, double s, const double *y0, const double *f0, const double *y1,
                  const double *f1, double *y);

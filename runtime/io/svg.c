@@ -94,10 +94,17 @@ static void tick_label(char *s, size_t n, double value, double step)
   snprintf(s, n, "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value);
 }
 
+/* What labels of y leave out: a value that nearly stands still would have the same label at each tick. */
+static double base_of(const Panel *p, double dy)
+{
+  double size = fmax(fabs(p->y0), fabs(p->y1));
+  return size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0;
+}
+
 static void axes(FILE *f, const Panel *p, const char *ylabel, int last)
 {
   char s[32];
-  double dx = nice_step(p->x0, p->x1, 8), dy = nice_step(p->y0, p->y1, p->h > 220 ? 7 : 4);
+  double dx = nice_step(p->x0, p->x1, 8), dy = nice_step(p->y0, p->y1, p->h > 220 ? 7 : 4), base = base_of(p, dy);
 
   fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" stroke=\"#999\"/>\n", p->x, p->y, p->w, p->h);
   for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
@@ -107,10 +114,15 @@ static void axes(FILE *f, const Panel *p, const char *ylabel, int last)
       text(f, px(p, k * dx), p->y + p->h + 17, "text-anchor=\"middle\"", s);
     }
   }
-  for (double k = ceil(p->y0 / dy - 1e-9); k * dy <= p->y1 + 1e-9 * dy; k++) {
-    fprintf(f, "<path d=\"M%.1f %.2fh%.1f\" class=\"g\"/>\n", p->x, py(p, k * dy), p->w);
+  for (double k = ceil((p->y0 - base) / dy - 1e-9); k * dy <= p->y1 - base + 1e-9 * dy; k++) {
+    double y = py(p, base + k * dy);
+    fprintf(f, "<path d=\"M%.1f %.2fh%.1f\" class=\"g\"/>\n", p->x, y, p->w);
     tick_label(s, sizeof s, k * dy, dy);
-    text(f, p->x - 7, py(p, k * dy) + 4, "text-anchor=\"end\"", s);
+    text(f, p->x - 7, y + 4, "text-anchor=\"end\"", s);
+  }
+  if (base != 0.0) {
+    snprintf(s, sizeof s, "%.14g +", base);
+    text(f, p->x, p->y - 6, "font-size=\"11\"", s);
   }
   if (last) {
     text(f, p->x + p->w / 2, p->y + p->h + 40, "text-anchor=\"middle\" class=\"l\"", p->xlabel);
@@ -179,7 +191,7 @@ static void unit_panel(FILE *f, const Table *t, Panel *p, const char *unit, int 
     if (strcmp(t->cols[c].unit, unit) != 0) {
       continue;
     }
-    const char *stroke = colour[shown % 8];
+    const char *stroke = colour[(c - 1) % 8];
     double y = p->y + 12 + 18 * shown, x = p->x + p->w + 14;
     curve(f, p, t, 0, c, stroke);
     if (shown + 1 < room || (shown + 1 == room && total == room)) {
