@@ -272,7 +272,7 @@ int lag_setup_start(lag_sim *s)
 {
   const lag_scene *c = s->scene;
   const lag_model *m = c->model;
-  int nq = m->nq, n = s->pb.n, rc;
+  int nq = m->nq, n = s->pb.n;
 
   for (int i = 0; i < m->np; i++) {
     if (!sign_ok(m->p[i].sign, s->p[i])) {
@@ -291,6 +291,5 @@ int lag_setup_start(lag_sim *s)
   }
   memcpy(s->y, s->now, (size_t)n * sizeof(double));
   s->run->t = s->run->from = c->t0;
-  rc = s->method->init(s->method_work, &s->pb, s->options);
-  return rc ? lag_explain(s, rc) : LAG_OK;
+  return LAG_OK;
 }

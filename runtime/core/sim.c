@@ -82,14 +82,17 @@ int lag_explain(lag_sim *s, int status)
                   pb->detail ? ")" : "", s->run->t, text, pb->n > 8 ? ", ..." : "");
 }
 
-/* The first advance: the start of everything. */
+/* The first advance: the start of everything. At t0 itself only the state is made: no direction is known. */
 static int begin(lag_sim *s, double t)
 {
   s->run->dir = s->pb.dir = t < s->scene->t0 ? -1 : 1;
   int rc = lag_setup_start(s);
 
-  if (rc) {
+  if (rc || t == s->scene->t0) {
     return rc;
+  }
+  if ((rc = s->method->init(s->method_work, &s->pb, s->options)) != 0) {
+    return lag_explain(s, rc);
   }
   s->run->begun = 1;
   rc = lag_watch_begin(s);

@@ -59,10 +59,16 @@ static double add(double s, double d, double *c)
   return r;
 }
 
-static int fail(lag_problem *pb, int rc, double t)
+static int fail(lag_problem *pb, int status, double t)
 {
   pb->bad_t = t;
-  return rc > 0 ? LAG_EDOMAIN : rc < -1 ? LAG_EMODEL : rc;
+  return status;
+}
+
+/* What the model's answer means to a method that cannot take a smaller step. */
+static int refused(lag_problem *pb, int rc, double t)
+{
+  return fail(pb, rc > 0 ? LAG_EDOMAIN : rc == LAG_ESINGULAR ? LAG_ESINGULAR : LAG_EMODEL, t);
 }
 
 /* The four stages into K1..K4; the increment of y, not yet scaled by h, into YS. */
@@ -79,7 +85,7 @@ static int stages(Rk4 *w, lag_problem *pb, double t, const double *y, double dt)
     }
     int rc = lag_rhs(pb, ts, ys, w->x + s * n);
     if (rc) {
-      return fail(pb, rc, ts);
+      return refused(pb, rc, ts);
     }
   }
   const double *restrict k1 = w->x + K1 * n, *restrict k2 = w->x + K2 * n;
@@ -117,11 +123,11 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   }
   w->ready = 0;
   rc = lag_rhs(pb, tb, y1, w->x + K1 * n);
-  if (rc == 0 && (pb->bad_index = lag_not_finite(n, w->x + K1 * n)) >= 0) {
-    rc = LAG_ENAN;
-  }
   if (rc) {
-    return fail(pb, rc, tb);
+    return refused(pb, rc, tb);
+  }
+  if ((pb->bad_index = lag_not_finite(n, w->x + K1 * n)) >= 0) {
+    return fail(pb, LAG_ENAN, tb);
   }
   memcpy(y, y1, bytes);
   w->ready = 1;
