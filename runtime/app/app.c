@@ -192,6 +192,14 @@ static int column(const App *app, const char *name)
   return -1;
 }
 
+/* Can this file be written? Better asked before a long run than after it. */
+static int try_file(const App *app, const char *path)
+{
+  Outfile o;
+
+  return path && (outfile_open(&o, path) || outfile_close(&o, 0)) ? io_error(app, path) : 0;
+}
+
 static int open_output(App *app, int *plot_x, int *plot_y)
 {
   const Args *a = &app->args;
@@ -203,10 +211,10 @@ static int open_output(App *app, int *plot_x, int *plot_y)
   if ((a->plot_x && (*plot_x = column(app, a->plot_x)) < 0) || (a->plot_y && (*plot_y = column(app, a->plot_y)) < 0)) {
     return EXIT_USAGE;
   }
-  if (a->out && rows_open(&app->rows, a->out, &app->table)) {
-    return io_error(app, a->out);
+  if (try_file(app, a->svg) || try_file(app, a->save)) {
+    return EXIT_USAGE;
   }
-  return 0;
+  return a->out && rows_open(&app->rows, a->out, &app->table) ? io_error(app, a->out) : 0;
 }
 
 static int save_state(const App *app)

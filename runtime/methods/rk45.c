@@ -152,17 +152,20 @@ static int prepare(Rk45 *w, lag_problem *pb, double t, const double *y)
   return LAG_OK;
 }
 
-/* y + dt sum_j coef[j] K_j into out: written out so that it is one pass over memory. */
-static void combine(const Rk45 *w, int n, int stage, double dt, const double *coef, const double *y, double *restrict out)
+/* out := sum_j coef[j] K_j over j < count, two columns a pass: each pass is a plain loop over contiguous arrays. */
+static void sum_up(const double *k, int n, int count, const double *coef, double *restrict out)
 {
-  const double *k = w->x;
+  double c0 = coef[0];
 
   for (int i = 0; i < n; i++) {
-    double s = coef[0] * k[i];
-    for (int j = 1; j < stage; j++) {
-      s += coef[j] * k[j * n + i];
+    out[i] = c0 * k[i];
+  }
+  for (int j = 1; j < count; j += 2) {
+    const double *restrict ka = k + j * n, *restrict kb = j + 1 < count ? ka + n : ka;
+    double ca = coef[j], cb = j + 1 < count ? coef[j + 1] : 0;
+    for (int i = 0; i < n; i++) {
+      out[i] += ca * ka[i] + cb * kb[i];
     }
-    out[i] = y[i] + dt * s;
   }
 }
 
@@ -173,7 +176,10 @@ static int stages(Rk45 *w, lag_problem *pb, double t, const double *y, double dt
 
   for (int s = 1; s < tab->stages; s++) {
     double *ys = w->x + (s == K7 ? Y1 : YS) * n, ts = t + tab->c[s] * dt;
-    combine(w, n, s, dt, tab->a[s], y, ys);
+    sum_up(w->x, n, s, tab->a[s], ys);
+    for (int i = 0; i < n; i++) {
+      ys[i] = y[i] + dt * ys[i];
+    }
     int rc = lag_rhs(pb, ts, ys, w->x + s * n);
     if (rc) {
       pb->bad_t = ts;
@@ -187,15 +193,12 @@ static int stages(Rk45 *w, lag_problem *pb, double t, const double *y, double dt
 static double error_of(Rk45 *w, const lag_problem *pb, const double *y, double dt)
 {
   int n = pb->n;
-  const double *k = w->x, *y1 = w->x + Y1 * n;
-  double s = 0;
+  const double *y1 = w->x + Y1 * n;
+  double s = 0, *err = w->x + YS * n;
 
+  sum_up(w->x, n, tab->stages, tab->e, err);
   for (int i = 0; i < n; i++) {
-    double e = 0, a = fabs(y[i]), b = fabs(y1[i]);
-    for (int j = 0; j < tab->stages; j++) {
-      e += tab->e[j] * k[j * n + i];
-    }
-    e *= dt / (w->atol + pb->tol * (a > b ? a : b));
+    double a = fabs(y[i]), b = fabs(y1[i]), e = dt * err[i] / (w->atol + pb->tol * (a > b ? a : b));
     s += e * e;
   }
   return isfinite(s) ? sqrt(s / (n ? n : 1)) : NAN;
@@ -233,10 +236,10 @@ static void accept(Rk45 *w, lag_problem *pb, double *t, double *y, double dt, do
 static int too_small(const Rk45 *w, lag_problem *pb, double t, int cause)
 {
   pb->bad_index = -1;
-  if (cause == LAG_ENAN) {
-    int i = lag_not_finite(pb->n, w->x + YS * pb->n);
-    pb->bad_index = i >= 0 ? i : lag_not_finite(pb->n, w->x + K7 * pb->n);
-  } else {
+  for (int s = 0; s < tab->stages && cause == LAG_ENAN && pb->bad_index < 0; s++) {
+    pb->bad_index = lag_not_finite(pb->n, w->x + s * pb->n);
+  }
+  if (cause != LAG_ENAN) {
     pb->bad_t = t;
   }
   return cause;

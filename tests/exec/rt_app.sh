@@ -114,6 +114,7 @@ ok "effect that is not built in" says 2 "lagc run models/rt_sim.lag drop" drop m
 ok "two uses of standard output" says 2 "-o - and --json" --json -o -
 ok "plot of an unknown column" says 2 "no output is named" swing --svg x.svg --plot-y nothing
 ok "a directory that is not there" says 2 "cannot write" -o none/rows.csv
+ok "a picture that cannot be written is said before the run" says 2 "cannot write" fixed --until 1e9 --svg none/x.svg
 if [ -w /dev/full ]; then
   ok "a full disk" says 2 "cannot write" drop -o /dev/full
 fi
