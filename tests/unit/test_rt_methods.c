@@ -222,6 +222,25 @@ static void rk4_does_not_gather_rounding(void **state)
   lag_sim_free(s);
 }
 
+/* Time is summed with compensation: step k ends at k h to the last bit, for an h that is no binary number. */
+static int compare_time(void *context, const lag_sim *s)
+{
+  double *k = context, t = ++*k * 0.1;
+  assert_close(lag_sim_time(s), t, 2 * 1.1e-16 * t);
+  return 0;
+}
+
+static void rk4_keeps_time(void **state)
+{
+  double k = 0;
+  lag_sim *s = sim_with(&osc, &lag_rk4, 0, 1, (lag_option[]){{"step", 0.1, NULL}});
+  (void)state;
+  lag_sim_on_step(s, compare_time, &k);
+  assert_int_equal(lag_sim_advance(s, 10000), LAG_OK);
+  assert_true(k >= 99999);
+  lag_sim_free(s);
+}
+
 static void backwards_undoes_forwards(void **state)
 {
   double y[4];
@@ -248,6 +267,7 @@ int main(void)
       cmocka_unit_test(rk45_error_follows_the_tolerance),
       cmocka_unit_test(hermite_reproduces_polynomials),
       cmocka_unit_test(rk4_does_not_gather_rounding),
+      cmocka_unit_test(rk4_keeps_time),
       cmocka_unit_test(backwards_undoes_forwards),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
