@@ -76,7 +76,8 @@ static Words expected_words(const Parse *cx, const TokKind *set, int n) {
   for (int i = 0; i < n; i++) {
     TokKind k = set[i];
     if (in_a_group(set, n, k) || k == TOK_FINISH || k == TOK_END || k == TOK_COUNT) continue;
-    if (k == TOK_INDEX) continue; /* an index could follow many a name: it says nothing */
+    /* an index or a unit could follow many a name: they say nothing */
+    if (k == TOK_INDEX || (k == TOK_UNIT && n > 1)) continue;
     const char *word = token_word(k);
     int phrase = k == TOK_STRING || k == TOK_UNIT;
     add_word(&w, phrase ? word : arena_printf(cx->ast->arena, "`%s`", word));
@@ -168,6 +169,8 @@ static const char *advice(const Parse *cx, const TokKind *set, int n) {
       break;
     case TOK_LT: case TOK_LE: case TOK_GT: case TOK_GE: case TOK_NE:
       if (cx->filter->word == TOK_CONTACT) return "a contact is written `contact NAME: g >= 0, restitution = e`";
+      if (cx->filter->word == TOK_EVENT && has(set, n, TOK_RISING))
+        return "an event is where an expression passes zero: `x - 1 rising { … }`";
       if (has(set, n, TOK_AND)) return "comparisons do not chain: write `a < b and b < c`";
       break;
     case TOK_IN: case TOK_AND: case TOK_OR: case TOK_NOT:
