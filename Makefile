@@ -74,22 +74,24 @@ $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag
 $(BUILD)/obj/src/syntax/parse.o: $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 
 # ---- the demonstration ------------------------------------------------------------------------------
-# Set-up comes first, in a make of its own: what it installs is then seen by the next one.
+# Set-up comes first, in a process of its own: the make that follows sees what it installed.
+SETUP = @CC='$(CC)' FLEX='$(FLEX)' BISON='$(BISON)' .ci/setup
+# A build that says nothing unless something is wrong; a job a processor, unless make was told how many.
+QUIET = @$(MAKE) -s --no-print-directory $(if $(filter --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 2))
+
 demo:
-	@CC='$(CC)' FLEX='$(FLEX)' BISON='$(BISON)' .ci/setup build
-	@$(MAKE) --no-print-directory $(PARALLEL) all
+	$(SETUP) build
+	@echo 'building $(BUILD)/lagc'
+	$(QUIET) all
 	@$(MAKE) --no-print-directory run-demo
 
 run-demo: all
 	$(BUILD)/lagc run models/double_pendulum.lag --method rk45 --sketch --svg $(BUILD)/double_pendulum.svg
-	@echo "picture: $(BUILD)/double_pendulum.svg"
-
-# A job a processor, unless make was told how many.
-PARALLEL = $(if $(filter --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 2))
+	@echo 'picture: $(BUILD)/double_pendulum.svg'
 
 # ---- tests: tests/run.sh says what a suite is -------------------------------------------------------
-# Unit tests, their helpers and fuzz targets are linked with a library built once more in $(BUILD)/san, where
-# the address and undefined-behaviour sanitizers watch; scripts drive the compiler that users get.
+# Three builds: as users get it, in $(BUILD)/san with the address and undefined-behaviour sanitizers, and, where
+# clang is installed, by clang. Unit tests, their helpers and fuzz targets are linked with the second.
 SAN_BUILD := $(BUILD)/san
 SAN_FLAGS := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 BIN       := $(BUILD)/test/bin
@@ -100,68 +102,68 @@ UNIT_SRC  := $(wildcard tests/unit/*.c)
 FUZZ_SRC  := $(wildcard tests/fuzz/fuzz_*.c)
 TEST_BIN  := $(UNIT_SRC:tests/unit/%.c=$(BIN)/%) $(FUZZ_SRC:tests/fuzz/%.c=$(BIN)/%)
 # Where T names unit tests only, nothing else is built.
-ONLY      := $(if $(T),$(if $(filter-out unit/%,$(T)),,$(wildcard $(T:%=tests/%*.c))))
-NEEDED    := $(if $(ONLY),$(ONLY:tests/unit/%.c=$(BIN)/%),all-compilers $(TEST_BIN))
+ONLY      := $(if $(filter-out unit/%,$(T)),,$(wildcard $(T:%=tests/%*.c)))
 
-RUN_TESTS = LAGC='$(BUILD)/lagc' LAGC_SAN='$(SAN_BUILD)/lagc' LAGC_CLANG='$(if $(CLANG),$(BUILD)/clang/lagc)' \
+RUN_TESTS = @LAGC='$(BUILD)/lagc' LAGC_SAN='$(SAN_BUILD)/lagc' LAGC_CLANG='$(if $(CLANG),$(BUILD)/clang/lagc)' \
             LIBLAG='$(LIBLAG)' LIBS='$(GSL_LIBS) -lm' INC='runtime/include' BIN='$(BIN)' BUILD='$(BUILD)' \
             CC='$(CC)' CLANG='$(CLANG)' CXX='$(CXX_FOUND)' GSL='$(GSL)' MAKE='$(MAKE)' sh tests/run.sh
 
 test:
-	@CC='$(CC)' FLEX='$(FLEX)' BISON='$(BISON)' .ci/setup test
-	@$(MAKE) --no-print-directory $(PARALLEL) build-tests
-	@$(RUN_TESTS) $(T)
+	$(SETUP) test
+	@$(MAKE) --no-print-directory build-tests
+	$(RUN_TESTS) $(T)
 test-long:
-	@CC='$(CC)' FLEX='$(FLEX)' BISON='$(BISON)' .ci/setup test
-	@$(MAKE) --no-print-directory $(PARALLEL) build-tests
-	@$(RUN_TESTS) --long $(T)
+	$(SETUP) test
+	@$(MAKE) --no-print-directory build-tests
+	$(RUN_TESTS) --long $(T)
 bless:
-	@CC='$(CC)' FLEX='$(FLEX)' BISON='$(BISON)' .ci/setup test
-	@$(MAKE) --no-print-directory $(PARALLEL) build-tests
-	@$(RUN_TESTS) --bless $(T)
+	$(SETUP) test
+	@$(MAKE) --no-print-directory build-tests
+	$(RUN_TESTS) --bless $(T)
 bench:
-	@CC='$(CC)' FLEX='$(FLEX)' BISON='$(BISON)' .ci/setup build
-	@$(MAKE) --no-print-directory $(PARALLEL) all
-	@$(RUN_TESTS) --bench $(T)
-build-tests: $(NEEDED)
+	$(SETUP) build
+	$(QUIET) all
+	$(RUN_TESTS) --bench $(T)
 
-# The compiler three times: as users get it, under sanitizers, and built by clang where clang is installed.
-all-compilers: all
-	@$(MAKE) --no-print-directory BUILD=$(SAN_BUILD) CFLAGS='-O1 -g' SAN='$(SAN_FLAGS)' all
-ifneq ($(CLANG),)
-	@$(MAKE) --no-print-directory BUILD=$(BUILD)/clang CC='$(CLANG)' all
-endif
-
+SAN_MAKE = $(QUIET) BUILD=$(SAN_BUILD) CFLAGS='-O1 -g' SAN='$(SAN_FLAGS)'
 SAN_LAGC := $(SAN_BUILD)/liblagc.a
 SAN_RT   := $(if $(GSL),$(SAN_BUILD)/liblag_gsl.a) $(SAN_BUILD)/liblag.a
-$(SAN_BUILD)/lib%.a: sanitized ;
-sanitized:
-	@$(MAKE) --no-print-directory BUILD=$(SAN_BUILD) CFLAGS='-O1 -g' SAN='$(SAN_FLAGS)' \
-	  $(SAN_LAGC) $(SAN_RT)
+
+build-tests:
+ifneq ($(ONLY),)
+	$(SAN_MAKE) $(SAN_LAGC) $(SAN_RT)
+	$(QUIET) $(ONLY:tests/unit/%.c=$(BIN)/%)
+else
+	@echo 'building $(BUILD)/lagc, once more with sanitizers$(if $(CLANG), and with clang), and the tests'
+	$(QUIET) all
+	$(SAN_MAKE) all
+	$(if $(CLANG),$(QUIET) BUILD=$(BUILD)/clang CC='$(CLANG)' all)
+	$(QUIET) $(TEST_BIN)
+endif
 
 TEST_CC = $(CC) -std=c11 -Wall -Wextra $(CPPFLAGS_ALL) -O1 -g $(SAN_FLAGS) -MMD -MP -MF $@.d -o $@ $<
-# test_rt_*: of the runtime. The rest of tests/unit: of the compiler.
+# tests/unit/test_rt_*: of the runtime. The rest of tests/unit: of the compiler.
 $(BIN)/test_rt_%: tests/unit/test_rt_%.c $(SAN_RT)
 	@mkdir -p $(@D)
 	$(TEST_CC) -Iruntime/include -Iruntime -ffp-contract=off $(SAN_RT) $(GSL_LIBS) -lcmocka -lm
+$(BIN)/%: tests/unit/%.c $(SAN_LAGC)
+	@mkdir -p $(@D)
+	$(TEST_CC) -Isrc -I$(SAN_BUILD)/gen $(SAN_LAGC) -lcmocka -lm
 $(BIN)/fuzz_%: tests/fuzz/fuzz_%.c $(BUILD)/test/driver.o $(SAN_LAGC)
 	@mkdir -p $(@D)
 	$(TEST_CC) -Isrc -I$(SAN_BUILD)/gen $(BUILD)/test/driver.o $(SAN_LAGC) -lm
 $(BUILD)/test/driver.o: tests/fuzz/driver.c
 	@mkdir -p $(@D)
 	$(TEST_CC) -c
-$(BIN)/%: tests/unit/%.c $(SAN_LAGC)
-	@mkdir -p $(@D)
-	$(TEST_CC) -Isrc -I$(SAN_BUILD)/gen $(SAN_LAGC) -lcmocka -lm
 
 # Looks for new failures: make fuzz [T=fuzz_parse] [SECONDS=60]. With clang's libFuzzer where there is clang,
 # with the plain mutations of tests/fuzz/driver.c where there is not.
 SECONDS ?= 60
 FUZZ     = $(if $(T),$(T),$(FUZZ_SRC:tests/fuzz/%.c=%))
 fuzz:
-	@CC='$(CC)' FLEX='$(FLEX)' BISON='$(BISON)' .ci/setup build
+	$(SETUP) build
 ifneq ($(CLANG),)
-	@$(MAKE) --no-print-directory $(PARALLEL) BUILD=$(BUILD)/fuzz CC='$(CLANG)' CFLAGS='-O1 -g' \
+	$(QUIET) BUILD=$(BUILD)/fuzz CC='$(CLANG)' CFLAGS='-O1 -g' \
 	  SAN='$(SAN_FLAGS) -fsanitize=fuzzer-no-link' $(BUILD)/fuzz/liblagc.a
 	@set -e; for f in $(FUZZ); do \
 	  corpus=tests/fuzz/corpus/$${f#fuzz_}; found=$(BUILD)/fuzz/found/$$f; mkdir -p $$found; \
@@ -170,7 +172,8 @@ ifneq ($(CLANG),)
 	  $(BUILD)/fuzz/$$f -max_total_time=$(SECONDS) -max_len=4096 -artifact_prefix=$(BUILD)/fuzz/ $$found $$corpus; \
 	done
 else
-	@$(MAKE) --no-print-directory $(PARALLEL) $(FUZZ:%=$(BIN)/%)
+	$(SAN_MAKE) $(SAN_LAGC)
+	$(QUIET) $(FUZZ:%=$(BIN)/%)
 	@set -e; for f in $(FUZZ); do \
 	  $(BIN)/$$f --mutate $(SECONDS) $(BUILD)/fuzz-found tests/fuzz/corpus/$${f#fuzz_}; done
 endif
@@ -220,4 +223,4 @@ help:
 
 -include $(LAGC_OBJ:.o=.d) $(RT_OBJ:.o=.d) $(GSL_OBJ:.o=.d) $(BUILD)/obj/src/main.d $(TEST_BIN:=.d)
 
-.PHONY: all demo run-demo test test-long bless bench build-tests all-compilers sanitized fuzz install uninstall clean help
+.PHONY: all demo run-demo test test-long bless bench build-tests fuzz install uninstall clean help

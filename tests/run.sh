@@ -136,7 +136,7 @@ judge='
   }
   /^ok /     { passed++; failing = 0; next }
   /^not ok / { failed++; failing = 1; show($0); next }
-  failing    { show($0); next }
+  failing    { if (failing++ <= 12) show($0); else if (failing == 14) show("..."); next }
              { other[++nother] = $0 }
   function show(line) { if (nshown < 60) shown[++nshown] = line; else cut = 1 }
   END {
