@@ -13,7 +13,7 @@ PREFIX  ?= /usr/local
 DESTDIR ?=
 T       ?=
 
-CPPFLAGS_ALL := -D_POSIX_C_SOURCE=200809L
+CPPFLAGS_ALL := -D_XOPEN_SOURCE=700
 SRC_FLAGS    := $(CPPFLAGS_ALL) -Isrc -I$(BUILD)/gen
 RT_FLAGS     := $(CPPFLAGS_ALL) -Iruntime/include -Iruntime -ffp-contract=off
 VERSION      := $(shell sed -n 's/^.define LAG_VERSION "\(.*\)"/\1/p' runtime/include/lag.h 2>/dev/null)

@@ -76,9 +76,10 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 
 %type <stmts> stmts block stmt coords params consts inputs states lets requires excludes assigns maps
 %type <stmts> options options_opt uses monitors
-%type <one> single coord param const input_ state let map map_item assign option use monitor
+%type <one> single coord param const input_ state let map map_item each required excluded
+%type <one> assign option use monitor
 %type <list> dims indices places_bound exprs args names
-%type <id> expr arith primary place bound value comparison every number gap tuple
+%type <id> expr arith primary place bound value comparison every number literal declared gap tuple
 %type <text> doc
 %type <unit> unit
 %type <ident> type method_name
@@ -185,22 +186,26 @@ let: IDENT[n] "=" expr[e]                       { $$ = stmt_define(ast, STMT_LET
    | IDENT[n] "[" places_bound[d] "]" "=" expr[e] { $$ = stmt_define(ast, STMT_LET, @$, $n, $d, NONE_UNIT, $e); }
    ;
 
-requires: IDENT[n]                 { $$ = stmts_one(stmt_name(ast, STMT_REQUIRES, @n, $n)); }
-        | requires[l] "," IDENT[n] { $$ = stmts_add($l, stmt_name(ast, STMT_REQUIRES, @n, $n)); }
+requires: required[x]                 { $$ = stmts_one($x); }
+        | requires[l] "," required[x] { $$ = stmts_add($l, $x); }
         ;
-excludes: IDENT[n]                 { $$ = stmts_one(stmt_name(ast, STMT_EXCLUDES, @n, $n)); }
-        | excludes[l] "," IDENT[n] { $$ = stmts_add($l, stmt_name(ast, STMT_EXCLUDES, @n, $n)); }
+required: IDENT[n] { $$ = stmt_name(ast, STMT_REQUIRES, @$, $n); };
+
+excludes: excluded[x]                 { $$ = stmts_one($x); }
+        | excludes[l] "," excluded[x] { $$ = stmts_add($l, $x); }
         ;
+excluded: IDENT[n] { $$ = stmt_name(ast, STMT_EXCLUDES, @$, $n); };
 
 /* ---- symmetries: a map after `for …:` belongs to it, up to the next `for` ---- */
 
 maps: map_item[x]             { $$ = stmts_one($x); }
     | maps[l] "," map_item[x] { $$ = maps_add($l, $x); }
     ;
-map_item: map[m] { $$ = $m; }
-        | "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" map[m] { $$ = stmt_for(ast, @$, $i, $lo, $hi, stmts_one($m)); }
-        | "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" "for" IDENT[j] "in" arith[jlo] ".." arith[jhi] ":" map[m] { $$ = stmt_for(ast, @$, $i, $lo, $hi, stmts_one(stmt_for(ast, @$, $j, $jlo, $jhi, stmts_one($m)))); }
+map_item: map[m]  { $$ = $m; }
+        | each[m] { $$ = $m; }
+        | "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" each[m] { $$ = stmt_for_map(ast, @$, $i, $lo, $hi, $m); }
         ;
+each: "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" map[m] { $$ = stmt_for_map(ast, @$, $i, $lo, $hi, $m); };
 map: place[q] "->" expr[e] { $$ = stmt_pair(ast, STMT_MAP, @$, $q, $e); };
 
 /* ---- scenes ---- */
@@ -229,9 +234,10 @@ monitors: monitor[x]                 { $$ = stmts_one($x); }
         ;
 monitor: primary[w] number[e] { $$ = stmt_pair(ast, STMT_MONITOR, @$, $w, $e); };
 
-number: NUMBER[n]         { $$ = ast_number(ast, @n, $n); }
-      | NUMBER[n] UNIT[u] { $$ = ast_unit(ast, @$, ast_number(ast, @n, $n), $u); }
+number: literal[n]         { $$ = $n; }
+      | literal[n] UNIT[u] { $$ = ast_unit(ast, @$, $n, $u); }
       ;
+literal: NUMBER[n] { $$ = ast_number(ast, @$, $n); };
 
 method_name: IDENT[n]                     { $$ = $n; }
            | method_name[a] "-" IDENT[b]  { $$ = ident_dashed(ast, @$, $a, $b); }
@@ -286,9 +292,10 @@ bound: arith[a]                                   { $$ = $a; }
      | IDENT[i] "in" arith[lo] ".." arith[hi]     { $$ = ast_bind(ast, @$, $i, $lo, $hi); }
      ;
 
-names: IDENT[n]              { $$ = ast_list(ast_name(ast, $n)); }
-     | names[l] "," IDENT[n] { $$ = ast_list_add(ast, $l, ast_name(ast, $n)); }
+names: declared[n]              { $$ = ast_list($n); }
+     | names[l] "," declared[n] { $$ = ast_list_add(ast, $l, $n); }
      ;
+declared: IDENT[n] { $$ = ast_declared(ast, $n); };
 
 /* ---- expressions ---- */
 

@@ -20,11 +20,14 @@ Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
   return found ? e->mass.at[lo].e : expr_int(e->g, 0);
 }
 
-/* E = p q' - L, and |p q'| + |L|. */
+/* Momenta to show, E = p q' - L, and |p q'| + |L|. */
 static void derive_energy(Eqns *e) {
   ExprGraph *g = e->g;
   Expr *terms = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
   for (uint32_t i = 0; i < e->n; i++) terms[i] = expr_mul(g, e->p[i], expr_symbol(g, e->m->coords.at[i].v)->node);
+  Expr *momenta = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) momenta[i] = simplify(g, e->p[i]);
+  e->momenta = momenta;
   Expr pv = expr_add_n(g, terms, e->n);
   Expr energy = expr_sub(g, pv, e->m->lagrangian);
   Expr simple = simplify(g, energy), simple_pv = simplify(g, pv);

@@ -22,7 +22,8 @@ typedef struct {
   const Model *m;
   ExprGraph *g;
   uint32_t n;            /* number of coordinates */
-  const Expr *p;         /* [n] momenta */
+  const Expr *p;         /* [n] momenta, as differentiated */
+  const Expr *momenta;   /* [n] the same, as a person would write them */
   VEC(MassEntry) mass;   /* the entries of the lower triangle that are not zero, row by row */
   const Expr *f;         /* [n] */
   const Expr *Q;         /* [n] generalised forces, inside f already */

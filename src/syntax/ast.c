@@ -41,6 +41,19 @@ AstId ast_name(Ast *ast, Ident name) {
   return append(ast, (AstExpr){.kind = AST_NAME, .span = name.span, .op_span = name.span, .name = name.name});
 }
 
+void check_declared(Ast *ast, Ident name) {
+  int is_t = strcmp(name.name, "t") == 0;
+  if (!is_t && strcmp(name.name, "pi") != 0) return;
+  diag_error(ast->diags, name.span, "`%s` is %s, and cannot be declared", name.name,
+             is_t ? "the time" : "the number pi");
+  diag_help(ast->diags, "choose another name");
+}
+
+AstId ast_declared(Ast *ast, Ident name) {
+  check_declared(ast, name);
+  return ast_name(ast, name);
+}
+
 /* A unit belongs to the whole literal before it: -5 [degC] is minus five degrees, 1/2 [m] half a
  * metre. The unit was attached to the last number; here it changes places with its new operand. */
 static AstId lift_unit(Ast *ast, AstExpr outer, AstId unit_id) {
@@ -112,6 +125,7 @@ AstId ast_call(Ast *ast, Span span, Ident function, AstList args) {
 }
 
 AstId ast_reduce(Ast *ast, AstKind kind, Span span, Ident index, AstId lo, AstId hi, AstId body, Span op) {
+  check_declared(ast, index);
   return append(ast, (AstExpr){.kind = kind, .span = span, .op_span = op, .name = index.name, .a = lo, .b = hi,
                                .c = body});
 }
@@ -133,6 +147,7 @@ AstId ast_gap(Ast *ast, Span span, Span op, AstId gap, AstId least) {
 }
 
 AstId ast_bind(Ast *ast, Span span, Ident index, AstId lo, AstId hi) {
+  check_declared(ast, index);
   return append(ast, (AstExpr){.kind = AST_BIND, .span = span, .op_span = index.span, .name = index.name, .a = lo,
                                .b = hi});
 }

@@ -27,6 +27,7 @@ typedef struct {
 AstId ast_number(Ast *ast, Span span, Num number);
 AstId ast_string(Ast *ast, AstText text);
 AstId ast_name(Ast *ast, Ident name);
+AstId ast_declared(Ast *ast, Ident name); /* an AST_NAME that is given a meaning here */
 AstId ast_unary(Ast *ast, AstKind kind, Span span, Span op, AstId a);
 AstId ast_binary(Ast *ast, AstKind kind, Span span, Span op, AstId a, AstId b);
 AstId ast_index(Ast *ast, Span span, AstId a, AstList indices);
@@ -40,6 +41,9 @@ AstId ast_bind(Ast *ast, Span span, Ident index, AstId lo, AstId hi);
 
 AstId ast_tuple(Ast *ast, Span span, AstId head, AstList rest);
 AstId ast_gap(Ast *ast, Span span, Span op, AstId gap, AstId least); /* of a contact: gap >= least */
+
+/* Objects to `t` and `pi` where a name is given a meaning. */
+void check_declared(Ast *ast, Ident name);
 
 AstList ast_list(AstId item);
 AstList ast_list_add(Ast *ast, AstList list, AstId item);
@@ -66,6 +70,7 @@ AstStmt *stmt_equation(Ast *ast, AstStmtKind kind, Span span, Ident name, AstLis
 AstStmt *stmt_symmetry(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList maps);
 AstStmt *stmt_event(Ast *ast, Span span, Ident name, AstList dims, AstId when, AstDirection way, StmtList body);
 AstStmt *stmt_for(Ast *ast, Span span, Ident index, AstId lo, AstId hi, StmtList body);
+AstStmt *stmt_for_map(Ast *ast, Span span, Ident index, AstId lo, AstId hi, AstStmt *map);
 AstStmt *stmt_options(Ast *ast, AstStmtKind kind, Span span, Ident name, StmtList options);
 AstStmt *stmt_output(Ast *ast, Span span, AstList what, AstId every);
 

@@ -53,11 +53,7 @@ AstStmt *stmt_name(Ast *ast, AstStmtKind kind, Span span, Ident name) {
 
 /* A statement that gives a name a meaning. */
 static AstStmt *declare(Ast *ast, AstStmtKind kind, Span span, Ident name) {
-  int is_t = strcmp(name.name, "t") == 0;
-  if (is_t || strcmp(name.name, "pi") == 0) {
-    diag_error(ast->diags, name.span, "`%s` is %s, and cannot be declared", name.name, is_t ? "the time" : "the number pi");
-    diag_help(ast->diags, "choose another name");
-  }
+  check_declared(ast, name);
   return stmt_name(ast, kind, span, name);
 }
 
@@ -173,6 +169,10 @@ AstStmt *stmt_for(Ast *ast, Span span, Ident index, AstId lo, AstId hi, StmtList
   s->body = body.first;
   s->last = body.last;
   return s;
+}
+
+AstStmt *stmt_for_map(Ast *ast, Span span, Ident index, AstId lo, AstId hi, AstStmt *map) {
+  return stmt_for(ast, span, index, lo, hi, stmts_one(map));
 }
 
 AstStmt *stmt_options(Ast *ast, AstStmtKind kind, Span span, Ident name, StmtList options) {

@@ -35,7 +35,11 @@ static int has(const TokKind *set, int n, TokKind kind) {
   return 0;
 }
 
-static int is_operator(TokKind k) { return k >= TOK_PLUS && k <= TOK_OR; }
+/* What "an operator" stands for where `set` is expected: a comparison only where all are. */
+static int is_operator(const TokKind *set, int n, TokKind k) {
+  if (k >= TOK_LT && k <= TOK_GE) return has(set, n, TOK_LT);
+  return k >= TOK_PLUS && k <= TOK_OR;
+}
 
 /* Words for the expected tokens, each once: groups first, closing signs last. */
 typedef struct {
@@ -63,7 +67,7 @@ static int in_a_group(const TokKind *set, int n, TokKind k) {
   if (operand && (token_flags(k) & T_START)) return 1;
   int after_operand = has(set, n, TOK_TIMES) || has(set, n, TOK_PRIME);
   if (after_operand && (k == TOK_PRIME || k == TOK_INDEX || k == TOK_DOT || k == TOK_UNIT || k == TOK_LPAREN)) return 1;
-  return has(set, n, TOK_TIMES) && is_operator(k);
+  return has(set, n, TOK_TIMES) && is_operator(set, n, k);
 }
 
 static Words expected_words(const Parse *cx, const TokKind *set, int n) {
@@ -72,6 +76,8 @@ static Words expected_words(const Parse *cx, const TokKind *set, int n) {
   for (int i = 0; i < n; i++) {
     TokKind k = set[i];
     if (in_a_group(set, n, k) || k == TOK_FINISH || k == TOK_END || k == TOK_COUNT) continue;
+    /* an index or a unit could follow many a name: they say nothing */
+    if (k == TOK_INDEX || (k == TOK_UNIT && n > 1)) continue;
     const char *word = token_word(k);
     int phrase = k == TOK_STRING || k == TOK_UNIT;
     add_word(&w, phrase ? word : arena_printf(cx->ast->arena, "`%s`", word));
@@ -150,7 +156,7 @@ static const char *advice(const Parse *cx, const TokKind *set, int n) {
       if (has(set, n, TOK_COLON)) return "this statement needs a name: `constraint NAME: a = b`";
       break;
     case TOK_COLON:
-      if (has(set, n, TOK_ASSIGN)) return arena_printf(a, "write %s, then `=`", describe(cx, b));
+      if (has(set, n, TOK_ASSIGN)) return arena_printf(a, "write `%s = …`", b->name ? b->name : "NAME");
       break;
     case TOK_INDEX:
       if (has(set, n, TOK_UNIT)) return "a unit stands apart from the name: `u [N]`";
@@ -158,7 +164,13 @@ static const char *advice(const Parse *cx, const TokKind *set, int n) {
     case TOK_PRIME:
       if (b->kind == TOK_END) return "a `'` never continues a line: put it on the line of its name";
       break;
+    case TOK_RPAREN: case TOK_RBRACKET:
+      if (operators && !cx->open.span.end) return arena_printf(a, "this `%s` closes nothing", token_word(t->kind));
+      break;
     case TOK_LT: case TOK_LE: case TOK_GT: case TOK_GE: case TOK_NE:
+      if (cx->filter->word == TOK_CONTACT) return "a contact is written `contact NAME: g >= 0, restitution = e`";
+      if (cx->filter->word == TOK_EVENT && has(set, n, TOK_RISING))
+        return "an event is where an expression passes zero: `x - 1 rising { … }`";
       if (has(set, n, TOK_AND)) return "comparisons do not chain: write `a < b and b < c`";
       break;
     case TOK_IN: case TOK_AND: case TOK_OR: case TOK_NOT:

@@ -4,7 +4,8 @@
  * Out: statements, each closed by exactly one END (also before the `}` of its block, and after it).
  *
  * Where a statement ends: at `;`, at `}`, and at the end of a line, unless the line goes on:
- *   - its last token is an operator or one of , = -> : .. ( [ { in not
+ *   - its last token is an operator or one of , = -> : .. ( [ { in not (unless the next line can
+ *     only be a statement: `let a = 2*<newline> let b = 3` has lost an operand, not a line end)
  *   - the next line begins with an operator (a leading `-` too), one of = -> , .. : or `{`
  *   - a bracket is open, unless two operands would meet there (`sin(th <newline> let ...`): nothing
  *     could make sense of that, so the bracket was forgotten and the statement ends.
@@ -22,7 +23,7 @@
  *     follows; `sum` and `product` before `(`.
  * Everywhere else a name is a name: a coordinate may be called `force`, `every` or `sum`.
  *
- * Must hold: one raw token of lookahead, no recursion; the depth of blocks is limited. */
+ * Must hold: at most two raw tokens of lookahead, no recursion; the depth of blocks is limited. */
 #include "syntax/filter.h"
 
 Filter *filter_new(Scan *scan, int single) {
@@ -38,16 +39,22 @@ const OpenBracket *filter_bracket(const Filter *f) {
   return f->brackets.n ? &f->brackets.at[f->brackets.n - 1] : NULL;
 }
 
-static const Token *peek(Filter *f) {
-  if (!f->has_ahead) f->ahead = scan_next(f->scan);
-  f->has_ahead = 1;
-  return &f->ahead;
+/* The raw token after the next k. */
+static const Token *peek_at(Filter *f, uint32_t k) {
+  while (f->n_ahead <= k) {
+    f->ahead[f->n_ahead] = scan_next(f->scan);
+    f->n_ahead++;
+  }
+  return &f->ahead[k];
 }
 
+static const Token *peek(Filter *f) { return peek_at(f, 0); }
+
 static Token take(Filter *f) {
-  peek(f);
-  f->has_ahead = 0;
-  return f->ahead;
+  Token t = *peek(f);
+  f->n_ahead--;
+  if (f->n_ahead) f->ahead[0] = f->ahead[1];
+  return t;
 }
 
 static Token out(Filter *f, Token t) {
@@ -57,7 +64,7 @@ static Token out(Filter *f, Token t) {
 }
 
 static Token end_statement(Filter *f, Span span, TokKind sign) {
-  f->inside = f->end_due = 0;
+  f->inside = f->end_due = f->assigned = 0;
   f->brackets.n = f->lists = f->owed = 0;
   return out(f, (Token){.kind = TOK_END, .span = span, .follows = sign});
 }
@@ -68,22 +75,37 @@ static Token bad(Filter *f, Span span, const char *message, const char *help) {
 
 /* ---- ends of lines ---- */
 
-/* Whether a line end before `next` is no statement end. */
-static int line_continues(const Filter *f, TokKind next) {
+/* Whether the next line can only be a new statement, although this one ends in an operator: it
+ * begins with a word of the place and another operand, or it would be a second `=`. */
+static int statement_begins(Filter *f) {
+  const Token *next = peek(f);
+  if (next->kind != TOK_IDENT) return 0;
+  unsigned where = f->where[f->depth];
+  TokKind kind = token_statement(next->name, where);
+  int word = kind != TOK_IDENT && !(kind == TOK_FOR && f->word == TOK_SYMMETRY);
+  TokKind follows = peek_at(f, 1)->kind;
+  if (follows == TOK_ASSIGN) return f->assigned && (word || (where & (W_SCENE | W_EVENT)));
+  return word && (follows == TOK_IDENT || follows == TOK_STRING || follows == TOK_NUMBER);
+}
+
+/* Whether a line end before the next token is no statement end. */
+static int line_continues(Filter *f) {
+  TokKind next = peek(f)->kind;
   unsigned after = token_flags(next), before = token_flags(f->prev);
-  if (before & T_OPENS) return 1;
+  if (next == TOK_RBRACE && f->lists) return 1;
+  if (next == TOK_FINISH || next == TOK_RBRACE) return 0;
+  if (before & T_OPENS) return !statement_begins(f);
   if (next == TOK_LBRACE) return 1;
-  if (next == TOK_PRIME || next == TOK_FINISH || next == TOK_SEMICOLON) return 0;
+  if (next == TOK_PRIME || next == TOK_SEMICOLON) return 0;
   if (after & T_BINARY) return 1;
   if (!f->brackets.n) return 0;
-  if (next == TOK_RBRACE) return f->lists > 0;
   int operands_meet = (before & T_OPERAND) && (after & T_START);
   return !operands_meet;
 }
 
 static int at_line_end(Filter *f) {
   while (peek(f)->kind == TOK_NEWLINE) take(f);
-  return !line_continues(f, peek(f)->kind);
+  return !f->single && !line_continues(f);
 }
 
 /* ---- words ---- */
@@ -98,6 +120,7 @@ static int sets_a_name(TokKind next) {
 static Token first_name(Filter *f, Token t) {
   unsigned where = f->where[f->depth];
   TokKind next = peek(f)->kind;
+  if (next == TOK_NEWLINE && peek_at(f, 1)->kind == TOK_ASSIGN) next = TOK_ASSIGN;
   f->word = TOK_IDENT;
   if ((where & (W_SCENE | W_EVENT)) && (sets_a_name(next) || t.dots)) return t;
   t.kind = token_statement(t.name, where);
@@ -174,7 +197,7 @@ static Token open_block(Filter *f, Token t) {
   f->open[f->depth] = t;
   f->where[f->depth + 1] = place_of(f);
   f->depth++;
-  f->inside = 0;
+  f->inside = f->assigned = 0;
   return brace;
 }
 
@@ -234,6 +257,8 @@ static Token filter_sign(Filter *f, Token t) {
     f->has_block = 0;
   }
   f->inside = 1;
+  if (t.kind == TOK_ASSIGN) f->assigned = 1;
+  if (t.kind == TOK_COMMA && !f->brackets.n) f->assigned = 0;
   if (t.kind == TOK_LPAREN || t.kind == TOK_INDEX || t.kind == TOK_LBRACE) {
     if (f->brackets.n == FILTER_BRACKETS)
       return bad(f, t.span, "brackets are nested more than 1000000 deep", NULL);

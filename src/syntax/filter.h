@@ -18,8 +18,8 @@ typedef struct {
 
 typedef struct {
   Scan *scan;
-  Token ahead;     /* the raw token already taken from the scanner */
-  int has_ahead;
+  Token ahead[2];  /* raw tokens already taken from the scanner */
+  uint32_t n_ahead;
   int end_due;     /* an END goes out before anything else: a block was closed */
   TokKind prev;    /* the last token that went out */
   Token primes;    /* and, below, how many PRIMEs follow it */
@@ -27,6 +27,7 @@ typedef struct {
   int single;      /* the text is one expression: no statement words, no blocks */
   int inside;      /* a statement has begun */
   TokKind word;    /* its word, or IDENT */
+  int assigned;    /* an `=` was seen since its last `,` outside brackets */
   int has_block;   /* its next `{` outside brackets opens a block */
   VEC(OpenBracket) brackets;
   uint32_t lists;  /* how many of them are LBRACE */
