@@ -86,8 +86,8 @@ Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(print
 /* The unit of a dimension in SI, for quantities that were declared without one. */
 Unit unit_of_dim(Builder *b, Dim d);
 
-/* scene.c: which statements are active, and the scene's contents. */
-int scene_select(Builder *b, const char *scene);
+/* scene.c: which statements are active (those of the effect `also` too), and the scene's contents. */
+void scene_select(Builder *b, const char *scene, Name also);
 void scene_build(Builder *b);
 
 #endif

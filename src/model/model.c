@@ -401,7 +401,7 @@ static void check_defines(Builder *b) {
   }
 }
 
-static Builder *builder_new(Ast *ast, const Define *defines, uint32_t ndefines) {
+static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   Arena *a = ast->arena;
   Builder *b = ARENA_NEW(a, Builder);
   b->ast = ast;
@@ -409,8 +409,8 @@ static Builder *builder_new(Ast *ast, const Define *defines, uint32_t ndefines) 
   b->arena = a;
   b->g = expr_graph(a, ast->names);
   b->scope.arena = a;
-  b->defines = defines;
-  b->ndefines = ndefines;
+  b->defines = choice->defines;
+  b->ndefines = choice->ndefines;
   Model *m = b->m = ARENA_NEW(a, Model);
   m->ast = ast;
   m->diags = ast->diags;
@@ -430,9 +430,9 @@ static void forget_time_without_units(Builder *b) {
   b->dims.at[b->m->time] = DIM_UNKNOWN;
 }
 
-Model *model_build(Ast *ast, const char *scene, const Define *defines, uint32_t ndefines) {
-  Builder *b = builder_new(ast, defines, ndefines);
-  if (!scene_select(b, scene)) return NULL;
+Model *model_build(Ast *ast, const ModelChoice *choice) {
+  Builder *b = builder_new(ast, choice);
+  scene_select(b, choice->scene, choice->also);
   forget_time_without_units(b);
   for (uint32_t i = 0; i < b->active.n; i++) declare(b, b->active.at[i].stmt, b->active.at[i].effect);
   check_defines(b);
