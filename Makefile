@@ -87,7 +87,6 @@ demo:
 
 run-demo: all
 	$(BUILD)/lagc run models/double_pendulum.lag --method rk45 --sketch --svg $(BUILD)/double_pendulum.svg
-	@echo 'picture: $(BUILD)/double_pendulum.svg'
 
 # ---- tests: tests/run.sh says what a suite is -------------------------------------------------------
 # Three builds: as users get it, in $(BUILD)/san with the address and undefined-behaviour sanitizers, and, where

@@ -20,6 +20,7 @@
 #   LIBLAG, INC, LIBS              the runtime's libraries, its headers, what to link after them
 #   BIN, BUILD, TMP                built test programs; the build folder; a folder of the suite's own, empty
 #   CC, CLANG, CXX, GSL, MAKE      GSL is `yes` or empty
+#   LAG_TREE                       what LAG_HOME must be for LAGC_SAN and LAGC_CLANG to find the runtime
 # Every suite leaves its output in $BUILD/test/log. The last line is `N passed, N failed`.
 cd "$(dirname "$0")/.." || exit 2
 unset MAKEFLAGS MFLAGS MAKELEVEL
@@ -28,6 +29,10 @@ export CMOCKA_MESSAGE_OUTPUT=TAP
 export UBSAN_OPTIONS="print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}"
 : "${BUILD:=build}" "${BIN:=$BUILD/test/bin}" "${JOBS:=2}"
 logs=$BUILD/test/log
+# Simulators that tests make are kept apart from the user's own.
+XDG_CACHE_HOME=$(pwd)/$BUILD/test/cache
+LAG_TREE=$(pwd)/$BUILD/test/home
+export XDG_CACHE_HOME LAG_TREE
 
 kind='test'
 limit=300
@@ -107,6 +112,10 @@ if [ "$kind" = bless ]; then
 else
   unset BLESS
 fi
+
+mkdir -p "$LAG_TREE"
+ln -sfn "$(pwd)/$BUILD" "$LAG_TREE/lib"
+ln -sfn "$(pwd)/runtime/include" "$LAG_TREE/include"
 
 # ---- run them, $JOBS at a time; report in order ----
 for s in $suites; do rm -f "$logs/$s.done"; done

@@ -12,7 +12,8 @@ src/model     model/ syntax/ sym/ base/
 src/mech      mech/ model/ sym/ base/
 src/ir        ir/ sym/ base/
 src/emit      emit/ ir/ base/
-src           base/ syntax/ sym/ model/ mech/ ir/ emit/
+src/cli       cli/ base/
+src           base/ syntax/ sym/ model/ mech/ ir/ emit/ cli/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/core      core/ lag.h lag_model.h
 runtime/methods   methods/ lag.h lag_model.h
@@ -29,7 +30,7 @@ runtime/include/lag.h  lag_model.h
 '
 # The inside of a folder, shared by its own files only.
 private='syntax/ast_build.h syntax/parse_state.h syntax/filter.h syntax/scan.h syntax/token.h model/builder.h
-  model/scope.h sym/expr_impl.h sym/ops.def core/core.h methods/tableau.h'
+  model/scope.h sym/expr_impl.h sym/ops.def ir/lower_impl.h methods/tableau.h'
 
 # Every #include as `FILE HEADER`; <stdio.h> keeps its brackets.
 list=$TMP/list
@@ -72,6 +73,10 @@ empty "the inside of a folder stays inside" "$(awk -v private="$private" '
     if (folder != home) print $1 " includes " $2
   }' "$list")"
 
+# The equations enter the IR by ir/lower.h: who includes that sees mech, and only lowering and main may.
+empty "equations: ir/lower and main only" "$(awk '
+  $2 == "ir/lower.h" && $1 !~ /^src\/(main\.c|ir\/lower[^\/]*\.[ch])$/ { print $1 " includes " $2 ", and so mech/eqns.h" }' "$list")"
+
 empty "GSL: runtime/gsl only" "$(awk '$2 ~ /gsl/ && $1 !~ /^runtime\/gsl\// { print $1 " includes " $2 }' "$list")"
 
 empty "lag_model.h includes only <stddef.h>" \
@@ -80,8 +85,8 @@ empty "lag_model.h includes only <stddef.h>" \
 # ISO C11 everywhere; POSIX where a program meets its system.
 c11='assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic
   stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype'
-posix='src/main\.c src/driver[^/]*\.c runtime/app/.*\.c runtime/io/.*\.c'
-empty "system headers: ISO C11; POSIX in main, runtime/app and runtime/io" "$(awk -v c11="$c11" -v posix="$posix" '
+posix='src/main\.c src/cli/.*\.c runtime/app/.*\.c runtime/io/.*\.c'
+empty "system headers: ISO C11; POSIX in main, cli, runtime/app and runtime/io" "$(awk -v c11="$c11" -v posix="$posix" '
   BEGIN {
     n = split(c11, w); for (i = 1; i <= n; i++) standard["<" w[i] ".h>"] = 1
     m = split(posix, where)
@@ -120,6 +125,10 @@ includes_of() {
 }
 if [ -x "$LAGC" ] && ls models/*.lag >/dev/null 2>&1; then
   empty "lagc emit: lag_model.h and <math.h>" "$(includes_of emit '"lag_model.h"\|<math.h>')"
-  empty "lagc header: <math.h>" "$(includes_of header '<math.h>')"
+  if "$LAGC" header models/double_pendulum.lag -o "$TMP/emitted" 2>&1 | grep -q 'not yet'; then
+    skip "lagc header: <math.h>" "not yet: lagc header"
+  else
+    empty "lagc header: <math.h>" "$(includes_of header '<math.h>')"
+  fi
 fi
 tap_end
