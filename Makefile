@@ -7,7 +7,7 @@ SAN     ?=
 FLEX    ?= flex
 BISON   ?= bison
 
-CPPFLAGS_ALL := -D_POSIX_C_SOURCE=200809L
+CPPFLAGS_ALL := -D_XOPEN_SOURCE=700
 SRC_FLAGS    := $(CPPFLAGS_ALL) -Isrc -I$(BUILD)/gen
 RT_FLAGS     := $(CPPFLAGS_ALL) -Iruntime/include -Iruntime -ffp-contract=off
 

@@ -7,9 +7,24 @@ Diags *diags_new(Arena *a, const Sources *sources) {
   return d;
 }
 
+/* A text that is compiled several times (once a scene) makes the same mistake each time: one
+ * message is enough. */
+static Diag *find(const Diags *d, const Diag *one) {
+  for (uint32_t i = 0; i < d->list.n; i++) {
+    Diag *other = &d->list.at[i];
+    if (other->span.begin == one->span.begin && other->span.end == one->span.end &&
+        other->severity == one->severity && strcmp(other->message, one->message) == 0)
+      return other;
+  }
+  return NULL;
+}
+
 static Diag *add(Diags *d, Severity severity, Span span, const char *fmt, va_list ap) {
-  if (severity == DIAG_ERROR) d->errors++;
   Diag one = {.severity = severity, .span = span, .message = arena_vprintf(d->arena, fmt, ap)};
+  if (severity == DIAG_ERROR) d->errors++;
+  Diag *known = span.end ? find(d, &one) : NULL;
+  d->latest = known ? (uint32_t)(known - d->list.at) : d->list.n > DIAG_MAX ? DIAG_MAX : d->list.n;
+  if (known) return known;
   if (d->list.n > DIAG_MAX) { /* the last slot takes what is no longer shown */
     d->unshown++;
     d->list.at[DIAG_MAX] = one;
@@ -33,14 +48,14 @@ Diag *diag_note(Diags *d, Span span, const char *fmt, ...) { ADD(DIAG_NOTE); }
 void diag_help(Diags *d, const char *fmt, ...) {
   va_list ap;
   va_start(ap, fmt);
-  d->list.at[d->list.n - 1].help = arena_vprintf(d->arena, fmt, ap);
+  d->list.at[d->latest].help = arena_vprintf(d->arena, fmt, ap);
   va_end(ap);
 }
 
 void diag_also(Diags *d, Span span, const char *fmt, ...) {
   va_list ap;
   va_start(ap, fmt);
-  Diag *one = &d->list.at[d->list.n - 1];
+  Diag *one = &d->list.at[d->latest];
   one->note_span = span;
   one->note = arena_vprintf(d->arena, fmt, ap);
   va_end(ap);

@@ -28,6 +28,7 @@ typedef struct {
   const Sources *sources;
   VEC(Diag) list;
   uint32_t errors;  /* all of them */
+  uint32_t latest;  /* index of the message recorded last */
   uint32_t unshown; /* messages past the first DIAG_MAX + 1 */
 } Diags;
 
@@ -35,7 +36,7 @@ enum { DIAG_MAX = 100 }; /* messages shown; the rest is counted, and said so */
 
 Diags *diags_new(Arena *a, const Sources *sources);
 
-/* Records a message about span; returns it so that help or a note can be added. */
+/* Records a message about span (once: a repetition of a known one is dropped) and returns it. */
 Diag *diag_error(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 Diag *diag_warning(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 

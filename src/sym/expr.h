@@ -40,6 +40,7 @@ typedef enum {
   SYM_RATE,  /* z' */
   SYM_PARAM,
   SYM_INPUT,
+  SYM_CONST,  /* pi */
   SYM_LOCAL  /* the group parameter of a symmetry; scratch symbols of a pass */
 } SymKind;
 

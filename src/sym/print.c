@@ -49,7 +49,7 @@ static int rank_of(const ExprGraph *g, Expr e) {
     case EX_NUM: return 0;
     case EX_SYM:
       switch (expr_sym_of(g, e)->kind) {
-        case SYM_PARAM: return 1;
+        case SYM_PARAM: case SYM_CONST: return 1;
         case SYM_INPUT: case SYM_TIME: case SYM_LOCAL: return 2;
         case SYM_COORD: case SYM_STATE: return 4;
         case SYM_VEL: case SYM_RATE: return 7;

@@ -1,0 +1,411 @@
+/* The grammar. What enters are the filter's tokens (src/syntax/token.h): every statement is closed
+ * by one END, statement words are tokens of their own, and which word may stand in which block is
+ * already decided, so that one rule `stmt` serves files, effects, scenes and events.
+ * What leaves is an Ast; each action is one call of a builder (src/syntax/ast_build.h).
+ *
+ * A push parser: src/syntax/parse.c owns its stack, so that nothing leaks when memory runs out in
+ * an action. Recovery is at the ends of statements only. */
+%define api.pure full
+%define api.push-pull push
+%define api.prefix {lag_}
+%define api.token.prefix {LAG_}
+%define api.location.type {Span}
+%define parse.error custom
+%define parse.lac full
+%define lr.type ielr
+%locations
+%expect 0
+%parse-param {Parse *cx} {Ast *ast}
+
+%code requires {
+#include "syntax/parse_state.h"
+}
+
+%code {
+/* The place of a rule is that of all its parts; an empty part has no place. */
+#define YYLLOC_DEFAULT(Current, Rhs, N)                                                     \
+  do {                                                                                      \
+    (Current) = (Span){0, 0};                                                               \
+    for (int part = 1; part <= (N); part++) (Current) = span_join((Current), YYRHSLOC(Rhs, part)); \
+  } while (0)
+
+/* What deep nesting may cost: PARSE_STACK entries of about 80 bytes. */
+#define YYMAXDEPTH PARSE_STACK
+
+#define NONE_LIST ((AstList){0, 0})
+#define NONE_STMTS ((StmtList){NULL, NULL})
+#define NONE_TEXT ((AstText){0})
+#define NONE_UNIT ((AstUnit){0})
+#define NONE_IDENT ((Ident){0})
+
+static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message);
+}
+
+%union {
+  Ident ident;
+  Num number;
+  AstUnit unit;
+  AstText text;
+  AstId id;
+  AstList list;
+  AstStmt *one;
+  StmtList stmts;
+  AstSign sign;
+  AstDirection way;
+  int yes;
+}
+
+%token FINISH 0 BEGIN_FILE BEGIN_EXPR END NEWLINE SEMICOLON BAD BADWORD
+%token <ident> IDENT
+%token <number> NUMBER
+%token <text> STRING
+%token <unit> UNIT
+%token PRIME "'" LPAREN "(" RPAREN ")" INDEX "[" RBRACKET "]" LBRACE "{" RBRACE "}"
+%token COMMA "," COLON ":" DOT "." RANGE ".." ARROW "->" ASSIGN "="
+%token PLUS "+" MINUS "-" TIMES "*" DIVIDE "/" POWER "^"
+%token LT "<" LE "<=" GT ">" GE ">=" EQ "==" NE "!=" AND "and" OR "or" NOT "not" IN "in"
+%token <ident> SUM "sum" PRODUCT "product"
+%token MODEL "model" INCLUDE "include" COORD "coord" PARAM "param" CONST "const" INPUT "input" STATE "state"
+%token LET "let" FUNCTION "function" LAGRANGIAN "lagrangian" KINETIC "kinetic" POTENTIAL "potential"
+%token DISSIPATION "dissipation" FORCE "force" FLOW "flow" CONSTRAINT "constraint" SYMMETRY "symmetry"
+%token EXPECT "expect" EVENT "event" CONTACT "contact" OBSERVE "observe" FOR "for" EFFECT "effect"
+%token REQUIRES "requires" EXCLUDES "excludes" SCENE "scene" START "start" EXACT "exact" USE "use"
+%token SPAN "span" METHOD "method" TOLERANCE "tolerance" OUTPUT "output" MONITOR "monitor" LIKE "like"
+%token STOP "stop" PERIODIC "periodic" RISING "rising" FALLING "falling" CROSSING "crossing"
+%token RESTITUTION "restitution" EXACTLY "exactly" EVERY "every"
+
+%type <stmts> stmts block stmt coords params consts inputs states lets requires excludes assigns maps
+%type <stmts> options options_opt uses monitors
+%type <one> single coord param const input_ state let map map_item each required excluded
+%type <one> assign option use monitor
+%type <list> dims indices places_bound exprs args names
+%type <id> expr arith primary place bound value comparison every number literal declared gap tuple
+%type <text> doc
+%type <unit> unit
+%type <ident> type method_name
+%type <sign> sign
+%type <way> direction
+%type <yes> periodic exactly
+
+%left "or"
+%left "and"
+%precedence "not"
+%left "+" "-"
+%left "*" "/"
+%precedence NEGATION
+%right "^"
+
+%%
+
+input: BEGIN_FILE stmts[s]   { parse_done_file(cx, $s); }
+     | BEGIN_EXPR value[v] END { parse_done_value(cx, $v); }
+     ;
+
+stmts: %empty              { $$ = NONE_STMTS; }
+     | stmts[s] stmt[x] END { $$ = stmts_join($s, $x); }
+     | stmts[s] error END   { $$ = $s; yyerrok; }
+     ;
+
+block: "{" stmts[s] "}" { $$ = $s; };
+
+stmt: single[x]                       { $$ = stmts_one($x); }
+    | "coord" coords[l]               { $$ = $l; }
+    | "param" params[l]               { $$ = $l; }
+    | "const" consts[l]               { $$ = $l; }
+    | "input" inputs[l]               { $$ = $l; }
+    | "state" states[l]               { $$ = $l; }
+    | "let" lets[l]                   { $$ = $l; }
+    | "flow" assigns[l]               { $$ = stmts_retag(ast, $l, STMT_FLOW, 0); }
+    | "requires" requires[l]          { $$ = $l; }
+    | "excludes" excludes[l]          { $$ = $l; }
+    | "start" exactly[x] assigns[l]   { $$ = stmts_retag(ast, $l, STMT_START, $x); }
+    | "exact" assigns[l]              { $$ = stmts_retag(ast, $l, STMT_EXACT, 0); }
+    | "use" uses[l]                   { $$ = $l; }
+    | "monitor" monitors[l]           { $$ = $l; }
+    ;
+
+single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MODEL, @$, $n, $d, NONE_STMTS); }
+      | "include" STRING[p]                     { $$ = stmt_include(ast, @$, $p); }
+      | "function" IDENT[n] "(" names[a] ")" "=" expr[e] { $$ = stmt_function(ast, @$, $n, $a, $e); }
+      | "lagrangian" "=" expr[e]                { $$ = stmt_value(ast, STMT_LAGRANGIAN, @$, $e); }
+      | "kinetic" "=" expr[e]                   { $$ = stmt_value(ast, STMT_KINETIC, @$, $e); }
+      | "potential" "=" expr[e]                 { $$ = stmt_value(ast, STMT_POTENTIAL, @$, $e); }
+      | "dissipation" "=" expr[e]               { $$ = stmt_value(ast, STMT_DISSIPATION, @$, $e); }
+      | "force" place[q] "=" expr[e]            { $$ = stmt_pair(ast, STMT_FORCE, @$, $q, $e); }
+      | "force" tuple[q] "=" expr[e]            { $$ = stmt_pair(ast, STMT_FORCE, @$, $q, $e); }
+      | "constraint" IDENT[n] dims[d] ":" arith[a] "=" expr[b] { $$ = stmt_equation(ast, STMT_CONSTRAINT, @$, $n, $d, $a, $b); }
+      | "symmetry" IDENT[n] "(" names[a] ")" doc[d] ":" maps[m] { $$ = stmt_symmetry(ast, @$, $n, $a, $d, $m); }
+      | "expect" IDENT[n] ":" arith[a] "=" expr[b] { $$ = stmt_equation(ast, STMT_EXPECT, @$, $n, NONE_LIST, $a, $b); }
+      | "expect" arith[a] "=" expr[b]           { $$ = stmt_equation(ast, STMT_EXPECT, @$, NONE_IDENT, NONE_LIST, $a, $b); }
+      | "event" IDENT[n] dims[d] ":" arith[g] direction[w] block[b] { $$ = stmt_event(ast, @$, $n, $d, $g, $w, $b); }
+      | "contact" IDENT[n] dims[d] ":" gap[g] "," "restitution" "=" expr[e] { $$ = stmt_equation(ast, STMT_CONTACT, @$, $n, $d, $g, $e); }
+      | "observe" IDENT[n] dims[d] unit[u] "=" expr[e] { $$ = stmt_define(ast, STMT_OBSERVE, @$, $n, $d, $u, $e); }
+      | "for" IDENT[i] "in" arith[lo] ".." arith[hi] block[b] { $$ = stmt_for(ast, @$, $i, $lo, $hi, $b); }
+      | "effect" IDENT[n] doc[d] block[b]       { $$ = stmt_titled(ast, STMT_EFFECT, @$, $n, $d, $b); }
+      | "scene" IDENT[n] doc[d] block[b]        { $$ = stmt_titled(ast, STMT_SCENE, @$, $n, $d, $b); }
+      | "span" arith[e]                         { $$ = stmt_value(ast, STMT_SPAN, @$, $e); }
+      | "method" method_name[n] options_opt[o]  { $$ = stmt_options(ast, STMT_METHOD, @$, $n, $o); }
+      | "tolerance" arith[e]                    { $$ = stmt_value(ast, STMT_TOLERANCE, @$, $e); }
+      | "output" exprs[l] every[e]              { $$ = stmt_output(ast, @$, $l, $e); }
+      | "like" IDENT[n]                         { $$ = stmt_name(ast, STMT_LIKE, @$, $n); }
+      | "stop"                                  { $$ = stmt_plain(ast, STMT_STOP, @$); }
+      | assign[a]                               { $$ = $a; }
+      ;
+
+/* ---- lists of declarations: one statement each ---- */
+
+coords: coord[x]               { $$ = stmts_one($x); }
+      | coords[l] "," coord[x] { $$ = stmts_add($l, $x); }
+      ;
+coord: IDENT[n] dims[d] type[t] unit[u] periodic[p] { $$ = stmt_coord(ast, @$, $n, $d, $t, $u, $p); };
+
+params: param[x]               { $$ = stmts_one($x); }
+      | params[l] "," param[x] { $$ = stmts_add($l, $x); }
+      ;
+param: IDENT[n] dims[d] unit[u] "=" arith[v] sign[s] { $$ = stmt_param(ast, @$, $n, $d, $u, $v, $s); };
+
+consts: const[x]               { $$ = stmts_one($x); }
+      | consts[l] "," const[x] { $$ = stmts_add($l, $x); }
+      ;
+const: IDENT[n] "=" arith[v] { $$ = stmt_define(ast, STMT_CONST, @$, $n, NONE_LIST, NONE_UNIT, $v); };
+
+inputs: input_[x]               { $$ = stmts_one($x); }
+      | inputs[l] "," input_[x] { $$ = stmts_add($l, $x); }
+      ;
+input_: IDENT[n] unit[u] "=" value[v] { $$ = stmt_define(ast, STMT_INPUT, @$, $n, NONE_LIST, $u, $v); };
+
+states: state[x]               { $$ = stmts_one($x); }
+      | states[l] "," state[x] { $$ = stmts_add($l, $x); }
+      ;
+state: IDENT[n] dims[d] unit[u] { $$ = stmt_define(ast, STMT_STATE, @$, $n, $d, $u, 0); };
+
+lets: let[x]             { $$ = stmts_one($x); }
+    | lets[l] "," let[x] { $$ = stmts_add($l, $x); }
+    ;
+let: IDENT[n] "=" expr[e]                       { $$ = stmt_define(ast, STMT_LET, @$, $n, NONE_LIST, NONE_UNIT, $e); }
+   | IDENT[n] "[" places_bound[d] "]" "=" expr[e] { $$ = stmt_define(ast, STMT_LET, @$, $n, $d, NONE_UNIT, $e); }
+   ;
+
+requires: required[x]                 { $$ = stmts_one($x); }
+        | requires[l] "," required[x] { $$ = stmts_add($l, $x); }
+        ;
+required: IDENT[n] { $$ = stmt_name(ast, STMT_REQUIRES, @$, $n); };
+
+excludes: excluded[x]                 { $$ = stmts_one($x); }
+        | excludes[l] "," excluded[x] { $$ = stmts_add($l, $x); }
+        ;
+excluded: IDENT[n] { $$ = stmt_name(ast, STMT_EXCLUDES, @$, $n); };
+
+/* ---- symmetries: a map after `for …:` belongs to it, up to the next `for` ---- */
+
+maps: map_item[x]             { $$ = stmts_one($x); }
+    | maps[l] "," map_item[x] { $$ = maps_add($l, $x); }
+    ;
+map_item: map[m]  { $$ = $m; }
+        | each[m] { $$ = $m; }
+        | "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" each[m] { $$ = stmt_for_map(ast, @$, $i, $lo, $hi, $m); }
+        ;
+each: "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" map[m] { $$ = stmt_for_map(ast, @$, $i, $lo, $hi, $m); };
+map: place[q] "->" expr[e] { $$ = stmt_pair(ast, STMT_MAP, @$, $q, $e); };
+
+/* ---- scenes ---- */
+
+assigns: assign[x]                { $$ = stmts_one($x); }
+       | assigns[l] "," assign[x] { $$ = stmts_add($l, $x); }
+       ;
+assign: place[p] "=" expr[e] { $$ = stmt_pair(ast, STMT_SET, @$, $p, $e); };
+
+uses: use[x]             { $$ = stmts_one($x); }
+    | uses[l] "," use[x] { $$ = stmts_add($l, $x); }
+    ;
+use: IDENT[n] options_opt[o] { $$ = stmt_options(ast, STMT_USE, @$, $n, $o); };
+
+options_opt: %empty             { $$ = NONE_STMTS; }
+           | "(" ")"            { $$ = NONE_STMTS; }
+           | "(" options[o] ")" { $$ = $o; }
+           ;
+options: option[x]                { $$ = stmts_one($x); }
+       | options[l] "," option[x] { $$ = stmts_add($l, $x); }
+       ;
+option: place[p] "=" value[v] { $$ = stmt_pair(ast, STMT_SET, @$, $p, $v); };
+
+monitors: monitor[x]                 { $$ = stmts_one($x); }
+        | monitors[l] "," monitor[x] { $$ = stmts_add($l, $x); }
+        ;
+monitor: primary[w] number[e] { $$ = stmt_pair(ast, STMT_MONITOR, @$, $w, $e); };
+
+number: literal[n]         { $$ = $n; }
+      | literal[n] UNIT[u] { $$ = ast_unit(ast, @$, $n, $u); }
+      ;
+literal: NUMBER[n] { $$ = ast_number(ast, @$, $n); };
+
+method_name: IDENT[n]                     { $$ = $n; }
+           | method_name[a] "-" IDENT[b]  { $$ = ident_dashed(ast, @$, $a, $b); }
+           ;
+
+/* ---- parts of statements ---- */
+
+doc: %empty    { $$ = NONE_TEXT; }
+   | STRING[s] { $$ = $s; }
+   ;
+dims: %empty               { $$ = NONE_LIST; }
+    | "[" indices[l] "]"   { $$ = $l; }
+    ;
+type: %empty       { $$ = NONE_IDENT; }
+    | ":" IDENT[n] { $$ = $n; }
+    ;
+unit: %empty  { $$ = NONE_UNIT; }
+    | UNIT[u] { $$ = $u; }
+    ;
+periodic: %empty     { $$ = 0; }
+        | "periodic" { $$ = 1; }
+        ;
+exactly: %empty    { $$ = 0; }
+       | "exactly" { $$ = 1; }
+       ;
+sign: %empty          { $$ = SIGN_ANY; }
+    | ">" NUMBER[n]   { $$ = sign_of(ast, @n, SIGN_GT, $n); }
+    | ">=" NUMBER[n]  { $$ = sign_of(ast, @n, SIGN_GE, $n); }
+    | "<" NUMBER[n]   { $$ = sign_of(ast, @n, SIGN_LT, $n); }
+    | "<=" NUMBER[n]  { $$ = sign_of(ast, @n, SIGN_LE, $n); }
+    ;
+direction: %empty     { $$ = CROSS_BOTH; }
+         | "crossing" { $$ = CROSS_BOTH; }
+         | "rising"   { $$ = CROSS_RISING; }
+         | "falling"  { $$ = CROSS_FALLING; }
+         ;
+gap: arith[a] ">="[op] arith[b] { $$ = ast_gap(ast, @$, @op, $a, $b); };
+every: %empty          { $$ = 0; }
+     | "every" arith[e] { $$ = $e; }
+     ;
+
+/* What a statement sets: a name, a member of a family, all of them, a component, a derivative. */
+place: IDENT[n]                          { $$ = ast_name(ast, $n); }
+     | place[a] "[" places_bound[l] "]"  { $$ = ast_index(ast, @$, $a, $l); }
+     | place[a] "." IDENT[m]             { $$ = ast_member(ast, @$, $a, $m); }
+     | place[a] "'"[op]                  { $$ = ast_prime(ast, @$, @op, $a); }
+     ;
+places_bound: bound[x]                   { $$ = ast_list($x); }
+            | places_bound[l] "," bound[x] { $$ = ast_list_add(ast, $l, $x); }
+            ;
+bound: arith[a]                                   { $$ = $a; }
+     | IDENT[i] "in" arith[lo] ".." arith[hi]     { $$ = ast_bind(ast, @$, $i, $lo, $hi); }
+     ;
+
+names: declared[n]              { $$ = ast_list($n); }
+     | names[l] "," declared[n] { $$ = ast_list_add(ast, $l, $n); }
+     ;
+declared: IDENT[n] { $$ = ast_declared(ast, $n); };
+
+/* ---- expressions ---- */
+
+value: expr[e]   { $$ = $e; }
+     | STRING[s] { $$ = ast_string(ast, $s); }
+     ;
+
+expr: comparison[e]                 { $$ = $e; }
+    | "not"[op] expr[a]             { $$ = ast_unary(ast, AST_NOT, @$, @op, $a); }
+    | expr[a] "and"[op] expr[b]     { $$ = ast_binary(ast, AST_AND, @$, @op, $a, $b); }
+    | expr[a] "or"[op] expr[b]      { $$ = ast_binary(ast, AST_OR, @$, @op, $a, $b); }
+    ;
+
+comparison: arith[a]                     { $$ = $a; }
+          | arith[a] "<"[op] arith[b]    { $$ = ast_binary(ast, AST_LT, @$, @op, $a, $b); }
+          | arith[a] "<="[op] arith[b]   { $$ = ast_binary(ast, AST_LE, @$, @op, $a, $b); }
+          | arith[a] ">"[op] arith[b]    { $$ = ast_binary(ast, AST_GT, @$, @op, $a, $b); }
+          | arith[a] ">="[op] arith[b]   { $$ = ast_binary(ast, AST_GE, @$, @op, $a, $b); }
+          | arith[a] "=="[op] arith[b]   { $$ = ast_binary(ast, AST_EQ, @$, @op, $a, $b); }
+          | arith[a] "!="[op] arith[b]   { $$ = ast_binary(ast, AST_NE, @$, @op, $a, $b); }
+          ;
+
+arith: primary[e]                    { $$ = $e; }
+     | arith[a] "+"[op] arith[b]     { $$ = ast_binary(ast, AST_ADD, @$, @op, $a, $b); }
+     | arith[a] "-"[op] arith[b]     { $$ = ast_binary(ast, AST_SUB, @$, @op, $a, $b); }
+     | arith[a] "*"[op] arith[b]     { $$ = ast_binary(ast, AST_MUL, @$, @op, $a, $b); }
+     | arith[a] "/"[op] arith[b]     { $$ = ast_binary(ast, AST_DIV, @$, @op, $a, $b); }
+     | arith[a] "^"[op] arith[b]     { $$ = ast_binary(ast, AST_POW, @$, @op, $a, $b); }
+     | "-"[op] arith[a] %prec NEGATION { $$ = ast_unary(ast, AST_NEG, @$, @op, $a); }
+     | "+" arith[a] %prec NEGATION   { $$ = $a; }
+     ;
+
+primary: NUMBER[n]                          { $$ = ast_number(ast, @n, $n); }
+       | IDENT[n]                           { $$ = ast_name(ast, $n); }
+       | IDENT[f] "(" args[l] ")"           { $$ = ast_call(ast, @$, $f, $l); }
+       | "sum"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] ")"     { $$ = ast_reduce(ast, AST_SUM, @$, $i, $lo, $hi, $e, @op); }
+       | "product"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] ")" { $$ = ast_reduce(ast, AST_PRODUCT, @$, $i, $lo, $hi, $e, @op); }
+       | "(" expr[e] ")"                    { $$ = $e; }
+       | tuple[e]                           { $$ = $e; }
+       | "{" exprs[l] "}"                   { $$ = ast_collect(ast, AST_LIST, @$, $l); }
+       | primary[a] "[" indices[l] "]"      { $$ = ast_index(ast, @$, $a, $l); }
+       | primary[a] "." IDENT[m]            { $$ = ast_member(ast, @$, $a, $m); }
+       | primary[a] "'"[op]                 { $$ = ast_prime(ast, @$, @op, $a); }
+       | primary[a] UNIT[u]                 { $$ = ast_unit(ast, @$, $a, $u); }
+       ;
+
+tuple: "(" expr[e] "," exprs[l] ")" { $$ = ast_tuple(ast, @$, $e, $l); };
+args: %empty   { $$ = NONE_LIST; }
+    | exprs[l] { $$ = $l; }
+    ;
+exprs: expr[e]              { $$ = ast_list($e); }
+     | exprs[l] "," expr[e] { $$ = ast_list_add(ast, $l, $e); }
+     ;
+indices: arith[e]                { $$ = ast_list($e); }
+       | indices[l] "," arith[e] { $$ = ast_list_add(ast, $l, $e); }
+       ;
+
+%%
+
+/* Bison's numbers for the token kinds, in the order of token.h. */
+#define YYSYMBOL_FINISH YYSYMBOL_YYEOF
+#define TOKEN_(name, word, flags) [TOK_##name] = LAG_##name,
+#define KIND_(name, word, flags) case YYSYMBOL_##name: return TOK_##name;
+
+static const short bison_token[TOK_COUNT] = {TOKENS(TOKEN_)};
+
+static TokKind kind_of(yysymbol_kind_t symbol) {
+  switch (symbol) {
+    TOKENS(KIND_)
+    default: return TOK_COUNT;
+  }
+}
+
+/* A token that cannot stand where it was found: hands what could to errors.c. */
+static int yyreport_syntax_error(const yypcontext_t *yyctx, Parse *cx, Ast *ast) {
+  yysymbol_kind_t symbols[YYNTOKENS];
+  TokKind kinds[YYNTOKENS];
+  (void)ast;
+  int n = yypcontext_expected_tokens(yyctx, symbols, YYNTOKENS);
+  if (n < 0) return n;
+  for (int i = 0; i < n; i++) kinds[i] = kind_of(symbols[i]);
+  parse_report(cx, kinds, n);
+  return 0;
+}
+
+/* Called only when the stack cannot grow: at its limit, or for want of memory. */
+static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message) {
+  (void)message;
+  if (cx->stack->yystacksize < YYMAXDEPTH) arena_fail(ast->arena);
+  parse_too_deep(cx, *span);
+}
+
+void parse_open(Parse *cx) {
+  cx->stack = lag_pstate_new();
+  if (!cx->stack) arena_fail(cx->ast->arena);
+}
+
+int parse_push(Parse *cx, const Token *t) {
+  LAG_STYPE value = {0};
+  Span span = t->span;
+  switch (t->kind) {
+    case TOK_NUMBER: value.number = t->number; break;
+    case TOK_STRING: value.text = (AstText){t->text, span}; break;
+    case TOK_UNIT: value.unit = t->unit; break;
+    default: value.ident = (Ident){t->name, span}; break;
+  }
+  return lag_push_parse(cx->stack, bison_token[t->kind], &value, &span, cx, cx->ast) == YYPUSH_MORE;
+}
+
+void parse_close(Parse *cx) {
+  lag_pstate_delete(cx->stack);
+  cx->stack = NULL;
+}

@@ -1,0 +1,337 @@
+/* A simulator's main. Enters: the command line; leaves: rows, pictures, a report and an exit status. Holds: rows
+ * stand at t0 + k every whatever the steps are, and at the end; what was computed is kept even when the run
+ * fails or is interrupted. */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "app/app.h"
+#include "core/core.h"
+
+/* The only mutable global: a signal handler can reach nothing else. */
+static volatile sig_atomic_t interrupted;
+
+static void on_interrupt(int signal_number)
+{
+  (void)signal_number;
+  interrupted = 1;
+}
+
+static double seconds_since(const struct timespec *t)
+{
+  struct timespec now;
+
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)(now.tv_sec - t->tv_sec) + 1e-9 * (double)(now.tv_nsec - t->tv_nsec);
+}
+
+/* After each step: Ctrl-C, and the progress line (a terminal, after 1 s, at most 5 times a second). */
+static int after_step(void *context, const lag_sim *sim)
+{
+  App *app = context;
+
+  if (app->progress >= 0 && seconds_since(&app->shown) >= (app->progress ? 0.2 : 1.0)) {
+    double t = lag_sim_time(sim), t0 = app->scene->t0, part = (t - t0) / (app->until - t0);
+    fprintf(stderr, "\rt = %.6g s, %.0f %% ", t, 100 * part);
+    clock_gettime(CLOCK_MONOTONIC, &app->shown);
+    app->progress = 1;
+  }
+  return interrupted;
+}
+
+static void after_event(void *context, int k, double t)
+{
+  App *app = context;
+
+  app->nevents++;
+  if (app->nlog < LOGGED_EVENTS) {
+    app->log[app->nlog].k = k;
+    app->log[app->nlog++].t = t;
+  }
+}
+
+/* ---- What to compute */
+
+static int choose_end(App *app)
+{
+  const Args *a = &app->args;
+  double t = lag_sim_time(app->sim);
+
+  app->until = app->scene->has_span ? app->scene->t1 : app->scene->t0 + 10;
+  if (a->until && !args_number(a, "--until", a->until, "--until 20", &app->until)) {
+    return EXIT_USAGE;
+  }
+  if (app->until == t) {
+    return app_error(a, "nothing to compute: the run is at t = %g s and ends at %g s; write --until with a later time", t,
+                     app->until);
+  }
+  if (app->resumed && (app->until - t) * (t - app->scene->t0) < 0) {
+    return app_error(a, "%s stands at t = %g s; --until %g would go back", a->resume, t, app->until);
+  }
+  return 0;
+}
+
+/* The grid of rows: origin, every, index of the next; kept with the run. every 0: no rows. */
+static int choose_grid(App *app)
+{
+  const Args *a = &app->args;
+  double *grid = lag_sim_rows(app->sim), every = app->resumed ? grid[1] : app->scene->every;
+  double t = lag_sim_time(app->sim), origin = app->resumed && every > 0 ? grid[0] : t;
+
+  if (a->every) {
+    if (!args_number(a, "--every", a->every, "--every 0.01", &every)) {
+      return EXIT_USAGE;
+    }
+    if (every <= 0) {
+      return app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
+    }
+    origin = app->scene->t0;
+  }
+  if (!(every > 0)) {
+    every = fabs(app->until - t) / (a->out || a->svg ? 1000 : 280); /* 280: the dots across a sketch, twice */
+    origin = t;
+  }
+  grid[0] = origin;
+  grid[1] = every;
+  grid[2] = app->resumed ? floor(fabs(t - origin) / every + 1e-9) + 1 : 0;
+  return 0;
+}
+
+/* Row k: where 1/every is a whole number, k/(1/every) is what a person would write (0.3, not 0.1*3). */
+static double row_time(const App *app, const double *grid)
+{
+  double dir = app->until < app->scene->t0 ? -1 : 1, whole = 1 / grid[1], n = nearbyint(whole);
+
+  if (n >= 1 && fabs(whole - n) <= 4e-16 * n) {
+    return grid[0] + dir * (grid[2] / n);
+  }
+  return grid[0] + dir * (grid[2] * grid[1]);
+}
+
+/* ---- Running */
+
+static int put_row(App *app)
+{
+  double t = lag_sim_time(app->sim);
+
+  app->row[0] = app->last_row = t;
+  int rc = lag_sim_outputs(app->sim, app->row + 1);
+  if (rc) {
+    return rc;
+  }
+  if (app->rows.open && rows_write(&app->rows, app->row)) {
+    return LAG_EIO;
+  }
+  return table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
+}
+
+/* Rows on the grid as far as `until`. */
+static int run_rows(App *app)
+{
+  double *grid = lag_sim_rows(app->sim), dir = app->until < app->scene->t0 ? -1 : 1;
+  int rc = 0;
+
+  while (rc == 0) {
+    double t = row_time(app, grid), rest = (app->until - t) * dir;
+    if (rest < -1e-9 * grid[1]) {
+      return LAG_OK;
+    }
+    if (fabs(rest) <= 1e-9 * grid[1]) {
+      app->until = t; /* the same time but for rounding */
+    }
+    rc = interrupted ? LAG_INTERRUPTED : lag_sim_advance(app->sim, t);
+    rc = rc ? rc : put_row(app);
+    grid[2] += rc == 0;
+  }
+  return rc;
+}
+
+static void run(App *app)
+{
+  int rows = app->args.out || app->table.keep, rc = rows ? run_rows(app) : 0;
+
+  if (rc == 0) {
+    rc = lag_sim_advance(app->sim, app->until);
+  }
+  if (rows && rc >= 0 && app->last_row != lag_sim_time(app->sim)) {
+    int bad = put_row(app);
+    rc = bad ? bad : rc;
+  }
+  app->status = rc;
+  app->wall = seconds_since(&app->begun);
+  if (app->progress > 0) {
+    fputs("\r\33[K", stderr);
+  }
+}
+
+/* ---- Files */
+
+static int io_error(const App *app, const char *path)
+{
+  return app_error(&app->args, "cannot write %s: %s", path, strerror(errno));
+}
+
+static int column(const App *app, const char *name)
+{
+  const char *best = NULL;
+  int least = 4;
+
+  for (int i = 0; i < app->table.ncols; i++) {
+    int d = lag_distance(app->table.cols[i].name, name);
+    if (d == 0) {
+      return i;
+    }
+    if (d < least) {
+      least = d;
+      best = app->table.cols[i].name;
+    }
+  }
+  app_error(&app->args, best ? "no output is named %s; did you mean %s?" : "no output is named %s", name, best);
+  return -1;
+}
+
+/* Can this file be written? Better asked before a long run than after it. */
+static int try_file(const App *app, const char *path)
+{
+  Outfile o;
+
+  return path && (outfile_open(&o, path) || outfile_close(&o, 0)) ? io_error(app, path) : 0;
+}
+
+static int open_output(App *app, int *plot_x, int *plot_y)
+{
+  const Args *a = &app->args;
+
+  if (table_init(&app->table, app->sim, a->svg || a->sketch) ||
+      !(app->row = calloc((size_t)app->table.ncols, sizeof *app->row))) {
+    return app_error(a, "out of memory");
+  }
+  if ((a->plot_x && (*plot_x = column(app, a->plot_x)) < 0) || (a->plot_y && (*plot_y = column(app, a->plot_y)) < 0)) {
+    return EXIT_USAGE;
+  }
+  if (try_file(app, a->svg) || try_file(app, a->save)) {
+    return EXIT_USAGE;
+  }
+  return a->out && rows_open(&app->rows, a->out, &app->table) ? io_error(app, a->out) : 0;
+}
+
+static int save_state(const App *app)
+{
+  State st = {.tol = lag_sim_tolerance(app->sim), .signature = lag_sim_signature(app->sim), .t = lag_sim_time(app->sim)};
+  const lag_method *m = lag_sim_method(app->sim);
+  const char *path = app->args.save;
+  int rc = 0;
+
+  snprintf(st.program, sizeof st.program, "%s", app->program->name);
+  snprintf(st.scene, sizeof st.scene, "%s", app->scene->name);
+  snprintf(st.method, sizeof st.method, "%s", m->name);
+  st.noptions = m->noptions;
+  memcpy(st.options, lag_sim_options(app->sim), (size_t)m->noptions * sizeof(double));
+  st.n = lag_sim_save_size(app->sim);
+  st.data = malloc(st.n * sizeof(double));
+  if (!st.data || lag_sim_save(app->sim, st.data)) {
+    rc = app_error(&app->args, "%s", st.data ? lag_sim_message(app->sim) : "out of memory");
+  } else if (state_write(path, &st)) {
+    rc = io_error(app, path);
+  }
+  free(st.data);
+  return rc;
+}
+
+/* Completes the files, says what happened. */
+static int finish(App *app, int plot_x, int plot_y)
+{
+  const Args *a = &app->args;
+  int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? EXIT_INTERRUPTED : EXIT_FINE, bad = 0;
+  FILE *f = a->out && strcmp(a->out, "-") == 0 ? stderr : stdout;
+  char title[300];
+
+  if (app->status == LAG_EINVAL || app->status == LAG_ENOMEM || app->status == LAG_EIO) {
+    rows_close(&app->rows, 0);
+    return app->status == LAG_EIO ? io_error(app, a->out) : app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
+  }
+  if (app->rows.open && rows_close(&app->rows, 1)) {
+    bad = io_error(app, a->out);
+  } else {
+    app->written = 1;
+  }
+  snprintf(title, sizeof title, "%s: %s", app->scene->model->name, app->scene->name);
+  if (a->svg && svg_write(a->svg, &app->table, title, plot_x, plot_y)) {
+    bad = io_error(app, a->svg);
+  }
+  if (a->save && app->status >= 0 && save_state(app)) {
+    bad = EXIT_USAGE;
+  }
+  if (a->sketch) {
+    sketch_print(a->json ? stderr : f, &app->table);
+  }
+  if (a->json) {
+    report_json(app, stdout);
+  } else if (!a->quiet) {
+    report_text(app, f);
+  }
+  if (app->status < 0 && (a->json || a->quiet)) {
+    app_error(a, "%s", lag_sim_message(app->sim));
+  }
+  if (fflush(stdout) != 0) {
+    bad = io_error(app, "standard output");
+  }
+  return bad ? bad : rc;
+}
+
+static void catch_interrupt(void)
+{
+  struct sigaction action = {0};
+
+  interrupted = 0;
+  action.sa_handler = on_interrupt;
+  action.sa_flags = (int)SA_RESETHAND; /* a second Ctrl-C ends at once */
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, NULL);
+}
+
+static int simulate(App *app)
+{
+  int plot_x = 0, plot_y = -1, rc = app_choose(app);
+
+  if (rc || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
+    return rc;
+  }
+  if (app->args.save && (lag_sim_method(app->sim)->flags & LAG_METHOD_NO_SAVE)) {
+    return app_error(&app->args, "--save-state: the state of method %s cannot be saved; rk45 and rk4 can",
+                     lag_sim_method(app->sim)->name);
+  }
+  if ((rc = open_output(app, &plot_x, &plot_y)) != 0) {
+    return rc;
+  }
+  lag_sim_on_step(app->sim, after_step, app);
+  lag_sim_on_event(app->sim, after_event, app);
+  catch_interrupt();
+  app->progress = isatty(2) && !app->args.quiet ? 0 : -1;
+  clock_gettime(CLOCK_MONOTONIC, &app->begun);
+  app->shown = app->begun;
+  run(app);
+  return finish(app, plot_x, plot_y);
+}
+
+int lag_app_main(int argc, char **argv, const lag_program *program, const lag_method *const *extra, int nextra)
+{
+  App app = {.program = program, .extra = extra, .nextra = nextra, .last_row = NAN};
+  int rc = args_parse(&app.args, argc, argv);
+
+  if (rc == 0 && app.args.help) {
+    app_help(&app, stdout);
+  } else if (rc == 0 && app.args.method && strcmp(app.args.method, "help") == 0) {
+    app_list_methods(&app, stdout);
+  } else if (rc == 0) {
+    rc = simulate(&app);
+  }
+  lag_sim_free(app.sim);
+  table_free(&app.table);
+  free(app.row);
+  free(app.args.sets);
+  free(app.state.data);
+  return rc;
+}

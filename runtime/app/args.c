@@ -1,0 +1,173 @@
+/* The command line of a simulator. Enters: argv; leaves: Args. Holds: nothing is guessed; what is not
+ * understood is named, with what could be written instead. */
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "core/core.h"
+
+int app_error(const Args *a, const char *format, ...)
+{
+  va_list args;
+
+  fprintf(stderr, "%s: ", a->self);
+  va_start(args, format);
+  vfprintf(stderr, format, args);
+  va_end(args);
+  putc('\n', stderr);
+  return EXIT_USAGE;
+}
+
+/* Decimal numbers only: what strtod takes beside them (inf, nan, 0x1p3) is a mistake here. */
+int args_number(const Args *a, const char *what, const char *text, const char *example, double *x)
+{
+  char *end;
+  size_t plain = strspn(text, "+-.0123456789eE");
+
+  *x = strtod(text, &end);
+  if (end == text || *end || plain != strlen(text)) {
+    app_error(a, "%s: \"%s\" is not a number; write for example %s", what, text, example);
+    return 0;
+  }
+  if (!isfinite(*x)) {
+    app_error(a, "%s: %s is too large for double precision", what, text);
+    return 0;
+  }
+  return 1;
+}
+
+typedef struct Option {
+  const char *name;
+  size_t offset;
+  int is_flag;
+} Option;
+
+static const Option options[] = {
+    {"method", offsetof(Args, method), 0}, {"tol", offsetof(Args, tol), 0},
+    {"step", offsetof(Args, step), 0},     {"until", offsetof(Args, until), 0},
+    {"every", offsetof(Args, every), 0},   {"svg", offsetof(Args, svg), 0},
+    {"plot-x", offsetof(Args, plot_x), 0}, {"plot-y", offsetof(Args, plot_y), 0},
+    {"save-state", offsetof(Args, save), 0}, {"resume", offsetof(Args, resume), 0},
+    {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
+    {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
+    {"help", offsetof(Args, help), 1},
+};
+enum { NOPTIONS = sizeof options / sizeof *options };
+
+static const Option *find_option(const char *name, size_t n)
+{
+  for (int i = 0; i < NOPTIONS; i++) {
+    if (strlen(options[i].name) == n && memcmp(options[i].name, name, n) == 0) {
+      return &options[i];
+    }
+  }
+  return NULL;
+}
+
+static int unknown_option(const Args *a, const char *text, size_t n)
+{
+  char name[64];
+  const char *best = NULL;
+  int least = 4;
+
+  snprintf(name, sizeof name, "%.*s", (int)(n < 60 ? n : 60), text);
+  for (int i = 0; i < NOPTIONS; i++) {
+    int d = lag_distance(name, options[i].name);
+    if (d < least) {
+      least = d;
+      best = options[i].name;
+    }
+  }
+  return best ? app_error(a, "unknown option --%s; did you mean --%s?", name, best)
+              : app_error(a, "unknown option --%s; see --help", name);
+}
+
+/* A long option at argv[*i]; its value stands after "=" or in the next argument. */
+static int long_option(Args *a, int argc, char **argv, int *i)
+{
+  const char *name = argv[*i] + 2, *eq = strchr(name, '=');
+  size_t n = eq ? (size_t)(eq - name) : strlen(name);
+  const Option *o = find_option(name, n);
+
+  if (!o) {
+    return unknown_option(a, name, n);
+  }
+  void *field = (char *)a + o->offset;
+  if (o->is_flag) {
+    if (eq) {
+      return app_error(a, "--%s takes no value", o->name);
+    }
+    *(int *)field = 1;
+    return 0;
+  }
+  const char *value = eq ? eq + 1 : *i + 1 < argc ? argv[++*i] : NULL;
+  if (!value || !*value) {
+    return app_error(a, "--%s needs a value; see --help", o->name);
+  }
+  *(const char **)field = value;
+  return 0;
+}
+
+static int one_argument(Args *a, int argc, char **argv, int *i)
+{
+  char *s = argv[*i];
+
+  if (strcmp(s, "-h") == 0) {
+    a->help = 1;
+  } else if (strcmp(s, "-o") == 0) {
+    if (*i + 1 >= argc) {
+      return app_error(a, "-o needs a file name, or - for standard output");
+    }
+    a->out = argv[++*i];
+  } else if (strncmp(s, "--", 2) == 0) {
+    return long_option(a, argc, argv, i);
+  } else if (s[0] == '-') {
+    return app_error(a, "unknown option %s; see --help", s);
+  } else if (strchr(s, '=')) {
+    a->sets[a->nsets++] = s;
+  } else if (a->scene) {
+    return app_error(a, "two scenes are named: %s and %s; to set a value write name=value", a->scene, s);
+  } else {
+    a->scene = s;
+  }
+  return 0;
+}
+
+static int check(const Args *a)
+{
+  int on_stdout = a->out && strcmp(a->out, "-") == 0;
+
+  if (on_stdout && a->json) {
+    return app_error(a, "-o - and --json both write to standard output; give -o a file name");
+  }
+  if ((a->plot_x || a->plot_y) && !a->svg) {
+    return app_error(a, "--plot-x and --plot-y say what --svg FILE draws; add --svg FILE");
+  }
+  if (a->plot_x && !a->plot_y) {
+    return app_error(a, "--plot-x %s: against what? add --plot-y NAME", a->plot_x);
+  }
+  return 0;
+}
+
+int args_parse(Args *a, int argc, char **argv)
+{
+  const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
+
+  *a = (Args){.self = slash ? slash + 1 : argc > 0 ? argv[0] : "simulator"};
+  a->sets = calloc((size_t)argc + 1, sizeof *a->sets);
+  if (!a->sets) {
+    return app_error(a, "out of memory");
+  }
+  for (int i = 1; i < argc; i++) {
+    int rc = one_argument(a, argc, argv, &i);
+    if (rc) {
+      return rc;
+    }
+  }
+  return check(a);
+}

@@ -1,0 +1,61 @@
+/* --help. */
+#include "app/app.h"
+
+static const char text[] =
+    "\n"
+    "  name=value           a parameter, the start of a coordinate (th=1.2) or of a velocity (\"th'=0.5\"), or a\n"
+    "                       constant input, in its declared unit; drag.c, or c where only one ends so\n"
+    "  --until T            run to time T [s]; before the start: backwards\n"
+    "  --method NAME        method of integration, NAME or \"NAME(option=value, ...)\"; --method help lists them\n"
+    "  --tol X              tolerance, absolute and relative\n"
+    "  --step H             step [s]; the first one tried where the method chooses its own\n"
+    "  -o FILE              rows of output: CSV, or NumPy when FILE ends in .npy; - is standard output\n"
+    "  --every DT           time between rows [s]; default: as the scene says, or a 1000th of the span\n"
+    "  --svg FILE           a picture of all output against time; --plot-x NAME --plot-y NAME: one against another\n"
+    "  --sketch             the same in the terminal\n"
+    "  --json               the report as one JSON object\n"
+    "  --quiet              no report\n"
+    "  --save-state FILE    write the complete state at the end; --resume FILE goes on from there, with the same\n"
+    "                       scene, method and values: results are those of an uninterrupted run, bit by bit.\n"
+    "                       A resumed run writes the rows after the saved time (a run that ends between two rows\n"
+    "                       writes one more at its end)\n"
+    "\n"
+    "Rows appear as FILE.part until they are complete. Ctrl-C finishes the step and writes what was computed.\n"
+    "Exit status: 0 ok, 2 wrong usage or a file that cannot be written, 3 the run failed, 130 interrupted.\n";
+
+static void list(FILE *f, const char *head, int n, const lag_var *vars, const double *values)
+{
+  for (int i = 0; i < n; i++) {
+    fprintf(f, "%s%s", i == 0 ? head : ", ", vars[i].name);
+    if (values) {
+      fprintf(f, " = %g", values[i] / vars[i].factor);
+    }
+    if (vars[i].unit[0]) {
+      fprintf(f, " [%s]", vars[i].unit);
+    }
+  }
+  if (n) {
+    putc('\n', f);
+  }
+}
+
+void app_help(const App *app, FILE *f)
+{
+  const lag_program *p = app->program;
+
+  fprintf(f, "%s: %s\n\nusage: %s [SCENE] [name=value ...] [options]\n\nscenes (the first is the default):\n", p->name,
+          p->doc ? p->doc : "", app->args.self);
+  for (int i = 0; i < p->nscenes; i++) {
+    fprintf(f, "  %-20s %s\n", p->scenes[i]->name, p->scenes[i]->doc ? p->scenes[i]->doc : "");
+  }
+  lag_sim *sim = lag_sim_new(p->scenes[0]);
+  if (sim) {
+    const lag_model *m = p->scenes[0]->model;
+    list(f, "\ncoordinates: ", m->nq, m->q, NULL);
+    list(f, "states: ", m->nz, m->z, NULL);
+    list(f, "parameters: ", m->np, m->p, lag_sim_p(sim));
+    list(f, "inputs: ", m->nu, m->u, NULL);
+    lag_sim_free(sim);
+  }
+  fputs(text, f);
+}

@@ -1,0 +1,213 @@
+/* What a run says of itself at its end. Enters: a finished run; leaves: text for people, or one JSON object. */
+#include <math.h>
+#include <string.h>
+
+#include "app/app.h"
+
+enum { MOST_LINES = 24 };
+
+/* Variable i of q, v, z: name, unit, value in the declared unit. */
+static double state_var(const App *app, int i, Column *c)
+{
+  const lag_model *m = app->scene->model;
+  int velocity = i >= m->nq && i < 2 * m->nq;
+  const lag_var *v = i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
+
+  snprintf(c->name, sizeof c->name, "%s%s", v->name, velocity ? "'" : "");
+  snprintf(c->unit, sizeof c->unit, "%s%s", velocity && !v->unit[0] ? "1" : v->unit, velocity ? "/s" : "");
+  return lag_sim_q(app->sim)[i] / v->factor;
+}
+
+void report_method(const App *app, char *s, size_t n)
+{
+  const lag_method *m = lag_sim_method(app->sim);
+  const double *opt = lag_sim_options(app->sim);
+  size_t used = (size_t)snprintf(s, n, "%s(", m->name);
+
+  if (m->flags & LAG_METHOD_ADAPTIVE) {
+    used += (size_t)snprintf(s + used, n - used, "tol=%g", lag_sim_tolerance(app->sim));
+  }
+  for (int i = 0; i < m->noptions && used < n; i++) {
+    if (opt[i] == m->options[i].value) {
+      continue;
+    }
+    const char *comma = s[used - 1] == '(' ? "" : ", ";
+    used += m->options[i].choices ? (size_t)snprintf(s + used, n - used, "%s%s=%s", comma, m->options[i].name,
+                                                     m->options[i].choices[(int)opt[i]])
+                                  : (size_t)snprintf(s + used, n - used, "%s%s=%g", comma, m->options[i].name, opt[i]);
+  }
+  if (used < n) {
+    snprintf(s[used - 1] == '(' ? s + used - 1 : s + used, n - used, "%s", s[used - 1] == '(' ? "" : ")");
+  }
+}
+
+static void final_state(const App *app, FILE *f)
+{
+  const lag_model *m = app->scene->model;
+  int n = 2 * m->nq + m->nz;
+
+  for (int i = 0; i < n && i < MOST_LINES; i++) {
+    Column c;
+    double x = state_var(app, i, &c);
+    fprintf(f, "  %-14s %.15g%s%s\n", c.name, x, c.unit[0] ? " " : "", c.unit);
+  }
+  if (n > MOST_LINES) {
+    fprintf(f, "  (and %d more)\n", n - MOST_LINES);
+  }
+}
+
+static void events(const App *app, FILE *f)
+{
+  const lag_model *m = app->scene->model;
+
+  if (m->nev == 0) {
+    return;
+  }
+  fprintf(f, "events:");
+  for (int k = 0; k < m->nev; k++) {
+    fprintf(f, "%s %s %lld", k ? "," : "", m->ev[k].name, lag_sim_event_count(app->sim, k));
+  }
+  putc('\n', f);
+  for (int i = 0; i < app->nlog; i++) {
+    fprintf(f, "  t = %-22.17g %s\n", app->log[i].t, m->ev[app->log[i].k].name);
+  }
+  if (app->nevents > app->nlog) {
+    fprintf(f, "  (and %lld more)\n", app->nevents - app->nlog);
+  }
+}
+
+static void energy(const App *app, const lag_stats *st, FILE *f)
+{
+  if (!app->scene->model->energy || app->scene->model->nq == 0) {
+    return;
+  }
+  if (app->scene->model->flags & LAG_CONSERVES_ENERGY) {
+    fprintf(f, "energy drift: %.3g (relative to max(|E0|, max(|p.v| + |L|)))\n", st->energy_drift);
+  } else {
+    fprintf(f, "energy change: %.3g (not conserved: forces or explicit time)\n", st->energy_drift);
+  }
+}
+
+static void verdict(const App *app, FILE *f)
+{
+  double t = lag_sim_time(app->sim);
+
+  switch (app->status) {
+  case LAG_OK: fprintf(f, "reached t = %.15g s\n", t); break;
+  case LAG_STOPPED: fprintf(f, "stopped by an event at t = %.17g s\n", t); break;
+  case LAG_INTERRUPTED: fprintf(f, "interrupted at t = %.17g s\n", t); break;
+  default: fprintf(f, "FAILED: %s\n", lag_sim_message(app->sim));
+  }
+}
+
+void report_text(App *app, FILE *f)
+{
+  const lag_scene *c = app->scene;
+  lag_stats st;
+  char method[256];
+
+  lag_sim_stats(app->sim, &st);
+  report_method(app, method, sizeof method);
+  fprintf(f, "model %s, scene %s, method %s\n", c->model->name, c->name, method);
+  verdict(app, f);
+  final_state(app, f);
+  fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
+  energy(app, &st, f);
+  for (int i = 0; i < c->nmonitors; i++) {
+    fprintf(f, "monitor %s: drift %.3g, limit %.3g\n", c->monitors[i].name, lag_sim_monitor_drift(app->sim, i), c->monitors[i].limit);
+  }
+  events(app, f);
+  if (app->written && app->args.out) {
+    fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
+  }
+  if (app->args.svg) {
+    fprintf(f, "picture in %s\n", app->args.svg);
+  }
+}
+
+/* Outputs that are no coordinate, velocity or state, so that no name stands twice. */
+static void final_outputs(App *app, FILE *f)
+{
+  int n = app->scene->model->nq * 2 + app->scene->model->nz, nout = lag_sim_noutputs(app->sim);
+
+  if (app->scene->nout == 0 || lag_sim_outputs(app->sim, app->row + 1)) {
+    return;
+  }
+  for (int i = 0; i < nout; i++) {
+    const Column *o = &app->table.cols[i + 1];
+    int seen = 0;
+    for (int j = 0; j < n && !seen; j++) {
+      Column c;
+      state_var(app, j, &c);
+      seen = strcmp(c.name, o->name) == 0;
+    }
+    if (!seen) {
+      fputs(", ", f);
+      json_string(f, o->name);
+      fputs(": ", f);
+      json_number(f, app->row[i + 1]);
+    }
+  }
+}
+
+static void field_string(FILE *f, const char *name, const char *value)
+{
+  fprintf(f, "\"%s\": ", name);
+  json_string(f, value);
+  fputs(", ", f);
+}
+
+static void field_number(FILE *f, const char *name, double x)
+{
+  fprintf(f, "\"%s\": ", name);
+  json_number(f, x);
+  fputs(", ", f);
+}
+
+static void charges(const App *app, FILE *f)
+{
+  const lag_scene *c = app->scene;
+  int n = 0;
+
+  fputs("\"charges\": {", f);
+  for (int i = 0; i < c->nmonitors; i++) {
+    if (c->monitors[i].output >= 0) {
+      fputs(n++ ? ", " : "", f);
+      json_string(f, c->monitors[i].name);
+      fputs(": ", f);
+      json_number(f, lag_sim_monitor_drift(app->sim, i));
+    }
+  }
+  fputs("}, ", f);
+}
+
+void report_json(App *app, FILE *f)
+{
+  const lag_model *m = app->scene->model;
+  int n = 2 * m->nq + m->nz;
+  lag_stats st;
+
+  lag_sim_stats(app->sim, &st);
+  putc('{', f);
+  field_string(f, "model", m->name);
+  field_string(f, "scene", app->scene->name);
+  field_string(f, "method", lag_sim_method(app->sim)->name);
+  field_string(f, "status", app->status < 0 ? "failed" : lag_status_name(app->status));
+  field_string(f, "message", app->status < 0 ? lag_sim_message(app->sim) : NULL);
+  field_number(f, "t_end", st.t);
+  fprintf(f, "\"steps\": %lld, \"rejected\": %lld, \"rhs_calls\": %lld, ", st.steps, st.rejected, st.rhs_calls);
+  field_number(f, "wall_s", app->wall);
+  field_number(f, "energy_drift", st.energy_drift);
+  charges(app, f);
+  fputs("\"constraint_residual\": null, \"final\": {", f);
+  for (int i = 0; i < n; i++) {
+    Column c;
+    double x = state_var(app, i, &c);
+    fputs(i ? ", " : "", f);
+    json_string(f, c.name);
+    fputs(": ", f);
+    json_number(f, x);
+  }
+  final_outputs(app, f);
+  fputs("}}\n", f);
+}

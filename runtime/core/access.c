@@ -1,0 +1,180 @@
+/* What a caller may see of a simulation, and its saving. Enters: a simulation; leaves: its values. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/core.h"
+
+double lag_sim_time(const lag_sim *s)
+{
+  return s->run->t;
+}
+
+const double *lag_sim_q(const lag_sim *s)
+{
+  return s->now;
+}
+
+const double *lag_sim_v(const lag_sim *s)
+{
+  return s->now + s->pb.nq;
+}
+
+const double *lag_sim_z(const lag_sim *s)
+{
+  return s->now + 2 * s->pb.nq;
+}
+
+const double *lag_sim_p(const lag_sim *s)
+{
+  return s->p;
+}
+
+const lag_scene *lag_sim_scene(const lag_sim *s)
+{
+  return s->scene;
+}
+
+const lag_method *lag_sim_method(const lag_sim *s)
+{
+  return s->method;
+}
+
+double lag_sim_tolerance(const lag_sim *s)
+{
+  return s->tol;
+}
+
+const double *lag_sim_options(const lag_sim *s)
+{
+  return s->options;
+}
+
+const char *lag_sim_message(const lag_sim *s)
+{
+  return s->message;
+}
+
+long long lag_sim_event_count(const lag_sim *s, int k)
+{
+  return (long long)s->count[k];
+}
+
+double *lag_sim_rows(lag_sim *s)
+{
+  return &s->run->row_origin;
+}
+
+void lag_sim_on_step(lag_sim *s, int (*hook)(void *, const lag_sim *), void *context)
+{
+  s->on_step = hook;
+  s->on_step_context = context;
+}
+
+void lag_sim_on_event(lag_sim *s, void (*hook)(void *, int, double), void *context)
+{
+  s->on_event = hook;
+  s->on_event_context = context;
+}
+
+int lag_sim_noutputs(const lag_sim *s)
+{
+  return s->scene->nout > 0 ? s->scene->nout : s->pb.n;
+}
+
+double lag_sim_output_info(const lag_sim *s, int i, char *name, size_t nname, char *unit, size_t nunit)
+{
+  const lag_model *m = s->scene->model;
+  int velocity = s->scene->nout == 0 && i >= m->nq && i < 2 * m->nq;
+  const lag_var *v = s->scene->nout > 0 ? &s->scene->outputs[i] : i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
+
+  if (name) {
+    snprintf(name, nname, "%s%s", v->name, velocity ? "'" : "");
+  }
+  if (unit) {
+    snprintf(unit, nunit, "%s%s", velocity && !v->unit[0] ? "1" : v->unit, velocity ? "/s" : "");
+  }
+  return v->factor;
+}
+
+int lag_sim_outputs(lag_sim *s, double *out)
+{
+  const lag_scene *c = s->scene;
+  int rc = 0, nout = lag_sim_noutputs(s);
+  const double *y = s->now;
+
+  if (c->nout > 0) {
+    rc = lag_inputs(&s->pb, s->run->t);
+    rc = rc ? rc : c->observe(s->run->t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
+    if (rc) {
+      return lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN, "the outputs cannot be computed at t = %.17g s", s->run->t);
+    }
+  } else {
+    memcpy(out, y, (size_t)nout * sizeof *out);
+  }
+  for (int i = 0; i < nout; i++) {
+    out[i] /= lag_sim_output_info(s, i, NULL, 0, NULL, 0);
+  }
+  return LAG_OK;
+}
+
+size_t lag_sim_save_size(const lag_sim *s)
+{
+  return s->nsaved;
+}
+
+int lag_sim_save(lag_sim *s, double *x)
+{
+  if (s->method->flags & LAG_METHOD_NO_SAVE) {
+    return lag_fail(s, LAG_EINVAL, "the state of method %s cannot be saved; rk45 and rk4 can", s->method->name);
+  }
+  s->run->rhs_calls = s->pb.rhs_calls;
+  s->run->rejected = s->pb.rejected;
+  memcpy(x, s->saved, s->nsaved * sizeof *x);
+  return LAG_OK;
+}
+
+int lag_sim_load(lag_sim *s, const double *x)
+{
+  if (s->method->flags & LAG_METHOD_NO_SAVE) {
+    return lag_fail(s, LAG_EINVAL, "the state of method %s cannot be resumed", s->method->name);
+  }
+  memcpy(s->saved, x, s->nsaved * sizeof *x);
+  s->pb.rhs_calls = s->run->rhs_calls;
+  s->pb.rejected = s->run->rejected;
+  s->pb.dir = s->run->dir;
+  return LAG_OK;
+}
+
+/* FNV-1a over text, with its end, so that "ab","c" and "a","bc" differ. */
+static unsigned long long hash(unsigned long long h, const char *text)
+{
+  do {
+    h = (h ^ (unsigned char)*text) * 0x100000001b3ull;
+  } while (*text++);
+  return h;
+}
+
+unsigned long long lag_sim_signature(const lag_sim *s)
+{
+  const lag_model *m = s->scene->model;
+  unsigned long long h = hash(0xcbf29ce484222325ull, m->name);
+  const struct {
+    int n;
+    const lag_var *vars;
+  } tables[] = {{m->nq, m->q}, {m->nz, m->z}, {m->np, m->p}, {m->nu, m->u}};
+  char sizes[128];
+
+  for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
+    for (int i = 0; i < tables[k].n; i++) {
+      h = hash(hash(h, tables[k].vars[i].name), tables[k].vars[i].unit);
+    }
+    h = hash(h, ";");
+  }
+  for (int i = 0; i < m->nev; i++) {
+    h = hash(h, m->ev[i].name);
+  }
+  snprintf(sizes, sizeof sizes, "%zu %d %s", s->nsaved, s->scene->nmonitors, LAG_VERSION);
+  h = hash(hash(hash(h, m->effects ? m->effects : ""), s->scene->name), s->method->name);
+  return hash(h, sizes);
+}

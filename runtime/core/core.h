@@ -1,0 +1,106 @@
+/* What the files of core/ share: the simulation object, and the step of its life that each file does.
+ * Holds: everything that a later run needs is in one block of doubles, `saved`, with no pointers in it;
+ * so saving a run is writing that block.
+ *
+ * A run is a chain of steps [step_t0, step_t1] of the method. Within one, the run moves from `t` to
+ * `limit`: the next event, or the end of the step. Where the caller stops does not enter. */
+#ifndef LAG_CORE_CORE_H
+#define LAG_CORE_CORE_H
+
+#include <stddef.h>
+
+#include "lag.h"
+
+/* Scalars of a run that are saved. Counts are doubles, exact to 2^53. */
+typedef struct Run {
+  double begun;          /* the first advance was made */
+  double dir;
+  double t;              /* now */
+  double have_step;      /* [step_t0, step_t1] is a step, not yet used up */
+  double step_t0, step_t1;
+  double from;           /* events are located from here on */
+  double limit, pending; /* pending: events fire at limit */
+  double steps, rejected, rhs_calls, events;
+  double e_first, e_last, e_peak, e_scale; /* energy: E0, last, largest |E - E0|, largest |p.v| + |L| */
+  double zeno_k, zeno_t, zeno_dt, zeno_count; /* the last event, its time, interval, how many ever shorter */
+  double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
+} Run;
+
+struct lag_sim {
+  const lag_scene *scene;
+  const lag_method *method;
+  lag_problem pb;
+  double *options;       /* [method->noptions] */
+  double tol;
+  unsigned char *fixed;  /* [np] set by the caller */
+  double *start;         /* [n] NaN: as the scene says */
+  double *scratch;       /* one block: u, work, y, g, g, outputs */
+  double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e;
+  double *saved;         /* one block: Run, and the arrays below */
+  size_t nsaved;
+  Run *run;
+  double *p, *hold;      /* [np], [nu] */
+  double *y;             /* [n] at step_t1 */
+  double *y0;            /* [n] at step_t0 */
+  double *now;           /* [n] at t */
+  double *sign;          /* [nev] of g just after `from`: -1, 1, 0 not known yet */
+  double *noise;         /* [nev] |g| below this has no sign */
+  double *root;          /* [nev] time of the next firing within the step, NaN none */
+  double *sign_end;      /* [nev] sign at the end of the step */
+  double *count;         /* [nev] */
+  double *mon_first, *mon_peak; /* [nmonitors] */
+  double *method_work;
+  int (*on_step)(void *, const lag_sim *);
+  void *on_step_context;
+  void (*on_event)(void *, int, double);
+  void *on_event_context;
+  char message[512];
+};
+
+/* message := the text; returns status. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+int lag_fail(lag_sim *sim, int status, const char *format, ...);
+
+/* Why a step failed, with when and where. Returns status. */
+int lag_explain(lag_sim *sim, int status);
+
+/* u at t: formula or constant. */
+int lag_inputs(lag_problem *pb, double t);
+
+/* setup.c: the state at the start, of a run that has not begun; the blocks of memory for a method. */
+int lag_setup_start(lag_sim *sim);
+int lag_setup_blocks(lag_sim *sim, const lag_method *method);
+
+/* events.c. arm: signs at the start of a step chain. locate: the first event in (run->from, step_t1],
+ * sets limit and pending. fire: applies the events at limit. */
+int lag_events_arm(lag_sim *sim);
+int lag_events_locate(lag_sim *sim);
+int lag_events_fire(lag_sim *sim);
+int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
+
+/* watch.c: energy and monitors. begin: first values. see: the state `y` at t is part of the run. jump: an
+ * event changed the state from ya to yb. */
+int lag_watch_begin(lag_sim *sim);
+int lag_watch_see(lag_sim *sim, double t, const double *y);
+int lag_watch_jump(lag_sim *sim, double t, const double *ya, const double *yb);
+
+/* The root of f in [a, b] (a > b allowed), where f(a) and f(b) differ in sign: the end of the last bracket
+ * on b's side, so that the sign has changed there. ITP method: I.F.D. Oliveira, R.H.C. Takahashi, ACM Trans.
+ * Math. Softw. 47 (2020) 5, DOI 10.1145/3423597. */
+double lag_root(double (*f)(void *context, double x), void *context, double a, double fa, double b, double fb);
+
+/* A name in the scene: what it is and where. */
+enum { LAG_IS_NOTHING, LAG_IS_P, LAG_IS_Q, LAG_IS_V, LAG_IS_Z, LAG_IS_U };
+/* Finds name; *var is its description. LAG_IS_NOTHING: unknown. */
+int lag_find(const lag_model *model, const char *name, int *index, const lag_var **var);
+/* The known name nearest to `name` into best; 0 when none is near. */
+int lag_nearest(const lag_model *model, const char *name, char *best, size_t nbest);
+/* Edits (insert, delete, replace, swap) between two words. */
+int lag_distance(const char *a, const char *b);
+
+/* For app/: the output grid that is saved with the run. */
+double *lag_sim_rows(lag_sim *sim);
+
+#endif

@@ -1,0 +1,113 @@
+/* Names that a user may write: exact, or the suffix of one dotted name; and the nearest known one to a name
+ * that is wrong. Enters: text; leaves: what it means. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/core.h"
+
+static int find_in(const lag_var *vars, int n, const char *name, size_t length)
+{
+  for (int i = 0; i < n; i++) {
+    if (strlen(vars[i].name) == length && memcmp(vars[i].name, name, length) == 0) {
+      return i;
+    }
+  }
+  return -1;
+}
+
+/* The one parameter that ends in ".name"; -1: none or several. */
+static int find_suffix(const lag_model *m, const char *name)
+{
+  int found = -1;
+
+  for (int i = 0; i < m->np; i++) {
+    const char *dot = strrchr(m->p[i].name, '.');
+    if (dot && strcmp(dot + 1, name) == 0) {
+      if (found >= 0) {
+        return -1;
+      }
+      found = i;
+    }
+  }
+  return found;
+}
+
+int lag_find(const lag_model *m, const char *name, int *index, const lag_var **var)
+{
+  size_t n = strlen(name);
+  const struct {
+    int kind, n;
+    const lag_var *vars;
+  } tables[] = {{LAG_IS_P, m->np, m->p}, {LAG_IS_Q, m->nq, m->q}, {LAG_IS_Z, m->nz, m->z}, {LAG_IS_U, m->nu, m->u}};
+
+  for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
+    if ((*index = find_in(tables[k].vars, tables[k].n, name, n)) >= 0) {
+      *var = &tables[k].vars[*index];
+      return tables[k].kind;
+    }
+  }
+  if (n > 1 && name[n - 1] == '\'' && (*index = find_in(m->q, m->nq, name, n - 1)) >= 0) {
+    *var = &m->q[*index];
+    return LAG_IS_V;
+  }
+  if ((*index = find_suffix(m, name)) >= 0) {
+    *var = &m->p[*index];
+    return LAG_IS_P;
+  }
+  return LAG_IS_NOTHING;
+}
+
+static int min3(int a, int b, int c)
+{
+  int m = a < b ? a : b;
+  return m < c ? m : c;
+}
+
+int lag_distance(const char *a, const char *b)
+{
+  enum { MOST = 63 };
+  int d[3][MOST + 1], na = (int)strlen(a), nb = (int)strlen(b);
+
+  if (na > MOST || nb > MOST) {
+    return strcmp(a, b) ? MOST : 0;
+  }
+  for (int j = 0; j <= nb; j++) {
+    d[0][j] = j;
+  }
+  for (int i = 1; i <= na; i++) {
+    int *row = d[i % 3], *up = d[(i + 2) % 3], *up2 = d[(i + 1) % 3];
+    row[0] = i;
+    for (int j = 1; j <= nb; j++) {
+      row[j] = min3(up[j] + 1, row[j - 1] + 1, up[j - 1] + (a[i - 1] != b[j - 1]));
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && up2[j - 2] + 1 < row[j]) {
+        row[j] = up2[j - 2] + 1;
+      }
+    }
+  }
+  return d[na % 3][nb];
+}
+
+int lag_nearest(const lag_model *m, const char *name, char *best, size_t nbest)
+{
+  const struct {
+    int n;
+    const lag_var *vars;
+    const char *suffix;
+  } tables[] = {{m->np, m->p, ""}, {m->nq, m->q, ""}, {m->nq, m->q, "'"}, {m->nz, m->z, ""}, {m->nu, m->u, ""}};
+  int least = (int)strlen(name) / 3 + 2;
+
+  best[0] = '\0';
+  for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
+    for (int i = 0; i < tables[k].n; i++) {
+      char full[64];
+      snprintf(full, sizeof full, "%s%s", tables[k].vars[i].name, tables[k].suffix);
+      int d = lag_distance(name, full);
+      if (d < least) {
+        least = d;
+        snprintf(best, nbest, "%s", full);
+      }
+    }
+  }
+  return best[0] != '\0';
+}

@@ -1,0 +1,295 @@
+/* A simulation before its first step: memory, parameters, start, method. Enters: a scene and what the caller
+ * sets by name; leaves: the state at the start of the span. Holds: a setting that is refused changes nothing. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/core.h"
+
+enum { RUN_DOUBLES = sizeof(Run) / sizeof(double) };
+
+/* Lays out the blocks for this method, keeping nothing but what the caller has set (p, hold). */
+int lag_setup_blocks(lag_sim *s, const lag_method *method)
+{
+  const lag_model *m = s->scene->model;
+  size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
+  size_t nmon = (size_t)s->scene->nmonitors, fixed = RUN_DOUBLES + np + nu + 3 * n + 5 * nev + 2 * nmon;
+  size_t total = fixed + method->work_size(&s->pb);
+  double *b = calloc(total, sizeof *b), *x = b + RUN_DOUBLES;
+
+  if (!b) {
+    return LAG_ENOMEM;
+  }
+  if (s->saved) {
+    memcpy(x, s->p, np * sizeof *x);
+    memcpy(x + np, s->hold, nu * sizeof *x);
+  }
+  free(s->saved);
+  s->saved = b;
+  s->nsaved = total;
+  s->run = (Run *)(void *)b;
+  double **const parts[] = {&s->p, &s->hold, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
+                            &s->count, &s->mon_first, &s->mon_peak, &s->method_work};
+  const size_t sizes[] = {np, nu, n, n, n, nev, nev, nev, nev, nev, nmon, nmon, 0};
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    *parts[i] = x;
+    x += sizes[i];
+  }
+  s->pb.p = s->p;
+  s->pb.hold = s->hold;
+  s->method = method;
+  return LAG_OK;
+}
+
+static int alloc_scratch(lag_sim *s)
+{
+  const lag_model *m = s->scene->model;
+  size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
+  size_t nu = (size_t)m->nu, nw = (size_t)m->nw;
+  double *x = calloc(nu + nw + 3 * n + 3 * nev + nout + 2 + 1, sizeof *x);
+
+  s->scratch = x;
+  s->fixed = calloc((size_t)m->np + 1, 1);
+  s->start = malloc((n + 1) * sizeof(double));
+  if (!x || !s->fixed || !s->start) {
+    return LAG_ENOMEM;
+  }
+  for (size_t i = 0; i < n; i++) {
+    s->start[i] = NAN;
+  }
+  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e};
+  const size_t sizes[] = {nu, nw, n, n, n, nev, nev, nout, 2 + nev};
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    *parts[i] = x;
+    x += sizes[i];
+  }
+  s->pb.u = s->u;
+  s->pb.work = s->work;
+  return LAG_OK;
+}
+
+static const lag_method *find_method(const char *name)
+{
+  for (int i = 0; name && i < lag_nmethods; i++) {
+    if (strcmp(lag_methods[i]->name, name) == 0) {
+      return lag_methods[i];
+    }
+  }
+  return NULL;
+}
+
+lag_sim *lag_sim_new(const lag_scene *scene)
+{
+  const lag_model *m = scene->model;
+  lag_sim *s = m->abi == LAG_ABI && m->real_size == sizeof(double) ? calloc(1, sizeof *s) : NULL;
+
+  if (!s) {
+    return NULL;
+  }
+  s->scene = scene;
+  s->pb = (lag_problem){.model = m, .nq = m->nq, .nz = m->nz, .n = 2 * m->nq + m->nz, .dir = 1, .bad_index = -1};
+  s->pb.span = scene->has_span ? fabs(scene->t1 - scene->t0) : 0;
+  s->tol = s->pb.tol = scene->tolerance > 0 ? scene->tolerance : 1e-9;
+  const lag_method *method = find_method(scene->method), *chosen = method ? method : lag_methods[0];
+  if (alloc_scratch(s) || lag_setup_blocks(s, chosen)) {
+    lag_sim_free(s);
+    return NULL;
+  }
+  for (int i = 0; i < m->nu; i++) {
+    s->hold[i] = NAN;
+  }
+  if (lag_sim_set_method(s, chosen, scene->options, method ? scene->noptions : 0) == LAG_ENOMEM) {
+    lag_sim_free(s);
+    return NULL;
+  }
+  s->run->t = scene->t0;
+  if (scene->params) {
+    scene->params(s->p, s->fixed);
+  }
+  return s;
+}
+
+void lag_sim_free(lag_sim *s)
+{
+  if (!s) {
+    return;
+  }
+  if (s->run && s->run->begun != 0.0 && s->method->fini) {
+    s->method->fini(s->method_work);
+  }
+  free(s->options);
+  free(s->fixed);
+  free(s->start);
+  free(s->scratch);
+  free(s->saved);
+  free(s);
+}
+
+static int begun(lag_sim *s)
+{
+  return s->run->begun != 0.0 ? lag_fail(s, LAG_EINVAL, "the run has begun: set this before the first step") : 0;
+}
+
+/* The value of one option; LAG_EINVAL when it is not allowed. */
+static int option_value(lag_sim *s, const lag_method *m, const lag_method_option *o, const lag_option *given, double *value)
+{
+  *value = given->value;
+  if (given->text) {
+    for (int i = 0; o->choices && o->choices[i]; i++) {
+      if (strcmp(o->choices[i], given->text) == 0) {
+        *value = i;
+        return LAG_OK;
+      }
+    }
+    return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"", m->name, o->name, given->text);
+  }
+  if (!(*value >= o->min && *value <= o->max)) {
+    return lag_fail(s, LAG_EINVAL, "method %s: option %s = %g is outside [%g, %g]", m->name, o->name, *value, o->min, o->max);
+  }
+  return LAG_OK;
+}
+
+static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, int nopt, double *values)
+{
+  for (int k = 0; k < nopt; k++) {
+    int i = 0;
+    while (i < m->noptions && strcmp(m->options[i].name, opt[k].name) != 0) {
+      i++;
+    }
+    if (i == m->noptions) {
+      return lag_fail(s, LAG_EINVAL, "method %s has no option \"%s\"", m->name, opt[k].name);
+    }
+    int rc = option_value(s, m, &m->options[i], &opt[k], &values[i]);
+    if (rc) {
+      return rc;
+    }
+  }
+  return LAG_OK;
+}
+
+int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *opt, int nopt)
+{
+  int rc = begun(s);
+  double *values;
+
+  if (rc) {
+    return rc;
+  }
+  if ((method->flags & LAG_METHOD_NO_STATES) && s->pb.nz > 0) {
+    return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states", method->name);
+  }
+  if ((method->flags & LAG_METHOD_CONSERVATIVE) && !(s->scene->model->flags & LAG_CONSERVES_ENERGY)) {
+    return lag_fail(s, LAG_EMETHOD, "method %s needs a model without forces, dissipation or explicit time", method->name);
+  }
+  values = malloc(((size_t)method->noptions + 1) * sizeof *values);
+  if (!values) {
+    return LAG_ENOMEM;
+  }
+  for (int i = 0; i < method->noptions; i++) {
+    values[i] = method->options[i].value;
+  }
+  rc = read_options(s, method, opt, nopt, values);
+  rc = rc ? rc : lag_setup_blocks(s, method);
+  if (rc) {
+    free(values);
+    return rc;
+  }
+  free(s->options);
+  s->options = values;
+  s->run->t = s->scene->t0;
+  return LAG_OK;
+}
+
+int lag_sim_set_tolerance(lag_sim *s, double tol)
+{
+  int rc = begun(s);
+
+  if (rc) {
+    return rc;
+  }
+  if (!(tol > 0 && isfinite(tol))) {
+    return lag_fail(s, LAG_EINVAL, "a tolerance of %g: it must be positive, for example 1e-9", tol);
+  }
+  if (tol < 1e-15) {
+    return lag_fail(s, LAG_EINVAL, "a tolerance of %g is below what double precision can give: write 1e-15 or more", tol);
+  }
+  s->tol = s->pb.tol = tol;
+  return LAG_OK;
+}
+
+static int sign_ok(int sign, double x)
+{
+  return sign == 1 ? x > 0 : sign == 2 ? x >= 0 : sign == -1 ? x < 0 : sign == -2 ? x <= 0 : 1;
+}
+
+static const char *sign_text(int sign)
+{
+  return sign == 1 ? "> 0" : sign == 2 ? ">= 0" : sign == -1 ? "< 0" : "<= 0";
+}
+
+int lag_sim_set(lag_sim *s, const char *name, double value)
+{
+  const lag_model *m = s->scene->model;
+  const lag_var *var = NULL;
+  int i, rc = begun(s), kind = lag_find(m, name, &i, &var);
+  char near[64];
+
+  if (rc) {
+    return rc;
+  }
+  if (kind == LAG_IS_NOTHING) {
+    return lag_nearest(m, name, near, sizeof near)
+               ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name,
+                          m->name, near)
+               : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
+  }
+  if (!isfinite(value)) {
+    return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);
+  }
+  value *= var->factor;
+  if (kind == LAG_IS_P && !sign_ok(var->sign, value)) {
+    return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, value / var->factor, var->name,
+                    sign_text(var->sign));
+  }
+  switch (kind) {
+  case LAG_IS_P:
+    s->p[i] = value;
+    s->fixed[i] = 1;
+    break;
+  case LAG_IS_U:
+    s->hold[i] = value;
+    break;
+  default:
+    s->start[kind == LAG_IS_Q ? i : kind == LAG_IS_V ? m->nq + i : 2 * m->nq + i] = value;
+  }
+  if (s->scene->params) {
+    s->scene->params(s->p, s->fixed); /* others may follow from this one */
+  }
+  return LAG_OK;
+}
+
+int lag_setup_start(lag_sim *s)
+{
+  const lag_scene *c = s->scene;
+  const lag_model *m = c->model;
+  int nq = m->nq, n = s->pb.n;
+
+  for (int i = 0; i < m->np; i++) {
+    if (!sign_ok(m->p[i].sign, s->p[i])) {
+      return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, s->p[i] / m->p[i].factor,
+                      m->p[i].name, sign_text(m->p[i].sign));
+    }
+  }
+  if (c->start) {
+    c->start(s->p, s->now, s->now + nq, s->now + 2 * nq);
+  }
+  for (int i = 0; i < n; i++) {
+    s->now[i] = isnan(s->start[i]) ? s->now[i] : s->start[i];
+  }
+  if (lag_not_finite(n, s->now) >= 0) {
+    return lag_fail(s, LAG_ENAN, "the start is not finite");
+  }
+  memcpy(s->y, s->now, (size_t)n * sizeof(double));
+  s->run->t = s->run->from = c->t0;
+  return LAG_OK;
+}

@@ -1,0 +1,205 @@
+/* A run: steps of the method, cut by events, looked at where the caller asks. Enters: a time to reach;
+ * leaves: the state there. Holds: neither steps nor events depend on the times that the caller asks for
+ * (but for STEPS_TO methods), so a run that is split, saved or resumed is the same run. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/core.h"
+
+const char *lag_status_name(int status)
+{
+  static const struct {
+    int status;
+    const char *name;
+  } names[] = {{LAG_OK, "ok"}, {LAG_STOPPED, "stopped"}, {LAG_INTERRUPTED, "interrupted"},
+               {LAG_ERETRY, "outside the domain"}, {LAG_ESINGULAR, "singular mass matrix"}, {LAG_ENAN, "not a number"},
+               {LAG_EDOMAIN, "outside the domain"}, {LAG_ESTEP, "step too small"}, {LAG_EINVAL, "invalid argument"},
+               {LAG_ENOMEM, "out of memory"}, {LAG_EMONITOR, "monitor"}, {LAG_EMODEL, "model failed"},
+               {LAG_EZENO, "events accumulate"}, {LAG_EMETHOD, "method failed"}, {LAG_EIO, "input or output failed"}};
+
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    if (names[i].status == status) {
+      return names[i].name;
+    }
+  }
+  return "failed";
+}
+
+int lag_fail(lag_sim *s, int status, const char *format, ...)
+{
+  va_list args;
+
+  va_start(args, format);
+  vsnprintf(s->message, sizeof s->message, format, args);
+  va_end(args);
+  return status;
+}
+
+/* The name of component i of y' as a user knows it. */
+static void name_rate(const lag_sim *s, int i, char *text, size_t size)
+{
+  const lag_model *m = s->scene->model;
+
+  if (i >= 2 * m->nq) {
+    snprintf(text, size, "%s'", m->z[i - 2 * m->nq].name);
+  } else {
+    snprintf(text, size, "%s%s", m->q[i % m->nq].name, i >= m->nq ? "''" : "'");
+  }
+}
+
+static const char *reason(int status)
+{
+  switch (status) {
+  case LAG_ESINGULAR: return "the mass matrix is singular";
+  case LAG_ENAN: return "the model gives no finite value";
+  case LAG_EDOMAIN: return "the model left its domain, and no smaller step helps";
+  case LAG_ESTEP: return "the step became too small: a singularity, or the tolerance is too strict";
+  case LAG_EMODEL: return "the model failed";
+  case LAG_EMETHOD: return "the method failed";
+  default: return lag_status_name(status);
+  }
+}
+
+int lag_explain(lag_sim *s, int status)
+{
+  const lag_model *m = s->scene->model;
+  const lag_problem *pb = &s->pb;
+  char text[256] = "", name[64] = "";
+  size_t used = 0;
+
+  if (status == LAG_ENAN && pb->bad_index >= 0) {
+    name_rate(s, pb->bad_index, name, sizeof name);
+  }
+  for (int i = 0; i < pb->n && i < 8 && used < sizeof text; i++) {
+    const lag_var *v = i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
+    used += (size_t)snprintf(text + used, sizeof text - used, "%s%s%s = %.6g", i ? ", " : "", v->name,
+                             i >= m->nq && i < 2 * m->nq ? "'" : "", s->now[i] / v->factor);
+  }
+  return lag_fail(s, status, "at t = %.9g s: %s%s%s%s%s%s; last good state, t = %.9g s: %s%s", pb->bad_t, reason(status),
+                  name[0] ? " for " : "", name, pb->detail ? " (" : "", pb->detail ? pb->detail : "",
+                  pb->detail ? ")" : "", s->run->t, text, pb->n > 8 ? ", ..." : "");
+}
+
+/* The first advance: the start of everything. At t0 itself only the state is made: no direction is known. */
+static int begin(lag_sim *s, double t)
+{
+  s->run->dir = s->pb.dir = t < s->scene->t0 ? -1 : 1;
+  int rc = lag_setup_start(s);
+
+  if (rc || t == s->scene->t0) {
+    return rc;
+  }
+  if ((rc = s->method->init(s->method_work, &s->pb, s->options)) != 0) {
+    return lag_explain(s, rc);
+  }
+  s->run->begun = 1;
+  rc = lag_watch_begin(s);
+  return rc ? rc : lag_events_arm(s);
+}
+
+/* A new step of the method, and the first event in it. */
+static int take(lag_sim *s, double t_stop)
+{
+  Run *r = s->run;
+  double t = r->t;
+
+  memcpy(s->y0, s->now, (size_t)s->pb.n * sizeof(double));
+  s->pb.detail = NULL;
+  s->pb.bad_t = t;
+  int rc = s->method->step(s->method_work, &s->pb, &t, s->y, t_stop);
+  if (rc) {
+    return lag_explain(s, rc);
+  }
+  r->steps++;
+  r->have_step = 1;
+  r->step_t0 = r->from = r->t;
+  r->step_t1 = t;
+  return lag_events_locate(s);
+}
+
+/* `now` := the state at t of the present step. */
+static void settle(lag_sim *s, double t)
+{
+  const Run *r = s->run;
+  size_t bytes = (size_t)s->pb.n * sizeof(double);
+
+  if (t == r->step_t1) {
+    memcpy(s->now, s->y, bytes);
+  } else if (t != r->t) {
+    s->method->dense(s->method_work, &s->pb, t, s->now);
+  }
+  s->run->t = t;
+}
+
+/* Moves to the end of what is known: an event, or the end of the step. */
+static int pass(lag_sim *s)
+{
+  Run *r = s->run;
+
+  settle(s, r->limit);
+  int rc = lag_watch_see(s, r->t, s->now);
+  if (rc) {
+    return rc;
+  }
+  if (r->pending != 0.0) {
+    return lag_events_fire(s);
+  }
+  r->have_step = 0;
+  memcpy(s->sign, s->sign_end, (size_t)s->scene->model->nev * sizeof(double));
+  return LAG_OK;
+}
+
+int lag_sim_advance(lag_sim *s, double t)
+{
+  Run *r = s->run;
+  int rc = 0;
+
+  if (!isfinite(t)) {
+    return lag_fail(s, LAG_EINVAL, "cannot advance to t = %g", t);
+  }
+  if (r->begun == 0.0 && (rc = begin(s, t)) != 0) {
+    return rc;
+  }
+  if ((t - r->t) * r->dir < 0) {
+    return lag_fail(s, LAG_EINVAL, "cannot go from t = %g back to %g", r->t, t);
+  }
+  while (rc == 0) {
+    if (r->have_step != 0.0 && (r->limit - t) * r->dir >= 0) {
+      settle(s, t);
+      return LAG_OK;
+    }
+    if (r->have_step != 0.0) {
+      rc = pass(s);
+    } else if (r->t == t) {
+      return LAG_OK;
+    } else {
+      rc = take(s, t);
+    }
+    if (rc == 0 && r->have_step == 0.0 && s->on_step && s->on_step(s->on_step_context, s)) {
+      rc = LAG_INTERRUPTED;
+    }
+  }
+  return rc;
+}
+
+int lag_sim_eval(const lag_sim *s, double t, double *y)
+{
+  const Run *r = s->run;
+  size_t bytes = (size_t)s->pb.n * sizeof(double);
+
+  if (t == r->t) {
+    memcpy(y, s->now, bytes);
+    return LAG_OK;
+  }
+  if (r->have_step == 0.0 || (t - r->step_t0) * r->dir < 0 || (t - r->limit) * r->dir > 0) {
+    return LAG_EINVAL;
+  }
+  if (t == r->step_t1) {
+    memcpy(y, s->y, bytes);
+  } else {
+    s->method->dense(s->method_work, &s->pb, t, y);
+  }
+  return LAG_OK;
+}

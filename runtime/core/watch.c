@@ -1,0 +1,152 @@
+/* What a run keeps an eye on: energy and monitors. Enters: states that are part of the run; leaves: largest
+ * drifts, and a failure when one passes its limit.
+ * Holds: what an event does to a quantity is not drift: the reference moves by the jump. */
+#include <math.h>
+
+#include "core/core.h"
+
+static int energy_at(lag_sim *s, double t, const double *y, double *e)
+{
+  const lag_model *m = s->scene->model;
+  int rc = lag_inputs(&s->pb, t);
+
+  e[0] = e[1] = NAN;
+  if (rc || !m->energy || m->nq == 0) {
+    return rc;
+  }
+  return m->energy(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, e, s->work);
+}
+
+static int outputs_at(lag_sim *s, double t, const double *y)
+{
+  const lag_scene *c = s->scene;
+  int rc = lag_inputs(&s->pb, t);
+
+  if (rc || !c->observe) {
+    return rc;
+  }
+  return c->observe(t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, s->out, s->work);
+}
+
+static int watches_outputs(const lag_scene *c)
+{
+  for (int i = 0; i < c->nmonitors; i++) {
+    if (c->monitors[i].output >= 0) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+int lag_watch_begin(lag_sim *s)
+{
+  const lag_scene *c = s->scene;
+
+  if (energy_at(s, s->run->t, s->now, s->e)) {
+    s->e[0] = NAN;
+  }
+  s->run->e_first = s->run->e_last = s->e[0];
+  s->run->e_scale = fmax(s->e[1], 0);
+  s->run->e_peak = 0;
+  if (watches_outputs(c) && outputs_at(s, s->run->t, s->now)) {
+    return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at the start");
+  }
+  for (int i = 0; i < c->nmonitors; i++) {
+    int k = c->monitors[i].output;
+    s->mon_first[i] = k >= 0 ? s->out[k] : s->e[0];
+    s->mon_peak[i] = 0;
+  }
+  return LAG_OK;
+}
+
+/* The largest of x and y, NaN if y is: a NaN must not be forgotten. */
+static double larger(double x, double y)
+{
+  return y > x || isnan(y) ? y : x;
+}
+
+static double drift_of_energy(const Run *r, double peak)
+{
+  double scale = fmax(fabs(r->e_first), r->e_scale);
+  return peak == 0.0 ? 0 : peak / scale;
+}
+
+double lag_sim_monitor_drift(const lag_sim *s, int i)
+{
+  const lag_monitor *m = &s->scene->monitors[i];
+
+  if (m->output < 0) {
+    return drift_of_energy(s->run, s->run->e_peak);
+  }
+  /* A quantity that begins at zero has no size of its own: judged in its declared unit. */
+  double unit = s->scene->outputs[m->output].factor, size = fabs(s->mon_first[i]);
+  return s->mon_peak[i] / (size > 1e-9 * unit ? size : unit);
+}
+
+int lag_watch_see(lag_sim *s, double t, const double *y)
+{
+  const lag_scene *c = s->scene;
+  Run *r = s->run;
+
+  if (energy_at(s, t, y, s->e)) {
+    s->e[0] = NAN;
+  }
+  r->e_last = s->e[0];
+  r->e_scale = fmax(r->e_scale, s->e[1]);
+  r->e_peak = larger(r->e_peak, fabs(s->e[0] - r->e_first));
+  if (watches_outputs(c) && outputs_at(s, t, y)) {
+    return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %.17g", t);
+  }
+  for (int i = 0; i < c->nmonitors; i++) {
+    int k = c->monitors[i].output;
+    if (k >= 0) {
+      s->mon_peak[i] = larger(s->mon_peak[i], fabs(s->out[k] - s->mon_first[i]));
+    }
+    double drift = lag_sim_monitor_drift(s, i);
+    if (!(drift <= c->monitors[i].limit)) {
+      return lag_fail(s, LAG_EMONITOR, "monitor %s: drift %.3g is past its limit %.3g at t = %.17g s", c->monitors[i].name,
+                      drift, c->monitors[i].limit, t);
+    }
+  }
+  return LAG_OK;
+}
+
+int lag_watch_jump(lag_sim *s, double t, const double *ya, const double *yb)
+{
+  const lag_scene *c = s->scene;
+  Run *r = s->run;
+  double ea = energy_at(s, t, ya, s->e) ? NAN : s->e[0];
+  double eb = energy_at(s, t, yb, s->e) ? NAN : s->e[0];
+
+  r->e_first += eb - ea;
+  r->e_scale = fmax(r->e_scale, s->e[1]);
+  if (watches_outputs(c)) {
+    for (int pass = 0; pass < 2; pass++) {
+      if (outputs_at(s, t, pass ? yb : ya)) {
+        return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %.17g", t);
+      }
+      for (int i = 0; i < c->nmonitors; i++) {
+        int k = c->monitors[i].output;
+        s->mon_first[i] += k >= 0 ? (pass ? s->out[k] : -s->out[k]) : 0;
+      }
+    }
+  }
+  return LAG_OK;
+}
+
+void lag_sim_stats(lag_sim *s, lag_stats *st)
+{
+  const Run *r = s->run;
+  double peak = r->e_peak;
+
+  st->t = r->t;
+  st->steps = (long long)r->steps;
+  st->rejected = (long long)s->pb.rejected;
+  st->rhs_calls = (long long)s->pb.rhs_calls;
+  st->events = (long long)r->events;
+  st->energy = energy_at(s, r->t, s->now, s->e) ? NAN : s->e[0];
+  if (r->begun != 0.0) {
+    peak = larger(peak, fabs(st->energy - r->e_first));
+  }
+  st->energy_drift = drift_of_energy(r, peak);
+}

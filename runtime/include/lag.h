@@ -1,0 +1,229 @@
+/* lag.h: the public interface of liblag, the runtime of compiled Lagrangians.
+ *
+ * Enters: a scene (lag_model.h), emitted by lagc. Leaves: its trajectory. A simulation is one opaque
+ * object; a method of integration is a const descriptor, and a new method is a new file.
+ *
+ * Conventions, everywhere below: values are in SI units unless "declared unit" is said; arrays are
+ * dense; y = [q[nq] | v[nq] | z[nz]] has n = 2 nq + nz elements; the library never keeps a pointer
+ * into an array of the caller, and arrays passed to one call do not overlap. No function here is
+ * thread-safe on one object; different objects are independent. Nothing is printed, nothing exits.
+ *
+ * Return values: LAG_OK is 0; > 0 is a planned stop; < 0 is a failure, and lag_sim_message() then says
+ * when, where and why. After a failure the simulation holds the last accepted state. */
+#ifndef LAG_H
+#define LAG_H
+
+#include "lag_model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define LAG_VERSION "0.1"
+
+/* Status codes, beside LAG_OK and LAG_ESINGULAR of lag_model.h. */
+enum {
+  LAG_STOPPED = 2,      /* an event ended the run */
+  LAG_INTERRUPTED = 3,  /* the hook asked for it */
+  LAG_ENAN = -2,        /* the model returned NaN or an infinity */
+  LAG_EDOMAIN = -3,     /* the model left its domain, and smaller steps did not help */
+  LAG_ESTEP = -4,       /* the step became too small for the tolerance */
+  LAG_EINVAL = -5,      /* wrong argument, name, value or order of calls */
+  LAG_ENOMEM = -6,
+  LAG_EMONITOR = -7,    /* a monitored quantity drifted past its limit */
+  LAG_EMODEL = -8,      /* the model returned another negative value */
+  LAG_EZENO = -9,       /* an event repeats in ever shorter intervals */
+  LAG_EMETHOD = -10,    /* the method cannot treat this model, or failed in its own way */
+  LAG_EIO = -11
+};
+
+/* "ok", "stopped", ... for any of the above. */
+const char *lag_status_name(int status);
+
+/* ---- Methods --------------------------------------------------------------------------------- */
+
+/* What a method integrates: the model as y' = f(t, y), and where the method leaves its counts. */
+typedef struct lag_problem {
+  const lag_model *model;
+  int n, nq, nz;       /* n = 2 nq + nz */
+  const double *p;     /* [np] parameters */
+  double *u;           /* [nu] inputs, filled by lag_rhs */
+  const double *hold;  /* [nu] constants that replace inputs; NaN where there is none */
+  double *work;        /* [nw] */
+  double tol;          /* tolerance, absolute and relative */
+  double dir;          /* 1 or -1: the direction of time */
+  double span;         /* length of the scene's span, 0 when it has none. Not where this run ends */
+  double rhs_calls;    /* counted by lag_rhs */
+  double rejected;     /* counted by the method */
+  double bad_t;        /* set before a failure: where, */
+  int bad_index;       /* which component of y' (-1: unknown), */
+  const char *detail;  /* and more words or NULL; a string that lives as long as the program */
+} lag_problem;
+
+/* dy[n] = f(t, y[n]). Returns what the model returned; does not look for NaN. */
+int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
+
+/* The index of the first of x[n] that is not finite, -1 when all are. */
+int lag_not_finite(int n, const double *x);
+
+/* The state between two states: quintic in q, from q, v and a at both ends; cubic in v and z. y0, f0 = f(y0), y1, f1 are [n]; h = t1 - t0; s = (t - t0)/h in [0, 1]; y[n] is the result.
+ * With f of order p >= 4 the result has order 4. */
+void lag_hermite(int nq, int nz, double h, double s, const double *y0, const double *f0, const double *y1,
+                 const double *f1, double *y);
+
+/* Properties of a method. */
+enum {
+  LAG_METHOD_ADAPTIVE = 1,     /* chooses its steps from the tolerance; else steps are of equal size */
+  LAG_METHOD_SYMPLECTIC = 2,
+  LAG_METHOD_SYMMETRIC = 4,
+  LAG_METHOD_SEPARABLE = 8,    /* needs accelerations that do not depend on velocities */
+  LAG_METHOD_CONSERVATIVE = 16, /* refuses models with forces, dissipation or explicit time */
+  LAG_METHOD_STEPS_TO = 32,    /* dense() is rough: must step exactly to each time of output */
+  LAG_METHOD_NO_SAVE = 64,     /* work holds pointers: its state cannot be saved */
+  LAG_METHOD_NO_STATES = 128   /* refuses models with nz > 0 */
+};
+
+/* An option of a method. With choices (NULL-terminated) the value is the index of the choice. */
+typedef struct lag_method_option {
+  const char *name;
+  const char *doc;
+  double value;    /* default */
+  double min, max; /* allowed values */
+  const char *const *choices;
+} lag_method_option;
+
+/* An integrator. Its state is one block of work_size doubles (only doubles, unless NO_SAVE: then the state
+ * of a run can be written and read back bit by bit). */
+typedef struct lag_method {
+  const char *name;
+  int order;
+  int dense_order;
+  const char *doc;  /* one line, then the source of the algorithm */
+  unsigned flags;
+  int noptions;
+  const lag_method_option *options;
+
+  /* Doubles of work that init needs. */
+  size_t (*work_size)(const lag_problem *pb);
+
+  /* Prepares work (zeroed). opt[noptions] are the values of the options. < 0: see pb->detail. */
+  int (*init)(void *work, lag_problem *pb, const double *opt);
+
+  /* One accepted step from (*t, y[n]), of the method's own size in direction pb->dir, never past t_stop
+   * for a STEPS_TO method (others ignore t_stop). 0: *t, y are the new state. < 0: unchanged.
+   * Does not allocate. */
+  int (*step)(void *work, lag_problem *pb, double *t, double *y, double t_stop);
+
+  /* y[n] at t within the last step. */
+  void (*dense)(const void *work, const lag_problem *pb, double t, double *y);
+
+  /* Forgets the past: the caller is about to step from another state. */
+  void (*reset)(void *work, lag_problem *pb);
+
+  /* Frees what init allocated; NULL when it allocates nothing. */
+  void (*fini)(void *work);
+} lag_method;
+
+/* Classical Runge-Kutta, fixed step. */
+extern const lag_method lag_rk4;
+/* Dormand-Prince 5(4), adaptive: the default. */
+extern const lag_method lag_rk45;
+/* The methods of liblag.a, the default first. */
+extern const lag_method *const lag_methods[];
+extern const int lag_nmethods;
+/* The methods of liblag_gsl.a (link with -llag_gsl -lgsl -lgslcblas). */
+extern const lag_method *const lag_gsl_methods[];
+extern const int lag_gsl_nmethods;
+
+/* ---- Simulations ----------------------------------------------------------------------------- */
+
+typedef struct lag_sim lag_sim;
+
+typedef struct lag_stats {
+  double t;
+  long long steps, rejected, rhs_calls, events;
+  double energy;        /* now */
+  double energy_drift;  /* largest |E - E0| over the run relative to max(|E0|, max(|p.v| + |L|)); what events
+                         * do to the energy is not counted. NaN when the model has no energy */
+} lag_stats;
+
+/* A simulation of the scene at the start of its span, with the scene's method (when it is one of
+ * liblag.a), tolerance and options. The scene must outlive it. NULL: no memory, or a model of another ABI
+ * or scalar type. Free with lag_sim_free (NULL allowed). */
+lag_sim *lag_sim_new(const lag_scene *scene);
+void lag_sim_free(lag_sim *sim);
+
+/* The settings below are made before the first advance; later they return LAG_EINVAL. After an error the
+ * simulation is unchanged and lag_sim_message() says what to write instead. */
+
+/* Chooses a method. opt[nopt] are options by name; the others have their defaults. */
+int lag_sim_set_method(lag_sim *sim, const lag_method *method, const lag_option *opt, int nopt);
+/* tol > 0; not below 1e-15. */
+int lag_sim_set_tolerance(lag_sim *sim, double tol);
+/* Sets by name, in the declared unit: a parameter ("m", "drag.c", or "c" when no other parameter ends
+ * in ".c"), the start of a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that
+ * replaces an input. A parameter of the wrong sign is an error. */
+int lag_sim_set(lag_sim *sim, const char *name, double value);
+
+/* Integrates to time t, before or after t0, but always in one direction. The steps do not depend on
+ * t: the state at t is evaluated on the dense output (STEPS_TO methods: reached exactly), so runs that are
+ * split differently agree bit by bit. An event at exactly t happens in the next call.
+ * LAG_OK: the state is at t. LAG_STOPPED, LAG_INTERRUPTED: at lag_sim_time(). < 0: failure. */
+int lag_sim_advance(lag_sim *sim, double t);
+
+/* y[n] at time t within the last step and not after the next event, else LAG_EINVAL. Moves nothing. */
+int lag_sim_eval(const lag_sim *sim, double t, double *y);
+
+/* The present state and parameters: pointers that stay valid until lag_sim_free. */
+double lag_sim_time(const lag_sim *sim);
+const double *lag_sim_q(const lag_sim *sim);
+const double *lag_sim_v(const lag_sim *sim);
+const double *lag_sim_z(const lag_sim *sim);
+const double *lag_sim_p(const lag_sim *sim);
+const lag_scene *lag_sim_scene(const lag_sim *sim);
+const lag_method *lag_sim_method(const lag_sim *sim);
+double lag_sim_tolerance(const lag_sim *sim);
+/* The values of the method's options, [method->noptions]. */
+const double *lag_sim_options(const lag_sim *sim);
+
+/* Columns of output besides t: the scene's outputs, or q, v, z when it names none. */
+int lag_sim_noutputs(const lag_sim *sim);
+/* Name, with a prime for a velocity, and declared unit; buffers of the caller, cut to fit, either may be
+ * NULL. Returns what one declared unit is in SI. */
+double lag_sim_output_info(const lag_sim *sim, int i, char *name, size_t nname, char *unit, size_t nunit);
+/* out[noutputs] at the present state, in declared units. */
+int lag_sim_outputs(lag_sim *sim, double *out);
+
+void lag_sim_stats(lag_sim *sim, lag_stats *stats);
+/* The drift of monitor i so far, as judged against its limit. */
+double lag_sim_monitor_drift(const lag_sim *sim, int i);
+/* How often event k has fired. */
+long long lag_sim_event_count(const lag_sim *sim, int k);
+/* The last error, "" when there was none. */
+const char *lag_sim_message(const lag_sim *sim);
+
+/* Called after each step; != 0 ends the run with LAG_INTERRUPTED. */
+void lag_sim_on_step(lag_sim *sim, int (*hook)(void *context, const lag_sim *sim), void *context);
+/* Called when event k fires at time t, before its action. */
+void lag_sim_on_event(lag_sim *sim, void (*hook)(void *context, int k, double t), void *context);
+
+/* Everything that a later run needs, as x[lag_sim_save_size()] doubles. LAG_EINVAL when the method cannot
+ * be saved. load takes it into a simulation of the same scene, method and options. */
+size_t lag_sim_save_size(const lag_sim *sim);
+int lag_sim_save(lag_sim *sim, double *x);
+int lag_sim_load(lag_sim *sim, const double *x);
+/* A checksum of the scene's names, sizes and method: of what must agree between save and load. */
+unsigned long long lag_sim_signature(const lag_sim *sim);
+
+/* ---- Simulators ------------------------------------------------------------------------------ */
+
+/* main() of a simulator: see --help, or app/help.c. extra[nextra] are methods beside those of liblag.a.
+ * Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 130 interrupted. */
+int lag_app_main(int argc, char **argv, const lag_program *program, const lag_method *const *extra,
+                 int nextra);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

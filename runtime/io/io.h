@@ -1,0 +1,79 @@
+/* What a simulator writes: rows, pictures, its saved state. Holds for all files: they are written as
+ * FILE.part and renamed when complete, so that no half-written FILE is ever seen. */
+#ifndef LAG_IO_IO_H
+#define LAG_IO_IO_H
+
+#include <stdio.h>
+
+#include "lag.h"
+
+/* A file in the making. path "-" is standard output; what exists and is no regular file is written directly. */
+typedef struct Outfile {
+  FILE *f;
+  char path[1024], part[1032]; /* part "": direct */
+} Outfile;
+
+/* 0, or -1 with errno set. */
+int outfile_open(Outfile *o, const char *path);
+/* Completes the file (keep) or removes it. -1 with errno set: it could not be written; nothing is left. */
+int outfile_close(Outfile *o, int keep);
+
+typedef struct Column {
+  char name[96], unit[64];
+} Column;
+
+/* Column 0 is the time. data[nrows * ncols], row by row; kept only when keep is set. */
+typedef struct Table {
+  int ncols;
+  Column *cols;
+  int keep;
+  double *data;
+  size_t nrows, capacity;
+} Table;
+
+int table_init(Table *t, const lag_sim *sim, int keep);
+void table_free(Table *t);
+int table_add(Table *t, const double *row);
+
+/* Rows to a file: .npy by its suffix, else CSV. */
+typedef struct Rows {
+  Outfile out;
+  int open, npy;
+  size_t nrows;
+  int ncols;
+  size_t npy_header; /* bytes */
+  const Column *cols;
+} Rows;
+
+int rows_open(Rows *r, const char *path, const Table *t);
+int rows_write(Rows *r, const double *row);
+int rows_close(Rows *r, int keep);
+
+/* Ticks: a round step (1, 2, 5 times a power of ten) of which about n fit between lo and hi. */
+double nice_step(double lo, double hi, int n);
+
+/* The columns named x and y (NULL: all against t) as SVG. -1 with errno set. */
+int svg_write(const char *path, const Table *t, const char *title, int x, int y);
+void sketch_print(FILE *f, const Table *t);
+
+/* JSON text: a string in quotes or null; a number with 17 digits or null. */
+void json_string(FILE *f, const char *s);
+void json_number(FILE *f, double x);
+
+/* What stands at the head of a saved state, and the state. data is malloced by read. */
+typedef struct State {
+  char program[128], scene[128], method[64];
+  double tol;
+  int noptions;
+  double options[16];
+  unsigned long long signature;
+  double t;
+  size_t n;
+  double *data;
+} State;
+
+int state_write(const char *path, const State *s);
+/* 0; -1 errno; 1: not a saved state, or damaged: *why says how. */
+int state_read(const char *path, State *s, const char **why);
+
+#endif

@@ -1,0 +1,221 @@
+/* Rows of output. Enters: the columns of a simulation, then one row at a time; leaves: a CSV file (RFC 4180;
+ * a head with names and units, values with 17 digits: they read back exactly), or a NumPy .npy file.
+ *
+ * The .npy file is a one-dimensional array of records, one field of 8 bytes a column; the field's title is
+ * "name [unit]": a = numpy.load("f.npy"); a["th"], a["th [deg]"], a.dtype.fields. Format: NumPy
+ * Enhancement Proposal 1; version 1.0, and 3.0 where a name is not ASCII. */
+#include <errno.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/io.h"
+
+int table_init(Table *t, const lag_sim *sim, int keep)
+{
+  *t = (Table){.ncols = lag_sim_noutputs(sim) + 1, .keep = keep};
+  t->cols = calloc((size_t)t->ncols, sizeof *t->cols);
+  if (!t->cols) {
+    return -1;
+  }
+  strcpy(t->cols[0].name, "t");
+  strcpy(t->cols[0].unit, "s");
+  for (int i = 1; i < t->ncols; i++) {
+    Column *c = &t->cols[i];
+    lag_sim_output_info(sim, i - 1, c->name, sizeof c->name, c->unit, sizeof c->unit);
+  }
+  return 0;
+}
+
+void table_free(Table *t)
+{
+  free(t->cols);
+  free(t->data);
+  *t = (Table){0};
+}
+
+int table_add(Table *t, const double *row)
+{
+  if (!t->keep) {
+    return 0;
+  }
+  if (t->nrows == t->capacity) {
+    size_t capacity = t->capacity ? 2 * t->capacity : 1024;
+    double *data = realloc(t->data, capacity * (size_t)t->ncols * sizeof *data);
+    if (!data) {
+      return -1;
+    }
+    t->data = data;
+    t->capacity = capacity;
+  }
+  memcpy(t->data + t->nrows * (size_t)t->ncols, row, (size_t)t->ncols * sizeof *row);
+  t->nrows++;
+  return 0;
+}
+
+/* RFC 4180: quoted when it holds a comma, a quote or a line break; a quote is doubled. */
+static void csv_text(FILE *f, const char *s)
+{
+  if (!strpbrk(s, ",\"\r\n")) {
+    fputs(s, f);
+    return;
+  }
+  putc('"', f);
+  for (; *s; s++) {
+    if (*s == '"') {
+      putc('"', f);
+    }
+    putc(*s, f);
+  }
+  putc('"', f);
+}
+
+static void csv_head(Rows *r)
+{
+  for (int i = 0; i < r->ncols; i++) {
+    const Column *c = &r->cols[i];
+    char text[sizeof c->name + sizeof c->unit + 4];
+    snprintf(text, sizeof text, c->unit[0] ? "%s [%s]" : "%s", c->name, c->unit);
+    if (i) {
+      putc(',', r->out.f);
+    }
+    csv_text(r->out.f, text);
+  }
+  putc('\n', r->out.f);
+}
+
+static int is_ascii(const Rows *r)
+{
+  for (int i = 0; i < r->ncols; i++) {
+    const Column *c = &r->cols[i];
+    for (const char *s = c->name; *s; s++) {
+      if ((unsigned char)*s >= 128) {
+        return 0;
+      }
+    }
+    for (const char *s = c->unit; *s; s++) {
+      if ((unsigned char)*s >= 128) {
+        return 0;
+      }
+    }
+  }
+  return 1;
+}
+
+/* A string as Python writes it. */
+static void python_text(FILE *f, const char *s)
+{
+  putc('"', f);
+  for (; *s; s++) {
+    if (*s == '"' || *s == '\\') {
+      putc('\\', f);
+    }
+    putc(*s, f);
+  }
+  putc('"', f);
+}
+
+/* The dictionary of the header, open at its end: only the shape varies. */
+static void npy_dict(Rows *r, FILE *f)
+{
+  const union {
+    uint16_t word;
+    unsigned char byte[2];
+  } probe = {1};
+  char order = probe.byte[0] ? '<' : '>';
+
+  fputs("{'descr': [", f);
+  for (int i = 0; i < r->ncols; i++) {
+    const Column *c = &r->cols[i];
+    char title[sizeof c->name + sizeof c->unit + 4];
+    snprintf(title, sizeof title, "%s [%s]", c->name, c->unit);
+    fputs(i ? ", (" : "(", f);
+    if (c->unit[0]) {
+      putc('(', f);
+      python_text(f, title);
+      fputs(", ", f);
+    }
+    python_text(f, c->name);
+    fprintf(f, c->unit[0] ? "), '%cf8')" : ", '%cf8')", order);
+  }
+  fputs("], 'fortran_order': False, 'shape': (", f);
+}
+
+/* The whole header, in a length that does not depend on the number of rows. */
+static int npy_head(Rows *r)
+{
+  char *dict = NULL;
+  size_t size = 0;
+  FILE *m = open_memstream(&dict, &size);
+
+  if (!m) {
+    return -1;
+  }
+  npy_dict(r, m);
+  fclose(m);
+  int v3 = !is_ascii(r) || size > 60000;
+  size_t fixed = v3 ? 12 : 10, total = (fixed + size + 32 + 63) / 64 * 64, length = total - fixed;
+  FILE *f = r->out.f;
+  fwrite("\x93NUMPY", 1, 6, f);
+  putc(v3 ? 3 : 1, f);
+  putc(0, f);
+  for (int i = 0; i < (v3 ? 4 : 2); i++) {
+    putc((int)(length >> 8 * i & 255), f);
+  }
+  fwrite(dict, 1, size, f);
+  int n = fprintf(f, "%zu,), }", r->nrows);
+  for (size_t i = size + (size_t)n; i + 1 < length; i++) {
+    putc(' ', f);
+  }
+  putc('\n', f);
+  free(dict);
+  return 0;
+}
+
+int rows_open(Rows *r, const char *path, const Table *t)
+{
+  size_t n = strlen(path);
+
+  *r = (Rows){.ncols = t->ncols, .cols = t->cols};
+  r->npy = n > 4 && strcmp(path + n - 4, ".npy") == 0;
+  if (outfile_open(&r->out, path)) {
+    return -1;
+  }
+  r->open = 1;
+  if (r->npy) {
+    return npy_head(r);
+  }
+  csv_head(r);
+  return 0;
+}
+
+int rows_write(Rows *r, const double *row)
+{
+  FILE *f = r->out.f;
+
+  r->nrows++;
+  if (r->npy) {
+    fwrite(row, sizeof *row, (size_t)r->ncols, f);
+  } else {
+    for (int i = 0; i < r->ncols; i++) {
+      fprintf(f, i ? ",%.17g" : "%.17g", row[i]);
+    }
+    putc('\n', f);
+  }
+  return ferror(f) ? -1 : 0;
+}
+
+int rows_close(Rows *r, int keep)
+{
+  if (!r->open) {
+    return 0;
+  }
+  r->open = 0;
+  if (r->npy && keep && (fseek(r->out.f, 0, SEEK_SET) != 0 || npy_head(r))) {
+    int error = errno;
+    outfile_close(&r->out, 0);
+    errno = error;
+    return -1;
+  }
+  return outfile_close(&r->out, keep);
+}

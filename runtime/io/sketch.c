@@ -1,0 +1,122 @@
+/* A run in a terminal. Enters: a table of rows; leaves: one chart of braille dots (2 by 4 a letter) for each of
+ * the first columns. Holds: between two rows the line is drawn, so that steep curves have no holes. */
+#include <math.h>
+#include <string.h>
+
+#include "io/io.h"
+
+enum { COLS = 70, MOST_ROWS = 16, MOST_CHARTS = 6 };
+
+static const unsigned char dot[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
+
+typedef struct Chart {
+  unsigned char cell[MOST_ROWS][COLS];
+  int rows;
+  double x0, x1, y0, y1;
+} Chart;
+
+static double value(const Table *t, size_t row, int col)
+{
+  return t->data[row * (size_t)t->ncols + (size_t)col];
+}
+
+static void plot(Chart *c, int x, int y)
+{
+  if (x >= 0 && x < 2 * COLS && y >= 0 && y < 4 * c->rows) {
+    c->cell[y / 4][x / 2] |= dot[y % 4][x % 2];
+  }
+}
+
+static int to_x(const Chart *c, double x)
+{
+  return (int)lrint((x - c->x0) / (c->x1 - c->x0) * (2 * COLS - 1));
+}
+
+static int to_y(const Chart *c, double y)
+{
+  return (int)lrint((c->y1 - y) / (c->y1 - c->y0) * (4 * c->rows - 1));
+}
+
+static void line(Chart *c, int xa, int ya, int xb, int yb)
+{
+  int dx = xb - xa, dy = yb - ya, ax = dx < 0 ? -dx : dx, ay = dy < 0 ? -dy : dy, n = ax > ay ? ax : ay;
+
+  for (int i = 0; i <= n; i++) {
+    plot(c, xa + (n ? i * dx / n : 0), ya + (n ? i * dy / n : 0));
+  }
+}
+
+static void range(const Table *t, int col, double *lo, double *hi)
+{
+  *lo = HUGE_VAL;
+  *hi = -HUGE_VAL;
+  for (size_t i = 0; i < t->nrows; i++) {
+    double x = value(t, i, col);
+    *lo = isfinite(x) ? fmin(*lo, x) : *lo;
+    *hi = isfinite(x) ? fmax(*hi, x) : *hi;
+  }
+  if (!(*lo < *hi)) {
+    double mid = isfinite(*lo) ? *lo : 0;
+    *lo = mid - (mid == 0.0 ? 1 : fabs(mid) / 2);
+    *hi = mid + (mid == 0.0 ? 1 : fabs(mid) / 2);
+  }
+}
+
+static void draw(Chart *c, const Table *t, int col)
+{
+  int have = 0, xa = 0, ya = 0;
+
+  for (size_t i = 0; i < t->nrows; i++) {
+    double x = value(t, i, 0), y = value(t, i, col);
+    if (!isfinite(y)) {
+      have = 0;
+      continue;
+    }
+    int xb = to_x(c, x), yb = to_y(c, y);
+    line(c, have ? xa : xb, have ? ya : yb, xb, yb);
+    have = 1;
+    xa = xb;
+    ya = yb;
+  }
+}
+
+static void print_chart(FILE *f, const Chart *c, const Column *name, int last)
+{
+  char left[32], right[32];
+
+  fprintf(f, name->unit[0] ? "%s [%s]\n" : "%s\n", name->name, name->unit);
+  for (int r = 0; r < c->rows; r++) {
+    if (r == 0 || r == c->rows - 1) {
+      fprintf(f, "%11.4g \xe2\x94\xa4", r ? c->y0 : c->y1); /* U+2524 */
+    } else {
+      fprintf(f, "%11s \xe2\x94\x82", ""); /* U+2502 */
+    }
+    for (int x = 0; x < COLS; x++) {
+      unsigned char b = c->cell[r][x]; /* U+2800 + b in UTF-8 */
+      fprintf(f, "\xe2%c%c", 0xa0 | b >> 6, 0x80 | (b & 0x3f));
+    }
+    putc('\n', f);
+  }
+  if (last) {
+    snprintf(left, sizeof left, "%.5g", c->x0);
+    snprintf(right, sizeof right, "%.5g", c->x1);
+    int gap = COLS - (int)strlen(left) - (int)strlen(right), half = (gap - 5) / 2;
+    fprintf(f, "%13s%s%*st [s]%*s%s\n", "", left, half, "", gap - 5 - half, "", right);
+  }
+}
+
+void sketch_print(FILE *f, const Table *t)
+{
+  int n = t->ncols - 1 < MOST_CHARTS ? t->ncols - 1 : MOST_CHARTS;
+
+  for (int k = 1; k <= n; k++) {
+    Chart c = {.rows = n == 1 ? MOST_ROWS : n <= 3 ? MOST_ROWS / 2 : 5};
+    range(t, 0, &c.x0, &c.x1);
+    range(t, k, &c.y0, &c.y1);
+    draw(&c, t, k);
+    print_chart(f, &c, &t->cols[k], k == n);
+  }
+  if (t->ncols - 1 > n) {
+    fprintf(f, "%13s(and %d more columns)\n", "", t->ncols - 1 - n);
+  }
+}

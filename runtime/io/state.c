@@ -1,0 +1,171 @@
+/* A run on disk, so that it can go on later as if it had never stopped. Enters: the block of doubles of a
+ * simulation; leaves: a text file. Holds: doubles are hexadecimal, so they read back bit by bit; the last line
+ * is a checksum of all before it. NaN keeps its meaning, not its bits.
+ *
+ *   lag-state 1
+ *   program NAME / scene NAME / method NAME / tolerance X / options N X... / signature H / t X
+ *   data N
+ *   X            N times
+ *   sum H        FNV-1a, 64 bits */
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/io.h"
+
+static uint64_t fnv(const char *s, size_t n)
+{
+  uint64_t h = UINT64_C(0xcbf29ce484222325);
+
+  for (size_t i = 0; i < n; i++) {
+    h = (h ^ (unsigned char)s[i]) * UINT64_C(0x100000001b3);
+  }
+  return h;
+}
+
+static void print_state(FILE *f, const State *s)
+{
+  fprintf(f, "lag-state 1\nprogram %s\nscene %s\nmethod %s\ntolerance %a\noptions %d", s->program, s->scene, s->method,
+          s->tol, s->noptions);
+  for (int i = 0; i < s->noptions; i++) {
+    fprintf(f, " %a", s->options[i]);
+  }
+  fprintf(f, "\nsignature %016llx\nt %a\ndata %zu\n", s->signature, s->t, s->n);
+  for (size_t i = 0; i < s->n; i++) {
+    fprintf(f, "%a\n", s->data[i]);
+  }
+}
+
+int state_write(const char *path, const State *s)
+{
+  Outfile o;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *m = open_memstream(&text, &size);
+
+  if (!m) {
+    return -1;
+  }
+  print_state(m, s);
+  if (fclose(m) != 0 || outfile_open(&o, path) != 0) {
+    free(text);
+    return -1;
+  }
+  fwrite(text, 1, size, o.f);
+  fprintf(o.f, "sum %016" PRIx64 "\n", fnv(text, size));
+  free(text);
+  return outfile_close(&o, 1);
+}
+
+/* The whole file, 0-terminated; NULL with errno set. */
+static char *slurp(const char *path)
+{
+  FILE *f = fopen(path, "rb");
+  char *text = NULL;
+  size_t n = 0, capacity = 0;
+
+  if (!f) {
+    return NULL;
+  }
+  for (;;) {
+    if (n + 1 >= capacity) {
+      char *more = realloc(text, capacity = capacity ? 2 * capacity : 4096);
+      if (!more) {
+        free(text);
+        text = NULL;
+        break;
+      }
+      text = more;
+    }
+    size_t got = fread(text + n, 1, capacity - n - 1, f);
+    n += got;
+    text[n] = '\0';
+    if (got == 0) {
+      break;
+    }
+  }
+  if (text && ferror(f)) {
+    free(text);
+    text = NULL;
+  }
+  int error = errno;
+  fclose(f);
+  errno = error;
+  return text;
+}
+
+/* The rest of the line that begins with key, and the next line into *p. 0: another line. */
+static int field(char **p, const char *key, char *value, size_t size)
+{
+  size_t n = strlen(key);
+  char *end = strchr(*p, '\n');
+
+  if (strncmp(*p, key, n) != 0 || !end || (size_t)(end - *p) - n >= size) {
+    return 0;
+  }
+  memcpy(value, *p + n, (size_t)(end - *p) - n);
+  value[(size_t)(end - *p) - n] = '\0';
+  *p = end + 1;
+  return 1;
+}
+
+static int read_head(char **p, State *s)
+{
+  char x[1024], *q;
+
+  if (!field(p, "lag-state 1", x, sizeof x) || !field(p, "program ", s->program, sizeof s->program) ||
+      !field(p, "scene ", s->scene, sizeof s->scene) || !field(p, "method ", s->method, sizeof s->method) ||
+      !field(p, "tolerance ", x, sizeof x)) {
+    return 0;
+  }
+  s->tol = strtod(x, NULL);
+  if (!field(p, "options ", x, sizeof x)) {
+    return 0;
+  }
+  long n = strtol(x, &q, 10);
+  if (n < 0 || n > (long)(sizeof s->options / sizeof *s->options)) {
+    return 0;
+  }
+  s->noptions = (int)n;
+  for (int i = 0; i < s->noptions; i++) {
+    s->options[i] = strtod(q, &q);
+  }
+  if (!field(p, "signature ", x, sizeof x)) {
+    return 0;
+  }
+  s->signature = strtoull(x, NULL, 16);
+  if (!field(p, "t ", x, sizeof x)) {
+    return 0;
+  }
+  s->t = strtod(x, NULL);
+  if (!field(p, "data ", x, sizeof x)) {
+    return 0;
+  }
+  s->n = (size_t)strtoull(x, NULL, 10);
+  return 1;
+}
+
+int state_read(const char *path, State *s, const char **why)
+{
+  char *text = slurp(path), *p = text, *sum;
+
+  *s = (State){0};
+  if (!text) {
+    return -1;
+  }
+  sum = strstr(text, "\nsum ");
+  *why = "is not a state saved by --save-state";
+  if (strncmp(text, "lag-state 1\n", 12) == 0) {
+    *why = "is damaged: its checksum does not match";
+    if (sum && strtoull(sum + 5, NULL, 16) == fnv(text, (size_t)(sum + 1 - text)) && read_head(&p, s) &&
+        s->n <= strlen(p) && (s->data = malloc((s->n + 1) * sizeof(double))) != NULL) {
+      for (size_t i = 0; i < s->n; i++) {
+        s->data[i] = strtod(p, &p);
+      }
+      *why = NULL;
+    }
+  }
+  free(text);
+  return *why ? 1 : 0;
+}

@@ -1,0 +1,300 @@
+/* A picture of a run. Enters: a table of rows; leaves: an SVG file: one panel for each unit against a common
+ * time axis, or one panel with one column against another. Holds: a curve of more points than the panel is wide is
+ * thinned to the least and largest value of each pixel column, so that no peak is lost. */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/io.h"
+
+enum { WIDTH = 860, LEFT = 84, RIGHT = 150, TOP = 44, GAP = 26, BOTTOM = 52, MOST_PANELS = 6, MOST_LEGEND = 12 };
+
+/* Eight colours that differ for all kinds of colour vision (Okabe and Ito), yellow darkened. */
+static const char *const colour[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7f00", "#444444"};
+
+typedef struct Panel {
+  double x, y, w, h;         /* on paper */
+  double x0, x1, y0, y1;     /* in the data */
+  const char *xlabel;
+} Panel;
+
+double nice_step(double lo, double hi, int n)
+{
+  double raw = (hi - lo) / n, power = pow(10, floor(log10(raw))), f = raw / power;
+
+  return power * (f < 1.5 ? 1 : f < 3.5 ? 2 : f < 7.5 ? 5 : 10);
+}
+
+static void xml(FILE *f, const char *s)
+{
+  for (; *s; s++) {
+    switch (*s) {
+    case '<': fputs("&lt;", f); break;
+    case '>': fputs("&gt;", f); break;
+    case '&': fputs("&amp;", f); break;
+    case '"': fputs("&quot;", f); break;
+    default: putc(*s, f);
+    }
+  }
+}
+
+static void text(FILE *f, double x, double y, const char *attributes, const char *s)
+{
+  fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, attributes);
+  xml(f, s);
+  fputs("</text>\n", f);
+}
+
+static double cell(const Table *t, size_t row, int col)
+{
+  return t->data[row * (size_t)t->ncols + (size_t)col];
+}
+
+/* Widens [lo, hi] by the finite values of a column. */
+static void range_of(const Table *t, int col, double *lo, double *hi)
+{
+  for (size_t i = 0; i < t->nrows; i++) {
+    double x = cell(t, i, col);
+    if (isfinite(x)) {
+      *lo = fmin(*lo, x);
+      *hi = fmax(*hi, x);
+    }
+  }
+}
+
+/* An interval that can be drawn: not empty, with a margin. */
+static void widen(double *lo, double *hi, double margin)
+{
+  if (!(*lo <= *hi)) {
+    *lo = 0;
+    *hi = 1;
+  }
+  double d = *hi - *lo;
+  if (d <= 1e-12 * fmax(fabs(*lo), fabs(*hi)) || d == 0.0) {
+    d = *lo == 0.0 ? 1 : fabs(*lo);
+    margin = 0.5;
+  }
+  *lo -= margin * d;
+  *hi += margin * d;
+}
+
+static double px(const Panel *p, double x)
+{
+  return p->x + (x - p->x0) / (p->x1 - p->x0) * p->w;
+}
+
+static double py(const Panel *p, double y)
+{
+  return p->y + p->h - (y - p->y0) / (p->y1 - p->y0) * p->h;
+}
+
+static void tick_label(char *s, size_t n, double value, double step)
+{
+  snprintf(s, n, "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value);
+}
+
+/* What labels of y leave out: a value that nearly stands still would have the same label at each tick. */
+static double base_of(const Panel *p, double dy)
+{
+  double size = fmax(fabs(p->y0), fabs(p->y1));
+  return size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0;
+}
+
+static void axes(FILE *f, const Panel *p, const char *ylabel, int last)
+{
+  char s[32];
+  double dx = nice_step(p->x0, p->x1, 8), dy = nice_step(p->y0, p->y1, p->h > 220 ? 7 : 4), base = base_of(p, dy);
+
+  fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" stroke=\"#999\"/>\n", p->x, p->y, p->w, p->h);
+  for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
+    fprintf(f, "<path d=\"M%.2f %.1fv%.1f\" class=\"g\"/>\n", px(p, k * dx), p->y, p->h);
+    tick_label(s, sizeof s, k * dx, dx);
+    if (last) {
+      text(f, px(p, k * dx), p->y + p->h + 17, "text-anchor=\"middle\"", s);
+    }
+  }
+  for (double k = ceil((p->y0 - base) / dy - 1e-9); k * dy <= p->y1 - base + 1e-9 * dy; k++) {
+    double y = py(p, base + k * dy);
+    fprintf(f, "<path d=\"M%.1f %.2fh%.1f\" class=\"g\"/>\n", p->x, y, p->w);
+    tick_label(s, sizeof s, k * dy, dy);
+    text(f, p->x - 7, y + 4, "text-anchor=\"end\"", s);
+  }
+  if (base != 0.0) {
+    snprintf(s, sizeof s, "%.14g +", base);
+    text(f, p->x, p->y - 6, "font-size=\"11\"", s);
+  }
+  if (last) {
+    text(f, p->x + p->w / 2, p->y + p->h + 40, "text-anchor=\"middle\" class=\"l\"", p->xlabel);
+  }
+  fprintf(f, "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\" class=\"l\">", 18.0, p->y + p->h / 2);
+  xml(f, ylabel);
+  fputs("</text>\n", f);
+}
+
+/* Points as they come: "M" begins a piece, a value that is not finite ends it. */
+static void point(FILE *f, const Panel *p, double x, double y, int *pen)
+{
+  if (!isfinite(x) || !isfinite(y)) {
+    *pen = 0;
+    return;
+  }
+  fprintf(f, "%s%.2f %.2f", *pen ? "L" : "M", px(p, x), py(p, y));
+  *pen = 1;
+}
+
+static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, const char *stroke)
+{
+  size_t per = xcol == 0 ? t->nrows / (size_t)(2 * p->w) : t->nrows / 20000;
+  int pen = 0;
+
+  fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"", stroke);
+  for (size_t i = 0; i < t->nrows; i += per + 1) {
+    size_t lo = i, hi = i, end = i + per + 1 < t->nrows ? i + per + 1 : t->nrows;
+    for (size_t j = i + 1; j < end && xcol == 0; j++) {
+      lo = cell(t, j, ycol) < cell(t, lo, ycol) ? j : lo;
+      hi = cell(t, j, ycol) > cell(t, hi, ycol) ? j : hi;
+    }
+    size_t first = lo < hi ? lo : hi, second = lo < hi ? hi : lo;
+    point(f, p, cell(t, first, xcol), cell(t, first, ycol), &pen);
+    if (second != first) {
+      point(f, p, cell(t, second, xcol), cell(t, second, ycol), &pen);
+    }
+  }
+  fputs("\"/>\n", f);
+}
+
+static void label_of(const Column *c, char *s, size_t n)
+{
+  snprintf(s, n, c->unit[0] ? "%s [%s]" : "%s", c->name, c->unit);
+}
+
+/* All columns of one unit. */
+static void unit_panel(FILE *f, const Table *t, Panel *p, const char *unit, int last)
+{
+  char s[176];
+  int shown = 0, total = 0;
+
+  p->y0 = HUGE_VAL;
+  p->y1 = -HUGE_VAL;
+  for (int c = 1; c < t->ncols; c++) {
+    if (strcmp(t->cols[c].unit, unit) == 0) {
+      range_of(t, c, &p->y0, &p->y1);
+      total++;
+    }
+  }
+  widen(&p->y0, &p->y1, 0.06);
+  snprintf(s, sizeof s, "[%s]", unit);
+  axes(f, p, unit[0] ? s : "", last);
+  int room = (int)(p->h / 18) < MOST_LEGEND ? (int)(p->h / 18) : MOST_LEGEND;
+  for (int c = 1; c < t->ncols; c++) {
+    if (strcmp(t->cols[c].unit, unit) != 0) {
+      continue;
+    }
+    const char *stroke = colour[(c - 1) % 8];
+    double y = p->y + 12 + 18 * shown, x = p->x + p->w + 14;
+    curve(f, p, t, 0, c, stroke);
+    if (shown + 1 < room || (shown + 1 == room && total == room)) {
+      fprintf(f, "<path d=\"M%.1f %.1fh20\" stroke=\"%s\" stroke-width=\"2.5\"/>\n", x, y, stroke);
+      text(f, x + 27, y + 4, "", t->cols[c].name);
+    } else if (shown + 1 == room) {
+      snprintf(s, sizeof s, "and %d more", total - shown);
+      text(f, x, y + 4, "", s);
+    }
+    shown++;
+  }
+}
+
+static void head(FILE *f, int height, const char *title)
+{
+  fprintf(f,
+          "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
+          "font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"12\" fill=\"#333\">\n"
+          "<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:13px}</style>\n"
+          "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
+          WIDTH, height, WIDTH, height, WIDTH, height);
+  text(f, LEFT, 26, "font-size=\"15\" font-weight=\"bold\"", title);
+}
+
+/* The distinct units, in order of first use, at most MOST_PANELS. */
+static int units_of(const Table *t, const char *units[MOST_PANELS])
+{
+  int n = 0;
+
+  for (int c = 1; c < t->ncols; c++) {
+    int k = 0;
+    while (k < n && strcmp(units[k], t->cols[c].unit) != 0) {
+      k++;
+    }
+    if (k == n && n < MOST_PANELS) {
+      units[n++] = t->cols[c].unit;
+    }
+  }
+  return n;
+}
+
+static void against_time(FILE *f, const Table *t, const char *title)
+{
+  const char *units[MOST_PANELS];
+  int n = units_of(t, units);
+  double h = n == 1 ? 380 : n == 2 ? 230 : 170;
+  Panel p = {.x = LEFT, .y = TOP, .w = WIDTH - LEFT - RIGHT, .h = h, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .xlabel = "t [s]"};
+
+  head(f, TOP + (int)h * n + GAP * (n - 1) + BOTTOM, title);
+  range_of(t, 0, &p.x0, &p.x1);
+  widen(&p.x0, &p.x1, 0);
+  for (int k = 0; k < n; k++) {
+    unit_panel(f, t, &p, units[k], k == n - 1);
+    p.y += h + GAP;
+  }
+}
+
+static void one_against_other(FILE *f, const Table *t, const char *title, int x, int y)
+{
+  char xlabel[176], ylabel[176];
+  Panel p = {.x = LEFT, .y = TOP, .w = 600, .h = 520, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL};
+
+  label_of(&t->cols[x], xlabel, sizeof xlabel);
+  label_of(&t->cols[y], ylabel, sizeof ylabel);
+  p.xlabel = xlabel;
+  range_of(t, x, &p.x0, &p.x1);
+  range_of(t, y, &p.y0, &p.y1);
+  widen(&p.x0, &p.x1, x ? 0.05 : 0);
+  widen(&p.y0, &p.y1, 0.05);
+  if (x && strcmp(t->cols[x].unit, t->cols[y].unit) == 0) {
+    /* A path: one metre is as long across as it is up. */
+    double scale = fmax((p.x1 - p.x0) / p.w, (p.y1 - p.y0) / p.h), mx = (p.x0 + p.x1) / 2, my = (p.y0 + p.y1) / 2;
+    p.x0 = mx - scale * p.w / 2;
+    p.x1 = mx + scale * p.w / 2;
+    p.y0 = my - scale * p.h / 2;
+    p.y1 = my + scale * p.h / 2;
+  }
+  head(f, TOP + (int)p.h + BOTTOM, title);
+  axes(f, &p, ylabel, 1);
+  curve(f, &p, t, x, y, colour[0]);
+  if (t->nrows) {
+    fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"#009e73\"/>\n", px(&p, cell(t, 0, x)), py(&p, cell(t, 0, y)));
+    fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"#d55e00\"/>\n", px(&p, cell(t, t->nrows - 1, x)),
+            py(&p, cell(t, t->nrows - 1, y)));
+    fprintf(f, "<circle cx=\"%.1f\" cy=\"60\" r=\"4\" fill=\"#009e73\"/>\n<circle cx=\"%.1f\" cy=\"80\" r=\"4\" fill=\"#d55e00\"/>\n",
+            p.x + p.w + 20, p.x + p.w + 20);
+    text(f, p.x + p.w + 32, 64, "", "start");
+    text(f, p.x + p.w + 32, 84, "", "end");
+  }
+}
+
+int svg_write(const char *path, const Table *t, const char *title, int x, int y)
+{
+  Outfile o;
+
+  if (outfile_open(&o, path)) {
+    return -1;
+  }
+  if (y < 0) {
+    against_time(o.f, t, title);
+  } else {
+    one_against_other(o.f, t, title, x, y);
+  }
+  fputs("</svg>\n", o.f);
+  return outfile_close(&o, 1);
+}

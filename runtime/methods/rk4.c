@@ -1,0 +1,162 @@
+/* rk4: the classical Runge-Kutta method with a fixed step. Enters: t, y; leaves: t + h, y one step later.
+ * Holds: y and t are sums of many small terms, so both are summed with compensation (A. Neumaier, ZAMM 54
+ * (1974) 39, DOI 10.1002/zamm.19740540106) and rounding grows with the number of steps' root at most.
+ *
+ * Source: W. Kutta, Z. Math. Phys. 46 (1901) 435. f at the end of a step is the first stage of the next,
+ * so dense output (lag_hermite) costs nothing. */
+#include <math.h>
+#include <string.h>
+
+#include "lag.h"
+
+/* One block of doubles; x holds the arrays of n named below. */
+typedef struct Rk4 {
+  double h;       /* the step, >= 0 */
+  double ready;   /* K1 = f(t, y) is known */
+  double t0, dt;  /* the last step began at t0 and was dt long */
+  double tc;      /* what t has lost to rounding */
+  double x[];
+} Rk4;
+
+enum { K1, K2, K3, K4, F0, Y0, Y1, YS, COMP, NARRAYS };
+
+static const double node[4] = {0, 0.5, 0.5, 1};
+static const double weight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+
+static const lag_method_option options[] = {
+    {"step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL},
+};
+
+static size_t work_size(const lag_problem *pb)
+{
+  return sizeof(Rk4) / sizeof(double) + NARRAYS * (size_t)pb->n;
+}
+
+static void reset(void *work, lag_problem *pb)
+{
+  Rk4 *w = work;
+
+  w->ready = 0;
+  w->tc = 0;
+  memset(w->x + COMP * pb->n, 0, (size_t)pb->n * sizeof(double));
+}
+
+static int init(void *work, lag_problem *pb, const double *opt)
+{
+  Rk4 *w = work;
+
+  w->h = opt[0] > 0 ? opt[0] : (pb->span > 0 ? pb->span : 10) / 10000;
+  reset(work, pb);
+  return LAG_OK;
+}
+
+/* s + d, where *c is what earlier sums have lost: two-sum, valid for operands of any size. */
+static double add(double s, double d, double *c)
+{
+  double x = d + *c, r = s + x, b = r - s;
+
+  *c = (s - (r - b)) + (x - b);
+  return r;
+}
+
+static int fail(lag_problem *pb, int status, double t)
+{
+  pb->bad_t = t;
+  return status;
+}
+
+/* What the model's answer means to a method that cannot take a smaller step. */
+static int refused(lag_problem *pb, int rc, double t)
+{
+  return fail(pb, rc > 0 ? LAG_EDOMAIN : rc == LAG_ESINGULAR ? LAG_ESINGULAR : LAG_EMODEL, t);
+}
+
+/* The four stages into K1..K4; the increment of y, not yet scaled by h, into YS. */
+static int stages(Rk4 *w, lag_problem *pb, double t, const double *y, double dt)
+{
+  int n = pb->n;
+  double *restrict ys = w->x + YS * n;
+
+  for (int s = w->ready != 0.0; s < 4; s++) {
+    const double *restrict k = w->x + (s ? s - 1 : 0) * n;
+    double c = node[s] * dt, ts = t + c;
+    for (int i = 0; i < n; i++) {
+      ys[i] = s ? y[i] + c * k[i] : y[i];
+    }
+    int rc = lag_rhs(pb, ts, ys, w->x + s * n);
+    if (rc) {
+      return refused(pb, rc, ts);
+    }
+  }
+  const double *restrict k1 = w->x + K1 * n, *restrict k2 = w->x + K2 * n;
+  const double *restrict k3 = w->x + K3 * n, *restrict k4 = w->x + K4 * n;
+  for (int i = 0; i < n; i++) {
+    ys[i] = weight[0] * k1[i] + weight[1] * k2[i] + weight[2] * k3[i] + weight[3] * k4[i];
+  }
+  return LAG_OK;
+}
+
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
+{
+  Rk4 *w = work;
+  int n = pb->n, rc;
+  size_t bytes = (size_t)n * sizeof(double);
+  double *y1 = w->x + Y1 * n, *comp = w->x + COMP * n, *ys = w->x + YS * n;
+  double dt = w->h * pb->dir, tc = w->tc, tb = add(*t, dt, &tc);
+
+  (void)t_stop;
+  pb->bad_index = -1;
+  if (tb == *t) {
+    return fail(pb, LAG_ESTEP, *t);
+  }
+  if ((rc = stages(w, pb, *t, y, dt)) != 0) {
+    return rc;
+  }
+  /* A failure must leave y and its compensation as they were: look before touching them. */
+  if ((pb->bad_index = lag_not_finite(n, ys)) >= 0) {
+    return fail(pb, LAG_ENAN, *t);
+  }
+  memcpy(w->x + F0 * n, w->x + K1 * n, bytes);
+  memcpy(w->x + Y0 * n, y, bytes);
+  for (int i = 0; i < n; i++) {
+    y1[i] = add(y[i], dt * ys[i], &comp[i]);
+  }
+  w->ready = 0;
+  rc = lag_rhs(pb, tb, y1, w->x + K1 * n);
+  if (rc) {
+    return refused(pb, rc, tb);
+  }
+  if ((pb->bad_index = lag_not_finite(n, w->x + K1 * n)) >= 0) {
+    return fail(pb, LAG_ENAN, tb);
+  }
+  memcpy(y, y1, bytes);
+  w->ready = 1;
+  w->t0 = *t;
+  w->dt = tb - *t;
+  w->tc = tc;
+  *t = tb;
+  return LAG_OK;
+}
+
+static void dense(const void *work, const lag_problem *pb, double t, double *y)
+{
+  const Rk4 *w = work;
+  int n = pb->n;
+
+  lag_hermite(pb->nq, pb->nz, w->dt, (t - w->t0) / w->dt, w->x + Y0 * n, w->x + F0 * n, w->x + Y1 * n,
+              w->x + K1 * n, y);
+}
+
+const lag_method lag_rk4 = {
+    .name = "rk4",
+    .order = 4,
+    .dense_order = 4,
+    .doc = "classical Runge-Kutta, fixed step. Kutta 1901",
+    .noptions = 1,
+    .options = options,
+    .work_size = work_size,
+    .init = init,
+    .step = step,
+    .dense = dense,
+    .reset = reset,
+};

@@ -1,0 +1,195 @@
+#include "cli/options.h"
+
+#include <string.h>
+
+#include "base/suggest.h"
+
+static const struct {
+  const char *name;
+  Command command;
+  const char *usage; /* one line */
+  const char *help;
+} commands[] = {
+  {"check", CMD_CHECK, "lagc check MODEL [SCENE] [--allow-numeric]",
+   "Parses and derives the model for every scene (or the one named), and proves or refutes its\n"
+   "`expect` lines. Exit status 0 when all is well, 1 when not.\n\n"
+   "  --allow-numeric   an expectation that is not decided by the prover, but agrees numerically,\n"
+   "                    does not fail the check\n"},
+  {"derive", CMD_DERIVE, "lagc derive MODEL [SCENE] [--format text|latex|c] [--ops] [-o FILE]",
+   "Prints the equations of motion: momenta, M q'' = f, energy, and the operation count.\n\n"
+   "  --format latex    as LaTeX\n"
+   "  --format c        the C function that computes the accelerations\n"
+   "  --ops             the operation counts only\n"},
+  {"emit", CMD_EMIT, "lagc emit MODEL [SCENE] -o FILE.c",
+   "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h).\n"},
+  {"header", CMD_HEADER, "lagc header MODEL [SCENE] -o FILE.h",
+   "Writes one self-contained C99/C++ header to embed: parameters as a struct, accelerations,\n"
+   "energy, an RK4 step. It includes nothing but <math.h>.\n"},
+  {"build", CMD_BUILD, "lagc build MODEL -o SIMULATOR [--no-gsl]",
+   "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options.\n\n"
+   "  --no-gsl          leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole\n"},
+  {"run", CMD_RUN, "lagc run MODEL [SCENE] [name=value ...] [--method M] [--tol X] [--until T] ...",
+   "Builds the simulator (or takes it from the cache) and runs it; the options are the simulator's:\n\n"
+   "  name=value        a parameter, a start value (th=1.2, \"th'=0.5\") or an input\n"
+   "  --method NAME     rk45, rk4, gsl-rk8pd, ...; `--method help` lists them\n"
+   "  --tol X --step H --until T --every DT\n"
+   "  -o FILE           .csv or .npy\n"
+   "  --json            the summary as one JSON object\n"
+   "  --svg FILE        a picture of the outputs;  --sketch: one in the terminal\n"
+   "  --save-state FILE, --resume FILE\n"},
+};
+enum { N_COMMANDS = sizeof commands / sizeof *commands };
+
+static const char general_help[] =
+  "lagc compiles a Lagrangian written as text into C, and runs it.\n\n"
+  "  lagc check MODEL [SCENE]            parse, derive, prove the `expect` lines\n"
+  "  lagc derive MODEL [SCENE]           print the equations (--format text|latex|c)\n"
+  "  lagc run MODEL [SCENE] [name=value] simulate\n"
+  "  lagc build MODEL -o SIM             make a simulator\n"
+  "  lagc header MODEL -o FILE.h         a C header to embed\n"
+  "  lagc emit MODEL [SCENE] -o FILE.c   C for the runtime\n"
+  "  lagc help [COMMAND|units|functions] more on each\n\n"
+  "All take -D CONST=VALUE, and --dump=ast,model,eqns,prog to see the stages. MODEL is a .lag file; without a SCENE\n"
+  "the first one counts. Exit status: 0 ok, 1 bad model, 2 usage or files, 3 the run failed.\n";
+
+static const char units_help[] =
+  "SI base units m kg s A K mol cd; Hz N Pa J W C V F ohm S Wb T H lm lx Bq Gy Sv kat, with prefixes\n"
+  "(km, mm, us as µs, MHz); rad sr deg rev; min h d (day) yr; au eV u bar L t.\n"
+  "In brackets after white space or a number: 90 [deg], 9.81 [m/s^2], 1 [kg*m^2], 3 [m^(1/2)].\n";
+
+static const char functions_help[] =
+  "sin cos tan asin acos atan atan2(y, x) sinh cosh tanh exp log sqrt cbrt hypot pow min max abs sign\n"
+  "if(condition, a, b), comparisons, and or not; d(expr, name) is a partial derivative; a prime is the\n"
+  "total time derivative: x', (x*y)', px'.\n";
+
+const char *options_help(const char *topic) {
+  if (!topic) return general_help;
+  if (strcmp(topic, "units") == 0) return units_help;
+  if (strcmp(topic, "functions") == 0) return functions_help;
+  for (int i = 0; i < N_COMMANDS; i++)
+    if (strcmp(commands[i].name, topic) == 0) return commands[i].help;
+  return NULL;
+}
+
+static const char *unknown_command(Arena *a, const char *word) {
+  Name names[N_COMMANDS];
+  for (int i = 0; i < N_COMMANDS; i++) names[i] = commands[i].name;
+  static const char *const later[] = {"cost", "effects", "noether", "modes", "plot", "lyapunov", "methods"};
+  for (size_t i = 0; i < sizeof later / sizeof *later; i++)
+    if (strcmp(word, later[i]) == 0) return arena_printf(a, "not yet: `lagc %s`", word);
+  size_t n = strlen(word);
+  if (n > 4 && strcmp(word + n - 4, ".lag") == 0) return arena_printf(a, "say what to do with %s: `lagc run %s`, `lagc derive %s`, `lagc check %s`", word, word, word, word);
+  Name near = suggest(word, names, N_COMMANDS);
+  if (near) return arena_printf(a, "unknown command `%s`: did you mean `%s`?", word, near);
+  return arena_printf(a, "unknown command `%s`; `lagc help` lists them", word);
+}
+
+/* The value of an option that takes one: "--key=value", or the next word. */
+static int take_value(const char *arg, const char *key, int argc, char **argv, int *i, const char **value) {
+  size_t n = strlen(key);
+  if (strncmp(arg, key, n) != 0) return 0;
+  if (arg[n] == '=') {
+    *value = arg + n + 1;
+    return 1;
+  }
+  if (arg[n] != '\0') return 0;
+  *value = *i + 1 < argc ? argv[++*i] : NULL;
+  return 1;
+}
+
+static int add_define(Arena *a, Options *o, const char *text, const char **error) {
+  const char *eq = text ? strchr(text, '=') : NULL;
+  if (!eq || eq == text || !eq[1]) {
+    *error = "-D takes CONST=VALUE, for example -D N=50";
+    return 0;
+  }
+  if (strspn(eq + 1, "0123456789.eE+-") != strlen(eq + 1)) {
+    *error = arena_printf(a, "-D %s: `%s` is not a number", text, eq + 1);
+    return 0;
+  }
+  Define d = {arena_strndup(a, text, (size_t)(eq - text)), eq + 1};
+  vec_push(a, &o->defines, d);
+  return 1;
+}
+
+/* One option of lagc itself; -1 when it is none. */
+static int own_option(Arena *a, int argc, char **argv, int *i, Options *o, const char **error) {
+  const char *arg = argv[*i], *value = NULL;
+  if (strncmp(arg, "-D", 2) == 0) {
+    value = arg[2] ? arg + 2 : *i + 1 < argc ? argv[++*i] : NULL;
+    return add_define(a, o, value, error);
+  }
+  if (take_value(arg, "--dump", argc, argv, i, &o->dump)) return o->dump != NULL;
+  if (strcmp(arg, "--no-gsl") == 0) return o->no_gsl = 1;
+  if (o->command == CMD_RUN) return -1;
+  if (strcmp(arg, "-o") == 0 || strcmp(arg, "--output") == 0) {
+    o->output = *i + 1 < argc ? argv[++*i] : NULL;
+    if (!o->output) *error = "-o takes a file";
+    return o->output != NULL;
+  }
+  if (take_value(arg, "--format", argc, argv, i, &o->format)) {
+    if (o->format && (strcmp(o->format, "text") == 0 || strcmp(o->format, "latex") == 0 || strcmp(o->format, "c") == 0)) return 1;
+    *error = "--format takes text, latex or c";
+    return 0;
+  }
+  if (strcmp(arg, "--ops") == 0) return o->ops = 1;
+  if (strcmp(arg, "--allow-numeric") == 0) return o->allow_numeric = 1;
+  return -1;
+}
+
+static int read_arguments(Arena *a, int argc, char **argv, Options *o, const char **error) {
+  for (int i = 2; i < argc; i++) {
+    const char *arg = argv[i];
+    if (strcmp(arg, "--help") == 0 || strcmp(arg, "-h") == 0) {
+      o->topic = argv[1];
+      o->command = CMD_HELP;
+      return 1;
+    }
+    int own = own_option(a, argc, argv, &i, o, error);
+    if (own == 1) continue;
+    if (own == 0) {
+      if (!*error) *error = arena_printf(a, "%s needs a value", arg);
+      return 0;
+    }
+    if (!o->file && arg[0] != '-') o->file = arg;
+    else if (o->command == CMD_RUN) vec_push(a, &o->rest, arg);
+    else if (arg[0] == '-' && arg[1]) {
+      *error = arena_printf(a, "`lagc %s` has no option `%s`; `lagc help %s` lists them", argv[1], arg, argv[1]);
+      return 0;
+    } else if (!o->scene) o->scene = arg;
+    else {
+      *error = arena_printf(a, "one word too many: `%s`; usage: %s", arg, commands[o->command - CMD_CHECK].usage);
+      return 0;
+    }
+  }
+  if (!o->file) {
+    *error = arena_printf(a, "a model is missing; usage: %s", commands[o->command - CMD_CHECK].usage);
+    return 0;
+  }
+  return 1;
+}
+
+int options_read(Arena *a, int argc, char **argv, Options *o, const char **error) {
+  *o = (Options){0};
+  *error = NULL;
+  if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+    o->command = CMD_HELP;
+    o->topic = argc > 2 ? argv[2] : NULL;
+    if (o->topic && !options_help(o->topic)) {
+      *error = arena_printf(a, "no help on `%s`; `lagc help` lists the commands", o->topic);
+      return 0;
+    }
+    return 1;
+  }
+  if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "version") == 0) {
+    o->command = CMD_VERSION;
+    return 1;
+  }
+  for (int i = 0; i < N_COMMANDS; i++)
+    if (strcmp(argv[1], commands[i].name) == 0) o->command = commands[i].command;
+  if (!o->command) {
+    *error = unknown_command(a, argv[1]);
+    return 0;
+  }
+  return read_arguments(a, argc, argv, o, error);
+}

@@ -1,0 +1,29 @@
+/* The command line of lagc. */
+#ifndef LAGC_OPTIONS_H
+#define LAGC_OPTIONS_H
+
+#include "base/vec.h"
+#include "model/model.h"
+
+typedef enum { CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_EMIT, CMD_HEADER, CMD_BUILD, CMD_RUN, CMD_HELP, CMD_VERSION } Command;
+
+typedef struct {
+  Command command;
+  const char *file, *scene;
+  const char *output;      /* -o */
+  const char *format;      /* derive --format */
+  const char *dump;        /* --dump=ast,model,eqns,prog */
+  const char *topic;       /* help TOPIC */
+  int allow_numeric;       /* check --allow-numeric */
+  int no_gsl, ops;
+  VEC(Define) defines;
+  VEC(const char *) rest;  /* run: what the simulator gets */
+} Options;
+
+/* Reads argv. 0, with *error saying what is wrong and what to write, on a mistake. */
+int options_read(Arena *a, int argc, char **argv, Options *o, const char **error);
+
+/* The text of `lagc help`, or of help on one command or topic; NULL when there is no such topic. */
+const char *options_help(const char *topic);
+
+#endif

@@ -1,0 +1,170 @@
+#include "cli/toolchain.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/vec.h"
+#include "cli/files.h"
+
+/* --- finding the runtime --- */
+
+/* The folder of the running executable. */
+static const char *own_folder(Arena *a, const char *argv0) {
+  char path[PATH_MAX];
+  ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
+  if (n > 0) path[n] = '\0';
+  else if (!realpath(argv0, path)) return ".";
+  char *slash = strrchr(path, '/');
+  if (slash) *slash = '\0';
+  return arena_strdup(a, path);
+}
+
+static int try_place(Arena *a, const char *lib, const char *include, Toolchain *t) {
+  if (!file_exists(arena_printf(a, "%s/liblag.a", lib)) || !file_exists(arena_printf(a, "%s/lag.h", include))) return 0;
+  t->lib = lib;
+  t->include = include;
+  return 1;
+}
+
+int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error) {
+  const char *cc = getenv("CC"), *home = getenv("LAG_HOME"), *own = own_folder(a, argv0);
+  *t = (Toolchain){.cc = cc && cc[0] ? cc : "cc"};
+  int found = home && try_place(a, arena_printf(a, "%s/lib", home), arena_printf(a, "%s/include", home), t);
+  found = found || try_place(a, own, arena_printf(a, "%s/../runtime/include", own), t);
+  found = found || try_place(a, arena_printf(a, "%s/../lib", own), arena_printf(a, "%s/../include", own), t);
+  if (!found) {
+    *error = arena_printf(a, "the runtime (liblag.a and lag.h) is not found beside %s; run `make`, or set LAG_HOME", own);
+    return 0;
+  }
+  t->gsl = want_gsl && file_exists(arena_printf(a, "%s/liblag_gsl.a", t->lib));
+  return 1;
+}
+
+/* --- running the compiler --- */
+
+static char *read_fd(Arena *a, int fd) {
+  StrBuf b = strbuf(a);
+  char buffer[4096];
+  for (ssize_t n; (n = read(fd, buffer, sizeof buffer)) != 0;) {
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) break;
+    sb_putn(&b, buffer, (size_t)n);
+  }
+  return arena_strdup(a, sb_text(&b));
+}
+
+/* Runs a program; its output and messages go to *said. Returns its exit status, or -1. */
+static int run(Arena *a, char *const *argv, char **said) {
+  int pipe_fd[2];
+  if (pipe(pipe_fd) != 0) return -1;
+  pid_t pid = fork();
+  if (pid == 0) {
+    dup2(pipe_fd[1], 1);
+    dup2(pipe_fd[1], 2);
+    close(pipe_fd[0]);
+    close(pipe_fd[1]);
+    execvp(argv[0], argv);
+    _exit(127);
+  }
+  close(pipe_fd[1]);
+  *said = pid > 0 ? read_fd(a, pipe_fd[0]) : arena_strdup(a, "");
+  close(pipe_fd[0]);
+  int status = 0;
+  if (pid < 0 || waitpid(pid, &status, 0) < 0) return -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static void remove_folder(Arena *a, const char *dir, const SourceText *texts, size_t n) {
+  for (size_t i = 0; i < n; i++) remove(arena_printf(a, "%s/%s", dir, texts[i].name));
+  remove(arena_printf(a, "%s/simulator", dir));
+  rmdir(dir);
+}
+
+static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
+  VEC(char *) argv = {0};
+  const char *fixed[] = {"-O2", "-std=c11", "-ffp-contract=off", "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
+  char *words = arena_strdup(a, t->cc); /* CC may hold options, as make has it */
+  for (char *w = strtok(words, " "); w; w = strtok(NULL, " ")) vec_push(a, &argv, w);
+  for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) vec_push(a, &argv, arena_strdup(a, fixed[i]));
+  for (size_t i = 0; i < n; i++) vec_push(a, &argv, arena_printf(a, "%s/%s", dir, texts[i].name));
+  vec_push(a, &argv, arena_printf(a, "-L%s", t->lib));
+  if (t->gsl) {
+    vec_push(a, &argv, arena_strdup(a, "-llag_gsl"));
+    vec_push(a, &argv, arena_strdup(a, "-llag"));
+    vec_push(a, &argv, arena_strdup(a, "-lgsl"));
+    vec_push(a, &argv, arena_strdup(a, "-lgslcblas"));
+  } else {
+    vec_push(a, &argv, arena_strdup(a, "-llag"));
+  }
+  vec_push(a, &argv, arena_strdup(a, "-lm"));
+  vec_push(a, &argv, NULL);
+  char *said = NULL;
+  int status = run(a, argv.at, &said);
+  if (status == 0) return 1;
+  if (status == 127) *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
+  else *error = arena_printf(a, "the C compiler `%s` failed:\n%s", t->cc, said ? said : "");
+  return 0;
+}
+
+int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output, const char **error) {
+  char *dir = arena_printf(a, "%s.XXXXXX", output); /* beside the output: the last step is a rename */
+  if (!mkdtemp(dir)) {
+    *error = arena_printf(a, "cannot write beside %s: %s", output, strerror(errno));
+    return 0;
+  }
+  int ok = 1;
+  for (size_t i = 0; i < n && ok; i++) {
+    const char *why;
+    ok = file_write(a, arena_printf(a, "%s/%s", dir, texts[i].name), texts[i].text, strlen(texts[i].text), &why);
+    if (!ok) *error = arena_printf(a, "cannot write in %s: %s", dir, why);
+  }
+  ok = ok && compile(a, t, dir, texts, n, error);
+  if (ok && rename(arena_printf(a, "%s/simulator", dir), output) != 0) {
+    *error = arena_printf(a, "cannot write %s: %s", output, strerror(errno));
+    ok = 0;
+  }
+  remove_folder(a, dir, texts, n);
+  return ok;
+}
+
+/* --- the cache --- */
+
+static uint64_t hash_more(uint64_t h, const char *s, size_t n) {
+  for (size_t i = 0; i < n; i++) h = (h ^ (unsigned char)s[i]) * 1099511628211u;
+  return h;
+}
+
+/* A library is known by its size and time. */
+static uint64_t hash_library(Arena *a, uint64_t h, const char *path) {
+  struct stat st;
+  if (stat(path, &st) != 0) return h;
+  const char *text = arena_printf(a, "%s %lld %lld.%09ld", path, (long long)st.st_size, (long long)st.st_mtim.tv_sec, st.st_mtim.tv_nsec);
+  return hash_more(h, text, strlen(text));
+}
+
+static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceText *texts, size_t n) {
+  for (size_t i = 0; i < n; i++) h = hash_more(h, texts[i].text, strlen(texts[i].text) + 1);
+  h = hash_more(h, t->cc, strlen(t->cc) + 1);
+  h = hash_library(a, h, arena_printf(a, "%s/liblag.a", t->lib));
+  return t->gsl ? hash_library(a, h, arena_printf(a, "%s/liblag_gsl.a", t->lib)) : h;
+}
+
+const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
+  const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME"), *tmp = getenv("TMPDIR");
+  const char *dir = cache && cache[0] == '/' ? arena_printf(a, "%s/lagc", cache)
+                  : home && home[0] == '/' ? arena_printf(a, "%s/.cache/lagc", home) : NULL;
+  if (!dir || !dir_make(a, dir) || access(dir, W_OK) != 0) {
+    dir = arena_printf(a, "%s/lagc-%ld", tmp && tmp[0] ? tmp : "/tmp", (long)getuid());
+    dir_make(a, dir);
+  }
+  uint64_t h1 = hash_all(a, 1469598103934665603u, t, texts, n), h2 = hash_all(a, 0x9e3779b97f4a7c15u, t, texts, n);
+  return arena_printf(a, "%s/%016llx%016llx", dir, (unsigned long long)h1, (unsigned long long)h2);
+}

@@ -1,0 +1,30 @@
+/* Emitted C -> a simulator, with the system's C compiler. */
+#ifndef LAGC_TOOLCHAIN_H
+#define LAGC_TOOLCHAIN_H
+
+#include "base/strbuf.h"
+
+typedef struct {
+  const char *cc;        /* $CC or cc */
+  const char *include;   /* folder of lag.h */
+  const char *lib;       /* folder of liblag.a */
+  int gsl;               /* liblag_gsl.a is there and wanted */
+} Toolchain;
+
+typedef struct {
+  const char *name; /* file name without folder */
+  const char *text;
+} SourceText;
+
+/* Finds the runtime: $LAG_HOME, or beside the running executable (a build tree or an installation).
+ * argv0 is what lagc was called as. 0, with *error, when it is not found. */
+int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error);
+
+/* Compiles and links the texts into the executable `output`, which appears only when all went
+ * well. 0, with *error (it may contain the compiler's own messages), on failure. */
+int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output, const char **error);
+
+/* The path of the cached simulator for these texts: named by their content and the runtime's. */
+const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n);
+
+#endif

@@ -1,0 +1,82 @@
+#include "emit/cnames.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Words that mean something else in C, C++ or in emitted text. */
+static const char *const reserved[] = {
+  "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
+  "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof",
+  "static", "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while", "asm", "bool", "catch",
+  "class", "delete", "explicit", "export", "false", "friend", "mutable", "namespace", "new", "operator", "private",
+  "protected", "public", "template", "this", "throw", "true", "try", "typeid", "typename", "using", "virtual", "and",
+  "or", "not", "xor", "compl", "bitand", "bitor", "alignas", "alignof", "nullptr", "noexcept", "main", "errno",
+  "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "cbrt", "fabs", "sqrt",
+  "pow", "hypot", "NULL", "INFINITY", "NAN", "EOF", "OVERFLOW", "UNDERFLOW", "DOMAIN", "I", "near", "far",
+};
+
+/* U+0391..U+03C9: the Greek letters' names, by position from alpha. */
+static const char *const greek[] = {
+  "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu", "xi",
+  "omicron", "pi", "rho", "sigma_final", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega",
+};
+
+static unsigned decode(const unsigned char **s) {
+  unsigned c = *(*s)++;
+  int more = c >= 0xF0 ? 3 : c >= 0xE0 ? 2 : c >= 0xC0 ? 1 : 0;
+  if (more) c &= 0x3Fu >> more;
+  while (more-- && (**s & 0xC0) == 0x80) c = c << 6 | (*(*s)++ & 0x3Fu);
+  return c;
+}
+
+static void put_letter(StrBuf *b, unsigned c) {
+  if (c >= 0x3B1 && c <= 0x3C9) sb_puts(b, greek[c - 0x3B1]);
+  else if (c >= 0x391 && c <= 0x3A9) {
+    const char *name = greek[c - 0x391];
+    sb_putc(b, (char)(name[0] - 'a' + 'A'));
+    sb_puts(b, name + 1);
+  } else sb_printf(b, "u%04x", c);
+}
+
+const char *cname(Arena *a, const char *name) {
+  StrBuf b = strbuf(a);
+  static const char *const dots[] = {"", "_dot", "_ddot", "_dddot"};
+  for (const unsigned char *s = (const unsigned char *)name; *s;) {
+    if (*s == '\'') {
+      int n = 0;
+      while (*s == '\'') s++, n++;
+      sb_puts(&b, dots[n < 3 ? n : 3]);
+    } else if (*s >= 0x80) {
+      unsigned c = decode(&s);
+      put_letter(&b, c);
+    } else {
+      char c = (char)*s++;
+      int plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+      sb_putc(&b, plain ? c : '_');
+    }
+  }
+  const char *text = sb_text(&b);
+  if (text[0] >= '0' && text[0] <= '9') text = arena_printf(a, "n%s", text);
+  if (text[0] == '_') text = arena_printf(a, "x%s", text); /* a leading underscore is the C library's */
+  for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++)
+    if (strcmp(text, reserved[i]) == 0) return arena_printf(a, "%s_", text);
+  return text;
+}
+
+CNames cnames_new(Arena *a) { return (CNames){.arena = a}; }
+void cnames_reserve(CNames *c, const char *name) { vec_push(c->arena, &c->taken, name); }
+
+static int is_taken(const CNames *c, const char *name) {
+  for (uint32_t i = 0; i < c->taken.n; i++)
+    if (strcmp(c->taken.at[i], name) == 0) return 1;
+  return 0;
+}
+
+const char *cnames_take(CNames *c, const char *name) {
+  const char *stem = cname(c->arena, name), *full = stem;
+  size_t n = strlen(stem);
+  const char *join = n && stem[n - 1] == '_' ? "" : "_";
+  for (int k = 2; is_taken(c, full); k++) full = arena_printf(c->arena, "%s%s%d", stem, join, k);
+  cnames_reserve(c, full);
+  return full;
+}

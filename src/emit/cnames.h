@@ -1,0 +1,26 @@
+/* C identifiers for the user's names: th1' is th1_dot, θ1 is theta1, drag.c is drag_c. */
+#ifndef LAGC_CNAMES_H
+#define LAGC_CNAMES_H
+
+#include "base/intern.h"
+#include "base/strbuf.h"
+#include "base/vec.h"
+
+/* The identifiers taken in one C scope. */
+typedef struct {
+  Arena *arena;
+  VEC(const char *) taken;
+} CNames;
+
+CNames cnames_new(Arena *a);
+
+/* Takes a name as it is (the caller's own: arrays, macros). */
+void cnames_reserve(CNames *c, const char *name);
+
+/* An identifier for a user's name that is not taken, no keyword and no function of <math.h>. */
+const char *cnames_take(CNames *c, const char *name);
+
+/* The same spelling without looking at what is taken. */
+const char *cname(Arena *a, const char *name);
+
+#endif

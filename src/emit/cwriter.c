@@ -1,0 +1,322 @@
+#include "emit/cwriter.h"
+
+#include <string.h>
+
+enum { INLINE_MAX = 64, LINE_MAX_COLUMNS = 100 };
+enum { C_SELECT = 1, C_OR, C_AND, C_CMP, C_ADD, C_MUL, C_UNARY, C_ATOM };
+
+typedef struct {
+  const char *text;
+  int prec;
+} Piece;
+
+typedef struct {
+  const Prog *p;
+  const CStyle *style;
+  Arena *a;
+  CNames names;
+  uint32_t *uses;
+  Piece *piece; /* by slot: how its value is spelled where it is used */
+  StrBuf *out;
+  uint32_t temps;
+  const char *title; /* pending: printed before the next statement */
+} Writer;
+
+/* --- constants --- */
+
+/* num/den as a decimal when it ends; NULL otherwise. */
+static const char *finite_decimal(Arena *a, Num n) {
+  int64_t den = n.den;
+  int digits = 0;
+  while (den % 10 == 0) den /= 10, digits++;
+  int twos = 0, fives = 0;
+  while (den % 2 == 0) den /= 2, twos++;
+  while (den % 5 == 0) den /= 5, fives++;
+  if (den != 1) return NULL;
+  digits += twos > fives ? twos : fives;
+  StrBuf b = strbuf(a);
+  uint64_t rest = (uint64_t)(n.num < 0 ? -n.num : n.num), d = (uint64_t)n.den;
+  sb_printf(&b, "%s%llu.", n.num < 0 ? "-" : "", (unsigned long long)(rest / d));
+  rest %= d;
+  for (int i = 0; i < digits || i == 0; i++) {
+    __extension__ unsigned __int128 wide = (unsigned __int128)rest * 10;
+    sb_putc(&b, (char)('0' + (int)(wide / d)));
+    rest = (uint64_t)(wide % d);
+  }
+  return sb_text(&b);
+}
+
+static const char *float_text(Arena *a, double x) {
+  char text[40];
+  num_format_double(text, x);
+  if (!strpbrk(text, ".en")) strcat(text, ".0");
+  return arena_strdup(a, text);
+}
+
+const char *c_number(Arena *a, const char *prefix, Num n) {
+  const char *minus = num_sign(n) < 0 ? "-" : "";
+  n = num_abs(n);
+  if (!num_is_exact(n)) return arena_printf(a, "%s%s_C(%s)", minus, prefix, float_text(a, n.approx));
+  const char *decimal = finite_decimal(a, n);
+  if (decimal) return arena_printf(a, "%s%s_C(%s)", minus, prefix, decimal);
+  return arena_printf(a, "%s(%s_C(%lld.0)/%s_C(%lld.0))", minus, prefix, (long long)n.num, prefix, (long long)n.den);
+}
+
+const char *c_string(Arena *a, const char *s) {
+  StrBuf b = strbuf(a);
+  sb_putc(&b, '"');
+  for (; *s; s++) {
+    if (*s == '"' || *s == '\\') sb_printf(&b, "\\%c", *s);
+    else if (*s == '\n') sb_puts(&b, "\\n");
+    else if (*s == '?' && s[1] == '?') sb_puts(&b, "\\?"); /* no trigraphs */
+    else sb_putc(&b, *s);
+  }
+  sb_putc(&b, '"');
+  return sb_text(&b);
+}
+
+/* --- expressions --- */
+
+static Piece operand(Writer *w, Slot s) {
+  if (!s) return (Piece){arena_printf(w->a, "%s_C(0.0)", w->style->prefix), C_ATOM};
+  return w->piece[s];
+}
+
+static const char *wrapped(Writer *w, Slot s, int prec) {
+  Piece x = operand(w, s);
+  return x.prec < prec ? arena_printf(w->a, "(%s)", x.text) : x.text;
+}
+
+/* a op b; the right operand of - and / binds tighter. */
+static Piece infix(Writer *w, const Ins *i, const char *op, int prec, int strict) {
+  const char *a = wrapped(w, i->a, prec), *b = wrapped(w, i->b, prec + strict);
+  return (Piece){arena_printf(w->a, "%s%s%s", a, op, b), prec};
+}
+
+static Piece macro(Writer *w, const char *name, Slot a, Slot b, Slot c, int n) {
+  const char *x = operand(w, a).text, *y = operand(w, b).text, *z = operand(w, c).text, *m = w->style->prefix;
+  const char *t = n == 1 ? arena_printf(w->a, "%s_%s(%s)", m, name, x) : n == 2 ? arena_printf(w->a, "%s_%s(%s, %s)", m, name, x, y)
+                         : arena_printf(w->a, "%s_%s(%s, %s, %s)", m, name, x, y, z);
+  return (Piece){t, C_ATOM};
+}
+
+static Piece call(Writer *w, const char *fn, Slot a, Slot b) {
+  const char *x = operand(w, a).text, *y = b ? operand(w, b).text : NULL;
+  return (Piece){arena_printf(w->a, y ? "%s_FN(%s)(%s, %s)" : "%s_FN(%s)(%s)", w->style->prefix, fn, x, y), C_ATOM};
+}
+
+static Piece load(Writer *w, const Ins *i) {
+  const CStyle *st = w->style;
+  const char *text = i->array == ARR_T ? st->in[ARR_T]
+                   : i->array == ARR_P && st->params ? arena_printf(w->a, "%s->%s", st->in[ARR_P], st->params[i->index])
+                   : arena_printf(w->a, "%s[%u]", st->in[i->array], i->index);
+  return (Piece){text, C_ATOM};
+}
+
+/* sign(x) and the choice of the smaller or larger, through SELECT: vectors have no ternary. */
+static Piece choose(Writer *w, const Ins *i) {
+  const char *m = w->style->prefix, *a = wrapped(w, i->a, C_CMP + 1);
+  if (i->op == IR_SIGN)
+    return (Piece){arena_printf(w->a, "%s_SELECT(%s > %s_C(0.0), %s_C(1.0), %s_SELECT(%s < %s_C(0.0), -%s_C(1.0), %s_C(0.0)))", m, a,
+                                m, m, m, a, m, m, m), C_ATOM};
+  const char *b = wrapped(w, i->b, C_CMP + 1);
+  return (Piece){arena_printf(w->a, "%s_SELECT(%s %s %s, %s, %s)", m, a, i->op == IR_MIN ? "<" : ">", b, a, b), C_ATOM};
+}
+
+static Piece solved(Writer *w, const Ins *i) {
+  uint32_t n = w->p->solves.at[w->p->ins.at[i->a].index].n;
+  return (Piece){arena_printf(w->a, "w[%u]", n * n + i->index), C_ATOM};
+}
+
+static Piece spell(Writer *w, const Ins *i) {
+  const char *m = w->style->prefix;
+  switch (i->op) {
+    case IR_CONST: return (Piece){c_number(w->a, m, i->number), num_sign(i->number) < 0 ? C_UNARY : C_ATOM};
+    case IR_PI: return (Piece){arena_printf(w->a, "%s_C(3.14159265358979323846264338327950288)", m), C_ATOM};
+    case IR_LOAD: return load(w, i);
+    case IR_ADD: return infix(w, i, " + ", C_ADD, 0);
+    case IR_SUB: return infix(w, i, " - ", C_ADD, 1);
+    case IR_MUL: return infix(w, i, "*", C_MUL, 0);
+    case IR_DIV: return infix(w, i, "/", C_MUL, 1);
+    case IR_NEG: return (Piece){arena_printf(w->a, "-%s", wrapped(w, i->a, C_ATOM)), C_UNARY};
+    case IR_SQRT: return call(w, "sqrt", i->a, 0);
+    case IR_FN1: return call(w, i->text, i->a, 0);
+    case IR_FN2: {
+      const char *x = operand(w, i->a).text, *y = operand(w, i->b).text;
+      return (Piece){arena_printf(w->a, "%s_FN(%s)(%s, %s)", m, i->text, x, y), C_ATOM};
+    }
+    case IR_MIN: case IR_MAX: case IR_SIGN: return choose(w, i);
+    case IR_LT: return infix(w, i, " < ", C_CMP, 1);
+    case IR_LE: return infix(w, i, " <= ", C_CMP, 1);
+    case IR_EQ: return infix(w, i, " == ", C_CMP, 1);
+    case IR_NOT: return macro(w, "NOT", i->a, 0, 0, 1);
+    case IR_AND: return macro(w, "AND", i->a, i->b, 0, 2);
+    case IR_OR: return macro(w, "OR", i->a, i->b, 0, 2);
+    case IR_SELECT: return macro(w, "SELECT", i->a, i->b, i->c, 3);
+    case IR_SOLVED: return solved(w, i);
+    case IR_PIVOT: case IR_SOLVE: case IR_TITLE: break;
+  }
+  return (Piece){"", C_ATOM};
+}
+
+/* --- statements --- */
+
+static void flush_title(Writer *w) {
+  if (!w->title) return;
+  sb_printf(w->out, "\n  /* %s */\n", w->title);
+  w->title = NULL;
+}
+
+static int is_identifier(const char *s) {
+  for (; *s; s++)
+    if (!((*s >= 'a' && *s <= 'z') || (*s >= 'A' && *s <= 'Z') || (*s >= '0' && *s <= '9') || *s == '_')) return 0;
+  return 1;
+}
+
+/* The user's name, or sin_th1, or w1, w2, ... */
+static const char *name_for(Writer *w, const Ins *i) {
+  if (i->name) return cnames_take(&w->names, i->name);
+  if (i->op == IR_FN1 && is_identifier(operand(w, i->a).text))
+    return cnames_take(&w->names, arena_printf(w->a, "%s_%s", i->text, operand(w, i->a).text));
+  return cnames_take(&w->names, arena_printf(w->a, "w%u", ++w->temps));
+}
+
+static void declare(Writer *w, Slot s, Piece x) {
+  const Ins *i = &w->p->ins.at[s];
+  const char *name = name_for(w, i);
+  flush_title(w);
+  sb_printf(w->out, "  const %s_REAL %s = %s;", w->style->prefix, name, x.text);
+  if (i->name && strcmp(i->name, name) != 0) sb_printf(w->out, " /* %s */", i->name);
+  sb_putc(w->out, '\n');
+  w->piece[s] = (Piece){name, C_ATOM};
+}
+
+static void write_pivot(Writer *w, const Ins *i) {
+  const char *d = wrapped(w, i->a, C_CMP + 1), *m = w->style->prefix;
+  flush_title(w);
+  sb_printf(w->out, "  if (%s_ANY(%s_NOT(%s %s %s_C(0.0)))) return %s_ESINGULAR;\n", m, m, d, i->index ? ">" : "!=", m, m);
+}
+
+static void write_solve(Writer *w, const Ins *i) {
+  const Solve *k = &w->p->solves.at[i->index];
+  uint32_t n = k->n;
+  flush_title(w);
+  for (uint32_t r = 0; r < n; r++)
+    for (uint32_t c = 0; c < n; c++) sb_printf(w->out, "  w[%u] = %s;\n", r * n + c, operand(w, k->matrix[r * n + c]).text);
+  for (uint32_t r = 0; r < n; r++) sb_printf(w->out, "  w[%u] = %s;\n", n * n + r, operand(w, k->rhs[r]).text);
+  sb_printf(w->out, "  if (%s(%u, w, w + %u)) return %s_ESINGULAR;\n", w->style->solve, n, n * n, w->style->prefix);
+}
+
+/* Names every load at the top, an array a line. */
+static void write_loads(Writer *w) {
+  for (int array = 0; array < ARR_COUNT; array++) {
+    size_t column = 0;
+    for (Slot s = 1; s < w->p->ins.n; s++) {
+      const Ins *i = &w->p->ins.at[s];
+      if (i->op != IR_LOAD || (int)i->array != array || !w->uses[s]) continue;
+      if (w->style->loads_inline || array == ARR_T) {
+        w->piece[s] = load(w, i);
+        continue;
+      }
+      const char *name = cnames_take(&w->names, i->name);
+      const char *text = arena_printf(w->a, "%s = %s", name, load(w, i).text);
+      if (column && column + strlen(text) + 2 < LINE_MAX_COLUMNS) {
+        sb_printf(w->out, ", %s", text);
+        column += strlen(text) + 2;
+      } else {
+        if (column) sb_puts(w->out, ";\n");
+        const char *head = arena_printf(w->a, "  const %s_REAL %s", w->style->prefix, text);
+        sb_puts(w->out, head);
+        column = strlen(head);
+      }
+      w->piece[s] = (Piece){name, C_ATOM};
+    }
+    if (column) sb_puts(w->out, ";\n");
+  }
+}
+
+static void count_uses(Writer *w) {
+  const Prog *p = w->p;
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    w->uses[i->a]++;
+    w->uses[i->b]++;
+    w->uses[i->c]++;
+    if (i->op == IR_PIVOT || i->op == IR_SIGN || i->op == IR_MIN || i->op == IR_MAX) { /* spelled twice */
+      w->uses[i->a]++;
+      w->uses[i->b]++;
+    }
+    if (i->op != IR_SOLVE) continue;
+    const Solve *k = &p->solves.at[i->index];
+    for (uint32_t j = 0; j < k->n * k->n; j++) w->uses[k->matrix[j]]++;
+    for (uint32_t j = 0; j < k->n; j++) w->uses[k->rhs[j]]++;
+  }
+  for (uint32_t k = 0; k < p->stores.n; k++) w->uses[p->stores.at[k].slot]++;
+}
+
+static void write_instruction(Writer *w, Slot s) {
+  const Ins *i = &w->p->ins.at[s];
+  if (i->op == IR_TITLE) {
+    w->title = i->text;
+    return;
+  }
+  if (i->op == IR_PIVOT) {
+    write_pivot(w, i);
+    return;
+  }
+  if (i->op == IR_SOLVE) {
+    write_solve(w, i);
+    return;
+  }
+  if (i->op == IR_LOAD) return;
+  Piece x = spell(w, i);
+  int leaf = i->op == IR_CONST || i->op == IR_PI || ir_is_condition(i->op);
+  int part = w->uses[s] <= 1 && !i->name && strlen(x.text) <= INLINE_MAX && i->op != IR_SOLVED;
+  if (leaf || part) w->piece[s] = x;
+  else declare(w, s, x);
+}
+
+static void write_stores(Writer *w) {
+  for (uint32_t k = 0; k < w->p->stores.n; k++) {
+    const Store *st = &w->p->stores.at[k];
+    if (!k) sb_putc(w->out, '\n');
+    const char *text = operand(w, st->slot).text;
+    sb_printf(w->out, "  %s[%u] = %s;", w->style->out[st->array], st->index, text);
+    if (strcmp(st->comment, text) != 0) sb_printf(w->out, " /* %s */", st->comment);
+    sb_putc(w->out, '\n');
+  }
+}
+
+void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
+  Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
+  w.uses = ARENA_ARRAY(a, uint32_t, p->ins.n);
+  w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
+  for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
+  count_uses(&w);
+  write_loads(&w);
+  for (Slot s = 1; s < p->ins.n; s++) write_instruction(&w, s);
+  write_stores(&w);
+}
+
+int prog_reads(const Prog *p, IrArray array) {
+  for (Slot s = 1; s < p->ins.n; s++)
+    if (p->ins.at[s].op == IR_LOAD && p->ins.at[s].array == array) return 1;
+  return 0;
+}
+
+static void put_count(StrBuf *b, uint32_t n, const char *one, const char *many) {
+  if (!n) return;
+  sb_printf(b, "%s%u %s", b->n ? ", " : "", n, n == 1 ? one : many);
+}
+
+const char *ops_text(const Prog *p, Arena *a) {
+  OpCount c = prog_count(p);
+  StrBuf b = strbuf(a);
+  put_count(&b, c.add, "addition", "additions");
+  put_count(&b, c.mul, "multiplication", "multiplications");
+  put_count(&b, c.div, "division", "divisions");
+  put_count(&b, c.sqrt, "square root", "square roots");
+  put_count(&b, c.fn, "function call", "function calls");
+  put_count(&b, c.other, "comparison or choice", "comparisons and choices");
+  return arena_printf(a, "%u operations%s%s", ops_total(c), b.n ? ": " : "", sb_text(&b));
+}

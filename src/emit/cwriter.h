@@ -1,0 +1,37 @@
+/* Prog -> the body of a C function.
+ *
+ * Reads only the Prog. Values that are used once and have no name become part of the expression
+ * that uses them; everything else is a `const` with the user's name where there is one. */
+#ifndef LAGC_CWRITER_H
+#define LAGC_CWRITER_H
+
+#include "emit/cnames.h"
+#include "ir/prog.h"
+
+/* How a function spells things: `LAG` gives LAG_REAL, LAG_FN, LAG_C, LAG_SELECT, LAG_ESINGULAR. */
+typedef struct {
+  const char *prefix;               /* of the macros */
+  const char *const *in;            /* [ARR_COUNT] names of the arrays read: t is no array */
+  const char *const *params;        /* NULL: p[3]; else p->name of parameter i */
+  const char *const *out;           /* names of the arrays written */
+  const char *const *own;           /* names in the function's scope, NULL at the end */
+  const char *solve;                /* name of the solver function */
+  int loads_inline;                 /* spell loads at their use instead of naming them at the top */
+} CStyle;
+
+/* Appends the body, without braces, indented by two spaces. */
+void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out);
+
+/* "36 operations: 12 additions, 18 multiplications, 2 divisions, 4 calls of sin, cos, ..." */
+const char *ops_text(const Prog *p, Arena *a);
+
+/* Whether the program reads that array. */
+int prog_reads(const Prog *p, IrArray array);
+
+/* A C string literal, with quotes. */
+const char *c_string(Arena *a, const char *s);
+
+/* A number as a C constant of the style's scalar: exact decimals are exact in every precision. */
+const char *c_number(Arena *a, const char *prefix, Num n);
+
+#endif

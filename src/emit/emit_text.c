@@ -1,0 +1,137 @@
+#include "emit/emit_text.h"
+
+#include "emit/cwriter.h"
+
+typedef struct {
+  const Eqns *e;
+  ExprGraph *g;
+  PrintStyle style;
+  StrBuf *out;
+} Text;
+
+static int latex(const Text *t) { return t->style == PRINT_LATEX; }
+static void put(Text *t, const char *text, const char *in_latex) { sb_puts(t->out, latex(t) ? in_latex : text); }
+
+static void heading(Text *t, const char *title) {
+  if (latex(t)) sb_printf(t->out, "\n%% %s\n\\begin{align*}\n", title);
+  else sb_printf(t->out, "\n%s\n", title);
+}
+
+static void end_block(Text *t) { put(t, "", "\\end{align*}\n"); }
+
+/* "  left = right", with LaTeX's alignment. */
+static void equation(Text *t, Expr left, Expr right, int last) {
+  put(t, "  ", "  ");
+  expr_print(t->g, left, t->style, t->out);
+  put(t, " = ", " &= ");
+  expr_print(t->g, right, t->style, t->out);
+  put(t, "\n", last ? "\n" : " \\\\\n");
+}
+
+static void named_equation(Text *t, const char *text, const char *in_latex, Expr right, int last) {
+  put(t, "  ", "  ");
+  put(t, text, in_latex);
+  put(t, " = ", " &= ");
+  expr_print(t->g, right, t->style, t->out);
+  put(t, "\n", last ? "\n" : " \\\\\n");
+}
+
+static const char *latex_of(Text *t, Name name) {
+  StrBuf b = strbuf(t->e->m->arena);
+  name_print(name, PRINT_LATEX, &b);
+  return sb_text(&b);
+}
+
+/* The definitions that these expressions need, each before its use. */
+static void definitions(Text *t, const Expr *roots, uint32_t n) {
+  ExprList l = expr_topo(t->g, roots, n);
+  uint32_t total = 0, shown = 0;
+  for (uint32_t i = 0; i < l.n; i++) total += expr_op(t->g, l.at[i]) == EX_DEF;
+  if (!total) return;
+  heading(t, "where");
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_op(t->g, l.at[i]) == EX_DEF) equation(t, l.at[i], expr_arg(t->g, l.at[i], 0), ++shown == total);
+  end_block(t);
+}
+
+/* Row i of M q'' as one expression. */
+static Expr mass_row(Text *t, uint32_t i) {
+  const Eqns *e = t->e;
+  Expr *terms = ARENA_ARRAY(e->m->arena, Expr, e->n);
+  for (uint32_t j = 0; j < e->n; j++) {
+    Expr m = eqns_mass(e, i, j), a = expr_symbol(t->g, e->m->coords.at[j].a)->node;
+    terms[j] = expr_mul(t->g, m, a);
+  }
+  return expr_add_n(t->g, terms, e->n);
+}
+
+static void momenta(Text *t) {
+  const Eqns *e = t->e;
+  heading(t, "momenta");
+  for (uint32_t i = 0; i < e->n; i++) {
+    Name name = e->m->coords.at[i].name;
+    const char *text = arena_printf(e->m->arena, "p_%s", name), *tex = arena_printf(e->m->arena, "p_{%s}", latex_of(t, name));
+    Expr shown = e->momenta[i];
+    named_equation(t, text, tex, shown, i + 1 == e->n);
+  }
+  end_block(t);
+}
+
+static void motion(Text *t) {
+  const Eqns *e = t->e;
+  const Model *m = e->m;
+  heading(t, "equations of motion");
+  for (uint32_t i = 0; i < e->n; i++) {
+    Expr row = mass_row(t, i);
+    equation(t, row, e->f[i], i + 1 == e->n && !m->states.n);
+  }
+  for (uint32_t i = 0; i < m->states.n; i++)
+    equation(t, expr_symbol(t->g, m->states.at[i].rate)->node, e->flow[i], i + 1 == m->states.n);
+  end_block(t);
+}
+
+static void title(Text *t) {
+  const Model *m = t->e->m;
+  sb_printf(t->out, latex(t) ? "%% %s: %s\n%% scene %s" : "%s: %s\nscene %s", m->name, m->doc, m->scene.name);
+  for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(t->out, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
+  sb_putc(t->out, '\n');
+}
+
+static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
+
+static void facts(Text *t, const IrUnit *u) {
+  const Eqns *e = t->e;
+  const char *c = latex(t) ? "% " : "";
+  if (!latex(t)) sb_putc(t->out, '\n');
+  if (e->n)
+    sb_printf(t->out, "%s%u coordinate%s; mass matrix %s%s; energy is %s\n", c, e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
+              e->definite_mass ? ", positive definite" : "", e->conserves_energy ? "conserved" : "not conserved (force, dissipation, input or explicit time)");
+  sb_printf(t->out, "%saccelerations: %s\n", c, ops_text(u->accel, e->m->arena));
+}
+
+void emit_text(const Eqns *e, const IrUnit *u, PrintStyle style, StrBuf *out) {
+  Text t = {.e = e, .g = e->g, .style = style, .out = out};
+  const Model *m = e->m;
+  title(&t);
+  if (e->n) {
+    heading(&t, "Lagrangian");
+    named_equation(&t, "L", "L", m->lagrangian, 1);
+    end_block(&t);
+    momenta(&t);
+  }
+  motion(&t);
+  VEC(Expr) roots = {0};
+  if (e->n) vec_push(m->arena, &roots, m->lagrangian);
+  for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->momenta[i]);
+  for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->f[i]);
+  for (uint32_t i = 0; i < e->mass.n; i++) vec_push(m->arena, &roots, e->mass.at[i].e);
+  for (uint32_t i = 0; i < m->states.n; i++) vec_push(m->arena, &roots, e->flow[i]);
+  if (e->energy) {
+    vec_push(m->arena, &roots, e->energy);
+    heading(&t, "energy");
+    named_equation(&t, "E", "E", e->energy, 1);
+    end_block(&t);
+  }
+  definitions(&t, roots.at, roots.n);
+  facts(&t, u);
+}

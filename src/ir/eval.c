@@ -1,0 +1,103 @@
+/* Runs a Prog in extended precision: an independent reading of what emitted C computes. */
+#include <math.h>
+#include <string.h>
+
+#include "ir/prog.h"
+
+typedef long double Real;
+
+static const struct {
+  const char *name;
+  Real (*f)(Real);
+} functions[] = {
+  {"sin", sinl}, {"cos", cosl}, {"tan", tanl}, {"asin", asinl}, {"acos", acosl}, {"atan", atanl}, {"sinh", sinhl},
+  {"cosh", coshl}, {"tanh", tanhl}, {"exp", expl}, {"log", logl}, {"cbrt", cbrtl}, {"fabs", fabsl},
+};
+
+static Real call1(const char *name, Real x) {
+  for (size_t i = 0; i < sizeof functions / sizeof *functions; i++)
+    if (strcmp(functions[i].name, name) == 0) return functions[i].f(x);
+  return NAN;
+}
+
+static Real call2(const char *name, Real x, Real y) {
+  if (strcmp(name, "pow") == 0) return powl(x, y);
+  if (strcmp(name, "atan2") == 0) return atan2l(x, y);
+  if (strcmp(name, "hypot") == 0) return hypotl(x, y);
+  return NAN;
+}
+
+/* Gauss elimination with partial pivoting of a[n*n] x = b[n]; b becomes x. */
+static int solve(Real *a, Real *b, uint32_t n) {
+  for (uint32_t k = 0; k < n; k++) {
+    uint32_t p = k;
+    for (uint32_t i = k + 1; i < n; i++)
+      if (fabsl(a[i * n + k]) > fabsl(a[p * n + k])) p = i;
+    if (!(fabsl(a[p * n + k]) > 0)) return -1;
+    for (uint32_t j = 0; j < n; j++) {
+      Real t = a[k * n + j];
+      a[k * n + j] = a[p * n + j];
+      a[p * n + j] = t;
+    }
+    Real t = b[k];
+    b[k] = b[p];
+    b[p] = t;
+    for (uint32_t i = k + 1; i < n; i++) {
+      Real f = a[i * n + k] / a[k * n + k];
+      for (uint32_t j = k; j < n; j++) a[i * n + j] -= f * a[k * n + j];
+      b[i] -= f * b[k];
+    }
+  }
+  for (uint32_t k = n; k-- > 0;) {
+    for (uint32_t j = k + 1; j < n; j++) b[k] -= a[k * n + j] * b[j];
+    b[k] /= a[k * n + k];
+  }
+  return 0;
+}
+
+static const Real *solved(const Prog *p, const Solve *s, const Real *v, int *status) {
+  Real *a = ARENA_ARRAY(p->arena, Real, s->n * s->n), *b = ARENA_ARRAY(p->arena, Real, s->n);
+  for (uint32_t i = 0; i < s->n * s->n; i++) a[i] = v[s->matrix[i]];
+  for (uint32_t i = 0; i < s->n; i++) b[i] = v[s->rhs[i]];
+  *status = solve(a, b, s->n);
+  return b;
+}
+
+int prog_eval(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out) {
+  Real *v = ARENA_ARRAY(p->arena, Real, p->ins.n);
+  const Real **solution = ARENA_ARRAY(p->arena, const Real *, p->ins.n);
+  int status = 0;
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    Real x = v[i->a], y = v[i->b];
+    switch (i->op) {
+      case IR_CONST: v[s] = num_is_exact(i->number) ? (Real)i->number.num / (Real)i->number.den : i->number.approx; break;
+      case IR_PI: v[s] = 3.14159265358979323846264338327950288L; break;
+      case IR_LOAD: v[s] = in[i->array][i->index]; break;
+      case IR_ADD: v[s] = x + y; break;
+      case IR_SUB: v[s] = x - y; break;
+      case IR_MUL: v[s] = x * y; break;
+      case IR_DIV: v[s] = x / y; break;
+      case IR_NEG: v[s] = -x; break;
+      case IR_SQRT: v[s] = sqrtl(x); break;
+      case IR_FN1: v[s] = call1(i->text, x); break;
+      case IR_FN2: v[s] = call2(i->text, x, y); break;
+      case IR_MIN: v[s] = x < y ? x : y; break;
+      case IR_MAX: v[s] = x > y ? x : y; break;
+      case IR_SIGN: v[s] = (Real)((x > 0) - (x < 0)); break;
+      case IR_LT: v[s] = x < y; break;
+      case IR_LE: v[s] = x <= y; break;
+      case IR_EQ: v[s] = x == y; break;
+      case IR_NOT: v[s] = x == 0; break;
+      case IR_AND: v[s] = x != 0 && y != 0; break;
+      case IR_OR: v[s] = x != 0 || y != 0; break;
+      case IR_SELECT: v[s] = x != 0 ? y : v[i->c]; break;
+      case IR_PIVOT: if (!(i->index ? x > 0 : x != 0)) return -1; break;
+      case IR_SOLVE: solution[s] = solved(p, &p->solves.at[i->index], v, &status); if (status) return -1; break;
+      case IR_SOLVED: v[s] = solution[i->a][i->index]; break;
+      case IR_TITLE: break;
+    }
+  }
+  for (uint32_t k = 0; k < p->stores.n; k++) out[p->stores.at[k].array][p->stores.at[k].index] = v[p->stores.at[k].slot];
+  return 0;
+}

@@ -1,0 +1,350 @@
+#include "ir/lower.h"
+
+#include <stdlib.h>
+
+#include "ir/lower_impl.h"
+
+/* --- numbers and powers --- */
+
+static Slot number(Lower *l, Num n) { return prog_num(l->p, n); }
+static Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
+
+Slot lower_slot(const Lower *l, Expr e) { return expr_map_get(&l->slots, e) - 1; }
+
+static Slot power_int(Lower *l, Slot x, int64_t n) {
+  Slot r = 0, square = x;
+  for (; n; n >>= 1) {
+    if (n & 1) r = r ? op(l, IR_MUL, r, square) : square;
+    if (n > 1) square = op(l, IR_MUL, square, square);
+  }
+  return r;
+}
+
+/* x^e for e > 0: integers by multiplication, halves with a square root. */
+static Slot power(Lower *l, Slot x, Num e) {
+  if (num_is_exact(e) && e.den == 1) return power_int(l, x, e.num);
+  if (num_is_exact(e) && e.den == 2) {
+    Slot root = op(l, IR_SQRT, x, 0);
+    if (e.num == 1) return root;
+    Slot whole = power_int(l, x, e.num / 2);
+    return op(l, IR_MUL, whole, root);
+  }
+  Slot k = number(l, e);
+  return prog_ins(l->p, (Ins){.op = IR_FN2, .a = x, .b = k, .text = "pow"});
+}
+
+/* --- products --- */
+
+typedef struct {
+  Slot slot;
+  Num exponent;
+  int rank;
+} Factor;
+
+/* Parameters first: products of parameters recur, and are then found again. */
+static int rank_of(const ExprGraph *g, Expr e) {
+  switch (expr_op(g, e)) {
+    case EX_NUM: return 0;
+    case EX_SYM: {
+      SymKind k = expr_sym_of(g, e)->kind;
+      return k == SYM_PARAM || k == SYM_CONST ? 1 : k == SYM_VEL || k == SYM_ACC ? 5 : 4;
+    }
+    case EX_SUM: return 2;
+    case EX_DEF: return 4;
+    default: return 3;
+  }
+}
+
+static int by_rank(const void *a, const void *b) {
+  const Factor *x = a, *y = b;
+  if (x->rank != y->rank) return x->rank - y->rank;
+  return (x->slot > y->slot) - (x->slot < y->slot);
+}
+
+static Slot multiply(Lower *l, Factor *f, uint32_t n) {
+  if (!n) return 0;
+  qsort(f, n, sizeof *f, by_rank);
+  Slot r = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    Slot x = power(l, f[i].slot, f[i].exponent);
+    r = i ? op(l, IR_MUL, r, x) : x;
+  }
+  return r;
+}
+
+static Slot lower_prod(Lower *l, Expr e) {
+  uint32_t n = expr_pairs(l->g, e, EX_PROD), above = 0, below = 0;
+  Factor *top = ARENA_ARRAY(l->p->arena, Factor, n), *bottom = ARENA_ARRAY(l->p->arena, Factor, n);
+  for (uint32_t i = 0; i < n; i++) {
+    Num k;
+    Expr base = expr_pair(l->g, e, EX_PROD, i, &k);
+    Factor f = {lower_slot(l, base), num_abs(k), rank_of(l->g, base)};
+    if (num_sign(k) > 0) top[above++] = f;
+    else bottom[below++] = f;
+  }
+  Slot num = above ? multiply(l, top, above) : number(l, num_int(1));
+  if (!below) return num;
+  Slot den = multiply(l, bottom, below);
+  return op(l, IR_DIV, num, den);
+}
+
+/* --- sums --- */
+
+/* |c| * t; a coefficient p/q with q no power of two divides, which rounds once. */
+static Slot scaled(Lower *l, Slot t, Num c) {
+  c = num_abs(c);
+  if (num_is_one(c)) return t;
+  int dyadic = !num_is_exact(c) || (c.den & (c.den - 1)) == 0;
+  if (dyadic) {
+    Slot k = number(l, c);
+    return op(l, IR_MUL, k, t);
+  }
+  Slot up = number(l, num_int(c.num)), down = number(l, num_int(c.den));
+  Slot product = op(l, IR_MUL, up, t);
+  return op(l, IR_DIV, product, down);
+}
+
+/* The factor that all coefficients share in size, when it is not 1: k*(a - b) costs one
+ * multiplication less than k*a - k*b. */
+static Num shared_size(const ExprGraph *g, Expr e) {
+  Num c, k;
+  expr_pair(g, e, EX_SUM, 0, &c);
+  c = num_abs(c);
+  uint32_t n = expr_pairs(g, e, EX_SUM);
+  for (uint32_t i = 0; i < n; i++) {
+    Expr t = expr_pair(g, e, EX_SUM, i, &k);
+    if (!num_equal(num_abs(k), c) || expr_is_num(g, t)) return num_int(1);
+  }
+  return c;
+}
+
+static Slot lower_sum(Lower *l, Expr e) {
+  uint32_t n = expr_pairs(l->g, e, EX_SUM);
+  Num outer = shared_size(l->g, e);
+  Num inner = num_div(num_int(1), outer);
+  Slot r = 0;
+  for (int sign = 1; sign >= -1; sign -= 2) /* what is added first, then what is subtracted */
+    for (uint32_t i = 0; i < n; i++) {
+      Num c;
+      Expr t = expr_pair(l->g, e, EX_SUM, i, &c);
+      if (num_sign(c) != sign) continue;
+      Slot x = expr_is_num(l->g, t) ? number(l, num_mul(num_abs(c), expr_number(l->g, t)))
+                                    : scaled(l, lower_slot(l, t), num_mul(c, inner));
+      r = op(l, sign > 0 ? IR_ADD : IR_SUB, r, x);
+    }
+  return scaled(l, r, outer);
+}
+
+/* --- functions --- */
+
+static Slot call1(Lower *l, const char *name, Slot x) { return prog_ins(l->p, (Ins){.op = IR_FN1, .a = x, .text = name}); }
+
+/* sin and cos of u. For u = a + b or a - b where sines or cosines of both a and b are needed
+ * anyway, the addition theorem costs three operations instead of a function. */
+static Slot lower_circular(Lower *l, ExprOp fn, Expr u) {
+  ExprGraph *g = l->g;
+  Num ca, cb;
+  if (expr_op(g, u) == EX_SUM && expr_pairs(g, u, EX_SUM) == 2) {
+    Expr a = expr_pair(g, u, EX_SUM, 0, &ca), b = expr_pair(g, u, EX_SUM, 1, &cb);
+    if (num_is_one(ca) && num_is_one(num_abs(cb)) && expr_map_get(&l->circular, a) && expr_map_get(&l->circular, b)) {
+      Slot sa = call1(l, "sin", lower_slot(l, a)), cos_a = call1(l, "cos", lower_slot(l, a));
+      Slot sb = call1(l, "sin", lower_slot(l, b)), cos_b = call1(l, "cos", lower_slot(l, b));
+      int plus = num_sign(cb) > 0;
+      Slot first = fn == EX_SIN ? op(l, IR_MUL, sa, cos_b) : op(l, IR_MUL, cos_a, cos_b);
+      Slot second = fn == EX_SIN ? op(l, IR_MUL, cos_a, sb) : op(l, IR_MUL, sa, sb);
+      return op(l, (fn == EX_SIN) == plus ? IR_ADD : IR_SUB, first, second);
+    }
+  }
+  return call1(l, expr_op_text(fn), lower_slot(l, u));
+}
+
+static Slot binary(Lower *l, IrOp o, Expr e) {
+  Slot a = lower_slot(l, expr_arg(l->g, e, 0)), b = lower_slot(l, expr_arg(l->g, e, 1));
+  return op(l, o, a, b);
+}
+
+static Slot call2(Lower *l, const char *name, Expr e) {
+  Slot a = lower_slot(l, expr_arg(l->g, e, 0)), b = lower_slot(l, expr_arg(l->g, e, 1));
+  return prog_ins(l->p, (Ins){.op = IR_FN2, .a = a, .b = b, .text = name});
+}
+
+static Slot load(Lower *l, IrArray array, const Symbol *s) {
+  return prog_ins(l->p, (Ins){.op = IR_LOAD, .array = array, .index = s->index, .name = s->name});
+}
+
+static Slot lower_symbol(Lower *l, Expr e) {
+  const Symbol *s = expr_sym_of(l->g, e);
+  switch (s->kind) {
+    case SYM_TIME: return load(l, ARR_T, s);
+    case SYM_COORD: return load(l, ARR_Q, s);
+    case SYM_VEL: return load(l, ARR_V, s);
+    case SYM_STATE: return load(l, ARR_Z, s);
+    case SYM_PARAM: return load(l, ARR_P, s);
+    case SYM_INPUT: return load(l, ARR_U, s);
+    case SYM_CONST: return prog_ins(l->p, (Ins){.op = IR_PI});
+    case SYM_ACC: case SYM_RATE: case SYM_LOCAL: break; /* set before: see lower_with_accelerations */
+  }
+  return 0;
+}
+
+static Slot lower_node(Lower *l, Expr e) {
+  ExprGraph *g = l->g;
+  ExprOp o = expr_op(g, e);
+  Expr a = expr_nargs(g, e) ? expr_arg(g, e, 0) : 0;
+  switch (o) {
+    case EX_NUM: return number(l, expr_number(g, e));
+    case EX_SYM: return lower_symbol(l, e);
+    case EX_DEF: {
+      Slot s = lower_slot(l, a);
+      prog_name(l->p, s, expr_def_name(g, e));
+      return s;
+    }
+    case EX_SUM: return lower_sum(l, e);
+    case EX_PROD: return lower_prod(l, e);
+    case EX_POW: return call2(l, "pow", e);
+    case EX_SIN: case EX_COS: return lower_circular(l, o, a);
+    case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN: case EX_SINH: case EX_COSH: case EX_TANH: case EX_EXP:
+    case EX_LOG: case EX_CBRT: return call1(l, expr_op_text(o), lower_slot(l, a));
+    case EX_ABS: return call1(l, "fabs", lower_slot(l, a));
+    case EX_SIGN: return op(l, IR_SIGN, lower_slot(l, a), 0);
+    case EX_ATAN2: return call2(l, "atan2", e);
+    case EX_HYPOT: return call2(l, "hypot", e);
+    case EX_MIN: return binary(l, IR_MIN, e);
+    case EX_MAX: return binary(l, IR_MAX, e);
+    case EX_LT: return binary(l, IR_LT, e);
+    case EX_LE: return binary(l, IR_LE, e);
+    case EX_EQ: return binary(l, IR_EQ, e);
+    case EX_NOT: return op(l, IR_NOT, lower_slot(l, a), 0);
+    case EX_AND: return binary(l, IR_AND, e);
+    case EX_OR: return binary(l, IR_OR, e);
+    case EX_SELECT: {
+      Slot c = lower_slot(l, a), x = lower_slot(l, expr_arg(g, e, 1)), y = lower_slot(l, expr_arg(g, e, 2));
+      return prog_ins(l->p, (Ins){.op = IR_SELECT, .a = c, .b = x, .c = y});
+    }
+    case EX_COUNT: break;
+  }
+  return 0;
+}
+
+void lower_roots(Lower *l, const Expr *roots, uint32_t n) {
+  ExprList list = expr_topo(l->g, roots, n);
+  for (uint32_t i = 0; i < list.n; i++) {
+    ExprOp o = expr_op(l->g, list.at[i]);
+    if (o == EX_SIN || o == EX_COS) expr_map_set(&l->circular, expr_arg(l->g, list.at[i], 0), 1);
+  }
+  for (uint32_t i = 0; i < list.n; i++) {
+    if (expr_map_get(&l->slots, list.at[i])) continue;
+    Slot s = lower_node(l, list.at[i]);
+    expr_map_set(&l->slots, list.at[i], s + 1);
+  }
+}
+
+/* --- the functions of a model --- */
+
+static Lower lower_new(const Eqns *e) {
+  Arena *a = e->m->arena;
+  return (Lower){.e = e, .g = e->g, .p = prog_new(a), .slots = expr_map(a), .circular = expr_map(a)};
+}
+
+static const char *text_of_symbol(const Lower *l, SymId s) { return expr_symbol(l->g, s)->name; }
+
+Prog *lower_accel(const Eqns *e) {
+  Lower l = lower_new(e);
+  const Model *m = e->m;
+  Slot *acc = ARENA_ARRAY(m->arena, Slot, e->n + 1);
+  lower_solution(&l, acc);
+  if (m->states.n) lower_roots(&l, e->flow, m->states.n);
+  for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
+  for (uint32_t i = 0; i < m->states.n; i++)
+    prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
+  return prog_tidy(l.p);
+}
+
+static int is_second(const Symbol *s, const void *data) {
+  (void)data;
+  return s->kind == SYM_ACC || s->kind == SYM_RATE;
+}
+
+/* Expressions that may contain q'' and z': the accelerations are computed first. */
+static void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
+  const Model *m = l->e->m;
+  int needed = 0;
+  for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_contains(l->g, roots[i], is_second, NULL);
+  if (needed) {
+    Slot *acc = ARENA_ARRAY(m->arena, Slot, l->e->n + 1);
+    lower_solution(l, acc);
+    for (uint32_t i = 0; i < l->e->n; i++) expr_map_set(&l->slots, expr_symbol(l->g, m->coords.at[i].a)->node, acc[i] + 1);
+    lower_roots(l, l->e->flow, m->states.n);
+    for (uint32_t i = 0; i < m->states.n; i++)
+      expr_map_set(&l->slots, expr_symbol(l->g, m->states.at[i].rate)->node, lower_slot(l, l->e->flow[i]) + 1);
+  }
+  lower_roots(l, roots, n);
+}
+
+Prog *lower_energy(const Eqns *e) {
+  Lower l = lower_new(e);
+  if (!e->energy) return l.p;
+  Expr roots[2] = {e->energy, e->energy_scale};
+  lower_roots(&l, roots, 2);
+  prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), "energy p q' - L");
+  prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
+  return prog_tidy(l.p);
+}
+
+Prog *lower_events(const Eqns *e) {
+  Lower l = lower_new(e);
+  const Model *m = e->m;
+  for (uint32_t i = 0; i < m->events.n; i++) lower_roots(&l, &m->events.at[i].g, 1);
+  for (uint32_t i = 0; i < m->events.n; i++) prog_store(l.p, 0, i, lower_slot(&l, m->events.at[i].g), m->events.at[i].name);
+  return prog_tidy(l.p);
+}
+
+static uint32_t array_of_target(SymKind k) { return k == SYM_COORD ? 0 : k == SYM_VEL ? 1 : 2; }
+
+static void store_target(Lower *l, SymId target, Expr value) {
+  const Symbol *s = expr_symbol(l->g, target);
+  prog_store(l->p, array_of_target(s->kind), s->index, lower_slot(l, value), s->name);
+}
+
+Prog *lower_action(const Eqns *e, uint32_t event) {
+  Lower l = lower_new(e);
+  const Event *ev = &e->m->events.at[event];
+  for (uint32_t i = 0; i < ev->actions.n; i++) lower_roots(&l, &ev->actions.at[i].value, 1);
+  for (uint32_t i = 0; i < ev->actions.n; i++) store_target(&l, ev->actions.at[i].target, ev->actions.at[i].value);
+  return prog_tidy(l.p);
+}
+
+Prog *lower_inputs(const Eqns *e) {
+  Lower l = lower_new(e);
+  const Model *m = e->m;
+  for (uint32_t i = 0; i < m->inputs.n; i++)
+    if (m->inputs.at[i].value) lower_roots(&l, &m->inputs.at[i].value, 1);
+  for (uint32_t i = 0; i < m->inputs.n; i++)
+    prog_store(l.p, 0, i, m->inputs.at[i].value ? lower_slot(&l, m->inputs.at[i].value) : 0, m->inputs.at[i].name);
+  return prog_tidy(l.p);
+}
+
+Prog *lower_outputs(const Eqns *e) {
+  Lower l = lower_new(e);
+  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, e->noutputs + 1);
+  for (uint32_t i = 0; i < e->noutputs; i++) roots[i] = e->outputs[i].value;
+  lower_with_accelerations(&l, roots, e->noutputs);
+  for (uint32_t i = 0; i < e->noutputs; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), e->outputs[i].name);
+  return prog_tidy(l.p);
+}
+
+Prog *lower_param(const Eqns *e, uint32_t i) {
+  Lower l = lower_new(e);
+  const Param *p = &e->m->params.at[i];
+  lower_roots(&l, &p->value, 1);
+  prog_store(l.p, 0, i, lower_slot(&l, p->value), p->name);
+  return prog_tidy(l.p);
+}
+
+Prog *lower_start(const Eqns *e) {
+  Lower l = lower_new(e);
+  const Scene *sc = &e->m->scene;
+  for (uint32_t i = 0; i < sc->starts.n; i++) lower_roots(&l, &sc->starts.at[i].value, 1);
+  for (uint32_t i = 0; i < sc->starts.n; i++) store_target(&l, sc->starts.at[i].target, sc->starts.at[i].value);
+  return prog_tidy(l.p);
+}

@@ -1,0 +1,26 @@
+/* Eqns -> Prog: the only reader of mech/eqns.h here.
+ *
+ * Each function below makes the program of one emitted function. Output arrays are numbered in the
+ * order of that function's declaration in lag_model.h. */
+#ifndef LAGC_LOWER_H
+#define LAGC_LOWER_H
+
+#include "ir/prog.h"
+#include "ir/unit.h"
+#include "mech/eqns.h"
+
+Prog *lower_accel(const Eqns *e);   /* out 0: a[nq], out 1: zd[nz] */
+Prog *lower_energy(const Eqns *e);  /* out 0: e[2] */
+Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
+Prog *lower_action(const Eqns *e, uint32_t event); /* out 0, 1, 2: q1, v1, z1; only what is set */
+Prog *lower_inputs(const Eqns *e);  /* out 0: u[nu] */
+Prog *lower_outputs(const Eqns *e); /* out 0: out[nout] */
+Prog *lower_param(const Eqns *e, uint32_t i); /* out 0: p[i], of earlier parameters */
+Prog *lower_start(const Eqns *e);   /* out 0, 1, 2: q, v, z; only what a start gives */
+
+/* The unit of these equations without scenes, and a scene added to it: e must come from the same
+ * file with the same effects in use. source: the file's path as the user gave it. */
+IrUnit *unit_new(const Eqns *e, const char *source);
+void unit_add_scene(IrUnit *u, const Eqns *e);
+
+#endif

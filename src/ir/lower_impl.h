@@ -1,0 +1,22 @@
+/* Shared by lower.c (expressions) and solve.c (the linear system). */
+#ifndef LAGC_LOWER_IMPL_H
+#define LAGC_LOWER_IMPL_H
+
+#include "ir/lower.h"
+
+typedef struct {
+  const Eqns *e;
+  ExprGraph *g;
+  Prog *p;
+  ExprMap slots;   /* node -> slot + 1 */
+  ExprMap circular; /* u -> 1 where sin u or cos u is needed anyway */
+} Lower;
+
+/* Lowers all nodes that the roots need; then lower_slot gives each root's slot. */
+void lower_roots(Lower *l, const Expr *roots, uint32_t n);
+Slot lower_slot(const Lower *l, Expr e);
+
+/* Lowers M q'' = f and its solution; acc[n] receives the slots of q''. */
+void lower_solution(Lower *l, Slot *acc);
+
+#endif

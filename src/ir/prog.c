@@ -1,0 +1,263 @@
+#include "ir/prog.h"
+
+#include <string.h>
+
+Prog *prog_new(Arena *a) {
+  Prog *p = ARENA_NEW(a, Prog);
+  p->arena = a;
+  vec_push(a, &p->ins, ((Ins){0}));
+  p->table_cap = 256;
+  p->table = ARENA_ARRAY(a, uint32_t, p->table_cap);
+  return p;
+}
+
+/* --- value numbering --- */
+
+static int is_pure(IrOp op) { return op != IR_PIVOT && op != IR_SOLVE && op != IR_TITLE; }
+
+static uint32_t hash_ins(const Ins *i) {
+  uint32_t h = (uint32_t)i->op * 0x9e3779b9u;
+  const uint32_t parts[] = {i->a, i->b, i->c, i->index, (uint32_t)i->array, (uint32_t)i->number.num, (uint32_t)i->number.den};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) h = (h ^ parts[k]) * 0x85ebca6bu + (h >> 13);
+  for (const char *c = i->op == IR_FN1 || i->op == IR_FN2 ? i->text : NULL; c && *c; c++) h = (h ^ (unsigned char)*c) * 16777619u;
+  return h ^ (h >> 16);
+}
+
+static int same(const Ins *x, const Ins *y) {
+  if (x->op != y->op || x->a != y->a || x->b != y->b || x->c != y->c || x->index != y->index || x->array != y->array) return 0;
+  if (x->op == IR_CONST) return num_equal(x->number, y->number);
+  if (x->op == IR_FN1 || x->op == IR_FN2) return strcmp(x->text, y->text) == 0;
+  return 1;
+}
+
+static void insert(Prog *p, Slot s) {
+  uint32_t k = hash_ins(&p->ins.at[s]) & (p->table_cap - 1);
+  while (p->table[k]) k = (k + 1) & (p->table_cap - 1);
+  p->table[k] = s;
+}
+
+static Slot append(Prog *p, Ins i) {
+  vec_push(p->arena, &p->ins, i);
+  Slot s = p->ins.n - 1;
+  if (!is_pure(i.op)) return s;
+  if (p->ins.n * 2 > p->table_cap) {
+    p->table_cap *= 2;
+    p->table = ARENA_ARRAY(p->arena, uint32_t, p->table_cap);
+    for (Slot k = 1; k < s; k++)
+      if (is_pure(p->ins.at[k].op)) insert(p, k);
+  }
+  insert(p, s);
+  return s;
+}
+
+static int is_num(const Prog *p, Slot s, int64_t value) {
+  const Ins *i = &p->ins.at[s];
+  return s && i->op == IR_CONST && num_equal(i->number, num_int(value));
+}
+
+enum { NOT_FOLDED = UINT32_MAX };
+
+/* x + 0, x - 0, 1*x, 0*x, x/1, 0/x, with slot 0 a structural zero. */
+static Slot fold(Prog *p, const Ins *i) {
+  switch (i->op) {
+    case IR_ADD:
+      if (!i->a) return i->b;
+      return i->b ? NOT_FOLDED : i->a;
+    case IR_SUB:
+      if (!i->b) return i->a;
+      return i->a ? NOT_FOLDED : prog_op(p, IR_NEG, i->b, 0);
+    case IR_MUL:
+      if (!i->a || !i->b) return 0;
+      if (is_num(p, i->a, -1)) return prog_op(p, IR_NEG, i->b, 0);
+      if (is_num(p, i->b, -1)) return prog_op(p, IR_NEG, i->a, 0);
+      if (is_num(p, i->a, 1)) return i->b;
+      return is_num(p, i->b, 1) ? i->a : NOT_FOLDED;
+    case IR_DIV:
+      if (!i->a) return 0;
+      return is_num(p, i->b, 1) ? i->a : NOT_FOLDED;
+    case IR_NEG:
+      if (!i->a) return 0;
+      return p->ins.at[i->a].op == IR_NEG ? p->ins.at[i->a].a : NOT_FOLDED;
+    case IR_CONST: case IR_PI: case IR_LOAD: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_MIN: case IR_MAX:
+    case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND: case IR_OR: case IR_SELECT:
+    case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_TITLE: break;
+  }
+  return NOT_FOLDED;
+}
+
+Slot prog_ins(Prog *p, Ins i) {
+  Slot folded = fold(p, &i);
+  if (folded != NOT_FOLDED) return folded;
+  if (!is_pure(i.op)) return append(p, i);
+  Ins key = i;
+  int commutes = i.op == IR_ADD || i.op == IR_MUL;
+  for (int turn = 0; turn <= commutes; turn++) {
+    for (uint32_t k = hash_ins(&key) & (p->table_cap - 1); p->table[k]; k = (k + 1) & (p->table_cap - 1))
+      if (same(&p->ins.at[p->table[k]], &key)) return p->table[k];
+    key.a = i.b;
+    key.b = i.a;
+  }
+  return append(p, i);
+}
+
+Slot prog_op(Prog *p, IrOp op, Slot a, Slot b) { return prog_ins(p, (Ins){.op = op, .a = a, .b = b}); }
+Slot prog_num(Prog *p, Num n) { return num_is_zero(n) ? 0 : prog_ins(p, (Ins){.op = IR_CONST, .number = n}); }
+void prog_title(Prog *p, const char *text) { prog_ins(p, (Ins){.op = IR_TITLE, .text = text}); }
+
+void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *comment) {
+  vec_push(p->arena, &p->stores, ((Store){array, index, s, comment}));
+}
+
+void prog_name(Prog *p, Slot s, Name name) {
+  if (!s) return;
+  Ins *i = &p->ins.at[s];
+  if (!i->name && i->op != IR_CONST && i->op != IR_PI && i->op != IR_LOAD) i->name = name;
+}
+
+int ir_is_condition(IrOp op) { return op >= IR_LT && op <= IR_OR; }
+
+/* --- passes --- */
+
+static void mark_needed(const Prog *p, unsigned char *need) {
+  for (uint32_t i = 0; i < p->stores.n; i++) need[p->stores.at[i].slot] = 1;
+  for (Slot s = p->ins.n; s-- > 1;) {
+    const Ins *i = &p->ins.at[s];
+    if (i->op == IR_PIVOT || i->op == IR_TITLE) need[s] = 1;
+    if (!need[s]) continue;
+    need[i->a] = need[i->b] = need[i->c] = 1;
+    if (i->op != IR_SOLVE) continue;
+    const Solve *k = &p->solves.at[i->index];
+    for (uint32_t j = 0; j < k->n * k->n; j++) need[k->matrix[j]] = 1;
+    for (uint32_t j = 0; j < k->n; j++) need[k->rhs[j]] = 1;
+  }
+}
+
+static const Slot *moved(Arena *a, const Slot *map, const Slot *from, uint32_t n) {
+  Slot *to = ARENA_ARRAY(a, Slot, n);
+  for (uint32_t i = 0; i < n; i++) to[i] = map[from[i]];
+  return to;
+}
+
+Prog *prog_tidy(const Prog *p) {
+  Arena *arena = p->arena;
+  Prog *r = prog_new(arena);
+  unsigned char *need = ARENA_ARRAY(arena, unsigned char, p->ins.n);
+  uint32_t *divisions = ARENA_ARRAY(arena, uint32_t, p->ins.n);
+  Slot *map = ARENA_ARRAY(arena, Slot, p->ins.n);
+  mark_needed(p, need);
+  for (Slot s = 1; s < p->ins.n; s++)
+    if (need[s] && p->ins.at[s].op == IR_DIV && p->ins.at[p->ins.at[s].b].op != IR_CONST) divisions[p->ins.at[s].b]++;
+  Slot one = 0;
+  for (Slot s = 1; s < p->ins.n; s++) {
+    if (!need[s]) continue;
+    Ins i = p->ins.at[s];
+    uint32_t shared = i.op == IR_DIV ? divisions[i.b] : 0;
+    i.a = map[i.a];
+    i.b = map[i.b];
+    i.c = map[i.c];
+    if (i.op == IR_SOLVE) {
+      Solve k = p->solves.at[i.index];
+      k.matrix = moved(arena, map, k.matrix, k.n * k.n);
+      k.rhs = moved(arena, map, k.rhs, k.n);
+      i.index = r->solves.n;
+      vec_push(arena, &r->solves, k);
+    }
+    if (shared > 1) {
+      one = prog_num(r, num_int(1));
+      Slot inverse = prog_op(r, IR_DIV, one, i.b);
+      map[s] = prog_op(r, IR_MUL, i.a, inverse);
+      prog_name(r, map[s], i.name);
+    } else {
+      map[s] = prog_ins(r, i);
+      prog_name(r, map[s], i.name);
+    }
+  }
+  for (uint32_t i = 0; i < p->stores.n; i++) {
+    Store st = p->stores.at[i];
+    prog_store(r, st.array, st.index, map[st.slot], st.comment);
+  }
+  return r;
+}
+
+const char *prog_verify(const Prog *p) {
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    if (i->a >= s || i->b >= s || i->c >= s) return arena_printf(p->arena, "instruction %u uses a later one", s);
+    int takes_condition = i->op == IR_NOT || i->op == IR_AND || i->op == IR_OR;
+    if (i->a && ir_is_condition(p->ins.at[i->a].op) && !takes_condition && i->op != IR_SELECT)
+      return arena_printf(p->arena, "instruction %u computes with a condition", s);
+    if (takes_condition && !ir_is_condition(p->ins.at[i->a].op)) return arena_printf(p->arena, "instruction %u needs a condition", s);
+    if (i->op == IR_SOLVED && p->ins.at[i->a].op != IR_SOLVE) return arena_printf(p->arena, "instruction %u has no solve", s);
+  }
+  for (uint32_t k = 0; k < p->stores.n; k++)
+    if (p->stores.at[k].slot >= p->ins.n) return "a store of nothing";
+  return NULL;
+}
+
+/* --- counting --- */
+
+OpCount prog_count(const Prog *p) {
+  OpCount c = {0};
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    switch (i->op) {
+      case IR_ADD: case IR_SUB: c.add++; break;
+      case IR_MUL: c.mul++; break;
+      case IR_DIV: c.div++; break;
+      case IR_SQRT: c.sqrt++; break;
+      case IR_FN1: case IR_FN2: c.fn++; break;
+      case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND:
+      case IR_OR: case IR_SELECT: c.other++; break;
+      case IR_SOLVE: {
+        uint32_t n = p->solves.at[i->index].n;
+        c.add += n * (n - 1) * (2 * n + 5) / 6; /* elimination with two substitutions */
+        c.mul += n * (n - 1) * (2 * n + 5) / 6;
+        c.div += n * (n + 1) / 2;
+        break;
+      }
+      case IR_NEG: case IR_CONST: case IR_PI: case IR_LOAD: case IR_PIVOT: case IR_SOLVED: case IR_TITLE: break;
+    }
+  }
+  return c;
+}
+
+uint32_t ops_total(OpCount c) { return c.add + c.mul + c.div + c.sqrt + c.fn + c.other; }
+
+uint32_t prog_work(const Prog *p) {
+  uint32_t most = 0;
+  for (uint32_t i = 0; i < p->solves.n; i++) {
+    uint32_t n = p->solves.at[i].n, need = n * n + n;
+    if (need > most) most = need;
+  }
+  return most;
+}
+
+/* --- listing --- */
+
+static const char *const op_names[] = {
+  "const", "pi", "load", "add", "sub", "mul", "div", "neg", "sqrt", "fn", "fn2", "min", "max", "sign",
+  "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "title",
+};
+
+static const char *const array_names[] = {"t", "q", "v", "z", "p", "u"};
+
+void prog_dump(const Prog *p, StrBuf *out) {
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    sb_printf(out, "%%%u = %s", s, op_names[i->op]);
+    if (i->op == IR_CONST) {
+      sb_putc(out, ' ');
+      num_print(out, i->number);
+    }
+    if (i->op == IR_LOAD) sb_printf(out, " %s[%u]", array_names[i->array], i->index);
+    if (i->text) sb_printf(out, " %s", i->text);
+    if (i->op == IR_PIVOT || i->op == IR_SOLVE || i->op == IR_SOLVED) sb_printf(out, " #%u", i->index);
+    if (i->a) sb_printf(out, " %%%u", i->a);
+    if (i->b) sb_printf(out, " %%%u", i->b);
+    if (i->c) sb_printf(out, " %%%u", i->c);
+    if (i->name) sb_printf(out, "  ; %s", i->name);
+    sb_putc(out, '\n');
+  }
+  for (uint32_t k = 0; k < p->stores.n; k++)
+    sb_printf(out, "out%u[%u] = %%%u  ; %s\n", p->stores.at[k].array, p->stores.at[k].index, p->stores.at[k].slot, p->stores.at[k].comment);
+}

@@ -1,0 +1,118 @@
+/* Prog: what one emitted function computes, as straight-line code in single assignment.
+ *
+ * An instruction's operands have lower numbers; every value is computed once. A Prog knows names
+ * for its values and carries its own texts, so that nothing after it needs the model. */
+#ifndef LAGC_PROG_H
+#define LAGC_PROG_H
+
+#include "base/intern.h"
+#include "base/num.h"
+#include "base/vec.h"
+
+typedef uint32_t Slot; /* index of an instruction; 0: none (a structural zero) */
+
+typedef enum {
+  IR_CONST,  /* number */
+  IR_PI,
+  IR_LOAD,   /* array, index, name */
+  IR_ADD,
+  IR_SUB,
+  IR_MUL,
+  IR_DIV,
+  IR_NEG,
+  IR_SQRT,
+  IR_FN1,    /* text: the C library's name */
+  IR_FN2,
+  IR_MIN,
+  IR_MAX,
+  IR_SIGN,
+  IR_LT,     /* conditions; they feed only conditions and IR_SELECT */
+  IR_LE,
+  IR_EQ,
+  IR_NOT,
+  IR_AND,
+  IR_OR,
+  IR_SELECT, /* a ? b : c */
+  IR_PIVOT,  /* fails unless a > 0 (index 1), or a != 0 (index 0) */
+  IR_SOLVE,  /* solves block `index` of prog->solves, with pivoting; fails when singular */
+  IR_SOLVED, /* component `index` of the solution of solve a */
+  IR_TITLE   /* text: a comment line that heads what follows */
+} IrOp;
+
+/* The arrays that a function reads. */
+typedef enum { ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_COUNT } IrArray;
+
+typedef struct {
+  IrOp op;
+  Slot a, b, c;
+  Num number;
+  uint32_t index;
+  IrArray array;
+  Name name;        /* of a load; or the name that the user, or the theory, gives the value; or NULL */
+  const char *text; /* a function's name; a title */
+} Ins;
+
+/* out[index] = slot; the comment says what it is. */
+typedef struct {
+  uint32_t array; /* number of the output array, in the order of the function's declaration */
+  uint32_t index;
+  Slot slot;      /* 0: zero */
+  const char *comment;
+} Store;
+
+/* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. */
+typedef struct {
+  uint32_t n;
+  const Slot *matrix, *rhs;
+} Solve;
+
+typedef struct {
+  Arena *arena;
+  VEC(Ins) ins;       /* [0] unused */
+  VEC(Store) stores;
+  VEC(Solve) solves;
+  uint32_t *table;    /* value numbering */
+  uint32_t table_cap;
+} Prog;
+
+typedef struct {
+  uint32_t add, mul, div, sqrt, fn, other; /* fn: sin, cos, exp ... */
+} OpCount;
+
+Prog *prog_new(Arena *a);
+
+/* Appends an instruction, or finds the same computation done before. Sums and products are
+ * commutative: their operands are ordered. Folds what adds 0 or multiplies by 1. */
+Slot prog_ins(Prog *p, Ins i);
+Slot prog_op(Prog *p, IrOp op, Slot a, Slot b);
+Slot prog_num(Prog *p, Num n);
+void prog_title(Prog *p, const char *text);
+void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *comment);
+
+/* Gives a value the name that the user or the theory has for it, unless it has one or is a leaf. */
+void prog_name(Prog *p, Slot s, Name name);
+
+int ir_is_condition(IrOp op);
+
+/* Divisions by one value that occur more than once become products with its reciprocal; what no
+ * store needs goes. Keeps the order of what stays. Needs nothing, breaks nothing. */
+Prog *prog_tidy(const Prog *p);
+
+/* Checks that operands precede their use, conditions feed only selections, stores are in order.
+ * NULL, or what is wrong. */
+const char *prog_verify(const Prog *p);
+
+/* A listing, one instruction a line, for --dump=prog. */
+void prog_dump(const Prog *p, StrBuf *out);
+
+/* Room that IR_SOLVE needs, in reals. */
+uint32_t prog_work(const Prog *p);
+
+OpCount prog_count(const Prog *p);
+uint32_t ops_total(OpCount c);
+
+/* Runs the program in extended precision: in[array] are the inputs, out[array][index] the stores.
+ * Returns 0, or -1 when a pivot failed. */
+int prog_eval(const Prog *p, const long double *const in[ARR_COUNT], long double *const *out);
+
+#endif

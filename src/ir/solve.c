@@ -1,0 +1,162 @@
+/* M q'' = f as a program: blocks of coupled coordinates, each by LDL^T.
+ *
+ * A block whose mass matrix is proved positive definite is factored in straight-line code without
+ * pivoting (Golub & Van Loan, Matrix Computations, 4th ed., algorithm 4.1.2); pivots are checked.
+ * Other blocks, and large ones, are solved by a loop with partial pivoting. */
+#include "ir/lower_impl.h"
+
+enum { STRAIGHT_LINE_MAX = 12 };
+
+typedef struct {
+  uint32_t n;
+  uint32_t *at; /* the coordinates of the block */
+  Slot *M;      /* [n*n], lower triangle filled */
+  Slot *f;
+} Block;
+
+/* --- blocks --- */
+
+static uint32_t find_root(uint32_t *parent, uint32_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+/* label[i]: the first coordinate of the block that i belongs to. */
+static uint32_t *label_blocks(const Eqns *e) {
+  uint32_t *parent = ARENA_ARRAY(e->m->arena, uint32_t, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) parent[i] = i;
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    uint32_t a = find_root(parent, e->mass.at[k].row), b = find_root(parent, e->mass.at[k].col);
+    if (a < b) parent[b] = a;
+    else parent[a] = b;
+  }
+  for (uint32_t i = 0; i < e->n; i++) parent[i] = find_root(parent, i);
+  return parent;
+}
+
+static Name numbered(Lower *l, const char *stem, uint32_t i, uint32_t j) {
+  Arena *a = l->p->arena;
+  if (l->e->n == 1) return arena_strdup(a, stem);
+  if (j == UINT32_MAX) return arena_printf(a, "%s%u", stem, i + 1);
+  return arena_printf(a, l->e->n > 9 ? "%s%u_%u" : "%s%u%u", stem, j + 1, i + 1);
+}
+
+static Block make_block(Lower *l, const uint32_t *label, uint32_t first) {
+  const Eqns *e = l->e;
+  Arena *a = l->p->arena;
+  Block b = {.at = ARENA_ARRAY(a, uint32_t, e->n)};
+  uint32_t *place = ARENA_ARRAY(a, uint32_t, e->n);
+  for (uint32_t i = 0; i < e->n; i++)
+    if (label[i] == first) {
+      place[i] = b.n;
+      b.at[b.n++] = i;
+    }
+  b.M = ARENA_ARRAY(a, Slot, b.n * b.n);
+  b.f = ARENA_ARRAY(a, Slot, b.n);
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    const MassEntry *x = &e->mass.at[k];
+    if (label[x->row] != first) continue;
+    Slot s = lower_slot(l, x->e);
+    prog_name(l->p, s, numbered(l, "M", x->row, x->col));
+    b.M[place[x->row] * b.n + place[x->col]] = s;
+  }
+  for (uint32_t i = 0; i < b.n; i++) {
+    b.f[i] = lower_slot(l, e->f[b.at[i]]);
+    prog_name(l->p, b.f[i], numbered(l, "f", b.at[i], UINT32_MAX));
+  }
+  return b;
+}
+
+/* --- straight-line LDL^T --- */
+
+static Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
+
+/* x - a*b, with structural zeros skipped. */
+static Slot minus_product(Lower *l, Slot x, Slot a, Slot b) {
+  Slot ab = op(l, IR_MUL, a, b);
+  return op(l, IR_SUB, x, ab);
+}
+
+static void check_pivot(Lower *l, Slot d, int positive) {
+  prog_ins(l->p, (Ins){.op = IR_PIVOT, .a = d, .index = (uint32_t)positive});
+}
+
+/* M = L D L^T in place: W holds L D below the diagonal and D on it, L the unit factor. */
+static void factor(Lower *l, const Block *b, Slot *W, Slot *L) {
+  uint32_t n = b->n;
+  for (uint32_t j = 0; j < n; j++) {
+    Slot d = b->M[j * n + j];
+    for (uint32_t k = 0; k < j; k++) d = minus_product(l, d, W[j * n + k], L[j * n + k]);
+    W[j * n + j] = d;
+    check_pivot(l, d, 1);
+    for (uint32_t i = j + 1; i < n; i++) {
+      Slot w = b->M[i * n + j];
+      for (uint32_t k = 0; k < j; k++) w = minus_product(l, w, W[i * n + k], L[j * n + k]);
+      W[i * n + j] = w;
+      L[i * n + j] = op(l, IR_DIV, w, d);
+    }
+  }
+}
+
+static void substitute(Lower *l, const Block *b, const Slot *W, const Slot *L, Slot *x) {
+  uint32_t n = b->n;
+  for (uint32_t i = 0; i < n; i++) {
+    x[i] = b->f[i];
+    for (uint32_t k = 0; k < i; k++) x[i] = minus_product(l, x[i], L[i * n + k], x[k]);
+  }
+  for (uint32_t i = 0; i < n; i++) x[i] = op(l, IR_DIV, x[i], W[i * n + i]);
+  for (uint32_t i = n; i-- > 0;)
+    for (uint32_t k = i + 1; k < n; k++) x[i] = minus_product(l, x[i], L[k * n + i], x[k]);
+}
+
+static void solve_straight(Lower *l, const Block *b, Slot *x) {
+  Slot *W = ARENA_ARRAY(l->p->arena, Slot, b->n * b->n), *L = ARENA_ARRAY(l->p->arena, Slot, b->n * b->n);
+  factor(l, b, W, L);
+  substitute(l, b, W, L, x);
+}
+
+/* --- one coordinate, and loops --- */
+
+static void solve_one(Lower *l, const Block *b, Slot *x) {
+  Expr M = eqns_mass(l->e, b->at[0], b->at[0]);
+  if (expr_sign(l->g, M) != SIGN_POSITIVE) check_pivot(l, b->M[0], 0);
+  x[0] = op(l, IR_DIV, b->f[0], b->M[0]);
+}
+
+static void solve_loop(Lower *l, const Block *b, Slot *x) {
+  Arena *a = l->p->arena;
+  Slot *full = ARENA_ARRAY(a, Slot, b->n * b->n);
+  for (uint32_t i = 0; i < b->n; i++)
+    for (uint32_t j = 0; j < b->n; j++) full[i * b->n + j] = i >= j ? b->M[i * b->n + j] : b->M[j * b->n + i];
+  vec_push(a, &l->p->solves, ((Solve){b->n, full, b->f}));
+  Slot s = prog_ins(l->p, (Ins){.op = IR_SOLVE, .index = l->p->solves.n - 1});
+  for (uint32_t i = 0; i < b->n; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
+}
+
+void lower_solution(Lower *l, Slot *acc) {
+  const Eqns *e = l->e;
+  if (!e->n) return;
+  Arena *a = l->p->arena;
+  Expr *roots = ARENA_ARRAY(a, Expr, e->mass.n + e->n);
+  for (uint32_t k = 0; k < e->mass.n; k++) roots[k] = e->mass.at[k].e;
+  for (uint32_t i = 0; i < e->n; i++) roots[e->mass.n + i] = e->f[i];
+  prog_title(l->p, "mass matrix M and forces f");
+  lower_roots(l, roots, e->mass.n + e->n);
+  const uint32_t *label = label_blocks(e);
+  Block *blocks = ARENA_ARRAY(a, Block, e->n);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < e->n; i++)
+    if (label[i] == i) blocks[n++] = make_block(l, label, i);
+  prog_title(l->p, "M q'' = f");
+  Slot *x = ARENA_ARRAY(a, Slot, e->n);
+  for (uint32_t k = 0; k < n; k++) {
+    const Block *b = &blocks[k];
+    if (b->n == 1) solve_one(l, b, x);
+    else if (e->definite_mass && b->n <= STRAIGHT_LINE_MAX) solve_straight(l, b, x);
+    else solve_loop(l, b, x);
+    for (uint32_t i = 0; i < b->n; i++) {
+      acc[b->at[i]] = x[i];
+      prog_name(l->p, x[i], expr_symbol(e->g, e->m->coords.at[b->at[i]].a)->name);
+    }
+  }
+}

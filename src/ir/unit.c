@@ -1,0 +1,75 @@
+/* Eqns -> IrUnit: all programs of a model, and what its tables say. */
+#include "ir/unit.h"
+
+#include "ir/lower.h"
+
+static IrVar var_of(Name name, const Unit *u, int periodic, AstSign sign) {
+  static const int signs[] = {[SIGN_ANY] = 0, [SIGN_GT] = 1, [SIGN_GE] = 2, [SIGN_LT] = -1, [SIGN_LE] = -2};
+  return (IrVar){name, u->text, unit_factor(u), periodic, signs[sign]};
+}
+
+static const char *joined(Arena *a, const Name *names, uint32_t n) {
+  StrBuf b = strbuf(a);
+  for (uint32_t i = 0; i < n; i++) sb_printf(&b, "%s%s", i ? " " : "", names[i]);
+  return sb_text(&b);
+}
+
+static unsigned flags_of(const Eqns *e) {
+  return (e->conserves_energy ? 1u : 0) | (e->constant_mass ? 2u : 0) | (e->autonomous ? 4u : 0) | (e->smooth ? 8u : 0);
+}
+
+static void add_events(IrUnit *u, const Eqns *e) {
+  static const int directions[] = {[CROSS_BOTH] = 0, [CROSS_RISING] = 1, [CROSS_FALLING] = -1};
+  for (uint32_t i = 0; i < e->m->events.n; i++) {
+    const Event *ev = &e->m->events.at[i];
+    IrEvent one = {ev->name, directions[ev->direction], lower_action(e, i), ev->stop};
+    vec_push(u->arena, &u->events, one);
+  }
+  u->event_values = lower_events(e);
+}
+
+IrUnit *unit_new(const Eqns *e, const char *source) {
+  const Model *m = e->m;
+  IrUnit *u = ARENA_NEW(m->arena, IrUnit);
+  *u = (IrUnit){.arena = m->arena, .name = m->name, .doc = m->doc ? m->doc : "", .source = source, .flags = flags_of(e)};
+  u->effects = joined(m->arena, m->effects.at, m->effects.n);
+  u->all_effects = joined(m->arena, m->all_effects.at, m->all_effects.n);
+  for (uint32_t i = 0; i < m->coords.n; i++)
+    vec_push(m->arena, &u->q, var_of(m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
+  for (uint32_t i = 0; i < m->states.n; i++)
+    vec_push(m->arena, &u->z, var_of(m->states.at[i].name, &m->states.at[i].unit, 0, SIGN_ANY));
+  for (uint32_t i = 0; i < m->params.n; i++)
+    vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
+  for (uint32_t i = 0; i < m->inputs.n; i++)
+    vec_push(m->arena, &u->u, var_of(m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
+  u->accel = lower_accel(e);
+  u->energy = e->energy ? lower_energy(e) : NULL;
+  u->inputs = lower_inputs(e);
+  add_events(u, e);
+  return u;
+}
+
+void unit_add_scene(IrUnit *u, const Eqns *e) {
+  const Model *m = e->m;
+  const Scene *sc = &m->scene;
+  IrScene s = {.name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .has_span = sc->has_span, .method = sc->method,
+               .tolerance = sc->tolerance, .every = sc->every};
+  const Prog **params = ARENA_ARRAY(m->arena, const Prog *, m->params.n + 1);
+  for (uint32_t i = 0; i < m->params.n; i++) params[i] = lower_param(e, i);
+  s.params = params;
+  s.start = lower_start(e);
+  s.observe = lower_outputs(e);
+  for (uint32_t i = 0; i < sc->options.n; i++) {
+    IrOption o = {sc->options.at[i].name, sc->options.at[i].text, sc->options.at[i].value};
+    vec_push(m->arena, &s.options, o);
+  }
+  for (uint32_t i = 0; i < e->noutputs; i++) {
+    IrVar v = var_of(e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
+    vec_push(m->arena, &s.outputs, v);
+  }
+  for (uint32_t i = 0; i < sc->monitors.n; i++) {
+    IrMonitor mon = {sc->monitors.at[i].name, sc->monitors.at[i].output, sc->monitors.at[i].limit};
+    vec_push(m->arena, &s.monitors, mon);
+  }
+  vec_push(m->arena, &u->scenes, s);
+}

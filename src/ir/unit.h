@@ -1,0 +1,56 @@
+/* IrUnit: what is emitted together: the programs of one set of effects, and the scenes that share
+ * them. It carries its own names and units: emit never meets a Model. */
+#ifndef LAGC_IR_UNIT_H
+#define LAGC_IR_UNIT_H
+
+#include "ir/prog.h"
+
+typedef struct {
+  const char *name, *unit; /* as the user wrote them */
+  double factor;
+  int periodic, sign;
+} IrVar;
+
+typedef struct {
+  const char *name;
+  int direction;
+  const Prog *action;
+  int stop;
+} IrEvent;
+
+typedef struct {
+  const char *name, *text;
+  double value;
+} IrOption;
+
+typedef struct {
+  const char *name;
+  int output;
+  double limit;
+} IrMonitor;
+
+typedef struct {
+  const char *name, *doc;
+  const Prog *const *params; /* [np] */
+  const Prog *start, *observe;
+  double t0, t1;
+  int has_span;
+  const char *method; /* or NULL */
+  VEC(IrOption) options;
+  double tolerance, every;
+  VEC(IrVar) outputs;
+  VEC(IrMonitor) monitors;
+} IrScene;
+
+typedef struct {
+  Arena *arena;
+  const char *name, *doc, *source, *effects, *all_effects;
+  unsigned flags;
+  VEC(IrVar) q, z, p, u;
+  VEC(IrEvent) events;
+  const Prog *accel, *energy, *event_values, *inputs;
+  VEC(IrScene) scenes;
+} IrUnit;
+
+
+#endif

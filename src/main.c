@@ -1,0 +1,248 @@
+/* lagc: the way of a model from text to C, in one view.
+ *
+ *   text --parse--> Ast --model_build--> Model --eqns_derive--> Eqns --unit_new--> IrUnit --emit--> C
+ *
+ * Exit status: 0 ok, 1 bad model, 2 usage or files, 3 the run failed (a simulator's status). */
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/diag.h"
+#include "cli/files.h"
+#include "cli/options.h"
+#include "cli/toolchain.h"
+#include "emit/cnames.h"
+#include "emit/cwriter.h"
+#include "emit/emit_model.h"
+#include "emit/emit_text.h"
+#include "ir/lower.h"
+#include "mech/eqns.h"
+#include "model/model.h"
+#include "syntax/parse.h"
+
+#define LAGC_VERSION "0.1.0"
+
+enum { STATUS_OK, STATUS_MODEL, STATUS_USAGE };
+enum { MEMORY_LIMIT_MIB = 2048 };
+
+/* One compilation. */
+typedef struct {
+  Arena *arena;
+  Options o;
+  const char *argv0;
+  Sources *sources;
+  Diags *diags;
+  Ast *ast;
+} Compiler;
+
+static int fail_usage(const char *message) {
+  fprintf(stderr, "lagc: %s\n", message);
+  return STATUS_USAGE;
+}
+
+static int wants_dump(const Compiler *c, const char *stage) {
+  const char *at = c->o.dump ? strstr(c->o.dump, stage) : NULL;
+  size_t n = strlen(stage);
+  return at && (at == c->o.dump || at[-1] == ',') && (at[n] == ',' || at[n] == '\0');
+}
+
+static int write_out(Compiler *c, const char *path, const StrBuf *text) {
+  const char *why;
+  if (file_write(c->arena, path ? path : "-", sb_text(text), text->n, &why)) return STATUS_OK;
+  return fail_usage(arena_printf(c->arena, "cannot write %s: %s", path ? path : "standard output", why));
+}
+
+/* --- the stages --- */
+
+static int read_model(Compiler *c) {
+  const char *why = NULL;
+  const Source *source = source_read(c->sources, c->o.file, &why);
+  if (!source) return fail_usage(arena_printf(c->arena, "cannot read %s: %s", c->o.file, why));
+  parse(c->ast, source);
+  if (wants_dump(c, "ast")) {
+    StrBuf b = strbuf(c->arena);
+    ast_dump(c->ast, &b);
+    write_out(c, NULL, &b);
+  }
+  return c->diags->errors ? STATUS_MODEL : STATUS_OK;
+}
+
+/* The equations of one scene (NULL: the first) with one more effect (or NULL); NULL with the reasons
+ * in c->diags. */
+static Eqns *derive_with(Compiler *c, const char *scene, Name also) {
+  ModelChoice choice = {.scene = scene, .also = also, .defines = c->o.defines.at, .ndefines = c->o.defines.n};
+  Model *m = model_build(c->ast, &choice);
+  return m ? eqns_derive(m) : NULL;
+}
+
+static Eqns *derive_scene(Compiler *c, const char *scene) { return derive_with(c, scene, NULL); }
+
+static IrUnit *lower_scene(Compiler *c, const Eqns *e) {
+  IrUnit *u = unit_new(e, c->o.file);
+  unit_add_scene(u, e);
+  const char *wrong = prog_verify(u->accel);
+  if (wrong) diag_error(c->diags, (Span){0}, "internal error: %s", wrong);
+  if (wants_dump(c, "prog")) {
+    StrBuf b = strbuf(c->arena);
+    prog_dump(u->accel, &b);
+    write_out(c, NULL, &b);
+  }
+  return u;
+}
+
+/* --- the commands --- */
+
+static int do_derive(Compiler *c) {
+  Eqns *e = derive_scene(c, c->o.scene);
+  if (!e) return STATUS_MODEL;
+  IrUnit *u = lower_scene(c, e);
+  StrBuf out = strbuf(c->arena);
+  const char *format = c->o.format ? c->o.format : "text";
+  if (c->o.ops) sb_printf(&out, "%s\n", ops_text(u->accel, c->arena));
+  else if (strcmp(format, "c") == 0) emit_accel(u, &out);
+  else emit_text(e, u, strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
+  return write_out(c, c->o.output, &out);
+}
+
+static int do_emit(Compiler *c) {
+  Eqns *e = derive_scene(c, c->o.scene);
+  if (!e) return STATUS_MODEL;
+  IrUnit *u = lower_scene(c, e);
+  StrBuf out = strbuf(c->arena);
+  emit_model(u, cname(c->arena, u->name), &out);
+  return write_out(c, c->o.output, &out);
+}
+
+/* The scenes of the file as units: those with the same effects share one. */
+typedef VEC(IrUnit *) Units;
+
+static int lower_all(Compiler *c, Units *units) {
+  SceneList scenes = model_scenes(c->ast);
+  for (uint32_t i = 0; i < scenes.n; i++) {
+    Eqns *e = derive_scene(c, scenes.at[i]);
+    if (!e) return 0;
+    IrUnit *fresh = unit_new(e, c->o.file), *home = NULL;
+    for (uint32_t k = 0; k < units->n && !home; k++)
+      if (strcmp(units->at[k]->effects, fresh->effects) == 0) home = units->at[k];
+    if (!home) vec_push(c->arena, units, home = fresh);
+    unit_add_scene(home, e);
+  }
+  return 1;
+}
+
+static int make_simulator(Compiler *c, const char *output, const char **path) {
+  Units units = {0};
+  if (!lower_all(c, &units)) return STATUS_MODEL;
+  Toolchain tools;
+  const char *error = NULL;
+  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
+  VEC(SourceText) texts = {0};
+  const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
+  for (uint32_t i = 0; i < units.n; i++) {
+    names[i] = arena_printf(c->arena, "%s_%u", cname(c->arena, units.at[i]->name), i);
+    StrBuf b = strbuf(c->arena);
+    emit_model(units.at[i], names[i], &b);
+    vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
+  }
+  StrBuf b = strbuf(c->arena);
+  emit_program((const IrUnit *const *)units.at, names, units.n, tools.gsl, &b);
+  vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
+  *path = output ? output : toolchain_cached(c->arena, &tools, texts.at, texts.n);
+  if (!output && file_exists(*path)) return STATUS_OK;
+  if (!toolchain_build(c->arena, &tools, texts.at, texts.n, *path, &error)) return fail_usage(error);
+  return STATUS_OK;
+}
+
+static int do_build(Compiler *c) {
+  const char *path;
+  if (!c->o.output) return fail_usage("`lagc build` needs -o SIMULATOR");
+  return make_simulator(c, c->o.output, &path);
+}
+
+static int do_run(Compiler *c) {
+  const char *path;
+  int status = make_simulator(c, NULL, &path);
+  if (status != STATUS_OK) return status;
+  char **argv = ARENA_ARRAY(c->arena, char *, c->o.rest.n + 2);
+  argv[0] = arena_strdup(c->arena, path);
+  for (uint32_t i = 0; i < c->o.rest.n; i++) argv[i + 1] = arena_strdup(c->arena, c->o.rest.at[i]);
+  fflush(stdout);
+  execv(path, argv);
+  return fail_usage(arena_printf(c->arena, "cannot run %s", path));
+}
+
+static int do_check(Compiler *c) {
+  SceneList scenes = model_scenes(c->ast);
+  StrBuf out = strbuf(c->arena);
+  for (uint32_t i = 0; i < scenes.n; i++) {
+    if (c->o.scene && strcmp(c->o.scene, scenes.at[i]) != 0) continue;
+    Eqns *e = derive_scene(c, scenes.at[i]);
+    if (e) sb_printf(&out, "scene %s: ok\n", scenes.at[i]);
+  }
+  EffectList unused = model_unused_effects(c->ast);
+  for (uint32_t i = 0; i < unused.n && !c->o.scene; i++)
+    if (derive_with(c, NULL, unused.at[i])) sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);
+  if (c->diags->errors) return STATUS_MODEL;
+  return write_out(c, NULL, &out);
+}
+
+static int do_help(Compiler *c) {
+  StrBuf out = strbuf(c->arena);
+  sb_puts(&out, options_help(c->o.topic));
+  return write_out(c, NULL, &out);
+}
+
+static int do_command(Compiler *c) {
+  switch (c->o.command) {
+    case CMD_CHECK: return do_check(c);
+    case CMD_DERIVE: return do_derive(c);
+    case CMD_EMIT: return do_emit(c);
+    case CMD_HEADER: return fail_usage("not yet: lagc header");
+    case CMD_BUILD: return do_build(c);
+    case CMD_RUN: return do_run(c);
+    case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;
+  }
+  return STATUS_USAGE;
+}
+
+static int compile(Compiler *c) {
+  c->sources = sources_new(c->arena);
+  c->diags = diags_new(c->arena, c->sources);
+  c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
+  int status = read_model(c);
+  if (status == STATUS_OK) status = do_command(c);
+  StrBuf messages = strbuf(c->arena);
+  diags_print(c->diags, &messages);
+  fputs(sb_text(&messages), stderr);
+  return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
+}
+
+static int run_lagc(Compiler *c, int argc, char **argv) {
+  const char *error;
+  c->argv0 = argv[0];
+  if (!options_read(c->arena, argc, argv, &c->o, &error)) return fail_usage(error);
+  if (c->o.command == CMD_HELP) return do_help(c);
+  if (c->o.command == CMD_VERSION) {
+    puts("lagc " LAGC_VERSION);
+    return STATUS_OK;
+  }
+  return compile(c);
+}
+
+int main(int argc, char **argv) {
+  ArenaConfig config = {.max_bytes = (size_t)MEMORY_LIMIT_MIB << 20};
+  Compiler c = {.arena = arena_new(&config)};
+  jmp_buf out_of_memory;
+  int status;
+  if (!c.arena) return fail_usage("out of memory");
+  if (setjmp(out_of_memory)) {
+    if (arena_hit_limit(c.arena)) fprintf(stderr, "lagc: the model needs more than the limit of %d MiB of memory\n", MEMORY_LIMIT_MIB);
+    else fprintf(stderr, "lagc: out of memory\n");
+    status = STATUS_USAGE;
+  } else {
+    arena_guard(c.arena, &out_of_memory);
+    status = run_lagc(&c, argc, argv);
+  }
+  arena_free(c.arena);
+  return status;
+}

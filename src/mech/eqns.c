@@ -1,0 +1,114 @@
+#include "mech/eqns.h"
+
+#include "mech/lagrange.h"
+#include "sym/diff.h"
+#include "sym/simplify.h"
+
+static int is_kind(const Symbol *s, const void *data) { return s->kind == *(const SymKind *)data; }
+
+static int contains_kind(const Eqns *e, Expr x, SymKind kind) { return expr_contains(e->g, x, is_kind, &kind); }
+
+Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
+  uint32_t row = i > j ? i : j, col = i > j ? j : i, lo = 0, hi = e->mass.n;
+  while (lo < hi) {
+    uint32_t mid = lo + (hi - lo) / 2;
+    const MassEntry *x = &e->mass.at[mid];
+    if (x->row < row || (x->row == row && x->col < col)) lo = mid + 1;
+    else hi = mid;
+  }
+  int found = lo < e->mass.n && e->mass.at[lo].row == row && e->mass.at[lo].col == col;
+  return found ? e->mass.at[lo].e : expr_int(e->g, 0);
+}
+
+/* Momenta to show, E = p q' - L, and |p q'| + |L|. */
+static void derive_energy(Eqns *e) {
+  ExprGraph *g = e->g;
+  Expr *terms = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) terms[i] = expr_mul(g, e->p[i], expr_symbol(g, e->m->coords.at[i].v)->node);
+  Expr *momenta = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) momenta[i] = simplify(g, e->p[i]);
+  e->momenta = momenta;
+  Expr pv = expr_add_n(g, terms, e->n);
+  Expr energy = expr_sub(g, pv, e->m->lagrangian);
+  Expr simple = simplify(g, energy), simple_pv = simplify(g, pv);
+  e->energy = simplify_stable(g, simple);
+  Expr size_pv = expr_fn(g, EX_ABS, simple_pv), size_l = expr_fn(g, EX_ABS, e->m->lagrangian);
+  e->energy_scale = expr_add(g, size_pv, size_l);
+}
+
+/* Outputs that name the energy get what it is. */
+static void fill_outputs(Eqns *e) {
+  const Model *m = e->m;
+  ExprGraph *g = e->g;
+  Output *out = ARENA_ARRAY(m->arena, Output, m->scene.outputs.n + 1);
+  Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(g) + 1);
+  with[m->energy_sym] = e->energy;
+  for (uint32_t i = 0; i < m->scene.outputs.n; i++) {
+    out[i] = m->scene.outputs.at[i];
+    if (e->energy) out[i].value = expr_substitute(g, out[i].value, with, m->energy_sym + 1, "");
+    out[i].value = simplify_stable(g, out[i].value);
+  }
+  e->outputs = out;
+  e->noutputs = m->scene.outputs.n;
+}
+
+static int check_momenta(const Eqns *e) {
+  for (uint32_t i = 0; i < e->n; i++)
+    if (contains_kind(e, e->p[i], SYM_INPUT)) {
+      diag_error(e->m->diags, e->m->lagrangian_span, "the momentum of `%s` depends on an input, whose derivative would be needed",
+                 e->m->coords.at[i].name);
+      diag_help(e->m->diags, "write the input as a formula of t inside L instead");
+      return 0;
+    }
+  return 1;
+}
+
+/* Facts that hold for every state, read off the graph. */
+static void classify(Eqns *e) {
+  const Model *m = e->m;
+  e->constant_mass = 1;
+  e->smooth = 1;
+  e->autonomous = 1;
+  for (uint32_t i = 0; i < e->mass.n; i++) {
+    Expr x = e->mass.at[i].e;
+    e->constant_mass &= !contains_kind(e, x, SYM_COORD) && !contains_kind(e, x, SYM_VEL) && !contains_kind(e, x, SYM_TIME) &&
+                        !contains_kind(e, x, SYM_STATE);
+    e->autonomous &= !contains_kind(e, x, SYM_TIME);
+  }
+  VEC(Expr) roots = {0};
+  for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->f[i]);
+  for (uint32_t i = 0; i < m->states.n; i++) vec_push(m->arena, &roots, e->flow[i]);
+  int inputs = 0;
+  for (uint32_t i = 0; i < roots.n; i++) {
+    inputs |= contains_kind(e, roots.at[i], SYM_INPUT);
+    e->autonomous &= !contains_kind(e, roots.at[i], SYM_TIME);
+  }
+  for (uint32_t i = 0; i < m->inputs.n; i++)
+    if (inputs && m->inputs.at[i].value) e->autonomous &= !contains_kind(e, m->inputs.at[i].value, SYM_TIME);
+  ExprList l = expr_topo(e->g, roots.at, roots.n);
+  for (uint32_t i = 0; i < l.n; i++) {
+    ExprOp op = expr_op(e->g, l.at[i]);
+    e->smooth &= op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_MIN && op != EX_MAX;
+  }
+  e->conserves_energy = m->lagrangian && !m->forces.n && !m->dissipation && !inputs && !contains_kind(e, m->lagrangian, SYM_TIME) &&
+                        !contains_kind(e, m->lagrangian, SYM_STATE) && !contains_kind(e, m->lagrangian, SYM_INPUT);
+  e->definite_mass = m->lagrangian && lagrange_definite(e);
+}
+
+Eqns *eqns_derive(Model *m) {
+  Eqns *e = ARENA_NEW(m->arena, Eqns);
+  e->m = m;
+  e->g = m->g;
+  e->n = m->coords.n;
+  Expr *flow = ARENA_ARRAY(m->arena, Expr, m->states.n + 1);
+  for (uint32_t i = 0; i < m->states.n; i++) flow[i] = m->states.at[i].flow;
+  e->flow = flow;
+  if (e->n) {
+    lagrange_momenta_and_forces(e);
+    if (!check_momenta(e) || !lagrange_check_mass(e)) return NULL;
+    derive_energy(e);
+  }
+  classify(e);
+  fill_outputs(e);
+  return e;
+}

@@ -1,0 +1,45 @@
+/* Model -> Eqns: the equations of motion of one scene's model.
+ *
+ *   p_i = dL/dq_i'                    generalised momenta
+ *   M_ij = dp_i/dq_j'                 mass matrix, symmetric, possibly indefinite
+ *   f_i = dL/dq_i - (dp_i/dq) q' - (dp_i/dz) z' - dp_i/dt + Q_i
+ *   M q'' = f                         solved numerically, never inverted symbolically
+ *   Q_i = sum F dr/dq_i - dR/dq_i'    generalised forces: point forces, Rayleigh dissipation
+ *
+ * (dp/dq) q' + dp/dt is one forward directional derivative of p. Every expression here is in q, q',
+ * z, t, parameters and inputs; accelerations and rates occur in expects and outputs only. */
+#ifndef LAGC_EQNS_H
+#define LAGC_EQNS_H
+
+#include "model/model.h"
+
+typedef struct {
+  uint32_t row, col; /* col <= row */
+  Expr e;
+} MassEntry;
+
+typedef struct {
+  const Model *m;
+  ExprGraph *g;
+  uint32_t n;            /* number of coordinates */
+  const Expr *p;         /* [n] momenta, as differentiated */
+  const Expr *momenta;   /* [n] the same, as a person would write them */
+  VEC(MassEntry) mass;   /* the entries of the lower triangle that are not zero, row by row */
+  const Expr *f;         /* [n] */
+  const Expr *Q;         /* [n] generalised forces, inside f already */
+  const Expr *flow;      /* [number of states] */
+  Expr energy;           /* p q' - L; 0 without coordinates */
+  Expr energy_scale;     /* |p q'| + |L|: what a drift of the energy is compared with */
+  const Output *outputs; /* of the scene, with the energy filled in */
+  uint32_t noutputs;
+  int constant_mass, definite_mass, conserves_energy, autonomous, smooth;
+} Eqns;
+
+/* Derives the equations. NULL, with the reason in m->diags, when the mass matrix is singular for
+ * every state, or when the momenta depend on an input (its derivative would be needed). */
+Eqns *eqns_derive(Model *m);
+
+/* M[i][j]; the zero node where the entry is zero. */
+Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j);
+
+#endif

@@ -1,0 +1,166 @@
+/* Ast -> Model: names resolved, units converted, one scene and its effects applied.
+ *
+ * Needs a parsed Ast. What the scene does not use is not looked at beyond the names it declares, and
+ * makes no graph node: a model with an effect off is the model with the effect's text deleted.
+ * Everything in a Model is in SI. */
+#ifndef LAGC_MODEL_H
+#define LAGC_MODEL_H
+
+#include "model/units.h"
+#include "sym/expr.h"
+#include "syntax/ast.h"
+
+typedef struct {
+  Name name;
+  Span span;
+  Unit unit;
+  int periodic;
+  SymId q, v, a; /* th, th', th'' */
+} Coord;
+
+typedef struct {
+  Name name;
+  Span span;
+  Unit unit;
+  SymId z, rate;
+  Expr flow; /* 0 until a flow statement gives it */
+} State;
+
+typedef struct {
+  Name name;   /* drag.c for parameter c of effect drag */
+  Span span;
+  Unit unit;
+  AstSign sign;
+  SymId sym;
+  Expr value;  /* of pi and earlier parameters */
+  Num constant; /* the value, where it is a number at once (has_constant) */
+  int has_constant;
+} Param;
+
+typedef struct {
+  Name name;
+  Span span;
+  Unit unit;
+  SymId sym;
+  Expr value; /* of t and parameters */
+} Input;
+
+/* A force f along the displacement of `point`: adds f * d(point)/dq_i to each Q_i. */
+typedef struct {
+  Expr point, f;
+  Span span;
+} Force;
+
+typedef struct {
+  Name name; /* or NULL */
+  Span span;
+  AstId lhs_ast, rhs_ast;
+  Expr lhs, rhs;
+} Expect;
+
+typedef struct {
+  SymId target; /* of kind SYM_COORD, SYM_VEL or SYM_STATE */
+  Expr value;
+} Action;
+
+typedef struct {
+  Name name;
+  Span span;
+  Expr g;
+  AstDirection direction;
+  VEC(Action) actions;
+  int stop;
+} Event;
+
+/* A named quantity: what a scene puts out, or an observe statement. */
+typedef struct {
+  Name name;
+  Span span;
+  Unit unit;
+  Expr value; /* may contain q'', z' */
+} Output;
+
+typedef struct {
+  SymId target;
+  Expr value; /* of parameters */
+} Start;
+
+typedef struct {
+  Name name;
+  double value;
+  Name text; /* of an option like quadrature = trapezoid, or NULL */
+} Option;
+
+typedef struct {
+  Name name;
+  int output; /* index into outputs; -1: the energy */
+  double limit;
+} Monitor;
+
+typedef struct {
+  Name name;
+  const char *doc;
+  VEC(Start) starts;
+  double t0, t1;
+  int has_span;
+  Name method; /* or NULL */
+  VEC(Option) options;
+  double tolerance; /* 0: not given */
+  VEC(Output) outputs;
+  double every;
+  VEC(Monitor) monitors;
+} Scene;
+
+typedef struct {
+  const Ast *ast;
+  Diags *diags;
+  Arena *arena;
+  ExprGraph *g;
+  Name name;
+  const char *doc;
+  Span span;       /* of the model's name */
+  VEC(Name) effects;     /* in use, in order of declaration */
+  VEC(Name) all_effects;
+  SymId time, pi;
+  VEC(Coord) coords;
+  VEC(State) states;
+  VEC(Param) params;
+  VEC(Input) inputs;
+  Expr kinetic, potential; /* 0 when L was given as a whole */
+  Expr lagrangian;         /* 0 when there are no coordinates */
+  Span lagrangian_span;
+  Expr dissipation;        /* sum of Rayleigh functions, or 0 */
+  VEC(Force) forces;
+  VEC(Expect) expects;
+  VEC(Event) events;
+  VEC(Output) observes;
+  Scene scene;
+  SymId energy_sym; /* stands for the energy p q' - L in outputs, until mech knows it */
+} Model;
+
+typedef struct {
+  const char *name, *value; /* -D NAME=VALUE */
+} Define;
+
+/* The names of the scenes in the file, in order; one named "default" when there is none. */
+typedef struct {
+  const Name *at;
+  uint32_t n;
+} SceneList, EffectList;
+SceneList model_scenes(const Ast *ast);
+
+/* The effects that no scene uses. */
+EffectList model_unused_effects(const Ast *ast);
+
+/* What to build a model for. */
+typedef struct {
+  const char *scene; /* NULL: the first */
+  Name also;         /* an effect to turn on besides the scene's own, with what it requires; or NULL */
+  const Define *defines;
+  uint32_t ndefines;
+} ModelChoice;
+
+/* Builds the model. NULL when there were errors; they are in ast->diags, all of them. */
+Model *model_build(Ast *ast, const ModelChoice *choice);
+
+#endif

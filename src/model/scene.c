@@ -1,0 +1,419 @@
+/* Scenes: which statements are active, and what a scene says of a run. */
+#include <math.h>
+
+#include "base/suggest.h"
+#include "model/builder.h"
+
+/* --- the file's scenes and effects --- */
+
+static const AstStmt *find_stmt(const Ast *ast, AstStmtKind kind, const char *name) {
+  for (const AstStmt *s = ast->first; s; s = s->next)
+    if (s->kind == kind && s->name && (!name || strcmp(s->name, name) == 0)) return s;
+  return NULL;
+}
+
+SceneList model_scenes(const Ast *ast) {
+  VEC(Name) names = {0};
+  for (const AstStmt *s = ast->first; s; s = s->next)
+    if (s->kind == STMT_SCENE && s->name) vec_push(ast->arena, &names, s->name);
+  if (!names.n) vec_push(ast->arena, &names, intern(ast->names, "default"));
+  return (SceneList){names.at, names.n};
+}
+
+EffectList model_unused_effects(const Ast *ast) {
+  VEC(Name) unused = {0};
+  for (const AstStmt *e = ast->first; e; e = e->next) {
+    if (e->kind != STMT_EFFECT || !e->name) continue;
+    int used = 0;
+    for (const AstStmt *s = ast->first; s; s = s->next)
+      for (const AstStmt *x = s->kind == STMT_SCENE ? s->body : NULL; x; x = x->next)
+        used |= x->kind == STMT_USE && x->name == e->name;
+    if (!used) vec_push(ast->arena, &unused, e->name);
+  }
+  return (EffectList){unused.at, unused.n};
+}
+
+static Name nearest(const Ast *ast, AstStmtKind kind, const char *wrong) {
+  VEC(Name) names = {0};
+  for (const AstStmt *s = ast->first; s; s = s->next)
+    if (s->kind == kind && s->name) vec_push(ast->arena, &names, s->name);
+  return suggest(wrong, names.at, names.n);
+}
+
+static void report_unknown(Builder *b, AstStmtKind kind, Span span, const char *name) {
+  const char *what = kind == STMT_SCENE ? "scene" : "effect";
+  diag_error(b->diags, span, "unknown %s `%s`", what, name);
+  Name near = nearest(b->ast, kind, name);
+  if (near) diag_help(b->diags, "did you mean `%s`?", near);
+  else if (kind == STMT_EFFECT) diag_help(b->diags, "declare it: `effect %s { ... }`", name);
+}
+
+/* Names of scenes, and of effects, are each declared once. */
+static void check_twice(Builder *b) {
+  for (const AstStmt *s = b->ast->first; s; s = s->next)
+    if (s->kind == STMT_SCENE || s->kind == STMT_EFFECT) {
+      const AstStmt *first = find_stmt(b->ast, s->kind, s->name);
+      if (first == s || !first) continue;
+      diag_error(b->diags, s->name_span, "the %s `%s` is declared twice", s->kind == STMT_SCENE ? "scene" : "effect", s->name);
+      diag_also(b->diags, first->name_span, "first declared here");
+    }
+}
+
+/* The scene and those it is like, the farthest ancestor first; NULL-terminated. */
+static const AstStmt **scene_chain(Builder *b, const AstStmt *scene) {
+  VEC(const AstStmt *) chain = {0};
+  for (const AstStmt *s = scene; s;) {
+    for (uint32_t i = 0; i < chain.n; i++)
+      if (chain.at[i] == s) {
+        diag_error(b->diags, s->name_span, "the scene `%s` is like itself", s->name);
+        diag_help(b->diags, "`like` must not lead back to the scene");
+        s = NULL;
+        break;
+      }
+    if (!s) break;
+    vec_push(b->arena, &chain, s);
+    const AstStmt *next = NULL;
+    for (const AstStmt *x = s->body; x; x = x->next)
+      if (x->kind == STMT_LIKE) {
+        next = find_stmt(b->ast, STMT_SCENE, x->name);
+        if (!next) report_unknown(b, STMT_SCENE, x->name_span, x->name);
+      }
+    s = next;
+  }
+  const AstStmt **out = ARENA_ARRAY(b->arena, const AstStmt *, chain.n + 1);
+  for (uint32_t i = 0; i < chain.n; i++) out[i] = chain.at[chain.n - 1 - i];
+  return out;
+}
+
+/* --- effects in use --- */
+
+static int uses(const Builder *b, Name effect) {
+  for (uint32_t i = 0; i < b->m->effects.n; i++)
+    if (b->m->effects.at[i] == effect) return 1;
+  return 0;
+}
+
+static void collect_uses(Builder *b, const AstStmt *scene) {
+  for (const AstStmt *x = scene->body; x; x = x->next) {
+    if (x->kind != STMT_USE) continue;
+    if (strcmp(x->name, "none") == 0) b->m->effects.n = 0;
+    else if (!find_stmt(b->ast, STMT_EFFECT, x->name)) report_unknown(b, STMT_EFFECT, x->name_span, x->name);
+    else if (!uses(b, x->name)) vec_push(b->arena, &b->m->effects, x->name);
+  }
+}
+
+/* Turns an effect on together with what it requires. */
+static void use_with_needs(Builder *b, Name effect) {
+  if (uses(b, effect)) return;
+  vec_push(b->arena, &b->m->effects, effect);
+  for (uint32_t i = b->m->effects.n - 1; i < b->m->effects.n; i++) {
+    const AstStmt *st = find_stmt(b->ast, STMT_EFFECT, b->m->effects.at[i]);
+    for (const AstStmt *x = st ? st->body : NULL; x; x = x->next)
+      if (x->kind == STMT_REQUIRES && !uses(b, x->name) && find_stmt(b->ast, STMT_EFFECT, x->name))
+        vec_push(b->arena, &b->m->effects, x->name);
+  }
+}
+
+static void check_effect_needs(Builder *b, const AstStmt *effect) {
+  for (const AstStmt *x = effect->body; x; x = x->next) {
+    if (x->kind != STMT_REQUIRES && x->kind != STMT_EXCLUDES) continue;
+    if (!find_stmt(b->ast, STMT_EFFECT, x->name)) {
+      report_unknown(b, STMT_EFFECT, x->name_span, x->name);
+    } else if (x->kind == STMT_REQUIRES && !uses(b, x->name)) {
+      diag_error(b->diags, x->span, "the effect `%s` requires `%s`, which the scene `%s` does not use", effect->name, x->name,
+                 b->m->scene.name);
+      diag_help(b->diags, "add `use %s` to the scene", x->name);
+    } else if (x->kind == STMT_EXCLUDES && uses(b, x->name)) {
+      diag_error(b->diags, x->span, "the effects `%s` and `%s` exclude each other, and the scene `%s` uses both", effect->name,
+                 x->name, b->m->scene.name);
+    }
+  }
+}
+
+/* --- which statements are active --- */
+
+static const AstStmt *pick_scene(Builder *b, const char *scene) {
+  const AstStmt *st = find_stmt(b->ast, STMT_SCENE, scene);
+  if (st || !scene) return st;
+  if (strcmp(scene, "default") == 0 && !find_stmt(b->ast, STMT_SCENE, NULL)) return NULL;
+  report_unknown(b, STMT_SCENE, (Span){0}, scene);
+  return NULL;
+}
+
+static void take_model_name(Builder *b) {
+  const AstStmt *m = find_stmt(b->ast, STMT_MODEL, NULL);
+  if (!m) {
+    Span start = b->ast->first ? b->ast->first->span : (Span){0};
+    diag_error(b->diags, start, "the file does not name its model");
+    diag_help(b->diags, "begin with `model NAME \"what it is\"`");
+    b->m->name = intern(b->ast->names, "model");
+    return;
+  }
+  b->m->name = m->name;
+  b->m->doc = m->doc ? m->doc : "";
+  b->m->span = m->name_span;
+  for (const AstStmt *s = m->next; s; s = s->next)
+    if (s->kind == STMT_MODEL) {
+      diag_error(b->diags, s->name_span, "a file declares one model");
+      diag_also(b->diags, m->name_span, "the first is here");
+    }
+}
+
+void scene_select(Builder *b, const char *scene, Name also) {
+  take_model_name(b);
+  check_twice(b);
+  const AstStmt *st = pick_scene(b, scene);
+  b->m->scene.name = st ? st->name : intern(b->ast->names, "default");
+  b->m->scene.doc = st && st->doc ? st->doc : "";
+  b->chain = scene_chain(b, st);
+  for (const AstStmt **s = b->chain; *s; s++) collect_uses(b, *s);
+  if (also) use_with_needs(b, also);
+  VEC(Name) in_order = {0};
+  for (const AstStmt *s = b->ast->first; s; s = s->next) {
+    if (s->kind != STMT_EFFECT) {
+      if (s->kind != STMT_SCENE) vec_push(b->arena, &b->active, ((Active){s, NULL}));
+      continue;
+    }
+    vec_push(b->arena, &b->m->all_effects, s->name);
+    if (!uses(b, s->name)) continue;
+    vec_push(b->arena, &in_order, s->name);
+    check_effect_needs(b, s);
+    for (const AstStmt *x = s->body; x; x = x->next) vec_push(b->arena, &b->active, ((Active){x, s->name}));
+  }
+  b->m->effects.at = in_order.at;
+  b->m->effects.n = in_order.n;
+}
+
+/* --- the scene's contents --- */
+
+/* The parameter that `c` or `drag.c` names; reported when it is none. -1 then. */
+static int find_param(Builder *b, AstId id, Name effect) {
+  const AstExpr *x = ast_expr(b->ast, id);
+  const Entity *e = NULL;
+  if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME) {
+    e = scope_own(&b->scope, x->name, ast_expr(b->ast, x->a)->name);
+    if (!e) diag_error(b->diags, x->span, "no effect in use declares `%s`", ast_text(b, id));
+  } else if (x->kind == AST_NAME) {
+    e = resolve_name(b, x->name, x->span, effect);
+  } else if (x->kind != AST_ERROR) {
+    diag_error(b->diags, x->span, "a scene sets parameters: `name = value`");
+  }
+  if (e && e->kind == ENT_PARAM) return (int)e->index;
+  if (e) {
+    diag_error(b->diags, x->span, "`%s` is a %s, not a parameter", e->name, ent_kind_text(e->kind));
+    if (e->kind == ENT_COORD) diag_help(b->diags, "its start is set by `start %s = ...`", e->name);
+    if (e->kind == ENT_CONST) diag_help(b->diags, "constants are fixed when compiling: `-D %s=...`", e->name);
+  }
+  return -1;
+}
+
+typedef struct {
+  uint32_t index;
+} ParamLimit;
+
+static int param_from(const Symbol *s, const void *data) {
+  return s->kind == SYM_PARAM && s->index >= ((const ParamLimit *)data)->index;
+}
+
+static void set_param(Builder *b, const AstStmt *st, Name effect) {
+  int i = find_param(b, st->lhs, effect);
+  if (i < 0) return;
+  Param *p = &b->m->params.at[i];
+  Expr e = resolve_in(b, st->rhs, IN_START, NULL, &p->unit);
+  if (!e) return;
+  ParamLimit limit = {(uint32_t)i};
+  if (expr_contains(b->g, e, param_from, &limit)) {
+    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the value of `%s` may use only parameters declared before it", p->name);
+    return;
+  }
+  p->value = e;
+}
+
+static Name method_text(const Builder *b, AstId id) {
+  const AstExpr *x = ast_expr(b->ast, id);
+  return x->kind == AST_NAME ? x->name : NULL;
+}
+
+static void set_method(Builder *b, const AstStmt *st) {
+  Scene *sc = &b->m->scene;
+  Unit second = {.dim = DIM_UNKNOWN, .factor = num_int(1), .text = ""};
+  sc->method = st->name;
+  sc->options.n = 0;
+  for (const AstStmt *o = st->body; o; o = o->next) {
+    const AstExpr *l = ast_expr(b->ast, o->lhs);
+    if (l->kind != AST_NAME) {
+      diag_error(b->diags, l->span, "an option is `name = value`");
+      continue;
+    }
+    Option opt = {.name = l->name, .text = method_text(b, o->rhs)};
+    if (!opt.text) opt.value = resolve_number(b, o->rhs, &second, "an option");
+    vec_push(b->arena, &sc->options, opt);
+  }
+}
+
+static void set_start(Builder *b, const AstStmt *st) {
+  if (st->exactly) {
+    not_yet(b, st->span, "`start exactly` (it needs constraints)");
+    return;
+  }
+  const AstExpr *x = ast_expr(b->ast, st->lhs);
+  const AstExpr *name = x->kind == AST_PRIME ? ast_expr(b->ast, x->a) : x;
+  if (name->kind != AST_NAME) {
+    if (name->kind == AST_INDEX || name->kind == AST_TUPLE || name->kind == AST_LIST) not_yet(b, name->span, "families and vectors");
+    else if (name->kind != AST_ERROR) diag_error(b->diags, x->span, "a start gives a coordinate or a velocity: `start th = 90 [deg]`");
+    return;
+  }
+  const Entity *e = resolve_name(b, name->name, name->span, NULL);
+  if (!e) return;
+  if (e->kind != ENT_COORD && e->kind != ENT_STATE) {
+    diag_error(b->diags, name->span, "`%s` is a %s; only coordinates, velocities and states start somewhere", name->name,
+               ent_kind_text(e->kind));
+    if (e->kind == ENT_PARAM) diag_help(b->diags, "write `%s = value` without `start`", name->name);
+    return;
+  }
+  Unit unit = e->kind == ENT_COORD ? b->m->coords.at[e->index].unit : b->m->states.at[e->index].unit;
+  SymId target = e->kind == ENT_COORD ? b->m->coords.at[e->index].q : b->m->states.at[e->index].z;
+  if (x->kind == AST_PRIME) {
+    if (e->kind == ENT_STATE) {
+      diag_error(b->diags, x->span, "the rate of a state follows from its flow");
+      return;
+    }
+    target = b->m->coords.at[e->index].v;
+    unit.dim = b->dims.at[target]; /* per second: the same factor */
+  }
+  Expr v = resolve_in(b, st->rhs, IN_START, NULL, &unit);
+  if (!v) return;
+  Start start = {target, v};
+  for (uint32_t i = 0; i < b->m->scene.starts.n; i++)
+    if (b->m->scene.starts.at[i].target == target) {
+      b->m->scene.starts.at[i] = start;
+      return;
+    }
+  vec_push(b->arena, &b->m->scene.starts, start);
+}
+
+/* The unit that an output is shown in: a name's own, otherwise that of its dimension. */
+static Unit output_unit(Builder *b, AstId id, Dim dim) {
+  const AstExpr *x = ast_expr(b->ast, id);
+  int primes = 0;
+  for (; x->kind == AST_PRIME; primes++) x = ast_expr(b->ast, x->a);
+  int ambiguous;
+  const Entity *e = x->kind == AST_NAME ? scope_find(&b->scope, x->name, NULL, &ambiguous) : NULL;
+  Unit u = unit_of_dim(b, dim);
+  if (!e) return u;
+  const Unit *own = e->kind == ENT_COORD ? &b->m->coords.at[e->index].unit : e->kind == ENT_STATE ? &b->m->states.at[e->index].unit
+                  : e->kind == ENT_INPUT ? &b->m->inputs.at[e->index].unit : e->kind == ENT_OBSERVE ? &b->m->observes.at[e->index].unit
+                  : e->kind == ENT_PARAM ? &b->m->params.at[e->index].unit : NULL;
+  if (!own || !own->text[0]) return u;
+  u = *own;
+  u.dim = dim;
+  if (primes) u.text = arena_printf(b->arena, primes == 1 ? "%s/s" : "%s/s^%d", own->text, primes);
+  return u;
+}
+
+/* Index of the output that this expression is; it is added when it is not there. -1 after an error. */
+static int add_output(Builder *b, AstId id) {
+  Value v = resolve(b, id, IN_OBSERVE, NULL);
+  if (!v.e) return -1;
+  Scene *sc = &b->m->scene;
+  Name label = intern(b->ast->names, ast_text(b, id));
+  for (uint32_t i = 0; i < sc->outputs.n; i++)
+    if (sc->outputs.at[i].name == label) return (int)i;
+  Output o = {.name = label, .span = ast_expr(b->ast, id)->span, .unit = output_unit(b, id, v.dim), .value = v.e};
+  vec_push(b->arena, &sc->outputs, o);
+  return (int)sc->outputs.n - 1;
+}
+
+static Unit seconds(void) {
+  return (Unit){.dim = {1, {[DIM_TIME] = DIM_ONE}}, .factor = num_int(1), .text = "s"};
+}
+
+static void set_output(Builder *b, const AstStmt *st) {
+  b->m->scene.outputs.n = 0;
+  for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) add_output(b, i);
+  Unit s = seconds();
+  if (st->rhs) {
+    double every = resolve_number(b, st->rhs, &s, "the output interval");
+    if (every <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the output interval must be positive");
+    b->m->scene.every = every;
+  }
+}
+
+static void set_monitor(Builder *b, const AstStmt *st) {
+  const AstExpr *x = ast_expr(b->ast, st->lhs);
+  Unit none = {.dim = DIM_UNKNOWN, .factor = num_int(1), .text = ""};
+  Monitor mon = {.output = -1, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit")};
+  mon.name = intern(b->ast->names, ast_text(b, st->lhs));
+  if (mon.limit <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a monitor's limit must be positive");
+  if (x->kind != AST_NAME || strcmp(x->name, "energy") != 0) {
+    mon.output = add_output(b, st->lhs);
+    if (mon.output < 0) return;
+  }
+  vec_push(b->arena, &b->m->scene.monitors, mon);
+}
+
+static void set_span(Builder *b, const AstStmt *st) {
+  Unit s = seconds();
+  Scene *sc = &b->m->scene;
+  sc->t1 = resolve_number(b, st->rhs, &s, "the span");
+  sc->has_span = 1;
+  if (sc->t1 == 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the span is empty");
+}
+
+static void set_tolerance(Builder *b, const AstStmt *st) {
+  Unit none = {.dim = DIM_NONE, .factor = num_int(1), .text = ""};
+  b->m->scene.tolerance = resolve_number(b, st->rhs, &none, "the tolerance");
+  if (b->m->scene.tolerance <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the tolerance must be positive");
+}
+
+static void scene_statement(Builder *b, const AstStmt *st) {
+  switch (st->kind) {
+    case STMT_START: set_start(b, st); return;
+    case STMT_SET: set_param(b, st, NULL); return;
+    case STMT_USE:
+      if (uses(b, st->name))
+        for (const AstStmt *x = st->body; x; x = x->next) set_param(b, x, st->name);
+      return;
+    case STMT_SPAN: set_span(b, st); return;
+    case STMT_METHOD: set_method(b, st); return;
+    case STMT_TOLERANCE: set_tolerance(b, st); return;
+    case STMT_OUTPUT: set_output(b, st); return;
+    case STMT_MONITOR: set_monitor(b, st); return;
+    case STMT_EXACT: not_yet(b, st->span, "`exact`"); return;
+    case STMT_LIKE: return;
+    default: diag_error(b->diags, st->span, "this does not belong in a scene"); return;
+  }
+}
+
+/* Without an output statement: coordinates, velocities, states, energy. */
+static void default_outputs(Builder *b) {
+  Scene *sc = &b->m->scene;
+  Model *m = b->m;
+  for (int velocities = 0; velocities < 2; velocities++)
+    for (uint32_t i = 0; i < m->coords.n; i++) {
+      const Coord *c = &m->coords.at[i];
+      const Symbol *s = expr_symbol(b->g, velocities ? c->v : c->q);
+      Output o = {.name = s->name, .span = c->span, .unit = c->unit, .value = s->node};
+      if (velocities && c->unit.text[0]) o.unit.text = arena_printf(b->arena, "%s/s", c->unit.text);
+      vec_push(b->arena, &sc->outputs, o);
+    }
+  for (uint32_t i = 0; i < m->states.n; i++) {
+    const State *z = &m->states.at[i];
+    Output o = {.name = z->name, .span = z->span, .unit = z->unit, .value = expr_symbol(b->g, z->z)->node};
+    vec_push(b->arena, &sc->outputs, o);
+  }
+  if (!m->lagrangian) return;
+  Output o = {.name = intern(b->ast->names, "energy"), .value = expr_symbol(b->g, m->energy_sym)->node};
+  o.unit = unit_of_dim(b, b->dims.at[m->energy_sym]);
+  vec_push(b->arena, &sc->outputs, o);
+}
+
+void scene_build(Builder *b) {
+  Scene *sc = &b->m->scene;
+  sc->t1 = 10;
+  for (const AstStmt **s = b->chain; *s; s++) {
+    for (const AstStmt *x = (*s)->body; x; x = x->next) scene_statement(b, x);
+    if ((*s)->doc) sc->doc = (*s)->doc;
+  }
+  if (!sc->outputs.n) default_outputs(b);
+}

@@ -1,0 +1,86 @@
+/* What the grammar's actions call: one function a rule. Builders never fail: what they object to
+ * is reported, and something that later passes can walk over is returned. */
+#ifndef LAGC_AST_BUILD_H
+#define LAGC_AST_BUILD_H
+
+#include "syntax/ast.h"
+
+typedef struct {
+  Name name;
+  Span span;
+} Ident;
+
+typedef struct {
+  AstId first, last;
+} AstList;
+
+typedef struct {
+  AstStmt *first, *last;
+} StmtList;
+
+typedef struct {
+  const char *text; /* NULL: none was written */
+  Span span;
+} AstText;
+
+/* ---- expressions (ast.c); `span` is the whole, `op` the operator or name ---- */
+AstId ast_number(Ast *ast, Span span, Num number);
+AstId ast_string(Ast *ast, AstText text);
+AstId ast_name(Ast *ast, Ident name);
+AstId ast_declared(Ast *ast, Ident name); /* an AST_NAME that is given a meaning here */
+AstId ast_unary(Ast *ast, AstKind kind, Span span, Span op, AstId a);
+AstId ast_binary(Ast *ast, AstKind kind, Span span, Span op, AstId a, AstId b);
+AstId ast_index(Ast *ast, Span span, AstId a, AstList indices);
+AstId ast_member(Ast *ast, Span span, AstId a, Ident member);
+AstId ast_prime(Ast *ast, Span span, Span op, AstId a);
+AstId ast_unit(Ast *ast, Span span, AstId a, AstUnit unit);
+AstId ast_call(Ast *ast, Span span, Ident function, AstList args);
+AstId ast_reduce(Ast *ast, AstKind kind, Span span, Ident index, AstId lo, AstId hi, AstId body, Span op);
+AstId ast_collect(Ast *ast, AstKind kind, Span span, AstList items); /* AST_LIST */
+AstId ast_bind(Ast *ast, Span span, Ident index, AstId lo, AstId hi);
+
+AstId ast_tuple(Ast *ast, Span span, AstId head, AstList rest);
+AstId ast_gap(Ast *ast, Span span, Span op, AstId gap, AstId least); /* of a contact: gap >= least */
+
+/* Objects to `t` and `pi` where a name is given a meaning. */
+void check_declared(Ast *ast, Ident name);
+
+AstList ast_list(AstId item);
+AstList ast_list_add(Ast *ast, AstList list, AstId item);
+
+/* ---- statements (ast_stmt.c) ---- */
+StmtList stmts_one(AstStmt *s);
+StmtList stmts_add(StmtList list, AstStmt *s);
+StmtList stmts_join(StmtList a, StmtList b);
+
+/* What differs between a list of settings and the statement it stands in. */
+StmtList stmts_retag(Ast *ast, StmtList list, AstStmtKind kind, int exactly);
+
+AstStmt *stmt_plain(Ast *ast, AstStmtKind kind, Span span);
+AstStmt *stmt_include(Ast *ast, Span span, AstText path);
+AstStmt *stmt_name(Ast *ast, AstStmtKind kind, Span span, Ident name);
+AstStmt *stmt_titled(Ast *ast, AstStmtKind kind, Span span, Ident name, AstText doc, StmtList body);
+AstStmt *stmt_coord(Ast *ast, Span span, Ident name, AstList dims, Ident type, AstUnit unit, int periodic);
+AstStmt *stmt_param(Ast *ast, Span span, Ident name, AstList dims, AstUnit unit, AstId value, AstSign sign);
+AstStmt *stmt_define(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstUnit unit, AstId rhs);
+AstStmt *stmt_function(Ast *ast, Span span, Ident name, AstList args, AstId rhs);
+AstStmt *stmt_value(Ast *ast, AstStmtKind kind, Span span, AstId rhs);
+AstStmt *stmt_pair(Ast *ast, AstStmtKind kind, Span span, AstId lhs, AstId rhs);
+AstStmt *stmt_equation(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstId lhs, AstId rhs);
+AstStmt *stmt_symmetry(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList maps);
+AstStmt *stmt_event(Ast *ast, Span span, Ident name, AstList dims, AstId when, AstDirection way, StmtList body);
+AstStmt *stmt_for(Ast *ast, Span span, Ident index, AstId lo, AstId hi, StmtList body);
+AstStmt *stmt_for_map(Ast *ast, Span span, Ident index, AstId lo, AstId hi, AstStmt *map);
+AstStmt *stmt_options(Ast *ast, AstStmtKind kind, Span span, Ident name, StmtList options);
+AstStmt *stmt_output(Ast *ast, Span span, AstList what, AstId every);
+
+/* One more item of a symmetry: a map after `for …:` belongs to that `for`. */
+StmtList maps_add(StmtList maps, AstStmt *item);
+
+/* `a-b`, the name of a method. */
+Ident ident_dashed(Ast *ast, Span span, Ident a, Ident b);
+
+/* `> 0` and the like: only zero says a sign. */
+AstSign sign_of(Ast *ast, Span span, AstSign sign, Num number);
+
+#endif

@@ -1,0 +1,197 @@
+/* Statements: each builder makes one; a list of declarations becomes one statement each.
+ *
+ * In: the parts of a statement, in the order of its text. Out: an AstStmt that says what was written.
+ * Must hold: type is vec2, vec3, rotation or NULL; `t` and `pi` are never declared silently. */
+#include "syntax/ast_build.h"
+
+#include "base/suggest.h"
+
+StmtList stmts_one(AstStmt *s) { return (StmtList){s, s}; }
+
+StmtList stmts_join(StmtList a, StmtList b) {
+  if (!a.first) return b;
+  if (!b.first) return a;
+  a.last->next = b.first;
+  return (StmtList){a.first, b.last};
+}
+
+StmtList stmts_add(StmtList list, AstStmt *s) { return stmts_join(list, stmts_one(s)); }
+
+/* A family cannot be bound where every member has its own equation: that is what `for` is for. */
+static void refuse_bind(Ast *ast, const AstStmt *s) {
+  for (AstId id = ast_expr(ast, s->lhs)->first; id && id <= s->lhs; id++) {
+    const AstExpr *e = ast_expr(ast, id);
+    if (e->kind != AST_BIND) continue;
+    diag_error(ast->diags, e->span, "`%s in …` cannot stand in this index", e->name);
+    diag_help(ast->diags, "write `for %s in 1..N { … }` around the statement", e->name);
+    return;
+  }
+}
+
+StmtList stmts_retag(Ast *ast, StmtList list, AstStmtKind kind, int exactly) {
+  for (AstStmt *s = list.first; s; s = s->next) {
+    s->kind = kind;
+    s->exactly = exactly;
+    if (kind == STMT_FLOW) refuse_bind(ast, s);
+  }
+  return list;
+}
+
+AstStmt *stmt_plain(Ast *ast, AstStmtKind kind, Span span) {
+  AstStmt *s = ARENA_NEW(ast->arena, AstStmt);
+  s->kind = kind;
+  s->span = s->name_span = span;
+  return s;
+}
+
+AstStmt *stmt_name(Ast *ast, AstStmtKind kind, Span span, Ident name) {
+  AstStmt *s = stmt_plain(ast, kind, span);
+  s->name = name.name;
+  if (name.name) s->name_span = name.span;
+  return s;
+}
+
+/* A statement that gives a name a meaning. */
+static AstStmt *declare(Ast *ast, AstStmtKind kind, Span span, Ident name) {
+  check_declared(ast, name);
+  return stmt_name(ast, kind, span, name);
+}
+
+AstStmt *stmt_include(Ast *ast, Span span, AstText path) {
+  AstStmt *s = stmt_plain(ast, STMT_INCLUDE, span);
+  s->doc = path.text;
+  s->name_span = path.span;
+  return s;
+}
+
+AstStmt *stmt_titled(Ast *ast, AstStmtKind kind, Span span, Ident name, AstText doc, StmtList body) {
+  AstStmt *s = stmt_name(ast, kind, span, name);
+  s->doc = doc.text;
+  s->body = body.first;
+  s->last = body.last;
+  return s;
+}
+
+static void check_type(Ast *ast, Ident type) {
+  static const char *const known[] = {"vec2", "vec3", "rotation"};
+  Name names[3];
+  for (size_t i = 0; i < 3; i++) {
+    if (strcmp(type.name, known[i]) == 0) return;
+    names[i] = intern(ast->names, known[i]);
+  }
+  Name near = suggest(type.name, names, 3);
+  diag_error(ast->diags, type.span, "unknown kind of coordinate `%s`", type.name);
+  if (near) diag_help(ast->diags, "did you mean `%s`?", near);
+  else diag_help(ast->diags, "a coordinate is a scalar, `vec2`, `vec3` or `rotation`");
+}
+
+AstStmt *stmt_coord(Ast *ast, Span span, Ident name, AstList dims, Ident type, AstUnit unit, int periodic) {
+  AstStmt *s = declare(ast, STMT_COORD, span, name);
+  if (type.name) check_type(ast, type);
+  s->dims = dims.first;
+  s->type = type.name;
+  s->unit = unit;
+  s->periodic = periodic;
+  return s;
+}
+
+AstStmt *stmt_define(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstUnit unit, AstId rhs) {
+  AstStmt *s = declare(ast, kind, span, name);
+  s->dims = dims.first;
+  s->unit = unit;
+  s->rhs = rhs;
+  return s;
+}
+
+/* `param k = 1 [N/m]`: the unit of the value is the parameter's, unless the name had one of its own. */
+AstStmt *stmt_param(Ast *ast, Span span, Ident name, AstList dims, AstUnit unit, AstId value, AstSign sign) {
+  AstStmt *s = stmt_define(ast, STMT_PARAM, span, name, dims, unit, value);
+  s->sign = sign;
+  if (!unit.n && ast_expr(ast, value)->kind == AST_UNIT) s->unit = ast_expr(ast, value)->unit;
+  return s;
+}
+
+AstStmt *stmt_function(Ast *ast, Span span, Ident name, AstList args, AstId rhs) {
+  AstStmt *s = declare(ast, STMT_FUNCTION, span, name);
+  s->args = args.first;
+  s->rhs = rhs;
+  return s;
+}
+
+AstStmt *stmt_value(Ast *ast, AstStmtKind kind, Span span, AstId rhs) {
+  AstStmt *s = stmt_plain(ast, kind, span);
+  s->rhs = rhs;
+  return s;
+}
+
+AstStmt *stmt_pair(Ast *ast, AstStmtKind kind, Span span, AstId lhs, AstId rhs) {
+  AstStmt *s = stmt_value(ast, kind, span, rhs);
+  s->lhs = lhs;
+  if (kind == STMT_FORCE || kind == STMT_MAP) refuse_bind(ast, s);
+  return s;
+}
+
+AstStmt *stmt_equation(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstId lhs, AstId rhs) {
+  AstStmt *s = stmt_name(ast, kind, span, name);
+  s->dims = dims.first;
+  s->lhs = lhs;
+  s->rhs = rhs;
+  return s;
+}
+
+AstStmt *stmt_symmetry(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList maps) {
+  AstStmt *s = stmt_titled(ast, STMT_SYMMETRY, span, name, doc, maps);
+  s->args = args.first;
+  return s;
+}
+
+StmtList maps_add(StmtList maps, AstStmt *item) {
+  AstStmt *each = maps.last;
+  while (each && each->kind == STMT_FOR && each->last->kind == STMT_FOR) each = each->last;
+  if (item->kind != STMT_MAP || !each || each->kind != STMT_FOR) return stmts_add(maps, item);
+  StmtList body = stmts_add((StmtList){each->body, each->last}, item);
+  each->last = body.last;
+  return maps;
+}
+
+AstStmt *stmt_event(Ast *ast, Span span, Ident name, AstList dims, AstId when, AstDirection way, StmtList body) {
+  AstStmt *s = stmt_equation(ast, STMT_EVENT, span, name, dims, when, 0);
+  s->direction = way;
+  s->body = body.first;
+  s->last = body.last;
+  return s;
+}
+
+AstStmt *stmt_for(Ast *ast, Span span, Ident index, AstId lo, AstId hi, StmtList body) {
+  AstStmt *s = declare(ast, STMT_FOR, span, index);
+  s->lhs = lo;
+  s->rhs = hi;
+  s->body = body.first;
+  s->last = body.last;
+  return s;
+}
+
+AstStmt *stmt_for_map(Ast *ast, Span span, Ident index, AstId lo, AstId hi, AstStmt *map) {
+  return stmt_for(ast, span, index, lo, hi, stmts_one(map));
+}
+
+AstStmt *stmt_options(Ast *ast, AstStmtKind kind, Span span, Ident name, StmtList options) {
+  return stmt_titled(ast, kind, span, name, (AstText){0}, options);
+}
+
+AstStmt *stmt_output(Ast *ast, Span span, AstList what, AstId every) {
+  AstStmt *s = stmt_value(ast, STMT_OUTPUT, span, every);
+  s->args = what.first;
+  return s;
+}
+
+Ident ident_dashed(Ast *ast, Span span, Ident a, Ident b) {
+  const char *text = arena_printf(ast->arena, "%s-%s", a.name, b.name);
+  return (Ident){intern(ast->names, text), span};
+}
+
+AstSign sign_of(Ast *ast, Span span, AstSign sign, Num number) {
+  if (num_is_zero(number)) return sign;
+  diag_error(ast->diags, span, "only a sign can be stated here: `> 0`, `>= 0`, `< 0` or `<= 0`");
+  return SIGN_ANY;
+}

@@ -1,0 +1,224 @@
+/* Syntax errors in the user's words.
+ *
+ * In: the token that cannot stand where it was found, and the tokens that could. Out: one message,
+ * with a caret under the culprit and, for the slips that are known, a way out. Token names never
+ * appear: tokens are grouped into what a physicist would say. */
+#include "syntax/parse_state.h"
+
+#include "base/suggest.h"
+
+/* ---- what was found, what was expected ---- */
+
+static const char *source_text(const Parse *cx, Span span, int *len) {
+  const Source *source = cx->filter->scan->source;
+  enum { SHOWN = 40 };
+  uint32_t n = span.end - span.begin;
+  const char *text = source->text + (span.begin - source->base);
+  if (n > SHOWN) n = SHOWN;
+  while (n && n < span.end - span.begin && ((unsigned char)text[n] & 0xC0) == 0x80) n--;
+  *len = (int)n;
+  return text;
+}
+
+static const char *describe(const Parse *cx, const Token *t) {
+  TokKind kind = t->kind == TOK_END ? t->follows : t->kind;
+  if (kind == TOK_NEWLINE || kind == TOK_FINISH) return token_word(kind);
+  if (t->kind == TOK_END) return arena_printf(cx->ast->arena, "`%s`", token_word(kind));
+  int len;
+  const char *text = source_text(cx, t->span, &len);
+  return arena_printf(cx->ast->arena, "`%.*s`", len, text);
+}
+
+static int has(const TokKind *set, int n, TokKind kind) {
+  for (int i = 0; i < n; i++)
+    if (set[i] == kind) return 1;
+  return 0;
+}
+
+/* What "an operator" stands for where `set` is expected: a comparison only where all are. */
+static int is_operator(const TokKind *set, int n, TokKind k) {
+  if (k >= TOK_LT && k <= TOK_GE) return has(set, n, TOK_LT);
+  return k >= TOK_PLUS && k <= TOK_OR;
+}
+
+/* Words for the expected tokens, each once: groups first, closing signs last. */
+typedef struct {
+  const char *word[8];
+  int n;
+} Words;
+
+static void add_word(Words *w, const char *word) {
+  if (w->n < 8) w->word[w->n++] = word;
+}
+
+static void add_groups(Words *w, const TokKind *set, int n) {
+  int number = has(set, n, TOK_NUMBER), name = has(set, n, TOK_IDENT);
+  int operators = has(set, n, TOK_TIMES);
+  if (has(set, n, TOK_LAGRANGIAN)) add_word(w, "a statement");
+  else if (number && name) add_word(w, "an expression");
+  else if (name) add_word(w, "a name");
+  else if (number) add_word(w, "a number");
+  if (operators) add_word(w, "an operator");
+}
+
+static int in_a_group(const TokKind *set, int n, TokKind k) {
+  if (k == TOK_IDENT || k == TOK_NUMBER || (k >= TOK_MODEL && k <= TOK_STOP)) return 1;
+  int operand = has(set, n, TOK_NUMBER) && has(set, n, TOK_IDENT);
+  if (operand && (token_flags(k) & T_START)) return 1;
+  int after_operand = has(set, n, TOK_TIMES) || has(set, n, TOK_PRIME);
+  if (after_operand && (k == TOK_PRIME || k == TOK_INDEX || k == TOK_DOT || k == TOK_UNIT || k == TOK_LPAREN)) return 1;
+  return has(set, n, TOK_TIMES) && is_operator(set, n, k);
+}
+
+static Words expected_words(const Parse *cx, const TokKind *set, int n) {
+  Words w = {{0}, 0};
+  add_groups(&w, set, n);
+  for (int i = 0; i < n; i++) {
+    TokKind k = set[i];
+    if (in_a_group(set, n, k) || k == TOK_FINISH || k == TOK_END || k == TOK_COUNT) continue;
+    /* an index or a unit could follow many a name: they say nothing */
+    if (k == TOK_INDEX || (k == TOK_UNIT && n > 1)) continue;
+    const char *word = token_word(k);
+    int phrase = k == TOK_STRING || k == TOK_UNIT;
+    add_word(&w, phrase ? word : arena_printf(cx->ast->arena, "`%s`", word));
+  }
+  if (has(set, n, TOK_END)) add_word(&w, "the end of the statement");
+  else if (!w.n) add_word(&w, "the end");
+  return w;
+}
+
+static const char *join(const Parse *cx, const Words *w) {
+  StrBuf b = strbuf(cx->ast->arena);
+  for (int i = 0; i < w->n; i++)
+    sb_printf(&b, "%s%s", i == 0 ? "" : i + 1 < w->n ? ", " : " or ", w->word[i]);
+  return sb_text(&b);
+}
+
+/* " after `=`": where something was left out; nothing where the place says enough. */
+static const char *after(const Parse *cx) {
+  const Token *t = &cx->before;
+  if (t->kind == TOK_END || t->kind == TOK_BEGIN_FILE || t->kind == TOK_BEGIN_EXPR || t->kind == TOK_LBRACE) return "";
+  return arena_printf(cx->ast->arena, " after %s", describe(cx, t));
+}
+
+/* ---- slips with a known cure ---- */
+
+static const char *place_name(unsigned where) {
+  switch (where & W_ANY) {
+    case W_FILE: return "the file itself";
+    case W_SCENE: return "a scene";
+    case W_EVENT: return "an event";
+    case W_EFFECT: return "an effect";
+    case W_FOR: return "a `for`";
+    default: return where & W_FOR ? "a model, an effect or a `for`" : "a model or an effect";
+  }
+}
+
+static Name nearest_word(const Parse *cx, Name wrong, unsigned where) {
+  Name words[TOK_STOP - TOK_MODEL + 1];
+  size_t n = 0;
+  for (int k = TOK_MODEL; k <= TOK_STOP; k++)
+    if (token_flags((TokKind)k) & where & W_ANY) words[n++] = intern(cx->ast->names, token_word((TokKind)k));
+  return suggest(wrong, words, n);
+}
+
+/* A statement that begins with a name that is no word of its place. */
+static void report_word(Parse *cx, const Token *t) {
+  Diags *d = cx->ast->diags;
+  unsigned where = cx->filter->where[t->depth];
+  TokKind elsewhere = token_statement(t->name, W_ANY);
+  if (elsewhere != TOK_IDENT) {
+    diag_error(d, t->span, "`%s` cannot stand in %s", t->name, where == W_FILE ? "the model itself" : place_name(where));
+    diag_help(d, "it belongs in %s%s", place_name(token_flags(elsewhere)),
+              where != W_FILE && (token_flags(elsewhere) & W_FILE) ? "; is a `}` missing above?" : "");
+    return;
+  }
+  Name near = nearest_word(cx, t->name, where);
+  diag_error(d, t->span, "unknown statement `%s`", t->name);
+  if (near) diag_help(d, "did you mean `%s`?", near);
+  else if (where & (W_SCENE | W_EVENT)) diag_help(d, "a value is set with `%s = …`", t->name);
+  else if (t->follows == TOK_ASSIGN) diag_help(d, "a name is given a meaning with `let %s = …` or `param %s = …`", t->name, t->name);
+}
+
+static int ends_operand(const Token *t) { return (token_flags(t->kind) & T_OPERAND) != 0; }
+
+/* A way out for what was found, or NULL. */
+static const char *advice(const Parse *cx, const TokKind *set, int n) {
+  const Token *t = &cx->current, *b = &cx->before;
+  Arena *a = cx->ast->arena;
+  int operators = has(set, n, TOK_TIMES);
+  switch (t->kind) {
+    case TOK_EQ:
+      if (has(set, n, TOK_ASSIGN)) return "write `=`: it states an equation; `==` compares two numbers";
+      break;
+    case TOK_ASSIGN:
+      if (has(set, n, TOK_EQ)) return "write `==` to compare";
+      if (has(set, n, TOK_COLON)) return "this statement needs a name: `constraint NAME: a = b`";
+      break;
+    case TOK_COLON:
+      if (has(set, n, TOK_ASSIGN)) return arena_printf(a, "write `%s = …`", b->name ? b->name : "NAME");
+      break;
+    case TOK_INDEX:
+      if (has(set, n, TOK_UNIT)) return "a unit stands apart from the name: `u [N]`";
+      break;
+    case TOK_PRIME:
+      if (b->kind == TOK_END) return "a `'` never continues a line: put it on the line of its name";
+      break;
+    case TOK_RPAREN: case TOK_RBRACKET:
+      if (operators && !cx->open.span.end) return arena_printf(a, "this `%s` closes nothing", token_word(t->kind));
+      break;
+    case TOK_LT: case TOK_LE: case TOK_GT: case TOK_GE: case TOK_NE:
+      if (cx->filter->word == TOK_CONTACT) return "a contact is written `contact NAME: g >= 0, restitution = e`";
+      if (cx->filter->word == TOK_EVENT && has(set, n, TOK_RISING))
+        return "an event is where an expression passes zero: `x - 1 rising { … }`";
+      if (has(set, n, TOK_AND)) return "comparisons do not chain: write `a < b and b < c`";
+      break;
+    case TOK_IN: case TOK_AND: case TOK_OR: case TOK_NOT:
+      if (has(set, n, TOK_IDENT)) return arena_printf(a, "`%s` is a reserved word", token_word(t->kind));
+      break;
+    case TOK_IDENT: case TOK_NUMBER: case TOK_LPAREN: case TOK_SUM: case TOK_PRODUCT:
+      if (operators && ends_operand(b)) return "a product is written with `*`";
+      break;
+    default: break;
+  }
+  return NULL;
+}
+
+/* Something is still open where the statement ends. */
+static int report_open_bracket(Parse *cx, const TokKind *set, int n) {
+  const OpenBracket *open = &cx->open;
+  const Token *t = &cx->current;
+  if (t->kind != TOK_END || !open->span.end || !ends_operand(&cx->before)) return 0;
+  TokKind close = open->kind == TOK_LPAREN ? TOK_RPAREN : open->kind == TOK_INDEX ? TOK_RBRACKET : TOK_RBRACE;
+  if (!has(set, n, close)) return 0;
+  diag_error(cx->ast->diags, t->span, "expected `%s`, found %s", token_word(close), describe(cx, t));
+  diag_also(cx->ast->diags, open->span, "this `%s` is still open", token_word(open->kind));
+  return 1;
+}
+
+void parse_report(Parse *cx, const TokKind *expected, int n) {
+  const Token *t = &cx->current;
+  Diags *d = cx->ast->diags;
+  cx->reported = 1;
+  if (t->kind == TOK_BAD) {
+    diag_error(d, t->span, "%s", t->text);
+    if (t->help) diag_help(d, "%s", t->help);
+    return;
+  }
+  if (t->kind == TOK_BADWORD) {
+    report_word(cx, t);
+    return;
+  }
+  if (report_open_bracket(cx, expected, n)) return;
+  Words w = expected_words(cx, expected, n);
+  const char *help = advice(cx, expected, n);
+  const char *found = describe(cx, t), *list = join(cx, &w), *where = after(cx);
+  diag_error(d, t->span, "expected %s%s, found %s", list, where, found);
+  if (help) diag_help(d, "%s", help);
+}
+
+void parse_too_deep(Parse *cx, Span span) {
+  cx->reported = 1;
+  diag_error(cx->ast->diags, span, "this is nested too deep (the limit is %d levels)", PARSE_STACK);
+  diag_help(cx->ast->diags, "split the expression with `let`");
+}

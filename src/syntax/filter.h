@@ -1,0 +1,48 @@
+/* Raw tokens -> the tokens of the grammar: statement words, statement ends, primes of dotted names. */
+#ifndef LAGC_FILTER_H
+#define LAGC_FILTER_H
+
+#include "syntax/scan.h"
+
+enum {
+  FILTER_BLOCKS = 64,           /* blocks { } may be nested this deep */
+  FILTER_BRACKETS = 1000 * 1000 /* and brackets of an expression this deep */
+};
+
+/* A bracket of the current statement that is still open. */
+typedef struct {
+  TokKind kind; /* LPAREN, INDEX, or LBRACE of a list */
+  Span span;
+  uint32_t dots; /* INDEX: primes that its name owes, due after the `]` */
+} OpenBracket;
+
+typedef struct {
+  Scan *scan;
+  Token ahead[2];  /* raw tokens already taken from the scanner */
+  uint32_t n_ahead;
+  int end_due;     /* an END goes out before anything else: a block was closed */
+  TokKind prev;    /* the last token that went out */
+  Token primes;    /* and, below, how many PRIMEs follow it */
+  uint32_t owed;
+  int single;      /* the text is one expression: no statement words, no blocks */
+  int inside;      /* a statement has begun */
+  TokKind word;    /* its word, or IDENT */
+  int assigned;    /* an `=` was seen since its last `,` outside brackets */
+  int has_block;   /* its next `{` outside brackets opens a block */
+  VEC(OpenBracket) brackets;
+  uint32_t lists;  /* how many of them are LBRACE */
+  Token open[FILTER_BLOCKS]; /* the `{` of each block around the statement */
+  unsigned where[FILTER_BLOCKS + 1]; /* W_FILE, then the place that each block is */
+  uint32_t depth;
+} Filter;
+
+/* A filter over a scanner; single: the text is one expression. */
+Filter *filter_new(Scan *scan, int single);
+
+/* The next token; FINISH for ever at the end, after an END for each statement. */
+Token filter_next(Filter *f);
+
+/* The innermost bracket that is still open in the current statement, or NULL. */
+const OpenBracket *filter_bracket(const Filter *f);
+
+#endif

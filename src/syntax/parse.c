@@ -1,0 +1,187 @@
+/* text -> Ast: drives scanner, filter and parser, and follows includes.
+ *
+ * In: a source. Out: its statements in the Ast, messages in ast->diags.
+ * Must hold: the parser's stack, the only memory outside the arena, is freed on every way out. */
+#include "syntax/parse_state.h"
+
+void parse_done_file(Parse *cx, StmtList stmts) { cx->stmts = stmts; }
+void parse_done_value(Parse *cx, AstId value) { cx->value = value; }
+
+/* Pushes tokens until the parser has enough. After a mistake, what is left of the statement is
+ * passed over: the parser discards up to the END, and blocks inside it are not even shown to it. */
+static void push_tokens(Parse *cx, TokKind begin) {
+  Token t = {.kind = begin};
+  int skipping = 0;
+  uint32_t depth = 0;
+  do {
+    cx->before = cx->current;
+    cx->current = t;
+    cx->reported = 0;
+    if (!parse_push(cx, &t)) return;
+    if (cx->reported) skipping = 1, depth = t.depth;
+    if (t.kind == TOK_END) skipping = 0;
+    do {
+      const OpenBracket *open = filter_bracket(cx->filter);
+      cx->open = open ? *open : (OpenBracket){0};
+      t = filter_next(cx->filter);
+    } while (skipping && t.depth > depth);
+  } while (1);
+}
+
+/* Parses one text. When memory runs out, the stack is freed and the failure goes on to whoever
+ * guarded the arena before. */
+static void run(Parse *cx, Ast *ast, const Source *source, TokKind begin) {
+  *cx = (Parse){.ast = ast};
+  jmp_buf here;
+  jmp_buf *outer = arena_guard(ast->arena, &here);
+  if (setjmp(here)) {
+    if (cx->stack) parse_close(cx);
+    arena_guard(ast->arena, outer);
+    arena_fail(ast->arena);
+  }
+  Scan *scan = scan_new(ast->arena, ast->names, source);
+  cx->filter = filter_new(scan, begin == TOK_BEGIN_EXPR);
+  parse_open(cx);
+  push_tokens(cx, begin);
+  parse_close(cx);
+  arena_guard(ast->arena, outer);
+}
+
+/* ---- include ---- */
+
+/* A text that was taken in, and the statement that asked for it (zero: the user did). */
+typedef struct {
+  const char *path;
+  uint32_t base, end;
+  AstStmt *asked_by;
+} File;
+
+typedef struct {
+  Ast *ast;
+  VEC(File) files;
+} Includes;
+
+static uint32_t file_of(const Includes *in, uint32_t offset) {
+  uint32_t i = 0;
+  while (i + 1 < in->files.n && (offset < in->files.at[i].base || offset > in->files.at[i].end)) i++;
+  return i;
+}
+
+static void add_file(Includes *in, const Source *source, const char *path, AstStmt *asked_by) {
+  File f = {.path = path, .base = source->base, .end = source->base + source->len, .asked_by = asked_by};
+  vec_push(in->ast->arena, &in->files, f);
+}
+
+/* Copies `path` to `out` without its `.` parts, and with `a/..` removed; returns the new end. */
+static size_t add_parts(char *out, size_t n, const char *path) {
+  while (*path) {
+    size_t len = strcspn(path, "/");
+    const char *part = path;
+    path += len + (path[len] == '/');
+    if (len == 0 || (len == 1 && part[0] == '.')) continue;
+    size_t last = n;
+    while (last > 0 && out[last - 1] != '/') last--;
+    int up = len == 2 && memcmp(part, "..", 2) == 0;
+    if (up && n > last && !(n - last == 2 && memcmp(out + last, "..", 2) == 0)) {
+      n = last ? last - 1 : 0;
+      if (last == 1) n = 1; /* the root */
+      continue;
+    }
+    if (n && out[n - 1] != '/') out[n++] = '/';
+    memcpy(out + n, part, len);
+    n += len;
+  }
+  return n;
+}
+
+/* `path` as seen from the file `from`, in one spelling for each file. */
+static const char *resolve_path(Arena *a, const char *from, const char *path) {
+  char *out = arena_alloc(a, strlen(from) + strlen(path) + 3);
+  size_t n = 0;
+  const char *slash = strrchr(from, '/');
+  if (path[0] == '/' || from[0] == '/') out[n++] = '/';
+  if (path[0] != '/' && slash) n = add_parts(out, n, arena_strndup(a, from, (size_t)(slash - from)));
+  n = add_parts(out, n, path);
+  out[n] = '\0';
+  return out;
+}
+
+/* `a.lag` includes `b.lag` includes `a.lag`: from the file that closes the cycle backwards. */
+static void report_cycle(const Includes *in, const AstStmt *s, uint32_t from, uint32_t to) {
+  StrBuf chain = strbuf(in->ast->arena);
+  sb_printf(&chain, "`%s`", in->files.at[to].path);
+  for (uint32_t i = from; i != to; i = file_of(in, in->files.at[i].asked_by->span.begin))
+    sb_printf(&chain, ", which `%s` includes", in->files.at[i].path);
+  sb_printf(&chain, ", which `%s` includes", in->files.at[to].path);
+  diag_error(in->ast->diags, s->name_span, "this file includes itself");
+  diag_help(in->ast->diags, "%s", sb_text(&chain));
+}
+
+/* Whether `path` was taken in before; a cycle is reported. */
+static int seen_before(const Includes *in, const AstStmt *s, const char *path) {
+  uint32_t known = 0;
+  while (known < in->files.n && strcmp(in->files.at[known].path, path) != 0) known++;
+  if (known == in->files.n) return 0;
+  uint32_t from = file_of(in, s->span.begin);
+  for (uint32_t i = from;; i = file_of(in, in->files.at[i].asked_by->span.begin)) {
+    if (i == known) return report_cycle(in, s, from, known), 1;
+    if (!in->files.at[i].asked_by) return 1;
+  }
+}
+
+/* The statements of the file that s asks for; none when it was there already or cannot be read. */
+static StmtList included(Includes *in, AstStmt *s) {
+  Ast *ast = in->ast;
+  const char *path = resolve_path(ast->arena, in->files.at[file_of(in, s->span.begin)].path, s->doc);
+  if (seen_before(in, s, path)) return (StmtList){NULL, NULL};
+  const char *error = NULL;
+  const Source *source = source_read(ast->sources, path, &error);
+  if (!source) {
+    diag_error(ast->diags, s->name_span, "cannot read `%s`: %s", path, error);
+    return (StmtList){NULL, NULL};
+  }
+  add_file(in, source, path, s);
+  Parse cx;
+  run(&cx, ast, source, TOK_BEGIN_FILE);
+  return cx.stmts;
+}
+
+/* Puts the statements of included files where the include statements stand. */
+static StmtList follow_includes(Includes *in, StmtList list) {
+  StmtList done = {NULL, NULL};
+  for (AstStmt *s = list.first, *next; s; s = next) {
+    next = s->next;
+    s->next = NULL;
+    if (s->kind != STMT_INCLUDE) {
+      done = stmts_add(done, s);
+      continue;
+    }
+    StmtList more = included(in, s);
+    if (!more.first) continue;
+    more.last->next = next;
+    next = more.first;
+  }
+  return done;
+}
+
+/* ---- what parse.h offers ---- */
+
+int parse(Ast *ast, const Source *source) {
+  uint32_t errors = ast->diags->errors;
+  Includes in = {.ast = ast};
+  add_file(&in, source, resolve_path(ast->arena, "", source->path), NULL);
+  Parse cx;
+  run(&cx, ast, source, TOK_BEGIN_FILE);
+  StmtList all = follow_includes(&in, cx.stmts);
+  StmtList whole = stmts_join((StmtList){ast->first, ast->last}, all);
+  ast->first = whole.first;
+  ast->last = whole.last;
+  return ast->diags->errors == errors;
+}
+
+AstId parse_expression(Ast *ast, const Source *source) {
+  uint32_t errors = ast->diags->errors;
+  Parse cx;
+  run(&cx, ast, source, TOK_BEGIN_EXPR);
+  return ast->diags->errors == errors ? cx.value : 0;
+}

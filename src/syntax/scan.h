@@ -1,0 +1,43 @@
+/* text -> raw tokens, one at a time. The patterns are in grammar/lag.l; what they call is here. */
+#ifndef LAGC_SCAN_H
+#define LAGC_SCAN_H
+
+#include "syntax/token.h"
+
+typedef struct {
+  Arena *arena;
+  Interner *names;
+  const Source *source;
+  uint32_t begin, end; /* offsets of the text matched last */
+  uint32_t touch;      /* the end of the last token when a touching `[` is an index, or 0 */
+  void *flex;          /* the generated scanner */
+} Scan;
+
+/* A scanner for one source; everything it needs comes from the arena. */
+Scan *scan_new(Arena *a, Interner *names, const Source *source);
+
+/* The next token: NEWLINE and SEMICOLON included, names never keywords; FINISH for ever at the end. */
+Token scan_next(Scan *s);
+
+/* What the patterns of lag.l call. Each fills t for the n bytes of text matched, and returns how
+ * many of them belong to the token (the rest is scanned again); t->kind FINISH means "skip them". */
+int scan_sign(Scan *s, Token *t, TokKind kind, int n);
+int scan_number(Scan *s, Token *t, const char *text, int n);
+int scan_name(Scan *s, Token *t, const char *text, int n);
+int scan_string(Scan *s, Token *t, const char *text, int n);
+int scan_bracket(Scan *s, Token *t, const char *text, int n);
+int scan_strange(Scan *s, Token *t, const char *text, int n);
+int scan_advice(Scan *s, Token *t, const char *text, int n, const char *write);
+
+/* The generated scanner (lag.l): set up for s, and one token from it. */
+void scan_open(Scan *s);
+void scan_lex(Scan *s, Token *t);
+
+/* The text of a unit, without brackets, that begins at offset `begin`. 1 on success; on failure
+ * the token becomes BAD with the place and the message. (unit.c) */
+int unit_parse(Scan *s, Token *t, const char *text, uint32_t n, uint32_t begin);
+
+/* The code point at text (valid UTF-8 of at least one byte); *len is its length in bytes. */
+uint32_t utf8_decode(const char *text, uint32_t *len);
+
+#endif

@@ -1,0 +1,175 @@
+#!/bin/sh
+# The command line of a built simulator, on the hand-written one in rt_sim.c. Prints TAP.
+# Needs build/liblag.a (BUILD and CC may say others); files go to a directory that is removed at the end.
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+build=${BUILD:-build}
+case $build in /*) ;; *) build=$root/$build ;; esac
+dir=$(mktemp -d) || exit 1
+trap 'rm -rf "$dir"' EXIT
+cd "$dir" || exit 1
+
+# shellcheck disable=SC2086
+if ! ${CC:-cc} -std=c11 -O1 -g ${SAN:-} -I"$root/runtime/include" "$here/rt_sim.c" "$build/liblag.a" -lm -o sim; then
+  echo "Bail out! the simulator does not build"
+  exit 1
+fi
+
+n=0
+ok() { # ok NAME COMMAND...: the command succeeds
+  n=$((n + 1)) name=$1
+  shift
+  if "$@" >/dev/null 2>&1; then echo "ok $n - $name"; else echo "not ok $n - $name"; fi
+}
+status() { # status EXPECTED ARGS...: exit status of the simulator; output in out, err
+  want=$1
+  shift
+  ./sim "$@" >out 2>err
+  got=$?
+  [ "$got" = "$want" ]
+}
+says() { # says EXPECTED WORDS ARGS...: and standard error holds the words
+  want=$1 words=$2
+  shift 2
+  status "$want" "$@" && grep -qF -e "$words" err
+}
+no_part() { ! ls ./*.part 2>/dev/null | grep -q .; }
+
+# --- report, rows
+ok "default scene" status 0
+ok "report names scene, method and energy" grep -q "scene drop, method rk45" out
+ok "a model with losses has no energy drift" grep -q "not conserved" out
+ok "named scene" status 0 swing
+ok "conserved energy is called drift" grep -q "energy drift" out
+ok "quiet is quiet" sh -c './sim swing --quiet >out 2>err && ! [ -s out ] && ! [ -s err ]'
+ok "rows to a file" status 0 swing -o rows.csv
+ok "101 rows and a head" [ "$(wc -l <rows.csv)" = 102 ]
+ok "head has names, units, RFC 4180 quotes" [ "$(head -1 rows.csv)" = 't [s],th [deg],"E ""total"", T+V [J]"' ]
+ok "times are what a person writes" sh -c "sed -n 5p rows.csv | grep -q '^0.29999999999999999,'"
+ok "last row is the end" sh -c "tail -1 rows.csv | grep -q '^10,'"
+ok "no .part is left" no_part
+./sim swing -o - >std.csv 2>err
+ok "rows to standard output are the same" cmp rows.csv std.csv
+ok "the report goes to standard error then" grep -q "reached t = 10" err
+./sim swing --until 0.25 -o end.csv --quiet
+ok "the end has a row off the grid" sh -c "tail -1 end.csv | grep -q '^0.25,' && [ \$(wc -l <end.csv) = 5 ]"
+./sim swing --until=-1 --every=0.25 -o back.csv --quiet
+ok "backwards" sh -c "tail -1 back.csv | grep -q '^-1,' && [ \$(wc -l <back.csv) = 6 ]"
+
+# --- npy: magic, version 1.0, header length a multiple of 64 in all, data of nrows*ncols*8 bytes
+./sim swing -o a.npy --quiet
+magic=$(od -An -tx1 -N8 a.npy | tr -d ' \n')
+len=$(od -An -tu1 -j8 -N2 a.npy | awk '{print $1 + 256 * $2}')
+ok "npy magic and version 1.0" [ "$magic" = 934e554d50590100 ]
+ok "npy header is padded to 64" [ $(((len + 10) % 64)) = 0 ]
+ok "npy holds the rows" [ "$(wc -c <a.npy)" = $((10 + len + 101 * 3 * 8)) ]
+ok "npy header is a dictionary with the shape" sh -c "head -c $((10 + len)) a.npy | grep -a -q \"'fortran_order': False, 'shape': (101,), }\""
+ok "npy fields" sh -c "head -c $((10 + len)) a.npy | grep -a -qF '[(\"t [s]\"' || head -c $((10 + len)) a.npy | grep -a -qF '[((\"t [s]\", \"t\"), '"
+od -An -v -tf8 -j$((10 + len)) a.npy | tr -s ' \n' '\n' | sed '/^$/d' | awk 'NR % 3 == 1 { printf "%.6g\n", $1 }' >npy_t
+sed 1d rows.csv | cut -d, -f1 | awk '{ printf "%.6g\n", $1 }' >csv_t
+ok "npy and CSV agree on times" cmp npy_t csv_t
+
+# --- JSON
+ok "json" status 0 swing --json
+ok "json is one line, braces balance" awk '{ a = gsub(/{/, "{"); b = gsub(/}/, "}"); if (a != b || a != 3 || NR > 1) exit 1 }' out
+for key in model scene method status t_end steps rejected rhs_calls wall_s energy_drift charges constraint_residual final; do
+  ok "json has $key" grep -q "\"$key\": " out
+done
+ok "json strings are escaped" grep -qF '"E \"total\", T+V": -0.69' out
+ok "json charges are monitors of outputs" grep -q '"charges": {"H": [0-9.e-]*}' out
+ok "json of a failed run" status 3 wall --json
+ok "json says failed, and why" sh -c 'grep -q "\"status\": \"failed\"" out && grep -q "no finite value" out'
+ok "json has null where there is no energy" grep -q '"energy_drift": null' out
+if command -v python3 >/dev/null 2>&1; then
+  ok "json parses" sh -c './sim drop --json | python3 -m json.tool'
+fi
+
+# --- values
+ok "parameter" sh -c './sim swing l=2 --json >a && ./sim swing >b --json && ! cmp -s a b'
+ok "suffix of a dotted name" sh -c './sim drop c=0.5 -o c1.csv --quiet && ./sim drop drag.c=0.5 -o c2.csv --quiet && cmp c1.csv c2.csv'
+ok "coordinate in its unit" sh -c "./sim swing th=90 -o - 2>/dev/null | sed -n 2p | grep -q '^0,90,'"
+ok "velocity" sh -c "./sim fixed \"th'=45\" -o - 2>/dev/null | sed -n 2p | grep -Eq '^0,[0-9.]*,45\$'"
+ok "input held constant" sh -c "./sim drop wind=9.81 --json | grep -q '\"y\": 1[,}]'"
+ok "--opt=value and two words" sh -c './sim swing --tol=1e-10 -o t1.csv --quiet && ./sim swing --tol 1e-10 -o t2.csv --quiet && cmp t1.csv t2.csv'
+ok "method with options" sh -c './sim swing --method "rk4(step=0.01)" | grep -q "rk4(step=0.01)"'
+ok "scene's method and step" sh -c './sim fixed | grep -q "rk4(step=0.001)"'
+ok "--method help" sh -c './sim --method help | grep -q "rk45.*Dormand"'
+ok "--help" sh -c './sim --help | grep -q -- --save-state'
+
+# --- mistakes
+ok "unknown name" says 2 "did you mean l?" swing ll=2
+ok "wrong sign" says 2 "declares l > 0" swing l=-1
+ok "not a number" says 2 '"1e-13x" is not a number' swing l=1e-13x
+ok "hexadecimal and nan are not numbers" sh -c './sim swing l=nan; [ $? = 2 ] && ./sim swing l=0x1p3; [ $? = 2 ]'
+ok "tolerance zero" says 2 "must be positive" --tol 0
+ok "tolerance too strict" says 2 "1e-15 or more" --tol 1e-20
+ok "negative step" says 2 "--step 1e-3" --step -1
+ok "empty span" says 2 "nothing to compute" --until 0
+ok "bad every" says 2 "must be positive" --every 0
+ok "unknown option" says 2 "did you mean --method?" --methd rk4
+ok "unknown method lists methods" says 2 "rk4 " --method rk9
+ok "unknown option of a method" says 2 "no option" --method "rk4(stp=1)"
+ok "unknown scene says how to build it" says 2 "lagc run models/rt_sim.lag workshop" workshop
+ok "effect that is not built in" says 2 "lagc run models/rt_sim.lag drop" drop moon.c=1
+ok "two uses of standard output" says 2 "-o - and --json" --json -o -
+ok "plot of an unknown column" says 2 "no output is named" swing --svg x.svg --plot-y nothing
+ok "a directory that is not there" says 2 "cannot write" -o none/rows.csv
+ok "a picture that cannot be written is said before the run" says 2 "cannot write" fixed --until 1e9 --svg none/x.svg
+if [ -w /dev/full ]; then
+  ok "a full disk" says 2 "cannot write" drop -o /dev/full
+fi
+ok "nothing is left after mistakes" sh -c '! ls x.svg none 2>/dev/null && ! ls ./*.part 2>/dev/null'
+
+# --- failure keeps rows
+ok "a failing run exits 3" status 3 wall -o wall.csv
+ok "it says so with time and reason" grep -q "FAILED: at t = 1 s: the model gives no finite value" out
+ok "rows up to the failure are kept" sh -c 'grep -q "up to the failure" out && tail -1 wall.csv | grep -Eq "^(0.75|1),"'
+ok "no .part is left after a failure" no_part
+
+# --- a run in two parts is the whole run, byte for byte
+two_parts() { # two_parts CUT ARGS...
+  cut=$1
+  shift
+  ./sim "$@" --until 4 --every 0.125 -o whole.csv --json >whole.json 2>/dev/null &&
+    ./sim "$@" --until "$cut" --every 0.125 -o one.csv --quiet --save-state state &&
+    ./sim --resume state --until 4 -o two.csv --json >two.json 2>/dev/null &&
+    sed 1d two.csv | cat one.csv - >both.csv && cmp whole.csv both.csv &&
+    sed 's/"wall_s": [^,]*,//' whole.json >w.json && sed 's/"wall_s": [^,]*,//' two.json >t.json && cmp w.json t.json
+}
+for cut in 0.125 1.5 2 3.875; do
+  ok "rk45 with events, cut at $cut" two_parts $cut drop
+  ok "rk4 with events, cut at $cut" two_parts $cut drop --method "rk4(step=0.01)"
+  ok "rk45 and monitors, cut at $cut" two_parts $cut swing --tol 1e-8 l=1.7 --method rk45
+  ok "rk4, cut at $cut" two_parts $cut fixed th=20
+done
+ok "backwards, in two parts" sh -c './sim swing --until -2 -o w.csv --quiet && ./sim swing --until -1 -o 1.csv --quiet --save-state s &&
+  ./sim --resume s --until -2 -o 2.csv --quiet && sed 1d 2.csv | cat 1.csv - | cmp - w.csv'
+ok "resume keeps its values" says 2 "leave out" --resume state l=2
+ok "resume of another scene" says 2 "saved from scene fixed" swing --resume state
+ok "resume backwards" says 2 "would go back" --resume state --until 1
+sed 's/0x1/0x2/' state >damaged
+ok "a damaged state" says 2 "damaged" --resume damaged
+ok "no state at all" says 2 "not a state" --resume rows.csv
+
+# --- Ctrl-C: a run of hours is stopped after half a second
+interrupt() {
+  ./sim fixed --until 1e9 --every 100 -o long.csv --save-state long.state >out 2>err &
+  pid=$!
+  sleep 0.5
+  kill -INT $pid
+  wait $pid
+  [ $? = 130 ]
+}
+ok "Ctrl-C exits 130" interrupt
+ok "it says where" grep -q "interrupted at t = " out
+ok "rows are complete" sh -c 'no=$(wc -l <long.csv); [ "$no" -gt 2 ] && tail -c1 long.csv | od -An -tx1 | grep -q 0a'
+ok "no .part is left after Ctrl-C" no_part
+ok "the state was saved" sh -c 'head -1 long.state | grep -q "lag-state 1"'
+
+# --- pictures
+ok "svg" status 0 swing --svg p.svg
+ok "svg is closed and has both panels" sh -c 'tail -1 p.svg | grep -q "</svg>" && grep -q "\[deg\]" p.svg && grep -q "\[J\]" p.svg'
+ok "svg escapes names" grep -q "E &quot;total&quot;" p.svg
+ok "one against the other" status 0 fixed --svg q.svg --plot-x th --plot-y "th'"
+ok "sketch" sh -c './sim swing --sketch --quiet | grep -q "t \[s\]"'
+echo "1..$n"

@@ -1,0 +1,274 @@
+/* Methods: order conditions, measured orders of steps and of dense output. Expected values: closed forms. */
+#include "test_rt_models.h"
+
+#include "methods/tableau.h"
+
+/* ---- Order conditions (Butcher; HNW I II.2 theorem 2.13): sum b_i Phi_i(tree) = 1/gamma(tree). */
+
+static const char *const trees[] = {"()", "(())", "(()())", "((()))", "(()()())", "(()(()))", "((()()))", "(((())))",
+    "(()()()())", "(()()(()))", "(()(()()))", "(()((())))", "((())(()))", "((()()()))", "((()(())))", "(((()())))", "((((()))))"};
+
+/* Reads one tree: Phi, gamma and the number of its nodes. */
+static const char *read_tree(const lag_tableau *b, const char *s, double *phi, double *gamma, int *nodes)
+{
+  *gamma = 1;
+  *nodes = 1;
+  for (int i = 0; i < b->stages; i++) {
+    phi[i] = 1;
+  }
+  for (s++; *s == '(';) {
+    double child[LAG_MAX_STAGES], g;
+    int n;
+    s = read_tree(b, s, child, &g, &n);
+    *gamma *= g;
+    *nodes += n;
+    for (int i = 0; i < b->stages; i++) {
+      double sum = 0;
+      for (int j = 0; j < i; j++) {
+        sum += b->a[i][j] * child[j];
+      }
+      phi[i] *= sum;
+    }
+  }
+  *gamma *= *nodes;
+  return s + 1;
+}
+
+static double defect(const lag_tableau *b, const double *weights, const char *tree, int *order)
+{
+  double phi[LAG_MAX_STAGES], gamma, sum = 0;
+  read_tree(b, tree, phi, &gamma, order);
+  for (int i = 0; i < b->stages; i++) {
+    sum += weights[i] * phi[i];
+  }
+  return sum - 1 / gamma;
+}
+
+static void dopri5_satisfies_the_order_conditions(void **state)
+{
+  const lag_tableau *b = &lag_dopri5_tableau;
+  double hat[LAG_MAX_STAGES], worst = 0;
+  int order;
+  (void)state;
+  for (int i = 0; i < b->stages; i++) {
+    double sum = 0;
+    hat[i] = b->b[i] - b->e[i];
+    for (int j = 0; j < i; j++) {
+      sum += b->a[i][j];
+    }
+    assert_close(sum, b->c[i], 1e-14);
+    assert_close(b->a[b->stages - 1][i], b->b[i], 0); /* first same as last */
+  }
+  assert_int_equal(sizeof trees / sizeof *trees, 17); /* 1 + 1 + 2 + 4 + 9 */
+  for (size_t k = 0; k < 17; k++) {
+    assert_close(defect(b, b->b, trees[k], &order), 0, 1e-14);
+    double d = fabs(defect(b, hat, trees[k], &order));
+    if (order <= 4) {
+      assert_close(d, 0, 1e-14);
+    } else {
+      worst = fmax(worst, d);
+    }
+  }
+  assert_true(worst > 1e-4);                                      /* the embedded method has order 4, no more */
+  assert_true(fabs(defect(b, b->b, "(()()()()())", &order)) > 1e-5); /* and this one 5 */
+}
+
+/* ---- Measured orders: Kepler's problem, and for the fifth order the oscillator, where the leading term
+ * of the error rules at larger steps. */
+
+static double distance(int n, const double *a, const double *b)
+{
+  double d = 0;
+  for (int i = 0; i < n; i++) {
+    d = fmax(d, fabs(a[i] - b[i]));
+  }
+  return d;
+}
+
+/* rk45 with all steps of size h: a tolerance that never matters. */
+static lag_sim *fixed_steps(const lag_scene *scene, const lag_method *m, double h)
+{
+  lag_option opt[] = {{"step", h, NULL}, {"max_step", h, NULL}};
+  return sim_with(scene, m, m == &lag_rk45 ? 1e6 : 0, m == &lag_rk45 ? 2 : 1, opt);
+}
+
+static void exact(const lag_scene *scene, double t, double *y)
+{
+  if (scene == &kepler) {
+    kepler_exact(t, y);
+  } else {
+    y[0] = cos(t);
+    y[1] = -sin(t);
+  }
+}
+
+/* Largest error at times (k + at) h, or at the end only for at = 0. */
+static double error_of(const lag_scene *scene, const lag_method *m, double h, double end, double at)
+{
+  lag_sim *s = fixed_steps(scene, m, h);
+  double worst = 0, y[4];
+  int n = (int)lround(end / h);
+  for (int k = at > 0 ? 0 : n; k <= (at > 0 ? n - 1 : n); k++) {
+    double t = (k + at) * h;
+    assert_int_equal(lag_sim_advance(s, t), LAG_OK);
+    exact(scene, t, y);
+    worst = fmax(worst, distance(2 * scene->model->nq, lag_sim_q(s), y));
+  }
+  lag_stats st;
+  lag_sim_stats(s, &st);
+  assert_in_range(st.steps, n, n + 1);
+  assert_int_equal(st.rejected, 0);
+  lag_sim_free(s);
+  return worst;
+}
+
+static void check_order(const lag_scene *scene, const lag_method *m, double h, double at, double expected)
+{
+  double end = 4, e1 = error_of(scene, m, h, end, at), e2 = error_of(scene, m, h / 2, end, at);
+  assert_close(log2(e1 / e2), expected, 0.15);
+}
+
+static void rk4_has_order_4(void **state)
+{
+  (void)state;
+  check_order(&kepler, &lag_rk4, 1.0 / 256, 0, 4);
+}
+
+static void rk4_dense_output_has_order_4(void **state)
+{
+  (void)state;
+  check_order(&kepler, &lag_rk4, 1.0 / 256, 0.37, 4);
+}
+
+static void rk45_has_order_5(void **state)
+{
+  (void)state;
+  check_order(&osc, &lag_rk45, 1.0 / 16, 0, 5);
+}
+
+/* Within one step from exact values the error of the interpolant is of order 5 (order 4 plus the step). */
+static void rk45_dense_output_has_order_4(void **state)
+{
+  double e[2], y[4], right[4];
+  (void)state;
+  for (int i = 0; i < 2; i++) {
+    double h = 0.02 / (1 << i);
+    lag_sim *s = fixed_steps(&kepler, &lag_rk45, h);
+    assert_int_equal(lag_sim_advance(s, 0.6 * h), LAG_OK);
+    kepler_exact(0.6 * h, right);
+    e[i] = distance(4, lag_sim_q(s), right);
+    assert_int_equal(lag_sim_eval(s, 0.6 * h, y), LAG_OK);
+    assert_memory_equal(y, lag_sim_q(s), sizeof y);
+    assert_int_equal(lag_sim_eval(s, 2 * h, y), LAG_EINVAL);
+    lag_sim_free(s);
+  }
+  assert_close(log2(e[0] / e[1]), 5, 0.15);
+}
+
+/* The error follows the tolerance: between 1e-6 and 1e-10 it falls by 10^4 within a factor of 10. */
+static void rk45_error_follows_the_tolerance(void **state)
+{
+  double e[2], y[4];
+  (void)state;
+  for (int i = 0; i < 2; i++) {
+    lag_sim *s = sim_with(&kepler, &lag_rk45, i ? 1e-10 : 1e-6, 0, NULL);
+    assert_int_equal(lag_sim_advance(s, 4), LAG_OK);
+    kepler_exact(4, y);
+    e[i] = distance(4, lag_sim_q(s), y);
+    lag_sim_free(s);
+  }
+  assert_close(log10(e[0] / e[1]), 4, 1);
+  assert_true(e[1] < 1e-7);
+}
+
+/* Exact for q of degree 5, v and z of degree 3, at any place and for a backward step. */
+static void hermite_reproduces_polynomials(void **state)
+{
+  (void)state;
+  for (int pass = 0; pass < 4; pass++) {
+    double c = pass / 2, h = pass % 2 ? -0.7 : 0.7, y[2][3], f[2][3], out[3];
+    for (int k = 0; k < 2; k++) {
+      double t = k * h;
+      y[k][0] = c * pow(t, 5) + pow(t, 4) - 2 * pow(t, 3) + t - 4;
+      y[k][1] = f[k][0] = 5 * c * pow(t, 4) + 4 * pow(t, 3) - 6 * t * t + 1;
+      f[k][1] = 20 * c * pow(t, 3) + 12 * t * t - 12 * t;
+      y[k][2] = t * t * t - t;
+      f[k][2] = 3 * t * t - 1;
+    }
+    for (double s = 0; s <= 1; s += 0.125) {
+      double t = s * h;
+      lag_hermite(1, 1, h, s, y[0], f[0], y[1], f[1], out);
+      assert_close(out[0], c * pow(t, 5) + pow(t, 4) - 2 * pow(t, 3) + t - 4, 1e-14);
+      if (pass < 2) {
+        assert_close(out[1], 4 * pow(t, 3) - 6 * t * t + 1, 1e-14);
+      }
+      assert_close(out[2], t * t * t - t, 1e-15);
+    }
+  }
+}
+
+/* Summed with compensation, the oscillator's energy loses in 10^6 steps what the method loses, and no more. */
+static void rk4_does_not_gather_rounding(void **state)
+{
+  lag_option opt[] = {{"step", 0.001, NULL}};
+  lag_sim *s = sim_with(&osc, &lag_rk4, 0, 1, opt);
+  lag_stats st;
+  (void)state;
+  assert_int_equal(lag_sim_advance(s, 1000), LAG_OK);
+  lag_sim_stats(s, &st);
+  assert_in_range(st.steps, 1000000, 1000001);
+  /* |R(ih)|^2 = 1 - h^6/72 + ...; E0 = 1/2 is judged against max(|p.v| + |L|) = 3/2. */
+  assert_close(st.energy_drift, 1e6 * 1e-18 / 72 / 3, 1e-15);
+  lag_sim_free(s);
+}
+
+/* Time is summed with compensation: step k ends at k h to the last bit, for an h that is no binary number. */
+static int compare_time(void *context, const lag_sim *s)
+{
+  double *k = context, t = ++*k * 0.1;
+  assert_close(lag_sim_time(s), t, 2 * 1.1e-16 * t);
+  return 0;
+}
+
+static void rk4_keeps_time(void **state)
+{
+  double k = 0;
+  lag_sim *s = sim_with(&osc, &lag_rk4, 0, 1, (lag_option[]){{"step", 0.1, NULL}});
+  (void)state;
+  lag_sim_on_step(s, compare_time, &k);
+  assert_int_equal(lag_sim_advance(s, 10000), LAG_OK);
+  assert_true(k >= 99999);
+  lag_sim_free(s);
+}
+
+static void backwards_undoes_forwards(void **state)
+{
+  double y[4];
+  (void)state;
+  for (int i = 0; i < lag_nmethods; i++) {
+    lag_option opt[] = {{"step", 1e-3, NULL}};
+    lag_sim *s = sim_with(&kepler, lag_methods[i], 1e-12, 1, opt);
+    assert_int_equal(lag_sim_advance(s, -2.5), LAG_OK);
+    kepler_exact(-2.5, y);
+    assert_close(distance(4, lag_sim_q(s), y), 0, 1e-8);
+    assert_int_equal(lag_sim_advance(s, -2), LAG_EINVAL);
+    lag_sim_free(s);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(dopri5_satisfies_the_order_conditions),
+      cmocka_unit_test(rk4_has_order_4),
+      cmocka_unit_test(rk4_dense_output_has_order_4),
+      cmocka_unit_test(rk45_has_order_5),
+      cmocka_unit_test(rk45_dense_output_has_order_4),
+      cmocka_unit_test(rk45_error_follows_the_tolerance),
+      cmocka_unit_test(hermite_reproduces_polynomials),
+      cmocka_unit_test(rk4_does_not_gather_rounding),
+      cmocka_unit_test(rk4_keeps_time),
+      cmocka_unit_test(backwards_undoes_forwards),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,180 @@
+/* Models with known solutions, written by hand as lagc would emit them: for tests of the runtime. */
+#ifndef TEST_RT_MODELS_H
+#define TEST_RT_MODELS_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "lag.h"
+
+#define UNUSED __attribute__((unused))
+#define ARGS                                                                                            \
+  UNUSED double t, UNUSED const double *q, UNUSED const double *v, UNUSED const double *z,              \
+      UNUSED const double *p, UNUSED const double *u
+#define MODEL(text) .abi = LAG_ABI, .real_size = sizeof(double), .name = text, .doc = "", .effects = ""
+
+static const double PI = 3.14159265358979323846264338327950288;
+static const lag_var names_q[] = {{"x", "m", 1, 0, 0}, {"y", "m", 1, 0, 0}};
+static const lag_var names_z[] = {{"z", "", 1, 0, 0}};
+
+#define assert_close(x, expected, tolerance)                                                            \
+  do {                                                                                                  \
+    double x_ = (x), e_ = (expected), t_ = (tolerance);                                                 \
+    if (!(fabs(x_ - e_) <= t_)) {                                                                       \
+      fail_msg("%s = %.17g, expected %.17g within %.3g, off by %.3g", #x, x_, e_, t_, x_ - e_);         \
+    }                                                                                                   \
+  } while (0)
+
+/* ---- Kepler, GM = 1, a = 1, e = 0.6, from pericentre. */
+static const double ecc = 0.6;
+
+UNUSED static int kepler_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  double r2 = q[0] * q[0] + q[1] * q[1], k = 1 / (r2 * sqrt(r2));
+  a[0] = -k * q[0];
+  a[1] = -k * q[1];
+  return 0;
+}
+
+UNUSED static int kepler_energy(ARGS, double *e, UNUSED double *w)
+{
+  double T = (v[0] * v[0] + v[1] * v[1]) / 2, V = -1 / hypot(q[0], q[1]);
+  e[0] = T + V;
+  e[1] = 2 * T + fabs(T - V);
+  return 0;
+}
+
+UNUSED static void kepler_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = 1 - ecc;
+  q[1] = 0;
+  v[0] = 0;
+  v[1] = sqrt((1 + ecc) / (1 - ecc));
+}
+
+/* y[4] at time t, by Kepler's equation. */
+UNUSED static void kepler_exact(double t, double *y)
+{
+  double E = t;
+  for (int i = 0; i < 60; i++) {
+    E -= (E - ecc * sin(E) - t) / (1 - ecc * cos(E));
+  }
+  double b = sqrt(1 - ecc * ecc), rate = 1 / (1 - ecc * cos(E));
+  y[0] = cos(E) - ecc;
+  y[1] = b * sin(E);
+  y[2] = -sin(E) * rate;
+  y[3] = b * cos(E) * rate;
+}
+
+UNUSED static const lag_model kepler_model = {MODEL("kepler"), .flags = LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS, .nq = 2,
+    .q = names_q, .accel = kepler_accel, .energy = kepler_energy};
+UNUSED static const lag_scene kepler = {.name = "orbit", .doc = "", .model = &kepler_model, .start = kepler_start, .t1 = 10,
+    .has_span = 1};
+
+/* ---- harmonic oscillator x'' = -x, x(0) = cos(phase): events x = 0, x = level, x = 0 rising. */
+UNUSED static int osc_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  a[0] = -q[0];
+  return 0;
+}
+
+UNUSED static int osc_energy(ARGS, double *e, UNUSED double *w)
+{
+  e[0] = (q[0] * q[0] + v[0] * v[0]) / 2;
+  e[1] = v[0] * v[0] + fabs(v[0] * v[0] - q[0] * q[0]) / 2;
+  return 0;
+}
+
+UNUSED static void osc_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = 1;
+  v[0] = 0;
+}
+
+UNUSED static const lag_model osc_model = {MODEL("oscillator"), .flags = LAG_CONSERVES_ENERGY, .nq = 1, .q = names_q,
+    .accel = osc_accel, .energy = osc_energy};
+UNUSED static const lag_scene osc = {.name = "osc", .doc = "", .model = &osc_model, .start = osc_start, .t1 = 10, .has_span = 1};
+
+/* ---- ball: y'' = -g, y(0) = h, bounces with restitution e. p = {g, h, e}. */
+static const lag_var ball_p[] = {{"g", "m/s^2", 1, 0, 1}, {"h", "cm", 0.01, 0, 1}, {"ground.e", "", 1, 0, 2}};
+static const lag_event ball_ev[] = {{"ground", -1}};
+
+UNUSED static int ball_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  a[0] = -p[0];
+  return 0;
+}
+
+UNUSED static int ball_energy(ARGS, double *e, UNUSED double *w)
+{
+  e[0] = v[0] * v[0] / 2 + p[0] * q[0];
+  e[1] = v[0] * v[0] + fabs(v[0] * v[0] / 2 - p[0] * q[0]);
+  return 0;
+}
+
+UNUSED static int ball_events(ARGS, double *g, UNUSED double *w)
+{
+  g[0] = q[0];
+  return 0;
+}
+
+UNUSED static int ball_act(UNUSED int k, ARGS, UNUSED double *q1, double *v1, UNUSED double *z1, UNUSED int *stop,
+                           UNUSED double *w)
+{
+  v1[0] = -p[2] * v[0];
+  return 0;
+}
+
+UNUSED static void ball_params(double *p, const unsigned char *fixed)
+{
+  static const double value[] = {9.81, 1, 0.9};
+  for (int i = 0; i < 3; i++) {
+    p[i] = fixed[i] ? p[i] : value[i];
+  }
+}
+
+UNUSED static void ball_start(const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = p[1];
+  v[0] = 0;
+}
+
+UNUSED static const lag_model ball_model = {MODEL("ball"), .flags = LAG_CONSERVES_ENERGY, .nq = 1, .np = 3, .nev = 1,
+    .q = names_q + 1, .p = ball_p, .ev = ball_ev, .accel = ball_accel, .energy = ball_energy, .events = ball_events, .act = ball_act};
+UNUSED static const lag_scene ball = {.name = "drop", .doc = "", .model = &ball_model, .params = ball_params,
+    .start = ball_start, .t1 = 5, .has_span = 1};
+
+/* ---- a state alone: z' = f(t, z), chosen by each test through a static function. */
+#define FLOW(name_, f_)                                                                                 \
+  static int name_##_accel(ARGS, UNUSED double *a, double *zd, UNUSED double *w)                        \
+  {                                                                                                     \
+    return f_;                                                                                          \
+  }                                                                                                     \
+  static const lag_model name_##_model = {MODEL(#name_), .nz = 1, .z = names_z, .accel = name_##_accel}; \
+  static const lag_scene name_ = {.name = #name_, .doc = "", .model = &name_##_model, .start = flow_start, .t1 = 5, .has_span = 1}
+
+UNUSED static void flow_start(UNUSED const double *p, UNUSED double *q, UNUSED double *v, double *z)
+{
+  z[0] = 1;
+}
+
+/* A simulation with a method and one option; tol 0: the default. */
+UNUSED static lag_sim *sim_with(const lag_scene *scene, const lag_method *m, double tol, int nopt, const lag_option *opt)
+{
+  lag_sim *s = lag_sim_new(scene);
+  assert_non_null(s);
+  if (tol > 0) {
+    assert_int_equal(lag_sim_set_tolerance(s, tol), 0);
+  }
+  assert_int_equal(lag_sim_set_method(s, m, opt, nopt), 0);
+  return s;
+}
+
+#endif

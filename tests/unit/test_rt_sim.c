@@ -1,0 +1,281 @@
+/* The simulation object: values by name, energy and monitors, inputs, and runs that are split or saved. Expected
+ * values: closed forms, GSL, and the same run done in one piece. */
+#include "test_rt_models.h"
+
+static const lag_option small_steps[] = {{"step", 0.01, NULL}};
+
+/* ---- values */
+
+static void values_are_in_declared_units(void **state)
+{
+  lag_sim *s = lag_sim_new(&ball);
+  (void)state;
+  assert_int_equal(lag_sim_set(s, "h", 250), 0); /* cm */
+  assert_close(lag_sim_p(s)[1], 2.5, 1e-15);
+  assert_int_equal(lag_sim_set(s, "e", 0.25), 0); /* ground.e, the only one */
+  assert_close(lag_sim_p(s)[2], 0.25, 0);
+  assert_int_equal(lag_sim_set(s, "y'", 2), 0);
+  assert_int_equal(lag_sim_advance(s, 0.1), LAG_OK);
+  assert_close(lag_sim_q(s)[0], 2.5 + 0.2 - 9.81 * 0.005, 1e-12);
+  assert_close(lag_sim_v(s)[0], 2 - 0.981, 1e-12);
+  lag_sim_free(s);
+}
+
+static void outputs_have_names_and_units(void **state)
+{
+  lag_sim *s = lag_sim_new(&kepler);
+  char name[16], unit[16];
+  double out[4];
+  (void)state;
+  assert_int_equal(lag_sim_noutputs(s), 4);
+  assert_close(lag_sim_output_info(s, 3, name, sizeof name, unit, sizeof unit), 1, 0);
+  assert_string_equal(name, "y'");
+  assert_string_equal(unit, "m/s");
+  assert_int_equal(lag_sim_advance(s, 0), LAG_OK);
+  assert_int_equal(lag_sim_outputs(s, out), LAG_OK);
+  assert_close(out[0], 0.4, 1e-15);
+  assert_close(out[3], 2, 1e-15);
+  lag_sim_free(s);
+}
+
+/* ---- inputs: x'' = u, u = t; or held at a constant */
+
+static int ramp(double t, UNUSED const double *p, double *u)
+{
+  u[0] = t;
+  return 0;
+}
+
+static int pushed_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  a[0] = u[0];
+  return 0;
+}
+
+static const lag_var push_u[] = {{"push", "m/s^2", 1, 0, 0}};
+static const lag_model pushed_model = {MODEL("pushed"), .nq = 1, .nu = 1, .q = names_q, .u = push_u, .inputs = ramp, .accel = pushed_accel};
+static const lag_scene pushed = {.name = "pushed", .doc = "", .model = &pushed_model, .start = osc_start, .t1 = 5, .has_span = 1};
+
+static void inputs_follow_their_formula_or_a_constant(void **state)
+{
+  (void)state;
+  for (int i = 0; i < lag_nmethods; i++) {
+    lag_sim *a = lag_sim_new(&pushed), *b = sim_with(&pushed, lag_methods[i], 0, 0, NULL);
+    assert_int_equal(lag_sim_set_method(a, lag_methods[i], NULL, 0), 0);
+    assert_int_equal(lag_sim_set(b, "push", 0.5), 0);
+    assert_int_equal(lag_sim_advance(a, 2), LAG_OK);
+    assert_int_equal(lag_sim_advance(b, 2), LAG_OK);
+    assert_close(lag_sim_q(a)[0], 1 + 8.0 / 6, 1e-12);
+    assert_close(lag_sim_q(b)[0], 1 + 0.25 * 4, 1e-12);
+    lag_sim_free(a);
+    lag_sim_free(b);
+  }
+}
+
+/* ---- energy and monitors */
+
+static void energy_drift_is_what_the_method_loses(void **state)
+{
+  lag_stats st;
+  (void)state;
+  /* rk4 on the oscillator: |R(ih)|^2 = 1 - h^6/72, over 1000 steps of 0.01; scale 3/2, E0 1/2. */
+  lag_sim *s = sim_with(&osc, &lag_rk4, 0, 1, (lag_option[]){{"step", 0.1, NULL}});
+  assert_int_equal(lag_sim_advance(s, 100), LAG_OK);
+  lag_sim_stats(s, &st);
+  assert_close(st.energy_drift, 1000 * 1e-6 / 72 / 3, 1e-7);
+  assert_close(st.energy, 0.5 * (1 - 1000 * 1e-6 / 72), 2e-7);
+  lag_sim_free(s);
+  s = sim_with(&kepler, &lag_rk45, 1e-12, 0, NULL);
+  assert_int_equal(lag_sim_advance(s, 20), LAG_OK);
+  lag_sim_stats(s, &st);
+  assert_true(st.energy_drift > 0 && st.energy_drift < 1e-10);
+  lag_sim_free(s);
+}
+
+static int watch_x(ARGS, double *out, UNUSED double *w)
+{
+  out[0] = q[0];
+  return 0;
+}
+
+static void monitors_end_the_run(void **state)
+{
+  const lag_monitor tight = {"energy", -1, 1e-9}, loose = {"energy", -1, 1e-3}, x = {"x", 0, 0.5};
+  (void)state;
+  for (int i = 0; i < 3; i++) {
+    lag_scene c = osc;
+    c.nmonitors = 1;
+    c.monitors = i == 0 ? &tight : i == 1 ? &loose : &x;
+    c.nout = 1;
+    c.outputs = names_q;
+    c.observe = watch_x;
+    lag_sim *s = sim_with(&c, &lag_rk4, 0, 1, (lag_option[]){{"step", 0.1, NULL}});
+    assert_int_equal(lag_sim_advance(s, 10), i == 1 ? LAG_OK : LAG_EMONITOR);
+    if (i == 0) { /* h^6/72 a step, at first judged against |E0| = 1/2, passes 1e-9 at once */
+      assert_close(lag_sim_time(s), 0.1, 1e-12);
+      assert_close(lag_sim_monitor_drift(s, 0), 1e-6 / 72, 1e-10);
+    } else if (i == 2) { /* |cos t - 1| > 1/2 after pi/3 = 1.047 */
+      assert_close(lag_sim_time(s), 1.1, 1e-12);
+    }
+    lag_sim_free(s);
+  }
+}
+
+/* ---- split and saved runs are the same run */
+
+static void asking_more_often_changes_nothing(void **state)
+{
+  (void)state;
+  for (int i = 0; i < lag_nmethods; i++) {
+    lag_sim *a = sim_with(&ball, lag_methods[i], 1e-7, i == 1, small_steps), *b = sim_with(&ball, lag_methods[i], 1e-7, i == 1, small_steps);
+    lag_stats sa, sb;
+    assert_int_equal(lag_sim_advance(a, 4), LAG_OK);
+    for (int k = 1; k <= 4000; k++) {
+      assert_int_equal(lag_sim_advance(b, k / 1000.0), LAG_OK);
+    }
+    assert_memory_equal(lag_sim_q(a), lag_sim_q(b), 2 * sizeof(double));
+    lag_sim_stats(a, &sa);
+    lag_sim_stats(b, &sb);
+    assert_int_equal(sa.steps, sb.steps);
+    assert_int_equal(sa.rhs_calls, sb.rhs_calls);
+    assert_int_equal(sa.events, sb.events);
+    lag_sim_free(a);
+    lag_sim_free(b);
+  }
+}
+
+/* Saved at `cut`, loaded into another object, run to the end: bit for bit. */
+static void check_cut(const lag_scene *scene, const lag_method *m, double cut, double end)
+{
+  lag_sim *whole = sim_with(scene, m, 1e-7, m == &lag_rk4, small_steps), *first = sim_with(scene, m, 1e-7, m == &lag_rk4, small_steps);
+  lag_sim *second = sim_with(scene, m, 1e-7, m == &lag_rk4, small_steps);
+  size_t n = lag_sim_save_size(first), bytes = (size_t)(2 * scene->model->nq) * sizeof(double);
+  double *x = calloc(n, sizeof *x);
+  lag_stats a, b;
+  assert_int_equal(lag_sim_advance(whole, end), LAG_OK);
+  assert_int_equal(lag_sim_advance(first, cut), LAG_OK);
+  assert_int_equal(lag_sim_save(first, x), LAG_OK);
+  assert_true(lag_sim_signature(first) == lag_sim_signature(second));
+  assert_int_equal(lag_sim_load(second, x), LAG_OK);
+  assert_memory_equal(lag_sim_q(second), lag_sim_q(first), bytes);
+  assert_int_equal(lag_sim_advance(second, end), LAG_OK);
+  assert_memory_equal(lag_sim_q(second), lag_sim_q(whole), bytes);
+  lag_sim_stats(whole, &a);
+  lag_sim_stats(second, &b);
+  assert_true(a.energy_drift == b.energy_drift && a.steps == b.steps && a.rhs_calls == b.rhs_calls && a.events == b.events);
+  free(x);
+  lag_sim_free(whole);
+  lag_sim_free(first);
+  lag_sim_free(second);
+}
+
+static void a_saved_run_goes_on_bit_by_bit(void **state)
+{
+  (void)state;
+  for (int i = 0; i < lag_nmethods; i++) {
+    for (double cut = 0.05; cut < 4; cut += 0.317) {
+      check_cut(&ball, lag_methods[i], cut, 4);
+      check_cut(&kepler, lag_methods[i], cut, 4);
+    }
+  }
+}
+
+static void what_cannot_be_saved_says_so(void **state)
+{
+  lag_sim *s = sim_with(&kepler, lag_gsl_methods[0], 0, 0, NULL), *t = lag_sim_new(&ball);
+  double x = 0;
+  (void)state;
+  assert_int_equal(lag_sim_save(s, &x), LAG_EINVAL);
+  assert_int_equal(lag_sim_load(s, &x), LAG_EINVAL);
+  assert_true(lag_sim_signature(s) != lag_sim_signature(t));
+  lag_sim_free(s);
+  lag_sim_free(t);
+}
+
+/* ---- against independent integrators: the double pendulum's textbook equations (unit masses and lengths) */
+
+static int double_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  double d = q[0] - q[1], g = 9.81, s = sin(d), c = cos(d), den = 2 - c * c;
+  a[0] = (-g * 2 * sin(q[0]) + g * sin(q[1]) * c - s * (v[1] * v[1] + v[0] * v[0] * c)) / den;
+  a[1] = (s * (2 * v[0] * v[0] + v[1] * v[1] * c) + 2 * g * (sin(q[0]) * c - sin(q[1]))) / den;
+  return 0;
+}
+
+static int double_energy(ARGS, double *e, UNUSED double *w)
+{
+  double T = v[0] * v[0] + v[1] * v[1] / 2 + v[0] * v[1] * cos(q[0] - q[1]), V = -9.81 * (2 * cos(q[0]) + cos(q[1]));
+  e[0] = T + V;
+  e[1] = 2 * T + fabs(T - V);
+  return 0;
+}
+
+static void double_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = 1;
+  q[1] = -0.5;
+  v[0] = v[1] = 0;
+}
+
+static const lag_model double_model = {MODEL("double"), .flags = LAG_CONSERVES_ENERGY, .nq = 2, .q = names_q, .accel = double_accel, .energy = double_energy};
+static const lag_scene double_pendulum = {.name = "double", .doc = "", .model = &double_model, .start = double_start, .t1 = 5, .has_span = 1};
+
+static void all_methods_agree(void **state)
+{
+  double right[4];
+  lag_stats st;
+  (void)state;
+  lag_sim *s = sim_with(&double_pendulum, lag_gsl_methods[0], 1e-14, 0, NULL);
+  assert_int_equal(lag_sim_advance(s, 5), LAG_OK);
+  memcpy(right, lag_sim_q(s), sizeof right);
+  lag_sim_free(s);
+  for (int i = 0; i < lag_nmethods + lag_gsl_nmethods; i++) {
+    const lag_method *m = i < lag_nmethods ? lag_methods[i] : lag_gsl_methods[i - lag_nmethods];
+    s = sim_with(&double_pendulum, m, 1e-11, m == &lag_rk4, (lag_option[]){{"step", 1e-3, NULL}});
+    assert_int_equal(lag_sim_advance(s, 5), LAG_OK);
+    for (int j = 0; j < 4; j++) {
+      assert_close(lag_sim_q(s)[j], right[j], 1e-6);
+    }
+    lag_sim_stats(s, &st);
+    assert_true(st.energy_drift < 1e-8 && st.rhs_calls > 100);
+    lag_sim_free(s);
+  }
+}
+
+static int stop_after_5(void *context, const lag_sim *s)
+{
+  (void)s;
+  return ++*(int *)context == 5;
+}
+
+static void the_hook_interrupts_and_the_run_can_go_on(void **state)
+{
+  int n = 0;
+  lag_sim *s = sim_with(&kepler, &lag_rk45, 1e-7, 0, NULL), *t = sim_with(&kepler, &lag_rk45, 1e-7, 0, NULL);
+  (void)state;
+  lag_sim_on_step(s, stop_after_5, &n);
+  assert_int_equal(lag_sim_advance(s, 4), LAG_INTERRUPTED);
+  assert_true(lag_sim_time(s) > 0 && lag_sim_time(s) < 4);
+  assert_int_equal(lag_sim_advance(s, 4), LAG_OK);
+  assert_int_equal(lag_sim_advance(t, 4), LAG_OK);
+  assert_memory_equal(lag_sim_q(s), lag_sim_q(t), 4 * sizeof(double));
+  lag_sim_free(s);
+  lag_sim_free(t);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(values_are_in_declared_units),
+      cmocka_unit_test(outputs_have_names_and_units),
+      cmocka_unit_test(inputs_follow_their_formula_or_a_constant),
+      cmocka_unit_test(energy_drift_is_what_the_method_loses),
+      cmocka_unit_test(monitors_end_the_run),
+      cmocka_unit_test(asking_more_often_changes_nothing),
+      cmocka_unit_test(a_saved_run_goes_on_bit_by_bit),
+      cmocka_unit_test(what_cannot_be_saved_says_so),
+      cmocka_unit_test(all_methods_agree),
+      cmocka_unit_test(the_hook_interrupts_and_the_run_can_go_on),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
