@@ -25,7 +25,7 @@ typedef VEC(Piece) Pieces;
 
 static int is_param(const Symbol *s, const void *data) {
   (void)data;
-  return s->kind == SYM_PARAM;
+  return s->kind == SYM_PARAM || s->kind == SYM_CONST;
 }
 
 static int is_not_param(const Symbol *s, const void *data) { return !is_param(s, data); }

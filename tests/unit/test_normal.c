@@ -182,6 +182,33 @@ static void deep_chains_do_not_recurse(void **state) {
   finish(&t);
 }
 
+/* 20 proofs in an arena of this size; 1 when they got through. */
+static int prove_within(size_t bytes) {
+  ArenaConfig config = {.max_bytes = bytes, .chunk = 1024};
+  Arena *a = arena_new(&config);
+  jmp_buf here;
+  arena_guard(a, &here);
+  if (setjmp(here)) {
+    arena_free(a);
+    return 0;
+  }
+  Texts t = texts(a, " m l ");
+  Expr e = text_expr(&t, "sin(3*x + y)^3 - cos(x/3)^4 + sqrt(1 + abs(y)) + exp(x)");
+  for (int i = 0; i < 20; i++) prove_zero(t.g, e, NULL);
+  assert_ptr_equal(arena_guard(a, &here), &here);
+  arena_free(a);
+  return 1;
+}
+
+/* Running out of the graph's memory inside a proof reaches the caller's handler; the proof's own
+ * memory is freed (the leak checker would see it), and the handler is the caller's again. */
+static void running_out_of_memory_is_passed_on(void **state) {
+  (void)state;
+  int through = 0;
+  for (size_t kib = 64; kib <= 16384; kib += kib / 4) through += prove_within(kib * 1024);
+  assert_in_range(through, 1, 20);
+}
+
 /* --- random expressions: the normal form has the value of the expression --- */
 
 static uint32_t dice(uint32_t *seed, uint32_t sides) {
@@ -373,6 +400,7 @@ int main(void) {
       cmocka_unit_test(limits_end_large_problems),
       cmocka_unit_test(coefficients_that_overflow_prove_nothing),
       cmocka_unit_test(deep_chains_do_not_recurse),
+      cmocka_unit_test(running_out_of_memory_is_passed_on),
       cmocka_unit_test(normal_forms_keep_values),
       cmocka_unit_test(solutions_of_the_cart_pendulum),
       cmocka_unit_test(solutions_of_the_double_pendulum),
