@@ -67,11 +67,15 @@ static int read_model(Compiler *c) {
   return c->diags->errors ? STATUS_MODEL : STATUS_OK;
 }
 
-/* The equations of one scene (NULL: the first), or NULL with the reasons in c->diags. */
-static Eqns *derive_scene(Compiler *c, const char *scene) {
-  Model *m = model_build(c->ast, scene, c->o.defines.at, c->o.defines.n);
+/* The equations of one scene (NULL: the first) with one more effect (or NULL); NULL with the reasons
+ * in c->diags. */
+static Eqns *derive_with(Compiler *c, const char *scene, Name also) {
+  ModelChoice choice = {.scene = scene, .also = also, .defines = c->o.defines.at, .ndefines = c->o.defines.n};
+  Model *m = model_build(c->ast, &choice);
   return m ? eqns_derive(m) : NULL;
 }
+
+static Eqns *derive_scene(Compiler *c, const char *scene) { return derive_with(c, scene, NULL); }
 
 static IrUnit *lower_scene(Compiler *c, const Eqns *e) {
   IrUnit *u = unit_new(e, c->o.file);
@@ -175,6 +179,9 @@ static int do_check(Compiler *c) {
     Eqns *e = derive_scene(c, scenes.at[i]);
     if (e) sb_printf(&out, "scene %s: ok\n", scenes.at[i]);
   }
+  EffectList unused = model_unused_effects(c->ast);
+  for (uint32_t i = 0; i < unused.n && !c->o.scene; i++)
+    if (derive_with(c, NULL, unused.at[i])) sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);
   if (c->diags->errors) return STATUS_MODEL;
   return write_out(c, NULL, &out);
 }

@@ -9,13 +9,9 @@ enum { MOST_LINES = 24 };
 /* Variable i of q, v, z: name, unit, value in the declared unit. */
 static double state_var(const App *app, int i, Column *c)
 {
-  const lag_model *m = app->scene->model;
-  int velocity = i >= m->nq && i < 2 * m->nq;
-  const lag_var *v = i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
+  double factor = lag_sim_state_info(app->sim, i, c->name, sizeof c->name, c->unit, sizeof c->unit);
 
-  snprintf(c->name, sizeof c->name, "%s%s", v->name, velocity ? "'" : "");
-  snprintf(c->unit, sizeof c->unit, "%s%s", velocity && !v->unit[0] ? "1" : v->unit, velocity ? "/s" : "");
-  return lag_sim_q(app->sim)[i] / v->factor;
+  return lag_sim_q(app->sim)[i] / factor;
 }
 
 void report_method(const App *app, char *s, size_t n)

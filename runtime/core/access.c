@@ -82,19 +82,33 @@ int lag_sim_noutputs(const lag_sim *s)
   return s->scene->nout > 0 ? s->scene->nout : s->pb.n;
 }
 
-double lag_sim_output_info(const lag_sim *s, int i, char *name, size_t nname, char *unit, size_t nunit)
+/* Copies a variable's name and unit, with what a time derivative adds to them. A quantity without a
+ * unit has a rate without one: a model in which nothing has units stays so. */
+static double put_info(const lag_var *v, int velocity, char *name, size_t nname, char *unit, size_t nunit)
 {
-  const lag_model *m = s->scene->model;
-  int velocity = s->scene->nout == 0 && i >= m->nq && i < 2 * m->nq;
-  const lag_var *v = s->scene->nout > 0 ? &s->scene->outputs[i] : i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
-
   if (name) {
     snprintf(name, nname, "%s%s", v->name, velocity ? "'" : "");
   }
   if (unit) {
-    snprintf(unit, nunit, "%s%s", velocity && !v->unit[0] ? "1" : v->unit, velocity ? "/s" : "");
+    snprintf(unit, nunit, "%s%s", v->unit, velocity && v->unit[0] ? "/s" : "");
   }
   return v->factor;
+}
+
+double lag_sim_state_info(const lag_sim *s, int i, char *name, size_t nname, char *unit, size_t nunit)
+{
+  const lag_model *m = s->scene->model;
+  const lag_var *v = i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
+
+  return put_info(v, i >= m->nq && i < 2 * m->nq, name, nname, unit, nunit);
+}
+
+double lag_sim_output_info(const lag_sim *s, int i, char *name, size_t nname, char *unit, size_t nunit)
+{
+  if (s->scene->nout == 0) {
+    return lag_sim_state_info(s, i, name, nname, unit, nunit);
+  }
+  return put_info(&s->scene->outputs[i], 0, name, nname, unit, nunit);
 }
 
 int lag_sim_outputs(lag_sim *s, double *out)

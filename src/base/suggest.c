@@ -33,7 +33,8 @@ static uint32_t distance(const char *a, size_t na, const char *b, size_t nb) {
 Name suggest(const char *wrong, const Name *candidates, size_t n) {
   size_t len = strlen(wrong);
   if (len > LONGEST) return NULL;
-  uint32_t best = (uint32_t)(len < 3 ? 2 : 2 * (len / 3)) + 1;
+  /* one letter for another is a guess, not a typing mistake: only its case may differ */
+  uint32_t best = len == 1 ? 2 : (uint32_t)(len < 3 ? 2 : 2 * (len / 3)) + 1;
   Name found = NULL;
   for (size_t i = 0; i < n; i++) {
     size_t other = strlen(candidates[i]);

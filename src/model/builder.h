@@ -63,8 +63,9 @@ typedef struct {
 /* The value of an expression; errors are reported and give e = 0. */
 Value resolve(Builder *b, AstId id, Context where, Name effect);
 
-/* Like resolve, for a value that is given to something with a unit: a bare number is multiplied by
- * that unit, anything else must have its dimension. */
+/* A value given to something with a unit: a bare number is multiplied by that unit, anything else
+ * must have its dimension. 0 after an error. resolve_in resolves it first. */
+Expr value_in(Builder *b, Value v, Span span, const Unit *unit);
 Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *unit);
 
 /* A number known now (spans, steps, tolerances); NAN after an error. */
@@ -86,8 +87,8 @@ Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(print
 /* The unit of a dimension in SI, for quantities that were declared without one. */
 Unit unit_of_dim(Builder *b, Dim d);
 
-/* scene.c: which statements are active, and the scene's contents. */
-int scene_select(Builder *b, const char *scene);
+/* scene.c: which statements are active (those of the effect `also` too), and the scene's contents. */
+void scene_select(Builder *b, const char *scene, Name also);
 void scene_build(Builder *b);
 
 #endif

@@ -100,8 +100,10 @@ static void declare_param(Builder *b, const AstStmt *st, Name effect) {
   uint32_t i = m->params.n;
   Param p = {.name = st->name, .span = st->name_span, .sign = st->sign};
   p.unit = unit_resolve(&st->unit, b->diags, b->arena);
-  /* Its own name is not in scope in its value. */
-  p.value = resolve_in(b, st->rhs, IN_PARAM, effect, &p.unit);
+  /* Its own name is not in scope in its value; without a unit of its own it takes its value's. */
+  Value v = resolve(b, st->rhs, IN_PARAM, effect);
+  if (!p.unit.text[0] && v.e && !v.bare && v.dim.known) p.unit = unit_of_dim(b, v.dim);
+  p.value = value_in(b, v, ast_expr(b->ast, st->rhs)->span, &p.unit);
   if (!declare_name(b, st, effect, ENT_PARAM, i)) return;
   if (effect) p.name = intern_printf(b, "%s.%s", effect, st->name);
   p.sym = declare_symbol(b, SYM_PARAM, i, p.name, sign_of(st->sign), p.unit.dim);
@@ -401,7 +403,7 @@ static void check_defines(Builder *b) {
   }
 }
 
-static Builder *builder_new(Ast *ast, const Define *defines, uint32_t ndefines) {
+static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   Arena *a = ast->arena;
   Builder *b = ARENA_NEW(a, Builder);
   b->ast = ast;
@@ -409,8 +411,8 @@ static Builder *builder_new(Ast *ast, const Define *defines, uint32_t ndefines) 
   b->arena = a;
   b->g = expr_graph(a, ast->names);
   b->scope.arena = a;
-  b->defines = defines;
-  b->ndefines = ndefines;
+  b->defines = choice->defines;
+  b->ndefines = choice->ndefines;
   Model *m = b->m = ARENA_NEW(a, Model);
   m->ast = ast;
   m->diags = ast->diags;
@@ -430,9 +432,9 @@ static void forget_time_without_units(Builder *b) {
   b->dims.at[b->m->time] = DIM_UNKNOWN;
 }
 
-Model *model_build(Ast *ast, const char *scene, const Define *defines, uint32_t ndefines) {
-  Builder *b = builder_new(ast, defines, ndefines);
-  if (!scene_select(b, scene)) return NULL;
+Model *model_build(Ast *ast, const ModelChoice *choice) {
+  Builder *b = builder_new(ast, choice);
+  scene_select(b, choice->scene, choice->also);
   forget_time_without_units(b);
   for (uint32_t i = 0; i < b->active.n; i++) declare(b, b->active.at[i].stmt, b->active.at[i].effect);
   check_defines(b);

@@ -146,11 +146,21 @@ typedef struct {
 typedef struct {
   const Name *at;
   uint32_t n;
-} SceneList;
+} SceneList, EffectList;
 SceneList model_scenes(const Ast *ast);
 
-/* Builds the model for one scene (NULL: the first). NULL when there were errors; they are in
- * ast->diags, all of them. */
-Model *model_build(Ast *ast, const char *scene, const Define *defines, uint32_t ndefines);
+/* The effects that no scene uses. */
+EffectList model_unused_effects(const Ast *ast);
+
+/* What to build a model for. */
+typedef struct {
+  const char *scene; /* NULL: the first */
+  Name also;         /* an effect to turn on besides the scene's own, with what it requires; or NULL */
+  const Define *defines;
+  uint32_t ndefines;
+} ModelChoice;
+
+/* Builds the model. NULL when there were errors; they are in ast->diags, all of them. */
+Model *model_build(Ast *ast, const ModelChoice *choice);
 
 #endif

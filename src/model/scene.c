@@ -20,6 +20,19 @@ SceneList model_scenes(const Ast *ast) {
   return (SceneList){names.at, names.n};
 }
 
+EffectList model_unused_effects(const Ast *ast) {
+  VEC(Name) unused = {0};
+  for (const AstStmt *e = ast->first; e; e = e->next) {
+    if (e->kind != STMT_EFFECT || !e->name) continue;
+    int used = 0;
+    for (const AstStmt *s = ast->first; s; s = s->next)
+      for (const AstStmt *x = s->kind == STMT_SCENE ? s->body : NULL; x; x = x->next)
+        used |= x->kind == STMT_USE && x->name == e->name;
+    if (!used) vec_push(ast->arena, &unused, e->name);
+  }
+  return (EffectList){unused.at, unused.n};
+}
+
 static Name nearest(const Ast *ast, AstStmtKind kind, const char *wrong) {
   VEC(Name) names = {0};
   for (const AstStmt *s = ast->first; s; s = s->next)
@@ -89,6 +102,18 @@ static void collect_uses(Builder *b, const AstStmt *scene) {
   }
 }
 
+/* Turns an effect on together with what it requires. */
+static void use_with_needs(Builder *b, Name effect) {
+  if (uses(b, effect)) return;
+  vec_push(b->arena, &b->m->effects, effect);
+  for (uint32_t i = b->m->effects.n - 1; i < b->m->effects.n; i++) {
+    const AstStmt *st = find_stmt(b->ast, STMT_EFFECT, b->m->effects.at[i]);
+    for (const AstStmt *x = st ? st->body : NULL; x; x = x->next)
+      if (x->kind == STMT_REQUIRES && !uses(b, x->name) && find_stmt(b->ast, STMT_EFFECT, x->name))
+        vec_push(b->arena, &b->m->effects, x->name);
+  }
+}
+
 static void check_effect_needs(Builder *b, const AstStmt *effect) {
   for (const AstStmt *x = effect->body; x; x = x->next) {
     if (x->kind != STMT_REQUIRES && x->kind != STMT_EXCLUDES) continue;
@@ -134,8 +159,7 @@ static void take_model_name(Builder *b) {
     }
 }
 
-int scene_select(Builder *b, const char *scene) {
-  uint32_t before = b->diags->errors;
+void scene_select(Builder *b, const char *scene, Name also) {
   take_model_name(b);
   check_twice(b);
   const AstStmt *st = pick_scene(b, scene);
@@ -143,6 +167,7 @@ int scene_select(Builder *b, const char *scene) {
   b->m->scene.doc = st && st->doc ? st->doc : "";
   b->chain = scene_chain(b, st);
   for (const AstStmt **s = b->chain; *s; s++) collect_uses(b, *s);
+  if (also) use_with_needs(b, also);
   VEC(Name) in_order = {0};
   for (const AstStmt *s = b->ast->first; s; s = s->next) {
     if (s->kind != STMT_EFFECT) {
@@ -157,7 +182,6 @@ int scene_select(Builder *b, const char *scene) {
   }
   b->m->effects.at = in_order.at;
   b->m->effects.n = in_order.n;
-  return b->diags->errors == before;
 }
 
 /* --- the scene's contents --- */
