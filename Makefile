@@ -77,7 +77,7 @@ $(BUILD)/obj/src/syntax/parse.o: $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 # Set-up comes first, in a process of its own: the make that follows sees what it installed.
 SETUP = @CC='$(CC)' FLEX='$(FLEX)' BISON='$(BISON)' .ci/setup
 # A build that says nothing unless something is wrong; a job a processor, unless make was told how many.
-QUIET = @$(MAKE) -s --no-print-directory $(if $(filter --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 2))
+QUIET = +@$(MAKE) -s --no-print-directory $(if $(filter --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 2))
 
 demo:
 	$(SETUP) build
