@@ -16,7 +16,7 @@ for want in tests/golden/eqns/*.expected; do
   scene=${scene#.}
   "$LAGC" derive "models/${name%%.*}.lag" ${scene:+"$scene"} >"$got" 2>&1
   code=$?
-  if [ -n "$BLESS" ] && [ "$code" = 0 ]; then cp "$got" "$want"; fi
+  if [ -n "${BLESS:-}" ] && [ "$code" = 0 ]; then cp "$got" "$want"; fi
   if [ "$code" = 0 ] && cmp -s "$got" "$want"; then
     echo "ok $n - $name"
   else
