@@ -86,7 +86,7 @@ demo:
 	@$(MAKE) --no-print-directory run-demo
 
 run-demo: all
-	$(BUILD)/lagc run models/double_pendulum.lag --method rk45 --sketch --svg $(BUILD)/double_pendulum.svg
+	$(BUILD)/lagc run models/double_pendulum.lag --method rk45 --plot-x x2 --plot-y y2 --sketch --svg $(BUILD)/double_pendulum.svg
 
 # ---- tests: tests/run.sh says what a suite is -------------------------------------------------------
 # Three builds: as users get it, in $(BUILD)/san with the address and undefined-behaviour sanitizers, and, where

@@ -165,7 +165,7 @@ static int do_run(Compiler *c) {
   int status = make_simulator(c, NULL, &path);
   if (status != STATUS_OK) return status;
   char **argv = ARENA_ARRAY(c->arena, char *, c->o.rest.n + 2);
-  argv[0] = arena_strdup(c->arena, "lagc run"); /* what messages begin with */
+  argv[0] = arena_strdup(c->arena, "lagc run"); /* what its messages begin with */
   for (uint32_t i = 0; i < c->o.rest.n; i++) argv[i + 1] = arena_strdup(c->arena, c->o.rest.at[i]);
   fflush(stdout);
   execv(path, argv);
