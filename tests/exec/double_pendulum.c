@@ -1,7 +1,7 @@
 /* The emitted accelerations of models/double_pendulum.lag against hand-written ones, at random states. Prints TAP.
  *   double_pendulum [STATES]      linked with the emitted model, for LAG_REAL = double
  *
- * The formulas are typed from the textbook (D. Morin, Introduction to Classical Mechanics, problem 6.2, solved for the
+ * The formulas are typed from the textbook (the Lagrangian of Landau and Lifshitz, Mechanics, paragraph 5, problem 1, solved for the
  * accelerations by Cramer's rule), not from what lagc prints:
  *   (m1 + m2) l1 th1'' + m2 l2 th2'' cos(D) = -m2 l2 th2'^2 sin(D) - (m1 + m2) g sin(th1),    D = th1 - th2
  *   l2 th2'' + l1 th1'' cos(D) = l1 th1'^2 sin(D) - g sin(th2)
