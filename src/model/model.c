@@ -133,8 +133,10 @@ static void declare_param(Builder *b, const AstStmt *st, Name effect) {
   uint32_t i = m->params.n;
   Param p = {.name = st->name, .span = st->name_span, .sign = st->sign};
   p.unit = unit_resolve(&st->unit, b->diags, b->arena);
-  /* Its own name is not in scope in its value. */
-  p.value = resolve_in(b, st->rhs, IN_PARAM, effect, &p.unit);
+  /* Its own name is not in scope in its value; without a unit of its own it takes its value's. */
+  Value v = resolve(b, st->rhs, IN_PARAM, effect);
+  if (!p.unit.text[0] && v.e && !v.bare && v.dim.known) p.unit = unit_of_dim(b, v.dim);
+  p.value = value_in(b, v, ast_expr(b->ast, st->rhs)->span, &p.unit);
   if (!declare_name(b, st, effect, ENT_PARAM, i)) return;
   if (effect) p.name = intern_printf(b, "%s.%s", effect, st->name);
   p.sym = declare_symbol(b, SYM_PARAM, i, p.name, sign_of(st->sign), p.unit.dim);
@@ -218,10 +220,52 @@ static void declare(Builder *b, const AstStmt *st, Name effect) {
 
 /* --- statements with meaning --- */
 
+/* A force or a dissipation: times `by`, it has the dimension of L. */
+typedef struct {
+  AstId id;
+  Dim dim, by;
+  int bare;
+  const char *what;
+} UnitCheck;
+
 typedef struct {
   VEC(Expr) lagrangian, kinetic, potential, dissipation;
   Span base_lagrangian; /* where the model itself gave L */
+  Dim dim;              /* of L, as far as is known */
+  Span dim_span;        /* what decided that */
+  VEC(UnitCheck) later;
 } Energies;
+
+static Dim joule_dim(void) { return (Dim){1, {2 * DIM_ONE, DIM_ONE, -2 * DIM_ONE}}; }
+
+/* All parts of L have one dimension: that of the first with a known one. */
+static void check_energy_unit(Builder *b, const AstStmt *st, const Value *v, Energies *en) {
+  if (!v->dim.known || expr_is_zero(b->g, v->e)) return;
+  if (!en->dim.known) {
+    en->dim = v->dim;
+    en->dim_span = st->span;
+  } else if (!dim_fits(v->dim, en->dim)) {
+    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is in [%s]", dim_text(v->dim, b->arena));
+    diag_also(b->diags, en->dim_span, "another part of the Lagrangian is in [%s]", dim_text(en->dim, b->arena));
+  }
+}
+
+/* Remembers that v times `by` has the dimension of L, which later statements may decide. */
+static void check_later(Builder *b, Energies *en, AstId id, const Value *v, Dim by, const char *what) {
+  if (expr_is_zero(b->g, v->e)) return;
+  vec_push(b->arena, &en->later, ((UnitCheck){id, v->dim, by, v->bare, what}));
+}
+
+static void check_units_of_forces(Builder *b, const Energies *en) {
+  for (uint32_t i = 0; i < en->later.n; i++) {
+    const UnitCheck *c = &en->later.at[i];
+    Dim want = dim_div(en->dim, c->by);
+    if (dim_fits(c->dim, want)) continue;
+    diag_error(b->diags, ast_expr(b->ast, c->id)->span, "%s is in [%s], and this is in [%s]", c->what, dim_text(want, b->arena),
+               dim_text(c->dim, b->arena));
+    if (c->bare) diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_text(b, c->id), dim_text(want, b->arena));
+  }
+}
 
 static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en) {
   if (!effect && st->kind == STMT_LAGRANGIAN) {
@@ -236,9 +280,12 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   if (!effect || !b->m->lagrangian_span.end) b->m->lagrangian_span = st->span;
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
   if (!v.e) return;
-  Dim joule = {1, {2 * DIM_ONE, DIM_ONE, -2 * DIM_ONE}};
-  if (v.dim.known && !dim_fits(v.dim, joule)) b->dims.at[b->m->energy_sym] = DIM_UNKNOWN;
-  else if (v.dim.known) b->dims.at[b->m->energy_sym] = joule;
+  if (st->kind == STMT_DISSIPATION) {
+    Dim second = {1, {[DIM_TIME] = DIM_ONE}};
+    check_later(b, en, st->rhs, &v, second, "a dissipation function");
+  } else {
+    check_energy_unit(b, st, &v, en);
+  }
   switch (st->kind) {
     case STMT_LAGRANGIAN: vec_push(b->arena, &en->lagrangian, v.e); return;
     case STMT_KINETIC: vec_push(b->arena, &en->kinetic, v.e); return;
@@ -250,6 +297,8 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
 
 static void finish_energies(Builder *b, const Energies *en) {
   Model *m = b->m;
+  check_units_of_forces(b, en);
+  b->dims.at[m->energy_sym] = en->dim.known && dim_fits(en->dim, joule_dim()) ? en->dim : DIM_UNKNOWN;
   Expr l = expr_add_n(b->g, en->lagrangian.at, en->lagrangian.n);
   Expr kinetic = expr_add_n(b->g, en->kinetic.at, en->kinetic.n);
   Expr potential = expr_add_n(b->g, en->potential.at, en->potential.n);
@@ -269,7 +318,7 @@ static void report_force(Builder *b, const AstStmt *st) {
 }
 
 /* force q = Q, force (px, py) = (Fx, Fy): both sides element by element. */
-static void add_force(Builder *b, const AstStmt *st, Name effect) {
+static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) {
   const AstExpr *l = ast_expr(b->ast, st->lhs), *r = ast_expr(b->ast, st->rhs);
   int tuple = l->kind == AST_TUPLE;
   if (tuple != (r->kind == AST_TUPLE)) {
@@ -282,6 +331,7 @@ static void add_force(Builder *b, const AstStmt *st, Name effect) {
     if (point.e && f.e) {
       Force one = {point.e, f.e, ast_expr(b->ast, ri)->span};
       vec_push(b->arena, &b->m->forces, one);
+      check_later(b, en, ri, &f, point.dim, arena_printf(b->arena, "a force along `%s`", ast_text(b, li)));
     }
     li = tuple ? ast_expr(b->ast, li)->next : 0;
     ri = tuple ? ast_expr(b->ast, ri)->next : 0;
@@ -368,7 +418,7 @@ static void apply(Builder *b, const AstStmt *st, Name effect, Energies *en) {
     case STMT_LAGRANGIAN: case STMT_KINETIC: case STMT_POTENTIAL: case STMT_DISSIPATION:
       add_energy(b, st, effect, en);
       return;
-    case STMT_FORCE: add_force(b, st, effect); return;
+    case STMT_FORCE: add_force(b, st, effect, en); return;
     case STMT_FLOW: add_flow(b, st, effect); return;
     case STMT_INPUT: fill_input(b, st, effect); return;
     case STMT_EVENT: add_event(b, st, effect); return;

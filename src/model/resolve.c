@@ -622,17 +622,21 @@ Value resolve(Builder *b, AstId id, Context where, Name effect) {
   return FAILED;
 }
 
-Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *unit) {
-  Value v = resolve(b, id, where, effect);
+Expr value_in(Builder *b, Value v, Span span, const Unit *unit) {
   if (!v.e) return 0;
   if (v.bare) return times_unit(b, v.e, unit);
   if (!dim_fits(v.dim, unit->dim)) {
     const char *want = dim_text(unit->dim, b->arena);
-    diag_error(b->diags, ast_expr(b->ast, id)->span, "this value is in [%s], and [%s] is wanted here", dim_text(v.dim, b->arena), want);
+    diag_error(b->diags, span, "this value is in [%s], and [%s] is wanted here", dim_text(v.dim, b->arena), want);
     if (dim_is_none(v.dim)) diag_help(b->diags, "give a number in it its unit, or multiply by `1 [%s]`", want);
     return 0;
   }
   return v.e;
+}
+
+Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *unit) {
+  Value v = resolve(b, id, where, effect);
+  return v.e ? value_in(b, v, ast_expr(b->ast, id)->span, unit) : 0;
 }
 
 double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what) {

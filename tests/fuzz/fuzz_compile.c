@@ -4,7 +4,7 @@
  *
  *   clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz/fuzz_compile.c LIBLAGC -o fuzz
  *   ./fuzz -dict=tests/fuzz/lag.dict -timeout=10 tests/fuzz/corpus/compile
- * With -DREPLAY it is a program that runs every file of the folders it is given. */
+ * tests/fuzz/driver.c replays the corpus in `make test`. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -75,41 +75,3 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   arena_free(a);
   return 0;
 }
-
-#ifdef REPLAY
-#include <dirent.h>
-
-static void replay_file(const char *path, int number) {
-  static const size_t cap = 1 << 22;
-  FILE *f = fopen(path, "rb");
-  uint8_t *data = malloc(cap);
-  if (!f || !data) abort();
-  size_t n = fread(data, 1, cap, f);
-  fclose(f);
-  printf("# %s\n", path);
-  fflush(stdout);
-  LLVMFuzzerTestOneInput(data, n);
-  free(data);
-  printf("ok %d - %s\n", number, path);
-}
-
-int main(int argc, char **argv) {
-  int files = 0;
-  for (int i = 1; i < argc; i++) {
-    DIR *dir = opendir(argv[i]);
-    if (!dir) {
-      fprintf(stderr, "fuzz_compile: cannot open the folder %s\n", argv[i]);
-      return 2;
-    }
-    for (struct dirent *entry; (entry = readdir(dir));) {
-      char path[4096];
-      if (entry->d_name[0] == '.') continue;
-      snprintf(path, sizeof path, "%s/%s", argv[i], entry->d_name);
-      replay_file(path, ++files);
-    }
-    closedir(dir);
-  }
-  printf("1..%d\n", files);
-  return files == 0;
-}
-#endif
