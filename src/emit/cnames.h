@@ -8,8 +8,14 @@
 
 /* The identifiers taken in one C scope. */
 typedef struct {
+  const char *name;
+  int next; /* the number to try first when the name is wanted again */
+} CName;
+
+typedef struct {
   Arena *arena;
-  VEC(const char *) taken;
+  CName *table; /* open addressing */
+  uint32_t n, cap;
 } CNames;
 
 CNames cnames_new(Arena *a);
