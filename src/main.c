@@ -109,7 +109,7 @@ static int do_emit(Compiler *c) {
   if (!e) return STATUS_MODEL;
   IrUnit *u = lower_scene(c, e);
   StrBuf out = strbuf(c->arena);
-  emit_model(u, cname(c->arena, u->name), &out);
+  emit_model(u, model_id(c->arena, u->name), &out);
   return write_out(c, c->o.output, &out);
 }
 
@@ -139,7 +139,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   VEC(SourceText) texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
   for (uint32_t i = 0; i < units.n; i++) {
-    names[i] = arena_printf(c->arena, "%s_%u", cname(c->arena, units.at[i]->name), i);
+    names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units.at[i]->name), i);
     StrBuf b = strbuf(c->arena);
     emit_model(units.at[i], names[i], &b);
     vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));

@@ -68,7 +68,7 @@ const char *c_string(Arena *a, const char *s) {
   for (; *s; s++) {
     if (*s == '"' || *s == '\\') sb_printf(&b, "\\%c", *s);
     else if (*s == '\n') sb_puts(&b, "\\n");
-    else if (*s == '?' && s[1] == '?') sb_puts(&b, "\\?"); /* no trigraphs */
+    else if (*s == '?' && b.n > 1 && s[-1] == '?') sb_puts(&b, "\\?"); /* no trigraphs */
     else sb_putc(&b, *s);
   }
   sb_putc(&b, '"');
@@ -292,6 +292,8 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   w.uses = ARENA_ARRAY(a, uint32_t, p->ins.n);
   w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
+  for (const char *const *g = style->globals; g && *g; g++) cnames_reserve(&w.names, *g);
+  if (p->solves.n) cnames_reserve(&w.names, "w");
   count_uses(&w);
   write_loads(&w);
   for (Slot s = 1; s < p->ins.n; s++) write_instruction(&w, s);

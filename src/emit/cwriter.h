@@ -12,9 +12,10 @@
 typedef struct {
   const char *prefix;               /* of the macros */
   const char *const *in;            /* [ARR_COUNT] names of the arrays read: t is no array */
-  const char *const *params;        /* NULL: p[3]; else p->name of parameter i */
+  const char *const *params;        /* NULL: p[3]; else p->name of parameter i, read and written */
   const char *const *out;           /* names of the arrays written */
   const char *const *own;           /* names in the function's scope, NULL at the end */
+  const char *const *globals;         /* names that the function must not hide, NULL at the end; or NULL */
   const char *solve;                /* name of the solver function */
   int loads_inline;                 /* spell loads at their use instead of naming them at the top */
 } CStyle;
