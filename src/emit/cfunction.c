@@ -88,16 +88,6 @@ void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *o
   sb_printf(out, "%s}\n", f->end);
 }
 
-const char *comment_text(Arena *a, const char *s) {
-  StrBuf b = strbuf(a);
-  for (; *s; s++) {
-    sb_putc(&b, *s);
-    int pair = (s[0] == '*' && s[1] == '/') || (s[0] == '/' && s[1] == '*') || (s[0] == '?' && s[1] == '?');
-    if (pair) sb_putc(&b, ' ');
-  }
-  return sb_text(&b);
-}
-
 const char *double_text(Arena *a, double x) {
   char text[32];
   num_format_double(text, x);

@@ -22,9 +22,6 @@ typedef struct {
 /* The comment, the head, `(void)` for parameters that p does not need, the body. */
 void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *out);
 
-/* s with spaces where it would end the comment, open another, or spell a trigraph. */
-const char *comment_text(Arena *a, const char *s);
-
 /* The shortest text that reads back as x. */
 const char *double_text(Arena *a, double x);
 

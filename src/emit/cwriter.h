@@ -32,6 +32,9 @@ int prog_reads(const Prog *p, IrArray array);
 /* A C string literal, with quotes. */
 const char *c_string(Arena *a, const char *s);
 
+/* s with spaces where it would end the comment, open another, or spell a trigraph. */
+const char *comment_text(Arena *a, const char *s);
+
 /* A number as a C constant of the style's scalar: exact decimals are exact in every precision. */
 const char *c_number(Arena *a, const char *prefix, Num n);
 
