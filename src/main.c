@@ -13,6 +13,7 @@
 #include "cli/toolchain.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
+#include "emit/emit_header.h"
 #include "emit/emit_model.h"
 #include "emit/emit_text.h"
 #include "ir/lower.h"
@@ -113,6 +114,16 @@ static int do_emit(Compiler *c) {
   return write_out(c, c->o.output, &out);
 }
 
+static int do_header(Compiler *c) {
+  Eqns *e = derive_scene(c, c->o.scene);
+  if (!e) return STATUS_MODEL;
+  IrUnit *u = lower_scene(c, e);
+  StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
+  emit_text(e, u, PRINT_TEXT, &equations);
+  emit_header(u, sb_text(&equations), &out);
+  return write_out(c, c->o.output, &out);
+}
+
 /* The scenes of the file as units: those with the same effects share one. */
 typedef VEC(IrUnit *) Units;
 
@@ -197,7 +208,7 @@ static int do_command(Compiler *c) {
     case CMD_CHECK: return do_check(c);
     case CMD_DERIVE: return do_derive(c);
     case CMD_EMIT: return do_emit(c);
-    case CMD_HEADER: return fail_usage("not yet: lagc header");
+    case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
     case CMD_RUN: return do_run(c);
     case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;

@@ -46,7 +46,7 @@ static const char *const solver =
   "  return LAG_OK;\n"
   "}\n";
 
-static void fill(const char *text, const char *prefix, const char *lower, StrBuf *out) {
+void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out) {
   for (const char *s = text; *s;) {
     int upper = strncmp(s, "LAG_", 4) == 0, is_lower = strncmp(s, "lag_", 4) == 0;
     if (upper || is_lower) {
@@ -58,8 +58,8 @@ static void fill(const char *text, const char *prefix, const char *lower, StrBuf
   }
 }
 
-void csupport_logic(const char *prefix, StrBuf *out) { fill(logic, prefix, "", out); }
-void csupport_solver(const char *prefix, const char *lower, StrBuf *out) { fill(solver, prefix, lower, out); }
+void csupport_logic(const char *prefix, StrBuf *out) { csupport_fill(logic, prefix, "", out); }
+void csupport_solver(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(solver, prefix, lower, out); }
 
 /* Whether the program reads or writes what the parameter `name` holds. */
 static int is_used(const Prog *p, const CStyle *st, const char *name) {
@@ -90,6 +90,7 @@ void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *o
 
 const char *double_text(Arena *a, double x) {
   char text[32];
+  if (x > -1e9 && x < 1e9 && (double)(int)x == x) return arena_printf(a, "%d", (int)x); /* 10, not 1e+01 */
   num_format_double(text, x);
   return arena_strdup(a, text);
 }

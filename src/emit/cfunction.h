@@ -12,6 +12,9 @@ void csupport_logic(const char *prefix, StrBuf *out);
 /* `static int lower_solve(n, M, b)`, for the blocks that are not solved in straight-line code. */
 void csupport_solver(const char *prefix, const char *lower, StrBuf *out);
 
+/* text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
+void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out);
+
 typedef struct {
   const char *comment; /* without the marks of a comment; or NULL */
   const char *head;    /* up to the brace */
