@@ -1,16 +1,29 @@
-# lagc and liblag. `make` builds build/lagc and build/liblag.a; README.md has the other commands.
+# lagc and liblag. `make help` lists what can be made; README.md says what it is for.
+
+# ---- settings: make NAME=value ----------------------------------------------------------------------
 CC      ?= cc
 CFLAGS  ?= -O2 -g
-WARN    := -std=c11 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes
+WERROR  ?=
+WARN    := -std=c11 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes $(WERROR)
 BUILD   ?= build
 SAN     ?=
 FLEX    ?= flex
 BISON   ?= bison
+PREFIX  ?= /usr/local
+DESTDIR ?=
+T       ?=
 
 CPPFLAGS_ALL := -D_XOPEN_SOURCE=700
 SRC_FLAGS    := $(CPPFLAGS_ALL) -Isrc -I$(BUILD)/gen
 RT_FLAGS     := $(CPPFLAGS_ALL) -Iruntime/include -Iruntime -ffp-contract=off
+VERSION      := $(shell sed -n 's/^.define LAG_VERSION "\(.*\)"/\1/p' runtime/include/lag.h 2>/dev/null)
 
+# GSL is optional: without it there are no gsl-* methods, and no liblag_gsl.a.
+GSL := $(shell printf '\043include <gsl/gsl_odeiv2.h>\nint main(void) { return gsl_odeiv2_step_rk8pd == 0; }\n' | \
+         $(CC) -x c - -o /dev/null -lgsl -lgslcblas -lm 2>/dev/null && echo yes)
+GSL_LIBS := $(if $(GSL),-lgsl -lgslcblas)
+
+# ---- what is made of what ---------------------------------------------------------------------------
 LAGC_SRC := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
 GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c)
 RT_SRC   := $(filter-out runtime/gsl/%,$(wildcard runtime/*/*.c))
@@ -20,8 +33,11 @@ LAGC_OBJ := $(LAGC_SRC:%.c=$(BUILD)/obj/%.o) $(GEN_SRC:$(BUILD)/gen/%.c=$(BUILD)
 RT_OBJ   := $(RT_SRC:%.c=$(BUILD)/obj/%.o)
 GSL_OBJ  := $(GSL_SRC:%.c=$(BUILD)/obj/%.o)
 
-all: $(BUILD)/lagc $(BUILD)/liblag.a $(BUILD)/liblag_gsl.a
+LIBLAG  := $(BUILD)/liblag.a $(if $(GSL),$(BUILD)/liblag_gsl.a)
 
+all: $(BUILD)/lagc $(LIBLAG)
+
+# ---- the compiler and the runtime -------------------------------------------------------------------
 $(BUILD)/lagc: $(BUILD)/obj/src/main.o $(BUILD)/liblagc.a
 	$(CC) $(CFLAGS) $(SAN) -o $@ $^ -lm
 
@@ -38,7 +54,7 @@ $(BUILD)/liblag_gsl.a: $(GSL_OBJ)
 
 $(BUILD)/gen/lag.tab.c: grammar/lag.y
 	@mkdir -p $(@D)
-	$(BISON) -Wall -Werror --header=$(BUILD)/gen/lag.tab.h -o $@ $<
+	$(BISON) -Wall -Werror --defines=$(BUILD)/gen/lag.tab.h -o $@ $<
 $(BUILD)/gen/lag.tab.h: $(BUILD)/gen/lag.tab.c ;
 $(BUILD)/gen/lag.lex.c: grammar/lag.l
 	@mkdir -p $(@D)
@@ -57,9 +73,153 @@ $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag
 	$(CC) -std=c11 -w $(SRC_FLAGS) $(CFLAGS) $(SAN) -MMD -MP -c -o $@ $<
 $(BUILD)/obj/src/syntax/parse.o: $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 
--include $(LAGC_OBJ:.o=.d) $(RT_OBJ:.o=.d) $(GSL_OBJ:.o=.d) $(BUILD)/obj/src/main.d
+# ---- the demonstration ------------------------------------------------------------------------------
+# Set-up comes first, in a process of its own: the make that follows sees what it installed.
+SETUP = @CC='$(CC)' FLEX='$(FLEX)' BISON='$(BISON)' .ci/setup
+# A build that says nothing unless something is wrong; a job a processor, unless make was told how many.
+QUIET = +@$(MAKE) -s --no-print-directory $(if $(filter --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 2))
 
+demo:
+	$(SETUP) build
+	@echo 'building $(BUILD)/lagc'
+	$(QUIET) all
+	@$(MAKE) --no-print-directory run-demo
+
+run-demo: all
+	$(BUILD)/lagc run models/double_pendulum.lag --method rk45 --plot-x x2 --plot-y y2 --sketch --svg $(BUILD)/double_pendulum.svg
+
+# ---- tests: tests/run.sh says what a suite is -------------------------------------------------------
+# Three builds: as users get it, in $(BUILD)/san with the address and undefined-behaviour sanitizers, and, where
+# clang is installed, by clang. Unit tests, their helpers and fuzz targets are linked with the second.
+SAN_BUILD := $(BUILD)/san
+SAN_FLAGS := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+BIN       := $(BUILD)/test/bin
+CLANG     ?= $(shell command -v clang 2>/dev/null)
+CXX_FOUND := $(shell command -v $(CXX) 2>/dev/null)
+
+UNIT_SRC  := $(wildcard tests/unit/*.c)
+FUZZ_SRC  := $(wildcard tests/fuzz/fuzz_*.c)
+TEST_BIN  := $(UNIT_SRC:tests/unit/%.c=$(BIN)/%) $(FUZZ_SRC:tests/fuzz/%.c=$(BIN)/%)
+# Where T names unit tests only, nothing else is built.
+ONLY      := $(if $(filter-out unit/%,$(T)),,$(wildcard $(T:%=tests/%*.c)))
+
+RUN_TESTS = @LAGC='$(BUILD)/lagc' LAGC_SAN='$(SAN_BUILD)/lagc' LAGC_CLANG='$(if $(CLANG),$(BUILD)/clang/lagc)' \
+            LIBLAG='$(LIBLAG)' LIBS='$(GSL_LIBS) -lm' INC='runtime/include' BIN='$(BIN)' BUILD='$(BUILD)' \
+            CC='$(CC)' CLANG='$(CLANG)' CXX='$(CXX_FOUND)' GSL='$(GSL)' MAKE='$(MAKE)' sh tests/run.sh
+
+test:
+	$(SETUP) test
+	@$(MAKE) --no-print-directory build-tests
+	$(RUN_TESTS) $(T)
+test-long:
+	$(SETUP) test
+	@$(MAKE) --no-print-directory build-tests
+	$(RUN_TESTS) --long $(T)
+bless:
+	$(SETUP) test
+	@$(MAKE) --no-print-directory build-tests
+	$(RUN_TESTS) --bless $(T)
+bench:
+	$(SETUP) build
+	$(QUIET) all
+	$(RUN_TESTS) --bench $(T)
+
+SAN_MAKE = $(QUIET) BUILD=$(SAN_BUILD) CFLAGS='-O1 -g' SAN='$(SAN_FLAGS)'
+SAN_LAGC := $(SAN_BUILD)/liblagc.a
+SAN_RT   := $(if $(GSL),$(SAN_BUILD)/liblag_gsl.a) $(SAN_BUILD)/liblag.a
+
+build-tests:
+ifneq ($(ONLY),)
+	$(SAN_MAKE) $(SAN_LAGC) $(SAN_RT)
+	$(QUIET) $(ONLY:tests/unit/%.c=$(BIN)/%)
+else
+	@echo 'building $(BUILD)/lagc, once more with sanitizers$(if $(CLANG), and with clang), and the tests'
+	$(QUIET) all
+	$(SAN_MAKE) all
+	$(if $(CLANG),$(QUIET) BUILD=$(BUILD)/clang CC='$(CLANG)' all)
+	$(QUIET) $(TEST_BIN)
+endif
+
+TEST_CC = $(CC) -std=c11 -Wall -Wextra $(CPPFLAGS_ALL) -O1 -g $(SAN_FLAGS) -MMD -MP -MF $@.d -o $@ $<
+# tests/unit/test_rt_*: of the runtime. The rest of tests/unit: of the compiler.
+$(BIN)/test_rt_%: tests/unit/test_rt_%.c $(SAN_RT)
+	@mkdir -p $(@D)
+	$(TEST_CC) -Iruntime/include -Iruntime -ffp-contract=off $(SAN_RT) $(GSL_LIBS) -lcmocka -lm
+$(BIN)/%: tests/unit/%.c $(SAN_LAGC)
+	@mkdir -p $(@D)
+	$(TEST_CC) -Isrc -I$(SAN_BUILD)/gen $(SAN_LAGC) -lcmocka -lm
+$(BIN)/fuzz_%: tests/fuzz/fuzz_%.c $(BUILD)/test/driver.o $(SAN_LAGC)
+	@mkdir -p $(@D)
+	$(TEST_CC) -Isrc -I$(SAN_BUILD)/gen $(BUILD)/test/driver.o $(SAN_LAGC) -lm
+$(BUILD)/test/driver.o: tests/fuzz/driver.c
+	@mkdir -p $(@D)
+	$(TEST_CC) -c
+
+# Looks for new failures: make fuzz [T=fuzz_parse] [SECONDS=60]. With clang's libFuzzer where there is clang,
+# with the plain mutations of tests/fuzz/driver.c where there is not.
+SECONDS ?= 60
+FUZZ     = $(if $(T),$(T),$(FUZZ_SRC:tests/fuzz/%.c=%))
+fuzz:
+	$(SETUP) build
+ifneq ($(CLANG),)
+	$(QUIET) BUILD=$(BUILD)/fuzz CC='$(CLANG)' CFLAGS='-O1 -g' \
+	  SAN='$(SAN_FLAGS) -fsanitize=fuzzer-no-link' $(BUILD)/fuzz/liblagc.a
+	@set -e; for f in $(FUZZ); do \
+	  corpus=tests/fuzz/corpus/$${f#fuzz_}; found=$(BUILD)/fuzz/found/$$f; mkdir -p $$found; \
+	  $(CLANG) -std=c11 $(CPPFLAGS_ALL) -O1 -g $(SAN_FLAGS) -fsanitize=fuzzer -Isrc -I$(BUILD)/fuzz/gen \
+	    -o $(BUILD)/fuzz/$$f tests/fuzz/$$f.c $(BUILD)/fuzz/liblagc.a -lm; \
+	  $(BUILD)/fuzz/$$f -max_total_time=$(SECONDS) -max_len=4096 -artifact_prefix=$(BUILD)/fuzz/ $$found $$corpus; \
+	done
+else
+	$(SAN_MAKE) $(SAN_LAGC)
+	$(QUIET) $(FUZZ:%=$(BIN)/%)
+	@set -e; for f in $(FUZZ); do \
+	  $(BIN)/$$f --mutate $(SECONDS) $(BUILD)/fuzz-found tests/fuzz/corpus/$${f#fuzz_}; done
+endif
+
+# ---- installing -------------------------------------------------------------------------------------
+MODELS := $(wildcard models/*.lag models/*.csv)
+PC     := $(BUILD)/liblag.pc
+
+install: all
+	install -d '$(DESTDIR)$(PREFIX)/bin' '$(DESTDIR)$(PREFIX)/lib/pkgconfig' '$(DESTDIR)$(PREFIX)/include' \
+	  '$(DESTDIR)$(PREFIX)/share/lagc/models' '$(DESTDIR)$(PREFIX)/share/man/man1' '$(DESTDIR)$(PREFIX)/share/doc/lagc'
+	install -m 755 $(BUILD)/lagc '$(DESTDIR)$(PREFIX)/bin'
+	install -m 644 $(LIBLAG) '$(DESTDIR)$(PREFIX)/lib'
+	install -m 644 runtime/include/lag.h runtime/include/lag_model.h '$(DESTDIR)$(PREFIX)/include'
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' runtime/liblag.pc.in >$(PC)
+	install -m 644 $(PC) '$(DESTDIR)$(PREFIX)/lib/pkgconfig'
+ifneq ($(GSL),)
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' runtime/gsl/liblag_gsl.pc.in >$(PC:.pc=_gsl.pc)
+	install -m 644 $(PC:.pc=_gsl.pc) '$(DESTDIR)$(PREFIX)/lib/pkgconfig'
+endif
+	install -m 644 $(MODELS) '$(DESTDIR)$(PREFIX)/share/lagc/models'
+	install -m 644 src/lagc.1 '$(DESTDIR)$(PREFIX)/share/man/man1'
+	install -m 644 LICENSE README.md '$(DESTDIR)$(PREFIX)/share/doc/lagc'
+
+# Removes what install puts there, and the folders that are lagc's own.
+uninstall:
+	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a include/lag.h include/lag_model.h \
+	  lib/pkgconfig/liblag.pc lib/pkgconfig/liblag_gsl.pc share/man/man1/lagc.1 && rm -rf share/lagc share/doc/lagc
+
+# ---- the rest ---------------------------------------------------------------------------------------
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: all clean
+help:
+	@echo 'make              the compiler build/lagc and the runtime build/liblag.a'
+	@echo 'make demo         installs what is missing, then compiles and runs models/double_pendulum.lag'
+	@echo 'make test         installs what is missing, then runs every test'
+	@echo '                  T="unit/test_num golden": only suites whose names begin so'
+	@echo 'make test-long    the suites that take minutes'
+	@echo 'make bench        times; nothing fails by being slow'
+	@echo 'make bless        rewrites the expectations of golden tests: look at the diff before you commit it'
+	@echo 'make fuzz         looks for inputs that break the compiler; SECONDS=60, T=fuzz_parse'
+	@echo 'make install      PREFIX=/usr/local DESTDIR='
+	@echo 'make uninstall    the same, backwards'
+	@echo 'make clean        removes build/'
+	@echo 'settings: CC CFLAGS WERROR=-Werror BUILD FLEX BISON CXX CLANG= (to do without clang)'
+
+-include $(LAGC_OBJ:.o=.d) $(RT_OBJ:.o=.d) $(GSL_OBJ:.o=.d) $(BUILD)/obj/src/main.d $(TEST_BIN:=.d)
+
+.PHONY: all demo run-demo test test-long bless bench build-tests fuzz install uninstall clean help

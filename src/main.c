@@ -15,13 +15,13 @@
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
 #include "emit/emit_model.h"
-#include "emit/emit_text.h"
 #include "ir/lower.h"
 #include "mech/eqns.h"
+#include "mech/show.h"
 #include "model/model.h"
 #include "syntax/parse.h"
 
-#define LAGC_VERSION "0.1.0"
+#define LAGC_VERSION "0.1"
 
 enum { STATUS_OK, STATUS_MODEL, STATUS_USAGE };
 enum { MEMORY_LIMIT_MIB = 2048 };
@@ -99,9 +99,10 @@ static int do_derive(Compiler *c) {
   IrUnit *u = lower_scene(c, e);
   StrBuf out = strbuf(c->arena);
   const char *format = c->o.format ? c->o.format : "text";
-  if (c->o.ops) sb_printf(&out, "%s\n", ops_text(u->accel, c->arena));
+  const char *cost = ops_text(u->accel, c->arena);
+  if (c->o.ops) sb_printf(&out, "%s\n", cost);
   else if (strcmp(format, "c") == 0) emit_accel(u, &out);
-  else emit_text(e, u, strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
+  else show_equations(e, cost, strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
   return write_out(c, c->o.output, &out);
 }
 
@@ -175,7 +176,7 @@ static int do_run(Compiler *c) {
   int status = make_simulator(c, NULL, &path);
   if (status != STATUS_OK) return status;
   char **argv = ARENA_ARRAY(c->arena, char *, c->o.rest.n + 2);
-  argv[0] = arena_strdup(c->arena, path);
+  argv[0] = arena_strdup(c->arena, "lagc run"); /* what its messages begin with */
   for (uint32_t i = 0; i < c->o.rest.n; i++) argv[i + 1] = arena_strdup(c->arena, c->o.rest.at[i]);
   fflush(stdout);
   execv(path, argv);

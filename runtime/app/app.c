@@ -265,7 +265,12 @@ static int finish(App *app, int plot_x, int plot_y)
     bad = EXIT_USAGE;
   }
   if (a->sketch) {
-    sketch_print(a->json ? stderr : f, &app->table);
+    FILE *to = a->json ? stderr : f;
+    if (plot_y >= 0) {
+      sketch_path(to, &app->table, plot_x, plot_y);
+    } else {
+      sketch_print(to, &app->table);
+    }
   }
   if (a->json) {
     report_json(app, stdout);

@@ -145,8 +145,8 @@ static int check(const Args *a)
   if (on_stdout && a->json) {
     return app_error(a, "-o - and --json both write to standard output; give -o a file name");
   }
-  if ((a->plot_x || a->plot_y) && !a->svg) {
-    return app_error(a, "--plot-x and --plot-y say what --svg FILE draws; add --svg FILE");
+  if ((a->plot_x || a->plot_y) && !a->svg && !a->sketch) {
+    return app_error(a, "--plot-x and --plot-y say what --svg FILE or --sketch draws; add one of them");
   }
   if (a->plot_x && !a->plot_y) {
     return app_error(a, "--plot-x %s: against what? add --plot-y NAME", a->plot_x);

@@ -56,6 +56,9 @@ double nice_step(double lo, double hi, int n);
 int svg_write(const char *path, const Table *t, const char *title, int x, int y);
 void sketch_print(FILE *f, const Table *t);
 
+/* The same for one column against another. */
+void sketch_path(FILE *f, const Table *t, int col_x, int col_y);
+
 /* JSON text: a string in quotes or null; a number with 17 digits or null. */
 void json_string(FILE *f, const char *s);
 void json_number(FILE *f, double x);

@@ -1,11 +1,11 @@
-/* A run in a terminal. Enters: a table of rows; leaves: one chart of braille dots (2 by 4 a letter) for each of
- * the first columns. Holds: between two rows the line is drawn, so that steep curves have no holes. */
+/* A run in a terminal. Enters: a table of rows; leaves: charts of braille dots (2 by 4 a letter): each of the first
+ * columns against time, or one column against another. Holds: between two rows the line is drawn, so that steep curves have no holes. */
 #include <math.h>
 #include <string.h>
 
 #include "io/io.h"
 
-enum { COLS = 70, MOST_ROWS = 16, MOST_CHARTS = 6 };
+enum { COLS = 70, MOST_ROWS = 24, CHART_ROWS = 16, MOST_CHARTS = 6 };
 
 static const unsigned char dot[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
 
@@ -62,13 +62,13 @@ static void range(const Table *t, int col, double *lo, double *hi)
   }
 }
 
-static void draw(Chart *c, const Table *t, int col)
+static void draw(Chart *c, const Table *t, int col_x, int col)
 {
   int have = 0, xa = 0, ya = 0;
 
   for (size_t i = 0; i < t->nrows; i++) {
-    double x = value(t, i, 0), y = value(t, i, col);
-    if (!isfinite(y)) {
+    double x = value(t, i, col_x), y = value(t, i, col);
+    if (!isfinite(x) || !isfinite(y)) {
       have = 0;
       continue;
     }
@@ -80,11 +80,29 @@ static void draw(Chart *c, const Table *t, int col)
   }
 }
 
-static void print_chart(FILE *f, const Chart *c, const Column *name, int last)
+/* "th [rad]" */
+static void label(char *s, size_t n, const Column *c)
 {
-  char left[32], right[32];
+  snprintf(s, n, c->unit[0] ? "%s [%s]" : "%s", c->name, c->unit);
+}
 
-  fprintf(f, name->unit[0] ? "%s [%s]\n" : "%s\n", name->name, name->unit);
+static void print_x_axis(FILE *f, const Chart *c, const Column *name)
+{
+  char left[32], right[32], middle[200];
+
+  snprintf(left, sizeof left, "%.5g", c->x0);
+  snprintf(right, sizeof right, "%.5g", c->x1);
+  label(middle, sizeof middle, name);
+  int gap = COLS - (int)strlen(left) - (int)strlen(right) - (int)strlen(middle), half = gap > 1 ? gap / 2 : 1;
+  fprintf(f, "%13s%s%*s%s%*s%s\n", "", left, half, "", middle, gap > half ? gap - half : 1, "", right);
+}
+
+static void print_chart(FILE *f, const Chart *c, const Column *name)
+{
+  char title[200];
+
+  label(title, sizeof title, name);
+  fprintf(f, "%s\n", title);
   for (int r = 0; r < c->rows; r++) {
     if (r == 0 || r == c->rows - 1) {
       fprintf(f, "%11.4g \xe2\x94\xa4", r ? c->y0 : c->y1); /* U+2524 */
@@ -97,12 +115,33 @@ static void print_chart(FILE *f, const Chart *c, const Column *name, int last)
     }
     putc('\n', f);
   }
-  if (last) {
-    snprintf(left, sizeof left, "%.5g", c->x0);
-    snprintf(right, sizeof right, "%.5g", c->x1);
-    int gap = COLS - (int)strlen(left) - (int)strlen(right), half = (gap - 5) / 2;
-    fprintf(f, "%13s%s%*st [s]%*s%s\n", "", left, half, "", gap - 5 - half, "", right);
+}
+
+/* Where both axes have the same unit, a circle should look like one: the narrower range is widened. A dot is
+ * taken to be as wide as high. */
+static void same_scale(Chart *c)
+{
+  double wide = (c->x1 - c->x0) / (2 * COLS), high = (c->y1 - c->y0) / (4 * c->rows);
+  double more_x = wide < high ? (high - wide) * COLS : 0, more_y = high < wide ? (wide - high) * 2 * c->rows : 0;
+
+  c->x0 -= more_x;
+  c->x1 += more_x;
+  c->y0 -= more_y;
+  c->y1 += more_y;
+}
+
+void sketch_path(FILE *f, const Table *t, int col_x, int col_y)
+{
+  Chart c = {.rows = MOST_ROWS};
+
+  range(t, col_x, &c.x0, &c.x1);
+  range(t, col_y, &c.y0, &c.y1);
+  if (strcmp(t->cols[col_x].unit, t->cols[col_y].unit) == 0) {
+    same_scale(&c);
   }
+  draw(&c, t, col_x, col_y);
+  print_chart(f, &c, &t->cols[col_y]);
+  print_x_axis(f, &c, &t->cols[col_x]);
 }
 
 void sketch_print(FILE *f, const Table *t)
@@ -110,11 +149,14 @@ void sketch_print(FILE *f, const Table *t)
   int n = t->ncols - 1 < MOST_CHARTS ? t->ncols - 1 : MOST_CHARTS;
 
   for (int k = 1; k <= n; k++) {
-    Chart c = {.rows = n == 1 ? MOST_ROWS : n <= 3 ? MOST_ROWS / 2 : 5};
+    Chart c = {.rows = n == 1 ? CHART_ROWS : n <= 3 ? CHART_ROWS / 2 : 5};
     range(t, 0, &c.x0, &c.x1);
     range(t, k, &c.y0, &c.y1);
-    draw(&c, t, k);
-    print_chart(f, &c, &t->cols[k], k == n);
+    draw(&c, t, 0, k);
+    print_chart(f, &c, &t->cols[k]);
+    if (k == n) {
+      print_x_axis(f, &c, &t->cols[0]);
+    }
   }
   if (t->ncols - 1 > n) {
     fprintf(f, "%13s(and %d more columns)\n", "", t->ncols - 1 - n);

@@ -2,8 +2,8 @@
 #ifndef LAGC_OPTIONS_H
 #define LAGC_OPTIONS_H
 
+#include "base/define.h"
 #include "base/vec.h"
-#include "model/model.h"
 
 typedef enum { CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_EMIT, CMD_HEADER, CMD_BUILD, CMD_RUN, CMD_HELP, CMD_VERSION } Command;
 

@@ -295,7 +295,7 @@ static void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
 Prog *lower_energy(const Eqns *e) {
   Lower l = lower_new(e);
   if (!e->energy) return l.p;
-  Expr roots[2] = {e->energy, e->energy_scale};
+  Expr roots[2] = {e->energy_stable, e->energy_scale};
   lower_roots(&l, roots, 2);
   prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), "energy p q' - L");
   prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");

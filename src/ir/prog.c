@@ -55,7 +55,7 @@ static int is_num(const Prog *p, Slot s, int64_t value) {
   return s && i->op == IR_CONST && num_equal(i->number, num_int(value));
 }
 
-enum { NOT_FOLDED = UINT32_MAX };
+static const Slot NOT_FOLDED = UINT32_MAX;
 
 /* x + 0, x - 0, 1*x, 0*x, x/1, 0/x, x + (-y), x - (-y), with slot 0 a structural zero. */
 static Slot fold(Prog *p, const Ins *i) {

@@ -44,32 +44,59 @@ static const Expr *generalised_forces(const Eqns *e, const SymId *q, const SymId
   return Q;
 }
 
-void lagrange_momenta_and_forces(Eqns *e) {
+/* The entries of the mass matrix and the forces, as differentiated. */
+typedef struct {
+  VEC(MassEntry) mass;
+  Expr *f;
+} Raw;
+
+static Raw differentiate(Eqns *e, const SymId *q, const SymId *v) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
-  SymId *q = coordinate_symbols(m, 0), *v = coordinate_symbols(m, 1);
-  Expr *p = ARENA_ARRAY(m->arena, Expr, e->n + 1), *dLdq = ARENA_ARRAY(m->arena, Expr, e->n + 1);
-  Expr *convective = ARENA_ARRAY(m->arena, Expr, e->n + 1), *f = ARENA_ARRAY(m->arena, Expr, e->n + 1);
+  Raw raw = {.f = ARENA_ARRAY(m->arena, Expr, e->n)};
+  Expr *p = ARENA_ARRAY(m->arena, Expr, e->n), *dLdq = ARENA_ARRAY(m->arena, Expr, e->n);
+  Expr *convective = ARENA_ARRAY(m->arena, Expr, e->n), *row = ARENA_ARRAY(m->arena, Expr, e->n);
   expr_gradient(g, m->lagrangian, v, e->n, p);
   expr_gradient(g, m->lagrangian, q, e->n, dLdq);
-  Expr *row = ARENA_ARRAY(m->arena, Expr, e->n + 1);
   for (uint32_t i = 0; i < e->n; i++) {
     expr_gradient(g, p[i], v, i + 1, row);
-    for (uint32_t j = 0; j <= i; j++) {
-      Expr entry = simplify(g, row[j]);
-      if (!expr_is_zero(g, entry)) vec_push(m->arena, &e->mass, ((MassEntry){i, j, entry}));
-    }
+    for (uint32_t j = 0; j <= i; j++)
+      if (!expr_is_zero(g, row[j])) vec_push(m->arena, &raw.mass, ((MassEntry){i, j, row[j]}));
   }
   e->Q = generalised_forces(e, q, v);
   Expr *seed = explicit_direction(e);
   expr_tangent(g, p, e->n, seed, expr_symbol_count(g) + 1, "_drift", convective);
   for (uint32_t i = 0; i < e->n; i++) {
     Expr inertial = expr_sub(g, dLdq[i], convective[i]);
-    Expr all = expr_add(g, inertial, e->Q[i]);
-    f[i] = simplify(g, all);
+    raw.f[i] = expr_add(g, inertial, e->Q[i]);
   }
   e->p = p;
-  e->f = f;
+  return raw;
+}
+
+/* Above this many entries, what lets share is worth more than what a short form saves. */
+enum { SIMPLIFY_MAX_ENTRIES = 300 };
+
+/* The short forms of all entries, kept when they cost no more operations together: entry by entry
+ * they may be shorter and still lose what they share. */
+static void choose_forms(Eqns *e, const Raw *raw) {
+  ExprGraph *g = e->g;
+  uint32_t nm = raw->mass.n, n = nm + e->n;
+  Expr *before = ARENA_ARRAY(e->m->arena, Expr, n), *after = ARENA_ARRAY(e->m->arena, Expr, n);
+  for (uint32_t k = 0; k < n; k++) {
+    before[k] = k < nm ? raw->mass.at[k].e : raw->f[k - nm];
+    after[k] = n <= SIMPLIFY_MAX_ENTRIES ? simplify(g, before[k]) : before[k];
+  }
+  const Expr *best = expr_ops(g, after, n) <= expr_ops(g, before, n) ? after : before;
+  for (uint32_t k = 0; k < nm; k++)
+    if (!expr_is_zero(g, best[k])) vec_push(e->m->arena, &e->mass, ((MassEntry){raw->mass.at[k].row, raw->mass.at[k].col, best[k]}));
+  e->f = best + nm;
+}
+
+void lagrange_momenta_and_forces(Eqns *e) {
+  SymId *q = coordinate_symbols(e->m, 0), *v = coordinate_symbols(e->m, 1);
+  Raw raw = differentiate(e, q, v);
+  choose_forms(e, &raw);
 }
 
 /* --- definiteness --- */

@@ -63,8 +63,9 @@ typedef struct {
 /* The value of an expression; errors are reported and give e = 0. */
 Value resolve(Builder *b, AstId id, Context where, Name effect);
 
-/* Like resolve, for a value that is given to something with a unit: a bare number is multiplied by
- * that unit, anything else must have its dimension. */
+/* A value given to something with a unit: a bare number is multiplied by that unit, anything else
+ * must have its dimension. 0 after an error. resolve_in resolves it first. */
+Expr value_in(Builder *b, Value v, Span span, const Unit *unit);
 Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *unit);
 
 /* A number known now (spans, steps, tolerances); NAN after an error. */

@@ -100,8 +100,10 @@ static void declare_param(Builder *b, const AstStmt *st, Name effect) {
   uint32_t i = m->params.n;
   Param p = {.name = st->name, .span = st->name_span, .sign = st->sign};
   p.unit = unit_resolve(&st->unit, b->diags, b->arena);
-  /* Its own name is not in scope in its value. */
-  p.value = resolve_in(b, st->rhs, IN_PARAM, effect, &p.unit);
+  /* Its own name is not in scope in its value; without a unit of its own it takes its value's. */
+  Value v = resolve(b, st->rhs, IN_PARAM, effect);
+  if (!p.unit.text[0] && v.e && !v.bare && v.dim.known) p.unit = unit_of_dim(b, v.dim);
+  p.value = value_in(b, v, ast_expr(b->ast, st->rhs)->span, &p.unit);
   if (!declare_name(b, st, effect, ENT_PARAM, i)) return;
   if (effect) p.name = intern_printf(b, "%s.%s", effect, st->name);
   p.sym = declare_symbol(b, SYM_PARAM, i, p.name, sign_of(st->sign), p.unit.dim);

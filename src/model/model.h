@@ -6,6 +6,7 @@
 #ifndef LAGC_MODEL_H
 #define LAGC_MODEL_H
 
+#include "base/define.h"
 #include "model/units.h"
 #include "sym/expr.h"
 #include "syntax/ast.h"
@@ -137,10 +138,6 @@ typedef struct {
   Scene scene;
   SymId energy_sym; /* stands for the energy p q' - L in outputs, until mech knows it */
 } Model;
-
-typedef struct {
-  const char *name, *value; /* -D NAME=VALUE */
-} Define;
 
 /* The names of the scenes in the file, in order; one named "default" when there is none. */
 typedef struct {

@@ -552,16 +552,19 @@ Value resolve(Builder *b, AstId id, Context where, Name effect) {
   return evaluate(b, id, where, effect, NULL);
 }
 
-Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *unit) {
-  Value v = resolve(b, id, where, effect);
+Expr value_in(Builder *b, Value v, Span span, const Unit *unit) {
   if (!v.e) return 0;
   if (v.bare) return times_unit(b, v.e, unit);
   if (!dim_fits(v.dim, unit->dim)) {
-    diag_error(b->diags, ast_expr(b->ast, id)->span, "the value is in %s, its name is in %s", dim_text(v.dim, b->arena),
-               dim_text(unit->dim, b->arena));
+    diag_error(b->diags, span, "the value is in %s, its name is in %s", dim_text(v.dim, b->arena), dim_text(unit->dim, b->arena));
     return 0;
   }
   return v.e;
+}
+
+Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *unit) {
+  Value v = resolve(b, id, where, effect);
+  return v.e ? value_in(b, v, ast_expr(b->ast, id)->span, unit) : 0;
 }
 
 double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what) {

@@ -1,4 +1,4 @@
-/* The inside of the expression graph, shared by expr.c, build.c and walk.c only. */
+/* The inside of the expression graph, shared by the files of src/sym that make or print nodes. */
 #ifndef LAGC_EXPR_IMPL_H
 #define LAGC_EXPR_IMPL_H
 

@@ -43,8 +43,14 @@ typedef struct {
   int rank;
 } Factor;
 
-/* Numbers, parameters, then coordinates and what is made of them, velocities last. */
-static int rank_of(const ExprGraph *g, Expr e) {
+static int varies(const Symbol *s, const void *data) {
+  (void)data;
+  return s->kind != SYM_PARAM && s->kind != SYM_CONST;
+}
+
+/* Numbers, sums of parameters, parameters, then coordinates and what is made of them, velocities
+ * last: (m1 + m2)*g*l*sin(th)*th'. */
+static int rank_of(ExprGraph *g, Expr e) {
   switch (expr_op(g, e)) {
     case EX_NUM: return 0;
     case EX_SYM:
@@ -56,7 +62,7 @@ static int rank_of(const ExprGraph *g, Expr e) {
         case SYM_ACC: return 8;
       }
       return 4;
-    case EX_SUM: return 3;
+    case EX_SUM: return expr_contains(g, e, varies, NULL) ? 3 : 0;
     case EX_DEF: return 5;
     default: return 6; /* functions, and powers that are bases */
   }
@@ -74,6 +80,8 @@ static void sort_factors(Factor *f, uint32_t n) {
 /* \sin^2 u: the exponent belongs between the function and its argument. */
 static int is_circular(ExprOp op) { return op >= EX_SIN && op <= EX_TAN; }
 
+static void arguments(Printer *p, Expr e);
+
 static void factor(Printer *p, Factor f, Prec place) {
   if (num_is_exact(f.exponent) && f.exponent.num == 1 && f.exponent.den == 2) {
     text(p, either(p, "sqrt(", "\\sqrt{"));
@@ -89,9 +97,7 @@ static void factor(Printer *p, Factor f, Prec place) {
     StrBuf b = strbuf(p->g->arena);
     sb_printf(&b, "\\%s^{%s}", expr_op_text(expr_op(p->g, f.base)), num_text(p, f.exponent));
     text(p, sb_text(&b));
-    open_paren(p);
-    node(p, expr_arg(p->g, f.base, 0), PREC_OR);
-    close_paren(p);
+    arguments(p, f.base);
     return;
   }
   node(p, f.base, PREC_ATOM);
@@ -168,14 +174,38 @@ static void sum(Printer *p, Expr e) {
 
 /* --- other nodes --- */
 
-static void call(Printer *p, Expr e, const char *name, const char *latex_name) {
-  text(p, either(p, name, latex_name));
-  open_paren(p);
+/* An argument that stands on one line: a sum of plain names. It needs no growing parentheses. */
+static int is_flat(const ExprGraph *g, Expr e) {
+  for (uint32_t i = 0; i < expr_pairs(g, e, EX_SUM); i++) {
+    Num c;
+    Expr t = expr_pair(g, e, EX_SUM, i, &c);
+    if (!num_is_int(c) || (expr_op(g, t) != EX_SYM && expr_op(g, t) != EX_DEF && expr_op(g, t) != EX_NUM)) return 0;
+  }
+  return 1;
+}
+
+static void arguments(Printer *p, Expr e) {
+  ExprOp op = expr_op(p->g, e);
+  Expr first = expr_arg(p->g, e, 0);
+  int flat = expr_nargs(p->g, e) == 1 && is_flat(p->g, first);
+  if (latex(p) && flat && (op == EX_SIN || op == EX_COS || op == EX_TAN) && expr_op(p->g, first) == EX_SYM) {
+    text(p, " ");
+    node(p, first, PREC_OR);
+    return;
+  }
+  if (flat) text(p, "(");
+  else open_paren(p);
   for (uint32_t i = 0; i < expr_nargs(p->g, e); i++) {
     if (i) text(p, ", ");
     node(p, expr_arg(p->g, e, i), PREC_OR);
   }
-  close_paren(p);
+  if (flat) text(p, ")");
+  else close_paren(p);
+}
+
+static void call(Printer *p, Expr e, const char *name, const char *latex_name) {
+  text(p, either(p, name, latex_name));
+  arguments(p, e);
 }
 
 static void infix(Printer *p, Expr e, const char *op, Prec prec) {
@@ -271,9 +301,10 @@ void expr_print(ExprGraph *g, Expr e, PrintStyle style, StrBuf *out) {
     }
     int group = prec_of(g, top.node) < top.prec;
     p.part.n = 0;
-    if (group) open_paren(&p);
+    int flat = group && is_flat(g, top.node);
+    if (group) text(&p, flat ? "(" : either(&p, "(", "\\left("));
     expand(&p, top.node);
-    if (group) close_paren(&p);
+    if (group) text(&p, flat ? ")" : either(&p, ")", "\\right)"));
     for (uint32_t i = p.part.n; i-- > 0;) vec_push(g->arena, &p.stack, p.part.at[i]);
   }
 }

@@ -1,3 +1,319 @@
+/* simplify: normal form, then the shortest way to write it.
+ *
+ * A numerator is a sum of terms number * parameters * dynamic part * circular functions. For each
+ * monomial of the first three, the polynomial in circular functions takes its shortest form; then
+ * terms with the same functions of the state are collected, which gives each a polynomial of
+ * parameters; then functions of the state with the same parameter factor are collected. */
 #include "sym/simplify.h"
-Expr simplify(ExprGraph *g, Expr e) { (void)g; return e; }
-Expr simplify_stable(ExprGraph *g, Expr e) { (void)g; return e; }
+
+#include <stdlib.h>
+
+#include "sym/trigform.h"
+
+enum { MAX_TERMS = 2000, MAX_WORK = 200000 };
+
+/* number * parameters * e, where e is a function of the state */
+typedef struct {
+  Num c;
+  MonoId params;
+  Expr e;
+} Piece;
+
+typedef VEC(Piece) Pieces;
+
+/* --- parameters --- */
+
+static int is_param(const Symbol *s, const void *data) {
+  (void)data;
+  return s->kind == SYM_PARAM || s->kind == SYM_CONST;
+}
+
+static int is_not_param(const Symbol *s, const void *data) { return !is_param(s, data); }
+
+/* Whether generator x is made of parameters only. */
+static int gen_is_param(Normal *n, GenId x) {
+  GenInfo info = n->gens.at[x];
+  if (info.kind == GEN_SYMBOL) return is_param(expr_sym_of(n->g, info.expr), NULL);
+  return info.kind == GEN_ROOT && !expr_contains(n->g, info.expr, is_not_param, NULL);
+}
+
+static int gen_is_circular(const Normal *n, GenId x) {
+  return n->gens.at[x].kind == GEN_SIN || n->gens.at[x].kind == GEN_COS;
+}
+
+/* The part of a monomial whose generators satisfy the predicate. */
+static MonoId mono_part(Normal *n, MonoId m, int circular, int param) {
+  Mono mono = *mono_at(n->ring, m);
+  MonoPow *part = ARENA_ARRAY(n->arena, MonoPow, mono.n + 1);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < mono.n; i++) {
+    GenId x = mono.at[i].gen;
+    if (gen_is_circular(n, x) != circular) continue;
+    if (!circular && gen_is_param(n, x) != param) continue;
+    part[count++] = mono.at[i];
+  }
+  return mono_of(n->ring, part, count);
+}
+
+/* --- factoring a polynomial of parameters --- */
+
+/* A term seen as generator * cofactor. */
+typedef struct {
+  MonoId cofactor;
+  uint32_t term;
+} Split;
+
+static int by_cofactor(const void *a, const void *b) {
+  const Split *x = a, *y = b;
+  if (x->cofactor != y->cofactor) return x->cofactor < y->cofactor ? -1 : 1;
+  return (x->term > y->term) - (x->term < y->term);
+}
+
+/* The terms that share the most frequent cofactor (not 1), as a run of splits; 0 when no two do. */
+static uint32_t largest_group(Normal *n, const Term *t, uint32_t count, Split *splits, uint32_t *from) {
+  uint32_t total = 0, best = 1;
+  for (uint32_t i = 0; i < count; i++) {
+    Mono m = *mono_at(n->ring, t[i].mono);
+    for (uint32_t k = 0; k < m.n; k++) {
+      MonoId rest = mono_without(n->ring, t[i].mono, m.at[k].gen);
+      if (m.at[k].exp == 1 && rest != 0) splits[total++] = (Split){.cofactor = rest, .term = i};
+    }
+  }
+  if (total > 1) qsort(splits, total, sizeof *splits, by_cofactor);
+  for (uint32_t i = 0, end; i < total; i = end) {
+    for (end = i; end < total && splits[end].cofactor == splits[i].cofactor;) end++;
+    if (end - i <= best) continue;
+    best = end - i;
+    *from = i;
+  }
+  return best > 1 ? best : 0;
+}
+
+/* m1*l1^2 + m2*l1^2 + m2*l2^2 as (m1 + m2)*l1^2 + m2*l2^2. */
+static Expr params_expr(Normal *n, Poly p) {
+  enum { MAX_FACTORED = 64 };
+  ExprGraph *g = n->g;
+  Term *left = ARENA_ARRAY(n->arena, Term, p.n + 1), *group = ARENA_ARRAY(n->arena, Term, p.n + 1);
+  uint32_t count = p.n, parts = 0, from = 0, pairs = 0;
+  for (uint32_t i = 0; i < p.n; i++) pairs += mono_at(n->ring, p.at[i].mono)->n;
+  Split *splits = ARENA_ARRAY(n->arena, Split, pairs + 1);
+  Expr *part = ARENA_ARRAY(n->arena, Expr, p.n + 1);
+  if (count) memcpy(left, p.at, count * sizeof *left);
+  for (uint32_t size; count <= MAX_FACTORED && (size = largest_group(n, left, count, splits, &from)) > 0;) {
+    MonoId m = splits[from].cofactor, inverse = mono_pow(n->ring, m, -1);
+    for (uint32_t i = 0; i < size; i++) {
+      Term *t = &left[splits[from + i].term];
+      group[i] = (Term){.mono = mono_mul(n->ring, t->mono, inverse), .c = t->c};
+      t->c = num_int(0);
+    }
+    Poly inner = poly_collect(n->ring, group, size);
+    Expr sum = normal_poly_expr(n, inner), outer = normal_mono_expr(n, m);
+    part[parts++] = expr_mul(g, outer, sum);
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++)
+      if (!num_is_zero(left[i].c)) left[kept++] = left[i];
+    count = kept;
+  }
+  part[parts++] = normal_poly_expr(n, (Poly){.at = left, .n = count});
+  return expr_add_n(g, part, parts);
+}
+
+/* --- numerators into pieces --- */
+
+/* c times a product that may carry a number of its own. */
+static void push_piece(Normal *n, Pieces *out, Num c, MonoId params, Expr e) {
+  if (expr_is_num(n->g, e)) {
+    c = num_mul(c, expr_number(n->g, e));
+    e = expr_int(n->g, 1);
+  } else if (expr_pairs(n->g, e, EX_SUM) == 1) {
+    Num k;
+    e = expr_pair(n->g, e, EX_SUM, 0, &k);
+    c = num_mul(c, k);
+  }
+  if (!num_is_exact(c)) poly_fail(n->ring, POLY_INEXACT);
+  vec_push(n->arena, out, ((Piece){.c = c, .params = params, .e = e}));
+}
+
+typedef struct {
+  MonoId rest; /* without circular functions */
+  Term circular;
+} Sorted;
+
+static int by_rest(const void *a, const void *b) {
+  const Sorted *x = a, *y = b;
+  if (x->rest != y->rest) return x->rest < y->rest ? -1 : 1;
+  return (x->circular.mono > y->circular.mono) - (x->circular.mono < y->circular.mono);
+}
+
+static Sorted *sort_terms(Normal *n, Poly p) {
+  Sorted *s = ARENA_ARRAY(n->arena, Sorted, p.n + 1);
+  for (uint32_t i = 0; i < p.n; i++) {
+    MonoId params = mono_part(n, p.at[i].mono, 0, 1), state = mono_part(n, p.at[i].mono, 0, 0);
+    MonoId circular = mono_part(n, p.at[i].mono, 1, 0);
+    s[i].rest = mono_mul(n->ring, params, state);
+    s[i].circular = (Term){.mono = circular, .c = p.at[i].c};
+  }
+  if (p.n > 1) qsort(s, p.n, sizeof *s, by_rest);
+  return s;
+}
+
+static Pieces pieces_of(Normal *n, Poly p) {
+  Pieces out = {0};
+  Sorted *s = sort_terms(n, p);
+  Term *group = ARENA_ARRAY(n->arena, Term, p.n + 1);
+  for (uint32_t i = 0; i < p.n && n->ring->status == POLY_OK;) {
+    MonoId rest = s[i].rest;
+    uint32_t size = 0;
+    while (i < p.n && s[i].rest == rest) group[size++] = s[i++].circular;
+    Poly circular = poly_collect(n->ring, group, size);
+    if (circular.n == 0) continue;
+    TrigForm f = trig_shortest(n, circular);
+    MonoId params = mono_part(n, rest, 0, 1), state = mono_part(n, rest, 0, 0);
+    Expr factor = normal_mono_expr(n, state);
+    for (uint32_t k = 0; k < f.n; k++) push_piece(n, &out, f.at[k].c, params, expr_mul(n->g, factor, f.at[k].e));
+  }
+  return out;
+}
+
+/* --- collecting --- */
+
+/* content * mono * prim * e: all pieces with the function e together. */
+typedef struct {
+  PolyId prim;
+  MonoId mono;
+  Num content;
+  Expr e;
+} Group;
+
+static int by_function(const void *a, const void *b) {
+  const Piece *x = a, *y = b;
+  if (x->e != y->e) return x->e < y->e ? -1 : 1;
+  return (x->params > y->params) - (x->params < y->params);
+}
+
+static int by_params(const void *a, const void *b) {
+  const Group *x = a, *y = b;
+  if (x->prim != y->prim) return x->prim < y->prim ? -1 : 1;
+  if (x->mono != y->mono) return x->mono < y->mono ? -1 : 1;
+  return (x->e > y->e) - (x->e < y->e);
+}
+
+static Group *groups_of(Normal *n, Pieces pieces, uint32_t *count) {
+  Group *groups = ARENA_ARRAY(n->arena, Group, pieces.n + 1);
+  Term *params = ARENA_ARRAY(n->arena, Term, pieces.n + 1);
+  if (pieces.n > 1) qsort(pieces.at, pieces.n, sizeof *pieces.at, by_function);
+  *count = 0;
+  for (uint32_t i = 0; i < pieces.n && n->ring->status == POLY_OK;) {
+    Group one = {.e = pieces.at[i].e};
+    uint32_t size = 0;
+    for (; i < pieces.n && pieces.at[i].e == one.e; i++)
+      params[size++] = (Term){.mono = pieces.at[i].params, .c = pieces.at[i].c};
+    Poly p = poly_collect(n->ring, params, size);
+    if (p.n == 0) continue;
+    Poly prim = poly_primitive(n->ring, p, &one.content, &one.mono);
+    one.prim = poly_intern(n->ring, prim);
+    groups[(*count)++] = one;
+  }
+  if (*count > 1) qsort(groups, *count, sizeof *groups, by_params);
+  return groups;
+}
+
+/* The factor's exponent in the product e; 0 when it does not occur. */
+static Num exponent_in(const ExprGraph *g, Expr e, Expr base) {
+  for (uint32_t i = 0; i < expr_pairs(g, e, EX_PROD); i++) {
+    Num k;
+    if (expr_pair(g, e, EX_PROD, i, &k) == base) return k;
+  }
+  return num_int(0);
+}
+
+/* What all functions of the state in the groups share: each base with the exponent nearest to 0. */
+static Expr common_factor(ExprGraph *g, const Group *at, uint32_t count) {
+  Expr common = expr_int(g, 1);
+  for (uint32_t i = 0; i < expr_pairs(g, at[0].e, EX_PROD); i++) {
+    Num e;
+    Expr base = expr_pair(g, at[0].e, EX_PROD, i, &e);
+    if (expr_is_num(g, base)) continue;
+    for (uint32_t k = 1; k < count; k++) {
+      Num other = exponent_in(g, at[k].e, base);
+      if (num_sign(other) != num_sign(e)) e = num_int(0);
+      else if (num_cmp(num_abs(other), num_abs(e)) < 0) e = other;
+    }
+    Expr power = expr_pow_num(g, base, e);
+    common = expr_mul(g, common, power);
+  }
+  return common;
+}
+
+/* The groups with one parameter factor: factor * common * (sum of what is left). */
+static Expr run_expr(Normal *n, const Group *at, uint32_t count) {
+  ExprGraph *g = n->g;
+  Expr mono = normal_mono_expr(n, at->mono), prim = params_expr(n, poly_at(n->ring, at->prim));
+  Expr common = common_factor(g, at, count), inverse = expr_pow_num(g, common, num_int(-1));
+  Expr *rest = ARENA_ARRAY(n->arena, Expr, count);
+  for (uint32_t i = 0; i < count; i++) {
+    Expr e = expr_mul(g, at[i].e, inverse);
+    rest[i] = expr_scale(g, at[i].content, e);
+  }
+  Expr sum = expr_add_n(g, rest, count);
+  Expr factors[4] = {mono, prim, common, sum};
+  return expr_mul_n(g, factors, 4);
+}
+
+static Expr poly_expr(Normal *n, Poly p) {
+  if (p.n == 0) return expr_int(n->g, 0);
+  uint32_t count;
+  Pieces pieces = pieces_of(n, p);
+  Group *groups = groups_of(n, pieces, &count);
+  Expr *part = ARENA_ARRAY(n->arena, Expr, count + 1);
+  uint32_t parts = 0;
+  for (uint32_t i = 0, end; i < count; i = end) {
+    for (end = i; end < count && groups[end].prim == groups[i].prim && groups[end].mono == groups[i].mono;) end++;
+    part[parts++] = run_expr(n, groups + i, end - i);
+  }
+  return expr_add_n(n->g, part, parts);
+}
+
+/* --- fractions --- */
+
+static Expr frac_expr(Normal *n, Frac a) {
+  Expr e = poly_expr(n, a.num);
+  Den d = frac_den(n->field, a.den);
+  for (uint32_t i = 0; i < d.n; i++) {
+    Expr factor = poly_expr(n, poly_at(n->ring, d.at[i].factor));
+    Expr power = expr_pow_num(n->g, factor, num_int(-(int64_t)d.at[i].exp));
+    e = expr_mul(n->g, e, power);
+  }
+  return e;
+}
+
+typedef struct {
+  ExprGraph *g;
+  Expr e, result;
+} Task;
+
+static void work(Arena *scratch, void *data) {
+  Task *t = data;
+  Normal *n = normal_new(t->g, scratch, (NormalLimits){.max_terms = MAX_TERMS, .max_work = MAX_WORK});
+  Frac f;
+  if (normal_run(n, &t->e, 1, &f) != POLY_OK) return;
+  Frac smaller = frac_cancel(n->field, f);
+  Expr e = frac_expr(n, smaller);
+  if (n->ring->status == POLY_OK) t->result = e;
+}
+
+static int has_definitions(ExprGraph *g, Expr e) {
+  ExprList nodes = expr_topo(g, &e, 1);
+  for (uint32_t i = 0; i < nodes.n; i++)
+    if (expr_op(g, nodes.at[i]) == EX_DEF) return 1;
+  return 0;
+}
+
+Expr simplify(ExprGraph *g, Expr e) {
+  if (!e || expr_nargs(g, e) == 0) return e;
+  Task t = {.g = g, .e = e, .result = e};
+  normal_with_scratch(g, work, &t);
+  uint32_t before = expr_ops(g, &e, 1), after = expr_ops(g, &t.result, 1);
+  if (after == before) return has_definitions(g, e) ? t.result : e;
+  return after < before ? t.result : e;
+}

@@ -42,7 +42,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   static const char devices[] = "/dev"; /* including a terminal would wait for ever */
   for (size_t i = 0; i + 4 <= size; i++)
     if (memcmp(data + i, devices, 4) == 0) return 0;
-  for (int expression = 0; expression < 2; expression++) {
+  for (volatile int expression = 0; expression < 2; expression++) { /* volatile: setjmp below */
     ArenaConfig config = {.chunk = 4096, .max_bytes = FUZZ_MEMORY};
     Arena *a = arena_new(&config);
     jmp_buf failed;

@@ -6,7 +6,7 @@
 #   sh tests/golden/run_syntax.sh [DUMP]   DUMP: the built tests/unit/dump_syntax.c
 #   BLESS=1 rewrites the expectations, on purpose.
 cd "$(dirname "$0")/../.." || exit 2
-dump=${1:-build/dump_syntax}
+dump=${1:-${BIN:-build/test/bin}/dump_syntax}
 got=${TMPDIR:-/tmp}/golden_syntax.$$
 trap 'rm -f "$got"' EXIT
 n=0

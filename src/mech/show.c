@@ -1,6 +1,4 @@
-#include "emit/emit_text.h"
-
-#include "emit/cwriter.h"
+#include "mech/show.h"
 
 typedef struct {
   const Eqns *e;
@@ -99,17 +97,17 @@ static void title(Text *t) {
 
 static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 
-static void facts(Text *t, const IrUnit *u) {
+static void facts(Text *t, const char *cost) {
   const Eqns *e = t->e;
   const char *c = latex(t) ? "% " : "";
   if (!latex(t)) sb_putc(t->out, '\n');
   if (e->n)
     sb_printf(t->out, "%s%u coordinate%s; mass matrix %s%s; energy is %s\n", c, e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
               e->definite_mass ? ", positive definite" : "", e->conserves_energy ? "conserved" : "not conserved (force, dissipation, input or explicit time)");
-  sb_printf(t->out, "%saccelerations: %s\n", c, ops_text(u->accel, e->m->arena));
+  sb_printf(t->out, "%saccelerations: %s\n", c, cost);
 }
 
-void emit_text(const Eqns *e, const IrUnit *u, PrintStyle style, StrBuf *out) {
+void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *out) {
   Text t = {.e = e, .g = e->g, .style = style, .out = out};
   const Model *m = e->m;
   title(&t);
@@ -133,5 +131,5 @@ void emit_text(const Eqns *e, const IrUnit *u, PrintStyle style, StrBuf *out) {
     end_block(&t);
   }
   definitions(&t, roots.at, roots.n);
-  facts(&t, u);
+  facts(&t, cost);
 }

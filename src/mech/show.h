@@ -1,0 +1,12 @@
+/* The equations of motion for people: text and LaTeX, in the user's names. */
+#ifndef LAGC_SHOW_H
+#define LAGC_SHOW_H
+
+#include "mech/eqns.h"
+#include "sym/print.h"
+
+/* Appends L, momenta, M q'' = f row by row, energy, the definitions that these use, what is known of
+ * the model, and `cost`, a line on what the accelerations cost. */
+void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *out);
+
+#endif

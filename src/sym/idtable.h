@@ -1,0 +1,67 @@
+/* IdTable: finds the id of something that its owner keeps in an array, by the hash of its content.
+ * Open addressing; the owner compares contents:
+ *
+ *   uint32_t at = idtable_start(&t, hash), id;
+ *   while (idtable_next(&t, hash, &at, &id))
+ *     if (things[id] is the one) return id;
+ *   idtable_add(&t, hash, new_id); */
+#ifndef LAGC_IDTABLE_H
+#define LAGC_IDTABLE_H
+
+#include <stdint.h>
+
+#include "base/arena.h"
+
+typedef struct {
+  uint32_t id1, hash; /* id1 is the id plus one; 0 marks an empty slot */
+} IdSlot;
+
+typedef struct {
+  Arena *arena;
+  IdSlot *slots;
+  uint32_t cap, n;
+} IdTable;
+
+static inline uint32_t id_mix(uint32_t h, uint32_t x) {
+  h ^= x + 0x9e3779b9u + (h << 6) + (h >> 2);
+  h *= 0x85ebca6bu;
+  return h ^ (h >> 15);
+}
+
+static inline uint32_t idtable_start(const IdTable *t, uint32_t hash) {
+  return t->cap ? hash & (t->cap - 1) : 0;
+}
+
+/* The next id with this hash, from slot *at on; 0 when there is none left. */
+static inline int idtable_next(const IdTable *t, uint32_t hash, uint32_t *at, uint32_t *id) {
+  if (!t->cap) return 0;
+  while (t->slots[*at].id1) {
+    IdSlot s = t->slots[*at];
+    *at = (*at + 1) & (t->cap - 1);
+    if (s.hash == hash) {
+      *id = s.id1 - 1;
+      return 1;
+    }
+  }
+  return 0;
+}
+
+static inline void idtable_put(IdTable *t, IdSlot s) {
+  uint32_t i = s.hash & (t->cap - 1);
+  while (t->slots[i].id1) i = (i + 1) & (t->cap - 1);
+  t->slots[i] = s;
+}
+
+static inline void idtable_add(IdTable *t, uint32_t hash, uint32_t id) {
+  if (2 * (t->n + 1) > t->cap) {
+    IdTable bigger = {.arena = t->arena, .cap = t->cap ? 2 * t->cap : 64, .n = t->n};
+    bigger.slots = ARENA_ARRAY(t->arena, IdSlot, bigger.cap);
+    for (uint32_t i = 0; i < t->cap; i++)
+      if (t->slots[i].id1) idtable_put(&bigger, t->slots[i]);
+    *t = bigger;
+  }
+  idtable_put(t, (IdSlot){.id1 = id + 1, .hash = hash});
+  t->n++;
+}
+
+#endif

@@ -1,0 +1,318 @@
+#include "sym/prove.h"
+
+#include <float.h>
+#include <math.h>
+
+NormalLimits prove_limits(void) { return (NormalLimits){.max_terms = 20000, .max_work = 2000000}; }
+
+enum { STATES = 8 };
+
+/* --- by value --- */
+
+/* Whether the value is certainly not 0; an unusable one (outside the domain) decides nothing. */
+static int clearly_nonzero(long double value, long double bound) {
+  return isfinite(value) && isfinite(bound) && fabsl(value) > 1000 * bound + LDBL_MIN;
+}
+
+static Verdict nonzero_by_value(ExprGraph *g, Expr e) {
+  long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
+  for (uint32_t seed = 1; seed <= STATES; seed++) {
+    long double bound, value;
+    prove_state(g, seed, symbols);
+    value = prove_value(g, e, symbols, NULL, &bound);
+    if (clearly_nonzero(value, bound)) return PROVED_NONZERO;
+  }
+  return NOT_DECIDED;
+}
+
+/* --- zero --- */
+
+typedef struct {
+  ExprGraph *g;
+  Expr e;
+  NormalLimits limits;
+  Verdict verdict;
+} ZeroTask;
+
+static void zero_work(Arena *scratch, void *data) {
+  ZeroTask *t = data;
+  Normal *n = normal_new(t->g, scratch, t->limits);
+  Frac f;
+  if (normal_run(n, &t->e, 1, &f) != POLY_OK) return;
+  if (f.num.n == 0) t->verdict = PROVED_ZERO;
+  else if (n->canonical) t->verdict = PROVED_NONZERO;
+}
+
+Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits) {
+  if (e == 0 || expr_is_zero(g, e)) return PROVED_ZERO;
+  ZeroTask t = {.g = g, .e = e, .limits = limits ? *limits : prove_limits()};
+  normal_with_scratch(g, zero_work, &t);
+  return t.verdict != NOT_DECIDED ? t.verdict : nonzero_by_value(g, e);
+}
+
+/* --- the block of a linear system that an expression needs --- */
+
+typedef struct {
+  ExprGraph *g;
+  uint32_t n;        /* of the block */
+  uint32_t *index;   /* row of the whole system, by row of the block */
+  const Expr *M, *f; /* the block, row by row */
+  const SymId *acc;
+  Expr e;
+  NormalLimits limits;
+  Verdict verdict;
+} System;
+
+/* Marks the unknowns of e, then those that share an equation or a column with a marked one. */
+static uint32_t mark_block(ExprGraph *g, uint32_t n, const Expr *M, const SymId *acc, Expr e, uint8_t *in) {
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    in[i] = (uint8_t)expr_contains_sym(g, e, acc[i]);
+    count += in[i];
+  }
+  for (uint32_t before = 0; before != count;) {
+    before = count;
+    for (uint32_t i = 0; i < n; i++)
+      for (uint32_t k = 0; k < n; k++) {
+        if (in[i] == in[k] || !M[i * n + k] || expr_is_zero(g, M[i * n + k])) continue;
+        in[i] = in[k] = 1;
+        count++;
+      }
+  }
+  return count;
+}
+
+static System take_block(ExprGraph *g, uint32_t n, const Expr *M, const Expr *f, const SymId *acc, Expr e) {
+  Arena *a = expr_arena(g);
+  uint8_t *in = ARENA_ARRAY(a, uint8_t, n + 1);
+  System s = {.g = g, .e = e, .n = mark_block(g, n, M, acc, e, in)};
+  Expr *block = ARENA_ARRAY(a, Expr, s.n * s.n + 1), *rhs = ARENA_ARRAY(a, Expr, s.n + 1);
+  SymId *unknown = ARENA_ARRAY(a, SymId, s.n + 1);
+  uint32_t row = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (!in[i]) continue;
+    uint32_t column = 0;
+    for (uint32_t k = 0; k < n; k++)
+      if (in[k]) block[row * s.n + column++] = M[i * n + k];
+    rhs[row] = f[i];
+    unknown[row++] = acc[i];
+  }
+  s.M = block;
+  s.f = rhs;
+  s.acc = unknown;
+  return s;
+}
+
+/* --- Cramer's rule --- */
+
+enum { MAX_BLOCK = 8 };
+
+/* The block with f as its last column, as polynomials: every row times its common denominator. */
+static void clear_denominators(Normal *n, uint32_t size, const Frac *M, const Frac *f, Poly *rows) {
+  for (uint32_t i = 0; i < size; i++) {
+    DenId den = f[i].den;
+    for (uint32_t k = 0; k < size; k++) den = frac_lcm(n->field, den, M[i * size + k].den);
+    for (uint32_t k = 0; k <= size; k++) {
+      Frac entry = k < size ? M[i * size + k] : f[i];
+      Poly cofactor = frac_cofactor(n->field, entry.den, den);
+      rows[i * (size + 1) + k] = poly_mul(n->ring, entry.num, cofactor);
+    }
+  }
+}
+
+/* The minor of the first rows over the columns of a set, by expansion along its last row.
+ * Expansion by minors, each computed once, beats elimination on sparse polynomials (Gentleman and
+ * Johnson 1976, DOI 10.1145/355694.355696), and needs no division modulo relations. */
+static Poly minor_of(PolyRing *r, uint32_t columns, const Poly *rows, uint32_t set, const Poly *minors) {
+  uint32_t row = (uint32_t)__builtin_popcount(set) - 1;
+  Poly parts[MAX_BLOCK + 1];
+  Num signs[MAX_BLOCK + 1];
+  uint32_t n = 0;
+  int sign = row % 2 == 0 ? 1 : -1;
+  for (uint32_t k = 0; k < columns; k++) {
+    if (!(set >> k & 1)) continue;
+    parts[n] = poly_mul(r, rows[row * columns + k], minors[set & ~(1u << k)]);
+    signs[n++] = num_int(sign);
+    sign = -sign;
+  }
+  return poly_sum(r, parts, signs, n);
+}
+
+/* det is det M; solution[k] the determinant with column k replaced by f. */
+static Poly cramer(Normal *n, uint32_t size, const Poly *rows, Poly *solution) {
+  uint32_t columns = size + 1, all = (1u << columns) - 1;
+  Poly *minors = ARENA_ARRAY(n->arena, Poly, all + 1);
+  minors[0] = poly_num(n->ring, num_int(1));
+  for (uint32_t set = 1; set < all; set++) minors[set] = minor_of(n->ring, columns, rows, set, minors);
+  for (uint32_t k = 0; k < size; k++) {
+    /* f stands last instead of at k: size - 1 - k swaps of neighbours. */
+    int sign = (size - 1 - k) % 2 == 0 ? 1 : -1;
+    solution[k] = poly_scale(n->ring, num_int(sign), minors[all & ~(1u << k)]);
+  }
+  return minors[all & ~(1u << size)];
+}
+
+/* The generator of each unknown; 0 when one hides inside a function, out of substitution's reach. */
+static int unknown_gens(Normal *n, const System *s, GenId *gen) {
+  for (uint32_t k = 0; k < s->n; k++) {
+    gen[k] = GEN_NONE;
+    if (s->acc[k] >= n->of_symbol.n || !n->of_symbol.at[s->acc[k]]) continue;
+    gen[k] = n->of_symbol.at[s->acc[k]] - 1;
+    for (GenId x = 0; x < n->gens.n; x++)
+      if (x != gen[k] && expr_contains_sym(n->g, n->gens.at[x].expr, s->acc[k])) return 0;
+  }
+  return 1;
+}
+
+/* One monomial: its coefficient times the product of solution[k]^e and det^-(sum of e), where the
+ * total degree was raised to be at least 0 by det^degree. */
+static Poly substitute_term(Normal *n, const System *s, const GenId *gen, Term t, int32_t degree, Poly det,
+                            const Poly *solution) {
+  PolyRing *r = n->ring;
+  MonoId rest = t.mono;
+  Poly p = poly_num(r, num_int(1));
+  for (uint32_t k = 0; k < s->n; k++) {
+    int32_t e = mono_exp(r, t.mono, gen[k]);
+    if (!e) continue;
+    rest = mono_without(r, rest, gen[k]);
+    degree -= e;
+    Poly power = poly_pow(r, solution[k], (uint32_t)e);
+    p = poly_mul(r, p, power);
+  }
+  Poly power = poly_pow(r, det, (uint32_t)degree);
+  p = poly_mul(r, p, power);
+  return poly_mul_mono(r, p, t.c, rest);
+}
+
+/* p times a power of det, with the solution put in for the unknowns. Fails on negative powers of
+ * an unknown (a division by it). */
+static int substitute(Normal *n, const System *s, const GenId *gen, Poly p, Poly det, const Poly *solution,
+                      Poly *result) {
+  int32_t degree = 0;
+  for (uint32_t i = 0; i < p.n; i++) {
+    int32_t total = 0;
+    for (uint32_t k = 0; k < s->n; k++) {
+      int32_t e = mono_exp(n->ring, p.at[i].mono, gen[k]);
+      if (e < 0) return 0;
+      total += e;
+    }
+    if (total > degree) degree = total;
+  }
+  Poly *part = ARENA_ARRAY(n->arena, Poly, p.n + 1);
+  for (uint32_t i = 0; i < p.n; i++) part[i] = substitute_term(n, s, gen, p.at[i], degree, det, solution);
+  *result = poly_sum(n->ring, part, NULL, p.n);
+  return n->ring->status == POLY_OK;
+}
+
+/* Whether no factor of the denominator vanishes on the solution. */
+static int den_survives(Normal *n, const System *s, const GenId *gen, DenId den, Poly det, const Poly *solution) {
+  Den d = frac_den(n->field, den);
+  for (uint32_t i = 0; i < d.n; i++) {
+    Poly value;
+    if (!substitute(n, s, gen, poly_at(n->ring, d.at[i].factor), det, solution, &value) || value.n == 0) return 0;
+  }
+  return 1;
+}
+
+static void solves_work(Arena *scratch, void *data) {
+  System *s = data;
+  Normal *n = normal_new(s->g, scratch, s->limits);
+  uint32_t size = s->n, count = size * size + size + 1;
+  Expr *roots = ARENA_ARRAY(scratch, Expr, count);
+  memcpy(roots, s->M, size * size * sizeof *roots);
+  memcpy(roots + size * size, s->f, size * sizeof *roots);
+  roots[count - 1] = s->e;
+  Frac *form = ARENA_ARRAY(scratch, Frac, count);
+  if (normal_run(n, roots, count, form) != POLY_OK) return;
+  GenId gen[MAX_BLOCK];
+  if (!unknown_gens(n, s, gen)) return;
+  Poly *rows = ARENA_ARRAY(scratch, Poly, size * (size + 1)), solution[MAX_BLOCK], result;
+  clear_denominators(n, size, form, form + size * size, rows);
+  Poly det = cramer(n, size, rows, solution);
+  if (n->ring->status != POLY_OK || det.n == 0) return;
+  Frac e = form[count - 1];
+  if (!den_survives(n, s, gen, e.den, det, solution)) return;
+  if (!substitute(n, s, gen, e.num, det, solution, &result)) return;
+  if (result.n == 0) s->verdict = PROVED_ZERO;
+  else if (n->canonical) s->verdict = PROVED_NONZERO;
+}
+
+/* --- the system by value --- */
+
+/* Gauss-Jordan with row exchange on A (n rows of 2n + 1: M, f, identity); 0 when singular.
+ * Afterwards column n is the solution and the rest the inverse. */
+static int eliminate(uint32_t n, long double *A) {
+  uint32_t w = 2 * n + 1;
+  for (uint32_t c = 0; c < n; c++) {
+    uint32_t best = c;
+    for (uint32_t i = c; i < n; i++)
+      if (fabsl(A[i * w + c]) > fabsl(A[best * w + c])) best = i;
+    if (!(fabsl(A[best * w + c]) > 0) || !isfinite(A[best * w + c])) return 0;
+    for (uint32_t k = 0; k < w; k++) {
+      long double swap = A[best * w + k];
+      A[best * w + k] = A[c * w + k];
+      A[c * w + k] = swap;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+      long double ratio = A[i * w + c] / A[c * w + c];
+      for (uint32_t k = 0; i != c && k < w; k++) A[i * w + k] -= ratio * A[c * w + k];
+    }
+    for (uint32_t k = w; k-- > 0;) A[c * w + k] /= A[c * w + c];
+  }
+  return 1;
+}
+
+/* Puts the solution at this state into symbols, with error bounds from the condition number
+ * (Higham 2002, section 7.1). Returns 0 when the system is singular or badly conditioned. */
+static int solve_at(const System *s, long double *symbols, long double *errors) {
+  uint32_t n = s->n, w = 2 * n + 1;
+  Arena *a = expr_arena(s->g);
+  long double *M = ARENA_ARRAY(a, long double, n * n), *A = ARENA_ARRAY(a, long double, n * w);
+  long double entry_error = 0, size = 0, inverse = 0, bound;
+  for (uint32_t i = 0; i < n; i++) {
+    for (uint32_t k = 0; k < n; k++) {
+      M[i * n + k] = prove_value(s->g, s->M[i * n + k], symbols, NULL, &bound);
+      A[i * w + k] = M[i * n + k];
+      size += fabsl(M[i * n + k]);
+      entry_error += bound;
+    }
+    A[i * w + n] = prove_value(s->g, s->f[i], symbols, NULL, &bound);
+    entry_error += bound;
+    A[i * w + n + 1 + i] = 1;
+  }
+  if (!eliminate(n, A)) return 0;
+  long double largest = 1;
+  for (uint32_t i = 0; i < n; i++) {
+    for (uint32_t k = 0; k < n; k++) inverse += fabsl(A[i * w + n + 1 + k]);
+    if (fabsl(A[i * w + n]) > largest) largest = fabsl(A[i * w + n]);
+  }
+  long double error = 16 * inverse * (entry_error + (long double)n * LDBL_EPSILON * size) * largest;
+  for (uint32_t i = 0; i < n; i++) {
+    symbols[s->acc[i]] = A[i * w + n];
+    errors[s->acc[i]] = error;
+  }
+  return isfinite(error) && inverse * size < 1e8L;
+}
+
+static Verdict system_nonzero_by_value(const System *s) {
+  Arena *a = expr_arena(s->g);
+  uint32_t count = expr_symbol_count(s->g) + 1;
+  long double *symbols = ARENA_ARRAY(a, long double, count), *errors = ARENA_ARRAY(a, long double, count);
+  for (uint32_t seed = 1; seed <= STATES; seed++) {
+    long double bound;
+    prove_state(s->g, seed, symbols);
+    if (!solve_at(s, symbols, errors)) continue;
+    long double value = prove_value(s->g, s->e, symbols, errors, &bound);
+    if (clearly_nonzero(value, bound)) return PROVED_NONZERO;
+  }
+  return NOT_DECIDED;
+}
+
+Verdict prove_solves(ExprGraph *g, uint32_t n, const Expr *M, const Expr *f, const SymId *acc, Expr e,
+                     const NormalLimits *limits) {
+  System s = take_block(g, n, M, f, acc, e);
+  if (s.n == 0) return prove_zero(g, e, limits);
+  s.limits = limits ? *limits : prove_limits();
+  if (s.n <= MAX_BLOCK) normal_with_scratch(g, solves_work, &s);
+  return s.verdict != NOT_DECIDED ? s.verdict : system_nonzero_by_value(&s);
+}

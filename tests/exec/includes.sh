@@ -1,0 +1,134 @@
+#!/bin/sh
+# Who may include whom. Data flows one way, from text to C, and each folder of src/ sees only what lies before it;
+# the compiler and the runtime never meet; GSL is met in one folder. src/README.md has the reasons.
+. tests/tap.sh
+
+# FOLDER: the folders whose headers it may include. `mech/eqns.h` etc.: these files only.
+allowed='
+src/base      base/
+src/sym       sym/ base/
+src/syntax    syntax/ base/
+src/model     model/ syntax/ sym/ base/
+src/mech      mech/ model/ sym/ base/
+src/ir        ir/ sym/ base/
+src/emit      emit/ ir/ base/
+src/cli       cli/ base/
+src           base/ syntax/ sym/ model/ mech/ ir/ emit/ cli/
+grammar       syntax/scan.h syntax/parse_state.h
+runtime/core      core/ lag.h lag_model.h
+runtime/methods   methods/ lag.h lag_model.h
+runtime/analysis  analysis/ core/ lag.h lag_model.h
+runtime/io        io/ lag.h lag_model.h
+runtime/app       app/ core/ io/ analysis/ lag.h lag_model.h
+runtime/gsl       gsl/ lag.h lag_model.h
+'
+# FILE: what it may include besides. The equations enter the IR at one place.
+besides='
+src/ir/lower.c    mech/eqns.h
+src/ir/lower.h    mech/eqns.h
+runtime/include/lag.h  lag_model.h
+'
+# The inside of a folder, shared by its own files only.
+private='syntax/ast_build.h syntax/parse_state.h syntax/filter.h syntax/scan.h syntax/token.h model/builder.h
+  model/scope.h sym/expr_impl.h sym/ops.def ir/lower_impl.h methods/tableau.h'
+
+# Every #include as `FILE HEADER`; <stdio.h> keeps its brackets.
+list=$TMP/list
+find src grammar runtime -name '*.[chly]' | LC_ALL=C sort | while read -r f; do
+  sed -n 's/^[ \t]*#[ \t]*include[ \t]*\(<[^>]*>\).*/\1/p; s/^[ \t]*#[ \t]*include[ \t]*"\([^"]*\)".*/\1/p' "$f" |
+    sed "s|^|$f |"
+done >"$list"
+
+# What lag.y and lag.l turn into is included by src/syntax, and by nobody else.
+empty "generated parser headers: src/syntax only" \
+  "$(awk '$2 ~ /lag\.(tab|lex)\.[ch]>?$/ && $1 !~ /^src\/syntax\// { print $1 " includes " $2 }' "$list")"
+
+empty "folders include only what lies before them" "$(awk -v allowed="$allowed" -v besides="$besides" '
+  BEGIN {
+    n = split(allowed, lines, "\n")
+    for (i = 1; i <= n; i++) {
+      k = split(lines[i], w, " ")
+      for (j = 2; j <= k; j++) ok[w[1], w[j]] = 1
+      if (k) known[w[1]] = 1
+    }
+    n = split(besides, lines, "\n")
+    for (i = 1; i <= n; i++) {
+      k = split(lines[i], w, " ")
+      for (j = 2; j <= k; j++) ok[w[1], w[j]] = 1
+    }
+  }
+  $2 ~ /^</ || $2 ~ /^lag\.(tab|lex)\.[ch]$/ { next }
+  {
+    folder = $1; sub(/\/[^\/]*$/, "", folder)
+    where = $2; if (!sub(/\/.*/, "/", where)) where = $2
+    if (ok[folder, where] || ok[folder, $2] || ok[$1, $2]) next
+    print $1 " includes " $2 (known[folder] || folder ~ /include$/ ? "" : " (a folder without a rule)")
+  }' "$list")"
+
+empty "the inside of a folder stays inside" "$(awk -v private="$private" '
+  BEGIN { n = split(private, w); for (i = 1; i <= n; i++) inside[w[i]] = 1 }
+  inside[$2] && $1 !~ /^grammar\// {
+    home = $2; sub(/\/.*/, "", home)
+    folder = $1; sub(/\/[^\/]*$/, "", folder); sub(/.*\//, "", folder)
+    if (folder != home) print $1 " includes " $2
+  }' "$list")"
+
+# The equations enter the IR by ir/lower.h: who includes that sees mech, and only lowering and main may.
+empty "equations: ir/lower and main only" "$(awk '
+  $2 == "ir/lower.h" && $1 !~ /^src\/(main\.c|ir\/lower[^\/]*\.[ch])$/ { print $1 " includes " $2 ", and so mech/eqns.h" }' "$list")"
+
+empty "GSL: runtime/gsl only" "$(awk '$2 ~ /gsl/ && $1 !~ /^runtime\/gsl\// { print $1 " includes " $2 }' "$list")"
+
+empty "lag_model.h includes only <stddef.h>" \
+  "$(awk '$1 == "runtime/include/lag_model.h" && $2 != "<stddef.h>" { print $1 " includes " $2 }' "$list")"
+
+# ISO C11 everywhere; POSIX where a program meets its system.
+c11='assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic
+  stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype'
+posix='src/main\.c src/cli/.*\.c runtime/app/.*\.c runtime/io/.*\.c'
+empty "system headers: ISO C11; POSIX in main, cli, runtime/app and runtime/io" "$(awk -v c11="$c11" -v posix="$posix" '
+  BEGIN {
+    n = split(c11, w); for (i = 1; i <= n; i++) standard["<" w[i] ".h>"] = 1
+    m = split(posix, where)
+  }
+  $2 ~ /^</ && $2 !~ /gsl/ && !standard[$2] {
+    for (i = 1; i <= m; i++) if ($1 ~ "^" where[i] "$") next
+    print $1 " includes " $2
+  }' "$list")"
+
+empty "no folder above: \"../\" in no #include" "$(awk '$2 ~ /\.\./ { print $1 " includes " $2 }' "$list")"
+
+# ---- headers compile alone ----
+alone() {
+  for h in $(find "$1" -name '*.h' | LC_ALL=C sort); do
+    shift_flags=$2
+    # shellcheck disable=SC2086 # flags
+    $3 $shift_flags -fsyntax-only -Wall -Wextra -Werror -include "$h" -x "$4" /dev/null || echo "$h"
+  done 2>&1
+}
+empty "headers of the compiler compile alone" \
+  "$(alone src "-std=c11 -D_POSIX_C_SOURCE=200809L -Isrc -I$BUILD/gen" "$CC" c)"
+empty "headers of the runtime compile alone" \
+  "$(alone runtime "-std=c11 -D_POSIX_C_SOURCE=200809L -Iruntime/include -Iruntime" "$CC" c)"
+if [ -n "$CXX" ]; then
+  empty "the public headers are C++ too" "$(alone runtime/include "-std=c++11 -Iruntime/include" "$CXX" c++)"
+else
+  skip "the public headers are C++ too" "no C++ compiler"
+fi
+
+# ---- emitted code: a model needs lag_model.h and <math.h>; a header only <math.h> ----
+includes_of() {
+  for m in models/*.lag; do
+    "$LAGC" "$1" "$m" -o "$TMP/emitted" || echo "lagc $1 $m: exit status $?"
+    sed -n 's/^[ \t]*#[ \t]*include[ \t]*//p' "$TMP/emitted" | grep -v -x -e "$2" | sed "s|^|lagc $1 $m includes |"
+  done 2>&1
+}
+if [ -x "$LAGC" ] && ls models/*.lag >/dev/null 2>&1; then
+  empty "lagc emit: lag_model.h and <math.h>" "$(includes_of emit '"lag_model.h"\|<math.h>')"
+  if "$LAGC" header models/double_pendulum.lag -o "$TMP/emitted" 2>&1 | grep -q 'not yet'; then
+    skip "lagc header: <math.h>" "not yet: lagc header"
+  else
+    empty "lagc header: <math.h>" "$(includes_of header '<math.h>')"
+  fi
+fi
+tap_end

@@ -1,0 +1,94 @@
+#!/bin/sh
+# make install: what is put where, a program of a user's own through pkg-config, and lagc at work outside the source
+# tree. make uninstall: nothing is left.
+. tests/tap.sh
+
+prefix=$TMP/usr
+install_it() { "$MAKE" BUILD="$BUILD" install PREFIX="$prefix"; }
+check "make install" install_it
+
+gsl_files=
+[ -z "$GSL" ] || gsl_files='lib/liblag_gsl.a lib/pkgconfig/liblag_gsl.pc'
+models=$(cd models && ls -d -- *.lag *.csv 2>/dev/null)
+want=$(for f in bin/lagc include/lag.h include/lag_model.h lib/liblag.a lib/pkgconfig/liblag.pc $gsl_files \
+  share/doc/lagc/LICENSE share/doc/lagc/README.md share/man/man1/lagc.1; do
+  echo "$f"
+done
+for m in $models; do echo "share/lagc/models/$m"; done)
+files() { (cd "$1" && find . ! -type d | sed 's|^\./||' | LC_ALL=C sort); }
+is "what is installed" "$(printf '%s\n' "$want" | LC_ALL=C sort)" "$(files "$prefix")"
+
+staged() {
+  "$MAKE" BUILD="$BUILD" install PREFIX=/opt/lagc DESTDIR="$TMP/stage" &&
+    [ "$(files "$TMP/stage/opt/lagc")" = "$(files "$prefix")" ] &&
+    grep -x 'prefix=/opt/lagc' "$TMP/stage/opt/lagc/lib/pkgconfig/liblag.pc"
+}
+check "DESTDIR is where, PREFIX is what the files say" staged
+
+# ---- a program of a user's own ----
+away=$TMP/away
+mkdir -p "$away"
+cat >"$away/main.c" <<'END'
+#include <lag.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* x'' = -x from x = 1: x(pi) = -1 */
+static const lag_var q_names[] = {{"x", "m", 1, 0, 0}};
+static int accel(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
+                 double *a, double *zd, double *w) {
+  (void)t, (void)v, (void)z, (void)p, (void)u, (void)zd, (void)w;
+  a[0] = -q[0];
+  return LAG_OK;
+}
+static const lag_model oscillator = {
+    .abi = LAG_ABI, .real_size = sizeof(double), .name = "oscillator", .doc = "", .effects = "", .nq = 1, .q = q_names, .accel = accel};
+
+int main(void) {
+  printf("%s %s %s\n", oscillator.name, LAG_VERSION, lag_methods[0]->name);
+  return 0;
+}
+END
+with_pkg_config() {
+  PKG_CONFIG_PATH=$prefix/lib/pkgconfig
+  export PKG_CONFIG_PATH
+  # shellcheck disable=SC2046 # flags
+  "$CC" -std=c11 -Wall -Wextra -o "$away/main" "$away/main.c" $(pkg-config --cflags --libs "$1") && "$away/main"
+}
+version=$(sed -n 's/^.define LAG_VERSION "\(.*\)"/\1/p' runtime/include/lag.h)
+if command -v pkg-config >/dev/null; then
+  check "a program, through pkg-config" with_pkg_config liblag
+  is "it runs" "oscillator $version rk45" "$("$away/main" 2>&1)"
+  is "the version of liblag.pc" "$version" "$(PKG_CONFIG_PATH=$prefix/lib/pkgconfig pkg-config --modversion liblag)"
+  [ -z "$GSL" ] || check "and with the gsl-* methods" with_pkg_config liblag_gsl
+else
+  skip "a program, through pkg-config" "no pkg-config"
+fi
+
+# ---- lagc, from the installed tree, in another folder ----
+lagc_away() { (cd "$away" && unset LAG_HOME && "$prefix/bin/lagc" "$@"); }
+check "lagc check" lagc_away check "$prefix/share/lagc/models/double_pendulum.lag"
+check "lagc run" lagc_away run "$prefix/share/lagc/models/double_pendulum.lag" --until 0.1 -o rows.csv
+check "it wrote its rows" [ -s "$away/rows.csv" ]
+check "lagc build" lagc_away build "$prefix/share/lagc/models/double_pendulum.lag" --no-gsl -o sim
+no_gsl() { "$away/sim" --until 0.1 && ! "$away/sim" --until 0.1 --method gsl-rk8pd; }
+check "a simulator without GSL runs, and has no gsl-* methods" no_gsl
+
+# The same from a tree that was moved, and by LAG_HOME from another.
+moved() { mv "$prefix" "$TMP/moved" && (cd "$away" && "$TMP/moved/bin/lagc" run "$TMP/moved/share/lagc/models/double_pendulum.lag" --until 0.1); }
+check "a tree that was moved works where it is" moved
+by_home() { (cd "$away" && cp "$TMP/moved/bin/lagc" . && LAG_HOME=$TMP/moved ./lagc run "$TMP/moved/share/lagc/models/double_pendulum.lag" --until 0.2); }
+check "LAG_HOME says where the runtime is" by_home
+
+# ---- the man page names every command and option that lagc's own help does ----
+undocumented() {
+  { "$LAGC" help; for c in check derive emit header build run; do "$LAGC" help "$c"; done; } |
+    grep -o -e '--[a-z][a-z-]*' -e '^  lagc [a-z]*' | sed 's/^  lagc //; s/^--//; s/-/\\-/g' | LC_ALL=C sort -u |
+    while read -r word; do grep -q -F -e "$word" -e "$(printf '%s' "$word" | sed 's/\\-/-/g')" src/lagc.1 || echo "lagc.1 lacks $word"; done
+}
+empty "the man page knows every command and option" "$(undocumented)"
+
+uninstall_it() { mv "$TMP/moved" "$prefix" && "$MAKE" BUILD="$BUILD" uninstall PREFIX="$prefix"; }
+check "make uninstall" uninstall_it
+is "nothing is left" "" "$(files "$prefix")"
+tap_end

@@ -1,0 +1,113 @@
+#!/bin/sh
+# tests/run.sh itself: what it finds, counts and says. A runner that calls failures passes is worse than none.
+. tests/tap.sh
+
+# A tree with a copy of the runner, and suites made for it.
+tree=$TMP/tree
+mkdir -p "$tree/tests/a" "$tree/tests/bench" "$tree/tests/unit" "$tree/bin"
+cp tests/run.sh "$tree/tests/"
+suite() { cat >"$tree/tests/$1.sh"; }
+suite a/good <<'END'
+echo "ok 1 - one"
+echo "ok 2 - two"
+echo "1..2"
+END
+suite a/bad <<'END'
+echo "1..2"
+echo "ok 1 - one"
+echo "not ok 2 - two"
+echo "# why it failed"
+exit 1
+END
+suite a/exits_0_but_bad <<'END'
+echo "not ok 1 - one"
+echo "1..1"
+END
+suite a/crashes <<'END'
+echo "1..2"
+echo "ok 1 - one"
+kill -SEGV $$
+END
+suite a/exits_3 <<'END'
+echo "ok 1 - one"
+echo "1..1"
+echo "the reason"
+exit 3
+END
+suite a/silent </dev/null
+suite a/no_plan <<'END'
+echo "ok 1 - one"
+END
+suite a/too_few <<'END'
+echo "1..3"
+echo "ok 1 - one"
+END
+suite a/skips_one <<'END'
+echo "1..2"
+echo "ok 1 - one"
+echo "ok 2 - two # SKIP no clang"
+END
+suite a/skips_all <<'END'
+echo "1..0 # SKIP no clang"
+END
+suite a/lib_shared <<'END'
+echo "not ok 1 - a library is no suite"
+END
+suite a/long_one <<'END'
+echo "ok 1 - long"
+echo "1..1"
+END
+suite a/knows_bless <<'END'
+echo "ok 1 - ${BLESS:+blessed}"
+echo "1..1"
+END
+suite bench/speed <<'END'
+echo "1 parsec"
+END
+# A program as cmocka makes them: two groups are two plans; skipped tests are called `not ok`.
+: >"$tree/tests/unit/test_groups.c"
+cat >"$tree/bin/test_groups" <<'END'
+#!/bin/sh
+[ "$CMOCKA_MESSAGE_OUTPUT" = TAP ] || exit 9
+printf '1..1\nok 1 - a\n# ok - one\n1..2\nok 1 - b\nnot ok 2 # SKIP c\n'
+END
+chmod +x "$tree/bin/test_groups"
+
+run() { (unset CI; BUILD=out BIN=bin sh "$tree/tests/run.sh" "$@" 2>&1); }
+last() { run "$@" | tail -n 1; }
+says() {
+  said=$(run "$1")
+  printf '%s\n' "$said"
+  printf '%s\n' "$said" | grep -q -- "$2"
+}
+fails() { ! run "$@"; }
+
+is "passed" "2 passed, 0 failed" "$(last a/good)"
+check "exit status 0 when all pass" run a/good
+is "not ok" "1 passed, 1 failed" "$(last a/bad)"
+check "exit status 1 after a failure" fails a/bad
+check "the failing line is shown" says "a/bad" "not ok 2 - two"
+check "and what follows it" says "a/bad" "# why it failed"
+is "not ok and exit status 0" "0 passed, 1 failed" "$(last a/exits_0_but_bad)"
+is "a crash is one failure" "1 passed, 1 failed" "$(last a/crashes)"
+is "an exit status without not ok is one failure" "1 passed, 1 failed" "$(last a/exits_3)"
+check "what it said is shown" says a/exits_3 "the reason"
+is "a suite that says nothing failed" "0 passed, 1 failed" "$(last a/silent)"
+is "a suite without a plan failed" "1 passed, 1 failed" "$(last a/no_plan)"
+is "a suite that stops early failed" "1 passed, 1 failed" "$(last a/too_few)"
+is "skipped" "1 passed, 0 failed, 1 skipped" "$(last a/skips_one)"
+check "the reason is shown" says a/skips_one "skipped: no clang (two)"
+is "a whole suite skipped" "0 passed, 0 failed, 1 skipped" "$(last a/skips_all)"
+is "cmocka's groups and skips" "2 passed, 0 failed, 1 skipped" "$(last unit/)"
+is "all of them" "11 passed, 7 failed, 3 skipped" "$(last)"
+is "long suites apart" "1 passed, 0 failed" "$(last --long)"
+check "benches are shown" says --bench "1 parsec"
+is "only scripts that know BLESS are blessed" "1 passed, 0 failed" "$(last --bless)"
+check "with BLESS set" grep -q blessed "$tree/out/test/log/a/knows_bless.log"
+blessed_in_ci() { (export CI=1 && BUILD=out BIN=bin sh "$tree/tests/run.sh" --bless); }
+not() { ! "$@"; }
+check "never in CI" not blessed_in_ci
+check "a prefix without a suite is a mistake" fails nothing
+is "suites come in order, each once" "a/bad a/crashes" \
+  "$(run a/crashes a/b a/bad | sed -n 's/^\(a[^ ]*\) .*/\1/p' | sort -u | tr '\n' ' ' | sed 's/ $//')"
+tap_end

@@ -1,0 +1,206 @@
+#!/bin/sh
+# Runs suites of tests; `make test` calls it with what it built (see RUN_TESTS in the Makefile).
+#   sh tests/run.sh [--long | --bless | --bench] [PREFIX...]     only suites whose names begin with a PREFIX
+#
+# A suite is a file. Nobody lists it: it is found.
+#   tests/unit/test_NAME.c         built into $BIN/test_NAME (cmocka)            suite unit/test_NAME
+#   tests/fuzz/fuzz_NAME.c         replays tests/fuzz/corpus/NAME                suite fuzz/fuzz_NAME
+#   tests/FOLDER/NAME.sh           run from the top of the source tree by sh     suite FOLDER/NAME
+#   tests/FOLDER/long_NAME.sh      the same, in `make test-long`
+#   tests/bench/NAME.sh            run by `make bench`; what it prints is shown
+#   tests/FOLDER/lib_NAME.sh       is none: scripts share it
+# --bless runs the scripts that know BLESS with BLESS=1: they rewrite their expectations.
+#
+# Suites speak TAP: a plan `1..N`; `ok 1 - name`, `not ok 2 - name`, `ok 3 - name # SKIP why`; `# details`.
+# `1..0 # SKIP why` skips a whole suite. A suite that crashes, exits with a status other than 0 and has no `not ok`,
+# runs into the time limit, or has not as many results as its plan says, counts one failure more.
+#
+# Scripts find in their environment (paths relative to the top; empty: there is none):
+#   LAGC, LAGC_SAN, LAGC_CLANG     the compiler; built under sanitizers; built by clang
+#   LIBLAG, INC, LIBS              the runtime's libraries, its headers, what to link after them
+#   BIN, BUILD, TMP                built test programs; the build folder; a folder of the suite's own, empty
+#   CC, CLANG, CXX, GSL, MAKE      GSL is `yes` or empty
+#   LAG_TREE                       what LAG_HOME must be for LAGC_SAN and LAGC_CLANG to find the runtime
+# Every suite leaves its output in $BUILD/test/log. The last line is `N passed, N failed`.
+cd "$(dirname "$0")/.." || exit 2
+unset MAKEFLAGS MFLAGS MAKELEVEL
+export LAGC LAGC_SAN LAGC_CLANG LIBLAG LIBS INC BIN BUILD CC CLANG CXX GSL MAKE
+export CMOCKA_MESSAGE_OUTPUT=TAP
+export UBSAN_OPTIONS="print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}"
+: "${BUILD:=build}" "${BIN:=$BUILD/test/bin}" "${JOBS:=2}"
+logs=$BUILD/test/log
+# Simulators that tests make are kept apart from the user's own.
+XDG_CACHE_HOME=$(pwd)/$BUILD/test/cache
+LAG_TREE=$(pwd)/$BUILD/test/home
+export XDG_CACHE_HOME LAG_TREE
+
+kind='test'
+limit=300
+case ${1:-} in
+  --long) kind=long limit=3600 JOBS=1 ;;
+  --bless) kind=bless JOBS=1 ;;
+  --bench) kind=bench limit=3600 JOBS=1 ;;
+  --run-one) kind=one ;;
+esac
+case ${1:-} in --*) shift ;; esac
+
+seconds() { date +%s.%N 2>/dev/null; }
+
+# ---- one suite: its output to NAME.log, `status seconds` to NAME.done ----
+if [ "$kind" = one ]; then
+  suite=$1
+  limit=$2
+  log=$logs/$suite.log
+  TMP=$(pwd)/$BUILD/test/tmp/$suite
+  export TMP
+  rm -rf "$TMP"
+  mkdir -p "$TMP" "$(dirname "$log")"
+  case $suite in
+    unit/test_*) set -- "$BIN/${suite#unit/}" ;;
+    fuzz/fuzz_*) set -- "$BIN/${suite#fuzz/}" "tests/fuzz/corpus/${suite#fuzz/fuzz_}" ;;
+    *) set -- sh "tests/$suite.sh" ;;
+  esac
+  begin=$(seconds)
+  timeout -k 5 "$limit" "$@" >"$log" 2>&1 </dev/null
+  status=$?
+  echo "$status $begin $(seconds)" >"$logs/$suite.part"
+  mv "$logs/$suite.part" "$logs/$suite.done"
+  exit 0
+fi
+
+# ---- which ----
+found() {
+  for f in tests/unit/test_*.c tests/fuzz/fuzz_*.c tests/*/*.sh; do
+    [ -f "$f" ] || continue
+    name=${f#tests/}
+    name=${name%.*}
+    case $name in
+      */lib_*) continue ;;
+      bench/*) is=bench ;;
+      */long_*) is=long ;;
+      *) is='test' ;;
+    esac
+    if [ "$kind" = bless ]; then
+      case $f in *.sh) ;; *) continue ;; esac
+      grep -q BLESS "$f" || continue
+    elif [ "$is" != "$kind" ]; then
+      continue
+    fi
+    [ $# = 0 ] && echo "$name"
+    for prefix; do
+      case $name in "$prefix"*)
+        echo "$name"
+        break
+        ;;
+      esac
+    done
+  done
+}
+
+suites=$(found "$@")
+if [ -z "$suites" ]; then
+  [ $# = 0 ] || { echo "no suite's name begins with: $*"; exit 1; }
+  echo "0 passed, 0 failed"
+  exit 0
+fi
+if [ "$kind" = bless ]; then
+  if [ -n "${CI:-}" ]; then
+    echo "bless: not in CI"
+    exit 1
+  fi
+  export BLESS=1
+else
+  unset BLESS
+fi
+
+mkdir -p "$LAG_TREE"
+ln -sfn "$(pwd)/$BUILD" "$LAG_TREE/lib"
+ln -sfn "$(pwd)/runtime/include" "$LAG_TREE/include"
+
+# ---- run them, $JOBS at a time; report in order ----
+for s in $suites; do rm -f "$logs/$s.done"; done
+# shellcheck disable=SC2086 # a list of words
+printf '%s\n' $suites | xargs -P "$JOBS" -I SUITE sh tests/run.sh --run-one SUITE "$limit" &
+runner=$!
+trap 'kill "$runner" 2>/dev/null; exit 130' INT TERM
+
+# A suite's log and exit status -> one line `passed failed skipped`, then the lines to show.
+# shellcheck disable=SC2016 # awk's own $
+judge='
+  BEGIN { planned = -1 }
+  /^1\.\.[0-9]+/ {
+    n = $1; sub(/^1\.\./, "", n)
+    planned = (planned < 0 ? 0 : planned) + n
+    if (n == 0 && toupper($0) ~ /# *SKIP/) { skipped++; why = $0; sub(/.*# *[Ss][Kk][Ii][Pp] */, "", why); show("skipped: " why); planned++ }
+    next
+  }
+  /^(not )?ok / && toupper($0) ~ /# *SKIP/ {
+    skipped++
+    why = $0; sub(/^(not )?ok [0-9]* *-? */, "", why)
+    name = why; sub(/ *# *[Ss][Kk][Ii][Pp].*/, "", name); sub(/.*# *[Ss][Kk][Ii][Pp] */, "", why)
+    reason = (why == "" || why == name) ? name : (name == "" ? why : why " (" name ")")
+    if (!(why in told)) show("skipped: " reason)
+    told[why] = 1
+    failing = 0; next
+  }
+  /^ok /     { passed++; failing = 0; next }
+  /^not ok / { failed++; failing = 1; show($0); next }
+  failing    { if (failing++ <= 12) show($0); else if (failing == 14) show("..."); next }
+             { other[++nother] = $0 }
+  function show(line) { if (nshown < 60) shown[++nshown] = line; else cut = 1 }
+  END {
+    bad = ""
+    results = passed + failed + skipped
+    if (status == 124 || status == 137) bad = "stopped: longer than " limit " s"
+    else if (status != 0 && !failed) bad = "exit status " status
+    else if (planned < 0) bad = results ? "no plan 1..N: it may have stopped early" : "no results"
+    else if (planned != results) bad = "the plan says " planned " tests, " results " ran"
+    if (bad != "") {
+      failed++
+      show("not ok - " bad)
+      for (i = nother > 40 ? nother - 39 : 1; i <= nother; i++) shown[++nshown] = other[i]
+    }
+    print passed + 0, failed + 0, skipped + 0
+    for (i = 1; i <= nshown; i++) print "    " shown[i]
+    if (cut) print "    ..."
+    if (failed) print "    (all of it: " log_file ")"
+  }'
+
+passed=0
+failed=0
+skipped=0
+for s in $suites; do
+  while [ ! -f "$logs/$s.done" ]; do
+    if ! kill -0 "$runner" 2>/dev/null && [ ! -f "$logs/$s.done" ]; then
+      echo "run.sh: the runner of suites died before $s"
+      echo "1 126 0 0" >"$logs/$s.done"
+    fi
+    sleep 0.05
+  done
+  read -r status begin end <"$logs/$s.done"
+  took=$(awk -v a="$begin" -v b="$end" 'BEGIN { printf "%.1f", b - a }')
+  if [ "$kind" = bench ]; then
+    echo "$s ($took s)"
+    sed 's/^/    /' "$logs/$s.log"
+    [ "$status" = 0 ] && passed=$((passed + 1)) || failed=$((failed + 1))
+    continue
+  fi
+  verdict=$(awk -v status="$status" -v limit="$limit" -v log_file="$logs/$s.log" "$judge" "$logs/$s.log")
+  # shellcheck disable=SC2046 # three numbers
+  set -- $(printf '%s\n' "$verdict" | head -n 1)
+  passed=$((passed + $1))
+  failed=$((failed + $2))
+  skipped=$((skipped + $3))
+  dots=$(printf '%s ........................................' "$s" | cut -c 1-36)
+  line="$dots $1 passed"
+  [ "$2" = 0 ] || line="$line, $2 FAILED"
+  [ "$3" = 0 ] || line="$line, $3 skipped"
+  printf '%s  %s s\n' "$line" "$took"
+  printf '%s\n' "$verdict" | tail -n +2
+done
+wait "$runner" 2>/dev/null
+
+line="$passed passed, $failed failed"
+[ "$skipped" = 0 ] || line="$line, $skipped skipped"
+echo "$line"
+[ "$failed" = 0 ]
