@@ -120,7 +120,7 @@ static int do_header(Compiler *c) {
   if (!e) return STATUS_MODEL;
   IrUnit *u = lower_scene(c, e);
   StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
-  emit_text(e, u, PRINT_TEXT, &equations);
+  show_equations(e, "", PRINT_TEXT, &equations);
   emit_header(u, sb_text(&equations), &out);
   return write_out(c, c->o.output, &out);
 }
