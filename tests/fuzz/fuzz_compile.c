@@ -11,8 +11,9 @@
 #include <string.h>
 
 #include "emit/cnames.h"
+#include "emit/cwriter.h"
 #include "emit/emit_model.h"
-#include "emit/emit_text.h"
+#include "mech/show.h"
 #include "ir/lower.h"
 #include "mech/eqns.h"
 #include "model/model.h"
@@ -30,8 +31,8 @@ static void write_everything(Arena *a, const Eqns *e) {
   if (prog_verify(u->scenes.at[0].observe)) abort();
   StrBuf c = strbuf(a), text = strbuf(a), latex = strbuf(a);
   emit_model(u, cname(a, u->name), &c);
-  emit_text(e, u, PRINT_TEXT, &text);
-  emit_text(e, u, PRINT_LATEX, &latex);
+  show_equations(e, ops_text(u->accel, a), PRINT_TEXT, &text);
+  show_equations(e, ops_text(u->accel, a), PRINT_LATEX, &latex);
 }
 
 /* One scene, or one effect on top of the first scene. */
