@@ -13,6 +13,7 @@
 #include "cli/toolchain.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
+#include "emit/emit_header.h"
 #include "emit/emit_model.h"
 #include "ir/lower.h"
 #include "mech/eqns.h"
@@ -110,7 +111,17 @@ static int do_emit(Compiler *c) {
   if (!e) return STATUS_MODEL;
   IrUnit *u = lower_scene(c, e);
   StrBuf out = strbuf(c->arena);
-  emit_model(u, cname(c->arena, u->name), &out);
+  emit_model(u, model_id(c->arena, u->name), &out);
+  return write_out(c, c->o.output, &out);
+}
+
+static int do_header(Compiler *c) {
+  Eqns *e = derive_scene(c, c->o.scene);
+  if (!e) return STATUS_MODEL;
+  IrUnit *u = lower_scene(c, e);
+  StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
+  show_equations(e, "", PRINT_TEXT, &equations);
+  emit_header(u, sb_text(&equations), &out);
   return write_out(c, c->o.output, &out);
 }
 
@@ -140,7 +151,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   VEC(SourceText) texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
   for (uint32_t i = 0; i < units.n; i++) {
-    names[i] = arena_printf(c->arena, "%s_%u", cname(c->arena, units.at[i]->name), i);
+    names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units.at[i]->name), i);
     StrBuf b = strbuf(c->arena);
     emit_model(units.at[i], names[i], &b);
     vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
@@ -198,7 +209,7 @@ static int do_command(Compiler *c) {
     case CMD_CHECK: return do_check(c);
     case CMD_DERIVE: return do_derive(c);
     case CMD_EMIT: return do_emit(c);
-    case CMD_HEADER: return fail_usage("not yet: lagc header");
+    case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
     case CMD_RUN: return do_run(c);
     case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;

@@ -14,8 +14,9 @@ typedef struct {
 
 typedef struct {
   Arena *arena;
-  CName *table; /* open addressing */
-  uint32_t n, cap;
+  VEC(const char *) taken; /* in the order they were taken */
+  CName *table;            /* the same; open addressing */
+  uint32_t cap;
 } CNames;
 
 CNames cnames_new(Arena *a);
@@ -28,5 +29,8 @@ const char *cnames_take(CNames *c, const char *name);
 
 /* The same spelling without looking at what is taken. */
 const char *cname(Arena *a, const char *name);
+
+/* Whether C knows a function of that name: an object with external linkage may not be called so. */
+int cname_is_library(const char *id);
 
 #endif

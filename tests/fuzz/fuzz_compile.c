@@ -31,9 +31,8 @@ static void write_everything(Arena *a, const Eqns *e) {
   if (prog_verify(u->scenes.at[0].observe)) abort();
   StrBuf c = strbuf(a), text = strbuf(a), latex = strbuf(a);
   emit_model(u, cname(a, u->name), &c);
-  const char *cost = ops_text(u->accel, a);
-  show_equations(e, cost, PRINT_TEXT, &text);
-  show_equations(e, cost, PRINT_LATEX, &latex);
+  show_equations(e, ops_text(u->accel, a), PRINT_TEXT, &text);
+  show_equations(e, ops_text(u->accel, a), PRINT_LATEX, &latex);
 }
 
 /* One scene, or one effect on top of the first scene. */
