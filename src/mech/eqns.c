@@ -20,6 +20,9 @@ Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
   return found ? e->mass.at[lo].e : expr_int(e->g, 0);
 }
 
+/* Chains of lets longer than this stay as they are: expanded, they would grow with the square. */
+enum { EXPAND_MAX_COORDS = 32 };
+
 /* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as it
  * was written: k/2*(r - l)^2 has more right digits than what it expands to. */
 static void derive_energy(Eqns *e) {
@@ -43,7 +46,9 @@ static void derive_energy(Eqns *e) {
   Expr moving = expr_sub(g, pv, l_moving);
   Expr kinetic = simplify(g, moving);
   e->energy = expr_sub(g, kinetic, l0);
-  e->energy_stable = simplify_stable(g, e->energy);
+  /* l + y with y = -l*cos(th) hides a difference of nearly equal numbers in a let. */
+  Expr open = e->n <= EXPAND_MAX_COORDS ? expr_expand_defs(g, e->energy) : e->energy;
+  e->energy_stable = simplify_stable(g, open);
   Expr simple_pv = simplify(g, pv);
   Expr size_pv = expr_fn(g, EX_ABS, simple_pv), size_l = expr_fn(g, EX_ABS, l);
   e->energy_scale = expr_add(g, size_pv, size_l);
