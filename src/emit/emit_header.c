@@ -22,7 +22,7 @@ static const char *const header_names[] = {"REAL", "API", "STATIC", "IMPLEMENTAT
 static const char **enumerators(Header *h, CNames *taken, const char *stem, const IrVar *v, uint32_t n) {
   const char **names = ARENA_ARRAY(h->a, const char *, n + 1);
   for (uint32_t i = 0; i < n; i++) {
-    const char *id = cased(h->a, cname(h->a, v[i].name), 1);
+    const char *id = cased(h->a, cname_spelled(h->a, v[i].name), 1);
     names[i] = cnames_take(taken, arena_printf(h->a, "%s_%s%s", h->upper, stem, id));
   }
   return names;
@@ -48,7 +48,8 @@ static const char *const *globals_of(Header *h) {
 
 static Header header_new(const IrUnit *u, StrBuf *out) {
   Header h = {.u = u, .scene = &u->scenes.at[0], .a = u->arena, .out = out};
-  const char *id = cname(h.a, u->name);
+  const char *id = cname_spelled(h.a, u->name);
+  if (id[0] == '_') id = arena_printf(h.a, "x%s", id);
   h.upper = cased(h.a, id, 1);
   h.lower = cased(h.a, id, 0);
   h.taken = cnames_new(h.a);
@@ -94,7 +95,7 @@ static void write_usage(const Header *h) {
             " * To define before the first include, the same in every file:\n"
             " *   %s_REAL    float, double (the default) or long double\n"
             " *   %s_STATIC  functions are static inline, in every file that includes this\n"
-            " *   %s_FN(f)   C99 with long double needs f##l here; C11 and C++ choose themselves\n", m, m, m);
+            " *   %s_FN(x)   C99 with long double needs x##l here; C11 and C++ choose themselves\n", m, m, m);
 }
 
 static void write_head(const Header *h, const char *equations) {

@@ -16,7 +16,7 @@ typedef struct {
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u"};
 
 static const char *const prelude =
-  "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(f)=f##l'\n"
+  "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l'\n"
   " * '-DLAG_C(x)=x##L'; a vector of lanes defines LAG_SELECT, LAG_ANY and the logic as well, and\n"
   " * LAG_MASK, the type of its comparisons. */\n"
   "#ifndef LAG_FN\n#define LAG_FN(f) f\n#endif\n"
