@@ -115,13 +115,21 @@ static int do_emit(Compiler *c) {
   return write_out(c, c->o.output, &out);
 }
 
+/* A header is called by its file: pend.h has PEND_IMPLEMENTATION. On standard output, by its model. */
+static const char *header_name(Compiler *c, const char *model) {
+  const char *path = c->o.output;
+  if (!path || strcmp(path, "-") == 0) return model;
+  const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path, *dot = strchr(stem + (stem[0] == '.'), '.');
+  return dot ? arena_strndup(c->arena, stem, (size_t)(dot - stem)) : stem;
+}
+
 static int do_header(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   IrUnit *u = lower_scene(c, e);
   StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
   show_equations(e, "", PRINT_TEXT, &equations);
-  emit_header(u, sb_text(&equations), &out);
+  emit_header(u, header_name(c, u->name), sb_text(&equations), &out);
   return write_out(c, c->o.output, &out);
 }
 

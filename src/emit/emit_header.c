@@ -46,9 +46,9 @@ static const char *const *globals_of(Header *h) {
   return all;
 }
 
-static Header header_new(const IrUnit *u, StrBuf *out) {
+static Header header_new(const IrUnit *u, const char *name, StrBuf *out) {
   Header h = {.u = u, .scene = &u->scenes.at[0], .a = u->arena, .out = out};
-  const char *id = cname_spelled(h.a, u->name);
+  const char *id = cname_spelled(h.a, name);
   if (id[0] == '_') id = arena_printf(h.a, "x%s", id);
   h.upper = cased(h.a, id, 1);
   h.lower = cased(h.a, id, 0);
@@ -110,8 +110,8 @@ static void write_head(const Header *h, const char *equations) {
   sb_puts(h->out, " */\n");
 }
 
-void emit_header(const IrUnit *u, const char *equations, StrBuf *out) {
-  Header h = header_new(u, out);
+void emit_header(const IrUnit *u, const char *name, const char *equations, StrBuf *out) {
+  Header h = header_new(u, name, out);
   write_head(&h, equations);
   sb_printf(out, "#ifndef %s_H_INCLUDED\n#define %s_H_INCLUDED\n\n", h.upper, h.upper);
   header_declarations(&h);

@@ -112,8 +112,9 @@ evaluate() { # NAME COMPILER OPTIONS...: what the models compute, to NAME.txt
   "$TMP/eval" >"$TMP/$n.txt"
 }
 # Numbers of a line agree to `tolerance` times the largest of them, or 1.
-agree() { # TOLERANCE NAME
-  paste -d ' ' "$TMP/double.txt" "$TMP/$2.txt" | awk -v tolerance="$1" '
+agree() { # TOLERANCE NAME [MODEL to leave out]
+  paste -d ' ' "$TMP/double.txt" "$TMP/$2.txt" | awk -v tolerance="$1" -v out="$3" '
+    $1 == out { next }
     { n = NF / 2; size = 1
       for (i = 4; i <= n; i++) { x = $i < 0 ? -$i : $i; if (x > size) size = x }
       for (i = 1; i <= n; i++) {
@@ -124,7 +125,8 @@ agree() { # TOLERANCE NAME
 }
 check "double: evaluated" evaluate double "$CC"
 evaluate float "$CC" -DLAG_REAL=float '-DLAG_FN(x)=x##f'
-check "float agrees to 1e-4" agree 1e-4 float
+# GM m of the Sun and a planet is 1e43: past the largest float.
+check "float agrees to 1e-4" agree 1e-4 float mercury
 evaluate long "$CC" '-DLAG_REAL=long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L'
 check "long double agrees to 1e-12" agree 1e-12 long
 echo '#include <quadmath.h>' >"$TMP/quad.h"
@@ -176,7 +178,7 @@ off_is_absent() { # MODEL
   ! grep -q '^effect' "$TMP/off.lag" && grep -q '^scene' "$TMP/off.lag" || return 1
   for s in $(sed -n 's/^scene \([^ ]*\).*/\1/p' "$TMP/off.lag"); do
     "$LAGC" emit "$1" "$s" -o "$TMP/with.c" && "$LAGC" emit "$TMP/off.lag" "$s" -o "$TMP/off.c" && cmp "$TMP/with.c" "$TMP/off.c" || return 1
-    "$LAGC" header "$1" "$s" -o "$TMP/with.h" && "$LAGC" header "$TMP/off.lag" "$s" -o "$TMP/off.h" && cmp "$TMP/with.h" "$TMP/off.h" || return 1
+    "$LAGC" header "$1" "$s" >"$TMP/with.h" && "$LAGC" header "$TMP/off.lag" "$s" >"$TMP/off.h" && cmp "$TMP/with.h" "$TMP/off.h" || return 1
   done
 }
 for m in $(grep -l '^effect' $models); do check "$m: effects that are off leave no trace" off_is_absent "$m"; done
