@@ -130,6 +130,11 @@ static const char *const usual[] = {
 enum { N_USUAL = sizeof usual / sizeof *usual };
 
 static void report_unknown(const AstUnitFactor *f, Diags *diags) {
+  if (strcmp(f->name, "degC") == 0) {
+    diag_error(diags, f->span, "not yet: `degC`, whose zero is not that of the kelvin");
+    diag_help(diags, "write kelvin: 20 degC is 293.15 [K]");
+    return;
+  }
   diag_error(diags, f->span, "unknown unit `%s`", f->name);
   for (int i = 0; i < N_SPELLINGS; i++)
     if (strcmp(f->name, spellings[i][0]) == 0) {
