@@ -112,11 +112,11 @@ evaluate() { # NAME COMPILER OPTIONS...: what the models compute, to NAME.txt
   "$TMP/eval" >"$TMP/$n.txt"
 }
 # Numbers of a line agree to `tolerance` times the largest of them, or 1.
-agree() { # TOLERANCE NAME [MODEL to leave out]
-  paste -d ' ' "$TMP/double.txt" "$TMP/$2.txt" | awk -v tolerance="$1" -v out="$3" '
-    $1 == out { next }
-    { n = NF / 2; size = 1
+agree() { # TOLERANCE NAME
+  paste -d ' ' "$TMP/double.txt" "$TMP/$2.txt" | awk -v tolerance="$1" -v name="$2" '
+    { n = NF / 2; size = 1; if ($1 in huge) next
       for (i = 4; i <= n; i++) { x = $i < 0 ? -$i : $i; if (x > size) size = x }
+      if (name == "float" && size > 1e15) { huge[$1] = 1; next } # its squares are too large for a float
       for (i = 1; i <= n; i++) {
         d = i > 2 ? $i - $(i + n) : ($i != $(i + n))
         if (!(d <= tolerance * size && -d <= tolerance * size)) { print $1, $2, i - 3 ":", $i, $(i + n); bad = 1 }
@@ -125,8 +125,7 @@ agree() { # TOLERANCE NAME [MODEL to leave out]
 }
 check "double: evaluated" evaluate double "$CC"
 evaluate float "$CC" -DLAG_REAL=float '-DLAG_FN(x)=x##f'
-# GM m of the Sun and a planet is 1e43: past the largest float.
-check "float agrees to 1e-4" agree 1e-4 float mercury
+check "float agrees to 1e-4" agree 1e-4 float
 evaluate long "$CC" '-DLAG_REAL=long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L'
 check "long double agrees to 1e-12" agree 1e-12 long
 echo '#include <quadmath.h>' >"$TMP/quad.h"
