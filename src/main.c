@@ -73,7 +73,13 @@ static int read_model(Compiler *c) {
 static Eqns *derive_with(Compiler *c, const char *scene, Name also) {
   ModelChoice choice = {.scene = scene, .also = also, .defines = c->o.defines.at, .ndefines = c->o.defines.n};
   Model *m = model_build(c->ast, &choice);
-  return m ? eqns_derive(m) : NULL;
+  if (!m) return NULL;
+  StrBuf listing = strbuf(c->arena);
+  if (wants_dump(c, "model")) model_dump(m, &listing);
+  Eqns *e = eqns_derive(m);
+  if (e && wants_dump(c, "eqns")) dump_equations(e, &listing);
+  if (listing.n) write_out(c, NULL, &listing);
+  return e;
 }
 
 static Eqns *derive_scene(Compiler *c, const char *scene) { return derive_with(c, scene, NULL); }

@@ -139,6 +139,9 @@ typedef struct {
   SymId energy_sym; /* stands for the energy p q' - L in outputs, until mech knows it */
 } Model;
 
+/* Appends a listing, for --dump=model. */
+void model_dump(const Model *m, StrBuf *out);
+
 /* The names of the scenes in the file, in order; one named "default" when there is none. */
 typedef struct {
   const Name *at;
