@@ -115,13 +115,22 @@ static int do_emit(Compiler *c) {
   return write_out(c, c->o.output, &out);
 }
 
+/* pend for `-o include/pend.h`; the model's name on standard output. */
+static const char *header_name(Compiler *c, const IrUnit *u) {
+  const char *path = c->o.output;
+  if (!path || strcmp(path, "-") == 0) return u->name;
+  const char *slash = strrchr(path, '/'), *file = slash ? slash + 1 : path;
+  size_t n = strcspn(file, ".");
+  return n ? arena_strndup(c->arena, file, n) : u->name;
+}
+
 static int do_header(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   IrUnit *u = lower_scene(c, e);
   StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
   show_equations(e, "", PRINT_TEXT, &equations);
-  emit_header(u, sb_text(&equations), &out);
+  emit_header(u, header_name(c, u), sb_text(&equations), &out);
   return write_out(c, c->o.output, &out);
 }
 

@@ -6,7 +6,8 @@
 #include "ir/unit.h"
 
 /* The header of the unit's first scene. equations: text for the comment at its head, or NULL.
- * The prefix of all its names is the model's name, in upper and lower case. */
-void emit_header(const IrUnit *u, const char *equations, StrBuf *out);
+ * name: as the header is called, pend for pend.h; the prefix of all its names, in upper and lower
+ * case. */
+void emit_header(const IrUnit *u, const char *name, const char *equations, StrBuf *out);
 
 #endif
