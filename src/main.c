@@ -115,13 +115,12 @@ static int do_emit(Compiler *c) {
   return write_out(c, c->o.output, &out);
 }
 
-/* pend for `-o include/pend.h`; the model's name on standard output. */
-static const char *header_name(Compiler *c, const IrUnit *u) {
+/* A header is called by its file: pend.h has PEND_IMPLEMENTATION. On standard output, by its model. */
+static const char *header_name(Compiler *c, const char *model) {
   const char *path = c->o.output;
-  if (!path || strcmp(path, "-") == 0) return u->name;
-  const char *slash = strrchr(path, '/'), *file = slash ? slash + 1 : path;
-  size_t n = strcspn(file, ".");
-  return n ? arena_strndup(c->arena, file, n) : u->name;
+  if (!path || strcmp(path, "-") == 0) return model;
+  const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path, *dot = strchr(stem + (stem[0] == '.'), '.');
+  return dot ? arena_strndup(c->arena, stem, (size_t)(dot - stem)) : stem;
 }
 
 static int do_header(Compiler *c) {
@@ -130,7 +129,7 @@ static int do_header(Compiler *c) {
   IrUnit *u = lower_scene(c, e);
   StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
   show_equations(e, "", PRINT_TEXT, &equations);
-  emit_header(u, header_name(c, u), sb_text(&equations), &out);
+  emit_header(u, header_name(c, u->name), sb_text(&equations), &out);
   return write_out(c, c->o.output, &out);
 }
 

@@ -24,8 +24,8 @@ static const struct {
    "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h).\n"},
   {"header", CMD_HEADER, "lagc header MODEL [SCENE] -o FILE.h",
    "Writes one self-contained C99/C++ header to embed: parameters as a struct, accelerations,\n"
-   "energy, events, an RK4 step. It includes nothing but <math.h>. Its names begin with the file's:\n"
-   "PEND_IMPLEMENTATION, pend_rk4_step for pend.h. How to use it is said at its head.\n"},
+   "energy, an RK4 step. It includes nothing but <math.h>. Its names begin with the file's: pend.h has\n"
+   "PEND_IMPLEMENTATION and pend_accel.\n"},
   {"build", CMD_BUILD, "lagc build MODEL -o SIMULATOR [--no-gsl]",
    "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options.\n\n"
    "  --no-gsl          leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole\n"},

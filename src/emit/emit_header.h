@@ -5,9 +5,8 @@
 #include "base/strbuf.h"
 #include "ir/unit.h"
 
-/* The header of the unit's first scene. equations: text for the comment at its head, or NULL.
- * name: as the header is called, pend for pend.h; the prefix of all its names, in upper and lower
- * case. */
+/* The header of the unit's first scene. All its names begin with `name`, made an identifier, in upper
+ * or lower case. equations: text for the comment at its head, or NULL. */
 void emit_header(const IrUnit *u, const char *name, const char *equations, StrBuf *out);
 
 #endif
