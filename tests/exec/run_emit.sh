@@ -74,6 +74,14 @@ done
 empty "a header includes <math.h> only" "$(grep -h '^ *# *include' "$TMP"/h/*.h | grep -v '<math.h>')"
 empty "a header allocates nothing and has no variables" "$(grep -nE 'malloc|^static [^(]*=|^extern' "$TMP"/h/*.h | grep -v 'extern "C"')"
 
+two_names() {
+  "$LAGC" header $here/models/effects.lag -o "$TMP/h2/bare.h" && "$LAGC" header $here/models/effects.lag windy -o "$TMP/h2/Windy-2.h" &&
+    printf "#define BARE_IMPLEMENTATION\n#define WINDY_2_IMPLEMENTATION\n#include \"bare.h\"\n#include \"Windy-2.h\"\nint main(void) { return BARE_NU + WINDY_2_NU - 1; }\n" >"$TMP/h2/use.c" &&
+    "$CC" -std=c99 $strict "$TMP/h2/use.c" -lm -o "$TMP/h2/use" && "$TMP/h2/use"
+}
+mkdir -p "$TMP/h2"
+check "a header's names are its file's: two scenes of a model in one program" two_names
+
 # ---- headers run
 runs() { # COMPILER STANDARD REAL OPTIONS...: the body in one file, its use in another
   c=$1 s=$2 real=$3
