@@ -80,8 +80,14 @@ static void prepare_spot(Mender *md, Spot *p, const Site *s) {
   p->tape = eval_tape(md->g, sides, 2);
 }
 
-static void prepare_spots(Mender *md) {
-  SiteList sites = sites_of(md->m, md->x);
+/* Where every place has its tape, the work grows with the square of the formula. */
+static int is_too_large(Mender *md, SiteList sites) {
+  enum { SITES_MAX = 1000, STEPS_MAX = 1000000 };
+  Expr sides[2] = {md->x->lhs, md->x->rhs};
+  return sites.n > SITES_MAX || (uint64_t)sites.n * expr_topo(md->g, sides, 2).n > STEPS_MAX;
+}
+
+static void prepare_spots(Mender *md, SiteList sites) {
   md->spots = ARENA_ARRAY(md->arena, Spot, sites.n + 1);
   md->nspots = sites.n;
   Expr *values = ARENA_ARRAY(md->arena, Expr, sites.n + 1);
@@ -103,6 +109,12 @@ void mend_guess(Mender *md, const Spot *p, Expr with, double cost, Span caret, c
   /* The right side is where formulas are; what is written on the left is usually what was meant. */
   Guess one = {p, with, cost + (p->site->left ? 0.05L : 0), caret, edit};
   vec_push(md->arena, &md->guesses, one);
+}
+
+double mend_product_cost(const Mender *md, const Spot *p) {
+  int compound = site_is_sum(md->m, p->site) || p->ast->kind == AST_MUL || p->ast->kind == AST_DIV;
+  if (p->site->role == SITE_NUMERATOR && !compound) return 0.1;
+  return p->site->role == SITE_ROOT ? 0.05 : 0;
 }
 
 const char *mend_expr_text(const Mender *md, Expr e) {
@@ -149,9 +161,11 @@ Mend mend_find(const Eqns *e, const Expect *x) {
   md.stand_in = expr_declare(e->g, SYM_LOCAL, 0, name, SIGN_UNKNOWN);
   md.solver = states_new(e);
   Mend nowhere = {.caret = ast_expr(m->ast, x->rhs_ast)->span};
+  SiteList sites = sites_of(m, x);
+  if (is_too_large(&md, sites)) return nowhere;
   while (md.nstates < FEW)
     if (!mend_add_state(&md)) return nowhere;
-  prepare_spots(&md);
+  prepare_spots(&md, sites);
   mend_guess_local(&md);
   const Guess *best = best_guess(&md);
   if (!best) {

@@ -54,6 +54,10 @@ int mend_holds(Mender *md, Spot *p, const long double *values);
 
 void mend_guess(Mender *md, const Spot *p, Expr with, double cost, Span caret, const char *edit);
 
+/* Where the same factor could be put in several places: small differences that choose a product over
+ * a name in it, and a term or numerator over the whole side. */
+double mend_product_cost(const Mender *md, const Spot *p);
+
 const char *mend_expr_text(const Mender *md, Expr e);
 const char *mend_spot_text(const Mender *md, const Spot *p);
 

@@ -25,6 +25,12 @@ static const Spot *spot_of(const Mender *md, AstId node) {
 
 /* --- signs --- */
 
+static int begins_with_minus(const Mender *md, const Site *s) {
+  const AstExpr *x = ast_expr(md->m->ast, s->node);
+  while (x->kind == AST_ADD || x->kind == AST_SUB || x->kind == AST_MUL || x->kind == AST_DIV) x = ast_expr(md->m->ast, x->a);
+  return x->kind == AST_NEG;
+}
+
 static void try_sign(Mender *md, Spot *p) {
   const Site *s = p->site;
   if (s->role != SITE_TERM && s->role != SITE_ROOT && s->role != SITE_ARGUMENT) return;
@@ -36,7 +42,10 @@ static void try_sign(Mender *md, Spot *p) {
   int second = s->role == SITE_TERM && up->b == s->node;
   const char *how = !second ? "should have the opposite sign" : up->kind == AST_SUB ? "should be added, not subtracted" : "should be subtracted, not added";
   Expr with = expr_neg(md->g, p->value);
-  double cost = site_is_sum(md->m, s) && s->role != SITE_TERM ? COST_SLIP + 0.6 : COST_SLIP;
+  double cost = COST_SLIP;
+  if (!second) cost += begins_with_minus(md, s) ? -0.05 : 0.1; /* a sign that is written is wrong sooner than one that is not */
+  if (s->role == SITE_ARGUMENT && cost > COST_SLIP) cost += 0.2; /* -sin(x) sooner than sin(-x) */
+  if (site_is_sum(md->m, s) && s->role != SITE_TERM) cost += 0.6;
   mend_guess(md, p, with, cost, s->with_op, arena_printf(md->arena, "`%s` %s", mend_spot_text(md, p), how));
 }
 
@@ -75,7 +84,7 @@ static void try_scales(Mender *md, Spot *p) {
     for (int i = 0; i < FEW; i++) v[i] = p->written[i] * ratios[k][0] / ratios[k][1];
     if (!mend_holds(md, p, v)) continue;
     Expr with = expr_scale(md->g, c, p->value), factor = expr_num(md->g, c);
-    double cost = COST_SCALE + (ratios[k][1] > 1 ? 0.2 : 0) + (role == SITE_ROOT ? 0.05 : 0);
+    double cost = COST_SCALE + (ratios[k][1] > 1 ? 0.2 : 0) + mend_product_cost(md, p);
     const char *edit = arena_printf(md->arena, "`%s` lacks the factor `%s`", mend_spot_text(md, p), mend_expr_text(md, factor));
     mend_guess(md, p, with, cost, p->site->span, edit);
   }
@@ -162,8 +171,25 @@ static void try_functions(Mender *md, Spot *p) {
 
 /* --- arguments of sines and cosines --- */
 
+/* Where one term of the argument can make up the difference, it is the one to change. */
+static void guess_term_of(Mender *md, const Spot *argument, Expr with, double cost) {
+  Expr lacking = expr_sub(md->g, with, argument->value);
+  for (uint32_t i = 0; i < md->nspots; i++) {
+    const Spot *p = &md->spots[i];
+    AstId first = argument->ast->first, last = argument->site->node;
+    if (p->site->role != SITE_TERM || p->site->node < first || p->site->node > last || !p->value) continue;
+    const AstExpr *up = ast_expr(md->m->ast, p->site->up);
+    int subtracted = up->kind == AST_SUB && up->b == p->site->node;
+    Expr needed = subtracted ? expr_sub(md->g, p->value, lacking) : expr_add(md->g, p->value, lacking);
+    if (expr_is_zero(md->g, needed) || expr_pairs(md->g, needed, EX_SUM) != 1) continue;
+    const char *edit = arena_printf(md->arena, "`%s` should be `%s`", mend_spot_text(md, p), mend_expr_text(md, needed));
+    mend_guess(md, p, needed, cost - 0.2, p->site->span, edit);
+  }
+}
+
 static void try_argument(Mender *md, Spot *p, Expr with, const long double *v, double cost) {
   if (with == p->value || !mend_holds(md, p, v)) return;
+  guess_term_of(md, p, with, cost);
   const char *edit = arena_printf(md->arena, "`%s` should be `%s`", mend_spot_text(md, p), mend_expr_text(md, with));
   mend_guess(md, p, with, cost, p->ast->span, edit);
 }

@@ -27,7 +27,7 @@ static long double needed_value(Mender *md, Spot *p, uint32_t state, long double
     long double next = next_guess(x, f);
     if (!isfinite(next)) return NAN;
     long double r = mend_residual(md, p, state, next);
-    if (fabsl(r) <= 1e-13L * fabsl(md->residual[state])) return next;
+    if (fabsl(r) <= 1e-11L * fabsl(md->residual[state])) return next;
     for (int i = 0; i < 2; i++) x[i] = x[i + 1], f[i] = f[i + 1];
     x[2] = next, f[2] = r;
   }
@@ -67,12 +67,27 @@ static void pool_add(Pool *pool, Expr e) {
 
 static int is_quantity(const Symbol *s) {
   return s->kind == SYM_PARAM || s->kind == SYM_COORD || s->kind == SYM_VEL || s->kind == SYM_STATE || s->kind == SYM_TIME ||
-         s->kind == SYM_INPUT || s->kind == SYM_ACC;
+         s->kind == SYM_INPUT || s->kind == SYM_ACC || s->kind == SYM_RATE;
 }
 
-static void pool_symbols(Pool *pool, Mender *md, ExprList nodes) {
-  for (uint32_t i = 0; i < nodes.n; i++)
-    if (expr_op(md->g, nodes.at[i]) == EX_SYM && is_quantity(expr_sym_of(md->g, nodes.at[i]))) pool_add(pool, nodes.at[i]);
+/* What stands alone on one side may not mend the other: any x'' = formula could become x'' = x''. */
+static int is_a_side(const Mender *md, Expr e) { return e == md->x->lhs || e == md->x->rhs; }
+
+static int contains_a_side(Mender *md, Expr e) {
+  for (int right = 0; right < 2; right++) {
+    Expr side = right ? md->x->rhs : md->x->lhs;
+    if (expr_op(md->g, side) == EX_SYM && expr_contains_sym(md->g, e, expr_sym_id(md->g, side))) return 1;
+  }
+  return 0;
+}
+
+static void pool_symbols(Pool *pool, Mender *md, ExprList nodes, int accelerations) {
+  for (uint32_t i = 0; i < nodes.n; i++) {
+    Expr e = nodes.at[i];
+    if (expr_op(md->g, e) != EX_SYM || is_a_side(md, e)) continue;
+    const Symbol *s = expr_sym_of(md->g, e);
+    if (is_quantity(s) && (accelerations || s->kind != SYM_ACC)) pool_add(pool, e);
+  }
 }
 
 static void pool_angles(Pool *pool, Mender *md, ExprList nodes) {
@@ -90,7 +105,8 @@ static void pool_angles(Pool *pool, Mender *md, ExprList nodes) {
 static void pool_compounds(Pool *pool, Mender *md, ExprList nodes) {
   for (uint32_t i = 0; i < nodes.n; i++) {
     ExprOp op = expr_op(md->g, nodes.at[i]);
-    if (op == EX_SUM || op == EX_HYPOT || op == EX_EXP || op == EX_TAN || op == EX_LOG) pool_add(pool, nodes.at[i]);
+    int compound = op == EX_SUM || op == EX_HYPOT || op == EX_EXP || op == EX_TAN || op == EX_LOG;
+    if (compound && !is_a_side(md, nodes.at[i]) && !contains_a_side(md, nodes.at[i])) pool_add(pool, nodes.at[i]);
   }
 }
 
@@ -104,19 +120,21 @@ static Features *gather_features(Mender *md) {
     vec_push(md->arena, &all, m->expects.at[i].lhs);
     vec_push(md->arena, &all, m->expects.at[i].rhs);
   }
-  VEC(Expr) wide = {0};
+  VEC(Expr) wide = {0}, inertia = {0};
   for (uint32_t i = 0; i < md->e->n; i++) vec_push(md->arena, &wide, md->e->f[i]);
-  for (uint32_t i = 0; i < md->e->mass.n; i++) vec_push(md->arena, &wide, md->e->mass.at[i].e);
+  for (uint32_t i = 0; i < md->e->mass.n; i++) vec_push(md->arena, &inertia, md->e->mass.at[i].e);
   for (uint32_t i = 0; i < m->states.n; i++) vec_push(md->arena, &wide, md->e->flow[i]);
   ExprList mine = expr_topo(md->g, own.at, own.n), others = expr_topo(md->g, all.at, all.n);
-  ExprList dynamics = expr_topo(md->g, wide.at, wide.n);
+  ExprList dynamics = expr_topo(md->g, wide.at, wide.n), masses = expr_topo(md->g, inertia.at, inertia.n);
   Pool pool = {.n = 0};
-  pool_symbols(&pool, md, mine);
+  pool_symbols(&pool, md, mine, 1);
   pool_angles(&pool, md, mine);
-  pool_symbols(&pool, md, others);
-  pool_symbols(&pool, md, dynamics);
+  pool_symbols(&pool, md, others, 0);
+  pool_symbols(&pool, md, dynamics, 0);
+  pool_symbols(&pool, md, masses, 0);
   pool_angles(&pool, md, others);
   pool_angles(&pool, md, dynamics);
+  pool_compounds(&pool, md, masses);
   pool_compounds(&pool, md, mine);
   pool_compounds(&pool, md, others);
   return features_new(md->g, pool.at, pool.n, md->state);
@@ -129,7 +147,12 @@ static int may_lack_term(const Mender *md, const Site *s) {
   return s->role != SITE_PART && (site_is_sum(md->m, s) || s->role != SITE_TERM);
 }
 
-static int may_lack_factor(const Site *s) { return s->role != SITE_PART && s->role != SITE_FACTOR; }
+/* In x'' = formula it is the formula that lacks something. */
+static int may_lack_factor(const Mender *md, const Spot *p) {
+  SiteRole role = p->site->role;
+  int alone = role == SITE_ROOT && p->site->left && expr_op(md->g, p->value) == EX_SYM;
+  return role != SITE_PART && role != SITE_FACTOR && !alone;
+}
 
 static void guess_term(Mender *md, const Spot *p, Monomial missing) {
   Expr with = expr_add(md->g, p->value, missing.e);
@@ -138,10 +161,14 @@ static void guess_term(Mender *md, const Spot *p, Monomial missing) {
   mend_guess(md, p, with, cost, p->ast->span, edit);
 }
 
+/* A factor that takes away much of what is written, and puts other things there, is no edit. */
 static void guess_factor(Mender *md, const Spot *p, Monomial missing) {
+  enum { MOST = 12, MOST_MIXED = 5 };
+  if (missing.size > (missing.mixed ? MOST_MIXED : MOST)) return;
   Expr with = expr_mul(md->g, p->value, missing.e);
-  const char *edit = arena_printf(md->arena, "`%s` lacks the factor `%s`", mend_spot_text(md, p), mend_expr_text(md, missing.e));
-  double cost = COST_VALUE + COST_FACTOR * missing.size + (p->site->role == SITE_ROOT ? 0.05 : 0);
+  const char *what = missing.divisor ? "divisor" : "factor", *formula = mend_expr_text(md, missing.divisor ? missing.divisor : missing.e);
+  const char *edit = arena_printf(md->arena, "`%s` lacks the %s `%s`", mend_spot_text(md, p), what, formula);
+  double cost = COST_VALUE + COST_FACTOR * missing.size + mend_product_cost(md, p);
   mend_guess(md, p, with, cost, p->ast->span, edit);
 }
 
@@ -158,7 +185,7 @@ static void guess_at(Mender *md, Spot *p, const Features *f) {
     Monomial m = features_fit(f, need->needed);
     if (m.e) guess_number(md, p, m);
   }
-  if (may_lack_factor(p->site)) {
+  if (may_lack_factor(md, p)) {
     Monomial m = features_fit(f, need->ratio);
     if (m.e) guess_factor(md, p, m);
   }

@@ -108,6 +108,34 @@ static long double integer_power(long double x, int e) {
   return e < 0 ? 1 / r : r;
 }
 
+static int is_velocity(const Symbol *s, const void *data) {
+  (void)data;
+  return s->kind == SYM_VEL || s->kind == SYM_ACC;
+}
+
+static int may_divide(const Features *f, uint32_t k) {
+  return expr_op(f->g, f->feature[k]) != EX_SUM || !expr_contains(f->g, f->feature[k], is_velocity, NULL);
+}
+
+static Monomial build(const Features *f, const int *e, Num number) {
+  Expr product[COLUMNS];
+  Monomial m = {.size = num_is_one(num_abs(number)) ? 0 : 1};
+  uint32_t n = 0, above = 0, below = 0;
+  for (uint32_t k = 1; k < f->n; k++) {
+    if (!e[k]) continue;
+    if (e[k] < 0 && !may_divide(f, k)) return (Monomial){0};
+    product[n++] = expr_pow_num(f->g, f->feature[k], num_int(e[k]));
+    if (e[k] > 0) above += (uint32_t)e[k];
+    else below += (uint32_t)-e[k];
+  }
+  Expr all = expr_mul_n(f->g, product, n);
+  m.e = expr_scale(f->g, number, all);
+  if (below && !above) m.divisor = expr_pow_num(f->g, m.e, num_int(-1));
+  m.mixed = above && below;
+  m.size += above + (above ? 3 * below : below + 1);
+  return m;
+}
+
 Monomial features_fit(const Features *f, const long double *values) {
   int e[COLUMNS] = {0};
   Monomial none = {0};
@@ -121,15 +149,5 @@ Monomial features_fit(const Features *f, const long double *values) {
   }
   Num number;
   if (!small_rational(c, &number)) return none;
-  Expr product[COLUMNS];
-  Monomial m = {.size = num_is_one(num_abs(number)) ? 0 : 1};
-  uint32_t n = 0;
-  for (uint32_t k = 1; k < f->n; k++) {
-    if (!e[k]) continue;
-    product[n++] = expr_pow_num(f->g, f->feature[k], num_int(e[k]));
-    m.size += (uint32_t)(e[k] < 0 ? -3 * e[k] : e[k]);
-  }
-  Expr all = expr_mul_n(f->g, product, n);
-  m.e = expr_scale(f->g, number, all);
-  return m;
+  return build(f, e, number);
 }

@@ -17,10 +17,13 @@ Features *features_new(ExprGraph *g, const Expr *features, uint32_t n, long doub
 
 typedef struct {
   Expr e;
-  uint32_t size;    /* factors; those of the denominator count three times */
+  Expr divisor;  /* 1/e, where that is all there is to it; otherwise 0 */
+  int mixed;     /* it has a numerator and a denominator */
+  uint32_t size; /* factors; those of a denominator below a numerator count three times */
 } Monomial;
 
-/* The monomial with these values at the states; e = 0 when there is none. */
+/* The monomial with these values at the states; e = 0 when there is none. Sums with velocities in them
+ * are not divided by: solutions of M q'' = f have no such denominators. */
 Monomial features_fit(const Features *f, const long double *values);
 
 /* The rational with a small denominator that x is, to 10 digits; 0 when there is none. */
