@@ -97,13 +97,17 @@ static void title(Text *t) {
 
 static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 
+void show_facts(const Eqns *e, StrBuf *out) {
+  if (!e->n) return;
+  sb_printf(out, "%u coordinate%s; mass matrix %s%s; energy is %s\n", e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
+            e->definite_mass ? ", positive definite" : "", e->conserves_energy ? "conserved" : "not conserved (force, dissipation, input or explicit time)");
+}
+
 static void facts(Text *t, const char *cost) {
-  const Eqns *e = t->e;
   const char *c = latex(t) ? "% " : "";
-  if (!latex(t)) sb_putc(t->out, '\n');
-  if (e->n)
-    sb_printf(t->out, "%s%u coordinate%s; mass matrix %s%s; energy is %s\n", c, e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
-              e->definite_mass ? ", positive definite" : "", e->conserves_energy ? "conserved" : "not conserved (force, dissipation, input or explicit time)");
+  sb_puts(t->out, latex(t) ? "" : "\n");
+  if (t->e->n) sb_puts(t->out, c);
+  show_facts(t->e, t->out);
   sb_printf(t->out, "%saccelerations: %s\n", c, cost);
 }
 

@@ -12,4 +12,7 @@ void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *o
 /* Appends M, f, Q and the energy as they are computed, one entry a line, for --dump=eqns. */
 void dump_equations(const Eqns *e, StrBuf *out);
 
+/* Appends one line: coordinates, mass matrix, energy. Nothing when there are only states. */
+void show_facts(const Eqns *e, StrBuf *out);
+
 #endif
