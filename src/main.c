@@ -91,11 +91,15 @@ static Eqns *derive_with(Compiler *c, const char *scene, Name also) {
 
 static Eqns *derive_scene(Compiler *c, const char *scene) { return derive_with(c, scene, NULL); }
 
+/* NULL, with the reason in c->diags, when the program is wrong: a bug. */
 static IrUnit *lower_scene(Compiler *c, const Eqns *e) {
   IrUnit *u = unit_new(e, c->o.file);
   unit_add_scene(u, e);
   const char *wrong = prog_verify(u->accel);
-  if (wrong) diag_error(c->diags, (Span){0}, "internal error: %s", wrong);
+  if (wrong) {
+    diag_error(c->diags, (Span){0}, "internal error: %s", wrong);
+    return NULL;
+  }
   if (wants_dump(c, "prog")) {
     StrBuf b = strbuf(c->arena);
     prog_dump(u->accel, &b);
@@ -110,6 +114,7 @@ static int do_derive(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   IrUnit *u = lower_scene(c, e);
+  if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
   const char *format = c->o.format ? c->o.format : "text";
   const char *cost = ops_text(u->accel, c->arena);
@@ -123,6 +128,7 @@ static int do_emit(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   IrUnit *u = lower_scene(c, e);
+  if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
   emit_model(u, model_id(c->arena, u->name), &out);
   return write_out(c, c->o.output, &out);
@@ -140,6 +146,7 @@ static int do_header(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   IrUnit *u = lower_scene(c, e);
+  if (!u) return STATUS_MODEL;
   StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
   show_equations(e, "", PRINT_TEXT, &equations);
   emit_header(u, header_name(c, u->name), sb_text(&equations), &out);
@@ -273,7 +280,7 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   if (c->o.command == CMD_HELP) return do_help(c);
   if (c->o.command == CMD_VERSION) {
     puts("lagc " LAGC_VERSION);
-    return STATUS_OK;
+    return fflush(stdout) == 0 ? STATUS_OK : fail_usage("cannot write standard output");
   }
   return compile(c);
 }

@@ -90,20 +90,40 @@ int cname_is_library(const char *id) {
   return 0;
 }
 
-CNames cnames_new(Arena *a) { return (CNames){.arena = a}; }
-void cnames_reserve(CNames *c, const char *name) { vec_push(c->arena, &c->taken, name); }
+CNames cnames_new(Arena *a) {
+  enum { CAP = 64 };
+  return (CNames){.arena = a, .table = ARENA_ARRAY(a, CName, CAP), .cap = CAP};
+}
 
-static int is_taken(const CNames *c, const char *name) {
-  for (uint32_t i = 0; i < c->taken.n; i++)
-    if (strcmp(c->taken.at[i], name) == 0) return 1;
-  return 0;
+/* The place of a name, or the empty one where it belongs. */
+static CName *place(const CNames *c, const char *name) {
+  uint32_t h = 2166136261u;
+  for (const char *s = name; *s; s++) h = (h ^ (unsigned char)*s) * 16777619u;
+  uint32_t i = h & (c->cap - 1);
+  while (c->table[i].name && strcmp(c->table[i].name, name) != 0) i = (i + 1) & (c->cap - 1);
+  return &c->table[i];
+}
+
+void cnames_reserve(CNames *c, const char *name) {
+  if (c->taken.n * 2 >= c->cap) {
+    CNames bigger = *c;
+    bigger.cap = 2 * c->cap;
+    bigger.table = ARENA_ARRAY(c->arena, CName, bigger.cap);
+    for (uint32_t i = 0; i < c->cap; i++)
+      if (c->table[i].name) *place(&bigger, c->table[i].name) = c->table[i];
+    *c = bigger;
+  }
+  CName *at = place(c, name);
+  if (at->name) return;
+  *at = (CName){name, 2};
+  vec_push(c->arena, &c->taken, name);
 }
 
 const char *cnames_take(CNames *c, const char *name) {
   const char *stem = cname(c->arena, name), *full = stem;
   size_t n = strlen(stem);
   const char *join = n && stem[n - 1] == '_' ? "" : "_";
-  for (int k = 2; is_taken(c, full); k++) full = arena_printf(c->arena, "%s%s%d", stem, join, k);
+  while (place(c, full)->name) full = arena_printf(c->arena, "%s%s%d", stem, join, place(c, stem)->next++);
   cnames_reserve(c, full);
   return full;
 }

@@ -8,8 +8,15 @@
 
 /* The identifiers taken in one C scope. */
 typedef struct {
+  const char *name;
+  int next; /* the number to try first when the name is wanted again */
+} CName;
+
+typedef struct {
   Arena *arena;
-  VEC(const char *) taken;
+  VEC(const char *) taken; /* in the order they were taken */
+  CName *table;            /* the same; open addressing */
+  uint32_t cap;
 } CNames;
 
 CNames cnames_new(Arena *a);

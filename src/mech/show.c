@@ -17,12 +17,27 @@ static void heading(Text *t, const char *title) {
 
 static void end_block(Text *t) { put(t, "", "\\end{align*}\n"); }
 
+/* An expression that shares its parts can be far longer written out than it is to compute: past a
+ * limit its length is said instead. */
+static void print_expr(Text *t, Expr e) {
+  const double longest = 1e5, most_repeated = 8;
+  uint32_t distinct;
+  double size = expr_written_size(t->g, e, &distinct);
+  if (size <= longest || size <= most_repeated*distinct) {
+    expr_print(t->g, e, t->style, t->out);
+    return;
+  }
+  put(t, "(", "\\text{(");
+  sb_printf(t->out, "too long to print: %.2g parts written out, %u distinct ones; --format c shows the steps", size, distinct);
+  put(t, ")", ")}");
+}
+
 /* "  left = right", with LaTeX's alignment. */
 static void equation(Text *t, Expr left, Expr right, int last) {
   put(t, "  ", "  ");
-  expr_print(t->g, left, t->style, t->out);
+  print_expr(t, left);
   put(t, " = ", " &= ");
-  expr_print(t->g, right, t->style, t->out);
+  print_expr(t, right);
   put(t, "\n", last ? "\n" : " \\\\\n");
 }
 
@@ -30,7 +45,7 @@ static void named_equation(Text *t, const char *text, const char *in_latex, Expr
   put(t, "  ", "  ");
   put(t, text, in_latex);
   put(t, " = ", " &= ");
-  expr_print(t->g, right, t->style, t->out);
+  print_expr(t, right);
   put(t, "\n", last ? "\n" : " \\\\\n");
 }
 

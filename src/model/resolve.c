@@ -589,6 +589,22 @@ static int numbers_only(Eval *ev, const AstExpr *x) {
   return 1;
 }
 
+/* Numbers beyond the range of a double are refused where they arise. */
+static Value finite_value(Eval *ev, const AstExpr *x, Value v) {
+  ExprGraph *g = ev->b->g;
+  if (!v.e) return v;
+  ExprOp op = expr_op(g, v.e);
+  int pairs = op == EX_SUM || op == EX_PROD;
+  for (uint32_t i = 0; i < expr_nargs(g, v.e) + (op == EX_NUM); i++) {
+    Expr n = op == EX_NUM ? v.e : expr_arg(g, v.e, i);
+    if (!(op == EX_NUM || pairs) || !expr_is_num(g, n) || isfinite(num_value(expr_number(g, n)))) continue;
+    diag_error(ev->b->diags, x->span, "a number here is not finite");
+    diag_help(ev->b->diags, "numbers reach up to 1.8e308");
+    return FAILED;
+  }
+  return v;
+}
+
 static Value evaluate(Builder *b, AstId id, Context where, Name effect, const Definition *function) {
   const AstExpr *root = ast_expr(b->ast, id);
   uint32_t n = id - root->first + 1;
@@ -610,7 +626,8 @@ static Value evaluate(Builder *b, AstId id, Context where, Name effect, const De
       if (up->kind == AST_MEMBER && up->a == i) continue;
     }
     if (i == b->stand_in) ev.value[i - ev.first] = (Value){.e = b->stands_for, .dim = DIM_UNKNOWN};
-    else if (!ev.open[i - ev.first]) ev.value[i - ev.first] = numbers_only(&ev, x) ? node_value(&ev, i) : FAILED;
+    else if (!ev.open[i - ev.first])
+      ev.value[i - ev.first] = numbers_only(&ev, x) ? finite_value(&ev, x, node_value(&ev, i)) : FAILED;
   }
   return ev.value[id - ev.first];
 }

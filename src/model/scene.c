@@ -72,13 +72,21 @@ static void report_unknown(Builder *b, AstStmtKind kind, Span span, const char *
 
 /* Names of scenes, and of effects, are each declared once. */
 static void check_twice(Builder *b) {
-  for (const AstStmt *s = b->ast->first; s; s = s->next)
-    if (s->kind == STMT_SCENE || s->kind == STMT_EFFECT) {
-      const AstStmt *first = find_stmt(b->ast, s->kind, s->name);
-      if (first == s || !first) continue;
-      diag_error(b->diags, s->name_span, "the %s `%s` is declared twice", s->kind == STMT_SCENE ? "scene" : "effect", s->name);
-      diag_also(b->diags, first->name_span, "first declared here");
+  uint32_t n = 0, cap = 16;
+  for (const AstStmt *s = b->ast->first; s; s = s->next) n += s->kind == STMT_SCENE || s->kind == STMT_EFFECT;
+  while (cap < 2 * n) cap *= 2;
+  const AstStmt **seen = ARENA_ARRAY(b->arena, const AstStmt *, cap); /* by the address of the name */
+  for (const AstStmt *s = b->ast->first; s; s = s->next) {
+    if ((s->kind != STMT_SCENE && s->kind != STMT_EFFECT) || !s->name) continue;
+    uint32_t i = (uint32_t)((uintptr_t)s->name >> 4) & (cap - 1);
+    while (seen[i] && (seen[i]->name != s->name || seen[i]->kind != s->kind)) i = (i + 1) & (cap - 1);
+    if (!seen[i]) {
+      seen[i] = s;
+      continue;
     }
+    diag_error(b->diags, s->name_span, "the %s `%s` is declared twice", s->kind == STMT_SCENE ? "scene" : "effect", s->name);
+    diag_also(b->diags, seen[i]->name_span, "first declared here");
+  }
 }
 
 /* The scene and those it is like, the farthest ancestor first; NULL-terminated. */

@@ -12,6 +12,7 @@
 
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
+#include "emit/emit_header.h"
 #include "emit/emit_model.h"
 #include "mech/show.h"
 #include "ir/lower.h"
@@ -31,8 +32,10 @@ static void write_everything(Arena *a, const Eqns *e) {
   if (prog_verify(u->scenes.at[0].observe)) abort();
   StrBuf c = strbuf(a), text = strbuf(a), latex = strbuf(a);
   emit_model(u, cname(a, u->name), &c);
-  show_equations(e, ops_text(u->accel, a), PRINT_TEXT, &text);
-  show_equations(e, ops_text(u->accel, a), PRINT_LATEX, &latex);
+  const char *cost = ops_text(u->accel, a);
+  show_equations(e, cost, PRINT_TEXT, &text);
+  show_equations(e, cost, PRINT_LATEX, &latex);
+  emit_header(u, u->name, sb_text(&text), &c);
 }
 
 /* One scene, or one effect on top of the first scene. */
