@@ -183,10 +183,10 @@ static int do_run(Compiler *c) {
  * it requires: scenes have no part in it. */
 static void check_expects(Compiler *c, ExpectResults *results) {
   EffectList where = model_expecting_effects(c->ast);
-  for (uint32_t i = 0; i < where.n; i++) {
-    Eqns *e = derive(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
-    if (e) expects_check(e, where.at[i], c->o.allow_numeric, results);
-  }
+  Eqns **e = ARENA_ARRAY(c->arena, Eqns *, where.n + 1);
+  for (uint32_t i = 0; i < where.n; i++) e[i] = derive(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
+  for (uint32_t i = 0; i < where.n; i++)
+    if (e[i]) expects_check(e[i], where.at[i], c->o.allow_numeric, results);
 }
 
 static int do_check(Compiler *c) {
