@@ -13,6 +13,7 @@
 #include "cli/toolchain.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
+#include "emit/emit_header.h"
 #include "emit/emit_model.h"
 #include "ir/lower.h"
 #include "mech/eqns.h"
@@ -74,7 +75,13 @@ static Eqns *derive(Compiler *c, const ModelChoice *choice) {
   with_defines.defines = c->o.defines.at;
   with_defines.ndefines = c->o.defines.n;
   Model *m = model_build(c->ast, &with_defines);
-  return m ? eqns_derive(m) : NULL;
+  if (!m) return NULL;
+  StrBuf listing = strbuf(c->arena);
+  if (wants_dump(c, "model")) model_dump(m, &listing);
+  Eqns *e = eqns_derive(m);
+  if (e && wants_dump(c, "eqns")) dump_equations(e, &listing);
+  if (listing.n) write_out(c, NULL, &listing);
+  return e;
 }
 
 /* Of one scene (NULL: the first) with one more effect (or NULL). */
@@ -117,7 +124,25 @@ static int do_emit(Compiler *c) {
   if (!e) return STATUS_MODEL;
   IrUnit *u = lower_scene(c, e);
   StrBuf out = strbuf(c->arena);
-  emit_model(u, cname(c->arena, u->name), &out);
+  emit_model(u, model_id(c->arena, u->name), &out);
+  return write_out(c, c->o.output, &out);
+}
+
+/* A header is called by its file: pend.h has PEND_IMPLEMENTATION. On standard output, by its model. */
+static const char *header_name(Compiler *c, const char *model) {
+  const char *path = c->o.output;
+  if (!path || strcmp(path, "-") == 0) return model;
+  const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path, *dot = strchr(stem + (stem[0] == '.'), '.');
+  return dot ? arena_strndup(c->arena, stem, (size_t)(dot - stem)) : stem;
+}
+
+static int do_header(Compiler *c) {
+  Eqns *e = derive_scene(c, c->o.scene);
+  if (!e) return STATUS_MODEL;
+  IrUnit *u = lower_scene(c, e);
+  StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
+  show_equations(e, "", PRINT_TEXT, &equations);
+  emit_header(u, header_name(c, u->name), sb_text(&equations), &out);
   return write_out(c, c->o.output, &out);
 }
 
@@ -147,7 +172,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   VEC(SourceText) texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
   for (uint32_t i = 0; i < units.n; i++) {
-    names[i] = arena_printf(c->arena, "%s_%u", cname(c->arena, units.at[i]->name), i);
+    names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units.at[i]->name), i);
     StrBuf b = strbuf(c->arena);
     emit_model(units.at[i], names[i], &b);
     vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
@@ -221,7 +246,7 @@ static int do_command(Compiler *c) {
     case CMD_CHECK: return do_check(c);
     case CMD_DERIVE: return do_derive(c);
     case CMD_EMIT: return do_emit(c);
-    case CMD_HEADER: return fail_usage("not yet: lagc header");
+    case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
     case CMD_RUN: return do_run(c);
     case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;

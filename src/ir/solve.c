@@ -88,12 +88,14 @@ static void factor(Lower *l, const Block *b, Slot *W, Slot *L) {
     Slot d = b->M[j * n + j];
     for (uint32_t k = 0; k < j; k++) d = minus_product(l, d, W[j * n + k], L[j * n + k]);
     W[j * n + j] = d;
+    prog_name(l->p, d, numbered(l, "D", b->at[j], UINT32_MAX));
     check_pivot(l, d, 1);
     for (uint32_t i = j + 1; i < n; i++) {
       Slot w = b->M[i * n + j];
       for (uint32_t k = 0; k < j; k++) w = minus_product(l, w, W[i * n + k], L[j * n + k]);
       W[i * n + j] = w;
       L[i * n + j] = op(l, IR_DIV, w, d);
+      prog_name(l->p, L[i * n + j], numbered(l, "L", b->at[j], b->at[i]));
     }
   }
 }

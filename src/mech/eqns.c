@@ -20,19 +20,37 @@ Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
   return found ? e->mass.at[lo].e : expr_int(e->g, 0);
 }
 
-/* Momenta to show, E = p q' - L, and |p q'| + |L|. */
+/* Chains of lets longer than this stay as they are: expanded, they would grow with the square. */
+enum { EXPAND_MAX_COORDS = 32 };
+
+/* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as it
+ * was written: k/2*(r - l)^2 has more right digits than what it expands to. */
 static void derive_energy(Eqns *e) {
   ExprGraph *g = e->g;
-  Expr *terms = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
-  for (uint32_t i = 0; i < e->n; i++) terms[i] = expr_mul(g, e->p[i], expr_symbol(g, e->m->coords.at[i].v)->node);
-  Expr *momenta = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
-  for (uint32_t i = 0; i < e->n; i++) momenta[i] = simplify(g, e->p[i]);
+  Arena *arena = e->m->arena;
+  Expr *terms = ARENA_ARRAY(arena, Expr, e->n + 1), *momenta = ARENA_ARRAY(arena, Expr, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) {
+    momenta[i] = simplify(g, e->p[i]);
+    terms[i] = expr_mul(g, e->p[i], expr_symbol(g, e->m->coords.at[i].v)->node);
+  }
   e->momenta = momenta;
-  Expr pv = expr_add_n(g, terms, e->n);
-  Expr energy = expr_sub(g, pv, e->m->lagrangian);
-  Expr simple = simplify(g, energy), simple_pv = simplify(g, pv);
-  e->energy = simplify_stable(g, simple);
-  Expr size_pv = expr_fn(g, EX_ABS, simple_pv), size_l = expr_fn(g, EX_ABS, e->m->lagrangian);
+  Expr pv = expr_add_n(g, terms, e->n), l = e->m->lagrangian, l0 = expr_int(g, 0);
+  for (uint32_t i = 0; i < expr_pairs(g, l, EX_SUM); i++) {
+    Num c;
+    Expr t = expr_pair(g, l, EX_SUM, i, &c);
+    if (contains_kind(e, t, SYM_VEL)) continue;
+    Expr part = expr_scale(g, c, t);
+    l0 = expr_add(g, l0, part);
+  }
+  Expr l_moving = expr_sub(g, l, l0);
+  Expr moving = expr_sub(g, pv, l_moving);
+  Expr kinetic = simplify(g, moving);
+  e->energy = expr_sub(g, kinetic, l0);
+  /* l + y with y = -l*cos(th) hides a difference of nearly equal numbers in a let. */
+  Expr open = e->n <= EXPAND_MAX_COORDS ? expr_expand_defs(g, e->energy) : e->energy;
+  e->energy_stable = simplify_stable(g, open);
+  Expr simple_pv = simplify(g, pv);
+  Expr size_pv = expr_fn(g, EX_ABS, simple_pv), size_l = expr_fn(g, EX_ABS, l);
   e->energy_scale = expr_add(g, size_pv, size_l);
 }
 
@@ -42,7 +60,7 @@ static void fill_outputs(Eqns *e) {
   ExprGraph *g = e->g;
   Output *out = ARENA_ARRAY(m->arena, Output, m->scene.outputs.n + 1);
   Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(g) + 1);
-  with[m->energy_sym] = e->energy;
+  with[m->energy_sym] = e->energy_stable;
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) {
     out[i] = m->scene.outputs.at[i];
     if (e->energy) out[i].value = expr_substitute(g, out[i].value, with, m->energy_sym + 1, "");

@@ -28,7 +28,8 @@ typedef struct {
   const Expr *f;         /* [n] */
   const Expr *Q;         /* [n] generalised forces, inside f already */
   const Expr *flow;      /* [number of states] */
-  Expr energy;           /* p q' - L; 0 without coordinates */
+  Expr energy;           /* p q' - L, to show; 0 without coordinates */
+  Expr energy_stable;    /* the same, to compute */
   Expr energy_scale;     /* |p q'| + |L|: what a drift of the energy is compared with */
   const Output *outputs; /* of the scene, with the energy filled in */
   uint32_t noutputs;

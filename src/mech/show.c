@@ -137,3 +137,22 @@ void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *o
   definitions(&t, roots.at, roots.n);
   facts(&t, cost);
 }
+
+static void entry(const Eqns *e, const char *what, Expr x, StrBuf *out) {
+  sb_printf(out, "%s = ", what);
+  expr_print(e->g, x, PRINT_TEXT, out);
+  sb_putc(out, '\n');
+}
+
+void dump_equations(const Eqns *e, StrBuf *out) {
+  const Model *m = e->m;
+  Arena *a = m->arena;
+  for (uint32_t k = 0; k < e->mass.n; k++)
+    entry(e, arena_printf(a, "M[%s,%s]", m->coords.at[e->mass.at[k].row].name, m->coords.at[e->mass.at[k].col].name), e->mass.at[k].e, out);
+  for (uint32_t i = 0; i < e->n; i++) entry(e, arena_printf(a, "f[%s]", m->coords.at[i].name), e->f[i], out);
+  for (uint32_t i = 0; i < e->n; i++) entry(e, arena_printf(a, "Q[%s]", m->coords.at[i].name), e->Q[i], out);
+  for (uint32_t i = 0; i < m->states.n; i++) entry(e, arena_printf(a, "flow[%s]", m->states.at[i].name), e->flow[i], out);
+  if (e->energy_stable) entry(e, "E", e->energy_stable, out);
+  sb_printf(out, "facts:%s%s%s%s%s\n", e->constant_mass ? " constant-mass" : "", e->definite_mass ? " definite-mass" : "",
+            e->conserves_energy ? " conserves-energy" : "", e->autonomous ? " autonomous" : "", e->smooth ? " smooth" : "");
+}

@@ -141,6 +141,9 @@ typedef struct {
   struct Builder *builder; /* what model_reresolve needs */
 } Model;
 
+/* Appends a listing, for --dump=model. */
+void model_dump(const Model *m, StrBuf *out);
+
 /* The names of the scenes in the file, in order; one named "default" when there is none. */
 typedef struct {
   const Name *at;
