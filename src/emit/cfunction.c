@@ -94,3 +94,17 @@ const char *double_text(Arena *a, double x) {
   num_format_double(text, x);
   return arena_strdup(a, text);
 }
+
+void cwrite_guarded(const char *condition, const char *body, StrBuf *out) {
+  body += strspn(body, "\n ");
+  int one = strchr(body, '\n') == body + strlen(body) - 1 && strncmp(body, "const ", 6) != 0;
+  if (one) sb_printf(out, "  %s%s", condition, body);
+  else sb_printf(out, "  %s{\n", condition);
+  while (!one && *body) {
+    size_t n = strcspn(body, "\n");
+    if (n) sb_printf(out, "    %.*s\n", (int)n, body);
+    body += n;
+    body += strspn(body, "\n ");
+  }
+  if (!one) sb_puts(out, "  }\n");
+}

@@ -25,6 +25,9 @@ typedef struct {
 /* The comment, the head, `(void)` for parameters that p does not need, the body. */
 void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *out);
 
+/* A body after `condition` (may be ""): on its line when it is one statement, or in braces. */
+void cwrite_guarded(const char *condition, const char *body, StrBuf *out);
+
 /* The shortest text that reads back as x. */
 const char *double_text(Arena *a, double x);
 

@@ -55,7 +55,7 @@ static void put_letter(StrBuf *b, unsigned c) {
   } else sb_printf(b, "u%04x", c);
 }
 
-const char *cname(Arena *a, const char *name) {
+const char *cname_spelled(Arena *a, const char *name) {
   StrBuf b = strbuf(a);
   static const char *const dots[] = {"", "_dot", "_ddot", "_dddot"};
   for (const unsigned char *s = (const unsigned char *)name; *s;) {
@@ -72,7 +72,11 @@ const char *cname(Arena *a, const char *name) {
       sb_putc(&b, plain ? c : '_');
     }
   }
-  const char *text = sb_text(&b);
+  return sb_text(&b);
+}
+
+const char *cname(Arena *a, const char *name) {
+  const char *text = cname_spelled(a, name);
   if (text[0] >= '0' && text[0] <= '9') text = arena_printf(a, "n%s", text);
   if (text[0] == '_') text = arena_printf(a, "x%s", text); /* a leading underscore is the C library's */
   for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++)

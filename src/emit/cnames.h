@@ -30,6 +30,9 @@ const char *cnames_take(CNames *c, const char *name);
 /* The same spelling without looking at what is taken. */
 const char *cname(Arena *a, const char *name);
 
+/* Only the letters: may begin with a digit, and be a keyword. For the rest of an identifier. */
+const char *cname_spelled(Arena *a, const char *name);
+
 /* Whether C knows a function of that name: an object with external linkage may not be called so. */
 int cname_is_library(const char *id);
 

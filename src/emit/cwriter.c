@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-enum { INLINE_MAX = 64, MADE_NAME_MAX = 14, LINE_MAX_COLUMNS = 100 };
+enum { INLINE_MAX = 64, MADE_NAME_MAX = 14, LINE_MAX_COLUMNS = 100, WRAP_COLUMNS = 120 };
 enum { C_SELECT = 1, C_OR, C_AND, C_CMP, C_ADD, C_MUL, C_UNARY, C_ATOM };
 
 typedef struct {
@@ -17,6 +17,7 @@ typedef struct {
   Arena *a;
   CNames names;
   uint32_t *uses;
+  const char **stored; /* by slot: the comment of the store that uses it */
   Piece *piece; /* by slot: how its value is spelled where it is used */
   StrBuf *out;
   uint32_t temps;
@@ -60,7 +61,7 @@ const char *c_number(Arena *a, const char *prefix, Num n) {
   if (!num_is_exact(n)) return arena_printf(a, "%s%s_C(%s)", minus, prefix, float_text(a, n.approx));
   const char *decimal = finite_decimal(a, n);
   if (decimal) return arena_printf(a, "%s%s_C(%s)", minus, prefix, decimal);
-  return arena_printf(a, "%s(%s_C(%lld.0)/%s_C(%lld.0))", minus, prefix, (long long)n.num, prefix, (long long)n.den);
+  return arena_printf(a, "%s%s_C(%lld.0)/%s_C(%lld.0)", minus, prefix, (long long)n.num, prefix, (long long)n.den);
 }
 
 const char *c_string(Arena *a, const char *s) {
@@ -98,10 +99,23 @@ static const char *wrapped(Writer *w, Slot s, int prec) {
   return x.prec < prec ? arena_printf(w->a, "(%s)", x.text) : x.text;
 }
 
+/* Scaling by a power of two rounds nothing: 2*(a*b) may be written 2*a*b. */
+static int is_power_of_two(const Ins *i) {
+  int64_t n = i->number.num, d = i->number.den;
+  return i->op == IR_CONST && num_is_exact(i->number) && n > 0 && (n & (n - 1)) == 0 && (d & (d - 1)) == 0;
+}
+
 /* a op b, grouped as computed: the text rounds as the program does. */
 static Piece infix(Writer *w, const Ins *i, const char *op, int prec) {
-  const char *a = wrapped(w, i->a, prec), *b = wrapped(w, i->b, prec == C_MUL ? C_ATOM : prec + 1);
+  Piece right = operand(w, i->b);
+  int flat = i->op == IR_MUL && right.prec == C_MUL && right.text[0] != '-' && is_power_of_two(&w->p->ins.at[i->a]);
+  const char *a = wrapped(w, i->a, prec), *b = flat ? right.text : wrapped(w, i->b, prec == C_MUL ? C_ATOM : prec + 1);
   return (Piece){arena_printf(w->a, "%s%s%s", a, op, b), prec, 0};
+}
+
+static Piece constant(Writer *w, const Ins *i) {
+  const char *text = c_number(w->a, w->style->prefix, i->number);
+  return (Piece){text, strchr(text, '/') ? C_MUL : text[0] == '-' ? C_UNARY : C_ATOM, 0};
 }
 
 /* -a*b is (-a)*b, and rounds like -(a*b). */
@@ -156,7 +170,7 @@ static Piece solved(Writer *w, const Ins *i) {
 static Piece spell(Writer *w, const Ins *i) {
   const char *m = w->style->prefix;
   switch (i->op) {
-    case IR_CONST: return (Piece){c_number(w->a, m, i->number), num_sign(i->number) < 0 ? C_UNARY : C_ATOM, 0};
+    case IR_CONST: return constant(w, i);
     case IR_PI: return (Piece){arena_printf(w->a, "%s_C(3.14159265358979323846264338327950288)", m), C_ATOM, 0};
     case IR_LOAD: return load(w, i);
     case IR_ADD: return infix(w, i, " + ", C_ADD);
@@ -182,6 +196,29 @@ static Piece spell(Writer *w, const Ins *i) {
 }
 
 /* --- statements --- */
+
+/* A statement, broken at spaces where it is long. */
+static void put_statement(Writer *w, const char *text) {
+  size_t column = 2;
+  sb_puts(w->out, "  ");
+  while (*text) {
+    size_t n = strcspn(text + 1, " ") + 1; /* a word with the space before it */
+    if (*text == ' ' && column > 8 && column + n > WRAP_COLUMNS) {
+      sb_puts(w->out, "\n     ");
+      column = 5;
+    }
+    sb_putn(w->out, text, n);
+    column += n;
+    text += n;
+  }
+}
+
+/* The length of a text as a reader sees it: a long prefix counts as a short one. */
+static size_t visible(const Writer *w, const char *text) {
+  size_t n = strlen(text), prefix = strlen(w->style->prefix);
+  for (const char *s = text; prefix > 3 && (s = strstr(s, w->style->prefix)) != NULL; s += prefix) n -= prefix - 3;
+  return n;
+}
 
 static void flush_title(Writer *w) {
   if (!w->title) return;
@@ -231,7 +268,8 @@ static void declare(Writer *w, Slot s, Piece x) {
   const Ins *i = &w->p->ins.at[s];
   Piece name = name_for(w, i);
   flush_title(w);
-  sb_printf(w->out, "  const %s_%s %s = %s;", w->style->prefix, ir_is_condition(i->op) ? "MASK" : "REAL", name.text, x.text);
+  const char *type = ir_is_condition(i->op) ? "MASK" : "REAL";
+  put_statement(w, arena_printf(w->a, "const %s_%s %s = %s;", w->style->prefix, type, name.text, x.text));
   if (i->name && strcmp(i->name, name.text) != 0) sb_printf(w->out, " /* %s */", comment_text(w->a, meaning(w, i->name)));
   sb_putc(w->out, '\n');
   w->piece[s] = name;
@@ -307,7 +345,10 @@ static void count_uses(Writer *w) {
     for (uint32_t j = 0; j < k->n * k->n; j++) w->uses[k->matrix[j]]++;
     for (uint32_t j = 0; j < k->n; j++) w->uses[k->rhs[j]]++;
   }
-  for (uint32_t k = 0; k < p->stores.n; k++) w->uses[p->stores.at[k].slot]++;
+  for (uint32_t k = 0; k < p->stores.n; k++) {
+    w->uses[p->stores.at[k].slot]++;
+    w->stored[p->stores.at[k].slot] = p->stores.at[k].comment;
+  }
 }
 
 static void write_instruction(Writer *w, Slot s) {
@@ -327,7 +368,8 @@ static void write_instruction(Writer *w, Slot s) {
   if (i->op == IR_LOAD) return;
   Piece x = spell(w, i);
   int leaf = i->op == IR_CONST || i->op == IR_PI;
-  int part = w->uses[s] <= 1 && !i->name && strlen(x.text) <= INLINE_MAX && i->op != IR_SOLVED;
+  int told = !i->name || (w->stored[s] && strcmp(i->name, w->stored[s]) == 0); /* by the store's comment */
+  int part = w->uses[s] <= 1 && told && visible(w, x.text) <= INLINE_MAX && i->op != IR_SOLVED;
   if (leaf || part) w->piece[s] = x;
   else declare(w, s, x);
 }
@@ -337,8 +379,10 @@ static void write_stores(Writer *w) {
     const Store *st = &w->p->stores.at[k];
     if (!k) sb_putc(w->out, '\n');
     const char *text = operand(w, st->slot).text;
-    sb_printf(w->out, "  %s = %s;", element(w, w->style->out[st->array], st->index), text);
-    if (strcmp(st->comment, text) != 0) sb_printf(w->out, " /* %s */", comment_text(w->a, st->comment));
+    const char *target = element(w, w->style->out[st->array], st->index), *member = strstr(target, "->");
+    int said = strcmp(st->comment, text) == 0 || (w->style->params && member && strcmp(member + 2, st->comment) == 0);
+    put_statement(w, arena_printf(w->a, "%s = %s;", target, text));
+    if (!said) sb_printf(w->out, " /* %s */", comment_text(w->a, st->comment));
     sb_putc(w->out, '\n');
   }
 }
@@ -346,6 +390,7 @@ static void write_stores(Writer *w) {
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
   w.uses = ARENA_ARRAY(a, uint32_t, p->ins.n);
+  w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
   w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
   for (const char *const *g = style->globals; g && *g; g++) cnames_reserve(&w.names, *g);

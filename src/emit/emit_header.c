@@ -22,7 +22,7 @@ static const char *const header_names[] = {"REAL", "API", "STATIC", "IMPLEMENTAT
 static const char **enumerators(Header *h, CNames *taken, const char *stem, const IrVar *v, uint32_t n) {
   const char **names = ARENA_ARRAY(h->a, const char *, n + 1);
   for (uint32_t i = 0; i < n; i++) {
-    const char *id = cased(h->a, cname(h->a, v[i].name), 1);
+    const char *id = cased(h->a, cname_spelled(h->a, v[i].name), 1);
     names[i] = cnames_take(taken, arena_printf(h->a, "%s_%s%s", h->upper, stem, id));
   }
   return names;
@@ -46,9 +46,10 @@ static const char *const *globals_of(Header *h) {
   return all;
 }
 
-static Header header_new(const IrUnit *u, StrBuf *out) {
-  Header h = {.u = u, .scene = &u->scenes.at[0], .a = u->arena, .out = out};
-  const char *id = cname(h.a, u->name);
+static Header header_new(const IrUnit *u, const char *name, StrBuf *out) {
+  Header h = {.u = u, .scene = &u->scenes.at[0], .a = u->arena, .out = out, .file = name};
+  const char *id = cname_spelled(h.a, name);
+  if (id[0] == '_' || (id[0] >= '0' && id[0] <= '9')) id = arena_printf(h.a, "x%s", id);
   h.upper = cased(h.a, id, 1);
   h.lower = cased(h.a, id, 0);
   h.taken = cnames_new(h.a);
@@ -84,22 +85,23 @@ static void write_usage(const Header *h) {
   const char *m = h->upper, *f = h->lower;
   const char *in = h->u->u.n ? ", NULL" : "";
   sb_puts(h->out, " *\n * In every file that uses it, and in one of them (C or C++) after #define as here:\n");
-  sb_printf(h->out, " *   #define %s_IMPLEMENTATION\n *   #include \"%s.h\"\n *\n", m, f);
+  sb_printf(h->out, " *   #define %s_IMPLEMENTATION\n *   #include \"%s.h\"\n *\n", m, h->file);
   sb_printf(h->out, " *   %s_params p;\n *   %s_state s;\n", f, f);
   sb_printf(h->out, " *   %s_defaults(&p); // as in scene %s\n *   %s_start(&p, &s);\n", f, h->scene->name, f);
-  sb_printf(h->out, " *   while (s.t < %s)\n *     if (%s_rk4_step(&p, &s, 0.001%s) != %s_OK) break;\n", double_text(h->a, h->scene->t1), f, in, m);
+  const char *end = double_text(h->a, h->scene->t1), *step = double_text(h->a, (h->scene->t1 - h->scene->t0) / 1e4);
+  sb_printf(h->out, " *   while (s.t < %s)\n *     if (%s_rk4_step(&p, &s, %s%s) != %s_OK) break;\n", end, f, step, in, m);
   const char *first = h->u->q.n ? arena_printf(h->a, "s.q[%s]", h->q[0]) : h->u->z.n ? arena_printf(h->a, "s.z[%s]", h->z[0]) : "s.t";
   sb_printf(h->out, " *   printf(\"%%g\\n\", (double)%s);\n *\n", first);
   sb_printf(h->out,
             " * To define before the first include, the same in every file:\n"
             " *   %s_REAL    float, double (the default) or long double\n"
             " *   %s_STATIC  functions are static inline, in every file that includes this\n"
-            " *   %s_FN(f)   C99 with long double needs f##l here; C11 and C++ choose themselves\n", m, m, m);
+            " *   %s_FN(x)   C99 with long double needs x##l here; C11 and C++ choose themselves\n", m, m, m);
 }
 
 static void write_head(const Header *h, const char *equations) {
   const IrUnit *u = h->u;
-  sb_printf(h->out, "/* %s.h: %s\n *\n", h->lower, comment_text(h->a, u->doc[0] ? u->doc : u->name));
+  sb_printf(h->out, "/* %s.h: %s\n *\n", comment_text(h->a, h->file), comment_text(h->a, u->doc[0] ? u->doc : u->name));
   sb_printf(h->out, " * Made by lagc from the model %s, scene %s; effects in use: %s.\n", u->name, h->scene->name, u->effects[0] ? u->effects : "none");
   sb_printf(h->out, " * One evaluation of the equations of motion: %s.\n", ops_text(u->accel, h->a));
   sb_puts(h->out, " * C99 or C++, <math.h> only; allocates nothing, keeps nothing. All values are in SI units.\n");
@@ -109,8 +111,8 @@ static void write_head(const Header *h, const char *equations) {
   sb_puts(h->out, " */\n");
 }
 
-void emit_header(const IrUnit *u, const char *equations, StrBuf *out) {
-  Header h = header_new(u, out);
+void emit_header(const IrUnit *u, const char *name, const char *equations, StrBuf *out) {
+  Header h = header_new(u, name, out);
   write_head(&h, equations);
   sb_printf(out, "#ifndef %s_H_INCLUDED\n#define %s_H_INCLUDED\n\n", h.upper, h.upper);
   header_declarations(&h);

@@ -5,8 +5,8 @@
 #include "base/strbuf.h"
 #include "ir/unit.h"
 
-/* The header of the unit's first scene. equations: text for the comment at its head, or NULL.
- * The prefix of all its names is the model's name, in upper and lower case. */
-void emit_header(const IrUnit *u, const char *equations, StrBuf *out);
+/* The header of the unit's first scene. All its names begin with `name`, made an identifier, in upper
+ * or lower case. equations: text for the comment at its head, or NULL. */
+void emit_header(const IrUnit *u, const char *name, const char *equations, StrBuf *out);
 
 #endif

@@ -16,7 +16,7 @@ typedef struct {
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u"};
 
 static const char *const prelude =
-  "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(f)=f##l'\n"
+  "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l'\n"
   " * '-DLAG_C(x)=x##L'; a vector of lanes defines LAG_SELECT, LAG_ANY and the logic as well, and\n"
   " * LAG_MASK, the type of its comparisons. */\n"
   "#ifndef LAG_FN\n#define LAG_FN(f) f\n#endif\n"
@@ -148,11 +148,7 @@ static void emit_params(const File *f, const IrScene *s, const char *id) {
     st.loads_inline = 1;
     StrBuf body = strbuf(f->a);
     cwrite_body(s->params[i], &st, f->a, &body);
-    const char *text = sb_text(&body);
-    while (*text == '\n' || *text == ' ') text++;
-    int one_line = strchr(text, '\n') == text + strlen(text) - 1;
-    if (one_line) sb_printf(f->out, "  if (!fixed[%u]) %s", i, text);
-    else sb_printf(f->out, "  if (!fixed[%u]) {\n  %s  }\n", i, text);
+    cwrite_guarded(arena_printf(f->a, "if (!fixed[%u]) ", i), sb_text(&body), f->out);
   }
   sb_puts(f->out, "}\n");
 }

@@ -98,10 +98,7 @@ static void defaults(const Header *h) {
     st.loads_inline = 1;
     StrBuf body = strbuf(h->a);
     cwrite_body(h->scene->params[i], &st, h->a, &body);
-    const char *text = sb_text(&body);
-    while (*text == '\n') text++;
-    int one_line = strchr(text, '\n') == text + strlen(text) - 1;
-    sb_printf(h->out, one_line ? "%s" : "  {\n%s  }\n", text);
+    cwrite_guarded("", sb_text(&body), h->out);
   }
   sb_puts(h->out, "}\n");
 }

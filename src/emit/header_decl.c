@@ -186,8 +186,10 @@ void header_declarations(const Header *h) {
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
   for (int f = 0; f < FN_COUNT; f++) {
     if (!header_has(h, (HeaderFn)f)) continue;
+    const char *doc = f != FN_ACCEL || (u->q.n && u->z.n) ? docs[f] : u->q.n ? "Accelerations a[LAG_NQ]: what an integrator needs."
+                                                                             : "Rates zd[LAG_NZ] of the states: what an integrator needs.";
     sb_puts(h->out, "\n/* ");
-    csupport_fill(docs[f], h->upper, h->lower, h->out);
+    csupport_fill(doc, h->upper, h->lower, h->out);
     if (f == FN_RK4_STEP && u->u.n) sb_puts(h->out, "\n * u: the inputs during the step; 0 for the model's formulas.");
     const char *text = arena_printf(h->a, "%s_API %s;", h->upper, header_prototype(h, (HeaderFn)f));
     sb_printf(h->out, " */\n%s\n", header_wrapped(h, text));

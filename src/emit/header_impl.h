@@ -10,6 +10,7 @@ typedef struct {
   const IrScene *scene;
   Arena *a;
   StrBuf *out;
+  const char *file;            /* without .h */
   const char *upper, *lower;   /* the prefix */
   CNames taken;                /* macros and enumerators */
   const char **q, **z, **p, **in, **ev, **outputs; /* enumerators */

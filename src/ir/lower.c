@@ -90,18 +90,20 @@ static Slot lower_prod(Lower *l, Expr e) {
 
 /* --- sums --- */
 
-/* |c| * t; a coefficient p/q with q no power of two divides, which rounds once. */
+/* |c| * t; a coefficient p/q with q no power of two divides, which rounds once. p/(q*x) when t is 1/x. */
 static Slot scaled(Lower *l, Slot t, Num c) {
   c = num_abs(c);
   if (num_is_one(c)) return t;
   int dyadic = !num_is_exact(c) || (c.den & (c.den - 1)) == 0;
-  if (dyadic) {
-    Slot k = number(l, c);
-    return op(l, IR_MUL, k, t);
+  Slot up = number(l, dyadic ? c : num_int(c.num)), down = dyadic ? 0 : number(l, num_int(c.den));
+  const Ins *i = &l->p->ins.at[t];
+  const Ins *top = &l->p->ins.at[i->a];
+  if (i->op == IR_DIV && top->op == IR_CONST && num_is_one(top->number)) {
+    Slot x = i->b, bottom = down ? op(l, IR_MUL, down, x) : x;
+    return op(l, IR_DIV, up, bottom);
   }
-  Slot up = number(l, num_int(c.num)), down = number(l, num_int(c.den));
   Slot product = op(l, IR_MUL, up, t);
-  return op(l, IR_DIV, product, down);
+  return down ? op(l, IR_DIV, product, down) : product;
 }
 
 /* The factor that all coefficients share in size, when it is not 1: k*(a - b) costs one

@@ -29,7 +29,8 @@ typedef struct {
   Name effect;
 } Active;
 
-typedef struct {
+typedef struct Builder Builder;
+struct Builder {
   Ast *ast;
   Diags *diags;
   Arena *arena;
@@ -43,7 +44,9 @@ typedef struct {
   const Define *defines;
   uint32_t ndefines;
   const AstStmt **chain; /* the scene and those it is like, oldest first; NULL-terminated */
-} Builder;
+  AstId stand_in;  /* a node that stands for `stands_for` (see model_reresolve), or 0 */
+  Expr stands_for;
+};
 
 /* Where an expression stands decides what may be in it. */
 typedef enum {
@@ -106,7 +109,7 @@ Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(print
 Unit unit_of_dim(Builder *b, Dim d);
 
 /* scene.c: which statements are active (those of the effect `also` too), and the scene's contents. */
-void scene_select(Builder *b, const char *scene, Name also);
+void scene_select(Builder *b, const ModelChoice *choice);
 void scene_build(Builder *b);
 
 #endif

@@ -366,7 +366,7 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
   if (!dim_fits(l.dim, r.dim))
     diag_error(b->diags, st->span, "units do not match: the left side is in [%s], the right side in [%s]", dim_text(l.dim, b->arena),
                dim_text(r.dim, b->arena));
-  Expect x = {st->name, st->span, st->lhs, st->rhs, l.e, r.e};
+  Expect x = {st->name, st->span, st->lhs, st->rhs, l.e, r.e, effect};
   vec_push(b->arena, &b->m->expects, x);
 }
 
@@ -505,6 +505,7 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   m->diags = ast->diags;
   m->arena = a;
   m->g = b->g;
+  m->builder = b;
   Dim second = {1, {[DIM_TIME] = DIM_ONE}};
   m->time = declare_symbol(b, SYM_TIME, 0, intern(ast->names, "t"), SIGN_UNKNOWN, second);
   m->pi = declare_symbol(b, SYM_CONST, 0, intern(ast->names, "pi"), SIGN_POSITIVE, DIM_NONE);
@@ -521,7 +522,7 @@ static void forget_time_without_units(Builder *b) {
 
 Model *model_build(Ast *ast, const ModelChoice *choice) {
   Builder *b = builder_new(ast, choice);
-  scene_select(b, choice->scene, choice->also);
+  scene_select(b, choice);
   forget_time_without_units(b);
   for (uint32_t i = 0; i < b->active.n; i++) declare(b, b->active.at[i].stmt, b->active.at[i].effect);
   check_defines(b);

@@ -552,6 +552,7 @@ static void mark_chains(Eval *ev, AstId last) {
   for (AstId i = ev->first; i <= last; i++) {
     const AstExpr *x = ast_expr(ev->b->ast, i);
     if (x->kind != AST_ADD && x->kind != AST_SUB && x->kind != AST_MUL && x->kind != AST_DIV) continue;
+    if (x->a == ev->b->stand_in) continue;
     AstKind left = ast_expr(ev->b->ast, x->a)->kind;
     int additive = x->kind == AST_ADD || x->kind == AST_SUB;
     ev->open[x->a - ev->first] = additive ? left == AST_ADD || left == AST_SUB : left == AST_MUL || left == AST_DIV;
@@ -624,7 +625,9 @@ static Value evaluate(Builder *b, AstId id, Context where, Name effect, const De
       const AstExpr *up = ast_expr(b->ast, i + 1);
       if (up->kind == AST_MEMBER && up->a == i) continue;
     }
-    if (!ev.open[i - ev.first]) ev.value[i - ev.first] = numbers_only(&ev, x) ? finite_value(&ev, x, node_value(&ev, i)) : FAILED;
+    if (i == b->stand_in) ev.value[i - ev.first] = (Value){.e = b->stands_for, .dim = DIM_UNKNOWN};
+    else if (!ev.open[i - ev.first])
+      ev.value[i - ev.first] = numbers_only(&ev, x) ? finite_value(&ev, x, node_value(&ev, i)) : FAILED;
   }
   return ev.value[id - ev.first];
 }

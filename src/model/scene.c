@@ -33,6 +33,20 @@ EffectList model_unused_effects(const Ast *ast) {
   return (EffectList){unused.at, unused.n};
 }
 
+static int contains_expect(const AstStmt *list) {
+  for (const AstStmt *s = list; s; s = s->next)
+    if (s->kind == STMT_EXPECT) return 1;
+  return 0;
+}
+
+EffectList model_expecting_effects(const Ast *ast) {
+  VEC(Name) names = {0};
+  if (contains_expect(ast->first)) vec_push(ast->arena, &names, NULL);
+  for (const AstStmt *s = ast->first; s; s = s->next)
+    if (s->kind == STMT_EFFECT && s->name && contains_expect(s->body)) vec_push(ast->arena, &names, s->name);
+  return (EffectList){names.at, names.n};
+}
+
 static Name nearest(const Ast *ast, AstStmtKind kind, const char *wrong) {
   VEC(Name) names = {0};
   for (const AstStmt *s = ast->first; s; s = s->next)
@@ -176,15 +190,15 @@ static void take_model_name(Builder *b) {
     }
 }
 
-void scene_select(Builder *b, const char *scene, Name also) {
+void scene_select(Builder *b, const ModelChoice *choice) {
   take_model_name(b);
   check_twice(b);
-  const AstStmt *st = pick_scene(b, scene);
+  const AstStmt *st = choice->bare ? NULL : pick_scene(b, choice->scene);
   b->m->scene.name = st ? st->name : intern(b->ast->names, "default");
   b->m->scene.doc = st && st->doc ? st->doc : "";
   b->chain = scene_chain(b, st);
   for (const AstStmt **s = b->chain; *s; s++) collect_uses(b, *s);
-  if (also) use_with_needs(b, also);
+  if (choice->also) use_with_needs(b, choice->also);
   VEC(Name) in_order = {0};
   for (const AstStmt *s = b->ast->first; s; s = s->next) {
     if (s->kind != STMT_EFFECT) {

@@ -35,7 +35,7 @@ static void write_everything(Arena *a, const Eqns *e) {
   const char *cost = ops_text(u->accel, a);
   show_equations(e, cost, PRINT_TEXT, &text);
   show_equations(e, cost, PRINT_LATEX, &latex);
-  emit_header(u, sb_text(&text), &c);
+  emit_header(u, u->name, sb_text(&text), &c);
 }
 
 /* One scene, or one effect on top of the first scene. */

@@ -63,7 +63,7 @@ static void emit_all(Arena *a, const Eqns *e) {
   const char *cost = ops_text(u->accel, a);
   show_equations(e, cost, PRINT_TEXT, &text);
   show_equations(e, cost, PRINT_LATEX, &out);
-  emit_header(u, sb_text(&text), &out);
+  emit_header(u, u->name, sb_text(&text), &out);
 }
 
 static void compile_all(Arena *a, const char *lag, int errors) {
