@@ -184,7 +184,7 @@ int lag_sim_advance(lag_sim *s, double t)
   return rc;
 }
 
-int lag_sim_eval(const lag_sim *s, double t, double *y)
+int lag_sim_eval(lag_sim *s, double t, double *y)
 {
   const Run *r = s->run;
   size_t bytes = (size_t)s->pb.n * sizeof(double);
