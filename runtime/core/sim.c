@@ -91,6 +91,9 @@ static int begin(lag_sim *s, double t)
   if (rc || t == s->scene->t0) {
     return rc;
   }
+  if (!s->options) { /* the scene's method was refused, and no other was chosen: refused again, to say why */
+    return lag_sim_set_method(s, s->method, s->scene->options, s->scene->noptions);
+  }
   if ((rc = s->method->init(s->method_work, &s->pb, s->options)) != 0) {
     return lag_explain(s, rc);
   }

@@ -153,7 +153,8 @@ typedef struct lag_stats {
 
 /* A simulation of the scene at the start of its span, with the scene's method (when it is one of
  * liblag.a), tolerance and options. The scene must outlive it. NULL: no memory, or a model of another ABI
- * or scalar type. Free with lag_sim_free (NULL allowed). */
+ * or scalar type. A method that cannot integrate the model is refused by the first advance, unless another one is set.
+ * Free with lag_sim_free (NULL allowed). */
 lag_sim *lag_sim_new(const lag_scene *scene);
 void lag_sim_free(lag_sim *sim);
 
