@@ -119,7 +119,7 @@ static void dense_output_is_paid_for_when_asked_for(void **state)
 /* A force with explicit time is taken at the right time: the order stays. Reference: dop853 in small steps. */
 static void forces_may_depend_on_time(void **state)
 {
-  static const int n[] = {4000, 400, 130, 90, 24};
+  static const int n[] = {4000, 400, 130, 40, 24};
   double start[] = {2.5, 0}, right[2];
   (void)state;
   flow(&driven, &lag_dop853, 0.01, 10, start, right);
