@@ -13,9 +13,11 @@
 #include "cli/toolchain.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
+#include "emit/emit_header.h"
 #include "emit/emit_model.h"
 #include "ir/lower.h"
 #include "mech/eqns.h"
+#include "mech/expect.h"
 #include "mech/show.h"
 #include "model/model.h"
 #include "syntax/parse.h"
@@ -67,21 +69,37 @@ static int read_model(Compiler *c) {
   return c->diags->errors ? STATUS_MODEL : STATUS_OK;
 }
 
-/* The equations of one scene (NULL: the first) with one more effect (or NULL); NULL with the reasons
- * in c->diags. */
+/* The equations of what was chosen; NULL with the reasons in c->diags. */
+static Eqns *derive(Compiler *c, const ModelChoice *choice) {
+  ModelChoice with_defines = *choice;
+  with_defines.defines = c->o.defines.at;
+  with_defines.ndefines = c->o.defines.n;
+  Model *m = model_build(c->ast, &with_defines);
+  if (!m) return NULL;
+  StrBuf listing = strbuf(c->arena);
+  if (wants_dump(c, "model")) model_dump(m, &listing);
+  Eqns *e = eqns_derive(m);
+  if (e && wants_dump(c, "eqns")) dump_equations(e, &listing);
+  if (listing.n) write_out(c, NULL, &listing);
+  return e;
+}
+
+/* Of one scene (NULL: the first) with one more effect (or NULL). */
 static Eqns *derive_with(Compiler *c, const char *scene, Name also) {
-  ModelChoice choice = {.scene = scene, .also = also, .defines = c->o.defines.at, .ndefines = c->o.defines.n};
-  Model *m = model_build(c->ast, &choice);
-  return m ? eqns_derive(m) : NULL;
+  return derive(c, &(ModelChoice){.scene = scene, .also = also});
 }
 
 static Eqns *derive_scene(Compiler *c, const char *scene) { return derive_with(c, scene, NULL); }
 
+/* NULL, with the reason in c->diags, when the program is wrong: a bug. */
 static IrUnit *lower_scene(Compiler *c, const Eqns *e) {
   IrUnit *u = unit_new(e, c->o.file);
   unit_add_scene(u, e);
   const char *wrong = prog_verify(u->accel);
-  if (wrong) diag_error(c->diags, (Span){0}, "internal error: %s", wrong);
+  if (wrong) {
+    diag_error(c->diags, (Span){0}, "internal error: %s", wrong);
+    return NULL;
+  }
   if (wants_dump(c, "prog")) {
     StrBuf b = strbuf(c->arena);
     prog_dump(u->accel, &b);
@@ -96,6 +114,7 @@ static int do_derive(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   IrUnit *u = lower_scene(c, e);
+  if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
   const char *format = c->o.format ? c->o.format : "text";
   const char *cost = ops_text(u->accel, c->arena);
@@ -109,8 +128,28 @@ static int do_emit(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   IrUnit *u = lower_scene(c, e);
+  if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
-  emit_model(u, cname(c->arena, u->name), &out);
+  emit_model(u, model_id(c->arena, u->name), &out);
+  return write_out(c, c->o.output, &out);
+}
+
+/* A header is called by its file: pend.h has PEND_IMPLEMENTATION. On standard output, by its model. */
+static const char *header_name(Compiler *c, const char *model) {
+  const char *path = c->o.output;
+  if (!path || strcmp(path, "-") == 0) return model;
+  const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path, *dot = strchr(stem + (stem[0] == '.'), '.');
+  return dot ? arena_strndup(c->arena, stem, (size_t)(dot - stem)) : stem;
+}
+
+static int do_header(Compiler *c) {
+  Eqns *e = derive_scene(c, c->o.scene);
+  if (!e) return STATUS_MODEL;
+  IrUnit *u = lower_scene(c, e);
+  if (!u) return STATUS_MODEL;
+  StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
+  show_equations(e, "", PRINT_TEXT, &equations);
+  emit_header(u, header_name(c, u->name), sb_text(&equations), &out);
   return write_out(c, c->o.output, &out);
 }
 
@@ -140,7 +179,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   VEC(SourceText) texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
   for (uint32_t i = 0; i < units.n; i++) {
-    names[i] = arena_printf(c->arena, "%s_%u", cname(c->arena, units.at[i]->name), i);
+    names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units.at[i]->name), i);
     StrBuf b = strbuf(c->arena);
     emit_model(units.at[i], names[i], &b);
     vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
@@ -172,19 +211,41 @@ static int do_run(Compiler *c) {
   return fail_usage(arena_printf(c->arena, "cannot run %s", path));
 }
 
+/* An expectation is about the model without effects, or, inside an effect, with that effect and what
+ * it requires: scenes have no part in it. */
+static void check_expects(Compiler *c, ExpectResults *results) {
+  EffectList where = model_expecting_effects(c->ast);
+  Eqns **e = ARENA_ARRAY(c->arena, Eqns *, where.n + 1);
+  for (uint32_t i = 0; i < where.n; i++) e[i] = derive(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
+  for (uint32_t i = 0; i < where.n; i++)
+    if (e[i]) expects_check(e[i], where.at[i], c->o.allow_numeric, results);
+}
+
+static const char *effects_text(Compiler *c, const Model *m) {
+  StrBuf b = strbuf(c->arena);
+  for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(&b, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
+  return sb_text(&b);
+}
+
 static int do_check(Compiler *c) {
   SceneList scenes = model_scenes(c->ast);
   StrBuf out = strbuf(c->arena);
+  ExpectResults results = {0};
   for (uint32_t i = 0; i < scenes.n; i++) {
     if (c->o.scene && strcmp(c->o.scene, scenes.at[i]) != 0) continue;
     Eqns *e = derive_scene(c, scenes.at[i]);
-    if (e) sb_printf(&out, "scene %s: ok\n", scenes.at[i]);
+    if (!e) continue;
+    if (!out.n) show_facts(e, &out);
+    sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], effects_text(c, e->m));
   }
   EffectList unused = model_unused_effects(c->ast);
   for (uint32_t i = 0; i < unused.n && !c->o.scene; i++)
     if (derive_with(c, NULL, unused.at[i])) sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);
-  if (c->diags->errors) return STATUS_MODEL;
-  return write_out(c, NULL, &out);
+  if (c->diags->errors) return STATUS_MODEL; /* expectations of a wrong model say nothing */
+  check_expects(c, &results);
+  expects_print(&results, c->sources, &out);
+  int status = write_out(c, NULL, &out);
+  return c->diags->errors ? STATUS_MODEL : status;
 }
 
 static int do_help(Compiler *c) {
@@ -198,7 +259,7 @@ static int do_command(Compiler *c) {
     case CMD_CHECK: return do_check(c);
     case CMD_DERIVE: return do_derive(c);
     case CMD_EMIT: return do_emit(c);
-    case CMD_HEADER: return fail_usage("not yet: lagc header");
+    case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
     case CMD_RUN: return do_run(c);
     case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;
@@ -225,7 +286,7 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   if (c->o.command == CMD_HELP) return do_help(c);
   if (c->o.command == CMD_VERSION) {
     puts("lagc " LAGC_VERSION);
-    return STATUS_OK;
+    return fflush(stdout) == 0 ? STATUS_OK : fail_usage("cannot write standard output");
   }
   return compile(c);
 }

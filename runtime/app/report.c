@@ -204,7 +204,7 @@ void report_json(App *app, FILE *f)
   field_number(f, "t_end", st.t);
   fprintf(f, "\"steps\": %lld, \"rejected\": %lld, \"rhs_calls\": %lld, ", st.steps, st.rejected, st.rhs_calls);
   field_number(f, "wall_s", app->wall);
-  field_number(f, "energy_drift", st.energy_drift);
+  field_number(f, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null: it is no drift */
   charges(app, f);
   fputs("\"constraint_residual\": null, \"final\": {", f);
   for (int i = 0; i < n; i++) {

@@ -78,6 +78,20 @@ static const lag_method *find_method(const char *name)
   return NULL;
 }
 
+/* The state at the start as it is set now, so that a simulation can be looked at before it runs. */
+static void place(lag_sim *s)
+{
+  int nq = s->pb.nq, n = s->pb.n;
+
+  if (s->scene->start) {
+    s->scene->start(s->p, s->now, s->now + nq, s->now + 2 * nq);
+  }
+  for (int i = 0; i < n; i++) {
+    s->now[i] = isnan(s->start[i]) ? s->now[i] : s->start[i];
+  }
+  s->run->t = s->scene->t0;
+}
+
 lag_sim *lag_sim_new(const lag_scene *scene)
 {
   const lag_model *m = scene->model;
@@ -102,10 +116,10 @@ lag_sim *lag_sim_new(const lag_scene *scene)
     lag_sim_free(s);
     return NULL;
   }
-  s->run->t = scene->t0;
   if (scene->params) {
     scene->params(s->p, s->fixed);
   }
+  place(s);
   return s;
 }
 
@@ -215,7 +229,7 @@ int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *o
   }
   free(s->options);
   s->options = values;
-  s->run->t = s->scene->t0;
+  place(s);
   return LAG_OK;
 }
 
@@ -284,6 +298,7 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
   if (s->scene->params) {
     s->scene->params(s->p, s->fixed); /* others may follow from this one */
   }
+  place(s);
   return LAG_OK;
 }
 
@@ -291,7 +306,7 @@ int lag_setup_start(lag_sim *s)
 {
   const lag_scene *c = s->scene;
   const lag_model *m = c->model;
-  int nq = m->nq, n = s->pb.n;
+  int n = s->pb.n;
 
   for (int i = 0; i < m->np; i++) {
     if (!sign_ok(m->p[i].sign, s->p[i])) {
@@ -299,12 +314,7 @@ int lag_setup_start(lag_sim *s)
                       m->p[i].name, sign_text(m->p[i].sign));
     }
   }
-  if (c->start) {
-    c->start(s->p, s->now, s->now + nq, s->now + 2 * nq);
-  }
-  for (int i = 0; i < n; i++) {
-    s->now[i] = isnan(s->start[i]) ? s->now[i] : s->start[i];
-  }
+  place(s);
   if (lag_not_finite(n, s->now) >= 0) {
     return lag_fail(s, LAG_ENAN, "the start is not finite");
   }

@@ -148,12 +148,5 @@ const lag_method lag_dop853 = {
     .order = 8,
     .dense_order = 7,
     .doc = "Dormand-Prince 8(5,3), for small tolerances. DOI 10.1007/978-3-540-78862-1, II.5",
-    .flags = LAG_METHOD_ADAPTIVE,
-    .noptions = EMBEDDED_NOPTIONS,
-    .options = lag_embedded_options,
-    .work_size = work_size,
-    .init = lag_embedded_init,
-    .step = step,
-    .dense = dense,
-    .reset = lag_embedded_reset,
+    EMBEDDED_DESCRIPTOR,
 };

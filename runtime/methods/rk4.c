@@ -23,9 +23,7 @@ enum { K1, K2, K3, K4, F0, Y0, Y1, YS, COMP, NARRAYS };
 static const double node[4] = {0, 0.5, 0.5, 1};
 static const double weight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
 
-static const lag_method_option options[] = {
-    {"step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL},
-};
+static const lag_method_option options[] = {LAG_STEP_OPTION};
 
 static size_t work_size(const lag_problem *pb)
 {

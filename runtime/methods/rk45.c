@@ -57,12 +57,5 @@ const lag_method lag_rk45 = {
     .order = 5,
     .dense_order = 4,
     .doc = "Dormand-Prince 5(4), DOI 10.1016/0771-050X(80)90013-3",
-    .flags = LAG_METHOD_ADAPTIVE,
-    .noptions = EMBEDDED_NOPTIONS,
-    .options = lag_embedded_options,
-    .work_size = work_size,
-    .init = lag_embedded_init,
-    .step = step,
-    .dense = dense,
-    .reset = lag_embedded_reset,
+    EMBEDDED_DESCRIPTOR,
 };

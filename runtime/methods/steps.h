@@ -2,6 +2,8 @@
 #ifndef LAG_METHODS_STEPS_H
 #define LAG_METHODS_STEPS_H
 
+#include <math.h>
+
 #include "lag.h"
 
 /* s + d, where *c is what earlier sums have lost: two-sum, valid for operands of any size. A. Neumaier, ZAMM 54
@@ -13,6 +15,9 @@ static inline double lag_sum(double s, double d, double *c)
   *c = (s - (r - b)) + (x - b);
   return r;
 }
+
+/* The option of a method with steps of equal size. */
+#define LAG_STEP_OPTION {"step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL}
 
 /* The step of a method with steps of equal size: the option, or 0 for a 10000th of the scene's span. */
 static inline double lag_step_size(const lag_problem *pb, double option)

@@ -27,9 +27,7 @@ typedef struct Verlet {
 /* f = [v|a] at both ends and at a stage, y at both ends and at a stage, its increments, what y lost to rounding. */
 enum { F0, F1, FS, Y0, Y1, YS, DY, COMP, COMP1, NARRAYS };
 
-static const lag_method_option options[] = {
-    {"step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL},
-};
+static const lag_method_option options[] = {LAG_STEP_OPTION};
 
 static size_t work_size(const lag_problem *pb)
 {

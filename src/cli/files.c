@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,22 +11,41 @@ static int write_all(FILE *f, const char *text, size_t n) {
   return fwrite(text, 1, n, f) == n && fflush(f) == 0;
 }
 
+/* Devices and pipes are written as they are; renaming a file onto /dev/null would replace it. */
+static int is_special(const char *path) {
+  struct stat st;
+  return stat(path, &st) == 0 && !S_ISREG(st.st_mode);
+}
+
+static int write_and_close(FILE *f, const char *text, size_t n, const char **error) {
+  errno = 0;
+  int ok = f && write_all(f, text, n);
+  int why = errno;
+  if (f && fclose(f) != 0 && ok) {
+    ok = 0;
+    why = errno;
+  }
+  if (!ok) *error = strerror(why ? why : EIO);
+  return ok;
+}
+
 int file_write(Arena *a, const char *path, const char *text, size_t n, const char **error) {
   if (strcmp(path, "-") == 0) {
     if (write_all(stdout, text, n)) return 1;
     *error = strerror(errno);
     return 0;
   }
-  const char *part = arena_printf(a, "%s.%ld.part", path, (long)getpid());
-  FILE *f = fopen(part, "wb");
-  if (!f) {
-    *error = strerror(errno);
-    return 0;
+  if (is_special(path)) return write_and_close(fopen(path, "wb"), text, n, error);
+  char *target = realpath(path, NULL); /* through a symbolic link, where there is one */
+  if (target) {
+    path = arena_strdup(a, target);
+    free(target);
   }
-  int ok = write_all(f, text, n);
-  if (fclose(f) != 0) ok = 0;
-  if (ok && rename(part, path) == 0) return 1;
-  *error = strerror(errno);
+  const char *part = arena_printf(a, "%s.%ld.part", path, (long)getpid());
+  if (write_and_close(fopen(part, "wb"), text, n, error)) {
+    if (rename(part, path) == 0) return 1;
+    *error = strerror(errno);
+  }
   remove(part);
   return 0;
 }

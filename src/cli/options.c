@@ -24,7 +24,8 @@ static const struct {
    "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h).\n"},
   {"header", CMD_HEADER, "lagc header MODEL [SCENE] -o FILE.h",
    "Writes one self-contained C99/C++ header to embed: parameters as a struct, accelerations,\n"
-   "energy, an RK4 step. It includes nothing but <math.h>.\n"},
+   "energy, an RK4 step. It includes nothing but <math.h>. Its names begin with the file's: pend.h has\n"
+   "PEND_IMPLEMENTATION and pend_accel.\n"},
   {"build", CMD_BUILD, "lagc build MODEL -o SIMULATOR [--no-gsl]",
    "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options.\n\n"
    "  --no-gsl          leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole\n"},
@@ -112,6 +113,20 @@ static int add_define(Arena *a, Options *o, const char *text, const char **error
   return 1;
 }
 
+static int dump_is_known(const char *stages, const char **error) {
+  static const char *const known[] = {"ast", "model", "eqns", "prog"};
+  *error = "--dump takes stages: ast, model, eqns, prog, with commas between them";
+  if (!stages || !stages[0]) return 0;
+  for (const char *s = stages; *s;) {
+    size_t n = strcspn(s, ","), found = 0;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) found |= strlen(known[i]) == n && strncmp(known[i], s, n) == 0;
+    if (!found) return 0;
+    s += n + (s[n] == ',');
+  }
+  *error = NULL;
+  return 1;
+}
+
 /* One option of lagc itself; -1 when it is none. */
 static int own_option(Arena *a, int argc, char **argv, int *i, Options *o, const char **error) {
   const char *arg = argv[*i], *value = NULL;
@@ -119,7 +134,7 @@ static int own_option(Arena *a, int argc, char **argv, int *i, Options *o, const
     value = arg[2] ? arg + 2 : *i + 1 < argc ? argv[++*i] : NULL;
     return add_define(a, o, value, error);
   }
-  if (take_value(arg, "--dump", argc, argv, i, &o->dump)) return o->dump != NULL;
+  if (take_value(arg, "--dump", argc, argv, i, &o->dump)) return dump_is_known(o->dump, error);
   if (strcmp(arg, "--no-gsl") == 0) return o->no_gsl = 1;
   if (o->command == CMD_RUN) return -1;
   if (strcmp(arg, "-o") == 0 || strcmp(arg, "--output") == 0) {

@@ -37,7 +37,14 @@ static int try_place(Arena *a, const char *lib, const char *include, Toolchain *
 int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error) {
   const char *cc = getenv("CC"), *home = getenv("LAG_HOME"), *own = own_folder(a, argv0);
   *t = (Toolchain){.cc = cc && cc[0] ? cc : "cc"};
-  int found = home && try_place(a, arena_printf(a, "%s/lib", home), arena_printf(a, "%s/include", home), t);
+  int found = 0;
+  if (home && home[0]) {
+    found = try_place(a, arena_printf(a, "%s/lib", home), arena_printf(a, "%s/include", home), t);
+    if (!found) {
+      *error = arena_printf(a, "LAG_HOME is %s, where lib/liblag.a and include/lag.h are not found", home);
+      return 0;
+    }
+  }
   found = found || try_place(a, own, arena_printf(a, "%s/../runtime/include", own), t);
   found = found || try_place(a, arena_printf(a, "%s/../lib", own), arena_printf(a, "%s/../include", own), t);
   if (!found) {
@@ -115,6 +122,11 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
 }
 
 int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output, const char **error) {
+  struct stat st;
+  if (stat(output, &st) == 0 && !S_ISREG(st.st_mode)) {
+    *error = arena_printf(a, "cannot write %s: it is no ordinary file", output);
+    return 0;
+  }
   char *dir = arena_printf(a, "%s.XXXXXX", output); /* beside the output: the last step is a rename */
   if (!mkdtemp(dir)) {
     *error = arena_printf(a, "cannot write beside %s: %s", output, strerror(errno));
@@ -163,7 +175,12 @@ const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *tex
                   : home && home[0] == '/' ? arena_printf(a, "%s/.cache/lagc", home) : NULL;
   if (!dir || !dir_make(a, dir) || access(dir, W_OK) != 0) {
     dir = arena_printf(a, "%s/lagc-%ld", tmp && tmp[0] ? tmp : "/tmp", (long)getuid());
-    dir_make(a, dir);
+    struct stat st;
+    /* what lies there is run: it must be ours */
+    if ((mkdir(dir, 0700) != 0 && errno != EEXIST) || lstat(dir, &st) != 0 || !S_ISDIR(st.st_mode) || st.st_uid != getuid()) {
+      char *own = arena_printf(a, "%s.XXXXXX", dir);
+      if (mkdtemp(own)) dir = own;
+    }
   }
   uint64_t h1 = hash_all(a, 1469598103934665603u, t, texts, n), h2 = hash_all(a, 0x9e3779b97f4a7c15u, t, texts, n);
   return arena_printf(a, "%s/%016llx%016llx", dir, (unsigned long long)h1, (unsigned long long)h2);

@@ -10,9 +10,26 @@ static const char *const reserved[] = {
   "static", "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while", "asm", "bool", "catch",
   "class", "delete", "explicit", "export", "false", "friend", "mutable", "namespace", "new", "operator", "private",
   "protected", "public", "template", "this", "throw", "true", "try", "typeid", "typename", "using", "virtual", "and",
-  "or", "not", "xor", "compl", "bitand", "bitor", "alignas", "alignof", "nullptr", "noexcept", "main", "errno",
-  "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "cbrt", "fabs", "sqrt",
-  "pow", "hypot", "NULL", "INFINITY", "NAN", "EOF", "OVERFLOW", "UNDERFLOW", "DOMAIN", "I", "near", "far",
+  "or", "not", "xor", "compl", "bitand", "bitor", "and_eq", "or_eq", "not_eq", "xor_eq", "alignas", "alignof",
+  "nullptr", "noexcept", "constexpr", "consteval", "constinit", "decltype", "static_assert", "thread_local",
+  "typeof", "const_cast", "static_cast", "dynamic_cast", "reinterpret_cast", "concept", "requires", "co_await",
+  "co_return", "co_yield", "wchar_t", "char8_t", "char16_t", "char32_t", "size_t", "ptrdiff_t", "float_t",
+  "double_t", "offsetof", "main", "errno", "signgam", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh",
+  "cosh", "tanh", "exp", "log", "cbrt", "fabs", "sqrt", "pow", "hypot", "NULL", "INFINITY", "NAN", "EOF", "OVERFLOW",
+  "UNDERFLOW", "DOMAIN", "SING", "PLOSS", "TLOSS", "I", "HUGE", "HUGE_VAL", "HUGE_VALF", "HUGE_VALL", "MAXFLOAT",
+  "M_E", "M_LOG2E", "M_LOG10E", "M_LN2", "M_LN10", "M_PI", "M_PI_2", "M_PI_4", "M_1_PI", "M_2_PI", "M_2_SQRTPI",
+  "M_SQRT2", "M_SQRT1_2", "math_errhandling", "near", "far", "unix", "linux",
+};
+
+/* Functions of the C library that a compiler or <math.h> declares: locals may be called so, files
+ * may not have an object of the name. */
+static const char *const library[] = {
+  "abort", "abs", "acosh", "alloca", "asinh", "atanh", "bcmp", "bcopy", "bzero", "calloc", "ceil", "clog", "conj",
+  "copysign", "cexp", "cpow", "drem", "erf", "erfc", "exit", "exp2", "exp10", "expm1", "fdim", "ffs", "floor", "fma",
+  "fmax", "fmin", "fmod", "fork", "free", "frexp", "gamma", "ilogb", "index", "isinf", "isnan", "j0", "j1", "jn",
+  "labs", "ldexp", "lgamma", "log10", "log1p", "log2", "logb", "lrint", "lround", "malloc", "modf", "nan",
+  "nearbyint", "nextafter", "pow10", "printf", "puts", "realloc", "remainder", "rindex", "rint", "round", "scalb",
+  "scalbn", "signbit", "significand", "sincos", "strlen", "tgamma", "trunc", "y0", "y1", "yn",
 };
 
 /* U+0391..U+03C9: the Greek letters' names, by position from alpha. */
@@ -38,7 +55,7 @@ static void put_letter(StrBuf *b, unsigned c) {
   } else sb_printf(b, "u%04x", c);
 }
 
-const char *cname(Arena *a, const char *name) {
+const char *cname_spelled(Arena *a, const char *name) {
   StrBuf b = strbuf(a);
   static const char *const dots[] = {"", "_dot", "_ddot", "_dddot"};
   for (const unsigned char *s = (const unsigned char *)name; *s;) {
@@ -55,7 +72,11 @@ const char *cname(Arena *a, const char *name) {
       sb_putc(&b, plain ? c : '_');
     }
   }
-  const char *text = sb_text(&b);
+  return sb_text(&b);
+}
+
+const char *cname(Arena *a, const char *name) {
+  const char *text = cname_spelled(a, name);
   if (text[0] >= '0' && text[0] <= '9') text = arena_printf(a, "n%s", text);
   if (text[0] == '_') text = arena_printf(a, "x%s", text); /* a leading underscore is the C library's */
   for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++)
@@ -63,20 +84,46 @@ const char *cname(Arena *a, const char *name) {
   return text;
 }
 
-CNames cnames_new(Arena *a) { return (CNames){.arena = a}; }
-void cnames_reserve(CNames *c, const char *name) { vec_push(c->arena, &c->taken, name); }
-
-static int is_taken(const CNames *c, const char *name) {
-  for (uint32_t i = 0; i < c->taken.n; i++)
-    if (strcmp(c->taken.at[i], name) == 0) return 1;
+int cname_is_library(const char *id) {
+  for (size_t i = 0; i < sizeof library / sizeof *library; i++)
+    if (strcmp(id, library[i]) == 0) return 1;
   return 0;
+}
+
+CNames cnames_new(Arena *a) {
+  enum { CAP = 64 };
+  return (CNames){.arena = a, .table = ARENA_ARRAY(a, CName, CAP), .cap = CAP};
+}
+
+/* The place of a name, or the empty one where it belongs. */
+static CName *place(const CNames *c, const char *name) {
+  uint32_t h = 2166136261u;
+  for (const char *s = name; *s; s++) h = (h ^ (unsigned char)*s) * 16777619u;
+  uint32_t i = h & (c->cap - 1);
+  while (c->table[i].name && strcmp(c->table[i].name, name) != 0) i = (i + 1) & (c->cap - 1);
+  return &c->table[i];
+}
+
+void cnames_reserve(CNames *c, const char *name) {
+  if (c->taken.n * 2 >= c->cap) {
+    CNames bigger = *c;
+    bigger.cap = 2 * c->cap;
+    bigger.table = ARENA_ARRAY(c->arena, CName, bigger.cap);
+    for (uint32_t i = 0; i < c->cap; i++)
+      if (c->table[i].name) *place(&bigger, c->table[i].name) = c->table[i];
+    *c = bigger;
+  }
+  CName *at = place(c, name);
+  if (at->name) return;
+  *at = (CName){name, 2};
+  vec_push(c->arena, &c->taken, name);
 }
 
 const char *cnames_take(CNames *c, const char *name) {
   const char *stem = cname(c->arena, name), *full = stem;
   size_t n = strlen(stem);
   const char *join = n && stem[n - 1] == '_' ? "" : "_";
-  for (int k = 2; is_taken(c, full); k++) full = arena_printf(c->arena, "%s%s%d", stem, join, k);
+  while (place(c, full)->name) full = arena_printf(c->arena, "%s%s%d", stem, join, place(c, stem)->next++);
   cnames_reserve(c, full);
   return full;
 }

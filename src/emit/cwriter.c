@@ -2,12 +2,13 @@
 
 #include <string.h>
 
-enum { INLINE_MAX = 64, LINE_MAX_COLUMNS = 100 };
+enum { INLINE_MAX = 64, MADE_NAME_MAX = 14, LINE_MAX_COLUMNS = 100, WRAP_COLUMNS = 120 };
 enum { C_SELECT = 1, C_OR, C_AND, C_CMP, C_ADD, C_MUL, C_UNARY, C_ATOM };
 
 typedef struct {
   const char *text;
   int prec;
+  int counted; /* a name w1, w2, ... that says nothing */
 } Piece;
 
 typedef struct {
@@ -16,6 +17,7 @@ typedef struct {
   Arena *a;
   CNames names;
   uint32_t *uses;
+  const char **stored; /* by slot: the comment of the store that uses it */
   Piece *piece; /* by slot: how its value is spelled where it is used */
   StrBuf *out;
   uint32_t temps;
@@ -59,7 +61,7 @@ const char *c_number(Arena *a, const char *prefix, Num n) {
   if (!num_is_exact(n)) return arena_printf(a, "%s%s_C(%s)", minus, prefix, float_text(a, n.approx));
   const char *decimal = finite_decimal(a, n);
   if (decimal) return arena_printf(a, "%s%s_C(%s)", minus, prefix, decimal);
-  return arena_printf(a, "%s(%s_C(%lld.0)/%s_C(%lld.0))", minus, prefix, (long long)n.num, prefix, (long long)n.den);
+  return arena_printf(a, "%s%s_C(%lld.0)/%s_C(%lld.0)", minus, prefix, (long long)n.num, prefix, (long long)n.den);
 }
 
 const char *c_string(Arena *a, const char *s) {
@@ -68,17 +70,27 @@ const char *c_string(Arena *a, const char *s) {
   for (; *s; s++) {
     if (*s == '"' || *s == '\\') sb_printf(&b, "\\%c", *s);
     else if (*s == '\n') sb_puts(&b, "\\n");
-    else if (*s == '?' && s[1] == '?') sb_puts(&b, "\\?"); /* no trigraphs */
+    else if (*s == '?' && b.n > 1 && s[-1] == '?') sb_puts(&b, "\\?"); /* no trigraphs */
     else sb_putc(&b, *s);
   }
   sb_putc(&b, '"');
   return sb_text(&b);
 }
 
+const char *comment_text(Arena *a, const char *s) {
+  StrBuf b = strbuf(a);
+  for (; *s; s++) {
+    sb_putc(&b, *s);
+    int pair = (s[0] == '*' && s[1] == '/') || (s[0] == '/' && s[1] == '*') || (s[0] == '?' && s[1] == '?');
+    if (pair) sb_putc(&b, ' ');
+  }
+  return sb_text(&b);
+}
+
 /* --- expressions --- */
 
 static Piece operand(Writer *w, Slot s) {
-  if (!s) return (Piece){arena_printf(w->a, "%s_C(0.0)", w->style->prefix), C_ATOM};
+  if (!s) return (Piece){arena_printf(w->a, "%s_C(0.0)", w->style->prefix), C_ATOM, 0};
   return w->piece[s];
 }
 
@@ -87,30 +99,57 @@ static const char *wrapped(Writer *w, Slot s, int prec) {
   return x.prec < prec ? arena_printf(w->a, "(%s)", x.text) : x.text;
 }
 
-/* a op b; the right operand of - and / binds tighter. */
-static Piece infix(Writer *w, const Ins *i, const char *op, int prec, int strict) {
-  const char *a = wrapped(w, i->a, prec), *b = wrapped(w, i->b, prec + strict);
-  return (Piece){arena_printf(w->a, "%s%s%s", a, op, b), prec};
+/* Scaling by a power of two rounds nothing: 2*(a*b) may be written 2*a*b. */
+static int is_power_of_two(const Ins *i) {
+  int64_t n = i->number.num, d = i->number.den;
+  return i->op == IR_CONST && num_is_exact(i->number) && n > 0 && (n & (n - 1)) == 0 && (d & (d - 1)) == 0;
+}
+
+/* a op b, grouped as computed: the text rounds as the program does. */
+static Piece infix(Writer *w, const Ins *i, const char *op, int prec) {
+  Piece right = operand(w, i->b);
+  int flat = i->op == IR_MUL && right.prec == C_MUL && right.text[0] != '-' && is_power_of_two(&w->p->ins.at[i->a]);
+  const char *a = wrapped(w, i->a, prec), *b = flat ? right.text : wrapped(w, i->b, prec == C_MUL ? C_ATOM : prec + 1);
+  return (Piece){arena_printf(w->a, "%s%s%s", a, op, b), prec, 0};
+}
+
+static Piece constant(Writer *w, const Ins *i) {
+  const char *text = c_number(w->a, w->style->prefix, i->number);
+  return (Piece){text, strchr(text, '/') ? C_MUL : text[0] == '-' ? C_UNARY : C_ATOM, 0};
+}
+
+/* -a*b is (-a)*b, and rounds like -(a*b). */
+static Piece negative(Writer *w, const Ins *i) {
+  int product = operand(w, i->a).prec == C_MUL;
+  return (Piece){arena_printf(w->a, "-%s", wrapped(w, i->a, product ? C_MUL : C_ATOM)), product ? C_MUL : C_UNARY, 0};
 }
 
 static Piece macro(Writer *w, const char *name, Slot a, Slot b, Slot c, int n) {
   const char *x = operand(w, a).text, *y = operand(w, b).text, *z = operand(w, c).text, *m = w->style->prefix;
   const char *t = n == 1 ? arena_printf(w->a, "%s_%s(%s)", m, name, x) : n == 2 ? arena_printf(w->a, "%s_%s(%s, %s)", m, name, x, y)
                          : arena_printf(w->a, "%s_%s(%s, %s, %s)", m, name, x, y, z);
-  return (Piece){t, C_ATOM};
+  return (Piece){t, C_ATOM, 0};
 }
 
-static Piece call(Writer *w, const char *fn, Slot a, Slot b) {
-  const char *x = operand(w, a).text, *y = b ? operand(w, b).text : NULL;
-  return (Piece){arena_printf(w->a, y ? "%s_FN(%s)(%s, %s)" : "%s_FN(%s)(%s)", w->style->prefix, fn, x, y), C_ATOM};
+static Piece call1(Writer *w, const char *fn, Slot a) {
+  return (Piece){arena_printf(w->a, "%s_FN(%s)(%s)", w->style->prefix, fn, operand(w, a).text), C_ATOM, 0};
 }
 
-static Piece load(Writer *w, const Ins *i) {
+static Piece call2(Writer *w, const char *fn, Slot a, Slot b) {
+  const char *x = operand(w, a).text, *y = operand(w, b).text; /* 0 is a number here */
+  return (Piece){arena_printf(w->a, "%s_FN(%s)(%s, %s)", w->style->prefix, fn, x, y), C_ATOM, 0};
+}
+
+/* Element `index` of an array: p->m1 where the parameters are a struct. */
+static const char *element(const Writer *w, const char *array, uint32_t index) {
   const CStyle *st = w->style;
-  const char *text = i->array == ARR_T ? st->in[ARR_T]
-                   : i->array == ARR_P && st->params ? arena_printf(w->a, "%s->%s", st->in[ARR_P], st->params[i->index])
-                   : arena_printf(w->a, "%s[%u]", st->in[i->array], i->index);
-  return (Piece){text, C_ATOM};
+  int member = st->params && strcmp(array, st->in[ARR_P]) == 0;
+  return member ? arena_printf(w->a, "%s->%s", array, st->params[index]) : arena_printf(w->a, "%s[%u]", array, index);
+}
+
+static Piece load(const Writer *w, const Ins *i) {
+  const char *array = w->style->in[i->array];
+  return (Piece){i->array == ARR_T ? array : element(w, array, i->index), C_ATOM, 0};
 }
 
 /* sign(x) and the choice of the smaller or larger, through SELECT: vectors have no ternary. */
@@ -118,37 +157,34 @@ static Piece choose(Writer *w, const Ins *i) {
   const char *m = w->style->prefix, *a = wrapped(w, i->a, C_CMP + 1);
   if (i->op == IR_SIGN)
     return (Piece){arena_printf(w->a, "%s_SELECT(%s > %s_C(0.0), %s_C(1.0), %s_SELECT(%s < %s_C(0.0), -%s_C(1.0), %s_C(0.0)))", m, a,
-                                m, m, m, a, m, m, m), C_ATOM};
+                                m, m, m, a, m, m, m), C_ATOM, 0};
   const char *b = wrapped(w, i->b, C_CMP + 1);
-  return (Piece){arena_printf(w->a, "%s_SELECT(%s %s %s, %s, %s)", m, a, i->op == IR_MIN ? "<" : ">", b, a, b), C_ATOM};
+  return (Piece){arena_printf(w->a, "%s_SELECT(%s %s %s, %s, %s)", m, a, i->op == IR_MIN ? "<" : ">", b, a, b), C_ATOM, 0};
 }
 
 static Piece solved(Writer *w, const Ins *i) {
   uint32_t n = w->p->solves.at[w->p->ins.at[i->a].index].n;
-  return (Piece){arena_printf(w->a, "w[%u]", n * n + i->index), C_ATOM};
+  return (Piece){arena_printf(w->a, "w[%u]", n * n + i->index), C_ATOM, 0};
 }
 
 static Piece spell(Writer *w, const Ins *i) {
   const char *m = w->style->prefix;
   switch (i->op) {
-    case IR_CONST: return (Piece){c_number(w->a, m, i->number), num_sign(i->number) < 0 ? C_UNARY : C_ATOM};
-    case IR_PI: return (Piece){arena_printf(w->a, "%s_C(3.14159265358979323846264338327950288)", m), C_ATOM};
+    case IR_CONST: return constant(w, i);
+    case IR_PI: return (Piece){arena_printf(w->a, "%s_C(3.14159265358979323846264338327950288)", m), C_ATOM, 0};
     case IR_LOAD: return load(w, i);
-    case IR_ADD: return infix(w, i, " + ", C_ADD, 0);
-    case IR_SUB: return infix(w, i, " - ", C_ADD, 1);
-    case IR_MUL: return infix(w, i, "*", C_MUL, 0);
-    case IR_DIV: return infix(w, i, "/", C_MUL, 1);
-    case IR_NEG: return (Piece){arena_printf(w->a, "-%s", wrapped(w, i->a, C_ATOM)), C_UNARY};
-    case IR_SQRT: return call(w, "sqrt", i->a, 0);
-    case IR_FN1: return call(w, i->text, i->a, 0);
-    case IR_FN2: {
-      const char *x = operand(w, i->a).text, *y = operand(w, i->b).text;
-      return (Piece){arena_printf(w->a, "%s_FN(%s)(%s, %s)", m, i->text, x, y), C_ATOM};
-    }
+    case IR_ADD: return infix(w, i, " + ", C_ADD);
+    case IR_SUB: return infix(w, i, " - ", C_ADD);
+    case IR_MUL: return infix(w, i, "*", C_MUL);
+    case IR_DIV: return infix(w, i, "/", C_MUL);
+    case IR_NEG: return negative(w, i);
+    case IR_SQRT: return call1(w, "sqrt", i->a);
+    case IR_FN1: return call1(w, i->text, i->a);
+    case IR_FN2: return call2(w, i->text, i->a, i->b);
     case IR_MIN: case IR_MAX: case IR_SIGN: return choose(w, i);
-    case IR_LT: return infix(w, i, " < ", C_CMP, 1);
-    case IR_LE: return infix(w, i, " <= ", C_CMP, 1);
-    case IR_EQ: return infix(w, i, " == ", C_CMP, 1);
+    case IR_LT: return infix(w, i, " < ", C_CMP);
+    case IR_LE: return infix(w, i, " <= ", C_CMP);
+    case IR_EQ: return infix(w, i, " == ", C_CMP);
     case IR_NOT: return macro(w, "NOT", i->a, 0, 0, 1);
     case IR_AND: return macro(w, "AND", i->a, i->b, 0, 2);
     case IR_OR: return macro(w, "OR", i->a, i->b, 0, 2);
@@ -156,14 +192,37 @@ static Piece spell(Writer *w, const Ins *i) {
     case IR_SOLVED: return solved(w, i);
     case IR_PIVOT: case IR_SOLVE: case IR_TITLE: break;
   }
-  return (Piece){"", C_ATOM};
+  return (Piece){"", C_ATOM, 0};
 }
 
 /* --- statements --- */
 
+/* A statement, broken at spaces where it is long. */
+static void put_statement(Writer *w, const char *text) {
+  size_t column = 2;
+  sb_puts(w->out, "  ");
+  while (*text) {
+    size_t n = strcspn(text + 1, " ") + 1; /* a word with the space before it */
+    if (*text == ' ' && column > 8 && column + n > WRAP_COLUMNS) {
+      sb_puts(w->out, "\n     ");
+      column = 5;
+    }
+    sb_putn(w->out, text, n);
+    column += n;
+    text += n;
+  }
+}
+
+/* The length of a text as a reader sees it: a long prefix counts as a short one. */
+static size_t visible(const Writer *w, const char *text) {
+  size_t n = strlen(text), prefix = strlen(w->style->prefix);
+  for (const char *s = text; prefix > 3 && (s = strstr(s, w->style->prefix)) != NULL; s += prefix) n -= prefix - 3;
+  return n;
+}
+
 static void flush_title(Writer *w) {
   if (!w->title) return;
-  sb_printf(w->out, "\n  /* %s */\n", w->title);
+  sb_printf(w->out, "\n  /* %s */\n", comment_text(w->a, w->title));
   w->title = NULL;
 }
 
@@ -173,22 +232,47 @@ static int is_identifier(const char *s) {
   return 1;
 }
 
-/* The user's name, or sin_th1, or w1, w2, ... */
-static const char *name_for(Writer *w, const Ins *i) {
-  if (i->name) return cnames_take(&w->names, i->name);
-  if (i->op == IR_FN1 && is_identifier(operand(w, i->a).text))
-    return cnames_take(&w->names, arena_printf(w->a, "%s_%s", i->text, operand(w, i->a).text));
-  return cnames_take(&w->names, arena_printf(w->a, "w%u", ++w->temps));
+static int tells(const Piece *x) { return !x->counted && is_identifier(x->text); }
+
+/* sin_th1, m2_l1, th1_dot_sq, inv_M11: a name made of what the value is made of; or NULL. */
+static const char *made_name(Writer *w, const Ins *i) {
+  Piece x = operand(w, i->a), y = operand(w, i->b);
+  if (i->op == IR_FN1 && tells(&x)) return arena_printf(w->a, "%s_%s", i->text, x.text);
+  if (i->op == IR_DIV && w->p->ins.at[i->a].op == IR_CONST && num_is_one(w->p->ins.at[i->a].number) && tells(&y))
+    return arena_printf(w->a, "inv_%s", y.text);
+  if (i->op != IR_MUL || !tells(&x) || !tells(&y)) return NULL;
+  if (i->a == i->b) return arena_printf(w->a, "%s_sq", x.text);
+  return strlen(x.text) + strlen(y.text) <= MADE_NAME_MAX ? arena_printf(w->a, "%s_%s", x.text, y.text) : NULL;
+}
+
+static Piece name_for(Writer *w, const Ins *i) {
+  const char *made = i->name ? i->name : made_name(w, i);
+  if (made) return (Piece){cnames_take(&w->names, made), C_ATOM, 0};
+  const char *stem = ir_is_condition(i->op) ? "is" : "w";
+  return (Piece){cnames_take(&w->names, arena_printf(w->a, "%s%u", stem, ++w->temps)), C_ATOM, 1};
+}
+
+/* What a name means that no C identifier can spell: x1', and the derivatives that d_x1' and
+ * x1'_drift stand for. */
+static const char *meaning(Writer *w, const char *name) {
+  static const char drift[] = "_drift";
+  size_t n = strlen(name), end = sizeof drift - 1;
+  if (!strchr(name, '\'')) return name;
+  int drifts = n > end && strcmp(name + n - end, drift) == 0, by = strncmp(name, "d_", 2) == 0;
+  if (drifts) name = arena_strndup(w->a, name, n - end);
+  if (by) name = arena_printf(w->a, "the derivative by %s", name + 2);
+  return drifts ? arena_printf(w->a, "rate of %s, without q''", name) : by ? name + 4 : name;
 }
 
 static void declare(Writer *w, Slot s, Piece x) {
   const Ins *i = &w->p->ins.at[s];
-  const char *name = name_for(w, i);
+  Piece name = name_for(w, i);
   flush_title(w);
-  sb_printf(w->out, "  const %s_REAL %s = %s;", w->style->prefix, name, x.text);
-  if (i->name && strcmp(i->name, name) != 0) sb_printf(w->out, " /* %s */", i->name);
+  const char *type = ir_is_condition(i->op) ? "MASK" : "REAL";
+  put_statement(w, arena_printf(w->a, "const %s_%s %s = %s;", w->style->prefix, type, name.text, x.text));
+  if (i->name && strcmp(i->name, name.text) != 0) sb_printf(w->out, " /* %s */", comment_text(w->a, meaning(w, i->name)));
   sb_putc(w->out, '\n');
-  w->piece[s] = (Piece){name, C_ATOM};
+  w->piece[s] = name;
 }
 
 static void write_pivot(Writer *w, const Ins *i) {
@@ -207,32 +291,42 @@ static void write_solve(Writer *w, const Ins *i) {
   sb_printf(w->out, "  if (%s(%u, w, w + %u)) return %s_ESINGULAR;\n", w->style->solve, n, n * n, w->style->prefix);
 }
 
-/* Names every load at the top, an array a line. */
-static void write_loads(Writer *w) {
-  for (int array = 0; array < ARR_COUNT; array++) {
-    size_t column = 0;
-    for (Slot s = 1; s < w->p->ins.n; s++) {
-      const Ins *i = &w->p->ins.at[s];
-      if (i->op != IR_LOAD || (int)i->array != array || !w->uses[s]) continue;
-      if (w->style->loads_inline || array == ARR_T) {
-        w->piece[s] = load(w, i);
-        continue;
-      }
-      const char *name = cnames_take(&w->names, i->name);
-      const char *text = arena_printf(w->a, "%s = %s", name, load(w, i).text);
-      if (column && column + strlen(text) + 2 < LINE_MAX_COLUMNS) {
-        sb_printf(w->out, ", %s", text);
-        column += strlen(text) + 2;
-      } else {
-        if (column) sb_puts(w->out, ";\n");
-        const char *head = arena_printf(w->a, "  const %s_REAL %s", w->style->prefix, text);
-        sb_puts(w->out, head);
-        column = strlen(head);
-      }
-      w->piece[s] = (Piece){name, C_ATOM};
+/* The loads of one array that are used, by index; 0 where there is none. */
+static Slot *loads_of(Writer *w, int array, uint32_t *n) {
+  const Prog *p = w->p;
+  *n = 0;
+  for (Slot s = 1; s < p->ins.n; s++)
+    if (p->ins.at[s].op == IR_LOAD && (int)p->ins.at[s].array == array && p->ins.at[s].index >= *n) *n = p->ins.at[s].index + 1;
+  Slot *at = ARENA_ARRAY(w->a, Slot, *n + 1);
+  for (Slot s = 1; s < p->ins.n; s++)
+    if (p->ins.at[s].op == IR_LOAD && (int)p->ins.at[s].array == array && w->uses[s]) at[p->ins.at[s].index] = s;
+  return at;
+}
+
+/* Names the loads of an array: as many on a line as fit. */
+static void write_array(Writer *w, int array) {
+  size_t column = 0;
+  uint32_t n;
+  const Slot *at = loads_of(w, array, &n);
+  for (uint32_t k = 0; k < n; k++) {
+    if (!at[k]) continue;
+    Piece x = load(w, &w->p->ins.at[at[k]]);
+    if (w->style->loads_inline || array == ARR_T) {
+      w->piece[at[k]] = x;
+      continue;
     }
-    if (column) sb_puts(w->out, ";\n");
+    const char *name = cnames_take(&w->names, w->p->ins.at[at[k]].name);
+    const char *text = arena_printf(w->a, "%s = %s", name, x.text);
+    if (column && column + strlen(text) + 2 >= LINE_MAX_COLUMNS) {
+      sb_puts(w->out, ";\n");
+      column = 0;
+    }
+    const char *full = column ? arena_printf(w->a, ", %s", text) : arena_printf(w->a, "  const %s_REAL %s", w->style->prefix, text);
+    sb_puts(w->out, full);
+    column += strlen(full);
+    w->piece[at[k]] = (Piece){name, C_ATOM, 0};
   }
+  if (column) sb_puts(w->out, ";\n");
 }
 
 static void count_uses(Writer *w) {
@@ -251,7 +345,10 @@ static void count_uses(Writer *w) {
     for (uint32_t j = 0; j < k->n * k->n; j++) w->uses[k->matrix[j]]++;
     for (uint32_t j = 0; j < k->n; j++) w->uses[k->rhs[j]]++;
   }
-  for (uint32_t k = 0; k < p->stores.n; k++) w->uses[p->stores.at[k].slot]++;
+  for (uint32_t k = 0; k < p->stores.n; k++) {
+    w->uses[p->stores.at[k].slot]++;
+    w->stored[p->stores.at[k].slot] = p->stores.at[k].comment;
+  }
 }
 
 static void write_instruction(Writer *w, Slot s) {
@@ -270,8 +367,9 @@ static void write_instruction(Writer *w, Slot s) {
   }
   if (i->op == IR_LOAD) return;
   Piece x = spell(w, i);
-  int leaf = i->op == IR_CONST || i->op == IR_PI || ir_is_condition(i->op);
-  int part = w->uses[s] <= 1 && !i->name && strlen(x.text) <= INLINE_MAX && i->op != IR_SOLVED;
+  int leaf = i->op == IR_CONST || i->op == IR_PI;
+  int told = !i->name || (w->stored[s] && strcmp(i->name, w->stored[s]) == 0); /* by the store's comment */
+  int part = w->uses[s] <= 1 && told && visible(w, x.text) <= INLINE_MAX && i->op != IR_SOLVED;
   if (leaf || part) w->piece[s] = x;
   else declare(w, s, x);
 }
@@ -281,8 +379,10 @@ static void write_stores(Writer *w) {
     const Store *st = &w->p->stores.at[k];
     if (!k) sb_putc(w->out, '\n');
     const char *text = operand(w, st->slot).text;
-    sb_printf(w->out, "  %s[%u] = %s;", w->style->out[st->array], st->index, text);
-    if (strcmp(st->comment, text) != 0) sb_printf(w->out, " /* %s */", st->comment);
+    const char *target = element(w, w->style->out[st->array], st->index), *member = strstr(target, "->");
+    int said = strcmp(st->comment, text) == 0 || (w->style->params && member && strcmp(member + 2, st->comment) == 0);
+    put_statement(w, arena_printf(w->a, "%s = %s;", target, text));
+    if (!said) sb_printf(w->out, " /* %s */", comment_text(w->a, st->comment));
     sb_putc(w->out, '\n');
   }
 }
@@ -290,10 +390,13 @@ static void write_stores(Writer *w) {
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
   w.uses = ARENA_ARRAY(a, uint32_t, p->ins.n);
+  w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
   w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
+  for (const char *const *g = style->globals; g && *g; g++) cnames_reserve(&w.names, *g);
+  if (p->solves.n) cnames_reserve(&w.names, "w");
   count_uses(&w);
-  write_loads(&w);
+  for (int array = 0; array < ARR_COUNT; array++) write_array(&w, array);
   for (Slot s = 1; s < p->ins.n; s++) write_instruction(&w, s);
   write_stores(&w);
 }

@@ -12,9 +12,10 @@
 typedef struct {
   const char *prefix;               /* of the macros */
   const char *const *in;            /* [ARR_COUNT] names of the arrays read: t is no array */
-  const char *const *params;        /* NULL: p[3]; else p->name of parameter i */
+  const char *const *params;        /* NULL: p[3]; else p->name of parameter i, read and written */
   const char *const *out;           /* names of the arrays written */
   const char *const *own;           /* names in the function's scope, NULL at the end */
+  const char *const *globals;         /* names that the function must not hide, NULL at the end; or NULL */
   const char *solve;                /* name of the solver function */
   int loads_inline;                 /* spell loads at their use instead of naming them at the top */
 } CStyle;
@@ -30,6 +31,9 @@ int prog_reads(const Prog *p, IrArray array);
 
 /* A C string literal, with quotes. */
 const char *c_string(Arena *a, const char *s);
+
+/* s with spaces where it would end the comment, open another, or spell a trigraph. */
+const char *comment_text(Arena *a, const char *s);
 
 /* A number as a C constant of the style's scalar: exact decimals are exact in every precision. */
 const char *c_number(Arena *a, const char *prefix, Num n);

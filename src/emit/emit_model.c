@@ -2,185 +2,176 @@
 
 #include <string.h>
 
-#include "base/num.h"
-#include "emit/cnames.h"
-#include "emit/cwriter.h"
+#include "emit/cfunction.h"
+
+/* One emitted file. */
+typedef struct {
+  const IrUnit *u;
+  Arena *a;
+  const char *name;           /* of the lag_model */
+  const char *const *globals; /* what a function's own names must not hide; NULL at the end */
+  StrBuf *out;
+} File;
 
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u"};
 
 static const char *const prelude =
-  "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(f)=f##l'\n"
-  " * '-DLAG_C(x)=x##L'; a vector of lanes defines LAG_SELECT, LAG_ANY and the logic as well. */\n"
+  "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l'\n"
+  " * '-DLAG_C(x)=x##L'; a vector of lanes defines LAG_SELECT, LAG_ANY and the logic as well, and\n"
+  " * LAG_MASK, the type of its comparisons. */\n"
   "#ifndef LAG_FN\n#define LAG_FN(f) f\n#endif\n"
-  "#ifndef LAG_C\n#define LAG_C(x) ((LAG_REAL)x)\n#endif\n"
-  "#ifndef LAG_SELECT\n#define LAG_SELECT(c, a, b) ((c) ? (a) : (b))\n#define LAG_NOT(c) (!(c))\n"
-  "#define LAG_AND(a, b) ((a) && (b))\n#define LAG_OR(a, b) ((a) || (b))\n#define LAG_ANY(c) (c)\n#endif\n";
+  "#ifndef LAG_C\n#define LAG_C(x) ((LAG_REAL)x)\n#endif\n";
 
-/* Gauss elimination with partial pivoting (Golub & Van Loan, algorithm 3.4.1), for blocks that are
- * not proved positive definite, or are large. */
-static const char *const solver =
-  "\n/* M x = b by elimination with partial pivoting: M[n*n] row-major is destroyed, b becomes x. */\n"
-  "static int lag_solve(int n, LAG_REAL *M, LAG_REAL *b) {\n"
-  "  for (int k = 0; k < n; k++) {\n"
-  "    int pivot = k;\n"
-  "    for (int i = k + 1; i < n; i++)\n"
-  "      if (LAG_FN(fabs)(M[i*n + k]) > LAG_FN(fabs)(M[pivot*n + k])) pivot = i;\n"
-  "    if (!(LAG_FN(fabs)(M[pivot*n + k]) > LAG_C(0.0))) return LAG_ESINGULAR;\n"
-  "    for (int j = 0; j < n; j++) {\n"
-  "      const LAG_REAL swap = M[k*n + j];\n"
-  "      M[k*n + j] = M[pivot*n + j];\n"
-  "      M[pivot*n + j] = swap;\n"
-  "    }\n"
-  "    const LAG_REAL swap = b[k];\n"
-  "    b[k] = b[pivot];\n"
-  "    b[pivot] = swap;\n"
-  "    for (int i = k + 1; i < n; i++) {\n"
-  "      const LAG_REAL factor = M[i*n + k]/M[k*n + k];\n"
-  "      for (int j = k + 1; j < n; j++) M[i*n + j] -= factor*M[k*n + j];\n"
-  "      b[i] -= factor*b[k];\n"
-  "    }\n"
-  "  }\n"
-  "  for (int k = n - 1; k >= 0; k--) {\n"
-  "    for (int j = k + 1; j < n; j++) b[k] -= M[k*n + j]*b[j];\n"
-  "    b[k] /= M[k*n + k];\n"
-  "  }\n"
-  "  return 0;\n"
-  "}\n";
+/* What lag_model.h and the head of an emitted file define. */
+static const char *const abi_names[] = {
+  "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
+  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_MASK", "lag_solve", "lag_var", "lag_event", "lag_model", "lag_option",
+  "lag_monitor", "lag_scene", "lag_program", "q_table", "z_table", "p_table", "u_table", "ev_table",
+};
+enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
+
+/* --- identifiers --- */
+
+/* The identifier of scene, or event, i: different for names that C spells alike. */
+static const char *scene_id(const IrUnit *u, uint32_t i) {
+  CNames ids = cnames_new(u->arena);
+  const char *id = "";
+  for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, u->scenes.at[k].name);
+  return id;
+}
+
+static const char *event_id(const IrUnit *u, uint32_t i) {
+  CNames ids = cnames_new(u->arena);
+  const char *id = "";
+  for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, u->events.at[k].name);
+  return id;
+}
+
+const char *model_id(Arena *a, const char *name) {
+  static const char *const taken[] = {"accel", "energy", "events", "act", "inputs", "params", "start", "observe",
+                                      "outputs", "options", "monitors", "program", "scenes"};
+  const char *id = cname(a, name);
+  int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
+  for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
+  for (int i = 0; i < N_ABI_NAMES; i++) clash |= strcmp(id, abi_names[i]) == 0;
+  return clash ? arena_printf(a, "%s_model", id) : id;
+}
+
+static const char *const *globals_of(const IrUnit *u, const char *name) {
+  uint32_t n = N_ABI_NAMES, max = n + 5 * u->scenes.n + 2;
+  const char **all = ARENA_ARRAY(u->arena, const char *, max);
+  memcpy(all, abi_names, sizeof abi_names);
+  if (!name) return all;
+  all[n++] = name;
+  static const char *const lists[] = {"outputs", "options", "monitors"};
+  for (uint32_t i = 0; i < u->scenes.n; i++) {
+    const char *id = scene_id(u, i);
+    all[n++] = arena_printf(u->arena, "%s_%s", name, id);
+    for (int k = 0; k < 3; k++) all[n++] = arena_printf(u->arena, "%s_%s", lists[k], id);
+  }
+  return all;
+}
 
 /* --- functions --- */
-
-/* A function of the state: t, q, v, z, p, u, what it writes, and work space. */
-typedef struct {
-  const char *head;           /* up to and with the opening brace */
-  const char *const *own;     /* its parameters */
-  const char *const *out;
-} Signature;
 
 static const char *const state_args =
   "LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n"
   "    const LAG_REAL *p, const LAG_REAL *u";
 
-static void unused(const Prog *p, const char *const *own, const char *const *written, StrBuf *out) {
-  StrBuf b = strbuf(p->arena);
-  for (int i = 0; own[i]; i++) {
-    int used = 0;
-    for (int k = 0; k < ARR_COUNT; k++)
-      if (strcmp(own[i], arrays[k]) == 0) used |= prog_reads(p, (IrArray)k);
-    for (uint32_t k = 0; k < p->stores.n; k++) used |= strcmp(written[p->stores.at[k].array], own[i]) == 0;
-    if (strcmp(own[i], "w") == 0) used |= p->solves.n > 0;
-    if (!used) sb_printf(&b, "%s(void)%s;", b.n ? " " : "", own[i]);
-  }
-  if (b.n) sb_printf(out, "  %s\n", sb_text(&b));
+static CStyle style_for(const File *f, const char *const *own, const char *const *written) {
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve"};
 }
 
-static CStyle style_for(const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .solve = "lag_solve"};
+static void function(const File *f, const Prog *p, const char *comment, const char *head, const char *const *own,
+                     const char *const *written) {
+  CStyle st = style_for(f, own, written);
+  CFunction c = {.comment = comment, .head = head, .end = "  return LAG_OK;\n"};
+  cfunction(p, &st, &c, f->out);
 }
 
-static void function(const Prog *p, const char *comment, const char *head, const char *const *own,
-                     const char *const *written, StrBuf *out) {
-  CStyle st = style_for(own, written);
-  sb_printf(out, "\n%s%s {\n", comment, head);
-  unused(p, own, written, out);
-  cwrite_body(p, &st, p->arena, out);
-  sb_puts(out, "  return LAG_OK;\n}\n");
+static void accel(const File *f) {
+  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "a", "zd", "w", NULL}, *const written[] = {"a", "zd"};
+  const char *what = !f->u->z.n ? "Accelerations" : f->u->q.n ? "Accelerations and rates" : "Rates";
+  const char *comment = arena_printf(f->a, "%s: %s.", what, ops_text(f->u->accel, f->a));
+  const char *head = arena_printf(f->a, "static int accel(%s, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w)", state_args);
+  function(f, f->u->accel, comment, head, own, written);
 }
 
 void emit_accel(const IrUnit *u, StrBuf *out) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "a", "zd", "w", NULL}, *const written[] = {"a", "zd"};
-  const char *comment = arena_printf(u->arena, "/* Accelerations%s: %s. */\n", u->z.n ? " and rates" : "", ops_text(u->accel, u->arena));
-  const char *head = arena_printf(u->arena, "static int accel(%s, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w)", state_args);
-  function(u->accel, comment, head, own, written, out);
+  accel(&(File){.u = u, .a = u->arena, .globals = globals_of(u, NULL), .out = out});
 }
 
-static void emit_energy(const IrUnit *u, StrBuf *out) {
+static void emit_energy(const File *f) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "out", "w", NULL}, *const written[] = {"out"};
-  if (!u->energy) return;
-  const char *head = arena_printf(u->arena, "static int energy(%s, LAG_REAL *out, LAG_REAL *w)", state_args);
-  function(u->energy, "/* The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with. */\n", head, own, written, out);
+  if (!f->u->energy) return;
+  const char *head = arena_printf(f->a, "static int energy(%s, LAG_REAL *out, LAG_REAL *w)", state_args);
+  function(f, f->u->energy, "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", head, own, written);
 }
 
-static void emit_actions(const IrUnit *u, StrBuf *out) {
+static void emit_action(const File *f, uint32_t i) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "q1", "v1", "z1", "w", NULL}, *const written[] = {"q1", "v1", "z1"};
-  for (uint32_t i = 0; i < u->events.n; i++) {
-    const IrEvent *ev = &u->events.at[i];
-    const char *comment = arena_printf(u->arena, "/* What the event %s does. */\n", ev->name);
-    const char *head = arena_printf(u->arena, "static int act_%s(%s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, LAG_REAL *w)",
-                                    cname(u->arena, ev->name), state_args);
-    function(ev->action, comment, head, own, written, out);
-  }
-  sb_printf(out, "\nstatic int act(int k, %s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n", state_args);
-  sb_puts(out, "  switch (k) {\n");
-  for (uint32_t i = 0; i < u->events.n; i++) {
-    const IrEvent *ev = &u->events.at[i];
-    sb_printf(out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, ev->stop ? " *stop = 1;" : "", cname(u->arena, ev->name));
-  }
-  sb_puts(out, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
+  const char *comment = arena_printf(f->a, "What the event %s does.", f->u->events.at[i].name);
+  const char *head = arena_printf(f->a, "static int act_%s(%s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, LAG_REAL *w)",
+                                  event_id(f->u, i), state_args);
+  function(f, f->u->events.at[i].action, comment, head, own, written);
 }
 
-static void emit_events(const IrUnit *u, StrBuf *out) {
+static void emit_events(const File *f) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "out", "w", NULL}, *const written[] = {"out"};
+  const IrUnit *u = f->u;
   if (!u->events.n) return;
-  const char *head = arena_printf(u->arena, "static int events(%s, LAG_REAL *out, LAG_REAL *w)", state_args);
-  function(u->event_values, "/* An event happens where its function changes sign. */\n", head, own, written, out);
-  emit_actions(u, out);
+  const char *head = arena_printf(f->a, "static int events(%s, LAG_REAL *out, LAG_REAL *w)", state_args);
+  function(f, u->event_values, "An event happens where its function changes sign.", head, own, written);
+  for (uint32_t i = 0; i < u->events.n; i++) emit_action(f, i);
+  sb_printf(f->out, "\nstatic int act(int k, %s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n", state_args);
+  sb_puts(f->out, "  switch (k) {\n");
+  for (uint32_t i = 0; i < u->events.n; i++)
+    sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, u->events.at[i].stop ? " *stop = 1;" : "", event_id(u, i));
+  sb_puts(f->out, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
 }
 
-static void emit_inputs(const IrUnit *u, StrBuf *out) {
+static void emit_inputs(const File *f) {
   static const char *const own[] = {"t", "p", "u", NULL}, *const written[] = {"u"};
-  if (!u->u.n) return;
-  function(u->inputs, "/* Inputs that have a formula. */\n", "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", own, written, out);
+  if (!f->u->u.n) return;
+  function(f, f->u->inputs, "Inputs that have a formula.", "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", own, written);
 }
 
 /* --- a scene's functions --- */
 
-static const char *scene_id(const IrUnit *u, const IrScene *s) { return cname(u->arena, s->name); }
-
 /* Parameters one by one: each may use those before it, as they are then. */
-static void emit_params(const IrUnit *u, const IrScene *s, StrBuf *out) {
+static void emit_params(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"p", "fixed", NULL}, *const written[] = {"p"};
-  sb_printf(out, "\nstatic void params_%s(LAG_REAL *p, const unsigned char *fixed) {\n", scene_id(u, s));
-  if (!u->p.n) sb_puts(out, "  (void)p; (void)fixed;\n");
-  for (uint32_t i = 0; i < u->p.n; i++) {
-    const Prog *p = s->params[i];
-    CStyle st = style_for(own, written);
+  sb_printf(f->out, "\nstatic void params_%s(LAG_REAL *p, const unsigned char *fixed) {\n", id);
+  if (!f->u->p.n) sb_puts(f->out, "  (void)p; (void)fixed;\n");
+  for (uint32_t i = 0; i < f->u->p.n; i++) {
+    CStyle st = style_for(f, own, written);
     st.loads_inline = 1;
-    StrBuf body = strbuf(u->arena);
-    cwrite_body(p, &st, u->arena, &body);
-    const char *text = sb_text(&body);
-    while (*text == '\n' || *text == ' ') text++;
-    int one_line = strchr(text, '\n') == text + strlen(text) - 1;
-    if (one_line) sb_printf(out, "  if (!fixed[%u]) %s", i, text);
-    else sb_printf(out, "  if (!fixed[%u]) {\n  %s  }\n", i, text);
+    StrBuf body = strbuf(f->a);
+    cwrite_body(s->params[i], &st, f->a, &body);
+    cwrite_guarded(arena_printf(f->a, "if (!fixed[%u]) ", i), sb_text(&body), f->out);
   }
-  sb_puts(out, "}\n");
+  sb_puts(f->out, "}\n");
 }
 
-static void emit_start(const IrUnit *u, const IrScene *s, StrBuf *out) {
+static void emit_start(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"p", "q", "v", "z", NULL}, *const written[] = {"q", "v", "z"};
-  CStyle st = style_for(own, written);
-  sb_printf(out, "\nstatic void start_%s(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z) {\n", scene_id(u, s));
-  sb_puts(out, "  (void)p; (void)q; (void)v; (void)z;\n");
-  if (u->q.n) sb_printf(out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", u->q.n);
-  if (u->z.n) sb_printf(out, "  for (int i = 0; i < %u; i++) z[i] = LAG_C(0.0);\n", u->z.n);
-  cwrite_body(s->start, &st, u->arena, out);
-  sb_puts(out, "}\n");
+  CStyle st = style_for(f, own, written);
+  sb_printf(f->out, "\nstatic void start_%s(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z) {\n", id);
+  sb_puts(f->out, "  (void)p; (void)q; (void)v; (void)z;\n");
+  if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
+  if (f->u->z.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) z[i] = LAG_C(0.0);\n", f->u->z.n);
+  cwrite_body(s->start, &st, f->a, f->out);
+  sb_puts(f->out, "}\n");
 }
 
-static void emit_observe(const IrUnit *u, const IrScene *s, StrBuf *out) {
+static void emit_observe(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "out", "w", NULL}, *const written[] = {"out"};
-  const char *comment = arena_printf(u->arena, "/* What the scene %s puts out. */\n", s->name);
-  const char *head = arena_printf(u->arena, "static int observe_%s(%s, LAG_REAL *out, LAG_REAL *w)", scene_id(u, s), state_args);
-  function(s->observe, comment, head, own, written, out);
+  const char *comment = arena_printf(f->a, "What the scene %s puts out.", s->name);
+  const char *head = arena_printf(f->a, "static int observe_%s(%s, LAG_REAL *out, LAG_REAL *w)", id, state_args);
+  function(f, s->observe, comment, head, own, written);
 }
 
 /* --- tables --- */
-
-static const char *double_text(Arena *a, double x) {
-  char text[32];
-  num_format_double(text, x);
-  return arena_strdup(a, text);
-}
 
 static void table(const IrUnit *u, const char *name, const IrVar *v, uint32_t n, StrBuf *out) {
   if (!n) return;
@@ -260,11 +251,14 @@ static const char *list_name(const IrUnit *u, uint32_t n, const char *stem, cons
   return n ? arena_printf(u->arena, "%s_%s", stem, id) : "NULL";
 }
 
-static void emit_scene(const IrUnit *u, const char *name, const IrScene *s, StrBuf *out) {
-  const char *id = scene_id(u, s);
-  emit_params(u, s, out);
-  emit_start(u, s, out);
-  emit_observe(u, s, out);
+static void emit_scene(const File *f, uint32_t index) {
+  const IrUnit *u = f->u;
+  const IrScene *s = &u->scenes.at[index];
+  const char *id = scene_id(u, index), *name = f->name;
+  StrBuf *out = f->out;
+  emit_params(f, s, id);
+  emit_start(f, s, id);
+  emit_observe(f, s, id);
   emit_scene_lists(u, s, id, out);
   sb_printf(out, "\nconst lag_scene %s_%s = {\n", name, id);
   sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
@@ -278,14 +272,6 @@ static void emit_scene(const IrUnit *u, const char *name, const IrScene *s, StrB
   sb_printf(out, "  .nmonitors = %u, .monitors = %s,\n};\n", s->monitors.n, list_name(u, s->monitors.n, "monitors", id));
 }
 
-/* Text inside a comment must not end it. */
-static const char *comment_text(Arena *a, const char *s) {
-  char *t = arena_strdup(a, s);
-  for (char *c = t; *c; c++)
-    if (*c == '*' && c[1] == '/') c[1] = ' ';
-  return t;
-}
-
 static void emit_head(const IrUnit *u, StrBuf *out) {
   sb_printf(out, "/* %s: %s\n", u->name, comment_text(u->arena, u->doc));
   sb_printf(out, " * Emitted by lagc; effects in use: %s.\n", u->effects[0] ? u->effects : "none");
@@ -295,15 +281,17 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
 }
 
 void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
+  File f = {.u = u, .a = u->arena, .name = name, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
   sb_puts(out, prelude);
-  if (work_size(u)) sb_puts(out, solver);
-  emit_accel(u, out);
-  emit_energy(u, out);
-  emit_events(u, out);
-  emit_inputs(u, out);
+  csupport_logic("LAG", out);
+  if (work_size(u)) csupport_solver("LAG", "lag", out);
+  accel(&f);
+  emit_energy(&f);
+  emit_events(&f);
+  emit_inputs(&f);
   emit_tables(u, name, out);
-  for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(u, name, &u->scenes.at[i], out);
+  for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, i);
 }
 
 void emit_program(const IrUnit *const *units, const char *const *names, uint32_t n, int gsl, StrBuf *out) {
@@ -313,11 +301,11 @@ void emit_program(const IrUnit *const *units, const char *const *names, uint32_t
   uint32_t scenes = 0;
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t k = 0; k < units[i]->scenes.n; k++, scenes++)
-      sb_printf(out, "extern const lag_scene %s_%s;\n", names[i], scene_id(units[i], &units[i]->scenes.at[k]));
+      sb_printf(out, "extern const lag_scene %s_%s;\n", names[i], scene_id(units[i], k));
   sb_puts(out, "\nstatic const lag_scene *const scenes[] = {\n");
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t k = 0; k < units[i]->scenes.n; k++)
-      sb_printf(out, "  &%s_%s,\n", names[i], scene_id(units[i], &units[i]->scenes.at[k]));
+      sb_printf(out, "  &%s_%s,\n", names[i], scene_id(units[i], k));
   sb_puts(out, "};\n\n");
   const char *name = c_string(a, first->name), *doc = c_string(a, first->doc), *source = c_string(a, first->source);
   sb_printf(out, "static const lag_program program = {\n  .name = %s,\n  .doc = %s,\n  .source = %s,\n  .effects = %s,\n  .nscenes = %u, .scenes = scenes,\n};\n\n",

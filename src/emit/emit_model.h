@@ -5,6 +5,10 @@
 #include "base/strbuf.h"
 #include "ir/unit.h"
 
+/* The name of the lag_model for a model that the user called `name`: an identifier that neither
+ * <math.h> nor the emitted file has already. */
+const char *model_id(Arena *a, const char *name);
+
 /* One file: a lag_model called NAME (a C identifier), and a lag_scene NAME_scene for each scene. */
 void emit_model(const IrUnit *u, const char *name, StrBuf *out);
 

@@ -90,18 +90,20 @@ static Slot lower_prod(Lower *l, Expr e) {
 
 /* --- sums --- */
 
-/* |c| * t; a coefficient p/q with q no power of two divides, which rounds once. */
+/* |c| * t; a coefficient p/q with q no power of two divides, which rounds once. p/(q*x) when t is 1/x. */
 static Slot scaled(Lower *l, Slot t, Num c) {
   c = num_abs(c);
   if (num_is_one(c)) return t;
   int dyadic = !num_is_exact(c) || (c.den & (c.den - 1)) == 0;
-  if (dyadic) {
-    Slot k = number(l, c);
-    return op(l, IR_MUL, k, t);
+  Slot up = number(l, dyadic ? c : num_int(c.num)), down = dyadic ? 0 : number(l, num_int(c.den));
+  const Ins *i = &l->p->ins.at[t];
+  const Ins *top = &l->p->ins.at[i->a];
+  if (i->op == IR_DIV && top->op == IR_CONST && num_is_one(top->number)) {
+    Slot x = i->b, bottom = down ? op(l, IR_MUL, down, x) : x;
+    return op(l, IR_DIV, up, bottom);
   }
-  Slot up = number(l, num_int(c.num)), down = number(l, num_int(c.den));
   Slot product = op(l, IR_MUL, up, t);
-  return op(l, IR_DIV, product, down);
+  return down ? op(l, IR_DIV, product, down) : product;
 }
 
 /* The factor that all coefficients share in size, when it is not 1: k*(a - b) costs one
@@ -118,21 +120,32 @@ static Num shared_size(const ExprGraph *g, Expr e) {
   return c;
 }
 
+/* Term i of the sum e without its sign, over the factor that is taken out. */
+static Slot term(Lower *l, Expr e, uint32_t i, Num inner) {
+  Num c;
+  Expr t = expr_pair(l->g, e, EX_SUM, i, &c);
+  if (expr_is_num(l->g, t)) return number(l, num_mul(num_abs(c), expr_number(l->g, t)));
+  return scaled(l, lower_slot(l, t), num_mul(c, inner));
+}
+
+/* What is added comes first, then what is subtracted; -(a + b) when nothing is added. */
 static Slot lower_sum(Lower *l, Expr e) {
   uint32_t n = expr_pairs(l->g, e, EX_SUM);
-  Num outer = shared_size(l->g, e);
-  Num inner = num_div(num_int(1), outer);
-  Slot r = 0;
-  for (int sign = 1; sign >= -1; sign -= 2) /* what is added first, then what is subtracted */
+  Num outer = shared_size(l->g, e), inner = num_div(num_int(1), outer);
+  Slot sum = 0;
+  int negative = 0; /* the whole */
+  for (int wanted = 1; wanted >= -1; wanted -= 2) {
+    if (wanted < 0) negative = !sum;
     for (uint32_t i = 0; i < n; i++) {
       Num c;
-      Expr t = expr_pair(l->g, e, EX_SUM, i, &c);
-      if (num_sign(c) != sign) continue;
-      Slot x = expr_is_num(l->g, t) ? number(l, num_mul(num_abs(c), expr_number(l->g, t)))
-                                    : scaled(l, lower_slot(l, t), num_mul(c, inner));
-      r = op(l, sign > 0 ? IR_ADD : IR_SUB, r, x);
+      expr_pair(l->g, e, EX_SUM, i, &c);
+      if (num_sign(c) != wanted) continue;
+      Slot x = term(l, e, i, inner);
+      sum = op(l, wanted > 0 || negative ? IR_ADD : IR_SUB, sum, x);
     }
-  return scaled(l, r, outer);
+  }
+  sum = scaled(l, sum, outer);
+  return negative ? op(l, IR_NEG, sum, 0) : sum;
 }
 
 /* --- functions --- */

@@ -57,15 +57,18 @@ static int is_num(const Prog *p, Slot s, int64_t value) {
 
 static const Slot NOT_FOLDED = UINT32_MAX;
 
-/* x + 0, x - 0, 1*x, 0*x, x/1, 0/x, with slot 0 a structural zero. */
+/* x + 0, x - 0, 1*x, 0*x, x/1, 0/x, x + (-y), x - (-y), with slot 0 a structural zero. */
 static Slot fold(Prog *p, const Ins *i) {
   switch (i->op) {
     case IR_ADD:
       if (!i->a) return i->b;
-      return i->b ? NOT_FOLDED : i->a;
+      if (!i->b) return i->a;
+      if (p->ins.at[i->b].op == IR_NEG) return prog_op(p, IR_SUB, i->a, p->ins.at[i->b].a);
+      return p->ins.at[i->a].op == IR_NEG ? prog_op(p, IR_SUB, i->b, p->ins.at[i->a].a) : NOT_FOLDED;
     case IR_SUB:
       if (!i->b) return i->a;
-      return i->a ? NOT_FOLDED : prog_op(p, IR_NEG, i->b, 0);
+      if (!i->a) return prog_op(p, IR_NEG, i->b, 0);
+      return p->ins.at[i->b].op == IR_NEG ? prog_op(p, IR_ADD, i->a, p->ins.at[i->b].a) : NOT_FOLDED;
     case IR_MUL:
       if (!i->a || !i->b) return 0;
       if (is_num(p, i->a, -1)) return prog_op(p, IR_NEG, i->b, 0);
@@ -74,9 +77,11 @@ static Slot fold(Prog *p, const Ins *i) {
       return is_num(p, i->b, 1) ? i->a : NOT_FOLDED;
     case IR_DIV:
       if (!i->a) return 0;
+      if (is_num(p, i->b, -1)) return prog_op(p, IR_NEG, i->a, 0);
       return is_num(p, i->b, 1) ? i->a : NOT_FOLDED;
     case IR_NEG:
       if (!i->a) return 0;
+      if (p->ins.at[i->a].op == IR_CONST) return prog_num(p, num_neg(p->ins.at[i->a].number));
       return p->ins.at[i->a].op == IR_NEG ? p->ins.at[i->a].a : NOT_FOLDED;
     case IR_CONST: case IR_PI: case IR_LOAD: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_MIN: case IR_MAX:
     case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND: case IR_OR: case IR_SELECT:

@@ -1,5 +1,7 @@
 #include "mech/eqns.h"
 
+#include <math.h>
+
 #include "mech/lagrange.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
@@ -20,6 +22,9 @@ Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
   return found ? e->mass.at[lo].e : expr_int(e->g, 0);
 }
 
+/* Chains of lets longer than this stay as they are: expanded, they would grow with the square. */
+enum { EXPAND_MAX_COORDS = 32 };
+
 /* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as it
  * was written: k/2*(r - l)^2 has more right digits than what it expands to. */
 static void derive_energy(Eqns *e) {
@@ -31,19 +36,25 @@ static void derive_energy(Eqns *e) {
     terms[i] = expr_mul(g, e->p[i], expr_symbol(g, e->m->coords.at[i].v)->node);
   }
   e->momenta = momenta;
-  Expr pv = expr_add_n(g, terms, e->n), l = e->m->lagrangian, l0 = expr_int(g, 0);
+  Expr pv = expr_add_n(g, terms, e->n), l = e->m->lagrangian;
+  SymKind velocity = SYM_VEL;
+  ExprMap moving_nodes = expr_containing(g, &l, 1, is_kind, &velocity);
+  VEC(Expr) still = {0};
   for (uint32_t i = 0; i < expr_pairs(g, l, EX_SUM); i++) {
     Num c;
     Expr t = expr_pair(g, l, EX_SUM, i, &c);
-    if (contains_kind(e, t, SYM_VEL)) continue;
+    if (expr_map_get(&moving_nodes, t)) continue;
     Expr part = expr_scale(g, c, t);
-    l0 = expr_add(g, l0, part);
+    vec_push(arena, &still, part);
   }
+  Expr l0 = expr_add_n(g, still.at, still.n);
   Expr l_moving = expr_sub(g, l, l0);
   Expr moving = expr_sub(g, pv, l_moving);
   Expr kinetic = simplify(g, moving);
   e->energy = expr_sub(g, kinetic, l0);
-  e->energy_stable = simplify_stable(g, e->energy);
+  /* l + y with y = -l*cos(th) hides a difference of nearly equal numbers in a let. */
+  Expr open = e->n <= EXPAND_MAX_COORDS ? expr_expand_defs(g, e->energy) : e->energy;
+  e->energy_stable = simplify_stable(g, open);
   Expr simple_pv = simplify(g, pv);
   Expr size_pv = expr_fn(g, EX_ABS, simple_pv), size_l = expr_fn(g, EX_ABS, l);
   e->energy_scale = expr_add(g, size_pv, size_l);
@@ -110,6 +121,25 @@ static void classify(Eqns *e) {
   e->definite_mass = m->lagrangian && lagrange_definite(e);
 }
 
+/* Derivatives may multiply numbers past the range of a double. */
+static int check_numbers(const Eqns *e) {
+  const Model *m = e->m;
+  VEC(Expr) roots = {0};
+  for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->f[i]);
+  for (uint32_t i = 0; i < e->mass.n; i++) vec_push(m->arena, &roots, e->mass.at[i].e);
+  for (uint32_t i = 0; i < m->states.n; i++) vec_push(m->arena, &roots, e->flow[i]);
+  for (uint32_t i = 0; i < e->noutputs; i++) vec_push(m->arena, &roots, e->outputs[i].value);
+  vec_push(m->arena, &roots, e->energy_scale);
+  ExprList l = expr_topo(e->g, roots.at, roots.n);
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_is_num(e->g, l.at[i]) && !isfinite(num_value(expr_number(e->g, l.at[i])))) {
+      diag_error(m->diags, m->lagrangian_span.end ? m->lagrangian_span : m->span, "a number in the equations of motion is not finite");
+      diag_help(m->diags, "numbers reach up to 1.8e308; measure in other units");
+      return 0;
+    }
+  return 1;
+}
+
 Eqns *eqns_derive(Model *m) {
   Eqns *e = ARENA_NEW(m->arena, Eqns);
   e->m = m;
@@ -125,5 +155,5 @@ Eqns *eqns_derive(Model *m) {
   }
   classify(e);
   fill_outputs(e);
-  return e;
+  return check_numbers(e) ? e : NULL;
 }

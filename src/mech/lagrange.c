@@ -109,10 +109,11 @@ static int is_velocity(const Symbol *s, const void *data) {
 int lagrange_definite(const Eqns *e) {
   ExprGraph *g = e->g;
   Expr l = e->m->lagrangian;
+  ExprMap moving = expr_containing(g, &l, 1, is_velocity, NULL);
   for (uint32_t i = 0; i < expr_pairs(g, l, EX_SUM); i++) {
     Num c;
     Expr term = expr_pair(g, l, EX_SUM, i, &c);
-    if (!expr_contains(g, term, is_velocity, NULL)) continue;
+    if (!expr_map_get(&moving, term)) continue;
     ExprSign s = expr_sign(g, term);
     if (num_sign(c) < 0 || (s != SIGN_POSITIVE && s != SIGN_NONNEGATIVE)) return 0;
   }

@@ -17,12 +17,27 @@ static void heading(Text *t, const char *title) {
 
 static void end_block(Text *t) { put(t, "", "\\end{align*}\n"); }
 
+/* An expression that shares its parts can be far longer written out than it is to compute: past a
+ * limit its length is said instead. */
+static void print_expr(Text *t, Expr e) {
+  const double longest = 1e5, most_repeated = 8;
+  uint32_t distinct;
+  double size = expr_written_size(t->g, e, &distinct);
+  if (size <= longest || size <= most_repeated*distinct) {
+    expr_print(t->g, e, t->style, t->out);
+    return;
+  }
+  put(t, "(", "\\text{(");
+  sb_printf(t->out, "too long to print: %.2g parts written out, %u distinct ones; --format c shows the steps", size, distinct);
+  put(t, ")", ")}");
+}
+
 /* "  left = right", with LaTeX's alignment. */
 static void equation(Text *t, Expr left, Expr right, int last) {
   put(t, "  ", "  ");
-  expr_print(t->g, left, t->style, t->out);
+  print_expr(t, left);
   put(t, " = ", " &= ");
-  expr_print(t->g, right, t->style, t->out);
+  print_expr(t, right);
   put(t, "\n", last ? "\n" : " \\\\\n");
 }
 
@@ -30,7 +45,7 @@ static void named_equation(Text *t, const char *text, const char *in_latex, Expr
   put(t, "  ", "  ");
   put(t, text, in_latex);
   put(t, " = ", " &= ");
-  expr_print(t->g, right, t->style, t->out);
+  print_expr(t, right);
   put(t, "\n", last ? "\n" : " \\\\\n");
 }
 
@@ -97,13 +112,17 @@ static void title(Text *t) {
 
 static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 
+void show_facts(const Eqns *e, StrBuf *out) {
+  if (!e->n) return;
+  sb_printf(out, "%u coordinate%s; mass matrix %s%s; energy is %s\n", e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
+            e->definite_mass ? ", positive definite" : "", e->conserves_energy ? "conserved" : "not conserved (force, dissipation, input or explicit time)");
+}
+
 static void facts(Text *t, const char *cost) {
-  const Eqns *e = t->e;
   const char *c = latex(t) ? "% " : "";
-  if (!latex(t)) sb_putc(t->out, '\n');
-  if (e->n)
-    sb_printf(t->out, "%s%u coordinate%s; mass matrix %s%s; energy is %s\n", c, e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
-              e->definite_mass ? ", positive definite" : "", e->conserves_energy ? "conserved" : "not conserved (force, dissipation, input or explicit time)");
+  sb_puts(t->out, latex(t) ? "" : "\n");
+  if (t->e->n) sb_puts(t->out, c);
+  show_facts(t->e, t->out);
   sb_printf(t->out, "%saccelerations: %s\n", c, cost);
 }
 
@@ -132,4 +151,23 @@ void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *o
   }
   definitions(&t, roots.at, roots.n);
   facts(&t, cost);
+}
+
+static void entry(const Eqns *e, const char *what, Expr x, StrBuf *out) {
+  sb_printf(out, "%s = ", what);
+  expr_print(e->g, x, PRINT_TEXT, out);
+  sb_putc(out, '\n');
+}
+
+void dump_equations(const Eqns *e, StrBuf *out) {
+  const Model *m = e->m;
+  Arena *a = m->arena;
+  for (uint32_t k = 0; k < e->mass.n; k++)
+    entry(e, arena_printf(a, "M[%s,%s]", m->coords.at[e->mass.at[k].row].name, m->coords.at[e->mass.at[k].col].name), e->mass.at[k].e, out);
+  for (uint32_t i = 0; i < e->n; i++) entry(e, arena_printf(a, "f[%s]", m->coords.at[i].name), e->f[i], out);
+  for (uint32_t i = 0; i < e->n; i++) entry(e, arena_printf(a, "Q[%s]", m->coords.at[i].name), e->Q[i], out);
+  for (uint32_t i = 0; i < m->states.n; i++) entry(e, arena_printf(a, "flow[%s]", m->states.at[i].name), e->flow[i], out);
+  if (e->energy_stable) entry(e, "E", e->energy_stable, out);
+  sb_printf(out, "facts:%s%s%s%s%s\n", e->constant_mass ? " constant-mass" : "", e->definite_mass ? " definite-mass" : "",
+            e->conserves_energy ? " conserves-energy" : "", e->autonomous ? " autonomous" : "", e->smooth ? " smooth" : "");
 }

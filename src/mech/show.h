@@ -9,4 +9,10 @@
  * the model, and `cost`, a line on what the accelerations cost. */
 void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *out);
 
+/* Appends M, f, Q and the energy as they are computed, one entry a line, for --dump=eqns. */
+void dump_equations(const Eqns *e, StrBuf *out);
+
+/* Appends one line: coordinates, mass matrix, energy. Nothing when there are only states. */
+void show_facts(const Eqns *e, StrBuf *out);
+
 #endif

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/suggest.h"
 #include "model/builder.h"
 
 /* --- declaring names --- */
@@ -27,23 +26,57 @@ static int declare_name(Builder *b, const AstStmt *st, Name effect, EntKind kind
   if (!old && effect) old = scope_own(&b->scope, st->name, NULL);
   if (old) {
     diag_error(b->diags, st->name_span, "`%s` is declared twice", st->name);
-    diag_also(b->diags, old->span, "first declared here, as a %s", ent_kind_text(old->kind));
+    diag_also(b->diags, old->span, "first declared here, as %s", ent_kind_text(old->kind));
     return 0;
   }
   scope_add(&b->scope, (Entity){.kind = kind, .index = index, .name = st->name, .effect = effect, .span = st->name_span});
   return 1;
 }
 
-static int refuse_family(Builder *b, const AstStmt *st) {
-  if (!st->dims) return 0;
-  not_yet(b, st->name_span, "families (indexed names)");
+/* Declares a name so that its uses are not unknown, when the declaration itself is refused. */
+static void declare_refused(Builder *b, const AstStmt *st, Name effect) {
+  if (!scope_own(&b->scope, st->name, effect))
+    scope_add(&b->scope, (Entity){.kind = ENT_NONE, .name = st->name, .effect = effect, .span = st->name_span});
+}
+
+/* `coord q[m]`: the index is made of units, and no constant is among them. */
+static int dims_are_units(Builder *b, const AstStmt *st) {
+  const AstExpr *x = ast_expr(b->ast, st->dims);
+  uint32_t names = 0;
+  for (AstId i = x->first; i <= st->dims; i++) {
+    const AstExpr *y = ast_expr(b->ast, i);
+    if (y->kind != AST_NAME) continue;
+    const AstStmt *st2 = declared_in_use(b, y->name, NULL);
+    if (st2 && st2->kind == STMT_CONST) return 0;
+    names++;
+    if (!unit_exists(y->name)) return 0;
+  }
+  return names > 0 && !x->next;
+}
+
+/* Families are refused; white space before the bracket would have made it a unit. */
+static int refuse_family(Builder *b, const AstStmt *st, Name effect) {
+  if (!st->dims) {
+    if (st->unit.n && !(st->kind == STMT_PARAM && st->unit.span.begin > ast_expr(b->ast, st->rhs)->span.begin))
+      warn_unit_is_constant(b, &st->unit);
+    return 0;
+  }
+  const char *index = ast_text(b, st->dims);
+  if (dims_are_units(b, st)) {
+    diag_error(b->diags, st->name_span, "`%s[%s]` stands for a family, and `%s` is no constant", st->name, index, index);
+    diag_help(b->diags, "a unit stands apart: `%s [%s]`", st->name, index);
+  } else {
+    not_yet(b, st->name_span, "families (indexed names)");
+  }
+  declare_refused(b, st, effect);
   return 1;
 }
 
 static void declare_coord(Builder *b, const AstStmt *st, Name effect) {
-  if (refuse_family(b, st)) return;
+  if (refuse_family(b, st, effect)) return;
   if (st->type) {
     not_yet(b, st->name_span, arena_printf(b->arena, "coordinates of type `%s`", st->type));
+    declare_refused(b, st, effect);
     return;
   }
   Model *m = b->m;
@@ -61,7 +94,7 @@ static void declare_coord(Builder *b, const AstStmt *st, Name effect) {
 }
 
 static void declare_state(Builder *b, const AstStmt *st, Name effect) {
-  if (refuse_family(b, st)) return;
+  if (refuse_family(b, st, effect)) return;
   Model *m = b->m;
   uint32_t i = m->states.n;
   if (!declare_name(b, st, effect, ENT_STATE, i)) return;
@@ -85,17 +118,17 @@ static ExprSign sign_of(AstSign s) {
 }
 
 /* The value must be of the sign that the declaration states, or the simplifier would be misled. */
-static void check_sign(Builder *b, const AstStmt *st, const Param *p) {
+void check_sign(Builder *b, const Param *p, Span span) {
   static const char *const texts[] = {"", "> 0", ">= 0", "< 0", "<= 0"};
-  if (!p->has_constant || p->sign == SIGN_ANY) return;
-  int s = num_sign(p->constant);
-  int ok = p->sign == SIGN_GT ? s > 0 : p->sign == SIGN_GE ? s >= 0 : p->sign == SIGN_LT ? s < 0 : s <= 0;
-  if (!ok)
-    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "`%s` is declared %s, and this value is not", st->name, texts[p->sign]);
+  if (p->sign == SIGN_ANY || !p->value) return;
+  ExprSign s = expr_sign(b->g, p->value);
+  int zero = expr_is_zero(b->g, p->value), above = s == SIGN_POSITIVE, below = s == SIGN_NEGATIVE;
+  int wrong = p->sign == SIGN_GT ? below || zero : p->sign == SIGN_GE ? below : p->sign == SIGN_LT ? above || zero : above;
+  if (wrong) diag_error(b->diags, span, "`%s` is declared %s, and this value is not", p->name, texts[p->sign]);
 }
 
 static void declare_param(Builder *b, const AstStmt *st, Name effect) {
-  if (refuse_family(b, st)) return;
+  if (refuse_family(b, st, effect)) return;
   Model *m = b->m;
   uint32_t i = m->params.n;
   Param p = {.name = st->name, .span = st->name_span, .sign = st->sign};
@@ -111,7 +144,7 @@ static void declare_param(Builder *b, const AstStmt *st, Name effect) {
     p.constant = expr_number(b->g, p.value);
     p.has_constant = 1;
   }
-  check_sign(b, st, &p);
+  check_sign(b, &p, ast_expr(b->ast, st->rhs)->span);
   vec_push(b->arena, &m->params, p);
 }
 
@@ -137,7 +170,7 @@ static void declare_input(Builder *b, const AstStmt *st, Name effect) {
 }
 
 static void declare_let(Builder *b, const AstStmt *st, Name effect) {
-  if (refuse_family(b, st)) return;
+  if (refuse_family(b, st, effect)) return;
   if (!declare_name(b, st, effect, ENT_LET, b->lets.n)) return;
   vec_push(b->arena, &b->lets, ((Definition){.stmt = st, .effect = effect}));
 }
@@ -212,8 +245,8 @@ static void check_energy_unit(Builder *b, const AstStmt *st, const Value *v, Ene
     en->dim = v->dim;
     en->dim_span = st->span;
   } else if (!dim_fits(v->dim, en->dim)) {
-    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is in %s", dim_text(v->dim, b->arena));
-    diag_also(b->diags, en->dim_span, "another part of the Lagrangian is in %s", dim_text(en->dim, b->arena));
+    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is in [%s]", dim_text(v->dim, b->arena));
+    diag_also(b->diags, en->dim_span, "another part of the Lagrangian is in [%s]", dim_text(en->dim, b->arena));
   }
 }
 
@@ -228,7 +261,7 @@ static void check_units_of_forces(Builder *b, const Energies *en) {
     const UnitCheck *c = &en->later.at[i];
     Dim want = dim_div(en->dim, c->by);
     if (dim_fits(c->dim, want)) continue;
-    diag_error(b->diags, ast_expr(b->ast, c->id)->span, "%s is in %s, and this is in %s", c->what, dim_text(want, b->arena),
+    diag_error(b->diags, ast_expr(b->ast, c->id)->span, "%s is in [%s], and this is in [%s]", c->what, dim_text(want, b->arena),
                dim_text(c->dim, b->arena));
     if (c->bare) diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_text(b, c->id), dim_text(want, b->arena));
   }
@@ -279,12 +312,17 @@ static void finish_energies(Builder *b, const Energies *en) {
   m->lagrangian = expr_add(b->g, l, t_minus_v);
 }
 
+static void report_force(Builder *b, const AstStmt *st) {
+  diag_error(b->diags, st->span, "a force at a point needs as many components as the point");
+  diag_help(b->diags, "`force x = F`, or `force (px, py) = (Fx, Fy)`");
+}
+
 /* force q = Q, force (px, py) = (Fx, Fy): both sides element by element. */
 static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) {
   const AstExpr *l = ast_expr(b->ast, st->lhs), *r = ast_expr(b->ast, st->rhs);
   int tuple = l->kind == AST_TUPLE;
   if (tuple != (r->kind == AST_TUPLE)) {
-    diag_error(b->diags, st->span, "a force at a point needs as many components as the point");
+    report_force(b, st);
     return;
   }
   AstId li = tuple ? l->args : st->lhs, ri = tuple ? r->args : st->rhs;
@@ -298,7 +336,7 @@ static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) 
     li = tuple ? ast_expr(b->ast, li)->next : 0;
     ri = tuple ? ast_expr(b->ast, ri)->next : 0;
   }
-  if (li || ri) diag_error(b->diags, st->span, "a force at a point needs as many components as the point");
+  if (li || ri) report_force(b, st);
 }
 
 static void add_flow(Builder *b, const AstStmt *st, Name effect) {
@@ -308,10 +346,11 @@ static void add_flow(Builder *b, const AstStmt *st, Name effect) {
     diag_error(b->diags, l->span, "a flow gives the rate of a state: `flow z' = ...`");
     return;
   }
-  const Entity *e = resolve_name(b, name->name, name->span, effect);
+  const Entity *e = resolve_name(b, name->name, name->span, effect, "state");
   if (!e) return;
+  if (e->kind == ENT_NONE) return;
   if (e->kind != ENT_STATE) {
-    diag_error(b->diags, name->span, "`%s` is a %s, not a state", name->name, ent_kind_text(e->kind));
+    diag_error(b->diags, name->span, "`%s` is %s, not a state", name->name, ent_kind_text(e->kind));
     diag_help(b->diags, "declare `state %s`; coordinates get their accelerations from L", name->name);
     return;
   }
@@ -325,9 +364,9 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
   Value l = resolve(b, st->lhs, IN_OBSERVE, effect), r = resolve(b, st->rhs, IN_OBSERVE, effect);
   if (!l.e || !r.e) return;
   if (!dim_fits(l.dim, r.dim))
-    diag_error(b->diags, st->span, "the left side is in %s, the right side in %s", dim_text(l.dim, b->arena),
+    diag_error(b->diags, st->span, "units do not match: the left side is in [%s], the right side in [%s]", dim_text(l.dim, b->arena),
                dim_text(r.dim, b->arena));
-  Expect x = {st->name, st->span, st->lhs, st->rhs, l.e, r.e};
+  Expect x = {st->name, st->span, st->lhs, st->rhs, l.e, r.e, effect};
   vec_push(b->arena, &b->m->expects, x);
 }
 
@@ -370,7 +409,7 @@ static void fill_observe(Builder *b, const AstStmt *st, Name effect) {
   o->value = v.e;
   if (!o->unit.dim.known && !o->unit.text[0]) o->unit = unit_of_dim(b, v.dim);
   else if (v.e && !dim_fits(v.dim, o->unit.dim))
-    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "`%s` is declared in %s, and this is in %s", st->name,
+    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "`%s` is declared in [%s], and this is in [%s]", st->name,
                dim_text(o->unit.dim, b->arena), dim_text(v.dim, b->arena));
 }
 
@@ -466,6 +505,7 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   m->diags = ast->diags;
   m->arena = a;
   m->g = b->g;
+  m->builder = b;
   Dim second = {1, {[DIM_TIME] = DIM_ONE}};
   m->time = declare_symbol(b, SYM_TIME, 0, intern(ast->names, "t"), SIGN_UNKNOWN, second);
   m->pi = declare_symbol(b, SYM_CONST, 0, intern(ast->names, "pi"), SIGN_POSITIVE, DIM_NONE);
@@ -482,7 +522,7 @@ static void forget_time_without_units(Builder *b) {
 
 Model *model_build(Ast *ast, const ModelChoice *choice) {
   Builder *b = builder_new(ast, choice);
-  scene_select(b, choice->scene, choice->also);
+  scene_select(b, choice);
   forget_time_without_units(b);
   for (uint32_t i = 0; i < b->active.n; i++) declare(b, b->active.at[i].stmt, b->active.at[i].effect);
   check_defines(b);

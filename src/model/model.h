@@ -57,6 +57,7 @@ typedef struct {
   Span span;
   AstId lhs_ast, rhs_ast;
   Expr lhs, rhs;
+  Name effect; /* that it stands in, or NULL */
 } Expect;
 
 typedef struct {
@@ -136,8 +137,12 @@ typedef struct {
   VEC(Event) events;
   VEC(Output) observes;
   Scene scene;
-  SymId energy_sym; /* stands for the energy p q' - L in outputs, until mech knows it */
+  SymId energy_sym; /* stands for the energy p q' - L in outputs and expects, until mech knows it */
+  struct Builder *builder; /* what model_reresolve needs */
 } Model;
+
+/* Appends a listing, for --dump=model. */
+void model_dump(const Model *m, StrBuf *out);
 
 /* The names of the scenes in the file, in order; one named "default" when there is none. */
 typedef struct {
@@ -149,15 +154,24 @@ SceneList model_scenes(const Ast *ast);
 /* The effects that no scene uses. */
 EffectList model_unused_effects(const Ast *ast);
 
+/* The effects that contain an expectation; first NULL, when one stands outside of effects. */
+EffectList model_expecting_effects(const Ast *ast);
+
 /* What to build a model for. */
 typedef struct {
   const char *scene; /* NULL: the first */
   Name also;         /* an effect to turn on besides the scene's own, with what it requires; or NULL */
+  int bare;          /* no scene at all: no effect but `also` is on */
   const Define *defines;
   uint32_t ndefines;
 } ModelChoice;
 
 /* Builds the model. NULL when there were errors; they are in ast->diags, all of them. */
 Model *model_build(Ast *ast, const ModelChoice *choice);
+
+/* The expression `root` of the expectation x (or one inside it) once more, with its node `node`
+ * standing for `with`; node 0: as it is written. 0 where that has no meaning (a stand-in under a
+ * prime, say); nothing is reported. */
+Expr model_reresolve(const Model *m, const Expect *x, AstId root, AstId node, Expr with);
 
 #endif

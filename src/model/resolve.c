@@ -7,7 +7,6 @@
 #include <math.h>
 #include <stdarg.h>
 
-#include "base/suggest.h"
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
@@ -29,33 +28,40 @@ const char *ast_text(const Builder *b, AstId id) {
   Span s = ast_expr(b->ast, id)->span;
   Place p = source_place(b->ast->sources, s.begin);
   if (!p.file || s.end <= s.begin) return "";
-  return arena_strndup(b->arena, p.file->text + (s.begin - p.file->base), s.end - s.begin);
+  StrBuf out = strbuf(b->arena);
+  const char *from = p.file->text + (s.begin - p.file->base), *end = from + (s.end - s.begin);
+  int quoted = 0;
+  for (const char *c = from; c < end; c++) {
+    if (*c == '"') quoted = !quoted;
+    if (*c == '#' && !quoted)
+      while (c + 1 < end && *c != '\n') c++;
+    int space = *c == ' ' || *c == '\t' || *c == '\n' || *c == '\r';
+    if (!space) sb_putc(&out, *c);
+    else if (out.n && out.at[out.n - 1] != ' ') sb_putc(&out, ' ');
+  }
+  return sb_text(&out);
+}
+
+const char *ast_short(const Builder *b, AstId id) {
+  enum { LONGEST = 48 };
+  const char *text = ast_text(b, id);
+  size_t n = strlen(text);
+  if (n <= LONGEST) return text;
+  size_t head = LONGEST - 13, tail = n - 10;
+  while (head && ((unsigned char)text[head] & 0xC0) == 0x80) head--;
+  while (tail < n && ((unsigned char)text[tail] & 0xC0) == 0x80) tail++;
+  return arena_printf(b->arena, "%.*s...%s", (int)head, text, text + tail);
 }
 
 /* --- names --- */
 
-static int name_in_reach(const Builder *b, const Entity *e, Name effect) {
-  return e->effect == NULL || e->effect == effect || scope_own(&b->scope, e->name, NULL) == NULL;
-}
-
-static void report_unknown_name(Builder *b, Name name, Span span, Name effect) {
-  Name *known = ARENA_ARRAY(b->arena, Name, b->scope.all.n + 2);
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < b->scope.all.n; i++)
-    if (name_in_reach(b, &b->scope.all.at[i], effect)) known[n++] = b->scope.all.at[i].name;
-  known[n++] = "t";
-  known[n++] = "pi";
-  diag_error(b->diags, span, "unknown name `%s`", name);
-  Name near = suggest(name, known, n);
-  if (near) diag_help(b->diags, "did you mean `%s`?", near);
-  else diag_help(b->diags, "declare it: `param %s = 1`, `coord %s` or `let %s = ...`", name, name, name);
-}
-
-const Entity *resolve_name(Builder *b, Name name, Span span, Name effect) {
+const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const char *declare) {
   int ambiguous;
   const Entity *e = scope_find(&b->scope, name, effect, &ambiguous);
-  if (!e) report_unknown_name(b, name, span, effect);
-  else if (ambiguous) {
+  if (!e) {
+    diag_error(b->diags, span, "unknown name `%s`", name);
+    advise_unknown_name(b, name, span, effect, declare);
+  } else if (ambiguous) {
     diag_error(b->diags, span, "`%s` is declared by more than one effect in use", name);
     diag_help(b->diags, "say which: `%s.%s`", e->effect, name);
     return NULL;
@@ -76,20 +82,30 @@ static Definition *definition(Builder *b, EntKind kind, uint32_t index) {
   return kind == ENT_LET ? &b->lets.at[index] : &b->functions.at[index];
 }
 
+/* The node of the argument called `name`, when a function's body is evaluated; otherwise 0. */
+static Expr function_argument(const Builder *b, const Definition *function, Name name) {
+  for (uint32_t i = 0; function && i < function->nargs; i++) {
+    const Symbol *s = expr_symbol(b->g, function->args[i]);
+    if (s->name == name) return s->node;
+  }
+  return 0;
+}
+
 /* Pushes what the expression needs and is not there; a definition that is being evaluated already
  * needs itself: that is reported, and 0 returned. */
-static int push_needs(Builder *b, PendingStack *stack, AstId id, Name effect) {
+static int push_needs(Builder *b, PendingStack *stack, AstId id, Name effect, const Definition *function) {
   int ok = 1;
   for (AstId i = ast_expr(b->ast, id)->first; i <= id; i++) {
     const AstExpr *x = ast_expr(b->ast, i);
     if (x->kind != AST_NAME && x->kind != AST_CALL) continue;
+    if (x->kind == AST_NAME && function_argument(b, function, x->name)) continue;
     int ambiguous;
     const Entity *e = scope_find(&b->scope, x->name, effect, &ambiguous);
     if (!e || (e->kind != ENT_LET && e->kind != ENT_FUNCTION)) continue;
     Definition *d = definition(b, e->kind, e->index);
     if (d->progress == DOING) {
       diag_error(b->diags, x->span, "`%s` is defined by itself", x->name);
-      diag_help(b->diags, "a %s may use only what does not lead back to it", ent_kind_text(e->kind));
+      diag_help(b->diags, "%s may use only what does not lead back to it", ent_kind_text(e->kind));
       ok = 0;
     } else if (d->progress == TODO) {
       vec_push(b->arena, stack, ((Pending){e->kind, e->index}));
@@ -103,6 +119,7 @@ static Value evaluate(Builder *b, AstId id, Context where, Name effect, const De
 static void finish_definition(Builder *b, EntKind kind, Definition *d) {
   Value v = evaluate(b, d->stmt->rhs, IN_DYNAMICS, d->effect, kind == ENT_FUNCTION ? d : NULL);
   d->dim = v.dim;
+  d->condition = v.condition;
   d->value = v.e;
   if (v.e && kind == ENT_LET) d->value = expr_def(b->g, d->stmt->name, v.e);
   d->progress = DONE;
@@ -114,7 +131,7 @@ static void finish_pending(Builder *b, PendingStack *stack) {
     Definition *d = definition(b, top.kind, top.index);
     if (d->progress == TODO) {
       d->progress = DOING;
-      if (push_needs(b, stack, d->stmt->rhs, d->effect)) continue;
+      if (push_needs(b, stack, d->stmt->rhs, d->effect, top.kind == ENT_FUNCTION ? d : NULL)) continue;
       d->progress = DONE; /* its value stays 0: reported */
     }
     if (d->progress == DOING) finish_definition(b, top.kind, d);
@@ -124,7 +141,7 @@ static void finish_pending(Builder *b, PendingStack *stack) {
 
 static void ensure_needs(Builder *b, AstId id, Name effect) {
   PendingStack stack = {0};
-  push_needs(b, &stack, id, effect);
+  push_needs(b, &stack, id, effect, NULL);
   finish_pending(b, &stack);
 }
 
@@ -138,7 +155,7 @@ void resolve_definition(Builder *b, EntKind kind, uint32_t index) {
 
 static const char *place_text(Context where) {
   switch (where) {
-    case IN_CONST: return "a constant may contain numbers and earlier constants";
+    case IN_CONST: return "only numbers and constants are known here";
     case IN_PARAM: return "a parameter's value may contain numbers and parameters declared before it";
     case IN_START: return "a start value may contain numbers and parameters";
     case IN_INPUT: return "an input may contain numbers, parameters and t";
@@ -158,13 +175,14 @@ static Context least_context(EntKind kind) {
 }
 
 static Value symbol_value(const Builder *b, SymId s) {
-  return (Value){expr_symbol(b->g, s)->node, b->dims.at[s], 0};
+  return a_value(expr_symbol(b->g, s)->node, b->dims.at[s], 0);
 }
 
 static Value entity_value(Eval *ev, const Entity *e, Span span) {
   Builder *b = ev->b;
+  if (e->kind == ENT_NONE) return FAILED;
   if (least_context(e->kind) > ev->where) {
-    diag_error(b->diags, span, "the %s `%s` may not be used here", ent_kind_text(e->kind), e->name);
+    diag_error(b->diags, span, "`%s` is %s and may not be used here", e->name, ent_kind_text(e->kind));
     diag_help(b->diags, "%s", place_text(ev->where));
     return FAILED;
   }
@@ -173,14 +191,15 @@ static Value entity_value(Eval *ev, const Entity *e, Span span) {
     case ENT_STATE: return symbol_value(b, b->m->states.at[e->index].z);
     case ENT_PARAM: return symbol_value(b, b->m->params.at[e->index].sym);
     case ENT_INPUT: return symbol_value(b, b->m->inputs.at[e->index].sym);
-    case ENT_CONST: return (Value){expr_num(b->g, b->constants.at[e->index].value), DIM_NONE, 1};
-    case ENT_LET: return (Value){b->lets.at[e->index].value, b->lets.at[e->index].dim, 0};
+    case ENT_CONST: return a_value(expr_num(b->g, b->constants.at[e->index].value), DIM_NONE, 1);
+    case ENT_LET: return (Value){b->lets.at[e->index].value, b->lets.at[e->index].dim, 0, b->lets.at[e->index].condition};
     case ENT_OBSERVE: {
       const Output *o = &b->m->observes.at[e->index];
-      return (Value){o->value, o->unit.dim, 0};
+      return a_value(o->value, o->unit.dim, 0);
     }
     case ENT_FUNCTION:
-      diag_error(b->diags, span, "`%s` is a function: give it arguments", e->name);
+      diag_error(b->diags, span, "`%s` is a function", e->name);
+      diag_help(b->diags, "give it its arguments: `%s(...)`", e->name);
       return FAILED;
     case ENT_NONE: case ENT_BUILTIN: break;
   }
@@ -200,17 +219,15 @@ static int builtin_quantity(Eval *ev, Name name, Value *out) {
   else if (strcmp(name, "T") == 0) e = m->kinetic;
   else if (strcmp(name, "V") == 0) e = m->potential;
   if (!e) return 0;
-  *out = (Value){e, dim, 0};
+  *out = a_value(e, dim, 0);
   return 1;
 }
 
 static Value name_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
-  for (uint32_t i = 0; ev->function && i < ev->function->nargs; i++) {
-    const Symbol *s = expr_symbol(b->g, ev->function->args[i]);
-    if (s->name == x->name) return (Value){s->node, DIM_UNKNOWN, 0};
-  }
-  if (strcmp(x->name, "pi") == 0) return (Value){expr_symbol(b->g, b->m->pi)->node, DIM_NONE, 1};
+  Expr argument = function_argument(b, ev->function, x->name);
+  if (argument) return a_value(argument, DIM_UNKNOWN, 0);
+  if (strcmp(x->name, "pi") == 0) return a_value(expr_symbol(b->g, b->m->pi)->node, DIM_NONE, 1);
   if (strcmp(x->name, "t") == 0) {
     if (ev->where >= IN_INPUT) return symbol_value(b, b->m->time);
     diag_error(b->diags, x->span, "the time `t` may not be used here");
@@ -220,7 +237,7 @@ static Value name_value(Eval *ev, const AstExpr *x) {
   int ambiguous;
   Value v;
   if (!scope_find(&b->scope, x->name, ev->effect, &ambiguous) && builtin_quantity(ev, x->name, &v)) return v;
-  const Entity *e = resolve_name(b, x->name, x->span, ev->effect);
+  const Entity *e = resolve_name(b, x->name, x->span, ev->effect, NULL);
   return e ? entity_value(ev, e, x->span) : FAILED;
 }
 
@@ -235,11 +252,14 @@ static Value member_value(Eval *ev, const AstExpr *x) {
   const Entity *e = scope_own(&b->scope, x->name, left->name);
   if (e) return entity_value(ev, e, x->span);
   int ambiguous;
-  if (scope_find(&b->scope, left->name, ev->effect, &ambiguous)) {
+  const Entity *of = scope_find(&b->scope, left->name, ev->effect, &ambiguous);
+  if (of && of->kind == ENT_NONE) return FAILED;
+  if (of) {
     diag_error(b->diags, x->span, "`%s` has no component `%s`", left->name, x->name);
     diag_help(b->diags, "not yet: components of vectors; `effect.name` reaches the parameters of an effect in use");
   } else {
     diag_error(b->diags, x->span, "no effect in use declares `%s.%s`", left->name, x->name);
+    advise_unknown_member(b, left->name, x->name);
   }
   return FAILED;
 }
@@ -247,16 +267,28 @@ static Value member_value(Eval *ev, const AstExpr *x) {
 /* --- dimensions --- */
 
 /* Reports two dimensions that should agree; a bare number gets the unit to write. */
-void report_mismatch(Eval *ev, Span span, const char *verb, AstId x, AstId y) {
+void report_mismatch(Eval *ev, Span span, AstId x, AstId y) {
   Builder *b = ev->b;
   const Value *vx = value_of(ev, x), *vy = value_of(ev, y);
-  diag_error(b->diags, span, "cannot %s [%s] and [%s]: `%s` is in %s, `%s` in %s", verb,
-             dim_text(vx->dim, b->arena), dim_text(vy->dim, b->arena), ast_text(b, x),
-             dim_text(vx->dim, b->arena), ast_text(b, y), dim_text(vy->dim, b->arena));
-  AstId bare = vx->bare ? x : vy->bare ? y : 0;
-  if (bare)
-    diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_text(b, bare),
-              dim_text(bare == x ? vy->dim : vx->dim, b->arena));
+  if (vx->bare) {
+    AstId t = x;
+    x = y;
+    y = t;
+    vx = value_of(ev, x);
+    vy = value_of(ev, y);
+  }
+  const char *tx = ast_short(b, x), *ty = ast_short(b, y), *dx = dim_text(vx->dim, b->arena);
+  if (vy->bare) {
+    diag_error(b->diags, span, "units do not match: `%s` is in [%s], `%s` has no unit", tx, dx, ty);
+    diag_help(b->diags, "give the number its unit: `%s [%s]`", ty, dx);
+  } else {
+    diag_error(b->diags, span, "units do not match: `%s` is in [%s], `%s` in [%s]", tx, dx, ty, dim_text(vy->dim, b->arena));
+  }
+}
+
+static void report_condition(Builder *b, AstId id) {
+  diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is a condition, no number", ast_short(b, id));
+  diag_help(b->diags, "`if(condition, a, b)` chooses between two numbers");
 }
 
 /* A zero is a zero in every unit. */
@@ -267,8 +299,8 @@ int dims_agree(const Builder *b, const Value *x, const Value *y) {
 int need_pure(Eval *ev, AstId arg, const char *what) {
   const Value *v = value_of(ev, arg);
   if (!v->dim.known || dim_is_none(v->dim)) return 1;
-  diag_error(ev->b->diags, ast_expr(ev->b->ast, arg)->span, "%s takes a pure number or an angle; `%s` is in %s",
-             what, ast_text(ev->b, arg), dim_text(v->dim, ev->b->arena));
+  diag_error(ev->b->diags, ast_expr(ev->b->ast, arg)->span, "%s takes a pure number or an angle; `%s` is in [%s]",
+             what, ast_short(ev->b, arg), dim_text(v->dim, ev->b->arena));
   return 0;
 }
 
@@ -314,8 +346,7 @@ static Value sum_value(Eval *ev, AstId id) {
     r.bare &= v->bare;
     if (expr_is_zero(b->g, v->e)) continue;
     if (measure && ok && !dims_agree(b, value_of(ev, measure), v)) {
-      report_mismatch(ev, ast_expr(b->ast, ops.at[i].at)->span, ops.at[i].inverted ? "subtract" : "add", measure,
-                      ops.at[i].at);
+      report_mismatch(ev, ast_expr(b->ast, ops.at[i].at)->span, measure, ops.at[i].at);
       ok = 0;
     }
     if (!measure && v->dim.known) {
@@ -364,10 +395,10 @@ Value power_value(Eval *ev, const AstExpr *x, AstId base_id, AstId exp_id) {
       diag_error(b->diags, x->span, "division by zero");
       return FAILED;
     }
-    return (Value){expr_pow_num(b->g, base->e, n), dim_pow(base->dim, n), base->bare && e->bare};
+    return a_value(expr_pow_num(b->g, base->e, n), dim_pow(base->dim, n), base->bare && e->bare);
   }
   if (!need_pure(ev, base_id, "the base of a power whose exponent is not a number")) return FAILED;
-  return (Value){expr_pow(b->g, base->e, e->e), base->dim.known ? DIM_NONE : DIM_UNKNOWN, 0};
+  return a_value(expr_pow(b->g, base->e, e->e), base->dim.known ? DIM_NONE : DIM_UNKNOWN, 0);
 }
 
 static Value compare_value(Eval *ev, const AstExpr *x) {
@@ -375,22 +406,30 @@ static Value compare_value(Eval *ev, const AstExpr *x) {
   const Value *l = value_of(ev, x->a), *r = value_of(ev, x->b);
   if (!l->e || !r->e) return FAILED;
   if (!dims_agree(b, l, r)) {
-    report_mismatch(ev, x->span, "compare", x->a, x->b);
+    report_mismatch(ev, x->span, x->a, x->b);
     return FAILED;
   }
   int swapped = x->kind == AST_GT || x->kind == AST_GE;
   ExprOp op = x->kind == AST_LT || x->kind == AST_GT ? EX_LT : x->kind == AST_LE || x->kind == AST_GE ? EX_LE : EX_EQ;
   Expr e = expr_fn2(b->g, op, swapped ? r->e : l->e, swapped ? l->e : r->e);
   if (x->kind == AST_NE) e = expr_fn(b->g, EX_NOT, e);
-  return (Value){e, DIM_NONE, 0};
+  return (Value){e, DIM_NONE, 0, 1};
+}
+
+static int need_condition(Eval *ev, AstId id) {
+  if (value_of(ev, id)->condition) return 1;
+  diag_error(ev->b->diags, ast_expr(ev->b->ast, id)->span, "`%s` is no condition", ast_short(ev->b, id));
+  diag_help(ev->b->diags, "`and`, `or` and `not` join comparisons, such as `x > 0`");
+  return 0;
 }
 
 static Value logic_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   Expr l = value_of(ev, x->a)->e, r = x->b ? value_of(ev, x->b)->e : 0;
   if (!l || (x->b && !r)) return FAILED;
+  if (!need_condition(ev, x->a) || (x->b && !need_condition(ev, x->b))) return FAILED;
   Expr e = x->kind == AST_NOT ? expr_fn(b->g, EX_NOT, l) : expr_fn2(b->g, x->kind == AST_AND ? EX_AND : EX_OR, l, r);
-  return (Value){e, DIM_NONE, 0};
+  return (Value){e, DIM_NONE, 0, 1};
 }
 
 /* --- time derivatives --- */
@@ -439,7 +478,7 @@ static Value prime_value(Eval *ev, const AstExpr *x) {
     return FAILED;
   }
   if (expr_contains(b->g, of->e, is_local, NULL)) {
-    not_yet(b, x->span, "a time derivative of a function's argument");
+    not_yet(b, x->span, "a time derivative of a function's argument, or of the energy");
     return FAILED;
   }
   Expr *seed = time_seeds(b), e;
@@ -450,7 +489,7 @@ static Value prime_value(Eval *ev, const AstExpr *x) {
     return FAILED;
   }
   Dim second = {1, {[DIM_TIME] = DIM_ONE}};
-  return (Value){e, dim_div(of->dim, second), 0};
+  return a_value(e, dim_div(of->dim, second), 0);
 }
 
 /* --- units on a value --- */
@@ -465,13 +504,15 @@ static Expr times_unit(Builder *b, Expr e, const Unit *u) {
 static Value unit_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const Value *v = value_of(ev, x->a);
+  if (ast_expr(b->ast, x->a)->kind != AST_NUM) warn_unit_is_constant(b, &x->unit);
   Unit u = unit_resolve(&x->unit, b->diags, b->arena);
   if (!v->e || (x->unit.n && !u.dim.known)) return FAILED;
   if (v->dim.known && !dim_is_none(v->dim)) {
-    diag_error(b->diags, x->span, "`%s` has a unit already: [%s]", ast_text(b, x->a), dim_text(v->dim, b->arena));
+    diag_error(b->diags, x->unit.span, "`%s` has a unit already: [%s]", ast_short(b, x->a), dim_text(v->dim, b->arena));
+    diag_help(b->diags, "leave `[%s]` out, or multiply: `... * 1 [%s]`", x->unit.text, x->unit.text);
     return FAILED;
   }
-  return (Value){times_unit(b, v->e, &u), u.dim, 0};
+  return a_value(times_unit(b, v->e, &u), u.dim, 0);
 }
 
 /* --- the loop --- */
@@ -480,14 +521,14 @@ static Value node_value(Eval *ev, AstId id) {
   Builder *b = ev->b;
   const AstExpr *x = ast_expr(b->ast, id);
   switch (x->kind) {
-    case AST_NUM: return (Value){expr_num(b->g, x->number), num_is_zero(x->number) ? DIM_UNKNOWN : DIM_NONE, 1};
+    case AST_NUM: return a_value(expr_num(b->g, x->number), num_is_zero(x->number) ? DIM_UNKNOWN : DIM_NONE, 1);
     case AST_NAME: return name_value(ev, x);
     case AST_MEMBER: return member_value(ev, x);
     case AST_PRIME: return prime_value(ev, x);
     case AST_UNIT: return unit_value(ev, x);
     case AST_NEG: {
       const Value *v = value_of(ev, x->a);
-      return v->e ? (Value){expr_neg(b->g, v->e), v->dim, v->bare} : FAILED;
+      return v->e ? a_value(expr_neg(b->g, v->e), v->dim, v->bare) : FAILED;
     }
     case AST_ADD: case AST_SUB: return sum_value(ev, id);
     case AST_MUL: case AST_DIV: return product_value(ev, id);
@@ -511,6 +552,7 @@ static void mark_chains(Eval *ev, AstId last) {
   for (AstId i = ev->first; i <= last; i++) {
     const AstExpr *x = ast_expr(ev->b->ast, i);
     if (x->kind != AST_ADD && x->kind != AST_SUB && x->kind != AST_MUL && x->kind != AST_DIV) continue;
+    if (x->a == ev->b->stand_in) continue;
     AstKind left = ast_expr(ev->b->ast, x->a)->kind;
     int additive = x->kind == AST_ADD || x->kind == AST_SUB;
     ev->open[x->a - ev->first] = additive ? left == AST_ADD || left == AST_SUB : left == AST_MUL || left == AST_DIV;
@@ -519,8 +561,48 @@ static void mark_chains(Eval *ev, AstId last) {
 
 /* Inside sum(...), lists and indices names may be bound that are not declared: the one message
  * about the construct is enough. */
-static int is_not_yet(AstKind k) {
-  return k == AST_SUM || k == AST_PRODUCT || k == AST_INDEX || k == AST_TUPLE || k == AST_LIST || k == AST_BIND;
+static int is_not_yet(const Builder *b, const AstExpr *x) {
+  switch (x->kind) {
+    case AST_SUM: case AST_PRODUCT: case AST_INDEX: case AST_TUPLE: case AST_LIST: case AST_BIND: return 1;
+    case AST_MEMBER: return ast_expr(b->ast, x->a)->kind != AST_NAME;
+    case AST_CALL: return call_is_not_yet(x->name);
+    case AST_NUM: case AST_STRING: case AST_NAME: case AST_PRIME: case AST_UNIT: case AST_NEG: case AST_NOT:
+    case AST_ADD: case AST_SUB: case AST_MUL: case AST_DIV: case AST_POW: case AST_LT: case AST_LE: case AST_GT:
+    case AST_GE: case AST_EQ: case AST_NE: case AST_AND: case AST_OR: case AST_ERROR: break;
+  }
+  return 0;
+}
+
+/* A condition is no number: it may stand in a condition, and first in `if`. */
+static int numbers_only(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  if (x->kind == AST_NOT || x->kind == AST_AND || x->kind == AST_OR) return 1;
+  int is_if = x->kind == AST_CALL && strcmp(x->name, "if") == 0;
+  AstId list = is_if && x->args ? ast_expr(b->ast, x->args)->next : x->args;
+  AstId at[3] = {x->a, x->b, list};
+  for (int k = 0; k < 3; k++)
+    for (AstId i = at[k]; i; i = k == 2 ? ast_expr(b->ast, i)->next : 0)
+      if (value_of(ev, i)->condition) {
+        report_condition(b, i);
+        return 0;
+      }
+  return 1;
+}
+
+/* Numbers beyond the range of a double are refused where they arise. */
+static Value finite_value(Eval *ev, const AstExpr *x, Value v) {
+  ExprGraph *g = ev->b->g;
+  if (!v.e) return v;
+  ExprOp op = expr_op(g, v.e);
+  int pairs = op == EX_SUM || op == EX_PROD;
+  for (uint32_t i = 0; i < expr_nargs(g, v.e) + (op == EX_NUM); i++) {
+    Expr n = op == EX_NUM ? v.e : expr_arg(g, v.e, i);
+    if (!(op == EX_NUM || pairs) || !expr_is_num(g, n) || isfinite(num_value(expr_number(g, n)))) continue;
+    diag_error(ev->b->diags, x->span, "a number here is not finite");
+    diag_help(ev->b->diags, "numbers reach up to 1.8e308");
+    return FAILED;
+  }
+  return v;
 }
 
 static Value evaluate(Builder *b, AstId id, Context where, Name effect, const Definition *function) {
@@ -530,18 +612,22 @@ static Value evaluate(Builder *b, AstId id, Context where, Name effect, const De
   ev.value = ARENA_ARRAY(b->arena, Value, n);
   ev.open = ARENA_ARRAY(b->arena, unsigned char, n);
   mark_chains(&ev, id);
-  AstId quiet = 0; /* nodes up to this id are inside something that is refused as a whole */
-  for (AstId i = id; i >= ev.first && !quiet; i--)
-    if (is_not_yet(ast_expr(b->ast, i)->kind)) quiet = i;
+  AstId quiet = 0; /* the nodes of this expression are inside something that is refused as a whole */
+  for (AstId i = id; i >= ev.first; i--) {
+    if (quiet && i < ast_expr(b->ast, quiet)->first) quiet = 0;
+    if (quiet) ev.open[i - ev.first] = 1;
+    else if (is_not_yet(b, ast_expr(b->ast, i))) quiet = i;
+  }
   for (AstId i = ev.first; i <= id; i++) {
     const AstExpr *x = ast_expr(b->ast, i);
-    if (quiet && i < quiet && i >= ast_expr(b->ast, quiet)->first) continue;
     if (x->kind == AST_NAME && i < id) {
       /* the left of drag.c is no name of its own; the second argument of d() is */
       const AstExpr *up = ast_expr(b->ast, i + 1);
       if (up->kind == AST_MEMBER && up->a == i) continue;
     }
-    if (!ev.open[i - ev.first]) ev.value[i - ev.first] = node_value(&ev, i);
+    if (i == b->stand_in) ev.value[i - ev.first] = (Value){.e = b->stands_for, .dim = DIM_UNKNOWN};
+    else if (!ev.open[i - ev.first])
+      ev.value[i - ev.first] = numbers_only(&ev, x) ? finite_value(&ev, x, node_value(&ev, i)) : FAILED;
   }
   return ev.value[id - ev.first];
 }
@@ -549,14 +635,19 @@ static Value evaluate(Builder *b, AstId id, Context where, Name effect, const De
 Value resolve(Builder *b, AstId id, Context where, Name effect) {
   if (!id) return FAILED;
   if (where >= IN_DYNAMICS) ensure_needs(b, id, effect);
-  return evaluate(b, id, where, effect, NULL);
+  Value v = evaluate(b, id, where, effect, NULL);
+  if (!v.e || !v.condition) return v;
+  report_condition(b, id);
+  return FAILED;
 }
 
 Expr value_in(Builder *b, Value v, Span span, const Unit *unit) {
   if (!v.e) return 0;
   if (v.bare) return times_unit(b, v.e, unit);
   if (!dim_fits(v.dim, unit->dim)) {
-    diag_error(b->diags, span, "the value is in %s, its name is in %s", dim_text(v.dim, b->arena), dim_text(unit->dim, b->arena));
+    const char *want = dim_text(unit->dim, b->arena);
+    diag_error(b->diags, span, "this value is in [%s], and [%s] is wanted here", dim_text(v.dim, b->arena), want);
+    if (dim_is_none(v.dim)) diag_help(b->diags, "give a number in it its unit, or multiply by `1 [%s]`", want);
     return 0;
   }
   return v.e;

@@ -18,7 +18,14 @@ static const struct {
   {"abs", EX_ABS}, {"sign", EX_SIGN},
 }, binary_functions[] = {{"atan2", EX_ATAN2}, {"hypot", EX_HYPOT}, {"min", EX_MIN}, {"max", EX_MAX}};
 
-static const char *const other_functions[] = {"sqrt", "pow", "if", "d", "dot", "cross", "norm", "omega", "lambda"};
+static const char *const other_functions[] = {"sqrt", "pow", "if", "d"};
+static const char *const later_functions[] = {"dot", "cross", "norm", "omega", "lambda"};
+
+int call_is_not_yet(Name name) {
+  for (size_t i = 0; i < sizeof later_functions / sizeof *later_functions; i++)
+    if (strcmp(name, later_functions[i]) == 0) return 1;
+  return 0;
+}
 
 static int arity_is(Eval *ev, const AstExpr *x, uint32_t want) {
   uint32_t n = list_length(ev->b, x->args);
@@ -32,12 +39,12 @@ static Value call_unary(Eval *ev, const AstExpr *x, ExprOp op) {
   if (!arity_is(ev, x, 1)) return FAILED;
   const Value *v = value_of(ev, x->args);
   if (!v->e) return FAILED;
-  if (op == EX_ABS) return (Value){expr_fn(b->g, op, v->e), v->dim, v->bare};
-  if (op == EX_SIGN) return (Value){expr_fn(b->g, op, v->e), DIM_NONE, v->bare};
-  if (op == EX_CBRT) return (Value){expr_fn(b->g, op, v->e), dim_pow(v->dim, num_ratio(1, 3)), v->bare};
+  if (op == EX_ABS) return a_value(expr_fn(b->g, op, v->e), v->dim, v->bare);
+  if (op == EX_SIGN) return a_value(expr_fn(b->g, op, v->e), DIM_NONE, v->bare);
+  if (op == EX_CBRT) return a_value(expr_fn(b->g, op, v->e), dim_pow(v->dim, num_ratio(1, 3)), v->bare);
   const char *what = arena_printf(b->arena, "`%s`", x->name);
   if (!need_pure(ev, x->args, what)) return FAILED;
-  return (Value){expr_fn(b->g, op, v->e), DIM_NONE, v->bare};
+  return a_value(expr_fn(b->g, op, v->e), DIM_NONE, v->bare);
 }
 
 static Value call_binary(Eval *ev, const AstExpr *x, ExprOp op) {
@@ -47,11 +54,11 @@ static Value call_binary(Eval *ev, const AstExpr *x, ExprOp op) {
   const Value *v = value_of(ev, x->args), *w = value_of(ev, second);
   if (!v->e || !w->e) return FAILED;
   if (!dims_agree(b, v, w)) {
-    report_mismatch(ev, x->span, "combine", x->args, second);
+    report_mismatch(ev, x->span, x->args, second);
     return FAILED;
   }
   Dim dim = v->dim.known ? v->dim : w->dim;
-  return (Value){expr_fn2(b->g, op, v->e, w->e), op == EX_ATAN2 ? DIM_NONE : dim, v->bare && w->bare};
+  return a_value(expr_fn2(b->g, op, v->e, w->e), op == EX_ATAN2 ? DIM_NONE : dim, v->bare && w->bare);
 }
 
 static Value call_if(Eval *ev, const AstExpr *x) {
@@ -60,15 +67,21 @@ static Value call_if(Eval *ev, const AstExpr *x) {
   AstId yes = ast_expr(b->ast, x->args)->next, no = ast_expr(b->ast, yes)->next;
   const Value *c = value_of(ev, x->args), *v = value_of(ev, yes), *w = value_of(ev, no);
   if (!c->e || !v->e || !w->e) return FAILED;
-  if (!expr_is_bool(b->g, c->e) && !expr_is_num(b->g, c->e)) {
-    diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`if` takes a condition first, such as `x > 0`");
+  if (!c->condition) {
+    diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` is no condition", ast_short(b, x->args));
+    diag_help(b->diags, "`if(condition, a, b)` takes a condition first, such as `x > 0`");
     return FAILED;
   }
   if (!dims_agree(b, v, w)) {
-    report_mismatch(ev, x->span, "choose between", yes, no);
+    report_mismatch(ev, x->span, yes, no);
     return FAILED;
   }
-  return (Value){expr_select(b->g, c->e, v->e, w->e), v->dim.known ? v->dim : w->dim, 0};
+  return a_value(expr_select(b->g, c->e, v->e, w->e), v->dim.known ? v->dim : w->dim, 0);
+}
+
+static int is_local(const Symbol *s, const void *data) {
+  (void)data;
+  return s->kind == SYM_LOCAL;
 }
 
 /* d(expr, name): a partial derivative. */
@@ -78,11 +91,16 @@ static Value call_d(Eval *ev, const AstExpr *x) {
   AstId by = ast_expr(b->ast, x->args)->next;
   const Value *v = value_of(ev, x->args), *w = value_of(ev, by);
   if (!v->e || !w->e) return FAILED;
-  if (expr_op(b->g, w->e) != EX_SYM) {
+  SymKind kind = expr_op(b->g, w->e) == EX_SYM ? expr_sym_of(b->g, w->e)->kind : SYM_CONST;
+  if (kind == SYM_CONST || w->e == expr_symbol(b->g, b->m->energy_sym)->node) {
     diag_error(b->diags, ast_expr(b->ast, by)->span, "`d(expr, name)` differentiates by a coordinate, a velocity, a parameter or t");
     return FAILED;
   }
-  return (Value){expr_diff(b->g, v->e, expr_sym_id(b->g, w->e)), dim_div(v->dim, w->dim), 0};
+  if (kind != SYM_LOCAL && expr_contains(b->g, v->e, is_local, NULL)) {
+    not_yet(b, x->span, "a partial derivative of a function's argument, or of the energy");
+    return FAILED;
+  }
+  return a_value(expr_diff(b->g, v->e, expr_sym_id(b->g, w->e)), dim_div(v->dim, w->dim), 0);
 }
 
 static Value call_function(Eval *ev, const AstExpr *x, const Definition *f) {
@@ -95,37 +113,36 @@ static Value call_function(Eval *ev, const AstExpr *x, const Definition *f) {
     with[f->args[i]] = value_of(ev, arg)->e;
   }
   Expr e = expr_substitute(b->g, f->value, with, expr_symbol_count(b->g) + 1, "");
-  return (Value){e, f->nargs ? DIM_UNKNOWN : f->dim, 0};
+  return a_value(e, f->nargs ? DIM_UNKNOWN : f->dim, 0);
 }
 
 static Value call_sqrt(Eval *ev, const AstExpr *x) {
   if (!arity_is(ev, x, 1) || !value_of(ev, x->args)->e) return FAILED;
   const Value *v = value_of(ev, x->args);
-  return (Value){expr_sqrt(ev->b->g, v->e), dim_pow(v->dim, num_ratio(1, 2)), v->bare};
+  return a_value(expr_sqrt(ev->b->g, v->e), dim_pow(v->dim, num_ratio(1, 2)), v->bare);
 }
 
 static Value unknown_function(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
+  if (call_is_not_yet(x->name)) {
+    not_yet(b, x->span, arena_printf(b->arena, "`%s`", x->name));
+    return FAILED;
+  }
   enum { NU = sizeof unary_functions / sizeof *unary_functions, NB = 4, NO = sizeof other_functions / sizeof *other_functions };
   Name *known = ARENA_ARRAY(b->arena, Name, NU + NB + NO + b->scope.all.n);
   uint32_t n = 0;
   for (int i = 0; i < NU; i++) known[n++] = unary_functions[i].name;
   for (int i = 0; i < NB; i++) known[n++] = binary_functions[i].name;
-  for (int i = 0; i < NO; i++) {
-    if (strcmp(x->name, other_functions[i]) == 0) {
-      not_yet(b, x->span, arena_printf(b->arena, "`%s`", x->name));
-      return FAILED;
-    }
-    known[n++] = other_functions[i];
-  }
+  for (int i = 0; i < NO; i++) known[n++] = other_functions[i];
   for (uint32_t i = 0; i < b->scope.all.n; i++)
     if (b->scope.all.at[i].kind == ENT_FUNCTION) known[n++] = b->scope.all.at[i].name;
   int ambiguous;
   const Entity *e = scope_find(&b->scope, x->name, ev->effect, &ambiguous);
   diag_error(b->diags, x->op_span.end ? x->op_span : x->span, "unknown function `%s`", x->name);
   Name near = suggest(x->name, known, n);
-  if (e) diag_help(b->diags, "`%s` is a %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
+  if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
   else if (near) diag_help(b->diags, "did you mean `%s`?", near);
+  else diag_help(b->diags, "`lagc help functions` lists them; declare your own: `function %s(x) = ...`", x->name);
   return FAILED;
 }
 

@@ -33,11 +33,33 @@ EffectList model_unused_effects(const Ast *ast) {
   return (EffectList){unused.at, unused.n};
 }
 
+static int contains_expect(const AstStmt *list) {
+  for (const AstStmt *s = list; s; s = s->next)
+    if (s->kind == STMT_EXPECT) return 1;
+  return 0;
+}
+
+EffectList model_expecting_effects(const Ast *ast) {
+  VEC(Name) names = {0};
+  if (contains_expect(ast->first)) vec_push(ast->arena, &names, NULL);
+  for (const AstStmt *s = ast->first; s; s = s->next)
+    if (s->kind == STMT_EFFECT && s->name && contains_expect(s->body)) vec_push(ast->arena, &names, s->name);
+  return (EffectList){names.at, names.n};
+}
+
 static Name nearest(const Ast *ast, AstStmtKind kind, const char *wrong) {
   VEC(Name) names = {0};
   for (const AstStmt *s = ast->first; s; s = s->next)
     if (s->kind == kind && s->name) vec_push(ast->arena, &names, s->name);
   return suggest(wrong, names.at, names.n);
+}
+
+static const char *all_scenes(const Builder *b) {
+  StrBuf list = strbuf(b->arena);
+  SceneList scenes = model_scenes(b->ast);
+  for (uint32_t i = 0; i < scenes.n && i < 12; i++) sb_printf(&list, "%s`%s`", i ? ", " : "", scenes.at[i]);
+  if (scenes.n > 12) sb_puts(&list, ", ...");
+  return sb_text(&list);
 }
 
 static void report_unknown(Builder *b, AstStmtKind kind, Span span, const char *name) {
@@ -46,17 +68,26 @@ static void report_unknown(Builder *b, AstStmtKind kind, Span span, const char *
   Name near = nearest(b->ast, kind, name);
   if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else if (kind == STMT_EFFECT) diag_help(b->diags, "declare it: `effect %s { ... }`", name);
+  else diag_help(b->diags, "the scenes are %s", all_scenes(b));
 }
 
 /* Names of scenes, and of effects, are each declared once. */
 static void check_twice(Builder *b) {
-  for (const AstStmt *s = b->ast->first; s; s = s->next)
-    if (s->kind == STMT_SCENE || s->kind == STMT_EFFECT) {
-      const AstStmt *first = find_stmt(b->ast, s->kind, s->name);
-      if (first == s || !first) continue;
-      diag_error(b->diags, s->name_span, "the %s `%s` is declared twice", s->kind == STMT_SCENE ? "scene" : "effect", s->name);
-      diag_also(b->diags, first->name_span, "first declared here");
+  uint32_t n = 0, cap = 16;
+  for (const AstStmt *s = b->ast->first; s; s = s->next) n += s->kind == STMT_SCENE || s->kind == STMT_EFFECT;
+  while (cap < 2 * n) cap *= 2;
+  const AstStmt **seen = ARENA_ARRAY(b->arena, const AstStmt *, cap); /* by the address of the name */
+  for (const AstStmt *s = b->ast->first; s; s = s->next) {
+    if ((s->kind != STMT_SCENE && s->kind != STMT_EFFECT) || !s->name) continue;
+    uint32_t i = (uint32_t)((uintptr_t)s->name >> 4) & (cap - 1);
+    while (seen[i] && (seen[i]->name != s->name || seen[i]->kind != s->kind)) i = (i + 1) & (cap - 1);
+    if (!seen[i]) {
+      seen[i] = s;
+      continue;
     }
+    diag_error(b->diags, s->name_span, "the %s `%s` is declared twice", s->kind == STMT_SCENE ? "scene" : "effect", s->name);
+    diag_also(b->diags, seen[i]->name_span, "first declared here");
+  }
 }
 
 /* The scene and those it is like, the farthest ancestor first; NULL-terminated. */
@@ -159,15 +190,15 @@ static void take_model_name(Builder *b) {
     }
 }
 
-void scene_select(Builder *b, const char *scene, Name also) {
+void scene_select(Builder *b, const ModelChoice *choice) {
   take_model_name(b);
   check_twice(b);
-  const AstStmt *st = pick_scene(b, scene);
+  const AstStmt *st = choice->bare ? NULL : pick_scene(b, choice->scene);
   b->m->scene.name = st ? st->name : intern(b->ast->names, "default");
   b->m->scene.doc = st && st->doc ? st->doc : "";
   b->chain = scene_chain(b, st);
   for (const AstStmt **s = b->chain; *s; s++) collect_uses(b, *s);
-  if (also) use_with_needs(b, also);
+  if (choice->also) use_with_needs(b, choice->also);
   VEC(Name) in_order = {0};
   for (const AstStmt *s = b->ast->first; s; s = s->next) {
     if (s->kind != STMT_EFFECT) {
@@ -186,25 +217,48 @@ void scene_select(Builder *b, const char *scene, Name also) {
 
 /* --- the scene's contents --- */
 
-/* The parameter that `c` or `drag.c` names; reported when it is none. -1 then. */
+/* The parameter that `c` or `drag.c` names; in `use drag(c = 1)`, effect is drag, and only its own
+ * count. Reported when it is none; -1 then. */
 static int find_param(Builder *b, AstId id, Name effect) {
   const AstExpr *x = ast_expr(b->ast, id);
   const Entity *e = NULL;
-  if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME) {
-    e = scope_own(&b->scope, x->name, ast_expr(b->ast, x->a)->name);
-    if (!e) diag_error(b->diags, x->span, "no effect in use declares `%s`", ast_text(b, id));
+  int member = x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME;
+  if (member || (x->kind == AST_NAME && effect)) {
+    Name owner = member ? ast_expr(b->ast, x->a)->name : effect;
+    e = scope_own(&b->scope, x->name, owner);
+    if (!e) {
+      diag_error(b->diags, x->span, "no effect in use declares `%s.%s`", owner, x->name);
+      advise_unknown_member(b, owner, x->name);
+    }
   } else if (x->kind == AST_NAME) {
-    e = resolve_name(b, x->name, x->span, effect);
+    e = resolve_name(b, x->name, x->span, NULL, "param");
   } else if (x->kind != AST_ERROR) {
     diag_error(b->diags, x->span, "a scene sets parameters: `name = value`");
+    if (x->kind == AST_PRIME) diag_help(b->diags, "a start value is given by `start %s = ...`", ast_text(b, id));
   }
   if (e && e->kind == ENT_PARAM) return (int)e->index;
-  if (e) {
-    diag_error(b->diags, x->span, "`%s` is a %s, not a parameter", e->name, ent_kind_text(e->kind));
-    if (e->kind == ENT_COORD) diag_help(b->diags, "its start is set by `start %s = ...`", e->name);
+  if (e && e->kind != ENT_NONE) {
+    diag_error(b->diags, x->span, "`%s` is %s, not a parameter", e->name, ent_kind_text(e->kind));
+    if (e->kind == ENT_COORD || e->kind == ENT_STATE) diag_help(b->diags, "its start is set by `start %s = ...`", e->name);
     if (e->kind == ENT_CONST) diag_help(b->diags, "constants are fixed when compiling: `-D %s=...`", e->name);
+    if (e->kind == ENT_LET) diag_help(b->diags, "declare it by `param` where scenes give it values");
+    if (e->kind == ENT_INPUT) diag_help(b->diags, "inputs are set when running: `lagc run MODEL SCENE %s=...`", e->name);
   }
   return -1;
+}
+
+/* `span = 20` sets a parameter of that name; where there is none, the statement was meant. */
+static int advise_statement(Builder *b, const AstStmt *st) {
+  static const char *const words[] = {"span", "tolerance", "method", "use", "like"};
+  const AstExpr *l = ast_expr(b->ast, st->lhs);
+  if (l->kind != AST_NAME || declared_in_use(b, l->name, NULL)) return 0;
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+    if (strcmp(l->name, words[i]) == 0) {
+      diag_error(b->diags, st->span, "`%s` takes no `=`", words[i]);
+      diag_help(b->diags, "write `%s %s`", words[i], ast_short(b, st->rhs));
+      return 1;
+    }
+  return 0;
 }
 
 typedef struct {
@@ -216,6 +270,7 @@ static int param_from(const Symbol *s, const void *data) {
 }
 
 static void set_param(Builder *b, const AstStmt *st, Name effect) {
+  if (!effect && advise_statement(b, st)) return;
   int i = find_param(b, st->lhs, effect);
   if (i < 0) return;
   Param *p = &b->m->params.at[i];
@@ -227,6 +282,7 @@ static void set_param(Builder *b, const AstStmt *st, Name effect) {
     return;
   }
   p->value = e;
+  check_sign(b, p, ast_expr(b->ast, st->rhs)->span);
 }
 
 static Name method_text(const Builder *b, AstId id) {
@@ -263,12 +319,13 @@ static void set_start(Builder *b, const AstStmt *st) {
     else if (name->kind != AST_ERROR) diag_error(b->diags, x->span, "a start gives a coordinate or a velocity: `start th = 90 [deg]`");
     return;
   }
-  const Entity *e = resolve_name(b, name->name, name->span, NULL);
+  const Entity *e = resolve_name(b, name->name, name->span, NULL, "coord");
   if (!e) return;
+  if (e->kind == ENT_NONE) return;
   if (e->kind != ENT_COORD && e->kind != ENT_STATE) {
-    diag_error(b->diags, name->span, "`%s` is a %s; only coordinates, velocities and states start somewhere", name->name,
+    diag_error(b->diags, name->span, "`%s` is %s; only coordinates, velocities and states start somewhere", name->name,
                ent_kind_text(e->kind));
-    if (e->kind == ENT_PARAM) diag_help(b->diags, "write `%s = value` without `start`", name->name);
+    if (e->kind == ENT_PARAM) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
     return;
   }
   Unit unit = e->kind == ENT_COORD ? b->m->coords.at[e->index].unit : b->m->states.at[e->index].unit;
@@ -276,6 +333,7 @@ static void set_start(Builder *b, const AstStmt *st) {
   if (x->kind == AST_PRIME) {
     if (e->kind == ENT_STATE) {
       diag_error(b->diags, x->span, "the rate of a state follows from its flow");
+      diag_help(b->diags, "the state itself starts somewhere: `start %s = ...`", name->name);
       return;
     }
     target = b->m->coords.at[e->index].v;
@@ -341,7 +399,7 @@ static void set_output(Builder *b, const AstStmt *st) {
 
 static void set_monitor(Builder *b, const AstStmt *st) {
   const AstExpr *x = ast_expr(b->ast, st->lhs);
-  Unit none = {.dim = DIM_UNKNOWN, .factor = num_int(1), .text = ""};
+  Unit none = {.dim = DIM_NONE, .factor = num_int(1), .text = ""};
   Monitor mon = {.output = -1, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit")};
   mon.name = intern(b->ast->names, ast_text(b, st->lhs));
   if (mon.limit <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a monitor's limit must be positive");

@@ -33,16 +33,16 @@ void scope_add(Scope *s, Entity e) {
 
 const char *ent_kind_text(EntKind kind) {
   switch (kind) {
-    case ENT_COORD: return "coordinate";
-    case ENT_STATE: return "state";
-    case ENT_PARAM: return "parameter";
-    case ENT_CONST: return "constant";
-    case ENT_INPUT: return "input";
-    case ENT_LET: return "let";
-    case ENT_FUNCTION: return "function";
-    case ENT_OBSERVE: return "observable";
-    case ENT_BUILTIN: return "built-in quantity";
+    case ENT_COORD: return "a coordinate";
+    case ENT_STATE: return "a state";
+    case ENT_PARAM: return "a parameter";
+    case ENT_CONST: return "a constant";
+    case ENT_INPUT: return "an input";
+    case ENT_LET: return "a let";
+    case ENT_FUNCTION: return "a function";
+    case ENT_OBSERVE: return "an observable";
+    case ENT_BUILTIN: return "a built-in quantity";
     case ENT_NONE: break;
   }
-  return "name";
+  return "a name";
 }

@@ -7,7 +7,8 @@
 #include "base/intern.h"
 
 typedef enum {
-  ENT_NONE, ENT_COORD, ENT_STATE, ENT_PARAM, ENT_CONST, ENT_INPUT, ENT_LET, ENT_FUNCTION, ENT_OBSERVE,
+  ENT_NONE, /* declared, but refused as "not yet": its uses are not reported again */
+  ENT_COORD, ENT_STATE, ENT_PARAM, ENT_CONST, ENT_INPUT, ENT_LET, ENT_FUNCTION, ENT_OBSERVE,
   ENT_BUILTIN /* lagrangian, energy, T, V */
 } EntKind;
 
@@ -36,6 +37,6 @@ const Entity *scope_find(const Scope *s, Name name, Name effect, int *ambiguous)
 
 void scope_add(Scope *s, Entity e);
 
-const char *ent_kind_text(EntKind kind); /* "coordinate", ... */
+const char *ent_kind_text(EntKind kind); /* "a coordinate", ... */
 
 #endif

@@ -97,19 +97,56 @@ static const UnitRow *find_prefixed(const char *name, int *power) {
   return NULL;
 }
 
+int unit_exists(const char *name) {
+  int power;
+  return find_prefixed(name, &power) != NULL;
+}
+
 static Num power_of_ten(int n) {
   Num ten = num_int(10), e = num_int(n);
   int exact;
   return num_pow(ten, e, &exact);
 }
 
+/* What people write for a unit that has another spelling here. */
+static const char *const spellings[][2] = {
+  {"meter", "m"}, {"metre", "m"}, {"meters", "m"}, {"metres", "m"}, {"gram", "g"}, {"grams", "g"}, {"kilogram", "kg"},
+  {"kilograms", "kg"}, {"kgs", "kg"}, {"Kg", "kg"}, {"KG", "kg"}, {"kilo", "kg"}, {"sec", "s"}, {"secs", "s"},
+  {"second", "s"}, {"seconds", "s"}, {"Sec", "s"}, {"minute", "min"}, {"minutes", "min"}, {"hour", "h"}, {"hours", "h"},
+  {"hr", "h"}, {"days", "d"}, {"year", "yr"}, {"years", "yr"}, {"a", "yr"}, {"degree", "deg"}, {"degrees", "deg"},
+  {"radian", "rad"}, {"radians", "rad"}, {"turn", "rev"}, {"rpm", "rev/min"}, {"Newton", "N"}, {"newton", "N"},
+  {"Joule", "J"}, {"joule", "J"}, {"Watt", "W"}, {"watt", "W"}, {"Volt", "V"}, {"volt", "V"}, {"Ampere", "A"},
+  {"ampere", "A"}, {"amp", "A"}, {"Kelvin", "K"}, {"kelvin", "K"}, {"Ohm", "ohm"}, {"Hertz", "Hz"}, {"hertz", "Hz"},
+  {"Pascal", "Pa"}, {"Coulomb", "C"}, {"Farad", "F"}, {"Henry", "H"}, {"Tesla", "T"}, {"AU", "au"}, {"ev", "eV"},
+  {"us", "µs"}, {"um", "µm"}, {"liter", "L"}, {"litre", "L"}, {"l", "L"}, {"amu", "u"}, {"Da", "u"},
+};
+enum { N_SPELLINGS = sizeof spellings / sizeof *spellings };
+
+/* Prefixed units that people use, for suggestions. */
+static const char *const usual[] = {
+  "kg", "mg", "km", "cm", "mm", "µm", "nm", "ms", "µs", "ns", "kN", "MN", "mN", "kPa", "MPa", "GPa", "kJ", "MJ", "mJ",
+  "kW", "MW", "mW", "mA", "kA", "mV", "kV", "kHz", "MHz", "GHz", "mrad", "keV", "MeV", "GeV", "mL", "kmol", "mmol",
+};
+enum { N_USUAL = sizeof usual / sizeof *usual };
+
 static void report_unknown(const AstUnitFactor *f, Diags *diags) {
-  Name known[N_UNITS];
-  for (int i = 0; i < N_UNITS; i++) known[i] = table[i].name;
+  if (strcmp(f->name, "degC") == 0) {
+    diag_error(diags, f->span, "not yet: `degC`, whose zero is not that of the kelvin");
+    diag_help(diags, "write kelvin: 20 degC is 293.15 [K]");
+    return;
+  }
   diag_error(diags, f->span, "unknown unit `%s`", f->name);
-  Name near = suggest(f->name, known, N_UNITS);
+  for (int i = 0; i < N_SPELLINGS; i++)
+    if (strcmp(f->name, spellings[i][0]) == 0) {
+      diag_help(diags, "write `%s`", spellings[i][1]);
+      return;
+    }
+  Name known[N_UNITS + N_USUAL];
+  for (int i = 0; i < N_USUAL; i++) known[i] = usual[i];
+  for (int i = 0; i < N_UNITS; i++) known[N_USUAL + i] = table[i].name;
+  Name near = suggest(f->name, known, N_UNITS + N_USUAL);
   if (near) diag_help(diags, "did you mean `%s`?", near);
-  else diag_help(diags, "the units are listed in grammar/LANGUAGE.md; `lagc help units` prints them");
+  else diag_help(diags, "`lagc help units` lists them");
 }
 
 static void multiply(Unit *u, const UnitRow *row, int power, Num exponent) {

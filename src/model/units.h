@@ -26,6 +26,9 @@ extern const Dim DIM_UNKNOWN;
  * No unit written: dimension unknown, factor 1. */
 Unit unit_resolve(const AstUnit *u, Diags *diags, Arena *a);
 
+/* Whether it is the name of a unit, with or without a prefix. */
+int unit_exists(const char *name);
+
 double unit_factor(const Unit *u);
 
 Dim dim_mul(Dim a, Dim b);

@@ -194,7 +194,8 @@ static void push_factor(ExprGraph *g, Product *r, Expr base, Num e) {
 static void push_number_power(ExprGraph *g, Product *r, Num base, Num e) {
   int exact;
   Num v = num_pow(base, e, &exact);
-  if (exact || !num_is_exact(base) || !num_is_exact(e)) r->c = num_mul(r->c, v);
+  int whole = num_is_exact(base) && num_is_int(e); /* an overflow: 10^30 is a double */
+  if (exact || whole || !num_is_exact(base) || !num_is_exact(e)) r->c = num_mul(r->c, v);
   else push_factor(g, r, expr_num(g, base), e);
 }
 

@@ -112,9 +112,13 @@ static Expr partial(ExprGraph *g, Expr e, uint32_t i) {
   return expr_nargs(g, e) == 1 ? partial_unary(g, e, expr_arg(g, e, 0)) : partial_binary(g, e, i);
 }
 
-/* A sum worth a name of its own when the definition it belongs to has one. */
+/* A sum, or a long product, is worth a name of its own when the definition it belongs to has one:
+ * a chain of lets keeps its length. */
 static Expr name_sum(ExprGraph *g, const char *before, Name name, const char *after, Expr body) {
-  if (expr_op(g, body) != EX_SUM || expr_pairs(g, body, EX_SUM) < 2) return body;
+  enum { LONG_PRODUCT = 8 };
+  Num c;
+  int sum = expr_pairs(g, body, EX_SUM) > 1;
+  if (!sum && expr_pairs(g, expr_pair(g, body, EX_SUM, 0, &c), EX_PROD) < LONG_PRODUCT) return body;
   StrBuf b = strbuf(g->arena);
   sb_printf(&b, "%s%s%s", before, name, after);
   Name full = intern(g->names, sb_text(&b));

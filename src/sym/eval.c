@@ -18,31 +18,48 @@ static long double number(Num n) {
   return num_is_exact(n) ? (long double)n.num / (long double)n.den : n.approx;
 }
 
-static long double pairs_value(ExprGraph *g, Expr e, const long double *v, const ExprMap *at) {
-  ExprOp op = expr_op(g, e);
-  long double r = op == EX_SUM ? 0 : 1;
-  for (uint32_t i = 0; i < expr_pairs(g, e, op); i++) {
-    Num k;
-    long double x = v[expr_map_get(at, expr_pair(g, e, op, i, &k))];
-    if (op == EX_SUM) r += number(k) * x;
-    else r *= power(x, k);
+/* One node: its arguments are t->arg[first ..], places of earlier nodes; pairs of a sum or product
+ * have their numbers in t->number[first ..]. */
+typedef struct {
+  ExprOp op;
+  uint32_t first, n;
+  SymId symbol;
+  long double constant;
+} Step;
+
+struct EvalTape {
+  uint32_t n, nroots;
+  Step *step;
+  long double *value;
+  VEC(uint32_t) arg;
+  VEC(Num) number;
+  uint32_t *root; /* places; UINT32_MAX for a root that is none */
+  SymId changed;  /* the symbol that `follows` is about */
+  uint8_t *follows;
+};
+
+static long double pairs_value(const EvalTape *t, const Step *o) {
+  long double r = o->op == EX_SUM ? 0 : 1;
+  for (uint32_t i = o->first; i < o->first + o->n; i++) {
+    long double x = t->value[t->arg.at[i]];
+    if (o->op == EX_SUM) r += number(t->number.at[i]) * x;
+    else r *= power(x, t->number.at[i]);
   }
   return r;
 }
 
-static long double node_value(ExprGraph *g, Expr e, const long double *symbols, const long double *v,
-                              const ExprMap *at) {
+static long double step_value(const EvalTape *t, const Step *o, const long double *symbols) {
+  const uint32_t *arg = t->arg.at + o->first;
   long double x = 0, y = 0;
-  ExprOp op = expr_op(g, e);
-  if (op != EX_SUM && op != EX_PROD) {
-    if (expr_nargs(g, e) > 0) x = v[expr_map_get(at, expr_arg(g, e, 0))];
-    if (expr_nargs(g, e) > 1) y = v[expr_map_get(at, expr_arg(g, e, 1))];
+  if (o->op != EX_SUM && o->op != EX_PROD) {
+    if (o->n > 0) x = t->value[arg[0]];
+    if (o->n > 1) y = t->value[arg[1]];
   }
-  switch (op) {
-    case EX_NUM: return number(expr_number(g, e));
-    case EX_SYM: return symbols[expr_sym_id(g, e)];
+  switch (o->op) {
+    case EX_NUM: return o->constant;
+    case EX_SYM: return symbols[o->symbol];
     case EX_DEF: return x;
-    case EX_SUM: case EX_PROD: return pairs_value(g, e, v, at);
+    case EX_SUM: case EX_PROD: return pairs_value(t, o);
     case EX_POW: return powl(x, y);
     case EX_SIN: return sinl(x);
     case EX_COS: return cosl(x);
@@ -68,19 +85,75 @@ static long double node_value(ExprGraph *g, Expr e, const long double *symbols, 
     case EX_NOT: return x == 0;
     case EX_AND: return x != 0 && y != 0;
     case EX_OR: return x != 0 || y != 0;
-    case EX_SELECT: return x != 0 ? y : v[expr_map_get(at, expr_arg(g, e, 2))];
+    case EX_SELECT: return x != 0 ? y : t->value[arg[2]];
     case EX_COUNT: break;
   }
   return NAN;
 }
 
-void expr_eval(ExprGraph *g, const Expr *roots, uint32_t n, const long double *symbols, long double *out) {
-  ExprList l = expr_topo(g, roots, n);
-  ExprMap at = expr_map(expr_arena(g));
-  long double *v = ARENA_ARRAY(expr_arena(g), long double, l.n + 1);
-  for (uint32_t i = 0; i < l.n; i++) {
-    expr_map_set(&at, l.at[i], i + 1);
-    v[i + 1] = node_value(g, l.at[i], symbols, v, &at);
+static Step lay_step(EvalTape *t, ExprGraph *g, Arena *a, Expr e, const ExprMap *place) {
+  ExprOp op = expr_op(g, e);
+  Step o = {.op = op, .first = t->arg.n};
+  int pairs = op == EX_SUM || op == EX_PROD;
+  if (op == EX_NUM) o.constant = number(expr_number(g, e));
+  if (op == EX_SYM) o.symbol = expr_sym_id(g, e);
+  uint32_t n = pairs ? expr_pairs(g, e, op) : expr_nargs(g, e);
+  for (uint32_t i = 0; i < n; i++) {
+    Num k = num_int(1);
+    Expr x = pairs ? expr_pair(g, e, op, i, &k) : expr_arg(g, e, i);
+    vec_push(a, &t->arg, expr_map_get(place, x) - 1);
+    vec_push(a, &t->number, k);
   }
-  for (uint32_t i = 0; i < n; i++) out[i] = roots[i] ? v[expr_map_get(&at, roots[i])] : 0;
+  o.n = n;
+  return o;
+}
+
+EvalTape *eval_tape(ExprGraph *g, const Expr *roots, uint32_t n) {
+  Arena *a = expr_arena(g);
+  ExprList l = expr_topo(g, roots, n);
+  ExprMap place = expr_map(a);
+  EvalTape *t = ARENA_NEW(a, EvalTape);
+  t->n = l.n;
+  t->nroots = n;
+  vec_push(a, &t->arg, 0); /* so that there is an array even where nothing has arguments */
+  vec_push(a, &t->number, num_int(0));
+  t->step = ARENA_ARRAY(a, Step, l.n + 1);
+  t->value = ARENA_ARRAY(a, long double, l.n + 1);
+  t->follows = ARENA_ARRAY(a, uint8_t, l.n + 1);
+  t->root = ARENA_ARRAY(a, uint32_t, n + 1);
+  for (uint32_t i = 0; i < l.n; i++) {
+    t->step[i] = lay_step(t, g, a, l.at[i], &place);
+    expr_map_set(&place, l.at[i], i + 1);
+  }
+  for (uint32_t i = 0; i < n; i++) t->root[i] = roots[i] ? expr_map_get(&place, roots[i]) - 1 : UINT32_MAX;
+  return t;
+}
+
+static void read_roots(const EvalTape *t, long double *out) {
+  for (uint32_t i = 0; i < t->nroots; i++) out[i] = t->root[i] == UINT32_MAX ? 0 : t->value[t->root[i]];
+}
+
+void eval_run(EvalTape *t, const long double *symbols, long double *out) {
+  for (uint32_t i = 0; i < t->n; i++) t->value[i] = step_value(t, &t->step[i], symbols);
+  read_roots(t, out);
+}
+
+static void mark_followers(EvalTape *t, SymId changed) {
+  for (uint32_t i = 0; i < t->n; i++) {
+    const Step *o = &t->step[i];
+    t->follows[i] = o->op == EX_SYM && o->symbol == changed;
+    for (uint32_t k = o->first; k < o->first + o->n; k++) t->follows[i] |= t->follows[t->arg.at[k]];
+  }
+  t->changed = changed;
+}
+
+void eval_rerun(EvalTape *t, const long double *symbols, SymId changed, long double *out) {
+  if (t->changed != changed) mark_followers(t, changed);
+  for (uint32_t i = 0; i < t->n; i++)
+    if (t->follows[i]) t->value[i] = step_value(t, &t->step[i], symbols);
+  read_roots(t, out);
+}
+
+void expr_eval(ExprGraph *g, const Expr *roots, uint32_t n, const long double *symbols, long double *out) {
+  eval_run(eval_tape(g, roots, n), symbols, out);
 }

@@ -7,4 +7,12 @@
 /* out[i] = value of roots[i], with symbols[s] the value of symbol s. Truth is 1 and 0. */
 void expr_eval(ExprGraph *g, const Expr *roots, uint32_t n, const long double *symbols, long double *out);
 
+/* Roots laid out once, to be evaluated at many states: no allocation, and no look at the graph. */
+typedef struct EvalTape EvalTape;
+EvalTape *eval_tape(ExprGraph *g, const Expr *roots, uint32_t n);
+void eval_run(EvalTape *t, const long double *symbols, long double *out);
+
+/* eval_run again when only the symbol `changed` has another value: computes what depends on it. */
+void eval_rerun(EvalTape *t, const long double *symbols, SymId changed, long double *out);
+
 #endif

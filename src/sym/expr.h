@@ -135,12 +135,18 @@ void expr_map_clear(ExprMap *m);
 void expr_map_set(ExprMap *m, Expr e, uint32_t value);
 uint32_t expr_map_get(const ExprMap *m, Expr e); /* 0 when not set */
 
+/* The nodes among those that the roots need which contain a symbol for which want() is true: 1. */
+ExprMap expr_containing(ExprGraph *g, const Expr *roots, uint32_t n, int (*want)(const Symbol *s, const void *data), const void *data);
+
 /* e with symbols replaced: with[s] stands for symbol s where it is not 0 (n entries).
  * Definitions whose body changes are rebuilt under their name followed by suffix (may be ""). */
 Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const char *suffix);
 
 /* e with every definition replaced by its body. */
 Expr expr_expand_defs(ExprGraph *g, Expr e);
+
+/* Number of nodes of e written out as a tree, definitions by name; *distinct: of its graph. */
+double expr_written_size(ExprGraph *g, Expr e, uint32_t *distinct);
 
 /* Number of operations that evaluating the roots takes when every node is computed once. */
 uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n);

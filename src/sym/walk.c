@@ -73,6 +73,18 @@ int expr_contains_sym(ExprGraph *g, Expr e, SymId sym) {
   return expr_contains(g, e, same_symbol, &node);
 }
 
+ExprMap expr_containing(ExprGraph *g, const Expr *roots, uint32_t n, int (*want)(const Symbol *s, const void *data), const void *data) {
+  ExprList l = expr_topo(g, roots, n);
+  ExprMap m = expr_map(g->arena);
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr e = l.at[i];
+    int yes = expr_op(g, e) == EX_SYM && want(expr_sym_of(g, e), data);
+    for (uint32_t k = 0; k < expr_nargs(g, e) && !yes; k++) yes = expr_map_get(&m, expr_arg(g, e, k)) != 0;
+    if (yes) expr_map_set(&m, e, 1);
+  }
+  return m;
+}
+
 /* --- rewriting bottom-up --- */
 
 /* The arguments of e as the map has them (numbers and untouched nodes stand for themselves).
@@ -135,6 +147,31 @@ Expr expr_expand_defs(ExprGraph *g, Expr e) {
 }
 
 /* --- counting --- */
+
+double expr_written_size(ExprGraph *g, Expr e, uint32_t *distinct) {
+  VEC(Expr) found = {0};
+  expr_map_clear(&g->seen);
+  expr_map_set(&g->seen, e, 1);
+  vec_push(g->arena, &found, e);
+  for (uint32_t k = 0; k < found.n; k++)
+    for (uint32_t i = 0; i < (expr_op(g, found.at[k]) == EX_DEF ? 0 : expr_nargs(g, found.at[k])); i++) {
+      Expr a = expr_arg(g, found.at[k], i);
+      if (expr_map_get(&g->seen, a)) continue;
+      expr_map_set(&g->seen, a, 1);
+      vec_push(g->arena, &found, a);
+    }
+  qsort(found.at, found.n, sizeof *found.at, ascending);
+  double *size = ARENA_ARRAY(g->arena, double, found.n);
+  for (uint32_t k = 0; k < found.n; k++) {
+    expr_map_set(&g->seen, found.at[k], k + 1);
+    size[k] = 1;
+    if (expr_op(g, found.at[k]) == EX_DEF) continue;
+    for (uint32_t i = 0; i < expr_nargs(g, found.at[k]); i++)
+      size[k] += size[expr_map_get(&g->seen, expr_arg(g, found.at[k], i)) - 1];
+  }
+  *distinct = found.n;
+  return size[found.n - 1];
+}
 
 /* Multiplications of b^e: by squaring for integers, one square root for halves. */
 static uint32_t power_ops(Num e) {

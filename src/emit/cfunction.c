@@ -1,0 +1,110 @@
+#include "emit/cfunction.h"
+
+#include <string.h>
+
+#include "base/num.h"
+
+/* LAG_ and lag_ stand for the prefix in upper and lower case. */
+static const char *const logic =
+  "#ifndef LAG_SELECT\n"
+  "#define LAG_SELECT(c, a, b) ((c) ? (a) : (b))\n"
+  "#define LAG_NOT(c) (!(c))\n"
+  "#define LAG_AND(a, b) ((a) && (b))\n"
+  "#define LAG_OR(a, b) ((a) || (b))\n"
+  "#define LAG_ANY(c) (c)\n"
+  "#define LAG_MASK int\n"
+  "#endif\n";
+
+/* Gauss elimination with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed.,
+ * algorithm 3.4.1). Rows change places under a mask, so that each lane of a vector has pivots of
+ * its own. */
+static const char *const solver =
+  "\n/* M x = b by elimination with partial pivoting: M[n*n] row-major is destroyed, b becomes x. */\n"
+  "static int lag_solve(int n, LAG_REAL *M, LAG_REAL *b) {\n"
+  "  for (int k = 0; k < n; k++) {\n"
+  "    for (int i = k + 1; i < n; i++) { /* the largest of column k comes to row k */\n"
+  "      const LAG_MASK larger = LAG_FN(fabs)(M[i*n + k]) > LAG_FN(fabs)(M[k*n + k]);\n"
+  "      if (!LAG_ANY(larger)) continue;\n"
+  "      for (int j = k; j <= n; j++) {\n"
+  "        LAG_REAL *const upper = j < n ? &M[k*n + j] : &b[k], *const lower = j < n ? &M[i*n + j] : &b[i];\n"
+  "        const LAG_REAL was = *upper;\n"
+  "        *upper = LAG_SELECT(larger, *lower, was);\n"
+  "        *lower = LAG_SELECT(larger, was, *lower);\n"
+  "      }\n"
+  "    }\n"
+  "    if (LAG_ANY(LAG_NOT(LAG_FN(fabs)(M[k*n + k]) > LAG_C(0.0)))) return LAG_ESINGULAR;\n"
+  "    for (int i = k + 1; i < n; i++) {\n"
+  "      const LAG_REAL factor = M[i*n + k]/M[k*n + k];\n"
+  "      for (int j = k + 1; j < n; j++) M[i*n + j] -= factor*M[k*n + j];\n"
+  "      b[i] -= factor*b[k];\n"
+  "    }\n"
+  "  }\n"
+  "  for (int k = n - 1; k >= 0; k--) {\n"
+  "    for (int j = k + 1; j < n; j++) b[k] -= M[k*n + j]*b[j];\n"
+  "    b[k] /= M[k*n + k];\n"
+  "  }\n"
+  "  return LAG_OK;\n"
+  "}\n";
+
+void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out) {
+  for (const char *s = text; *s;) {
+    int upper = strncmp(s, "LAG_", 4) == 0, is_lower = strncmp(s, "lag_", 4) == 0;
+    if (upper || is_lower) {
+      sb_printf(out, "%s_", upper ? prefix : lower);
+      s += 4;
+    } else {
+      sb_putc(out, *s++);
+    }
+  }
+}
+
+void csupport_logic(const char *prefix, StrBuf *out) { csupport_fill(logic, prefix, "", out); }
+void csupport_solver(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(solver, prefix, lower, out); }
+
+/* Whether the program reads or writes what the parameter `name` holds. */
+static int is_used(const Prog *p, const CStyle *st, const char *name) {
+  if (strcmp(name, "w") == 0) return p->solves.n > 0;
+  for (int k = 0; k < ARR_COUNT; k++)
+    if (strcmp(name, st->in[k]) == 0 && prog_reads(p, (IrArray)k)) return 1;
+  for (uint32_t k = 0; k < p->stores.n; k++)
+    if (strcmp(st->out[p->stores.at[k].array], name) == 0) return 1;
+  return 0;
+}
+
+static void write_unused(const Prog *p, const CStyle *st, StrBuf *out) {
+  int some = 0;
+  for (int i = 0; st->own[i]; i++)
+    if (!is_used(p, st, st->own[i])) sb_printf(out, "%s(void)%s;", some++ ? " " : "  ", st->own[i]);
+  if (some) sb_putc(out, '\n');
+}
+
+void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *out) {
+  sb_putc(out, '\n');
+  if (f->comment) sb_printf(out, "/* %s */\n", comment_text(p->arena, f->comment));
+  sb_printf(out, "%s {\n", f->head);
+  write_unused(p, style, out);
+  if (f->own_work && p->solves.n) sb_printf(out, "  %s_REAL w[%u];\n", style->prefix, prog_work(p));
+  cwrite_body(p, style, p->arena, out);
+  sb_printf(out, "%s}\n", f->end);
+}
+
+const char *double_text(Arena *a, double x) {
+  char text[32];
+  if (x > -1e9 && x < 1e9 && (double)(int)x == x) return arena_printf(a, "%d", (int)x); /* 10, not 1e+01 */
+  num_format_double(text, x);
+  return arena_strdup(a, text);
+}
+
+void cwrite_guarded(const char *condition, const char *body, StrBuf *out) {
+  body += strspn(body, "\n ");
+  int one = strchr(body, '\n') == body + strlen(body) - 1 && strncmp(body, "const ", 6) != 0;
+  if (one) sb_printf(out, "  %s%s", condition, body);
+  else sb_printf(out, "  %s{\n", condition);
+  while (!one && *body) {
+    size_t n = strcspn(body, "\n");
+    if (n) sb_printf(out, "    %.*s\n", (int)n, body);
+    body += n;
+    body += strspn(body, "\n ");
+  }
+  if (!one) sb_puts(out, "  }\n");
+}

@@ -1,0 +1,34 @@
+/* What all emitted files share: the macros of the scalar, the solver, a C function around a Prog,
+ * text that may stand in a comment. */
+#ifndef LAGC_CFUNCTION_H
+#define LAGC_CFUNCTION_H
+
+#include "emit/cwriter.h"
+
+/* Choices and logic as macros (PREFIX_SELECT, PREFIX_MASK, ...), unless they are defined already:
+ * vectors of numbers have no ternary in C. */
+void csupport_logic(const char *prefix, StrBuf *out);
+
+/* `static int lower_solve(n, M, b)`, for the blocks that are not solved in straight-line code. */
+void csupport_solver(const char *prefix, const char *lower, StrBuf *out);
+
+/* text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
+void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out);
+
+typedef struct {
+  const char *comment; /* without the marks of a comment; or NULL */
+  const char *head;    /* up to the brace */
+  const char *end;     /* the last statement, or "" */
+  int own_work;        /* work space is a local array, not a parameter */
+} CFunction;
+
+/* The comment, the head, `(void)` for parameters that p does not need, the body. */
+void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *out);
+
+/* A body after `condition` (may be ""): on its line when it is one statement, or in braces. */
+void cwrite_guarded(const char *condition, const char *body, StrBuf *out);
+
+/* The shortest text that reads back as x. */
+const char *double_text(Arena *a, double x);
+
+#endif

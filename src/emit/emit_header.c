@@ -1,0 +1,123 @@
+#include "emit/emit_header.h"
+
+#include <string.h>
+
+#include "emit/header_impl.h"
+
+/* --- names --- */
+
+static const char *cased(Arena *a, const char *s, int upper) {
+  char *t = arena_strdup(a, s);
+  for (char *c = t; *c; c++) {
+    if (upper && *c >= 'a' && *c <= 'z') *c = (char)(*c - 'a' + 'A');
+    if (!upper && *c >= 'A' && *c <= 'Z') *c = (char)(*c - 'A' + 'a');
+  }
+  return t;
+}
+
+static const char *const header_names[] = {"REAL", "API", "STATIC", "IMPLEMENTATION", "IMPLEMENTED", "H_INCLUDED", "MASK",
+                                           "OK", "ESINGULAR", "NQ", "NZ", "NP", "NU", "NEV", "NOUT"};
+
+/* PREFIX_NAME for each variable: an enumerator that nothing else in the header is called. */
+static const char **enumerators(Header *h, CNames *taken, const char *stem, const IrVar *v, uint32_t n) {
+  const char **names = ARENA_ARRAY(h->a, const char *, n + 1);
+  for (uint32_t i = 0; i < n; i++) {
+    const char *id = cased(h->a, cname_spelled(h->a, v[i].name), 1);
+    names[i] = cnames_take(taken, arena_printf(h->a, "%s_%s%s", h->upper, stem, id));
+  }
+  return names;
+}
+
+static const char **event_enumerators(Header *h, CNames *taken) {
+  uint32_t n = h->u->events.n;
+  IrVar *v = ARENA_ARRAY(h->a, IrVar, n + 1);
+  for (uint32_t i = 0; i < n; i++) v[i].name = h->u->events.at[i].name;
+  return enumerators(h, taken, "EV_", v, n);
+}
+
+/* What a function's own names must not hide. */
+static const char *const *globals_of(Header *h) {
+  const char **all = ARENA_ARRAY(h->a, const char *, h->taken.taken.n + 8);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < h->taken.taken.n; i++) all[n++] = h->taken.taken.at[i];
+  all[n++] = arena_printf(h->a, "%s_solve", h->lower);
+  all[n++] = arena_printf(h->a, "%s_params", h->lower);
+  all[n++] = arena_printf(h->a, "%s_state", h->lower);
+  return all;
+}
+
+static Header header_new(const IrUnit *u, const char *name, StrBuf *out) {
+  Header h = {.u = u, .scene = &u->scenes.at[0], .a = u->arena, .out = out, .file = name};
+  const char *id = cname_spelled(h.a, name);
+  if (id[0] == '_' || (id[0] >= '0' && id[0] <= '9')) id = arena_printf(h.a, "x%s", id);
+  h.upper = cased(h.a, id, 1);
+  h.lower = cased(h.a, id, 0);
+  h.taken = cnames_new(h.a);
+  for (size_t i = 0; i < sizeof header_names / sizeof *header_names; i++)
+    cnames_reserve(&h.taken, arena_printf(h.a, "%s_%s", h.upper, header_names[i]));
+  h.q = enumerators(&h, &h.taken, "", u->q.at, u->q.n);
+  h.z = enumerators(&h, &h.taken, "", u->z.at, u->z.n);
+  h.p = enumerators(&h, &h.taken, "P_", u->p.at, u->p.n);
+  h.in = enumerators(&h, &h.taken, "IN_", u->u.at, u->u.n);
+  h.ev = event_enumerators(&h, &h.taken);
+  h.outputs = enumerators(&h, &h.taken, "OUT_", h.scene->outputs.at, h.scene->outputs.n);
+  CNames members = cnames_new(h.a);
+  const char **fields = ARENA_ARRAY(h.a, const char *, u->p.n + 1);
+  for (uint32_t i = 0; i < u->p.n; i++) fields[i] = cnames_take(&members, u->p.at[i].name);
+  h.fields = fields;
+  h.globals = globals_of(&h);
+  return h;
+}
+
+/* --- the head --- */
+
+/* The equations; what stands above them, and the operation count, are in the head already. */
+static void comment_lines(const Header *h, const char *text) {
+  const char *body = strstr(text, "\n\n"), *safe = comment_text(h->a, body ? body + 1 : text);
+  while (*safe) {
+    size_t n = strcspn(safe, "\n");
+    if (strncmp(safe, "accelerations:", 14) != 0) sb_printf(h->out, " *%s%.*s\n", n ? " " : "", (int)n, safe);
+    safe += n + (safe[n] == '\n');
+  }
+}
+
+static void write_usage(const Header *h) {
+  const char *m = h->upper, *f = h->lower;
+  const char *in = h->u->u.n ? ", NULL" : "";
+  sb_puts(h->out, " *\n * In every file that uses it, and in one of them (C or C++) after #define as here:\n");
+  sb_printf(h->out, " *   #define %s_IMPLEMENTATION\n *   #include \"%s.h\"\n *\n", m, h->file);
+  sb_printf(h->out, " *   %s_params p;\n *   %s_state s;\n", f, f);
+  sb_printf(h->out, " *   %s_defaults(&p); // as in scene %s\n *   %s_start(&p, &s);\n", f, h->scene->name, f);
+  const char *end = double_text(h->a, h->scene->t1), *step = double_text(h->a, (h->scene->t1 - h->scene->t0) / 1e4);
+  sb_printf(h->out, " *   while (s.t < %s)\n *     if (%s_rk4_step(&p, &s, %s%s) != %s_OK) break;\n", end, f, step, in, m);
+  const char *first = h->u->q.n ? arena_printf(h->a, "s.q[%s]", h->q[0]) : h->u->z.n ? arena_printf(h->a, "s.z[%s]", h->z[0]) : "s.t";
+  sb_printf(h->out, " *   printf(\"%%g\\n\", (double)%s);\n *\n", first);
+  sb_printf(h->out,
+            " * To define before the first include, the same in every file:\n"
+            " *   %s_REAL    float, double (the default) or long double\n"
+            " *   %s_STATIC  functions are static inline, in every file that includes this\n"
+            " *   %s_FN(x)   C99 with long double needs x##l here; C11 and C++ choose themselves\n", m, m, m);
+}
+
+static void write_head(const Header *h, const char *equations) {
+  const IrUnit *u = h->u;
+  sb_printf(h->out, "/* %s.h: %s\n *\n", comment_text(h->a, h->file), comment_text(h->a, u->doc[0] ? u->doc : u->name));
+  sb_printf(h->out, " * Made by lagc from the model %s, scene %s; effects in use: %s.\n", u->name, h->scene->name, u->effects[0] ? u->effects : "none");
+  sb_printf(h->out, " * One evaluation of the equations of motion: %s.\n", ops_text(u->accel, h->a));
+  sb_puts(h->out, " * C99 or C++, <math.h> only; allocates nothing, keeps nothing. All values are in SI units.\n");
+  sb_puts(h->out, " * This text may be used for any purpose without conditions (0BSD).\n");
+  write_usage(h);
+  if (equations) comment_lines(h, equations);
+  sb_puts(h->out, " */\n");
+}
+
+void emit_header(const IrUnit *u, const char *name, const char *equations, StrBuf *out) {
+  Header h = header_new(u, name, out);
+  write_head(&h, equations);
+  sb_printf(out, "#ifndef %s_H_INCLUDED\n#define %s_H_INCLUDED\n\n", h.upper, h.upper);
+  header_declarations(&h);
+  sb_printf(out, "\n#endif\n\n#if (defined(%s_IMPLEMENTATION) || defined(%s_STATIC)) && !defined(%s_IMPLEMENTED)\n#define %s_IMPLEMENTED\n\n",
+            h.upper, h.upper, h.upper, h.upper);
+  header_implementation(&h);
+  sb_puts(out, "\n#endif\n");
+}

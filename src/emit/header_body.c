@@ -1,0 +1,210 @@
+/* The definitions of an emitted header. */
+#include <string.h>
+
+#include "emit/header_impl.h"
+
+static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u"};
+
+static const char *const macros =
+  "#include <math.h>\n\n"
+  "/* Functions and constants in the scalar's precision. */\n"
+  "#ifndef LAG_FN\n"
+  "#if defined(__cplusplus)\n"
+  "#define LAG_FN(name) name\n"
+  "#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L\n"
+  "#define LAG_FN(name) _Generic((LAG_REAL)0, float: name##f, long double: name##l, default: name)\n"
+  "#else\n"
+  "#define LAG_FN(name) (LAG_REAL)name\n"
+  "#endif\n"
+  "#endif\n"
+  "#ifndef LAG_C\n"
+  "#define LAG_C(x) (sizeof(LAG_REAL) > sizeof(double) ? (LAG_REAL)x##L : (LAG_REAL)x)\n"
+  "#endif\n";
+
+/* Kutta (1901). A line that begins with q, z or u is for models that have those. */
+static const char *const rk4_body =
+  " |  const LAG_REAL weight[4] = {h/LAG_C(6.0), h/LAG_C(3.0), h/LAG_C(3.0), h/LAG_C(6.0)};\n"
+  " |  const LAG_REAL next[4] = {LAG_C(0.5)*h, LAG_C(0.5)*h, h, h}; /* from *s to the stage after this */\n"
+  " |  lag_state x = *s, sum = *s;\n"
+  "q|  LAG_REAL a[LAG_NQ];\n"
+  "z|  LAG_REAL zd[LAG_NZ];\n"
+  "u|  LAG_REAL formula[LAG_NU];\n"
+  " |  for (int k = 0; k < 4; k++) {\n"
+  "u|    if (!u) lag_inputs(x.t, p, formula);\n"
+  " |    const int status = lag_accel(CALL);\n"
+  " |    if (status != LAG_OK) return status;\n"
+  "q|    for (int i = 0; i < LAG_NQ; i++) {\n"
+  "q|      sum.q[i] += weight[k]*x.v[i];\n"
+  "q|      sum.v[i] += weight[k]*a[i];\n"
+  "q|      x.q[i] = s->q[i] + next[k]*x.v[i];\n"
+  "q|      x.v[i] = s->v[i] + next[k]*a[i];\n"
+  "q|    }\n"
+  "z|    for (int i = 0; i < LAG_NZ; i++) {\n"
+  "z|      sum.z[i] += weight[k]*zd[i];\n"
+  "z|      x.z[i] = s->z[i] + next[k]*zd[i];\n"
+  "z|    }\n"
+  " |    x.t = s->t + next[k];\n"
+  " |  }\n"
+  " |  sum.t = s->t + h;\n"
+  " |  *s = sum;\n"
+  " |  return LAG_OK;\n"
+  "}";
+
+/* --- functions around programs --- */
+
+/* The parameters of a function of the state; extra: what it writes. */
+static const char *const *own_names(const Header *h, const char *const *extra) {
+  const char **own = ARENA_ARRAY(h->a, const char *, ARR_COUNT + 4);
+  uint32_t n = 0;
+  own[n++] = "t";
+  if (h->u->q.n) own[n++] = "q", own[n++] = "v";
+  if (h->u->z.n) own[n++] = "z";
+  own[n++] = "p";
+  if (h->u->u.n) own[n++] = "u";
+  for (; *extra; extra++) own[n++] = *extra;
+  return own;
+}
+
+static CStyle style_for(const Header *h, const char *const *own, const char *const *out) {
+  return (CStyle){.prefix = h->upper, .in = arrays, .params = h->fields, .out = out, .own = own, .globals = h->globals,
+                  .solve = arena_printf(h->a, "%s_solve", h->lower)};
+}
+
+static const char *api(const Header *h, HeaderFn f) { return header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, header_prototype(h, f))); }
+
+static void state_function(const Header *h, const Prog *p, const char *head, const char *const *out, int returns) {
+  CStyle st = style_for(h, own_names(h, out), out);
+  CFunction c = {.head = head, .end = returns ? arena_printf(h->a, "  return %s_OK;\n", h->upper) : "", .own_work = 1};
+  cfunction(p, &st, &c, h->out);
+}
+
+static void accel(const Header *h) {
+  static const char *const out[] = {"a", "zd"}, *const none[] = {"a", NULL}, *const both[] = {"a", "zd", NULL};
+  const char *const *extra = !h->u->q.n ? both + 1 : h->u->z.n ? both : none;
+  CStyle st = style_for(h, own_names(h, extra), out);
+  CFunction c = {.head = api(h, FN_ACCEL), .end = arena_printf(h->a, "  return %s_OK;\n", h->upper), .own_work = 1};
+  cfunction(h->u->accel, &st, &c, h->out);
+}
+
+/* --- parameters and the start --- */
+
+/* One by one: each may use those before it. */
+static void defaults(const Header *h) {
+  static const char *const own[] = {"p", NULL}, *const out[] = {"p"};
+  sb_printf(h->out, "\n%s {\n", api(h, FN_DEFAULTS));
+  if (!h->u->p.n) sb_puts(h->out, "  p->none = 0;\n");
+  for (uint32_t i = 0; i < h->u->p.n; i++) {
+    CStyle st = style_for(h, own, out);
+    st.loads_inline = 1;
+    StrBuf body = strbuf(h->a);
+    cwrite_body(h->scene->params[i], &st, h->a, &body);
+    cwrite_guarded("", sb_text(&body), h->out);
+  }
+  sb_puts(h->out, "}\n");
+}
+
+static void param(const Header *h) {
+  sb_printf(h->out, "\n%s {\n", api(h, FN_PARAM));
+  if (!h->u->p.n) {
+    sb_puts(h->out, "  (void)p; (void)index;\n  return 0;\n}\n");
+    return;
+  }
+  sb_puts(h->out, "  switch (index) {\n");
+  for (uint32_t i = 0; i < h->u->p.n; i++) sb_printf(h->out, "    case %s: return &p->%s;\n", h->p[i], h->fields[i]);
+  sb_puts(h->out, "    default: return 0;\n  }\n}\n");
+}
+
+static void start(const Header *h) {
+  static const char *const own[] = {"p", "s", NULL}, *const out[] = {"s->q", "s->v", "s->z"};
+  CStyle st = style_for(h, own, out);
+  sb_printf(h->out, "\n%s {\n", api(h, FN_START));
+  if (!prog_reads(h->scene->start, ARR_P)) sb_puts(h->out, "  (void)p;\n");
+  sb_printf(h->out, "  s->t = %s_C(%s);\n", h->upper, double_text(h->a, h->scene->t0));
+  if (h->u->q.n) sb_printf(h->out, "  for (int i = 0; i < %s_NQ; i++) s->q[i] = s->v[i] = %s_C(0.0);\n", h->upper, h->upper);
+  if (h->u->z.n) sb_printf(h->out, "  for (int i = 0; i < %s_NZ; i++) s->z[i] = %s_C(0.0);\n", h->upper, h->upper);
+  cwrite_body(h->scene->start, &st, h->a, h->out);
+  sb_puts(h->out, "}\n");
+}
+
+static void inputs(const Header *h) {
+  static const char *const own[] = {"t", "p", "u", NULL}, *const out[] = {"u"};
+  if (!header_has(h, FN_INPUTS)) return;
+  CStyle st = style_for(h, own, out);
+  CFunction c = {.head = api(h, FN_INPUTS), .end = ""};
+  cfunction(h->u->inputs, &st, &c, h->out);
+}
+
+/* --- events --- */
+
+static const char *event_id(const Header *h, uint32_t i) {
+  CNames ids = cnames_new(h->a);
+  const char *id = "";
+  for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, h->u->events.at[k].name);
+  return arena_printf(h->a, "%s_act_%s", h->lower, id);
+}
+
+static void action(const Header *h, uint32_t i) {
+  const char **out = ARENA_ARRAY(h->a, const char *, 4), **own = ARENA_ARRAY(h->a, const char *, 4);
+  StrBuf head = strbuf(h->a);
+  uint32_t n = 0;
+  out[0] = "q1", out[1] = "v1", out[2] = "z1";
+  if (h->u->q.n) own[n++] = "q1", own[n++] = "v1";
+  if (h->u->z.n) own[n++] = "z1";
+  sb_printf(&head, "static int %s(%s", event_id(h, i), header_state_args(h, 1, ""));
+  for (uint32_t k = 0; k < n; k++) sb_printf(&head, ", %s_REAL *%s", h->upper, own[k]);
+  sb_putc(&head, ')');
+  CStyle st = style_for(h, own_names(h, own), out);
+  CFunction c = {.comment = arena_printf(h->a, "What the event %s does: q1, v1, z1 hold the state after it.", h->u->events.at[i].name),
+                 .head = header_wrapped(h, sb_text(&head)), .end = arena_printf(h->a, "  return %s_OK;\n", h->upper), .own_work = 1};
+  cfunction(h->u->events.at[i].action, &st, &c, h->out);
+}
+
+static void act(const Header *h) {
+  if (!header_has(h, FN_ACT)) return;
+  for (uint32_t i = 0; i < h->u->events.n; i++) action(h, i);
+  sb_printf(h->out, "\n%s {\n  const %s_state was = *s;\n  switch (event) {\n", api(h, FN_ACT), h->lower);
+  const char *q = h->u->q.n ? ", s->q, s->v" : "", *z = h->u->z.n ? ", s->z" : "";
+  for (uint32_t i = 0; i < h->u->events.n; i++)
+    sb_printf(h->out, "    case %s:%s return %s(%s%s%s);\n", h->ev[i], h->u->events.at[i].stop ? " *stop = 1;" : "", event_id(h, i),
+              header_state_args(h, 0, "was."), q, z);
+  sb_printf(h->out, "    default: (void)stop; return %s_OK;\n  }\n}\n", h->upper);
+}
+
+/* --- a step --- */
+
+static void rk4_step(const Header *h) {
+  StrBuf text = strbuf(h->a), call = strbuf(h->a);
+  const IrUnit *u = h->u;
+  sb_puts(&call, header_state_args(h, 0, "x."));
+  if (u->u.n) call.n--, sb_puts(&call, "u ? u : formula");
+  sb_printf(&call, "%s%s", u->q.n ? ", a" : "", u->z.n ? ", zd" : "");
+  for (const char *s = rk4_body; *s;) {
+    size_t n = strcspn(s, "\n") + (strchr(s, '\n') != NULL);
+    int wanted = *s == 'q' ? u->q.n > 0 : *s == 'z' ? u->z.n > 0 : *s == 'u' ? u->u.n > 0 : 1;
+    const char *line = *s == '}' ? arena_strdup(h->a, "}\n") : arena_strndup(h->a, s + 2, n - 2), *at = strstr(line, "CALL");
+    if (wanted && at) sb_printf(&text, "%.*s%s%s", (int)(at - line), line, sb_text(&call), at + 4);
+    else if (wanted) sb_puts(&text, line);
+    s += n;
+  }
+  sb_printf(h->out, "\n%s {\n", api(h, FN_RK4_STEP));
+  csupport_fill(sb_text(&text), h->upper, h->lower, h->out);
+}
+
+void header_implementation(const Header *h) {
+  static const char *const e[] = {"e", NULL}, *const out[] = {"out", NULL}, *const g[] = {"g", NULL};
+  csupport_fill(macros, h->upper, h->lower, h->out);
+  csupport_logic(h->upper, h->out);
+  sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
+  if (h->u->accel->solves.n || h->scene->observe->solves.n) csupport_solver(h->upper, h->lower, h->out);
+  defaults(h);
+  param(h);
+  start(h);
+  inputs(h);
+  accel(h);
+  if (header_has(h, FN_ENERGY)) state_function(h, h->u->energy, api(h, FN_ENERGY), e, 0);
+  if (header_has(h, FN_OBSERVE)) state_function(h, h->scene->observe, api(h, FN_OBSERVE), out, 1);
+  if (header_has(h, FN_EVENTS)) state_function(h, h->u->event_values, api(h, FN_EVENTS), g, 1);
+  act(h);
+  rk4_step(h);
+  sb_puts(h->out, "\n#ifdef __cplusplus\n}\n#endif\n");
+}

@@ -1,0 +1,224 @@
+#include "mech/expect.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "mech/mend.h"
+#include "mech/sites.h"
+#include "mech/states.h"
+#include "sym/prove.h"
+
+/* --- agreement by value --- */
+
+enum { SAMPLES = 20, FULL_DIGITS = 18, FEWEST_DIGITS = 6 };
+
+/* Digits to which the sides agree at a state, measured by the size of what they are summed of. */
+static int digits_at(const Eqns *e, const Expect *x, const long double *symbols) {
+  long double bound_l, bound_r;
+  long double l = prove_value(e->g, x->lhs, symbols, NULL, &bound_l);
+  long double r = prove_value(e->g, x->rhs, symbols, NULL, &bound_r);
+  long double size = fabsl(l) + fabsl(r), terms = (bound_l + bound_r) / (16 * LDBL_EPSILON);
+  if (isfinite(terms) && terms > size) size = terms;
+  if (!isfinite(l - r)) return -1;
+  if (l == r) return FULL_DIGITS;
+  long double digits = floorl(-log10l(fabsl(l - r) / size));
+  return digits < 0 ? 0 : digits > FULL_DIGITS ? FULL_DIGITS : (int)digits;
+}
+
+/* The fewest digits of agreement at random states; 0 when no state has values to compare. */
+static int agreement(const Eqns *e, const Expect *x) {
+  StateSolver *solver = states_new(e);
+  long double *symbols = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
+  int least = FULL_DIGITS, seen = 0;
+  for (uint32_t seed = 1; seed <= 3 * SAMPLES && seen < SAMPLES; seed++) {
+    prove_state(e->g, seed, symbols);
+    if (!states_complete(solver, symbols)) continue;
+    int digits = digits_at(e, x, symbols);
+    if (digits < 0) continue;
+    seen++;
+    if (digits < least) least = digits;
+  }
+  return seen ? least : 0;
+}
+
+/* --- a state that shows the difference --- */
+
+typedef struct {
+  const Eqns *e;
+  const Expect *x;
+  EvalTape *sides;
+  StateSolver *solver;
+  long double *symbols;
+  long double left, right;
+} Showing;
+
+static void default_params(Showing *s) {
+  const Model *m = s->e->m;
+  s->symbols[m->pi] = 3.14159265358979323846264338327950288L;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
+    if (p->value) expr_eval(s->e->g, &p->value, 1, s->symbols, &s->symbols[p->sym]);
+  }
+}
+
+static void other_params(Showing *s) {
+  const Model *m = s->e->m;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Symbol *sym = expr_symbol(s->e->g, m->params.at[i].sym);
+    int negative = sym->sign == SIGN_NEGATIVE || sym->sign == SIGN_NONPOSITIVE;
+    s->symbols[m->params.at[i].sym] = (negative ? -1 : 1) * (long double)(i % 5 + 2);
+  }
+}
+
+/* The k-th simple state: at rest or moving; a few angles; last with other parameters. */
+static void simple_state(Showing *s, int k) {
+  const Model *m = s->e->m;
+  const long double at[] = {1, 0.5L, -0.5L, 2}, moving[] = {1, 2, -1, 0.5L};
+  uint32_t shift = (uint32_t)k / 2 % 3;
+  default_params(s);
+  if (k >= 6) other_params(s);
+  s->symbols[m->time] = k % 2;
+  for (uint32_t i = 0; i < m->coords.n; i++) {
+    s->symbols[m->coords.at[i].q] = at[(i + shift) % 4];
+    s->symbols[m->coords.at[i].v] = k % 2 ? moving[(i + shift) % 4] : 0;
+  }
+  for (uint32_t i = 0; i < m->states.n; i++) s->symbols[m->states.at[i].z] = at[(i + shift) % 4];
+  for (uint32_t i = 0; i < m->inputs.n; i++) s->symbols[m->inputs.at[i].sym] = at[i % 2];
+}
+
+static int differs(Showing *s, long double least) {
+  long double out[2];
+  if (!states_complete(s->solver, s->symbols)) return 0;
+  eval_run(s->sides, s->symbols, out);
+  s->left = out[0];
+  s->right = out[1];
+  return isfinite(out[0]) && isfinite(out[1]) && fabsl(out[0] - out[1]) > least * (fabsl(out[0]) + fabsl(out[1]));
+}
+
+/* The first simple state at which a person sees the difference; otherwise any state that has one. */
+static int find_showing(Showing *s) {
+  enum { SIMPLE = 12 };
+  for (int k = 0; k < SIMPLE; k++) {
+    simple_state(s, k);
+    if (differs(s, 0.01L)) return 1;
+  }
+  for (uint32_t seed = 1; seed <= SAMPLES; seed++) {
+    prove_state(s->e->g, seed, s->symbols);
+    if (differs(s, 1e-12L)) return 1;
+  }
+  return 0;
+}
+
+static void put_value(StrBuf *b, const Showing *s, SymId sym, const Unit *unit) {
+  const Symbol *symbol = expr_symbol(s->e->g, sym);
+  double factor = unit_factor(unit);
+  sb_printf(b, "%s%s = %.6Lg", b->n ? ", " : "", symbol->name, s->symbols[sym] / (long double)factor);
+  if (factor != 1) sb_printf(b, " [%s]", unit->text);
+}
+
+/* "th1 = 1, th1' = 0, m1 = 1": the coordinates and what else the sides contain. */
+static const char *state_text(const Showing *s) {
+  enum { FEW_COORDINATES = 4 };
+  const Model *m = s->e->m;
+  const Unit si = {.factor = num_int(1), .text = ""};
+  ExprGraph *g = s->e->g;
+  Expr both = expr_sub(g, s->x->lhs, s->x->rhs);
+  StrBuf b = strbuf(m->arena);
+  for (int rates = 0; rates < 2; rates++)
+    for (uint32_t i = 0; i < m->coords.n; i++) {
+      const Coord *c = &m->coords.at[i];
+      SymId sym = rates ? c->v : c->q;
+      if (m->coords.n <= FEW_COORDINATES || expr_contains_sym(g, both, sym)) put_value(&b, s, sym, &c->unit);
+    }
+  for (uint32_t i = 0; i < m->states.n; i++) put_value(&b, s, m->states.at[i].z, &m->states.at[i].unit);
+  if (expr_contains_sym(g, both, m->time)) put_value(&b, s, m->time, &si);
+  for (uint32_t i = 0; i < m->inputs.n; i++) put_value(&b, s, m->inputs.at[i].sym, &m->inputs.at[i].unit);
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (expr_contains_sym(g, both, m->params.at[i].sym)) put_value(&b, s, m->params.at[i].sym, &m->params.at[i].unit);
+  return sb_text(&b);
+}
+
+/* "at th1 = 1, ...: th1'' is -9.81, the right side 9.81" */
+static const char *difference_text(const Eqns *e, const Expect *x) {
+  const Model *m = e->m;
+  Showing s = {.e = e, .x = x, .solver = states_new(e)};
+  Expr sides[2] = {x->lhs, x->rhs};
+  s.sides = eval_tape(e->g, sides, 2);
+  s.symbols = ARENA_ARRAY(m->arena, long double, expr_symbol_count(e->g) + 1);
+  if (!find_showing(&s)) return NULL;
+  const char *left = arena_printf(m->arena, "%.6Lg", s.left), *right = arena_printf(m->arena, "%.6Lg", s.right);
+  if (strcmp(left, right) == 0) {
+    left = arena_printf(m->arena, "%.17Lg", s.left);
+    right = arena_printf(m->arena, "%.17Lg", s.right);
+  }
+  return arena_printf(m->arena, "the left side is %s, the right side %s at %s", left, right, state_text(&s));
+}
+
+/* --- verdicts --- */
+
+static const char *label_of(const Model *m, const Expect *x) {
+  const char *left = span_text(m, ast_expr(m->ast, x->lhs_ast)->span);
+  return x->name ? arena_printf(m->arena, "%s (%s)", left, x->name) : left;
+}
+
+static void report_refuted(const Eqns *e, const Expect *x, const char *label) {
+  const Model *m = e->m;
+  Mend mend = mend_find(e, x);
+  const char *difference = difference_text(e, x);
+  if (mend.edit) diag_error(m->diags, mend.caret, "expect %s is false: %s", label, mend.edit);
+  else diag_error(m->diags, mend.caret, "expect %s is false, and no single edit found makes it true; the fault seems to be here", label);
+  if (difference) diag_help(m->diags, "%s", difference);
+}
+
+static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r, int allow_numeric) {
+  Diags *d = e->m->diags;
+  if (allow_numeric) {
+    diag_warning(d, x->span, "expect %s is not proved; the sides agree to %d digits", r->label, r->digits);
+    return;
+  }
+  diag_error(d, x->span, "expect %s is not proved; the sides agree to %d digits at %d random states", r->label, r->digits, SAMPLES);
+  diag_help(d, "write it in another form, or take agreement in numbers for enough: `lagc check --allow-numeric`");
+}
+
+static ExpectResult judge(const Eqns *e, const Expect *x) {
+  ExpectResult r = {.label = label_of(e->m, x), .span = x->span};
+  switch (mend_verdict(e, x->lhs, x->rhs)) {
+    case PROVED_ZERO: r.verdict = EXPECT_PROVED; return r;
+    case PROVED_NONZERO: r.verdict = EXPECT_REFUTED; return r;
+    case NOT_DECIDED: break;
+  }
+  r.digits = agreement(e, x);
+  r.verdict = r.digits < FEWEST_DIGITS ? EXPECT_REFUTED : EXPECT_AGREES;
+  return r;
+}
+
+void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults *out) {
+  const Model *m = e->m;
+  for (uint32_t i = 0; i < m->expects.n; i++) {
+    const Expect *x = &m->expects.at[i];
+    if (x->effect != effect) continue;
+    ExpectResult r = judge(e, x);
+    vec_push(m->arena, out, r);
+    if (r.verdict == EXPECT_REFUTED) report_refuted(e, x, r.label);
+    if (r.verdict == EXPECT_AGREES) report_agrees(e, x, &r, allow_numeric);
+  }
+}
+
+static void print_one(const ExpectResult *r, const Sources *sources, StrBuf *out) {
+  Place p = source_place(sources, r->span.begin);
+  sb_printf(out, "%s:%u: expect %s: ", p.file ? p.file->path : "", p.line, r->label);
+  switch (r->verdict) {
+    case EXPECT_PROVED: sb_puts(out, "proved\n"); return;
+    case EXPECT_REFUTED: sb_puts(out, "refuted\n"); return;
+    case EXPECT_AGREES: sb_printf(out, "not proved, agrees to %d digits\n", r->digits); return;
+  }
+}
+
+void expects_print(const ExpectResults *r, const Sources *sources, StrBuf *out) {
+  uint32_t proved = 0;
+  for (uint32_t i = 0; i < r->n; i++) {
+    print_one(&r->at[i], sources, out);
+    proved += r->at[i].verdict == EXPECT_PROVED;
+  }
+  if (r->n) sb_printf(out, "%u of %u expectation%s proved\n", proved, r->n, r->n == 1 ? "" : "s");
+}

@@ -1,0 +1,30 @@
+/* Expectations: equations that a person wrote, proved or refuted with M q'' = f as what is known. */
+#ifndef LAGC_EXPECT_H
+#define LAGC_EXPECT_H
+
+#include "mech/eqns.h"
+
+typedef enum {
+  EXPECT_PROVED,
+  EXPECT_REFUTED,
+  EXPECT_AGREES /* not decided by the prover; the sides agree to some digits */
+} ExpectVerdict;
+
+typedef struct {
+  const char *label; /* "th1'' (form_a)" */
+  Span span;
+  ExpectVerdict verdict;
+  int digits; /* of agreement */
+} ExpectResult;
+
+typedef VEC(ExpectResult) ExpectResults;
+
+/* Judges the expectations that stand in `effect` (NULL: in none) and appends the verdicts. A false
+ * one is an error in the model's diagnostics, with the edit that would mend it where there is a
+ * single one; one that is not decided is an error too, or a warning when allow_numeric. */
+void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults *out);
+
+/* A line each, and a summary; nothing when there are none. */
+void expects_print(const ExpectResults *r, const Sources *sources, StrBuf *out);
+
+#endif

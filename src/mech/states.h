@@ -1,0 +1,19 @@
+/* States at which expressions are compared: every symbol has a value, and accelerations, rates and
+ * the energy have those that follow from the others by the equations of motion. */
+#ifndef LAGC_STATES_H
+#define LAGC_STATES_H
+
+#include "mech/eqns.h"
+#include "sym/eval.h"
+
+typedef struct StateSolver StateSolver;
+
+StateSolver *states_new(const Eqns *e);
+
+/* Fills in q'', z' and the energy. 0 where M is singular, or a value is not finite. */
+int states_complete(StateSolver *s, long double *symbols);
+
+/* e with z' and the energy replaced by what they are; q'' stays. */
+Expr states_substitute(const Eqns *e, Expr x);
+
+#endif

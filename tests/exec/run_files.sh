@@ -1,0 +1,91 @@
+#!/bin/sh
+# Files that cannot be written, compilers and libraries that are not there, as TAP: a message on stderr that says what and
+# why, exit status 2, and nothing left behind, whole or in part. A device or a pipe is never replaced by a file.
+cd "$(dirname "$0")/../.." || exit 2
+: "${LAGC:=build/lagc}" "${TMP:=${TMPDIR:-/tmp}}"
+. tests/tap.sh
+case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
+model=$(pwd)/models/spring.lag
+dir=$TMP/run_files.$$
+mkdir -p "$dir/out" "$dir/cache" "$dir/tmp" || exit 2
+trap 'rm -rf "$dir"' EXIT
+XDG_CACHE_HOME=$dir/cache TMPDIR=$dir/tmp
+export XDG_CACHE_HOME TMPDIR
+unset LAG_HOME
+
+# refused STATUS WORDS COMMAND...: exit status, the words in the message, nothing in $dir/out
+refused() {
+  want=$1 words=$2
+  shift 2
+  "$@" >"$dir/stdout" 2>"$dir/stderr" </dev/null
+  got=$?
+  cat "$dir/stderr"
+  [ "$got" = "$want" ] || { echo "exit status $got, expected $want"; return 1; }
+  grep -q -e "$words" "$dir/stderr" || { echo "no \`$words\` in the message"; return 1; }
+  left=$(find "$dir/out" "$dir/tmp" ! -type d; find "$dir/out" "$dir/tmp" -mindepth 1 -type d)
+  [ -z "$left" ] || { echo "left: $left"; return 1; }
+}
+# With files limited to 512 bytes, as on a full disk.
+full_disk() { (trap '' XFSZ; ulimit -f 1; "$@"); }
+is_fifo() { [ -p "$dir/fifo" ]; }
+
+if [ -c /dev/full ]; then
+  for c in emit header derive; do
+    check "$c: the device is full" refused 2 'cannot write /dev/full' "$LAGC" $c "$model" -o /dev/full
+  done
+  check 'a full standard output' refused 2 'cannot write standard output' sh -c '"$0" derive "$1" >/dev/full' "$LAGC" "$model"
+  check 'check, a full standard output' refused 2 'cannot write standard output' sh -c '"$0" check "$1" >/dev/full' "$LAGC" "$model"
+  check 'version, a full standard output' refused 2 'cannot write standard output' sh -c '"$0" --version >/dev/full' "$LAGC"
+fi
+for c in emit header derive build; do
+  check "$c: no such folder" refused 2 "out/no/file" "$LAGC" $c "$model" -o "$dir/out/no/file"
+  check "$c: a file is no folder" refused 2 'stdout/file' "$LAGC" $c "$model" -o "$dir/stdout/file"
+  check "$c: a folder is no file" refused 2 "cannot write $dir/out" "$LAGC" $c "$model" -o "$dir/out"
+done
+for c in emit header; do
+  check "$c: the disk is full" refused 2 'cannot write .*out/file' full_disk "$LAGC" $c "$model" -o "$dir/out/file"
+done
+check 'build: the disk is full' refused 2 'cannot write' full_disk "$LAGC" build "$model" -o "$dir/out/sim"
+check 'run: the disk is full' refused 2 'cannot write' full_disk "$LAGC" run "$model"
+check 'run: the cache is empty after that' sh -c '[ -z "$(ls -A "$0")" ]' "$dir/cache/lagc"
+
+mkfifo "$dir/fifo"
+check 'build: a pipe is not replaced' refused 2 'no ordinary file' "$LAGC" build "$model" -o "$dir/fifo"
+check 'build: it is still a pipe' is_fifo
+cat "$dir/fifo" >"$dir/piped" &
+"$LAGC" emit "$model" -o "$dir/fifo"
+wait $!
+"$LAGC" emit "$model" -o "$dir/plain"
+check 'emit: a pipe is written to' cmp "$dir/plain" "$dir/piped"
+check 'emit: it is still a pipe' is_fifo
+
+echo old >"$dir/old"
+ln -s old "$dir/link"
+"$LAGC" emit "$model" -o "$dir/link"
+check 'emit: through a symbolic link' cmp "$dir/plain" "$dir/old"
+check 'emit: the link is still a link' test -L "$dir/link"
+echo old >"$dir/old"
+check 'emit: an old file stays when the disk is full' refused 2 'cannot write' full_disk "$LAGC" emit "$model" -o "$dir/old"
+is 'emit: it is as it was' old "$(cat "$dir/old")"
+
+if [ "$(id -u)" != 0 ]; then
+  mkdir "$dir/closed"
+  chmod 555 "$dir/closed"
+  for c in emit header build; do
+    check "$c: a folder without permission" refused 2 'Permission denied' "$LAGC" $c "$model" -o "$dir/closed/file"
+  done
+else
+  skip 'a folder without permission' 'root may write everywhere'
+fi
+
+check 'run: no C compiler' refused 2 '/nonexistent. cannot be run' env CC=/nonexistent "$LAGC" run "$model"
+check 'build: no C compiler' refused 2 '/nonexistent. cannot be run' env CC=/nonexistent "$LAGC" build "$model" -o "$dir/out/sim"
+check 'build: a C compiler that fails' refused 2 'false. failed' env CC=false "$LAGC" build "$model" -o "$dir/out/sim"
+check 'build: a C compiler that writes nothing' refused 2 'cannot write' env CC=true "$LAGC" build "$model" -o "$dir/out/sim"
+check 'LAG_HOME is wrong' refused 2 'LAG_HOME is /nonexistent' env LAG_HOME=/nonexistent "$LAGC" build "$model" -o "$dir/out/sim"
+check 'no such model' refused 2 'cannot read' "$LAGC" check "$dir/nothing.lag"
+check 'the model is a folder' refused 2 'cannot read' "$LAGC" check "$dir"
+check 'an unknown scene' refused 1 'unknown scene .nope' "$LAGC" emit "$model" nope -o "$dir/out/file"
+check 'an unknown constant' refused 1 '-D NOPE: the model declares no such constant' "$LAGC" emit "$model" -D NOPE=3 -o "$dir/out/file"
+check 'no -o for build' refused 2 'needs -o' "$LAGC" build "$model"
+tap_end

@@ -1,0 +1,81 @@
+/* Fuzzing the whole way: any bytes are parsed, and every scene, and every effect that no scene uses,
+ * is derived, lowered, and written as C, text and LaTeX. Nothing may crash, leak, take more than its
+ * memory limit, or make a program that prog_verify refuses; a model that is not built says why.
+ *
+ *   clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz/fuzz_compile.c LIBLAGC -o fuzz
+ *   ./fuzz -dict=tests/fuzz/lag.dict -timeout=10 tests/fuzz/corpus/compile
+ * tests/fuzz/driver.c replays the corpus in `make test`. */
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "emit/cnames.h"
+#include "emit/cwriter.h"
+#include "emit/emit_header.h"
+#include "emit/emit_model.h"
+#include "mech/show.h"
+#include "ir/lower.h"
+#include "mech/eqns.h"
+#include "model/model.h"
+#include "syntax/parse.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+enum { FUZZ_MEMORY = 256 * 1024 * 1024, MAX_SCENES = 8 };
+
+static void write_everything(Arena *a, const Eqns *e) {
+  IrUnit *u = unit_new(e, "fuzz.lag");
+  unit_add_scene(u, e);
+  if (prog_verify(u->accel)) abort();
+  if (u->energy && prog_verify(u->energy)) abort();
+  if (prog_verify(u->scenes.at[0].observe)) abort();
+  StrBuf c = strbuf(a), text = strbuf(a), latex = strbuf(a);
+  emit_model(u, cname(a, u->name), &c);
+  const char *cost = ops_text(u->accel, a);
+  show_equations(e, cost, PRINT_TEXT, &text);
+  show_equations(e, cost, PRINT_LATEX, &latex);
+  emit_header(u, u->name, sb_text(&text), &c);
+}
+
+/* One scene, or one effect on top of the first scene. */
+static void compile(Ast *ast, const char *scene, Name also) {
+  ModelChoice choice = {.scene = scene, .also = also};
+  Model *m = model_build(ast, &choice);
+  if (!m && !ast->diags->errors) abort();
+  if (!m) return;
+  Eqns *e = eqns_derive(m);
+  if (!e && !ast->diags->errors) abort();
+  if (e) write_everything(ast->arena, e);
+}
+
+static void run(Arena *a, const uint8_t *data, size_t size) {
+  Sources *sources = sources_new(a);
+  Ast *ast = ast_new(a, interner_new(a), sources, diags_new(a, sources));
+  const Source *source = source_add(sources, "fuzz.lag", arena_strndup(a, (const char *)data, size), size);
+  if (!source) return;
+  if (parse(ast, source)) {
+    SceneList scenes = model_scenes(ast);
+    for (uint32_t i = 0; i < scenes.n && i < MAX_SCENES; i++) compile(ast, scenes.at[i], NULL);
+    EffectList unused = model_unused_effects(ast);
+    for (uint32_t i = 0; i < unused.n && i < MAX_SCENES; i++) compile(ast, NULL, unused.at[i]);
+  }
+  StrBuf out = strbuf(a);
+  diags_print(ast->diags, &out);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  static const char devices[] = "/dev"; /* including a terminal would wait for ever */
+  for (size_t i = 0; i + 4 <= size; i++)
+    if (memcmp(data + i, devices, 4) == 0) return 0;
+  ArenaConfig config = {.chunk = 4096, .max_bytes = FUZZ_MEMORY};
+  Arena *a = arena_new(&config);
+  jmp_buf failed;
+  if (!a) return 0;
+  if (!setjmp(failed)) {
+    arena_guard(a, &failed);
+    run(a, data, size);
+  }
+  arena_free(a);
+  return 0;
+}

@@ -1,0 +1,69 @@
+#!/bin/sh
+# Golden tests of what `lagc check` says, as TAP:
+#   tests/golden/err/sem_NAME.lag + .expected    a bad model: exit status 1, the messages exactly, nothing on stdout
+#   tests/golden/err/warn_NAME.lag + .expected   a good one that draws warnings: exit status 0, the messages exactly
+#   tests/golden/ok/NAME.lag                     a good one, the near miss of an error: exit status 0, no messages
+# Every bad model is also given to the commands that write files: none may be left, whole or in part.
+# LAGC names the compiler; BLESS=1 rewrites the expectations, on purpose.
+cd "$(dirname "$0")/../.." || exit 2
+lagc=${LAGC:-build/lagc}
+tmp=${TMP:-${TMPDIR:-/tmp}}/golden_errors.$$
+mkdir -p "$tmp/out" || exit 2
+trap 'rm -rf "$tmp"' EXIT
+n=0
+failed=0
+
+result() { # NAME PROBLEM
+  n=$((n + 1))
+  if [ -z "$2" ]; then
+    echo "ok $n - $1"
+  else
+    failed=$((failed + 1))
+    echo "not ok $n - $1"
+    printf '%s\n' "$2" | sed 's/^/# /'
+  fi
+}
+
+for lag in tests/golden/err/sem_*.lag tests/golden/err/warn_*.lag tests/golden/ok/*.lag; do
+  want=${lag%.lag}.expected
+  status=1
+  case $lag in
+    */warn_*) status=0 ;;
+    */ok/*) status=0 want=/dev/null ;;
+  esac
+  "$lagc" check "$lag" >"$tmp/stdout" 2>"$tmp/stderr"
+  code=$?
+  problem=
+  if [ -n "$BLESS" ] && [ "$code" = "$status" ] && [ "$want" != /dev/null ]; then cp "$tmp/stderr" "$want"; fi
+  [ "$code" = "$status" ] || problem="exit status $code, expected $status
+"
+  if [ "$status" = 1 ] && [ -s "$tmp/stdout" ]; then problem="${problem}something on stdout
+"; fi
+  cmp -s "$want" "$tmp/stderr" || problem=$problem$(diff -u "$want" "$tmp/stderr")
+  result "$lag" "$problem"
+done
+
+# ---- nothing is written ----
+mkdir "$tmp/cache"
+for lag in tests/golden/err/sem_*.lag; do
+  problem=
+  for command in emit build derive header; do
+    XDG_CACHE_HOME=$tmp/cache "$lagc" $command "$lag" -o "$tmp/out/file" >"$tmp/stdout" 2>"$tmp/stderr"
+    code=$?
+    # `derive`, `emit` look at one scene: a mistake in another is none of theirs
+    if [ "$code" = 0 ] && [ "$command" != build ]; then
+      rm -f "$tmp/out/file"
+      continue
+    fi
+    if [ "$command" = header ] && grep -q '^lagc: not yet' "$tmp/stderr"; then continue; fi
+    [ "$code" = 1 ] || problem="$problem$command: exit status $code
+"
+    [ -z "$(ls -A "$tmp/out")" ] || problem="$problem$command left $(ls -A "$tmp/out")
+"
+    rm -rf "$tmp/out"
+    mkdir "$tmp/out"
+  done
+  result "$lag leaves no file" "$problem"
+done
+echo "1..$n"
+[ "$failed" = 0 ]

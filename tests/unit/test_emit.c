@@ -1,0 +1,207 @@
+/* Programs against the equations they come from, and what the writers of C promise. The models are
+ * all of models/ and tests/exec/models/, in every scene; run from the top of the source tree. */
+#include <glob.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "emit/cwriter.h"
+#include "ir/lower.h"
+#include "mech/eqns.h"
+#include "sym/eval.h"
+#include "syntax/parse.h"
+
+typedef long double Real;
+
+static Arena *arena;
+static jmp_buf no_memory;
+
+static int setup(void **state) {
+  (void)state;
+  arena = arena_new(NULL);
+  if (!arena || setjmp(no_memory)) return -1;
+  arena_guard(arena, &no_memory);
+  return 0;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  arena_free(arena);
+  return 0;
+}
+
+static Real next(uint64_t *seed) {
+  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+  return 1.5L * ((Real)(*seed >> 11) / 9007199254740992.0L - 0.5L);
+}
+
+/* --- M q'' = f --- */
+
+/* Values of all symbols at a random state; q'' and z' are left zero. */
+static Real *random_symbols(const Eqns *e, uint64_t *seed) {
+  uint32_t n = expr_symbol_count(e->g);
+  Real *v = ARENA_ARRAY(arena, Real, n + 1);
+  for (SymId s = 1; s <= n; s++) {
+    const Symbol *sym = expr_symbol(e->g, s);
+    v[s] = next(seed);
+    if (sym->kind == SYM_PARAM) v[s] = 1 + v[s] / 2; /* positive: what the models ask for */
+    if (sym->kind == SYM_VEL) v[s] *= 0.3L;        /* below the speed of light, which is a parameter */
+    if (sym->kind == SYM_CONST) v[s] = 3.14159265358979323846264338327950288L;
+  }
+  return v;
+}
+
+/* The arrays that a program reads, from the values of the symbols. */
+static void split(const Eqns *e, const Real *value, Real *in[ARR_COUNT]) {
+  uint32_t n = expr_symbol_count(e->g);
+  for (int k = 0; k < ARR_COUNT; k++) in[k] = ARENA_ARRAY(arena, Real, n + 1);
+  for (SymId s = 1; s <= n; s++) {
+    const Symbol *sym = expr_symbol(e->g, s);
+    switch (sym->kind) {
+      case SYM_TIME: in[ARR_T][0] = value[s]; break;
+      case SYM_COORD: in[ARR_Q][sym->index] = value[s]; break;
+      case SYM_VEL: in[ARR_V][sym->index] = value[s]; break;
+      case SYM_STATE: in[ARR_Z][sym->index] = value[s]; break;
+      case SYM_PARAM: in[ARR_P][sym->index] = value[s]; break;
+      case SYM_INPUT: in[ARR_U][sym->index] = value[s]; break;
+      case SYM_ACC: case SYM_RATE: case SYM_CONST: case SYM_LOCAL: break;
+    }
+  }
+}
+
+static Real value_of(const Eqns *e, Expr x, const Real *value) {
+  Real r;
+  expr_eval(e->g, &x, 1, value, &r);
+  return r;
+}
+
+/* |M q'' - f| against |M| |q''| + |f|: rounding is 1e-19, and f itself is a sum with cancellation. */
+static void check_state(const Eqns *e, const Prog *accel, const char *where, const Real *value) {
+  Real *in[ARR_COUNT], *a = ARENA_ARRAY(arena, Real, e->n + 1), *zd = ARENA_ARRAY(arena, Real, e->m->states.n + 1);
+  Real *out[] = {a, zd};
+  split(e, value, in);
+  if (prog_eval(accel, (const Real *const *)in, out) != 0) fail_msg("%s: singular", where);
+  for (uint32_t i = 0; i < e->n; i++) {
+    Real f = value_of(e, e->f[i], value), left = -f, size = 1 + fabsl(f);
+    for (uint32_t j = 0; j < e->n; j++) {
+      Real term = value_of(e, eqns_mass(e, i, j), value) * a[j];
+      left += term;
+      size += fabsl(term);
+    }
+    if (!(fabsl(left) <= 1e-15L * size)) fail_msg("%s: row %u is left with %Lg of %Lg", where, i, left, size);
+  }
+  for (uint32_t i = 0; i < e->m->states.n; i++) {
+    Real want = value_of(e, e->flow[i], value);
+    if (!(fabsl(zd[i] - want) <= 1e-15L * (1 + fabsl(want)))) fail_msg("%s: rate %u is %Lg, not %Lg", where, i, zd[i], want);
+  }
+}
+
+static void check_scene(Ast *ast, const char *path, const char *scene) {
+  const char *where = arena_printf(arena, "%s, scene %s", path, scene);
+  Model *m = model_build(ast, &(ModelChoice){.scene = scene});
+  Eqns *e = m ? eqns_derive(m) : NULL;
+  if (!e) fail_msg("%s has no equations", where);
+  Prog *accel = lower_accel(e);
+  const char *wrong = prog_verify(accel);
+  if (wrong) fail_msg("%s: %s", where, wrong);
+  uint64_t seed = 3;
+  for (int i = 0; i < 10; i++) check_state(e, accel, where, random_symbols(e, &seed));
+}
+
+static int check_file(const char *path) {
+  Sources *sources = sources_new(arena);
+  Ast *ast = ast_new(arena, interner_new(arena), sources, diags_new(arena, sources));
+  const char *why = NULL;
+  const Source *source = source_read(sources, path, &why);
+  if (!source || !parse(ast, source)) fail_msg("%s does not parse", path);
+  SceneList scenes = model_scenes(ast);
+  for (uint32_t i = 0; i < scenes.n; i++) check_scene(ast, path, scenes.at[i]);
+  return 1;
+}
+
+static void test_equations(void **state) {
+  (void)state;
+  glob_t found;
+  assert_int_equal(glob("models/*.lag", 0, NULL, &found), 0);
+  assert_int_equal(glob("tests/exec/models/*.lag", GLOB_APPEND, NULL, &found), 0);
+  for (size_t i = 0; i < found.gl_pathc; i++) check_file(found.gl_pathv[i]);
+  globfree(&found);
+}
+
+/* --- texts --- */
+
+static void test_names(void **state) {
+  (void)state;
+  static const char *const cases[][2] = {
+    {"th1'", "th1_dot"}, {"x''", "x_ddot"}, {"\xCE\xB8" "1", "theta1"}, {"\xCE\xA9", "Omega"}, {"\xC3\xA9", "u00e9"},
+    {"drag.c", "drag_c"}, {"double", "double_"}, {"I", "I_"}, {"sin", "sin_"}, {"_a", "x_a"}, {"2x", "n2x"},
+    {"size_t", "size_t_"}, {"M_PI", "M_PI_"}, {"gamma", "gamma"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) assert_string_equal(cname(arena, cases[i][0]), cases[i][1]);
+  CNames names = cnames_new(arena);
+  assert_string_equal(cnames_take(&names, "x'"), "x_dot");
+  assert_string_equal(cnames_take(&names, "x_dot"), "x_dot_2");
+  assert_string_equal(cnames_take(&names, "double"), "double_");
+  assert_string_equal(cnames_take(&names, "double_"), "double_2");
+}
+
+static void test_strings(void **state) {
+  (void)state;
+  assert_string_equal(c_string(arena, "a\"b\\c"), "\"a\\\"b\\\\c\"");
+  assert_string_equal(c_string(arena, "what?\?\?/"), "\"what?\\?\\?/\"");
+  assert_null(strstr(comment_text(arena, "a*/b/*c**//"), "*/"));
+  assert_null(strstr(comment_text(arena, "a*/b/*c"), "/*"));
+  assert_null(strstr(comment_text(arena, "?\?\?/"), "?\?"));
+}
+
+static void test_numbers(void **state) {
+  (void)state;
+  assert_string_equal(c_number(arena, "LAG", num_int(3)), "LAG_C(3.0)");
+  assert_string_equal(c_number(arena, "LAG", num_ratio(-1, 8)), "-LAG_C(0.125)");
+  assert_string_equal(c_number(arena, "LAG", num_ratio(1, 3)), "LAG_C(1.0)/LAG_C(3.0)");
+  assert_string_equal(c_number(arena, "LAG", num_parse("9.81", 4)), "LAG_C(9.81)");
+}
+
+/* --- how sums and products are written --- */
+
+static const char *body(Prog *p, Slot s) {
+  static const char *const in[ARR_COUNT] = {"t", "q", "v", "z", "p", "u"}, *const out[] = {"a"}, *const own[] = {"q", "a", NULL};
+  CStyle style = {.prefix = "R", .in = in, .out = out, .own = own, .solve = "solve", .loads_inline = 1};
+  prog_store(p, 0, 0, s, "it");
+  StrBuf b = strbuf(arena);
+  cwrite_body(prog_tidy(p), &style, arena, &b);
+  return sb_text(&b);
+}
+
+static Slot q(Prog *p, uint32_t i) { return prog_ins(p, (Ins){.op = IR_LOAD, .array = ARR_Q, .index = i, .name = "q"}); }
+
+static void test_grouping(void **state) {
+  (void)state;
+  Prog *p = prog_new(arena);
+  Slot ab = prog_op(p, IR_MUL, q(p, 0), q(p, 1)), minus = prog_op(p, IR_NEG, ab, 0);
+  assert_string_equal(body(p, prog_op(p, IR_SUB, q(p, 2), minus)), "\n  a[0] = q[2] + q[0]*q[1]; /* it */\n");
+  p = prog_new(arena);
+  Slot sum = prog_op(p, IR_ADD, q(p, 1), q(p, 2));
+  assert_string_equal(body(p, prog_op(p, IR_ADD, q(p, 0), sum)), "\n  a[0] = q[0] + (q[1] + q[2]); /* it */\n");
+  p = prog_new(arena);
+  Slot ratio = prog_op(p, IR_DIV, q(p, 1), q(p, 2));
+  assert_string_equal(body(p, prog_op(p, IR_MUL, q(p, 0), ratio)), "\n  a[0] = q[0]*(q[1]/q[2]); /* it */\n");
+  p = prog_new(arena);
+  Slot product = prog_op(p, IR_MUL, q(p, 0), q(p, 1));
+  assert_string_equal(body(p, prog_op(p, IR_NEG, product, 0)), "\n  a[0] = -q[0]*q[1]; /* it */\n");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test_setup_teardown(test_equations, setup, teardown), cmocka_unit_test_setup_teardown(test_names, setup, teardown),
+    cmocka_unit_test_setup_teardown(test_strings, setup, teardown),   cmocka_unit_test_setup_teardown(test_numbers, setup, teardown),
+    cmocka_unit_test_setup_teardown(test_grouping, setup, teardown),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
