@@ -16,6 +16,8 @@
 #include "base/suggest.h"
 #include "base/vec.h"
 
+__extension__ typedef __int128 Wide;
+
 /* The same numbers in every run (Knuth's MMIX generator). */
 static uint64_t rng = 7;
 static uint64_t next(void) {
@@ -61,7 +63,7 @@ static void test_field(void **state) {
     assert_int_equal(num_cmp(a, b), num_sign(num_sub(a, b)));
     /* cross-multiplied by hand, without the library's gcd */
     Num s = num_add(a, b);
-    assert_true((__int128)s.num * a.den * b.den == ((__int128)a.num * b.den + (__int128)b.num * a.den) * s.den);
+    assert_true((Wide)s.num * a.den * b.den == ((Wide)a.num * b.den + (Wide)b.num * a.den) * s.den);
   }
 }
 
@@ -80,7 +82,7 @@ static void test_overflow(void **state) {
     Num a = ratio(4000000000), b = ratio(4000000000);
     long double want = (long double)a.num / a.den * ((long double)b.num / b.den);
     Num r = num_mul(a, b);
-    if (num_is_exact(r)) assert_true((__int128)r.num * a.den * b.den == (__int128)a.num * b.num * r.den);
+    if (num_is_exact(r)) assert_true((Wide)r.num * a.den * b.den == (Wide)a.num * b.num * r.den);
     assert_true(fabsl(num_value(r) - want) <= 4 * DBL_EPSILON * fabsl(want));
   }
   assert_true(num_is_zero(num_mul(num_int(0), num_double(1e300))));
