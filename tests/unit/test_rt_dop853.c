@@ -176,6 +176,42 @@ static void the_error_follows_the_tolerance(void **state)
   assert_true(e[1] < 1e-9);
 }
 
+/* The norm of HNW II.10 by hand, from the table: a step is accepted just above it, and refused just below. */
+static void the_error_is_that_of_the_book(void **state)
+{
+  double h = 0.2, y0[4] = {0.4, 0, 0, 2}, k[STAGES][4], y[4], fine = 0, coarse = 0;
+  lag_problem pb = {.model = &kepler_model, .n = 4, .nq = 2, .dir = 1};
+  (void)state;
+  for (int s = 0; s < STAGES; s++) {
+    for (int i = 0; i < 4; i++) {
+      y[i] = y0[i];
+      for (int j = 0; j < s; j++) {
+        y[i] += h * tab->a[s][j] * k[j][i];
+      }
+    }
+    assert_int_equal(lag_rhs(&pb, tab->c[s] * h, y, k[s]), 0);
+  }
+  for (int i = 0; i < 4; i++) {
+    double e5 = 0, e3 = 0;
+    for (int s = 0; s < STAGES; s++) {
+      e5 += tab->e[s] * k[s][i];
+      e3 += tab->e3[s] * k[s][i];
+    }
+    fine += e5 * e5;
+    coarse += e3 * e3;
+  }
+  double estimate = h * fine / sqrt(4 * (fine + 0.01 * coarse));
+  for (int pass = 0; pass < 2; pass++) {
+    lag_option opt[] = {{"step", h, NULL}, {"max_step", h, NULL}, {"atol", estimate * (pass ? 1.001 : 0.999), NULL}};
+    lag_sim *s = sim_with(&kepler, &lag_dop853, 1e-15, 3, opt);
+    lag_stats st;
+    assert_int_equal(lag_sim_advance(s, 1e-3), LAG_OK);
+    lag_sim_stats(s, &st);
+    assert_int_equal(st.rejected > 0, pass == 0);
+    lag_sim_free(s);
+  }
+}
+
 /* 12 evaluations a step and one to begin with; three more in a step in which a state is asked for, once. */
 static void dense_output_is_paid_for_when_asked_for(void **state)
 {
@@ -223,6 +259,7 @@ int main(void)
       cmocka_unit_test(steps_have_order_8),
       cmocka_unit_test(dense_output_has_order_7),
       cmocka_unit_test(the_error_follows_the_tolerance),
+      cmocka_unit_test(the_error_is_that_of_the_book),
       cmocka_unit_test(dense_output_is_paid_for_when_asked_for),
       cmocka_unit_test(dense_output_survives_a_hole_in_the_model),
   };

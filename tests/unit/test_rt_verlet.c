@@ -4,6 +4,7 @@
 #include "test_rt_systems.h"
 
 #include "methods/composition.h"
+#include "methods/path.h"
 
 typedef struct Member {
   const lag_method *method;
@@ -114,6 +115,44 @@ static void dense_output_is_paid_for_when_asked_for(void **state)
     assert_int_equal(st.rhs_calls, 1 + 9 * family[m].table->stages + extra[m]);
     lag_sim_free(s);
   }
+}
+
+/* The path between steps is exact where its polynomials are: q of degree 5 + 2 level, v of degree 3 + 2 level. */
+static int degree; /* of the motion q = t^degree - t */
+
+static int power_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  a[0] = degree * (degree - 1) * pow(t, degree - 2);
+  return 0;
+}
+
+static void paths_reproduce_polynomials(void **state)
+{
+  static const lag_model model = {MODEL("power"), .nq = 1, .q = names_q, .accel = power_accel};
+  lag_problem pb = {.model = &model, .n = 2, .nq = 1, .dir = 1};
+  double *path = calloc(lag_path_size(1), sizeof *path), t0 = 0.3, h = 0.7, y[2][2], f[2][2], out[2];
+  (void)state;
+  for (int level = 0; level <= 2; level++) {
+    for (degree = 2; degree <= 5 + 2 * level; degree++) {
+      for (int k = 0; k < 2; k++) {
+        double t = t0 + k * h;
+        y[k][0] = pow(t, degree) - t;
+        y[k][1] = degree * pow(t, degree - 1) - 1;
+        assert_int_equal(lag_rhs(&pb, t, y[k], f[k]), 0);
+      }
+      StepEnds ends = {t0, h, y[0], f[0], y[1], f[1]};
+      assert_int_equal(lag_path_make(path, &pb, &ends, level), 0);
+      for (double s = 0; s <= 1; s += 0.125) {
+        double t = t0 + s * h;
+        lag_path_at(path, &pb, &ends, level, s, out);
+        assert_close(out[0], pow(t, degree) - t, 2e-14);
+        if (degree <= 4 + 2 * level) {
+          assert_close(out[1], degree * pow(t, degree - 1) - 1, 2e-13);
+        }
+      }
+    }
+  }
+  free(path);
 }
 
 /* A force with explicit time is taken at the right time: the order stays. Reference: dop853 in small steps. */
@@ -248,6 +287,7 @@ int main(void)
       cmocka_unit_test(steps_have_their_order),
       cmocka_unit_test(dense_output_has_the_order_of_the_steps),
       cmocka_unit_test(dense_output_is_paid_for_when_asked_for),
+      cmocka_unit_test(paths_reproduce_polynomials),
       cmocka_unit_test(forces_may_depend_on_time),
       cmocka_unit_test(the_chosen_tables_are_the_efficient_ones),
       cmocka_unit_test(what_is_not_separable_is_refused_with_a_way_out),
