@@ -23,6 +23,7 @@ static Verdict proof(const Eqns *e, Expr difference) {
 
 Verdict mend_verdict(const Eqns *e, Expr lhs, Expr rhs) {
   Expr difference = expr_sub(e->g, lhs, rhs);
+  if (e->definitions) difference = expr_substitute(e->g, difference, e->definitions, expr_symbol_count(e->g) + 1, "");
   Expr closed = states_substitute(e, difference);
   return proof(e, closed);
 }

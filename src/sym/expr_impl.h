@@ -11,6 +11,13 @@ typedef struct {
   Name name;        /* DEF only */
 } Node;
 
+/* A definition by the name it was asked for. body 0: counts how often the name was given away. */
+typedef struct {
+  Name name;
+  Expr body, def;
+  uint32_t count;
+} Named;
+
 struct ExprGraph {
   Arena *arena;
   Interner *names;
@@ -21,6 +28,8 @@ struct ExprGraph {
   Expr *table; /* hash of nodes, open addressing */
   uint32_t table_cap;
   ExprMap seen; /* scratch of expr_topo */
+  VEC(Named) named;          /* definitions by name asked for and body: see expr_def_fresh */
+  uint32_t *named_table, named_cap;
   Expr zero, one, minus_one;
 };
 
