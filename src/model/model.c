@@ -230,7 +230,7 @@ typedef struct {
 
 typedef struct {
   VEC(Expr) lagrangian, kinetic, potential, dissipation;
-  Span base_lagrangian; /* where the model itself gave L */
+  Span base[3]; /* where the model itself gave L, T, V */
   Dim dim;              /* of L, as far as is known */
   Span dim_span;        /* what decided that */
   VEC(UnitCheck) later;
@@ -267,15 +267,21 @@ static void check_units_of_forces(Builder *b, const Energies *en) {
   }
 }
 
-static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en) {
-  if (!effect && st->kind == STMT_LAGRANGIAN) {
-    if (en->base_lagrangian.end) {
-      diag_error(b->diags, st->span, "L is given twice");
-      diag_also(b->diags, en->base_lagrangian, "first given here; write one sum");
-      return;
-    }
-    en->base_lagrangian = st->span;
+/* The model itself gives L once: as a whole, or as kinetic and potential energy. (Effects add.) */
+static int is_first_energy(Builder *b, const AstStmt *st, Energies *en) {
+  Span *whole = &en->base[0], *own = &en->base[st->kind == STMT_LAGRANGIAN ? 0 : st->kind == STMT_KINETIC ? 1 : 2];
+  Span before = own->end ? *own : st->kind != STMT_LAGRANGIAN ? *whole : en->base[1].end ? en->base[1] : en->base[2];
+  if (!before.end) {
+    *own = st->span;
+    return 1;
   }
+  diag_error(b->diags, st->span, own->end && own != whole ? "this energy is given twice" : "L is given twice");
+  diag_also(b->diags, before, own->end ? "first given here; write one sum" : "first given here; give L, or kinetic and potential energy");
+  return 0;
+}
+
+static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en) {
+  if (!effect && st->kind != STMT_DISSIPATION && !is_first_energy(b, st, en)) return;
   b->m->lagrangian_span = span_join(b->m->lagrangian_span, st->span);
   if (!effect || !b->m->lagrangian_span.end) b->m->lagrangian_span = st->span;
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
@@ -339,6 +345,13 @@ static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) 
   if (li || ri) report_force(b, st);
 }
 
+/* A value given to a symbol: a coordinate, a state, or the rate of one, declared in `unit`. */
+static Expr resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit) {
+  Unit u = *unit;
+  u.dim = b->dims.at[target]; /* a rate's unit is per second: the same factor */
+  return resolve_in(b, id, IN_DYNAMICS, effect, &u);
+}
+
 static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   const AstExpr *l = ast_expr(b->ast, st->lhs);
   const AstExpr *name = l->kind == AST_PRIME ? ast_expr(b->ast, l->a) : l;
@@ -356,8 +369,8 @@ static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   }
   State *z = &b->m->states.at[e->index];
   if (z->flow) diag_error(b->diags, st->span, "the flow of `%s` is given twice", name->name);
-  Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
-  z->flow = v.e ? v.e : expr_int(b->g, 0);
+  z->flow = resolve_for(b, st->rhs, effect, z->rate, &z->unit);
+  if (!z->flow) z->flow = expr_int(b->g, 0); /* reported */
 }
 
 static void add_expect(Builder *b, const AstStmt *st, Name effect) {
@@ -371,14 +384,19 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
 }
 
 static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
-  Value target = resolve(b, st->lhs, IN_DYNAMICS, effect), v = resolve(b, st->rhs, IN_DYNAMICS, effect);
-  if (!target.e || !v.e) return;
+  Value target = resolve(b, st->lhs, IN_DYNAMICS, effect);
+  if (!target.e) return;
   SymKind kind = expr_op(b->g, target.e) == EX_SYM ? expr_sym_of(b->g, target.e)->kind : SYM_LOCAL;
   if (kind != SYM_COORD && kind != SYM_VEL && kind != SYM_STATE) {
     diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "an event can set a coordinate, a velocity or a state");
     return;
   }
-  Action a = {expr_sym_id(b->g, target.e), v.e};
+  SymId sym = expr_sym_id(b->g, target.e);
+  uint32_t i = expr_sym_of(b->g, target.e)->index;
+  const Unit *unit = kind == SYM_STATE ? &b->m->states.at[i].unit : &b->m->coords.at[i].unit;
+  Expr value = resolve_for(b, st->rhs, effect, sym, unit);
+  if (!value) return;
+  Action a = {sym, value};
   vec_push(b->arena, &ev->actions, a);
 }
 
@@ -513,17 +531,18 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   return b;
 }
 
-/* A model in which nothing has a unit is not checked, and time then has none either. */
-static void forget_time_without_units(Builder *b) {
+/* A model in which no name has a unit is not checked, and time then has none either. */
+static void find_units(Builder *b) {
   for (uint32_t i = 0; i < b->active.n; i++)
     if (b->active.at[i].stmt->unit.n) return;
+  b->unitless = 1;
   b->dims.at[b->m->time] = DIM_UNKNOWN;
 }
 
 Model *model_build(Ast *ast, const ModelChoice *choice) {
   Builder *b = builder_new(ast, choice);
   scene_select(b, choice);
-  forget_time_without_units(b);
+  find_units(b);
   for (uint32_t i = 0; i < b->active.n; i++) declare(b, b->active.at[i].stmt, b->active.at[i].effect);
   check_defines(b);
   Energies en = {0};

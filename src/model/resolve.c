@@ -628,6 +628,7 @@ static Value evaluate(Builder *b, AstId id, Context where, Name effect, const De
     if (i == b->stand_in) ev.value[i - ev.first] = (Value){.e = b->stands_for, .dim = DIM_UNKNOWN};
     else if (!ev.open[i - ev.first])
       ev.value[i - ev.first] = numbers_only(&ev, x) ? finite_value(&ev, x, node_value(&ev, i)) : FAILED;
+    if (b->unitless) ev.value[i - ev.first].dim = DIM_UNKNOWN;
   }
   return ev.value[id - ev.first];
 }
