@@ -224,10 +224,16 @@ static int do_run(Compiler *c) {
  * it requires: scenes have no part in it. */
 static void check_expects(Compiler *c, ExpectResults *results) {
   EffectList where = model_expecting_effects(c->ast);
-  for (uint32_t i = 0; i < where.n; i++) {
-    Eqns *e = derive(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
-    if (e) expects_check(e, where.at[i], c->o.allow_numeric, results);
-  }
+  Eqns **e = ARENA_ARRAY(c->arena, Eqns *, where.n + 1);
+  for (uint32_t i = 0; i < where.n; i++) e[i] = derive(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
+  for (uint32_t i = 0; i < where.n; i++)
+    if (e[i]) expects_check(e[i], where.at[i], c->o.allow_numeric, results);
+}
+
+static const char *effects_text(Compiler *c, const Model *m) {
+  StrBuf b = strbuf(c->arena);
+  for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(&b, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
+  return sb_text(&b);
 }
 
 static int do_check(Compiler *c) {
@@ -239,7 +245,7 @@ static int do_check(Compiler *c) {
     Eqns *e = derive_scene(c, scenes.at[i]);
     if (!e) continue;
     if (!out.n) show_facts(e, &out);
-    sb_printf(&out, "scene %s: ok\n", scenes.at[i]);
+    sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], effects_text(c, e->m));
   }
   EffectList unused = model_unused_effects(c->ast);
   for (uint32_t i = 0; i < unused.n && !c->o.scene; i++)

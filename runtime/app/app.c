@@ -295,7 +295,7 @@ static int simulate(App *app)
     return rc;
   }
   if (app->args.save && (lag_sim_method(app->sim)->flags & LAG_METHOD_NO_SAVE)) {
-    return app_error(&app->args, "--save-state: the state of method %s cannot be saved; rk45 and rk4 can",
+    return app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",
                      lag_sim_method(app->sim)->name);
   }
   if ((rc = open_output(app, &plot_x, &plot_y)) != 0) {

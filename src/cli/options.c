@@ -32,7 +32,7 @@ static const struct {
   {"run", CMD_RUN, "lagc run MODEL [SCENE] [name=value ...] [--method M] [--tol X] [--until T] ...",
    "Builds the simulator (or takes it from the cache) and runs it; the options are the simulator's:\n\n"
    "  name=value        a parameter, a start value (th=1.2, \"th'=0.5\") or an input\n"
-   "  --method NAME     rk45, rk4, gsl-rk8pd, ...; `--method help` lists them\n"
+   "  --method NAME     rk45, dop853, verlet4, gsl-rk8pd, ...; `--method help` lists them\n"
    "  --tol X --step H --until T --every DT\n"
    "  -o FILE           .csv or .npy\n"
    "  --json            the summary as one JSON object\n"

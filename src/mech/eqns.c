@@ -103,7 +103,9 @@ static void classify(Eqns *e) {
   for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->f[i]);
   for (uint32_t i = 0; i < m->states.n; i++) vec_push(m->arena, &roots, e->flow[i]);
   int inputs = 0;
+  e->separable = e->n && e->constant_mass && !m->states.n;
   for (uint32_t i = 0; i < roots.n; i++) {
+    e->separable &= !contains_kind(e, roots.at[i], SYM_VEL);
     inputs |= contains_kind(e, roots.at[i], SYM_INPUT);
     e->autonomous &= !contains_kind(e, roots.at[i], SYM_TIME);
   }

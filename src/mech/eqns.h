@@ -34,6 +34,7 @@ typedef struct {
   const Output *outputs; /* of the scene, with the energy filled in */
   uint32_t noutputs;
   int constant_mass, definite_mass, conserves_energy, autonomous, smooth;
+  int separable;         /* constant mass, no velocity in f, no states: a splitting method can integrate it */
 } Eqns;
 
 /* Derives the equations. NULL, with the reason in m->diags, when the mass matrix is singular for

@@ -154,7 +154,7 @@ SceneList model_scenes(const Ast *ast);
 /* The effects that no scene uses. */
 EffectList model_unused_effects(const Ast *ast);
 
-/* The effects that contain an expectation; NULL is among them when one stands outside of effects. */
+/* The effects that contain an expectation; first NULL, when one stands outside of effects. */
 EffectList model_expecting_effects(const Ast *ast);
 
 /* An output that the command line asks for, and the name of its column. */

@@ -33,16 +33,17 @@ EffectList model_unused_effects(const Ast *ast) {
   return (EffectList){unused.at, unused.n};
 }
 
+static int contains_expect(const AstStmt *list) {
+  for (const AstStmt *s = list; s; s = s->next)
+    if (s->kind == STMT_EXPECT) return 1;
+  return 0;
+}
+
 EffectList model_expecting_effects(const Ast *ast) {
   VEC(Name) names = {0};
-  int outside = 0;
-  for (const AstStmt *s = ast->first; s; s = s->next) {
-    outside |= s->kind == STMT_EXPECT;
-    int inside = 0;
-    for (const AstStmt *x = s->kind == STMT_EFFECT ? s->body : NULL; x; x = x->next) inside |= x->kind == STMT_EXPECT;
-    if (inside && s->name) vec_push(ast->arena, &names, s->name);
-  }
-  if (outside) vec_push(ast->arena, &names, NULL);
+  if (contains_expect(ast->first)) vec_push(ast->arena, &names, NULL);
+  for (const AstStmt *s = ast->first; s; s = s->next)
+    if (s->kind == STMT_EFFECT && s->name && contains_expect(s->body)) vec_push(ast->arena, &names, s->name);
   return (EffectList){names.at, names.n};
 }
 
