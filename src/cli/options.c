@@ -175,7 +175,7 @@ static int picture_option(Arena *a, int argc, char **argv, int *i, Options *o) {
 /* What a simulator gets: an option, with its value where it takes one, a scene or a setting. */
 static void pass_on(Arena *a, int argc, char **argv, int *i, Options *o) {
   static const char *const with_value[] = {"--method", "--tol", "--step", "--until", "--every", "--svg", "--plot-x",
-                                           "--plot-y", "--save-state", "--resume", "--output", "-o", "--html"};
+                                           "--plot-y", "--save-state", "--resume", "--output", "-o", "--html", "--points", "--from"};
   const char *arg = argv[*i];
   vec_push(a, &o->rest, arg);
   if (arg[0] != '-' && !strchr(arg, '=') && !o->scene) o->scene = arg;
