@@ -130,6 +130,9 @@ void report_text(App *app, FILE *f)
   if (app->args.svg) {
     fprintf(f, "picture in %s\n", app->args.svg);
   }
+  if (app->args.html) {
+    fprintf(f, "animation in %s\n", app->args.html);
+  }
 }
 
 /* Outputs that are no coordinate, velocity or state, so that no name stands twice. */

@@ -111,6 +111,6 @@ Unit unit_of_dim(Builder *b, Dim d);
 
 /* scene.c: which statements are active (those of the effect `also` too), and the scene's contents. */
 void scene_select(Builder *b, const ModelChoice *choice);
-void scene_build(Builder *b);
+void scene_build(Builder *b, const ModelChoice *choice);
 
 #endif

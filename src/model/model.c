@@ -555,6 +555,6 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
     if (a->stmt->kind == STMT_OBSERVE) fill_observe(b, a->stmt, a->effect);
   }
   check_whole(b);
-  scene_build(b);
+  scene_build(b, choice);
   return ast->diags->errors ? NULL : b->m;
 }

@@ -370,17 +370,18 @@ static Unit output_unit(Builder *b, AstId id, Dim dim) {
 }
 
 /* Index of the output that this expression is; it is added when it is not there. -1 after an error. */
-static int add_output(Builder *b, AstId id) {
+static int add_output_as(Builder *b, AstId id, Name label) {
   Value v = resolve(b, id, IN_OBSERVE, NULL);
   if (!v.e) return -1;
   Scene *sc = &b->m->scene;
-  Name label = intern(b->ast->names, ast_text(b, id));
   for (uint32_t i = 0; i < sc->outputs.n; i++)
     if (sc->outputs.at[i].name == label) return (int)i;
   Output o = {.name = label, .span = ast_expr(b->ast, id)->span, .unit = output_unit(b, id, v.dim), .value = v.e};
   vec_push(b->arena, &sc->outputs, o);
   return (int)sc->outputs.n - 1;
 }
+
+static int add_output(Builder *b, AstId id) { return add_output_as(b, id, intern(b->ast->names, ast_text(b, id))); }
 
 static Unit seconds(void) {
   return (Unit){.dim = {1, {[DIM_TIME] = DIM_ONE}}, .factor = num_int(1), .text = "s"};
@@ -466,7 +467,7 @@ static void default_outputs(Builder *b) {
   vec_push(b->arena, &sc->outputs, o);
 }
 
-void scene_build(Builder *b) {
+void scene_build(Builder *b, const ModelChoice *choice) {
   Scene *sc = &b->m->scene;
   sc->t1 = 10;
   for (const AstStmt **s = b->chain; *s; s++) {
@@ -474,4 +475,5 @@ void scene_build(Builder *b) {
     if ((*s)->doc) sc->doc = (*s)->doc;
   }
   if (!sc->outputs.n) default_outputs(b);
+  for (uint32_t i = 0; i < choice->nasked; i++) add_output_as(b, choice->asked[i].expr, choice->asked[i].name);
 }

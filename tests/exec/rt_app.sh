@@ -176,5 +176,17 @@ ok "svg" status 0 swing --svg p.svg
 ok "svg is closed and has both panels" sh -c 'tail -1 p.svg | grep -q "</svg>" && grep -q "\[deg\]" p.svg && grep -q "\[J\]" p.svg'
 ok "svg escapes names" grep -q "E &quot;total&quot;" p.svg
 ok "one against the other" status 0 fixed --svg q.svg --plot-x th --plot-y "th'"
+ok "html" status 0 swing --html a.html --points th,th
+ok "html says what it shows" sh -c 'grep -q "^\"rods\": true.*\"names\": \[\[\"th\", \"th\"\]\]" a.html && tail -1 a.html | grep -q "</html>"'
+ok "names with commas and quotes" status 0 swing --html b.html --points 'E "total", T+V,E "total", T+V;E "total", T+V,E "total", T+V' --no-rods
+ok "are escaped in a script" sh -c 'grep -qF "[\"E \\u0022total\\u0022, T+V\", " b.html'
+ok "html of what points?" says 2 "add --points" swing --html c.html
+ok "points of what?" says 2 "add it" swing --points th,th
+ok "a point that is no output" says 2 "no output is named tt; did you mean t?" swing --html c.html --points th,tt
+ok "half a point" says 2 "two names of outputs" swing --html c.html --points th
+ok "points in two units" says 2 "needs one unit" swing --html c.html --points 't,th'
+ok "html that cannot be written is said before the run" says 2 "cannot write" fixed --until 1e9 --html none/x.html --points th,th
+ok "a failing run leaves its animation up to there" sh -c './sim wall --html d.html --points y,y >/dev/null 2>&1; [ $? = 3 ] && grep -q "</html>" d.html'
+ok "nothing is left after mistakes" sh -c '! ls c.html none ./*.part 2>/dev/null'
 ok "sketch" sh -c './sim swing --sketch --quiet | grep -q "t \[s\]"'
 echo "1..$n"
