@@ -35,7 +35,7 @@ struct lag_sim {
   unsigned char *fixed;  /* [np] set by the caller */
   double *start;         /* [n] NaN: as the scene says */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
-  double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e;
+  double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
   double *saved;         /* one block: Run, and the arrays below */
   size_t nsaved;
   Run *run;

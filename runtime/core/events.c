@@ -8,7 +8,7 @@
 
 #include "core/core.h"
 
-enum { SAMPLES = 4, PROBES = 5 };
+enum { SAMPLES = 4, MOST_SAMPLES = 1024, PROBES = 5 };
 
 /* After an event g may leave zero and return within a small part of the step: look there first. */
 static const double probe_at[PROBES] = {0x1p-40, 0x1p-32, 0x1p-24, 0x1p-16, 0x1p-8};
@@ -193,16 +193,73 @@ static int refine_first(lag_sim *s)
   return LAG_OK;
 }
 
+/* Where in interval j to look whether the function bends: not at even distances, which a periodic function may
+ * share (multiples of the golden ratio, Weyl 1916, between 0.3 and 0.7). */
+static double look_at(int j)
+{
+  return 0.3 + 0.4 * fmod(0.6180339887498949 * j, 1);
+}
+
+/* Whether `samples` intervals of the step show the event functions as they are: between two samples none bends
+ * by more than a small part of its range. (A sine has then more than six samples a period.) */
+static int shows(lag_sim *s, int samples, int *enough)
+{
+  const double bend_most = 0.15, rounding = 1e-9;
+  int nev = s->scene->model->nev;
+  double *last = s->spare, *mid = last + nev, *lo = mid + nev, *hi = lo + nev, *bend = hi + nev;
+  double span = s->run->step_t1 - s->run->from;
+
+  for (int i = 0; i <= 2 * samples; i++) {
+    double part = look_at(i / 2), t = s->run->from + span * (i / 2 + (i % 2 ? part : 0)) / samples;
+    t = i == 2 * samples ? s->run->step_t1 : t;
+    part = look_at(i / 2 - 1); /* of the point between the last two samples, at the next one */
+    state_at(s, t, s->yc);
+    int rc = lag_events_eval(s, t, s->yc, s->g1);
+    if (rc) {
+      return rc;
+    }
+    for (int k = 0; k < nev; k++) {
+      double g = s->g1[k];
+      lo[k] = i ? fmin(lo[k], g) : g;
+      hi[k] = i ? fmax(hi[k], g) : g;
+      bend[k] = i == 0 ? 0 : i % 2 ? bend[k] : fmax(bend[k], fabs(mid[k] - (last[k] + part * (g - last[k]))));
+      *(i % 2 ? &mid[k] : &last[k]) = g;
+    }
+  }
+  *enough = 1;
+  for (int k = 0; k < nev; k++) {
+    *enough &= bend[k] <= bend_most * (hi[k] - lo[k]) || bend[k] <= rounding * fmax(fabs(lo[k]), fabs(hi[k]));
+  }
+  return LAG_OK;
+}
+
+/* How many intervals to look at: an event driven by time may turn many times in one long step. */
+static int samples_for(lag_sim *s, int *samples)
+{
+  int rc = 0, enough = 0;
+
+  for (*samples = SAMPLES; *samples < MOST_SAMPLES; *samples *= 2) {
+    rc = shows(s, *samples, &enough);
+    if (rc || enough) {
+      return rc;
+    }
+  }
+  return rc;
+}
+
 int lag_events_locate(lag_sim *s)
 {
   Run *r = s->run;
-  int nev = s->scene->model->nev, found = 0, rc = 0, unknown = 0;
+  int nev = s->scene->model->nev, found = 0, rc = 0, unknown = 0, samples = SAMPLES;
   double ta = r->from, span = r->step_t1 - r->from;
 
   r->limit = r->step_t1;
   r->pending = 0;
   if (nev == 0) {
     return LAG_OK;
+  }
+  if ((rc = samples_for(s, &samples)) != 0) {
+    return rc;
   }
   state_at(s, ta, s->yc);
   rc = lag_events_eval(s, ta, s->yc, s->g0);
@@ -211,12 +268,12 @@ int lag_events_locate(lag_sim *s)
     s->sign_end[k] = s->sign[k];
     unknown |= s->sign[k] == 0.0;
   }
-  for (int i = unknown ? -PROBES : 1; i <= SAMPLES && rc == 0 && !found; i++) {
+  for (int i = unknown ? -PROBES : 1; i <= samples && rc == 0 && !found; i++) {
     if (i == 0) {
       continue;
     }
     double tb = i < 0 ? ta : r->from;
-    tb = i == SAMPLES ? r->step_t1 : r->from + span * (i < 0 ? probe_at[i + PROBES] : (double)i / SAMPLES);
+    tb = i == samples ? r->step_t1 : r->from + span * (i < 0 ? probe_at[i + PROBES] : (double)i / samples);
     rc = sample(s, ta, tb, &found);
     ta = tb;
   }

@@ -1,0 +1,13 @@
+#!/bin/sh
+# Events that turn many times within one step of an adaptive method: a clock sin(w t) strikes
+# floor(10 w / (2 pi)) times in 10 s, whatever the method makes of its steps.
+. tests/tap.sh
+strikes() { # METHOD W
+  "$LAGC" run tests/exec/models/clock.lag "w=$2" --method "$1" --json | sed 's/.*"n": \([0-9.e+]*\).*/\1/'
+}
+for method in rk45 dop853; do
+  is "$method: 20 rad/s" 31 "$(strikes $method 20)"
+  is "$method: 200 rad/s" 318 "$(strikes $method 200)"
+  is "$method: 500 rad/s, near a multiple of the sampling" 795 "$(strikes $method 500)"
+done
+tap_end
