@@ -58,6 +58,16 @@ static int write_out(Compiler *c, const char *path, const StrBuf *text) {
 
 /* --- the stages --- */
 
+/* A mistyped output must not cost the model, nor a file that it includes. */
+static int spares_sources(Compiler *c) {
+  for (uint32_t i = 0; c->o.output && i < c->sources->files.n; i++) {
+    if (!file_same(c->o.output, c->sources->files.at[i].path)) continue;
+    fail_usage(arena_printf(c->arena, "%s would be overwritten: it is the model; write to another file", c->o.output));
+    return 0;
+  }
+  return 1;
+}
+
 static int read_model(Compiler *c) {
   const char *why = NULL;
   const Source *source = source_read(c->sources, c->o.file, &why);
@@ -197,7 +207,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   emit_program((const IrUnit *const *)units.at, names, units.n, tools.gsl, &b);
   vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
   *path = output ? output : toolchain_cached(c->arena, &tools, texts.at, texts.n);
-  if (!output && file_exists(*path)) return STATUS_OK;
+  if (!output && file_runs(*path)) return STATUS_OK;
   if (!toolchain_build(c->arena, &tools, texts.at, texts.n, *path, &error)) return fail_usage(error);
   return STATUS_OK;
 }
@@ -217,7 +227,7 @@ static int do_run(Compiler *c) {
   fflush(stdout);
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
   execv(path, c->picture.argv.at);
-  return fail_usage(arena_printf(c->arena, "cannot run %s", path));
+  return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
 }
 
 /* An expectation is about the model without effects, or, inside an effect, with that effect and what
@@ -247,6 +257,7 @@ static int do_check(Compiler *c) {
     if (!out.n) show_facts(e, &out);
     sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], effects_text(c, e->m));
   }
+  if (c->o.scene && !out.n) derive_scene(c, c->o.scene); /* says that there is no such scene */
   EffectList unused = model_unused_effects(c->ast);
   for (uint32_t i = 0; i < unused.n && !c->o.scene; i++)
     if (derive_with(c, NULL, unused.at[i])) sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);
@@ -281,7 +292,7 @@ static int compile(Compiler *c) {
   c->diags = diags_new(c->arena, c->sources);
   c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
   int status = read_model(c);
-  if (status == STATUS_OK) status = do_command(c);
+  if (status == STATUS_OK) status = spares_sources(c) ? do_command(c) : STATUS_USAGE;
   StrBuf messages = strbuf(c->arena);
   diags_print(c->diags, &messages);
   fputs(sb_text(&messages), stderr);

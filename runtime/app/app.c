@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "app/app.h"
@@ -73,6 +74,37 @@ static int choose_end(App *app)
   return 0;
 }
 
+/* Whether two paths lead to one file that is there. */
+static int same_file(const char *a, const char *b)
+{
+  struct stat x, y;
+
+  return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino && S_ISREG(x.st_mode);
+}
+
+/* A mistyped name must not cost the model, the simulator or another result. */
+static int check_outputs(const App *app)
+{
+  const Args *a = &app->args;
+  const char *const to[] = {a->out, a->svg, a->html, a->save}, *const keep[] = {app->program->source, "/proc/self/exe", a->resume};
+  enum { N = sizeof to / sizeof *to, KEPT = sizeof keep / sizeof *keep };
+
+  for (int i = 0; i < N; i++) {
+    for (int k = 0; to[i] && k < KEPT; k++) {
+      if (keep[k] && same_file(to[i], keep[k]) && !(to[i] == a->save && keep[k] == a->resume)) {
+        return app_error(a, "%s would be overwritten: it is %s; write to another file", to[i],
+                         k == 0 ? "the model" : k == 1 ? "this program" : "the state to go on from");
+      }
+    }
+    for (int k = 0; to[i] && k < i; k++) {
+      if (to[k] && (strcmp(to[i], to[k]) == 0 ? strcmp(to[i], "/dev/null") != 0 : same_file(to[i], to[k]))) {
+        return app_error(a, "%s would be written twice; give each result a file of its own", to[i]);
+      }
+    }
+  }
+  return 0;
+}
+
 /* The grid of rows: origin, every, index of the next; kept with the run. every 0: no rows. */
 static int choose_grid(App *app)
 {
@@ -95,6 +127,10 @@ static int choose_grid(App *app)
   } else if (!(every > 0)) {
     every = fabs(app->until - t) / (a->out || a->svg ? 1000 : 280); /* 280: the dots across a sketch, twice */
     origin = t;
+  }
+  if ((a->out || a->svg || a->html || a->sketch) && fabs(app->until - t) / every > 1e9) {
+    return app_error(a, "a row every %g s for %g s is %.3g rows; write a larger --every", every, fabs(app->until - t),
+                     fabs(app->until - t) / every);
   }
   grid[0] = origin;
   grid[1] = every;
@@ -291,7 +327,7 @@ static int simulate(App *app)
 {
   int plot_x = 0, plot_y = -1, rc = app_choose(app);
 
-  if (rc || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
+  if (rc || (rc = check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
     return rc;
   }
   if (app->args.save && (lag_sim_method(app->sim)->flags & LAG_METHOD_NO_SAVE)) {

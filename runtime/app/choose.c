@@ -170,6 +170,9 @@ static int choose_method(App *app)
     if (o->value <= 0) {
       return app_error(a, "--step %s: a step must be positive, for example --step 1e-3", a->step);
     }
+    if (o->value < 1e-15 * (app->scene->has_span ? fabs(app->scene->t1 - app->scene->t0) : 1)) {
+      return app_error(a, "--step %s: time would not move, double precision has 16 digits; for example --step 1e-3", a->step);
+    }
   }
   rc = lag_sim_set_method(app->sim, m, c.opt, c.n);
   if (rc == 0 && a->tol && !(m->flags & LAG_METHOD_ADAPTIVE) && !a->quiet) {

@@ -14,6 +14,8 @@
 
 #include "io/io.h"
 
+enum { MOST_BYTES = 256 * 1024 * 1024 };
+
 static uint64_t fnv(const char *s, size_t n)
 {
   uint64_t h = UINT64_C(0xcbf29ce484222325);
@@ -77,6 +79,12 @@ static char *slurp(const char *path)
         break;
       }
       text = more;
+    }
+    if (n > MOST_BYTES) { /* no state is that large: a device, or another file */
+      free(text);
+      text = NULL;
+      errno = EFBIG;
+      break;
     }
     size_t got = fread(text + n, 1, capacity - n - 1, f);
     n += got;

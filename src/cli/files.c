@@ -61,4 +61,14 @@ int dir_make(Arena *a, const char *path) {
   return mkdir(p, 0777) == 0 || errno == EEXIST;
 }
 
+int file_same(const char *a, const char *b) {
+  struct stat x, y;
+  return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino && S_ISREG(x.st_mode);
+}
+
+int file_runs(const char *path) {
+  struct stat st;
+  return stat(path, &st) == 0 && S_ISREG(st.st_mode) && st.st_size > 0 && access(path, X_OK) == 0;
+}
+
 int file_exists(const char *path) { return access(path, F_OK) == 0; }

@@ -13,6 +13,12 @@ int file_write(Arena *a, const char *path, const char *text, size_t n, const cha
 /* Makes a directory and those above it. */
 int dir_make(Arena *a, const char *path);
 
+/* Whether both paths lead to one regular file. */
+int file_same(const char *a, const char *b);
+
+/* Whether it is a file that is not empty and may be executed. */
+int file_runs(const char *path);
+
 int file_exists(const char *path);
 
 #endif

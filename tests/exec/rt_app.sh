@@ -115,7 +115,11 @@ ok "effect that is not built in" says 2 "lagc run models/rt_sim.lag drop" drop m
 ok "two uses of standard output" says 2 "-o - and --json" --json -o -
 ok "plot of an unknown column" says 2 "no output is named" swing --svg x.svg --plot-y nothing
 ok "a directory that is not there" says 2 "cannot write" -o none/rows.csv
-ok "a picture that cannot be written is said before the run" says 2 "cannot write" fixed --until 1e9 --svg none/x.svg
+ok "a picture that cannot be written is said before the run" says 2 "cannot write" fixed --until 1e6 --svg none/x.svg
+ok "too many rows are refused" says 2 "a larger --every" fixed --every 1e-300 -o x.csv
+ok "a step that does not move time" says 2 "time would not move" fixed --step 1e-320
+ok "one file for two results" says 2 "written twice" fixed -o same.csv --svg same.csv
+ok "a device is no state" says 2 "cannot read" fixed --resume /dev/zero
 if [ -w /dev/full ]; then
   ok "a full disk" says 2 "cannot write" drop -o /dev/full
 fi
