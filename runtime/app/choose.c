@@ -252,7 +252,7 @@ static int resume(App *app)
     return app_error(a, "%s: %s", a->resume, lag_sim_message(app->sim));
   }
   if (st->signature != lag_sim_signature(app->sim) || st->n != lag_sim_save_size(app->sim)) {
-    return app_error(a, "%s was saved by another model or build: names, sizes or effects differ", a->resume);
+    return app_error(a, "%s was saved by another model or build: names, sizes, effects or equations differ", a->resume);
   }
   return lag_sim_load(app->sim, st->data) ? app_error(a, "%s", lag_sim_message(app->sim)) : 0;
 }

@@ -59,6 +59,7 @@ typedef struct lag_model {
   const char *name;
   const char *doc;
   const char *effects; /* names of the effects in this variant, separated by spaces */
+  const char *digest;  /* of what the functions compute; NULL: not known. A saved state belongs to one */
   unsigned flags;
   int ops;           /* operations of one call of accel, counted */
   int nq, nz, np, nu, nev, nw;

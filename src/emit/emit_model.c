@@ -204,7 +204,14 @@ static void flag_text(unsigned flags, StrBuf *out) {
 
 static const char *or_null(uint32_t n, const char *name) { return n ? name : "NULL"; }
 
-static void emit_tables(const IrUnit *u, const char *name, StrBuf *out) {
+/* What the functions compute, in 16 digits (FNV-1a, 64 bits): a saved state belongs to these equations. */
+static const char *digest_text(Arena *a, const char *text) {
+  uint64_t h = 14695981039346656037u;
+  for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u;
+  return arena_printf(a, "%016llx", (unsigned long long)h);
+}
+
+static void emit_tables(const IrUnit *u, const char *name, const char *digest, StrBuf *out) {
   table(u, "q_table", u->q.at, u->q.n, out);
   table(u, "z_table", u->z.at, u->z.n, out);
   table(u, "p_table", u->p.at, u->p.n, out);
@@ -217,7 +224,7 @@ static void emit_tables(const IrUnit *u, const char *name, StrBuf *out) {
   }
   const char *model = c_string(u->arena, u->name), *doc = c_string(u->arena, u->doc), *effects = c_string(u->arena, u->effects);
   sb_printf(out, "\nconst lag_model %s = {\n", name);
-  sb_printf(out, "  .abi = LAG_ABI, .real_size = sizeof(LAG_REAL),\n  .name = %s,\n  .doc = %s,\n  .effects = %s,\n  .flags = ", model, doc, effects);
+  sb_printf(out, "  .abi = LAG_ABI, .real_size = sizeof(LAG_REAL),\n  .name = %s,\n  .doc = %s,\n  .effects = %s,\n  .digest = \"%s\",\n  .flags = ", model, doc, effects, digest);
   flag_text(u->flags, out);
   sb_printf(out, ",\n  .ops = %u,\n", ops_total(prog_count(u->accel)));
   sb_printf(out, "  .nq = %u, .nz = %u, .np = %u, .nu = %u, .nev = %u, .nw = %u,\n", u->q.n, u->z.n, u->p.n, u->u.n, u->events.n, work_size(u));
@@ -286,11 +293,13 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   sb_puts(out, prelude);
   csupport_logic("LAG", out);
   if (work_size(u)) csupport_solver("LAG", "lag", out);
+  size_t begin = out->n;
   accel(&f);
   emit_energy(&f);
   emit_events(&f);
   emit_inputs(&f);
-  emit_tables(u, name, out);
+  const char *digest = digest_text(u->arena, sb_text(out) + begin);
+  emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, i);
 }
 
