@@ -15,7 +15,7 @@ T       ?=
 
 CPPFLAGS_ALL := -D_XOPEN_SOURCE=700
 SRC_FLAGS    := $(CPPFLAGS_ALL) -Isrc -I$(BUILD)/gen
-RT_FLAGS     := $(CPPFLAGS_ALL) -Iruntime/include -Iruntime -ffp-contract=off
+RT_FLAGS     := $(CPPFLAGS_ALL) -Iruntime/include -Iruntime -I$(BUILD)/gen -ffp-contract=off
 VERSION      := $(shell sed -n 's/^.define LAG_VERSION "\(.*\)"/\1/p' runtime/include/lag.h 2>/dev/null)
 
 # GSL is optional: without it there are no gsl-* methods, and no liblag_gsl.a.
@@ -67,6 +67,12 @@ $(BUILD)/obj/src/%.o: src/%.c
 $(BUILD)/obj/runtime/%.o: runtime/%.c
 	@mkdir -p $(@D)
 	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAN) -MMD -MP -c -o $@ $<
+# The page of an animation as C: a string a line.
+$(BUILD)/gen/io/page.h: runtime/io/page.html
+	@mkdir -p $(@D)
+	{ echo 'static const char *const page[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $<; echo '};'; } >$@.part
+	@mv $@.part $@
+$(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
 # Generated code is not ours to warn about.
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 	@mkdir -p $(@D)
@@ -87,6 +93,10 @@ demo:
 
 run-demo: all
 	$(BUILD)/lagc run models/double_pendulum.lag --method rk45 --plot-x x2 --plot-y y2 --sketch --svg $(BUILD)/double_pendulum.svg
+
+# The pictures of models/README.md, each by the command that stands above it.
+gallery: all
+	@sed -n 's|^<!-- drawn by: build/lagc \(.*\) -->$$|$(BUILD)/lagc \1 --quiet|p' models/README.md | sh -e
 
 # ---- tests: tests/run.sh says what a suite is -------------------------------------------------------
 # Three builds: as users get it, in $(BUILD)/san with the address and undefined-behaviour sanitizers, and, where
@@ -215,6 +225,7 @@ help:
 	@echo 'make bench        times; nothing fails by being slow'
 	@echo 'make bless        rewrites the expectations of golden tests: look at the diff before you commit it'
 	@echo 'make fuzz         looks for inputs that break the compiler; SECONDS=60, T=fuzz_parse'
+	@echo 'make gallery      draws the pictures of models/README.md'
 	@echo 'make install      PREFIX=/usr/local DESTDIR='
 	@echo 'make uninstall    the same, backwards'
 	@echo 'make clean        removes build/'
@@ -222,4 +233,4 @@ help:
 
 -include $(LAGC_OBJ:.o=.d) $(RT_OBJ:.o=.d) $(GSL_OBJ:.o=.d) $(BUILD)/obj/src/main.d $(TEST_BIN:=.d)
 
-.PHONY: all demo run-demo test test-long bless bench build-tests fuzz install uninstall clean help
+.PHONY: all demo run-demo gallery test test-long bless bench build-tests fuzz install uninstall clean help

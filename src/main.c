@@ -20,6 +20,7 @@
 #include "mech/expect.h"
 #include "mech/show.h"
 #include "model/model.h"
+#include "picture.h"
 #include "syntax/parse.h"
 
 #define LAGC_VERSION "0.1"
@@ -35,6 +36,7 @@ typedef struct {
   Sources *sources;
   Diags *diags;
   Ast *ast;
+  Picture picture; /* of run, plot and animate */
 } Compiler;
 
 static int fail_usage(const char *message) {
@@ -90,6 +92,11 @@ static Eqns *derive_with(Compiler *c, const char *scene, Name also) {
 }
 
 static Eqns *derive_scene(Compiler *c, const char *scene) { return derive_with(c, scene, NULL); }
+
+/* With what the command line asks for besides the scene's outputs. */
+static Eqns *derive_asked(Compiler *c, const char *scene) {
+  return derive(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nasked = c->picture.asked.n});
+}
 
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
 static IrUnit *lower_scene(Compiler *c, const Eqns *e) {
@@ -153,13 +160,15 @@ static int do_header(Compiler *c) {
   return write_out(c, c->o.output, &out);
 }
 
-/* The scenes of the file as units: those with the same effects share one. */
+/* The scenes of the file as units: those with the same effects share one. What the command line asks for is asked
+ * of one scene, and only that one is built then. */
 typedef VEC(IrUnit *) Units;
 
 static int lower_all(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast);
+  if (c->picture.asked.n) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
   for (uint32_t i = 0; i < scenes.n; i++) {
-    Eqns *e = derive_scene(c, scenes.at[i]);
+    Eqns *e = derive_asked(c, scenes.at[i]);
     if (!e) return 0;
     IrUnit *fresh = unit_new(e, c->o.file), *home = NULL;
     for (uint32_t k = 0; k < units->n && !home; k++)
@@ -199,15 +208,15 @@ static int do_build(Compiler *c) {
   return make_simulator(c, c->o.output, &path);
 }
 
+/* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
 static int do_run(Compiler *c) {
-  const char *path;
+  const char *path, *error = NULL;
+  if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   int status = make_simulator(c, NULL, &path);
   if (status != STATUS_OK) return status;
-  char **argv = ARENA_ARRAY(c->arena, char *, c->o.rest.n + 2);
-  argv[0] = arena_strdup(c->arena, "lagc run"); /* what its messages begin with */
-  for (uint32_t i = 0; i < c->o.rest.n; i++) argv[i + 1] = arena_strdup(c->arena, c->o.rest.at[i]);
   fflush(stdout);
-  execv(path, argv);
+  if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
+  execv(path, c->picture.argv.at);
   return fail_usage(arena_printf(c->arena, "cannot run %s", path));
 }
 
@@ -215,10 +224,16 @@ static int do_run(Compiler *c) {
  * it requires: scenes have no part in it. */
 static void check_expects(Compiler *c, ExpectResults *results) {
   EffectList where = model_expecting_effects(c->ast);
-  for (uint32_t i = 0; i < where.n; i++) {
-    Eqns *e = derive(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
-    if (e) expects_check(e, where.at[i], c->o.allow_numeric, results);
-  }
+  Eqns **e = ARENA_ARRAY(c->arena, Eqns *, where.n + 1);
+  for (uint32_t i = 0; i < where.n; i++) e[i] = derive(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
+  for (uint32_t i = 0; i < where.n; i++)
+    if (e[i]) expects_check(e[i], where.at[i], c->o.allow_numeric, results);
+}
+
+static const char *effects_text(Compiler *c, const Model *m) {
+  StrBuf b = strbuf(c->arena);
+  for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(&b, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
+  return sb_text(&b);
 }
 
 static int do_check(Compiler *c) {
@@ -230,7 +245,7 @@ static int do_check(Compiler *c) {
     Eqns *e = derive_scene(c, scenes.at[i]);
     if (!e) continue;
     if (!out.n) show_facts(e, &out);
-    sb_printf(&out, "scene %s: ok\n", scenes.at[i]);
+    sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], effects_text(c, e->m));
   }
   EffectList unused = model_unused_effects(c->ast);
   for (uint32_t i = 0; i < unused.n && !c->o.scene; i++)
@@ -255,7 +270,7 @@ static int do_command(Compiler *c) {
     case CMD_EMIT: return do_emit(c);
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
-    case CMD_RUN: return do_run(c);
+    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: return do_run(c);
     case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;
   }
   return STATUS_USAGE;

@@ -89,7 +89,10 @@ static int choose_grid(App *app)
     }
     origin = app->scene->t0;
   }
-  if (!(every > 0)) {
+  if (a->html && !a->every && !a->out && !a->svg) {
+    every = fabs(app->until - t) / html_frames(fabs(app->until - t));
+    origin = t;
+  } else if (!(every > 0)) {
     every = fabs(app->until - t) / (a->out || a->svg ? 1000 : 280); /* 280: the dots across a sketch, twice */
     origin = t;
   }
@@ -173,25 +176,6 @@ static int io_error(const App *app, const char *path)
   return app_error(&app->args, "cannot write %s: %s", path, strerror(errno));
 }
 
-static int column(const App *app, const char *name)
-{
-  const char *best = NULL;
-  int least = 4;
-
-  for (int i = 0; i < app->table.ncols; i++) {
-    int d = lag_distance(app->table.cols[i].name, name);
-    if (d == 0) {
-      return i;
-    }
-    if (d < least) {
-      least = d;
-      best = app->table.cols[i].name;
-    }
-  }
-  app_error(&app->args, best ? "no output is named %s; did you mean %s?" : "no output is named %s", name, best);
-  return -1;
-}
-
 /* Can this file be written? Better asked before a long run than after it. */
 static int try_file(const App *app, const char *path)
 {
@@ -204,14 +188,17 @@ static int open_output(App *app, int *plot_x, int *plot_y)
 {
   const Args *a = &app->args;
 
-  if (table_init(&app->table, app->sim, a->svg || a->sketch) ||
+  if (table_init(&app->table, app->sim, a->svg || a->sketch || a->html) ||
       !(app->row = calloc((size_t)app->table.ncols, sizeof *app->row))) {
     return app_error(a, "out of memory");
   }
-  if ((a->plot_x && (*plot_x = column(app, a->plot_x)) < 0) || (a->plot_y && (*plot_y = column(app, a->plot_y)) < 0)) {
+  if ((a->plot_x && (*plot_x = app_column(app, a->plot_x)) < 0) || (a->plot_y && (*plot_y = app_column(app, a->plot_y)) < 0)) {
     return EXIT_USAGE;
   }
-  if (try_file(app, a->svg) || try_file(app, a->save)) {
+  if (a->html && app_choose_points(app)) {
+    return EXIT_USAGE;
+  }
+  if (try_file(app, a->svg) || try_file(app, a->html) || try_file(app, a->save)) {
     return EXIT_USAGE;
   }
   return a->out && rows_open(&app->rows, a->out, &app->table) ? io_error(app, a->out) : 0;
@@ -261,6 +248,9 @@ static int finish(App *app, int plot_x, int plot_y)
   if (a->svg && svg_write(a->svg, &app->table, title, plot_x, plot_y)) {
     bad = io_error(app, a->svg);
   }
+  if (a->html && html_write(a->html, &app->table, title, &app->show)) {
+    bad = io_error(app, a->html);
+  }
   if (a->save && app->status >= 0 && save_state(app)) {
     bad = EXIT_USAGE;
   }
@@ -305,7 +295,7 @@ static int simulate(App *app)
     return rc;
   }
   if (app->args.save && (lag_sim_method(app->sim)->flags & LAG_METHOD_NO_SAVE)) {
-    return app_error(&app->args, "--save-state: the state of method %s cannot be saved; rk45 and rk4 can",
+    return app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",
                      lag_sim_method(app->sim)->name);
   }
   if ((rc = open_output(app, &plot_x, &plot_y)) != 0) {
@@ -335,6 +325,7 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_me
   }
   lag_sim_free(app.sim);
   table_free(&app.table);
+  free(app.show.cols);
   free(app.row);
   free(app.args.sets);
   free(app.state.data);

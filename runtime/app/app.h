@@ -12,8 +12,8 @@ enum { MOST_OPTIONS = 16, LOGGED_EVENTS = 20 };
 
 /* The command line as written; numbers are still text. */
 typedef struct Args {
-  const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *save, *resume;
-  int json, sketch, quiet, help;
+  const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume;
+  int json, sketch, quiet, help, trace, no_rods;
   char **sets; /* name=value, in order */
   int nsets;
 } Args;
@@ -29,6 +29,7 @@ typedef struct App {
   int resumed;
   Table table;
   Rows rows;
+  Animation show;
   double *row;      /* [ncols] */
   double last_row;  /* time of the last row, NaN before the first */
   double until;
@@ -56,6 +57,11 @@ int app_error(const Args *a, const char *format, ...);
 int app_choose(App *app);
 const lag_method *app_find_method(const App *app, const char *name);
 void app_list_methods(const App *app, FILE *f);
+
+/* columns.c. The index of a column by its name; -1 after a message. */
+int app_column(const App *app, const char *name);
+/* Fills app->show from --points and --from. 0, or EXIT_USAGE after a message. */
+int app_choose_points(App *app);
 
 /* help.c */
 void app_help(const App *app, FILE *f);

@@ -52,6 +52,9 @@ static const Option options[] = {
     {"step", offsetof(Args, step), 0},     {"until", offsetof(Args, until), 0},
     {"every", offsetof(Args, every), 0},   {"svg", offsetof(Args, svg), 0},
     {"plot-x", offsetof(Args, plot_x), 0}, {"plot-y", offsetof(Args, plot_y), 0},
+    {"html", offsetof(Args, html), 0},     {"points", offsetof(Args, points), 0},
+    {"from", offsetof(Args, from), 0},     {"no-rods", offsetof(Args, no_rods), 1},
+    {"trace", offsetof(Args, trace), 1},
     {"save-state", offsetof(Args, save), 0}, {"resume", offsetof(Args, resume), 0},
     {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
     {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
@@ -150,6 +153,12 @@ static int check(const Args *a)
   }
   if (a->plot_x && !a->plot_y) {
     return app_error(a, "--plot-x %s: against what? add --plot-y NAME", a->plot_x);
+  }
+  if ((a->points || a->from || a->trace || a->no_rods) && !a->html) {
+    return app_error(a, "--points, --from, --trace and --no-rods say what --html FILE shows; add it");
+  }
+  if (a->html && !a->points) {
+    return app_error(a, "--html %s: which points? add --points 'X,Y X,Y ...' with the names of outputs", a->html);
   }
   return 0;
 }

@@ -84,6 +84,16 @@ static void energy(const App *app, const lag_stats *st, FILE *f)
   }
 }
 
+/* A symplectic method on a model that is not conservative: what its name no longer promises. */
+static void caveat(const App *app, FILE *f)
+{
+  const lag_method *m = lag_sim_method(app->sim);
+
+  if ((m->flags & LAG_METHOD_SYMPLECTIC) && !(app->scene->model->flags & LAG_CONSERVES_ENERGY)) {
+    fprintf(f, "note: %s is symplectic for conservative models; this one has forces or explicit time\n", m->name);
+  }
+}
+
 static void verdict(const App *app, FILE *f)
 {
   double t = lag_sim_time(app->sim);
@@ -109,6 +119,7 @@ void report_text(App *app, FILE *f)
   final_state(app, f);
   fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
   energy(app, &st, f);
+  caveat(app, f);
   for (int i = 0; i < c->nmonitors; i++) {
     fprintf(f, "monitor %s: drift %.3g, limit %.3g\n", c->monitors[i].name, lag_sim_monitor_drift(app->sim, i), c->monitors[i].limit);
   }
@@ -118,6 +129,9 @@ void report_text(App *app, FILE *f)
   }
   if (app->args.svg) {
     fprintf(f, "picture in %s\n", app->args.svg);
+  }
+  if (app->args.html) {
+    fprintf(f, "animation in %s\n", app->args.html);
   }
 }
 

@@ -140,7 +140,7 @@ size_t lag_sim_save_size(const lag_sim *s)
 int lag_sim_save(lag_sim *s, double *x)
 {
   if (s->method->flags & LAG_METHOD_NO_SAVE) {
-    return lag_fail(s, LAG_EINVAL, "the state of method %s cannot be saved; rk45 and rk4 can", s->method->name);
+    return lag_fail(s, LAG_EINVAL, "the state of method %s cannot be saved; those of liblag can", s->method->name);
   }
   s->run->rhs_calls = s->pb.rhs_calls;
   s->run->rejected = s->pb.rejected;

@@ -50,7 +50,7 @@ int lag_events_arm(lag_sim *s)
 }
 
 /* The state at t of the step, exactly at its ends. */
-static void state_at(const lag_sim *s, double t, double *y)
+static void state_at(lag_sim *s, double t, double *y)
 {
   size_t bytes = (size_t)s->pb.n * sizeof *y;
 

@@ -181,6 +181,28 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
   return LAG_OK;
 }
 
+/* May the method integrate this model? If not, the message says why, and which method can. */
+static int check_method(lag_sim *s, const lag_method *method)
+{
+  const lag_model *m = s->scene->model;
+  unsigned needs = method->flags, has = m->flags;
+
+  if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0) {
+    return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can", method->name);
+  }
+  if ((needs & LAG_METHOD_CONSERVATIVE) && !(has & LAG_CONSERVES_ENERGY)) {
+    return lag_fail(s, LAG_EMETHOD, "method %s needs a model without forces, dissipation or explicit time; rk45 and dop853 do not",
+                    method->name);
+  }
+  if ((needs & LAG_METHOD_SEPARABLE) && !(has & LAG_SEPARABLE)) {
+    return lag_fail(s, LAG_EMETHOD,
+                    "method %s needs a constant mass matrix and accelerations that do not depend on velocities, and in model %s %s; "
+                    "rk45 and dop853 can integrate it", method->name, m->name,
+                    has & LAG_CONSTANT_MASS ? "they depend on velocities" : "the mass matrix varies");
+  }
+  return LAG_OK;
+}
+
 int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *opt, int nopt)
 {
   int rc = begun(s);
@@ -189,11 +211,8 @@ int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *o
   if (rc) {
     return rc;
   }
-  if ((method->flags & LAG_METHOD_NO_STATES) && s->pb.nz > 0) {
-    return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states", method->name);
-  }
-  if ((method->flags & LAG_METHOD_CONSERVATIVE) && !(s->scene->model->flags & LAG_CONSERVES_ENERGY)) {
-    return lag_fail(s, LAG_EMETHOD, "method %s needs a model without forces, dissipation or explicit time", method->name);
+  if ((rc = check_method(s, method)) != 0) {
+    return rc;
   }
   values = malloc(((size_t)method->noptions + 1) * sizeof *values);
   if (!values) {

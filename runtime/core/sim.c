@@ -91,6 +91,9 @@ static int begin(lag_sim *s, double t)
   if (rc || t == s->scene->t0) {
     return rc;
   }
+  if (!s->options) { /* the scene's method was refused, and no other was chosen: refused again, to say why */
+    return lag_sim_set_method(s, s->method, s->scene->options, s->scene->noptions);
+  }
   if ((rc = s->method->init(s->method_work, &s->pb, s->options)) != 0) {
     return lag_explain(s, rc);
   }
@@ -184,7 +187,7 @@ int lag_sim_advance(lag_sim *s, double t)
   return rc;
 }
 
-int lag_sim_eval(const lag_sim *s, double t, double *y)
+int lag_sim_eval(lag_sim *s, double t, double *y)
 {
   const Run *r = s->run;
   size_t bytes = (size_t)s->pb.n * sizeof(double);

@@ -149,9 +149,9 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
 }
 
 /* Mostly events ask for this, so f at the ends waits until then. */
-static void dense(const void *work, const lag_problem *pb, double t, double *y)
+static void dense(void *work, lag_problem *pb, double t, double *y)
 {
-  Gsl *w = (Gsl *)(uintptr_t)work;
+  Gsl *w = work;
   double h = w->t1 - w->t0;
 
   if (!w->have_f) {

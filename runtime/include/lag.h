@@ -76,7 +76,7 @@ enum {
   LAG_METHOD_ADAPTIVE = 1,     /* chooses its steps from the tolerance; else steps are of equal size */
   LAG_METHOD_SYMPLECTIC = 2,
   LAG_METHOD_SYMMETRIC = 4,
-  LAG_METHOD_SEPARABLE = 8,    /* needs accelerations that do not depend on velocities */
+  LAG_METHOD_SEPARABLE = 8,    /* refuses models without LAG_SEPARABLE */
   LAG_METHOD_CONSERVATIVE = 16, /* refuses models with forces, dissipation or explicit time */
   LAG_METHOD_STEPS_TO = 32,    /* dense() is rough: must step exactly to each time of output */
   LAG_METHOD_NO_SAVE = 64,     /* work holds pointers: its state cannot be saved */
@@ -114,8 +114,8 @@ typedef struct lag_method {
    * Does not allocate. */
   int (*step)(void *work, lag_problem *pb, double *t, double *y, double t_stop);
 
-  /* y[n] at t within the last step. */
-  void (*dense)(const void *work, const lag_problem *pb, double t, double *y);
+  /* y[n] at t within the last step. May call the model; the next step does not depend on whether it was called. */
+  void (*dense)(void *work, lag_problem *pb, double t, double *y);
 
   /* Forgets the past: the caller is about to step from another state. */
   void (*reset)(void *work, lag_problem *pb);
@@ -128,6 +128,10 @@ typedef struct lag_method {
 extern const lag_method lag_rk4;
 /* Dormand-Prince 5(4), adaptive: the default. */
 extern const lag_method lag_rk45;
+/* Dormand-Prince 8(5,3), adaptive, for tolerances below about 1e-6. */
+extern const lag_method lag_dop853;
+/* Symplectic, fixed step, for separable models: symplectic Euler, Stoermer-Verlet, and compositions of order 4, 6, 8. */
+extern const lag_method lag_symplectic_euler, lag_verlet, lag_verlet4, lag_verlet6, lag_verlet8;
 /* The methods of liblag.a, the default first. */
 extern const lag_method *const lag_methods[];
 extern const int lag_nmethods;
@@ -149,7 +153,8 @@ typedef struct lag_stats {
 
 /* A simulation of the scene at the start of its span, with the scene's method (when it is one of
  * liblag.a), tolerance and options. The scene must outlive it. NULL: no memory, or a model of another ABI
- * or scalar type. Free with lag_sim_free (NULL allowed). */
+ * or scalar type. A method that cannot integrate the model is refused by the first advance, unless another one is set.
+ * Free with lag_sim_free (NULL allowed). */
 lag_sim *lag_sim_new(const lag_scene *scene);
 void lag_sim_free(lag_sim *sim);
 
@@ -171,8 +176,9 @@ int lag_sim_set(lag_sim *sim, const char *name, double value);
  * LAG_OK: the state is at t. LAG_STOPPED, LAG_INTERRUPTED: at lag_sim_time(). < 0: failure. */
 int lag_sim_advance(lag_sim *sim, double t);
 
-/* y[n] at time t within the last step and not after the next event, else LAG_EINVAL. Moves nothing. */
-int lag_sim_eval(const lag_sim *sim, double t, double *y);
+/* y[n] at time t within the last step and not after the next event, else LAG_EINVAL. Moves nothing; may call the
+ * model. */
+int lag_sim_eval(lag_sim *sim, double t, double *y);
 
 /* The present state and parameters: pointers that stay valid until lag_sim_free. */
 double lag_sim_time(const lag_sim *sim);

@@ -35,7 +35,8 @@ enum {
   LAG_CONSERVES_ENERGY = 1, /* no t in L, no force, no dissipation, no input */
   LAG_CONSTANT_MASS = 2,    /* d2L/dq'2 depends on no coordinate, velocity or time */
   LAG_AUTONOMOUS = 4,       /* the right-hand side does not contain t */
-  LAG_SMOOTH = 8            /* no if, abs, sign, min, max */
+  LAG_SMOOTH = 8,           /* no if, abs, sign, min, max */
+  LAG_SEPARABLE = 16        /* constant mass matrix, accelerations that do not depend on velocities, no states */
 };
 
 /* A named quantity. unit is as declared ("deg"), "" when none; one unit is `factor` in SI. */

@@ -59,6 +59,20 @@ void sketch_print(FILE *f, const Table *t);
 /* The same for one column against another. */
 void sketch_path(FILE *f, const Table *t, int col_x, int col_y);
 
+/* What an animation shows: points whose x and y are columns, in one unit. */
+typedef struct Animation {
+  int npoints;
+  int *cols;        /* x, y of each point: [2 * npoints] */
+  int from;         /* the first point is where the first rod begins, and no body */
+  int rods, trace;
+  const char *unit;
+} Animation;
+
+/* The table as a page that plays it. -1 with errno set. */
+int html_write(const char *path, const Table *t, const char *title, const Animation *a);
+/* How many frames suit a run of so many seconds. */
+int html_frames(double span);
+
 /* JSON text: a string in quotes or null; a number with 17 digits or null. */
 void json_string(FILE *f, const char *s);
 void json_number(FILE *f, double x);

@@ -208,11 +208,14 @@ static void unit_panel(FILE *f, const Table *t, Panel *p, const char *unit, int 
 static void head(FILE *f, int height, const char *title)
 {
   fprintf(f,
-          "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
-          "font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"12\" fill=\"#333\">\n"
-          "<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:13px}</style>\n"
+          "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" "
+          "font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"12\" fill=\"#333\">\n<title>",
+          WIDTH, height, WIDTH, height);
+  xml(f, title);
+  fprintf(f,
+          "</title>\n<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:13px}</style>\n"
           "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
-          WIDTH, height, WIDTH, height, WIDTH, height);
+          WIDTH, height);
   text(f, LEFT, 26, "font-size=\"15\" font-weight=\"bold\"", title);
 }
 
@@ -249,10 +252,44 @@ static void against_time(FILE *f, const Table *t, const char *title)
   }
 }
 
+/* A path: one metre is as long across as it is up; the panel is as high as that needs, within reason. */
+static void same_scale(Panel *p)
+{
+  double flat = (p->y1 - p->y0) / (p->x1 - p->x0) * p->w;
+
+  p->h = flat < 200 ? 200 : flat < p->h ? flat : p->h;
+  double scale = fmax((p->x1 - p->x0) / p->w, (p->y1 - p->y0) / p->h), mx = (p->x0 + p->x1) / 2, my = (p->y0 + p->y1) / 2;
+  p->x0 = mx - scale * p->w / 2;
+  p->x1 = mx + scale * p->w / 2;
+  p->y0 = my - scale * p->h / 2;
+  p->y1 = my + scale * p->h / 2;
+}
+
+static void mark(FILE *f, double x, double y, const char *fill)
+{
+  if (isfinite(x) && isfinite(y)) {
+    fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"%s\"/>\n", x, y, fill);
+  }
+}
+
+/* Which end of a path is which: a curve against time needs no such help. */
+static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y)
+{
+  static const char *const name[] = {"start", "end"}, *const fill[] = {"#009e73", "#d55e00"};
+
+  for (int k = 0; k < 2 && t->nrows; k++) {
+    size_t row = k ? t->nrows - 1 : 0;
+    mark(f, px(p, cell(t, row, x)), py(p, cell(t, row, y)), fill[k]);
+    mark(f, p->x + p->w + 20, p->y + 16 + 20 * k, fill[k]);
+    text(f, p->x + p->w + 32, p->y + 20 + 20 * k, "", name[k]);
+  }
+}
+
 static void one_against_other(FILE *f, const Table *t, const char *title, int x, int y)
 {
   char xlabel[176], ylabel[176];
-  Panel p = {.x = LEFT, .y = TOP, .w = 600, .h = 520, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL};
+  Panel p = {.x = LEFT, .y = TOP, .w = x ? 600 : WIDTH - LEFT - 30, .h = x ? 520 : 380,
+             .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL};
 
   label_of(&t->cols[x], xlabel, sizeof xlabel);
   label_of(&t->cols[y], ylabel, sizeof ylabel);
@@ -262,24 +299,13 @@ static void one_against_other(FILE *f, const Table *t, const char *title, int x,
   widen(&p.x0, &p.x1, x ? 0.05 : 0);
   widen(&p.y0, &p.y1, 0.05);
   if (x && strcmp(t->cols[x].unit, t->cols[y].unit) == 0) {
-    /* A path: one metre is as long across as it is up. */
-    double scale = fmax((p.x1 - p.x0) / p.w, (p.y1 - p.y0) / p.h), mx = (p.x0 + p.x1) / 2, my = (p.y0 + p.y1) / 2;
-    p.x0 = mx - scale * p.w / 2;
-    p.x1 = mx + scale * p.w / 2;
-    p.y0 = my - scale * p.h / 2;
-    p.y1 = my + scale * p.h / 2;
+    same_scale(&p);
   }
   head(f, TOP + (int)p.h + BOTTOM, title);
   axes(f, &p, ylabel, 1);
   curve(f, &p, t, x, y, colour[0]);
-  if (t->nrows) {
-    fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"#009e73\"/>\n", px(&p, cell(t, 0, x)), py(&p, cell(t, 0, y)));
-    fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"#d55e00\"/>\n", px(&p, cell(t, t->nrows - 1, x)),
-            py(&p, cell(t, t->nrows - 1, y)));
-    fprintf(f, "<circle cx=\"%.1f\" cy=\"60\" r=\"4\" fill=\"#009e73\"/>\n<circle cx=\"%.1f\" cy=\"80\" r=\"4\" fill=\"#d55e00\"/>\n",
-            p.x + p.w + 20, p.x + p.w + 20);
-    text(f, p.x + p.w + 32, 64, "", "start");
-    text(f, p.x + p.w + 32, 84, "", "end");
+  if (x) {
+    mark_ends(f, &p, t, x, y);
   }
 }
 

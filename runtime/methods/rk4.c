@@ -1,6 +1,5 @@
 /* rk4: the classical Runge-Kutta method with a fixed step. Enters: t, y; leaves: t + h, y one step later.
- * Holds: y and t are sums of many small terms, so both are summed with compensation (A. Neumaier, ZAMM 54
- * (1974) 39, DOI 10.1002/zamm.19740540106) and rounding grows with the number of steps' root at most.
+ * Holds: y and t are sums of many small terms, so both are summed with compensation (steps.h).
  *
  * Source: W. Kutta, Z. Math. Phys. 46 (1901) 435. f at the end of a step is the first stage of the next,
  * so dense output (lag_hermite) costs nothing. */
@@ -8,6 +7,7 @@
 #include <string.h>
 
 #include "lag.h"
+#include "methods/steps.h"
 
 /* One block of doubles; x holds the arrays of n named below. */
 typedef struct Rk4 {
@@ -23,9 +23,7 @@ enum { K1, K2, K3, K4, F0, Y0, Y1, YS, COMP, NARRAYS };
 static const double node[4] = {0, 0.5, 0.5, 1};
 static const double weight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
 
-static const lag_method_option options[] = {
-    {"step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL},
-};
+static const lag_method_option options[] = {LAG_STEP_OPTION};
 
 static size_t work_size(const lag_problem *pb)
 {
@@ -45,30 +43,9 @@ static int init(void *work, lag_problem *pb, const double *opt)
 {
   Rk4 *w = work;
 
-  w->h = opt[0] > 0 ? opt[0] : (pb->span > 0 ? pb->span : 10) / 10000;
+  w->h = lag_step_size(pb, opt[0]);
   reset(work, pb);
   return LAG_OK;
-}
-
-/* s + d, where *c is what earlier sums have lost: two-sum, valid for operands of any size. */
-static double add(double s, double d, double *c)
-{
-  double x = d + *c, r = s + x, b = r - s;
-
-  *c = (s - (r - b)) + (x - b);
-  return r;
-}
-
-static int fail(lag_problem *pb, int status, double t)
-{
-  pb->bad_t = t;
-  return status;
-}
-
-/* What the model's answer means to a method that cannot take a smaller step. */
-static int refused(lag_problem *pb, int rc, double t)
-{
-  return fail(pb, rc > 0 ? LAG_EDOMAIN : rc == LAG_ESINGULAR ? LAG_ESINGULAR : LAG_EMODEL, t);
 }
 
 /* The four stages into K1..K4; the increment of y, not yet scaled by h, into YS. */
@@ -85,7 +62,7 @@ static int stages(Rk4 *w, lag_problem *pb, double t, const double *y, double dt)
     }
     int rc = lag_rhs(pb, ts, ys, w->x + s * n);
     if (rc) {
-      return refused(pb, rc, ts);
+      return lag_step_refused(pb, rc, ts);
     }
   }
   const double *restrict k1 = w->x + K1 * n, *restrict k2 = w->x + K2 * n;
@@ -102,32 +79,29 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int n = pb->n, rc;
   size_t bytes = (size_t)n * sizeof(double);
   double *y1 = w->x + Y1 * n, *comp = w->x + COMP * n, *ys = w->x + YS * n;
-  double dt = w->h * pb->dir, tc = w->tc, tb = add(*t, dt, &tc);
+  double dt = w->h * pb->dir, tc = w->tc, tb = lag_sum(*t, dt, &tc);
 
   (void)t_stop;
   pb->bad_index = -1;
   if (tb == *t) {
-    return fail(pb, LAG_ESTEP, *t);
+    return lag_step_failed(pb, LAG_ESTEP, *t);
   }
   if ((rc = stages(w, pb, *t, y, dt)) != 0) {
     return rc;
   }
   /* A failure must leave y and its compensation as they were: look before touching them. */
   if ((pb->bad_index = lag_not_finite(n, ys)) >= 0) {
-    return fail(pb, LAG_ENAN, *t);
+    return lag_step_failed(pb, LAG_ENAN, *t);
   }
   memcpy(w->x + F0 * n, w->x + K1 * n, bytes);
   memcpy(w->x + Y0 * n, y, bytes);
   for (int i = 0; i < n; i++) {
-    y1[i] = add(y[i], dt * ys[i], &comp[i]);
+    y1[i] = lag_sum(y[i], dt * ys[i], &comp[i]);
   }
   w->ready = 0;
-  rc = lag_rhs(pb, tb, y1, w->x + K1 * n);
+  rc = lag_step_rhs(pb, tb, y1, w->x + K1 * n);
   if (rc) {
-    return refused(pb, rc, tb);
-  }
-  if ((pb->bad_index = lag_not_finite(n, w->x + K1 * n)) >= 0) {
-    return fail(pb, LAG_ENAN, tb);
+    return rc;
   }
   memcpy(y, y1, bytes);
   w->ready = 1;
@@ -138,7 +112,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return LAG_OK;
 }
 
-static void dense(const void *work, const lag_problem *pb, double t, double *y)
+static void dense(void *work, lag_problem *pb, double t, double *y)
 {
   const Rk4 *w = work;
   int n = pb->n;

@@ -32,12 +32,31 @@ static const struct {
   {"run", CMD_RUN, "lagc run MODEL [SCENE] [name=value ...] [--method M] [--tol X] [--until T] ...",
    "Builds the simulator (or takes it from the cache) and runs it; the options are the simulator's:\n\n"
    "  name=value        a parameter, a start value (th=1.2, \"th'=0.5\") or an input\n"
-   "  --method NAME     rk45, rk4, gsl-rk8pd, ...; `--method help` lists them\n"
+   "  --method NAME     rk45, dop853, verlet4, gsl-rk8pd, ...; `--method help` lists them\n"
    "  --tol X --step H --until T --every DT\n"
    "  -o FILE           .csv or .npy\n"
    "  --json            the summary as one JSON object\n"
+   "  --observe EXPR    one more column: any expression of the model, --observe 'l*sin(th)'; can be repeated\n"
    "  --svg FILE        a picture of the outputs;  --sketch: one in the terminal\n"
    "  --save-state FILE, --resume FILE\n"},
+  {"plot", CMD_PLOT, "lagc plot MODEL [SCENE] [name=value ...] [--x EXPR --y EXPR | --phase EXPR] [-o FILE.svg]",
+   "Runs the model and draws it: all outputs against time, or one quantity against another.\n\n"
+   "  --y EXPR          this against time\n"
+   "  --x EXPR --y EXPR a path; one scale for both axes where their units agree\n"
+   "  --phase EXPR      its rate against it: --phase th draws th' against th\n"
+   "  -o FILE.svg       default: MODEL_SCENE.svg in this folder\n\n"
+   "EXPR is any expression of the model: th, energy, an observable, 'l1*sin(th1)', \"th1' - th2'\".\n"
+   "The options of `lagc run` are options here too; --sketch draws in the terminal as well.\n"},
+  {"animate", CMD_ANIMATE, "lagc animate MODEL [SCENE] [name=value ...] [--points 'x1,y1 x2,y2'] [--trace] [-o FILE.html]",
+   "Runs the model and writes its motion as one HTML file, which needs no network and no other file:\n"
+   "space plays and pauses, arrow keys step, the slider scrubs.\n\n"
+   "  --points 'X,Y X,Y' the points to draw, each two expressions; joined by rods in this order. Without\n"
+   "                    it: the model's x,y, or x1,y1 x2,y2 ..., or px,py; or its only coordinate\n"
+   "  --from 'X,Y'      where the first rod begins; default: the origin\n"
+   "  --no-rods         points only\n"
+   "  --trace           the path of the last point, fading\n"
+   "  -o FILE.html      default: MODEL_SCENE.html in this folder\n\n"
+   "The options of `lagc run` are options here too.\n"},
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
@@ -46,6 +65,8 @@ static const char general_help[] =
   "  lagc check MODEL [SCENE]            parse, derive, prove the `expect` lines\n"
   "  lagc derive MODEL [SCENE]           print the equations (--format text|latex|c)\n"
   "  lagc run MODEL [SCENE] [name=value] simulate\n"
+  "  lagc plot MODEL [SCENE] [--x --y]   simulate and draw, as SVG\n"
+  "  lagc animate MODEL [SCENE]          simulate and show the motion, as one HTML file\n"
   "  lagc build MODEL -o SIM             make a simulator\n"
   "  lagc header MODEL -o FILE.h         a C header to embed\n"
   "  lagc emit MODEL [SCENE] -o FILE.c   C for the runtime\n"
@@ -75,7 +96,7 @@ const char *options_help(const char *topic) {
 static const char *unknown_command(Arena *a, const char *word) {
   Name names[N_COMMANDS];
   for (int i = 0; i < N_COMMANDS; i++) names[i] = commands[i].name;
-  static const char *const later[] = {"cost", "effects", "noether", "modes", "plot", "lyapunov", "methods"};
+  static const char *const later[] = {"cost", "effects", "noether", "modes", "lyapunov", "methods"};
   for (size_t i = 0; i < sizeof later / sizeof *later; i++)
     if (strcmp(word, later[i]) == 0) return arena_printf(a, "not yet: `lagc %s`", word);
   size_t n = strlen(word);
@@ -127,6 +148,44 @@ static int dump_is_known(const char *stages, const char **error) {
   return 1;
 }
 
+int options_simulate(const Options *o) {
+  return o->command == CMD_RUN || o->command == CMD_PLOT || o->command == CMD_ANIMATE;
+}
+
+/* An option of plot or animate, or run's --observe: 1 with its value taken, 0 without one, -1 when it is none. */
+static int picture_option(Arena *a, int argc, char **argv, int *i, Options *o) {
+  const char *observed = NULL;
+  const struct {
+    Command command;
+    const char *key;
+    const char **value;
+  } known[] = {
+    {CMD_RUN, "--observe", &observed}, {CMD_PLOT, "--x", &o->x},           {CMD_PLOT, "--y", &o->y},
+    {CMD_PLOT, "--phase", &o->phase},  {CMD_ANIMATE, "--points", &o->points}, {CMD_ANIMATE, "--from", &o->from},
+  };
+  for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
+    if (known[k].command != o->command || !take_value(argv[*i], known[k].key, argc, argv, i, known[k].value)) continue;
+    if (observed) vec_push(a, &o->observe, observed);
+    return *known[k].value != NULL;
+  }
+  if (o->command != CMD_ANIMATE || strcmp(argv[*i], "--no-rods") != 0) return -1;
+  return o->no_rods = 1;
+}
+
+/* What a simulator gets: an option, with its value where it takes one, a scene or a setting. */
+static void pass_on(Arena *a, int argc, char **argv, int *i, Options *o) {
+  static const char *const with_value[] = {"--method", "--tol", "--step", "--until", "--every", "--svg", "--plot-x",
+                                           "--plot-y", "--save-state", "--resume", "--output", "-o", "--html", "--points", "--from"};
+  const char *arg = argv[*i];
+  vec_push(a, &o->rest, arg);
+  if (arg[0] != '-' && !strchr(arg, '=') && !o->scene) o->scene = arg;
+  for (size_t k = 0; k < sizeof with_value / sizeof *with_value; k++)
+    if (strcmp(arg, with_value[k]) == 0 && *i + 1 < argc) {
+      vec_push(a, &o->rest, argv[++*i]);
+      return;
+    }
+}
+
 /* One option of lagc itself; -1 when it is none. */
 static int own_option(Arena *a, int argc, char **argv, int *i, Options *o, const char **error) {
   const char *arg = argv[*i], *value = NULL;
@@ -136,12 +195,14 @@ static int own_option(Arena *a, int argc, char **argv, int *i, Options *o, const
   }
   if (take_value(arg, "--dump", argc, argv, i, &o->dump)) return dump_is_known(o->dump, error);
   if (strcmp(arg, "--no-gsl") == 0) return o->no_gsl = 1;
-  if (o->command == CMD_RUN) return -1;
+  int picture = picture_option(a, argc, argv, i, o);
+  if (picture >= 0 || o->command == CMD_RUN) return picture;
   if (strcmp(arg, "-o") == 0 || strcmp(arg, "--output") == 0) {
     o->output = *i + 1 < argc ? argv[++*i] : NULL;
     if (!o->output) *error = "-o takes a file";
     return o->output != NULL;
   }
+  if (options_simulate(o)) return -1;
   if (take_value(arg, "--format", argc, argv, i, &o->format)) {
     if (o->format && (strcmp(o->format, "text") == 0 || strcmp(o->format, "latex") == 0 || strcmp(o->format, "c") == 0)) return 1;
     *error = "--format takes text, latex or c";
@@ -167,7 +228,7 @@ static int read_arguments(Arena *a, int argc, char **argv, Options *o, const cha
       return 0;
     }
     if (!o->file && arg[0] != '-') o->file = arg;
-    else if (o->command == CMD_RUN) vec_push(a, &o->rest, arg);
+    else if (options_simulate(o)) pass_on(a, argc, argv, &i, o);
     else if (arg[0] == '-' && arg[1]) {
       *error = arena_printf(a, "`lagc %s` has no option `%s`; `lagc help %s` lists them", argv[1], arg, argv[1]);
       return 0;

@@ -194,9 +194,10 @@ static uint32_t work_size(const IrUnit *u) {
 }
 
 static void flag_text(unsigned flags, StrBuf *out) {
-  static const char *const names[] = {"LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS", "LAG_AUTONOMOUS", "LAG_SMOOTH"};
+  static const char *const names[] = {"LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS", "LAG_AUTONOMOUS", "LAG_SMOOTH",
+                                       "LAG_SEPARABLE"};
   int some = 0;
-  for (int i = 0; i < 4; i++)
+  for (int i = 0; i < 5; i++)
     if (flags >> i & 1) sb_printf(out, "%s%s", some++ ? " | " : "", names[i]);
   if (!some) sb_putc(out, '0');
 }

@@ -77,9 +77,11 @@ static Slot fold(Prog *p, const Ins *i) {
       return is_num(p, i->b, 1) ? i->a : NOT_FOLDED;
     case IR_DIV:
       if (!i->a) return 0;
+      if (is_num(p, i->b, -1)) return prog_op(p, IR_NEG, i->a, 0);
       return is_num(p, i->b, 1) ? i->a : NOT_FOLDED;
     case IR_NEG:
       if (!i->a) return 0;
+      if (p->ins.at[i->a].op == IR_CONST) return prog_num(p, num_neg(p->ins.at[i->a].number));
       return p->ins.at[i->a].op == IR_NEG ? p->ins.at[i->a].a : NOT_FOLDED;
     case IR_CONST: case IR_PI: case IR_LOAD: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_MIN: case IR_MAX:
     case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND: case IR_OR: case IR_SELECT:

@@ -2,7 +2,7 @@
  *
  * A block whose mass matrix is proved positive definite is factored in straight-line code without
  * pivoting (Golub & Van Loan, Matrix Computations, 4th ed., algorithm 4.1.2); pivots are checked.
- * Other blocks, and large ones, are solved by a loop with partial pivoting. */
+ * Other pairs go by Cramer's rule; other blocks, and large ones, by a loop with partial pivoting. */
 #include "ir/lower_impl.h"
 
 enum { STRAIGHT_LINE_MAX = 12 };
@@ -84,6 +84,8 @@ static Slot minus_product(Lower *l, Slot x, Slot a, Slot b) {
 }
 
 static void check_pivot(Lower *l, Slot d, int positive) {
+  const Ins *i = &l->p->ins.at[d];
+  if (d && i->op == IR_CONST && (num_sign(i->number) > 0 || !positive)) return; /* known now */
   prog_ins(l->p, (Ins){.op = IR_PIVOT, .a = d, .index = (uint32_t)positive});
 }
 
@@ -131,6 +133,21 @@ static void solve_one(Lower *l, const Block *b, Slot *x) {
   x[0] = op(l, IR_DIV, b->f[0], b->M[0]);
 }
 
+/* Two coordinates whose mass matrix may be indefinite (L = x'*y'): Cramer's rule. It needs no pivoting,
+ * and for 2 x 2 its error is that of the matrix's condition (Higham, Accuracy and Stability of Numerical
+ * Algorithms, 2nd ed., section 1.10.1). */
+static void solve_two(Lower *l, const Block *b, Slot *x) {
+  Slot m11 = b->M[0], m12 = b->M[2], m22 = b->M[3];
+  Slot square = op(l, IR_MUL, m11, m22);
+  Slot det = minus_product(l, square, m12, m12);
+  prog_name(l->p, det, "det_M");
+  check_pivot(l, det, 0);
+  Slot top1 = op(l, IR_MUL, b->f[0], m22), top2 = op(l, IR_MUL, m11, b->f[1]);
+  Slot n1 = minus_product(l, top1, m12, b->f[1]), n2 = minus_product(l, top2, m12, b->f[0]);
+  x[0] = op(l, IR_DIV, n1, det);
+  x[1] = op(l, IR_DIV, n2, det);
+}
+
 static void solve_loop(Lower *l, const Block *b, Slot *x) {
   Arena *a = l->p->arena;
   Slot *full = ARENA_ARRAY(a, Slot, b->n * b->n);
@@ -158,6 +175,7 @@ void lower_solution(Lower *l, Slot *acc) {
     const Block *b = &blocks[k];
     if (b->n == 1) solve_one(l, b, x);
     else if (e->definite_mass && b->n <= STRAIGHT_LINE_MAX) solve_straight(l, b, x);
+    else if (b->n == 2) solve_two(l, b, x);
     else solve_loop(l, b, x);
     for (uint32_t i = 0; i < b->n; i++) {
       acc[b->at[i]] = x[i];

@@ -33,7 +33,9 @@ typedef struct {
   Expr energy_scale;     /* |p q'| + |L|: what a drift of the energy is compared with */
   const Output *outputs; /* of the scene, with the energy filled in */
   uint32_t noutputs;
+  const Expr *definitions; /* by symbol: what stands for parameters given by others, where that was put in; or NULL */
   int constant_mass, definite_mass, conserves_energy, autonomous, smooth;
+  int separable;         /* constant mass, no velocity in f, no states: a splitting method can integrate it */
 } Eqns;
 
 /* Derives the equations. NULL, with the reason in m->diags, when the mass matrix is singular for

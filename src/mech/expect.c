@@ -12,33 +12,49 @@
 
 enum { SAMPLES = 20, FULL_DIGITS = 18, FEWEST_DIGITS = 6 };
 
-/* Digits to which the sides agree at a state, measured by the size of what they are summed of. */
+/* The sum of the sizes of a side's terms, and of the bounds of their rounding errors. */
+static void measure(ExprGraph *g, Expr side, const long double *symbols, long double *size, long double *bound) {
+  for (uint32_t i = 0; i < expr_pairs(g, side, EX_SUM); i++) {
+    Num c;
+    long double error;
+    Expr term = expr_pair(g, side, EX_SUM, i, &c);
+    long double value = prove_value(g, term, symbols, NULL, &error), k = fabsl((long double)num_value(c));
+    *size += k * fabsl(value);
+    *bound += k * error;
+  }
+}
+
+/* Digits to which the sides agree at a state, measured by the size of what they are summed of. -1
+ * where that says nothing: a side has no value, or what it is summed of drowns in rounding (the sine
+ * of a huge number, the sign of a difference that is zero). */
 static int digits_at(const Eqns *e, const Expect *x, const long double *symbols) {
-  long double bound_l, bound_r;
-  long double l = prove_value(e->g, x->lhs, symbols, NULL, &bound_l);
-  long double r = prove_value(e->g, x->rhs, symbols, NULL, &bound_r);
-  long double size = fabsl(l) + fabsl(r), terms = (bound_l + bound_r) / (16 * LDBL_EPSILON);
-  if (isfinite(terms) && terms > size) size = terms;
-  if (!isfinite(l - r)) return -1;
+  const long double noise = 1e-6L;
+  long double size = 0, bound = 0, unused;
+  long double l = prove_value(e->g, x->lhs, symbols, NULL, &unused);
+  long double r = prove_value(e->g, x->rhs, symbols, NULL, &unused);
+  measure(e->g, x->lhs, symbols, &size, &bound);
+  measure(e->g, x->rhs, symbols, &size, &bound);
+  if (!isfinite(l - r) || !isfinite(size) || !(bound <= noise * size)) return -1;
   if (l == r) return FULL_DIGITS;
   long double digits = floorl(-log10l(fabsl(l - r) / size));
   return digits < 0 ? 0 : digits > FULL_DIGITS ? FULL_DIGITS : (int)digits;
 }
 
-/* The fewest digits of agreement at random states; 0 when no state has values to compare. */
-static int agreement(const Eqns *e, const Expect *x) {
+/* The fewest digits of agreement at random states; *seen is the number of states compared. */
+static int agreement(const Eqns *e, const Expect *x, int *seen) {
   StateSolver *solver = states_new(e);
   long double *symbols = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
-  int least = FULL_DIGITS, seen = 0;
-  for (uint32_t seed = 1; seed <= 3 * SAMPLES && seen < SAMPLES; seed++) {
+  int least = FULL_DIGITS;
+  *seen = 0;
+  for (uint32_t seed = 1; seed <= 3 * SAMPLES && *seen < SAMPLES; seed++) {
     prove_state(e->g, seed, symbols);
     if (!states_complete(solver, symbols)) continue;
     int digits = digits_at(e, x, symbols);
     if (digits < 0) continue;
-    seen++;
+    ++*seen;
     if (digits < least) least = digits;
   }
-  return seen ? least : 0;
+  return least;
 }
 
 /* --- a state that shows the difference --- */
@@ -113,7 +129,20 @@ static void put_value(StrBuf *b, const Showing *s, SymId sym, const Unit *unit) 
   const Symbol *symbol = expr_symbol(s->e->g, sym);
   double factor = unit_factor(unit);
   sb_printf(b, "%s%s = %.6Lg", b->n ? ", " : "", symbol->name, s->symbols[sym] / (long double)factor);
-  if (factor != 1) sb_printf(b, " [%s]", unit->text);
+  if (factor != 1) sb_printf(b, symbol->kind == SYM_VEL ? " [%s/s]" : " [%s]", unit->text);
+}
+
+static int is_acceleration(const Symbol *s, const void *data) {
+  (void)data;
+  return s->kind == SYM_ACC;
+}
+
+static int in_equations(const Eqns *e, SymId sym) {
+  for (uint32_t i = 0; i < e->mass.n; i++)
+    if (expr_contains_sym(e->g, e->mass.at[i].e, sym)) return 1;
+  for (uint32_t i = 0; i < e->n; i++)
+    if (expr_contains_sym(e->g, e->f[i], sym)) return 1;
+  return 0;
 }
 
 /* "th1 = 1, th1' = 0, m1 = 1": the coordinates and what else the sides contain. */
@@ -133,8 +162,12 @@ static const char *state_text(const Showing *s) {
   for (uint32_t i = 0; i < m->states.n; i++) put_value(&b, s, m->states.at[i].z, &m->states.at[i].unit);
   if (expr_contains_sym(g, both, m->time)) put_value(&b, s, m->time, &si);
   for (uint32_t i = 0; i < m->inputs.n; i++) put_value(&b, s, m->inputs.at[i].sym, &m->inputs.at[i].unit);
-  for (uint32_t i = 0; i < m->params.n; i++)
-    if (expr_contains_sym(g, both, m->params.at[i].sym)) put_value(&b, s, m->params.at[i].sym, &m->params.at[i].unit);
+  int moves = expr_contains(g, both, is_acceleration, NULL); /* then all of M and f is in it */
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
+    int in = expr_contains_sym(g, both, p->sym) || (moves && in_equations(s->e, p->sym));
+    if (in) put_value(&b, s, p->sym, &p->unit);
+  }
   return sb_text(&b);
 }
 
@@ -176,7 +209,7 @@ static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r,
     diag_warning(d, x->span, "expect %s is not proved; the sides agree to %d digits", r->label, r->digits);
     return;
   }
-  diag_error(d, x->span, "expect %s is not proved; the sides agree to %d digits at %d random states", r->label, r->digits, SAMPLES);
+  diag_error(d, x->span, "expect %s is not proved; the sides agree to %d digits at %d random states", r->label, r->digits, r->states);
   diag_help(d, "write it in another form, or take agreement in numbers for enough: `lagc check --allow-numeric`");
 }
 
@@ -187,20 +220,74 @@ static ExpectResult judge(const Eqns *e, const Expect *x) {
     case PROVED_NONZERO: r.verdict = EXPECT_REFUTED; return r;
     case NOT_DECIDED: break;
   }
-  r.digits = agreement(e, x);
-  r.verdict = r.digits < FEWEST_DIGITS ? EXPECT_REFUTED : EXPECT_AGREES;
+  r.digits = agreement(e, x, &r.states);
+  r.verdict = !r.states ? EXPECT_UNKNOWN : r.digits < FEWEST_DIGITS ? EXPECT_REFUTED : EXPECT_AGREES;
   return r;
+}
+
+static void report_unknown(const Eqns *e, const Expect *x, const char *label) {
+  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a value that means something", label);
+  diag_help(e->m->diags, "write it where its roots and logarithms are defined, and in numbers of ordinary size");
+}
+
+/* --- parameters that follow from others --- */
+
+static int is_param(const Symbol *s, const void *data) {
+  (void)data;
+  return s->kind == SYM_PARAM;
+}
+
+/* What parameters stand for that are given by others: param I = m*l^2 follows m and l. NULL when
+ * there are none. */
+static const Expr *param_definitions(const Model *m) {
+  Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 1);
+  int some = 0;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
+    if (!p->value || !expr_contains(m->g, p->value, is_param, NULL)) continue;
+    with[p->sym] = expr_substitute(m->g, p->value, with, expr_symbol_count(m->g) + 1, "");
+    some = 1;
+  }
+  return some ? with : NULL;
+}
+
+/* The equations with these definitions in the place of their parameters. */
+static const Eqns *with_definitions(const Eqns *e, const Expr *with) {
+  if (!with) return e;
+  ExprGraph *g = e->g;
+  uint32_t n = expr_symbol_count(g) + 1;
+  Eqns *c = ARENA_NEW(e->m->arena, Eqns);
+  *c = *e;
+  c->mass.n = c->mass.cap = 0;
+  Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n + 1), *flow = ARENA_ARRAY(e->m->arena, Expr, e->m->states.n + 1);
+  for (uint32_t i = 0; i < e->mass.n; i++) {
+    MassEntry entry = e->mass.at[i];
+    entry.e = expr_substitute(g, entry.e, with, n, "");
+    vec_push(e->m->arena, &c->mass, entry);
+  }
+  for (uint32_t i = 0; i < e->n; i++) f[i] = expr_substitute(g, e->f[i], with, n, "");
+  for (uint32_t i = 0; i < e->m->states.n; i++) flow[i] = expr_substitute(g, e->flow[i], with, n, "");
+  c->f = f;
+  c->flow = flow;
+  c->energy = expr_substitute(g, e->energy, with, n, "");
+  c->definitions = with;
+  return c;
 }
 
 void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults *out) {
   const Model *m = e->m;
+  const Expr *with = param_definitions(m);
+  const Eqns *closed = with_definitions(e, with);
   for (uint32_t i = 0; i < m->expects.n; i++) {
-    const Expect *x = &m->expects.at[i];
-    if (x->effect != effect) continue;
-    ExpectResult r = judge(e, x);
+    Expect x = m->expects.at[i];
+    if (x.effect != effect) continue;
+    if (with) x.lhs = expr_substitute(e->g, x.lhs, with, expr_symbol_count(e->g) + 1, "");
+    if (with) x.rhs = expr_substitute(e->g, x.rhs, with, expr_symbol_count(e->g) + 1, "");
+    ExpectResult r = judge(closed, &x);
     vec_push(m->arena, out, r);
-    if (r.verdict == EXPECT_REFUTED) report_refuted(e, x, r.label);
-    if (r.verdict == EXPECT_AGREES) report_agrees(e, x, &r, allow_numeric);
+    if (r.verdict == EXPECT_REFUTED) report_refuted(closed, &x, r.label);
+    if (r.verdict == EXPECT_AGREES) report_agrees(closed, &x, &r, allow_numeric);
+    if (r.verdict == EXPECT_UNKNOWN) report_unknown(closed, &x, r.label);
   }
 }
 
@@ -211,6 +298,7 @@ static void print_one(const ExpectResult *r, const Sources *sources, StrBuf *out
     case EXPECT_PROVED: sb_puts(out, "proved\n"); return;
     case EXPECT_REFUTED: sb_puts(out, "refuted\n"); return;
     case EXPECT_AGREES: sb_printf(out, "not proved, agrees to %d digits\n", r->digits); return;
+    case EXPECT_UNKNOWN: sb_puts(out, "not decided\n"); return;
   }
 }
 

@@ -7,7 +7,8 @@
 typedef enum {
   EXPECT_PROVED,
   EXPECT_REFUTED,
-  EXPECT_AGREES /* not decided by the prover; the sides agree to some digits */
+  EXPECT_AGREES, /* not decided by the prover; the sides agree to some digits */
+  EXPECT_UNKNOWN /* not decided, and no state tried gives the sides values that mean something */
 } ExpectVerdict;
 
 typedef struct {
@@ -15,6 +16,7 @@ typedef struct {
   Span span;
   ExpectVerdict verdict;
   int digits; /* of agreement */
+  int states; /* at which the sides were compared */
 } ExpectResult;
 
 typedef VEC(ExpectResult) ExpectResults;

@@ -23,6 +23,7 @@ static Verdict proof(const Eqns *e, Expr difference) {
 
 Verdict mend_verdict(const Eqns *e, Expr lhs, Expr rhs) {
   Expr difference = expr_sub(e->g, lhs, rhs);
+  if (e->definitions) difference = expr_substitute(e->g, difference, e->definitions, expr_symbol_count(e->g) + 1, "");
   Expr closed = states_substitute(e, difference);
   return proof(e, closed);
 }
@@ -81,13 +82,17 @@ static void prepare_spot(Mender *md, Spot *p, const Site *s) {
 }
 
 /* Where every place has its tape, the work grows with the square of the formula. */
-static int is_too_large(Mender *md, SiteList sites) {
-  enum { SITES_MAX = 1000, STEPS_MAX = 1000000 };
+static int is_too_large(const Mender *md) {
+  enum { PLACES_MAX = 2000, STEPS_MAX = 1000000 };
+  const Ast *ast = md->m->ast;
+  AstId left = md->x->lhs_ast, right = md->x->rhs_ast;
+  uint32_t places = left - ast_expr(ast, left)->first + right - ast_expr(ast, right)->first;
   Expr sides[2] = {md->x->lhs, md->x->rhs};
-  return sites.n > SITES_MAX || (uint64_t)sites.n * expr_topo(md->g, sides, 2).n > STEPS_MAX;
+  return places > PLACES_MAX || (uint64_t)places * expr_topo(md->g, sides, 2).n > STEPS_MAX;
 }
 
-static void prepare_spots(Mender *md, SiteList sites) {
+static void prepare_spots(Mender *md) {
+  SiteList sites = sites_of(md->m, md->x);
   md->spots = ARENA_ARRAY(md->arena, Spot, sites.n + 1);
   md->nspots = sites.n;
   Expr *values = ARENA_ARRAY(md->arena, Expr, sites.n + 1);
@@ -161,11 +166,10 @@ Mend mend_find(const Eqns *e, const Expect *x) {
   md.stand_in = expr_declare(e->g, SYM_LOCAL, 0, name, SIGN_UNKNOWN);
   md.solver = states_new(e);
   Mend nowhere = {.caret = ast_expr(m->ast, x->rhs_ast)->span};
-  SiteList sites = sites_of(m, x);
-  if (is_too_large(&md, sites)) return nowhere;
+  if (is_too_large(&md)) return nowhere;
   while (md.nstates < FEW)
     if (!mend_add_state(&md)) return nowhere;
-  prepare_spots(&md, sites);
+  prepare_spots(&md);
   mend_guess_local(&md);
   const Guess *best = best_guess(&md);
   if (!best) {

@@ -9,6 +9,7 @@
 #define COST_POWER 1.2
 #define COST_EXTRA 1.5  /* something that should not be there */
 #define COST_INVERSE 1.6
+#define COST_FUNCTION 1.7
 #define COST_NAME 1.8
 #define COST_SCALE 2.0
 #define COST_ARGUMENT 2.4
@@ -51,27 +52,36 @@ static void try_sign(Mender *md, Spot *p) {
 
 /* --- numbers --- */
 
-static void try_number(Mender *md, Spot *p, Num n) {
-  if (num_equal(n, p->ast->number)) return;
+/* The number written at a place, alone or with a unit. */
+static const AstExpr *number_at(const Mender *md, const Spot *p) {
+  const AstExpr *x = p->ast->kind == AST_UNIT ? ast_expr(md->m->ast, p->ast->a) : p->ast;
+  return x->kind == AST_NUM && num_is_exact(x->number) && !num_is_zero(x->number) ? x : NULL;
+}
+
+static void try_number(Mender *md, Spot *p, Num was, Num n) {
+  if (num_equal(n, was)) return;
+  Num ratio = num_div(n, was);
   long double v[FEW];
-  for (int i = 0; i < FEW; i++) v[i] = (long double)num_value(n);
+  for (int i = 0; i < FEW; i++) v[i] = p->written[i] * (long double)num_value(ratio);
   if (!mend_holds(md, p, v)) return;
   const char *text = mend_spot_text(md, p);
-  Expr with = expr_num(md->g, n);
-  if (num_is_one(n) && p->site->role == SITE_FACTOR)
-    mend_guess(md, p, with, COST_SLIP, p->site->span, arena_printf(md->arena, "the factor `%s` should not be there", text));
-  else
-    mend_guess(md, p, with, COST_SLIP, p->site->span, arena_printf(md->arena, "`%s` should be `%s`", text, mend_expr_text(md, with)));
+  Expr with = expr_scale(md->g, ratio, p->value), number = expr_num(md->g, n);
+  const char *edit, *n_text = mend_expr_text(md, number);
+  if (p->ast->kind == AST_UNIT) edit = arena_printf(md->arena, "`%s` should be `%s [%s]`", text, n_text, p->ast->unit.text);
+  else if (num_is_one(n) && p->site->role == SITE_FACTOR) edit = arena_printf(md->arena, "the factor `%s` should not be there", text);
+  else edit = arena_printf(md->arena, "`%s` should be `%s`", text, n_text);
+  mend_guess(md, p, with, COST_SLIP, p->site->span, edit);
 }
 
 static void try_numbers(Mender *md, Spot *p) {
-  if (p->ast->kind != AST_NUM || !num_is_exact(p->ast->number)) return;
-  Num n = p->ast->number, two = num_int(2), one = num_int(1);
+  const AstExpr *x = number_at(md, p);
+  if (!x) return;
+  Num n = x->number, two = num_int(2), one = num_int(1);
   Num near[] = {num_add(n, one), num_sub(n, one), num_mul(n, two), num_div(n, two)};
-  for (int i = 1; i <= 9; i++) try_number(md, p, num_int(i));
-  for (int i = 2; i <= 6; i++) try_number(md, p, num_ratio(1, i));
+  for (int i = 1; i <= 9; i++) try_number(md, p, n, num_int(i));
+  for (int i = 2; i <= 6; i++) try_number(md, p, n, num_ratio(1, i));
   for (int i = 0; i < 4; i++)
-    if (num_cmp(near[i], num_int(9)) > 0 || num_cmp(near[i], one) < 0) try_number(md, p, near[i]);
+    if (num_cmp(near[i], num_int(9)) > 0 || num_cmp(near[i], one) < 0) try_number(md, p, n, near[i]);
 }
 
 static void try_scales(Mender *md, Spot *p) {
@@ -166,6 +176,26 @@ static void try_functions(Mender *md, Spot *p) {
     const char *text = span_text(md->m, arg->site->span);
     const char *edit = arena_printf(md->arena, "`%s` should be `%s(%s)`", mend_spot_text(md, p), functions[k].name, text);
     mend_guess(md, p, with, COST_SLIP, p->ast->span, edit);
+  }
+}
+
+/* th for sin(th), and sin(th) for th. */
+static void try_small_angle(Mender *md, Spot *p) {
+  int is = function_index(p->ast);
+  const Spot *arg = is < 0 ? NULL : spot_of(md, p->ast->args);
+  const char *text = mend_spot_text(md, p);
+  if (arg && arg->value && mend_holds(md, p, arg->written)) {
+    const char *edit = arena_printf(md->arena, "`%s` should be `%s`", text, span_text(md->m, arg->site->span));
+    mend_guess(md, p, arg->value, COST_FUNCTION, p->ast->span, edit);
+  }
+  for (int k = 0; k < NFUNCTIONS && is_name_like(p); k++) {
+    if (functions[k].family != 1) continue;
+    long double v[FEW];
+    for (int i = 0; i < FEW; i++) v[i] = functions[k].value(p->written[i]);
+    if (!mend_holds(md, p, v)) continue;
+    Expr with = expr_fn(md->g, functions[k].op, p->value);
+    const char *edit = arena_printf(md->arena, "`%s` should be `%s(%s)`", text, functions[k].name, text);
+    mend_guess(md, p, with, COST_FUNCTION, p->ast->span, edit);
   }
 }
 
@@ -298,6 +328,7 @@ void mend_guess_local(Mender *md) {
     try_exponents(md, p);
     try_missing_power(md, p);
     try_functions(md, p);
+    try_small_angle(md, p);
     try_arguments(md, p);
     try_extra_term(md, p);
     try_extra_factor(md, p);

@@ -108,13 +108,15 @@ static long double integer_power(long double x, int e) {
   return e < 0 ? 1 / r : r;
 }
 
-static int is_velocity(const Symbol *s, const void *data) {
+static int is_motion(const Symbol *s, const void *data) {
   (void)data;
-  return s->kind == SYM_VEL || s->kind == SYM_ACC;
+  return s->kind == SYM_VEL || s->kind == SYM_ACC || s->kind == SYM_RATE;
 }
 
 static int may_divide(const Features *f, uint32_t k) {
-  return expr_op(f->g, f->feature[k]) != EX_SUM || !expr_contains(f->g, f->feature[k], is_velocity, NULL);
+  ExprOp op = expr_op(f->g, f->feature[k]);
+  int velocity = op == EX_SYM && expr_sym_of(f->g, f->feature[k])->kind == SYM_VEL;
+  return velocity || !expr_contains(f->g, f->feature[k], is_motion, NULL);
 }
 
 static Monomial build(const Features *f, const int *e, Num number) {

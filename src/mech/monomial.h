@@ -22,8 +22,8 @@ typedef struct {
   uint32_t size; /* factors; those of a denominator below a numerator count three times */
 } Monomial;
 
-/* The monomial with these values at the states; e = 0 when there is none. Sums with velocities in them
- * are not divided by: solutions of M q'' = f have no such denominators. */
+/* The monomial with these values at the states; e = 0 when there is none. Nothing is
+ * divided by accelerations or by sums with velocities: solutions of M q'' = f have no such denominators. */
 Monomial features_fit(const Features *f, const long double *values);
 
 /* The rational with a small denominator that x is, to 10 digits; 0 when there is none. */

@@ -1,5 +1,7 @@
 #include "mech/show.h"
 
+#include "sym/simplify.h"
+
 typedef struct {
   const Eqns *e;
   ExprGraph *g;
@@ -67,12 +69,19 @@ static void definitions(Text *t, const Expr *roots, uint32_t n) {
   end_block(t);
 }
 
+/* What a person would write for an entry of M or f: its short form, also where the shared one costs
+ * less to compute. Long chains keep their lets. */
+static Expr shown(const Text *t, Expr x) {
+  enum { SHORT_MAX_COORDS = 16 };
+  return t->e->n <= SHORT_MAX_COORDS ? simplify(t->g, x) : x;
+}
+
 /* Row i of M q'' as one expression. */
 static Expr mass_row(Text *t, uint32_t i) {
   const Eqns *e = t->e;
   Expr *terms = ARENA_ARRAY(e->m->arena, Expr, e->n);
   for (uint32_t j = 0; j < e->n; j++) {
-    Expr m = eqns_mass(e, i, j), a = expr_symbol(t->g, e->m->coords.at[j].a)->node;
+    Expr m = shown(t, eqns_mass(e, i, j)), a = expr_symbol(t->g, e->m->coords.at[j].a)->node;
     terms[j] = expr_mul(t->g, m, a);
   }
   return expr_add_n(t->g, terms, e->n);
@@ -96,7 +105,7 @@ static void motion(Text *t) {
   heading(t, "equations of motion");
   for (uint32_t i = 0; i < e->n; i++) {
     Expr row = mass_row(t, i);
-    equation(t, row, e->f[i], i + 1 == e->n && !m->states.n);
+    equation(t, row, shown(t, e->f[i]), i + 1 == e->n && !m->states.n);
   }
   for (uint32_t i = 0; i < m->states.n; i++)
     equation(t, expr_symbol(t->g, m->states.at[i].rate)->node, e->flow[i], i + 1 == m->states.n);
@@ -140,8 +149,8 @@ void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *o
   VEC(Expr) roots = {0};
   if (e->n) vec_push(m->arena, &roots, m->lagrangian);
   for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->momenta[i]);
-  for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->f[i]);
-  for (uint32_t i = 0; i < e->mass.n; i++) vec_push(m->arena, &roots, e->mass.at[i].e);
+  for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, shown(&t, e->f[i]));
+  for (uint32_t i = 0; i < e->mass.n; i++) vec_push(m->arena, &roots, shown(&t, e->mass.at[i].e));
   for (uint32_t i = 0; i < m->states.n; i++) vec_push(m->arena, &roots, e->flow[i]);
   if (e->energy) {
     vec_push(m->arena, &roots, e->energy);

@@ -81,6 +81,7 @@ struct Builder {
   const Define *defines;
   uint32_t ndefines;
   const AstStmt **chain; /* the scene and those it is like, oldest first; NULL-terminated */
+  int unitless;    /* no name has a unit: nothing is checked */
   AstId stand_in;  /* a node that stands for `stands_for` (see model_reresolve), or 0 */
   Expr stands_for;
 };
@@ -163,6 +164,9 @@ void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstI
  * it is; -1 when it is more, or after an error. */
 int add_outputs(Builder *b, AstId id);
 
+/* The same under a name of the caller's choice. */
+int add_outputs_as(Builder *b, AstId id, Name label);
+
 /* declare.c: the declarations of a statement. */
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data);
 SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSign sign, Dim dim);
@@ -204,6 +208,6 @@ Unit unit_of_dim(Builder *b, Dim d);
 
 /* scene.c: which statements are active (those of the effect `also` too), and the scene's contents. */
 void scene_select(Builder *b, const ModelChoice *choice);
-void scene_build(Builder *b);
+void scene_build(Builder *b, const ModelChoice *choice);
 
 #endif

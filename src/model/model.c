@@ -18,7 +18,7 @@ typedef struct {
 
 typedef struct {
   VEC(Expr) lagrangian, kinetic, potential, dissipation;
-  Span base_lagrangian; /* where the model itself gave L */
+  Span base[3]; /* where the model itself gave L, T, V */
   Dim dim;              /* of L, as far as is known */
   Span dim_span;        /* what decided that */
   VEC(UnitCheck) later;
@@ -55,15 +55,21 @@ static void check_units_of_forces(Builder *b, const Energies *en) {
   }
 }
 
-static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en) {
-  if (!effect && st->kind == STMT_LAGRANGIAN) {
-    if (en->base_lagrangian.end) {
-      diag_error(b->diags, st->span, "L is given twice");
-      diag_also(b->diags, en->base_lagrangian, "first given here; write one sum");
-      return;
-    }
-    en->base_lagrangian = st->span;
+/* The model itself gives L once: as a whole, or as kinetic and potential energy. (Effects add.) */
+static int is_first_energy(Builder *b, const AstStmt *st, Energies *en) {
+  Span *whole = &en->base[0], *own = &en->base[st->kind == STMT_LAGRANGIAN ? 0 : st->kind == STMT_KINETIC ? 1 : 2];
+  Span before = own->end ? *own : st->kind != STMT_LAGRANGIAN ? *whole : en->base[1].end ? en->base[1] : en->base[2];
+  if (!before.end) {
+    *own = st->span;
+    return 1;
   }
+  diag_error(b->diags, st->span, own->end && own != whole ? "this energy is given twice" : "L is given twice");
+  diag_also(b->diags, before, own->end ? "first given here; write one sum" : "first given here; give L, or kinetic and potential energy");
+  return 0;
+}
+
+static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en) {
+  if (!effect && st->kind != STMT_DISSIPATION && !is_first_energy(b, st, en)) return;
   b->m->lagrangian_span = span_join(b->m->lagrangian_span, st->span);
   if (!effect || !b->m->lagrangian_span.end) b->m->lagrangian_span = st->span;
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
@@ -143,6 +149,13 @@ static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) 
   else add_forces(b, st->lhs, st->rhs, &point, &f, en);
 }
 
+/* A value given to a symbol: a coordinate, a state, or the rate of one, declared in `unit`. */
+static Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit) {
+  Unit u = *unit;
+  u.dim = b->dims.at[target]; /* a rate's unit is per second: the same factor */
+  return values_in(b, resolve(b, id, IN_DYNAMICS, effect), ast_expr(b->ast, id)->span, &u);
+}
+
 /* The value on the left of a flow says which state is meant: its rate. */
 static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   const AstExpr *l = ast_expr(b->ast, st->lhs);
@@ -164,9 +177,9 @@ static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   if (!of.e) return;
   State *z = &b->m->states.at[expr_sym_of(b->g, of.e)->index];
   if (z->flow) diag_error(b->diags, st->span, "the flow of `%s` is given twice", z->name);
-  Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
+  Value v = resolve_for(b, st->rhs, effect, z->rate, &z->unit);
   if (v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, and a number is wanted here", shape_text(b, v.n));
-  z->flow = v.e ? v.e : expr_int(b->g, 0);
+  z->flow = v.e ? v.e : expr_int(b->g, 0); /* reported */
 }
 
 static void add_expect(Builder *b, const AstStmt *st, Name effect) {
@@ -189,19 +202,25 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
 }
 
 static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
-  Value target = resolve(b, st->lhs, IN_DYNAMICS, effect), v = resolve(b, st->rhs, IN_DYNAMICS, effect);
-  if (!target.e || !v.e) return;
+  Value target = resolve(b, st->lhs, IN_DYNAMICS, effect);
+  if (!target.e) return;
+  for (uint32_t k = 0; k < (target.n ? target.n : 1); k++) {
+    SymKind kind = expr_op(b->g, target.at[k]) == EX_SYM ? expr_sym_of(b->g, target.at[k])->kind : SYM_LOCAL;
+    if (kind == SYM_COORD || kind == SYM_VEL || kind == SYM_STATE) continue;
+    diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "an event can set a coordinate, a velocity or a state");
+    return;
+  }
+  SymId sym = expr_sym_id(b->g, target.e);
+  uint32_t i = expr_sym_of(b->g, target.e)->index;
+  const Unit *unit = expr_sym_of(b->g, target.e)->kind == SYM_STATE ? &b->m->states.at[i].unit : &b->m->coords.at[i].unit;
+  Value v = resolve_for(b, st->rhs, effect, sym, unit);
+  if (!v.e) return;
   if (target.n != v.n) {
     diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, target.n),
                shape_text(b, v.n));
     return;
   }
   for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
-    SymKind kind = expr_op(b->g, target.at[k]) == EX_SYM ? expr_sym_of(b->g, target.at[k])->kind : SYM_LOCAL;
-    if (kind != SYM_COORD && kind != SYM_VEL && kind != SYM_STATE) {
-      diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "an event can set a coordinate, a velocity or a state");
-      return;
-    }
     Action a = {expr_sym_id(b->g, target.at[k]), v.at[k]};
     vec_push(b->arena, &ev->actions, a);
   }
@@ -376,17 +395,18 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   return b;
 }
 
-/* A model in which nothing has a unit is not checked, and time then has none either. */
-static void forget_time_without_units(Builder *b) {
+/* A model in which no name has a unit is not checked, and time then has none either. */
+static void find_units(Builder *b) {
   for (uint32_t i = 0; i < b->active.n; i++)
     if (b->active.at[i].stmt->unit.n) return;
+  b->unitless = 1;
   b->dims.at[b->m->time] = DIM_UNKNOWN;
 }
 
 Model *model_build(Ast *ast, const ModelChoice *choice) {
   Builder *b = builder_new(ast, choice);
   scene_select(b, choice);
-  forget_time_without_units(b);
+  find_units(b);
   each_active(b, declare_statement, NULL);
   check_defines(b);
   Energies en = {0};
@@ -395,6 +415,6 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   apply_unused_lets(b);
   each_active(b, observe, NULL);
   check_whole(b);
-  scene_build(b);
+  scene_build(b, choice);
   return ast->diags->errors ? NULL : b->m;
 }

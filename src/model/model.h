@@ -155,8 +155,14 @@ SceneList model_scenes(const Ast *ast);
 /* The effects that no scene uses. */
 EffectList model_unused_effects(const Ast *ast);
 
-/* The effects that contain an expectation; NULL is among them when one stands outside of effects. */
+/* The effects that contain an expectation; first NULL, when one stands outside of effects. */
 EffectList model_expecting_effects(const Ast *ast);
+
+/* An output that the command line asks for, and the name of its column. */
+typedef struct {
+  AstId expr;
+  Name name;
+} Asked;
 
 /* What to build a model for. */
 typedef struct {
@@ -165,6 +171,8 @@ typedef struct {
   int bare;          /* no scene at all: no effect but `also` is on */
   const Define *defines;
   uint32_t ndefines;
+  const Asked *asked; /* outputs besides the scene's own */
+  uint32_t nasked;
 } ModelChoice;
 
 /* Builds the model. NULL when there were errors; they are in ast->diags, all of them. */

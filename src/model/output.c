@@ -103,3 +103,14 @@ int add_outputs(Builder *b, AstId id) {
   Unit unit = output_unit(b, e, p.primes, v.dim);
   return add_one(b, intern(b->ast->names, text), span, unit, v.e);
 }
+
+int add_outputs_as(Builder *b, AstId id, Name label) {
+  Target p = read_target(b, id);
+  const Entity *e = named(b, &p);
+  if (e && e->ndims && !p.indices && e->kind != ENT_NONE) return add_outputs(b, id);
+  Value v = resolve(b, id, IN_OBSERVE, NULL);
+  Span span = ast_expr(b->ast, id)->span;
+  if (!v.e) return -1;
+  if (v.n) return add_value(b, label, 0, NULL, span, &v);
+  return add_one(b, label, span, output_unit(b, e, p.primes, v.dim), v.e);
+}

@@ -174,6 +174,7 @@ static int run(Eval *ev) {
     else if (!ev->open[i - ev->first]) {
       Value v = operands_fit(ev, x) ? finite_value(ev, x, node_value(ev, i)) : FAILED;
       if (ev->waiting) return 0;
+      if (b->unitless) v.dim = DIM_UNKNOWN;
       *value_of(ev, i) = v;
     }
     /* The end of a body: once more, or on to its sum. */

@@ -33,16 +33,18 @@ EffectList model_unused_effects(const Ast *ast) {
   return (EffectList){unused.at, unused.n};
 }
 
+/* Blocks nest at most as deep as the parser lets them. */
+static int contains_expect(const AstStmt *list) {
+  for (const AstStmt *s = list; s; s = s->next)
+    if (s->kind == STMT_EXPECT || (s->kind == STMT_FOR && contains_expect(s->body))) return 1;
+  return 0;
+}
+
 EffectList model_expecting_effects(const Ast *ast) {
   VEC(Name) names = {0};
-  int outside = 0;
-  for (const AstStmt *s = ast->first; s; s = s->next) {
-    outside |= s->kind == STMT_EXPECT;
-    int inside = 0;
-    for (const AstStmt *x = s->kind == STMT_EFFECT ? s->body : NULL; x; x = x->next) inside |= x->kind == STMT_EXPECT;
-    if (inside && s->name) vec_push(ast->arena, &names, s->name);
-  }
-  if (outside) vec_push(ast->arena, &names, NULL);
+  if (contains_expect(ast->first)) vec_push(ast->arena, &names, NULL);
+  for (const AstStmt *s = ast->first; s; s = s->next)
+    if (s->kind == STMT_EFFECT && s->name && contains_expect(s->body)) vec_push(ast->arena, &names, s->name);
   return (EffectList){names.at, names.n};
 }
 
@@ -465,7 +467,7 @@ static void default_outputs(Builder *b) {
   vec_push(b->arena, &sc->outputs, o);
 }
 
-void scene_build(Builder *b) {
+void scene_build(Builder *b, const ModelChoice *choice) {
   Scene *sc = &b->m->scene;
   sc->t1 = 10;
   for (const AstStmt **s = b->chain; *s; s++) {
@@ -473,4 +475,5 @@ void scene_build(Builder *b) {
     if ((*s)->doc) sc->doc = (*s)->doc;
   }
   if (!sc->outputs.n) default_outputs(b);
+  for (uint32_t i = 0; i < choice->nasked; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
 }

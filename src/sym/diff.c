@@ -126,7 +126,7 @@ static Expr name_sum(ExprGraph *g, const char *before, Name name, const char *af
   int n = snprintf(room, sizeof room, "%s%s%s", before, name, after);
   const char *text = n < (int)sizeof room ? room : arena_printf(g->arena, "%s%s%s", before, name, after);
   Name full = intern(g->names, text);
-  return expr_def(g, full, body);
+  return expr_def_fresh(g, full, body);
 }
 
 /* --- forward --- */
@@ -162,7 +162,7 @@ void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed,
       StrBuf b = strbuf(g->arena);
       sb_printf(&b, "%s%s", expr_def_name(g, e), suffix);
       Name name = intern(g->names, sb_text(&b));
-      sum = expr_def(g, name, sum);
+      sum = expr_def_fresh(g, name, sum);
     }
     expr_map_set(dot, e, sum);
   }

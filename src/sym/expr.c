@@ -135,6 +135,39 @@ Expr expr_def(ExprGraph *g, Name name, Expr body) {
   return make_named(g, EX_DEF, &body, 1, name);
 }
 
+/* The entry of (name, body), new when it is not there. */
+static Named *named_entry(ExprGraph *g, Name name, Expr body) {
+  if (2 * g->named.n >= g->named_cap) {
+    g->named_cap = g->named_cap ? 2 * g->named_cap : 64;
+    g->named_table = ARENA_ARRAY(g->arena, uint32_t, g->named_cap);
+    for (uint32_t k = 0; k < g->named.n; k++) {
+      uint32_t i = hash_parts(EX_DEF, &g->named.at[k].body, 1, g->named.at[k].name) & (g->named_cap - 1);
+      while (g->named_table[i]) i = (i + 1) & (g->named_cap - 1);
+      g->named_table[i] = k + 1;
+    }
+  }
+  uint32_t i = hash_parts(EX_DEF, &body, 1, name) & (g->named_cap - 1);
+  for (; g->named_table[i]; i = (i + 1) & (g->named_cap - 1)) {
+    Named *n = &g->named.at[g->named_table[i] - 1];
+    if (n->name == name && n->body == body) return n;
+  }
+  vec_push(g->arena, &g->named, ((Named){.name = name, .body = body}));
+  g->named_table[i] = g->named.n;
+  return &g->named.at[g->named.n - 1];
+}
+
+Expr expr_def_fresh(ExprGraph *g, Name name, Expr body) {
+  ExprOp op = expr_op(g, body);
+  if (op == EX_NUM || op == EX_SYM || op == EX_DEF) return body;
+  Expr known = named_entry(g, name, body)->def;
+  if (known) return known;
+  uint32_t k = ++named_entry(g, name, 0)->count;
+  Name own = k == 1 ? name : intern(g->names, arena_printf(g->arena, "%s_%u", name, k));
+  Expr def = make_named(g, EX_DEF, &body, 1, own);
+  named_entry(g, name, body)->def = def;
+  return def;
+}
+
 /* --- inspection --- */
 
 ExprOp expr_op(const ExprGraph *g, Expr e) { return (ExprOp)g->nodes.at[e].op; }

@@ -70,6 +70,8 @@ Expr expr_int(ExprGraph *g, int64_t n);
 SymId expr_declare(ExprGraph *g, SymKind kind, uint32_t index, Name name, ExprSign sign);
 uint32_t expr_symbol_count(const ExprGraph *g);
 const Symbol *expr_symbol(const ExprGraph *g, SymId id);
+/* The same under a name that no other definition has: name, name_2, name_3 ... in order of asking. */
+Expr expr_def_fresh(ExprGraph *g, Name name, Expr body);
 /* The definition `name = body`. Leaves are not worth a name: they are returned as they are. */
 Expr expr_def(ExprGraph *g, Name name, Expr body);
 

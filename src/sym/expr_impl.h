@@ -17,6 +17,13 @@ typedef struct {
   uint32_t next;
 } Contribution;
 
+/* A definition by the name it was asked for. body 0: counts how often the name was given away. */
+typedef struct {
+  Name name;
+  Expr body, def;
+  uint32_t count;
+} Named;
+
 struct ExprGraph {
   Arena *arena;
   Interner *names;
@@ -32,6 +39,8 @@ struct ExprGraph {
   ExprMap work; /* scratch of passes that do not call each other: substitution, derivatives */
   Expr *found, *spare; /* scratch of expr_topo, used again */
   uint32_t found_cap, spare_n;
+  VEC(Named) named;          /* definitions by name asked for and body: see expr_def_fresh */
+  uint32_t *named_table, named_cap;
   Expr zero, one, minus_one;
 };
 

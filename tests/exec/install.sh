@@ -82,7 +82,7 @@ check "LAG_HOME says where the runtime is" by_home
 
 # ---- the man page names every command and option that lagc's own help does ----
 undocumented() {
-  { "$LAGC" help; for c in check derive emit header build run; do "$LAGC" help "$c"; done; } |
+  { "$LAGC" help; for c in check derive emit header build run plot animate; do "$LAGC" help "$c"; done; } |
     grep -o -e '--[a-z][a-z-]*' -e '^  lagc [a-z]*' | sed 's/^  lagc //; s/^--//; s/-/\\-/g' | LC_ALL=C sort -u |
     while read -r word; do grep -q -F -e "$word" -e "$(printf '%s' "$word" | sed 's/\\-/-/g')" src/lagc.1 || echo "lagc.1 lacks $word"; done
 }

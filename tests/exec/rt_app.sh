@@ -93,7 +93,7 @@ ok "input held constant" sh -c "./sim drop wind=9.81 --json | grep -q '\"y\": 1[
 ok "--opt=value and two words" sh -c './sim swing --tol=1e-10 -o t1.csv --quiet && ./sim swing --tol 1e-10 -o t2.csv --quiet && cmp t1.csv t2.csv'
 ok "method with options" sh -c './sim swing --method "rk4(step=0.01)" | grep -q "rk4(step=0.01)"'
 ok "scene's method and step" sh -c './sim fixed | grep -q "rk4(step=0.001)"'
-ok "--method help" sh -c './sim --method help | grep -q "rk45.*Dormand"'
+ok "--method help" sh -c './sim --method help | grep -q "verlet6 *order  6, dense  6, fixed step, symplectic, symmetric; separable"'
 ok "--help" sh -c './sim --help | grep -q -- --save-state'
 
 # --- mistakes
@@ -108,6 +108,7 @@ ok "empty span" says 2 "nothing to compute" --until 0
 ok "bad every" says 2 "must be positive" --every 0
 ok "unknown option" says 2 "did you mean --method?" --methd rk4
 ok "unknown method lists methods" says 2 "rk4 " --method rk9
+ok "method that does not fit" says 2 "rk45 and dop853 can integrate it" drop --method verlet
 ok "unknown option of a method" says 2 "no option" --method "rk4(stp=1)"
 ok "unknown scene says how to build it" says 2 "lagc run models/rt_sim.lag workshop" workshop
 ok "effect that is not built in" says 2 "lagc run models/rt_sim.lag drop" drop moon.c=1
@@ -141,6 +142,10 @@ for cut in 0.125 1.5 2 3.875; do
   ok "rk4 with events, cut at $cut" two_parts $cut drop --method "rk4(step=0.01)"
   ok "rk45 and monitors, cut at $cut" two_parts $cut swing --tol 1e-8 l=1.7 --method rk45
   ok "rk4, cut at $cut" two_parts $cut fixed th=20
+  ok "dop853 with events, cut at $cut" two_parts $cut drop --method dop853
+  for m in symplectic_euler verlet verlet4 verlet6 verlet8; do
+    ok "$m, cut at $cut" two_parts $cut fixed th=20 --method "$m(step=0.01)"
+  done
 done
 ok "backwards, in two parts" sh -c './sim swing --until -2 -o w.csv --quiet && ./sim swing --until -1 -o 1.csv --quiet --save-state s &&
   ./sim --resume s --until -2 -o 2.csv --quiet && sed 1d 2.csv | cat 1.csv - | cmp - w.csv'
@@ -171,5 +176,17 @@ ok "svg" status 0 swing --svg p.svg
 ok "svg is closed and has both panels" sh -c 'tail -1 p.svg | grep -q "</svg>" && grep -q "\[deg\]" p.svg && grep -q "\[J\]" p.svg'
 ok "svg escapes names" grep -q "E &quot;total&quot;" p.svg
 ok "one against the other" status 0 fixed --svg q.svg --plot-x th --plot-y "th'"
+ok "html" status 0 swing --html a.html --points th,th
+ok "html says what it shows" sh -c 'grep -q "^\"rods\": true.*\"names\": \[\[\"th\", \"th\"\]\]" a.html && tail -1 a.html | grep -q "</html>"'
+ok "names with commas and quotes" status 0 swing --html b.html --points 'E "total", T+V,E "total", T+V;E "total", T+V,E "total", T+V' --no-rods
+ok "are escaped in a script" sh -c 'grep -qF "[\"E \\u0022total\\u0022, T+V\", " b.html'
+ok "html of what points?" says 2 "add --points" swing --html c.html
+ok "points of what?" says 2 "add it" swing --points th,th
+ok "a point that is no output" says 2 "no output is named tt; did you mean t?" swing --html c.html --points th,tt
+ok "half a point" says 2 "two names of outputs" swing --html c.html --points th
+ok "points in two units" says 2 "needs one unit" swing --html c.html --points 't,th'
+ok "html that cannot be written is said before the run" says 2 "cannot write" fixed --until 1e9 --html none/x.html --points th,th
+ok "a failing run leaves its animation up to there" sh -c './sim wall --html d.html --points y,y >/dev/null 2>&1; [ $? = 3 ] && grep -q "</html>" d.html'
+ok "nothing is left after mistakes" sh -c '! ls c.html none ./*.part 2>/dev/null'
 ok "sketch" sh -c './sim swing --sketch --quiet | grep -q "t \[s\]"'
 echo "1..$n"

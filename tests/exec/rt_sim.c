@@ -109,7 +109,7 @@ static int pend_observe(double t, const double *q, const double *v, const double
 }
 
 static const lag_model pendulum = {.abi = LAG_ABI, .real_size = sizeof(double), .name = "pendulum", .doc = "", .effects = "",
-    .flags = LAG_CONSERVES_ENERGY, .nq = 1, .np = 2, .q = pend_q, .p = pend_p, .accel = pend_accel, .energy = pend_energy};
+    .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 1, .np = 2, .q = pend_q, .p = pend_p, .accel = pend_accel, .energy = pend_energy};
 
 static void pend_params(double *p, const unsigned char *fixed)
 {

@@ -1,6 +1,6 @@
 /* Fuzzing the whole way: any bytes are parsed, and every scene, and every effect that no scene uses,
- * is derived, lowered, and written as C, text and LaTeX. Nothing may crash, leak, take more than its
- * memory limit, or make a program that prog_verify refuses; a model that is not built says why.
+ * is derived, lowered, and written as C, header, text and LaTeX, its expectations judged. Nothing may
+ * crash, leak, take more than its memory limit, or make a program that prog_verify refuses; a model that is not built says why.
  *
  *   clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz/fuzz_compile.c LIBLAGC -o fuzz
  *   ./fuzz -dict=tests/fuzz/lag.dict -timeout=10 tests/fuzz/corpus/compile
@@ -17,6 +17,7 @@
 #include "mech/show.h"
 #include "ir/lower.h"
 #include "mech/eqns.h"
+#include "mech/expect.h"
 #include "model/model.h"
 #include "syntax/parse.h"
 
@@ -49,6 +50,18 @@ static void compile(Ast *ast, const char *scene, Name also) {
   if (e) write_everything(ast->arena, e);
 }
 
+/* The expectations of the model, or of one effect. */
+static void judge(Ast *ast, Name effect) {
+  ModelChoice choice = {.bare = 1, .also = effect};
+  ExpectResults results = {0};
+  Model *m = model_build(ast, &choice);
+  Eqns *e = m ? eqns_derive(m) : NULL;
+  if (!e) return;
+  expects_check(e, effect, 0, &results);
+  StrBuf out = strbuf(ast->arena);
+  expects_print(&results, ast->sources, &out);
+}
+
 static void run(Arena *a, const uint8_t *data, size_t size) {
   Sources *sources = sources_new(a);
   Ast *ast = ast_new(a, interner_new(a), sources, diags_new(a, sources));
@@ -59,6 +72,8 @@ static void run(Arena *a, const uint8_t *data, size_t size) {
     for (uint32_t i = 0; i < scenes.n && i < MAX_SCENES; i++) compile(ast, scenes.at[i], NULL);
     EffectList unused = model_unused_effects(ast);
     for (uint32_t i = 0; i < unused.n && i < MAX_SCENES; i++) compile(ast, NULL, unused.at[i]);
+    EffectList where = model_expecting_effects(ast);
+    for (uint32_t i = 0; i < where.n && i < MAX_SCENES && !ast->diags->errors; i++) judge(ast, where.at[i]);
   }
   StrBuf out = strbuf(a);
   diags_print(ast->diags, &out);

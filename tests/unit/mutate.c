@@ -217,7 +217,7 @@ static void show(const Counts *c, const char *why, const Edit *e, const char *te
   printf("# %s: %s: %.*s\n", why, e->kind, (int)(end - line), line);
   StrBuf b = strbuf(r->arena);
   diags_print(r->diags, &b);
-  for (const char *s = strtok(b.n ? b.at : NULL, "\n"); s; s = strtok(NULL, "\n")) printf("#     %s\n", s);
+  for (char *s = b.n ? strtok(b.at, "\n") : NULL; s; s = strtok(NULL, "\n")) printf("#     %s\n", s);
 }
 
 static int hits(const Edit *e, const Reading *r) {

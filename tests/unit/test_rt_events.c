@@ -30,7 +30,7 @@ static const lag_method *method_at(int i)
 
 static lag_sim *sim_of(const lag_scene *scene, int i, double tol, Log *log)
 {
-  lag_sim *s = sim_with(scene, method_at(i), tol, method_at(i) == &lag_rk4, step_001);
+  lag_sim *s = sim_with(scene, method_at(i), tol, !(method_at(i)->flags & LAG_METHOD_ADAPTIVE), step_001);
   *log = (Log){0};
   lag_sim_on_event(s, note, log);
   return s;
@@ -46,16 +46,16 @@ static void the_ball_lands_at_sqrt_2h_over_g(void **state)
     assert_int_equal(lag_sim_set(s, "h", 100), 0); /* cm */
     assert_int_equal(lag_sim_advance(s, 3), LAG_OK);
     assert_int_equal(log.n, 4);
-    /* t_k = t1 (1 + 2 e + 2 e^2 + ...) */
-    double t = t1, e = 0.9;
+    /* t_k = t1 (1 + 2 e + 2 e^2 + ...); a method of order 1 does not solve a fall exactly */
+    double t = t1, e = 0.9, within = method_at(i)->order > 1 ? 1e-12 : 0.02;
     for (int k = 0; k < 4; k++) {
-      assert_close(log.t[k], t, 1e-12 * t);
+      assert_close(log.t[k], t, within * t);
       t += 2 * e * t1;
       e *= 0.9;
     }
     lag_stats st;
     lag_sim_stats(s, &st);
-    assert_true(st.energy_drift < 1e-13); /* losses at the ground are not drift */
+    assert_true(st.energy_drift < (within < 1e-6 ? 1e-13 : 0.1)); /* losses at the ground are not drift */
     lag_sim_free(s);
   }
 }
@@ -86,7 +86,7 @@ static int osc_events(ARGS, double *g, UNUSED double *w)
   return 0;
 }
 
-static const lag_model osc_ev_model = {MODEL("oscillator"), .nq = 1, .nev = 3, .q = names_q, .ev = osc_ev, .accel = osc_accel,
+static const lag_model osc_ev_model = {MODEL("oscillator"), .flags = LAG_SEPARABLE, .nq = 1, .nev = 3, .q = names_q, .ev = osc_ev, .accel = osc_accel,
     .energy = osc_energy, .events = osc_events};
 static const lag_scene osc_ev_scene = {.name = "osc", .doc = "", .model = &osc_ev_model, .start = osc_start, .t1 = 100, .has_span = 1};
 
@@ -95,6 +95,7 @@ static void events_come_in_order_and_honour_directions(void **state)
   double a = acos(0.1);
   const double t[] = {a, PI / 2, 3 * PI / 2, 2 * PI - a, 2 * PI + a, 5 * PI / 2};
   const int k[] = {2, 0, 1, 2, 2, 0};
+  const double tight[13] = {[1] = 0.05, [2] = 1e-4, [4] = 2e-9, [5] = 2e-9, [6] = 2e-11, [8] = 2e-9, [12] = 2e-9};
   (void)state;
   for (int i = 0; i < nmethods(); i++) {
     Log log;
@@ -103,7 +104,7 @@ static void events_come_in_order_and_honour_directions(void **state)
     assert_int_equal(log.n, 6);
     for (int j = 0; j < 6; j++) {
       assert_int_equal(log.k[j], k[j]);
-      assert_close(log.t[j], t[j], method_at(i) == &lag_rk45 ? 2e-11 : 2e-9);
+      assert_close(log.t[j], t[j], method_at(i) == &lag_rk45 ? 2e-11 : tight[method_at(i)->order]);
     }
     assert_int_equal(lag_sim_event_count(s, 2), 3);
     lag_sim_free(s);
@@ -136,7 +137,7 @@ static int stop_at_second(UNUSED int k, ARGS, UNUSED double *q1, UNUSED double *
 }
 
 static const lag_event zero_ev[] = {{"turn", 0}};
-static const lag_model zero_model = {MODEL("zero"), .nq = 1, .nev = 1, .q = names_q, .ev = zero_ev, .accel = osc_accel,
+static const lag_model zero_model = {MODEL("zero"), .flags = LAG_SEPARABLE, .nq = 1, .nev = 1, .q = names_q, .ev = zero_ev, .accel = osc_accel,
     .events = zero_events, .act = stop_at_second};
 static const lag_scene zero = {.name = "zero", .doc = "", .model = &zero_model, .start = osc_start, .t1 = 100, .has_span = 1};
 
@@ -145,13 +146,17 @@ static void zero_at_the_start_does_not_fire_and_stop_stops(void **state)
   (void)state;
   for (int i = 0; i < nmethods(); i++) {
     Log log;
+    double within = method_at(i)->order > 2 ? 1e-8 : 1e-4;
+    if (method_at(i)->order == 1) {
+      continue; /* its path between steps turns more than once where v does */
+    }
     lag_sim *s = sim_of(&zero, i, 1e-12, &log);
     assert_int_equal(lag_sim_advance(s, 20), LAG_STOPPED);
     assert_int_equal(log.n, 2);
-    assert_close(log.t[0], PI, 1e-8);
-    assert_close(log.t[1], 2 * PI, 1e-8);
+    assert_close(log.t[0], PI, within);
+    assert_close(log.t[1], 2 * PI, within);
     assert_true(lag_sim_time(s) == log.t[1]);
-    assert_close(lag_sim_q(s)[0], 1, 1e-8);
+    assert_close(lag_sim_q(s)[0], 1, within);
     lag_sim_free(s);
   }
 }
@@ -184,7 +189,7 @@ static void free_start(UNUSED const double *p, double *q, double *v, UNUSED doub
 }
 
 static const lag_event twin_ev[] = {{"first", 1}, {"second", 1}};
-static const lag_model twin_model = {MODEL("twin"), .nq = 1, .nev = 2, .q = names_q, .ev = twin_ev, .accel = free_accel,
+static const lag_model twin_model = {MODEL("twin"), .flags = LAG_SEPARABLE, .nq = 1, .nev = 2, .q = names_q, .ev = twin_ev, .accel = free_accel,
     .events = twin_events, .act = twin_act};
 static const lag_scene twin = {.name = "twin", .doc = "", .model = &twin_model, .start = free_start, .t1 = 10, .has_span = 1};
 
@@ -213,7 +218,7 @@ static void a_ball_coming_to_rest_is_reported(void **state)
     lag_sim *s = sim_of(&ball, i, 1e-10, &log);
     assert_int_equal(lag_sim_set(s, "e", 0.5), 0);
     assert_int_equal(lag_sim_advance(s, 3), LAG_EZENO);
-    assert_close(lag_sim_time(s), 3 * sqrt(2 / 9.81), 1e-6);
+    assert_close(lag_sim_time(s), 3 * sqrt(2 / 9.81), method_at(i)->order > 1 ? 1e-6 : 0.15);
     assert_non_null(strstr(lag_sim_message(s), "ground"));
     assert_true(lag_sim_q(s)[0] > -1e-12);
     lag_sim_free(s);

@@ -73,7 +73,7 @@ UNUSED static void kepler_exact(double t, double *y)
   y[3] = b * cos(E) * rate;
 }
 
-UNUSED static const lag_model kepler_model = {MODEL("kepler"), .flags = LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS, .nq = 2,
+UNUSED static const lag_model kepler_model = {MODEL("kepler"), .flags = LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 2,
     .q = names_q, .accel = kepler_accel, .energy = kepler_energy};
 UNUSED static const lag_scene kepler = {.name = "orbit", .doc = "", .model = &kepler_model, .start = kepler_start, .t1 = 10,
     .has_span = 1};
@@ -98,7 +98,7 @@ UNUSED static void osc_start(UNUSED const double *p, double *q, double *v, UNUSE
   v[0] = 0;
 }
 
-UNUSED static const lag_model osc_model = {MODEL("oscillator"), .flags = LAG_CONSERVES_ENERGY, .nq = 1, .q = names_q,
+UNUSED static const lag_model osc_model = {MODEL("oscillator"), .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 1, .q = names_q,
     .accel = osc_accel, .energy = osc_energy};
 UNUSED static const lag_scene osc = {.name = "osc", .doc = "", .model = &osc_model, .start = osc_start, .t1 = 10, .has_span = 1};
 
@@ -146,7 +146,7 @@ UNUSED static void ball_start(const double *p, double *q, double *v, UNUSED doub
   v[0] = 0;
 }
 
-UNUSED static const lag_model ball_model = {MODEL("ball"), .flags = LAG_CONSERVES_ENERGY, .nq = 1, .np = 3, .nev = 1,
+UNUSED static const lag_model ball_model = {MODEL("ball"), .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 1, .np = 3, .nev = 1,
     .q = names_q + 1, .p = ball_p, .ev = ball_ev, .accel = ball_accel, .energy = ball_energy, .events = ball_events, .act = ball_act};
 UNUSED static const lag_scene ball = {.name = "drop", .doc = "", .model = &ball_model, .params = ball_params,
     .start = ball_start, .t1 = 5, .has_span = 1};

@@ -1,8 +1,12 @@
 /* The simulation object: values by name, energy and monitors, inputs, and runs that are split or saved. Expected
  * values: closed forms, GSL, and the same run done in one piece. */
-#include "test_rt_models.h"
+#include "test_rt_systems.h"
 
-static const lag_option small_steps[] = {{"step", 0.01, NULL}};
+/* Steps of 0.01 where the method does not choose them. */
+static lag_sim *sim_of(const lag_scene *scene, const lag_method *m)
+{
+  return sim_with(scene, m, 1e-7, !(m->flags & LAG_METHOD_ADAPTIVE), (lag_option[]){{"step", 0.01, NULL}});
+}
 
 /* ---- values */
 
@@ -53,7 +57,7 @@ static int pushed_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
 }
 
 static const lag_var push_u[] = {{"push", "m/s^2", 1, 0, 0}};
-static const lag_model pushed_model = {MODEL("pushed"), .nq = 1, .nu = 1, .q = names_q, .u = push_u, .inputs = ramp, .accel = pushed_accel};
+static const lag_model pushed_model = {MODEL("pushed"), .flags = LAG_SEPARABLE, .nq = 1, .nu = 1, .q = names_q, .u = push_u, .inputs = ramp, .accel = pushed_accel};
 static const lag_scene pushed = {.name = "pushed", .doc = "", .model = &pushed_model, .start = osc_start, .t1 = 5, .has_span = 1};
 
 static void inputs_follow_their_formula_or_a_constant(void **state)
@@ -62,11 +66,13 @@ static void inputs_follow_their_formula_or_a_constant(void **state)
   for (int i = 0; i < lag_nmethods; i++) {
     lag_sim *a = lag_sim_new(&pushed), *b = sim_with(&pushed, lag_methods[i], 0, 0, NULL);
     assert_int_equal(lag_sim_set_method(a, lag_methods[i], NULL, 0), 0);
+    /* a force of degree 1 in t: exact but for the methods of order 1 and 2, at the default step, 5e-4 */
+    double within = lag_methods[i]->order > 2 ? 1e-12 : lag_methods[i]->order == 2 ? 1e-6 : 1e-2;
     assert_int_equal(lag_sim_set(b, "push", 0.5), 0);
     assert_int_equal(lag_sim_advance(a, 2), LAG_OK);
     assert_int_equal(lag_sim_advance(b, 2), LAG_OK);
-    assert_close(lag_sim_q(a)[0], 1 + 8.0 / 6, 1e-12);
-    assert_close(lag_sim_q(b)[0], 1 + 0.25 * 4, 1e-12);
+    assert_close(lag_sim_q(a)[0], 1 + 8.0 / 6, within);
+    assert_close(lag_sim_q(b)[0], 1 + 0.25 * 4, within);
     lag_sim_free(a);
     lag_sim_free(b);
   }
@@ -127,7 +133,7 @@ static void asking_more_often_changes_nothing(void **state)
 {
   (void)state;
   for (int i = 0; i < lag_nmethods; i++) {
-    lag_sim *a = sim_with(&ball, lag_methods[i], 1e-7, i == 1, small_steps), *b = sim_with(&ball, lag_methods[i], 1e-7, i == 1, small_steps);
+    lag_sim *a = sim_of(&ball, lag_methods[i]), *b = sim_of(&ball, lag_methods[i]);
     lag_stats sa, sb;
     assert_int_equal(lag_sim_advance(a, 4), LAG_OK);
     for (int k = 1; k <= 4000; k++) {
@@ -147,8 +153,7 @@ static void asking_more_often_changes_nothing(void **state)
 /* Saved at `cut`, loaded into another object, run to the end: bit for bit. */
 static void check_cut(const lag_scene *scene, const lag_method *m, double cut, double end)
 {
-  lag_sim *whole = sim_with(scene, m, 1e-7, m == &lag_rk4, small_steps), *first = sim_with(scene, m, 1e-7, m == &lag_rk4, small_steps);
-  lag_sim *second = sim_with(scene, m, 1e-7, m == &lag_rk4, small_steps);
+  lag_sim *whole = sim_of(scene, m), *first = sim_of(scene, m), *second = sim_of(scene, m);
   size_t n = lag_sim_save_size(first), bytes = (size_t)(2 * scene->model->nq) * sizeof(double);
   double *x = calloc(n, sizeof *x);
   lag_stats a, b;
@@ -162,7 +167,8 @@ static void check_cut(const lag_scene *scene, const lag_method *m, double cut, d
   assert_memory_equal(lag_sim_q(second), lag_sim_q(whole), bytes);
   lag_sim_stats(whole, &a);
   lag_sim_stats(second, &b);
-  assert_true(a.energy_drift == b.energy_drift && a.steps == b.steps && a.rhs_calls == b.rhs_calls && a.events == b.events);
+  assert_true(a.energy_drift == b.energy_drift && a.steps == b.steps && a.events == b.events);
+  assert_in_range(b.rhs_calls - a.rhs_calls, 0, 6); /* the state at the cut may have cost some */
   free(x);
   lag_sim_free(whole);
   lag_sim_free(first);
@@ -192,33 +198,7 @@ static void what_cannot_be_saved_says_so(void **state)
   lag_sim_free(t);
 }
 
-/* ---- against independent integrators: the double pendulum's textbook equations (unit masses and lengths) */
-
-static int double_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
-{
-  double d = q[0] - q[1], g = 9.81, s = sin(d), c = cos(d), den = 2 - c * c;
-  a[0] = (-g * 2 * sin(q[0]) + g * sin(q[1]) * c - s * (v[1] * v[1] + v[0] * v[0] * c)) / den;
-  a[1] = (s * (2 * v[0] * v[0] + v[1] * v[1] * c) + 2 * g * (sin(q[0]) * c - sin(q[1]))) / den;
-  return 0;
-}
-
-static int double_energy(ARGS, double *e, UNUSED double *w)
-{
-  double T = v[0] * v[0] + v[1] * v[1] / 2 + v[0] * v[1] * cos(q[0] - q[1]), V = -9.81 * (2 * cos(q[0]) + cos(q[1]));
-  e[0] = T + V;
-  e[1] = 2 * T + fabs(T - V);
-  return 0;
-}
-
-static void double_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
-  q[0] = 1;
-  q[1] = -0.5;
-  v[0] = v[1] = 0;
-}
-
-static const lag_model double_model = {MODEL("double"), .flags = LAG_CONSERVES_ENERGY, .nq = 2, .q = names_q, .accel = double_accel, .energy = double_energy};
-static const lag_scene double_pendulum = {.name = "double", .doc = "", .model = &double_model, .start = double_start, .t1 = 5, .has_span = 1};
+/* ---- against independent integrators */
 
 static void all_methods_agree(void **state)
 {
@@ -231,6 +211,9 @@ static void all_methods_agree(void **state)
   lag_sim_free(s);
   for (int i = 0; i < lag_nmethods + lag_gsl_nmethods; i++) {
     const lag_method *m = i < lag_nmethods ? lag_methods[i] : lag_gsl_methods[i - lag_nmethods];
+    if (m->flags & LAG_METHOD_SEPARABLE) {
+      continue;
+    }
     s = sim_with(&double_pendulum, m, 1e-11, m == &lag_rk4, (lag_option[]){{"step", 1e-3, NULL}});
     assert_int_equal(lag_sim_advance(s, 5), LAG_OK);
     for (int j = 0; j < 4; j++) {

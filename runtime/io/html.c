@@ -1,0 +1,147 @@
+/* An animation. Enters: a table of rows, and which of its columns are the points; leaves: one HTML file that needs
+ * nothing else (its page is page.html, turned into C by the Makefile). Holds: coordinates are written as whole numbers,
+ * a hundred thousandth of the largest extent each: finer than any screen. */
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#include "io/io.h"
+#include "io/page.h"
+
+enum { GRAINS = 100000, MOST_FRAMES = 2000 };
+
+static double cell(const Table *t, size_t row, int col)
+{
+  return t->data[row * (size_t)t->ncols + (size_t)col];
+}
+
+/* & < > " as HTML has them. */
+static void html_text(FILE *f, const char *s)
+{
+  for (; *s; s++) {
+    switch (*s) {
+    case '<': fputs("&lt;", f); break;
+    case '>': fputs("&gt;", f); break;
+    case '&': fputs("&amp;", f); break;
+    case '"': fputs("&quot;", f); break;
+    default: putc(*s, f);
+    }
+  }
+}
+
+/* A string inside of a script: nothing in it may look like a tag. */
+static void script_string(FILE *f, const char *s)
+{
+  putc('"', f);
+  for (; *s; s++) {
+    unsigned char c = (unsigned char)*s;
+    if (c < 0x20 || c == '"' || c == '\\' || c == '<' || c == '>' || c == '&' || c == 0x7f) {
+      fprintf(f, "\\u%04x", c);
+    } else {
+      putc(c, f);
+    }
+  }
+  putc('"', f);
+}
+
+/* The middle of all coordinates, and what one grain of them is. */
+static void choose_grain(const Table *t, const Animation *a, double *zero, double *scale)
+{
+  double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
+
+  for (size_t i = 0; i < t->nrows; i++) {
+    for (int k = 0; k < 2 * a->npoints; k++) {
+      double x = cell(t, i, a->cols[k]);
+      if (isfinite(x)) {
+        lo[k % 2] = fmin(lo[k % 2], x);
+        hi[k % 2] = fmax(hi[k % 2], x);
+      }
+    }
+  }
+  double least = fmin(lo[0], lo[1]), most = fmax(hi[0], hi[1]), extent = fmax(hi[0] - lo[0], hi[1] - lo[1]);
+  *zero = least <= most ? least / 2 + most / 2 : 0;
+  double grain = extent > 0 && isfinite(extent) ? extent / GRAINS : fmax(fabs(*zero), 1) / GRAINS;
+  *zero = nearbyint(*zero / grain) * grain; /* so that 0 stays 0 */
+  *scale = grain;
+}
+
+/* How many seconds of the model one second of watching shows: one, unless the run would be over in a blink or last for
+ * minutes; then a round number of what the page counts in that makes it some twenty seconds. */
+static double choose_speed(double span)
+{
+  static const double units[] = {31557600, 86400, 3600};
+
+  if (span == 0.0 || (span >= 1 && span <= 90)) {
+    return 1;
+  }
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+    if (span >= 2 * units[i]) {
+      return units[i] * nice_step(0, span / units[i], 20);
+    }
+  }
+  return nice_step(0, span, 20);
+}
+
+int html_frames(double span)
+{
+  double n = 60 * span / choose_speed(span);
+
+  return n < 300 ? 300 : n < MOST_FRAMES ? (int)n : MOST_FRAMES;
+}
+
+static void put_data(FILE *f, const Table *t, const Animation *a)
+{
+  size_t n = t->nrows, every = n > MOST_FRAMES ? (n + MOST_FRAMES - 2) / (MOST_FRAMES - 1) : 1;
+  double t0 = n ? cell(t, 0, 0) : 0, t1 = n ? cell(t, n - 1, 0) : 0, zero, scale;
+  double dt = n > 1 ? (double)every * (cell(t, 1, 0) - t0) : 0;
+
+  choose_grain(t, a, &zero, &scale);
+  fprintf(f, "{\"t0\": %.17g, \"dt\": %.17g, \"t1\": %.17g, \"speed\": %.6g, \"zero\": %.17g, \"scale\": %.17g,\n", t0, dt, t1,
+          choose_speed(fabs(t1 - t0)), zero, scale);
+  fprintf(f, "\"rods\": %s, \"trace\": %s, \"from\": %s, \"unit\": ", a->rods ? "true" : "false", a->trace ? "true" : "false",
+          a->from ? "true" : "false");
+  script_string(f, a->unit);
+  fputs(", \"names\": [", f);
+  for (int i = 0; i < a->npoints; i++) {
+    fputs(i ? ", [" : "[", f);
+    script_string(f, t->cols[a->cols[2 * i]].name);
+    fputs(", ", f);
+    script_string(f, t->cols[a->cols[2 * i + 1]].name);
+    putc(']', f);
+  }
+  fputs("],\n\"v\": [", f);
+  for (size_t i = 0; i < n; i = i + every < n || i == n - 1 ? i + every : n - 1) {
+    for (int k = 0; k < 2 * a->npoints; k++) {
+      double x = (cell(t, i, a->cols[k]) - zero) / scale;
+      fputs(k ? "," : i ? ",\n" : "", f);
+      if (isfinite(x)) {
+        fprintf(f, "%.0f", nearbyint(x) + 0.0);
+      } else {
+        fputs("null", f);
+      }
+    }
+  }
+  fputs("]}\n", f);
+}
+
+int html_write(const char *path, const Table *t, const char *title, const Animation *a)
+{
+  Outfile o;
+
+  if (outfile_open(&o, path)) {
+    return -1;
+  }
+  for (size_t i = 0; i < sizeof page / sizeof *page; i++) {
+    const char *mark = strstr(page[i], "@TITLE@");
+    if (strcmp(page[i], "@DATA@\n") == 0) {
+      put_data(o.f, t, a);
+    } else if (mark) {
+      fwrite(page[i], 1, (size_t)(mark - page[i]), o.f);
+      html_text(o.f, title);
+      fputs(mark + strlen("@TITLE@"), o.f);
+    } else {
+      fputs(page[i], o.f);
+    }
+  }
+  return outfile_close(&o, 1);
+}

@@ -1,0 +1,221 @@
+/* symplectic_euler, verlet, verlet4, verlet6, verlet8: kicks and drifts (composition.c) for models whose accelerations
+ * depend on t and q only. Enters: t, y; leaves: t + h, y one step later. Holds: q, v and t are sums of many small terms,
+ * and are summed with compensation (steps.h); the acceleration at the end of a step is the first of the next.
+ *
+ * A drift moves t as it moves q, so a force with explicit time is taken at the right time and keeps the order. Symplectic
+ * is the map only where the forces have a potential. Dense output is accurate to the order that the descriptor says, and
+ * is not symplectic. */
+#include "lag.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "methods/composition.h"
+#include "methods/path.h"
+#include "methods/steps.h"
+
+/* One block of doubles; x holds the arrays of n named below, then the path of path.h. */
+typedef struct Verlet {
+  double h;         /* the step, > 0 */
+  double ready;     /* F1 = f(t, y) is known */
+  double have_path; /* 1 made, -1 cannot be made, 0 not asked for yet */
+  double t0, dt;    /* the last step began at t0 and was dt long */
+  double tc;        /* what t has lost to rounding */
+  double x[];
+} Verlet;
+
+/* f = [v|a] at both ends and at a stage, y at both ends and at a stage, its increments, what y lost to rounding. */
+enum { F0, F1, FS, Y0, Y1, YS, DY, COMP, COMP1, NARRAYS };
+
+static const lag_method_option options[] = {LAG_STEP_OPTION};
+
+static size_t work_size(const lag_problem *pb)
+{
+  return sizeof(Verlet) / sizeof(double) + NARRAYS * (size_t)pb->n + lag_path_size(pb->nq);
+}
+
+static void reset(void *work, lag_problem *pb)
+{
+  Verlet *w = work;
+
+  w->ready = w->have_path = 0;
+  w->tc = 0;
+  memset(w->x + COMP * pb->n, 0, (size_t)pb->n * sizeof(double));
+}
+
+static int init(void *work, lag_problem *pb, const double *opt)
+{
+  Verlet *w = work;
+
+  w->h = lag_step_size(pb, opt[0]);
+  reset(work, pb);
+  return LAG_OK;
+}
+
+/* The increment of v by one kick. */
+static void kick(Verlet *w, const lag_problem *pb, double h, const double *f)
+{
+  double *dv = w->x + DY * pb->n + pb->nq;
+
+  for (int i = 0; i < pb->nq; i++) {
+    dv[i] += h * f[pb->nq + i];
+  }
+}
+
+/* The increment of q by one drift, and where that leads. */
+static void drift(Verlet *w, const lag_problem *pb, double h, const double *y)
+{
+  int nq = pb->nq, n = pb->n;
+  const double *comp = w->x + COMP * n;
+  double *dy = w->x + DY * n, *ys = w->x + YS * n;
+
+  for (int i = 0; i < nq; i++) {
+    ys[nq + i] = y[nq + i] + (comp[nq + i] + dy[nq + i]);
+    dy[i] += h * ys[nq + i];
+    ys[i] = y[i] + (comp[i] + dy[i]);
+  }
+}
+
+/* Adds what has been gathered to y: the result into Y1 and COMP1, from component i0 on. */
+static void add(Verlet *w, const lag_problem *pb, const double *y, int i0)
+{
+  int n = pb->n;
+  const double *comp = w->x + COMP * n, *dy = w->x + DY * n;
+  double *y1 = w->x + Y1 * n, *comp1 = w->x + COMP1 * n;
+
+  for (int i = i0; i < i0 + pb->nq; i++) {
+    comp1[i] = comp[i];
+    y1[i] = lag_sum(y[i], dy[i], &comp1[i]);
+  }
+}
+
+/* All kicks and drifts from F0 at (t, y) to F1 at (tb, Y1). */
+static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double t, double tb, const double *y, double dt)
+{
+  int n = pb->n, nq = pb->nq, last = c->stages - 1, rc;
+  double at = 0, *y1 = w->x + Y1 * n, *f = w->x + F0 * n;
+
+  memset(w->x + DY * n, 0, (size_t)n * sizeof(double));
+  for (int s = 0; s < c->stages; s++) {
+    kick(w, pb, c->kick[s] * dt, f);
+    drift(w, pb, c->drift[s] * dt, y);
+    at += c->drift[s];
+    if (s < last) {
+      f = w->x + FS * n;
+      if ((rc = lag_step_rhs(pb, t + at * dt, w->x + YS * n, f)) != 0) {
+        return rc;
+      }
+    }
+  }
+  /* Accelerations do not depend on velocities: those of the last stage will do until the last kick. */
+  memcpy(y1 + nq, w->x + YS * n + nq, (size_t)nq * sizeof(double));
+  add(w, pb, y, 0);
+  if ((rc = lag_step_rhs(pb, tb, y1, w->x + F1 * n)) != 0) {
+    return rc;
+  }
+  kick(w, pb, c->kick[c->stages] * dt, w->x + F1 * n);
+  add(w, pb, y, nq);
+  memcpy(w->x + F1 * n, y1 + nq, (size_t)nq * sizeof(double));
+  pb->bad_index = lag_not_finite(n, y1);
+  return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, tb) : LAG_OK;
+}
+
+static int step(const lag_composition *c, void *work, lag_problem *pb, double *t, double *y)
+{
+  Verlet *w = work;
+  int n = pb->n, rc;
+  size_t bytes = (size_t)n * sizeof(double);
+  double dt = w->h * pb->dir, tc = w->tc, tb = lag_sum(*t, dt, &tc);
+
+  pb->bad_index = -1;
+  if (tb == *t) {
+    return lag_step_failed(pb, LAG_ESTEP, *t);
+  }
+  if (w->ready == 0.0 && (rc = lag_step_rhs(pb, *t, y, w->x + F1 * n)) != 0) {
+    return rc;
+  }
+  memcpy(w->x + F0 * n, w->x + F1 * n, bytes);
+  w->ready = w->have_path = 0; /* until this step has gone well */
+  if ((rc = compose(c, w, pb, *t, tb, y, dt)) != 0) {
+    return rc;
+  }
+  memcpy(w->x + Y0 * n, y, bytes);
+  memcpy(y, w->x + Y1 * n, bytes);
+  memcpy(w->x + COMP * n, w->x + COMP1 * n, bytes);
+  w->ready = 1;
+  w->t0 = *t;
+  w->dt = tb - *t;
+  w->tc = tc;
+  *t = tb;
+  return LAG_OK;
+}
+
+/* The path of symplectic Euler, whose q and v do not fit together better than O(h): cubic in q, and v as its derivative, so
+ * that what falls onto something meets it falling. */
+static void cubic(int nq, const StepEnds *e, double s, double *y)
+{
+  double h = e->h, r = 1 - s;
+
+  for (int i = 0; i < nq; i++) {
+    double d = e->y1[i] - e->y0[i], a = h * e->y0[nq + i] - d, b = d - h * e->y1[nq + i];
+    y[i] = e->y0[i] + s * (d + r * (r * a + s * b));
+    y[nq + i] = (d + r * (1 - 3 * s) * a + s * (2 - 3 * s) * b) / h;
+  }
+}
+
+static void dense(const lag_composition *c, void *work, lag_problem *pb, double t, double *y)
+{
+  Verlet *w = work;
+  int n = pb->n;
+  StepEnds ends = {w->t0, w->dt, w->x + Y0 * n, w->x + F0 * n, w->x + Y1 * n, w->x + F1 * n};
+  double *path = w->x + NARRAYS * n;
+
+  if (c->order == 1) {
+    cubic(pb->nq, &ends, (t - w->t0) / w->dt, y);
+    return;
+  }
+  if (c->refine > 0 && w->have_path == 0.0) {
+    w->have_path = lag_path_make(path, pb, &ends, c->refine) == 0 ? 1 : -1;
+  }
+  lag_path_at(path, pb, &ends, w->have_path > 0 ? c->refine : 0, (t - w->t0) / w->dt, y);
+}
+
+#define SPLITTING (LAG_METHOD_SYMPLECTIC | LAG_METHOD_SEPARABLE | LAG_METHOD_NO_STATES)
+
+/* name, table, order, order of dense output, flags, words */
+#define METHODS(X)                                                                                                   \
+  X(symplectic_euler, lag_compose_euler, 1, 1, SPLITTING, "kick, drift; one force a step. DOI 10.1017/S0962492902000144") \
+  X(verlet, lag_compose_verlet, 2, 2, SPLITTING | LAG_METHOD_SYMMETRIC,                                              \
+    "Stoermer-Verlet as kick, drift, kick; one force a step. DOI 10.1103/PhysRev.159.98")                            \
+  X(verlet4, lag_compose_verlet4, 4, 4, SPLITTING | LAG_METHOD_SYMMETRIC,                                            \
+    "Blanes-Moan SRKN 6b; 6 forces a step. DOI 10.1016/S0377-0427(01)00492-7")                                       \
+  X(verlet6, lag_compose_verlet6, 6, 6, SPLITTING | LAG_METHOD_SYMMETRIC,                                            \
+    "Blanes-Moan SRKN 11b; 11 forces a step. DOI 10.1016/S0377-0427(01)00492-7")                                     \
+  X(verlet8, lag_compose_verlet8, 8, 8, SPLITTING | LAG_METHOD_SYMMETRIC,                                            \
+    "Blanes-Casas-Escorihuela B19; 19 forces a step. DOI 10.1016/j.apnum.2022.07.010")
+
+#define DEFINE(id, table, p, dense_p, properties, words)                          \
+  static int step_##id(void *work, lag_problem *pb, double *t, double *y, double t_stop) \
+  {                                                                               \
+    (void)t_stop;                                                                 \
+    return step(&table, work, pb, t, y);                                          \
+  }                                                                               \
+  static void dense_##id(void *work, lag_problem *pb, double t, double *y)        \
+  {                                                                               \
+    dense(&table, work, pb, t, y);                                                \
+  }                                                                               \
+  const lag_method lag_##id = {                                                   \
+      .name = #id,                                                                \
+      .order = p,                                                                 \
+      .dense_order = dense_p,                                                     \
+      .doc = words,                                                               \
+      .flags = properties,                                                        \
+      .noptions = 1,                                                              \
+      .options = options,                                                         \
+      .work_size = work_size,                                                     \
+      .init = init,                                                               \
+      .step = step_##id,                                                          \
+      .dense = dense_##id,                                                        \
+      .reset = reset,                                                             \
+  };
+METHODS(DEFINE)

@@ -1,0 +1,183 @@
+#include "picture.h"
+
+#include <string.h>
+
+#include "cli/points.h"
+#include "syntax/parse.h"
+
+typedef struct {
+  Picture *p;
+  Ast *ast;
+  const Options *o;
+  Arena *arena;
+} Maker;
+
+/* Names of columns stay below what a simulator keeps of them. */
+static const char *column_name(Maker *k, const char *text) {
+  enum { LONGEST = 90, SHOWN = 76 };
+  size_t n = strlen(text), cut = SHOWN;
+  if (n <= LONGEST) return text;
+  while (cut && ((unsigned char)text[cut] & 0xC0) == 0x80) cut--;
+  return arena_printf(k->arena, "%.*s...#%u", (int)cut, text, k->p->asked.n + 1);
+}
+
+/* Asks for an expression; the name of its column, NULL after a mistake. `from` is the option that it stands in. */
+static const char *ask(Maker *k, const char *from, const char *text) {
+  text = text_trimmed(k->arena, text, strlen(text));
+  if (strcmp(text, "t") == 0) return text; /* every table begins with the time */
+  const Source *source = source_add(k->ast->sources, from, text, strlen(text));
+  Asked asked = {source ? parse_expression(k->ast, source) : 0, intern(k->ast->names, column_name(k, text))};
+  if (!asked.expr) return NULL;
+  vec_push(k->arena, &k->p->asked, asked);
+  return asked.name;
+}
+
+static void argument(Maker *k, const char *option, const char *value) {
+  vec_push(k->arena, &k->p->argv, arena_strdup(k->arena, option));
+  if (value) vec_push(k->arena, &k->p->argv, arena_strdup(k->arena, value));
+}
+
+/* MODEL_SCENE.suffix, or what -o says. */
+static const char *file_name(Maker *k, const char *suffix) {
+  if (k->o->output) return k->o->output;
+  const char *model = "model";
+  for (const AstStmt *s = k->ast->first; s; s = s->next)
+    if (s->kind == STMT_MODEL && s->name) model = s->name;
+  return arena_printf(k->arena, "%s_%s.%s", model, k->p->scene ? k->p->scene : model_scenes(k->ast).at[0], suffix);
+}
+
+/* --- plot --- */
+
+/* A name takes a prime as it is; anything else in parentheses. */
+static const char *rate_of(Maker *k, const char *text) {
+  int plain = 1;
+  for (const char *c = text; *c; c++)
+    if (strchr(" +-*/^()[]<>=,", *c)) plain = 0;
+  return arena_printf(k->arena, plain ? "%s'" : "(%s)'", text);
+}
+
+static int prepare_plot(Maker *k, const char **error) {
+  const Options *o = k->o;
+  const char *x = o->phase ? o->phase : o->x, *y = o->phase ? rate_of(k, o->phase) : o->y;
+  if (o->phase && (o->x || o->y)) *error = "--phase EXPR draws the rate of EXPR against it; leave out --x and --y";
+  else if (x && !y) *error = arena_printf(k->arena, "--x %s: against what? add --y EXPR", x);
+  if (*error) return 0;
+  argument(k, "--svg", file_name(k, "svg"));
+  if (x && !(x = ask(k, o->phase ? "--phase" : "--x", x))) return 0;
+  if (y && !(y = ask(k, o->phase ? "--phase" : "--y", y))) return 0;
+  if (x) argument(k, "--plot-x", x);
+  if (y) argument(k, "--plot-y", y);
+  return 1;
+}
+
+/* --- animate --- */
+
+/* The statement outside of effects that makes `name` a number; NULL when there is none. */
+static const AstStmt *find_quantity(const Ast *ast, const char *name) {
+  for (const AstStmt *s = ast->first; s; s = s->next) {
+    int counts = s->kind == STMT_COORD || s->kind == STMT_STATE || s->kind == STMT_LET || s->kind == STMT_OBSERVE;
+    if (counts && s->name && !s->dims && !s->type && strcmp(s->name, name) == 0) return s;
+  }
+  return NULL;
+}
+
+/* The model's own points, found by the names of their quantities. */
+typedef struct {
+  const char *points, *from;
+  int rods; /* they hang on each other: their places follow from other coordinates */
+} Found;
+
+static int find_pair(Maker *k, const char *x, const char *y, StrBuf *points, int *rods) {
+  const AstStmt *s = find_quantity(k->ast, x);
+  if (!s || !find_quantity(k->ast, y)) return 0;
+  sb_printf(points, "%s%s,%s", points->n ? " " : "", x, y);
+  *rods = s->kind == STMT_LET;
+  return 1;
+}
+
+/* A model with one coordinate: an angle is drawn as a rod of length one that hangs down. */
+static void find_only(Maker *k, Found *f) {
+  const AstStmt *only = NULL;
+  uint32_t n = 0;
+  for (const AstStmt *s = k->ast->first; s; s = s->next)
+    if (s->kind == STMT_COORD) {
+      only = s;
+      n++;
+    }
+  if (n != 1 || !only->name || only->dims || only->type) return;
+  f->rods = only->periodic;
+  f->points = arena_printf(k->arena, only->periodic ? "sin(%s),-cos(%s)" : "%s,0", only->name, only->name);
+}
+
+static Found find_points(Maker *k) {
+  Found f = {0};
+  StrBuf points = strbuf(k->arena);
+  if (!find_pair(k, "x", "y", &points, &f.rods))
+    for (int i = 1; find_pair(k, arena_printf(k->arena, "x%d", i), arena_printf(k->arena, "y%d", i), &points, &f.rods);) i++;
+  if (!points.n && find_pair(k, "px", "py", &points, &f.rods) && find_quantity(k->ast, "x")) f.from = "x,0";
+  if (points.n) f.points = sb_text(&points);
+  else find_only(k, &f);
+  return f;
+}
+
+/* "x1,y1 x2,y2" with each part an output of the scene; NULL after a mistake. */
+static const char *ask_points(Maker *k, const char *from, const char *text, uint32_t most, const char **error) {
+  PointTexts points = {0};
+  const char *why = NULL;
+  if (!points_split(k->arena, text, &points, &why) || points.n > most) {
+    *error = arena_printf(k->arena, "%s %s", from, why ? why : "takes one point: x,y");
+    return NULL;
+  }
+  StrBuf out = strbuf(k->arena);
+  int ok = 1;
+  for (uint32_t i = 0; i < points.n; i++) {
+    const char *x = ask(k, from, points.at[i].x), *y = ask(k, from, points.at[i].y);
+    if (x && y) sb_printf(&out, "%s%s,%s", i ? " " : "", x, y);
+    else ok = 0;
+  }
+  return ok ? sb_text(&out) : NULL;
+}
+
+static int is_quiet(const Options *o) {
+  for (uint32_t i = 0; i < o->rest.n; i++)
+    if (strcmp(o->rest.at[i], "--quiet") == 0) return 1;
+  return 0;
+}
+
+static int prepare_animate(Maker *k, const char **error) {
+  const Options *o = k->o;
+  Found f = {.points = o->points, .rods = 1};
+  if (!f.points) {
+    f = find_points(k);
+    if (!f.points) {
+      *error = "which points? the model has no x,y, no x1,y1 x2,y2 ... and no px,py; write --points 'X,Y X,Y', each two expressions";
+      return 0;
+    }
+  }
+  if (o->from) f.from = o->from;
+  int rods = (f.rods || o->from) && !o->no_rods;
+  if (!o->points && !is_quiet(o))
+    k->p->note = arena_printf(k->arena, "points %s%s%s; --points 'X,Y X,Y' takes others", f.points,
+                              rods ? ", joined by rods from " : "", !rods ? "" : f.from ? f.from : "the origin");
+  const char *points = ask_points(k, "--points", f.points, UINT32_MAX, error), *from = NULL;
+  if (!points || (f.from && rods && !(from = ask_points(k, "--from", f.from, 1, error)))) return 0;
+  argument(k, "--html", file_name(k, "html"));
+  argument(k, "--points", points);
+  if (from) argument(k, "--from", from);
+  if (!rods) argument(k, "--no-rods", NULL);
+  return 1;
+}
+
+int picture_prepare(Picture *p, Ast *ast, const Options *o, const char **error) {
+  Maker k = {p, ast, o, ast->arena};
+  int ok = 1;
+  p->scene = o->scene ? intern(ast->names, o->scene) : NULL;
+  const char *self = o->command == CMD_PLOT ? "lagc plot" : o->command == CMD_ANIMATE ? "lagc animate" : "lagc run";
+  argument(&k, self, NULL); /* what its messages begin with */
+  for (uint32_t i = 0; i < o->observe.n; i++) ok &= ask(&k, "--observe", o->observe.at[i]) != NULL;
+  if (o->command == CMD_PLOT) ok &= prepare_plot(&k, error);
+  if (o->command == CMD_ANIMATE) ok &= prepare_animate(&k, error);
+  for (uint32_t i = 0; i < o->rest.n; i++) argument(&k, o->rest.at[i], NULL);
+  vec_push(k.arena, &p->argv, NULL);
+  return ok;
+}

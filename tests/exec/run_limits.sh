@@ -1,0 +1,79 @@
+#!/bin/sh
+# Models that could take for ever, as TAP: each ends in an answer, or in a message that names a limit, within seconds.
+# (The time limit is far above what they take; without the guards they would not end today.)
+cd "$(dirname "$0")/../.." || exit 2
+: "${LAGC:=build/lagc}" "${TMP:=${TMPDIR:-/tmp}}"
+. tests/tap.sh
+dir=$TMP/run_limits.$$
+mkdir -p "$dir" || exit 2
+trap 'rm -rf "$dir"' EXIT
+
+# model NAME < statements: a file with one coordinate
+model() {
+  { printf 'model m "limits"\ncoord x\n'; cat; } >"$dir/$1.lag"
+}
+lines() { awk -v n="$1" "BEGIN { for (i = 1; i <= n; i++) $2 }"; }
+
+# answer NAME: `check` and `emit` succeed, `derive` prints less than a megabyte
+answer() {
+  for c in check emit; do
+    timeout 60 "$LAGC" $c "$dir/$1.lag" >"$dir/out" 2>"$dir/err" || { echo "$c: exit status $?"; head -c 2000 "$dir/err"; return 1; }
+  done
+  timeout 60 "$LAGC" derive "$dir/$1.lag" >"$dir/out" 2>"$dir/err" || { echo "derive: exit status $?"; return 1; }
+  [ "$(wc -c <"$dir/out")" -lt "${2:-1000000}" ] || { echo "derive prints $(wc -c <"$dir/out") bytes"; return 1; }
+}
+# limit NAME STATUS WORDS: `check` ends with that status and message
+limit() {
+  timeout 60 "$LAGC" check "$dir/$1.lag" >"$dir/out" 2>"$dir/err"
+  code=$?
+  head -c 2000 "$dir/err"
+  [ "$code" = "$2" ] && grep -q -e "$3" "$dir/err"
+}
+
+# starved NAME: with 400 MB, of the 2 GB that lagc allows itself, `check` says that there are no more
+starved() {
+  (ulimit -v 400000 && limit "$1" 2 'out of memory')
+}
+
+model powers <<'END'
+lagrangian = x'^2/2 + x^(10^9) + x^1e300 + (1 + x)^(2^62) + 0^0 + (x)^(1/3) + (-8)^(1/3)*x
+END
+check 'huge exponents, 0^0, roots of negative numbers' answer powers
+model doubled <<'END'
+function f(a) = sin(a) + cos(a)
+function g(a) = f(f(f(f(f(f(f(f(a))))))))
+lagrangian = x'^2/2 + g(g(g(g(x))))
+END
+check 'a function doubled 32 times' answer doubled
+grep -q 'too long to print' "$dir/out"
+is 'derive says what it does not print' 0 $?
+{ echo 'let a1 = x'; lines 60 'printf "let a%d = a%d*sin(a%d) + a%d\n", i + 1, i, i, i'; echo "lagrangian = x'^2/2 + a61"; } | model lets
+check 'a let doubled 60 times' answer lets
+{ echo 'let a0 = x'; lines 100000 'printf "let a%d = a%d + x\n", i, i - 1'; echo "lagrangian = x'^2/2 + a100000"; } | model chain
+check 'a chain of 100,000 lets' answer chain 10000000
+{ echo 'let a0 = x'; lines 20000 'printf "let a%d = sin(a%d) + x\n", i, i - 1'; echo "lagrangian = x'^2/2 + a20000"; } | model sines
+check 'a chain of 20,000 sines' answer sines 10000000
+{ printf "lagrangian = x'^2/2"; lines 20000 'printf " + %d*x^%d", i, i'; echo; } | model sum
+check 'a sum of 20,000 powers' answer sum 10000000
+{ printf "lagrangian = x'^2/2 + "; lines 1000 'printf "if(x > %d, ", i'; printf x; lines 1000 'printf ", %d)", i'; echo; } | model ifs
+check '1,000 choices inside each other' answer ifs
+{ lines 1500 'printf "scene s%d { start x = 1 }\neffect e%d { force x = %d }\n", i, i, i'; echo "lagrangian = x'^2/2"; } | model scenes
+check '1,500 scenes and 1,500 effects' answer scenes
+
+{ printf "lagrangian = x'^2/2 + "; lines 30000 'printf "sin("'; printf x; lines 30000 'printf ")"'; echo; } | model deep
+check '30,000 sines inside each other' starved deep
+{ echo 'function f0(a) = a*a + 1'; lines 40 'printf "function f%d(a) = f%d(f%d(a))\n", i, i - 1, i - 1'; echo "lagrangian = x'^2/2 + f40(x)"; } | model power_tower
+check 'a function applied 2^40 times' starved power_tower
+model infinite <<'END'
+lagrangian = x'^2/2 + 1e999*x
+END
+check 'a number past the range of a double' limit infinite 1 'a number here is not finite'
+model overflow <<'END'
+lagrangian = x'^2/2 + 1e300*x^(1e100)
+END
+check 'a derivative past the range of a double' limit overflow 1 'a number in the equations of motion is not finite'
+{ printf "let a = x"; lines 50000 "printf \"'\""; echo; echo "lagrangian = x'^2/2"; } | model primes
+check '50,000 primes' limit primes 1 'second derivative'
+{ lines 1000 'printf "let a%d = a%d\n", i, i % 1000 + 1'; echo "lagrangian = x'^2/2"; } | model ring
+check 'a ring of 1,000 lets' limit ring 1 'defined by itself'
+tap_end

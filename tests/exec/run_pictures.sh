@@ -1,0 +1,231 @@
+#!/bin/sh
+# lagc plot, lagc animate and run --observe: what is drawn is what the rows of the same run say. The SVG is measured; the
+# page of the animation is opened in Chromium where there is one, and its own test of the controls (#test) is run.
+. tests/tap.sh
+
+case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
+models=$(pwd)/models
+cd "$TMP" || exit 1
+
+# says STATUS WORDS ARGS...: lagc's exit status, and standard error holds the words
+says() {
+  want=$1 words=$2
+  shift 2
+  "$LAGC" "$@" >out 2>err
+  got=$?
+  cat out err
+  [ "$got" = "$want" ] && grep -qF -e "$words" err
+}
+runs() { "$LAGC" "$@" >out 2>err || { cat err; return 1; }; }
+# row N FILE: line N of a CSV file (1 is the head; $ the last), commas as spaces
+row() { sed -n "$1p" "$2" | tr ',' ' '; }
+well_formed() {
+  if command -v xmllint >/dev/null; then xmllint --noout "$1"
+  else head -n 1 "$1" | grep -q '^<svg ' && tail -n 1 "$1" | grep -qx '</svg>' && ! grep -q '<[^>]*<' "$1"; fi
+}
+
+# ---- measuring an SVG: the frame, the scale by its ticks, the points of each curve ----
+# measure FILE: "inside" or "outside"; then "first X Y" and "last X Y" of the last curve, in the units of the axes
+cat >measure.awk <<'END'
+function number(s, key) { match(s, key "=\"[-0-9.]*\""); return substr(s, RSTART + length(key) + 2, RLENGTH - length(key) - 3) + 0 }
+/^<rect x=/ { fx = number($0, "x"); fy = number($0, "y"); fw = number($0, "width"); fh = number($0, "height"); nx = ny = 0 }
+/^<text .*text-anchor="middle">/ { v = $0; gsub(/<[^>]*>/, "", v); nx++; px[nx] = number($0, "x"); vx[nx] = v + 0 }
+/^<text .*text-anchor="end">/ { v = $0; gsub(/<[^>]*>/, "", v); ny++; py[ny] = number($0, "y") - 4; vy[ny] = v + 0 }
+/^<path fill="none"/ {
+  d = $0; sub(/.* d="/, "", d); sub(/".*/, "", d); gsub(/[ML]/, " ", d)
+  n = split(d, c, " ")
+  for (i = 1; i < n; i += 2)
+    if (c[i] < fx - 0.1 || c[i] > fx + fw + 0.1 || c[i + 1] < fy - 0.1 || c[i + 1] > fy + fh + 0.1) outside++
+  points += n / 2
+}
+function x(p) { return vx[1] + (p - px[1])*(vx[nx] - vx[1])/(px[nx] - px[1]) }
+function y(p) { return vy[1] + (p - py[1])*(vy[ny] - vy[1])/(py[ny] - py[1]) }
+END {
+  print (points > 10 && !outside ? "inside" : "outside")
+  if (nx > 1 && ny > 1) print "first", x(c[1]), y(c[2]) "\nlast", x(c[n - 1]), y(c[n])
+  if (nx > 1 && ny > 1) print "scale", (px[nx] - px[1])/(vx[nx] - vx[1]), (py[1] - py[ny])/(vy[ny] - vy[1])
+}
+END
+measure() { awk -f measure.awk "$1"; }
+# near "A B" "C D" TOLERANCE
+near() {
+  echo "$1 | $2"
+  echo "$1 $2" | awk -v tol="$3" '{ for (i = 1; i <= NF/2; i++) { d = $i - $(i + NF/2); if (!(d <= tol && -d <= tol)) exit 1 } exit NF < 2 || NF % 2 }'
+}
+inside() { measure "$1" | grep -qx inside; }
+# ends FILE.svg FILE.csv COLUMN_X COLUMN_Y TOLERANCE: the curve begins and ends where the rows do
+ends() {
+  near "$(measure "$1" | sed -n 's/^first //p')" "$(row 2 "$2" | awk -v a="$3" -v b="$4" '{ print $a, $b }')" "$5" &&
+    near "$(measure "$1" | sed -n 's/^last //p')" "$(row '$' "$2" | awk -v a="$3" -v b="$4" '{ print $a, $b }')" "$5"
+}
+one_scale() { measure "$1" | awk '/^scale/ { d = $2/$3; exit !(d > 0.99 && d < 1.01) }'; }
+
+# ---- plot ----
+p=$models/pendulum.lag
+check "plot, everything against time" runs plot "$p" wide
+check "its file is MODEL_SCENE.svg, and said" grep -q 'picture in pendulum_wide.svg' out
+check "it is well-formed" well_formed pendulum_wide.svg
+check "all points are inside the frames" inside pendulum_wide.svg
+check "one panel a unit" [ "$(grep -c '^<rect x=' pendulum_wide.svg)" = 4 ]
+
+check "columns that the scene does not have" \
+  runs run "$p" wide --observe 'l*sin(th)' --observe '-l*cos(th)' --observe "(l*sin(th))'" l=2 -o rows.csv
+is "their names and units" "l*sin(th) [m],-l*cos(th) [m],(l*sin(th))' [m/s]" "$(head -n 1 rows.csv | cut -d, -f 6-)"
+is "after those of the scene" "t [s],th [rad],th' [rad/s],pull [N],energy [J]" "$(head -n 1 rows.csv | cut -d, -f 1-5)"
+
+check "a path by expressions" runs plot "$p" wide --x 'l*sin(th)' --y '-l*cos(th)' l=2 -o path.svg
+check "it is well-formed" well_formed path.svg
+check "all points are inside the frame" inside path.svg
+check "it begins and ends where the rows do" ends path.svg rows.csv 6 7 0.01
+check "a metre is as long across as it is up" one_scale path.svg
+
+check "a phase portrait" runs plot "$p" fading --phase th -o phase.svg
+runs run "$p" fading -o fading.csv
+check "it begins and ends where the rows do" ends phase.svg fading.csv 2 3 0.02
+check "its axes are named" grep -q "th' \[rad/s\]" phase.svg
+check "a phase portrait of an expression" runs plot "$p" fading --phase 'l*sin(th)' -o phase.svg
+check "its axes are named" grep -q "(l\*sin(th))' \[m/s\]" phase.svg
+
+check "one expression against time" runs plot "$models/spring.lag" --y "m/2*x'^2 + k/2*x^2 + x*1 [N]" --until 3 -o y.svg
+check "a curve with the right ends" near "$(measure y.svg | sed -n 's/^first //p')" "0 3" 0.02
+check "long expressions" runs plot "$p" --x "th + 0*(th*th*th*th*th*th*th + th*th*th*th*th + th*th*th*th*th*th*th*th*th*th*th*th*th*th)" \
+  --y "th' + 0*(th*th*th*th*th*th*th + th*th*th*th*th + th*th*th*th*th*th*th*th*th*th*th*th*th*th*th*th)*1 [Hz]" -o long.svg
+check "constants and the time" runs plot "$p" --x t --y 'g*t^2/2' --until 2 -o fall.svg
+check "the last one is g*2" near "$(measure fall.svg | sed -n 's/^last //p')" "2 19.62" 0.05
+check "the simulator's own options" runs plot "$p" wide --until 1 --method rk4 --step 1e-3 --sketch --phase th -o a.svg
+check "draw in the terminal too" grep -q 'rad/s' out
+check "in the order that one likes" runs plot "$p" --until 1 wide l=2 -o a.svg
+
+check "an unknown name, with its place" says 1 '--x:1:7: error: unknown name `thh`' plot "$p" --x 'l*sin(thh)' --y th -o none.svg
+check "shown with a caret" grep -q '\^~~' err
+check "what is no expression" says 1 '--y:1:4: error: expected `)`' plot "$p" --y '(th' -o none.svg
+check "nothing at all" says 1 'expected an expression' plot "$p" --y '' -o none.svg
+check "units that do not match" says 1 'units do not match' plot "$p" --y 'th + l' -o none.svg
+check "a condition" says 1 'is a condition, no number' run "$p" --observe 'th > 0'
+check "--x without --y" says 2 'add --y' plot "$p" --x th
+check "--phase with --x" says 2 'leave out --x and --y' plot "$p" --phase th --x th
+check "an unknown scene" says 1 'unknown scene `wied`' plot "$p" wied --phase th
+check "a value is missing" says 2 'needs a value' plot "$p" --x
+check "an effect that the scene does not use" says 1 'friction' plot "$p" wide --y 'friction.b*th' -o none.svg
+check "a folder that is not there" says 2 'cannot write' plot "$p" -o none/a.svg
+check "a value that the model does not allow" says 2 'declares l > 0' plot "$p" l=-1 -o none.svg
+check "nothing is left of all that" [ -z "$(ls none* ./*.part 2>/dev/null)" ]
+
+# ---- animate: the file ----
+a() { runs animate "$@" --quiet; }
+d=$models/double_pendulum.lag
+check "animate" runs animate "$d" --until 5
+check "its file is MODEL_SCENE.html, and said" grep -q 'animation in double_pendulum_swing.html' out
+check "the points taken are said" grep -q "points x1,y1 x2,y2, joined by rods from the origin" err
+page=double_pendulum_swing.html
+check "the page without its data is small" [ "$(sed '/^{"t0"/,/]}$/d' $page | wc -c)" -lt 40000 ]
+foreign() { grep -n -i -e 'https\{0,1\}:' -e 'src=' -e '[^a-z]url(' -e '@import' -e 'import(' -e 'fetch(' "$1"; }
+empty "it asks for nothing from elsewhere" "$(foreign $page)"
+unbalanced() {
+  for tag in html head title style body h1 canvas form button select label output noscript script span; do
+    open=$(grep -o "<$tag[ >]" "$1" | wc -l) shut=$(grep -o "</$tag>" "$1" | wc -l)
+    [ "$open" = "$shut" ] && [ "$open" != 0 ] || echo "<$tag>: $open opened, $shut closed"
+  done
+}
+empty "its tags are closed" "$(unbalanced $page)"
+not_grep() { ! grep -n -e "$1" "$2"; }
+check "nothing of the template is left" not_grep '@[A-Z]*@' $page
+
+hook() { sed -n 's/^"rods": \([a-z]*\), "trace": \([a-z]*\), "from": \([a-z]*\),.*"names": \(.*\),$/\1 \2 \3 \4/p' "$1"; }
+is "rods, no trace, from the origin" 'true false false [["x1", "y1"], ["x2", "y2"]]' "$(hook $page)"
+check "a cart" a "$models/cart_pendulum.lag" -o b.html
+is "hangs its pendulum from itself" 'true false true [["x", "0"], ["px", "py"]]' "$(hook b.html)"
+check "a planet" a "$models/kepler.lag" --trace -o b.html
+is "is on no rod" 'false true false [["x", "y"]]' "$(hook b.html)"
+check "a spring" a "$models/spring.lag" -o b.html
+is "moves along a line" 'false false false [["x", "0"]]' "$(hook b.html)"
+cat >only.lag <<'END'
+model only "One angle"
+coord th periodic
+lagrangian = th'^2/2 + cos(th)
+scene s { start th = 1; span 4 [s] }
+END
+check "one angle" a only.lag -o b.html
+is "is a rod that hangs" 'true false false [["sin(th)", "-cos(th)"]]' "$(hook b.html)"
+check "points by expressions, with spaces and signs" \
+  a "$p" --points "l*sin(th)/2, -l*cos(th)/2; 0 [m],-l  atan2(th, 1)*1 [m],l - 1 [m]" --from '0,l' --no-rods -o b.html
+is "are taken apart" 'false false false [["l*sin(th)/2", "-l*cos(th)/2"], ["0 [m]", "-l"], ["atan2(th, 1)*1 [m]", "l - 1 [m]"]]' "$(hook b.html)"
+check "one point from another" a "$p" --points 'x,y' --from '0,l' -o b.html
+is "with its rod" 'true false true [["0", "l"], ["x", "y"]]' "$(hook b.html)"
+check "at most 2000 frames" a "$p" --every 0.001 -o b.html
+is "of 20001 rows" "1820" "$(sed -n '/^"v"/,/]}$/p' b.html | wc -l)"
+
+check "no points" says 2 'no point is given' animate "$p" --points ''
+cat >two.lag <<'END'
+model two "Two coordinates without a place"
+coord a, b
+lagrangian = (a'^2 + b'^2)/2
+END
+check "which points?" says 2 'which points?' animate two.lag
+check "half a point" says 2 'each point is x,y' animate "$p" --points 'x,y l' -o none.html
+check "three numbers" says 2 'each point is x,y' animate "$p" --points 'x,y,l' -o none.html
+check "two places to begin from" says 2 'takes one point' animate "$p" --from 'x,y x,y' -o none.html
+check "an unknown name, with its place" says 1 '--points:1:1: error: unknown name `xx`' animate "$p" --points 'xx,y' -o none.html
+check "two units" says 2 'needs one unit' animate "$p" --points 'x,th' -o none.html
+check "nothing is left of all that" [ -z "$(ls none* ./*.part 2>/dev/null)" ]
+
+# ---- animate: the page in a browser ----
+for name in chromium chromium-browser google-chrome; do
+  browser=$(command -v $name) && break
+done
+if [ -z "$browser" ]; then
+  skip "the page in a browser" "no chromium"
+  tap_end
+  exit
+fi
+# visit URL: its page after its scripts ran goes to dom, what it says on the console to console
+visit() {
+  HOME=$TMP timeout 90 "$browser" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
+    --disable-component-update --disable-sync --disable-dev-shm-usage --user-data-dir="$TMP/profile" --enable-logging=stderr \
+    --window-size=900,700 --dump-dom "file://$TMP/$1" >dom 2>console
+  sed -n 's/.* data-frames="\([0-9]*\)".*/\1/p' dom | grep -q . || { tail -n 5 console; return 1; }
+}
+# the places of all points at the time in the URL
+places() { visit "$1" && sed -n 's/.* data-points="\([^"]*\)".*/\1/p' dom | tr -d '[]' | tr ',' ' '; }
+quiet_console() { ! grep -e 'CONSOLE' console; }
+frames() { sed -n 's/.* data-frames="\([0-9]*\)".*/\1/p' dom; }
+
+runs run "$d" --until 5.004 --every 0.01 --observe x1 --observe y1 -o rows.csv # t th1 th2 x2 y2 energy x1 y1
+check "the same run as rows and as a page" a "$d" --until 5.004 --every 0.01 --trace -o double.html
+at() { row "$1" rows.csv | awk '{ print $7, $8, $4, $5 }'; }
+check "it opens at t = 1.5" near "$(places 'double.html#t=1.5')" "$(at 152)" 4e-5
+check "nothing on the console" quiet_console
+is "as many frames as rows" "$(($(wc -l <rows.csv) - 1))" "$(frames)"
+between=$(echo "$(at 152) $(at 153)" | awk '{ print ($1 + $5)/2, ($2 + $6)/2, ($3 + $7)/2, ($4 + $8)/2 }')
+check "between two rows it is between them" near "$(places 'double.html#t=1.505')" "$between" 4e-5
+check "at the start" near "$(places 'double.html#t=0')" "$(at 2)" 4e-5
+check "at the end, which is off the grid" near "$(places 'double.html#t=5.004')" "$(at '$')" 4e-5
+check "after it" near "$(places 'double.html#t=99')" "$(at '$')" 4e-5
+# tried FILE: the page's own test of its controls
+tried() {
+  visit "$1#test" && grep -q '^<*.*ok - seek to the start' dom && ! grep -e '^not ok' -e '>not ok' dom &&
+    [ "$(grep -c 'ok - ' dom)" -ge 12 ] && quiet_console
+}
+check "its controls do what they say" tried double.html
+a "$models/mercury.lag" -o mercury.html
+check "a span of months" tried mercury.html
+check "is told in days" grep -q '>1 s shows 10 d<' dom
+"$LAGC" run "$models/projectile.lag" air -o rows.csv --quiet
+a "$models/projectile.lag" air --trace -o stone.html
+check "a run that an event ends" tried stone.html
+check "ends with it" near "$(places 'stone.html#t=1e3')" "$(row '$' rows.csv | awk '{ print $2, $3 }')" 1e-3
+a "$p" --until=-3 -o back.html
+check "backwards" tried back.html
+cat >odd.lag <<'END'
+model odd "Names that a page must not take for its own"
+coord x [m], y [m]
+lagrangian = (x'^2 + y'^2)/2 * 1 [kg] + 0 [J]*(x + y)/1 [m]
+scene s { start x' = 1 [m/s]; span 1e-3 [s] }
+END
+check "names with < and quotes, a span of a millisecond" a odd.lag --points 'if(x < y, 1, 0)*1 [m],y' -o odd.html
+check "open as others do" tried odd.html
+check "a point that stands still" a "$p" --points '0,0' --until 1 -o still.html
+check "opens too" tried still.html
+check "places without a value" a odd.lag --points '1 [m^2]/x,y' -o nan.html
+check "open too" visit 'nan.html#test'
+tap_end

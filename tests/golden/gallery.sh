@@ -1,0 +1,30 @@
+#!/bin/sh
+# The pictures of models/README.md are what the commands above them draw (`make gallery` draws them anew). Numbers may differ by
+# half a pixel: another C library, or another processor, rounds other digits. Text and the number of points may not.
+. tests/tap.sh
+
+# A picture as a list: each number, and each text between numbers, on a line of its own.
+parts() { sed 's/-\{0,1\}[0-9][0-9.]*/\
+&\
+/g' "$1"; }
+same_picture() {
+  parts "$1" >"$TMP/kept"
+  parts "$2" >"$TMP/fresh"
+  [ "$(wc -l <"$TMP/kept")" = "$(wc -l <"$TMP/fresh")" ] || { echo "$1 has other points or texts: make gallery"; return 1; }
+  paste "$TMP/kept" "$TMP/fresh" | awk -F '\t' '
+    $1 == $2 { next }
+    $1 ~ /^-?[0-9.]+$/ && $2 ~ /^-?[0-9.]+$/ && $1 - $2 <= 0.5 && $2 - $1 <= 0.5 { next }
+    { print "line " NR ": " $1 " became " $2 ": make gallery"; exit 1 }'
+}
+small() { [ "$(wc -c <"$1")" -lt 30000 ] && tail -n 1 "$1" | grep -qx '</svg>'; }
+
+sed -n 's/^<!-- drawn by: build\/lagc \(.*\) -o \(.*\) -->$/\2 \1/p' models/README.md >"$TMP/list"
+check "there is a gallery" [ -s "$TMP/list" ]
+while read -r picture words; do
+  # shellcheck disable=SC2086 # words of a command line
+  check "$picture is drawn" "$LAGC" $words -o "$TMP/new.svg" --quiet
+  check "$picture is up to date" same_picture "$picture" "$TMP/new.svg"
+  check "$picture is small and whole" small "$picture"
+  check "$picture is shown" grep -q -F "](${picture#models/})" models/README.md
+done <"$TMP/list"
+tap_end

@@ -1,0 +1,37 @@
+#!/bin/sh
+# Golden tests of false expectations, as TAP: `lagc check` of tests/golden/err/expect_NAME.lag fails with status 1 and
+# prints expect_NAME.expected, exactly. A new test is these two files; BLESS=1 rewrites the expectations, on purpose.
+. tests/tap.sh
+
+# The verdicts come first, then the messages.
+run() {
+  "$LAGC" check "$1" >"$TMP/out" 2>"$TMP/messages"
+  code=$?
+  cat "$TMP/messages" >>"$TMP/out"
+}
+golden() {
+  run "$1"
+  [ -z "${BLESS:-}" ] || [ "$code" != 1 ] || cp "$TMP/out" "${1%.lag}.expected"
+  [ "$code" = 1 ] || echo "exit status $code, expected 1"
+  diff -u "${1%.lag}.expected" "$TMP/out" && [ "$code" = 1 ]
+}
+for lag in tests/golden/err/expect_*.lag; do
+  check "$lag" golden "$lag"
+done
+
+allowed() { "$LAGC" check --allow-numeric tests/golden/err/expect_undecided.lag 2>&1 | grep -q 'warning: expect th'; }
+check "--allow-numeric: a warning" allowed
+check "--allow-numeric: exit status 0" "$LAGC" check --allow-numeric tests/golden/err/expect_undecided.lag
+
+if [ -n "$LAGC_CLANG" ]; then
+  same() {
+    run tests/golden/err/expect_double_pendulum.lag
+    "$LAGC_CLANG" check tests/golden/err/expect_double_pendulum.lag >"$TMP/clang" 2>"$TMP/clang_messages"
+    cat "$TMP/clang_messages" >>"$TMP/clang"
+    diff "$TMP/out" "$TMP/clang"
+  }
+  check "built by clang: the same messages" same
+else
+  skip "built by clang: the same messages" "no clang"
+fi
+tap_end

@@ -1,0 +1,251 @@
+/* Unit tests of src/ir: programs against the expressions they were lowered from, the linear solvers
+ * against elimination with full pivoting, the checker and the tidying pass. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "compile_text.h"
+
+typedef long double Real;
+
+/* ---- the checker ---- */
+
+static Slot load(Prog *p, uint32_t i) { return prog_ins(p, (Ins){.op = IR_LOAD, .array = ARR_Q, .index = i, .name = "q"}); }
+
+static void test_verify(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  Prog *p = prog_new(a);
+  Slot x = load(p, 0), y = load(p, 1), sum = prog_op(p, IR_ADD, x, y), less = prog_op(p, IR_LT, x, y);
+  Slot chosen = prog_ins(p, (Ins){.op = IR_SELECT, .a = less, .b = sum, .c = x});
+  prog_store(p, 0, 0, chosen, "out");
+  assert_null(prog_verify(p));
+  Ins good = p->ins.at[sum];
+  p->ins.at[sum].a = chosen; /* uses a later one */
+  assert_non_null(prog_verify(p));
+  p->ins.at[sum] = good;
+  p->ins.at[chosen].op = IR_MUL; /* computes with a condition */
+  assert_non_null(prog_verify(p));
+  p->ins.at[chosen] = (Ins){.op = IR_NOT, .a = x}; /* no condition */
+  assert_non_null(prog_verify(p));
+  p->ins.at[chosen] = (Ins){.op = IR_SOLVED, .a = x}; /* no solve */
+  assert_non_null(prog_verify(p));
+  p->ins.at[chosen] = (Ins){.op = IR_NEG, .a = x};
+  assert_null(prog_verify(p));
+  p->stores.at[0].slot = 1000; /* a store of nothing */
+  assert_non_null(prog_verify(p));
+  arena_free(a);
+}
+
+/* ---- value numbering and tidying ---- */
+
+static void test_numbering(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  Prog *p = prog_new(a);
+  Slot x = load(p, 0), y = load(p, 1), one = prog_num(p, num_int(1)), two = prog_num(p, num_int(2));
+  assert_int_equal(prog_num(p, num_int(0)), 0);
+  assert_int_equal(load(p, 0), x);
+  assert_int_equal(prog_op(p, IR_ADD, x, y), prog_op(p, IR_ADD, y, x));
+  assert_int_equal(prog_op(p, IR_MUL, x, y), prog_op(p, IR_MUL, y, x));
+  assert_int_not_equal(prog_op(p, IR_SUB, x, y), prog_op(p, IR_SUB, y, x));
+  assert_int_not_equal(prog_op(p, IR_DIV, x, y), prog_op(p, IR_DIV, y, x));
+  assert_int_equal(prog_op(p, IR_ADD, x, 0), x);
+  assert_int_equal(prog_op(p, IR_MUL, x, 0), 0);
+  assert_int_equal(prog_op(p, IR_MUL, one, x), x);
+  assert_int_equal(prog_op(p, IR_DIV, x, one), x);
+  assert_int_equal(prog_op(p, IR_DIV, 0, x), 0);
+  Slot minus = prog_op(p, IR_SUB, 0, x);
+  assert_int_equal(p->ins.at[minus].op, IR_NEG);
+  assert_int_equal(prog_op(p, IR_NEG, minus, 0), x);
+  Slot s = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "sin"}), c = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "cos"});
+  assert_int_not_equal(s, c);
+  assert_int_equal(prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "sin"}), s);
+  assert_int_not_equal(two, one);
+  arena_free(a);
+}
+
+static uint32_t count(const Prog *p, IrOp op) {
+  uint32_t n = 0;
+  for (Slot s = 1; s < p->ins.n; s++) n += p->ins.at[s].op == op;
+  return n;
+}
+
+static void test_tidy(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  Prog *p = prog_new(a);
+  Slot x = load(p, 0), y = load(p, 1), z = load(p, 2);
+  Slot dead = prog_op(p, IR_SQRT, z, 0);
+  (void)dead;
+  Slot d1 = prog_op(p, IR_DIV, x, y), d2 = prog_op(p, IR_DIV, z, y), two = prog_num(p, num_int(2)), d3 = prog_op(p, IR_DIV, x, two);
+  Slot d4 = prog_op(p, IR_DIV, x, z);
+  prog_store(p, 0, 0, d1, "a");
+  prog_store(p, 0, 1, d2, "b");
+  prog_store(p, 0, 2, d3, "c");
+  prog_store(p, 0, 3, d4, "d");
+  Prog *t = prog_tidy(p);
+  assert_null(prog_verify(t));
+  assert_int_equal(count(t, IR_SQRT), 0);
+  assert_int_equal(count(t, IR_DIV), 3); /* 1/y, x/2 and x/z */
+  assert_int_equal(count(t, IR_MUL), 2);
+  Real q[3] = {3, 7, 5}, out[4], *outs[1] = {out};
+  const Real *in[ARR_COUNT] = {[ARR_Q] = q};
+  assert_int_equal(prog_eval(t, in, outs), 0);
+  Real want[4] = {3.0L / 7, 5.0L / 7, 1.5L, 0.6L};
+  for (int i = 0; i < 4; i++) assert_true(fabsl(out[i] - want[i]) < 1e-18L);
+  OpCount c = prog_count(t);
+  assert_int_equal(c.div, 3);
+  assert_int_equal(c.mul, 2);
+  assert_int_equal(ops_total(c), 5);
+  arena_free(a);
+}
+
+/* A pivot that is zero, negative or not a number stops the program. */
+static void test_pivot(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  for (uint32_t positive = 0; positive < 2; positive++) {
+    Prog *p = prog_new(a);
+    Slot x = load(p, 0);
+    prog_ins(p, (Ins){.op = IR_PIVOT, .a = x, .index = positive});
+    prog_store(p, 0, 0, x, "x");
+    p = prog_tidy(p);
+    const struct { Real x; int ok[2]; } cases[] = {{1, {1, 1}}, {0, {0, 0}}, {-1, {1, 0}}};
+    for (size_t i = 0; i < 3; i++) {
+      Real q[1] = {cases[i].x}, out[1], *outs[1] = {out};
+      const Real *in[ARR_COUNT] = {[ARR_Q] = q};
+      assert_int_equal(prog_eval(p, in, outs) == 0, cases[i].ok[positive]);
+    }
+  }
+  arena_free(a);
+}
+
+/* ---- lowering ---- */
+
+static const char *const flows[] = {
+  "x + y - a*x", "x*y^2/b - 3*x + 1/7", "(x - y)/(2 + sin(x)^2)", "sin(x + y) + cos(x - y) + sin(x)*cos(y)", "cos(x) - cos(y)",
+  "sqrt(1 + x^2)*exp(-y)", "(1 + x^2)^(3/2) + (2 + y)^(-1/2) + (3 + x)^(2/5)", "x^7 - y^-3 + (x*y)^12", "atan2(y, x) + hypot(x, y)",
+  "min(x, y)*max(x, a) + abs(x) + sign(y)", "if(x > y and not (x <= a) or y == 2, x, y^2)", "tan(x) + asin(x/2) + acos(y/2) + atan(x)",
+  "sinh(x) + cosh(y) + tanh(x*y) + log(2 + x) + cbrt(y)", "(2 + x)^(y + a) + a^x", "2*x/3 - 5*y/7 + 0.1*x*y", "pi*x + 1e-30*y + 6.02e23",
+  "l1*l2 + l3^2 - l2/(3 + l1)", "x/b + y/b + 1/b - (x*y)/b", "t*x + sin(2*t)", "-x - y", "1",
+};
+
+static void test_lower(void **state) {
+  (void)state;
+  enum { N = sizeof flows / sizeof *flows };
+  Arena *a = arena_new(NULL);
+  StrBuf lag = strbuf(a);
+  sb_puts(&lag, "model m\nstate x, y\nparam a = 0.7, b = 1.3\nlet l1 = sin(x*y) + y\nlet l2 = l1^2 + x\nlet l3 = cos(l2)*l1\n");
+  for (int i = 0; i < N; i++) sb_printf(&lag, "state s%d\nflow s%d' = %s\n", i, i, flows[i]);
+  sb_puts(&lag, "flow x' = y\nflow y' = -x\n");
+  Eqns *e = equations(a, sb_text(&lag), NULL);
+  assert_non_null(e);
+  Prog *p = lower_accel(e);
+  assert_null(prog_verify(p));
+  for (int trial = 0; trial < 100; trial++) {
+    const Real *v = random_point(e);
+    Real out[N + 2], want[N + 2];
+    assert_int_equal(run_prog(e, p, v, NULL, out), 0);
+    expr_eval(e->g, e->flow, N + 2, v, want);
+    for (int i = 0; i < N + 2; i++)
+      if (!(fabsl(out[i] - want[i]) <= 1e-16L * (1 + fabsl(want[i])))) fail_msg("%s: %Lg, not %Lg", i < 2 ? "x, y" : flows[i - 2], out[i], want[i]);
+  }
+  arena_free(a);
+}
+
+/* ---- solving M q'' = f ---- */
+
+/* Elimination with full pivoting; what is solved for is exact to the conditioning of the matrix. */
+static void eliminate(Real *A, Real *b, uint32_t n, Real *x) {
+  uint32_t perm[64];
+  for (uint32_t i = 0; i < n; i++) perm[i] = i;
+  for (uint32_t k = 0; k < n; k++) {
+    uint32_t pr = k, pc = k;
+    for (uint32_t i = k; i < n; i++)
+      for (uint32_t j = k; j < n; j++)
+        if (fabsl(A[i * n + j]) > fabsl(A[pr * n + pc])) pr = i, pc = j;
+    for (uint32_t j = 0; j < n; j++) { Real t = A[k * n + j]; A[k * n + j] = A[pr * n + j]; A[pr * n + j] = t; }
+    for (uint32_t i = 0; i < n; i++) { Real t = A[i * n + k]; A[i * n + k] = A[i * n + pc]; A[i * n + pc] = t; }
+    Real t = b[k]; b[k] = b[pr]; b[pr] = t;
+    uint32_t u = perm[k]; perm[k] = perm[pc]; perm[pc] = u;
+    for (uint32_t i = k + 1; i < n; i++) {
+      Real f = A[i * n + k] / A[k * n + k];
+      for (uint32_t j = k; j < n; j++) A[i * n + j] -= f * A[k * n + j];
+      b[i] -= f * b[k];
+    }
+  }
+  for (uint32_t k = n; k-- > 0;) {
+    for (uint32_t j = k + 1; j < n; j++) b[k] -= A[k * n + j] * b[j];
+    b[k] /= A[k * n + k];
+  }
+  for (uint32_t k = 0; k < n; k++) x[perm[k]] = b[k];
+}
+
+/* n coordinates, coupled to `reach` neighbours; definite: as a sum of squares, otherwise with signs. */
+static const char *coupled_model(Arena *a, int n, int reach, int definite) {
+  StrBuf lag = strbuf(a);
+  sb_puts(&lag, "model m\ncoord q1");
+  for (int i = 2; i <= n; i++) sb_printf(&lag, ", q%d", i);
+  sb_puts(&lag, "\nlagrangian = 0");
+  for (int i = 1; i <= n; i++) {
+    sb_printf(&lag, " %s q%d'^2*(2 + sin(q%d)^2)/%d - q%d^2*%d/3", definite || i % 2 ? "+" : "-", i, i, 1 + i % 3, i, i);
+    for (int j = i + 1; j <= n && j <= i + reach; j++)
+      sb_printf(&lag, definite ? " + (q%d' + cos(q%d)*q%d')^2/%d" : " + q%d'*cos(q%d)*q%d'/%d", i, i, j, 2 + j % 2);
+  }
+  sb_puts(&lag, "\n");
+  return sb_text(&lag);
+}
+
+static void check_solution(int n, int reach, int definite) {
+  Arena *a = arena_new(NULL);
+  Eqns *e = equations(a, coupled_model(a, n, reach, definite), NULL);
+  assert_non_null(e);
+  assert_int_equal(e->definite_mass, definite);
+  uint32_t N = (uint32_t)n;
+  Prog *p = lower_accel(e);
+  assert_null(prog_verify(p));
+  if (definite && n > 1 && n <= 12) assert_int_equal(p->solves.n, 0); /* straight-line LDL^T */
+  if (!definite) assert_int_equal(p->solves.n, n > 2); /* a pair in the open, more by a loop with pivoting */
+  Real *A = ARENA_ARRAY(a, Real, N * N), *b = ARENA_ARRAY(a, Real, N), *x = ARENA_ARRAY(a, Real, N), *got = ARENA_ARRAY(a, Real, N);
+  for (int trial = 0; trial < 10; trial++) {
+    const Real *v = random_point(e);
+    for (uint32_t i = 0; i < N; i++)
+      for (uint32_t j = 0; j < N; j++) {
+        Expr m = eqns_mass(e, i, j);
+        expr_eval(e->g, &m, 1, v, &A[i * N + j]);
+      }
+    expr_eval(e->g, e->f, N, v, b);
+    eliminate(A, b, N, x);
+    assert_int_equal(run_prog(e, p, v, got, NULL), 0);
+    for (uint32_t i = 0; i < N; i++)
+      if (!(fabsl(got[i] - x[i]) <= 1e-14L * (1 + fabsl(x[i])))) fail_msg("n = %d: q%u'' = %Lg, not %Lg", n, i + 1, got[i], x[i]);
+  }
+  arena_free(a);
+}
+
+static void test_solve_definite(void **state) {
+  (void)state;
+  for (int n = 1; n <= 8; n++) check_solution(n, n, 1);
+  check_solution(9, 1, 1); /* banded */
+  check_solution(6, 0, 1); /* diagonal */
+  check_solution(16, 2, 1); /* too large for straight lines */
+}
+
+static void test_solve_indefinite(void **state) {
+  (void)state;
+  for (int n = 2; n <= 6; n++) check_solution(n, n, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_verify), cmocka_unit_test(test_numbering),      cmocka_unit_test(test_tidy),
+    cmocka_unit_test(test_pivot),  cmocka_unit_test(test_lower),          cmocka_unit_test(test_solve_definite),
+    cmocka_unit_test(test_solve_indefinite),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

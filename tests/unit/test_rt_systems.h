@@ -1,0 +1,135 @@
+/* Systems on which methods are measured, beside those of test_rt_models.h, and how a test takes steps of equal size. */
+#ifndef TEST_RT_SYSTEMS_H
+#define TEST_RT_SYSTEMS_H
+
+#include "test_rt_models.h"
+
+#define SEPARABLE (LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_AUTONOMOUS | LAG_SEPARABLE)
+
+/* name: accelerations, energy T + V with T = v.v/2, start, flags */
+#define SYSTEM(name_, nq_, flags_, energy_)                                                                     \
+  UNUSED static const lag_model name_##_model = {MODEL(#name_), .flags = flags_, .nq = nq_, .q = names_q,       \
+      .accel = name_##_accel, .energy = energy_};                                                               \
+  UNUSED static const lag_scene name_ = {.name = #name_, .doc = "", .model = &name_##_model, .start = name_##_start, \
+      .t1 = 10, .has_span = 1}
+
+/* ---- pendulum, g/l = 1, from 2.5 rad at rest */
+UNUSED static int pendulum_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  a[0] = -sin(q[0]);
+  return 0;
+}
+
+UNUSED static int pendulum_energy(ARGS, double *e, UNUSED double *w)
+{
+  double T = v[0] * v[0] / 2, V = 2 * sin(q[0] / 2) * sin(q[0] / 2);
+  e[0] = T + V;
+  e[1] = 2 * T + fabs(T - V);
+  return 0;
+}
+
+UNUSED static void pendulum_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = 2.5;
+  v[0] = 0;
+}
+
+SYSTEM(pendulum, 1, SEPARABLE, pendulum_energy);
+
+/* ---- Henon and Heiles (1964), E = 1/8 */
+UNUSED static int henon_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  a[0] = -q[0] - 2 * q[0] * q[1];
+  a[1] = -q[1] - q[0] * q[0] + q[1] * q[1];
+  return 0;
+}
+
+UNUSED static int henon_energy(ARGS, double *e, UNUSED double *w)
+{
+  double T = (v[0] * v[0] + v[1] * v[1]) / 2;
+  double V = (q[0] * q[0] + q[1] * q[1]) / 2 + q[0] * q[0] * q[1] - q[1] * q[1] * q[1] / 3;
+  e[0] = T + V;
+  e[1] = 2 * T + fabs(T - V);
+  return 0;
+}
+
+UNUSED static void henon_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = 0;
+  q[1] = -0.25;
+  v[0] = 0.420812705765086581390141079878;
+  v[1] = 0;
+}
+
+SYSTEM(henon, 2, SEPARABLE, henon_energy);
+
+/* ---- double pendulum, unit masses and lengths, g = 9.81: textbook equations, not separable */
+UNUSED static int double_pendulum_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  double d = q[0] - q[1], g = 9.81, s = sin(d), c = cos(d), den = 2 - c * c;
+  a[0] = (-g * 2 * sin(q[0]) + g * sin(q[1]) * c - s * (v[1] * v[1] + v[0] * v[0] * c)) / den;
+  a[1] = (s * (2 * v[0] * v[0] + v[1] * v[1] * c) + 2 * g * (sin(q[0]) * c - sin(q[1]))) / den;
+  return 0;
+}
+
+UNUSED static int double_energy(ARGS, double *e, UNUSED double *w)
+{
+  double T = v[0] * v[0] + v[1] * v[1] / 2 + v[0] * v[1] * cos(q[0] - q[1]), V = -9.81 * (2 * cos(q[0]) + cos(q[1]));
+  e[0] = T + V;
+  e[1] = 2 * T + fabs(T - V);
+  return 0;
+}
+
+UNUSED static void double_pendulum_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = 1;
+  q[1] = -0.5;
+  v[0] = v[1] = 0;
+}
+
+SYSTEM(double_pendulum, 2, LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS, double_energy);
+
+/* ---- a pendulum that is driven, and whose support shakes: forces with explicit time */
+UNUSED static int driven_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  a[0] = -sin(q[0]) * (1 + 0.5 * cos(2 * t)) + 0.3 * cos(t);
+  return 0;
+}
+
+#define driven_start pendulum_start
+SYSTEM(driven, 1, LAG_CONSTANT_MASS | LAG_SEPARABLE, NULL);
+
+/* ---- steps of equal size */
+
+/* A simulation whose steps all have the size h. */
+UNUSED static lag_sim *equal_steps(const lag_scene *scene, const lag_method *m, double h)
+{
+  lag_option opt[] = {{"step", h, NULL}, {"adapt", 0, "off"}};
+  return sim_with(scene, m, 0, m->flags & LAG_METHOD_ADAPTIVE ? 2 : 1, opt);
+}
+
+/* Largest difference between components. */
+UNUSED static double distance(int n, const double *a, const double *b)
+{
+  double d = 0;
+  for (int i = 0; i < n; i++) {
+    d = fmax(d, fabs(a[i] - b[i]));
+  }
+  return d;
+}
+
+/* The state, from y0, after time t in steps of size h (t/h is whole). */
+UNUSED static void flow(const lag_scene *scene, const lag_method *m, double h, double t, const double *y0, double *y)
+{
+  static const char *const names[2][4] = {{"x", "x'"}, {"x", "y", "x'", "y'"}};
+  int nq = scene->model->nq;
+  lag_sim *s = equal_steps(scene, m, h);
+  for (int i = 0; i < 2 * nq; i++) {
+    assert_int_equal(lag_sim_set(s, names[nq - 1][i], y0[i]), 0);
+  }
+  assert_int_equal(lag_sim_advance(s, t), LAG_OK);
+  memcpy(y, lag_sim_q(s), (size_t)(2 * nq) * sizeof *y);
+  lag_sim_free(s);
+}
+
+#endif
