@@ -66,6 +66,8 @@ const char *cname_spelled(Arena *a, const char *name) {
     } else if (*s >= 0x80) {
       unsigned c = decode(&s);
       put_letter(&b, c);
+    } else if (*s == ']') {
+      s++; /* r[2].x is r_2_x */
     } else {
       char c = (char)*s++;
       int plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');

@@ -41,30 +41,36 @@ static Name numbered(Lower *l, const char *stem, uint32_t i, uint32_t j) {
   return arena_printf(a, l->e->n > 9 ? "%s%u_%u" : "%s%u%u", stem, j + 1, i + 1);
 }
 
-static Block make_block(Lower *l, const uint32_t *label, uint32_t first) {
+/* The blocks in the order of their first coordinates, filled in one pass over coordinates and entries. */
+static uint32_t make_blocks(Lower *l, Block *blocks) {
   const Eqns *e = l->e;
   Arena *a = l->p->arena;
-  Block b = {.at = ARENA_ARRAY(a, uint32_t, e->n)};
-  uint32_t *place = ARENA_ARRAY(a, uint32_t, e->n);
-  for (uint32_t i = 0; i < e->n; i++)
-    if (label[i] == first) {
-      place[i] = b.n;
-      b.at[b.n++] = i;
-    }
-  b.M = ARENA_ARRAY(a, Slot, b.n * b.n);
-  b.f = ARENA_ARRAY(a, Slot, b.n);
+  const uint32_t *label = label_blocks(e);
+  uint32_t n = 0, *block = ARENA_ARRAY(a, uint32_t, e->n), *place = ARENA_ARRAY(a, uint32_t, e->n);
+  for (uint32_t i = 0; i < e->n; i++) {
+    block[i] = label[i] == i ? n++ : block[label[i]];
+    place[i] = blocks[block[i]].n++;
+  }
+  for (uint32_t k = 0; k < n; k++) {
+    Block *b = &blocks[k];
+    b->at = ARENA_ARRAY(a, uint32_t, b->n);
+    b->f = ARENA_ARRAY(a, Slot, b->n);
+    b->M = ARENA_ARRAY(a, Slot, (size_t)b->n * b->n);
+  }
   for (uint32_t k = 0; k < e->mass.n; k++) {
     const MassEntry *x = &e->mass.at[k];
-    if (label[x->row] != first) continue;
+    Block *b = &blocks[block[x->row]];
     Slot s = lower_slot(l, x->e);
     prog_name(l->p, s, numbered(l, "M", x->row, x->col));
-    b.M[place[x->row] * b.n + place[x->col]] = s;
+    b->M[place[x->row] * b->n + place[x->col]] = s;
   }
-  for (uint32_t i = 0; i < b.n; i++) {
-    b.f[i] = lower_slot(l, e->f[b.at[i]]);
-    prog_name(l->p, b.f[i], numbered(l, "f", b.at[i], UINT32_MAX));
+  for (uint32_t i = 0; i < e->n; i++) {
+    Block *b = &blocks[block[i]];
+    b->at[place[i]] = i;
+    b->f[place[i]] = lower_slot(l, e->f[i]);
+    prog_name(l->p, b->f[place[i]], numbered(l, "f", i, UINT32_MAX));
   }
-  return b;
+  return n;
 }
 
 /* --- straight-line LDL^T --- */
@@ -161,11 +167,8 @@ void lower_solution(Lower *l, Slot *acc) {
   for (uint32_t i = 0; i < e->n; i++) roots[e->mass.n + i] = e->f[i];
   prog_title(l->p, "mass matrix M and forces f");
   lower_roots(l, roots, e->mass.n + e->n);
-  const uint32_t *label = label_blocks(e);
   Block *blocks = ARENA_ARRAY(a, Block, e->n);
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < e->n; i++)
-    if (label[i] == i) blocks[n++] = make_block(l, label, i);
+  uint32_t n = make_blocks(l, blocks);
   prog_title(l->p, "M q'' = f");
   Slot *x = ARENA_ARRAY(a, Slot, e->n);
   for (uint32_t k = 0; k < n; k++) {

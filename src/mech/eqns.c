@@ -25,6 +25,12 @@ Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
 /* Chains of lets longer than this stay as they are: expanded, they would grow with the square. */
 enum { EXPAND_MAX_COORDS = 32 };
 
+/* Past this many coordinates the energy and the momenta stay as they were differentiated: nobody reads
+ * them, and short forms of sums over all coordinates cost more than their derivation. */
+enum { SHORTEN_MAX_COORDS = 64 };
+
+static Expr shorten(const Eqns *e, Expr x) { return e->n <= SHORTEN_MAX_COORDS ? simplify(e->g, x) : x; }
+
 /* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as it
  * was written: k/2*(r - l)^2 has more right digits than what it expands to. */
 static void derive_energy(Eqns *e) {
@@ -32,7 +38,7 @@ static void derive_energy(Eqns *e) {
   Arena *arena = e->m->arena;
   Expr *terms = ARENA_ARRAY(arena, Expr, e->n + 1), *momenta = ARENA_ARRAY(arena, Expr, e->n + 1);
   for (uint32_t i = 0; i < e->n; i++) {
-    momenta[i] = simplify(g, e->p[i]);
+    momenta[i] = shorten(e, e->p[i]);
     terms[i] = expr_mul(g, e->p[i], expr_symbol(g, e->m->coords.at[i].v)->node);
   }
   e->momenta = momenta;
@@ -50,12 +56,12 @@ static void derive_energy(Eqns *e) {
   Expr l0 = expr_add_n(g, still.at, still.n);
   Expr l_moving = expr_sub(g, l, l0);
   Expr moving = expr_sub(g, pv, l_moving);
-  Expr kinetic = simplify(g, moving);
+  Expr kinetic = shorten(e, moving);
   e->energy = expr_sub(g, kinetic, l0);
   /* l + y with y = -l*cos(th) hides a difference of nearly equal numbers in a let. */
   Expr open = e->n <= EXPAND_MAX_COORDS ? expr_expand_defs(g, e->energy) : e->energy;
-  e->energy_stable = simplify_stable(g, open);
-  Expr simple_pv = simplify(g, pv);
+  e->energy_stable = e->n <= SHORTEN_MAX_COORDS ? simplify_stable(g, open) : open;
+  Expr simple_pv = shorten(e, pv);
   Expr size_pv = expr_fn(g, EX_ABS, simple_pv), size_l = expr_fn(g, EX_ABS, l);
   e->energy_scale = expr_add(g, size_pv, size_l);
 }
@@ -76,7 +82,19 @@ static void fill_outputs(Eqns *e) {
   e->noutputs = m->scene.outputs.n;
 }
 
+/* The kinds of symbols that the roots contain, as bits 1 << SymKind: one pass for all of them. */
+static unsigned kinds_in(const Eqns *e, const Expr *roots, uint32_t n) {
+  unsigned kinds = 0;
+  ExprList l = expr_topo(e->g, roots, n);
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_op(e->g, l.at[i]) == EX_SYM) kinds |= 1u << expr_sym_of(e->g, l.at[i])->kind;
+  return kinds;
+}
+
+static unsigned bit(SymKind kind) { return 1u << kind; }
+
 static int check_momenta(const Eqns *e) {
+  if (!(kinds_in(e, e->p, e->n) & bit(SYM_INPUT))) return 1;
   for (uint32_t i = 0; i < e->n; i++)
     if (contains_kind(e, e->p[i], SYM_INPUT)) {
       diag_error(e->m->diags, e->m->lagrangian_span, "the momentum of `%s` depends on an input, whose derivative would be needed",
@@ -90,34 +108,26 @@ static int check_momenta(const Eqns *e) {
 /* Facts that hold for every state, read off the graph. */
 static void classify(Eqns *e) {
   const Model *m = e->m;
-  e->constant_mass = 1;
-  e->smooth = 1;
-  e->autonomous = 1;
-  for (uint32_t i = 0; i < e->mass.n; i++) {
-    Expr x = e->mass.at[i].e;
-    e->constant_mass &= !contains_kind(e, x, SYM_COORD) && !contains_kind(e, x, SYM_VEL) && !contains_kind(e, x, SYM_TIME) &&
-                        !contains_kind(e, x, SYM_STATE);
-    e->autonomous &= !contains_kind(e, x, SYM_TIME);
-  }
-  VEC(Expr) roots = {0};
+  VEC(Expr) entries = {0}, roots = {0};
+  for (uint32_t i = 0; i < e->mass.n; i++) vec_push(m->arena, &entries, e->mass.at[i].e);
   for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->f[i]);
   for (uint32_t i = 0; i < m->states.n; i++) vec_push(m->arena, &roots, e->flow[i]);
-  int inputs = 0;
-  e->separable = e->n && e->constant_mass && !m->states.n;
-  for (uint32_t i = 0; i < roots.n; i++) {
-    e->separable &= !contains_kind(e, roots.at[i], SYM_VEL);
-    inputs |= contains_kind(e, roots.at[i], SYM_INPUT);
-    e->autonomous &= !contains_kind(e, roots.at[i], SYM_TIME);
-  }
+  unsigned mass = kinds_in(e, entries.at, entries.n), rest = kinds_in(e, roots.at, roots.n);
+  e->constant_mass = !(mass & (bit(SYM_COORD) | bit(SYM_VEL) | bit(SYM_TIME) | bit(SYM_STATE)));
+  e->separable = e->n && e->constant_mass && !m->states.n && !(rest & bit(SYM_VEL));
+  e->autonomous = !((mass | rest) & bit(SYM_TIME));
+  int inputs = (rest & bit(SYM_INPUT)) != 0;
   for (uint32_t i = 0; i < m->inputs.n; i++)
     if (inputs && m->inputs.at[i].value) e->autonomous &= !contains_kind(e, m->inputs.at[i].value, SYM_TIME);
+  e->smooth = 1;
   ExprList l = expr_topo(e->g, roots.at, roots.n);
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(e->g, l.at[i]);
     e->smooth &= op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_MIN && op != EX_MAX;
   }
-  e->conserves_energy = m->lagrangian && !m->forces.n && !m->dissipation && !inputs && !contains_kind(e, m->lagrangian, SYM_TIME) &&
-                        !contains_kind(e, m->lagrangian, SYM_STATE) && !contains_kind(e, m->lagrangian, SYM_INPUT);
+  unsigned lagrangian = kinds_in(e, &m->lagrangian, 1);
+  e->conserves_energy = m->lagrangian && !m->forces.n && !m->dissipation && !inputs &&
+                        !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_INPUT)));
   e->definite_mass = m->lagrangian && lagrange_definite(e);
 }
 

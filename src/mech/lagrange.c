@@ -26,21 +26,21 @@ static Expr *explicit_direction(const Eqns *e) {
 }
 
 /* Q_i = sum over forces of f d(point)/dq_i, minus dR/dq_i'. */
-static const Expr *generalised_forces(const Eqns *e, const SymId *q, const SymId *v) {
+static const Expr *generalised_forces(const Eqns *e) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
-  Expr *Q = ARENA_ARRAY(m->arena, Expr, e->n + 1), *d = ARENA_ARRAY(m->arena, Expr, e->n + 1);
+  Expr *Q = ARENA_ARRAY(m->arena, Expr, e->n + 1);
   for (uint32_t i = 0; i < e->n; i++) Q[i] = expr_int(g, 0);
   for (uint32_t k = 0; k < m->forces.n; k++) {
-    expr_gradient(g, m->forces.at[k].point, q, e->n, d);
-    for (uint32_t i = 0; i < e->n; i++) {
-      Expr part = expr_mul(g, m->forces.at[k].f, d[i]);
-      Q[i] = expr_add(g, Q[i], part);
+    ExprPartials d = expr_gradient_sparse(g, m->forces.at[k].point, SYM_COORD, e->n);
+    for (uint32_t i = 0; i < d.n; i++) {
+      Expr part = expr_mul(g, m->forces.at[k].f, d.at[i].e), *Qi = &Q[d.at[i].index];
+      *Qi = expr_add(g, *Qi, part);
     }
   }
   if (!m->dissipation) return Q;
-  expr_gradient(g, m->dissipation, v, e->n, d);
-  for (uint32_t i = 0; i < e->n; i++) Q[i] = expr_sub(g, Q[i], d[i]);
+  ExprPartials d = expr_gradient_sparse(g, m->dissipation, SYM_VEL, e->n);
+  for (uint32_t i = 0; i < d.n; i++) Q[d.at[i].index] = expr_sub(g, Q[d.at[i].index], d.at[i].e);
   return Q;
 }
 
@@ -55,15 +55,14 @@ static Raw differentiate(Eqns *e, const SymId *q, const SymId *v) {
   ExprGraph *g = e->g;
   Raw raw = {.f = ARENA_ARRAY(m->arena, Expr, e->n)};
   Expr *p = ARENA_ARRAY(m->arena, Expr, e->n), *dLdq = ARENA_ARRAY(m->arena, Expr, e->n);
-  Expr *convective = ARENA_ARRAY(m->arena, Expr, e->n), *row = ARENA_ARRAY(m->arena, Expr, e->n);
+  Expr *convective = ARENA_ARRAY(m->arena, Expr, e->n);
   expr_gradient(g, m->lagrangian, v, e->n, p);
   expr_gradient(g, m->lagrangian, q, e->n, dLdq);
   for (uint32_t i = 0; i < e->n; i++) {
-    expr_gradient(g, p[i], v, i + 1, row);
-    for (uint32_t j = 0; j <= i; j++)
-      if (!expr_is_zero(g, row[j])) vec_push(m->arena, &raw.mass, ((MassEntry){i, j, row[j]}));
+    ExprPartials row = expr_gradient_sparse(g, p[i], SYM_VEL, i + 1);
+    for (uint32_t k = 0; k < row.n; k++) vec_push(m->arena, &raw.mass, ((MassEntry){i, row.at[k].index, row.at[k].e}));
   }
-  e->Q = generalised_forces(e, q, v);
+  e->Q = generalised_forces(e);
   Expr *seed = explicit_direction(e);
   expr_tangent(g, p, e->n, seed, expr_symbol_count(g) + 1, "_drift", convective);
   for (uint32_t i = 0; i < e->n; i++) {
@@ -119,8 +118,11 @@ int lagrange_definite(const Eqns *e) {
   }
   /* A term that is at least 0 and quadratic in q' has a Hessian that is at least 0; quadratic means
    * that the Hessian of the whole is free of velocities. */
-  for (uint32_t i = 0; i < e->mass.n; i++)
-    if (expr_contains(g, e->mass.at[i].e, is_velocity, NULL)) return 0;
+  Expr *entries = ARENA_ARRAY(e->m->arena, Expr, e->mass.n + 1);
+  for (uint32_t i = 0; i < e->mass.n; i++) entries[i] = e->mass.at[i].e;
+  ExprList all = expr_topo(g, entries, e->mass.n);
+  for (uint32_t i = 0; i < all.n; i++)
+    if (expr_op(g, all.at[i]) == EX_SYM && is_velocity(expr_sym_of(g, all.at[i]), NULL)) return 0;
   return 1;
 }
 

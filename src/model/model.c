@@ -6,218 +6,6 @@
 
 #include "model/builder.h"
 
-/* --- declaring names --- */
-
-static SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSign sign, Dim dim) {
-  SymId s = expr_declare(b->g, kind, index, name, sign);
-  while (b->dims.n <= s) vec_push(b->arena, &b->dims, DIM_UNKNOWN);
-  b->dims.at[s] = dim;
-  return s;
-}
-
-/* 0, with a message, when the name is taken. */
-static int declare_name(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index) {
-  if (strcmp(st->name, "t") == 0 || strcmp(st->name, "pi") == 0) {
-    diag_error(b->diags, st->name_span, "`%s` is reserved", st->name);
-    diag_help(b->diags, st->name[0] == 't' ? "t is the time; choose another name" : "pi is the number");
-    return 0;
-  }
-  const Entity *old = scope_own(&b->scope, st->name, effect);
-  if (!old && effect) old = scope_own(&b->scope, st->name, NULL);
-  if (old) {
-    diag_error(b->diags, st->name_span, "`%s` is declared twice", st->name);
-    diag_also(b->diags, old->span, "first declared here, as %s", ent_kind_text(old->kind));
-    return 0;
-  }
-  scope_add(&b->scope, (Entity){.kind = kind, .index = index, .name = st->name, .effect = effect, .span = st->name_span});
-  return 1;
-}
-
-/* Declares a name so that its uses are not unknown, when the declaration itself is refused. */
-static void declare_refused(Builder *b, const AstStmt *st, Name effect) {
-  if (!scope_own(&b->scope, st->name, effect))
-    scope_add(&b->scope, (Entity){.kind = ENT_NONE, .name = st->name, .effect = effect, .span = st->name_span});
-}
-
-/* `coord q[m]`: the index is made of units, and no constant is among them. */
-static int dims_are_units(Builder *b, const AstStmt *st) {
-  const AstExpr *x = ast_expr(b->ast, st->dims);
-  uint32_t names = 0;
-  for (AstId i = x->first; i <= st->dims; i++) {
-    const AstExpr *y = ast_expr(b->ast, i);
-    if (y->kind != AST_NAME) continue;
-    const AstStmt *st2 = declared_in_use(b, y->name, NULL);
-    if (st2 && st2->kind == STMT_CONST) return 0;
-    names++;
-    if (!unit_exists(y->name)) return 0;
-  }
-  return names > 0 && !x->next;
-}
-
-/* Families are refused; white space before the bracket would have made it a unit. */
-static int refuse_family(Builder *b, const AstStmt *st, Name effect) {
-  if (!st->dims) {
-    if (st->unit.n && !(st->kind == STMT_PARAM && st->unit.span.begin > ast_expr(b->ast, st->rhs)->span.begin))
-      warn_unit_is_constant(b, &st->unit);
-    return 0;
-  }
-  const char *index = ast_text(b, st->dims);
-  if (dims_are_units(b, st)) {
-    diag_error(b->diags, st->name_span, "`%s[%s]` stands for a family, and `%s` is no constant", st->name, index, index);
-    diag_help(b->diags, "a unit stands apart: `%s [%s]`", st->name, index);
-  } else {
-    not_yet(b, st->name_span, "families (indexed names)");
-  }
-  declare_refused(b, st, effect);
-  return 1;
-}
-
-static void declare_coord(Builder *b, const AstStmt *st, Name effect) {
-  if (refuse_family(b, st, effect)) return;
-  if (st->type) {
-    not_yet(b, st->name_span, arena_printf(b->arena, "coordinates of type `%s`", st->type));
-    declare_refused(b, st, effect);
-    return;
-  }
-  Model *m = b->m;
-  uint32_t i = m->coords.n;
-  if (!declare_name(b, st, effect, ENT_COORD, i)) return;
-  Coord c = {.name = st->name, .span = st->name_span, .periodic = st->periodic};
-  c.unit = unit_resolve(&st->unit, b->diags, b->arena);
-  Dim second = {1, {[DIM_TIME] = DIM_ONE}};
-  Dim rate = dim_div(c.unit.dim, second);
-  Name v = intern_printf(b, "%s'", st->name), a = intern_printf(b, "%s''", st->name);
-  c.q = declare_symbol(b, SYM_COORD, i, st->name, SIGN_UNKNOWN, c.unit.dim);
-  c.v = declare_symbol(b, SYM_VEL, i, v, SIGN_UNKNOWN, rate);
-  c.a = declare_symbol(b, SYM_ACC, i, a, SIGN_UNKNOWN, dim_div(rate, second));
-  vec_push(b->arena, &m->coords, c);
-}
-
-static void declare_state(Builder *b, const AstStmt *st, Name effect) {
-  if (refuse_family(b, st, effect)) return;
-  Model *m = b->m;
-  uint32_t i = m->states.n;
-  if (!declare_name(b, st, effect, ENT_STATE, i)) return;
-  State z = {.name = st->name, .span = st->name_span};
-  z.unit = unit_resolve(&st->unit, b->diags, b->arena);
-  Dim second = {1, {[DIM_TIME] = DIM_ONE}};
-  z.z = declare_symbol(b, SYM_STATE, i, st->name, SIGN_UNKNOWN, z.unit.dim);
-  z.rate = declare_symbol(b, SYM_RATE, i, intern_printf(b, "%s'", st->name), SIGN_UNKNOWN, dim_div(z.unit.dim, second));
-  vec_push(b->arena, &m->states, z);
-}
-
-static ExprSign sign_of(AstSign s) {
-  switch (s) {
-    case SIGN_GT: return SIGN_POSITIVE;
-    case SIGN_GE: return SIGN_NONNEGATIVE;
-    case SIGN_LT: return SIGN_NEGATIVE;
-    case SIGN_LE: return SIGN_NONPOSITIVE;
-    case SIGN_ANY: break;
-  }
-  return SIGN_UNKNOWN;
-}
-
-/* The value must be of the sign that the declaration states, or the simplifier would be misled. */
-void check_sign(Builder *b, const Param *p, Span span) {
-  static const char *const texts[] = {"", "> 0", ">= 0", "< 0", "<= 0"};
-  if (p->sign == SIGN_ANY || !p->value) return;
-  ExprSign s = expr_sign(b->g, p->value);
-  int zero = expr_is_zero(b->g, p->value), above = s == SIGN_POSITIVE, below = s == SIGN_NEGATIVE;
-  int wrong = p->sign == SIGN_GT ? below || zero : p->sign == SIGN_GE ? below : p->sign == SIGN_LT ? above || zero : above;
-  if (wrong) diag_error(b->diags, span, "`%s` is declared %s, and this value is not", p->name, texts[p->sign]);
-}
-
-static void declare_param(Builder *b, const AstStmt *st, Name effect) {
-  if (refuse_family(b, st, effect)) return;
-  Model *m = b->m;
-  uint32_t i = m->params.n;
-  Param p = {.name = st->name, .span = st->name_span, .sign = st->sign};
-  p.unit = unit_resolve(&st->unit, b->diags, b->arena);
-  /* Its own name is not in scope in its value; without a unit of its own it takes its value's. */
-  Value v = resolve(b, st->rhs, IN_PARAM, effect);
-  if (!p.unit.text[0] && v.e && !v.bare && v.dim.known) p.unit = unit_of_dim(b, v.dim);
-  p.value = value_in(b, v, ast_expr(b->ast, st->rhs)->span, &p.unit);
-  if (!declare_name(b, st, effect, ENT_PARAM, i)) return;
-  if (effect) p.name = intern_printf(b, "%s.%s", effect, st->name);
-  p.sym = declare_symbol(b, SYM_PARAM, i, p.name, sign_of(st->sign), p.unit.dim);
-  if (p.value && expr_is_num(b->g, p.value)) {
-    p.constant = expr_number(b->g, p.value);
-    p.has_constant = 1;
-  }
-  check_sign(b, &p, ast_expr(b->ast, st->rhs)->span);
-  vec_push(b->arena, &m->params, p);
-}
-
-static void declare_const(Builder *b, const AstStmt *st, Name effect) {
-  Value v = resolve(b, st->rhs, IN_CONST, effect);
-  if (!declare_name(b, st, effect, ENT_CONST, b->constants.n)) return;
-  Constant c = {st->name, num_int(1)};
-  if (v.e && expr_is_num(b->g, v.e)) c.value = expr_number(b->g, v.e);
-  else if (v.e) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a constant must be a number known when compiling");
-  for (uint32_t i = 0; i < b->ndefines; i++)
-    if (strcmp(b->defines[i].name, st->name) == 0) c.value = num_parse(b->defines[i].value, strlen(b->defines[i].value));
-  vec_push(b->arena, &b->constants, c);
-}
-
-static void declare_input(Builder *b, const AstStmt *st, Name effect) {
-  Model *m = b->m;
-  uint32_t i = m->inputs.n;
-  if (!declare_name(b, st, effect, ENT_INPUT, i)) return;
-  Input in = {.name = st->name, .span = st->name_span};
-  in.unit = unit_resolve(&st->unit, b->diags, b->arena);
-  in.sym = declare_symbol(b, SYM_INPUT, i, st->name, SIGN_UNKNOWN, in.unit.dim);
-  vec_push(b->arena, &m->inputs, in);
-}
-
-static void declare_let(Builder *b, const AstStmt *st, Name effect) {
-  if (refuse_family(b, st, effect)) return;
-  if (!declare_name(b, st, effect, ENT_LET, b->lets.n)) return;
-  vec_push(b->arena, &b->lets, ((Definition){.stmt = st, .effect = effect}));
-}
-
-static void declare_function(Builder *b, const AstStmt *st, Name effect) {
-  if (!declare_name(b, st, effect, ENT_FUNCTION, b->functions.n)) return;
-  Definition f = {.stmt = st, .effect = effect};
-  VEC(SymId) args = {0};
-  for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) {
-    SymId s = declare_symbol(b, SYM_LOCAL, args.n, ast_expr(b->ast, i)->name, SIGN_UNKNOWN, DIM_UNKNOWN);
-    vec_push(b->arena, &args, s);
-  }
-  f.args = args.at;
-  f.nargs = args.n;
-  vec_push(b->arena, &b->functions, f);
-}
-
-static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
-  Model *m = b->m;
-  if (!declare_name(b, st, effect, ENT_OBSERVE, m->observes.n)) return;
-  Output o = {.name = st->name, .span = st->name_span};
-  o.unit = unit_resolve(&st->unit, b->diags, b->arena);
-  vec_push(b->arena, &m->observes, o);
-}
-
-static void declare(Builder *b, const AstStmt *st, Name effect) {
-  switch (st->kind) {
-    case STMT_COORD: declare_coord(b, st, effect); return;
-    case STMT_STATE: declare_state(b, st, effect); return;
-    case STMT_PARAM: declare_param(b, st, effect); return;
-    case STMT_CONST: declare_const(b, st, effect); return;
-    case STMT_INPUT: declare_input(b, st, effect); return;
-    case STMT_LET: declare_let(b, st, effect); return;
-    case STMT_FUNCTION: declare_function(b, st, effect); return;
-    case STMT_OBSERVE: declare_observe(b, st, effect); return;
-    case STMT_CONSTRAINT: not_yet(b, st->span, "constraints"); return;
-    case STMT_SYMMETRY: not_yet(b, st->span, "symmetries"); return;
-    case STMT_CONTACT: not_yet(b, st->span, "contacts"); return;
-    case STMT_FOR: not_yet(b, st->span, "`for` over a family"); return;
-    case STMT_MODEL: case STMT_INCLUDE: case STMT_LAGRANGIAN: case STMT_KINETIC: case STMT_POTENTIAL:
-    case STMT_DISSIPATION: case STMT_FORCE: case STMT_FLOW: case STMT_MAP: case STMT_EXPECT:
-    case STMT_EVENT: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
-    case STMT_START: case STMT_EXACT: case STMT_SET: case STMT_USE: case STMT_SPAN: case STMT_METHOD:
-    case STMT_TOLERANCE: case STMT_OUTPUT: case STMT_MONITOR: case STMT_LIKE: case STMT_STOP: return;
-  }
-}
-
 /* --- statements with meaning --- */
 
 /* A force or a dissipation: times `by`, it has the dimension of L. */
@@ -285,7 +73,8 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   b->m->lagrangian_span = span_join(b->m->lagrangian_span, st->span);
   if (!effect || !b->m->lagrangian_span.end) b->m->lagrangian_span = st->span;
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
-  if (!v.e) return;
+  if (v.e && v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, and a number is wanted here", shape_text(b, v.n));
+  if (!v.e || v.n) return;
   if (st->kind == STMT_DISSIPATION) {
     Dim second = {1, {[DIM_TIME] = DIM_ONE}};
     check_later(b, en, st->rhs, &v, second, "a dissipation function");
@@ -320,89 +109,130 @@ static void finish_energies(Builder *b, const Energies *en) {
 
 static void report_force(Builder *b, const AstStmt *st) {
   diag_error(b->diags, st->span, "a force at a point needs as many components as the point");
-  diag_help(b->diags, "`force x = F`, or `force (px, py) = (Fx, Fy)`");
+  diag_help(b->diags, "`force x = F`, `force (px, py) = (Fx, Fy)`, or `force r = F` with two vectors");
 }
 
-/* force q = Q, force (px, py) = (Fx, Fy): both sides element by element. */
-static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) {
-  const AstExpr *l = ast_expr(b->ast, st->lhs), *r = ast_expr(b->ast, st->rhs);
-  int tuple = l->kind == AST_TUPLE;
-  if (tuple != (r->kind == AST_TUPLE)) {
-    report_force(b, st);
-    return;
+static void add_forces(Builder *b, AstId li, AstId ri, const Value *point, const Value *f, Energies *en) {
+  if (!point->e || !f->e) return;
+  for (uint32_t k = 0; k < (f->n ? f->n : 1); k++) {
+    Force one = {point->at[k], f->at[k], ast_expr(b->ast, ri)->span};
+    vec_push(b->arena, &b->m->forces, one);
   }
-  AstId li = tuple ? l->args : st->lhs, ri = tuple ? r->args : st->rhs;
+  check_later(b, en, ri, f, point->dim, arena_printf(b->arena, "a force along `%s`", ast_text(b, li)));
+}
+
+/* force (px, py) = (Fx, Fy): element by element, each with a unit of its own. */
+static void add_force_elements(Builder *b, const AstStmt *st, Name effect, Energies *en) {
+  AstId li = ast_expr(b->ast, st->lhs)->args, ri = ast_expr(b->ast, st->rhs)->args;
   while (li && ri) {
     Value point = resolve(b, li, IN_DYNAMICS, effect), f = resolve(b, ri, IN_DYNAMICS, effect);
-    if (point.e && f.e) {
-      Force one = {point.e, f.e, ast_expr(b->ast, ri)->span};
-      vec_push(b->arena, &b->m->forces, one);
-      check_later(b, en, ri, &f, point.dim, arena_printf(b->arena, "a force along `%s`", ast_text(b, li)));
+    if (point.e && f.e && (point.n || f.n)) {
+      diag_error(b->diags, ast_expr(b->ast, point.n ? li : ri)->span, "a component of a vector is a number");
+      return;
     }
-    li = tuple ? ast_expr(b->ast, li)->next : 0;
-    ri = tuple ? ast_expr(b->ast, ri)->next : 0;
+    add_forces(b, li, ri, &point, &f, en);
+    li = ast_expr(b->ast, li)->next;
+    ri = ast_expr(b->ast, ri)->next;
   }
   if (li || ri) report_force(b, st);
 }
 
-/* A value given to a symbol: a coordinate, a state, or the rate of one, declared in `unit`. */
-static Expr resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit) {
-  Unit u = *unit;
-  u.dim = b->dims.at[target]; /* a rate's unit is per second: the same factor */
-  return resolve_in(b, id, IN_DYNAMICS, effect, &u);
+/* force q = Q, force r = F. */
+static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) {
+  int left = ast_expr(b->ast, st->lhs)->kind == AST_TUPLE, right = ast_expr(b->ast, st->rhs)->kind == AST_TUPLE;
+  if (left && right) {
+    add_force_elements(b, st, effect, en);
+    return;
+  }
+  Value point = resolve(b, st->lhs, IN_DYNAMICS, effect), f = resolve(b, st->rhs, IN_DYNAMICS, effect);
+  if (point.e && f.e && point.n != f.n) report_force(b, st);
+  else add_forces(b, st->lhs, st->rhs, &point, &f, en);
 }
 
+/* A value given to a symbol: a coordinate, a state, or the rate of one, declared in `unit`. */
+static Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit) {
+  Unit u = *unit;
+  u.dim = b->dims.at[target]; /* a rate's unit is per second: the same factor */
+  return values_in(b, resolve(b, id, IN_DYNAMICS, effect), ast_expr(b->ast, id)->span, &u);
+}
+
+/* The value on the left of a flow says which state is meant: its rate. */
 static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   const AstExpr *l = ast_expr(b->ast, st->lhs);
   const AstExpr *name = l->kind == AST_PRIME ? ast_expr(b->ast, l->a) : l;
-  if (l->kind != AST_PRIME || name->kind != AST_NAME) {
+  const AstExpr *stem = name->kind == AST_INDEX ? ast_expr(b->ast, name->a) : name;
+  if (l->kind != AST_PRIME || stem->kind != AST_NAME) {
     diag_error(b->diags, l->span, "a flow gives the rate of a state: `flow z' = ...`");
     return;
   }
-  const Entity *e = resolve_name(b, name->name, name->span, effect, "state");
+  const Entity *e = resolve_name(b, stem->name, stem->span, effect, "state");
   if (!e) return;
   if (e->kind == ENT_NONE) return;
   if (e->kind != ENT_STATE) {
-    diag_error(b->diags, name->span, "`%s` is %s, not a state", name->name, ent_kind_text(e->kind));
-    diag_help(b->diags, "declare `state %s`; coordinates get their accelerations from L", name->name);
+    diag_error(b->diags, stem->span, "`%s` is %s, not a state", stem->name, ent_kind_text(e->kind));
+    diag_help(b->diags, "declare `state %s`; coordinates get their accelerations from L", stem->name);
     return;
   }
-  State *z = &b->m->states.at[e->index];
-  if (z->flow) diag_error(b->diags, st->span, "the flow of `%s` is given twice", name->name);
-  z->flow = resolve_for(b, st->rhs, effect, z->rate, &z->unit);
-  if (!z->flow) z->flow = expr_int(b->g, 0); /* reported */
+  Value of = resolve(b, l->a, IN_DYNAMICS, effect);
+  if (!of.e) return;
+  State *z = &b->m->states.at[expr_sym_of(b->g, of.e)->index];
+  if (z->flow) diag_error(b->diags, st->span, "the flow of `%s` is given twice", z->name);
+  Value v = resolve_for(b, st->rhs, effect, z->rate, &z->unit);
+  if (v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, and a number is wanted here", shape_text(b, v.n));
+  z->flow = v.e ? v.e : expr_int(b->g, 0); /* reported */
 }
 
 static void add_expect(Builder *b, const AstStmt *st, Name effect) {
   Value l = resolve(b, st->lhs, IN_OBSERVE, effect), r = resolve(b, st->rhs, IN_OBSERVE, effect);
   if (!l.e || !r.e) return;
+  if (l.n != r.n) {
+    diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, l.n), shape_text(b, r.n));
+    return;
+  }
   if (!dim_fits(l.dim, r.dim))
     diag_error(b->diags, st->span, "units do not match: the left side is in [%s], the right side in [%s]", dim_text(l.dim, b->arena),
                dim_text(r.dim, b->arena));
-  Expect x = {st->name, st->span, st->lhs, st->rhs, l.e, r.e, effect};
-  vec_push(b->arena, &b->m->expects, x);
+  Expect x = {.name = st->name, .span = st->span, .lhs_ast = st->lhs, .rhs_ast = st->rhs, .effect = effect};
+  x.elsewhere = l.n || b->index.n;
+  for (uint32_t k = 0; k < (l.n ? l.n : 1); k++) {
+    x.lhs = l.at[k];
+    x.rhs = r.at[k];
+    vec_push(b->arena, &b->m->expects, x);
+  }
 }
 
 static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
   Value target = resolve(b, st->lhs, IN_DYNAMICS, effect);
   if (!target.e) return;
-  SymKind kind = expr_op(b->g, target.e) == EX_SYM ? expr_sym_of(b->g, target.e)->kind : SYM_LOCAL;
-  if (kind != SYM_COORD && kind != SYM_VEL && kind != SYM_STATE) {
+  for (uint32_t k = 0; k < (target.n ? target.n : 1); k++) {
+    SymKind kind = expr_op(b->g, target.at[k]) == EX_SYM ? expr_sym_of(b->g, target.at[k])->kind : SYM_LOCAL;
+    if (kind == SYM_COORD || kind == SYM_VEL || kind == SYM_STATE) continue;
     diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "an event can set a coordinate, a velocity or a state");
     return;
   }
   SymId sym = expr_sym_id(b->g, target.e);
   uint32_t i = expr_sym_of(b->g, target.e)->index;
-  const Unit *unit = kind == SYM_STATE ? &b->m->states.at[i].unit : &b->m->coords.at[i].unit;
-  Expr value = resolve_for(b, st->rhs, effect, sym, unit);
-  if (!value) return;
-  Action a = {sym, value};
-  vec_push(b->arena, &ev->actions, a);
+  const Unit *unit = expr_sym_of(b->g, target.e)->kind == SYM_STATE ? &b->m->states.at[i].unit : &b->m->coords.at[i].unit;
+  Value v = resolve_for(b, st->rhs, effect, sym, unit);
+  if (!v.e) return;
+  if (target.n != v.n) {
+    diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, target.n),
+               shape_text(b, v.n));
+    return;
+  }
+  for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
+    Action a = {expr_sym_id(b->g, target.at[k]), v.at[k]};
+    vec_push(b->arena, &ev->actions, a);
+  }
 }
 
 static void add_event(Builder *b, const AstStmt *st, Name effect) {
   Event ev = {.name = st->name, .span = st->span, .direction = st->direction};
+  IndexRange r = {0};
+  if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
+  ev.name = member_name(b, st->name, r.lo, r.n);
   Value g = resolve(b, st->lhs, IN_DYNAMICS, effect);
+  if (g.n) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "this is %s, and a number is wanted here", shape_text(b, g.n));
   ev.g = g.e;
   for (const AstStmt *s = st->body; s; s = s->next) {
     if (s->kind == STMT_STOP) ev.stop = 1;
@@ -418,20 +248,36 @@ static void fill_input(Builder *b, const AstStmt *st, Name effect) {
   in->value = resolve_in(b, st->rhs, IN_INPUT, effect, &in->unit);
 }
 
+/* The observable that the statement declares; NULL when it was refused. */
+static Output *declared_observe(Builder *b, const AstStmt *st, Name effect) {
+  const Entity *e = scope_own(&b->scope, st->name, effect);
+  if (!e || e->kind != ENT_OBSERVE) return NULL;
+  if (st->dims) {
+    IndexRange r;
+    if (!e->ndims || !resolve_indices(b, st->dims, effect, &r) || r.n != e->ndims) return NULL;
+    e = find_member(b, e, r.lo);
+  }
+  return e ? &b->m->observes.at[e->index] : NULL;
+}
+
 /* An observable's value; without a declared unit it is shown in that of its expression. */
 static void fill_observe(Builder *b, const AstStmt *st, Name effect) {
-  const Entity *e = scope_own(&b->scope, st->name, effect);
-  if (!e || e->kind != ENT_OBSERVE) return;
-  Output *o = &b->m->observes.at[e->index];
+  Output *o = declared_observe(b, st, effect);
+  if (!o) return;
   Value v = resolve(b, st->rhs, IN_OBSERVE, effect);
+  if (v.n) {
+    not_yet(b, ast_expr(b->ast, st->rhs)->span, "observables that are vectors (observe their components)");
+    return;
+  }
   o->value = v.e;
   if (!o->unit.dim.known && !o->unit.text[0]) o->unit = unit_of_dim(b, v.dim);
   else if (v.e && !dim_fits(v.dim, o->unit.dim))
-    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "`%s` is declared in [%s], and this is in [%s]", st->name,
+    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "`%s` is declared in [%s], and this is in [%s]", o->name,
                dim_text(o->unit.dim, b->arena), dim_text(v.dim, b->arena));
 }
 
-static void apply(Builder *b, const AstStmt *st, Name effect, Energies *en) {
+static void apply(Builder *b, const AstStmt *st, Name effect, void *data) {
+  Energies *en = data;
   switch (st->kind) {
     case STMT_LAGRANGIAN: case STMT_KINETIC: case STMT_POTENTIAL: case STMT_DISSIPATION:
       add_energy(b, st, effect, en);
@@ -455,22 +301,45 @@ Unit unit_of_dim(Builder *b, Dim d) {
   return u;
 }
 
-/* Lets that nothing uses are still checked. */
+/* Lets that nothing uses are still checked; of a family that has an error, no more than one member. */
 static void apply_unused_lets(Builder *b) {
-  for (uint32_t i = 0; i < b->active.n; i++) {
-    const AstStmt *st = b->active.at[i].stmt;
-    if (st->kind == STMT_LET || st->kind == STMT_FUNCTION) {
-      const Entity *e = scope_own(&b->scope, st->name, b->active.at[i].effect);
-      Definition *d = !e ? NULL : e->kind == ENT_LET ? &b->lets.at[e->index] : e->kind == ENT_FUNCTION ? &b->functions.at[e->index] : NULL;
-      if (d && d->progress == TODO) resolve_definition(b, e->kind, e->index);
-    }
+  const AstStmt *wrong = NULL;
+  for (uint32_t i = 0; i < b->lets.n; i++) {
+    if (b->lets.at[i].stmt == wrong) continue;
+    resolve_definition(b, ENT_LET, i);
+    if (!b->lets.at[i].value.e) wrong = b->lets.at[i].stmt;
   }
+  for (uint32_t i = 0; i < b->functions.n; i++) resolve_definition(b, ENT_FUNCTION, i);
+}
+
+/* What may contain accelerations: after L is known. */
+static void observe(Builder *b, const AstStmt *st, Name effect, void *data) {
+  (void)data;
+  if (st->kind == STMT_EXPECT) add_expect(b, st, effect);
+  if (st->kind == STMT_OBSERVE) fill_observe(b, st, effect);
+}
+
+static void each_active(Builder *b, StatementFn *fn, void *data) {
+  for (uint32_t i = 0; i < b->active.n; i++) each_statement(b, b->active.at[i].stmt, b->active.at[i].effect, fn, data);
 }
 
 /* --- checks on the whole --- */
 
-static int is_coordinate(const Symbol *s, const void *data) {
-  return (s->kind == SYM_COORD || s->kind == SYM_VEL) && s->index == *(const uint32_t *)data;
+/* Reports the coordinates of which L knows nothing. */
+static void check_contained(Builder *b) {
+  Model *m = b->m;
+  uint8_t *found = ARENA_ARRAY(b->arena, uint8_t, m->coords.n + 1);
+  ExprList l = expr_topo(b->g, &m->lagrangian, 1);
+  for (uint32_t i = 0; i < l.n; i++) {
+    if (expr_op(b->g, l.at[i]) != EX_SYM) continue;
+    const Symbol *s = expr_sym_of(b->g, l.at[i]);
+    if (s->kind == SYM_COORD || s->kind == SYM_VEL) found[s->index] = 1;
+  }
+  for (uint32_t i = 0; i < m->coords.n; i++) {
+    if (found[i]) continue;
+    diag_error(b->diags, m->coords.at[i].span, "the Lagrangian does not contain the coordinate `%s`", m->coords.at[i].name);
+    diag_help(b->diags, "nothing would determine its motion; add its energy, or remove it");
+  }
 }
 
 static void check_whole(Builder *b) {
@@ -484,12 +353,7 @@ static void check_whole(Builder *b) {
     diag_error(b->diags, m->coords.at[0].span, "there are coordinates but no Lagrangian");
     diag_help(b->diags, "give `lagrangian = ...`, or `kinetic = ...` and `potential = ...`");
   }
-  for (uint32_t i = 0; i < m->coords.n && m->lagrangian; i++) {
-    const Coord *c = &m->coords.at[i];
-    if (expr_contains(b->g, m->lagrangian, is_coordinate, &i)) continue;
-    diag_error(b->diags, c->span, "the Lagrangian does not contain the coordinate `%s`", c->name);
-    diag_help(b->diags, "nothing would determine its motion; add its energy, or remove it");
-  }
+  if (m->coords.n && m->lagrangian) check_contained(b);
   for (uint32_t i = 0; i < m->states.n; i++)
     if (!m->states.at[i].flow) {
       diag_error(b->diags, m->states.at[i].span, "the state `%s` has no flow", m->states.at[i].name);
@@ -515,7 +379,7 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   b->diags = ast->diags;
   b->arena = a;
   b->g = expr_graph(a, ast->names);
-  b->scope.arena = a;
+  b->scope.arena = b->members.arena = a;
   b->defines = choice->defines;
   b->ndefines = choice->ndefines;
   Model *m = b->m = ARENA_NEW(a, Model);
@@ -543,17 +407,13 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   Builder *b = builder_new(ast, choice);
   scene_select(b, choice);
   find_units(b);
-  for (uint32_t i = 0; i < b->active.n; i++) declare(b, b->active.at[i].stmt, b->active.at[i].effect);
+  each_active(b, declare_statement, NULL);
   check_defines(b);
   Energies en = {0};
-  for (uint32_t i = 0; i < b->active.n; i++) apply(b, b->active.at[i].stmt, b->active.at[i].effect, &en);
+  each_active(b, apply, &en);
   finish_energies(b, &en);
   apply_unused_lets(b);
-  for (uint32_t i = 0; i < b->active.n; i++) {
-    const Active *a = &b->active.at[i];
-    if (a->stmt->kind == STMT_EXPECT) add_expect(b, a->stmt, a->effect);
-    if (a->stmt->kind == STMT_OBSERVE) fill_observe(b, a->stmt, a->effect);
-  }
+  each_active(b, observe, NULL);
   check_whole(b);
   scene_build(b, choice);
   return ast->diags->errors ? NULL : b->m;

@@ -58,6 +58,7 @@ typedef struct {
   AstId lhs_ast, rhs_ast;
   Expr lhs, rhs;
   Name effect; /* that it stands in, or NULL */
+  int elsewhere; /* one of several that the text stands for: model_reresolve cannot tell which */
 } Expect;
 
 typedef struct {

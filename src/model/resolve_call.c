@@ -18,12 +18,19 @@ static const struct {
   {"abs", EX_ABS}, {"sign", EX_SIGN},
 }, binary_functions[] = {{"atan2", EX_ATAN2}, {"hypot", EX_HYPOT}, {"min", EX_MIN}, {"max", EX_MAX}};
 
-static const char *const other_functions[] = {"sqrt", "pow", "if", "d"};
-static const char *const later_functions[] = {"dot", "cross", "norm", "omega", "lambda"};
+static const char *const other_functions[] = {"sqrt", "pow", "if", "d", "dot", "cross", "norm"};
+static const char *const later_functions[] = {"omega", "lambda"};
 
 int call_is_not_yet(Name name) {
   for (size_t i = 0; i < sizeof later_functions / sizeof *later_functions; i++)
     if (strcmp(name, later_functions[i]) == 0) return 1;
+  return 0;
+}
+
+int call_takes_vectors(Name name) {
+  static const char *const names[] = {"if", "d", "dot", "cross", "norm"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (strcmp(name, names[i]) == 0) return 1;
   return 0;
 }
 
@@ -61,22 +68,89 @@ static Value call_binary(Eval *ev, const AstExpr *x, ExprOp op) {
   return a_value(expr_fn2(b->g, op, v->e, w->e), op == EX_ATAN2 ? DIM_NONE : dim, v->bare && w->bare);
 }
 
+/* A branch that is not taken was not looked at. */
 static Value call_if(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   if (!arity_is(ev, x, 3)) return FAILED;
   AstId yes = ast_expr(b->ast, x->args)->next, no = ast_expr(b->ast, yes)->next;
   const Value *c = value_of(ev, x->args), *v = value_of(ev, yes), *w = value_of(ev, no);
-  if (!c->e || !v->e || !w->e) return FAILED;
+  if (!c->e) return FAILED;
   if (!c->condition) {
     diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` is no condition", ast_short(b, x->args));
     diag_help(b->diags, "`if(condition, a, b)` takes a condition first, such as `x > 0`");
     return FAILED;
   }
+  if (expr_is_num(b->g, c->e)) return expr_is_zero(b->g, c->e) ? *w : *v;
+  if (!v->e || !w->e || !same_shape(ev, x->span, yes, no)) return FAILED;
   if (!dims_agree(b, v, w)) {
     report_mismatch(ev, x->span, yes, no);
     return FAILED;
   }
-  return a_value(expr_select(b->g, c->e, v->e, w->e), v->dim.known ? v->dim : w->dim, 0);
+  Value r = {.dim = v->dim.known ? v->dim : w->dim, .n = v->n};
+  for (uint32_t k = 0; k < parts_of(v); k++) r.at[k] = expr_select(b->g, c->e, v->at[k], w->at[k]);
+  return r;
+}
+
+/* --- vectors --- */
+
+/* The two arguments of dot and cross; 0, reported, when they are no vectors of one shape. */
+static int two_vectors(Eval *ev, const AstExpr *x, const Value **v, const Value **w) {
+  Builder *b = ev->b;
+  if (!arity_is(ev, x, 2)) return 0;
+  AstId second = ast_expr(b->ast, x->args)->next;
+  *v = value_of(ev, x->args);
+  *w = value_of(ev, second);
+  if (!(*v)->e || !(*w)->e || !same_shape(ev, x->span, x->args, second)) return 0;
+  if ((*v)->n) return 1;
+  diag_error(b->diags, x->span, "`%s` takes vectors, and these are numbers", x->name);
+  return 0;
+}
+
+static Expr dot(ExprGraph *g, const Value *v, const Value *w) {
+  Expr part[3];
+  for (uint32_t k = 0; k < v->n; k++) part[k] = expr_mul(g, v->at[k], w->at[k]);
+  return expr_add_n(g, part, v->n);
+}
+
+static Value call_dot(Eval *ev, const AstExpr *x) {
+  const Value *v, *w;
+  if (!two_vectors(ev, x, &v, &w)) return FAILED;
+  return a_value(dot(ev->b->g, v, w), dim_mul(v->dim, w->dim), v->bare && w->bare);
+}
+
+/* Component k of v x w, in the plane of the other two. */
+static Expr cross_part(ExprGraph *g, const Value *v, const Value *w, int i, int j) {
+  Expr a = expr_mul(g, v->at[i], w->at[j]), c = expr_mul(g, v->at[j], w->at[i]);
+  return expr_sub(g, a, c);
+}
+
+/* Of vectors in a plane the cross product is a number. */
+static Value call_cross(Eval *ev, const AstExpr *x) {
+  ExprGraph *g = ev->b->g;
+  const Value *v, *w;
+  if (!two_vectors(ev, x, &v, &w)) return FAILED;
+  Value r = {.dim = dim_mul(v->dim, w->dim), .bare = v->bare && w->bare};
+  if (v->n == 2) {
+    r.e = cross_part(g, v, w, 0, 1);
+    return r;
+  }
+  r.n = 3;
+  for (int k = 0; k < 3; k++) r.at[k] = cross_part(g, v, w, (k + 1) % 3, (k + 2) % 3);
+  return r;
+}
+
+static Value call_norm(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  if (!arity_is(ev, x, 1)) return FAILED;
+  const Value *v = value_of(ev, x->args);
+  if (!v->e) return FAILED;
+  if (!v->n) {
+    diag_error(b->diags, x->span, "`norm` takes a vector, and `%s` is a number", ast_short(b, x->args));
+    diag_help(b->diags, "`abs(x)` is the size of a number");
+    return FAILED;
+  }
+  Expr square = dot(b->g, v, v);
+  return a_value(expr_sqrt(b->g, square), v->dim, v->bare);
 }
 
 static int is_local(const Symbol *s, const void *data) {
@@ -91,29 +165,45 @@ static Value call_d(Eval *ev, const AstExpr *x) {
   AstId by = ast_expr(b->ast, x->args)->next;
   const Value *v = value_of(ev, x->args), *w = value_of(ev, by);
   if (!v->e || !w->e) return FAILED;
+  if (w->n) {
+    diag_error(b->diags, ast_expr(b->ast, by)->span, "`%s` is %s: differentiate by its components", ast_short(b, by), shape_text(b, w->n));
+    return FAILED;
+  }
   SymKind kind = expr_op(b->g, w->e) == EX_SYM ? expr_sym_of(b->g, w->e)->kind : SYM_CONST;
   if (kind == SYM_CONST || w->e == expr_symbol(b->g, b->m->energy_sym)->node) {
     diag_error(b->diags, ast_expr(b->ast, by)->span, "`d(expr, name)` differentiates by a coordinate, a velocity, a parameter or t");
     return FAILED;
   }
-  if (kind != SYM_LOCAL && expr_contains(b->g, v->e, is_local, NULL)) {
-    not_yet(b, x->span, "a partial derivative of a function's argument, or of the energy");
-    return FAILED;
+  Value r = {.dim = dim_div(v->dim, w->dim), .n = v->n};
+  for (uint32_t k = 0; k < parts_of(v); k++) {
+    if (kind != SYM_LOCAL && expr_contains(b->g, v->at[k], is_local, NULL)) {
+      not_yet(b, x->span, "a partial derivative of a function's argument, or of the energy");
+      return FAILED;
+    }
+    r.at[k] = expr_diff(b->g, v->at[k], expr_sym_id(b->g, w->e));
   }
-  return a_value(expr_diff(b->g, v->e, expr_sym_id(b->g, w->e)), dim_div(v->dim, w->dim), 0);
+  return r;
 }
 
-static Value call_function(Eval *ev, const AstExpr *x, const Definition *f) {
+static Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
   Builder *b = ev->b;
-  if (!arity_is(ev, x, f->nargs) || !f->value) return FAILED;
-  Expr *with = ARENA_ARRAY(b->arena, Expr, expr_symbol_count(b->g) + 1);
+  if (ev->where < IN_DYNAMICS) {
+    diag_error(b->diags, x->span, "`%s` is a function of the model's own, and may not be used here", x->name);
+    return FAILED;
+  }
+  if (!definition_ready(ev, ENT_FUNCTION, e->index, x->name, x->span)) return FAILED;
+  const Definition *f = &b->functions.at[e->index];
+  if (!arity_is(ev, x, f->nargs) || !f->value.e) return FAILED;
+  Expr *with = ARENA_ARRAY(b->arena, Expr, f->nargs + 1);
   AstId arg = x->args;
   for (uint32_t i = 0; i < f->nargs; i++, arg = ast_expr(b->ast, arg)->next) {
     if (!value_of(ev, arg)->e) return FAILED;
-    with[f->args[i]] = value_of(ev, arg)->e;
+    with[i] = value_of(ev, arg)->e;
   }
-  Expr e = expr_substitute(b->g, f->value, with, expr_symbol_count(b->g) + 1, "");
-  return a_value(e, f->nargs ? DIM_UNKNOWN : f->dim, 0);
+  Value r = f->value;
+  if (f->nargs) r.dim = DIM_UNKNOWN;
+  for (uint32_t k = 0; k < parts_of(&r); k++) r.at[k] = expr_replace(b->g, r.at[k], f->args, with, f->nargs);
+  return r;
 }
 
 static Value call_sqrt(Eval *ev, const AstExpr *x) {
@@ -128,7 +218,7 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
     not_yet(b, x->span, arena_printf(b->arena, "`%s`", x->name));
     return FAILED;
   }
-  enum { NU = sizeof unary_functions / sizeof *unary_functions, NB = 4, NO = sizeof other_functions / sizeof *other_functions };
+  enum { NU = sizeof unary_functions / sizeof *unary_functions, NB = sizeof binary_functions / sizeof *binary_functions, NO = sizeof other_functions / sizeof *other_functions };
   Name *known = ARENA_ARRAY(b->arena, Name, NU + NB + NO + b->scope.all.n);
   uint32_t n = 0;
   for (int i = 0; i < NU; i++) known[n++] = unary_functions[i].name;
@@ -150,7 +240,7 @@ Value call_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   int ambiguous;
   const Entity *e = scope_find(&b->scope, x->name, ev->effect, &ambiguous);
-  if (e && e->kind == ENT_FUNCTION) return call_function(ev, x, &b->functions.at[e->index]);
+  if (e && e->kind == ENT_FUNCTION) return call_function(ev, x, e);
   for (size_t i = 0; i < sizeof unary_functions / sizeof *unary_functions; i++)
     if (strcmp(x->name, unary_functions[i].name) == 0) return call_unary(ev, x, unary_functions[i].op);
   for (size_t i = 0; i < sizeof binary_functions / sizeof *binary_functions; i++)
@@ -158,6 +248,9 @@ Value call_value(Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "sqrt") == 0) return call_sqrt(ev, x);
   if (strcmp(x->name, "if") == 0) return call_if(ev, x);
   if (strcmp(x->name, "d") == 0) return call_d(ev, x);
+  if (strcmp(x->name, "dot") == 0) return call_dot(ev, x);
+  if (strcmp(x->name, "cross") == 0) return call_cross(ev, x);
+  if (strcmp(x->name, "norm") == 0) return call_norm(ev, x);
   if (strcmp(x->name, "pow") == 0)
     return arity_is(ev, x, 2) ? power_value(ev, x, x->args, ast_expr(b->ast, x->args)->next) : FAILED;
   return unknown_function(ev, x);

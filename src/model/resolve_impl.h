@@ -1,23 +1,50 @@
-/* One evaluation of an expression, shared by resolve.c and resolve_call.c only. */
+/* One evaluation of an expression, shared by the files resolve*.c only. */
 #ifndef LAGC_RESOLVE_IMPL_H
 #define LAGC_RESOLVE_IMPL_H
 
 #include "model/builder.h"
 
+/* A sum or a product whose body is being evaluated, once for each value of its index. */
 typedef struct {
+  AstId construct;
+  int64_t at, hi;
+  uint32_t base; /* its first term in Eval.terms */
+} Loop;
+
+/* An operand of a chain of + and -, or of * and /. */
+typedef struct {
+  AstId at;
+  int inverted; /* subtracted, or divided by */
+} Operand;
+
+typedef struct Eval Eval;
+struct Eval {
   Builder *b;
   Context where;
   Name effect;
   const Definition *function; /* whose arguments are in scope, or NULL */
-  AstId first;
-  Value *value;       /* of node first + i */
-  unsigned char *open; /* node first + i is the left part of a longer chain: its parent gathers it */
-} Eval;
+  EntKind kind;               /* what is being defined (ENT_NONE: nothing), */
+  uint32_t definition;        /* and its place */
+  IndexVars index;            /* of the sums around, and of the definition */
+  int in_statement;           /* the indices of b->index are in scope too */
+  int waiting;                /* for b->needed */
+  AstId first, root, pc;
+  uint32_t cap;
+  Value *value;        /* of node first + i */
+  unsigned char *open; /* node first + i is gathered by its parent, or nobody's business */
+  AstId *guarded;      /* the sum, product or `if` whose body or branch begins at node first + i, or 0 */
+  VEC(Loop) loops;
+  VEC(Value) terms;    /* of all open loops */
+  VEC(Operand) operands;
+};
 
 static const Value FAILED = {0};
 
 /* The value of something that is a number, not a condition. */
-static inline Value a_value(Expr e, Dim dim, int bare) { return (Value){e, dim, bare, 0}; }
+static inline Value a_value(Expr e, Dim dim, int bare) { return (Value){.e = e, .dim = dim, .bare = bare}; }
+
+/* Number of components. */
+static inline uint32_t parts_of(const Value *v) { return v->n ? v->n : 1; }
 
 static inline Value *value_of(const Eval *ev, AstId id) { return &ev->value[id - ev->first]; }
 
@@ -27,11 +54,42 @@ int dims_agree(const Builder *b, const Value *x, const Value *y);
 void report_mismatch(Eval *ev, Span span, AstId x, AstId y);
 int need_pure(Eval *ev, AstId arg, const char *what);
 
-/* base ^ exponent, written as node x. */
-Value power_value(Eval *ev, const AstExpr *x, AstId base_id, AstId exp_id);
+/* Whether two values have the same shape; reported where they have not. */
+int same_shape(Eval *ev, Span span, AstId x, AstId y);
 
-/* Whether the language has a function that this version gives no meaning to. */
+/* The value of a number, an operator, or a tuple. */
+Value operator_value(Eval *ev, AstId id);
+Value power_value(Eval *ev, const AstExpr *x, AstId base_id, AstId exp_id);
+void report_condition(Builder *b, AstId id);
+
+/* resolve_name.c: names, members of families and effects, components. */
+Value name_value(Eval *ev, const AstExpr *x);
+Value index_value(Eval *ev, const AstExpr *x);
+Value member_value(Eval *ev, const AstExpr *x);
+
+/* The node of the argument called `name`, when a function's body is evaluated; otherwise 0. */
+Expr function_argument(const Builder *b, const Definition *function, Name name);
+
+/* Whether the definition has its value. Where it has none yet, the evaluation waits for it; where it
+ * is being defined, it is defined by itself, which is reported. */
+int definition_ready(Eval *ev, EntKind kind, uint32_t index, Name name, Span span);
+
+/* The number an index expression stands for, or 0, reported. */
+int whole_number(Builder *b, const Value *v, AstId id, int64_t *out);
+
+/* Sums and products: starts one whose range is known (0: nothing to do, its value is there), takes
+ * the value of its body in (1: the body once more), and gives its value. */
+int loop_begin(Eval *ev, AstId id);
+int loop_next(Eval *ev);
+
+/* resolve_time.c */
+Value time_derivative(Builder *b, Value of, Span span, Context where);
+Value unit_value(Eval *ev, const AstExpr *x);
+Expr times_unit(Builder *b, Expr e, const Unit *u);
+
+/* Whether the language has a function that this version gives no meaning to; whether it takes vectors. */
 int call_is_not_yet(Name name);
+int call_takes_vectors(Name name);
 
 /* The value of an AST_CALL. */
 Value call_value(Eval *ev, const AstExpr *x);

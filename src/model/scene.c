@@ -33,9 +33,10 @@ EffectList model_unused_effects(const Ast *ast) {
   return (EffectList){unused.at, unused.n};
 }
 
+/* Blocks nest at most as deep as the parser lets them. */
 static int contains_expect(const AstStmt *list) {
   for (const AstStmt *s = list; s; s = s->next)
-    if (s->kind == STMT_EXPECT) return 1;
+    if (s->kind == STMT_EXPECT || (s->kind == STMT_FOR && contains_expect(s->body))) return 1;
   return 0;
 }
 
@@ -218,8 +219,8 @@ void scene_select(Builder *b, const ModelChoice *choice) {
 /* --- the scene's contents --- */
 
 /* The parameter that `c` or `drag.c` names; in `use drag(c = 1)`, effect is drag, and only its own
- * count. Reported when it is none; -1 then. */
-static int find_param(Builder *b, AstId id, Name effect) {
+ * count. Reported when it is none; NULL then. */
+static const Entity *find_param(Builder *b, AstId id, Name effect) {
   const AstExpr *x = ast_expr(b->ast, id);
   const Entity *e = NULL;
   int member = x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME;
@@ -236,7 +237,7 @@ static int find_param(Builder *b, AstId id, Name effect) {
     diag_error(b->diags, x->span, "a scene sets parameters: `name = value`");
     if (x->kind == AST_PRIME) diag_help(b->diags, "a start value is given by `start %s = ...`", ast_text(b, id));
   }
-  if (e && e->kind == ENT_PARAM) return (int)e->index;
+  if (e && e->kind == ENT_PARAM) return e;
   if (e && e->kind != ENT_NONE) {
     diag_error(b->diags, x->span, "`%s` is %s, not a parameter", e->name, ent_kind_text(e->kind));
     if (e->kind == ENT_COORD || e->kind == ENT_STATE) diag_help(b->diags, "its start is set by `start %s = ...`", e->name);
@@ -244,7 +245,7 @@ static int find_param(Builder *b, AstId id, Name effect) {
     if (e->kind == ENT_LET) diag_help(b->diags, "declare it by `param` where scenes give it values");
     if (e->kind == ENT_INPUT) diag_help(b->diags, "inputs are set when running: `lagc run MODEL SCENE %s=...`", e->name);
   }
-  return -1;
+  return NULL;
 }
 
 /* `span = 20` sets a parameter of that name; where there is none, the statement was meant. */
@@ -269,20 +270,29 @@ static int param_from(const Symbol *s, const void *data) {
   return s->kind == SYM_PARAM && s->index >= ((const ParamLimit *)data)->index;
 }
 
-static void set_param(Builder *b, const AstStmt *st, Name effect) {
-  if (!effect && advise_statement(b, st)) return;
-  int i = find_param(b, st->lhs, effect);
-  if (i < 0) return;
+static const Unit *param_unit(Builder *b, uint32_t i, void *data) {
+  (void)data;
+  return &b->m->params.at[i].unit;
+}
+
+static void give_param(Builder *b, uint32_t i, Expr e, Span span, void *data) {
+  (void)data;
   Param *p = &b->m->params.at[i];
-  Expr e = resolve_in(b, st->rhs, IN_START, NULL, &p->unit);
-  if (!e) return;
-  ParamLimit limit = {(uint32_t)i};
-  if (expr_contains(b->g, e, param_from, &limit)) {
-    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the value of `%s` may use only parameters declared before it", p->name);
+  ParamLimit limit = {i};
+  if (!expr_is_num(b->g, e) && expr_contains(b->g, e, param_from, &limit)) {
+    diag_error(b->diags, span, "the value of `%s` may use only parameters declared before it", p->name);
     return;
   }
   p->value = e;
-  check_sign(b, p, ast_expr(b->ast, st->rhs)->span);
+  check_sign(b, p, span);
+}
+
+static void set_param(Builder *b, const AstStmt *st, Name effect) {
+  static const Giver giver = {param_unit, give_param, NULL};
+  if (!effect && advise_statement(b, st)) return;
+  Target p = read_target(b, st->lhs);
+  const Entity *e = find_param(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
+  if (e) assign_values(b, &p, e, st->lhs, st->rhs, &giver);
 }
 
 static Name method_text(const Builder *b, AstId id) {
@@ -307,16 +317,47 @@ static void set_method(Builder *b, const AstStmt *st) {
   }
 }
 
+typedef struct {
+  EntKind kind;
+  int velocity;
+  Unit unit;
+} StartOf;
+
+static SymId start_target(const Builder *b, const StartOf *of, uint32_t i) {
+  if (of->kind == ENT_STATE) return b->m->states.at[i].z;
+  return of->velocity ? b->m->coords.at[i].v : b->m->coords.at[i].q;
+}
+
+/* That of the name; of a velocity, per second: the same factor. */
+static const Unit *start_unit(Builder *b, uint32_t i, void *data) {
+  StartOf *of = data;
+  of->unit = of->kind == ENT_STATE ? b->m->states.at[i].unit : b->m->coords.at[i].unit;
+  of->unit.dim = b->dims.at[start_target(b, of, i)];
+  return &of->unit;
+}
+
+static void give_start(Builder *b, uint32_t i, Expr value, Span span, void *data) {
+  (void)span;
+  Scene *sc = &b->m->scene;
+  SymId target = start_target(b, data, i);
+  if (!b->start_of) b->start_of = ARENA_ARRAY(b->arena, uint32_t, expr_symbol_count(b->g) + 1);
+  if (b->start_of[target]) {
+    sc->starts.at[b->start_of[target] - 1].value = value;
+    return;
+  }
+  vec_push(b->arena, &sc->starts, ((Start){target, value}));
+  b->start_of[target] = sc->starts.n;
+}
+
 static void set_start(Builder *b, const AstStmt *st) {
   if (st->exactly) {
     not_yet(b, st->span, "`start exactly` (it needs constraints)");
     return;
   }
-  const AstExpr *x = ast_expr(b->ast, st->lhs);
-  const AstExpr *name = x->kind == AST_PRIME ? ast_expr(b->ast, x->a) : x;
-  if (name->kind != AST_NAME) {
-    if (name->kind == AST_INDEX || name->kind == AST_TUPLE || name->kind == AST_LIST) not_yet(b, name->span, "families and vectors");
-    else if (name->kind != AST_ERROR) diag_error(b->diags, x->span, "a start gives a coordinate or a velocity: `start th = 90 [deg]`");
+  Target p = read_target(b, st->lhs);
+  const AstExpr *x = ast_expr(b->ast, st->lhs), *name = ast_expr(b->ast, p.stem);
+  if (p.wrong || p.primes > 1 || name->kind != AST_NAME) {
+    if (name->kind != AST_ERROR) diag_error(b->diags, x->span, "a start gives a coordinate or a velocity: `start th = 90 [deg]`");
     return;
   }
   const Entity *e = resolve_name(b, name->name, name->span, NULL, "coord");
@@ -328,60 +369,15 @@ static void set_start(Builder *b, const AstStmt *st) {
     if (e->kind == ENT_PARAM) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
     return;
   }
-  Unit unit = e->kind == ENT_COORD ? b->m->coords.at[e->index].unit : b->m->states.at[e->index].unit;
-  SymId target = e->kind == ENT_COORD ? b->m->coords.at[e->index].q : b->m->states.at[e->index].z;
-  if (x->kind == AST_PRIME) {
-    if (e->kind == ENT_STATE) {
-      diag_error(b->diags, x->span, "the rate of a state follows from its flow");
-      diag_help(b->diags, "the state itself starts somewhere: `start %s = ...`", name->name);
-      return;
-    }
-    target = b->m->coords.at[e->index].v;
-    unit.dim = b->dims.at[target]; /* per second: the same factor */
+  if (p.primes && e->kind == ENT_STATE) {
+    diag_error(b->diags, x->span, "the rate of a state follows from its flow");
+    diag_help(b->diags, "the state itself starts somewhere: `start %s = ...`", name->name);
+    return;
   }
-  Expr v = resolve_in(b, st->rhs, IN_START, NULL, &unit);
-  if (!v) return;
-  Start start = {target, v};
-  for (uint32_t i = 0; i < b->m->scene.starts.n; i++)
-    if (b->m->scene.starts.at[i].target == target) {
-      b->m->scene.starts.at[i] = start;
-      return;
-    }
-  vec_push(b->arena, &b->m->scene.starts, start);
+  StartOf of = {.kind = e->kind, .velocity = p.primes > 0};
+  Giver giver = {start_unit, give_start, &of};
+  assign_values(b, &p, e, st->lhs, st->rhs, &giver);
 }
-
-/* The unit that an output is shown in: a name's own, otherwise that of its dimension. */
-static Unit output_unit(Builder *b, AstId id, Dim dim) {
-  const AstExpr *x = ast_expr(b->ast, id);
-  int primes = 0;
-  for (; x->kind == AST_PRIME; primes++) x = ast_expr(b->ast, x->a);
-  int ambiguous;
-  const Entity *e = x->kind == AST_NAME ? scope_find(&b->scope, x->name, NULL, &ambiguous) : NULL;
-  Unit u = unit_of_dim(b, dim);
-  if (!e) return u;
-  const Unit *own = e->kind == ENT_COORD ? &b->m->coords.at[e->index].unit : e->kind == ENT_STATE ? &b->m->states.at[e->index].unit
-                  : e->kind == ENT_INPUT ? &b->m->inputs.at[e->index].unit : e->kind == ENT_OBSERVE ? &b->m->observes.at[e->index].unit
-                  : e->kind == ENT_PARAM ? &b->m->params.at[e->index].unit : NULL;
-  if (!own || !own->text[0]) return u;
-  u = *own;
-  u.dim = dim;
-  if (primes) u.text = arena_printf(b->arena, primes == 1 ? "%s/s" : "%s/s^%d", own->text, primes);
-  return u;
-}
-
-/* Index of the output that this expression is; it is added when it is not there. -1 after an error. */
-static int add_output_as(Builder *b, AstId id, Name label) {
-  Value v = resolve(b, id, IN_OBSERVE, NULL);
-  if (!v.e) return -1;
-  Scene *sc = &b->m->scene;
-  for (uint32_t i = 0; i < sc->outputs.n; i++)
-    if (sc->outputs.at[i].name == label) return (int)i;
-  Output o = {.name = label, .span = ast_expr(b->ast, id)->span, .unit = output_unit(b, id, v.dim), .value = v.e};
-  vec_push(b->arena, &sc->outputs, o);
-  return (int)sc->outputs.n - 1;
-}
-
-static int add_output(Builder *b, AstId id) { return add_output_as(b, id, intern(b->ast->names, ast_text(b, id))); }
 
 static Unit seconds(void) {
   return (Unit){.dim = {1, {[DIM_TIME] = DIM_ONE}}, .factor = num_int(1), .text = "s"};
@@ -389,7 +385,7 @@ static Unit seconds(void) {
 
 static void set_output(Builder *b, const AstStmt *st) {
   b->m->scene.outputs.n = 0;
-  for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) add_output(b, i);
+  for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) add_outputs(b, i);
   Unit s = seconds();
   if (st->rhs) {
     double every = resolve_number(b, st->rhs, &s, "the output interval");
@@ -405,8 +401,12 @@ static void set_monitor(Builder *b, const AstStmt *st) {
   mon.name = intern(b->ast->names, ast_text(b, st->lhs));
   if (mon.limit <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a monitor's limit must be positive");
   if (x->kind != AST_NAME || strcmp(x->name, "energy") != 0) {
-    mon.output = add_output(b, st->lhs);
-    if (mon.output < 0) return;
+    uint32_t errors = b->diags->errors;
+    mon.output = add_outputs(b, st->lhs);
+    if (mon.output < 0) {
+      if (b->diags->errors == errors) diag_error(b->diags, x->span, "a monitor watches one number");
+      return;
+    }
   }
   vec_push(b->arena, &b->m->scene.monitors, mon);
 }
@@ -475,5 +475,5 @@ void scene_build(Builder *b, const ModelChoice *choice) {
     if ((*s)->doc) sc->doc = (*s)->doc;
   }
   if (!sc->outputs.n) default_outputs(b);
-  for (uint32_t i = 0; i < choice->nasked; i++) add_output_as(b, choice->asked[i].expr, choice->asked[i].name);
+  for (uint32_t i = 0; i < choice->nasked; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
 }

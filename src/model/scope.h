@@ -6,6 +6,10 @@
 #include "base/source.h"
 #include "base/intern.h"
 
+/* Families: the entity of `th[N]` has index ranges, and its members stand one after the other in the
+ * model's array, row by row, the components of a vector together. Of families whose members are
+ * declared one by one (lets, observables) each member is an entity of its own, in a second scope. */
+
 typedef enum {
   ENT_NONE, /* declared, but refused as "not yet": its uses are not reported again */
   ENT_COORD, ENT_STATE, ENT_PARAM, ENT_CONST, ENT_INPUT, ENT_LET, ENT_FUNCTION, ENT_OBSERVE,
@@ -17,6 +21,9 @@ typedef struct {
   uint32_t index; /* into the model's array of that kind */
   Name name, effect; /* effect NULL: the model's own */
   Span span;
+  uint8_t ndims;     /* a family has one index, or two */
+  uint8_t parts;     /* components of a vector: 2 or 3; otherwise 0 */
+  int64_t lo[2], hi[2]; /* the range of each index */
   uint32_t next; /* in its bucket, from 1; 0: none */
 } Entity;
 
@@ -36,6 +43,13 @@ const Entity *scope_own(const Scope *s, Name name, Name effect);
 const Entity *scope_find(const Scope *s, Name name, Name effect, int *ambiguous);
 
 void scope_add(Scope *s, Entity e);
+
+/* How many scalars it stands for. */
+static inline uint32_t entity_size(const Entity *e) {
+  uint64_t n = e->parts ? e->parts : 1;
+  for (int k = 0; k < e->ndims; k++) n *= (uint64_t)(e->hi[k] - e->lo[k] + 1);
+  return (uint32_t)n;
+}
 
 const char *ent_kind_text(EntKind kind); /* "a coordinate", ... */
 

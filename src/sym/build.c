@@ -13,6 +13,10 @@ typedef struct {
 
 typedef VEC(Pair) Pairs;
 
+/* Room for the pairs of most sums and products, in the frame of the function that builds one. */
+enum { ROOM = 8 };
+#define ROOM_FOR(room) {(room), 0, ROOM}
+
 static int by_node(const void *a, const void *b) {
   Expr x = ((const Pair *)a)->node, y = ((const Pair *)b)->node;
   return (x > y) - (x < y);
@@ -31,7 +35,7 @@ static void collect(Pairs *p) {
 }
 
 static Expr make_pairs(ExprGraph *g, ExprOp op, const Pairs *p) {
-  Expr *args = ARENA_ARRAY(g->arena, Expr, 2 * p->n);
+  Expr room[2 * ROOM], *args = p->n <= ROOM ? room : ARENA_ARRAY(g->arena, Expr, 2 * p->n);
   for (uint32_t i = 0; i < p->n; i++) {
     args[2 * i] = p->at[i].node;
     args[2 * i + 1] = expr_num(g, p->at[i].number);
@@ -115,10 +119,12 @@ static int use_pythagoras(ExprGraph *g, Pairs *p) {
 
 /* A rewritten pair may hold a number, or a sum of one pair, as its node: normalise. */
 static void renormalise(ExprGraph *g, Pairs *p) {
-  Pairs fresh = {0};
+  Pair room[ROOM];
+  Pairs fresh = ROOM_FOR(room);
   for (uint32_t i = 0; i < p->n; i++)
     if (!num_is_zero(p->at[i].number)) push_terms(g, &fresh, p->at[i].node, p->at[i].number);
-  *p = fresh;
+  p->n = 0;
+  for (uint32_t i = 0; i < fresh.n; i++) vec_push(g->arena, p, fresh.at[i]);
   collect(p);
 }
 
@@ -134,7 +140,8 @@ static Expr finish_sum(ExprGraph *g, Pairs *p) {
 }
 
 Expr expr_add_n(ExprGraph *g, const Expr *terms, uint32_t n) {
-  Pairs p = {0};
+  Pair room[ROOM];
+  Pairs p = ROOM_FOR(room);
   for (uint32_t i = 0; i < n; i++) push_terms(g, &p, terms[i], num_int(1));
   return finish_sum(g, &p);
 }
@@ -148,7 +155,8 @@ Expr expr_add(ExprGraph *g, Expr a, Expr b) {
 
 Expr expr_scale(ExprGraph *g, Num c, Expr a) {
   if (num_is_one(c)) return a;
-  Pairs p = {0};
+  Pair room[ROOM];
+  Pairs p = ROOM_FOR(room);
   push_terms(g, &p, a, c);
   return finish_sum(g, &p);
 }
@@ -156,7 +164,8 @@ Expr expr_scale(ExprGraph *g, Num c, Expr a) {
 Expr expr_neg(ExprGraph *g, Expr a) { return expr_scale(g, num_int(-1), a); }
 
 Expr expr_sub(ExprGraph *g, Expr a, Expr b) {
-  Pairs p = {0};
+  Pair room[ROOM];
+  Pairs p = ROOM_FOR(room);
   push_terms(g, &p, a, num_int(1));
   push_terms(g, &p, b, num_int(-1));
   return finish_sum(g, &p);
@@ -205,7 +214,8 @@ static void push_power(ExprGraph *g, Product *r, Expr base, Num e) {
   switch (expr_op(g, base)) {
     case EX_NUM: push_number_power(g, r, expr_number(g, base), e); return;
     case EX_PROD: {
-      Product kept = {.c = num_int(1)};
+      Pair room[ROOM];
+      Product kept = {.c = num_int(1), .p = ROOM_FOR(room)};
       for (uint32_t i = 0; i < expr_pairs(g, base, EX_PROD); i++) {
         Num k;
         Expr b = expr_pair(g, base, EX_PROD, i, &k);
@@ -250,7 +260,8 @@ static void push_power(ExprGraph *g, Product *r, Expr base, Num e) {
 
 /* Collected exponents may have made a power that simplifies further (2^(1/2) squared). */
 static int settle_factors(ExprGraph *g, Product *r) {
-  Product again = {.c = r->c};
+  Pair room[ROOM];
+  Product again = {.c = r->c, .p = ROOM_FOR(room)};
   int changed = 0;
   for (uint32_t i = 0; i < r->p.n; i++) {
     Pair f = r->p.at[i];
@@ -264,7 +275,9 @@ static int settle_factors(ExprGraph *g, Product *r) {
     } else push_factor(g, &again, f.node, f.number);
   }
   if (changed) {
-    *r = again;
+    r->c = again.c;
+    r->p.n = 0;
+    for (uint32_t i = 0; i < again.p.n; i++) vec_push(g->arena, &r->p, again.p.at[i]);
     collect(&r->p);
   }
   return changed;
@@ -280,7 +293,8 @@ static Expr finish_product(ExprGraph *g, Product *r) {
 }
 
 Expr expr_mul_n(ExprGraph *g, const Expr *factors, uint32_t n) {
-  Product r = {.c = num_int(1)};
+  Pair room[ROOM];
+  Product r = {.c = num_int(1), .p = ROOM_FOR(room)};
   for (uint32_t i = 0; i < n; i++) {
     if (factors[i] == g->zero) return g->zero;
     Expr f = factors[i];
@@ -308,7 +322,8 @@ Expr expr_pow_num(ExprGraph *g, Expr base, Num e) {
   if (num_is_zero(e)) return g->one;
   if (num_is_one(e)) return base;
   if (base == g->zero && num_sign(e) > 0) return g->zero;
-  Product r = {.c = num_int(1)};
+  Pair room[ROOM];
+  Product r = {.c = num_int(1), .p = ROOM_FOR(room)};
   push_power(g, &r, base, e);
   return finish_product(g, &r);
 }
@@ -434,12 +449,14 @@ Expr expr_rebuild(ExprGraph *g, Expr e, const Expr *args) {
     case EX_NUM: case EX_SYM: case EX_COUNT: return e;
     case EX_DEF: return expr_def(g, expr_def_name(g, e), args[0]);
     case EX_SUM: {
-      Pairs p = {0};
+      Pair room[ROOM];
+      Pairs p = ROOM_FOR(room);
       for (uint32_t i = 0; i < n; i += 2) push_terms(g, &p, args[i], expr_number(g, args[i + 1]));
       return finish_sum(g, &p);
     }
     case EX_PROD: {
-      Product r = {.c = num_int(1)};
+      Pair room[ROOM];
+      Product r = {.c = num_int(1), .p = ROOM_FOR(room)};
       for (uint32_t i = 0; i < n; i += 2) {
         if (args[i] == g->zero && num_sign(expr_number(g, args[i + 1])) > 0) return g->zero;
         push_power(g, &r, args[i], expr_number(g, args[i + 1]));

@@ -1,5 +1,8 @@
 #include "sym/diff.h"
 
+#include <stdio.h>
+#include <stdlib.h>
+
 #include "base/strbuf.h"
 #include "sym/expr_impl.h"
 
@@ -119,9 +122,10 @@ static Expr name_sum(ExprGraph *g, const char *before, Name name, const char *af
   Num c;
   int sum = expr_pairs(g, body, EX_SUM) > 1;
   if (!sum && expr_pairs(g, expr_pair(g, body, EX_SUM, 0, &c), EX_PROD) < LONG_PRODUCT) return body;
-  StrBuf b = strbuf(g->arena);
-  sb_printf(&b, "%s%s%s", before, name, after);
-  Name full = intern(g->names, sb_text(&b));
+  char room[64];
+  int n = snprintf(room, sizeof room, "%s%s%s", before, name, after);
+  const char *text = n < (int)sizeof room ? room : arena_printf(g->arena, "%s%s%s", before, name, after);
+  Name full = intern(g->names, text);
   return expr_def_fresh(g, full, body);
 }
 
@@ -134,18 +138,19 @@ static Expr add_terms(ExprGraph *g, const Terms *t) { return t->n ? expr_add_n(g
 void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
                   const char *suffix, Expr *out) {
   ExprList l = expr_topo(g, roots, n);
-  ExprMap dot = expr_map(g->arena); /* absent: zero */
+  ExprMap *dot = &g->work; /* absent: zero */
+  expr_map_clear(dot);
   Terms terms = {0};
   for (uint32_t k = 0; k < l.n; k++) {
     Expr e = l.at[k];
     if (expr_op(g, e) == EX_SYM) {
       SymId s = expr_sym_id(g, e);
-      if (s < nseed && seed[s]) expr_map_set(&dot, e, seed[s]);
+      if (s < nseed && seed[s]) expr_map_set(dot, e, seed[s]);
       continue;
     }
     terms.n = 0;
     for (uint32_t i = 0; i < inputs(g, e); i++) {
-      Expr d = expr_map_get(&dot, input(g, e, i));
+      Expr d = expr_map_get(dot, input(g, e, i));
       if (!d || d == g->zero) continue;
       Expr p = partial(g, e, i);
       Expr term = expr_mul(g, p, d);
@@ -159,10 +164,10 @@ void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed,
       Name name = intern(g->names, sb_text(&b));
       sum = expr_def_fresh(g, name, sum);
     }
-    expr_map_set(&dot, e, sum);
+    expr_map_set(dot, e, sum);
   }
   for (uint32_t i = 0; i < n; i++) {
-    Expr d = roots[i] ? expr_map_get(&dot, roots[i]) : 0;
+    Expr d = roots[i] ? expr_map_get(dot, roots[i]) : 0;
     out[i] = d ? d : g->zero;
   }
 }
@@ -178,49 +183,89 @@ Expr expr_diff(ExprGraph *g, Expr e, SymId sym) {
 
 /* --- reverse --- */
 
-/* Contributions to a node's adjoint: a list in a shared array. */
-typedef struct {
-  Expr value;
-  uint32_t next;
-} Contribution;
-
 typedef struct {
   ExprGraph *g;
-  VEC(Contribution) pool; /* [0] unused */
-  ExprMap head;
+  ExprMap *head; /* node -> its newest contribution in g->pool, of which [0] is unused */
+  Terms terms; /* scratch */
 } Adjoints;
 
 static void contribute(Adjoints *a, Expr node, Expr value) {
   if (value == a->g->zero || expr_is_num(a->g, node)) return;
-  Contribution c = {value, expr_map_get(&a->head, node)};
-  vec_push(a->g->arena, &a->pool, c);
-  expr_map_set(&a->head, node, a->pool.n - 1);
+  Contribution c = {value, expr_map_get(a->head, node)};
+  vec_push(a->g->arena, &a->g->pool, c);
+  expr_map_set(a->head, node, a->g->pool.n - 1);
 }
 
 static Expr adjoint_of(Adjoints *a, Expr node) {
-  Terms terms = {0};
-  for (uint32_t i = expr_map_get(&a->head, node); i; i = a->pool.at[i].next)
-    vec_push(a->g->arena, &terms, a->pool.at[i].value);
-  return add_terms(a->g, &terms);
+  a->terms.n = 0;
+  for (uint32_t i = expr_map_get(a->head, node); i; i = a->g->pool.at[i].next)
+    vec_push(a->g->arena, &a->terms, a->g->pool.at[i].value);
+  return add_terms(a->g, &a->terms);
 }
 
-void expr_gradient(ExprGraph *g, Expr e, const SymId *syms, uint32_t n, Expr *out) {
-  ExprList l = expr_topo(g, &e, 1);
-  Adjoints a = {.g = g, .head = expr_map(g->arena)};
-  vec_push(g->arena, &a.pool, ((Contribution){0}));
-  if (l.n) contribute(&a, e, g->one);
-  for (uint32_t k = l.n; k-- > 0;) {
-    Expr x = l.at[k];
-    if (expr_op(g, x) == EX_SYM || expr_op(g, x) == EX_NUM) continue;
+/* Whether a node contains a symbol by which a derivative is wanted: nothing else gets an adjoint. */
+typedef struct {
+  const ExprMap *targets;
+  SymKind kind;
+  uint32_t below;
+} Wanted;
+
+static int is_wanted(const Symbol *s, const void *data) {
+  const Wanted *w = data;
+  if (w->targets) return expr_map_get(w->targets, s->node) != 0;
+  return s->kind == w->kind && s->index < w->below;
+}
+
+/* The adjoints of all nodes of e that contain a wanted symbol; l: the nodes of e. */
+static Adjoints sweep(ExprGraph *g, Expr e, const Wanted *w, ExprList *l) {
+  *l = expr_topo(g, &e, 1);
+  ExprMap *live = &g->live;
+  expr_mark_containing(g, *l, is_wanted, w, live);
+  Adjoints a = {.g = g, .head = &g->work};
+  expr_map_clear(a.head);
+  g->pool.n = 0;
+  vec_push(g->arena, &g->pool, ((Contribution){0}));
+  if (expr_map_get(live, e)) contribute(&a, e, g->one);
+  for (uint32_t k = l->n; k-- > 0;) {
+    Expr x = l->at[k];
+    if (expr_op(g, x) == EX_SYM || !expr_map_get(live, x)) continue;
     Expr bar = adjoint_of(&a, x);
     if (bar == g->zero) continue;
     if (expr_op(g, x) == EX_DEF) bar = name_sum(g, "d_", expr_def_name(g, x), "", bar);
     for (uint32_t i = 0; i < inputs(g, x); i++) {
-      if (expr_is_num(g, input(g, x, i))) continue;
+      if (!expr_map_get(live, input(g, x, i))) continue;
       Expr p = partial(g, x, i);
       Expr term = expr_mul(g, p, bar);
       contribute(&a, input(g, x, i), term);
     }
   }
+  return a;
+}
+
+void expr_gradient(ExprGraph *g, Expr e, const SymId *syms, uint32_t n, Expr *out) {
+  ExprMap targets = expr_map(g->arena);
+  for (uint32_t i = 0; i < n; i++) expr_map_set(&targets, expr_symbol(g, syms[i])->node, 1);
+  Wanted w = {.targets = &targets};
+  ExprList l;
+  Adjoints a = sweep(g, e, &w, &l);
   for (uint32_t i = 0; i < n; i++) out[i] = adjoint_of(&a, expr_symbol(g, syms[i])->node);
+}
+
+static int by_index(const void *a, const void *b) {
+  const ExprPartial *x = a, *y = b;
+  return (x->index > y->index) - (x->index < y->index);
+}
+
+ExprPartials expr_gradient_sparse(ExprGraph *g, Expr e, SymKind kind, uint32_t below) {
+  Wanted w = {.kind = kind, .below = below};
+  ExprList l;
+  VEC(ExprPartial) found = {0};
+  Adjoints a = sweep(g, e, &w, &l);
+  for (uint32_t i = 0; i < l.n; i++) {
+    if (expr_op(g, l.at[i]) != EX_SYM || !is_wanted(expr_sym_of(g, l.at[i]), &w)) continue;
+    Expr d = adjoint_of(&a, l.at[i]);
+    if (d != g->zero) vec_push(g->arena, &found, ((ExprPartial){expr_sym_of(g, l.at[i])->index, d}));
+  }
+  if (found.n) qsort(found.at, found.n, sizeof *found.at, by_index);
+  return (ExprPartials){found.at, found.n};
 }

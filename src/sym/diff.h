@@ -13,6 +13,20 @@ Expr expr_diff(ExprGraph *g, Expr e, SymId sym);
  * become definitions themselves, so that a chain of lets keeps its length. */
 void expr_gradient(ExprGraph *g, Expr e, const SymId *syms, uint32_t n, Expr *out);
 
+/* The derivatives that are not zero, by the symbols of one kind whose index is below `below`, in the
+ * order of the index. The work is that of e's own graph, however many symbols the model has. */
+typedef struct {
+  uint32_t index; /* of the symbol, within its kind */
+  Expr e;
+} ExprPartial;
+
+typedef struct {
+  const ExprPartial *at;
+  uint32_t n;
+} ExprPartials;
+
+ExprPartials expr_gradient_sparse(ExprGraph *g, Expr e, SymKind kind, uint32_t below);
+
 /* Directional derivatives out[i] = sum over s of d(roots[i])/ds * seed[s]. seed has nseed entries,
  * 0 meaning zero. The derivative of a definition `a` becomes the definition `a` + suffix
  * ("'" for the total time derivative). */

@@ -16,6 +16,8 @@ ExprGraph *expr_graph(Arena *a, Interner *names) {
   g->arena = a;
   g->names = names;
   g->seen = expr_map(a);
+  g->work = expr_map(a);
+  g->live = expr_map(a);
   g->table_cap = 1024;
   g->table = ARENA_ARRAY(a, Expr, g->table_cap);
   vec_push(a, &g->nodes, ((Node){0}));

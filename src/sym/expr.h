@@ -126,11 +126,17 @@ ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n);
 int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data);
 int expr_contains_sym(ExprGraph *g, Expr e, SymId sym);
 
-/* Scratch map from node to number, emptied in O(1) by expr_map_clear. */
+/* Scratch map from node to number, emptied in O(1) by expr_map_clear. It takes memory for what is in
+ * it, not for the graph: a model may make one for each of its thousands of equations. */
+typedef struct {
+  Expr key;
+  uint32_t value, stamp;
+} ExprMapEntry;
+
 typedef struct {
   Arena *arena;
-  uint32_t *value, *stamp;
-  uint32_t cap, epoch;
+  ExprMapEntry *at;
+  uint32_t cap, shift, n, epoch;
 } ExprMap;
 ExprMap expr_map(Arena *a);
 void expr_map_clear(ExprMap *m);
@@ -143,6 +149,9 @@ ExprMap expr_containing(ExprGraph *g, const Expr *roots, uint32_t n, int (*want)
 /* e with symbols replaced: with[s] stands for symbol s where it is not 0 (n entries).
  * Definitions whose body changes are rebuilt under their name followed by suffix (may be ""). */
 Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const char *suffix);
+
+/* e with n symbols replaced: syms[i] becomes with[i]. */
+Expr expr_replace(ExprGraph *g, Expr e, const SymId *syms, const Expr *with, uint32_t n);
 
 /* e with every definition replaced by its body. */
 Expr expr_expand_defs(ExprGraph *g, Expr e);

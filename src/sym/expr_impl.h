@@ -11,6 +11,12 @@ typedef struct {
   Name name;        /* DEF only */
 } Node;
 
+/* Contributions to a node's adjoint in a reverse sweep: a list in a shared array. */
+typedef struct {
+  Expr value;
+  uint32_t next;
+} Contribution;
+
 /* A definition by the name it was asked for. body 0: counts how often the name was given away. */
 typedef struct {
   Name name;
@@ -28,6 +34,11 @@ struct ExprGraph {
   Expr *table; /* hash of nodes, open addressing */
   uint32_t table_cap;
   ExprMap seen; /* scratch of expr_topo */
+  ExprMap live; /* scratch of reverse sweeps */
+  VEC(Contribution) pool;
+  ExprMap work; /* scratch of passes that do not call each other: substitution, derivatives */
+  Expr *found, *spare; /* scratch of expr_topo, used again */
+  uint32_t found_cap, spare_n;
   VEC(Named) named;          /* definitions by name asked for and body: see expr_def_fresh */
   uint32_t *named_table, named_cap;
   Expr zero, one, minus_one;
@@ -37,5 +48,8 @@ struct ExprGraph {
 Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
 
 ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
+
+/* Sets m to 1 for the nodes of l (all that some roots need) which contain a wanted symbol. */
+void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s, const void *data), const void *data, ExprMap *m);
 
 #endif

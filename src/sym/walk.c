@@ -8,27 +8,39 @@
 /* --- maps --- */
 
 ExprMap expr_map(Arena *a) { return (ExprMap){.arena = a, .epoch = 1}; }
-void expr_map_clear(ExprMap *m) { m->epoch++; }
+
+void expr_map_clear(ExprMap *m) {
+  m->epoch++;
+  m->n = 0;
+}
+
+/* The place of e, or the free one where it belongs (open addressing; Knuth's multiplicative hash). */
+static uint32_t map_place(const ExprMap *m, Expr e) {
+  uint32_t i = (e * 2654435769u) >> m->shift;
+  while (m->at[i].stamp == m->epoch && m->at[i].key != e) i = (i + 1) & (m->cap - 1);
+  return i;
+}
+
+static void map_grow(ExprMap *m) {
+  ExprMap old = *m;
+  m->cap = old.cap ? 2 * old.cap : 64;
+  m->shift = old.cap ? old.shift - 1 : 26;
+  m->at = ARENA_ARRAY(m->arena, ExprMapEntry, m->cap);
+  for (uint32_t i = 0; i < old.cap; i++)
+    if (old.at[i].stamp == m->epoch) m->at[map_place(m, old.at[i].key)] = old.at[i];
+}
 
 void expr_map_set(ExprMap *m, Expr e, uint32_t value) {
-  if (e >= m->cap) {
-    uint32_t cap = m->cap ? m->cap : 1024;
-    while (cap <= e) cap *= 2;
-    uint32_t *v = ARENA_ARRAY(m->arena, uint32_t, cap), *s = ARENA_ARRAY(m->arena, uint32_t, cap);
-    if (m->cap) {
-      memcpy(v, m->value, m->cap * sizeof *v);
-      memcpy(s, m->stamp, m->cap * sizeof *s);
-    }
-    m->value = v;
-    m->stamp = s;
-    m->cap = cap;
-  }
-  m->value[e] = value;
-  m->stamp[e] = m->epoch;
+  if (2 * m->n >= m->cap) map_grow(m);
+  ExprMapEntry *x = &m->at[map_place(m, e)];
+  m->n += x->stamp != m->epoch;
+  *x = (ExprMapEntry){e, value, m->epoch};
 }
 
 uint32_t expr_map_get(const ExprMap *m, Expr e) {
-  return e < m->cap && m->stamp[e] == m->epoch ? m->value[e] : 0;
+  if (!m->n) return 0;
+  const ExprMapEntry *x = &m->at[map_place(m, e)];
+  return x->stamp == m->epoch ? x->value : 0;
 }
 
 /* --- reachable nodes --- */
@@ -38,8 +50,33 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+/* Sorts n numbers below 2^33: by comparison where they are few, otherwise by digits of eleven bits. */
+static void sort_ids(ExprGraph *g, Expr *at, uint32_t n) {
+  enum { FEW = 512, BITS = 11, DIGITS = 1 << BITS };
+  if (n < 2) return;
+  if (n < FEW) {
+    qsort(at, n, sizeof *at, ascending);
+    return;
+  }
+  if (g->spare_n < n) {
+    g->spare_n = 2 * n;
+    g->spare = ARENA_ARRAY(g->arena, Expr, g->spare_n);
+  }
+  for (uint32_t shift = 0; shift < 32; shift += BITS) {
+    uint32_t place[DIGITS] = {0}, sum = 0;
+    for (uint32_t i = 0; i < n; i++) place[(at[i] >> shift) & (DIGITS - 1)]++;
+    for (uint32_t d = 0; d < DIGITS; d++) {
+      uint32_t count = place[d];
+      place[d] = sum;
+      sum += count;
+    }
+    for (uint32_t i = 0; i < n; i++) g->spare[place[(at[i] >> shift) & (DIGITS - 1)]++] = at[i];
+    memcpy(at, g->spare, n * sizeof *at);
+  }
+}
+
 ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) {
-  VEC(Expr) found = {0};
+  VEC(Expr) found = {g->found, 0, g->found_cap};
   expr_map_clear(&g->seen);
   for (uint32_t i = 0; i < n; i++)
     if (roots[i] && !expr_map_get(&g->seen, roots[i])) {
@@ -55,8 +92,12 @@ ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) {
       vec_push(g->arena, &found, a);
     }
   }
-  if (found.n) qsort(found.at, found.n, sizeof *found.at, ascending);
-  return (ExprList){found.at, found.n};
+  sort_ids(g, found.at, found.n);
+  g->found = found.at;
+  g->found_cap = found.cap;
+  Expr *list = ARENA_ARRAY(g->arena, Expr, found.n + 1);
+  if (found.n) memcpy(list, found.at, found.n * sizeof *list);
+  return (ExprList){list, found.n};
 }
 
 int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data) {
@@ -73,15 +114,19 @@ int expr_contains_sym(ExprGraph *g, Expr e, SymId sym) {
   return expr_contains(g, e, same_symbol, &node);
 }
 
-ExprMap expr_containing(ExprGraph *g, const Expr *roots, uint32_t n, int (*want)(const Symbol *s, const void *data), const void *data) {
-  ExprList l = expr_topo(g, roots, n);
-  ExprMap m = expr_map(g->arena);
+void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s, const void *data), const void *data, ExprMap *m) {
+  expr_map_clear(m);
   for (uint32_t i = 0; i < l.n; i++) {
     Expr e = l.at[i];
     int yes = expr_op(g, e) == EX_SYM && want(expr_sym_of(g, e), data);
-    for (uint32_t k = 0; k < expr_nargs(g, e) && !yes; k++) yes = expr_map_get(&m, expr_arg(g, e, k)) != 0;
-    if (yes) expr_map_set(&m, e, 1);
+    for (uint32_t k = 0; k < expr_nargs(g, e) && !yes; k++) yes = expr_map_get(m, expr_arg(g, e, k)) != 0;
+    if (yes) expr_map_set(m, e, 1);
   }
+}
+
+ExprMap expr_containing(ExprGraph *g, const Expr *roots, uint32_t n, int (*want)(const Symbol *s, const void *data), const void *data) {
+  ExprMap m = expr_map(g->arena);
+  expr_mark_containing(g, expr_topo(g, roots, n), want, data, &m);
   return m;
 }
 
@@ -99,19 +144,14 @@ static int mapped_args(const ExprGraph *g, const ExprMap *m, Expr e, Expr *args)
   return changed;
 }
 
-Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const char *suffix) {
-  if (!e) return 0;
+/* e with the symbols that are in the map replaced. */
+static Expr rewrite(ExprGraph *g, Expr e, ExprMap *m, const char *suffix) {
   ExprList l = expr_topo(g, &e, 1);
-  ExprMap m = expr_map(g->arena);
   for (uint32_t i = 0; i < l.n; i++) {
     Expr x = l.at[i];
-    if (expr_op(g, x) == EX_SYM) {
-      SymId s = expr_sym_id(g, x);
-      if (s < n && with[s]) expr_map_set(&m, x, with[s]);
-      continue;
-    }
+    if (expr_op(g, x) == EX_SYM) continue;
     Expr *args = ARENA_ARRAY(g->arena, Expr, expr_nargs(g, x) + 1);
-    if (!mapped_args(g, &m, x, args)) continue;
+    if (!mapped_args(g, m, x, args)) continue;
     Expr y;
     if (expr_op(g, x) == EX_DEF) {
       StrBuf name = strbuf(g->arena);
@@ -121,10 +161,29 @@ Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const c
     } else {
       y = expr_rebuild(g, x, args);
     }
-    expr_map_set(&m, x, y);
+    expr_map_set(m, x, y);
   }
-  Expr r = expr_map_get(&m, e);
+  Expr r = expr_map_get(m, e);
   return r ? r : e;
+}
+
+Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const char *suffix) {
+  if (!e) return 0;
+  expr_map_clear(&g->work);
+  ExprList l = expr_topo(g, &e, 1);
+  for (uint32_t i = 0; i < l.n; i++) {
+    if (expr_op(g, l.at[i]) != EX_SYM) continue;
+    SymId s = expr_sym_id(g, l.at[i]);
+    if (s < n && with[s]) expr_map_set(&g->work, l.at[i], with[s]);
+  }
+  return g->work.n ? rewrite(g, e, &g->work, suffix) : e;
+}
+
+Expr expr_replace(ExprGraph *g, Expr e, const SymId *syms, const Expr *with, uint32_t n) {
+  if (!e) return 0;
+  expr_map_clear(&g->work);
+  for (uint32_t i = 0; i < n; i++) expr_map_set(&g->work, expr_symbol(g, syms[i])->node, with[i]);
+  return rewrite(g, e, &g->work, "");
 }
 
 Expr expr_expand_defs(ExprGraph *g, Expr e) {
@@ -160,7 +219,7 @@ double expr_written_size(ExprGraph *g, Expr e, uint32_t *distinct) {
       expr_map_set(&g->seen, a, 1);
       vec_push(g->arena, &found, a);
     }
-  qsort(found.at, found.n, sizeof *found.at, ascending);
+  sort_ids(g, found.at, found.n);
   double *size = ARENA_ARRAY(g->arena, double, found.n);
   for (uint32_t k = 0; k < found.n; k++) {
     expr_map_set(&g->seen, found.at[k], k + 1);

@@ -311,11 +311,19 @@ static void need(Fact *f, char c) {
   if (!take(f, c)) fail(f, "expected `%c` before `%s`", c, f->at);
 }
 
-/* A name with its dots and primes. */
+/* The characters of [2] and [2,1]. */
+static int index_character(const char *name, int n, char c) {
+  int open = 0;
+  for (int i = 0; i < n; i++) open += (name[i] == '[') - (name[i] == ']');
+  return c == '[' || (open && (isdigit((unsigned char)c) || c == ',' || c == ']'));
+}
+
+/* A name with its indices, dots and primes. */
 static void word(Fact *f, char name[NAME]) {
   int n = 0;
   blanks(f);
-  while (isalnum((unsigned char)*f->at) || *f->at == '_' || *f->at == '.' || *f->at == '\'' || (unsigned char)*f->at >= 0x80) {
+  while (isalnum((unsigned char)*f->at) || *f->at == '_' || *f->at == '.' || *f->at == '\'' || (unsigned char)*f->at >= 0x80 ||
+         index_character(name, n, *f->at)) {
     if (n == NAME - 1) fail(f, "a name is too long");
     name[n++] = *f->at++;
   }

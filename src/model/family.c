@@ -1,0 +1,84 @@
+/* Families: indices, ranges, names of members, and `for`. */
+#include <stdio.h>
+
+#include "model/builder.h"
+
+uint32_t member_offset(const Entity *e, const int64_t *at) {
+  uint64_t i = 0;
+  for (int k = 0; k < e->ndims; k++) i = i * (uint64_t)(e->hi[k] - e->lo[k] + 1) + (uint64_t)(at[k] - e->lo[k]);
+  return (uint32_t)(i * (e->parts ? e->parts : 1));
+}
+
+int next_member(const Entity *e, int64_t *at) {
+  for (int k = e->ndims; k-- > 0;) {
+    if (++at[k] <= e->hi[k]) return 1;
+    at[k] = e->lo[k];
+  }
+  return 0;
+}
+
+Name member_name(Builder *b, Name name, const int64_t *at, uint32_t ndims) {
+  if (ndims == 0) return name;
+  if (ndims == 1) return intern_printf(b, "%s[%lld]", name, (long long)at[0]);
+  return intern_printf(b, "%s[%lld,%lld]", name, (long long)at[0], (long long)at[1]);
+}
+
+const Entity *find_member(const Builder *b, const Entity *e, const int64_t *at) {
+  char text[512];
+  int n = e->ndims == 1 ? snprintf(text, sizeof text, "%s[%lld]", e->name, (long long)at[0])
+                        : snprintf(text, sizeof text, "%s[%lld,%lld]", e->name, (long long)at[0], (long long)at[1]);
+  if (n < 0 || (size_t)n >= sizeof text) return NULL;
+  return scope_own(&b->members, intern(b->ast->names, text), e->effect);
+}
+
+int range_fits(Builder *b, int64_t from, int64_t to, Span span) {
+  if (to < from || (uint64_t)to - (uint64_t)from < RANGE_MAX) return 1;
+  diag_error(b->diags, span, "a range has at most %d members", RANGE_MAX);
+  return 0;
+}
+
+int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *from, int64_t *to) {
+  if (!resolve_whole(b, lo, effect, from) || !resolve_whole(b, hi, effect, to)) return 0;
+  return range_fits(b, *from, *to, span_join(ast_expr(b->ast, lo)->span, ast_expr(b->ast, hi)->span));
+}
+
+int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out) {
+  *out = (IndexRange){0};
+  uint32_t outer = b->index.n;
+  int ok = 1;
+  for (AstId i = list; i && ok; i = ast_expr(b->ast, i)->next) {
+    const AstExpr *x = ast_expr(b->ast, i);
+    if (out->n == 2) {
+      not_yet(b, x->span, "more than two indices");
+      return 0;
+    }
+    uint32_t k = out->n++;
+    if (x->kind == AST_BIND) {
+      out->name[k] = x->name;
+      ok = resolve_range(b, x->a, x->b, effect, &out->lo[k], &out->hi[k]);
+    } else {
+      ok = resolve_whole(b, i, effect, &out->lo[k]);
+      out->hi[k] = out->lo[k];
+    }
+  }
+  b->index.n = outer;
+  return ok;
+}
+
+static void each_in_for(Builder *b, const AstStmt *st, Name effect, StatementFn *fn, void *data) {
+  int64_t from, to;
+  if (!resolve_range(b, st->lhs, st->rhs, effect, &from, &to)) return;
+  uint32_t errors = b->diags->errors, place = b->index.n;
+  vec_push(b->arena, &b->index, ((IndexVar){st->name, from}));
+  for (int64_t i = from; i <= to && b->diags->errors == errors; i++) {
+    b->index.at[place].at = i;
+    for (const AstStmt *s = st->body; s; s = s->next) each_statement(b, s, effect, fn, data);
+  }
+  b->index.n = place;
+}
+
+/* Blocks nest at most as deep as the parser lets them. */
+void each_statement(Builder *b, const AstStmt *st, Name effect, StatementFn *fn, void *data) {
+  if (st->kind == STMT_FOR) each_in_for(b, st, effect, fn, data);
+  else fn(b, st, effect, data);
+}

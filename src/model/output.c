@@ -1,0 +1,116 @@
+/* What a scene puts out: numbers, all components of vectors, all members of families. */
+#include "model/builder.h"
+
+/* The entity that an output names, without its indices, components and primes; or NULL. */
+static const Entity *named(Builder *b, const Target *p) {
+  const AstExpr *x = ast_expr(b->ast, p->stem);
+  int ambiguous;
+  if (p->wrong) return NULL;
+  if (x->kind == AST_MEMBER) return scope_own(&b->scope, x->name, ast_expr(b->ast, x->a)->name);
+  return scope_find(&b->scope, x->name, NULL, &ambiguous);
+}
+
+static const Unit *declared_unit(Builder *b, const Entity *e) {
+  const Model *m = b->m;
+  switch (e->kind) {
+    case ENT_COORD: return &m->coords.at[e->index].unit;
+    case ENT_STATE: return &m->states.at[e->index].unit;
+    case ENT_INPUT: return &m->inputs.at[e->index].unit;
+    case ENT_PARAM: return &m->params.at[e->index].unit;
+    case ENT_OBSERVE: return &m->observes.at[e->index].unit;
+    case ENT_NONE: case ENT_CONST: case ENT_LET: case ENT_FUNCTION: case ENT_BUILTIN: break;
+  }
+  return NULL;
+}
+
+/* The unit that an output is shown in: a name's own, otherwise that of its dimension. */
+static Unit output_unit(Builder *b, const Entity *e, uint32_t primes, Dim dim) {
+  Unit u = unit_of_dim(b, dim);
+  const Unit *own = e ? declared_unit(b, e) : NULL;
+  if (!own || !own->text[0]) return u;
+  u = *own;
+  u.dim = dim;
+  if (primes) u.text = arena_printf(b->arena, primes == 1 ? "%s/s" : "%s/s^%u", own->text, primes);
+  return u;
+}
+
+/* The place of an output; it is added when its label is not there. */
+static int add_one(Builder *b, Name label, Span span, Unit unit, Expr value) {
+  Scene *sc = &b->m->scene;
+  for (uint32_t i = 0; i < sc->outputs.n; i++)
+    if (sc->outputs.at[i].name == label) return (int)i;
+  Output o = {.name = label, .span = span, .unit = unit, .value = value};
+  vec_push(b->arena, &sc->outputs, o);
+  return (int)sc->outputs.n - 1;
+}
+
+/* stem, stem', stem.x' */
+static Name label_of(Builder *b, const char *stem, int part, uint32_t primes) {
+  StrBuf s = strbuf(b->arena);
+  sb_puts(&s, stem);
+  if (part >= 0) sb_printf(&s, ".%c", "xyz"[part]);
+  for (uint32_t i = 0; i < primes; i++) sb_putc(&s, '\'');
+  return intern(b->ast->names, sb_text(&s));
+}
+
+/* A number, or each component; the place of the first, -1 where there are more. */
+static int add_value(Builder *b, const char *stem, uint32_t primes, const Entity *e, Span span, const Value *v) {
+  Unit unit = output_unit(b, e, primes, v->dim);
+  if (!v->n) return add_one(b, label_of(b, stem, -1, primes), span, unit, v->e);
+  for (uint32_t k = 0; k < v->n; k++) add_one(b, label_of(b, stem, (int)k, primes), span, unit, v->at[k]);
+  return -1;
+}
+
+/* All members of a family that is named without index. */
+static void add_family(Builder *b, AstId id, const Target *p, const Entity *e) {
+  Span span = ast_expr(b->ast, id)->span;
+  int64_t at[2] = {e->lo[0], e->lo[1]};
+  const char *stem = ast_text(b, p->stem);
+  do {
+    const Entity *member = e->kind == ENT_LET || e->kind == ENT_OBSERVE ? find_member(b, e, at) : e;
+    if (!member) continue;
+    Value v = resolve_member(b, e, at, p->primes, span, IN_OBSERVE);
+    if (!v.e) return;
+    if (p->part >= 0 && (uint32_t)p->part < v.n) v = (Value){.e = v.at[p->part], .dim = v.dim};
+    Name name = member_name(b, stem, at, e->ndims);
+    if (p->part >= 0) name = label_of(b, name, p->part, 0);
+    add_value(b, name, p->primes, member, span, &v);
+  } while (next_member(e, at));
+}
+
+int add_outputs(Builder *b, AstId id) {
+  Target p = read_target(b, id);
+  const Entity *e = named(b, &p);
+  Span span = ast_expr(b->ast, id)->span;
+  if (e && e->ndims && !p.indices && e->kind != ENT_NONE && p.part < 0) {
+    add_family(b, id, &p, e);
+    return -1;
+  }
+  Value v = resolve(b, id, IN_OBSERVE, NULL);
+  if (!v.e) return -1;
+  const Entity *shown = e;
+  if (e && p.indices) { /* by the member's name, whatever its index was written like */
+    IndexRange r;
+    if (!resolve_indices(b, p.indices, NULL, &r)) return -1;
+    if (e->kind == ENT_LET || e->kind == ENT_OBSERVE) shown = find_member(b, e, r.lo);
+    Name name = member_name(b, ast_text(b, p.stem), r.lo, r.n);
+    if (p.part >= 0) name = label_of(b, name, p.part, 0);
+    return add_value(b, name, p.primes, shown, span, &v);
+  }
+  if (e && v.n) return add_value(b, ast_text(b, p.stem), p.primes, e, span, &v);
+  const char *text = ast_text(b, id);
+  if (v.n) return add_value(b, arena_printf(b->arena, "(%s)", text), 0, NULL, span, &v);
+  Unit unit = output_unit(b, e, p.primes, v.dim);
+  return add_one(b, intern(b->ast->names, text), span, unit, v.e);
+}
+
+int add_outputs_as(Builder *b, AstId id, Name label) {
+  Target p = read_target(b, id);
+  const Entity *e = named(b, &p);
+  if (e && e->ndims && !p.indices && e->kind != ENT_NONE) return add_outputs(b, id);
+  Value v = resolve(b, id, IN_OBSERVE, NULL);
+  Span span = ast_expr(b->ast, id)->span;
+  if (!v.e) return -1;
+  if (v.n) return add_value(b, label, 0, NULL, span, &v);
+  return add_one(b, label, span, output_unit(b, e, p.primes, v.dim), v.e);
+}

@@ -1,0 +1,284 @@
+/* Names in expressions: what they stand for, members of families, components, parts of effects. */
+#include "model/resolve_impl.h"
+
+const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const char *declare) {
+  int ambiguous;
+  const Entity *e = scope_find(&b->scope, name, effect, &ambiguous);
+  if (!e) {
+    diag_error(b->diags, span, "unknown name `%s`", name);
+    advise_unknown_name(b, name, span, effect, declare);
+  } else if (ambiguous) {
+    diag_error(b->diags, span, "`%s` is declared by more than one effect in use", name);
+    diag_help(b->diags, "say which: `%s.%s`", e->effect, name);
+    return NULL;
+  }
+  return e;
+}
+
+const char *shape_text(const Builder *b, uint32_t n) {
+  return n ? arena_printf(b->arena, "a vector of %u components", n) : "a number";
+}
+
+Expr function_argument(const Builder *b, const Definition *function, Name name) {
+  for (uint32_t i = 0; function && i < function->nargs; i++) {
+    const Symbol *s = expr_symbol(b->g, function->args[i]);
+    if (s->name == name) return s->node;
+  }
+  return 0;
+}
+
+int definition_ready(Eval *ev, EntKind kind, uint32_t index, Name name, Span span) {
+  Builder *b = ev->b;
+  const Definition *d = kind == ENT_LET ? &b->lets.at[index] : &b->functions.at[index];
+  if (d->progress == DONE) return 1;
+  if (d->progress == DOING) {
+    diag_error(b->diags, span, "`%s` is defined by itself", name);
+    diag_help(b->diags, "%s may use only what does not lead back to it", ent_kind_text(kind));
+    return 0;
+  }
+  b->needed_kind = kind;
+  b->needed = index;
+  ev->waiting = 1;
+  return 0;
+}
+
+/* --- what a name stands for --- */
+
+static const char *place_text(Context where) {
+  switch (where) {
+    case IN_CONST: return "only numbers and constants are known here";
+    case IN_PARAM: return "a parameter's value may contain numbers and parameters declared before it";
+    case IN_START: return "a start value may contain numbers and parameters";
+    case IN_INPUT: return "an input may contain numbers, parameters and t";
+    case IN_DYNAMICS: case IN_OBSERVE: break;
+  }
+  return "";
+}
+
+static Context least_context(EntKind kind) {
+  switch (kind) {
+    case ENT_CONST: return IN_CONST;
+    case ENT_PARAM: return IN_PARAM;
+    case ENT_NONE: case ENT_COORD: case ENT_STATE: case ENT_INPUT: case ENT_LET: case ENT_FUNCTION:
+    case ENT_OBSERVE: case ENT_BUILTIN: break;
+  }
+  return IN_DYNAMICS;
+}
+
+static SymId symbol_of(const Model *m, EntKind kind, uint32_t index) {
+  if (kind == ENT_COORD) return m->coords.at[index].q;
+  if (kind == ENT_STATE) return m->states.at[index].z;
+  if (kind == ENT_PARAM) return m->params.at[index].sym;
+  return m->inputs.at[index].sym;
+}
+
+/* The value of a name, or of member `at` of a family. */
+static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span span) {
+  Builder *b = ev->b;
+  if (e->kind == ENT_NONE) return FAILED;
+  if (least_context(e->kind) > ev->where) {
+    diag_error(b->diags, span, "`%s` is %s and may not be used here", e->name, ent_kind_text(e->kind));
+    diag_help(b->diags, "%s", place_text(ev->where));
+    return FAILED;
+  }
+  switch (e->kind) {
+    case ENT_COORD: case ENT_STATE: case ENT_PARAM: case ENT_INPUT: {
+      Value v = {.n = e->parts};
+      uint32_t i = e->index + member_offset(e, at);
+      for (uint32_t k = 0; k < parts_of(&v); k++) v.at[k] = expr_symbol(b->g, symbol_of(b->m, e->kind, i + k))->node;
+      v.dim = b->dims.at[symbol_of(b->m, e->kind, i)];
+      return v;
+    }
+    case ENT_CONST: return a_value(expr_num(b->g, b->constants.at[e->index].value), DIM_NONE, 1);
+    case ENT_LET: return definition_ready(ev, ENT_LET, e->index, e->name, span) ? b->lets.at[e->index].value : FAILED;
+    case ENT_OBSERVE: {
+      const Output *o = &b->m->observes.at[e->index];
+      return a_value(o->value, o->unit.dim, 0);
+    }
+    case ENT_FUNCTION:
+      diag_error(b->diags, span, "`%s` is a function", e->name);
+      diag_help(b->diags, "give it its arguments: `%s(...)`", e->name);
+      return FAILED;
+    case ENT_NONE: case ENT_BUILTIN: break;
+  }
+  return FAILED;
+}
+
+/* A name without an index. */
+static Value whole_value(Eval *ev, const Entity *e, Span span) {
+  if (!e->ndims || e->kind == ENT_NONE) return entity_value(ev, e, NULL, span);
+  Name one = member_name(ev->b, e->name, e->lo, e->ndims);
+  diag_error(ev->b->diags, span, "`%s` is a family: say which member", e->name);
+  diag_help(ev->b->diags, "the first is `%s`; `sum(i in ..., ...)` adds over all", one);
+  return FAILED;
+}
+
+/* lagrangian, energy, T, V: what the model itself defines, unless it declares the name otherwise. */
+static int builtin_quantity(Eval *ev, Name name, Value *out) {
+  Builder *b = ev->b;
+  Model *m = b->m;
+  if (ev->where != IN_OBSERVE) return 0;
+  Dim joule = {1, {2 * DIM_ONE, DIM_ONE, -2 * DIM_ONE}};
+  Dim dim = b->dims.at[m->energy_sym].known ? joule : DIM_UNKNOWN;
+  Expr e = 0;
+  if (strcmp(name, "lagrangian") == 0) e = m->lagrangian;
+  else if (strcmp(name, "energy") == 0 && m->lagrangian) e = expr_symbol(b->g, m->energy_sym)->node;
+  else if (strcmp(name, "T") == 0) e = m->kinetic;
+  else if (strcmp(name, "V") == 0) e = m->potential;
+  if (!e) return 0;
+  *out = a_value(e, dim, 0);
+  return 1;
+}
+
+/* The innermost index of that name, or NULL. */
+static const IndexVar *find_index(const Eval *ev, Name name) {
+  for (uint32_t i = ev->index.n; i-- > 0;)
+    if (ev->index.at[i].name == name) return &ev->index.at[i];
+  const IndexVars *outer = &ev->b->index;
+  for (uint32_t i = ev->in_statement ? outer->n : 0; i-- > 0;)
+    if (outer->at[i].name == name) return &outer->at[i];
+  return NULL;
+}
+
+Value name_value(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  const IndexVar *index = find_index(ev, x->name);
+  if (index) return a_value(expr_int(b->g, index->at), DIM_NONE, 1);
+  Expr argument = function_argument(b, ev->function, x->name);
+  if (argument) return a_value(argument, DIM_UNKNOWN, 0);
+  if (strcmp(x->name, "pi") == 0) return a_value(expr_symbol(b->g, b->m->pi)->node, DIM_NONE, 1);
+  if (strcmp(x->name, "t") == 0) {
+    if (ev->where >= IN_INPUT) return a_value(expr_symbol(b->g, b->m->time)->node, b->dims.at[b->m->time], 0);
+    diag_error(b->diags, x->span, "the time `t` may not be used here");
+    diag_help(b->diags, "%s", place_text(ev->where));
+    return FAILED;
+  }
+  int ambiguous;
+  Value v;
+  if (!scope_find(&b->scope, x->name, ev->effect, &ambiguous) && builtin_quantity(ev, x->name, &v)) return v;
+  const Entity *e = resolve_name(b, x->name, x->span, ev->effect, NULL);
+  return e ? whole_value(ev, e, x->span) : FAILED;
+}
+
+/* --- members of families --- */
+
+/* " (i = 1, j = 3)": the values of the indices around. */
+static const char *indices_text(Eval *ev) {
+  StrBuf s = strbuf(ev->b->arena);
+  const IndexVars *sets[2] = {&ev->b->index, &ev->index};
+  for (int k = ev->in_statement ? 0 : 1; k < 2; k++)
+    for (uint32_t i = 0; i < sets[k]->n; i++)
+      sb_printf(&s, "%s%s = %lld", s.n ? ", " : "", sets[k]->at[i].name, (long long)sets[k]->at[i].at);
+  return s.n ? arena_printf(ev->b->arena, " where %s", sb_text(&s)) : "";
+}
+
+static int in_range(const Entity *e, const int64_t *at) {
+  for (int k = 0; k < e->ndims; k++)
+    if (at[k] < e->lo[k] || at[k] > e->hi[k]) return 0;
+  return 1;
+}
+
+/* "`th[0]` does not exist: th has the members 1..3" */
+static void report_range(Builder *b, const Entity *e, const int64_t *at, Span span, const char *where) {
+  StrBuf s = strbuf(b->arena);
+  for (int k = 0; k < e->ndims; k++) sb_printf(&s, "%s%lld..%lld", k ? ", " : "", (long long)e->lo[k], (long long)e->hi[k]);
+  diag_error(b->diags, span, "`%s` is out of range%s", member_name(b, e->name, at, e->ndims), where);
+  if (in_range(e, at)) diag_help(b->diags, "`%s` is defined in %s, but not for this member", e->name, sb_text(&s));
+  else diag_help(b->diags, "the members are `%s[%s]`", e->name, sb_text(&s));
+}
+
+int index_in_range(Builder *b, const Entity *e, const int64_t *at, Span span) {
+  if (in_range(e, at)) return 1;
+  report_range(b, e, at, span, "");
+  return 0;
+}
+
+static Value indexed_value(Eval *ev, const Entity *e, const AstExpr *x) {
+  Builder *b = ev->b;
+  int64_t at[2] = {0};
+  uint32_t n = 0;
+  for (AstId i = x->args; i; i = ast_expr(b->ast, i)->next, n++)
+    if (n < 2 && !whole_number(b, value_of(ev, i), i, &at[n])) return FAILED;
+  if (e->kind == ENT_NONE) return FAILED;
+  if (!e->ndims) {
+    diag_error(b->diags, x->span, "`%s` is %s without index", e->name, ent_kind_text(e->kind));
+    if (e->parts) diag_help(b->diags, "the components of a vector are `%s.x`, `%s.y`", e->name, e->name);
+    else diag_help(b->diags, "a family is declared with its size: `%s[3]`; a unit stands apart: `%s [%s]`", e->name, e->name,
+                   ast_text(b, x->args));
+    return FAILED;
+  }
+  if (n != e->ndims) {
+    diag_error(b->diags, x->span, "`%s` has %s, here it has %u", e->name, e->ndims == 1 ? "one index" : "two indices", n);
+    return FAILED;
+  }
+  const Entity *member = e;
+  int listed = e->kind == ENT_LET || e->kind == ENT_OBSERVE;
+  if (in_range(e, at) && listed) member = find_member(b, e, at);
+  if (!in_range(e, at) || !member) {
+    report_range(b, e, at, x->span, indices_text(ev));
+    return FAILED;
+  }
+  return entity_value(ev, member, at, x->span);
+}
+
+Value index_value(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  const AstExpr *of = ast_expr(b->ast, x->a);
+  const Entity *e = NULL;
+  if (of->kind == AST_NAME) {
+    e = resolve_name(b, of->name, of->span, ev->effect, NULL);
+  } else if (of->kind == AST_MEMBER && ast_expr(b->ast, of->a)->kind == AST_NAME) {
+    Name owner = ast_expr(b->ast, of->a)->name;
+    e = scope_own(&b->scope, of->name, owner);
+    if (!e) {
+      diag_error(b->diags, of->span, "no effect in use declares `%s.%s`", owner, of->name);
+      advise_unknown_member(b, owner, of->name);
+    }
+  } else if (of->kind != AST_ERROR) {
+    diag_error(b->diags, x->span, "an index stands directly behind the name of a family");
+    if (of->kind == AST_PRIME) diag_help(b->diags, "the derivative of a member is `th[i]'`");
+  }
+  return e ? indexed_value(ev, e, x) : FAILED;
+}
+
+/* --- components --- */
+
+static Value component(Eval *ev, const AstExpr *x, Value v) {
+  Builder *b = ev->b;
+  if (!v.e) return FAILED;
+  uint32_t k = strcmp(x->name, "x") == 0 ? 0 : strcmp(x->name, "y") == 0 ? 1 : strcmp(x->name, "z") == 0 ? 2 : 3;
+  if (k < v.n) return a_value(v.at[k], v.dim, v.bare);
+  diag_error(b->diags, x->span, "`%s` has no component `%s`", ast_short(b, x->a), x->name);
+  if (v.n) diag_help(b->diags, "it is %s: %s", shape_text(b, v.n), v.n == 2 ? "`.x`, `.y`" : "`.x`, `.y`, `.z`");
+  else diag_help(b->diags, "it is a number; vectors are declared `coord r: vec3 [m]`, or written `(a, b, c)`");
+  return FAILED;
+}
+
+/* drag.c: a parameter of an effect; r.x: a component. */
+Value member_value(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  const AstExpr *left = ast_expr(b->ast, x->a);
+  if (left->kind != AST_NAME) return component(ev, x, *value_of(ev, x->a));
+  const Entity *e = scope_own(&b->scope, x->name, left->name);
+  if (e) return whole_value(ev, e, x->span);
+  int ambiguous;
+  if (scope_find(&b->scope, left->name, ev->effect, &ambiguous) || find_index(ev, left->name) ||
+      function_argument(b, ev->function, left->name)) {
+    Value v = name_value(ev, left);
+    return ev->waiting ? FAILED : component(ev, x, v);
+  }
+  diag_error(b->diags, x->span, "no effect in use declares `%s.%s`", left->name, x->name);
+  advise_unknown_member(b, left->name, x->name);
+  return FAILED;
+}
+
+Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t primes, Span span, Context where) {
+  Eval ev = {.b = b, .where = where, .in_statement = 1};
+  const Entity *member = e;
+  if (e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE)) member = find_member(b, e, at);
+  if (!member) return FAILED;
+  if (member->kind == ENT_LET) resolve_definition(b, ENT_LET, member->index);
+  Value v = entity_value(&ev, member, at, span);
+  for (; v.e && primes; primes--) v = time_derivative(b, v, span, where);
+  return v;
+}

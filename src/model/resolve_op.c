@@ -1,0 +1,368 @@
+/* Operators: numbers, sums, products, powers, conditions, tuples; and sum(...), product(...). */
+#include "model/resolve_impl.h"
+
+/* --- dimensions and shapes --- */
+
+/* Reports two dimensions that should agree; a bare number gets the unit to write. */
+void report_mismatch(Eval *ev, Span span, AstId x, AstId y) {
+  Builder *b = ev->b;
+  const Value *vx = value_of(ev, x), *vy = value_of(ev, y);
+  if (vx->bare) {
+    AstId t = x;
+    x = y;
+    y = t;
+    vx = value_of(ev, x);
+    vy = value_of(ev, y);
+  }
+  const char *tx = ast_short(b, x), *ty = ast_short(b, y), *dx = dim_text(vx->dim, b->arena);
+  if (vy->bare) {
+    diag_error(b->diags, span, "units do not match: `%s` is in [%s], `%s` has no unit", tx, dx, ty);
+    diag_help(b->diags, "give the number its unit: `%s [%s]`", ty, dx);
+  } else {
+    diag_error(b->diags, span, "units do not match: `%s` is in [%s], `%s` in [%s]", tx, dx, ty, dim_text(vy->dim, b->arena));
+  }
+}
+
+void report_condition(Builder *b, AstId id) {
+  diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is a condition, no number", ast_short(b, id));
+  diag_help(b->diags, "`if(condition, a, b)` chooses between two numbers");
+}
+
+static int is_zero(const Builder *b, const Value *v) {
+  for (uint32_t k = 0; k < parts_of(v); k++)
+    if (!expr_is_zero(b->g, v->at[k])) return 0;
+  return 1;
+}
+
+/* A zero is a zero in every unit. */
+int dims_agree(const Builder *b, const Value *x, const Value *y) {
+  return dim_fits(x->dim, y->dim) || is_zero(b, x) || is_zero(b, y);
+}
+
+int need_pure(Eval *ev, AstId arg, const char *what) {
+  const Value *v = value_of(ev, arg);
+  if (!v->dim.known || dim_is_none(v->dim)) return 1;
+  diag_error(ev->b->diags, ast_expr(ev->b->ast, arg)->span, "%s takes a pure number or an angle; `%s` is in [%s]",
+             what, ast_short(ev->b, arg), dim_text(v->dim, ev->b->arena));
+  return 0;
+}
+
+int same_shape(Eval *ev, Span span, AstId x, AstId y) {
+  Builder *b = ev->b;
+  const Value *v = value_of(ev, x), *w = value_of(ev, y);
+  if (v->n == w->n) return 1;
+  diag_error(b->diags, span, "shapes do not match: `%s` is %s, `%s` is %s", ast_short(b, x), shape_text(b, v->n), ast_short(b, y),
+             shape_text(b, w->n));
+  return 0;
+}
+
+/* --- chains of two operators --- */
+
+/* The operands of a left-leaning chain (+ and -, or * and /), left to right, in ev->operands. */
+static void chain(Eval *ev, AstId id, AstKind inverse) {
+  Builder *b = ev->b;
+  AstId at = id;
+  ev->operands.n = 0;
+  for (;;) {
+    const AstExpr *x = ast_expr(b->ast, at);
+    vec_push(b->arena, &ev->operands, ((Operand){x->b, x->kind == inverse}));
+    at = x->a;
+    if (!ev->open[at - ev->first]) break;
+  }
+  vec_push(b->arena, &ev->operands, ((Operand){at, 0}));
+  Operand *o = ev->operands.at;
+  for (uint32_t i = 0, k = ev->operands.n - 1; i < k; i++, k--) {
+    Operand kept = o[i];
+    o[i] = o[k];
+    o[k] = kept;
+  }
+}
+
+/* The sum of b->scratch, which is emptied. */
+static Expr add_scratch(Builder *b) {
+  Expr e = expr_add_n(b->g, b->scratch.at, b->scratch.n);
+  b->scratch.n = 0;
+  return e;
+}
+
+/* Shape, dimension and bareness of a sum; 0, reported, when its operands do not go together. */
+static int judge_sum(Eval *ev, Value *r) {
+  Builder *b = ev->b;
+  AstId measure = 0; /* the operand that settles the dimension */
+  *r = (Value){.dim = DIM_UNKNOWN, .bare = 1};
+  for (uint32_t i = 0; i < ev->operands.n; i++)
+    if (!value_of(ev, ev->operands.at[i].at)->e) return 0;
+  r->n = value_of(ev, ev->operands.at[0].at)->n;
+  for (uint32_t i = 0; i < ev->operands.n; i++) {
+    AstId at = ev->operands.at[i].at;
+    const Value *v = value_of(ev, at);
+    if (!same_shape(ev, ast_expr(b->ast, at)->span, ev->operands.at[0].at, at)) return 0;
+    r->bare &= v->bare;
+    if (is_zero(b, v)) continue;
+    if (measure && !dims_agree(b, value_of(ev, measure), v)) {
+      report_mismatch(ev, ast_expr(b->ast, at)->span, measure, at);
+      return 0;
+    }
+    if (!measure && v->dim.known) {
+      measure = at;
+      r->dim = v->dim;
+    }
+  }
+  return 1;
+}
+
+static Value sum_value(Eval *ev, AstId id) {
+  Builder *b = ev->b;
+  chain(ev, id, AST_SUB);
+  Value r;
+  if (!judge_sum(ev, &r)) return FAILED;
+  for (uint32_t k = 0; k < parts_of(&r); k++) {
+    for (uint32_t i = 0; i < ev->operands.n; i++) {
+      Expr e = value_of(ev, ev->operands.at[i].at)->at[k];
+      if (ev->operands.at[i].inverted) e = expr_neg(b->g, e);
+      vec_push(b->arena, &b->scratch, e);
+    }
+    r.at[k] = add_scratch(b);
+  }
+  return r;
+}
+
+/* One factor may be a vector; nothing is divided by one. *vector: its place, or UINT32_MAX. */
+static int judge_product(Eval *ev, Value *r, uint32_t *vector) {
+  Builder *b = ev->b;
+  int ok = 1;
+  *r = (Value){.dim = DIM_NONE, .bare = 1};
+  *vector = UINT32_MAX;
+  for (uint32_t i = 0; i < ev->operands.n; i++) {
+    Operand o = ev->operands.at[i];
+    const Value *v = value_of(ev, o.at);
+    Span span = ast_expr(b->ast, o.at)->span;
+    if (!v->e) {
+      ok = 0;
+    } else if (v->n && (o.inverted || r->n)) {
+      diag_error(b->diags, span, o.inverted ? "`%s` is %s, and nothing is divided by a vector" : "`%s` is %s, and so is a factor before it",
+                 ast_short(b, o.at), shape_text(b, v->n));
+      diag_help(b->diags, "`dot(a, b)`, `cross(a, b)` and `norm(a)` say what is meant");
+      ok = 0;
+    } else if (o.inverted && expr_is_zero(b->g, v->e)) {
+      diag_error(b->diags, span, "division by zero");
+      ok = 0;
+    } else {
+      if (v->n) *vector = i;
+      if (v->n) r->n = v->n;
+      r->dim = o.inverted ? dim_div(r->dim, v->dim) : dim_mul(r->dim, v->dim);
+      r->bare &= v->bare;
+    }
+  }
+  return ok;
+}
+
+static Value product_value(Eval *ev, AstId id) {
+  Builder *b = ev->b;
+  chain(ev, id, AST_DIV);
+  Value r;
+  uint32_t vector;
+  if (!judge_product(ev, &r, &vector)) return FAILED;
+  for (uint32_t k = 0; k < parts_of(&r); k++) {
+    for (uint32_t i = 0; i < ev->operands.n; i++) {
+      Expr e = value_of(ev, ev->operands.at[i].at)->at[i == vector ? k : 0];
+      if (ev->operands.at[i].inverted) e = expr_pow_num(b->g, e, num_int(-1));
+      vec_push(b->arena, &b->scratch, e);
+    }
+    r.at[k] = expr_mul_n(b->g, b->scratch.at, b->scratch.n);
+    b->scratch.n = 0;
+  }
+  return r;
+}
+
+Value power_value(Eval *ev, const AstExpr *x, AstId base_id, AstId exp_id) {
+  Builder *b = ev->b;
+  const Value *base = value_of(ev, base_id), *e = value_of(ev, exp_id);
+  if (!base->e || !e->e || !need_pure(ev, exp_id, "an exponent")) return FAILED;
+  if (expr_is_num(b->g, e->e)) {
+    Num n = expr_number(b->g, e->e);
+    if (num_sign(n) < 0 && expr_is_zero(b->g, base->e)) {
+      diag_error(b->diags, x->span, "division by zero");
+      return FAILED;
+    }
+    return a_value(expr_pow_num(b->g, base->e, n), dim_pow(base->dim, n), base->bare && e->bare);
+  }
+  if (!need_pure(ev, base_id, "the base of a power whose exponent is not a number")) return FAILED;
+  return a_value(expr_pow(b->g, base->e, e->e), base->dim.known ? DIM_NONE : DIM_UNKNOWN, 0);
+}
+
+static Value compare_value(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  const Value *l = value_of(ev, x->a), *r = value_of(ev, x->b);
+  if (!l->e || !r->e) return FAILED;
+  if (!dims_agree(b, l, r)) {
+    report_mismatch(ev, x->span, x->a, x->b);
+    return FAILED;
+  }
+  int swapped = x->kind == AST_GT || x->kind == AST_GE;
+  ExprOp op = x->kind == AST_LT || x->kind == AST_GT ? EX_LT : x->kind == AST_LE || x->kind == AST_GE ? EX_LE : EX_EQ;
+  Expr e = expr_fn2(b->g, op, swapped ? r->e : l->e, swapped ? l->e : r->e);
+  if (x->kind == AST_NE) e = expr_fn(b->g, EX_NOT, e);
+  return (Value){.e = e, .dim = DIM_NONE, .condition = 1};
+}
+
+static int need_condition(Eval *ev, AstId id) {
+  if (value_of(ev, id)->condition) return 1;
+  diag_error(ev->b->diags, ast_expr(ev->b->ast, id)->span, "`%s` is no condition", ast_short(ev->b, id));
+  diag_help(ev->b->diags, "`and`, `or` and `not` join comparisons, such as `x > 0`");
+  return 0;
+}
+
+static Value logic_value(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  Expr l = value_of(ev, x->a)->e, r = x->b ? value_of(ev, x->b)->e : 0;
+  if (!l || (x->b && !r)) return FAILED;
+  if (!need_condition(ev, x->a) || (x->b && !need_condition(ev, x->b))) return FAILED;
+  Expr e = x->kind == AST_NOT ? expr_fn(b->g, EX_NOT, l) : expr_fn2(b->g, x->kind == AST_AND ? EX_AND : EX_OR, l, r);
+  return (Value){.e = e, .dim = DIM_NONE, .condition = 1};
+}
+
+/* --- tuples --- */
+
+static Value tuple_value(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  Value r = {.dim = DIM_UNKNOWN, .bare = 1};
+  AstId measure = 0;
+  for (AstId i = x->args; i; i = ast_expr(b->ast, i)->next) {
+    const Value *v = value_of(ev, i);
+    if (!v->e) return FAILED;
+    if (r.n == 3) {
+      diag_error(b->diags, x->span, "a vector has two or three components");
+      return FAILED;
+    }
+    r.at[r.n++] = v->e;
+    r.bare &= v->bare;
+    if (measure && !dims_agree(b, value_of(ev, measure), v)) {
+      report_mismatch(ev, ast_expr(b->ast, i)->span, measure, i);
+      return FAILED;
+    }
+    if (!measure && v->dim.known && !expr_is_zero(b->g, v->e)) {
+      measure = i;
+      r.dim = v->dim;
+    }
+  }
+  return r;
+}
+
+Value operator_value(Eval *ev, AstId id) {
+  Builder *b = ev->b;
+  const AstExpr *x = ast_expr(b->ast, id);
+  switch (x->kind) {
+    case AST_NUM: return a_value(expr_num(b->g, x->number), num_is_zero(x->number) ? DIM_UNKNOWN : DIM_NONE, 1);
+    case AST_NEG: {
+      Value v = *value_of(ev, x->a);
+      for (uint32_t k = 0; v.e && k < parts_of(&v); k++) v.at[k] = expr_neg(b->g, v.at[k]);
+      return v;
+    }
+    case AST_ADD: case AST_SUB: return sum_value(ev, id);
+    case AST_MUL: case AST_DIV: return product_value(ev, id);
+    case AST_POW: return power_value(ev, x, x->a, x->b);
+    case AST_LT: case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE: return compare_value(ev, x);
+    case AST_NOT: case AST_AND: case AST_OR: return logic_value(ev, x);
+    case AST_TUPLE: return tuple_value(ev, x);
+    default: return FAILED; /* the caller passes these */
+  }
+}
+
+/* --- sums and products over an index --- */
+
+int whole_number(Builder *b, const Value *v, AstId id, int64_t *out) {
+  if (!v->e) return 0;
+  Num n = expr_is_num(b->g, v->e) ? expr_number(b->g, v->e) : num_ratio(1, 2);
+  if (v->n || !num_is_exact(n) || n.den != 1 || (v->dim.known && !dim_is_none(v->dim))) {
+    diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is no whole number known when compiling", ast_short(b, id));
+    diag_help(b->diags, "indices and ranges are made of numbers, constants (`const N = 3`) and indices");
+    return 0;
+  }
+  *out = n.num;
+  return 1;
+}
+
+int resolve_whole(Builder *b, AstId id, Name effect, int64_t *out) {
+  Value v = resolve(b, id, IN_CONST, effect);
+  return whole_number(b, &v, id, out);
+}
+
+int loop_begin(Eval *ev, AstId id) {
+  Builder *b = ev->b;
+  const AstExpr *x = ast_expr(b->ast, id);
+  int64_t lo, hi;
+  Value *r = value_of(ev, id);
+  *r = FAILED;
+  if (!whole_number(b, value_of(ev, x->a), x->a, &lo) || !whole_number(b, value_of(ev, x->b), x->b, &hi)) return 0;
+  if (lo > hi) {
+    *r = a_value(expr_int(b->g, x->kind == AST_PRODUCT), x->kind == AST_PRODUCT ? DIM_NONE : DIM_UNKNOWN, 1);
+    return 0;
+  }
+  if (!range_fits(b, lo, hi, x->span)) return 0;
+  vec_push(b->arena, &ev->loops, ((Loop){id, lo, hi, ev->terms.n}));
+  vec_push(b->arena, &ev->index, ((IndexVar){x->name, lo}));
+  return 1;
+}
+
+/* The terms of the innermost loop go together: shape, dimension, bareness of the whole. */
+static int judge_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr *x, Value *r) {
+  Builder *b = ev->b;
+  int product = x->kind == AST_PRODUCT;
+  *r = (Value){.dim = product ? DIM_NONE : DIM_UNKNOWN, .bare = 1, .n = term[0].n};
+  Span span = ast_expr(b->ast, x->c)->span;
+  for (uint32_t i = 0; i < n; i++) {
+    r->bare &= term[i].bare;
+    if (term[i].n != r->n || (product && r->n)) {
+      diag_error(b->diags, span, product ? "the factors of a product are numbers" : "the terms of a sum have one shape; here are %s and %s",
+                 shape_text(b, r->n), shape_text(b, term[i].n));
+      return 0;
+    }
+    if (product) {
+      r->dim = dim_mul(r->dim, term[i].dim);
+    } else if (!is_zero(b, &term[i]) && term[i].dim.known) {
+      if (!dim_fits(r->dim, term[i].dim)) {
+        diag_error(b->diags, span, "units do not match: terms of this sum are in [%s] and in [%s]", dim_text(r->dim, b->arena),
+                   dim_text(term[i].dim, b->arena));
+        return 0;
+      }
+      r->dim = term[i].dim;
+    }
+  }
+  return 1;
+}
+
+static Value loop_value(Eval *ev, const Loop *l, const AstExpr *x) {
+  Builder *b = ev->b;
+  const Value *term = ev->terms.at + l->base;
+  uint32_t n = ev->terms.n - l->base;
+  Value r;
+  if (!judge_terms(ev, term, n, x, &r)) return FAILED;
+  for (uint32_t k = 0; k < parts_of(&r); k++) {
+    for (uint32_t i = 0; i < n; i++) vec_push(b->arena, &b->scratch, term[i].at[k]);
+    r.at[k] = x->kind == AST_SUM ? expr_add_n(b->g, b->scratch.at, n) : expr_mul_n(b->g, b->scratch.at, n);
+    b->scratch.n = 0;
+  }
+  return r;
+}
+
+int loop_next(Eval *ev) {
+  Builder *b = ev->b;
+  Loop *l = &ev->loops.at[ev->loops.n - 1];
+  const AstExpr *x = ast_expr(b->ast, l->construct);
+  Value v = *value_of(ev, x->c);
+  if (v.e && v.condition) {
+    report_condition(b, x->c);
+    v = FAILED;
+  }
+  if (v.e) vec_push(b->arena, &ev->terms, v);
+  if (v.e && l->at < l->hi) {
+    ev->index.at[ev->index.n - 1].at = ++l->at;
+    return 1;
+  }
+  *value_of(ev, l->construct) = v.e ? loop_value(ev, l, x) : FAILED;
+  ev->terms.n = l->base;
+  ev->index.n--;
+  ev->loops.n--;
+  return 0;
+}

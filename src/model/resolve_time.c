@@ -1,0 +1,82 @@
+/* Time derivatives, and units written behind a value. */
+#include "model/resolve_impl.h"
+#include "sym/diff.h"
+
+/* What each symbol becomes under d/dt. All symbols that move are declared before anything is derived. */
+static const Expr *time_seeds(Builder *b) {
+  if (b->seeds && b->nseeds == expr_symbol_count(b->g)) return b->seeds;
+  b->nseeds = expr_symbol_count(b->g);
+  Expr *seed = b->seeds = ARENA_ARRAY(b->arena, Expr, b->nseeds + 1);
+  const Model *m = b->m;
+  seed[m->time] = expr_int(b->g, 1);
+  for (uint32_t i = 0; i < m->coords.n; i++) {
+    const Coord *c = &m->coords.at[i];
+    seed[c->q] = expr_symbol(b->g, c->v)->node;
+    seed[c->v] = expr_symbol(b->g, c->a)->node;
+  }
+  for (uint32_t i = 0; i < m->states.n; i++)
+    seed[m->states.at[i].z] = expr_symbol(b->g, m->states.at[i].rate)->node;
+  return seed;
+}
+
+/* What kinds of symbols an expression contains, as bits 1 << SymKind. */
+static unsigned kinds_in(Builder *b, const Value *v) {
+  unsigned kinds = 0;
+  if (!v->n && expr_op(b->g, v->e) == EX_SYM) return 1u << expr_sym_of(b->g, v->e)->kind;
+  ExprList l = expr_topo(b->g, v->at, parts_of(v));
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_op(b->g, l.at[i]) == EX_SYM) kinds |= 1u << expr_sym_of(b->g, l.at[i])->kind;
+  return kinds;
+}
+
+Value time_derivative(Builder *b, Value of, Span span, Context where) {
+  unsigned kinds = kinds_in(b, &of), second = 1u << SYM_ACC | 1u << SYM_RATE;
+  if (kinds & 1u << SYM_INPUT) {
+    diag_error(b->diags, span, "an input has no time derivative");
+    diag_help(b->diags, "declare the derivative as an input of its own");
+    return FAILED;
+  }
+  if (kinds & second) {
+    diag_error(b->diags, span, "third derivatives do not occur in mechanics");
+    return FAILED;
+  }
+  if (kinds & 1u << SYM_LOCAL) {
+    not_yet(b, span, "a time derivative of a function's argument, or of the energy");
+    return FAILED;
+  }
+  Dim second_dim = {1, {[DIM_TIME] = DIM_ONE}};
+  Value r = {.dim = dim_div(of.dim, second_dim), .n = of.n};
+  const Expr *seed = time_seeds(b);
+  expr_tangent(b->g, of.at, parts_of(&of), seed, b->nseeds + 1, "'", r.at);
+  if (where != IN_OBSERVE && kinds_in(b, &r) & second) {
+    diag_error(b->diags, span, "a second derivative may stand only in `expect` and `observe`");
+    diag_help(b->diags, "L and forces are functions of q, q' and t; accelerations follow from them");
+    return FAILED;
+  }
+  return r;
+}
+
+/* --- units on a value --- */
+
+Expr times_unit(Builder *b, Expr e, const Unit *u) {
+  Expr pi = expr_symbol(b->g, b->m->pi)->node;
+  Expr power = expr_pow_num(b->g, pi, num_int(u->pi_power));
+  Expr scaled = expr_scale(b->g, u->factor, e);
+  return expr_mul(b->g, scaled, power);
+}
+
+Value unit_value(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  const Value *v = value_of(ev, x->a);
+  if (ast_expr(b->ast, x->a)->kind != AST_NUM) warn_unit_is_constant(b, &x->unit);
+  Unit u = unit_resolve(&x->unit, b->diags, b->arena);
+  if (!v->e || (x->unit.n && !u.dim.known)) return FAILED;
+  if (v->dim.known && !dim_is_none(v->dim)) {
+    diag_error(b->diags, x->unit.span, "`%s` has a unit already: [%s]", ast_short(b, x->a), dim_text(v->dim, b->arena));
+    diag_help(b->diags, "leave `[%s]` out, or multiply: `... * 1 [%s]`", x->unit.text, x->unit.text);
+    return FAILED;
+  }
+  Value r = {.dim = u.dim, .n = v->n};
+  for (uint32_t k = 0; k < parts_of(v); k++) r.at[k] = times_unit(b, v->at[k], &u);
+  return r;
+}

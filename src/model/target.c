@@ -1,0 +1,159 @@
+/* Targets: what a scene gives values to. One statement may give them to a whole family. */
+#include "model/builder.h"
+
+Target read_target(const Builder *b, AstId id) {
+  Target p = {.stem = id, .part = -1};
+  const AstExpr *x = ast_expr(b->ast, id);
+  for (; x->kind == AST_PRIME; x = ast_expr(b->ast, p.stem)) {
+    p.primes++;
+    p.stem = x->a;
+  }
+  int ambiguous;
+  if (x->kind == AST_MEMBER) {
+    const AstExpr *left = ast_expr(b->ast, x->a);
+    int component = left->kind == AST_INDEX || (left->kind == AST_NAME && !scope_own(&b->scope, x->name, left->name) &&
+                                                scope_find(&b->scope, left->name, NULL, &ambiguous));
+    if (component) {
+      p.part = strcmp(x->name, "x") == 0 ? 0 : strcmp(x->name, "y") == 0 ? 1 : strcmp(x->name, "z") == 0 ? 2 : 3;
+      p.stem = x->a;
+      x = left;
+    }
+  }
+  if (x->kind == AST_INDEX) {
+    p.indices = x->args;
+    p.stem = x->a;
+    x = ast_expr(b->ast, p.stem);
+  }
+  p.wrong = x->kind != AST_NAME && !(x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME);
+  return p;
+}
+
+const AstExpr *list_behind(const Builder *b, AstId id, const AstUnit **unit) {
+  const AstExpr *x = ast_expr(b->ast, id);
+  *unit = NULL;
+  if (x->kind == AST_UNIT && ast_expr(b->ast, x->a)->kind == AST_LIST) {
+    *unit = &x->unit;
+    x = ast_expr(b->ast, x->a);
+  }
+  return x->kind == AST_LIST ? x : NULL;
+}
+
+/* --- giving values --- */
+
+typedef struct {
+  Builder *b;
+  const Target *p;
+  const Entity *e;
+  const Giver *giver;
+  uint32_t parts;       /* of what is given: 0 is a number */
+  const AstUnit *behind;
+} Assign;
+
+/* One value for member `at`. */
+static int give_member(const Assign *s, const int64_t *at, AstId id, Value v) {
+  Builder *b = s->b;
+  Span span = ast_expr(b->ast, id)->span;
+  if (!v.e) return 0;
+  if (v.n != s->parts) {
+    diag_error(b->diags, span, "`%s` is %s, and %s is given here", member_name(b, s->e->name, at, s->e->ndims), shape_text(b, s->parts),
+               shape_text(b, v.n));
+    return 0;
+  }
+  uint32_t first = s->e->index + member_offset(s->e, at) + (s->p->part > 0 ? (uint32_t)s->p->part : 0);
+  if (s->behind) {
+    Unit own = unit_resolve(s->behind, b->diags, b->arena);
+    v = values_in(b, v, span, &own);
+    v.bare = 0;
+    v.dim = own.dim;
+  }
+  v = values_in(b, v, span, s->giver->unit(b, first, s->giver->data));
+  for (uint32_t k = 0; v.e && k < (v.n ? v.n : 1); k++) s->giver->give(b, first + k, v.at[k], span, s->giver->data);
+  return v.e != 0;
+}
+
+/* The ranges that the indices give, inside those of the entity. 0, reported, when they do not fit. */
+static int read_ranges(Builder *b, const Target *p, const Entity *e, AstId lhs, IndexRange *r) {
+  Span span = ast_expr(b->ast, lhs)->span;
+  *r = (IndexRange){.n = e->ndims};
+  for (int k = 0; k < e->ndims; k++) {
+    r->lo[k] = e->lo[k];
+    r->hi[k] = e->hi[k];
+  }
+  if (!p->indices) return 1;
+  if (!e->ndims) {
+    diag_error(b->diags, span, "`%s` is %s without index", e->name, ent_kind_text(e->kind));
+    diag_help(b->diags, "a family is declared with its size: `%s[3]`", e->name);
+    return 0;
+  }
+  if (!resolve_indices(b, p->indices, NULL, r)) return 0;
+  if (r->n != e->ndims) {
+    diag_error(b->diags, span, "`%s` has %s, here it has %u", e->name, e->ndims == 1 ? "one index" : "two indices", r->n);
+    return 0;
+  }
+  int empty = 0;
+  for (uint32_t k = 0; k < r->n; k++) empty |= r->hi[k] < r->lo[k];
+  return empty || (index_in_range(b, e, r->lo, span) && index_in_range(b, e, r->hi, span));
+}
+
+/* The next member of the ranges, row by row; 0 after the last. */
+static int next_in(const IndexRange *r, int64_t *at) {
+  for (uint32_t k = r->n; k-- > 0;) {
+    if (++at[k] <= r->hi[k]) return 1;
+    at[k] = r->lo[k];
+  }
+  return 0;
+}
+
+static uint64_t count_in(const IndexRange *r) {
+  uint64_t n = 1;
+  for (uint32_t k = 0; k < r->n; k++) n *= r->hi[k] < r->lo[k] ? 0 : (uint64_t)(r->hi[k] - r->lo[k] + 1);
+  return n;
+}
+
+/* Element by element, one for each member. */
+static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list) {
+  Builder *b = s->b;
+  uint32_t n = 0;
+  for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) n++;
+  if (!s->e->ndims || n != count_in(r)) {
+    diag_error(b->diags, list->span, "the list has %u element%s, and `%s` %s", n, n == 1 ? "" : "s", s->e->name,
+               !s->e->ndims ? "is no family" : arena_printf(b->arena, "has %llu members", (unsigned long long)count_in(r)));
+    return;
+  }
+  int64_t at[2] = {r->lo[0], r->lo[1]};
+  for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) {
+    give_member(s, at, i, resolve(b, i, IN_START, NULL));
+    next_in(r, at);
+  }
+}
+
+/* The value once more for each member, with its indices in scope; once for all where there are none. */
+static void give_formula(const Assign *s, const IndexRange *r, AstId rhs) {
+  Builder *b = s->b;
+  uint32_t outer = b->index.n;
+  int64_t at[2] = {r->lo[0], r->lo[1]};
+  int named = r->name[0] || r->name[1];
+  Value v = named || !count_in(r) ? (Value){0} : resolve(b, rhs, IN_START, NULL);
+  if (!count_in(r)) return;
+  do {
+    b->index.n = outer;
+    for (uint32_t k = 0; k < r->n; k++)
+      if (r->name[k]) vec_push(b->arena, &b->index, ((IndexVar){r->name[k], at[k]}));
+    if (named) v = resolve(b, rhs, IN_START, NULL);
+    if (!give_member(s, at, rhs, v)) break;
+  } while (next_in(r, at));
+  b->index.n = outer;
+}
+
+void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstId rhs, const Giver *giver) {
+  Assign s = {.b = b, .p = p, .e = e, .giver = giver, .parts = p->part < 0 ? e->parts : 0};
+  IndexRange r;
+  if (p->part >= (int)e->parts) {
+    diag_error(b->diags, ast_expr(b->ast, lhs)->span, "`%s` is %s: it has no such component", e->name, shape_text(b, e->parts));
+    return;
+  }
+  if (!read_ranges(b, p, e, lhs, &r)) return;
+  const AstExpr *list = list_behind(b, rhs, &s.behind);
+  if (list) give_list(&s, &r, list);
+  else give_formula(&s, &r, rhs);
+}

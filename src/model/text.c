@@ -1,0 +1,46 @@
+/* Pieces of the user's text, and names made while compiling. */
+#include <stdarg.h>
+
+#include "model/builder.h"
+
+Name intern_printf(Builder *b, const char *fmt, ...) {
+  va_list ap;
+  va_start(ap, fmt);
+  const char *s = arena_vprintf(b->arena, fmt, ap);
+  va_end(ap);
+  return intern(b->ast->names, s);
+}
+
+void not_yet(Builder *b, Span span, const char *what) {
+  diag_error(b->diags, span, "not yet: %s", what);
+  diag_help(b->diags, "lagc understands the syntax but cannot give it meaning in this version");
+}
+
+const char *ast_text(const Builder *b, AstId id) {
+  Span s = ast_expr(b->ast, id)->span;
+  Place p = source_place(b->ast->sources, s.begin);
+  if (!p.file || s.end <= s.begin) return "";
+  StrBuf out = strbuf(b->arena);
+  const char *from = p.file->text + (s.begin - p.file->base), *end = from + (s.end - s.begin);
+  int quoted = 0;
+  for (const char *c = from; c < end; c++) {
+    if (*c == '"') quoted = !quoted;
+    if (*c == '#' && !quoted)
+      while (c + 1 < end && *c != '\n') c++;
+    int space = *c == ' ' || *c == '\t' || *c == '\n' || *c == '\r';
+    if (!space) sb_putc(&out, *c);
+    else if (out.n && out.at[out.n - 1] != ' ') sb_putc(&out, ' ');
+  }
+  return sb_text(&out);
+}
+
+const char *ast_short(const Builder *b, AstId id) {
+  enum { LONGEST = 48 };
+  const char *text = ast_text(b, id);
+  size_t n = strlen(text);
+  if (n <= LONGEST) return text;
+  size_t head = LONGEST - 13, tail = n - 10;
+  while (head && ((unsigned char)text[head] & 0xC0) == 0x80) head--;
+  while (tail < n && ((unsigned char)text[tail] & 0xC0) == 0x80) tail++;
+  return arena_printf(b->arena, "%.*s...%s", (int)head, text, text + tail);
+}
