@@ -62,7 +62,8 @@ const Source *source_read(Sources *s, const char *path, const char **error) {
     *error = "it cannot be read (is it a directory?)";
     return NULL;
   }
-  const Source *file = source_add(s, arena_strdup(s->arena, path), text, len);
+  size_t mark = len >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* some editors begin UTF-8 with a mark */
+  const Source *file = source_add(s, arena_strdup(s->arena, path), text + mark, len - mark);
   if (!file) *error = "it is larger than 64 MiB";
   return file;
 }

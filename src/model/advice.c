@@ -55,7 +55,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
   }
   known[n++] = "t";
   known[n++] = "pi";
-  Name near = suggest(name, known, n);
+  Name near = strcmp(name, "π") == 0 ? "pi" : suggest(name, known, n);
   if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else if (declare) diag_help(b->diags, "declare it: `%s %s`", declare, name);
   else diag_help(b->diags, "declare it: `param %s = 1`, `coord %s` or `let %s = ...`", name, name, name);

@@ -229,7 +229,7 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
   int ambiguous;
   const Entity *e = scope_find(&b->scope, x->name, ev->effect, &ambiguous);
   diag_error(b->diags, x->op_span.end ? x->op_span : x->span, "unknown function `%s`", x->name);
-  Name near = suggest(x->name, known, n);
+  Name near = strcmp(x->name, "ln") == 0 ? "log" : suggest(x->name, known, n);
   if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
   else if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else diag_help(b->diags, "`lagc help functions` lists them; declare your own: `function %s(x) = ...`", x->name);

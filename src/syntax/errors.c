@@ -3,6 +3,8 @@
  * In: the token that cannot stand where it was found, and the tokens that could. Out: one message,
  * with a caret under the culprit and, for the slips that are known, a way out. Token names never
  * appear: tokens are grouped into what a physicist would say. */
+#include <string.h>
+
 #include "syntax/parse_state.h"
 
 #include "base/suggest.h"
@@ -135,12 +137,23 @@ static void report_word(Parse *cx, const Token *t) {
   }
   Name near = nearest_word(cx, t->name, where);
   diag_error(d, t->span, "unknown statement `%s`", t->name);
+  static const char *const energies[][2] = {{"L", "lagrangian"}, {"T", "kinetic"}, {"V", "potential"}, {"U", "potential"}};
+  for (size_t i = 0; i < sizeof energies / sizeof *energies && t->follows == TOK_ASSIGN; i++)
+    if (strcmp(t->name, energies[i][0]) == 0 && !(where & (W_SCENE | W_EVENT))) near = energies[i][1];
   if (near) diag_help(d, "did you mean `%s`?", near);
   else if (where & (W_SCENE | W_EVENT)) diag_help(d, "a value is set with `%s = …`", t->name);
   else if (t->follows == TOK_ASSIGN) diag_help(d, "a name is given a meaning with `let %s = …` or `param %s = …`", t->name, t->name);
 }
 
 static int ends_operand(const Token *t) { return (token_flags(t->kind) & T_OPERAND) != 0; }
+
+/* What people write without parentheses on paper. */
+static int is_function(const char *name) {
+  static const char *const names[] = {"sin", "cos", "tan", "exp", "log", "ln", "sqrt", "asin", "acos", "atan", "sinh", "cosh", "tanh", "abs"};
+  for (size_t i = 0; name && i < sizeof names / sizeof *names; i++)
+    if (strcmp(name, names[i]) == 0) return 1;
+  return 0;
+}
 
 /* A way out for what was found, or NULL. */
 static const char *advice(const Parse *cx, const TokKind *set, int n) {
@@ -177,7 +190,11 @@ static const char *advice(const Parse *cx, const TokKind *set, int n) {
       if (has(set, n, TOK_IDENT)) return arena_printf(a, "`%s` is a reserved word", token_word(t->kind));
       break;
     case TOK_IDENT: case TOK_NUMBER: case TOK_LPAREN: case TOK_SUM: case TOK_PRODUCT:
-      if (operators && ends_operand(b)) return "a product is written with `*`";
+      if (!operators || !ends_operand(b)) break;
+      if (t->kind == TOK_IDENT && b->kind == TOK_NUMBER)
+        return arena_printf(a, "a unit stands in brackets: `[%s]`; a product is written with `*`", t->name);
+      if (b->kind == TOK_IDENT && is_function(b->name)) return arena_printf(a, "a function takes its argument in parentheses: `%s(...)`", b->name);
+      return "a product is written with `*`";
       break;
     default: break;
   }
