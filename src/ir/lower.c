@@ -20,7 +20,7 @@ static Slot power_int(Lower *l, Slot x, int64_t n) {
   return r;
 }
 
-/* x^e for e > 0: integers by multiplication, halves with a square root. */
+/* x^e for e > 0: integers by multiplication, halves with a square root, thirds with a cubic root. */
 static Slot power(Lower *l, Slot x, Num e) {
   if (num_is_exact(e) && e.den == 1) return power_int(l, x, e.num);
   if (num_is_exact(e) && e.den == 2) {
@@ -28,6 +28,10 @@ static Slot power(Lower *l, Slot x, Num e) {
     if (e.num == 1) return root;
     Slot whole = power_int(l, x, e.num / 2);
     return op(l, IR_MUL, whole, root);
+  }
+  if (num_is_exact(e) && e.den == 3) { /* the real root, also of what is negative */
+    Slot root = prog_ins(l->p, (Ins){.op = IR_FN1, .a = x, .text = "cbrt"});
+    return power_int(l, root, e.num);
   }
   Slot k = number(l, e);
   return prog_ins(l->p, (Ins){.op = IR_FN2, .a = x, .b = k, .text = "pow"});

@@ -10,6 +10,7 @@ static long double power(long double base, Num e) {
       if (n & 1) r *= b;
     return e.num < 0 ? 1 / r : r;
   }
+  if (e.den == 3) return power(cbrtl(base), num_int(e.num)); /* the real root, also of what is negative */
   if (e.den == 2) return power(sqrtl(base), num_int(e.num));
   return powl(base, (long double)e.num / (long double)e.den);
 }
