@@ -15,20 +15,6 @@ static double cell(const Table *t, size_t row, int col)
   return t->data[row * (size_t)t->ncols + (size_t)col];
 }
 
-/* & < > " as HTML has them. */
-static void html_text(FILE *f, const char *s)
-{
-  for (; *s; s++) {
-    switch (*s) {
-    case '<': fputs("&lt;", f); break;
-    case '>': fputs("&gt;", f); break;
-    case '&': fputs("&amp;", f); break;
-    case '"': fputs("&quot;", f); break;
-    default: putc(*s, f);
-    }
-  }
-}
-
 /* A string inside of a script: nothing in it may look like a tag. */
 static void script_string(FILE *f, const char *s)
 {
@@ -137,7 +123,7 @@ int html_write(const char *path, const Table *t, const char *title, const Animat
       put_data(o.f, t, a);
     } else if (mark) {
       fwrite(page[i], 1, (size_t)(mark - page[i]), o.f);
-      html_text(o.f, title);
+      io_markup(o.f, title);
       fputs(mark + strlen("@TITLE@"), o.f);
     } else {
       fputs(page[i], o.f);

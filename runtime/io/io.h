@@ -93,4 +93,7 @@ int state_write(const char *path, const State *s);
 /* 0; -1 errno; 1: not a saved state, or damaged: *why says how. */
 int state_read(const char *path, State *s, const char **why);
 
+/* Writes a text with & < > " as XML and HTML spell them. */
+void io_markup(FILE *f, const char *s);
+
 #endif

@@ -26,7 +26,7 @@ double nice_step(double lo, double hi, int n)
   return power * (f < 1.5 ? 1 : f < 3.5 ? 2 : f < 7.5 ? 5 : 10);
 }
 
-static void xml(FILE *f, const char *s)
+void io_markup(FILE *f, const char *s)
 {
   for (; *s; s++) {
     switch (*s) {
@@ -42,7 +42,7 @@ static void xml(FILE *f, const char *s)
 static void text(FILE *f, double x, double y, const char *attributes, const char *s)
 {
   fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, attributes);
-  xml(f, s);
+  io_markup(f, s);
   fputs("</text>\n", f);
 }
 
@@ -128,7 +128,7 @@ static void axes(FILE *f, const Panel *p, const char *ylabel, int last)
     text(f, p->x + p->w / 2, p->y + p->h + 40, "text-anchor=\"middle\" class=\"l\"", p->xlabel);
   }
   fprintf(f, "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\" class=\"l\">", 18.0, p->y + p->h / 2);
-  xml(f, ylabel);
+  io_markup(f, ylabel);
   fputs("</text>\n", f);
 }
 
@@ -211,7 +211,7 @@ static void head(FILE *f, int height, const char *title)
           "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" "
           "font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"12\" fill=\"#333\">\n<title>",
           WIDTH, height, WIDTH, height);
-  xml(f, title);
+  io_markup(f, title);
   fprintf(f,
           "</title>\n<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:13px}</style>\n"
           "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",

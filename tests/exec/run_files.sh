@@ -50,6 +50,17 @@ check 'run: the disk is full' refused 2 'cannot write' full_disk "$LAGC" run "$m
 check 'run: the cache is empty after that' sh -c '[ -z "$(ls -A "$0")" ]' "$dir/cache/lagc"
 
 mkfifo "$dir/fifo"
+mkdir "$dir/own"
+cp "$model" "$dir/own/spring.lag"
+for command in emit header build derive; do
+  check "$command: the model is not overwritten" refused 2 'would be overwritten' "$LAGC" $command "$dir/own/spring.lag" -o "$dir/own/spring.lag"
+done
+check 'run: the model is not overwritten' refused 2 'would be overwritten' "$LAGC" run "$dir/own/spring.lag" -o "$dir/own/spring.lag"
+check 'the model is as it was' cmp "$model" "$dir/own/spring.lag"
+"$LAGC" run "$dir/own/spring.lag" --until 1 --save-state "$dir/own/state" --quiet
+sed 's/^potential = /potential = 2*/; s/^lagrangian = /lagrangian = 2*/' "$model" >"$dir/own/spring.lag"
+check 'resume: other equations' refused 2 'equations differ' "$LAGC" run "$dir/own/spring.lag" --resume "$dir/own/state" --until 2
+
 check 'build: a pipe is not replaced' refused 2 'no ordinary file' "$LAGC" build "$model" -o "$dir/fifo"
 check 'build: it is still a pipe' is_fifo
 cat "$dir/fifo" >"$dir/piped" &

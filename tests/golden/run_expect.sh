@@ -19,6 +19,12 @@ for lag in tests/golden/err/expect_*.lag; do
   check "$lag" golden "$lag"
 done
 
+# A name in a listing means one thing.
+twice() { "$LAGC" derive tests/exec/models/chain4.lag | sed -n '/^where/,/^$/s/^  \([^ ]*\) = .*/\1/p' | sort | uniq -d; }
+listed() { "$LAGC" derive tests/exec/models/chain4.lag | grep -c '^  d_'; }
+empty "derivatives of lets have names of their own" "$(twice)"
+check "some are listed" [ "$(listed)" -gt 2 ]
+
 allowed() { "$LAGC" check --allow-numeric tests/golden/err/expect_undecided.lag 2>&1 | grep -q 'warning: expect th'; }
 check "--allow-numeric: a warning" allowed
 check "--allow-numeric: exit status 0" "$LAGC" check --allow-numeric tests/golden/err/expect_undecided.lag
