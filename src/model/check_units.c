@@ -29,7 +29,7 @@ static void report_mismatch(Eval *ev, Span span, AstId x, AstId y) {
   AstId bare = value_of(ev, x)->bare ? x : value_of(ev, y)->bare ? y : 0, other = bare == x ? y : x;
   const Value *v = value_of(ev, bare ? other : x), *w = value_of(ev, y);
   if (bare) {
-    const char *unit = shown_unit(b, v);
+    const char *unit = v->point ? dim_text(b->dims, v->dim) : shown_unit(b, v);
     diag_error(b->diags, span, "units do not match: `%s` is in [%s], `%s` has no unit", ast_short(b, other), unit, ast_short(b, bare));
     if (!dim_open_name(b->dims, v->dim)) diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_short(b, bare), unit);
   } else {
@@ -64,7 +64,7 @@ int refuse_point(Eval *ev, AstId operand, const char *why) {
   Expr e = value_of(ev, operand)->e;
   StrBuf kelvin = strbuf(b->arena);
   if (expr_is_num(b->g, e)) num_print(&kelvin, num_double(num_value(expr_number(b->g, e))));
-  diag_error(b->diags, x->span, "`%s` is a point on a scale with a zero of its own; %s", ast_short(b, operand), why);
+  diag_error(b->diags, x->span, "`%s` is a point on a scale with a zero of its own, and %s", ast_short(b, operand), why);
   diag_help(b->diags, "for a difference write `%s [K]`, for the temperature itself `%s [K]`", number, kelvin.n ? sb_text(&kelvin) : "...");
   return 0;
 }
@@ -76,8 +76,8 @@ int point_fits(Eval *ev, const AstExpr *x, AstId operand) {
     case AST_CALL:
       for (size_t i = 0; i < sizeof takes / sizeof *takes; i++)
         if (strcmp(x->name, takes[i]) == 0) return 1;
-      return own_function(ev, x) || refuse_point(ev, operand, "a function of it means the difference, or the temperature");
-    default: return refuse_point(ev, operand, "multiplied it would be a difference");
+      return own_function(ev, x) || refuse_point(ev, operand, "no argument of a function");
+    default: return refuse_point(ev, operand, "cannot be multiplied");
   }
 }
 

@@ -51,7 +51,7 @@ static int point_in_sum(Eval *ev, uint32_t i) {
   uint32_t subtracted = 0;
   for (uint32_t k = 0; k <= i; k++) subtracted += ev->operands.at[k].inverted && value_of(ev, ev->operands.at[k].at)->point;
   if (ev->operands.at[i].inverted ? subtracted == 1 : i == 0) return 1;
-  return refuse_point(ev, ev->operands.at[i].at, "added to a temperature it would be a difference");
+  return refuse_point(ev, ev->operands.at[i].at, "cannot be added to a temperature");
 }
 
 /* Shape, dimension and bareness of a sum; 0, reported, when its operands do not go together. */
