@@ -264,7 +264,7 @@ Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(print
 
 /* The unit that a statement gives its name. Without one its dimension is unknown, and found from the
  * equations where they tell; that is once for all members of a family. */
-Unit declared_unit(Builder *b, const AstStmt *st);
+Unit declared_unit(Builder *b, const AstStmt *st, Name effect);
 
 /* output.c: the unit of what an entity declares, or NULL. */
 const Unit *entity_unit(const Builder *b, const Entity *e);
@@ -279,8 +279,10 @@ int is_zero(const Builder *b, const Value *v);
 /* Whether two values can be added: they have one dimension, or can be given it; zero is zero in every unit. */
 int dims_agree(Builder *b, const Value *x, const Value *y, Span why);
 
-/* For messages: the unit of a value as it was written, or that of its dimension. */
+/* For messages: the unit of a value as it was written, or that of its dimension; "in [m]", "a pure number". */
 const char *shown_unit(const Builder *b, const Value *v);
+const char *in_unit(const Builder *b, const char *unit);
+const char *in_dim(const Builder *b, Dim d);
 
 /* Adds to a message about two dimensions (DIM_ANY: about one) where a name without a unit in them has its own
  * from, or that it does not matter which one it has. */

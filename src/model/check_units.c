@@ -13,14 +13,18 @@ int dims_agree(Builder *b, const Value *x, const Value *y, Span why) {
 
 const char *shown_unit(const Builder *b, const Value *v) { return v->unit && v->unit[0] ? v->unit : dim_text(b->dims, v->dim); }
 
+const char *in_unit(const Builder *b, const char *unit) {
+  return strcmp(unit, "1") == 0 ? "a pure number" : arena_printf(b->arena, "in [%s]", unit);
+}
+
+const char *in_dim(const Builder *b, Dim d) { return in_unit(b, dim_text(b->dims, d)); }
+
 void explain_dims(Builder *b, Dim x, Dim y) {
   DimCause c;
   Name open = dim_open_name(b->dims, x) ? dim_open_name(b->dims, x) : dim_open_name(b->dims, y);
   if (open && y != DIM_ANY) diag_help(b->diags, "whatever unit `%s` has, they differ by [%s]", open, dim_text(b->dims, dim_div(b->dims, x, y)));
   if (!dim_cause(b->dims, x, &c) && !dim_cause(b->dims, y, &c)) return;
-  const char *text = dim_text(b->dims, c.is);
-  if (dim_found(b->dims, c.is) == DIM_NONE) diag_also(b->diags, c.why, "here `%s`, which is declared without a unit, is a pure number", c.name);
-  else diag_also(b->diags, c.why, "here `%s`, which is declared without a unit, is in [%s]", c.name, text);
+  diag_also(b->diags, c.why, "here `%s`, which is declared without a unit, is %s", c.name, in_dim(b, c.is));
 }
 
 /* A bare number gets the unit to write. */
@@ -33,8 +37,8 @@ static void report_mismatch(Eval *ev, Span span, AstId x, AstId y) {
     diag_error(b->diags, span, "units do not match: `%s` is in [%s], `%s` has no unit", ast_short(b, other), unit, ast_short(b, bare));
     if (!dim_open_name(b->dims, v->dim)) diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_short(b, bare), unit);
   } else {
-    diag_error(b->diags, span, "units do not match: `%s` is in [%s], `%s` in [%s]", ast_short(b, x), shown_unit(b, v), ast_short(b, y),
-               shown_unit(b, w));
+    diag_error(b->diags, span, "units do not match: `%s` is %s, `%s` %s", ast_short(b, x), in_unit(b, shown_unit(b, v)), ast_short(b, y),
+               in_unit(b, shown_unit(b, w)));
   }
   explain_dims(b, v->dim, w->dim);
 }

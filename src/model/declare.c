@@ -112,11 +112,11 @@ Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint
   return e->parts ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name;
 }
 
-Unit declared_unit(Builder *b, const AstStmt *st) {
+Unit declared_unit(Builder *b, const AstStmt *st, Name effect) {
   Unit u = unit_resolve(&st->unit, b->dims, b->diags, b->arena);
   if (st->unit.n || b->unitless) return u;
   u.dim = dim_unknown(b->dims, st->name);
-  vec_push(b->arena, &b->undeclared, ((Undeclared){st->name, u.dim}));
+  vec_push(b->arena, &b->undeclared, ((Undeclared){effect ? intern_printf(b, "%s.%s", effect, st->name) : st->name, u.dim}));
   return u;
 }
 
@@ -147,7 +147,7 @@ static void declare_coord(Builder *b, const AstStmt *st, Name effect) {
   uint8_t parts;
   if (!read_type(b, st, effect, &parts)) return;
   if (!declare_family(b, st, effect, ENT_COORD, b->m->coords.n, parts, &e)) return;
-  Unit unit = declared_unit(b, st);
+  Unit unit = declared_unit(b, st, effect);
   int64_t at[2] = {1, 1};
   do
     for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++) add_coord(b, st, scalar_name(b, &e, st->name, at, k), unit);
@@ -168,7 +168,7 @@ static void declare_state(Builder *b, const AstStmt *st, Name effect) {
   uint8_t parts;
   if (!read_type(b, st, effect, &parts)) return;
   if (!declare_family(b, st, effect, ENT_STATE, b->m->states.n, parts, &e)) return;
-  Unit unit = declared_unit(b, st);
+  Unit unit = declared_unit(b, st, effect);
   int64_t at[2] = {1, 1};
   do
     for (uint32_t k = 0; k < (parts ? parts : 1u); k++) add_state(b, st, scalar_name(b, &e, st->name, at, k), unit);
@@ -180,7 +180,7 @@ static void declare_input(Builder *b, const AstStmt *st, Name effect) {
   uint32_t i = m->inputs.n;
   if (!declare_name(b, st, effect, ENT_INPUT, i)) return;
   Input in = {.name = st->name, .span = st->name_span};
-  in.unit = declared_unit(b, st);
+  in.unit = declared_unit(b, st, effect);
   in.sym = declare_symbol(b, SYM_INPUT, i, st->name, SIGN_UNKNOWN, in.unit.dim);
   vec_push(b->arena, &m->inputs, in);
 }

@@ -83,10 +83,10 @@ static int read_values(Declared *d, Name effect, ParamValues *values) {
 }
 
 /* Without a unit of its own a parameter takes its value's; a bare number tells nothing. */
-static Unit param_unit(Builder *b, const AstStmt *st, const ParamValues *values) {
+static Unit param_unit(Builder *b, const AstStmt *st, Name effect, const ParamValues *values) {
   const Value *v = values->at.n ? &values->at.at[0] : NULL;
   if (!st->unit.n && v && v->e && !v->bare && v->dim != DIM_ANY) return unit_of_dim(b->dims, v->dim);
-  return declared_unit(b, st);
+  return declared_unit(b, st, effect);
 }
 
 /* Its own name is not in scope in its value. */
@@ -100,7 +100,7 @@ void declare_param(Builder *b, const AstStmt *st, Name effect) {
   int fits = read_values(&d, effect, &values);
   if (!st->type && fits) d.e.parts = (uint8_t)values.at.at[0].n;
   if (d.e.parts && st->sign != SIGN_ANY) diag_error(b->diags, st->name_span, "`%s` is %s, and has no sign", st->name, shape_text(b, d.e.parts));
-  d.unit = param_unit(b, st, &values);
+  d.unit = param_unit(b, st, effect, &values);
   if (!declare_entity(b, st, d.e)) return;
   int64_t at[2] = {1, 1};
   uint32_t i = 0;

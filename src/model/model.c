@@ -29,8 +29,9 @@ static void check_energy_unit(Builder *b, const AstStmt *st, const Value *v, Ene
   Span span = ast_expr(b->ast, st->rhs)->span;
   if (!en->first.end) en->first = st->span;
   if (dim_equate(b->dims, b->energy, v->dim, span)) return;
-  diag_error(b->diags, span, "this is in [%s]", dim_text(b->dims, v->dim));
-  diag_also(b->diags, en->first, "another part of the Lagrangian is in [%s]", dim_text(b->dims, b->energy));
+  diag_error(b->diags, span, "units do not match: this is %s, another part of the Lagrangian %s", in_dim(b, v->dim), in_dim(b, b->energy));
+  diag_also(b->diags, en->first, "that part is here");
+  explain_dims(b, v->dim, DIM_ANY);
 }
 
 /* Remembers that v times `by` has the dimension of L, which later statements may decide. */
@@ -45,7 +46,7 @@ static void check_units_of_forces(Builder *b, const Energies *en) {
     Dim want = dim_div(b->dims, b->energy, c->by);
     Span span = ast_expr(b->ast, c->id)->span;
     if (dim_equate(b->dims, c->dim, want, span)) continue;
-    diag_error(b->diags, span, "%s is in [%s], and this is in [%s]", c->what, dim_text(b->dims, want), dim_text(b->dims, c->dim));
+    diag_error(b->diags, span, "%s is %s, and this is %s", c->what, in_dim(b, want), in_dim(b, c->dim));
     if (c->bare) diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_text(b, c->id), dim_text(b->dims, want));
     explain_dims(b, c->dim, want);
   }
@@ -189,8 +190,7 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
     return;
   }
   if (!dims_agree(b, &l, &r, st->span)) {
-    diag_error(b->diags, st->span, "units do not match: the left side is in [%s], the right side in [%s]", dim_text(b->dims, l.dim),
-               dim_text(b->dims, r.dim));
+    diag_error(b->diags, st->span, "units do not match: the left side is %s, the right side %s", in_dim(b, l.dim), in_dim(b, r.dim));
     explain_dims(b, l.dim, r.dim);
   }
   Expect x = {.name = st->name, .span = st->span, .lhs_ast = st->lhs, .rhs_ast = st->rhs, .effect = effect};
@@ -272,8 +272,8 @@ static void fill_observe(Builder *b, const AstStmt *st, Name effect) {
   o->value = v.e;
   if (!st->unit.n) o->unit.dim = v.dim;
   else if (v.e && !dim_equate(b->dims, v.dim, o->unit.dim, ast_expr(b->ast, st->rhs)->span)) {
-    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "`%s` is declared in [%s], and this is in [%s]", o->name, o->unit.text,
-               dim_text(b->dims, v.dim));
+    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "`%s` is declared in [%s], and this is %s", o->name, o->unit.text,
+               in_dim(b, v.dim));
     explain_dims(b, v.dim, o->unit.dim);
   }
 }

@@ -325,7 +325,8 @@ Value values_in(Builder *b, Value v, Span span, const Unit *unit) {
   }
   if (is_zero(b, &v) || dim_equate(b->dims, v.dim, unit->dim, span)) return v;
   const char *want = unit->text[0] ? unit->text : dim_text(b->dims, unit->dim);
-  diag_error(b->diags, span, "this value is in [%s], and [%s] is wanted here", shown_unit(b, &v), want);
+  const char *wanted = strcmp(want, "1") == 0 ? "a pure number" : arena_printf(b->arena, "[%s]", want);
+  diag_error(b->diags, span, "this value is %s, and %s is wanted here", in_unit(b, shown_unit(b, &v)), wanted);
   if (dim_found(b->dims, v.dim) == DIM_NONE)
     diag_help(b->diags, "give a number in it its unit, or multiply by `1 [%s]`", dim_text(b->dims, unit->dim));
   explain_dims(b, v.dim, unit->dim);

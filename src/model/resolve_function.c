@@ -71,9 +71,8 @@ static void report_argument(Eval *ev, const AstExpr *x, const Instance *in, uint
   AstId id = b->functions.at[in->function].stmt->args;
   for (uint32_t k = 0; k < i; k++) id = ast_expr(b->ast, id)->next;
   const char *unit = dim_text(b->dims, want), *text = ast_short(b, arg);
-  diag_error(b->diags, ast_expr(b->ast, arg)->span, v->bare ? "units do not match: the argument `%s` of `%s` is in [%s] here, `%s` has no unit"
-                                                            : "units do not match: the argument `%s` of `%s` is in [%s] here, `%s` in [%s]",
-             ast_expr(b->ast, id)->name, x->name, unit, text, shown_unit(b, v));
+  diag_error(b->diags, ast_expr(b->ast, arg)->span, "units do not match: the argument `%s` of `%s` is %s here, `%s` %s",
+             ast_expr(b->ast, id)->name, x->name, in_unit(b, unit), text, v->bare ? "has no unit" : in_unit(b, shown_unit(b, v)));
   if (v->bare) diag_help(b->diags, "give the number its unit: `%s [%s]`", text, unit);
   DimCause c;
   if (dim_cause(b->dims, in->args[i].dim, &c)) diag_also(b->diags, c.why, "because of this");

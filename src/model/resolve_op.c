@@ -283,8 +283,7 @@ static int judge_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr *x
       r->dim = dim_mul(b->dims, r->dim, term[i].dim);
     } else if (!is_zero(b, &term[i]) && term[i].dim != DIM_ANY) {
       if (!dim_equate(b->dims, r->dim, term[i].dim, span)) {
-        diag_error(b->diags, span, "units do not match: terms of this sum are in [%s] and in [%s]", dim_text(b->dims, r->dim),
-                   dim_text(b->dims, term[i].dim));
+        diag_error(b->diags, span, "units do not match: terms of this sum are %s and %s", in_dim(b, r->dim), in_dim(b, term[i].dim));
         explain_dims(b, r->dim, term[i].dim);
         return 0;
       }
