@@ -21,6 +21,7 @@
 #include "mech/show.h"
 #include "model/model.h"
 #include "picture.h"
+#include "settings.h"
 #include "syntax/parse.h"
 
 #define LAGC_VERSION "0.1"
@@ -221,6 +222,7 @@ static int do_build(Compiler *c) {
 /* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
 static int do_run(Compiler *c) {
   const char *path, *error = NULL;
+  if (!settings_convert(&c->o, c->ast)) return STATUS_USAGE;
   if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   int status = make_simulator(c, NULL, &path);
   if (status != STATUS_OK) return status;

@@ -30,6 +30,10 @@ int args_number(const Args *a, const char *what, const char *text, const char *e
   size_t plain = strspn(text, "+-.0123456789eE");
 
   *x = strtod(text, &end);
+  if (strchr(text, '[')) {
+    app_error(a, "%s: \"%s\" has a unit, and a simulator takes numbers in the units that --help shows, times in s; lagc run converts", what, text);
+    return 0;
+  }
   if (end == text || *end || plain != strlen(text)) {
     app_error(a, "%s: \"%s\" is not a number; write for example %s", what, text, example);
     return 0;

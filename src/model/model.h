@@ -191,4 +191,8 @@ Model *model_build(Ast *ast, const ModelChoice *choice);
  * prime, say); nothing is reported. */
 Expr model_reresolve(const Model *m, const Expect *x, AstId root, AstId node, Expr with);
 
+/* What the command line gives to `target` (0: to a time), as a number in its declared unit. 0, reported, when
+ * the target is nothing that a run sets, or the value does not fit it. */
+int model_setting(const Model *m, AstId target, AstId value, double *out);
+
 #endif

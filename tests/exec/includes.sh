@@ -27,7 +27,8 @@ besides='
 src/ir/lower.c    mech/eqns.h
 src/ir/lower.h    mech/eqns.h
 runtime/include/lag.h  lag_model.h
-src/main.c        picture.h
+src/main.c        picture.h settings.h
+src/settings.c    settings.h
 src/picture.c     picture.h
 '
 # The inside of a folder, shared by its own files only.
