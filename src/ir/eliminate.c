@@ -78,27 +78,50 @@ static void eliminate_coordinate(System *y, uint32_t v) {
   }
 }
 
-static void add_product(System *y, uint32_t i, uint32_t j, Slot a, Slot b) {
-  Slot ab = op(y, IR_MUL, a, b);
-  sparse_set(&y->H, i, j, op(y, IR_ADD, sparse_get(&y->H, i, j), ab));
+/* One variable of a definition's step: c its coefficient in C_v, r its entry in row v of H, and r + h*c. */
+typedef struct {
+  uint32_t col;
+  Slot c, r, y;
+} Share;
+
+static void share(System *y, const SparseRow *row, const SparseRow *c, Slot h, uint32_t v, uint32_t *n, Share *at) {
+  *n = 0;
+  for (uint32_t i = 0; i < c->n; i++) {
+    Slot hc = op(y, IR_MUL, h, c->at[i].value), r = sparse_get(&y->H, v, c->at[i].col);
+    at[(*n)++] = (Share){c->at[i].col, c->at[i].value, r, op(y, IR_ADD, r, hc)};
+  }
+  for (uint32_t k = 0; k < row->n; k++) {
+    uint32_t col = row->at[k].col, inside = 0;
+    for (uint32_t i = 0; i < c->n; i++) inside |= c->at[i].col == col;
+    if (col != v && !inside) at[(*n)++] = (Share){col, 0, row->at[k].value, row->at[k].value};
+  }
 }
 
-/* The quadratic form with w_v' = C_v u' put in: each h w' u_s' with s another variable, h w'^2/2, and -b w'. */
+static void add_product(System *y, const Share *s, const Share *t, Slot a, Slot b) {
+  Slot ab = op(y, IR_MUL, a, b);
+  sparse_set(&y->H, s->col, t->col, op(y, IR_ADD, sparse_get(&y->H, s->col, t->col), ab));
+}
+
+/* The quadratic form with w_v' = C_v u' put in: H += c r^T + r c^T + h c c^T = c y^T + r c^T with
+ * y = r + h c, which entries of a row share; b += c b_v. */
 static void eliminate_definition(System *y, uint32_t v) {
   const SparseRow *row = &y->H.rows[v], *c = &y->C[v];
-  Slot h = sparse_get(&y->H, v, v);
-  for (uint32_t i = 0; i < c->n; i++) {
-    SparseEntry ci = c->at[i];
-    for (uint32_t k = 0; k < row->n; k++) {
-      SparseEntry s = row->at[k];
-      if (s.col == v) continue;
-      add_product(y, s.col, ci.col, s.value, ci.value);
-      if (s.col == ci.col) add_product(y, s.col, ci.col, s.value, ci.value); /* u_s' u_s' has both halves */
+  uint32_t n;
+  Share *at = ARENA_ARRAY(y->l->p->arena, Share, row->n + c->n + 1);
+  share(y, row, c, sparse_get(&y->H, v, v), v, &n, at);
+  for (uint32_t i = 0; i < c->n; i++) { /* the others have no c */
+    const Share *s = &at[i];
+    Slot twice = op(y, IR_ADD, s->y, s->r);
+    add_product(y, s, s, s->c, twice);
+    for (uint32_t k = 0; k < n; k++) {
+      const Share *t = &at[k];
+      if (k <= i && k < c->n) continue; /* each pair once */
+      int turned = s->r == 0; /* then c_s y_t is all */
+      add_product(y, s, t, turned ? s->c : t->c, turned ? t->y : s->y);
+      if (!turned) add_product(y, s, t, s->c, t->r);
     }
-    Slot hc = op(y, IR_MUL, h, ci.value);
-    for (uint32_t j = 0; j <= i && h; j++) add_product(y, ci.col, c->at[j].col, hc, c->at[j].value);
-    Slot cb = op(y, IR_MUL, ci.value, y->b[v]);
-    y->b[ci.col] = op(y, IR_ADD, y->b[ci.col], cb);
+    Slot cb = op(y, IR_MUL, s->c, y->b[v]);
+    y->b[s->col] = op(y, IR_ADD, y->b[s->col], cb);
   }
 }
 

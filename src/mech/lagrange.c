@@ -122,20 +122,42 @@ static uint64_t system_ops(Eqns *e, LinearSystem *s) {
   return expr_ops(e->g, roots.at, roots.n) + s->ops;
 }
 
-/* The short forms of all entries of M and f: entry by entry they may be shorter and still lose what
- * they share, so they are weighed together. */
-static LinearSystem shortened(const Eqns *e, const LinearSystem *raw) {
-  ExprGraph *g = e->g;
-  LinearSystem s = {.n = raw->n};
-  Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n);
-  for (uint32_t k = 0; k < raw->H.n; k++) {
-    MassEntry x = raw->H.at[k];
-    x.e = simplify(g, x.e);
-    if (!expr_is_zero(g, x.e)) vec_push(e->m->arena, &s.H, x);
+static Entries rewritten(const Eqns *e, const Entries *from, Expr (*rule)(ExprGraph *, Expr)) {
+  Entries to = {0};
+  for (uint32_t k = 0; k < from->n; k++) {
+    MassEntry x = from->at[k];
+    x.e = rule(e->g, x.e);
+    if (!expr_is_zero(e->g, x.e)) vec_push(e->m->arena, &to, x);
   }
-  for (uint32_t i = 0; i < e->n; i++) f[i] = simplify(g, raw->f[i]);
-  s.f = f;
-  return s;
+  return to;
+}
+
+/* Replaces *best when s with all its entries rewritten costs no more: entry by entry they may be
+ * shorter and still lose what they share, so they are weighed together. */
+static void try_form(Eqns *e, const LinearSystem *s, Expr (*rule)(ExprGraph *, Expr), LinearSystem *best, uint64_t *ops) {
+  LinearSystem t = {.n = s->n, .ndefs = s->ndefs, .H = rewritten(e, &s->H, rule), .C = rewritten(e, &s->C, rule)};
+  Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n);
+  for (uint32_t i = 0; i < e->n; i++) f[i] = rule(e->g, s->f[i]);
+  t.f = f;
+  uint64_t mine = system_ops(e, &t);
+  if (mine > *ops) return;
+  *best = t;
+  *ops = mine;
+}
+
+static Expr as_differentiated(ExprGraph *g, Expr x) {
+  (void)g;
+  return x;
+}
+
+/* The cheapest form of s; its operations in *ops. */
+static LinearSystem best_form(Eqns *e, const LinearSystem *s, uint64_t *ops) {
+  LinearSystem best = *s;
+  *ops = UINT64_MAX;
+  try_form(e, s, as_differentiated, &best, ops);
+  try_form(e, s, simplify_shallow, &best, ops);
+  if (s->H.n + s->C.n + e->n <= SIMPLIFY_MAX_ENTRIES) try_form(e, s, simplify, &best, ops);
+  return best;
 }
 
 /* Whether the mass matrix, entries and solution, takes many times what the system without it takes:
@@ -150,35 +172,27 @@ static int mass_is_hopeless(Eqns *e, LinearSystem *lifted) {
   return dense.ops > many;
 }
 
-/* The cheapest of three forms: M and f as differentiated, M and f in their short forms, and M as the
- * product that the text of L is. The last needs pivots that are known to be positive. */
+/* M and f, or M as the product that the text of L is, which needs pivots that are known to be positive. */
 void lagrange_momenta_and_forces(Eqns *e) {
+  uint64_t dense_ops, lifted_ops;
   const Expr *f = differentiate(e);
   LinearSystem lifted = lift_system(e);
   lifted.f = f;
   if (mass_is_hopeless(e, &lifted) && lagrange_definite(e, &lifted)) {
     e->definite_mass = 1;
-    e->f = f;
-    e->system = lifted;
+    e->system = best_form(e, &lifted, &lifted_ops);
+    e->f = e->system.f;
     return;
   }
-  LinearSystem raw = {.n = e->n, .H = raw_mass(e), .f = f}, best = raw;
-  uint64_t ops = system_ops(e, &raw);
-  best = raw;
-  if (raw.H.n + e->n <= SIMPLIFY_MAX_ENTRIES) {
-    LinearSystem brief = shortened(e, &raw);
-    uint64_t brief_ops = system_ops(e, &brief);
-    if (brief_ops <= ops) {
-      best = brief;
-      ops = brief_ops;
-    }
-  }
-  e->mass = best.H;
+  LinearSystem raw = {.n = e->n, .H = raw_mass(e), .f = f}, dense = best_form(e, &raw, &dense_ops);
+  e->mass = dense.H;
   e->mass_known = 1;
-  e->f = best.f;
-  e->system = best;
-  e->definite_mass = lagrange_definite(e, &best);
-  if (lifted.ndefs && e->definite_mass && system_ops(e, &lifted) < ops) e->system = lifted;
+  e->f = dense.f;
+  e->system = dense;
+  e->definite_mass = lagrange_definite(e, &dense);
+  if (!lifted.ndefs || !e->definite_mass) return;
+  lifted = best_form(e, &lifted, &lifted_ops);
+  if (lifted_ops < dense_ops) e->system = lifted;
 }
 
 /* --- a mass matrix that is singular everywhere --- */

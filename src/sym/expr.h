@@ -123,6 +123,9 @@ typedef struct {
 /* All nodes that the roots need, ascending: arguments before their nodes. Zero roots are skipped. */
 ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n);
 
+/* The same without what stands behind definitions. */
+ExprList expr_topo_shallow(ExprGraph *g, const Expr *roots, uint32_t n);
+
 /* Whether e contains a symbol for which want() is true (definitions are looked through). */
 int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data);
 int expr_contains_sym(ExprGraph *g, Expr e, SymId sym);
@@ -162,5 +165,8 @@ double expr_written_size(ExprGraph *g, Expr e, uint32_t *distinct);
 
 /* Number of operations that evaluating the roots takes when every node is computed once. */
 uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n);
+
+/* The same for one root, definitions given. */
+uint32_t expr_ops_shallow(ExprGraph *g, Expr e);
 
 #endif

@@ -75,9 +75,8 @@ static void sort_ids(ExprGraph *g, Expr *at, uint32_t n) {
   }
 }
 
-ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) { return expr_topo_until(g, roots, n, NULL); }
-
-ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves) {
+/* leaves: nodes not to look below; shallow: nor below definitions. */
+static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, int shallow) {
   VEC(Expr) found = {g->found, 0, g->found_cap};
   expr_map_clear(&g->seen);
   for (uint32_t i = 0; i < n; i++)
@@ -87,7 +86,7 @@ ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const Expr
     }
   for (uint32_t k = 0; k < found.n; k++) {
     Expr e = found.at[k];
-    if (leaves && expr_map_get(leaves, e)) continue;
+    if ((leaves && expr_map_get(leaves, e)) || (shallow && expr_op(g, e) == EX_DEF)) continue;
     for (uint32_t i = 0; i < expr_nargs(g, e); i++) {
       Expr a = expr_arg(g, e, i);
       if (expr_map_get(&g->seen, a)) continue;
@@ -102,6 +101,10 @@ ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const Expr
   if (found.n) memcpy(list, found.at, found.n * sizeof *list);
   return (ExprList){list, found.n};
 }
+
+ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, 0); }
+ExprList expr_topo_shallow(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, 1); }
+ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves) { return topo(g, roots, n, leaves, 0); }
 
 int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data) {
   ExprList l = expr_topo(g, &e, 1);
@@ -274,8 +277,7 @@ static uint32_t prod_ops(const ExprGraph *g, Expr e) {
   return ops + (inverse == n);
 }
 
-uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n) {
-  ExprList l = expr_topo(g, roots, n);
+static uint32_t count_ops(const ExprGraph *g, ExprList l) {
   uint32_t ops = 0;
   for (uint32_t i = 0; i < l.n; i++) {
     Expr e = l.at[i];
@@ -292,3 +294,6 @@ uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n) {
   }
   return ops;
 }
+
+uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n) { return count_ops(g, expr_topo(g, roots, n)); }
+uint32_t expr_ops_shallow(ExprGraph *g, Expr e) { return count_ops(g, expr_topo_shallow(g, &e, 1)); }
