@@ -29,7 +29,7 @@ enum { EXPAND_MAX_COORDS = 32 };
  * them, and short forms of sums over all coordinates cost more than their derivation. */
 enum { SHORTEN_MAX_COORDS = 64 };
 
-static Expr shorten(const Eqns *e, Expr x) { return e->n <= SHORTEN_MAX_COORDS ? simplify(e->g, x) : x; }
+static Expr shorten(const Eqns *e, Expr x) { return e->mass_known && e->n <= SHORTEN_MAX_COORDS ? simplify(e->g, x) : x; }
 
 /* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as it
  * was written: k/2*(r - l)^2 has more right digits than what it expands to. */

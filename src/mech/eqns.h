@@ -25,6 +25,7 @@ typedef VEC(MassEntry) Entries;
  * Without definitions H is M. */
 typedef struct {
   uint32_t n, ndefs;
+  const Expr *defs;      /* [ndefs] */
   Entries H;             /* lower triangle, row by row */
   Entries C;             /* row n + k; col < n + k */
   const Expr *f;         /* [n] */

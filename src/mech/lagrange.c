@@ -135,7 +135,7 @@ static Entries rewritten(const Eqns *e, const Entries *from, Expr (*rule)(ExprGr
 /* Replaces *best when s with all its entries rewritten costs no more: entry by entry they may be
  * shorter and still lose what they share, so they are weighed together. */
 static void try_form(Eqns *e, const LinearSystem *s, Expr (*rule)(ExprGraph *, Expr), LinearSystem *best, uint64_t *ops) {
-  LinearSystem t = {.n = s->n, .ndefs = s->ndefs, .H = rewritten(e, &s->H, rule), .C = rewritten(e, &s->C, rule)};
+  LinearSystem t = {.n = s->n, .ndefs = s->ndefs, .defs = s->defs, .H = rewritten(e, &s->H, rule), .C = rewritten(e, &s->C, rule)};
   Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n);
   for (uint32_t i = 0; i < e->n; i++) f[i] = rule(e->g, s->f[i]);
   t.f = f;
@@ -163,7 +163,7 @@ static LinearSystem best_form(Eqns *e, const LinearSystem *s, uint64_t *ops) {
 /* Whether the mass matrix, entries and solution, takes many times what the system without it takes:
  * then it is not derived at all. */
 static int mass_is_hopeless(Eqns *e, LinearSystem *lifted) {
-  enum { FEW_COORDINATES = 64, MANY_TIMES = 4 };
+  enum { FEW_COORDINATES = 24, MANY_TIMES = 4 };
   if (e->n <= FEW_COORDINATES || !lifted->ndefs || e->m->expects.n) return 0;
   order_best(e->m->arena, e->g, lifted);
   LinearSystem dense = *lifted;

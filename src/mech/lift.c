@@ -116,7 +116,7 @@ LinearSystem lift_system(const Eqns *e) {
   Lift l = {.e = e, .g = e->g, .arena = e->m->arena};
   for (SymId s = 1; s <= expr_symbol_count(l.g); s++) l.first += expr_symbol(l.g, s)->kind == SYM_LOCAL;
   cut_definitions(&l);
-  LinearSystem s = {.n = e->n, .ndefs = l.n};
+  LinearSystem s = {.n = e->n, .ndefs = l.n, .defs = l.def};
   if (!l.n) return s;
   l.gradient = ARENA_ARRAY(l.arena, ExprPartials, l.n + 1);
   for (uint32_t m = 0; m <= l.n; m++) l.gradient[m] = by_u(&l, l.cut[m]);

@@ -16,6 +16,7 @@ typedef struct {
   Sparse H;
   SparseRow *C;          /* [total] of definitions: what they contain */
   uint32_t *nusers;      /* [total] the definitions left that contain a variable */
+  uint32_t *depth;       /* [total] how many definitions stand upon each other below one */
   unsigned char *gone;
   OrderRule rule;
   uint64_t ops;          /* so far */
@@ -27,6 +28,7 @@ static Elimination elimination_new(Arena *a, ExprGraph *g, const LinearSystem *s
   Elimination e = {.arena = a, .n = s->n, .total = total, .rule = rule, .H = sparse_new(a, total)};
   e.C = ARENA_ARRAY(a, SparseRow, total + 1);
   e.nusers = ARENA_ARRAY(a, uint32_t, total + 1);
+  e.depth = ARENA_ARRAY(a, uint32_t, total + 1);
   e.gone = ARENA_ARRAY(a, unsigned char, total + 1);
   for (uint32_t k = 0; k < s->H.n; k++) sparse_set(&e.H, s->H.at[k].row, s->H.at[k].col, NONZERO);
   for (uint32_t k = 0; k < s->C.n; k++) {
@@ -34,6 +36,7 @@ static Elimination elimination_new(Arena *a, ExprGraph *g, const LinearSystem *s
     int one = expr_is_num(g, s->C.at[k].e) && num_is_one(num_abs(expr_number(g, s->C.at[k].e)));
     vec_push(a, &e.C[row], ((SparseEntry){col, one ? ONE : NONZERO}));
     e.nusers[col]++;
+    if (e.depth[row] <= e.depth[col]) e.depth[row] = e.depth[col] + 1; /* rows come in order: col is done */
   }
   return e;
 }
@@ -53,7 +56,7 @@ static uint64_t key_of(const Elimination *e, uint32_t v) {
   int definition = v >= e->n;
   switch (e->rule) {
     case ORDER_CHEAPEST: return cost_of(e, v);
-    case ORDER_OUTERMOST: return definition ? (uint64_t)e->total - v : 0;
+    case ORDER_OUTERMOST: return definition ? (uint64_t)e->total - e->depth[v] : 0;
     case ORDER_DEFINITIONS_FIRST: return definition ? 0 : 1 + cost_of(e, v);
   }
   return 0;

@@ -10,8 +10,8 @@
 typedef enum {
   ORDER_CHEAPEST,         /* greedy: the cheapest step first (Markowitz, Management Science 3 (1957) 255; Tinney
                            * & Walker, Proc. IEEE 55 (1967) 1801, scheme 3) */
-  ORDER_OUTERMOST,        /* the last definition first, coordinates as soon as they can: from the tips of a
-                           * tree to its root (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 7.3) */
+  ORDER_OUTERMOST,        /* the definition farthest from the coordinates first, these as soon as they can: from the
+                           * tips of a tree to its root (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 7.3) */
   ORDER_DEFINITIONS_FIRST /* which makes the mass matrix */
 } OrderRule;
 
