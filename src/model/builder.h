@@ -39,7 +39,7 @@ typedef struct {
 
 typedef VEC(IndexVar) IndexVars;
 
-/* A let, or a member of a family of lets, evaluated when first needed; or a function. */
+/* A let, an observable, or a member of a family of them, evaluated when first needed; or a function. */
 typedef struct {
   const AstStmt *stmt;
   Name name, effect;
@@ -47,6 +47,8 @@ typedef struct {
   Value value; /* e is 0 after an error */
   struct Instance *instances; /* of a function: where it has been called */
   IndexVar index[2]; /* of a member: its indices, by name where the let binds one */
+  const IndexVar *around; /* of an observable: the indices of the `for` around it */
+  uint32_t naround;
 } Definition;
 
 /* A function's body, evaluated for arguments of certain shapes: numbers, or vectors of 2 or 3 components. Their
@@ -98,7 +100,7 @@ struct Builder {
   EntKind needed_kind; /* the definition that an evaluation waits for */
   uint32_t needed;
   VEC(Active) active; /* the statements that this scene uses */
-  VEC(Definition) lets, functions;
+  VEC(Definition) lets, functions, observes; /* observes: one for each in the model */
   VEC(Instance *) instances;
   VEC(Constant) constants;
   Dims *dims;
@@ -231,8 +233,12 @@ SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSi
 /* A number known now (spans, steps, tolerances); NAN after an error. */
 double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what);
 
-/* Evaluates a let that nothing has needed so far. */
+/* Evaluates a let, or an observable, that nothing has needed so far. */
 void resolve_let(Builder *b, uint32_t index);
+void resolve_observe(Builder *b, uint32_t index);
+
+/* model.c: puts the value of an observable into the model, checks its unit. */
+void finish_observe(Builder *b, uint32_t index, Value v);
 
 /* Checks a function that nothing calls: there must be shapes of arguments that make sense of its body. */
 void check_uncalled(Builder *b, uint32_t function);

@@ -276,6 +276,10 @@ static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
   }
   o.unit = unit_resolve(&st->unit, b->dims, b->diags, b->arena);
   vec_push(b->arena, &m->observes, o);
+  IndexVar *around = ARENA_ARRAY(b->arena, IndexVar, b->index.n + 1);
+  if (b->index.n) memcpy(around, b->index.at, b->index.n * sizeof *around);
+  Definition d = {.stmt = st, .name = o.name, .effect = effect, .around = around, .naround = b->index.n};
+  vec_push(b->arena, &b->observes, d);
 }
 
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {

@@ -248,33 +248,24 @@ static void fill_input(Builder *b, const AstStmt *st, Name effect) {
   in->value = resolve_in(b, st->rhs, IN_INPUT, effect, &in->unit);
 }
 
-/* The observable that the statement declares; NULL when it was refused. */
-static Output *declared_observe(Builder *b, const AstStmt *st, Name effect) {
-  const Entity *e = scope_own(&b->scope, st->name, effect);
-  if (!e || e->kind != ENT_OBSERVE) return NULL;
-  if (st->dims) {
-    IndexRange r;
-    if (!e->ndims || !resolve_indices(b, st->dims, effect, &r) || r.n != e->ndims) return NULL;
-    e = find_member(b, e, r.lo);
+/* Without a declared unit it is shown in that of its expression. A vector has an output a component. */
+void finish_observe(Builder *b, uint32_t index, Value v) {
+  const AstStmt *st = b->observes.at[index].stmt;
+  Span span = ast_expr(b->ast, st->rhs)->span;
+  Output o = b->m->observes.at[index];
+  if (!v.e) return;
+  if (!st->unit.n) o.unit.dim = v.dim;
+  else if (!dims_agree(b, &v, &(Value){.e = expr_int(b->g, 1), .dim = o.unit.dim}, span)) {
+    diag_error(b->diags, span, "`%s` is declared in [%s], and this is %s", o.name, o.unit.text, in_dim(b, v.dim));
+    explain_dims(b, v.dim, o.unit.dim);
   }
-  return e ? &b->m->observes.at[e->index] : NULL;
-}
-
-/* An observable's value; without a declared unit it is shown in that of its expression. */
-static void fill_observe(Builder *b, const AstStmt *st, Name effect) {
-  Output *o = declared_observe(b, st, effect);
-  if (!o) return;
-  Value v = resolve(b, st->rhs, IN_OBSERVE, effect);
-  if (v.n) {
-    not_yet(b, ast_expr(b->ast, st->rhs)->span, "observables that are vectors (observe their components)");
-    return;
-  }
-  o->value = v.e;
-  if (!st->unit.n) o->unit.dim = v.dim;
-  else if (v.e && !dim_equate(b->dims, v.dim, o->unit.dim, ast_expr(b->ast, st->rhs)->span)) {
-    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "`%s` is declared in [%s], and this is %s", o->name, o->unit.text,
-               in_dim(b, v.dim));
-    explain_dims(b, v.dim, o->unit.dim);
+  b->observes.at[index].value.unit = o.unit.text;
+  Name stem = o.name;
+  for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
+    o.value = v.at[k];
+    if (v.n) o.name = intern_printf(b, "%s.%c", stem, "xyz"[k]);
+    if (k) vec_push(b->arena, &b->m->observes, o);
+    else b->m->observes.at[index] = o;
   }
 }
 
@@ -309,10 +300,9 @@ static void apply_unused_lets(Builder *b) {
 }
 
 /* What may contain accelerations: after L is known. */
-static void observe(Builder *b, const AstStmt *st, Name effect, void *data) {
+static void expect(Builder *b, const AstStmt *st, Name effect, void *data) {
   (void)data;
   if (st->kind == STMT_EXPECT) add_expect(b, st, effect);
-  if (st->kind == STMT_OBSERVE) fill_observe(b, st, effect);
 }
 
 static void each_active(Builder *b, StatementFn *fn, void *data) {
@@ -419,7 +409,8 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   each_active(b, apply, &en);
   finish_energies(b, &en);
   apply_unused_lets(b);
-  each_active(b, observe, NULL);
+  for (uint32_t i = 0; i < b->observes.n; i++) resolve_observe(b, i);
+  each_active(b, expect, NULL);
   check_whole(b);
   scene_build(b, choice);
   settle_units(b);

@@ -226,14 +226,15 @@ static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
   return ev;
 }
 
-/* The let, or the function that an instance is of. */
+/* The let, the observable, or the function that an instance is of. */
 static Definition *definition(Builder *b, EntKind kind, uint32_t index) {
-  return kind == ENT_LET ? &b->lets.at[index] : &b->functions.at[b->instances.at[index]->function];
+  if (kind == ENT_FUNCTION) return &b->functions.at[b->instances.at[index]->function];
+  return kind == ENT_LET ? &b->lets.at[index] : &b->observes.at[index];
 }
 
 static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
   Definition *d = definition(b, kind, index);
-  Eval *ev = begin(b, d->stmt->rhs, IN_DYNAMICS, d->effect);
+  Eval *ev = begin(b, d->stmt->rhs, kind == ENT_OBSERVE ? IN_OBSERVE : IN_DYNAMICS, d->effect);
   d->progress = DOING;
   ev->kind = kind;
   ev->definition = index;
@@ -241,6 +242,7 @@ static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
   if (kind == ENT_FUNCTION) ev->function = b->instances.at[index];
   for (int k = 0; k < 2; k++)
     if (d->index[k].name) vec_push(b->arena, &ev->index, d->index[k]);
+  for (uint32_t k = 0; k < d->naround; k++) vec_push(b->arena, &ev->index, d->around[k]);
   return ev;
 }
 
@@ -261,6 +263,9 @@ static void finish_definition(Eval *ev) {
   d->progress = DONE;
   if (ev->kind == ENT_LET) {
     finish_let(b, d, v);
+  } else if (ev->kind == ENT_OBSERVE) {
+    d->value = v;
+    finish_observe(b, ev->definition, v);
   } else {
     b->instances.at[ev->definition]->value = v;
     b->instances.at[ev->definition]->done = 1;
@@ -291,6 +296,10 @@ static void resolve_definition(Builder *b, EntKind kind, uint32_t index) {
 
 void resolve_let(Builder *b, uint32_t index) {
   if (b->lets.at[index].progress == TODO) resolve_definition(b, ENT_LET, index);
+}
+
+void resolve_observe(Builder *b, uint32_t index) {
+  if (b->observes.at[index].progress == TODO) resolve_definition(b, ENT_OBSERVE, index);
 }
 
 const Instance *resolve_instance(Builder *b, uint32_t function, const uint32_t *shapes) {
