@@ -63,6 +63,8 @@ struct Instance {
   uint32_t first_unknown; /* the dimension of argument i is unknown first_unknown + i */
   int done;
   Value value;
+  Span call;              /* the first */
+  uint32_t errors;        /* there were before it was evaluated */
   Instance *next;         /* of the same function */
 };
 
@@ -158,6 +160,9 @@ typedef struct {
   int64_t lo[2], hi[2];
 } IndexRange;
 int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out);
+
+/* Families have no third index. */
+void report_many_indices(Builder *b, Span span);
 
 /* "a number", "a vector of 3 components" */
 const char *shape_text(const Builder *b, uint32_t n);

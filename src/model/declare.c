@@ -14,11 +14,6 @@ SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSi
 
 int declare_entity(Builder *b, const AstStmt *st, Entity e) {
   Name effect = e.effect;
-  if (strcmp(st->name, "t") == 0 || strcmp(st->name, "pi") == 0) {
-    diag_error(b->diags, st->name_span, "`%s` is reserved", st->name);
-    diag_help(b->diags, st->name[0] == 't' ? "t is the time; choose another name" : "pi is the number");
-    return 0;
-  }
   const Entity *old = scope_own(&b->scope, st->name, effect);
   if (!old && effect) old = scope_own(&b->scope, st->name, NULL);
   if (old) {
@@ -77,7 +72,7 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
     Span span = ast_expr(b->ast, i)->span;
     int64_t n;
     if (e->ndims == 2) {
-      not_yet(b, span, "more than two indices");
+      report_many_indices(b, span);
       return 0;
     }
     if (!resolve_whole(b, i, effect, &n)) return 0;

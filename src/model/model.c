@@ -20,6 +20,7 @@ typedef struct {
   VEC(Expr) lagrangian, kinetic, potential, dissipation;
   Span base[3]; /* where the model itself gave L, T, V */
   Span first;   /* the first of them that is not zero */
+  int failed;   /* one has no value: what unit L has is not known */
   VEC(UnitCheck) later;
 } Energies;
 
@@ -41,7 +42,7 @@ static void check_later(Builder *b, Energies *en, AstId id, const Value *v, Dim 
 }
 
 static void check_units_of_forces(Builder *b, const Energies *en) {
-  for (uint32_t i = 0; i < en->later.n; i++) {
+  for (uint32_t i = 0; i < en->later.n && !en->failed; i++) {
     const UnitCheck *c = &en->later.at[i];
     Dim want = dim_div(b->dims, b->energy, c->by);
     Span span = ast_expr(b->ast, c->id)->span;
@@ -71,6 +72,7 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   if (!effect || !b->m->lagrangian_span.end) b->m->lagrangian_span = st->span;
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
   if (v.e && v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, and a number is wanted here", shape_text(b, v.n));
+  en->failed |= st->kind != STMT_DISSIPATION && (!v.e || v.n);
   if (!v.e || v.n) return;
   if (st->kind == STMT_DISSIPATION) {
     check_later(b, en, st->rhs, &v, dim_base(b->dims, DIM_TIME), "a dissipation function");
@@ -158,8 +160,9 @@ static void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right) 
 /* The value on the left of a flow says which state is meant: its rate. */
 static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   const AstExpr *l = ast_expr(b->ast, st->lhs);
-  const AstExpr *name = l->kind == AST_PRIME ? ast_expr(b->ast, l->a) : l;
-  const AstExpr *stem = name->kind == AST_INDEX ? ast_expr(b->ast, name->a) : name;
+  const AstExpr *stem = l->kind == AST_PRIME ? ast_expr(b->ast, l->a) : l;
+  if (stem->kind == AST_MEMBER) stem = ast_expr(b->ast, stem->a);
+  if (stem->kind == AST_INDEX) stem = ast_expr(b->ast, stem->a);
   if (l->kind != AST_PRIME || stem->kind != AST_NAME) {
     diag_error(b->diags, l->span, "a flow gives the rate of a state: `flow z' = ...`");
     return;

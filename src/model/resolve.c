@@ -239,7 +239,10 @@ static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
   ev->kind = kind;
   ev->definition = index;
   ev->in_statement = 0;
-  if (kind == ENT_FUNCTION) ev->function = b->instances.at[index];
+  if (kind == ENT_FUNCTION) {
+    ev->function = b->instances.at[index];
+    b->instances.at[index]->errors = b->diags->errors;
+  }
   for (int k = 0; k < 2; k++)
     if (d->index[k].name) vec_push(b->arena, &ev->index, d->index[k]);
   for (uint32_t k = 0; k < d->naround; k++) vec_push(b->arena, &ev->index, d->around[k]);
@@ -267,8 +270,7 @@ static void finish_definition(Eval *ev) {
     d->value = v;
     finish_observe(b, ev->definition, v);
   } else {
-    b->instances.at[ev->definition]->value = v;
-    b->instances.at[ev->definition]->done = 1;
+    finish_instance(b, b->instances.at[ev->definition], v);
   }
 }
 

@@ -177,7 +177,8 @@ static Value call_d(Eval *ev, const AstExpr *x) {
   Value r = {.dim = dim_div(b->dims, v->dim, w->dim), .n = v->n};
   for (uint32_t k = 0; k < parts_of(v); k++) {
     if (kind != SYM_LOCAL && expr_contains(b->g, v->at[k], is_local, NULL)) {
-      not_yet(b, x->span, "a partial derivative of a function's argument, or of the energy");
+      not_yet(b, x->span, "a partial derivative of the energy, or of the arguments of a function");
+      diag_help(b->diags, "differentiate `T` and `V`, or `lagrangian`; of a function, its value: `d(f(x), x)`");
       return FAILED;
     }
     r.at[k] = expr_diff(b->g, v->at[k], expr_sym_id(b->g, w->e));

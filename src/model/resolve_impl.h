@@ -84,6 +84,9 @@ void wait_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name na
 Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes);
 const Instance *resolve_instance(Builder *b, uint32_t function, const uint32_t *shapes);
 
+/* Its body has the value v; an error in it is said to be one of the call. */
+void finish_instance(Builder *b, Instance *in, Value v);
+
 /* Gives the arguments of an instance symbols for their rates. */
 void need_rates(Builder *b, Instance *in);
 /* A call of a function of the model's own. */

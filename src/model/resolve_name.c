@@ -228,7 +228,6 @@ Value index_value(Eval *ev, const AstExpr *x) {
     }
   } else if (of->kind != AST_ERROR) {
     diag_error(b->diags, x->span, "an index stands directly behind the name of a family");
-    if (of->kind == AST_PRIME) diag_help(b->diags, "the derivative of a member is `th[i]'`");
   }
   return e ? indexed_value(ev, e, x) : FAILED;
 }

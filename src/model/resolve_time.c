@@ -59,6 +59,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
   }
   if (kinds & 1u << SYM_LOCAL && has_no_rate(b, &of)) {
     not_yet(b, span, "a time derivative of the energy, or a third one of a function's argument");
+    diag_help(b->diags, "the energy changes by the power of forces: `force x = F` brings `F*x'`");
     return FAILED;
   }
   Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};

@@ -78,7 +78,12 @@ static int row_elements(Builder *b, const AstExpr *list, const AstUnit *behind, 
 
 int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out) {
   const AstUnit *own;
-  if (r->n == 2 && list_behind(b, list->args, &own)) return row_elements(b, list, behind, r, name, out);
+  const AstExpr *row = list_behind(b, list->args, &own);
+  if (row && r->n == 2) return row_elements(b, list, behind, r, name, out);
+  if (row) {
+    diag_error(b->diags, row->span, "a list in a list gives a row of a family with two indices, and `%s` has %s", name, r->n ? "one" : "none");
+    return 0;
+  }
   if (!r->n || count_list(b, list) != count_in(r))
     return report_count(b, list, "the list", !r->n ? arena_printf(b->arena, "`%s` is no family", name)
                                                    : arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)count_in(r)));

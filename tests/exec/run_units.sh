@@ -125,6 +125,11 @@ check "an unknown name" says 2 'unknown name `ll`' "$LAGC" run pend.lag 'll=3[m]
 check "a vector" says 2 'set its components' "$LAGC" run pend.lag 'e=3[m]'
 check "what no run sets" says 2 'nothing that a run sets' "$LAGC" run pend.lag "energy=3[J]"
 check "a bracket that stays open" says 2 'the `\]` of this unit is missing' "$LAGC" run pend.lag 'l=3[m'
+check "past the numbers there are" says 2 'not a finite number' "$LAGC" run pend.lag 'th=1e308[rad]'
+printf '%s\n' 'model m' 'const e = (1, 0)' 'coord x' "lagrangian = e.x*x'^2" >vector.lag
+check "-D gives a number" says 1 'is a vector of 2 components' "$LAGC" check vector.lag -D e=3
+printf '%s\n' 'model m' 'const h = 50 [cm]' 'coord x [m]' "lagrangian = 1 [kg]*x'^2" 'scene s { start x = h }' >const.lag
+is "-D gives it in the constant's unit" "0,0.25" "$("$LAGC" run const.lag -D h=25 -o - --quiet --until 1 --every 1 | sed -n 2p | cut -d, -f1-2)"
 "$LAGC" build pend.lag -o pend
 check "a simulator takes numbers, and says who converts" says 2 'lagc run converts' ./pend 'l=1[m]'
 check "times too" says 2 'lagc run converts' ./pend --until '1[min]'
