@@ -31,7 +31,8 @@ static const struct {
    "  --no-gsl          leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole\n"},
   {"run", CMD_RUN, "lagc run MODEL [SCENE] [name=value ...] [--method M] [--tol X] [--until T] ...",
    "Builds the simulator (or takes it from the cache) and runs it; the options are the simulator's:\n\n"
-   "  name=value        a parameter, a start value (th=1.2, \"th'=0.5\") or an input\n"
+   "  name=value        a parameter, a start value (th=1.2, \"th'=0.5\", th='90[deg]', th=pi/3) or an input;\n"
+   "                    a bare number is in the declared unit\n"
    "  --method NAME     rk45, dop853, verlet4, gsl-rk8pd, ...; `--method help` lists them\n"
    "  --tol X --step H --until T --every DT\n"
    "  -o FILE           .csv or .npy\n"
@@ -76,8 +77,10 @@ static const char general_help[] =
 
 static const char units_help[] =
   "SI base units m kg s A K mol cd; Hz N Pa J W C V F ohm S Wb T H lm lx Bq Gy Sv kat, with prefixes\n"
-  "(km, mm, us as µs, MHz); rad sr deg rev; min h d (day) yr; au eV u bar L t.\n"
-  "In brackets after white space or a number: 90 [deg], 9.81 [m/s^2], 1 [kg*m^2], 3 [m^(1/2)].\n";
+  "(km, mm, us as µs, MHz); rad sr deg rev; min h d (day) yr; au eV u bar L t; degC for temperatures.\n"
+  "In brackets after white space or a number: 90 [deg], 9.81 [m/s^2], 1 [kg*m^2], 3 [m^(1/2)].\n"
+  "As soon as one name has a unit, all are checked; those that nobody wrote are found from the equations where\n"
+  "these tell, and `lagc check` lists them. In a sum a bare number has no unit: x - 1 [m], not x - 1.\n";
 
 static const char functions_help[] =
   "sin cos tan asin acos atan atan2(y, x) sinh cosh tanh exp log sqrt cbrt hypot pow min max abs sign\n"
