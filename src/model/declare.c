@@ -137,12 +137,20 @@ static void add_coord(Builder *b, const AstStmt *st, Name name, Unit unit) {
   vec_push(b->arena, &m->coords, c);
 }
 
+/* What is periodic is so by 2 pi. */
+static void check_angle(Builder *b, const AstStmt *st, const Unit *unit) {
+  if (dim_equate(b->dims, unit->dim, DIM_NONE, st->name_span)) return;
+  diag_error(b->diags, st->name_span, "`%s` is periodic, and in [%s]: no angle", st->name, unit->text);
+  diag_help(b->diags, "angles are in [rad], [deg] or [rev]; of other coordinates leave `periodic` out");
+}
+
 static void declare_coord(Builder *b, const AstStmt *st, Name effect) {
   Entity e;
   uint8_t parts;
   if (!read_type(b, st, effect, &parts)) return;
   if (!declare_family(b, st, effect, ENT_COORD, b->m->coords.n, parts, &e)) return;
   Unit unit = declared_unit(b, st, effect);
+  if (st->periodic) check_angle(b, st, &unit);
   int64_t at[2] = {1, 1};
   do
     for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++) add_coord(b, st, scalar_name(b, &e, st->name, at, k), unit);

@@ -266,7 +266,7 @@ static void put_power(StrBuf *b, const char *name, Num e) {
 
 /* Place i in the order in which people write: kg before m. */
 static Part part_in_order(const Form *f, uint32_t i) {
-  if (i + 1 < f->n && f->part[0].key == DIM_LENGTH && f->part[1].key == DIM_MASS && i < 2) return f->part[1 - i];
+  if (i < 2 && f->n > 1 && f->part[0].key == DIM_LENGTH && f->part[1].key == DIM_MASS) return f->part[1 - i];
   return f->part[i];
 }
 
