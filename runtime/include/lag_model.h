@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 1
+#define LAG_ABI 2
 
 /* The scalar that a model is compiled for: double, float, long double or __float128. */
 #ifndef LAG_REAL
@@ -39,13 +39,15 @@ enum {
   LAG_SEPARABLE = 16        /* constant mass matrix, accelerations that do not depend on velocities, no states */
 };
 
-/* A named quantity. unit is as declared ("deg"), "" when none; one unit is `factor` in SI. */
+/* A named quantity. unit is as declared ("deg"), or as found from the equations, "" when none; x units are
+ * x*factor + offset in SI. */
 typedef struct lag_var {
   const char *name;
   const char *unit;
   double factor;
   int periodic; /* an angle: 2 pi later is the same place */
   int sign;     /* of a parameter: 1 "> 0", 2 ">= 0", -1 "< 0", -2 "<= 0", 0 any */
+  double offset; /* 273.15 of degC; otherwise 0 */
 } lag_var;
 
 typedef struct lag_event {
