@@ -266,7 +266,7 @@ static void declare_function(Builder *b, const AstStmt *st, Name effect) {
 
 static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
   Model *m = b->m;
-  Output o = {.name = st->name, .span = st->name_span};
+  Output o = {.name = st->name, .span = st->name_span, .pending = 1};
   if (st->dims) {
     IndexRange r;
     uint32_t family = resolve_indices(b, st->dims, effect, &r) ? family_of(b, st, effect, ENT_OBSERVE, &r) : 0;

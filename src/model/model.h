@@ -81,6 +81,7 @@ typedef struct {
   Span span;
   Unit unit;
   Expr value; /* may contain q'', z' */
+  int pending; /* an observe statement whose value is not known yet */
 } Output;
 
 typedef struct {

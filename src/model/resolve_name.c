@@ -90,6 +90,11 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
     case ENT_LET: return let_value(ev, e, span);
     case ENT_OBSERVE: {
       const Output *o = &b->m->observes.at[e->index];
+      if (o->pending) {
+        diag_error(b->diags, span, "the observable `%s` has no value yet", e->name);
+        diag_help(b->diags, "each may use those above it; what all may use is a `let`");
+        return FAILED;
+      }
       return a_value(o->value, o->unit.dim, 0);
     }
     case ENT_FUNCTION:
