@@ -111,6 +111,7 @@ static Eqns *derive_asked(Compiler *c, const char *scene) {
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
 static IrUnit *lower_scene(Compiler *c, const Eqns *e) {
   IrUnit *u = unit_new(e, c->o.file);
+  if (c->o.linear) unit_add_linear(u, e);
   unit_add_scene(u, e);
   const char *wrong = prog_verify(u->accel);
   if (wrong) {
@@ -183,7 +184,10 @@ static int lower_all(Compiler *c, Units *units) {
     IrUnit *fresh = unit_new(e, c->o.file), *home = NULL;
     for (uint32_t k = 0; k < units->n && !home; k++)
       if (strcmp(units->at[k]->effects, fresh->effects) == 0) home = units->at[k];
-    if (!home) vec_push(c->arena, units, home = fresh);
+    if (!home) {
+      vec_push(c->arena, units, home = fresh);
+      if (c->o.linear) unit_add_linear(home, e);
+    }
     unit_add_scene(home, e);
   }
   return 1;

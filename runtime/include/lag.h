@@ -63,6 +63,20 @@ typedef struct lag_problem {
 /* dy[n] = f(t, y[n]). Returns what the model returned; does not look for NaN. */
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
 
+/* Exact derivatives of f, for models emitted with their linearisation (model->linear; lagc --with linear). All
+ * matrices are dense and row-major; work[lag_linear_work()] is scratch, 0 doubles for a model without linearisation. Both
+ * return what the model returned, or LAG_EMETHOD (and pb->detail) when it has none; LAG_ESINGULAR when M is
+ * singular. Neither looks for NaN; after an error the matrices are undefined. */
+size_t lag_linear_work(const lag_model *model);
+
+/* J[(nq + nz) * n]: the derivatives of the accelerations and of the rates, the rows of f below the first nq, by
+ * y. With the nq rows [0 | 1 | 0] above it J is df/dy. Calls lag_rhs once. */
+int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
+
+/* dr[(nq + nz) * n]: the derivatives of the residuals r = (f - M a, flow) by y at given accelerations a[nq] (NULL:
+ * 0); M[nq * nq]: the mass matrix. J above is M^-1 dr in its first nq rows. */
+int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, double *dr, double *M, double *work);
+
 /* The index of the first of x[n] that is not finite, -1 when all are. */
 int lag_not_finite(int n, const double *x);
 

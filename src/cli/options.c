@@ -20,15 +20,17 @@ static const struct {
    "  --format latex    as LaTeX\n"
    "  --format c        the C function that computes the accelerations\n"
    "  --ops             the operation counts only\n"},
-  {"emit", CMD_EMIT, "lagc emit MODEL [SCENE] -o FILE.c",
-   "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h).\n"},
+  {"emit", CMD_EMIT, "lagc emit MODEL [SCENE] [--with linear] -o FILE.c",
+   "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h).\n\n"
+   "  --with linear     with the exact linearisation of the model\n"},
   {"header", CMD_HEADER, "lagc header MODEL [SCENE] -o FILE.h",
    "Writes one self-contained C99/C++ header to embed: parameters as a struct, accelerations,\n"
    "energy, an RK4 step. It includes nothing but <math.h>. Its names begin with the file's: pend.h has\n"
    "PEND_IMPLEMENTATION and pend_accel.\n"},
-  {"build", CMD_BUILD, "lagc build MODEL -o SIMULATOR [--no-gsl]",
+  {"build", CMD_BUILD, "lagc build MODEL -o SIMULATOR [--no-gsl] [--with linear]",
    "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options.\n\n"
-   "  --no-gsl          leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole\n"},
+   "  --no-gsl          leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole\n"
+   "  --with linear     with the exact linearisation of the model\n"},
   {"run", CMD_RUN, "lagc run MODEL [SCENE] [name=value ...] [--method M] [--tol X] [--until T] ...",
    "Builds the simulator (or takes it from the cache) and runs it; the options are the simulator's:\n\n"
    "  name=value        a parameter, a start value (th=1.2, \"th'=0.5\") or an input\n"
@@ -148,6 +150,14 @@ static int dump_is_known(const char *stages, const char **error) {
   return 1;
 }
 
+/* --with: parts of a model that are emitted only where something needs them. */
+static int take_parts(Arena *a, const char *parts, Options *o, const char **error) {
+  if (!parts) return 0;
+  if (strcmp(parts, "linear") == 0) return o->linear = 1;
+  *error = arena_printf(a, "--with takes linear (the exact linearisation), not `%s`", parts);
+  return 0;
+}
+
 int options_simulate(const Options *o) {
   return o->command == CMD_RUN || o->command == CMD_PLOT || o->command == CMD_ANIMATE;
 }
@@ -195,6 +205,7 @@ static int own_option(Arena *a, int argc, char **argv, int *i, Options *o, const
   }
   if (take_value(arg, "--dump", argc, argv, i, &o->dump)) return dump_is_known(o->dump, error);
   if (strcmp(arg, "--no-gsl") == 0) return o->no_gsl = 1;
+  if (take_value(arg, "--with", argc, argv, i, &value)) return take_parts(a, value, o, error);
   int picture = picture_option(a, argc, argv, i, o);
   if (picture >= 0 || o->command == CMD_RUN) return picture;
   if (strcmp(arg, "-o") == 0 || strcmp(arg, "--output") == 0) {

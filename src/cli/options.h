@@ -16,6 +16,7 @@ typedef struct {
   const char *topic;       /* help TOPIC */
   int allow_numeric;       /* check --allow-numeric */
   int no_gsl, ops;
+  int linear;              /* --with linear */
   VEC(Define) defines;
   VEC(const char *) rest;  /* run, plot, animate: what the simulator gets, the scene too */
   VEC(const char *) observe; /* run --observe: expressions */

@@ -50,6 +50,13 @@ IrUnit *unit_new(const Eqns *e, const char *source) {
   return u;
 }
 
+void unit_add_linear(IrUnit *u, const Eqns *e) {
+  Partials dr = eqns_linearise(e);
+  u->linear = lower_linear(e, dr);
+  for (uint32_t k = 0; k < dr.n; k++) vec_push(u->arena, &u->linear_dr, ((IrEntry){dr.at[k].row, dr.at[k].col}));
+  for (uint32_t k = 0; k < e->mass.n; k++) vec_push(u->arena, &u->linear_mass, ((IrEntry){e->mass.at[k].row, e->mass.at[k].col}));
+}
+
 void unit_add_scene(IrUnit *u, const Eqns *e) {
   const Model *m = e->m;
   const Scene *sc = &m->scene;

@@ -42,6 +42,23 @@ typedef struct {
  * every state, or when the momenta depend on an input (its derivative would be needed). */
 Eqns *eqns_derive(Model *m);
 
+/* A partial derivative of residual `row` by component `col` of y = (q, q', z). */
+typedef struct {
+  uint32_t row, col;
+  Expr e;
+} Partial;
+
+typedef struct {
+  const Partial *at;
+  uint32_t n;
+} Partials;
+
+/* The linearisation, exact: those that are not zero of the derivatives of the residuals
+ *   r_i = f_i - sum_j M_ij q_j''   (i < n),   r_(n + k) = flow_k
+ * at fixed q'', row by row, columns ascending. With M they give the Jacobian of the accelerations,
+ * dq''/dy = M^-1 dr/dy. They contain the symbols q''. */
+Partials eqns_linearise(const Eqns *e);
+
 /* M[i][j]; the zero node where the entry is zero. */
 Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j);
 

@@ -13,4 +13,8 @@ int lagrange_check_mass(Eqns *e);
  * regular is positive definite, and LDL^T needs no pivoting. */
 int lagrange_definite(const Eqns *e);
 
+/* The short forms of these entries, when they cost no more operations together: entry by entry they may be
+ * shorter and still lose what they share. Otherwise, or when there are too many, the entries as they are. */
+const Expr *lagrange_short_forms(const Eqns *e, const Expr *entries, uint32_t n);
+
 #endif
