@@ -20,8 +20,7 @@ typedef struct Args {
 
 typedef struct App {
   const lag_program *program;
-  const lag_method *const *extra;
-  int nextra;
+  lag_extras extras;
   Args args;
   const lag_scene *scene;
   lag_sim *sim;

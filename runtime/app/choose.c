@@ -45,9 +45,9 @@ const lag_method *app_find_method(const App *app, const char *name)
       return lag_methods[i];
     }
   }
-  for (int i = 0; i < app->nextra; i++) {
-    if (strcmp(app->extra[i]->name, name) == 0) {
-      return app->extra[i];
+  for (int i = 0; i < app->extras.nmethods; i++) {
+    if (strcmp(app->extras.methods[i]->name, name) == 0) {
+      return app->extras.methods[i];
     }
   }
   return NULL;
@@ -85,8 +85,8 @@ void app_list_methods(const App *app, FILE *f)
   for (int i = 0; i < lag_nmethods; i++) {
     list_method(lag_methods[i], f);
   }
-  for (int i = 0; i < app->nextra; i++) {
-    list_method(app->extra[i], f);
+  for (int i = 0; i < app->extras.nmethods; i++) {
+    list_method(app->extras.methods[i], f);
   }
 }
 

@@ -237,12 +237,55 @@ int lag_sim_load(lag_sim *sim, const double *x);
 /* A checksum of the scene's names, sizes and method: of what must agree between save and load. */
 unsigned long long lag_sim_signature(const lag_sim *sim);
 
+/* ---- Linear algebra -------------------------------------------------------------------------- */
+
+/* n equations in n unknowns: f[n] at x[n] and, where J is not NULL, J[n*n], row-major, their derivatives. Not 0: there
+ * are no values at x. */
+typedef int lag_equations(void *context, const double *x, double *f, double *J);
+
+/* What the analysis of equilibria needs of a library: dense, row-major; eigenvectors are columns. All return LAG_OK,
+ * LAG_ENOMEM, or what is said; none prints or aborts. */
+typedef struct lag_algebra {
+  const char *name;
+
+  /* Moves x[n] towards a root by a trust region whose first radius is 0.3 max(1, |x|), in at most `most`
+   * steps, until nothing is gained. The Jacobian may be singular. Whether x is a root is for the caller to see.
+   * *steps: how many were made. LAG_EDOMAIN: there are no values at the start. */
+  int (*root)(int n, double *x, lag_equations *equations, void *context, int most, int *steps);
+
+  /* K x = value M x; values ascending, x' M x = 1. K and M are symmetric (lower triangles are read) and destroyed. LAG_EINVAL:
+   * M is not positive definite. */
+  int (*symmetric)(int n, double *K, double *M, double *values, double *vectors);
+
+  /* A x = (re + i im) x, |x| = 1. A is destroyed. sensitivity[k] = |x_k| |y_k| / |y_k x_k| with the left eigenvector y_k:
+   * how much of a change of A the eigenvalue may take over; huge where it is defective. LAG_EMETHOD: no
+   * convergence. */
+  int (*general)(int n, double *A, double *re, double *im, double *vre, double *vim, double *sensitivity);
+
+  /* A := D^-1 A D with D = diag(scale[n]) of powers of 2, so that its rows and columns are alike in size. */
+  int (*balance)(int n, double *A, double *scale);
+
+  /* Orthogonal Q[n*n] with A Q = [B | 0]: its columns from *rank on span the kernel of A, where what is below
+   * tol |A| counts as 0. */
+  int (*kernel)(int n, const double *A, double tol, double *Q, int *rank);
+} lag_algebra;
+
 /* ---- Simulators ------------------------------------------------------------------------------ */
 
-/* main() of a simulator: see --help, or app/help.c. extra[nextra] are methods beside those of liblag.a.
+/* What a simulator has besides liblag.a. */
+typedef struct lag_extras {
+  const lag_method *const *methods; /* [nmethods] */
+  int nmethods;
+  const lag_algebra *algebra;       /* or NULL */
+} lag_extras;
+
+/* What liblag_gsl.a brings, by the GNU Scientific Library. */
+extern const lag_algebra lag_gsl_algebra;
+extern const lag_extras lag_gsl;
+
+/* main() of a simulator: see --help, or app/help.c. extras may be NULL.
  * Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 130 interrupted. */
-int lag_app_main(int argc, char **argv, const lag_program *program, const lag_method *const *extra,
-                 int nextra);
+int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras);
 
 #ifdef __cplusplus
 }

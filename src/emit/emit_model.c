@@ -346,5 +346,5 @@ void emit_program(const IrUnit *const *units, const char *const *names, uint32_t
   sb_printf(out, "static const lag_program program = {\n  .name = %s,\n  .doc = %s,\n  .source = %s,\n  .effects = %s,\n  .nscenes = %u, .scenes = scenes,\n};\n\n",
             name, doc, source, c_string(a, first->all_effects), scenes);
   sb_puts(out, "int main(int argc, char **argv) {\n");
-  sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", gsl ? "lag_gsl_methods, lag_gsl_nmethods" : "NULL, 0");
+  sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", gsl ? "&lag_gsl" : "NULL");
 }
