@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_STEPS = 200, MOST_KICKS = 10 };
+enum { MOST_STEPS = 200, MOST_DESCENT = 200 };
 
 /* A force counts as 0 when displacements of this size, relative to the state and its scale, make more. */
 static const double SMALL = 1e-9;
@@ -120,20 +120,6 @@ static int holds(Rest *r, const double *x)
   return good;
 }
 
-/* Goes 0.3 of a scale along the forces: downhill. 0: there is none. */
-static int kick(Rest *r)
-{
-  double most = 0;
-
-  for (int i = 0; i < r->n; i++) {
-    most = fmax(most, fabs(r->f[i]));
-  }
-  for (int i = 0; i < r->n && most > 0; i++) {
-    r->x[i] += 0.3 * r->f[i] / most;
-  }
-  return most > 0 && isfinite(most);
-}
-
 /* 1e-27 is 0 where 0 is as good. */
 static void clean(Rest *r)
 {
@@ -146,29 +132,131 @@ static void clean(Rest *r)
   holds(r, r->x);
 }
 
-static int search(Rest *r, const lag_algebra *algebra)
+/* ---- Downhill */
+
+/* How far x is from y, in scales. */
+static double distance(const Rest *r, const double *x, const double *y)
 {
-  for (int kicks = 0;; kicks++) {
-    int steps = 0, rc = algebra->root(r->n, r->x, equations, r, MOST_STEPS, &steps);
-    r->steps += steps;
-    if (rc) {
-      return rc;
-    }
-    if (holds(r, r->x)) {
-      return 1;
-    }
-    if (kicks == MOST_KICKS || !kick(r)) {
-      return 0;
+  double most = 0;
+
+  for (int i = 0; i < r->n; i++) {
+    most = fmax(most, fabs(x[i] - y[i]));
+  }
+  return most;
+}
+
+/* An implicit step of the motion with all inertia replaced by friction, M q' = f: f(x) - W (x - from)/delta. */
+static int friction(void *context, const double *x, double *f, double *J)
+{
+  Rest *r = context;
+  int n = r->n, rc = equations(r, x, f, J);
+
+  for (int i = 0; i < n && rc == 0; i++) {
+    for (int j = 0; j < n; j++) {
+      f[i] -= r->W[i * n + j] * (x[j] - r->from[j]) / r->delta;
+      if (J) {
+        J[i * n + j] -= r->W[i * n + j] / r->delta;
+      }
     }
   }
+  return rc;
+}
+
+/* The mass matrix in the units of the equations, and the identity for rates; the first step goes 0.3 of a scale. */
+static void prepare_friction(Rest *r)
+{
+  int n = r->n, nq = r->sim->pb.nq;
+  double fastest = 0;
+
+  holds(r, r->x);
+  for (int i = 0; i < n; i++) {
+    fastest = fmax(fastest, fabs(r->rate[nq + i]) / r->scale[i]);
+    for (int j = 0; j < n; j++) {
+      int both = i < nq && j < nq;
+      r->W[i * n + j] = both ? r->M[i * nq + j] * r->scale[i] * r->scale[j] * r->row[i] : i == j ? r->row[i] : 0;
+    }
+  }
+  r->delta = fastest > 0 && isfinite(fastest) ? 0.3 / fastest : 1;
+}
+
+/* Follows friction from x[n] until hardly anything moves. */
+static int descend(Rest *r, const lag_algebra *algebra)
+{
+  size_t bytes = (size_t)r->n * sizeof(double);
+
+  prepare_friction(r);
+  for (int k = 0; k < MOST_DESCENT; k++) {
+    int steps = 0;
+    memcpy(r->from, r->x, bytes);
+    int rc = algebra->root(r->n, r->x, friction, r, 20, &steps);
+    double moved = distance(r, r->x, r->from);
+    r->steps += steps;
+    if (rc == LAG_ENOMEM) {
+      return rc;
+    }
+    if (rc || !(moved < 0.5)) {
+      memcpy(r->x, r->from, bytes);
+      r->delta /= 4;
+    } else if (moved < 1e-3) {
+      return LAG_OK;
+    } else {
+      r->delta *= moved < 0.2 ? 2 : 1;
+    }
+  }
+  return LAG_OK;
+}
+
+/* ---- The search */
+
+/* Has x left everything behind? Forces that fade have no root there. */
+static int ran_away(const Rest *r)
+{
+  double start = 1;
+
+  for (int i = 0; i < r->n; i++) {
+    start = fmax(start, fabs(r->begin[i]));
+  }
+  return distance(r, r->x, r->begin) > 1e4 * start;
+}
+
+static int find_root(Rest *r, const lag_algebra *algebra)
+{
+  int steps = 0, rc = algebra->root(r->n, r->x, equations, r, MOST_STEPS, &steps);
+
+  r->steps += steps;
+  return rc ? rc : holds(r, r->x);
+}
+
+/* A root near the start, stable or not; else one downhill; else any. */
+static int search(Rest *r, const lag_algebra *algebra)
+{
+  size_t bytes = (size_t)r->n * sizeof(double);
+  int rc = find_root(r, algebra);
+
+  if (rc < 0 || (rc == 1 && distance(r, r->x, r->begin) <= 1)) {
+    return rc;
+  }
+  memcpy(r->first, r->x, bytes);
+  r->away = rc == 0 && ran_away(r);
+  int first = rc;
+  memcpy(r->x, r->begin, bytes);
+  rc = descend(r, algebra);
+  rc = rc ? rc : find_root(r, algebra);
+  if (rc != 0) {
+    return rc;
+  }
+  memcpy(r->x, r->first, bytes);
+  holds(r, r->x);
+  return first;
 }
 
 static int allocate(Rest *r)
 {
   const lag_model *m = r->sim->scene->model;
   size_t n = (size_t)r->n, nq = (size_t)m->nq, ny = (size_t)r->sim->pb.n;
-  double **const parts[] = {&r->start, &r->y, &r->rate, &r->scale, &r->x, &r->trial, &r->f, &r->row, &r->J, &r->dr, &r->M, &r->work};
-  const size_t sizes[] = {n, ny, ny, n, n, n, n, n, n * n, n * ny, nq * nq, lag_linear_work(m)};
+  double **const parts[] = {&r->start, &r->y, &r->rate, &r->scale, &r->x, &r->begin, &r->from, &r->first, &r->trial,
+                            &r->f, &r->row, &r->J, &r->W, &r->dr, &r->M, &r->work};
+  const size_t sizes[] = {n, ny, ny, n, n, n, n, n, n, n, n, n * n, n * n, n * ny, nq * nq, lag_linear_work(m)};
 
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = pool_doubles(&r->pool, sizes[i]);
@@ -190,7 +278,7 @@ int lag_rest_find(Rest *r, lag_sim *sim, const lag_algebra *algebra)
   }
   choose_scales(r);
   for (int i = 0; i < n; i++) {
-    r->x[i] = r->start[i] / r->scale[i];
+    r->x[i] = r->begin[i] = r->start[i] / r->scale[i];
   }
   if ((rc = choose_rows(r)) != 0) {
     return rc < 0 ? rc : LAG_EDOMAIN;

@@ -17,12 +17,17 @@ typedef struct Rest {
   double *rate;   /* [2 nq + nz] y' there */
   double *scale;  /* [n] how far is far: of angles 1 rad, else the largest start in that unit, or one unit */
   int steps;      /* that it took */
-  int worst;      /* not found: the equation that is farthest from 0 */
-  double *x, *trial, *f, *J, *row, *dr, *M, *work; /* scratch; row: what makes equations alike in size */
+  int worst;      /* not found: the equation that is farthest from 0, */
+  int away;       /* and whether forces only fade, far away */
+  double *x, *begin, *from, *first, *trial; /* [n] unknowns: now, at the start, and of the search */
+  double *f, *row, *J, *W; /* equations, what makes them alike in size, their derivatives; friction */
+  double delta;
+  double *dr, *M, *work;   /* of lag_linearise */
 } Rest;
 
-/* Finds an equilibrium from the simulation's start (velocities do not matter) by algebra->root; where it is
- * stuck without one, it goes on a little further along the forces. The model must not depend on time.
+/* Finds an equilibrium from the simulation's start (velocities do not matter) by algebra->root, stable or not. Is there
+ * none within one scale of the start, it looks where the system would come to rest if all inertia were
+ * friction; and takes any other root last. The model must not depend on time.
  * 1: found. 0: not found, see worst and rate. < 0: a status; LAG_EDOMAIN and others from the model: no values at the start. Call
  * lag_rest_free in every case. */
 int lag_rest_find(Rest *rest, lag_sim *sim, const lag_algebra *algebra);

@@ -273,17 +273,45 @@ static int read_state(App *app)
   return 0;
 }
 
-int app_choose(App *app)
+static int new_simulation(App *app)
 {
-  const Args *a = &app->args;
-  int rc = read_state(app);
+  int rc = choose_scene(app);
 
-  if (rc || (rc = choose_scene(app)) != 0) {
+  if (rc) {
     return rc;
   }
   app->sim = lag_sim_new(app->scene);
   if (!app->sim) {
-    return app_error(a, "cannot simulate scene %s: out of memory, or built for another version or number type", app->scene->name);
+    return app_error(&app->args, "cannot simulate scene %s: out of memory, or built for another version or number type",
+                     app->scene->name);
+  }
+  return 0;
+}
+
+static int set_values(App *app)
+{
+  const Args *a = &app->args;
+  int rc = 0;
+
+  for (int i = 0; i < a->nsets && rc == 0; i++) {
+    rc = set_value(app, a->sets[i]);
+  }
+  return rc;
+}
+
+int app_choose_start(App *app)
+{
+  int rc = new_simulation(app);
+
+  return rc ? rc : set_values(app);
+}
+
+int app_choose(App *app)
+{
+  int rc = read_state(app);
+
+  if (rc || (rc = new_simulation(app)) != 0) {
+    return rc;
   }
   if (app->resumed) {
     return resume(app);
@@ -291,8 +319,5 @@ int app_choose(App *app)
   if ((rc = set_tolerance(app)) != 0 || (rc = choose_method(app)) != 0) {
     return rc;
   }
-  for (int i = 0; i < a->nsets && rc == 0; i++) {
-    rc = set_value(app, a->sets[i]);
-  }
-  return rc;
+  return set_values(app);
 }

@@ -53,13 +53,16 @@ static int iterate(gsl_multifit_nlinear_workspace *w, gsl_multifit_nlinear_fdf *
   gsl_vector_view start = gsl_vector_view_array(x, fdf->p);
   int rc = gsl_multifit_nlinear_init(&start.vector, fdf, w);
 
+  double reach = gsl_blas_dnrm2(&start.vector), moved = HUGE_VAL;
   if (rc || gsl_vector_get(gsl_multifit_nlinear_residual(w), 0) >= 1e100) {
     return LAG_EDOMAIN;
   }
-  for (*steps = 0; *steps < most && gsl_blas_dnrm2(gsl_multifit_nlinear_residual(w)) > 0; ++*steps) {
+  for (*steps = 0; *steps < most && gsl_blas_dnrm2(gsl_multifit_nlinear_residual(w)) > 0 && moved > DBL_EPSILON * reach; ++*steps) {
     if (gsl_multifit_nlinear_iterate(w)) {
       break; /* nothing is gained any more */
     }
+    moved = gsl_blas_dnrm2(w->dx);
+    reach = fmax(reach, gsl_blas_dnrm2(gsl_multifit_nlinear_position(w)));
   }
   gsl_vector_memcpy(&start.vector, gsl_multifit_nlinear_position(w));
   return LAG_OK;
@@ -192,8 +195,7 @@ static int kernel(int n, const double *A, double tol, double *Q, int *rank)
     gsl_matrix_view q = gsl_matrix_view_array(Q, size, size);
     gsl_matrix_transpose_memcpy(a, &from.matrix);
     rc = gsl_linalg_QRPT_decomp2(a, &q.matrix, r, tau, perm, &sign, norm) ? LAG_EMETHOD : LAG_OK;
-    double largest = fabs(gsl_matrix_get(r, 0, 0));
-    for (*rank = 0; *rank < n && fabs(gsl_matrix_get(r, (size_t)*rank, (size_t)*rank)) > tol * largest;) {
+    for (*rank = 0; *rank < n && fabs(gsl_matrix_get(r, (size_t)*rank, (size_t)*rank)) > tol;) {
       ++*rank;
     }
   }

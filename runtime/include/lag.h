@@ -265,8 +265,8 @@ typedef struct lag_algebra {
   /* A := D^-1 A D with D = diag(scale[n]) of powers of 2, so that its rows and columns are alike in size. */
   int (*balance)(int n, double *A, double *scale);
 
-  /* Orthogonal Q[n*n] with A Q = [B | 0]: its columns from *rank on span the kernel of A, where what is below
-   * tol |A| counts as 0. */
+  /* Orthogonal Q[n*n] with A Q = [B | 0]: its columns from *rank on span the kernel of A, where what is not above
+   * tol counts as 0. */
   int (*kernel)(int n, const double *A, double tol, double *Q, int *rank);
 } lag_algebra;
 

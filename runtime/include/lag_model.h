@@ -36,7 +36,8 @@ enum {
   LAG_CONSTANT_MASS = 2,    /* d2L/dq'2 depends on no coordinate, velocity or time */
   LAG_AUTONOMOUS = 4,       /* the right-hand side does not contain t */
   LAG_SMOOTH = 8,           /* no if, abs, sign, min, max */
-  LAG_SEPARABLE = 16        /* constant mass matrix, accelerations that do not depend on velocities, no states */
+  LAG_SEPARABLE = 16,       /* constant mass matrix, accelerations that do not depend on velocities, no states */
+  LAG_TIMELESS = 32         /* t enters by the formulas of inputs, if at all */
 };
 
 /* A named quantity. unit is as declared ("deg"), "" when none; one unit is `factor` in SI. */

@@ -25,7 +25,7 @@ static const char *const prelude =
 /* What lag_model.h and the head of an emitted file define. */
 static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
-  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_MASK", "lag_solve", "lag_var", "lag_event", "lag_model", "lag_option",
+  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_MASK", "lag_solve", "lag_var", "lag_event", "lag_model", "lag_option",
   "lag_monitor", "lag_scene", "lag_program", "lag_entry", "lag_linear", "q_table", "z_table", "p_table", "u_table",
   "ev_table", "dr_table", "mass_table", "linear",
 };
@@ -218,9 +218,9 @@ static uint32_t work_size(const IrUnit *u) {
 
 static void flag_text(unsigned flags, StrBuf *out) {
   static const char *const names[] = {"LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS", "LAG_AUTONOMOUS", "LAG_SMOOTH",
-                                       "LAG_SEPARABLE"};
+                                       "LAG_SEPARABLE", "LAG_TIMELESS"};
   int some = 0;
-  for (int i = 0; i < 5; i++)
+  for (int i = 0; i < 6; i++)
     if (flags >> i & 1) sb_printf(out, "%s%s", some++ ? " | " : "", names[i]);
   if (!some) sb_putc(out, '0');
 }
