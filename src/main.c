@@ -110,8 +110,9 @@ static Eqns *derive_asked(Compiler *c, const char *scene) {
 }
 
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
-static IrUnit *lower_scene(Compiler *c, const Eqns *e) {
+static IrUnit *lower_scene(Compiler *c, Eqns *e) {
   IrUnit *u = unit_new(e, c->o.file);
+  if (c->o.linear) unit_add_linear(u, e);
   unit_add_scene(u, e);
   const char *wrong = prog_verify(u->accel);
   if (wrong) {
@@ -184,7 +185,10 @@ static int lower_all(Compiler *c, Units *units) {
     IrUnit *fresh = unit_new(e, c->o.file), *home = NULL;
     for (uint32_t k = 0; k < units->n && !home; k++)
       if (strcmp(units->at[k]->effects, fresh->effects) == 0) home = units->at[k];
-    if (!home) vec_push(c->arena, units, home = fresh);
+    if (!home) {
+      vec_push(c->arena, units, home = fresh);
+      if (c->o.linear) unit_add_linear(home, e);
+    }
     unit_add_scene(home, e);
   }
   return 1;
@@ -196,6 +200,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   Toolchain tools;
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
+  if (c->o.command == CMD_MODES) tools.optimise = "-O0";
   VEC(SourceText) texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
   for (uint32_t i = 0; i < units.n; i++) {
@@ -307,7 +312,7 @@ static int do_command(Compiler *c) {
     case CMD_EMIT: return do_emit(c);
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
-    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: return do_run(c);
+    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: return do_run(c);
     case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;
   }
   return STATUS_USAGE;

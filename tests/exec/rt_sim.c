@@ -151,8 +151,8 @@ static const lag_program program = {"rt_sim", "hand-written", "models/rt_sim.lag
 int main(int argc, char **argv)
 {
 #ifdef WITH_GSL
-  return lag_app_main(argc, argv, &program, lag_gsl_methods, lag_gsl_nmethods);
+  return lag_app_main(argc, argv, &program, &lag_gsl);
 #else
-  return lag_app_main(argc, argv, &program, 0, 0);
+  return lag_app_main(argc, argv, &program, 0);
 #endif
 }
