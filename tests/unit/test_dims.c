@@ -133,6 +133,8 @@ static void test_replace(void **state) {
   Dim with[2] = {dim_mul(f.d, power(&f, f.m, 2, 1), c), f.m};
   assert_int_equal(dim_replace(f.d, b, first, 2, with), f.m);
   assert_int_equal(dim_replace(f.d, dim_mul(f.d, result, f.s), first, 2, with), dim_mul(f.d, with[0], f.s));
+  with[1] = DIM_ANY; /* a zero: what was found of b tells its dimension */
+  assert_int_equal(dim_replace(f.d, b, first, 2, with), f.m);
   with[0] = DIM_ANY;
   assert_int_equal(dim_replace(f.d, result, first, 2, with), DIM_ANY);
   assert_int_equal(dim_replace(f.d, c, first, 2, with), c);
