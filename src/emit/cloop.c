@@ -50,11 +50,10 @@ static void name_load(Writer *w, Slot s) {
   if (s && w->p->ins.at[s].op == IR_LOAD) w->named_load[s] = 1;
 }
 
-int cloop_names_load(const Writer *w, Slot s) { return !w->rolls.loops.n || w->named_load[s]; }
+int cloop_names_load(const Writer *w, Slot s) { return w->named_load[s]; }
 
 void cloop_prepare(Writer *w) {
   const Rolls *r = &w->rolls;
-  if (!r->loops.n) return;
   w->named_load = ARENA_ARRAY(w->a, unsigned char, w->p->ins.n);
   w->kept = ARENA_ARRAY(w->a, const char **, r->loops.n);
   cnames_reserve(&w->names, "k");
@@ -71,7 +70,12 @@ void cloop_prepare(Writer *w) {
     for (uint32_t j = 0; j < s->n * s->n; j++) name_load(w, s->matrix[j]);
     for (uint32_t j = 0; j < s->n; j++) name_load(w, s->rhs[j]);
   }
-  for (uint32_t k = 0; k < w->p->stores.n; k++) name_load(w, w->p->stores.at[k].slot);
+  for (uint32_t k = 0; k < w->p->stores.n;) {
+    uint32_t n = cloop_stores(w, k);
+    const Store *st = &w->p->stores.at[k];
+    if (!n || st[0].slot == st[1].slot) name_load(w, st->slot);
+    k += n ? n : 1;
+  }
 }
 
 /* --- a loop --- */
@@ -103,18 +107,25 @@ static void count_own_uses(Writer *w, Body *b) {
   }
 }
 
-static void declare_kept(Writer *w, const Body *b) {
+static const char *kept_name(const Writer *w, const Ins *i) {
+  const Ins *x = &w->p->ins.at[i->a];
+  if (i->name) return stem_of(w->a, i->name);
+  return i->op == IR_FN1 && x->op == IR_LOAD ? arena_printf(w->a, "%s_%s", i->text, stem_of(w->a, x->name)) : "kept";
+}
+
+/* Conditions and numbers have arrays of their own. */
+static void declare_kept(Writer *w, const Body *b, int conditions) {
   const Loop *l = b->l;
-  const char **names = w->kept[b->number] = ARENA_ARRAY(w->a, const char *, l->period);
+  const char **names = w->kept[b->number];
   StrBuf text = strbuf(w->a);
   for (uint32_t k = 0; k < l->period; k++) {
-    if (!l->kept[k]) continue;
     const Ins *i = &w->p->ins.at[code_of(w, l, 0, k)];
-    names[k] = cnames_take(&w->names, i->name ? stem_of(w->a, i->name) : "kept");
+    if (!l->kept[k] || ir_is_condition(i->op) != conditions) continue;
+    names[k] = cnames_take(&w->names, kept_name(w, i));
     sb_printf(&text, "%s%s[%u]", text.n ? ", " : "", names[k], l->count + l->kept[k] - 1);
   }
   if (!text.n) return;
-  cwriter_statement(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&text)));
+  cwriter_statement(w, arena_printf(w->a, "%s_%s %s;", w->style->prefix, conditions ? "MASK" : "REAL", sb_text(&text)));
   sb_putc(w->out, '\n');
 }
 
@@ -155,6 +166,13 @@ static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int w
   uint32_t place = w->rolls.place[x] - 1; /* of values that are no loads */
   switch (s.kind) {
     case STEP_SAME: case STEP_OWN: return w->piece[x];
+    case STEP_NUMBER: {
+      Num unit = {0};
+      int64_t first = 0;
+      Slot y = roll_operand(&w->p->ins.at[code_of(w, b->l, 1, offset)], which);
+      roll_number(&w->p->ins.at[x], &w->p->ins.at[y], &unit, &first);
+      return (Piece){arena_printf(w->a, "%s*(%s)", c_number(w->a, w->style->prefix, unit), index_text(w, first, 1)), C_MUL, 0};
+    }
     case STEP_LOAD: return (Piece){turn_load(b, x, s.step)->name, C_ATOM, 0};
     case STEP_BEFORE: {
       uint32_t at = place + s.back * b->l->period - b->l->begin; /* offset of what it becomes */
@@ -209,7 +227,9 @@ void cloop_write(Writer *w, uint32_t loop) {
   b.own_uses = ARENA_ARRAY(w->a, uint32_t, b.l->period);
   count_own_uses(w, &b);
   cwriter_flush_title(w);
-  declare_kept(w, &b);
+  w->kept[loop] = ARENA_ARRAY(w->a, const char *, b.l->period);
+  declare_kept(w, &b, 0);
+  declare_kept(w, &b, 1);
   write_first_values(w, &b);
   cwriter_statement(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) {", b.l->count));
   sb_putc(w->out, '\n');
@@ -228,23 +248,50 @@ void cloop_write(Writer *w, uint32_t loop) {
 
 /* --- stores --- */
 
-static int in_loop(const Writer *w, Slot s) { return s && w->rolls.place[s] && w->rolls.loop[w->rolls.place[s] - 1]; }
+/* The place of s in its loop's code; -1 when it is in none. */
+static int64_t loop_place(const Writer *w, Slot s) {
+  uint32_t place = s ? w->rolls.place[s] : 0;
+  return place && w->rolls.loop[place - 1] ? (int64_t)place - 1 : -1;
+}
 
-uint32_t cloop_stores(Writer *w, uint32_t k) {
-  enum { FEWEST = 8 };
+/* What stores n later than `first` would take, if all go on as first and second begin: x[0] + n*(x[1] - x[0]). */
+static int follows(const Writer *w, const Store *first, uint32_t n) {
+  Slot x = first[0].slot, y = first[1].slot, z = first[n].slot;
+  if (first[n].array != first->array || first[n].index != first->index + n) return 0;
+  if (x == y) return z == x;
+  const Ins *i = &w->p->ins.at[x], *j = &w->p->ins.at[y], *k = &w->p->ins.at[z];
+  if (i->op == IR_LOAD)
+    return j->op == IR_LOAD && k->op == IR_LOAD && j->array == i->array && k->array == i->array &&
+           (int64_t)k->index - i->index == (int64_t)n * ((int64_t)j->index - i->index);
+  int64_t px = loop_place(w, x), py = loop_place(w, y), pz = loop_place(w, z);
+  return px >= 0 && py >= 0 && pz >= 0 && w->rolls.loop[px] == w->rolls.loop[pz] && pz - px == (int64_t)n * (py - px) &&
+         (py - px) % (int64_t)loop_at(w, w->rolls.loop[px] - 1)->period == 0;
+}
+
+static const char *stored_value(const Writer *w, const Store *first) {
+  Slot x = first[0].slot, y = first[1].slot;
+  const Ins *i = &w->p->ins.at[x];
+  if (x == y) return cwriter_operand(w, x).text;
+  if (i->op == IR_LOAD)
+    return arena_printf(w->a, "%s[%s]", w->style->in[i->array], index_text(w, i->index, (int64_t)w->p->ins.at[y].index - i->index));
+  int64_t px = loop_place(w, x), py = loop_place(w, y);
+  return kept_value(w, (uint32_t)px, (py - px) / (int64_t)loop_at(w, w->rolls.loop[px] - 1)->period).text;
+}
+
+uint32_t cloop_stores(const Writer *w, uint32_t k) {
+  enum { FEWEST = 16 };
   const Prog *p = w->p;
   const Store *first = &p->stores.at[k];
-  if (k + FEWEST > p->stores.n || !in_loop(w, first->slot) || !in_loop(w, first[1].slot)) return 0;
-  int64_t place = w->rolls.place[first->slot] - 1, step = (int64_t)w->rolls.place[first[1].slot] - 1 - place;
-  uint32_t in = w->rolls.loop[place], n = 1;
-  const Loop *l = loop_at(w, in - 1);
-  if (!step || step % (int64_t)l->period != 0 || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0)) return 0;
-  while (k + n < p->stores.n && first[n].array == first->array && first[n].index == first->index + n && in_loop(w, first[n].slot) &&
-         (int64_t)w->rolls.place[first[n].slot] - 1 == place + (int64_t)n * step && w->rolls.loop[w->rolls.place[first[n].slot] - 1] == in) n++;
-  if (n < FEWEST) return 0;
-  Piece value = kept_value(w, (uint32_t)place, step / (int64_t)l->period);
+  if (k + FEWEST > p->stores.n || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0)) return 0;
+  if (w->style->params && p->ins.at[first->slot].op == IR_LOAD && p->ins.at[first->slot].array == ARR_P) return 0;
+  uint32_t n = 1;
+  while (k + n < p->stores.n && follows(w, first, n)) n++;
+  return n >= FEWEST ? n : 0;
+}
+
+void cloop_write_stores(Writer *w, uint32_t k, uint32_t n) {
+  const Store *first = &w->p->stores.at[k];
   cwriter_statement(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) %s[%s] = %s;", n, w->style->out[first->array],
-                                    index_text(w, first->index, 1), value.text));
+                                    index_text(w, first->index, 1), stored_value(w, first)));
   sb_printf(w->out, " /* %s ... %s */\n", comment_text(w->a, first->comment), comment_text(w->a, first[n - 1].comment));
-  return n;
 }

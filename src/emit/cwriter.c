@@ -367,7 +367,8 @@ static void write_stores(Writer *w) {
   for (uint32_t k = 0; k < w->p->stores.n;) {
     if (!k) sb_putc(w->out, '\n');
     uint32_t n = cloop_stores(w, k);
-    if (!n) write_store(w, &w->p->stores.at[k]);
+    if (n) cloop_write_stores(w, k, n);
+    else write_store(w, &w->p->stores.at[k]);
     k += n ? n : 1;
   }
 }

@@ -54,7 +54,8 @@ int cloop_names_load(const Writer *w, Slot s);
 /* A whole loop. */
 void cloop_write(Writer *w, uint32_t loop);
 
-/* The stores from number k on as a loop; how many they are, 0 for none. */
-uint32_t cloop_stores(Writer *w, uint32_t k);
+/* How many stores from number k on can be written as a loop; 0 for none. And that loop. */
+uint32_t cloop_stores(const Writer *w, uint32_t k);
+void cloop_write_stores(Writer *w, uint32_t k, uint32_t n);
 
 #endif

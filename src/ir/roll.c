@@ -33,8 +33,19 @@ static const Ins *code_at(const Rolls *r, uint32_t place) { return &r->p->ins.at
 /* Where x stands in the code; only for values that are no leaves. */
 static uint32_t place_of(const Rolls *r, Slot x) { return r->place[x] - 1; }
 
+int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first) {
+  enum { LARGEST = 1 << 22 };
+  if (x->op != IR_CONST || y->op != IR_CONST || !num_is_exact(x->number) || !num_is_exact(y->number)) return 0;
+  *unit = num_sub(y->number, x->number);
+  if (!num_is_exact(*unit) || num_is_zero(*unit) || (unit->den & (unit->den - 1)) != 0 || unit->den > LARGEST) return 0;
+  Num times = num_div(x->number, *unit);
+  *first = times.num;
+  return num_is_exact(times) && times.den == 1 && times.num > -LARGEST && times.num < LARGEST && unit->num > -LARGEST && unit->num < LARGEST;
+}
+
 static Step step_between(const Rolls *r, uint32_t begin, uint32_t period, Slot x, Slot y) {
   if (x == y) return (Step){.kind = STEP_SAME};
+  if (!r->place[x] && r->p->ins.at[x].op != IR_LOAD) return (Step){.kind = STEP_NUMBER};
   if (!r->place[x]) {
     int64_t d = (int64_t)r->p->ins.at[y].index - (int64_t)r->p->ins.at[x].index;
     return (Step){.kind = STEP_LOAD, .step = d};
@@ -62,6 +73,9 @@ static uint32_t turns_of(const Search *f, uint32_t begin, uint32_t period, uint3
   Step s = step_between(r, begin, period, x, y);
   const Ins *first = &r->p->ins.at[x];
   uint32_t last = most;
+  Num unit = {0};
+  int64_t multiple = 0;
+  if (s.kind == STEP_NUMBER && !roll_number(first, &r->p->ins.at[y], &unit, &multiple)) return 1;
   if (s.kind == STEP_LOAD && (first->op != IR_LOAD || !(f->by_index >> first->array & 1))) return 1;
   if (s.kind == STEP_OWN && s.step != period) return 1;
   if (s.kind == STEP_OTHER) {
@@ -80,8 +94,10 @@ static uint32_t turns_of(const Search *f, uint32_t begin, uint32_t period, uint3
   }
   for (uint32_t t = 1; t < last; t++) {
     Slot z = roll_operand(code_at(r, begin + t * period + offset), which);
+    const Ins *now = &r->p->ins.at[z];
     int follows = s.kind == STEP_SAME ? z == x
-                  : s.kind == STEP_LOAD ? !r->place[z] && r->p->ins.at[z].op == IR_LOAD && r->p->ins.at[z].index == (uint32_t)((int64_t)first->index + t * s.step)
+                  : s.kind == STEP_NUMBER ? now->op == IR_CONST && num_equal(now->number, num_mul(unit, num_int(multiple + t)))
+                  : s.kind == STEP_LOAD ? now->op == IR_LOAD && now->index == (uint32_t)((int64_t)first->index + t * s.step)
                                         : r->place[z] && (int64_t)place_of(r, z) == (int64_t)place_of(r, x) + t * s.step;
     if (!follows) return t;
   }
@@ -105,6 +121,31 @@ static uint32_t turns_at(const Search *f, uint32_t begin, uint32_t period) {
       if (roll_operand(code_at(r, begin + k), which)) turns = turns_of(f, begin, period, k, which, turns);
   }
   return turns;
+}
+
+/* How many operands a loop takes from the turn before. */
+static uint32_t carried(const Rolls *r, const Loop *l) {
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < l->period; k++)
+    for (int which = 0; which < 3; which++) {
+      Slot x = roll_operand(code_at(r, l->begin + k), which), y = roll_operand(code_at(r, l->begin + l->period + k), which);
+      n += x && step_between(r, l->begin, l->period, x, y).kind == STEP_BEFORE;
+    }
+  return n;
+}
+
+/* The same loop with its turns cut where least goes from one to the next, which may cost one of them. */
+static Loop well_cut(const Search *f, Loop l) {
+  Loop best = l;
+  uint32_t least = carried(f->r, &l);
+  for (uint32_t k = 1; k < l.period && l.count > FEWEST_TURNS; k++) {
+    Loop x = {l.begin + k, l.period, l.count - 1, NULL};
+    uint32_t n = carried(f->r, &x);
+    if (n >= least || turns_at(f, x.begin, x.period) < x.count) continue;
+    least = n;
+    best = x;
+  }
+  return best;
 }
 
 /* The loop at `begin` that takes in most of the code; the shorter period where two take in as much. */
@@ -180,6 +221,8 @@ Rolls roll_find(const Prog *p, unsigned by_index) {
       i++;
       continue;
     }
+    l = well_cut(&f, l);
+    i = l.begin;
     l.kept = ARENA_ARRAY(a, uint32_t, l.period);
     vec_push(a, &r.loops, l);
     for (uint32_t k = 0; k < l.period * l.count; k++) loop[i + k] = r.loops.n;

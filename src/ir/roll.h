@@ -18,6 +18,7 @@ typedef struct {
 typedef enum {
   STEP_SAME,   /* the same value in all */
   STEP_LOAD,   /* elements of an array: index + r*step */
+  STEP_NUMBER, /* numbers, unit*(first + r): see roll_number */
   STEP_OWN,    /* a value of the same iteration */
   STEP_BEFORE, /* a value of the iteration `back` before; in the first ones, of the code before the loop */
   STEP_OTHER   /* a value of an earlier loop: its iteration + r*step */
@@ -44,6 +45,10 @@ Rolls roll_find(const Prog *p, unsigned by_index);
 
 /* How operand `which` (0, 1, 2) of instruction `offset` of the loop changes. */
 Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which);
+
+/* The numbers of a STEP_NUMBER that begins with x and y: y - x is a unit whose multiples are exact in binary, and
+ * x is `first` times that. 0 when they are not like that. */
+int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first);
 
 Slot roll_operand(const Ins *i, int which);
 
