@@ -99,7 +99,7 @@ close "the middle rests" 0 "$(shape 2 x2)"
 close "antisymmetric" "sqrt(3*(1 + 2/2))" "$(of_mode 3 im)"
 find_modes $dir/triatomic.lag damped # friction 2R = c (relative velocity)^2, c = 0.2: C = (c/k) K, so 2 d = c/k w^2
 verdict neutral
-because "all other modes decay"
+because "where a push goes on for ever; all other modes decay"
 close "translation is not damped" 0 "$(of_mode 1 re)" 0
 close "decay" "-0.2/3*3/2" "$(of_mode 2 re)"
 close "frequency" "sqrt(3 - 0.1^2)" "$(of_mode 2 im)"
