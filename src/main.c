@@ -109,7 +109,7 @@ static Eqns *derive_asked(Compiler *c, const char *scene) {
 }
 
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
-static IrUnit *lower_scene(Compiler *c, const Eqns *e) {
+static IrUnit *lower_scene(Compiler *c, Eqns *e) {
   IrUnit *u = unit_new(e, c->o.file);
   if (c->o.linear) unit_add_linear(u, e);
   unit_add_scene(u, e);

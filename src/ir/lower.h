@@ -25,6 +25,6 @@ IrUnit *unit_new(const Eqns *e, const char *source);
 void unit_add_scene(IrUnit *u, const Eqns *e);
 
 /* Adds the exact linearisation, which a model pays for only when something needs it. */
-void unit_add_linear(IrUnit *u, const Eqns *e);
+void unit_add_linear(IrUnit *u, Eqns *e);
 
 #endif

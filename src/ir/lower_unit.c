@@ -50,7 +50,7 @@ IrUnit *unit_new(const Eqns *e, const char *source) {
   return u;
 }
 
-void unit_add_linear(IrUnit *u, const Eqns *e) {
+void unit_add_linear(IrUnit *u, Eqns *e) {
   Partials dr = eqns_linearise(e);
   u->linear = lower_linear(e, dr);
   for (uint32_t k = 0; k < dr.n; k++) vec_push(u->arena, &u->linear_dr, ((IrEntry){dr.at[k].row, dr.at[k].col}));

@@ -13,7 +13,7 @@ typedef long double Real;
 enum { MOST = 8 };
 
 typedef struct {
-  const Eqns *e;
+  Eqns *e;
   const Real *v;
   Real dr[MOST][MOST], M[MOST][MOST]; /* as the emitted function would give them */
   uint32_t ndr;
@@ -23,7 +23,7 @@ static Real val(const Moment *s, const char *name) { return at(s->e, s->v, name)
 
 /* The values of dr and M at the point v; q'' are values of v like any other. */
 static void linearise(Moment *s) {
-  const Eqns *e = s->e;
+  Eqns *e = s->e;
   Arena *a = e->m->arena;
   Partials dr = eqns_linearise(e);
   Prog *p = lower_linear(e, dr);
