@@ -177,8 +177,7 @@ static void put_equilibrium(FILE *f, const App *app, const Rest *r, double *x)
     fputs("the start itself", f);
   } else {
     const lag_var *v = modes_variable(m, far);
-    fprintf(f, "%d steps from the start, %s by %.6g%s%s", r->steps, v->name, (x[far] - r->start[far]) / v->factor,
-            v->unit[0] ? " " : "", v->unit);
+    fprintf(f, "from the start %s moved by %.6g%s%s", v->name, (x[far] - r->start[far]) / v->factor, v->unit[0] ? " " : "", v->unit);
   }
   fprintf(f, "%s\n ", moving ? ", at rest" : "");
   put_vector(&line, (Vector){.m = m, .re = x, .units = 1, .all = 1});

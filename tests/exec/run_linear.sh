@@ -45,7 +45,7 @@ is "a part that does not exist" "lagc: --with takes linear (the exact linearisat
   echo '  0};'
 } >"$TMP/c/scenes.c"
 echo '#include <quadmath.h>' >"$TMP/quad.h"
-quad="-std=gnu11 -O1 -w -I$INC -include $TMP/quad.h -DLAG_REAL=__float128 -DLAG_FN(x)=x##q -DLAG_C(x)=x##Q"
+quad="-std=gnu11 -O0 -w -I$INC -include $TMP/quad.h -DLAG_REAL=__float128 -DLAG_FN(x)=x##q -DLAG_C(x)=x##Q"
 right() {
   # shellcheck disable=SC2086 # flags
   "$CC" $quad "$TMP"/c/*.c tests/exec/linear_quad.c -lquadmath -lm -o "$TMP/linear" && "$TMP/linear"

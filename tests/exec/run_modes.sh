@@ -258,7 +258,7 @@ check "a simulator with it takes --modes" sh -c "'$TMP/full' --modes th=3 | grep
 # ---- what a person sees
 text() { "$LAGC" modes "$@" 2>&1; }
 is "velocities of the start do not matter" "equilibrium: 0" "$(text models/pendulum.lag th=0 "th'=1" | sed -n 's/: the start itself, at rest/: 0/p')"
-check "how far from the start" sh -c "'$LAGC' modes models/pendulum.lag th=3 | grep -q 'from the start, th by 0.141593 rad'"
+check "how far from the start" sh -c "'$LAGC' modes models/pendulum.lag th=3 | grep -q 'from the start th moved by 0.141593 rad'"
 check "members of a family in a row" sh -c "'$LAGC' modes models/string.lag | grep -q 'u\[1..8\]: 1 1 0 -1 -1 0 1 1'"
 check "a large family in part" sh -c "'$LAGC' modes models/string.lag -D N=30 | grep -q 'u\[1..30\] (every 3): '"
 check "phases" sh -c "'$LAGC' modes $dir/hill.lag | grep -q 'y 1@90' && '$LAGC' modes $dir/hill.lag | grep -q '^a@p: '"
