@@ -154,6 +154,7 @@ void modes_reason(const Modes *s, char *text, size_t n)
 
 /* ---- JSON */
 
+/* A state, or with im a change of one. */
 static void json_vector(FILE *f, const lag_model *m, const double *re, const double *im)
 {
   putc('{', f);
@@ -162,7 +163,7 @@ static void json_vector(FILE *f, const lag_model *m, const double *re, const dou
     fputs(i ? ", " : "", f);
     json_string(f, v->name);
     fputs(im ? ": [" : ": ", f);
-    json_number(f, re[i] / v->factor);
+    json_number(f, (re[i] - (im ? 0 : v->offset)) / v->factor);
     if (im) {
       fputs(", ", f);
       json_number(f, im[i] / v->factor);
@@ -236,7 +237,7 @@ static int not_found(const App *app, const Rest *r)
     return EXIT_RUN;
   }
   app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s; another "
-                        "start: %s=VALUE", r->steps, app->scene->name, v->name, r->y[i < nq ? i : nq + i] / v->factor,
+                        "start: %s=VALUE", r->steps, app->scene->name, v->name, (r->y[i < nq ? i : nq + i] - v->offset) / v->factor,
             v->unit[0] ? " " : "", v->unit, v->name, i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
             nearly_singular(r) ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
   return EXIT_RUN;

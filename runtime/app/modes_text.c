@@ -79,14 +79,26 @@ static void value_text(double re, double im, double most, char *text, size_t n)
 typedef struct Vector {
   const lag_model *m;
   const double *re, *im;
-  int units; /* is the unit said with each value? */
+  int state; /* a state, not a change of one: with its units, and where they have their zero */
   int all;   /* what is 0, too */
   double most;
 } Vector;
 
+static int units_differ(const lag_model *m)
+{
+  for (int i = 1; i < m->nq + m->nz; i++) {
+    if (strcmp(modes_variable(m, i)->unit, modes_variable(m, 0)->unit) != 0) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
 static double part(const double *x, const Vector *v, int i)
 {
-  return x ? x[i] / modes_variable(v->m, i)->factor : 0;
+  const lag_var *var = modes_variable(v->m, i);
+
+  return x ? (x[i] - (v->state ? var->offset : 0)) / var->factor : 0;
 }
 
 static int is_zero(const Vector *v, const Group *g)
@@ -103,7 +115,7 @@ static int is_zero(const Vector *v, const Group *g)
 static void put_group(Line *l, const Vector *v, const Group *g)
 {
   int every = g->count > LISTED ? (g->count + LISTED - 2) / (LISTED - 1) : 1;
-  const char *unit = v->units ? modes_variable(v->m, g->first)->unit : "";
+  const char *unit = v->state || units_differ(v->m) ? modes_variable(v->m, g->first)->unit : "";
 
   for (int i = 0; i < g->count; i += every) {
     char label[160] = "", value[64], word[300];
@@ -133,16 +145,6 @@ static void put_vector(Line *l, Vector v)
     l->column += fprintf(l->f, "%s", some++ ? "," : "");
     put_group(l, &v, &g);
   }
-}
-
-static int units_differ(const lag_model *m)
-{
-  for (int i = 1; i < m->nq + m->nz; i++) {
-    if (strcmp(modes_variable(m, i)->unit, modes_variable(m, 0)->unit) != 0) {
-      return 1;
-    }
-  }
-  return 0;
 }
 
 /* The coordinate that is farthest from its start, by scale; -1: none moved. */
@@ -180,7 +182,7 @@ static void put_equilibrium(FILE *f, const App *app, const Rest *r, double *x)
     fprintf(f, "from the start %s moved by %.6g%s%s", v->name, (x[far] - r->start[far]) / v->factor, v->unit[0] ? " " : "", v->unit);
   }
   fprintf(f, "%s\n ", moving ? ", at rest" : "");
-  put_vector(&line, (Vector){.m = m, .re = x, .units = 1, .all = 1});
+  put_vector(&line, (Vector){.m = m, .re = x, .state = 1, .all = 1});
   putc('\n', f);
 }
 
@@ -210,7 +212,7 @@ static void put_mode(FILE *f, const lag_model *model, const Mode *m, int k, int 
     fprintf(f, "  %-18s", text);
   }
   line.indent = line.column;
-  put_vector(&line, (Vector){model, m->shape_re, m->shape_im, units_differ(model), model->nq + model->nz <= ALL_SHOWN, 0});
+  put_vector(&line, (Vector){model, m->shape_re, m->shape_im, 0, model->nq + model->nz <= ALL_SHOWN, 0});
   if (zero || m->repeats > 1) {
     char text[60];
     snprintf(text, sizeof text, m->repeats > 1 ? "(%d equal, too few shapes)" : m->free ? "(free)" : "(zero mode)", m->repeats);

@@ -209,9 +209,11 @@ const double *lag_sim_options(const lag_sim *sim);
 /* Columns of output besides t: the scene's outputs, or q, v, z when it names none. */
 int lag_sim_noutputs(const lag_sim *sim);
 /* Component i of the state q, v, z: name, with a prime for a velocity, and declared unit; buffers of the caller, cut to fit, either may be
- * NULL. Returns what one declared unit is in SI. */
+ * NULL. Returns what a difference of one declared unit is in SI. */
 double lag_sim_state_info(const lag_sim *sim, int i, char *name, size_t nname, char *unit, size_t nunit);
-/* The same of output i. */
+/* Component i of the state q, v, z now, in its declared unit. */
+double lag_sim_state_value(const lag_sim *sim, int i);
+/* Name and unit of output i, and what lag_sim_state_info returns. */
 double lag_sim_output_info(const lag_sim *sim, int i, char *name, size_t nname, char *unit, size_t nunit);
 /* out[noutputs] at the present state, in declared units. */
 int lag_sim_outputs(lag_sim *sim, double *out);

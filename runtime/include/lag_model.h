@@ -40,13 +40,15 @@ enum {
   LAG_TIMELESS = 32         /* t enters by the formulas of inputs, if at all */
 };
 
-/* A named quantity. unit is as declared ("deg"), "" when none; one unit is `factor` in SI. */
+/* A named quantity. unit is as declared ("deg"), or as found from the equations, "" when none; x units are
+ * x*factor + offset in SI. */
 typedef struct lag_var {
   const char *name;
   const char *unit;
   double factor;
   int periodic; /* an angle: 2 pi later is the same place */
   int sign;     /* of a parameter: 1 "> 0", 2 ">= 0", -1 "< 0", -2 "<= 0", 0 any */
+  double offset; /* 273.15 of degC; otherwise 0 */
 } lag_var;
 
 typedef struct lag_event {

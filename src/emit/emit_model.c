@@ -201,7 +201,8 @@ static void table(const IrUnit *u, const char *name, const IrVar *v, uint32_t n,
   sb_printf(out, "\nstatic const lag_var %s[] = {\n", name);
   for (uint32_t i = 0; i < n; i++) {
     const char *label = c_string(u->arena, v[i].name), *unit = c_string(u->arena, v[i].unit);
-    sb_printf(out, "  {%s, %s, %s, %d, %d},\n", label, unit, double_text(u->arena, v[i].factor), v[i].periodic, v[i].sign);
+    const char *factor = double_text(u->arena, v[i].factor), *offset = v[i].offset == 0 ? "0" : double_text(u->arena, v[i].offset);
+    sb_printf(out, "  {%s, %s, %s, %d, %d, %s},\n", label, unit, factor, v[i].periodic, v[i].sign, offset);
   }
   sb_puts(out, "};\n");
 }

@@ -5,7 +5,7 @@
 
 static IrVar var_of(Name name, const Unit *u, int periodic, AstSign sign) {
   static const int signs[] = {[SIGN_ANY] = 0, [SIGN_GT] = 1, [SIGN_GE] = 2, [SIGN_LT] = -1, [SIGN_LE] = -2};
-  return (IrVar){name, u->text, unit_factor(u), periodic, signs[sign]};
+  return (IrVar){name, u->text, unit_factor(u), periodic, signs[sign], num_value(u->offset)};
 }
 
 static const char *joined(Arena *a, const Name *names, uint32_t n) {

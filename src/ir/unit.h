@@ -9,6 +9,7 @@ typedef struct {
   const char *name, *unit; /* as the user wrote them */
   double factor;
   int periodic, sign;
+  double offset;
 } IrVar;
 
 typedef struct {

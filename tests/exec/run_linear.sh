@@ -29,7 +29,7 @@ fi
 
 not_asked() {
   for m in models/*.lag; do
-    "$LAGC" emit "$m" -o "$TMP/plain.c" && ! grep -q 'linear' "$TMP/plain.c" || { echo "$m"; return 1; }
+    "$LAGC" emit "$m" -o "$TMP/plain.c" && ! grep -q 'linearise' "$TMP/plain.c" || { echo "$m"; return 1; }
   done
 }
 check "a model that was not asked for it has none" not_asked

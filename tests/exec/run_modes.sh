@@ -218,6 +218,19 @@ find_modes $dir/indefinite.lag # x'' = -2 x, y'' = -2 y
 close "an indefinite mass matrix" "sqrt(2)" "$(of_mode 2 im)"
 verdict undecided
 
+cat >"$TMP/cooling.lag" <<'END'
+model cooling "Newton's law: T' = (T0 - T)/tau"
+state T [degC]
+param T0 = 20 [degC], tau = 5 [s] > 0
+flow T' = (T0 - T)/tau
+scene cup { start T = 80 [degC] }
+END
+find_modes "$TMP/cooling.lag"
+title="Newton's law of cooling"
+close "a scale with a zero of its own" 20 "$(at_rest T)"
+close "a change has none" 1 "$(shape 1 T)"
+close "decay" -0.2 "$(of_mode 1 re)"
+
 # ---- what the linearisation does not decide, and starts that help little
 find_modes $dir/quartic.lag bowl
 verdict undecided
