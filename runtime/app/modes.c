@@ -131,8 +131,10 @@ void modes_reason(const Modes *s, char *text, size_t n)
     snprintf(text, n, "the energy, which is conserved, has a minimum here (Lagrange, Dirichlet)");
     return;
   case LAG_NEUTRAL:
-    snprintf(text, n, "no force along the zero modes%s; %s", s->drifts ? ", where a push goes on for ever" : "",
-             s->lowering == 0 && s->pairs ? "the energy has a minimum in all other directions" : "all other modes decay");
+    snprintf(text, n, "no force along the zero modes%s%s", s->drifts ? ", where a push goes on for ever" : "",
+             m[last].re == 0.0 && m[last].im == 0.0              ? "; there are no others"
+             : s->lowering == 0 && s->pairs ? "; the energy has a minimum in all other directions"
+                                            : "; all other modes decay");
     return;
   case LAG_GYROSCOPIC:
     snprintf(text, n, "all modes oscillate, but the energy falls in %d direction%s: forces at right angles to the motion alone hold "

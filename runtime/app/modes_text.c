@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { WIDE = 118, LISTED = 12, ALL_SHOWN = 6, MOST_MODES = 40 };
+enum { WIDE = 118, LISTED = 12, ALL_SHOWN = 6, MOST_MODES = 40, NUMBER = 13 };
 
 /* ---- Families */
 
@@ -116,6 +116,7 @@ static void put_group(Line *l, const Vector *v, const Group *g)
 {
   int every = g->count > LISTED ? (g->count + LISTED - 2) / (LISTED - 1) : 1;
   const char *unit = v->state || units_differ(v->m) ? modes_variable(v->m, g->first)->unit : "";
+  unit = strcmp(unit, "1") == 0 ? "" : unit;
 
   for (int i = 0; i < g->count; i += every) {
     char label[160] = "", value[64], word[300];
@@ -201,13 +202,13 @@ static void put_mode(FILE *f, const lag_model *model, const Mode *m, int k, int 
   double two_pi = 2 * acos(-1), w = oscillates || zero ? m->im : NAN;
   Line line = {f, 0, 0};
 
-  line.column = fprintf(f, "%4d", k + 1) + 3 * 14 + (damped ? 14 + 20 : 0);
-  put_number(f, 12, w);
-  put_number(f, 12, w / two_pi);
-  put_number(f, 12, oscillates ? two_pi / w : NAN);
+  line.column = fprintf(f, "%4d", k + 1) + 3 * (NUMBER + 2) + (damped ? NUMBER + 2 + 20 : 0);
+  put_number(f, NUMBER, w);
+  put_number(f, NUMBER, w / two_pi);
+  put_number(f, NUMBER, oscillates ? two_pi / w : NAN);
   if (damped) {
     char text[40];
-    put_number(f, 12, !oscillates ? NAN : m->re == 0.0 ? 0 : -m->re / hypot(m->re, m->im));
+    put_number(f, NUMBER, !oscillates ? NAN : m->re == 0.0 ? 0 : -m->re / hypot(m->re, m->im));
     snprintf(text, sizeof text, m->re == 0.0 ? "-" : "%s %.7g", m->re > 0 ? "grows" : "decays", 1 / fabs(m->re));
     fprintf(f, "  %-18s", text);
   }
@@ -248,7 +249,11 @@ static void put_modes(FILE *f, const App *app, const Modes *s)
   for (char *word = strtok(text, " "); word; word = strtok(NULL, " ")) {
     put_word(&line, word);
   }
-  fprintf(f, "\n\nmode  rad/s         Hz            period [s]  %s shape\n", damped ? "  damping       time to e [s]     " : "");
+  fprintf(f, "\n\nmode  %-*s  %-*s  %-*s", NUMBER, "rad/s", NUMBER, "Hz", NUMBER, "period [s]");
+  if (damped) {
+    fprintf(f, "  %-*s  %-18s", NUMBER, "damping", "time to e [s]");
+  }
+  fputs(" shape\n", f);
   for (int i = 0; i < s->n && i < MOST_MODES; i++) {
     put_mode(f, app->scene->model, &s->mode[i], i, damped);
   }

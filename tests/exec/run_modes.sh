@@ -108,6 +108,14 @@ find_modes $dir/triatomic.lag held # walls that do not move it from where it is
 verdict stable
 close "the rest lengths" -1 "$(at_rest x1)"
 
+find_modes $dir/triangle.lag # breathing: 3 k u back for u outwards; the sum of all w^2 is the trace of K/m, 6 k/m; rotation is no straight line
+verdict neutral
+because "minimum in all other directions"
+for i in 1 2 3; do is "$title: translations, rotation" true "$(of_mode $i free)"; done
+close "the pair" "sqrt(3*3/(2*2))" "$(of_mode 4 im)"
+close "the pair" "sqrt(3*3/(2*2))" "$(of_mode 5 im)"
+close "breathing" "sqrt(3*3/2)" "$(of_mode 6 im)"
+
 find_modes $dir/hoop.lag # below g/R = 4.43^2 the bottom is stable: w^2 = g/R - W^2
 verdict stable
 close "at the bottom" 0 "$(at_rest th)" 0
