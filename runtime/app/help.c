@@ -16,6 +16,8 @@ static const char text[] =
     "                       --from 'X,Y' (the origin) on; --no-rods; --trace: the path of the last one\n"
     "  --sketch             a picture in the terminal\n"
     "  --json               the report as one JSON object\n"
+    "  --modes              no run, but the equilibrium next to the start, and small motion about it; with --json as one\n"
+    "                       object (in simulators built with GSL, and with their linearisation: --with linear)\n"
     "  --quiet              no report\n"
     "  --save-state FILE    write the complete state at the end; --resume FILE goes on from there, with the same\n"
     "                       scene, method and values: results are those of an uninterrupted run, bit by bit.\n"
