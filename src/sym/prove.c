@@ -111,25 +111,21 @@ static int is_diagonal(const System *s) {
   return 1;
 }
 
-static int is_unknown(const Symbol *x, const void *data) {
-  (void)data;
-  return x->kind == SYM_ACC;
-}
+static int has_unknown(const ExprGraph *g, Expr e) { return expr_kinds(g, e) >> SYM_ACC & 1; }
 
 /* Sums and products only, none of them in a denominator: then nothing is lost by putting values in the place of unknowns. */
 static int is_polynomial(const System *s) {
   ExprGraph *g = s->g;
-  ExprMap in = expr_containing(g, &s->e, 1, is_unknown, NULL);
   ExprList all = expr_topo(g, &s->e, 1);
   for (uint32_t i = 0; i < all.n; i++) {
     Expr e = all.at[i];
     ExprOp op = expr_op(g, e);
-    if (!expr_map_get(&in, e) || op == EX_SYM || op == EX_SUM || op == EX_DEF) continue;
+    if (!has_unknown(g, e) || op == EX_SYM || op == EX_SUM || op == EX_DEF) continue;
     if (op != EX_PROD) return 0;
     for (uint32_t k = 0; k < expr_pairs(g, e, EX_PROD); k++) {
       Num exponent;
       Expr base = expr_pair(g, e, EX_PROD, k, &exponent);
-      if (expr_map_get(&in, base) && !(num_is_int(exponent) && num_sign(exponent) > 0)) return 0;
+      if (has_unknown(g, base) && !(num_is_int(exponent) && num_sign(exponent) > 0)) return 0;
     }
   }
   return 1;
