@@ -213,7 +213,7 @@ map: place[q] "->" expr[e] { $$ = stmt_pair(ast, STMT_MAP, @$, $q, $e); };
 assigns: assign[x]                { $$ = stmts_one($x); }
        | assigns[l] "," assign[x] { $$ = stmts_add($l, $x); }
        ;
-assign: place[p] "=" expr[e] { $$ = stmt_pair(ast, STMT_SET, @$, $p, $e); };
+assign: place[p] "=" value[v] { $$ = stmt_pair(ast, STMT_SET, @$, $p, $v); };
 
 uses: use[x]             { $$ = stmts_one($x); }
     | uses[l] "," use[x] { $$ = stmts_add($l, $x); }

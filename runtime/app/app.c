@@ -74,6 +74,22 @@ static int choose_end(App *app)
   return 0;
 }
 
+/* A table that ends before the run does goes on as it ended, which should not come as a surprise. */
+static void note_tables(const App *app)
+{
+  const lag_model *m = app->scene->model;
+  double from = fmin(lag_sim_time(app->sim), app->until), to = fmax(lag_sim_time(app->sim), app->until);
+
+  for (int i = 0; i < m->ntables && !app->args.quiet; i++) {
+    const lag_table *c = &m->tables[i];
+    double first = c->row[0][0], last = c->row[c->n - 1][0];
+    if (isnan(app->sim->hold[c->input]) && (from < first || to > last)) {
+      fprintf(stderr, "%s: note: the table of %s reaches from %g to %g s; outside, its first and last values hold\n", app->args.self,
+              m->u[c->input].name, first, last);
+    }
+  }
+}
+
 /* Whether two paths lead to one file that is there. */
 static int same_file(const char *a, const char *b)
 {
@@ -337,6 +353,7 @@ static int simulate(App *app)
   if ((rc = open_output(app, &plot_x, &plot_y)) != 0) {
     return rc;
   }
+  note_tables(app);
   lag_sim_on_step(app->sim, after_step, app);
   lag_sim_on_event(app->sim, after_event, app);
   catch_interrupt();

@@ -33,6 +33,7 @@ struct lag_sim {
   double *options;       /* [method->noptions] */
   double tol;
   unsigned char *fixed;  /* [np] set by the caller */
+  lag_signal *signal;    /* [nu] set by the caller; not part of what is saved */
   double *start;         /* [n] NaN: as the scene says */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;

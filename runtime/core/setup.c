@@ -51,7 +51,8 @@ static int alloc_scratch(lag_sim *s)
   s->scratch = x;
   s->fixed = calloc((size_t)m->np + 1, 1);
   s->start = malloc((n + 1) * sizeof(double));
-  if (!x || !s->fixed || !s->start) {
+  s->signal = calloc(nu + 1, sizeof *s->signal);
+  if (!x || !s->fixed || !s->start || !s->signal) {
     return LAG_ENOMEM;
   }
   for (size_t i = 0; i < n; i++) {
@@ -64,6 +65,7 @@ static int alloc_scratch(lag_sim *s)
     x += sizes[i];
   }
   s->pb.u = s->u;
+  s->pb.signal = s->signal;
   s->pb.work = s->work;
   return LAG_OK;
 }
@@ -134,6 +136,7 @@ void lag_sim_free(lag_sim *s)
   free(s->options);
   free(s->fixed);
   free(s->start);
+  free(s->signal);
   free(s->scratch);
   free(s->saved);
   free(s);
@@ -260,21 +263,28 @@ static const char *sign_text(int sign)
   return sign == 1 ? "> 0" : sign == 2 ? ">= 0" : sign == -1 ? "< 0" : "<= 0";
 }
 
+static int unknown_name(lag_sim *s, const char *name)
+{
+  const lag_model *m = s->scene->model;
+  char near[64];
+
+  return lag_nearest(m, name, near, sizeof near)
+             ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name, m->name,
+                        near)
+             : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
+}
+
 int lag_sim_set(lag_sim *s, const char *name, double value)
 {
   const lag_model *m = s->scene->model;
   const lag_var *var = NULL;
   int i, rc = begun(s), kind = lag_find(m, name, &i, &var);
-  char near[64];
 
   if (rc) {
     return rc;
   }
   if (kind == LAG_IS_NOTHING) {
-    return lag_nearest(m, name, near, sizeof near)
-               ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name,
-                          m->name, near)
-               : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
+    return unknown_name(s, name);
   }
   if (!isfinite(value)) {
     return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);
@@ -291,6 +301,7 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
     break;
   case LAG_IS_U:
     s->hold[i] = value;
+    s->signal[i] = (lag_signal){0};
     break;
   default:
     s->start[kind == LAG_IS_Q ? i : kind == LAG_IS_V ? m->nq + i : 2 * m->nq + i] = value;
@@ -299,6 +310,22 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
     s->scene->params(s->p, s->fixed); /* others may follow from this one */
   }
   place(s);
+  return LAG_OK;
+}
+
+int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *context)
+{
+  const lag_var *var = NULL;
+  int i, rc = begun(s), kind = lag_find(s->scene->model, name, &i, &var);
+
+  if (rc) {
+    return rc;
+  }
+  if (kind != LAG_IS_U) {
+    return kind == LAG_IS_NOTHING ? unknown_name(s, name) : lag_fail(s, LAG_EINVAL, "%s is no input: lag_sim_set sets it", name);
+  }
+  s->signal[i] = (lag_signal){fn, context};
+  s->hold[i] = NAN;
   return LAG_OK;
 }
 

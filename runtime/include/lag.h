@@ -42,6 +42,14 @@ const char *lag_status_name(int status);
 
 /* ---- Methods --------------------------------------------------------------------------------- */
 
+/* A function of the caller that gives an input its value: in SI, at time t. */
+typedef double lag_input_fn(void *context, double t);
+
+typedef struct lag_signal {
+  lag_input_fn *fn; /* NULL: the model's formula, table, or a constant */
+  void *context;
+} lag_signal;
+
 /* What a method integrates: the model as y' = f(t, y), and where the method leaves its counts. */
 typedef struct lag_problem {
   const lag_model *model;
@@ -49,6 +57,7 @@ typedef struct lag_problem {
   const double *p;     /* [np] parameters */
   double *u;           /* [nu] inputs, filled by lag_rhs */
   const double *hold;  /* [nu] constants that replace inputs; NaN where there is none */
+  const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
@@ -60,8 +69,16 @@ typedef struct lag_problem {
   const char *detail;  /* and more words or NULL; a string that lives as long as the program */
 } lag_problem;
 
+/* The model's facts (LAG_AUTONOMOUS, ...) without those that a function in place of an input takes away. */
+unsigned lag_facts(const lag_problem *pb);
+
 /* dy[n] = f(t, y[n]). Returns what the model returned; does not look for NaN. */
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
+
+/* How far it is from t to the next row of an input's table in direction pb->dir; HUGE_VAL where there is none. The
+ * third derivative of the right-hand side jumps there, and a step over several rows might miss what is between them:
+ * a method that chooses its steps ends them at *row, when that is nearer. STEPS_TO methods have it in t_stop. */
+double lag_next_row(const lag_problem *pb, double t, double *row);
 
 /* The index of the first of x[n] that is not finite, -1 when all are. */
 int lag_not_finite(int n, const double *x);
@@ -169,6 +186,13 @@ int lag_sim_set_tolerance(lag_sim *sim, double tol);
  * in ".c"), the start of a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that
  * replaces an input. A parameter of the wrong sign is an error. */
 int lag_sim_set(lag_sim *sim, const char *name, double value);
+/* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI units
+ * unlike lag_sim_set; fn NULL: as the model says again. It must be a function of t alone: methods, events and outputs
+ * call it for times that go forth and back, more than once for some. What depends on the motion is a force of the
+ * model. For full accuracy fn has two continuous derivatives, or steps that are short beside what it does. A value
+ * that is not finite ends the run with LAG_ENAN. context must outlive the run. A saved state does not hold fn: set it
+ * again before lag_sim_load. */
+int lag_sim_set_input(lag_sim *sim, const char *name, lag_input_fn *fn, void *context);
 
 /* Integrates to time t, before or after t0, but always in one direction. The steps do not depend on
  * t: the state at t is evaluated on the dense output (STEPS_TO methods: reached exactly), so runs that are

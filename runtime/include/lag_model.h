@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 1
+#define LAG_ABI 2
 
 /* The scalar that a model is compiled for: double, float, long double or __float128. */
 #ifndef LAG_REAL
@@ -30,12 +30,12 @@ enum {
   LAG_ESINGULAR = -1  /* the mass matrix is singular at this state */
 };
 
-/* Facts about a model that the compiler proved. */
+/* Facts about a model, with the inputs that it gives itself, that the compiler proved. */
 enum {
   LAG_CONSERVES_ENERGY = 1, /* no t in L, no force, no dissipation, no input */
   LAG_CONSTANT_MASS = 2,    /* d2L/dq'2 depends on no coordinate, velocity or time */
   LAG_AUTONOMOUS = 4,       /* the right-hand side does not contain t */
-  LAG_SMOOTH = 8,           /* no if, abs, sign, min, max */
+  LAG_SMOOTH = 8,           /* no if, abs, sign, min, max, and no table */
   LAG_SEPARABLE = 16        /* constant mass matrix, accelerations that do not depend on velocities, no states */
 };
 
@@ -52,6 +52,14 @@ typedef struct lag_event {
   const char *name;
   int direction; /* 1 rising, -1 falling, 0 both */
 } lag_event;
+
+/* The curve of an input that has a table: a cubic between each two of n rows, times increasing. In emitted code
+ * alone; the runtime ends steps at the rows. */
+typedef struct lag_table {
+  int input; /* its index */
+  int n;
+  const double (*row)[3]; /* time, value, second derivative */
+} lag_table;
 
 typedef struct lag_model {
   int abi;           /* LAG_ABI */
@@ -89,6 +97,9 @@ typedef struct lag_model {
   int (*act)(int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
              const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1,
              int *stop, LAG_REAL *w);
+
+  int ntables;
+  const lag_table *tables; /* [ntables] the inputs that have a table */
 } lag_model;
 
 /* An option of a method: step = 1e-3, quadrature = trapezoid (then text is set). */

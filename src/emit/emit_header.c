@@ -15,7 +15,7 @@ static const char *cased(Arena *a, const char *s, int upper) {
   return t;
 }
 
-static const char *const header_names[] = {"REAL", "API", "STATIC", "IMPLEMENTATION", "IMPLEMENTED", "H_INCLUDED", "MASK",
+static const char *const header_names[] = {"REAL", "API", "STATIC", "IMPLEMENTATION", "IMPLEMENTED", "H_INCLUDED", "MASK", "LANE",
                                            "OK", "ESINGULAR", "NQ", "NZ", "NP", "NU", "NEV", "NOUT"};
 
 /* PREFIX_NAME for each variable: an enumerator that nothing else in the header is called. */
@@ -37,12 +37,16 @@ static const char **event_enumerators(Header *h, CNames *taken) {
 
 /* What a function's own names must not hide. */
 static const char *const *globals_of(Header *h) {
-  const char **all = ARENA_ARRAY(h->a, const char *, h->taken.taken.n + 8);
+  const char **all = ARENA_ARRAY(h->a, const char *, h->taken.taken.n + 12);
   uint32_t n = 0;
   for (uint32_t i = 0; i < h->taken.taken.n; i++) all[n++] = h->taken.taken.at[i];
   all[n++] = arena_printf(h->a, "%s_solve", h->lower);
+  all[n++] = arena_printf(h->a, "%s_cubic", h->lower);
+  all[n++] = arena_printf(h->a, "%s_spline", h->lower);
   all[n++] = arena_printf(h->a, "%s_params", h->lower);
   all[n++] = arena_printf(h->a, "%s_state", h->lower);
+  all[n++] = arena_printf(h->a, "%s_step", h->lower);
+  all[n++] = arena_printf(h->a, "%s_input_fn", h->lower);
   return all;
 }
 

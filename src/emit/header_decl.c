@@ -84,6 +84,12 @@ static void params_struct(const Header *h) {
   sb_printf(h->out, "} %s_params;\n", h->lower);
 }
 
+static void input_type(const Header *h) {
+  if (!h->u->u.n) return;
+  sb_printf(h->out, "\n/* Sets those of the inputs u[%s_NU] that it knows, at time t. */\ntypedef void %s_input_fn(void *context, %s_REAL t, %s_REAL *u);\n",
+            h->upper, h->lower, h->upper, h->upper);
+}
+
 static void state_struct(const Header *h) {
   sb_printf(h->out, "\ntypedef struct %s_state {\n  %s_REAL t; /* time [s] */\n", h->lower, h->upper);
   if (h->u->q.n) sb_printf(h->out, "  %s_REAL q[%s_NQ]; /* coordinates */\n  %s_REAL v[%s_NQ]; /* their time derivatives */\n", h->upper, h->upper, h->upper, h->upper);
@@ -126,7 +132,7 @@ const char *header_wrapped(const Header *h, const char *prototype) {
 int header_has(const Header *h, HeaderFn f) {
   const IrUnit *u = h->u;
   switch (f) {
-    case FN_INPUTS: return u->u.n > 0;
+    case FN_INPUTS: case FN_RK4_STEP_WITH: return u->u.n > 0;
     case FN_ENERGY: return u->energy != NULL;
     case FN_OBSERVE: return h->scene->outputs.n > 0;
     case FN_EVENTS: case FN_ACT: return u->events.n > 0;
@@ -153,6 +159,8 @@ const char *header_prototype(const Header *h, HeaderFn f) {
     case FN_EVENTS: return arena_printf(a, "int %s_events(%s, %s_REAL *g)", m, state, R);
     case FN_ACT: return arena_printf(a, "int %s_act(int event, const %s_params *p, %s_state *s%s, int *stop)", m, m, m, u);
     case FN_RK4_STEP: return arena_printf(a, "int %s_rk4_step(const %s_params *p, %s_state *s, %s_REAL h%s)", m, m, m, R, u);
+    case FN_RK4_STEP_WITH:
+      return arena_printf(a, "int %s_rk4_step_with(const %s_params *p, %s_state *s, %s_REAL h, %s_input_fn *input, void *context)", m, m, m, R, m);
     case FN_COUNT: break;
   }
   return "";
@@ -162,13 +170,14 @@ static const char *const docs[FN_COUNT] = {
   [FN_DEFAULTS] = "The parameters of the scene.",
   [FN_PARAM] = "A parameter by its index LAG_P_...; 0 when there is none. For tables and sliders.",
   [FN_START] = "The state at the start of the scene.",
-  [FN_INPUTS] = "The inputs u[LAG_NU] at time t by the model's formulas.",
+  [FN_INPUTS] = "The inputs u[LAG_NU] at time t by the model's formulas and tables; a table holds its end values outside.",
   [FN_ACCEL] = "Accelerations a[LAG_NQ], rates zd[LAG_NZ] of the states: what an integrator needs.",
   [FN_ENERGY] = "e[0]: the energy p q' - L; e[1]: |p q'| + |L|, what its drift is compared with.",
   [FN_OBSERVE] = "What the scene puts out: out[LAG_NOUT].",
   [FN_EVENTS] = "The event functions g[LAG_NEV].",
   [FN_ACT] = "What an event does to the state; *stop becomes 1 when it ends the run.",
   [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was.",
+  [FN_RK4_STEP_WITH] = "The same with inputs that change during the step: input(context, t, u) finds the model's own in u.",
 };
 
 void header_declarations(const Header *h) {
@@ -184,13 +193,14 @@ void header_declarations(const Header *h) {
   params_struct(h);
   state_struct(h);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
+  input_type(h);
   for (int f = 0; f < FN_COUNT; f++) {
     if (!header_has(h, (HeaderFn)f)) continue;
     const char *doc = f != FN_ACCEL || (u->q.n && u->z.n) ? docs[f] : u->q.n ? "Accelerations a[LAG_NQ]: what an integrator needs."
                                                                              : "Rates zd[LAG_NZ] of the states: what an integrator needs.";
     sb_puts(h->out, "\n/* ");
     csupport_fill(doc, h->upper, h->lower, h->out);
-    if (f == FN_RK4_STEP && u->u.n) sb_puts(h->out, "\n * u: the inputs during the step; 0 for the model's formulas.");
+    if (f == FN_RK4_STEP && u->u.n) sb_puts(h->out, "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
     const char *text = arena_printf(h->a, "%s_API %s;", h->upper, header_prototype(h, (HeaderFn)f));
     sb_printf(h->out, " */\n%s\n", header_wrapped(h, text));
   }

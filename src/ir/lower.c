@@ -331,13 +331,22 @@ Prog *lower_action(const Eqns *e, uint32_t event) {
   return prog_tidy(l.p);
 }
 
+static Slot lower_table(Lower *l, const Input *in) {
+  Slot t = load(l, ARR_T, expr_symbol(l->g, l->e->m->time));
+  vec_push(l->p->arena, &l->p->tables, ((IrTable){in->name, in->file, in->table}));
+  return prog_ins(l->p, (Ins){.op = IR_TABLE, .a = t, .index = l->p->tables.n - 1});
+}
+
 Prog *lower_inputs(const Eqns *e) {
   Lower l = lower_new(e);
   const Model *m = e->m;
   for (uint32_t i = 0; i < m->inputs.n; i++)
     if (m->inputs.at[i].value) lower_roots(&l, &m->inputs.at[i].value, 1);
-  for (uint32_t i = 0; i < m->inputs.n; i++)
-    prog_store(l.p, 0, i, m->inputs.at[i].value ? lower_slot(&l, m->inputs.at[i].value) : 0, m->inputs.at[i].name);
+  for (uint32_t i = 0; i < m->inputs.n; i++) {
+    const Input *in = &m->inputs.at[i];
+    Slot s = in->table ? lower_table(&l, in) : lower_slot(&l, in->value);
+    prog_store(l.p, 0, i, s, in->name);
+  }
   return prog_tidy(l.p);
 }
 

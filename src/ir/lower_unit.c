@@ -1,6 +1,8 @@
 /* Eqns -> IrUnit: all programs of a model, and what its tables say. */
 #include "ir/unit.h"
 
+#include <string.h>
+
 #include "ir/lower.h"
 
 static IrVar var_of(Name name, const Unit *u, int periodic, AstSign sign) {
@@ -48,6 +50,10 @@ IrUnit *unit_new(const Eqns *e, const char *source) {
   u->inputs = lower_inputs(e);
   add_events(u, e);
   return u;
+}
+
+int unit_shares(const IrUnit *a, const IrUnit *b) {
+  return strcmp(a->effects, b->effects) == 0 && prog_same(a->inputs, b->inputs);
 }
 
 void unit_add_scene(IrUnit *u, const Eqns *e) {

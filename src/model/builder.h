@@ -167,6 +167,9 @@ int add_outputs(Builder *b, AstId id);
 /* The same under a name of the caller's choice. */
 int add_outputs_as(Builder *b, AstId id, Name label);
 
+/* table.c: gives input `index` its formula, or the table whose file is named; stem: its name without its effect. */
+void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
+
 /* declare.c: the declarations of a statement. */
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data);
 SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSign sign, Dim dim);

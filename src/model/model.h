@@ -7,6 +7,7 @@
 #define LAGC_MODEL_H
 
 #include "base/define.h"
+#include "base/spline.h"
 #include "model/units.h"
 #include "sym/expr.h"
 #include "syntax/ast.h"
@@ -39,11 +40,13 @@ typedef struct {
 } Param;
 
 typedef struct {
-  Name name;
+  Name name;           /* wind.gust for input gust of effect wind */
   Span span;
   Unit unit;
   SymId sym;
-  Expr value; /* of t and parameters */
+  Expr value;          /* of t and parameters; 0 where there is a table */
+  const Spline *table; /* or NULL */
+  const char *file;    /* that the table was read from, as written */
 } Input;
 
 /* A force f along the displacement of `point`: adds f * d(point)/dq_i to each Q_i. */

@@ -86,7 +86,10 @@ static Value node_value(Eval *ev, AstId id) {
       diag_error(b->diags, x->span, "a list gives the members of a family their values, and stands alone");
       diag_help(b->diags, "`param m[3] = {1, 3, 1/2}`, `start th = {0.1, 0.2}`; a vector is written `(a, b, c)`");
       return FAILED;
-    case AST_STRING: not_yet(b, x->span, "tables from files"); return FAILED;
+    case AST_STRING:
+      diag_error(b->diags, x->span, "a text is no value here");
+      diag_help(b->diags, "a table from a file gives an input its values: `input u = \"file.csv\"`, or `u = \"file.csv\"` in a scene");
+      return FAILED;
     case AST_BIND: case AST_ERROR: return FAILED;
   }
   return FAILED;

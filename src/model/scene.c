@@ -218,9 +218,9 @@ void scene_select(Builder *b, const ModelChoice *choice) {
 
 /* --- the scene's contents --- */
 
-/* The parameter that `c` or `drag.c` names; in `use drag(c = 1)`, effect is drag, and only its own
- * count. Reported when it is none; NULL then. */
-static const Entity *find_param(Builder *b, AstId id, Name effect) {
+/* The parameter or input that `c` or `drag.c` names; in `use drag(c = 1)`, effect is drag, and only its
+ * own count. Reported when it is none; NULL then. */
+static const Entity *find_settable(Builder *b, AstId id, Name effect) {
   const AstExpr *x = ast_expr(b->ast, id);
   const Entity *e = NULL;
   int member = x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME;
@@ -234,16 +234,15 @@ static const Entity *find_param(Builder *b, AstId id, Name effect) {
   } else if (x->kind == AST_NAME) {
     e = resolve_name(b, x->name, x->span, NULL, "param");
   } else if (x->kind != AST_ERROR) {
-    diag_error(b->diags, x->span, "a scene sets parameters: `name = value`");
+    diag_error(b->diags, x->span, "a scene sets parameters and inputs: `name = value`");
     if (x->kind == AST_PRIME) diag_help(b->diags, "a start value is given by `start %s = ...`", ast_text(b, id));
   }
-  if (e && e->kind == ENT_PARAM) return e;
+  if (e && (e->kind == ENT_PARAM || e->kind == ENT_INPUT)) return e;
   if (e && e->kind != ENT_NONE) {
     diag_error(b->diags, x->span, "`%s` is %s, not a parameter", e->name, ent_kind_text(e->kind));
     if (e->kind == ENT_COORD || e->kind == ENT_STATE) diag_help(b->diags, "its start is set by `start %s = ...`", e->name);
     if (e->kind == ENT_CONST) diag_help(b->diags, "constants are fixed when compiling: `-D %s=...`", e->name);
     if (e->kind == ENT_LET) diag_help(b->diags, "declare it by `param` where scenes give it values");
-    if (e->kind == ENT_INPUT) diag_help(b->diags, "inputs are set when running: `lagc run MODEL SCENE %s=...`", e->name);
   }
   return NULL;
 }
@@ -287,12 +286,15 @@ static void give_param(Builder *b, uint32_t i, Expr e, Span span, void *data) {
   check_sign(b, p, span);
 }
 
-static void set_param(Builder *b, const AstStmt *st, Name effect) {
+static void set_value(Builder *b, const AstStmt *st, Name effect) {
   static const Giver giver = {param_unit, give_param, NULL};
   if (!effect && advise_statement(b, st)) return;
   Target p = read_target(b, st->lhs);
-  const Entity *e = find_param(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
-  if (e) assign_values(b, &p, e, st->lhs, st->rhs, &giver);
+  const Entity *e = find_settable(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
+  if (!e) return;
+  if (e->kind == ENT_PARAM) assign_values(b, &p, e, st->lhs, st->rhs, &giver);
+  else if (p.indices || p.part >= 0) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "`%s` is an input: it has no index and no component", e->name);
+  else give_input(b, e->index, e->name, st->rhs, effect);
 }
 
 static Name method_text(const Builder *b, AstId id) {
@@ -428,10 +430,10 @@ static void set_tolerance(Builder *b, const AstStmt *st) {
 static void scene_statement(Builder *b, const AstStmt *st) {
   switch (st->kind) {
     case STMT_START: set_start(b, st); return;
-    case STMT_SET: set_param(b, st, NULL); return;
+    case STMT_SET: set_value(b, st, NULL); return;
     case STMT_USE:
       if (uses(b, st->name))
-        for (const AstStmt *x = st->body; x; x = x->next) set_param(b, x, st->name);
+        for (const AstStmt *x = st->body; x; x = x->next) set_value(b, x, st->name);
       return;
     case STMT_SPAN: set_span(b, st); return;
     case STMT_METHOD: set_method(b, st); return;
