@@ -235,6 +235,37 @@ static int open_table(Table *t, const char *path) {
   return 0;
 }
 
+/* The lowest and the highest value of the curve between rows a and b, into lo and hi: where its slope is zero. With
+ * x in [0, 1] the slope is chord + (h^2/6)((1 - 3(1-x)^2) m0 + (3x^2 - 1) m1), a parabola. */
+static void extremes(const double *a, const double *b, double *lo, double *hi) {
+  double h = b[0] - a[0], m0 = a[2] * h * h / 6, m1 = b[2] * h * h / 6, chord = b[1] - a[1];
+  double p = 3 * (m1 - m0), q = 6 * m0, r = chord - 2 * m0 - m1, root = sqrt(fmax(q * q - 4 * p * r, 0));
+  double at[3] = {0, (-q - root) / (2 * p), (-q + root) / (2 * p)};
+  if (p == 0) at[1] = at[2] = q != 0 ? -r / q : 0;
+  for (int i = 0; i < 3; i++) {
+    if (!(at[i] >= 0 && at[i] <= 1)) continue;
+    double x = at[i], y = (1 - x) * a[1] + x * b[1] - x * (1 - x) * ((2 - x) * m0 + (1 + x) * m1);
+    *lo = fmin(*lo, y);
+    *hi = fmax(*hi, y);
+  }
+}
+
+/* Where rows lie far apart beside a jump, a cubic swings far beyond all values: hardly what was measured. (At a jump
+ * between even rows it swings by an eighth of it.) */
+static void warn_of_swings(const Table *t, const Spline *s) {
+  double lo = s->row[0][1], hi = lo, low = lo, high = lo;
+  for (uint32_t i = 0; i < s->n; i++) {
+    lo = fmin(lo, s->row[i][1]);
+    hi = fmax(hi, s->row[i][1]);
+  }
+  for (uint32_t i = 0; i + 1 < s->n; i++) extremes(s->row[i], s->row[i + 1], &low, &high);
+  if (lo - low <= (hi - lo) / 2 && high - hi <= (hi - lo) / 2) return;
+  double unit = unit_factor(&t->in->unit);
+  diag_warning(t->b->diags, ast_expr(t->b->ast, t->id)->span, "between its rows the curve goes from %.3g to %.3g, and the rows from %.3g to %.3g",
+               low / unit, high / unit, lo / unit, hi / unit);
+  diag_help(t->b->diags, "a cubic swings where rows lie far apart beside a jump: add rows there");
+}
+
 /* The rows with their second derivatives; NULL after an error. */
 static const Spline *fit(Table *t) {
   Builder *b = t->b;
@@ -257,6 +288,7 @@ static const Spline *fit(Table *t) {
   }
   Spline *s = ARENA_NEW(b->arena, Spline);
   *s = (Spline){n, (const double(*)[3])row};
+  warn_of_swings(t, s);
   return s;
 }
 
