@@ -39,18 +39,7 @@ static int after_step(void *context, const lag_sim *sim)
     clock_gettime(CLOCK_MONOTONIC, &app->shown);
     app->progress = 1;
   }
-  return interrupted;
-}
-
-static void after_event(void *context, int k, double t)
-{
-  App *app = context;
-
-  app->nevents++;
-  if (app->nlog < LOGGED_EVENTS) {
-    app->log[app->nlog].k = k;
-    app->log[app->nlog++].t = t;
-  }
+  return interrupted || app->bad_file;
 }
 
 /* ---- What to compute */
@@ -102,7 +91,7 @@ static int same_file(const char *a, const char *b)
 static int check_outputs(const App *app)
 {
   const Args *a = &app->args;
-  const char *const to[] = {a->out, a->svg, a->html, a->save}, *const keep[] = {app->program->source, "/proc/self/exe", a->resume};
+  const char *const to[] = {a->out, a->svg, a->html, a->save, a->events}, *const keep[] = {app->program->source, "/proc/self/exe", a->resume};
   enum { N = sizeof to / sizeof *to, KEPT = sizeof keep / sizeof *keep };
 
   for (int i = 0; i < N; i++) {
@@ -177,6 +166,7 @@ static int put_row(App *app)
     return rc;
   }
   if (app->rows.open && rows_write(&app->rows, app->row)) {
+    app->bad_file = app->args.out;
     return LAG_EIO;
   }
   return table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
@@ -214,7 +204,7 @@ static void run(App *app)
     int bad = put_row(app);
     rc = bad ? bad : rc;
   }
-  app->status = rc;
+  app->status = app->bad_file ? LAG_EIO : rc;
   app->wall = seconds_since(&app->begun);
   if (app->progress > 0) {
     fputs("\r\33[K", stderr);
@@ -223,7 +213,7 @@ static void run(App *app)
 
 /* ---- Files */
 
-static int io_error(const App *app, const char *path)
+int app_io_error(const App *app, const char *path)
 {
   return app_error(&app->args, "cannot write %s: %s", path, strerror(errno));
 }
@@ -233,7 +223,7 @@ static int try_file(const App *app, const char *path)
 {
   Outfile o;
 
-  return path && (outfile_open(&o, path) || outfile_close(&o, 0)) ? io_error(app, path) : 0;
+  return path && (outfile_open(&o, path) || outfile_close(&o, 0)) ? app_io_error(app, path) : 0;
 }
 
 static int open_output(App *app, int *plot_x, int *plot_y)
@@ -253,7 +243,8 @@ static int open_output(App *app, int *plot_x, int *plot_y)
   if (try_file(app, a->svg) || try_file(app, a->html) || try_file(app, a->save)) {
     return EXIT_USAGE;
   }
-  return a->out && rows_open(&app->rows, a->out, &app->table) ? io_error(app, a->out) : 0;
+  int rc = events_open(app);
+  return rc ? rc : a->out && rows_open(&app->rows, a->out, &app->table) ? app_io_error(app, a->out) : 0;
 }
 
 static int save_state(const App *app)
@@ -273,7 +264,7 @@ static int save_state(const App *app)
   if (!st.data || lag_sim_save(app->sim, st.data)) {
     rc = app_error(&app->args, "%s", st.data ? lag_sim_message(app->sim) : "out of memory");
   } else if (state_write(path, &st)) {
-    rc = io_error(app, path);
+    rc = app_io_error(app, path);
   }
   free(st.data);
   return rc;
@@ -284,24 +275,29 @@ static int finish(App *app, int plot_x, int plot_y)
 {
   const Args *a = &app->args;
   int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? EXIT_INTERRUPTED : EXIT_FINE, bad = 0;
-  FILE *f = a->out && strcmp(a->out, "-") == 0 ? stderr : stdout;
+  int on_stdout = (a->out && strcmp(a->out, "-") == 0) || (a->events && strcmp(a->events, "-") == 0);
+  FILE *f = on_stdout ? stderr : stdout;
   char title[300];
 
   if (app->status == LAG_EINVAL || app->status == LAG_ENOMEM || app->status == LAG_EIO) {
     rows_close(&app->rows, 0);
-    return app->status == LAG_EIO ? io_error(app, a->out) : app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
+    rows_close(&app->log_rows, 0);
+    return app->status == LAG_EIO ? app_io_error(app, app->bad_file) : app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
   }
   if (app->rows.open && rows_close(&app->rows, 1)) {
-    bad = io_error(app, a->out);
+    bad = app_io_error(app, a->out);
   } else {
     app->written = 1;
   }
+  if (rows_close(&app->log_rows, 1)) {
+    bad = app_io_error(app, a->events);
+  }
   snprintf(title, sizeof title, "%s: %s", app->scene->model->name, app->scene->name);
   if (a->svg && svg_write(a->svg, &app->table, title, plot_x, plot_y)) {
-    bad = io_error(app, a->svg);
+    bad = app_io_error(app, a->svg);
   }
   if (a->html && html_write(a->html, &app->table, title, &app->show)) {
-    bad = io_error(app, a->html);
+    bad = app_io_error(app, a->html);
   }
   if (a->save && app->status >= 0 && save_state(app)) {
     bad = EXIT_USAGE;
@@ -323,7 +319,7 @@ static int finish(App *app, int plot_x, int plot_y)
     app_error(a, "%s", lag_sim_message(app->sim));
   }
   if (fflush(stdout) != 0) {
-    bad = io_error(app, "standard output");
+    bad = app_io_error(app, "standard output");
   }
   return bad ? bad : rc;
 }
@@ -355,7 +351,7 @@ static int simulate(App *app)
   }
   note_tables(app);
   lag_sim_on_step(app->sim, after_step, app);
-  lag_sim_on_event(app->sim, after_event, app);
+  lag_sim_on_event(app->sim, events_note, app);
   catch_interrupt();
   app->progress = isatty(2) && !app->args.quiet ? 0 : -1;
   clock_gettime(CLOCK_MONOTONIC, &app->begun);
@@ -378,6 +374,7 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_me
   }
   lag_sim_free(app.sim);
   table_free(&app.table);
+  events_free(&app);
   free(app.show.cols);
   free(app.row);
   free(app.args.sets);

@@ -71,7 +71,14 @@ void lag_sim_on_step(lag_sim *s, int (*hook)(void *, const lag_sim *), void *con
   s->on_step_context = context;
 }
 
-void lag_sim_on_event(lag_sim *s, void (*hook)(void *, int, double), void *context)
+long long lag_sim_event_times(const lag_sim *s, int k, double *first, double *last)
+{
+  *first = s->count[k] > 0 ? s->first[k] : NAN;
+  *last = s->count[k] > 0 ? s->last[k] : NAN;
+  return (long long)s->count[k];
+}
+
+void lag_sim_on_event(lag_sim *s, lag_event_fn *hook, void *context)
 {
   s->on_event = hook;
   s->on_event_context = context;

@@ -49,11 +49,12 @@ struct lag_sim {
   double *root;          /* [nev] time of the next firing within the step, NaN none */
   double *sign_end;      /* [nev] sign at the end of the step */
   double *count;         /* [nev] */
+  double *first, *last;  /* [nev] times, where count is not 0 */
   double *mon_first, *mon_peak; /* [nmonitors] */
   double *method_work;
   int (*on_step)(void *, const lag_sim *);
   void *on_step_context;
-  void (*on_event)(void *, int, double);
+  lag_event_fn *on_event;
   void *on_event_context;
   char message[512];
 };

@@ -13,7 +13,7 @@ int lag_setup_blocks(lag_sim *s, const lag_method *method)
 {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
-  size_t nmon = (size_t)s->scene->nmonitors, fixed = RUN_DOUBLES + np + nu + 3 * n + 5 * nev + 2 * nmon;
+  size_t nmon = (size_t)s->scene->nmonitors, fixed = RUN_DOUBLES + np + nu + 3 * n + 7 * nev + 2 * nmon;
   size_t total = fixed + method->work_size(&s->pb);
   double *b = calloc(total, sizeof *b), *x = b + RUN_DOUBLES;
 
@@ -29,8 +29,8 @@ int lag_setup_blocks(lag_sim *s, const lag_method *method)
   s->nsaved = total;
   s->run = (Run *)(void *)b;
   double **const parts[] = {&s->p, &s->hold, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
-                            &s->count, &s->mon_first, &s->mon_peak, &s->method_work};
-  const size_t sizes[] = {np, nu, n, n, n, nev, nev, nev, nev, nev, nmon, nmon, 0};
+                            &s->count, &s->first, &s->last, &s->mon_first, &s->mon_peak, &s->method_work};
+  const size_t sizes[] = {np, nu, n, n, n, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, 0};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];

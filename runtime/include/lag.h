@@ -231,13 +231,17 @@ void lag_sim_stats(lag_sim *sim, lag_stats *stats);
 double lag_sim_monitor_drift(const lag_sim *sim, int i);
 /* How often event k has fired. */
 long long lag_sim_event_count(const lag_sim *sim, int k);
+/* The same, and the times of the first and the last; NaN when there was none. */
+long long lag_sim_event_times(const lag_sim *sim, int k, double *first, double *last);
 /* The last error, "" when there was none. */
 const char *lag_sim_message(const lag_sim *sim);
 
 /* Called after each step; != 0 ends the run with LAG_INTERRUPTED. */
 void lag_sim_on_step(lag_sim *sim, int (*hook)(void *context, const lag_sim *sim), void *context);
-/* Called when event k fires at time t, before its action. */
-void lag_sim_on_event(lag_sim *sim, void (*hook)(void *context, int k, double t), void *context);
+/* Called when event k fires at time t, with the state y[n] before and after its action: the same where it changes
+ * nothing. The arrays are valid during the call. */
+typedef void lag_event_fn(void *context, int k, double t, const double *before, const double *after);
+void lag_sim_on_event(lag_sim *sim, lag_event_fn *hook, void *context);
 
 /* Everything that a later run needs, as x[lag_sim_save_size()] doubles. LAG_EINVAL when the method cannot
  * be saved. load takes it into a simulation of the same scene, method and options. */

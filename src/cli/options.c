@@ -35,6 +35,7 @@ static const struct {
    "  --method NAME     rk45, dop853, verlet4, gsl-rk8pd, ...; `--method help` lists them\n"
    "  --tol X --step H --until T --every DT\n"
    "  -o FILE           .csv or .npy\n"
+   "  --events FILE     each event with its time and the state before and after it\n"
    "  --json            the summary as one JSON object\n"
    "  --observe EXPR    one more column: any expression of the model, --observe 'l*sin(th)'; can be repeated\n"
    "  --svg FILE        a picture of the outputs;  --sketch: one in the terminal\n"
@@ -175,7 +176,7 @@ static int picture_option(Arena *a, int argc, char **argv, int *i, Options *o) {
 /* What a simulator gets: an option, with its value where it takes one, a scene or a setting. */
 static void pass_on(Arena *a, int argc, char **argv, int *i, Options *o) {
   static const char *const with_value[] = {"--method", "--tol", "--step", "--until", "--every", "--svg", "--plot-x",
-                                           "--plot-y", "--save-state", "--resume", "--output", "-o", "--html", "--points", "--from"};
+                                           "--plot-y", "--save-state", "--resume", "--output", "-o", "--html", "--points", "--from", "--events"};
   const char *arg = argv[*i];
   vec_push(a, &o->rest, arg);
   if (arg[0] != '-' && !strchr(arg, '=') && !o->scene) o->scene = arg;

@@ -99,7 +99,8 @@ static lag_sim *open_run(Fact *f) {
   return sim;
 }
 
-static void note_hit(void *context, int k, double t) {
+static void note_hit(void *context, int k, double t, const double *before, const double *after) {
+  (void)before, (void)after;
   Fact *f = context;
   if (k < MAX_EVENTS && isnan(f->hit[k])) f->hit[k] = t;
 }
