@@ -86,6 +86,46 @@ static void verdict(const App *app, FILE *f)
   }
 }
 
+static void exact(const App *app, FILE *f)
+{
+  const lag_scene *c = app->scene;
+
+  for (int k = 0; k < c->nexact && k < MOST_LINES; k++) {
+    Column v;
+    double largest, now;
+    state_var(app, c->exact_of[k], &v);
+    lag_sim_exact(app->sim, k, &largest, &now);
+    fprintf(f, "exact %s: largest deviation %.3g%s%s, final %.3g\n", v.name, largest, v.unit[0] ? " " : "", v.unit, now);
+  }
+  if (c->nexact > MOST_LINES) {
+    fprintf(f, "  (and %d more)\n", c->nexact - MOST_LINES);
+  }
+}
+
+static void exact_json(const App *app, FILE *f)
+{
+  const lag_scene *c = app->scene;
+
+  if (c->nexact == 0) {
+    return;
+  }
+  fputs("\"exact\": {", f);
+  for (int k = 0; k < c->nexact; k++) {
+    Column v;
+    double largest, now;
+    state_var(app, c->exact_of[k], &v);
+    lag_sim_exact(app->sim, k, &largest, &now);
+    fputs(k ? ", " : "", f);
+    json_string(f, v.name);
+    fputs(": {\"largest\": ", f);
+    json_number(f, largest);
+    fputs(", \"final\": ", f);
+    json_number(f, now);
+    putc('}', f);
+  }
+  fputs("}, ", f);
+}
+
 void report_text(App *app, FILE *f)
 {
   const lag_scene *c = app->scene;
@@ -103,6 +143,7 @@ void report_text(App *app, FILE *f)
   for (int i = 0; i < c->nmonitors; i++) {
     fprintf(f, "monitor %s: drift %.3g, limit %.3g\n", c->monitors[i].name, lag_sim_monitor_drift(app->sim, i), c->monitors[i].limit);
   }
+  exact(app, f);
   report_events(app, f);
   if (app->written && app->args.out) {
     fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
@@ -190,6 +231,7 @@ void report_json(App *app, FILE *f)
   field_number(f, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null: it is no drift */
   charges(app, f);
   report_events_json(app, f);
+  exact_json(app, f);
   fputs("\"constraint_residual\": null, \"final\": {", f);
   for (int i = 0; i < n; i++) {
     Column c;

@@ -126,6 +126,7 @@ int lag_sim_outputs(lag_sim *s, double *out)
 
   if (c->nout > 0) {
     rc = lag_inputs(&s->pb, s->run->t);
+    rc = rc ? rc : lag_exact_at(s, s->run->t);
     rc = rc ? rc : c->observe(s->run->t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
     if (rc) {
       return lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN, "the outputs cannot be computed at t = %.17g s", s->run->t);

@@ -41,6 +41,7 @@ struct lag_sim {
   size_t nsaved;
   Run *run;
   double *p, *hold;      /* [np], [nu] */
+  double *begin;         /* [n] at the start of the run */
   double *y;             /* [n] at step_t1 */
   double *y0;            /* [n] at step_t0 */
   double *now;           /* [n] at t */
@@ -51,6 +52,7 @@ struct lag_sim {
   double *count;         /* [nev] */
   double *first, *last;  /* [nev] times, where count is not 0 */
   double *mon_first, *mon_peak; /* [nmonitors] */
+  double *exact_peak;    /* [nexact] largest difference from the closed form */
   double *method_work;
   int (*on_step)(void *, const lag_sim *);
   void *on_step_context;
@@ -81,6 +83,10 @@ int lag_events_arm(lag_sim *sim);
 int lag_events_locate(lag_sim *sim);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
+
+/* exact.c. at: the closed forms at t, behind the inputs in s->u; lag_inputs comes first. see: as in watch.c. */
+int lag_exact_at(lag_sim *sim, double t);
+int lag_exact_see(lag_sim *sim, double t, const double *y);
 
 /* watch.c: energy and monitors. begin: first values. see: the state `y` at t is part of the run. jump: an
  * event changed the state from ya to yb. */

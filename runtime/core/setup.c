@@ -13,7 +13,7 @@ int lag_setup_blocks(lag_sim *s, const lag_method *method)
 {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
-  size_t nmon = (size_t)s->scene->nmonitors, fixed = RUN_DOUBLES + np + nu + 3 * n + 7 * nev + 2 * nmon;
+  size_t nmon = (size_t)s->scene->nmonitors, fixed = RUN_DOUBLES + np + nu + 4 * n + 7 * nev + 2 * nmon + (size_t)s->scene->nexact;
   size_t total = fixed + method->work_size(&s->pb);
   double *b = calloc(total, sizeof *b), *x = b + RUN_DOUBLES;
 
@@ -28,9 +28,10 @@ int lag_setup_blocks(lag_sim *s, const lag_method *method)
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  double **const parts[] = {&s->p, &s->hold, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
-                            &s->count, &s->first, &s->last, &s->mon_first, &s->mon_peak, &s->method_work};
-  const size_t sizes[] = {np, nu, n, n, n, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, 0};
+  double **const parts[] = {&s->p, &s->hold, &s->begin, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
+                            &s->count, &s->first, &s->last, &s->mon_first, &s->mon_peak,
+                            &s->exact_peak, &s->method_work};
+  const size_t sizes[] = {np, nu, n, n, n, n, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, 0};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
@@ -45,8 +46,8 @@ static int alloc_scratch(lag_sim *s)
 {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
-  size_t nu = (size_t)m->nu, nw = (size_t)m->nw;
-  double *x = calloc(nu + nw + 3 * n + 8 * nev + nout + 2 + 1, sizeof *x);
+  size_t nu = (size_t)m->nu, nw = (size_t)m->nw, nuu = nu + (size_t)s->scene->nexact;
+  double *x = calloc(nuu + nw + 3 * n + 8 * nev + nout + 2 + 1, sizeof *x);
 
   s->scratch = x;
   s->fixed = calloc((size_t)m->np + 1, 1);
@@ -59,7 +60,7 @@ static int alloc_scratch(lag_sim *s)
     s->start[i] = NAN;
   }
   double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare};
-  const size_t sizes[] = {nu, nw, n, n, n, nev, nev, nout, 2 + nev, 5 * nev};
+  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 5 * nev};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
@@ -91,6 +92,7 @@ static void place(lag_sim *s)
   for (int i = 0; i < n; i++) {
     s->now[i] = isnan(s->start[i]) ? s->now[i] : s->start[i];
   }
+  memcpy(s->begin, s->now, (size_t)n * sizeof(double));
   s->run->t = s->scene->t0;
 }
 

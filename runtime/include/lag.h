@@ -229,6 +229,10 @@ int lag_sim_outputs(lag_sim *sim, double *out);
 void lag_sim_stats(lag_sim *sim, lag_stats *stats);
 /* The drift of monitor i so far, as judged against its limit. */
 double lag_sim_monitor_drift(const lag_sim *sim, int i);
+/* Closed form k of the scene (k < lag_sim_scene(sim)->nexact): the largest |motion - closed form| at the ends of steps so
+ * far, and the difference now, both in the declared unit; of angles, the nearest way around. NaN: the closed form is no
+ * number. */
+void lag_sim_exact(lag_sim *sim, int k, double *largest, double *now);
 /* How often event k has fired. */
 long long lag_sim_event_count(const lag_sim *sim, int k);
 /* The same, and the times of the first and the last; NaN when there was none. */

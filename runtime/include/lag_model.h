@@ -113,6 +113,7 @@ typedef struct lag_monitor {
   const char *name;
   int output;    /* index into outputs, or -1 for the energy */
   double limit;  /* the run fails when the drift exceeds it */
+  int absolute;  /* 1: when the value itself does, in its declared unit */
 } lag_monitor;
 
 typedef struct lag_scene {
@@ -141,6 +142,13 @@ typedef struct lag_scene {
                  const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
   int nmonitors;
   const lag_monitor *monitors;
+
+  /* Closed forms to compare with: out[nexact] at time t of a motion that began with q0, v0, z0. Of observe alone, u has
+   * nu + nexact elements: the closed forms stand behind the inputs. */
+  int nexact;
+  const int *exact_of; /* [nexact] which component of [q|v|z] it is */
+  int (*exact)(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0, const LAG_REAL *p,
+               const LAG_REAL *u, LAG_REAL *out);
 } lag_scene;
 
 /* A compiled .lag file: all of its scenes. Several scenes may share one model. */

@@ -64,7 +64,7 @@ static Header header_new(const IrUnit *u, const char *name, StrBuf *out) {
   h.p = enumerators(&h, &h.taken, "P_", u->p.at, u->p.n);
   h.in = enumerators(&h, &h.taken, "IN_", u->u.at, u->u.n);
   h.ev = event_enumerators(&h, &h.taken);
-  h.outputs = enumerators(&h, &h.taken, "OUT_", h.scene->outputs.at, h.scene->outputs.n);
+  h.outputs = enumerators(&h, &h.taken, "OUT_", h.scene->plain.at, h.scene->plain.n);
   CNames members = cnames_new(h.a);
   const char **fields = ARENA_ARRAY(h.a, const char *, u->p.n + 1);
   for (uint32_t i = 0; i < u->p.n; i++) fields[i] = cnames_take(&members, u->p.at[i].name);

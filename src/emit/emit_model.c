@@ -58,7 +58,7 @@ static const char *const *rows_names(const IrUnit *u) {
 
 const char *model_id(Arena *a, const char *name) {
   static const char *const taken[] = {"accel", "energy", "events", "act", "inputs", "params", "start", "observe",
-                                      "outputs", "options", "monitors", "program", "scenes", "curves"};
+                                      "outputs", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -67,17 +67,17 @@ const char *model_id(Arena *a, const char *name) {
 }
 
 static const char *const *globals_of(const IrUnit *u, const char *name) {
-  uint32_t n = N_ABI_NAMES, tables = u->inputs->tables.n, max = n + 5 * u->scenes.n + tables + 2;
+  uint32_t n = N_ABI_NAMES, tables = u->inputs->tables.n, max = n + 6 * u->scenes.n + tables + 2;
   const char **all = ARENA_ARRAY(u->arena, const char *, max);
   memcpy(all, abi_names, sizeof abi_names);
   if (!name) return all;
   all[n++] = name;
   for (uint32_t i = 0; i < tables; i++) all[n++] = rows_names(u)[i];
-  static const char *const lists[] = {"outputs", "options", "monitors"};
+  static const char *const lists[] = {"outputs", "options", "monitors", "exact_of"};
   for (uint32_t i = 0; i < u->scenes.n; i++) {
     const char *id = scene_id(u, i);
     all[n++] = arena_printf(u->arena, "%s_%s", name, id);
-    for (int k = 0; k < 3; k++) all[n++] = arena_printf(u->arena, "%s_%s", lists[k], id);
+    for (int k = 0; k < 4; k++) all[n++] = arena_printf(u->arena, "%s_%s", lists[k], id);
   }
   return all;
 }
@@ -190,6 +190,22 @@ static void emit_observe(const File *f, const IrScene *s, const char *id) {
   function(f, s->observe, comment, head, own, written);
 }
 
+/* The closed forms; q0, v0, z0 are the start. */
+static void emit_exact(const File *f, const IrScene *s, const char *id) {
+  static const char *const own[] = {"t", "q0", "v0", "z0", "p", "u", "out", NULL}, *const written[] = {"out"};
+  static const char *const from_start[ARR_COUNT] = {"t", "q0", "v0", "z0", "p", "u"};
+  if (!s->exact_of.n) return;
+  CStyle st = style_for(f, own, written);
+  st.in = from_start;
+  CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .end = "  return LAG_OK;\n"};
+  c.head = arena_printf(f->a, "static int exact_%s(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,\n"
+                              "    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out)", id);
+  cfunction(s->exact, &st, &c, f->out);
+  sb_printf(f->out, "\nstatic const int exact_of_%s[] = {", id);
+  for (uint32_t i = 0; i < s->exact_of.n; i++) sb_printf(f->out, "%s%u", i ? ", " : "", s->exact_of.at[i]);
+  sb_puts(f->out, "};\n");
+}
+
 /* --- tables --- */
 
 static void table(const IrUnit *u, const char *name, const IrVar *v, uint32_t n, StrBuf *out) {
@@ -281,7 +297,7 @@ static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, 
     sb_printf(out, "\nstatic const lag_monitor monitors_%s[] = {\n", id);
     for (uint32_t i = 0; i < s->monitors.n; i++) {
       const IrMonitor *m = &s->monitors.at[i];
-      sb_printf(out, "  {%s, %d, %s},\n", c_string(u->arena, m->name), m->output, double_text(u->arena, m->limit));
+      sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output, double_text(u->arena, m->limit), m->absolute);
     }
     sb_puts(out, "};\n");
   }
@@ -299,6 +315,7 @@ static void emit_scene(const File *f, uint32_t index) {
   emit_params(f, s, id);
   emit_start(f, s, id);
   emit_observe(f, s, id);
+  emit_exact(f, s, id);
   emit_scene_lists(u, s, id, out);
   sb_printf(out, "\nconst lag_scene %s_%s = {\n", name, id);
   sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
@@ -309,6 +326,7 @@ static void emit_scene(const File *f, uint32_t index) {
   sb_printf(out, "  .tolerance = %s,\n", double_text(u->arena, s->tolerance));
   sb_printf(out, "  .nout = %u, .outputs = %s, .every = %s, .observe = observe_%s,\n", s->outputs.n, list_name(u, s->outputs.n, "outputs", id),
             double_text(u->arena, s->every), id);
+  if (s->exact_of.n) sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
   sb_printf(out, "  .nmonitors = %u, .monitors = %s,\n};\n", s->monitors.n, list_name(u, s->monitors.n, "monitors", id));
 }
 

@@ -205,7 +205,7 @@ void header_implementation(const Header *h) {
   csupport_fill(macros, h->upper, h->lower, h->out);
   csupport_logic(h->upper, h->out);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
-  if (h->u->accel->solves.n || h->scene->observe->solves.n) csupport_solver(h->upper, h->lower, h->out);
+  if (h->u->accel->solves.n || h->scene->observe_plain->solves.n) csupport_solver(h->upper, h->lower, h->out);
   if (h->u->inputs->tables.n) csupport_spline(h->upper, h->lower, h->out);
   defaults(h);
   param(h);
@@ -213,7 +213,7 @@ void header_implementation(const Header *h) {
   inputs(h);
   accel(h);
   if (header_has(h, FN_ENERGY)) state_function(h, h->u->energy, api(h, FN_ENERGY), e, 0);
-  if (header_has(h, FN_OBSERVE)) state_function(h, h->scene->observe, api(h, FN_OBSERVE), out, 1);
+  if (header_has(h, FN_OBSERVE)) state_function(h, h->scene->observe_plain, api(h, FN_OBSERVE), out, 1);
   if (header_has(h, FN_EVENTS)) state_function(h, h->u->event_values, api(h, FN_EVENTS), g, 1);
   act(h);
   rk4_step(h);

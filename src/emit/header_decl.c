@@ -31,7 +31,7 @@ static void sizes(const Header *h) {
   size(h, "NP", u->p.n);
   size(h, "NU", u->u.n);
   size(h, "NEV", u->events.n);
-  sb_printf(h->out, "  %s_NOUT = %u\n};\n", h->upper, h->scene->outputs.n);
+  sb_printf(h->out, "  %s_NOUT = %u\n};\n", h->upper, h->scene->plain.n);
 }
 
 static void indices(const Header *h, const char *comment, const char **names, const IrVar *v, uint32_t n) {
@@ -134,7 +134,7 @@ int header_has(const Header *h, HeaderFn f) {
   switch (f) {
     case FN_INPUTS: case FN_RK4_STEP_WITH: return u->u.n > 0;
     case FN_ENERGY: return u->energy != NULL;
-    case FN_OBSERVE: return h->scene->outputs.n > 0;
+    case FN_OBSERVE: return h->scene->plain.n > 0;
     case FN_EVENTS: case FN_ACT: return u->events.n > 0;
     case FN_DEFAULTS: case FN_PARAM: case FN_START: case FN_ACCEL: case FN_RK4_STEP: case FN_COUNT: break;
   }
@@ -187,7 +187,9 @@ void header_declarations(const Header *h) {
   indices(h, "Coordinates: q[...], and their time derivatives v[...].", h->q, u->q.at, u->q.n);
   indices(h, "States: z[...].", h->z, u->z.at, u->z.n);
   indices(h, "Inputs: u[...].", h->in, u->u.at, u->u.n);
-  indices(h, "Outputs: out[...].", h->outputs, h->scene->outputs.at, h->scene->outputs.n);
+  const char *outputs = h->scene->plain.n < h->scene->outputs.n ? "Outputs: out[...]. Those with closed forms, which need the start of a run, are left out."
+                                                                : "Outputs: out[...].";
+  indices(h, outputs, h->outputs, h->scene->outputs.at, h->scene->plain.n);
   event_indices(h);
   indices(h, "Parameters, for _param.", h->p, u->p.at, u->p.n);
   params_struct(h);

@@ -350,12 +350,36 @@ Prog *lower_inputs(const Eqns *e) {
   return prog_tidy(l.p);
 }
 
-Prog *lower_outputs(const Eqns *e) {
+/* A closed form is an input behind those of the model. */
+static int is_closed_form(const Symbol *s, const void *data) { return s->kind == SYM_INPUT && s->index >= *(const uint32_t *)data; }
+
+int output_is_plain(const Eqns *e, uint32_t i) {
+  return !e->m->scene.exacts.n || !expr_contains(e->g, e->outputs[i].value, is_closed_form, &e->m->inputs.n);
+}
+
+static Prog *outputs(const Eqns *e, int plain_only) {
   Lower l = lower_new(e);
   Expr *roots = ARENA_ARRAY(e->m->arena, Expr, e->noutputs + 1);
-  for (uint32_t i = 0; i < e->noutputs; i++) roots[i] = e->outputs[i].value;
-  lower_with_accelerations(&l, roots, e->noutputs);
-  for (uint32_t i = 0; i < e->noutputs; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), e->outputs[i].name);
+  const Output **of = ARENA_ARRAY(e->m->arena, const Output *, e->noutputs + 1);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < e->noutputs; i++) {
+    if (plain_only && !output_is_plain(e, i)) continue;
+    of[n] = &e->outputs[i];
+    roots[n++] = e->outputs[i].value;
+  }
+  lower_with_accelerations(&l, roots, n);
+  for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), of[i]->name);
+  return prog_tidy(l.p);
+}
+
+Prog *lower_outputs(const Eqns *e) { return outputs(e, 0); }
+Prog *lower_plain_outputs(const Eqns *e) { return outputs(e, 1); }
+
+Prog *lower_exact(const Eqns *e) {
+  Lower l = lower_new(e);
+  const Scene *sc = &e->m->scene;
+  for (uint32_t i = 0; i < sc->exacts.n; i++) lower_roots(&l, &sc->exacts.at[i].value, 1);
+  for (uint32_t i = 0; i < sc->exacts.n; i++) prog_store(l.p, 0, i, lower_slot(&l, sc->exacts.at[i].value), sc->exacts.at[i].name);
   return prog_tidy(l.p);
 }
 

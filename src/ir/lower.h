@@ -15,6 +15,9 @@ Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
 Prog *lower_action(const Eqns *e, uint32_t event); /* out 0, 1, 2: q1, v1, z1; only what is set */
 Prog *lower_inputs(const Eqns *e);  /* out 0: u[nu] */
 Prog *lower_outputs(const Eqns *e); /* out 0: out[nout] */
+Prog *lower_plain_outputs(const Eqns *e); /* likewise, of those without closed forms */
+int output_is_plain(const Eqns *e, uint32_t i);
+Prog *lower_exact(const Eqns *e);   /* out 0: one for each closed form, of the state at the start */
 Prog *lower_param(const Eqns *e, uint32_t i); /* out 0: p[i], of earlier parameters */
 Prog *lower_start(const Eqns *e);   /* out 0, 1, 2: q, v, z; only what a start gives */
 

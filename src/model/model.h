@@ -91,6 +91,16 @@ typedef struct {
   Expr value; /* of parameters */
 } Start;
 
+/* What a coordinate, a velocity or a state should be. */
+typedef struct {
+  Name name;
+  SymId target;
+  Unit unit;
+  int periodic;
+  Expr value; /* of t, parameters and inputs; a coordinate in it is that at the start */
+  SymId sym;  /* stands for it in outputs: of kind SYM_INPUT, behind the model's inputs */
+} Exact;
+
 typedef struct {
   Name name;
   double value;
@@ -101,6 +111,7 @@ typedef struct {
   Name name;
   int output; /* index into outputs; -1: the energy */
   double limit;
+  int absolute; /* the limit is one of size, not of change */
 } Monitor;
 
 typedef struct {
@@ -115,6 +126,7 @@ typedef struct {
   VEC(Output) outputs;
   double every;
   VEC(Monitor) monitors;
+  VEC(Exact) exacts;
 } Scene;
 
 typedef struct {

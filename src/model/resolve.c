@@ -78,6 +78,7 @@ static Value node_value(Eval *ev, AstId id) {
     }
     case AST_UNIT: return unit_value(ev, x);
     case AST_CALL: return call_value(ev, x);
+    case AST_AT: return start_value(ev, *value_of(ev, x->a), x->span, value_of(ev, x->b));
     case AST_SUM: case AST_PRODUCT: return *value_of(ev, id); /* its loop left it there */
     case AST_NUM: case AST_NEG: case AST_ADD: case AST_SUB: case AST_MUL: case AST_DIV: case AST_POW: case AST_LT:
     case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE: case AST_NOT: case AST_AND: case AST_OR:
@@ -98,7 +99,7 @@ static Value node_value(Eval *ev, AstId id) {
 static int takes_vectors(const AstExpr *x) {
   switch (x->kind) {
     case AST_NEG: case AST_ADD: case AST_SUB: case AST_MUL: case AST_DIV: case AST_PRIME: case AST_UNIT:
-    case AST_MEMBER: case AST_SUM: return 1;
+    case AST_MEMBER: case AST_SUM: case AST_AT: return 1;
     case AST_CALL: return call_takes_vectors(x->name);
     default: return 0; /* everything else is of numbers */
   }

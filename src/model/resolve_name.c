@@ -50,7 +50,7 @@ static const char *place_text(Context where) {
     case IN_PARAM: return "a parameter's value may contain numbers and parameters declared before it";
     case IN_START: return "a start value may contain numbers and parameters";
     case IN_INPUT: return "an input may contain numbers, parameters and t";
-    case IN_DYNAMICS: case IN_OBSERVE: break;
+    case IN_DYNAMICS: case IN_EXACT: case IN_OBSERVE: case IN_OUTPUT: break;
   }
   return "";
 }
@@ -104,8 +104,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
   return FAILED;
 }
 
-/* A name without an index. */
-static Value whole_value(Eval *ev, const Entity *e, Span span) {
+Value whole_value(Eval *ev, const Entity *e, Span span) {
   if (!e->ndims || e->kind == ENT_NONE) return entity_value(ev, e, NULL, span);
   Name one = member_name(ev->b, e->name, e->lo, e->ndims);
   diag_error(ev->b->diags, span, "`%s` is a family: say which member", e->name);
@@ -117,7 +116,7 @@ static Value whole_value(Eval *ev, const Entity *e, Span span) {
 static int builtin_quantity(Eval *ev, Name name, Value *out) {
   Builder *b = ev->b;
   Model *m = b->m;
-  if (ev->where != IN_OBSERVE) return 0;
+  if (ev->where < IN_OBSERVE) return 0;
   Dim joule = {1, {2 * DIM_ONE, DIM_ONE, -2 * DIM_ONE}};
   Dim dim = b->dims.at[m->energy_sym].known ? joule : DIM_UNKNOWN;
   Expr e = 0;

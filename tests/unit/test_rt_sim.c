@@ -106,7 +106,7 @@ static int watch_x(ARGS, double *out, UNUSED double *w)
 
 static void monitors_end_the_run(void **state)
 {
-  const lag_monitor tight = {"energy", -1, 1e-9}, loose = {"energy", -1, 1e-3}, x = {"x", 0, 0.5};
+  const lag_monitor tight = {"energy", -1, 1e-9, 0}, loose = {"energy", -1, 1e-3, 0}, x = {"x", 0, 0.5, 0};
   (void)state;
   for (int i = 0; i < 3; i++) {
     lag_scene c = osc;
