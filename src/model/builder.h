@@ -211,6 +211,10 @@ void advise_unknown_member(Builder *b, Name effect, Name name);
 /* The active statement that declares the name, before or after; NULL when there is none. */
 const AstStmt *declared_in_use(const Builder *b, Name name, Name effect);
 
+/* An effect that declares the name, in use or not; and whether this one does (NULL: no). */
+const AstStmt *declaring_effect(const Builder *b, Name name);
+int effect_declares(const AstStmt *effect, Name name);
+
 /* "not yet: what" */
 void not_yet(Builder *b, Span span, const char *what);
 

@@ -507,6 +507,21 @@ static void default_outputs(Builder *b) {
   vec_push(b->arena, &sc->outputs, o);
 }
 
+/* Whether a statement gives a value to something of an effect that is declared, but turned off: it comes from a scene
+ * that uses it, and that this one is like. */
+static int is_of_dropped_effect(Builder *b, const AstStmt *st) {
+  if (st->kind != STMT_SET) return 0;
+  int ambiguous;
+  Target p = read_target(b, st->lhs);
+  const AstExpr *x = ast_expr(b->ast, p.stem);
+  if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME) {
+    Name owner = ast_expr(b->ast, x->a)->name;
+    return !uses(b, owner) && effect_declares(find_stmt(b->ast, STMT_EFFECT, owner), x->name);
+  }
+  if (x->kind != AST_NAME || scope_find(&b->scope, x->name, NULL, &ambiguous)) return 0;
+  return declaring_effect(b, x->name) != NULL;
+}
+
 /* The statements of one kind, of the scene and of those that it is like. */
 static void each_of(Builder *b, AstStmtKind kind, void (*apply)(Builder *b, const AstStmt *st)) {
   for (const AstStmt **s = b->chain; *s; s++)
@@ -519,7 +534,8 @@ void scene_build(Builder *b, const ModelChoice *choice) {
   sc->t1 = 10;
   each_of(b, STMT_EXACT, set_motion); /* outputs speak of closed forms, */
   for (const AstStmt **s = b->chain; *s; s++) {
-    for (const AstStmt *x = (*s)->body; x; x = x->next) scene_statement(b, x);
+    for (const AstStmt *x = (*s)->body; x; x = x->next)
+      if (!s[1] || !is_of_dropped_effect(b, x)) scene_statement(b, x);
     if ((*s)->doc) sc->doc = (*s)->doc;
   }
   if (!sc->outputs.n) default_outputs(b);
