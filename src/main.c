@@ -21,6 +21,7 @@
 #include "mech/show.h"
 #include "model/model.h"
 #include "picture.h"
+#include "settings.h"
 #include "syntax/parse.h"
 
 #define LAGC_VERSION "0.1"
@@ -37,6 +38,7 @@ typedef struct {
   Diags *diags;
   Ast *ast;
   Picture picture; /* of run, plot and animate */
+  GivenList given; /* to them */
 } Compiler;
 
 static int fail_usage(const char *message) {
@@ -107,7 +109,8 @@ static Eqns *derive_scene(Compiler *c, const char *scene) { return derive_with(c
 
 /* With what the command line asks for besides the scene's outputs. */
 static Eqns *derive_asked(Compiler *c, const char *scene) {
-  return derive(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nasked = c->picture.asked.n});
+  return derive(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nasked = c->picture.asked.n,
+                                  .given = c->given.at, .ngiven = c->given.n});
 }
 
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
@@ -178,7 +181,7 @@ typedef VEC(IrUnit *) Units;
 
 static int lower_all(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast);
-  if (c->picture.asked.n) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
+  if (c->picture.asked.n || c->given.n) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
   for (uint32_t i = 0; i < scenes.n; i++) {
     Eqns *e = derive_asked(c, scenes.at[i]);
     if (!e) return 0;
@@ -210,8 +213,9 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   emit_program((const IrUnit *const *)units.at, names, units.n, tools.gsl, &b);
   vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
   *path = output ? output : toolchain_cached(c->arena, &tools, texts.at, texts.n);
-  if (!output && file_runs(*path)) return STATUS_OK;
+  if (!output && toolchain_is_whole(c->arena, *path)) return STATUS_OK;
   if (!toolchain_build(c->arena, &tools, texts.at, texts.n, *path, &error)) return fail_usage(error);
+  if (!output) toolchain_seal(c->arena, *path);
   return STATUS_OK;
 }
 
@@ -233,6 +237,7 @@ static int writes_source(Compiler *c) {
 /* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
 static int do_run(Compiler *c) {
   const char *path, *error = NULL;
+  if (!settings_take(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   int status = make_simulator(c, NULL, &path);
   if (status != STATUS_OK) return status;

@@ -11,13 +11,12 @@
 #include "app/app.h"
 #include "core/core.h"
 
-/* The only mutable global: a signal handler can reach nothing else. */
+/* The only mutable global: a signal handler can reach nothing else. The number of the signal, 0: none. */
 static volatile sig_atomic_t interrupted;
 
 static void on_interrupt(int signal_number)
 {
-  (void)signal_number;
-  interrupted = 1;
+  interrupted = signal_number;
 }
 
 static double seconds_since(const struct timespec *t)
@@ -39,7 +38,7 @@ static int after_step(void *context, const lag_sim *sim)
     clock_gettime(CLOCK_MONOTONIC, &app->shown);
     app->progress = 1;
   }
-  return interrupted || app->bad_file;
+  return interrupted != 0 || app->bad_file;
 }
 
 /* ---- What to compute */
@@ -274,7 +273,7 @@ static int save_state(const App *app)
 static int finish(App *app, int plot_x, int plot_y)
 {
   const Args *a = &app->args;
-  int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? EXIT_INTERRUPTED : EXIT_FINE, bad = 0;
+  int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? EXIT_SIGNAL + interrupted : EXIT_FINE, bad = 0;
   int on_stdout = (a->out && strcmp(a->out, "-") == 0) || (a->events && strcmp(a->events, "-") == 0);
   FILE *f = on_stdout ? stderr : stdout;
   char title[300];
@@ -324,15 +323,22 @@ static int finish(App *app, int plot_x, int plot_y)
   return bad ? bad : rc;
 }
 
+/* What asks a run to end lets it finish its step and write what it has. nohup is respected. */
 static void catch_interrupt(void)
 {
-  struct sigaction action = {0};
+  static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
+  struct sigaction action = {0}, before;
 
   interrupted = 0;
   action.sa_handler = on_interrupt;
   action.sa_flags = (int)SA_RESETHAND; /* a second Ctrl-C ends at once */
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, NULL);
+  for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+    int nohup = signals[i] == SIGHUP && sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler == SIG_IGN;
+    if (!nohup) {
+      sigaction(signals[i], &action, NULL);
+    }
+  }
 }
 
 static int simulate(App *app)

@@ -7,7 +7,7 @@
 
 #include "io/io.h"
 
-enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_INTERRUPTED = 130 };
+enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_SIGNAL = 128 };
 enum { MOST_OPTIONS = 16 };
 
 /* The command line as written; numbers are still text. */

@@ -23,8 +23,9 @@ static const char text[] =
     "                       A resumed run writes the rows after the saved time (a run that ends between two rows\n"
     "                       writes one more at its end)\n"
     "\n"
-    "Rows appear as FILE.part until they are complete. Ctrl-C finishes the step and writes what was computed.\n"
-    "Exit status: 0 ok, 2 wrong usage or a file that cannot be written, 3 the run failed, 130 interrupted.\n";
+    "Rows appear as FILE.part until they are complete. Ctrl-C, or SIGTERM, finishes the step and writes what was\n"
+    "computed. Exit status: 0 ok, 2 wrong usage or a file that cannot be written, 3 the run failed, 130 interrupted\n"
+    "(by SIGTERM 143).\n";
 
 static void list(FILE *f, const char *head, int n, const lag_var *vars, const double *values)
 {

@@ -58,6 +58,14 @@ int lag_find(const lag_model *m, const char *name, int *index, const lag_var **v
   return p >= 0 ? LAG_IS_P : LAG_IS_U;
 }
 
+int lag_is_member(const char *var, const char *family, size_t length)
+{
+  size_t stem = strcspn(var, "[");
+  const char *close = strchr(var, ']'), *rest = close ? close + 1 : NULL;
+
+  return rest && stem + strlen(rest) == length && memcmp(var, family, stem) == 0 && memcmp(family + stem, rest, length - stem) == 0;
+}
+
 static int min3(int a, int b, int c)
 {
   int m = a < b ? a : b;
@@ -96,13 +104,15 @@ int lag_nearest(const lag_model *m, const char *name, char *best, size_t nbest)
     const char *suffix;
   } tables[] = {{m->np, m->p, ""}, {m->nq, m->q, ""}, {m->nq, m->q, "'"}, {m->nz, m->z, ""}, {m->nu, m->u, ""}};
   int least = (int)strlen(name) / 3 + 2;
+  size_t n = strlen(name);
 
   best[0] = '\0';
   for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
     for (int i = 0; i < tables[k].n; i++) {
       char full[64];
       snprintf(full, sizeof full, "%s%s", tables[k].vars[i].name, tables[k].suffix);
-      int d = lag_distance(name, full);
+      int part = strncmp(full, name, n) == 0 && (full[n] == '.' || full[n] == '['); /* r of r.x, drag of drag.c */
+      int d = part ? 0 : lag_distance(name, full);
       if (d < least) {
         least = d;
         snprintf(best, nbest, "%s", full);

@@ -276,26 +276,23 @@ static int unknown_name(lag_sim *s, const char *name)
              : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
 }
 
-int lag_sim_set(lag_sim *s, const char *name, double value)
+/* Whether `value`, in the declared unit, may be given to var. */
+static int check_value(lag_sim *s, int kind, const lag_var *var, const char *name, double value)
 {
-  const lag_model *m = s->scene->model;
-  const lag_var *var = NULL;
-  int i, rc = begun(s), kind = lag_find(m, name, &i, &var);
-
-  if (rc) {
-    return rc;
-  }
-  if (kind == LAG_IS_NOTHING) {
-    return unknown_name(s, name);
-  }
   if (!isfinite(value)) {
     return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);
   }
-  value *= var->factor;
   if (kind == LAG_IS_P && !sign_ok(var->sign, value)) {
-    return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, value / var->factor, var->name,
-                    sign_text(var->sign));
+    return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, value, var->name, sign_text(var->sign));
   }
+  return LAG_OK;
+}
+
+/* value in SI */
+static void give(lag_sim *s, int kind, int i, double value)
+{
+  int nq = s->pb.nq;
+
   switch (kind) {
   case LAG_IS_P:
     s->p[i] = value;
@@ -306,7 +303,52 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
     s->signal[i] = (lag_signal){0};
     break;
   default:
-    s->start[kind == LAG_IS_Q ? i : kind == LAG_IS_V ? m->nq + i : 2 * m->nq + i] = value;
+    s->start[kind == LAG_IS_Q ? i : kind == LAG_IS_V ? nq + i : 2 * nq + i] = value;
+  }
+}
+
+/* All members of the family that is called so. 0: there is none; < 0: the value is not allowed. */
+static int set_family(lag_sim *s, const char *name, double value)
+{
+  const lag_model *m = s->scene->model;
+  size_t n = strlen(name);
+  int velocity = n > 1 && name[n - 1] == '\'', found = 0;
+  const struct {
+    int kind, n;
+    const lag_var *vars;
+  } tables[] = {{LAG_IS_P, m->np, m->p}, {velocity ? LAG_IS_V : LAG_IS_Q, m->nq, m->q}, {LAG_IS_Z, m->nz, m->z}};
+
+  for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
+    for (int i = 0; i < tables[k].n; i++) {
+      const lag_var *var = &tables[k].vars[i];
+      if (!lag_is_member(var->name, name, n - (tables[k].kind == LAG_IS_V))) {
+        continue;
+      }
+      int rc = found ? LAG_OK : check_value(s, tables[k].kind, var, name, value); /* all members share unit and sign */
+      if (rc) {
+        return rc;
+      }
+      give(s, tables[k].kind, i, value * var->factor);
+      found = 1;
+    }
+  }
+  return found;
+}
+
+int lag_sim_set(lag_sim *s, const char *name, double value)
+{
+  const lag_model *m = s->scene->model;
+  const lag_var *var = NULL;
+  int i, rc = begun(s), kind = lag_find(m, name, &i, &var);
+
+  if (rc == 0 && kind == LAG_IS_NOTHING) {
+    rc = set_family(s, name, value);
+    rc = rc == 0 ? unknown_name(s, name) : rc > 0 ? LAG_OK : rc;
+  } else if (rc == 0 && (rc = check_value(s, kind, var, name, value)) == 0) {
+    give(s, kind, i, value * var->factor);
+  }
+  if (rc) {
+    return rc;
   }
   if (s->scene->params) {
     s->scene->params(s->p, s->fixed); /* others may follow from this one */

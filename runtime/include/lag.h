@@ -182,9 +182,9 @@ void lag_sim_free(lag_sim *sim);
 int lag_sim_set_method(lag_sim *sim, const lag_method *method, const lag_option *opt, int nopt);
 /* tol > 0; not below 1e-15. */
 int lag_sim_set_tolerance(lag_sim *sim, double tol);
-/* Sets by name, in the declared unit: a parameter ("m", "drag.c", or "c" when no other parameter ends
- * in ".c"), the start of a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that
- * replaces an input. A parameter of the wrong sign is an error. */
+/* Sets by name, in the declared unit: a parameter ("m", "drag.c", or "c" when nothing else ends in ".c"), the start of
+ * a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that replaces an input; of a family one
+ * member ("m[2]", "r[1].x'") or all ("m", "r.x'"). A parameter of the wrong sign is an error. */
 int lag_sim_set(lag_sim *sim, const char *name, double value);
 /* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI units
  * unlike lag_sim_set; fn NULL: as the model says again. It must be a function of t alone: methods, events and outputs
@@ -258,7 +258,8 @@ unsigned long long lag_sim_signature(const lag_sim *sim);
 /* ---- Simulators ------------------------------------------------------------------------------ */
 
 /* main() of a simulator: see --help, or app/help.c. extra[nextra] are methods beside those of liblag.a.
- * Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 130 interrupted. */
+ * Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 128 and the number of the signal (130: Ctrl-C) when it was
+ * interrupted. */
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_method *const *extra,
                  int nextra);
 

@@ -179,6 +179,11 @@ typedef struct {
   Name name;
 } Asked;
 
+/* What the command line gives an input: its name, and a formula or a text that names a table. */
+typedef struct {
+  AstId what, value;
+} Given;
+
 /* What to build a model for. */
 typedef struct {
   const char *scene; /* NULL: the first */
@@ -188,6 +193,8 @@ typedef struct {
   uint32_t ndefines;
   const Asked *asked; /* outputs besides the scene's own */
   uint32_t nasked;
+  const Given *given; /* values that win over the scene's */
+  uint32_t ngiven;
 } ModelChoice;
 
 /* Builds the model. NULL when there were errors; they are in ast->diags, all of them. */

@@ -538,6 +538,8 @@ void scene_build(Builder *b, const ModelChoice *choice) {
       if (!s[1] || !is_of_dropped_effect(b, x)) scene_statement(b, x);
     if ((*s)->doc) sc->doc = (*s)->doc;
   }
+  for (uint32_t i = 0; i < choice->ngiven; i++)
+    set_value(b, &(AstStmt){.kind = STMT_SET, .lhs = choice->given[i].what, .rhs = choice->given[i].value}, NULL);
   if (!sc->outputs.n) default_outputs(b);
   each_of(b, STMT_MONITOR, set_monitor); /* and monitors of outputs, to which they add */
   for (uint32_t i = 0; i < choice->nasked; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);

@@ -183,22 +183,40 @@ done
 ok "backwards, in two parts" sh -c './sim swing --until -2 -o w.csv --quiet && ./sim swing --until -1 -o 1.csv --quiet --save-state s &&
   ./sim --resume s --until -2 -o 2.csv --quiet && sed 1d 2.csv | cat 1.csv - | cmp - w.csv'
 ok "resume keeps its values" says 2 "leave out" --resume state l=2
+./sim swing l=1.7 th=60 --method "rk4(step=0.01)" --tol 1e-8 --until 2 --quiet --save-state repeat
+ok "what it was saved with may be said again" status 0 swing l=1.7 th=60 --method "rk4(step=0.01)" --tol 1e-8 --until 3 --resume repeat
+ok "or a part of it" status 0 --resume repeat --until 3 l=1.7 --step 0.01 --method rk4
+ok "another value is refused" says 2 "another value of l" --resume repeat --until 3 th=60 l=1.8
+ok "another start is refused" says 2 "another value of th" --resume repeat --until 3 th=61
+ok "another tolerance is refused" says 2 "leave out --tol" --resume repeat --until 3 --tol 1e-9
+ok "another method is refused" says 2 "leave out --method" --resume repeat --until 3 --method rk45
+ok "another step is refused" says 2 "leave out --method" --resume repeat --until 3 --method "rk4(step=0.02)"
+./sim drop wind=0.5 --until 1 --quiet --save-state repeat
+ok "another input is refused" says 2 "another value of wind" --resume repeat wind=0.4
+ok "the same one is not" status 0 --resume repeat wind=0.5
 ok "resume of another scene" says 2 "saved from scene fixed" swing --resume state
 ok "resume backwards" says 2 "would go back" --resume state --until 1
 sed 's/0x1/0x2/' state >damaged
 ok "a damaged state" says 2 "damaged" --resume damaged
 ok "no state at all" says 2 "not a state" --resume rows.csv
 
-# --- Ctrl-C: a run of hours is stopped after half a second
-interrupt() {
+# --- signals: a run of hours is stopped after half a second
+interrupt() { # SIGNAL STATUS
+  rm -f long.*
   ./sim fixed --until 1e9 --every 100 -o long.csv --save-state long.state >out 2>err &
   pid=$!
   sleep 0.5
-  kill -INT $pid
+  kill "-$1" $pid
   wait $pid
-  [ $? = 130 ]
+  [ $? = "$2" ]
 }
-ok "Ctrl-C exits 130" interrupt
+for signal in 'HUP 129' 'TERM 143'; do
+  # shellcheck disable=SC2086 # two words
+  ok "SIG$signal" interrupt $signal
+  ok "it says where, after SIG$signal" grep -q "interrupted at t = " out
+  ok "leaves rows and state, and no .part" sh -c 'test -s long.csv && test -s long.state && ! ls ./*.part'
+done
+ok "Ctrl-C exits 130" interrupt INT 130
 ok "it says where" grep -q "interrupted at t = " out
 ok "rows are complete" sh -c 'no=$(wc -l <long.csv); [ "$no" -gt 2 ] && tail -c1 long.csv | od -An -tx1 | grep -q 0a'
 ok "no .part is left after Ctrl-C" no_part
