@@ -4,7 +4,8 @@
 static const char text[] =
     "\n"
     "  name=value           a parameter, the start of a coordinate (th=1.2) or of a velocity (\"th'=0.5\"), or a\n"
-    "                       constant input, in its declared unit; drag.c, or c where only one ends so\n"
+    "                       constant input, in its declared unit; drag.c, or c where only one ends so; m[2], or m\n"
+    "                       for all of a family\n"
     "  --until T            run to time T [s]; before the start: backwards\n"
     "  --method NAME        method of integration, NAME or \"NAME(option=value, ...)\"; --method help lists them\n"
     "  --tol X              tolerance, absolute and relative\n"
@@ -19,7 +20,7 @@ static const char text[] =
     "  --json               the report as one JSON object\n"
     "  --quiet              no report\n"
     "  --save-state FILE    write the complete state at the end; --resume FILE goes on from there, with the same\n"
-    "                       scene, method and values: results are those of an uninterrupted run, bit by bit.\n"
+    "                       scene, method and values, which may be said again: results are those of an uninterrupted run, bit by bit.\n"
     "                       A resumed run writes the rows after the saved time (a run that ends between two rows\n"
     "                       writes one more at its end)\n"
     "\n"

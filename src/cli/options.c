@@ -31,7 +31,8 @@ static const struct {
    "  --no-gsl          leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole\n"},
   {"run", CMD_RUN, "lagc run MODEL [SCENE] [name=value ...] [--method M] [--tol X] [--until T] ...",
    "Builds the simulator (or takes it from the cache) and runs it; the options are the simulator's:\n\n"
-   "  name=value        a parameter, a start value (th=1.2, \"th'=0.5\") or an input\n"
+   "  name=value        a parameter, a start value (th=1.2, \"th'=0.5\") or an input; all of a family: m=3\n"
+   "  u=FILE.csv        a table for the input u; 'u=2*sin(t/(1 [s]))' a formula\n"
    "  --method NAME     rk45, dop853, verlet4, gsl-rk8pd, ...; `--method help` lists them\n"
    "  --tol X --step H --until T --every DT\n"
    "  -o FILE           .csv or .npy\n"

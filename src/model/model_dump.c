@@ -45,6 +45,7 @@ static void scene(const Dump *d) {
   sb_putc(d->out, '\n');
   for (uint32_t i = 0; i < s->starts.n; i++) line(d, "  start", expr_symbol(d->m->g, s->starts.at[i].target)->name, NULL, s->starts.at[i].value);
   for (uint32_t i = 0; i < s->outputs.n; i++) line(d, "  output", s->outputs.at[i].name, &s->outputs.at[i].unit, s->outputs.at[i].value);
+  for (uint32_t i = 0; i < s->exacts.n; i++) line(d, "  exact", s->exacts.at[i].name, &s->exacts.at[i].unit, s->exacts.at[i].value);
   for (uint32_t i = 0; i < s->monitors.n; i++) sb_printf(d->out, "  monitor %s %.17g\n", s->monitors.at[i].name, s->monitors.at[i].limit);
 }
 

@@ -79,6 +79,15 @@ near "over a table" 1e-11 31.25 "$(last "$m" table u=5)"
 near "wind.gust=4" 1e-12 4 "$(last "$m" windy wind.gust=4)"
 near "gust=4, where that is unique" 1e-12 4 "$(last "$m" windy gust=4)"
 
+near "u=formula" 1e-9 "$(awk 'BEGIN { printf "%.17g", 5*(1 - cos(6))/9/2 }')" "$(last "$m" 'u=5*F0/3*cos(3 [rad/s]*t)')"
+near "over a scene's table" 1e-9 "$(awk 'BEGIN { printf "%.17g", (5 - sin(5))/2 }')" "$(last "$m" table 'u=sin(t/(1 [s]))*1 [N]')"
+near "u=table, relative to this folder" 1e-11 -0.0875 "$(cd "$dir" && last cart.lag push --until 5 u=data/cubic.csv)"
+near "in quotes" 1e-11 -0.0875 "$(last "$m" push --until 5 "u=\"$dir/data/cubic.csv\"")"
+near "of an effect" 1e-12 4 "$(last "$m" windy 'wind.gust=2*2 [N]')"
+check "a formula that is wrong" says 1 '^u=:1:1: error: this value is in \[m\]' "$LAGC" run "$m" 'u=2 [m]'
+check "a table that is not there" says 1 'cannot read .*nothing.csv' "$LAGC" run "$m" u=nothing.csv
+check "a parameter takes numbers" says 2 '"2\*3" is not a number' "$LAGC" run "$m" 'm=2*3'
+
 # A pulse in one row of 201 in 100 s of rest. The spline of 1 in one row and 0 in all others has the area of one gap:
 # m x' = 0.5.
 for method in rk45 dop853; do
