@@ -66,9 +66,8 @@ void events_note(void *context, int k, double t, const double *before, const dou
   app->log_row[0] = t;
   app->log_row[1] = k;
   for (int i = 0; i < n; i++) {
-    double factor = lag_sim_state_info(app->sim, i, NULL, 0, NULL, 0);
-    app->log_row[2 + i] = before[i] / factor;
-    app->log_row[2 + n + i] = after[i] / factor;
+    app->log_row[2 + i] = lag_sim_declared(app->sim, i, before[i]);
+    app->log_row[2 + n + i] = lag_sim_declared(app->sim, i, after[i]);
   }
   if (rows_write(&app->log_rows, app->log_row)) {
     app->bad_file = app->args.events;

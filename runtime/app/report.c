@@ -9,9 +9,8 @@ enum { MOST_LINES = 24 };
 /* Variable i of q, v, z: name, unit, value in the declared unit. */
 static double state_var(const App *app, int i, Column *c)
 {
-  double factor = lag_sim_state_info(app->sim, i, c->name, sizeof c->name, c->unit, sizeof c->unit);
-
-  return lag_sim_q(app->sim)[i] / factor;
+  lag_sim_state_info(app->sim, i, c->name, sizeof c->name, c->unit, sizeof c->unit);
+  return lag_sim_state_value(app->sim, i);
 }
 
 void report_method(const App *app, char *s, size_t n)
@@ -95,7 +94,8 @@ static void exact(const App *app, FILE *f)
     double largest, now;
     state_var(app, c->exact_of[k], &v);
     lag_sim_exact(app->sim, k, &largest, &now);
-    fprintf(f, "exact %s: largest deviation %.3g%s%s, final %.3g\n", v.name, largest, v.unit[0] ? " " : "", v.unit, now);
+    const char *unit = strcmp(v.unit, "degC") == 0 ? "K" : v.unit; /* a difference */
+    fprintf(f, "exact %s: largest deviation %.3g%s%s, final %.3g\n", v.name, largest, unit[0] ? " " : "", unit, now);
   }
   if (c->nexact > MOST_LINES) {
     fprintf(f, "  (and %d more)\n", c->nexact - MOST_LINES);

@@ -282,7 +282,7 @@ static int check_value(lag_sim *s, int kind, const lag_var *var, const char *nam
   if (!isfinite(value)) {
     return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);
   }
-  if (kind == LAG_IS_P && !sign_ok(var->sign, value)) {
+  if (kind == LAG_IS_P && !sign_ok(var->sign, value * var->factor + var->offset)) {
     return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, value, var->name, sign_text(var->sign));
   }
   return LAG_OK;
@@ -381,7 +381,7 @@ int lag_setup_start(lag_sim *s)
 
   for (int i = 0; i < m->np; i++) {
     if (!sign_ok(m->p[i].sign, s->p[i])) {
-      return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, s->p[i] / m->p[i].factor,
+      return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, lag_declared(&m->p[i], s->p[i]),
                       m->p[i].name, sign_text(m->p[i].sign));
     }
   }

@@ -84,6 +84,7 @@ typedef struct {
   Span span;
   Unit unit;
   Expr value; /* may contain q'', z' */
+  int pending; /* an observe statement whose value is not known yet */
 } Output;
 
 typedef struct {
@@ -100,6 +101,12 @@ typedef struct {
   Expr value; /* of t, parameters and inputs; a coordinate in it is that at the start */
   SymId sym;  /* stands for it in outputs: of kind SYM_INPUT, behind the model's inputs */
 } Exact;
+
+/* A name that was declared without a unit, and the one that it has. */
+typedef struct {
+  Name name;
+  const char *unit;
+} FoundUnit;
 
 typedef struct {
   Name name;
@@ -134,6 +141,7 @@ typedef struct {
   Diags *diags;
   Arena *arena;
   ExprGraph *g;
+  Dims *dims;
   Name name;
   const char *doc;
   Span span;       /* of the model's name */
@@ -153,6 +161,7 @@ typedef struct {
   VEC(Event) events;
   VEC(Output) observes;
   Scene scene;
+  VEC(FoundUnit) found;    /* names that were declared without a unit, where the equations tell it */
   SymId energy_sym; /* stands for the energy p q' - L in outputs and expects, until mech knows it */
   struct Builder *builder; /* what model_reresolve needs */
 } Model;

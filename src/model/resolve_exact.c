@@ -26,7 +26,7 @@ static void start_symbols(Builder *b) {
   for (uint32_t i = 0; i < of.n; i++) {
     const Symbol *s = expr_symbol(b->g, of.at[i]);
     Expr node = s->node;
-    SymId local = declare_symbol(b, SYM_LOCAL, 0, intern_printf(b, "%s(0)", s->name), SIGN_UNKNOWN, b->dims.at[of.at[i]]);
+    SymId local = declare_symbol(b, SYM_LOCAL, 0, intern_printf(b, "%s(0)", s->name), SIGN_UNKNOWN, b->dim_of.at[of.at[i]]);
     b->at_start[of.at[i]] = expr_symbol(b->g, local)->node;
     b->from_start[local] = node;
   }
@@ -77,7 +77,7 @@ void give_exact(Builder *b, SymId target, const Unit *unit, int periodic, Expr v
     }
   Exact x = {.name = s->name, .target = target, .unit = *unit, .periodic = periodic, .value = value};
   Name name = intern_printf(b, "%s_exact", s->name);
-  x.sym = declare_symbol(b, SYM_INPUT, b->m->inputs.n + sc->exacts.n, name, SIGN_UNKNOWN, b->dims.at[target]);
+  x.sym = declare_symbol(b, SYM_INPUT, b->m->inputs.n + sc->exacts.n, name, SIGN_UNKNOWN, b->dim_of.at[target]);
   vec_push(b->arena, &sc->exacts, x);
 }
 
@@ -125,5 +125,6 @@ Value exact_value(Eval *ev, const AstExpr *x) {
     v.at[k] = error ? exact_error(b, form) : expr_symbol(b->g, form->sym)->node;
   }
   v.bare = 0;
+  v.point &= !error;
   return v;
 }

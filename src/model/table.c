@@ -126,7 +126,8 @@ static void check_unit(Table *t, Piece line, uint32_t column, const char *want, 
   is_called(t, field, "", &unit);
   const char *text = text_of(t, trimmed(t, unit));
   if (!*text || strcmp(text, want) == 0) return;
-  mistake(t, field, arena_printf(t->b->arena, "this column is in [%s], and %s is in [%s]", text, whose, *want ? want : "1"));
+  const char *is = *want ? arena_printf(t->b->arena, "is in [%s]", want) : "has no unit";
+  mistake(t, field, arena_printf(t->b->arena, "this column is in [%s], and %s %s", text, whose, is));
   if (column == t->value) diag_help(t->b->diags, "convert the column, or declare `input %s [%s] = ...`", t->stem, text);
   else diag_help(t->b->diags, "convert the column to seconds");
 }
@@ -180,7 +181,7 @@ static void read_row(Table *t, Piece line) {
     return;
   }
   vec_push(t->b->arena, &t->numbers, time);
-  vec_push(t->b->arena, &t->numbers, value * unit_factor(&t->in->unit));
+  vec_push(t->b->arena, &t->numbers, value * unit_factor(&t->in->unit) + num_value(t->in->unit.offset));
 }
 
 static void read_line(Table *t, Piece line) {
@@ -260,9 +261,9 @@ static void warn_of_swings(const Table *t, const Spline *s) {
   }
   for (uint32_t i = 0; i + 1 < s->n; i++) extremes(s->row[i], s->row[i + 1], &low, &high);
   if (lo - low <= (hi - lo) / 2 && high - hi <= (hi - lo) / 2) return;
-  double unit = unit_factor(&t->in->unit);
+  double unit = unit_factor(&t->in->unit), zero = num_value(t->in->unit.offset);
   diag_warning(t->b->diags, ast_expr(t->b->ast, t->id)->span, "between its rows the curve goes from %.3g to %.3g, and the rows from %.3g to %.3g",
-               low / unit, high / unit, lo / unit, hi / unit);
+               (low - zero) / unit, (high - zero) / unit, (lo - zero) / unit, (hi - zero) / unit);
   diag_help(t->b->diags, "a cubic swings where rows lie far apart beside a jump: add rows there");
 }
 
