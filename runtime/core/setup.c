@@ -190,7 +190,7 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
 static int check_method(lag_sim *s, const lag_method *method)
 {
   const lag_model *m = s->scene->model;
-  unsigned needs = method->flags, has = m->flags;
+  unsigned needs = method->flags, has = lag_facts(&s->pb);
 
   if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0) {
     return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can", method->name);
@@ -276,13 +276,19 @@ static int unknown_name(lag_sim *s, const char *name)
              : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
 }
 
+/* A value in the declared unit of var in SI; a rate of it has no zero of its own. */
+static double in_si(int kind, const lag_var *var, double value)
+{
+  return value * var->factor + (kind == LAG_IS_V ? 0 : var->offset);
+}
+
 /* Whether `value`, in the declared unit, may be given to var. */
 static int check_value(lag_sim *s, int kind, const lag_var *var, const char *name, double value)
 {
   if (!isfinite(value)) {
     return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);
   }
-  if (kind == LAG_IS_P && !sign_ok(var->sign, value * var->factor + var->offset)) {
+  if (kind == LAG_IS_P && !sign_ok(var->sign, in_si(kind, var, value))) {
     return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, value, var->name, sign_text(var->sign));
   }
   return LAG_OK;
@@ -328,7 +334,7 @@ static int set_family(lag_sim *s, const char *name, double value)
       if (rc) {
         return rc;
       }
-      give(s, tables[k].kind, i, value * var->factor);
+      give(s, tables[k].kind, i, in_si(tables[k].kind, var, value));
       found = 1;
     }
   }
@@ -345,7 +351,7 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
     rc = set_family(s, name, value);
     rc = rc == 0 ? unknown_name(s, name) : rc > 0 ? LAG_OK : rc;
   } else if (rc == 0 && (rc = check_value(s, kind, var, name, value)) == 0) {
-    give(s, kind, i, value * var->factor);
+    give(s, kind, i, in_si(kind, var, value));
   }
   if (rc) {
     return rc;
@@ -368,7 +374,12 @@ int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *cont
   if (kind != LAG_IS_U) {
     return kind == LAG_IS_NOTHING ? unknown_name(s, name) : lag_fail(s, LAG_EINVAL, "%s is no input: lag_sim_set sets it", name);
   }
+  lag_signal before = s->signal[i];
   s->signal[i] = (lag_signal){fn, context};
+  if (s->options && (rc = check_method(s, s->method)) != 0) { /* it may need what a function takes away */
+    s->signal[i] = before;
+    return rc;
+  }
   s->hold[i] = NAN;
   return LAG_OK;
 }

@@ -182,6 +182,29 @@ is "saved and resumed" "$(deviation x largest "$o" s) $(deviation x final "$o" s
   "$(deviation x largest "$o" --resume "$dir/state") $(deviation x final "$o" --resume "$dir/state")"
 check "header: what needs the start is left out" sh -c '"$0" header "$1" watched | grep -q "Those with closed forms.*left out"' "$LAGC" "$o"
 
+# Temperatures: the table, the start and the constant are points on a scale, the deviation is a difference.
+cat >"$dir/cup.lag" <<'END'
+model cup "Coffee that cools in a room"
+state T [degC]
+param tau = 100 [s] > 0
+input room [degC] = "room.csv"
+flow T' = (room - T)/tau
+event warm: T - 50 [degC] falling { T = T + 1 [K] }
+scene s {
+  start T = 80 [degC]
+  exact T = room + (T(0) - room)*exp(-t/tau)
+  output T, room, exact(T), error(T) every 10 [s]
+  span 60 [s]
+}
+END
+printf 't,room [degC]\n0,20\n50,20\n100,20\n' >"$dir/room.csv"
+near "a table in degC" 1e-7 "$(calc '20 + 60*e^-0.6')" "$(final T "$dir/cup.lag")"
+near "a start in degC" 1e-7 "$(calc '20 + 40*e^-0.6')" "$(sed 's/50 \[degC\]/0 [degC]/' "$dir/cup.lag" >"$dir/cold.lag"; final T "$dir/cold.lag" T=60)"
+near "a constant in degC" 1e-7 "$(calc '30 + 50*e^-0.6')" "$(final T "$dir/cup.lag" room=30)"
+near "a deviation in K" 1e-7 0 "$(deviation T final "$dir/cup.lag" room=30)"
+is "columns of temperatures, and of a difference" 't [s],T [degC],room [degC],exact(T) [degC],error(T) [K]' "$("$LAGC" run "$dir/cup.lag" -o - 2>/dev/null | head -1)"
+check "an event's log in degC" sh -c '"$0" run "$1" --until 80 --events - 2>/dev/null | grep -Eq "^69.31[0-9.]*,warm,(50|49.9999999)[0-9.]*,(51|50.99999)"' "$LAGC" "$dir/cup.lag"
+
 # ---- monitors
 check "a monitor that holds" "$LAGC" run "$o" watched --quiet
 check "of a wrong closed form" says 3 'monitor error(x): drift .* is past its limit' "$LAGC" run "$o" watched --quiet k=1 --method 'rk4(step=1)'
