@@ -1,13 +1,15 @@
-/* Values with units at the command line of run, plot and animate: a simulator takes plain numbers in declared
- * units, so what is more than a number is converted before it is called. */
+/* What `name=value` behind run, plot and animate says that a simulator, which takes plain numbers in declared units,
+ * cannot: inputs with a formula or a table are compiled in, values with units and formulas of numbers become numbers. */
 #ifndef LAGC_SETTINGS_H
 #define LAGC_SETTINGS_H
 
 #include "cli/options.h"
 #include "model/model.h"
 
-/* Puts numbers in place of what o->rest gives with a unit (`th=90[deg]`, `--until 2[min]`) or as a formula
- * (`th=pi/3`). 0 on a mistake, reported in ast->diags. */
-int settings_convert(Options *o, Ast *ast);
+typedef VEC(Given) GivenList;
+
+/* Takes inputs with a formula or a table out of o->rest; puts numbers in place of what else has a unit (`th=90[deg]`,
+ * `--until 2[min]`) or is a formula (`th=pi/3`). 0 on a mistake: *error says what it is, or it is in ast->diags. */
+int settings_read(Ast *ast, Options *o, GivenList *given, const char **error);
 
 #endif

@@ -60,6 +60,7 @@ static const Option options[] = {
     {"from", offsetof(Args, from), 0},     {"no-rods", offsetof(Args, no_rods), 1},
     {"trace", offsetof(Args, trace), 1},
     {"save-state", offsetof(Args, save), 0}, {"resume", offsetof(Args, resume), 0},
+    {"events", offsetof(Args, events), 0},
     {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
     {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
     {"modes", offsetof(Args, modes), 1},   {"help", offsetof(Args, help), 1},
@@ -169,6 +170,9 @@ static int check(const Args *a)
 
   if (on_stdout && a->json) {
     return app_error(a, "-o - and --json both write to standard output; give -o a file name");
+  }
+  if (a->events && strcmp(a->events, "-") == 0 && a->json) {
+    return app_error(a, "--events - and --json both write to standard output; give --events a file name");
   }
   if ((a->plot_x || a->plot_y) && !a->svg && !a->sketch) {
     return app_error(a, "--plot-x and --plot-y say what --svg FILE or --sketch draws; add one of them");

@@ -34,10 +34,12 @@ static const struct {
   {"run", CMD_RUN, "lagc run MODEL [SCENE] [name=value ...] [--method M] [--tol X] [--until T] ...",
    "Builds the simulator (or takes it from the cache) and runs it; the options are the simulator's:\n\n"
    "  name=value        a parameter, a start value (th=1.2, \"th'=0.5\", th='90[deg]', th=pi/3) or an input;\n"
-   "                    a bare number is in the declared unit\n"
+   "                    a bare number is in the declared unit; all of a family: m=3\n"
+   "  u=FILE.csv        a table for the input u; 'u=2*sin(t/(1 [s]))' a formula\n"
    "  --method NAME     rk45, dop853, verlet4, gsl-rk8pd, ...; `--method help` lists them\n"
    "  --tol X --step H --until T --every DT\n"
    "  -o FILE           .csv or .npy\n"
+   "  --events FILE     each event with its time and the state before and after it\n"
    "  --json            the summary as one JSON object\n"
    "  --observe EXPR    one more column: any expression of the model, --observe 'l*sin(th)'; can be repeated\n"
    "  --svg FILE        a picture of the outputs;  --sketch: one in the terminal\n"
@@ -197,7 +199,7 @@ static int picture_option(Arena *a, int argc, char **argv, int *i, Options *o) {
 /* What a simulator gets: an option, with its value where it takes one, a scene or a setting. */
 static void pass_on(Arena *a, int argc, char **argv, int *i, Options *o) {
   static const char *const with_value[] = {"--method", "--tol", "--step", "--until", "--every", "--svg", "--plot-x",
-                                           "--plot-y", "--save-state", "--resume", "--output", "-o", "--html", "--points", "--from"};
+                                           "--plot-y", "--save-state", "--resume", "--output", "-o", "--html", "--points", "--from", "--events"};
   const char *arg = argv[*i];
   vec_push(a, &o->rest, arg);
   if (arg[0] != '-' && !strchr(arg, '=') && !o->scene) o->scene = arg;

@@ -28,4 +28,9 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
 /* The path of the cached simulator for these texts: named by their content and the runtime's. */
 const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n);
 
+/* Whether the simulator at path is as it was sealed: what a full disk or a crash cut short is built anew. seal notes
+ * its checksum beside it; should that fail, the simulator is built anew the next time. */
+int toolchain_is_whole(Arena *a, const char *path);
+void toolchain_seal(Arena *a, const char *path);
+
 #endif

@@ -12,6 +12,9 @@ void csupport_logic(const char *prefix, StrBuf *out);
 /* `static int lower_solve(n, M, b)`, for the blocks that are not solved in straight-line code. */
 void csupport_solver(const char *prefix, const char *lower, StrBuf *out);
 
+/* `static LAG_REAL lower_spline(t, n, row)`, for the inputs that have a table. */
+void csupport_spline(const char *prefix, const char *lower, StrBuf *out);
+
 /* text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
 void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out);
 

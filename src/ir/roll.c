@@ -9,10 +9,10 @@ Slot roll_operand(const Ins *i, int which) { return which == 0 ? i->a : which ==
 
 static int is_leaf(IrOp op) { return op == IR_CONST || op == IR_PI || op == IR_LOAD; }
 
-/* Instructions of one class differ in their operands only. Solves and titles are alike to none. */
+/* Instructions of one class differ in their operands only. Solves, tables and titles are alike to none. */
 static uint32_t class_of(const Prog *p, Slot s) {
   const Ins *i = &p->ins.at[s];
-  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_TITLE) return UINT32_MAX - s;
+  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_TITLE || i->op == IR_TABLE) return UINT32_MAX - s;
   uint32_t h = (uint32_t)i->op * 31 + i->index;
   for (const char *c = i->text; c && *c; c++) h = (h ^ (unsigned char)*c) * 16777619u;
   for (int k = 0; k < 3; k++) { /* structural zeros and leaves stay what they are */

@@ -23,11 +23,15 @@ const AstStmt *declared_in_use(const Builder *b, Name name, Name effect) {
   return NULL;
 }
 
-/* An effect that declares the name, in use or not. */
-static const AstStmt *declaring_effect(const Builder *b, Name name) {
+int effect_declares(const AstStmt *effect, Name name) {
+  for (const AstStmt *x = effect ? effect->body : NULL; x; x = x->next)
+    if (declares(x, name)) return 1;
+  return 0;
+}
+
+const AstStmt *declaring_effect(const Builder *b, Name name) {
   for (const AstStmt *e = b->ast->first; e; e = e->next)
-    for (const AstStmt *x = e->kind == STMT_EFFECT ? e->body : NULL; x; x = x->next)
-      if (declares(x, name)) return e;
+    if (e->kind == STMT_EFFECT && effect_declares(e, name)) return e;
   return NULL;
 }
 

@@ -99,6 +99,13 @@ Unit unit_per_second(const Builder *b, const Unit *u) {
   return rate;
 }
 
+Unit unit_of_difference(const Unit *u) {
+  Unit d = *u;
+  d.offset = num_int(0);
+  if (!num_is_zero(u->offset)) d.text = "K";
+  return d;
+}
+
 static void settle(Builder *b, Unit *u) {
   if (!u->text[0]) *u = unit_of_dim(b->dims, u->dim);
 }

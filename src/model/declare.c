@@ -182,9 +182,9 @@ static void declare_input(Builder *b, const AstStmt *st, Name effect) {
   Model *m = b->m;
   uint32_t i = m->inputs.n;
   if (!declare_name(b, st, effect, ENT_INPUT, i)) return;
-  Input in = {.name = st->name, .span = st->name_span};
+  Input in = {.name = effect ? intern_printf(b, "%s.%s", effect, st->name) : st->name, .span = st->name_span};
   in.unit = declared_unit(b, st, effect);
-  in.sym = declare_symbol(b, SYM_INPUT, i, st->name, SIGN_UNKNOWN, in.unit.dim);
+  in.sym = declare_symbol(b, SYM_INPUT, i, in.name, SIGN_UNKNOWN, in.unit.dim);
   vec_push(b->arena, &m->inputs, in);
 }
 

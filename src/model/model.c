@@ -246,9 +246,7 @@ static void add_event(Builder *b, const AstStmt *st, Name effect) {
 
 static void fill_input(Builder *b, const AstStmt *st, Name effect) {
   const Entity *e = scope_own(&b->scope, st->name, effect);
-  if (!e || e->kind != ENT_INPUT) return;
-  Input *in = &b->m->inputs.at[e->index];
-  in->value = resolve_in(b, st->rhs, IN_INPUT, effect, &in->unit);
+  if (e && e->kind == ENT_INPUT) give_input(b, e->index, st->name, st->rhs, effect);
 }
 
 /* Without a declared unit it is shown in that of its expression. A vector has an output a component. */

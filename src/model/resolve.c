@@ -80,6 +80,7 @@ static Value node_value(Eval *ev, AstId id) {
     }
     case AST_UNIT: return unit_value(ev, x);
     case AST_CALL: return call_value(ev, x);
+    case AST_AT: return start_value(ev, *value_of(ev, x->a), x->span, value_of(ev, x->b));
     case AST_SUM: case AST_PRODUCT: return *value_of(ev, id); /* its loop left it there */
     case AST_NUM: case AST_NEG: case AST_ADD: case AST_SUB: case AST_MUL: case AST_DIV: case AST_POW: case AST_LT:
     case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE: case AST_NOT: case AST_AND: case AST_OR:
@@ -88,7 +89,10 @@ static Value node_value(Eval *ev, AstId id) {
       diag_error(b->diags, x->span, "a list gives the members of a family their values, and stands alone");
       diag_help(b->diags, "`param m[3] = {1, 3, 1/2}`, `start th = {0.1, 0.2}`; a vector is written `(a, b, c)`");
       return FAILED;
-    case AST_STRING: not_yet(b, x->span, "tables from files"); return FAILED;
+    case AST_STRING:
+      diag_error(b->diags, x->span, "a text is no value here");
+      diag_help(b->diags, "a table from a file gives an input its values: `input u = \"file.csv\"`, or `u = \"file.csv\"` in a scene");
+      return FAILED;
     case AST_BIND: case AST_ERROR: return FAILED;
   }
   return FAILED;
@@ -97,7 +101,7 @@ static Value node_value(Eval *ev, AstId id) {
 static int takes_vectors(const Eval *ev, const AstExpr *x) {
   switch (x->kind) {
     case AST_NEG: case AST_ADD: case AST_SUB: case AST_MUL: case AST_DIV: case AST_PRIME: case AST_UNIT:
-    case AST_MEMBER: case AST_SUM: return 1;
+    case AST_MEMBER: case AST_SUM: case AST_AT: return 1;
     case AST_CALL: return call_takes_vectors(ev, x);
     default: return 0; /* everything else is of numbers */
   }

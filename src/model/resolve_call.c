@@ -34,7 +34,7 @@ const Entity *own_function(const Eval *ev, const AstExpr *x) {
 }
 
 int call_takes_vectors(const Eval *ev, const AstExpr *x) {
-  static const char *const names[] = {"if", "d", "dot", "cross", "norm"};
+  static const char *const names[] = {"if", "d", "dot", "cross", "norm", "exact", "error"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (strcmp(x->name, names[i]) == 0) return 1;
   return own_function(ev, x) != NULL;
@@ -192,6 +192,14 @@ static Value call_sqrt(Eval *ev, const AstExpr *x) {
   return a_value(expr_sqrt(ev->b->g, v->e), dim_pow(ev->b->dims, v->dim, num_ratio(1, 2)), v->bare);
 }
 
+/* What moves in `th(0)`, which is written like a call; NULL: it is none. */
+static const Entity *called_motion(const Eval *ev, const AstExpr *x) {
+  int ambiguous;
+  const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, &ambiguous);
+  int moves = e && (e->kind == ENT_COORD || e->kind == ENT_STATE || e->kind == ENT_LET);
+  return moves && list_length(ev->b, x->args) == 1 ? e : NULL;
+}
+
 static Value unknown_function(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   if (call_is_not_yet(x->name)) {
@@ -208,9 +216,14 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
     if (b->scope.all.at[i].kind == ENT_FUNCTION) known[n++] = b->scope.all.at[i].name;
   int ambiguous;
   const Entity *e = scope_find(&b->scope, x->name, ev->effect, &ambiguous);
+  if (called_motion(ev, x) && ast_expr(b->ast, x->args)->kind == AST_NUM && num_is_zero(ast_expr(b->ast, x->args)->number)) {
+    report_start(b, x->span);
+    return FAILED;
+  }
   diag_error(b->diags, x->op_span.end ? x->op_span : x->span, "unknown function `%s`", x->name);
   Name near = strcmp(x->name, "ln") == 0 ? "log" : suggest(x->name, known, n);
-  if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
+  if (strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0) diag_help(b->diags, "`%s(q)` may stand in `output` and `monitor`, in a scene that says `exact q = ...`", x->name);
+  else if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
   else if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else diag_help(b->diags, "`lagc help functions` lists them; declare your own: `function %s(x) = ...`", x->name);
   return FAILED;
@@ -220,6 +233,12 @@ Value call_value(Eval *ev, const AstExpr *x) {
   const Ast *ast = ev->b->ast;
   const Entity *own = own_function(ev, x);
   if (own) return call_function(ev, x, own);
+  const Entity *moves = ev->where == IN_EXACT ? called_motion(ev, x) : NULL;
+  if (moves) {
+    Value v = whole_value(ev, moves, x->op_span);
+    return ev->waiting ? FAILED : start_value(ev, v, x->span, value_of(ev, x->args));
+  }
+  if (call_is_exact(ev, x->name)) return exact_value(ev, x);
   for (size_t i = 0; i < sizeof unary_functions / sizeof *unary_functions; i++)
     if (strcmp(x->name, unary_functions[i].name) == 0) return call_unary(ev, x, unary_functions[i].op);
   for (size_t i = 0; i < sizeof binary_functions / sizeof *binary_functions; i++)

@@ -103,6 +103,15 @@ int whole_number(Builder *b, const Value *v, AstId id, int64_t *out);
 int loop_begin(Eval *ev, AstId id);
 int loop_next(Eval *ev);
 
+/* resolve_exact.c: v at the time `when`, which is the start; exact(q) and error(q), where they have a meaning. */
+Value start_value(Eval *ev, Value v, Span span, const Value *when);
+void report_start(Builder *b, Span span); /* where it has none */
+int call_is_exact(const Eval *ev, Name name);
+Value exact_value(Eval *ev, const AstExpr *x);
+
+/* A name without an index. */
+Value whole_value(Eval *ev, const Entity *e, Span span);
+
 /* resolve_time.c */
 Value time_derivative(Builder *b, Value of, Span span, Context where);
 Value unit_value(Eval *ev, const AstExpr *x);

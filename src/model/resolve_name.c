@@ -47,7 +47,7 @@ static const char *place_text(Context where) {
     case IN_START: return "a start value may contain numbers and parameters";
     case IN_INPUT: return "an input may contain numbers, parameters and t";
     case IN_DYNAMICS: return "what equations contain is declared by `let`; observables are for outputs";
-    case IN_OBSERVE: break;
+    case IN_EXACT: case IN_OBSERVE: case IN_OUTPUT: break;
   }
   return "";
 }
@@ -98,8 +98,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
   return FAILED;
 }
 
-/* A name without an index. */
-static Value whole_value(Eval *ev, const Entity *e, Span span) {
+Value whole_value(Eval *ev, const Entity *e, Span span) {
   if (!e->ndims || e->kind == ENT_NONE) return entity_value(ev, e, NULL, span);
   Name one = member_name(ev->b, e->name, e->lo, e->ndims);
   diag_error(ev->b->diags, span, "`%s` is a family: say which member", e->name);
@@ -111,7 +110,7 @@ static Value whole_value(Eval *ev, const Entity *e, Span span) {
 static int builtin_quantity(Eval *ev, Name name, Value *out) {
   Builder *b = ev->b;
   Model *m = b->m;
-  if (ev->where != IN_OBSERVE) return 0;
+  if (ev->where < IN_OBSERVE) return 0;
   Expr e = 0;
   if (strcmp(name, "lagrangian") == 0) e = m->lagrangian;
   else if (strcmp(name, "energy") == 0 && m->lagrangian) e = expr_symbol(b->g, m->energy_sym)->node;

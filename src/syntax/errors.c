@@ -160,6 +160,8 @@ static const char *advice(const Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current, *b = &cx->before;
   Arena *a = cx->ast->arena;
   int operators = has(set, n, TOK_TIMES);
+  if (cx->filter->word == TOK_MONITOR && !operators && ends_operand(b) && (token_flags(t->kind) & T_BINARY))
+    return "a monitor watches a name, or what stands in parentheses: `monitor (x + y) 1e-6`";
   switch (t->kind) {
     case TOK_EQ:
       if (has(set, n, TOK_ASSIGN)) return "write `=`: it states an equation; `==` compares two numbers";

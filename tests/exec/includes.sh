@@ -28,8 +28,8 @@ src/ir/lower.c    mech/eqns.h
 src/ir/lower.h    mech/eqns.h
 runtime/include/lag.h  lag_model.h
 src/main.c        picture.h settings.h
-src/settings.c    settings.h
 src/picture.c     picture.h
+src/settings.c    settings.h
 '
 # The inside of a folder, shared by its own files only.
 private='syntax/ast_build.h syntax/parse_state.h syntax/filter.h syntax/scan.h syntax/token.h model/builder.h

@@ -188,6 +188,7 @@ off_is_absent() { # MODEL
     "$LAGC" header "$1" "$s" >"$TMP/with.h" && "$LAGC" header "$TMP/off.lag" "$s" >"$TMP/off.h" && cmp "$TMP/with.h" "$TMP/off.h" || return 1
   done
 }
+cp $here/models/*.csv "$TMP"
 for m in $(grep -l '^effect' $models); do check "$m: effects that are off leave no trace" off_is_absent "$m"; done
 
 # ---- errors leave nothing behind
