@@ -105,6 +105,14 @@ static int is_velocity(const Symbol *s, const void *data) {
   return s->kind == SYM_VEL;
 }
 
+/* Linear in q', as Coriolis and magnetic terms are: such a term has no part in the mass matrix. */
+static int is_linear(const Eqns *e, Expr term) {
+  ExprPartials d = expr_gradient_sparse(e->g, term, SYM_VEL, e->n);
+  for (uint32_t i = 0; i < d.n; i++)
+    if (expr_contains(e->g, d.at[i].e, is_velocity, NULL)) return 0;
+  return 1;
+}
+
 int lagrange_definite(const Eqns *e) {
   ExprGraph *g = e->g;
   Expr l = e->m->lagrangian;
@@ -114,7 +122,8 @@ int lagrange_definite(const Eqns *e) {
     Expr term = expr_pair(g, l, EX_SUM, i, &c);
     if (!expr_map_get(&moving, term)) continue;
     ExprSign s = expr_sign(g, term);
-    if (num_sign(c) < 0 || (s != SIGN_POSITIVE && s != SIGN_NONNEGATIVE)) return 0;
+    int positive = num_sign(c) > 0 && (s == SIGN_POSITIVE || s == SIGN_NONNEGATIVE);
+    if (!positive && !is_linear(e, term)) return 0;
   }
   /* A term that is at least 0 and quadratic in q' has a Hessian that is at least 0; quadratic means
    * that the Hessian of the whole is free of velocities. */
