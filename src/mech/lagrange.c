@@ -46,6 +46,22 @@ static const Expr *generalised_forces(const Eqns *e) {
   return Q;
 }
 
+/* out[i] = dp[i]/dt without q''. A definition without velocities has no q'' to leave out: what it becomes is its
+ * time derivative, and is called so (I', not I_drift). */
+static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
+  ExprGraph *g = e->g;
+  const Expr *seed = explicit_direction(e);
+  uint32_t nseed = expr_symbol_count(g) + 1;
+  ExprMap rates = expr_map(e->m->arena);
+  VEC(Expr) still = {0};
+  ExprList all = expr_topo(g, p, e->n);
+  for (uint32_t i = 0; i < all.n; i++)
+    if (expr_op(g, all.at[i]) == EX_DEF && !(expr_kinds(g, all.at[i]) & (1u << SYM_VEL | 1u << SYM_STATE))) vec_push(e->m->arena, &still, all.at[i]);
+  Expr *unused = ARENA_ARRAY(e->m->arena, Expr, still.n + 1);
+  expr_tangent(g, still.at, still.n, seed, nseed, "'", &rates, unused);
+  expr_tangent(g, p, e->n, seed, nseed, "_drift", &rates, out);
+}
+
 /* The forces as differentiated, and the momenta. */
 static Expr *differentiate(Eqns *e) {
   const Model *m = e->m;
@@ -57,8 +73,7 @@ static Expr *differentiate(Eqns *e) {
   expr_gradient(g, m->lagrangian, q, e->n, dLdq);
   e->p = p;
   e->Q = generalised_forces(e);
-  Expr *seed = explicit_direction(e);
-  expr_tangent(g, p, e->n, seed, expr_symbol_count(g) + 1, "_drift", NULL, convective);
+  convective_rates(e, p, convective);
   for (uint32_t i = 0; i < e->n; i++) {
     Expr inertial = expr_sub(g, dLdq[i], convective[i]);
     f[i] = expr_add(g, inertial, e->Q[i]);
