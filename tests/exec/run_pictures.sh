@@ -96,6 +96,16 @@ check "the simulator's own options" runs plot "$p" wide --until 1 --method rk4 -
 check "draw in the terminal too" grep -q 'rad/s' out
 check "in the order that one likes" runs plot "$p" --until 1 wide l=2 -o a.svg
 
+# labels_apart FILE: no two labels of the axis of x touch, at 6.5 pixels a character
+labels_apart() {
+  awk '/text-anchor="middle">/ { x = $0; sub(/.*<text x="/, "", x); v = $0; gsub(/<[^>]*>/, "", v); w = 6.5*length(v)
+         if (n++ && x - w/2 < end) { print v " touches the label before it"; bad = 1 } end = x + w/2 }
+       END { exit bad || n < 3 }' "$1"
+}
+check "a path whose labels are long" runs plot "$p" wide --x '-3.08e7*l + 1e4*x' --y '1e4*y' -o far.svg
+check "leaves some out" labels_apart far.svg
+check "and others in" labels_apart path.svg
+
 check "an unknown name, with its place" says 1 '--x:1:7: error: unknown name `thh`' plot "$p" --x 'l*sin(thh)' --y th -o none.svg
 check "shown with a caret" grep -q '\^~~' err
 check "what is no expression" says 1 '--y:1:4: error: expected `)`' plot "$p" --y '(th' -o none.svg

@@ -1,6 +1,7 @@
 #!/bin/sh
 # The pictures of models/README.md are what the commands above them draw (`make gallery` draws them anew). Numbers may differ by
 # half a pixel: another C library, or another processor, rounds other digits. Text and the number of points may not.
+# The commands that the page tells its readers to type work.
 . tests/tap.sh
 
 # A picture as a list: each number, and each text between numbers, on a line of its own.
@@ -26,4 +27,11 @@ while read -r picture words; do
   check "$picture is small and whole" small "$picture"
   check "$picture is shown" grep -q -F "](${picture#models/})" models/README.md
 done <"$TMP/list"
+
+case $LAGC in /*) lagc=$LAGC ;; *) lagc=$(pwd)/$LAGC ;; esac
+ln -s "$(pwd)/models" "$TMP/models"
+sed -n 's/^lagc //p' models/README.md | grep -v NAME >"$TMP/commands"
+while read -r words; do
+  check "lagc $words" sh -c "cd $TMP && $lagc $words --quiet"
+done <"$TMP/commands"
 tap_end
