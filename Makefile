@@ -67,12 +67,18 @@ $(BUILD)/obj/src/%.o: src/%.c
 $(BUILD)/obj/runtime/%.o: runtime/%.c
 	@mkdir -p $(@D)
 	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAN) -MMD -MP -c -o $@ $<
-# The page of an animation as C: a string a line.
+# Texts as C, in the order of their lines: `static const char *const NAME[]`, with the name of the file that they become.
+AS_C = { echo 'static const char *const $(basename $(@F))[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $<; echo '};'; }
 $(BUILD)/gen/io/page.h: runtime/io/page.html
 	@mkdir -p $(@D)
-	{ echo 'static const char *const page[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $<; echo '};'; } >$@.part
+	$(AS_C) >$@.part
+	@mv $@.part $@
+$(BUILD)/gen/cli/language.h: grammar/LANGUAGE.md
+	@mkdir -p $(@D)
+	$(AS_C) >$@.part
 	@mv $@.part $@
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
+$(BUILD)/obj/src/cli/reference.o: $(BUILD)/gen/cli/language.h
 # Generated code is not ours to warn about.
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 	@mkdir -p $(@D)

@@ -9,12 +9,14 @@
 
 #include "base/diag.h"
 #include "cli/files.h"
+#include "cli/methods.h"
 #include "cli/options.h"
 #include "cli/toolchain.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
 #include "emit/emit_model.h"
+#include "help.h"
 #include "ir/lower.h"
 #include "mech/eqns.h"
 #include "mech/expect.h"
@@ -268,10 +270,23 @@ static int do_check(Compiler *c) {
   return c->diags->errors ? STATUS_MODEL : status;
 }
 
+/* The runtime has them: asked with `--method help`, it prints its table. */
+static int help_methods(Compiler *c) {
+  const char *error = NULL, *path = methods_program(c->arena, c->argv0, 1, &error);
+  char *argv[] = {"lagc", "--method", "help", NULL};
+  if (!path) return fail_usage(error);
+  execv(path, argv);
+  return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
+}
+
 static int do_help(Compiler *c) {
   StrBuf out = strbuf(c->arena);
-  sb_puts(&out, options_help(c->o.topic));
-  return write_out(c, NULL, &out);
+  const char *topic = c->o.topic;
+  Name near;
+  if (topic && strcmp(topic, "methods") == 0) return help_methods(c);
+  if (help_print(&out, topic, &near)) return write_out(c, NULL, &out);
+  return fail_usage(near ? arena_printf(c->arena, "no help on `%s`: did you mean `%s`?", topic, near)
+                         : arena_printf(c->arena, "no help on `%s`; `lagc help` lists the topics", topic));
 }
 
 static int do_command(Compiler *c) {
@@ -282,7 +297,7 @@ static int do_command(Compiler *c) {
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
     case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: return do_run(c);
-    case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;
+    case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
   }
   return STATUS_USAGE;
 }

@@ -21,6 +21,13 @@ static const struct {
 static const char *const other_functions[] = {"sqrt", "pow", "if", "d", "dot", "cross", "norm"};
 static const char *const later_functions[] = {"omega", "lambda"};
 
+const char *function_name(size_t i) {
+  enum { NU = sizeof unary_functions / sizeof *unary_functions, NB = sizeof binary_functions / sizeof *binary_functions, NO = sizeof other_functions / sizeof *other_functions };
+  if (i < NU) return unary_functions[i].name;
+  if (i < NU + NB) return binary_functions[i - NU].name;
+  return i < NU + NB + NO ? other_functions[i - NU - NB] : NULL;
+}
+
 int call_is_not_yet(Name name) {
   for (size_t i = 0; i < sizeof later_functions / sizeof *later_functions; i++)
     if (strcmp(name, later_functions[i]) == 0) return 1;
@@ -218,12 +225,10 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
     not_yet(b, x->span, arena_printf(b->arena, "`%s`", x->name));
     return FAILED;
   }
-  enum { NU = sizeof unary_functions / sizeof *unary_functions, NB = sizeof binary_functions / sizeof *binary_functions, NO = sizeof other_functions / sizeof *other_functions };
-  Name *known = ARENA_ARRAY(b->arena, Name, NU + NB + NO + b->scope.all.n);
   uint32_t n = 0;
-  for (int i = 0; i < NU; i++) known[n++] = unary_functions[i].name;
-  for (int i = 0; i < NB; i++) known[n++] = binary_functions[i].name;
-  for (int i = 0; i < NO; i++) known[n++] = other_functions[i];
+  while (function_name(n)) n++;
+  Name *known = ARENA_ARRAY(b->arena, Name, n + b->scope.all.n);
+  for (uint32_t i = 0; i < n; i++) known[i] = function_name(i);
   for (uint32_t i = 0; i < b->scope.all.n; i++)
     if (b->scope.all.at[i].kind == ENT_FUNCTION) known[n++] = b->scope.all.at[i].name;
   int ambiguous;

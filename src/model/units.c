@@ -228,12 +228,10 @@ static void put_exponent(StrBuf *b, const char *name, int twelfths) {
   if (!num_is_int(e)) sb_putc(b, ')');
 }
 
-const char *dim_text(Dim a, Arena *arena) {
+/* In base units. */
+static const char *base_text(Dim a, Arena *arena) {
   static const char *const base[DIM_COUNT] = {"m", "kg", "s", "A", "K", "mol", "cd"};
   static const int order[DIM_COUNT] = {DIM_MASS, DIM_LENGTH, DIM_TIME, DIM_CURRENT, DIM_TEMPERATURE, DIM_AMOUNT, DIM_LUMINOUS};
-  if (!a.known) return "?";
-  const char *name = derived_name(a);
-  if (name) return name;
   StrBuf b = strbuf(arena);
   int above = 0;
   for (int i = 0; i < DIM_COUNT; i++)
@@ -248,4 +246,27 @@ const char *dim_text(Dim a, Arena *arena) {
       put_exponent(&b, base[order[i]], -a.e[order[i]]);
     }
   return sb_text(&b);
+}
+
+const char *dim_text(Dim a, Arena *arena) {
+  if (!a.known) return "?";
+  const char *name = derived_name(a);
+  return name ? name : base_text(a, arena);
+}
+
+/* --- the table, for help --- */
+
+const char *unit_name(size_t i) { return i < N_UNITS ? table[i].name : NULL; }
+int unit_takes_prefixes(size_t i) { return i < N_UNITS && table[i].prefixes; }
+
+const char *unit_meaning(size_t i, Arena *a) {
+  Unit u = {.dim = DIM_NONE, .factor = num_int(1)};
+  multiply(&u, &table[i], 0, num_int(1));
+  const char *in_base = base_text(u.dim, a);
+  if (strcmp(in_base, table[i].name) == 0) return NULL;
+  int one = strcmp(table[i].factor, "1") == 0, pure = dim_is_none(u.dim);
+  if (!u.pi_power) return one ? in_base : arena_printf(a, pure ? "%s" : "%s %s", table[i].factor, in_base);
+  StrBuf b = strbuf(a);
+  num_print(&b, u.factor); /* times pi: 1/180 or 2 */
+  return strncmp(sb_text(&b), "1/", 2) == 0 ? arena_printf(a, "pi%s", sb_text(&b) + 1) : arena_printf(a, "%s*pi", sb_text(&b));
 }

@@ -31,6 +31,12 @@ int unit_exists(const char *name);
 
 double unit_factor(const Unit *u);
 
+/* Unit i of the table, for `lagc help units` and completion: its name, NULL past the end; what one of it is in SI base
+ * units ("kg*m/s^2", "60 s", "pi/180"), NULL for a base unit; whether it takes the SI prefixes. */
+const char *unit_name(size_t i);
+const char *unit_meaning(size_t i, Arena *a);
+int unit_takes_prefixes(size_t i);
+
 Dim dim_mul(Dim a, Dim b);
 Dim dim_div(Dim a, Dim b);
 Dim dim_pow(Dim a, Num e);

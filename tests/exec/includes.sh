@@ -27,8 +27,9 @@ besides='
 src/ir/lower.c    mech/eqns.h
 src/ir/lower.h    mech/eqns.h
 runtime/include/lag.h  lag_model.h
-src/main.c        picture.h
+src/main.c        picture.h help.h
 src/picture.c     picture.h
+src/help.c        help.h
 '
 # The inside of a folder, shared by its own files only.
 private='syntax/ast_build.h syntax/parse_state.h syntax/filter.h syntax/scan.h syntax/token.h model/builder.h

@@ -80,14 +80,6 @@ check "a tree that was moved works where it is" moved
 by_home() { (cd "$away" && cp "$TMP/moved/bin/lagc" . && LAG_HOME=$TMP/moved ./lagc run "$TMP/moved/share/lagc/models/double_pendulum.lag" --until 0.2); }
 check "LAG_HOME says where the runtime is" by_home
 
-# ---- the man page names every command and option that lagc's own help does ----
-undocumented() {
-  { "$LAGC" help; for c in check derive emit header build run plot animate; do "$LAGC" help "$c"; done; } |
-    grep -o -e '--[a-z][a-z-]*' -e '^  lagc [a-z]*' | sed 's/^  lagc //; s/^--//; s/-/\\-/g' | LC_ALL=C sort -u |
-    while read -r word; do grep -q -F -e "$word" -e "$(printf '%s' "$word" | sed 's/\\-/-/g')" src/lagc.1 || echo "lagc.1 lacks $word"; done
-}
-empty "the man page knows every command and option" "$(undocumented)"
-
 uninstall_it() { mv "$TMP/moved" "$prefix" && "$MAKE" BUILD="$BUILD" uninstall PREFIX="$prefix"; }
 check "make uninstall" uninstall_it
 is "nothing is left" "" "$(files "$prefix")"
