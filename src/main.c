@@ -11,7 +11,9 @@
 #include "cli/files.h"
 #include "cli/methods.h"
 #include "cli/options.h"
+#include "cli/shells.h"
 #include "cli/toolchain.h"
+#include "complete.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
@@ -289,6 +291,13 @@ static int do_help(Compiler *c) {
                          : arena_printf(c->arena, "no help on `%s`; `lagc help` lists the topics", topic));
 }
 
+static int do_completion(Compiler *c) {
+  StrBuf out = strbuf(c->arena);
+  if (c->o.command == CMD_COMPLETE) complete(&out, c->o.rest.at, c->o.rest.n, c->argv0);
+  else completion_script(&out, c->o.topic);
+  return write_out(c, NULL, &out);
+}
+
 static int do_command(Compiler *c) {
   switch (c->o.command) {
     case CMD_CHECK: return do_check(c);
@@ -319,6 +328,7 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   c->argv0 = argv[0];
   if (!options_read(c->arena, argc, argv, &c->o, &error)) return fail_usage(error);
   if (c->o.command == CMD_HELP) return do_help(c);
+  if (c->o.command == CMD_COMPLETION || c->o.command == CMD_COMPLETE) return do_completion(c);
   if (c->o.command == CMD_VERSION) {
     puts("lagc " LAGC_VERSION);
     return fflush(stdout) == 0 ? STATUS_OK : fail_usage("cannot write standard output");

@@ -120,6 +120,14 @@ enum { N_OPTIONS = sizeof options / sizeof *options };
 const CommandRow *command_row(size_t i) { return i < N_COMMANDS ? &commands[i] : NULL; }
 const OptionRow *option_row(size_t i) { return i < N_OPTIONS ? &options[i] : NULL; }
 
+Command command_named(const char *word) {
+  if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return CMD_HELP;
+  if (strcmp(word, "--version") == 0) return CMD_VERSION;
+  for (size_t i = 0; i < N_COMMANDS; i++)
+    if (strcmp(word, commands[i].name) == 0) return commands[i].command;
+  return CMD_NONE;
+}
+
 const CommandRow *command_find(Command c) {
   for (size_t i = 0; i < N_COMMANDS; i++)
     if (commands[i].command == c) return &commands[i];

@@ -49,6 +49,9 @@ typedef struct {
 const CommandRow *command_row(size_t i);
 const OptionRow *option_row(size_t i);
 
+/* The command that a first word names ("run", "--help"); CMD_NONE for none. */
+Command command_named(const char *word);
+
 /* The row of a command; NULL for CMD_NONE. */
 const CommandRow *command_find(Command c);
 

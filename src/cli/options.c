@@ -184,14 +184,6 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
   return 1;
 }
 
-static Command command_named(const char *word) {
-  if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return CMD_HELP;
-  if (strcmp(word, "--version") == 0) return CMD_VERSION;
-  for (size_t i = 0; command_row(i); i++)
-    if (strcmp(word, command_row(i)->name) == 0) return command_row(i)->command;
-  return CMD_NONE;
-}
-
 int options_read(Arena *a, int argc, char **argv, Options *o, const char **error) {
   *o = (Options){.command = argc < 2 ? CMD_HELP : command_named(argv[1])};
   *error = NULL;

@@ -58,6 +58,14 @@ handed() { { words 'passed run'; words 'passed animate'; } | grep -e -- | sort -
 check "a simulator has options" [ "$(taken | wc -l)" -gt 10 ]
 is "options of a simulator" "$(taken)" "$(handed)"
 
+# Under sanitizers it says the same.
+differs() {
+  { words statement; words function; words command; echo; echo units; } | while read -r t; do
+    "$LAGC_SAN" help ${t:+"$t"} >"$TMP/san" 2>&1 && "$LAGC" help ${t:+"$t"} | cmp -s - "$TMP/san" || echo "$t: $(head -n 3 "$TMP/san")"
+  done
+}
+empty "under sanitizers" "$(differs)"
+
 # ---- the overview ----
 "$LAGC" help >"$TMP/overview"
 leads_nowhere() {

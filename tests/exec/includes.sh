@@ -27,9 +27,10 @@ besides='
 src/ir/lower.c    mech/eqns.h
 src/ir/lower.h    mech/eqns.h
 runtime/include/lag.h  lag_model.h
-src/main.c        picture.h help.h
+src/main.c        picture.h help.h complete.h
 src/picture.c     picture.h
 src/help.c        help.h
+src/complete.c    complete.h help.h
 '
 # The inside of a folder, shared by its own files only.
 private='syntax/ast_build.h syntax/parse_state.h syntax/filter.h syntax/scan.h syntax/token.h model/builder.h
