@@ -218,6 +218,7 @@ ifneq ($(GSL),)
 	install -m 644 $(PC:.pc=_gsl.pc) '$(DESTDIR)$(PREFIX)/lib/pkgconfig'
 endif
 	install -m 644 $(MODELS) '$(DESTDIR)$(PREFIX)/share/lagc/models'
+	install -m 644 grammar/lag.tmLanguage.json '$(DESTDIR)$(PREFIX)/share/lagc'
 	install -m 644 src/lagc.1 '$(DESTDIR)$(PREFIX)/share/man/man1'
 	install -m 644 src/cli/complete.bash '$(DESTDIR)$(PREFIX)/share/bash-completion/completions/lagc'
 	install -m 644 src/cli/complete.zsh '$(DESTDIR)$(PREFIX)/share/zsh/site-functions/_lagc'

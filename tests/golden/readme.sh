@@ -1,6 +1,7 @@
 #!/bin/sh
 # README.md and models/README.md show what commands print: a block after `<!-- printed by: COMMAND -->` is that command's
-# output, to the byte. BLESS=1 writes it. Their links, and those of src/README.md, lead to files.
+# output, to the byte. BLESS=1 writes it. Their links, and those of
+# src/README.md and grammar/LANGUAGE.md, lead to files.
 . tests/tap.sh
 
 shows() { # shows PAGE
@@ -34,7 +35,7 @@ shows README.md
 shows models/README.md
 
 links() {
-  for page in README.md src/README.md models/README.md; do
+  for page in README.md src/README.md models/README.md grammar/LANGUAGE.md; do
     grep -o ']([^)#]*)' "$page" | sed 's/^](//; s/)$//' | while read -r link; do
       case $link in *://*) continue ;; esac
       [ -e "$(dirname "$page")/$link" ] || echo "$page: no $link"
