@@ -265,6 +265,7 @@ static void fill_observe(Builder *b, const AstStmt *st, Name effect) {
   Output *o = declared_observe(b, st, effect);
   if (!o) return;
   Value v = resolve(b, st->rhs, IN_OBSERVE, effect);
+  o->refused = !v.e || v.n;
   if (v.n) {
     not_yet(b, ast_expr(b->ast, st->rhs)->span, "observables that are vectors (observe their components)");
     return;
@@ -315,8 +316,12 @@ static void apply_unused_lets(Builder *b) {
 /* What may contain accelerations: after L is known. */
 static void observe(Builder *b, const AstStmt *st, Name effect, void *data) {
   (void)data;
-  if (st->kind == STMT_EXPECT) add_expect(b, st, effect);
   if (st->kind == STMT_OBSERVE) fill_observe(b, st, effect);
+}
+
+static void expect(Builder *b, const AstStmt *st, Name effect, void *data) {
+  (void)data;
+  if (st->kind == STMT_EXPECT) add_expect(b, st, effect);
 }
 
 static void each_active(Builder *b, StatementFn *fn, void *data) {
@@ -414,6 +419,7 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   finish_energies(b, &en);
   apply_unused_lets(b);
   each_active(b, observe, NULL);
+  each_active(b, expect, NULL);
   check_whole(b);
   scene_build(b, choice);
   return ast->diags->errors ? NULL : b->m;

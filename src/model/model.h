@@ -80,7 +80,8 @@ typedef struct {
   Name name;
   Span span;
   Unit unit;
-  Expr value; /* may contain q'', z' */
+  Expr value; /* may contain q'', z'; 0 until it is known, and where it was refused */
+  int refused;
 } Output;
 
 typedef struct {

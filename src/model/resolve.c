@@ -284,6 +284,8 @@ static Value evaluate(Builder *b, AstId id, Context where, Name effect) {
 Value resolve(Builder *b, AstId id, Context where, Name effect) {
   if (!id) return FAILED;
   Value v = evaluate(b, id, where, effect);
+  if (!v.e && !b->diags->errors) /* a bug; but nothing a user wrote is left out in silence */
+    diag_error(b->diags, ast_expr(b->ast, id)->span, "internal error: `%s` has no value, and no reason is known", ast_short(b, id));
   if (!v.e || !v.condition) return v;
   report_condition(b, id);
   return FAILED;

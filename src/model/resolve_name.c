@@ -50,7 +50,8 @@ static const char *place_text(Context where) {
     case IN_PARAM: return "a parameter's value may contain numbers and parameters declared before it";
     case IN_START: return "a start value may contain numbers and parameters";
     case IN_INPUT: return "an input may contain numbers, parameters and t";
-    case IN_DYNAMICS: case IN_OBSERVE: break;
+    case IN_DYNAMICS: return "the motion follows from coordinates, states, parameters, inputs and lets: declare it by `let`";
+    case IN_OBSERVE: break;
   }
   return "";
 }
@@ -59,8 +60,8 @@ static Context least_context(EntKind kind) {
   switch (kind) {
     case ENT_CONST: return IN_CONST;
     case ENT_PARAM: return IN_PARAM;
-    case ENT_NONE: case ENT_COORD: case ENT_STATE: case ENT_INPUT: case ENT_LET: case ENT_FUNCTION:
-    case ENT_OBSERVE: case ENT_BUILTIN: break;
+    case ENT_OBSERVE: return IN_OBSERVE;
+    case ENT_NONE: case ENT_COORD: case ENT_STATE: case ENT_INPUT: case ENT_LET: case ENT_FUNCTION: case ENT_BUILTIN: break;
   }
   return IN_DYNAMICS;
 }
@@ -70,6 +71,15 @@ static SymId symbol_of(const Model *m, EntKind kind, uint32_t index) {
   if (kind == ENT_STATE) return m->states.at[index].z;
   if (kind == ENT_PARAM) return m->params.at[index].sym;
   return m->inputs.at[index].sym;
+}
+
+/* Observables are taken in the order in which they stand. */
+static Value observable_value(Eval *ev, const Output *o, Span span) {
+  if (!o->value && !o->refused) {
+    diag_error(ev->b->diags, span, "`%s` is not known here yet", o->name);
+    diag_help(ev->b->diags, "an observable may use those that stand above it; a `let` may stand anywhere");
+  }
+  return a_value(o->value, o->unit.dim, 0);
 }
 
 /* The value of a name, or of member `at` of a family. */
@@ -91,10 +101,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
     }
     case ENT_CONST: return a_value(expr_num(b->g, b->constants.at[e->index].value), DIM_NONE, 1);
     case ENT_LET: return definition_ready(ev, ENT_LET, e->index, e->name, span) ? b->lets.at[e->index].value : FAILED;
-    case ENT_OBSERVE: {
-      const Output *o = &b->m->observes.at[e->index];
-      return a_value(o->value, o->unit.dim, 0);
-    }
+    case ENT_OBSERVE: return observable_value(ev, &b->m->observes.at[e->index], span);
     case ENT_FUNCTION:
       diag_error(b->diags, span, "`%s` is a function", e->name);
       diag_help(b->diags, "give it its arguments: `%s(...)`", e->name);
