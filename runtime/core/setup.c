@@ -260,21 +260,51 @@ static const char *sign_text(int sign)
   return sign == 1 ? "> 0" : sign == 2 ? ">= 0" : sign == -1 ? "< 0" : "<= 0";
 }
 
+static int unknown_name(lag_sim *s, const char *name)
+{
+  const lag_model *m = s->scene->model;
+  char near[64];
+
+  if (lag_part(m, name, 0, near, sizeof near)) {
+    return lag_fail(s, LAG_EINVAL, "%s has parts: set %s, and so on", name, near);
+  }
+  return lag_nearest(m, name, near, sizeof near)
+             ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name, m->name,
+                        near)
+             : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
+}
+
+/* Sets all members of a family of numbers. How many there are, or < 0. */
+static int set_members(lag_sim *s, const char *name, double value)
+{
+  char member[64];
+  int n = 0;
+
+  for (; lag_part(s->scene->model, name, n, member, sizeof member); n++) {
+    size_t length = strlen(member) - (member[strlen(member) - 1] == '\'');
+    if (member[length - 1] != ']') {
+      return 0; /* components of a vector are no equals */
+    }
+    int rc = lag_sim_set(s, member, value);
+    if (rc) {
+      return rc;
+    }
+  }
+  return n;
+}
+
 int lag_sim_set(lag_sim *s, const char *name, double value)
 {
   const lag_model *m = s->scene->model;
   const lag_var *var = NULL;
   int i, rc = begun(s), kind = lag_find(m, name, &i, &var);
-  char near[64];
 
   if (rc) {
     return rc;
   }
   if (kind == LAG_IS_NOTHING) {
-    return lag_nearest(m, name, near, sizeof near)
-               ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name,
-                          m->name, near)
-               : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
+    rc = set_members(s, name, value);
+    return rc == 0 ? unknown_name(s, name) : rc > 0 ? LAG_OK : rc;
   }
   if (!isfinite(value)) {
     return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);

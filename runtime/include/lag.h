@@ -167,7 +167,7 @@ int lag_sim_set_method(lag_sim *sim, const lag_method *method, const lag_option 
 int lag_sim_set_tolerance(lag_sim *sim, double tol);
 /* Sets by name, in the declared unit: a parameter ("m", "drag.c", or "c" when no other parameter ends
  * in ".c"), the start of a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that
- * replaces an input. A parameter of the wrong sign is an error. */
+ * replaces an input. The name of a family of numbers sets all its members. A parameter of the wrong sign is an error. */
 int lag_sim_set(lag_sim *sim, const char *name, double value);
 
 /* Integrates to time t, before or after t0, but always in one direction. The steps do not depend on
