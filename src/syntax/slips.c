@@ -117,6 +117,7 @@ static const char *after_method(const Parse *cx) {
 static const char *unexpected_assign(const Parse *cx, const TokKind *set, int n) {
   TokKind word = cx->filter->word;
   if (has(set, n, TOK_EQ)) return "write `==` to compare";
+  if (has(set, n, TOK_IN)) return "a range is written `i in 1..N`";
   if (word == TOK_COORD || word == TOK_STATE) return "where it starts stands in a scene: `start x = …`";
   if (word == TOK_CONSTRAINT && has(set, n, TOK_COLON)) return "this statement needs a name: `constraint NAME: a = b`";
   return NULL;
@@ -135,6 +136,7 @@ const char *slip_token(const Parse *cx, const TokKind *set, int n) {
   if (comma) return comma;
   if (cx->filter->word == TOK_METHOD && has(set, n, TOK_LPAREN)) return after_method(cx);
   switch (t->kind) {
+    case TOK_COMMA: return has(set, n, TOK_IN) ? "a range is written `i in 1..N`" : NULL;
     case TOK_EQ: return has(set, n, TOK_ASSIGN) ? "write `=`: it states an equation; `==` compares two numbers" : NULL;
     case TOK_ASSIGN: return unexpected_assign(cx, set, n);
     case TOK_COLON:
