@@ -19,7 +19,7 @@ static void put_option(StrBuf *out, const OptionRow *o) {
   page_term(out, term, o->does, TERMS);
 }
 
-/* Of plot and animate only what is not an option of run. */
+/* Of plot and animate only what is not an option of run, too. */
 static void put_options(StrBuf *out, Command c) {
   for (size_t i = 0; option_row(i); i++) {
     const OptionRow *o = option_row(i);
@@ -37,7 +37,7 @@ static int put_command(StrBuf *out, const char *topic) {
     sb_putc(out, '\n');
     page_paragraphs(out, row->help);
     if (!command_reads_model(row->command)) return 1;
-    if (row->command != CMD_RUN) sb_putc(out, '\n'); /* its text ends in what looks like an option */
+    if (!strstr(row->help, "  name=value ")) sb_putc(out, '\n'); /* what looks like an option heads them */
     put_options(out, row->command);
     return 1;
   }
@@ -60,7 +60,8 @@ static int put_named_options(StrBuf *out, const char *topic, int before) {
     const OptionRow *o = option_row(i);
     if (strcmp(o->name + 2, topic) != 0 && (!o->brief || strcmp(o->brief + 1, topic) != 0)) continue;
     if (before && !found) sb_putc(out, '\n');
-    sb_printf(out, "%s of %s:\n", found ? "and" : "option", commands_text(out->arena, o->commands));
+    const char *head = arena_printf(out->arena, "%s of %s:", found ? "and" : "option", commands_text(out->arena, o->commands));
+    page_words(out, head, strlen(head), 0, 0);
     put_option(out, o);
     found = 1;
   }
@@ -69,12 +70,23 @@ static int put_named_options(StrBuf *out, const char *topic, int before) {
 
 /* ---- units ---- */
 
+static const char *name_of_unit(uint32_t i) {
+  int prefixes;
+  return unit_name(i, &prefixes);
+}
+
+static int takes_prefixes(uint32_t i) {
+  int prefixes = 0;
+  unit_name(i, &prefixes);
+  return prefixes;
+}
+
 static int put_unit(StrBuf *out, const char *name, int before) {
-  for (size_t i = 0; unit_name(i); i++) {
-    if (strcmp(unit_name(i), name) != 0) continue;
+  for (uint32_t i = 0; name_of_unit(i); i++) {
+    if (strcmp(name_of_unit(i), name) != 0) continue;
     const char *is = unit_meaning(i, out->arena);
     sb_printf(out, "%sunit:\n  [%s]%s%s%s\n", before ? "\n" : "", name, is ? " = " : "", is ? is : " of the SI, a base unit",
-              unit_takes_prefixes(i) ? "; takes the SI prefixes" : "");
+              takes_prefixes(i) ? "; takes the SI prefixes" : "");
     return 1;
   }
   if (!unit_exists(name)) return 0;
@@ -87,17 +99,17 @@ static void put_units(StrBuf *out) {
   enum { COLUMNS = 2, WIDE = 38 };
   VEC(const char *) cells = {0};
   int plain = 0;
-  for (size_t i = 1; unit_name(i); i++) { /* the first is 1 */
-    const char *is = unit_meaning(i, out->arena), *mark = unit_takes_prefixes(i) ? "" : "*";
+  for (uint32_t i = 1; name_of_unit(i); i++) { /* the first is 1 */
+    const char *is = unit_meaning(i, out->arena), *mark = takes_prefixes(i) ? "" : "*";
     plain |= *mark;
-    vec_push(out->arena, &cells, arena_printf(out->arena, "%s%s%s%s", unit_name(i), mark, is ? " = " : "", is ? is : ""));
+    vec_push(out->arena, &cells, arena_printf(out->arena, "%s%s%s%s", name_of_unit(i), mark, is ? " = " : "", is ? is : ""));
   }
   uint32_t rows = (cells.n + COLUMNS - 1) / COLUMNS;
   sb_puts(out, "\nThe table\n---------\n");
   for (uint32_t r = 0; r < rows; r++) {
     const char *left = cells.at[r], *right = r + rows < cells.n ? cells.at[r + rows] : NULL;
     sb_printf(out, "    %s", left);
-    for (size_t w = strlen(left); right && w < WIDE; w++) sb_putc(out, ' ');
+    for (size_t w = page_columns(left); right && w < WIDE; w++) sb_putc(out, ' ');
     sb_printf(out, "%s\n", right ? right : "");
   }
   if (plain) sb_puts(out, "    (* takes no SI prefix)\n");

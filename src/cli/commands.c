@@ -24,7 +24,14 @@ static const CommandRow commands[] = {
    "simulate and show the motion, as one HTML file",
    "Runs the model and writes its motion as one HTML file, which needs no network and no other file: space plays and "
    "pauses, arrow keys step, the slider scrubs. The options of `lagc run` are options here too."},
-  {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--no-gsl]", "make a simulator",
+  {CMD_MODES, "modes", NULL, "MODEL [SCENE] [name=value ...] [--json]", "equilibrium, stability, frequencies, shapes and damping",
+   "Finds the equilibrium next to the scene's start, says whether it is stable and by which argument, and prints small motion "
+   "about it: frequencies, damping, shapes. The linearisation is exact.\n\n"
+   "Velocities of the start do not matter. In a shape the coordinate with the largest kinetic energy is 1 of its declared "
+   "unit; 0.5@-90 is an amplitude of 0.5, a quarter of a period behind it. A zero mode is `free` where no force arises far "
+   "along it. Needs GSL. Exit status 3: no equilibrium was found.\n\n"
+   "  name=value            a parameter, another start (th=3), an input to hold"},
+  {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--no-gsl] [--with linear]", "make a simulator",
    "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options, which are those of "
    "`lagc run`."},
   {CMD_HEADER, "header", "embedding", "MODEL [SCENE] -o FILE.h", "write one C header to embed",
@@ -35,7 +42,7 @@ static const CommandRow commands[] = {
    "  #define PEND_IMPLEMENTATION\n"
    "  #include \"pend.h\"\n\n"
    "The others include it without the #define. Its first lines say how it is used."},
-  {CMD_EMIT, "emit", NULL, "MODEL [SCENE] [-o FILE.c]", "write C for the runtime",
+  {CMD_EMIT, "emit", NULL, "MODEL [SCENE] [--with linear] [-o FILE.c]", "write C for the runtime",
    "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h). What integrates them is "
    "liblag, whose interface is lag.h:\n\n"
    "  cc main.c pendulum.c $(pkg-config --cflags --libs liblag)"},
@@ -55,7 +62,7 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 #define C(name) (1u << CMD_##name)
 #define SIMULATE (C(RUN) | C(PLOT) | C(ANIMATE))
-#define MODELS (SIMULATE | C(CHECK) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT))
+#define MODELS (SIMULATE | C(MODES) | C(CHECK) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT))
 #define OWN(f) 0, offsetof(Options, f)
 #define PASSED 1, 0
 
@@ -102,6 +109,7 @@ static const OptionRow options[] = {
   {"--no-rods", NULL, NULL, TAKES_NOTHING, "", C(RUN) | C(PLOT), PASSED, "points only"},
   {"--trace", NULL, NULL, TAKES_NOTHING, "", C(RUN) | C(PLOT), PASSED, "the path of the last point"},
   {"--json", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report as one JSON object"},
+  {"--json", NULL, NULL, TAKES_NOTHING, "", C(MODES), PASSED, "all modes, to 17 digits, as one JSON object"},
   {"--quiet", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "no report"},
   {"--save-state", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED, "write the complete state at the end;"},
   {"--resume", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED,
@@ -110,6 +118,7 @@ static const OptionRow options[] = {
   {"--define", "-D", "CONST=VALUE", TAKES_DEFINE, "", MODELS, OWN(defines), "gives a `const` of the model another value"},
   {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(BUILD), OWN(no_gsl),
    "leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole"},
+  {"--with", NULL, "linear", TAKES_CHOICE, "linear", C(BUILD) | C(EMIT), OWN(with), "with the exact linearisation of the model"},
   {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns prog", MODELS, OWN(dump), "what the stages of the compiler yield: ast, model, eqns, prog"},
   {"--help", "-h", NULL, TAKES_NOTHING, "", MODELS | C(COMPLETION), OWN(help), "this help"},
 };
@@ -152,5 +161,5 @@ const OptionRow *option_find(Command c, const char *arg, const char **value) {
   return NULL;
 }
 
-int command_simulates(Command c) { return (SIMULATE & 1u << c) != 0; }
+int command_simulates(Command c) { return ((SIMULATE | C(MODES)) & 1u << c) != 0; }
 int command_reads_model(Command c) { return (MODELS & 1u << c) != 0; }

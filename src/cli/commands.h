@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 typedef enum {
-  CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_BUILD, CMD_HEADER, CMD_EMIT,
+  CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES, CMD_BUILD, CMD_HEADER, CMD_EMIT,
   CMD_HELP, CMD_COMPLETION, CMD_VERSION, CMD_COMPLETE, CMD_COUNT
 } Command;
 
@@ -59,7 +59,7 @@ const CommandRow *command_find(Command c);
  * stands in the same word after it, or NULL. */
 const OptionRow *option_find(Command c, const char *arg, const char **value);
 
-/* Whether the command runs a simulator; whether it reads a model at all. */
+/* Whether the command runs a simulator: then name=value is a setting; whether it reads a model at all. */
 int command_simulates(Command c);
 int command_reads_model(Command c);
 

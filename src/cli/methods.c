@@ -12,17 +12,17 @@ static const char program[] =
   "}\n\n"
   "int main(int argc, char **argv) {\n"
   "  static const lag_program none = {.name = \"\", .doc = \"\", .source = \"\", .effects = \"\"};\n"
-  "  if (argc > 1) return lag_app_main(argc, argv, &none, %s);\n"
+  "  const lag_extras *extras = %s;\n"
+  "  if (argc > 1) return lag_app_main(argc, argv, &none, extras);\n"
   "  list(lag_methods, lag_nmethods);\n"
-  "  list(%s);\n"
+  "  if (extras) list(extras->methods, extras->nmethods);\n"
   "  return 0;\n"
   "}\n";
 
 const char *methods_program(Arena *a, const char *argv0, int want_gsl, const char **error) {
   Toolchain tools;
   if (!toolchain_find(a, argv0, want_gsl, &tools, error)) return NULL;
-  const char *extra = tools.gsl ? "lag_gsl_methods, lag_gsl_nmethods" : "NULL, 0";
-  SourceText text = {"methods.c", arena_printf(a, program, extra, extra)};
+  SourceText text = {"methods.c", arena_printf(a, program, tools.gsl ? "&lag_gsl" : "NULL")};
   const char *path = toolchain_cached(a, &tools, &text, 1);
   return file_runs(path) || toolchain_build(a, &tools, &text, 1, path, error) ? path : NULL;
 }

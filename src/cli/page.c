@@ -9,6 +9,8 @@ static size_t width(const char *text, size_t n) {
   return w;
 }
 
+size_t page_columns(const char *text) { return width(text, strlen(text)); }
+
 static void put_spaces(StrBuf *out, size_t n) {
   while (n--) sb_putc(out, ' ');
 }

@@ -6,6 +6,9 @@
 
 enum { PAGE_WIDTH = 80 };
 
+/* Columns that a text takes. */
+size_t page_columns(const char *text);
+
 /* Puts the words of text[n], one space between two; the line that is under way has `column` columns, the lines
  * after it begin with `indent` spaces. Ends with a newline. */
 void page_words(StrBuf *out, const char *text, size_t n, size_t column, size_t indent);

@@ -14,6 +14,7 @@ Prog *lower_energy(const Eqns *e);  /* out 0: e[2] */
 Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
 Prog *lower_action(const Eqns *e, uint32_t event); /* out 0, 1, 2: q1, v1, z1; only what is set */
 Prog *lower_inputs(const Eqns *e);  /* out 0: u[nu] */
+Prog *lower_linear(const Eqns *e, Partials dr); /* out 0: dr, in the order of the entries, out 1: M, likewise; reads q'' */
 Prog *lower_outputs(const Eqns *e); /* out 0: out[nout] */
 Prog *lower_param(const Eqns *e, uint32_t i); /* out 0: p[i], of earlier parameters */
 Prog *lower_start(const Eqns *e);   /* out 0, 1, 2: q, v, z; only what a start gives */
@@ -22,5 +23,8 @@ Prog *lower_start(const Eqns *e);   /* out 0, 1, 2: q, v, z; only what a start g
  * file with the same effects in use. source: the file's path as the user gave it. */
 IrUnit *unit_new(const Eqns *e, const char *source);
 void unit_add_scene(IrUnit *u, const Eqns *e);
+
+/* Adds the exact linearisation, which a model pays for only when something needs it. */
+void unit_add_linear(IrUnit *u, Eqns *e);
 
 #endif

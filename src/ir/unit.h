@@ -9,6 +9,7 @@ typedef struct {
   const char *name, *unit; /* as the user wrote them */
   double factor;
   int periodic, sign;
+  double offset;
 } IrVar;
 
 typedef struct {
@@ -42,6 +43,11 @@ typedef struct {
   VEC(IrMonitor) monitors;
 } IrScene;
 
+/* Place of an entry of a sparse matrix. */
+typedef struct {
+  uint32_t row, col;
+} IrEntry;
+
 typedef struct {
   Arena *arena;
   const char *name, *doc, *source, *effects, *all_effects;
@@ -49,8 +55,9 @@ typedef struct {
   VEC(IrVar) q, z, p, u;
   VEC(IrEvent) events;
   const Prog *accel, *energy, *event_values, *inputs;
+  const Prog *linear;           /* NULL: not asked for */
+  VEC(IrEntry) linear_dr, linear_mass; /* what its outputs 0 and 1 are */
   VEC(IrScene) scenes;
 } IrUnit;
-
 
 #endif

@@ -112,6 +112,13 @@ static int lagrange_definite(const Eqns *e, const LinearSystem *s) {
 /* Above this many entries, what lets share is worth more than what a short form saves. */
 enum { SIMPLIFY_MAX_ENTRIES = 300 };
 
+const Expr *lagrange_short_forms(const Eqns *e, const Expr *entries, uint32_t n) {
+  if (n > SIMPLIFY_MAX_ENTRIES) return entries;
+  Expr *after = ARENA_ARRAY(e->m->arena, Expr, n + 1);
+  for (uint32_t k = 0; k < n; k++) after[k] = simplify(e->g, entries[k]);
+  return expr_ops(e->g, after, n) <= expr_ops(e->g, entries, n) ? after : entries;
+}
+
 /* Operations of a system: its entries, evaluated together, and its solution. */
 static uint64_t system_ops(Eqns *e, LinearSystem *s) {
   VEC(Expr) roots = {0};

@@ -77,8 +77,8 @@ static Words expected_words(const Parse *cx, const TokKind *set, int n) {
   for (int i = 0; i < n; i++) {
     TokKind k = set[i];
     if (in_a_group(set, n, k) || k == TOK_FINISH || k == TOK_END || k == TOK_COUNT) continue;
-    /* an index or a unit could follow many a name: they say nothing */
-    if (k == TOK_INDEX || (k == TOK_UNIT && n > 1)) continue;
+    /* an index, a type or a unit could follow many a name: they say nothing */
+    if (k == TOK_INDEX || ((k == TOK_UNIT || k == TOK_COLON) && has(set, n, TOK_UNIT) && n > 1)) continue;
     const char *word = token_word(k);
     int phrase = k == TOK_STRING || k == TOK_UNIT;
     add_word(&w, phrase ? word : arena_printf(cx->ast->arena, "`%s`", word));
