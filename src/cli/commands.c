@@ -80,7 +80,7 @@ static const OptionRow options[] = {
   {"--phase", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(phase), "its rate against it: --phase th draws th' against th"},
   {"--points", NULL, "'X,Y X,Y'", TAKES_EXPR, "", C(ANIMATE), OWN(points),
    "the points to draw, each two expressions, joined by rods in this order. Without it: the model's x,y; or x1,y1 x2,y2 ...; or "
-   "px,py; or what its only coordinate gives"},
+   "px,py; or what its only coordinate gives; or the vectors among its coordinates"},
   {"--from", NULL, "'X,Y'", TAKES_EXPR, "", C(ANIMATE), OWN(from), "where the first rod begins; default: the origin"},
   {"--no-rods", NULL, NULL, TAKES_NOTHING, "", C(ANIMATE), OWN(no_rods), "points only"},
   {"--trace", NULL, NULL, TAKES_NOTHING, "", C(ANIMATE), PASSED, "the path of the last point, fading"},
