@@ -114,6 +114,16 @@ static const char *after_method(const Parse *cx) {
   return cx->before.name ? arena_printf(cx->ast->arena, "options stand in parentheses: `method %s(step = 0.01)`", cx->before.name) : NULL;
 }
 
+/* model, scene, effect: a name, a description, a block. */
+static const char *misshapen_title(const Parse *cx, const TokKind *set, int n) {
+  TokKind word = cx->filter->word;
+  if (word != TOK_MODEL && word != TOK_SCENE && word != TOK_EFFECT) return NULL;
+  if (cx->before.kind == word) return arena_printf(cx->ast->arena, "a name comes first: `%s NAME \"what it is\"`", token_word(word));
+  if (has(set, n, TOK_STRING) && cx->current.kind != TOK_END && cx->current.kind != TOK_COLON)
+    return "a name has letters, digits and `_`; a description stands in quotes";
+  return NULL;
+}
+
 static const char *unexpected_assign(const Parse *cx, const TokKind *set, int n) {
   TokKind word = cx->filter->word;
   if (has(set, n, TOK_EQ)) return "write `==` to compare";
@@ -132,8 +142,8 @@ static const char *unexpected_comparison(const Parse *cx, const TokKind *set, in
 const char *slip_token(const Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current, *b = &cx->before;
   Arena *a = cx->ast->arena;
-  const char *comma = missing_comma(cx, set, n);
-  if (comma) return comma;
+  const char *comma = missing_comma(cx, set, n), *title = comma ? NULL : misshapen_title(cx, set, n);
+  if (comma || title) return comma ? comma : title;
   if (cx->filter->word == TOK_METHOD && has(set, n, TOK_LPAREN)) return after_method(cx);
   switch (t->kind) {
     case TOK_COMMA: return has(set, n, TOK_IN) ? "a range is written `i in 1..N`" : NULL;
@@ -153,6 +163,7 @@ const char *slip_token(const Parse *cx, const TokKind *set, int n) {
     case TOK_IN: case TOK_AND: case TOK_OR: case TOK_NOT:
       return has(set, n, TOK_IDENT) ? arena_printf(a, "`%s` is a reserved word", token_word(t->kind)) : NULL;
     case TOK_IDENT: case TOK_NUMBER: case TOK_LPAREN: case TOK_SUM: case TOK_PRODUCT:
+      if (t->kind == TOK_LPAREN && has(set, n, TOK_ASSIGN)) return "a start is written `start x = 1, x' = 0`";
       return has(set, n, TOK_TIMES) && ends_operand(b) ? missing_operator(cx) : NULL;
     default: return NULL;
   }
