@@ -66,7 +66,7 @@ static int check_choices(Arena *a, const OptionRow *row, const char *value, cons
     ok = is_choice(row->hint, s, n);
     s += n + (s[n] == ',');
   }
-  if (!ok) *error = arena_printf(a, "%s takes %s%s", row->name, listed(a, row->hint), several ? ", with commas between several" : "");
+  if (!ok) *error = arena_printf(a, "%s takes %s%s, not `%s`", row->name, listed(a, row->hint), several ? ", with commas between several" : "", value);
   return ok;
 }
 
