@@ -165,6 +165,17 @@ static int is_local(const Symbol *s, const void *data) {
   return s->kind == SYM_LOCAL;
 }
 
+/* d(x, t) is 0, where somebody may have meant x'. */
+static void warn_no_rate(Eval *ev, const AstExpr *x, const Value *derivative) {
+  Builder *b = ev->b;
+  const AstExpr *of = ast_expr(b->ast, x->args), *by = ast_expr(b->ast, of->next);
+  if (by->kind != AST_NAME || strcmp(by->name, "t") != 0 || expr_is_num(b->g, value_of(ev, x->args)->e)) return;
+  for (uint32_t k = 0; k < parts_of(derivative); k++)
+    if (!expr_is_zero(b->g, derivative->at[k])) return;
+  diag_warning(b->diags, x->span, "this is 0: `d` is the partial derivative, and `%s` does not contain t itself", ast_short(b, x->args));
+  diag_help(b->diags, of->kind == AST_NAME ? "its rate is written `%s'`" : "its rate is written `(%s)'`", ast_short(b, x->args));
+}
+
 /* d(expr, name): a partial derivative. */
 static Value call_d(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
@@ -189,6 +200,7 @@ static Value call_d(Eval *ev, const AstExpr *x) {
     }
     r.at[k] = expr_diff(b->g, v->at[k], expr_sym_id(b->g, w->e));
   }
+  warn_no_rate(ev, x, &r);
   return r;
 }
 
@@ -213,7 +225,8 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
   int ambiguous;
   const Entity *e = scope_find(&b->scope, x->name, ev->effect, &ambiguous);
   diag_error(b->diags, x->op_span.end ? x->op_span : x->span, "unknown function `%s`", x->name);
-  Name near = strcmp(x->name, "ln") == 0 ? "log" : suggest(x->name, known, n);
+  Name near = suggest(x->name, known, n);
+  if (!e && advise_unknown_function(b, x->name)) return FAILED;
   if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
   else if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else diag_help(b->diags, "`lagc help functions` lists them; declare your own: `function %s(x) = ...`", x->name);

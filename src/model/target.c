@@ -79,9 +79,13 @@ static int row_elements(Builder *b, const AstExpr *list, const AstUnit *behind, 
 int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out) {
   const AstUnit *own;
   if (r->n == 2 && list_behind(b, list->args, &own)) return row_elements(b, list, behind, r, name, out);
-  if (!r->n || count_list(b, list) != count_in(r))
-    return report_count(b, list, "the list", !r->n ? arena_printf(b->arena, "`%s` is no family", name)
-                                                   : arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)count_in(r)));
+  if (!r->n) {
+    report_count(b, list, "the list", arena_printf(b->arena, "`%s` is no family", name));
+    diag_help(b->diags, "a list gives a family its members; a vector is written `(a, b)`");
+    return 0;
+  }
+  if (count_list(b, list) != count_in(r))
+    return report_count(b, list, "the list", arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)count_in(r)));
   for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) vec_push(b->arena, out, ((Element){i, behind}));
   return 1;
 }
