@@ -9,12 +9,16 @@
 
 #include "base/diag.h"
 #include "cli/files.h"
+#include "cli/methods.h"
 #include "cli/options.h"
+#include "cli/shells.h"
 #include "cli/toolchain.h"
+#include "complete.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
 #include "emit/emit_model.h"
+#include "help.h"
 #include "ir/lower.h"
 #include "mech/eqns.h"
 #include "mech/expect.h"
@@ -116,7 +120,7 @@ static Eqns *derive_asked(Compiler *c, const char *scene) {
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
 static IrUnit *lower_scene(Compiler *c, Eqns *e) {
   IrUnit *u = unit_new(e, c->o.file);
-  if (c->o.linear) unit_add_linear(u, e);
+  if (c->o.with) unit_add_linear(u, e);
   unit_add_scene(u, e);
   const char *wrong = prog_verify(u->accel);
   if (wrong) {
@@ -191,7 +195,7 @@ static int lower_all(Compiler *c, Units *units) {
       if (unit_shares(units->at[k], fresh)) home = units->at[k];
     if (!home) {
       vec_push(c->arena, units, home = fresh);
-      if (c->o.linear) unit_add_linear(home, e);
+      if (c->o.with) unit_add_linear(home, e);
     }
     unit_add_scene(home, e);
   }
@@ -315,9 +319,29 @@ static int do_check(Compiler *c) {
   return c->diags->errors ? STATUS_MODEL : status;
 }
 
+/* The runtime has them: asked with `--method help`, it prints its table. */
+static int help_methods(Compiler *c) {
+  const char *error = NULL, *path = methods_program(c->arena, c->argv0, 1, &error);
+  char *argv[] = {"lagc", "--method", "help", NULL};
+  if (!path) return fail_usage(error);
+  execv(path, argv);
+  return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
+}
+
 static int do_help(Compiler *c) {
   StrBuf out = strbuf(c->arena);
-  sb_puts(&out, options_help(c->o.topic));
+  const char *topic = c->o.topic;
+  Name near;
+  if (topic && strcmp(topic, "methods") == 0) return help_methods(c);
+  if (help_print(&out, topic, &near)) return write_out(c, NULL, &out);
+  return fail_usage(near ? arena_printf(c->arena, "no help on `%s`: did you mean `%s`?", topic, near)
+                         : arena_printf(c->arena, "no help on `%s`; `lagc help` lists the topics", topic));
+}
+
+static int do_completion(Compiler *c) {
+  StrBuf out = strbuf(c->arena);
+  if (c->o.command == CMD_COMPLETE) complete(&out, c->o.rest.at, c->o.rest.n, c->argv0);
+  else completion_script(&out, c->o.topic);
   return write_out(c, NULL, &out);
 }
 
@@ -329,7 +353,7 @@ static int do_command(Compiler *c) {
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
     case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: return do_run(c);
-    case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;
+    case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
   }
   return STATUS_USAGE;
 }
@@ -351,6 +375,7 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   c->argv0 = argv[0];
   if (!options_read(c->arena, argc, argv, &c->o, &error)) return fail_usage(error);
   if (c->o.command == CMD_HELP) return do_help(c);
+  if (c->o.command == CMD_COMPLETION || c->o.command == CMD_COMPLETE) return do_completion(c);
   if (c->o.command == CMD_VERSION) {
     puts("lagc " LAGC_VERSION);
     return fflush(stdout) == 0 ? STATUS_OK : fail_usage("cannot write standard output");

@@ -81,11 +81,11 @@ static int unknown_option(const Args *a, const char *text, size_t n)
 {
   char name[64];
   const char *best = NULL;
-  int least = 4;
+  int least = LAG_FAR;
 
   snprintf(name, sizeof name, "%.*s", (int)(n < 60 ? n : 60), text);
   for (int i = 0; i < NOPTIONS; i++) {
-    int d = lag_distance(name, options[i].name);
+    int d = lag_near(name, options[i].name);
     if (d < least) {
       least = d;
       best = options[i].name;

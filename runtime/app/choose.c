@@ -38,19 +38,20 @@ static int choose_scene(App *app)
   return name ? no_scene(app, name) : app_error(&app->args, "this program has no scenes");
 }
 
+/* Method i of this program; NULL past the last. */
+static const lag_method *method_at(const App *app, int i)
+{
+  return i < lag_nmethods ? lag_methods[i] : i - lag_nmethods < app->extras.nmethods ? app->extras.methods[i - lag_nmethods] : NULL;
+}
+
 const lag_method *app_find_method(const App *app, const char *name)
 {
-  for (int i = 0; i < lag_nmethods; i++) {
-    if (strcmp(lag_methods[i]->name, name) == 0) {
-      return lag_methods[i];
-    }
+  const lag_method *m = NULL;
+
+  for (int i = 0; (m = method_at(app, i)) != NULL && strcmp(m->name, name) != 0;) {
+    i++;
   }
-  for (int i = 0; i < app->extras.nmethods; i++) {
-    if (strcmp(app->extras.methods[i]->name, name) == 0) {
-      return app->extras.methods[i];
-    }
-  }
-  return NULL;
+  return m;
 }
 
 static void list_method(const lag_method *m, FILE *f)
@@ -82,11 +83,8 @@ void app_list_methods(const App *app, FILE *f)
 {
   fputs("methods (the first is the default; dense: order between steps; separable: constant mass matrix and\n"
         "accelerations that do not depend on velocities):\n", f);
-  for (int i = 0; i < lag_nmethods; i++) {
-    list_method(lag_methods[i], f);
-  }
-  for (int i = 0; i < app->extras.nmethods; i++) {
-    list_method(app->extras.methods[i], f);
+  for (int i = 0; method_at(app, i); i++) {
+    list_method(method_at(app, i), f);
   }
 }
 
@@ -141,6 +139,27 @@ static int parse_method(const Args *a, Choice *c)
   return 0;
 }
 
+/* The one that was meant, or all. */
+static int unknown_method(const App *app, const char *name)
+{
+  const lag_method *near = NULL, *m;
+  int least = LAG_FAR;
+
+  for (int i = 0; (m = method_at(app, i)) != NULL; i++) {
+    int d = lag_near(name, m->name);
+    if (d < least) {
+      least = d;
+      near = m;
+    }
+  }
+  if (near) {
+    return app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near->name);
+  }
+  app_error(&app->args, "unknown method %s", name);
+  app_list_methods(app, stderr);
+  return EXIT_USAGE;
+}
+
 static int choose_method(App *app)
 {
   const Args *a = &app->args;
@@ -152,9 +171,7 @@ static int choose_method(App *app)
   }
   const lag_method *m = app_find_method(app, c.name);
   if (!m) {
-    app_error(a, "unknown method %s", c.name);
-    app_list_methods(app, stderr);
-    return EXIT_USAGE;
+    return unknown_method(app, c.name);
   }
   if (app->scene->method && strcmp(app->scene->method, c.name) == 0 && c.n == 0) {
     for (int i = 0; i < app->scene->noptions && c.n < MOST_OPTIONS - 1; i++) {

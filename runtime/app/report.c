@@ -56,7 +56,9 @@ static void energy(const App *app, const lag_stats *st, FILE *f)
   if (!app->scene->model->energy || app->scene->model->nq == 0) {
     return;
   }
-  if (app->scene->model->flags & LAG_CONSERVES_ENERGY) {
+  if (!isfinite(st->energy_drift)) {
+    fputs("energy: not finite\n", f);
+  } else if (app->scene->model->flags & LAG_CONSERVES_ENERGY) {
     fprintf(f, "energy drift: %.3g (relative to max(|E0|, max(|p.v| + |L|)))\n", st->energy_drift);
   } else {
     fprintf(f, "energy change: %.3g (not conserved: forces or explicit time)\n", st->energy_drift);

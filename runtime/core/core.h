@@ -110,8 +110,14 @@ int lag_find(const lag_model *model, const char *name, int *index, const lag_var
 int lag_is_member(const char *var, const char *family, size_t length);
 /* The known name nearest to `name` into best; 0 when none is near. */
 int lag_nearest(const lag_model *model, const char *name, char *best, size_t nbest);
+/* Member or component k of what is called `name` ("th": "th[1]", "th'": "th[1]'", "r": "r.x"), into part; 0 past the last. */
+int lag_part(const lag_model *model, const char *name, int k, char *part, size_t npart);
 /* Edits (insert, delete, replace, swap) between two words. */
 int lag_distance(const char *a, const char *b);
+/* The same where they may be a slip of the finger; LAG_FAR where there are so many, or one letter stands for another, that
+ * it is another name. */
+enum { LAG_FAR = 1000 };
+int lag_near(const char *name, const char *known);
 
 /* For app/: the output grid that is saved with the run. */
 double *lag_sim_rows(lag_sim *sim);

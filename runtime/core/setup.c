@@ -270,6 +270,9 @@ static int unknown_name(lag_sim *s, const char *name)
   const lag_model *m = s->scene->model;
   char near[64];
 
+  if (lag_part(m, name, 0, near, sizeof near)) {
+    return lag_fail(s, LAG_EINVAL, "%s has parts: set %s, and so on", name, near);
+  }
   return lag_nearest(m, name, near, sizeof near)
              ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name, m->name,
                         near)

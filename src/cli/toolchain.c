@@ -68,8 +68,7 @@ static char *read_fd(Arena *a, int fd) {
   return arena_strdup(a, sb_text(&b));
 }
 
-/* Runs a program; its output and messages go to *said. Returns its exit status, or -1. */
-static int run(Arena *a, char *const *argv, char **said) {
+int toolchain_run(Arena *a, char *const *argv, char **said) {
   int pipe_fd[2];
   if (pipe(pipe_fd) != 0) return -1;
   pid_t pid = fork();
@@ -114,7 +113,7 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   vec_push(a, &argv, arena_strdup(a, "-lm"));
   vec_push(a, &argv, NULL);
   char *said = NULL;
-  int status = run(a, argv.at, &said);
+  int status = toolchain_run(a, argv.at, &said);
   if (status == 0) return 1;
   if (status == 127) *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
   else *error = arena_printf(a, "the C compiler `%s` failed:\n%s", t->cc, said ? said : "");

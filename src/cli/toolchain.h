@@ -25,6 +25,9 @@ int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, cons
  * well. 0, with *error (it may contain the compiler's own messages), on failure. */
 int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output, const char **error);
 
+/* Runs a program; its output and messages go to *said. Returns its exit status, or -1. */
+int toolchain_run(Arena *a, char *const *argv, char **said);
+
 /* The path of the cached simulator for these texts: named by their content and the runtime's. */
 const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n);
 

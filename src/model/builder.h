@@ -278,6 +278,8 @@ void check_sign(Builder *b, const Param *p, Span span);
 /* advice.c: adds a way out to the message about an unknown name, or an unknown `effect.name`. */
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare);
 void advise_unknown_member(Builder *b, Name effect, Name name);
+/* The same of a function that other languages, or books, have; 0 when it is none. */
+int advise_unknown_function(Builder *b, Name name);
 
 /* The active statement that declares the name, before or after; NULL when there is none. */
 const AstStmt *declared_in_use(const Builder *b, Name name, Name effect);

@@ -165,6 +165,9 @@ typedef struct {
   struct Builder *builder; /* what model_reresolve needs */
 } Model;
 
+/* Built-in function i; NULL past the end. */
+const char *function_name(size_t i);
+
 /* Appends a listing, for --dump=model. */
 void model_dump(const Model *m, StrBuf *out);
 

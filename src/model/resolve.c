@@ -118,7 +118,8 @@ int operand_fits(Eval *ev, const AstExpr *x, AstId i) {
   }
   if (v->n && !takes_vectors(ev, x)) {
     diag_error(b->diags, ast_expr(b->ast, i)->span, "`%s` is %s, and a number is wanted here", ast_short(b, i), shape_text(b, v->n));
-    diag_help(b->diags, "its components are `.x`, `.y`%s; `dot(a, b)` and `norm(a)` are numbers", v->n > 2 ? ", `.z`" : "");
+    if (x->kind == AST_POW && i == x->a) diag_help(b->diags, "the square of a vector is `dot(a, a)`, its length `norm(a)`");
+    else diag_help(b->diags, "its components are `.x`, `.y`%s; `dot(a, b)` and `norm(a)` are numbers", v->n > 2 ? ", `.z`" : "");
     return 0;
   }
   return !v->point || point_fits(ev, x, i);
@@ -325,6 +326,8 @@ static Value evaluate(Builder *b, AstId id, Context where, Name effect) {
 Value resolve(Builder *b, AstId id, Context where, Name effect) {
   if (!id) return FAILED;
   Value v = evaluate(b, id, where, effect);
+  if (!v.e && !b->diags->errors) /* a bug; but nothing a user wrote is left out in silence */
+    diag_error(b->diags, ast_expr(b->ast, id)->span, "internal error: `%s` has no value, and no reason is known", ast_short(b, id));
   if (!v.e || !v.condition) return v;
   report_condition(b, id);
   return FAILED;

@@ -84,9 +84,13 @@ int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const 
     diag_error(b->diags, row->span, "a list in a list gives a row of a family with two indices, and `%s` has %s", name, r->n ? "one" : "none");
     return 0;
   }
-  if (!r->n || count_list(b, list) != count_in(r))
-    return report_count(b, list, "the list", !r->n ? arena_printf(b->arena, "`%s` is no family", name)
-                                                   : arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)count_in(r)));
+  if (!r->n) {
+    report_count(b, list, "the list", arena_printf(b->arena, "`%s` is no family", name));
+    diag_help(b->diags, "a list gives a family its members; a vector is written `(a, b)`");
+    return 0;
+  }
+  if (count_list(b, list) != count_in(r))
+    return report_count(b, list, "the list", arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)count_in(r)));
   for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) vec_push(b->arena, out, ((Element){i, behind}));
   return 1;
 }

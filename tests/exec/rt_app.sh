@@ -136,7 +136,8 @@ ok "negative step" says 2 "--step 1e-3" --step -1
 ok "empty span" says 2 "nothing to compute" --until 0
 ok "bad every" says 2 "must be positive" --every 0
 ok "unknown option" says 2 "did you mean --method?" --methd rk4
-ok "unknown method lists methods" says 2 "rk4 " --method rk9
+ok "unknown method" says 2 "unknown method rk9; did you mean rk4?" --method rk9
+ok "a method that is near none lists methods" says 2 "rk4 " --method simpson
 ok "method that does not fit" says 2 "rk45 and dop853 can integrate it" drop --method verlet
 ok "unknown option of a method" says 2 "no option" --method "rk4(stp=1)"
 ok "unknown scene says how to build it" says 2 "lagc run models/rt_sim.lag workshop" workshop

@@ -165,12 +165,27 @@ is "with its rod" 'true false true [["0", "l"], ["x", "y"]]' "$(hook b.html)"
 check "at most 2000 frames" a "$p" --every 0.001 -o b.html
 is "of 20001 rows" "1820" "$(sed -n '/^"v"/,/]}$/p' b.html | wc -l)"
 
+# A curve that hardly moves is flat in the terminal: the ends of its axis differ in the digits that are shown.
+flat() {
+  "$LAGC" run "$p" wide --until 1 --observe energy --sketch --quiet | awk '/^energy/ { on = 1 } on && /┤/ { v[n++] = $1 } END { exit !(n == 2 && v[0] != v[1]) }'
+}
+check "a constant, in a terminal" flat
+
 check "no points" says 2 'no point is given' animate "$p" --points ''
 cat >two.lag <<'END'
 model two "Two coordinates without a place"
 coord a, b
 lagrangian = (a'^2 + b'^2)/2
 END
+cat >vectors.lag <<'END'
+model vectors
+const N = 2
+coord r: vec2 [m], b[N]: vec3 [m]
+lagrangian = dot(r', r')/2 + sum(i in 1..N, dot(b[i]', b[i]')/2)
+scene s { start r' = (1, 2); span 1 }
+END
+check "vectors among the coordinates are points" says 0 'points r.x,r.y b[1].x,b[1].y b[2].x,b[2].y;' animate vectors.lag
+check "as many as there are" says 0 'points r.x,r.y b[1].x,b[1].y;' animate vectors.lag -D N=1
 check "which points?" says 2 'which points?' animate two.lag
 check "half a point" says 2 'each point is x,y' animate "$p" --points 'x,y l' -o none.html
 check "three numbers" says 2 'each point is x,y' animate "$p" --points 'x,y,l' -o none.html
