@@ -7,6 +7,7 @@
 #include "cli/page.h"
 #include "cli/reference.h"
 #include "model/model.h"
+#include "syntax/parse.h"
 
 enum { TERMS = 24 }; /* where meanings begin in lists */
 
@@ -190,6 +191,10 @@ int help_print(StrBuf *out, const char *topic, Name *near) {
   found |= put_named_options(out, topic, found);
   if (strcmp(topic, "units") == 0) put_units(out);
   else found |= put_unit(out, topic, found);
+  if (!found && parse_advice(topic)) {
+    page_words(out, parse_advice(topic), strlen(parse_advice(topic)), 0, 0);
+    found = 1;
+  }
   if (!found) *near = nearest(out->arena, topic);
   return found;
 }

@@ -59,6 +59,8 @@ const char *slip_word(const char *word, unsigned where) {
   return NULL;
 }
 
+const char *parse_advice(const char *word) { return slip_word(word, W_ANY); }
+
 /* ---- tokens ---- */
 
 static int has(const TokKind *set, int n, TokKind kind) {
