@@ -32,6 +32,7 @@ case $LAGC in /*) lagc=$LAGC ;; *) lagc=$(pwd)/$LAGC ;; esac
 ln -s "$(pwd)/models" "$TMP/models"
 sed -n 's/^lagc //p' models/README.md | grep -v NAME >"$TMP/commands"
 while read -r words; do
-  check "lagc $words" sh -c "cd $TMP && $lagc $words --quiet"
+  case $words in check* | derive* | modes*) quiet= ;; *) quiet=--quiet ;; esac
+  check "lagc $words" sh -c "cd $TMP && $lagc $words $quiet"
 done <"$TMP/commands"
 tap_end

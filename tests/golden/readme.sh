@@ -114,7 +114,7 @@ fi
 
 links() {
   for page in README.md src/README.md models/README.md grammar/LANGUAGE.md; do
-    grep -o ']([^)#]*)' "$page" | sed 's/^](//; s/)$//' | while read -r link; do
+    sed 's/`[^`]*`//g' "$page" | grep -o ']([^)#]*)' | sed 's/^](//; s/)$//' | while read -r link; do
       case $link in *://*) continue ;; esac
       [ -e "$(dirname "$page")/$link" ] || echo "$page: no $link"
     done
