@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/points.h"
 #include "syntax/parse.h"
@@ -119,12 +120,25 @@ static int convert_time(Converter *c, uint32_t *i) {
   return 1;
 }
 
+/* Whether the word is an option whose value is the next one: in `--method rk4(step=0.01)` that is no setting. */
+static int takes_next(const Options *o, const char *word) {
+  const char *joined = NULL;
+  const OptionRow *row = option_find(o->command, word, &joined);
+  return row && row->takes != TAKES_NOTHING && !joined;
+}
+
 static int convert_units(Ast *ast, const Options *o) {
   Converter c = {.o = o, .ast = ast, .arena = ast->arena};
   int ok = 1;
   for (uint32_t i = 0; i < o->rest.n; i++) {
-    if (o->rest.at[i][0] == '-') ok &= convert_time(&c, &i);
-    else if (strchr(o->rest.at[i], '=')) ok &= convert_setting(&c, &o->rest.at[i]);
+    const char *word = o->rest.at[i];
+    uint32_t at = i;
+    if (word[0] != '-') {
+      if (strchr(word, '=')) ok &= convert_setting(&c, &o->rest.at[i]);
+      continue;
+    }
+    ok &= convert_time(&c, &i);
+    if (i == at && takes_next(o, word)) i++;
   }
   return ok;
 }

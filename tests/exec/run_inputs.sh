@@ -86,7 +86,7 @@ near "in quotes" 1e-11 -0.0875 "$(last "$m" push --until 5 "u=\"$dir/data/cubic.
 near "of an effect" 1e-12 4 "$(last "$m" windy 'wind.gust=2*2 [N]')"
 check "a formula that is wrong" says 1 '^u=:1:1: error: this value is in \[m\]' "$LAGC" run "$m" 'u=2 [m]'
 check "a table that is not there" says 1 'cannot read .*nothing.csv' "$LAGC" run "$m" u=nothing.csv
-check "a parameter takes numbers" says 2 '"2\*3" is not a number' "$LAGC" run "$m" 'm=2*3'
+check "a parameter takes numbers" says 2 '"2\*x" is not a number' "$LAGC" run "$m" 'm=2*x'
 
 # A pulse in one row of 201 in 100 s of rest. The spline of 1 in one row and 0 in all others has the area of one gap:
 # m x' = 0.5.
