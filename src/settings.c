@@ -45,7 +45,7 @@ static int take(Ast *ast, const char *setting, GivenList *given) {
   return one.what && one.value;
 }
 
-static int take_inputs(Ast *ast, Options *o, GivenList *given, const char **error) {
+int settings_inputs(Ast *ast, Options *o, GivenList *given, const char **error) {
   uint32_t kept = 0;
   int ok = 1;
   for (uint32_t i = 0; i < o->rest.n; i++) {
@@ -127,7 +127,7 @@ static int takes_next(const Options *o, const char *word) {
   return row && row->takes != TAKES_NOTHING && !joined;
 }
 
-static int convert_units(Ast *ast, const Options *o) {
+int settings_units(Ast *ast, const Options *o) {
   Converter c = {.o = o, .ast = ast, .arena = ast->arena};
   int ok = 1;
   for (uint32_t i = 0; i < o->rest.n; i++) {
@@ -141,8 +141,4 @@ static int convert_units(Ast *ast, const Options *o) {
     if (i == at && takes_next(o, word)) i++;
   }
   return ok;
-}
-
-int settings_read(Ast *ast, Options *o, GivenList *given, const char **error) {
-  return take_inputs(ast, o, given, error) && convert_units(ast, o);
 }

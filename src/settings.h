@@ -8,8 +8,11 @@
 
 typedef VEC(Given) GivenList;
 
-/* Takes inputs with a formula or a table out of o->rest; puts numbers in place of what else has a unit (`th=90[deg]`,
- * `--until 2[min]`) or is a formula (`th=pi/3`). 0 on a mistake: *error says what it is, or it is in ast->diags. */
-int settings_read(Ast *ast, Options *o, GivenList *given, const char **error);
+/* Takes inputs with a formula or a table out of o->rest. 0 on a mistake: *error says what it is, or it is in ast->diags. */
+int settings_inputs(Ast *ast, Options *o, GivenList *given, const char **error);
+
+/* Puts numbers in place of what has a unit (`th=90[deg]`, `--until 2[min]`) or is a formula (`th=pi/3`). 0 on a mistake, which
+ * is in ast->diags. */
+int settings_units(Ast *ast, const Options *o);
 
 #endif

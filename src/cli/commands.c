@@ -14,9 +14,9 @@ static const CommandRow commands[] = {
    "Prints the equations of motion: momenta, M q'' = f, energy, and the operation count."},
   {CMD_RUN, "run", NULL, "MODEL [SCENE] [name=value ...] [options]", "simulate",
    "Builds the simulator (or takes it from the cache) and runs it.\n\n"
-   "  name=value            a parameter, a start (th=1.2, \"th'=0.5\", th='90[deg]', th=pi/3) or an input;\n"
-   "                        a bare number is in the declared unit; drag.c=0.2 for one of an effect,\n"
-   "                        m=3 for all of a family\n"
+   "  name=value            a parameter, a start (th=1.2, \"th'=0.5\", th='90[deg]',\n"
+   "                        th=pi/3) or an input; a bare number is in the declared\n"
+   "                        unit; drag.c=0.2 for one of an effect, m=3 for a family\n"
    "  u=FILE.csv            a table for the input u; 'u=2*sin(t/(1 [s]))' a formula"},
   {CMD_PLOT, "plot", NULL, "MODEL [SCENE] [name=value ...] [--x EXPR --y EXPR | --phase EXPR]", "simulate and draw, as SVG",
    "Runs the model and draws it: all outputs against time, or one quantity against another. "
@@ -119,7 +119,7 @@ static const OptionRow options[] = {
    "go on from there, with the same scene, method and values: results are those of an uninterrupted run, bit by bit"},
 
   {"--define", "-D", "CONST=VALUE", TAKES_DEFINE, "", MODELS, OWN(defines), "gives a `const` of the model another value"},
-  {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(BUILD), OWN(no_gsl),
+  {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(MODES) | C(BUILD), OWN(no_gsl),
    "leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole"},
   {"--with", NULL, "linear", TAKES_CHOICE, "linear", C(BUILD) | C(EMIT), OWN(with), "with the exact linearisation of the model"},
   {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns prog", MODELS, OWN(dump), "what the stages of the compiler yield: ast, model, eqns, prog"},

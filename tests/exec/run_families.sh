@@ -126,7 +126,7 @@ refused "r has parts: set r.x, and so on" run "$dir/vector.lag" r=1
 result "a vector has parts" $?
 refused "r' has parts: set r.x', and so on" run "$dir/vector.lag" "r'=1"
 result "and so has its velocity" $?
-refused "k[1] = -1: the model declares k[1] > 0" run "$dir/vector.lag" k=-1
+refused "k = -1: the model declares k[1] > 0" run "$dir/vector.lag" k=-1
 result "a family of the wrong sign" $?
 refused "r has parts, each an output of its own; name one: r.x" plot "$dir/vector.lag" --y r
 result "an output that is a vector" $?

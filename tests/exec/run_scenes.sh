@@ -97,9 +97,9 @@ near "of a velocity" 1e-12 8 "$(final 'r.y' "$m" vacuum "r.y'=8")"
 near "of a member" 1e-12 9 "$(final 'b\[2\].y' "$m" vacuum 'b[2].y=6')"
 near "of all members" 1e-12 6 "$(final 'b\[1\].y' "$m" vacuum 'b.y=6')"
 check "of the right sign" says 2 'declares m\[1\] > 0' "$LAGC" run "$m" m=-1
-check "a vector as a whole is refused" says 2 'did you mean r.x?' "$LAGC" run "$m" r=1
+check "a vector as a whole is refused" says 2 'r has parts: set r.x' "$LAGC" run "$m" r=1
 check "a member too many" says 2 'did you mean x\[1\]?' "$LAGC" run "$m" 'x[4]=1'
-check "an effect as a whole" says 2 'did you mean air.c?' "$LAGC" run "$m" drag air=1
+check "an effect as a whole" says 2 'air has parts: set air.c' "$LAGC" run "$m" drag air=1
 check "an effect that is off" says 2 'effect storm is not in scene drag' "$LAGC" run "$m" drag storm.w=1
 check "a constant" says 2 'write -D n=5' "$LAGC" run "$m" n=5
 # Energy at the end: half follows mr, unless it is set itself.
