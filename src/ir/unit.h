@@ -42,6 +42,15 @@ typedef struct {
   VEC(IrMonitor) monitors;
 } IrScene;
 
+/* What only some methods of integration need, and is not made for the others. */
+enum { WANT_VARIATION = 1 };
+
+/* An entry of the second derivatives: part as in mech/variation.h. */
+typedef struct {
+  int part;
+  uint32_t row, col;
+} IrSecond;
+
 typedef struct {
   Arena *arena;
   const char *name, *doc, *source, *effects, *all_effects;
@@ -49,6 +58,9 @@ typedef struct {
   VEC(IrVar) q, z, p, u;
   VEC(IrEvent) events;
   const Prog *accel, *energy, *event_values, *inputs;
+  unsigned wants;
+  const Prog *variation, *second; /* NULL unless WANT_VARIATION */
+  VEC(IrSecond) second_at;        /* what the values of `second` are */
   VEC(IrScene) scenes;
 } IrUnit;
 
