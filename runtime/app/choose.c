@@ -59,7 +59,7 @@ static void list_method(const lag_method *m, FILE *f)
     unsigned flag;
     const char *words;
   } properties[] = {{LAG_METHOD_SYMPLECTIC, ", symplectic"}, {LAG_METHOD_SYMMETRIC, ", symmetric"},
-                    {LAG_METHOD_SEPARABLE, "; separable models only"}, {LAG_METHOD_CONSERVATIVE, "; conservative models only"},
+                    {LAG_METHOD_SPLITS, "; explicit for separable models"}, {LAG_METHOD_CONSERVATIVE, "; conservative models only"},
                     {LAG_METHOD_NO_SAVE, "; cannot be saved"}};
 
   fprintf(f, "  %-16s order %2d, dense %2d, %s", m->name, m->order, m->dense_order,
