@@ -121,10 +121,14 @@ const lag_composition lag_compose_any8 = {
 int lag_compose_links(const lag_composition *c, double *part)
 {
   double before = 0;
+  int n = 2 * c->stages;
 
   for (int i = 0; i < c->stages; i++) {
     part[2 * i] = c->kick[i] - before;
     part[2 * i + 1] = before = c->drift[i] - part[2 * i];
   }
-  return 2 * c->stages - (before == 0.0);
+  for (int i = 0; i < n / 2 && c->order > 1; i++) {
+    part[n - 1 - i] = part[i]; /* symmetric to the last bit, whatever the digits of the table */
+  }
+  return n - (part[n - 1] == 0.0);
 }
