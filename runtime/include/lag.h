@@ -90,7 +90,7 @@ enum {
   LAG_METHOD_STEPS_TO = 32,    /* dense() is rough: must step exactly to each time of output */
   LAG_METHOD_NO_SAVE = 64,     /* work holds pointers: its state cannot be saved */
   LAG_METHOD_NO_STATES = 128,  /* refuses models with nz > 0 */
-  LAG_METHOD_SPLITS = 256      /* explicit for models with LAG_SEPARABLE, which then need no derivatives */
+  LAG_METHOD_SPLITS = 512      /* explicit for models with LAG_SEPARABLE, which then need no derivatives */
 };
 
 /* An option of a method. With choices (NULL-terminated) the value is the index of the choice. */
