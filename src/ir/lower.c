@@ -277,16 +277,11 @@ Prog *lower_accel(const Eqns *e) {
   return prog_tidy(l.p);
 }
 
-static int is_second(const Symbol *s, const void *data) {
-  (void)data;
-  return s->kind == SYM_ACC || s->kind == SYM_RATE;
-}
-
 /* Expressions that may contain q'' and z': the accelerations are computed first. */
 static void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   const Model *m = l->e->m;
   int needed = 0;
-  for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_contains(l->g, roots[i], is_second, NULL);
+  for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE);
   if (needed) {
     Slot *acc = ARENA_ARRAY(m->arena, Slot, l->e->n + 1);
     lower_solution(l, acc);

@@ -1,4 +1,4 @@
-/* Shared by lower.c (expressions) and solve.c (the linear system). */
+/* Shared by lower.c (expressions), solve.c and eliminate.c (the linear system). */
 #ifndef LAGC_LOWER_IMPL_H
 #define LAGC_LOWER_IMPL_H
 
@@ -18,5 +18,17 @@ Slot lower_slot(const Lower *l, Expr e);
 
 /* Lowers M q'' = f and its solution; acc[n] receives the slots of q''. */
 void lower_solution(Lower *l, Slot *acc);
+
+/* The same by elimination without pivoting, for entries and forces that are lowered. */
+void lower_elimination(Lower *l, Slot *acc);
+
+/* "M12", "f1": by the numbers of coordinates; the stem alone when there is one coordinate. */
+Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j);
+
+/* x - a*b, with structural zeros skipped. */
+Slot lower_minus_product(Lower *l, Slot x, Slot a, Slot b);
+
+/* Fails when d is not positive, or zero, unless that is known now. */
+void lower_pivot(Lower *l, Slot d, int positive);
 
 #endif

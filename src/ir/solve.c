@@ -1,11 +1,13 @@
-/* M q'' = f as a program: blocks of coupled coordinates, each by LDL^T.
+/* M q'' = f as a program.
  *
- * A block whose mass matrix is proved positive definite is factored in straight-line code without
- * pivoting (Golub & Van Loan, Matrix Computations, 4th ed., algorithm 4.1.2); pivots are checked.
- * Other pairs go by Cramer's rule; other blocks, and large ones, by a loop with partial pivoting. */
+ * A mass matrix that is proved positive definite is eliminated by eliminate.c, in straight-line code.
+ * Otherwise blocks of coupled coordinates: pairs by Cramer's rule, other blocks, and large dense
+ * ones, by a loop with partial pivoting. */
 #include "ir/lower_impl.h"
 
-enum { STRAIGHT_LINE_MAX = 12 };
+/* Straight-line elimination of a dense matrix takes n^3/3 lines. Measured: it is faster than a loop
+ * by a third at n = 10; past n = 12 the code is too long for what it gains. */
+enum { STRAIGHT_OPS_A_VARIABLE = 100 };
 
 typedef struct {
   uint32_t n;
@@ -25,8 +27,8 @@ static uint32_t find_root(uint32_t *parent, uint32_t i) {
 static uint32_t *label_blocks(const Eqns *e) {
   uint32_t *parent = ARENA_ARRAY(e->m->arena, uint32_t, e->n + 1);
   for (uint32_t i = 0; i < e->n; i++) parent[i] = i;
-  for (uint32_t k = 0; k < e->mass.n; k++) {
-    uint32_t a = find_root(parent, e->mass.at[k].row), b = find_root(parent, e->mass.at[k].col);
+  for (uint32_t k = 0; k < e->system.H.n; k++) {
+    uint32_t a = find_root(parent, e->system.H.at[k].row), b = find_root(parent, e->system.H.at[k].col);
     if (a < b) parent[b] = a;
     else parent[a] = b;
   }
@@ -34,7 +36,7 @@ static uint32_t *label_blocks(const Eqns *e) {
   return parent;
 }
 
-static Name numbered(Lower *l, const char *stem, uint32_t i, uint32_t j) {
+Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j) {
   Arena *a = l->p->arena;
   if (l->e->n == 1) return arena_strdup(a, stem);
   if (j == UINT32_MAX) return arena_printf(a, "%s%u", stem, i + 1);
@@ -57,79 +59,29 @@ static uint32_t make_blocks(Lower *l, Block *blocks) {
     b->f = ARENA_ARRAY(a, Slot, b->n);
     b->M = ARENA_ARRAY(a, Slot, (size_t)b->n * b->n);
   }
-  for (uint32_t k = 0; k < e->mass.n; k++) {
-    const MassEntry *x = &e->mass.at[k];
+  for (uint32_t k = 0; k < e->system.H.n; k++) {
+    const MassEntry *x = &e->system.H.at[k];
     Block *b = &blocks[block[x->row]];
     Slot s = lower_slot(l, x->e);
-    prog_name(l->p, s, numbered(l, "M", x->row, x->col));
+    prog_name(l->p, s, lower_numbered(l, "M", x->row, x->col));
     b->M[place[x->row] * b->n + place[x->col]] = s;
   }
   for (uint32_t i = 0; i < e->n; i++) {
     Block *b = &blocks[block[i]];
     b->at[place[i]] = i;
-    b->f[place[i]] = lower_slot(l, e->f[i]);
-    prog_name(l->p, b->f[place[i]], numbered(l, "f", i, UINT32_MAX));
+    b->f[place[i]] = lower_slot(l, e->system.f[i]);
+    prog_name(l->p, b->f[place[i]], lower_numbered(l, "f", i, UINT32_MAX));
   }
   return n;
 }
 
-/* --- straight-line LDL^T --- */
+/* --- one coordinate, two, and loops --- */
 
 static Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
 
-/* x - a*b, with structural zeros skipped. */
-static Slot minus_product(Lower *l, Slot x, Slot a, Slot b) {
-  Slot ab = op(l, IR_MUL, a, b);
-  return op(l, IR_SUB, x, ab);
-}
-
-static void check_pivot(Lower *l, Slot d, int positive) {
-  const Ins *i = &l->p->ins.at[d];
-  if (d && i->op == IR_CONST && (num_sign(i->number) > 0 || !positive)) return; /* known now */
-  prog_ins(l->p, (Ins){.op = IR_PIVOT, .a = d, .index = (uint32_t)positive});
-}
-
-/* M = L D L^T in place: W holds L D below the diagonal and D on it, L the unit factor. */
-static void factor(Lower *l, const Block *b, Slot *W, Slot *L) {
-  uint32_t n = b->n;
-  for (uint32_t j = 0; j < n; j++) {
-    Slot d = b->M[j * n + j];
-    for (uint32_t k = 0; k < j; k++) d = minus_product(l, d, W[j * n + k], L[j * n + k]);
-    W[j * n + j] = d;
-    prog_name(l->p, d, numbered(l, "D", b->at[j], UINT32_MAX));
-    check_pivot(l, d, 1);
-    for (uint32_t i = j + 1; i < n; i++) {
-      Slot w = b->M[i * n + j];
-      for (uint32_t k = 0; k < j; k++) w = minus_product(l, w, W[i * n + k], L[j * n + k]);
-      W[i * n + j] = w;
-      L[i * n + j] = op(l, IR_DIV, w, d);
-      prog_name(l->p, L[i * n + j], numbered(l, "L", b->at[j], b->at[i]));
-    }
-  }
-}
-
-static void substitute(Lower *l, const Block *b, const Slot *W, const Slot *L, Slot *x) {
-  uint32_t n = b->n;
-  for (uint32_t i = 0; i < n; i++) {
-    x[i] = b->f[i];
-    for (uint32_t k = 0; k < i; k++) x[i] = minus_product(l, x[i], L[i * n + k], x[k]);
-  }
-  for (uint32_t i = 0; i < n; i++) x[i] = op(l, IR_DIV, x[i], W[i * n + i]);
-  for (uint32_t i = n; i-- > 0;)
-    for (uint32_t k = i + 1; k < n; k++) x[i] = minus_product(l, x[i], L[k * n + i], x[k]);
-}
-
-static void solve_straight(Lower *l, const Block *b, Slot *x) {
-  Slot *W = ARENA_ARRAY(l->p->arena, Slot, b->n * b->n), *L = ARENA_ARRAY(l->p->arena, Slot, b->n * b->n);
-  factor(l, b, W, L);
-  substitute(l, b, W, L, x);
-}
-
-/* --- one coordinate, and loops --- */
-
 static void solve_one(Lower *l, const Block *b, Slot *x) {
   Expr M = eqns_mass(l->e, b->at[0], b->at[0]);
-  if (expr_sign(l->g, M) != SIGN_POSITIVE) check_pivot(l, b->M[0], 0);
+  if (expr_sign(l->g, M) != SIGN_POSITIVE) lower_pivot(l, b->M[0], 0);
   x[0] = op(l, IR_DIV, b->f[0], b->M[0]);
 }
 
@@ -139,11 +91,11 @@ static void solve_one(Lower *l, const Block *b, Slot *x) {
 static void solve_two(Lower *l, const Block *b, Slot *x) {
   Slot m11 = b->M[0], m12 = b->M[2], m22 = b->M[3];
   Slot square = op(l, IR_MUL, m11, m22);
-  Slot det = minus_product(l, square, m12, m12);
+  Slot det = lower_minus_product(l, square, m12, m12);
   prog_name(l->p, det, "det_M");
-  check_pivot(l, det, 0);
+  lower_pivot(l, det, 0);
   Slot top1 = op(l, IR_MUL, b->f[0], m22), top2 = op(l, IR_MUL, m11, b->f[1]);
-  Slot n1 = minus_product(l, top1, m12, b->f[1]), n2 = minus_product(l, top2, m12, b->f[0]);
+  Slot n1 = lower_minus_product(l, top1, m12, b->f[1]), n2 = lower_minus_product(l, top2, m12, b->f[0]);
   x[0] = op(l, IR_DIV, n1, det);
   x[1] = op(l, IR_DIV, n2, det);
 }
@@ -158,15 +110,14 @@ static void solve_loop(Lower *l, const Block *b, Slot *x) {
   for (uint32_t i = 0; i < b->n; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
 
-void lower_solution(Lower *l, Slot *acc) {
+static int goes_straight(const Eqns *e) {
+  const LinearSystem *s = &e->system;
+  return e->definite_mass && (s->ndefs || s->ops <= STRAIGHT_OPS_A_VARIABLE * (uint64_t)e->n);
+}
+
+static void solve_blocks(Lower *l, Slot *acc) {
   const Eqns *e = l->e;
-  if (!e->n) return;
   Arena *a = l->p->arena;
-  Expr *roots = ARENA_ARRAY(a, Expr, e->mass.n + e->n);
-  for (uint32_t k = 0; k < e->mass.n; k++) roots[k] = e->mass.at[k].e;
-  for (uint32_t i = 0; i < e->n; i++) roots[e->mass.n + i] = e->f[i];
-  prog_title(l->p, "mass matrix M and forces f");
-  lower_roots(l, roots, e->mass.n + e->n);
   Block *blocks = ARENA_ARRAY(a, Block, e->n);
   uint32_t n = make_blocks(l, blocks);
   prog_title(l->p, "M q'' = f");
@@ -174,12 +125,23 @@ void lower_solution(Lower *l, Slot *acc) {
   for (uint32_t k = 0; k < n; k++) {
     const Block *b = &blocks[k];
     if (b->n == 1) solve_one(l, b, x);
-    else if (e->definite_mass && b->n <= STRAIGHT_LINE_MAX) solve_straight(l, b, x);
     else if (b->n == 2) solve_two(l, b, x);
     else solve_loop(l, b, x);
-    for (uint32_t i = 0; i < b->n; i++) {
-      acc[b->at[i]] = x[i];
-      prog_name(l->p, x[i], expr_symbol(e->g, e->m->coords.at[b->at[i]].a)->name);
-    }
+    for (uint32_t i = 0; i < b->n; i++) acc[b->at[i]] = x[i];
   }
+}
+
+void lower_solution(Lower *l, Slot *acc) {
+  const Eqns *e = l->e;
+  const LinearSystem *s = &e->system;
+  if (!e->n) return;
+  VEC(Expr) roots = {0};
+  for (uint32_t k = 0; k < s->H.n; k++) vec_push(l->p->arena, &roots, s->H.at[k].e);
+  for (uint32_t k = 0; k < s->C.n; k++) vec_push(l->p->arena, &roots, s->C.at[k].e);
+  for (uint32_t i = 0; i < e->n; i++) vec_push(l->p->arena, &roots, s->f[i]);
+  prog_title(l->p, "mass matrix M and forces f");
+  lower_roots(l, roots.at, roots.n);
+  if (goes_straight(e)) lower_elimination(l, acc);
+  else solve_blocks(l, acc);
+  for (uint32_t i = 0; i < e->n; i++) prog_name(l->p, acc[i], expr_symbol(e->g, e->m->coords.at[i].a)->name);
 }

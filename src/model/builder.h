@@ -72,6 +72,7 @@ struct Builder {
   uint32_t *start_of; /* place in the scene's starts, from 1, by SymId */
   Expr *seeds; /* what each symbol becomes under d/dt, for nseeds symbols */
   uint32_t nseeds;
+  ExprMap rates; /* the time derivatives of definitions */
   EntKind needed_kind; /* the definition that an evaluation waits for */
   uint32_t needed;
   VEC(Active) active; /* the statements that this scene uses */

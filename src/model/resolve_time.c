@@ -7,6 +7,7 @@ static const Expr *time_seeds(Builder *b) {
   if (b->seeds && b->nseeds == expr_symbol_count(b->g)) return b->seeds;
   b->nseeds = expr_symbol_count(b->g);
   Expr *seed = b->seeds = ARENA_ARRAY(b->arena, Expr, b->nseeds + 1);
+  b->rates = expr_map(b->arena);
   const Model *m = b->m;
   seed[m->time] = expr_int(b->g, 1);
   for (uint32_t i = 0; i < m->coords.n; i++) {
@@ -22,10 +23,7 @@ static const Expr *time_seeds(Builder *b) {
 /* What kinds of symbols an expression contains, as bits 1 << SymKind. */
 static unsigned kinds_in(Builder *b, const Value *v) {
   unsigned kinds = 0;
-  if (!v->n && expr_op(b->g, v->e) == EX_SYM) return 1u << expr_sym_of(b->g, v->e)->kind;
-  ExprList l = expr_topo(b->g, v->at, parts_of(v));
-  for (uint32_t i = 0; i < l.n; i++)
-    if (expr_op(b->g, l.at[i]) == EX_SYM) kinds |= 1u << expr_sym_of(b->g, l.at[i])->kind;
+  for (uint32_t i = 0; i < parts_of(v); i++) kinds |= expr_kinds(b->g, v->at[i]);
   return kinds;
 }
 
@@ -47,7 +45,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
   Dim second_dim = {1, {[DIM_TIME] = DIM_ONE}};
   Value r = {.dim = dim_div(of.dim, second_dim), .n = of.n};
   const Expr *seed = time_seeds(b);
-  expr_tangent(b->g, of.at, parts_of(&of), seed, b->nseeds + 1, "'", r.at);
+  expr_tangent(b->g, of.at, parts_of(&of), seed, b->nseeds + 1, "'", &b->rates, r.at);
   if (where != IN_OBSERVE && kinds_in(b, &r) & second) {
     diag_error(b->diags, span, "a second derivative may stand only in `expect` and `observe`");
     diag_help(b->diags, "L and forces are functions of q, q' and t; accelerations follow from them");
