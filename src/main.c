@@ -192,13 +192,24 @@ static int lower_all(Compiler *c, Units *units) {
   return 1;
 }
 
+typedef VEC(SourceText) Texts;
+
+/* A program from these texts at `output`, or in the cache (NULL). */
+static int make_program(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path) {
+  const char *error = NULL;
+  *path = output ? output : toolchain_cached(c->arena, tools, texts->at, texts->n);
+  if (!output && file_runs(*path)) return STATUS_OK;
+  if (!toolchain_build(c->arena, tools, texts->at, texts->n, *path, &error)) return fail_usage(error);
+  return STATUS_OK;
+}
+
 static int make_simulator(Compiler *c, const char *output, const char **path) {
   Units units = {0};
   if (!lower_all(c, &units)) return STATUS_MODEL;
   Toolchain tools;
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
-  VEC(SourceText) texts = {0};
+  Texts texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
   for (uint32_t i = 0; i < units.n; i++) {
     names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units.at[i]->name), i);
@@ -209,10 +220,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   StrBuf b = strbuf(c->arena);
   emit_program((const IrUnit *const *)units.at, names, units.n, tools.gsl, &b);
   vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
-  *path = output ? output : toolchain_cached(c->arena, &tools, texts.at, texts.n);
-  if (!output && file_runs(*path)) return STATUS_OK;
-  if (!toolchain_build(c->arena, &tools, texts.at, texts.n, *path, &error)) return fail_usage(error);
-  return STATUS_OK;
+  return make_program(c, &tools, &texts, output, path);
 }
 
 static int do_build(Compiler *c) {
@@ -230,6 +238,22 @@ static int do_run(Compiler *c) {
   fflush(stdout);
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
   execv(path, c->picture.argv.at);
+  return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
+}
+
+/* The runtime lists its own methods: a program without a model asks it. */
+static int do_methods(Compiler *c) {
+  Toolchain tools;
+  const char *path, *error = NULL;
+  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
+  StrBuf b = strbuf(c->arena);
+  emit_bare_program(tools.gsl, &b);
+  Texts texts = {0};
+  vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
+  int status = make_program(c, &tools, &texts, NULL, &path);
+  if (status != STATUS_OK) return status;
+  char self[] = "lagc methods", option[] = "--method", help[] = "help", *argv[] = {self, option, help, NULL};
+  execv(path, argv);
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
 }
 
@@ -285,7 +309,7 @@ static int do_command(Compiler *c) {
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
     case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: return do_run(c);
-    case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;
+    case CMD_METHODS: case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;
   }
   return STATUS_USAGE;
 }
@@ -307,6 +331,7 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   c->argv0 = argv[0];
   if (!options_read(c->arena, argc, argv, &c->o, &error)) return fail_usage(error);
   if (c->o.command == CMD_HELP) return do_help(c);
+  if (c->o.command == CMD_METHODS) return do_methods(c);
   if (c->o.command == CMD_VERSION) {
     puts("lagc " LAGC_VERSION);
     return fflush(stdout) == 0 ? STATUS_OK : fail_usage("cannot write standard output");

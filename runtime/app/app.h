@@ -56,6 +56,8 @@ int app_error(const Args *a, const char *format, ...);
 /* choose.c: scene, method and values. 0, or EXIT_USAGE after a message. */
 int app_choose(App *app);
 const lag_method *app_find_method(const App *app, const char *name);
+
+/* methods.c */
 void app_list_methods(const App *app, FILE *f);
 
 /* columns.c. The index of a column by its name; -1 after a message. */

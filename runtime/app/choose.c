@@ -53,43 +53,6 @@ const lag_method *app_find_method(const App *app, const char *name)
   return NULL;
 }
 
-static void list_method(const lag_method *m, FILE *f)
-{
-  static const struct {
-    unsigned flag;
-    const char *words;
-  } properties[] = {{LAG_METHOD_SYMPLECTIC, ", symplectic"}, {LAG_METHOD_SYMMETRIC, ", symmetric"},
-                    {LAG_METHOD_SPLITS, "; explicit for separable models"}, {LAG_METHOD_CONSERVATIVE, "; conservative models only"},
-                    {LAG_METHOD_NO_SAVE, "; cannot be saved"}};
-
-  fprintf(f, "  %-16s order %2d, dense %2d, %s", m->name, m->order, m->dense_order,
-          m->flags & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed step");
-  for (size_t i = 0; i < sizeof properties / sizeof *properties; i++) {
-    if (m->flags & properties[i].flag) {
-      fputs(properties[i].words, f);
-    }
-  }
-  fprintf(f, "\n  %-16s   %s\n", "", m->doc);
-  for (int i = 0; i < m->noptions; i++) {
-    const lag_method_option *o = &m->options[i];
-    char number[32];
-    snprintf(number, sizeof number, "%g", o->value);
-    fprintf(f, "  %-16s   %s = %s: %s\n", "", o->name, o->choices ? o->choices[(int)o->value] : number, o->doc);
-  }
-}
-
-void app_list_methods(const App *app, FILE *f)
-{
-  fputs("methods (the first is the default; dense: order between steps; separable: constant mass matrix and\n"
-        "accelerations that do not depend on velocities):\n", f);
-  for (int i = 0; i < lag_nmethods; i++) {
-    list_method(lag_methods[i], f);
-  }
-  for (int i = 0; i < app->nextra; i++) {
-    list_method(app->extra[i], f);
-  }
-}
-
 /* A method's options as they are being collected; names and texts point into `text`. */
 typedef struct Choice {
   char text[512];

@@ -90,7 +90,8 @@ enum {
   LAG_METHOD_STEPS_TO = 32,    /* dense() is rough: must step exactly to each time of output */
   LAG_METHOD_NO_SAVE = 64,     /* work holds pointers: its state cannot be saved */
   LAG_METHOD_NO_STATES = 128,  /* refuses models with nz > 0 */
-  LAG_METHOD_SPLITS = 512      /* explicit for models with LAG_SEPARABLE, which then need no derivatives */
+  LAG_METHOD_SPLITS = 512,     /* explicit for models with LAG_SEPARABLE, which then need no derivatives */
+  LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS where it does not split */
 };
 
 /* An option of a method. With choices (NULL-terminated) the value is the index of the choice. */
@@ -106,8 +107,8 @@ typedef struct lag_method_option {
  * of a run can be written and read back bit by bit). */
 typedef struct lag_method {
   const char *name;
-  int order, dense_order; /* of the steps and between them, the options at their defaults */
-  int order_most;         /* the highest that options give, 0: no other; dense output has it too */
+  int order, dense_order;      /* of the steps and between them, the options at their defaults */
+  int order_least, order_most; /* of both, where options choose; else 0 */
   const char *doc;  /* one line, then the source of the algorithm */
   unsigned flags;
   int noptions;

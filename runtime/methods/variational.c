@@ -82,8 +82,10 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return lag_implicit_step(work, pb, t, y);
 }
 
-#define COMMON                                                                                                          \
-  .order_most = 8, .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION, \
+#define COMMON                                                                                        \
+  .order_least = 2, .order_most = 8,                                                                  \
+  .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | \
+           LAG_METHOD_NEWTON,                                                                         \
   .step = step, .dense = lag_implicit_dense, .reset = lag_implicit_reset
 
 const lag_method lag_variational = {

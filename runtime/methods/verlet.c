@@ -232,7 +232,7 @@ static void dense(const lag_composition *c, void *work, lag_problem *pb, double 
       .order = p,                                                                        \
       .dense_order = p,                                                                  \
       .doc = words,                                                                      \
-      .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | (properties), \
+      .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_NEWTON | (properties), \
       .noptions = 1,                                                                     \
       .options = options,                                                                \
       .work_size = size_##id,                                                            \

@@ -60,6 +60,8 @@ static const struct {
    "  --trace           the path of the last point, fading\n"
    "  -o FILE.html      default: MODEL_SCENE.html in this folder\n\n"
    "The options of `lagc run` are options here too.\n"},
+  {"methods", CMD_METHODS, "lagc methods",
+   "Lists the methods of integration: order, what they keep, what they need, and their options.\n"},
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
@@ -73,6 +75,7 @@ static const char general_help[] =
   "  lagc build MODEL -o SIM             make a simulator\n"
   "  lagc header MODEL -o FILE.h         a C header to embed\n"
   "  lagc emit MODEL [SCENE] -o FILE.c   C for the runtime\n"
+  "  lagc methods                        the methods of integration, with what they keep and need\n"
   "  lagc help [COMMAND|units|functions] more on each\n\n"
   "All take -D CONST=VALUE, and --dump=ast,model,eqns,prog to see the stages. MODEL is a .lag file; without a SCENE\n"
   "the first one counts. Exit status: 0 ok, 1 bad model, 2 usage or files, 3 the run failed.\n";
@@ -99,7 +102,7 @@ const char *options_help(const char *topic) {
 static const char *unknown_command(Arena *a, const char *word) {
   Name names[N_COMMANDS];
   for (int i = 0; i < N_COMMANDS; i++) names[i] = commands[i].name;
-  static const char *const later[] = {"cost", "effects", "noether", "modes", "lyapunov", "methods"};
+  static const char *const later[] = {"cost", "effects", "noether", "modes", "lyapunov"};
   for (size_t i = 0; i < sizeof later / sizeof *later; i++)
     if (strcmp(word, later[i]) == 0) return arena_printf(a, "not yet: `lagc %s`", word);
   size_t n = strlen(word);
@@ -236,18 +239,18 @@ static int read_arguments(Arena *a, int argc, char **argv, Options *o, const cha
       if (!*error) *error = arena_printf(a, "%s needs a value", arg);
       return 0;
     }
-    if (!o->file && arg[0] != '-') o->file = arg;
+    if (!o->file && arg[0] != '-' && o->command != CMD_METHODS) o->file = arg;
     else if (options_simulate(o)) pass_on(a, argc, argv, &i, o);
     else if (arg[0] == '-' && arg[1]) {
       *error = arena_printf(a, "`lagc %s` has no option `%s`; `lagc help %s` lists them", argv[1], arg, argv[1]);
       return 0;
-    } else if (!o->scene) o->scene = arg;
+    } else if (!o->scene && o->command != CMD_METHODS) o->scene = arg;
     else {
       *error = arena_printf(a, "one word too many: `%s`; usage: %s", arg, commands[o->command - CMD_CHECK].usage);
       return 0;
     }
   }
-  if (!o->file) {
+  if (!o->file && o->command != CMD_METHODS) {
     *error = arena_printf(a, "a model is missing; usage: %s", commands[o->command - CMD_CHECK].usage);
     return 0;
   }

@@ -5,7 +5,7 @@
 #include "base/define.h"
 #include "base/vec.h"
 
-typedef enum { CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_EMIT, CMD_HEADER, CMD_BUILD, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_HELP, CMD_VERSION } Command;
+typedef enum { CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_EMIT, CMD_HEADER, CMD_BUILD, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_METHODS, CMD_HELP, CMD_VERSION } Command;
 
 typedef struct {
   Command command;

@@ -332,6 +332,11 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, i);
 }
 
+static void emit_main(int gsl, StrBuf *out) {
+  sb_puts(out, "int main(int argc, char **argv) {\n");
+  sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", gsl ? "lag_gsl_methods, lag_gsl_nmethods" : "NULL, 0");
+}
+
 void emit_program(const IrUnit *const *units, const char *const *names, uint32_t n, int gsl, StrBuf *out) {
   const IrUnit *first = units[0];
   Arena *a = first->arena;
@@ -348,6 +353,10 @@ void emit_program(const IrUnit *const *units, const char *const *names, uint32_t
   const char *name = c_string(a, first->name), *doc = c_string(a, first->doc), *source = c_string(a, first->source);
   sb_printf(out, "static const lag_program program = {\n  .name = %s,\n  .doc = %s,\n  .source = %s,\n  .effects = %s,\n  .nscenes = %u, .scenes = scenes,\n};\n\n",
             name, doc, source, c_string(a, first->all_effects), scenes);
-  sb_puts(out, "int main(int argc, char **argv) {\n");
-  sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", gsl ? "lag_gsl_methods, lag_gsl_nmethods" : "NULL, 0");
+  emit_main(gsl, out);
+}
+
+void emit_bare_program(int gsl, StrBuf *out) {
+  sb_puts(out, "#include \"lag.h\"\n\nstatic const lag_program program = {.name = \"lagc\", .doc = \"\", .source = \"\", .effects = \"\"};\n\n");
+  emit_main(gsl, out);
 }

@@ -63,7 +63,7 @@ check "built with --method it runs" sim --method gauss --until 1
 check "and any other that needs the same" sim --method verlet --until 1
 # Every method that is listed finds in a program what it needs: src/wants.c agrees with the runtime.
 run models/double_pendulum.lag --method help
-for m in $(sed -n 's/^  \([a-z][a-z0-9_-]*\) .*order.*/\1/p' "$TMP/out"); do
+for m in $(sed -n 's/^  \([a-z][a-z0-9_-]*\) .* \(adaptive\|fixed\) .*/\1/p' "$TMP/out"); do
   check "$m has what it needs" run models/double_pendulum.lag --method "$m" --until 0.01
 done
 # A state goes on with the method it was saved with, whatever is in the cache.
@@ -79,4 +79,12 @@ says "reached" tests/exec/models/gauge.lag go --method verlet4
 check "no such note on a conservative model" sh -c "! grep -q 'symplectic for' '$TMP/out'"
 check "dop853 on the double pendulum" says "energy drift: [0-9.]*e-1" models/double_pendulum.lag --method dop853 --tol 1e-12
 check "steps of equal size by an adaptive method" says "steps 100, rejected 0" models/pendulum.lag --method "rk45(step=0.1, adapt=off)" --until 10
+
+# ---- the table
+"$LAGC" methods >"$TMP/table"
+"$LAGC" run models/pendulum.lag --method help >"$TMP/help"
+check "lagc methods is what --method help says" cmp "$TMP/table" "$TMP/help"
+check "with order, what is kept and what is needed" grep -q '^  gauss  *2-8  *2-8  *fixed  *symplectic, symmetric  *yes  *yes  *no$' "$TMP/table"
+"$LAGC" methods models/pendulum.lag 2>"$TMP/err"
+is "lagc methods takes no model" 2 $?
 tap_end
