@@ -110,7 +110,7 @@ static Eqns *derive_asked(Compiler *c, const char *scene) {
 }
 
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
-static IrUnit *lower_scene(Compiler *c, const Eqns *e) {
+static IrUnit *lower_scene(Compiler *c, Eqns *e) {
   IrUnit *u = unit_new(e, c->o.file);
   unit_want(u, e, wants_of(e, &c->o));
   unit_add_scene(u, e);
@@ -209,6 +209,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   Toolchain tools;
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
+  if (c->o.command == CMD_MODES) tools.optimise = "-O0";
   Texts texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
   for (uint32_t i = 0; i < units.n; i++) {
@@ -273,21 +274,45 @@ static const char *effects_text(Compiler *c, const Model *m) {
   return sb_text(&b);
 }
 
+typedef VEC(FoundUnit) FoundUnits;
+
+/* The units that a scene's model found, those that are new. */
+static void collect_units(Compiler *c, const Model *m, FoundUnits *all) {
+  for (uint32_t i = 0; i < m->found.n; i++) {
+    FoundUnit u = m->found.at[i];
+    uint32_t k = 0;
+    while (k < all->n && (all->at[k].name != u.name || strcmp(all->at[k].unit, u.unit) != 0)) k++;
+    if (k == all->n) vec_push(c->arena, all, u);
+  }
+}
+
+static void list_units(const FoundUnits *all, StrBuf *out) {
+  for (uint32_t i = 0; i < all->n; i++) sb_printf(out, "%s%s [%s]", i ? ", " : "units found: ", all->at[i].name, all->at[i].unit);
+  if (all->n) sb_putc(out, '\n');
+}
+
 static int do_check(Compiler *c) {
   SceneList scenes = model_scenes(c->ast);
   StrBuf out = strbuf(c->arena);
+  FoundUnits found = {0};
   ExpectResults results = {0};
   for (uint32_t i = 0; i < scenes.n; i++) {
     if (c->o.scene && strcmp(c->o.scene, scenes.at[i]) != 0) continue;
     Eqns *e = derive_scene(c, scenes.at[i]);
     if (!e) continue;
     if (!out.n) show_facts(e, &out);
+    collect_units(c, e->m, &found);
     sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], effects_text(c, e->m));
   }
   if (c->o.scene && !out.n) derive_scene(c, c->o.scene); /* says that there is no such scene */
   EffectList unused = model_unused_effects(c->ast);
-  for (uint32_t i = 0; i < unused.n && !c->o.scene; i++)
-    if (derive_with(c, NULL, unused.at[i])) sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);
+  for (uint32_t i = 0; i < unused.n && !c->o.scene; i++) {
+    Eqns *e = derive_with(c, NULL, unused.at[i]);
+    if (!e) continue;
+    collect_units(c, e->m, &found);
+    sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);
+  }
+  list_units(&found, &out);
   if (c->diags->errors) return STATUS_MODEL; /* expectations of a wrong model say nothing */
   check_expects(c, &results);
   expects_print(&results, c->sources, &out);
@@ -308,7 +333,7 @@ static int do_command(Compiler *c) {
     case CMD_EMIT: return do_emit(c);
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
-    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: return do_run(c);
+    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: return do_run(c);
     case CMD_METHODS: case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;
   }
   return STATUS_USAGE;

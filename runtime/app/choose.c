@@ -45,9 +45,9 @@ const lag_method *app_find_method(const App *app, const char *name)
       return lag_methods[i];
     }
   }
-  for (int i = 0; i < app->nextra; i++) {
-    if (strcmp(app->extra[i]->name, name) == 0) {
-      return app->extra[i];
+  for (int i = 0; i < app->extras.nmethods; i++) {
+    if (strcmp(app->extras.methods[i]->name, name) == 0) {
+      return app->extras.methods[i];
     }
   }
   return NULL;
@@ -236,17 +236,45 @@ static int read_state(App *app)
   return 0;
 }
 
-int app_choose(App *app)
+static int new_simulation(App *app)
 {
-  const Args *a = &app->args;
-  int rc = read_state(app);
+  int rc = choose_scene(app);
 
-  if (rc || (rc = choose_scene(app)) != 0) {
+  if (rc) {
     return rc;
   }
   app->sim = lag_sim_new(app->scene);
   if (!app->sim) {
-    return app_error(a, "cannot simulate scene %s: out of memory, or built for another version or number type", app->scene->name);
+    return app_error(&app->args, "cannot simulate scene %s: out of memory, or built for another version or number type",
+                     app->scene->name);
+  }
+  return 0;
+}
+
+static int set_values(App *app)
+{
+  const Args *a = &app->args;
+  int rc = 0;
+
+  for (int i = 0; i < a->nsets && rc == 0; i++) {
+    rc = set_value(app, a->sets[i]);
+  }
+  return rc;
+}
+
+int app_choose_start(App *app)
+{
+  int rc = new_simulation(app);
+
+  return rc ? rc : set_values(app);
+}
+
+int app_choose(App *app)
+{
+  int rc = read_state(app);
+
+  if (rc || (rc = new_simulation(app)) != 0) {
+    return rc;
   }
   if (app->resumed) {
     return resume(app);
@@ -254,8 +282,5 @@ int app_choose(App *app)
   if ((rc = set_tolerance(app)) != 0 || (rc = choose_method(app)) != 0) {
     return rc;
   }
-  for (int i = 0; i < a->nsets && rc == 0; i++) {
-    rc = set_value(app, a->sets[i]);
-  }
-  return rc;
+  return set_values(app);
 }

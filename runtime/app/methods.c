@@ -41,13 +41,13 @@ void app_list_methods(const App *app, FILE *f)
 {
   fprintf(f, "  %-16s  %-5s  %-5s  %-8s  %-21s  %-16s  %-6s  %s\n", "method", "order", "dense", "steps", "keeps", "Newton's method",
           "forces", "states");
-  for (int i = 0; i < lag_nmethods + app->nextra; i++) {
-    row(i < lag_nmethods ? lag_methods[i] : app->extra[i - lag_nmethods], f);
+  for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
+    row(i < lag_nmethods ? lag_methods[i] : app->extras.methods[i - lag_nmethods], f);
   }
   fputs("\nThe first is the default. dense: order between steps. forces: whether the model may have forces and explicit time; what a\n"
         "symplectic method keeps without them it does not keep with them. states: whether it may have a `state`. separable: with\n"
         "constant mass matrix, and accelerations that do not depend on velocities. Options, with their defaults:\n", f);
-  for (int i = 0; i < lag_nmethods + app->nextra; i++) {
-    words(i < lag_nmethods ? lag_methods[i] : app->extra[i - lag_nmethods], f);
+  for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
+    words(i < lag_nmethods ? lag_methods[i] : app->extras.methods[i - lag_nmethods], f);
   }
 }

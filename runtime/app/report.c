@@ -9,9 +9,8 @@ enum { MOST_LINES = 24 };
 /* Variable i of q, v, z: name, unit, value in the declared unit. */
 static double state_var(const App *app, int i, Column *c)
 {
-  double factor = lag_sim_state_info(app->sim, i, c->name, sizeof c->name, c->unit, sizeof c->unit);
-
-  return lag_sim_q(app->sim)[i] / factor;
+  lag_sim_state_info(app->sim, i, c->name, sizeof c->name, c->unit, sizeof c->unit);
+  return lag_sim_state_value(app->sim, i);
 }
 
 void report_method(const App *app, char *s, size_t n)

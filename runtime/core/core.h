@@ -57,6 +57,9 @@ struct lag_sim {
   char message[512];
 };
 
+/* A value in SI, in the declared unit of its variable. */
+static inline double lag_declared(const lag_var *v, double si) { return (si - v->offset) / v->factor; }
+
 /* message := the text; returns status. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))

@@ -295,10 +295,10 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
   if (!isfinite(value)) {
     return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);
   }
-  value *= var->factor;
+  double declared = value;
+  value = value * var->factor + (kind == LAG_IS_V ? 0 : var->offset);
   if (kind == LAG_IS_P && !sign_ok(var->sign, value)) {
-    return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, value / var->factor, var->name,
-                    sign_text(var->sign));
+    return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, declared, var->name, sign_text(var->sign));
   }
   switch (kind) {
   case LAG_IS_P:
@@ -326,7 +326,7 @@ int lag_setup_start(lag_sim *s)
 
   for (int i = 0; i < m->np; i++) {
     if (!sign_ok(m->p[i].sign, s->p[i])) {
-      return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, s->p[i] / m->p[i].factor,
+      return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, lag_declared(&m->p[i], s->p[i]),
                       m->p[i].name, sign_text(m->p[i].sign));
     }
   }

@@ -72,6 +72,20 @@ int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
 int lag_variation(lag_problem *pb, double t, const double *q, const double *v, double *Lq, double *Lv, double *Q);
 int lag_second_derivatives(lag_problem *pb, double t, const double *q, const double *v, double *h);
 
+/* Exact derivatives of f, for models emitted with their linearisation (model->linear; lagc --with linear). All
+ * matrices are dense and row-major; work[lag_linear_work()] is scratch, 0 doubles for a model without linearisation. Both
+ * return what the model returned, or LAG_EMETHOD (and pb->detail) when it has none; LAG_ESINGULAR when M is
+ * singular. Neither looks for NaN; after an error the matrices are undefined. */
+size_t lag_linear_work(const lag_model *model);
+
+/* J[(nq + nz) * n]: the derivatives of the accelerations and of the rates, the rows of f below the first nq, by
+ * y. With the nq rows [0 | 1 | 0] above it J is df/dy. Calls lag_rhs once. */
+int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
+
+/* dr[(nq + nz) * n]: the derivatives of the residuals r = (f - M a, flow) by y at given accelerations a[nq] (NULL:
+ * 0); M[nq * nq]: the mass matrix. J above is M^-1 dr in its first nq rows. */
+int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, double *dr, double *M, double *work);
+
 /* The index of the first of x[n] that is not finite, -1 when all are. */
 int lag_not_finite(int n, const double *x);
 
@@ -212,9 +226,11 @@ const double *lag_sim_options(const lag_sim *sim);
 /* Columns of output besides t: the scene's outputs, or q, v, z when it names none. */
 int lag_sim_noutputs(const lag_sim *sim);
 /* Component i of the state q, v, z: name, with a prime for a velocity, and declared unit; buffers of the caller, cut to fit, either may be
- * NULL. Returns what one declared unit is in SI. */
+ * NULL. Returns what a difference of one declared unit is in SI. */
 double lag_sim_state_info(const lag_sim *sim, int i, char *name, size_t nname, char *unit, size_t nunit);
-/* The same of output i. */
+/* Component i of the state q, v, z now, in its declared unit. */
+double lag_sim_state_value(const lag_sim *sim, int i);
+/* Name and unit of output i, and what lag_sim_state_info returns. */
 double lag_sim_output_info(const lag_sim *sim, int i, char *name, size_t nname, char *unit, size_t nunit);
 /* out[noutputs] at the present state, in declared units. */
 int lag_sim_outputs(lag_sim *sim, double *out);
@@ -240,12 +256,55 @@ int lag_sim_load(lag_sim *sim, const double *x);
 /* A checksum of the scene's names, sizes and method: of what must agree between save and load. */
 unsigned long long lag_sim_signature(const lag_sim *sim);
 
+/* ---- Linear algebra -------------------------------------------------------------------------- */
+
+/* n equations in n unknowns: f[n] at x[n] and, where J is not NULL, J[n*n], row-major, their derivatives. Not 0: there
+ * are no values at x. */
+typedef int lag_equations(void *context, const double *x, double *f, double *J);
+
+/* What the analysis of equilibria needs of a library: dense, row-major; eigenvectors are columns. All return LAG_OK,
+ * LAG_ENOMEM, or what is said; none prints or aborts. */
+typedef struct lag_algebra {
+  const char *name;
+
+  /* Moves x[n] towards a root by a trust region whose first radius is 0.3 max(1, |x|), in at most `most`
+   * steps, until nothing is gained. The Jacobian may be singular. Whether x is a root is for the caller to see.
+   * *steps: how many were made. LAG_EDOMAIN: there are no values at the start. */
+  int (*root)(int n, double *x, lag_equations *equations, void *context, int most, int *steps);
+
+  /* K x = value M x; values ascending, x' M x = 1. K and M are symmetric (lower triangles are read) and destroyed. LAG_EINVAL:
+   * M is not positive definite. */
+  int (*symmetric)(int n, double *K, double *M, double *values, double *vectors);
+
+  /* A x = (re + i im) x, |x| = 1. A is destroyed. sensitivity[k] = |x_k| |y_k| / |y_k x_k| with the left eigenvector y_k:
+   * how much of a change of A the eigenvalue may take over; huge where it is defective. LAG_EMETHOD: no
+   * convergence. */
+  int (*general)(int n, double *A, double *re, double *im, double *vre, double *vim, double *sensitivity);
+
+  /* A := D^-1 A D with D = diag(scale[n]) of powers of 2, so that its rows and columns are alike in size. */
+  int (*balance)(int n, double *A, double *scale);
+
+  /* Orthogonal Q[n*n] with A Q = [B | 0]: its columns from *rank on span the kernel of A, where what is not above
+   * tol counts as 0. */
+  int (*kernel)(int n, const double *A, double tol, double *Q, int *rank);
+} lag_algebra;
+
 /* ---- Simulators ------------------------------------------------------------------------------ */
 
-/* main() of a simulator: see --help, or app/help.c. extra[nextra] are methods beside those of liblag.a.
+/* What a simulator has besides liblag.a. */
+typedef struct lag_extras {
+  const lag_method *const *methods; /* [nmethods] */
+  int nmethods;
+  const lag_algebra *algebra;       /* or NULL */
+} lag_extras;
+
+/* What liblag_gsl.a brings, by the GNU Scientific Library. */
+extern const lag_algebra lag_gsl_algebra;
+extern const lag_extras lag_gsl;
+
+/* main() of a simulator: see --help, or app/help.c. extras may be NULL.
  * Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 130 interrupted. */
-int lag_app_main(int argc, char **argv, const lag_program *program, const lag_method *const *extra,
-                 int nextra);
+int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras);
 
 #ifdef __cplusplus
 }

@@ -13,7 +13,7 @@ typedef struct {
   StrBuf *out;
 } File;
 
-static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u"};
+static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a"};
 
 static const char *const prelude =
   "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l'\n"
@@ -25,9 +25,9 @@ static const char *const prelude =
 /* What lag_model.h and the head of an emitted file define. */
 static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
-  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_MASK", "lag_solve", "lag_var", "lag_event", "lag_model", "lag_option",
-  "lag_monitor", "lag_scene", "lag_program", "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV",
-  "q_table", "z_table", "p_table", "u_table", "ev_table", "second_table",
+  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_MASK", "lag_solve", "lag_var", "lag_event", "lag_model", "lag_option",
+  "lag_monitor", "lag_scene", "lag_program", "lag_entry", "lag_linear", "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV",
+  "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -49,8 +49,8 @@ static const char *event_id(const IrUnit *u, uint32_t i) {
 }
 
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel", "energy", "variation", "second", "events", "act", "inputs", "params", "start",
-                                      "observe", "outputs", "options", "monitors", "program", "scenes"};
+  static const char *const taken[] = {"accel", "energy", "linearise", "variation", "second", "events", "act", "inputs", "params",
+                                      "start", "observe", "outputs", "options", "monitors", "program", "scenes"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -148,6 +148,28 @@ static void emit_inputs(const File *f) {
   function(f, f->u->inputs, "Inputs that have a formula.", "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", own, written);
 }
 
+static void entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out) {
+  enum { A_LINE = 10 };
+  if (!n) return;
+  sb_printf(out, "\nstatic const lag_entry %s[] = {", name);
+  for (uint32_t i = 0; i < n; i++) sb_printf(out, "%s{%u, %u},", i % A_LINE ? " " : "\n  ", at[i].row, at[i].col);
+  sb_puts(out, "\n};\n");
+}
+
+static void emit_linear(const File *f) {
+  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "a", "dr", "M", "w", NULL}, *const written[] = {"dr", "M"};
+  const IrUnit *u = f->u;
+  if (!u->linear) return;
+  const char *comment = arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.", ops_text(u->linear, f->a));
+  const char *head = arena_printf(f->a, "static int linearise(%s, const LAG_REAL *a,\n    LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w)", state_args);
+  function(f, u->linear, comment, head, own, written);
+  entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
+  entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
+  sb_printf(f->out, "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval = linearise,\n};\n",
+            u->linear_dr.n, u->linear_dr.n ? "dr_table" : "NULL", u->linear_mass.n, u->linear_mass.n ? "mass_table" : "NULL",
+            ops_total(prog_count(u->linear)));
+}
+
 /* --- a scene's functions --- */
 
 /* Parameters one by one: each may use those before it, as they are then. */
@@ -190,14 +212,15 @@ static void table(const IrUnit *u, const char *name, const IrVar *v, uint32_t n,
   sb_printf(out, "\nstatic const lag_var %s[] = {\n", name);
   for (uint32_t i = 0; i < n; i++) {
     const char *label = c_string(u->arena, v[i].name), *unit = c_string(u->arena, v[i].unit);
-    sb_printf(out, "  {%s, %s, %s, %d, %d},\n", label, unit, double_text(u->arena, v[i].factor), v[i].periodic, v[i].sign);
+    const char *factor = double_text(u->arena, v[i].factor), *offset = v[i].offset == 0 ? "0" : double_text(u->arena, v[i].offset);
+    sb_printf(out, "  {%s, %s, %s, %d, %d, %s},\n", label, unit, factor, v[i].periodic, v[i].sign, offset);
   }
   sb_puts(out, "};\n");
 }
 
 static uint32_t work_size(const IrUnit *u) {
   uint32_t most = 0;
-  const Prog *all[] = {u->accel, u->energy, u->event_values};
+  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     if (all[i] && prog_work(all[i]) > most) most = prog_work(all[i]);
   for (uint32_t i = 0; i < u->scenes.n; i++)
@@ -207,9 +230,9 @@ static uint32_t work_size(const IrUnit *u) {
 
 static void flag_text(unsigned flags, StrBuf *out) {
   static const char *const names[] = {"LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS", "LAG_AUTONOMOUS", "LAG_SMOOTH",
-                                       "LAG_SEPARABLE"};
+                                       "LAG_SEPARABLE", "LAG_TIMELESS"};
   int some = 0;
-  for (int i = 0; i < 5; i++)
+  for (int i = 0; i < 6; i++)
     if (flags >> i & 1) sb_printf(out, "%s%s", some++ ? " | " : "", names[i]);
   if (!some) sb_putc(out, '0');
 }
@@ -259,6 +282,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->variation)
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
+  if (u->linear) sb_puts(out, "  .linear = &linear,\n");
   sb_puts(out, "};\n");
 }
 
@@ -327,14 +351,15 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_events(&f);
   emit_inputs(&f);
   const char *digest = digest_text(u->arena, sb_text(out) + begin);
-  emit_variation(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
+  emit_linear(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
+  emit_variation(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, i);
 }
 
 static void emit_main(int gsl, StrBuf *out) {
   sb_puts(out, "int main(int argc, char **argv) {\n");
-  sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", gsl ? "lag_gsl_methods, lag_gsl_nmethods" : "NULL, 0");
+  sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", gsl ? "&lag_gsl" : "NULL");
 }
 
 void emit_program(const IrUnit *const *units, const char *const *names, uint32_t n, int gsl, StrBuf *out) {

@@ -293,6 +293,43 @@ static void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   lower_roots(l, roots, n);
 }
 
+/* q'' is an argument here. */
+static void load_accelerations(Lower *l) {
+  const Model *m = l->e->m;
+  for (uint32_t i = 0; i < l->e->n; i++) {
+    const Symbol *s = expr_symbol(l->g, m->coords.at[i].a);
+    Slot a = load(l, ARR_A, s);
+    expr_map_set(&l->slots, s->node, a + 1);
+  }
+}
+
+/* Component i of y = (q, q', z). */
+static const char *component(const Lower *l, uint32_t i) {
+  const Model *m = l->e->m;
+  uint32_t n = l->e->n;
+  return i < n ? m->coords.at[i].name : i < 2 * n ? text_of_symbol(l, m->coords.at[i - n].v) : m->states.at[i - 2 * n].name;
+}
+
+Prog *lower_linear(const Eqns *e, Partials dr) {
+  Lower l = lower_new(e);
+  Arena *a = e->m->arena;
+  Expr *roots = ARENA_ARRAY(a, Expr, dr.n + e->mass.n + 1);
+  for (uint32_t k = 0; k < dr.n; k++) roots[k] = dr.at[k].e;
+  for (uint32_t k = 0; k < e->mass.n; k++) roots[dr.n + k] = e->mass.at[k].e;
+  load_accelerations(&l);
+  lower_roots(&l, roots, dr.n + e->mass.n);
+  for (uint32_t k = 0; k < dr.n; k++) {
+    uint32_t row = dr.at[k].row;
+    const char *of = row < e->n ? component(&l, row) : text_of_symbol(&l, e->m->states.at[row - e->n].rate);
+    prog_store(l.p, 0, k, lower_slot(&l, roots[k]), arena_printf(a, "%s by %s", of, component(&l, dr.at[k].col)));
+  }
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    const MassEntry *M = &e->mass.at[k];
+    prog_store(l.p, 1, k, lower_slot(&l, M->e), arena_printf(a, "%s, %s", component(&l, M->row), component(&l, M->col)));
+  }
+  return prog_tidy(l.p);
+}
+
 Prog *lower_energy(const Eqns *e) {
   Lower l = lower_new(e);
   if (!e->energy) return l.p;

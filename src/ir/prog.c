@@ -244,7 +244,7 @@ static const char *const op_names[] = {
   "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "title",
 };
 
-static const char *const array_names[] = {"t", "q", "v", "z", "p", "u"};
+static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a"};
 
 void prog_dump(const Prog *p, StrBuf *out) {
   for (Slot s = 1; s < p->ins.n; s++) {

@@ -39,8 +39,8 @@ typedef enum {
   IR_TITLE   /* text: a comment line that heads what follows */
 } IrOp;
 
-/* The arrays that a function reads. */
-typedef enum { ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_COUNT } IrArray;
+/* The arrays that a function reads; accelerations only in the linearisation. */
+typedef enum { ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_A, ARR_COUNT } IrArray;
 
 typedef struct {
   IrOp op;

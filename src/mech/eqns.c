@@ -109,7 +109,7 @@ static void classify(Eqns *e) {
   unsigned mass = kinds_in(e, entries.at, entries.n), rest = kinds_in(e, roots.at, roots.n);
   e->constant_mass = !(mass & (bit(SYM_COORD) | bit(SYM_VEL) | bit(SYM_TIME) | bit(SYM_STATE)));
   e->separable = e->n && e->constant_mass && !m->states.n && !(rest & bit(SYM_VEL));
-  e->autonomous = !((mass | rest) & bit(SYM_TIME));
+  e->autonomous = e->timeless = !((mass | rest) & bit(SYM_TIME));
   int inputs = (rest & bit(SYM_INPUT)) != 0;
   for (uint32_t i = 0; i < m->inputs.n; i++)
     if (inputs && m->inputs.at[i].value) e->autonomous &= !contains_kind(e, m->inputs.at[i].value, SYM_TIME);

@@ -53,6 +53,7 @@ typedef struct {
   uint32_t noutputs;
   const Expr *definitions; /* by symbol: what stands for parameters given by others, where that was put in; or NULL */
   int constant_mass, definite_mass, conserves_energy, autonomous, smooth;
+  int timeless;          /* t enters by the formulas of inputs, if at all */
   int separable;         /* constant mass, no velocity in f, no states: a splitting method can integrate it */
 } Eqns;
 
@@ -62,6 +63,22 @@ Eqns *eqns_derive(Model *m);
 
 /* Fills e->mass where the program does without. */
 void eqns_derive_mass(Eqns *e);
+/* A partial derivative of residual `row` by component `col` of y = (q, q', z). */
+typedef struct {
+  uint32_t row, col;
+  Expr e;
+} Partial;
+
+typedef struct {
+  const Partial *at;
+  uint32_t n;
+} Partials;
+
+/* The linearisation, exact: those that are not zero of the derivatives of the residuals
+ *   r_i = f_i - sum_j M_ij q_j''   (i < n),   r_(n + k) = flow_k
+ * at fixed q'', row by row, columns ascending. With M they give the Jacobian of the accelerations,
+ * dq''/dy = M^-1 dr/dy. They contain the symbols q''. */
+Partials eqns_linearise(Eqns *e);
 
 /* M[i][j]; the zero node where the entry is zero. */
 Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j);

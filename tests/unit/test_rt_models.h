@@ -42,8 +42,8 @@
   UNUSED static const lag_second name##_at[] = {{LAG_QQ, 0, 0}, {LAG_VV, 0, 0}}
 
 static const double PI = 3.14159265358979323846264338327950288;
-static const lag_var names_q[] = {{"x", "m", 1, 0, 0}, {"y", "m", 1, 0, 0}};
-static const lag_var names_z[] = {{"z", "", 1, 0, 0}};
+static const lag_var names_q[] = {{"x", "m", 1, 0, 0, 0}, {"y", "m", 1, 0, 0, 0}};
+static const lag_var names_z[] = {{"z", "", 1, 0, 0, 0}};
 
 #define assert_close(x, expected, tolerance)                                                            \
   do {                                                                                                  \
@@ -149,7 +149,7 @@ UNUSED static const lag_model osc_model = {MODEL("oscillator"), .flags = LAG_CON
 UNUSED static const lag_scene osc = {.name = "osc", .doc = "", .model = &osc_model, .start = osc_start, .t1 = 10, .has_span = 1};
 
 /* ---- ball: y'' = -g, y(0) = h, bounces with restitution e. p = {g, h, e}. */
-static const lag_var ball_p[] = {{"g", "m/s^2", 1, 0, 1}, {"h", "cm", 0.01, 0, 1}, {"ground.e", "", 1, 0, 2}};
+static const lag_var ball_p[] = {{"g", "m/s^2", 1, 0, 1, 0}, {"h", "cm", 0.01, 0, 1, 0}, {"ground.e", "", 1, 0, 2, 0}};
 static const lag_event ball_ev[] = {{"ground", -1}};
 
 UNUSED static int ball_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)

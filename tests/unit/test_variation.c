@@ -50,7 +50,7 @@ static void assert_near(const Case *c, const char *what, Real got, Real want, Re
 }
 
 /* d of out[k] by symbol s, for all of dL/dq, dL/dq', Q. */
-static void differences(const Case *c, SymId s, First *d) {
+static void differences(const Case *c, SymId s, Real step, First *d) {
   *d = (First){0};
   for (int k = 0; k < 4; k++) {
     First f = {0};
@@ -87,7 +87,7 @@ static Real entry(const Case *c, const Real *h, SecondPart part, uint32_t row, u
 static void check_forces(const Case *c, const First *f, const Real *h) {
   const Model *m = c->e->m;
   First by_t;
-  differences(c, m->time, &by_t);
+  differences(c, m->time, 1e-6L, &by_t); /* inputs may be fast */
   for (uint32_t i = 0; i < c->e->n && !m->states.n; i++) {
     Real want, size = 0;
     expr_eval(c->e->g, &c->e->f[i], 1, c->v, &want);
@@ -116,8 +116,8 @@ static void check_state(const Case *c) {
     Real lq = difference_of_l(c, m->coords.at[j].q), lv = difference_of_l(c, m->coords.at[j].v);
     assert_near(c, "dL/dq", f.part[0][j], lq, l);
     assert_near(c, "dL/dq'", f.part[1][j], lv, l);
-    differences(c, m->coords.at[j].q, &dq);
-    differences(c, m->coords.at[j].v, &dv);
+    differences(c, m->coords.at[j].q, step, &dq);
+    differences(c, m->coords.at[j].v, step, &dv);
     for (uint32_t i = 0; i < c->e->n; i++)
       for (int part = 0; part < 3; part++) {
         Real q = entry(c, h, by_q[part], i, j), v = part ? entry(c, h, by_v[part], i, j) : entry(c, h, SECOND_VQ, j, i);
