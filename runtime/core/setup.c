@@ -214,9 +214,10 @@ static int check_method(lag_sim *s, const lag_method *method)
     return lag_fail(s, LAG_EMETHOD, "method %s needs a model without forces, dissipation or explicit time; rk45 and dop853 do not",
                     method->name);
   }
-  if ((needs & LAG_METHOD_VARIATION) && !m->variation && !((needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE))) {
+  int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE);
+  if (((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) || ((needs & LAG_METHOD_JACOBIAN) && !m->linear)) {
     return lag_fail(s, LAG_EMETHOD,
-                    "method %s needs derivatives of L that this program was built without; `lagc run MODEL --method %s` and "
+                    "method %s needs derivatives of the model that this program was built without; `lagc run MODEL --method %s` and "
                     "`lagc build MODEL --method %s` build them in; rk45 and dop853 do without", method->name, method->name, method->name);
   }
   return LAG_OK;

@@ -105,6 +105,7 @@ enum {
   LAG_METHOD_NO_SAVE = 64,     /* work holds pointers: its state cannot be saved */
   LAG_METHOD_NO_STATES = 128,  /* refuses models with nz > 0 */
   LAG_METHOD_SPLITS = 512,     /* explicit for models with LAG_SEPARABLE, which then need no derivatives */
+  LAG_METHOD_JACOBIAN = 2048,  /* needs the model's linearisation: lag_model.linear */
   LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS where it does not split */
 };
 
@@ -162,6 +163,8 @@ extern const lag_method lag_dop853;
 extern const lag_method lag_symplectic_euler, lag_verlet, lag_verlet4, lag_verlet6, lag_verlet8;
 /* Symplectic, fixed step, implicit, for any L: from a discrete Lagrangian, and Gauss collocation, of order 2 to 8. */
 extern const lag_method lag_variational, lag_gauss;
+/* Radau IIA of order 5, implicit, adaptive: for stiff models; of a model that holds its linearisation. */
+extern const lag_method lag_radau;
 /* The methods of liblag.a, the default first. */
 extern const lag_method *const lag_methods[];
 extern const int lag_nmethods;

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "methods/linear.h"
+#include "methods/band.h"
 #include "methods/steps.h"
 
 enum { MOST_CORRECTIONS = 25 };

@@ -4,7 +4,7 @@
  * Orders are measured in quadruple precision: tests/exec/run_quad.sh. LAG_STEPS: steps of the long runs. */
 #include "test_rt_systems.h"
 
-#include "methods/linear.h"
+#include "methods/band.h"
 #include "methods/rule.h"
 
 /* ---- Digits */

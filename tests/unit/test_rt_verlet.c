@@ -232,7 +232,7 @@ static void what_needs_derivatives_is_refused_without_them(void **state)
   for (int m = 0; m < MEMBERS; m++) {
     lag_sim *s = lag_sim_new(&scene);
     assert_int_equal(lag_sim_set_method(s, family[m].method, NULL, 0), LAG_EMETHOD);
-    assert_non_null(strstr(lag_sim_message(s), "derivatives of L"));
+    assert_non_null(strstr(lag_sim_message(s), "derivatives of the model"));
     assert_non_null(strstr(lag_sim_message(s), "lagc build MODEL --method"));
     assert_non_null(strstr(lag_sim_message(s), family[m].method->name));
     assert_non_null(strstr(lag_sim_message(s), "dop853"));
@@ -253,7 +253,7 @@ static void a_scene_with_a_refused_method_says_so(void **state)
   lag_sim *s = lag_sim_new(&scene);
   assert_non_null(s);
   assert_int_equal(lag_sim_advance(s, 1), LAG_EMETHOD);
-  assert_non_null(strstr(lag_sim_message(s), "derivatives of L"));
+  assert_non_null(strstr(lag_sim_message(s), "derivatives of the model"));
   assert_int_equal(lag_sim_set_method(s, &lag_rk45, NULL, 0), LAG_OK);
   assert_int_equal(lag_sim_advance(s, 1), LAG_OK);
   lag_sim_free(s);

@@ -1,6 +1,6 @@
 /* Linear equations whose matrix is zero far from the diagonal, or anywhere not. */
-#ifndef LAG_METHODS_LINEAR_H
-#define LAG_METHODS_LINEAR_H
+#ifndef LAG_METHODS_BAND_H
+#define LAG_METHODS_BAND_H
 
 /* A matrix of n rows with entries where |row - column| <= band; band = n - 1 is a full one. */
 typedef struct lag_band {

@@ -1,7 +1,7 @@
 /* Elimination within a band: G.H. Golub, C.F. Van Loan, Matrix Computations, 4th ed. (2013), algorithms 3.4.1 and 4.3.1.
  * Exchanged rows may reach twice the band to the right, so a row keeps 3 band + 1 columns, or all. Multipliers stay where
  * they were when they were made: a solution repeats the exchanges one by one. */
-#include "methods/linear.h"
+#include "methods/band.h"
 
 #include <math.h>
 
