@@ -31,7 +31,7 @@ static const struct {
   {"build", CMD_BUILD, "lagc build MODEL -o SIMULATOR [--method NAME] [--with linear] [--no-gsl]",
    "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options.\n\n"
    "  --method NAME     with what this method needs of the model besides accelerations: variational, gauss,\n"
-   "                    or verlet of a model that is not separable. The scenes' own methods need no mention\n"
+   "                    radau, or verlet of a model that is not separable. The scenes' own methods need no mention\n"
    "  --with linear     with the exact linearisation of the model\n"
    "  --no-gsl          leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole\n"},
   {"run", CMD_RUN, "lagc run MODEL [SCENE] [name=value ...] [--method M] [--tol X] [--until T] ...",

@@ -25,6 +25,14 @@
 #define SECOND(name) UNUSED static int name##_second(ARGS, double *h, UNUSED double *w)
 #define DERIVATIVES(name) .variation = name##_variation, .second = name##_second, .second_at = name##_at, \
     .nsecond = (int)(sizeof name##_at / sizeof *name##_at)
+/* The linearisation that radau needs: name_linearise with the entries name_dr, and those of M's lower triangle. */
+#define LINEARISE(name) UNUSED static int name##_linearise(ARGS, UNUSED const double *a, double *dr, double *M, UNUSED double *w)
+#define LINEAR(name)                                                                                    \
+  UNUSED static const lag_linear name##_linear = {.ndr = (int)(sizeof name##_dr / sizeof *name##_dr), .dr = name##_dr, \
+      .nmass = (int)(sizeof name##_mass / sizeof *name##_mass), .mass = name##_mass, .eval = name##_linearise}
+#define EXACT(name) DERIVATIVES(name), .linear = &name##_linear
+UNUSED static const lag_entry full_2[] = {{0, 0}, {0, 1}, {1, 0}, {1, 1}}, diagonal_2[] = {{0, 0}, {1, 1}}, lower_2[] = {{0, 0}, {1, 0}, {1, 1}};
+
 /* Of one coordinate with unit mass and a force that falls by `slope` with it. */
 #define UNIT_MASS(name, accel, slope)                                                                   \
   FIRST(name)                                                                                           \
@@ -39,6 +47,14 @@
     h[1] = 1;                                                                                           \
     return 0;                                                                                           \
   }                                                                                                     \
+  LINEARISE(name)                                                                                       \
+  {                                                                                                     \
+    dr[0] = -(slope);                                                                                   \
+    M[0] = 1;                                                                                           \
+    return 0;                                                                                           \
+  }                                                                                                     \
+  UNUSED static const lag_entry name##_dr[] = {{0, 0}}, name##_mass[] = {{0, 0}};                       \
+  LINEAR(name);                                                                                         \
   UNUSED static const lag_second name##_at[] = {{LAG_QQ, 0, 0}, {LAG_VV, 0, 0}}
 
 static const double PI = 3.14159265358979323846264338327950288;
@@ -118,8 +134,25 @@ SECOND(kepler)
 
 UNUSED static const lag_second kepler_at[] = {{LAG_QQ, 0, 0}, {LAG_QQ, 1, 0}, {LAG_QQ, 1, 1}, {LAG_VV, 0, 0}, {LAG_VV, 1, 1}};
 
+/* Of unit masses: r = dL/dq - a. */
+#define UNIT_MASSES(name)                                                                               \
+  LINEARISE(name)                                                                                       \
+  {                                                                                                     \
+    double h[5];                                                                                        \
+    name##_second(t, q, v, z, p, u, h, w);                                                              \
+    dr[0] = h[0];                                                                                       \
+    dr[1] = dr[2] = h[1];                                                                               \
+    dr[3] = h[2];                                                                                       \
+    M[0] = M[1] = 1;                                                                                    \
+    return 0;                                                                                           \
+  }                                                                                                     \
+  LINEAR(name)
+#define kepler_dr full_2
+#define kepler_mass diagonal_2
+UNIT_MASSES(kepler);
+
 UNUSED static const lag_model kepler_model = {MODEL("kepler"), .flags = LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 2,
-    .q = names_q, .accel = kepler_accel, .energy = kepler_energy, DERIVATIVES(kepler)};
+    .q = names_q, .accel = kepler_accel, .energy = kepler_energy, EXACT(kepler)};
 UNUSED static const lag_scene kepler = {.name = "orbit", .doc = "", .model = &kepler_model, .start = kepler_start, .t1 = 10,
     .has_span = 1};
 
@@ -145,7 +178,7 @@ UNUSED static void osc_start(UNUSED const double *p, double *q, double *v, UNUSE
 
 UNIT_MASS(osc, osc_accel, 1);
 UNUSED static const lag_model osc_model = {MODEL("oscillator"), .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 1, .q = names_q,
-    .accel = osc_accel, .energy = osc_energy, DERIVATIVES(osc)};
+    .accel = osc_accel, .energy = osc_energy, EXACT(osc)};
 UNUSED static const lag_scene osc = {.name = "osc", .doc = "", .model = &osc_model, .start = osc_start, .t1 = 10, .has_span = 1};
 
 /* ---- ball: y'' = -g, y(0) = h, bounces with restitution e. p = {g, h, e}. */
@@ -194,7 +227,7 @@ UNUSED static void ball_start(const double *p, double *q, double *v, UNUSED doub
 
 UNIT_MASS(ball, ball_accel, 0);
 UNUSED static const lag_model ball_model = {MODEL("ball"), .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 1, .np = 3, .nev = 1,
-    .q = names_q + 1, .p = ball_p, .ev = ball_ev, .accel = ball_accel, .energy = ball_energy, .events = ball_events, .act = ball_act, DERIVATIVES(ball)};
+    .q = names_q + 1, .p = ball_p, .ev = ball_ev, .accel = ball_accel, .energy = ball_energy, .events = ball_events, .act = ball_act, EXACT(ball)};
 UNUSED static const lag_scene ball = {.name = "drop", .doc = "", .model = &ball_model, .params = ball_params,
     .start = ball_start, .t1 = 5, .has_span = 1};
 

@@ -58,7 +58,7 @@ static int pushed_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
 
 static const lag_var push_u[] = {{"push", "m/s^2", 1, 0, 0, 0}};
 UNIT_MASS(pushed, pushed_accel, 0);
-static const lag_model pushed_model = {MODEL("pushed"), .flags = LAG_SEPARABLE, .nq = 1, .nu = 1, .q = names_q, .u = push_u, .inputs = ramp, .accel = pushed_accel, DERIVATIVES(pushed)};
+static const lag_model pushed_model = {MODEL("pushed"), .flags = LAG_SEPARABLE, .nq = 1, .nu = 1, .q = names_q, .u = push_u, .inputs = ramp, .accel = pushed_accel, EXACT(pushed)};
 static const lag_scene pushed = {.name = "pushed", .doc = "", .model = &pushed_model, .start = osc_start, .t1 = 5, .has_span = 1};
 
 static void inputs_follow_their_formula_or_a_constant(void **state)

@@ -37,7 +37,7 @@ UNUSED static void pendulum_start(UNUSED const double *p, double *q, double *v, 
 
 /* L = v^2/2 + cos q */
 UNIT_MASS(pendulum, pendulum_accel, cos(q[0]));
-SYSTEM(pendulum, 1, SEPARABLE, pendulum_energy, DERIVATIVES(pendulum));
+SYSTEM(pendulum, 1, SEPARABLE, pendulum_energy, EXACT(pendulum));
 
 /* ---- Henon and Heiles (1964), E = 1/8 */
 UNUSED static int henon_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
@@ -82,7 +82,10 @@ SECOND(henon)
 }
 
 #define henon_at kepler_at /* the same entries */
-SYSTEM(henon, 2, SEPARABLE, henon_energy, DERIVATIVES(henon));
+#define henon_dr full_2
+#define henon_mass diagonal_2
+UNIT_MASSES(henon);
+SYSTEM(henon, 2, SEPARABLE, henon_energy, EXACT(henon));
 
 /* ---- double pendulum, unit masses and lengths, g = 9.81: textbook equations, not separable */
 UNUSED static int double_pendulum_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
@@ -138,7 +141,27 @@ SECOND(double_pendulum)
 
 UNUSED static const lag_second double_pendulum_at[] = {{LAG_QQ, 0, 0}, {LAG_QQ, 1, 0}, {LAG_QQ, 1, 1}, {LAG_VQ, 0, 0}, {LAG_VQ, 0, 1},
     {LAG_VQ, 1, 0}, {LAG_VQ, 1, 1}, {LAG_VV, 0, 0}, {LAG_VV, 1, 0}, {LAG_VV, 1, 1}};
-SYSTEM(double_pendulum, 2, LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS, double_energy, DERIVATIVES(double_pendulum));
+/* r1 = -2 a1 - a2 cos d - v2^2 sin d - 2 g sin q1, r2 = -a2 - a1 cos d + v1^2 sin d - g sin q2, d = q1 - q2 */
+LINEARISE(double_pendulum)
+{
+  double d = q[0] - q[1], s = sin(d), c = cos(d), g = 9.81;
+  double e1 = a[1] * s - v[1] * v[1] * c, e2 = a[0] * s + v[0] * v[0] * c;
+  dr[0] = e1 - 2 * g * cos(q[0]);
+  dr[1] = -e1;
+  dr[2] = -2 * v[1] * s;
+  dr[3] = e2;
+  dr[4] = -e2 - g * cos(q[1]);
+  dr[5] = 2 * v[0] * s;
+  M[0] = 2;
+  M[1] = c;
+  M[2] = 1;
+  return 0;
+}
+
+UNUSED static const lag_entry double_pendulum_dr[] = {{0, 0}, {0, 1}, {0, 3}, {1, 0}, {1, 1}, {1, 2}};
+#define double_pendulum_mass lower_2
+LINEAR(double_pendulum);
+SYSTEM(double_pendulum, 2, LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS, double_energy, EXACT(double_pendulum));
 
 /* ---- a pendulum that is driven, and whose support shakes: forces with explicit time */
 UNUSED static int driven_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
@@ -149,7 +172,7 @@ UNUSED static int driven_accel(ARGS, double *a, UNUSED double *zd, UNUSED double
 
 #define driven_start pendulum_start
 UNIT_MASS(driven, driven_accel, cos(q[0]) * (1 + 0.5 * cos(2 * t)));
-SYSTEM(driven, 1, LAG_CONSTANT_MASS | LAG_SEPARABLE, NULL, DERIVATIVES(driven));
+SYSTEM(driven, 1, LAG_CONSTANT_MASS | LAG_SEPARABLE, NULL, EXACT(driven));
 
 /* Momenta of a model at y = [q|v]. */
 UNUSED static void momenta(const lag_scene *scene, const double *y, double *p)
