@@ -217,7 +217,7 @@ static void test_entries(void **state) {
     SecondPart part;
     uint32_t row, col;
     Real value;
-  } hand[] = {{SECOND_QQ, 0, 0, -3}, {SECOND_QQ, 1, 0, 3}, {SECOND_QQ, 1, 1, -3}, {SECOND_VV, 0, 0, 1}, {SECOND_VV, 1, 1, 1},
+  } hand[] = {{SECOND_QQ, 0, 0, -3}, {SECOND_QQ, 1, 1, -3}, {SECOND_QQ, 1, 0, 3}, {SECOND_VV, 0, 0, 1}, {SECOND_VV, 1, 1, 1},
               {SECOND_FV, 0, 0, -1}};
   Arena *arena = arena_new(NULL);
   Eqns *e = equations(arena, spring, NULL);
