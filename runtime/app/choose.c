@@ -57,7 +57,7 @@ const lag_method *app_find_method(const App *app, const char *name)
 typedef struct Choice {
   char text[512];
   const char *name;
-  lag_option opt[MOST_OPTIONS];
+  lag_option opt[MOST_OPTIONS + 1 + OWN_OPTIONS]; /* in parentheses or of the scene; --step; others */
   int n;
 } Choice;
 
@@ -69,6 +69,19 @@ static char *trim(char *s)
     s[--n] = '\0';
   }
   return s;
+}
+
+/* A number, or else a word. */
+static void add_option(Choice *c, const char *name, const char *value)
+{
+  lag_option *o = &c->opt[c->n++];
+  char *end;
+
+  *o = (lag_option){.name = name};
+  o->value = strtod(value, &end);
+  if (*end || end == value) {
+    o->text = value;
+  }
 }
 
 /* "NAME" or "NAME(option = value, ...)". */
@@ -93,13 +106,7 @@ static int parse_method(const Args *a, Choice *c)
       return app_error(a, "--method %s: write NAME(option=value, ...)", a->method);
     }
     *eq = '\0';
-    lag_option *o = &c->opt[c->n++];
-    char *end, *value = trim(eq + 1);
-    *o = (lag_option){.name = trim(s)};
-    o->value = strtod(value, &end);
-    if (*end || end == value) {
-      o->text = value;
-    }
+    add_option(c, trim(s), trim(eq + 1));
   }
   return 0;
 }
@@ -135,6 +142,11 @@ static int choose_method(App *app)
     }
     if (o->value < 1e-15 * (app->scene->has_span ? fabs(app->scene->t1 - app->scene->t0) : 1)) {
       return app_error(a, "--step %s: time would not move, double precision has 16 digits; for example --step 1e-3", a->step);
+    }
+  }
+  for (int i = 0; i < OWN_OPTIONS; i++) {
+    if (a->method_options[i]) {
+      add_option(&c, args_own_options[i], a->method_options[i]);
     }
   }
   rc = lag_sim_set_method(app->sim, m, c.opt, c.n);

@@ -174,7 +174,12 @@ static int option_value(lag_sim *s, const lag_method *m, const lag_method_option
         return LAG_OK;
       }
     }
-    return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"", m->name, o->name, given->text);
+    char words[128] = "";
+    for (int i = 0; o->choices && o->choices[i] && strlen(words) + strlen(o->choices[i]) + 3 < sizeof words; i++) {
+      strcat(strcat(words, i ? ", " : ""), o->choices[i]);
+    }
+    return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"; it is %s", m->name, o->name, given->text,
+                    o->choices ? words : "a number");
   }
   if (!(*value >= o->min && *value <= o->max)) {
     return lag_fail(s, LAG_EINVAL, "method %s: option %s = %g is outside [%g, %g]", m->name, o->name, *value, o->min, o->max);

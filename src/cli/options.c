@@ -200,7 +200,8 @@ static int picture_option(Arena *a, int argc, char **argv, int *i, Options *o) {
 /* What a simulator gets: an option, with its value where it takes one, a scene or a setting. */
 static void pass_on(Arena *a, int argc, char **argv, int *i, Options *o) {
   static const char *const with_value[] = {"--method", "--tol", "--step", "--until", "--every", "--svg", "--plot-x",
-                                           "--plot-y", "--save-state", "--resume", "--output", "-o", "--html", "--points", "--from"};
+                                           "--plot-y", "--save-state", "--resume", "--output", "-o", "--html", "--points", "--from",
+                                           "--quadrature", "--order", "--stages"};
   const char *arg = argv[*i];
   int look = *i;
   take_value(arg, "--method", argc, argv, &look, &o->method);
