@@ -35,7 +35,8 @@ mv "$TMP"/c/*.h "$TMP/h"
 emit_more() {
   mkdir -p "$TMP/more"
   for m in $models; do "$LAGC" emit "$m" --method gauss -o "$TMP/more/$(name_of "$m").c" || return 1; done
-  grep -q 'static int second' "$TMP/more/double_pendulum.c" && ! grep -q second "$TMP/c/double_pendulum.c"
+  for f in "$TMP"/more/*.c; do grep -q 'nq = 0' "$f" || grep -q 'static int second' "$f" || return 1; done
+  ! grep -q second "$TMP/c/double_pendulum.c"
 }
 check "lagc emit --method, all models" emit_more
 
