@@ -27,6 +27,7 @@
 #include "picture.h"
 #include "settings.h"
 #include "syntax/parse.h"
+#include "wants.h"
 
 #define LAGC_VERSION "0.1"
 
@@ -120,7 +121,7 @@ static Eqns *derive_asked(Compiler *c, const char *scene) {
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
 static IrUnit *lower_scene(Compiler *c, Eqns *e) {
   IrUnit *u = unit_new(e, c->o.file);
-  if (c->o.with) unit_add_linear(u, e);
+  unit_want(u, e, wants_of(e, &c->o));
   unit_add_scene(u, e);
   const char *wrong = prog_verify(u->accel);
   if (wrong) {
@@ -193,13 +194,23 @@ static int lower_all(Compiler *c, Units *units) {
     IrUnit *fresh = unit_new(e, c->o.file), *home = NULL;
     for (uint32_t k = 0; k < units->n && !home; k++)
       if (unit_shares(units->at[k], fresh)) home = units->at[k];
-    if (!home) {
-      vec_push(c->arena, units, home = fresh);
-      if (c->o.with) unit_add_linear(home, e);
-    }
+    if (!home) vec_push(c->arena, units, home = fresh);
+    unit_want(home, e, wants_of(e, &c->o));
     unit_add_scene(home, e);
   }
   return 1;
+}
+
+typedef VEC(SourceText) Texts;
+
+/* A program from these texts at `output`, or in the cache (NULL). */
+static int make_program(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path) {
+  const char *error = NULL;
+  *path = output ? output : toolchain_cached(c->arena, tools, texts->at, texts->n);
+  if (!output && toolchain_is_whole(c->arena, *path)) return STATUS_OK;
+  if (!toolchain_build(c->arena, tools, texts->at, texts->n, *path, &error)) return fail_usage(error);
+  if (!output) toolchain_seal(c->arena, *path);
+  return STATUS_OK;
 }
 
 static int make_simulator(Compiler *c, const char *output, const char **path) {
@@ -210,7 +221,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
   if (c->o.command == CMD_MODES) tools.optimise = "-O0";
-  VEC(SourceText) texts = {0};
+  Texts texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
   for (uint32_t i = 0; i < units.n; i++) {
     names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units.at[i]->name), i);
@@ -221,11 +232,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   StrBuf b = strbuf(c->arena);
   emit_program((const IrUnit *const *)units.at, names, units.n, tools.gsl, &b);
   vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
-  *path = output ? output : toolchain_cached(c->arena, &tools, texts.at, texts.n);
-  if (!output && toolchain_is_whole(c->arena, *path)) return STATUS_OK;
-  if (!toolchain_build(c->arena, &tools, texts.at, texts.n, *path, &error)) return fail_usage(error);
-  if (!output) toolchain_seal(c->arena, *path);
-  return STATUS_OK;
+  return make_program(c, &tools, &texts, output, path);
 }
 
 static int do_build(Compiler *c) {
@@ -255,6 +262,22 @@ static int do_run(Compiler *c) {
   fflush(stdout);
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
   execv(path, c->picture.argv.at);
+  return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
+}
+
+/* The runtime lists its own methods: a program without a model asks it. */
+static int do_methods(Compiler *c) {
+  Toolchain tools;
+  const char *path, *error = NULL;
+  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
+  StrBuf b = strbuf(c->arena);
+  emit_bare_program(tools.gsl, &b);
+  Texts texts = {0};
+  vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
+  int status = make_program(c, &tools, &texts, NULL, &path);
+  if (status != STATUS_OK) return status;
+  char self[] = "lagc methods", option[] = "--method", help[] = "help", *argv[] = {self, option, help, NULL};
+  execv(path, argv);
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
 }
 
@@ -354,7 +377,7 @@ static int do_command(Compiler *c) {
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
     case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: return do_run(c);
-    case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
+    case CMD_METHODS: case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
   }
   return STATUS_USAGE;
 }
@@ -377,6 +400,7 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   if (!options_read(c->arena, argc, argv, &c->o, &error)) return fail_usage(error);
   if (c->o.command == CMD_HELP) return do_help(c);
   if (c->o.command == CMD_COMPLETION || c->o.command == CMD_COMPLETE) return do_completion(c);
+  if (c->o.command == CMD_METHODS) return do_methods(c);
   if (c->o.command == CMD_VERSION) {
     puts("lagc " LAGC_VERSION);
     return fflush(stdout) == 0 ? STATUS_OK : fail_usage("cannot write standard output");

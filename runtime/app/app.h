@@ -9,9 +9,12 @@
 
 enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_SIGNAL = 128 };
 enum { MOST_OPTIONS = 16 };
+enum { OWN_OPTIONS = 3 }; /* options of methods that are options of the command line, too */
+extern const char *const args_own_options[OWN_OPTIONS];
 
 /* The command line as written; numbers are still text. */
 typedef struct Args {
+  const char *method_options[OWN_OPTIONS]; /* values of --quadrature, --order, --stages */
   const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events;
   int json, sketch, quiet, help, trace, no_rods, modes;
   char **sets; /* name=value, in order */
@@ -58,6 +61,8 @@ int app_error(const Args *a, const char *format, ...);
 int app_choose(App *app);
 int app_choose_start(App *app);
 const lag_method *app_find_method(const App *app, const char *name);
+
+/* methods.c */
 void app_list_methods(const App *app, FILE *f);
 
 /* columns.c. The index of a column by its name; -1 after a message. */

@@ -51,6 +51,8 @@ typedef struct Option {
   int is_flag;
 } Option;
 
+const char *const args_own_options[OWN_OPTIONS] = {"quadrature", "order", "stages"};
+
 static const Option options[] = {
     {"method", offsetof(Args, method), 0}, {"tol", offsetof(Args, tol), 0},
     {"step", offsetof(Args, step), 0},     {"until", offsetof(Args, until), 0},
@@ -64,6 +66,8 @@ static const Option options[] = {
     {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
     {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
     {"modes", offsetof(Args, modes), 1},   {"help", offsetof(Args, help), 1},
+    {"quadrature", offsetof(Args, method_options[0]), 0}, {"order", offsetof(Args, method_options[1]), 0},
+    {"stages", offsetof(Args, method_options[2]), 0},
 };
 enum { NOPTIONS = sizeof options / sizeof *options };
 

@@ -54,45 +54,11 @@ const lag_method *app_find_method(const App *app, const char *name)
   return m;
 }
 
-static void list_method(const lag_method *m, FILE *f)
-{
-  static const struct {
-    unsigned flag;
-    const char *words;
-  } properties[] = {{LAG_METHOD_SYMPLECTIC, ", symplectic"}, {LAG_METHOD_SYMMETRIC, ", symmetric"},
-                    {LAG_METHOD_SEPARABLE, "; separable models only"}, {LAG_METHOD_CONSERVATIVE, "; conservative models only"},
-                    {LAG_METHOD_NO_SAVE, "; cannot be saved"}};
-
-  fprintf(f, "  %-16s order %2d, dense %2d, %s", m->name, m->order, m->dense_order,
-          m->flags & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed step");
-  for (size_t i = 0; i < sizeof properties / sizeof *properties; i++) {
-    if (m->flags & properties[i].flag) {
-      fputs(properties[i].words, f);
-    }
-  }
-  fprintf(f, "\n  %-16s   %s\n", "", m->doc);
-  for (int i = 0; i < m->noptions; i++) {
-    const lag_method_option *o = &m->options[i];
-    char number[32];
-    snprintf(number, sizeof number, "%g", o->value);
-    fprintf(f, "  %-16s   %s = %s: %s\n", "", o->name, o->choices ? o->choices[(int)o->value] : number, o->doc);
-  }
-}
-
-void app_list_methods(const App *app, FILE *f)
-{
-  fputs("methods (the first is the default; dense: order between steps; separable: constant mass matrix and\n"
-        "accelerations that do not depend on velocities):\n", f);
-  for (int i = 0; method_at(app, i); i++) {
-    list_method(method_at(app, i), f);
-  }
-}
-
 /* A method's options as they are being collected; names and texts point into `text`. */
 typedef struct Choice {
   char text[512];
   const char *name;
-  lag_option opt[MOST_OPTIONS];
+  lag_option opt[MOST_OPTIONS + 1 + OWN_OPTIONS]; /* in parentheses or of the scene; --step; others */
   int n;
 } Choice;
 
@@ -104,6 +70,19 @@ static char *trim(char *s)
     s[--n] = '\0';
   }
   return s;
+}
+
+/* A number, or else a word. */
+static void add_option(Choice *c, const char *name, const char *value)
+{
+  lag_option *o = &c->opt[c->n++];
+  char *end;
+
+  *o = (lag_option){.name = name};
+  o->value = strtod(value, &end);
+  if (*end || end == value) {
+    o->text = value;
+  }
 }
 
 /* "NAME" or "NAME(option = value, ...)". */
@@ -128,13 +107,7 @@ static int parse_method(const Args *a, Choice *c)
       return app_error(a, "--method %s: write NAME(option=value, ...)", a->method);
     }
     *eq = '\0';
-    lag_option *o = &c->opt[c->n++];
-    char *end, *value = trim(eq + 1);
-    *o = (lag_option){.name = trim(s)};
-    o->value = strtod(value, &end);
-    if (*end || end == value) {
-      o->text = value;
-    }
+    add_option(c, trim(s), trim(eq + 1));
   }
   return 0;
 }
@@ -189,6 +162,11 @@ static int choose_method(App *app)
     }
     if (o->value < 1e-15 * (app->scene->has_span ? fabs(app->scene->t1 - app->scene->t0) : 1)) {
       return app_error(a, "--step %s: time would not move, double precision has 16 digits; for example --step 1e-3", a->step);
+    }
+  }
+  for (int i = 0; i < OWN_OPTIONS; i++) {
+    if (a->method_options[i]) {
+      add_option(&c, args_own_options[i], a->method_options[i]);
     }
   }
   rc = lag_sim_set_method(app->sim, m, c.opt, c.n);

@@ -168,6 +168,8 @@ int lag_sim_save(lag_sim *s, double *x)
   }
   s->run->rhs_calls = s->pb.rhs_calls;
   s->run->rejected = s->pb.rejected;
+  s->run->systems = s->pb.systems;
+  s->run->iterations = s->pb.iterations;
   memcpy(x, s->saved, s->nsaved * sizeof *x);
   return LAG_OK;
 }
@@ -180,6 +182,8 @@ int lag_sim_load(lag_sim *s, const double *x)
   memcpy(s->saved, x, s->nsaved * sizeof *x);
   s->pb.rhs_calls = s->run->rhs_calls;
   s->pb.rejected = s->run->rejected;
+  s->pb.systems = s->run->systems;
+  s->pb.iterations = s->run->iterations;
   s->pb.dir = s->run->dir;
   return LAG_OK;
 }

@@ -20,7 +20,7 @@ typedef struct Run {
   double step_t0, step_t1;
   double from;           /* events are located from here on */
   double limit, pending; /* pending: events fire at limit */
-  double steps, rejected, rhs_calls, events;
+  double steps, rejected, rhs_calls, systems, iterations, events;
   double e_first, e_last, e_peak, e_scale; /* energy: E0, last, largest |E - E0|, largest |p.v| + |L| */
   double zeno_k, zeno_t, zeno_dt, zeno_count; /* the last event, its time, interval, how many ever shorter */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
@@ -76,9 +76,8 @@ int lag_explain(lag_sim *sim, int status);
 /* u at t: formula or constant. */
 int lag_inputs(lag_problem *pb, double t);
 
-/* setup.c: the state at the start, of a run that has not begun; the blocks of memory for a method. */
+/* setup.c: the state at the start, of a run that has not begun. */
 int lag_setup_start(lag_sim *sim);
-int lag_setup_blocks(lag_sim *sim, const lag_method *method);
 
 /* events.c. arm: signs at the start of a step chain. locate: the first event in (run->from, step_t1],
  * sets limit and pending. fire: applies the events at limit. */

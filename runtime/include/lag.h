@@ -59,14 +59,18 @@ typedef struct lag_problem {
   const double *hold;  /* [nu] constants that replace inputs; NaN where there is none */
   const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
+  const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
   double span;         /* length of the scene's span, 0 when it has none. Not where this run ends */
   double rhs_calls;    /* counted by lag_rhs */
   double rejected;     /* counted by the method */
+  double systems;      /* of nonlinear equations solved, */
+  double iterations;   /* and the corrections that took: counted by the method */
   double bad_t;        /* set before a failure: where, */
   int bad_index;       /* which component of y' (-1: unknown), */
-  const char *detail;  /* and more words or NULL; a string that lives as long as the program */
+  const char *detail;  /* and more words or NULL; a string that lives as long as this object, */
+  char words[160];     /* for example made here */
 } lag_problem;
 
 /* The model's facts (LAG_AUTONOMOUS, ...) without those that a function in place of an input takes away. */
@@ -79,6 +83,11 @@ int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
  * third derivative of the right-hand side jumps there, and a step over several rows might miss what is between them:
  * a method that chooses its steps ends them at *row, when that is nearer. STEPS_TO methods have it in t_stop. */
 double lag_next_row(const lag_problem *pb, double t, double *row);
+
+/* Lq = dL/dq, Lv = dL/dv and Q, the forces that are in no L, all [nq]; the values of their derivatives, h[model->nsecond]. For
+ * models that have these functions; nz = 0. Return what the model returned. */
+int lag_variation(lag_problem *pb, double t, const double *q, const double *v, double *Lq, double *Lv, double *Q);
+int lag_second_derivatives(lag_problem *pb, double t, const double *q, const double *v, double *h);
 
 /* Exact derivatives of f, for models emitted with their linearisation (model->linear; lagc --with linear). All
  * matrices are dense and row-major; work[lag_linear_work()] is scratch, 0 doubles for a model without linearisation. Both
@@ -107,11 +116,14 @@ enum {
   LAG_METHOD_ADAPTIVE = 1,     /* chooses its steps from the tolerance; else steps are of equal size */
   LAG_METHOD_SYMPLECTIC = 2,
   LAG_METHOD_SYMMETRIC = 4,
-  LAG_METHOD_SEPARABLE = 8,    /* refuses models without LAG_SEPARABLE */
+  LAG_METHOD_VARIATION = 8,    /* needs the model's derivatives of L: lag_model.variation and second */
   LAG_METHOD_CONSERVATIVE = 16, /* refuses models with forces, dissipation or explicit time */
   LAG_METHOD_STEPS_TO = 32,    /* dense() is rough: must step exactly to each time of output */
   LAG_METHOD_NO_SAVE = 64,     /* work holds pointers: its state cannot be saved */
-  LAG_METHOD_NO_STATES = 128   /* refuses models with nz > 0 */
+  LAG_METHOD_NO_STATES = 128,  /* refuses models with nz > 0 */
+  LAG_METHOD_SPLITS = 512,     /* explicit for models with LAG_SEPARABLE, which then need no derivatives */
+  LAG_METHOD_JACOBIAN = 2048,  /* needs the model's linearisation: lag_model.linear */
+  LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS where it does not split */
 };
 
 /* An option of a method. With choices (NULL-terminated) the value is the index of the choice. */
@@ -127,14 +139,17 @@ typedef struct lag_method_option {
  * of a run can be written and read back bit by bit). */
 typedef struct lag_method {
   const char *name;
-  int order;
-  int dense_order;
+  int order, dense_order;      /* of the steps and between them, the options at their defaults */
+  int order_least, order_most; /* of both, where options choose; else 0 */
   const char *doc;  /* one line, then the source of the algorithm */
   unsigned flags;
   int noptions;
   const lag_method_option *options;
 
-  /* Doubles of work that init needs. */
+  /* What is wrong with these values of the options, and what to write; NULL when they fit together. May itself be NULL. */
+  const char *(*check)(const double *opt);
+
+  /* Doubles of work that init needs with the options pb->opt. */
   size_t (*work_size)(const lag_problem *pb);
 
   /* Prepares work (zeroed). opt[noptions] are the values of the options. < 0: see pb->detail. */
@@ -161,8 +176,12 @@ extern const lag_method lag_rk4;
 extern const lag_method lag_rk45;
 /* Dormand-Prince 8(5,3), adaptive, for tolerances below about 1e-6. */
 extern const lag_method lag_dop853;
-/* Symplectic, fixed step, for separable models: symplectic Euler, Stoermer-Verlet, and compositions of order 4, 6, 8. */
+/* Symplectic, fixed step: symplectic Euler, Stoermer-Verlet, and compositions of order 4, 6, 8. Explicit for separable models. */
 extern const lag_method lag_symplectic_euler, lag_verlet, lag_verlet4, lag_verlet6, lag_verlet8;
+/* Symplectic, fixed step, implicit, for any L: from a discrete Lagrangian, and Gauss collocation, of order 2 to 8. */
+extern const lag_method lag_variational, lag_gauss;
+/* Radau IIA of order 5, implicit, adaptive: for stiff models; of a model that holds its linearisation. */
+extern const lag_method lag_radau;
 /* The methods of liblag.a, the default first. */
 extern const lag_method *const lag_methods[];
 extern const int lag_nmethods;
@@ -177,6 +196,7 @@ typedef struct lag_sim lag_sim;
 typedef struct lag_stats {
   double t;
   long long steps, rejected, rhs_calls, events;
+  long long systems, iterations; /* of nonlinear equations solved within steps, and the corrections that took */
   double energy;        /* now */
   double energy_drift;  /* largest |E - E0| over the run relative to max(|E0|, max(|p.v| + |L|)); what events
                          * do to the energy is not counted. NaN when the model has no energy */

@@ -87,6 +87,13 @@ typedef struct lag_linear {
               const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w);
 } lag_linear;
 
+/* One of the second derivatives that lag_model.second computes: of L by two of q, v, where of LAG_QQ and LAG_VV only
+ * row >= col is given and the row of LAG_VQ is that of v; or of the generalised force `row` by q or v. */
+enum { LAG_QQ, LAG_VQ, LAG_VV, LAG_FQ, LAG_FV };
+typedef struct lag_second {
+  int part, row, col;
+} lag_second;
+
 typedef struct lag_model {
   int abi;           /* LAG_ABI */
   size_t real_size;  /* sizeof(LAG_REAL) */
@@ -126,7 +133,20 @@ typedef struct lag_model {
 
   int ntables;
   const lag_table *tables; /* [ntables] the inputs that have a table */
-  const lag_linear *linear; /* NULL: not asked for */
+
+  /* The rest is NULL in a program that was not emitted for a method that needs it (lagc build --method NAME). */
+
+  /* Lq[nq] = dL/dq, the momenta Lv[nq] = dL/dv, and Q[nq], the generalised forces that are in no L. */
+  int (*variation)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                   const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q, LAG_REAL *w);
+
+  /* h[nsecond]: their derivatives, the entries that second_at lists; the others are zero. */
+  int (*second)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *h, LAG_REAL *w);
+  const lag_second *second_at;
+  int nsecond;
+
+  const lag_linear *linear;
 } lag_model;
 
 /* An option of a method: step = 1e-3, quadrature = trapezoid (then text is set). */

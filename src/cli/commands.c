@@ -33,7 +33,7 @@ static const CommandRow commands[] = {
    "unit; 0.5@-90 is an amplitude of 0.5, a quarter of a period behind it. A zero mode is `free` where no force arises far "
    "along it. Needs GSL. Exit status 3: no equilibrium was found.\n\n"
    "  name=value            a parameter, another start (th=3), an input to hold"},
-  {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--no-gsl] [--with linear]", "make a simulator",
+  {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--method NAME] [--with linear]", "make a simulator",
    "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options, which are those of "
    "`lagc run`."},
   {CMD_HEADER, "header", "embedding", "MODEL [SCENE] -o FILE.h", "write one C header to embed",
@@ -44,10 +44,12 @@ static const CommandRow commands[] = {
    "  #define PEND_IMPLEMENTATION\n"
    "  #include \"pend.h\"\n\n"
    "The others include it without the #define. Its first lines say how it is used."},
-  {CMD_EMIT, "emit", NULL, "MODEL [SCENE] [--with linear] [-o FILE.c]", "write C for the runtime",
+  {CMD_EMIT, "emit", NULL, "MODEL [SCENE] [--method NAME] [--with linear] [-o FILE.c]", "write C for the runtime",
    "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h). What integrates them is "
    "liblag, whose interface is lag.h:\n\n"
    "  cc main.c pendulum.c $(pkg-config --cflags --libs liblag)"},
+  {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
+   "Lists the methods of integration: their order, what they keep, what they need of a model, and their options."},
   {CMD_HELP, "help", NULL, "[TOPIC]", NULL, "Says more on a command, a word of the language, a unit, a function or an option; alone, lists the topics."},
   {CMD_COMPLETION, "completion", NULL, "bash|zsh|fish", "print a script of completion for a shell",
    "Prints what makes a shell complete the commands and options of lagc, and the scenes, parameters, methods and names of "
@@ -97,6 +99,11 @@ static const OptionRow options[] = {
 
   {"--method", NULL, "NAME", TAKES_METHOD, "", SIMULATE, PASSED,
    "method of integration, NAME or \"NAME(option=value, ...)\"; `lagc help methods` lists them"},
+  {"--method", NULL, "NAME", TAKES_METHOD, "", C(BUILD) | C(EMIT), OWN(method),
+   "with what this method needs of the model besides accelerations; the scenes' own methods need no mention"},
+  {"--quadrature", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "of the method variational: midpoint, trapezoid, gauss or lobatto"},
+  {"--order", NULL, "N", TAKES_NUMBER, "", SIMULATE, PASSED, "of the method variational"},
+  {"--stages", NULL, "N", TAKES_NUMBER, "", SIMULATE, PASSED, "of the method gauss"},
   {"--tol", NULL, "X", TAKES_NUMBER, "", SIMULATE, PASSED, "tolerance, absolute and relative"},
   {"--step", NULL, "H", TAKES_NUMBER, "", SIMULATE, PASSED, "step [s]; the first one tried where the method chooses its own"},
   {"--until", NULL, "T", TAKES_NUMBER, "", SIMULATE, PASSED, "run to time T [s]; before the start: backwards"},

@@ -13,7 +13,7 @@ static const char *unknown_command(Arena *a, const char *word) {
   Name names[CMD_COUNT];
   size_t n = 0;
   for (const CommandRow *row; n < CMD_COUNT && (row = command_row(n)) != NULL && row->help; n++) names[n] = row->name;
-  static const char *const later[] = {"cost", "effects", "noether", "lyapunov", "methods"};
+  static const char *const later[] = {"cost", "effects", "noether", "lyapunov"};
   for (size_t i = 0; i < sizeof later / sizeof *later; i++)
     if (strcmp(word, later[i]) == 0) return arena_printf(a, "not yet: `lagc %s`", word);
   size_t len = strlen(word);
@@ -119,6 +119,8 @@ static int read_option(Arena *a, int argc, char **argv, int *i, Options *o, cons
     value = argv[++*i];
     if (row->passed) vec_push(a, &o->rest, value);
   }
+  if (strcmp(row->name, "--method") == 0) o->method = value; /* passed on, and looked at: what a method needs is compiled in */
+  if (strcmp(row->name, "--resume") == 0) o->resume = value;
   return row->passed || set_value(a, o, row, value, error);
 }
 

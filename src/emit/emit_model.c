@@ -27,7 +27,7 @@ static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
   "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_cubic",
   "lag_spline", "lag_var", "lag_event", "lag_model", "lag_option", "lag_monitor", "lag_table", "lag_scene", "lag_program",
-  "lag_entry", "lag_linear", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "linear",
+  "lag_entry", "lag_linear", "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
   "curves",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
@@ -59,7 +59,7 @@ static const char *const *rows_names(const IrUnit *u) {
 }
 
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel", "energy", "linearise", "events", "act", "inputs", "params", "start", "observe",
+  static const char *const taken[] = {"accel", "energy", "linearise", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
                                       "outputs", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
@@ -118,6 +118,17 @@ static void emit_energy(const File *f) {
   if (!f->u->energy) return;
   const char *head = arena_printf(f->a, "static int energy(%s, LAG_REAL *out, LAG_REAL *w)", state_args);
   function(f, f->u->energy, "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", head, own, written);
+}
+
+static void emit_variation(const File *f) {
+  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "Lq", "Lv", "Q", "w", NULL}, *const written[] = {"Lq", "Lv", "Q"};
+  static const char *const own2[] = {"t", "q", "v", "z", "p", "u", "h", "w", NULL}, *const written2[] = {"h"};
+  const IrUnit *u = f->u;
+  if (!u->variation) return;
+  const char *head = arena_printf(f->a, "static int variation(%s,\n    LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q, LAG_REAL *w)", state_args);
+  function(f, u->variation, "dL/dq, the momenta dL/dq', and the generalised forces that are in no L.", head, own, written);
+  head = arena_printf(f->a, "static int second(%s, LAG_REAL *h, LAG_REAL *w)", state_args);
+  function(f, u->second, arena_printf(f->a, "Their derivatives, those that are not zero: %s.", ops_text(u->second, f->a)), head, own2, written2);
 }
 
 static void emit_action(const File *f, uint32_t i) {
@@ -306,6 +317,17 @@ static void emit_curves(const IrUnit *u, StrBuf *out) {
   sb_puts(out, "};\n");
 }
 
+static void second_table(const IrUnit *u, StrBuf *out) {
+  static const char *const parts[] = {"LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV"};
+  if (!u->second_at.n) return;
+  sb_puts(out, "\nstatic const lag_second second_table[] = {\n");
+  for (uint32_t i = 0; i < u->second_at.n; i++) {
+    const IrSecond *s = &u->second_at.at[i];
+    sb_printf(out, "  {%s, %u, %u},\n", parts[s->part], s->row, s->col);
+  }
+  sb_puts(out, "};\n");
+}
+
 static void emit_tables(const IrUnit *u, const char *name, const char *digest, StrBuf *out) {
   table(u, "q_table", u->q.at, u->q.n, out);
   table(u, "z_table", u->z.at, u->z.n, out);
@@ -318,6 +340,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
     sb_puts(out, "};\n");
   }
   emit_curves(u, out);
+  second_table(u, out);
   const char *model = c_string(u->arena, u->name), *doc = c_string(u->arena, u->doc), *effects = c_string(u->arena, u->effects);
   sb_printf(out, "\nconst lag_model %s = {\n", name);
   sb_printf(out, "  .abi = LAG_ABI, .real_size = sizeof(LAG_REAL),\n  .name = %s,\n  .doc = %s,\n  .effects = %s,\n  .digest = \"%s\",\n  .flags = ", model, doc, effects, digest);
@@ -329,6 +352,9 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->inputs->tables.n) sb_printf(out, "  .ntables = %u, .tables = curves,\n", u->inputs->tables.n);
   sb_printf(out, "  .inputs = %s, .accel = accel, .energy = %s,\n  .events = %s, .act = %s,\n", or_null(u->u.n, "inputs"),
             u->energy ? "energy" : "NULL", or_null(u->events.n, "events"), or_null(u->events.n, "act"));
+  if (u->variation)
+    sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
+              or_null(u->second_at.n, "second_table"), u->second_at.n);
   if (u->linear) sb_puts(out, "  .linear = &linear,\n");
   sb_puts(out, "};\n");
 }
@@ -401,9 +427,15 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_events(&f);
   emit_inputs(&f);
   const char *digest = digest_text(u->arena, sb_text(out) + begin);
-  emit_linear(&f);
+  emit_linear(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
+  emit_variation(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, i);
+}
+
+static void emit_main(int gsl, StrBuf *out) {
+  sb_puts(out, "int main(int argc, char **argv) {\n");
+  sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", gsl ? "&lag_gsl" : "NULL");
 }
 
 void emit_program(const IrUnit *const *units, const char *const *names, uint32_t n, int gsl, StrBuf *out) {
@@ -422,6 +454,10 @@ void emit_program(const IrUnit *const *units, const char *const *names, uint32_t
   const char *name = c_string(a, first->name), *doc = c_string(a, first->doc), *source = c_string(a, first->source);
   sb_printf(out, "static const lag_program program = {\n  .name = %s,\n  .doc = %s,\n  .source = %s,\n  .effects = %s,\n  .nscenes = %u, .scenes = scenes,\n};\n\n",
             name, doc, source, c_string(a, first->all_effects), scenes);
-  sb_puts(out, "int main(int argc, char **argv) {\n");
-  sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", gsl ? "&lag_gsl" : "NULL");
+  emit_main(gsl, out);
+}
+
+void emit_bare_program(int gsl, StrBuf *out) {
+  sb_puts(out, "#include \"lag.h\"\n\nstatic const lag_program program = {.name = \"lagc\", .doc = \"\", .source = \"\", .effects = \"\"};\n\n");
+  emit_main(gsl, out);
 }

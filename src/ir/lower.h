@@ -8,9 +8,12 @@
 #include "ir/prog.h"
 #include "ir/unit.h"
 #include "mech/eqns.h"
+#include "mech/variation.h"
 
 Prog *lower_accel(const Eqns *e);   /* out 0: a[nq], out 1: zd[nz] */
 Prog *lower_energy(const Eqns *e);  /* out 0: e[2] */
+Prog *lower_variation(const Eqns *e, const Variation *x); /* out 0, 1, 2: dL/dq[nq], dL/dq'[nq], Q[nq] */
+Prog *lower_second(const Eqns *e, const Variation *x);    /* out 0: h[number of entries] */
 Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
 Prog *lower_action(const Eqns *e, uint32_t event); /* out 0, 1, 2: q1, v1, z1; only what is set */
 Prog *lower_inputs(const Eqns *e);  /* out 0: u[nu] */
@@ -28,7 +31,7 @@ IrUnit *unit_new(const Eqns *e, const char *source);
 int unit_shares(const IrUnit *a, const IrUnit *b); /* whether scenes of b fit into a */
 void unit_add_scene(IrUnit *u, const Eqns *e);
 
-/* Adds the exact linearisation, which a model pays for only when something needs it. */
-void unit_add_linear(IrUnit *u, Eqns *e);
+/* Adds the programs of WANT_... that are not there yet. */
+void unit_want(IrUnit *u, Eqns *e, unsigned wants);
 
 #endif

@@ -31,6 +31,16 @@ static void add_events(IrUnit *u, const Eqns *e) {
   u->event_values = lower_events(e);
 }
 
+static void add_variation(IrUnit *u, const Eqns *e) {
+  Variation *x = variation_derive(e);
+  u->variation = lower_variation(e, x);
+  u->second = lower_second(e, x);
+  for (uint32_t k = 0; k < x->second.n; k++) {
+    const SecondEntry *s = &x->second.at[k];
+    vec_push(u->arena, &u->second_at, ((IrSecond){(int)s->part, s->row, s->col}));
+  }
+}
+
 IrUnit *unit_new(const Eqns *e, const char *source) {
   const Model *m = e->m;
   IrUnit *u = ARENA_NEW(m->arena, IrUnit);
@@ -68,11 +78,18 @@ static void add_exact(IrScene *s, const Eqns *e) {
   }
 }
 
-void unit_add_linear(IrUnit *u, Eqns *e) {
+static void add_linear(IrUnit *u, Eqns *e) {
   Partials dr = eqns_linearise(e);
   u->linear = lower_linear(e, dr);
   for (uint32_t k = 0; k < dr.n; k++) vec_push(u->arena, &u->linear_dr, ((IrEntry){dr.at[k].row, dr.at[k].col}));
   for (uint32_t k = 0; k < e->mass.n; k++) vec_push(u->arena, &u->linear_mass, ((IrEntry){e->mass.at[k].row, e->mass.at[k].col}));
+}
+
+void unit_want(IrUnit *u, Eqns *e, unsigned wants) {
+  unsigned fresh = wants & ~u->wants;
+  u->wants |= wants;
+  if (fresh & WANT_VARIATION && e->n) add_variation(u, e);
+  if (fresh & WANT_LINEAR) add_linear(u, e);
 }
 
 void unit_add_scene(IrUnit *u, const Eqns *e) {

@@ -53,6 +53,15 @@ typedef struct {
   uint32_t row, col;
 } IrEntry;
 
+/* What only some methods of integration need, and is not made for the others. */
+enum { WANT_VARIATION = 1, WANT_LINEAR = 4 };
+
+/* An entry of the second derivatives: part as in mech/variation.h. */
+typedef struct {
+  int part;
+  uint32_t row, col;
+} IrSecond;
+
 typedef struct {
   Arena *arena;
   const char *name, *doc, *source, *effects, *all_effects;
@@ -60,6 +69,9 @@ typedef struct {
   VEC(IrVar) q, z, p, u;
   VEC(IrEvent) events;
   const Prog *accel, *energy, *event_values, *inputs;
+  unsigned wants;
+  const Prog *variation, *second; /* NULL unless WANT_VARIATION */
+  VEC(IrSecond) second_at;        /* what the values of `second` are */
   const Prog *linear;           /* NULL: not asked for */
   VEC(IrEntry) linear_dr, linear_mass; /* what its outputs 0 and 1 are */
   VEC(IrScene) scenes;

@@ -38,6 +38,7 @@ typedef struct {
   ExprGraph *g;
   uint32_t n;            /* number of coordinates */
   const Expr *p;         /* [n] momenta, as differentiated */
+  const Expr *dLdq;      /* [n] as differentiated */
   const Expr *momenta;   /* [n] the same, as a person would write them */
   Entries mass;          /* the entries of the lower triangle that are not zero, row by row */
   int mass_known;        /* 0: too many, and the system below does without; see eqns_derive_mass */

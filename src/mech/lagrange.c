@@ -78,6 +78,7 @@ static Expr *differentiate(Eqns *e) {
     Expr inertial = expr_sub(g, dLdq[i], convective[i]);
     f[i] = expr_add(g, inertial, e->Q[i]);
   }
+  e->dLdq = dLdq;
   return f;
 }
 
@@ -135,6 +136,20 @@ static int lagrange_definite(const Eqns *e, const LinearSystem *s) {
 
 /* Above this many entries, what lets share is worth more than what a short form saves. */
 enum { SIMPLIFY_MAX_ENTRIES = 300 };
+
+/* rule(raw[k]) for all k when that takes fewer operations than *best, or as many. */
+static void try_short(const Eqns *e, const Expr *raw, uint32_t n, Expr (*rule)(ExprGraph *, Expr), const Expr **best) {
+  Expr *after = ARENA_ARRAY(e->m->arena, Expr, n + 1);
+  for (uint32_t k = 0; k < n; k++) after[k] = rule(e->g, raw[k]);
+  if (expr_ops(e->g, after, n) <= expr_ops(e->g, *best, n)) *best = after;
+}
+
+const Expr *lagrange_short_forms(const Eqns *e, const Expr *raw, uint32_t n) {
+  const Expr *best = raw;
+  try_short(e, raw, n, simplify_shallow, &best);
+  if (n <= SIMPLIFY_MAX_ENTRIES) try_short(e, raw, n, simplify, &best);
+  return best;
+}
 
 /* Operations of a system: its entries, evaluated together, and its solution. */
 static uint64_t system_ops(Eqns *e, LinearSystem *s) {
