@@ -179,6 +179,10 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
     o->command = CMD_HELP;
     return 1;
   }
+  if (o->command == CMD_METHODS && arg) {
+    *error = arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command));
+    return 0;
+  }
   if (o->command == CMD_COMPLETION && (!arg || !is_choice("bash zsh fish", arg, strlen(arg)))) {
     *error = "completion for which shell? `lagc completion bash`, `lagc completion zsh` or `lagc completion fish`";
     return 0;

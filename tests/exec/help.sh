@@ -61,7 +61,7 @@ is "options of a simulator" "$(taken)" "$(handed)"
 
 # Under sanitizers it says the same.
 differs() {
-  { words statement; words function; words command; echo; echo units; } | while read -r t; do
+  { words statement; words function; words command | grep -v methods; echo; echo units; } | while read -r t; do
     "$LAGC_SAN" help ${t:+"$t"} >"$TMP/san" 2>&1 && "$LAGC" help ${t:+"$t"} | cmp -s - "$TMP/san" || echo "$t: $(head -n 3 "$TMP/san")"
   done
 }
@@ -82,7 +82,7 @@ empty "lagc COMMAND --help is lagc help COMMAND" "$(differing | grep -v -x -e he
 
 # What is no code fits into 80 columns: characters, not bytes.
 wide() {
-  { words command; sed -n 's/^  \([a-z-]*\)  *.*/\1/p' "$TMP/overview" | grep -v methods; } | while read -r t; do
+  { words command; sed -n 's/^  \([a-z-]*\)  *.*/\1/p' "$TMP/overview"; } | grep -v methods | while read -r t; do
     chapter "$t" | grep -v '^    ' | sed 's/[^ -~][^ -~]*/?/g' | awk -v t="$t" 'length > 80 { print t ": " $0 }'
   done
 }
