@@ -342,7 +342,7 @@ static void count_uses(Writer *w) {
     }
     if (i->op != IR_SOLVE) continue;
     const Solve *k = &p->solves.at[i->index];
-    for (uint32_t j = 0; j < k->n * k->n; j++) w->uses[k->matrix[j]]++;
+    for (uint32_t j = 0; k->matrix && j < k->n * k->n; j++) w->uses[k->matrix[j]]++;
     for (uint32_t j = 0; j < k->n; j++) w->uses[k->rhs[j]]++;
   }
   for (uint32_t k = 0; k < p->stores.n; k++) {

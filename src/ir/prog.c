@@ -132,7 +132,7 @@ static void mark_needed(const Prog *p, unsigned char *need) {
     need[i->a] = need[i->b] = need[i->c] = 1;
     if (i->op != IR_SOLVE) continue;
     const Solve *k = &p->solves.at[i->index];
-    for (uint32_t j = 0; j < k->n * k->n; j++) need[k->matrix[j]] = 1;
+    for (uint32_t j = 0; k->matrix && j < k->n * k->n; j++) need[k->matrix[j]] = 1;
     for (uint32_t j = 0; j < k->n; j++) need[k->rhs[j]] = 1;
   }
 }
@@ -162,7 +162,7 @@ Prog *prog_tidy(const Prog *p) {
     i.c = map[i.c];
     if (i.op == IR_SOLVE) {
       Solve k = p->solves.at[i.index];
-      k.matrix = moved(arena, map, k.matrix, k.n * k.n);
+      k.matrix = k.matrix ? moved(arena, map, k.matrix, k.n * k.n) : NULL;
       k.rhs = moved(arena, map, k.rhs, k.n);
       i.index = r->solves.n;
       vec_push(arena, &r->solves, k);

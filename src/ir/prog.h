@@ -60,9 +60,10 @@ typedef struct {
   const char *comment;
 } Store;
 
-/* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. */
+/* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. matrix is NULL
+ * where the one of the same place was factored before, by another function. */
 typedef struct {
-  uint32_t n;
+  uint32_t n, place;
   const Slot *matrix, *rhs;
 } Solve;
 
