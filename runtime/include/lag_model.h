@@ -53,6 +53,21 @@ typedef struct lag_event {
   int direction; /* 1 rising, -1 falling, 0 both */
 } lag_event;
 
+/* The Taylor coefficients of a model's motion, x^(k)(t) T^k / k!, by automatic differentiation of its program.
+ *
+ * Both functions leave them in w[nw]: coefficient k of y_i, y = [q|v|z], is w[k*columns + i], that of the rates y' for
+ * v and z, [a|zd], stands behind those of y. first makes those of order 0, which cost about one call of accel, rest those of
+ * the orders 1 to n <= order, from what first has left in w. T > 0 is the unit of time; a power of 2 changes no bits. */
+typedef struct lag_taylor {
+  int order;   /* the highest */
+  int columns, nw;
+
+  /* follows[nu]: 1 where the input follows its formula, 0 where it stays as u says. Returns as accel does. */
+  int (*first)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+               const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *w);
+  void (*rest)(int n, LAG_REAL T, LAG_REAL *w);
+} lag_taylor;
+
 typedef struct lag_model {
   int abi;           /* LAG_ABI */
   size_t real_size;  /* sizeof(LAG_REAL) */

@@ -149,7 +149,7 @@ static const char *element(const Writer *w, const char *array, uint32_t index) {
 
 static Piece load(const Writer *w, const Ins *i) {
   const char *array = w->style->in[i->array];
-  return (Piece){i->array == ARR_T ? array : element(w, array, i->index), C_ATOM, 0};
+  return (Piece){ir_is_scalar(i->array) ? array : element(w, array, i->index), C_ATOM, 0};
 }
 
 /* sign(x) and the choice of the smaller or larger, through SELECT: vectors have no ternary. */
@@ -163,8 +163,8 @@ static Piece choose(Writer *w, const Ins *i) {
 }
 
 static Piece solved(Writer *w, const Ins *i) {
-  uint32_t n = w->p->solves.at[w->p->ins.at[i->a].index].n;
-  return (Piece){arena_printf(w->a, "w[%u]", n * n + i->index), C_ATOM, 0};
+  const Solve *k = &w->p->solves.at[w->p->ins.at[i->a].index];
+  return (Piece){arena_printf(w->a, "w[%u]", k->place + k->n * k->n + i->index), C_ATOM, 0};
 }
 
 static Piece spell(Writer *w, const Ins *i) {
@@ -283,12 +283,14 @@ static void write_pivot(Writer *w, const Ins *i) {
 
 static void write_solve(Writer *w, const Ins *i) {
   const Solve *k = &w->p->solves.at[i->index];
-  uint32_t n = k->n;
+  const CStyle *st = w->style;
+  uint32_t n = k->n, M = k->place, b = M + n * n;
   flush_title(w);
-  for (uint32_t r = 0; r < n; r++)
-    for (uint32_t c = 0; c < n; c++) sb_printf(w->out, "  w[%u] = %s;\n", r * n + c, operand(w, k->matrix[r * n + c]).text);
-  for (uint32_t r = 0; r < n; r++) sb_printf(w->out, "  w[%u] = %s;\n", n * n + r, operand(w, k->rhs[r]).text);
-  sb_printf(w->out, "  if (%s(%u, w, w + %u)) return %s_ESINGULAR;\n", w->style->solve, n, n * n, w->style->prefix);
+  for (uint32_t j = 0; k->matrix && j < n * n; j++) sb_printf(w->out, "  w[%u] = %s;\n", M + j, operand(w, k->matrix[j]).text);
+  if (st->factor && k->matrix) sb_printf(w->out, "  if (%s(%u, w + %u)) return %s_ESINGULAR;\n", st->factor, n, M, st->prefix);
+  for (uint32_t r = 0; r < n; r++) sb_printf(w->out, "  w[%u] = %s;\n", b + r, operand(w, k->rhs[r]).text);
+  if (st->factor) sb_printf(w->out, "  %s(%u, w + %u);\n", st->substitute, n, M);
+  else sb_printf(w->out, "  if (%s(%u, w, w + %u)) return %s_ESINGULAR;\n", st->solve, n, b, st->prefix);
 }
 
 /* The loads of one array that are used, by index; 0 where there is none. */
@@ -311,7 +313,7 @@ static void write_array(Writer *w, int array) {
   for (uint32_t k = 0; k < n; k++) {
     if (!at[k]) continue;
     Piece x = load(w, &w->p->ins.at[at[k]]);
-    if (w->style->loads_inline || array == ARR_T) {
+    if (w->style->loads_inline || ir_is_scalar((IrArray)array) || array >= ARR_SUMS) {
       w->piece[at[k]] = x;
       continue;
     }

@@ -16,7 +16,8 @@ typedef struct {
   const char *const *out;           /* names of the arrays written */
   const char *const *own;           /* names in the function's scope, NULL at the end */
   const char *const *globals;         /* names that the function must not hide, NULL at the end; or NULL */
-  const char *solve;                /* name of the solver function */
+  const char *solve;                /* name of the function that factors and solves */
+  const char *factor, *substitute;  /* instead of it, where factors are kept; or NULL */
   int loads_inline;                 /* spell loads at their use instead of naming them at the top */
 } CStyle;
 

@@ -245,7 +245,7 @@ static Slot lower_node(Lower *l, Expr e) {
 
 void lower_roots(Lower *l, const Expr *roots, uint32_t n) {
   ExprList list = expr_topo(l->g, roots, n);
-  for (uint32_t i = 0; i < list.n; i++) {
+  for (uint32_t i = 0; i < list.n && !l->direct; i++) {
     ExprOp o = expr_op(l->g, list.at[i]);
     if (o == EX_SIN || o == EX_COS) expr_map_set(&l->circular, expr_arg(l->g, list.at[i], 0), 1);
   }
@@ -275,6 +275,35 @@ Prog *lower_accel(const Eqns *e) {
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
   return prog_tidy(l.p);
+}
+
+/* Where a constant may stand instead of the formula of an input, `free` says which holds. */
+static void lower_inputs_along(Lower *l) {
+  const Model *m = l->e->m;
+  for (uint32_t i = 0; i < m->inputs.n; i++) {
+    const Input *in = &m->inputs.at[i];
+    Expr symbol = expr_symbol(l->g, in->sym)->node;
+    lower_roots(l, &in->value, 1);
+    lower_roots(l, &symbol, 1);
+    Slot is_free = prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_FREE, .index = i, .name = in->name});
+    Slot holds = op(l, IR_LT, 0, is_free), formula = lower_slot(l, in->value), constant = lower_slot(l, symbol);
+    Slot s = prog_ins(l->p, (Ins){.op = IR_SELECT, .a = holds, .b = formula, .c = constant});
+    expr_map_set(&l->slots, symbol, s + 1);
+  }
+}
+
+IrSystem lower_system(const Eqns *e) {
+  Lower l = lower_new(e);
+  const Model *m = e->m;
+  IrSystem sys = {.p = l.p, .nq = e->n, .nz = m->states.n};
+  l.direct = 1;
+  lower_inputs_along(&l);
+  if (e->n) sys.blocks = lower_blocks(&l, &sys.nblocks);
+  lower_roots(&l, e->flow, m->states.n);
+  Slot *flow = ARENA_ARRAY(m->arena, Slot, m->states.n + 1);
+  for (uint32_t i = 0; i < m->states.n; i++) flow[i] = lower_slot(&l, e->flow[i]);
+  sys.flow = flow;
+  return sys;
 }
 
 static int is_second(const Symbol *s, const void *data) {

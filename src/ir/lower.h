@@ -6,10 +6,12 @@
 #define LAGC_LOWER_H
 
 #include "ir/prog.h"
+#include "ir/series.h"
 #include "ir/unit.h"
 #include "mech/eqns.h"
 
 Prog *lower_accel(const Eqns *e);   /* out 0: a[nq], out 1: zd[nz] */
+IrSystem lower_system(const Eqns *e); /* M, f and the rates of the states, with the formulas of inputs put in */
 Prog *lower_energy(const Eqns *e);  /* out 0: e[2] */
 Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
 Prog *lower_action(const Eqns *e, uint32_t event); /* out 0, 1, 2: q1, v1, z1; only what is set */

@@ -74,13 +74,13 @@ const Block *lower_blocks(Lower *l, uint32_t *n) {
 void lower_solution(Lower *l, Slot *acc) {
   const Eqns *e = l->e;
   if (!e->n) return;
-  uint32_t n, loops = 0;
+  uint32_t n;
   const Block *blocks = lower_blocks(l, &n);
   prog_title(l->p, "M q'' = f");
   Slot *x = ARENA_ARRAY(l->p->arena, Slot, e->n);
   for (uint32_t k = 0; k < n; k++) {
     const Block *b = &blocks[k];
-    Factored fac = block_factor(l->p, b, &loops);
+    Factored fac = block_factor(l->p, b, NULL);
     factor_solve(l->p, &fac, b->f, x);
     for (uint32_t i = 0; i < b->n; i++) {
       acc[b->at[i]] = x[i];

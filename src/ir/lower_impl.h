@@ -11,6 +11,7 @@ typedef struct {
   Prog *p;
   ExprMap slots;   /* node -> slot + 1 */
   ExprMap circular; /* u -> 1 where sin u or cos u is needed anyway */
+  int direct;       /* sin(a - b) is computed as it stands: for series, it is cheaper than the addition theorem */
 } Lower;
 
 /* Lowers all nodes that the roots need; then lower_slot gives each root's slot. */

@@ -119,6 +119,8 @@ void prog_name(Prog *p, Slot s, Name name) {
   if (!i->name && i->op != IR_CONST && i->op != IR_PI && i->op != IR_LOAD) i->name = name;
 }
 
+int ir_is_scalar(IrArray array) { return array == ARR_T || array == ARR_ORDER || array == ARR_PER_ORDER; }
+
 int ir_is_condition(IrOp op) { return op >= IR_LT && op <= IR_OR; }
 
 /* --- passes --- */
@@ -244,7 +246,7 @@ static const char *const op_names[] = {
   "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "title",
 };
 
-static const char *const array_names[] = {"t", "q", "v", "z", "p", "u"};
+static const char *const array_names[] = {"t", "q", "v", "z", "p", "u", "free", "x", "s", "c", "k", "per_k"};
 
 void prog_dump(const Prog *p, StrBuf *out) {
   for (Slot s = 1; s < p->ins.n; s++) {

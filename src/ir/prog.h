@@ -39,8 +39,15 @@ typedef enum {
   IR_TITLE   /* text: a comment line that heads what follows */
 } IrOp;
 
-/* The arrays that a function reads. */
-typedef enum { ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_COUNT } IrArray;
+/* The arrays that a function reads. The second line is of Taylor coefficients (ir/series.h): whether an input is free of
+ * a constant, coefficients k, sums over those below k, what order 0 leaves for all others; k and 1/k are no arrays. */
+typedef enum {
+  ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U,
+  ARR_FREE, ARR_COEF, ARR_SUMS, ARR_STEP, ARR_ORDER, ARR_PER_ORDER, ARR_COUNT
+} IrArray;
+
+/* Whether an array is a number, not to be indexed. */
+int ir_is_scalar(IrArray array);
 
 typedef struct {
   IrOp op;
@@ -60,8 +67,8 @@ typedef struct {
   const char *comment;
 } Store;
 
-/* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. matrix is NULL
- * where the one of the same place was factored before, by another function. */
+/* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it
+ * stands in the work space. matrix is NULL where the one at that place was factored before, by another function. */
 typedef struct {
   uint32_t n, place;
   const Slot *matrix, *rhs;

@@ -73,7 +73,9 @@ static void factor_loop(Prog *p, const Block *b, Factored *fac) {
   fac->L = full;
 }
 
-Factored block_factor(Prog *p, const Block *b, uint32_t *loops) {
+uint32_t factored_room(uint32_t n) { return n * n + 2 * n; }
+
+Factored block_factor(Prog *p, const Block *b, uint32_t *room) {
   Factored fac = {.n = b->n};
   if (b->n == 1) {
     fac.kind = FACTOR_ONE;
@@ -87,7 +89,8 @@ Factored block_factor(Prog *p, const Block *b, uint32_t *loops) {
     factor_pair(p, b, &fac);
   } else {
     fac.kind = FACTOR_LOOP;
-    fac.place = (*loops)++;
+    fac.place = room ? *room : 0;
+    if (room) *room += factored_room(b->n);
     factor_loop(p, b, &fac);
   }
   return fac;

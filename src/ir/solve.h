@@ -27,7 +27,7 @@ typedef struct {
   const Slot *L;       /* STRAIGHT: [n*n] unit lower factor; PAIR: m11, m12, m22; LOOP: M [n*n], or NULL: as factored before */
   const Slot *divisor; /* ONE: M; STRAIGHT: D [n]; PAIR: det */
   const Slot *inverse; /* the same number of slots, or NULL */
-  uint32_t place;      /* LOOP: number of the factored matrix among those of its function */
+  uint32_t place;      /* LOOP: where the factored matrix stands in the function's work space */
 } Factored;
 
 /* "M12", "f2": a name with the numbers, from 1 on, of coordinates i and j (UINT32_MAX: none). */
@@ -36,8 +36,12 @@ Name block_name(const Block *b, Arena *a, const char *stem, uint32_t i, uint32_t
 /* How many divisors a factor has. */
 uint32_t factor_divisors(const Factored *f);
 
-/* Appends what factors the block; *loops counts the blocks of its function that are factored by a loop. */
-Factored block_factor(Prog *p, const Block *b, uint32_t *loops);
+/* Appends what factors the block. *room: work space in use, in reals, to which a block that is factored by a loop adds its
+ * own, to keep its factors; NULL: all such blocks share one place. */
+Factored block_factor(Prog *p, const Block *b, uint32_t *room);
+
+/* Room that a kept matrix needs, in reals: M[n*n], the right-hand side [n], the order of its rows [n]. */
+uint32_t factored_room(uint32_t n);
 
 /* Appends what solves for the right-hand side f[n]; x[n] receives the slots of the solution. */
 void factor_solve(Prog *p, const Factored *fac, const Slot *f, Slot *x);

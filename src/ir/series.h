@@ -1,0 +1,45 @@
+/* Prog -> Series: the recurrences of the Taylor coefficients of a model's motion.
+ *
+ * A value x(t) along the motion from t0 on has coefficients x[k] = x^(k)(t0) T^k / k!, in time measured in units of T.
+ * Automatic differentiation gives coefficient k of each value from those of its operands up to k, and those of itself
+ * below k (E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. 1993, DOI
+ * 10.1007/978-3-540-78862-1, I.8; A. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99, DOI
+ * 10.1080/10586458.2005.10128904, section 2). What one order takes from all the orders below it are sums
+ *
+ *     s = a[1] b[k-1] + a[2] b[k-2] + ... + a[k-1] b[1]
+ *
+ * over pairs of values (a, b): all else is straight-line code in the coefficients of order k. So a Series is two
+ * programs and a list of pairs, in proportion to the program that it comes from; the loops over the order are the same
+ * for all models.
+ *
+ * M q'' = f is solved order by order with the factors of M[0], which `first` makes: M[0] q''[k] is
+ * f[k] - M[k] q''[0] less the sums over M and q''. */
+#ifndef LAGC_SERIES_H
+#define LAGC_SERIES_H
+
+#include "ir/solve.h"
+
+/* M, f and the rates of the states as a program, not yet solved. */
+typedef struct {
+  Prog *p;
+  const Block *blocks;
+  uint32_t nblocks, nq, nz;
+  const Slot *flow;      /* [nz] */
+} IrSystem;
+
+/* Columns of the coefficients x[k][...]: q, v, z, then q'' and z', then t. */
+typedef struct {
+  const Prog *first;     /* order 0. out 0: x[0], its q'' and z'; out 1: c, what `next` needs of it */
+  const Prog *next;      /* order k. Reads x[k] of q, v, z, t, the sums s and c. out 0: x[k], its q'' and z'; out 1, 2: a[k], b[k] */
+  uint32_t nq, nz;
+  uint32_t columns;      /* of x */
+  uint32_t sums;         /* pairs: columns of a and b */
+  uint32_t constants;    /* of c */
+  uint32_t room;         /* for blocks that are factored by a loop, in reals: see factored_room */
+  int uses_time;
+} Series;
+
+/* NULL where the program is not analytic, and *why is then the function or word ("abs", "if") that is in the way. */
+Series *series_new(const IrSystem *system, const char **why);
+
+#endif
