@@ -22,6 +22,7 @@
 #include "model/model.h"
 #include "picture.h"
 #include "syntax/parse.h"
+#include "wants.h"
 
 #define LAGC_VERSION "0.1"
 
@@ -111,6 +112,7 @@ static Eqns *derive_asked(Compiler *c, const char *scene) {
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
 static IrUnit *lower_scene(Compiler *c, const Eqns *e) {
   IrUnit *u = unit_new(e, c->o.file);
+  unit_want(u, e, wants_of(e, &c->o));
   unit_add_scene(u, e);
   const char *wrong = prog_verify(u->accel);
   if (wrong) {
@@ -184,6 +186,7 @@ static int lower_all(Compiler *c, Units *units) {
     for (uint32_t k = 0; k < units->n && !home; k++)
       if (strcmp(units->at[k]->effects, fresh->effects) == 0) home = units->at[k];
     if (!home) vec_push(c->arena, units, home = fresh);
+    unit_want(home, e, wants_of(e, &c->o));
     unit_add_scene(home, e);
   }
   return 1;

@@ -45,7 +45,7 @@ static int alloc_scratch(lag_sim *s)
 {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
-  size_t nu = (size_t)m->nu, nw = (size_t)m->nw;
+  size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw);
   double *x = calloc(nu + nw + 3 * n + 8 * nev + nout + 2 + 1, sizeof *x);
 
   s->scratch = x;
@@ -193,6 +193,13 @@ static int check_method(lag_sim *s, const lag_method *method)
   if ((needs & LAG_METHOD_CONSERVATIVE) && !(has & LAG_CONSERVES_ENERGY)) {
     return lag_fail(s, LAG_EMETHOD, "method %s needs a model without forces, dissipation or explicit time; rk45 and dop853 do not",
                     method->name);
+  }
+  if ((needs & LAG_METHOD_TAYLOR) && !m->taylor) {
+    return has & LAG_SMOOTH ? lag_fail(s, LAG_EMETHOD, "method %s needs Taylor coefficients, which model %s was built without; "
+                                       "lagc run --method %s, or lagc build --method %s, builds it with them",
+                                       method->name, m->name, method->name, method->name)
+                            : lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min and max; dop853 does not",
+                                       method->name);
   }
   if ((needs & LAG_METHOD_SEPARABLE) && !(has & LAG_SEPARABLE)) {
     return lag_fail(s, LAG_EMETHOD,

@@ -63,6 +63,9 @@ typedef struct lag_problem {
 /* dy[n] = f(t, y[n]). Returns what the model returned; does not look for NaN. */
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
 
+/* pb->u at t: by the model's formulas, or the constants of pb->hold. Returns what the model returned. */
+int lag_inputs(lag_problem *pb, double t);
+
 /* The index of the first of x[n] that is not finite, -1 when all are. */
 int lag_not_finite(int n, const double *x);
 
@@ -80,7 +83,8 @@ enum {
   LAG_METHOD_CONSERVATIVE = 16, /* refuses models with forces, dissipation or explicit time */
   LAG_METHOD_STEPS_TO = 32,    /* dense() is rough: must step exactly to each time of output */
   LAG_METHOD_NO_SAVE = 64,     /* work holds pointers: its state cannot be saved */
-  LAG_METHOD_NO_STATES = 128   /* refuses models with nz > 0 */
+  LAG_METHOD_NO_STATES = 128,  /* refuses models with nz > 0 */
+  LAG_METHOD_TAYLOR = 256      /* needs the model's Taylor coefficients (lag_model.taylor) */
 };
 
 /* An option of a method. With choices (NULL-terminated) the value is the index of the choice. */
@@ -132,6 +136,8 @@ extern const lag_method lag_rk45;
 extern const lag_method lag_dop853;
 /* Symplectic, fixed step, for separable models: symplectic Euler, Stoermer-Verlet, and compositions of order 4, 6, 8. */
 extern const lag_method lag_symplectic_euler, lag_verlet, lag_verlet4, lag_verlet6, lag_verlet8;
+/* The model's own Taylor series, adaptive, for tolerances below about 1e-9; of a model that holds them (lag_model.taylor). */
+extern const lag_method lag_taylor_method;
 /* The methods of liblag.a, the default first. */
 extern const lag_method *const lag_methods[];
 extern const int lag_nmethods;

@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 1
+#define LAG_ABI 2
 
 /* The scalar that a model is compiled for: double, float, long double or __float128. */
 #ifndef LAG_REAL
@@ -52,6 +52,13 @@ typedef struct lag_event {
   const char *name;
   int direction; /* 1 rising, -1 falling, 0 both */
 } lag_event;
+
+/* One of the second derivatives that lag_model.second computes: of L by two of q, v, where of LAG_QQ and LAG_VV only
+ * row >= col is given and the row of LAG_VQ is that of v; or of the generalised force `row` by q or v. */
+enum { LAG_QQ, LAG_VQ, LAG_VV, LAG_FQ, LAG_FV };
+typedef struct lag_second {
+  int part, row, col;
+} lag_second;
 
 /* The Taylor coefficients of a model's motion, x^(k)(t) T^k / k!, by automatic differentiation of its program.
  *
@@ -104,6 +111,21 @@ typedef struct lag_model {
   int (*act)(int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
              const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1,
              int *stop, LAG_REAL *w);
+
+  /* The rest is NULL in a program that was not emitted for a method that needs it (lagc build --method NAME). */
+
+  /* Lq[nq] = dL/dq, the momenta Lv[nq] = dL/dv, and Q[nq], the generalised forces that are in no L. */
+  int (*variation)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                   const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q, LAG_REAL *w);
+
+  /* h[nsecond]: their derivatives, the entries that second_at lists; the others are zero. */
+  int (*second)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *h, LAG_REAL *w);
+  const lag_second *second_at;
+  int nsecond;
+
+  /* NULL, too, where a value of the model is not analytic (if, abs, sign, min, max). */
+  const lag_taylor *taylor;
 } lag_model;
 
 /* An option of a method: step = 1e-3, quadrature = trapezoid (then text is set). */

@@ -20,14 +20,17 @@ static const struct {
    "  --format latex    as LaTeX\n"
    "  --format c        the C function that computes the accelerations\n"
    "  --ops             the operation counts only\n"},
-  {"emit", CMD_EMIT, "lagc emit MODEL [SCENE] -o FILE.c",
-   "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h).\n"},
+  {"emit", CMD_EMIT, "lagc emit MODEL [SCENE] [--method NAME] -o FILE.c",
+   "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h).\n\n"
+   "  --method NAME     with what this method needs of the model besides accelerations\n"},
   {"header", CMD_HEADER, "lagc header MODEL [SCENE] -o FILE.h",
    "Writes one self-contained C99/C++ header to embed: parameters as a struct, accelerations,\n"
    "energy, an RK4 step. It includes nothing but <math.h>. Its names begin with the file's: pend.h has\n"
    "PEND_IMPLEMENTATION and pend_accel.\n"},
-  {"build", CMD_BUILD, "lagc build MODEL -o SIMULATOR [--no-gsl]",
+  {"build", CMD_BUILD, "lagc build MODEL -o SIMULATOR [--method NAME] [--no-gsl]",
    "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options.\n\n"
+   "  --method NAME     with what this method needs of the model besides accelerations: variational, gauss,\n"
+   "                    or verlet of a model that is not separable. The scenes' own methods need no mention\n"
    "  --no-gsl          leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole\n"},
   {"run", CMD_RUN, "lagc run MODEL [SCENE] [name=value ...] [--method M] [--tol X] [--until T] ...",
    "Builds the simulator (or takes it from the cache) and runs it; the options are the simulator's:\n\n"
@@ -177,6 +180,9 @@ static void pass_on(Arena *a, int argc, char **argv, int *i, Options *o) {
   static const char *const with_value[] = {"--method", "--tol", "--step", "--until", "--every", "--svg", "--plot-x",
                                            "--plot-y", "--save-state", "--resume", "--output", "-o", "--html", "--points", "--from"};
   const char *arg = argv[*i];
+  int look = *i;
+  take_value(arg, "--method", argc, argv, &look, &o->method);
+  take_value(arg, "--resume", argc, argv, &look, &o->resume);
   vec_push(a, &o->rest, arg);
   if (arg[0] != '-' && !strchr(arg, '=') && !o->scene) o->scene = arg;
   for (size_t k = 0; k < sizeof with_value / sizeof *with_value; k++)
@@ -185,6 +191,8 @@ static void pass_on(Arena *a, int argc, char **argv, int *i, Options *o) {
       return;
     }
 }
+
+static int takes_method(const Options *o) { return o->command == CMD_EMIT || o->command == CMD_BUILD; }
 
 /* One option of lagc itself; -1 when it is none. */
 static int own_option(Arena *a, int argc, char **argv, int *i, Options *o, const char **error) {
@@ -208,6 +216,7 @@ static int own_option(Arena *a, int argc, char **argv, int *i, Options *o, const
     *error = "--format takes text, latex or c";
     return 0;
   }
+  if (takes_method(o) && take_value(arg, "--method", argc, argv, i, &o->method)) return o->method != NULL;
   if (strcmp(arg, "--ops") == 0) return o->ops = 1;
   if (strcmp(arg, "--allow-numeric") == 0) return o->allow_numeric = 1;
   return -1;

@@ -11,6 +11,8 @@ typedef struct {
   Command command;
   const char *file, *scene;
   const char *output;      /* -o */
+  const char *method;      /* emit, build --method; of run, plot, animate, which pass it on */
+  const char *resume;      /* of run */
   const char *format;      /* derive --format */
   const char *dump;        /* --dump=ast,model,eqns,prog */
   const char *topic;       /* help TOPIC */

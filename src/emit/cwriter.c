@@ -382,7 +382,7 @@ static void write_stores(Writer *w) {
     if (!k) sb_putc(w->out, '\n');
     const char *text = operand(w, st->slot).text;
     const char *target = element(w, w->style->out[st->array], st->index), *member = strstr(target, "->");
-    int said = strcmp(st->comment, text) == 0 || (w->style->params && member && strcmp(member + 2, st->comment) == 0);
+    int said = !st->comment[0] || strcmp(st->comment, text) == 0 || (w->style->params && member && strcmp(member + 2, st->comment) == 0);
     put_statement(w, arena_printf(w->a, "%s = %s;", target, text));
     if (!said) sb_printf(w->out, " /* %s */", comment_text(w->a, st->comment));
     sb_putc(w->out, '\n');

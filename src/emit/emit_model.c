@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "emit/cfunction.h"
+#include "emit/emit_taylor.h"
 
 /* One emitted file. */
 typedef struct {
@@ -26,7 +27,10 @@ static const char *const prelude =
 static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
   "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_MASK", "lag_solve", "lag_var", "lag_event", "lag_model", "lag_option",
-  "lag_monitor", "lag_scene", "lag_program", "q_table", "z_table", "p_table", "u_table", "ev_table",
+  "lag_monitor", "lag_scene", "lag_program", "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV",
+  "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER", "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS",
+  "taylor_work", "taylor_first", "taylor_next", "taylor_sums", "taylor_rest",
+  "q_table", "z_table", "p_table", "u_table", "ev_table", "second_table",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -48,8 +52,8 @@ static const char *event_id(const IrUnit *u, uint32_t i) {
 }
 
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel", "energy", "events", "act", "inputs", "params", "start", "observe",
-                                      "outputs", "options", "monitors", "program", "scenes"};
+  static const char *const taken[] = {"accel", "energy", "variation", "second", "taylor", "events", "act", "inputs", "params", "start",
+                                      "observe", "outputs", "options", "monitors", "program", "scenes"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -106,6 +110,17 @@ static void emit_energy(const File *f) {
   if (!f->u->energy) return;
   const char *head = arena_printf(f->a, "static int energy(%s, LAG_REAL *out, LAG_REAL *w)", state_args);
   function(f, f->u->energy, "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", head, own, written);
+}
+
+static void emit_variation(const File *f) {
+  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "Lq", "Lv", "Q", "w", NULL}, *const written[] = {"Lq", "Lv", "Q"};
+  static const char *const own2[] = {"t", "q", "v", "z", "p", "u", "h", "w", NULL}, *const written2[] = {"h"};
+  const IrUnit *u = f->u;
+  if (!u->variation) return;
+  const char *head = arena_printf(f->a, "static int variation(%s,\n    LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q, LAG_REAL *w)", state_args);
+  function(f, u->variation, "dL/dq, the momenta dL/dq', and the generalised forces that are in no L.", head, own, written);
+  head = arena_printf(f->a, "static int second(%s, LAG_REAL *h, LAG_REAL *w)", state_args);
+  function(f, u->second, arena_printf(f->a, "Their derivatives, those that are not zero: %s.", ops_text(u->second, f->a)), head, own2, written2);
 }
 
 static void emit_action(const File *f, uint32_t i) {
@@ -211,6 +226,17 @@ static const char *digest_text(Arena *a, const char *text) {
   return arena_printf(a, "%016llx", (unsigned long long)h);
 }
 
+static void second_table(const IrUnit *u, StrBuf *out) {
+  static const char *const parts[] = {"LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV"};
+  if (!u->second_at.n) return;
+  sb_puts(out, "\nstatic const lag_second second_table[] = {\n");
+  for (uint32_t i = 0; i < u->second_at.n; i++) {
+    const IrSecond *s = &u->second_at.at[i];
+    sb_printf(out, "  {%s, %u, %u},\n", parts[s->part], s->row, s->col);
+  }
+  sb_puts(out, "};\n");
+}
+
 static void emit_tables(const IrUnit *u, const char *name, const char *digest, StrBuf *out) {
   table(u, "q_table", u->q.at, u->q.n, out);
   table(u, "z_table", u->z.at, u->z.n, out);
@@ -222,6 +248,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
       sb_printf(out, "  {%s, %d},\n", c_string(u->arena, u->events.at[i].name), u->events.at[i].direction);
     sb_puts(out, "};\n");
   }
+  second_table(u, out);
   const char *model = c_string(u->arena, u->name), *doc = c_string(u->arena, u->doc), *effects = c_string(u->arena, u->effects);
   sb_printf(out, "\nconst lag_model %s = {\n", name);
   sb_printf(out, "  .abi = LAG_ABI, .real_size = sizeof(LAG_REAL),\n  .name = %s,\n  .doc = %s,\n  .effects = %s,\n  .digest = \"%s\",\n  .flags = ", model, doc, effects, digest);
@@ -230,8 +257,13 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   sb_printf(out, "  .nq = %u, .nz = %u, .np = %u, .nu = %u, .nev = %u, .nw = %u,\n", u->q.n, u->z.n, u->p.n, u->u.n, u->events.n, work_size(u));
   sb_printf(out, "  .q = %s, .z = %s, .p = %s, .u = %s, .ev = %s,\n", or_null(u->q.n, "q_table"), or_null(u->z.n, "z_table"),
             or_null(u->p.n, "p_table"), or_null(u->u.n, "u_table"), or_null(u->events.n, "ev_table"));
-  sb_printf(out, "  .inputs = %s, .accel = accel, .energy = %s,\n  .events = %s, .act = %s,\n};\n", or_null(u->u.n, "inputs"),
+  sb_printf(out, "  .inputs = %s, .accel = accel, .energy = %s,\n  .events = %s, .act = %s,\n", or_null(u->u.n, "inputs"),
             u->energy ? "energy" : "NULL", or_null(u->events.n, "events"), or_null(u->events.n, "act"));
+  if (u->variation)
+    sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
+              or_null(u->second_at.n, "second_table"), u->second_at.n);
+  if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
+  sb_puts(out, "};\n");
 }
 
 static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
@@ -299,6 +331,8 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_events(&f);
   emit_inputs(&f);
   const char *digest = digest_text(u->arena, sb_text(out) + begin);
+  emit_variation(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
+  if (u->taylor) emit_taylor(u->taylor, f.globals, out);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, i);
 }

@@ -58,8 +58,8 @@ static uint32_t at_least(uint32_t n, uint32_t least) { return n > least ? n : le
 
 static void work(const Writer *w) {
   const Series *s = w->s;
-  uint32_t sums = (s->sums + LANES - 1) / LANES * LANES;
-  sb_printf(w->out, "enum { TAYLOR_COLUMNS = %u, TAYLOR_SUMS = %u, TAYLOR_CONSTANTS = %u };\n", s->columns, at_least(sums, LANES), at_least(s->constants, 1));
+  uint32_t whole = (s->sums + LANES - 1) / LANES * LANES;
+  sb_printf(w->out, "enum { TAYLOR_COLUMNS = %u, TAYLOR_SUMS = %u, TAYLOR_CONSTANTS = %u };\n", s->columns, at_least(whole, LANES), at_least(s->constants, 1));
   sb_puts(w->out, "typedef struct {\n"
     "  LAG_REAL x[LAG_TAYLOR_ORDER + 1][TAYLOR_COLUMNS]; /* by order: q, v, z, v', z' */\n"
     "  LAG_REAL a[LAG_TAYLOR_ORDER + 1][TAYLOR_SUMS];    /* by order: what sums are made of */\n"
@@ -72,7 +72,8 @@ static void work(const Writer *w) {
 
 static void copy(const Writer *w, const char *name, uint32_t n, uint32_t from) {
   if (n == 1) sb_printf(w->out, "  x[%u] = %s[0];\n", from, name);
-  else if (n) sb_printf(w->out, from ? "  for (int i = 0; i < %u; i++) x[%u + i] = %s[i];\n" : "  for (int i = 0; i < %u; i++) x[i] = %3$s[i];\n", n, from, name);
+  else if (n && from) sb_printf(w->out, "  for (int i = 0; i < %u; i++) x[%u + i] = %s[i];\n", n, from, name);
+  else if (n) sb_printf(w->out, "  for (int i = 0; i < %u; i++) x[i] = %s[i];\n", n, name);
 }
 
 static void first(const Writer *w) {

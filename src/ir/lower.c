@@ -301,8 +301,14 @@ IrSystem lower_system(const Eqns *e) {
   if (e->n) sys.blocks = lower_blocks(&l, &sys.nblocks);
   lower_roots(&l, e->flow, m->states.n);
   Slot *flow = ARENA_ARRAY(m->arena, Slot, m->states.n + 1);
-  for (uint32_t i = 0; i < m->states.n; i++) flow[i] = lower_slot(&l, e->flow[i]);
+  Name *rates = ARENA_ARRAY(m->arena, Name, e->n + m->states.n + 1);
+  for (uint32_t i = 0; i < e->n; i++) rates[i] = text_of_symbol(&l, m->coords.at[i].a);
+  for (uint32_t i = 0; i < m->states.n; i++) {
+    flow[i] = lower_slot(&l, e->flow[i]);
+    rates[e->n + i] = text_of_symbol(&l, m->states.at[i].rate);
+  }
   sys.flow = flow;
+  sys.rates = rates;
   return sys;
 }
 
@@ -334,6 +340,36 @@ Prog *lower_energy(const Eqns *e) {
   lower_roots(&l, roots, 2);
   prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), "energy p q' - L");
   prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
+  return prog_tidy(l.p);
+}
+
+Prog *lower_variation(const Eqns *e, const Variation *x) {
+  Lower l = lower_new(e);
+  const Expr *const parts[] = {x->dLdq, x->momenta, x->forces};
+  static const char *const words[] = {"dL/d%s", "p_%s", "Q_%s"};
+  for (uint32_t k = 0; k < 3; k++) lower_roots(&l, parts[k], e->n);
+  for (uint32_t k = 0; k < 3; k++)
+    for (uint32_t i = 0; i < e->n; i++)
+      prog_store(l.p, k, i, lower_slot(&l, parts[k][i]), arena_printf(l.p->arena, words[k], e->m->coords.at[i].name));
+  return prog_tidy(l.p);
+}
+
+/* d2L/dx' dx, or dQ_x/dx'. */
+static const char *second_text(const Lower *l, const SecondEntry *s) {
+  const Model *m = l->e->m;
+  int force = s->part == SECOND_FQ || s->part == SECOND_FV;
+  int of_v = s->part == SECOND_VQ || s->part == SECOND_VV, by_v = s->part == SECOND_VV || s->part == SECOND_FV;
+  const char *by = by_v ? text_of_symbol(l, m->coords.at[s->col].v) : m->coords.at[s->col].name;
+  const char *of = of_v ? text_of_symbol(l, m->coords.at[s->row].v) : m->coords.at[s->row].name;
+  return arena_printf(l->p->arena, force ? "dQ_%s/d%s" : "d2L/d%s d%s", of, by);
+}
+
+Prog *lower_second(const Eqns *e, const Variation *x) {
+  Lower l = lower_new(e);
+  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, x->second.n + 1);
+  for (uint32_t k = 0; k < x->second.n; k++) roots[k] = x->second.at[k].e;
+  lower_roots(&l, roots, x->second.n);
+  for (uint32_t k = 0; k < x->second.n; k++) prog_store(l.p, 0, k, lower_slot(&l, roots[k]), second_text(&l, &x->second.at[k]));
   return prog_tidy(l.p);
 }
 

@@ -29,6 +29,22 @@ static void add_events(IrUnit *u, const Eqns *e) {
   u->event_values = lower_events(e);
 }
 
+static void add_variation(IrUnit *u, const Eqns *e) {
+  Variation *x = variation_derive(e);
+  u->variation = lower_variation(e, x);
+  u->second = lower_second(e, x);
+  for (uint32_t k = 0; k < x->second.n; k++) {
+    const SecondEntry *s = &x->second.at[k];
+    vec_push(u->arena, &u->second_at, ((IrSecond){(int)s->part, s->row, s->col}));
+  }
+}
+
+static void add_taylor(IrUnit *u, const Eqns *e) {
+  const char *why;
+  IrSystem system = lower_system(e);
+  u->taylor = series_new(&system, &why);
+}
+
 IrUnit *unit_new(const Eqns *e, const char *source) {
   const Model *m = e->m;
   IrUnit *u = ARENA_NEW(m->arena, IrUnit);
@@ -48,6 +64,13 @@ IrUnit *unit_new(const Eqns *e, const char *source) {
   u->inputs = lower_inputs(e);
   add_events(u, e);
   return u;
+}
+
+void unit_want(IrUnit *u, const Eqns *e, unsigned wants) {
+  unsigned fresh = wants & ~u->wants;
+  u->wants |= wants;
+  if (fresh & WANT_VARIATION && e->n) add_variation(u, e);
+  if (fresh & WANT_TAYLOR) add_taylor(u, e);
 }
 
 void unit_add_scene(IrUnit *u, const Eqns *e) {

@@ -198,7 +198,10 @@ static Slot right_side(Model *w, const Block *b, uint32_t i) {
   return r;
 }
 
-static void store_second(Model *w, uint32_t i, Slot zero, Slot coef, Name name) {
+static void store_rate(Model *w, uint32_t i, Slot zero, Slot coef) {
+  Name name = w->sys->rates[i];
+  prog_name(w->m.first, zero, name);
+  prog_name(w->m.next, coef, name);
   prog_store(w->m.first, 0, 2 * w->sys->nq + w->sys->nz + i, zero, name);
   prog_store(w->m.next, 0, 2 * w->sys->nq + w->sys->nz + i, coef, name);
 }
@@ -220,11 +223,8 @@ static void solve_block(Model *w, const Block *b) {
   Slot *y = ARENA_ARRAY(arena, Slot, n);
   factor_solve(w->m.next, &seen, f, y);
   for (uint32_t i = 0; i < n; i++) {
-    Name name = block_name(b, arena, "a", b->at[i], UINT32_MAX);
-    prog_name(w->m.first, x[i], name);
-    prog_name(w->m.next, y[i], name);
     series_set(&w->m, w->second[b->at[i]], y[i]);
-    store_second(w, b->at[i], x[i], y[i], name);
+    store_rate(w, b->at[i], x[i], y[i]);
   }
 }
 
@@ -238,7 +238,7 @@ static void store_rest(Model *w) {
   Maker *m = &w->m;
   for (uint32_t i = 0; i < w->sys->nz; i++) {
     Slot s = w->sys->flow[i];
-    store_second(w, w->sys->nq + i, w->zero[s], m->values.at[w->value[s]].coef, "rate");
+    store_rate(w, w->sys->nq + i, w->zero[s], m->values.at[w->value[s]].coef);
   }
   for (uint32_t i = 0; i < m->pairs.n; i++) {
     prog_store(m->next, 1, i, m->values.at[m->pairs.at[i].a].coef, "");

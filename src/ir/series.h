@@ -25,6 +25,7 @@ typedef struct {
   const Block *blocks;
   uint32_t nblocks, nq, nz;
   const Slot *flow;      /* [nz] */
+  const Name *rates;     /* [nq + nz] names of q'' and z' */
 } IrSystem;
 
 /* Columns of the coefficients x[k][...]: q, v, z, then q'' and z', then t. */

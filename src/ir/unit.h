@@ -3,7 +3,7 @@
 #ifndef LAGC_IR_UNIT_H
 #define LAGC_IR_UNIT_H
 
-#include "ir/prog.h"
+#include "ir/series.h"
 
 typedef struct {
   const char *name, *unit; /* as the user wrote them */
@@ -42,6 +42,15 @@ typedef struct {
   VEC(IrMonitor) monitors;
 } IrScene;
 
+/* What only some methods of integration need, and is not made for the others. */
+enum { WANT_VARIATION = 1, WANT_TAYLOR = 2 };
+
+/* An entry of the second derivatives: part as in mech/variation.h. */
+typedef struct {
+  int part;
+  uint32_t row, col;
+} IrSecond;
+
 typedef struct {
   Arena *arena;
   const char *name, *doc, *source, *effects, *all_effects;
@@ -49,6 +58,10 @@ typedef struct {
   VEC(IrVar) q, z, p, u;
   VEC(IrEvent) events;
   const Prog *accel, *energy, *event_values, *inputs;
+  unsigned wants;
+  const Prog *variation, *second; /* NULL unless WANT_VARIATION */
+  VEC(IrSecond) second_at;        /* what the values of `second` are */
+  const Series *taylor;           /* NULL unless WANT_TAYLOR, and where a value is not analytic */
   VEC(IrScene) scenes;
 } IrUnit;
 

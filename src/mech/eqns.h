@@ -23,6 +23,7 @@ typedef struct {
   ExprGraph *g;
   uint32_t n;            /* number of coordinates */
   const Expr *p;         /* [n] momenta, as differentiated */
+  const Expr *dLdq;      /* [n] as differentiated */
   const Expr *momenta;   /* [n] the same, as a person would write them */
   VEC(MassEntry) mass;   /* the entries of the lower triangle that are not zero, row by row */
   const Expr *f;         /* [n] */

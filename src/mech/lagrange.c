@@ -70,25 +70,28 @@ static Raw differentiate(Eqns *e, const SymId *q, const SymId *v) {
     raw.f[i] = expr_add(g, inertial, e->Q[i]);
   }
   e->p = p;
+  e->dLdq = dLdq;
   return raw;
 }
 
 /* Above this many entries, what lets share is worth more than what a short form saves. */
 enum { SIMPLIFY_MAX_ENTRIES = 300 };
 
-/* The short forms of all entries, kept when they cost no more operations together: entry by entry
- * they may be shorter and still lose what they share. */
+const Expr *lagrange_short_forms(const Eqns *e, const Expr *raw, uint32_t n) {
+  if (n > SIMPLIFY_MAX_ENTRIES) return raw;
+  Expr *after = ARENA_ARRAY(e->m->arena, Expr, n + 1);
+  for (uint32_t k = 0; k < n; k++) after[k] = simplify(e->g, raw[k]);
+  return expr_ops(e->g, after, n) <= expr_ops(e->g, raw, n) ? after : raw;
+}
+
+/* The mass matrix and the forces, in the better of both forms; entries that turn out to be zero go. */
 static void choose_forms(Eqns *e, const Raw *raw) {
-  ExprGraph *g = e->g;
   uint32_t nm = raw->mass.n, n = nm + e->n;
-  Expr *before = ARENA_ARRAY(e->m->arena, Expr, n), *after = ARENA_ARRAY(e->m->arena, Expr, n);
-  for (uint32_t k = 0; k < n; k++) {
-    before[k] = k < nm ? raw->mass.at[k].e : raw->f[k - nm];
-    after[k] = n <= SIMPLIFY_MAX_ENTRIES ? simplify(g, before[k]) : before[k];
-  }
-  const Expr *best = expr_ops(g, after, n) <= expr_ops(g, before, n) ? after : before;
+  Expr *before = ARENA_ARRAY(e->m->arena, Expr, n);
+  for (uint32_t k = 0; k < n; k++) before[k] = k < nm ? raw->mass.at[k].e : raw->f[k - nm];
+  const Expr *best = lagrange_short_forms(e, before, n);
   for (uint32_t k = 0; k < nm; k++)
-    if (!expr_is_zero(g, best[k])) vec_push(e->m->arena, &e->mass, ((MassEntry){raw->mass.at[k].row, raw->mass.at[k].col, best[k]}));
+    if (!expr_is_zero(e->g, best[k])) vec_push(e->m->arena, &e->mass, ((MassEntry){raw->mass.at[k].row, raw->mass.at[k].col, best[k]}));
   e->f = best + nm;
 }
 

@@ -424,6 +424,7 @@ int poly_div_exact(PolyRing *r, Poly a, Poly b, Poly *q) {
   Num ca, cb;
   MonoId ma, mb;
   Poly rest = poly_primitive(r, a, &ca, &ma), divisor = poly_primitive(r, b, &cb, &mb);
+  if (r->status != POLY_OK) return 0; /* they are empty then */
   Poly quotient = poly_zero();
   Term lead = leading(r, divisor);
   while (rest.n && r->status == POLY_OK) {

@@ -63,6 +63,27 @@ static int compare(const lag_model *m, const Prog *accel, const Prog *energy, Po
   return differs(m->name, "energy", e, f, 2, is_exact(energy));
 }
 
+/* dL/dq, dL/dq', Q and their derivatives. */
+static int compare_variation(const lag_model *m, const Eqns *e, Point *s) {
+  Variation *x = variation_derive(e);
+  Prog *first = lower_variation(e, x), *second = lower_second(e, x);
+  uint32_t n = x->second.n;
+  Real a[3 * MAX], b[3 * MAX], *h = ARENA_ARRAY(e->m->arena, Real, n + 1), *k = ARENA_ARRAY(e->m->arena, Real, n + 1);
+  const Real *in[ARR_COUNT] = {&s->t, s->q, s->v, s->z, s->p, s->u};
+  Real *out[] = {b, b + MAX, b + 2 * MAX}, *out_second[] = {k};
+  m->variation(s->t, s->q, s->v, s->z, s->p, s->u, a, a + MAX, a + 2 * MAX, s->w);
+  prog_eval(first, in, out);
+  for (int part = 0; part < 3; part++)
+    if (differs(m->name, "variation", a + part * MAX, b + part * MAX, m->nq, is_exact(first))) return 1;
+  m->second(s->t, s->q, s->v, s->z, s->p, s->u, h, s->w);
+  prog_eval(second, in, out_second);
+  for (uint32_t i = 0; i < n; i++)
+    if (m->second_at[i].part != (int)x->second.at[i].part || m->second_at[i].row != (int)x->second.at[i].row ||
+        m->second_at[i].col != (int)x->second.at[i].col)
+      return printf("%s: entry %u is another one\n", m->name, i), 1;
+  return m->nsecond != (int)n || differs(m->name, "second", h, k, (int)n, is_exact(second));
+}
+
 static int check_model(Arena *arena, const char *path, const lag_scene *scene) {
   static const unsigned char none[MAX];
   Sources *sources = sources_new(arena);
@@ -80,6 +101,7 @@ static int check_model(Arena *arena, const char *path, const lag_scene *scene) {
   for (int i = 0; i < STATES; i++) {
     random_state(&s);
     if (compare(scene->model, accel, energy, &s)) return 1;
+    if (m->coords.n && i < 3 && compare_variation(scene->model, e, &s)) return 1;
   }
   return 0;
 }

@@ -25,9 +25,10 @@ runtime/gsl       gsl/ lag.h lag_model.h
 # FILE: what it may include besides. The equations enter the IR at one place.
 besides='
 src/ir/lower.c    mech/eqns.h
-src/ir/lower.h    mech/eqns.h
+src/ir/lower.h    mech/eqns.h mech/variation.h
 runtime/include/lag.h  lag_model.h
-src/main.c        picture.h
+src/main.c        picture.h wants.h
+src/wants.c       wants.h
 src/picture.c     picture.h
 '
 # The inside of a folder, shared by its own files only.

@@ -31,11 +31,18 @@ emit_all() { # emit_all LAGC FOLDER
 }
 check "lagc emit and lagc header, all models" emit_all "$LAGC" "$TMP/c"
 mv "$TMP"/c/*.h "$TMP/h"
+# With the derivatives that some methods need.
+emit_more() {
+  mkdir -p "$TMP/more"
+  for m in $models; do "$LAGC" emit "$m" --method gauss -o "$TMP/more/$(name_of "$m").c" || return 1; done
+  grep -q 'static int second' "$TMP/more/double_pendulum.c" && ! grep -q second "$TMP/c/double_pendulum.c"
+}
+check "lagc emit --method, all models" emit_more
 
 # ---- clean
 for c in $compilers; do
   check "emitted C is clean with $(basename "$c")" $c -std=c11 $strict -O1 -I"$INC" -c "$TMP"/c/names.c -o "$TMP/names.o"
-  check "all of it, C11 and gnu17" sh -c "for s in c11 gnu17; do $c -std=\$s $strict -fsyntax-only -I$INC $TMP/c/*.c || exit 1; done"
+  check "all of it, C11 and gnu17" sh -c "for s in c11 gnu17; do $c -std=\$s $strict -fsyntax-only -I$INC $TMP/c/*.c $TMP/more/*.c || exit 1; done"
 done
 [ -n "$clang" ] || skip "emitted C is clean with clang" "there is no clang"
 
@@ -151,9 +158,9 @@ done
 # ---- the evaluator of programs agrees
 agrees() {
   first=
-  for m in $models; do first="$first $TMP/c/$(name_of "$m").c"; done
+  for m in $models; do first="$first $TMP/more/$(name_of "$m").c"; done
   "$CC" -std=gnu11 -O1 -g -ffp-contract=off -D_XOPEN_SOURCE=700 -Isrc -I"$INC" '-DLAG_REAL=long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L' \
-    $here/emit_agree.c "$TMP"/c/*.c "$BUILD/liblagc.a" -lm -o "$TMP/agree" && "$TMP/agree" $models
+    $here/emit_agree.c "$TMP/c/scenes.c" "$TMP"/more/*.c "$BUILD/liblagc.a" -lm -o "$TMP/agree" && "$TMP/agree" $models
 }
 check "emitted C computes what its program says, to the last bit" agrees
 

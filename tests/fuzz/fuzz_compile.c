@@ -27,9 +27,11 @@ enum { FUZZ_MEMORY = 256 * 1024 * 1024, MAX_SCENES = 8 };
 
 static void write_everything(Arena *a, const Eqns *e) {
   IrUnit *u = unit_new(e, "fuzz.lag");
+  unit_want(u, e, WANT_VARIATION);
   unit_add_scene(u, e);
   if (prog_verify(u->accel)) abort();
   if (u->energy && prog_verify(u->energy)) abort();
+  if (u->variation && (prog_verify(u->variation) || prog_verify(u->second))) abort();
   if (prog_verify(u->scenes.at[0].observe)) abort();
   StrBuf c = strbuf(a), text = strbuf(a), latex = strbuf(a);
   emit_model(u, cname(a, u->name), &c);

@@ -60,7 +60,7 @@ static inline SymId symbol_named(const Eqns *e, const char *name) {
 static inline long double at(const Eqns *e, const long double *v, const char *name) { return v[symbol_named(e, name)]; }
 
 /* Runs a program at that point. */
-static inline int run_prog(const Eqns *e, const Prog *p, const long double *v, long double *out0, long double *out1) {
+static inline int run_prog_into(const Eqns *e, const Prog *p, const long double *v, long double *const *out) {
   const Model *m = e->m;
   long double *in[ARR_COUNT];
   uint32_t sizes[ARR_COUNT] = {1, m->coords.n, m->coords.n, m->states.n, m->params.n, m->inputs.n};
@@ -73,8 +73,12 @@ static inline int run_prog(const Eqns *e, const Prog *p, const long double *v, l
   for (uint32_t i = 0; i < m->states.n; i++) in[ARR_Z][i] = v[m->states.at[i].z];
   for (uint32_t i = 0; i < m->params.n; i++) in[ARR_P][i] = v[m->params.at[i].sym];
   for (uint32_t i = 0; i < m->inputs.n; i++) in[ARR_U][i] = v[m->inputs.at[i].sym];
-  long double *out[3] = {out0, out1, NULL};
   return prog_eval(p, (const long double *const *)in, out);
+}
+
+static inline int run_prog(const Eqns *e, const Prog *p, const long double *v, long double *out0, long double *out1) {
+  long double *out[3] = {out0, out1, NULL};
+  return run_prog_into(e, p, v, out);
 }
 
 #endif

@@ -57,6 +57,7 @@ static const char bad[] =
 
 static void emit_all(Arena *a, const Eqns *e) {
   IrUnit *u = unit_new(e, "test.lag");
+  unit_want(u, e, WANT_VARIATION);
   unit_add_scene(u, e);
   StrBuf out = strbuf(a), text = strbuf(a);
   emit_model(u, cname(a, u->name), &out);

@@ -1,0 +1,377 @@
+/* taylor: the Taylor series of the motion, in steps and of an order that follow from the tolerance. Enters: t, y; leaves:
+ * the next accepted t, y. Holds: what a step needs of the model is its series at the start of the step and one evaluation at
+ * the end, which is order 0 of the next series; M is factored once a step.
+ *
+ * Source of the recurrences: ir/series.h of the compiler. Of the step: A. Jorba, M. Zou, Experimental Mathematics 14
+ * (2005) 99, DOI 10.1080/10586458.2005.10128904, section 3, made robust. With x_k the coefficient of order k and |x| =
+ * max |x_i| / (|y_i| + atol/rtol), theirs is h = c min(|x_(p-1)|^(-1/(p-1)), |x_p|^(-1/p)): the root test of the radius of
+ * convergence. Motions with symmetries have series with gaps: a pendulum that starts from rest at a right angle has only the
+ * coefficients 2, 6, 10, ... of its angle. So here
+ *  1. the root test is made with the last WINDOW coefficients, r = max_k |x_k|^(1/k), and the step is such that a series
+ *     with |x_k| = r^k leaves out no more than the tolerance: (r h)^(p+1) = rtol;
+ *  2. the defect at the end of the step, y'(h) of the polynomial against the model's f(y(h)), sees all coefficients that
+ *     are left out. What it says of the error must be below the tolerance, or the step is made smaller. A defect that
+ *     does not shrink with the step as h^p is rounding, and is accepted.
+ * The order p is the one that covers the most time for its operations: h = rtol^(1/(p+1))/r, and order k costs an
+ * evaluation and k - 1 terms of each sum. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "lag.h"
+#include "methods/steps.h"
+
+enum { WINDOW = 5, LEAST_ORDER = 6 };
+
+enum { OPT_STEP, OPT_MAX, OPT_ATOL, OPT_ADAPT, OPT_ORDER, NOPTIONS };
+
+static const char *const on_off[] = {"on", "off", NULL};
+
+static const lag_method_option options[NOPTIONS] = {
+    {"step", "size of the step [s] where adapt is off; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL},
+    {"max_step", "largest step [s]; 0: a tenth of the scene's span, or the time since the start", 0, 0, HUGE_VAL, NULL},
+    {"atol", "absolute tolerance [SI]; 0: the same number as the relative one", 0, 0, HUGE_VAL, NULL},
+    {"adapt", "off: every step has the size `step`, whatever the error", 0, 0, 1, on_off},
+    {"order", "order of the series; 0: chosen from the tolerance", 0, 0, 1000, NULL},
+};
+
+/* One block of doubles; behind it the arrays below. */
+typedef struct Taylor {
+  double order;
+  double h_option, h_max, atol, fixed;
+  double ready;     /* 1: series[now] is that at t, y */
+  double now;       /* 0 or 1: which series the next step goes along; the other one is that of the last step */
+  double t0, dt;    /* the last step */
+  double unit[2];   /* the unit of time of each series, > 0 */
+  double t_begin, begun;
+  double x[];
+} Taylor;
+
+enum { COMP, COMP1, Y1, SUM, SCALE, ARRAYS }; /* of n doubles each */
+
+static double *array(Taylor *w, const lag_problem *pb, int which)
+{
+  return w->x + which * pb->n;
+}
+
+/* The coefficients of series 0 or 1: those of order k at [k*n]. */
+static double *series(Taylor *w, const lag_problem *pb, double which)
+{
+  return w->x + ARRAYS * pb->n + (which > 0 ? (pb->model->taylor->order + 1) * pb->n : 0);
+}
+
+/* [nu] 1 where the input follows its formula. */
+static double *follows(Taylor *w, const lag_problem *pb)
+{
+  return w->x + (ARRAYS + 2 * (pb->model->taylor->order + 1)) * pb->n;
+}
+
+static size_t work_size(const lag_problem *pb)
+{
+  size_t n = (size_t)pb->n, head = sizeof(Taylor) / sizeof(double), orders = pb->model->taylor ? (size_t)pb->model->taylor->order + 1 : 0;
+
+  return head + (ARRAYS + 2 * orders) * n + (size_t)pb->model->nu;
+}
+
+static void reset(void *work, lag_problem *pb)
+{
+  Taylor *w = work;
+
+  w->ready = 0;
+  memset(array(w, pb, COMP), 0, (size_t)pb->n * sizeof(double));
+}
+
+/* log2 x to 0.01, x > 0 and finite: enough for a step. */
+static double log2_near(double x)
+{
+  int e;
+  double m = frexp(x, &e);
+
+  return e + m * (2 - m / 3) - 5.0 / 3;
+}
+
+/* 2^x to 0.3 %. */
+static double exp2_near(double x)
+{
+  double whole = floor(x), part = x - whole;
+
+  return ldexp(1 + part * (0.6565 + 0.3435 * part), (int)fmax(-2000, fmin(2000, whole)));
+}
+
+/* The order that covers the most time for its operations. */
+static double best_order(const lag_problem *pb)
+{
+  double bits = -log2_near(pb->tol);
+
+  return fmin(pb->model->taylor->order, fmax(LEAST_ORDER, ceil(bits * 0.4 + 2)));
+}
+
+static int init(void *work, lag_problem *pb, const double *opt)
+{
+  Taylor *w = work;
+  const lag_taylor *ty = pb->model->taylor;
+
+  w->order = opt[OPT_ORDER] > 0 ? floor(opt[OPT_ORDER]) : best_order(pb);
+  if (w->order > ty->order) {
+    pb->detail = "the order is higher than this build allows";
+    return LAG_EMETHOD;
+  }
+  w->fixed = opt[OPT_ADAPT];
+  w->h_option = lag_step_size(pb, opt[OPT_STEP]);
+  w->h_max = opt[OPT_MAX] > 0 ? opt[OPT_MAX] : pb->span / 10;
+  w->atol = opt[OPT_ATOL] > 0 ? opt[OPT_ATOL] : pb->tol;
+  for (int i = 0; i < pb->model->nu; i++) {
+    follows(w, pb)[i] = isnan(pb->hold[i]) && pb->model->inputs;
+  }
+  reset(work, pb);
+  return LAG_OK;
+}
+
+/* Order 0 at t, y into pb->work. 0, or as the model says; > 0, too, where a rate is not finite. */
+static int first(Taylor *w, lag_problem *pb, double t, const double *y)
+{
+  int nq = pb->nq, rc = lag_inputs(pb, t);
+
+  pb->rhs_calls++;
+  pb->bad_index = -1;
+  rc = rc ? rc : pb->model->taylor->first(t, y, y + nq, y + 2 * nq, pb->p, pb->u, follows(w, pb), pb->work);
+  if (rc == 0) {
+    int bad = lag_not_finite(nq + pb->nz, pb->work + pb->n);
+    pb->bad_index = bad < 0 ? -1 : nq + bad;
+    rc = bad < 0 ? 0 : LAG_ERETRY;
+  }
+  return rc;
+}
+
+/* y_i' after `first`. */
+static double rate(const lag_problem *pb, const double *y, int i)
+{
+  return i < pb->nq ? y[pb->nq + i] : pb->work[pb->n + i - pb->nq];
+}
+
+/* The time in which the state changes, as a power of 2: the unit of the first series. Of the others it is about the step. */
+static double guess_unit(const Taylor *w, const lag_problem *pb, const double *y)
+{
+  double fastest = 0;
+
+  for (int i = 0; i < pb->n; i++) {
+    fastest = fmax(fastest, fabs(rate(pb, y, i)) / (fabs(y[i]) + w->atol / pb->tol));
+  }
+  return fastest > 0 && isfinite(fastest) ? ldexp(1, -ilogb(fastest)) : 1;
+}
+
+/* What order 0 in pb->work leads to, into series[which]; unit: of time. 0 when the coefficients are not finite. */
+static int expand(Taylor *w, lag_problem *pb, double which, double unit)
+{
+  int n = pb->n, order = (int)w->order, columns = pb->model->taylor->columns;
+  double *x = series(w, pb, which);
+
+  for (int attempt = 0; attempt < 8; attempt++, unit *= 0x1p-40) {
+    pb->model->taylor->rest(order, pb->dir * unit, pb->work);
+    for (int k = 0; k <= order; k++) {
+      memcpy(x + k * n, pb->work + k * columns, (size_t)n * sizeof *x);
+    }
+    w->unit[which > 0] = unit;
+    if (lag_not_finite((order + 1) * n, x) < 0) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* The series at t, y, where there is none yet: at the start, and after an event. */
+static int prepare(Taylor *w, lag_problem *pb, double t, const double *y)
+{
+  if (w->begun == 0.0) {
+    w->begun = 1;
+    w->t_begin = t;
+  }
+  if (w->ready != 0.0) {
+    return LAG_OK;
+  }
+  int rc = first(w, pb, t, y);
+  if (rc) {
+    return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, t) : lag_step_refused(pb, rc, t);
+  }
+  if (!expand(w, pb, w->now, guess_unit(w, pb, y))) {
+    pb->detail = "its Taylor series does not exist here; dop853 needs none";
+    return lag_step_failed(pb, LAG_ENAN, t);
+  }
+  w->ready = 1;
+  return LAG_OK;
+}
+
+/* The step that the series allows: item 1 above. HUGE_VAL for a polynomial. */
+static double allowed(Taylor *w, lag_problem *pb, const double *y)
+{
+  int n = pb->n, order = (int)w->order;
+  const double *x = series(w, pb, w->now);
+  double *scale = array(w, pb, SCALE), floor = w->atol / pb->tol, root = -HUGE_VAL;
+
+  for (int i = 0; i < n; i++) {
+    scale[i] = 1 / (fabs(y[i]) + floor);
+  }
+  for (int k = order; k > order - WINDOW && k > 0; k--) {
+    double most = 0;
+    for (int i = 0; i < n; i++) {
+      double size = fabs(x[k * n + i]) * scale[i];
+      most = size > most ? size : most;
+    }
+    root = most > 0 ? fmax(root, log2_near(most) / k) : root;
+  }
+  return root > -HUGE_VAL ? w->unit[w->now > 0] * exp2_near((log2_near(pb->tol) - 2) / (order + 1) - root) : HUGE_VAL;
+}
+
+/* out[n] := the sum over the orders from 1 on at s units of time. */
+static void move(const double *x, int n, int order, double s, double *restrict out)
+{
+  memcpy(out, x + order * n, (size_t)n * sizeof *out);
+  for (int k = order - 1; k > 0; k--) {
+    const double *restrict row = x + k * n;
+    for (int i = 0; i < n; i++) {
+      out[i] = out[i] * s + row[i];
+    }
+  }
+  for (int i = 0; i < n; i++) {
+    out[i] *= s;
+  }
+}
+
+/* The derivative of the series of v and z, times the unit of time, at s: out[n - nq]. */
+static void slope(const double *x, int n, int nq, int order, double s, double *restrict out)
+{
+  int m = n - nq;
+
+  for (int i = 0; i < m; i++) {
+    out[i] = order * x[order * n + nq + i];
+  }
+  for (int k = order - 1; k > 0; k--) {
+    const double *restrict row = x + k * n + nq;
+    for (int i = 0; i < m; i++) {
+      out[i] = out[i] * s + k * row[i];
+    }
+  }
+}
+
+/* The error of a step of dt that ends at Y1, in tolerances: item 2 above. The polynomial leaves out c t^(p+1) and what
+ * follows; its defect at the end is (p + 1) c h^p, and that of q is by one order smaller. */
+static double error_of(Taylor *w, lag_problem *pb, double dt)
+{
+  int n = pb->n, nq = pb->nq, order = (int)w->order;
+  double unit = pb->dir * w->unit[w->now > 0], worst = 0, h = fabs(dt);
+  const double *y1 = array(w, pb, Y1), *scale = array(w, pb, SCALE);
+  double *d = array(w, pb, SUM);
+
+  slope(series(w, pb, w->now), n, nq, order, dt / unit, d);
+  for (int i = nq; i < n; i++) {
+    double defect = fabs(d[i - nq] / unit - rate(pb, y1, i)) * h / (order + 1), of_q = i < 2 * nq ? defect * h / (order + 2) * scale[i - nq] : 0;
+    worst = fmax(worst, fmax(defect * scale[i], of_q));
+  }
+  return worst / pb->tol;
+}
+
+/* The limit on steps: the option, or else what has been seen of the motion so far. */
+static double longest(const Taylor *w, double t)
+{
+  double seen = fabs(t - w->t_begin);
+
+  return w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
+}
+
+/* Y1, COMP1 := the state at t + dt. */
+static void advance(Taylor *w, lag_problem *pb, const double *y, double dt)
+{
+  int n = pb->n;
+  const double *comp = array(w, pb, COMP);
+  double *sum = array(w, pb, SUM), *y1 = array(w, pb, Y1), *comp1 = array(w, pb, COMP1);
+
+  move(series(w, pb, w->now), n, (int)w->order, dt / (pb->dir * w->unit[w->now > 0]), sum);
+  for (int i = 0; i < n; i++) {
+    comp1[i] = comp[i];
+    y1[i] = lag_sum(y[i], sum[i], &comp1[i]);
+  }
+}
+
+/* Takes the step; what order 0 at its end leads to is the next series. */
+static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, double tb)
+{
+  size_t bytes = (size_t)pb->n * sizeof(double);
+
+  memcpy(y, array(w, pb, Y1), bytes);
+  memcpy(array(w, pb, COMP), array(w, pb, COMP1), bytes);
+  w->t0 = *t;
+  w->dt = dt;
+  *t = tb;
+  w->now = 1 - w->now;
+  w->ready = expand(w, pb, w->now, ldexp(1, ilogb(dt)));
+}
+
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
+{
+  Taylor *w = work;
+  int cause = LAG_ESTEP, rc = prepare(w, pb, *t, y);
+
+  (void)t_stop;
+  if (rc) {
+    return rc;
+  }
+  double h = allowed(w, pb, y), last = HUGE_VAL;
+  h = w->fixed != 0.0 ? w->h_option : fmin(h, longest(w, *t));
+  h = isfinite(h) ? h : 1;
+  for (;;) {
+    double tb = *t + pb->dir * h, dt = tb - *t; /* a step between two times that are numbers */
+    if (!(fabs(dt) > 4 * DBL_EPSILON * fabs(*t)) || h < DBL_MIN / DBL_EPSILON) {
+      return cause == LAG_ESTEP || cause == LAG_ESINGULAR ? lag_step_failed(pb, cause, *t) : cause;
+    }
+    advance(w, pb, y, dt);
+    rc = first(w, pb, tb, array(w, pb, Y1));
+    if (rc < 0 && rc != LAG_ESINGULAR) {
+      return lag_step_refused(pb, rc, tb);
+    }
+    double error = rc ? NAN : error_of(w, pb, dt);
+    int rounding = error > 0.5 * last; /* half of the step, and not even half of the defect */
+    if (error <= 1 || rounding || (w->fixed != 0.0 && rc == 0)) {
+      if(getenv("TDBG")) fprintf(stderr,"acc t %g h %g err %g %d\n",*t,h,error,rounding);
+      accept(w, pb, t, y, dt, tb);
+      return LAG_OK;
+    }
+    cause = rc ? (pb->bad_index >= 0 ? LAG_ENAN : rc < 0 ? LAG_ESINGULAR : LAG_EDOMAIN) : LAG_ESTEP;
+    pb->bad_t = tb;
+    if (w->fixed != 0.0) {
+      return cause;
+    }
+    last = rc ? HUGE_VAL : error;
+    if(getenv("TDBG")) fprintf(stderr,"rej t %g h %g err %g\n",*t,h,error);
+    h *= rc ? 0.5 : fmax(0.5, exp2_near(-(log2_near(error) + 1) / (w->order + 1)));
+    pb->rejected++;
+  }
+}
+
+static void dense(void *work, lag_problem *pb, double t, double *y)
+{
+  Taylor *w = work;
+  double which = 1 - w->now;
+  const double *x = series(w, pb, which);
+
+  move(x, pb->n, (int)w->order, (t - w->t0) / (pb->dir * w->unit[which > 0]), y);
+  for (int i = 0; i < pb->n; i++) {
+    y[i] += x[i];
+  }
+}
+
+const lag_method lag_taylor_method = {
+    .name = "taylor",
+    .order = 0,
+    .dense_order = 0,
+    .doc = "Taylor series of an order that follows from the tolerance, for tolerances below 1e-9. DOI 10.1080/10586458.2005.10128904",
+    .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_TAYLOR,
+    .noptions = NOPTIONS,
+    .options = options,
+    .work_size = work_size,
+    .init = init,
+    .step = step,
+    .dense = dense,
+    .reset = reset,
+};

@@ -1,0 +1,47 @@
+#include "mech/variation.h"
+
+#include "mech/lagrange.h"
+#include "sym/diff.h"
+
+/* The derivatives of of[i] by all symbols of a kind, or by those up to i, as entries of a part. */
+static void add_rows(const Eqns *e, Variation *x, SecondPart part, const Expr *of, SymKind kind) {
+  int triangle = part == SECOND_QQ || part == SECOND_VV;
+  for (uint32_t i = 0; i < e->n; i++) {
+    ExprPartials row = expr_gradient_sparse(e->g, of[i], kind, triangle ? i + 1 : e->n);
+    for (uint32_t k = 0; k < row.n; k++) vec_push(e->m->arena, &x->second, ((SecondEntry){part, i, row.at[k].index, row.at[k].e}));
+  }
+}
+
+/* The short forms of the entries; those that turn out to be zero go. */
+static void shorten(const Eqns *e, Variation *x) {
+  uint32_t n = x->second.n, kept = 0;
+  Expr *raw = ARENA_ARRAY(e->m->arena, Expr, n + 1);
+  for (uint32_t k = 0; k < n; k++) raw[k] = x->second.at[k].e;
+  const Expr *best = lagrange_short_forms(e, raw, n);
+  for (uint32_t k = 0; k < n; k++) {
+    if (expr_is_zero(e->g, best[k])) continue;
+    x->second.at[kept] = x->second.at[k];
+    x->second.at[kept++].e = best[k];
+  }
+  x->second.n = kept;
+}
+
+Variation *variation_derive(const Eqns *e) {
+  Arena *arena = e->m->arena;
+  Variation *x = ARENA_NEW(arena, Variation);
+  Expr *first = ARENA_ARRAY(arena, Expr, 2 * e->n);
+  for (uint32_t i = 0; i < e->n; i++) {
+    first[i] = e->dLdq[i];
+    first[e->n + i] = e->p[i];
+  }
+  add_rows(e, x, SECOND_QQ, e->dLdq, SYM_COORD);
+  add_rows(e, x, SECOND_VQ, e->p, SYM_COORD);
+  add_rows(e, x, SECOND_VV, e->p, SYM_VEL);
+  add_rows(e, x, SECOND_FQ, e->Q, SYM_COORD);
+  add_rows(e, x, SECOND_FV, e->Q, SYM_VEL);
+  shorten(e, x);
+  x->dLdq = lagrange_short_forms(e, first, 2 * e->n);
+  x->momenta = x->dLdq + e->n;
+  x->forces = e->Q;
+  return x;
+}
