@@ -16,14 +16,14 @@
  * evaluation and k - 1 terms of each sum. */
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "lag.h"
+#include "methods/near.h"
 #include "methods/steps.h"
 
-enum { WINDOW = 5, LEAST_ORDER = 6 };
+/* The step aims at an error of 2^-AIM tolerances. */
+enum { WINDOW = 5, LEAST_ORDER = 6, AIM = 2 };
 
 enum { OPT_STEP, OPT_MAX, OPT_ATOL, OPT_ADAPT, OPT_ORDER, NOPTIONS };
 
@@ -40,39 +40,50 @@ static const lag_method_option options[NOPTIONS] = {
 /* One block of doubles; behind it the arrays below. */
 typedef struct Taylor {
   double order;
-  double h_option, h_max, atol, fixed;
+  double h_option, h_max, fixed;
+  double floor;     /* absolute over relative tolerance: a state below it is judged like one of this size */
   double ready;     /* 1: series[now] is that at t, y */
   double now;       /* 0 or 1: which series the next step goes along; the other one is that of the last step */
   double t0, dt;    /* the last step */
-  double unit[2];   /* the unit of time of each series, > 0 */
+  double unit[2];   /* the unit of time of each series, with the sign of the direction */
   double t_begin, begun;
   double x[];
 } Taylor;
 
-enum { COMP, COMP1, Y1, SUM, SCALE, ARRAYS }; /* of n doubles each */
+enum { COMP, COMP1, Y1, SUM, SLOPE, SCALE, ARRAYS }; /* of `width` doubles each; behind them the series */
+
+static int width(const lag_problem *pb)
+{
+  return pb->model->taylor->width;
+}
 
 static double *array(Taylor *w, const lag_problem *pb, int which)
 {
-  return w->x + which * pb->n;
+  return w->x + which * width(pb);
 }
 
-/* The coefficients of series 0 or 1: those of order k at [k*n]. */
+/* Series 0 or 1. */
 static double *series(Taylor *w, const lag_problem *pb, double which)
 {
-  return w->x + ARRAYS * pb->n + (which > 0 ? (pb->model->taylor->order + 1) * pb->n : 0);
+  const lag_taylor *ty = pb->model->taylor;
+
+  return w->x + ARRAYS * ty->width + (which > 0 ? (ty->order + 1) * ty->columns : 0);
 }
 
 /* [nu] 1 where the input follows its formula. */
 static double *follows(Taylor *w, const lag_problem *pb)
 {
-  return w->x + (ARRAYS + 2 * (pb->model->taylor->order + 1)) * pb->n;
+  const lag_taylor *ty = pb->model->taylor;
+
+  return w->x + ARRAYS * ty->width + 2 * (ty->order + 1) * ty->columns;
 }
 
 static size_t work_size(const lag_problem *pb)
 {
-  size_t n = (size_t)pb->n, head = sizeof(Taylor) / sizeof(double), orders = pb->model->taylor ? (size_t)pb->model->taylor->order + 1 : 0;
+  const lag_taylor *ty = pb->model->taylor;
+  size_t head = sizeof(Taylor) / sizeof(double);
 
-  return head + (ARRAYS + 2 * orders) * n + (size_t)pb->model->nu;
+  return ty ? head + (size_t)(ARRAYS * ty->width + 2 * (ty->order + 1) * ty->columns + pb->model->nu) : head;
 }
 
 static void reset(void *work, lag_problem *pb)
@@ -80,48 +91,38 @@ static void reset(void *work, lag_problem *pb)
   Taylor *w = work;
 
   w->ready = 0;
-  memset(array(w, pb, COMP), 0, (size_t)pb->n * sizeof(double));
+  memset(array(w, pb, COMP), 0, (size_t)width(pb) * sizeof(double));
 }
 
-/* log2 x to 0.01, x > 0 and finite: enough for a step. */
-static double log2_near(double x)
-{
-  int e;
-  double m = frexp(x, &e);
-
-  return e + m * (2 - m / 3) - 5.0 / 3;
-}
-
-/* 2^x to 0.3 %. */
-static double exp2_near(double x)
-{
-  double whole = floor(x), part = x - whole;
-
-  return ldexp(1 + part * (0.6565 + 0.3435 * part), (int)fmax(-2000, fmin(2000, whole)));
-}
-
-/* The order that covers the most time for its operations. */
+/* The order that covers the most time for its operations. Of a step itself, 300 of them; the products of the sums are made
+ * two at a time. */
 static double best_order(const lag_problem *pb)
 {
-  double bits = -log2_near(pb->tol);
+  const lag_taylor *ty = pb->model->taylor;
+  double bits = -log2(pb->tol), least = HUGE_VAL;
+  int best = LEAST_ORDER;
 
-  return fmin(pb->model->taylor->order, fmax(LEAST_ORDER, ceil(bits * 0.4 + 2)));
+  for (int p = LEAST_ORDER; p <= ty->order; p++) {
+    double cost = (300.0 + ty->cost_first + (double)p * ty->cost_next + p * (p - 1) / 2.0 * ty->sums) * exp2(bits / (p + 1));
+    best = cost < least ? p : best;
+    least = fmin(cost, least);
+  }
+  return best;
 }
 
 static int init(void *work, lag_problem *pb, const double *opt)
 {
   Taylor *w = work;
-  const lag_taylor *ty = pb->model->taylor;
 
   w->order = opt[OPT_ORDER] > 0 ? floor(opt[OPT_ORDER]) : best_order(pb);
-  if (w->order > ty->order) {
-    pb->detail = "the order is higher than this build allows";
+  if (w->order > pb->model->taylor->order) {
+    pb->detail = "its order is higher than this build allows";
     return LAG_EMETHOD;
   }
   w->fixed = opt[OPT_ADAPT];
   w->h_option = lag_step_size(pb, opt[OPT_STEP]);
   w->h_max = opt[OPT_MAX] > 0 ? opt[OPT_MAX] : pb->span / 10;
-  w->atol = opt[OPT_ATOL] > 0 ? opt[OPT_ATOL] : pb->tol;
+  w->floor = opt[OPT_ATOL] > 0 ? opt[OPT_ATOL] / pb->tol : 1;
   for (int i = 0; i < pb->model->nu; i++) {
     follows(w, pb)[i] = isnan(pb->hold[i]) && pb->model->inputs;
   }
@@ -129,52 +130,46 @@ static int init(void *work, lag_problem *pb, const double *opt)
   return LAG_OK;
 }
 
-/* Order 0 at t, y into pb->work. 0, or as the model says; > 0, too, where a rate is not finite. */
-static int first(Taylor *w, lag_problem *pb, double t, const double *y)
+/* Order 0 at t, y of series[which]. 0, or as the model says; > 0, too, where a rate is not finite: pb->bad_index >= 0. */
+static int first(Taylor *w, lag_problem *pb, double which, double t, const double *y)
 {
   int nq = pb->nq, rc = lag_inputs(pb, t);
+  double *x = series(w, pb, which);
 
   pb->rhs_calls++;
   pb->bad_index = -1;
-  rc = rc ? rc : pb->model->taylor->first(t, y, y + nq, y + 2 * nq, pb->p, pb->u, follows(w, pb), pb->work);
+  rc = rc ? rc : pb->model->taylor->first(t, y, y + nq, y + 2 * nq, pb->p, pb->u, follows(w, pb), x, pb->work);
   if (rc == 0) {
-    int bad = lag_not_finite(nq + pb->nz, pb->work + pb->n);
+    int bad = lag_not_finite(nq + pb->nz, x + pb->n);
     pb->bad_index = bad < 0 ? -1 : nq + bad;
     rc = bad < 0 ? 0 : LAG_ERETRY;
   }
   return rc;
 }
 
-/* y_i' after `first`. */
-static double rate(const lag_problem *pb, const double *y, int i)
-{
-  return i < pb->nq ? y[pb->nq + i] : pb->work[pb->n + i - pb->nq];
-}
-
 /* The time in which the state changes, as a power of 2: the unit of the first series. Of the others it is about the step. */
-static double guess_unit(const Taylor *w, const lag_problem *pb, const double *y)
+static double guess_unit(Taylor *w, const lag_problem *pb, const double *y)
 {
   double fastest = 0;
+  const double *rates = series(w, pb, w->now) + pb->n;
 
   for (int i = 0; i < pb->n; i++) {
-    fastest = fmax(fastest, fabs(rate(pb, y, i)) / (fabs(y[i]) + w->atol / pb->tol));
+    fastest = fmax(fastest, fabs(i < pb->nq ? y[pb->nq + i] : rates[i - pb->nq]) / (fabs(y[i]) + w->floor));
   }
   return fastest > 0 && isfinite(fastest) ? ldexp(1, -ilogb(fastest)) : 1;
 }
 
-/* What order 0 in pb->work leads to, into series[which]; unit: of time. 0 when the coefficients are not finite. */
+/* All orders of series[which] from its order 0; unit: of time. 0 when they are not finite. */
 static int expand(Taylor *w, lag_problem *pb, double which, double unit)
 {
-  int n = pb->n, order = (int)w->order, columns = pb->model->taylor->columns;
+  const lag_taylor *ty = pb->model->taylor;
+  int order = (int)w->order;
   double *x = series(w, pb, which);
 
   for (int attempt = 0; attempt < 8; attempt++, unit *= 0x1p-40) {
-    pb->model->taylor->rest(order, pb->dir * unit, pb->work);
-    for (int k = 0; k <= order; k++) {
-      memcpy(x + k * n, pb->work + k * columns, (size_t)n * sizeof *x);
-    }
-    w->unit[which > 0] = unit;
-    if (lag_not_finite((order + 1) * n, x) < 0) {
+    w->unit[which > 0] = pb->dir * unit;
+    ty->rest(order, pb->dir * unit, x, pb->work);
+    if (lag_not_finite(pb->n, x + order * ty->columns) < 0) {
       return 1;
     }
   }
@@ -191,7 +186,7 @@ static int prepare(Taylor *w, lag_problem *pb, double t, const double *y)
   if (w->ready != 0.0) {
     return LAG_OK;
   }
-  int rc = first(w, pb, t, y);
+  int rc = first(w, pb, w->now, t, y);
   if (rc) {
     return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, t) : lag_step_refused(pb, rc, t);
   }
@@ -206,68 +201,42 @@ static int prepare(Taylor *w, lag_problem *pb, double t, const double *y)
 /* The step that the series allows: item 1 above. HUGE_VAL for a polynomial. */
 static double allowed(Taylor *w, lag_problem *pb, const double *y)
 {
-  int n = pb->n, order = (int)w->order;
+  int n = pb->n, order = (int)w->order, columns = pb->model->taylor->columns;
   const double *x = series(w, pb, w->now);
-  double *scale = array(w, pb, SCALE), floor = w->atol / pb->tol, root = -HUGE_VAL;
+  double *scale = array(w, pb, SCALE), root = -HUGE_VAL;
 
   for (int i = 0; i < n; i++) {
-    scale[i] = 1 / (fabs(y[i]) + floor);
+    scale[i] = 1 / (fabs(y[i]) + w->floor);
   }
   for (int k = order; k > order - WINDOW && k > 0; k--) {
+    const double *row = x + k * columns;
     double most = 0;
     for (int i = 0; i < n; i++) {
-      double size = fabs(x[k * n + i]) * scale[i];
+      double size = fabs(row[i]) * scale[i];
       most = size > most ? size : most;
     }
-    root = most > 0 ? fmax(root, log2_near(most) / k) : root;
+    double here = most > 0 ? lag_log2_near(most) / k : -HUGE_VAL;
+    root = here > root ? here : root;
   }
-  return root > -HUGE_VAL ? w->unit[w->now > 0] * exp2_near((log2_near(pb->tol) - 2) / (order + 1) - root) : HUGE_VAL;
-}
-
-/* out[n] := the sum over the orders from 1 on at s units of time. */
-static void move(const double *x, int n, int order, double s, double *restrict out)
-{
-  memcpy(out, x + order * n, (size_t)n * sizeof *out);
-  for (int k = order - 1; k > 0; k--) {
-    const double *restrict row = x + k * n;
-    for (int i = 0; i < n; i++) {
-      out[i] = out[i] * s + row[i];
-    }
+  if (root == -HUGE_VAL) {
+    return HUGE_VAL;
   }
-  for (int i = 0; i < n; i++) {
-    out[i] *= s;
-  }
-}
-
-/* The derivative of the series of v and z, times the unit of time, at s: out[n - nq]. */
-static void slope(const double *x, int n, int nq, int order, double s, double *restrict out)
-{
-  int m = n - nq;
-
-  for (int i = 0; i < m; i++) {
-    out[i] = order * x[order * n + nq + i];
-  }
-  for (int k = order - 1; k > 0; k--) {
-    const double *restrict row = x + k * n + nq;
-    for (int i = 0; i < m; i++) {
-      out[i] = out[i] * s + k * row[i];
-    }
-  }
+  return fabs(w->unit[w->now > 0]) * lag_exp2_near((lag_log2_near(pb->tol) - AIM) / (order + 1) - root);
 }
 
 /* The error of a step of dt that ends at Y1, in tolerances: item 2 above. The polynomial leaves out c t^(p+1) and what
  * follows; its defect at the end is (p + 1) c h^p, and that of q is by one order smaller. */
 static double error_of(Taylor *w, lag_problem *pb, double dt)
 {
-  int n = pb->n, nq = pb->nq, order = (int)w->order;
-  double unit = pb->dir * w->unit[w->now > 0], worst = 0, h = fabs(dt);
-  const double *y1 = array(w, pb, Y1), *scale = array(w, pb, SCALE);
-  double *d = array(w, pb, SUM);
+  int nq = pb->nq, m = nq + pb->nz, order = (int)w->order;
+  double per_unit = 1 / w->unit[w->now > 0], worst = 0, h = fabs(dt), to_v = h / (order + 1), to_q = h / (order + 2);
+  const double *slope = array(w, pb, SLOPE) + nq, *scale = array(w, pb, SCALE), *rates = series(w, pb, 1 - w->now) + pb->n;
 
-  slope(series(w, pb, w->now), n, nq, order, dt / unit, d);
-  for (int i = nq; i < n; i++) {
-    double defect = fabs(d[i - nq] / unit - rate(pb, y1, i)) * h / (order + 1), of_q = i < 2 * nq ? defect * h / (order + 2) * scale[i - nq] : 0;
-    worst = fmax(worst, fmax(defect * scale[i], of_q));
+  for (int i = 0; i < m; i++) {
+    double error = fabs(slope[i] * per_unit - rates[i]) * to_v, size = error * scale[nq + i];
+    double of_q = i < nq ? error * to_q * scale[i] : 0;
+    worst = size > worst ? size : worst;
+    worst = of_q > worst ? of_q : worst;
   }
   return worst / pb->tol;
 }
@@ -283,12 +252,11 @@ static double longest(const Taylor *w, double t)
 /* Y1, COMP1 := the state at t + dt. */
 static void advance(Taylor *w, lag_problem *pb, const double *y, double dt)
 {
-  int n = pb->n;
   const double *comp = array(w, pb, COMP);
   double *sum = array(w, pb, SUM), *y1 = array(w, pb, Y1), *comp1 = array(w, pb, COMP1);
 
-  move(series(w, pb, w->now), n, (int)w->order, dt / (pb->dir * w->unit[w->now > 0]), sum);
-  for (int i = 0; i < n; i++) {
+  pb->model->taylor->at((int)w->order, dt / w->unit[w->now > 0], series(w, pb, w->now), sum, array(w, pb, SLOPE));
+  for (int i = 0; i < pb->n; i++) {
     comp1[i] = comp[i];
     y1[i] = lag_sum(y[i], sum[i], &comp1[i]);
   }
@@ -297,10 +265,13 @@ static void advance(Taylor *w, lag_problem *pb, const double *y, double dt)
 /* Takes the step; what order 0 at its end leads to is the next series. */
 static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, double tb)
 {
-  size_t bytes = (size_t)pb->n * sizeof(double);
+  const double *y1 = array(w, pb, Y1), *comp1 = array(w, pb, COMP1);
+  double *comp = array(w, pb, COMP);
 
-  memcpy(y, array(w, pb, Y1), bytes);
-  memcpy(array(w, pb, COMP), array(w, pb, COMP1), bytes);
+  for (int i = 0; i < pb->n; i++) {
+    y[i] = y1[i];
+    comp[i] = comp1[i];
+  }
   w->t0 = *t;
   w->dt = dt;
   *t = tb;
@@ -317,8 +288,8 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   if (rc) {
     return rc;
   }
-  double h = allowed(w, pb, y), last = HUGE_VAL;
-  h = w->fixed != 0.0 ? w->h_option : fmin(h, longest(w, *t));
+  double h = allowed(w, pb, y), most = longest(w, *t), last = HUGE_VAL;
+  h = w->fixed != 0.0 ? w->h_option : h < most ? h : most;
   h = isfinite(h) ? h : 1;
   for (;;) {
     double tb = *t + pb->dir * h, dt = tb - *t; /* a step between two times that are numbers */
@@ -326,14 +297,13 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
       return cause == LAG_ESTEP || cause == LAG_ESINGULAR ? lag_step_failed(pb, cause, *t) : cause;
     }
     advance(w, pb, y, dt);
-    rc = first(w, pb, tb, array(w, pb, Y1));
+    rc = first(w, pb, 1 - w->now, tb, array(w, pb, Y1));
     if (rc < 0 && rc != LAG_ESINGULAR) {
       return lag_step_refused(pb, rc, tb);
     }
     double error = rc ? NAN : error_of(w, pb, dt);
-    int rounding = error > 0.5 * last; /* half of the step, and not even half of the defect */
+    int rounding = error > last / 2; /* a shorter step, and the same defect */
     if (error <= 1 || rounding || (w->fixed != 0.0 && rc == 0)) {
-      if(getenv("TDBG")) fprintf(stderr,"acc t %g h %g err %g %d\n",*t,h,error,rounding);
       accept(w, pb, t, y, dt, tb);
       return LAG_OK;
     }
@@ -343,8 +313,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
       return cause;
     }
     last = rc ? HUGE_VAL : error;
-    if(getenv("TDBG")) fprintf(stderr,"rej t %g h %g err %g\n",*t,h,error);
-    h *= rc ? 0.5 : fmax(0.5, exp2_near(-(log2_near(error) + 1) / (w->order + 1)));
+    h *= rc ? 0.5 : fmax(0.5, lag_exp2_near(-(lag_log2_near(error) + AIM) / (w->order + 1)));
     pb->rejected++;
   }
 }
@@ -352,12 +321,12 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
 static void dense(void *work, lag_problem *pb, double t, double *y)
 {
   Taylor *w = work;
-  double which = 1 - w->now;
+  double which = 1 - w->now, *sum = array(w, pb, SUM);
   const double *x = series(w, pb, which);
 
-  move(x, pb->n, (int)w->order, (t - w->t0) / (pb->dir * w->unit[which > 0]), y);
+  pb->model->taylor->at((int)w->order, (t - w->t0) / w->unit[which > 0], x, sum, array(w, pb, SLOPE));
   for (int i = 0; i < pb->n; i++) {
-    y[i] += x[i];
+    y[i] = x[i] + sum[i];
   }
 }
 

@@ -333,24 +333,14 @@ static void write_array(Writer *w, int array) {
 
 static void count_uses(Writer *w) {
   const Prog *p = w->p;
+  w->uses = prog_uses(p);
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
-    w->uses[i->a]++;
+    if (i->op != IR_PIVOT && i->op != IR_SIGN && i->op != IR_MIN && i->op != IR_MAX) continue;
+    w->uses[i->a]++; /* spelled twice */
     w->uses[i->b]++;
-    w->uses[i->c]++;
-    if (i->op == IR_PIVOT || i->op == IR_SIGN || i->op == IR_MIN || i->op == IR_MAX) { /* spelled twice */
-      w->uses[i->a]++;
-      w->uses[i->b]++;
-    }
-    if (i->op != IR_SOLVE) continue;
-    const Solve *k = &p->solves.at[i->index];
-    for (uint32_t j = 0; k->matrix && j < k->n * k->n; j++) w->uses[k->matrix[j]]++;
-    for (uint32_t j = 0; j < k->n; j++) w->uses[k->rhs[j]]++;
   }
-  for (uint32_t k = 0; k < p->stores.n; k++) {
-    w->uses[p->stores.at[k].slot]++;
-    w->stored[p->stores.at[k].slot] = p->stores.at[k].comment;
-  }
+  for (uint32_t k = 0; k < p->stores.n; k++) w->stored[p->stores.at[k].slot] = p->stores.at[k].comment;
 }
 
 static void write_instruction(Writer *w, Slot s) {
@@ -376,10 +366,23 @@ static void write_instruction(Writer *w, Slot s) {
   else declare(w, s, x);
 }
 
+/* Stores k and k + 1, which stand side by side in their array; the next index must be in it, too, where k is the last. */
+static uint32_t write_pair(Writer *w, uint32_t k) {
+  const Store *st = &w->p->stores.at[k], *other = k + 1 < w->p->stores.n && st[1].array == st->array ? st + 1 : NULL;
+  const char *x = operand(w, st->slot).text, *y = operand(w, other ? other->slot : 0).text;
+  put_statement(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
+  sb_putc(w->out, '\n');
+  return other ? 1 : 0;
+}
+
 static void write_stores(Writer *w) {
   for (uint32_t k = 0; k < w->p->stores.n; k++) {
     const Store *st = &w->p->stores.at[k];
     if (!k) sb_putc(w->out, '\n');
+    if (w->style->paired >> st->array & 1) {
+      k += write_pair(w, k);
+      continue;
+    }
     const char *text = operand(w, st->slot).text;
     const char *target = element(w, w->style->out[st->array], st->index), *member = strstr(target, "->");
     int said = !st->comment[0] || strcmp(st->comment, text) == 0 || (w->style->params && member && strcmp(member + 2, st->comment) == 0);
@@ -391,7 +394,6 @@ static void write_stores(Writer *w) {
 
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
-  w.uses = ARENA_ARRAY(a, uint32_t, p->ins.n);
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
   w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);

@@ -29,7 +29,8 @@ static const char *const abi_names[] = {
   "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_MASK", "lag_solve", "lag_var", "lag_event", "lag_model", "lag_option",
   "lag_monitor", "lag_scene", "lag_program", "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV",
   "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER", "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS",
-  "taylor_work", "taylor_first", "taylor_next", "taylor_sums", "taylor_rest",
+  "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL", "LAG_PAIR", "taylor_term",
+  "LAG_REAL_IS_DOUBLE", "taylor_lanes", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums", "taylor_rest",
   "q_table", "z_table", "p_table", "u_table", "ev_table", "second_table",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };

@@ -4,42 +4,74 @@
 
 #include "emit/cfunction.h"
 
-enum { LANES = 4 }; /* sums are made in groups of so many, side by side: a C compiler turns them into vectors */
+/* Sums are made side by side, in groups that a processor keeps in registers: of up to 16 numbers, in vectors of 2 or 4. */
+enum { LANES = 4, LEAST_GROUP = 8, MOST_GROUP = 16 };
+enum { CALL = 25 };    /* what a function costs more than another operation */
+enum { LOOP_FROM = 9 }; /* statements that differ in an index only: so many become a loop */
 
 static const char *const arrays[ARR_COUNT] = {
   "t", "q", "v", "z", "p", "u", [ARR_FREE] = "follows", [ARR_COEF] = "x", [ARR_SUMS] = "s", [ARR_STEP] = "c",
-  [ARR_ORDER] = "k", [ARR_PER_ORDER] = "per_k",
+  [ARR_ORDER] = "k", [ARR_PER_ORDER] = "per_k", [ARR_UP] = "up",
 };
 
 static const char *const head =
   "\n/* --- Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... --- */\n"
   "\n"
-  "#ifndef LAG_TAYLOR_ORDER\n#define LAG_TAYLOR_ORDER 40\n#endif\n";
+  "#ifndef LAG_TAYLOR_ORDER\n#define LAG_TAYLOR_ORDER 40\n#endif\n"
+  "\n/* Two numbers side by side, where the compiler has such a type. They are stored as they are loaded: a processor hands\n"
+  " * on what it has just stored only to loads of no more than that. */\n"
+  "#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE)\n"
+  "typedef double taylor_lanes __attribute__((vector_size(16), aligned(8), may_alias));\n"
+  "#define LAG_PAIR(a, i, x, y) (((taylor_lanes *)(a))[(i)/2] = (taylor_lanes){x, y})\n"
+  "#else\n"
+  "typedef LAG_REAL taylor_lanes;\n"
+  "#define LAG_PAIR(a, i, x, y) ((a)[i] = (x), (a)[(i) + 1] = (y))\n"
+  "#endif\n"
+  "#if defined(__GNUC__) && !defined(__clang__)\n"
+  "#define TAYLOR_UNROLL _Pragma(\"GCC unroll 16\")\n"
+  "#else\n"
+  "#define TAYLOR_UNROLL\n"
+  "#endif\n"
+  "enum { TAYLOR_LANES = sizeof(taylor_lanes)/sizeof(LAG_REAL) };\n\n";
+
+static const char *const at =
+  "\n/* y = x[1] s + ... + x[n] s^n for q, v and z, and dy its derivative by s: by Horner's rule. Both have room for\n"
+  " * TAYLOR_WIDTH. */\n"
+  "static void taylor_at(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
+  "  enum { PART = 4/TAYLOR_LANES };\n"
+  "  for (int i = 0; i < TAYLOR_WIDTH; i += 4) {\n"
+  "    taylor_lanes sum[PART] = {{LAG_C(0.0)}}, slope[PART] = {{LAG_C(0.0)}};\n"
+  "    for (int k = n; k > 0; k--) {\n"
+  "      const taylor_lanes *const row = (const taylor_lanes *)(x + k*TAYLOR_COLUMNS + i);\n"
+  "      TAYLOR_UNROLL\n"
+  "      for (int g = 0; g < PART; g++) {\n"
+  "        slope[g] = slope[g]*s + sum[g];\n"
+  "        sum[g] = sum[g]*s + row[g];\n"
+  "      }\n"
+  "    }\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < PART; g++) {\n"
+  "      ((taylor_lanes *)(y + i))[g] = sum[g]*s;\n"
+  "      ((taylor_lanes *)(dy + i))[g] = slope[g]*s + sum[g];\n"
+  "    }\n"
+  "  }\n"
+  "}\n";
 
 static const char *const sums =
-  "\n/* s = a[1] b[k-1] + ... + a[k-1] b[1], with what order k - 1 has made as the last terms: a processor need not wait for\n"
-  " * it to begin. */\n"
+  "\n/* s += a b. */\n"
+  "static inline void taylor_term(taylor_lanes *s, const LAG_REAL *a, const LAG_REAL *b) {\n"
+  "  TAYLOR_UNROLL\n"
+  "  for (int g = 0; g < TAYLOR_GROUP/TAYLOR_LANES; g++) s[g] += ((const taylor_lanes *)a)[g]*((const taylor_lanes *)b)[g];\n"
+  "}\n"
+  "\n/* s = a[1] b[k-1] + ... + a[k-1] b[1], with what order k - 1 has just made as the last terms. */\n"
   "static void taylor_sums(int k, taylor_work *w) {\n"
-  "  for (int i = 0; i < TAYLOR_SUMS; i += 4) {\n"
-  "    LAG_REAL s0 = LAG_C(0.0), s1 = s0, s2 = s0, s3 = s0;\n"
-  "    for (int j = 2; j < k - 1; j++) {\n"
-  "      const LAG_REAL *const a = w->a[j] + i, *const b = w->b[k - j] + i;\n"
-  "      s0 += a[0]*b[0];\n"
-  "      s1 += a[1]*b[1];\n"
-  "      s2 += a[2]*b[2];\n"
-  "      s3 += a[3]*b[3];\n"
-  "    }\n"
-  "    for (int n = 0, j = 1; n < 2 && j < k; n++, j = k > 2 ? k - 1 : k) {\n"
-  "      const LAG_REAL *const a = w->a[j] + i, *const b = w->b[k - j] + i;\n"
-  "      s0 += a[0]*b[0];\n"
-  "      s1 += a[1]*b[1];\n"
-  "      s2 += a[2]*b[2];\n"
-  "      s3 += a[3]*b[3];\n"
-  "    }\n"
-  "    w->s[i] = s0;\n"
-  "    w->s[i + 1] = s1;\n"
-  "    w->s[i + 2] = s2;\n"
-  "    w->s[i + 3] = s3;\n"
+  "  for (int i = 0; i < TAYLOR_SUMS; i += TAYLOR_GROUP) {\n"
+  "    taylor_lanes s[TAYLOR_GROUP/TAYLOR_LANES] = {{LAG_C(0.0)}}, *const out = (taylor_lanes *)(w->s + i);\n"
+  "    for (int j = 2; j < k - 1; j++) taylor_term(s, w->a[j] + i, w->b[k - j] + i);\n"
+  "    if (k > 2) taylor_term(s, w->a[k - 1] + i, w->b[1] + i);\n"
+  "    if (k > 1) taylor_term(s, w->a[1] + i, w->b[k - 1] + i);\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < TAYLOR_GROUP/TAYLOR_LANES; g++) out[g] = s[g];\n"
   "  }\n"
   "}\n";
 
@@ -48,32 +80,42 @@ typedef struct {
   const char *const *globals;
   Arena *a;
   StrBuf *out;
+  uint32_t group;      /* sums in a group */
+  uint32_t sums;       /* with what fills the last group */
 } Writer;
 
 static CStyle style_for(const Writer *w, const char *const *own, const char *const *written) {
   return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = w->globals, .factor = "lag_factor", .substitute = "lag_substitute"};
 }
 
-static uint32_t at_least(uint32_t n, uint32_t least) { return n > least ? n : least; }
+/* The size of groups that leaves the fewest columns empty; of those the largest. */
+static void choose_group(Writer *w) {
+  uint32_t n = w->s->sums ? w->s->sums : 1, least = UINT32_MAX;
+  for (uint32_t g = n <= LANES ? LANES : LEAST_GROUP; g <= MOST_GROUP; g += LANES) {
+    uint32_t whole = (n + g - 1) / g * g;
+    if (whole > least) continue;
+    w->group = g;
+    w->sums = least = whole;
+  }
+}
 
 static void work(const Writer *w) {
   const Series *s = w->s;
-  uint32_t whole = (s->sums + LANES - 1) / LANES * LANES;
-  sb_printf(w->out, "enum { TAYLOR_COLUMNS = %u, TAYLOR_SUMS = %u, TAYLOR_CONSTANTS = %u };\n", s->columns, at_least(whole, LANES), at_least(s->constants, 1));
+  uint32_t width = (2 * s->nq + s->nz + LANES - 1) / LANES * LANES;
+  sb_printf(w->out, "enum { TAYLOR_COLUMNS = %u, TAYLOR_WIDTH = %u, TAYLOR_SUMS = %u, TAYLOR_GROUP = %u, TAYLOR_CONSTANTS = %u };\n", s->columns, width, w->sums, w->group,
+            s->constants ? s->constants : 1);
   sb_puts(w->out, "typedef struct {\n"
-    "  LAG_REAL x[LAG_TAYLOR_ORDER + 1][TAYLOR_COLUMNS]; /* by order: q, v, z, v', z' */\n"
-    "  LAG_REAL a[LAG_TAYLOR_ORDER + 1][TAYLOR_SUMS];    /* by order: what sums are made of */\n"
-    "  LAG_REAL b[LAG_TAYLOR_ORDER + 1][TAYLOR_SUMS];\n"
+    "  LAG_REAL a[LAG_TAYLOR_ORDER][TAYLOR_SUMS]; /* by order: what sums are made of  */\n"
+    "  LAG_REAL b[LAG_TAYLOR_ORDER][TAYLOR_SUMS];\n"
     "  LAG_REAL s[TAYLOR_SUMS];\n"
-    "  LAG_REAL c[TAYLOR_CONSTANTS];                     /* what order 0 leaves for all others */\n");
+    "  LAG_REAL c[TAYLOR_CONSTANTS];              /* what order 0 leaves for all others */\n");
   if (s->room) sb_printf(w->out, "  LAG_REAL m[%u];\n", s->room);
   sb_puts(w->out, "} taylor_work;\n");
 }
 
 static void copy(const Writer *w, const char *name, uint32_t n, uint32_t from) {
-  if (n == 1) sb_printf(w->out, "  x[%u] = %s[0];\n", from, name);
-  else if (n && from) sb_printf(w->out, "  for (int i = 0; i < %u; i++) x[%u + i] = %s[i];\n", n, from, name);
-  else if (n) sb_printf(w->out, "  for (int i = 0; i < %u; i++) x[i] = %s[i];\n", n, name);
+  for (uint32_t i = 0; i < n && n < LOOP_FROM; i++) sb_printf(w->out, "  x[%u] = %s[%u];\n", from + i, name, i);
+  if (n >= LOOP_FROM) sb_printf(w->out, from ? "  for (int i = 0; i < %u; i++) x[i + %u] = %s[i];\n" : "  for (int i = 0; i < %u; i++) x[i%.0u] = %s[i];\n", n, from, name);
 }
 
 static void first(const Writer *w) {
@@ -83,10 +125,9 @@ static void first(const Writer *w) {
   CStyle st = style_for(w, own, written);
   sb_printf(w->out, "\n/* Order 0: %s. */\n", ops_text(s->first, w->a));
   sb_puts(w->out, "static int taylor_first(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,\n"
-                  "    const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *work) {\n"
-                  "  taylor_work *const w_ = (taylor_work *)(void *)work;\n"
-                  "  LAG_REAL *const x = w_->x[0], *const c = w_->c;\n");
-  if (s->room) sb_puts(w->out, "  LAG_REAL *const w = w_->m;\n");
+                  "    const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *x, LAG_REAL *work) {\n"
+                  "  LAG_REAL *const c = ((taylor_work *)(void *)work)->c;\n");
+  if (s->room) sb_puts(w->out, "  LAG_REAL *const w = ((taylor_work *)(void *)work)->m;\n");
   sb_puts(w->out, "  (void)t; (void)q; (void)v; (void)z; (void)p; (void)u; (void)follows; (void)c;\n");
   copy(w, "q", s->nq, 0);
   copy(w, "v", s->nq, s->nq);
@@ -96,43 +137,51 @@ static void first(const Writer *w) {
 }
 
 static void next(const Writer *w) {
-  static const char *const own[] = {"x", "a", "b", "s", "c", "k", "per_k", "w", NULL}, *const written[] = {"x", "a", "b"};
+  static const char *const own[] = {"x", "x1", "a", "b", "s", "c", "k", "per_k", "up", "w", NULL};
+  static const char *const written[] = {"x", "x1", "a", "b"};
   const Series *s = w->s;
   CStyle st = style_for(w, own, written);
+  st.paired = 1u << 2 | 1u << 3;
   sb_printf(w->out, "\n/* Order k > 0, besides the sums: %s. Each name stands for coefficient k of its value. */\n", ops_text(s->next, w->a));
-  sb_puts(w->out, "static void taylor_next(LAG_REAL k, LAG_REAL per_k, const LAG_REAL *s, const LAG_REAL *c, LAG_REAL *x, LAG_REAL *a,\n"
-                  "    LAG_REAL *b");
+  sb_puts(w->out, "static void taylor_next(LAG_REAL k, LAG_REAL per_k, LAG_REAL up, const LAG_REAL *s, const LAG_REAL *c, LAG_REAL *x,\n"
+                  "    LAG_REAL *x1, LAG_REAL *a, LAG_REAL *b");
   sb_puts(w->out, s->room ? ", LAG_REAL *w) {\n" : ") {\n");
-  sb_puts(w->out, "  (void)k; (void)per_k; (void)s; (void)c; (void)a; (void)b;\n");
+  sb_puts(w->out, "  (void)k; (void)per_k; (void)up; (void)s; (void)c; (void)a; (void)b;\n");
   cwrite_body(s->next, &st, w->a, w->out);
   sb_puts(w->out, "}\n");
 }
 
-/* x[to + i] of order k := r times x[from + i] of order k - 1, for i < n. */
-static void rate(const Writer *w, uint32_t to, uint32_t from, uint32_t n, const char *comment) {
-  if (!n) return;
-  sb_printf(w->out, "    for (int i = %u; i < %u; i++) x[i] = r*was[i + %u]; /* %s */\n", to, to + n, from - to, comment);
+/* x[to + i] of order 1 := T times x[from + i] of order 0, for i < n. */
+static void rate(const Writer *w, uint32_t to, uint32_t from, uint32_t n) {
+  if (n) sb_printf(w->out, "  for (int i = %u; i < %u; i++) x[TAYLOR_COLUMNS + i] = T*x[i + %u];\n", to, to + n, from - to);
 }
 
 static void rest(const Writer *w) {
   const Series *s = w->s;
   uint32_t nq = s->nq, nz = s->nz, t = 3 * nq + 2 * nz;
   sb_puts(w->out, "\n/* Orders 1 to n. */\n"
-                  "static void taylor_rest(int n, LAG_REAL T, LAG_REAL *work) {\n"
+                  "static void taylor_rest(int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *work) {\n"
                   "  taylor_work *const w = (taylor_work *)(void *)work;\n"
-                  "  for (int k = 1; k <= n; k++) {\n"
-                  "    LAG_REAL *const x = w->x[k], *const was = w->x[k - 1];\n"
-                  "    const LAG_REAL per_k = LAG_C(1.0)/(LAG_REAL)k, r = T*per_k;\n");
-  rate(w, 0, nq, nq, "q' = v");
-  rate(w, nq, 2 * nq + nz, nq + nz, nz ? "v', z'" : "v'");
-  if (s->uses_time) sb_printf(w->out, "    x[%u] = k == 1 ? T : LAG_C(0.0); /* t */\n", t);
-  sb_puts(w->out, "    if (k == n) return;\n");
+                  "  LAG_REAL per_k = LAG_C(1.0);\n");
+  rate(w, 0, nq, nq);
+  rate(w, nq, 2 * nq + nz, nq + nz);
+  if (s->uses_time) sb_printf(w->out, "  x[TAYLOR_COLUMNS + %u] = T;\n", t);
+  if (s->sums % w->group)
+    sb_printf(w->out, "  for (int k = 1; k < n; k++) /* what fills the last group */\n"
+                      "    for (int i = %u; i < TAYLOR_SUMS; i++) w->a[k][i] = w->b[k][i] = LAG_C(0.0);\n", s->sums);
+  sb_puts(w->out, "  for (int k = 1; k < n; k++) {\n"
+                  "    LAG_REAL *const y = x + k*TAYLOR_COLUMNS, *const z = y + TAYLOR_COLUMNS;\n"
+                  "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_REAL)(k + 1);\n");
   if (s->sums) sb_puts(w->out, "    taylor_sums(k, w);\n");
-  sb_printf(w->out, "    taylor_next((LAG_REAL)k, per_k, w->s, w->c, x, w->a[k], w->b[k]%s);\n  }\n}\n", s->room ? ", w->m" : "");
+  sb_printf(w->out, "    taylor_next((LAG_REAL)k, per_k, T*per_next, w->s, w->c, y, z, w->a[k], w->b[k]%s);\n",
+            s->room ? ", w->m" : "");
+  if (s->uses_time) sb_printf(w->out, "    z[%u] = LAG_C(0.0);\n", t);
+  sb_puts(w->out, "    per_k = per_next;\n  }\n}\n");
 }
 
 void emit_taylor(const Series *s, const char *const *globals, StrBuf *out) {
-  Writer w = {s, globals, s->first->arena, out};
+  Writer w = {.s = s, .globals = globals, .a = s->first->arena, .out = out};
+  choose_group(&w);
   sb_puts(out, head);
   work(&w);
   if (s->room) csupport_factor("LAG", "lag", out);
@@ -140,7 +189,10 @@ void emit_taylor(const Series *s, const char *const *globals, StrBuf *out) {
   if (s->sums) sb_puts(out, sums);
   next(&w);
   rest(&w);
+  sb_puts(out, at);
   sb_puts(out, "\nstatic const lag_taylor taylor = {\n"
-    "  .order = LAG_TAYLOR_ORDER, .columns = TAYLOR_COLUMNS, .nw = (int)(sizeof(taylor_work)/sizeof(LAG_REAL)),\n"
-    "  .first = taylor_first, .rest = taylor_rest,\n};\n");
+    "  .order = LAG_TAYLOR_ORDER, .columns = TAYLOR_COLUMNS, .width = TAYLOR_WIDTH, .nw = (int)(sizeof(taylor_work)/sizeof(LAG_REAL)),\n");
+  OpCount c = prog_count(s->first);
+  sb_printf(out, "  .cost_first = %u, .cost_next = %u, .sums = %u,\n", ops_total(c) + CALL*c.fn, ops_total(prog_count(s->next)), s->sums);
+  sb_puts(out, "  .first = taylor_first, .rest = taylor_rest, .at = taylor_at,\n};\n");
 }

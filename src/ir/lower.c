@@ -301,14 +301,18 @@ IrSystem lower_system(const Eqns *e) {
   if (e->n) sys.blocks = lower_blocks(&l, &sys.nblocks);
   lower_roots(&l, e->flow, m->states.n);
   Slot *flow = ARENA_ARRAY(m->arena, Slot, m->states.n + 1);
-  Name *rates = ARENA_ARRAY(m->arena, Name, e->n + m->states.n + 1);
-  for (uint32_t i = 0; i < e->n; i++) rates[i] = text_of_symbol(&l, m->coords.at[i].a);
+  Name *rates = ARENA_ARRAY(m->arena, Name, e->n + m->states.n + 1), *velocities = ARENA_ARRAY(m->arena, Name, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) {
+    rates[i] = text_of_symbol(&l, m->coords.at[i].a);
+    velocities[i] = text_of_symbol(&l, m->coords.at[i].v);
+  }
   for (uint32_t i = 0; i < m->states.n; i++) {
     flow[i] = lower_slot(&l, e->flow[i]);
     rates[e->n + i] = text_of_symbol(&l, m->states.at[i].rate);
   }
   sys.flow = flow;
   sys.rates = rates;
+  sys.velocities = velocities;
   return sys;
 }
 

@@ -40,10 +40,10 @@ typedef enum {
 } IrOp;
 
 /* The arrays that a function reads. The second line is of Taylor coefficients (ir/series.h): whether an input is free of
- * a constant, coefficients k, sums over those below k, what order 0 leaves for all others; k and 1/k are no arrays. */
+ * a constant, coefficients k, sums over those below k, what order 0 leaves for all others; k, 1/k and T/(k + 1) are no arrays. */
 typedef enum {
   ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U,
-  ARR_FREE, ARR_COEF, ARR_SUMS, ARR_STEP, ARR_ORDER, ARR_PER_ORDER, ARR_COUNT
+  ARR_FREE, ARR_COEF, ARR_SUMS, ARR_STEP, ARR_ORDER, ARR_PER_ORDER, ARR_UP, ARR_COUNT
 } IrArray;
 
 /* Whether an array is a number, not to be indexed. */
@@ -105,6 +105,17 @@ int ir_is_condition(IrOp op);
 /* Divisions by one value that occur more than once become products with its reciprocal; what no
  * store needs goes. Keeps the order of what stays. Needs nothing, breaks nothing. */
 Prog *prog_tidy(const Prog *p);
+
+/* The instruction with its operands, and the solve that it names, as they are in the program `to`; map: the slots there. */
+Ins prog_moved(Prog *to, const Prog *from, const Slot *map, Ins i);
+
+/* How many instructions, stores and solves take each value: [p->ins.n]. */
+uint32_t *prog_uses(const Prog *p);
+
+/* Sums of several terms are added up in the order in which the terms can be there, earliest first: what comes late passes
+ * through few additions. ready[p->ins.n]: when the value of each load can be there, in cycles of a processor. Changes the
+ * order of rounding; drops names of parts of sums. */
+Prog *prog_balance(const Prog *p, const uint32_t *ready);
 
 /* Checks that operands precede their use, conditions feed only selections, stores are in order.
  * NULL, or what is wrong. */

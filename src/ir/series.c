@@ -2,6 +2,8 @@
 
 #include "ir/series_impl.h"
 
+enum { INVERSE_MAX = 3 };
+
 /* --- values --- */
 
 Val series_open(Maker *m, Slot zero) {
@@ -71,18 +73,29 @@ static Val base_of(Maker *m, Val v, Slot *factor) {
   return x->base;
 }
 
+static Slot load(Maker *m, IrArray array, uint32_t index, Name name) {
+  return prog_ins(m->next, (Ins){.op = IR_LOAD, .array = array, .index = index, .name = name});
+}
+
 Slot series_sum(Maker *m, Val a, Val b) {
   if (!m->values.at[a].varies || !m->values.at[b].varies) return 0;
   Slot factor = 0;
   a = base_of(m, a, &factor);
   b = base_of(m, b, &factor);
-  Slot s = prog_ins(m->next, (Ins){.op = IR_LOAD, .array = ARR_SUMS, .index = find_pair(m, a, b), .name = "sum"});
+  Slot s = load(m, ARR_SUMS, find_pair(m, a, b), "s");
   return factor ? series_op(m, IR_MUL, series_constant(m, factor), s) : s;
 }
 
 Slot series_product(Maker *m, Val a, Val b) {
-  Slot sum = series_sum(m, a, b), left = series_op(m, IR_MUL, series_zero(m, a), m->values.at[b].coef);
-  Slot right = a == b ? left : series_op(m, IR_MUL, series_zero(m, b), m->values.at[a].coef), lead = series_op(m, IR_ADD, left, right);
+  Slot sum = series_sum(m, a, b), a0 = m->values.at[a].zero, lead;
+  if (a == b) {
+    Slot twice = prog_op(m->first, IR_ADD, a0, a0);
+    lead = series_op(m, IR_MUL, series_constant(m, twice), m->values.at[a].coef);
+  } else {
+    Slot left = series_op(m, IR_MUL, series_constant(m, a0), m->values.at[b].coef);
+    Slot right = series_op(m, IR_MUL, series_zero(m, b), m->values.at[a].coef);
+    lead = series_op(m, IR_ADD, left, right);
+  }
   return series_op(m, IR_ADD, sum, lead);
 }
 
@@ -131,7 +144,8 @@ static int64_t column_of(Model *w, const Ins *i) {
     case ARR_V: return sys->nq + i->index;
     case ARR_Z: return 2 * sys->nq + i->index;
     case ARR_T: w->out->uses_time = 1; return 3 * sys->nq + 2 * sys->nz;
-    case ARR_P: case ARR_U: case ARR_FREE: case ARR_COEF: case ARR_SUMS: case ARR_STEP: case ARR_ORDER: case ARR_PER_ORDER: case ARR_COUNT: break;
+    case ARR_P: case ARR_U: case ARR_FREE: case ARR_COEF: case ARR_SUMS:
+    case ARR_STEP: case ARR_ORDER: case ARR_PER_ORDER: case ARR_UP: case ARR_COUNT: break;
   }
   return -1;
 }
@@ -173,8 +187,24 @@ static const Slot *constants_of(Model *w, const Slot *s, uint32_t n) {
   return to;
 }
 
+/* The inverse of a small block, as `next` sees it: where M is full it costs as many operations as its factors do, and they
+ * depend less on each other. It is as accurate: a definite matrix loses no digits by bad scales. */
+static Factored inverse_of(Model *w, const Factored *fac) {
+  uint32_t n = fac->n;
+  Slot *inverse = ARENA_ARRAY(w->m.arena, Slot, n * n), *unit = ARENA_ARRAY(w->m.arena, Slot, n), *column = ARENA_ARRAY(w->m.arena, Slot, n);
+  for (uint32_t j = 0; j < n; j++) {
+    for (uint32_t i = 0; i < n; i++) unit[i] = i == j ? prog_num(w->m.first, num_int(1)) : 0;
+    factor_solve(w->m.first, fac, unit, column);
+    for (uint32_t i = 0; i < n; i++) inverse[i * n + j] = i <= j ? column[i] : inverse[j * n + i];
+  }
+  for (uint32_t j = 0; j < n; j++)
+    for (uint32_t i = j + 1; i < n; i++) inverse[i * n + j] = inverse[j * n + i];
+  return (Factored){.kind = FACTOR_INVERSE, .n = n, .L = constants_of(w, inverse, n * n)};
+}
+
 /* What `first` has factored, as `next` sees it. */
 static Factored seen_from_next(Model *w, const Factored *fac) {
+  if (fac->kind == FACTOR_STRAIGHT && fac->n <= INVERSE_MAX) return inverse_of(w, fac);
   Factored seen = *fac;
   uint32_t n = fac->n, nd = factor_divisors(fac);
   Slot *inverse = ARENA_ARRAY(w->m.arena, Slot, nd + 1), one = prog_num(w->m.first, num_int(1));
@@ -234,17 +264,46 @@ static void solve_all(Model *w) {
   for (uint32_t k = 0; k < w->sys->nblocks; k++) solve_block(w, &w->sys->blocks[k]);
 }
 
+/* x[k+1] of q, v, z: T/(k+1) times their rates. */
+static void store_state(Model *w, uint32_t column, Slot rate) {
+  Slot up = prog_ins(w->m.next, (Ins){.op = IR_LOAD, .array = ARR_UP, .name = "up"});
+  prog_store(w->m.next, 1, column, series_op(&w->m, IR_MUL, up, rate), "");
+}
+
 static void store_rest(Model *w) {
   Maker *m = &w->m;
-  for (uint32_t i = 0; i < w->sys->nz; i++) {
+  uint32_t nq = w->sys->nq, nz = w->sys->nz;
+  for (uint32_t i = 0; i < nz; i++) {
     Slot s = w->sys->flow[i];
-    store_rate(w, w->sys->nq + i, w->zero[s], m->values.at[w->value[s]].coef);
+    store_rate(w, nq + i, w->zero[s], m->values.at[w->value[s]].coef);
   }
-  for (uint32_t i = 0; i < m->pairs.n; i++) {
-    prog_store(m->next, 1, i, m->values.at[m->pairs.at[i].a].coef, "");
-    prog_store(m->next, 2, i, m->values.at[m->pairs.at[i].b].coef, "");
-  }
+  for (uint32_t i = 0; i < nq; i++)
+    store_state(w, i, prog_ins(m->next, (Ins){.op = IR_LOAD, .array = ARR_COEF, .index = nq + i, .name = w->sys->velocities[i]}));
+  for (uint32_t i = 0; i < nq; i++) store_state(w, nq + i, m->values.at[w->second[i]].coef);
+  for (uint32_t i = 0; i < nz; i++) store_state(w, 2 * nq + i, m->values.at[w->value[w->sys->flow[i]]].coef);
+  for (uint32_t i = 0; i < m->pairs.n; i++) prog_store(m->next, 2, i, m->values.at[m->pairs.at[i].a].coef, "");
+  for (uint32_t i = 0; i < m->pairs.n; i++) prog_store(m->next, 3, i, m->values.at[m->pairs.at[i].b].coef, "");
   for (uint32_t i = 0; i < m->constants.n; i++) prog_store(m->first, 1, i, m->constants.at[i], "");
+}
+
+static int is_second(const Model *w, Val v) {
+  for (uint32_t i = 0; i < w->sys->nq; i++)
+    if (w->second[i] == v) return 1;
+  return 0;
+}
+
+/* When the loads of `next` are there, in cycles of a processor: the rates of the order before, and v and z, which are made of
+ * them, come last; all else was there one order before. */
+static const uint32_t *when_ready(const Model *w, const Prog *next) {
+  enum { ORDER = 30, PRODUCT = 4 };
+  uint32_t *ready = ARENA_ARRAY(next->arena, uint32_t, next->ins.n);
+  for (Slot s = 1; s < next->ins.n; s++) {
+    const Ins *i = &next->ins.at[s];
+    if (i->op != IR_LOAD) continue;
+    if (i->array == ARR_COEF && i->index >= w->sys->nq) ready[s] = ORDER + PRODUCT;
+    if (i->array == ARR_SUMS && (is_second(w, w->m.pairs.at[i->index].a) || is_second(w, w->m.pairs.at[i->index].b))) ready[s] = ORDER;
+  }
+  return ready;
 }
 
 Series *series_new(const IrSystem *sys, const char **why) {
@@ -267,8 +326,9 @@ Series *series_new(const IrSystem *sys, const char **why) {
   solve_all(&w);
   store_rest(&w);
   out->first = prog_tidy(w.m.first);
-  out->next = prog_tidy(w.m.next);
-  out->columns = 3 * sys->nq + 2 * sys->nz + (out->uses_time ? 1 : 0);
+  const Prog *next = prog_tidy(w.m.next);
+  out->next = prog_balance(next, when_ready(&w, next));
+  out->columns = (3 * sys->nq + 2 * sys->nz + (out->uses_time ? 1 : 0) + 3) / 4 * 4;
   out->sums = w.m.pairs.n;
   out->constants = w.m.constants.n;
   return out;

@@ -25,15 +25,16 @@ typedef struct {
   const Block *blocks;
   uint32_t nblocks, nq, nz;
   const Slot *flow;      /* [nz] */
-  const Name *rates;     /* [nq + nz] names of q'' and z' */
+  const Name *velocities, *rates; /* [nq] and [nq + nz]: names of q', and of q'' and z' */
 } IrSystem;
 
 /* Columns of the coefficients x[k][...]: q, v, z, then q'' and z', then t. */
 typedef struct {
   const Prog *first;     /* order 0. out 0: x[0], its q'' and z'; out 1: c, what `next` needs of it */
-  const Prog *next;      /* order k. Reads x[k] of q, v, z, t, the sums s and c. out 0: x[k], its q'' and z'; out 1, 2: a[k], b[k] */
+  const Prog *next;      /* order k. Reads x[k] of q, v, z, t, the sums s and c. out 0: x[k], its q'' and z'; out 1: x[k+1], its
+                            q, v and z; out 2, 3: a[k], b[k] */
   uint32_t nq, nz;
-  uint32_t columns;      /* of x */
+  uint32_t columns;      /* of x: a multiple of 4 */
   uint32_t sums;         /* pairs: columns of a and b */
   uint32_t constants;    /* of c */
   uint32_t room;         /* for blocks that are factored by a loop, in reals: see factored_room */

@@ -100,7 +100,7 @@ uint32_t factor_divisors(const Factored *f) {
   switch (f->kind) {
     case FACTOR_ONE: case FACTOR_PAIR: return 1;
     case FACTOR_STRAIGHT: return f->n;
-    case FACTOR_LOOP: break;
+    case FACTOR_LOOP: case FACTOR_INVERSE: break;
   }
   return 0;
 }
@@ -135,11 +135,22 @@ static void solve_loop(Prog *p, const Factored *fac, const Slot *f, Slot *x) {
   for (uint32_t i = 0; i < fac->n; i++) x[i] = prog_ins(p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
 
+static void solve_inverse(Prog *p, const Factored *fac, const Slot *f, Slot *x) {
+  for (uint32_t i = 0; i < fac->n; i++) {
+    x[i] = 0;
+    for (uint32_t j = 0; j < fac->n; j++) {
+      Slot product = op(p, IR_MUL, fac->L[i * fac->n + j], f[j]);
+      x[i] = op(p, IR_ADD, x[i], product);
+    }
+  }
+}
+
 void factor_solve(Prog *p, const Factored *fac, const Slot *f, Slot *x) {
   switch (fac->kind) {
     case FACTOR_ONE: x[0] = divided(p, fac, f[0], 0); return;
     case FACTOR_STRAIGHT: solve_straight(p, fac, f, x); return;
     case FACTOR_PAIR: solve_pair(p, fac, f, x); return;
     case FACTOR_LOOP: solve_loop(p, fac, f, x); return;
+    case FACTOR_INVERSE: solve_inverse(p, fac, f, x); return;
   }
 }

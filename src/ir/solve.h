@@ -18,13 +18,14 @@ typedef struct {
   uint32_t of;             /* number of coordinates of the model: one coordinate needs no numbers in names */
 } Block;
 
-typedef enum { FACTOR_ONE, FACTOR_STRAIGHT, FACTOR_PAIR, FACTOR_LOOP } FactorKind;
+typedef enum { FACTOR_ONE, FACTOR_STRAIGHT, FACTOR_PAIR, FACTOR_LOOP, FACTOR_INVERSE } FactorKind;
 
 /* A factored block. Where `inverse` is set, it holds the reciprocals of `divisor`. */
 typedef struct {
   FactorKind kind;
   uint32_t n;
-  const Slot *L;       /* STRAIGHT: [n*n] unit lower factor; PAIR: m11, m12, m22; LOOP: M [n*n], or NULL: as factored before */
+  const Slot *L;       /* STRAIGHT: [n*n] unit lower factor; PAIR: m11, m12, m22; LOOP: M [n*n], or NULL: as factored before;
+                          INVERSE: that of M [n*n] */
   const Slot *divisor; /* ONE: M; STRAIGHT: D [n]; PAIR: det */
   const Slot *inverse; /* the same number of slots, or NULL */
   uint32_t place;      /* LOOP: where the factored matrix stands in the function's work space */
