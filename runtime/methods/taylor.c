@@ -3,8 +3,8 @@
  * the end, which is order 0 of the next series; M is factored once a step.
  *
  * Source of the recurrences: ir/series.h of the compiler. Of the step: A. Jorba, M. Zou, Experimental Mathematics 14
- * (2005) 99, DOI 10.1080/10586458.2005.10128904, section 3, made robust. With x_k the coefficient of order k and |x| =
- * max |x_i| / (|y_i| + atol/rtol), theirs is h = c min(|x_(p-1)|^(-1/(p-1)), |x_p|^(-1/p)): the root test of the radius of
+ * (2005) 99, DOI 10.1080/10586458.2005.10128904, section 3, made robust. With x_k the coefficient of order k, T about the
+ * last step, and |x| = max |x_i| / (|y_i| + |T y_i'| + atol/rtol), so that a component may pass through zero, theirs is h = c min(|x_(p-1)|^(-1/(p-1)), |x_p|^(-1/p)): the root test of the radius of
  * convergence. Motions with symmetries have series with gaps: a pendulum that starts from rest at a right angle has only the
  * coefficients 2, 6, 10, ... of its angle. So here
  *  1. the root test is made with the last WINDOW coefficients, r = max_k |x_k|^(1/k), and the step is such that a series
@@ -46,6 +46,7 @@ typedef struct Taylor {
   double now;       /* 0 or 1: which series the next step goes along; the other one is that of the last step */
   double t0, dt;    /* the last step */
   double unit[2];   /* the unit of time of each series, with the sign of the direction */
+  double noise;     /* the defect that was found to be rounding, in tolerances; forgotten by a tenth a step */
   double t_begin, begun;
   double x[];
 } Taylor;
@@ -206,7 +207,7 @@ static double allowed(Taylor *w, lag_problem *pb, const double *y)
   double *scale = array(w, pb, SCALE), root = -HUGE_VAL;
 
   for (int i = 0; i < n; i++) {
-    scale[i] = 1 / (fabs(y[i]) + w->floor);
+    scale[i] = 1 / (fabs(y[i]) + fabs(x[columns + i]) + w->floor);
   }
   for (int k = order; k > order - WINDOW && k > 0; k--) {
     const double *row = x + k * columns;
@@ -302,8 +303,11 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
       return lag_step_refused(pb, rc, tb);
     }
     double error = rc ? NAN : error_of(w, pb, dt);
-    int rounding = error > last / 2; /* a shorter step, and the same defect */
-    if (error <= 1 || rounding || (w->fixed != 0.0 && rc == 0)) {
+    if (error > last / 2) { /* a shorter step, and the same defect: it is rounding */
+      w->noise = error;
+    }
+    if (error <= 1 || error <= 2 * w->noise || (w->fixed != 0.0 && rc == 0)) {
+      w->noise *= 0.9;
       accept(w, pb, t, y, dt, tb);
       return LAG_OK;
     }
