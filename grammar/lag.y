@@ -157,27 +157,27 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
 coords: coord[x]               { $$ = stmts_one($x); }
       | coords[l] "," coord[x] { $$ = stmts_add($l, $x); }
       ;
-coord: IDENT[n] dims[d] type[t] unit[u] periodic[p] { $$ = stmt_coord(ast, @$, $n, $d, $t, $u, $p); };
+coord: IDENT[n] dims[d] type[t] unit[u] periodic[p] { $$ = stmt_coord(ast, STMT_COORD, @$, $n, $d, $t, $u, $p); };
 
 params: param[x]               { $$ = stmts_one($x); }
       | params[l] "," param[x] { $$ = stmts_add($l, $x); }
       ;
-param: IDENT[n] dims[d] unit[u] "=" arith[v] sign[s] { $$ = stmt_param(ast, @$, $n, $d, $u, $v, $s); };
+param: IDENT[n] dims[d] type[t] unit[u] "=" arith[v] sign[s] { $$ = stmt_param(ast, @$, $n, $d, $t, $u, $v, $s); };
 
 consts: const[x]               { $$ = stmts_one($x); }
       | consts[l] "," const[x] { $$ = stmts_add($l, $x); }
       ;
-const: IDENT[n] "=" arith[v] { $$ = stmt_define(ast, STMT_CONST, @$, $n, NONE_LIST, NONE_UNIT, $v); };
+const: IDENT[n] unit[u] "=" arith[v] { $$ = stmt_valued(ast, STMT_CONST, @$, $n, $u, $v); };
 
 inputs: input_[x]               { $$ = stmts_one($x); }
       | inputs[l] "," input_[x] { $$ = stmts_add($l, $x); }
       ;
-input_: IDENT[n] unit[u] "=" value[v] { $$ = stmt_define(ast, STMT_INPUT, @$, $n, NONE_LIST, $u, $v); };
+input_: IDENT[n] unit[u] "=" value[v] { $$ = stmt_valued(ast, STMT_INPUT, @$, $n, $u, $v); };
 
 states: state[x]               { $$ = stmts_one($x); }
       | states[l] "," state[x] { $$ = stmts_add($l, $x); }
       ;
-state: IDENT[n] dims[d] unit[u] { $$ = stmt_define(ast, STMT_STATE, @$, $n, $d, $u, 0); };
+state: IDENT[n] dims[d] type[t] unit[u] { $$ = stmt_coord(ast, STMT_STATE, @$, $n, $d, $t, $u, 0); };
 
 lets: let[x]             { $$ = stmts_one($x); }
     | lets[l] "," let[x] { $$ = stmts_add($l, $x); }

@@ -110,7 +110,7 @@ static Eqns *derive_asked(Compiler *c, const char *scene) {
 }
 
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
-static IrUnit *lower_scene(Compiler *c, const Eqns *e) {
+static IrUnit *lower_scene(Compiler *c, Eqns *e) {
   IrUnit *u = unit_new(e, c->o.file);
   unit_want(u, e, wants_of(e, &c->o));
   unit_add_scene(u, e);
@@ -192,13 +192,25 @@ static int lower_all(Compiler *c, Units *units) {
   return 1;
 }
 
+typedef VEC(SourceText) Texts;
+
+/* A program from these texts at `output`, or in the cache (NULL). */
+static int make_program(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path) {
+  const char *error = NULL;
+  *path = output ? output : toolchain_cached(c->arena, tools, texts->at, texts->n);
+  if (!output && file_runs(*path)) return STATUS_OK;
+  if (!toolchain_build(c->arena, tools, texts->at, texts->n, *path, &error)) return fail_usage(error);
+  return STATUS_OK;
+}
+
 static int make_simulator(Compiler *c, const char *output, const char **path) {
   Units units = {0};
   if (!lower_all(c, &units)) return STATUS_MODEL;
   Toolchain tools;
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
-  VEC(SourceText) texts = {0};
+  if (c->o.command == CMD_MODES) tools.optimise = "-O0";
+  Texts texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
   for (uint32_t i = 0; i < units.n; i++) {
     names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units.at[i]->name), i);
@@ -209,10 +221,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   StrBuf b = strbuf(c->arena);
   emit_program((const IrUnit *const *)units.at, names, units.n, tools.gsl, &b);
   vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
-  *path = output ? output : toolchain_cached(c->arena, &tools, texts.at, texts.n);
-  if (!output && file_runs(*path)) return STATUS_OK;
-  if (!toolchain_build(c->arena, &tools, texts.at, texts.n, *path, &error)) return fail_usage(error);
-  return STATUS_OK;
+  return make_program(c, &tools, &texts, output, path);
 }
 
 static int do_build(Compiler *c) {
@@ -233,6 +242,22 @@ static int do_run(Compiler *c) {
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
 }
 
+/* The runtime lists its own methods: a program without a model asks it. */
+static int do_methods(Compiler *c) {
+  Toolchain tools;
+  const char *path, *error = NULL;
+  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
+  StrBuf b = strbuf(c->arena);
+  emit_bare_program(tools.gsl, &b);
+  Texts texts = {0};
+  vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
+  int status = make_program(c, &tools, &texts, NULL, &path);
+  if (status != STATUS_OK) return status;
+  char self[] = "lagc methods", option[] = "--method", help[] = "help", *argv[] = {self, option, help, NULL};
+  execv(path, argv);
+  return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
+}
+
 /* An expectation is about the model without effects, or, inside an effect, with that effect and what
  * it requires: scenes have no part in it. */
 static void check_expects(Compiler *c, ExpectResults *results) {
@@ -249,21 +274,45 @@ static const char *effects_text(Compiler *c, const Model *m) {
   return sb_text(&b);
 }
 
+typedef VEC(FoundUnit) FoundUnits;
+
+/* The units that a scene's model found, those that are new. */
+static void collect_units(Compiler *c, const Model *m, FoundUnits *all) {
+  for (uint32_t i = 0; i < m->found.n; i++) {
+    FoundUnit u = m->found.at[i];
+    uint32_t k = 0;
+    while (k < all->n && (all->at[k].name != u.name || strcmp(all->at[k].unit, u.unit) != 0)) k++;
+    if (k == all->n) vec_push(c->arena, all, u);
+  }
+}
+
+static void list_units(const FoundUnits *all, StrBuf *out) {
+  for (uint32_t i = 0; i < all->n; i++) sb_printf(out, "%s%s [%s]", i ? ", " : "units found: ", all->at[i].name, all->at[i].unit);
+  if (all->n) sb_putc(out, '\n');
+}
+
 static int do_check(Compiler *c) {
   SceneList scenes = model_scenes(c->ast);
   StrBuf out = strbuf(c->arena);
+  FoundUnits found = {0};
   ExpectResults results = {0};
   for (uint32_t i = 0; i < scenes.n; i++) {
     if (c->o.scene && strcmp(c->o.scene, scenes.at[i]) != 0) continue;
     Eqns *e = derive_scene(c, scenes.at[i]);
     if (!e) continue;
     if (!out.n) show_facts(e, &out);
+    collect_units(c, e->m, &found);
     sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], effects_text(c, e->m));
   }
   if (c->o.scene && !out.n) derive_scene(c, c->o.scene); /* says that there is no such scene */
   EffectList unused = model_unused_effects(c->ast);
-  for (uint32_t i = 0; i < unused.n && !c->o.scene; i++)
-    if (derive_with(c, NULL, unused.at[i])) sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);
+  for (uint32_t i = 0; i < unused.n && !c->o.scene; i++) {
+    Eqns *e = derive_with(c, NULL, unused.at[i]);
+    if (!e) continue;
+    collect_units(c, e->m, &found);
+    sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);
+  }
+  list_units(&found, &out);
   if (c->diags->errors) return STATUS_MODEL; /* expectations of a wrong model say nothing */
   check_expects(c, &results);
   expects_print(&results, c->sources, &out);
@@ -284,8 +333,8 @@ static int do_command(Compiler *c) {
     case CMD_EMIT: return do_emit(c);
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
-    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: return do_run(c);
-    case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;
+    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: return do_run(c);
+    case CMD_METHODS: case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;
   }
   return STATUS_USAGE;
 }
@@ -307,6 +356,7 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   c->argv0 = argv[0];
   if (!options_read(c->arena, argc, argv, &c->o, &error)) return fail_usage(error);
   if (c->o.command == CMD_HELP) return do_help(c);
+  if (c->o.command == CMD_METHODS) return do_methods(c);
   if (c->o.command == CMD_VERSION) {
     puts("lagc " LAGC_VERSION);
     return fflush(stdout) == 0 ? STATUS_OK : fail_usage("cannot write standard output");

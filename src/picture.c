@@ -172,11 +172,13 @@ int picture_prepare(Picture *p, Ast *ast, const Options *o, const char **error) 
   Maker k = {p, ast, o, ast->arena};
   int ok = 1;
   p->scene = o->scene ? intern(ast->names, o->scene) : NULL;
-  const char *self = o->command == CMD_PLOT ? "lagc plot" : o->command == CMD_ANIMATE ? "lagc animate" : "lagc run";
+  const char *self = o->command == CMD_PLOT ? "lagc plot" : o->command == CMD_ANIMATE ? "lagc animate"
+                   : o->command == CMD_MODES ? "lagc modes" : "lagc run";
   argument(&k, self, NULL); /* what its messages begin with */
   for (uint32_t i = 0; i < o->observe.n; i++) ok &= ask(&k, "--observe", o->observe.at[i]) != NULL;
   if (o->command == CMD_PLOT) ok &= prepare_plot(&k, error);
   if (o->command == CMD_ANIMATE) ok &= prepare_animate(&k, error);
+  if (o->command == CMD_MODES) argument(&k, "--modes", NULL);
   for (uint32_t i = 0; i < o->rest.n; i++) argument(&k, o->rest.at[i], NULL);
   vec_push(k.arena, &p->argv, NULL);
   return ok;

@@ -14,7 +14,8 @@ static const struct {
 } methods[] = {
   {"variational", WANT_VARIATION, 0}, {"gauss", WANT_VARIATION, 0},  {"symplectic_euler", WANT_VARIATION, 1},
   {"verlet", WANT_VARIATION, 1},      {"verlet4", WANT_VARIATION, 1}, {"verlet6", WANT_VARIATION, 1},
-  {"verlet8", WANT_VARIATION, 1},     {"taylor", WANT_TAYLOR, 0},
+  {"verlet8", WANT_VARIATION, 1},     {"radau", WANT_LINEAR, 0},
+  {"taylor", WANT_TAYLOR, 0},
 };
 
 /* Of NAME or NAME(option=value, ...). */
@@ -39,6 +40,6 @@ static const char *method_of_state(Arena *a, const char *path) {
 }
 
 unsigned wants_of(const Eqns *e, const Options *o) {
-  unsigned wants = wants_of_method(e, e->m->scene.method) | wants_of_method(e, o->method);
+  unsigned wants = wants_of_method(e, e->m->scene.method) | wants_of_method(e, o->method) | (o->linear ? WANT_LINEAR : 0u);
   return o->resume ? wants | wants_of_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

@@ -7,7 +7,7 @@
 #include "mech/eqns.h"
 
 /* WANT_... of ir/unit.h for the scene that e was derived for: by its own method and by the one that the command line
- * names, with --method or in the state that --resume goes on from. */
+ * names, with --method or in the state that --resume goes on from; and what --with says. */
 unsigned wants_of(const Eqns *e, const Options *o);
 
 #endif

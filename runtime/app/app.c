@@ -347,15 +347,17 @@ static int simulate(App *app)
   return finish(app, plot_x, plot_y);
 }
 
-int lag_app_main(int argc, char **argv, const lag_program *program, const lag_method *const *extra, int nextra)
+int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras)
 {
-  App app = {.program = program, .extra = extra, .nextra = nextra, .last_row = NAN};
+  App app = {.program = program, .extras = extras ? *extras : (lag_extras){0}, .last_row = NAN};
   int rc = args_parse(&app.args, argc, argv);
 
   if (rc == 0 && app.args.help) {
     app_help(&app, stdout);
   } else if (rc == 0 && app.args.method && strcmp(app.args.method, "help") == 0) {
     app_list_methods(&app, stdout);
+  } else if (rc == 0 && app.args.modes) {
+    rc = app_modes(&app);
   } else if (rc == 0) {
     rc = simulate(&app);
   }

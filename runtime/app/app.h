@@ -13,15 +13,14 @@ enum { MOST_OPTIONS = 16, LOGGED_EVENTS = 20 };
 /* The command line as written; numbers are still text. */
 typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume;
-  int json, sketch, quiet, help, trace, no_rods;
+  int json, sketch, quiet, help, trace, no_rods, modes;
   char **sets; /* name=value, in order */
   int nsets;
 } Args;
 
 typedef struct App {
   const lag_program *program;
-  const lag_method *const *extra;
-  int nextra;
+  lag_extras extras;
   Args args;
   const lag_scene *scene;
   lag_sim *sim;
@@ -53,15 +52,21 @@ __attribute__((format(printf, 2, 3)))
 #endif
 int app_error(const Args *a, const char *format, ...);
 
-/* choose.c: scene, method and values. 0, or EXIT_USAGE after a message. */
+/* choose.c: scene, method and values; without a method. 0, or EXIT_USAGE after a message. */
 int app_choose(App *app);
+int app_choose_start(App *app);
 const lag_method *app_find_method(const App *app, const char *name);
+
+/* methods.c */
 void app_list_methods(const App *app, FILE *f);
 
 /* columns.c. The index of a column by its name; -1 after a message. */
 int app_column(const App *app, const char *name);
 /* Fills app->show from --points and --from. 0, or EXIT_USAGE after a message. */
 int app_choose_points(App *app);
+
+/* modes.c: --modes. Returns the exit status. */
+int app_modes(App *app);
 
 /* help.c */
 void app_help(const App *app, FILE *f);

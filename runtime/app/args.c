@@ -58,7 +58,7 @@ static const Option options[] = {
     {"save-state", offsetof(Args, save), 0}, {"resume", offsetof(Args, resume), 0},
     {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
     {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
-    {"help", offsetof(Args, help), 1},
+    {"modes", offsetof(Args, modes), 1},   {"help", offsetof(Args, help), 1},
 };
 enum { NOPTIONS = sizeof options / sizeof *options };
 
@@ -141,6 +141,24 @@ static int one_argument(Args *a, int argc, char **argv, int *i)
   return 0;
 }
 
+/* --modes takes values and --json; nothing else would have a meaning. */
+static int check_modes(const Args *a)
+{
+  const struct {
+    const char *name;
+    int given;
+  } others[] = {{"--method", a->method != NULL}, {"--tol", a->tol != NULL}, {"--step", a->step != NULL},
+                {"--until", a->until != NULL}, {"--every", a->every != NULL}, {"-o", a->out != NULL}, {"--svg", a->svg != NULL},
+                {"--html", a->html != NULL}, {"--sketch", a->sketch}, {"--save-state", a->save != NULL}, {"--resume", a->resume != NULL}};
+
+  for (size_t i = 0; a->modes && i < sizeof others / sizeof *others; i++) {
+    if (others[i].given) {
+      return app_error(a, "%s has no meaning for modes of small motion: they take name=value and --json", others[i].name);
+    }
+  }
+  return 0;
+}
+
 static int check(const Args *a)
 {
   int on_stdout = a->out && strcmp(a->out, "-") == 0;
@@ -160,7 +178,7 @@ static int check(const Args *a)
   if (a->html && !a->points) {
     return app_error(a, "--html %s: which points? add --points 'X,Y X,Y ...' with the names of outputs", a->html);
   }
-  return 0;
+  return check_modes(a);
 }
 
 int args_parse(Args *a, int argc, char **argv)

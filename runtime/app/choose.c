@@ -45,49 +45,12 @@ const lag_method *app_find_method(const App *app, const char *name)
       return lag_methods[i];
     }
   }
-  for (int i = 0; i < app->nextra; i++) {
-    if (strcmp(app->extra[i]->name, name) == 0) {
-      return app->extra[i];
+  for (int i = 0; i < app->extras.nmethods; i++) {
+    if (strcmp(app->extras.methods[i]->name, name) == 0) {
+      return app->extras.methods[i];
     }
   }
   return NULL;
-}
-
-static void list_method(const lag_method *m, FILE *f)
-{
-  static const struct {
-    unsigned flag;
-    const char *words;
-  } properties[] = {{LAG_METHOD_SYMPLECTIC, ", symplectic"}, {LAG_METHOD_SYMMETRIC, ", symmetric"},
-                    {LAG_METHOD_SEPARABLE, "; separable models only"}, {LAG_METHOD_CONSERVATIVE, "; conservative models only"},
-                    {LAG_METHOD_NO_SAVE, "; cannot be saved"}};
-
-  fprintf(f, "  %-16s order %2d, dense %2d, %s", m->name, m->order, m->dense_order,
-          m->flags & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed step");
-  for (size_t i = 0; i < sizeof properties / sizeof *properties; i++) {
-    if (m->flags & properties[i].flag) {
-      fputs(properties[i].words, f);
-    }
-  }
-  fprintf(f, "\n  %-16s   %s\n", "", m->doc);
-  for (int i = 0; i < m->noptions; i++) {
-    const lag_method_option *o = &m->options[i];
-    char number[32];
-    snprintf(number, sizeof number, "%g", o->value);
-    fprintf(f, "  %-16s   %s = %s: %s\n", "", o->name, o->choices ? o->choices[(int)o->value] : number, o->doc);
-  }
-}
-
-void app_list_methods(const App *app, FILE *f)
-{
-  fputs("methods (the first is the default; dense: order between steps; separable: constant mass matrix and\n"
-        "accelerations that do not depend on velocities):\n", f);
-  for (int i = 0; i < lag_nmethods; i++) {
-    list_method(lag_methods[i], f);
-  }
-  for (int i = 0; i < app->nextra; i++) {
-    list_method(app->extra[i], f);
-  }
 }
 
 /* A method's options as they are being collected; names and texts point into `text`. */
@@ -273,17 +236,45 @@ static int read_state(App *app)
   return 0;
 }
 
-int app_choose(App *app)
+static int new_simulation(App *app)
 {
-  const Args *a = &app->args;
-  int rc = read_state(app);
+  int rc = choose_scene(app);
 
-  if (rc || (rc = choose_scene(app)) != 0) {
+  if (rc) {
     return rc;
   }
   app->sim = lag_sim_new(app->scene);
   if (!app->sim) {
-    return app_error(a, "cannot simulate scene %s: out of memory, or built for another version or number type", app->scene->name);
+    return app_error(&app->args, "cannot simulate scene %s: out of memory, or built for another version or number type",
+                     app->scene->name);
+  }
+  return 0;
+}
+
+static int set_values(App *app)
+{
+  const Args *a = &app->args;
+  int rc = 0;
+
+  for (int i = 0; i < a->nsets && rc == 0; i++) {
+    rc = set_value(app, a->sets[i]);
+  }
+  return rc;
+}
+
+int app_choose_start(App *app)
+{
+  int rc = new_simulation(app);
+
+  return rc ? rc : set_values(app);
+}
+
+int app_choose(App *app)
+{
+  int rc = read_state(app);
+
+  if (rc || (rc = new_simulation(app)) != 0) {
+    return rc;
   }
   if (app->resumed) {
     return resume(app);
@@ -291,8 +282,5 @@ int app_choose(App *app)
   if ((rc = set_tolerance(app)) != 0 || (rc = choose_method(app)) != 0) {
     return rc;
   }
-  for (int i = 0; i < a->nsets && rc == 0; i++) {
-    rc = set_value(app, a->sets[i]);
-  }
-  return rc;
+  return set_values(app);
 }

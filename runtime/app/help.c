@@ -30,7 +30,7 @@ static void list(FILE *f, const char *head, int n, const lag_var *vars, const do
   for (int i = 0; i < n; i++) {
     fprintf(f, "%s%s", i == 0 ? head : ", ", vars[i].name);
     if (values) {
-      fprintf(f, " = %g", values[i] / vars[i].factor);
+      fprintf(f, " = %g", (values[i] - vars[i].offset) / vars[i].factor);
     }
     if (vars[i].unit[0]) {
       fprintf(f, " [%s]", vars[i].unit);

@@ -9,9 +9,8 @@ enum { MOST_LINES = 24 };
 /* Variable i of q, v, z: name, unit, value in the declared unit. */
 static double state_var(const App *app, int i, Column *c)
 {
-  double factor = lag_sim_state_info(app->sim, i, c->name, sizeof c->name, c->unit, sizeof c->unit);
-
-  return lag_sim_q(app->sim)[i] / factor;
+  lag_sim_state_info(app->sim, i, c->name, sizeof c->name, c->unit, sizeof c->unit);
+  return lag_sim_state_value(app->sim, i);
 }
 
 void report_method(const App *app, char *s, size_t n)
@@ -94,6 +93,33 @@ static void caveat(const App *app, FILE *f)
   }
 }
 
+/* "explicit" or "implicit" for a method that has both forms, and why; NULL for others. */
+static const char *form(const App *app, const char **why)
+{
+  unsigned has = app->scene->model->flags;
+
+  if (!(lag_sim_method(app->sim)->flags & LAG_METHOD_SPLITS)) {
+    return NULL;
+  }
+  *why = has & LAG_SEPARABLE ? "the model is separable"
+         : has & LAG_CONSTANT_MASS ? "in q and p by Newton's method: forces depend on velocities"
+                                   : "in q and p by Newton's method: the mass matrix varies";
+  return has & LAG_SEPARABLE ? "explicit" : "implicit";
+}
+
+static void newton(const App *app, const lag_stats *st, FILE *f)
+{
+  const char *why, *word = form(app, &why);
+
+  if (word) {
+    fprintf(f, "%s steps, %s\n", word, why);
+  }
+  if (st->systems > 0) {
+    fprintf(f, "Newton's method: %.3g corrections a system, %.3g systems a step\n", (double)st->iterations / (double)st->systems,
+            (double)st->systems / (double)(st->steps ? st->steps : 1));
+  }
+}
+
 static void verdict(const App *app, FILE *f)
 {
   double t = lag_sim_time(app->sim);
@@ -118,6 +144,7 @@ void report_text(App *app, FILE *f)
   verdict(app, f);
   final_state(app, f);
   fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
+  newton(app, &st, f);
   energy(app, &st, f);
   caveat(app, f);
   for (int i = 0; i < c->nmonitors; i++) {
@@ -195,6 +222,7 @@ void report_json(App *app, FILE *f)
 {
   const lag_model *m = app->scene->model;
   int n = 2 * m->nq + m->nz;
+  const char *why;
   lag_stats st;
 
   lag_sim_stats(app->sim, &st);
@@ -206,6 +234,8 @@ void report_json(App *app, FILE *f)
   field_string(f, "message", app->status < 0 ? lag_sim_message(app->sim) : NULL);
   field_number(f, "t_end", st.t);
   fprintf(f, "\"steps\": %lld, \"rejected\": %lld, \"rhs_calls\": %lld, ", st.steps, st.rejected, st.rhs_calls);
+  field_string(f, "form", form(app, &why));
+  fprintf(f, "\"newton_systems\": %lld, \"newton_iterations\": %lld, ", st.systems, st.iterations);
   field_number(f, "wall_s", app->wall);
   field_number(f, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null: it is no drift */
   charges(app, f);

@@ -103,6 +103,15 @@ double lag_sim_state_info(const lag_sim *s, int i, char *name, size_t nname, cha
   return put_info(v, i >= m->nq && i < 2 * m->nq, name, nname, unit, nunit);
 }
 
+double lag_sim_state_value(const lag_sim *s, int i)
+{
+  const lag_model *m = s->scene->model;
+  int rate = i >= m->nq && i < 2 * m->nq;
+  const lag_var *v = i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
+
+  return rate ? s->now[i] / v->factor : lag_declared(v, s->now[i]);
+}
+
 double lag_sim_output_info(const lag_sim *s, int i, char *name, size_t nname, char *unit, size_t nunit)
 {
   if (s->scene->nout == 0) {
@@ -124,10 +133,12 @@ int lag_sim_outputs(lag_sim *s, double *out)
       return lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN, "the outputs cannot be computed at t = %.17g s", s->run->t);
     }
   } else {
-    memcpy(out, y, (size_t)nout * sizeof *out);
+    for (int i = 0; i < nout; i++) {
+      out[i] = lag_sim_state_value(s, i);
+    }
   }
-  for (int i = 0; i < nout; i++) {
-    out[i] /= lag_sim_output_info(s, i, NULL, 0, NULL, 0);
+  for (int i = 0; i < c->nout; i++) {
+    out[i] = lag_declared(&c->outputs[i], out[i]);
   }
   return LAG_OK;
 }
@@ -144,6 +155,8 @@ int lag_sim_save(lag_sim *s, double *x)
   }
   s->run->rhs_calls = s->pb.rhs_calls;
   s->run->rejected = s->pb.rejected;
+  s->run->systems = s->pb.systems;
+  s->run->iterations = s->pb.iterations;
   memcpy(x, s->saved, s->nsaved * sizeof *x);
   return LAG_OK;
 }
@@ -156,6 +169,8 @@ int lag_sim_load(lag_sim *s, const double *x)
   memcpy(s->saved, x, s->nsaved * sizeof *x);
   s->pb.rhs_calls = s->run->rhs_calls;
   s->pb.rejected = s->run->rejected;
+  s->pb.systems = s->run->systems;
+  s->pb.iterations = s->run->iterations;
   s->pb.dir = s->run->dir;
   return LAG_OK;
 }

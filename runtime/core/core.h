@@ -20,7 +20,7 @@ typedef struct Run {
   double step_t0, step_t1;
   double from;           /* events are located from here on */
   double limit, pending; /* pending: events fire at limit */
-  double steps, rejected, rhs_calls, events;
+  double steps, rejected, rhs_calls, systems, iterations, events;
   double e_first, e_last, e_peak, e_scale; /* energy: E0, last, largest |E - E0|, largest |p.v| + |L| */
   double zeno_k, zeno_t, zeno_dt, zeno_count; /* the last event, its time, interval, how many ever shorter */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
@@ -57,6 +57,9 @@ struct lag_sim {
   char message[512];
 };
 
+/* A value in SI, in the declared unit of its variable. */
+static inline double lag_declared(const lag_var *v, double si) { return (si - v->offset) / v->factor; }
+
 /* message := the text; returns status. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
@@ -66,9 +69,8 @@ int lag_fail(lag_sim *sim, int status, const char *format, ...);
 /* Why a step failed, with when and where. Returns status. */
 int lag_explain(lag_sim *sim, int status);
 
-/* setup.c: the state at the start, of a run that has not begun; the blocks of memory for a method. */
+/* setup.c: the state at the start, of a run that has not begun. */
 int lag_setup_start(lag_sim *sim);
-int lag_setup_blocks(lag_sim *sim, const lag_method *method);
 
 /* events.c. arm: signs at the start of a step chain. locate: the first event in (run->from, step_t1],
  * sets limit and pending. fire: applies the events at limit. */

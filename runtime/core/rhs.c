@@ -41,6 +41,21 @@ int lag_rhs(lag_problem *pb, double t, const double *y, double *dy)
   return pb->model->accel(t, y, y + nq, y + 2 * nq, pb->p, pb->u, dy + nq, dy + 2 * nq, pb->work);
 }
 
+int lag_variation(lag_problem *pb, double t, const double *q, const double *v, double *Lq, double *Lv, double *Q)
+{
+  int rc = lag_inputs(pb, t);
+
+  pb->rhs_calls++;
+  return rc ? rc : pb->model->variation(t, q, v, NULL, pb->p, pb->u, Lq, Lv, Q, pb->work);
+}
+
+int lag_second_derivatives(lag_problem *pb, double t, const double *q, const double *v, double *h)
+{
+  int rc = lag_inputs(pb, t);
+
+  return rc ? rc : pb->model->second(t, q, v, NULL, pb->p, pb->u, h, pb->work);
+}
+
 int lag_not_finite(int n, const double *x)
 {
   for (int i = 0; i < n; i++) {

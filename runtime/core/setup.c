@@ -8,13 +8,16 @@
 
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double) };
 
-/* Lays out the blocks for this method, keeping nothing but what the caller has set (p, hold). */
-int lag_setup_blocks(lag_sim *s, const lag_method *method)
+/* Lays out the blocks for this method, keeping nothing but what the caller has set (p, hold). opt: the values of its options;
+ * they must live on. */
+static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
 {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
   size_t nmon = (size_t)s->scene->nmonitors, fixed = RUN_DOUBLES + np + nu + 3 * n + 5 * nev + 2 * nmon;
-  size_t total = fixed + method->work_size(&s->pb);
+  lag_problem sized = s->pb;
+  sized.opt = opt;
+  size_t total = fixed + method->work_size(&sized);
   double *b = calloc(total, sizeof *b), *x = b + RUN_DOUBLES;
 
   if (!b) {
@@ -37,6 +40,7 @@ int lag_setup_blocks(lag_sim *s, const lag_method *method)
   }
   s->pb.p = s->p;
   s->pb.hold = s->hold;
+  s->pb.opt = opt;
   s->method = method;
   return LAG_OK;
 }
@@ -78,6 +82,17 @@ static const lag_method *find_method(const char *name)
   return NULL;
 }
 
+/* The values of the options when none is given; NULL: no memory. */
+static double *default_options(const lag_method *method)
+{
+  double *values = malloc(((size_t)method->noptions + 1) * sizeof *values);
+
+  for (int i = 0; values && i < method->noptions; i++) {
+    values[i] = method->options[i].value;
+  }
+  return values;
+}
+
 /* The state at the start as it is set now, so that a simulation can be looked at before it runs. */
 static void place(lag_sim *s)
 {
@@ -105,7 +120,11 @@ lag_sim *lag_sim_new(const lag_scene *scene)
   s->pb.span = scene->has_span ? fabs(scene->t1 - scene->t0) : 0;
   s->tol = s->pb.tol = scene->tolerance > 0 ? scene->tolerance : 1e-9;
   const lag_method *method = find_method(scene->method), *chosen = method ? method : lag_methods[0];
-  if (alloc_scratch(s) || lag_setup_blocks(s, chosen)) {
+  double *opt = default_options(chosen);
+  int bad = !opt || alloc_scratch(s) || set_blocks(s, chosen, opt);
+  free(opt);
+  s->pb.opt = NULL;
+  if (bad) {
     lag_sim_free(s);
     return NULL;
   }
@@ -178,7 +197,8 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
       return rc;
     }
   }
-  return LAG_OK;
+  const char *wrong = m->check ? m->check(values) : NULL;
+  return wrong ? lag_fail(s, LAG_EINVAL, "method %s: %s", m->name, wrong) : LAG_OK;
 }
 
 /* May the method integrate this model? If not, the message says why, and which method can. */
@@ -194,18 +214,15 @@ static int check_method(lag_sim *s, const lag_method *method)
     return lag_fail(s, LAG_EMETHOD, "method %s needs a model without forces, dissipation or explicit time; rk45 and dop853 do not",
                     method->name);
   }
-  if ((needs & LAG_METHOD_TAYLOR) && !m->taylor) {
-    return has & LAG_SMOOTH ? lag_fail(s, LAG_EMETHOD, "method %s needs Taylor coefficients, which model %s was built without; "
-                                       "lagc run --method %s, or lagc build --method %s, builds it with them",
-                                       method->name, m->name, method->name, method->name)
-                            : lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min and max; dop853 does not",
-                                       method->name);
+  int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE);
+  if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH)) {
+    return lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min and max; dop853 does not", method->name);
   }
-  if ((needs & LAG_METHOD_SEPARABLE) && !(has & LAG_SEPARABLE)) {
+  if (((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) || ((needs & LAG_METHOD_JACOBIAN) && !m->linear) ||
+      ((needs & LAG_METHOD_TAYLOR) && !m->taylor)) {
     return lag_fail(s, LAG_EMETHOD,
-                    "method %s needs a constant mass matrix and accelerations that do not depend on velocities, and in model %s %s; "
-                    "rk45 and dop853 can integrate it", method->name, m->name,
-                    has & LAG_CONSTANT_MASS ? "they depend on velocities" : "the mass matrix varies");
+                    "method %s needs derivatives of the model that this program was built without; `lagc run MODEL --method %s` and "
+                    "`lagc build MODEL --method %s` build them in; rk45 and dop853 do without", method->name, method->name, method->name);
   }
   return LAG_OK;
 }
@@ -221,15 +238,12 @@ int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *o
   if ((rc = check_method(s, method)) != 0) {
     return rc;
   }
-  values = malloc(((size_t)method->noptions + 1) * sizeof *values);
+  values = default_options(method);
   if (!values) {
     return LAG_ENOMEM;
   }
-  for (int i = 0; i < method->noptions; i++) {
-    values[i] = method->options[i].value;
-  }
   rc = read_options(s, method, opt, nopt, values);
-  rc = rc ? rc : lag_setup_blocks(s, method);
+  rc = rc ? rc : set_blocks(s, method, values);
   if (rc) {
     free(values);
     return rc;
@@ -286,10 +300,10 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
   if (!isfinite(value)) {
     return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);
   }
-  value *= var->factor;
+  double declared = value;
+  value = value * var->factor + (kind == LAG_IS_V ? 0 : var->offset);
   if (kind == LAG_IS_P && !sign_ok(var->sign, value)) {
-    return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, value / var->factor, var->name,
-                    sign_text(var->sign));
+    return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, declared, var->name, sign_text(var->sign));
   }
   switch (kind) {
   case LAG_IS_P:
@@ -317,7 +331,7 @@ int lag_setup_start(lag_sim *s)
 
   for (int i = 0; i < m->np; i++) {
     if (!sign_ok(m->p[i].sign, s->p[i])) {
-      return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, s->p[i] / m->p[i].factor,
+      return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, lag_declared(&m->p[i], s->p[i]),
                       m->p[i].name, sign_text(m->p[i].sign));
     }
   }

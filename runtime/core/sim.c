@@ -75,7 +75,7 @@ int lag_explain(lag_sim *s, int status)
   for (int i = 0; i < pb->n && i < 8 && used < sizeof text; i++) {
     const lag_var *v = i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
     used += (size_t)snprintf(text + used, sizeof text - used, "%s%s%s = %.6g", i ? ", " : "", v->name,
-                             i >= m->nq && i < 2 * m->nq ? "'" : "", s->now[i] / v->factor);
+                             i >= m->nq && i < 2 * m->nq ? "'" : "", lag_sim_state_value(s, i));
   }
   return lag_fail(s, status, "at t = %.9g s: %s%s%s%s%s%s; last good state, t = %.9g s: %s%s", pb->bad_t, reason(status),
                   name[0] ? " for " : "", name, pb->detail ? " (" : "", pb->detail ? pb->detail : "",

@@ -144,6 +144,8 @@ void lag_sim_stats(lag_sim *s, lag_stats *st)
   st->rejected = (long long)s->pb.rejected;
   st->rhs_calls = (long long)s->pb.rhs_calls;
   st->events = (long long)r->events;
+  st->systems = (long long)s->pb.systems;
+  st->iterations = (long long)s->pb.iterations;
   st->energy = energy_at(s, r->t, s->now, s->e) ? NAN : s->e[0];
   if (r->begun != 0.0) {
     peak = larger(peak, fabs(st->energy - r->e_first));

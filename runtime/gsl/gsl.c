@@ -200,4 +200,7 @@ METHODS(DEFINE)
 
 #define LIST(id, text, p, type, words) &method_##id,
 const lag_method *const lag_gsl_methods[] = {METHODS(LIST)};
-const int lag_gsl_nmethods = (int)(sizeof lag_gsl_methods / sizeof *lag_gsl_methods);
+enum { NMETHODS = sizeof lag_gsl_methods / sizeof *lag_gsl_methods };
+const int lag_gsl_nmethods = NMETHODS;
+
+const lag_extras lag_gsl = {lag_gsl_methods, NMETHODS, &lag_gsl_algebra};

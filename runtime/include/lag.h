@@ -50,21 +50,44 @@ typedef struct lag_problem {
   double *u;           /* [nu] inputs, filled by lag_rhs */
   const double *hold;  /* [nu] constants that replace inputs; NaN where there is none */
   double *work;        /* [nw] */
+  const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
   double span;         /* length of the scene's span, 0 when it has none. Not where this run ends */
   double rhs_calls;    /* counted by lag_rhs */
   double rejected;     /* counted by the method */
+  double systems;      /* of nonlinear equations solved, */
+  double iterations;   /* and the corrections that took: counted by the method */
   double bad_t;        /* set before a failure: where, */
   int bad_index;       /* which component of y' (-1: unknown), */
-  const char *detail;  /* and more words or NULL; a string that lives as long as the program */
+  const char *detail;  /* and more words or NULL; a string that lives as long as this object, */
+  char words[160];     /* for example made here */
 } lag_problem;
+
+/* pb->u at t: by the model's formulas, or the constants of pb->hold. Returns what the model returned. */
+int lag_inputs(lag_problem *pb, double t);
 
 /* dy[n] = f(t, y[n]). Returns what the model returned; does not look for NaN. */
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
 
-/* pb->u at t: by the model's formulas, or the constants of pb->hold. Returns what the model returned. */
-int lag_inputs(lag_problem *pb, double t);
+/* Lq = dL/dq, Lv = dL/dv and Q, the forces that are in no L, all [nq]; the values of their derivatives, h[model->nsecond]. For
+ * models that have these functions; nz = 0. Return what the model returned. */
+int lag_variation(lag_problem *pb, double t, const double *q, const double *v, double *Lq, double *Lv, double *Q);
+int lag_second_derivatives(lag_problem *pb, double t, const double *q, const double *v, double *h);
+
+/* Exact derivatives of f, for models emitted with their linearisation (model->linear; lagc --with linear). All
+ * matrices are dense and row-major; work[lag_linear_work()] is scratch, 0 doubles for a model without linearisation. Both
+ * return what the model returned, or LAG_EMETHOD (and pb->detail) when it has none; LAG_ESINGULAR when M is
+ * singular. Neither looks for NaN; after an error the matrices are undefined. */
+size_t lag_linear_work(const lag_model *model);
+
+/* J[(nq + nz) * n]: the derivatives of the accelerations and of the rates, the rows of f below the first nq, by
+ * y. With the nq rows [0 | 1 | 0] above it J is df/dy. Calls lag_rhs once. */
+int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
+
+/* dr[(nq + nz) * n]: the derivatives of the residuals r = (f - M a, flow) by y at given accelerations a[nq] (NULL:
+ * 0); M[nq * nq]: the mass matrix. J above is M^-1 dr in its first nq rows. */
+int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, double *dr, double *M, double *work);
 
 /* The index of the first of x[n] that is not finite, -1 when all are. */
 int lag_not_finite(int n, const double *x);
@@ -79,12 +102,15 @@ enum {
   LAG_METHOD_ADAPTIVE = 1,     /* chooses its steps from the tolerance; else steps are of equal size */
   LAG_METHOD_SYMPLECTIC = 2,
   LAG_METHOD_SYMMETRIC = 4,
-  LAG_METHOD_SEPARABLE = 8,    /* refuses models without LAG_SEPARABLE */
+  LAG_METHOD_VARIATION = 8,    /* needs the model's derivatives of L: lag_model.variation and second */
   LAG_METHOD_CONSERVATIVE = 16, /* refuses models with forces, dissipation or explicit time */
   LAG_METHOD_STEPS_TO = 32,    /* dense() is rough: must step exactly to each time of output */
   LAG_METHOD_NO_SAVE = 64,     /* work holds pointers: its state cannot be saved */
   LAG_METHOD_NO_STATES = 128,  /* refuses models with nz > 0 */
-  LAG_METHOD_TAYLOR = 256      /* needs the model's Taylor coefficients (lag_model.taylor) */
+  LAG_METHOD_SPLITS = 512,     /* explicit for models with LAG_SEPARABLE, which then need no derivatives */
+  LAG_METHOD_TAYLOR = 256,     /* needs the model's Taylor coefficients: lag_model.taylor */
+  LAG_METHOD_JACOBIAN = 2048,  /* needs the model's linearisation: lag_model.linear */
+  LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS where it does not split */
 };
 
 /* An option of a method. With choices (NULL-terminated) the value is the index of the choice. */
@@ -100,14 +126,17 @@ typedef struct lag_method_option {
  * of a run can be written and read back bit by bit). */
 typedef struct lag_method {
   const char *name;
-  int order;
-  int dense_order;
+  int order, dense_order;      /* of the steps and between them, the options at their defaults */
+  int order_least, order_most; /* of both, where options choose; else 0 */
   const char *doc;  /* one line, then the source of the algorithm */
   unsigned flags;
   int noptions;
   const lag_method_option *options;
 
-  /* Doubles of work that init needs. */
+  /* What is wrong with these values of the options, and what to write; NULL when they fit together. May itself be NULL. */
+  const char *(*check)(const double *opt);
+
+  /* Doubles of work that init needs with the options pb->opt. */
   size_t (*work_size)(const lag_problem *pb);
 
   /* Prepares work (zeroed). opt[noptions] are the values of the options. < 0: see pb->detail. */
@@ -134,8 +163,12 @@ extern const lag_method lag_rk4;
 extern const lag_method lag_rk45;
 /* Dormand-Prince 8(5,3), adaptive, for tolerances below about 1e-6. */
 extern const lag_method lag_dop853;
-/* Symplectic, fixed step, for separable models: symplectic Euler, Stoermer-Verlet, and compositions of order 4, 6, 8. */
+/* Symplectic, fixed step: symplectic Euler, Stoermer-Verlet, and compositions of order 4, 6, 8. Explicit for separable models. */
 extern const lag_method lag_symplectic_euler, lag_verlet, lag_verlet4, lag_verlet6, lag_verlet8;
+/* Symplectic, fixed step, implicit, for any L: from a discrete Lagrangian, and Gauss collocation, of order 2 to 8. */
+extern const lag_method lag_variational, lag_gauss;
+/* Radau IIA of order 5, implicit, adaptive: for stiff models; of a model that holds its linearisation. */
+extern const lag_method lag_radau;
 /* The model's own Taylor series, adaptive, for tolerances below about 1e-9; of a model that holds them (lag_model.taylor). */
 extern const lag_method lag_taylor_method;
 /* The methods of liblag.a, the default first. */
@@ -152,6 +185,7 @@ typedef struct lag_sim lag_sim;
 typedef struct lag_stats {
   double t;
   long long steps, rejected, rhs_calls, events;
+  long long systems, iterations; /* of nonlinear equations solved within steps, and the corrections that took */
   double energy;        /* now */
   double energy_drift;  /* largest |E - E0| over the run relative to max(|E0|, max(|p.v| + |L|)); what events
                          * do to the energy is not counted. NaN when the model has no energy */
@@ -201,9 +235,11 @@ const double *lag_sim_options(const lag_sim *sim);
 /* Columns of output besides t: the scene's outputs, or q, v, z when it names none. */
 int lag_sim_noutputs(const lag_sim *sim);
 /* Component i of the state q, v, z: name, with a prime for a velocity, and declared unit; buffers of the caller, cut to fit, either may be
- * NULL. Returns what one declared unit is in SI. */
+ * NULL. Returns what a difference of one declared unit is in SI. */
 double lag_sim_state_info(const lag_sim *sim, int i, char *name, size_t nname, char *unit, size_t nunit);
-/* The same of output i. */
+/* Component i of the state q, v, z now, in its declared unit. */
+double lag_sim_state_value(const lag_sim *sim, int i);
+/* Name and unit of output i, and what lag_sim_state_info returns. */
 double lag_sim_output_info(const lag_sim *sim, int i, char *name, size_t nname, char *unit, size_t nunit);
 /* out[noutputs] at the present state, in declared units. */
 int lag_sim_outputs(lag_sim *sim, double *out);
@@ -229,12 +265,55 @@ int lag_sim_load(lag_sim *sim, const double *x);
 /* A checksum of the scene's names, sizes and method: of what must agree between save and load. */
 unsigned long long lag_sim_signature(const lag_sim *sim);
 
+/* ---- Linear algebra -------------------------------------------------------------------------- */
+
+/* n equations in n unknowns: f[n] at x[n] and, where J is not NULL, J[n*n], row-major, their derivatives. Not 0: there
+ * are no values at x. */
+typedef int lag_equations(void *context, const double *x, double *f, double *J);
+
+/* What the analysis of equilibria needs of a library: dense, row-major; eigenvectors are columns. All return LAG_OK,
+ * LAG_ENOMEM, or what is said; none prints or aborts. */
+typedef struct lag_algebra {
+  const char *name;
+
+  /* Moves x[n] towards a root by a trust region whose first radius is 0.3 max(1, |x|), in at most `most`
+   * steps, until nothing is gained. The Jacobian may be singular. Whether x is a root is for the caller to see.
+   * *steps: how many were made. LAG_EDOMAIN: there are no values at the start. */
+  int (*root)(int n, double *x, lag_equations *equations, void *context, int most, int *steps);
+
+  /* K x = value M x; values ascending, x' M x = 1. K and M are symmetric (lower triangles are read) and destroyed. LAG_EINVAL:
+   * M is not positive definite. */
+  int (*symmetric)(int n, double *K, double *M, double *values, double *vectors);
+
+  /* A x = (re + i im) x, |x| = 1. A is destroyed. sensitivity[k] = |x_k| |y_k| / |y_k x_k| with the left eigenvector y_k:
+   * how much of a change of A the eigenvalue may take over; huge where it is defective. LAG_EMETHOD: no
+   * convergence. */
+  int (*general)(int n, double *A, double *re, double *im, double *vre, double *vim, double *sensitivity);
+
+  /* A := D^-1 A D with D = diag(scale[n]) of powers of 2, so that its rows and columns are alike in size. */
+  int (*balance)(int n, double *A, double *scale);
+
+  /* Orthogonal Q[n*n] with A Q = [B | 0]: its columns from *rank on span the kernel of A, where what is not above
+   * tol counts as 0. */
+  int (*kernel)(int n, const double *A, double tol, double *Q, int *rank);
+} lag_algebra;
+
 /* ---- Simulators ------------------------------------------------------------------------------ */
 
-/* main() of a simulator: see --help, or app/help.c. extra[nextra] are methods beside those of liblag.a.
+/* What a simulator has besides liblag.a. */
+typedef struct lag_extras {
+  const lag_method *const *methods; /* [nmethods] */
+  int nmethods;
+  const lag_algebra *algebra;       /* or NULL */
+} lag_extras;
+
+/* What liblag_gsl.a brings, by the GNU Scientific Library. */
+extern const lag_algebra lag_gsl_algebra;
+extern const lag_extras lag_gsl;
+
+/* main() of a simulator: see --help, or app/help.c. extras may be NULL.
  * Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 130 interrupted. */
-int lag_app_main(int argc, char **argv, const lag_program *program, const lag_method *const *extra,
-                 int nextra);
+int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras);
 
 #ifdef __cplusplus
 }

@@ -37,22 +37,48 @@ enum {
   LAG_CONSTANT_MASS = 2,    /* d2L/dq'2 depends on no coordinate, velocity or time */
   LAG_AUTONOMOUS = 4,       /* the right-hand side does not contain t */
   LAG_SMOOTH = 8,           /* no if, abs, sign, min, max */
-  LAG_SEPARABLE = 16        /* constant mass matrix, accelerations that do not depend on velocities, no states */
+  LAG_SEPARABLE = 16,       /* constant mass matrix, accelerations that do not depend on velocities, no states */
+  LAG_TIMELESS = 32         /* t enters by the formulas of inputs, if at all */
 };
 
-/* A named quantity. unit is as declared ("deg"), "" when none; one unit is `factor` in SI. */
+/* A named quantity. unit is as declared ("deg"), or as found from the equations, "" when none; x units are
+ * x*factor + offset in SI. */
 typedef struct lag_var {
   const char *name;
   const char *unit;
   double factor;
   int periodic; /* an angle: 2 pi later is the same place */
   int sign;     /* of a parameter: 1 "> 0", 2 ">= 0", -1 "< 0", -2 "<= 0", 0 any */
+  double offset; /* 273.15 of degC; otherwise 0 */
 } lag_var;
 
 typedef struct lag_event {
   const char *name;
   int direction; /* 1 rising, -1 falling, 0 both */
 } lag_event;
+
+/* Place of an entry of a sparse matrix. */
+typedef struct lag_entry {
+  int row, col;
+} lag_entry;
+
+/* The linearisation of a model, exact: emitted where something needs it (lagc --with linear).
+ *
+ * The residuals r[nq + nz] vanish along a motion: r_i = f_i - sum_j M_ij a_j for coordinates i, r_(nq + k) =
+ * flow_k - z_k' for states. Their derivatives by y = (q, v, z), at fixed a and z', say all: the accelerations
+ * change by da = M^-1 (dr/dy) dy, the rates by their rows of dr/dy. At an equilibrium a is 0, and -dr/dq, -dr/dv are
+ * the matrices of stiffness and of damping and gyroscopic forces. See lag_jacobian() in lag.h. */
+typedef struct lag_linear {
+  int ndr;
+  const lag_entry *dr;   /* [ndr] row < nq + nz, col < 2 nq + nz; row by row, columns ascending; others are zero */
+  int nmass;
+  const lag_entry *mass; /* [nmass] of M's lower triangle, col <= row; M is symmetric */
+  int ops;               /* operations of one call, counted */
+
+  /* dr[ndr] and M[nmass] at a state, with the accelerations a[nq] there (or others: 0 gives df/dy). */
+  int (*eval)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+              const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w);
+} lag_linear;
 
 /* One of the second derivatives that lag_model.second computes: of L by two of q, v, where of LAG_QQ and LAG_VV only
  * row >= col is given and the row of LAG_VQ is that of v; or of the generalised force `row` by q or v. */
@@ -132,6 +158,8 @@ typedef struct lag_model {
 
   /* NULL, too, where a value of the model is not analytic (if, abs, sign, min, max). */
   const lag_taylor *taylor;
+
+  const lag_linear *linear;
 } lag_model;
 
 /* An option of a method: step = 1e-3, quadrature = trapezoid (then text is set). */

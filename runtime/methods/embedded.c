@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "methods/control.h"
 #include "methods/steps.h"
 
 static const double safety = 0.9;
@@ -65,45 +66,6 @@ int lag_embedded_init(void *work, lag_problem *pb, const double *opt)
   return LAG_OK;
 }
 
-/* Root mean square of x against the scale of the error norm at y. */
-static double norm(const Embedded *w, const lag_problem *pb, const double *x, const double *y)
-{
-  double s = 0;
-
-  for (int i = 0; i < pb->n; i++) {
-    double r = x[i] / (w->atol + pb->tol * fabs(y[i]));
-    s += r * r;
-  }
-  return sqrt(s / (pb->n ? pb->n : 1));
-}
-
-/* The first step, HNW II.4 "starting step size": one Euler step measures the second derivative. */
-static double first_step(Embedded *w, lag_problem *pb, int order, double t, const double *y)
-{
-  int n = pb->n;
-  const double *k1 = array(w, pb, EMBEDDED_K1);
-  double *y1 = array(w, pb, EMBEDDED_Y1), *f1 = array(w, pb, EMBEDDED_K1 + 1);
-  double d0 = norm(w, pb, y, y), d1 = norm(w, pb, k1, y);
-  double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
-
-  if (w->h_max > 0 && h0 > w->h_max) {
-    h0 = w->h_max;
-  }
-  for (int i = 0; i < n; i++) {
-    y1[i] = y[i] + pb->dir * h0 * k1[i];
-  }
-  if (lag_rhs(pb, t + pb->dir * h0, y1, f1) != 0) {
-    return h0 * 1e-3;
-  }
-  for (int i = 0; i < n; i++) {
-    f1[i] -= k1[i];
-  }
-  double d2 = norm(w, pb, f1, y) / h0, d = d1 > d2 ? d1 : d2;
-  double h1 = d <= 1e-15 ? fmax(1e-6, h0 * 1e-3) : pow(0.01 / d, 1.0 / order);
-  double h = fmin(100 * h0, h1);
-  return isfinite(h) && h > 0 ? h : h0 * 1e-3;
-}
-
 /* f at the start of a step into K1, and a step to try. */
 static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y)
 {
@@ -125,7 +87,8 @@ static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, doubl
     w->t_begin = t;
   }
   if (w->h == 0.0) {
-    w->h = first_step(w, pb, pair->tab->order, t, y);
+    lag_tolerance tol = {w->atol, pb->tol};
+    w->h = lag_first_step(pb, &tol, pair->tab->order, w->h_max, t, y, k1, array(w, pb, EMBEDDED_Y1), k1 + n);
   }
   return LAG_OK;
 }

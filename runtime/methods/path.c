@@ -1,5 +1,6 @@
-/* A path through a step of q'' = f(t, q). Enters: states and accelerations at both ends; leaves: polynomials of q and v.
- * Holds: v has error O(h^(m+4)) and q O(h^(m+6)) with m accelerations inside the step, when those are as good as that.
+/* A path through a step of q'' = f(t, q, q'). Enters: states and accelerations at both ends; leaves: polynomials of q and v.
+ * Holds: v has error O(h^(m+4)) and q O(h^(m+6)) with m accelerations inside the step, when those are as good as that. Where f
+ * depends on velocities the accelerations are as good as v, one order less, and a second pass makes up for it.
  *
  * How: a(x) interpolates the accelerations at equal distances, x = 0..M, M = m + 1; with W = x (x-1) ... (x-M), which
  * vanishes there, v = v0 + int (a + alpha W) meets v1, and q = q0 + v0 t + iint (a + alpha W + beta (x - M/2) W) meets q1.
@@ -118,26 +119,48 @@ void lag_path_at(const double *path, const lag_problem *pb, const StepEnds *e, i
   }
 }
 
-int lag_path_make(double *path, lag_problem *pb, const StepEnds *e, int level)
+/* Fills the accelerations of level l from the path of level `from`, and fits. */
+static int refine(double *path, lag_problem *pb, const StepEnds *e, int l, int from)
 {
-  int nq = pb->nq;
+  int nq = pb->nq, m = intervals(l);
   size_t bytes = (size_t)nq * sizeof(double);
   double *ys = path + (MOST + 1 + NV + NQ) * nq, *fs = ys + 2 * nq;
 
-  for (int l = 1; l <= level; l++) {
-    int m = intervals(l);
-    memcpy(path, e->f0 + nq, bytes);
-    for (int k = 1; k < m; k++) {
-      double s = (double)k / m;
-      lag_path_at(path, pb, e, l - 1, s, ys);
-      int rc = lag_rhs(pb, e->t0 + s * e->h, ys, fs);
-      if (rc || lag_not_finite(nq, fs + nq) >= 0) {
-        return LAG_ENAN;
-      }
-      memcpy(path + k * nq, fs + nq, bytes);
+  memcpy(path, e->f0 + nq, bytes);
+  for (int k = 1; k < m; k++) {
+    double s = (double)k / m;
+    lag_path_at(path, pb, e, from, s, ys);
+    int rc = lag_rhs(pb, e->t0 + s * e->h, ys, fs);
+    if (rc || lag_not_finite(nq, fs + nq) >= 0) {
+      return LAG_ENAN;
     }
-    memcpy(path + m * nq, e->f1 + nq, bytes);
-    fit(path, nq, e, m);
+    memcpy(path + k * nq, fs + nq, bytes);
+  }
+  memcpy(path + m * nq, e->f1 + nq, bytes);
+  fit(path, nq, e, m);
+  return LAG_OK;
+}
+
+int lag_path_make(double *path, lag_problem *pb, const StepEnds *e, int level, int passes)
+{
+  for (int l = 1; l <= level; l++) {
+    for (int pass = 0; pass < passes; pass++) {
+      int rc = refine(path, pb, e, l, pass ? l : l - 1);
+      if (rc) {
+        return rc;
+      }
+    }
   }
   return LAG_OK;
+}
+
+void lag_path_cubic(int nq, const StepEnds *e, double s, double *y)
+{
+  double h = e->h, r = 1 - s;
+
+  for (int i = 0; i < nq; i++) {
+    double d = e->y1[i] - e->y0[i], a = h * e->y0[nq + i] - d, b = d - h * e->y1[nq + i];
+    y[i] = e->y0[i] + s * (d + r * (r * a + s * b));
+    y[nq + i] = (d + r * (1 - 3 * s) * a + s * (2 - 3 * s) * b) / h;
+  }
 }

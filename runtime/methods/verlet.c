@@ -1,5 +1,7 @@
-/* symplectic_euler, verlet, verlet4, verlet6, verlet8: kicks and drifts (composition.c) for models whose accelerations
- * depend on t and q only. Enters: t, y; leaves: t + h, y one step later. Holds: q, v and t are sums of many small terms,
+/* symplectic_euler, verlet, verlet4, verlet6, verlet8: kicks and drifts (composition.c). For models whose accelerations depend
+ * on t and q only they are explicit, and done here; for the others symplectic Euler and its adjoint in q and p, by Newton's
+ * method (implicit.c), of which two halves are the generalised Stoermer-Verlet method, the Lobatto IIIA-IIIB pair: Hairer,
+ * Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VI.3 and II.2.2. Enters: t, y; leaves: t + h, y one step later. Holds: q, v and t are sums of many small terms,
  * and are summed with compensation (steps.h); the acceleration at the end of a step is the first of the next.
  *
  * A drift moves t as it moves q, so a force with explicit time is taken at the right time and keeps the order. Symplectic
@@ -11,6 +13,7 @@
 #include <string.h>
 
 #include "methods/composition.h"
+#include "methods/implicit.h"
 #include "methods/path.h"
 #include "methods/steps.h"
 
@@ -29,8 +32,21 @@ enum { F0, F1, FS, Y0, Y1, YS, DY, COMP, COMP1, NARRAYS };
 
 static const lag_method_option options[] = {LAG_STEP_OPTION};
 
-static size_t work_size(const lag_problem *pb)
+/* A member of the family: its table for separable models, and for the others. */
+typedef struct Member {
+  const lag_composition *separable, *any;
+} Member;
+
+static int is_explicit(const lag_problem *pb)
 {
+  return (pb->model->flags & LAG_SEPARABLE) != 0;
+}
+
+static size_t work_size(const Member *m, const lag_problem *pb)
+{
+  if (!is_explicit(pb)) {
+    return lag_implicit_composed_size(pb, m->any);
+  }
   return sizeof(Verlet) / sizeof(double) + NARRAYS * (size_t)pb->n + lag_path_size(pb->nq);
 }
 
@@ -38,16 +54,25 @@ static void reset(void *work, lag_problem *pb)
 {
   Verlet *w = work;
 
+  if (!is_explicit(pb)) {
+    lag_implicit_reset(work, pb);
+    return;
+  }
   w->ready = w->have_path = 0;
   w->tc = 0;
   memset(w->x + COMP * pb->n, 0, (size_t)pb->n * sizeof(double));
 }
 
-static int init(void *work, lag_problem *pb, const double *opt)
+static int init(const Member *m, void *work, lag_problem *pb, const double *opt)
 {
   Verlet *w = work;
+  double h = lag_step_size(pb, opt[0]);
 
-  w->h = lag_step_size(pb, opt[0]);
+  if (!is_explicit(pb)) {
+    lag_implicit_compose(work, pb, h, m->any);
+    return LAG_OK;
+  }
+  w->h = h;
   reset(work, pb);
   return LAG_OK;
 }
@@ -150,19 +175,6 @@ static int step(const lag_composition *c, void *work, lag_problem *pb, double *t
   return LAG_OK;
 }
 
-/* The path of symplectic Euler, whose q and v do not fit together better than O(h): cubic in q, and v as its derivative, so
- * that what falls onto something meets it falling. */
-static void cubic(int nq, const StepEnds *e, double s, double *y)
-{
-  double h = e->h, r = 1 - s;
-
-  for (int i = 0; i < nq; i++) {
-    double d = e->y1[i] - e->y0[i], a = h * e->y0[nq + i] - d, b = d - h * e->y1[nq + i];
-    y[i] = e->y0[i] + s * (d + r * (r * a + s * b));
-    y[nq + i] = (d + r * (1 - 3 * s) * a + s * (2 - 3 * s) * b) / h;
-  }
-}
-
 static void dense(const lag_composition *c, void *work, lag_problem *pb, double t, double *y)
 {
   Verlet *w = work;
@@ -171,51 +183,62 @@ static void dense(const lag_composition *c, void *work, lag_problem *pb, double 
   double *path = w->x + NARRAYS * n;
 
   if (c->order == 1) {
-    cubic(pb->nq, &ends, (t - w->t0) / w->dt, y);
+    lag_path_cubic(pb->nq, &ends, (t - w->t0) / w->dt, y);
     return;
   }
   if (c->refine > 0 && w->have_path == 0.0) {
-    w->have_path = lag_path_make(path, pb, &ends, c->refine) == 0 ? 1 : -1;
+    w->have_path = lag_path_make(path, pb, &ends, c->refine, 1) == 0 ? 1 : -1;
   }
   lag_path_at(path, pb, &ends, w->have_path > 0 ? c->refine : 0, (t - w->t0) / w->dt, y);
 }
 
-#define SPLITTING (LAG_METHOD_SYMPLECTIC | LAG_METHOD_SEPARABLE | LAG_METHOD_NO_STATES)
+/* name, tables, order, flags, words */
+#define METHODS(X)                                                                                                       \
+  X(symplectic_euler, euler, euler, 1, 0, "kick, drift; one force a step. DOI 10.1017/S0962492902000144")                \
+  X(verlet, verlet, verlet, 2, LAG_METHOD_SYMMETRIC,                                                                     \
+    "Stoermer-Verlet as kick, drift, kick; one force a step. DOI 10.1103/PhysRev.159.98")                                \
+  X(verlet4, verlet4, any4, 4, LAG_METHOD_SYMMETRIC,                                                                     \
+    "Blanes-Moan SRKN 6b, or S 6; 6 forces a step. DOI 10.1016/S0377-0427(01)00492-7")                                   \
+  X(verlet6, verlet6, any6, 6, LAG_METHOD_SYMMETRIC,                                                                     \
+    "Blanes-Moan SRKN 11b, or S 10; 11 forces a step. DOI 10.1016/S0377-0427(01)00492-7")                                \
+  X(verlet8, verlet8, any8, 8, LAG_METHOD_SYMMETRIC,                                                                     \
+    "Blanes-Casas-Escorihuela B19, or Kahan-Li; 19 forces a step. DOI 10.1016/j.apnum.2022.07.010")
 
-/* name, table, order, order of dense output, flags, words */
-#define METHODS(X)                                                                                                   \
-  X(symplectic_euler, lag_compose_euler, 1, 1, SPLITTING, "kick, drift; one force a step. DOI 10.1017/S0962492902000144") \
-  X(verlet, lag_compose_verlet, 2, 2, SPLITTING | LAG_METHOD_SYMMETRIC,                                              \
-    "Stoermer-Verlet as kick, drift, kick; one force a step. DOI 10.1103/PhysRev.159.98")                            \
-  X(verlet4, lag_compose_verlet4, 4, 4, SPLITTING | LAG_METHOD_SYMMETRIC,                                            \
-    "Blanes-Moan SRKN 6b; 6 forces a step. DOI 10.1016/S0377-0427(01)00492-7")                                       \
-  X(verlet6, lag_compose_verlet6, 6, 6, SPLITTING | LAG_METHOD_SYMMETRIC,                                            \
-    "Blanes-Moan SRKN 11b; 11 forces a step. DOI 10.1016/S0377-0427(01)00492-7")                                     \
-  X(verlet8, lag_compose_verlet8, 8, 8, SPLITTING | LAG_METHOD_SYMMETRIC,                                            \
-    "Blanes-Casas-Escorihuela B19; 19 forces a step. DOI 10.1016/j.apnum.2022.07.010")
-
-#define DEFINE(id, table, p, dense_p, properties, words)                          \
+#define DEFINE(id, table, general, p, properties, words)                                 \
+  static const Member member_##id = {&lag_compose_##table, &lag_compose_##general};      \
+  static size_t size_##id(const lag_problem *pb)                                         \
+  {                                                                                      \
+    return work_size(&member_##id, pb);                                                  \
+  }                                                                                      \
+  static int init_##id(void *work, lag_problem *pb, const double *opt)                   \
+  {                                                                                      \
+    return init(&member_##id, work, pb, opt);                                            \
+  }                                                                                      \
   static int step_##id(void *work, lag_problem *pb, double *t, double *y, double t_stop) \
-  {                                                                               \
-    (void)t_stop;                                                                 \
-    return step(&table, work, pb, t, y);                                          \
-  }                                                                               \
-  static void dense_##id(void *work, lag_problem *pb, double t, double *y)        \
-  {                                                                               \
-    dense(&table, work, pb, t, y);                                                \
-  }                                                                               \
-  const lag_method lag_##id = {                                                   \
-      .name = #id,                                                                \
-      .order = p,                                                                 \
-      .dense_order = dense_p,                                                     \
-      .doc = words,                                                               \
-      .flags = properties,                                                        \
-      .noptions = 1,                                                              \
-      .options = options,                                                         \
-      .work_size = work_size,                                                     \
-      .init = init,                                                               \
-      .step = step_##id,                                                          \
-      .dense = dense_##id,                                                        \
-      .reset = reset,                                                             \
+  {                                                                                      \
+    (void)t_stop;                                                                        \
+    return is_explicit(pb) ? step(&lag_compose_##table, work, pb, t, y) : lag_implicit_step(work, pb, t, y); \
+  }                                                                                      \
+  static void dense_##id(void *work, lag_problem *pb, double t, double *y)               \
+  {                                                                                      \
+    if (is_explicit(pb)) {                                                               \
+      dense(&lag_compose_##table, work, pb, t, y);                                       \
+    } else {                                                                             \
+      lag_implicit_dense(work, pb, t, y);                                                \
+    }                                                                                    \
+  }                                                                                      \
+  const lag_method lag_##id = {                                                          \
+      .name = #id,                                                                       \
+      .order = p,                                                                        \
+      .dense_order = p,                                                                  \
+      .doc = words,                                                                      \
+      .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_NEWTON | (properties), \
+      .noptions = 1,                                                                     \
+      .options = options,                                                                \
+      .work_size = size_##id,                                                            \
+      .init = init_##id,                                                                 \
+      .step = step_##id,                                                                 \
+      .dense = dense_##id,                                                               \
+      .reset = reset,                                                                    \
   };
 METHODS(DEFINE)

@@ -20,17 +20,19 @@ static const struct {
    "  --format latex    as LaTeX\n"
    "  --format c        the C function that computes the accelerations\n"
    "  --ops             the operation counts only\n"},
-  {"emit", CMD_EMIT, "lagc emit MODEL [SCENE] [--method NAME] -o FILE.c",
+  {"emit", CMD_EMIT, "lagc emit MODEL [SCENE] [--method NAME] [--with linear] -o FILE.c",
    "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h).\n\n"
-   "  --method NAME     with what this method needs of the model besides accelerations\n"},
+   "  --method NAME     with what this method needs of the model besides accelerations\n"
+   "  --with linear     with the exact linearisation of the model\n"},
   {"header", CMD_HEADER, "lagc header MODEL [SCENE] -o FILE.h",
    "Writes one self-contained C99/C++ header to embed: parameters as a struct, accelerations,\n"
    "energy, an RK4 step. It includes nothing but <math.h>. Its names begin with the file's: pend.h has\n"
    "PEND_IMPLEMENTATION and pend_accel.\n"},
-  {"build", CMD_BUILD, "lagc build MODEL -o SIMULATOR [--method NAME] [--no-gsl]",
+  {"build", CMD_BUILD, "lagc build MODEL -o SIMULATOR [--method NAME] [--with linear] [--no-gsl]",
    "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options.\n\n"
    "  --method NAME     with what this method needs of the model besides accelerations: variational, gauss,\n"
-   "                    or verlet of a model that is not separable. The scenes' own methods need no mention\n"
+   "                    radau, or verlet of a model that is not separable. The scenes' own methods need no mention\n"
+   "  --with linear     with the exact linearisation of the model\n"
    "  --no-gsl          leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole\n"},
   {"run", CMD_RUN, "lagc run MODEL [SCENE] [name=value ...] [--method M] [--tol X] [--until T] ...",
    "Builds the simulator (or takes it from the cache) and runs it; the options are the simulator's:\n\n"
@@ -60,6 +62,16 @@ static const struct {
    "  --trace           the path of the last point, fading\n"
    "  -o FILE.html      default: MODEL_SCENE.html in this folder\n\n"
    "The options of `lagc run` are options here too.\n"},
+  {"modes", CMD_MODES, "lagc modes MODEL [SCENE] [name=value ...] [--json]",
+   "Finds the equilibrium next to the scene's start, says whether it is stable and by which argument, and prints\n"
+   "small motion about it: frequencies, damping, shapes. The linearisation is exact.\n\n"
+   "  name=value        a parameter, another start (th=3), or an input that is held\n"
+   "  --json            all modes, to 17 digits, as one JSON object\n\n"
+   "Velocities of the start do not matter. In a shape the coordinate with the largest kinetic energy is 1 of its\n"
+   "declared unit; 0.5@-90 is an amplitude of 0.5, a quarter of a period behind it. A zero mode is `free` where no\n"
+   "force arises far along it. Needs GSL. Exit status 3: no equilibrium was found.\n"},
+  {"methods", CMD_METHODS, "lagc methods",
+   "Lists the methods of integration: order, what they keep, what they need, and their options.\n"},
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
@@ -70,9 +82,11 @@ static const char general_help[] =
   "  lagc run MODEL [SCENE] [name=value] simulate\n"
   "  lagc plot MODEL [SCENE] [--x --y]   simulate and draw, as SVG\n"
   "  lagc animate MODEL [SCENE]          simulate and show the motion, as one HTML file\n"
+  "  lagc modes MODEL [SCENE]            equilibrium, stability, frequencies, shapes and damping\n"
   "  lagc build MODEL -o SIM             make a simulator\n"
   "  lagc header MODEL -o FILE.h         a C header to embed\n"
   "  lagc emit MODEL [SCENE] -o FILE.c   C for the runtime\n"
+  "  lagc methods                        the methods of integration, with what they keep and need\n"
   "  lagc help [COMMAND|units|functions] more on each\n\n"
   "All take -D CONST=VALUE, and --dump=ast,model,eqns,prog to see the stages. MODEL is a .lag file; without a SCENE\n"
   "the first one counts. Exit status: 0 ok, 1 bad model, 2 usage or files, 3 the run failed.\n";
@@ -99,7 +113,7 @@ const char *options_help(const char *topic) {
 static const char *unknown_command(Arena *a, const char *word) {
   Name names[N_COMMANDS];
   for (int i = 0; i < N_COMMANDS; i++) names[i] = commands[i].name;
-  static const char *const later[] = {"cost", "effects", "noether", "modes", "lyapunov", "methods"};
+  static const char *const later[] = {"cost", "effects", "noether", "lyapunov"};
   for (size_t i = 0; i < sizeof later / sizeof *later; i++)
     if (strcmp(word, later[i]) == 0) return arena_printf(a, "not yet: `lagc %s`", word);
   size_t n = strlen(word);
@@ -151,8 +165,16 @@ static int dump_is_known(const char *stages, const char **error) {
   return 1;
 }
 
+/* --with: parts of a model that are emitted only where something needs them. */
+static int take_parts(Arena *a, const char *parts, Options *o, const char **error) {
+  if (!parts) return 0;
+  if (strcmp(parts, "linear") == 0) return o->linear = 1;
+  *error = arena_printf(a, "--with takes linear (the exact linearisation), not `%s`", parts);
+  return 0;
+}
+
 int options_simulate(const Options *o) {
-  return o->command == CMD_RUN || o->command == CMD_PLOT || o->command == CMD_ANIMATE;
+  return o->command == CMD_RUN || o->command == CMD_PLOT || o->command == CMD_ANIMATE || o->command == CMD_MODES;
 }
 
 /* An option of plot or animate, or run's --observe: 1 with its value taken, 0 without one, -1 when it is none. */
@@ -203,8 +225,9 @@ static int own_option(Arena *a, int argc, char **argv, int *i, Options *o, const
   }
   if (take_value(arg, "--dump", argc, argv, i, &o->dump)) return dump_is_known(o->dump, error);
   if (strcmp(arg, "--no-gsl") == 0) return o->no_gsl = 1;
+  if (take_value(arg, "--with", argc, argv, i, &value)) return take_parts(a, value, o, error);
   int picture = picture_option(a, argc, argv, i, o);
-  if (picture >= 0 || o->command == CMD_RUN) return picture;
+  if (picture >= 0 || o->command == CMD_RUN || o->command == CMD_MODES) return picture;
   if (strcmp(arg, "-o") == 0 || strcmp(arg, "--output") == 0) {
     o->output = *i + 1 < argc ? argv[++*i] : NULL;
     if (!o->output) *error = "-o takes a file";
@@ -236,18 +259,18 @@ static int read_arguments(Arena *a, int argc, char **argv, Options *o, const cha
       if (!*error) *error = arena_printf(a, "%s needs a value", arg);
       return 0;
     }
-    if (!o->file && arg[0] != '-') o->file = arg;
+    if (!o->file && arg[0] != '-' && o->command != CMD_METHODS) o->file = arg;
     else if (options_simulate(o)) pass_on(a, argc, argv, &i, o);
     else if (arg[0] == '-' && arg[1]) {
       *error = arena_printf(a, "`lagc %s` has no option `%s`; `lagc help %s` lists them", argv[1], arg, argv[1]);
       return 0;
-    } else if (!o->scene) o->scene = arg;
+    } else if (!o->scene && o->command != CMD_METHODS) o->scene = arg;
     else {
       *error = arena_printf(a, "one word too many: `%s`; usage: %s", arg, commands[o->command - CMD_CHECK].usage);
       return 0;
     }
   }
-  if (!o->file) {
+  if (!o->file && o->command != CMD_METHODS) {
     *error = arena_printf(a, "a model is missing; usage: %s", commands[o->command - CMD_CHECK].usage);
     return 0;
   }
@@ -276,5 +299,6 @@ int options_read(Arena *a, int argc, char **argv, Options *o, const char **error
     *error = unknown_command(a, argv[1]);
     return 0;
   }
+  o->linear = o->command == CMD_MODES;
   return read_arguments(a, argc, argv, o, error);
 }

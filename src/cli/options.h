@@ -5,7 +5,7 @@
 #include "base/define.h"
 #include "base/vec.h"
 
-typedef enum { CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_EMIT, CMD_HEADER, CMD_BUILD, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_HELP, CMD_VERSION } Command;
+typedef enum { CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_EMIT, CMD_HEADER, CMD_BUILD, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES, CMD_METHODS, CMD_HELP, CMD_VERSION } Command;
 
 typedef struct {
   Command command;
@@ -18,6 +18,7 @@ typedef struct {
   const char *topic;       /* help TOPIC */
   int allow_numeric;       /* check --allow-numeric */
   int no_gsl, ops;
+  int linear;              /* --with linear */
   VEC(Define) defines;
   VEC(const char *) rest;  /* run, plot, animate: what the simulator gets, the scene too */
   VEC(const char *) observe; /* run --observe: expressions */

@@ -36,7 +36,7 @@ static int try_place(Arena *a, const char *lib, const char *include, Toolchain *
 
 int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error) {
   const char *cc = getenv("CC"), *home = getenv("LAG_HOME"), *own = own_folder(a, argv0);
-  *t = (Toolchain){.cc = cc && cc[0] ? cc : "cc"};
+  *t = (Toolchain){.cc = cc && cc[0] ? cc : "cc", .optimise = "-O2"};
   int found = 0;
   if (home && home[0]) {
     found = try_place(a, arena_printf(a, "%s/lib", home), arena_printf(a, "%s/include", home), t);
@@ -97,7 +97,7 @@ static void remove_folder(Arena *a, const char *dir, const SourceText *texts, si
 
 static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
   VEC(char *) argv = {0};
-  const char *fixed[] = {"-O2", "-std=c11", "-ffp-contract=off", "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
+  const char *fixed[] = {t->optimise, "-std=c11", "-ffp-contract=off", "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
   char *words = arena_strdup(a, t->cc); /* CC may hold options, as make has it */
   for (char *w = strtok(words, " "); w; w = strtok(NULL, " ")) vec_push(a, &argv, w);
   for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) vec_push(a, &argv, arena_strdup(a, fixed[i]));
@@ -165,6 +165,7 @@ static uint64_t hash_library(Arena *a, uint64_t h, const char *path) {
 static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceText *texts, size_t n) {
   for (size_t i = 0; i < n; i++) h = hash_more(h, texts[i].text, strlen(texts[i].text) + 1);
   h = hash_more(h, t->cc, strlen(t->cc) + 1);
+  h = hash_more(h, t->optimise, strlen(t->optimise) + 1);
   h = hash_library(a, h, arena_printf(a, "%s/liblag.a", t->lib));
   return t->gsl ? hash_library(a, h, arena_printf(a, "%s/liblag_gsl.a", t->lib)) : h;
 }

@@ -9,6 +9,7 @@ typedef struct {
   const char *include;   /* folder of lag.h */
   const char *lib;       /* folder of liblag.a */
   int gsl;               /* liblag_gsl.a is there and wanted */
+  const char *optimise;  /* -O2; -O0 where the model is called a few times, and compiling it is what takes time */
 } Toolchain;
 
 typedef struct {

@@ -1,28 +1,8 @@
-#include "emit/cwriter.h"
-
 #include <string.h>
 
-enum { INLINE_MAX = 64, MADE_NAME_MAX = 14, LINE_MAX_COLUMNS = 100, WRAP_COLUMNS = 120 };
-enum { C_SELECT = 1, C_OR, C_AND, C_CMP, C_ADD, C_MUL, C_UNARY, C_ATOM };
+#include "emit/cwriter_impl.h"
 
-typedef struct {
-  const char *text;
-  int prec;
-  int counted; /* a name w1, w2, ... that says nothing */
-} Piece;
-
-typedef struct {
-  const Prog *p;
-  const CStyle *style;
-  Arena *a;
-  CNames names;
-  uint32_t *uses;
-  const char **stored; /* by slot: the comment of the store that uses it */
-  Piece *piece; /* by slot: how its value is spelled where it is used */
-  StrBuf *out;
-  uint32_t temps;
-  const char *title; /* pending: printed before the next statement */
-} Writer;
+enum { MADE_NAME_MAX = 14, LINE_MAX_COLUMNS = 100, WRAP_COLUMNS = 120 };
 
 /* --- constants --- */
 
@@ -89,13 +69,13 @@ const char *comment_text(Arena *a, const char *s) {
 
 /* --- expressions --- */
 
-static Piece operand(Writer *w, Slot s) {
+Piece cwriter_operand(const Writer *w, Slot s) {
   if (!s) return (Piece){arena_printf(w->a, "%s_C(0.0)", w->style->prefix), C_ATOM, 0};
   return w->piece[s];
 }
 
 static const char *wrapped(Writer *w, Slot s, int prec) {
-  Piece x = operand(w, s);
+  Piece x = cwriter_operand(w, s);
   return x.prec < prec ? arena_printf(w->a, "(%s)", x.text) : x.text;
 }
 
@@ -107,7 +87,7 @@ static int is_power_of_two(const Ins *i) {
 
 /* a op b, grouped as computed: the text rounds as the program does. */
 static Piece infix(Writer *w, const Ins *i, const char *op, int prec) {
-  Piece right = operand(w, i->b);
+  Piece right = cwriter_operand(w, i->b);
   int flat = i->op == IR_MUL && right.prec == C_MUL && right.text[0] != '-' && is_power_of_two(&w->p->ins.at[i->a]);
   const char *a = wrapped(w, i->a, prec), *b = flat ? right.text : wrapped(w, i->b, prec == C_MUL ? C_ATOM : prec + 1);
   return (Piece){arena_printf(w->a, "%s%s%s", a, op, b), prec, 0};
@@ -120,23 +100,23 @@ static Piece constant(Writer *w, const Ins *i) {
 
 /* -a*b is (-a)*b, and rounds like -(a*b). */
 static Piece negative(Writer *w, const Ins *i) {
-  int product = operand(w, i->a).prec == C_MUL;
+  int product = cwriter_operand(w, i->a).prec == C_MUL;
   return (Piece){arena_printf(w->a, "-%s", wrapped(w, i->a, product ? C_MUL : C_ATOM)), product ? C_MUL : C_UNARY, 0};
 }
 
 static Piece macro(Writer *w, const char *name, Slot a, Slot b, Slot c, int n) {
-  const char *x = operand(w, a).text, *y = operand(w, b).text, *z = operand(w, c).text, *m = w->style->prefix;
+  const char *x = cwriter_operand(w, a).text, *y = cwriter_operand(w, b).text, *z = cwriter_operand(w, c).text, *m = w->style->prefix;
   const char *t = n == 1 ? arena_printf(w->a, "%s_%s(%s)", m, name, x) : n == 2 ? arena_printf(w->a, "%s_%s(%s, %s)", m, name, x, y)
                          : arena_printf(w->a, "%s_%s(%s, %s, %s)", m, name, x, y, z);
   return (Piece){t, C_ATOM, 0};
 }
 
 static Piece call1(Writer *w, const char *fn, Slot a) {
-  return (Piece){arena_printf(w->a, "%s_FN(%s)(%s)", w->style->prefix, fn, operand(w, a).text), C_ATOM, 0};
+  return (Piece){arena_printf(w->a, "%s_FN(%s)(%s)", w->style->prefix, fn, cwriter_operand(w, a).text), C_ATOM, 0};
 }
 
 static Piece call2(Writer *w, const char *fn, Slot a, Slot b) {
-  const char *x = operand(w, a).text, *y = operand(w, b).text; /* 0 is a number here */
+  const char *x = cwriter_operand(w, a).text, *y = cwriter_operand(w, b).text; /* 0 is a number here */
   return (Piece){arena_printf(w->a, "%s_FN(%s)(%s, %s)", w->style->prefix, fn, x, y), C_ATOM, 0};
 }
 
@@ -167,7 +147,7 @@ static Piece solved(Writer *w, const Ins *i) {
   return (Piece){arena_printf(w->a, "w[%u]", k->place + k->n * k->n + i->index), C_ATOM, 0};
 }
 
-static Piece spell(Writer *w, const Ins *i) {
+Piece cwriter_spell(Writer *w, const Ins *i) {
   const char *m = w->style->prefix;
   switch (i->op) {
     case IR_CONST: return constant(w, i);
@@ -197,15 +177,14 @@ static Piece spell(Writer *w, const Ins *i) {
 
 /* --- statements --- */
 
-/* A statement, broken at spaces where it is long. */
-static void put_statement(Writer *w, const char *text) {
-  size_t column = 2;
-  sb_puts(w->out, "  ");
+void cwriter_statement(Writer *w, const char *text) {
+  size_t column = 2 + w->indent;
+  sb_printf(w->out, "%*s", (int)column, "");
   while (*text) {
     size_t n = strcspn(text + 1, " ") + 1; /* a word with the space before it */
-    if (*text == ' ' && column > 8 && column + n > WRAP_COLUMNS) {
-      sb_puts(w->out, "\n     ");
-      column = 5;
+    if (*text == ' ' && column > 8 + w->indent && column + n > WRAP_COLUMNS) {
+      sb_printf(w->out, "\n%*s", (int)(5 + w->indent), "");
+      column = 5 + w->indent;
     }
     sb_putn(w->out, text, n);
     column += n;
@@ -214,13 +193,14 @@ static void put_statement(Writer *w, const char *text) {
 }
 
 /* The length of a text as a reader sees it: a long prefix counts as a short one. */
-static size_t visible(const Writer *w, const char *text) {
-  size_t n = strlen(text), prefix = strlen(w->style->prefix);
-  for (const char *s = text; prefix > 3 && (s = strstr(s, w->style->prefix)) != NULL; s += prefix) n -= prefix - 3;
-  return n;
+int cwriter_is_short(const Writer *w, Piece x) {
+  enum { INLINE_MAX = 64 };
+  size_t n = strlen(x.text), prefix = strlen(w->style->prefix);
+  for (const char *s = x.text; prefix > 3 && (s = strstr(s, w->style->prefix)) != NULL; s += prefix) n -= prefix - 3;
+  return n <= INLINE_MAX;
 }
 
-static void flush_title(Writer *w) {
+void cwriter_flush_title(Writer *w) {
   if (!w->title) return;
   sb_printf(w->out, "\n  /* %s */\n", comment_text(w->a, w->title));
   w->title = NULL;
@@ -236,7 +216,7 @@ static int tells(const Piece *x) { return !x->counted && is_identifier(x->text);
 
 /* sin_th1, m2_l1, th1_dot_sq, inv_M11: a name made of what the value is made of; or NULL. */
 static const char *made_name(Writer *w, const Ins *i) {
-  Piece x = operand(w, i->a), y = operand(w, i->b);
+  Piece x = cwriter_operand(w, i->a), y = cwriter_operand(w, i->b);
   if (i->op == IR_FN1 && tells(&x)) return arena_printf(w->a, "%s_%s", i->text, x.text);
   if (i->op == IR_DIV && w->p->ins.at[i->a].op == IR_CONST && num_is_one(w->p->ins.at[i->a].number) && tells(&y))
     return arena_printf(w->a, "inv_%s", y.text);
@@ -245,7 +225,7 @@ static const char *made_name(Writer *w, const Ins *i) {
   return strlen(x.text) + strlen(y.text) <= MADE_NAME_MAX ? arena_printf(w->a, "%s_%s", x.text, y.text) : NULL;
 }
 
-static Piece name_for(Writer *w, const Ins *i) {
+Piece cwriter_name(Writer *w, const Ins *i) {
   const char *made = i->name ? i->name : made_name(w, i);
   if (made) return (Piece){cnames_take(&w->names, made), C_ATOM, 0};
   const char *stem = ir_is_condition(i->op) ? "is" : "w";
@@ -264,31 +244,31 @@ static const char *meaning(Writer *w, const char *name) {
   return drifts ? arena_printf(w->a, "rate of %s, without q''", name) : by ? name + 4 : name;
 }
 
-static void declare(Writer *w, Slot s, Piece x) {
+void cwriter_declare(Writer *w, Slot s, Piece name, Piece x) {
   const Ins *i = &w->p->ins.at[s];
-  Piece name = name_for(w, i);
-  flush_title(w);
+  cwriter_flush_title(w);
   const char *type = ir_is_condition(i->op) ? "MASK" : "REAL";
-  put_statement(w, arena_printf(w->a, "const %s_%s %s = %s;", w->style->prefix, type, name.text, x.text));
+  cwriter_statement(w, arena_printf(w->a, "const %s_%s %s = %s;", w->style->prefix, type, name.text, x.text));
   if (i->name && strcmp(i->name, name.text) != 0) sb_printf(w->out, " /* %s */", comment_text(w->a, meaning(w, i->name)));
   sb_putc(w->out, '\n');
   w->piece[s] = name;
 }
 
-static void write_pivot(Writer *w, const Ins *i) {
+void cwriter_pivot(Writer *w, const Ins *i) {
   const char *d = wrapped(w, i->a, C_CMP + 1), *m = w->style->prefix;
-  flush_title(w);
-  sb_printf(w->out, "  if (%s_ANY(%s_NOT(%s %s %s_C(0.0)))) return %s_ESINGULAR;\n", m, m, d, i->index ? ">" : "!=", m, m);
+  cwriter_flush_title(w);
+  cwriter_statement(w, arena_printf(w->a, "if (%s_ANY(%s_NOT(%s %s %s_C(0.0)))) return %s_ESINGULAR;", m, m, d, i->index ? ">" : "!=", m, m));
+  sb_putc(w->out, '\n');
 }
 
 static void write_solve(Writer *w, const Ins *i) {
   const Solve *k = &w->p->solves.at[i->index];
   const CStyle *st = w->style;
   uint32_t n = k->n, M = k->place, b = M + n * n;
-  flush_title(w);
-  for (uint32_t j = 0; k->matrix && j < n * n; j++) sb_printf(w->out, "  w[%u] = %s;\n", M + j, operand(w, k->matrix[j]).text);
+  cwriter_flush_title(w);
+  for (uint32_t j = 0; k->matrix && j < n * n; j++) sb_printf(w->out, "  w[%u] = %s;\n", M + j, cwriter_operand(w, k->matrix[j]).text);
   if (st->factor && k->matrix) sb_printf(w->out, "  if (%s(%u, w + %u)) return %s_ESINGULAR;\n", st->factor, n, M, st->prefix);
-  for (uint32_t r = 0; r < n; r++) sb_printf(w->out, "  w[%u] = %s;\n", b + r, operand(w, k->rhs[r]).text);
+  for (uint32_t r = 0; r < n; r++) sb_printf(w->out, "  w[%u] = %s;\n", b + r, cwriter_operand(w, k->rhs[r]).text);
   if (st->factor) sb_printf(w->out, "  %s(%u, w + %u);\n", st->substitute, n, M);
   else sb_printf(w->out, "  if (%s(%u, w, w + %u)) return %s_ESINGULAR;\n", st->solve, n, b, st->prefix);
 }
@@ -301,7 +281,7 @@ static Slot *loads_of(Writer *w, int array, uint32_t *n) {
     if (p->ins.at[s].op == IR_LOAD && (int)p->ins.at[s].array == array && p->ins.at[s].index >= *n) *n = p->ins.at[s].index + 1;
   Slot *at = ARENA_ARRAY(w->a, Slot, *n + 1);
   for (Slot s = 1; s < p->ins.n; s++)
-    if (p->ins.at[s].op == IR_LOAD && (int)p->ins.at[s].array == array && w->uses[s]) at[p->ins.at[s].index] = s;
+    if (p->ins.at[s].op == IR_LOAD && (int)p->ins.at[s].array == array && w->uses[s] && cloop_names_load(w, s)) at[p->ins.at[s].index] = s;
   return at;
 }
 
@@ -350,7 +330,7 @@ static void write_instruction(Writer *w, Slot s) {
     return;
   }
   if (i->op == IR_PIVOT) {
-    write_pivot(w, i);
+    cwriter_pivot(w, i);
     return;
   }
   if (i->op == IR_SOLVE) {
@@ -358,50 +338,73 @@ static void write_instruction(Writer *w, Slot s) {
     return;
   }
   if (i->op == IR_LOAD) return;
-  Piece x = spell(w, i);
+  Piece x = cwriter_spell(w, i);
   int leaf = i->op == IR_CONST || i->op == IR_PI;
   int told = !i->name || (w->stored[s] && strcmp(i->name, w->stored[s]) == 0); /* by the store's comment */
-  int part = w->uses[s] <= 1 && told && visible(w, x.text) <= INLINE_MAX && i->op != IR_SOLVED;
+  int part = w->uses[s] <= 1 && told && cwriter_is_short(w, x) && i->op != IR_SOLVED;
   if (leaf || part) w->piece[s] = x;
-  else declare(w, s, x);
+  else cwriter_declare(w, s, cwriter_name(w, i), x);
 }
 
-/* Stores k and k + 1, which stand side by side in their array; the next index must be in it, too, where k is the last. */
-static uint32_t write_pair(Writer *w, uint32_t k) {
-  const Store *st = &w->p->stores.at[k], *other = k + 1 < w->p->stores.n && st[1].array == st->array ? st + 1 : NULL;
-  const char *x = operand(w, st->slot).text, *y = operand(w, other ? other->slot : 0).text;
-  put_statement(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
+static void write_store(Writer *w, const Store *st) {
+  const char *text = cwriter_operand(w, st->slot).text;
+  const char *target = element(w, w->style->out[st->array], st->index), *member = strstr(target, "->");
+  int said = !st->comment[0] || strcmp(st->comment, text) == 0 || (w->style->params && member && strcmp(member + 2, st->comment) == 0);
+  cwriter_statement(w, arena_printf(w->a, "%s = %s;", target, text));
+  if (!said) sb_printf(w->out, " /* %s */", comment_text(w->a, st->comment));
   sb_putc(w->out, '\n');
-  return other ? 1 : 0;
 }
+
+/* Stores k and k + 1, which stand side by side in their array, the first at an even place; there is room for two also where
+ * k is the last. */
+static uint32_t write_pair(Writer *w, uint32_t k) {
+  const Store *st = &w->p->stores.at[k];
+  int two = k + 1 < w->p->stores.n && st[1].array == st->array && st[1].index == st->index + 1;
+  const char *x = cwriter_operand(w, st->slot).text, *y = cwriter_operand(w, two ? st[1].slot : 0).text;
+  cwriter_statement(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
+  sb_putc(w->out, '\n');
+  return two ? 2 : 1;
+}
+
+static int is_paired(const Writer *w, const Store *st) { return (w->style->paired >> st->array & 1) && st->index % 2 == 0; }
 
 static void write_stores(Writer *w) {
-  for (uint32_t k = 0; k < w->p->stores.n; k++) {
-    const Store *st = &w->p->stores.at[k];
+  for (uint32_t k = 0; k < w->p->stores.n;) {
     if (!k) sb_putc(w->out, '\n');
-    if (w->style->paired >> st->array & 1) {
-      k += write_pair(w, k);
-      continue;
-    }
-    const char *text = operand(w, st->slot).text;
-    const char *target = element(w, w->style->out[st->array], st->index), *member = strstr(target, "->");
-    int said = !st->comment[0] || strcmp(st->comment, text) == 0 || (w->style->params && member && strcmp(member + 2, st->comment) == 0);
-    put_statement(w, arena_printf(w->a, "%s = %s;", target, text));
-    if (!said) sb_printf(w->out, " /* %s */", comment_text(w->a, st->comment));
-    sb_putc(w->out, '\n');
+    uint32_t n = cloop_stores(w, k);
+    if (n) cloop_write_stores(w, k, n);
+    else if (is_paired(w, &w->p->stores.at[k])) n = write_pair(w, k);
+    else write_store(w, &w->p->stores.at[k]);
+    k += n ? n : 1;
+  }
+}
+
+/* Arrays that can be indexed by a variable: t is none, nor are members of a struct. */
+static unsigned arrays_by_index(const CStyle *style) {
+  return style->params ? 1u << ARR_Q | 1u << ARR_V | 1u << ARR_Z | 1u << ARR_U : ~(1u << ARR_T | 1u << ARR_ORDER | 1u << ARR_PER_ORDER | 1u << ARR_UP);
+}
+
+static void write_code(Writer *w) {
+  uint32_t next = 0; /* loop */
+  for (Slot s = 1; s < w->p->ins.n; s++) {
+    uint32_t in = w->rolls.place[s] ? w->rolls.loop[w->rolls.place[s] - 1] : 0;
+    if (!in) write_instruction(w, s);
+    else if (in > next) cloop_write(w, in - 1), next = in;
   }
 }
 
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
+  w.rolls = roll_find(p, arrays_by_index(style));
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
   w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
   for (const char *const *g = style->globals; g && *g; g++) cnames_reserve(&w.names, *g);
   if (p->solves.n) cnames_reserve(&w.names, "w");
   count_uses(&w);
+  cloop_prepare(&w);
   for (int array = 0; array < ARR_COUNT; array++) write_array(&w, array);
-  for (Slot s = 1; s < p->ins.n; s++) write_instruction(&w, s);
+  write_code(&w);
   write_stores(&w);
 }
 

@@ -14,7 +14,7 @@ typedef struct {
   StrBuf *out;
 } File;
 
-static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u"};
+static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a"};
 
 static const char *const prelude =
   "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l'\n"
@@ -26,12 +26,12 @@ static const char *const prelude =
 /* What lag_model.h and the head of an emitted file define. */
 static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
-  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_MASK", "lag_solve", "lag_var", "lag_event", "lag_model", "lag_option",
-  "lag_monitor", "lag_scene", "lag_program", "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV",
-  "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER", "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS",
-  "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL", "LAG_PAIR", "taylor_term",
-  "LAG_REAL_IS_DOUBLE", "taylor_lanes", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums", "taylor_rest",
-  "q_table", "z_table", "p_table", "u_table", "ev_table", "second_table",
+  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_MASK", "lag_solve", "lag_var", "lag_event", "lag_model", "lag_option",
+  "lag_monitor", "lag_scene", "lag_program", "lag_entry", "lag_linear", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
+  "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL",
+  "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_lanes", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
+  "taylor_rest", "taylor_term", "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV",
+  "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -53,8 +53,8 @@ static const char *event_id(const IrUnit *u, uint32_t i) {
 }
 
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel", "energy", "variation", "second", "taylor", "events", "act", "inputs", "params", "start",
-                                      "observe", "outputs", "options", "monitors", "program", "scenes"};
+  static const char *const taken[] = {"accel", "energy", "linearise", "taylor", "variation", "second", "events", "act", "inputs", "params",
+                                      "start", "observe", "outputs", "options", "monitors", "program", "scenes"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -152,14 +152,59 @@ static void emit_inputs(const File *f) {
   function(f, f->u->inputs, "Inputs that have a formula.", "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", own, written);
 }
 
+static void entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out) {
+  enum { A_LINE = 10 };
+  if (!n) return;
+  sb_printf(out, "\nstatic const lag_entry %s[] = {", name);
+  for (uint32_t i = 0; i < n; i++) sb_printf(out, "%s{%u, %u},", i % A_LINE ? " " : "\n  ", at[i].row, at[i].col);
+  sb_puts(out, "\n};\n");
+}
+
+static void emit_linear(const File *f) {
+  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "a", "dr", "M", "w", NULL}, *const written[] = {"dr", "M"};
+  const IrUnit *u = f->u;
+  if (!u->linear) return;
+  const char *comment = arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.", ops_text(u->linear, f->a));
+  const char *head = arena_printf(f->a, "static int linearise(%s, const LAG_REAL *a,\n    LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w)", state_args);
+  function(f, u->linear, comment, head, own, written);
+  entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
+  entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
+  sb_printf(f->out, "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval = linearise,\n};\n",
+            u->linear_dr.n, u->linear_dr.n ? "dr_table" : "NULL", u->linear_mass.n, u->linear_mass.n ? "mass_table" : "NULL",
+            ops_total(prog_count(u->linear)));
+}
+
 /* --- a scene's functions --- */
 
 /* Parameters one by one: each may use those before it, as they are then. */
+/* Whether the parameter is a number, and the same as that of `like`. */
+static int is_number_like(const Prog *p, const Prog *like) {
+  if (p->stores.n != 1 || like->stores.n != 1) return 0;
+  const Ins *x = &p->ins.at[p->stores.at[0].slot], *y = &like->ins.at[like->stores.at[0].slot];
+  return p->stores.at[0].slot && like->stores.at[0].slot && x->op == IR_CONST && y->op == IR_CONST && num_equal(x->number, y->number);
+}
+
+/* The parameters from i on that are one number, when they are many; otherwise 1. */
+static uint32_t same_params(const IrUnit *u, const IrScene *s, uint32_t i) {
+  enum { MANY = 16 };
+  uint32_t n = 1;
+  while (i + n < u->p.n && is_number_like(s->params[i + n], s->params[i])) n++;
+  return n >= MANY ? n : 1;
+}
+
 static void emit_params(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"p", "fixed", NULL}, *const written[] = {"p"};
   sb_printf(f->out, "\nstatic void params_%s(LAG_REAL *p, const unsigned char *fixed) {\n", id);
   if (!f->u->p.n) sb_puts(f->out, "  (void)p; (void)fixed;\n");
-  for (uint32_t i = 0; i < f->u->p.n; i++) {
+  for (uint32_t i = 0, same; i < f->u->p.n; i += same) {
+    same = same_params(f->u, s, i);
+    if (same > 1) {
+      const Prog *p = s->params[i];
+      sb_printf(f->out, "  for (int k = 0; k < %u; k++) /* %s ... %s */\n    if (!fixed[k + %u]) p[k + %u] = %s;\n", same,
+                comment_text(f->a, f->u->p.at[i].name), comment_text(f->a, f->u->p.at[i + same - 1].name), i, i,
+                c_number(f->a, "LAG", p->ins.at[p->stores.at[0].slot].number));
+      continue;
+    }
     CStyle st = style_for(f, own, written);
     st.loads_inline = 1;
     StrBuf body = strbuf(f->a);
@@ -194,14 +239,15 @@ static void table(const IrUnit *u, const char *name, const IrVar *v, uint32_t n,
   sb_printf(out, "\nstatic const lag_var %s[] = {\n", name);
   for (uint32_t i = 0; i < n; i++) {
     const char *label = c_string(u->arena, v[i].name), *unit = c_string(u->arena, v[i].unit);
-    sb_printf(out, "  {%s, %s, %s, %d, %d},\n", label, unit, double_text(u->arena, v[i].factor), v[i].periodic, v[i].sign);
+    const char *factor = double_text(u->arena, v[i].factor), *offset = v[i].offset == 0 ? "0" : double_text(u->arena, v[i].offset);
+    sb_printf(out, "  {%s, %s, %s, %d, %d, %s},\n", label, unit, factor, v[i].periodic, v[i].sign, offset);
   }
   sb_puts(out, "};\n");
 }
 
 static uint32_t work_size(const IrUnit *u) {
   uint32_t most = 0;
-  const Prog *all[] = {u->accel, u->energy, u->event_values};
+  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     if (all[i] && prog_work(all[i]) > most) most = prog_work(all[i]);
   for (uint32_t i = 0; i < u->scenes.n; i++)
@@ -211,9 +257,9 @@ static uint32_t work_size(const IrUnit *u) {
 
 static void flag_text(unsigned flags, StrBuf *out) {
   static const char *const names[] = {"LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS", "LAG_AUTONOMOUS", "LAG_SMOOTH",
-                                       "LAG_SEPARABLE"};
+                                       "LAG_SEPARABLE", "LAG_TIMELESS"};
   int some = 0;
-  for (int i = 0; i < 5; i++)
+  for (int i = 0; i < 6; i++)
     if (flags >> i & 1) sb_printf(out, "%s%s", some++ ? " | " : "", names[i]);
   if (!some) sb_putc(out, '0');
 }
@@ -264,6 +310,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
+  if (u->linear) sb_puts(out, "  .linear = &linear,\n");
   sb_puts(out, "};\n");
 }
 
@@ -332,10 +379,16 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_events(&f);
   emit_inputs(&f);
   const char *digest = digest_text(u->arena, sb_text(out) + begin);
-  emit_variation(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
+  emit_linear(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
   if (u->taylor) emit_taylor(u->taylor, f.globals, out);
+  emit_variation(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, i);
+}
+
+static void emit_main(int gsl, StrBuf *out) {
+  sb_puts(out, "int main(int argc, char **argv) {\n");
+  sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", gsl ? "&lag_gsl" : "NULL");
 }
 
 void emit_program(const IrUnit *const *units, const char *const *names, uint32_t n, int gsl, StrBuf *out) {
@@ -354,6 +407,10 @@ void emit_program(const IrUnit *const *units, const char *const *names, uint32_t
   const char *name = c_string(a, first->name), *doc = c_string(a, first->doc), *source = c_string(a, first->source);
   sb_printf(out, "static const lag_program program = {\n  .name = %s,\n  .doc = %s,\n  .source = %s,\n  .effects = %s,\n  .nscenes = %u, .scenes = scenes,\n};\n\n",
             name, doc, source, c_string(a, first->all_effects), scenes);
-  sb_puts(out, "int main(int argc, char **argv) {\n");
-  sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", gsl ? "lag_gsl_methods, lag_gsl_nmethods" : "NULL, 0");
+  emit_main(gsl, out);
+}
+
+void emit_bare_program(int gsl, StrBuf *out) {
+  sb_puts(out, "#include \"lag.h\"\n\nstatic const lag_program program = {.name = \"lagc\", .doc = \"\", .source = \"\", .effects = \"\"};\n\n");
+  emit_main(gsl, out);
 }

@@ -11,7 +11,7 @@ enum { LOOP_FROM = 9 }; /* statements that differ in an index only: so many beco
 
 static const char *const arrays[ARR_COUNT] = {
   "t", "q", "v", "z", "p", "u", [ARR_FREE] = "follows", [ARR_COEF] = "x", [ARR_SUMS] = "s", [ARR_STEP] = "c",
-  [ARR_ORDER] = "k", [ARR_PER_ORDER] = "per_k", [ARR_UP] = "up",
+  [ARR_ORDER] = "order", [ARR_PER_ORDER] = "per_order", [ARR_UP] = "up",
 };
 
 static const char *const head =
@@ -137,16 +137,16 @@ static void first(const Writer *w) {
 }
 
 static void next(const Writer *w) {
-  static const char *const own[] = {"x", "x1", "a", "b", "s", "c", "k", "per_k", "up", "w", NULL};
+  static const char *const own[] = {"x", "x1", "a", "b", "s", "c", "order", "per_order", "up", "w", NULL};
   static const char *const written[] = {"x", "x1", "a", "b"};
   const Series *s = w->s;
   CStyle st = style_for(w, own, written);
   st.paired = 1u << 2 | 1u << 3;
   sb_printf(w->out, "\n/* Order k > 0, besides the sums: %s. Each name stands for coefficient k of its value. */\n", ops_text(s->next, w->a));
-  sb_puts(w->out, "static void taylor_next(LAG_REAL k, LAG_REAL per_k, LAG_REAL up, const LAG_REAL *s, const LAG_REAL *c, LAG_REAL *x,\n"
+  sb_puts(w->out, "static void taylor_next(LAG_REAL order, LAG_REAL per_order, LAG_REAL up, const LAG_REAL *s, const LAG_REAL *c, LAG_REAL *x,\n"
                   "    LAG_REAL *x1, LAG_REAL *a, LAG_REAL *b");
   sb_puts(w->out, s->room ? ", LAG_REAL *w) {\n" : ") {\n");
-  sb_puts(w->out, "  (void)k; (void)per_k; (void)up; (void)s; (void)c; (void)a; (void)b;\n");
+  sb_puts(w->out, "  (void)order; (void)per_order; (void)up; (void)s; (void)c; (void)a; (void)b;\n");
   cwrite_body(s->next, &st, w->a, w->out);
   sb_puts(w->out, "}\n");
 }

@@ -3,7 +3,7 @@
 
 #include "emit/header_impl.h"
 
-static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u"};
+static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a"};
 
 static const char *const macros =
   "#include <math.h>\n\n"

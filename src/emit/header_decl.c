@@ -17,6 +17,7 @@ static const char *const options =
 /* "[deg], 1 deg is 0.01745 SI" */
 static const char *unit_text(const Header *h, const IrVar *v) {
   if (!v->unit[0]) return "";
+  if (v->offset != 0) return arena_printf(h->a, " [%s]: 0 %s is %s in SI", v->unit, v->unit, double_text(h->a, v->offset));
   if (v->factor == 1) return arena_printf(h->a, " [%s]", v->unit);
   return arena_printf(h->a, " [%s]: 1 %s is %s in SI", v->unit, v->unit, double_text(h->a, v->factor));
 }
@@ -77,7 +78,7 @@ static void params_struct(const Header *h) {
   if (!h->u->p.n) sb_puts(h->out, "  char none; /* C has no empty struct */\n");
   for (uint32_t i = 0; i < h->u->p.n; i++) {
     const IrVar *v = &h->u->p.at[i];
-    const char *text = arena_printf(h->a, "%s%s, default %s%s", unit_text(h, v), sign_text(v->sign), double_text(h->a, (double)value[i]), v->factor == 1 ? "" : " (SI)");
+    const char *text = arena_printf(h->a, "%s%s, default %s%s", unit_text(h, v), sign_text(v->sign), double_text(h->a, (double)value[i]), v->factor == 1 && v->offset == 0 ? "" : " (SI)");
     if (*text == ' ' || *text == ',') text++;
     sb_printf(h->out, "  %s_REAL %s; /* %s */\n", h->upper, h->fields[i], comment_text(h->a, *text == ' ' ? text + 1 : text));
   }

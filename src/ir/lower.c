@@ -292,17 +292,27 @@ static void lower_inputs_along(Lower *l) {
   }
 }
 
+static void take_entries(const Lower *l, const Entries *from, IrEntries *to) {
+  for (uint32_t k = 0; k < from->n; k++)
+    vec_push(l->p->arena, to, ((IrSlotEntry){from->at[k].row, from->at[k].col, lower_slot(l, from->at[k].e)}));
+}
+
 IrSystem lower_system(const Eqns *e) {
   Lower l = lower_new(e);
   const Model *m = e->m;
-  IrSystem sys = {.p = l.p, .nq = e->n, .nz = m->states.n};
+  Arena *a = m->arena;
+  Slot *acc = ARENA_ARRAY(a, Slot, e->n + 1), *f = ARENA_ARRAY(a, Slot, e->n + 1), *flow = ARENA_ARRAY(a, Slot, m->states.n + 1);
+  Name *rates = ARENA_ARRAY(a, Name, e->n + m->states.n + 1), *velocities = ARENA_ARRAY(a, Name, e->n + 1);
+  Factored *factored = ARENA_NEW(a, Factored);
+  IrSystem sys = {.p = l.p, .nq = e->n, .ndefs = e->n ? e->system.ndefs : 0, .nz = m->states.n, .f = f, .flow = flow, .rates = rates,
+                  .velocities = velocities, .factored = factored};
   l.direct = 1;
+  l.factored = factored;
   lower_inputs_along(&l);
-  if (e->n) sys.blocks = lower_blocks(&l, &sys.nblocks);
+  lower_solution(&l, acc);
   lower_roots(&l, e->flow, m->states.n);
-  Slot *flow = ARENA_ARRAY(m->arena, Slot, m->states.n + 1);
-  Name *rates = ARENA_ARRAY(m->arena, Name, e->n + m->states.n + 1), *velocities = ARENA_ARRAY(m->arena, Name, e->n + 1);
   for (uint32_t i = 0; i < e->n; i++) {
+    f[i] = lower_slot(&l, e->system.f[i]);
     rates[i] = text_of_symbol(&l, m->coords.at[i].a);
     velocities[i] = text_of_symbol(&l, m->coords.at[i].v);
   }
@@ -310,22 +320,19 @@ IrSystem lower_system(const Eqns *e) {
     flow[i] = lower_slot(&l, e->flow[i]);
     rates[e->n + i] = text_of_symbol(&l, m->states.at[i].rate);
   }
-  sys.flow = flow;
-  sys.rates = rates;
-  sys.velocities = velocities;
+  if (e->n) {
+    take_entries(&l, &e->system.H, &sys.H);
+    take_entries(&l, &e->system.C, &sys.C);
+  }
+  sys.x = l.x;
   return sys;
-}
-
-static int is_second(const Symbol *s, const void *data) {
-  (void)data;
-  return s->kind == SYM_ACC || s->kind == SYM_RATE;
 }
 
 /* Expressions that may contain q'' and z': the accelerations are computed first. */
 static void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   const Model *m = l->e->m;
   int needed = 0;
-  for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_contains(l->g, roots[i], is_second, NULL);
+  for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE);
   if (needed) {
     Slot *acc = ARENA_ARRAY(m->arena, Slot, l->e->n + 1);
     lower_solution(l, acc);
@@ -335,6 +342,43 @@ static void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
       expr_map_set(&l->slots, expr_symbol(l->g, m->states.at[i].rate)->node, lower_slot(l, l->e->flow[i]) + 1);
   }
   lower_roots(l, roots, n);
+}
+
+/* q'' is an argument here. */
+static void load_accelerations(Lower *l) {
+  const Model *m = l->e->m;
+  for (uint32_t i = 0; i < l->e->n; i++) {
+    const Symbol *s = expr_symbol(l->g, m->coords.at[i].a);
+    Slot a = load(l, ARR_A, s);
+    expr_map_set(&l->slots, s->node, a + 1);
+  }
+}
+
+/* Component i of y = (q, q', z). */
+static const char *component(const Lower *l, uint32_t i) {
+  const Model *m = l->e->m;
+  uint32_t n = l->e->n;
+  return i < n ? m->coords.at[i].name : i < 2 * n ? text_of_symbol(l, m->coords.at[i - n].v) : m->states.at[i - 2 * n].name;
+}
+
+Prog *lower_linear(const Eqns *e, Partials dr) {
+  Lower l = lower_new(e);
+  Arena *a = e->m->arena;
+  Expr *roots = ARENA_ARRAY(a, Expr, dr.n + e->mass.n + 1);
+  for (uint32_t k = 0; k < dr.n; k++) roots[k] = dr.at[k].e;
+  for (uint32_t k = 0; k < e->mass.n; k++) roots[dr.n + k] = e->mass.at[k].e;
+  load_accelerations(&l);
+  lower_roots(&l, roots, dr.n + e->mass.n);
+  for (uint32_t k = 0; k < dr.n; k++) {
+    uint32_t row = dr.at[k].row;
+    const char *of = row < e->n ? component(&l, row) : text_of_symbol(&l, e->m->states.at[row - e->n].rate);
+    prog_store(l.p, 0, k, lower_slot(&l, roots[k]), arena_printf(a, "%s by %s", of, component(&l, dr.at[k].col)));
+  }
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    const MassEntry *M = &e->mass.at[k];
+    prog_store(l.p, 1, k, lower_slot(&l, M->e), arena_printf(a, "%s, %s", component(&l, M->row), component(&l, M->col)));
+  }
+  return prog_tidy(l.p);
 }
 
 Prog *lower_energy(const Eqns *e) {

@@ -7,18 +7,21 @@
 
 #include "ir/prog.h"
 #include "ir/series.h"
+#include "ir/series.h"
 #include "ir/unit.h"
 #include "mech/eqns.h"
 #include "mech/variation.h"
 
 Prog *lower_accel(const Eqns *e);   /* out 0: a[nq], out 1: zd[nz] */
 IrSystem lower_system(const Eqns *e); /* M, f and the rates of the states, with the formulas of inputs put in */
+IrSystem lower_system(const Eqns *e); /* the same before it is solved, and solved, with the formulas of inputs put in */
 Prog *lower_energy(const Eqns *e);  /* out 0: e[2] */
 Prog *lower_variation(const Eqns *e, const Variation *x); /* out 0, 1, 2: dL/dq[nq], dL/dq'[nq], Q[nq] */
 Prog *lower_second(const Eqns *e, const Variation *x);    /* out 0: h[number of entries] */
 Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
 Prog *lower_action(const Eqns *e, uint32_t event); /* out 0, 1, 2: q1, v1, z1; only what is set */
 Prog *lower_inputs(const Eqns *e);  /* out 0: u[nu] */
+Prog *lower_linear(const Eqns *e, Partials dr); /* out 0: dr, in the order of the entries, out 1: M, likewise; reads q'' */
 Prog *lower_outputs(const Eqns *e); /* out 0: out[nout] */
 Prog *lower_param(const Eqns *e, uint32_t i); /* out 0: p[i], of earlier parameters */
 Prog *lower_start(const Eqns *e);   /* out 0, 1, 2: q, v, z; only what a start gives */
@@ -29,6 +32,6 @@ IrUnit *unit_new(const Eqns *e, const char *source);
 void unit_add_scene(IrUnit *u, const Eqns *e);
 
 /* Adds the programs of WANT_... that are not there yet. */
-void unit_want(IrUnit *u, const Eqns *e, unsigned wants);
+void unit_want(IrUnit *u, Eqns *e, unsigned wants);
 
 #endif

@@ -1,9 +1,9 @@
-/* Shared by lower.c (expressions) and lower_blocks.c (the linear system). */
+/* Shared by lower.c (expressions), solve.c and eliminate.c (the linear system). */
 #ifndef LAGC_LOWER_IMPL_H
 #define LAGC_LOWER_IMPL_H
 
+#include "ir/factored.h"
 #include "ir/lower.h"
-#include "ir/solve.h"
 
 typedef struct {
   const Eqns *e;
@@ -12,16 +12,27 @@ typedef struct {
   ExprMap slots;   /* node -> slot + 1 */
   ExprMap circular; /* u -> 1 where sin u or cos u is needed anyway */
   int direct;       /* sin(a - b) is computed as it stands: for series, it is cheaper than the addition theorem */
+  Factored *factored; /* where the solution leaves its factors, and x[n + ndefs] itself; NULL: nowhere */
+  Slot *x;
 } Lower;
 
 /* Lowers all nodes that the roots need; then lower_slot gives each root's slot. */
 void lower_roots(Lower *l, const Expr *roots, uint32_t n);
 Slot lower_slot(const Lower *l, Expr e);
 
-/* Lowers M and f; the blocks of coupled coordinates. e->n > 0. */
-const Block *lower_blocks(Lower *l, uint32_t *n);
-
 /* Lowers M q'' = f and its solution; acc[n] receives the slots of q''. */
 void lower_solution(Lower *l, Slot *acc);
+
+/* The same by elimination without pivoting, for entries and forces that are lowered. */
+void lower_elimination(Lower *l, Slot *acc);
+
+/* "M12", "f1": by the numbers of coordinates; the stem alone when there is one coordinate. */
+Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j);
+
+/* x - a*b, with structural zeros skipped. */
+Slot lower_minus_product(Lower *l, Slot x, Slot a, Slot b);
+
+/* Fails when d is not positive, or zero, unless that is known now. */
+void lower_pivot(Lower *l, Slot d, int positive);
 
 #endif

@@ -5,7 +5,7 @@
 
 static IrVar var_of(Name name, const Unit *u, int periodic, AstSign sign) {
   static const int signs[] = {[SIGN_ANY] = 0, [SIGN_GT] = 1, [SIGN_GE] = 2, [SIGN_LT] = -1, [SIGN_LE] = -2};
-  return (IrVar){name, u->text, unit_factor(u), periodic, signs[sign]};
+  return (IrVar){name, u->text, unit_factor(u), periodic, signs[sign], num_value(u->offset)};
 }
 
 static const char *joined(Arena *a, const Name *names, uint32_t n) {
@@ -16,7 +16,7 @@ static const char *joined(Arena *a, const Name *names, uint32_t n) {
 
 static unsigned flags_of(const Eqns *e) {
   return (e->conserves_energy ? 1u : 0) | (e->constant_mass ? 2u : 0) | (e->autonomous ? 4u : 0) | (e->smooth ? 8u : 0) |
-         (e->separable ? 16u : 0);
+         (e->separable ? 16u : 0) | (e->timeless ? 32u : 0);
 }
 
 static void add_events(IrUnit *u, const Eqns *e) {
@@ -66,11 +66,19 @@ IrUnit *unit_new(const Eqns *e, const char *source) {
   return u;
 }
 
-void unit_want(IrUnit *u, const Eqns *e, unsigned wants) {
+static void add_linear(IrUnit *u, Eqns *e) {
+  Partials dr = eqns_linearise(e);
+  u->linear = lower_linear(e, dr);
+  for (uint32_t k = 0; k < dr.n; k++) vec_push(u->arena, &u->linear_dr, ((IrEntry){dr.at[k].row, dr.at[k].col}));
+  for (uint32_t k = 0; k < e->mass.n; k++) vec_push(u->arena, &u->linear_mass, ((IrEntry){e->mass.at[k].row, e->mass.at[k].col}));
+}
+
+void unit_want(IrUnit *u, Eqns *e, unsigned wants) {
   unsigned fresh = wants & ~u->wants;
   u->wants |= wants;
   if (fresh & WANT_VARIATION && e->n) add_variation(u, e);
   if (fresh & WANT_TAYLOR) add_taylor(u, e);
+  if (fresh & WANT_LINEAR) add_linear(u, e);
 }
 
 void unit_add_scene(IrUnit *u, const Eqns *e) {

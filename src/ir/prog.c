@@ -266,7 +266,7 @@ static const char *const op_names[] = {
   "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "title",
 };
 
-static const char *const array_names[] = {"t", "q", "v", "z", "p", "u", "free", "x", "s", "c", "k", "per_k", "up"};
+static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "free", "x", "s", "c", "order", "per_order", "up"};
 
 void prog_dump(const Prog *p, StrBuf *out) {
   for (Slot s = 1; s < p->ins.n; s++) {

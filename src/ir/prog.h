@@ -39,10 +39,11 @@ typedef enum {
   IR_TITLE   /* text: a comment line that heads what follows */
 } IrOp;
 
-/* The arrays that a function reads. The second line is of Taylor coefficients (ir/series.h): whether an input is free of
- * a constant, coefficients k, sums over those below k, what order 0 leaves for all others; k, 1/k and T/(k + 1) are no arrays. */
+/* The arrays that a function reads; accelerations only in the linearisation. The second line is of Taylor coefficients
+ * (ir/series.h): whether an input is free of a constant, coefficients k, sums over those below k, what order 0 leaves for all
+ * others; k, 1/k and T/(k + 1) are no arrays. */
 typedef enum {
-  ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U,
+  ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_A,
   ARR_FREE, ARR_COEF, ARR_SUMS, ARR_STEP, ARR_ORDER, ARR_PER_ORDER, ARR_UP, ARR_COUNT
 } IrArray;
 
@@ -67,8 +68,8 @@ typedef struct {
   const char *comment;
 } Store;
 
-/* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it
- * stands in the work space. matrix is NULL where the one at that place was factored before, by another function. */
+/* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it stands in the
+ * work space. matrix is NULL where the one at that place was factored before, by another function. */
 typedef struct {
   uint32_t n, place;
   const Slot *matrix, *rhs;

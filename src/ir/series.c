@@ -33,7 +33,7 @@ Slot series_constant(Maker *m, Slot s) {
     vec_push(m->arena, &m->constants, s);
     *at = m->constants.n;
   }
-  return prog_ins(m->next, (Ins){.op = IR_LOAD, .array = ARR_STEP, .index = *at - 1, .name = i->name});
+  return prog_ins(m->next, (Ins){.op = IR_LOAD, .array = ARR_STEP, .index = *at - 1, .name = i->name ? i->name : "constant"});
 }
 
 Slot series_zero(Maker *m, Val a) { return series_constant(m, m->values.at[a].zero); }
@@ -82,7 +82,7 @@ Slot series_sum(Maker *m, Val a, Val b) {
   Slot factor = 0;
   a = base_of(m, a, &factor);
   b = base_of(m, b, &factor);
-  Slot s = load(m, ARR_SUMS, find_pair(m, a, b), "s");
+  Slot s = load(m, ARR_SUMS, find_pair(m, a, b), "sum");
   return factor ? series_op(m, IR_MUL, series_constant(m, factor), s) : s;
 }
 
@@ -112,23 +112,29 @@ Val series_theta(Maker *m, Val v) {
 
 /* --- the model --- */
 
+/* An entry of the linear system, as seen from its row or its column. */
+typedef struct {
+  uint32_t other;
+  Val value;
+} Entry;
+typedef VEC(Entry) EntryList;
+
 typedef struct {
   Maker m;
   const IrSystem *sys;
   Series *out;
-  unsigned char *need; /* by slot of the program */
+  unsigned char *need; /* by slot of the program: its coefficients are needed */
   Slot *zero;          /* by slot of the program: its slot in `first` */
   Val *value;          /* by slot of the program */
-  Val *second;         /* [nq] q'' */
+  EntryList *H, *row, *column; /* [nq + ndefs] of H, and of C */
+  Val *u, *lambda;     /* [nq + ndefs] the rates u', and the adjoints of definitions */
 } Model;
 
 static void mark_roots(Model *w) {
   const IrSystem *sys = w->sys;
-  for (uint32_t k = 0; k < sys->nblocks; k++) {
-    const Block *b = &sys->blocks[k];
-    for (uint32_t i = 0; i < b->n; i++) w->need[b->f[i]] = 1;
-    for (uint32_t i = 0; i < b->n * b->n; i++) w->need[b->M[i]] = 1;
-  }
+  for (uint32_t k = 0; k < sys->H.n; k++) w->need[sys->H.at[k].slot] = 1;
+  for (uint32_t k = 0; k < sys->C.n; k++) w->need[sys->C.at[k].slot] = 1;
+  for (uint32_t i = 0; i < sys->nq; i++) w->need[sys->f[i]] = 1;
   for (uint32_t i = 0; i < sys->nz; i++) w->need[sys->flow[i]] = 1;
   for (Slot s = sys->p->ins.n; s-- > 1;) {
     const Ins *i = &sys->p->ins.at[s];
@@ -144,8 +150,8 @@ static int64_t column_of(Model *w, const Ins *i) {
     case ARR_V: return sys->nq + i->index;
     case ARR_Z: return 2 * sys->nq + i->index;
     case ARR_T: w->out->uses_time = 1; return 3 * sys->nq + 2 * sys->nz;
-    case ARR_P: case ARR_U: case ARR_FREE: case ARR_COEF: case ARR_SUMS:
-    case ARR_STEP: case ARR_ORDER: case ARR_PER_ORDER: case ARR_UP: case ARR_COUNT: break;
+    case ARR_P: case ARR_U: case ARR_A: case ARR_FREE: case ARR_COEF: case ARR_SUMS: case ARR_STEP: case ARR_ORDER: case ARR_PER_ORDER:
+    case ARR_UP: case ARR_COUNT: break;
   }
   return -1;
 }
@@ -153,27 +159,20 @@ static int64_t column_of(Model *w, const Ins *i) {
 static Val load_value(Model *w, const Ins *i, Slot zero) {
   int64_t column = column_of(w, i);
   if (column < 0) return series_value(&w->m, zero, 0);
-  Slot coef = prog_ins(w->m.next, (Ins){.op = IR_LOAD, .array = ARR_COEF, .index = (uint32_t)column, .name = i->name});
-  return series_value(&w->m, zero, coef);
+  return series_value(&w->m, zero, load(&w->m, ARR_COEF, (uint32_t)column, i->name));
 }
 
-/* The program, value by value, in both orders. */
+/* The program in order 0, and what is to be solved value by value in order k. */
 static void copy_program(Model *w) {
   const Prog *p = w->sys->p;
   for (Slot s = 1; s < p->ins.n && !w->m.why; s++) {
-    Ins i = p->ins.at[s];
-    if (i.op == IR_TITLE) {
-      prog_title(w->m.first, i.text);
-      prog_title(w->m.next, i.text);
-    }
-    if (!w->need[s] || i.op == IR_TITLE) continue;
-    Val a = w->value[i.a], b = w->value[i.b], c = w->value[i.c];
-    i.a = w->zero[i.a];
-    i.b = w->zero[i.b];
-    i.c = w->zero[i.c];
+    const Ins *was = &p->ins.at[s];
+    Ins i = prog_moved(w->m.first, p, w->zero, *was);
     Slot zero = w->zero[s] = prog_ins(w->m.first, i);
     prog_name(w->m.first, zero, i.name);
-    w->value[s] = i.op == IR_LOAD ? load_value(w, &i, zero) : series_instruction(&w->m, &i, zero, a, b, c);
+    if (!w->need[s]) continue;
+    w->value[s] = i.op == IR_LOAD ? load_value(w, &i, zero)
+                                  : series_instruction(&w->m, &i, zero, w->value[was->a], w->value[was->b], w->value[was->c]);
     Slot coef = w->m.values.at[w->value[s]].coef;
     if (i.op != IR_LOAD) prog_name(w->m.next, coef, i.name);
   }
@@ -181,127 +180,230 @@ static void copy_program(Model *w) {
 
 /* --- M q'' = f --- */
 
-static const Slot *constants_of(Model *w, const Slot *s, uint32_t n) {
-  Slot *to = ARENA_ARRAY(w->m.arena, Slot, n);
-  for (uint32_t i = 0; i < n; i++) to[i] = series_constant(&w->m, s[i]);
+static void list_entries(Model *w) {
+  Arena *a = w->m.arena;
+  const IrSystem *sys = w->sys;
+  uint32_t total = sys->nq + sys->ndefs;
+  w->H = ARENA_ARRAY(a, EntryList, total + 1);
+  w->row = ARENA_ARRAY(a, EntryList, total + 1);
+  w->column = ARENA_ARRAY(a, EntryList, total + 1);
+  for (uint32_t k = 0; k < sys->H.n; k++) {
+    const IrSlotEntry *h = &sys->H.at[k];
+    vec_push(a, &w->H[h->row], ((Entry){h->col, w->value[h->slot]}));
+    if (h->row != h->col) vec_push(a, &w->H[h->col], ((Entry){h->row, w->value[h->slot]}));
+  }
+  for (uint32_t k = 0; k < sys->C.n; k++) {
+    const IrSlotEntry *c = &sys->C.at[k];
+    vec_push(a, &w->row[c->row], ((Entry){c->col, w->value[c->slot]}));
+    vec_push(a, &w->column[c->col], ((Entry){c->row, w->value[c->slot]}));
+  }
+}
+
+/* The rates, and in `first` the adjoints: lambda = H u' + C^T lambda, from the last definition on. */
+static void open_unknowns(Model *w) {
+  Maker *m = &w->m;
+  const IrSystem *sys = w->sys;
+  uint32_t total = sys->nq + sys->ndefs;
+  w->u = ARENA_ARRAY(m->arena, Val, total + 1);
+  w->lambda = ARENA_ARRAY(m->arena, Val, total + 1);
+  for (uint32_t v = 0; v < total; v++) w->u[v] = series_open(m, w->zero[sys->x[v]]);
+  for (uint32_t v = total; v-- > sys->nq;) {
+    Slot sum = 0;
+    for (uint32_t k = 0; k < w->H[v].n; k++) {
+      Slot part = prog_op(m->first, IR_MUL, m->values.at[w->H[v].at[k].value].zero, m->values.at[w->u[w->H[v].at[k].other]].zero);
+      sum = prog_op(m->first, IR_ADD, sum, part);
+    }
+    for (uint32_t k = 0; k < w->column[v].n; k++) {
+      Slot part = prog_op(m->first, IR_MUL, m->values.at[w->column[v].at[k].value].zero, m->values.at[w->lambda[w->column[v].at[k].other]].zero);
+      sum = prog_op(m->first, IR_ADD, sum, part);
+    }
+    w->lambda[v] = series_open(m, sum);
+  }
+}
+
+/* Coefficient k of sum E x without the terms E[0] x[k]. */
+static Slot lower_terms(Model *w, const EntryList *list, const Val *x) {
+  Maker *m = &w->m;
+  Slot sum = 0;
+  for (uint32_t k = 0; k < list->n; k++) {
+    Val E = list->at[k].value, y = x[list->at[k].other];
+    if (!m->values.at[E].varies) continue;
+    Slot below = series_sum(m, E, y), lead = series_op(m, IR_MUL, series_zero(m, y), m->values.at[E].coef);
+    Slot part = series_op(m, IR_ADD, below, lead);
+    sum = series_op(m, IR_ADD, sum, part);
+  }
+  return sum;
+}
+
+/* Those terms. */
+static Slot top_terms(Model *w, const EntryList *list, const Val *x) {
+  Maker *m = &w->m;
+  Slot sum = 0;
+  for (uint32_t k = 0; k < list->n; k++) {
+    Slot part = series_op(m, IR_MUL, series_zero(m, list->at[k].value), m->values.at[x[list->at[k].other]].coef);
+    sum = series_op(m, IR_ADD, sum, part);
+  }
+  return sum;
+}
+
+/* What the lower orders leave of row v: H u' + C^T lambda. */
+static Slot row_below(Model *w, uint32_t v) {
+  Slot quadratic = lower_terms(w, &w->H[v], w->u), adjoint = lower_terms(w, &w->column[v], w->lambda);
+  return series_op(&w->m, IR_ADD, quadratic, adjoint);
+}
+
+/* lambda = H u' + C^T lambda, from the last definition on. */
+static void set_adjoints(Model *w) {
+  Maker *m = &w->m;
+  for (uint32_t v = w->sys->nq + w->sys->ndefs; v-- > w->sys->nq;) {
+    Slot below = row_below(w, v), top = top_terms(w, &w->H[v], w->u), adjoint = top_terms(w, &w->column[v], w->lambda);
+    top = series_op(m, IR_ADD, top, adjoint);
+    series_set(m, w->lambda[v], series_op(m, IR_ADD, top, below));
+  }
+}
+
+/* --- the factors of order 0 as order k sees them --- */
+
+static Slot seen_slot(Model *w, Slot s) { return series_constant(&w->m, w->zero[s]); }
+
+static const Slot *seen_slots(Model *w, const Slot *s, uint32_t n) {
+  Slot *to = ARENA_ARRAY(w->m.arena, Slot, n + 1);
+  for (uint32_t i = 0; i < n; i++) to[i] = seen_slot(w, s[i]);
   return to;
 }
 
-/* The inverse of a small block, as `next` sees it: where M is full it costs as many operations as its factors do, and they
- * depend less on each other. It is as accurate: a definite matrix loses no digits by bad scales. */
-static Factored inverse_of(Model *w, const Factored *fac) {
-  uint32_t n = fac->n;
-  Slot *inverse = ARENA_ARRAY(w->m.arena, Slot, n * n), *unit = ARENA_ARRAY(w->m.arena, Slot, n), *column = ARENA_ARRAY(w->m.arena, Slot, n);
-  for (uint32_t j = 0; j < n; j++) {
-    for (uint32_t i = 0; i < n; i++) unit[i] = i == j ? prog_num(w->m.first, num_int(1)) : 0;
-    factor_solve(w->m.first, fac, unit, column);
-    for (uint32_t i = 0; i < n; i++) inverse[i * n + j] = i <= j ? column[i] : inverse[j * n + i];
-  }
-  for (uint32_t j = 0; j < n; j++)
-    for (uint32_t i = j + 1; i < n; i++) inverse[i * n + j] = inverse[j * n + i];
-  return (Factored){.kind = FACTOR_INVERSE, .n = n, .L = constants_of(w, inverse, n * n)};
+static const SparseRow *seen_rows(Model *w, const SparseRow *rows, uint32_t n) {
+  SparseRow *to = ARENA_ARRAY(w->m.arena, SparseRow, n + 1);
+  for (uint32_t v = 0; v < n; v++)
+    for (uint32_t k = 0; k < rows[v].n; k++)
+      vec_push(w->m.arena, &to[v], ((SparseEntry){rows[v].at[k].col, seen_slot(w, rows[v].at[k].value)}));
+  return to;
 }
 
-/* What `first` has factored, as `next` sees it. */
-static Factored seen_from_next(Model *w, const Factored *fac) {
-  if (fac->kind == FACTOR_STRAIGHT && fac->n <= INVERSE_MAX) return inverse_of(w, fac);
-  Factored seen = *fac;
-  uint32_t n = fac->n, nd = factor_divisors(fac);
-  Slot *inverse = ARENA_ARRAY(w->m.arena, Slot, nd + 1), one = prog_num(w->m.first, num_int(1));
-  for (uint32_t i = 0; i < nd; i++) inverse[i] = prog_op(w->m.first, IR_DIV, one, fac->divisor[i]);
-  seen.divisor = NULL;
-  seen.inverse = constants_of(w, inverse, nd);
-  seen.L = fac->kind == FACTOR_STRAIGHT ? constants_of(w, fac->L, n * n) : fac->kind == FACTOR_PAIR ? constants_of(w, fac->L, 3) : NULL;
+static Slot seen_inverse(Model *w, Slot divisor) {
+  Slot one = prog_num(w->m.first, num_int(1)), inverse = prog_op(w->m.first, IR_DIV, one, w->zero[divisor]);
+  return series_constant(&w->m, inverse);
+}
+
+static Factored seen_from_next(Model *w) {
+  const Factored *f = w->sys->factored;
+  uint32_t total = f->n + f->ndefs;
+  Slot *inverse = ARENA_ARRAY(w->m.arena, Slot, total + 1);
+  Factored seen = {.n = f->n, .ndefs = f->ndefs, .straight = f->straight, .order = f->order, .inverse = inverse};
+  if (f->straight) {
+    seen.pivot = ARENA_ARRAY(w->m.arena, Slot, f->n + 1);
+    for (uint32_t v = 0; v < f->n; v++) inverse[v] = seen_inverse(w, f->pivot[v]);
+    seen.below = seen_rows(w, f->below, f->n);
+    seen.C = seen_rows(w, f->C, total);
+    seen.row = seen_rows(w, f->row, total);
+  }
+  for (uint32_t k = 0; k < f->blocks.n; k++) {
+    FactoredBlock b = f->blocks.at[k];
+    if (b.n < 3) inverse[k] = seen_inverse(w, b.divisor);
+    if (b.n == 2) b.M = seen_slots(w, b.M, 4);
+    vec_push(w->m.arena, &seen.blocks, b);
+    if (b.n > 2) w->out->room += factored_room(b.n);
+  }
   return seen;
 }
 
-/* f[k] less what the lower coefficients of q'' have in it. */
-static Slot right_side(Model *w, const Block *b, uint32_t i) {
+/* Small systems are solved by the inverse: where M is full it costs as many operations as its factors do, and they depend less
+ * on each other. It is as accurate: a definite matrix loses no digits by bad scales. */
+static void solve_by_inverse(Model *w, const Slot *b, Slot *x) {
   Maker *m = &w->m;
-  Slot r = m->values.at[w->value[b->f[i]]].coef;
-  for (uint32_t j = 0; j < b->n; j++) {
-    Val M = w->value[i >= j ? b->M[i * b->n + j] : b->M[j * b->n + i]], a = w->second[b->at[j]];
-    if (!m->values.at[M].varies) continue;
-    Slot sum = series_sum(m, M, a), lead = series_op(m, IR_MUL, series_zero(m, a), m->values.at[M].coef);
-    r = series_op(m, IR_SUB, r, series_op(m, IR_ADD, sum, lead));
+  Factored f = *w->sys->factored;
+  uint32_t n = f.n;
+  Slot unit[INVERSE_MAX], column[INVERSE_MAX], inverse[INVERSE_MAX][INVERSE_MAX], *pivot = ARENA_ARRAY(m->arena, Slot, n);
+  SparseRow *below = ARENA_ARRAY(m->arena, SparseRow, n);
+  for (uint32_t v = 0; v < n; v++) {
+    pivot[v] = w->zero[f.pivot[v]];
+    for (uint32_t k = 0; k < f.below[v].n; k++)
+      vec_push(m->arena, &below[v], ((SparseEntry){f.below[v].at[k].col, w->zero[f.below[v].at[k].value]}));
   }
-  return r;
+  f.pivot = pivot;
+  f.below = below;
+  for (uint32_t j = 0; j < n; j++) {
+    for (uint32_t i = 0; i < n; i++) unit[i] = i == j ? prog_num(m->first, num_int(1)) : 0;
+    factored_solve(m->first, &f, unit, NULL, column);
+    for (uint32_t i = 0; i <= j; i++) inverse[i][j] = inverse[j][i] = column[i];
+  }
+  for (uint32_t i = 0; i < n; i++) {
+    x[i] = 0;
+    for (uint32_t j = 0; j < n; j++) {
+      Slot part = series_op(m, IR_MUL, series_constant(m, inverse[i][j]), b[j]);
+      x[i] = series_op(m, IR_ADD, x[i], part);
+    }
+  }
 }
+
+static void solve(Model *w) {
+  Maker *m = &w->m;
+  const IrSystem *sys = w->sys;
+  uint32_t n = sys->nq, total = n + sys->ndefs;
+  Slot *b = ARENA_ARRAY(m->arena, Slot, total + 1), *s = ARENA_ARRAY(m->arena, Slot, total + 1), *x = ARENA_ARRAY(m->arena, Slot, total + 1);
+  if (!n) return;
+  list_entries(w);
+  open_unknowns(w);
+  prog_title(m->next, "M q'' = f, with M as factored at order 0");
+  for (uint32_t v = 0; v < total; v++) {
+    Slot below = row_below(w, v), f = v < n ? m->values.at[w->value[sys->f[v]]].coef : 0;
+    b[v] = series_op(m, IR_SUB, f, below);
+    s[v] = v < n ? 0 : lower_terms(w, &w->row[v], w->u);
+  }
+  if (sys->factored->straight && n <= INVERSE_MAX && !sys->ndefs) {
+    solve_by_inverse(w, b, x);
+  } else {
+    Factored seen = seen_from_next(w);
+    factored_solve(m->next, &seen, b, s, x);
+  }
+  for (uint32_t v = 0; v < total; v++) series_set(m, w->u[v], x[v]);
+  set_adjoints(w);
+}
+
+/* --- what leaves --- */
 
 static void store_rate(Model *w, uint32_t i, Slot zero, Slot coef) {
   Name name = w->sys->rates[i];
+  uint32_t column = 2 * w->sys->nq + w->sys->nz + i;
   prog_name(w->m.first, zero, name);
   prog_name(w->m.next, coef, name);
-  prog_store(w->m.first, 0, 2 * w->sys->nq + w->sys->nz + i, zero, name);
-  prog_store(w->m.next, 0, 2 * w->sys->nq + w->sys->nz + i, coef, name);
-}
-
-static void solve_block(Model *w, const Block *b) {
-  Arena *arena = w->m.arena;
-  uint32_t n = b->n;
-  Slot *M = ARENA_ARRAY(arena, Slot, n * n), *f = ARENA_ARRAY(arena, Slot, n), *x = ARENA_ARRAY(arena, Slot, n);
-  for (uint32_t i = 0; i < n * n; i++) M[i] = w->zero[b->M[i]];
-  for (uint32_t i = 0; i < n; i++) f[i] = w->zero[b->f[i]];
-  Block here = *b;
-  here.M = M;
-  here.f = f;
-  Factored fac = block_factor(w->m.first, &here, &w->out->room);
-  factor_solve(w->m.first, &fac, f, x);
-  for (uint32_t i = 0; i < n; i++) w->second[b->at[i]] = series_open(&w->m, x[i]);
-  for (uint32_t i = 0; i < n; i++) f[i] = right_side(w, b, i);
-  Factored seen = seen_from_next(w, &fac);
-  Slot *y = ARENA_ARRAY(arena, Slot, n);
-  factor_solve(w->m.next, &seen, f, y);
-  for (uint32_t i = 0; i < n; i++) {
-    series_set(&w->m, w->second[b->at[i]], y[i]);
-    store_rate(w, b->at[i], x[i], y[i]);
-  }
-}
-
-static void solve_all(Model *w) {
-  prog_title(w->m.first, "M q'' = f");
-  prog_title(w->m.next, "M q'' = f, with M as factored at order 0");
-  for (uint32_t k = 0; k < w->sys->nblocks; k++) solve_block(w, &w->sys->blocks[k]);
+  prog_store(w->m.first, 0, column, zero, name);
+  prog_store(w->m.next, 0, column, coef, name);
 }
 
 /* x[k+1] of q, v, z: T/(k+1) times their rates. */
 static void store_state(Model *w, uint32_t column, Slot rate) {
-  Slot up = prog_ins(w->m.next, (Ins){.op = IR_LOAD, .array = ARR_UP, .name = "up"});
+  Slot up = load(&w->m, ARR_UP, 0, "up");
   prog_store(w->m.next, 1, column, series_op(&w->m, IR_MUL, up, rate), "");
 }
 
-static void store_rest(Model *w) {
+static void store_all(Model *w) {
   Maker *m = &w->m;
-  uint32_t nq = w->sys->nq, nz = w->sys->nz;
-  for (uint32_t i = 0; i < nz; i++) {
-    Slot s = w->sys->flow[i];
-    store_rate(w, nq + i, w->zero[s], m->values.at[w->value[s]].coef);
-  }
-  for (uint32_t i = 0; i < nq; i++)
-    store_state(w, i, prog_ins(m->next, (Ins){.op = IR_LOAD, .array = ARR_COEF, .index = nq + i, .name = w->sys->velocities[i]}));
-  for (uint32_t i = 0; i < nq; i++) store_state(w, nq + i, m->values.at[w->second[i]].coef);
-  for (uint32_t i = 0; i < nz; i++) store_state(w, 2 * nq + i, m->values.at[w->value[w->sys->flow[i]]].coef);
+  const IrSystem *sys = w->sys;
+  uint32_t nq = sys->nq, nz = sys->nz;
+  for (uint32_t i = 0; i < nq; i++) store_rate(w, i, w->zero[sys->x[i]], m->values.at[w->u[i]].coef);
+  for (uint32_t i = 0; i < nz; i++) store_rate(w, nq + i, w->zero[sys->flow[i]], m->values.at[w->value[sys->flow[i]]].coef);
+  for (uint32_t i = 0; i < nq; i++) store_state(w, i, load(m, ARR_COEF, nq + i, sys->velocities[i]));
+  for (uint32_t i = 0; i < nq; i++) store_state(w, nq + i, m->values.at[w->u[i]].coef);
+  for (uint32_t i = 0; i < nz; i++) store_state(w, 2 * nq + i, m->values.at[w->value[sys->flow[i]]].coef);
   for (uint32_t i = 0; i < m->pairs.n; i++) prog_store(m->next, 2, i, m->values.at[m->pairs.at[i].a].coef, "");
   for (uint32_t i = 0; i < m->pairs.n; i++) prog_store(m->next, 3, i, m->values.at[m->pairs.at[i].b].coef, "");
   for (uint32_t i = 0; i < m->constants.n; i++) prog_store(m->first, 1, i, m->constants.at[i], "");
 }
 
-static int is_second(const Model *w, Val v) {
-  for (uint32_t i = 0; i < w->sys->nq; i++)
-    if (w->second[i] == v) return 1;
-  return 0;
-}
-
-/* When the loads of `next` are there, in cycles of a processor: the rates of the order before, and v and z, which are made of
- * them, come last; all else was there one order before. */
+/* When the loads of `next` are there, in cycles of a processor: the rates of the order before, v and z, which are made of them,
+ * and the sums in which they stand come last; all else was there one order before. */
 static const uint32_t *when_ready(const Model *w, const Prog *next) {
   enum { ORDER = 30, PRODUCT = 4 };
-  uint32_t *ready = ARENA_ARRAY(next->arena, uint32_t, next->ins.n);
+  uint32_t *ready = ARENA_ARRAY(next->arena, uint32_t, next->ins.n), total = w->sys->nq + w->sys->ndefs;
+  unsigned char *late = ARENA_ARRAY(next->arena, unsigned char, w->m.values.n);
+  for (uint32_t v = 0; w->sys->nq && v < total; v++) late[w->u[v]] = late[w->lambda[v]] = 1;
+  late[0] = 0;
   for (Slot s = 1; s < next->ins.n; s++) {
     const Ins *i = &next->ins.at[s];
     if (i->op != IR_LOAD) continue;
     if (i->array == ARR_COEF && i->index >= w->sys->nq) ready[s] = ORDER + PRODUCT;
-    if (i->array == ARR_SUMS && (is_second(w, w->m.pairs.at[i->index].a) || is_second(w, w->m.pairs.at[i->index].b))) ready[s] = ORDER;
+    if (i->array == ARR_SUMS && (late[w->m.pairs.at[i->index].a] || late[w->m.pairs.at[i->index].b])) ready[s] = ORDER;
   }
   return ready;
 }
@@ -315,7 +417,6 @@ Series *series_new(const IrSystem *sys, const char **why) {
   w.need = ARENA_ARRAY(a, unsigned char, n);
   w.zero = ARENA_ARRAY(a, Slot, n);
   w.value = ARENA_ARRAY(a, Val, n);
-  w.second = ARENA_ARRAY(a, Val, sys->nq + 1);
   vec_push(a, &w.m.values, ((Value){0}));
   mark_roots(&w);
   copy_program(&w);
@@ -323,8 +424,8 @@ Series *series_new(const IrSystem *sys, const char **why) {
     *why = w.m.why;
     return NULL;
   }
-  solve_all(&w);
-  store_rest(&w);
+  solve(&w);
+  store_all(&w);
   out->first = prog_tidy(w.m.first);
   const Prog *next = prog_tidy(w.m.next);
   out->next = prog_balance(next, when_ready(&w, next));

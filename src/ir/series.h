@@ -13,17 +13,30 @@
  * for all models.
  *
  * M q'' = f is solved order by order with the factors of M[0], which `first` makes: M[0] q''[k] is
- * f[k] - M[k] q''[0] less the sums over M and q''. */
+ * f[k] - M[k] q''[0] less the sums over M and q''. Where M is kept as a product, through definitions w' = C q'' + ...
+ * (mech/lift.h), the same holds for the larger sparse system of the rates w' and their adjoints,
+ *     H u' + C^T lambda = f (rows of q),   H u' + C^T lambda = lambda (rows of w),   w' = C u',
+ * so that the sums grow in number as the text does. */
 #ifndef LAGC_SERIES_H
 #define LAGC_SERIES_H
 
-#include "ir/solve.h"
+#include "ir/factored.h"
 
-/* M, f and the rates of the states as a program, not yet solved. */
+typedef struct {
+  uint32_t row, col;
+  Slot slot;
+} IrSlotEntry;
+typedef VEC(IrSlotEntry) IrEntries;
+
+/* M q'' = f and the rates of the states as a program, with the entries of the system that stands for M q'' = f: see
+ * LinearSystem in mech/eqns.h. Variables are accelerations and, from nq on, the rates of definitions. */
 typedef struct {
   Prog *p;
-  const Block *blocks;
-  uint32_t nblocks, nq, nz;
+  uint32_t nq, ndefs, nz;
+  IrEntries H, C;        /* H: lower triangle */
+  const Slot *f;         /* [nq] */
+  const Slot *x;         /* [nq + ndefs] the solution */
+  const Factored *factored; /* how it was found */
   const Slot *flow;      /* [nz] */
   const Name *velocities, *rates; /* [nq] and [nq + nz]: names of q', and of q'' and z' */
 } IrSystem;
@@ -37,7 +50,7 @@ typedef struct {
   uint32_t columns;      /* of x: a multiple of 4 */
   uint32_t sums;         /* pairs: columns of a and b */
   uint32_t constants;    /* of c */
-  uint32_t room;         /* for blocks that are factored by a loop, in reals: see factored_room */
+  uint32_t room;         /* for blocks that are factored by a loop, in reals */
   int uses_time;
 } Series;
 

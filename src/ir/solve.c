@@ -1,156 +1,166 @@
-#include "ir/solve.h"
+/* M q'' = f as a program.
+ *
+ * A mass matrix that is proved positive definite is eliminated by eliminate.c, in straight-line code.
+ * Otherwise blocks of coupled coordinates: pairs by Cramer's rule, other blocks, and large dense
+ * ones, by a loop with partial pivoting. */
+#include "ir/lower_impl.h"
 
-enum { STRAIGHT_LINE_MAX = 12 };
+/* Straight-line elimination of a dense matrix takes n^3/3 lines. Measured: it is faster than a loop
+ * by a third at n = 10; past n = 12 the code is too long for what it gains. */
+enum { STRAIGHT_OPS_A_VARIABLE = 100 };
 
-static Slot op(Prog *p, IrOp o, Slot a, Slot b) { return prog_op(p, o, a, b); }
+typedef struct {
+  uint32_t n;
+  uint32_t *at; /* the coordinates of the block */
+  Slot *M;      /* [n*n], lower triangle filled */
+  Slot *f;
+  Slot divisor; /* of two: the determinant */
+} Block;
 
-/* x - a*b, with structural zeros skipped. */
-static Slot minus_product(Prog *p, Slot x, Slot a, Slot b) {
-  Slot ab = op(p, IR_MUL, a, b);
-  return op(p, IR_SUB, x, ab);
+/* --- blocks --- */
+
+static uint32_t find_root(uint32_t *parent, uint32_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
 }
 
-/* x / divisor i. */
-static Slot divided(Prog *p, const Factored *f, Slot x, uint32_t i) {
-  return f->inverse ? op(p, IR_MUL, x, f->inverse[i]) : op(p, IR_DIV, x, f->divisor[i]);
-}
-
-Name block_name(const Block *b, Arena *a, const char *stem, uint32_t i, uint32_t j) {
-  if (b->of == 1) return arena_strdup(a, stem);
-  if (j == UINT32_MAX) return arena_printf(a, "%s%u", stem, i + 1);
-  return arena_printf(a, b->of > 9 ? "%s%u_%u" : "%s%u%u", stem, j + 1, i + 1);
-}
-
-static void check_pivot(Prog *p, Slot d, int positive) {
-  const Ins *i = &p->ins.at[d];
-  if (d && i->op == IR_CONST && (num_sign(i->number) > 0 || !positive)) return; /* known now */
-  prog_ins(p, (Ins){.op = IR_PIVOT, .a = d, .index = (uint32_t)positive});
-}
-
-/* --- factoring --- */
-
-/* M = L D L^T: W holds L D below the diagonal and D on it, L the unit factor. */
-static void factor_straight(Prog *p, const Block *b, Factored *fac) {
-  uint32_t n = b->n;
-  Slot *W = ARENA_ARRAY(p->arena, Slot, n * n), *L = ARENA_ARRAY(p->arena, Slot, n * n), *D = ARENA_ARRAY(p->arena, Slot, n);
-  for (uint32_t j = 0; j < n; j++) {
-    Slot d = b->M[j * n + j];
-    for (uint32_t k = 0; k < j; k++) d = minus_product(p, d, W[j * n + k], L[j * n + k]);
-    D[j] = d;
-    prog_name(p, d, block_name(b, p->arena, "D", b->at[j], UINT32_MAX));
-    check_pivot(p, d, 1);
-    for (uint32_t i = j + 1; i < n; i++) {
-      Slot w = b->M[i * n + j];
-      for (uint32_t k = 0; k < j; k++) w = minus_product(p, w, W[i * n + k], L[j * n + k]);
-      W[i * n + j] = w;
-      L[i * n + j] = op(p, IR_DIV, w, d);
-      prog_name(p, L[i * n + j], block_name(b, p->arena, "L", b->at[j], b->at[i]));
-    }
+/* label[i]: the first coordinate of the block that i belongs to. */
+static uint32_t *label_blocks(const Eqns *e) {
+  uint32_t *parent = ARENA_ARRAY(e->m->arena, uint32_t, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) parent[i] = i;
+  for (uint32_t k = 0; k < e->system.H.n; k++) {
+    uint32_t a = find_root(parent, e->system.H.at[k].row), b = find_root(parent, e->system.H.at[k].col);
+    if (a < b) parent[b] = a;
+    else parent[a] = b;
   }
-  fac->L = L;
-  fac->divisor = D;
+  for (uint32_t i = 0; i < e->n; i++) parent[i] = find_root(parent, i);
+  return parent;
+}
+
+Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j) {
+  Arena *a = l->p->arena;
+  if (l->e->n == 1) return arena_strdup(a, stem);
+  if (j == UINT32_MAX) return arena_printf(a, "%s%u", stem, i + 1);
+  return arena_printf(a, l->e->n > 9 ? "%s%u_%u" : "%s%u%u", stem, j + 1, i + 1);
+}
+
+/* The blocks in the order of their first coordinates, filled in one pass over coordinates and entries. */
+static uint32_t make_blocks(Lower *l, Block *blocks) {
+  const Eqns *e = l->e;
+  Arena *a = l->p->arena;
+  const uint32_t *label = label_blocks(e);
+  uint32_t n = 0, *block = ARENA_ARRAY(a, uint32_t, e->n), *place = ARENA_ARRAY(a, uint32_t, e->n);
+  for (uint32_t i = 0; i < e->n; i++) {
+    block[i] = label[i] == i ? n++ : block[label[i]];
+    place[i] = blocks[block[i]].n++;
+  }
+  for (uint32_t k = 0; k < n; k++) {
+    Block *b = &blocks[k];
+    b->at = ARENA_ARRAY(a, uint32_t, b->n);
+    b->f = ARENA_ARRAY(a, Slot, b->n);
+    b->M = ARENA_ARRAY(a, Slot, (size_t)b->n * b->n);
+  }
+  for (uint32_t k = 0; k < e->system.H.n; k++) {
+    const MassEntry *x = &e->system.H.at[k];
+    Block *b = &blocks[block[x->row]];
+    Slot s = lower_slot(l, x->e);
+    prog_name(l->p, s, lower_numbered(l, "M", x->row, x->col));
+    b->M[place[x->row] * b->n + place[x->col]] = s;
+  }
+  for (uint32_t i = 0; i < e->n; i++) {
+    Block *b = &blocks[block[i]];
+    b->at[place[i]] = i;
+    b->f[place[i]] = lower_slot(l, e->system.f[i]);
+    prog_name(l->p, b->f[place[i]], lower_numbered(l, "f", i, UINT32_MAX));
+  }
+  return n;
+}
+
+/* --- one coordinate, two, and loops --- */
+
+static Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
+
+static void solve_one(Lower *l, const Block *b, Slot *x) {
+  Expr M = eqns_mass(l->e, b->at[0], b->at[0]);
+  if (expr_sign(l->g, M) != SIGN_POSITIVE) lower_pivot(l, b->M[0], 0);
+  x[0] = op(l, IR_DIV, b->f[0], b->M[0]);
 }
 
 /* Two coordinates whose mass matrix may be indefinite (L = x'*y'): Cramer's rule. It needs no pivoting,
  * and for 2 x 2 its error is that of the matrix's condition (Higham, Accuracy and Stability of Numerical
  * Algorithms, 2nd ed., section 1.10.1). */
-static void factor_pair(Prog *p, const Block *b, Factored *fac) {
-  Slot *m = ARENA_ARRAY(p->arena, Slot, 3), *det = ARENA_ARRAY(p->arena, Slot, 1);
-  m[0] = b->M[0], m[1] = b->M[2], m[2] = b->M[3];
-  Slot square = op(p, IR_MUL, m[0], m[2]);
-  det[0] = minus_product(p, square, m[1], m[1]);
-  prog_name(p, det[0], "det_M");
-  check_pivot(p, det[0], 0);
-  fac->L = m;
-  fac->divisor = det;
+static void solve_two(Lower *l, Block *b, Slot *x) {
+  Slot m11 = b->M[0], m12 = b->M[2], m22 = b->M[3];
+  Slot square = op(l, IR_MUL, m11, m22);
+  Slot det = lower_minus_product(l, square, m12, m12);
+  prog_name(l->p, det, "det_M");
+  b->divisor = det;
+  lower_pivot(l, det, 0);
+  Slot top1 = op(l, IR_MUL, b->f[0], m22), top2 = op(l, IR_MUL, m11, b->f[1]);
+  Slot n1 = lower_minus_product(l, top1, m12, b->f[1]), n2 = lower_minus_product(l, top2, m12, b->f[0]);
+  x[0] = op(l, IR_DIV, n1, det);
+  x[1] = op(l, IR_DIV, n2, det);
 }
 
-static void factor_loop(Prog *p, const Block *b, Factored *fac) {
-  uint32_t n = b->n;
-  Slot *full = ARENA_ARRAY(p->arena, Slot, n * n);
-  for (uint32_t i = 0; i < n; i++)
-    for (uint32_t j = 0; j < n; j++) full[i * n + j] = i >= j ? b->M[i * n + j] : b->M[j * n + i];
-  fac->L = full;
+static void solve_loop(Lower *l, const Block *b, Slot *x) {
+  Arena *a = l->p->arena;
+  Slot *full = ARENA_ARRAY(a, Slot, b->n * b->n);
+  for (uint32_t i = 0; i < b->n; i++)
+    for (uint32_t j = 0; j < b->n; j++) full[i * b->n + j] = i >= j ? b->M[i * b->n + j] : b->M[j * b->n + i];
+  vec_push(a, &l->p->solves, ((Solve){b->n, 0, full, b->f}));
+  Slot s = prog_ins(l->p, (Ins){.op = IR_SOLVE, .index = l->p->solves.n - 1});
+  for (uint32_t i = 0; i < b->n; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
 
-uint32_t factored_room(uint32_t n) { return n * n + 2 * n; }
+static int goes_straight(const Eqns *e) {
+  const LinearSystem *s = &e->system;
+  return e->definite_mass && (s->ndefs || s->ops <= STRAIGHT_OPS_A_VARIABLE * (uint64_t)e->n);
+}
 
-Factored block_factor(Prog *p, const Block *b, uint32_t *room) {
-  Factored fac = {.n = b->n};
-  if (b->n == 1) {
-    fac.kind = FACTOR_ONE;
-    fac.divisor = b->M;
-    if (!b->definite) check_pivot(p, b->M[0], 0);
-  } else if (b->definite && b->n <= STRAIGHT_LINE_MAX) {
-    fac.kind = FACTOR_STRAIGHT;
-    factor_straight(p, b, &fac);
-  } else if (b->n == 2) {
-    fac.kind = FACTOR_PAIR;
-    factor_pair(p, b, &fac);
-  } else {
-    fac.kind = FACTOR_LOOP;
-    fac.place = room ? *room : 0;
-    if (room) *room += factored_room(b->n);
-    factor_loop(p, b, &fac);
+/* Each block that is factored by a loop gets a place of its own. */
+static void keep_factors(Lower *l, const Block *blocks, uint32_t n, Slot *x) {
+  Factored *f = l->factored;
+  uint32_t place = 0, loop = 0;
+  *f = (Factored){.n = l->e->n};
+  for (uint32_t k = 0; k < n; k++) {
+    const Block *b = &blocks[k];
+    FactoredBlock kept = {.n = b->n, .at = b->at, .M = b->M, .divisor = b->n == 2 ? b->divisor : b->M[0], .place = place};
+    vec_push(l->p->arena, &f->blocks, kept);
+    if (b->n < 3) continue;
+    l->p->solves.at[loop++].place = place;
+    place += factored_room(b->n);
   }
-  return fac;
+  l->x = x;
 }
 
-uint32_t factor_divisors(const Factored *f) {
-  switch (f->kind) {
-    case FACTOR_ONE: case FACTOR_PAIR: return 1;
-    case FACTOR_STRAIGHT: return f->n;
-    case FACTOR_LOOP: case FACTOR_INVERSE: break;
+static void solve_blocks(Lower *l, Slot *acc) {
+  const Eqns *e = l->e;
+  Arena *a = l->p->arena;
+  Block *blocks = ARENA_ARRAY(a, Block, e->n);
+  uint32_t n = make_blocks(l, blocks);
+  prog_title(l->p, "M q'' = f");
+  Slot *x = ARENA_ARRAY(a, Slot, e->n);
+  for (uint32_t k = 0; k < n; k++) {
+    Block *b = &blocks[k];
+    if (b->n == 1) solve_one(l, b, x);
+    else if (b->n == 2) solve_two(l, b, x);
+    else solve_loop(l, b, x);
+    for (uint32_t i = 0; i < b->n; i++) acc[b->at[i]] = x[i];
   }
-  return 0;
+  if (l->factored) keep_factors(l, blocks, n, acc);
 }
 
-/* --- solving --- */
-
-static void solve_straight(Prog *p, const Factored *fac, const Slot *f, Slot *x) {
-  uint32_t n = fac->n;
-  const Slot *L = fac->L;
-  for (uint32_t i = 0; i < n; i++) {
-    x[i] = f[i];
-    for (uint32_t k = 0; k < i; k++) x[i] = minus_product(p, x[i], L[i * n + k], x[k]);
-  }
-  for (uint32_t i = 0; i < n; i++) x[i] = divided(p, fac, x[i], i);
-  for (uint32_t i = n; i-- > 0;)
-    for (uint32_t k = i + 1; k < n; k++) x[i] = minus_product(p, x[i], L[k * n + i], x[k]);
-}
-
-static void solve_pair(Prog *p, const Factored *fac, const Slot *f, Slot *x) {
-  const Slot m11 = fac->L[0], m12 = fac->L[1], m22 = fac->L[2];
-  Slot top1 = op(p, IR_MUL, f[0], m22), top2 = op(p, IR_MUL, m11, f[1]);
-  Slot n1 = minus_product(p, top1, m12, f[1]), n2 = minus_product(p, top2, m12, f[0]);
-  x[0] = divided(p, fac, n1, 0);
-  x[1] = divided(p, fac, n2, 0);
-}
-
-static void solve_loop(Prog *p, const Factored *fac, const Slot *f, Slot *x) {
-  Slot *rhs = ARENA_ARRAY(p->arena, Slot, fac->n);
-  for (uint32_t i = 0; i < fac->n; i++) rhs[i] = f[i];
-  vec_push(p->arena, &p->solves, ((Solve){fac->n, fac->place, fac->L, rhs}));
-  Slot s = prog_ins(p, (Ins){.op = IR_SOLVE, .index = p->solves.n - 1});
-  for (uint32_t i = 0; i < fac->n; i++) x[i] = prog_ins(p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
-}
-
-static void solve_inverse(Prog *p, const Factored *fac, const Slot *f, Slot *x) {
-  for (uint32_t i = 0; i < fac->n; i++) {
-    x[i] = 0;
-    for (uint32_t j = 0; j < fac->n; j++) {
-      Slot product = op(p, IR_MUL, fac->L[i * fac->n + j], f[j]);
-      x[i] = op(p, IR_ADD, x[i], product);
-    }
-  }
-}
-
-void factor_solve(Prog *p, const Factored *fac, const Slot *f, Slot *x) {
-  switch (fac->kind) {
-    case FACTOR_ONE: x[0] = divided(p, fac, f[0], 0); return;
-    case FACTOR_STRAIGHT: solve_straight(p, fac, f, x); return;
-    case FACTOR_PAIR: solve_pair(p, fac, f, x); return;
-    case FACTOR_LOOP: solve_loop(p, fac, f, x); return;
-    case FACTOR_INVERSE: solve_inverse(p, fac, f, x); return;
-  }
+void lower_solution(Lower *l, Slot *acc) {
+  const Eqns *e = l->e;
+  const LinearSystem *s = &e->system;
+  if (!e->n) return;
+  VEC(Expr) roots = {0};
+  for (uint32_t k = 0; k < s->H.n; k++) vec_push(l->p->arena, &roots, s->H.at[k].e);
+  for (uint32_t k = 0; k < s->C.n; k++) vec_push(l->p->arena, &roots, s->C.at[k].e);
+  for (uint32_t i = 0; i < e->n; i++) vec_push(l->p->arena, &roots, s->f[i]);
+  prog_title(l->p, "mass matrix M and forces f");
+  lower_roots(l, roots.at, roots.n);
+  if (goes_straight(e)) lower_elimination(l, acc);
+  else solve_blocks(l, acc);
+  for (uint32_t i = 0; i < e->n; i++) prog_name(l->p, acc[i], expr_symbol(e->g, e->m->coords.at[i].a)->name);
 }

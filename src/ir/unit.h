@@ -9,6 +9,7 @@ typedef struct {
   const char *name, *unit; /* as the user wrote them */
   double factor;
   int periodic, sign;
+  double offset;
 } IrVar;
 
 typedef struct {
@@ -42,8 +43,13 @@ typedef struct {
   VEC(IrMonitor) monitors;
 } IrScene;
 
+/* Place of an entry of a sparse matrix. */
+typedef struct {
+  uint32_t row, col;
+} IrEntry;
+
 /* What only some methods of integration need, and is not made for the others. */
-enum { WANT_VARIATION = 1, WANT_TAYLOR = 2 };
+enum { WANT_VARIATION = 1, WANT_TAYLOR = 2, WANT_LINEAR = 4 };
 
 /* An entry of the second derivatives: part as in mech/variation.h. */
 typedef struct {
@@ -61,9 +67,10 @@ typedef struct {
   unsigned wants;
   const Prog *variation, *second; /* NULL unless WANT_VARIATION */
   VEC(IrSecond) second_at;        /* what the values of `second` are */
-  const Series *taylor;           /* NULL unless WANT_TAYLOR, and where a value is not analytic */
+  const Series *taylor;         /* NULL unless WANT_TAYLOR, and where a value is not analytic */
+  const Prog *linear;           /* NULL: not asked for */
+  VEC(IrEntry) linear_dr, linear_mass; /* what its outputs 0 and 1 are */
   VEC(IrScene) scenes;
 } IrUnit;
-
 
 #endif

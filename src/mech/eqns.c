@@ -6,9 +6,9 @@
 #include "sym/diff.h"
 #include "sym/simplify.h"
 
-static int is_kind(const Symbol *s, const void *data) { return s->kind == *(const SymKind *)data; }
+static unsigned bit(SymKind kind) { return 1u << kind; }
 
-static int contains_kind(const Eqns *e, Expr x, SymKind kind) { return expr_contains(e->g, x, is_kind, &kind); }
+static int contains_kind(const Eqns *e, Expr x, SymKind kind) { return (expr_kinds(e->g, x) & bit(kind)) != 0; }
 
 Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
   uint32_t row = i > j ? i : j, col = i > j ? j : i, lo = 0, hi = e->mass.n;
@@ -29,7 +29,7 @@ enum { EXPAND_MAX_COORDS = 32 };
  * them, and short forms of sums over all coordinates cost more than their derivation. */
 enum { SHORTEN_MAX_COORDS = 64 };
 
-static Expr shorten(const Eqns *e, Expr x) { return e->n <= SHORTEN_MAX_COORDS ? simplify(e->g, x) : x; }
+static Expr shorten(const Eqns *e, Expr x) { return e->mass_known && e->n <= SHORTEN_MAX_COORDS ? simplify(e->g, x) : x; }
 
 /* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as it
  * was written: k/2*(r - l)^2 has more right digits than what it expands to. */
@@ -43,13 +43,11 @@ static void derive_energy(Eqns *e) {
   }
   e->momenta = momenta;
   Expr pv = expr_add_n(g, terms, e->n), l = e->m->lagrangian;
-  SymKind velocity = SYM_VEL;
-  ExprMap moving_nodes = expr_containing(g, &l, 1, is_kind, &velocity);
   VEC(Expr) still = {0};
   for (uint32_t i = 0; i < expr_pairs(g, l, EX_SUM); i++) {
     Num c;
     Expr t = expr_pair(g, l, EX_SUM, i, &c);
-    if (expr_map_get(&moving_nodes, t)) continue;
+    if (contains_kind(e, t, SYM_VEL)) continue;
     Expr part = expr_scale(g, c, t);
     vec_push(arena, &still, part);
   }
@@ -82,19 +80,13 @@ static void fill_outputs(Eqns *e) {
   e->noutputs = m->scene.outputs.n;
 }
 
-/* The kinds of symbols that the roots contain, as bits 1 << SymKind: one pass for all of them. */
 static unsigned kinds_in(const Eqns *e, const Expr *roots, uint32_t n) {
   unsigned kinds = 0;
-  ExprList l = expr_topo(e->g, roots, n);
-  for (uint32_t i = 0; i < l.n; i++)
-    if (expr_op(e->g, l.at[i]) == EX_SYM) kinds |= 1u << expr_sym_of(e->g, l.at[i])->kind;
+  for (uint32_t i = 0; i < n; i++) kinds |= expr_kinds(e->g, roots[i]);
   return kinds;
 }
 
-static unsigned bit(SymKind kind) { return 1u << kind; }
-
 static int check_momenta(const Eqns *e) {
-  if (!(kinds_in(e, e->p, e->n) & bit(SYM_INPUT))) return 1;
   for (uint32_t i = 0; i < e->n; i++)
     if (contains_kind(e, e->p[i], SYM_INPUT)) {
       diag_error(e->m->diags, e->m->lagrangian_span, "the momentum of `%s` depends on an input, whose derivative would be needed",
@@ -109,13 +101,15 @@ static int check_momenta(const Eqns *e) {
 static void classify(Eqns *e) {
   const Model *m = e->m;
   VEC(Expr) entries = {0}, roots = {0};
-  for (uint32_t i = 0; i < e->mass.n; i++) vec_push(m->arena, &entries, e->mass.at[i].e);
+  const Entries *H = e->mass_known ? &e->mass : &e->system.H, *C = &e->system.C;
+  for (uint32_t i = 0; i < H->n; i++) vec_push(m->arena, &entries, H->at[i].e);
+  for (uint32_t i = 0; i < C->n && !e->mass_known; i++) vec_push(m->arena, &entries, C->at[i].e);
   for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->f[i]);
   for (uint32_t i = 0; i < m->states.n; i++) vec_push(m->arena, &roots, e->flow[i]);
   unsigned mass = kinds_in(e, entries.at, entries.n), rest = kinds_in(e, roots.at, roots.n);
   e->constant_mass = !(mass & (bit(SYM_COORD) | bit(SYM_VEL) | bit(SYM_TIME) | bit(SYM_STATE)));
   e->separable = e->n && e->constant_mass && !m->states.n && !(rest & bit(SYM_VEL));
-  e->autonomous = !((mass | rest) & bit(SYM_TIME));
+  e->autonomous = e->timeless = !((mass | rest) & bit(SYM_TIME));
   int inputs = (rest & bit(SYM_INPUT)) != 0;
   for (uint32_t i = 0; i < m->inputs.n; i++)
     if (inputs && m->inputs.at[i].value) e->autonomous &= !contains_kind(e, m->inputs.at[i].value, SYM_TIME);
@@ -128,7 +122,6 @@ static void classify(Eqns *e) {
   unsigned lagrangian = kinds_in(e, &m->lagrangian, 1);
   e->conserves_energy = m->lagrangian && !m->forces.n && !m->dissipation && !inputs &&
                         !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_INPUT)));
-  e->definite_mass = m->lagrangian && lagrange_definite(e);
 }
 
 /* Derivatives may multiply numbers past the range of a double. */
@@ -137,6 +130,8 @@ static int check_numbers(const Eqns *e) {
   VEC(Expr) roots = {0};
   for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->f[i]);
   for (uint32_t i = 0; i < e->mass.n; i++) vec_push(m->arena, &roots, e->mass.at[i].e);
+  for (uint32_t i = 0; i < e->system.H.n; i++) vec_push(m->arena, &roots, e->system.H.at[i].e);
+  for (uint32_t i = 0; i < e->system.C.n; i++) vec_push(m->arena, &roots, e->system.C.at[i].e);
   for (uint32_t i = 0; i < m->states.n; i++) vec_push(m->arena, &roots, e->flow[i]);
   for (uint32_t i = 0; i < e->noutputs; i++) vec_push(m->arena, &roots, e->outputs[i].value);
   vec_push(m->arena, &roots, e->energy_scale);

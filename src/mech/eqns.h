@@ -18,6 +18,21 @@ typedef struct {
   Expr e;
 } MassEntry;
 
+typedef VEC(MassEntry) Entries;
+
+/* M q'' = f as the program solves it. Variables 0 .. n-1 are the accelerations; n + k is the rate of
+ * a definition that contains velocities, which is C_k times the variables before it (mech/lift.h).
+ * Without definitions H is M. */
+typedef struct {
+  uint32_t n, ndefs;
+  const Expr *defs;      /* [ndefs] */
+  Entries H;             /* lower triangle, row by row */
+  Entries C;             /* row n + k; col < n + k */
+  const Expr *f;         /* [n] */
+  const uint32_t *order; /* [n + ndefs] in which variables are eliminated: see mech/order.h */
+  uint64_t ops;          /* of elimination and substitution, about */
+} LinearSystem;
+
 typedef struct {
   const Model *m;
   ExprGraph *g;
@@ -25,8 +40,10 @@ typedef struct {
   const Expr *p;         /* [n] momenta, as differentiated */
   const Expr *dLdq;      /* [n] as differentiated */
   const Expr *momenta;   /* [n] the same, as a person would write them */
-  VEC(MassEntry) mass;   /* the entries of the lower triangle that are not zero, row by row */
+  Entries mass;          /* the entries of the lower triangle that are not zero, row by row */
+  int mass_known;        /* 0: too many, and the system below does without; see eqns_derive_mass */
   const Expr *f;         /* [n] */
+  LinearSystem system;   /* the cheapest form of M q'' = f found */
   const Expr *Q;         /* [n] generalised forces, inside f already */
   const Expr *flow;      /* [number of states] */
   Expr energy;           /* p q' - L, to show; 0 without coordinates */
@@ -36,12 +53,32 @@ typedef struct {
   uint32_t noutputs;
   const Expr *definitions; /* by symbol: what stands for parameters given by others, where that was put in; or NULL */
   int constant_mass, definite_mass, conserves_energy, autonomous, smooth;
+  int timeless;          /* t enters by the formulas of inputs, if at all */
   int separable;         /* constant mass, no velocity in f, no states: a splitting method can integrate it */
 } Eqns;
 
 /* Derives the equations. NULL, with the reason in m->diags, when the mass matrix is singular for
  * every state, or when the momenta depend on an input (its derivative would be needed). */
 Eqns *eqns_derive(Model *m);
+
+/* Fills e->mass where the program does without. */
+void eqns_derive_mass(Eqns *e);
+/* A partial derivative of residual `row` by component `col` of y = (q, q', z). */
+typedef struct {
+  uint32_t row, col;
+  Expr e;
+} Partial;
+
+typedef struct {
+  const Partial *at;
+  uint32_t n;
+} Partials;
+
+/* The linearisation, exact: those that are not zero of the derivatives of the residuals
+ *   r_i = f_i - sum_j M_ij q_j''   (i < n),   r_(n + k) = flow_k
+ * at fixed q'', row by row, columns ascending. With M they give the Jacobian of the accelerations,
+ * dq''/dy = M^-1 dr/dy. They contain the symbols q''. */
+Partials eqns_linearise(Eqns *e);
 
 /* M[i][j]; the zero node where the entry is zero. */
 Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j);

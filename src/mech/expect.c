@@ -127,9 +127,9 @@ static int find_showing(Showing *s) {
 
 static void put_value(StrBuf *b, const Showing *s, SymId sym, const Unit *unit) {
   const Symbol *symbol = expr_symbol(s->e->g, sym);
-  double factor = unit_factor(unit);
-  sb_printf(b, "%s%s = %.6Lg", b->n ? ", " : "", symbol->name, s->symbols[sym] / (long double)factor);
-  if (factor != 1) sb_printf(b, symbol->kind == SYM_VEL ? " [%s/s]" : " [%s]", unit->text);
+  double factor = unit_factor(unit), offset = symbol->kind == SYM_VEL ? 0 : num_value(unit->offset);
+  sb_printf(b, "%s%s = %.6Lg", b->n ? ", " : "", symbol->name, (s->symbols[sym] - (long double)offset) / (long double)factor);
+  if (factor != 1 || offset != 0) sb_printf(b, symbol->kind == SYM_VEL ? " [%s/s]" : " [%s]", unit->text);
 }
 
 static int is_acceleration(const Symbol *s, const void *data) {
@@ -149,7 +149,7 @@ static int in_equations(const Eqns *e, SymId sym) {
 static const char *state_text(const Showing *s) {
   enum { FEW_COORDINATES = 4 };
   const Model *m = s->e->m;
-  const Unit si = {.factor = num_int(1), .text = ""};
+  const Unit si = {.factor = num_int(1), .offset = num_int(0), .text = ""};
   ExprGraph *g = s->e->g;
   Expr both = expr_sub(g, s->x->lhs, s->x->rhs);
   StrBuf b = strbuf(m->arena);

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "mech/lift.h"
+#include "mech/order.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
 #include "sym/simplify.h"
@@ -44,89 +46,168 @@ static const Expr *generalised_forces(const Eqns *e) {
   return Q;
 }
 
-/* The entries of the mass matrix and the forces, as differentiated. */
-typedef struct {
-  VEC(MassEntry) mass;
-  Expr *f;
-} Raw;
-
-static Raw differentiate(Eqns *e, const SymId *q, const SymId *v) {
+/* The forces as differentiated, and the momenta. */
+static Expr *differentiate(Eqns *e) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
-  Raw raw = {.f = ARENA_ARRAY(m->arena, Expr, e->n)};
+  SymId *q = coordinate_symbols(e->m, 0), *v = coordinate_symbols(e->m, 1);
   Expr *p = ARENA_ARRAY(m->arena, Expr, e->n), *dLdq = ARENA_ARRAY(m->arena, Expr, e->n);
-  Expr *convective = ARENA_ARRAY(m->arena, Expr, e->n);
+  Expr *convective = ARENA_ARRAY(m->arena, Expr, e->n), *f = ARENA_ARRAY(m->arena, Expr, e->n);
   expr_gradient(g, m->lagrangian, v, e->n, p);
   expr_gradient(g, m->lagrangian, q, e->n, dLdq);
-  for (uint32_t i = 0; i < e->n; i++) {
-    ExprPartials row = expr_gradient_sparse(g, p[i], SYM_VEL, i + 1);
-    for (uint32_t k = 0; k < row.n; k++) vec_push(m->arena, &raw.mass, ((MassEntry){i, row.at[k].index, row.at[k].e}));
-  }
+  e->p = p;
   e->Q = generalised_forces(e);
   Expr *seed = explicit_direction(e);
-  expr_tangent(g, p, e->n, seed, expr_symbol_count(g) + 1, "_drift", convective);
+  expr_tangent(g, p, e->n, seed, expr_symbol_count(g) + 1, "_drift", NULL, convective);
   for (uint32_t i = 0; i < e->n; i++) {
     Expr inertial = expr_sub(g, dLdq[i], convective[i]);
-    raw.f[i] = expr_add(g, inertial, e->Q[i]);
+    f[i] = expr_add(g, inertial, e->Q[i]);
   }
-  e->p = p;
   e->dLdq = dLdq;
-  return raw;
+  return f;
 }
 
-/* Above this many entries, what lets share is worth more than what a short form saves. */
-enum { SIMPLIFY_MAX_ENTRIES = 300 };
-
-const Expr *lagrange_short_forms(const Eqns *e, const Expr *raw, uint32_t n) {
-  if (n > SIMPLIFY_MAX_ENTRIES) return raw;
-  Expr *after = ARENA_ARRAY(e->m->arena, Expr, n + 1);
-  for (uint32_t k = 0; k < n; k++) after[k] = simplify(e->g, raw[k]);
-  return expr_ops(e->g, after, n) <= expr_ops(e->g, raw, n) ? after : raw;
+/* The entries of the mass matrix as differentiated. */
+static Entries raw_mass(const Eqns *e) {
+  Entries mass = {0};
+  for (uint32_t i = 0; i < e->n; i++) {
+    ExprPartials row = expr_gradient_sparse(e->g, e->p[i], SYM_VEL, i + 1);
+    for (uint32_t k = 0; k < row.n; k++) vec_push(e->m->arena, &mass, ((MassEntry){i, row.at[k].index, row.at[k].e}));
+  }
+  return mass;
 }
 
-/* The mass matrix and the forces, in the better of both forms; entries that turn out to be zero go. */
-static void choose_forms(Eqns *e, const Raw *raw) {
-  uint32_t nm = raw->mass.n, n = nm + e->n;
-  Expr *before = ARENA_ARRAY(e->m->arena, Expr, n);
-  for (uint32_t k = 0; k < n; k++) before[k] = k < nm ? raw->mass.at[k].e : raw->f[k - nm];
-  const Expr *best = lagrange_short_forms(e, before, n);
-  for (uint32_t k = 0; k < nm; k++)
-    if (!expr_is_zero(e->g, best[k])) vec_push(e->m->arena, &e->mass, ((MassEntry){raw->mass.at[k].row, raw->mass.at[k].col, best[k]}));
-  e->f = best + nm;
-}
-
-void lagrange_momenta_and_forces(Eqns *e) {
-  SymId *q = coordinate_symbols(e->m, 0), *v = coordinate_symbols(e->m, 1);
-  Raw raw = differentiate(e, q, v);
-  choose_forms(e, &raw);
+void eqns_derive_mass(Eqns *e) {
+  if (e->mass_known || !e->n) return;
+  e->mass = raw_mass(e);
+  e->mass_known = 1;
 }
 
 /* --- definiteness --- */
 
-static int is_velocity(const Symbol *s, const void *data) {
-  (void)data;
-  return s->kind == SYM_VEL;
-}
+static int moves(const Eqns *e, Expr x) { return (expr_kinds(e->g, x) & 1u << SYM_VEL) != 0; }
 
-int lagrange_definite(const Eqns *e) {
+/* Whether the kinetic energy is a sum of terms that are never negative: then a mass matrix that is
+ * regular is positive definite, and no order of elimination needs pivoting. */
+static int lagrange_definite(const Eqns *e, const LinearSystem *s) {
   ExprGraph *g = e->g;
   Expr l = e->m->lagrangian;
-  ExprMap moving = expr_containing(g, &l, 1, is_velocity, NULL);
   for (uint32_t i = 0; i < expr_pairs(g, l, EX_SUM); i++) {
     Num c;
     Expr term = expr_pair(g, l, EX_SUM, i, &c);
-    if (!expr_map_get(&moving, term)) continue;
-    ExprSign s = expr_sign(g, term);
-    if (num_sign(c) < 0 || (s != SIGN_POSITIVE && s != SIGN_NONNEGATIVE)) return 0;
+    if (!moves(e, term)) continue;
+    ExprSign sign = expr_sign(g, term);
+    if (num_sign(c) < 0 || (sign != SIGN_POSITIVE && sign != SIGN_NONNEGATIVE)) return 0;
   }
   /* A term that is at least 0 and quadratic in q' has a Hessian that is at least 0; quadratic means
    * that the Hessian of the whole is free of velocities. */
-  Expr *entries = ARENA_ARRAY(e->m->arena, Expr, e->mass.n + 1);
-  for (uint32_t i = 0; i < e->mass.n; i++) entries[i] = e->mass.at[i].e;
-  ExprList all = expr_topo(g, entries, e->mass.n);
-  for (uint32_t i = 0; i < all.n; i++)
-    if (expr_op(g, all.at[i]) == EX_SYM && is_velocity(expr_sym_of(g, all.at[i]), NULL)) return 0;
+  for (uint32_t i = 0; i < s->H.n; i++)
+    if (moves(e, s->H.at[i].e)) return 0;
+  for (uint32_t i = 0; i < s->C.n; i++)
+    if (moves(e, s->C.at[i].e)) return 0;
   return 1;
+}
+
+/* --- the form that is solved --- */
+
+/* Above this many entries, what lets share is worth more than what a short form saves. */
+enum { SIMPLIFY_MAX_ENTRIES = 300 };
+
+/* rule(raw[k]) for all k when that takes fewer operations than *best, or as many. */
+static void try_short(const Eqns *e, const Expr *raw, uint32_t n, Expr (*rule)(ExprGraph *, Expr), const Expr **best) {
+  Expr *after = ARENA_ARRAY(e->m->arena, Expr, n + 1);
+  for (uint32_t k = 0; k < n; k++) after[k] = rule(e->g, raw[k]);
+  if (expr_ops(e->g, after, n) <= expr_ops(e->g, *best, n)) *best = after;
+}
+
+const Expr *lagrange_short_forms(const Eqns *e, const Expr *raw, uint32_t n) {
+  const Expr *best = raw;
+  try_short(e, raw, n, simplify_shallow, &best);
+  if (n <= SIMPLIFY_MAX_ENTRIES) try_short(e, raw, n, simplify, &best);
+  return best;
+}
+
+/* Operations of a system: its entries, evaluated together, and its solution. */
+static uint64_t system_ops(Eqns *e, LinearSystem *s) {
+  VEC(Expr) roots = {0};
+  for (uint32_t k = 0; k < s->H.n; k++) vec_push(e->m->arena, &roots, s->H.at[k].e);
+  for (uint32_t k = 0; k < s->C.n; k++) vec_push(e->m->arena, &roots, s->C.at[k].e);
+  for (uint32_t i = 0; i < s->n; i++) vec_push(e->m->arena, &roots, s->f[i]);
+  order_best(e->m->arena, e->g, s);
+  return expr_ops(e->g, roots.at, roots.n) + s->ops;
+}
+
+static Entries rewritten(const Eqns *e, const Entries *from, Expr (*rule)(ExprGraph *, Expr)) {
+  Entries to = {0};
+  for (uint32_t k = 0; k < from->n; k++) {
+    MassEntry x = from->at[k];
+    x.e = rule(e->g, x.e);
+    if (!expr_is_zero(e->g, x.e)) vec_push(e->m->arena, &to, x);
+  }
+  return to;
+}
+
+/* Replaces *best when s with all its entries rewritten costs no more: entry by entry they may be
+ * shorter and still lose what they share, so they are weighed together. */
+static void try_form(Eqns *e, const LinearSystem *s, Expr (*rule)(ExprGraph *, Expr), LinearSystem *best, uint64_t *ops) {
+  LinearSystem t = {.n = s->n, .ndefs = s->ndefs, .defs = s->defs, .H = rewritten(e, &s->H, rule), .C = rewritten(e, &s->C, rule)};
+  Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n);
+  for (uint32_t i = 0; i < e->n; i++) f[i] = rule(e->g, s->f[i]);
+  t.f = f;
+  uint64_t mine = system_ops(e, &t);
+  if (mine > *ops) return;
+  *best = t;
+  *ops = mine;
+}
+
+static Expr as_differentiated(ExprGraph *g, Expr x) {
+  (void)g;
+  return x;
+}
+
+/* The cheapest form of s; its operations in *ops. */
+static LinearSystem best_form(Eqns *e, const LinearSystem *s, uint64_t *ops) {
+  LinearSystem best = *s;
+  *ops = UINT64_MAX;
+  try_form(e, s, as_differentiated, &best, ops);
+  try_form(e, s, simplify_shallow, &best, ops);
+  if (s->H.n + s->C.n + e->n <= SIMPLIFY_MAX_ENTRIES) try_form(e, s, simplify, &best, ops);
+  return best;
+}
+
+/* Whether the mass matrix, entries and solution, takes many times what the system without it takes:
+ * then it is not derived at all. */
+static int mass_is_hopeless(Eqns *e, LinearSystem *lifted) {
+  enum { FEW_COORDINATES = 24, MANY_TIMES = 4 };
+  if (e->n <= FEW_COORDINATES || !lifted->ndefs || e->m->expects.n) return 0;
+  order_best(e->m->arena, e->g, lifted);
+  LinearSystem dense = *lifted;
+  uint64_t many = MANY_TIMES * lifted->ops;
+  order_elimination(e->m->arena, e->g, &dense, ORDER_DEFINITIONS_FIRST, many);
+  return dense.ops > many;
+}
+
+/* M and f, or M as the product that the text of L is, which needs pivots that are known to be positive. */
+void lagrange_momenta_and_forces(Eqns *e) {
+  uint64_t dense_ops, lifted_ops;
+  const Expr *f = differentiate(e);
+  LinearSystem lifted = lift_system(e);
+  lifted.f = f;
+  if (mass_is_hopeless(e, &lifted) && lagrange_definite(e, &lifted)) {
+    e->definite_mass = 1;
+    e->system = best_form(e, &lifted, &lifted_ops);
+    e->f = e->system.f;
+    return;
+  }
+  LinearSystem raw = {.n = e->n, .H = raw_mass(e), .f = f}, dense = best_form(e, &raw, &dense_ops);
+  e->mass = dense.H;
+  e->mass_known = 1;
+  e->f = dense.f;
+  e->system = dense;
+  e->definite_mass = lagrange_definite(e, &dense);
+  if (!lifted.ndefs || !e->definite_mass) return;
+  lifted = best_form(e, &lifted, &lifted_ops);
+  if (lifted_ops < dense_ops) e->system = lifted;
 }
 
 /* --- a mass matrix that is singular everywhere --- */
@@ -208,7 +289,7 @@ static void report_singular(const Eqns *e, const long double *null) {
 int lagrange_check_mass(Eqns *e) {
   enum { LARGEST = 200 };
   uint32_t n = e->n;
-  if (n == 0 || n > LARGEST) return 1;
+  if (n == 0 || n > LARGEST || !e->mass_known) return 1;
   Arena *arena = e->m->arena;
   Expr *entries = ARENA_ARRAY(arena, Expr, e->mass.n + 1);
   for (uint32_t k = 0; k < e->mass.n; k++) entries[k] = e->mass.at[k].e;

@@ -4,6 +4,7 @@
 
 #include "mech/eqns.h"
 
+/* Fills e's momenta, forces, mass matrix and the system that is solved. */
 void lagrange_momenta_and_forces(Eqns *e);
 
 /* The short forms of raw[n] when they cost no more operations together, or raw itself: entry by entry they may be shorter
@@ -13,8 +14,8 @@ const Expr *lagrange_short_forms(const Eqns *e, const Expr *raw, uint32_t n);
 /* Says why the mass matrix cannot be solved with, in m->diags, and returns 0; 1 when it can. */
 int lagrange_check_mass(Eqns *e);
 
-/* Whether the kinetic energy is a sum of terms that are never negative: then a mass matrix that is
- * regular is positive definite, and LDL^T needs no pivoting. */
-int lagrange_definite(const Eqns *e);
+/* The short forms of these entries, when they cost no more operations together: entry by entry they may be
+ * shorter and still lose what they share. Otherwise, or when there are too many, the entries as they are. */
+const Expr *lagrange_short_forms(const Eqns *e, const Expr *entries, uint32_t n);
 
 #endif

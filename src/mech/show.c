@@ -99,11 +99,63 @@ static void momenta(Text *t) {
   end_block(t);
 }
 
+/* The unknowns of the system with definitions: accelerations, and per definition w the part of w' that
+ * contains them, and the force that w passes on to what it contains. */
+typedef struct {
+  const Expr *rate, *force;
+} Unknowns;
+
+static Unknowns unknowns(Text *t) {
+  const Eqns *e = t->e;
+  const LinearSystem *s = &e->system;
+  Arena *a = e->m->arena;
+  Expr *rate = ARENA_ARRAY(a, Expr, s->n + s->ndefs), *force = ARENA_ARRAY(a, Expr, s->n + s->ndefs);
+  for (uint32_t i = 0; i < s->n; i++) rate[i] = expr_symbol(t->g, e->m->coords.at[i].a)->node;
+  for (uint32_t k = 0; k < s->ndefs; k++) {
+    Name name = expr_def_name(t->g, s->defs[k]);
+    SymId w = expr_declare(t->g, SYM_LOCAL, 0, arena_printf(a, "%s'", name), SIGN_UNKNOWN);
+    SymId f = expr_declare(t->g, SYM_LOCAL, 0, arena_printf(a, "F_%s", name), SIGN_UNKNOWN);
+    rate[s->n + k] = expr_symbol(t->g, w)->node;
+    force[s->n + k] = expr_symbol(t->g, f)->node;
+  }
+  return (Unknowns){rate, force};
+}
+
+static void add_product(Text *t, Expr *sum, Expr a, Expr b) {
+  Expr ab = expr_mul(t->g, a, b);
+  *sum = expr_add(t->g, *sum, ab);
+}
+
+/* Rows of H and C^T for coordinates, those of H, C^T and -1 for definitions, and those of C: see mech/lift.h. */
+static void lifted_motion(Text *t) {
+  const Eqns *e = t->e;
+  const LinearSystem *s = &e->system;
+  uint32_t total = s->n + s->ndefs;
+  Unknowns u = unknowns(t);
+  Expr *row = ARENA_ARRAY(e->m->arena, Expr, total), *rate = ARENA_ARRAY(e->m->arena, Expr, total);
+  for (uint32_t i = 0; i < total; i++) row[i] = rate[i] = expr_int(t->g, 0);
+  for (uint32_t k = 0; k < s->H.n; k++) {
+    const MassEntry *x = &s->H.at[k];
+    add_product(t, &row[x->row], x->e, u.rate[x->col]);
+    if (x->row != x->col) add_product(t, &row[x->col], x->e, u.rate[x->row]);
+  }
+  for (uint32_t k = 0; k < s->C.n; k++) {
+    const MassEntry *x = &s->C.at[k];
+    add_product(t, &row[x->col], x->e, u.force[x->row]);
+    add_product(t, &rate[x->row], x->e, u.rate[x->col]);
+  }
+  heading(t, "equations of motion: primes of lets without terms in velocities, F what they pass on");
+  for (uint32_t k = s->n; k < total; k++) equation(t, u.rate[k], rate[k], 0);
+  for (uint32_t k = total; k-- > s->n;) equation(t, u.force[k], row[k], 0);
+  for (uint32_t i = 0; i < s->n; i++) equation(t, row[i], s->f[i], i + 1 == s->n && !e->m->states.n);
+}
+
 static void motion(Text *t) {
   const Eqns *e = t->e;
   const Model *m = e->m;
-  heading(t, "equations of motion");
-  for (uint32_t i = 0; i < e->n; i++) {
+  if (e->n && !e->mass_known) lifted_motion(t);
+  else heading(t, "equations of motion");
+  for (uint32_t i = 0; i < e->n && e->mass_known; i++) {
     Expr row = mass_row(t, i);
     equation(t, row, shown(t, e->f[i]), i + 1 == e->n && !m->states.n);
   }

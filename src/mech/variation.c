@@ -1,5 +1,7 @@
 #include "mech/variation.h"
 
+#include <stdlib.h>
+
 #include "mech/lagrange.h"
 #include "sym/diff.h"
 
@@ -10,6 +12,18 @@ static void add_rows(const Eqns *e, Variation *x, SecondPart part, const Expr *o
     ExprPartials row = expr_gradient_sparse(e->g, of[i], kind, triangle ? i + 1 : e->n);
     for (uint32_t k = 0; k < row.n; k++) vec_push(e->m->arena, &x->second, ((SecondEntry){part, i, row.at[k].index, row.at[k].e}));
   }
+}
+
+/* Up to so many entries a coordinate stand diagonal by diagonal: along one, the entries of a family are alike, and are written
+ * as a loop. Full matrices roll better row by row. */
+enum { FEW_A_ROW = 8 };
+
+static int by_diagonal(const void *a, const void *b) {
+  const SecondEntry *x = a, *y = b;
+  int64_t dx = (int64_t)x->row - x->col, dy = (int64_t)y->row - y->col;
+  if (x->part != y->part) return (x->part > y->part) - (x->part < y->part);
+  if (dx != dy) return (dx > dy) - (dx < dy);
+  return (x->row > y->row) - (x->row < y->row);
 }
 
 /* The short forms of the entries; those that turn out to be zero go. */
@@ -40,6 +54,7 @@ Variation *variation_derive(const Eqns *e) {
   add_rows(e, x, SECOND_FQ, e->Q, SYM_COORD);
   add_rows(e, x, SECOND_FV, e->Q, SYM_VEL);
   shorten(e, x);
+  if (x->second.n && x->second.n <= FEW_A_ROW * e->n) qsort(x->second.at, x->second.n, sizeof *x->second.at, by_diagonal);
   x->dLdq = lagrange_short_forms(e, first, 2 * e->n);
   x->momenta = x->dLdq + e->n;
   x->forces = e->Q;

@@ -19,7 +19,7 @@ typedef struct {
   const Expr *dLdq;        /* [n] */
   const Expr *momenta;     /* [n] dL/dq' */
   const Expr *forces;      /* [n] Q: of force and dissipation statements */
-  VEC(SecondEntry) second; /* what is not zero, part by part, row by row */
+  VEC(SecondEntry) second; /* what is not zero, part by part; in a sparse model diagonal by diagonal, else row by row */
 } Variation;
 
 /* Needs coordinates. */

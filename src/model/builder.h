@@ -26,6 +26,8 @@ typedef struct {
   Dim dim;
   int bare;      /* made of numbers alone: takes on the unit of what it is given to */
   int condition; /* true or false, no number */
+  int point;     /* 20 [degC]: a point on a scale whose zero is not that of the kelvin */
+  const char *unit; /* of a name, or a number with a unit: as it was written; otherwise NULL */
   uint32_t n;    /* 0: a number */
 } Value;
 
@@ -37,21 +39,41 @@ typedef struct {
 
 typedef VEC(IndexVar) IndexVars;
 
-/* A let, a member of a family of lets, or a function: evaluated when first needed. */
+/* A let, or a member of a family of lets, evaluated when first needed; or a function. */
 typedef struct {
   const AstStmt *stmt;
   Name name, effect;
   Progress progress;
   Value value; /* e is 0 after an error */
-  const SymId *args; /* of a function: LOCAL symbols */
-  uint32_t nargs;
+  struct Instance *instances; /* of a function: where it has been called */
   IndexVar index[2]; /* of a member: its indices, by name where the let binds one */
 } Definition;
 
+/* A function's body, evaluated for arguments of certain shapes: numbers, or vectors of 2 or 3 components. Their
+ * dimensions may stay open, so that each call has its own. */
+typedef struct Instance Instance;
+struct Instance {
+  uint32_t function;
+  Value *args;            /* made of LOCAL symbols */
+  uint32_t nargs;
+  VEC(SymId) symbols;     /* of all arguments, in order; where a prime is taken of one, then all rates, then */
+  uint32_t nplain;        /* all second rates; there are nplain of each */
+  uint32_t first_unknown; /* the dimension of argument i is unknown first_unknown + i */
+  int done;
+  Value value;
+  Instance *next;         /* of the same function */
+};
+
 typedef struct {
   Name name;
-  Num value;
+  Value value; /* made of numbers and pi */
 } Constant;
+
+/* A name without a unit of its own. */
+typedef struct {
+  Name name;
+  Dim dim;
+} Undeclared;
 
 typedef struct {
   const AstStmt *stmt;
@@ -70,18 +92,23 @@ struct Builder {
   VEC(struct Eval *) idle; /* evaluations to use again */
   VEC(Expr) scratch;
   uint32_t *start_of; /* place in the scene's starts, from 1, by SymId */
-  Expr *seeds; /* what each symbol becomes under d/dt, for nseeds symbols */
+  Expr *seeds; /* what each symbol becomes under d/dt, for nseeds symbols; 0: a number */
   uint32_t nseeds;
+  ExprMap rates; /* the time derivatives of definitions */
   EntKind needed_kind; /* the definition that an evaluation waits for */
   uint32_t needed;
   VEC(Active) active; /* the statements that this scene uses */
   VEC(Definition) lets, functions;
+  VEC(Instance *) instances;
   VEC(Constant) constants;
-  VEC(Dim) dims; /* by SymId */
+  Dims *dims;
+  VEC(Dim) dim_of; /* by SymId */
+  Dim energy;      /* of L */
+  VEC(Undeclared) undeclared;
   const Define *defines;
   uint32_t ndefines;
   const AstStmt **chain; /* the scene and those it is like, oldest first; NULL-terminated */
-  int unitless;    /* no name has a unit: nothing is checked */
+  int unitless;    /* nothing is measured in a unit: nothing is checked */
   AstId stand_in;  /* a node that stands for `stands_for` (see model_reresolve), or 0 */
   Expr stands_for;
 };
@@ -147,9 +174,24 @@ typedef struct {
 } Target;
 Target read_target(const Builder *b, AstId id);
 
-/* The elements of a list that gives a family its values, and the unit behind it: `{1, 3} [kg]`. NULL:
- * it is no list. */
+/* The list that gives a family its values, and the unit behind it: `{1, 3} [kg]`. NULL: it is no list. */
 const AstExpr *list_behind(const Builder *b, AstId id, const AstUnit **unit);
+
+/* An element of a list, and the unit behind that list, or NULL. */
+typedef struct {
+  AstId id;
+  const AstUnit *behind;
+} Element;
+
+typedef VEC(Element) Elements;
+
+/* The elements of a list for the members in r, of the family `name`, row by row; a list for two indices may
+ * be a list of its rows. 0, reported, when there are not as many as members. */
+int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out);
+Value element_value(Builder *b, const Element *x, Context where, Name effect);
+
+/* All members. */
+IndexRange entity_range(const Entity *e);
 
 /* Gives what the place names, of entity e, its values: `give` is called for each scalar, with its place
  * in the model's array. `unit` tells in what unit a scalar takes bare numbers. */
@@ -169,13 +211,31 @@ int add_outputs_as(Builder *b, AstId id, Name label);
 
 /* declare.c: the declarations of a statement. */
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data);
+
+/* Declares a name; 0, with a message, when it is taken. */
+int declare_entity(Builder *b, const AstStmt *st, Entity e);
+
+/* The entity of a family, a vector, or a plain name, not declared yet; 0 after an error. `index` is where
+ * its first scalar will stand. read_type gives `parts`. */
+int read_family(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index, uint8_t parts, Entity *e);
+int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts);
+
+/* "th", "th[2]", "r.x", "r[2].x": component k of member `at`. */
+Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k);
+
+/* declare_param.c */
+void declare_param(Builder *b, const AstStmt *st, Name effect);
+void declare_const(Builder *b, const AstStmt *st, Name effect);
 SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSign sign, Dim dim);
 
 /* A number known now (spans, steps, tolerances); NAN after an error. */
 double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what);
 
-/* Evaluates a let or a function that nothing has needed so far. */
-void resolve_definition(Builder *b, EntKind kind, uint32_t index);
+/* Evaluates a let that nothing has needed so far. */
+void resolve_let(Builder *b, uint32_t index);
+
+/* Checks a function that nothing calls: there must be shapes of arguments that make sense of its body. */
+void check_uncalled(Builder *b, uint32_t function);
 
 /* The entity a name stands for; unknown and ambiguous names are reported. `declare` is the statement
  * that would declare what is wanted ("state"), or NULL where it may be anything. */
@@ -203,8 +263,34 @@ const char *ast_text(const Builder *b, AstId id);
 const char *ast_short(const Builder *b, AstId id);
 Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
-/* The unit of a dimension in SI, for quantities that were declared without one. */
-Unit unit_of_dim(Builder *b, Dim d);
+/* The unit that a statement gives its name. Without one its dimension is unknown, and found from the
+ * equations where they tell; that is once for all members of a family. */
+Unit declared_unit(Builder *b, const AstStmt *st, Name effect);
+
+/* output.c: the unit of what an entity declares, or NULL. */
+const Unit *entity_unit(const Builder *b, const Entity *e);
+
+/* check_units.c */
+
+/* The unit of a rate: per second. Its zero is zero. */
+Unit unit_per_second(const Builder *b, const Unit *u);
+
+int is_zero(const Builder *b, const Value *v);
+
+/* Whether two values can be added: they have one dimension, or can be given it; zero is zero in every unit. */
+int dims_agree(Builder *b, const Value *x, const Value *y, Span why);
+
+/* For messages: the unit of a value as it was written, or that of its dimension; "in [m]", "a pure number". */
+const char *shown_unit(const Builder *b, const Value *v);
+const char *in_unit(const Builder *b, const char *unit);
+const char *in_dim(const Builder *b, Dim d);
+
+/* Adds to a message about two dimensions (DIM_ANY: about one) where a name without a unit in them has its own
+ * from, or that it does not matter which one it has. */
+void explain_dims(Builder *b, Dim x, Dim y);
+
+/* Puts the units that were found into the model. */
+void settle_units(Builder *b);
 
 /* scene.c: which statements are active (those of the effect `also` too), and the scene's contents. */
 void scene_select(Builder *b, const ModelChoice *choice);

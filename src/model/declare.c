@@ -7,13 +7,12 @@ enum { FAMILY_MAX = 1000000 };
 
 SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSign sign, Dim dim) {
   SymId s = expr_declare(b->g, kind, index, name, sign);
-  while (b->dims.n <= s) vec_push(b->arena, &b->dims, DIM_UNKNOWN);
-  b->dims.at[s] = dim;
+  while (b->dim_of.n <= s) vec_push(b->arena, &b->dim_of, DIM_ANY);
+  b->dim_of.at[s] = dim;
   return s;
 }
 
-/* 0, with a message, when the name is taken. */
-static int declare_entity(Builder *b, const AstStmt *st, Entity e) {
+int declare_entity(Builder *b, const AstStmt *st, Entity e) {
   Name effect = e.effect;
   if (strcmp(st->name, "t") == 0 || strcmp(st->name, "pi") == 0) {
     diag_error(b->diags, st->name_span, "`%s` is reserved", st->name);
@@ -96,51 +95,59 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
   return 1;
 }
 
-/* The entity of a family, a vector, or a plain name, declared; 0 after an error. `index` is where its
- * first scalar will stand. */
-static int declare_family(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index, uint8_t parts, Entity *e) {
+int read_family(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index, uint8_t parts, Entity *e) {
   *e = (Entity){.kind = kind, .index = index, .name = st->name, .effect = effect, .span = st->name_span, .parts = parts};
   if (!check_brackets(b, st, effect)) return 0;
-  if (!read_sizes(b, st, effect, e)) {
-    declare_refused(b, st, effect);
-    return 0;
-  }
-  return declare_entity(b, st, *e);
+  if (read_sizes(b, st, effect, e)) return 1;
+  declare_refused(b, st, effect);
+  return 0;
 }
 
-/* "th", "th[2]", "r.x", "r[2].x": component k of member `at`. */
-static Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k) {
+static int declare_family(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index, uint8_t parts, Entity *e) {
+  return read_family(b, st, effect, kind, index, parts, e) && declare_entity(b, st, *e);
+}
+
+Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k) {
   Name name = member_name(b, stem, at, e->ndims);
   return e->parts ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name;
 }
 
-static Dim per_second(Dim d) {
-  Dim second = {1, {[DIM_TIME] = DIM_ONE}};
-  return dim_div(d, second);
+Unit declared_unit(Builder *b, const AstStmt *st, Name effect) {
+  Unit u = unit_resolve(&st->unit, b->dims, b->diags, b->arena);
+  if (st->unit.n || b->unitless) return u;
+  u.dim = dim_unknown(b->dims, st->name);
+  vec_push(b->arena, &b->undeclared, ((Undeclared){effect ? intern_printf(b, "%s.%s", effect, st->name) : st->name, u.dim}));
+  return u;
+}
+
+/* 0, reported, when the statement asks for a type of which its kind has no values. */
+int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts) {
+  int two = st->type && strcmp(st->type, "vec2") == 0, three = st->type && strcmp(st->type, "vec3") == 0;
+  *parts = two ? 2 : three ? 3 : 0;
+  if (!st->type || two || three) return 1;
+  not_yet(b, st->name_span, arena_printf(b->arena, "quantities of type `%s`", st->type));
+  declare_refused(b, st, effect);
+  return 0;
 }
 
 static void add_coord(Builder *b, const AstStmt *st, Name name, Unit unit) {
   Model *m = b->m;
   uint32_t i = m->coords.n;
   Coord c = {.name = name, .span = st->name_span, .periodic = st->periodic, .unit = unit};
-  Dim rate = per_second(unit.dim);
+  Dim rate = dim_per_second(b->dims, unit.dim);
   Name v = intern_printf(b, "%s'", name), a = intern_printf(b, "%s''", name);
   c.q = declare_symbol(b, SYM_COORD, i, name, SIGN_UNKNOWN, unit.dim);
   c.v = declare_symbol(b, SYM_VEL, i, v, SIGN_UNKNOWN, rate);
-  c.a = declare_symbol(b, SYM_ACC, i, a, SIGN_UNKNOWN, per_second(rate));
+  c.a = declare_symbol(b, SYM_ACC, i, a, SIGN_UNKNOWN, dim_per_second(b->dims, rate));
   vec_push(b->arena, &m->coords, c);
 }
 
 static void declare_coord(Builder *b, const AstStmt *st, Name effect) {
-  int two = st->type && strcmp(st->type, "vec2") == 0, three = st->type && strcmp(st->type, "vec3") == 0;
   Entity e;
-  if (st->type && !two && !three) {
-    not_yet(b, st->name_span, arena_printf(b->arena, "coordinates of type `%s`", st->type));
-    declare_refused(b, st, effect);
-    return;
-  }
-  if (!declare_family(b, st, effect, ENT_COORD, b->m->coords.n, two ? 2 : three ? 3 : 0, &e)) return;
-  Unit unit = unit_resolve(&st->unit, b->diags, b->arena);
+  uint8_t parts;
+  if (!read_type(b, st, effect, &parts)) return;
+  if (!declare_family(b, st, effect, ENT_COORD, b->m->coords.n, parts, &e)) return;
+  Unit unit = declared_unit(b, st, effect);
   int64_t at[2] = {1, 1};
   do
     for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++) add_coord(b, st, scalar_name(b, &e, st->name, at, k), unit);
@@ -152,117 +159,20 @@ static void add_state(Builder *b, const AstStmt *st, Name name, Unit unit) {
   uint32_t i = m->states.n;
   State z = {.name = name, .span = st->name_span, .unit = unit};
   z.z = declare_symbol(b, SYM_STATE, i, name, SIGN_UNKNOWN, unit.dim);
-  z.rate = declare_symbol(b, SYM_RATE, i, intern_printf(b, "%s'", name), SIGN_UNKNOWN, per_second(unit.dim));
+  z.rate = declare_symbol(b, SYM_RATE, i, intern_printf(b, "%s'", name), SIGN_UNKNOWN, dim_per_second(b->dims, unit.dim));
   vec_push(b->arena, &m->states, z);
 }
 
 static void declare_state(Builder *b, const AstStmt *st, Name effect) {
   Entity e;
-  if (!declare_family(b, st, effect, ENT_STATE, b->m->states.n, 0, &e)) return;
-  Unit unit = unit_resolve(&st->unit, b->diags, b->arena);
+  uint8_t parts;
+  if (!read_type(b, st, effect, &parts)) return;
+  if (!declare_family(b, st, effect, ENT_STATE, b->m->states.n, parts, &e)) return;
+  Unit unit = declared_unit(b, st, effect);
   int64_t at[2] = {1, 1};
-  do add_state(b, st, scalar_name(b, &e, st->name, at, 0), unit);
+  do
+    for (uint32_t k = 0; k < (parts ? parts : 1u); k++) add_state(b, st, scalar_name(b, &e, st->name, at, k), unit);
   while (next_member(&e, at));
-}
-
-static ExprSign sign_of(AstSign s) {
-  switch (s) {
-    case SIGN_GT: return SIGN_POSITIVE;
-    case SIGN_GE: return SIGN_NONNEGATIVE;
-    case SIGN_LT: return SIGN_NEGATIVE;
-    case SIGN_LE: return SIGN_NONPOSITIVE;
-    case SIGN_ANY: break;
-  }
-  return SIGN_UNKNOWN;
-}
-
-/* The value must be of the sign that the declaration states, or the simplifier would be misled. */
-void check_sign(Builder *b, const Param *p, Span span) {
-  static const char *const texts[] = {"", "> 0", ">= 0", "< 0", "<= 0"};
-  if (p->sign == SIGN_ANY || !p->value) return;
-  ExprSign s = expr_sign(b->g, p->value);
-  int zero = expr_is_zero(b->g, p->value), above = s == SIGN_POSITIVE, below = s == SIGN_NEGATIVE;
-  int wrong = p->sign == SIGN_GT ? below || zero : p->sign == SIGN_GE ? below : p->sign == SIGN_LT ? above || zero : above;
-  if (wrong) diag_error(b->diags, span, "`%s` is declared %s, and this value is not", p->name, texts[p->sign]);
-}
-
-static void add_param(Builder *b, const AstStmt *st, Name name, Unit unit, Value v, Span span) {
-  Model *m = b->m;
-  Param p = {.name = name, .span = st->name_span, .sign = st->sign, .unit = unit};
-  p.value = value_in(b, v, span, &p.unit);
-  p.sym = declare_symbol(b, SYM_PARAM, m->params.n, name, sign_of(st->sign), unit.dim);
-  if (p.value && expr_is_num(b->g, p.value)) {
-    p.constant = expr_number(b->g, p.value);
-    p.has_constant = 1;
-  }
-  check_sign(b, &p, span);
-  vec_push(b->arena, &m->params, p);
-}
-
-/* `param m[3] = {1, 3, 1/2} [kg]` */
-static void declare_list(Builder *b, const AstStmt *st, Name effect, const AstExpr *list, const AstUnit *behind) {
-  Entity e;
-  Name stem = effect ? intern_printf(b, "%s.%s", effect, st->name) : st->name;
-  Unit unit = unit_resolve(&st->unit, b->diags, b->arena), own = unit;
-  if (behind) own = unit_resolve(behind, b->diags, b->arena);
-  if (behind && !unit.text[0]) unit = own;
-  VEC(Value) values = {0};
-  for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) {
-    Value v = resolve(b, i, IN_PARAM, effect);
-    if (behind && v.e) v = values_in(b, v, ast_expr(b->ast, i)->span, &own);
-    if (behind) v.bare = 0, v.dim = own.dim;
-    vec_push(b->arena, &values, v);
-  }
-  if (!declare_family(b, st, effect, ENT_PARAM, b->m->params.n, 0, &e)) return;
-  if (e.ndims != 1 || entity_size(&e) != values.n) {
-    diag_error(b->diags, list->span, "the list has %u element%s, and `%s` %s", values.n, values.n == 1 ? "" : "s", st->name,
-               e.ndims == 0 ? "is no family" : e.ndims == 2 ? "has two indices" : arena_printf(b->arena, "has %u members", entity_size(&e)));
-    if (e.ndims == 2) diag_help(b->diags, "not yet: lists of lists; give one value to all, and others in a scene: `%s[1,2] = ...`", st->name);
-  }
-  int64_t at[2] = {1, 1};
-  AstId i = list->args;
-  uint32_t k = 0;
-  do {
-    add_param(b, st, scalar_name(b, &e, stem, at, 0), unit, k < values.n ? values.at[k] : (Value){0},
-              i ? ast_expr(b->ast, i)->span : list->span);
-    if (i) i = ast_expr(b->ast, i)->next;
-    k++;
-  } while (next_member(&e, at));
-}
-
-static void declare_param(Builder *b, const AstStmt *st, Name effect) {
-  const AstUnit *behind;
-  const AstExpr *list = list_behind(b, st->rhs, &behind);
-  if (list) {
-    declare_list(b, st, effect, list, behind);
-    return;
-  }
-  Entity e;
-  Span span = ast_expr(b->ast, st->rhs)->span;
-  Unit unit = unit_resolve(&st->unit, b->diags, b->arena);
-  /* Its own name is not in scope in its value; without a unit of its own it takes its value's. */
-  Value v = resolve(b, st->rhs, IN_PARAM, effect);
-  if (v.n) {
-    not_yet(b, span, "parameters that are vectors");
-    v.e = 0;
-  }
-  if (!unit.text[0] && v.e && !v.bare && v.dim.known) unit = unit_of_dim(b, v.dim);
-  if (!declare_family(b, st, effect, ENT_PARAM, b->m->params.n, 0, &e)) return;
-  Name stem = effect ? intern_printf(b, "%s.%s", effect, st->name) : st->name;
-  int64_t at[2] = {1, 1};
-  do add_param(b, st, scalar_name(b, &e, stem, at, 0), unit, v, span);
-  while (next_member(&e, at));
-}
-
-static void declare_const(Builder *b, const AstStmt *st, Name effect) {
-  Value v = resolve(b, st->rhs, IN_CONST, effect);
-  if (!declare_name(b, st, effect, ENT_CONST, b->constants.n)) return;
-  Constant c = {st->name, num_int(1)};
-  if (v.e && expr_is_num(b->g, v.e)) c.value = expr_number(b->g, v.e);
-  else if (v.e) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a constant must be a number known when compiling");
-  for (uint32_t i = 0; i < b->ndefines; i++)
-    if (strcmp(b->defines[i].name, st->name) == 0) c.value = num_parse(b->defines[i].value, strlen(b->defines[i].value));
-  vec_push(b->arena, &b->constants, c);
 }
 
 static void declare_input(Builder *b, const AstStmt *st, Name effect) {
@@ -270,7 +180,7 @@ static void declare_input(Builder *b, const AstStmt *st, Name effect) {
   uint32_t i = m->inputs.n;
   if (!declare_name(b, st, effect, ENT_INPUT, i)) return;
   Input in = {.name = st->name, .span = st->name_span};
-  in.unit = unit_resolve(&st->unit, b->diags, b->arena);
+  in.unit = declared_unit(b, st, effect);
   in.sym = declare_symbol(b, SYM_INPUT, i, st->name, SIGN_UNKNOWN, in.unit.dim);
   vec_push(b->arena, &m->inputs, in);
 }
@@ -351,20 +261,12 @@ static void declare_let(Builder *b, const AstStmt *st, Name effect) {
 
 static void declare_function(Builder *b, const AstStmt *st, Name effect) {
   if (!declare_name(b, st, effect, ENT_FUNCTION, b->functions.n)) return;
-  Definition f = {.stmt = st, .name = st->name, .effect = effect};
-  VEC(SymId) args = {0};
-  for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) {
-    SymId s = declare_symbol(b, SYM_LOCAL, args.n, ast_expr(b->ast, i)->name, SIGN_UNKNOWN, DIM_UNKNOWN);
-    vec_push(b->arena, &args, s);
-  }
-  f.args = args.at;
-  f.nargs = args.n;
-  vec_push(b->arena, &b->functions, f);
+  vec_push(b->arena, &b->functions, ((Definition){.stmt = st, .name = st->name, .effect = effect}));
 }
 
 static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
   Model *m = b->m;
-  Output o = {.name = st->name, .span = st->name_span};
+  Output o = {.name = st->name, .span = st->name_span, .pending = 1};
   if (st->dims) {
     IndexRange r;
     uint32_t family = resolve_indices(b, st->dims, effect, &r) ? family_of(b, st, effect, ENT_OBSERVE, &r) : 0;
@@ -372,7 +274,7 @@ static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
   } else if (!declare_name(b, st, effect, ENT_OBSERVE, m->observes.n)) {
     return;
   }
-  o.unit = unit_resolve(&st->unit, b->diags, b->arena);
+  o.unit = unit_resolve(&st->unit, b->dims, b->diags, b->arena);
   vec_push(b->arena, &m->observes, o);
 }
 

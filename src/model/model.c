@@ -19,23 +19,19 @@ typedef struct {
 typedef struct {
   VEC(Expr) lagrangian, kinetic, potential, dissipation;
   Span base[3]; /* where the model itself gave L, T, V */
-  Dim dim;              /* of L, as far as is known */
-  Span dim_span;        /* what decided that */
+  Span first;   /* the first of them that is not zero */
   VEC(UnitCheck) later;
 } Energies;
 
-static Dim joule_dim(void) { return (Dim){1, {2 * DIM_ONE, DIM_ONE, -2 * DIM_ONE}}; }
-
-/* All parts of L have one dimension: that of the first with a known one. */
+/* All parts of L have one dimension. It need not be that of an energy. */
 static void check_energy_unit(Builder *b, const AstStmt *st, const Value *v, Energies *en) {
-  if (!v->dim.known || expr_is_zero(b->g, v->e)) return;
-  if (!en->dim.known) {
-    en->dim = v->dim;
-    en->dim_span = st->span;
-  } else if (!dim_fits(v->dim, en->dim)) {
-    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is in [%s]", dim_text(v->dim, b->arena));
-    diag_also(b->diags, en->dim_span, "another part of the Lagrangian is in [%s]", dim_text(en->dim, b->arena));
-  }
+  if (expr_is_zero(b->g, v->e)) return;
+  Span span = ast_expr(b->ast, st->rhs)->span;
+  if (!en->first.end) en->first = st->span;
+  if (dim_equate(b->dims, b->energy, v->dim, span)) return;
+  diag_error(b->diags, span, "units do not match: this is %s, another part of the Lagrangian %s", in_dim(b, v->dim), in_dim(b, b->energy));
+  diag_also(b->diags, en->first, "that part is here");
+  explain_dims(b, v->dim, DIM_ANY);
 }
 
 /* Remembers that v times `by` has the dimension of L, which later statements may decide. */
@@ -47,11 +43,12 @@ static void check_later(Builder *b, Energies *en, AstId id, const Value *v, Dim 
 static void check_units_of_forces(Builder *b, const Energies *en) {
   for (uint32_t i = 0; i < en->later.n; i++) {
     const UnitCheck *c = &en->later.at[i];
-    Dim want = dim_div(en->dim, c->by);
-    if (dim_fits(c->dim, want)) continue;
-    diag_error(b->diags, ast_expr(b->ast, c->id)->span, "%s is in [%s], and this is in [%s]", c->what, dim_text(want, b->arena),
-               dim_text(c->dim, b->arena));
-    if (c->bare) diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_text(b, c->id), dim_text(want, b->arena));
+    Dim want = dim_div(b->dims, b->energy, c->by);
+    Span span = ast_expr(b->ast, c->id)->span;
+    if (dim_equate(b->dims, c->dim, want, span)) continue;
+    diag_error(b->diags, span, "%s is %s, and this is %s", c->what, in_dim(b, want), in_dim(b, c->dim));
+    if (c->bare) diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_text(b, c->id), dim_text(b->dims, want));
+    explain_dims(b, c->dim, want);
   }
 }
 
@@ -76,8 +73,7 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   if (v.e && v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, and a number is wanted here", shape_text(b, v.n));
   if (!v.e || v.n) return;
   if (st->kind == STMT_DISSIPATION) {
-    Dim second = {1, {[DIM_TIME] = DIM_ONE}};
-    check_later(b, en, st->rhs, &v, second, "a dissipation function");
+    check_later(b, en, st->rhs, &v, dim_base(b->dims, DIM_TIME), "a dissipation function");
   } else {
     check_energy_unit(b, st, &v, en);
   }
@@ -93,7 +89,6 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
 static void finish_energies(Builder *b, const Energies *en) {
   Model *m = b->m;
   check_units_of_forces(b, en);
-  b->dims.at[m->energy_sym] = en->dim.known && dim_fits(en->dim, joule_dim()) ? en->dim : DIM_UNKNOWN;
   Expr l = expr_add_n(b->g, en->lagrangian.at, en->lagrangian.n);
   Expr kinetic = expr_add_n(b->g, en->kinetic.at, en->kinetic.n);
   Expr potential = expr_add_n(b->g, en->potential.at, en->potential.n);
@@ -151,9 +146,13 @@ static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) 
 
 /* A value given to a symbol: a coordinate, a state, or the rate of one, declared in `unit`. */
 static Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit) {
-  Unit u = *unit;
-  u.dim = b->dims.at[target]; /* a rate's unit is per second: the same factor */
+  SymKind kind = expr_symbol(b->g, target)->kind;
+  Unit u = kind == SYM_VEL || kind == SYM_RATE ? unit_per_second(b, unit) : *unit;
   return values_in(b, resolve(b, id, IN_DYNAMICS, effect), ast_expr(b->ast, id)->span, &u);
+}
+
+static void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right) {
+  diag_error(b->diags, span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, left), shape_text(b, right));
 }
 
 /* The value on the left of a flow says which state is meant: its rate. */
@@ -178,20 +177,22 @@ static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   State *z = &b->m->states.at[expr_sym_of(b->g, of.e)->index];
   if (z->flow) diag_error(b->diags, st->span, "the flow of `%s` is given twice", z->name);
   Value v = resolve_for(b, st->rhs, effect, z->rate, &z->unit);
-  if (v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, and a number is wanted here", shape_text(b, v.n));
-  z->flow = v.e ? v.e : expr_int(b->g, 0); /* reported */
+  if (v.e && v.n != of.n) report_shapes(b, st->span, of.n, v.n);
+  for (uint32_t k = 0; k < (of.n ? of.n : 1); k++)
+    b->m->states.at[expr_sym_of(b->g, of.at[k])->index].flow = v.e && v.n == of.n ? v.at[k] : expr_int(b->g, 0); /* reported */
 }
 
 static void add_expect(Builder *b, const AstStmt *st, Name effect) {
   Value l = resolve(b, st->lhs, IN_OBSERVE, effect), r = resolve(b, st->rhs, IN_OBSERVE, effect);
   if (!l.e || !r.e) return;
   if (l.n != r.n) {
-    diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, l.n), shape_text(b, r.n));
+    report_shapes(b, st->span, l.n, r.n);
     return;
   }
-  if (!dim_fits(l.dim, r.dim))
-    diag_error(b->diags, st->span, "units do not match: the left side is in [%s], the right side in [%s]", dim_text(l.dim, b->arena),
-               dim_text(r.dim, b->arena));
+  if (!dims_agree(b, &l, &r, st->span)) {
+    diag_error(b->diags, st->span, "units do not match: the left side is %s, the right side %s", in_dim(b, l.dim), in_dim(b, r.dim));
+    explain_dims(b, l.dim, r.dim);
+  }
   Expect x = {.name = st->name, .span = st->span, .lhs_ast = st->lhs, .rhs_ast = st->rhs, .effect = effect};
   x.elsewhere = l.n || b->index.n;
   for (uint32_t k = 0; k < (l.n ? l.n : 1); k++) {
@@ -216,8 +217,7 @@ static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
   Value v = resolve_for(b, st->rhs, effect, sym, unit);
   if (!v.e) return;
   if (target.n != v.n) {
-    diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, target.n),
-               shape_text(b, v.n));
+    report_shapes(b, st->span, target.n, v.n);
     return;
   }
   for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
@@ -265,15 +265,18 @@ static void fill_observe(Builder *b, const AstStmt *st, Name effect) {
   Output *o = declared_observe(b, st, effect);
   if (!o) return;
   Value v = resolve(b, st->rhs, IN_OBSERVE, effect);
+  o->pending = 0;
   if (v.n) {
     not_yet(b, ast_expr(b->ast, st->rhs)->span, "observables that are vectors (observe their components)");
     return;
   }
   o->value = v.e;
-  if (!o->unit.dim.known && !o->unit.text[0]) o->unit = unit_of_dim(b, v.dim);
-  else if (v.e && !dim_fits(v.dim, o->unit.dim))
-    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "`%s` is declared in [%s], and this is in [%s]", o->name,
-               dim_text(o->unit.dim, b->arena), dim_text(v.dim, b->arena));
+  if (!st->unit.n) o->unit.dim = v.dim;
+  else if (v.e && !dim_equate(b->dims, v.dim, o->unit.dim, ast_expr(b->ast, st->rhs)->span)) {
+    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "`%s` is declared in [%s], and this is %s", o->name, o->unit.text,
+               in_dim(b, v.dim));
+    explain_dims(b, v.dim, o->unit.dim);
+  }
 }
 
 static void apply(Builder *b, const AstStmt *st, Name effect, void *data) {
@@ -295,28 +298,26 @@ static void apply(Builder *b, const AstStmt *st, Name effect, void *data) {
   }
 }
 
-Unit unit_of_dim(Builder *b, Dim d) {
-  Unit u = {.dim = d, .factor = num_int(1), .text = ""};
-  if (d.known && !dim_is_none(d)) u.text = dim_text(d, b->arena);
-  return u;
-}
-
 /* Lets that nothing uses are still checked; of a family that has an error, no more than one member. */
 static void apply_unused_lets(Builder *b) {
   const AstStmt *wrong = NULL;
   for (uint32_t i = 0; i < b->lets.n; i++) {
     if (b->lets.at[i].stmt == wrong) continue;
-    resolve_definition(b, ENT_LET, i);
+    resolve_let(b, i);
     if (!b->lets.at[i].value.e) wrong = b->lets.at[i].stmt;
   }
-  for (uint32_t i = 0; i < b->functions.n; i++) resolve_definition(b, ENT_FUNCTION, i);
+  for (uint32_t i = 0; i < b->functions.n; i++) check_uncalled(b, i);
 }
 
-/* What may contain accelerations: after L is known. */
+/* What may contain accelerations: after L is known. Expectations may name any observable. */
 static void observe(Builder *b, const AstStmt *st, Name effect, void *data) {
   (void)data;
-  if (st->kind == STMT_EXPECT) add_expect(b, st, effect);
   if (st->kind == STMT_OBSERVE) fill_observe(b, st, effect);
+}
+
+static void expectation(Builder *b, const AstStmt *st, Name effect, void *data) {
+  (void)data;
+  if (st->kind == STMT_EXPECT) add_expect(b, st, effect);
 }
 
 static void each_active(Builder *b, StatementFn *fn, void *data) {
@@ -379,6 +380,7 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   b->diags = ast->diags;
   b->arena = a;
   b->g = expr_graph(a, ast->names);
+  b->dims = dims_new(a);
   b->scope.arena = b->members.arena = a;
   b->defines = choice->defines;
   b->ndefines = choice->ndefines;
@@ -387,20 +389,29 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   m->diags = ast->diags;
   m->arena = a;
   m->g = b->g;
+  m->dims = b->dims;
   m->builder = b;
-  Dim second = {1, {[DIM_TIME] = DIM_ONE}};
-  m->time = declare_symbol(b, SYM_TIME, 0, intern(ast->names, "t"), SIGN_UNKNOWN, second);
+  m->time = declare_symbol(b, SYM_TIME, 0, intern(ast->names, "t"), SIGN_UNKNOWN, dim_base(b->dims, DIM_TIME));
   m->pi = declare_symbol(b, SYM_CONST, 0, intern(ast->names, "pi"), SIGN_POSITIVE, DIM_NONE);
-  m->energy_sym = declare_symbol(b, SYM_LOCAL, 0, intern(ast->names, "energy"), SIGN_UNKNOWN, DIM_UNKNOWN);
+  m->energy_sym = declare_symbol(b, SYM_LOCAL, 0, intern(ast->names, "energy"), SIGN_UNKNOWN, DIM_ANY);
   return b;
 }
 
-/* A model in which no name has a unit is not checked, and time then has none either. */
+/* Blocks nest at most as deep as the parser lets them. */
+static int measures(const AstStmt *st) {
+  if (st->kind != STMT_FOR) return unit_measures(&st->unit);
+  for (const AstStmt *s = st->body; s; s = s->next)
+    if (measures(s)) return 1;
+  return 0;
+}
+
+/* A model in which no name is measured in a unit is not checked, and time then has none either. */
 static void find_units(Builder *b) {
-  for (uint32_t i = 0; i < b->active.n; i++)
-    if (b->active.at[i].stmt->unit.n) return;
+  Model *m = b->m;
   b->unitless = 1;
-  b->dims.at[b->m->time] = DIM_UNKNOWN;
+  for (uint32_t i = 0; i < b->active.n && b->unitless; i++) b->unitless = !measures(b->active.at[i].stmt);
+  if (b->unitless) b->dim_of.at[m->time] = DIM_ANY;
+  else b->energy = b->dim_of.at[m->energy_sym] = dim_unknown(b->dims, NULL);
 }
 
 Model *model_build(Ast *ast, const ModelChoice *choice) {
@@ -414,7 +425,9 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   finish_energies(b, &en);
   apply_unused_lets(b);
   each_active(b, observe, NULL);
+  each_active(b, expectation, NULL);
   check_whole(b);
   scene_build(b, choice);
+  settle_units(b);
   return ast->diags->errors ? NULL : b->m;
 }

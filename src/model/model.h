@@ -81,12 +81,19 @@ typedef struct {
   Span span;
   Unit unit;
   Expr value; /* may contain q'', z' */
+  int pending; /* an observe statement whose value is not known yet */
 } Output;
 
 typedef struct {
   SymId target;
   Expr value; /* of parameters */
 } Start;
+
+/* A name that was declared without a unit, and the one that it has. */
+typedef struct {
+  Name name;
+  const char *unit;
+} FoundUnit;
 
 typedef struct {
   Name name;
@@ -119,6 +126,7 @@ typedef struct {
   Diags *diags;
   Arena *arena;
   ExprGraph *g;
+  Dims *dims;
   Name name;
   const char *doc;
   Span span;       /* of the model's name */
@@ -138,6 +146,7 @@ typedef struct {
   VEC(Event) events;
   VEC(Output) observes;
   Scene scene;
+  VEC(FoundUnit) found;    /* names that were declared without a unit, where the equations tell it */
   SymId energy_sym; /* stands for the energy p q' - L in outputs and expects, until mech knows it */
   struct Builder *builder; /* what model_reresolve needs */
 } Model;

@@ -13,7 +13,7 @@ static void value(const Dump *d, Expr e) {
 }
 
 static void unit(const Dump *d, const Unit *u) {
-  if (u->text[0]) sb_printf(d->out, " [%s: %.17g %s]", u->text, unit_factor(u), dim_text(u->dim, d->m->arena));
+  if (u->text[0]) sb_printf(d->out, " [%s: %.17g %s]", u->text, unit_factor(u), dim_text(d->m->dims, u->dim));
 }
 
 /* "word name [unit] = value" */

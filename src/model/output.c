@@ -10,7 +10,7 @@ static const Entity *named(Builder *b, const Target *p) {
   return scope_find(&b->scope, x->name, NULL, &ambiguous);
 }
 
-static const Unit *declared_unit(Builder *b, const Entity *e) {
+const Unit *entity_unit(const Builder *b, const Entity *e) {
   const Model *m = b->m;
   switch (e->kind) {
     case ENT_COORD: return &m->coords.at[e->index].unit;
@@ -23,14 +23,12 @@ static const Unit *declared_unit(Builder *b, const Entity *e) {
   return NULL;
 }
 
-/* The unit that an output is shown in: a name's own, otherwise that of its dimension. */
+/* The unit that an output is shown in: a name's own, otherwise that of its dimension, which is settled last. */
 static Unit output_unit(Builder *b, const Entity *e, uint32_t primes, Dim dim) {
-  Unit u = unit_of_dim(b, dim);
-  const Unit *own = e ? declared_unit(b, e) : NULL;
-  if (!own || !own->text[0]) return u;
-  u = *own;
+  const Unit *own = e ? entity_unit(b, e) : NULL;
+  Unit u = own && own->text[0] ? *own : (Unit){.factor = num_int(1), .offset = num_int(0), .text = ""};
+  for (; primes; primes--) u = unit_per_second(b, &u);
   u.dim = dim;
-  if (primes) u.text = arena_printf(b->arena, primes == 1 ? "%s/s" : "%s/s^%u", own->text, primes);
   return u;
 }
 

@@ -74,7 +74,9 @@ static Value node_value(Eval *ev, AstId id) {
     case AST_MEMBER: return member_value(ev, x);
     case AST_PRIME: {
       const Value *v = value_of(ev, x->a);
-      return v->e ? time_derivative(b, *v, x->span, ev->where) : FAILED;
+      if (!v->e) return FAILED;
+      if (ev->kind == ENT_FUNCTION) need_rates(b, b->instances.at[ev->definition]);
+      return time_derivative(b, *v, x->span, ev->where);
     }
     case AST_UNIT: return unit_value(ev, x);
     case AST_CALL: return call_value(ev, x);
@@ -92,33 +94,38 @@ static Value node_value(Eval *ev, AstId id) {
   return FAILED;
 }
 
-static int takes_vectors(const AstExpr *x) {
+static int takes_vectors(const Eval *ev, const AstExpr *x) {
   switch (x->kind) {
     case AST_NEG: case AST_ADD: case AST_SUB: case AST_MUL: case AST_DIV: case AST_PRIME: case AST_UNIT:
     case AST_MEMBER: case AST_SUM: return 1;
-    case AST_CALL: return call_takes_vectors(x->name);
+    case AST_CALL: return call_takes_vectors(ev, x);
     default: return 0; /* everything else is of numbers */
   }
 }
 
-/* A condition may stand in a condition, and first in `if`; a vector where vectors are taken. */
-static int operands_fit(Eval *ev, const AstExpr *x) {
+int operand_fits(Eval *ev, const AstExpr *x, AstId i) {
   Builder *b = ev->b;
-  int logic = x->kind == AST_NOT || x->kind == AST_AND || x->kind == AST_OR, vectors = takes_vectors(x);
+  const Value *v = value_of(ev, i);
+  int logic = x->kind == AST_NOT || x->kind == AST_AND || x->kind == AST_OR;
   int is_if = x->kind == AST_CALL && strcmp(x->name, "if") == 0;
+  if (v->condition && !logic && !(is_if && i == x->args)) {
+    report_condition(b, i);
+    return 0;
+  }
+  if (v->n && !takes_vectors(ev, x)) {
+    diag_error(b->diags, ast_expr(b->ast, i)->span, "`%s` is %s, and a number is wanted here", ast_short(b, i), shape_text(b, v->n));
+    diag_help(b->diags, "its components are `.x`, `.y`%s; `dot(a, b)` and `norm(a)` are numbers", v->n > 2 ? ", `.z`" : "");
+    return 0;
+  }
+  return !v->point || point_fits(ev, x, i);
+}
+
+static int operands_fit(Eval *ev, const AstExpr *x) {
   AstId at[3] = {x->a, x->b, x->args};
+  if (x->kind == AST_ADD || x->kind == AST_SUB || x->kind == AST_MUL || x->kind == AST_DIV) return 1; /* by their chain */
   for (int k = 0; k < 3; k++)
-    for (AstId i = at[k]; i; i = k == 2 ? ast_expr(b->ast, i)->next : 0) {
-      const Value *v = value_of(ev, i);
-      if (v->condition && !logic && !(is_if && i == x->args)) {
-        report_condition(b, i);
-        return 0;
-      }
-      if (!v->n || vectors) continue;
-      diag_error(b->diags, ast_expr(b->ast, i)->span, "`%s` is %s, and a number is wanted here", ast_short(b, i), shape_text(b, v->n));
-      diag_help(b->diags, "its components are `.x`, `.y`%s; `dot(a, b)` and `norm(a)` are numbers", v->n > 2 ? ", `.z`" : "");
-      return 0;
-    }
+    for (AstId i = at[k]; i; i = k == 2 ? ast_expr(ev->b->ast, i)->next : 0)
+      if (!operand_fits(ev, x, i)) return 0;
   return 1;
 }
 
@@ -170,11 +177,11 @@ static int run(Eval *ev) {
     if (to) ev->pc = to;
     AstId i = ev->pc;
     const AstExpr *x = ast_expr(b->ast, i);
-    if (i == b->stand_in) *value_of(ev, i) = (Value){.e = b->stands_for, .dim = DIM_UNKNOWN};
+    if (i == b->stand_in) *value_of(ev, i) = (Value){.e = b->stands_for, .dim = DIM_ANY};
     else if (!ev->open[i - ev->first]) {
       Value v = operands_fit(ev, x) ? finite_value(ev, x, node_value(ev, i)) : FAILED;
       if (ev->waiting) return 0;
-      if (b->unitless) v.dim = DIM_UNKNOWN;
+      if (b->unitless) v.dim = DIM_ANY;
       *value_of(ev, i) = v;
     }
     /* The end of a body: once more, or on to its sum. */
@@ -219,8 +226,9 @@ static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
   return ev;
 }
 
+/* The let, or the function that an instance is of. */
 static Definition *definition(Builder *b, EntKind kind, uint32_t index) {
-  return kind == ENT_LET ? &b->lets.at[index] : &b->functions.at[index];
+  return kind == ENT_LET ? &b->lets.at[index] : &b->functions.at[b->instances.at[index]->function];
 }
 
 static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
@@ -230,24 +238,33 @@ static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
   ev->kind = kind;
   ev->definition = index;
   ev->in_statement = 0;
-  if (kind == ENT_FUNCTION) ev->function = d;
+  if (kind == ENT_FUNCTION) ev->function = b->instances.at[index];
   for (int k = 0; k < 2; k++)
     if (d->index[k].name) vec_push(b->arena, &ev->index, d->index[k]);
   return ev;
 }
 
 /* The value of a let is a definition, or one for each component: `r.x`. */
+static void finish_let(Builder *b, Definition *d, Value v) {
+  for (uint32_t k = 0; v.e && k < parts_of(&v); k++) {
+    Name name = v.n ? intern_printf(b, "%s.%c", d->name, "xyz"[k]) : d->name;
+    v.at[k] = expr_def(b->g, name, v.at[k]);
+  }
+  d->value = v;
+}
+
 static void finish_definition(Eval *ev) {
   Builder *b = ev->b;
   Definition *d = definition(b, ev->kind, ev->definition);
   Value v = *value_of(ev, ev->root);
-  for (uint32_t k = 0; v.e && ev->kind == ENT_LET && k < parts_of(&v); k++) {
-    Name name = v.n ? intern_printf(b, "%s.%c", d->name, "xyz"[k]) : d->name;
-    v.at[k] = expr_def(b->g, name, v.at[k]);
-  }
-  v.bare = 0;
-  d->value = v;
+  v.bare = v.point = 0;
   d->progress = DONE;
+  if (ev->kind == ENT_LET) {
+    finish_let(b, d, v);
+  } else {
+    b->instances.at[ev->definition]->value = v;
+    b->instances.at[ev->definition]->done = 1;
+  }
 }
 
 static void run_all(Builder *b, EvalStack *stack) {
@@ -265,12 +282,21 @@ static void run_all(Builder *b, EvalStack *stack) {
   }
 }
 
-void resolve_definition(Builder *b, EntKind kind, uint32_t index) {
+static void resolve_definition(Builder *b, EntKind kind, uint32_t index) {
   EvalStack stack = {0};
-  if (definition(b, kind, index)->progress != TODO) return;
   Eval *ev = begin_definition(b, kind, index);
   vec_push(b->arena, &stack, ev);
   run_all(b, &stack);
+}
+
+void resolve_let(Builder *b, uint32_t index) {
+  if (b->lets.at[index].progress == TODO) resolve_definition(b, ENT_LET, index);
+}
+
+const Instance *resolve_instance(Builder *b, uint32_t function, const uint32_t *shapes) {
+  const Instance *in = new_instance(b, function, shapes);
+  resolve_definition(b, ENT_FUNCTION, b->instances.n - 1);
+  return in;
 }
 
 static Value evaluate(Builder *b, AstId id, Context where, Name effect) {
@@ -297,13 +323,14 @@ Value values_in(Builder *b, Value v, Span span, const Unit *unit) {
     for (uint32_t k = 0; k < parts_of(&v); k++) v.at[k] = times_unit(b, v.at[k], unit);
     return v;
   }
-  if (!dim_fits(v.dim, unit->dim)) {
-    const char *want = dim_text(unit->dim, b->arena);
-    diag_error(b->diags, span, "this value is in [%s], and [%s] is wanted here", dim_text(v.dim, b->arena), want);
-    if (dim_is_none(v.dim)) diag_help(b->diags, "give a number in it its unit, or multiply by `1 [%s]`", want);
-    return FAILED;
-  }
-  return v;
+  if (is_zero(b, &v) || dim_equate(b->dims, v.dim, unit->dim, span)) return v;
+  const char *want = unit->text[0] ? unit->text : dim_text(b->dims, unit->dim);
+  const char *wanted = strcmp(want, "1") == 0 ? "a pure number" : arena_printf(b->arena, "[%s]", want);
+  diag_error(b->diags, span, "this value is %s, and %s is wanted here", in_unit(b, shown_unit(b, &v)), wanted);
+  if (dim_found(b->dims, v.dim) == DIM_NONE)
+    diag_help(b->diags, "give a number in it its unit, or multiply by `1 [%s]`", dim_text(b->dims, unit->dim));
+  explain_dims(b, v.dim, unit->dim);
+  return FAILED;
 }
 
 Expr value_in(Builder *b, Value v, Span span, const Unit *unit) {

@@ -27,14 +27,20 @@ int call_is_not_yet(Name name) {
   return 0;
 }
 
-int call_takes_vectors(Name name) {
-  static const char *const names[] = {"if", "d", "dot", "cross", "norm"};
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-    if (strcmp(name, names[i]) == 0) return 1;
-  return 0;
+const Entity *own_function(const Eval *ev, const AstExpr *x) {
+  int ambiguous;
+  const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, &ambiguous);
+  return e && e->kind == ENT_FUNCTION ? e : NULL;
 }
 
-static int arity_is(Eval *ev, const AstExpr *x, uint32_t want) {
+int call_takes_vectors(const Eval *ev, const AstExpr *x) {
+  static const char *const names[] = {"if", "d", "dot", "cross", "norm"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (strcmp(x->name, names[i]) == 0) return 1;
+  return own_function(ev, x) != NULL;
+}
+
+int arity_is(Eval *ev, const AstExpr *x, uint32_t want) {
   uint32_t n = list_length(ev->b, x->args);
   if (n == want) return 1;
   diag_error(ev->b->diags, x->span, "`%s` takes %u argument%s, here it has %u", x->name, want, want == 1 ? "" : "s", n);
@@ -48,7 +54,7 @@ static Value call_unary(Eval *ev, const AstExpr *x, ExprOp op) {
   if (!v->e) return FAILED;
   if (op == EX_ABS) return a_value(expr_fn(b->g, op, v->e), v->dim, v->bare);
   if (op == EX_SIGN) return a_value(expr_fn(b->g, op, v->e), DIM_NONE, v->bare);
-  if (op == EX_CBRT) return a_value(expr_fn(b->g, op, v->e), dim_pow(v->dim, num_ratio(1, 3)), v->bare);
+  if (op == EX_CBRT) return a_value(expr_fn(b->g, op, v->e), dim_pow(b->dims, v->dim, num_ratio(1, 3)), v->bare);
   const char *what = arena_printf(b->arena, "`%s`", x->name);
   if (!need_pure(ev, x->args, what)) return FAILED;
   return a_value(expr_fn(b->g, op, v->e), DIM_NONE, v->bare);
@@ -60,11 +66,8 @@ static Value call_binary(Eval *ev, const AstExpr *x, ExprOp op) {
   AstId second = ast_expr(b->ast, x->args)->next;
   const Value *v = value_of(ev, x->args), *w = value_of(ev, second);
   if (!v->e || !w->e) return FAILED;
-  if (!dims_agree(b, v, w)) {
-    report_mismatch(ev, x->span, x->args, second);
-    return FAILED;
-  }
-  Dim dim = v->dim.known ? v->dim : w->dim;
+  if (!operands_agree(ev, x->span, x->args, second)) return FAILED;
+  Dim dim = v->dim != DIM_ANY ? v->dim : w->dim;
   return a_value(expr_fn2(b->g, op, v->e, w->e), op == EX_ATAN2 ? DIM_NONE : dim, v->bare && w->bare);
 }
 
@@ -82,11 +85,8 @@ static Value call_if(Eval *ev, const AstExpr *x) {
   }
   if (expr_is_num(b->g, c->e)) return expr_is_zero(b->g, c->e) ? *w : *v;
   if (!v->e || !w->e || !same_shape(ev, x->span, yes, no)) return FAILED;
-  if (!dims_agree(b, v, w)) {
-    report_mismatch(ev, x->span, yes, no);
-    return FAILED;
-  }
-  Value r = {.dim = v->dim.known ? v->dim : w->dim, .n = v->n};
+  if (!operands_agree(ev, x->span, yes, no)) return FAILED;
+  Value r = {.dim = v->dim != DIM_ANY ? v->dim : w->dim, .n = v->n};
   for (uint32_t k = 0; k < parts_of(v); k++) r.at[k] = expr_select(b->g, c->e, v->at[k], w->at[k]);
   return r;
 }
@@ -115,7 +115,7 @@ static Expr dot(ExprGraph *g, const Value *v, const Value *w) {
 static Value call_dot(Eval *ev, const AstExpr *x) {
   const Value *v, *w;
   if (!two_vectors(ev, x, &v, &w)) return FAILED;
-  return a_value(dot(ev->b->g, v, w), dim_mul(v->dim, w->dim), v->bare && w->bare);
+  return a_value(dot(ev->b->g, v, w), dim_mul(ev->b->dims, v->dim, w->dim), v->bare && w->bare);
 }
 
 /* Component k of v x w, in the plane of the other two. */
@@ -129,7 +129,7 @@ static Value call_cross(Eval *ev, const AstExpr *x) {
   ExprGraph *g = ev->b->g;
   const Value *v, *w;
   if (!two_vectors(ev, x, &v, &w)) return FAILED;
-  Value r = {.dim = dim_mul(v->dim, w->dim), .bare = v->bare && w->bare};
+  Value r = {.dim = dim_mul(ev->b->dims, v->dim, w->dim), .bare = v->bare && w->bare};
   if (v->n == 2) {
     r.e = cross_part(g, v, w, 0, 1);
     return r;
@@ -174,7 +174,7 @@ static Value call_d(Eval *ev, const AstExpr *x) {
     diag_error(b->diags, ast_expr(b->ast, by)->span, "`d(expr, name)` differentiates by a coordinate, a velocity, a parameter or t");
     return FAILED;
   }
-  Value r = {.dim = dim_div(v->dim, w->dim), .n = v->n};
+  Value r = {.dim = dim_div(b->dims, v->dim, w->dim), .n = v->n};
   for (uint32_t k = 0; k < parts_of(v); k++) {
     if (kind != SYM_LOCAL && expr_contains(b->g, v->at[k], is_local, NULL)) {
       not_yet(b, x->span, "a partial derivative of a function's argument, or of the energy");
@@ -185,31 +185,10 @@ static Value call_d(Eval *ev, const AstExpr *x) {
   return r;
 }
 
-static Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
-  Builder *b = ev->b;
-  if (ev->where < IN_DYNAMICS) {
-    diag_error(b->diags, x->span, "`%s` is a function of the model's own, and may not be used here", x->name);
-    return FAILED;
-  }
-  if (!definition_ready(ev, ENT_FUNCTION, e->index, x->name, x->span)) return FAILED;
-  const Definition *f = &b->functions.at[e->index];
-  if (!arity_is(ev, x, f->nargs) || !f->value.e) return FAILED;
-  Expr *with = ARENA_ARRAY(b->arena, Expr, f->nargs + 1);
-  AstId arg = x->args;
-  for (uint32_t i = 0; i < f->nargs; i++, arg = ast_expr(b->ast, arg)->next) {
-    if (!value_of(ev, arg)->e) return FAILED;
-    with[i] = value_of(ev, arg)->e;
-  }
-  Value r = f->value;
-  if (f->nargs) r.dim = DIM_UNKNOWN;
-  for (uint32_t k = 0; k < parts_of(&r); k++) r.at[k] = expr_replace(b->g, r.at[k], f->args, with, f->nargs);
-  return r;
-}
-
 static Value call_sqrt(Eval *ev, const AstExpr *x) {
   if (!arity_is(ev, x, 1) || !value_of(ev, x->args)->e) return FAILED;
   const Value *v = value_of(ev, x->args);
-  return a_value(expr_sqrt(ev->b->g, v->e), dim_pow(v->dim, num_ratio(1, 2)), v->bare);
+  return a_value(expr_sqrt(ev->b->g, v->e), dim_pow(ev->b->dims, v->dim, num_ratio(1, 2)), v->bare);
 }
 
 static Value unknown_function(Eval *ev, const AstExpr *x) {
@@ -237,10 +216,9 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
 }
 
 Value call_value(Eval *ev, const AstExpr *x) {
-  Builder *b = ev->b;
-  int ambiguous;
-  const Entity *e = scope_find(&b->scope, x->name, ev->effect, &ambiguous);
-  if (e && e->kind == ENT_FUNCTION) return call_function(ev, x, e);
+  const Ast *ast = ev->b->ast;
+  const Entity *own = own_function(ev, x);
+  if (own) return call_function(ev, x, own);
   for (size_t i = 0; i < sizeof unary_functions / sizeof *unary_functions; i++)
     if (strcmp(x->name, unary_functions[i].name) == 0) return call_unary(ev, x, unary_functions[i].op);
   for (size_t i = 0; i < sizeof binary_functions / sizeof *binary_functions; i++)
@@ -252,6 +230,6 @@ Value call_value(Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "cross") == 0) return call_cross(ev, x);
   if (strcmp(x->name, "norm") == 0) return call_norm(ev, x);
   if (strcmp(x->name, "pow") == 0)
-    return arity_is(ev, x, 2) ? power_value(ev, x, x->args, ast_expr(b->ast, x->args)->next) : FAILED;
+    return arity_is(ev, x, 2) ? power_value(ev, x, x->args, ast_expr(ast, x->args)->next) : FAILED;
   return unknown_function(ev, x);
 }

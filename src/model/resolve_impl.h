@@ -22,9 +22,9 @@ struct Eval {
   Builder *b;
   Context where;
   Name effect;
-  const Definition *function; /* whose arguments are in scope, or NULL */
-  EntKind kind;               /* what is being defined (ENT_NONE: nothing), */
-  uint32_t definition;        /* and its place */
+  const Instance *function;   /* whose arguments are in scope, or NULL */
+  EntKind kind;               /* what is being defined: ENT_LET, ENT_FUNCTION; ENT_NONE: nothing */
+  uint32_t definition;        /* its place in b->lets, or in b->instances */
   IndexVars index;            /* of the sums around, and of the definition */
   int in_statement;           /* the indices of b->index are in scope too */
   int waiting;                /* for b->needed */
@@ -48,11 +48,16 @@ static inline uint32_t parts_of(const Value *v) { return v->n ? v->n : 1; }
 
 static inline Value *value_of(const Eval *ev, AstId id) { return &ev->value[id - ev->first]; }
 
-/* Dimensions: whether two values may be added, the message when they may not, and a demand for a
- * pure number (an angle is one); `what` asks for it. */
-int dims_agree(const Builder *b, const Value *x, const Value *y);
-void report_mismatch(Eval *ev, Span span, AstId x, AstId y);
+/* check_units.c: whether two values may be added, reported where they may not; a demand for a pure number
+ * (an angle is one), `what` asks for it; whether what the node makes of temperatures in degC has a meaning. */
+int operands_agree(Eval *ev, Span span, AstId x, AstId y);
 int need_pure(Eval *ev, AstId arg, const char *what);
+int point_fits(Eval *ev, const AstExpr *x, AstId operand);
+int refuse_point(Eval *ev, AstId operand, const char *why);
+
+/* Whether the value of an operand can stand in x: a condition in a condition, and first in `if`; a vector
+ * where vectors are taken; reported where it cannot. */
+int operand_fits(Eval *ev, const AstExpr *x, AstId operand);
 
 /* Whether two values have the same shape; reported where they have not. */
 int same_shape(Eval *ev, Span span, AstId x, AstId y);
@@ -67,12 +72,25 @@ Value name_value(Eval *ev, const AstExpr *x);
 Value index_value(Eval *ev, const AstExpr *x);
 Value member_value(Eval *ev, const AstExpr *x);
 
-/* The node of the argument called `name`, when a function's body is evaluated; otherwise 0. */
-Expr function_argument(const Builder *b, const Definition *function, Name name);
+/* The argument called `name`, when a function's body is evaluated; otherwise NULL. */
+const Value *function_argument(const Builder *b, const Instance *function, Name name);
 
-/* Whether the definition has its value. Where it has none yet, the evaluation waits for it; where it
- * is being defined, it is defined by itself, which is reported. */
-int definition_ready(Eval *ev, EntKind kind, uint32_t index, Name name, Span span);
+/* Lets the evaluation wait for a let, or an instance of a function, which is begun when it returns. When that
+ * is already being evaluated it is defined by itself, which is reported. */
+void wait_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span);
+
+/* resolve_function.c: an instance of a function, at the end of b->instances, for arguments of these shapes (0: a
+ * number, 2, 3), not evaluated yet; resolve_instance evaluates it. */
+Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes);
+const Instance *resolve_instance(Builder *b, uint32_t function, const uint32_t *shapes);
+
+/* Gives the arguments of an instance symbols for their rates. */
+void need_rates(Builder *b, Instance *in);
+/* A call of a function of the model's own. */
+Value call_function(Eval *ev, const AstExpr *x, const Entity *e);
+
+/* The function of the model's own that x calls, or NULL. */
+const Entity *own_function(const Eval *ev, const AstExpr *x);
 
 /* The number an index expression stands for, or 0, reported. */
 int whole_number(Builder *b, const Value *v, AstId id, int64_t *out);
@@ -89,7 +107,10 @@ Expr times_unit(Builder *b, Expr e, const Unit *u);
 
 /* Whether the language has a function that this version gives no meaning to; whether it takes vectors. */
 int call_is_not_yet(Name name);
-int call_takes_vectors(Name name);
+int call_takes_vectors(const Eval *ev, const AstExpr *x);
+
+/* Whether a call has so many arguments; reported when it has not. */
+int arity_is(Eval *ev, const AstExpr *x, uint32_t want);
 
 /* The value of an AST_CALL. */
 Value call_value(Eval *ev, const AstExpr *x);

@@ -19,27 +19,23 @@ const char *shape_text(const Builder *b, uint32_t n) {
   return n ? arena_printf(b->arena, "a vector of %u components", n) : "a number";
 }
 
-Expr function_argument(const Builder *b, const Definition *function, Name name) {
-  for (uint32_t i = 0; function && i < function->nargs; i++) {
-    const Symbol *s = expr_symbol(b->g, function->args[i]);
-    if (s->name == name) return s->node;
-  }
-  return 0;
-}
-
-int definition_ready(Eval *ev, EntKind kind, uint32_t index, Name name, Span span) {
+void wait_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span) {
   Builder *b = ev->b;
-  const Definition *d = kind == ENT_LET ? &b->lets.at[index] : &b->functions.at[index];
-  if (d->progress == DONE) return 1;
-  if (d->progress == DOING) {
+  if (progress == DOING) {
     diag_error(b->diags, span, "`%s` is defined by itself", name);
     diag_help(b->diags, "%s may use only what does not lead back to it", ent_kind_text(kind));
-    return 0;
+    return;
   }
   b->needed_kind = kind;
   b->needed = index;
   ev->waiting = 1;
-  return 0;
+}
+
+static Value let_value(Eval *ev, const Entity *e, Span span) {
+  const Definition *d = &ev->b->lets.at[e->index];
+  if (d->progress == DONE) return d->value;
+  wait_for(ev, ENT_LET, e->index, d->progress, e->name, span);
+  return FAILED;
 }
 
 /* --- what a name stands for --- */
@@ -86,13 +82,19 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
       Value v = {.n = e->parts};
       uint32_t i = e->index + member_offset(e, at);
       for (uint32_t k = 0; k < parts_of(&v); k++) v.at[k] = expr_symbol(b->g, symbol_of(b->m, e->kind, i + k))->node;
-      v.dim = b->dims.at[symbol_of(b->m, e->kind, i)];
+      v.dim = b->dim_of.at[symbol_of(b->m, e->kind, i)];
+      v.unit = entity_unit(b, e)->text;
       return v;
     }
-    case ENT_CONST: return a_value(expr_num(b->g, b->constants.at[e->index].value), DIM_NONE, 1);
-    case ENT_LET: return definition_ready(ev, ENT_LET, e->index, e->name, span) ? b->lets.at[e->index].value : FAILED;
+    case ENT_CONST: return b->constants.at[e->index].value;
+    case ENT_LET: return let_value(ev, e, span);
     case ENT_OBSERVE: {
       const Output *o = &b->m->observes.at[e->index];
+      if (o->pending) {
+        diag_error(b->diags, span, "the observable `%s` has no value yet", e->name);
+        diag_help(b->diags, "each may use those above it; what all may use is a `let`");
+        return FAILED;
+      }
       return a_value(o->value, o->unit.dim, 0);
     }
     case ENT_FUNCTION:
@@ -118,15 +120,13 @@ static int builtin_quantity(Eval *ev, Name name, Value *out) {
   Builder *b = ev->b;
   Model *m = b->m;
   if (ev->where != IN_OBSERVE) return 0;
-  Dim joule = {1, {2 * DIM_ONE, DIM_ONE, -2 * DIM_ONE}};
-  Dim dim = b->dims.at[m->energy_sym].known ? joule : DIM_UNKNOWN;
   Expr e = 0;
   if (strcmp(name, "lagrangian") == 0) e = m->lagrangian;
   else if (strcmp(name, "energy") == 0 && m->lagrangian) e = expr_symbol(b->g, m->energy_sym)->node;
   else if (strcmp(name, "T") == 0) e = m->kinetic;
   else if (strcmp(name, "V") == 0) e = m->potential;
   if (!e) return 0;
-  *out = a_value(e, dim, 0);
+  *out = a_value(e, b->energy, 0);
   return 1;
 }
 
@@ -144,11 +144,11 @@ Value name_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const IndexVar *index = find_index(ev, x->name);
   if (index) return a_value(expr_int(b->g, index->at), DIM_NONE, 1);
-  Expr argument = function_argument(b, ev->function, x->name);
-  if (argument) return a_value(argument, DIM_UNKNOWN, 0);
+  const Value *argument = function_argument(b, ev->function, x->name);
+  if (argument) return *argument;
   if (strcmp(x->name, "pi") == 0) return a_value(expr_symbol(b->g, b->m->pi)->node, DIM_NONE, 1);
   if (strcmp(x->name, "t") == 0) {
-    if (ev->where >= IN_INPUT) return a_value(expr_symbol(b->g, b->m->time)->node, b->dims.at[b->m->time], 0);
+    if (ev->where >= IN_INPUT) return a_value(expr_symbol(b->g, b->m->time)->node, b->dim_of.at[b->m->time], 0);
     diag_error(b->diags, x->span, "the time `t` may not be used here");
     diag_help(b->diags, "%s", place_text(ev->where));
     return FAILED;
@@ -277,7 +277,7 @@ Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t pr
   const Entity *member = e;
   if (e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE)) member = find_member(b, e, at);
   if (!member) return FAILED;
-  if (member->kind == ENT_LET) resolve_definition(b, ENT_LET, member->index);
+  if (member->kind == ENT_LET) resolve_let(b, member->index);
   Value v = entity_value(&ev, member, at, span);
   for (; v.e && primes; primes--) v = time_derivative(b, v, span, where);
   return v;

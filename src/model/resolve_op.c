@@ -1,50 +1,11 @@
 /* Operators: numbers, sums, products, powers, conditions, tuples; and sum(...), product(...). */
 #include "model/resolve_impl.h"
 
-/* --- dimensions and shapes --- */
-
-/* Reports two dimensions that should agree; a bare number gets the unit to write. */
-void report_mismatch(Eval *ev, Span span, AstId x, AstId y) {
-  Builder *b = ev->b;
-  const Value *vx = value_of(ev, x), *vy = value_of(ev, y);
-  if (vx->bare) {
-    AstId t = x;
-    x = y;
-    y = t;
-    vx = value_of(ev, x);
-    vy = value_of(ev, y);
-  }
-  const char *tx = ast_short(b, x), *ty = ast_short(b, y), *dx = dim_text(vx->dim, b->arena);
-  if (vy->bare) {
-    diag_error(b->diags, span, "units do not match: `%s` is in [%s], `%s` has no unit", tx, dx, ty);
-    diag_help(b->diags, "give the number its unit: `%s [%s]`", ty, dx);
-  } else {
-    diag_error(b->diags, span, "units do not match: `%s` is in [%s], `%s` in [%s]", tx, dx, ty, dim_text(vy->dim, b->arena));
-  }
-}
+/* --- shapes --- */
 
 void report_condition(Builder *b, AstId id) {
   diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is a condition, no number", ast_short(b, id));
   diag_help(b->diags, "`if(condition, a, b)` chooses between two numbers");
-}
-
-static int is_zero(const Builder *b, const Value *v) {
-  for (uint32_t k = 0; k < parts_of(v); k++)
-    if (!expr_is_zero(b->g, v->at[k])) return 0;
-  return 1;
-}
-
-/* A zero is a zero in every unit. */
-int dims_agree(const Builder *b, const Value *x, const Value *y) {
-  return dim_fits(x->dim, y->dim) || is_zero(b, x) || is_zero(b, y);
-}
-
-int need_pure(Eval *ev, AstId arg, const char *what) {
-  const Value *v = value_of(ev, arg);
-  if (!v->dim.known || dim_is_none(v->dim)) return 1;
-  diag_error(ev->b->diags, ast_expr(ev->b->ast, arg)->span, "%s takes a pure number or an angle; `%s` is in [%s]",
-             what, ast_short(ev->b, arg), dim_text(v->dim, ev->b->arena));
-  return 0;
 }
 
 int same_shape(Eval *ev, Span span, AstId x, AstId y) {
@@ -85,25 +46,31 @@ static Expr add_scratch(Builder *b) {
   return e;
 }
 
+/* 20 [degC] + 5 [K], T - 20 [degC]: first in a sum, or subtracted once. */
+static int point_in_sum(Eval *ev, uint32_t i) {
+  uint32_t subtracted = 0;
+  for (uint32_t k = 0; k <= i; k++) subtracted += ev->operands.at[k].inverted && value_of(ev, ev->operands.at[k].at)->point;
+  if (ev->operands.at[i].inverted ? subtracted == 1 : i == 0) return 1;
+  return refuse_point(ev, ev->operands.at[i].at, "cannot be added to a temperature");
+}
+
 /* Shape, dimension and bareness of a sum; 0, reported, when its operands do not go together. */
-static int judge_sum(Eval *ev, Value *r) {
+static int judge_sum(Eval *ev, const AstExpr *x, Value *r) {
   Builder *b = ev->b;
   AstId measure = 0; /* the operand that settles the dimension */
-  *r = (Value){.dim = DIM_UNKNOWN, .bare = 1};
+  *r = (Value){.dim = DIM_ANY, .bare = 1};
   for (uint32_t i = 0; i < ev->operands.n; i++)
-    if (!value_of(ev, ev->operands.at[i].at)->e) return 0;
+    if (!operand_fits(ev, x, ev->operands.at[i].at) || !value_of(ev, ev->operands.at[i].at)->e) return 0;
   r->n = value_of(ev, ev->operands.at[0].at)->n;
   for (uint32_t i = 0; i < ev->operands.n; i++) {
     AstId at = ev->operands.at[i].at;
     const Value *v = value_of(ev, at);
     if (!same_shape(ev, ast_expr(b->ast, at)->span, ev->operands.at[0].at, at)) return 0;
     r->bare &= v->bare;
+    if (v->point && !point_in_sum(ev, i)) return 0;
     if (is_zero(b, v)) continue;
-    if (measure && !dims_agree(b, value_of(ev, measure), v)) {
-      report_mismatch(ev, ast_expr(b->ast, at)->span, measure, at);
-      return 0;
-    }
-    if (!measure && v->dim.known) {
+    if (measure && !operands_agree(ev, ast_expr(b->ast, at)->span, measure, at)) return 0;
+    if (!measure && v->dim != DIM_ANY) {
       measure = at;
       r->dim = v->dim;
     }
@@ -115,7 +82,7 @@ static Value sum_value(Eval *ev, AstId id) {
   Builder *b = ev->b;
   chain(ev, id, AST_SUB);
   Value r;
-  if (!judge_sum(ev, &r)) return FAILED;
+  if (!judge_sum(ev, ast_expr(b->ast, id), &r)) return FAILED;
   for (uint32_t k = 0; k < parts_of(&r); k++) {
     for (uint32_t i = 0; i < ev->operands.n; i++) {
       Expr e = value_of(ev, ev->operands.at[i].at)->at[k];
@@ -128,7 +95,7 @@ static Value sum_value(Eval *ev, AstId id) {
 }
 
 /* One factor may be a vector; nothing is divided by one. *vector: its place, or UINT32_MAX. */
-static int judge_product(Eval *ev, Value *r, uint32_t *vector) {
+static int judge_product(Eval *ev, const AstExpr *x, Value *r, uint32_t *vector) {
   Builder *b = ev->b;
   int ok = 1;
   *r = (Value){.dim = DIM_NONE, .bare = 1};
@@ -137,7 +104,7 @@ static int judge_product(Eval *ev, Value *r, uint32_t *vector) {
     Operand o = ev->operands.at[i];
     const Value *v = value_of(ev, o.at);
     Span span = ast_expr(b->ast, o.at)->span;
-    if (!v->e) {
+    if (!operand_fits(ev, x, o.at) || !v->e) {
       ok = 0;
     } else if (v->n && (o.inverted || r->n)) {
       diag_error(b->diags, span, o.inverted ? "`%s` is %s, and nothing is divided by a vector" : "`%s` is %s, and so is a factor before it",
@@ -150,7 +117,7 @@ static int judge_product(Eval *ev, Value *r, uint32_t *vector) {
     } else {
       if (v->n) *vector = i;
       if (v->n) r->n = v->n;
-      r->dim = o.inverted ? dim_div(r->dim, v->dim) : dim_mul(r->dim, v->dim);
+      r->dim = o.inverted ? dim_div(b->dims, r->dim, v->dim) : dim_mul(b->dims, r->dim, v->dim);
       r->bare &= v->bare;
     }
   }
@@ -162,7 +129,7 @@ static Value product_value(Eval *ev, AstId id) {
   chain(ev, id, AST_DIV);
   Value r;
   uint32_t vector;
-  if (!judge_product(ev, &r, &vector)) return FAILED;
+  if (!judge_product(ev, ast_expr(b->ast, id), &r, &vector)) return FAILED;
   for (uint32_t k = 0; k < parts_of(&r); k++) {
     for (uint32_t i = 0; i < ev->operands.n; i++) {
       Expr e = value_of(ev, ev->operands.at[i].at)->at[i == vector ? k : 0];
@@ -185,20 +152,17 @@ Value power_value(Eval *ev, const AstExpr *x, AstId base_id, AstId exp_id) {
       diag_error(b->diags, x->span, "division by zero");
       return FAILED;
     }
-    return a_value(expr_pow_num(b->g, base->e, n), dim_pow(base->dim, n), base->bare && e->bare);
+    return a_value(expr_pow_num(b->g, base->e, n), dim_pow(b->dims, base->dim, n), base->bare && e->bare);
   }
   if (!need_pure(ev, base_id, "the base of a power whose exponent is not a number")) return FAILED;
-  return a_value(expr_pow(b->g, base->e, e->e), base->dim.known ? DIM_NONE : DIM_UNKNOWN, 0);
+  return a_value(expr_pow(b->g, base->e, e->e), DIM_NONE, 0);
 }
 
 static Value compare_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const Value *l = value_of(ev, x->a), *r = value_of(ev, x->b);
   if (!l->e || !r->e) return FAILED;
-  if (!dims_agree(b, l, r)) {
-    report_mismatch(ev, x->span, x->a, x->b);
-    return FAILED;
-  }
+  if (!operands_agree(ev, x->span, x->a, x->b)) return FAILED;
   int swapped = x->kind == AST_GT || x->kind == AST_GE;
   ExprOp op = x->kind == AST_LT || x->kind == AST_GT ? EX_LT : x->kind == AST_LE || x->kind == AST_GE ? EX_LE : EX_EQ;
   Expr e = expr_fn2(b->g, op, swapped ? r->e : l->e, swapped ? l->e : r->e);
@@ -226,7 +190,7 @@ static Value logic_value(Eval *ev, const AstExpr *x) {
 
 static Value tuple_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
-  Value r = {.dim = DIM_UNKNOWN, .bare = 1};
+  Value r = {.dim = DIM_ANY, .bare = 1};
   AstId measure = 0;
   for (AstId i = x->args; i; i = ast_expr(b->ast, i)->next) {
     const Value *v = value_of(ev, i);
@@ -237,11 +201,8 @@ static Value tuple_value(Eval *ev, const AstExpr *x) {
     }
     r.at[r.n++] = v->e;
     r.bare &= v->bare;
-    if (measure && !dims_agree(b, value_of(ev, measure), v)) {
-      report_mismatch(ev, ast_expr(b->ast, i)->span, measure, i);
-      return FAILED;
-    }
-    if (!measure && v->dim.known && !expr_is_zero(b->g, v->e)) {
+    if (measure && !operands_agree(ev, ast_expr(b->ast, i)->span, measure, i)) return FAILED;
+    if (!measure && v->dim != DIM_ANY && !expr_is_zero(b->g, v->e)) {
       measure = i;
       r.dim = v->dim;
     }
@@ -253,7 +214,7 @@ Value operator_value(Eval *ev, AstId id) {
   Builder *b = ev->b;
   const AstExpr *x = ast_expr(b->ast, id);
   switch (x->kind) {
-    case AST_NUM: return a_value(expr_num(b->g, x->number), num_is_zero(x->number) ? DIM_UNKNOWN : DIM_NONE, 1);
+    case AST_NUM: return a_value(expr_num(b->g, x->number), num_is_zero(x->number) ? DIM_ANY : DIM_NONE, 1);
     case AST_NEG: {
       Value v = *value_of(ev, x->a);
       for (uint32_t k = 0; v.e && k < parts_of(&v); k++) v.at[k] = expr_neg(b->g, v.at[k]);
@@ -274,7 +235,7 @@ Value operator_value(Eval *ev, AstId id) {
 int whole_number(Builder *b, const Value *v, AstId id, int64_t *out) {
   if (!v->e) return 0;
   Num n = expr_is_num(b->g, v->e) ? expr_number(b->g, v->e) : num_ratio(1, 2);
-  if (v->n || !num_is_exact(n) || n.den != 1 || (v->dim.known && !dim_is_none(v->dim))) {
+  if (v->n || !num_is_exact(n) || n.den != 1 || !dim_equate(b->dims, v->dim, DIM_NONE, ast_expr(b->ast, id)->span)) {
     diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is no whole number known when compiling", ast_short(b, id));
     diag_help(b->diags, "indices and ranges are made of numbers, constants (`const N = 3`) and indices");
     return 0;
@@ -296,7 +257,7 @@ int loop_begin(Eval *ev, AstId id) {
   *r = FAILED;
   if (!whole_number(b, value_of(ev, x->a), x->a, &lo) || !whole_number(b, value_of(ev, x->b), x->b, &hi)) return 0;
   if (lo > hi) {
-    *r = a_value(expr_int(b->g, x->kind == AST_PRODUCT), x->kind == AST_PRODUCT ? DIM_NONE : DIM_UNKNOWN, 1);
+    *r = a_value(expr_int(b->g, x->kind == AST_PRODUCT), x->kind == AST_PRODUCT ? DIM_NONE : DIM_ANY, 1);
     return 0;
   }
   if (!range_fits(b, lo, hi, x->span)) return 0;
@@ -309,7 +270,7 @@ int loop_begin(Eval *ev, AstId id) {
 static int judge_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr *x, Value *r) {
   Builder *b = ev->b;
   int product = x->kind == AST_PRODUCT;
-  *r = (Value){.dim = product ? DIM_NONE : DIM_UNKNOWN, .bare = 1, .n = term[0].n};
+  *r = (Value){.dim = product ? DIM_NONE : DIM_ANY, .bare = 1, .n = term[0].n};
   Span span = ast_expr(b->ast, x->c)->span;
   for (uint32_t i = 0; i < n; i++) {
     r->bare &= term[i].bare;
@@ -319,14 +280,14 @@ static int judge_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr *x
       return 0;
     }
     if (product) {
-      r->dim = dim_mul(r->dim, term[i].dim);
-    } else if (!is_zero(b, &term[i]) && term[i].dim.known) {
-      if (!dim_fits(r->dim, term[i].dim)) {
-        diag_error(b->diags, span, "units do not match: terms of this sum are in [%s] and in [%s]", dim_text(r->dim, b->arena),
-                   dim_text(term[i].dim, b->arena));
+      r->dim = dim_mul(b->dims, r->dim, term[i].dim);
+    } else if (!is_zero(b, &term[i]) && term[i].dim != DIM_ANY) {
+      if (!dim_equate(b->dims, r->dim, term[i].dim, span)) {
+        diag_error(b->diags, span, "units do not match: terms of this sum are %s and %s", in_dim(b, r->dim), in_dim(b, term[i].dim));
+        explain_dims(b, r->dim, term[i].dim);
         return 0;
       }
-      r->dim = term[i].dim;
+      if (r->dim == DIM_ANY) r->dim = term[i].dim;
     }
   }
   return 1;

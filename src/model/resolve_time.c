@@ -2,11 +2,21 @@
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
 
+/* Those of the arguments of functions: each becomes its rate. */
+static void local_seeds(const Builder *b, Expr *seed) {
+  for (uint32_t i = 0; i < b->instances.n; i++) {
+    const Instance *in = b->instances.at[i];
+    for (uint32_t k = 0; k + in->nplain < in->symbols.n; k++)
+      seed[in->symbols.at[k]] = expr_symbol(b->g, in->symbols.at[k + in->nplain])->node;
+  }
+}
+
 /* What each symbol becomes under d/dt. All symbols that move are declared before anything is derived. */
 static const Expr *time_seeds(Builder *b) {
   if (b->seeds && b->nseeds == expr_symbol_count(b->g)) return b->seeds;
   b->nseeds = expr_symbol_count(b->g);
   Expr *seed = b->seeds = ARENA_ARRAY(b->arena, Expr, b->nseeds + 1);
+  b->rates = expr_map(b->arena);
   const Model *m = b->m;
   seed[m->time] = expr_int(b->g, 1);
   for (uint32_t i = 0; i < m->coords.n; i++) {
@@ -16,16 +26,23 @@ static const Expr *time_seeds(Builder *b) {
   }
   for (uint32_t i = 0; i < m->states.n; i++)
     seed[m->states.at[i].z] = expr_symbol(b->g, m->states.at[i].rate)->node;
+  local_seeds(b, seed);
   return seed;
+}
+
+/* Whether it has symbols whose rates are not known: the energy, second rates of arguments. */
+static int has_no_rate(Builder *b, const Value *v) {
+  const Expr *seed = time_seeds(b);
+  ExprList l = expr_topo(b->g, v->at, parts_of(v));
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_op(b->g, l.at[i]) == EX_SYM && expr_sym_of(b->g, l.at[i])->kind == SYM_LOCAL && !seed[expr_sym_id(b->g, l.at[i])]) return 1;
+  return 0;
 }
 
 /* What kinds of symbols an expression contains, as bits 1 << SymKind. */
 static unsigned kinds_in(Builder *b, const Value *v) {
   unsigned kinds = 0;
-  if (!v->n && expr_op(b->g, v->e) == EX_SYM) return 1u << expr_sym_of(b->g, v->e)->kind;
-  ExprList l = expr_topo(b->g, v->at, parts_of(v));
-  for (uint32_t i = 0; i < l.n; i++)
-    if (expr_op(b->g, l.at[i]) == EX_SYM) kinds |= 1u << expr_sym_of(b->g, l.at[i])->kind;
+  for (uint32_t i = 0; i < parts_of(v); i++) kinds |= expr_kinds(b->g, v->at[i]);
   return kinds;
 }
 
@@ -40,14 +57,13 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
     diag_error(b->diags, span, "third derivatives do not occur in mechanics");
     return FAILED;
   }
-  if (kinds & 1u << SYM_LOCAL) {
-    not_yet(b, span, "a time derivative of a function's argument, or of the energy");
+  if (kinds & 1u << SYM_LOCAL && has_no_rate(b, &of)) {
+    not_yet(b, span, "a time derivative of the energy, or a third one of a function's argument");
     return FAILED;
   }
-  Dim second_dim = {1, {[DIM_TIME] = DIM_ONE}};
-  Value r = {.dim = dim_div(of.dim, second_dim), .n = of.n};
+  Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};
   const Expr *seed = time_seeds(b);
-  expr_tangent(b->g, of.at, parts_of(&of), seed, b->nseeds + 1, "'", r.at);
+  expr_tangent(b->g, of.at, parts_of(&of), seed, b->nseeds + 1, "'", &b->rates, r.at);
   if (where != IN_OBSERVE && kinds_in(b, &r) & second) {
     diag_error(b->diags, span, "a second derivative may stand only in `expect` and `observe`");
     diag_help(b->diags, "L and forces are functions of q, q' and t; accelerations follow from them");
@@ -62,21 +78,23 @@ Expr times_unit(Builder *b, Expr e, const Unit *u) {
   Expr pi = expr_symbol(b->g, b->m->pi)->node;
   Expr power = expr_pow_num(b->g, pi, num_int(u->pi_power));
   Expr scaled = expr_scale(b->g, u->factor, e);
-  return expr_mul(b->g, scaled, power);
+  Expr product = expr_mul(b->g, scaled, power);
+  return num_is_zero(u->offset) ? product : expr_add(b->g, product, expr_num(b->g, u->offset));
 }
 
 Value unit_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const Value *v = value_of(ev, x->a);
   if (ast_expr(b->ast, x->a)->kind != AST_NUM) warn_unit_is_constant(b, &x->unit);
-  Unit u = unit_resolve(&x->unit, b->diags, b->arena);
-  if (!v->e || (x->unit.n && !u.dim.known)) return FAILED;
-  if (v->dim.known && !dim_is_none(v->dim)) {
-    diag_error(b->diags, x->unit.span, "`%s` has a unit already: [%s]", ast_short(b, x->a), dim_text(v->dim, b->arena));
+  Unit u = unit_resolve(&x->unit, b->dims, b->diags, b->arena);
+  if (!v->e || (x->unit.n && u.dim == DIM_ANY)) return FAILED;
+  if (!dim_equate(b->dims, v->dim, DIM_NONE, x->span)) {
+    diag_error(b->diags, x->unit.span, "`%s` has a unit already: [%s]", ast_short(b, x->a), shown_unit(b, v));
     diag_help(b->diags, "leave `[%s]` out, or multiply: `... * 1 [%s]`", x->unit.text, x->unit.text);
+    explain_dims(b, v->dim, DIM_ANY);
     return FAILED;
   }
-  Value r = {.dim = u.dim, .n = v->n};
+  Value r = {.dim = u.dim, .n = v->n, .unit = u.text, .point = !num_is_zero(u.offset)};
   for (uint32_t k = 0; k < parts_of(v); k++) r.at[k] = times_unit(b, v->at[k], &u);
   return r;
 }

@@ -302,7 +302,7 @@ static Name method_text(const Builder *b, AstId id) {
 
 static void set_method(Builder *b, const AstStmt *st) {
   Scene *sc = &b->m->scene;
-  Unit second = {.dim = DIM_UNKNOWN, .factor = num_int(1), .text = ""};
+  Unit any = {.dim = DIM_ANY, .factor = num_int(1), .offset = num_int(0), .text = ""};
   sc->method = st->name;
   sc->options.n = 0;
   for (const AstStmt *o = st->body; o; o = o->next) {
@@ -312,7 +312,7 @@ static void set_method(Builder *b, const AstStmt *st) {
       continue;
     }
     Option opt = {.name = l->name, .text = method_text(b, o->rhs)};
-    if (!opt.text) opt.value = resolve_number(b, o->rhs, &second, "an option");
+    if (!opt.text) opt.value = resolve_number(b, o->rhs, &any, "an option");
     vec_push(b->arena, &sc->options, opt);
   }
 }
@@ -332,7 +332,7 @@ static SymId start_target(const Builder *b, const StartOf *of, uint32_t i) {
 static const Unit *start_unit(Builder *b, uint32_t i, void *data) {
   StartOf *of = data;
   of->unit = of->kind == ENT_STATE ? b->m->states.at[i].unit : b->m->coords.at[i].unit;
-  of->unit.dim = b->dims.at[start_target(b, of, i)];
+  if (of->velocity) of->unit = unit_per_second(b, &of->unit);
   return &of->unit;
 }
 
@@ -379,14 +379,16 @@ static void set_start(Builder *b, const AstStmt *st) {
   assign_values(b, &p, e, st->lhs, st->rhs, &giver);
 }
 
-static Unit seconds(void) {
-  return (Unit){.dim = {1, {[DIM_TIME] = DIM_ONE}}, .factor = num_int(1), .text = "s"};
+static Unit seconds(const Builder *b) {
+  return (Unit){.dim = dim_base(b->dims, DIM_TIME), .factor = num_int(1), .offset = num_int(0), .text = "s"};
 }
+
+static Unit no_unit(void) { return (Unit){.dim = DIM_NONE, .factor = num_int(1), .offset = num_int(0), .text = "1"}; }
 
 static void set_output(Builder *b, const AstStmt *st) {
   b->m->scene.outputs.n = 0;
   for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) add_outputs(b, i);
-  Unit s = seconds();
+  Unit s = seconds(b);
   if (st->rhs) {
     double every = resolve_number(b, st->rhs, &s, "the output interval");
     if (every <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the output interval must be positive");
@@ -396,7 +398,7 @@ static void set_output(Builder *b, const AstStmt *st) {
 
 static void set_monitor(Builder *b, const AstStmt *st) {
   const AstExpr *x = ast_expr(b->ast, st->lhs);
-  Unit none = {.dim = DIM_NONE, .factor = num_int(1), .text = ""};
+  Unit none = no_unit();
   Monitor mon = {.output = -1, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit")};
   mon.name = intern(b->ast->names, ast_text(b, st->lhs));
   if (mon.limit <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a monitor's limit must be positive");
@@ -412,7 +414,7 @@ static void set_monitor(Builder *b, const AstStmt *st) {
 }
 
 static void set_span(Builder *b, const AstStmt *st) {
-  Unit s = seconds();
+  Unit s = seconds(b);
   Scene *sc = &b->m->scene;
   sc->t1 = resolve_number(b, st->rhs, &s, "the span");
   sc->has_span = 1;
@@ -420,7 +422,7 @@ static void set_span(Builder *b, const AstStmt *st) {
 }
 
 static void set_tolerance(Builder *b, const AstStmt *st) {
-  Unit none = {.dim = DIM_NONE, .factor = num_int(1), .text = ""};
+  Unit none = no_unit();
   b->m->scene.tolerance = resolve_number(b, st->rhs, &none, "the tolerance");
   if (b->m->scene.tolerance <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the tolerance must be positive");
 }
@@ -452,8 +454,7 @@ static void default_outputs(Builder *b) {
     for (uint32_t i = 0; i < m->coords.n; i++) {
       const Coord *c = &m->coords.at[i];
       const Symbol *s = expr_symbol(b->g, velocities ? c->v : c->q);
-      Output o = {.name = s->name, .span = c->span, .unit = c->unit, .value = s->node};
-      if (velocities && c->unit.text[0]) o.unit.text = arena_printf(b->arena, "%s/s", c->unit.text);
+      Output o = {.name = s->name, .span = c->span, .unit = velocities ? unit_per_second(b, &c->unit) : c->unit, .value = s->node};
       vec_push(b->arena, &sc->outputs, o);
     }
   for (uint32_t i = 0; i < m->states.n; i++) {
@@ -463,7 +464,7 @@ static void default_outputs(Builder *b) {
   }
   if (!m->lagrangian) return;
   Output o = {.name = intern(b->ast->names, "energy"), .value = expr_symbol(b->g, m->energy_sym)->node};
-  o.unit = unit_of_dim(b, b->dims.at[m->energy_sym]);
+  o.unit = unit_of_dim(b->dims, b->energy);
   vec_push(b->arena, &sc->outputs, o);
 }
 

@@ -38,6 +38,64 @@ const AstExpr *list_behind(const Builder *b, AstId id, const AstUnit **unit) {
   return x->kind == AST_LIST ? x : NULL;
 }
 
+static uint32_t count_list(const Builder *b, const AstExpr *list) {
+  uint32_t n = 0;
+  for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) n++;
+  return n;
+}
+
+static uint64_t count_along(const IndexRange *r, uint32_t k) {
+  return r->hi[k] < r->lo[k] ? 0 : (uint64_t)(r->hi[k] - r->lo[k] + 1);
+}
+
+static uint64_t count_in(const IndexRange *r) {
+  uint64_t n = 1;
+  for (uint32_t k = 0; k < r->n; k++) n *= count_along(r, k);
+  return n;
+}
+
+static int report_count(Builder *b, const AstExpr *list, const char *what, const char *wanted) {
+  uint32_t n = count_list(b, list);
+  diag_error(b->diags, list->span, "%s has %u element%s, and %s", what, n, n == 1 ? "" : "s", wanted);
+  return 0;
+}
+
+/* A list of rows, each a list with a unit behind it or not. */
+static int row_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out) {
+  uint64_t rows = count_along(r, 0), columns = count_along(r, 1);
+  if (count_list(b, list) != rows)
+    return report_count(b, list, "the list", arena_printf(b->arena, "`%s` has %llu rows", name, (unsigned long long)rows));
+  for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) {
+    const AstUnit *own;
+    const AstExpr *row = list_behind(b, i, &own);
+    if (!row || count_list(b, row) != columns)
+      return row ? report_count(b, row, "this row", arena_printf(b->arena, "those of `%s` have %llu", name, (unsigned long long)columns))
+                 : report_count(b, list, "the list", "some are rows and some are not");
+    for (AstId k = row->args; k; k = ast_expr(b->ast, k)->next) vec_push(b->arena, out, ((Element){k, own ? own : behind}));
+  }
+  return 1;
+}
+
+int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out) {
+  const AstUnit *own;
+  if (r->n == 2 && list_behind(b, list->args, &own)) return row_elements(b, list, behind, r, name, out);
+  if (!r->n || count_list(b, list) != count_in(r))
+    return report_count(b, list, "the list", !r->n ? arena_printf(b->arena, "`%s` is no family", name)
+                                                   : arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)count_in(r)));
+  for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) vec_push(b->arena, out, ((Element){i, behind}));
+  return 1;
+}
+
+Value element_value(Builder *b, const Element *x, Context where, Name effect) {
+  Value v = resolve(b, x->id, where, effect);
+  if (!x->behind || !v.e) return v;
+  Unit own = unit_resolve(x->behind, b->dims, b->diags, b->arena);
+  v = values_in(b, v, ast_expr(b->ast, x->id)->span, &own);
+  v.bare = 0;
+  v.dim = own.dim;
+  return v;
+}
+
 /* --- giving values --- */
 
 typedef struct {
@@ -46,7 +104,6 @@ typedef struct {
   const Entity *e;
   const Giver *giver;
   uint32_t parts;       /* of what is given: 0 is a number */
-  const AstUnit *behind;
 } Assign;
 
 /* One value for member `at`. */
@@ -60,25 +117,24 @@ static int give_member(const Assign *s, const int64_t *at, AstId id, Value v) {
     return 0;
   }
   uint32_t first = s->e->index + member_offset(s->e, at) + (s->p->part > 0 ? (uint32_t)s->p->part : 0);
-  if (s->behind) {
-    Unit own = unit_resolve(s->behind, b->diags, b->arena);
-    v = values_in(b, v, span, &own);
-    v.bare = 0;
-    v.dim = own.dim;
-  }
   v = values_in(b, v, span, s->giver->unit(b, first, s->giver->data));
   for (uint32_t k = 0; v.e && k < (v.n ? v.n : 1); k++) s->giver->give(b, first + k, v.at[k], span, s->giver->data);
   return v.e != 0;
 }
 
+IndexRange entity_range(const Entity *e) {
+  IndexRange r = {.n = e->ndims};
+  for (int k = 0; k < e->ndims; k++) {
+    r.lo[k] = e->lo[k];
+    r.hi[k] = e->hi[k];
+  }
+  return r;
+}
+
 /* The ranges that the indices give, inside those of the entity. 0, reported, when they do not fit. */
 static int read_ranges(Builder *b, const Target *p, const Entity *e, AstId lhs, IndexRange *r) {
   Span span = ast_expr(b->ast, lhs)->span;
-  *r = (IndexRange){.n = e->ndims};
-  for (int k = 0; k < e->ndims; k++) {
-    r->lo[k] = e->lo[k];
-    r->hi[k] = e->hi[k];
-  }
+  *r = entity_range(e);
   if (!p->indices) return 1;
   if (!e->ndims) {
     diag_error(b->diags, span, "`%s` is %s without index", e->name, ent_kind_text(e->kind));
@@ -104,25 +160,13 @@ static int next_in(const IndexRange *r, int64_t *at) {
   return 0;
 }
 
-static uint64_t count_in(const IndexRange *r) {
-  uint64_t n = 1;
-  for (uint32_t k = 0; k < r->n; k++) n *= r->hi[k] < r->lo[k] ? 0 : (uint64_t)(r->hi[k] - r->lo[k] + 1);
-  return n;
-}
-
 /* Element by element, one for each member. */
-static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list) {
-  Builder *b = s->b;
-  uint32_t n = 0;
-  for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) n++;
-  if (!s->e->ndims || n != count_in(r)) {
-    diag_error(b->diags, list->span, "the list has %u element%s, and `%s` %s", n, n == 1 ? "" : "s", s->e->name,
-               !s->e->ndims ? "is no family" : arena_printf(b->arena, "has %llu members", (unsigned long long)count_in(r)));
-    return;
-  }
+static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list, const AstUnit *behind) {
+  Elements elements = {0};
+  if (!list_elements(s->b, list, behind, r, s->e->name, &elements)) return;
   int64_t at[2] = {r->lo[0], r->lo[1]};
-  for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) {
-    give_member(s, at, i, resolve(b, i, IN_START, NULL));
+  for (uint32_t i = 0; i < elements.n; i++) {
+    give_member(s, at, elements.at[i].id, element_value(s->b, &elements.at[i], IN_START, NULL));
     next_in(r, at);
   }
 }
@@ -153,7 +197,8 @@ void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstI
     return;
   }
   if (!read_ranges(b, p, e, lhs, &r)) return;
-  const AstExpr *list = list_behind(b, rhs, &s.behind);
-  if (list) give_list(&s, &r, list);
+  const AstUnit *behind;
+  const AstExpr *list = list_behind(b, rhs, &behind);
+  if (list) give_list(&s, &r, list, behind);
   else give_formula(&s, &r, rhs);
 }

@@ -7,15 +7,14 @@
 
 #include "base/suggest.h"
 
-const Dim DIM_NONE = {1, {0}};
-const Dim DIM_UNKNOWN = {0, {0}};
+#define PI 3.14159265358979323846
 
 typedef struct {
   const char *name;
   const char *factor; /* decimal, SI value of one */
   int pi_power;
   int prefixes;       /* 1: takes SI prefixes */
-  int8_t e[DIM_COUNT]; /* m kg s A K mol cd */
+  int8_t e[DIM_BASES]; /* m kg s A K mol cd */
 } UnitRow;
 
 static const UnitRow table[] = {
@@ -62,6 +61,7 @@ static const UnitRow table[] = {
   {"bar", "100000", 0, 1, {-1, 1, -2}},
   {"L", "0.001", 0, 1, {3}},
   {"t", "1000", 0, 0, {0, 1}},
+  {"degC", "1", 0, 0, {0, 0, 0, 0, 1}}, /* see offset_of() */
 };
 enum { N_UNITS = sizeof table / sizeof *table };
 
@@ -130,11 +130,6 @@ static const char *const usual[] = {
 enum { N_USUAL = sizeof usual / sizeof *usual };
 
 static void report_unknown(const AstUnitFactor *f, Diags *diags) {
-  if (strcmp(f->name, "degC") == 0) {
-    diag_error(diags, f->span, "not yet: `degC`, whose zero is not that of the kelvin");
-    diag_help(diags, "write kelvin: 20 degC is 293.15 [K]");
-    return;
-  }
   diag_error(diags, f->span, "unknown unit `%s`", f->name);
   for (int i = 0; i < N_SPELLINGS; i++)
     if (strcmp(f->name, spellings[i][0]) == 0) {
@@ -149,103 +144,99 @@ static void report_unknown(const AstUnitFactor *f, Diags *diags) {
   else diag_help(diags, "`lagc help units` lists them");
 }
 
-static void multiply(Unit *u, const UnitRow *row, int power, Num exponent) {
-  Num base = strcmp(row->name, "deg") == 0 ? num_ratio(1, 180) : num_parse(row->factor, strlen(row->factor));
-  Num ten = power_of_ten(power);
-  int exact;
-  Num one = num_mul(base, ten);
-  Num raised = num_pow(one, exponent, &exact);
-  u->factor = num_mul(u->factor, raised);
-  u->pi_power += (int)(row->pi_power * num_value(exponent));
-  Dim d = {.known = 1};
-  for (int i = 0; i < DIM_COUNT; i++) d.e[i] = (int16_t)(row->e[i] * DIM_ONE);
-  u->dim = dim_mul(u->dim, dim_pow(d, exponent));
+/* The SI value of a unit's zero. */
+static Num offset_of(const UnitRow *row) { return strcmp(row->name, "degC") == 0 ? num_ratio(27315, 100) : num_int(0); }
+
+static Dim row_dim(Dims *dims, const UnitRow *row) {
+  Dim d = DIM_NONE;
+  for (int i = 0; i < DIM_BASES; i++)
+    if (row->e[i]) d = dim_mul(dims, d, dim_pow(dims, dim_base(dims, (DimBase)i), num_int(row->e[i])));
+  return d;
 }
 
-Unit unit_resolve(const AstUnit *ast, Diags *diags, Arena *a) {
-  Unit u = {.dim = ast->n ? DIM_NONE : DIM_UNKNOWN, .factor = num_int(1), .text = ""};
-  if (ast->n) u.text = arena_strdup(a, ast->text);
-  for (uint32_t i = 0; i < ast->n; i++) {
-    int power;
-    const UnitRow *row = find_prefixed(ast->at[i].name, &power);
-    if (row) {
-      multiply(&u, row, power, ast->at[i].exponent);
-    } else {
-      report_unknown(&ast->at[i], diags);
-      u.dim = DIM_UNKNOWN;
+static void multiply(Unit *u, Dims *dims, const UnitRow *row, int power, Num exponent) {
+  Num base = strcmp(row->name, "deg") == 0 ? num_ratio(1, 180) : num_parse(row->factor, strlen(row->factor));
+  Num one = num_mul(base, power_of_ten(power)), turns = num_mul(num_int(row->pi_power), exponent);
+  int exact;
+  u->factor = num_mul(u->factor, num_pow(one, exponent, &exact));
+  if (num_is_int(turns)) u->pi_power += (int)turns.num;
+  else u->factor = num_mul(u->factor, num_double(pow(PI, num_value(turns))));
+  u->dim = dim_mul(dims, u->dim, dim_pow(dims, row_dim(dims, row), exponent));
+}
+
+/* A scale with a zero of its own measures temperatures, and nothing else. */
+static void report_offset(const AstUnit *u, const AstUnitFactor *f, Diags *diags, Arena *a) {
+  StrBuf in_kelvin = strbuf(a);
+  size_t at = 0;
+  for (const char *c = strstr(u->text, f->name); c; c = strstr(u->text + at, f->name)) {
+    sb_printf(&in_kelvin, "%.*sK", (int)(c - u->text - (ptrdiff_t)at), u->text + at);
+    at = (size_t)(c - u->text) + strlen(f->name);
+  }
+  sb_puts(&in_kelvin, u->text + at);
+  diag_error(diags, f->span, "`%s` stands alone: its zero is not that of the kelvin", f->name);
+  diag_help(diags, "a difference of temperatures is the same in kelvin: `[%s]`", sb_text(&in_kelvin));
+}
+
+/* 0, reported, when the factor has no meaning in this unit. */
+static int take_factor(Unit *u, const AstUnit *ast, const AstUnitFactor *f, Dims *dims, Diags *diags, Arena *a) {
+  int power;
+  const UnitRow *row = find_prefixed(f->name, &power);
+  if (!row) {
+    report_unknown(f, diags);
+    return 0;
+  }
+  Num offset = offset_of(row);
+  if (!num_is_zero(offset) && (ast->n > 1 || !num_is_one(f->exponent))) {
+    report_offset(ast, f, diags, a);
+    return 0;
+  }
+  u->offset = offset;
+  multiply(u, dims, row, power, f->exponent);
+  return 1;
+}
+
+Unit unit_resolve(const AstUnit *ast, Dims *dims, Diags *diags, Arena *a) {
+  Unit u = {.dim = ast->n ? DIM_NONE : DIM_ANY, .factor = num_int(1), .offset = num_int(0), .text = ""};
+  if (!ast->n) return u;
+  u.text = arena_strdup(a, ast->text);
+  for (uint32_t i = 0; i < ast->n; i++)
+    if (!take_factor(&u, ast, &ast->at[i], dims, diags, a)) {
+      u.dim = DIM_ANY;
       return u;
     }
-  }
+  if (num_is_one(u.factor) && !u.pi_power && num_is_zero(u.offset)) dim_spell(dims, u.dim, u.text);
   return u;
 }
 
-double unit_factor(const Unit *u) {
-  const double pi = 3.14159265358979323846;
-  double f = num_value(u->factor);
-  for (int i = 0; i < u->pi_power; i++) f *= pi;
-  for (int i = 0; i > u->pi_power; i--) f /= pi;
-  return f;
+Unit unit_of_dim(Dims *dims, Dim d) {
+  Unit u = {.dim = d, .factor = num_int(1), .offset = num_int(0), .text = ""};
+  d = dim_found(dims, d);
+  if (d != DIM_ANY && d != DIM_NONE && !dim_is_open(dims, d)) u.text = dim_text(dims, d);
+  return u;
 }
 
-/* --- dimensions --- */
-
-Dim dim_mul(Dim a, Dim b) {
-  if (!a.known || !b.known) return DIM_UNKNOWN;
-  for (int i = 0; i < DIM_COUNT; i++) a.e[i] = (int16_t)(a.e[i] + b.e[i]);
-  return a;
-}
-
-Dim dim_pow(Dim a, Num e) {
-  if (!a.known) return a;
-  for (int i = 0; i < DIM_COUNT; i++) a.e[i] = (int16_t)lround((double)a.e[i] * num_value(e));
-  return a;
-}
-
-Dim dim_div(Dim a, Dim b) { return dim_mul(a, dim_pow(b, num_int(-1))); }
-
-int dim_fits(Dim a, Dim b) { return !a.known || !b.known || memcmp(a.e, b.e, sizeof a.e) == 0; }
-
-int dim_is_none(Dim a) { return a.known && memcmp(a.e, DIM_NONE.e, sizeof a.e) == 0; }
-
-/* A derived unit with a name of its own: what people expect to read. */
-static const char *derived_name(Dim a) {
-  static const char *const named[] = {"N", "J", "W", "Pa", "C", "V"};
-  for (size_t i = 0; i < sizeof named / sizeof *named; i++) {
-    const UnitRow *row = find_row(named[i]);
-    int same = 1;
-    for (int k = 0; k < DIM_COUNT; k++) same &= a.e[k] == row->e[k] * DIM_ONE;
-    if (same) return row->name;
+int unit_measures(const AstUnit *u) {
+  for (uint32_t i = 0; i < u->n; i++) {
+    int power;
+    const UnitRow *row = find_prefixed(u->at[i].name, &power);
+    if (!row) return 1; /* what was meant is not known */
+    for (int k = 0; k < DIM_BASES; k++)
+      if (row->e[k]) return 1;
   }
-  return NULL;
+  return 0;
 }
 
-static void put_exponent(StrBuf *b, const char *name, int twelfths) {
-  sb_puts(b, name);
-  if (twelfths == DIM_ONE) return;
-  Num e = num_ratio(twelfths, DIM_ONE);
-  sb_puts(b, num_is_int(e) ? "^" : "^(");
-  num_print(b, e);
-  if (!num_is_int(e)) sb_putc(b, ')');
+const char *unit_name(uint32_t i, int *takes_prefixes) {
+  if (i >= N_UNITS) return NULL;
+  *takes_prefixes = table[i].prefixes;
+  return table[i].name;
 }
 
-const char *dim_text(Dim a, Arena *arena) {
-  static const char *const base[DIM_COUNT] = {"m", "kg", "s", "A", "K", "mol", "cd"};
-  static const int order[DIM_COUNT] = {DIM_MASS, DIM_LENGTH, DIM_TIME, DIM_CURRENT, DIM_TEMPERATURE, DIM_AMOUNT, DIM_LUMINOUS};
-  if (!a.known) return "?";
-  const char *name = derived_name(a);
-  if (name) return name;
-  StrBuf b = strbuf(arena);
-  int above = 0;
-  for (int i = 0; i < DIM_COUNT; i++)
-    if (a.e[order[i]] > 0) {
-      if (above++) sb_putc(&b, '*');
-      put_exponent(&b, base[order[i]], a.e[order[i]]);
-    }
-  if (!above) sb_putc(&b, '1');
-  for (int i = 0; i < DIM_COUNT; i++)
-    if (a.e[order[i]] < 0) {
-      sb_putc(&b, '/');
-      put_exponent(&b, base[order[i]], -a.e[order[i]]);
-    }
-  return sb_text(&b);
+const char *unit_prefix(uint32_t i) { return i < sizeof prefixes / sizeof *prefixes ? prefixes[i].name : NULL; }
+
+double unit_factor(const Unit *u) {
+  double f = num_value(u->factor);
+  for (int i = 0; i < u->pi_power; i++) f *= PI;
+  for (int i = 0; i > u->pi_power; i--) f /= PI;
+  return f;
 }

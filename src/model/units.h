@@ -1,43 +1,36 @@
-/* Units: what [kg*m/s^2] means in SI, and dimensions to check sums by. */
+/* Units: what [kg*m/s^2] means in SI. */
 #ifndef LAGC_UNITS_H
 #define LAGC_UNITS_H
 
+#include "model/dims.h"
 #include "syntax/ast.h"
 
-enum { DIM_LENGTH, DIM_MASS, DIM_TIME, DIM_CURRENT, DIM_TEMPERATURE, DIM_AMOUNT, DIM_LUMINOUS, DIM_COUNT };
-enum { DIM_ONE = 12 }; /* exponents are in twelfths: m^(1/2) is 6 */
-
 typedef struct {
-  int known;            /* 0: a name without a unit; fits everything */
-  int16_t e[DIM_COUNT]; /* exponents of m, kg, s, A, K, mol, cd */
-} Dim;
-
-typedef struct {
-  Dim dim;
-  Num factor;  /* SI value of one unit, times pi^pi_power */
+  Dim dim;     /* DIM_ANY: none was written */
+  Num factor;  /* x units are x*factor*pi^pi_power + offset in SI */
   int pi_power;
+  Num offset;  /* 273.15 of degC; otherwise 0 */
   const char *text; /* as written; "" for none */
 } Unit;
 
-extern const Dim DIM_NONE;    /* dimensionless */
-extern const Dim DIM_UNKNOWN;
-
 /* The meaning of a unit as written; unknown names are reported, with the nearest known one.
- * No unit written: dimension unknown, factor 1. */
-Unit unit_resolve(const AstUnit *u, Diags *diags, Arena *a);
+ * No unit written: DIM_ANY, factor 1. */
+Unit unit_resolve(const AstUnit *u, Dims *dims, Diags *diags, Arena *a);
+
+/* The unit of a dimension in SI: the factor is 1, the text is "" where the dimension is not known or none. */
+Unit unit_of_dim(Dims *dims, Dim d);
+
+/* Whether a unit is given in which something is measured: not the absence of one, no angle, no number. */
+int unit_measures(const AstUnit *u);
 
 /* Whether it is the name of a unit, with or without a prefix. */
 int unit_exists(const char *name);
 
+/* The table: name i, and whether it takes prefixes; NULL past the end. Likewise the prefixes. */
+const char *unit_name(uint32_t i, int *takes_prefixes);
+const char *unit_prefix(uint32_t i);
+
+/* factor * pi^pi_power */
 double unit_factor(const Unit *u);
-
-Dim dim_mul(Dim a, Dim b);
-Dim dim_div(Dim a, Dim b);
-Dim dim_pow(Dim a, Num e);
-int dim_fits(Dim a, Dim b); /* equal, or one is unknown */
-int dim_is_none(Dim a);     /* known, and dimensionless */
-
-/* "m/s^2", "J"; "1" when dimensionless, "?" when unknown. */
-const char *dim_text(Dim a, Arena *arena);
 
 #endif

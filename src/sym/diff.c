@@ -136,8 +136,8 @@ typedef VEC(Expr) Terms;
 static Expr add_terms(ExprGraph *g, const Terms *t) { return t->n ? expr_add_n(g, t->at, t->n) : g->zero; }
 
 void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
-                  const char *suffix, Expr *out) {
-  ExprList l = expr_topo(g, roots, n);
+                  const char *suffix, ExprMap *known, Expr *out) {
+  ExprList l = expr_topo_until(g, roots, n, known);
   ExprMap *dot = &g->work; /* absent: zero */
   expr_map_clear(dot);
   Terms terms = {0};
@@ -148,6 +148,11 @@ void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed,
       if (s < nseed && seed[s]) expr_map_set(dot, e, seed[s]);
       continue;
     }
+    Expr before = known ? expr_map_get(known, e) : 0;
+    if (before) {
+      expr_map_set(dot, e, before);
+      continue;
+    }
     terms.n = 0;
     for (uint32_t i = 0; i < inputs(g, e); i++) {
       Expr d = expr_map_get(dot, input(g, e, i));
@@ -156,13 +161,18 @@ void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed,
       Expr term = expr_mul(g, p, d);
       vec_push(g->arena, &terms, term);
     }
-    if (!terms.n) continue;
+    int definition = expr_op(g, e) == EX_DEF;
+    if (!terms.n) {
+      if (known && definition) expr_map_set(known, e, g->zero);
+      continue;
+    }
     Expr sum = add_terms(g, &terms);
-    if (expr_op(g, e) == EX_DEF) {
+    if (definition) {
       StrBuf b = strbuf(g->arena);
       sb_printf(&b, "%s%s", expr_def_name(g, e), suffix);
       Name name = intern(g->names, sb_text(&b));
       sum = expr_def_fresh(g, name, sum);
+      if (known) expr_map_set(known, e, sum);
     }
     expr_map_set(dot, e, sum);
   }
@@ -177,7 +187,7 @@ Expr expr_diff(ExprGraph *g, Expr e, SymId sym) {
   seed[sym] = g->one;
   StrBuf b = strbuf(g->arena);
   sb_printf(&b, "_%s", expr_symbol(g, sym)->name);
-  expr_tangent(g, &e, 1, seed, sym + 1, sb_text(&b), &out);
+  expr_tangent(g, &e, 1, seed, sym + 1, sb_text(&b), NULL, &out);
   return out;
 }
 

@@ -29,8 +29,9 @@ ExprPartials expr_gradient_sparse(ExprGraph *g, Expr e, SymKind kind, uint32_t b
 
 /* Directional derivatives out[i] = sum over s of d(roots[i])/ds * seed[s]. seed has nseed entries,
  * 0 meaning zero. The derivative of a definition `a` becomes the definition `a` + suffix
- * ("'" for the total time derivative). */
+ * ("'" for the total time derivative). known: the derivatives of definitions from calls with the
+ * same seed, which grows; or NULL. */
 void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
-                  const char *suffix, Expr *out);
+                  const char *suffix, ExprMap *known, Expr *out);
 
 #endif

@@ -92,7 +92,10 @@ static Expr make_named(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs
   }
   Node n = {.op = (uint8_t)op, .nargs = nargs, .payload = g->args.n, .name = name};
   n.sign = (uint8_t)expr_infer_sign(g, op, args, nargs);
-  for (uint32_t i = 0; i < nargs; i++) vec_push(g->arena, &g->args, args[i]);
+  for (uint32_t i = 0; i < nargs; i++) {
+    n.kinds |= g->nodes.at[args[i]].kinds;
+    vec_push(g->arena, &g->args, args[i]);
+  }
   return add_node(g, n, hash);
 }
 
@@ -119,7 +122,7 @@ Expr expr_int(ExprGraph *g, int64_t n) { return expr_num(g, num_int(n)); }
 
 SymId expr_declare(ExprGraph *g, SymKind kind, uint32_t index, Name name, ExprSign sign) {
   SymId id = g->symbols.n;
-  Node n = {.op = EX_SYM, .payload = id, .sign = (uint8_t)sign};
+  Node n = {.op = EX_SYM, .payload = id, .sign = (uint8_t)sign, .kinds = (uint16_t)(1u << kind)};
   Expr node = add_node(g, n, 0);
   Symbol s = {.kind = kind, .index = index, .name = name, .sign = sign, .node = node};
   vec_push(g->arena, &g->symbols, s);
@@ -179,6 +182,7 @@ const Symbol *expr_sym_of(const ExprGraph *g, Expr e) { return &g->symbols.at[g-
 Name expr_def_name(const ExprGraph *g, Expr e) { return g->nodes.at[e].name; }
 ExprSign expr_sign(const ExprGraph *g, Expr e) { return (ExprSign)g->nodes.at[e].sign; }
 int expr_is_num(const ExprGraph *g, Expr e) { return g->nodes.at[e].op == EX_NUM; }
+unsigned expr_kinds(const ExprGraph *g, Expr e) { return g->nodes.at[e].kinds; }
 int expr_is_zero(const ExprGraph *g, Expr e) { return e == g->zero; }
 const char *expr_op_text(ExprOp op) { return op_texts[op]; }
 

@@ -105,6 +105,7 @@ SymId expr_sym_id(const ExprGraph *g, Expr e);         /* of a SYM */
 Name expr_def_name(const ExprGraph *g, Expr e);        /* of a DEF; its body is argument 0 */
 ExprSign expr_sign(const ExprGraph *g, Expr e);
 int expr_is_num(const ExprGraph *g, Expr e);
+unsigned expr_kinds(const ExprGraph *g, Expr e); /* of the symbols that it contains, as bits 1 << SymKind */
 int expr_is_zero(const ExprGraph *g, Expr e);
 int expr_is_bool(const ExprGraph *g, Expr e); /* a comparison or logical operation */
 const char *expr_op_text(ExprOp op);
@@ -121,6 +122,9 @@ typedef struct {
 
 /* All nodes that the roots need, ascending: arguments before their nodes. Zero roots are skipped. */
 ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n);
+
+/* The same without what stands behind definitions. */
+ExprList expr_topo_shallow(ExprGraph *g, const Expr *roots, uint32_t n);
 
 /* Whether e contains a symbol for which want() is true (definitions are looked through). */
 int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data);
@@ -143,15 +147,15 @@ void expr_map_clear(ExprMap *m);
 void expr_map_set(ExprMap *m, Expr e, uint32_t value);
 uint32_t expr_map_get(const ExprMap *m, Expr e); /* 0 when not set */
 
-/* The nodes among those that the roots need which contain a symbol for which want() is true: 1. */
-ExprMap expr_containing(ExprGraph *g, const Expr *roots, uint32_t n, int (*want)(const Symbol *s, const void *data), const void *data);
-
 /* e with symbols replaced: with[s] stands for symbol s where it is not 0 (n entries).
  * Definitions whose body changes are rebuilt under their name followed by suffix (may be ""). */
 Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const char *suffix);
 
 /* e with n symbols replaced: syms[i] becomes with[i]. */
 Expr expr_replace(ExprGraph *g, Expr e, const SymId *syms, const Expr *with, uint32_t n);
+
+/* out[i] = roots[i] with the nodes nodes[] replaced by with[], all roots in one pass. */
+void expr_cut(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *nodes, const Expr *with, uint32_t nnodes, Expr *out);
 
 /* e with every definition replaced by its body. */
 Expr expr_expand_defs(ExprGraph *g, Expr e);
@@ -161,5 +165,8 @@ double expr_written_size(ExprGraph *g, Expr e, uint32_t *distinct);
 
 /* Number of operations that evaluating the roots takes when every node is computed once. */
 uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n);
+
+/* The same for one root, definitions given. */
+uint32_t expr_ops_shallow(ExprGraph *g, Expr e);
 
 #endif

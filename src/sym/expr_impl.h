@@ -6,6 +6,7 @@
 
 typedef struct {
   uint8_t op, sign;
+  uint16_t kinds;   /* of the symbols below it: bits 1 << SymKind */
   uint32_t nargs;
   uint32_t payload; /* first argument in g->args; NUM: index into numbers; SYM: SymId; DEF: see name */
   Name name;        /* DEF only */
@@ -48,6 +49,9 @@ struct ExprGraph {
 Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
 
 ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
+
+/* expr_topo without what only nodes of the map need. */
+ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves);
 
 /* Sets m to 1 for the nodes of l (all that some roots need) which contain a wanted symbol. */
 void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s, const void *data), const void *data, ExprMap *m);

@@ -7,6 +7,7 @@ Normal *normal_new(ExprGraph *g, Arena *a, NormalLimits limits) {
   n->g = g;
   n->arena = a;
   n->ring = poly_ring(a, limits.max_terms, limits.max_work);
+  n->shallow = limits.shallow;
   n->field = frac_field(n->ring);
   n->canonical = 1;
   n->index = expr_map(a);
@@ -92,6 +93,11 @@ static Frac number_frac(Normal *n, Num v) {
   uint32_t key[2] = {EX_NUM, size};
   Frac f = opaque_by_key(n, key, 2, (GenInfo){.kind = GEN_OPAQUE, .expr = size, .op = EX_NUM});
   return num_sign(v) < 0 ? frac_neg(n->field, f) : f;
+}
+
+static Frac definition_frac(Normal *n, Expr e) {
+  uint32_t key[2] = {EX_DEF, e};
+  return opaque_by_key(n, key, 2, (GenInfo){.kind = GEN_OPAQUE, .expr = e, .op = EX_DEF});
 }
 
 /* --- operations --- */
@@ -188,6 +194,7 @@ static Frac convert(Normal *n, Expr e) {
   ExprGraph *g = n->g;
   ExprOp op = expr_op(g, e);
   Frac u = {0};
+  if (op == EX_DEF && n->shallow) return definition_frac(n, e);
   if (expr_nargs(g, e) > 0) u = value_of(n, expr_arg(g, e, 0));
   switch (op) {
     case EX_NUM: return number_frac(n, expr_number(g, e));
@@ -229,7 +236,7 @@ static void run_once(Normal *n, ExprList nodes) {
 
 PolyStatus normal_run(Normal *n, const Expr *roots, uint32_t count, Frac *out) {
   enum { MAX_ROUNDS = 16 };
-  ExprList nodes = expr_topo(n->g, roots, count);
+  ExprList nodes = n->shallow ? expr_topo_shallow(n->g, roots, count) : expr_topo(n->g, roots, count);
   int rounds = 0;
   do {
     if (++rounds > MAX_ROUNDS) poly_fail(n->ring, POLY_TOO_LARGE);

@@ -1,7 +1,7 @@
 /* Normal form: expressions as fractions of polynomials whose generators are symbols, sines and
  * cosines of base angles, exponentials, roots, and functions that are not understood further.
  *
- * Enters: any expressions of a graph; definitions are looked through. Leaves: fractions over one
+ * Enters: any expressions of a graph; definitions are looked through, unless the limits say otherwise. Leaves: fractions over one
  * ring. Equal fractions mean equal expressions wherever all of them are defined; a zero numerator
  * is a proof. The converse holds while `canonical` is 1: then no relation between the generators
  * is missing, and a numerator that is not zero is a function that is not zero.
@@ -25,6 +25,7 @@
 typedef struct {
   uint32_t max_terms; /* of one polynomial */
   uint64_t max_work;  /* products of terms */
+  int shallow;        /* a definition is a generator of its own: what it stands for is not looked at */
 } NormalLimits;
 
 typedef enum { GEN_SYMBOL, GEN_SIN, GEN_COS, GEN_POWER, GEN_ROOT, GEN_OPAQUE } GenKind;
@@ -58,6 +59,7 @@ typedef struct {
   PolyRing *ring;
   FracField *field;
   int canonical;
+  int shallow;
   int restart; /* a unit became finer: what was computed with the old one must be redone */
   VEC(GenInfo) gens;
   VEC(Atom) atoms;

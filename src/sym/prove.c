@@ -103,6 +103,61 @@ static System take_block(ExprGraph *g, uint32_t n, const Expr *M, const Expr *f,
   return s;
 }
 
+/* --- a diagonal block --- */
+
+static int is_diagonal(const System *s) {
+  for (uint32_t i = 0; i < s->n * s->n; i++)
+    if ((i % (s->n + 1) == 0) != (s->M[i] && !expr_is_zero(s->g, s->M[i]))) return 0;
+  return 1;
+}
+
+static int has_unknown(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & 1u << SYM_ACC) != 0; }
+
+/* Sums and products only, none of them in a denominator: then nothing is lost by putting values in the place of unknowns. */
+static int is_polynomial(const System *s) {
+  ExprGraph *g = s->g;
+  ExprList all = expr_topo(g, &s->e, 1);
+  for (uint32_t i = 0; i < all.n; i++) {
+    Expr e = all.at[i];
+    ExprOp op = expr_op(g, e);
+    if (!has_unknown(g, e) || op == EX_SYM || op == EX_SUM || op == EX_DEF) continue;
+    if (op != EX_PROD) return 0;
+    for (uint32_t k = 0; k < expr_pairs(g, e, EX_PROD); k++) {
+      Num exponent;
+      Expr base = expr_pair(g, e, EX_PROD, k, &exponent);
+      if (has_unknown(g, base) && !(num_is_int(exponent) && num_sign(exponent) > 0)) return 0;
+    }
+  }
+  return 1;
+}
+
+/* f/M term by term. */
+static Expr split_quotient(ExprGraph *g, Expr f, Expr M) {
+  uint32_t n = expr_pairs(g, f, EX_SUM);
+  Expr *part = ARENA_ARRAY(expr_arena(g), Expr, n + 1);
+  for (uint32_t i = 0; i < n; i++) {
+    Num number;
+    Expr term = expr_pair(g, f, EX_SUM, i, &number);
+    part[i] = expr_scale(g, number, expr_div(g, term, M));
+  }
+  return expr_add_n(g, part, n);
+}
+
+/* e with a quotient in the place of each unknown. */
+static Expr solved(const System *s, Expr (*quotient)(ExprGraph *g, Expr f, Expr M)) {
+  Expr *with = ARENA_ARRAY(expr_arena(s->g), Expr, s->n + 1);
+  for (uint32_t i = 0; i < s->n; i++) with[i] = quotient(s->g, s->f[i], s->M[i * (s->n + 1)]);
+  return expr_replace(s->g, s->e, s->acc, with, s->n);
+}
+
+/* The block may have any size, and needs no normal form as a whole. Long sums of fractions may cancel term by term
+ * where a common denominator would be too large: against m*x'' = ... or against x'' = .... */
+static Verdict diagonal_verdict(const System *s) {
+  if (!is_diagonal(s) || !is_polynomial(s)) return NOT_DECIDED;
+  if (expr_is_zero(s->g, solved(s, expr_div))) return PROVED_ZERO;
+  return prove_zero(s->g, solved(s, split_quotient), &s->limits);
+}
+
 /* --- Cramer's rule --- */
 
 enum { MAX_BLOCK = 8 };
@@ -313,6 +368,7 @@ Verdict prove_solves(ExprGraph *g, uint32_t n, const Expr *M, const Expr *f, con
   System s = take_block(g, n, M, f, acc, e);
   if (s.n == 0) return prove_zero(g, e, limits);
   s.limits = limits ? *limits : prove_limits();
-  if (s.n <= MAX_BLOCK) normal_with_scratch(g, solves_work, &s);
+  s.verdict = diagonal_verdict(&s);
+  if (s.verdict == NOT_DECIDED && s.n <= MAX_BLOCK) normal_with_scratch(g, solves_work, &s);
   return s.verdict != NOT_DECIDED ? s.verdict : system_nonzero_by_value(&s);
 }

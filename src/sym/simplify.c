@@ -290,16 +290,24 @@ static Expr frac_expr(Normal *n, Frac a) {
 typedef struct {
   ExprGraph *g;
   Expr e, result;
+  int shallow;
 } Task;
 
 static void work(Arena *scratch, void *data) {
   Task *t = data;
-  Normal *n = normal_new(t->g, scratch, (NormalLimits){.max_terms = MAX_TERMS, .max_work = MAX_WORK});
+  Normal *n = normal_new(t->g, scratch, (NormalLimits){.max_terms = MAX_TERMS, .max_work = MAX_WORK, .shallow = t->shallow});
   Frac f;
   if (normal_run(n, &t->e, 1, &f) != POLY_OK) return;
   Frac smaller = frac_cancel(n->field, f);
   Expr e = frac_expr(n, smaller);
   if (n->ring->status == POLY_OK) t->result = e;
+}
+
+static Expr shorter(ExprGraph *g, Expr e, int shallow) {
+  if (!e || expr_nargs(g, e) == 0) return e;
+  Task t = {.g = g, .e = e, .result = e, .shallow = shallow};
+  normal_with_scratch(g, work, &t);
+  return t.result;
 }
 
 static int has_definitions(ExprGraph *g, Expr e) {
@@ -310,10 +318,14 @@ static int has_definitions(ExprGraph *g, Expr e) {
 }
 
 Expr simplify(ExprGraph *g, Expr e) {
-  if (!e || expr_nargs(g, e) == 0) return e;
-  Task t = {.g = g, .e = e, .result = e};
-  normal_with_scratch(g, work, &t);
-  uint32_t before = expr_ops(g, &e, 1), after = expr_ops(g, &t.result, 1);
-  if (after == before) return has_definitions(g, e) ? t.result : e;
-  return after < before ? t.result : e;
+  Expr s = shorter(g, e, 0);
+  uint32_t before = expr_ops(g, &e, 1), after = expr_ops(g, &s, 1);
+  if (after == before) return has_definitions(g, e) ? s : e;
+  return after < before ? s : e;
+}
+
+Expr simplify_shallow(ExprGraph *g, Expr e) {
+  Expr s = shorter(g, e, 1);
+  uint32_t before = expr_ops_shallow(g, e), after = expr_ops_shallow(g, s);
+  return after < before ? s : e;
 }

@@ -12,6 +12,9 @@
  * than 2000 terms. */
 Expr simplify(ExprGraph *g, Expr e);
 
+/* The same without looking through definitions. */
+Expr simplify_shallow(ExprGraph *g, Expr e);
+
 /* Rewrites that keep digits where terms would cancel:
  *   R - R*cos u -> 2*R*sin(u/2)^2, R + R*cos u -> 2*R*cos(u/2)^2, R*cosh u - R -> 2*R*sinh(u/2)^2;
  *   a^2 - b^2 -> (a - b)*(a + b) where each of a, b is a symbol or 1.

@@ -75,7 +75,8 @@ static void sort_ids(ExprGraph *g, Expr *at, uint32_t n) {
   }
 }
 
-ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) {
+/* leaves: nodes not to look below; shallow: nor below definitions. */
+static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, int shallow) {
   VEC(Expr) found = {g->found, 0, g->found_cap};
   expr_map_clear(&g->seen);
   for (uint32_t i = 0; i < n; i++)
@@ -85,6 +86,7 @@ ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) {
     }
   for (uint32_t k = 0; k < found.n; k++) {
     Expr e = found.at[k];
+    if ((leaves && expr_map_get(leaves, e)) || (shallow && expr_op(g, e) == EX_DEF)) continue;
     for (uint32_t i = 0; i < expr_nargs(g, e); i++) {
       Expr a = expr_arg(g, e, i);
       if (expr_map_get(&g->seen, a)) continue;
@@ -99,6 +101,10 @@ ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) {
   if (found.n) memcpy(list, found.at, found.n * sizeof *list);
   return (ExprList){list, found.n};
 }
+
+ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, 0); }
+ExprList expr_topo_shallow(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, 1); }
+ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves) { return topo(g, roots, n, leaves, 0); }
 
 int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data) {
   ExprList l = expr_topo(g, &e, 1);
@@ -124,12 +130,6 @@ void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s,
   }
 }
 
-ExprMap expr_containing(ExprGraph *g, const Expr *roots, uint32_t n, int (*want)(const Symbol *s, const void *data), const void *data) {
-  ExprMap m = expr_map(g->arena);
-  expr_mark_containing(g, expr_topo(g, roots, n), want, data, &m);
-  return m;
-}
-
 /* --- rewriting bottom-up --- */
 
 /* The arguments of e as the map has them (numbers and untouched nodes stand for themselves).
@@ -144,12 +144,12 @@ static int mapped_args(const ExprGraph *g, const ExprMap *m, Expr e, Expr *args)
   return changed;
 }
 
-/* e with the symbols that are in the map replaced. */
-static Expr rewrite(ExprGraph *g, Expr e, ExprMap *m, const char *suffix) {
-  ExprList l = expr_topo(g, &e, 1);
+/* Rewrites the roots with the nodes that are in the map replaced; the map grows by what changed. */
+static void rewrite(ExprGraph *g, const Expr *roots, uint32_t n, ExprMap *m, const char *suffix, Expr *out) {
+  ExprList l = expr_topo(g, roots, n);
   for (uint32_t i = 0; i < l.n; i++) {
     Expr x = l.at[i];
-    if (expr_op(g, x) == EX_SYM) continue;
+    if (expr_op(g, x) == EX_SYM || expr_map_get(m, x)) continue;
     Expr *args = ARENA_ARRAY(g->arena, Expr, expr_nargs(g, x) + 1);
     if (!mapped_args(g, m, x, args)) continue;
     Expr y;
@@ -163,8 +163,16 @@ static Expr rewrite(ExprGraph *g, Expr e, ExprMap *m, const char *suffix) {
     }
     expr_map_set(m, x, y);
   }
-  Expr r = expr_map_get(m, e);
-  return r ? r : e;
+  for (uint32_t i = 0; i < n; i++) {
+    Expr r = expr_map_get(m, roots[i]);
+    out[i] = r ? r : roots[i];
+  }
+}
+
+static Expr rewrite_one(ExprGraph *g, Expr e, ExprMap *m, const char *suffix) {
+  Expr out;
+  rewrite(g, &e, 1, m, suffix, &out);
+  return out;
 }
 
 Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const char *suffix) {
@@ -176,14 +184,20 @@ Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const c
     SymId s = expr_sym_id(g, l.at[i]);
     if (s < n && with[s]) expr_map_set(&g->work, l.at[i], with[s]);
   }
-  return g->work.n ? rewrite(g, e, &g->work, suffix) : e;
+  return g->work.n ? rewrite_one(g, e, &g->work, suffix) : e;
 }
 
 Expr expr_replace(ExprGraph *g, Expr e, const SymId *syms, const Expr *with, uint32_t n) {
   if (!e) return 0;
   expr_map_clear(&g->work);
   for (uint32_t i = 0; i < n; i++) expr_map_set(&g->work, expr_symbol(g, syms[i])->node, with[i]);
-  return rewrite(g, e, &g->work, "");
+  return rewrite_one(g, e, &g->work, "");
+}
+
+void expr_cut(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *nodes, const Expr *with, uint32_t nnodes, Expr *out) {
+  expr_map_clear(&g->work);
+  for (uint32_t i = 0; i < nnodes; i++) expr_map_set(&g->work, nodes[i], with[i]);
+  rewrite(g, roots, n, &g->work, "", out);
 }
 
 Expr expr_expand_defs(ExprGraph *g, Expr e) {
@@ -263,8 +277,7 @@ static uint32_t prod_ops(const ExprGraph *g, Expr e) {
   return ops + (inverse == n);
 }
 
-uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n) {
-  ExprList l = expr_topo(g, roots, n);
+static uint32_t count_ops(const ExprGraph *g, ExprList l) {
   uint32_t ops = 0;
   for (uint32_t i = 0; i < l.n; i++) {
     Expr e = l.at[i];
@@ -281,3 +294,6 @@ uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n) {
   }
   return ops;
 }
+
+uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n) { return count_ops(g, expr_topo(g, roots, n)); }
+uint32_t expr_ops_shallow(ExprGraph *g, Expr e) { return count_ops(g, expr_topo_shallow(g, &e, 1)); }

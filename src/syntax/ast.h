@@ -81,10 +81,10 @@ typedef enum {
   STMT_MODEL,       /* name, doc */
   STMT_INCLUDE,     /* doc = the path */
   STMT_COORD,       /* name, dims, type (vec2, vec3, rotation or NULL), unit, periodic */
-  STMT_PARAM,       /* name, dims, unit, rhs, sign */
-  STMT_CONST,       /* name, rhs */
+  STMT_PARAM,       /* name, dims, type (vec2, vec3 or NULL), unit (of the name, or its value), rhs, sign */
+  STMT_CONST,       /* name, unit, rhs */
   STMT_INPUT,       /* name, unit, rhs */
-  STMT_STATE,       /* name, dims, unit */
+  STMT_STATE,       /* name, dims, type, unit */
   STMT_LET,         /* name, dims (numbers, or AST_BINDs), rhs */
   STMT_FUNCTION,    /* name, args (AST_NAMEs), rhs */
   STMT_LAGRANGIAN,  /* rhs; likewise the next three */

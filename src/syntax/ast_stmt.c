@@ -80,13 +80,13 @@ static void check_type(Ast *ast, Ident type) {
     names[i] = intern(ast->names, known[i]);
   }
   Name near = suggest(type.name, names, 3);
-  diag_error(ast->diags, type.span, "unknown kind of coordinate `%s`", type.name);
+  diag_error(ast->diags, type.span, "unknown type `%s`", type.name);
   if (near) diag_help(ast->diags, "did you mean `%s`?", near);
-  else diag_help(ast->diags, "a coordinate is a scalar, `vec2`, `vec3` or `rotation`");
+  else diag_help(ast->diags, "the types are `vec2`, `vec3` and, of coordinates, `rotation`; a number has none");
 }
 
-AstStmt *stmt_coord(Ast *ast, Span span, Ident name, AstList dims, Ident type, AstUnit unit, int periodic) {
-  AstStmt *s = declare(ast, STMT_COORD, span, name);
+AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, Ident type, AstUnit unit, int periodic) {
+  AstStmt *s = declare(ast, kind, span, name);
   if (type.name) check_type(ast, type);
   s->dims = dims.first;
   s->type = type.name;
@@ -103,11 +103,18 @@ AstStmt *stmt_define(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList 
   return s;
 }
 
-/* `param k = 1 [N/m]`: the unit of the value is the parameter's, unless the name had one of its own. */
-AstStmt *stmt_param(Ast *ast, Span span, Ident name, AstList dims, AstUnit unit, AstId value, AstSign sign) {
-  AstStmt *s = stmt_define(ast, STMT_PARAM, span, name, dims, unit, value);
+/* `param k = 1 [N/m]`: the unit of the value is the name's, unless it had one of its own. */
+AstStmt *stmt_valued(Ast *ast, AstStmtKind kind, Span span, Ident name, AstUnit unit, AstId value) {
+  if (!unit.n && ast_expr(ast, value)->kind == AST_UNIT) unit = ast_expr(ast, value)->unit;
+  return stmt_define(ast, kind, span, name, (AstList){0, 0}, unit, value);
+}
+
+AstStmt *stmt_param(Ast *ast, Span span, Ident name, AstList dims, Ident type, AstUnit unit, AstId value, AstSign sign) {
+  AstStmt *s = stmt_valued(ast, STMT_PARAM, span, name, unit, value);
+  if (type.name) check_type(ast, type);
+  s->dims = dims.first;
+  s->type = type.name;
   s->sign = sign;
-  if (!unit.n && ast_expr(ast, value)->kind == AST_UNIT) s->unit = ast_expr(ast, value)->unit;
   return s;
 }
 

@@ -78,8 +78,8 @@ static Words expected_words(const Parse *cx, const TokKind *set, int n) {
   for (int i = 0; i < n; i++) {
     TokKind k = set[i];
     if (in_a_group(set, n, k) || k == TOK_FINISH || k == TOK_END || k == TOK_COUNT) continue;
-    /* an index or a unit could follow many a name: they say nothing */
-    if (k == TOK_INDEX || (k == TOK_UNIT && n > 1)) continue;
+    /* an index, a type or a unit could follow many a name: they say nothing */
+    if (k == TOK_INDEX || ((k == TOK_UNIT || k == TOK_COLON) && has(set, n, TOK_UNIT) && n > 1)) continue;
     const char *word = token_word(k);
     int phrase = k == TOK_STRING || k == TOK_UNIT;
     add_word(&w, phrase ? word : arena_printf(cx->ast->arena, "`%s`", word));
@@ -166,10 +166,14 @@ static const char *advice(const Parse *cx, const TokKind *set, int n) {
       break;
     case TOK_ASSIGN:
       if (has(set, n, TOK_EQ)) return "write `==` to compare";
+      if (cx->filter->word == TOK_COORD || cx->filter->word == TOK_STATE) return "where it starts stands in a scene: `start x = …`";
       if (has(set, n, TOK_COLON)) return "this statement needs a name: `constraint NAME: a = b`";
       break;
     case TOK_COLON:
       if (has(set, n, TOK_ASSIGN)) return arena_printf(a, "write `%s = …`", b->name ? b->name : "NAME");
+      break;
+    case TOK_END:
+      if (cx->filter->word == TOK_PARAM && has(set, n, TOK_ASSIGN)) return "a parameter has a value, which scenes can change: `param m = 1 [kg]`";
       break;
     case TOK_INDEX:
       if (has(set, n, TOK_UNIT)) return "a unit stands apart from the name: `u [N]`";

@@ -16,7 +16,10 @@
 
 extern const lag_scene *const all_scenes[];
 
-enum { MAX = 64, STATES = 20 };
+#ifndef MAX
+#define MAX 64
+#endif
+enum { STATES = 20 };
 
 typedef long double Real;
 typedef struct {

@@ -6,7 +6,7 @@
  * The first column is what one types after `lagc run MODEL`. Both sides are expressions in SI units (angles in
  * radians) of numbers, parameters, + - * / ^, and
  *   th(2), th'(2)      an output, coordinate, velocity or state at a time        end        when the run ends
- *   period(x)          between its upward passages of zero, their mean           hit(NAME)  first time of an event
+ *   period(x)          between its upward passages of zero, their mean           hit(NAME), hit(NAME, 3)  first, third time of an event
  *   max(x), min(x)     over the run      drift(x)   the largest |x(t) - x(0)|
  *   pi deg au day      and the functions of the table FUNCTIONS below.
  * The fact holds when |LEFT - RIGHT| <= TOLERANCE (rel: times |RIGHT|). GSL evaluates the special functions;
@@ -38,7 +38,9 @@ typedef struct {
   const lag_scene *scene;
   char settings[LINE]; /* the first column without the scene */
   double until;
-  double hit[MAX_EVENTS]; /* first time of each event in the last run; NaN */
+  double hit[MAX_EVENTS]; /* of each event in the last run: when it happened the nth time; NaN */
+  int hits[MAX_EVENTS];   /* how often it happened */
+  int nth;
   const char *at;      /* the next character of the expression */
   int depth;
   int skip;            /* a function is missing */
@@ -101,7 +103,7 @@ static lag_sim *open_run(Fact *f) {
 
 static void note_hit(void *context, int k, double t) {
   Fact *f = context;
-  if (k < MAX_EVENTS && isnan(f->hit[k])) f->hit[k] = t;
+  if (k < MAX_EVENTS && ++f->hits[k] == f->nth) f->hit[k] = t;
 }
 
 /* Integrates to t, or to where an event stops the run. 1: stopped before t. */
@@ -164,7 +166,7 @@ static double value_at(Fact *f, const char *name, double t) {
 }
 
 static double end_time(Fact *f) {
-  for (int k = 0; k < MAX_EVENTS; k++) f->hit[k] = NAN;
+  for (int k = 0; k < MAX_EVENTS; k++) f->hit[k] = NAN, f->hits[k] = 0;
   lag_sim *sim = open_run(f);
   lag_sim_on_event(sim, note_hit, f);
   go(f, sim, f->until);
@@ -173,7 +175,8 @@ static double end_time(Fact *f) {
   return t;
 }
 
-static double hit_time(Fact *f, const char *name) {
+static double hit_time(Fact *f, const char *name, double n) {
+  f->nth = (int)n;
   end_time(f);
   const lag_model *m = f->scene->model;
   for (int k = 0; k < m->nev && k < MAX_EVENTS; k++)
@@ -376,13 +379,14 @@ static int of_trajectory(Fact *f, const char *name, double *x) {
     if (strcmp(name, words[i]) == 0) which = i;
   if (which < 0) return 0;
   word(f, arg);
+  double n = which == 4 && take(f, ',') ? sum(f) : 1;
   need(f, ')');
   switch (which) {
     case 0: *x = period(f, arg); break;
     case 1: *x = drift(f, arg); break;
     case 2: *x = extremum(f, arg, 1); break;
     case 3: *x = extremum(f, arg, -1); break;
-    default: *x = hit_time(f, arg); break;
+    default: *x = hit_time(f, arg, n); break;
   }
   return 1;
 }

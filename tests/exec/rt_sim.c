@@ -5,9 +5,9 @@
 #include "lag.h"
 
 /* ---- ball: y'' = -g, bounces with restitution e; drag.c is a parameter of an effect */
-static const lag_var ball_q[] = {{"y", "m", 1, 0, 0}};
-static const lag_var ball_p[] = {{"g", "m/s^2", 1, 0, 1}, {"e", "", 1, 0, 2}, {"drag.c", "1/s", 1, 0, 0}};
-static const lag_var ball_u[] = {{"wind", "m/s^2", 1, 0, 0}};
+static const lag_var ball_q[] = {{"y", "m", 1, 0, 0, 0}};
+static const lag_var ball_p[] = {{"g", "m/s^2", 1, 0, 1, 0}, {"e", "", 1, 0, 2, 0}, {"drag.c", "1/s", 1, 0, 0, 0}};
+static const lag_var ball_u[] = {{"wind", "m/s^2", 1, 0, 0, 0}};
 static const lag_event ball_ev[] = {{"ground", -1}, {"apex", -1}};
 
 static int ball_inputs(double t, const double *p, double *u)
@@ -75,9 +75,9 @@ static const lag_scene drop = {.name = "drop", .doc = "dropped from 1 m", .model
     .start = ball_start, .t0 = 0, .t1 = 5, .has_span = 1, .tolerance = 1e-10};
 
 /* ---- pendulum, angles in degrees; outputs with names that must be quoted */
-static const lag_var pend_q[] = {{"th", "deg", 3.14159265358979323846 / 180, 1, 0}};
-static const lag_var pend_p[] = {{"l", "m", 1, 0, 1}, {"g", "m/s^2", 1, 0, 1}};
-static const lag_var pend_out[] = {{"th", "deg", 3.14159265358979323846 / 180, 1, 0}, {"E \"total\", T+V", "J", 1, 0, 0}};
+static const lag_var pend_q[] = {{"th", "deg", 3.14159265358979323846 / 180, 1, 0, 0}};
+static const lag_var pend_p[] = {{"l", "m", 1, 0, 1, 0}, {"g", "m/s^2", 1, 0, 1, 0}};
+static const lag_var pend_out[] = {{"th", "deg", 3.14159265358979323846 / 180, 1, 0, 0}, {"E \"total\", T+V", "J", 1, 0, 0, 0}};
 static const lag_monitor pend_mon[] = {{"energy", -1, 1e-6}, {"H", 1, 1e-6}};
 
 static int pend_accel(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
@@ -151,8 +151,8 @@ static const lag_program program = {"rt_sim", "hand-written", "models/rt_sim.lag
 int main(int argc, char **argv)
 {
 #ifdef WITH_GSL
-  return lag_app_main(argc, argv, &program, lag_gsl_methods, lag_gsl_nmethods);
+  return lag_app_main(argc, argv, &program, &lag_gsl);
 #else
-  return lag_app_main(argc, argv, &program, 0, 0);
+  return lag_app_main(argc, argv, &program, 0);
 #endif
 }

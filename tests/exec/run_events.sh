@@ -1,6 +1,7 @@
 #!/bin/sh
 # Events that turn many times within one step of an adaptive method: a clock sin(w t) strikes
-# floor(10 w / (2 pi)) times in 10 s, whatever the method makes of its steps.
+# floor(10 w / (2 pi)) times in 10 s, whatever the method makes of its steps. And events that pile up: the bounces of a ball
+# with restitution e end at sqrt(2 h/g)*(1 + e)/(1 - e), 4.0637 s; no run hangs there.
 . tests/tap.sh
 strikes() { # METHOD W
   "$LAGC" run tests/exec/models/clock.lag "w=$2" --method "$1" --json | sed 's/.*"n": \([0-9.e+]*\).*/\1/'
@@ -9,5 +10,13 @@ for method in rk45 dop853; do
   is "$method: 20 rad/s" 31 "$(strikes $method 20)"
   is "$method: 200 rad/s" 318 "$(strikes $method 200)"
   is "$method: 500 rad/s, near a multiple of the sampling" 795 "$(strikes $method 500)"
+done
+
+piles_up() { # METHOD
+  "$LAGC" run models/bouncing_ball.lag drop --until 4.2 --method "$1" >"$TMP/out" 2>&1
+  [ $? = 3 ] && grep -q 'event floor repeats in ever shorter intervals: .* at t = 4.0637' "$TMP/out"
+}
+for method in rk45 dop853 rk4 verlet4; do
+  check "$method: bounces without end" piles_up $method
 done
 tap_end

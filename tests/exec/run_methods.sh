@@ -28,16 +28,63 @@ check "the double pendulum is not: its mass matrix varies" not_separable models/
 check "a magnetic field is not: velocities enter" not_separable tests/exec/models/magnet.lag
 
 for m in symplectic_euler verlet verlet4 verlet6 verlet8; do
-  check "$m on the pendulum" says "energy drift" models/pendulum.lag --method $m --step 1e-3 --until 1
-  check "$m is refused by the double pendulum" refused "the mass matrix varies" models/double_pendulum.lag --method $m
-  check "$m is refused by a magnetic field" refused "they depend on velocities" tests/exec/models/magnet.lag --method $m
+  check "$m on the pendulum is explicit" says "explicit steps, the model is separable" models/pendulum.lag --method $m --step 1e-3 --until 1
+  check "$m on the double pendulum is implicit" says "implicit steps.*the mass matrix varies" models/double_pendulum.lag --method $m --until 1
+  check "$m in a magnetic field is implicit" says "implicit steps.*forces depend on velocities" tests/exec/models/magnet.lag --method $m
+  check "$m refuses states" refused "a model with states" tests/exec/models/motor.lag --method $m
 done
-check "dissipation is a force that depends on velocities" refused "they depend on velocities" models/spring.lag damped --method verlet
-check "without it the same model is separable" says "energy drift" models/spring.lag free --method verlet
+check "dissipation is a force that depends on velocities" says "implicit steps" models/spring.lag damped --method verlet
+check "and ends what symplectic means" says "symplectic for conservative models" models/spring.lag damped --method verlet
+check "without it the same model is separable" says "explicit steps" models/spring.lag free --method verlet
+for m in variational gauss 'variational(quadrature=trapezoid)' 'variational(quadrature=lobatto, order=8)' 'gauss(stages=4)'; do
+  check "$m on the double pendulum" says "corrections a system, 1 systems a step" models/double_pendulum.lag --method "$m" --until 1
+  check "$m with forces" says "energy change" models/spring.lag damped --method "$m" --until 1
+done
+wrong() { # wrong WORDS METHOD
+  run models/pendulum.lag --method "$2"
+  [ $? = 2 ] && grep -qF -e "$1" "$TMP/err"
+}
+check "an odd order is refused" wrong "order: write 2, 4, 6 or 8" 'variational(order=3)'
+check "half a stage is refused" wrong "stages: write 1, 2, 3 or 4" 'gauss(stages=1.5)'
+check "the midpoint rule has one order" wrong "write quadrature=gauss" 'variational(quadrature=midpoint, order=4)'
+
+# ---- derivatives that only some methods need
+built() { # built METHOD: the simulator of the double pendulum, built for it
+  "$LAGC" build models/double_pendulum.lag -o "$TMP/sim" ${1:+--method "$1"}
+}
+sim() { "$TMP/sim" "$@" >"$TMP/out" 2>"$TMP/err"; }
+built ''
+check "a simulator has its default methods" sim --until 1
+sim --method gauss --until 1
+is "one that it was built without ends with status 2" 2 $?
+check "and the command that builds it in" grep -q 'lagc build MODEL --method gauss' "$TMP/err"
+built gauss
+check "built with --method it runs" sim --method gauss --until 1
+check "and any other that needs the same" sim --method verlet --until 1
+# Every method that is listed finds in a program what it needs: src/wants.c agrees with the runtime.
+run models/double_pendulum.lag --method help
+for m in $(sed -n 's/^  \([a-z][a-z0-9_-]*\) .* \(adaptive\|fixed\) .*/\1/p' "$TMP/out"); do
+  check "$m has what it needs" run models/double_pendulum.lag --method "$m" --until 0.01
+done
+# A state goes on with the method it was saved with, whatever is in the cache.
+run models/double_pendulum.lag --method gauss --step 1e-3 --until 1
+grep '^  th' "$TMP/out" >"$TMP/whole"
+run models/double_pendulum.lag --method gauss --step 1e-3 --until 0.5 --save-state "$TMP/half"
+run models/double_pendulum.lag --resume "$TMP/half" --until 1
+grep '^  th' "$TMP/out" >"$TMP/resumed"
+check "a resumed run needs no --method" cmp "$TMP/resumed" "$TMP/whole"
 check "a push with explicit time is allowed, and the report says what that costs" \
   says "symplectic for conservative models" tests/exec/models/gauge.lag pushed --method verlet4
 says "reached" tests/exec/models/gauge.lag go --method verlet4
 check "no such note on a conservative model" sh -c "! grep -q 'symplectic for' '$TMP/out'"
 check "dop853 on the double pendulum" says "energy drift: [0-9.]*e-1" models/double_pendulum.lag --method dop853 --tol 1e-12
 check "steps of equal size by an adaptive method" says "steps 100, rejected 0" models/pendulum.lag --method "rk45(step=0.1, adapt=off)" --until 10
+
+# ---- the table
+"$LAGC" methods >"$TMP/table"
+"$LAGC" run models/pendulum.lag --method help >"$TMP/help"
+check "lagc methods is what --method help says" cmp "$TMP/table" "$TMP/help"
+check "with order, what is kept and what is needed" grep -q '^  gauss  *2-8  *2-8  *fixed  *symplectic, symmetric  *yes  *yes  *no$' "$TMP/table"
+"$LAGC" methods models/pendulum.lag 2>"$TMP/err"
+is "lagc methods takes no model" 2 $?
 tap_end

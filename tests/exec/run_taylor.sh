@@ -32,7 +32,7 @@ digits() { # PRECISION FILE.c
 "$LAGC" emit $here/functions.lag --method taylor -o "$TMP/functions.c"
 for p in $precisions; do check "every function, its coefficients: $p" digits "$p" "$TMP/functions.c"; done
 [ -n "$quad" ] || skip "every function, its coefficients: quad" "there is no libquadmath"
-sed 's/\*per_k//' "$TMP/functions.c" >"$TMP/wrong.c"
+sed 's/\*per_order//' "$TMP/functions.c" >"$TMP/wrong.c"
 wrong_digits() { ! cmp "$TMP/functions.c" "$TMP/wrong.c" && build double "$TMP/wrong.c" $here/coefficients.c -o "$TMP/digits" && ! "$TMP/digits" $here/functions.expected; }
 check "this test sees a recurrence that lacks a factor" wrong_digits
 

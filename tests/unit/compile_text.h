@@ -63,12 +63,13 @@ static inline long double at(const Eqns *e, const long double *v, const char *na
 static inline int run_prog_into(const Eqns *e, const Prog *p, const long double *v, long double *const *out) {
   const Model *m = e->m;
   long double *in[ARR_COUNT];
-  uint32_t sizes[ARR_COUNT] = {1, m->coords.n, m->coords.n, m->states.n, m->params.n, m->inputs.n};
+  uint32_t sizes[ARR_COUNT] = {1, m->coords.n, m->coords.n, m->states.n, m->params.n, m->inputs.n, m->coords.n};
   for (int i = 0; i < ARR_COUNT; i++) in[i] = ARENA_ARRAY(m->arena, long double, sizes[i] + 1);
   in[ARR_T][0] = v[m->time];
   for (uint32_t i = 0; i < m->coords.n; i++) {
     in[ARR_Q][i] = v[m->coords.at[i].q];
     in[ARR_V][i] = v[m->coords.at[i].v];
+    in[ARR_A][i] = v[m->coords.at[i].a];
   }
   for (uint32_t i = 0; i < m->states.n; i++) in[ARR_Z][i] = v[m->states.at[i].z];
   for (uint32_t i = 0; i < m->params.n; i++) in[ARR_P][i] = v[m->params.at[i].sym];

@@ -55,7 +55,7 @@ static const char bad[] =
   "effect e { requires f; param c = 1 }\nscene s { use e(d = 1), g; span = 3; start y = 1; like t; output x.y, drag.c }\n"
   "scene t { like s }\nconstraint c: x = 1\n";
 
-static void emit_all(Arena *a, const Eqns *e) {
+static void emit_all(Arena *a, Eqns *e) {
   IrUnit *u = unit_new(e, "test.lag");
   unit_want(u, e, WANT_VARIATION);
   unit_add_scene(u, e);

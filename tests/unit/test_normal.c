@@ -382,6 +382,55 @@ static void only_the_needed_block_is_looked_at(void **state) {
   finish(&t);
 }
 
+/* Sixty masses m: their sum, against n times g*sin(x). */
+static Verdict sum_of_sixty(int64_t n) {
+  enum { N = 60 };
+  Texts t = start();
+  Expr *M = ARENA_ARRAY(expr_arena(t.g), Expr, N * N), f[N], sum[N];
+  SymId acc[N];
+  Expr m = text_expr(&t, "m"), pull = text_expr(&t, "g*sin(x)");
+  for (uint32_t i = 0; i < N; i++) {
+    char name[16];
+    snprintf(name, sizeof name, "q%u''", i);
+    acc[i] = expr_declare(t.g, SYM_ACC, i, intern(t.names, name), SIGN_UNKNOWN);
+    M[i * N + i] = m;
+    f[i] = expr_mul(t.g, m, pull);
+    sum[i] = expr_mul(t.g, m, expr_symbol(t.g, acc[i])->node);
+  }
+  Expr want = expr_mul(t.g, expr_scale(t.g, num_int(n), m), pull), all = expr_add_n(t.g, sum, N);
+  Verdict v = prove_solves(t.g, N, M, f, acc, expr_sub(t.g, all, want), NULL);
+  finish(&t);
+  return v;
+}
+
+static void a_diagonal_block_may_have_any_size(void **state) {
+  (void)state;
+  assert_int_equal(sum_of_sixty(60), PROVED_ZERO);
+  assert_int_equal(sum_of_sixty(59), PROVED_NONZERO);
+}
+
+/* Six fractions whose common denominator is too large, each against its own. */
+static void fractions_cancel_term_by_term(void **state) {
+  (void)state;
+  char sum[1000] = "0", each[1000] = "0";
+  for (int i = 1; i <= 6; i++) {
+    char term[160], with_mass[180];
+    snprintf(term, sizeof term, "(x - x%d)/((x - x%d)^2 + (y - y%d)^2 + (z - z%d)^2)^(3/2)", i, i, i, i);
+    snprintf(with_mass, sizeof with_mass, " + m*%s", term);
+    strcat(sum, with_mass);
+    strcat(each, " + ");
+    strcat(each, term);
+  }
+  Problem p = {.n = 1, .M = {"m"}, .f = {sum}, .acc = {"x''"}};
+  char e[1200];
+  snprintf(e, sizeof e, "x'' - (%s)", each);
+  assert_int_equal(solves(&p, e), PROVED_ZERO);
+  snprintf(e, sizeof e, "m*x'' - (%s)", sum);
+  assert_int_equal(solves(&p, e), PROVED_ZERO);
+  snprintf(e, sizeof e, "x'' + (%s)", each);
+  assert_int_equal(solves(&p, e), PROVED_NONZERO);
+}
+
 static void the_double_pendulum_is_proved_in_time(void **state) {
   (void)state;
   double before = seconds();
@@ -407,6 +456,8 @@ int main(void) {
       cmocka_unit_test(singular_systems_are_not_decided),
       cmocka_unit_test(three_coupled_unknowns),
       cmocka_unit_test(only_the_needed_block_is_looked_at),
+      cmocka_unit_test(a_diagonal_block_may_have_any_size),
+      cmocka_unit_test(fractions_cancel_term_by_term),
       cmocka_unit_test(the_double_pendulum_is_proved_in_time),
   };
   if (setjmp(out_of_memory)) return 1;

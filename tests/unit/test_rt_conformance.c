@@ -102,7 +102,7 @@ static void arenstorf_start(UNUSED const double *p, double *q, double *v, UNUSED
   v[1] = -2.00158510637908252240537862224;
 }
 
-SYSTEM(arenstorf, 2, LAG_CONSTANT_MASS | LAG_AUTONOMOUS, NULL);
+SYSTEM(arenstorf, 2, LAG_CONSTANT_MASS | LAG_AUTONOMOUS, NULL, NO_DERIVATIVES);
 
 typedef struct Solution {
   const lag_scene *scene;

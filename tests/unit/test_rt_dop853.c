@@ -238,7 +238,7 @@ static int holed_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
 }
 
 #define holed_start osc_start
-SYSTEM(holed, 1, 0, NULL);
+SYSTEM(holed, 1, 0, NULL, NO_DERIVATIVES);
 
 static void dense_output_survives_a_hole_in_the_model(void **state)
 {

@@ -87,7 +87,7 @@ static int osc_events(ARGS, double *g, UNUSED double *w)
 }
 
 static const lag_model osc_ev_model = {MODEL("oscillator"), .flags = LAG_SEPARABLE, .nq = 1, .nev = 3, .q = names_q, .ev = osc_ev, .accel = osc_accel,
-    .energy = osc_energy, .events = osc_events};
+    .energy = osc_energy, .events = osc_events, EXACT(osc)};
 static const lag_scene osc_ev_scene = {.name = "osc", .doc = "", .model = &osc_ev_model, .start = osc_start, .t1 = 100, .has_span = 1};
 
 static void events_come_in_order_and_honour_directions(void **state)
@@ -138,7 +138,7 @@ static int stop_at_second(UNUSED int k, ARGS, UNUSED double *q1, UNUSED double *
 
 static const lag_event zero_ev[] = {{"turn", 0}};
 static const lag_model zero_model = {MODEL("zero"), .flags = LAG_SEPARABLE, .nq = 1, .nev = 1, .q = names_q, .ev = zero_ev, .accel = osc_accel,
-    .events = zero_events, .act = stop_at_second};
+    .events = zero_events, .act = stop_at_second, EXACT(osc)};
 static const lag_scene zero = {.name = "zero", .doc = "", .model = &zero_model, .start = osc_start, .t1 = 100, .has_span = 1};
 
 static void zero_at_the_start_does_not_fire_and_stop_stops(void **state)
@@ -189,8 +189,9 @@ static void free_start(UNUSED const double *p, double *q, double *v, UNUSED doub
 }
 
 static const lag_event twin_ev[] = {{"first", 1}, {"second", 1}};
+UNIT_MASS(free, free_accel, 0);
 static const lag_model twin_model = {MODEL("twin"), .flags = LAG_SEPARABLE, .nq = 1, .nev = 2, .q = names_q, .ev = twin_ev, .accel = free_accel,
-    .events = twin_events, .act = twin_act};
+    .events = twin_events, .act = twin_act, EXACT(free)};
 static const lag_scene twin = {.name = "twin", .doc = "", .model = &twin_model, .start = free_start, .t1 = 10, .has_span = 1};
 
 static void events_at_one_instant_all_fire(void **state)

@@ -82,6 +82,51 @@ static void energy_is_bounded_without_trend(void **state)
   }
 }
 
+/* Implicit methods on what is not separable, and on what is; the double pendulum where it swings and does not tumble. */
+static void regular_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = 0.7;
+  q[1] = -0.4;
+  v[0] = v[1] = 0;
+}
+
+static const struct {
+  const lag_method *method;
+  double h[3], bound[3]; /* of the double pendulum, the pendulum from 3.0, Kepler */
+} implicit[] = {
+    {&lag_symplectic_euler, {0.005, 0.02, 0.005}, {8e-2, 3e-2, 1.4e-2}},
+    {&lag_verlet, {0.05, 0.1, 0.05}, {1.2e-1, 6e-3, 2e-2}},
+    {&lag_verlet4, {0.05, 0.5, 0.2}, {5e-3, 3e-5, 2e-3}},
+    {&lag_variational, {0.05, 0.1, 0.05}, {9e-2, 3e-3, 2e-2}},
+    {&lag_gauss, {0.05, 0.5, 0.2}, {2e-2, 4e-3, 3e-2}},
+};
+
+static void implicit_methods_bound_the_energy_too(void **state)
+{
+  static lag_scene regular;
+  static lag_model models[2];
+  lag_scene scenes[3] = {double_pendulum, pendulum, kepler};
+  int steps = long_run() / 4;
+  (void)state;
+  regular = double_pendulum;
+  regular.start = regular_start;
+  scenes[0] = regular;
+  for (int i = 1; i < 3; i++) { /* the implicit form, for once */
+    models[i - 1] = *scenes[i].model;
+    models[i - 1].flags &= ~(unsigned)LAG_SEPARABLE;
+    scenes[i].model = &models[i - 1];
+  }
+  for (size_t m = 0; m < sizeof implicit / sizeof *implicit; m++) {
+    for (int i = 0; i < 3; i++) {
+      double worst, gain = trend(&scenes[i], implicit[m].method, i == 1 ? 3.0 : NAN, implicit[m].h[i], steps, &worst);
+      print_message("# %-15s %-16s h %-5g worst %.2e, trend over the run %+.1e\n", scenes[i].name, implicit[m].method->name,
+                    implicit[m].h[i], worst, gain);
+      assert_true(worst < implicit[m].bound[i] && worst > 1e-11);
+      assert_true(fabs(gain) < 0.1 * worst);
+    }
+  }
+}
+
 /* The same measure finds the drift of a method that has one. */
 static void rk4_has_a_trend(void **state)
 {
@@ -221,6 +266,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(energy_is_bounded_without_trend),
+      cmocka_unit_test(implicit_methods_bound_the_energy_too),
       cmocka_unit_test(rk4_has_a_trend),
       cmocka_unit_test(one_step_is_symplectic),
       cmocka_unit_test(symmetric_methods_find_their_way_back),

@@ -20,9 +20,46 @@
       UNUSED const double *p, UNUSED const double *u
 #define MODEL(text) .abi = LAG_ABI, .real_size = sizeof(double), .name = text, .doc = "", .effects = ""
 
+/* The derivatives of L that implicit methods need: name_variation, name_second and name_at. */
+#define FIRST(name) UNUSED static int name##_variation(ARGS, double *Lq, double *Lv, double *Q, UNUSED double *w)
+#define SECOND(name) UNUSED static int name##_second(ARGS, double *h, UNUSED double *w)
+#define DERIVATIVES(name) .variation = name##_variation, .second = name##_second, .second_at = name##_at, \
+    .nsecond = (int)(sizeof name##_at / sizeof *name##_at)
+/* The linearisation that radau needs: name_linearise with the entries name_dr, and those of M's lower triangle. */
+#define LINEARISE(name) UNUSED static int name##_linearise(ARGS, UNUSED const double *a, double *dr, double *M, UNUSED double *w)
+#define LINEAR(name)                                                                                    \
+  UNUSED static const lag_linear name##_linear = {.ndr = (int)(sizeof name##_dr / sizeof *name##_dr), .dr = name##_dr, \
+      .nmass = (int)(sizeof name##_mass / sizeof *name##_mass), .mass = name##_mass, .eval = name##_linearise}
+#define EXACT(name) DERIVATIVES(name), .linear = &name##_linear
+UNUSED static const lag_entry full_2[] = {{0, 0}, {0, 1}, {1, 0}, {1, 1}}, diagonal_2[] = {{0, 0}, {1, 1}}, lower_2[] = {{0, 0}, {1, 0}, {1, 1}};
+
+/* Of one coordinate with unit mass and a force that falls by `slope` with it. */
+#define UNIT_MASS(name, accel, slope)                                                                   \
+  FIRST(name)                                                                                           \
+  {                                                                                                     \
+    Lv[0] = v[0];                                                                                       \
+    Q[0] = 0;                                                                                           \
+    return accel(t, q, v, z, p, u, Lq, NULL, w);                                                        \
+  }                                                                                                     \
+  SECOND(name)                                                                                          \
+  {                                                                                                     \
+    h[0] = -(slope);                                                                                    \
+    h[1] = 1;                                                                                           \
+    return 0;                                                                                           \
+  }                                                                                                     \
+  LINEARISE(name)                                                                                       \
+  {                                                                                                     \
+    dr[0] = -(slope);                                                                                   \
+    M[0] = 1;                                                                                           \
+    return 0;                                                                                           \
+  }                                                                                                     \
+  UNUSED static const lag_entry name##_dr[] = {{0, 0}}, name##_mass[] = {{0, 0}};                       \
+  LINEAR(name);                                                                                         \
+  UNUSED static const lag_second name##_at[] = {{LAG_QQ, 0, 0}, {LAG_VV, 0, 0}}
+
 static const double PI = 3.14159265358979323846264338327950288;
-static const lag_var names_q[] = {{"x", "m", 1, 0, 0}, {"y", "m", 1, 0, 0}};
-static const lag_var names_z[] = {{"z", "", 1, 0, 0}};
+static const lag_var names_q[] = {{"x", "m", 1, 0, 0, 0}, {"y", "m", 1, 0, 0, 0}};
+static const lag_var names_z[] = {{"z", "", 1, 0, 0, 0}};
 
 #define assert_close(x, expected, tolerance)                                                            \
   do {                                                                                                  \
@@ -73,8 +110,49 @@ UNUSED static void kepler_exact(double t, double *y)
   y[3] = b * cos(E) * rate;
 }
 
+/* L = v.v/2 + 1/|q| */
+FIRST(kepler)
+{
+  double r2 = q[0] * q[0] + q[1] * q[1], k = 1 / (r2 * sqrt(r2));
+  for (int i = 0; i < 2; i++) {
+    Lq[i] = -k * q[i];
+    Lv[i] = v[i];
+    Q[i] = 0;
+  }
+  return 0;
+}
+
+SECOND(kepler)
+{
+  double r2 = q[0] * q[0] + q[1] * q[1], k = 1 / (r2 * sqrt(r2)), k3 = 3 * k / r2;
+  h[0] = k3 * q[0] * q[0] - k;
+  h[1] = k3 * q[0] * q[1];
+  h[2] = k3 * q[1] * q[1] - k;
+  h[3] = h[4] = 1;
+  return 0;
+}
+
+UNUSED static const lag_second kepler_at[] = {{LAG_QQ, 0, 0}, {LAG_QQ, 1, 0}, {LAG_QQ, 1, 1}, {LAG_VV, 0, 0}, {LAG_VV, 1, 1}};
+
+/* Of unit masses: r = dL/dq - a. */
+#define UNIT_MASSES(name)                                                                               \
+  LINEARISE(name)                                                                                       \
+  {                                                                                                     \
+    double h[5];                                                                                        \
+    name##_second(t, q, v, z, p, u, h, w);                                                              \
+    dr[0] = h[0];                                                                                       \
+    dr[1] = dr[2] = h[1];                                                                               \
+    dr[3] = h[2];                                                                                       \
+    M[0] = M[1] = 1;                                                                                    \
+    return 0;                                                                                           \
+  }                                                                                                     \
+  LINEAR(name)
+#define kepler_dr full_2
+#define kepler_mass diagonal_2
+UNIT_MASSES(kepler);
+
 UNUSED static const lag_model kepler_model = {MODEL("kepler"), .flags = LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 2,
-    .q = names_q, .accel = kepler_accel, .energy = kepler_energy};
+    .q = names_q, .accel = kepler_accel, .energy = kepler_energy, EXACT(kepler)};
 UNUSED static const lag_scene kepler = {.name = "orbit", .doc = "", .model = &kepler_model, .start = kepler_start, .t1 = 10,
     .has_span = 1};
 
@@ -98,12 +176,13 @@ UNUSED static void osc_start(UNUSED const double *p, double *q, double *v, UNUSE
   v[0] = 0;
 }
 
+UNIT_MASS(osc, osc_accel, 1);
 UNUSED static const lag_model osc_model = {MODEL("oscillator"), .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 1, .q = names_q,
-    .accel = osc_accel, .energy = osc_energy};
+    .accel = osc_accel, .energy = osc_energy, EXACT(osc)};
 UNUSED static const lag_scene osc = {.name = "osc", .doc = "", .model = &osc_model, .start = osc_start, .t1 = 10, .has_span = 1};
 
 /* ---- ball: y'' = -g, y(0) = h, bounces with restitution e. p = {g, h, e}. */
-static const lag_var ball_p[] = {{"g", "m/s^2", 1, 0, 1}, {"h", "cm", 0.01, 0, 1}, {"ground.e", "", 1, 0, 2}};
+static const lag_var ball_p[] = {{"g", "m/s^2", 1, 0, 1, 0}, {"h", "cm", 0.01, 0, 1, 0}, {"ground.e", "", 1, 0, 2, 0}};
 static const lag_event ball_ev[] = {{"ground", -1}};
 
 UNUSED static int ball_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
@@ -146,8 +225,9 @@ UNUSED static void ball_start(const double *p, double *q, double *v, UNUSED doub
   v[0] = 0;
 }
 
+UNIT_MASS(ball, ball_accel, 0);
 UNUSED static const lag_model ball_model = {MODEL("ball"), .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 1, .np = 3, .nev = 1,
-    .q = names_q + 1, .p = ball_p, .ev = ball_ev, .accel = ball_accel, .energy = ball_energy, .events = ball_events, .act = ball_act};
+    .q = names_q + 1, .p = ball_p, .ev = ball_ev, .accel = ball_accel, .energy = ball_energy, .events = ball_events, .act = ball_act, EXACT(ball)};
 UNUSED static const lag_scene ball = {.name = "drop", .doc = "", .model = &ball_model, .params = ball_params,
     .start = ball_start, .t1 = 5, .has_span = 1};
 

@@ -141,7 +141,7 @@ static void paths_reproduce_polynomials(void **state)
         assert_int_equal(lag_rhs(&pb, t, y[k], f[k]), 0);
       }
       StepEnds ends = {t0, h, y[0], f[0], y[1], f[1]};
-      assert_int_equal(lag_path_make(path, &pb, &ends, level), 0);
+      assert_int_equal(lag_path_make(path, &pb, &ends, level, 1), 0);
       for (double s = 0; s <= 1; s += 0.125) {
         double t = t0 + s * h;
         lag_path_at(path, &pb, &ends, level, s, out);
@@ -222,14 +222,19 @@ static void the_chosen_tables_are_the_efficient_ones(void **state)
 
 /* ---- What is refused */
 
-static void what_is_not_separable_is_refused_with_a_way_out(void **state)
+static void what_needs_derivatives_is_refused_without_them(void **state)
 {
+  lag_model bare = double_pendulum_model;
+  lag_scene scene = double_pendulum;
   (void)state;
+  bare.variation = NULL;
+  scene.model = &bare;
   for (int m = 0; m < MEMBERS; m++) {
-    lag_sim *s = lag_sim_new(&double_pendulum);
+    lag_sim *s = lag_sim_new(&scene);
     assert_int_equal(lag_sim_set_method(s, family[m].method, NULL, 0), LAG_EMETHOD);
+    assert_non_null(strstr(lag_sim_message(s), "derivatives of the model"));
+    assert_non_null(strstr(lag_sim_message(s), "lagc build MODEL --method"));
     assert_non_null(strstr(lag_sim_message(s), family[m].method->name));
-    assert_non_null(strstr(lag_sim_message(s), "mass matrix varies"));
     assert_non_null(strstr(lag_sim_message(s), "dop853"));
     assert_int_equal(lag_sim_advance(s, 1), LAG_OK); /* with the method it had */
     lag_sim_free(s);
@@ -239,13 +244,16 @@ static void what_is_not_separable_is_refused_with_a_way_out(void **state)
 /* A scene that names such a method says so at the first step, and goes on with another one. */
 static void a_scene_with_a_refused_method_says_so(void **state)
 {
+  lag_model bare = double_pendulum_model;
   lag_scene scene = double_pendulum;
   (void)state;
+  bare.variation = NULL;
+  scene.model = &bare;
   scene.method = "verlet";
   lag_sim *s = lag_sim_new(&scene);
   assert_non_null(s);
   assert_int_equal(lag_sim_advance(s, 1), LAG_EMETHOD);
-  assert_non_null(strstr(lag_sim_message(s), "mass matrix varies"));
+  assert_non_null(strstr(lag_sim_message(s), "derivatives of the model"));
   assert_int_equal(lag_sim_set_method(s, &lag_rk45, NULL, 0), LAG_OK);
   assert_int_equal(lag_sim_advance(s, 1), LAG_OK);
   lag_sim_free(s);
@@ -265,7 +273,7 @@ static void wall_start(UNUSED const double *p, double *q, double *v, UNUSED doub
   v[0] = 1;
 }
 
-SYSTEM(wall, 1, LAG_SEPARABLE, NULL);
+SYSTEM(wall, 1, LAG_SEPARABLE, NULL, NO_DERIVATIVES);
 
 static void a_failed_step_leaves_the_last_state(void **state)
 {
@@ -290,7 +298,7 @@ int main(void)
       cmocka_unit_test(paths_reproduce_polynomials),
       cmocka_unit_test(forces_may_depend_on_time),
       cmocka_unit_test(the_chosen_tables_are_the_efficient_ones),
-      cmocka_unit_test(what_is_not_separable_is_refused_with_a_way_out),
+      cmocka_unit_test(what_needs_derivatives_is_refused_without_them),
       cmocka_unit_test(a_scene_with_a_refused_method_says_so),
       cmocka_unit_test(a_failed_step_leaves_the_last_state),
   };

@@ -39,18 +39,26 @@ static void place(const lag_scene *s, Point *at) {
   if (m->inputs) m->inputs(at->t, at->p, at->u);
 }
 
-/* The largest |T y'(s) - T f(y(s))|, each over the size of its component's coefficients. */
+/* The largest k |x[k]| of the components from i to j. */
+static Real size_of(const Real *x, int columns, int i, int j) {
+  Real size = 0;
+  for (int k = 1; k <= ORDER; k++)
+    for (int c = i; c < j; c++) size = real_max(size, k * real_abs(x[k * columns + c]));
+  return size;
+}
+
+/* The largest |T y'(s) - T f(y(s))| over the size of the motion: of all velocities, and of all states. */
 static Real defect_at(const lag_model *m, const Point *at, const Real *x, Real T, Real s, Real *w) {
   const lag_taylor *ty = m->taylor;
-  int n = 2 * m->nq + m->nz;
-  Real y[3 * MOST], dy[3 * MOST], rates[2 * MOST], u[MOST], worst = 0;
+  int nv = 2 * m->nq, n = nv + m->nz;
+  static Real y[3 * MOST], dy[3 * MOST], rates[2 * MOST], u[MOST];
+  Real of_v = size_of(x, ty->columns, m->nq, nv), of_z = size_of(x, ty->columns, nv, n), worst = 0;
   ty->at(ORDER, s, x, y, dy);
   for (int i = 0; i < n; i++) y[i] += x[i];
   if (m->inputs) m->inputs(at->t + s * T, at->p, u);
   if (m->accel(at->t + s * T, y, y + m->nq, y + 2 * m->nq, at->p, u, rates, rates + m->nq, w) != LAG_OK) return (Real)NAN;
   for (int i = m->nq; i < n; i++) {
-    Real size = 0;
-    for (int k = 1; k <= ORDER; k++) size = real_max(size, k * real_abs(x[k * ty->columns + i]));
+    Real size = i < nv ? of_v : of_z;
     if (size > 0) worst = real_max(worst, real_abs(dy[i] - T * rates[i - m->nq]) / size);
   }
   return worst;

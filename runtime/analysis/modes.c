@@ -1,0 +1,443 @@
+/* M x'' + C x' + K x = 0, with K = -dr/dq and C = -dr/dv at rest. Without C, and with K = K', it is a
+ * symmetric eigenvalue problem (J.W. Strutt, Lord Rayleigh, The Theory of Sound, 1877, chapter IV), which is solved
+ * as one; the rest, with states, as y' = A y. Stability: by the first approximation where real parts decide (A.M.
+ * Lyapunov, 1892), by the energy where it has a strict minimum (Lagrange; G. Lejeune Dirichlet, J. reine angew. Math.
+ * 32 (1846) 85, DOI 10.1515/crll.1846.32.85). */
+#include "analysis/modes.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/spectrum.h"
+
+typedef struct Work {
+  Modes *out;
+  Rest *rest;
+  const lag_algebra *algebra;
+  lag_problem *pb;
+  int nq, n, ny;        /* n = nq + nz, ny = 2 nq + nz */
+  double *weight;       /* [nq] sqrt(M_ii): x weight is a coordinate with mass 1 */
+  double *K, *C, *M;    /* [nq * nq] in these coordinates */
+  double *values, *vectors; /* of K x = value M x */
+  double zero;          /* |value| below this is 0 */
+  int conserves;        /* the model has a conserved energy, and no states beside it */
+  int definite, symmetric, undamped; /* M; K; C = 0 */
+  double *kernel;       /* [n * nkernel] zero modes in SI, columns */
+  int nkernel;
+} Work;
+
+/* ---- The matrices */
+
+static double largest(size_t n, const double *x)
+{
+  double most = 0;
+
+  for (size_t i = 0; i < n; i++) {
+    most = fmax(most, fabs(x[i]));
+  }
+  return most;
+}
+
+/* K, C, M in coordinates of mass 1. Where M_ii is not positive (an indefinite mass matrix) the row's size serves. */
+static int matrices(Work *w)
+{
+  Rest *r = w->rest;
+  size_t nn = (size_t)w->nq * (size_t)w->nq;
+  int rc = lag_linearise(w->pb, r->sim->run->t, r->y, NULL, r->dr, r->M, r->work), nq = w->nq;
+
+  w->weight = pool_doubles(&w->out->pool, (size_t)nq);
+  w->K = pool_doubles(&w->out->pool, nn);
+  w->C = pool_doubles(&w->out->pool, nn);
+  w->M = pool_doubles(&w->out->pool, nn);
+  if (rc || w->out->pool.failed) {
+    return rc ? rc : LAG_ENOMEM;
+  }
+  w->definite = 1;
+  for (int i = 0; i < nq; i++) {
+    double m = r->M[i * nq + i], row = largest((size_t)nq, r->M + i * nq);
+    w->definite &= m > 0;
+    w->weight[i] = m > 0 ? sqrt(m) : row > 0 ? sqrt(row) : 1;
+  }
+  for (int i = 0; i < nq; i++) {
+    for (int j = 0; j < nq; j++) {
+      double d = w->weight[i] * w->weight[j];
+      w->K[i * nq + j] = -r->dr[i * w->ny + j] / d;
+      w->C[i * nq + j] = -r->dr[i * w->ny + nq + j] / d;
+      w->M[i * nq + j] = r->M[i * nq + j] / d;
+    }
+  }
+  double size = largest(nn, w->K);
+  w->symmetric = w->undamped = 1;
+  for (int i = 0; i < nq; i++) {
+    for (int j = 0; j < nq; j++) {
+      w->symmetric &= fabs(w->K[i * nq + j] - w->K[j * nq + i]) <= 1e-13 * size;
+      w->undamped &= fabs(w->C[i * nq + j]) <= 4 * DBL_EPSILON * sqrt(size);
+    }
+  }
+  return LAG_OK;
+}
+
+/* Eigenvalues of K by M, where both are symmetric and M is positive definite; else out->lowering stays -1. */
+static int signature(Work *w)
+{
+  size_t nq = (size_t)w->nq;
+  double *K = pool_doubles(&w->out->pool, nq * nq), *M = pool_doubles(&w->out->pool, nq * nq);
+
+  w->values = pool_doubles(&w->out->pool, nq);
+  w->vectors = pool_doubles(&w->out->pool, nq * nq);
+  if (w->out->pool.failed) {
+    return LAG_ENOMEM;
+  }
+  if (!w->symmetric || !w->definite || nq == 0) {
+    return LAG_OK;
+  }
+  memcpy(K, w->K, nq * nq * sizeof *K);
+  memcpy(M, w->M, nq * nq * sizeof *M);
+  int rc = w->algebra->symmetric(w->nq, K, M, w->values, w->vectors);
+  if (rc == LAG_EINVAL) {
+    w->definite = 0;
+    return LAG_OK;
+  }
+  w->zero = 32 * (double)nq * DBL_EPSILON * largest(nq, w->values);
+  w->out->lowering = 0;
+  for (size_t i = 0; i < nq && rc == LAG_OK; i++) {
+    w->out->lowering += w->values[i] < -w->zero;
+  }
+  return rc;
+}
+
+/* ---- Shapes */
+
+/* Coordinate i of x where the first nq are coordinates and the rest states: how far it goes, in scales. */
+static double extent(const Work *w, int i, double re, double im)
+{
+  return hypot(re, im) / w->rest->scale[i];
+}
+
+/* The component that becomes 1: of coordinates, that with the largest kinetic energy; of states, that which goes farthest. */
+static int reference(const Work *w, const double *re, const double *im)
+{
+  int best = 0, state = w->nq;
+  double most = -1, far = 0, state_far = 0;
+
+  for (int i = 0; i < w->n; i++) {
+    double e = extent(w, i, re[i], im[i]);
+    if (i < w->nq) {
+      double kinetic = hypot(re[i], im[i]) * w->weight[i];
+      far = fmax(far, e);
+      if (kinetic > most * (1 + 1e-9)) { /* of equal ones the first, whatever rounding says */
+        most = kinetic;
+        best = i;
+      }
+    } else if (e > state_far * (1 + 1e-9)) {
+      state_far = e;
+      state = i;
+    }
+  }
+  return far > 1e-12 * state_far ? best : state;
+}
+
+/* Adds a mode with the shape re + i im, [n] with a stride. */
+static int add_mode(Work *w, Mode mode, const double *re, const double *im, int stride)
+{
+  double *shape_re = pool_doubles(&w->out->pool, (size_t)w->n), *shape_im = pool_doubles(&w->out->pool, (size_t)w->n);
+
+  if (w->out->pool.failed) {
+    return LAG_ENOMEM;
+  }
+  for (int i = 0; i < w->n; i++) {
+    shape_re[i] = re[i * stride];
+    shape_im[i] = im ? im[i * stride] : 0;
+  }
+  int ref = reference(w, shape_re, shape_im), nq = w->nq;
+  const lag_model *m = w->pb->model;
+  double factor = ref < nq ? m->q[ref].factor : m->z[ref - nq].factor, a = shape_re[ref], b = shape_im[ref];
+  double size = a * a + b * b;
+  for (int i = 0; i < w->n && size > 0; i++) {
+    double x = shape_re[i], y = shape_im[i];
+    shape_re[i] = factor * (x * a + y * b) / size;
+    shape_im[i] = factor * (y * a - x * b) / size;
+  }
+  mode.shape_re = shape_re;
+  mode.shape_im = shape_im;
+  w->out->mode[w->out->n++] = mode;
+  return LAG_OK;
+}
+
+/* ---- Zero modes */
+
+static void swap(double *a, double *b)
+{
+  double x = *a;
+  *a = *b;
+  *b = x;
+}
+
+/* Any basis of the kernel is as right as another; this one has as many zeros as can be: Gauss-Jordan
+ * elimination of its vectors, measured in scales. */
+static void reduce_kernel(Work *w)
+{
+  int k = w->nkernel, n = w->n;
+  double *v = w->kernel;
+
+  for (int done = 0; done < k; done++) {
+    int row = 0, col = done;
+    double most = 0;
+    for (int i = 0; i < n; i++) {
+      for (int j = done; j < k; j++) {
+        double e = extent(w, i, v[i * k + j], 0);
+        if (e > most * (1 + 1e-9)) {
+          most = e;
+          row = i;
+          col = j;
+        }
+      }
+    }
+    double pivot = v[row * k + col];
+    if (pivot == 0.0) {
+      return;
+    }
+    for (int i = 0; i < n; i++) {
+      swap(&v[i * k + done], &v[i * k + col]);
+      v[i * k + done] /= pivot;
+    }
+    for (int j = 0; j < k; j++) {
+      double factor = v[row * k + j];
+      for (int i = 0; i < n && j != done; i++) {
+        v[i * k + j] -= factor * v[i * k + done];
+      }
+    }
+  }
+}
+
+/* Do all forces stay 0 along x[n]? Looked at near and far, on both sides. */
+static int is_free(Work *w, double *x)
+{
+  static const double steps[] = {-1, -0.1, 0.1, 1};
+  double far = 0;
+
+  for (int i = 0; i < w->n; i++) {
+    far = fmax(far, extent(w, i, x[i], 0));
+  }
+  for (size_t k = 0; k < sizeof steps / sizeof *steps && far > 0; k++) {
+    if (!lag_rest_holds(w->rest, x, steps[k] / far)) {
+      return 0;
+    }
+  }
+  return far > 0;
+}
+
+static int add_zero_modes(Work *w)
+{
+  double *x = pool_doubles(&w->out->pool, (size_t)w->n);
+  int rc = x ? LAG_OK : LAG_ENOMEM;
+
+  if (rc == LAG_OK) {
+    reduce_kernel(w);
+  }
+  for (int k = 0; k < w->nkernel && rc == LAG_OK; k++) {
+    for (int i = 0; i < w->n; i++) {
+      x[i] = w->kernel[i * w->nkernel + k];
+      x[i] = extent(w, i, x[i], 0) < 1e-12 ? 0 : x[i]; /* reduced: the largest is 1 or so */
+    }
+    Mode mode = {.repeats = 1};
+    mode.free = is_free(w, x);
+    rc = add_mode(w, mode, x, NULL, 1);
+  }
+  return rc;
+}
+
+/* ---- The two ways to the modes */
+
+/* Values w^2 of the symmetric problem: a negative one is a pair +-s. */
+static int modes_of_values(Work *w)
+{
+  int nq = w->nq, rc = LAG_OK;
+  double *x = pool_doubles(&w->out->pool, (size_t)w->n);
+
+  w->kernel = pool_doubles(&w->out->pool, (size_t)w->n * (size_t)nq);
+  if (w->out->pool.failed) {
+    return LAG_ENOMEM;
+  }
+  for (int k = 0; k < nq; k++) {
+    w->nkernel += fabs(w->values[k]) <= w->zero;
+  }
+  for (int k = 0, zeros = 0; k < nq && rc == LAG_OK; k++) {
+    double value = w->values[k];
+    int is_zero = fabs(value) <= w->zero;
+    for (int i = 0; i < nq; i++) {
+      x[i] = w->vectors[i * nq + k] / w->weight[i];
+      if (is_zero) {
+        w->kernel[i * w->nkernel + zeros] = x[i];
+      }
+    }
+    zeros += is_zero;
+    if (!is_zero) {
+      Mode mode = {.re = value < 0 ? sqrt(-value) : 0, .im = value > 0 ? sqrt(value) : 0, .repeats = 1};
+      rc = add_mode(w, mode, x, NULL, 1);
+    }
+  }
+  w->out->drifts = w->nkernel > 0;
+  w->out->pairs = 1;
+  return rc ? rc : add_zero_modes(w);
+}
+
+/* A of y' = A y at rest. */
+static int state_matrix(Work *w, double *A)
+{
+  Rest *r = w->rest;
+  int nq = w->nq, ny = w->ny;
+  int rc = lag_jacobian(w->pb, r->sim->run->t, r->y, A + nq * ny, r->work);
+
+  for (int i = 0; i < nq; i++) {
+    A[i * ny + nq + i] = 1;
+  }
+  return rc;
+}
+
+/* Is the eigenvalue the other half of one that is listed? */
+static int is_second_half(const Work *w, const Spectrum *s, int k)
+{
+  return s->im[k] < 0 || (w->out->pairs && s->re[k] < 0);
+}
+
+/* Several defective eigenvalues are one mode: is k the first of them? */
+static int is_first(const Spectrum *s, int k)
+{
+  for (int i = 0; i < k && s->repeats[k] > 1; i++) {
+    if (s->re[i] == s->re[k] && s->im[i] == s->im[k]) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+static int modes_of_matrix(Work *w)
+{
+  Pool *pool = &w->out->pool;
+  Spectrum s;
+  size_t ny = (size_t)w->ny, n = (size_t)w->n;
+  double *A = pool_doubles(pool, ny * ny), *re = pool_doubles(pool, n), *im = pool_doubles(pool, n);
+  int rc = pool->failed ? LAG_ENOMEM : state_matrix(w, A);
+
+  rc = rc ? rc : lag_spectrum(&s, pool, w->algebra, w->ny, A);
+  if (rc) {
+    return rc;
+  }
+  int minimum = w->conserves && w->out->lowering == 0 && s.zeros == 0; /* then a real part is rounding */
+  w->nkernel = s.nkernel;
+  w->out->drifts = s.zeros > s.nkernel;
+  w->kernel = pool_doubles(pool, n * (size_t)s.nkernel);
+  for (int i = 0; i < w->n && w->kernel; i++) {
+    int row = i < w->nq ? i : w->nq + i;
+    for (int k = 0; k < s.nkernel; k++) {
+      w->kernel[i * s.nkernel + k] = s.kernel[row * s.nkernel + k];
+    }
+  }
+  for (int k = 0; k < s.count && rc == LAG_OK && !pool->failed; k++) {
+    Mode mode = {.re = minimum ? 0 : s.re[k], .im = s.im[k], .repeats = (int)s.repeats[k]};
+    for (int i = 0; i < w->n; i++) {
+      int row = i < w->nq ? i : w->nq + i;
+      re[i] = s.vre[row * s.count + k];
+      im[i] = s.vim[row * s.count + k];
+    }
+    rc = is_second_half(w, &s, k) || !is_first(&s, k) ? LAG_OK : add_mode(w, mode, re, im, 1);
+  }
+  rc = pool->failed ? LAG_ENOMEM : rc;
+  return rc || w->nkernel == 0 ? rc : add_zero_modes(w);
+}
+
+/* ---- Stability */
+
+static Verdict judge(const Work *w)
+{
+  const Modes *out = w->out;
+  int grows = 0, stays = 0, zeros = 0, bound = 0, defective = 0;
+
+  for (int i = 0; i < out->n; i++) {
+    const Mode *m = &out->mode[i];
+    int zero = m->re == 0.0 && m->im == 0.0;
+    grows |= m->re > 0;
+    stays += m->re == 0.0 && !zero;
+    zeros += zero;
+    bound += zero && !m->free;
+    defective |= m->re == 0.0 && m->repeats > 1;
+  }
+  if (grows) {
+    return LAG_UNSTABLE;
+  }
+  if (stays == 0 && zeros == 0) {
+    return LAG_DECAYS;
+  }
+  if (defective) {
+    return LAG_DEFECTIVE;
+  }
+  if (bound) {
+    return LAG_FLAT;
+  }
+  if (w->conserves && out->lowering == 0) {
+    return zeros ? LAG_NEUTRAL : LAG_MINIMUM;
+  }
+  if (w->conserves && out->lowering > 0) {
+    return LAG_GYROSCOPIC;
+  }
+  return stays == 0 ? LAG_NEUTRAL : LAG_CENTRE;
+}
+
+const char *lag_verdict_name(Verdict verdict)
+{
+  switch (verdict) {
+  case LAG_UNSTABLE: return "unstable";
+  case LAG_DECAYS: return "asymptotically stable";
+  case LAG_MINIMUM: return "stable";
+  case LAG_NEUTRAL: return "neutral";
+  case LAG_GYROSCOPIC: case LAG_FLAT: case LAG_DEFECTIVE: case LAG_CENTRE: return "undecided";
+  }
+  return "undecided";
+}
+
+static int class_of(const Mode *m)
+{
+  return m->re == 0.0 && m->im == 0.0 ? 0 : m->re > 0 ? 1 : 2;
+}
+
+static int by_class(const void *a, const void *b)
+{
+  const Mode *x = a, *y = b;
+  int c = class_of(x) - class_of(y);
+
+  if (c) {
+    return c;
+  }
+  if (x->im != y->im) {
+    return x->im < y->im ? -1 : 1;
+  }
+  return (x->re < y->re) - (x->re > y->re);
+}
+
+int lag_modes_find(Modes *out, Rest *rest, const lag_algebra *algebra)
+{
+  lag_problem *pb = &rest->sim->pb;
+  Work w = {.out = out, .rest = rest, .algebra = algebra, .pb = pb, .nq = pb->nq, .n = rest->n, .ny = pb->n};
+
+  w.conserves = (pb->model->flags & LAG_CONSERVES_ENERGY) != 0 && pb->nz == 0;
+  *out = (Modes){.lowering = -1, .pairs = w.conserves};
+  out->mode = calloc((size_t)w.ny + 1, sizeof *out->mode);
+  int rc = out->mode ? matrices(&w) : LAG_ENOMEM;
+  rc = rc ? rc : signature(&w);
+  if (rc) {
+    return rc;
+  }
+  rc = pb->nz == 0 && w.undamped && out->lowering >= 0 ? modes_of_values(&w) : modes_of_matrix(&w);
+  qsort(out->mode, (size_t)out->n, sizeof *out->mode, by_class);
+  out->verdict = judge(&w);
+  return rc;
+}
+
+void lag_modes_free(Modes *modes)
+{
+  free(modes->mode);
+  pool_free(&modes->pool);
+}

@@ -1,0 +1,46 @@
+/* Small motion about an equilibrium: frequencies, shapes, damping, and what they say about stability. Enters: a state
+ * of rest; leaves: its modes. */
+#ifndef LAG_ANALYSIS_MODES_H
+#define LAG_ANALYSIS_MODES_H
+
+#include "analysis/equilibrium.h"
+
+/* A motion exp((re + i im) t) shape, im >= 0. */
+typedef struct Mode {
+  double re, im;      /* [1/s]; both 0: a zero mode */
+  int repeats;        /* > 1: of so many equal eigenvalues that have fewer shapes than that: defective */
+  int free;           /* of a zero mode: all forces stay 0 far along it */
+  const double *shape_re, *shape_im; /* [nq + nz] in SI; its largest component, by kinetic energy, is 1 declared unit */
+} Mode;
+
+/* What is known of the equilibrium. */
+typedef enum Verdict {
+  LAG_UNSTABLE,    /* a mode grows */
+  LAG_DECAYS,      /* all modes decay: asymptotically stable */
+  LAG_MINIMUM,     /* a strict minimum of a conserved energy: stable (Lagrange, Dirichlet) */
+  LAG_NEUTRAL,     /* free motions; otherwise a minimum, or all modes decay */
+  LAG_GYROSCOPIC,  /* not decided: all modes oscillate, but the energy has no minimum */
+  LAG_FLAT,        /* not decided: a zero mode that is no free motion */
+  LAG_DEFECTIVE,   /* not decided: a multiple imaginary eigenvalue that lacks shapes */
+  LAG_CENTRE       /* not decided: some modes neither grow nor decay, and no energy is known to be conserved */
+} Verdict;
+
+typedef struct Modes {
+  Pool pool;
+  Mode *mode;    /* [n]: zero modes, then growing ones, then by frequency */
+  int n;
+  Verdict verdict;
+  int pairs;     /* each mode stands for both +-(re + i im) */
+  int drifts;    /* along a zero mode a push goes on for ever */
+  int lowering;  /* directions in which the energy falls; -1: not known */
+} Modes;
+
+/* The modes about the state at rest. LAG_OK, LAG_ENOMEM, LAG_ESINGULAR, LAG_EMETHOD: eigenvalues did not
+ * converge. Call lag_modes_free in every case. */
+int lag_modes_find(Modes *modes, Rest *rest, const lag_algebra *algebra);
+void lag_modes_free(Modes *modes);
+
+/* "unstable", "asymptotically stable", "stable", "neutral", "undecided". */
+const char *lag_verdict_name(Verdict verdict);
+
+#endif

@@ -1,0 +1,35 @@
+/* Memory of one analysis, freed at once: what it takes is asked for first, and looked at once. */
+#ifndef LAG_ANALYSIS_POOL_H
+#define LAG_ANALYSIS_POOL_H
+
+#include <stdlib.h>
+
+typedef struct Pool {
+  void *last;  /* the newest block; each begins with a pointer to the one before it */
+  int failed;  /* some block was not to be had */
+} Pool;
+
+/* n zeros; NULL, and failed set, without memory. */
+static inline double *pool_doubles(Pool *p, size_t n)
+{
+  void **block = calloc(1, sizeof(double) * (n + 2));
+
+  if (!block) {
+    p->failed = 1;
+    return NULL;
+  }
+  *block = p->last;
+  p->last = block;
+  return (double *)(void *)block + 2;
+}
+
+static inline void pool_free(Pool *p)
+{
+  while (p->last) {
+    void *before = *(void **)p->last;
+    free(p->last);
+    p->last = before;
+  }
+}
+
+#endif

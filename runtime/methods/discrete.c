@@ -1,0 +1,261 @@
+/* Newton's method for a step of discrete mechanics. Enters: q, p and a guess; leaves: the velocities inside the step, and the
+ * forces at its points. Holds: derivatives are those that the compiler took of L; none is differenced. */
+#include "methods/discrete.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "methods/band.h"
+#include "methods/steps.h"
+
+enum { MOST_CORRECTIONS = 25 };
+
+/* The work space, laid out. */
+typedef struct Parts {
+  int n, m, free, points;
+  double *Q, *V, *Lq, *Lv, *F; /* [n] at one point */
+  double *R, *S, *du;          /* [m] residual, the size of its terms, correction */
+  double *h;                   /* [nsecond] */
+  lag_band J;
+} Parts;
+
+/* How far from the diagonal second derivatives stand, as coordinates were declared. */
+static int half_band(const lag_model *m)
+{
+  int band = 0;
+
+  for (int k = 0; k < m->nsecond; k++) {
+    int d = m->second_at[k].row - m->second_at[k].col;
+    band = d > band ? d : -d > band ? -d : band;
+  }
+  return band;
+}
+
+static int band_of(const lag_problem *pb, int free)
+{
+  return free * (half_band(pb->model) + 1) - 1;
+}
+
+size_t lag_discrete_size(const lag_problem *pb, int free)
+{
+  int n = pb->nq, m = n * free;
+
+  return (size_t)(5 * n + 4 * m + pb->model->nsecond + lag_band_size(m, band_of(pb, free)));
+}
+
+static Parts layout(const lag_discrete *d)
+{
+  Parts w = {.n = d->pb->nq, .free = (int)d->rule->free, .points = (int)d->rule->points};
+  double *x = d->work;
+  double **const of_n[] = {&w.Q, &w.V, &w.Lq, &w.Lv, &w.F}, **const of_m[] = {&w.R, &w.S, &w.du, &w.J.pivot};
+
+  w.m = w.n * w.free;
+  for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++, x += w.n) {
+    *of_n[i] = x;
+  }
+  for (size_t i = 0; i < sizeof of_m / sizeof *of_m; i++, x += w.m) {
+    *of_m[i] = x;
+  }
+  w.h = x;
+  w.J.n = w.m;
+  w.J.band = band_of(d->pb, w.free);
+  w.J.a = x + d->pb->model->nsecond;
+  return w;
+}
+
+/* Q and V at point i. */
+static void place(const lag_discrete *d, const Parts *w, int i)
+{
+  const lag_rule *r = d->rule;
+
+  for (int a = 0; a < w->n; a++) {
+    double x = 0, v = 0;
+    for (int k = 0; k < w->free; k++) {
+      x += r->integral[i][k] * d->u[k * w->n + a];
+      v += r->value[i][k] * d->u[k * w->n + a];
+    }
+    w->Q[a] = d->q[a] + (d->dq[a] + d->h * x);
+    w->V[a] = v;
+  }
+}
+
+static double time_of(const lag_discrete *d, int i)
+{
+  return d->t + d->rule->c[i] * d->h;
+}
+
+/* The residual R, in each component the size S of its terms, and the forces. */
+static int residual(const lag_discrete *d, const Parts *w)
+{
+  const lag_rule *r = d->rule;
+
+  for (int k = 0; k < w->free; k++) {
+    for (int a = 0; a < w->n; a++) {
+      double p = d->p[a] + d->dp[a];
+      w->R[k * w->n + a] = -r->whole[k] * p;
+      w->S[k * w->n + a] = fabs(r->whole[k] * p);
+    }
+  }
+  for (int i = 0; i < w->points; i++) {
+    double *force = d->force + i * w->n;
+    place(d, w, i);
+    int rc = lag_variation(d->pb, time_of(d, i), w->Q, w->V, w->Lq, w->Lv, w->F);
+    if (rc) {
+      return lag_step_refused(d->pb, rc, time_of(d, i));
+    }
+    for (int a = 0; a < w->n; a++) {
+      force[a] = w->Lq[a] + w->F[a];
+      for (int k = 0; k < w->free; k++) {
+        double moved = r->b[i] * r->value[i][k] * w->Lv[a];
+        double pushed = d->h * r->b[i] * (r->whole[k] - r->integral[i][k]) * force[a];
+        w->R[k * w->n + a] += moved - pushed;
+        w->S[k * w->n + a] += fabs(moved) + fabs(pushed);
+      }
+    }
+  }
+  d->pb->bad_index = lag_not_finite(w->m, w->R);
+  if (d->pb->bad_index >= 0) {
+    d->pb->bad_index = d->pb->nq + d->pb->bad_index % w->n;
+    return lag_step_failed(d->pb, LAG_ENAN, d->t);
+  }
+  return LAG_OK;
+}
+
+/* Adds what the second derivatives at point i put between free velocities k and l. Unknown u_k of coordinate a is number
+ * a free + k, so that the matrix of a chain has a band. */
+static void scatter(const lag_discrete *d, const Parts *w, int i, int k, int l)
+{
+  const lag_rule *r = d->rule;
+  const lag_model *m = d->pb->model;
+  double b = r->b[i], v = r->value[i][l], q = d->h * r->integral[i][l];
+  double moved = b * r->value[i][k], pushed = -d->h * b * (r->whole[k] - r->integral[i][k]);
+
+  for (int e = 0; e < m->nsecond; e++) {
+    int row = m->second_at[e].row, col = m->second_at[e].col;
+    double x = w->h[e], *at = lag_band_at(&w->J, row * w->free + k, col * w->free + l);
+    double *across = lag_band_at(&w->J, col * w->free + k, row * w->free + l);
+    switch (m->second_at[e].part) {
+    case LAG_QQ:
+      *at += pushed * q * x;
+      if (row != col) {
+        *across += pushed * q * x;
+      }
+      break;
+    case LAG_VV:
+      *at += moved * v * x;
+      if (row != col) {
+        *across += moved * v * x;
+      }
+      break;
+    case LAG_VQ:
+      *at += moved * q * x;
+      *across += pushed * v * x;
+      break;
+    case LAG_FQ: *at += pushed * q * x; break;
+    default: *at += pushed * v * x;
+    }
+  }
+}
+
+/* The matrix of Newton's method at the present u, factored. */
+static int matrix(const lag_discrete *d, Parts *w)
+{
+  memset(w->J.a, 0, (size_t)lag_band_size(w->m, w->J.band) * sizeof(double));
+  for (int i = 0; i < w->points; i++) {
+    place(d, w, i);
+    int rc = lag_second_derivatives(d->pb, time_of(d, i), w->Q, w->V, w->h);
+    if (rc) {
+      return lag_step_refused(d->pb, rc, time_of(d, i));
+    }
+    for (int k = 0; k < w->free; k++) {
+      for (int l = 0; l < w->free; l++) {
+        scatter(d, w, i, k, l);
+      }
+    }
+  }
+  if (lag_band_factor(&w->J, w->du)) {
+    d->pb->detail = "the matrix of Newton's method is singular; take another step size";
+    return lag_step_failed(d->pb, LAG_EMETHOD, d->t);
+  }
+  return LAG_OK;
+}
+
+/* How large a correction is: `part`, the largest of a component relative to what the step does to q; `power`, the root of
+ * du.R over the sum of |u| times the terms of R, which no choice of units changes. */
+typedef struct Size {
+  double part, power;
+} Size;
+
+static Size correct(const lag_discrete *d, const Parts *w)
+{
+  double part = 0, work = 0, whole = 0;
+
+  for (int a = 0; a < w->n; a++) {
+    for (int k = 0; k < w->free; k++) {
+      w->du[a * w->free + k] = -w->R[k * w->n + a];
+    }
+  }
+  lag_band_solve(&w->J, w->du);
+  for (int a = 0; a < w->n; a++) {
+    for (int k = 0; k < w->free; k++) {
+      double *u = &d->u[k * w->n + a], du = w->du[a * w->free + k];
+      *u += du;
+      double scale = d->size * fabs(*u) + 0x1p-10 * fabs(d->q[a]);
+      part = fmax(part, du == 0.0 ? 0 : fmin(d->size * fabs(du) / scale, 1));
+      work += fabs(du * w->R[k * w->n + a]);
+      whole += fabs(*u) * w->S[k * w->n + a];
+    }
+  }
+  return (Size){part, work > 0 ? sqrt(work / whole) : 0};
+}
+
+/* Whether the next correction would be lost in rounding: a fresh matrix squares errors, an old one shrinks them as before.
+ * Or whether corrections have stopped to shrink, being rounding themselves. */
+static int is_settled(Size now, Size before, int fresh, int turn)
+{
+  double next = fresh ? 1000 * now.part * now.part : now.part * (now.part / before.part);
+
+  if (now.part == 0.0 || (next <= DBL_EPSILON / 16 && (fresh || now.part < before.part))) {
+    return 1;
+  }
+  return turn > 0 && now.power >= before.power / 2 && now.power <= 1e-8;
+}
+
+static int gave_up(const lag_discrete *d, const Parts *w)
+{
+  double worst = 0;
+
+  for (int j = 0; j < w->m; j++) {
+    worst = fmax(worst, w->R[j] == 0.0 ? 0 : fabs(w->R[j]) / w->S[j]);
+  }
+  snprintf(d->pb->words, sizeof d->pb->words,
+           "Newton's method did not converge in %d corrections, the residual is %.1g of its terms; take smaller steps, or radau or dop853",
+           MOST_CORRECTIONS, (double)worst);
+  d->pb->detail = d->pb->words;
+  return lag_step_failed(d->pb, LAG_EMETHOD, d->t);
+}
+
+int lag_discrete_solve(const lag_discrete *d)
+{
+  Parts w = layout(d);
+  Size before = {1, 1};
+  int settled = 0, rc;
+
+  d->pb->systems += d->counted;
+  for (int turn = 0; turn <= MOST_CORRECTIONS; turn++) {
+    if ((rc = residual(d, &w)) != 0 || settled) {
+      return rc;
+    }
+    int fresh = turn == 0 || before.part > 1e-3;
+    if (fresh && (rc = matrix(d, &w)) != 0) {
+      return rc;
+    }
+    Size now = correct(d, &w);
+    d->pb->iterations += d->counted;
+    settled = is_settled(now, before, fresh, turn);
+    before = now;
+  }
+  return gave_up(d, &w);
+}

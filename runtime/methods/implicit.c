@@ -1,0 +1,284 @@
+/* Symplectic steps in q and p for any L. Enters: t, y = [q|v]; leaves: t + h, y one step later. Holds: p is kept from step to
+ * step and v is found from it, dL/dv(q, v) = p; q, p and t are sums of many small terms, and are summed with compensation
+ * (steps.h). Between steps y is a path through both ends (path.h): accurate to the order of the method, and not symplectic. */
+#include "methods/implicit.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "methods/discrete.h"
+#include "methods/history.h"
+#include "methods/path.h"
+#include "methods/steps.h"
+
+/* One block of doubles; the arrays of x are in Arrays. */
+typedef struct Implicit {
+  double h;         /* the step, > 0 */
+  double ready;     /* p belongs to the present q and v */
+  double have_path; /* 1 made, -1 cannot be made, 0 not asked for yet */
+  double t0, dt;    /* the last step began at t0 and was dt long */
+  double tc;        /* what t has lost to rounding */
+  double order, links;
+  double part[2 * LAG_MAX_DRIFTS];
+  lag_rule rule[2], momentum;
+  double x[];
+} Implicit;
+
+/* q and p have lost qc and pc to rounding; dq, dp are the increments of this step, ql and pl both together. */
+typedef struct Arrays {
+  double *p, *qc, *pc, *dq, *dp, *ql, *pl, *v; /* [nq] */
+  double *y0, *y1, *f0, *f1;                   /* [n] both ends of the last step, f when it is asked for */
+  double *u, *force;                           /* [free nq], [points nq] */
+  double *history;                             /* of u in each link, then of v */
+  double *path, *discrete;
+} Arrays;
+
+static size_t history_size(const lag_problem *pb, const Implicit *w)
+{
+  return lag_history_size(pb->nq * (int)w->rule[0].free);
+}
+
+static Arrays arrays(Implicit *w, const lag_problem *pb)
+{
+  Arrays a;
+  double *x = w->x;
+  int nq = pb->nq, free = (int)w->rule[0].free;
+  double **const of_nq[] = {&a.p, &a.qc, &a.pc, &a.dq, &a.dp, &a.ql, &a.pl, &a.v};
+  double **const of_n[] = {&a.y0, &a.y1, &a.f0, &a.f1};
+
+  for (size_t i = 0; i < sizeof of_nq / sizeof *of_nq; i++, x += nq) {
+    *of_nq[i] = x;
+  }
+  for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++, x += pb->n) {
+    *of_n[i] = x;
+  }
+  a.u = x;
+  a.force = a.u + free * nq;
+  a.history = a.force + (free + 1) * nq;
+  a.path = a.history + (size_t)w->links * history_size(pb, w) + lag_history_size(nq);
+  a.discrete = a.path + lag_path_size(nq);
+  return a;
+}
+
+static size_t size_of(const lag_problem *pb, int free, int links)
+{
+  size_t nq = (size_t)pb->nq, m = nq * (size_t)free;
+
+  return sizeof(Implicit) / sizeof(double) + 8 * nq + 4 * (size_t)pb->n + 2 * m + nq +
+         (size_t)links * lag_history_size((int)m) + lag_history_size((int)nq) + lag_path_size((int)nq) +
+         lag_discrete_size(pb, free);
+}
+
+size_t lag_implicit_size(const lag_problem *pb, int free)
+{
+  return size_of(pb, free, 1);
+}
+
+size_t lag_implicit_composed_size(const lag_problem *pb, const lag_composition *c)
+{
+  return size_of(pb, 1, 2 * c->stages);
+}
+
+void lag_implicit_reset(void *work, lag_problem *pb)
+{
+  Implicit *w = work;
+
+  (void)pb;
+  w->ready = w->have_path = 0;
+  w->tc = 0;
+}
+
+void lag_implicit_init(void *work, lag_problem *pb, double h, int order, const lag_rule *rule)
+{
+  Implicit *w = work;
+
+  w->h = h;
+  w->order = order;
+  w->links = w->part[0] = 1;
+  w->rule[0] = *rule;
+  lag_rule_euler(&w->momentum, 0);
+  lag_implicit_reset(work, pb);
+}
+
+void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_composition *c)
+{
+  Implicit *w = work;
+  lag_rule rule;
+
+  lag_rule_euler(&rule, 0);
+  lag_implicit_init(work, pb, h, c->order, &rule);
+  lag_rule_euler(&w->rule[1], 1);
+  w->links = lag_compose_links(c, w->part);
+}
+
+/* p of the state y, with nothing known of the past. */
+static int begin(Implicit *w, const Arrays *a, lag_problem *pb, double t, const double *y)
+{
+  int nq = pb->nq;
+  size_t bytes = (size_t)nq * sizeof(double);
+  int rc = lag_variation(pb, t, y, y + nq, a->dq, a->p, a->dp);
+
+  if (rc) {
+    return lag_step_refused(pb, rc, t);
+  }
+  if ((pb->bad_index = lag_not_finite(nq, a->p)) >= 0) {
+    pb->bad_index += nq;
+    return lag_step_failed(pb, LAG_ENAN, t);
+  }
+  memset(a->qc, 0, bytes);
+  memset(a->pc, 0, bytes);
+  memset(a->history, 0, (size_t)(a->path - a->history) * sizeof(double));
+  w->ready = 1;
+  return LAG_OK;
+}
+
+/* u := velocities on a straight line through the present one, at the nodes of link k, which begins at `at` of the step. */
+static int straight(const Implicit *w, const Arrays *a, lag_problem *pb, double t, const double *y, double dt, int k, double at)
+{
+  const lag_rule *r = &w->rule[k % 2];
+  int nq = pb->nq, rc = lag_step_rhs(pb, t, y, a->f1);
+
+  for (int j = 0; j < (int)r->free && rc == 0; j++) {
+    for (int i = 0; i < nq; i++) {
+      a->u[j * nq + i] = y[nq + i] + dt * (at + w->part[k] * r->node[j]) * a->f1[nq + i];
+    }
+  }
+  return rc;
+}
+
+/* ql, pl: what is to be added to q and p where the step is now. */
+static void gather(const Arrays *a, int nq)
+{
+  for (int i = 0; i < nq; i++) {
+    a->ql[i] = a->qc[i] + a->dq[i];
+    a->pl[i] = a->pc[i] + a->dp[i];
+  }
+}
+
+/* Link k, which begins at `at` of the step: its velocities and forces, and what they add to q and p. */
+static int link(const Implicit *w, const Arrays *a, lag_problem *pb, double t, const double *y, double dt, int k, double at)
+{
+  const lag_rule *r = &w->rule[k % 2];
+  int nq = pb->nq, m = nq * (int)r->free, rc = LAG_EMETHOD;
+  double *history = a->history + (size_t)k * history_size(pb, w), h = w->part[k] * dt;
+  lag_discrete d = {.rule = r, .pb = pb, .t = t + at * dt, .h = h, .size = w->h, .q = y, .dq = a->ql, .p = a->p,
+                    .dp = a->pl, .u = a->u, .force = a->force, .work = a->discrete, .counted = 1};
+
+  gather(a, nq);
+  if (lag_history_guess(history, m, a->u)) {
+    rc = lag_discrete_solve(&d);
+  }
+  if (rc != 0 && (rc = straight(w, a, pb, t, y, dt, k, at)) == 0) {
+    rc = lag_discrete_solve(&d);
+  }
+  if (rc) {
+    return rc;
+  }
+  pb->detail = NULL;
+  lag_history_add(history, m, a->u);
+  for (int i = 0; i < nq; i++) {
+    for (int j = 0; j < (int)r->free; j++) {
+      a->dq[i] += h * (r->whole[j] * a->u[j * nq + i]);
+    }
+    for (int j = 0; j < (int)r->points; j++) {
+      a->dp[i] += h * (r->b[j] * a->force[j * nq + i]);
+    }
+  }
+  return LAG_OK;
+}
+
+/* v at the end of the step, into the second half of y1: dL/dv(q, v) = p. */
+static int velocity(const Implicit *w, const Arrays *a, lag_problem *pb, double tb, const double *y)
+{
+  int nq = pb->nq;
+  double *history = a->history + (size_t)w->links * history_size(pb, w);
+  lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = tb, .h = 0, .size = w->h, .q = y, .dq = a->ql, .p = a->p,
+                    .dp = a->pl, .u = a->v, .force = a->force, .work = a->discrete};
+
+  gather(a, nq);
+  if (!lag_history_guess(history, nq, a->v)) {
+    memcpy(a->v, a->u, (size_t)nq * sizeof(double));
+  }
+  int rc = lag_discrete_solve(&d);
+  if (rc == 0) {
+    lag_history_add(history, nq, a->v);
+  }
+  return rc;
+}
+
+/* Takes the step that the increments make. */
+static void accept(Implicit *w, const Arrays *a, lag_problem *pb, double *y)
+{
+  int nq = pb->nq;
+
+  memcpy(a->y0, y, (size_t)pb->n * sizeof(double));
+  for (int i = 0; i < nq; i++) {
+    y[i] = lag_sum(y[i], a->dq[i], &a->qc[i]);
+    a->p[i] = lag_sum(a->p[i], a->dp[i], &a->pc[i]);
+    y[nq + i] = a->v[i];
+  }
+  memcpy(a->y1, y, (size_t)pb->n * sizeof(double));
+  w->have_path = 0;
+}
+
+int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y)
+{
+  Implicit *w = work;
+  Arrays a = arrays(w, pb);
+  int rc;
+  double dt = w->h * pb->dir, tc = w->tc, tb = lag_sum(*t, dt, &tc), at = 0;
+
+  pb->bad_index = -1;
+  if (tb == *t) {
+    return lag_step_failed(pb, LAG_ESTEP, *t);
+  }
+  if (w->ready == 0.0 && (rc = begin(w, &a, pb, *t, y)) != 0) {
+    return rc;
+  }
+  memset(a.dq, 0, (size_t)pb->nq * sizeof(double));
+  memset(a.dp, 0, (size_t)pb->nq * sizeof(double));
+  for (int k = 0; k < (int)w->links; k++) {
+    if ((rc = link(w, &a, pb, *t, y, dt, k, at)) != 0) {
+      return rc;
+    }
+    at += w->part[k];
+  }
+  if ((rc = velocity(w, &a, pb, tb, y)) != 0) {
+    return rc;
+  }
+  accept(w, &a, pb, y);
+  w->t0 = *t;
+  w->dt = tb - *t;
+  w->tc = tc;
+  *t = tb;
+  return LAG_OK;
+}
+
+/* The path through the last step: its accelerations are those of the model, which depend on velocities here, so that each
+ * level takes two passes. */
+static int make_path(const Implicit *w, const Arrays *a, lag_problem *pb, const StepEnds *e, int level)
+{
+  if (lag_rhs(pb, w->t0, a->y0, a->f0) || lag_rhs(pb, w->t0 + w->dt, a->y1, a->f1) || lag_not_finite(pb->n, a->f0) >= 0 ||
+      lag_not_finite(pb->n, a->f1) >= 0) {
+    return -2;
+  }
+  return level == 0 || lag_path_make(a->path, pb, e, level, 2) == 0 ? 1 : -1;
+}
+
+void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y)
+{
+  Implicit *w = work;
+  Arrays a = arrays(w, pb);
+  StepEnds ends = {w->t0, w->dt, a.y0, a.f0, a.y1, a.f1};
+  int level = w->order > 6 ? 2 : w->order > 4 ? 1 : 0;
+  double s = (t - w->t0) / w->dt;
+
+  if (w->have_path == 0.0 && w->order > 1) {
+    w->have_path = make_path(w, &a, pb, &ends, level);
+  }
+  if (w->order < 2 || w->have_path < -1) {
+    lag_path_cubic(pb->nq, &ends, s, y);
+  } else {
+    lag_path_at(a.path, pb, &ends, w->have_path > 0 ? level : 0, s, y);
+  }
+}

@@ -1,0 +1,23 @@
+/* Symplectic methods for any L, in q and p: a step is a chain of discrete Lagrangians (rule.h), each solved by Newton's
+ * method (discrete.h). */
+#ifndef LAG_METHODS_IMPLICIT_H
+#define LAG_METHODS_IMPLICIT_H
+
+#include "lag.h"
+#include "methods/composition.h"
+#include "methods/rule.h"
+
+/* Doubles of work for one rule, or for symplectic Euler and its adjoint composed. */
+size_t lag_implicit_size(const lag_problem *pb, int free);
+size_t lag_implicit_composed_size(const lag_problem *pb, const lag_composition *c);
+
+/* Steps of size h by one rule of this order, or by a composition. */
+void lag_implicit_init(void *work, lag_problem *pb, double h, int order, const lag_rule *rule);
+void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_composition *c);
+
+/* As lag_method says. Forces enter by the discrete Lagrange-d'Alembert principle at the points of the rules. */
+void lag_implicit_reset(void *work, lag_problem *pb);
+int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y);
+void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y);
+
+#endif

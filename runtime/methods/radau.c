@@ -1,0 +1,567 @@
+/* radau: Radau IIA of order 5, implicit and L-stable, with adaptive steps and the exact Jacobian that the compiler emits: for
+ * stiff models. Enters: t, y; leaves: the next accepted t, y. Holds: a rejected step leaves t, y as they were; f at the end of
+ * a step is that of the next one's beginning; the Jacobian and its factors are kept while Newton's method contracts well.
+ *
+ * Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), DOI 10.1007/978-3-642-05221-7,
+ * IV.8 and code RADAU5: simplified Newton iteration in coordinates in which the Butcher matrix is one real and one complex
+ * number, when it stops, start values from the last collocation polynomial, error estimate with a second try after a rejected
+ * step, predictive step control (K. Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496, DOI 10.1145/198429.198437). The
+ * tolerances are transformed as there, 0.1 tol^(2/3): the estimate has order 3. Dense output: the collocation polynomial. */
+#include "lag.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "methods/band.h"
+#include "methods/control.h"
+#include "methods/embedded.h"
+#include "methods/steps.h"
+
+enum { MOST_CORRECTIONS = 7, MOST_WHEN_FIXED = 30, STAGES = 3 };
+
+/* Why a step cannot be accepted, beside LAG_ERETRY: the model left its domain. */
+enum { REJECTED = LAG_ERETRY + 1, DIVERGED };
+
+static const double safety = 0.9, shrink_most = 0.2, grow_most = 8;
+static const double contracts_well = 1e-3; /* Newton's method: the Jacobian is kept */
+static const double keep_least = 1, keep_most = 1.2; /* a step that would grow by so little stays, with its factors */
+
+/* The method: nodes, the eigenvalues of the inverse of its matrix, and its eigenvectors T. */
+static const double node[STAGES] = {0.15505102572168219018027159252941, 0.64494897427831780981972840747059, 1};
+static const double real_eigenvalue = 3.6378342527444957322084185135777;
+static const double eigenvalue[2] = {2.6810828736277521338957907432111, 3.0504301992474105694263776247876};
+static const double T[STAGES][STAGES] = {
+    {9.1232394870892942792e-02, -0.14125529502095420843, -3.0029194105147424492e-02},
+    {0.24171793270710701896, 0.20412935229379993199, 0.38294211275726193779},
+    {0.96604818261509293619, 1, 0}};
+static const double inverse_T[STAGES][STAGES] = {
+    {4.3255798900631553510, 0.33919925181580986954, 0.54177053993587487119},
+    {-4.1787185915519047273, -0.32768282076106238708, 0.47662355450055045196},
+    {-0.50287263494578687595, 2.5719269498556054292, -0.59603920482822492497}};
+/* The error: these of z over h, and f, through the real factor. (-13 -+ 7 sqrt 6)/3, -1/3. */
+static const double error_weight[STAGES] = {-10.048809399827415562460329507647, 1.3821427331607488957936628409804, -1.0 / 3};
+
+/* One block of doubles; the arrays of x are in Arrays. */
+typedef struct Radau {
+  double h;            /* the next step to try, > 0; 0: not chosen yet */
+  double h_option, h_max, rtol, atol;
+  double fixed;        /* 1: every step has the size h */
+  double ready;        /* F0 = f(t, y) is known */
+  double jacobian_age; /* 0 none, 1 of this y, 2 of an earlier one */
+  double factored;     /* the h, with its sign, that the factors are of; 0: none */
+  double have_path;    /* the collocation polynomial of the last step is there to start from */
+  double rate, unsettled; /* of the last Newton iteration: its contraction, and that over what it lacks to 1 */
+  double h_accepted, err_accepted; /* of the last accepted step; 0: none */
+  double again;        /* the last try was rejected */
+  double t0, dt;       /* the last step */
+  double tc;           /* what t has lost to rounding */
+  double t_begin, begun;
+  double x[];
+} Radau;
+
+typedef struct Arrays {
+  double *f0, *y0, *y1, *comp, *comp1, *scale, *ys, *fs, *err; /* [n] */
+  double *z, *w, *dw, *path;     /* [3 n] stages minus y, the same by T, its correction, the collocation polynomial */
+  double *jacobian;              /* [(nq + nz) n] */
+  double *row;                   /* [2 n] scratch */
+  double *linear;                /* scratch of lag_jacobian */
+  lag_band real, complex;        /* (gamma/h - J), (alpha/h - J, -beta/h; beta/h, alpha/h - J) */
+} Arrays;
+
+static Arrays arrays(Radau *w, const lag_problem *pb)
+{
+  Arrays a;
+  size_t n = (size_t)pb->n;
+  double *x = w->x;
+  double **const of_n[] = {&a.f0, &a.y0, &a.y1, &a.comp, &a.comp1, &a.scale, &a.ys, &a.fs, &a.err, &a.real.pivot};
+  double **const of_3n[] = {&a.z, &a.w, &a.dw, &a.path};
+
+  for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++, x += n) {
+    *of_n[i] = x;
+  }
+  for (size_t i = 0; i < sizeof of_3n / sizeof *of_3n; i++, x += STAGES * n) {
+    *of_3n[i] = x;
+  }
+  a.jacobian = x;
+  a.row = a.jacobian + (size_t)(pb->nq + pb->nz) * n;
+  a.complex.pivot = a.row + 2 * n;
+  a.real.a = a.complex.pivot + 2 * n;
+  a.complex.a = a.real.a + n * n;
+  a.linear = a.complex.a + 4 * n * n;
+  a.real.n = pb->n;
+  a.complex.n = 2 * pb->n;
+  a.real.band = pb->n - 1;
+  a.complex.band = 2 * pb->n - 1;
+  return a;
+}
+
+static size_t work_size(const lag_problem *pb)
+{
+  size_t n = (size_t)pb->n;
+
+  return sizeof(Radau) / sizeof(double) + (10 + 4 * STAGES + 4) * n + (size_t)(pb->nq + pb->nz) * n + 5 * n * n +
+         lag_linear_work(pb->model);
+}
+
+static void reset(void *work, lag_problem *pb)
+{
+  Radau *w = work;
+
+  w->h = w->h_option;
+  w->ready = w->jacobian_age = w->factored = w->have_path = w->h_accepted = w->again = w->tc = 0;
+  w->rate = 1;
+  w->unsettled = 1;
+  memset(arrays(w, pb).comp, 0, (size_t)pb->n * sizeof(double));
+}
+
+static int init(void *work, lag_problem *pb, const double *opt)
+{
+  Radau *w = work;
+  double atol = opt[2] > 0 ? opt[2] : pb->tol;
+
+  w->fixed = opt[3];
+  w->h_option = w->fixed != 0.0 ? lag_step_size(pb, opt[0]) : opt[0];
+  w->h_max = opt[1] > 0 ? opt[1] : pb->span / 10;
+  w->rtol = 0.1 * cbrt(pb->tol * pb->tol);
+  w->atol = w->rtol * (atol / pb->tol);
+  reset(work, pb);
+  return LAG_OK;
+}
+
+/* ---- The linear equations */
+
+/* df/dy at (t, y), as gamma - J goes into both matrices. */
+static int take_jacobian(Radau *w, const Arrays *a, lag_problem *pb, double t, const double *y)
+{
+  int rc = lag_jacobian(pb, t, y, a->jacobian, a->linear);
+
+  if (rc) {
+    return lag_step_refused(pb, rc, t);
+  }
+  w->jacobian_age = 1;
+  w->factored = 0;
+  return LAG_OK;
+}
+
+/* m := diag(c) - J in rows and columns from `at` on. */
+static void put_minus_jacobian(const Arrays *a, const lag_problem *pb, const lag_band *m, int at, double c)
+{
+  int n = pb->n, nq = pb->nq;
+
+  for (int i = 0; i < n; i++) {
+    double *row = lag_band_at(m, at + i, at);
+    const double *j = i < nq ? NULL : a->jacobian + (i - nq) * n;
+    for (int k = 0; k < n; k++) {
+      row[k] = (i == k ? c : 0) - (j ? j[k] : k == nq + i);
+    }
+  }
+}
+
+/* Both matrices for steps of h, factored. -1: singular. */
+static int factor(Radau *w, Arrays *a, const lag_problem *pb, double h)
+{
+  int n = pb->n;
+
+  put_minus_jacobian(a, pb, &a->real, 0, real_eigenvalue / h);
+  memset(a->complex.a, 0, (size_t)(4 * n * n) * sizeof(double));
+  put_minus_jacobian(a, pb, &a->complex, 0, eigenvalue[0] / h);
+  put_minus_jacobian(a, pb, &a->complex, n, eigenvalue[0] / h);
+  for (int i = 0; i < n; i++) {
+    *lag_band_at(&a->complex, i, n + i) = -eigenvalue[1] / h;
+    *lag_band_at(&a->complex, n + i, i) = eigenvalue[1] / h;
+  }
+  w->factored = 0;
+  if (lag_band_factor(&a->real, a->row) || lag_band_factor(&a->complex, a->row)) {
+    return -1;
+  }
+  w->factored = h;
+  return 0;
+}
+
+/* out := M in, by stages. */
+static void mix(const double (*m)[STAGES], int n, const double *in, double *out)
+{
+  for (int i = 0; i < n; i++) {
+    for (int s = 0; s < STAGES; s++) {
+      out[s * n + i] = m[s][0] * in[i] + m[s][1] * in[n + i] + m[s][2] * in[2 * n + i];
+    }
+  }
+}
+
+/* ---- Newton's method */
+
+/* z: the last collocation polynomial, continued; or no motion. */
+static void guess(const Radau *w, const Arrays *a, int n, double dt)
+{
+  memset(a->z, 0, (size_t)(STAGES * n) * sizeof(double));
+  for (int s = 0; s < STAGES && w->have_path != 0.0; s++) {
+    double c = node[s] * dt / w->dt;
+    for (int i = 0; i < n; i++) {
+      a->z[s * n + i] = c * (a->path[i] + (c - (node[1] - 1)) * (a->path[n + i] + (c - (node[0] - 1)) * a->path[2 * n + i]));
+    }
+  }
+  mix(inverse_T, n, a->z, a->w);
+}
+
+/* f at the stages into dw. > 0: a smaller step may help. */
+static int stages(const Arrays *a, lag_problem *pb, double t, const double *y, double dt)
+{
+  int n = pb->n;
+
+  for (int s = 0; s < STAGES; s++) {
+    for (int i = 0; i < n; i++) {
+      a->ys[i] = y[i] + (a->comp[i] + a->z[s * n + i]);
+    }
+    int rc = lag_rhs(pb, t + node[s] * dt, a->ys, a->dw + s * n);
+    if (rc) {
+      pb->bad_t = t + node[s] * dt;
+      return rc < -1 ? LAG_EMODEL : rc;
+    }
+    if ((pb->bad_index = lag_not_finite(n, a->dw + s * n)) >= 0) {
+      pb->bad_t = t + node[s] * dt;
+      return LAG_ERETRY;
+    }
+  }
+  return LAG_OK;
+}
+
+/* One correction: dw, added to w; z follows. Returns its size against the tolerance. */
+static double correct(const Arrays *a, int n, double h)
+{
+  double g = real_eigenvalue / h, re = eigenvalue[0] / h, im = eigenvalue[1] / h, sum = 0;
+
+  for (int i = 0; i < n; i++) {
+    double f[STAGES] = {a->dw[i], a->dw[n + i], a->dw[2 * n + i]}, r[STAGES];
+    for (int s = 0; s < STAGES; s++) {
+      r[s] = inverse_T[s][0] * f[0] + inverse_T[s][1] * f[1] + inverse_T[s][2] * f[2];
+    }
+    a->dw[i] = r[0] - g * a->w[i];
+    a->dw[n + i] = r[1] - (re * a->w[n + i] - im * a->w[2 * n + i]);
+    a->dw[2 * n + i] = r[2] - (re * a->w[2 * n + i] + im * a->w[n + i]);
+  }
+  lag_band_solve(&a->real, a->dw);
+  lag_band_solve(&a->complex, a->dw + n);
+  for (int i = 0; i < STAGES * n; i++) {
+    double e = a->dw[i] / a->scale[i % n];
+    a->w[i] += a->dw[i];
+    sum += e * e;
+  }
+  mix(T, n, a->w, a->z);
+  return sqrt(sum / (STAGES * n));
+}
+
+/* What became of an iteration. */
+typedef struct Outcome {
+  int rc;          /* LAG_ERETRY, DIVERGED: a step smaller by `shrink` may converge; < 0: it failed for good */
+  double shrink;
+  int corrections;
+} Outcome;
+
+static Outcome newton(Radau *w, const Arrays *a, lag_problem *pb, double t, const double *y, double dt)
+{
+  double goal = fmax(10 * DBL_EPSILON / w->rtol, fmin(0.03, sqrt(w->rtol))), last = 0, last_rate = 0;
+  Outcome o = {0, 0.5, 0};
+
+  w->unsettled = pow(fmax(w->unsettled, DBL_EPSILON), 0.8);
+  w->rate = contracts_well;
+  pb->systems++;
+  while (o.corrections < (w->fixed != 0.0 ? MOST_WHEN_FIXED : MOST_CORRECTIONS)) {
+    if ((o.rc = stages(a, pb, t, y, dt)) != 0) {
+      return o;
+    }
+    double size = correct(a, pb->n, dt);
+    o.corrections++;
+    pb->iterations++;
+    if (!isfinite(size)) {
+      break;
+    }
+    if (o.corrections > 1) {
+      double rate = size / last;
+      w->rate = o.corrections == 2 ? rate : sqrt(rate * last_rate);
+      last_rate = rate;
+      if (w->rate >= 0.99) {
+        if (size <= goal) { /* it is rounding that does not shrink */
+          w->rate = contracts_well;
+          return o;
+        }
+        break;
+      }
+      w->unsettled = w->rate / (1 - w->rate);
+      int left = MOST_CORRECTIONS - 1 - o.corrections;
+      double end = w->unsettled * size * pow(w->rate, left) / goal; /* what the last correction would leave */
+      if (end >= 1 && w->fixed == 0.0) {
+        o.shrink = 0.8 * pow(fmax(1e-4, fmin(20, end)), -1.0 / (4 + left));
+        break;
+      }
+    }
+    last = fmax(size, DBL_EPSILON);
+    if (w->unsettled * size <= goal) {
+      return o;
+    }
+  }
+  o.rc = DIVERGED;
+  return o;
+}
+
+/* ---- The error, and the step size that follows from it */
+
+/* err := (gamma/h - J)^-1 (f + the weights of z over h), its norm. */
+static double estimate(const Arrays *a, const lag_problem *pb, const double *f, double dt)
+{
+  int n = pb->n;
+  double s = 0;
+
+  for (int i = 0; i < n; i++) {
+    a->err[i] = f[i];
+    for (int k = 0; k < STAGES; k++) {
+      a->err[i] += error_weight[k] / dt * a->z[k * n + i];
+    }
+  }
+  lag_band_solve(&a->real, a->err);
+  for (int i = 0; i < n; i++) {
+    double e = a->err[i] / a->scale[i];
+    s += e * e;
+  }
+  return fmax(sqrt(s / n), 1e-10);
+}
+
+/* The estimate, and where it is large because the past was not smooth a second one, which is damped where f is stiff. */
+static double error_of(const Radau *w, const Arrays *a, lag_problem *pb, double t, const double *y, double dt)
+{
+  double err = estimate(a, pb, a->f0, dt);
+
+  if (!(err >= 1) || !(w->h_accepted == 0.0 || w->again != 0.0)) {
+    return err;
+  }
+  for (int i = 0; i < pb->n; i++) {
+    a->ys[i] = y[i] + a->err[i];
+  }
+  if (lag_rhs(pb, t, a->ys, a->fs) || lag_not_finite(pb->n, a->fs) >= 0) {
+    return err;
+  }
+  return estimate(a, pb, a->fs, dt);
+}
+
+/* By how much the step should shrink for this error, found with so many corrections. */
+static double quotient(const Radau *w, double err, int corrections, int accepted)
+{
+  double slow = fmin(safety, safety * (1 + 2 * MOST_CORRECTIONS) / (corrections + 2 * MOST_CORRECTIONS));
+  double quot = fmax(1 / grow_most, fmin(1 / shrink_most, sqrt(sqrt(err)) / slow));
+
+  if (accepted && w->h_accepted > 0) {
+    double seen = w->h_accepted / w->h * sqrt(sqrt(err * err / w->err_accepted)) / safety;
+    quot = fmax(quot, fmax(1 / grow_most, fmin(1 / shrink_most, seen)));
+  }
+  return quot;
+}
+
+/* The next step after an accepted one; keeps h where that saves factors. */
+static void next_size(Radau *w, double quot, double err)
+{
+  double h = w->h / quot;
+
+  w->h_accepted = w->h;
+  w->err_accepted = fmax(1e-2, err);
+  if (w->again != 0.0) {
+    h = fmin(h, w->h);
+  }
+  w->again = 0;
+  int well = w->rate <= contracts_well, same = h >= keep_least * w->h && h <= keep_most * w->h;
+  w->jacobian_age = well ? 2 : 0;
+  if (!(well && same)) {
+    w->h = h;
+  }
+}
+
+/* ---- A step */
+
+/* The collocation polynomial by its divided differences from the end of the step: code RADAU5, CONT. */
+static void remember(const Arrays *a, int n)
+{
+  double c1 = node[0], c2 = node[1];
+
+  for (int i = 0; i < n; i++) {
+    double z1 = a->z[i], z2 = a->z[n + i], z3 = a->z[2 * n + i], k = (z1 - z2) / (c1 - c2);
+    a->path[i] = (z2 - z3) / (c2 - 1);
+    a->path[n + i] = (k - a->path[i]) / (c1 - 1);
+    a->path[2 * n + i] = a->path[n + i] - (k - z1 / c1) / c2;
+  }
+}
+
+static void accept(Radau *w, const Arrays *a, lag_problem *pb, double *t, double *y, double dt, double tb, double tc)
+{
+  size_t bytes = (size_t)pb->n * sizeof(double);
+
+  remember(a, pb->n);
+  memcpy(a->y0, y, bytes);
+  memcpy(y, a->y1, bytes);
+  memcpy(a->comp, a->comp1, bytes);
+  memcpy(a->f0, a->fs, bytes);
+  w->have_path = 1;
+  w->t0 = *t;
+  w->dt = dt;
+  w->tc = tc;
+  *t = tb;
+}
+
+/* y1 and f there into fs. > 0: a smaller step may help. */
+static int finish(const Arrays *a, lag_problem *pb, double tb, const double *y)
+{
+  int n = pb->n;
+
+  for (int i = 0; i < n; i++) {
+    a->comp1[i] = a->comp[i];
+    a->y1[i] = lag_sum(y[i], a->z[2 * n + i], &a->comp1[i]);
+  }
+  int rc = lag_rhs(pb, tb, a->y1, a->fs);
+  if (rc || (pb->bad_index = lag_not_finite(n, a->fs)) >= 0) {
+    pb->bad_t = tb;
+    return rc < -1 ? LAG_EMODEL : rc ? rc : LAG_ERETRY;
+  }
+  return LAG_OK;
+}
+
+/* f at the beginning, what errors are compared with, and a step to try. */
+static int prepare(Radau *w, const Arrays *a, lag_problem *pb, double t, const double *y)
+{
+  lag_tolerance tol = {w->atol, w->rtol};
+  int rc = w->ready != 0.0 ? 0 : lag_step_rhs(pb, t, y, a->f0);
+
+  if (rc) {
+    return rc;
+  }
+  w->ready = 1;
+  for (int i = 0; i < pb->n; i++) {
+    a->scale[i] = w->atol + w->rtol * fabs(y[i]);
+  }
+  if (w->begun == 0.0) {
+    w->begun = 1;
+    w->t_begin = t;
+  }
+  if (w->h == 0.0) {
+    w->h = lag_first_step(pb, &tol, 5, w->h_max, t, y, a->f0, a->ys, a->fs);
+  }
+  return LAG_OK;
+}
+
+/* The limit on steps: the option, or else what has been seen of the motion so far. */
+static double longest(const Radau *w, double t)
+{
+  double seen = fabs(t - w->t_begin);
+
+  return w->fixed != 0.0 ? w->h_option : w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
+}
+
+/* Ends an accepted step, and chooses the next. */
+static int conclude(Radau *w, const Arrays *a, lag_problem *pb, double tb, const double *y, double err, int corrections)
+{
+  int rc = finish(a, pb, tb, y);
+
+  if (rc) {
+    w->h /= 2;
+  } else if (w->fixed != 0.0) {
+    w->jacobian_age = 0;
+  } else {
+    next_size(w, quotient(w, err, corrections, 1), err);
+  }
+  return rc;
+}
+
+/* One try of a step of dt. 0: it can be accepted. > 0: not, and w->h is what to try next. */
+static int attempt(Radau *w, Arrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)
+{
+  int rc = w->jacobian_age == 0.0 ? take_jacobian(w, a, pb, t, y) : 0;
+
+  if (rc) {
+    return rc;
+  }
+  if (w->factored != dt && factor(w, a, pb, dt)) {
+    w->h /= 2;
+    return DIVERGED;
+  }
+  guess(w, a, pb->n, dt);
+  Outcome o = newton(w, a, pb, t, y, dt);
+  if (o.rc) {
+    w->h *= o.shrink;
+    return o.rc;
+  }
+  double err = w->fixed != 0.0 ? 0 : error_of(w, a, pb, t, y, dt);
+  if (err < 1) {
+    return conclude(w, a, pb, tb, y, err, o.corrections);
+  }
+  w->h = w->h_accepted == 0.0 ? 0.1 * w->h : w->h / (isfinite(err) ? quotient(w, err, o.corrections, 0) : 2);
+  return REJECTED;
+}
+
+/* Why no step was small enough, or the one step size did not do. */
+static int gave_up(const Radau *w, lag_problem *pb, double t, int why)
+{
+  if (why == LAG_ERETRY) {
+    return pb->bad_index >= 0 ? LAG_ENAN : LAG_EDOMAIN; /* bad_t is set */
+  }
+  if (why == DIVERGED) {
+    pb->detail = w->fixed != 0.0 ? "Newton's method did not converge; take smaller steps, or leave out adapt=off"
+                                 : "Newton's method does not converge, however small the step";
+  }
+  return lag_step_failed(pb, why == DIVERGED ? LAG_EMETHOD : LAG_ESTEP, t);
+}
+
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
+{
+  Radau *w = work;
+  Arrays a = arrays(w, pb);
+  int rc = prepare(w, &a, pb, *t, y), why = REJECTED;
+
+  (void)t_stop;
+  while (rc == 0) {
+    w->h = fmin(w->h, longest(w, *t));
+    double dt = pb->dir * w->h, tc = w->tc, tb = lag_sum(*t, dt, &tc);
+    if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) {
+      return gave_up(w, pb, *t, why);
+    }
+    pb->bad_index = -1;
+    why = attempt(w, &a, pb, *t, tb, y, dt);
+    if (why == 0) {
+      accept(w, &a, pb, t, y, dt, tb, tc);
+      return LAG_OK;
+    }
+    if (why < 0) {
+      return why;
+    }
+    if (w->fixed != 0.0) {
+      return gave_up(w, pb, *t, why);
+    }
+    w->jacobian_age = w->jacobian_age == 1.0 ? 1 : 0;
+    w->again = 1;
+    pb->rejected++;
+  }
+  return rc;
+}
+
+static void dense(void *work, lag_problem *pb, double t, double *y)
+{
+  Radau *w = work;
+  Arrays a = arrays(w, pb);
+  int n = pb->n;
+  double s = (t - (w->t0 + w->dt)) / w->dt;
+
+  for (int i = 0; i < n; i++) {
+    y[i] = a.y1[i] + s * (a.path[i] + (s - (node[1] - 1)) * (a.path[n + i] + (s - (node[0] - 1)) * a.path[2 * n + i]));
+  }
+}
+
+const lag_method lag_radau = {
+    .name = "radau",
+    .order = 5,
+    .dense_order = 3,
+    .doc = "Radau IIA with the exact Jacobian, for stiff models. DOI 10.1007/978-3-642-05221-7, IV.8",
+    .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_NEWTON | LAG_METHOD_JACOBIAN,
+    .noptions = EMBEDDED_NOPTIONS,
+    .options = lag_embedded_options,
+    .work_size = work_size,
+    .init = init,
+    .step = step,
+    .dense = dense,
+    .reset = reset,
+};

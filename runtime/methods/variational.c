@@ -1,0 +1,115 @@
+/* variational and gauss: discrete mechanics from one discrete Lagrangian a step, of order 2, 4, 6 or 8. Enters: t, y; leaves:
+ * t + h, y one step later. Holds: the map is symplectic in q and dL/dv and symmetric for any L; a momentum that a symmetry
+ * conserves is conserved to rounding where the symmetry moves q affinely. Forces enter by the discrete Lagrange-d'Alembert
+ * principle. Steps: implicit.c; the tables and their sources: rule.h. */
+#include "lag.h"
+#include "methods/implicit.h"
+#include "methods/steps.h"
+
+enum { OPT_STEP, OPT_QUADRATURE, OPT_ORDER };
+enum { OPT_STAGES = 1 };
+enum { GAUSS, LOBATTO, MIDPOINT, TRAPEZOID };
+
+static const char *const quadratures[] = {"gauss", "lobatto", "midpoint", "trapezoid", NULL};
+
+static const lag_method_option variational_options[] = {
+    LAG_STEP_OPTION,
+    {"quadrature", "gauss, lobatto; of order 2 they are midpoint, trapezoid", 0, 0, 3, quadratures},
+    {"order", "2, 4, 6 or 8", 2, 2, 8, NULL},
+};
+
+static const lag_method_option gauss_options[] = {
+    LAG_STEP_OPTION,
+    {"stages", "1, 2, 3 or 4: order 2, 4, 6, 8", 2, 1, 4, NULL},
+};
+
+static const char *variational_check(const double *opt)
+{
+  double u = opt[OPT_ORDER] / 2;
+
+  if (u != (int)u) {
+    return "order: write 2, 4, 6 or 8";
+  }
+  if (opt[OPT_QUADRATURE] >= MIDPOINT && u > 1) {
+    return opt[OPT_QUADRATURE] == MIDPOINT ? "the midpoint rule has order 2; write quadrature=gauss"
+                                           : "the trapezoidal rule has order 2; write quadrature=lobatto";
+  }
+  return NULL;
+}
+
+static int variational_init(void *work, lag_problem *pb, const double *opt)
+{
+  int quadrature = (int)opt[OPT_QUADRATURE], u = (int)(opt[OPT_ORDER] / 2);
+  lag_rule rule;
+
+  if (quadrature == LOBATTO || quadrature == TRAPEZOID) {
+    lag_rule_lobatto(&rule, u);
+  } else {
+    lag_rule_gauss(&rule, u);
+  }
+  lag_implicit_init(work, pb, lag_step_size(pb, opt[OPT_STEP]), 2 * u, &rule);
+  return LAG_OK;
+}
+
+static const char *gauss_check(const double *opt)
+{
+  return opt[OPT_STAGES] != (int)opt[OPT_STAGES] ? "stages: write 1, 2, 3 or 4" : NULL;
+}
+
+static int gauss_init(void *work, lag_problem *pb, const double *opt)
+{
+  int u = (int)opt[OPT_STAGES];
+  lag_rule rule;
+
+  lag_rule_gauss(&rule, u);
+  lag_implicit_init(work, pb, lag_step_size(pb, opt[OPT_STEP]), 2 * u, &rule);
+  return LAG_OK;
+}
+
+static size_t variational_size(const lag_problem *pb)
+{
+  return lag_implicit_size(pb, (int)(pb->opt[OPT_ORDER] / 2));
+}
+
+static size_t gauss_size(const lag_problem *pb)
+{
+  return lag_implicit_size(pb, (int)pb->opt[OPT_STAGES]);
+}
+
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
+{
+  (void)t_stop;
+  return lag_implicit_step(work, pb, t, y);
+}
+
+#define COMMON                                                                                        \
+  .order_least = 2, .order_most = 8,                                                                  \
+  .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | \
+           LAG_METHOD_NEWTON,                                                                         \
+  .step = step, .dense = lag_implicit_dense, .reset = lag_implicit_reset
+
+const lag_method lag_variational = {
+    .name = "variational",
+    .order = 2,
+    .dense_order = 2,
+    .doc = "discrete Lagrangian, Newton's method. DOI 10.1017/S096249290100006X",
+    .noptions = 3,
+    .options = variational_options,
+    .check = variational_check,
+    .work_size = variational_size,
+    .init = variational_init,
+    COMMON,
+};
+
+const lag_method lag_gauss = {
+    .name = "gauss",
+    .order = 4,
+    .dense_order = 4,
+    .doc = "Gauss collocation in q and p, Newton's method. DOI 10.1007/3-540-30666-8, VI.4 and VI.6",
+    .noptions = 2,
+    .options = gauss_options,
+    .check = gauss_check,
+    .work_size = gauss_size,
+    .init = gauss_init,
+    COMMON,
+};

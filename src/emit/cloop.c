@@ -1,0 +1,297 @@
+/* Loops of a program as loops in C.
+ *
+ * Inside, a value is a `const` of its turn. What other turns, other loops or the code behind need is kept
+ * in a local array, one element a turn, with room in front for what the first turns take from before. */
+#include <string.h>
+
+#include "emit/cwriter_impl.h"
+
+static const Loop *loop_at(const Writer *w, uint32_t k) { return &w->rolls.loops.at[k]; }
+static Slot code_of(const Writer *w, const Loop *l, uint32_t turn, uint32_t offset) {
+  return w->rolls.code[l->begin + turn * l->period + offset];
+}
+
+/* --- names and indices --- */
+
+/* x[3]' -> x', D12 -> D, L2_11 -> L: what the turns' names have in common. */
+static const char *stem_of(Arena *a, const char *name) {
+  StrBuf b = strbuf(a);
+  for (const char *s = name; *s; s++) {
+    const char *close = *s == '[' ? strchr(s, ']') : NULL;
+    if (close) s = close;
+    else sb_putc(&b, *s);
+  }
+  size_t n = b.n;
+  while (n > 1 && ((sb_text(&b)[n - 1] >= '0' && sb_text(&b)[n - 1] <= '9') || sb_text(&b)[n - 1] == '_')) n--;
+  return arena_strndup(a, sb_text(&b), n);
+}
+
+/* first + step*k */
+static const char *index_text(const Writer *w, int64_t first, int64_t step) {
+  const char *k = step == 1 || step == -1 ? "k" : arena_printf(w->a, "%lld*k", (long long)(step < 0 ? -step : step));
+  if (step < 0) return arena_printf(w->a, "%lld - %s", (long long)first, k);
+  return first ? arena_printf(w->a, "%s %c %lld", k, first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first)) : k;
+}
+
+/* The value at `place` of a loop, and step turns further with each k; step 0: that one. */
+static Piece kept_value(const Writer *w, uint32_t place, int64_t step) {
+  uint32_t in = w->rolls.loop[place] - 1, offset, turn;
+  const Loop *l = loop_at(w, in);
+  offset = (place - l->begin) % l->period;
+  turn = (place - l->begin) / l->period;
+  int64_t first = (int64_t)(l->kept[offset] - 1) + turn;
+  const char *index = step ? index_text(w, first, step) : arena_printf(w->a, "%lld", (long long)first);
+  return (Piece){arena_printf(w->a, "%s[%s]", w->kept[in][offset], index), C_ATOM, 1};
+}
+
+/* --- preparation --- */
+
+static void name_load(Writer *w, Slot s) {
+  if (s && w->p->ins.at[s].op == IR_LOAD) w->named_load[s] = 1;
+}
+
+int cloop_names_load(const Writer *w, Slot s) { return w->named_load[s]; }
+
+void cloop_prepare(Writer *w) {
+  const Rolls *r = &w->rolls;
+  w->named_load = ARENA_ARRAY(w->a, unsigned char, w->p->ins.n);
+  w->kept = ARENA_ARRAY(w->a, const char **, r->loops.n);
+  cnames_reserve(&w->names, "k");
+  for (uint32_t k = 0; k < r->n; k++) {
+    const Ins *i = &w->p->ins.at[r->code[k]];
+    const Loop *l = r->loop[k] ? loop_at(w, r->loop[k] - 1) : NULL;
+    uint32_t offset = l ? (k - l->begin) % l->period : 0;
+    for (int which = 0; which < 3; which++) {
+      Slot x = roll_operand(i, which);
+      if (x && (!l || roll_step(r, l, offset, which).kind == STEP_SAME)) name_load(w, x);
+    }
+    if (i->op != IR_SOLVE) continue;
+    const Solve *s = &w->p->solves.at[i->index];
+    for (uint32_t j = 0; s->matrix && j < s->n * s->n; j++) name_load(w, s->matrix[j]);
+    for (uint32_t j = 0; j < s->n; j++) name_load(w, s->rhs[j]);
+  }
+  for (uint32_t k = 0; k < w->p->stores.n;) {
+    uint32_t n = cloop_stores(w, k);
+    const Store *st = &w->p->stores.at[k];
+    if (!n || st[0].slot == st[1].slot) name_load(w, st->slot);
+    k += n ? n : 1;
+  }
+}
+
+/* --- a loop --- */
+
+/* Loads that change from turn to turn, each named once. */
+typedef struct {
+  Slot first;
+  int64_t step;
+  const char *name;
+} TurnLoad;
+
+typedef struct {
+  const Loop *l;
+  uint32_t number;
+  uint32_t *own_uses; /* [period] in the same turn */
+  VEC(TurnLoad) loads;
+} Body;
+
+static uint32_t offset_of(const Writer *w, const Loop *l, Slot s) { return w->rolls.place[s] - 1 - l->begin; }
+
+static void count_own_uses(Writer *w, Body *b) {
+  for (uint32_t k = 0; k < b->l->period; k++) {
+    const Ins *i = &w->p->ins.at[code_of(w, b->l, 0, k)];
+    int twice = i->op == IR_PIVOT || i->op == IR_SIGN || i->op == IR_MIN || i->op == IR_MAX; /* spelled twice */
+    for (int which = 0; which < 3; which++) {
+      Slot x = roll_operand(i, which);
+      if (x && roll_step(&w->rolls, b->l, k, which).kind == STEP_OWN) b->own_uses[offset_of(w, b->l, x)] += twice ? 2 : 1;
+    }
+  }
+}
+
+static const char *kept_name(const Writer *w, const Ins *i) {
+  const Ins *x = &w->p->ins.at[i->a];
+  if (i->name) return stem_of(w->a, i->name);
+  return i->op == IR_FN1 && x->op == IR_LOAD ? arena_printf(w->a, "%s_%s", i->text, stem_of(w->a, x->name)) : "kept";
+}
+
+/* Conditions and numbers have arrays of their own. */
+static void declare_kept(Writer *w, const Body *b, int conditions) {
+  const Loop *l = b->l;
+  const char **names = w->kept[b->number];
+  StrBuf text = strbuf(w->a);
+  for (uint32_t k = 0; k < l->period; k++) {
+    const Ins *i = &w->p->ins.at[code_of(w, l, 0, k)];
+    if (!l->kept[k] || ir_is_condition(i->op) != conditions) continue;
+    names[k] = cnames_take(&w->names, kept_name(w, i));
+    sb_printf(&text, "%s%s[%u]", text.n ? ", " : "", names[k], l->count + l->kept[k] - 1);
+  }
+  if (!text.n) return;
+  cwriter_statement(w, arena_printf(w->a, "%s_%s %s;", w->style->prefix, conditions ? "MASK" : "REAL", sb_text(&text)));
+  sb_putc(w->out, '\n');
+}
+
+/* What the first turns take from the code before. */
+static void write_first_values(Writer *w, const Body *b) {
+  const Loop *l = b->l;
+  for (uint32_t k = 0; k < l->period; k++)
+    for (uint32_t t = 0; t + 1 < l->kept[k]; t++) {
+      uint32_t place = l->begin + k - (l->kept[k] - 1 - t) * l->period;
+      cwriter_statement(w, arena_printf(w->a, "%s[%u] = %s;", w->kept[b->number][k], t, cwriter_operand(w, w->rolls.code[place]).text));
+      sb_putc(w->out, '\n');
+    }
+}
+
+static const TurnLoad *turn_load(const Body *b, Slot first, int64_t step) {
+  for (uint32_t i = 0; i < b->loads.n; i++)
+    if (b->loads.at[i].first == first && b->loads.at[i].step == step) return &b->loads.at[i];
+  return NULL;
+}
+
+static void name_turn_loads(Writer *w, Body *b) {
+  for (uint32_t k = 0; k < b->l->period; k++)
+    for (int which = 0; which < 3; which++) {
+      Slot x = roll_operand(&w->p->ins.at[code_of(w, b->l, 0, k)], which);
+      Step s = x ? roll_step(&w->rolls, b->l, k, which) : (Step){.kind = STEP_SAME};
+      if (s.kind != STEP_LOAD || turn_load(b, x, s.step)) continue;
+      const Ins *i = &w->p->ins.at[x];
+      const char *name = cnames_take(&w->names, stem_of(w->a, i->name));
+      vec_push(w->a, &b->loads, ((TurnLoad){x, s.step, name}));
+      cwriter_statement(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, w->style->in[i->array],
+                                        index_text(w, i->index, s.step)));
+      sb_putc(w->out, '\n');
+    }
+}
+
+static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int which, Slot x) {
+  Step s = roll_step(&w->rolls, b->l, offset, which);
+  uint32_t place = w->rolls.place[x] - 1; /* of values that are no loads */
+  switch (s.kind) {
+    case STEP_SAME: case STEP_OWN: return w->piece[x];
+    case STEP_NUMBER: {
+      Num unit = {0};
+      int64_t first = 0;
+      Slot y = roll_operand(&w->p->ins.at[code_of(w, b->l, 1, offset)], which);
+      roll_number(&w->p->ins.at[x], &w->p->ins.at[y], &unit, &first);
+      return (Piece){arena_printf(w->a, "%s*(%s)", c_number(w->a, w->style->prefix, unit), index_text(w, first, 1)), C_MUL, 0};
+    }
+    case STEP_LOAD: return (Piece){turn_load(b, x, s.step)->name, C_ATOM, 0};
+    case STEP_BEFORE: {
+      uint32_t at = place + s.back * b->l->period - b->l->begin; /* offset of what it becomes */
+      const char *index = index_text(w, (int64_t)(b->l->kept[at] - 1) - s.back, 1);
+      return (Piece){arena_printf(w->a, "%s[%s]", w->kept[b->number][at], index), C_ATOM, 1};
+    }
+    case STEP_OTHER: return kept_value(w, place, s.step);
+  }
+  return w->piece[x];
+}
+
+static void write_value(Writer *w, const Body *b, uint32_t offset, Slot s, const Ins *i) {
+  uint32_t kept = b->l->kept[offset];
+  if (i->op == IR_PIVOT) {
+    cwriter_pivot(w, i);
+    return;
+  }
+  Piece x = cwriter_spell(w, i);
+  if (!kept && b->own_uses[offset] <= 1 && cwriter_is_short(w, x)) {
+    w->piece[s] = x;
+    return;
+  }
+  if (b->own_uses[offset]) {
+    Ins named = *i;
+    if (named.name) named.name = stem_of(w->a, named.name);
+    cwriter_declare(w, s, cwriter_name(w, &named), x);
+    x = w->piece[s];
+  }
+  if (!kept) return;
+  cwriter_statement(w, arena_printf(w->a, "%s[%s] = %s;", w->kept[b->number][offset], index_text(w, kept - 1, 1), x.text));
+  sb_putc(w->out, '\n');
+}
+
+static void write_turn(Writer *w, const Body *b) {
+  for (uint32_t k = 0; k < b->l->period; k++) {
+    Slot s = code_of(w, b->l, 0, k);
+    const Ins *i = &w->p->ins.at[s];
+    Piece before[3], now[3];
+    for (int which = 0; which < 3; which++) {
+      Slot x = roll_operand(i, which);
+      before[which] = w->piece[x];
+      now[which] = x ? turn_operand(w, b, k, which, x) : before[which];
+    }
+    for (int which = 0; which < 3; which++) w->piece[roll_operand(i, which)] = now[which];
+    write_value(w, b, k, s, i);
+    for (int which = 3; which-- > 0;) w->piece[roll_operand(i, which)] = before[which];
+  }
+}
+
+void cloop_write(Writer *w, uint32_t loop) {
+  Body b = {.l = loop_at(w, loop), .number = loop};
+  b.own_uses = ARENA_ARRAY(w->a, uint32_t, b.l->period);
+  count_own_uses(w, &b);
+  cwriter_flush_title(w);
+  w->kept[loop] = ARENA_ARRAY(w->a, const char *, b.l->period);
+  declare_kept(w, &b, 0);
+  declare_kept(w, &b, 1);
+  write_first_values(w, &b);
+  cwriter_statement(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) {", b.l->count));
+  sb_putc(w->out, '\n');
+  w->indent += 2;
+  name_turn_loads(w, &b);
+  write_turn(w, &b);
+  w->indent -= 2;
+  cwriter_statement(w, "}");
+  sb_putc(w->out, '\n');
+  for (uint32_t k = 0; k < b.l->period; k++)
+    for (uint32_t t = 0; t < b.l->count && b.l->kept[k]; t++) {
+      Slot s = code_of(w, b.l, t, k);
+      w->piece[s] = kept_value(w, w->rolls.place[s] - 1, 0);
+    }
+}
+
+/* --- stores --- */
+
+/* The place of s in its loop's code; -1 when it is in none. */
+static int64_t loop_place(const Writer *w, Slot s) {
+  uint32_t place = s ? w->rolls.place[s] : 0;
+  return place && w->rolls.loop[place - 1] ? (int64_t)place - 1 : -1;
+}
+
+/* What stores n later than `first` would take, if all go on as first and second begin: x[0] + n*(x[1] - x[0]). */
+static int follows(const Writer *w, const Store *first, uint32_t n) {
+  Slot x = first[0].slot, y = first[1].slot, z = first[n].slot;
+  if (first[n].array != first->array || first[n].index != first->index + n) return 0;
+  if (x == y) return z == x;
+  const Ins *i = &w->p->ins.at[x], *j = &w->p->ins.at[y], *k = &w->p->ins.at[z];
+  if (i->op == IR_LOAD)
+    return j->op == IR_LOAD && k->op == IR_LOAD && j->array == i->array && k->array == i->array &&
+           (int64_t)k->index - i->index == (int64_t)n * ((int64_t)j->index - i->index);
+  int64_t px = loop_place(w, x), py = loop_place(w, y), pz = loop_place(w, z);
+  return px >= 0 && py >= 0 && pz >= 0 && w->rolls.loop[px] == w->rolls.loop[pz] && pz - px == (int64_t)n * (py - px) &&
+         (py - px) % (int64_t)loop_at(w, w->rolls.loop[px] - 1)->period == 0;
+}
+
+static const char *stored_value(const Writer *w, const Store *first) {
+  Slot x = first[0].slot, y = first[1].slot;
+  const Ins *i = &w->p->ins.at[x];
+  if (x == y) return cwriter_operand(w, x).text;
+  if (i->op == IR_LOAD)
+    return arena_printf(w->a, "%s[%s]", w->style->in[i->array], index_text(w, i->index, (int64_t)w->p->ins.at[y].index - i->index));
+  int64_t px = loop_place(w, x), py = loop_place(w, y);
+  return kept_value(w, (uint32_t)px, (py - px) / (int64_t)loop_at(w, w->rolls.loop[px] - 1)->period).text;
+}
+
+uint32_t cloop_stores(const Writer *w, uint32_t k) {
+  enum { FEWEST = 16 };
+  const Prog *p = w->p;
+  const Store *first = &p->stores.at[k];
+  if (k + FEWEST > p->stores.n || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0)) return 0;
+  if (w->style->params && p->ins.at[first->slot].op == IR_LOAD && p->ins.at[first->slot].array == ARR_P) return 0;
+  uint32_t n = 1;
+  while (k + n < p->stores.n && follows(w, first, n)) n++;
+  return n >= FEWEST ? n : 0;
+}
+
+void cloop_write_stores(Writer *w, uint32_t k, uint32_t n) {
+  const Store *first = &w->p->stores.at[k];
+  cwriter_statement(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) %s[%s] = %s;", n, w->style->out[first->array],
+                                    index_text(w, first->index, 1), stored_value(w, first)));
+  sb_printf(w->out, " /* %s ... %s */\n", comment_text(w->a, first->comment), comment_text(w->a, first[n - 1].comment));
+}

@@ -1,0 +1,61 @@
+/* The inside of the writer of function bodies: cwriter.c writes statements, cloop.c loops. */
+#ifndef LAGC_CWRITER_IMPL_H
+#define LAGC_CWRITER_IMPL_H
+
+#include "emit/cwriter.h"
+#include "ir/roll.h"
+
+enum { C_SELECT = 1, C_OR, C_AND, C_CMP, C_ADD, C_MUL, C_UNARY, C_ATOM };
+
+typedef struct {
+  const char *text;
+  int prec;
+  int counted; /* a name w1, w2, ... that says nothing */
+} Piece;
+
+typedef struct {
+  const Prog *p;
+  const CStyle *style;
+  Arena *a;
+  CNames names;
+  uint32_t *uses;
+  const char **stored; /* by slot: the comment of the store that uses it */
+  Piece *piece; /* by slot: how its value is spelled where it is used */
+  StrBuf *out;
+  uint32_t temps;
+  const char *title; /* pending: printed before the next statement */
+  size_t indent;     /* besides that of the body */
+  Rolls rolls;
+  const char ***kept; /* [loops][period] the arrays that hold the values of all turns; NULL where none */
+  unsigned char *named_load; /* by slot: a load that is used outside of loops, or by all turns of one */
+} Writer;
+
+Piece cwriter_operand(const Writer *w, Slot s);
+Piece cwriter_spell(Writer *w, const Ins *i);
+int cwriter_is_short(const Writer *w, Piece x);
+
+/* A statement, broken at spaces where it is long; without the end of the line. */
+void cwriter_statement(Writer *w, const char *text);
+void cwriter_pivot(Writer *w, const Ins *i);
+void cwriter_flush_title(Writer *w);
+
+/* A name for the value: the user's, one made of what it is made of, or w1, w2, ... */
+Piece cwriter_name(Writer *w, const Ins *i);
+
+/* `const LAG_REAL name = x;`, and spells slot s by that name from now on. */
+void cwriter_declare(Writer *w, Slot s, Piece name, Piece x);
+
+/* Before anything is written. */
+void cloop_prepare(Writer *w);
+
+/* Whether a load gets a name at the top of the function. */
+int cloop_names_load(const Writer *w, Slot s);
+
+/* A whole loop. */
+void cloop_write(Writer *w, uint32_t loop);
+
+/* How many stores from number k on can be written as a loop; 0 for none. And that loop. */
+uint32_t cloop_stores(const Writer *w, uint32_t k);
+void cloop_write_stores(Writer *w, uint32_t k, uint32_t n);
+
+#endif

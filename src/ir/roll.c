@@ -1,0 +1,233 @@
+#include "ir/roll.h"
+
+#include <string.h>
+
+/* Shorter programs read better without loops, and compile in no time. */
+enum { SHORTEST_CODE = 1500, LONGEST_PERIOD = 400, FEWEST_TURNS = 8, MOST_BACK = 2 };
+
+Slot roll_operand(const Ins *i, int which) { return which == 0 ? i->a : which == 1 ? i->b : i->c; }
+
+static int is_leaf(IrOp op) { return op == IR_CONST || op == IR_PI || op == IR_LOAD; }
+
+/* Instructions of one class differ in their operands only. Solves and titles are alike to none. */
+static uint32_t class_of(const Prog *p, Slot s) {
+  const Ins *i = &p->ins.at[s];
+  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_TITLE) return UINT32_MAX - s;
+  uint32_t h = (uint32_t)i->op * 31 + i->index;
+  for (const char *c = i->text; c && *c; c++) h = (h ^ (unsigned char)*c) * 16777619u;
+  for (int k = 0; k < 3; k++) { /* structural zeros and leaves stay what they are */
+    Slot x = roll_operand(i, k);
+    h = h * 5 + (!x ? 0 : !is_leaf(p->ins.at[x].op) ? 1 : p->ins.at[x].op == IR_LOAD ? 2 + 8 * (uint32_t)p->ins.at[x].array : 3);
+  }
+  return h & 0x3fffffffu;
+}
+
+typedef struct {
+  Rolls *r;
+  const uint32_t *cls; /* by place */
+  unsigned by_index;
+} Search;
+
+static const Ins *code_at(const Rolls *r, uint32_t place) { return &r->p->ins.at[r->code[place]]; }
+
+/* Where x stands in the code; only for values that are no leaves. */
+static uint32_t place_of(const Rolls *r, Slot x) { return r->place[x] - 1; }
+
+int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first) {
+  enum { LARGEST = 1 << 22 };
+  if (x->op != IR_CONST || y->op != IR_CONST || !num_is_exact(x->number) || !num_is_exact(y->number)) return 0;
+  *unit = num_sub(y->number, x->number);
+  if (!num_is_exact(*unit) || num_is_zero(*unit) || (unit->den & (unit->den - 1)) != 0 || unit->den > LARGEST) return 0;
+  Num times = num_div(x->number, *unit);
+  *first = times.num;
+  return num_is_exact(times) && times.den == 1 && times.num > -LARGEST && times.num < LARGEST && unit->num > -LARGEST && unit->num < LARGEST;
+}
+
+static Step step_between(const Rolls *r, uint32_t begin, uint32_t period, Slot x, Slot y) {
+  if (x == y) return (Step){.kind = STEP_SAME};
+  if (!r->place[x] && r->p->ins.at[x].op != IR_LOAD) return (Step){.kind = STEP_NUMBER};
+  if (!r->place[x]) {
+    int64_t d = (int64_t)r->p->ins.at[y].index - (int64_t)r->p->ins.at[x].index;
+    return (Step){.kind = STEP_LOAD, .step = d};
+  }
+  int64_t from = place_of(r, x), d = (int64_t)place_of(r, y) - from;
+  if (from >= begin) return (Step){.kind = STEP_OWN, .step = d};
+  if (d == period && from + MOST_BACK * (int64_t)period >= begin) {
+    uint32_t back = (uint32_t)((begin - from + period - 1) / period);
+    return (Step){.kind = STEP_BEFORE, .step = d, .back = back};
+  }
+  return (Step){.kind = STEP_OTHER, .step = d};
+}
+
+Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which) {
+  Slot x = roll_operand(code_at(r, l->begin + offset), which), y = roll_operand(code_at(r, l->begin + l->period + offset), which);
+  Step s = step_between(r, l->begin, l->period, x, y);
+  if (s.kind == STEP_OTHER) s.step /= (int64_t)r->loops.at[r->loop[place_of(r, x)] - 1].period;
+  return s;
+}
+
+/* For how many turns (at most `most`) the operand follows the step from its first to its second value. */
+static uint32_t turns_of(const Search *f, uint32_t begin, uint32_t period, uint32_t offset, int which, uint32_t most) {
+  const Rolls *r = f->r;
+  Slot x = roll_operand(code_at(r, begin + offset), which), y = roll_operand(code_at(r, begin + period + offset), which);
+  Step s = step_between(r, begin, period, x, y);
+  const Ins *first = &r->p->ins.at[x];
+  uint32_t last = most;
+  Num unit = {0};
+  int64_t multiple = 0;
+  if (s.kind == STEP_NUMBER && !roll_number(first, &r->p->ins.at[y], &unit, &multiple)) return 1;
+  if (s.kind == STEP_LOAD && (first->op != IR_LOAD || !(f->by_index >> first->array & 1))) return 1;
+  if (s.kind == STEP_OWN && s.step != period) return 1;
+  if (s.kind == STEP_OTHER) {
+    uint32_t in = r->loop[place_of(r, x)];
+    if (!in) return 1;
+    const Loop *l = &r->loops.at[in - 1];
+    if (s.step % (int64_t)l->period != 0) return 1;
+    int64_t from = place_of(r, x), end = (int64_t)l->begin + (int64_t)l->period * l->count;
+    for (uint32_t t = 1; t < most; t++) {
+      int64_t at = from + t * s.step;
+      if (at < l->begin || at >= end) {
+        last = t;
+        break;
+      }
+    }
+  }
+  for (uint32_t t = 1; t < last; t++) {
+    Slot z = roll_operand(code_at(r, begin + t * period + offset), which);
+    const Ins *now = &r->p->ins.at[z];
+    int follows = s.kind == STEP_SAME ? z == x
+                  : s.kind == STEP_NUMBER ? now->op == IR_CONST && num_equal(now->number, num_mul(unit, num_int(multiple + t)))
+                  : s.kind == STEP_LOAD ? now->op == IR_LOAD && now->index == (uint32_t)((int64_t)first->index + t * s.step)
+                                        : r->place[z] && (int64_t)place_of(r, z) == (int64_t)place_of(r, x) + t * s.step;
+    if (!follows) return t;
+  }
+  return last;
+}
+
+/* Two operands that are one value in the first turn must be one in all. */
+static int same_sharing(const Rolls *r, uint32_t begin, uint32_t period, uint32_t offset) {
+  const Ins *x = code_at(r, begin + offset), *y = code_at(r, begin + period + offset);
+  return (x->a == x->b) == (y->a == y->b) && (x->a == x->c) == (y->a == y->c) && (x->b == x->c) == (y->b == y->c);
+}
+
+static uint32_t turns_at(const Search *f, uint32_t begin, uint32_t period) {
+  const Rolls *r = f->r;
+  uint32_t same = 0;
+  while (begin + same + period < r->n && f->cls[begin + same] == f->cls[begin + same + period]) same++;
+  uint32_t turns = same / period + 1;
+  for (uint32_t k = 0; k < period && turns >= FEWEST_TURNS; k++) {
+    if (!same_sharing(r, begin, period, k)) return 1;
+    for (int which = 0; which < 3 && turns >= FEWEST_TURNS; which++)
+      if (roll_operand(code_at(r, begin + k), which)) turns = turns_of(f, begin, period, k, which, turns);
+  }
+  return turns;
+}
+
+/* How many operands a loop takes from the turn before. */
+static uint32_t carried(const Rolls *r, const Loop *l) {
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < l->period; k++)
+    for (int which = 0; which < 3; which++) {
+      Slot x = roll_operand(code_at(r, l->begin + k), which), y = roll_operand(code_at(r, l->begin + l->period + k), which);
+      n += x && step_between(r, l->begin, l->period, x, y).kind == STEP_BEFORE;
+    }
+  return n;
+}
+
+/* The same loop with its turns cut where least goes from one to the next, which may cost one of them. */
+static Loop well_cut(const Search *f, Loop l) {
+  Loop best = l;
+  uint32_t least = carried(f->r, &l);
+  for (uint32_t k = 1; k < l.period && l.count > FEWEST_TURNS; k++) {
+    Loop x = {l.begin + k, l.period, l.count - 1, NULL};
+    uint32_t n = carried(f->r, &x);
+    if (n >= least || turns_at(f, x.begin, x.period) < x.count) continue;
+    least = n;
+    best = x;
+  }
+  return best;
+}
+
+/* The loop at `begin` that takes in most of the code; the shorter period where two take in as much. */
+static Loop longest_at(const Search *f, uint32_t begin) {
+  Loop best = {.begin = begin, .period = 1};
+  for (uint32_t period = 1; period <= LONGEST_PERIOD && begin + period < f->r->n; period++) {
+    if (f->cls[begin] != f->cls[begin + period]) continue;
+    uint32_t turns = turns_at(f, begin, period);
+    if (turns >= FEWEST_TURNS && turns * period > best.count * best.period + period) best = (Loop){begin, period, turns, NULL};
+  }
+  return best;
+}
+
+/* --- what must be kept --- */
+
+static void keep(Rolls *r, uint32_t place, uint32_t back) {
+  const Loop *l = &r->loops.at[r->loop[place] - 1];
+  uint32_t *kept = &l->kept[(place - l->begin) % l->period];
+  if (*kept < back + 1) *kept = back + 1;
+}
+
+/* A value of a loop that is needed outside of its own turn. */
+static void keep_from(Rolls *r, Slot x, uint32_t user) {
+  if (!x || !r->place[x]) return;
+  uint32_t at = place_of(r, x), in = r->loop[at];
+  if (!in) return;
+  const Loop *l = &r->loops.at[in - 1];
+  int own = user < r->n && r->loop[user] == in && (user - l->begin) / l->period == (at - l->begin) / l->period;
+  if (!own) keep(r, at, 0);
+}
+
+static void find_kept(Rolls *r) {
+  for (uint32_t k = 0; k < r->n; k++) {
+    const Ins *i = code_at(r, k);
+    for (int which = 0; which < 3; which++) keep_from(r, roll_operand(i, which), k);
+    if (i->op != IR_SOLVE) continue;
+    const Solve *s = &r->p->solves.at[i->index];
+    for (uint32_t j = 0; s->matrix && j < s->n * s->n; j++) keep_from(r, s->matrix[j], UINT32_MAX);
+    for (uint32_t j = 0; j < s->n; j++) keep_from(r, s->rhs[j], UINT32_MAX);
+  }
+  for (uint32_t k = 0; k < r->p->stores.n; k++) keep_from(r, r->p->stores.at[k].slot, UINT32_MAX);
+  for (uint32_t k = 0; k < r->loops.n; k++) {
+    const Loop *l = &r->loops.at[k];
+    for (uint32_t offset = 0; offset < l->period; offset++)
+      for (int which = 0; which < 3; which++) {
+        if (!roll_operand(code_at(r, l->begin + offset), which)) continue;
+        Step s = roll_step(r, l, offset, which);
+        if (s.kind != STEP_BEFORE) continue;
+        uint32_t from = place_of(r, roll_operand(code_at(r, l->begin + offset), which)) + s.back * l->period;
+        keep(r, from, s.back);
+      }
+  }
+}
+
+Rolls roll_find(const Prog *p, unsigned by_index) {
+  Arena *a = p->arena;
+  Rolls r = {.p = p};
+  Slot *code = ARENA_ARRAY(a, Slot, p->ins.n);
+  uint32_t *place = ARENA_ARRAY(a, uint32_t, p->ins.n), *cls = ARENA_ARRAY(a, uint32_t, p->ins.n), *loop = ARENA_ARRAY(a, uint32_t, p->ins.n);
+  for (Slot s = 1; s < p->ins.n; s++) {
+    if (is_leaf(p->ins.at[s].op)) continue;
+    cls[r.n] = class_of(p, s);
+    code[r.n++] = s;
+    place[s] = r.n;
+  }
+  r.code = code;
+  r.place = place;
+  r.loop = loop;
+  Search f = {&r, cls, by_index};
+  for (uint32_t i = 0; i < r.n && r.n >= SHORTEST_CODE;) {
+    Loop l = longest_at(&f, i);
+    if (!l.count) {
+      i++;
+      continue;
+    }
+    l = well_cut(&f, l);
+    i = l.begin;
+    l.kept = ARENA_ARRAY(a, uint32_t, l.period);
+    vec_push(a, &r.loops, l);
+    for (uint32_t k = 0; k < l.period * l.count; k++) loop[i + k] = r.loops.n;
+    i += l.period * l.count;
+  }
+  find_kept(&r);
+  return r;
+}

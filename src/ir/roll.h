@@ -1,0 +1,55 @@
+/* Loops in a Prog: runs of isomorphic groups of instructions, found in its order and nowhere else: a chain
+ * written out by hand rolls as a family does, since neither names nor families are looked at.
+ *
+ * The Prog stays as it is; loops are a way to write it shorter. Every value is computed by the same
+ * operations in the same order. */
+#ifndef LAGC_ROLL_H
+#define LAGC_ROLL_H
+
+#include "ir/prog.h"
+
+/* `count` times the `period` instructions from place `begin` of the code on. */
+typedef struct {
+  uint32_t begin, period, count;
+  uint32_t *kept;  /* [period] 1 + how many iterations back a value is needed; 0: in its own iteration only */
+} Loop;
+
+/* How an operand changes from iteration to iteration. */
+typedef enum {
+  STEP_SAME,   /* the same value in all */
+  STEP_LOAD,   /* elements of an array: index + r*step */
+  STEP_NUMBER, /* numbers, unit*(first + r): see roll_number */
+  STEP_OWN,    /* a value of the same iteration */
+  STEP_BEFORE, /* a value of the iteration `back` before; in the first ones, of the code before the loop */
+  STEP_OTHER   /* a value of an earlier loop: its iteration + r*step */
+} StepKind;
+
+typedef struct {
+  StepKind kind;
+  int64_t step;
+  uint32_t back;
+} Step;
+
+typedef struct {
+  const Prog *p;
+  uint32_t n;
+  const Slot *code;      /* [n] the instructions that are no leaves, in order */
+  const uint32_t *place; /* by slot: its place in code, from 1; 0: a leaf */
+  VEC(Loop) loops;       /* in order */
+  const uint32_t *loop;  /* by place: the loop that holds it, from 1 */
+} Rolls;
+
+/* by_index: the arrays of loads that can be indexed by a variable, as bits 1 << IrArray. Programs that are
+ * short anyway get no loops. */
+Rolls roll_find(const Prog *p, unsigned by_index);
+
+/* How operand `which` (0, 1, 2) of instruction `offset` of the loop changes. */
+Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which);
+
+/* The numbers of a STEP_NUMBER that begins with x and y: y - x is a unit whose multiples are exact in binary, and
+ * x is `first` times that. 0 when they are not like that. */
+int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first);
+
+Slot roll_operand(const Ins *i, int which);
+
+#endif

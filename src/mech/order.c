@@ -1,0 +1,166 @@
+#include "mech/order.h"
+
+#include "base/sparse.h"
+
+/* What a pattern knows of an entry. */
+enum { NONZERO = 1, ONE = 2 };
+
+typedef struct {
+  uint64_t key;
+  uint32_t var;
+} Candidate;
+
+typedef struct {
+  Arena *arena;
+  uint32_t n, total;
+  Sparse H;
+  SparseRow *C;          /* [total] of definitions: what they contain */
+  uint32_t *nusers;      /* [total] the definitions left that contain a variable */
+  uint32_t *depth;       /* [total] how many definitions stand upon each other below one */
+  unsigned char *gone;
+  OrderRule rule;
+  uint64_t ops;          /* so far */
+  VEC(Candidate) heap;   /* binary, the smallest key on top; a candidate whose key has changed is stale */
+} Elimination;
+
+static Elimination elimination_new(Arena *a, ExprGraph *g, const LinearSystem *s, OrderRule rule) {
+  uint32_t total = s->n + s->ndefs;
+  Elimination e = {.arena = a, .n = s->n, .total = total, .rule = rule, .H = sparse_new(a, total)};
+  e.C = ARENA_ARRAY(a, SparseRow, total + 1);
+  e.nusers = ARENA_ARRAY(a, uint32_t, total + 1);
+  e.depth = ARENA_ARRAY(a, uint32_t, total + 1);
+  e.gone = ARENA_ARRAY(a, unsigned char, total + 1);
+  for (uint32_t k = 0; k < s->H.n; k++) sparse_set(&e.H, s->H.at[k].row, s->H.at[k].col, NONZERO);
+  for (uint32_t k = 0; k < s->C.n; k++) {
+    uint32_t row = s->C.at[k].row, col = s->C.at[k].col;
+    int one = expr_is_num(g, s->C.at[k].e) && num_is_one(num_abs(expr_number(g, s->C.at[k].e)));
+    vec_push(a, &e.C[row], ((SparseEntry){col, one ? ONE : NONZERO}));
+    e.nusers[col]++;
+    if (e.depth[row] <= e.depth[col]) e.depth[row] = e.depth[col] + 1; /* rows come in order: col is done */
+  }
+  return e;
+}
+
+/* --- what comes next --- */
+
+/* Operations of eliminating a variable, about: none of the products is by 1, no sum is with 0. */
+static uint64_t cost_of(const Elimination *e, uint32_t v) {
+  int pivot = sparse_get(&e->H, v, v) != 0;
+  uint64_t others = e->H.rows[v].n - (uint64_t)pivot;
+  if (v < e->n) return others * (others + 2);
+  uint64_t inside = e->C[v].n;
+  return 2 * others * inside + (pivot ? inside * (inside + 2) : 0);
+}
+
+static uint64_t key_of(const Elimination *e, uint32_t v) {
+  int definition = v >= e->n;
+  switch (e->rule) {
+    case ORDER_CHEAPEST: return cost_of(e, v);
+    case ORDER_OUTERMOST: return definition ? (uint64_t)e->total - e->depth[v] : 0;
+    case ORDER_DEFINITIONS_FIRST: return definition ? 0 : 1 + cost_of(e, v);
+  }
+  return 0;
+}
+
+static int ready(const Elimination *e, uint32_t v) {
+  return !e->gone[v] && !e->nusers[v] && (v >= e->n || sparse_get(&e->H, v, v));
+}
+
+/* --- a heap --- */
+
+static int before(const Candidate *x, const Candidate *y) { return x->key != y->key ? x->key < y->key : x->var < y->var; }
+
+static void push(Elimination *e, uint32_t v) {
+  if (!ready(e, v)) return;
+  vec_push(e->arena, &e->heap, ((Candidate){key_of(e, v), v}));
+  Candidate *h = e->heap.at;
+  for (uint32_t i = e->heap.n - 1; i > 0 && before(&h[i], &h[(i - 1) / 2]); i = (i - 1) / 2) {
+    Candidate t = h[i];
+    h[i] = h[(i - 1) / 2];
+    h[(i - 1) / 2] = t;
+  }
+}
+
+static Candidate pop(Elimination *e) {
+  Candidate *h = e->heap.at, top = h[0];
+  h[0] = h[--e->heap.n];
+  for (uint32_t i = 0, child = 1; child < e->heap.n; i = child, child = 2 * i + 1) {
+    if (child + 1 < e->heap.n && before(&h[child + 1], &h[child])) child++;
+    if (!before(&h[child], &h[i])) break;
+    Candidate t = h[i];
+    h[i] = h[child];
+    h[child] = t;
+  }
+  return top;
+}
+
+/* --- steps --- */
+
+/* Adds a product to entry (i, j). */
+static void fill(Elimination *e, uint32_t i, uint32_t j, int by_one) {
+  uint32_t *at = sparse_find(&e->H, i, j);
+  e->ops += (at != NULL) + (uint64_t)!by_one;
+  if (!at) sparse_set(&e->H, i, j, NONZERO);
+}
+
+static void eliminate_coordinate(Elimination *e, uint32_t v) {
+  const SparseRow *row = &e->H.rows[v];
+  e->ops++;
+  for (uint32_t i = 0; i < row->n; i++) {
+    if (row->at[i].col == v) continue;
+    e->ops += 5; /* the factor, and two in each substitution */
+    for (uint32_t k = 0; k <= i; k++)
+      if (row->at[k].col != v) fill(e, row->at[i].col, row->at[k].col, 0);
+  }
+}
+
+static void eliminate_definition(Elimination *e, uint32_t v) {
+  const SparseRow *row = &e->H.rows[v], *c = &e->C[v];
+  int pivot = sparse_get(&e->H, v, v) != 0;
+  for (uint32_t i = 0; i < c->n; i++) {
+    int one = c->at[i].value == ONE;
+    e->ops += one ? 2 : 4; /* the substitutions */
+    for (uint32_t k = 0; k < row->n; k++)
+      if (row->at[k].col != v) fill(e, row->at[k].col, c->at[i].col, one);
+    e->ops += pivot && !one;
+    for (uint32_t k = 0; k <= i && pivot; k++) fill(e, c->at[i].col, c->at[k].col, c->at[k].value == ONE);
+  }
+}
+
+static void eliminate(Elimination *e, uint32_t v) {
+  e->gone[v] = 1;
+  if (v < e->n) eliminate_coordinate(e, v);
+  else eliminate_definition(e, v);
+  sparse_eliminate(&e->H, v);
+  for (uint32_t k = 0; k < e->C[v].n; k++) e->nusers[e->C[v].at[k].col]--;
+}
+
+/* The variables whose key the elimination of v may have changed. */
+static void reconsider(Elimination *e, uint32_t v) {
+  for (uint32_t k = 0; k < e->H.rows[v].n; k++) push(e, e->H.rows[v].at[k].col);
+  for (uint32_t k = 0; k < e->C[v].n; k++) push(e, e->C[v].at[k].col);
+}
+
+void order_elimination(Arena *a, ExprGraph *g, LinearSystem *s, OrderRule rule, uint64_t enough) {
+  Elimination e = elimination_new(a, g, s, rule);
+  uint32_t *order = ARENA_ARRAY(a, uint32_t, e.total + 1), n = 0;
+  for (uint32_t v = 0; v < e.total; v++) push(&e, v);
+  while (e.heap.n && e.ops <= enough) {
+    Candidate c = pop(&e);
+    if (!ready(&e, c.var) || c.key != key_of(&e, c.var)) continue;
+    order[n++] = c.var;
+    eliminate(&e, c.var);
+    reconsider(&e, c.var);
+  }
+  for (uint32_t v = 0; v < e.n && e.ops <= enough; v++) /* no pivot: singular, which the run will say */
+    if (!e.gone[v]) order[n++] = v;
+  s->order = order;
+  s->ops = e.ops;
+}
+
+void order_best(Arena *a, ExprGraph *g, LinearSystem *s) {
+  LinearSystem other = *s;
+  order_elimination(a, g, s, ORDER_OUTERMOST, UINT64_MAX);
+  order_elimination(a, g, &other, ORDER_CHEAPEST, s->ops);
+  if (other.ops <= s->ops) *s = other;
+}

@@ -1,0 +1,139 @@
+/* Parameters and constants: declarations that have a value at once. */
+#include "model/builder.h"
+
+static ExprSign sign_of(AstSign s) {
+  switch (s) {
+    case SIGN_GT: return SIGN_POSITIVE;
+    case SIGN_GE: return SIGN_NONNEGATIVE;
+    case SIGN_LT: return SIGN_NEGATIVE;
+    case SIGN_LE: return SIGN_NONPOSITIVE;
+    case SIGN_ANY: break;
+  }
+  return SIGN_UNKNOWN;
+}
+
+/* The value must be of the sign that the declaration states, or the simplifier would be misled. */
+void check_sign(Builder *b, const Param *p, Span span) {
+  static const char *const texts[] = {"", "> 0", ">= 0", "< 0", "<= 0"};
+  if (p->sign == SIGN_ANY || !p->value) return;
+  ExprSign s = expr_sign(b->g, p->value);
+  int zero = expr_is_zero(b->g, p->value), above = s == SIGN_POSITIVE, below = s == SIGN_NEGATIVE;
+  int wrong = p->sign == SIGN_GT ? below || zero : p->sign == SIGN_GE ? below : p->sign == SIGN_LT ? above || zero : above;
+  if (wrong) diag_error(b->diags, span, "`%s` is declared %s, and this value is not", p->name, texts[p->sign]);
+}
+
+/* A parameter that is being declared. */
+typedef struct {
+  Builder *b;
+  const AstStmt *st;
+  Entity e;
+  Unit unit;
+  Name stem; /* drag.c */
+} Declared;
+
+static void add_param(const Declared *d, Name name, Value v, Span span) {
+  Builder *b = d->b;
+  Param p = {.name = name, .span = d->st->name_span, .sign = d->st->sign, .unit = d->unit};
+  p.value = value_in(b, v, span, &p.unit);
+  p.sym = declare_symbol(b, SYM_PARAM, b->m->params.n, name, sign_of(d->st->sign), d->unit.dim);
+  if (p.value && expr_is_num(b->g, p.value)) {
+    p.constant = expr_number(b->g, p.value);
+    p.has_constant = 1;
+  }
+  check_sign(b, &p, span);
+  vec_push(b->arena, &b->m->params, p);
+}
+
+/* One member, with the value v: all its components. v.e = 0: an error, reported. */
+static void add_member(const Declared *d, const int64_t *at, Value v, Span span) {
+  Builder *b = d->b;
+  if (v.e && v.n != d->e.parts) {
+    diag_error(b->diags, span, "`%s` is %s, and %s is given here", d->st->name, shape_text(b, d->e.parts), shape_text(b, v.n));
+    v = (Value){0};
+  }
+  for (uint32_t k = 0; k < (d->e.parts ? d->e.parts : 1u); k++) {
+    Value one = v;
+    one.e = v.at[k];
+    one.n = 0;
+    add_param(d, scalar_name(b, &d->e, d->stem, at, k), one, span);
+  }
+}
+
+/* The values of a parameter's members, row by row; one for all where it is no list. */
+typedef struct {
+  VEC(Value) at;
+  VEC(Span) spans;
+} ParamValues;
+
+/* 0, reported, when a list does not fit. */
+static int read_values(Declared *d, Name effect, ParamValues *values) {
+  Builder *b = d->b;
+  const AstUnit *behind;
+  const AstExpr *list = list_behind(b, d->st->rhs, &behind);
+  Elements elements = {0};
+  if (!list) vec_push(b->arena, &elements, ((Element){d->st->rhs, NULL}));
+  IndexRange r = entity_range(&d->e);
+  if (list && !list_elements(b, list, behind, &r, d->st->name, &elements)) return 0;
+  for (uint32_t i = 0; i < elements.n; i++) {
+    Value v = element_value(b, &elements.at[i], IN_PARAM, effect);
+    vec_push(b->arena, &values->at, v);
+    vec_push(b->arena, &values->spans, ast_expr(b->ast, elements.at[i].id)->span);
+  }
+  return 1;
+}
+
+/* Without a unit of its own a parameter takes its value's; a bare number tells nothing. */
+static Unit param_unit(Builder *b, const AstStmt *st, Name effect, const ParamValues *values) {
+  const Value *v = values->at.n ? &values->at.at[0] : NULL;
+  if (!st->unit.n && v && v->e && !v->bare && v->dim != DIM_ANY) return unit_of_dim(b->dims, v->dim);
+  return declared_unit(b, st, effect);
+}
+
+/* Its own name is not in scope in its value. */
+void declare_param(Builder *b, const AstStmt *st, Name effect) {
+  Declared d = {.b = b, .st = st, .stem = effect ? intern_printf(b, "%s.%s", effect, st->name) : st->name};
+  ParamValues values = {0};
+  uint8_t parts;
+  if (!read_type(b, st, effect, &parts)) return;
+  int known = read_family(b, st, effect, ENT_PARAM, b->m->params.n, parts, &d.e);
+  if (!known) return;
+  int fits = read_values(&d, effect, &values);
+  if (!st->type && fits) d.e.parts = (uint8_t)values.at.at[0].n;
+  if (d.e.parts && st->sign != SIGN_ANY) diag_error(b->diags, st->name_span, "`%s` is %s, and has no sign", st->name, shape_text(b, d.e.parts));
+  d.unit = param_unit(b, st, effect, &values);
+  if (!declare_entity(b, st, d.e)) return;
+  int64_t at[2] = {1, 1};
+  uint32_t i = 0;
+  do {
+    int given = i < values.at.n;
+    add_member(&d, at, given ? values.at.at[i] : (Value){0}, given ? values.spans.at[i] : st->span);
+    i += values.at.n > 1;
+  } while (next_member(&d.e, at));
+}
+
+/* -D N=50, or NULL. */
+static const char *defined(const Builder *b, Name name) {
+  const char *value = NULL;
+  for (uint32_t i = 0; i < b->ndefines; i++)
+    if (strcmp(b->defines[i].name, name) == 0) value = b->defines[i].value;
+  return value;
+}
+
+/* Made of numbers and pi. A number on the command line is in the unit of the constant's value. */
+void declare_const(Builder *b, const AstStmt *st, Name effect) {
+  Value v = resolve(b, st->rhs, IN_CONST, effect);
+  Entity e = {.kind = ENT_CONST, .index = b->constants.n, .name = st->name, .effect = effect, .span = st->name_span};
+  if (!declare_entity(b, st, e)) return;
+  const char *text = defined(b, st->name);
+  if (text && v.n) diag_error(b->diags, (Span){0}, "-D %s=%s: `%s` is %s", st->name, text, st->name, shape_text(b, v.n));
+  else if (text) v = (Value){.e = expr_num(b->g, num_parse(text, strlen(text))), .dim = DIM_NONE, .bare = 1};
+  Unit unit = unit_resolve(&st->unit, b->dims, b->diags, b->arena);
+  v = values_in(b, v, ast_expr(b->ast, st->rhs)->span, &unit);
+  if (st->unit.n) {
+    v.bare = v.point = 0;
+    v.dim = unit.dim;
+    v.unit = unit.text;
+  }
+  if (!v.e) v = (Value){.e = expr_int(b->g, 1), .dim = DIM_ANY}; /* reported */
+  vec_push(b->arena, &b->constants, ((Constant){st->name, v}));
+}

@@ -1,0 +1,296 @@
+/* Sparse vectors of rational exponents in a table without duplicates, and Gaussian elimination on them. */
+#include "model/dims.h"
+
+#include <string.h>
+
+#include "base/vec.h"
+
+/* key < DIM_BASES: a base unit; otherwise unknown key - DIM_BASES. */
+typedef struct {
+  uint32_t key;
+  Num e; /* never 0 */
+} Part;
+
+typedef struct {
+  const Part *part; /* by increasing key */
+  uint32_t n, hash;
+  uint32_t next;         /* in its bucket; 0: none */
+  Dim found;             /* dim_found of it, at that time */
+  uint32_t found_when;
+} Form;
+
+typedef struct {
+  Name name;
+  Dim is; /* 0: not known */
+  Span why;
+} Unknown;
+
+typedef struct {
+  Dim dim;
+  const char *text;
+} Spelling;
+
+enum { BUCKETS = 1024, CACHED = 1024 };
+
+struct Dims {
+  Arena *arena;
+  VEC(Form) forms; /* 0 is DIM_ANY */
+  VEC(Unknown) unknowns;
+  VEC(Part) scratch;
+  VEC(Spelling) spellings;
+  VEC(uint32_t) solved; /* unknowns whose dimension is known, in the order in which it was found */
+  uint32_t time;        /* grows when one is solved, or forgotten */
+  uint32_t heads[BUCKETS];
+  struct {
+    Dim a, b, product;
+  } cache[CACHED];
+};
+
+static uint32_t hash_parts(const Part *p, uint32_t n) {
+  uint32_t h = 2166136261u;
+  for (uint32_t i = 0; i < n; i++) {
+    uint64_t x = (uint64_t)p[i].e.num * 0x9E3779B97F4A7C15u + (uint64_t)p[i].e.den * 31 + p[i].key;
+    h = (h ^ (uint32_t)(x >> 32) ^ (uint32_t)x) * 16777619u;
+  }
+  return h;
+}
+
+static int same_parts(const Form *f, const Part *p, uint32_t n) {
+  if (f->n != n) return 0;
+  for (uint32_t i = 0; i < n; i++)
+    if (f->part[i].key != p[i].key || !num_equal(f->part[i].e, p[i].e)) return 0;
+  return 1;
+}
+
+/* The table's entry for d->scratch, which is emptied. */
+static Dim intern_scratch(Dims *d) {
+  uint32_t n = d->scratch.n, hash = hash_parts(d->scratch.at, n), *head = &d->heads[hash % BUCKETS];
+  d->scratch.n = 0;
+  for (Dim i = *head; i; i = d->forms.at[i].next)
+    if (d->forms.at[i].hash == hash && same_parts(&d->forms.at[i], d->scratch.at, n)) return i;
+  Part *copy = ARENA_ARRAY(d->arena, Part, n + 1);
+  if (n) memcpy(copy, d->scratch.at, n * sizeof *copy);
+  Form f = {.part = copy, .n = n, .hash = hash, .next = *head};
+  vec_push(d->arena, &d->forms, f);
+  return *head = d->forms.n - 1;
+}
+
+Dims *dims_new(Arena *a) {
+  Dims *d = ARENA_NEW(a, Dims);
+  d->arena = a;
+  vec_push(a, &d->forms, (Form){0});
+  intern_scratch(d); /* DIM_NONE */
+  return d;
+}
+
+static Dim of_key(Dims *d, uint32_t key) {
+  vec_push(d->arena, &d->scratch, ((Part){key, num_int(1)}));
+  return intern_scratch(d);
+}
+
+Dim dim_base(Dims *d, DimBase base) { return of_key(d, base); }
+Dim dim_of_unknown(Dims *d, uint32_t u) { return of_key(d, u + DIM_BASES); }
+uint32_t dim_unknowns(const Dims *d) { return d->unknowns.n; }
+
+Dim dim_unknown(Dims *d, Name name) {
+  vec_push(d->arena, &d->unknowns, ((Unknown){.name = name}));
+  return dim_of_unknown(d, d->unknowns.n - 1);
+}
+
+static void put(Dims *d, uint32_t key, Num e) {
+  if (!num_is_zero(e)) vec_push(d->arena, &d->scratch, ((Part){key, e}));
+}
+
+/* a * b^e */
+static Dim combine(Dims *d, Dim a, Dim b, Num e) {
+  if (a == DIM_ANY || b == DIM_ANY) return DIM_ANY;
+  const Form *f = &d->forms.at[a], *g = &d->forms.at[b];
+  uint32_t i = 0, k = 0;
+  while (i < f->n || k < g->n) {
+    uint32_t x = i < f->n ? f->part[i].key : UINT32_MAX, y = k < g->n ? g->part[k].key : UINT32_MAX;
+    Num left = x <= y ? f->part[i++].e : num_int(0), right = y <= x ? num_mul(g->part[k++].e, e) : num_int(0);
+    put(d, x < y ? x : y, num_add(left, right));
+  }
+  return intern_scratch(d);
+}
+
+Dim dim_mul(Dims *d, Dim a, Dim b) {
+  if (a == DIM_NONE) return b;
+  if (b == DIM_NONE) return a;
+  uint32_t slot = (a * 31 + b) % CACHED;
+  if (d->cache[slot].a == a && d->cache[slot].b == b) return d->cache[slot].product;
+  Dim product = combine(d, a, b, num_int(1));
+  d->cache[slot].a = a;
+  d->cache[slot].b = b;
+  return d->cache[slot].product = product;
+}
+
+Dim dim_div(Dims *d, Dim a, Dim b) {
+  if (b == DIM_NONE) return a;
+  return a == b && a != DIM_ANY ? DIM_NONE : combine(d, a, b, num_int(-1));
+}
+
+Dim dim_pow(Dims *d, Dim a, Num e) { return a == DIM_ANY || num_is_zero(e) ? (a ? DIM_NONE : DIM_ANY) : combine(d, DIM_NONE, a, e); }
+
+Dim dim_per_second(Dims *d, Dim a) { return dim_div(d, a, dim_base(d, DIM_TIME)); }
+
+/* --- unknowns --- */
+
+/* The last part that is an unknown whose dimension is known, or NULL. */
+static const Part *solved_part(const Dims *d, Dim a) {
+  const Form *f = &d->forms.at[a];
+  for (uint32_t i = f->n; i-- > 0 && f->part[i].key >= DIM_BASES;)
+    if (d->unknowns.at[f->part[i].key - DIM_BASES].is) return &f->part[i];
+  return NULL;
+}
+
+/* Each round puts in what was found later than what it replaces was: it ends. */
+Dim dim_found(Dims *d, Dim a) {
+  if (d->forms.at[a].found && d->forms.at[a].found_when == d->time) return d->forms.at[a].found;
+  Dim r = a;
+  for (const Part *p = solved_part(d, r); p; p = solved_part(d, r)) {
+    uint32_t key = p->key;
+    Num e = p->e;
+    Dim without = combine(d, r, of_key(d, key), num_neg(e));
+    r = combine(d, without, d->unknowns.at[key - DIM_BASES].is, e);
+  }
+  d->forms.at[a].found = r;
+  d->forms.at[a].found_when = d->time;
+  return r;
+}
+
+static const Part *last_part(const Dims *d, Dim a) { return d->forms.at[a].n ? &d->forms.at[a].part[d->forms.at[a].n - 1] : NULL; }
+
+int dim_is_open(Dims *d, Dim a) {
+  const Part *last = last_part(d, dim_found(d, a));
+  return last && last->key >= DIM_BASES;
+}
+
+Name dim_open_name(Dims *d, Dim a) {
+  const Part *last = last_part(d, dim_found(d, a));
+  return last && last->key >= DIM_BASES ? d->unknowns.at[last->key - DIM_BASES].name : NULL;
+}
+
+int dim_equate(Dims *d, Dim a, Dim b, Span why) {
+  if (a == b || a == DIM_ANY || b == DIM_ANY) return 1;
+  Dim difference = dim_found(d, dim_div(d, a, b));
+  const Part *pivot = last_part(d, difference);
+  if (!pivot) return 1;
+  if (pivot->key < DIM_BASES) return 0;
+  uint32_t key = pivot->key;
+  Num e = pivot->e;
+  Dim rest = combine(d, difference, of_key(d, key), num_neg(e));
+  Dim is = dim_pow(d, rest, num_div(num_int(-1), e));
+  d->unknowns.at[key - DIM_BASES].is = is;
+  d->unknowns.at[key - DIM_BASES].why = why;
+  vec_push(d->arena, &d->solved, key - DIM_BASES);
+  d->time++;
+  return 1;
+}
+
+uint32_t dims_mark(const Dims *d) { return d->solved.n; }
+
+void dims_undo(Dims *d, uint32_t mark) {
+  while (d->solved.n > mark) d->unknowns.at[d->solved.at[--d->solved.n]].is = 0;
+  d->time++;
+}
+
+Dim dim_replace(Dims *d, Dim a, uint32_t first, uint32_t n, const Dim *with) {
+  Dim from = dim_found(d, a), r = from;
+  for (uint32_t i = 0; i < d->forms.at[from].n; i++) {
+    Part p = d->forms.at[from].part[i];
+    uint32_t u = p.key - DIM_BASES;
+    if (p.key < DIM_BASES || u < first || u >= first + n) continue;
+    Dim without = combine(d, r, of_key(d, p.key), num_neg(p.e));
+    r = combine(d, without, with[u - first], p.e);
+  }
+  return r;
+}
+
+int dim_cause(const Dims *d, Dim a, DimCause *cause) {
+  const Form *f = &d->forms.at[a];
+  for (uint32_t i = 0; i < f->n; i++) {
+    if (f->part[i].key < DIM_BASES) continue;
+    const Unknown *u = &d->unknowns.at[f->part[i].key - DIM_BASES];
+    if (!u->is || !u->name) continue;
+    *cause = (DimCause){u->name, u->is, u->why};
+    return 1;
+  }
+  return 0;
+}
+
+Num dim_exponent(const Dims *d, Dim a, DimBase base) {
+  const Form *f = &d->forms.at[a];
+  for (uint32_t i = 0; i < f->n; i++)
+    if (f->part[i].key == base) return f->part[i].e;
+  return num_int(0);
+}
+
+/* --- as text --- */
+
+void dim_spell(Dims *d, Dim a, const char *text) {
+  for (uint32_t i = 0; i < d->spellings.n; i++)
+    if (d->spellings.at[i].dim == a) return;
+  vec_push(d->arena, &d->spellings, ((Spelling){a, text}));
+}
+
+/* Derived units with a name of their own, in m, kg, s, A: what people expect to read. */
+static const char *derived_name(const Dims *d, Dim a) {
+  static const struct {
+    const char *name;
+    int8_t e[4];
+  } derived[] = {{"N", {1, 1, -2}}, {"J", {2, 1, -2}}, {"W", {2, 1, -3}}, {"Pa", {-1, 1, -2}}, {"C", {0, 0, 1, 1}}, {"V", {2, 1, -3, -1}}};
+  for (size_t i = 0; i < sizeof derived / sizeof *derived; i++) {
+    int same = 1;
+    for (int k = 0; k < DIM_BASES && same; k++) same = num_equal(dim_exponent(d, a, (DimBase)k), num_int(k < 4 ? derived[i].e[k] : 0));
+    if (same && last_part(d, a)->key < DIM_BASES) return derived[i].name;
+  }
+  return NULL;
+}
+
+static void put_power(StrBuf *b, const char *name, Num e) {
+  sb_puts(b, name);
+  if (num_is_one(e)) return;
+  sb_puts(b, num_is_int(e) ? "^" : "^(");
+  num_print(b, e);
+  if (!num_is_int(e)) sb_putc(b, ')');
+}
+
+/* Place i in the order in which people write: kg before m. */
+static Part part_in_order(const Form *f, uint32_t i) {
+  if (i + 1 < f->n && f->part[0].key == DIM_LENGTH && f->part[1].key == DIM_MASS && i < 2) return f->part[1 - i];
+  return f->part[i];
+}
+
+static const char *key_name(const Dims *d, uint32_t key) {
+  static const char *const base[DIM_BASES] = {"m", "kg", "s", "A", "K", "mol", "cd"};
+  if (key < DIM_BASES) return base[key];
+  Name name = d->unknowns.at[key - DIM_BASES].name;
+  return name ? arena_printf(d->arena, "unit(%s)", name) : "?";
+}
+
+const char *dim_text(Dims *d, Dim a) {
+  if (a == DIM_ANY) return "?";
+  a = dim_found(d, a);
+  if (a == DIM_NONE) return "1";
+  const char *name = derived_name(d, a);
+  if (name) return name;
+  for (uint32_t i = 0; i < d->spellings.n; i++)
+    if (d->spellings.at[i].dim == a) return d->spellings.at[i].text;
+  StrBuf b = strbuf(d->arena);
+  const Form f = d->forms.at[a];
+  for (uint32_t i = 0; i < f.n; i++) {
+    Part p = part_in_order(&f, i);
+    if (num_sign(p.e) < 0) continue;
+    if (b.n) sb_putc(&b, '*');
+    put_power(&b, key_name(d, p.key), p.e);
+  }
+  if (!b.n) sb_putc(&b, '1');
+  for (uint32_t i = 0; i < f.n; i++) {
+    Part p = part_in_order(&f, i);
+    if (num_sign(p.e) > 0) continue;
+    sb_putc(&b, '/');
+    put_power(&b, key_name(d, p.key), num_neg(p.e));
+  }
+  return sb_text(&b);
+}

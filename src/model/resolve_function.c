@@ -1,0 +1,182 @@
+/* Calls of the model's own functions. A body is evaluated once for each choice of shapes of its arguments, with
+ * symbols in their place and with dimensions that are unknown; a call puts its arguments in, and what the body
+ * has told of the unknowns judges their units. */
+#include "model/resolve_impl.h"
+
+const Value *function_argument(const Builder *b, const Instance *function, Name name) {
+  if (!function) return NULL;
+  AstId id = b->functions.at[function->function].stmt->args;
+  for (uint32_t i = 0; i < function->nargs; i++, id = ast_expr(b->ast, id)->next)
+    if (ast_expr(b->ast, id)->name == name) return &function->args[i];
+  return NULL;
+}
+
+static uint32_t count_args(const Builder *b, const Definition *f) {
+  uint32_t n = 0;
+  for (AstId i = f->stmt->args; i; i = ast_expr(b->ast, i)->next) n++;
+  return n;
+}
+
+/* Symbols for an argument: one, or one a component. */
+static Value new_argument(Builder *b, Instance *in, Name name, uint32_t shape) {
+  Value v = {.n = shape, .dim = b->unitless ? DIM_ANY : dim_unknown(b->dims, name)};
+  for (uint32_t k = 0; k < parts_of(&v); k++) {
+    Name part = shape ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name;
+    SymId s = declare_symbol(b, SYM_LOCAL, in->symbols.n, part, SIGN_UNKNOWN, v.dim);
+    vec_push(b->arena, &in->symbols, s);
+    v.at[k] = expr_symbol(b->g, s)->node;
+  }
+  return v;
+}
+
+void need_rates(Builder *b, Instance *in) {
+  uint32_t n = in->nplain;
+  for (uint32_t i = 0; in->symbols.n < 3 * n; i++) {
+    const Symbol *of = expr_symbol(b->g, in->symbols.at[i]);
+    Dim rate = dim_per_second(b->dims, b->dim_of.at[in->symbols.at[i]]);
+    SymId s = declare_symbol(b, SYM_LOCAL, in->symbols.n, intern_printf(b, "%s'", of->name), SIGN_UNKNOWN, rate);
+    vec_push(b->arena, &in->symbols, s);
+  }
+}
+
+Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes) {
+  Definition *f = &b->functions.at[function];
+  Instance *in = ARENA_NEW(b->arena, Instance);
+  *in = (Instance){.function = function, .nargs = count_args(b, f), .first_unknown = dim_unknowns(b->dims), .next = f->instances};
+  in->args = ARENA_ARRAY(b->arena, Value, in->nargs + 1);
+  AstId id = f->stmt->args;
+  for (uint32_t i = 0; i < in->nargs; i++, id = ast_expr(b->ast, id)->next)
+    in->args[i] = new_argument(b, in, ast_expr(b->ast, id)->name, shapes[i]);
+  in->nplain = in->symbols.n;
+  f->instances = in;
+  vec_push(b->arena, &b->instances, in);
+  return in;
+}
+
+/* The place of the instance for these shapes, made where there is none. */
+static uint32_t find_instance(Builder *b, uint32_t function, uint32_t nargs, const uint32_t *shapes) {
+  for (uint32_t k = 0; k < b->instances.n; k++) {
+    const Instance *in = b->instances.at[k];
+    uint32_t i = 0;
+    while (in->function == function && i < nargs && in->args[i].n == shapes[i]) i++;
+    if (in->function == function && i == nargs) return k;
+  }
+  new_instance(b, function, shapes);
+  return b->instances.n - 1;
+}
+
+static void report_argument(Eval *ev, const AstExpr *x, const Instance *in, uint32_t i, AstId arg, Dim want) {
+  Builder *b = ev->b;
+  const Value *v = value_of(ev, arg);
+  AstId id = b->functions.at[in->function].stmt->args;
+  for (uint32_t k = 0; k < i; k++) id = ast_expr(b->ast, id)->next;
+  const char *unit = dim_text(b->dims, want), *text = ast_short(b, arg);
+  diag_error(b->diags, ast_expr(b->ast, arg)->span, "units do not match: the argument `%s` of `%s` is %s here, `%s` %s",
+             ast_expr(b->ast, id)->name, x->name, in_unit(b, unit), text, v->bare ? "has no unit" : in_unit(b, shown_unit(b, v)));
+  if (v->bare) diag_help(b->diags, "give the number its unit: `%s [%s]`", text, unit);
+  DimCause c;
+  if (dim_cause(b->dims, in->args[i].dim, &c)) diag_also(b->diags, c.why, "because of this");
+}
+
+/* Puts the dimensions of the arguments in place of the unknowns; 0, reported, when the body contradicts. */
+static int bind_dims(Eval *ev, const AstExpr *x, const Instance *in, Dim *with) {
+  Builder *b = ev->b;
+  AstId arg = x->args;
+  for (uint32_t i = 0; i < in->nargs; i++, arg = ast_expr(b->ast, arg)->next)
+    with[i] = is_zero(b, value_of(ev, arg)) ? DIM_ANY : value_of(ev, arg)->dim;
+  arg = x->args;
+  for (uint32_t i = 0; i < in->nargs && !b->unitless; i++, arg = ast_expr(b->ast, arg)->next) {
+    Dim own = in->args[i].dim, found = dim_found(b->dims, own);
+    if (found == own) continue; /* the body tells nothing of it */
+    Dim want = dim_replace(b->dims, found, in->first_unknown, in->nargs, with);
+    if (dim_equate(b->dims, with[i], want, ast_expr(b->ast, arg)->span)) continue;
+    report_argument(ev, x, in, i, arg, want);
+    return 0;
+  }
+  return 1;
+}
+
+/* How often the body differentiates the symbols first .. n - 1 of an argument: 0, 1 or 2 times. */
+static uint32_t order_of(const Builder *b, const Instance *in, uint32_t first, uint32_t n) {
+  uint32_t order = 0;
+  for (uint32_t i = in->nplain; i < in->symbols.n; i++)
+    for (uint32_t k = 0; i % in->nplain >= first && i % in->nplain < n && k < parts_of(&in->value); k++)
+      if (expr_contains_sym(b->g, in->value.at[k], in->symbols.at[i])) order = i / in->nplain;
+  return order;
+}
+
+/* What stands for the symbols of an instance: the arguments, and their rates where the body has them.
+ * 0, reported, when an argument has no rate. */
+static int bind_symbols(Eval *ev, const AstExpr *x, const Instance *in, Expr *with) {
+  uint32_t n = 0;
+  for (AstId arg = x->args; arg; arg = ast_expr(ev->b->ast, arg)->next) {
+    Value v = *value_of(ev, arg);
+    uint32_t first = n, parts = parts_of(&v), order = order_of(ev->b, in, first, n += parts);
+    for (uint32_t i = 0;; i++) {
+      for (uint32_t k = 0; k < parts; k++) with[i * in->nplain + first + k] = v.at[k];
+      if (i == order) break;
+      v = time_derivative(ev->b, v, x->span, ev->where);
+      if (!v.e) return 0;
+    }
+  }
+  return 1;
+}
+
+static Value call_instance(Eval *ev, const AstExpr *x, const Instance *in) {
+  Builder *b = ev->b;
+  Dim *dims = ARENA_ARRAY(b->arena, Dim, in->nargs + 1);
+  Expr *with = ARENA_ARRAY(b->arena, Expr, in->symbols.n + 1);
+  if (!in->value.e || !bind_dims(ev, x, in, dims) || !bind_symbols(ev, x, in, with)) return FAILED;
+  Value r = in->value;
+  r.dim = dim_replace(b->dims, r.dim, in->first_unknown, in->nargs, dims);
+  for (uint32_t k = 0; k < parts_of(&r); k++) r.at[k] = expr_replace(b->g, r.at[k], in->symbols.at, with, in->symbols.n);
+  return r;
+}
+
+Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
+  Builder *b = ev->b;
+  const Definition *f = &b->functions.at[e->index];
+  uint32_t nargs = count_args(b, f), n = 0, *shapes = ARENA_ARRAY(b->arena, uint32_t, nargs + 1);
+  if (ev->where < IN_DYNAMICS) {
+    diag_error(b->diags, x->span, "`%s` is a function of the model's own, and may not be used here", x->name);
+    return FAILED;
+  }
+  if (!arity_is(ev, x, nargs)) return FAILED;
+  for (AstId arg = x->args; arg; arg = ast_expr(b->ast, arg)->next) {
+    if (!value_of(ev, arg)->e) return FAILED;
+    shapes[n++] = value_of(ev, arg)->n;
+  }
+  uint32_t place = find_instance(b, e->index, nargs, shapes);
+  if (b->instances.at[place]->done) return call_instance(ev, x, b->instances.at[place]);
+  wait_for(ev, ENT_FUNCTION, place, f->progress, x->name, x->span);
+  return FAILED;
+}
+
+/* --- functions that nothing calls --- */
+
+/* Shapes number k of n arguments: 0 0, 2 0, 3 0, 0 2, ... */
+static void take_shapes(uint32_t k, uint32_t n, uint32_t *shapes) {
+  static const uint32_t kinds[] = {0, 2, 3};
+  for (uint32_t i = 0; i < n; i++, k /= 3) shapes[i] = kinds[k % 3];
+}
+
+void check_uncalled(Builder *b, uint32_t function) {
+  enum { MOST_ARGS = 4 };
+  const Definition *f = &b->functions.at[function];
+  uint32_t n = count_args(b, f), tries = 1, mark = dims_mark(b->dims);
+  uint32_t *shapes = ARENA_ARRAY(b->arena, uint32_t, n + 1);
+  if (f->instances) return;
+  for (uint32_t i = 0; i < n; i++) tries = n > MOST_ARGS ? 1 : tries * 3;
+  Diags *heard = b->diags;
+  int good = 0;
+  for (uint32_t k = 0; k < tries && !good; k++) {
+    take_shapes(k, n, shapes);
+    b->diags = diags_new(b->arena, b->ast->sources);
+    resolve_instance(b, function, shapes);
+    good = !b->diags->errors;
+    if (!good) dims_undo(b->dims, mark);
+  }
+  b->diags = heard;
+  take_shapes(0, n, shapes);
+  if (!good) resolve_instance(b, function, shapes);
+}

@@ -1,0 +1,56 @@
+#!/bin/sh
+# The exact linearisation that `--with linear` adds to a model: clean C, right derivatives for every model, and nothing
+# of it where it was not asked for.
+: "${LAGC:=build/lagc}" "${INC:=runtime/include}" "${CC:=cc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+export TMP
+. tests/tap.sh
+
+strict='-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror'
+mkdir -p "$TMP/c"
+# A file for each scene; several may have one model, and scenes of two models one name.
+n=0
+for m in models/*.lag tests/exec/models/*.lag; do
+  for scene in $(sed -n 's/^scene \([^ ]*\).*/\1/p' "$m"); do
+    n=$((n + 1))
+    "$LAGC" emit "$m" "$scene" --with linear -o "$TMP/emitted.c" || echo "$m $scene" >>"$TMP/failed"
+    sed "s/^const lag_model /static &/; s/^const lag_scene .* = {/const lag_scene scene_$n = {/" "$TMP/emitted.c" >"$TMP/c/m$n.c"
+  done
+done
+check "every model has a linearisation" test ! -e "$TMP/failed"
+check "its C is clean" sh -c "for f in $TMP/c/m*.c; do $CC -std=c11 $strict -fsyntax-only -I$INC \$f || exit 1; done"
+if [ -n "${CLANG:-}" ]; then
+  check "its C is clean with clang" sh -c "for f in $TMP/c/m*.c; do $CLANG -std=c11 $strict -fsyntax-only -I$INC \$f || exit 1; done"
+else
+  skip "its C is clean with clang" "there is no clang"
+fi
+
+not_asked() {
+  for m in models/*.lag; do
+    "$LAGC" emit "$m" -o "$TMP/plain.c" && ! grep -q 'linearise' "$TMP/plain.c" || { echo "$m"; return 1; }
+  done
+}
+check "a model that was not asked for it has none" not_asked
+is "a part that does not exist" "lagc: --with takes linear (the exact linearisation), not \`nothing\`" \
+  "$("$LAGC" emit models/spring.lag --with nothing 2>&1)"
+
+{
+  echo '#include "lag_model.h"'
+  seq -f 'extern const lag_scene scene_%g;' "$n"
+  echo 'extern const lag_scene *const all_scenes[];'
+  echo 'const lag_scene *const all_scenes[] = {'
+  seq -f '  &scene_%g,' "$n"
+  echo '  0};'
+} >"$TMP/c/scenes.c"
+echo '#include <quadmath.h>' >"$TMP/quad.h"
+quad="-std=gnu11 -O1 -w -I$INC -include $TMP/quad.h -DLAG_REAL=__float128 -DLAG_FN(x)=x##q -DLAG_C(x)=x##Q"
+right() {
+  # shellcheck disable=SC2086 # flags
+  "$CC" $quad "$TMP"/c/*.c tests/exec/linear_quad.c -lquadmath -lm -o "$TMP/linear" && "$TMP/linear"
+}
+if echo 'int main(void) { return 0; }' | "$CC" -include "$TMP/quad.h" -x c - -lquadmath -o "$TMP/quad" 2>/dev/null; then
+  check "the Jacobian of every model, against differences in quadruple precision" right
+else
+  skip "the Jacobian of every model" "there is no libquadmath"
+fi
+tap_end

@@ -1,0 +1,123 @@
+#!/bin/sh
+# Long models: their C has loops, is short, compiles soon, and computes what straight-line code computes, to the last bit.
+: "${LAGC:=build/lagc}" "${BUILD:=build}" "${INC:=runtime/include}" "${CC:=cc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+. tests/tap.sh
+mkdir -p "$TMP/m" "$TMP/c"
+
+# ---- models
+longer() { sed "s/^const N = .*/const N = $2/; s/^model $1/model $1_$2/" "models/$1.lag" >"$TMP/m/$1_$2.lag"; }
+longer chain 120
+longer string 500
+
+# The chain without families, links one by one.
+awk 'BEGIN {
+  print "model by_hand\nparam m = 1 > 0, l = 1 > 0, g = 9.81 > 0\nlet x0 = 0, y0 = 0"
+  for (i = 1; i <= 100; i++) {
+    printf "coord a%d\nlet x%d = x%d + l*sin(a%d)\nlet y%d = y%d - l*cos(a%d)\n", i, i, i-1, i, i, i-1, i
+    L = L (i > 1 ? " + " : "") sprintf("m/2*(x%d'"'"'^2 + y%d'"'"'^2) - m*g*y%d", i, i, i)
+  }
+  print "lagrangian = " L
+}' >"$TMP/m/by_hand.lag"
+
+# Pairs of bodies in space; a lattice with two indices, hard springs and friction; links with two angles.
+cat >"$TMP/m/bodies.lag" <<'END'
+model bodies
+const N = 20
+coord r[N]: vec3
+param m[N] = 1 > 0, G = 1, soft = 0.1
+kinetic = sum(i in 1..N, m[i]/2*dot(r[i]', r[i]'))
+potential = -sum(i in 1..N, sum(j in 1..i-1, G*m[i]*m[j]/sqrt(dot(r[i] - r[j], r[i] - r[j]) + soft^2)))
+END
+cat >"$TMP/m/lattice.lag" <<'END'
+model lattice
+const N = 16
+coord u[N,N]
+param m = 1 > 0, k = 1, b = 0.1
+let up[i in 1..N, j in 1..N] = if(i > 1, u[i,j] - u[i-1,j], u[i,j])
+let side[i in 1..N, j in 1..N] = if(j > 1, u[i,j] - u[i,j-1], u[i,j])
+kinetic = sum(i in 1..N, sum(j in 1..N, m/2*u[i,j]'^2))
+potential = sum(i in 1..N, sum(j in 1..N, k/2*(up[i,j]^2 + side[i,j]^2) + b/4*up[i,j]^4))
+dissipation = sum(i in 1..N, sum(j in 1..N, 0.01*u[i,j]'^2))
+END
+cat >"$TMP/m/spatial.lag" <<'END'
+model spatial
+const N = 60
+coord th[N], ph[N]
+param m = 1 > 0, I = 0.1 > 0, g = 9.81 > 0
+let x[0] = 0, y[0] = 0, z[0] = 0
+let x[i in 1..N] = x[i-1] + sin(th[i])*cos(ph[i])
+let y[i in 1..N] = y[i-1] + sin(th[i])*sin(ph[i])
+let z[i in 1..N] = z[i-1] - cos(th[i])
+kinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2 + z[i]'^2) + I/2*ph[i]'^2)
+potential = sum(i in 1..N, m*g*z[i])
+END
+# Choices, functions, and steps of two.
+cat >"$TMP/m/odd.lag" <<'END'
+model odd
+const N = 200
+coord x[N]
+param k = 1, c[N] = 0.5
+kinetic = sum(i in 1..N, x[i]'^2/2)
+potential = sum(i in 1..N, k*sqrt(1 + x[i]^2)) + sum(i in 3..N, if(x[i] > x[i-2], (x[i] - x[i-2])^2, 0))
+for i in 2..N { force x[i] = -c[i]*max(x[i]', 0.1)*sign(x[i-1]) }
+END
+models=$(ls "$TMP"/m/*.lag)
+
+# ---- what is emitted
+emit_all() {
+  n=0
+  for m in $models; do
+    n=$((n + 1))
+    "$LAGC" emit "$m" -o "$TMP/c/m$n.c" || return 1
+  done
+}
+check "lagc emit" emit_all
+has_loops() { # MODEL LINES: at most so many between the braces of accel
+  "$LAGC" derive "$TMP/m/$1.lag" --format c >"$TMP/accel.c" && grep -q 'for (int k' "$TMP/accel.c" || { echo "no loop"; return 1; }
+  lines=$(wc -l <"$TMP/accel.c")
+  [ "$lines" -le "$2" ] || { echo "$lines lines"; return 1; }
+}
+check "a chain of 120 links: as long as one of 20" has_loops chain_120 250
+check "a chain by hand rolls, too" has_loops by_hand 250
+check "500 masses on springs" has_loops string_500 60
+check "a lattice" has_loops lattice 700
+check "links in space" has_loops spatial 800
+check "choices and functions" has_loops odd 120
+is "a short model has none" 0 "$("$LAGC" derive models/chain.lag --format c | grep -c 'for (int k')"
+
+strict='-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror'
+for c in "$CC" ${CLANG:-}; do
+  # shellcheck disable=SC2086 # flags
+  check "the C is clean with $(basename "$c")" sh -c "for f in $TMP/c/*.c; do $c -std=c11 $strict -fsyntax-only -I$INC \$f || exit 1; done"
+done
+header() {
+  "$LAGC" header "$TMP/m/chain_120.lag" -o "$TMP/chain.h" && printf '#define CHAIN_IMPLEMENTATION\n#include "chain.h"\nint main(void) { return 0; }\n' >"$TMP/header.c" &&
+    grep -q 'for (int k' "$TMP/chain.h" && "$CC" -std=c11 $strict -I"$TMP" -c "$TMP/header.c" -o "$TMP/header.o"
+}
+check "a header of a long chain" header
+
+# ---- what it computes
+ids=
+for f in "$TMP"/c/*.c; do ids="$ids $(sed -n 's/^const lag_scene \([a-z0-9_]*\) = .*/\1/p' "$f" | head -1)"; done
+{
+  echo '#include "lag_model.h"'
+  for i in $ids; do echo "extern const lag_scene $i;"; done
+  echo 'extern const lag_scene *const all_scenes[];'
+  echo 'const lag_scene *const all_scenes[] = {'
+  for i in $ids; do echo "  &$i,"; done
+  echo '  0};'
+} >"$TMP/scenes.c"
+agrees() {
+  "$CC" -std=gnu11 -O1 -w -ffp-contract=off -D_XOPEN_SOURCE=700 -Isrc -I"$INC" -DMAX=1200 '-DLAG_REAL=long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L' \
+    tests/exec/emit_agree.c "$TMP"/c/*.c "$TMP/scenes.c" "$BUILD/liblagc.a" -lm -o "$TMP/agree" && "$TMP/agree" $models
+}
+check "loops compute what the program says, to the last bit" agrees
+
+# ---- and how soon
+grows() {
+  "$LAGC" emit models/chain.lag -DN=1000 -o "$TMP/long.c" && awk '/^static int accel/,/^}/' "$TMP/long.c" | wc -l >"$TMP/lines" && [ "$(cat "$TMP/lines")" -le 250 ] || return 1
+  timeout 60 "$CC" -O2 -std=c11 -I"$INC" -c "$TMP/long.c" -o "$TMP/long.o"
+}
+check "a chain of 1000 links is emitted and compiled" grows
+tap_end

@@ -1,0 +1,111 @@
+/* lag_jacobian and lag_linearise on models written by hand: what emitted derivatives become as dense matrices. */
+#include "test_rt_models.h"
+
+/* L = x'y' + y'^2/2 - k x y - c/2 x^2, force -d x' on x: M = [0 1; 1 1] needs pivoting. r = (-k y - c x - d x' - a_y,
+ * -k x - a_x - a_y). And a state: z' = x - 2 z. */
+enum { K = 3, C = 5, D = 7 };
+
+static int pair_accel(ARGS, double *a, double *zd, UNUSED double *w)
+{
+  a[1] = -K * q[1] - C * q[0] - D * v[0];
+  a[0] = -K * q[0] - a[1];
+  zd[0] = q[0] - 2 * z[0];
+  return 0;
+}
+
+static int pair_linear(ARGS, UNUSED const double *a, double *dr, double *M, UNUSED double *w)
+{
+  const double entries[] = {-C, -K, -D, -K, 1, -2};
+
+  memcpy(dr, entries, sizeof entries);
+  M[0] = M[1] = 1;
+  return 0;
+}
+
+static const lag_entry pair_dr[] = {{0, 0}, {0, 1}, {0, 2}, {1, 0}, {2, 0}, {2, 4}}, pair_mass[] = {{1, 0}, {1, 1}};
+static const lag_linear pair_linearised = {6, pair_dr, 2, pair_mass, 0, pair_linear};
+static const lag_model pair = {MODEL("pair"), .nq = 2, .nz = 1, .q = names_q, .z = names_z, .accel = pair_accel,
+                               .linear = &pair_linearised};
+
+static lag_problem problem(const lag_model *m)
+{
+  return (lag_problem){.model = m, .nq = m->nq, .nz = m->nz, .n = 2 * m->nq + m->nz, .dir = 1, .bad_index = -1};
+}
+
+static void test_jacobian(void **state)
+{
+  (void)state;
+  lag_problem pb = problem(&pair);
+  const double y[] = {0.1, 0.2, 0.3, 0.4, 0.5};
+  /* a_y = -c x - k y - d x', a_x = -k x - a_y */
+  const double want[] = {C - K, K, D, 0, 0, -C, -K, -D, 0, 0, 1, 0, 0, 0, -2};
+  double J[15], *work = calloc(lag_linear_work(&pair), sizeof *work);
+
+  assert_int_equal(lag_jacobian(&pb, 0, y, J, work), LAG_OK);
+  for (int i = 0; i < 15; i++) {
+    assert_close(J[i], want[i], 0); /* small integers: exact */
+  }
+  assert_true(pb.rhs_calls == 1);
+  free(work);
+}
+
+static void test_linearise(void **state)
+{
+  (void)state;
+  lag_problem pb = problem(&pair);
+  const double y[5] = {0}, want[] = {-C, -K, -D, 0, 0, -K, 0, 0, 0, 0, 1, 0, 0, 0, -2}, mass[] = {0, 1, 1, 1};
+  double dr[15], M[4], *work = calloc(lag_linear_work(&pair), sizeof *work);
+
+  assert_int_equal(lag_linearise(&pb, 0, y, NULL, dr, M, work), LAG_OK);
+  for (int i = 0; i < 15; i++) {
+    assert_close(dr[i], want[i], 0);
+  }
+  for (int i = 0; i < 4; i++) {
+    assert_close(M[i], mass[i], 0);
+  }
+  assert_true(pb.rhs_calls == 0);
+  free(work);
+}
+
+static int null_mass(ARGS, UNUSED const double *a, double *dr, double *M, UNUSED double *w)
+{
+  memset(dr, 0, 6 * sizeof *dr);
+  M[0] = 0;
+  M[1] = 1;
+  return 0;
+}
+
+static int leaves(ARGS, UNUSED const double *a, UNUSED double *dr, UNUSED double *M, UNUSED double *w)
+{
+  return LAG_ERETRY;
+}
+
+static void test_errors(void **state)
+{
+  (void)state;
+  const lag_linear singular = {6, pair_dr, 2, pair_mass, 0, null_mass}, outside = {6, pair_dr, 2, pair_mass, 0, leaves};
+  const double y[5] = {0};
+  double J[15], *work = calloc(lag_linear_work(&pair), sizeof *work);
+  lag_model m = pair;
+  lag_problem pb = problem(&m);
+
+  m.linear = &singular;
+  assert_int_equal(lag_jacobian(&pb, 0, y, J, work), LAG_ESINGULAR);
+  m.linear = &outside;
+  assert_int_equal(lag_jacobian(&pb, 0, y, J, work), LAG_ERETRY);
+  m.linear = NULL;
+  assert_int_equal(lag_linear_work(&m), 0);
+  assert_int_equal(lag_jacobian(&pb, 0, y, J, NULL), LAG_EMETHOD);
+  assert_non_null(strstr(pb.detail, "--with linear"));
+  free(work);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_jacobian),
+      cmocka_unit_test(test_linearise),
+      cmocka_unit_test(test_errors),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
