@@ -25,6 +25,11 @@ extern "C" {
 #define LAG_REAL_IS_DOUBLE 1
 #endif
 
+/* The highest order of Taylor series that a program has room for. */
+#ifndef LAG_TAYLOR_ORDER
+#define LAG_TAYLOR_ORDER 40
+#endif
+
 enum {
   LAG_OK = 0,
   LAG_ERETRY = 1,     /* outside the domain here: a smaller step may help */

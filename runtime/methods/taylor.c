@@ -8,7 +8,7 @@
  * convergence. Motions with symmetries have series with gaps: a pendulum that starts from rest at a right angle has only the
  * coefficients 2, 6, 10, ... of its angle. So here
  *  1. the root test is made with the last WINDOW coefficients, r = max_k |x_k|^(1/k), and the step is such that a series
- *     with |x_k| = r^k leaves out no more than the tolerance: (r h)^(p+1) = rtol;
+ *     with |x_k| = r^k leaves out a fraction of the tolerance: (r h)^(p+1) = rtol/4, and less near rounding;
  *  2. the defect at the end of the step, y'(h) of the polynomial against the model's f(y(h)), sees all coefficients that
  *     are left out. What it says of the error must be below the tolerance, or the step is made smaller. A defect that
  *     does not shrink with the step as h^p is rounding, and is accepted.
@@ -22,7 +22,6 @@
 #include "methods/near.h"
 #include "methods/steps.h"
 
-/* The step aims at an error of 2^-AIM tolerances. */
 enum { WINDOW = 5, LEAST_ORDER = 6, AIM = 2 };
 
 enum { OPT_STEP, OPT_MAX, OPT_ATOL, OPT_ADAPT, OPT_ORDER, NOPTIONS };
@@ -34,7 +33,7 @@ static const lag_method_option options[NOPTIONS] = {
     {"max_step", "largest step [s]; 0: a tenth of the scene's span, or the time since the start", 0, 0, HUGE_VAL, NULL},
     {"atol", "absolute tolerance [SI]; 0: the same number as the relative one", 0, 0, HUGE_VAL, NULL},
     {"adapt", "off: every step has the size `step`, whatever the error", 0, 0, 1, on_off},
-    {"order", "order of the series; 0: chosen from the tolerance", 0, 0, 1000, NULL},
+    {"order", "order of the series; 0: chosen from the tolerance and what an order costs", 0, 0, LAG_TAYLOR_ORDER, NULL},
 };
 
 /* One block of doubles; behind it the arrays below. */
@@ -95,12 +94,22 @@ static void reset(void *work, lag_problem *pb)
   memset(array(w, pb, COMP), 0, (size_t)width(pb) * sizeof(double));
 }
 
+/* The error that the step aims at, as -log2 of a relative one: a fraction of the tolerance, and far below what rounding leaves
+ * where the tolerance comes near to that: an error of each step in one direction would add up as the number of steps, rounding
+ * as its root. */
+static double aim(const lag_problem *pb)
+{
+  double left = 1.5 * (9 - lag_log2_near(pb->tol / DBL_EPSILON)); /* 10 at 1e-15, 0 at 1e-13 */
+
+  return AIM - lag_log2_near(pb->tol) + (left < 0 ? 0 : left > 10 ? 10 : left);
+}
+
 /* The order that covers the most time for its operations. Of a step itself, 300 of them; the products of the sums are made
  * two at a time. */
 static double best_order(const lag_problem *pb)
 {
   const lag_taylor *ty = pb->model->taylor;
-  double bits = -log2(pb->tol), least = HUGE_VAL;
+  double bits = aim(pb), least = HUGE_VAL;
   int best = LEAST_ORDER;
 
   for (int p = LEAST_ORDER; p <= ty->order; p++) {
@@ -115,11 +124,7 @@ static int init(void *work, lag_problem *pb, const double *opt)
 {
   Taylor *w = work;
 
-  w->order = opt[OPT_ORDER] > 0 ? floor(opt[OPT_ORDER]) : best_order(pb);
-  if (w->order > pb->model->taylor->order) {
-    pb->detail = "its order is higher than this build allows";
-    return LAG_EMETHOD;
-  }
+  w->order = fmin(pb->model->taylor->order, opt[OPT_ORDER] > 0 ? ceil(opt[OPT_ORDER]) : best_order(pb));
   w->fixed = opt[OPT_ADAPT];
   w->h_option = lag_step_size(pb, opt[OPT_STEP]);
   w->h_max = opt[OPT_MAX] > 0 ? opt[OPT_MAX] : pb->span / 10;
@@ -222,7 +227,7 @@ static double allowed(Taylor *w, lag_problem *pb, const double *y)
   if (root == -HUGE_VAL) {
     return HUGE_VAL;
   }
-  return fabs(w->unit[w->now > 0]) * lag_exp2_near((lag_log2_near(pb->tol) - AIM) / (order + 1) - root);
+  return fabs(w->unit[w->now > 0]) * lag_exp2_near(-aim(pb) / (order + 1) - root);
 }
 
 /* The error of a step of dt that ends at Y1, in tolerances: item 2 above. The polynomial leaves out c t^(p+1) and what
@@ -336,8 +341,10 @@ static void dense(void *work, lag_problem *pb, double t, double *y)
 
 const lag_method lag_taylor_method = {
     .name = "taylor",
-    .order = 0,
-    .dense_order = 0,
+    .order = 20,
+    .dense_order = 20,
+    .order_least = 1,
+    .order_most = LAG_TAYLOR_ORDER,
     .doc = "Taylor series of an order that follows from the tolerance, for tolerances below 1e-9. DOI 10.1080/10586458.2005.10128904",
     .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_TAYLOR,
     .noptions = NOPTIONS,

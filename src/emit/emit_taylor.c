@@ -16,8 +16,6 @@ static const char *const arrays[ARR_COUNT] = {
 
 static const char *const head =
   "\n/* --- Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... --- */\n"
-  "\n"
-  "#ifndef LAG_TAYLOR_ORDER\n#define LAG_TAYLOR_ORDER 40\n#endif\n"
   "\n/* Two numbers side by side, where the compiler has such a type. They are stored as they are loaded: a processor hands\n"
   " * on what it has just stored only to loads of no more than that. */\n"
   "#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE)\n"

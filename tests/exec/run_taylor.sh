@@ -65,4 +65,52 @@ wrong_defect() { # a sign in one of the recurrences of the double pendulum
 }
 check "this test sees a wrong sign" wrong_defect
 is "models that are not analytic have none" "without: motor" "$(grep without "$TMP/defect.txt" | sort -u)"
+
+# ---- the method
+mkdir -p "$TMP/r"
+for m in "models/pendulum.lag wide" "models/double_pendulum.lag swing" "models/kepler.lag orbit" "models/bouncing_ball.lag drop" \
+  "tests/exec/cases/kepler_e0_6.lag go" "$here/gap.lag go"; do
+  # shellcheck disable=SC2086 # two words
+  set -- $m
+  "$LAGC" emit "$1" "$2" --method taylor -o "$TMP/r/$(basename "$1" .lag).c"
+done
+check "runs.c compiles" "$CC" -std=c11 -O1 -ffp-contract=off -I"$INC" "$TMP"/r/*.c $here/runs.c "$BUILD/liblag.a" -lm -o "$TMP/runs"
+"$TMP/runs" >"$TMP/runs.txt" 2>&1 || true
+grep -q '^1\.\.' "$TMP/runs.txt" || check "runs.c runs to its end" false
+while read -r line; do
+  case $line in
+    "ok "*) check "${line#ok * - }" true ;;
+    "not ok "*) check "${line#not ok * - }" false ;;
+    "# "*) echo "$line" ;;
+  esac
+done <"$TMP/runs.txt"
+
+run() { "$LAGC" run "$@" >"$TMP/out" 2>"$TMP/err"; }
+refused() { # WORDS ARGS...
+  words=$1
+  shift
+  run "$@"
+  [ $? = 2 ] && grep -qF -e "$words" "$TMP/err" || { cat "$TMP/out" "$TMP/err"; return 1; }
+}
+failed() { # WORDS ARGS...
+  words=$1
+  shift
+  run "$@"
+  [ $? = 3 ] && grep -q -e "$words" "$TMP/out" "$TMP/err" || { cat "$TMP/out" "$TMP/err"; return 1; }
+}
+check "if, abs, sign, min, max are refused, and dop853 is named" refused "without if, abs, sign, min and max; dop853" tests/exec/models/motor.lag --method taylor
+without() {
+  "$LAGC" build models/pendulum.lag -o "$TMP/sim" && ! "$TMP/sim" --method taylor 2>"$TMP/err" && grep -q 'lagc run MODEL --method taylor' "$TMP/err" &&
+    "$LAGC" build models/pendulum.lag --method taylor -o "$TMP/sim" && "$TMP/sim" --method taylor --quiet --until 1
+}
+check "a simulator that was built without series says how to build it" without
+check "a collision ends the run: when, and why" failed 't = 1.1107.*step became too small' $here/fall.lag --method taylor
+check "an order that is too high" refused "order = 99 is outside" models/pendulum.lag --method "taylor(order=99)"
+final() { sed -n "s/^  $1  *\([^ ]*\).*/\1/p" "$TMP/out"; }
+near() { awk -v x="$1" -v y="$2" 'BEGIN { d = x - y; exit !(d < 1e-14 && d > -1e-14) }'; }
+inputs() { # x' = 3 sin(2 t), and x' = 2 where a constant takes the place of the formula
+  run $here/driven.lag --method taylor --tol 1e-15 --until 1 && near "$(final x)" 2.1242202548207136 &&
+    run $here/driven.lag F=2 --method taylor --tol 1e-15 --until 1 && near "$(final x)" 2
+}
+check "an input: along its formula, and held" inputs
 tap_end
