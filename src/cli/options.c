@@ -31,13 +31,13 @@ static const struct {
   {"build", CMD_BUILD, "lagc build MODEL -o SIMULATOR [--method NAME] [--with linear] [--no-gsl]",
    "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options.\n\n"
    "  --method NAME     with what this method needs of the model besides accelerations: variational, gauss,\n"
-   "                    radau, or verlet of a model that is not separable. The scenes' own methods need no mention\n"
+   "                    radau, taylor, or verlet of a model that is not separable. The scenes' own methods need no mention\n"
    "  --with linear     with the exact linearisation of the model\n"
    "  --no-gsl          leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole\n"},
   {"run", CMD_RUN, "lagc run MODEL [SCENE] [name=value ...] [--method M] [--tol X] [--until T] ...",
    "Builds the simulator (or takes it from the cache) and runs it; the options are the simulator's:\n\n"
    "  name=value        a parameter, a start value (th=1.2, \"th'=0.5\") or an input\n"
-   "  --method NAME     rk45, dop853, verlet4, gsl-rk8pd, ...; `--method help` lists them\n"
+   "  --method NAME     rk45, dop853, taylor, verlet4, gsl-rk8pd, ...; `--method help` lists them\n"
    "  --tol X --step H --until T --every DT\n"
    "  -o FILE           .csv or .npy\n"
    "  --json            the summary as one JSON object\n"
