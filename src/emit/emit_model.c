@@ -29,8 +29,8 @@ static const char *const abi_names[] = {
   "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_MASK", "lag_solve", "lag_var", "lag_event", "lag_model", "lag_option",
   "lag_monitor", "lag_scene", "lag_program", "lag_entry", "lag_linear", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
   "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL",
-  "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_lanes", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
-  "taylor_rest", "taylor_term", "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV",
+  "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_lanes", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
+  "taylor_rest", "taylor_squares", "TAYLOR_SQUARES", "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV",
   "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };

@@ -45,10 +45,13 @@ typedef struct {
 typedef struct {
   const Prog *first;     /* order 0. out 0: x[0], its q'' and z'; out 1: c, what `next` needs of it */
   const Prog *next;      /* order k. Reads x[k] of q, v, z, t, the sums s and c. out 0: x[k], its q'' and z'; out 1: x[k+1], its
-                            q, v and z; out 2, 3: a[k], b[k] */
+                            q, v and z; out 2, 3: a[k], b[k] (none of squares) */
   uint32_t nq, nz;
   uint32_t columns;      /* of x: a multiple of 4 */
-  uint32_t sums;         /* pairs: columns of a and b */
+  uint32_t sums;         /* pairs, of which each has a column of a, b and s, */
+  uint32_t squares;      /* and pairs of a value with itself that have one of a and s, behind the others, */
+  uint32_t group;        /* both in groups of so many columns, of which the last may be filled up, */
+  uint32_t first_square, width; /* so that squares begin at this column and all end at that */
   uint32_t constants;    /* of c */
   uint32_t room;         /* for blocks that are factored by a loop, in reals */
   int uses_time;
