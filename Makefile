@@ -67,12 +67,24 @@ $(BUILD)/obj/src/%.o: src/%.c
 $(BUILD)/obj/runtime/%.o: runtime/%.c
 	@mkdir -p $(@D)
 	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAN) -MMD -MP -c -o $@ $<
-# The page of an animation as C: a string a line.
+SHELLS := bash zsh fish
+# Texts as C, in the order of their lines: `static const char *const NAME[]`, with the name of the file that they become.
+AS_C = { echo 'static const char *const $(basename $(@F))[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $<; echo '};'; }
 $(BUILD)/gen/io/page.h: runtime/io/page.html
 	@mkdir -p $(@D)
-	{ echo 'static const char *const page[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $<; echo '};'; } >$@.part
+	$(AS_C) >$@.part
+	@mv $@.part $@
+$(BUILD)/gen/cli/language.h: grammar/LANGUAGE.md
+	@mkdir -p $(@D)
+	$(AS_C) >$@.part
+	@mv $@.part $@
+$(BUILD)/gen/cli/complete_%.h: src/cli/complete.%
+	@mkdir -p $(@D)
+	$(AS_C) >$@.part
 	@mv $@.part $@
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
+$(BUILD)/obj/src/cli/reference.o: $(BUILD)/gen/cli/language.h
+$(BUILD)/obj/src/cli/shells.o: $(SHELLS:%=$(BUILD)/gen/cli/complete_%.h)
 # Generated code is not ours to warn about.
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 	@mkdir -p $(@D)
@@ -190,10 +202,12 @@ endif
 # ---- installing -------------------------------------------------------------------------------------
 MODELS := $(wildcard models/*.lag models/*.csv)
 PC     := $(BUILD)/liblag.pc
+COMPLETIONS := bash-completion/completions zsh/site-functions fish/vendor_completions.d
 
 install: all
 	install -d '$(DESTDIR)$(PREFIX)/bin' '$(DESTDIR)$(PREFIX)/lib/pkgconfig' '$(DESTDIR)$(PREFIX)/include' \
-	  '$(DESTDIR)$(PREFIX)/share/lagc/models' '$(DESTDIR)$(PREFIX)/share/man/man1' '$(DESTDIR)$(PREFIX)/share/doc/lagc'
+	  '$(DESTDIR)$(PREFIX)/share/lagc/models' '$(DESTDIR)$(PREFIX)/share/man/man1' '$(DESTDIR)$(PREFIX)/share/doc/lagc' \
+	  $(COMPLETIONS:%='$(DESTDIR)$(PREFIX)/share/%')
 	install -m 755 $(BUILD)/lagc '$(DESTDIR)$(PREFIX)/bin'
 	install -m 644 $(LIBLAG) '$(DESTDIR)$(PREFIX)/lib'
 	install -m 644 runtime/include/lag.h runtime/include/lag_model.h '$(DESTDIR)$(PREFIX)/include'
@@ -204,13 +218,18 @@ ifneq ($(GSL),)
 	install -m 644 $(PC:.pc=_gsl.pc) '$(DESTDIR)$(PREFIX)/lib/pkgconfig'
 endif
 	install -m 644 $(MODELS) '$(DESTDIR)$(PREFIX)/share/lagc/models'
+	install -m 644 grammar/lag.tmLanguage.json '$(DESTDIR)$(PREFIX)/share/lagc'
 	install -m 644 src/lagc.1 '$(DESTDIR)$(PREFIX)/share/man/man1'
+	install -m 644 src/cli/complete.bash '$(DESTDIR)$(PREFIX)/share/bash-completion/completions/lagc'
+	install -m 644 src/cli/complete.zsh '$(DESTDIR)$(PREFIX)/share/zsh/site-functions/_lagc'
+	install -m 644 src/cli/complete.fish '$(DESTDIR)$(PREFIX)/share/fish/vendor_completions.d/lagc.fish'
 	install -m 644 LICENSE README.md '$(DESTDIR)$(PREFIX)/share/doc/lagc'
 
 # Removes what install puts there, and the folders that are lagc's own.
 uninstall:
 	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a include/lag.h include/lag_model.h \
-	  lib/pkgconfig/liblag.pc lib/pkgconfig/liblag_gsl.pc share/man/man1/lagc.1 && rm -rf share/lagc share/doc/lagc
+	  lib/pkgconfig/liblag.pc lib/pkgconfig/liblag_gsl.pc share/man/man1/lagc.1 share/bash-completion/completions/lagc \
+	  share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish && rm -rf share/lagc share/doc/lagc
 
 # ---- the rest ---------------------------------------------------------------------------------------
 clean:

@@ -79,7 +79,7 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %type <one> single coord param const input_ state let map map_item each required excluded
 %type <one> assign option use monitor
 %type <list> dims indices places_bound exprs args names
-%type <id> expr arith primary place bound value comparison every number literal declared gap tuple
+%type <id> expr arith primary reach place bound value comparison every number literal declared gap tuple
 %type <text> doc
 %type <unit> unit
 %type <ident> type method_name
@@ -149,7 +149,7 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "output" exprs[l] every[e]              { $$ = stmt_output(ast, @$, $l, $e); }
       | "like" IDENT[n]                         { $$ = stmt_name(ast, STMT_LIKE, @$, $n); }
       | "stop"                                  { $$ = stmt_plain(ast, STMT_STOP, @$); }
-      | assign[a]                               { $$ = $a; }
+      | place[p] "=" value[v]                   { $$ = stmt_pair(ast, STMT_SET, @$, $p, $v); }
       ;
 
 /* ---- lists of declarations: one statement each ---- */
@@ -336,11 +336,15 @@ primary: NUMBER[n]                          { $$ = ast_number(ast, @n, $n); }
        | "(" expr[e] ")"                    { $$ = $e; }
        | tuple[e]                           { $$ = $e; }
        | "{" exprs[l] "}"                   { $$ = ast_collect(ast, AST_LIST, @$, $l); }
-       | primary[a] "[" indices[l] "]"      { $$ = ast_index(ast, @$, $a, $l); }
-       | primary[a] "." IDENT[m]            { $$ = ast_member(ast, @$, $a, $m); }
-       | primary[a] "'"[op]                 { $$ = ast_prime(ast, @$, @op, $a); }
+       | reach[e]                           { $$ = $e; }
+       | reach[a] "(" expr[b] ")"           { $$ = ast_at(ast, @$, $a, $b); }
        | primary[a] UNIT[u]                 { $$ = ast_unit(ast, @$, $a, $u); }
        ;
+/* What may have a value at a time, besides a name, which is written like the call of a function. */
+reach: primary[a] "[" indices[l] "]"        { $$ = ast_index(ast, @$, $a, $l); }
+     | primary[a] "." IDENT[m]              { $$ = ast_member(ast, @$, $a, $m); }
+     | primary[a] "'"[op]                   { $$ = ast_prime(ast, @$, @op, $a); }
+     ;
 
 tuple: "(" expr[e] "," exprs[l] ")" { $$ = ast_tuple(ast, @$, $e, $l); };
 args: %empty   { $$ = NONE_LIST; }

@@ -9,18 +9,23 @@
 
 #include "base/diag.h"
 #include "cli/files.h"
+#include "cli/methods.h"
 #include "cli/options.h"
+#include "cli/shells.h"
 #include "cli/toolchain.h"
+#include "complete.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
 #include "emit/emit_model.h"
+#include "help.h"
 #include "ir/lower.h"
 #include "mech/eqns.h"
 #include "mech/expect.h"
 #include "mech/show.h"
 #include "model/model.h"
 #include "picture.h"
+#include "settings.h"
 #include "syntax/parse.h"
 #include "wants.h"
 
@@ -38,6 +43,7 @@ typedef struct {
   Diags *diags;
   Ast *ast;
   Picture picture; /* of run, plot and animate */
+  GivenList given; /* to them */
 } Compiler;
 
 static int fail_usage(const char *message) {
@@ -51,23 +57,25 @@ static int wants_dump(const Compiler *c, const char *stage) {
   return at && (at == c->o.dump || at[-1] == ',') && (at[n] == ',' || at[n] == '\0');
 }
 
+/* A mistyped output must not cost the model, nor a file that it is made of: includes, tables. */
+static int is_source(Compiler *c, const char *path) {
+  for (uint32_t i = 0; i < c->sources->files.n; i++) {
+    if (!file_same(path, c->sources->files.at[i].path)) continue;
+    const char *what = i == 0 ? "the model" : "a part of the model";
+    fail_usage(arena_printf(c->arena, "%s would be overwritten: it is %s; write to another file", path, what));
+    return 1;
+  }
+  return 0;
+}
+
 static int write_out(Compiler *c, const char *path, const StrBuf *text) {
   const char *why;
+  if (path && c->sources && is_source(c, path)) return STATUS_USAGE;
   if (file_write(c->arena, path ? path : "-", sb_text(text), text->n, &why)) return STATUS_OK;
   return fail_usage(arena_printf(c->arena, "cannot write %s: %s", path ? path : "standard output", why));
 }
 
 /* --- the stages --- */
-
-/* A mistyped output must not cost the model, nor a file that it includes. */
-static int spares_sources(Compiler *c) {
-  for (uint32_t i = 0; c->o.output && i < c->sources->files.n; i++) {
-    if (!file_same(c->o.output, c->sources->files.at[i].path)) continue;
-    fail_usage(arena_printf(c->arena, "%s would be overwritten: it is the model; write to another file", c->o.output));
-    return 0;
-  }
-  return 1;
-}
 
 static int read_model(Compiler *c) {
   const char *why = NULL;
@@ -106,7 +114,8 @@ static Eqns *derive_scene(Compiler *c, const char *scene) { return derive_with(c
 
 /* With what the command line asks for besides the scene's outputs. */
 static Eqns *derive_asked(Compiler *c, const char *scene) {
-  return derive(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nasked = c->picture.asked.n});
+  return derive(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nasked = c->picture.asked.n,
+                                  .given = c->given.at, .ngiven = c->given.n});
 }
 
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
@@ -172,19 +181,19 @@ static int do_header(Compiler *c) {
   return write_out(c, c->o.output, &out);
 }
 
-/* The scenes of the file as units: those with the same effects share one. What the command line asks for is asked
+/* The scenes of the file as units: those with the same effects and inputs share one. What the command line asks for is asked
  * of one scene, and only that one is built then. */
 typedef VEC(IrUnit *) Units;
 
 static int lower_all(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast);
-  if (c->picture.asked.n) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
+  if (c->picture.asked.n || c->given.n) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
   for (uint32_t i = 0; i < scenes.n; i++) {
     Eqns *e = derive_asked(c, scenes.at[i]);
     if (!e) return 0;
     IrUnit *fresh = unit_new(e, c->o.file), *home = NULL;
     for (uint32_t k = 0; k < units->n && !home; k++)
-      if (strcmp(units->at[k]->effects, fresh->effects) == 0) home = units->at[k];
+      if (unit_shares(units->at[k], fresh)) home = units->at[k];
     if (!home) vec_push(c->arena, units, home = fresh);
     unit_want(home, e, wants_of(e, &c->o));
     unit_add_scene(home, e);
@@ -198,14 +207,16 @@ typedef VEC(SourceText) Texts;
 static int make_program(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path) {
   const char *error = NULL;
   *path = output ? output : toolchain_cached(c->arena, tools, texts->at, texts->n);
-  if (!output && file_runs(*path)) return STATUS_OK;
+  if (!output && toolchain_is_whole(c->arena, *path)) return STATUS_OK;
   if (!toolchain_build(c->arena, tools, texts->at, texts->n, *path, &error)) return fail_usage(error);
+  if (!output) toolchain_seal(c->arena, *path);
   return STATUS_OK;
 }
 
 static int make_simulator(Compiler *c, const char *output, const char **path) {
   Units units = {0};
   if (!lower_all(c, &units)) return STATUS_MODEL;
+  if (output && is_source(c, output)) return STATUS_USAGE;
   Toolchain tools;
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
@@ -230,12 +241,24 @@ static int do_build(Compiler *c) {
   return make_simulator(c, c->o.output, &path);
 }
 
+/* Whether a file that the simulator would write is one that the model is made of. */
+static int writes_source(Compiler *c) {
+  for (char *const *a = c->picture.argv.at; *a; a++) {
+    const char *eq = strncmp(*a, "--", 2) == 0 ? strchr(*a, '=') : NULL;
+    if (is_source(c, eq ? eq + 1 : *a)) return 1;
+  }
+  return 0;
+}
+
 /* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
 static int do_run(Compiler *c) {
   const char *path, *error = NULL;
+  if (!settings_inputs(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
+  if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
   if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   int status = make_simulator(c, NULL, &path);
   if (status != STATUS_OK) return status;
+  if (writes_source(c)) return STATUS_USAGE;
   fflush(stdout);
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
   execv(path, c->picture.argv.at);
@@ -320,9 +343,29 @@ static int do_check(Compiler *c) {
   return c->diags->errors ? STATUS_MODEL : status;
 }
 
+/* The runtime has them: asked with `--method help`, it prints its table. */
+static int help_methods(Compiler *c) {
+  const char *error = NULL, *path = methods_program(c->arena, c->argv0, 1, &error);
+  char *argv[] = {"lagc", "--method", "help", NULL};
+  if (!path) return fail_usage(error);
+  execv(path, argv);
+  return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
+}
+
 static int do_help(Compiler *c) {
   StrBuf out = strbuf(c->arena);
-  sb_puts(&out, options_help(c->o.topic));
+  const char *topic = c->o.topic;
+  Name near;
+  if (topic && strcmp(topic, "methods") == 0) return help_methods(c);
+  if (help_print(&out, topic, &near)) return write_out(c, NULL, &out);
+  return fail_usage(near ? arena_printf(c->arena, "no help on `%s`: did you mean `%s`?", topic, near)
+                         : arena_printf(c->arena, "no help on `%s`; `lagc help` lists the topics", topic));
+}
+
+static int do_completion(Compiler *c) {
+  StrBuf out = strbuf(c->arena);
+  if (c->o.command == CMD_COMPLETE) complete(&out, c->o.rest.at, c->o.rest.n, c->argv0);
+  else completion_script(&out, c->o.topic);
   return write_out(c, NULL, &out);
 }
 
@@ -334,7 +377,7 @@ static int do_command(Compiler *c) {
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
     case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: return do_run(c);
-    case CMD_METHODS: case CMD_HELP: case CMD_VERSION: case CMD_NONE: break;
+    case CMD_METHODS: case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
   }
   return STATUS_USAGE;
 }
@@ -344,7 +387,7 @@ static int compile(Compiler *c) {
   c->diags = diags_new(c->arena, c->sources);
   c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
   int status = read_model(c);
-  if (status == STATUS_OK) status = spares_sources(c) ? do_command(c) : STATUS_USAGE;
+  if (status == STATUS_OK) status = do_command(c);
   StrBuf messages = strbuf(c->arena);
   diags_print(c->diags, &messages);
   fputs(sb_text(&messages), stderr);
@@ -356,6 +399,7 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   c->argv0 = argv[0];
   if (!options_read(c->arena, argc, argv, &c->o, &error)) return fail_usage(error);
   if (c->o.command == CMD_HELP) return do_help(c);
+  if (c->o.command == CMD_COMPLETION || c->o.command == CMD_COMPLETE) return do_completion(c);
   if (c->o.command == CMD_METHODS) return do_methods(c);
   if (c->o.command == CMD_VERSION) {
     puts("lagc " LAGC_VERSION);

@@ -109,6 +109,24 @@ static void find_only(Maker *k, Found *f) {
   f->points = arena_printf(k->arena, only->periodic ? "sin(%s),-cos(%s)" : "%s,0", only->name, only->name);
 }
 
+/* The vectors among the coordinates, members of families too: r.x,r.y or b[1].x,b[1].y b[2].x,b[2].y. Only the model knows
+ * how many there are. 0 when the model has mistakes. */
+static int find_vectors(Maker *k, Found *f) {
+  enum { MOST = 1000 };
+  ModelChoice choice = {.scene = k->p->scene, .defines = k->o->defines.at, .ndefines = k->o->defines.n};
+  const Model *m = model_build(k->ast, &choice);
+  StrBuf points = strbuf(k->arena);
+  if (!m) return 0;
+  for (uint32_t i = 0, n = 0; i + 1 < m->coords.n && n < MOST; i++) {
+    const char *x = m->coords.at[i].name, *y = m->coords.at[i + 1].name;
+    size_t len = strlen(x);
+    if (len < 3 || strcmp(x + len - 2, ".x") != 0 || strlen(y) != len || strncmp(x, y, len - 1) != 0) continue;
+    sb_printf(&points, "%s%s,%s", n++ ? " " : "", x, y);
+  }
+  if (points.n) f->points = sb_text(&points);
+  return 1;
+}
+
 static Found find_points(Maker *k) {
   Found f = {0};
   StrBuf points = strbuf(k->arena);
@@ -145,20 +163,23 @@ static int is_quiet(const Options *o) {
 }
 
 static int prepare_animate(Maker *k, const char **error) {
+  enum { SHOWN_POINTS = 60 };
   const Options *o = k->o;
   Found f = {.points = o->points, .rods = 1};
   if (!f.points) {
     f = find_points(k);
+    if (!f.points && !find_vectors(k, &f)) return 0;
     if (!f.points) {
-      *error = "which points? the model has no x,y, no x1,y1 x2,y2 ... and no px,py; write --points 'X,Y X,Y', each two expressions";
+      *error = "which points? the model has no x,y, no x1,y1 x2,y2 ..., no px,py and no vector among its coordinates; write "
+               "--points 'X,Y X,Y', each two expressions";
       return 0;
     }
   }
   if (o->from) f.from = o->from;
   int rods = (f.rods || o->from) && !o->no_rods;
   if (!o->points && !is_quiet(o))
-    k->p->note = arena_printf(k->arena, "points %s%s%s; --points 'X,Y X,Y' takes others", f.points,
-                              rods ? ", joined by rods from " : "", !rods ? "" : f.from ? f.from : "the origin");
+    k->p->note = arena_printf(k->arena, "points %.*s%s%s%s; --points 'X,Y X,Y' takes others", SHOWN_POINTS, f.points,
+                              strlen(f.points) > SHOWN_POINTS ? "..." : "", rods ? ", joined by rods from " : "", !rods ? "" : f.from ? f.from : "the origin");
   const char *points = ask_points(k, "--points", f.points, UINT32_MAX, error), *from = NULL;
   if (!points || (f.from && rods && !(from = ask_points(k, "--from", f.from, 1, error)))) return 0;
   argument(k, "--html", file_name(k, "html"));

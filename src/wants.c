@@ -40,6 +40,6 @@ static const char *method_of_state(Arena *a, const char *path) {
 }
 
 unsigned wants_of(const Eqns *e, const Options *o) {
-  unsigned wants = wants_of_method(e, e->m->scene.method) | wants_of_method(e, o->method) | (o->linear ? WANT_LINEAR : 0u);
+  unsigned wants = wants_of_method(e, e->m->scene.method) | wants_of_method(e, o->method) | (o->with ? WANT_LINEAR : 0u);
   return o->resume ? wants | wants_of_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

@@ -35,7 +35,7 @@ LAG_TREE=$(pwd)/$BUILD/test/home
 export XDG_CACHE_HOME LAG_TREE
 
 kind='test'
-limit=300
+limit=600
 case ${1:-} in
   --long) kind=long limit=3600 JOBS=1 ;;
   --bless) kind=bless JOBS=1 ;;

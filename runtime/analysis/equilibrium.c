@@ -300,6 +300,24 @@ int lag_rest_holds(Rest *r, const double *dx, double c)
   return good;
 }
 
+int lag_rest_continues(Rest *r, const lag_algebra *algebra, const double *dx, double c)
+{
+  double along = 0, size = 0;
+  int steps;
+
+  for (int i = 0; i < r->n; i++) {
+    r->from[i] = r->x[i] + c * dx[i] / r->scale[i];
+  }
+  int found = algebra->root(r->n, r->from, equations, r, MOST_STEPS, &steps) == LAG_OK && holds(r, r->from);
+  for (int i = 0; i < r->n; i++) {
+    double step = c * dx[i] / r->scale[i];
+    along += (r->from[i] - r->x[i]) * step;
+    size += step * step;
+  }
+  holds(r, r->x);
+  return found && along > 0.5 * size;
+}
+
 void lag_rest_free(Rest *r)
 {
   pool_free(&r->pool);

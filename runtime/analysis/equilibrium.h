@@ -36,4 +36,7 @@ void lag_rest_free(Rest *rest);
 /* Whether all forces are 0, to rounding, at the state at rest moved by c times dx[n] (in SI). */
 int lag_rest_holds(Rest *rest, const double *dx, double c);
 
+/* Whether there is another equilibrium beside that place, away from the first one: then they form a curve. */
+int lag_rest_continues(Rest *rest, const lag_algebra *algebra, const double *dx, double c);
+
 #endif

@@ -212,17 +212,18 @@ static void reduce_kernel(Work *w)
   }
 }
 
-/* Do all forces stay 0 along x[n]? Looked at near and far, on both sides. */
+/* Do all forces stay 0 along x[n], or along a curve that begins so (a rotation)? Looked at near and farther, on both sides. */
 static int is_free(Work *w, double *x)
 {
-  static const double steps[] = {-1, -0.1, 0.1, 1};
+  static const double steps[] = {-0.1, 0.1, -0.3, 0.3};
   double far = 0;
 
   for (int i = 0; i < w->n; i++) {
     far = fmax(far, extent(w, i, x[i], 0));
   }
   for (size_t k = 0; k < sizeof steps / sizeof *steps && far > 0; k++) {
-    if (!lag_rest_holds(w->rest, x, steps[k] / far)) {
+    double c = steps[k] / far;
+    if (!lag_rest_holds(w->rest, x, c) && !lag_rest_continues(w->rest, w->algebra, x, c)) {
       return 0;
     }
   }

@@ -11,13 +11,12 @@
 #include "app/app.h"
 #include "core/core.h"
 
-/* The only mutable global: a signal handler can reach nothing else. */
+/* The only mutable global: a signal handler can reach nothing else. The number of the signal, 0: none. */
 static volatile sig_atomic_t interrupted;
 
 static void on_interrupt(int signal_number)
 {
-  (void)signal_number;
-  interrupted = 1;
+  interrupted = signal_number;
 }
 
 static double seconds_since(const struct timespec *t)
@@ -39,18 +38,7 @@ static int after_step(void *context, const lag_sim *sim)
     clock_gettime(CLOCK_MONOTONIC, &app->shown);
     app->progress = 1;
   }
-  return interrupted;
-}
-
-static void after_event(void *context, int k, double t)
-{
-  App *app = context;
-
-  app->nevents++;
-  if (app->nlog < LOGGED_EVENTS) {
-    app->log[app->nlog].k = k;
-    app->log[app->nlog++].t = t;
-  }
+  return interrupted != 0 || app->bad_file;
 }
 
 /* ---- What to compute */
@@ -74,6 +62,22 @@ static int choose_end(App *app)
   return 0;
 }
 
+/* A table that ends before the run does goes on as it ended, which should not come as a surprise. */
+static void note_tables(const App *app)
+{
+  const lag_model *m = app->scene->model;
+  double from = fmin(lag_sim_time(app->sim), app->until), to = fmax(lag_sim_time(app->sim), app->until);
+
+  for (int i = 0; i < m->ntables && !app->args.quiet; i++) {
+    const lag_table *c = &m->tables[i];
+    double first = c->row[0][0], last = c->row[c->n - 1][0];
+    if (isnan(app->sim->hold[c->input]) && (from < first || to > last)) {
+      fprintf(stderr, "%s: note: the table of %s reaches from %g to %g s; outside, its first and last values hold\n", app->args.self,
+              m->u[c->input].name, first, last);
+    }
+  }
+}
+
 /* Whether two paths lead to one file that is there. */
 static int same_file(const char *a, const char *b)
 {
@@ -86,7 +90,7 @@ static int same_file(const char *a, const char *b)
 static int check_outputs(const App *app)
 {
   const Args *a = &app->args;
-  const char *const to[] = {a->out, a->svg, a->html, a->save}, *const keep[] = {app->program->source, "/proc/self/exe", a->resume};
+  const char *const to[] = {a->out, a->svg, a->html, a->save, a->events}, *const keep[] = {app->program->source, "/proc/self/exe", a->resume};
   enum { N = sizeof to / sizeof *to, KEPT = sizeof keep / sizeof *keep };
 
   for (int i = 0; i < N; i++) {
@@ -161,6 +165,7 @@ static int put_row(App *app)
     return rc;
   }
   if (app->rows.open && rows_write(&app->rows, app->row)) {
+    app->bad_file = app->args.out;
     return LAG_EIO;
   }
   return table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
@@ -198,7 +203,7 @@ static void run(App *app)
     int bad = put_row(app);
     rc = bad ? bad : rc;
   }
-  app->status = rc;
+  app->status = app->bad_file ? LAG_EIO : rc;
   app->wall = seconds_since(&app->begun);
   if (app->progress > 0) {
     fputs("\r\33[K", stderr);
@@ -207,7 +212,7 @@ static void run(App *app)
 
 /* ---- Files */
 
-static int io_error(const App *app, const char *path)
+int app_io_error(const App *app, const char *path)
 {
   return app_error(&app->args, "cannot write %s: %s", path, strerror(errno));
 }
@@ -217,7 +222,7 @@ static int try_file(const App *app, const char *path)
 {
   Outfile o;
 
-  return path && (outfile_open(&o, path) || outfile_close(&o, 0)) ? io_error(app, path) : 0;
+  return path && (outfile_open(&o, path) || outfile_close(&o, 0)) ? app_io_error(app, path) : 0;
 }
 
 static int open_output(App *app, int *plot_x, int *plot_y)
@@ -237,7 +242,8 @@ static int open_output(App *app, int *plot_x, int *plot_y)
   if (try_file(app, a->svg) || try_file(app, a->html) || try_file(app, a->save)) {
     return EXIT_USAGE;
   }
-  return a->out && rows_open(&app->rows, a->out, &app->table) ? io_error(app, a->out) : 0;
+  int rc = events_open(app);
+  return rc ? rc : a->out && rows_open(&app->rows, a->out, &app->table) ? app_io_error(app, a->out) : 0;
 }
 
 static int save_state(const App *app)
@@ -257,7 +263,7 @@ static int save_state(const App *app)
   if (!st.data || lag_sim_save(app->sim, st.data)) {
     rc = app_error(&app->args, "%s", st.data ? lag_sim_message(app->sim) : "out of memory");
   } else if (state_write(path, &st)) {
-    rc = io_error(app, path);
+    rc = app_io_error(app, path);
   }
   free(st.data);
   return rc;
@@ -267,25 +273,30 @@ static int save_state(const App *app)
 static int finish(App *app, int plot_x, int plot_y)
 {
   const Args *a = &app->args;
-  int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? EXIT_INTERRUPTED : EXIT_FINE, bad = 0;
-  FILE *f = a->out && strcmp(a->out, "-") == 0 ? stderr : stdout;
+  int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? EXIT_SIGNAL + interrupted : EXIT_FINE, bad = 0;
+  int on_stdout = (a->out && strcmp(a->out, "-") == 0) || (a->events && strcmp(a->events, "-") == 0);
+  FILE *f = on_stdout ? stderr : stdout;
   char title[300];
 
   if (app->status == LAG_EINVAL || app->status == LAG_ENOMEM || app->status == LAG_EIO) {
     rows_close(&app->rows, 0);
-    return app->status == LAG_EIO ? io_error(app, a->out) : app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
+    rows_close(&app->log_rows, 0);
+    return app->status == LAG_EIO ? app_io_error(app, app->bad_file) : app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
   }
   if (app->rows.open && rows_close(&app->rows, 1)) {
-    bad = io_error(app, a->out);
+    bad = app_io_error(app, a->out);
   } else {
     app->written = 1;
   }
+  if (rows_close(&app->log_rows, 1)) {
+    bad = app_io_error(app, a->events);
+  }
   snprintf(title, sizeof title, "%s: %s", app->scene->model->name, app->scene->name);
   if (a->svg && svg_write(a->svg, &app->table, title, plot_x, plot_y)) {
-    bad = io_error(app, a->svg);
+    bad = app_io_error(app, a->svg);
   }
   if (a->html && html_write(a->html, &app->table, title, &app->show)) {
-    bad = io_error(app, a->html);
+    bad = app_io_error(app, a->html);
   }
   if (a->save && app->status >= 0 && save_state(app)) {
     bad = EXIT_USAGE;
@@ -307,20 +318,27 @@ static int finish(App *app, int plot_x, int plot_y)
     app_error(a, "%s", lag_sim_message(app->sim));
   }
   if (fflush(stdout) != 0) {
-    bad = io_error(app, "standard output");
+    bad = app_io_error(app, "standard output");
   }
   return bad ? bad : rc;
 }
 
+/* What asks a run to end lets it finish its step and write what it has. nohup is respected. */
 static void catch_interrupt(void)
 {
-  struct sigaction action = {0};
+  static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
+  struct sigaction action = {0}, before;
 
   interrupted = 0;
   action.sa_handler = on_interrupt;
   action.sa_flags = (int)SA_RESETHAND; /* a second Ctrl-C ends at once */
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, NULL);
+  for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+    int nohup = signals[i] == SIGHUP && sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler == SIG_IGN;
+    if (!nohup) {
+      sigaction(signals[i], &action, NULL);
+    }
+  }
 }
 
 static int simulate(App *app)
@@ -337,8 +355,9 @@ static int simulate(App *app)
   if ((rc = open_output(app, &plot_x, &plot_y)) != 0) {
     return rc;
   }
+  note_tables(app);
   lag_sim_on_step(app->sim, after_step, app);
-  lag_sim_on_event(app->sim, after_event, app);
+  lag_sim_on_event(app->sim, events_note, app);
   catch_interrupt();
   app->progress = isatty(2) && !app->args.quiet ? 0 : -1;
   clock_gettime(CLOCK_MONOTONIC, &app->begun);
@@ -363,6 +382,7 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
   }
   lag_sim_free(app.sim);
   table_free(&app.table);
+  events_free(&app);
   free(app.show.cols);
   free(app.row);
   free(app.args.sets);

@@ -7,12 +7,15 @@
 
 #include "io/io.h"
 
-enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_INTERRUPTED = 130 };
-enum { MOST_OPTIONS = 16, LOGGED_EVENTS = 20 };
+enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_SIGNAL = 128 };
+enum { MOST_OPTIONS = 16 };
+enum { OWN_OPTIONS = 3 }; /* options of methods that are options of the command line, too */
+extern const char *const args_own_options[OWN_OPTIONS];
 
 /* The command line as written; numbers are still text. */
 typedef struct Args {
-  const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume;
+  const char *method_options[OWN_OPTIONS]; /* values of --quadrature, --order, --stages */
+  const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events;
   int json, sketch, quiet, help, trace, no_rods, modes;
   char **sets; /* name=value, in order */
   int nsets;
@@ -37,9 +40,11 @@ typedef struct App {
   struct timespec begun, shown;
   double wall;
   int progress;     /* a progress line stands on the terminal */
-  struct { int k; double t; } log[LOGGED_EVENTS];
-  int nlog;
-  long long nevents; /* in this part of the run */
+  Table log;        /* of events: its columns, */
+  Rows log_rows;    /* its file, */
+  double *log_row;
+  const char **log_names; /* [nev] and the words in it */
+  const char *bad_file; /* that could not be written */
 } App;
 
 /* args.c. 0, or EXIT_USAGE after a message. */
@@ -70,6 +75,16 @@ int app_modes(App *app);
 
 /* help.c */
 void app_help(const App *app, FILE *f);
+
+/* The message that a file cannot be written, with errno; returns EXIT_USAGE. */
+int app_io_error(const App *app, const char *path);
+
+/* events.c. 0, or EXIT_USAGE after a message. note: what lag_sim_on_event calls. */
+int events_open(App *app);
+void events_note(void *app, int k, double t, const double *before, const double *after);
+void events_free(App *app);
+void report_events(const App *app, FILE *f);
+void report_events_json(const App *app, FILE *f);
 
 /* report.c */
 void report_text(App *app, FILE *f);

@@ -30,6 +30,10 @@ int args_number(const Args *a, const char *what, const char *text, const char *e
   size_t plain = strspn(text, "+-.0123456789eE");
 
   *x = strtod(text, &end);
+  if (strchr(text, '[')) {
+    app_error(a, "%s: \"%s\" has a unit, and a simulator takes numbers in the units that --help shows, times in s; lagc run converts", what, text);
+    return 0;
+  }
   if (end == text || *end || plain != strlen(text)) {
     app_error(a, "%s: \"%s\" is not a number; write for example %s", what, text, example);
     return 0;
@@ -47,6 +51,8 @@ typedef struct Option {
   int is_flag;
 } Option;
 
+const char *const args_own_options[OWN_OPTIONS] = {"quadrature", "order", "stages"};
+
 static const Option options[] = {
     {"method", offsetof(Args, method), 0}, {"tol", offsetof(Args, tol), 0},
     {"step", offsetof(Args, step), 0},     {"until", offsetof(Args, until), 0},
@@ -56,9 +62,12 @@ static const Option options[] = {
     {"from", offsetof(Args, from), 0},     {"no-rods", offsetof(Args, no_rods), 1},
     {"trace", offsetof(Args, trace), 1},
     {"save-state", offsetof(Args, save), 0}, {"resume", offsetof(Args, resume), 0},
+    {"events", offsetof(Args, events), 0},
     {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
     {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
     {"modes", offsetof(Args, modes), 1},   {"help", offsetof(Args, help), 1},
+    {"quadrature", offsetof(Args, method_options[0]), 0}, {"order", offsetof(Args, method_options[1]), 0},
+    {"stages", offsetof(Args, method_options[2]), 0},
 };
 enum { NOPTIONS = sizeof options / sizeof *options };
 
@@ -76,11 +85,11 @@ static int unknown_option(const Args *a, const char *text, size_t n)
 {
   char name[64];
   const char *best = NULL;
-  int least = 4;
+  int least = LAG_FAR;
 
   snprintf(name, sizeof name, "%.*s", (int)(n < 60 ? n : 60), text);
   for (int i = 0; i < NOPTIONS; i++) {
-    int d = lag_distance(name, options[i].name);
+    int d = lag_near(name, options[i].name);
     if (d < least) {
       least = d;
       best = options[i].name;
@@ -165,6 +174,9 @@ static int check(const Args *a)
 
   if (on_stdout && a->json) {
     return app_error(a, "-o - and --json both write to standard output; give -o a file name");
+  }
+  if (a->events && strcmp(a->events, "-") == 0 && a->json) {
+    return app_error(a, "--events - and --json both write to standard output; give --events a file name");
   }
   if ((a->plot_x || a->plot_y) && !a->svg && !a->sketch) {
     return app_error(a, "--plot-x and --plot-y say what --svg FILE or --sketch draws; add one of them");

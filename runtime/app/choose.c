@@ -38,26 +38,27 @@ static int choose_scene(App *app)
   return name ? no_scene(app, name) : app_error(&app->args, "this program has no scenes");
 }
 
+/* Method i of this program; NULL past the last. */
+static const lag_method *method_at(const App *app, int i)
+{
+  return i < lag_nmethods ? lag_methods[i] : i - lag_nmethods < app->extras.nmethods ? app->extras.methods[i - lag_nmethods] : NULL;
+}
+
 const lag_method *app_find_method(const App *app, const char *name)
 {
-  for (int i = 0; i < lag_nmethods; i++) {
-    if (strcmp(lag_methods[i]->name, name) == 0) {
-      return lag_methods[i];
-    }
+  const lag_method *m = NULL;
+
+  for (int i = 0; (m = method_at(app, i)) != NULL && strcmp(m->name, name) != 0;) {
+    i++;
   }
-  for (int i = 0; i < app->extras.nmethods; i++) {
-    if (strcmp(app->extras.methods[i]->name, name) == 0) {
-      return app->extras.methods[i];
-    }
-  }
-  return NULL;
+  return m;
 }
 
 /* A method's options as they are being collected; names and texts point into `text`. */
 typedef struct Choice {
   char text[512];
   const char *name;
-  lag_option opt[MOST_OPTIONS];
+  lag_option opt[MOST_OPTIONS + 1 + OWN_OPTIONS]; /* in parentheses or of the scene; --step; others */
   int n;
 } Choice;
 
@@ -69,6 +70,19 @@ static char *trim(char *s)
     s[--n] = '\0';
   }
   return s;
+}
+
+/* A number, or else a word. */
+static void add_option(Choice *c, const char *name, const char *value)
+{
+  lag_option *o = &c->opt[c->n++];
+  char *end;
+
+  *o = (lag_option){.name = name};
+  o->value = strtod(value, &end);
+  if (*end || end == value) {
+    o->text = value;
+  }
 }
 
 /* "NAME" or "NAME(option = value, ...)". */
@@ -93,15 +107,30 @@ static int parse_method(const Args *a, Choice *c)
       return app_error(a, "--method %s: write NAME(option=value, ...)", a->method);
     }
     *eq = '\0';
-    lag_option *o = &c->opt[c->n++];
-    char *end, *value = trim(eq + 1);
-    *o = (lag_option){.name = trim(s)};
-    o->value = strtod(value, &end);
-    if (*end || end == value) {
-      o->text = value;
-    }
+    add_option(c, trim(s), trim(eq + 1));
   }
   return 0;
+}
+
+/* The one that was meant, or all. */
+static int unknown_method(const App *app, const char *name)
+{
+  const lag_method *near = NULL, *m;
+  int least = LAG_FAR;
+
+  for (int i = 0; (m = method_at(app, i)) != NULL; i++) {
+    int d = lag_near(name, m->name);
+    if (d < least) {
+      least = d;
+      near = m;
+    }
+  }
+  if (near) {
+    return app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near->name);
+  }
+  app_error(&app->args, "unknown method %s", name);
+  app_list_methods(app, stderr);
+  return EXIT_USAGE;
 }
 
 static int choose_method(App *app)
@@ -115,9 +144,7 @@ static int choose_method(App *app)
   }
   const lag_method *m = app_find_method(app, c.name);
   if (!m) {
-    app_error(a, "unknown method %s", c.name);
-    app_list_methods(app, stderr);
-    return EXIT_USAGE;
+    return unknown_method(app, c.name);
   }
   if (app->scene->method && strcmp(app->scene->method, c.name) == 0 && c.n == 0) {
     for (int i = 0; i < app->scene->noptions && c.n < MOST_OPTIONS - 1; i++) {
@@ -135,6 +162,11 @@ static int choose_method(App *app)
     }
     if (o->value < 1e-15 * (app->scene->has_span ? fabs(app->scene->t1 - app->scene->t0) : 1)) {
       return app_error(a, "--step %s: time would not move, double precision has 16 digits; for example --step 1e-3", a->step);
+    }
+  }
+  for (int i = 0; i < OWN_OPTIONS; i++) {
+    if (a->method_options[i]) {
+      add_option(&c, args_own_options[i], a->method_options[i]);
     }
   }
   rc = lag_sim_set_method(app->sim, m, c.opt, c.n);
@@ -193,18 +225,14 @@ static int set_value(App *app, const char *text)
   return lag_sim_set(app->sim, name, x) ? app_error(a, "%s", lag_sim_message(app->sim)) : 0;
 }
 
-/* A resumed run keeps what it began with. */
-static int resume(App *app)
+/* The method that the state was saved with, with its options and tolerance. */
+static int restore_method(App *app)
 {
   const Args *a = &app->args;
   const State *st = &app->state;
   const lag_method *m = app_find_method(app, st->method);
   lag_option opt[MOST_OPTIONS];
 
-  if (a->nsets || a->tol || a->step || a->method) {
-    return app_error(a, "--resume goes on with the values, method and tolerance it was saved with; leave out %s",
-                     a->nsets ? a->sets[0] : a->tol ? "--tol" : a->step ? "--step" : "--method");
-  }
   if (!m || m->noptions != st->noptions) {
     return app_error(a, "%s was saved with method %s, which is not in this build", a->resume, st->method);
   }
@@ -217,7 +245,75 @@ static int resume(App *app)
   if (st->signature != lag_sim_signature(app->sim) || st->n != lag_sim_save_size(app->sim)) {
     return app_error(a, "%s was saved by another model or build: names, sizes, effects or equations differ", a->resume);
   }
-  return lag_sim_load(app->sim, st->data) ? app_error(a, "%s", lag_sim_message(app->sim)) : 0;
+  return 0;
+}
+
+/* What the command line says of method and tolerance, once more, must be what the run was saved with. */
+static int same_method(App *app)
+{
+  const Args *a = &app->args;
+  const State *st = &app->state;
+  int rc = set_tolerance(app);
+
+  rc = rc ? rc : a->method || a->step ? choose_method(app) : 0;
+  if (rc) {
+    return rc;
+  }
+  if (a->tol && lag_sim_tolerance(app->sim) != st->tol) {
+    return app_error(a, "%s was saved with --tol %g, and goes on with it; leave out --tol", a->resume, st->tol);
+  }
+  if (!a->method && !a->step) {
+    return 0;
+  }
+  int same = strcmp(lag_sim_method(app->sim)->name, st->method) == 0 && lag_sim_method(app->sim)->noptions == st->noptions &&
+             memcmp(lag_sim_options(app->sim), st->options, (size_t)st->noptions * sizeof(double)) == 0;
+  return same ? 0 : app_error(a, "%s was saved with method %s, and goes on with it and its options; leave out %s", a->resume, st->method,
+                              a->method ? "--method" : "--step");
+}
+
+/* So must each value: it is set in a fresh simulation, and compared with that of the run. */
+static int same_values(App *app)
+{
+  const Args *a = &app->args;
+  lag_sim *run = app->sim;
+  size_t np = (size_t)app->scene->model->np, nu = (size_t)app->scene->model->nu, n = (size_t)run->pb.n;
+  int rc = 0;
+
+  for (int i = 0; i < a->nsets && rc == 0; i++) {
+    lag_sim *fresh = app->sim = lag_sim_new(app->scene);
+    if (!fresh) {
+      rc = app_error(a, "out of memory");
+    } else {
+      memcpy(fresh->p, run->p, np * sizeof(double));
+      memset(fresh->fixed, 1, np);
+      memcpy(fresh->hold, run->hold, nu * sizeof(double));
+      memcpy(fresh->start, run->begin, n * sizeof(double));
+      rc = set_value(app, a->sets[i]);
+    }
+    if (rc == 0 && (memcmp(fresh->p, run->p, np * sizeof(double)) != 0 || memcmp(fresh->begin, run->begin, n * sizeof(double)) != 0 ||
+                    memcmp(fresh->hold, run->hold, nu * sizeof(double)) != 0)) {
+      rc = app_error(a, "%s was saved with another value of %.*s, and goes on with it; leave out %s", a->resume,
+                     (int)strcspn(a->sets[i], "="), a->sets[i], a->sets[i]);
+    }
+    lag_sim_free(fresh);
+  }
+  app->sim = run;
+  return rc;
+}
+
+/* A resumed run keeps what it began with; the command line may say it once more. */
+static int resume(App *app)
+{
+  int rc = same_method(app);
+
+  rc = rc ? rc : restore_method(app);
+  if (rc) {
+    return rc;
+  }
+  if (lag_sim_load(app->sim, app->state.data)) {
+    return app_error(&app->args, "%s", lag_sim_message(app->sim));
+  }
+  return same_values(app);
 }
 
 static int read_state(App *app)

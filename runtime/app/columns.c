@@ -5,13 +5,27 @@
 #include "app/app.h"
 #include "core/core.h"
 
-int app_column(const App *app, const char *name)
+/* The first column that is a member or a component of `name`, or NULL. */
+static const char *part_of(const App *app, const char *name)
 {
-  const char *best = NULL;
-  int least = 4;
+  size_t n = strlen(name);
 
   for (int i = 0; i < app->table.ncols; i++) {
-    int d = lag_distance(app->table.cols[i].name, name);
+    const char *whole = app->table.cols[i].name;
+    if (strncmp(whole, name, n) == 0 && (whole[n] == '[' || whole[n] == '.')) {
+      return whole;
+    }
+  }
+  return NULL;
+}
+
+int app_column(const App *app, const char *name)
+{
+  const char *best = NULL, *part;
+  int least = LAG_FAR;
+
+  for (int i = 0; i < app->table.ncols; i++) {
+    int d = lag_near(name, app->table.cols[i].name);
     if (d == 0) {
       return i;
     }
@@ -20,7 +34,11 @@ int app_column(const App *app, const char *name)
       best = app->table.cols[i].name;
     }
   }
-  app_error(&app->args, best ? "no output is named %s; did you mean %s?" : "no output is named %s", name, best);
+  if ((part = part_of(app, name)) != NULL) {
+    app_error(&app->args, "%s has parts, each an output of its own; name one: %s", name, part);
+  } else {
+    app_error(&app->args, best ? "no output is named %s; did you mean %s?" : "no output is named %s", name, best);
+  }
   return -1;
 }
 

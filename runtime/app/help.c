@@ -4,26 +4,32 @@
 static const char text[] =
     "\n"
     "  name=value           a parameter, the start of a coordinate (th=1.2) or of a velocity (\"th'=0.5\"), or a\n"
-    "                       constant input, in its declared unit; drag.c, or c where only one ends so\n"
+    "                       constant input, in its declared unit; drag.c, or c where only one ends so; m[2], or m\n"
+    "                       for all of a family\n"
     "  --until T            run to time T [s]; before the start: backwards\n"
     "  --method NAME        method of integration, NAME or \"NAME(option=value, ...)\"; --method help lists them\n"
+    "  --quadrature X, --order N, --stages N   options of some methods, as in the parentheses\n"
     "  --tol X              tolerance, absolute and relative\n"
     "  --step H             step [s]; the first one tried where the method chooses its own\n"
     "  -o FILE              rows of output: CSV, or NumPy when FILE ends in .npy; - is standard output\n"
     "  --every DT           time between rows [s]; default: as the scene says, or a 1000th of the span\n"
+    "  --events FILE        a row for each event, as -o writes them: time, event, the state before and after it\n"
     "  --svg FILE           a picture of all output against time; --plot-x NAME --plot-y NAME: one against another\n"
     "  --html FILE --points 'X,Y X,Y'   an animation of these points, X and Y names of outputs, joined by rods from\n"
     "                       --from 'X,Y' (the origin) on; --no-rods; --trace: the path of the last one\n"
     "  --sketch             a picture in the terminal\n"
     "  --json               the report as one JSON object\n"
+    "  --modes              no run, but the equilibrium next to the start, and small motion about it; with --json as one\n"
+    "                       object (in simulators built with GSL, and with their linearisation: --with linear)\n"
     "  --quiet              no report\n"
     "  --save-state FILE    write the complete state at the end; --resume FILE goes on from there, with the same\n"
-    "                       scene, method and values: results are those of an uninterrupted run, bit by bit.\n"
+    "                       scene, method and values, which may be said again: results are those of an uninterrupted run, bit by bit.\n"
     "                       A resumed run writes the rows after the saved time (a run that ends between two rows\n"
     "                       writes one more at its end)\n"
     "\n"
-    "Rows appear as FILE.part until they are complete. Ctrl-C finishes the step and writes what was computed.\n"
-    "Exit status: 0 ok, 2 wrong usage or a file that cannot be written, 3 the run failed, 130 interrupted.\n";
+    "Rows appear as FILE.part until they are complete. Ctrl-C, or SIGTERM, finishes the step and writes what was\n"
+    "computed. Exit status: 0 ok, 2 wrong usage or a file that cannot be written, 3 the run failed, 130 interrupted\n"
+    "(by SIGTERM 143).\n";
 
 static void list(FILE *f, const char *head, int n, const lag_var *vars, const double *values)
 {

@@ -51,32 +51,14 @@ static void final_state(const App *app, FILE *f)
   }
 }
 
-static void events(const App *app, FILE *f)
-{
-  const lag_model *m = app->scene->model;
-
-  if (m->nev == 0) {
-    return;
-  }
-  fprintf(f, "events:");
-  for (int k = 0; k < m->nev; k++) {
-    fprintf(f, "%s %s %lld", k ? "," : "", m->ev[k].name, lag_sim_event_count(app->sim, k));
-  }
-  putc('\n', f);
-  for (int i = 0; i < app->nlog; i++) {
-    fprintf(f, "  t = %-22.17g %s\n", app->log[i].t, m->ev[app->log[i].k].name);
-  }
-  if (app->nevents > app->nlog) {
-    fprintf(f, "  (and %lld more)\n", app->nevents - app->nlog);
-  }
-}
-
 static void energy(const App *app, const lag_stats *st, FILE *f)
 {
   if (!app->scene->model->energy || app->scene->model->nq == 0) {
     return;
   }
-  if (app->scene->model->flags & LAG_CONSERVES_ENERGY) {
+  if (!isfinite(st->energy_drift)) {
+    fputs("energy: not finite\n", f);
+  } else if (app->scene->model->flags & LAG_CONSERVES_ENERGY) {
     fprintf(f, "energy drift: %.3g (relative to max(|E0|, max(|p.v| + |L|)))\n", st->energy_drift);
   } else {
     fprintf(f, "energy change: %.3g (not conserved: forces or explicit time)\n", st->energy_drift);
@@ -132,6 +114,47 @@ static void verdict(const App *app, FILE *f)
   }
 }
 
+static void exact(const App *app, FILE *f)
+{
+  const lag_scene *c = app->scene;
+
+  for (int k = 0; k < c->nexact && k < MOST_LINES; k++) {
+    Column v;
+    double largest, now;
+    state_var(app, c->exact_of[k], &v);
+    lag_sim_exact(app->sim, k, &largest, &now);
+    const char *unit = strcmp(v.unit, "degC") == 0 ? "K" : v.unit; /* a difference */
+    fprintf(f, "exact %s: largest deviation %.3g%s%s, final %.3g\n", v.name, largest, unit[0] ? " " : "", unit, now);
+  }
+  if (c->nexact > MOST_LINES) {
+    fprintf(f, "  (and %d more)\n", c->nexact - MOST_LINES);
+  }
+}
+
+static void exact_json(const App *app, FILE *f)
+{
+  const lag_scene *c = app->scene;
+
+  if (c->nexact == 0) {
+    return;
+  }
+  fputs("\"exact\": {", f);
+  for (int k = 0; k < c->nexact; k++) {
+    Column v;
+    double largest, now;
+    state_var(app, c->exact_of[k], &v);
+    lag_sim_exact(app->sim, k, &largest, &now);
+    fputs(k ? ", " : "", f);
+    json_string(f, v.name);
+    fputs(": {\"largest\": ", f);
+    json_number(f, largest);
+    fputs(", \"final\": ", f);
+    json_number(f, now);
+    putc('}', f);
+  }
+  fputs("}, ", f);
+}
+
 void report_text(App *app, FILE *f)
 {
   const lag_scene *c = app->scene;
@@ -150,7 +173,8 @@ void report_text(App *app, FILE *f)
   for (int i = 0; i < c->nmonitors; i++) {
     fprintf(f, "monitor %s: drift %.3g, limit %.3g\n", c->monitors[i].name, lag_sim_monitor_drift(app->sim, i), c->monitors[i].limit);
   }
-  events(app, f);
+  exact(app, f);
+  report_events(app, f);
   if (app->written && app->args.out) {
     fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
   }
@@ -239,6 +263,8 @@ void report_json(App *app, FILE *f)
   field_number(f, "wall_s", app->wall);
   field_number(f, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null: it is no drift */
   charges(app, f);
+  report_events_json(app, f);
+  exact_json(app, f);
   fputs("\"constraint_residual\": null, \"final\": {", f);
   for (int i = 0; i < n; i++) {
     Column c;

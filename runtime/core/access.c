@@ -71,7 +71,14 @@ void lag_sim_on_step(lag_sim *s, int (*hook)(void *, const lag_sim *), void *con
   s->on_step_context = context;
 }
 
-void lag_sim_on_event(lag_sim *s, void (*hook)(void *, int, double), void *context)
+long long lag_sim_event_times(const lag_sim *s, int k, double *first, double *last)
+{
+  *first = s->count[k] > 0 ? s->first[k] : NAN;
+  *last = s->count[k] > 0 ? s->last[k] : NAN;
+  return (long long)s->count[k];
+}
+
+void lag_sim_on_event(lag_sim *s, lag_event_fn *hook, void *context)
 {
   s->on_event = hook;
   s->on_event_context = context;
@@ -103,13 +110,18 @@ double lag_sim_state_info(const lag_sim *s, int i, char *name, size_t nname, cha
   return put_info(v, i >= m->nq && i < 2 * m->nq, name, nname, unit, nunit);
 }
 
-double lag_sim_state_value(const lag_sim *s, int i)
+double lag_sim_declared(const lag_sim *s, int i, double value)
 {
   const lag_model *m = s->scene->model;
   int rate = i >= m->nq && i < 2 * m->nq;
   const lag_var *v = i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
 
-  return rate ? s->now[i] / v->factor : lag_declared(v, s->now[i]);
+  return rate ? value / v->factor : lag_declared(v, value);
+}
+
+double lag_sim_state_value(const lag_sim *s, int i)
+{
+  return lag_sim_declared(s, i, s->now[i]);
 }
 
 double lag_sim_output_info(const lag_sim *s, int i, char *name, size_t nname, char *unit, size_t nunit)
@@ -128,6 +140,7 @@ int lag_sim_outputs(lag_sim *s, double *out)
 
   if (c->nout > 0) {
     rc = lag_inputs(&s->pb, s->run->t);
+    rc = rc ? rc : lag_exact_at(s, s->run->t);
     rc = rc ? rc : c->observe(s->run->t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
     if (rc) {
       return lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN, "the outputs cannot be computed at t = %.17g s", s->run->t);

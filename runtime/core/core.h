@@ -33,6 +33,7 @@ struct lag_sim {
   double *options;       /* [method->noptions] */
   double tol;
   unsigned char *fixed;  /* [np] set by the caller */
+  lag_signal *signal;    /* [nu] set by the caller; not part of what is saved */
   double *start;         /* [n] NaN: as the scene says */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
@@ -40,6 +41,7 @@ struct lag_sim {
   size_t nsaved;
   Run *run;
   double *p, *hold;      /* [np], [nu] */
+  double *begin;         /* [n] at the start of the run */
   double *y;             /* [n] at step_t1 */
   double *y0;            /* [n] at step_t0 */
   double *now;           /* [n] at t */
@@ -48,11 +50,13 @@ struct lag_sim {
   double *root;          /* [nev] time of the next firing within the step, NaN none */
   double *sign_end;      /* [nev] sign at the end of the step */
   double *count;         /* [nev] */
+  double *first, *last;  /* [nev] times, where count is not 0 */
   double *mon_first, *mon_peak; /* [nmonitors] */
+  double *exact_peak;    /* [nexact] largest difference from the closed form */
   double *method_work;
   int (*on_step)(void *, const lag_sim *);
   void *on_step_context;
-  void (*on_event)(void *, int, double);
+  lag_event_fn *on_event;
   void *on_event_context;
   char message[512];
 };
@@ -79,6 +83,10 @@ int lag_events_locate(lag_sim *sim);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
 
+/* exact.c. at: the closed forms at t, behind the inputs in s->u; lag_inputs comes first. see: as in watch.c. */
+int lag_exact_at(lag_sim *sim, double t);
+int lag_exact_see(lag_sim *sim, double t, const double *y);
+
 /* watch.c: energy and monitors. begin: first values. see: the state `y` at t is part of the run. jump: an
  * event changed the state from ya to yb. */
 int lag_watch_begin(lag_sim *sim);
@@ -94,10 +102,18 @@ double lag_root(double (*f)(void *context, double x), void *context, double a, d
 enum { LAG_IS_NOTHING, LAG_IS_P, LAG_IS_Q, LAG_IS_V, LAG_IS_Z, LAG_IS_U };
 /* Finds name; *var is its description. LAG_IS_NOTHING: unknown. */
 int lag_find(const lag_model *model, const char *name, int *index, const lag_var **var);
+/* Whether var is the name of a member of the family called so: th[2] of th, r[1].x of r.x. */
+int lag_is_member(const char *var, const char *family, size_t length);
 /* The known name nearest to `name` into best; 0 when none is near. */
 int lag_nearest(const lag_model *model, const char *name, char *best, size_t nbest);
+/* Member or component k of what is called `name` ("th": "th[1]", "th'": "th[1]'", "r": "r.x"), into part; 0 past the last. */
+int lag_part(const lag_model *model, const char *name, int k, char *part, size_t npart);
 /* Edits (insert, delete, replace, swap) between two words. */
 int lag_distance(const char *a, const char *b);
+/* The same where they may be a slip of the finger; LAG_FAR where there are so many, or one letter stands for another, that
+ * it is another name. */
+enum { LAG_FAR = 1000 };
+int lag_near(const char *name, const char *known);
 
 /* For app/: the output grid that is saved with the run. */
 double *lag_sim_rows(lag_sim *sim);

@@ -313,11 +313,10 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   int nq = m->nq, n = s->pb.n;
   size_t bytes = (size_t)n * sizeof(double);
 
-  s->count[k]++;
   r->events++;
-  if (s->on_event) {
-    s->on_event(s->on_event_context, k, r->t);
-  }
+  s->first[k] = s->count[k] > 0 ? s->first[k] : r->t;
+  s->last[k] = r->t;
+  s->count[k]++;
   int rc = lag_inputs(&s->pb, r->t);
   memcpy(s->yb, s->now, bytes);
   if (rc == 0 && m->act) {
@@ -327,6 +326,9 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   if (rc || lag_not_finite(n, s->yb) >= 0) {
     return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its action gives no finite state at t = %.17g s", m->ev[k].name,
                     r->t);
+  }
+  if (s->on_event) {
+    s->on_event(s->on_event_context, k, r->t, s->now, s->yb);
   }
   if (memcmp(s->yb, s->now, bytes) != 0) {
     *changed = 1;

@@ -1,5 +1,6 @@
 /* Names that a user may write: exact, or the suffix of one dotted name; and the nearest known one to a name
  * that is wrong. Enters: text; leaves: what it means. */
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,18 +17,16 @@ static int find_in(const lag_var *vars, int n, const char *name, size_t length)
   return -1;
 }
 
-/* The one parameter that ends in ".name"; -1: none or several. */
-static int find_suffix(const lag_model *m, const char *name)
+/* The one that ends in ".name", and how many do. */
+static int find_suffix(const lag_var *vars, int n, const char *name, int *count)
 {
   int found = -1;
 
-  for (int i = 0; i < m->np; i++) {
-    const char *dot = strrchr(m->p[i].name, '.');
+  for (int i = 0; i < n; i++) {
+    const char *dot = strrchr(vars[i].name, '.');
     if (dot && strcmp(dot + 1, name) == 0) {
-      if (found >= 0) {
-        return -1;
-      }
       found = i;
+      ++*count;
     }
   }
   return found;
@@ -51,11 +50,43 @@ int lag_find(const lag_model *m, const char *name, int *index, const lag_var **v
     *var = &m->q[*index];
     return LAG_IS_V;
   }
-  if ((*index = find_suffix(m, name)) >= 0) {
-    *var = &m->p[*index];
-    return LAG_IS_P;
+  int count = 0, p = find_suffix(m->p, m->np, name, &count), u = find_suffix(m->u, m->nu, name, &count);
+  if (count != 1) {
+    return LAG_IS_NOTHING;
   }
-  return LAG_IS_NOTHING;
+  *index = p >= 0 ? p : u;
+  *var = p >= 0 ? &m->p[p] : &m->u[u];
+  return p >= 0 ? LAG_IS_P : LAG_IS_U;
+}
+
+int lag_is_member(const char *var, const char *family, size_t length)
+{
+  size_t stem = strcspn(var, "[");
+  const char *close = strchr(var, ']'), *rest = close ? close + 1 : NULL;
+
+  return rest && stem + strlen(rest) == length && memcmp(var, family, stem) == 0 && memcmp(family + stem, rest, length - stem) == 0;
+}
+
+int lag_part(const lag_model *m, const char *name, int k, char *part, size_t npart)
+{
+  const struct {
+    int n;
+    const lag_var *vars;
+  } tables[] = {{m->np, m->p}, {m->nq, m->q}, {m->nz, m->z}, {m->nu, m->u}};
+  size_t n = strlen(name), rate = n > 1 && name[n - 1] == '\'';
+
+  n -= rate;
+  for (size_t i = rate; i < (rate ? 2 : sizeof tables / sizeof *tables); i++) { /* only coordinates have rates to set */
+    for (int j = 0; j < tables[i].n; j++) {
+      const char *whole = tables[i].vars[j].name;
+      if (strncmp(whole, name, n) != 0 || !whole[n] || !strchr("[.", whole[n]) || k-- > 0) {
+        continue;
+      }
+      snprintf(part, npart, "%s%s", whole, rate ? "'" : "");
+      return 1;
+    }
+  }
+  return 0;
 }
 
 static int min3(int a, int b, int c)
@@ -88,6 +119,14 @@ int lag_distance(const char *a, const char *b)
   return d[na % 3][nb];
 }
 
+int lag_near(const char *name, const char *known)
+{
+  int n = (int)strlen(name), d = lag_distance(name, known);
+  int guess = n == 1 && known[0] && !known[1] && tolower((unsigned char)name[0]) != tolower((unsigned char)known[0]);
+
+  return guess || d > n / 3 + 1 ? LAG_FAR : d;
+}
+
 int lag_nearest(const lag_model *m, const char *name, char *best, size_t nbest)
 {
   const struct {
@@ -95,14 +134,16 @@ int lag_nearest(const lag_model *m, const char *name, char *best, size_t nbest)
     const lag_var *vars;
     const char *suffix;
   } tables[] = {{m->np, m->p, ""}, {m->nq, m->q, ""}, {m->nq, m->q, "'"}, {m->nz, m->z, ""}, {m->nu, m->u, ""}};
-  int least = (int)strlen(name) / 3 + 2;
+  int least = LAG_FAR;
+  size_t n = strlen(name);
 
   best[0] = '\0';
   for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
     for (int i = 0; i < tables[k].n; i++) {
       char full[64];
       snprintf(full, sizeof full, "%s%s", tables[k].vars[i].name, tables[k].suffix);
-      int d = lag_distance(name, full);
+      int part = strncmp(full, name, n) == 0 && (full[n] == '.' || full[n] == '['); /* r of r.x, drag of drag.c */
+      int d = part ? 0 : lag_near(name, full);
       if (d < least) {
         least = d;
         snprintf(best, nbest, "%s", full);

@@ -1,5 +1,5 @@
 /* The model as y' = f(t, y), the only way in which methods call it. Enters: t, y = [q|v|z]; leaves:
- * y' = [v|a|z']. Holds: an input is the model's formula unless a constant replaces it. */
+ * y' = [v|a|z']. Holds: an input is the model's formula or table unless a function or a constant replaces it. */
 #include <math.h>
 #include <string.h>
 
@@ -19,13 +19,30 @@ int lag_inputs(lag_problem *pb, double t)
     }
   }
   for (int i = 0; i < m->nu; i++) {
-    if (!isnan(pb->hold[i])) {
+    if (pb->signal[i].fn) {
+      pb->u[i] = pb->signal[i].fn(pb->signal[i].context, t);
+      if (!isfinite(pb->u[i])) {
+        pb->detail = "the function of an input gave no finite value";
+      }
+    } else if (!isnan(pb->hold[i])) {
       pb->u[i] = pb->hold[i];
     } else if (!m->inputs) {
       pb->u[i] = 0;
     }
   }
   return 0;
+}
+
+unsigned lag_facts(const lag_problem *pb)
+{
+  unsigned flags = pb->model->flags;
+
+  for (int i = 0; i < pb->model->nu; i++) {
+    if (pb->signal[i].fn) {
+      flags &= ~(unsigned)(LAG_AUTONOMOUS | LAG_SMOOTH);
+    }
+  }
+  return flags;
 }
 
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy)
@@ -39,6 +56,39 @@ int lag_rhs(lag_problem *pb, double t, const double *y, double *dy)
   }
   memcpy(dy, y + nq, (size_t)nq * sizeof *dy);
   return pb->model->accel(t, y, y + nq, y + 2 * nq, pb->p, pb->u, dy + nq, dy + 2 * nq, pb->work);
+}
+
+/* The first row after t in direction dir; -1: none. */
+static int row_after(const lag_table *c, double t, double dir)
+{
+  int k = 0, end = c->n;
+
+  while (k < end) { /* rows before k are <= t (forward) or < t (backward) */
+    int mid = (k + end) / 2;
+    if (dir > 0 ? c->row[mid][0] <= t : c->row[mid][0] < t) {
+      k = mid + 1;
+    } else {
+      end = mid;
+    }
+  }
+  k = dir > 0 ? k : k - 1;
+  return k < c->n ? k : -1;
+}
+
+double lag_next_row(const lag_problem *pb, double t, double *row)
+{
+  const lag_model *m = pb->model;
+  double least = HUGE_VAL;
+
+  for (int i = 0; i < m->ntables; i++) {
+    const lag_table *c = &m->tables[i];
+    int in_use = isnan(pb->hold[c->input]) && !pb->signal[c->input].fn, k = in_use ? row_after(c, t, pb->dir) : -1;
+    if (k >= 0 && fabs(c->row[k][0] - t) < least) {
+      *row = c->row[k][0];
+      least = fabs(*row - t);
+    }
+  }
+  return least;
 }
 
 int lag_variation(lag_problem *pb, double t, const double *q, const double *v, double *Lq, double *Lv, double *Q)

@@ -14,7 +14,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
 {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
-  size_t nmon = (size_t)s->scene->nmonitors, fixed = RUN_DOUBLES + np + nu + 3 * n + 5 * nev + 2 * nmon;
+  size_t nmon = (size_t)s->scene->nmonitors, fixed = RUN_DOUBLES + np + nu + 4 * n + 7 * nev + 2 * nmon + (size_t)s->scene->nexact;
   lag_problem sized = s->pb;
   sized.opt = opt;
   size_t total = fixed + method->work_size(&sized);
@@ -31,9 +31,10 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  double **const parts[] = {&s->p, &s->hold, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
-                            &s->count, &s->mon_first, &s->mon_peak, &s->method_work};
-  const size_t sizes[] = {np, nu, n, n, n, nev, nev, nev, nev, nev, nmon, nmon, 0};
+  double **const parts[] = {&s->p, &s->hold, &s->begin, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
+                            &s->count, &s->first, &s->last, &s->mon_first, &s->mon_peak,
+                            &s->exact_peak, &s->method_work};
+  const size_t sizes[] = {np, nu, n, n, n, n, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, 0};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
@@ -49,25 +50,27 @@ static int alloc_scratch(lag_sim *s)
 {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
-  size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw);
-  double *x = calloc(nu + nw + 3 * n + 8 * nev + nout + 2 + 1, sizeof *x);
+  size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
+  double *x = calloc(nuu + nw + 3 * n + 8 * nev + nout + 2 + 1, sizeof *x);
 
   s->scratch = x;
   s->fixed = calloc((size_t)m->np + 1, 1);
   s->start = malloc((n + 1) * sizeof(double));
-  if (!x || !s->fixed || !s->start) {
+  s->signal = calloc(nu + 1, sizeof *s->signal);
+  if (!x || !s->fixed || !s->start || !s->signal) {
     return LAG_ENOMEM;
   }
   for (size_t i = 0; i < n; i++) {
     s->start[i] = NAN;
   }
   double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare};
-  const size_t sizes[] = {nu, nw, n, n, n, nev, nev, nout, 2 + nev, 5 * nev};
+  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 5 * nev};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
   }
   s->pb.u = s->u;
+  s->pb.signal = s->signal;
   s->pb.work = s->work;
   return LAG_OK;
 }
@@ -104,6 +107,7 @@ static void place(lag_sim *s)
   for (int i = 0; i < n; i++) {
     s->now[i] = isnan(s->start[i]) ? s->now[i] : s->start[i];
   }
+  memcpy(s->begin, s->now, (size_t)n * sizeof(double));
   s->run->t = s->scene->t0;
 }
 
@@ -153,6 +157,7 @@ void lag_sim_free(lag_sim *s)
   free(s->options);
   free(s->fixed);
   free(s->start);
+  free(s->signal);
   free(s->scratch);
   free(s->saved);
   free(s);
@@ -174,7 +179,12 @@ static int option_value(lag_sim *s, const lag_method *m, const lag_method_option
         return LAG_OK;
       }
     }
-    return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"", m->name, o->name, given->text);
+    char words[128] = "";
+    for (int i = 0; o->choices && o->choices[i] && strlen(words) + strlen(o->choices[i]) + 3 < sizeof words; i++) {
+      strcat(strcat(words, i ? ", " : ""), o->choices[i]);
+    }
+    return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"; it is %s", m->name, o->name, given->text,
+                    o->choices ? words : "a number");
   }
   if (!(*value >= o->min && *value <= o->max)) {
     return lag_fail(s, LAG_EINVAL, "method %s: option %s = %g is outside [%g, %g]", m->name, o->name, *value, o->min, o->max);
@@ -205,7 +215,7 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
 static int check_method(lag_sim *s, const lag_method *method)
 {
   const lag_model *m = s->scene->model;
-  unsigned needs = method->flags, has = m->flags;
+  unsigned needs = method->flags, has = lag_facts(&s->pb);
 
   if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0) {
     return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can", method->name);
@@ -281,30 +291,43 @@ static const char *sign_text(int sign)
   return sign == 1 ? "> 0" : sign == 2 ? ">= 0" : sign == -1 ? "< 0" : "<= 0";
 }
 
-int lag_sim_set(lag_sim *s, const char *name, double value)
+static int unknown_name(lag_sim *s, const char *name)
 {
   const lag_model *m = s->scene->model;
-  const lag_var *var = NULL;
-  int i, rc = begun(s), kind = lag_find(m, name, &i, &var);
   char near[64];
 
-  if (rc) {
-    return rc;
+  if (lag_part(m, name, 0, near, sizeof near)) {
+    return lag_fail(s, LAG_EINVAL, "%s has parts: set %s, and so on", name, near);
   }
-  if (kind == LAG_IS_NOTHING) {
-    return lag_nearest(m, name, near, sizeof near)
-               ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name,
-                          m->name, near)
-               : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
-  }
+  return lag_nearest(m, name, near, sizeof near)
+             ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name, m->name,
+                        near)
+             : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
+}
+
+/* A value in the declared unit of var in SI; a rate of it has no zero of its own. */
+static double in_si(int kind, const lag_var *var, double value)
+{
+  return value * var->factor + (kind == LAG_IS_V ? 0 : var->offset);
+}
+
+/* Whether `value`, in the declared unit, may be given to var. */
+static int check_value(lag_sim *s, int kind, const lag_var *var, const char *name, double value)
+{
   if (!isfinite(value)) {
     return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);
   }
-  double declared = value;
-  value = value * var->factor + (kind == LAG_IS_V ? 0 : var->offset);
-  if (kind == LAG_IS_P && !sign_ok(var->sign, value)) {
-    return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, declared, var->name, sign_text(var->sign));
+  if (kind == LAG_IS_P && !sign_ok(var->sign, in_si(kind, var, value))) {
+    return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, value, var->name, sign_text(var->sign));
   }
+  return LAG_OK;
+}
+
+/* value in SI */
+static void give(lag_sim *s, int kind, int i, double value)
+{
+  int nq = s->pb.nq;
+
   switch (kind) {
   case LAG_IS_P:
     s->p[i] = value;
@@ -312,14 +335,81 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
     break;
   case LAG_IS_U:
     s->hold[i] = value;
+    s->signal[i] = (lag_signal){0};
     break;
   default:
-    s->start[kind == LAG_IS_Q ? i : kind == LAG_IS_V ? m->nq + i : 2 * m->nq + i] = value;
+    s->start[kind == LAG_IS_Q ? i : kind == LAG_IS_V ? nq + i : 2 * nq + i] = value;
+  }
+}
+
+/* All members of the family that is called so. 0: there is none; < 0: the value is not allowed. */
+static int set_family(lag_sim *s, const char *name, double value)
+{
+  const lag_model *m = s->scene->model;
+  size_t n = strlen(name);
+  int velocity = n > 1 && name[n - 1] == '\'', found = 0;
+  const struct {
+    int kind, n;
+    const lag_var *vars;
+  } tables[] = {{LAG_IS_P, m->np, m->p}, {velocity ? LAG_IS_V : LAG_IS_Q, m->nq, m->q}, {LAG_IS_Z, m->nz, m->z}};
+
+  for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
+    for (int i = 0; i < tables[k].n; i++) {
+      const lag_var *var = &tables[k].vars[i];
+      if (!lag_is_member(var->name, name, n - (tables[k].kind == LAG_IS_V))) {
+        continue;
+      }
+      int rc = found ? LAG_OK : check_value(s, tables[k].kind, var, name, value); /* all members share unit and sign */
+      if (rc) {
+        return rc;
+      }
+      give(s, tables[k].kind, i, in_si(tables[k].kind, var, value));
+      found = 1;
+    }
+  }
+  return found;
+}
+
+int lag_sim_set(lag_sim *s, const char *name, double value)
+{
+  const lag_model *m = s->scene->model;
+  const lag_var *var = NULL;
+  int i, rc = begun(s), kind = lag_find(m, name, &i, &var);
+
+  if (rc == 0 && kind == LAG_IS_NOTHING) {
+    rc = set_family(s, name, value);
+    rc = rc == 0 ? unknown_name(s, name) : rc > 0 ? LAG_OK : rc;
+  } else if (rc == 0 && (rc = check_value(s, kind, var, name, value)) == 0) {
+    give(s, kind, i, in_si(kind, var, value));
+  }
+  if (rc) {
+    return rc;
   }
   if (s->scene->params) {
     s->scene->params(s->p, s->fixed); /* others may follow from this one */
   }
   place(s);
+  return LAG_OK;
+}
+
+int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *context)
+{
+  const lag_var *var = NULL;
+  int i, rc = begun(s), kind = lag_find(s->scene->model, name, &i, &var);
+
+  if (rc) {
+    return rc;
+  }
+  if (kind != LAG_IS_U) {
+    return kind == LAG_IS_NOTHING ? unknown_name(s, name) : lag_fail(s, LAG_EINVAL, "%s is no input: lag_sim_set sets it", name);
+  }
+  lag_signal before = s->signal[i];
+  s->signal[i] = (lag_signal){fn, context};
+  if (s->options && (rc = check_method(s, s->method)) != 0) { /* it may need what a function takes away */
+    s->signal[i] = before;
+    return rc;
+  }
+  s->hold[i] = NAN;
   return LAG_OK;
 }
 

@@ -106,8 +106,11 @@ static int begin(lag_sim *s, double t)
 static int take(lag_sim *s, double t_stop)
 {
   Run *r = s->run;
-  double t = r->t;
+  double t = r->t, row = t_stop;
 
+  if (lag_next_row(&s->pb, t, &row) < fabs(t_stop - t)) {
+    t_stop = row;
+  }
   memcpy(s->y0, s->now, (size_t)s->pb.n * sizeof(double));
   s->pb.detail = NULL;
   s->pb.bad_t = t;

@@ -22,6 +22,7 @@ static int outputs_at(lag_sim *s, double t, const double *y)
   const lag_scene *c = s->scene;
   int rc = lag_inputs(&s->pb, t);
 
+  rc = rc ? rc : lag_exact_at(s, t);
   if (rc || !c->observe) {
     return rc;
   }
@@ -53,10 +54,10 @@ int lag_watch_begin(lag_sim *s)
   }
   for (int i = 0; i < c->nmonitors; i++) {
     int k = c->monitors[i].output;
-    s->mon_first[i] = k >= 0 ? s->out[k] : s->e[0];
+    s->mon_first[i] = c->monitors[i].absolute ? 0 : k >= 0 ? s->out[k] : s->e[0];
     s->mon_peak[i] = 0;
   }
-  return LAG_OK;
+  return lag_exact_see(s, s->run->t, s->now);
 }
 
 /* The largest of x and y, NaN if y is: a NaN must not be forgotten. */
@@ -94,6 +95,9 @@ int lag_watch_see(lag_sim *s, double t, const double *y)
   r->e_last = s->e[0];
   r->e_scale = fmax(r->e_scale, s->e[1]);
   r->e_peak = larger(r->e_peak, fabs(s->e[0] - r->e_first));
+  if (lag_exact_see(s, t, y)) {
+    return LAG_EMODEL;
+  }
   if (watches_outputs(c) && outputs_at(s, t, y)) {
     return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %.17g", t);
   }
@@ -127,7 +131,7 @@ int lag_watch_jump(lag_sim *s, double t, const double *ya, const double *yb)
       }
       for (int i = 0; i < c->nmonitors; i++) {
         int k = c->monitors[i].output;
-        s->mon_first[i] += k >= 0 ? (pass ? s->out[k] : -s->out[k]) : 0;
+        s->mon_first[i] += k >= 0 && !c->monitors[i].absolute ? (pass ? s->out[k] : -s->out[k]) : 0;
       }
     }
   }

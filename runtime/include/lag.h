@@ -42,6 +42,14 @@ const char *lag_status_name(int status);
 
 /* ---- Methods --------------------------------------------------------------------------------- */
 
+/* A function of the caller that gives an input its value: in SI, at time t. */
+typedef double lag_input_fn(void *context, double t);
+
+typedef struct lag_signal {
+  lag_input_fn *fn; /* NULL: the model's formula, table, or a constant */
+  void *context;
+} lag_signal;
+
 /* What a method integrates: the model as y' = f(t, y), and where the method leaves its counts. */
 typedef struct lag_problem {
   const lag_model *model;
@@ -49,6 +57,7 @@ typedef struct lag_problem {
   const double *p;     /* [np] parameters */
   double *u;           /* [nu] inputs, filled by lag_rhs */
   const double *hold;  /* [nu] constants that replace inputs; NaN where there is none */
+  const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
   const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
@@ -64,11 +73,19 @@ typedef struct lag_problem {
   char words[160];     /* for example made here */
 } lag_problem;
 
+/* The model's facts (LAG_AUTONOMOUS, ...) without those that a function in place of an input takes away. */
+unsigned lag_facts(const lag_problem *pb);
+
 /* pb->u at t: by the model's formulas, or the constants of pb->hold. Returns what the model returned. */
 int lag_inputs(lag_problem *pb, double t);
 
 /* dy[n] = f(t, y[n]). Returns what the model returned; does not look for NaN. */
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
+
+/* How far it is from t to the next row of an input's table in direction pb->dir; HUGE_VAL where there is none. The
+ * third derivative of the right-hand side jumps there, and a step over several rows might miss what is between them:
+ * a method that chooses its steps ends them at *row, when that is nearer. STEPS_TO methods have it in t_stop. */
+double lag_next_row(const lag_problem *pb, double t, double *row);
 
 /* Lq = dL/dq, Lv = dL/dv and Q, the forces that are in no L, all [nq]; the values of their derivatives, h[model->nsecond]. For
  * models that have these functions; nz = 0. Return what the model returned. */
@@ -205,10 +222,17 @@ void lag_sim_free(lag_sim *sim);
 int lag_sim_set_method(lag_sim *sim, const lag_method *method, const lag_option *opt, int nopt);
 /* tol > 0; not below 1e-15. */
 int lag_sim_set_tolerance(lag_sim *sim, double tol);
-/* Sets by name, in the declared unit: a parameter ("m", "drag.c", or "c" when no other parameter ends
- * in ".c"), the start of a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that
- * replaces an input. A parameter of the wrong sign is an error. */
+/* Sets by name, in the declared unit: a parameter ("m", "drag.c", or "c" when nothing else ends in ".c"), the start of
+ * a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that replaces an input; of a family one
+ * member ("m[2]", "r[1].x'") or all ("m", "r.x'"). A parameter of the wrong sign is an error. */
 int lag_sim_set(lag_sim *sim, const char *name, double value);
+/* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI units
+ * unlike lag_sim_set; fn NULL: as the model says again. It must be a function of t alone: methods, events and outputs
+ * call it for times that go forth and back, more than once for some. What depends on the motion is a force of the
+ * model. For full accuracy fn has two continuous derivatives, or steps that are short beside what it does. A value
+ * that is not finite ends the run with LAG_ENAN. context must outlive the run. A saved state does not hold fn: set it
+ * again before lag_sim_load. */
+int lag_sim_set_input(lag_sim *sim, const char *name, lag_input_fn *fn, void *context);
 
 /* Integrates to time t, before or after t0, but always in one direction. The steps do not depend on
  * t: the state at t is evaluated on the dense output (STEPS_TO methods: reached exactly), so runs that are
@@ -237,6 +261,8 @@ int lag_sim_noutputs(const lag_sim *sim);
 /* Component i of the state q, v, z: name, with a prime for a velocity, and declared unit; buffers of the caller, cut to fit, either may be
  * NULL. Returns what a difference of one declared unit is in SI. */
 double lag_sim_state_info(const lag_sim *sim, int i, char *name, size_t nname, char *unit, size_t nunit);
+/* A value in SI of component i, in its declared unit. */
+double lag_sim_declared(const lag_sim *sim, int i, double value);
 /* Component i of the state q, v, z now, in its declared unit. */
 double lag_sim_state_value(const lag_sim *sim, int i);
 /* Name and unit of output i, and what lag_sim_state_info returns. */
@@ -247,15 +273,23 @@ int lag_sim_outputs(lag_sim *sim, double *out);
 void lag_sim_stats(lag_sim *sim, lag_stats *stats);
 /* The drift of monitor i so far, as judged against its limit. */
 double lag_sim_monitor_drift(const lag_sim *sim, int i);
+/* Closed form k of the scene (k < lag_sim_scene(sim)->nexact): the largest |motion - closed form| at the ends of steps so
+ * far, and the difference now, both in the declared unit (of degC: K); of angles, the nearest way around. NaN: the closed form is no
+ * number. */
+void lag_sim_exact(lag_sim *sim, int k, double *largest, double *now);
 /* How often event k has fired. */
 long long lag_sim_event_count(const lag_sim *sim, int k);
+/* The same, and the times of the first and the last; NaN when there was none. */
+long long lag_sim_event_times(const lag_sim *sim, int k, double *first, double *last);
 /* The last error, "" when there was none. */
 const char *lag_sim_message(const lag_sim *sim);
 
 /* Called after each step; != 0 ends the run with LAG_INTERRUPTED. */
 void lag_sim_on_step(lag_sim *sim, int (*hook)(void *context, const lag_sim *sim), void *context);
-/* Called when event k fires at time t, before its action. */
-void lag_sim_on_event(lag_sim *sim, void (*hook)(void *context, int k, double t), void *context);
+/* Called when event k fires at time t, with the state y[n] before and after its action: the same where it changes
+ * nothing. The arrays are valid during the call. */
+typedef void lag_event_fn(void *context, int k, double t, const double *before, const double *after);
+void lag_sim_on_event(lag_sim *sim, lag_event_fn *hook, void *context);
 
 /* Everything that a later run needs, as x[lag_sim_save_size()] doubles. LAG_EINVAL when the method cannot
  * be saved. load takes it into a simulation of the same scene, method and options. */
@@ -312,7 +346,8 @@ extern const lag_algebra lag_gsl_algebra;
 extern const lag_extras lag_gsl;
 
 /* main() of a simulator: see --help, or app/help.c. extras may be NULL.
- * Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 130 interrupted. */
+ * Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 128 and the number of the signal
+ * (130: Ctrl-C) when it was interrupted. */
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras);
 
 #ifdef __cplusplus

@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 2
+#define LAG_ABI 3
 
 /* The scalar that a model is compiled for: double, float, long double or __float128. */
 #ifndef LAG_REAL
@@ -36,14 +36,14 @@ enum {
   LAG_ESINGULAR = -1  /* the mass matrix is singular at this state */
 };
 
-/* Facts about a model that the compiler proved. */
+/* Facts about a model, with the inputs that it gives itself, that the compiler proved. */
 enum {
   LAG_CONSERVES_ENERGY = 1, /* no t in L, no force, no dissipation, no input */
   LAG_CONSTANT_MASS = 2,    /* d2L/dq'2 depends on no coordinate, velocity or time */
   LAG_AUTONOMOUS = 4,       /* the right-hand side does not contain t */
-  LAG_SMOOTH = 8,           /* no if, abs, sign, min, max */
+  LAG_SMOOTH = 8,           /* no if, abs, sign, min, max, and no table */
   LAG_SEPARABLE = 16,       /* constant mass matrix, accelerations that do not depend on velocities, no states */
-  LAG_TIMELESS = 32         /* t enters by the formulas of inputs, if at all */
+  LAG_TIMELESS = 32         /* t enters by the formulas and tables of inputs, if at all */
 };
 
 /* A named quantity. unit is as declared ("deg"), or as found from the equations, "" when none; x units are
@@ -61,6 +61,14 @@ typedef struct lag_event {
   const char *name;
   int direction; /* 1 rising, -1 falling, 0 both */
 } lag_event;
+
+/* The curve of an input that has a table: a cubic between each two of n rows, times increasing. In emitted code
+ * alone; the runtime ends steps at the rows. */
+typedef struct lag_table {
+  int input; /* its index */
+  int n;
+  const double (*row)[3]; /* time, value, second derivative */
+} lag_table;
 
 /* Place of an entry of a sparse matrix. */
 typedef struct lag_entry {
@@ -149,6 +157,9 @@ typedef struct lag_model {
              const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1,
              int *stop, LAG_REAL *w);
 
+  int ntables;
+  const lag_table *tables; /* [ntables] the inputs that have a table */
+
   /* The rest is NULL in a program that was not emitted for a method that needs it (lagc build --method NAME). */
 
   /* Lq[nq] = dL/dq, the momenta Lv[nq] = dL/dv, and Q[nq], the generalised forces that are in no L. */
@@ -178,6 +189,7 @@ typedef struct lag_monitor {
   const char *name;
   int output;    /* index into outputs, or -1 for the energy */
   double limit;  /* the run fails when the drift exceeds it */
+  int absolute;  /* 1: when the value itself does, in its declared unit */
 } lag_monitor;
 
 typedef struct lag_scene {
@@ -206,6 +218,13 @@ typedef struct lag_scene {
                  const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
   int nmonitors;
   const lag_monitor *monitors;
+
+  /* Closed forms to compare with: out[nexact] at time t of a motion that began with q0, v0, z0. Of observe alone, u has
+   * nu + nexact elements: the closed forms stand behind the inputs. */
+  int nexact;
+  const int *exact_of; /* [nexact] which component of [q|v|z] it is */
+  int (*exact)(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0, const LAG_REAL *p,
+               const LAG_REAL *u, LAG_REAL *out);
 } lag_scene;
 
 /* A compiled .lag file: all of its scenes. Several scenes may share one model. */

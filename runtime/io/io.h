@@ -20,6 +20,8 @@ int outfile_close(Outfile *o, int keep);
 
 typedef struct Column {
   char name[96], unit[64];
+  const char *const *words; /* [nwords] of a column that holds words: a value is the number of its word. NULL: numbers */
+  int nwords;
 } Column;
 
 /* Column 0 is the time. data[nrows * ncols], row by row; kept only when keep is set. */

@@ -1,8 +1,8 @@
 /* Rows of output. Enters: the columns of a simulation, then one row at a time; leaves: a CSV file (RFC 4180;
  * a head with names and units, values with 17 digits: they read back exactly), or a NumPy .npy file.
  *
- * The .npy file is a one-dimensional array of records, one field of 8 bytes a column; the field's title is
- * "name [unit]": a = numpy.load("f.npy"); a["th"], a["th [deg]"], a.dtype.fields. Format: NumPy
+ * The .npy file is a one-dimensional array of records, a field of 8 bytes a column (words: as many characters as the
+ * longest has); the field's title is "name [unit]": a = numpy.load("f.npy"); a["th"], a["th [deg]"], a.dtype.fields. Format: NumPy
  * Enhancement Proposal 1; version 1.0, and 3.0 where a name is not ASCII. */
 #include <errno.h>
 #include <stdint.h>
@@ -84,6 +84,44 @@ static void csv_head(Rows *r)
   putc('\n', r->out.f);
 }
 
+/* The next character of UTF-8 text; what is no UTF-8 byte by byte. */
+static uint32_t next_char(const unsigned char **s)
+{
+  uint32_t c = *(*s)++;
+  int more = c >= 0xF0 ? 3 : c >= 0xE0 ? 2 : c >= 0xC0 ? 1 : 0;
+
+  c &= more == 3 ? 0x07u : more == 2 ? 0x0Fu : more == 1 ? 0x1Fu : 0xFFu;
+  for (; more > 0 && (**s & 0xC0) == 0x80; more--) {
+    c = c << 6 | (*(*s)++ & 0x3Fu);
+  }
+  return c;
+}
+
+/* The characters of the longest word of a column, at least 1. */
+static size_t word_width(const Column *c)
+{
+  size_t most = 1;
+
+  for (int i = 0; i < c->nwords; i++) {
+    size_t n = 0;
+    for (const unsigned char *s = (const unsigned char *)c->words[i]; *s; n++) {
+      next_char(&s);
+    }
+    most = n > most ? n : most;
+  }
+  return most;
+}
+
+static void npy_word(FILE *f, const Column *c, const char *word)
+{
+  const unsigned char *s = (const unsigned char *)word;
+
+  for (size_t n = word_width(c); n > 0; n--) {
+    uint32_t code = *s ? next_char(&s) : 0;
+    fwrite(&code, sizeof code, 1, f);
+  }
+}
+
 static int is_ascii(const Rows *r)
 {
   for (int i = 0; i < r->ncols; i++) {
@@ -136,7 +174,12 @@ static void npy_dict(Rows *r, FILE *f)
       fputs(", ", f);
     }
     python_text(f, c->name);
-    fprintf(f, c->unit[0] ? "), '%cf8')" : ", '%cf8')", order);
+    fputs(c->unit[0] ? "), " : ", ", f);
+    if (c->words) {
+      fprintf(f, "'%cU%zu')", order, word_width(c));
+    } else {
+      fprintf(f, "'%cf8')", order);
+    }
   }
   fputs("], 'fortran_order': False, 'shape': (", f);
 }
@@ -194,12 +237,22 @@ int rows_write(Rows *r, const double *row)
   FILE *f = r->out.f;
 
   r->nrows++;
-  if (r->npy) {
-    fwrite(row, sizeof *row, (size_t)r->ncols, f);
-  } else {
-    for (int i = 0; i < r->ncols; i++) {
-      fprintf(f, i ? ",%.17g" : "%.17g", row[i]);
+  for (int i = 0; i < r->ncols; i++) {
+    const Column *c = &r->cols[i];
+    if (!r->npy && i) {
+      putc(',', f);
     }
+    if (!c->words && r->npy) {
+      fwrite(&row[i], sizeof row[i], 1, f);
+    } else if (!c->words) {
+      fprintf(f, "%.17g", row[i]);
+    } else if (r->npy) {
+      npy_word(f, c, c->words[(int)row[i]]);
+    } else {
+      csv_text(f, c->words[(int)row[i]]);
+    }
+  }
+  if (!r->npy) {
     putc('\n', f);
   }
   return ferror(f) ? -1 : 0;

@@ -46,7 +46,8 @@ static void line(Chart *c, int xa, int ya, int xb, int yb)
   }
 }
 
-static void range(const Table *t, int col, double *lo, double *hi)
+/* The range of a column; one that is narrower than `least` times its values is drawn flat, in its middle. */
+static void range(const Table *t, int col, double least, double *lo, double *hi)
 {
   *lo = HUGE_VAL;
   *hi = -HUGE_VAL;
@@ -55,7 +56,7 @@ static void range(const Table *t, int col, double *lo, double *hi)
     *lo = isfinite(x) ? fmin(*lo, x) : *lo;
     *hi = isfinite(x) ? fmax(*hi, x) : *hi;
   }
-  if (!(*lo < *hi)) {
+  if (!(*hi - *lo > least * fmax(fabs(*lo), fabs(*hi)))) {
     double mid = isfinite(*lo) ? *lo : 0;
     *lo = mid - (mid == 0.0 ? 1 : fabs(mid) / 2);
     *hi = mid + (mid == 0.0 ? 1 : fabs(mid) / 2);
@@ -134,8 +135,8 @@ void sketch_path(FILE *f, const Table *t, int col_x, int col_y)
 {
   Chart c = {.rows = MOST_ROWS};
 
-  range(t, col_x, &c.x0, &c.x1);
-  range(t, col_y, &c.y0, &c.y1);
+  range(t, col_x, 0, &c.x0, &c.x1);
+  range(t, col_y, 0, &c.y0, &c.y1);
   if (strcmp(t->cols[col_x].unit, t->cols[col_y].unit) == 0) {
     same_scale(&c);
   }
@@ -150,8 +151,8 @@ void sketch_print(FILE *f, const Table *t)
 
   for (int k = 1; k <= n; k++) {
     Chart c = {.rows = n == 1 ? CHART_ROWS : n <= 3 ? CHART_ROWS / 2 : 5};
-    range(t, 0, &c.x0, &c.x1);
-    range(t, k, &c.y0, &c.y1);
+    range(t, 0, 0, &c.x0, &c.x1);
+    range(t, k, 1e-4, &c.y0, &c.y1); /* the labels of the axis have four digits */
     draw(&c, t, 0, k);
     print_chart(f, &c, &t->cols[k]);
     if (k == n) {

@@ -101,16 +101,32 @@ static double base_of(const Panel *p, double dy)
   return size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0;
 }
 
+/* Every how many ticks of x there is room for a label: long ones (-3.086e+07) would run into each other. */
+static double label_stride(const Panel *p, double dx)
+{
+  enum { WIDTH_OF_CHARACTER = 7, ROOM = 10 };
+  size_t longest = 0;
+  char s[32];
+  for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
+    tick_label(s, sizeof s, k * dx, dx);
+    if (strlen(s) > longest) {
+      longest = strlen(s);
+    }
+  }
+  return ceil(((double)longest * WIDTH_OF_CHARACTER + ROOM) / (px(p, dx) - px(p, 0)));
+}
+
 static void axes(FILE *f, const Panel *p, const char *ylabel, int last)
 {
   char s[32];
   double dx = nice_step(p->x0, p->x1, 8), dy = nice_step(p->y0, p->y1, p->h > 220 ? 7 : 4), base = base_of(p, dy);
+  double stride = label_stride(p, dx);
 
   fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" stroke=\"#999\"/>\n", p->x, p->y, p->w, p->h);
   for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
     fprintf(f, "<path d=\"M%.2f %.1fv%.1f\" class=\"g\"/>\n", px(p, k * dx), p->y, p->h);
     tick_label(s, sizeof s, k * dx, dx);
-    if (last) {
+    if (last && fmod(k, stride) == 0.0) {
       text(f, px(p, k * dx), p->y + p->h + 17, "text-anchor=\"middle\"", s);
     }
   }

@@ -1,27 +1,8 @@
 /* Elimination within a band: G.H. Golub, C.F. Van Loan, Matrix Computations, 4th ed. (2013), algorithms 3.4.1 and 4.3.1.
- * Exchanged rows may reach twice the band to the right, so a row keeps 3 band + 1 columns, or all. Multipliers stay where
- * they were when they were made: a solution repeats the exchanges one by one. */
+ * Multipliers stay where they were when they were made: a solution repeats the exchanges one by one. */
 #include "methods/band.h"
 
 #include <math.h>
-
-static int width(int n, int band)
-{
-  return 3 * band + 1 < n ? 3 * band + 1 : n;
-}
-
-int lag_band_size(int n, int band)
-{
-  return n * width(n, band);
-}
-
-double *lag_band_at(const lag_band *m, int i, int j)
-{
-  int w = width(m->n, m->band), first = i - m->band;
-
-  first = first > m->n - w ? m->n - w : first;
-  return m->a + i * w + j - (first > 0 ? first : 0);
-}
 
 static int least(int a, int b)
 {

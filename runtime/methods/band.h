@@ -9,11 +9,26 @@ typedef struct lag_band {
   double *pivot; /* [n] */
 } lag_band;
 
-/* Doubles of a. */
-int lag_band_size(int n, int band);
+/* Columns that a row keeps: pivoting exchanges rows, which then reach twice the band to the right. */
+static inline int lag_band_width(int n, int band)
+{
+  return 3 * band + 1 < n ? 3 * band + 1 : n;
+}
 
-/* The place of entry (i, j). */
-double *lag_band_at(const lag_band *m, int i, int j);
+/* Doubles of a. */
+static inline int lag_band_size(int n, int band)
+{
+  return n * lag_band_width(n, band);
+}
+
+/* The place of entry (i, j); those of a row within the band are side by side. */
+static inline double *lag_band_at(const lag_band *m, int i, int j)
+{
+  int w = lag_band_width(m->n, m->band), first = i - m->band;
+
+  first = first > m->n - w ? m->n - w : first;
+  return m->a + i * w + j - (first > 0 ? first : 0);
+}
 
 /* L U with partial pivoting; rows are compared after scaling by their largest entries, so that the units of the equations
  * do not matter. scale[n] is scratch. 0, or -1 when the matrix is singular or not finite. */

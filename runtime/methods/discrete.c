@@ -123,38 +123,57 @@ static int residual(const lag_discrete *d, const Parts *w)
   return LAG_OK;
 }
 
-/* Adds what the second derivatives at point i put between free velocities k and l. Unknown u_k of coordinate a is number
- * a free + k, so that the matrix of a chain has a band. */
-static void scatter(const lag_discrete *d, const Parts *w, int i, int k, int l)
+/* How strongly a derivative at a point enters, by the equation k and the free velocity l: of p and of the forces, by
+ * velocities and by coordinates. */
+typedef struct Weights {
+  double pv[LAG_RULE_FREE][LAG_RULE_FREE], pq[LAG_RULE_FREE][LAG_RULE_FREE];
+  double fv[LAG_RULE_FREE][LAG_RULE_FREE], fq[LAG_RULE_FREE][LAG_RULE_FREE];
+} Weights;
+
+static Weights weights(const lag_discrete *d, const Parts *w, int i)
 {
   const lag_rule *r = d->rule;
+  Weights c;
+
+  for (int k = 0; k < w->free; k++) {
+    double moved = r->b[i] * r->value[i][k], pushed = -d->h * r->b[i] * (r->whole[k] - r->integral[i][k]);
+    for (int l = 0; l < w->free; l++) {
+      double v = r->value[i][l], q = d->h * r->integral[i][l];
+      c.pv[k][l] = moved * v;
+      c.pq[k][l] = moved * q;
+      c.fv[k][l] = pushed * v;
+      c.fq[k][l] = pushed * q;
+    }
+  }
+  return c;
+}
+
+/* Adds c x to the block of coordinates (row, col). Unknown u_k of coordinate a is number a free + k, so that the matrix of a
+ * chain has a band. */
+static void add_block(const Parts *w, int row, int col, double (*c)[LAG_RULE_FREE], double x)
+{
+  for (int k = 0; k < w->free; k++) {
+    double *at = lag_band_at(&w->J, row * w->free + k, col * w->free);
+    for (int l = 0; l < w->free; l++) {
+      at[l] += c[k][l] * x;
+    }
+  }
+}
+
+/* Adds what the second derivatives at point i put into the matrix. */
+static void scatter(const lag_discrete *d, const Parts *w, int i)
+{
   const lag_model *m = d->pb->model;
-  double b = r->b[i], v = r->value[i][l], q = d->h * r->integral[i][l];
-  double moved = b * r->value[i][k], pushed = -d->h * b * (r->whole[k] - r->integral[i][k]);
+  Weights c = weights(d, w, i);
 
   for (int e = 0; e < m->nsecond; e++) {
-    int row = m->second_at[e].row, col = m->second_at[e].col;
-    double x = w->h[e], *at = lag_band_at(&w->J, row * w->free + k, col * w->free + l);
-    double *across = lag_band_at(&w->J, col * w->free + k, row * w->free + l);
-    switch (m->second_at[e].part) {
-    case LAG_QQ:
-      *at += pushed * q * x;
-      if (row != col) {
-        *across += pushed * q * x;
-      }
-      break;
-    case LAG_VV:
-      *at += moved * v * x;
-      if (row != col) {
-        *across += moved * v * x;
-      }
-      break;
-    case LAG_VQ:
-      *at += moved * q * x;
-      *across += pushed * v * x;
-      break;
-    case LAG_FQ: *at += pushed * q * x; break;
-    default: *at += pushed * v * x;
+    int row = m->second_at[e].row, col = m->second_at[e].col, part = m->second_at[e].part;
+    double (*on)[LAG_RULE_FREE] = part == LAG_VV ? c.pv : part == LAG_VQ ? c.pq : part == LAG_FV ? c.fv : c.fq;
+    add_block(w, row, col, on, w->h[e]);
+    if (part == LAG_VQ) {
+      add_block(w, col, row, c.fv, w->h[e]); /* d2L/dq dv is its transpose */
+    } else if (row != col && (part == LAG_QQ || part == LAG_VV)) {
+      add_block(w, col, row, on, w->h[e]);
     }
   }
 }
@@ -169,11 +188,7 @@ static int matrix(const lag_discrete *d, Parts *w)
     if (rc) {
       return lag_step_refused(d->pb, rc, time_of(d, i));
     }
-    for (int k = 0; k < w->free; k++) {
-      for (int l = 0; l < w->free; l++) {
-        scatter(d, w, i, k, l);
-      }
-    }
+    scatter(d, w, i);
   }
   if (lag_band_factor(&w->J, w->du)) {
     d->pb->detail = "the matrix of Newton's method is singular; take another step size";

@@ -261,8 +261,14 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
   int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
 
   while (rc == 0) {
-    w->h = fmin(w->h, longest(w, *t));
+    double wanted = fmin(w->h, longest(w, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row(pb, *t, &row);
+    int clipped = wanted * (1 + 1e-4) >= gap; /* what is left would be too short a step */
+    w->h = clipped ? gap : wanted;
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_sum(*t, dt, &tc);
+    if (clipped) {
+      tb = row;
+      tc = 0;
+    }
     if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) {
       return too_small(pair, w, pb, *t, cause);
     }
@@ -273,6 +279,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
     if (err <= 1 || (w->fixed != 0.0 && !isnan(err))) {
       if (w->fixed == 0.0) {
         next_size(pair, w, err, retried);
+        w->h = clipped ? fmax(w->h, wanted) : w->h;
       }
       accept(w, pb, t, y, dt, tb, tc);
       return LAG_OK;

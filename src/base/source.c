@@ -89,3 +89,38 @@ Place source_place(const Sources *s, uint32_t offset) {
   }
   return (Place){0};
 }
+
+/* --- paths --- */
+
+/* Copies `path` to `out` without its `.` parts, and with `a/..` removed; returns the new end. */
+static size_t add_parts(char *out, size_t n, const char *path) {
+  while (*path) {
+    size_t len = strcspn(path, "/");
+    const char *part = path;
+    path += len + (path[len] == '/');
+    if (len == 0 || (len == 1 && part[0] == '.')) continue;
+    size_t last = n;
+    while (last > 0 && out[last - 1] != '/') last--;
+    int up = len == 2 && memcmp(part, "..", 2) == 0;
+    if (up && n > last && !(n - last == 2 && memcmp(out + last, "..", 2) == 0)) {
+      n = last ? last - 1 : 0;
+      if (last == 1) n = 1; /* the root */
+      continue;
+    }
+    if (n && out[n - 1] != '/') out[n++] = '/';
+    memcpy(out + n, part, len);
+    n += len;
+  }
+  return n;
+}
+
+const char *path_beside(Arena *a, const char *from, const char *path) {
+  char *out = arena_alloc(a, strlen(from) + strlen(path) + 3);
+  size_t n = 0;
+  const char *slash = strrchr(from, '/');
+  if (path[0] == '/' || from[0] == '/') out[n++] = '/';
+  if (path[0] != '/' && slash) n = add_parts(out, n, arena_strndup(a, from, (size_t)(slash - from)));
+  n = add_parts(out, n, path);
+  out[n] = '\0';
+  return out;
+}

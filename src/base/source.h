@@ -54,4 +54,7 @@ const Source *source_read(Sources *s, const char *path, const char **error);
 /* Where an offset is; file NULL for offset 0 or one past all texts. */
 Place source_place(const Sources *s, uint32_t offset);
 
+/* `path` as written in the file `from`: relative to its folder, in one spelling for each file. */
+const char *path_beside(Arena *a, const char *from, const char *path);
+
 #endif

@@ -4,8 +4,9 @@
 
 #include "base/define.h"
 #include "base/vec.h"
+#include "cli/commands.h"
 
-typedef enum { CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_EMIT, CMD_HEADER, CMD_BUILD, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES, CMD_METHODS, CMD_HELP, CMD_VERSION } Command;
+typedef VEC(const char *) OptionTexts;
 
 typedef struct {
   Command command;
@@ -15,13 +16,14 @@ typedef struct {
   const char *resume;      /* of run */
   const char *format;      /* derive --format */
   const char *dump;        /* --dump=ast,model,eqns,prog */
-  const char *topic;       /* help TOPIC */
+  const char *topic;       /* of help; the shell of completion */
+  int help;                /* --help: then command is CMD_HELP */
   int allow_numeric;       /* check --allow-numeric */
   int no_gsl, ops;
-  int linear;              /* --with linear */
+  const char *with;        /* --with linear: parts of a model that are emitted only where something needs them */
   VEC(Define) defines;
-  VEC(const char *) rest;  /* run, plot, animate: what the simulator gets, the scene too */
-  VEC(const char *) observe; /* run --observe: expressions */
+  OptionTexts rest;        /* run, plot, animate: what the simulator gets, the scene too; complete: the words */
+  OptionTexts observe;     /* run --observe: expressions */
   const char *x, *y, *phase; /* plot */
   const char *points, *from; /* animate */
   int no_rods;
@@ -29,11 +31,5 @@ typedef struct {
 
 /* Reads argv. 0, with *error saying what is wrong and what to write, on a mistake. */
 int options_read(Arena *a, int argc, char **argv, Options *o, const char **error);
-
-/* Whether the command hands its values and options to a simulator. */
-int options_simulate(const Options *o);
-
-/* The text of `lagc help`, or of help on one command or topic; NULL when there is no such topic. */
-const char *options_help(const char *topic);
 
 #endif

@@ -68,8 +68,7 @@ static char *read_fd(Arena *a, int fd) {
   return arena_strdup(a, sb_text(&b));
 }
 
-/* Runs a program; its output and messages go to *said. Returns its exit status, or -1. */
-static int run(Arena *a, char *const *argv, char **said) {
+int toolchain_run(Arena *a, char *const *argv, char **said) {
   int pipe_fd[2];
   if (pipe(pipe_fd) != 0) return -1;
   pid_t pid = fork();
@@ -114,7 +113,7 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   vec_push(a, &argv, arena_strdup(a, "-lm"));
   vec_push(a, &argv, NULL);
   char *said = NULL;
-  int status = run(a, argv.at, &said);
+  int status = toolchain_run(a, argv.at, &said);
   if (status == 0) return 1;
   if (status == 127) *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
   else *error = arena_printf(a, "the C compiler `%s` failed:\n%s", t->cc, said ? said : "");
@@ -168,6 +167,37 @@ static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceT
   h = hash_more(h, t->optimise, strlen(t->optimise) + 1);
   h = hash_library(a, h, arena_printf(a, "%s/liblag.a", t->lib));
   return t->gsl ? hash_library(a, h, arena_printf(a, "%s/liblag_gsl.a", t->lib)) : h;
+}
+
+/* The size of a file and a checksum of what is in it, as text; NULL when it cannot be read. */
+static const char *checksum(Arena *a, const char *path) {
+  FILE *f = fopen(path, "rb");
+  uint64_t h = 1469598103934665603u;
+  char block[16384];
+  long long size = 0;
+  if (!f) return NULL;
+  for (size_t n; (n = fread(block, 1, sizeof block, f)) > 0; size += (long long)n) h = hash_more(h, block, n);
+  int bad = ferror(f);
+  fclose(f);
+  return bad ? NULL : arena_printf(a, "%lld %016llx\n", size, (unsigned long long)h);
+}
+
+static const char *seal_of(Arena *a, const char *path) { return arena_printf(a, "%s.sum", path); }
+
+int toolchain_is_whole(Arena *a, const char *path) {
+  char sealed[64] = "";
+  FILE *f = file_runs(path) ? fopen(seal_of(a, path), "rb") : NULL;
+  if (!f) return 0;
+  size_t n = fread(sealed, 1, sizeof sealed - 1, f);
+  fclose(f);
+  sealed[n] = '\0';
+  const char *sum = checksum(a, path);
+  return sum && strcmp(sum, sealed) == 0;
+}
+
+void toolchain_seal(Arena *a, const char *path) {
+  const char *why, *sum = checksum(a, path);
+  if (sum) file_write(a, seal_of(a, path), sum, strlen(sum), &why);
 }
 
 const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {

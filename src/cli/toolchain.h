@@ -25,7 +25,15 @@ int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, cons
  * well. 0, with *error (it may contain the compiler's own messages), on failure. */
 int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output, const char **error);
 
+/* Runs a program; its output and messages go to *said. Returns its exit status, or -1. */
+int toolchain_run(Arena *a, char *const *argv, char **said);
+
 /* The path of the cached simulator for these texts: named by their content and the runtime's. */
 const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n);
+
+/* Whether the simulator at path is as it was sealed: what a full disk or a crash cut short is built anew. seal notes
+ * its checksum beside it; should that fail, the simulator is built anew the next time. */
+int toolchain_is_whole(Arena *a, const char *path);
+void toolchain_seal(Arena *a, const char *path);
 
 #endif

@@ -46,6 +46,35 @@ static const char *const solver =
   "  return LAG_OK;\n"
   "}\n";
 
+/* Lanes that ask for different pieces get them one after the other. */
+static const char *const spline =
+  "\n/* What one lane of LAG_REAL holds. */\n"
+  "#ifndef LAG_LANE\n#define LAG_LANE LAG_REAL\n#endif\n"
+  "\n/* The cubic between two rows of time, value and second derivative; outside of them the nearest value. */\n"
+  "static LAG_REAL lag_cubic(LAG_REAL t, const double *a, const double *b) {\n"
+  "  const LAG_LANE h = (LAG_LANE)(b[0] - a[0]);\n"
+  "  const LAG_REAL part = (t - (LAG_LANE)a[0])/h, zero = LAG_C(0.0), one = LAG_C(1.0);\n"
+  "  const LAG_REAL x = LAG_SELECT(part < zero, zero, LAG_SELECT(part > one, one, part)), rest = one - x;\n"
+  "  return rest*(LAG_LANE)a[1] + x*(LAG_LANE)b[1]\n"
+  "       - x*rest*(h*h/(LAG_LANE)6)*((one + rest)*(LAG_LANE)a[2] + (one + x)*(LAG_LANE)b[2]);\n"
+  "}\n"
+  "\n/* The curve through n rows. Between the first and the last row it has two continuous derivatives. */\n"
+  "static LAG_REAL lag_spline(LAG_REAL t, int n, const double (*row)[3]) {\n"
+  "  int k = 0;\n"
+  "  for (int end = n - 1; end - k > 1;) {\n"
+  "    const int mid = (k + end)/2;\n"
+  "    if (LAG_ANY(t < LAG_C(0.0) + (LAG_LANE)row[mid][0])) end = mid;\n"
+  "    else k = mid;\n"
+  "  }\n"
+  "  LAG_REAL y = lag_cubic(t, row[k], row[k + 1]);\n"
+  "  for (k++; k < n - 1; k++) { /* lanes that are further on */\n"
+  "    const LAG_MASK later = t >= LAG_C(0.0) + (LAG_LANE)row[k][0];\n"
+  "    if (!LAG_ANY(later)) break;\n"
+  "    y = LAG_SELECT(later, lag_cubic(t, row[k], row[k + 1]), y);\n"
+  "  }\n"
+  "  return y;\n"
+  "}\n";
+
 /* The same elimination, with the multipliers kept below the diagonal and the exchanges of rows in `rows`. */
 static const char *const factorizer =
   "\n/* Factors M[n*n] of w = [M | b | rows] by elimination with partial pivoting. */\n"
@@ -102,6 +131,7 @@ void csupport_fill(const char *text, const char *prefix, const char *lower, StrB
 void csupport_logic(const char *prefix, StrBuf *out) { csupport_fill(logic, prefix, "", out); }
 void csupport_factor(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(factorizer, prefix, lower, out); }
 void csupport_solver(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(solver, prefix, lower, out); }
+void csupport_spline(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(spline, prefix, lower, out); }
 
 /* Whether the program reads or writes what the parameter `name` holds. */
 static int is_used(const Prog *p, const CStyle *st, const char *name) {

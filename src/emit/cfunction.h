@@ -12,6 +12,9 @@ void csupport_logic(const char *prefix, StrBuf *out);
 /* `static int lower_solve(n, M, b)`, for the blocks that are not solved in straight-line code. */
 void csupport_solver(const char *prefix, const char *lower, StrBuf *out);
 
+/* `static LAG_REAL lower_spline(t, n, row)`, for the inputs that have a table. */
+void csupport_spline(const char *prefix, const char *lower, StrBuf *out);
+
 /* The same in two functions, lag_factor(n, w) and lag_substitute(n, w), with w[n*n + 2 n] = matrix, right-hand side, order
  * of the rows: one factorization for several right-hand sides. */
 void csupport_factor(const char *prefix, const char *lower, StrBuf *out);

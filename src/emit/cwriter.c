@@ -1,3 +1,4 @@
+#include <stdio.h>
 #include <string.h>
 
 #include "emit/cwriter_impl.h"
@@ -170,7 +171,7 @@ Piece cwriter_spell(Writer *w, const Ins *i) {
     case IR_OR: return macro(w, "OR", i->a, i->b, 0, 2);
     case IR_SELECT: return macro(w, "SELECT", i->a, i->b, i->c, 3);
     case IR_SOLVED: return solved(w, i);
-    case IR_PIVOT: case IR_SOLVE: case IR_TITLE: break;
+    case IR_PIVOT: case IR_SOLVE: case IR_TABLE: case IR_TITLE: break;
   }
   return (Piece){"", C_ATOM, 0};
 }
@@ -273,6 +274,35 @@ static void write_solve(Writer *w, const Ins *i) {
   else sb_printf(w->out, "  if (%s(%u, w, w + %u)) return %s_ESINGULAR;\n", st->solve, n, b, st->prefix);
 }
 
+/* As many rows on a line as fit. */
+void cwrite_rows(const IrTable *table, const char *name, const char *indent, Arena *a, StrBuf *out) {
+  const Spline *c = table->curve;
+  sb_printf(out, "%s/* %s: time, value, second derivative. */\n", indent, comment_text(a, table->file));
+  sb_printf(out, "%sstatic const double %s[%u][3] = {", indent, name, c->n);
+  size_t column = WRAP_COLUMNS;
+  for (uint32_t k = 0; k < c->n; k++) {
+    char t[32], y[32], m[32], row[128];
+    num_format_double(t, c->row[k][0]);
+    num_format_double(y, c->row[k][1]);
+    num_format_double(m, c->row[k][2]);
+    size_t n = (size_t)snprintf(row, sizeof row, " {%s, %s, %s}%s", t, y, m, k + 1 < c->n ? "," : "");
+    if (column + n > WRAP_COLUMNS) {
+      sb_printf(out, "\n%s ", indent);
+      column = strlen(indent) + 1;
+    }
+    sb_putn(out, row, n);
+    column += n;
+  }
+  sb_printf(out, "\n%s};\n", indent);
+}
+
+static void write_table(Writer *w, Slot s, const Ins *i) {
+  const IrTable *table = &w->p->tables.at[i->index];
+  const char *name = w->style->rows ? w->style->rows[i->index] : cnames_take(&w->names, arena_printf(w->a, "%s_rows", table->name));
+  if (!w->style->rows) cwrite_rows(table, name, "  ", w->a, w->out);
+  w->piece[s] = (Piece){arena_printf(w->a, "%s(%s, %u, %s)", w->style->spline, cwriter_operand(w, i->a).text, table->curve->n, name), C_ATOM, 0};
+}
+
 /* The loads of one array that are used, by index; 0 where there is none. */
 static Slot *loads_of(Writer *w, int array, uint32_t *n) {
   const Prog *p = w->p;
@@ -335,6 +365,10 @@ static void write_instruction(Writer *w, Slot s) {
   }
   if (i->op == IR_SOLVE) {
     write_solve(w, i);
+    return;
+  }
+  if (i->op == IR_TABLE) {
+    write_table(w, s, i);
     return;
   }
   if (i->op == IR_LOAD) return;

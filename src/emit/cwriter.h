@@ -19,11 +19,16 @@ typedef struct {
   const char *const *globals;         /* names that the function must not hide, NULL at the end; or NULL */
   const char *solve;                /* name of the function that factors and solves */
   const char *factor, *substitute;  /* instead of it, where factors are kept; or NULL */
+  const char *spline;               /* name of the function that evaluates tables, */
+  const char *const *rows;          /* and of their arrays; NULL: they stand in the body */
   int loads_inline;                 /* spell loads at their use instead of naming them at the top */
 } CStyle;
 
 /* Appends the body, without braces, indented by two spaces. */
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out);
+
+/* `static const double NAME[n][3] = {...};` with the rows of a table. */
+void cwrite_rows(const IrTable *table, const char *name, const char *indent, Arena *a, StrBuf *out);
 
 /* "36 operations: 12 additions, 18 multiplications, 2 divisions, 4 calls of sin, cos, ..." */
 const char *ops_text(const Prog *p, Arena *a);

@@ -15,7 +15,7 @@ static const char *cased(Arena *a, const char *s, int upper) {
   return t;
 }
 
-static const char *const header_names[] = {"REAL", "API", "STATIC", "IMPLEMENTATION", "IMPLEMENTED", "H_INCLUDED", "MASK",
+static const char *const header_names[] = {"REAL", "API", "STATIC", "IMPLEMENTATION", "IMPLEMENTED", "H_INCLUDED", "MASK", "LANE",
                                            "OK", "ESINGULAR", "NQ", "NZ", "NP", "NU", "NEV", "NOUT"};
 
 /* PREFIX_NAME for each variable: an enumerator that nothing else in the header is called. */
@@ -37,12 +37,16 @@ static const char **event_enumerators(Header *h, CNames *taken) {
 
 /* What a function's own names must not hide. */
 static const char *const *globals_of(Header *h) {
-  const char **all = ARENA_ARRAY(h->a, const char *, h->taken.taken.n + 8);
+  const char **all = ARENA_ARRAY(h->a, const char *, h->taken.taken.n + 12);
   uint32_t n = 0;
   for (uint32_t i = 0; i < h->taken.taken.n; i++) all[n++] = h->taken.taken.at[i];
   all[n++] = arena_printf(h->a, "%s_solve", h->lower);
+  all[n++] = arena_printf(h->a, "%s_cubic", h->lower);
+  all[n++] = arena_printf(h->a, "%s_spline", h->lower);
   all[n++] = arena_printf(h->a, "%s_params", h->lower);
   all[n++] = arena_printf(h->a, "%s_state", h->lower);
+  all[n++] = arena_printf(h->a, "%s_step", h->lower);
+  all[n++] = arena_printf(h->a, "%s_input_fn", h->lower);
   return all;
 }
 
@@ -60,7 +64,7 @@ static Header header_new(const IrUnit *u, const char *name, StrBuf *out) {
   h.p = enumerators(&h, &h.taken, "P_", u->p.at, u->p.n);
   h.in = enumerators(&h, &h.taken, "IN_", u->u.at, u->u.n);
   h.ev = event_enumerators(&h, &h.taken);
-  h.outputs = enumerators(&h, &h.taken, "OUT_", h.scene->outputs.at, h.scene->outputs.n);
+  h.outputs = enumerators(&h, &h.taken, "OUT_", h.scene->plain.at, h.scene->plain.n);
   CNames members = cnames_new(h.a);
   const char **fields = ARENA_ARRAY(h.a, const char *, u->p.n + 1);
   for (uint32_t i = 0; i < u->p.n; i++) fields[i] = cnames_take(&members, u->p.at[i].name);

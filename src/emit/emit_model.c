@@ -18,20 +18,22 @@ static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a"}
 
 static const char *const prelude =
   "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l'\n"
-  " * '-DLAG_C(x)=x##L'; a vector of lanes defines LAG_SELECT, LAG_ANY and the logic as well, and\n"
-  " * LAG_MASK, the type of its comparisons. */\n"
+  " * '-DLAG_C(x)=x##L'; a vector of lanes defines LAG_SELECT, LAG_ANY and the logic as well,\n"
+  " * LAG_MASK, the type of its comparisons, and LAG_LANE, the type of a lane. */\n"
   "#ifndef LAG_FN\n#define LAG_FN(f) f\n#endif\n"
   "#ifndef LAG_C\n#define LAG_C(x) ((LAG_REAL)x)\n#endif\n";
 
 /* What lag_model.h and the head of an emitted file define. */
 static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
-  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_MASK", "lag_solve", "lag_var", "lag_event", "lag_model", "lag_option",
-  "lag_monitor", "lag_scene", "lag_program", "lag_entry", "lag_linear", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
+  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_cubic",
+  "lag_spline", "lag_var", "lag_event", "lag_model", "lag_option", "lag_monitor", "lag_table", "lag_scene", "lag_program",
+  "lag_entry", "lag_linear", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
   "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL",
   "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_lanes", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
-  "taylor_rest", "taylor_squares", "TAYLOR_SQUARES", "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV",
-  "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
+  "taylor_rest", "taylor_squares", "TAYLOR_SQUARES",
+  "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
+  "curves",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -52,9 +54,18 @@ static const char *event_id(const IrUnit *u, uint32_t i) {
   return id;
 }
 
+/* The arrays of the inputs' tables. */
+static const char *const *rows_names(const IrUnit *u) {
+  CNames ids = cnames_new(u->arena);
+  const char **names = ARENA_ARRAY(u->arena, const char *, u->inputs->tables.n + 1);
+  for (uint32_t i = 0; i < u->inputs->tables.n; i++)
+    names[i] = arena_printf(u->arena, "rows_%s", cnames_take(&ids, u->inputs->tables.at[i].name));
+  return names;
+}
+
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel", "energy", "linearise", "taylor", "variation", "second", "events", "act", "inputs", "params",
-                                      "start", "observe", "outputs", "options", "monitors", "program", "scenes"};
+  static const char *const taken[] = {"accel", "energy", "linearise", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
+                                      "outputs", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -63,16 +74,17 @@ const char *model_id(Arena *a, const char *name) {
 }
 
 static const char *const *globals_of(const IrUnit *u, const char *name) {
-  uint32_t n = N_ABI_NAMES, max = n + 5 * u->scenes.n + 2;
+  uint32_t n = N_ABI_NAMES, tables = u->inputs->tables.n, max = n + 6 * u->scenes.n + tables + 2;
   const char **all = ARENA_ARRAY(u->arena, const char *, max);
   memcpy(all, abi_names, sizeof abi_names);
   if (!name) return all;
   all[n++] = name;
-  static const char *const lists[] = {"outputs", "options", "monitors"};
+  for (uint32_t i = 0; i < tables; i++) all[n++] = rows_names(u)[i];
+  static const char *const lists[] = {"outputs", "options", "monitors", "exact_of"};
   for (uint32_t i = 0; i < u->scenes.n; i++) {
     const char *id = scene_id(u, i);
     all[n++] = arena_printf(u->arena, "%s_%s", name, id);
-    for (int k = 0; k < 3; k++) all[n++] = arena_printf(u->arena, "%s_%s", lists[k], id);
+    for (int k = 0; k < 4; k++) all[n++] = arena_printf(u->arena, "%s_%s", lists[k], id);
   }
   return all;
 }
@@ -84,7 +96,7 @@ static const char *const state_args =
   "    const LAG_REAL *p, const LAG_REAL *u";
 
 static CStyle style_for(const File *f, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve"};
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .spline = "lag_spline"};
 }
 
 static void function(const File *f, const Prog *p, const char *comment, const char *head, const char *const *own,
@@ -148,8 +160,17 @@ static void emit_events(const File *f) {
 
 static void emit_inputs(const File *f) {
   static const char *const own[] = {"t", "p", "u", NULL}, *const written[] = {"u"};
+  const Prog *p = f->u->inputs;
   if (!f->u->u.n) return;
-  function(f, f->u->inputs, "Inputs that have a formula.", "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", own, written);
+  CStyle st = style_for(f, own, written);
+  st.rows = rows_names(f->u);
+  for (uint32_t i = 0; i < p->tables.n; i++) {
+    sb_putc(f->out, '\n');
+    cwrite_rows(&p->tables.at[i], st.rows[i], "", f->a, f->out);
+  }
+  CFunction c = {.comment = p->tables.n ? "Inputs, by their formulas and tables." : "Inputs that have a formula.",
+                 .head = "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", .end = "  return LAG_OK;\n"};
+  cfunction(p, &st, &c, f->out);
 }
 
 static void entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out) {
@@ -232,6 +253,22 @@ static void emit_observe(const File *f, const IrScene *s, const char *id) {
   function(f, s->observe, comment, head, own, written);
 }
 
+/* The closed forms; q0, v0, z0 are the start. */
+static void emit_exact(const File *f, const IrScene *s, const char *id) {
+  static const char *const own[] = {"t", "q0", "v0", "z0", "p", "u", "out", NULL}, *const written[] = {"out"};
+  static const char *const from_start[ARR_COUNT] = {"t", "q0", "v0", "z0", "p", "u", "a"};
+  if (!s->exact_of.n) return;
+  CStyle st = style_for(f, own, written);
+  st.in = from_start;
+  CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .end = "  return LAG_OK;\n"};
+  c.head = arena_printf(f->a, "static int exact_%s(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,\n"
+                              "    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out)", id);
+  cfunction(s->exact, &st, &c, f->out);
+  sb_printf(f->out, "\nstatic const int exact_of_%s[] = {", id);
+  for (uint32_t i = 0; i < s->exact_of.n; i++) sb_printf(f->out, "%s%u", i ? ", " : "", s->exact_of.at[i]);
+  sb_puts(f->out, "};\n");
+}
+
 /* --- tables --- */
 
 static void table(const IrUnit *u, const char *name, const IrVar *v, uint32_t n, StrBuf *out) {
@@ -273,6 +310,18 @@ static const char *digest_text(Arena *a, const char *text) {
   return arena_printf(a, "%016llx", (unsigned long long)h);
 }
 
+/* Which input has which table. */
+static void emit_curves(const IrUnit *u, StrBuf *out) {
+  const Prog *p = u->inputs;
+  if (!p->tables.n) return;
+  sb_puts(out, "\nstatic const lag_table curves[] = {\n");
+  for (uint32_t k = 0; k < p->stores.n; k++) {
+    const Ins *i = &p->ins.at[p->stores.at[k].slot];
+    if (i->op == IR_TABLE) sb_printf(out, "  {%u, %u, %s},\n", p->stores.at[k].index, p->tables.at[i->index].curve->n, rows_names(u)[i->index]);
+  }
+  sb_puts(out, "};\n");
+}
+
 static void second_table(const IrUnit *u, StrBuf *out) {
   static const char *const parts[] = {"LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV"};
   if (!u->second_at.n) return;
@@ -295,6 +344,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
       sb_printf(out, "  {%s, %d},\n", c_string(u->arena, u->events.at[i].name), u->events.at[i].direction);
     sb_puts(out, "};\n");
   }
+  emit_curves(u, out);
   second_table(u, out);
   const char *model = c_string(u->arena, u->name), *doc = c_string(u->arena, u->doc), *effects = c_string(u->arena, u->effects);
   sb_printf(out, "\nconst lag_model %s = {\n", name);
@@ -304,6 +354,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   sb_printf(out, "  .nq = %u, .nz = %u, .np = %u, .nu = %u, .nev = %u, .nw = %u,\n", u->q.n, u->z.n, u->p.n, u->u.n, u->events.n, work_size(u));
   sb_printf(out, "  .q = %s, .z = %s, .p = %s, .u = %s, .ev = %s,\n", or_null(u->q.n, "q_table"), or_null(u->z.n, "z_table"),
             or_null(u->p.n, "p_table"), or_null(u->u.n, "u_table"), or_null(u->events.n, "ev_table"));
+  if (u->inputs->tables.n) sb_printf(out, "  .ntables = %u, .tables = curves,\n", u->inputs->tables.n);
   sb_printf(out, "  .inputs = %s, .accel = accel, .energy = %s,\n  .events = %s, .act = %s,\n", or_null(u->u.n, "inputs"),
             u->energy ? "energy" : "NULL", or_null(u->events.n, "events"), or_null(u->events.n, "act"));
   if (u->variation)
@@ -328,7 +379,7 @@ static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, 
     sb_printf(out, "\nstatic const lag_monitor monitors_%s[] = {\n", id);
     for (uint32_t i = 0; i < s->monitors.n; i++) {
       const IrMonitor *m = &s->monitors.at[i];
-      sb_printf(out, "  {%s, %d, %s},\n", c_string(u->arena, m->name), m->output, double_text(u->arena, m->limit));
+      sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output, double_text(u->arena, m->limit), m->absolute);
     }
     sb_puts(out, "};\n");
   }
@@ -346,6 +397,7 @@ static void emit_scene(const File *f, uint32_t index) {
   emit_params(f, s, id);
   emit_start(f, s, id);
   emit_observe(f, s, id);
+  emit_exact(f, s, id);
   emit_scene_lists(u, s, id, out);
   sb_printf(out, "\nconst lag_scene %s_%s = {\n", name, id);
   sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
@@ -356,6 +408,7 @@ static void emit_scene(const File *f, uint32_t index) {
   sb_printf(out, "  .tolerance = %s,\n", double_text(u->arena, s->tolerance));
   sb_printf(out, "  .nout = %u, .outputs = %s, .every = %s, .observe = observe_%s,\n", s->outputs.n, list_name(u, s->outputs.n, "outputs", id),
             double_text(u->arena, s->every), id);
+  if (s->exact_of.n) sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
   sb_printf(out, "  .nmonitors = %u, .monitors = %s,\n};\n", s->monitors.n, list_name(u, s->monitors.n, "monitors", id));
 }
 
@@ -373,6 +426,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   sb_puts(out, prelude);
   csupport_logic("LAG", out);
   if (work_size(u)) csupport_solver("LAG", "lag", out);
+  if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
   size_t begin = out->n;
   accel(&f);
   emit_energy(&f);

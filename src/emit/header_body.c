@@ -28,9 +28,10 @@ static const char *const rk4_body =
   " |  lag_state x = *s, sum = *s;\n"
   "q|  LAG_REAL a[LAG_NQ];\n"
   "z|  LAG_REAL zd[LAG_NZ];\n"
-  "u|  LAG_REAL formula[LAG_NU];\n"
+  "u|  LAG_REAL now[LAG_NU];\n"
   " |  for (int k = 0; k < 4; k++) {\n"
-  "u|    if (!u) lag_inputs(x.t, p, formula);\n"
+  "u|    if (!u) lag_inputs(x.t, p, now);\n"
+  "u|    if (!u && input) input(context, x.t, now);\n"
   " |    const int status = lag_accel(CALL);\n"
   " |    if (status != LAG_OK) return status;\n"
   "q|    for (int i = 0; i < LAG_NQ; i++) {\n"
@@ -67,7 +68,7 @@ static const char *const *own_names(const Header *h, const char *const *extra) {
 
 static CStyle style_for(const Header *h, const char *const *own, const char *const *out) {
   return (CStyle){.prefix = h->upper, .in = arrays, .params = h->fields, .out = out, .own = own, .globals = h->globals,
-                  .solve = arena_printf(h->a, "%s_solve", h->lower)};
+                  .solve = arena_printf(h->a, "%s_solve", h->lower), .spline = arena_printf(h->a, "%s_spline", h->lower)};
 }
 
 static const char *api(const Header *h, HeaderFn f) { return header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, header_prototype(h, f))); }
@@ -172,11 +173,12 @@ static void act(const Header *h) {
 
 /* --- a step --- */
 
+/* With inputs, one function that both kinds of step share: u held, or as they are at each time. */
 static void rk4_step(const Header *h) {
   StrBuf text = strbuf(h->a), call = strbuf(h->a);
   const IrUnit *u = h->u;
   sb_puts(&call, header_state_args(h, 0, "x."));
-  if (u->u.n) call.n--, sb_puts(&call, "u ? u : formula");
+  if (u->u.n) call.n--, sb_puts(&call, "u ? u : now");
   sb_printf(&call, "%s%s", u->q.n ? ", a" : "", u->z.n ? ", zd" : "");
   for (const char *s = rk4_body; *s;) {
     size_t n = strcspn(s, "\n") + (strchr(s, '\n') != NULL);
@@ -186,8 +188,16 @@ static void rk4_step(const Header *h) {
     else if (wanted) sb_puts(&text, line);
     s += n;
   }
-  sb_printf(h->out, "\n%s {\n", api(h, FN_RK4_STEP));
+  const char *shared = "static int lag_step(const lag_params *p, lag_state *s, LAG_REAL h, const LAG_REAL *u,\n"
+                       "   lag_input_fn *input, void *context)";
+  sb_putc(h->out, '\n');
+  if (u->u.n) csupport_fill(shared, h->upper, h->lower, h->out);
+  else sb_puts(h->out, api(h, FN_RK4_STEP));
+  sb_puts(h->out, " {\n");
   csupport_fill(sb_text(&text), h->upper, h->lower, h->out);
+  if (!u->u.n) return;
+  sb_printf(h->out, "\n%s {\n  return %s_step(p, s, h, u, 0, 0);\n}\n", api(h, FN_RK4_STEP), h->lower);
+  sb_printf(h->out, "\n%s {\n  return %s_step(p, s, h, 0, input, context);\n}\n", api(h, FN_RK4_STEP_WITH), h->lower);
 }
 
 void header_implementation(const Header *h) {
@@ -195,14 +205,15 @@ void header_implementation(const Header *h) {
   csupport_fill(macros, h->upper, h->lower, h->out);
   csupport_logic(h->upper, h->out);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
-  if (h->u->accel->solves.n || h->scene->observe->solves.n) csupport_solver(h->upper, h->lower, h->out);
+  if (h->u->accel->solves.n || h->scene->observe_plain->solves.n) csupport_solver(h->upper, h->lower, h->out);
+  if (h->u->inputs->tables.n) csupport_spline(h->upper, h->lower, h->out);
   defaults(h);
   param(h);
   start(h);
   inputs(h);
   accel(h);
   if (header_has(h, FN_ENERGY)) state_function(h, h->u->energy, api(h, FN_ENERGY), e, 0);
-  if (header_has(h, FN_OBSERVE)) state_function(h, h->scene->observe, api(h, FN_OBSERVE), out, 1);
+  if (header_has(h, FN_OBSERVE)) state_function(h, h->scene->observe_plain, api(h, FN_OBSERVE), out, 1);
   if (header_has(h, FN_EVENTS)) state_function(h, h->u->event_values, api(h, FN_EVENTS), g, 1);
   act(h);
   rk4_step(h);

@@ -32,7 +32,7 @@ static void sizes(const Header *h) {
   size(h, "NP", u->p.n);
   size(h, "NU", u->u.n);
   size(h, "NEV", u->events.n);
-  sb_printf(h->out, "  %s_NOUT = %u\n};\n", h->upper, h->scene->outputs.n);
+  sb_printf(h->out, "  %s_NOUT = %u\n};\n", h->upper, h->scene->plain.n);
 }
 
 static void indices(const Header *h, const char *comment, const char **names, const IrVar *v, uint32_t n) {
@@ -85,6 +85,12 @@ static void params_struct(const Header *h) {
   sb_printf(h->out, "} %s_params;\n", h->lower);
 }
 
+static void input_type(const Header *h) {
+  if (!h->u->u.n) return;
+  sb_printf(h->out, "\n/* Sets those of the inputs u[%s_NU] that it knows, at time t. */\ntypedef void %s_input_fn(void *context, %s_REAL t, %s_REAL *u);\n",
+            h->upper, h->lower, h->upper, h->upper);
+}
+
 static void state_struct(const Header *h) {
   sb_printf(h->out, "\ntypedef struct %s_state {\n  %s_REAL t; /* time [s] */\n", h->lower, h->upper);
   if (h->u->q.n) sb_printf(h->out, "  %s_REAL q[%s_NQ]; /* coordinates */\n  %s_REAL v[%s_NQ]; /* their time derivatives */\n", h->upper, h->upper, h->upper, h->upper);
@@ -127,9 +133,9 @@ const char *header_wrapped(const Header *h, const char *prototype) {
 int header_has(const Header *h, HeaderFn f) {
   const IrUnit *u = h->u;
   switch (f) {
-    case FN_INPUTS: return u->u.n > 0;
+    case FN_INPUTS: case FN_RK4_STEP_WITH: return u->u.n > 0;
     case FN_ENERGY: return u->energy != NULL;
-    case FN_OBSERVE: return h->scene->outputs.n > 0;
+    case FN_OBSERVE: return h->scene->plain.n > 0;
     case FN_EVENTS: case FN_ACT: return u->events.n > 0;
     case FN_DEFAULTS: case FN_PARAM: case FN_START: case FN_ACCEL: case FN_RK4_STEP: case FN_COUNT: break;
   }
@@ -154,6 +160,8 @@ const char *header_prototype(const Header *h, HeaderFn f) {
     case FN_EVENTS: return arena_printf(a, "int %s_events(%s, %s_REAL *g)", m, state, R);
     case FN_ACT: return arena_printf(a, "int %s_act(int event, const %s_params *p, %s_state *s%s, int *stop)", m, m, m, u);
     case FN_RK4_STEP: return arena_printf(a, "int %s_rk4_step(const %s_params *p, %s_state *s, %s_REAL h%s)", m, m, m, R, u);
+    case FN_RK4_STEP_WITH:
+      return arena_printf(a, "int %s_rk4_step_with(const %s_params *p, %s_state *s, %s_REAL h, %s_input_fn *input, void *context)", m, m, m, R, m);
     case FN_COUNT: break;
   }
   return "";
@@ -163,13 +171,14 @@ static const char *const docs[FN_COUNT] = {
   [FN_DEFAULTS] = "The parameters of the scene.",
   [FN_PARAM] = "A parameter by its index LAG_P_...; 0 when there is none. For tables and sliders.",
   [FN_START] = "The state at the start of the scene.",
-  [FN_INPUTS] = "The inputs u[LAG_NU] at time t by the model's formulas.",
+  [FN_INPUTS] = "The inputs u[LAG_NU] at time t by the model's formulas and tables; a table holds its end values outside.",
   [FN_ACCEL] = "Accelerations a[LAG_NQ], rates zd[LAG_NZ] of the states: what an integrator needs.",
   [FN_ENERGY] = "e[0]: the energy p q' - L; e[1]: |p q'| + |L|, what its drift is compared with.",
   [FN_OBSERVE] = "What the scene puts out: out[LAG_NOUT].",
   [FN_EVENTS] = "The event functions g[LAG_NEV].",
   [FN_ACT] = "What an event does to the state; *stop becomes 1 when it ends the run.",
   [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was.",
+  [FN_RK4_STEP_WITH] = "The same with inputs that change during the step: input(context, t, u) finds the model's own in u.",
 };
 
 void header_declarations(const Header *h) {
@@ -179,19 +188,22 @@ void header_declarations(const Header *h) {
   indices(h, "Coordinates: q[...], and their time derivatives v[...].", h->q, u->q.at, u->q.n);
   indices(h, "States: z[...].", h->z, u->z.at, u->z.n);
   indices(h, "Inputs: u[...].", h->in, u->u.at, u->u.n);
-  indices(h, "Outputs: out[...].", h->outputs, h->scene->outputs.at, h->scene->outputs.n);
+  const char *outputs = h->scene->plain.n < h->scene->outputs.n ? "Outputs: out[...]. Those with closed forms, which need the start of a run, are left out."
+                                                                : "Outputs: out[...].";
+  indices(h, outputs, h->outputs, h->scene->outputs.at, h->scene->plain.n);
   event_indices(h);
   indices(h, "Parameters, for _param.", h->p, u->p.at, u->p.n);
   params_struct(h);
   state_struct(h);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
+  input_type(h);
   for (int f = 0; f < FN_COUNT; f++) {
     if (!header_has(h, (HeaderFn)f)) continue;
     const char *doc = f != FN_ACCEL || (u->q.n && u->z.n) ? docs[f] : u->q.n ? "Accelerations a[LAG_NQ]: what an integrator needs."
                                                                              : "Rates zd[LAG_NZ] of the states: what an integrator needs.";
     sb_puts(h->out, "\n/* ");
     csupport_fill(doc, h->upper, h->lower, h->out);
-    if (f == FN_RK4_STEP && u->u.n) sb_puts(h->out, "\n * u: the inputs during the step; 0 for the model's formulas.");
+    if (f == FN_RK4_STEP && u->u.n) sb_puts(h->out, "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
     const char *text = arena_printf(h->a, "%s_API %s;", h->upper, header_prototype(h, (HeaderFn)f));
     sb_printf(h->out, " */\n%s\n", header_wrapped(h, text));
   }

@@ -95,6 +95,7 @@ int prog_eval(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out) 
       case IR_PIVOT: if (!(i->index ? x > 0 : x != 0)) return -1; break;
       case IR_SOLVE: solution[s] = solved(p, &p->solves.at[i->index], v, &status); if (status) return -1; break;
       case IR_SOLVED: v[s] = solution[i->a][i->index]; break;
+      case IR_TABLE: v[s] = spline_at(p->tables.at[i->index].curve, x); break;
       case IR_TITLE: break;
     }
   }

@@ -444,22 +444,55 @@ Prog *lower_action(const Eqns *e, uint32_t event) {
   return prog_tidy(l.p);
 }
 
+static Slot lower_table(Lower *l, const Input *in) {
+  Slot t = load(l, ARR_T, expr_symbol(l->g, l->e->m->time));
+  vec_push(l->p->arena, &l->p->tables, ((IrTable){in->name, in->file, in->table}));
+  return prog_ins(l->p, (Ins){.op = IR_TABLE, .a = t, .index = l->p->tables.n - 1});
+}
+
 Prog *lower_inputs(const Eqns *e) {
   Lower l = lower_new(e);
   const Model *m = e->m;
   for (uint32_t i = 0; i < m->inputs.n; i++)
     if (m->inputs.at[i].value) lower_roots(&l, &m->inputs.at[i].value, 1);
-  for (uint32_t i = 0; i < m->inputs.n; i++)
-    prog_store(l.p, 0, i, m->inputs.at[i].value ? lower_slot(&l, m->inputs.at[i].value) : 0, m->inputs.at[i].name);
+  for (uint32_t i = 0; i < m->inputs.n; i++) {
+    const Input *in = &m->inputs.at[i];
+    Slot s = in->table ? lower_table(&l, in) : lower_slot(&l, in->value);
+    prog_store(l.p, 0, i, s, in->name);
+  }
   return prog_tidy(l.p);
 }
 
-Prog *lower_outputs(const Eqns *e) {
+/* A closed form is an input behind those of the model. */
+static int is_closed_form(const Symbol *s, const void *data) { return s->kind == SYM_INPUT && s->index >= *(const uint32_t *)data; }
+
+int output_is_plain(const Eqns *e, uint32_t i) {
+  return !e->m->scene.exacts.n || !expr_contains(e->g, e->outputs[i].value, is_closed_form, &e->m->inputs.n);
+}
+
+static Prog *outputs(const Eqns *e, int plain_only) {
   Lower l = lower_new(e);
   Expr *roots = ARENA_ARRAY(e->m->arena, Expr, e->noutputs + 1);
-  for (uint32_t i = 0; i < e->noutputs; i++) roots[i] = e->outputs[i].value;
-  lower_with_accelerations(&l, roots, e->noutputs);
-  for (uint32_t i = 0; i < e->noutputs; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), e->outputs[i].name);
+  const Output **of = ARENA_ARRAY(e->m->arena, const Output *, e->noutputs + 1);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < e->noutputs; i++) {
+    if (plain_only && !output_is_plain(e, i)) continue;
+    of[n] = &e->outputs[i];
+    roots[n++] = e->outputs[i].value;
+  }
+  lower_with_accelerations(&l, roots, n);
+  for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), of[i]->name);
+  return prog_tidy(l.p);
+}
+
+Prog *lower_outputs(const Eqns *e) { return outputs(e, 0); }
+Prog *lower_plain_outputs(const Eqns *e) { return outputs(e, 1); }
+
+Prog *lower_exact(const Eqns *e) {
+  Lower l = lower_new(e);
+  const Scene *sc = &e->m->scene;
+  for (uint32_t i = 0; i < sc->exacts.n; i++) lower_roots(&l, &sc->exacts.at[i].value, 1);
+  for (uint32_t i = 0; i < sc->exacts.n; i++) prog_store(l.p, 0, i, lower_slot(&l, sc->exacts.at[i].value), sc->exacts.at[i].name);
   return prog_tidy(l.p);
 }
 

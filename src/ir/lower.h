@@ -23,12 +23,16 @@ Prog *lower_action(const Eqns *e, uint32_t event); /* out 0, 1, 2: q1, v1, z1; o
 Prog *lower_inputs(const Eqns *e);  /* out 0: u[nu] */
 Prog *lower_linear(const Eqns *e, Partials dr); /* out 0: dr, in the order of the entries, out 1: M, likewise; reads q'' */
 Prog *lower_outputs(const Eqns *e); /* out 0: out[nout] */
+Prog *lower_plain_outputs(const Eqns *e); /* likewise, of those without closed forms */
+int output_is_plain(const Eqns *e, uint32_t i);
+Prog *lower_exact(const Eqns *e);   /* out 0: one for each closed form, of the state at the start */
 Prog *lower_param(const Eqns *e, uint32_t i); /* out 0: p[i], of earlier parameters */
 Prog *lower_start(const Eqns *e);   /* out 0, 1, 2: q, v, z; only what a start gives */
 
 /* The unit of these equations without scenes, and a scene added to it: e must come from the same
- * file with the same effects in use. source: the file's path as the user gave it. */
+ * file with the same effects in use and the same inputs. source: the file's path as the user gave it. */
 IrUnit *unit_new(const Eqns *e, const char *source);
+int unit_shares(const IrUnit *a, const IrUnit *b); /* whether scenes of b fit into a */
 void unit_add_scene(IrUnit *u, const Eqns *e);
 
 /* Adds the programs of WANT_... that are not there yet. */

@@ -1,6 +1,8 @@
 /* Eqns -> IrUnit: all programs of a model, and what its tables say. */
 #include "ir/unit.h"
 
+#include <string.h>
+
 #include "ir/lower.h"
 
 static IrVar var_of(Name name, const Unit *u, int periodic, AstSign sign) {
@@ -66,6 +68,22 @@ IrUnit *unit_new(const Eqns *e, const char *source) {
   return u;
 }
 
+int unit_shares(const IrUnit *a, const IrUnit *b) {
+  return strcmp(a->effects, b->effects) == 0 && prog_same(a->inputs, b->inputs);
+}
+
+static void add_exact(IrScene *s, const Eqns *e) {
+  const Model *m = e->m;
+  const Scene *sc = &m->scene;
+  s->observe_plain = s->plain.n < s->outputs.n ? lower_plain_outputs(e) : s->observe;
+  s->exact = lower_exact(e);
+  for (uint32_t i = 0; i < sc->exacts.n; i++) {
+    const Symbol *of = expr_symbol(m->g, sc->exacts.at[i].target);
+    uint32_t before = of->kind == SYM_COORD ? 0 : of->kind == SYM_VEL ? m->coords.n : 2 * m->coords.n;
+    vec_push(m->arena, &s->exact_of, before + of->index);
+  }
+}
+
 static void add_linear(IrUnit *u, Eqns *e) {
   Partials dr = eqns_linearise(e);
   u->linear = lower_linear(e, dr);
@@ -98,9 +116,11 @@ void unit_add_scene(IrUnit *u, const Eqns *e) {
   for (uint32_t i = 0; i < e->noutputs; i++) {
     IrVar v = var_of(e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
     vec_push(m->arena, &s.outputs, v);
+    if (output_is_plain(e, i)) vec_push(m->arena, &s.plain, v);
   }
+  add_exact(&s, e);
   for (uint32_t i = 0; i < sc->monitors.n; i++) {
-    IrMonitor mon = {sc->monitors.at[i].name, sc->monitors.at[i].output, sc->monitors.at[i].limit};
+    IrMonitor mon = {sc->monitors.at[i].name, sc->monitors.at[i].output, sc->monitors.at[i].limit, sc->monitors.at[i].absolute};
     vec_push(m->arena, &s.monitors, mon);
   }
   vec_push(m->arena, &u->scenes, s);

@@ -85,7 +85,7 @@ static Slot fold(Prog *p, const Ins *i) {
       return p->ins.at[i->a].op == IR_NEG ? p->ins.at[i->a].a : NOT_FOLDED;
     case IR_CONST: case IR_PI: case IR_LOAD: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_MIN: case IR_MAX:
     case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND: case IR_OR: case IR_SELECT:
-    case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_TITLE: break;
+    case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_TABLE: case IR_TITLE: break;
   }
   return NOT_FOLDED;
 }
@@ -150,6 +150,10 @@ Ins prog_moved(Prog *to, const Prog *from, const Slot *map, Ins i) {
   i.a = map[i.a];
   i.b = map[i.b];
   i.c = map[i.c];
+  if (i.op == IR_TABLE) {
+    vec_push(to->arena, &to->tables, from->tables.at[i.index]);
+    i.index = to->tables.n - 1;
+  }
   if (i.op != IR_SOLVE) return i;
   Solve k = from->solves.at[i.index];
   k.matrix = moved(to->arena, map, k.matrix, k.n * k.n);
@@ -221,6 +225,21 @@ const char *prog_verify(const Prog *p) {
   return NULL;
 }
 
+static int same_table(const IrTable *a, const IrTable *b) {
+  return strcmp(a->name, b->name) == 0 && a->curve->n == b->curve->n &&
+         memcmp(a->curve->row, b->curve->row, a->curve->n * sizeof *a->curve->row) == 0;
+}
+
+int prog_same(const Prog *a, const Prog *b) {
+  if (a->tables.n != b->tables.n) return 0;
+  for (uint32_t i = 0; i < a->tables.n; i++)
+    if (!same_table(&a->tables.at[i], &b->tables.at[i])) return 0;
+  StrBuf x = strbuf(a->arena), y = strbuf(a->arena);
+  prog_dump(a, &x);
+  prog_dump(b, &y);
+  return x.n == y.n && memcmp(sb_text(&x), sb_text(&y), x.n) == 0;
+}
+
 /* --- counting --- */
 
 OpCount prog_count(const Prog *p) {
@@ -232,7 +251,7 @@ OpCount prog_count(const Prog *p) {
       case IR_MUL: c.mul++; break;
       case IR_DIV: c.div++; break;
       case IR_SQRT: c.sqrt++; break;
-      case IR_FN1: case IR_FN2: c.fn++; break;
+      case IR_FN1: case IR_FN2: case IR_TABLE: c.fn++; break;
       case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND:
       case IR_OR: case IR_SELECT: c.other++; break;
       case IR_SOLVE: {
@@ -263,7 +282,7 @@ uint32_t prog_work(const Prog *p) {
 
 static const char *const op_names[] = {
   "const", "pi", "load", "add", "sub", "mul", "div", "neg", "sqrt", "fn", "fn2", "min", "max", "sign",
-  "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "title",
+  "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "table", "title",
 };
 
 static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "free", "x", "s", "c", "order", "per_order", "up"};
@@ -278,7 +297,7 @@ void prog_dump(const Prog *p, StrBuf *out) {
     }
     if (i->op == IR_LOAD) sb_printf(out, " %s[%u]", array_names[i->array], i->index);
     if (i->text) sb_printf(out, " %s", i->text);
-    if (i->op == IR_PIVOT || i->op == IR_SOLVE || i->op == IR_SOLVED) sb_printf(out, " #%u", i->index);
+    if (i->op == IR_PIVOT || i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_TABLE) sb_printf(out, " #%u", i->index);
     if (i->a) sb_printf(out, " %%%u", i->a);
     if (i->b) sb_printf(out, " %%%u", i->b);
     if (i->c) sb_printf(out, " %%%u", i->c);

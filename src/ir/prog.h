@@ -7,6 +7,7 @@
 
 #include "base/intern.h"
 #include "base/num.h"
+#include "base/spline.h"
 #include "base/vec.h"
 
 typedef uint32_t Slot; /* index of an instruction; 0: none (a structural zero) */
@@ -36,6 +37,7 @@ typedef enum {
   IR_PIVOT,  /* fails unless a > 0 (index 1), or a != 0 (index 0) */
   IR_SOLVE,  /* solves block `index` of prog->solves, with pivoting; fails when singular */
   IR_SOLVED, /* component `index` of the solution of solve a */
+  IR_TABLE,  /* the curve of table `index` of prog->tables at a */
   IR_TITLE   /* text: a comment line that heads what follows */
 } IrOp;
 
@@ -75,11 +77,18 @@ typedef struct {
   const Slot *matrix, *rhs;
 } Solve;
 
+/* A table that the user gave for what is called `name`. */
+typedef struct {
+  const char *name, *file;
+  const Spline *curve;
+} IrTable;
+
 typedef struct {
   Arena *arena;
   VEC(Ins) ins;       /* [0] unused */
   VEC(Store) stores;
   VEC(Solve) solves;
+  VEC(IrTable) tables;
   uint32_t *table;    /* value numbering */
   uint32_t table_cap;
 } Prog;
@@ -106,6 +115,9 @@ int ir_is_condition(IrOp op);
 /* Divisions by one value that occur more than once become products with its reciprocal; what no
  * store needs goes. Keeps the order of what stays. Needs nothing, breaks nothing. */
 Prog *prog_tidy(const Prog *p);
+
+/* Whether two programs compute the same. */
+int prog_same(const Prog *a, const Prog *b);
 
 /* The instruction with its operands, and the solve that it names, as they are in the program `to`; map: the slots there. */
 Ins prog_moved(Prog *to, const Prog *from, const Slot *map, Ins i);

@@ -9,10 +9,10 @@ Slot roll_operand(const Ins *i, int which) { return which == 0 ? i->a : which ==
 
 static int is_leaf(IrOp op) { return op == IR_CONST || op == IR_PI || op == IR_LOAD; }
 
-/* Instructions of one class differ in their operands only. Solves and titles are alike to none. */
+/* Instructions of one class differ in their operands only. Solves, tables and titles are alike to none. */
 static uint32_t class_of(const Prog *p, Slot s) {
   const Ins *i = &p->ins.at[s];
-  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_TITLE) return UINT32_MAX - s;
+  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_TITLE || i->op == IR_TABLE) return UINT32_MAX - s;
   uint32_t h = (uint32_t)i->op * 31 + i->index;
   for (const char *c = i->text; c && *c; c++) h = (h ^ (unsigned char)*c) * 16777619u;
   for (int k = 0; k < 3; k++) { /* structural zeros and leaves stay what they are */
@@ -110,10 +110,12 @@ static int same_sharing(const Rolls *r, uint32_t begin, uint32_t period, uint32_
   return (x->a == x->b) == (y->a == y->b) && (x->a == x->c) == (y->a == y->c) && (x->b == x->c) == (y->b == y->c);
 }
 
-static uint32_t turns_at(const Search *f, uint32_t begin, uint32_t period) {
+/* The same, from the first instruction of the group on, for at most `most` turns. */
+static uint32_t turns_within(const Search *f, uint32_t begin, uint32_t period, uint32_t most) {
   const Rolls *r = f->r;
   uint32_t same = 0;
-  while (begin + same + period < r->n && f->cls[begin + same] == f->cls[begin + same + period]) same++;
+  uint64_t enough = (uint64_t)(most - 1) * period;
+  while (same < enough && begin + same + period < r->n && f->cls[begin + same] == f->cls[begin + same + period]) same++;
   uint32_t turns = same / period + 1;
   for (uint32_t k = 0; k < period && turns >= FEWEST_TURNS; k++) {
     if (!same_sharing(r, begin, period, k)) return 1;
@@ -121,6 +123,23 @@ static uint32_t turns_at(const Search *f, uint32_t begin, uint32_t period) {
       if (roll_operand(code_at(r, begin + k), which)) turns = turns_of(f, begin, period, k, which, turns);
   }
   return turns;
+}
+
+/* Whether the group's first instruction alone goes on for the fewest turns: most groups fail here. */
+static int may_begin(const Search *f, uint32_t begin, uint32_t period) {
+  const Rolls *r = f->r;
+  if (begin + (uint64_t)(FEWEST_TURNS - 1) * period >= r->n) return 0;
+  for (uint32_t t = 1; t < FEWEST_TURNS; t++)
+    if (f->cls[begin + t * period] != f->cls[begin]) return 0;
+  for (int which = 0; which < 3; which++)
+    if (roll_operand(code_at(r, begin), which) && turns_of(f, begin, period, 0, which, FEWEST_TURNS) < FEWEST_TURNS) return 0;
+  return 1;
+}
+
+/* For how many turns the group goes on; 1 when for fewer than the fewest. */
+static uint32_t turns_at(const Search *f, uint32_t begin, uint32_t period) {
+  if (!may_begin(f, begin, period) || turns_within(f, begin, period, FEWEST_TURNS) < FEWEST_TURNS) return 1;
+  return turns_within(f, begin, period, f->r->n / period + 1);
 }
 
 /* How many operands a loop takes from the turn before. */
@@ -152,7 +171,6 @@ static Loop well_cut(const Search *f, Loop l) {
 static Loop longest_at(const Search *f, uint32_t begin) {
   Loop best = {.begin = begin, .period = 1};
   for (uint32_t period = 1; period <= LONGEST_PERIOD && begin + period < f->r->n; period++) {
-    if (f->cls[begin] != f->cls[begin + period]) continue;
     uint32_t turns = turns_at(f, begin, period);
     if (turns >= FEWEST_TURNS && turns * period > best.count * best.period + period) best = (Loop){begin, period, turns, NULL};
   }

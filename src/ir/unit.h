@@ -28,6 +28,7 @@ typedef struct {
   const char *name;
   int output;
   double limit;
+  int absolute;
 } IrMonitor;
 
 typedef struct {
@@ -40,6 +41,10 @@ typedef struct {
   VEC(IrOption) options;
   double tolerance, every;
   VEC(IrVar) outputs;
+  const Prog *observe_plain; /* the same without closed forms, for programs that know of no start; */
+  VEC(IrVar) plain;          /* and what that leaves */
+  const Prog *exact;
+  VEC(uint32_t) exact_of;    /* component of [q|v|z] */
   VEC(IrMonitor) monitors;
 } IrScene;
 

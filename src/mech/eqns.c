@@ -6,6 +6,8 @@
 #include "sym/diff.h"
 #include "sym/simplify.h"
 
+typedef VEC(Expr) ExprVec;
+
 static unsigned bit(SymKind kind) { return 1u << kind; }
 
 static int contains_kind(const Eqns *e, Expr x, SymKind kind) { return (expr_kinds(e->g, x) & bit(kind)) != 0; }
@@ -97,10 +99,25 @@ static int check_momenta(const Eqns *e) {
   return 1;
 }
 
+/* What the inputs in the equations are made of is part of them. A table depends on time, and the third derivative of
+ * its spline jumps at each row. */
+static void follow_inputs(Eqns *e, ExprVec *roots) {
+  const Model *m = e->m;
+  ExprList l = expr_topo(e->g, roots->at, roots->n);
+  for (uint32_t i = 0; i < l.n; i++) {
+    if (expr_op(e->g, l.at[i]) != EX_SYM || expr_sym_of(e->g, l.at[i])->kind != SYM_INPUT) continue;
+    const Input *in = &m->inputs.at[expr_sym_of(e->g, l.at[i])->index];
+    if (in->table) e->autonomous = e->smooth = 0;
+    if (!in->value) continue;
+    e->autonomous &= !contains_kind(e, in->value, SYM_TIME);
+    vec_push(m->arena, roots, in->value);
+  }
+}
+
 /* Facts that hold for every state, read off the graph. */
 static void classify(Eqns *e) {
   const Model *m = e->m;
-  VEC(Expr) entries = {0}, roots = {0};
+  ExprVec entries = {0}, roots = {0};
   const Entries *H = e->mass_known ? &e->mass : &e->system.H, *C = &e->system.C;
   for (uint32_t i = 0; i < H->n; i++) vec_push(m->arena, &entries, H->at[i].e);
   for (uint32_t i = 0; i < C->n && !e->mass_known; i++) vec_push(m->arena, &entries, C->at[i].e);
@@ -111,9 +128,8 @@ static void classify(Eqns *e) {
   e->separable = e->n && e->constant_mass && !m->states.n && !(rest & bit(SYM_VEL));
   e->autonomous = e->timeless = !((mass | rest) & bit(SYM_TIME));
   int inputs = (rest & bit(SYM_INPUT)) != 0;
-  for (uint32_t i = 0; i < m->inputs.n; i++)
-    if (inputs && m->inputs.at[i].value) e->autonomous &= !contains_kind(e, m->inputs.at[i].value, SYM_TIME);
   e->smooth = 1;
+  if (inputs) follow_inputs(e, &roots);
   ExprList l = expr_topo(e->g, roots.at, roots.n);
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(e->g, l.at[i]);

@@ -61,8 +61,6 @@ typedef struct {
  * every state, or when the momenta depend on an input (its derivative would be needed). */
 Eqns *eqns_derive(Model *m);
 
-/* Fills e->mass where the program does without. */
-void eqns_derive_mass(Eqns *e);
 /* A partial derivative of residual `row` by component `col` of y = (q, q', z). */
 typedef struct {
   uint32_t row, col;
@@ -79,6 +77,9 @@ typedef struct {
  * at fixed q'', row by row, columns ascending. With M they give the Jacobian of the accelerations,
  * dq''/dy = M^-1 dr/dy. They contain the symbols q''. */
 Partials eqns_linearise(Eqns *e);
+
+/* Fills e->mass where the program does without. */
+void eqns_derive_mass(Eqns *e);
 
 /* M[i][j]; the zero node where the entry is zero. */
 Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j);

@@ -46,6 +46,22 @@ static const Expr *generalised_forces(const Eqns *e) {
   return Q;
 }
 
+/* out[i] = dp[i]/dt without q''. A definition without velocities has no q'' to leave out: what it becomes is its
+ * time derivative, and is called so (I', not I_drift). */
+static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
+  ExprGraph *g = e->g;
+  const Expr *seed = explicit_direction(e);
+  uint32_t nseed = expr_symbol_count(g) + 1;
+  ExprMap rates = expr_map(e->m->arena);
+  VEC(Expr) still = {0};
+  ExprList all = expr_topo(g, p, e->n);
+  for (uint32_t i = 0; i < all.n; i++)
+    if (expr_op(g, all.at[i]) == EX_DEF && !(expr_kinds(g, all.at[i]) & (1u << SYM_VEL | 1u << SYM_STATE))) vec_push(e->m->arena, &still, all.at[i]);
+  Expr *unused = ARENA_ARRAY(e->m->arena, Expr, still.n + 1);
+  expr_tangent(g, still.at, still.n, seed, nseed, "'", &rates, unused);
+  expr_tangent(g, p, e->n, seed, nseed, "_drift", &rates, out);
+}
+
 /* The forces as differentiated, and the momenta. */
 static Expr *differentiate(Eqns *e) {
   const Model *m = e->m;
@@ -57,8 +73,7 @@ static Expr *differentiate(Eqns *e) {
   expr_gradient(g, m->lagrangian, q, e->n, dLdq);
   e->p = p;
   e->Q = generalised_forces(e);
-  Expr *seed = explicit_direction(e);
-  expr_tangent(g, p, e->n, seed, expr_symbol_count(g) + 1, "_drift", NULL, convective);
+  convective_rates(e, p, convective);
   for (uint32_t i = 0; i < e->n; i++) {
     Expr inertial = expr_sub(g, dLdq[i], convective[i]);
     f[i] = expr_add(g, inertial, e->Q[i]);
@@ -87,8 +102,16 @@ void eqns_derive_mass(Eqns *e) {
 
 static int moves(const Eqns *e, Expr x) { return (expr_kinds(e->g, x) & 1u << SYM_VEL) != 0; }
 
-/* Whether the kinetic energy is a sum of terms that are never negative: then a mass matrix that is
- * regular is positive definite, and no order of elimination needs pivoting. */
+/* Linear in q', as Coriolis and magnetic terms are: such a term has no part in the mass matrix. */
+static int is_linear(const Eqns *e, Expr term) {
+  ExprPartials d = expr_gradient_sparse(e->g, term, SYM_VEL, e->n);
+  for (uint32_t i = 0; i < d.n; i++)
+    if (moves(e, d.at[i].e)) return 0;
+  return 1;
+}
+
+/* Whether L is a sum of terms that are never negative, linear in velocities, or free of them: then a mass
+ * matrix that is regular is positive definite, and no order of elimination needs pivoting. */
 static int lagrange_definite(const Eqns *e, const LinearSystem *s) {
   ExprGraph *g = e->g;
   Expr l = e->m->lagrangian;
@@ -97,7 +120,8 @@ static int lagrange_definite(const Eqns *e, const LinearSystem *s) {
     Expr term = expr_pair(g, l, EX_SUM, i, &c);
     if (!moves(e, term)) continue;
     ExprSign sign = expr_sign(g, term);
-    if (num_sign(c) < 0 || (sign != SIGN_POSITIVE && sign != SIGN_NONNEGATIVE)) return 0;
+    int positive = num_sign(c) > 0 && (sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE);
+    if (!positive && !is_linear(e, term)) return 0;
   }
   /* A term that is at least 0 and quadratic in q' has a Hessian that is at least 0; quadratic means
    * that the Hessian of the whole is free of velocities. */

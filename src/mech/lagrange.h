@@ -14,8 +14,4 @@ const Expr *lagrange_short_forms(const Eqns *e, const Expr *raw, uint32_t n);
 /* Says why the mass matrix cannot be solved with, in m->diags, and returns 0; 1 when it can. */
 int lagrange_check_mass(Eqns *e);
 
-/* The short forms of these entries, when they cost no more operations together: entry by entry they may be
- * shorter and still lose what they share. Otherwise, or when there are too many, the entries as they are. */
-const Expr *lagrange_short_forms(const Eqns *e, const Expr *entries, uint32_t n);
-
 #endif

@@ -68,7 +68,7 @@ static void put_below(Walk *w, const Site *s) {
     case AST_NEG: put(w, x->a, s, s->role == SITE_FACTOR ? SITE_FACTOR : SITE_NUMERATOR); return;
     case AST_POW: put(w, x->a, s, SITE_BASE); return;
     case AST_CALL: put_arguments(w, x, s); return;
-    case AST_NUM: case AST_NAME: case AST_PRIME: case AST_UNIT: case AST_MEMBER: case AST_INDEX: case AST_STRING:
+    case AST_NUM: case AST_NAME: case AST_PRIME: case AST_UNIT: case AST_MEMBER: case AST_INDEX: case AST_AT: case AST_STRING:
     case AST_NOT: case AST_LT: case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE: case AST_AND:
     case AST_OR: case AST_SUM: case AST_PRODUCT: case AST_TUPLE: case AST_LIST: case AST_BIND: case AST_ERROR: return;
   }

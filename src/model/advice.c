@@ -23,12 +23,108 @@ const AstStmt *declared_in_use(const Builder *b, Name name, Name effect) {
   return NULL;
 }
 
-/* An effect that declares the name, in use or not. */
-static const AstStmt *declaring_effect(const Builder *b, Name name) {
+int effect_declares(const AstStmt *effect, Name name) {
+  for (const AstStmt *x = effect ? effect->body : NULL; x; x = x->next)
+    if (declares(x, name)) return 1;
+  return 0;
+}
+
+const AstStmt *declaring_effect(const Builder *b, Name name) {
   for (const AstStmt *e = b->ast->first; e; e = e->next)
-    for (const AstStmt *x = e->kind == STMT_EFFECT ? e->body : NULL; x; x = x->next)
-      if (declares(x, name)) return e;
+    if (e->kind == STMT_EFFECT && effect_declares(e, name)) return e;
   return NULL;
+}
+
+/* ---- names of paper ---- */
+
+/* Whether something that has a rate is called so: word[n]. */
+static int has_rate(const Builder *b, const char *word, size_t n) {
+  for (uint32_t i = 0; n && i < b->scope.all.n; i++) {
+    const Entity *e = &b->scope.all.at[i];
+    int moves = e->kind == ENT_COORD || e->kind == ENT_STATE || e->kind == ENT_LET;
+    if (moves && strlen(e->name) == n && strncmp(e->name, word, n) == 0) return 1;
+  }
+  return 0;
+}
+
+/* xdot, x_dot, dx, vx, xddot, ddx: the rate of something; 0 when it is none. */
+static int advise_rate(Builder *b, const char *name) {
+  static const struct {
+    const char *before, *behind, *primes;
+  } forms[] = {{"", "_ddot", "''"}, {"", "ddot", "''"}, {"", "_dot", "'"}, {"", "dot", "'"}, {"dd", "", "''"},
+               {"d", "", "'"},      {"v_", "", "'"},    {"v", "", "'"},    {"", "p", "'"},   {"a_", "", "''"}, {"a", "", "''"}};
+  size_t len = strlen(name);
+  for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+    size_t before = strlen(forms[i].before), behind = strlen(forms[i].behind);
+    if (len <= before + behind || strncmp(name, forms[i].before, before) != 0 || strcmp(name + len - behind, forms[i].behind) != 0) continue;
+    size_t n = len - before - behind;
+    if (!has_rate(b, name + before, n)) continue;
+    diag_help(b->diags, "the %s of `%.*s` is written `%.*s%s`", forms[i].primes[1] ? "second derivative" : "rate", (int)n, name + before,
+              (int)n, name + before, forms[i].primes);
+    return 1;
+  }
+  return 0;
+}
+
+/* Letters that stand for something on paper. */
+static const char *const letters[][2] = {
+  {"dt", "a time derivative is written `x'`"},
+  {"π", "did you mean `pi`?"},
+  {"E", "the energy is `energy`, in outputs, observables and expectations"},
+  {"H", "the energy is `energy`, in outputs, observables and expectations"},
+  {"L", "the Lagrangian is `lagrangian`, in outputs, observables and expectations"},
+  {"g", "gravity is a parameter, too: `param g = 9.81 [m/s^2]`"},
+  {"e", "the number is `exp(1)`; a parameter is declared: `param e = 0.9`"},
+};
+
+static int advise_letter(Builder *b, const char *name) {
+  for (size_t i = 0; i < sizeof letters / sizeof *letters; i++)
+    if (strcmp(name, letters[i][0]) == 0) {
+      diag_help(b->diags, "%s", letters[i][1]);
+      return 1;
+    }
+  return 0;
+}
+
+/* `let a[i] = ...`: an index that has no range. */
+static int advise_index(Builder *b, Name name, Span span) {
+  for (uint32_t i = 0; i < b->active.n; i++) {
+    const AstStmt *st = b->active.at[i].stmt;
+    for (AstId d = st->kind == STMT_LET ? st->dims : 0; d; d = ast_expr(b->ast, d)->next) {
+      const AstExpr *x = ast_expr(b->ast, d);
+      if (x->kind != AST_NAME || x->name != name || span.begin != x->span.begin) continue;
+      diag_help(b->diags, "an index has a range: `let %s[%s in 1..N] = ...`", st->name, name);
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* Functions of other languages and books. */
+static const char *const foreign[][2] = {
+  {"ln", "did you mean `log`?"},
+  {"log10", "write `log(x)/log(10)`"},
+  {"log2", "write `log(x)/log(2)`"},
+  {"arcsin", "did you mean `asin`?"}, {"arccos", "did you mean `acos`?"}, {"arctan", "did you mean `atan`?"}, {"arctan2", "did you mean `atan2`?"},
+  {"sec", "write `1/cos(x)`"}, {"csc", "write `1/sin(x)`"}, {"cot", "write `1/tan(x)`"},
+  {"sqr", "write `x^2`"}, {"square", "write `x^2`"},
+  {"fabs", "did you mean `abs`?"}, {"sgn", "did you mean `sign`?"}, {"signum", "did you mean `sign`?"},
+  {"heaviside", "write `if(x > 0, 1, 0)`"}, {"step", "write `if(x > 0, 1, 0)`"},
+  {"diff", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
+  {"Diff", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
+  {"dt", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
+  {"D", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
+  {"grad", "a partial derivative is `d(expr, name)`"},
+  {"length", "the length of a vector is `norm(r)`"}, {"mag", "the length of a vector is `norm(r)`"}, {"magnitude", "the length of a vector is `norm(r)`"},
+};
+
+int advise_unknown_function(Builder *b, Name name) {
+  for (size_t i = 0; i < sizeof foreign / sizeof *foreign; i++)
+    if (strcmp(name, foreign[i][0]) == 0) {
+      diag_help(b->diags, "%s", foreign[i][1]);
+      return 1;
+    }
+  return 0;
 }
 
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare) {
@@ -47,6 +143,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
     diag_help(b->diags, "the effect `%s` declares it, but is not in use here: `use %s`", owner->name, owner->name);
     return;
   }
+  if (advise_index(b, name, span) || advise_rate(b, name)) return;
   Name *known = ARENA_ARRAY(b->arena, Name, b->scope.all.n + 2);
   uint32_t n = 0;
   for (uint32_t i = 0; i < b->scope.all.n; i++) {
@@ -55,7 +152,8 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
   }
   known[n++] = "t";
   known[n++] = "pi";
-  Name near = strcmp(name, "π") == 0 ? "pi" : suggest(name, known, n);
+  Name near = strcmp(name, "dt") == 0 ? NULL : suggest(name, known, n); /* and not t */
+  if (!near && advise_letter(b, name)) return;
   if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else if (declare) diag_help(b->diags, "declare it: `%s %s`", declare, name);
   else diag_help(b->diags, "declare it: `param %s = 1`, `coord %s` or `let %s = ...`", name, name, name);

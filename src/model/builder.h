@@ -14,7 +14,9 @@ typedef enum {
   IN_START,    /* and all parameters */
   IN_INPUT,    /* and t */
   IN_DYNAMICS, /* everything but q'' and z' */
-  IN_OBSERVE   /* everything */
+  IN_EXACT,    /* the same, and values at the start */
+  IN_OBSERVE,  /* everything */
+  IN_OUTPUT    /* and closed forms */
 } Context;
 
 /* A number, or a vector of n = 2 or 3 components with one dimension. */
@@ -39,7 +41,7 @@ typedef struct {
 
 typedef VEC(IndexVar) IndexVars;
 
-/* A let, or a member of a family of lets, evaluated when first needed; or a function. */
+/* A let, an observable, or a member of a family of them, evaluated when first needed; or a function. */
 typedef struct {
   const AstStmt *stmt;
   Name name, effect;
@@ -47,6 +49,8 @@ typedef struct {
   Value value; /* e is 0 after an error */
   struct Instance *instances; /* of a function: where it has been called */
   IndexVar index[2]; /* of a member: its indices, by name where the let binds one */
+  const IndexVar *around; /* of an observable: the indices of the `for` around it */
+  uint32_t naround;
 } Definition;
 
 /* A function's body, evaluated for arguments of certain shapes: numbers, or vectors of 2 or 3 components. Their
@@ -61,6 +65,8 @@ struct Instance {
   uint32_t first_unknown; /* the dimension of argument i is unknown first_unknown + i */
   int done;
   Value value;
+  Span call;              /* the first */
+  uint32_t errors;        /* there were before it was evaluated */
   Instance *next;         /* of the same function */
 };
 
@@ -92,13 +98,15 @@ struct Builder {
   VEC(struct Eval *) idle; /* evaluations to use again */
   VEC(Expr) scratch;
   uint32_t *start_of; /* place in the scene's starts, from 1, by SymId */
+  Expr *at_start, *from_start; /* for closed forms: see resolve_exact.c */
+  uint32_t nbefore, nstart;
   Expr *seeds; /* what each symbol becomes under d/dt, for nseeds symbols; 0: a number */
   uint32_t nseeds;
   ExprMap rates; /* the time derivatives of definitions */
   EntKind needed_kind; /* the definition that an evaluation waits for */
   uint32_t needed;
   VEC(Active) active; /* the statements that this scene uses */
-  VEC(Definition) lets, functions;
+  VEC(Definition) lets, functions, observes; /* observes: one for each in the model */
   VEC(Instance *) instances;
   VEC(Constant) constants;
   Dims *dims;
@@ -157,6 +165,9 @@ typedef struct {
 } IndexRange;
 int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out);
 
+/* Families have no third index. */
+void report_many_indices(Builder *b, Span span);
+
 /* "a number", "a vector of 3 components" */
 const char *shape_text(const Builder *b, uint32_t n);
 
@@ -196,18 +207,31 @@ IndexRange entity_range(const Entity *e);
 /* Gives what the place names, of entity e, its values: `give` is called for each scalar, with its place
  * in the model's array. `unit` tells in what unit a scalar takes bare numbers. */
 typedef struct {
+  Context where; /* of what is given */
   const Unit *(*unit)(Builder *b, uint32_t scalar, void *data);
   void (*give)(Builder *b, uint32_t scalar, Expr value, Span span, void *data);
   void *data;
 } Giver;
 void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstId rhs, const Giver *giver);
 
+/* resolve_exact.c: gives a coordinate, a velocity or a state its closed form; that of the symbol e, NULL where it has
+ * none; and how far the motion is from it, for an angle between -pi and pi. */
+void give_exact(Builder *b, SymId target, const Unit *unit, int periodic, Expr value, Span span);
+const Exact *find_exact(const Builder *b, Expr e);
+Expr exact_error(Builder *b, const Exact *x);
+
 /* output.c: adds what an expression puts out to the scene's outputs. The place of the one number that
  * it is; -1 when it is more, or after an error. */
 int add_outputs(Builder *b, AstId id);
 
-/* The same under a name of the caller's choice. */
+/* Adds error(q) for what has the closed form x; its place. */
+int add_error(Builder *b, const Exact *x, Span span);
+
+/* The same as add_outputs under a name of the caller's choice. */
 int add_outputs_as(Builder *b, AstId id, Name label);
+
+/* table.c: gives input `index` its formula, or the table whose file is named; stem: its name without its effect. */
+void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
 
 /* declare.c: the declarations of a statement. */
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data);
@@ -231,8 +255,12 @@ SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSi
 /* A number known now (spans, steps, tolerances); NAN after an error. */
 double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what);
 
-/* Evaluates a let that nothing has needed so far. */
+/* Evaluates a let, or an observable, that nothing has needed so far. */
 void resolve_let(Builder *b, uint32_t index);
+void resolve_observe(Builder *b, uint32_t index);
+
+/* model.c: puts the value of an observable into the model, checks its unit. */
+void finish_observe(Builder *b, uint32_t index, Value v);
 
 /* Checks a function that nothing calls: there must be shapes of arguments that make sense of its body. */
 void check_uncalled(Builder *b, uint32_t function);
@@ -250,9 +278,15 @@ void check_sign(Builder *b, const Param *p, Span span);
 /* advice.c: adds a way out to the message about an unknown name, or an unknown `effect.name`. */
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare);
 void advise_unknown_member(Builder *b, Name effect, Name name);
+/* The same of a function that other languages, or books, have; 0 when it is none. */
+int advise_unknown_function(Builder *b, Name name);
 
 /* The active statement that declares the name, before or after; NULL when there is none. */
 const AstStmt *declared_in_use(const Builder *b, Name name, Name effect);
+
+/* An effect that declares the name, in use or not; and whether this one does (NULL: no). */
+const AstStmt *declaring_effect(const Builder *b, Name name);
+int effect_declares(const AstStmt *effect, Name name);
 
 /* "not yet: what" */
 void not_yet(Builder *b, Span span, const char *what);
@@ -274,6 +308,7 @@ const Unit *entity_unit(const Builder *b, const Entity *e);
 
 /* The unit of a rate: per second. Its zero is zero. */
 Unit unit_per_second(const Builder *b, const Unit *u);
+Unit unit_of_difference(const Unit *u);
 
 int is_zero(const Builder *b, const Value *v);
 

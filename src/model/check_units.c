@@ -43,8 +43,23 @@ static void report_mismatch(Eval *ev, Span span, AstId x, AstId y) {
   explain_dims(b, v->dim, w->dim);
 }
 
+/* th - 90, with th in degrees: both are pure numbers, but what is meant is hardly 90 rad. */
+static void warn_angle(Eval *ev, AstId angle, AstId number) {
+  Builder *b = ev->b;
+  const Value *v = value_of(ev, angle), *w = value_of(ev, number);
+  if (!v->unit || (strcmp(v->unit, "deg") != 0 && strcmp(v->unit, "rev") != 0)) return;
+  if (!w->bare || w->n || !expr_is_num(b->g, w->e) || expr_is_zero(b->g, w->e)) return;
+  diag_warning(b->diags, ast_expr(b->ast, number)->span, "`%s` is in [%s], and `%s` here is a number of radians", ast_short(b, angle), v->unit,
+               ast_short(b, number));
+  diag_help(b->diags, "give the number its unit: `%s [%s]` or `%s [rad]`", ast_short(b, number), v->unit, ast_short(b, number));
+}
+
 int operands_agree(Eval *ev, Span span, AstId x, AstId y) {
-  if (dims_agree(ev->b, value_of(ev, x), value_of(ev, y), span)) return 1;
+  if (dims_agree(ev->b, value_of(ev, x), value_of(ev, y), span)) {
+    warn_angle(ev, x, y);
+    warn_angle(ev, y, x);
+    return 1;
+  }
   report_mismatch(ev, span, x, y);
   return 0;
 }
@@ -55,6 +70,8 @@ int need_pure(Eval *ev, AstId arg, const char *what) {
   Span span = ast_expr(b->ast, arg)->span;
   if (dim_equate(b->dims, v->dim, DIM_NONE, span)) return 1;
   diag_error(b->diags, span, "%s takes a pure number or an angle; `%s` is in [%s]", what, ast_short(b, arg), shown_unit(b, v));
+  if (!dim_is_open(b->dims, dim_found(b->dims, v->dim)))
+    diag_help(b->diags, "where a number in it has a unit, write it: `[%s]`", dim_text(b->dims, dim_pow(b->dims, v->dim, num_int(-1))));
   explain_dims(b, v->dim, DIM_ANY);
   return 0;
 }
@@ -97,6 +114,13 @@ Unit unit_per_second(const Builder *b, const Unit *u) {
   const char *power = n > 2 ? strstr(stem, "/s") : NULL;
   rate.text = power && !power[2] ? arena_printf(b->arena, "%s^2", stem) : arena_printf(b->arena, "%s/s", stem);
   return rate;
+}
+
+Unit unit_of_difference(const Unit *u) {
+  Unit d = *u;
+  d.offset = num_int(0);
+  if (!num_is_zero(u->offset)) d.text = "K";
+  return d;
 }
 
 static void settle(Builder *b, Unit *u) {

@@ -14,11 +14,6 @@ SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSi
 
 int declare_entity(Builder *b, const AstStmt *st, Entity e) {
   Name effect = e.effect;
-  if (strcmp(st->name, "t") == 0 || strcmp(st->name, "pi") == 0) {
-    diag_error(b->diags, st->name_span, "`%s` is reserved", st->name);
-    diag_help(b->diags, st->name[0] == 't' ? "t is the time; choose another name" : "pi is the number");
-    return 0;
-  }
   const Entity *old = scope_own(&b->scope, st->name, effect);
   if (!old && effect) old = scope_own(&b->scope, st->name, NULL);
   if (old) {
@@ -77,7 +72,7 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
     Span span = ast_expr(b->ast, i)->span;
     int64_t n;
     if (e->ndims == 2) {
-      not_yet(b, span, "more than two indices");
+      report_many_indices(b, span);
       return 0;
     }
     if (!resolve_whole(b, i, effect, &n)) return 0;
@@ -142,12 +137,20 @@ static void add_coord(Builder *b, const AstStmt *st, Name name, Unit unit) {
   vec_push(b->arena, &m->coords, c);
 }
 
+/* What is periodic is so by 2 pi. */
+static void check_angle(Builder *b, const AstStmt *st, const Unit *unit) {
+  if (dim_equate(b->dims, unit->dim, DIM_NONE, st->name_span)) return;
+  diag_error(b->diags, st->name_span, "`%s` is periodic, and in [%s]: no angle", st->name, unit->text);
+  diag_help(b->diags, "angles are in [rad], [deg] or [rev]; of other coordinates leave `periodic` out");
+}
+
 static void declare_coord(Builder *b, const AstStmt *st, Name effect) {
   Entity e;
   uint8_t parts;
   if (!read_type(b, st, effect, &parts)) return;
   if (!declare_family(b, st, effect, ENT_COORD, b->m->coords.n, parts, &e)) return;
   Unit unit = declared_unit(b, st, effect);
+  if (st->periodic) check_angle(b, st, &unit);
   int64_t at[2] = {1, 1};
   do
     for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++) add_coord(b, st, scalar_name(b, &e, st->name, at, k), unit);
@@ -179,9 +182,9 @@ static void declare_input(Builder *b, const AstStmt *st, Name effect) {
   Model *m = b->m;
   uint32_t i = m->inputs.n;
   if (!declare_name(b, st, effect, ENT_INPUT, i)) return;
-  Input in = {.name = st->name, .span = st->name_span};
+  Input in = {.name = effect ? intern_printf(b, "%s.%s", effect, st->name) : st->name, .span = st->name_span};
   in.unit = declared_unit(b, st, effect);
-  in.sym = declare_symbol(b, SYM_INPUT, i, st->name, SIGN_UNKNOWN, in.unit.dim);
+  in.sym = declare_symbol(b, SYM_INPUT, i, in.name, SIGN_UNKNOWN, in.unit.dim);
   vec_push(b->arena, &m->inputs, in);
 }
 
@@ -266,7 +269,7 @@ static void declare_function(Builder *b, const AstStmt *st, Name effect) {
 
 static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
   Model *m = b->m;
-  Output o = {.name = st->name, .span = st->name_span, .pending = 1};
+  Output o = {.name = st->name, .span = st->name_span};
   if (st->dims) {
     IndexRange r;
     uint32_t family = resolve_indices(b, st->dims, effect, &r) ? family_of(b, st, effect, ENT_OBSERVE, &r) : 0;
@@ -276,6 +279,10 @@ static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
   }
   o.unit = unit_resolve(&st->unit, b->dims, b->diags, b->arena);
   vec_push(b->arena, &m->observes, o);
+  IndexVar *around = ARENA_ARRAY(b->arena, IndexVar, b->index.n + 1);
+  if (b->index.n) memcpy(around, b->index.at, b->index.n * sizeof *around);
+  Definition d = {.stmt = st, .name = o.name, .effect = effect, .around = around, .naround = b->index.n};
+  vec_push(b->arena, &b->observes, d);
 }
 
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {

@@ -33,9 +33,10 @@ typedef struct {
 
 static void add_param(const Declared *d, Name name, Value v, Span span) {
   Builder *b = d->b;
-  Param p = {.name = name, .span = d->st->name_span, .sign = d->st->sign, .unit = d->unit};
+  AstSign sign = d->e.parts ? SIGN_ANY : d->st->sign;
+  Param p = {.name = name, .span = d->st->name_span, .sign = sign, .unit = d->unit};
   p.value = value_in(b, v, span, &p.unit);
-  p.sym = declare_symbol(b, SYM_PARAM, b->m->params.n, name, sign_of(d->st->sign), d->unit.dim);
+  p.sym = declare_symbol(b, SYM_PARAM, b->m->params.n, name, sign_of(sign), d->unit.dim);
   if (p.value && expr_is_num(b->g, p.value)) {
     p.constant = expr_number(b->g, p.value);
     p.has_constant = 1;

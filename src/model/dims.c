@@ -195,14 +195,22 @@ void dims_undo(Dims *d, uint32_t mark) {
   d->time++;
 }
 
+/* A part of unknown first .. first + n - 1, or NULL. */
+static const Part *part_between(const Dims *d, Dim a, uint32_t first, uint32_t n) {
+  const Form *f = &d->forms.at[a];
+  for (uint32_t i = 0; i < f->n; i++)
+    if (f->part[i].key >= first + DIM_BASES && f->part[i].key < first + n + DIM_BASES) return &f->part[i];
+  return NULL;
+}
+
+/* What was found of such an unknown is put in first: it contains older ones only. */
 Dim dim_replace(Dims *d, Dim a, uint32_t first, uint32_t n, const Dim *with) {
-  Dim from = dim_found(d, a), r = from;
-  for (uint32_t i = 0; i < d->forms.at[from].n; i++) {
-    Part p = d->forms.at[from].part[i];
-    uint32_t u = p.key - DIM_BASES;
-    if (p.key < DIM_BASES || u < first || u >= first + n) continue;
-    Dim without = combine(d, r, of_key(d, p.key), num_neg(p.e));
-    r = combine(d, without, with[u - first], p.e);
+  Dim r = a;
+  for (const Part *p = part_between(d, r, first, n); p; p = part_between(d, r, first, n)) {
+    uint32_t key = p->key, u = key - DIM_BASES;
+    Num e = p->e;
+    Dim without = combine(d, r, of_key(d, key), num_neg(e));
+    r = combine(d, without, d->unknowns.at[u].is ? d->unknowns.at[u].is : with[u - first], e);
   }
   return r;
 }
@@ -258,7 +266,7 @@ static void put_power(StrBuf *b, const char *name, Num e) {
 
 /* Place i in the order in which people write: kg before m. */
 static Part part_in_order(const Form *f, uint32_t i) {
-  if (i + 1 < f->n && f->part[0].key == DIM_LENGTH && f->part[1].key == DIM_MASS && i < 2) return f->part[1 - i];
+  if (i < 2 && f->n > 1 && f->part[0].key == DIM_LENGTH && f->part[1].key == DIM_MASS) return f->part[1 - i];
   return f->part[i];
 }
 

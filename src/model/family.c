@@ -42,6 +42,11 @@ int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *from, in
   return range_fits(b, *from, *to, span_join(ast_expr(b->ast, lo)->span, ast_expr(b->ast, hi)->span));
 }
 
+void report_many_indices(Builder *b, Span span) {
+  diag_error(b->diags, span, "a family has one index, or two");
+  diag_help(b->diags, "count two of them by one: `u[(i - 1)*K + j]`, in a family of N*K");
+}
+
 int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out) {
   *out = (IndexRange){0};
   uint32_t outer = b->index.n;
@@ -49,7 +54,7 @@ int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out) {
   for (AstId i = list; i && ok; i = ast_expr(b->ast, i)->next) {
     const AstExpr *x = ast_expr(b->ast, i);
     if (out->n == 2) {
-      not_yet(b, x->span, "more than two indices");
+      report_many_indices(b, x->span);
       return 0;
     }
     uint32_t k = out->n++;

@@ -20,6 +20,7 @@ typedef struct {
   VEC(Expr) lagrangian, kinetic, potential, dissipation;
   Span base[3]; /* where the model itself gave L, T, V */
   Span first;   /* the first of them that is not zero */
+  int failed;   /* one has no value: what unit L has is not known */
   VEC(UnitCheck) later;
 } Energies;
 
@@ -41,7 +42,7 @@ static void check_later(Builder *b, Energies *en, AstId id, const Value *v, Dim 
 }
 
 static void check_units_of_forces(Builder *b, const Energies *en) {
-  for (uint32_t i = 0; i < en->later.n; i++) {
+  for (uint32_t i = 0; i < en->later.n && !en->failed; i++) {
     const UnitCheck *c = &en->later.at[i];
     Dim want = dim_div(b->dims, b->energy, c->by);
     Span span = ast_expr(b->ast, c->id)->span;
@@ -71,6 +72,7 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   if (!effect || !b->m->lagrangian_span.end) b->m->lagrangian_span = st->span;
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
   if (v.e && v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, and a number is wanted here", shape_text(b, v.n));
+  en->failed |= st->kind != STMT_DISSIPATION && (!v.e || v.n);
   if (!v.e || v.n) return;
   if (st->kind == STMT_DISSIPATION) {
     check_later(b, en, st->rhs, &v, dim_base(b->dims, DIM_TIME), "a dissipation function");
@@ -158,8 +160,9 @@ static void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right) 
 /* The value on the left of a flow says which state is meant: its rate. */
 static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   const AstExpr *l = ast_expr(b->ast, st->lhs);
-  const AstExpr *name = l->kind == AST_PRIME ? ast_expr(b->ast, l->a) : l;
-  const AstExpr *stem = name->kind == AST_INDEX ? ast_expr(b->ast, name->a) : name;
+  const AstExpr *stem = l->kind == AST_PRIME ? ast_expr(b->ast, l->a) : l;
+  if (stem->kind == AST_MEMBER) stem = ast_expr(b->ast, stem->a);
+  if (stem->kind == AST_INDEX) stem = ast_expr(b->ast, stem->a);
   if (l->kind != AST_PRIME || stem->kind != AST_NAME) {
     diag_error(b->diags, l->span, "a flow gives the rate of a state: `flow z' = ...`");
     return;
@@ -243,39 +246,27 @@ static void add_event(Builder *b, const AstStmt *st, Name effect) {
 
 static void fill_input(Builder *b, const AstStmt *st, Name effect) {
   const Entity *e = scope_own(&b->scope, st->name, effect);
-  if (!e || e->kind != ENT_INPUT) return;
-  Input *in = &b->m->inputs.at[e->index];
-  in->value = resolve_in(b, st->rhs, IN_INPUT, effect, &in->unit);
+  if (e && e->kind == ENT_INPUT) give_input(b, e->index, st->name, st->rhs, effect);
 }
 
-/* The observable that the statement declares; NULL when it was refused. */
-static Output *declared_observe(Builder *b, const AstStmt *st, Name effect) {
-  const Entity *e = scope_own(&b->scope, st->name, effect);
-  if (!e || e->kind != ENT_OBSERVE) return NULL;
-  if (st->dims) {
-    IndexRange r;
-    if (!e->ndims || !resolve_indices(b, st->dims, effect, &r) || r.n != e->ndims) return NULL;
-    e = find_member(b, e, r.lo);
+/* Without a declared unit it is shown in that of its expression. A vector has an output a component. */
+void finish_observe(Builder *b, uint32_t index, Value v) {
+  const AstStmt *st = b->observes.at[index].stmt;
+  Span span = ast_expr(b->ast, st->rhs)->span;
+  Output o = b->m->observes.at[index];
+  if (!v.e) return;
+  if (!st->unit.n) o.unit.dim = v.dim;
+  else if (!dims_agree(b, &v, &(Value){.e = expr_int(b->g, 1), .dim = o.unit.dim}, span)) {
+    diag_error(b->diags, span, "`%s` is declared in [%s], and this is %s", o.name, o.unit.text, in_dim(b, v.dim));
+    explain_dims(b, v.dim, o.unit.dim);
   }
-  return e ? &b->m->observes.at[e->index] : NULL;
-}
-
-/* An observable's value; without a declared unit it is shown in that of its expression. */
-static void fill_observe(Builder *b, const AstStmt *st, Name effect) {
-  Output *o = declared_observe(b, st, effect);
-  if (!o) return;
-  Value v = resolve(b, st->rhs, IN_OBSERVE, effect);
-  o->pending = 0;
-  if (v.n) {
-    not_yet(b, ast_expr(b->ast, st->rhs)->span, "observables that are vectors (observe their components)");
-    return;
-  }
-  o->value = v.e;
-  if (!st->unit.n) o->unit.dim = v.dim;
-  else if (v.e && !dim_equate(b->dims, v.dim, o->unit.dim, ast_expr(b->ast, st->rhs)->span)) {
-    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "`%s` is declared in [%s], and this is %s", o->name, o->unit.text,
-               in_dim(b, v.dim));
-    explain_dims(b, v.dim, o->unit.dim);
+  b->observes.at[index].value.unit = o.unit.text;
+  Name stem = o.name;
+  for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
+    o.value = v.at[k];
+    if (v.n) o.name = intern_printf(b, "%s.%c", stem, "xyz"[k]);
+    if (k) vec_push(b->arena, &b->m->observes, o);
+    else b->m->observes.at[index] = o;
   }
 }
 
@@ -309,13 +300,8 @@ static void apply_unused_lets(Builder *b) {
   for (uint32_t i = 0; i < b->functions.n; i++) check_uncalled(b, i);
 }
 
-/* What may contain accelerations: after L is known. Expectations may name any observable. */
-static void observe(Builder *b, const AstStmt *st, Name effect, void *data) {
-  (void)data;
-  if (st->kind == STMT_OBSERVE) fill_observe(b, st, effect);
-}
-
-static void expectation(Builder *b, const AstStmt *st, Name effect, void *data) {
+/* What may contain accelerations: after L is known. */
+static void expect(Builder *b, const AstStmt *st, Name effect, void *data) {
   (void)data;
   if (st->kind == STMT_EXPECT) add_expect(b, st, effect);
 }
@@ -424,8 +410,8 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   each_active(b, apply, &en);
   finish_energies(b, &en);
   apply_unused_lets(b);
-  each_active(b, observe, NULL);
-  each_active(b, expectation, NULL);
+  for (uint32_t i = 0; i < b->observes.n; i++) resolve_observe(b, i);
+  each_active(b, expect, NULL);
   check_whole(b);
   scene_build(b, choice);
   settle_units(b);

@@ -7,6 +7,7 @@
 #define LAGC_MODEL_H
 
 #include "base/define.h"
+#include "base/spline.h"
 #include "model/units.h"
 #include "sym/expr.h"
 #include "syntax/ast.h"
@@ -39,11 +40,13 @@ typedef struct {
 } Param;
 
 typedef struct {
-  Name name;
+  Name name;           /* wind.gust for input gust of effect wind */
   Span span;
   Unit unit;
   SymId sym;
-  Expr value; /* of t and parameters */
+  Expr value;          /* of t and parameters; 0 where there is a table */
+  const Spline *table; /* or NULL */
+  const char *file;    /* that the table was read from, as written */
 } Input;
 
 /* A force f along the displacement of `point`: adds f * d(point)/dq_i to each Q_i. */
@@ -81,13 +84,22 @@ typedef struct {
   Span span;
   Unit unit;
   Expr value; /* may contain q'', z' */
-  int pending; /* an observe statement whose value is not known yet */
 } Output;
 
 typedef struct {
   SymId target;
   Expr value; /* of parameters */
 } Start;
+
+/* What a coordinate, a velocity or a state should be. */
+typedef struct {
+  Name name;
+  SymId target;
+  Unit unit;
+  int periodic;
+  Expr value; /* of t, parameters and inputs; a coordinate in it is that at the start */
+  SymId sym;  /* stands for it in outputs: of kind SYM_INPUT, behind the model's inputs */
+} Exact;
 
 /* A name that was declared without a unit, and the one that it has. */
 typedef struct {
@@ -105,6 +117,7 @@ typedef struct {
   Name name;
   int output; /* index into outputs; -1: the energy */
   double limit;
+  int absolute; /* the limit is one of size, not of change */
 } Monitor;
 
 typedef struct {
@@ -119,6 +132,7 @@ typedef struct {
   VEC(Output) outputs;
   double every;
   VEC(Monitor) monitors;
+  VEC(Exact) exacts;
 } Scene;
 
 typedef struct {
@@ -151,6 +165,9 @@ typedef struct {
   struct Builder *builder; /* what model_reresolve needs */
 } Model;
 
+/* Built-in function i; NULL past the end. */
+const char *function_name(size_t i);
+
 /* Appends a listing, for --dump=model. */
 void model_dump(const Model *m, StrBuf *out);
 
@@ -173,6 +190,11 @@ typedef struct {
   Name name;
 } Asked;
 
+/* What the command line gives an input: its name, and a formula or a text that names a table. */
+typedef struct {
+  AstId what, value;
+} Given;
+
 /* What to build a model for. */
 typedef struct {
   const char *scene; /* NULL: the first */
@@ -182,6 +204,8 @@ typedef struct {
   uint32_t ndefines;
   const Asked *asked; /* outputs besides the scene's own */
   uint32_t nasked;
+  const Given *given; /* values that win over the scene's */
+  uint32_t ngiven;
 } ModelChoice;
 
 /* Builds the model. NULL when there were errors; they are in ast->diags, all of them. */
@@ -191,5 +215,9 @@ Model *model_build(Ast *ast, const ModelChoice *choice);
  * standing for `with`; node 0: as it is written. 0 where that has no meaning (a stand-in under a
  * prime, say); nothing is reported. */
 Expr model_reresolve(const Model *m, const Expect *x, AstId root, AstId node, Expr with);
+
+/* What the command line gives to `target` (0: to a time), as a number in its declared unit. 0, reported, when
+ * the target is nothing that a run sets, or the value does not fit it. */
+int model_setting(const Model *m, AstId target, AstId value, double *out);
 
 #endif

@@ -45,6 +45,7 @@ static void scene(const Dump *d) {
   sb_putc(d->out, '\n');
   for (uint32_t i = 0; i < s->starts.n; i++) line(d, "  start", expr_symbol(d->m->g, s->starts.at[i].target)->name, NULL, s->starts.at[i].value);
   for (uint32_t i = 0; i < s->outputs.n; i++) line(d, "  output", s->outputs.at[i].name, &s->outputs.at[i].unit, s->outputs.at[i].value);
+  for (uint32_t i = 0; i < s->exacts.n; i++) line(d, "  exact", s->exacts.at[i].name, &s->exacts.at[i].unit, s->exacts.at[i].value);
   for (uint32_t i = 0; i < s->monitors.n; i++) sb_printf(d->out, "  monitor %s %.17g\n", s->monitors.at[i].name, s->monitors.at[i].limit);
 }
 
@@ -55,7 +56,11 @@ void model_dump(const Model *m, StrBuf *out) {
   for (uint32_t i = 0; i < m->coords.n; i++) line(&d, m->coords.at[i].periodic ? "periodic coord" : "coord", m->coords.at[i].name, &m->coords.at[i].unit, 0);
   for (uint32_t i = 0; i < m->states.n; i++) line(&d, "flow", m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].flow);
   for (uint32_t i = 0; i < m->params.n; i++) line(&d, "param", m->params.at[i].name, &m->params.at[i].unit, m->params.at[i].value);
-  for (uint32_t i = 0; i < m->inputs.n; i++) line(&d, "input", m->inputs.at[i].name, &m->inputs.at[i].unit, m->inputs.at[i].value);
+  for (uint32_t i = 0; i < m->inputs.n; i++) {
+    const Input *in = &m->inputs.at[i];
+    line(&d, "input", in->name, &in->unit, in->value);
+    if (in->table) sb_printf(out, "  table \"%s\": %u rows\n", in->file, in->table->n);
+  }
   if (m->lagrangian) line(&d, "lagrangian", "L", NULL, m->lagrangian);
   if (m->dissipation) line(&d, "dissipation", "R", NULL, m->dissipation);
   for (uint32_t i = 0; i < m->forces.n; i++) {

@@ -67,7 +67,7 @@ static void add_family(Builder *b, AstId id, const Target *p, const Entity *e) {
   do {
     const Entity *member = e->kind == ENT_LET || e->kind == ENT_OBSERVE ? find_member(b, e, at) : e;
     if (!member) continue;
-    Value v = resolve_member(b, e, at, p->primes, span, IN_OBSERVE);
+    Value v = resolve_member(b, e, at, p->primes, span, IN_OUTPUT);
     if (!v.e) return;
     if (p->part >= 0 && (uint32_t)p->part < v.n) v = (Value){.e = v.at[p->part], .dim = v.dim};
     Name name = member_name(b, stem, at, e->ndims);
@@ -76,7 +76,39 @@ static void add_family(Builder *b, AstId id, const Target *p, const Entity *e) {
   } while (next_member(e, at));
 }
 
+int add_error(Builder *b, const Exact *x, Span span) {
+  Expr e = exact_error(b, x);
+  return add_one(b, intern_printf(b, "error(%s)", x->name), span, unit_of_difference(&x->unit), e);
+}
+
+/* exact(q), error(q): in the unit of q, vectors by components, which are called as they would be by themselves. */
+static int is_closed_form(Builder *b, const AstExpr *x) {
+  int ambiguous;
+  if (x->kind != AST_CALL || !x->args || (strcmp(x->name, "exact") != 0 && strcmp(x->name, "error") != 0)) return 0;
+  const Entity *e = scope_find(&b->scope, x->name, NULL, &ambiguous);
+  return !e || e->kind != ENT_FUNCTION;
+}
+
+static int add_closed_form(Builder *b, AstId id, Name label) {
+  const AstExpr *x = ast_expr(b->ast, id);
+  AstId arg = x->args;
+  Span span = x->span;
+  Name call = x->name;
+  Value v = resolve(b, id, IN_OUTPUT, NULL);
+  if (!v.e) return -1;
+  Value of = resolve(b, arg, IN_OUTPUT, NULL);
+  int place = -1;
+  for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
+    const Exact *form = find_exact(b, of.at[k]);
+    Name own = intern_printf(b, "%s(%s)", call, form->name);
+    Unit unit = strcmp(call, "error") == 0 ? unit_of_difference(&form->unit) : form->unit;
+    place = add_one(b, label && !v.n ? label : own, span, unit, v.at[k]);
+  }
+  return v.n ? -1 : place;
+}
+
 int add_outputs(Builder *b, AstId id) {
+  if (is_closed_form(b, ast_expr(b->ast, id))) return add_closed_form(b, id, NULL);
   Target p = read_target(b, id);
   const Entity *e = named(b, &p);
   Span span = ast_expr(b->ast, id)->span;
@@ -84,7 +116,7 @@ int add_outputs(Builder *b, AstId id) {
     add_family(b, id, &p, e);
     return -1;
   }
-  Value v = resolve(b, id, IN_OBSERVE, NULL);
+  Value v = resolve(b, id, IN_OUTPUT, NULL);
   if (!v.e) return -1;
   const Entity *shown = e;
   if (e && p.indices) { /* by the member's name, whatever its index was written like */
@@ -103,10 +135,11 @@ int add_outputs(Builder *b, AstId id) {
 }
 
 int add_outputs_as(Builder *b, AstId id, Name label) {
+  if (is_closed_form(b, ast_expr(b->ast, id))) return add_closed_form(b, id, label);
   Target p = read_target(b, id);
   const Entity *e = named(b, &p);
   if (e && e->ndims && !p.indices && e->kind != ENT_NONE) return add_outputs(b, id);
-  Value v = resolve(b, id, IN_OBSERVE, NULL);
+  Value v = resolve(b, id, IN_OUTPUT, NULL);
   Span span = ast_expr(b->ast, id)->span;
   if (!v.e) return -1;
   if (v.n) return add_value(b, label, 0, NULL, span, &v);

@@ -80,6 +80,7 @@ static Value node_value(Eval *ev, AstId id) {
     }
     case AST_UNIT: return unit_value(ev, x);
     case AST_CALL: return call_value(ev, x);
+    case AST_AT: return start_value(ev, *value_of(ev, x->a), x->span, value_of(ev, x->b));
     case AST_SUM: case AST_PRODUCT: return *value_of(ev, id); /* its loop left it there */
     case AST_NUM: case AST_NEG: case AST_ADD: case AST_SUB: case AST_MUL: case AST_DIV: case AST_POW: case AST_LT:
     case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE: case AST_NOT: case AST_AND: case AST_OR:
@@ -88,7 +89,10 @@ static Value node_value(Eval *ev, AstId id) {
       diag_error(b->diags, x->span, "a list gives the members of a family their values, and stands alone");
       diag_help(b->diags, "`param m[3] = {1, 3, 1/2}`, `start th = {0.1, 0.2}`; a vector is written `(a, b, c)`");
       return FAILED;
-    case AST_STRING: not_yet(b, x->span, "tables from files"); return FAILED;
+    case AST_STRING:
+      diag_error(b->diags, x->span, "a text is no value here");
+      diag_help(b->diags, "a table from a file gives an input its values: `input u = \"file.csv\"`, or `u = \"file.csv\"` in a scene");
+      return FAILED;
     case AST_BIND: case AST_ERROR: return FAILED;
   }
   return FAILED;
@@ -97,7 +101,7 @@ static Value node_value(Eval *ev, AstId id) {
 static int takes_vectors(const Eval *ev, const AstExpr *x) {
   switch (x->kind) {
     case AST_NEG: case AST_ADD: case AST_SUB: case AST_MUL: case AST_DIV: case AST_PRIME: case AST_UNIT:
-    case AST_MEMBER: case AST_SUM: return 1;
+    case AST_MEMBER: case AST_SUM: case AST_AT: return 1;
     case AST_CALL: return call_takes_vectors(ev, x);
     default: return 0; /* everything else is of numbers */
   }
@@ -114,7 +118,8 @@ int operand_fits(Eval *ev, const AstExpr *x, AstId i) {
   }
   if (v->n && !takes_vectors(ev, x)) {
     diag_error(b->diags, ast_expr(b->ast, i)->span, "`%s` is %s, and a number is wanted here", ast_short(b, i), shape_text(b, v->n));
-    diag_help(b->diags, "its components are `.x`, `.y`%s; `dot(a, b)` and `norm(a)` are numbers", v->n > 2 ? ", `.z`" : "");
+    if (x->kind == AST_POW && i == x->a) diag_help(b->diags, "the square of a vector is `dot(a, a)`, its length `norm(a)`");
+    else diag_help(b->diags, "its components are `.x`, `.y`%s; `dot(a, b)` and `norm(a)` are numbers", v->n > 2 ? ", `.z`" : "");
     return 0;
   }
   return !v->point || point_fits(ev, x, i);
@@ -226,21 +231,26 @@ static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
   return ev;
 }
 
-/* The let, or the function that an instance is of. */
+/* The let, the observable, or the function that an instance is of. */
 static Definition *definition(Builder *b, EntKind kind, uint32_t index) {
-  return kind == ENT_LET ? &b->lets.at[index] : &b->functions.at[b->instances.at[index]->function];
+  if (kind == ENT_FUNCTION) return &b->functions.at[b->instances.at[index]->function];
+  return kind == ENT_LET ? &b->lets.at[index] : &b->observes.at[index];
 }
 
 static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
   Definition *d = definition(b, kind, index);
-  Eval *ev = begin(b, d->stmt->rhs, IN_DYNAMICS, d->effect);
+  Eval *ev = begin(b, d->stmt->rhs, kind == ENT_OBSERVE ? IN_OBSERVE : IN_DYNAMICS, d->effect);
   d->progress = DOING;
   ev->kind = kind;
   ev->definition = index;
   ev->in_statement = 0;
-  if (kind == ENT_FUNCTION) ev->function = b->instances.at[index];
+  if (kind == ENT_FUNCTION) {
+    ev->function = b->instances.at[index];
+    b->instances.at[index]->errors = b->diags->errors;
+  }
   for (int k = 0; k < 2; k++)
     if (d->index[k].name) vec_push(b->arena, &ev->index, d->index[k]);
+  for (uint32_t k = 0; k < d->naround; k++) vec_push(b->arena, &ev->index, d->around[k]);
   return ev;
 }
 
@@ -261,9 +271,11 @@ static void finish_definition(Eval *ev) {
   d->progress = DONE;
   if (ev->kind == ENT_LET) {
     finish_let(b, d, v);
+  } else if (ev->kind == ENT_OBSERVE) {
+    d->value = v;
+    finish_observe(b, ev->definition, v);
   } else {
-    b->instances.at[ev->definition]->value = v;
-    b->instances.at[ev->definition]->done = 1;
+    finish_instance(b, b->instances.at[ev->definition], v);
   }
 }
 
@@ -293,6 +305,10 @@ void resolve_let(Builder *b, uint32_t index) {
   if (b->lets.at[index].progress == TODO) resolve_definition(b, ENT_LET, index);
 }
 
+void resolve_observe(Builder *b, uint32_t index) {
+  if (b->observes.at[index].progress == TODO) resolve_definition(b, ENT_OBSERVE, index);
+}
+
 const Instance *resolve_instance(Builder *b, uint32_t function, const uint32_t *shapes) {
   const Instance *in = new_instance(b, function, shapes);
   resolve_definition(b, ENT_FUNCTION, b->instances.n - 1);
@@ -310,6 +326,8 @@ static Value evaluate(Builder *b, AstId id, Context where, Name effect) {
 Value resolve(Builder *b, AstId id, Context where, Name effect) {
   if (!id) return FAILED;
   Value v = evaluate(b, id, where, effect);
+  if (!v.e && !b->diags->errors) /* a bug; but nothing a user wrote is left out in silence */
+    diag_error(b->diags, ast_expr(b->ast, id)->span, "internal error: `%s` has no value, and no reason is known", ast_short(b, id));
   if (!v.e || !v.condition) return v;
   report_condition(b, id);
   return FAILED;

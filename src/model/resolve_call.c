@@ -21,6 +21,13 @@ static const struct {
 static const char *const other_functions[] = {"sqrt", "pow", "if", "d", "dot", "cross", "norm"};
 static const char *const later_functions[] = {"omega", "lambda"};
 
+const char *function_name(size_t i) {
+  enum { NU = sizeof unary_functions / sizeof *unary_functions, NB = sizeof binary_functions / sizeof *binary_functions, NO = sizeof other_functions / sizeof *other_functions };
+  if (i < NU) return unary_functions[i].name;
+  if (i < NU + NB) return binary_functions[i - NU].name;
+  return i < NU + NB + NO ? other_functions[i - NU - NB] : NULL;
+}
+
 int call_is_not_yet(Name name) {
   for (size_t i = 0; i < sizeof later_functions / sizeof *later_functions; i++)
     if (strcmp(name, later_functions[i]) == 0) return 1;
@@ -34,7 +41,7 @@ const Entity *own_function(const Eval *ev, const AstExpr *x) {
 }
 
 int call_takes_vectors(const Eval *ev, const AstExpr *x) {
-  static const char *const names[] = {"if", "d", "dot", "cross", "norm"};
+  static const char *const names[] = {"if", "d", "dot", "cross", "norm", "exact", "error"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (strcmp(x->name, names[i]) == 0) return 1;
   return own_function(ev, x) != NULL;
@@ -158,6 +165,17 @@ static int is_local(const Symbol *s, const void *data) {
   return s->kind == SYM_LOCAL;
 }
 
+/* d(x, t) is 0, where somebody may have meant x'. */
+static void warn_no_rate(Eval *ev, const AstExpr *x, const Value *derivative) {
+  Builder *b = ev->b;
+  const AstExpr *of = ast_expr(b->ast, x->args), *by = ast_expr(b->ast, of->next);
+  if (by->kind != AST_NAME || strcmp(by->name, "t") != 0 || expr_is_num(b->g, value_of(ev, x->args)->e)) return;
+  for (uint32_t k = 0; k < parts_of(derivative); k++)
+    if (!expr_is_zero(b->g, derivative->at[k])) return;
+  diag_warning(b->diags, x->span, "this is 0: `d` is the partial derivative, and `%s` does not contain t itself", ast_short(b, x->args));
+  diag_help(b->diags, of->kind == AST_NAME ? "its rate is written `%s'`" : "its rate is written `(%s)'`", ast_short(b, x->args));
+}
+
 /* d(expr, name): a partial derivative. */
 static Value call_d(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
@@ -177,11 +195,13 @@ static Value call_d(Eval *ev, const AstExpr *x) {
   Value r = {.dim = dim_div(b->dims, v->dim, w->dim), .n = v->n};
   for (uint32_t k = 0; k < parts_of(v); k++) {
     if (kind != SYM_LOCAL && expr_contains(b->g, v->at[k], is_local, NULL)) {
-      not_yet(b, x->span, "a partial derivative of a function's argument, or of the energy");
+      not_yet(b, x->span, "a partial derivative of the energy, or of the arguments of a function");
+      diag_help(b->diags, "differentiate `T` and `V`, or `lagrangian`; of a function, its value: `d(f(x), x)`");
       return FAILED;
     }
     r.at[k] = expr_diff(b->g, v->at[k], expr_sym_id(b->g, w->e));
   }
+  warn_no_rate(ev, x, &r);
   return r;
 }
 
@@ -191,25 +211,37 @@ static Value call_sqrt(Eval *ev, const AstExpr *x) {
   return a_value(expr_sqrt(ev->b->g, v->e), dim_pow(ev->b->dims, v->dim, num_ratio(1, 2)), v->bare);
 }
 
+/* What moves in `th(0)`, which is written like a call; NULL: it is none. */
+static const Entity *called_motion(const Eval *ev, const AstExpr *x) {
+  int ambiguous;
+  const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, &ambiguous);
+  int moves = e && (e->kind == ENT_COORD || e->kind == ENT_STATE || e->kind == ENT_LET);
+  return moves && list_length(ev->b, x->args) == 1 ? e : NULL;
+}
+
 static Value unknown_function(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   if (call_is_not_yet(x->name)) {
     not_yet(b, x->span, arena_printf(b->arena, "`%s`", x->name));
     return FAILED;
   }
-  enum { NU = sizeof unary_functions / sizeof *unary_functions, NB = sizeof binary_functions / sizeof *binary_functions, NO = sizeof other_functions / sizeof *other_functions };
-  Name *known = ARENA_ARRAY(b->arena, Name, NU + NB + NO + b->scope.all.n);
   uint32_t n = 0;
-  for (int i = 0; i < NU; i++) known[n++] = unary_functions[i].name;
-  for (int i = 0; i < NB; i++) known[n++] = binary_functions[i].name;
-  for (int i = 0; i < NO; i++) known[n++] = other_functions[i];
+  while (function_name(n)) n++;
+  Name *known = ARENA_ARRAY(b->arena, Name, n + b->scope.all.n);
+  for (uint32_t i = 0; i < n; i++) known[i] = function_name(i);
   for (uint32_t i = 0; i < b->scope.all.n; i++)
     if (b->scope.all.at[i].kind == ENT_FUNCTION) known[n++] = b->scope.all.at[i].name;
   int ambiguous;
   const Entity *e = scope_find(&b->scope, x->name, ev->effect, &ambiguous);
+  if (called_motion(ev, x) && ast_expr(b->ast, x->args)->kind == AST_NUM && num_is_zero(ast_expr(b->ast, x->args)->number)) {
+    report_start(b, x->span);
+    return FAILED;
+  }
   diag_error(b->diags, x->op_span.end ? x->op_span : x->span, "unknown function `%s`", x->name);
-  Name near = strcmp(x->name, "ln") == 0 ? "log" : suggest(x->name, known, n);
-  if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
+  Name near = suggest(x->name, known, n);
+  if (!e && advise_unknown_function(b, x->name)) return FAILED;
+  if (strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0) diag_help(b->diags, "`%s(q)` may stand in `output` and `monitor`, in a scene that says `exact q = ...`", x->name);
+  else if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
   else if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else diag_help(b->diags, "`lagc help functions` lists them; declare your own: `function %s(x) = ...`", x->name);
   return FAILED;
@@ -219,6 +251,12 @@ Value call_value(Eval *ev, const AstExpr *x) {
   const Ast *ast = ev->b->ast;
   const Entity *own = own_function(ev, x);
   if (own) return call_function(ev, x, own);
+  const Entity *moves = ev->where == IN_EXACT ? called_motion(ev, x) : NULL;
+  if (moves) {
+    Value v = whole_value(ev, moves, x->op_span);
+    return ev->waiting ? FAILED : start_value(ev, v, x->span, value_of(ev, x->args));
+  }
+  if (call_is_exact(ev, x->name)) return exact_value(ev, x);
   for (size_t i = 0; i < sizeof unary_functions / sizeof *unary_functions; i++)
     if (strcmp(x->name, unary_functions[i].name) == 0) return call_unary(ev, x, unary_functions[i].op);
   for (size_t i = 0; i < sizeof binary_functions / sizeof *binary_functions; i++)

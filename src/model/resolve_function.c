@@ -54,15 +54,22 @@ Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes) {
 }
 
 /* The place of the instance for these shapes, made where there is none. */
-static uint32_t find_instance(Builder *b, uint32_t function, uint32_t nargs, const uint32_t *shapes) {
+static uint32_t find_instance(Builder *b, uint32_t function, uint32_t nargs, const uint32_t *shapes, Span call) {
   for (uint32_t k = 0; k < b->instances.n; k++) {
     const Instance *in = b->instances.at[k];
     uint32_t i = 0;
     while (in->function == function && i < nargs && in->args[i].n == shapes[i]) i++;
     if (in->function == function && i == nargs) return k;
   }
-  new_instance(b, function, shapes);
+  new_instance(b, function, shapes)->call = call;
   return b->instances.n - 1;
+}
+
+void finish_instance(Builder *b, Instance *in, Value v) {
+  in->value = v;
+  in->done = 1;
+  const Diag *last = b->diags->errors > in->errors ? &b->diags->list.at[b->diags->latest] : NULL;
+  if (!v.e && in->call.end && last && !last->note) diag_also(b->diags, in->call, "in this call");
 }
 
 static void report_argument(Eval *ev, const AstExpr *x, const Instance *in, uint32_t i, AstId arg, Dim want) {
@@ -146,7 +153,7 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
     if (!value_of(ev, arg)->e) return FAILED;
     shapes[n++] = value_of(ev, arg)->n;
   }
-  uint32_t place = find_instance(b, e->index, nargs, shapes);
+  uint32_t place = find_instance(b, e->index, nargs, shapes, x->span);
   if (b->instances.at[place]->done) return call_instance(ev, x, b->instances.at[place]);
   wait_for(ev, ENT_FUNCTION, place, f->progress, x->name, x->span);
   return FAILED;

@@ -84,6 +84,9 @@ void wait_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name na
 Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes);
 const Instance *resolve_instance(Builder *b, uint32_t function, const uint32_t *shapes);
 
+/* Its body has the value v; an error in it is said to be one of the call. */
+void finish_instance(Builder *b, Instance *in, Value v);
+
 /* Gives the arguments of an instance symbols for their rates. */
 void need_rates(Builder *b, Instance *in);
 /* A call of a function of the model's own. */
@@ -99,6 +102,15 @@ int whole_number(Builder *b, const Value *v, AstId id, int64_t *out);
  * the value of its body in (1: the body once more), and gives its value. */
 int loop_begin(Eval *ev, AstId id);
 int loop_next(Eval *ev);
+
+/* resolve_exact.c: v at the time `when`, which is the start; exact(q) and error(q), where they have a meaning. */
+Value start_value(Eval *ev, Value v, Span span, const Value *when);
+void report_start(Builder *b, Span span); /* where it has none */
+int call_is_exact(const Eval *ev, Name name);
+Value exact_value(Eval *ev, const AstExpr *x);
+
+/* A name without an index. */
+Value whole_value(Eval *ev, const Entity *e, Span span);
 
 /* resolve_time.c */
 Value time_derivative(Builder *b, Value of, Span span, Context where);

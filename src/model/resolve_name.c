@@ -31,10 +31,10 @@ void wait_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name na
   ev->waiting = 1;
 }
 
-static Value let_value(Eval *ev, const Entity *e, Span span) {
-  const Definition *d = &ev->b->lets.at[e->index];
+static Value defined_value(Eval *ev, const Entity *e, Span span) {
+  const Definition *d = e->kind == ENT_LET ? &ev->b->lets.at[e->index] : &ev->b->observes.at[e->index];
   if (d->progress == DONE) return d->value;
-  wait_for(ev, ENT_LET, e->index, d->progress, e->name, span);
+  wait_for(ev, e->kind, e->index, d->progress, e->name, span);
   return FAILED;
 }
 
@@ -46,7 +46,8 @@ static const char *place_text(Context where) {
     case IN_PARAM: return "a parameter's value may contain numbers and parameters declared before it";
     case IN_START: return "a start value may contain numbers and parameters";
     case IN_INPUT: return "an input may contain numbers, parameters and t";
-    case IN_DYNAMICS: case IN_OBSERVE: break;
+    case IN_DYNAMICS: return "what equations contain is declared by `let`; observables are for outputs";
+    case IN_EXACT: case IN_OBSERVE: case IN_OUTPUT: break;
   }
   return "";
 }
@@ -55,8 +56,8 @@ static Context least_context(EntKind kind) {
   switch (kind) {
     case ENT_CONST: return IN_CONST;
     case ENT_PARAM: return IN_PARAM;
-    case ENT_NONE: case ENT_COORD: case ENT_STATE: case ENT_INPUT: case ENT_LET: case ENT_FUNCTION:
-    case ENT_OBSERVE: case ENT_BUILTIN: break;
+    case ENT_OBSERVE: return IN_OBSERVE;
+    case ENT_NONE: case ENT_COORD: case ENT_STATE: case ENT_INPUT: case ENT_LET: case ENT_FUNCTION: case ENT_BUILTIN: break;
   }
   return IN_DYNAMICS;
 }
@@ -87,16 +88,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
       return v;
     }
     case ENT_CONST: return b->constants.at[e->index].value;
-    case ENT_LET: return let_value(ev, e, span);
-    case ENT_OBSERVE: {
-      const Output *o = &b->m->observes.at[e->index];
-      if (o->pending) {
-        diag_error(b->diags, span, "the observable `%s` has no value yet", e->name);
-        diag_help(b->diags, "each may use those above it; what all may use is a `let`");
-        return FAILED;
-      }
-      return a_value(o->value, o->unit.dim, 0);
-    }
+    case ENT_LET: case ENT_OBSERVE: return defined_value(ev, e, span);
     case ENT_FUNCTION:
       diag_error(b->diags, span, "`%s` is a function", e->name);
       diag_help(b->diags, "give it its arguments: `%s(...)`", e->name);
@@ -106,8 +98,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
   return FAILED;
 }
 
-/* A name without an index. */
-static Value whole_value(Eval *ev, const Entity *e, Span span) {
+Value whole_value(Eval *ev, const Entity *e, Span span) {
   if (!e->ndims || e->kind == ENT_NONE) return entity_value(ev, e, NULL, span);
   Name one = member_name(ev->b, e->name, e->lo, e->ndims);
   diag_error(ev->b->diags, span, "`%s` is a family: say which member", e->name);
@@ -119,7 +110,7 @@ static Value whole_value(Eval *ev, const Entity *e, Span span) {
 static int builtin_quantity(Eval *ev, Name name, Value *out) {
   Builder *b = ev->b;
   Model *m = b->m;
-  if (ev->where != IN_OBSERVE) return 0;
+  if (ev->where < IN_OBSERVE) return 0;
   Expr e = 0;
   if (strcmp(name, "lagrangian") == 0) e = m->lagrangian;
   else if (strcmp(name, "energy") == 0 && m->lagrangian) e = expr_symbol(b->g, m->energy_sym)->node;
@@ -236,7 +227,6 @@ Value index_value(Eval *ev, const AstExpr *x) {
     }
   } else if (of->kind != AST_ERROR) {
     diag_error(b->diags, x->span, "an index stands directly behind the name of a family");
-    if (of->kind == AST_PRIME) diag_help(b->diags, "the derivative of a member is `th[i]'`");
   }
   return e ? indexed_value(ev, e, x) : FAILED;
 }
@@ -278,6 +268,7 @@ Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t pr
   if (e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE)) member = find_member(b, e, at);
   if (!member) return FAILED;
   if (member->kind == ENT_LET) resolve_let(b, member->index);
+  if (member->kind == ENT_OBSERVE) resolve_observe(b, member->index);
   Value v = entity_value(&ev, member, at, span);
   for (; v.e && primes; primes--) v = time_derivative(b, v, span, where);
   return v;

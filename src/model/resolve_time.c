@@ -48,6 +48,11 @@ static unsigned kinds_in(Builder *b, const Value *v) {
 
 Value time_derivative(Builder *b, Value of, Span span, Context where) {
   unsigned kinds = kinds_in(b, &of), second = 1u << SYM_ACC | 1u << SYM_RATE;
+  if (kinds & 1u << SYM_INPUT && where == IN_OUTPUT && b->m->scene.exacts.n) {
+    diag_error(b->diags, span, "an input, and a closed form, has no time derivative");
+    diag_help(b->diags, "a velocity has a closed form of its own: `exact x' = ...`, and then `error(x')`");
+    return FAILED;
+  }
   if (kinds & 1u << SYM_INPUT) {
     diag_error(b->diags, span, "an input has no time derivative");
     diag_help(b->diags, "declare the derivative as an input of its own");
@@ -59,12 +64,13 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
   }
   if (kinds & 1u << SYM_LOCAL && has_no_rate(b, &of)) {
     not_yet(b, span, "a time derivative of the energy, or a third one of a function's argument");
+    diag_help(b->diags, "the energy changes by the power of forces: `force x = F` brings `F*x'`");
     return FAILED;
   }
   Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};
   const Expr *seed = time_seeds(b);
   expr_tangent(b->g, of.at, parts_of(&of), seed, b->nseeds + 1, "'", &b->rates, r.at);
-  if (where != IN_OBSERVE && kinds_in(b, &r) & second) {
+  if (where < IN_OBSERVE && kinds_in(b, &r) & second) {
     diag_error(b->diags, span, "a second derivative may stand only in `expect` and `observe`");
     diag_help(b->diags, "L and forces are functions of q, q' and t; accelerations follow from them");
     return FAILED;

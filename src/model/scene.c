@@ -218,9 +218,9 @@ void scene_select(Builder *b, const ModelChoice *choice) {
 
 /* --- the scene's contents --- */
 
-/* The parameter that `c` or `drag.c` names; in `use drag(c = 1)`, effect is drag, and only its own
- * count. Reported when it is none; NULL then. */
-static const Entity *find_param(Builder *b, AstId id, Name effect) {
+/* The parameter or input that `c` or `drag.c` names; in `use drag(c = 1)`, effect is drag, and only its
+ * own count. Reported when it is none; NULL then. */
+static const Entity *find_settable(Builder *b, AstId id, Name effect) {
   const AstExpr *x = ast_expr(b->ast, id);
   const Entity *e = NULL;
   int member = x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME;
@@ -234,16 +234,15 @@ static const Entity *find_param(Builder *b, AstId id, Name effect) {
   } else if (x->kind == AST_NAME) {
     e = resolve_name(b, x->name, x->span, NULL, "param");
   } else if (x->kind != AST_ERROR) {
-    diag_error(b->diags, x->span, "a scene sets parameters: `name = value`");
+    diag_error(b->diags, x->span, "a scene sets parameters and inputs: `name = value`");
     if (x->kind == AST_PRIME) diag_help(b->diags, "a start value is given by `start %s = ...`", ast_text(b, id));
   }
-  if (e && e->kind == ENT_PARAM) return e;
+  if (e && (e->kind == ENT_PARAM || e->kind == ENT_INPUT)) return e;
   if (e && e->kind != ENT_NONE) {
     diag_error(b->diags, x->span, "`%s` is %s, not a parameter", e->name, ent_kind_text(e->kind));
     if (e->kind == ENT_COORD || e->kind == ENT_STATE) diag_help(b->diags, "its start is set by `start %s = ...`", e->name);
     if (e->kind == ENT_CONST) diag_help(b->diags, "constants are fixed when compiling: `-D %s=...`", e->name);
     if (e->kind == ENT_LET) diag_help(b->diags, "declare it by `param` where scenes give it values");
-    if (e->kind == ENT_INPUT) diag_help(b->diags, "inputs are set when running: `lagc run MODEL SCENE %s=...`", e->name);
   }
   return NULL;
 }
@@ -287,12 +286,15 @@ static void give_param(Builder *b, uint32_t i, Expr e, Span span, void *data) {
   check_sign(b, p, span);
 }
 
-static void set_param(Builder *b, const AstStmt *st, Name effect) {
-  static const Giver giver = {param_unit, give_param, NULL};
+static void set_value(Builder *b, const AstStmt *st, Name effect) {
+  static const Giver giver = {IN_START, param_unit, give_param, NULL};
   if (!effect && advise_statement(b, st)) return;
   Target p = read_target(b, st->lhs);
-  const Entity *e = find_param(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
-  if (e) assign_values(b, &p, e, st->lhs, st->rhs, &giver);
+  const Entity *e = find_settable(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
+  if (!e) return;
+  if (e->kind == ENT_PARAM) assign_values(b, &p, e, st->lhs, st->rhs, &giver);
+  else if (p.indices || p.part >= 0) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "`%s` is an input: it has no index and no component", e->name);
+  else give_input(b, e->index, e->name, st->rhs, effect);
 }
 
 static Name method_text(const Builder *b, AstId id) {
@@ -349,33 +351,41 @@ static void give_start(Builder *b, uint32_t i, Expr value, Span span, void *data
   b->start_of[target] = sc->starts.n;
 }
 
-static void set_start(Builder *b, const AstStmt *st) {
-  if (st->exactly) {
-    not_yet(b, st->span, "`start exactly` (it needs constraints)");
-    return;
-  }
+static void give_closed_form(Builder *b, uint32_t i, Expr value, Span span, void *data) {
+  const StartOf *of = data;
+  int periodic = of->kind == ENT_COORD && !of->velocity && b->m->coords.at[i].periodic;
+  give_exact(b, start_target(b, of, i), start_unit(b, i, data), periodic, value, span);
+}
+
+/* `start q = ...`, `exact q = ...`: what a coordinate, a velocity or a state is at the start, or always. Without
+ * constraints `start exactly` says no more than `start`: every state is consistent. */
+static void set_motion(Builder *b, const AstStmt *st) {
+  int exact = st->kind == STMT_EXACT;
   Target p = read_target(b, st->lhs);
   const AstExpr *x = ast_expr(b->ast, st->lhs), *name = ast_expr(b->ast, p.stem);
   if (p.wrong || p.primes > 1 || name->kind != AST_NAME) {
-    if (name->kind != AST_ERROR) diag_error(b->diags, x->span, "a start gives a coordinate or a velocity: `start th = 90 [deg]`");
+    if (name->kind == AST_ERROR) return;
+    if (exact) diag_error(b->diags, x->span, "a closed form is that of a coordinate, a velocity or a state: `exact x = x(0)*cos(w*t)`");
+    else diag_error(b->diags, x->span, "a start gives a coordinate or a velocity: `start th = 90 [deg]`");
     return;
   }
   const Entity *e = resolve_name(b, name->name, name->span, NULL, "coord");
   if (!e) return;
   if (e->kind == ENT_NONE) return;
   if (e->kind != ENT_COORD && e->kind != ENT_STATE) {
-    diag_error(b->diags, name->span, "`%s` is %s; only coordinates, velocities and states start somewhere", name->name,
-               ent_kind_text(e->kind));
-    if (e->kind == ENT_PARAM) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
+    diag_error(b->diags, name->span, "`%s` is %s; only coordinates, velocities and states %s", name->name, ent_kind_text(e->kind),
+               exact ? "have a closed form" : "start somewhere");
+    if (e->kind == ENT_PARAM && !exact) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
     return;
   }
   if (p.primes && e->kind == ENT_STATE) {
     diag_error(b->diags, x->span, "the rate of a state follows from its flow");
-    diag_help(b->diags, "the state itself starts somewhere: `start %s = ...`", name->name);
+    if (exact) diag_help(b->diags, "the state itself has a closed form: `exact %s = ...`", name->name);
+    else diag_help(b->diags, "the state itself starts somewhere: `start %s = ...`", name->name);
     return;
   }
   StartOf of = {.kind = e->kind, .velocity = p.primes > 0};
-  Giver giver = {start_unit, give_start, &of};
+  Giver giver = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of};
   assign_values(b, &p, e, st->lhs, st->rhs, &giver);
 }
 
@@ -396,12 +406,42 @@ static void set_output(Builder *b, const AstStmt *st) {
   }
 }
 
+/* A limit for what has one already takes its place. */
+static void add_monitor(Builder *b, Monitor mon) {
+  Scene *sc = &b->m->scene;
+  for (uint32_t i = 0; i < sc->monitors.n; i++)
+    if (sc->monitors.at[i].output == mon.output) {
+      sc->monitors.at[i] = mon;
+      return;
+    }
+  vec_push(b->arena, &sc->monitors, mon);
+}
+
+/* `monitor exact 1e-6`: all that have a closed form. */
+static void monitor_exact(Builder *b, Monitor mon, Span span) {
+  Scene *sc = &b->m->scene;
+  mon.absolute = 1;
+  for (uint32_t i = 0; i < sc->exacts.n; i++) {
+    mon.output = add_error(b, &sc->exacts.at[i], span);
+    mon.name = sc->outputs.at[mon.output].name;
+    add_monitor(b, mon);
+  }
+  if (sc->exacts.n) return;
+  diag_error(b->diags, span, "the scene has no closed form to compare with");
+  diag_help(b->diags, "`exact q = ...` gives one");
+}
+
 static void set_monitor(Builder *b, const AstStmt *st) {
   const AstExpr *x = ast_expr(b->ast, st->lhs);
   Unit none = no_unit();
   Monitor mon = {.output = -1, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit")};
   mon.name = intern(b->ast->names, ast_text(b, st->lhs));
+  mon.absolute = x->kind == AST_CALL && strcmp(x->name, "error") == 0;
   if (mon.limit <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a monitor's limit must be positive");
+  if (x->kind == AST_NAME && strcmp(x->name, "exact") == 0 && !declared_in_use(b, x->name, NULL)) {
+    monitor_exact(b, mon, x->span);
+    return;
+  }
   if (x->kind != AST_NAME || strcmp(x->name, "energy") != 0) {
     uint32_t errors = b->diags->errors;
     mon.output = add_outputs(b, st->lhs);
@@ -410,7 +450,7 @@ static void set_monitor(Builder *b, const AstStmt *st) {
       return;
     }
   }
-  vec_push(b->arena, &b->m->scene.monitors, mon);
+  add_monitor(b, mon);
 }
 
 static void set_span(Builder *b, const AstStmt *st) {
@@ -429,19 +469,17 @@ static void set_tolerance(Builder *b, const AstStmt *st) {
 
 static void scene_statement(Builder *b, const AstStmt *st) {
   switch (st->kind) {
-    case STMT_START: set_start(b, st); return;
-    case STMT_SET: set_param(b, st, NULL); return;
+    case STMT_START: set_motion(b, st); return;
+    case STMT_SET: set_value(b, st, NULL); return;
     case STMT_USE:
       if (uses(b, st->name))
-        for (const AstStmt *x = st->body; x; x = x->next) set_param(b, x, st->name);
+        for (const AstStmt *x = st->body; x; x = x->next) set_value(b, x, st->name);
       return;
     case STMT_SPAN: set_span(b, st); return;
     case STMT_METHOD: set_method(b, st); return;
     case STMT_TOLERANCE: set_tolerance(b, st); return;
     case STMT_OUTPUT: set_output(b, st); return;
-    case STMT_MONITOR: set_monitor(b, st); return;
-    case STMT_EXACT: not_yet(b, st->span, "`exact`"); return;
-    case STMT_LIKE: return;
+    case STMT_EXACT: case STMT_MONITOR: case STMT_LIKE: return; /* see scene_build, scene_chain */
     default: diag_error(b->diags, st->span, "this does not belong in a scene"); return;
   }
 }
@@ -468,13 +506,40 @@ static void default_outputs(Builder *b) {
   vec_push(b->arena, &sc->outputs, o);
 }
 
+/* Whether a statement gives a value to something of an effect that is declared, but turned off: it comes from a scene
+ * that uses it, and that this one is like. */
+static int is_of_dropped_effect(Builder *b, const AstStmt *st) {
+  if (st->kind != STMT_SET) return 0;
+  int ambiguous;
+  Target p = read_target(b, st->lhs);
+  const AstExpr *x = ast_expr(b->ast, p.stem);
+  if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME) {
+    Name owner = ast_expr(b->ast, x->a)->name;
+    return !uses(b, owner) && effect_declares(find_stmt(b->ast, STMT_EFFECT, owner), x->name);
+  }
+  if (x->kind != AST_NAME || scope_find(&b->scope, x->name, NULL, &ambiguous)) return 0;
+  return declaring_effect(b, x->name) != NULL;
+}
+
+/* The statements of one kind, of the scene and of those that it is like. */
+static void each_of(Builder *b, AstStmtKind kind, void (*apply)(Builder *b, const AstStmt *st)) {
+  for (const AstStmt **s = b->chain; *s; s++)
+    for (const AstStmt *x = (*s)->body; x; x = x->next)
+      if (x->kind == kind) apply(b, x);
+}
+
 void scene_build(Builder *b, const ModelChoice *choice) {
   Scene *sc = &b->m->scene;
   sc->t1 = 10;
+  each_of(b, STMT_EXACT, set_motion); /* outputs speak of closed forms, */
   for (const AstStmt **s = b->chain; *s; s++) {
-    for (const AstStmt *x = (*s)->body; x; x = x->next) scene_statement(b, x);
+    for (const AstStmt *x = (*s)->body; x; x = x->next)
+      if (!s[1] || !is_of_dropped_effect(b, x)) scene_statement(b, x);
     if ((*s)->doc) sc->doc = (*s)->doc;
   }
+  for (uint32_t i = 0; i < choice->ngiven; i++)
+    set_value(b, &(AstStmt){.kind = STMT_SET, .lhs = choice->given[i].what, .rhs = choice->given[i].value}, NULL);
   if (!sc->outputs.n) default_outputs(b);
+  each_of(b, STMT_MONITOR, set_monitor); /* and monitors of outputs, to which they add */
   for (uint32_t i = 0; i < choice->nasked; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
 }

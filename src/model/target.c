@@ -78,10 +78,19 @@ static int row_elements(Builder *b, const AstExpr *list, const AstUnit *behind, 
 
 int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out) {
   const AstUnit *own;
-  if (r->n == 2 && list_behind(b, list->args, &own)) return row_elements(b, list, behind, r, name, out);
-  if (!r->n || count_list(b, list) != count_in(r))
-    return report_count(b, list, "the list", !r->n ? arena_printf(b->arena, "`%s` is no family", name)
-                                                   : arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)count_in(r)));
+  const AstExpr *row = list_behind(b, list->args, &own);
+  if (row && r->n == 2) return row_elements(b, list, behind, r, name, out);
+  if (row) {
+    diag_error(b->diags, row->span, "a list in a list gives a row of a family with two indices, and `%s` has %s", name, r->n ? "one" : "none");
+    return 0;
+  }
+  if (!r->n) {
+    report_count(b, list, "the list", arena_printf(b->arena, "`%s` is no family", name));
+    diag_help(b->diags, "a list gives a family its members; a vector is written `(a, b)`");
+    return 0;
+  }
+  if (count_list(b, list) != count_in(r))
+    return report_count(b, list, "the list", arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)count_in(r)));
   for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) vec_push(b->arena, out, ((Element){i, behind}));
   return 1;
 }
@@ -166,7 +175,7 @@ static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list,
   if (!list_elements(s->b, list, behind, r, s->e->name, &elements)) return;
   int64_t at[2] = {r->lo[0], r->lo[1]};
   for (uint32_t i = 0; i < elements.n; i++) {
-    give_member(s, at, elements.at[i].id, element_value(s->b, &elements.at[i], IN_START, NULL));
+    give_member(s, at, elements.at[i].id, element_value(s->b, &elements.at[i], s->giver->where, NULL));
     next_in(r, at);
   }
 }
@@ -177,13 +186,13 @@ static void give_formula(const Assign *s, const IndexRange *r, AstId rhs) {
   uint32_t outer = b->index.n;
   int64_t at[2] = {r->lo[0], r->lo[1]};
   int named = r->name[0] || r->name[1];
-  Value v = named || !count_in(r) ? (Value){0} : resolve(b, rhs, IN_START, NULL);
+  Value v = named || !count_in(r) ? (Value){0} : resolve(b, rhs, s->giver->where, NULL);
   if (!count_in(r)) return;
   do {
     b->index.n = outer;
     for (uint32_t k = 0; k < r->n; k++)
       if (r->name[k]) vec_push(b->arena, &b->index, ((IndexVar){r->name[k], at[k]}));
-    if (named) v = resolve(b, rhs, IN_START, NULL);
+    if (named) v = resolve(b, rhs, s->giver->where, NULL);
     if (!give_member(s, at, rhs, v)) break;
   } while (next_in(r, at));
   b->index.n = outer;

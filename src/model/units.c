@@ -234,6 +234,35 @@ const char *unit_name(uint32_t i, int *takes_prefixes) {
 
 const char *unit_prefix(uint32_t i) { return i < sizeof prefixes / sizeof *prefixes ? prefixes[i].name : NULL; }
 
+/* "kg*m/s^2"; "" for a pure number. */
+static const char *base_text(const UnitRow *row, Arena *a) {
+  static const struct {
+    const char *name;
+    DimBase base;
+  } order[DIM_BASES] = {{"kg", DIM_MASS}, {"m", DIM_LENGTH}, {"s", DIM_TIME}, {"A", DIM_CURRENT},
+                        {"K", DIM_TEMPERATURE}, {"mol", DIM_AMOUNT}, {"cd", DIM_LUMINOUS}};
+  StrBuf b = strbuf(a);
+  for (int sign = 1; sign >= -1; sign -= 2)
+    for (int i = 0; i < DIM_BASES; i++) {
+      int e = sign * row->e[order[i].base];
+      if (e <= 0) continue;
+      sb_printf(&b, "%s%s", sign < 0 ? (b.n ? "/" : "1/") : b.n ? "*" : "", order[i].name);
+      if (e > 1) sb_printf(&b, "^%d", e);
+    }
+  return sb_text(&b);
+}
+
+const char *unit_meaning(uint32_t i, Arena *a) {
+  const UnitRow *row = &table[i];
+  const char *base = base_text(row, a);
+  if (strcmp(base, row->name) == 0) return NULL;
+  if (strcmp(row->name, "deg") == 0) return "pi/180";
+  if (row->pi_power) return arena_printf(a, "%s*pi", row->factor);
+  if (!num_is_zero(offset_of(row))) return arena_printf(a, "%s, counted from %g %s", base, num_value(offset_of(row)), base);
+  if (strcmp(row->factor, "1") == 0) return *base ? base : "1";
+  return arena_printf(a, "%s%s%s", row->factor, *base ? " " : "", base);
+}
+
 double unit_factor(const Unit *u) {
   double f = num_value(u->factor);
   for (int i = 0; i < u->pi_power; i++) f *= PI;

@@ -30,6 +30,9 @@ int unit_exists(const char *name);
 const char *unit_name(uint32_t i, int *takes_prefixes);
 const char *unit_prefix(uint32_t i);
 
+/* What one of unit i is in SI base units, for people: "kg*m/s^2", "60 s", "pi/180"; NULL for a base unit. */
+const char *unit_meaning(uint32_t i, Arena *a);
+
 /* factor * pi^pi_power */
 double unit_factor(const Unit *u);
 

@@ -124,6 +124,10 @@ AstId ast_call(Ast *ast, Span span, Ident function, AstList args) {
                                .args = args.first});
 }
 
+AstId ast_at(Ast *ast, Span span, AstId a, AstId time) {
+  return append(ast, (AstExpr){.kind = AST_AT, .span = span, .op_span = span, .a = a, .b = time});
+}
+
 AstId ast_reduce(Ast *ast, AstKind kind, Span span, Ident index, AstId lo, AstId hi, AstId body, Span op) {
   check_declared(ast, index);
   return append(ast, (AstExpr){.kind = kind, .span = span, .op_span = op, .name = index.name, .a = lo, .b = hi,

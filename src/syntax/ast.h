@@ -38,6 +38,7 @@ typedef uint32_t AstId;
   X(AST_AND, "and")                                                                             \
   X(AST_OR, "or")                                                                               \
   X(AST_CALL, NULL)     /* f(x, y)          name, args; also if(c, a, b)                     */ \
+  X(AST_AT, NULL)       /* th'(0)           a at time b; x(0) is an AST_CALL                 */ \
   X(AST_SUM, NULL)      /* sum(i in 1..N, e)      name = i, a = lo, b = hi, c = e            */ \
   X(AST_PRODUCT, NULL)  /* product(i in 1..N, e)  likewise                                   */ \
   X(AST_TUPLE, NULL)    /* (a, b, c)        args; two or more                                */ \

@@ -35,6 +35,7 @@ AstId ast_member(Ast *ast, Span span, AstId a, Ident member);
 AstId ast_prime(Ast *ast, Span span, Span op, AstId a);
 AstId ast_unit(Ast *ast, Span span, AstId a, AstUnit unit);
 AstId ast_call(Ast *ast, Span span, Ident function, AstList args);
+AstId ast_at(Ast *ast, Span span, AstId a, AstId time);
 AstId ast_reduce(Ast *ast, AstKind kind, Span span, Ident index, AstId lo, AstId hi, AstId body, Span op);
 AstId ast_collect(Ast *ast, AstKind kind, Span span, AstList items); /* AST_LIST */
 AstId ast_bind(Ast *ast, Span span, Ident index, AstId lo, AstId hi);

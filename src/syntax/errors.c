@@ -5,9 +5,8 @@
  * appear: tokens are grouped into what a physicist would say. */
 #include <string.h>
 
-#include "syntax/parse_state.h"
-
 #include "base/suggest.h"
+#include "syntax/slips.h"
 
 /* ---- what was found, what was expected ---- */
 
@@ -103,7 +102,7 @@ static const char *after(const Parse *cx) {
   return arena_printf(cx->ast->arena, " after %s", describe(cx, t));
 }
 
-/* ---- slips with a known cure ---- */
+/* ---- words in wrong places ---- */
 
 static const char *place_name(unsigned where) {
   switch (where & W_ANY) {
@@ -131,85 +130,27 @@ static void report_word(Parse *cx, const Token *t) {
   TokKind elsewhere = token_statement(t->name, W_ANY);
   if (elsewhere != TOK_IDENT) {
     diag_error(d, t->span, "`%s` cannot stand in %s", t->name, where == W_FILE ? "the model itself" : place_name(where));
-    diag_help(d, "it belongs in %s%s", place_name(token_flags(elsewhere)),
-              where != W_FILE && (token_flags(elsewhere) & W_FILE) ? "; is a `}` missing above?" : "");
+    if (where == W_SCENE && (elsewhere == TOK_PARAM || elsewhere == TOK_CONST))
+      diag_help(d, "it belongs in a model or an effect; in a scene a parameter gets another value by `NAME = …`");
+    else diag_help(d, "it belongs in %s%s", place_name(token_flags(elsewhere)),
+                   where != W_FILE && (token_flags(elsewhere) & W_FILE) ? "; is a `}` missing above?" : "");
     return;
   }
-  Name near = nearest_word(cx, t->name, where);
   diag_error(d, t->span, "unknown statement `%s`", t->name);
-  static const char *const energies[][2] = {{"L", "lagrangian"}, {"T", "kinetic"}, {"V", "potential"}, {"U", "potential"}};
-  for (size_t i = 0; i < sizeof energies / sizeof *energies && t->follows == TOK_ASSIGN; i++)
-    if (strcmp(t->name, energies[i][0]) == 0 && !(where & (W_SCENE | W_EVENT))) near = energies[i][1];
-  if (near) diag_help(d, "did you mean `%s`?", near);
-  else if (where & (W_SCENE | W_EVENT)) diag_help(d, "a value is set with `%s = …`", t->name);
+  const char *way = slip_word(t->name, where);
+  Name near = way ? NULL : nearest_word(cx, t->name, where);
+  if (way) diag_help(d, "%s", way);
+  else if (near) diag_help(d, "did you mean `%s`?", near);
+  else if (where & (W_SCENE | W_EVENT)) diag_help(d, t->follows == TOK_LPAREN ? "a start is set by `start %s = …`" : "a value is set with `%s = …`", t->name);
   else if (t->follows == TOK_ASSIGN) diag_help(d, "a name is given a meaning with `let %s = …` or `param %s = …`", t->name, t->name);
-}
-
-static int ends_operand(const Token *t) { return (token_flags(t->kind) & T_OPERAND) != 0; }
-
-/* What people write without parentheses on paper. */
-static int is_function(const char *name) {
-  static const char *const names[] = {"sin", "cos", "tan", "exp", "log", "ln", "sqrt", "asin", "acos", "atan", "sinh", "cosh", "tanh", "abs"};
-  for (size_t i = 0; name && i < sizeof names / sizeof *names; i++)
-    if (strcmp(name, names[i]) == 0) return 1;
-  return 0;
-}
-
-/* A way out for what was found, or NULL. */
-static const char *advice(const Parse *cx, const TokKind *set, int n) {
-  const Token *t = &cx->current, *b = &cx->before;
-  Arena *a = cx->ast->arena;
-  int operators = has(set, n, TOK_TIMES);
-  switch (t->kind) {
-    case TOK_EQ:
-      if (has(set, n, TOK_ASSIGN)) return "write `=`: it states an equation; `==` compares two numbers";
-      break;
-    case TOK_ASSIGN:
-      if (has(set, n, TOK_EQ)) return "write `==` to compare";
-      if (cx->filter->word == TOK_COORD || cx->filter->word == TOK_STATE) return "where it starts stands in a scene: `start x = …`";
-      if (has(set, n, TOK_COLON)) return "this statement needs a name: `constraint NAME: a = b`";
-      break;
-    case TOK_COLON:
-      if (has(set, n, TOK_ASSIGN)) return arena_printf(a, "write `%s = …`", b->name ? b->name : "NAME");
-      break;
-    case TOK_END:
-      if (cx->filter->word == TOK_PARAM && has(set, n, TOK_ASSIGN)) return "a parameter has a value, which scenes can change: `param m = 1 [kg]`";
-      break;
-    case TOK_INDEX:
-      if (has(set, n, TOK_UNIT)) return "a unit stands apart from the name: `u [N]`";
-      break;
-    case TOK_PRIME:
-      if (b->kind == TOK_END) return "a `'` never continues a line: put it on the line of its name";
-      break;
-    case TOK_RPAREN: case TOK_RBRACKET:
-      if (operators && !cx->open.span.end) return arena_printf(a, "this `%s` closes nothing", token_word(t->kind));
-      break;
-    case TOK_LT: case TOK_LE: case TOK_GT: case TOK_GE: case TOK_NE:
-      if (cx->filter->word == TOK_CONTACT) return "a contact is written `contact NAME: g >= 0, restitution = e`";
-      if (cx->filter->word == TOK_EVENT && has(set, n, TOK_RISING))
-        return "an event is where an expression passes zero: `x - 1 rising { … }`";
-      if (has(set, n, TOK_AND)) return "comparisons do not chain: write `a < b and b < c`";
-      break;
-    case TOK_IN: case TOK_AND: case TOK_OR: case TOK_NOT:
-      if (has(set, n, TOK_IDENT)) return arena_printf(a, "`%s` is a reserved word", token_word(t->kind));
-      break;
-    case TOK_IDENT: case TOK_NUMBER: case TOK_LPAREN: case TOK_SUM: case TOK_PRODUCT:
-      if (!operators || !ends_operand(b)) break;
-      if (t->kind == TOK_IDENT && b->kind == TOK_NUMBER)
-        return arena_printf(a, "a unit stands in brackets: `[%s]`; a product is written with `*`", t->name);
-      if (b->kind == TOK_IDENT && is_function(b->name)) return arena_printf(a, "a function takes its argument in parentheses: `%s(...)`", b->name);
-      return "a product is written with `*`";
-      break;
-    default: break;
-  }
-  return NULL;
+  else diag_help(d, "`lagc help language` shows a model, `lagc help` lists the statements");
 }
 
 /* Something is still open where the statement ends. */
 static int report_open_bracket(Parse *cx, const TokKind *set, int n) {
   const OpenBracket *open = &cx->open;
   const Token *t = &cx->current;
-  if (t->kind != TOK_END || !open->span.end || !ends_operand(&cx->before)) return 0;
+  if (t->kind != TOK_END || !open->span.end || !(token_flags(cx->before.kind) & T_OPERAND)) return 0;
   TokKind close = open->kind == TOK_LPAREN ? TOK_RPAREN : open->kind == TOK_INDEX ? TOK_RBRACKET : TOK_RBRACE;
   if (!has(set, n, close)) return 0;
   diag_error(cx->ast->diags, t->span, "expected `%s`, found %s", token_word(close), describe(cx, t));
@@ -232,7 +173,7 @@ void parse_report(Parse *cx, const TokKind *expected, int n) {
   }
   if (report_open_bracket(cx, expected, n)) return;
   Words w = expected_words(cx, expected, n);
-  const char *help = advice(cx, expected, n);
+  const char *help = slip_token(cx, expected, n);
   const char *found = describe(cx, t), *list = join(cx, &w), *where = after(cx);
   diag_error(d, t->span, "expected %s%s, found %s", list, where, found);
   if (help) diag_help(d, "%s", help);

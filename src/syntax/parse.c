@@ -72,40 +72,6 @@ static void add_file(Includes *in, const Source *source, const char *path, AstSt
   vec_push(in->ast->arena, &in->files, f);
 }
 
-/* Copies `path` to `out` without its `.` parts, and with `a/..` removed; returns the new end. */
-static size_t add_parts(char *out, size_t n, const char *path) {
-  while (*path) {
-    size_t len = strcspn(path, "/");
-    const char *part = path;
-    path += len + (path[len] == '/');
-    if (len == 0 || (len == 1 && part[0] == '.')) continue;
-    size_t last = n;
-    while (last > 0 && out[last - 1] != '/') last--;
-    int up = len == 2 && memcmp(part, "..", 2) == 0;
-    if (up && n > last && !(n - last == 2 && memcmp(out + last, "..", 2) == 0)) {
-      n = last ? last - 1 : 0;
-      if (last == 1) n = 1; /* the root */
-      continue;
-    }
-    if (n && out[n - 1] != '/') out[n++] = '/';
-    memcpy(out + n, part, len);
-    n += len;
-  }
-  return n;
-}
-
-/* `path` as seen from the file `from`, in one spelling for each file. */
-static const char *resolve_path(Arena *a, const char *from, const char *path) {
-  char *out = arena_alloc(a, strlen(from) + strlen(path) + 3);
-  size_t n = 0;
-  const char *slash = strrchr(from, '/');
-  if (path[0] == '/' || from[0] == '/') out[n++] = '/';
-  if (path[0] != '/' && slash) n = add_parts(out, n, arena_strndup(a, from, (size_t)(slash - from)));
-  n = add_parts(out, n, path);
-  out[n] = '\0';
-  return out;
-}
-
 /* `a.lag` includes `b.lag` includes `a.lag`: from the file that closes the cycle backwards. */
 static void report_cycle(const Includes *in, const AstStmt *s, uint32_t from, uint32_t to) {
   StrBuf chain = strbuf(in->ast->arena);
@@ -132,7 +98,7 @@ static int seen_before(const Includes *in, const AstStmt *s, const char *path) {
 /* The statements of the file that s asks for; none when it was there already or cannot be read. */
 static StmtList included(Includes *in, AstStmt *s) {
   Ast *ast = in->ast;
-  const char *path = resolve_path(ast->arena, in->files.at[file_of(in, s->span.begin)].path, s->doc);
+  const char *path = path_beside(ast->arena, in->files.at[file_of(in, s->span.begin)].path, s->doc);
   if (seen_before(in, s, path)) return (StmtList){NULL, NULL};
   const char *error = NULL;
   const Source *source = source_read(ast->sources, path, &error);
@@ -169,7 +135,7 @@ static StmtList follow_includes(Includes *in, StmtList list) {
 int parse(Ast *ast, const Source *source) {
   uint32_t errors = ast->diags->errors;
   Includes in = {.ast = ast};
-  add_file(&in, source, resolve_path(ast->arena, "", source->path), NULL);
+  add_file(&in, source, path_beside(ast->arena, "", source->path), NULL);
   Parse cx;
   run(&cx, ast, source, TOK_BEGIN_FILE);
   StmtList all = follow_includes(&in, cx.stmts);

@@ -12,6 +12,9 @@ int parse(Ast *ast, const Source *source);
 /* Parses one expression (a value on the command line); 0 when it is none. */
 AstId parse_expression(Ast *ast, const Source *source);
 
+/* What to write for a word that begins no statement here, but in other languages or on paper ("friction"); or NULL. */
+const char *parse_advice(const char *word);
+
 /* Appends a listing of the whole Ast, one node a line, for `--dump=ast` and golden tests. */
 void ast_dump(const Ast *ast, StrBuf *out);
 

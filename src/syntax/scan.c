@@ -182,8 +182,10 @@ int scan_number(Scan *s, Token *t, const char *text, int n) {
   if (digits < (uint32_t)n) {
     uint32_t code = utf8_decode(text + digits, &len);
     if (code < 0x80 || is_letter(code)) {
-      const char *help = arena_printf(s->arena, "write a product with `*`: `%.*s*%.*s`", (int)digits, text,
-                                      n - (int)digits, text + digits);
+      const char *name = text + digits;
+      int letters = n - (int)digits;
+      const char *help = arena_printf(s->arena, "`%.*s*%.*s` is a product, `%.*s [%.*s]` has a unit; a name begins with a letter",
+                                      (int)digits, text, letters, name, (int)digits, text, letters, name);
       return bad(s, t, 0, (uint32_t)n, "a number and a name stand together without a sign", help);
     }
   }

@@ -115,7 +115,8 @@ static int bad_factor(Unit *u) {
   if ((unsigned char)u->text[u->at] >= 0x80)
     while (u->at + len < u->n && ((unsigned char)u->text[u->at + len] & 0xC0) == 0x80) len++;
   const char *message = arena_printf(u->scan->arena, "`%.*s` cannot stand in a unit", (int)len, u->text + u->at);
-  return unit_bad(u, u->at, len, message, "a unit is written `[kg*m^2/s]`; an index touches its name: `x[i]`");
+  const char *help = u->text[u->at] == '.' ? "factors are joined by `*`: `[N*m]`" : "a unit is written `[kg*m^2/s]`; an index touches its name: `x[i]`";
+  return unit_bad(u, u->at, len, message, help);
 }
 
 /* A name or 1, with its exponent. */

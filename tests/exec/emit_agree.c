@@ -104,7 +104,7 @@ static int check_model(Arena *arena, const char *path, const lag_scene *scene) {
   for (int i = 0; i < STATES; i++) {
     random_state(&s);
     if (compare(scene->model, accel, energy, &s)) return 1;
-    if (m->coords.n && i < 3 && compare_variation(scene->model, e, &s)) return 1;
+    if (scene->model->variation && i < 3 && compare_variation(scene->model, e, &s)) return 1;
   }
   return 0;
 }

@@ -20,6 +20,7 @@ LANEWISE2(pow) LANEWISE2(atan2) LANEWISE2(hypot)
 
 #define LAG_REAL v4
 #define LAG_MASK m4
+#define LAG_LANE double
 #define LAG_FN(f) lanes_##f
 #define LAG_C(x) ((v4){x, x, x, x})
 #define LAG_SELECT(c, a, b) choose(c, a, b)

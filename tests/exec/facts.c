@@ -101,7 +101,8 @@ static lag_sim *open_run(Fact *f) {
   return sim;
 }
 
-static void note_hit(void *context, int k, double t) {
+static void note_hit(void *context, int k, double t, const double *before, const double *after) {
+  (void)before, (void)after;
   Fact *f = context;
   if (k < MAX_EVENTS && ++f->hits[k] == f->nth) f->hit[k] = t;
 }

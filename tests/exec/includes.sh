@@ -27,12 +27,15 @@ besides='
 src/ir/lower.c    mech/eqns.h
 src/ir/lower.h    mech/eqns.h mech/variation.h
 runtime/include/lag.h  lag_model.h
-src/main.c        picture.h wants.h
+src/main.c        picture.h help.h complete.h settings.h wants.h
 src/wants.c       wants.h
 src/picture.c     picture.h
+src/help.c        help.h
+src/complete.c    complete.h help.h
+src/settings.c    settings.h
 '
 # The inside of a folder, shared by its own files only.
-private='syntax/ast_build.h syntax/parse_state.h syntax/filter.h syntax/scan.h syntax/token.h model/builder.h
+private='syntax/ast_build.h syntax/parse_state.h syntax/filter.h syntax/scan.h syntax/token.h syntax/slips.h model/builder.h
   model/scope.h sym/expr_impl.h sym/ops.def ir/lower_impl.h emit/header_impl.h methods/tableau.h methods/embedded.h
   methods/steps.h methods/composition.h methods/path.h methods/rule.h methods/discrete.h methods/implicit.h
   methods/history.h methods/band.h methods/control.h'

@@ -69,10 +69,39 @@ od -An -v -tf8 -j$((10 + len)) a.npy | tr -s ' \n' '\n' | sed '/^$/d' | awk 'NR 
 sed 1d rows.csv | cut -d, -f1 | awk '{ printf "%.6g\n", $1 }' >csv_t
 ok "npy and CSV agree on times" cmp npy_t csv_t
 
+# --- events: the ball from 1 m lands at t1 = sqrt(2/9.81) with -sqrt(2*9.81), leaves with 0.9 of it, and lands the k-th time at
+# t1 (1 + 2 (e + ... + e^(k-1)))
+ok "log of events" status 0 drop --events ev.csv -o rows.csv
+ok "the report counts, with first and last" grep -Eq "^event ground: 8 times, first at t = 0.4515236409857[0-9]* s, last at 4.69162673904" out
+ok "and says where the log is" grep -q "^16 events in ev.csv" out
+ok "head of the log" [ "$(head -1 ev.csv)" = "t [s],event,y [m],y' [m/s],y after [m],y' after [m/s]" ]
+ok "landing, before and after" awk -F, 'NR == 2 { t = sqrt(2/9.81); v = sqrt(2*9.81)
+  exit !($2 == "ground" && ($1 - t)^2 < 1e-24 && ($4 + v)^2 < 1e-20 && ($6 - 0.9*v)^2 < 1e-20 && $5 == $3) }' ev.csv
+ok "an event without action changes nothing" sh -c "grep apex ev.csv | awk -F, '{ n++; if (\$3 != \$5 || \$4 != \$6) exit 1 } END { exit n != 8 }'"
+ok "log as NumPy" status 0 drop --events ev.npy
+ok "npy of words" sh -c "head -c 200 ev.npy | grep -a -qF \"(\\\"event\\\", '<U6')\""
+ok "npy log: as many rows" sh -c "head -c 400 ev.npy | grep -a -qF \"'shape': (16,), }\""
+ok "npy log: words are UTF-32" sh -c 'od -An -c -w4 -v ev.npy | tr -d " \n" | grep -q "g.0.0.0r.0.0.0o.0.0.0u.0.0.0n.0.0.0d.0.0.0"'
+ok "json counts, with times" sh -c './sim drop --json | grep -qE "\"events\": \{\"ground\": \{\"count\": 8, \"first\": 0.4515236409857"'
+ok "json: never" sh -c './sim drop --until 0.1 --json | grep -qF "\"ground\": {\"count\": 0, \"first\": null, \"last\": null}"'
+ok "a log needs events" says 2 "has no events" swing --events none.csv
+ok "a log on standard output" sh -c './sim drop --events - 2>err | cmp - ev.csv && grep -q "reached t = 5" err'
+ok "two logs on standard output" says 2 "written twice" drop --events - -o -
+ok "a log and json on standard output" says 2 "both write to standard output" drop --events - --json
+ok "a log that cannot be written" says 2 "cannot write" drop --events none/e.csv
+ok "a failing run keeps its log" sh -c './sim drop --until 100 --events zeno.csv >/dev/null 2>&1; [ $? = 3 ] && [ $(grep -c ground zeno.csv) -gt 20 ]'
+./sim drop --until 2 --events one.csv --save-state s --quiet && ./sim --resume s --events two.csv --json >two.json
+ok "a resumed run logs the rest" sh -c 'sed 1d two.csv | cat one.csv - | cmp - ev.csv'
+ok "and counts the whole" grep -q '"ground": {"count": 8, "first": 0.4515236409857' two.json
+if [ -w /dev/full ]; then
+  ok "a log on a full disk" says 2 "cannot write /dev/full" drop --events /dev/full -o rows2.csv
+  ok "leaves no rows either" sh -c '! ls rows2.csv ./*.part 2>/dev/null'
+fi
+
 # --- JSON
 ok "json" status 0 swing --json
-ok "json is one line, braces balance" awk '{ a = gsub(/{/, "{"); b = gsub(/}/, "}"); if (a != b || a != 3 || NR > 1) exit 1 }' out
-for key in model scene method status t_end steps rejected rhs_calls wall_s energy_drift charges constraint_residual final; do
+ok "json is one line, braces balance" awk '{ a = gsub(/{/, "{"); b = gsub(/}/, "}"); if (a != b || a != 4 || NR > 1) exit 1 }' out
+for key in model scene method status t_end steps rejected rhs_calls wall_s energy_drift charges events constraint_residual final; do
   ok "json has $key" grep -q "\"$key\": " out
 done
 ok "json strings are escaped" grep -qF '"E \"total\", T+V": -0.69' out
@@ -107,7 +136,8 @@ ok "negative step" says 2 "--step 1e-3" --step -1
 ok "empty span" says 2 "nothing to compute" --until 0
 ok "bad every" says 2 "must be positive" --every 0
 ok "unknown option" says 2 "did you mean --method?" --methd rk4
-ok "unknown method lists methods" says 2 "rk4 " --method rk9
+ok "unknown method" says 2 "unknown method rk9; did you mean rk4?" --method rk9
+ok "a method that is near none lists methods" says 2 "rk4 " --method simpson
 ok "method that does not fit" says 2 "lagc build MODEL --method verlet" drop --method verlet
 ok "unknown option of a method" says 2 "no option" --method "rk4(stp=1)"
 ok "unknown scene says how to build it" says 2 "lagc run models/rt_sim.lag workshop" workshop
@@ -154,22 +184,40 @@ done
 ok "backwards, in two parts" sh -c './sim swing --until -2 -o w.csv --quiet && ./sim swing --until -1 -o 1.csv --quiet --save-state s &&
   ./sim --resume s --until -2 -o 2.csv --quiet && sed 1d 2.csv | cat 1.csv - | cmp - w.csv'
 ok "resume keeps its values" says 2 "leave out" --resume state l=2
+./sim swing l=1.7 th=60 --method "rk4(step=0.01)" --tol 1e-8 --until 2 --quiet --save-state repeat
+ok "what it was saved with may be said again" status 0 swing l=1.7 th=60 --method "rk4(step=0.01)" --tol 1e-8 --until 3 --resume repeat
+ok "or a part of it" status 0 --resume repeat --until 3 l=1.7 --step 0.01 --method rk4
+ok "another value is refused" says 2 "another value of l" --resume repeat --until 3 th=60 l=1.8
+ok "another start is refused" says 2 "another value of th" --resume repeat --until 3 th=61
+ok "another tolerance is refused" says 2 "leave out --tol" --resume repeat --until 3 --tol 1e-9
+ok "another method is refused" says 2 "leave out --method" --resume repeat --until 3 --method rk45
+ok "another step is refused" says 2 "leave out --method" --resume repeat --until 3 --method "rk4(step=0.02)"
+./sim drop wind=0.5 --until 1 --quiet --save-state repeat
+ok "another input is refused" says 2 "another value of wind" --resume repeat wind=0.4
+ok "the same one is not" status 0 --resume repeat wind=0.5
 ok "resume of another scene" says 2 "saved from scene fixed" swing --resume state
 ok "resume backwards" says 2 "would go back" --resume state --until 1
 sed 's/0x1/0x2/' state >damaged
 ok "a damaged state" says 2 "damaged" --resume damaged
 ok "no state at all" says 2 "not a state" --resume rows.csv
 
-# --- Ctrl-C: a run of hours is stopped after half a second
-interrupt() {
+# --- signals: a run of hours is stopped after half a second
+interrupt() { # SIGNAL STATUS
+  rm -f long.*
   ./sim fixed --until 1e9 --every 100 -o long.csv --save-state long.state >out 2>err &
   pid=$!
   sleep 0.5
-  kill -INT $pid
+  kill "-$1" $pid
   wait $pid
-  [ $? = 130 ]
+  [ $? = "$2" ]
 }
-ok "Ctrl-C exits 130" interrupt
+for signal in 'HUP 129' 'TERM 143'; do
+  # shellcheck disable=SC2086 # two words
+  ok "SIG$signal" interrupt $signal
+  ok "it says where, after SIG$signal" grep -q "interrupted at t = " out
+  ok "leaves rows and state, and no .part" sh -c 'test -s long.csv && test -s long.state && ! ls ./*.part'
+done
+ok "Ctrl-C exits 130" interrupt INT 130
 ok "it says where" grep -q "interrupted at t = " out
 ok "rows are complete" sh -c 'no=$(wc -l <long.csv); [ "$no" -gt 2 ] && tail -c1 long.csv | od -An -tx1 | grep -q 0a'
 ok "no .part is left after Ctrl-C" no_part

@@ -78,7 +78,7 @@ static const lag_scene drop = {.name = "drop", .doc = "dropped from 1 m", .model
 static const lag_var pend_q[] = {{"th", "deg", 3.14159265358979323846 / 180, 1, 0, 0}};
 static const lag_var pend_p[] = {{"l", "m", 1, 0, 1, 0}, {"g", "m/s^2", 1, 0, 1, 0}};
 static const lag_var pend_out[] = {{"th", "deg", 3.14159265358979323846 / 180, 1, 0, 0}, {"E \"total\", T+V", "J", 1, 0, 0, 0}};
-static const lag_monitor pend_mon[] = {{"energy", -1, 1e-6}, {"H", 1, 1e-6}};
+static const lag_monitor pend_mon[] = {{"energy", -1, 1e-6, 0}, {"H", 1, 1e-6, 0}};
 
 static int pend_accel(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
                       double *a, double *zd, double *w)

@@ -35,7 +35,8 @@ mv "$TMP"/c/*.h "$TMP/h"
 emit_more() {
   mkdir -p "$TMP/more"
   for m in $models; do "$LAGC" emit "$m" --method gauss -o "$TMP/more/$(name_of "$m").c" || return 1; done
-  grep -q 'static int second' "$TMP/more/double_pendulum.c" && ! grep -q second "$TMP/c/double_pendulum.c"
+  for f in "$TMP"/more/*.c; do grep -q 'nq = 0' "$f" || grep -q 'static int second' "$f" || return 1; done
+  ! grep -q second "$TMP/c/double_pendulum.c"
 }
 check "lagc emit --method, all models" emit_more
 
@@ -195,6 +196,7 @@ off_is_absent() { # MODEL
     "$LAGC" header "$1" "$s" >"$TMP/with.h" && "$LAGC" header "$TMP/off.lag" "$s" >"$TMP/off.h" && cmp "$TMP/with.h" "$TMP/off.h" || return 1
   done
 }
+cp $here/models/*.csv "$TMP"
 for m in $(grep -l '^effect' $models); do check "$m: effects that are off leave no trace" off_is_absent "$m"; done
 
 # ---- errors leave nothing behind

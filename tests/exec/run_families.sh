@@ -104,6 +104,35 @@ scene s { start a = 2/3, b = 1/3, c = 0, d = 5/3, e = 4/3, f = 1; span 1; tolera
 LAG
 same "a lattice with two indices" "$dir/lattice.lag" "$dir/lattice_by_hand.lag"
 
+# ---- at the command line: a family is set at once, a vector by its components ----
+sed 's/start u.*- j\/3; span/start u[1,1] = 0; span/' "$dir/lattice.lag" >"$dir/still.lag"
+sed "s/scene s {.*/scene s { start a = 2, b = 2, c = 2, d = 2, e = 2, f = 2, a' = 1, b' = 1, c' = 1, d' = 1, e' = 1, f' = 1; span 1; tolerance 1e-13/" \
+  "$dir/lattice_by_hand.lag" >"$dir/still_by_hand.lag"
+same "all members of a family are set by its name" "$dir/still.lag" "$dir/still_by_hand.lag" u=2 "u'=1"
+cat >"$dir/vector.lag" <<'LAG'
+model vector
+coord r: vec2
+param k[2] = 1 > 0
+lagrangian = dot(r', r')/2 - k[1]*r.x^2 - k[2]*r.y^2
+scene s { start r = (1, 2); span 1 }
+LAG
+refused() { # refused WORDS ARGS...: exit status 2, and these words
+  words=$1
+  shift
+  "$LAGC" "$@" >"$dir/out" 2>&1
+  [ $? = 2 ] && grep -q -F -e "$words" "$dir/out"
+}
+refused "r has parts: set r.x, and so on" run "$dir/vector.lag" r=1
+result "a vector has parts" $?
+refused "r' has parts: set r.x', and so on" run "$dir/vector.lag" "r'=1"
+result "and so has its velocity" $?
+refused "k = -1: the model declares k[1] > 0" run "$dir/vector.lag" k=-1
+result "a family of the wrong sign" $?
+refused "r has parts, each an output of its own; name one: r.x" plot "$dir/vector.lag" --y r
+result "an output that is a vector" $?
+refused "kk: no such parameter, coordinate or input in model vector" run "$dir/vector.lag" kk=1
+result "a name that is none" $?
+
 # proved NAME MODEL...: its expectations hold
 proved() {
   name=$1

@@ -40,13 +40,20 @@ for m in variational gauss 'variational(quadrature=trapezoid)' 'variational(quad
   check "$m on the double pendulum" says "corrections a system, 1 systems a step" models/double_pendulum.lag --method "$m" --until 1
   check "$m with forces" says "energy change" models/spring.lag damped --method "$m" --until 1
 done
-wrong() { # wrong WORDS METHOD
-  run models/pendulum.lag --method "$2"
-  [ $? = 2 ] && grep -qF -e "$1" "$TMP/err"
+wrong() { # wrong WORDS ARGS...
+  words=$1
+  shift
+  run models/pendulum.lag "$@"
+  [ $? = 2 ] && grep -qF -e "$words" "$TMP/err"
 }
-check "an odd order is refused" wrong "order: write 2, 4, 6 or 8" 'variational(order=3)'
-check "half a stage is refused" wrong "stages: write 1, 2, 3 or 4" 'gauss(stages=1.5)'
-check "the midpoint rule has one order" wrong "write quadrature=gauss" 'variational(quadrature=midpoint, order=4)'
+check "options of methods are options of the command line" says "variational(step=0.1, quadrature=lobatto, order=4)" models/pendulum.lag \
+  --method variational --quadrature lobatto --order 4 --step 0.1
+check "also in front of a scene" says "gauss(step=0.1, stages=3)" models/pendulum.lag --stages=3 --method gauss --step 0.1 wide
+check "a method without them says so" wrong 'method rk45 has no option "quadrature"' --method rk45 --quadrature lobatto
+check "an unknown quadrature is refused with those there are" wrong 'it is gauss, lobatto, midpoint, trapezoid' --method variational --quadrature simpson
+check "an odd order is refused" wrong "order: write 2, 4, 6 or 8" --method 'variational(order=3)'
+check "half a stage is refused" wrong "stages: write 1, 2, 3 or 4" --method 'gauss(stages=1.5)'
+check "the midpoint rule has one order" wrong "write quadrature=gauss" --method 'variational(quadrature=midpoint, order=4)'
 
 # ---- derivatives that only some methods need
 built() { # built METHOD: the simulator of the double pendulum, built for it

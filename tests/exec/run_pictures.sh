@@ -96,6 +96,16 @@ check "the simulator's own options" runs plot "$p" wide --until 1 --method rk4 -
 check "draw in the terminal too" grep -q 'rad/s' out
 check "in the order that one likes" runs plot "$p" --until 1 wide l=2 -o a.svg
 
+# labels_apart FILE: no two labels of the axis of x touch, at 6.5 pixels a character
+labels_apart() {
+  awk '/text-anchor="middle">/ { x = $0; sub(/.*<text x="/, "", x); v = $0; gsub(/<[^>]*>/, "", v); w = 6.5*length(v)
+         if (n++ && x - w/2 < end) { print v " touches the label before it"; bad = 1 } end = x + w/2 }
+       END { exit bad || n < 3 }' "$1"
+}
+check "a path whose labels are long" runs plot "$p" wide --x '-3.08e7*l + 1e4*x' --y '1e4*y' -o far.svg
+check "leaves some out" labels_apart far.svg
+check "and others in" labels_apart path.svg
+
 check "an unknown name, with its place" says 1 '--x:1:7: error: unknown name `thh`' plot "$p" --x 'l*sin(thh)' --y th -o none.svg
 check "shown with a caret" grep -q '\^~~' err
 check "what is no expression" says 1 '--y:1:4: error: expected `)`' plot "$p" --y '(th' -o none.svg
@@ -155,12 +165,27 @@ is "with its rod" 'true false true [["0", "l"], ["x", "y"]]' "$(hook b.html)"
 check "at most 2000 frames" a "$p" --every 0.001 -o b.html
 is "of 20001 rows" "1820" "$(sed -n '/^"v"/,/]}$/p' b.html | wc -l)"
 
+# A curve that hardly moves is flat in the terminal: the ends of its axis differ in the digits that are shown.
+flat() {
+  "$LAGC" run "$p" wide --until 1 --observe energy --sketch --quiet | awk '/^energy/ { on = 1 } on && /┤/ { v[n++] = $1 } END { exit !(n == 2 && v[0] != v[1]) }'
+}
+check "a constant, in a terminal" flat
+
 check "no points" says 2 'no point is given' animate "$p" --points ''
 cat >two.lag <<'END'
 model two "Two coordinates without a place"
 coord a, b
 lagrangian = (a'^2 + b'^2)/2
 END
+cat >vectors.lag <<'END'
+model vectors
+const N = 2
+coord r: vec2 [m], b[N]: vec3 [m]
+lagrangian = dot(r', r')/2 + sum(i in 1..N, dot(b[i]', b[i]')/2)
+scene s { start r' = (1, 2); span 1 }
+END
+check "vectors among the coordinates are points" says 0 'points r.x,r.y b[1].x,b[1].y b[2].x,b[2].y;' animate vectors.lag
+check "as many as there are" says 0 'points r.x,r.y b[1].x,b[1].y;' animate vectors.lag -D N=1
 check "which points?" says 2 'which points?' animate two.lag
 check "half a point" says 2 'each point is x,y' animate "$p" --points 'x,y l' -o none.html
 check "three numbers" says 2 'each point is x,y' animate "$p" --points 'x,y,l' -o none.html

@@ -1,6 +1,9 @@
 #!/bin/sh
 # README.md and models/README.md show what commands print: a block after `<!-- printed by: COMMAND -->` is that command's
-# output, to the byte. BLESS=1 writes it. Their links, and those of src/README.md, lead to files.
+# output, to the byte. README's tutorial is followed in a folder of its own: a block after `<!-- file: NAME -->` is such a
+# file, one after `<!-- added to: NAME -->` goes to its end, and one after `<!-- session -->` has commands after `$ ` and what
+# they print; numbers may differ in the last digits there, and times at will. BLESS=1 writes what differs. Their links, and those of
+# src/README.md and grammar/LANGUAGE.md, lead to files.
 . tests/tap.sh
 
 shows() { # shows PAGE
@@ -12,6 +15,12 @@ shows() { # shows PAGE
   n=0
   while read -r command; do
     n=$((n + 1))
+    case ${GSL:-}$command in
+    build/lagc\ modes*) # without GSL the block stays as it is
+      skip "$command" "GSL is not installed"
+      awk -v k="$n" '/^<!-- printed by: / { i++ } /^```/ { inside = i == k && !inside; next } inside' "$page" >"$TMP/blocks/$n"
+      continue ;;
+    esac
     command=$(printf '%s\n' "$command" | sed "s|build/lagc|$LAGC|g")
     check "$command" sh -c "$command"
     cp "$TMP/tap_output" "$TMP/blocks/$n"
@@ -33,9 +42,79 @@ shows() { # shows PAGE
 shows README.md
 shows models/README.md
 
+# ---- the tutorial ----
+case $LAGC in /*) tools=$(dirname "$LAGC") ;; *) tools=$(pwd)/$(dirname "$LAGC") ;; esac
+mkdir -p "$TMP/lesson" "$TMP/steps"
+# steps/NN.KIND, and for a file its name in steps/NN.name
+awk -v dir="$TMP/steps/" '
+  /^<!-- (file|added to): .* -->$/ { kind = $2 == "file:" ? "file" : "added"; name = $0; sub(/^[^:]*: /, "", name); sub(/ -->$/, "", name); next }
+  /^<!-- session -->$/ { kind = "session"; next }
+  kind && /^```/ {
+    if (out) { close(out); out = kind = ""; next }
+    n++
+    out = sprintf("%s%02d.%s", dir, n, kind)
+    if (kind != "session") { print name >sprintf("%s%02d.name", dir, n); close(sprintf("%s%02d.name", dir, n)) }
+    next
+  }
+  out { print >out }' README.md
+
+session() { # a session's block on standard input -> the same with what the commands print now
+  while IFS= read -r line; do
+    case $line in
+      '$ '*)
+        printf '%s\n' "$line"
+        (cd "$TMP/lesson" && PATH=$tools:$PATH sh -c "${line#??}") 2>&1 </dev/null
+        ;;
+    esac
+  done
+}
+# Line by line, word by word; numbers within 1e-6, what stands behind "right-hand sides N," at will.
+same_session() {
+  sed 's/\(right-hand sides [0-9]*\), .*/\1/' "$1" >"$TMP/a"
+  sed 's/\(right-hand sides [0-9]*\), .*/\1/' "$2" >"$TMP/b"
+  awk -v other="$TMP/b" '
+    function number(s) { return s ~ /^-?[0-9][0-9.]*(e[-+]?[0-9]+)?,?$/ }
+    function same(a, b) { return a == b || (number(a) && number(b) && (a - b) <= 1e-6*(1 + a*a)^0.5 && (b - a) <= 1e-6*(1 + a*a)^0.5) }
+    {
+      if ((getline line <other) <= 0) { print "missing: " $0; exit 1 }
+      n = split($0, a, " "); m = split(line, b, " ")
+      for (i = 1; i <= n || i <= m; i++) if (!same(a[i], b[i])) { print "README: " $0; print "now:    " line; exit 1 }
+    }
+    END { if ((getline line <other) > 0) { print "now, too: " line; exit 1 } }' "$TMP/a"
+}
+for step in "$TMP"/steps/*; do
+  base=${step%.*}
+  case $step in
+    *.file) cp "$step" "$TMP/lesson/$(cat "$base.name")" ;;
+    *.added) cat "$step" >>"$TMP/lesson/$(cat "$base.name")" ;;
+    *.session)
+      session <"$step" >"$base.now"
+      [ -n "$BLESS" ] || check "tutorial: $(sed -n 's/^\$ //p' "$step" | paste -s -d ';' -)" same_session "$step" "$base.now"
+      if same_session "$step" "$base.now" >/dev/null; then cp "$step" "$base.now"; fi
+      ;;
+  esac
+done
+made() { [ -s "$TMP/lesson/orbit.svg" ] && tail -n 1 "$TMP/lesson/double.html" | grep -q '</html>'; }
+check "the tutorial leaves a picture and an animation" made
+if [ -n "$BLESS" ]; then
+  awk -v dir="$TMP/steps/" '
+    /^<!-- (file|added to): .* -->$/ || /^<!-- session -->$/ { print; kind = $2; next }
+    kind && /^```/ && !inside {
+      print
+      n++
+      inside = 1
+      while (kind == "session" && (getline line <sprintf("%s%02d.now", dir, n)) > 0) print line
+      next
+    }
+    inside && /^```/ { inside = 0; kind = "" }
+    inside && kind == "session" { next }
+    { print }' README.md >"$TMP/blessed.md"
+  cmp -s "$TMP/blessed.md" README.md || cp "$TMP/blessed.md" README.md
+fi
+
 links() {
-  for page in README.md src/README.md models/README.md; do
-    grep -o ']([^)#]*)' "$page" | sed 's/^](//; s/)$//' | while read -r link; do
+  for page in README.md src/README.md models/README.md grammar/LANGUAGE.md; do
+    sed 's/`[^`]*`//g' "$page" | grep -o ']([^)#]*)' | sed 's/^](//; s/)$//' | while read -r link; do
       case $link in *://*) continue ;; esac
       [ -e "$(dirname "$page")/$link" ] || echo "$page: no $link"
     done

@@ -2,7 +2,10 @@
 # Golden tests of what `lagc check` says, as TAP:
 #   tests/golden/err/sem_NAME.lag + .expected    a bad model: exit status 1, the messages exactly, nothing on stdout
 #   tests/golden/err/warn_NAME.lag + .expected   a good one that draws warnings: exit status 0, the messages exactly
+#   tests/golden/err/run_NAME.lag + .expected    a good one that cannot be run as its first scene says: exit status 2, the
+#                                                messages of `lagc run` exactly, nothing on stdout
 #   tests/golden/ok/NAME.lag                     a good one, the near miss of an error: exit status 0, no messages
+# rows.txt is the list of what is refused, with the file of each row and its near miss.
 # Every bad model is also given to the commands that write files: none may be left, whole or in part.
 # LAGC names the compiler; BLESS=1 rewrites the expectations, on purpose.
 cd "$(dirname "$0")/../.." || exit 2
@@ -24,23 +27,42 @@ result() { # NAME PROBLEM
   fi
 }
 
-for lag in tests/golden/err/sem_*.lag tests/golden/err/warn_*.lag tests/golden/ok/*.lag; do
+for lag in tests/golden/err/sem_*.lag tests/golden/err/warn_*.lag tests/golden/err/run_*.lag tests/golden/ok/*.lag; do
   want=${lag%.lag}.expected
   status=1
+  command=check
   case $lag in
     */warn_*) status=0 ;;
+    */run_*) status=2 command=run ;;
+    */ok/method.lag) status=0 want=/dev/null command='run --quiet' ;;
     */ok/*) status=0 want=/dev/null ;;
   esac
-  "$lagc" check "$lag" >"$tmp/stdout" 2>"$tmp/stderr"
+  # shellcheck disable=SC2086 # a command and its option
+  set -- $command
+  "$lagc" "$1" "$lag" ${2:+"$2"} >"$tmp/stdout" 2>"$tmp/stderr"
   code=$?
   problem=
   if [ -n "$BLESS" ] && [ "$code" = "$status" ] && [ "$want" != /dev/null ]; then cp "$tmp/stderr" "$want"; fi
   [ "$code" = "$status" ] || problem="exit status $code, expected $status
 "
-  if [ "$status" = 1 ] && [ -s "$tmp/stdout" ]; then problem="${problem}something on stdout
+  if [ "$status" != 0 ] && [ -s "$tmp/stdout" ]; then problem="${problem}something on stdout
 "; fi
   cmp -s "$want" "$tmp/stderr" || problem=$problem$(diff -u "$want" "$tmp/stderr")
   result "$lag" "$problem"
+done
+
+# ---- each row has its message, and a near miss ----
+grep -v '^#' tests/golden/rows.txt | sed 's/ *| */|/g' >"$tmp/rows"
+while IFS='|' read -r row err words ok; do
+  problem=
+  grep -qF -e "$words" "tests/golden/err/$err.expected" || problem="no \`$words\` in err/$err.expected
+"
+  [ -f "tests/golden/ok/$ok.lag" ] || problem="${problem}there is no ok/$ok.lag"
+  result "row: $row" "$problem"
+done <"$tmp/rows"
+for lag in tests/golden/ok/*.lag; do
+  name=${lag##*/}
+  grep -q "|${name%.lag}\$" "$tmp/rows" || result "$lag is the near miss of a row" "rows.txt does not name it"
 done
 
 # ---- nothing is written ----

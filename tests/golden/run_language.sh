@@ -1,9 +1,10 @@
 #!/bin/sh
 # The examples of grammar/LANGUAGE.md: a block that begins with `model` passes `lagc check`, every
-# other one parses.
+# other one parses. A block of data, ```csv NAME, is a file beside them.
 . tests/tap.sh
 awk -v dir="$TMP" '
   /^```lag$/ { file = sprintf("%s/%02d.lag", dir, ++n); next }
+  /^```csv / { file = dir "/" $2; next }
   /^```$/ { file = ""; next }
   file { print > file }' grammar/LANGUAGE.md
 for f in "$TMP"/*.lag; do

@@ -44,6 +44,9 @@ static void test_algebra(void **state) {
   assert_string_equal(dim_text(f.d, n), "N");
   assert_string_equal(dim_text(f.d, joule), "J");
   assert_string_equal(dim_text(f.d, DIM_NONE), "1");
+  assert_string_equal(dim_text(f.d, dim_mul(f.d, f.kg, power(&f, f.m, 2, 1))), "kg*m^2");
+  assert_string_equal(dim_text(f.d, dim_div(f.d, f.kg, power(&f, f.m, 3, 1))), "kg/m^3");
+  assert_string_equal(dim_text(f.d, dim_mul(f.d, f.m, f.s)), "m*s");
   assert_string_equal(dim_text(f.d, DIM_ANY), "?");
   assert_string_equal(dim_text(f.d, power(&f, f.m, 1, 2)), "m^(1/2)");
   assert_string_equal(dim_text(f.d, dim_per_second(f.d, DIM_NONE)), "1/s");
@@ -130,6 +133,8 @@ static void test_replace(void **state) {
   Dim with[2] = {dim_mul(f.d, power(&f, f.m, 2, 1), c), f.m};
   assert_int_equal(dim_replace(f.d, b, first, 2, with), f.m);
   assert_int_equal(dim_replace(f.d, dim_mul(f.d, result, f.s), first, 2, with), dim_mul(f.d, with[0], f.s));
+  with[1] = DIM_ANY; /* a zero: what was found of b tells its dimension */
+  assert_int_equal(dim_replace(f.d, b, first, 2, with), f.m);
   with[0] = DIM_ANY;
   assert_int_equal(dim_replace(f.d, result, first, 2, with), DIM_ANY);
   assert_int_equal(dim_replace(f.d, c, first, 2, with), c);

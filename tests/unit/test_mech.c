@@ -134,6 +134,28 @@ static void test_indefinite(void **state) {
   compare("model m\ncoord x, y\nparam w = 1.4\nlagrangian = x'*y' - w^2*x*y\n", indefinite);
 }
 
+static int definite(const char *lagrangian) {
+  Arena *arena = arena_new(NULL);
+  char lag[300];
+  snprintf(lag, sizeof lag, "model m\ncoord x, y\nparam m = 2 > 0, b = 1.4\nlet u = x*y' - y*x'\nlagrangian = %s\n", lagrangian);
+  Eqns *e = equations(arena, lag, NULL);
+  assert_non_null(e);
+  int is = e->definite_mass;
+  arena_free(arena);
+  return is;
+}
+
+/* Terms linear in velocities, of whatever sign, have no part in the mass matrix. */
+static void test_definite(void **state) {
+  (void)state;
+  assert_true(definite("m/2*(x'^2 + y'^2) - x^2*y"));
+  assert_true(definite("m/2*(x'^2 + y'^2) + b*(x*y' - y*x')"));
+  assert_true(definite("m/2*(x'^2 + y'^2) - b*u - x^3*y'"));
+  assert_false(definite("m/2*(x'^2 + y'^2) + b*x'*y'"));
+  assert_false(definite("m/2*(x'^2 + y'^2) + b*u^2"));
+  assert_false(definite("m/2*(x'^2 + y'^2) + b*x*y'^2"));
+}
+
 /* A relativistic particle in a constant force: (g^3) x'' = F/m, with c = 1. */
 static void relativistic(const Moment *s, Real *a, Real *z) {
   (void)z;
@@ -252,7 +274,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_pendulum),      cmocka_unit_test(test_cart),          cmocka_unit_test(test_kepler),
     cmocka_unit_test(test_velocity_dependent_potential), cmocka_unit_test(test_explicit_time), cmocka_unit_test(test_mass_in_time),
-    cmocka_unit_test(test_indefinite),    cmocka_unit_test(test_not_quadratic), cmocka_unit_test(test_force),
+    cmocka_unit_test(test_indefinite),    cmocka_unit_test(test_definite),
+    cmocka_unit_test(test_not_quadratic), cmocka_unit_test(test_force),
     cmocka_unit_test(test_point_force),   cmocka_unit_test(test_dissipation),   cmocka_unit_test(test_states),
     cmocka_unit_test(test_state_in_momentum), cmocka_unit_test(test_input),     cmocka_unit_test(test_energy),
   };

@@ -8,7 +8,7 @@ typedef struct Log {
   double t[64];
 } Log;
 
-static void note(void *context, int k, double t)
+static void note(void *context, int k, double t, UNUSED const double *before, UNUSED const double *after)
 {
   Log *log = context;
   if (log->n < 64) {

@@ -67,6 +67,54 @@ static void test_linearise(void **state)
   free(work);
 }
 
+/* M = [4 2 1; 2 3 1; 1 1 2]: with f = -M D q, a = -D q, so J = -D whatever elimination does. */
+static const double full_M[3][3] = {{4, 2, 1}, {2, 3, 1}, {1, 1, 2}}, full_D[3][3] = {{1, 2, 3}, {-4, 5, 6}, {7, 8, -9}};
+
+static int full_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  for (int i = 0; i < 3; i++) {
+    a[i] = -full_D[i][0] * q[0] - full_D[i][1] * q[1] - full_D[i][2] * q[2];
+  }
+  return 0;
+}
+
+static int full_linear(ARGS, UNUSED const double *a, double *dr, double *M, UNUSED double *w)
+{
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      *dr = 0;
+      for (int k = 0; k < 3; k++) {
+        *dr -= full_M[i][k] * full_D[k][j];
+      }
+      dr++;
+    }
+    for (int j = 0; j <= i; j++) {
+      *M++ = full_M[i][j];
+    }
+  }
+  return 0;
+}
+
+static void test_elimination(void **state)
+{
+  (void)state;
+  static const lag_entry dr[] = {{0, 0}, {0, 1}, {0, 2}, {1, 0}, {1, 1}, {1, 2}, {2, 0}, {2, 1}, {2, 2}};
+  static const lag_entry mass[] = {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}};
+  const lag_linear linear = {9, dr, 6, mass, 0, full_linear};
+  const lag_model m = {MODEL("full"), .nq = 3, .accel = full_accel, .linear = &linear};
+  lag_problem pb = problem(&m);
+  const double y[6] = {0};
+  double J[18], *work = calloc(lag_linear_work(&m), sizeof *work);
+
+  assert_int_equal(lag_jacobian(&pb, 0, y, J, work), LAG_OK);
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 6; j++) {
+      assert_close(J[i * 6 + j], j < 3 ? -full_D[i][j] : 0, 1e-14); /* rounding of numbers up to 60, three times over */
+    }
+  }
+  free(work);
+}
+
 static int null_mass(ARGS, UNUSED const double *a, double *dr, double *M, UNUSED double *w)
 {
   memset(dr, 0, 6 * sizeof *dr);
@@ -105,6 +153,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_jacobian),
       cmocka_unit_test(test_linearise),
+      cmocka_unit_test(test_elimination),
       cmocka_unit_test(test_errors),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

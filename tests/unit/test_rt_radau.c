@@ -170,6 +170,19 @@ static void stiff_flows_are_solved(void **state)
   lag_sim_free(s);
 }
 
+/* A first step on which Newton's method cannot converge is made smaller, and nothing is lost. */
+static void newtons_failures_make_steps_smaller(void **state)
+{
+  lag_stats st;
+  (void)state;
+  lag_sim *s = sim_with(&vdpol, &lag_radau, 1e-8, 2, (lag_option[]){{"step", 1, NULL}, {"max_step", 2, NULL}});
+  assert_int_equal(lag_sim_advance(s, 2), LAG_OK);
+  assert_close(lag_sim_z(s)[0], 1.706167732170483, 1e-6);
+  lag_sim_stats(s, &st);
+  assert_true(st.rejected > 3);
+  lag_sim_free(s);
+}
+
 /* ---- a stiff spring with a damper: two rates, in closed form */
 
 static const double spring = 1e6, damper = 1e4; /* rates -101.02... and -9898.97... */
@@ -289,6 +302,7 @@ int main(void)
       cmocka_unit_test(dense_output_has_order_3),
       cmocka_unit_test(errors_follow_the_tolerance),
       cmocka_unit_test(stiff_flows_are_solved),
+      cmocka_unit_test(newtons_failures_make_steps_smaller),
       cmocka_unit_test(a_stiff_spring_with_a_damper_is_solved),
       cmocka_unit_test(failures_keep_the_last_state),
       cmocka_unit_test(it_needs_the_linearisation),

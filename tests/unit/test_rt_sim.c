@@ -79,6 +79,69 @@ static void inputs_follow_their_formula_or_a_constant(void **state)
   }
 }
 
+static double slope(void *context, double t)
+{
+  return *(const double *)context * t;
+}
+
+static void inputs_follow_a_function(void **state)
+{
+  double rate = 3;
+  (void)state;
+  for (int i = 0; i < lag_nmethods + lag_gsl_nmethods; i++) {
+    const lag_method *m = i < lag_nmethods ? lag_methods[i] : lag_gsl_methods[i - lag_nmethods];
+    lag_sim *s = sim_with(&pushed, m, 1e-10, 0, NULL);
+    assert_int_equal(lag_sim_set(s, "push", 7), 0);
+    assert_int_equal(lag_sim_set_input(s, "push", slope, &rate), 0); /* instead of the constant */
+    assert_int_equal(lag_sim_advance(s, 2), LAG_OK);
+    /* as above: exact but for the methods of order 1 and 2; GSL's at their tolerance */
+    double within = m->order > 2 ? 1e-8 : m->order == 2 ? 3e-6 : 3e-2;
+    assert_close(lag_sim_q(s)[0], 1 + 3 * 8.0 / 6, within);
+    assert_int_equal(lag_sim_set_input(s, "push", NULL, NULL), LAG_EINVAL); /* it has begun */
+    lag_sim_free(s);
+  }
+}
+
+static void a_constant_takes_the_place_of_a_function(void **state)
+{
+  double rate = 3;
+  (void)state;
+  lag_sim *s = lag_sim_new(&pushed);
+  assert_int_equal(lag_sim_set_input(s, "push", slope, &rate), 0);
+  assert_int_equal(lag_sim_set(s, "push", 0.5), 0);
+  assert_int_equal(lag_sim_advance(s, 2), LAG_OK);
+  assert_close(lag_sim_q(s)[0], 1 + 0.25 * 4, 1e-9);
+  lag_sim_free(s);
+}
+
+/* The facts of the model alone are not those of the model with a function in it. */
+static int sees_facts(void *work, lag_problem *pb, const double *opt)
+{
+  (void)work, (void)opt;
+  pb->detail = lag_facts(pb) & (LAG_SMOOTH | LAG_AUTONOMOUS) ? "smooth" : "not smooth";
+  return LAG_EMETHOD;
+}
+
+static void a_function_takes_facts_away(void **state)
+{
+  double rate = 3;
+  lag_model model = pushed_model;
+  lag_scene scene = pushed;
+  lag_method method = lag_rk4;
+  (void)state;
+  model.flags |= LAG_SMOOTH | LAG_AUTONOMOUS;
+  scene.model = &model;
+  method.init = sees_facts;
+  for (int with = 0; with < 2; with++) {
+    lag_sim *s = lag_sim_new(&scene);
+    assert_int_equal(lag_sim_set_method(s, &method, NULL, 0), 0);
+    assert_int_equal(lag_sim_set_input(s, "push", with ? slope : NULL, &rate), 0);
+    assert_int_equal(lag_sim_advance(s, 1), LAG_EMETHOD);
+    assert_non_null(strstr(lag_sim_message(s), with ? "not smooth" : "(smooth"));
+    lag_sim_free(s);
+  }
+}
+
 /* ---- energy and monitors */
 
 static void energy_drift_is_what_the_method_loses(void **state)
@@ -107,7 +170,7 @@ static int watch_x(ARGS, double *out, UNUSED double *w)
 
 static void monitors_end_the_run(void **state)
 {
-  const lag_monitor tight = {"energy", -1, 1e-9}, loose = {"energy", -1, 1e-3}, x = {"x", 0, 0.5};
+  const lag_monitor tight = {"energy", -1, 1e-9, 0}, loose = {"energy", -1, 1e-3, 0}, x = {"x", 0, 0.5, 0};
   (void)state;
   for (int i = 0; i < 3; i++) {
     lag_scene c = osc;
@@ -253,6 +316,9 @@ int main(void)
       cmocka_unit_test(values_are_in_declared_units),
       cmocka_unit_test(outputs_have_names_and_units),
       cmocka_unit_test(inputs_follow_their_formula_or_a_constant),
+      cmocka_unit_test(inputs_follow_a_function),
+      cmocka_unit_test(a_constant_takes_the_place_of_a_function),
+      cmocka_unit_test(a_function_takes_facts_away),
       cmocka_unit_test(energy_drift_is_what_the_method_loses),
       cmocka_unit_test(monitors_end_the_run),
       cmocka_unit_test(asking_more_often_changes_nothing),

@@ -1,0 +1,175 @@
+#include "cli/commands.h"
+
+#include <string.h>
+
+#include "cli/options.h"
+
+/* ---- the commands ---- */
+
+static const CommandRow commands[] = {
+  {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric]", "parse, derive, prove the `expect` lines",
+   "Parses and derives the model for every scene (or the one named), and proves or refutes its `expect` lines. "
+   "Exit status 0 when all is well, 1 when not."},
+  {CMD_DERIVE, "derive", NULL, "MODEL [SCENE] [--format text|latex|c] [--ops] [-o FILE]", "print the equations of motion",
+   "Prints the equations of motion: momenta, M q'' = f, energy, and the operation count."},
+  {CMD_RUN, "run", NULL, "MODEL [SCENE] [name=value ...] [options]", "simulate",
+   "Builds the simulator (or takes it from the cache) and runs it.\n\n"
+   "  name=value            a parameter, a start (th=1.2, \"th'=0.5\", th='90[deg]',\n"
+   "                        th=pi/3) or an input; a bare number is in the declared\n"
+   "                        unit; drag.c=0.2 for one of an effect, m=3 for a family\n"
+   "  u=FILE.csv            a table for the input u; 'u=2*sin(t/(1 [s]))' a formula"},
+  {CMD_PLOT, "plot", NULL, "MODEL [SCENE] [name=value ...] [--x EXPR --y EXPR | --phase EXPR]", "simulate and draw, as SVG",
+   "Runs the model and draws it: all outputs against time, or one quantity against another. "
+   "EXPR is any expression of the model: th, energy, an observable, 'l1*sin(th1)', \"th1' - th2'\". "
+   "The options of `lagc run` are options here too."},
+  {CMD_ANIMATE, "animate", NULL, "MODEL [SCENE] [name=value ...] [--points 'X,Y X,Y'] [--trace]",
+   "simulate and show the motion, as one HTML file",
+   "Runs the model and writes its motion as one HTML file, which needs no network and no other file: space plays and "
+   "pauses, arrow keys step, the slider scrubs. The options of `lagc run` are options here too."},
+  {CMD_MODES, "modes", NULL, "MODEL [SCENE] [name=value ...] [--json]", "equilibrium, stability, frequencies, shapes and damping",
+   "Finds the equilibrium next to the scene's start, says whether it is stable and by which argument, and prints small motion "
+   "about it: frequencies, damping, shapes. The linearisation is exact.\n\n"
+   "Velocities of the start do not matter. In a shape the coordinate with the largest kinetic energy is 1 of its declared "
+   "unit; 0.5@-90 is an amplitude of 0.5, a quarter of a period behind it. A zero mode is `free` where no force arises far "
+   "along it. Needs GSL. Exit status 3: no equilibrium was found.\n\n"
+   "  name=value            a parameter, another start (th=3), an input to hold"},
+  {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--method NAME] [--with linear]", "make a simulator",
+   "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options, which are those of "
+   "`lagc run`."},
+  {CMD_HEADER, "header", "embedding", "MODEL [SCENE] -o FILE.h", "write one C header to embed",
+   "Writes one self-contained C99/C++ header to embed: parameters as a struct, accelerations, energy, an RK4 step. It "
+   "includes nothing but <math.h>, allocates nothing and has no globals. Its names begin with the file's:\n\n"
+   "  lagc header models/pendulum.lag -o pend.h\n\n"
+   "and in one file of a program\n\n"
+   "  #define PEND_IMPLEMENTATION\n"
+   "  #include \"pend.h\"\n\n"
+   "The others include it without the #define. Its first lines say how it is used."},
+  {CMD_EMIT, "emit", NULL, "MODEL [SCENE] [--method NAME] [--with linear] [-o FILE.c]", "write C for the runtime",
+   "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h). What integrates them is "
+   "liblag, whose interface is lag.h:\n\n"
+   "  cc main.c pendulum.c $(pkg-config --cflags --libs liblag)"},
+  {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
+   "Lists the methods of integration: their order, what they keep, what they need of a model, and their options."},
+  {CMD_HELP, "help", NULL, "[TOPIC]", NULL, "Says more on a command, a word of the language, a unit, a function or an option; alone, lists the topics."},
+  {CMD_COMPLETION, "completion", NULL, "bash|zsh|fish", "print a script of completion for a shell",
+   "Prints what makes a shell complete the commands and options of lagc, and the scenes, parameters, methods and names of "
+   "the model in question. `make install` puts it where these shells look; without it,\n\n"
+   "  source <(lagc completion bash)    in ~/.bashrc\n"
+   "  source <(lagc completion zsh)     in ~/.zshrc, after compinit\n"
+   "  lagc completion fish | source     in ~/.config/fish/config.fish"},
+  {CMD_VERSION, "version", NULL, "", NULL, "Prints the version."},
+  {CMD_COMPLETE, "complete", NULL, "WORD...", NULL, NULL}, /* for completion scripts: see complete.h */
+};
+enum { N_COMMANDS = sizeof commands / sizeof *commands };
+
+/* ---- the options ---- */
+
+#define C(name) (1u << CMD_##name)
+#define SIMULATE (C(RUN) | C(PLOT) | C(ANIMATE))
+#define MODELS (SIMULATE | C(MODES) | C(CHECK) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT))
+#define OWN(f) 0, offsetof(Options, f)
+#define PASSED 1, 0
+
+static const OptionRow options[] = {
+  {"--allow-numeric", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(allow_numeric),
+   "an expectation that is not decided by the prover, but agrees numerically, does not fail the check"},
+  {"--format", NULL, "text|latex|c", TAKES_CHOICE, "text latex c", C(DERIVE), OWN(format),
+   "as text, as LaTeX, or as the C function that computes the accelerations"},
+  {"--ops", NULL, NULL, TAKES_NOTHING, "", C(DERIVE), OWN(ops), "the operation counts only"},
+
+  {"--observe", NULL, "EXPR", TAKES_EXPRS, "", C(RUN), OWN(observe),
+   "one more column: any expression of the model, --observe 'l*sin(th)'; can be repeated"},
+  {"--y", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(y), "draws this against time,"},
+  {"--x", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(x), "or against this: a path, with one scale for both axes where their units agree"},
+  {"--phase", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(phase), "its rate against it: --phase th draws th' against th"},
+  {"--points", NULL, "'X,Y X,Y'", TAKES_EXPR, "", C(ANIMATE), OWN(points),
+   "the points to draw, each two expressions, joined by rods in this order. Without it: the model's x,y; or x1,y1 x2,y2 ...; or "
+   "px,py; or what its only coordinate gives; or the vectors among its coordinates"},
+  {"--from", NULL, "'X,Y'", TAKES_EXPR, "", C(ANIMATE), OWN(from), "where the first rod begins; default: the origin"},
+  {"--no-rods", NULL, NULL, TAKES_NOTHING, "", C(ANIMATE), OWN(no_rods), "points only"},
+  {"--trace", NULL, NULL, TAKES_NOTHING, "", C(ANIMATE), PASSED, "the path of the last point, fading"},
+
+  {"--output", "-o", "FILE", TAKES_FILE, "", C(DERIVE), OWN(output), "writes to this file"},
+  {"--output", "-o", "SIMULATOR", TAKES_FILE, "", C(BUILD), OWN(output), "the program to make"},
+  {"--output", "-o", "FILE.h", TAKES_FILE, "h hpp", C(HEADER), OWN(output), "the header to write; default: standard output"},
+  {"--output", "-o", "FILE.c", TAKES_FILE, "c", C(EMIT), OWN(output), "the C file to write; default: standard output"},
+  {"--output", "-o", "FILE.svg", TAKES_FILE, "svg", C(PLOT), OWN(output), "default: MODEL_SCENE.svg in this folder"},
+  {"--output", "-o", "FILE.html", TAKES_FILE, "html", C(ANIMATE), OWN(output), "default: MODEL_SCENE.html in this folder"},
+  {"--output", "-o", "FILE", TAKES_FILE, "csv npy", C(RUN), PASSED, "rows of output: CSV, or NumPy where FILE ends in .npy; - is standard output"},
+
+  {"--method", NULL, "NAME", TAKES_METHOD, "", SIMULATE, PASSED,
+   "method of integration, NAME or \"NAME(option=value, ...)\"; `lagc help methods` lists them"},
+  {"--method", NULL, "NAME", TAKES_METHOD, "", C(BUILD) | C(EMIT), OWN(method),
+   "with what this method needs of the model besides accelerations; the scenes' own methods need no mention"},
+  {"--quadrature", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "of the method variational: midpoint, trapezoid, gauss or lobatto"},
+  {"--order", NULL, "N", TAKES_NUMBER, "", SIMULATE, PASSED, "of the method variational"},
+  {"--stages", NULL, "N", TAKES_NUMBER, "", SIMULATE, PASSED, "of the method gauss"},
+  {"--tol", NULL, "X", TAKES_NUMBER, "", SIMULATE, PASSED, "tolerance, absolute and relative"},
+  {"--step", NULL, "H", TAKES_NUMBER, "", SIMULATE, PASSED, "step [s]; the first one tried where the method chooses its own"},
+  {"--until", NULL, "T", TAKES_NUMBER, "", SIMULATE, PASSED, "run to time T [s]; before the start: backwards"},
+  {"--every", NULL, "DT", TAKES_NUMBER, "", SIMULATE, PASSED, "time between rows [s]; default: as the scene says, or a 1000th of the span"},
+  {"--svg", NULL, "FILE.svg", TAKES_FILE, "svg", SIMULATE, PASSED, "a picture of all output against time"},
+  {"--plot-x", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "with --plot-y NAME: the picture shows one output against another"},
+  {"--plot-y", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "the picture shows this output"},
+  {"--sketch", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "a picture in the terminal"},
+  {"--html", NULL, "FILE.html", TAKES_FILE, "html", C(RUN) | C(PLOT), PASSED, "an animation of the points that --points names; `lagc animate` finds them itself"},
+  {"--points", NULL, "'X,Y X,Y'", TAKES_TEXT, "", C(RUN) | C(PLOT), PASSED, "X and Y are names of outputs"},
+  {"--from", NULL, "'X,Y'", TAKES_TEXT, "", C(RUN) | C(PLOT), PASSED, "where the first rod begins; default: the origin"},
+  {"--no-rods", NULL, NULL, TAKES_NOTHING, "", C(RUN) | C(PLOT), PASSED, "points only"},
+  {"--trace", NULL, NULL, TAKES_NOTHING, "", C(RUN) | C(PLOT), PASSED, "the path of the last point"},
+  {"--json", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report as one JSON object"},
+  {"--json", NULL, NULL, TAKES_NOTHING, "", C(MODES), PASSED, "all modes, to 17 digits, as one JSON object"},
+  {"--events", NULL, "FILE.csv", TAKES_FILE, "csv", SIMULATE, PASSED, "each event with its time and the state before and after it"},
+  {"--quiet", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "no report"},
+  {"--save-state", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED, "write the complete state at the end;"},
+  {"--resume", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED,
+   "go on from there, with the same scene, method and values: results are those of an uninterrupted run, bit by bit"},
+
+  {"--define", "-D", "CONST=VALUE", TAKES_DEFINE, "", MODELS, OWN(defines), "gives a `const` of the model another value"},
+  {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(MODES) | C(BUILD), OWN(no_gsl),
+   "leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole"},
+  {"--with", NULL, "linear", TAKES_CHOICE, "linear", C(BUILD) | C(EMIT), OWN(with), "with the exact linearisation of the model"},
+  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns prog", MODELS, OWN(dump), "what the stages of the compiler yield: ast, model, eqns, prog"},
+  {"--help", "-h", NULL, TAKES_NOTHING, "", MODELS | C(COMPLETION), OWN(help), "this help"},
+};
+enum { N_OPTIONS = sizeof options / sizeof *options };
+
+/* ---- looking them up ---- */
+
+const CommandRow *command_row(size_t i) { return i < N_COMMANDS ? &commands[i] : NULL; }
+const OptionRow *option_row(size_t i) { return i < N_OPTIONS ? &options[i] : NULL; }
+
+Command command_named(const char *word) {
+  if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return CMD_HELP;
+  if (strcmp(word, "--version") == 0) return CMD_VERSION;
+  for (size_t i = 0; i < N_COMMANDS; i++)
+    if (strcmp(word, commands[i].name) == 0) return commands[i].command;
+  return CMD_NONE;
+}
+
+const CommandRow *command_find(Command c) {
+  for (size_t i = 0; i < N_COMMANDS; i++)
+    if (commands[i].command == c) return &commands[i];
+  return NULL;
+}
+
+const OptionRow *option_find(Command c, const char *arg, const char **value) {
+  *value = NULL;
+  for (size_t i = 0; i < N_OPTIONS; i++) {
+    const OptionRow *o = &options[i];
+    if (!(o->commands & 1u << c)) continue;
+    size_t n = strlen(o->name);
+    if (strncmp(arg, o->name, n) == 0 && (arg[n] == '\0' || arg[n] == '=')) {
+      if (arg[n]) *value = arg + n + 1;
+      return o;
+    }
+    if (!o->brief || strncmp(arg, o->brief, 2) != 0) continue;
+    if (arg[2] && o->takes != TAKES_DEFINE) continue; /* -DN=5, but no -ofile */
+    if (arg[2]) *value = arg + 2;
+    return o;
+  }
+  return NULL;
+}
+
+int command_simulates(Command c) { return ((SIMULATE | C(MODES)) & 1u << c) != 0; }
+int command_reads_model(Command c) { return (MODELS & 1u << c) != 0; }

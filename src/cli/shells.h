@@ -1,0 +1,10 @@
+/* The scripts of completion, src/cli/complete.bash, .zsh and .fish, as they were when lagc was built. */
+#ifndef LAGC_SHELLS_H
+#define LAGC_SHELLS_H
+
+#include "base/strbuf.h"
+
+/* Appends the script for a shell: bash, zsh or fish. */
+void completion_script(StrBuf *out, const char *shell);
+
+#endif

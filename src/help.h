@@ -1,0 +1,21 @@
+/* What `lagc help` says: of a command, a chapter or a word of the reference, a function, a unit, an option.
+ *
+ * Nothing is written twice: commands and options come from their tables (cli/commands.h), the language from its
+ * reference (grammar/LANGUAGE.md), units from the compiler's own table. */
+#ifndef LAGC_HELP_H
+#define LAGC_HELP_H
+
+#include "base/intern.h"
+#include "base/strbuf.h"
+#include "base/vec.h"
+
+typedef VEC(Name) Topics;
+
+/* All topics, each once; functions, units and options, on which there is help too, are left out. */
+void help_topics(Arena *a, Topics *out);
+
+/* Appends help on a topic; NULL: what there is help on. 0 when there is none on this topic: then *near is the
+ * nearest topic, or NULL. */
+int help_print(StrBuf *out, const char *topic, Name *near);
+
+#endif

@@ -1,0 +1,174 @@
+#include "syntax/slips.h"
+
+#include <string.h>
+
+/* ---- words ---- */
+
+enum { W_MODEL = W_FILE | W_EFFECT | W_FOR };
+
+/* Words that the language does not have, with spaces between them; where somebody may write them; what to write. */
+static const struct {
+  const char *words;
+  unsigned where;
+  const char *way;
+} ways[] = {
+  {"coordinate coordinates coords variable variables var vars dof", W_MODEL, "a coordinate is declared by `coord x [m]`"},
+  {"vector vec", W_MODEL, "a vector is a coordinate, too: `coord r: vec3 [m]`"},
+  {"parameter parameters params par", W_MODEL, "a parameter is declared by `param k = 1 [N/m]`"},
+  {"constant constants consts", W_MODEL, "write `param g = 9.81 [m/s^2]`; `const N = 10` is a number fixed when compiling, such as the size of a family"},
+  {"def define set var", W_MODEL, "an abbreviation is made by `let a = …`, a function by `function f(x) = …`"},
+  {"L lagrange lagr", W_MODEL, "the Lagrangian is given by `lagrangian = …`"},
+  {"T kinetic_energy", W_MODEL, "the kinetic energy is given by `kinetic = …`"},
+  {"V U potential_energy", W_MODEL, "the potential energy is given by `potential = …`"},
+  {"H hamiltonian", W_MODEL, "write the Lagrangian, `lagrangian = …`: momenta and energy follow"},
+  {"D R friction damping damp rayleigh drag loss losses", W_MODEL, "losses are a Rayleigh function, `dissipation = c/2*x'^2`, or a `force`"},
+  {"torque moment Q forces", W_MODEL, "a generalised force is given by `force q = …`; of an angle it is a torque"},
+  {"equation equations eq eom ode", W_MODEL, "equations of motion follow from the Lagrangian; `expect x'' = …` has one of yours checked, `flow z' = …` is for a state"},
+  {"import require load using", W_MODEL, "another file is taken in by `include \"file.lag\"`"},
+  {"initial init initials ic start", W_MODEL, "starts stand in a scene: `scene s { start x = 1 }`"},
+  {"simulation simulate sim run experiment case", W_MODEL, "what is simulated is a scene: `scene s { start x = 1; span 20 [s] }`"},
+  {"time tspan duration tmax", W_MODEL, "the time of a run stands in a scene: `span 20 [s]`"},
+  {"plot print", W_MODEL, "columns are chosen in a scene: `output x, y every 0.01 [s]`; `lagc plot` draws"},
+  {"initial init initials ic", W_SCENE, "a start is set by `start x = 1, x' = 0`"},
+  {"duration time times tspan tmax until end t_end tend stop", W_SCENE, "the time of a run is `span 20 [s]`"},
+  {"dt step steps stepsize h", W_SCENE, "a step is an option of a method: `method rk4(step = 0.01)`; rows of output have `every 0.01 [s]`"},
+  {"tol rtol atol accuracy precision eps", W_SCENE, "write `tolerance 1e-9`"},
+  {"integrator solver integrate scheme", W_SCENE, "a method is chosen by `method rk4(step = 0.01)`; `lagc help methods` lists them"},
+  {"plot print save write show record columns", W_SCENE, "columns are chosen by `output x, y every 0.01 [s]`"},
+  {"every sample", W_SCENE, "write `output x, y every 0.01 [s]`"},
+  {"with effects enable on", W_SCENE, "effects are turned on by `use drag`"},
+  {"without disable off", W_SCENE, "`use none` turns all effects off; without `use` none is on"},
+  {"from extends inherit based", W_SCENE, "another scene is taken over by `like OTHER`"},
+  {"set let", W_SCENE, "a value is set by `name = 2`, a start by `start x = 1`"},
+  {"terminate end halt exit quit", W_EVENT, "the run is ended by `stop`"},
+};
+
+static int has_word(const char *words, const char *word) {
+  size_t n = strlen(word);
+  for (const char *s = words; *s; s += strspn(s, " ")) {
+    size_t len = strcspn(s, " ");
+    if (len == n && strncmp(s, word, n) == 0) return 1;
+    s += len;
+  }
+  return 0;
+}
+
+const char *slip_word(const char *word, unsigned where) {
+  for (size_t i = 0; i < sizeof ways / sizeof *ways; i++)
+    if ((ways[i].where & where & W_ANY) && has_word(ways[i].words, word)) return ways[i].way;
+  return NULL;
+}
+
+const char *parse_advice(const char *word) { return slip_word(word, W_ANY); }
+
+/* ---- tokens ---- */
+
+static int has(const TokKind *set, int n, TokKind kind) {
+  for (int i = 0; i < n; i++)
+    if (set[i] == kind) return 1;
+  return 0;
+}
+
+static int ends_operand(const Token *t) { return (token_flags(t->kind) & T_OPERAND) != 0; }
+
+/* What people write without parentheses on paper. */
+static int is_function(const char *name) {
+  return name && has_word("sin cos tan exp log ln sqrt asin acos atan sinh cosh tanh abs", name);
+}
+
+/* Whether an `=` follows the token in hand (after primes): it begins another member of a list. */
+static int sets_next(const Parse *cx) {
+  const Source *source = cx->filter->scan->source;
+  const char *s = source->text + (cx->current.span.end - source->base);
+  s += strspn(s, "' \t");
+  return s[0] == '=' && s[1] != '=';
+}
+
+/* A block is due, and not a list or another expression. */
+static int wants_block(const TokKind *set, int n) { return has(set, n, TOK_LBRACE) && !has(set, n, TOK_NUMBER); }
+
+/* Two names without anything between them, where a list is due. */
+static const char *missing_comma(const Parse *cx, const TokKind *set, int n) {
+  const Token *t = &cx->current;
+  if (t->kind != TOK_IDENT || !has(set, n, TOK_COMMA) || cx->open.span.end) return NULL;
+  switch (cx->filter->word) {
+    case TOK_PARAM: case TOK_CONST: case TOK_INPUT: case TOK_LET: case TOK_START: case TOK_FLOW: case TOK_EXACT:
+      return sets_next(cx) ? arena_printf(cx->ast->arena, "put a `,` before `%s`", t->name) : NULL;
+    case TOK_COORD: case TOK_STATE: case TOK_USE: case TOK_REQUIRES: case TOK_EXCLUDES:
+      return arena_printf(cx->ast->arena, "put a `,` before `%s`", t->name);
+    case TOK_OUTPUT:
+      return arena_printf(cx->ast->arena, "put a `,` before `%s`; a product is written with `*`", t->name);
+    default: return NULL;
+  }
+}
+
+/* After an operand where an operator is due. */
+static const char *missing_operator(const Parse *cx) {
+  const Token *t = &cx->current, *b = &cx->before;
+  if (t->kind == TOK_IDENT && b->kind == TOK_NUMBER)
+    return arena_printf(cx->ast->arena, "a unit stands in brackets: `[%s]`; a product is written with `*`", t->name);
+  if (b->kind == TOK_IDENT && is_function(b->name))
+    return arena_printf(cx->ast->arena, "a function takes its argument in parentheses: `%s(...)`", b->name);
+  return "a product is written with `*`";
+}
+
+static const char *after_method(const Parse *cx) {
+  return cx->before.name ? arena_printf(cx->ast->arena, "options stand in parentheses: `method %s(step = 0.01)`", cx->before.name) : NULL;
+}
+
+/* model, scene, effect: a name, a description, a block. */
+static const char *misshapen_title(const Parse *cx, const TokKind *set, int n) {
+  TokKind word = cx->filter->word;
+  if (word != TOK_MODEL && word != TOK_SCENE && word != TOK_EFFECT) return NULL;
+  if (cx->before.kind == word) return arena_printf(cx->ast->arena, "a name comes first: `%s NAME \"what it is\"`", token_word(word));
+  if (has(set, n, TOK_STRING) && cx->current.kind != TOK_END && cx->current.kind != TOK_COLON)
+    return "a name has letters, digits and `_`; a description stands in quotes";
+  return NULL;
+}
+
+static const char *unexpected_assign(const Parse *cx, const TokKind *set, int n) {
+  TokKind word = cx->filter->word;
+  if (has(set, n, TOK_EQ)) return "write `==` to compare";
+  if (has(set, n, TOK_IN)) return "a range is written `i in 1..N`";
+  if (word == TOK_COORD || word == TOK_STATE) return "where it starts stands in a scene: `start x = …`";
+  if (word == TOK_CONSTRAINT && has(set, n, TOK_COLON)) return "this statement needs a name: `constraint NAME: a = b`";
+  return NULL;
+}
+
+static const char *unexpected_comparison(const Parse *cx, const TokKind *set, int n) {
+  if (cx->filter->word == TOK_CONTACT) return "a contact is written `contact NAME: g >= 0, restitution = e`";
+  if (cx->filter->word == TOK_EVENT && has(set, n, TOK_RISING)) return "an event is where an expression passes zero: `x - 1 rising { … }`";
+  return has(set, n, TOK_AND) ? "comparisons do not chain: write `a < b and b < c`" : NULL;
+}
+
+const char *slip_token(const Parse *cx, const TokKind *set, int n) {
+  const Token *t = &cx->current, *b = &cx->before;
+  Arena *a = cx->ast->arena;
+  const char *comma = missing_comma(cx, set, n), *title = comma ? NULL : misshapen_title(cx, set, n);
+  if (comma || title) return comma ? comma : title;
+  if (cx->filter->word == TOK_METHOD && has(set, n, TOK_LPAREN)) return after_method(cx);
+  if (cx->filter->word == TOK_MONITOR && !has(set, n, TOK_TIMES) && ends_operand(b) && (token_flags(t->kind) & T_BINARY))
+    return "a monitor watches a name, or what stands in parentheses: `monitor (x + y) 1e-6`";
+  switch (t->kind) {
+    case TOK_COMMA: return has(set, n, TOK_IN) ? "a range is written `i in 1..N`" : NULL;
+    case TOK_EQ: return has(set, n, TOK_ASSIGN) ? "write `=`: it states an equation; `==` compares two numbers" : NULL;
+    case TOK_ASSIGN: return unexpected_assign(cx, set, n);
+    case TOK_COLON:
+      if (wants_block(set, n)) return "a block begins with `{`";
+      return has(set, n, TOK_ASSIGN) ? arena_printf(a, "write `%s = …`", b->name ? b->name : "NAME") : NULL;
+    case TOK_END:
+      if (cx->filter->word == TOK_PARAM && has(set, n, TOK_ASSIGN)) return "a parameter has a value, which scenes can change: `param m = 1 [kg]`";
+      return wants_block(set, n) ? "a block begins with `{`" : NULL;
+    case TOK_INDEX: return has(set, n, TOK_UNIT) ? "a unit stands apart from the name: `u [N]`" : NULL;
+    case TOK_PRIME: return b->kind == TOK_END ? "a `'` never continues a line: put it on the line of its name" : NULL;
+    case TOK_RPAREN: case TOK_RBRACKET:
+      return has(set, n, TOK_TIMES) && !cx->open.span.end ? arena_printf(a, "this `%s` closes nothing", token_word(t->kind)) : NULL;
+    case TOK_LT: case TOK_LE: case TOK_GT: case TOK_GE: case TOK_NE: return unexpected_comparison(cx, set, n);
+    case TOK_IN: case TOK_AND: case TOK_OR: case TOK_NOT:
+      return has(set, n, TOK_IDENT) ? arena_printf(a, "`%s` is a reserved word", token_word(t->kind)) : NULL;
+    case TOK_IDENT: case TOK_NUMBER: case TOK_LPAREN: case TOK_SUM: case TOK_PRODUCT:
+      if (t->kind == TOK_LPAREN && has(set, n, TOK_ASSIGN)) return "a start is written `start x = 1, x' = 0`";
+      return has(set, n, TOK_TIMES) && ends_operand(b) ? missing_operator(cx) : NULL;
+    default: return NULL;
+  }
+}

@@ -1,0 +1,130 @@
+#!/bin/sh
+# lagc help: each command, statement, function, unit and option that the compiler knows (its tables, by dump_words) has
+# help; the overview leads to help; a slip is answered with the nearest topic; what help shows works.
+. tests/tap.sh
+case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
+"$BIN/dump_words" >"$TMP/words"
+
+words() { sed -n "s/^$1 //p" "$TMP/words"; } # words KIND
+
+# ---- everything has help ----
+explains() { "$LAGC" help "$1" >"$TMP/out" 2>"$TMP/err" && [ -s "$TMP/out" ] && ! [ -s "$TMP/err" ]; }
+without_help() {
+  { words statement; words slot; words function; words unit; words prefixed; words command
+    words '[a-z]* [a-z]*' | sort -u; echo methods; } | while read -r word; do explains "$word" || echo "no help on $word"; done
+}
+empty "every word of the language, function, unit, command and option" "$(without_help)"
+
+# Each says so in its own place: a statement by a row or a chapter, a function in its table, a unit in its list.
+chapter() { "$LAGC" help "$1"; }
+is "a statement" "  \`span 20 [s]\`
+      from 0 to 20 s; negative runs backwards; without it 10 s
+
+\`lagc help scenes\` says more." "$(chapter span)"
+is "a function" "  \`atan2(y, x)\`
+      the angle of the point (x, y), from -pi to pi
+
+\`lagc help functions\` says more." "$(chapter atan2)"
+is "a unit" 'unit:
+  [N] = kg*m/s^2; takes the SI prefixes' "$(chapter N)"
+is "a base unit" 'unit:
+  [s] of the SI, a base unit; takes the SI prefixes' "$(chapter s)"
+is "a unit with a prefix" 'unit:
+  [kN], with an SI prefix; `lagc help units` has the table' "$(chapter kN)"
+is "an option" 'option of run, plot, animate:
+  --tol X               tolerance, absolute and relative' "$(chapter tol)"
+is "an option with its dashes" "$(chapter tol)" "$(chapter --tol)"
+is "a word of paper" "losses are a Rayleigh function, \`dissipation = c/2*x'^2\`, or a \`force\`" "$(chapter friction)"
+check "a word that is a function and a unit" sh -c '"$0" help min | grep -q "smaller" && "$0" help min | grep -q "60 s"' "$LAGC"
+check "embedding is what header does" sh -c '"$0" help embedding | cmp - "$1"' "$LAGC" /dev/stdin <<END
+$(chapter header)
+END
+
+# The reference is written by hand: its lists are whole.
+not_listed() {
+  chapter functions >"$TMP/functions"
+  chapter sum >>"$TMP/functions"
+  words function | while read -r f; do grep -q "\`$f(" "$TMP/functions" || echo "the reference has no function $f"; done
+  sed -n '/^The units: /,/^$/p' grammar/LANGUAGE.md | tr ' ;,()' '\n\n\n\n\n' >"$TMP/units"
+  { words unit; words prefixed; } | while read -r u; do
+    grep -q -x -F -e "$u" -e "$u." "$TMP/units" || echo "the reference has no unit $u"
+    chapter units | sed -n '/^The table/,$p' | tr ' *' '\n\n' | grep -q -x -F "$u" || echo "the table has no unit $u"
+  done
+}
+empty "functions and units of the reference" "$(not_listed)"
+
+# What lagc hands to a simulator is what a simulator takes: two tables in two programs that share no header.
+taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/".*//' | grep -v -x -e --help -e --modes | sort; } # --modes is what lagc modes says
+handed() { { words 'passed run'; words 'passed animate'; } | grep -e -- | sort -u; }
+check "a simulator has options" [ "$(taken | wc -l)" -gt 10 ]
+is "options of a simulator" "$(taken)" "$(handed)"
+
+# Under sanitizers it says the same.
+differs() {
+  { words statement; words function; words command | grep -v methods; echo; echo units; } | while read -r t; do
+    "$LAGC_SAN" help ${t:+"$t"} >"$TMP/san" 2>&1 && "$LAGC" help ${t:+"$t"} | cmp -s - "$TMP/san" || echo "$t: $(head -n 3 "$TMP/san")"
+  done
+}
+empty "under sanitizers" "$(differs)"
+
+# ---- the overview ----
+"$LAGC" help >"$TMP/overview"
+leads_nowhere() {
+  sed -n 's/^  \([a-z-]*\)  *.*/\1/p' "$TMP/overview" | while read -r topic; do explains "$topic" || echo "$topic"; done
+}
+empty "the overview's topics" "$(leads_nowhere)"
+not_in_overview() { { words command | grep -v -x -e help -e version; words statement; } | while read -r w; do grep -q -w -e "$w" "$TMP/overview" || echo "$w"; done; }
+empty "the overview knows every command and statement" "$(not_in_overview)"
+is "lagc alone is lagc help" "$(cat "$TMP/overview")" "$("$LAGC")"
+is "lagc --help, too" "$(cat "$TMP/overview")" "$("$LAGC" --help)"
+differing() { words command | while read -r c; do "$LAGC" "$c" --help >"$TMP/out" 2>&1 && "$LAGC" help "$c" | cmp -s - "$TMP/out" || echo "$c"; done; }
+empty "lagc COMMAND --help is lagc help COMMAND" "$(differing | grep -v -x -e help -e version)"
+
+# What is no code fits into 80 columns: characters, not bytes.
+wide() {
+  { words command; sed -n 's/^  \([a-z-]*\)  *.*/\1/p' "$TMP/overview"; } | grep -v methods | while read -r t; do
+    chapter "$t" | grep -v '^    ' | sed 's/[^ -~][^ -~]*/?/g' | awk -v t="$t" 'length > 80 { print t ": " $0 }'
+  done
+}
+empty "80 columns" "$(wide)"
+
+# ---- slips ----
+says() { # says WORDS ARGS...: exit status 2, nothing on standard output, and these words
+  want="lagc: $1"
+  shift
+  got=$("$LAGC" "$@" 2>&1 >"$TMP/out")
+  [ $? = 2 ] && ! [ -s "$TMP/out" ] && [ "$got" = "$want" ] || { echo "$got"; return 1; }
+}
+check "a mistyped statement" says 'no help on `lagrangain`: did you mean `lagrangian`?' help lagrangain
+check "a mistyped option" says 'no help on `--metod`: did you mean `--method`?' help --metod
+check "a mistyped function" says 'no help on `sinn`: did you mean `sin`?' help sinn
+check "nothing near" says 'no help on `xyzzy`; `lagc help` lists the topics' help xyzzy
+check "two words" says 'one word too many: `b`; usage: lagc help [TOPIC]' help a b
+m=models/pendulum.lag
+check "a mistyped command" says 'unknown command `rum`: did you mean `run`?' rum $m
+check "no command" says "say what to do with $m: \`lagc run $m\`, \`lagc derive $m\`, \`lagc check $m\`" $m
+check "no model" says 'a model is missing; usage: lagc check MODEL [SCENE] [--allow-numeric]' check
+check "an option of another command" says '`--phase` is an option of `lagc plot`; `lagc help run` lists those of `lagc run`' run $m --phase th
+check "a mistyped option of the simulator is said before one is built" says '`lagc run` has no option `--untill`: did you mean `--until`?' run $m --untill 5
+check "one dash" says '`lagc run` has no option `-tol`: did you mean `--tol`?' run $m -tol 1e-9
+check "an option that is nowhere near" says '`lagc check` has no option `--frobnicate`; `lagc help check` lists them' check $m --frobnicate
+check "an option that is none of this command" says '`--format` is an option of `lagc derive`; `lagc help check` lists those of `lagc check`' check $m --format c
+check "a value is missing" says '--until needs a value: --until T' run $m --until
+check "a value too many" says '--json takes no value' run $m --json=1
+check "a wrong choice" says '--format takes text, latex, c, not `html`' derive $m --format html
+check "a wrong stage" says '--dump takes ast, model, eqns, prog, with commas between several, not `ast,asm`' derive $m --dump ast,asm
+check "a definition that is none" says '-D takes CONST=VALUE, for example -D N=50' derive $m -D N
+check "completion for no shell" says 'completion for which shell? `lagc completion bash`, `lagc completion zsh` or `lagc completion fish`' completion
+check "-DN=3, -D N=3, --define N=3" sh -c '
+  for d in "-DN=3" "-D N=3" "--define=N=3" "--define N=3"; do "$0" derive models/string.lag $d --ops; done | sort -u | awk "END { exit NR != 1 }"' "$LAGC"
+
+# ---- what help shows works ----
+embeds() {
+  mkdir -p "$TMP/embed" && chapter header | sed -n 's/^  \(lagc header .*\)/\1/p' | sed "s|^lagc|$LAGC|; s|-o |-o $TMP/embed/|" | sh -e &&
+    { chapter header | sed -n 's/^  #/#/p'; echo 'int main(void) { return !PEND_IMPLEMENTATION_IS_THERE; }'; } |
+      sed 's/PEND_IMPLEMENTATION_IS_THERE/(sizeof(pend_params) > 0)/' >"$TMP/embed/main.c" &&
+    "$CC" -std=c99 -Wall -o "$TMP/embed/main" "$TMP/embed/main.c" -lm && "$TMP/embed/main"
+}
+check "the header of lagc help header" embeds
+is "lagc help methods is run --method help" "$("$LAGC" run $m --method help)" "$("$LAGC" help methods)"
+tap_end

@@ -1,0 +1,53 @@
+#!/bin/sh
+# The man page src/lagc.1: every command and every option that the parser knows (dump_words), every variable of the
+# environment that is read, every exit status; and what groff and mandoc find fault with.
+. tests/tap.sh
+page=src/lagc.1
+"$BIN/dump_words" >"$TMP/words"
+
+has() { grep -q -e "$1" "$page" || echo "lagc.1 lacks $2"; } # has PATTERN WHAT
+undocumented() {
+  sed -n 's/^command //p' "$TMP/words" | while read -r c; do
+    has "^\.It Cm $c\$" "the command $c"
+    has "^\.Cm $c\$" "$c in its synopsis"
+  done
+  sed -n 's/^option [a-z]* -//p; s/^passed [a-z]* -//p' "$TMP/words" | sort -u | while read -r o; do
+    has "Fl $o\( \|\$\)" "the option -$o"
+  done
+}
+empty "every command and option" "$(undocumented)"
+
+# An option that a command has stands in what is said of the command, or in the lists for all.
+awk '/^\.It Cm / { item = $3 } /^\.Pp|^\.El/ { item = "" } /^\.Ss|^All commands/ { item = "all" } { print item, $0 }' "$page" >"$TMP/items"
+elsewhere() {
+  sed -n 's/^option \([a-z]*\) -/\1 /p' "$TMP/words" | while read -r c o; do
+    case $o in -output | o) o='\(-output\|o\)' ;; esac
+    grep -q -e "^$c .*Fl $o\( \|\$\)" -e "^all .*Fl $o\( \|\$\)" "$TMP/items" || echo "lagc.1 does not say that $c has -$o"
+  done
+}
+empty "options stand where their commands do" "$(elsewhere)"
+
+read_here() { grep -oh 'getenv("[A-Z_]*")' src/*.c src/*/*.c runtime/*/*.c | sed 's/getenv("//; s/")//' | sort -u; }
+check "variables are read" [ -n "$(read_here)" ]
+empty "the environment" "$(read_here | while read -r v; do grep -q "Ev $v\( \|\$\)" "$page" || echo "$v"; done)"
+statuses() { sed -n '/^| status /,/^$/s/^| `\([0-9]*\)`.*/\1/p' grammar/LANGUAGE.md; }
+is "exit statuses, as the reference has them" "$(statuses)" "$(sed -n '/^\.Sh EXIT STATUS/,/^\.El/s/^\.It //p' "$page")"
+
+# ---- lints ----
+if command -v mandoc >/dev/null; then
+  empty "mandoc" "$(mandoc -T lint -W warning "$page" 2>&1)"
+else
+  skip "mandoc" "no mandoc"
+fi
+if command -v groff >/dev/null && groff -mdoc -Tascii /dev/null >/dev/null 2>&1; then
+  empty "groff" "$(groff -mdoc -ww -Tascii "$page" 2>&1 >/dev/null)"
+else
+  skip "groff" "no groff with -mdoc"
+fi
+if command -v man >/dev/null && man --version >/dev/null 2>&1; then
+  empty "man --warnings" "$(LC_ALL=C.UTF-8 MANROFFSEQ='' MANWIDTH=80 man --warnings -E UTF-8 -l "$page" 2>&1 >"$TMP/page")"
+  check "it has its last section" grep -q CAVEATS "$TMP/page"
+else
+  skip "man --warnings" "no man"
+fi
+tap_end

@@ -1,0 +1,159 @@
+#!/bin/sh
+# Inputs: tables, formulas and constants, in scenes and on the command line; functions of the program around a model.
+# Expected values are closed forms.
+cd "$(dirname "$0")/../.." || exit 2
+: "${LAGC:=build/lagc}" "${INC:=runtime/include}" "${LIBLAG:=build/liblag.a}" "${LIBS:=-lm}" "${CC:=cc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+. tests/tap.sh
+case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
+dir=$TMP/inputs
+mkdir -p "$dir/data"
+
+# last MODEL ARGUMENTS...: the final value of x
+last() { "$LAGC" run "$@" --json 2>"$dir/err" | sed -n 's/.*"final": {"x": \([-0-9.e+]*\).*/\1/p'; }
+# near NAME TOLERANCE EXPECTED GOT
+near() { check "$1" within "$2" "$3" "$4"; }
+within() { echo "got $3, expected $2 within $1"; awk -v t="$1" -v e="$2" -v g="$3" 'BEGIN { d = g - e; exit !(g != "" && d <= t && -d <= t) }'; }
+says() { # STATUS WORDS COMMAND...
+  want=$1 words=$2
+  shift 2
+  "$@" >"$dir/out" 2>"$dir/err"
+  got=$?
+  cat "$dir/err"
+  [ $got = "$want" ] && grep -q -e "$words" "$dir/err"
+}
+
+# u = 1 + t - 2t^2 + t^3/2 at uneven times from 0 to 3: the spline is this cubic. m x'' = u, from rest:
+# x = (t^2/2 + t^3/6 - t^4/6 + t^5/40)/m, and after 3 s u stays -1/2.
+awk 'BEGIN { print "t [s],other,u [N],gust"; n = split("0 0.3 0.5 0.9 1.4 2 2.2 3", t, " ")
+  for (i = 1; i <= n; i++) {
+    u = 1 + t[i] - 2*t[i]^2 + t[i]^3/2
+    printf "%s,0,%.17g,%.17g\n", t[i], u, u }
+  }' >"$dir/data/cubic.csv"
+awk 'BEGIN { for (i = 0; i <= 200; i++) print i/2, i == 100 }' >"$dir/data/pulse.dat"
+cat >"$dir/cart.lag" <<'END'
+model cart "A mass that is pushed"
+coord x [m]
+param m = 2 [kg] > 0, F0 = 3 [N]
+input u [N] = 1
+lagrangian = m/2*x'^2
+force x = u
+effect wind {
+  input gust [N] = "data/cubic.csv"
+  force x = gust
+}
+scene push { span 2 [s] }
+scene table { like push; u = "data/cubic.csv"; span 5 [s] }
+scene still { like table; u = 0 }
+scene formula { like push; u = F0*cos(3 [rad/s]*t) }
+scene pulse { like push; u = "data/pulse.dat"; span 100 [s] }
+scene windy { like push; u = 0; use wind }
+scene calm { like windy; use wind(gust = 2) }
+END
+m=$dir/cart.lag
+
+near "a constant" 1e-12 1 "$(last "$m")"
+near "a table, inside" 1e-9 "$(awk 'BEGIN { t = 2; printf "%.17g", (t^2/2 + t^3/6 - t^4/6 + t^5/40)/2 }')" "$(last "$m" table --until 2)"
+# x(3) = 0.7875, x'(3) = (3 + 9/2 - 18 + 81/8)/2 = -0.1875; then x = 0.7875 - 0.1875*2 - 0.5*2^2/4
+near "a table, past its end" 1e-9 -0.0875 "$(last "$m" table)"
+check "that is said" grep -q "note: the table of u reaches from 0 to 3 s" "$dir/err"
+last "$m" table --until 3 >/dev/null
+empty "not where the table covers the run" "$(cat "$dir/err")"
+last "$m" table u=1 >/dev/null
+empty "nor where a constant replaces it" "$(cat "$dir/err")"
+# Backwards from 0 s: u = 1 before the table.
+near "before a table" 1e-9 1 "$(last "$m" table --until -2)"
+for method in dop853 'rk4(step=0.01)' 'verlet4(step=0.01)' ${GSL:+gsl-rk8pd gsl-msadams}; do
+  near "a table with $method" 2e-8 -0.0875 "$(last "$m" table --method "$method")"
+done
+# The jump of slope at 3 s and those of the third derivative are at ends of steps: an adaptive method makes no
+# error there. (Without that, rk45 is 2e-7 off at this tolerance.)
+near "steps end at rows" 1e-11 -0.0875 "$(last "$m" table --tol 1e-9)"
+
+near "a scene's constant" 0 0 "$(last "$m" still)"
+near "a scene's formula of parameters and t" 1e-9 "$(awk 'BEGIN { printf "%.17g", 5*(1 - cos(6))/9/2 }')" "$(last "$m" formula F0=5)"
+near "an effect's table" 1e-9 "$(awk 'BEGIN { t = 2; printf "%.17g", (t^2/2 + t^3/6 - t^4/6 + t^5/40)/2 }')" "$(last "$m" windy)"
+near "use wind(gust = 2)" 1e-12 2 "$(last "$m" calm)"
+near "u=5 on the command line" 1e-12 5 "$(last "$m" u=5)"
+near "over a table" 1e-11 31.25 "$(last "$m" table u=5)"
+near "wind.gust=4" 1e-12 4 "$(last "$m" windy wind.gust=4)"
+near "gust=4, where that is unique" 1e-12 4 "$(last "$m" windy gust=4)"
+
+near "u=formula" 1e-9 "$(awk 'BEGIN { printf "%.17g", 5*(1 - cos(6))/9/2 }')" "$(last "$m" 'u=5*F0/3*cos(3 [rad/s]*t)')"
+near "over a scene's table" 1e-9 "$(awk 'BEGIN { printf "%.17g", (5 - sin(5))/2 }')" "$(last "$m" table 'u=sin(t/(1 [s]))*1 [N]')"
+near "u=table, relative to this folder" 1e-11 -0.0875 "$(cd "$dir" && last cart.lag push --until 5 u=data/cubic.csv)"
+near "in quotes" 1e-11 -0.0875 "$(last "$m" push --until 5 "u=\"$dir/data/cubic.csv\"")"
+near "of an effect" 1e-12 4 "$(last "$m" windy 'wind.gust=2*2 [N]')"
+check "a formula that is wrong" says 1 '^u=:1:1: error: this value is in \[m\]' "$LAGC" run "$m" 'u=2 [m]'
+check "a table that is not there" says 1 'cannot read .*nothing.csv' "$LAGC" run "$m" u=nothing.csv
+check "a parameter takes numbers" says 2 '"2\*x" is not a number' "$LAGC" run "$m" 'm=2*x'
+
+# A pulse in one row of 201 in 100 s of rest. The spline of 1 in one row and 0 in all others has the area of one gap:
+# m x' = 0.5.
+for method in rk45 dop853; do
+  got=$("$LAGC" run "$m" pulse --method $method --json | sed -n "s/.*\"x'\": \([-0-9.e+]*\).*/\1/p")
+  near "$method does not step over a pulse" 1e-10 0.25 "$got"
+done
+
+# RK4 keeps its order across rows: steps of 0.1 and 0.05, whose grids do not hit the rows at 0.33.., 0.66...
+awk 'BEGIN { for (i = 0; i <= 9; i++) printf "%.17g,%.17g\n", i/3, sin(2*i/3) }' >"$dir/data/wave.csv"
+sed "s|data/cubic.csv|data/wave.csv|; s|lagrangian = .*|lagrangian = m/2*x'^2 - 2 [N/m]*x^2|" "$m" >"$dir/wave.lag"
+for h in 0.1 0.05 0.001; do last "$dir/wave.lag" table --until 3 --method "rk4(step=$h)"; done | tr '\n' ' ' >"$dir/orders"
+order() { awk '{ p = log(($1 - $3)/($2 - $3))/log(2); print p; exit !(p > 3.7 && p < 4.4) }' "$dir/orders"; }
+check "RK4 is of order 4 across rows" order
+
+# ---- files: relative to the model, taken in when it is compiled
+near "from another folder" 1e-9 -0.0875 "$(cd / && last "$m" table)"
+mkdir -p "$dir/parts/data"
+sed -n '/^model/,/^lagrangian/!d; /^input/d; p' "$m" >"$dir/whole.lag"
+printf 'include "parts/wind.lag"\nforce x = u\n' >>"$dir/whole.lag"
+echo 'input u [N] = "data/two.csv"' >"$dir/parts/wind.lag"
+printf '0,2\n9,2\n' >"$dir/parts/data/two.csv"
+near "relative to the file that is included" 1e-12 2 "$(last "$dir/whole.lag" --until 2)"
+"$LAGC" build "$dir/whole.lag" -o "$dir/sim" && printf '0,4\n9,4\n' >"$dir/parts/data/two.csv"
+near "a simulator keeps the table it was built with" 1e-12 2 \
+  "$("$dir/sim" --until 2 --json | sed -n 's/.*"final": {"x": \([-0-9.e+]*\).*/\1/p')"
+near "lagc run reads it again" 1e-12 4 "$(last "$dir/whole.lag" --until 2)"
+cp "$dir/parts/data/two.csv" "$dir/two.before"
+for command in emit header build; do
+  check "$command: a table is not overwritten" says 2 "would be overwritten: it is a part of the model" \
+    "$LAGC" $command "$dir/whole.lag" -o "$dir/parts/data/two.csv"
+done
+check "run: a table is not overwritten" says 2 "would be overwritten" "$LAGC" run "$dir/whole.lag" -o "$dir/parts/data/two.csv"
+check "nor by --svg=" says 2 "would be overwritten" "$LAGC" run "$dir/whole.lag" "--svg=$dir/parts/data/two.csv"
+check "it is as it was" cmp "$dir/two.before" "$dir/parts/data/two.csv"
+# What lagc writes it reads: the column of the input's name, in its unit.
+"$LAGC" run "$m" formula -o "$dir/data/back.csv" --every 0.01 --observe u --quiet
+sed '/^scene/s|data/cubic.csv|data/back.csv|' "$m" >"$dir/back.lag"
+near "a table that lagc wrote" 1e-8 "$(last "$m" formula)" "$(last "$dir/back.lag" table --until 2)"
+
+# ---- a run in two parts is the whole run
+"$LAGC" run "$m" table -o "$dir/whole.csv" --every 0.25 --quiet
+"$LAGC" run "$m" table -o "$dir/one.csv" --every 0.25 --until 1.5 --save-state "$dir/state" --quiet
+"$LAGC" run "$m" table -o "$dir/two.csv" --resume "$dir/state" --quiet
+sed 1d "$dir/two.csv" | cat "$dir/one.csv" - >"$dir/both.csv"
+check "saved and resumed, with a table: the same bytes" cmp "$dir/whole.csv" "$dir/both.csv"
+sed -i 's/^3,.*/3,0,9,9/' "$dir/data/cubic.csv"
+check "resume: another table is another model" says 2 "saved by another model" "$LAGC" run "$m" table --resume "$dir/state"
+
+# ---- facts
+flags() { "$LAGC" emit "$m" "$1" | sed -n 's/.*\.flags = //p'; }
+is "a table is neither smooth nor autonomous" "LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_TIMELESS," "$(flags table)"
+is "a constant is" "LAG_CONSTANT_MASS | LAG_AUTONOMOUS | LAG_SMOOTH | LAG_SEPARABLE | LAG_TIMELESS," "$(flags push)"
+is "a formula of t is smooth" "LAG_CONSTANT_MASS | LAG_SMOOTH | LAG_SEPARABLE | LAG_TIMELESS," "$(flags formula)"
+is "a choice is not" "LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_TIMELESS," "$("$LAGC" emit tests/exec/models/tables.lag still | sed -n 's/.*\.flags = //p')"
+
+# ---- functions of the program around the model
+strict='-std=c11 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror -O1'
+embedded() { # HEADER|LIBLAG
+  "$LAGC" header "$m" -o "$dir/cart.h" && "$LAGC" emit "$m" -o "$dir/cart.c" || return 1
+  case $1 in
+    # shellcheck disable=SC2086 # lists of words
+    HEADER) $CC $strict -DHEADER -I"$dir" tests/exec/embed_inputs.c -lm -o "$dir/embedded" ;;
+    # shellcheck disable=SC2086
+    LIBLAG) $CC $strict -DLIBLAG -I"$INC" tests/exec/embed_inputs.c "$dir/cart.c" $LIBLAG $LIBS -o "$dir/embedded" ;;
+  esac && "$dir/embedded"
+}
+check "inputs of an embedded header" embedded HEADER
+check "inputs by a function, with liblag" embedded LIBLAG
+tap_end

@@ -1,0 +1,290 @@
+#!/bin/sh
+# lagc modes: equilibria, frequencies, shapes and verdicts against closed forms, each from a textbook or two lines of algebra
+# beside it; what is refused; and what a person sees.
+: "${LAGC:=build/lagc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+export TMP
+. tests/tap.sh
+[ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ] || skip_all "GSL is not installed"
+dir=tests/exec/modes
+
+# find_modes MODEL ARGS...: the JSON object, a line a mode after the first
+find_modes() {
+  title="$*"
+  "$LAGC" modes "$@" --json >"$TMP/json" 2>"$TMP/err" || cat "$TMP/err" >&2
+  sed 's/{"re"/\n&/g' "$TMP/json" >"$TMP/modes"
+}
+# What the object says: head KEY, mode K KEY, shape K NAME (1: real part, 2: imaginary part)
+head_text() { sed -n "1s/.*\"$1\": \"\([^\"]*\)\".*/\1/p" "$TMP/modes"; }
+at_rest() { sed -n "1s/.*\"equilibrium\": {[^}]*\"$1\": \([^,}]*\).*/\1/p" "$TMP/modes"; }
+of_mode() { sed -n "$(($1 + 1))s/.*\"$2\": \([^,}]*\).*/\1/p" "$TMP/modes"; }
+shape() { sed -n "$(($1 + 1))s/.*\"shape\": {.*\"$2\": \[\([^]]*\)\].*/\1/p" "$TMP/modes" | cut -d ',' -f "${3:-1}"; }
+count() { grep -c '^{"re"' "$TMP/modes"; }
+calc() { awk "BEGIN { printf \"%.17g\", $1 }"; } # values in it stand in parentheses: -2^2 is -4
+
+# close WHAT EXPRESSION GOT [TOLERANCE]: relative, or absolute below 1. 1e-12 is rounding of matrices of some ten rows and
+# of what closed forms lose; what needs more says why.
+close() {
+  check "$title: $1" awk -v got="$3" -v tolerance="${4:-1e-12}" "
+    BEGIN { pi = atan2(0, -1); want = $2; d = got - want; size = want < 0 ? -want : want; if (size < 1) size = 1
+      if (got != \"\" && d <= tolerance*size && -d <= tolerance*size) exit 0
+      printf \"%.17g, not %.17g\\n\", got, want; exit 1 }"
+}
+verdict() { is "$title: verdict" "$1" "$(head_text verdict)"; }
+because() { check "$title: because $1" grep -q "\"reason\": \"[^\"]*$1" "$TMP/modes"; }
+
+# ---- conservative: w^2 of M and K
+g=9.81
+find_modes models/double_pendulum.lag # w^2 = (2 -+ sqrt 2) g/l for equal masses and rods (Landau & Lifshitz, Mechanics, par. 23, problem 2)
+verdict stable
+because "minimum"
+is "$title: a mode a coordinate" 2 "$(count)"
+close "the slow one" "sqrt((2 - sqrt(2))*$g)" "$(of_mode 1 im)"
+close "the fast one" "sqrt((2 + sqrt(2))*$g)" "$(of_mode 2 im)"
+close "its shape" "sqrt(2)" "$(shape 1 th2)"
+close "its shape" "-sqrt(2)" "$(shape 2 th2)"
+close "neither grows nor decays" 0 "$(of_mode 1 re)" 0
+
+find_modes models/double_pendulum.lag th1=3.1 th2=-0.1 # upside down: one mode grows. M^-1 K with K = diag(-2, 1) g: w^2 = -+ sqrt 2 g
+verdict unstable
+close "it stands" "pi" "$(at_rest th1)"
+close "growth" "sqrt(sqrt(2)*$g)" "$(of_mode 1 re)"
+close "and one oscillates" "sqrt(sqrt(2)*$g)" "$(of_mode 2 im)"
+
+string() { # N TOLERANCE: w_k = 2 sqrt(k/m) sin(k pi/(2 (N + 1))), u_i ~ sin(i k pi/(N + 1)) (Lagrange, 1759)
+  find_modes models/string.lag -D N="$1"
+  verdict stable
+  title="string of $1"
+  check "$title: all frequencies" awk -v N="$1" -v tolerance="$2" '
+    /^\{"re"/ { k++; split($0, w, /"im": /); split(w[2], im, ","); want = 2*sin(k*atan2(0, -1)/(2*(N + 1))); d = im[1] - want
+      if (d > tolerance || -d > tolerance) { print "mode", k, im[1], "not", want; bad = 1 } }
+    END { exit bad || k != N }' "$TMP/modes"
+  close "the slowest shape" "sin(3*pi/($1 + 1))/sin(pi/($1 + 1))" "$(calc "$(shape 1 'u\[3\]')/$(shape 1 'u\[1\]')")" 1e-11 # of a vector: the change of w^2 over the distance to the next
+}
+string 10 1e-12
+string 200 1e-11 # the error of w^2 is rounding times its largest, 4: 1e-13 at 2w = 0.03
+
+find_modes models/cart_pendulum.lag # w^2 = (M + m) g/(M l), x at -m l/(M + m) th; no force along x
+verdict neutral
+is "$title: two modes" 2 "$(count)"
+close "free along the rail" 0 "$(of_mode 1 im)" 0
+is "$title: free" true "$(of_mode 1 free)"
+close "without the pendulum" 0 "$(shape 1 th)" 0
+find_modes models/cart_pendulum.lag M=3 m=2 l=0.7
+close "the pendulum" "sqrt((3 + 2)*$g/(3*0.7))" "$(of_mode 2 im)"
+close "the cart goes against it" "-2*0.7/(3 + 2)" "$(calc "$(shape 2 x)/$(shape 2 th)")"
+
+find_modes $dir/coupled.lag # w1^2 = g/l, w2^2 = g/l + 2 k/m; b is in degrees
+close "together" "sqrt($g/0.5)" "$(of_mode 1 im)"
+close "against each other" "sqrt($g/0.5 + 2*3/2)" "$(of_mode 2 im)"
+close "shapes in declared units" "180/pi" "$(shape 1 b)"
+close "shapes in declared units" "-180/pi" "$(shape 2 b)"
+find_modes $dir/coupled.lag up # upside down the spring's forces are as before: rates sqrt(g/l), sqrt(g/l - 2 k/m)
+close "in degrees" 180 "$(at_rest b)"
+close "together they fall" "sqrt($g/0.5)" "$(of_mode 1 re)"
+close "against the spring slower" "sqrt($g/0.5 - 2*3/2)" "$(of_mode 2 re)"
+
+find_modes models/pendulum.lag th=3
+verdict unstable
+close "growth rate of the inverted pendulum" "sqrt($g)" "$(of_mode 1 re)"
+
+find_modes $dir/triatomic.lag # 0, k/m, k/m (1 + 2m/M) (Landau & Lifshitz, par. 24, problem 1)
+verdict neutral
+because "a push goes on for ever"
+close "translation" 0 "$(of_mode 1 im)" 0
+is "$title: free" true "$(of_mode 1 free)"
+close "all alike" 1 "$(shape 1 x2)"
+close "symmetric" "sqrt(3)" "$(of_mode 2 im)"
+close "the middle rests" 0 "$(shape 2 x2)"
+close "antisymmetric" "sqrt(3*(1 + 2/2))" "$(of_mode 3 im)"
+find_modes $dir/triatomic.lag damped # friction 2R = c (relative velocity)^2, c = 0.2: C = (c/k) K, so 2 d = c/k w^2
+verdict neutral
+because "where a push goes on for ever; all other modes decay"
+close "translation is not damped" 0 "$(of_mode 1 re)" 0
+close "decay" "-0.2/3*3/2" "$(of_mode 2 re)"
+close "frequency" "sqrt(3 - 0.1^2)" "$(of_mode 2 im)"
+close "decay" "-0.2/3*6/2" "$(of_mode 3 re)"
+find_modes $dir/triatomic.lag held # walls that do not move it from where it is
+verdict stable
+close "the rest lengths" -1 "$(at_rest x1)"
+
+find_modes $dir/triangle.lag # breathing: 3 k u back for u outwards; the sum of all w^2 is the trace of K/m, 6 k/m; rotation is no straight line
+verdict neutral
+because "minimum in all other directions"
+for i in 1 2 3; do is "$title: translations, rotation" true "$(of_mode $i free)"; done
+close "the pair" "sqrt(3*3/(2*2))" "$(of_mode 4 im)"
+close "the pair" "sqrt(3*3/(2*2))" "$(of_mode 5 im)"
+close "breathing" "sqrt(3*3/2)" "$(of_mode 6 im)"
+
+find_modes $dir/hoop.lag # below g/R = 4.43^2 the bottom is stable: w^2 = g/R - W^2
+verdict stable
+close "at the bottom" 0 "$(at_rest th)" 0
+close "frequency" "sqrt($g/0.5 - 9)" "$(of_mode 1 im)"
+find_modes $dir/hoop.lag fast # above, where cos th = g/(R W^2): w^2 = W^2 sin(th)^2
+verdict stable
+close "cos th" "$g/(0.5*36)" "$(calc "cos($(at_rest th)*atan2(0, -1)/180)")"
+close "frequency" "6*sqrt(1 - ($g/(0.5*36))^2)" "$(of_mode 1 im)"
+find_modes $dir/hoop.lag fast th=0 # and the bottom is not
+verdict unstable
+close "growth" "sqrt(36 - $g/0.5)" "$(of_mode 1 re)"
+find_modes $dir/hoop.lag th=0 g=9 R=100 W=3 # the threshold itself, in numbers that are exact
+verdict undecided
+because "a zero mode"
+
+find_modes $dir/vectors.lag # w^2 = kx, ky times the number of the mass, which cancels no mass
+close "components of vectors" "sqrt(3*4)" "$(of_mode 6 im)"
+close "and their names" 1 "$(shape 6 'r\[3\].y')"
+
+# ---- damped
+find_modes $dir/oscillator.lag # x'' + 2 d x' + w^2 x = 0, d = 0.2, w = 2
+verdict "asymptotically stable"
+close "decay" -0.2 "$(of_mode 1 re)"
+close "frequency" "sqrt(4 - 0.04)" "$(of_mode 1 im)"
+find_modes $dir/oscillator.lag critical # d = w: one double eigenvalue, to full precision although it is defective
+verdict "asymptotically stable"
+is "$title: one mode" 1 "$(count)"
+close "decay" -2 "$(of_mode 1 re)"
+close "no oscillation" 0 "$(of_mode 1 im)" 0
+is "$title: double" 2 "$(of_mode 1 repeats)"
+find_modes $dir/oscillator.lag over # -d +- sqrt(d^2 - w^2), d = 5
+is "$title: two modes" 2 "$(count)"
+close "slow" "-5 + sqrt(21)" "$(of_mode 1 re)"
+close "fast" "-5 - sqrt(21)" "$(of_mode 2 re)"
+find_modes $dir/oscillator.lag loose # no spring: it comes to rest anywhere
+verdict neutral
+close "where it is" 3 "$(at_rest x)"
+close "anywhere" 0 "$(of_mode 1 re)" 0
+close "decay" -0.4 "$(of_mode 2 re)"
+find_modes $dir/oscillator.lag pushed # negative damping
+verdict unstable
+close "growth" 0.2 "$(of_mode 1 re)"
+
+# ---- gyroscopic: z'' = -i W z' + z, z = x + i y, W = b/m, on a hill of strength k/m = 1: w = (W -+ sqrt(W^2 - 4))/2
+find_modes $dir/hill.lag
+verdict undecided
+because "the energy falls in 2 directions"
+close "slow" "(3 - sqrt(5))/2" "$(of_mode 1 im)"
+close "fast" "(3 + sqrt(5))/2" "$(of_mode 2 im)"
+close "circles: as far" 0 "$(shape 1 y 1)"
+close "a quarter of a period apart" 1 "$(shape 1 y 2)"
+find_modes $dir/hill.lag weak # W = 1.5: w complex
+verdict unstable
+close "growth" "sqrt(4 - 1.5^2)/2" "$(of_mode 1 re)"
+close "turning" "1.5/2" "$(of_mode 1 im)"
+find_modes $dir/hill.lag critical # W = 2: a double w = 1 with one shape
+verdict undecided
+because "multiple frequency with too few shapes"
+close "frequency" 1 "$(of_mode 1 im)"
+is "$title: one mode" 1 "$(count)"
+find_modes $dir/hill.lag valley # k < 0: w = (sqrt(W^2 + 4) -+ W)/2, and the energy has a minimum
+verdict stable
+close "slow" "(sqrt(13) - 3)/2" "$(of_mode 1 im)"
+find_modes $dir/hill.lag rubbed # friction destroys what gyroscopic forces hold (Thomson & Tait, Natural Philosophy, par. 345)
+verdict unstable
+close "growth, to first order in c/m = 0.01" "0.01*0.381966/(2*0.381966 - 3)*-1" "$(of_mode 1 re)" 1e-5 # second order: 1e-4 of 1.7e-3
+
+# The Lagrange point L4: w^4 - w^2 + 27/4 mu (1 - mu) = 0; stable below Routh's mu = (1 - sqrt(23/27))/2 = 0.0385208965...
+L4() { find_modes $dir/cr3bp.lag mu="$1"; }
+L4 0.01215
+verdict undecided
+close "its place" "0.5 - 0.01215" "$(at_rest x)"
+close "its place" "sqrt(3)/2" "$(at_rest y)"
+close "long" "sqrt((1 - sqrt(1 - 27*0.01215*(1 - 0.01215)))/2)" "$(of_mode 1 im)"
+close "short" "sqrt((1 + sqrt(1 - 27*0.01215*(1 - 0.01215)))/2)" "$(of_mode 2 im)"
+L4 0.03852
+verdict undecided
+because "all modes oscillate"
+L4 0.03853
+verdict unstable
+L4 0.038520896504551397 # Routh's value itself
+because "multiple frequency"
+close "w^2 = 1/2" "sqrt(1/2)" "$(of_mode 1 im)" 1e-9 # mu has an error of 1e-17, its square root that of w: 3e-9/2 at the worst
+find_modes $dir/cr3bp.lag L1 # l^4 + (2 - c) l^2 + (1 + 2 c)(1 - c) = 0 with c = (1 - mu)/r1^3 + mu/r2^3 (Szebehely, 1967, ch. 5)
+verdict unstable
+x=$(at_rest x)
+c="((1 - 0.01215)/($x + 0.01215)^3 + 0.01215/(1 - 0.01215 - $x)^3)"
+close "forces at L1" 0 "$(calc "$x - (1 - 0.01215)/($x + 0.01215)^2 + 0.01215/(1 - 0.01215 - $x)^2")" 1e-13
+close "growth" "sqrt(($c - 2 + sqrt(9*$c^2 - 8*$c))/2)" "$(of_mode 1 re)"
+close "oscillation" "sqrt((2 - $c + sqrt(9*$c^2 - 8*$c))/2)" "$(of_mode 2 im)"
+
+# ---- states
+find_modes $dir/lorenz.lag # at the origin: -8/3, (-11 -+ sqrt(81 + 40 r))/2 (Lorenz, 1963)
+verdict unstable
+close "growth" "(-11 + sqrt(81 + 40*28))/2" "$(of_mode 1 re)"
+close "along z" "-8/3" "$(of_mode 2 re)"
+close "decay" "(-11 - sqrt(81 + 40*28))/2" "$(of_mode 3 re)"
+find_modes $dir/lorenz.lag wing # x = y = sqrt(b (r - 1)); l^3 + (s + b + 1) l^2 + b (s + r) l + 2 s b (r - 1) = 0: sums and products of roots
+close "its place" "sqrt(8/3*27)" "$(at_rest x)"
+close "the sum of the eigenvalues" "-(10 + 8/3 + 1)" "$(calc "2*$(of_mode 1 re) + $(of_mode 2 re)")"
+close "their product" "-2*10*8/3*27" "$(calc "(($(of_mode 1 re))^2 + $(of_mode 1 im)^2)*$(of_mode 2 re)")"
+find_modes $dir/motor.lag # w sin th = K i, i = U/R; l^3 + R/L l^2 + (K^2/L + w cos th)/J l + R w cos th/(L J) = 0
+close "current" 3 "$(at_rest i)"
+close "angle" "atan2(0.6, 0.8)" "$(at_rest th)"
+close "the sum of the eigenvalues" "-2/0.5" "$(calc "$(of_mode 1 re) + 2*$(of_mode 2 re)")"
+close "their product" "-2*0.5*0.8/(0.5*0.01)" "$(calc "(($(of_mode 2 re))^2 + $(of_mode 2 im)^2)*$(of_mode 1 re)")"
+find_modes $dir/indefinite.lag # x'' = -2 x, y'' = -2 y
+close "an indefinite mass matrix" "sqrt(2)" "$(of_mode 2 im)"
+verdict undecided
+
+cat >"$TMP/cooling.lag" <<'END'
+model cooling "Newton's law: T' = (T0 - T)/tau"
+state T [degC]
+param T0 = 20 [degC], tau = 5 [s] > 0
+flow T' = (T0 - T)/tau
+scene cup { start T = 80 [degC] }
+END
+find_modes "$TMP/cooling.lag"
+title="Newton's law of cooling"
+close "a scale with a zero of its own" 20 "$(at_rest T)"
+close "a change has none" 1 "$(shape 1 T)"
+close "decay" -0.2 "$(of_mode 1 re)"
+
+# ---- what the linearisation does not decide, and starts that help little
+find_modes $dir/quartic.lag bowl
+verdict undecided
+because "a zero mode"
+close "flat, but found" 0 "$(at_rest x)" 1e-7 # forces below 1e-9 of others: x^3 < 1e-9 3 x^2
+is "$title: not free" false "$(of_mode 1 free)"
+find_modes $dir/quartic.lag crest # the derivative of the force is 0 at the start
+close "downhill from a stationary slope" "-pi/2" "$(at_rest x)"
+verdict stable
+
+# ---- what is refused, and how
+refuses() { # STATUS WORDS ARGS...
+  want=$1 words=$2
+  shift 2
+  "$LAGC" modes "$@" >"$TMP/out" 2>"$TMP/err"
+  got=$?
+  [ $got = "$want" ] && grep -qF -e "$words" "$TMP/err" || { echo "status $got"; cat "$TMP/out" "$TMP/err"; return 1; }
+}
+check "explicit time" refuses 2 "t stands in its equations" $dir/driven.lag rattled
+check "an input that changes" refuses 2 "by its input F, so nothing stays at rest; hold it: F=0" $dir/driven.lag
+check "holding another does not help" refuses 2 "hold it: F=0" $dir/driven.lag G=1
+find_modes $dir/driven.lag F=1
+close "an input that is held" 2 "$(at_rest x)" # (1 + 3)/k
+check "no equilibrium: what is left" refuses 3 "x'' is still -1 m/s^2; another start: x=VALUE" $dir/quartic.lag incline
+check "no equilibrium: it runs away" refuses 3 "forces only fade, far away" $dir/quartic.lag repelled
+check "no equilibrium, as JSON" sh -c "! '$LAGC' modes $dir/quartic.lag incline --json 2>/dev/null | grep -v '\"status\": \"no equilibrium\"'"
+check "a singular mass matrix" refuses 3 "the mass matrix is singular at the start: choose other coordinates" $dir/spherical.lag pole
+check "options of a run" refuses 2 '`--until` is an option of `lagc run`' models/pendulum.lag --until 3
+check "an output file" refuses 2 '`-o` is an option of `lagc derive`' models/pendulum.lag -o x.csv
+check "an unknown name" refuses 2 "no such parameter, coordinate or input" models/pendulum.lag nothing=3
+check "without GSL" refuses 2 "built without GSL" models/pendulum.lag --no-gsl
+"$LAGC" build models/pendulum.lag -o "$TMP/plain"
+plain() { "$TMP/plain" --modes 2>&1 | grep -q "lagc build models/pendulum.lag --with linear"; }
+check "a simulator without linearisation says what to write" plain
+"$LAGC" build models/pendulum.lag --with linear -o "$TMP/full"
+check "a simulator with it takes --modes" sh -c "'$TMP/full' --modes th=3 | grep -q 'grows 0.3192754'"
+
+# ---- what a person sees
+text() { "$LAGC" modes "$@" 2>&1; }
+is "velocities of the start do not matter" "equilibrium: 0" "$(text models/pendulum.lag th=0 "th'=1" | sed -n 's/: the start itself, at rest/: 0/p')"
+check "how far from the start" sh -c "'$LAGC' modes models/pendulum.lag th=3 | grep -q 'from the start th moved by 0.141593 rad'"
+check "members of a family in a row" sh -c "'$LAGC' modes models/string.lag -D N=8 | grep -q 'u\[1..8\]: 1 1 0 -1 -1 0 1 1'"
+check "a large family in part" sh -c "'$LAGC' modes models/string.lag -D N=30 | grep -q 'u\[1..30\] (every 3): '"
+check "phases" sh -c "'$LAGC' modes $dir/hill.lag | grep -q 'y 1@90' && '$LAGC' modes $dir/hill.lag | grep -q '^a@p: '"
+check "damping ratio and decay time" sh -c "'$LAGC' modes $dir/oscillator.lag | grep -q '0.1  *decays 5 '"
+check "a model with abs or if: a note" sh -c "'$LAGC' modes tests/exec/models/motor.lag volt=0 | grep -q '^note: the model has if, abs'"
+check "a coordinate that lost its meaning: a note" sh -c "'$LAGC' modes $dir/spherical.lag | grep -q '^note: the mass matrix is nearly singular'"
+check "help" sh -c "'$LAGC' help modes | grep -q Lagrange || '$LAGC' help modes | grep -q equilibrium"
+tap_end

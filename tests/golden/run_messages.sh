@@ -1,0 +1,52 @@
+#!/bin/sh
+# Every error and warning that the compiler has about a model stands in a golden expectation: no message is written that
+# nobody has looked at. What is missing: drop a model that draws it into tests/golden/err (run_errors.sh says how).
+. tests/tap.sh
+
+# Messages that are shown by other suites, by a part of their text.
+elsewhere='internal error
+-D %s
+this does not belong in a scene
+nothing that a run sets
+this is not a finite number
+this is nested too deep'
+
+# The texts in the calls that report, one a line, as FILE:LINE<tab>TEXT; texts that are no sentence are left out.
+texts() {
+  awk -v calls='(diag_error|diag_warning|not_yet|unit_bad|report_count|refuse_point)[(]' '
+    function literals(call,   text, in_text, c, i) {
+      for (i = 1; i <= length(call); i++) {
+        c = substr(call, i, 1)
+        if (in_text && c == "\\") { text = text substr(call, ++i, 1); continue }
+        if (c != "\"") { if (in_text) text = text c; continue }
+        in_text = !in_text
+        if (!in_text && length(text) >= 8 && text ~ / /) print FILENAME ":" line "\t" text
+        if (!in_text) text = ""
+      }
+    }
+    function flush() {
+      if (pending != "") literals(pending)
+      pending = ""
+    }
+    pending == "" && $0 ~ calls { line = FNR; match($0, calls); $0 = substr($0, RSTART) }
+    pending != "" || $0 ~ "^" calls { pending = pending " " $0; if ($0 ~ /;[ }]*$/) flush() }' src/*/*.c
+}
+
+# Of a format the longest piece between its conversions.
+longest() {
+  awk -F '\t' '{ n = split($2, piece, /%[-.*0-9]*(l*[dufsgc]|%)/); best = ""
+    for (i = 1; i <= n; i++) if (length(piece[i]) > length(best)) best = piece[i]
+    print $1 "\t" best }'
+}
+
+cat tests/golden/err/*.expected >"$TMP/expected"
+printf '%s\n' "$elsewhere" >"$TMP/elsewhere"
+texts | grep -vF -f "$TMP/elsewhere" | longest >"$TMP/texts"
+check "the messages are found" [ "$(wc -l <"$TMP/texts")" -gt 150 ]
+unseen() {
+  while IFS="$(printf '\t')" read -r where text; do
+    grep -qF -e "$text" "$TMP/expected" || echo "$where: $text"
+  done <"$TMP/texts"
+}
+empty "each message stands in tests/golden/err" "$(unseen)"
+tap_end
