@@ -156,7 +156,8 @@ static void put_overview(StrBuf *out) {
     if (first) add_topic(a, &shown, first);
     if (shown.n == before) continue;
     words += strlen(first);
-    page_term(out, first, *words ? words + 1 : all_functions(a), TERMS);
+    const char *more = *words ? words + 1 : strcmp(first, "functions") == 0 ? all_functions(a) : chapter_title(a, &chapters.at[i]);
+    page_term(out, first, more, TERMS);
   }
   page_term(out, "methods", "of integration, with their options", TERMS);
   sb_putc(out, '\n');

@@ -31,6 +31,11 @@ void reference_chapters(Arena *a, Chapters *out) {
   }
 }
 
+const char *chapter_title(Arena *a, const Chapter *c) {
+  const char *title = c->lines[0] + strspn(c->lines[0], "# ");
+  return arena_strndup(a, title, strcspn(title, "\n"));
+}
+
 const char *word_at(Arena *a, const char *words, size_t i) {
   words += strspn(words, " ");
   for (; i && *words; i--) {

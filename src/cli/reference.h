@@ -18,6 +18,9 @@ typedef VEC(Chapter) Chapters;
 
 void reference_chapters(Arena *a, Chapters *out);
 
+/* The text of its heading. */
+const char *chapter_title(Arena *a, const Chapter *c);
+
 /* Word i of a text of words, or NULL. */
 const char *word_at(Arena *a, const char *words, size_t i);
 

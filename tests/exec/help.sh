@@ -75,6 +75,8 @@ leads_nowhere() {
 empty "the overview's topics" "$(leads_nowhere)"
 not_in_overview() { { words command | grep -v -x -e help -e version; words statement; } | while read -r w; do grep -q -w -e "$w" "$TMP/overview" || echo "$w"; done; }
 empty "the overview knows every command and statement" "$(not_in_overview)"
+is "it lists functions once, and chapters by their titles" "1  closed-forms          Closed forms" \
+  "$(grep -c -w atan2 "$TMP/overview")$(grep closed-forms "$TMP/overview")"
 is "lagc alone is lagc help" "$(cat "$TMP/overview")" "$("$LAGC")"
 is "lagc --help, too" "$(cat "$TMP/overview")" "$("$LAGC" --help)"
 differing() { words command | while read -r c; do "$LAGC" "$c" --help >"$TMP/out" 2>&1 && "$LAGC" help "$c" | cmp -s - "$TMP/out" || echo "$c"; done; }
