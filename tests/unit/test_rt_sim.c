@@ -94,14 +94,14 @@ static void inputs_follow_a_function(void **state)
     const lag_method *m = i < lag_nmethods ? lag_methods[i] : lag_gsl_methods[i - lag_nmethods];
     lag_sim *s = sim_with(&pushed, m, 1e-10, 0, NULL);
     assert_int_equal(lag_sim_set(s, "push", 7), 0);
-    assert_int_equal(lag_sim_set_input(s, "push", slope, &rate), 0); /* instead of the constant */
-    int series = (m->flags & LAG_METHOD_TAYLOR) != 0;           /* a function has none */
-    assert_int_equal(lag_sim_advance(s, 2), series ? LAG_EMETHOD : LAG_OK);
+    int series = (m->flags & LAG_METHOD_TAYLOR) != 0; /* a function has none */
+    assert_int_equal(lag_sim_set_input(s, "push", slope, &rate), series ? LAG_EMETHOD : 0); /* instead of the constant */
     if (series) {
       assert_non_null(strstr(lag_sim_message(s), "dop853"));
       lag_sim_free(s);
       continue;
     }
+    assert_int_equal(lag_sim_advance(s, 2), LAG_OK);
     /* as above: exact but for the methods of order 1 and 2; GSL's at their tolerance */
     double within = m->order > 2 ? 1e-8 : m->order == 2 ? 3e-6 : 3e-2;
     assert_close(lag_sim_q(s)[0], 1 + 3 * 8.0 / 6, within);
