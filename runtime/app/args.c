@@ -62,7 +62,7 @@ static const Option options[] = {
     {"from", offsetof(Args, from), 0},     {"no-rods", offsetof(Args, no_rods), 1},
     {"trace", offsetof(Args, trace), 1},
     {"save-state", offsetof(Args, save), 0}, {"resume", offsetof(Args, resume), 0},
-    {"events", offsetof(Args, events), 0},
+    {"events", offsetof(Args, events), 0}, {"section", offsetof(Args, section), 0},
     {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
     {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
     {"modes", offsetof(Args, modes), 1},   {"help", offsetof(Args, help), 1},
@@ -158,7 +158,7 @@ static int check_modes(const Args *a)
     int given;
   } others[] = {{"--method", a->method != NULL}, {"--tol", a->tol != NULL}, {"--step", a->step != NULL},
                 {"--until", a->until != NULL}, {"--every", a->every != NULL}, {"-o", a->out != NULL}, {"--svg", a->svg != NULL},
-                {"--html", a->html != NULL}, {"--sketch", a->sketch}, {"--save-state", a->save != NULL}, {"--resume", a->resume != NULL}};
+                {"--html", a->html != NULL}, {"--section", a->section != NULL}, {"--sketch", a->sketch}, {"--save-state", a->save != NULL}, {"--resume", a->resume != NULL}};
 
   for (size_t i = 0; a->modes && i < sizeof others / sizeof *others; i++) {
     if (others[i].given) {
@@ -189,6 +189,12 @@ static int check(const Args *a)
   }
   if (a->html && !a->points) {
     return app_error(a, "--html %s: which points? add --points 'X,Y X,Y ...' with the names of outputs", a->html);
+  }
+  if (a->section && a->html) {
+    return app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
+  }
+  if (a->section && a->every) {
+    return app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
   }
   return check_modes(a);
 }
