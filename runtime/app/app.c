@@ -161,6 +161,7 @@ int app_put_row(App *app)
 
   app->row[0] = app->last_row = t;
   int rc = lag_sim_outputs(app->sim, app->row + 1);
+  rc = rc ? rc : tangent_row(app);
   if (rc) {
     return rc;
   }
@@ -240,6 +241,9 @@ static int open_output(App *app, int *plot_x, int *plot_y)
     return app_error(a, "out of memory");
   }
   app->table.points = app->section >= 0;
+  if (tangent_open(app)) {
+    return EXIT_USAGE;
+  }
   if ((a->plot_x && (*plot_x = app_column(app, a->plot_x)) < 0) || (a->plot_y && (*plot_y = app_column(app, a->plot_y)) < 0)) {
     return EXIT_USAGE;
   }

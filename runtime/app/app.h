@@ -16,7 +16,7 @@ extern const char *const args_own_options[OWN_OPTIONS];
 typedef struct Args {
   const char *method_options[OWN_OPTIONS]; /* values of --quadrature, --order, --stages */
   const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section;
-  int json, sketch, quiet, help, trace, no_rods, modes;
+  int json, sketch, quiet, help, trace, no_rods, modes, tangent;
   char **sets; /* name=value, in order */
   int nsets;
 } Args;
@@ -78,6 +78,13 @@ int app_put_row(App *app);
 /* section.c: --section. 0, or EXIT_USAGE after a message; note: event k happens. */
 int section_choose(App *app);
 void section_note(App *app, int k);
+
+/* tangent.c: --tangent. open: columns behind those of the table; 0, or EXIT_USAGE after a
+ * message. row: their values; LAG_OK, or why there are none. */
+int tangent_open(App *app);
+int tangent_row(App *app);
+void report_tangent(App *app, FILE *f);
+void report_tangent_json(App *app, FILE *f);
 
 /* modes.c: --modes. Returns the exit status. */
 int app_modes(App *app);

@@ -65,7 +65,7 @@ static const Option options[] = {
     {"events", offsetof(Args, events), 0}, {"section", offsetof(Args, section), 0},
     {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
     {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
-    {"modes", offsetof(Args, modes), 1},   {"help", offsetof(Args, help), 1},
+    {"tangent", offsetof(Args, tangent), 1}, {"modes", offsetof(Args, modes), 1},   {"help", offsetof(Args, help), 1},
     {"quadrature", offsetof(Args, method_options[0]), 0}, {"order", offsetof(Args, method_options[1]), 0},
     {"stages", offsetof(Args, method_options[2]), 0},
 };
@@ -158,7 +158,7 @@ static int check_modes(const Args *a)
     int given;
   } others[] = {{"--method", a->method != NULL}, {"--tol", a->tol != NULL}, {"--step", a->step != NULL},
                 {"--until", a->until != NULL}, {"--every", a->every != NULL}, {"-o", a->out != NULL}, {"--svg", a->svg != NULL},
-                {"--html", a->html != NULL}, {"--section", a->section != NULL}, {"--sketch", a->sketch}, {"--save-state", a->save != NULL}, {"--resume", a->resume != NULL}};
+                {"--html", a->html != NULL}, {"--section", a->section != NULL}, {"--tangent", a->tangent}, {"--sketch", a->sketch}, {"--save-state", a->save != NULL}, {"--resume", a->resume != NULL}};
 
   for (size_t i = 0; a->modes && i < sizeof others / sizeof *others; i++) {
     if (others[i].given) {
@@ -192,6 +192,9 @@ static int check(const Args *a)
   }
   if (a->section && a->html) {
     return app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
+  }
+  if (a->tangent && (a->save || a->resume)) {
+    return app_error(a, "--tangent and --%s: a saved state holds no tangent; run it in one piece", a->save ? "save-state" : "resume");
   }
   if (a->section && a->every) {
     return app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");

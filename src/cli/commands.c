@@ -110,6 +110,8 @@ static const OptionRow options[] = {
   {"--step", NULL, "H", TAKES_NUMBER, "", SIMULATE, PASSED, "step [s]; the first one tried where the method chooses its own"},
   {"--until", NULL, "T", TAKES_NUMBER, "", SIMULATE, PASSED, "run to time T [s]; before the start: backwards"},
   {"--every", NULL, "DT", TAKES_NUMBER, "", SIMULATE, PASSED, "time between rows [s]; default: as the scene says, or a 1000th of the span"},
+  {"--tangent", NULL, NULL, TAKES_NOTHING, "", C(RUN), PASSED,
+   "the tangent of the flow: how each coordinate, velocity and state follows those at the start, dx/dy(0), as columns more and in the report"},
   {"--svg", NULL, "FILE.svg", TAKES_FILE, "svg", SIMULATE, PASSED, "a picture of all output against time"},
   {"--plot-x", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "with --plot-y NAME: the picture shows one output against another"},
   {"--plot-y", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "the picture shows this output"},

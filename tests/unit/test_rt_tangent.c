@@ -178,7 +178,8 @@ static void published_digits(void **state)
   assert_int_equal(lag_sim_advance(s, 2), LAG_OK);
   assert_int_equal(lag_sim_tangent(s, J), 0);
   lag_sim_free(s);
-  assert_close(distance(16, J, orbit), 0, 1e-6); /* its own error at this step: see the end of this file's log */
+  print_message("# gauss of order 8, 64 steps: %.1e\n", distance(16, J, orbit));
+  assert_close(distance(16, J, orbit), 0, 1e-9); /* its own error at this step */
   tangent_tol(&pendulum, &lag_dop853, 1e-14, 5, high, J);
   assert_close(distance(4, J, swing), 0, 2e-12);
 }
@@ -232,7 +233,7 @@ static void derivative_of_the_map(void **state)
       worst = fmax(worst, distance(n * n, J, D));
     }
     print_message("# %-16s from differences of its map: %.1e\n", method_at(m)->name, worst);
-    assert_close(worst, 0, method_at(m) == &lag_radau ? 1e-9 : 2e-11); /* radau solves its equations to its tolerance */
+    assert_close(worst, 0, method_at(m) == &lag_radau ? 1e-8 : 1e-12); /* radau solves its equations to its tolerance, 1e-9 */
   }
 }
 
