@@ -143,10 +143,11 @@ enum { LEAST_REPEATS = 5, MOST_REPEATS = 41 };
 
 /* Runs it once, and again for its time as long as that takes little. LAG_OK: *run has its result; LAG_STOPPED: it ended
  * before the reference did; < 0: it failed. */
-static int run_setting(CostMethod *m, const CostScene *scene, const Samples *reference, const double *scale, Samples *own, CostRun *run)
+static int run_setting(CostMethod *m, const CostScene *scene, const Samples *reference, const double *scale, double longest,
+                       Samples *own, CostRun *run)
 {
   double times[MOST_REPEATS], total = 0;
-  const double enough = 0.05; /* s */
+  const double enough = fmin(0.05, longest); /* s */
   int n = 0;
 
   while (n < MOST_REPEATS && (n == 0 || total < enough || (n < LEAST_REPEATS && total < 20 * enough))) {
@@ -226,7 +227,7 @@ int lag_cost_measure(CostMethod *m, const CostScene *scene, const Samples *refer
     if (run.knob < (adaptive ? least_tol : 1e-12 * span)) {
       break;
     }
-    int done = run_setting(m, scene, reference, scale, &own, &run);
+    int done = run_setting(m, scene, reference, scale, longest, &own, &run);
     rc = done == LAG_ENOMEM ? done : LAG_OK;
     if (done == LAG_EINVAL || run.time > longest) {
       break;

@@ -16,7 +16,7 @@ cost() {
 
 # RK4 on x'' = -w^2 x multiplies x + i x'/w by R(-i w h) a step, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24; the motion is
 # cos(w t). k = 4, m = 1: w = 2; 16 times up to 20 s. Rounding is 1e-16 a step, of errors that are 1e-9 and more.
-check "a spring by rk4" cost models/spring.lag free --methods rk4
+check "a spring by rk4" cost models/spring.lag free --methods rk4 --longest 0.02
 rk4_by_hand() {
   [ "$(wc -l <"$TMP/runs")" -gt 8 ] || return 1
   awk '$3 > 1e-9 {
@@ -38,7 +38,7 @@ rk4_by_hand() {
 check "its errors are those of the recursion" rk4_by_hand
 
 # 0.15: what is left of higher terms where rounding does not show yet
-check "a pendulum by methods of fixed steps" cost models/pendulum.lag --until 4 --methods rk4,symplectic_euler,verlet,verlet4,variational,gauss
+check "a pendulum by methods of fixed steps" cost models/pendulum.lag --until 4 --methods rk4,symplectic_euler,verlet,verlet4,variational,gauss --longest 0.05
 order() { awk -v m="$1" '$1 == m { print $7; exit }' "$TMP/runs"; }
 has_order() { check "$1 has order $2" awk -v got="$(order "$1")" -v want="$2" 'BEGIN { exit !(got != "" && got != "null" && (got - want)^2 < 0.15^2) }'; }
 has_order rk4 4
@@ -69,7 +69,7 @@ all_there() { for m in rk45 dop853 rk4 verlet8 'gauss(stages=4)' radau taylor; d
 check "every method of liblag is there" all_there
 
 text() { "$LAGC" cost "$@" >"$TMP/text" 2>"$TMP/err"; }
-check "as a table" text models/pendulum.lag --until 2 --methods rk45,verlet --target 1e-6
+check "as a table" text models/pendulum.lag --until 2 --methods rk45,verlet --target 1e-6 --longest 0.01
 says() { check "it says: $1" grep -q -e "$1" "$TMP/text"; }
 says '^reference: taylor'
 says '^an error of 1e-06 at least cost: --method '
@@ -80,11 +80,11 @@ unreached() { text models/pendulum.lag --until 2 --methods symplectic_euler --lo
 check "a target out of reach is exit status 3" unreached
 says '^no setting has an error of 1e-12'
 
-check "a flow" text models/lorenz.lag --until 1 --methods rk45,verlet,taylor
+check "a flow" text models/lorenz.lag --until 1 --methods rk45,verlet,taylor --longest 0.01
 says '^not in the table: verlet: .*states'
 says '^. taylor(tol=1e-09)'
 
-check "a picture" text models/pendulum.lag --until 1 --methods rk4,rk45 -o "$TMP/cost.svg" --quiet
+check "a picture" text models/pendulum.lag --until 1 --longest 0.01 --methods rk4,rk45 -o "$TMP/cost.svg" --quiet
 check "is whole" grep -q '^</svg>' "$TMP/cost.svg"
 check "has a curve for each method" [ "$(grep -c '<path fill="none"' "$TMP/cost.svg")" = 2 ]
 check "and no other output" [ ! -s "$TMP/text" ]
