@@ -15,7 +15,7 @@ extern const char *const args_own_options[OWN_OPTIONS];
 /* The command line as written; numbers are still text. */
 typedef struct Args {
   const char *method_options[OWN_OPTIONS]; /* values of --quadrature, --order, --stages */
-  const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events;
+  const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section;
   const char *target, *longest, *methods, *against; /* of --cost */
   int json, sketch, quiet, help, trace, no_rods, modes, cost, reference;
   char **sets; /* name=value, in order */
@@ -36,6 +36,8 @@ typedef struct App {
   double *row;      /* [ncols] */
   double last_row;  /* time of the last row, NaN before the first */
   double until;
+  int section;      /* the event that rows are put out at; -1: they are put out in time */
+  int section_rc;   /* why its last row could not be made */
   int status;       /* LAG_... of the run */
   int written;      /* rows were completed */
   struct timespec begun, shown;
@@ -76,6 +78,13 @@ void app_list_methods(const App *app, FILE *f);
 int app_column(const App *app, const char *name);
 /* Fills app->show from --points and --from. 0, or EXIT_USAGE after a message. */
 int app_choose_points(App *app);
+
+/* app.c: a row of the present state. LAG_OK, or why there is none. */
+int app_put_row(App *app);
+
+/* section.c: --section. 0, or EXIT_USAGE after a message; note: event k happens. */
+int section_choose(App *app);
+void section_note(App *app, int k);
 
 /* modes.c: --modes. Returns the exit status. */
 int app_modes(App *app);

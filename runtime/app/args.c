@@ -62,7 +62,7 @@ static const Option options[] = {
     {"from", offsetof(Args, from), 0},     {"no-rods", offsetof(Args, no_rods), 1},
     {"trace", offsetof(Args, trace), 1},
     {"save-state", offsetof(Args, save), 0}, {"resume", offsetof(Args, resume), 0},
-    {"events", offsetof(Args, events), 0},
+    {"events", offsetof(Args, events), 0}, {"section", offsetof(Args, section), 0},
     {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
     {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
     {"modes", offsetof(Args, modes), 1},   {"help", offsetof(Args, help), 1},
@@ -163,7 +163,7 @@ static int check_analysis(const Args *a)
     int of_cost; /* it has a meaning there */
   } others[] = {{"--method", a->method != NULL, 0}, {"--tol", a->tol != NULL, 0}, {"--step", a->step != NULL, 0},
                 {"--until", a->until != NULL, 1}, {"--every", a->every != NULL, 0}, {"-o", a->out != NULL, 0}, {"--svg", a->svg != NULL, 1},
-                {"--html", a->html != NULL, 0}, {"--sketch", a->sketch, 0}, {"--events", a->events != NULL, 0},
+                {"--html", a->html != NULL, 0}, {"--section", a->section != NULL, 0}, {"--sketch", a->sketch, 0}, {"--events", a->events != NULL, 0},
                 {"--save-state", a->save != NULL, 0}, {"--resume", a->resume != NULL, 0}};
 
   for (size_t i = 0; (a->modes || cost) && i < sizeof others / sizeof *others; i++) {
@@ -200,6 +200,12 @@ static int check(const Args *a)
   }
   if (a->html && !a->points) {
     return app_error(a, "--html %s: which points? add --points 'X,Y X,Y ...' with the names of outputs", a->html);
+  }
+  if (a->section && a->html) {
+    return app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
+  }
+  if (a->section && a->every) {
+    return app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
   }
   return check_analysis(a);
 }

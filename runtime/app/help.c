@@ -14,6 +14,7 @@ static const char text[] =
     "  -o FILE              rows of output: CSV, or NumPy when FILE ends in .npy; - is standard output\n"
     "  --every DT           time between rows [s]; default: as the scene says, or a 1000th of the span\n"
     "  --events FILE        a row for each event, as -o writes them: time, event, the state before and after it\n"
+    "  --section EVENT      rows, and points of pictures, each time this event happens, instead of in time\n"
     "  --svg FILE           a picture of all output against time; --plot-x NAME --plot-y NAME: one against another\n"
     "  --html FILE --points 'X,Y X,Y'   an animation of these points, X and Y names of outputs, joined by rods from\n"
     "                       --from 'X,Y' (the origin) on; --no-rods; --trace: the path of the last one\n"

@@ -29,6 +29,7 @@ typedef struct Table {
   int ncols;
   Column *cols;
   int keep;
+  int points; /* rows are points by themselves, not of a curve */
   double *data;
   size_t nrows, capacity;
 } Table;

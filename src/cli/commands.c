@@ -86,6 +86,8 @@ static const OptionRow options[] = {
 
   {"--observe", NULL, "EXPR", TAKES_EXPRS, "", C(RUN), OWN(observe),
    "one more column: any expression of the model, --observe 'l*sin(th)'; can be repeated"},
+  {"--section", NULL, "'EXPR rising'", TAKES_EXPR, "", C(RUN) | C(PLOT), OWN(section),
+   "a Poincare section: one row, or one point, each time EXPR crosses zero; or falling, or crossing (both ways). For an angle that turns: 'sin(th2) rising'"},
   {"--y", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(y), "draws this against time,"},
   {"--x", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(x), "or against this: a path, with one scale for both axes where their units agree"},
   {"--phase", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(phase), "its rate against it: --phase th draws th' against th"},
