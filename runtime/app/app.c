@@ -389,6 +389,8 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     app_list_methods(&app, stdout);
   } else if (rc == 0 && app.args.modes) {
     rc = app_modes(&app);
+  } else if (rc == 0 && (app.args.cost || app.args.reference)) {
+    rc = app_cost(&app);
   } else if (rc == 0) {
     rc = simulate(&app);
   }

@@ -16,7 +16,8 @@ extern const char *const args_own_options[OWN_OPTIONS];
 typedef struct Args {
   const char *method_options[OWN_OPTIONS]; /* values of --quadrature, --order, --stages */
   const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section;
-  int json, sketch, quiet, help, trace, no_rods, modes, tangent;
+  const char *target, *longest, *methods, *against; /* of --cost */
+  int json, sketch, quiet, help, trace, no_rods, modes, tangent, cost, reference;
   char **sets; /* name=value, in order */
   int nsets;
 } Args;
@@ -62,7 +63,13 @@ int app_error(const Args *a, const char *format, ...);
 /* choose.c: scene, method and values; without a method. 0, or EXIT_USAGE after a message. */
 int app_choose(App *app);
 int app_choose_start(App *app);
+/* The name=value of the command line, into app->sim. */
+int app_set_values(App *app);
+/* Method i of this program; NULL past the last. */
+const lag_method *app_method_at(const App *app, int i);
 const lag_method *app_find_method(const App *app, const char *name);
+/* The message that there is no such method; returns EXIT_USAGE. */
+int app_unknown_method(const App *app, const char *name);
 
 /* methods.c */
 void app_list_methods(const App *app, FILE *f);
@@ -88,6 +95,9 @@ void report_tangent_json(App *app, FILE *f);
 
 /* modes.c: --modes. Returns the exit status. */
 int app_modes(App *app);
+
+/* cost.c: --cost and --reference. Returns the exit status. */
+int app_cost(App *app);
 
 /* help.c */
 void app_help(const App *app, FILE *f);
