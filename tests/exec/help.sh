@@ -31,7 +31,7 @@ is "a base unit" 'unit:
   [s] of the SI, a base unit; takes the SI prefixes' "$(chapter s)"
 is "a unit with a prefix" 'unit:
   [kN], with an SI prefix; `lagc help units` has the table' "$(chapter kN)"
-is "an option" 'option of run, plot, animate:
+is "an option" 'option of run, plot, animate, lyapunov:
   --tol X               tolerance, absolute and relative' "$(chapter tol)"
 is "an option with its dashes" "$(chapter tol)" "$(chapter --tol)"
 is "a word of paper" "losses are a Rayleigh function, \`dissipation = c/2*x'^2\`, or a \`force\`" "$(chapter friction)"
