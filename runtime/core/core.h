@@ -76,10 +76,12 @@ int lag_explain(lag_sim *sim, int status);
 /* setup.c: the state at the start, of a run that has not begun. */
 int lag_setup_start(lag_sim *sim);
 
-/* events.c. arm: signs at the start of a step chain. locate: the first event in (run->from, step_t1],
- * sets limit and pending. fire: applies the events at limit. */
+/* events.c. arm: signs at the start of a step chain. locate (locate.c): the first event in (run->from, step_t1],
+ * sets limit and pending. spread (locate.c): how much g[nev] differs from its values at limit within the last digits of the time,
+ * which is what a step's dense output leaves open. fire: applies the events at limit. */
 int lag_events_arm(lag_sim *sim);
 int lag_events_locate(lag_sim *sim);
+int lag_events_spread(lag_sim *sim, const double *at_event, double *spread);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
 

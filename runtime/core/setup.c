@@ -51,7 +51,7 @@ static int alloc_scratch(lag_sim *s)
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
   size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
-  double *x = calloc(nuu + nw + 3 * n + 8 * nev + nout + 2 + 1, sizeof *x);
+  double *x = calloc(nuu + nw + 3 * n + 13 * nev + nout + 2 + 1, sizeof *x);
 
   s->scratch = x;
   s->fixed = calloc((size_t)m->np + 1, 1);
@@ -64,7 +64,7 @@ static int alloc_scratch(lag_sim *s)
     s->start[i] = NAN;
   }
   double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare};
-  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 5 * nev};
+  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
