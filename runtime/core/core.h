@@ -22,7 +22,6 @@ typedef struct Run {
   double limit, pending; /* pending: events fire at limit */
   double steps, rejected, rhs_calls, systems, iterations, events;
   double e_first, e_last, e_peak, e_scale; /* energy: E0, last, largest |E - E0|, largest |p.v| + |L| */
-  double zeno_k, zeno_t, zeno_dt, zeno_count; /* the last event, its time, interval, how many ever shorter */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
 } Run;
 
@@ -51,6 +50,7 @@ struct lag_sim {
   double *sign_end;      /* [nev] sign at the end of the step */
   double *count;         /* [nev] */
   double *first, *last;  /* [nev] times, where count is not 0 */
+  double *interval, *shorter; /* [nev] between the last two firings, and how many were each shorter than the one before */
   double *mon_first, *mon_peak; /* [nmonitors] */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
   double *method_work;

@@ -43,18 +43,15 @@ int lag_events_arm(lag_sim *s)
   return rc;
 }
 
-/* An event that repeats faster and faster (a ball coming to rest) would never let time pass. */
-static int zeno(lag_sim *s, int k, double t)
+/* An event that repeats faster and faster (a ball coming to rest) would never let time pass. Others may fire between. dt: since
+ * it fired last. */
+static int zeno(lag_sim *s, int k, double dt)
 {
-  Run *r = s->run;
-  double dt = fabs(t - r->zeno_t), since = fabs(t - s->scene->t0);
-  int same = r->events > 1 && r->zeno_k == (double)k;
+  double t = s->run->t;
 
-  r->zeno_count = same && dt < r->zeno_dt ? r->zeno_count + 1 : 0;
-  r->zeno_k = k;
-  r->zeno_t = t;
-  r->zeno_dt = dt;
-  if (r->zeno_count >= 10 && dt <= 1e-7 * since) {
+  s->shorter[k] = dt < s->interval[k] ? s->shorter[k] + 1 : 0;
+  s->interval[k] = dt;
+  if (s->shorter[k] >= 10 && dt <= 1e-7 * fabs(t - s->scene->t0)) {
     return lag_fail(s, LAG_EZENO,
                     "event %s repeats in ever shorter intervals: %.3g s at t = %.17g s. Let it stop the run, or come to rest",
                     s->scene->model->ev[k].name, dt, t);
@@ -70,6 +67,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   int nq = m->nq, n = s->pb.n;
   size_t bytes = (size_t)n * sizeof(double);
 
+  double since = s->count[k] > 0 ? fabs(r->t - s->last[k]) : HUGE_VAL;
   r->events++;
   s->first[k] = s->count[k] > 0 ? s->first[k] : r->t;
   s->last[k] = r->t;
@@ -95,7 +93,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
     rc = lag_watch_jump(s, r->t, s->now, s->yb);
     memcpy(s->now, s->yb, bytes);
   }
-  return rc ? rc : zeno(s, k, r->t);
+  return rc ? rc : zeno(s, k, since);
 }
 
 /* Signs after the events at t. before: the values before the actions; spread: what is rounding in them. */
