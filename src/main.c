@@ -185,6 +185,20 @@ static int do_header(Compiler *c) {
  * of one scene, and only that one is built then. */
 typedef VEC(IrUnit *) Units;
 
+/* Numbers of a model that are no fraction of 64 bits were rounded to a double. Those with few digits came to no harm. */
+static void warn_rounded(const Compiler *c, const ExprGraph *g) {
+  enum { SAFE = 15, ROOM = 32 };
+  for (Expr e = 1; e <= expr_count(g); e++) {
+    char text[ROOM];
+    if (!expr_is_num(g, e) || num_is_exact(expr_number(g, e))) continue;
+    num_format_double(text, num_value(expr_number(g, e)));
+    if (strspn(text, "-0.123456789") - (text[0] == '-') - (strchr(text, '.') != NULL) <= SAFE) continue;
+    fprintf(stderr, "lagc: warning: --precision %s: the number %s of the model has been rounded to 17 digits; where it matters, make it a "
+            "parameter, and give its digits as name=value\n", c->o.precision, text);
+    return;
+  }
+}
+
 static int lower_all(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast);
   if (c->picture.asked.n || c->given.n || c->picture.section.expr) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
@@ -197,6 +211,7 @@ static int lower_all(Compiler *c, Units *units) {
     if (!home) vec_push(c->arena, units, home = fresh);
     unit_want(home, e, wants_of(e, &c->o));
     unit_add_scene(home, e);
+    if (options_more_digits(&c->o) && i + 1 == scenes.n) warn_rounded(c, e->m->g);
   }
   return 1;
 }
@@ -220,6 +235,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   Toolchain tools;
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
+  if (c->o.precision && !toolchain_precision(c->arena, &tools, c->o.precision, &error)) return fail_usage(error);
   if (c->o.command == CMD_MODES) tools.optimise = "-O0";
   Texts texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units.n);

@@ -172,6 +172,8 @@ typedef struct lag_method {
 
   /* Frees what init allocated; NULL when it allocates nothing. */
   void (*fini)(void *work);
+
+  double finest; /* tolerances below it are below what the digits of its coefficients give; 0: they have all that a scalar has */
 } lag_method;
 
 /* Classical Runge-Kutta, fixed step. */
