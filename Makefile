@@ -23,6 +23,14 @@ GSL := $(shell printf '\043include <gsl/gsl_odeiv2.h>\nint main(void) { return g
          $(CC) -x c - -o /dev/null -lgsl -lgslcblas -lm 2>/dev/null && echo yes)
 GSL_LIBS := $(if $(GSL),-lgsl -lgslcblas)
 
+# The runtime for other numbers than doubles: `lagc run --precision`. Quad needs libquadmath, and a printf that learns from it.
+QUAD_PROBE = \043include <quadmath.h>\n\043include <stdio.h>\n\043include <string.h>\nint main(void) { char s[40]; \
+  snprintf(s, 40, "%%.3Qg", expq(0.0Q)/3); return strcmp(s, "0.333"); }\n
+QUAD_FOUND = $(shell mkdir -p $(BUILD) && printf '$(QUAD_PROBE)' | $(CC) -std=gnu11 -w -x c - -o $(BUILD)/quad_probe -lquadmath -lm \
+               2>/dev/null && $(BUILD)/quad_probe && echo quad)
+PRECISIONS ?= long $(QUAD_FOUND)
+PRECISIONS := $(PRECISIONS)
+
 # ---- what is made of what ---------------------------------------------------------------------------
 LAGC_SRC := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
 GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c)
@@ -34,8 +42,9 @@ RT_OBJ   := $(RT_SRC:%.c=$(BUILD)/obj/%.o)
 GSL_OBJ  := $(GSL_SRC:%.c=$(BUILD)/obj/%.o)
 
 LIBLAG  := $(BUILD)/liblag.a $(if $(GSL),$(BUILD)/liblag_gsl.a)
+LIBLAG_MORE := $(PRECISIONS:%=$(BUILD)/liblag_%.a)
 
-all: $(BUILD)/lagc $(LIBLAG)
+all: $(BUILD)/lagc $(LIBLAG) $(LIBLAG_MORE)
 
 # ---- the compiler and the runtime -------------------------------------------------------------------
 $(BUILD)/lagc: $(BUILD)/obj/src/main.o $(BUILD)/liblagc.a
@@ -67,6 +76,34 @@ $(BUILD)/obj/src/%.o: src/%.c
 $(BUILD)/obj/runtime/%.o: runtime/%.c
 	@mkdir -p $(@D)
 	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAN) -MMD -MP -c -o $@ $<
+
+# Of one text, by runtime/precision.awk, in $(BUILD)/gen/long and $(BUILD)/gen/quad; lagc finds the headers in $(BUILD)/lag-long
+# and $(BUILD)/lag-quad. src/cli/toolchain.c compiles models with the same LAG_REAL.
+REAL_long := -std=c11 '-DLAG_REAL=long double' '-DLAG_PRECISION="long"'
+REAL_quad := -std=gnu11 -include quadmath.h -DLAG_REAL=__float128 '-DLAG_PRECISION="quad"'
+DIGITS_long := $(if $(filter long,$(PRECISIONS)),$(shell echo __LDBL_DECIMAL_DIG__ | $(CC) -E -P -x c -))
+DIGITS_quad := 36
+RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
+API_HEAD := lag.h lag_model.h
+
+define precision_rules
+$(BUILD)/gen/$(1)/%: runtime/% runtime/precision.awk
+	@mkdir -p $$(@D)
+	awk -v kind=$(1) -v digits=$$(DIGITS_$(1)) -f runtime/precision.awk $$< >$$@.part
+	@mv $$@.part $$@
+$(BUILD)/lag-$(1)/%.h: $(BUILD)/gen/$(1)/include/%.h
+	@mkdir -p $$(@D)
+	cp $$< $$@
+$(BUILD)/obj/$(1)/%.o: $(BUILD)/gen/$(1)/%.c $(RT_HEAD:%=$(BUILD)/gen/$(1)/%) | $(BUILD)/gen/io/page.h
+	@mkdir -p $$(@D)
+	$$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(CFLAGS) -c -o $$@ $$<
+$(BUILD)/liblag_$(1).a: $(RT_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%)
+	@rm -f $$@
+	$$(AR) rcs $$@ $$(filter %.o,$$^)
+endef
+$(foreach p,$(PRECISIONS),$(eval $(call precision_rules,$(p))))
+.SECONDARY: $(foreach p,$(PRECISIONS),$(RT_HEAD:%=$(BUILD)/gen/$(p)/%) $(RT_SRC:runtime/%=$(BUILD)/gen/$(p)/%))
+
 SHELLS := bash zsh fish
 # Texts as C, in the order of their lines: `static const char *const NAME[]`, with the name of the file that they become.
 AS_C = { echo 'static const char *const $(basename $(@F))[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $<; echo '};'; }
@@ -154,7 +191,7 @@ bench:
 	$(QUIET) all
 	$(RUN_TESTS) --bench $(T)
 
-SAN_MAKE = $(QUIET) BUILD=$(SAN_BUILD) CFLAGS='-O1 -g' SAN='$(SAN_FLAGS)'
+SAN_MAKE = $(QUIET) BUILD=$(SAN_BUILD) PRECISIONS= CFLAGS='-O1 -g' SAN='$(SAN_FLAGS)'
 SAN_LAGC := $(SAN_BUILD)/liblagc.a
 SAN_RT   := $(if $(GSL),$(SAN_BUILD)/liblag_gsl.a) $(SAN_BUILD)/liblag.a
 
@@ -166,7 +203,7 @@ else
 	@echo 'building $(BUILD)/lagc, once more with sanitizers$(if $(CLANG), and with clang), and the tests'
 	$(QUIET) all
 	$(SAN_MAKE) all
-	$(if $(CLANG),$(QUIET) BUILD=$(BUILD)/clang CC='$(CLANG)' all)
+	$(if $(CLANG),$(QUIET) BUILD=$(BUILD)/clang PRECISIONS= CC='$(CLANG)' all)
 	$(QUIET) $(TEST_BIN)
 endif
 
@@ -192,7 +229,7 @@ FUZZ     = $(if $(T),$(T),$(FUZZ_SRC:tests/fuzz/%.c=%))
 fuzz:
 	$(SETUP) build
 ifneq ($(CLANG),)
-	$(QUIET) BUILD=$(BUILD)/fuzz CC='$(CLANG)' CFLAGS='-O1 -g' \
+	$(QUIET) BUILD=$(BUILD)/fuzz PRECISIONS= CC='$(CLANG)' CFLAGS='-O1 -g' \
 	  SAN='$(SAN_FLAGS) -fsanitize=fuzzer-no-link' $(BUILD)/fuzz/liblagc.a
 	@set -e; for f in $(FUZZ); do \
 	  corpus=tests/fuzz/corpus/$${f#fuzz_}; found=$(BUILD)/fuzz/found/$$f; mkdir -p $$found; \
@@ -217,7 +254,9 @@ install: all
 	  '$(DESTDIR)$(PREFIX)/share/lagc/models' '$(DESTDIR)$(PREFIX)/share/man/man1' '$(DESTDIR)$(PREFIX)/share/doc/lagc' \
 	  $(COMPLETIONS:%='$(DESTDIR)$(PREFIX)/share/%')
 	install -m 755 $(BUILD)/lagc '$(DESTDIR)$(PREFIX)/bin'
-	install -m 644 $(LIBLAG) '$(DESTDIR)$(PREFIX)/lib'
+	install -m 644 $(LIBLAG) $(LIBLAG_MORE) '$(DESTDIR)$(PREFIX)/lib'
+	for p in $(PRECISIONS); do install -d "$(DESTDIR)$(PREFIX)/lib/lag-$$p" && \
+	  install -m 644 $(BUILD)/lag-$$p/*.h "$(DESTDIR)$(PREFIX)/lib/lag-$$p" || exit 1; done
 	install -m 644 runtime/include/lag.h runtime/include/lag_model.h '$(DESTDIR)$(PREFIX)/include'
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' runtime/liblag.pc.in >$(PC)
 	install -m 644 $(PC) '$(DESTDIR)$(PREFIX)/lib/pkgconfig'
@@ -235,9 +274,9 @@ endif
 
 # Removes what install puts there, and the folders that are lagc's own.
 uninstall:
-	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a include/lag.h include/lag_model.h \
+	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a lib/liblag_long.a lib/liblag_quad.a include/lag.h include/lag_model.h \
 	  lib/pkgconfig/liblag.pc lib/pkgconfig/liblag_gsl.pc share/man/man1/lagc.1 share/bash-completion/completions/lagc \
-	  share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish && rm -rf share/lagc share/doc/lagc
+	  share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish && rm -rf lib/lag-long lib/lag-quad share/lagc share/doc/lagc
 
 # ---- the rest ---------------------------------------------------------------------------------------
 clean:

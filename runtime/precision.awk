@@ -2,11 +2,11 @@
 #   numbers           0.1 is 0.1L or 0.1Q, so that coefficients keep all the digits that they are written with
 #   functions         sqrt is sqrtl or sqrtq, strtod strtold or strtoflt128
 #   limits            DBL_EPSILON is LDBL_EPSILON or FLT128_EPSILON
-#   formats           %g is %Lg or %Qg (a modifier that libquadmath teaches printf), %.17g has all digits
-# Comments stay, and so does a line that says `(as it stands)`. Use: awk -v kind=long|quad -f runtime/precision.awk FILE.
+#   formats           %g is %Lg or %Qg (a modifier that libquadmath teaches printf), %.17g has all digits, %.15g all that mean something
+# Comments stay, and so does a line that says `(as it stands)`. Use:
+# awk -v kind=long|quad -v digits=N -f runtime/precision.awk FILE, N for a number to be read back as it was.
 BEGIN {
   suffix = kind == "quad" ? "Q" : "L"
-  digits = kind == "quad" ? "36" : "21"
   limits = kind == "quad" ? "FLT128_" : "LDBL_"
   n = split("acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh exp exp2 expm1 fabs floor fma fmax fmin fmod " \
             "frexp hypot ilogb ldexp log log10 log1p log2 logb nearbyint nextafter pow remainder rint round scalbn sin sinh sqrt tan " \
@@ -25,6 +25,7 @@ function formats(s,    out, c) {
     c = substr(s, RSTART, RLENGTH)
     if (c !~ /%$/) {
       sub(/\.17/, "." digits, c)
+      sub(/\.15/, "." (digits - 3), c)
       c = substr(c, 1, length(c) - 1) suffix substr(c, length(c))
     }
     out = out substr(s, 1, RSTART - 1) c

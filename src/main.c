@@ -186,6 +186,20 @@ static int do_header(Compiler *c) {
  * of one scene, and only that one is built then. */
 typedef VEC(IrUnit *) Units;
 
+/* Numbers of a model that are no fraction of 64 bits were rounded to a double. Those with few digits came to no harm. */
+static void warn_rounded(const Compiler *c, const ExprGraph *g) {
+  enum { SAFE = 15, ROOM = 32 };
+  for (Expr e = 1; e <= expr_count(g); e++) {
+    char text[ROOM];
+    if (!expr_is_num(g, e) || num_is_exact(expr_number(g, e))) continue;
+    num_format_double(text, num_value(expr_number(g, e)));
+    if (strspn(text, "-0.123456789") - (text[0] == '-') - (strchr(text, '.') != NULL) <= SAFE) continue;
+    fprintf(stderr, "lagc: warning: --precision %s: the number %s of the model has been rounded to 17 digits; where it matters, make it a "
+            "parameter, and give its digits as name=value\n", c->o.precision, text);
+    return;
+  }
+}
+
 static int lower_all(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast);
   if (c->picture.asked.n || c->given.n || c->picture.section.expr) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
@@ -198,6 +212,7 @@ static int lower_all(Compiler *c, Units *units) {
     if (!home) vec_push(c->arena, units, home = fresh);
     unit_want(home, e, wants_of(e, &c->o));
     unit_add_scene(home, e);
+    if (options_more_digits(&c->o) && c->o.command != CMD_COST && i + 1 == scenes.n) warn_rounded(c, e->m->g);
   }
   return 1;
 }
@@ -221,6 +236,7 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   Toolchain tools;
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
+  if (c->o.precision && !toolchain_precision(c->arena, &tools, c->o.precision, &error)) return fail_usage(error);
   if (c->o.command == CMD_MODES) tools.optimise = "-O0";
   Texts texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
@@ -261,6 +277,37 @@ static int writes_source(Compiler *c) {
   return 0;
 }
 
+static void argument(Compiler *c, const char *text) {
+  c->picture.argv.at[c->picture.argv.n - 1] = arena_strdup(c->arena, text); /* was its NULL */
+  vec_push(c->arena, &c->picture.argv, NULL);
+}
+
+/* cost: the reference, by a simulator of the most digits that there is; becomes standard input of the one that is measured.
+ * Without more digits than a double's that one makes its own. */
+static void take_reference(Compiler *c) {
+  static const char *const precisions[] = {"quad", "long"};
+  Toolchain tools;
+  const char *path, *error = NULL;
+  for (size_t i = 0; i < sizeof precisions / sizeof *precisions; i++) {
+    if (!toolchain_find(c->arena, c->argv0, 0, &tools, &error) || !toolchain_precision(c->arena, &tools, precisions[i], &error)) continue;
+    c->o.precision = precisions[i];
+    int status = make_simulator(c, NULL, &path);
+    c->o.precision = NULL;
+    if (status != STATUS_OK) continue; /* it has said why */
+    char *self = c->picture.argv.at[0], *said = NULL;
+    argument(c, "--reference");
+    c->picture.argv.at[0] = arena_strdup(c->arena, path);
+    status = toolchain_run(c->arena, c->picture.argv.at, &said);
+    c->picture.argv.n--;
+    c->picture.argv.at[c->picture.argv.n - 1] = NULL;
+    c->picture.argv.at[0] = self;
+    FILE *f = status == 0 ? tmpfile() : NULL;
+    if (!f || fputs(said, f) < 0 || fflush(f) != 0 || fseek(f, 0, SEEK_SET) != 0 || dup2(fileno(f), 0) < 0) continue;
+    argument(c, "--against=-");
+    return;
+  }
+}
+
 /* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
 static int do_run(Compiler *c) {
   const char *path, *error = NULL;
@@ -270,6 +317,7 @@ static int do_run(Compiler *c) {
   int status = make_simulator(c, NULL, &path);
   if (status != STATUS_OK) return status;
   if (writes_source(c)) return STATUS_USAGE;
+  if (c->o.command == CMD_COST) take_reference(c);
   fflush(stdout);
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
   execv(path, c->picture.argv.at);

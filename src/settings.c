@@ -88,7 +88,14 @@ static const char *converted(Converter *c, const char *name, const char *value) 
   if (!c->model) return NULL;
   AstId target = name ? parse_setting(c->ast, "command line", name) : 0, id = parse_setting(c->ast, "command line", value);
   double x;
-  if ((name && !target) || !id || !model_setting(c->model, target, id, &x)) return NULL;
+  const char *digits;
+  if ((name && !target) || !id || !model_setting(c->model, target, id, &x, &digits)) return NULL;
+  if (options_more_digits(c->o) && digits) return digits;
+  if (options_more_digits(c->o)) {
+    diag_error(c->ast->diags, ast_expr(c->ast, id)->span, "--precision %s needs more digits of this than lagc computes", c->o->precision);
+    diag_help(c->ast->diags, "it knows those of fractions, and of multiples of pi: write others as decimals");
+    return NULL;
+  }
   char *text = arena_alloc(c->arena, ROOM);
   num_format_double(text, x);
   return text;

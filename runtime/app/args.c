@@ -39,7 +39,7 @@ int args_number(const Args *a, const char *what, const char *text, const char *e
     return 0;
   }
   if (!isfinite(*x)) {
-    app_error(a, "%s: %s is too large for double precision", what, text);
+    app_error(a, "%s: %s is too large for " LAG_PRECISION " precision", what, text);
     return 0;
   }
   return 1;
@@ -187,6 +187,20 @@ static int check_analysis(const Args *a)
   return 0;
 }
 
+/* NumPy has no numbers of 34 digits, and those of 19 depend on the machine. */
+static int check_npy(const Args *a)
+{
+  const char *const files[] = {a->out, a->events};
+
+  for (int i = 0; i < 2 && strcmp(LAG_PRECISION, "double") != 0; i++) {
+    size_t n = files[i] ? strlen(files[i]) : 0;
+    if (n > 4 && strcmp(files[i] + n - 4, ".npy") == 0) {
+      return app_error(a, "%s: .npy files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", files[i]);
+    }
+  }
+  return 0;
+}
+
 static int check(const Args *a)
 {
   int on_stdout = a->out && strcmp(a->out, "-") == 0;
@@ -218,7 +232,7 @@ static int check(const Args *a)
   if (a->section && a->every) {
     return app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
   }
-  return check_analysis(a);
+  return check_npy(a) || check_analysis(a) ? EXIT_USAGE : 0;
 }
 
 int args_parse(Args *a, int argc, char **argv)

@@ -124,6 +124,9 @@ int app_unknown_method(const App *app, const char *name)
       near = m;
     }
   }
+  if (strncmp(name, "gsl-", 4) == 0 && strcmp(LAG_PRECISION, "double") != 0) {
+    return app_error(&app->args, "method %s computes with doubles, this run in " LAG_PRECISION " precision; dop853 and taylor do, too", name);
+  }
   if (near) {
     return app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near->name);
   }
@@ -245,7 +248,7 @@ static int restore_method(App *app)
     return app_error(a, "%s: %s", a->resume, lag_sim_message(app->sim));
   }
   if (st->signature != lag_sim_signature(app->sim) || st->n != lag_sim_save_size(app->sim)) {
-    return app_error(a, "%s was saved by another model or build: names, sizes, effects or equations differ", a->resume);
+    return app_error(a, "%s was saved by another model or build: names, sizes, effects, equations or --precision differ", a->resume);
   }
   return 0;
 }

@@ -219,7 +219,7 @@ unsigned long long lag_sim_signature(const lag_sim *s)
   for (int i = 0; i < m->nev; i++) {
     h = hash(h, m->ev[i].name);
   }
-  snprintf(sizes, sizeof sizes, "%zu %d %s", s->nsaved, s->scene->nmonitors, LAG_VERSION);
+  snprintf(sizes, sizeof sizes, "%zu %zu %d %s", sizeof(double), s->nsaved, s->scene->nmonitors, LAG_VERSION);
   h = hash(hash(h, m->effects ? m->effects : ""), m->digest ? m->digest : "");
   h = hash(hash(h, s->scene->name), s->method->name);
   return hash(h, sizes);

@@ -25,6 +25,15 @@ typedef struct Run {
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
 } Run;
 
+/* The numbers that this library is compiled for, as `lagc run --precision` calls them, and what gives more of them. The
+ * Makefile says so for others than doubles; see precision.awk. */
+#ifndef LAG_PRECISION
+#define LAG_PRECISION "double"
+#define LAG_MORE_PRECISION "; --precision quad has 34 digits"
+#else
+#define LAG_MORE_PRECISION ""
+#endif
+
 struct lag_sim {
   const lag_scene *scene;
   const lag_method *method;

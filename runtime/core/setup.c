@@ -1,5 +1,6 @@
 /* A simulation before its first step: memory, parameters, start, method. Enters: a scene and what the caller
  * sets by name; leaves: the state at the start of the span. Holds: a setting that is refused changes nothing. */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -212,6 +213,16 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
   return wrong ? lag_fail(s, LAG_EINVAL, "method %s: %s", m->name, wrong) : LAG_OK;
 }
 
+/* Do the method's coefficients have the digits of the tolerance? */
+static int check_digits(lag_sim *s, const lag_method *method)
+{
+  if (method->finest < DBL_EPSILON || s->tol >= method->finest) {
+    return LAG_OK;
+  }
+  return lag_fail(s, LAG_EMETHOD, "method %s: its published coefficients have digits for a tolerance of %.0e, not for %.3g; taylor computes "
+                  "its own", method->name, method->finest, s->tol);
+}
+
 /* May the method integrate this model? If not, the message says why, and which method can. */
 static int check_method(lag_sim *s, const lag_method *method)
 {
@@ -235,7 +246,7 @@ static int check_method(lag_sim *s, const lag_method *method)
                     "method %s needs derivatives of the model that this program was built without; `lagc run MODEL --method %s` and "
                     "`lagc build MODEL --method %s` build them in; rk45 and dop853 do without", method->name, method->name, method->name);
   }
-  return LAG_OK;
+  return check_digits(s, method);
 }
 
 int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *opt, int nopt)
@@ -276,8 +287,9 @@ int lag_sim_set_tolerance(lag_sim *s, double tol)
   if (!(tol > 0 && isfinite(tol))) {
     return lag_fail(s, LAG_EINVAL, "a tolerance of %g: it must be positive, for example 1e-9", tol);
   }
-  if (tol < 1e-15) {
-    return lag_fail(s, LAG_EINVAL, "a tolerance of %g is below what double precision can give: write 1e-15 or more", tol);
+  if (tol < 4.5 * DBL_EPSILON) {
+    return lag_fail(s, LAG_EINVAL, "a tolerance of %g is below what " LAG_PRECISION " precision can give: write %.0e or more" LAG_MORE_PRECISION,
+                    tol, 4.51 * DBL_EPSILON);
   }
   s->tol = s->pb.tol = tol;
   return LAG_OK;
@@ -421,6 +433,11 @@ int lag_setup_start(lag_sim *s)
   const lag_model *m = c->model;
   int n = s->pb.n;
 
+  int rc = check_digits(s, s->method);
+
+  if (rc) {
+    return rc;
+  }
   for (int i = 0; i < m->np; i++) {
     if (!sign_ok(m->p[i].sign, s->p[i])) {
       return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, lag_declared(&m->p[i], s->p[i]),

@@ -180,6 +180,7 @@ typedef struct lag_method {
    * has none. */
   size_t (*tangent_size)(const lag_problem *pb, int k);
   int (*tangent)(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
+  double finest; /* tolerances below it are below what the digits of its coefficients give; 0: they have all that a scalar has */
 } lag_method;
 
 /* Classical Runge-Kutta, fixed step. */

@@ -154,6 +154,7 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
 }
 
 const lag_method lag_dop853 = {
+    .finest = 1e-27, /* 30 digits, those of dense output up to 390 in size */
     .name = "dop853",
     .order = 8,
     .dense_order = 7,

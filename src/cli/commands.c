@@ -153,6 +153,8 @@ static const OptionRow options[] = {
   {"--resume", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED,
    "go on from there, with the same scene, method and values: results are those of an uninterrupted run, bit by bit"},
 
+  {"--precision", NULL, "double|long|quad", TAKES_CHOICE, "double long quad", SIMULATE | C(BUILD), OWN(precision),
+   "the numbers that the simulator computes with: of 16, 19 or 34 digits; without the gsl-* methods but for double"},
   {"--define", "-D", "CONST=VALUE", TAKES_DEFINE, "", MODELS, OWN(defines), "gives a `const` of the model another value"},
   {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", STEPS | C(MODES) | C(COST) | C(BUILD), OWN(no_gsl),
    "leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole"},

@@ -192,6 +192,8 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
   return 1;
 }
 
+int options_more_digits(const Options *o) { return o->precision && strcmp(o->precision, "double") != 0; }
+
 int options_read(Arena *a, int argc, char **argv, Options *o, const char **error) {
   *o = (Options){.command = argc < 2 ? CMD_HELP : command_named(argv[1])};
   *error = NULL;

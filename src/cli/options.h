@@ -21,6 +21,7 @@ typedef struct {
   int help;                /* --help: then command is CMD_HELP */
   int allow_numeric;       /* check --allow-numeric */
   int no_gsl, ops;
+  const char *precision;   /* of simulators: double, long, quad; NULL: double */
   const char *with;        /* --with linear: parts of a model that are emitted only where something needs them */
   VEC(Define) defines;
   OptionTexts rest;        /* run, plot, animate: what the simulator gets, the scene too; complete: the words */
@@ -30,6 +31,9 @@ typedef struct {
   const char *points, *from; /* animate */
   int no_rods;
 } Options;
+
+/* Whether simulators compute with more digits than a double has. */
+int options_more_digits(const Options *o);
 
 /* Reads argv. 0, with *error saying what is wrong and what to write, on a mistake. */
 int options_read(Arena *a, int argc, char **argv, Options *o, const char **error);

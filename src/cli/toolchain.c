@@ -36,7 +36,8 @@ static int try_place(Arena *a, const char *lib, const char *include, Toolchain *
 
 int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error) {
   const char *cc = getenv("CC"), *home = getenv("LAG_HOME"), *own = own_folder(a, argv0);
-  *t = (Toolchain){.cc = cc && cc[0] ? cc : "cc", .optimise = "-O2"};
+  static const char *const none[] = {NULL};
+  *t = (Toolchain){.cc = cc && cc[0] ? cc : "cc", .optimise = "-O2", .library = "lag", .flags = none};
   int found = 0;
   if (home && home[0]) {
     found = try_place(a, arena_printf(a, "%s/lib", home), arena_printf(a, "%s/include", home), t);
@@ -53,6 +54,24 @@ int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, cons
   }
   t->gsl = want_gsl && file_exists(arena_printf(a, "%s/liblag_gsl.a", t->lib));
   return 1;
+}
+
+int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const char **error) {
+  static const char *const of_long[] = {"-DLAG_REAL=long double", "-DLAG_FN(x)=x##l", "-DLAG_C(x)=x##L", "-DLAG_NUMBER(x)=x##L",
+                                        "-DLAG_TAYLOR_ORDER=48", NULL};
+  static const char *const of_quad[] = {"-std=gnu11", "-include", "quadmath.h", "-DLAG_REAL=__float128", "-DLAG_FN(x)=x##q", "-DLAG_C(x)=x##Q",
+                                        "-DLAG_NUMBER(x)=x##Q", "-DLAG_TAYLOR_ORDER=64", NULL};
+  int quad = strcmp(precision, "quad") == 0;
+  if (strcmp(precision, "double") == 0) return 1;
+  t->library = arena_printf(a, "lag_%s", precision);
+  t->flags = quad ? of_quad : of_long;
+  t->needs = quad ? "-lquadmath" : NULL;
+  t->gsl = 0;
+  t->include = arena_printf(a, "%s/lag-%s", t->lib, precision);
+  if (file_exists(arena_printf(a, "%s/lib%s.a", t->lib, t->library))) return 1;
+  *error = arena_printf(a, "--precision %s: %s/lib%s.a is not there: this lagc was built without it%s", precision, t->lib, t->library,
+                        quad ? ", as where the C compiler has no libquadmath" : "");
+  return 0;
 }
 
 /* --- running the compiler --- */
@@ -100,22 +119,24 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   char *words = arena_strdup(a, t->cc); /* CC may hold options, as make has it */
   for (char *w = strtok(words, " "); w; w = strtok(NULL, " ")) vec_push(a, &argv, w);
   for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) vec_push(a, &argv, arena_strdup(a, fixed[i]));
+  for (const char *const *f = t->flags; *f; f++) vec_push(a, &argv, arena_strdup(a, *f));
   for (size_t i = 0; i < n; i++) vec_push(a, &argv, arena_printf(a, "%s/%s", dir, texts[i].name));
   vec_push(a, &argv, arena_printf(a, "-L%s", t->lib));
+  if (t->gsl) vec_push(a, &argv, arena_strdup(a, "-llag_gsl"));
+  vec_push(a, &argv, arena_printf(a, "-l%s", t->library));
   if (t->gsl) {
-    vec_push(a, &argv, arena_strdup(a, "-llag_gsl"));
-    vec_push(a, &argv, arena_strdup(a, "-llag"));
     vec_push(a, &argv, arena_strdup(a, "-lgsl"));
     vec_push(a, &argv, arena_strdup(a, "-lgslcblas"));
-  } else {
-    vec_push(a, &argv, arena_strdup(a, "-llag"));
   }
+  if (t->needs) vec_push(a, &argv, arena_strdup(a, t->needs));
   vec_push(a, &argv, arena_strdup(a, "-lm"));
   vec_push(a, &argv, NULL);
   char *said = NULL;
   int status = toolchain_run(a, argv.at, &said);
   if (status == 0) return 1;
   if (status == 127) *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
+  else if (t->needs && said && strstr(said, "quadmath"))
+    *error = arena_printf(a, "quadruple precision needs libquadmath, which comes with gcc; the C compiler `%s` does not find it: set CC=gcc", t->cc);
   else *error = arena_printf(a, "the C compiler `%s` failed:\n%s", t->cc, said ? said : "");
   return 0;
 }
@@ -165,7 +186,7 @@ static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceT
   for (size_t i = 0; i < n; i++) h = hash_more(h, texts[i].text, strlen(texts[i].text) + 1);
   h = hash_more(h, t->cc, strlen(t->cc) + 1);
   h = hash_more(h, t->optimise, strlen(t->optimise) + 1);
-  h = hash_library(a, h, arena_printf(a, "%s/liblag.a", t->lib));
+  h = hash_library(a, h, arena_printf(a, "%s/lib%s.a", t->lib, t->library));
   return t->gsl ? hash_library(a, h, arena_printf(a, "%s/liblag_gsl.a", t->lib)) : h;
 }
 

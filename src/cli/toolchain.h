@@ -9,6 +9,9 @@ typedef struct {
   const char *include;   /* folder of lag.h */
   const char *lib;       /* folder of liblag.a */
   int gsl;               /* liblag_gsl.a is there and wanted */
+  const char *library;   /* lag, or lag_long, lag_quad: the runtime for other numbers than doubles, */
+  const char *const *flags; /* and what emitted C is compiled with to agree with it; NULL at the end */
+  const char *needs;     /* one more library, or NULL */
   const char *optimise;  /* -O2; -O0 where the model is called a few times, and compiling it is what takes time */
 } Toolchain;
 
@@ -20,6 +23,9 @@ typedef struct {
 /* Finds the runtime: $LAG_HOME, or beside the running executable (a build tree or an installation).
  * argv0 is what lagc was called as. 0, with *error, when it is not found. */
 int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error);
+
+/* Makes it one for numbers of `precision`: double, long or quad. 0, with *error, when the runtime was not built for it. */
+int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const char **error);
 
 /* Compiles and links the texts into the executable `output`, which appears only when all went
  * well. 0, with *error (it may contain the compiler's own messages), on failure. */

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "base/digits.h"
 #include "emit/cfunction.h"
 #include "emit/emit_taylor.h"
 
@@ -20,6 +21,7 @@ static const char *const prelude =
   "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l'\n"
   " * '-DLAG_C(x)=x##L'; a vector of lanes defines LAG_SELECT, LAG_ANY and the logic as well,\n"
   " * LAG_MASK, the type of its comparisons, and LAG_LANE, the type of a lane. */\n"
+  "#ifndef LAG_NUMBER\n#define LAG_NUMBER(x) x /* of the tables below */\n#endif\n"
   "#ifndef LAG_FN\n#define LAG_FN(f) f\n#endif\n"
   "#ifndef LAG_C\n#define LAG_C(x) ((LAG_REAL)x)\n#endif\n";
 
@@ -28,7 +30,7 @@ static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
   "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_cubic",
   "lag_spline", "lag_var", "lag_event", "lag_model", "lag_option", "lag_monitor", "lag_table", "lag_scene", "lag_program",
-  "lag_entry", "lag_linear", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
+  "lag_entry", "lag_linear", "LAG_NUMBER", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
   "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL",
   "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_lanes", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
   "taylor_rest", "taylor_squares", "TAYLOR_SQUARES",
@@ -271,12 +273,20 @@ static void emit_exact(const File *f, const IrScene *s, const char *id) {
 
 /* --- tables --- */
 
+/* A number of a table in the precision of the model: the digits where there are any, integers as they are. */
+static const char *number_text(Arena *a, double x, const char *digits) {
+  const char *text = double_text(a, x);
+  if (!strpbrk(text, ".e")) return text;
+  return arena_printf(a, "LAG_NUMBER(%s)", digits && strlen(digits) > strlen(text) ? digits : text);
+}
+
 static void table(const IrUnit *u, const char *name, const IrVar *v, uint32_t n, StrBuf *out) {
   if (!n) return;
   sb_printf(out, "\nstatic const lag_var %s[] = {\n", name);
   for (uint32_t i = 0; i < n; i++) {
     const char *label = c_string(u->arena, v[i].name), *unit = c_string(u->arena, v[i].unit);
-    const char *factor = double_text(u->arena, v[i].factor), *offset = v[i].offset == 0 ? "0" : double_text(u->arena, v[i].offset);
+    const char *offset = number_text(u->arena, v[i].offset, NULL);
+    const char *factor = number_text(u->arena, v[i].factor, digits_text(u->arena, v[i].ratio, v[i].pi_power));
     sb_printf(out, "  {%s, %s, %s, %d, %d, %s},\n", label, unit, factor, v[i].periodic, v[i].sign, offset);
   }
   sb_puts(out, "};\n");
@@ -371,7 +381,7 @@ static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, 
     sb_printf(out, "\nstatic const lag_option options_%s[] = {\n", id);
     for (uint32_t i = 0; i < s->options.n; i++) {
       const IrOption *o = &s->options.at[i];
-      sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, o->name), double_text(u->arena, o->value), o->text ? c_string(u->arena, o->text) : "NULL");
+      sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, o->name), number_text(u->arena, o->value, NULL), o->text ? c_string(u->arena, o->text) : "NULL");
     }
     sb_puts(out, "};\n");
   }
@@ -379,7 +389,7 @@ static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, 
     sb_printf(out, "\nstatic const lag_monitor monitors_%s[] = {\n", id);
     for (uint32_t i = 0; i < s->monitors.n; i++) {
       const IrMonitor *m = &s->monitors.at[i];
-      sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output, double_text(u->arena, m->limit), m->absolute);
+      sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output, number_text(u->arena, m->limit, NULL), m->absolute);
     }
     sb_puts(out, "};\n");
   }
@@ -402,12 +412,12 @@ static void emit_scene(const File *f, uint32_t index) {
   sb_printf(out, "\nconst lag_scene %s_%s = {\n", name, id);
   sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
   sb_printf(out, "  .model = &%s,\n  .params = params_%s, .start = start_%s,\n", name, id, id);
-  sb_printf(out, "  .t0 = %s, .t1 = %s, .has_span = %d,\n", double_text(u->arena, s->t0), double_text(u->arena, s->t1), s->has_span);
+  sb_printf(out, "  .t0 = %s, .t1 = %s, .has_span = %d,\n", number_text(u->arena, s->t0, NULL), number_text(u->arena, s->t1, s->t1_digits), s->has_span);
   sb_printf(out, "  .method = %s, .noptions = %u, .options = %s,\n", s->method ? c_string(u->arena, s->method) : "NULL", s->options.n,
             list_name(u, s->options.n, "options", id));
-  sb_printf(out, "  .tolerance = %s,\n", double_text(u->arena, s->tolerance));
+  sb_printf(out, "  .tolerance = %s,\n", number_text(u->arena, s->tolerance, NULL));
   sb_printf(out, "  .nout = %u, .outputs = %s, .every = %s, .observe = observe_%s,\n", s->outputs.n, list_name(u, s->outputs.n, "outputs", id),
-            double_text(u->arena, s->every), id);
+            number_text(u->arena, s->every, NULL), id);
   if (s->exact_of.n) sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
   sb_printf(out, "  .nmonitors = %u, .monitors = %s,\n};\n", s->monitors.n, list_name(u, s->monitors.n, "monitors", id));
 }

@@ -7,7 +7,7 @@
 
 static IrVar var_of(Name name, const Unit *u, int periodic, AstSign sign) {
   static const int signs[] = {[SIGN_ANY] = 0, [SIGN_GT] = 1, [SIGN_GE] = 2, [SIGN_LT] = -1, [SIGN_LE] = -2};
-  return (IrVar){name, u->text, unit_factor(u), periodic, signs[sign], num_value(u->offset)};
+  return (IrVar){name, u->text, unit_factor(u), periodic, signs[sign], num_value(u->offset), u->factor, u->pi_power};
 }
 
 static const char *joined(Arena *a, const Name *names, uint32_t n) {
@@ -102,7 +102,7 @@ void unit_want(IrUnit *u, Eqns *e, unsigned wants) {
 void unit_add_scene(IrUnit *u, const Eqns *e) {
   const Model *m = e->m;
   const Scene *sc = &m->scene;
-  IrScene s = {.name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .has_span = sc->has_span, .method = sc->method,
+  IrScene s = {.name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .t1_digits = sc->t1_digits, .has_span = sc->has_span, .method = sc->method,
                .tolerance = sc->tolerance, .every = sc->every};
   const Prog **params = ARENA_ARRAY(m->arena, const Prog *, m->params.n + 1);
   for (uint32_t i = 0; i < m->params.n; i++) params[i] = lower_param(e, i);

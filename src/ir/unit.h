@@ -10,6 +10,8 @@ typedef struct {
   double factor;
   int periodic, sign;
   double offset;
+  Num ratio;    /* the factor exactly, where ratio is: ratio*pi^pi_power */
+  int pi_power;
 } IrVar;
 
 typedef struct {
@@ -36,6 +38,7 @@ typedef struct {
   const Prog *const *params; /* [np] */
   const Prog *start, *observe;
   double t0, t1;
+  const char *t1_digits; /* more than a double has, or NULL */
   int has_span;
   const char *method; /* or NULL */
   VEC(IrOption) options;

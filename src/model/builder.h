@@ -254,6 +254,10 @@ SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSi
 
 /* A number known now (spans, steps, tolerances); NAN after an error. */
 double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what);
+/* The same, and *digits: all that base/digits.h has of it, or NULL. */
+double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits);
+/* The digits of an expression that is a number times a power of pi; NULL of others. */
+const char *expression_digits(Builder *b, Expr e);
 
 /* Evaluates a let, or an observable, that nothing has needed so far. */
 void resolve_let(Builder *b, uint32_t index);

@@ -125,6 +125,7 @@ typedef struct {
   const char *doc;
   VEC(Start) starts;
   double t0, t1;
+  const char *t1_digits; /* more than a double has, or NULL */
   int has_span;
   Name method; /* or NULL */
   Span method_span;
@@ -227,6 +228,6 @@ Expr model_reresolve(const Model *m, const Expect *x, AstId root, AstId node, Ex
 
 /* What the command line gives to `target` (0: to a time), as a number in its declared unit. 0, reported, when
  * the target is nothing that a run sets, or the value does not fit it. */
-int model_setting(const Model *m, AstId target, AstId value, double *out);
+int model_setting(const Model *m, AstId target, AstId value, double *out, const char **digits);
 
 #endif

@@ -7,6 +7,7 @@
  * nesting nor chains of definitions use the C stack. */
 #include <math.h>
 
+#include "base/digits.h"
 #include "model/resolve_impl.h"
 #include "sym/eval.h"
 
@@ -364,7 +365,22 @@ Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *un
   return v.e ? value_in(b, v, ast_expr(b->ast, id)->span, unit) : 0;
 }
 
+const char *expression_digits(Builder *b, Expr e) {
+  Expr pi = expr_symbol(b->g, b->m->pi)->node;
+  for (int power = -1; power <= 1; power++) {
+    Expr rest = expr_mul(b->g, e, expr_pow_num(b->g, pi, num_int(-power)));
+    if (expr_is_num(b->g, rest)) return digits_text(b->arena, expr_number(b->g, rest), power);
+  }
+  return NULL;
+}
+
 double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what) {
+  const char *digits;
+  return resolve_digits(b, id, unit, what, &digits);
+}
+
+double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits) {
+  *digits = NULL;
   Expr e = resolve_in(b, id, IN_CONST, NULL, unit);
   if (!e) return NAN;
   long double *symbols = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1), x = 0;
@@ -374,5 +390,6 @@ double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what) 
     diag_error(b->diags, ast_expr(b->ast, id)->span, "%s is not a finite number", what);
     return NAN;
   }
+  *digits = expression_digits(b, e);
   return (double)x;
 }

@@ -434,7 +434,7 @@ static void set_monitor(Builder *b, const AstStmt *st) {
 static void set_span(Builder *b, const AstStmt *st) {
   Unit s = seconds(b);
   Scene *sc = &b->m->scene;
-  sc->t1 = resolve_number(b, st->rhs, &s, "the span");
+  sc->t1 = resolve_digits(b, st->rhs, &s, "the span", &sc->t1_digits);
   sc->has_span = 1;
   if (sc->t1 == 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the span is empty");
 }

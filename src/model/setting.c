@@ -21,7 +21,7 @@ static int setting_unit(Builder *b, Expr x, Unit *unit) {
 }
 
 /* x in SI, in a unit; what cancels does so exactly. */
-static double in_declared(Builder *b, Expr x, const Unit *u) {
+static double in_declared(Builder *b, Expr x, const Unit *u, const char **digits) {
   ExprGraph *g = b->g;
   Expr pi = expr_symbol(g, b->m->pi)->node;
   Expr from_zero = num_is_zero(u->offset) ? x : expr_sub(g, x, expr_num(g, u->offset));
@@ -30,10 +30,11 @@ static double in_declared(Builder *b, Expr x, const Unit *u) {
   long double *symbols = ARENA_ARRAY(b->arena, long double, expr_symbol_count(g) + 1), value = 0;
   symbols[b->m->pi] = 3.14159265358979323846264338327950288L;
   expr_eval(g, &e, 1, symbols, &value);
+  *digits = expression_digits(b, e);
   return (double)value;
 }
 
-int model_setting(const Model *m, AstId target, AstId value, double *out) {
+int model_setting(const Model *m, AstId target, AstId value, double *out, const char **digits) {
   Builder *b = m->builder;
   Unit unit = {.dim = dim_base(b->dims, DIM_TIME), .factor = num_int(1), .offset = num_int(0), .text = "s"};
   if (target) {
@@ -48,7 +49,7 @@ int model_setting(const Model *m, AstId target, AstId value, double *out) {
   }
   Expr e = resolve_in(b, value, IN_CONST, NULL, &unit);
   if (!e) return 0;
-  *out = in_declared(b, e, &unit);
+  *out = in_declared(b, e, &unit, digits);
   if (isfinite(*out)) return 1;
   diag_error(b->diags, ast_expr(b->ast, value)->span, "this is not a finite number");
   return 0;

@@ -72,10 +72,15 @@ text() { "$LAGC" cost "$@" >"$TMP/text" 2>"$TMP/err"; }
 check "as a table" text models/pendulum.lag --until 2 --methods rk45,verlet --target 1e-6 --longest 0.01
 says() { check "it says: $1" grep -q -e "$1" "$TMP/text"; }
 says '^reference: taylor'
+if [ -e "$BUILD/liblag_quad.a" ]; then says 'taylor, 34 digits, itself uncertain by [0-9.]*e-3'; else skip "a reference of 34 digits" "no libquadmath"; fi
 says '^an error of 1e-06 at least cost: --method '
 # What it names reaches what it says: the pendulum's own closed form judges (models/pendulum.facts has it checked).
 named() { sed -n 's/^  lagc run //p' "$TMP/text" >"$TMP/words" && read -r words <"$TMP/words" && sh -c "$LAGC run $words --until 2 --quiet -o $TMP/rows.csv" && [ -s "$TMP/rows.csv" ]; }
 check "the command that it names runs" named
+without_quad() { LAG_HOME=$TMP/home "$LAGC" cost models/pendulum.lag --until 1 --methods rk4 --longest 0.01 >"$TMP/text" && grep -q '^reference: taylor, 15 digits' "$TMP/text"; }
+mkdir -p "$TMP/home/lib" && cp "$BUILD"/liblag.a "$BUILD"/liblag_gsl.a "$TMP/home/lib" 2>"$TMP/err"
+cp -r "$INC" "$TMP/home/include"
+check "without more digits it is one of doubles" without_quad
 unreached() { text models/pendulum.lag --until 2 --methods symplectic_euler --longest 0.001 --target 1e-12; [ $? = 3 ]; }
 check "a target out of reach is exit status 3" unreached
 says '^no setting has an error of 1e-12'
