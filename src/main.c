@@ -46,6 +46,12 @@ typedef struct {
   GivenList given; /* to them */
 } Compiler;
 
+static void print_messages(const Compiler *c) {
+  StrBuf messages = strbuf(c->arena);
+  diags_print(c->diags, &messages);
+  fputs(sb_text(&messages), stderr);
+}
+
 static int fail_usage(const char *message) {
   fprintf(stderr, "lagc: %s\n", message);
   return STATUS_USAGE;
@@ -186,15 +192,28 @@ static int do_header(Compiler *c) {
 typedef VEC(IrUnit *) Units;
 
 /* Numbers of a model that are no fraction of 64 bits were rounded to a double. Those with few digits came to no harm. */
+static int warn_literal(const Compiler *c) {
+  enum { SAFE = 17 };
+  for (AstId i = 1; i < c->ast->exprs.n; i++) {
+    const AstExpr *e = ast_expr(c->ast, i);
+    if (e->kind != AST_NUM || num_is_exact(e->number) || e->span.end - e->span.begin <= SAFE) continue;
+    diag_warning(c->diags, e->span, "this number is rounded to 17 digits before --precision %s counts", c->o.precision);
+    diag_help(c->diags, "where more matter, make it a parameter or a start, and give the digits as name=value");
+    return 1;
+  }
+  return 0;
+}
+
 static void warn_rounded(const Compiler *c, const ExprGraph *g) {
   enum { SAFE = 15, ROOM = 32 };
+  if (warn_literal(c)) return;
   for (Expr e = 1; e <= expr_count(g); e++) {
     char text[ROOM];
     if (!expr_is_num(g, e) || num_is_exact(expr_number(g, e))) continue;
     num_format_double(text, num_value(expr_number(g, e)));
     if (strspn(text, "-0.123456789") - (text[0] == '-') - (strchr(text, '.') != NULL) <= SAFE) continue;
-    fprintf(stderr, "lagc: warning: --precision %s: the number %s of the model has been rounded to 17 digits; where it matters, make it a "
-            "parameter, and give its digits as name=value\n", c->o.precision, text);
+    fprintf(stderr, "lagc: warning: --precision %s: numbers of the model multiply to %s, rounded to 17 digits; where more matter, make them "
+            "parameters\n", c->o.precision, text);
     return;
   }
 }
@@ -276,6 +295,7 @@ static int do_run(Compiler *c) {
   if (status != STATUS_OK) return status;
   if (writes_source(c)) return STATUS_USAGE;
   fflush(stdout);
+  if (options_more_digits(&c->o)) print_messages(c); /* what was rounded */
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
   execv(path, c->picture.argv.at);
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
@@ -404,9 +424,7 @@ static int compile(Compiler *c) {
   c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
   int status = read_model(c);
   if (status == STATUS_OK) status = do_command(c);
-  StrBuf messages = strbuf(c->arena);
-  diags_print(c->diags, &messages);
-  fputs(sb_text(&messages), stderr);
+  print_messages(c);
   return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
 }
 

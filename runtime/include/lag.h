@@ -222,7 +222,7 @@ void lag_sim_free(lag_sim *sim);
 
 /* Chooses a method. opt[nopt] are options by name; the others have their defaults. */
 int lag_sim_set_method(lag_sim *sim, const lag_method *method, const lag_option *opt, int nopt);
-/* tol > 0; not below 1e-15. */
+/* tol > 0; not below 4.5 times the rounding of a number: 1e-15. */
 int lag_sim_set_tolerance(lag_sim *sim, double tol);
 /* Sets by name, in the declared unit: a parameter ("m", "drag.c", or "c" when nothing else ends in ".c"), the start of
  * a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that replaces an input; of a family one
