@@ -51,6 +51,13 @@ fi
 [ -n "$CLANG" ] && no_quadmath() { CC=$CLANG refuses 2 "which comes with gcc" "$TMP/osc.lag" --precision quad; } &&
   check "a compiler without libquadmath" no_quadmath
 says_nothing() { ! run "$TMP/long.lag" | grep warning; }
+# A number, a function or a constant that runtime/precision.awk left a double would lose digits in silence.
+no_doubles() {
+  gen=$BUILD/gen/quad
+  "$CC" -std=gnu11 -fsyntax-only -w -Werror=float-conversion -Werror=double-promotion -Werror=unsuffixed-float-constants \
+    -D_XOPEN_SOURCE=700 -DLAG_REAL=__float128 '-DLAG_PRECISION="quad"' -include quadmath.h -I"$gen/include" -I"$gen" -I"$BUILD/gen" "$gen"/*/*.c
+}
+check "no doubles are left in the runtime" no_doubles
 quad() { run "$@" --precision quad; }
 check "taylor: the motion has 33 digits" begins $cos10 "$(quad "$TMP/osc.lag" --method taylor --tol 1e-33 | value x)"
 check "in a table" begins $cos10 "$(quad "$TMP/osc.lag" --method taylor --tol 1e-33 -o - --quiet | tail -1 | cut -d , -f 2)"
