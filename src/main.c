@@ -247,33 +247,50 @@ static int make_program(Compiler *c, const Toolchain *tools, const Texts *texts,
   return STATUS_OK;
 }
 
-static int make_simulator(Compiler *c, const char *output, const char **path) {
-  Units units = {0};
-  if (!lower_all(c, &units)) return STATUS_MODEL;
+static Texts program_texts(Compiler *c, const Units *units, int gsl) {
+  Texts texts = {0};
+  const char **names = ARENA_ARRAY(c->arena, const char *, units->n);
+  for (uint32_t i = 0; i < units->n; i++) {
+    names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units->at[i]->name), i);
+    StrBuf b = strbuf(c->arena);
+    emit_model(units->at[i], names[i], &b);
+    vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
+  }
+  StrBuf b = strbuf(c->arena);
+  emit_program((const IrUnit *const *)units->at, names, units->n, gsl, &b);
+  vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
+  return texts;
+}
+
+static int make_simulator(Compiler *c, const Units *units, const char *output, const char **path) {
   if (output && is_source(c, output)) return STATUS_USAGE;
   Toolchain tools;
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
   if (c->o.precision && !toolchain_precision(c->arena, &tools, c->o.precision, &error)) return fail_usage(error);
   if (c->o.command == CMD_MODES) tools.optimise = "-O0";
-  Texts texts = {0};
-  const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
-  for (uint32_t i = 0; i < units.n; i++) {
-    names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units.at[i]->name), i);
-    StrBuf b = strbuf(c->arena);
-    emit_model(units.at[i], names[i], &b);
-    vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
-  }
-  StrBuf b = strbuf(c->arena);
-  emit_program((const IrUnit *const *)units.at, names, units.n, tools.gsl, &b);
-  vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
+  Texts texts = program_texts(c, units, tools.gsl);
   return make_program(c, &tools, &texts, output, path);
+}
+
+/* A simulator in quadruple precision, in the cache; NULL where there is no such precision. */
+static const char *make_precise(Compiler *c, const Units *units) {
+  Toolchain tools;
+  const char *error = NULL, *path;
+  if (!toolchain_find(c->arena, c->argv0, 0, &tools, &error) || !toolchain_precision(c->arena, &tools, "quad", &error)) return NULL;
+  Texts texts = program_texts(c, units, 0);
+  path = toolchain_cached(c->arena, &tools, texts.at, texts.n);
+  if (toolchain_is_whole(c->arena, path)) return path;
+  if (!toolchain_build(c->arena, &tools, texts.at, texts.n, path, &error)) return NULL;
+  toolchain_seal(c->arena, path);
+  return path;
 }
 
 static int do_build(Compiler *c) {
   const char *path;
+  Units units = {0};
   if (!c->o.output) return fail_usage("`lagc build` needs -o SIMULATOR");
-  return make_simulator(c, c->o.output, &path);
+  return lower_all(c, &units) ? make_simulator(c, &units, c->o.output, &path) : STATUS_MODEL;
 }
 
 /* Whether a file that the simulator would write is one that the model is made of. */
@@ -285,15 +302,41 @@ static int writes_source(Compiler *c) {
   return 0;
 }
 
+/* cost: a simulator with more digits computes what errors are measured against, and the other one reads it from its
+ * standard input. Where that does not work, it has its own. */
+static void give_reference(Compiler *c, const Units *units) {
+  VEC(char *) argv = {0};
+  const char *path = c->picture.argv.n > 1 ? make_precise(c, units) : NULL;
+  if (!path) return;
+  vec_push(c->arena, &argv, c->picture.argv.at[0]);
+  vec_push(c->arena, &argv, arena_strdup(c->arena, "--reference"));
+  for (uint32_t i = 0; i < c->o.rest.n; i++) {
+    const char *word = c->o.rest.at[i];
+    int until = strncmp(word, "--until", 7) == 0, alone = until && !word[7];
+    if (strcmp(word, "--against") == 0 || strncmp(word, "--against=", 10) == 0) return; /* the user's own */
+    if (word[0] == '-' && !until) i += (uint32_t)option_takes_next(c->o.command, word);
+    else vec_push(c->arena, &argv, arena_strdup(c->arena, word));
+    if (alone && i + 1 < c->o.rest.n) vec_push(c->arena, &argv, arena_strdup(c->arena, c->o.rest.at[++i]));
+  }
+  vec_push(c->arena, &argv, NULL);
+  if (toolchain_to_stdin(path, argv.at) != 0) return;
+  c->picture.argv.n--; /* the NULL at the end */
+  vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--against"));
+  vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "-"));
+  vec_push(c->arena, &c->picture.argv, NULL);
+}
+
 /* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
 static int do_run(Compiler *c) {
   const char *path, *error = NULL;
   if (!settings_inputs(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
   if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? fail_usage(error) : STATUS_MODEL;
-  int status = make_simulator(c, NULL, &path);
+  Units units = {0};
+  int status = lower_all(c, &units) ? make_simulator(c, &units, NULL, &path) : STATUS_MODEL;
   if (status != STATUS_OK) return status;
   if (writes_source(c)) return STATUS_USAGE;
+  if (c->o.command == CMD_COST) give_reference(c, &units);
   fflush(stdout);
   if (options_more_digits(&c->o)) print_messages(c); /* what was rounded */
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);

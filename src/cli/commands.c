@@ -189,5 +189,11 @@ const OptionRow *option_find(Command c, const char *arg, const char **value) {
   return NULL;
 }
 
+int option_takes_next(Command c, const char *word) {
+  const char *joined = NULL;
+  const OptionRow *row = option_find(c, word, &joined);
+  return row && row->takes != TAKES_NOTHING && !joined;
+}
+
 int command_simulates(Command c) { return ((SIMULATE | C(MODES) | C(COST)) & 1u << c) != 0; }
 int command_reads_model(Command c) { return (MODELS & 1u << c) != 0; }
