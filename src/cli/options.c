@@ -13,7 +13,7 @@ static const char *unknown_command(Arena *a, const char *word) {
   Name names[CMD_COUNT];
   size_t n = 0;
   for (const CommandRow *row; n < CMD_COUNT && (row = command_row(n)) != NULL && row->help; n++) names[n] = row->name;
-  static const char *const later[] = {"cost", "effects", "noether", "lyapunov"};
+  static const char *const later[] = {"effects", "noether"};
   for (size_t i = 0; i < sizeof later / sizeof *later; i++)
     if (strcmp(word, later[i]) == 0) return arena_printf(a, "not yet: `lagc %s`", word);
   size_t len = strlen(word);
@@ -204,7 +204,7 @@ int options_read(Arena *a, int argc, char **argv, Options *o, const char **error
     for (int i = 2; i < argc; i++) vec_push(a, &o->rest, argv[i]);
     return 1;
   }
-  if (o->command == CMD_MODES) o->with = "linear";
+  if (o->command == CMD_MODES || o->command == CMD_LYAPUNOV) o->with = "linear";
   if (command_reads_model(o->command)) return read_arguments(a, argc, argv, o, error);
   return read_one_word(a, argc, argv, o, error);
 }
