@@ -93,7 +93,7 @@ check "doubles say nothing" says_nothing
 quad "$TMP/osc.lag" --until 3 --save-state "$TMP/state" >/dev/null
 goes_on() { [ "$(quad "$TMP/osc.lag" --resume "$TMP/state" | value x)" = "$(quad "$TMP/osc.lag" | value x)" ]; }
 check "a saved run goes on" goes_on
-check "not in another precision" refuses 2 "--precision differ" "$TMP/osc.lag" --resume "$TMP/state"
+check "not in another precision" refuses 2 "equations differ, or --precision" "$TMP/osc.lag" --resume "$TMP/state"
 check "lagc build" "$LAGC" build "$TMP/osc.lag" --precision quad --method taylor -o "$TMP/sim"
 check "the simulator" begins $cos10 "$("$TMP/sim" --method taylor --tol 1e-33 | value x)"
 tap_end
