@@ -47,6 +47,12 @@ typedef struct {
   GivenList given; /* to them */
 } Compiler;
 
+static void print_messages(const Compiler *c) {
+  StrBuf messages = strbuf(c->arena);
+  diags_print(c->diags, &messages);
+  fputs(sb_text(&messages), stderr);
+}
+
 static int fail_usage(const char *message) {
   fprintf(stderr, "lagc: %s\n", message);
   return STATUS_USAGE;
@@ -187,15 +193,28 @@ static int do_header(Compiler *c) {
 typedef VEC(IrUnit *) Units;
 
 /* Numbers of a model that are no fraction of 64 bits were rounded to a double. Those with few digits came to no harm. */
+static int warn_literal(const Compiler *c) {
+  enum { SAFE = 17 };
+  for (AstId i = 1; i < c->ast->exprs.n; i++) {
+    const AstExpr *e = ast_expr(c->ast, i);
+    if (e->kind != AST_NUM || num_is_exact(e->number) || e->span.end - e->span.begin <= SAFE) continue;
+    diag_warning(c->diags, e->span, "this number is rounded to 17 digits before --precision %s counts", c->o.precision);
+    diag_help(c->diags, "where more matter, make it a parameter or a start, and give the digits as name=value");
+    return 1;
+  }
+  return 0;
+}
+
 static void warn_rounded(const Compiler *c, const ExprGraph *g) {
   enum { SAFE = 15, ROOM = 32 };
+  if (warn_literal(c)) return;
   for (Expr e = 1; e <= expr_count(g); e++) {
     char text[ROOM];
     if (!expr_is_num(g, e) || num_is_exact(expr_number(g, e))) continue;
     num_format_double(text, num_value(expr_number(g, e)));
     if (strspn(text, "-0.123456789") - (text[0] == '-') - (strchr(text, '.') != NULL) <= SAFE) continue;
-    fprintf(stderr, "lagc: warning: --precision %s: the number %s of the model has been rounded to 17 digits; where it matters, make it a "
-            "parameter, and give its digits as name=value\n", c->o.precision, text);
+    fprintf(stderr, "lagc: warning: --precision %s: numbers of the model multiply to %s, rounded to 17 digits; where more matter, make them "
+            "parameters\n", c->o.precision, text);
     return;
   }
 }
@@ -212,7 +231,7 @@ static int lower_all(Compiler *c, Units *units) {
     if (!home) vec_push(c->arena, units, home = fresh);
     unit_want(home, e, wants_of(e, &c->o));
     unit_add_scene(home, e);
-    if (options_more_digits(&c->o) && c->o.command != CMD_COST && i + 1 == scenes.n) warn_rounded(c, e->m->g);
+    if (options_more_digits(&c->o) && i + 1 == scenes.n) warn_rounded(c, e->m->g);
   }
   return 1;
 }
@@ -229,26 +248,29 @@ static int make_program(Compiler *c, const Toolchain *tools, const Texts *texts,
   return STATUS_OK;
 }
 
-static int make_simulator(Compiler *c, const char *output, const char **path) {
-  Units units = {0};
-  if (!lower_all(c, &units)) return STATUS_MODEL;
+static Texts program_texts(Compiler *c, const Units *units, int gsl) {
+  Texts texts = {0};
+  const char **names = ARENA_ARRAY(c->arena, const char *, units->n);
+  for (uint32_t i = 0; i < units->n; i++) {
+    names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units->at[i]->name), i);
+    StrBuf b = strbuf(c->arena);
+    emit_model(units->at[i], names[i], &b);
+    vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
+  }
+  StrBuf b = strbuf(c->arena);
+  emit_program((const IrUnit *const *)units->at, names, units->n, gsl, &b);
+  vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
+  return texts;
+}
+
+static int make_simulator(Compiler *c, const Units *units, const char *output, const char **path) {
   if (output && is_source(c, output)) return STATUS_USAGE;
   Toolchain tools;
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
   if (c->o.precision && !toolchain_precision(c->arena, &tools, c->o.precision, &error)) return fail_usage(error);
   if (c->o.command == CMD_MODES) tools.optimise = "-O0";
-  Texts texts = {0};
-  const char **names = ARENA_ARRAY(c->arena, const char *, units.n);
-  for (uint32_t i = 0; i < units.n; i++) {
-    names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units.at[i]->name), i);
-    StrBuf b = strbuf(c->arena);
-    emit_model(units.at[i], names[i], &b);
-    vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
-  }
-  StrBuf b = strbuf(c->arena);
-  emit_program((const IrUnit *const *)units.at, names, units.n, tools.gsl, &b);
-  vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
+  Texts texts = program_texts(c, units, tools.gsl);
   return make_program(c, &tools, &texts, output, path);
 }
 
@@ -262,10 +284,24 @@ static int method_is_known(Compiler *c) {
   return 0;
 }
 
+/* A simulator in quadruple precision, in the cache; NULL where there is no such precision. */
+static const char *make_precise(Compiler *c, const Units *units) {
+  Toolchain tools;
+  const char *error = NULL, *path;
+  if (!toolchain_find(c->arena, c->argv0, 0, &tools, &error) || !toolchain_precision(c->arena, &tools, "quad", &error)) return NULL;
+  Texts texts = program_texts(c, units, 0);
+  path = toolchain_cached(c->arena, &tools, texts.at, texts.n);
+  if (toolchain_is_whole(c->arena, path)) return path;
+  if (!toolchain_build(c->arena, &tools, texts.at, texts.n, path, &error)) return NULL;
+  toolchain_seal(c->arena, path);
+  return path;
+}
+
 static int do_build(Compiler *c) {
   const char *path;
+  Units units = {0};
   if (!c->o.output) return fail_usage("`lagc build` needs -o SIMULATOR");
-  return make_simulator(c, c->o.output, &path);
+  return lower_all(c, &units) ? make_simulator(c, &units, c->o.output, &path) : STATUS_MODEL;
 }
 
 /* Whether a file that the simulator would write is one that the model is made of. */
@@ -277,35 +313,28 @@ static int writes_source(Compiler *c) {
   return 0;
 }
 
-static void argument(Compiler *c, const char *text) {
-  c->picture.argv.at[c->picture.argv.n - 1] = arena_strdup(c->arena, text); /* was its NULL */
-  vec_push(c->arena, &c->picture.argv, NULL);
-}
-
-/* cost: the reference, by a simulator of the most digits that there is; becomes standard input of the one that is measured.
- * Without more digits than a double's that one makes its own. */
-static void take_reference(Compiler *c) {
-  static const char *const precisions[] = {"quad", "long"};
-  Toolchain tools;
-  const char *path, *error = NULL;
-  for (size_t i = 0; i < sizeof precisions / sizeof *precisions; i++) {
-    if (!toolchain_find(c->arena, c->argv0, 0, &tools, &error) || !toolchain_precision(c->arena, &tools, precisions[i], &error)) continue;
-    c->o.precision = precisions[i];
-    int status = make_simulator(c, NULL, &path);
-    c->o.precision = NULL;
-    if (status != STATUS_OK) continue; /* it has said why */
-    char *self = c->picture.argv.at[0], *said = NULL;
-    argument(c, "--reference");
-    c->picture.argv.at[0] = arena_strdup(c->arena, path);
-    status = toolchain_run(c->arena, c->picture.argv.at, &said);
-    c->picture.argv.n--;
-    c->picture.argv.at[c->picture.argv.n - 1] = NULL;
-    c->picture.argv.at[0] = self;
-    FILE *f = status == 0 ? tmpfile() : NULL;
-    if (!f || fputs(said, f) < 0 || fflush(f) != 0 || fseek(f, 0, SEEK_SET) != 0 || dup2(fileno(f), 0) < 0) continue;
-    argument(c, "--against=-");
-    return;
+/* cost: a simulator with more digits computes what errors are measured against, and the other one reads it from its
+ * standard input. Where that does not work, it has its own. */
+static void give_reference(Compiler *c, const Units *units) {
+  VEC(char *) argv = {0};
+  const char *path = c->picture.argv.n > 1 ? make_precise(c, units) : NULL;
+  if (!path) return;
+  vec_push(c->arena, &argv, c->picture.argv.at[0]);
+  vec_push(c->arena, &argv, arena_strdup(c->arena, "--reference"));
+  for (uint32_t i = 0; i < c->o.rest.n; i++) {
+    const char *word = c->o.rest.at[i];
+    int until = strncmp(word, "--until", 7) == 0, alone = until && !word[7];
+    if (strcmp(word, "--against") == 0 || strncmp(word, "--against=", 10) == 0) return; /* the user's own */
+    if (word[0] == '-' && !until) i += (uint32_t)option_takes_next(c->o.command, word);
+    else vec_push(c->arena, &argv, arena_strdup(c->arena, word));
+    if (alone && i + 1 < c->o.rest.n) vec_push(c->arena, &argv, arena_strdup(c->arena, c->o.rest.at[++i]));
   }
+  vec_push(c->arena, &argv, NULL);
+  if (toolchain_to_stdin(path, argv.at) != 0) return;
+  c->picture.argv.n--; /* the NULL at the end */
+  vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--against"));
+  vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "-"));
+  vec_push(c->arena, &c->picture.argv, NULL);
 }
 
 /* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
@@ -314,11 +343,13 @@ static int do_run(Compiler *c) {
   if (!settings_inputs(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
   if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? fail_usage(error) : STATUS_MODEL;
-  int status = make_simulator(c, NULL, &path);
+  Units units = {0};
+  int status = lower_all(c, &units) ? make_simulator(c, &units, NULL, &path) : STATUS_MODEL;
   if (status != STATUS_OK) return status;
   if (writes_source(c)) return STATUS_USAGE;
-  if (c->o.command == CMD_COST) take_reference(c);
+  if (c->o.command == CMD_COST) give_reference(c, &units);
   fflush(stdout);
+  if (options_more_digits(&c->o)) print_messages(c); /* what was rounded */
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
   execv(path, c->picture.argv.at);
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
@@ -447,9 +478,7 @@ static int compile(Compiler *c) {
   c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
   int status = read_model(c);
   if (status == STATUS_OK) status = do_command(c);
-  StrBuf messages = strbuf(c->arena);
-  diags_print(c->diags, &messages);
-  fputs(sb_text(&messages), stderr);
+  print_messages(c);
   return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
 }
 

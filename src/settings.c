@@ -127,13 +127,6 @@ static int convert_time(Converter *c, uint32_t *i) {
   return 1;
 }
 
-/* Whether the word is an option whose value is the next one: in `--method rk4(step=0.01)` that is no setting. */
-static int takes_next(const Options *o, const char *word) {
-  const char *joined = NULL;
-  const OptionRow *row = option_find(o->command, word, &joined);
-  return row && row->takes != TAKES_NOTHING && !joined;
-}
-
 int settings_units(Ast *ast, const Options *o) {
   Converter c = {.o = o, .ast = ast, .arena = ast->arena};
   int ok = 1;
@@ -145,7 +138,7 @@ int settings_units(Ast *ast, const Options *o) {
       continue;
     }
     ok &= convert_time(&c, &i);
-    if (i == at && takes_next(o, word)) i++;
+    if (i == at && option_takes_next(o->command, word)) i++;
   }
   return ok;
 }

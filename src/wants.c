@@ -51,7 +51,7 @@ static unsigned wants_of_choice(const Eqns *e, const Options *o) {
 }
 
 unsigned wants_of(const Eqns *e, const Options *o) {
-  if (o->command == CMD_COST) return o->precision ? WANT_TAYLOR : wants_of_all(e); /* with more digits: the reference */
+  if (o->command == CMD_COST) return wants_of_all(e);
   unsigned wants = wants_of_method(e, e->m->scene.method) | wants_of_method(e, o->method) | wants_of_choice(e, o) | (o->with ? WANT_LINEAR : 0u);
   return o->resume ? wants | wants_of_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

@@ -2,6 +2,7 @@
  * app->scene and app->sim. Holds: the command line wins over the scene; what this build does not hold is refused
  * with the command that builds it. */
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -162,8 +163,8 @@ static int choose_method(App *app)
     if (o->value <= 0) {
       return app_error(a, "--step %s: a step must be positive, for example --step 1e-3", a->step);
     }
-    if (o->value < 1e-15 * (app->scene->has_span ? fabs(app->scene->t1 - app->scene->t0) : 1)) {
-      return app_error(a, "--step %s: time would not move, double precision has 16 digits; for example --step 1e-3", a->step);
+    if (o->value < 4.5 * DBL_EPSILON * (app->scene->has_span ? fabs(app->scene->t1 - app->scene->t0) : 1)) {
+      return app_error(a, "--step %s: time would not move in " LAG_PRECISION " precision; for example --step 1e-3", a->step);
     }
   }
   for (int i = 0; i < OWN_OPTIONS; i++) {
@@ -248,7 +249,7 @@ static int restore_method(App *app)
     return app_error(a, "%s: %s", a->resume, lag_sim_message(app->sim));
   }
   if (st->signature != lag_sim_signature(app->sim) || st->n != lag_sim_save_size(app->sim)) {
-    return app_error(a, "%s was saved by another model or build: names, sizes, effects, equations or --precision differ", a->resume);
+    return app_error(a, "%s was saved by another model or build: names, sizes, effects or equations differ, or --precision", a->resume);
   }
   return 0;
 }

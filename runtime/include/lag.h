@@ -180,6 +180,7 @@ typedef struct lag_method {
    * has none. */
   size_t (*tangent_size)(const lag_problem *pb, int k);
   int (*tangent)(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
+
   double finest; /* tolerances below it are below what the digits of its coefficients give; 0: they have all that a scalar has */
 } lag_method;
 
@@ -229,7 +230,7 @@ void lag_sim_free(lag_sim *sim);
 
 /* Chooses a method. opt[nopt] are options by name; the others have their defaults. */
 int lag_sim_set_method(lag_sim *sim, const lag_method *method, const lag_option *opt, int nopt);
-/* tol > 0; not below 1e-15. */
+/* tol > 0; not below 4.5 times the rounding of a number: 1e-15. */
 int lag_sim_set_tolerance(lag_sim *sim, double tol);
 /* Sets by name, in the declared unit: a parameter ("m", "drag.c", or "c" when nothing else ends in ".c"), the start of
  * a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that replaces an input; of a family one

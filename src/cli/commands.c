@@ -153,7 +153,7 @@ static const OptionRow options[] = {
   {"--resume", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED,
    "go on from there, with the same scene, method and values: results are those of an uninterrupted run, bit by bit"},
 
-  {"--precision", NULL, "double|long|quad", TAKES_CHOICE, "double long quad", SIMULATE | C(BUILD), OWN(precision),
+  {"--precision", NULL, "double|long|quad", TAKES_CHOICE, "double long quad", STEPS | C(BUILD), OWN(precision),
    "the numbers that the simulator computes with: of 16, 19 or 34 digits; without the gsl-* methods but for double"},
   {"--define", "-D", "CONST=VALUE", TAKES_DEFINE, "", MODELS, OWN(defines), "gives a `const` of the model another value"},
   {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", STEPS | C(MODES) | C(COST) | C(BUILD), OWN(no_gsl),
@@ -199,6 +199,12 @@ const OptionRow *option_find(Command c, const char *arg, const char **value) {
     return o;
   }
   return NULL;
+}
+
+int option_takes_next(Command c, const char *word) {
+  const char *joined = NULL;
+  const OptionRow *row = option_find(c, word, &joined);
+  return row && row->takes != TAKES_NOTHING && !joined;
 }
 
 int command_simulates(Command c) { return ((STEPS | C(MODES) | C(COST)) & 1u << c) != 0; }

@@ -58,6 +58,8 @@ const CommandRow *command_find(Command c);
 /* The option that `arg` writes ("--until", "--until=3", "-o", "-DN=3"), among those of c; NULL for none. *value is what
  * stands in the same word after it, or NULL. */
 const OptionRow *option_find(Command c, const char *arg, const char **value);
+/* Whether the word is an option whose value is the next one: in `--method rk4(step=0.01)` that is no setting. */
+int option_takes_next(Command c, const char *word);
 
 /* Whether the command runs a simulator: then name=value is a setting; whether it reads a model at all. */
 int command_simulates(Command c);

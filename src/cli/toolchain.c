@@ -107,6 +107,22 @@ int toolchain_run(Arena *a, char *const *argv, char **said) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+int toolchain_to_stdin(const char *path, char *const *argv) {
+  FILE *out = tmpfile();
+  pid_t pid = out ? fork() : -1;
+  if (pid == 0) {
+    dup2(fileno(out), 1);
+    if (!freopen("/dev/null", "w", stderr)) _exit(127);
+    execv(path, argv);
+    _exit(127);
+  }
+  int status = -1;
+  if (pid > 0 && waitpid(pid, &status, 0) == pid) status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (status == 0 && (lseek(fileno(out), 0, SEEK_SET) != 0 || dup2(fileno(out), 0) != 0)) status = -1;
+  if (out) fclose(out);
+  return status;
+}
+
 static void remove_folder(Arena *a, const char *dir, const SourceText *texts, size_t n) {
   for (size_t i = 0; i < n; i++) remove(arena_printf(a, "%s/%s", dir, texts[i].name));
   remove(arena_printf(a, "%s/simulator", dir));

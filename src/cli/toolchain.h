@@ -34,6 +34,10 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
 /* Runs a program; its output and messages go to *said. Returns its exit status, or -1. */
 int toolchain_run(Arena *a, char *const *argv, char **said);
 
+/* Runs the program at path: what it prints becomes the standard input of this one, from its beginning; its messages are
+ * dropped. Its exit status, or -1; then the standard input is as it was. */
+int toolchain_to_stdin(const char *path, char *const *argv);
+
 /* The path of the cached simulator for these texts: named by their content and the runtime's. */
 const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n);
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Time against error of dop853 and taylor, next to GSL's rk8pd with right-hand sides written by hand, in one run. In brackets:
-# the time over that of rk8pd. To reach (issue 5): see RESULTS.md.
+# the processor's time over that of rk8pd.
 set -eu
 : "${LAGC:=build/lagc}" "${CC:=cc}" "${BUILD:=build}" "${INC:=runtime/include}" "${TMP:=$(mktemp -d)}"
 

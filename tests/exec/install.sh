@@ -7,10 +7,13 @@ prefix=$TMP/usr
 install_it() { "$MAKE" BUILD="$BUILD" install PREFIX="$prefix"; }
 check "make install" install_it
 
-gsl_files=
-[ -z "$GSL" ] || gsl_files='lib/liblag_gsl.a lib/pkgconfig/liblag_gsl.pc'
+more_files=
+[ -z "$GSL" ] || more_files='lib/liblag_gsl.a lib/pkgconfig/liblag_gsl.pc'
+for p in long quad; do
+  [ ! -f "$BUILD/liblag_$p.a" ] || more_files="$more_files lib/liblag_$p.a lib/lag-$p/lag.h lib/lag-$p/lag_model.h"
+done
 models=$(cd models && ls -d -- *.lag *.csv 2>/dev/null)
-want=$(for f in bin/lagc include/lag.h include/lag_model.h lib/liblag.a lib/pkgconfig/liblag.pc $gsl_files \
+want=$(for f in bin/lagc include/lag.h include/lag_model.h lib/liblag.a lib/pkgconfig/liblag.pc $more_files \
   share/doc/lagc/LICENSE share/doc/lagc/README.md share/man/man1/lagc.1 share/bash-completion/completions/lagc \
   share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish share/lagc/lag.tmLanguage.json; do
   echo "$f"
@@ -74,6 +77,10 @@ check "it wrote its rows" [ -s "$away/rows.csv" ]
 check "lagc build" lagc_away build "$prefix/share/lagc/models/double_pendulum.lag" --no-gsl -o sim
 no_gsl() { "$away/sim" --until 0.1 && ! "$away/sim" --until 0.1 --method gsl-rk8pd; }
 check "a simulator without GSL runs, and has no gsl-* methods" no_gsl
+
+precise() { lagc_away run "$prefix/share/lagc/models/kepler.lag" --until 0.1 --precision "$1"; }
+check "long doubles" precise long
+if [ -f "$BUILD/liblag_quad.a" ]; then check "quadruple precision" precise quad; else skip "quadruple precision" "no libquadmath"; fi
 
 # The same from a tree that was moved, and by LAG_HOME from another.
 moved() { mv "$prefix" "$TMP/moved" && (cd "$away" && "$TMP/moved/bin/lagc" run "$TMP/moved/share/lagc/models/double_pendulum.lag" --until 0.1); }

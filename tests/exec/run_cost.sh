@@ -110,6 +110,15 @@ echo garbage >"$TMP/garbage"
 "$LAGC" build models/pendulum.lag --method taylor -o "$TMP/sim" >"$TMP/out" 2>&1
 bad_reference() { "$TMP/sim" --cost --against "$TMP/garbage" 2>"$TMP/err"; [ $? = 2 ] && grep -q 'holds no reference' "$TMP/err"; }
 check "what is no reference is refused" bad_reference
+# Where there is quadruple precision, lagc has it compute the reference, from the values and up to the time that are given.
+precise_reference() {
+  "$LAGC" cost models/pendulum.lag th='30[deg]' --until 2 --methods rk4 --longest 0.002 >"$TMP/out" || return 1
+  "$LAGC" build models/pendulum.lag --precision quad --method taylor -o "$TMP/precise" && "$TMP/precise" --reference th=0.52359877559829882 --until 2 >"$TMP/reference"
+  "$TMP/sim" --cost th=0.52359877559829882 --until 2 --methods rk4 --longest 0.002 --against "$TMP/reference" >"$TMP/other" || return 1
+  errors() { awk '/step=/ { sub(/^\*/, ""); print $1, $2 }' "$1" | head -4; }
+  grep -q '^reference: taylor, 34 digits' "$TMP/out" && [ "$(errors "$TMP/out")" = "$(errors "$TMP/other")" ]
+}
+if [ -f "${BUILD:-build}/liblag_quad.a" ]; then check "a reference of 34 digits" precise_reference; else skip "a reference of 34 digits" "no libquadmath"; fi
 own_reference() { "$TMP/sim" --reference >"$TMP/reference" && "$TMP/sim" --cost --against "$TMP/reference" --methods rk45 >"$TMP/out" && grep -q 'rk45(tol=1e-10)' "$TMP/out"; }
 check "one simulator's reference serves another" own_reference
 tap_end
