@@ -274,7 +274,7 @@ Prog *lower_accel(const Eqns *e) {
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
-  return prog_tidy(l.p);
+  return prog_factor(prog_tidy(l.p));
 }
 
 /* Where a constant may stand instead of the formula of an input, `free` says which holds. */

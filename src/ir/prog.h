@@ -116,6 +116,10 @@ int ir_is_condition(IrOp op);
  * store needs goes. Keeps the order of what stays. Needs nothing, breaks nothing. */
 Prog *prog_tidy(const Prog *p);
 
+/* a*x + a*y becomes a*(x + y) where both products are used there alone, as long as that saves operations. Needs a tidy
+ * program and leaves one; changes rounding. */
+Prog *prog_factor(Prog *p);
+
 /* Whether two programs compute the same. */
 int prog_same(const Prog *a, const Prog *b);
 
