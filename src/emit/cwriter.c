@@ -429,7 +429,7 @@ static void write_code(Writer *w) {
 
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
-  w.rolls = roll_find(p, arrays_by_index(style));
+  w.rolls = roll_find(p, arrays_by_index(style), style->seldom_called ? ROLL_SELDOM_FROM : ROLL_FROM);
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
   w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);

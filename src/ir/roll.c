@@ -2,8 +2,7 @@
 
 #include <string.h>
 
-/* Shorter programs read better without loops, and compile in no time. */
-enum { SHORTEST_CODE = 1500, LONGEST_PERIOD = 400, FEWEST_TURNS = 8, MOST_BACK = 2 };
+enum { LONGEST_PERIOD = 400, FEWEST_TURNS = 8, MOST_BACK = 2 };
 
 Slot roll_operand(const Ins *i, int which) { return which == 0 ? i->a : which == 1 ? i->b : i->c; }
 
@@ -218,7 +217,7 @@ static void find_kept(Rolls *r) {
   }
 }
 
-Rolls roll_find(const Prog *p, unsigned by_index) {
+Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from) {
   Arena *a = p->arena;
   Rolls r = {.p = p};
   Slot *code = ARENA_ARRAY(a, Slot, p->ins.n);
@@ -233,7 +232,7 @@ Rolls roll_find(const Prog *p, unsigned by_index) {
   r.place = place;
   r.loop = loop;
   Search f = {&r, cls, by_index};
-  for (uint32_t i = 0; i < r.n && r.n >= SHORTEST_CODE;) {
+  for (uint32_t i = 0; i < r.n && r.n >= from;) {
     Loop l = longest_at(&f, i);
     if (!l.count) {
       i++;

@@ -39,9 +39,12 @@ typedef struct {
   const uint32_t *loop;  /* by place: the loop that holds it, from 1 */
 } Rolls;
 
-/* by_index: the arrays of loads that can be indexed by a variable, as bits 1 << IrArray. Programs that are
- * short anyway get no loops. */
-Rolls roll_find(const Prog *p, unsigned by_index);
+/* Programs of fewer instructions get no loops: straight-line code is faster there, and reads better. */
+enum { ROLL_FROM = 1500, ROLL_SELDOM_FROM = 500 };
+
+/* by_index: the arrays of loads that can be indexed by a variable, as bits 1 << IrArray. A program of fewer than `from`
+ * instructions gets no loops. */
+Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from);
 
 /* How operand `which` (0, 1, 2) of instruction `offset` of the loop changes. */
 Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which);
