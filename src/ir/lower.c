@@ -266,6 +266,13 @@ static Lower lower_new(const Eqns *e) {
 
 static const char *text_of_symbol(const Lower *l, SymId s) { return expr_symbol(l->g, s)->name; }
 
+/* Whether each coordinate has its acceleration to itself. */
+static int is_diagonal(const Eqns *e) {
+  uint32_t off = e->system.ndefs;
+  for (uint32_t k = 0; k < e->system.H.n; k++) off += e->system.H.at[k].row != e->system.H.at[k].col;
+  return off == 0;
+}
+
 Prog *lower_accel(const Eqns *e) {
   Lower l = lower_new(e);
   const Model *m = e->m;
@@ -275,7 +282,9 @@ Prog *lower_accel(const Eqns *e) {
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
-  return prog_factor(prog_tidy(l.p));
+  enum { LONG = 1500 }; /* as for loops */
+  Prog *p = prog_factor(prog_tidy(l.p));
+  return is_diagonal(e) && p->ins.n > LONG ? prog_by_demand(p) : p;
 }
 
 /* Where a constant may stand instead of the formula of an input, `free` says which holds. */

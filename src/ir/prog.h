@@ -120,6 +120,10 @@ Prog *prog_tidy(const Prog *p);
  * program and leaves one; changes rounding. */
 Prog *prog_factor(Prog *p);
 
+/* The same instructions in the order in which the stores need them, pivots first; without titles. What one store needs
+ * stands together, and makes one loop with what its neighbours need. Not for programs with solves. */
+Prog *prog_by_demand(const Prog *p);
+
 /* Whether two programs compute the same. */
 int prog_same(const Prog *a, const Prog *b);
 

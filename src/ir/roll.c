@@ -157,7 +157,7 @@ static Loop well_cut(const Search *f, Loop l) {
   Loop best = l;
   uint32_t least = carried(f->r, &l);
   for (uint32_t k = 1; k < l.period && l.count > FEWEST_TURNS; k++) {
-    Loop x = {l.begin + k, l.period, l.count - 1, NULL};
+    Loop x = {.begin = l.begin + k, .period = l.period, .count = l.count - 1};
     uint32_t n = carried(f->r, &x);
     if (n >= least || turns_at(f, x.begin, x.period) < x.count) continue;
     least = n;
@@ -171,39 +171,84 @@ static Loop longest_at(const Search *f, uint32_t begin) {
   Loop best = {.begin = begin, .period = 1};
   for (uint32_t period = 1; period <= LONGEST_PERIOD && begin + period < f->r->n; period++) {
     uint32_t turns = turns_at(f, begin, period);
-    if (turns >= FEWEST_TURNS && turns * period > best.count * best.period + period) best = (Loop){begin, period, turns, NULL};
+    if (turns >= FEWEST_TURNS && turns * period > best.count * best.period + period) best = (Loop){.begin = begin, .period = period, .count = turns};
   }
   return best;
 }
 
-/* --- what must be kept --- */
+/* --- what is stored, kept and carried --- */
+
+/* The turn of its loop in which a value is computed. */
+static uint32_t turn_of(const Loop *l, uint32_t place) { return (place - l->begin) / l->period; }
+static uint32_t offset_of(const Loop *l, uint32_t place) { return (place - l->begin) % l->period; }
+
+/* Stores of one value of a loop, in the order of turns: 1 + the number of the store; 0: none. */
+typedef struct {
+  uint32_t *by_turn;
+  int twice; /* a turn stores it at two places */
+} Stored;
+
+static int is_even(const Rolls *r, const Loop *l, const uint32_t *by_turn) {
+  const Store *at = r->p->stores.at;
+  for (uint32_t t = 0; t < l->count; t++)
+    if (!by_turn[t]) return 0;
+  const Store *first = &at[by_turn[0] - 1], *second = &at[by_turn[1] - 1];
+  int64_t step = (int64_t)second->index - first->index;
+  for (uint32_t t = 0; t < l->count; t++) {
+    const Store *now = &at[by_turn[t] - 1];
+    if (now->array != first->array || (int64_t)now->index != first->index + t * step) return 0;
+  }
+  return 1;
+}
+
+/* A value that each turn stores once, at places by equal steps, is stored in the loop. */
+static void find_stores(Rolls *r) {
+  Arena *a = r->p->arena;
+  Stored **of = ARENA_ARRAY(a, Stored *, r->loops.n + 1);
+  for (uint32_t k = 0; k < r->p->stores.n; k++) {
+    Slot x = r->p->stores.at[k].slot;
+    uint32_t place = x && r->place[x] ? place_of(r, x) : 0, in = x && r->place[x] ? r->loop[place] : 0;
+    if (!in) continue;
+    const Loop *l = &r->loops.at[in - 1];
+    if (!of[in - 1]) of[in - 1] = ARENA_ARRAY(a, Stored, l->period);
+    Stored *s = &of[in - 1][offset_of(l, place)];
+    if (!s->by_turn) s->by_turn = ARENA_ARRAY(a, uint32_t, l->count);
+    uint32_t *turn = &s->by_turn[turn_of(l, place)];
+    if (*turn) s->twice = 1;
+    *turn = k + 1;
+  }
+  for (uint32_t in = 0; in < r->loops.n; in++) {
+    Loop *l = &r->loops.at[in];
+    for (uint32_t k = 0; of[in] && k < l->period; k++) {
+      const Stored *s = &of[in][k];
+      if (!s->by_turn || s->twice || !is_even(r, l, s->by_turn)) continue;
+      const Store *first = &r->p->stores.at[s->by_turn[0] - 1], *second = &r->p->stores.at[s->by_turn[1] - 1];
+      LoopStore now = {k, first->array, first->index, (int64_t)second->index - first->index, first->comment,
+                       r->p->stores.at[s->by_turn[l->count - 1] - 1].comment};
+      vec_push(a, &l->stores, now);
+      for (uint32_t t = 0; t < l->count; t++) r->stored[s->by_turn[t] - 1] = 1;
+    }
+  }
+}
 
 static void keep(Rolls *r, uint32_t place, uint32_t back) {
   const Loop *l = &r->loops.at[r->loop[place] - 1];
-  uint32_t *kept = &l->kept[(place - l->begin) % l->period];
+  uint32_t *kept = &l->kept[offset_of(l, place)];
   if (*kept < back + 1) *kept = back + 1;
 }
 
-/* A value of a loop that is needed outside of its own turn. */
+/* A value of a loop that is needed outside of it. */
 static void keep_from(Rolls *r, Slot x, uint32_t user) {
   if (!x || !r->place[x]) return;
   uint32_t at = place_of(r, x), in = r->loop[at];
-  if (!in) return;
+  if (!in || (user < r->n && r->loop[user] == in)) return;
   const Loop *l = &r->loops.at[in - 1];
-  int own = user < r->n && r->loop[user] == in && (user - l->begin) / l->period == (at - l->begin) / l->period;
-  if (!own) keep(r, at, 0);
+  keep(r, at, 0);
+  if (turn_of(l, at) + 1 < l->count) l->carried[offset_of(l, at)] = 0;
 }
 
-static void find_kept(Rolls *r) {
-  for (uint32_t k = 0; k < r->n; k++) {
-    const Ins *i = code_at(r, k);
-    for (int which = 0; which < 3; which++) keep_from(r, roll_operand(i, which), k);
-    if (i->op != IR_SOLVE) continue;
-    const Solve *s = &r->p->solves.at[i->index];
-    for (uint32_t j = 0; s->matrix && j < s->n * s->n; j++) keep_from(r, s->matrix[j], UINT32_MAX);
-    for (uint32_t j = 0; j < s->n; j++) keep_from(r, s->rhs[j], UINT32_MAX);
-  }
-  for (uint32_t k = 0; k < r->p->stores.n; k++) keep_from(r, r->p->stores.at[k].slot, UINT32_MAX);
+/* What turns take from turns before. */
+static void keep_carried(Rolls *r) {
   for (uint32_t k = 0; k < r->loops.n; k++) {
     const Loop *l = &r->loops.at[k];
     for (uint32_t offset = 0; offset < l->period; offset++)
@@ -214,10 +259,26 @@ static void find_kept(Rolls *r) {
         uint32_t from = place_of(r, roll_operand(code_at(r, l->begin + offset), which)) + s.back * l->period;
         keep(r, from, s.back);
       }
+    for (uint32_t offset = 0; offset < l->period; offset++) l->carried[offset] &= l->kept[offset] == 2;
   }
 }
 
-Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from) {
+static void find_kept(Rolls *r) {
+  for (uint32_t k = 0; k < r->loops.n; k++) memset(r->loops.at[k].carried, 1, r->loops.at[k].period);
+  for (uint32_t k = 0; k < r->n; k++) {
+    const Ins *i = code_at(r, k);
+    for (int which = 0; which < 3; which++) keep_from(r, roll_operand(i, which), k);
+    if (i->op != IR_SOLVE) continue;
+    const Solve *s = &r->p->solves.at[i->index];
+    for (uint32_t j = 0; s->matrix && j < s->n * s->n; j++) keep_from(r, s->matrix[j], UINT32_MAX);
+    for (uint32_t j = 0; j < s->n; j++) keep_from(r, s->rhs[j], UINT32_MAX);
+  }
+  for (uint32_t k = 0; k < r->p->stores.n; k++)
+    if (!r->stored[k]) keep_from(r, r->p->stores.at[k].slot, UINT32_MAX);
+  keep_carried(r);
+}
+
+Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early) {
   Arena *a = p->arena;
   Rolls r = {.p = p};
   Slot *code = ARENA_ARRAY(a, Slot, p->ins.n);
@@ -241,10 +302,13 @@ Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from) {
     l = well_cut(&f, l);
     i = l.begin;
     l.kept = ARENA_ARRAY(a, uint32_t, l.period);
+    l.carried = ARENA_ARRAY(a, unsigned char, l.period);
     vec_push(a, &r.loops, l);
     for (uint32_t k = 0; k < l.period * l.count; k++) loop[i + k] = r.loops.n;
     i += l.period * l.count;
   }
+  r.stored = ARENA_ARRAY(a, unsigned char, p->stores.n + 1);
+  if (early) find_stores(&r);
   find_kept(&r);
   return r;
 }
