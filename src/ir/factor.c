@@ -67,7 +67,7 @@ static Slot factored_sum(Factor *f, const Ins *i) {
 }
 
 static Prog *factor_once(const Prog *p) {
-  Factor f = {.from = p, .to = prog_new(p->arena), .map = ARENA_ARRAY(p->arena, Slot, p->ins.n), .uses = prog_uses(p)};
+  Factor f = {.from = p, .to = prog_like(p), .map = ARENA_ARRAY(p->arena, Slot, p->ins.n), .uses = prog_uses(p)};
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     Slot sum = i->op == IR_ADD || i->op == IR_SUB ? factored_sum(&f, i) : 0;
@@ -82,8 +82,8 @@ static Prog *factor_once(const Prog *p) {
 }
 
 Prog *prog_factor(Prog *p) {
-  enum { TURNS = 3 };
-  for (int turn = 0; turn < TURNS; turn++) {
+  enum { TURNS = 3, LONG = 100000 };
+  for (int turn = 0; turn < (p->ins.n < LONG ? TURNS : 1); turn++) {
     Prog *next = factor_once(p);
     if (ops_total(prog_count(next)) >= ops_total(prog_count(p))) return p;
     p = next;

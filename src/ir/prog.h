@@ -99,6 +99,9 @@ typedef struct {
 
 Prog *prog_new(Arena *a);
 
+/* An empty one with room for as much as p has: growing would take twice the memory. */
+Prog *prog_like(const Prog *p);
+
 /* Appends an instruction, or finds the same computation done before. Sums and products are
  * commutative: their operands are ordered. Folds what adds 0 or multiplies by 1. */
 Slot prog_ins(Prog *p, Ins i);

@@ -25,6 +25,8 @@ typedef struct {
   Rolls *r;
   const uint32_t *cls; /* by place */
   unsigned by_index;
+  uint32_t *alike_to;  /* by period: classes a period apart are equal up to there, from where it was asked last */
+  uint32_t *failed;    /* by period: the place, from 1, whose instruction does not go on: groups with it fail, too */
 } Search;
 
 static const Ins *code_at(const Rolls *r, uint32_t place) { return &r->p->ins.at[r->code[place]]; }
@@ -109,27 +111,33 @@ static int same_sharing(const Rolls *r, uint32_t begin, uint32_t period, uint32_
   return (x->a == x->b) == (y->a == y->b) && (x->a == x->c) == (y->a == y->c) && (x->b == x->c) == (y->b == y->c);
 }
 
+/* How many instructions from `begin` on are of the classes of those a period later. The search goes forth, and each
+ * period is compared once. */
+static uint32_t alike(const Search *f, uint32_t begin, uint32_t period) {
+  uint32_t *to = &f->alike_to[period];
+  if (*to <= begin)
+    for (*to = begin; *to + period < f->r->n && f->cls[*to] == f->cls[*to + period];) ++*to;
+  return *to - begin;
+}
+
 /* The same, from the first instruction of the group on, for at most `most` turns. */
 static uint32_t turns_within(const Search *f, uint32_t begin, uint32_t period, uint32_t most) {
   const Rolls *r = f->r;
-  uint32_t same = 0;
-  uint64_t enough = (uint64_t)(most - 1) * period;
-  while (same < enough && begin + same + period < r->n && f->cls[begin + same] == f->cls[begin + same + period]) same++;
-  uint32_t turns = same / period + 1;
+  uint32_t turns = alike(f, begin, period) / period + 1;
+  if (turns > most) turns = most;
   for (uint32_t k = 0; k < period && turns >= FEWEST_TURNS; k++) {
-    if (!same_sharing(r, begin, period, k)) return 1;
+    if (!same_sharing(r, begin, period, k)) turns = 1;
     for (int which = 0; which < 3 && turns >= FEWEST_TURNS; which++)
       if (roll_operand(code_at(r, begin + k), which)) turns = turns_of(f, begin, period, k, which, turns);
+    if (turns < FEWEST_TURNS) f->failed[period] = begin + k + 1;
   }
   return turns;
 }
 
-/* Whether the group's first instruction alone goes on for the fewest turns: most groups fail here. */
+/* Whether the classes and the group's first instruction go on for the fewest turns: most groups fail here. */
 static int may_begin(const Search *f, uint32_t begin, uint32_t period) {
   const Rolls *r = f->r;
-  if (begin + (uint64_t)(FEWEST_TURNS - 1) * period >= r->n) return 0;
-  for (uint32_t t = 1; t < FEWEST_TURNS; t++)
-    if (f->cls[begin + t * period] != f->cls[begin]) return 0;
+  if (alike(f, begin, period) < (FEWEST_TURNS - 1) * period) return 0;
   for (int which = 0; which < 3; which++)
     if (roll_operand(code_at(r, begin), which) && turns_of(f, begin, period, 0, which, FEWEST_TURNS) < FEWEST_TURNS) return 0;
   return 1;
@@ -137,7 +145,7 @@ static int may_begin(const Search *f, uint32_t begin, uint32_t period) {
 
 /* For how many turns the group goes on; 1 when for fewer than the fewest. */
 static uint32_t turns_at(const Search *f, uint32_t begin, uint32_t period) {
-  if (!may_begin(f, begin, period) || turns_within(f, begin, period, FEWEST_TURNS) < FEWEST_TURNS) return 1;
+  if (begin < f->failed[period] || !may_begin(f, begin, period) || turns_within(f, begin, period, FEWEST_TURNS) < FEWEST_TURNS) return 1;
   return turns_within(f, begin, period, f->r->n / period + 1);
 }
 
@@ -292,7 +300,7 @@ Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early) {
   r.code = code;
   r.place = place;
   r.loop = loop;
-  Search f = {&r, cls, by_index};
+  Search f = {&r, cls, by_index, ARENA_ARRAY(a, uint32_t, LONGEST_PERIOD + 1), ARENA_ARRAY(a, uint32_t, LONGEST_PERIOD + 1)};
   for (uint32_t i = 0; i < r.n && r.n >= from;) {
     Loop l = longest_at(&f, i);
     if (!l.count) {
@@ -306,6 +314,7 @@ Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early) {
     vec_push(a, &r.loops, l);
     for (uint32_t k = 0; k < l.period * l.count; k++) loop[i + k] = r.loops.n;
     i += l.period * l.count;
+    memset(f.failed, 0, (LONGEST_PERIOD + 1) * sizeof *f.failed); /* what lies in a loop can be taken by its turns */
   }
   r.stored = ARENA_ARRAY(a, unsigned char, p->stores.n + 1);
   if (early) find_stores(&r);

@@ -29,7 +29,7 @@ static void compute(Schedule *d, Slot s) {
 
 Prog *prog_by_demand(const Prog *p) {
   Arena *a = p->arena;
-  Schedule d = {.from = p, .to = prog_new(a), .map = ARENA_ARRAY(a, Slot, p->ins.n), .done = ARENA_ARRAY(a, unsigned char, p->ins.n)};
+  Schedule d = {.from = p, .to = prog_like(p), .map = ARENA_ARRAY(a, Slot, p->ins.n), .done = ARENA_ARRAY(a, unsigned char, p->ins.n)};
   for (Slot s = 1; s < p->ins.n; s++)
     if (p->ins.at[s].op == IR_PIVOT) compute(&d, s);
   for (uint32_t k = 0; k < p->stores.n; k++)
