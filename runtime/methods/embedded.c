@@ -16,6 +16,7 @@
 
 #include "methods/control.h"
 #include "methods/steps.h"
+#include "methods/tangent.h"
 
 static const double safety = 0.9;
 
@@ -300,4 +301,16 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
     rc = 0;
   }
   return rc;
+}
+
+size_t lag_embedded_tangent_size(const EmbeddedPair *pair, const lag_problem *pb, int k)
+{
+  return lag_tangent_size(pb, pair->tab->stages, k);
+}
+
+int lag_embedded_tangent(const EmbeddedPair *pair, void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+{
+  Embedded *w = work;
+
+  return lag_tangent_explicit(pair->tab, pb, w->t0, lag_tangent_span(w->t0, t, w->dt), array(w, pb, EMBEDDED_Y0), k, Y, scratch);
 }
