@@ -70,8 +70,13 @@ echo
 row 'what' 'to reach' 'peers' 'ours' 'ours/peer' ''
 row --- --- --- --- --- ---
 
+# Instructions are counted with the C library's sine; times are those of what lagc emits when nobody asks for another.
+math=
+if "$LAGC" help emit 2>/dev/null | grep -q -e --math; then math='--math libm'; fi
+
 # ---- the double pendulum
-"$LAGC" emit models/double_pendulum.lag swing -o "$TMP/double_pendulum.c"
+# shellcheck disable=SC2086 # none or two words
+"$LAGC" emit models/double_pendulum.lag swing $math -o "$TMP/double_pendulum.c"
 peers='textbook best' more=
 if sympy chain 2 "$TMP/double_pendulum_sympy.c" inverse; then peers="$peers sympy sympy_inverse" more=$TMP/double_pendulum_sympy.c; fi
 # shellcheck disable=SC2086 # none or one
@@ -82,9 +87,14 @@ for p in $peers; do
   case $p in best) limit=326 met=$(at_most "$ours" 326) ;; *) limit='' met='' ;; esac
   row "double pendulum, instructions a call" "${limit:+<= $limit}" "$p $(of "$p" counts)" "$ours" "$(over "$ours" "$(of "$p" counts)")" "$met"
 done
+"$LAGC" emit models/double_pendulum.lag swing -o "$TMP/double_pendulum.c"
+# shellcheck disable=SC2086 # none or one
+driver double_pendulum_swing "$TMP/double_pendulum.c" $here/hand/double_pendulum.c $more -- "$peers"
 "$TMP/driver" time >"$TMP/times"
 for p in $peers; do
-  row "double pendulum, time" '' "$p $(of "$p" times) ns" "$(of ours times) ns" "$(of "$p" times 3)" ''
+  r=$(of "$p" times 3) limit='' met=''
+  case $p in best) limit='<= 0.5, with the inline sincos' met=$(at_most "$r" 0.5) ;; esac
+  row "double pendulum, time" "$limit" "$p $(of "$p" times) ns" "$(of ours times) ns" "$r" "$met"
 done
 
 # ---- operations of the chain
@@ -99,7 +109,8 @@ done
 # ---- the chain's accelerations
 for pair in 10:2000 20:4000; do
   n=${pair%:*} limit=${pair#*:}
-  "$LAGC" emit models/chain.lag -DN="$n" -o "$TMP/chain.c"
+  # shellcheck disable=SC2086 # none or two words
+  "$LAGC" emit models/chain.lag $math -DN="$n" -o "$TMP/chain.c"
   peers='dense linear' more=
   if sympy chain "$n" "$TMP/chain_sympy.c"; then peers="$peers sympy" more=$TMP/chain_sympy.c; echo "$n $(of seconds sympy)" >>"$TMP/sympy_derives"; fi
   # shellcheck disable=SC2086 # none or one
@@ -113,6 +124,7 @@ for pair in 10:2000 20:4000; do
   for p in $peers; do
     row "chain of $n, time" '' "$p $(of "$p" times) ns" "$(of ours times) ns" "$(of "$p" times 3)" ''
   done
+  # shellcheck disable=SC2086 # a list of words
   [ "$n" != 20 ] || [ -z "$more" ] || sympy_compile=$(seconds 1 "$CC" $flags -I"$INC" -I$here -c "$more" -o "$TMP/ignored.o")
 done
 
@@ -155,8 +167,8 @@ long_model() { # WHAT SCENE MODEL PEER.c "PEERS" options...
   bytes=$(wc -c <"$TMP/long.c")
   row "$what: size of the C" '< 65536 bytes' '' "$bytes" '' "$(at_most "$bytes" 65535)"
   row "$what: lagc emit" '' '' "$s s" '' ''
-  if [ "$bytes" -gt 4000000 ]; then
-    row "$what: time" '<= 1.3' "$peers" 'too long to compile here' '' 'not met'
+  if [ "$bytes" -gt 1000000 ]; then
+    row "$what: time" '<= 1.3' "$peers" 'too long to compile' '' 'not met'
     return
   fi
   # shellcheck disable=SC2086 # a list of words
