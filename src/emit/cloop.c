@@ -13,8 +13,7 @@ static Slot code_of(const Writer *w, const Loop *l, uint32_t turn, uint32_t offs
 
 /* --- names and indices --- */
 
-/* x[3]' -> x', D12 -> D, L2_11 -> L: what the turns' names have in common. */
-static const char *stem_of(Arena *a, const char *name) {
+const char *cloop_stem(Arena *a, const char *name) {
   StrBuf b = strbuf(a);
   for (const char *s = name; *s; s++) {
     const char *close = *s == '[' ? strchr(s, ']') : NULL;
@@ -110,8 +109,8 @@ static void count_own_uses(Writer *w, Body *b) {
 
 static const char *kept_name(const Writer *w, const Ins *i) {
   const Ins *x = &w->p->ins.at[i->a];
-  if (i->name) return stem_of(w->a, i->name);
-  return i->op == IR_FN1 && x->op == IR_LOAD ? arena_printf(w->a, "%s_%s", i->text, stem_of(w->a, x->name)) : "kept";
+  if (i->name) return cloop_stem(w->a, i->name);
+  return i->op == IR_FN1 && x->op == IR_LOAD ? arena_printf(w->a, "%s_%s", i->text, cloop_stem(w->a, x->name)) : "kept";
 }
 
 /* x[3]' -> last_x'. */
@@ -161,7 +160,7 @@ static void name_turn_loads(Writer *w, Body *b) {
       Step s = x ? roll_step(&w->rolls, b->l, k, which) : (Step){.kind = STEP_SAME};
       if (s.kind != STEP_LOAD || turn_load(b, x, s.step)) continue;
       const Ins *i = &w->p->ins.at[x];
-      const char *name = cnames_take(&w->names, stem_of(w->a, i->name));
+      const char *name = cnames_take(&w->names, cloop_stem(w->a, i->name));
       vec_push(w->a, &b->loads, ((TurnLoad){x, s.step, name}));
       cwriter_statement(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, w->style->in[i->array],
                                         index_text(w, i->index, s.step)));
@@ -207,7 +206,7 @@ static void write_value(Writer *w, const Body *b, uint32_t offset, Slot s, const
   }
   if (b->own_uses[offset] || carried) {
     Ins named = *i;
-    if (named.name) named.name = stem_of(w->a, named.name);
+    if (named.name) named.name = cloop_stem(w->a, named.name);
     cwriter_declare(w, s, cwriter_name(w, &named), x);
     x = w->piece[s];
   }

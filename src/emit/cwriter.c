@@ -250,7 +250,8 @@ void cwriter_declare(Writer *w, Slot s, Piece name, Piece x) {
   cwriter_flush_title(w);
   const char *type = ir_is_condition(i->op) ? "MASK" : "REAL";
   cwriter_statement(w, arena_printf(w->a, "const %s_%s %s = %s;", w->style->prefix, type, name.text, x.text));
-  if (i->name && strcmp(i->name, name.text) != 0) sb_printf(w->out, " /* %s */", comment_text(w->a, meaning(w, i->name)));
+  const char *said = i->name && w->indent ? cloop_stem(w->a, i->name) : i->name; /* in loops, of all turns */
+  if (said && strcmp(said, name.text) != 0) sb_printf(w->out, " /* %s */", comment_text(w->a, meaning(w, said)));
   sb_putc(w->out, '\n');
   w->piece[s] = name;
 }
