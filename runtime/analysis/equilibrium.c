@@ -6,6 +6,7 @@
 
 #include "analysis/blur.h"
 #include "analysis/pivot.h"
+#include "analysis/place.h"
 
 enum { MOST_STEPS = 200, MOST_DESCENT = 200 };
 
@@ -38,8 +39,7 @@ static void choose_scales(Rest *r)
   }
 }
 
-/* The state of x[n]. */
-static void place(Rest *r, const double *x)
+void lag_rest_place(Rest *r, const double *x)
 {
   int nq = r->sim->pb.nq;
 
@@ -48,15 +48,14 @@ static void place(Rest *r, const double *x)
   }
 }
 
-/* Forces M a (a from the model, so that both vanish together) and rates, and their derivatives, at r->y. */
-static int equations(void *context, const double *x, double *f, double *J)
+int lag_rest_equations(void *context, const double *x, double *f, double *J)
 {
   Rest *r = context;
   lag_problem *pb = &r->sim->pb;
   int nq = pb->nq, n = r->n;
   double t = r->sim->run->t;
 
-  place(r, x);
+  lag_rest_place(r, x);
   int rc = lag_rhs(pb, t, r->y, r->rate);
   rc = rc ? rc : lag_linearise(pb, t, r->y, NULL, r->dr, r->M, r->work);
   for (int i = 0; i < n && rc == 0; i++) {
@@ -81,7 +80,7 @@ static int choose_rows(Rest *r)
   for (int i = 0; i < n; i++) {
     r->row[i] = 1;
   }
-  int rc = equations(r, r->x, r->f, r->J);
+  int rc = lag_rest_equations(r, r->x, r->f, r->J);
   if (rc) {
     return rc;
   }
@@ -103,7 +102,7 @@ static int choose_rows(Rest *r)
 
 static int forces(Rest *r, const double *x, double *out)
 {
-  return equations(r, x, out, out + r->n);
+  return lag_rest_equations(r, x, out, out + r->n);
 }
 
 /* r->f, r->J and what rounding makes of them, r->noise[n | n * n], at x[n]. */
@@ -125,7 +124,7 @@ static int forces_and_noise(Rest *r, const double *x)
     }
     r->noise[i] += i < nq ? DBL_EPSILON * sum * r->scale[i] * r->row[i] : 0;
   }
-  return equations(r, x, r->f, NULL); /* r->rate at x */
+  return lag_rest_equations(r, x, r->f, NULL); /* r->rate at x */
 }
 
 /* J dx = -b, b[n] of the size of noise; all but dx is destroyed. `noise` may be NULL: J is what it seems. Returns the rank. */
@@ -281,7 +280,7 @@ static double distance(const Rest *r, const double *x, const double *y)
 static int friction(void *context, const double *x, double *f, double *J)
 {
   Rest *r = context;
-  int n = r->n, rc = equations(r, x, f, J);
+  int n = r->n, rc = lag_rest_equations(r, x, f, J);
 
   for (int i = 0; i < n && rc == 0; i++) {
     for (int j = 0; j < n; j++) {
@@ -294,13 +293,13 @@ static int friction(void *context, const double *x, double *f, double *J)
   return rc;
 }
 
-/* The mass matrix in the units of the equations, and the identity for rates; the first step goes 0.3 of a scale. */
+/* The mass matrix in the units of the lag_rest_equations, and the identity for rates; the first step goes 0.3 of a scale. */
 static void prepare_friction(Rest *r)
 {
   int n = r->n, nq = r->sim->pb.nq;
   double fastest = 0;
 
-  equations(r, r->x, r->f, r->J);
+  lag_rest_equations(r, r->x, r->f, r->J);
   for (int i = 0; i < n; i++) {
     fastest = fmax(fastest, fabs(r->rate[nq + i]) / r->scale[i]);
     for (int j = 0; j < n; j++) {
@@ -334,15 +333,25 @@ static void descend(Rest *r)
 
 /* ---- The search */
 
-/* Has x left everything behind? Forces that fade have no root there. */
-static int ran_away(const Rest *r)
+static double largest_force(Rest *r, const double *x)
+{
+  double most = 0;
+
+  for (int i = 0; i < r->n && (i > 0 || lag_rest_equations(r, x, r->f, NULL) == 0); i++) {
+    most = fmax(most, fabs(r->f[i]));
+  }
+  return most;
+}
+
+/* Has x left everything behind, or nearly all of the force at the start? Forces that fade have no root there. */
+static int ran_away(Rest *r)
 {
   double start = 1;
 
   for (int i = 0; i < r->n; i++) {
     start = fmax(start, fabs(r->begin[i]));
   }
-  return distance(r, r->x, r->begin) > 1e4 * start;
+  return distance(r, r->x, r->begin) > 1e4 * start || largest_force(r, r->x) < 1e-6 * largest_force(r, r->begin);
 }
 
 /* x := the root to which Newton's method leads from there[n], if it is one and not too far; else x stays. */
@@ -352,7 +361,7 @@ static int polish(Rest *r, const double *there, double farthest)
 
   memcpy(r->kept, r->x, bytes);
   memcpy(r->x, there, bytes);
-  if (newton(r, equations, r->x, MOST_STEPS) && distance(r, r->x, there) <= farthest) {
+  if (newton(r, lag_rest_equations, r->x, MOST_STEPS) && distance(r, r->x, there) <= farthest) {
     clean(r);
     if (holds(r, r->x)) {
       return 1;
@@ -369,7 +378,7 @@ static int find_root(Rest *r, const lag_algebra *algebra)
   int steps = 0;
 
   memcpy(r->from, r->x, bytes);
-  int rc = algebra->root(r->n, r->x, equations, r, MOST_STEPS, &steps);
+  int rc = algebra->root(r->n, r->x, lag_rest_equations, r, MOST_STEPS, &steps);
   r->steps += steps;
   if (rc) {
     return rc;
@@ -379,7 +388,7 @@ static int find_root(Rest *r, const lag_algebra *algebra)
     return 1;
   }
   memcpy(r->near, r->x, bytes);
-  return polish(r, r->near, 0.1) || holds(r, r->x) || polish(r, r->from, HUGE_VAL) || holds(r, r->x);
+  return polish(r, r->near, 0.1) || holds(r, r->x) || polish(r, r->from, 10) || holds(r, r->x);
 }
 
 /* A root near the start, stable or not; else one downhill; else any. */
@@ -439,7 +448,9 @@ static int settle(Rest *r)
       r->spread[i] = fmax(r->spread[i], fmin(fabs(r->dx[i]), 0.1));
     }
   }
-  rc = rc ? rc : equations(r, r->x, r->f, r->J);
+  r->pole = lag_place_is_pole(r);
+  r->rough = rc == 0 && lag_place_is_rough(r);
+  rc = rc ? rc : lag_rest_equations(r, r->x, r->f, r->J);
   return rc ? (rc < 0 ? rc : LAG_EDOMAIN) : 1;
 }
 
@@ -469,6 +480,10 @@ int lag_rest_find(Rest *r, lag_sim *sim, const lag_algebra *algebra)
     clean(r);
     return settle(r);
   }
+  if (rc == 0) {
+    r->pole = lag_place_is_pole(r);
+    holds(r, r->x);
+  }
   return rc;
 }
 
@@ -478,7 +493,7 @@ int lag_rest_holds(Rest *r, const double *dx, double c)
     r->trial[i] = r->x[i] + c * dx[i] / r->scale[i];
   }
   int good = holds(r, r->trial);
-  place(r, r->x);
+  lag_rest_place(r, r->x);
   return good;
 }
 
@@ -490,10 +505,10 @@ int lag_rest_continues(Rest *r, const lag_algebra *algebra, const double *dx, do
   for (int i = 0; i < r->n; i++) {
     r->from[i] = r->x[i] + c * dx[i] / r->scale[i];
   }
-  int found = algebra->root(r->n, r->from, equations, r, MOST_STEPS, &steps) == LAG_OK;
+  int found = algebra->root(r->n, r->from, lag_rest_equations, r, MOST_STEPS, &steps) == LAG_OK;
   if (found) {
     memcpy(r->trial, r->from, (size_t)r->n * sizeof(double));
-    found = newton(r, equations, r->trial, MOST_STEPS) && distance(r, r->trial, r->from) <= 0.1 * fabs(c) && holds(r, r->trial);
+    found = newton(r, lag_rest_equations, r->trial, MOST_STEPS) && distance(r, r->trial, r->from) <= 0.1 * fabs(c) && holds(r, r->trial);
     found = found || holds(r, r->from);
   }
   for (int i = 0; i < r->n; i++) {
@@ -501,7 +516,7 @@ int lag_rest_continues(Rest *r, const lag_algebra *algebra, const double *dx, do
     off = fmax(off, fabs(r->from[i] - r->x[i] - step));
     far = fmax(far, fabs(step));
   }
-  place(r, r->x);
+  lag_rest_place(r, r->x);
   return found && off < 0.4 * far;
 }
 

@@ -25,6 +25,7 @@ typedef struct Rest {
   double *values, *noise, *scratch; /* [n + n * n] f and J, and what rounding of the model's numbers makes of them */
   double *spread; /* [n] how far the root may be from x, by rounding */
   int rank;       /* of J there */
+  int pole, rough; /* what place.h says of it */
   double delta;
   double *dr, *M, *work;   /* of lag_linearise */
 } Rest;
@@ -36,6 +37,13 @@ typedef struct Rest {
  * lag_rest_free in every case. */
 int lag_rest_find(Rest *rest, lag_sim *sim, const lag_algebra *algebra);
 void lag_rest_free(Rest *rest);
+
+/* An lag_equations: forces M a (a from the model, so that both vanish together) and rates, of a Rest at x[n]. Leaves the state in y,
+ * y' in rate, and M. */
+int lag_rest_equations(void *rest, const double *x, double *f, double *J);
+
+/* y := the state, at rest, of the unknowns x[n]. */
+void lag_rest_place(Rest *rest, const double *x);
 
 /* Whether a root is at, or so near that it cannot be told from, the state at rest moved by c times dx[n] (in SI). */
 int lag_rest_holds(Rest *rest, const double *dx, double c);
