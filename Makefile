@@ -288,7 +288,7 @@ help:
 	@echo 'make test         installs what is missing, then runs every test'
 	@echo '                  T="unit/test_num golden": only suites whose names begin so'
 	@echo 'make test-long    the suites that take minutes'
-	@echo 'make bench        times; nothing fails by being slow'
+	@echo 'make bench        instructions and times next to peers, to tests/bench/RESULTS.md; nothing fails by being slow'
 	@echo 'make bless        rewrites the expectations of golden tests: look at the diff before you commit it'
 	@echo 'make fuzz         looks for inputs that break the compiler; SECONDS=60, T=fuzz_parse'
 	@echo 'make gallery      draws the pictures of models/README.md'

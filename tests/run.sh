@@ -7,7 +7,7 @@
 #   tests/fuzz/fuzz_NAME.c         replays tests/fuzz/corpus/NAME                suite fuzz/fuzz_NAME
 #   tests/FOLDER/NAME.sh           run from the top of the source tree by sh     suite FOLDER/NAME
 #   tests/FOLDER/long_NAME.sh      the same, in `make test-long`
-#   tests/bench/NAME.sh            run by `make bench`; what it prints is shown
+#   tests/bench/NAME.sh            run by `make bench`; what it prints is shown, and written to tests/bench/RESULTS.md
 #   tests/FOLDER/lib_NAME.sh       is none: scripts share it
 # --bless runs the scripts that know BLESS with BLESS=1: they rewrite their expectations.
 #
@@ -199,6 +199,8 @@ for s in $suites; do
   printf '%s\n' "$verdict" | tail -n +2
 done
 wait "$runner" 2>/dev/null
+# shellcheck disable=SC2086 # a list of words
+if [ "$kind" = bench ] && [ "$failed" = 0 ]; then sh tests/bench/lib_results.sh "$logs" $suites && echo 'see tests/bench/RESULTS.md'; fi
 
 line="$passed passed, $failed failed"
 [ "$skipped" = 0 ] || line="$line, $skipped skipped"

@@ -13,8 +13,7 @@ static Slot code_of(const Writer *w, const Loop *l, uint32_t turn, uint32_t offs
 
 /* --- names and indices --- */
 
-/* x[3]' -> x', D12 -> D, L2_11 -> L: what the turns' names have in common. */
-static const char *stem_of(Arena *a, const char *name) {
+const char *cloop_stem(Arena *a, const char *name) {
   StrBuf b = strbuf(a);
   for (const char *s = name; *s; s++) {
     const char *close = *s == '[' ? strchr(s, ']') : NULL;
@@ -105,15 +104,22 @@ static void count_own_uses(Writer *w, Body *b) {
       if (x && roll_step(&w->rolls, b->l, k, which).kind == STEP_OWN) b->own_uses[offset_of(w, b->l, x)] += twice ? 2 : 1;
     }
   }
+  for (uint32_t k = 0; k < b->l->stores.n; k++) b->own_uses[b->l->stores.at[k].offset]++;
 }
 
 static const char *kept_name(const Writer *w, const Ins *i) {
   const Ins *x = &w->p->ins.at[i->a];
-  if (i->name) return stem_of(w->a, i->name);
-  return i->op == IR_FN1 && x->op == IR_LOAD ? arena_printf(w->a, "%s_%s", i->text, stem_of(w->a, x->name)) : "kept";
+  if (i->name) return cloop_stem(w->a, i->name);
+  return i->op == IR_FN1 && x->op == IR_LOAD ? arena_printf(w->a, "%s_%s", i->text, cloop_stem(w->a, x->name)) : "kept";
 }
 
-/* Conditions and numbers have arrays of their own. */
+/* x[3]' -> last_x'. */
+static const char *carried_name(const Writer *w, const Ins *i) {
+  const char *name = kept_name(w, i);
+  return i->name ? arena_printf(w->a, "last_%s", name) : "last";
+}
+
+/* Conditions and numbers have arrays of their own; what goes to the next turn only, a variable. */
 static void declare_kept(Writer *w, const Body *b, int conditions) {
   const Loop *l = b->l;
   const char **names = w->kept[b->number];
@@ -121,8 +127,9 @@ static void declare_kept(Writer *w, const Body *b, int conditions) {
   for (uint32_t k = 0; k < l->period; k++) {
     const Ins *i = &w->p->ins.at[code_of(w, l, 0, k)];
     if (!l->kept[k] || ir_is_condition(i->op) != conditions) continue;
-    names[k] = cnames_take(&w->names, kept_name(w, i));
-    sb_printf(&text, "%s%s[%u]", text.n ? ", " : "", names[k], l->count + l->kept[k] - 1);
+    names[k] = cnames_take(&w->names, l->carried[k] ? carried_name(w, i) : kept_name(w, i));
+    if (l->carried[k]) sb_printf(&text, "%s%s = %s", text.n ? ", " : "", names[k], cwriter_operand(w, w->rolls.code[l->begin + k - l->period]).text);
+    else sb_printf(&text, "%s%s[%u]", text.n ? ", " : "", names[k], l->count + l->kept[k] - 1);
   }
   if (!text.n) return;
   cwriter_statement(w, arena_printf(w->a, "%s_%s %s;", w->style->prefix, conditions ? "MASK" : "REAL", sb_text(&text)));
@@ -133,7 +140,7 @@ static void declare_kept(Writer *w, const Body *b, int conditions) {
 static void write_first_values(Writer *w, const Body *b) {
   const Loop *l = b->l;
   for (uint32_t k = 0; k < l->period; k++)
-    for (uint32_t t = 0; t + 1 < l->kept[k]; t++) {
+    for (uint32_t t = 0; t + 1 < l->kept[k] && !l->carried[k]; t++) {
       uint32_t place = l->begin + k - (l->kept[k] - 1 - t) * l->period;
       cwriter_statement(w, arena_printf(w->a, "%s[%u] = %s;", w->kept[b->number][k], t, cwriter_operand(w, w->rolls.code[place]).text));
       sb_putc(w->out, '\n');
@@ -153,7 +160,7 @@ static void name_turn_loads(Writer *w, Body *b) {
       Step s = x ? roll_step(&w->rolls, b->l, k, which) : (Step){.kind = STEP_SAME};
       if (s.kind != STEP_LOAD || turn_load(b, x, s.step)) continue;
       const Ins *i = &w->p->ins.at[x];
-      const char *name = cnames_take(&w->names, stem_of(w->a, i->name));
+      const char *name = cnames_take(&w->names, cloop_stem(w->a, i->name));
       vec_push(w->a, &b->loads, ((TurnLoad){x, s.step, name}));
       cwriter_statement(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, w->style->in[i->array],
                                         index_text(w, i->index, s.step)));
@@ -176,6 +183,7 @@ static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int w
     case STEP_LOAD: return (Piece){turn_load(b, x, s.step)->name, C_ATOM, 0};
     case STEP_BEFORE: {
       uint32_t at = place + s.back * b->l->period - b->l->begin; /* offset of what it becomes */
+      if (b->l->carried[at]) return (Piece){w->kept[b->number][at], C_ATOM, 1};
       const char *index = index_text(w, (int64_t)(b->l->kept[at] - 1) - s.back, 1);
       return (Piece){arena_printf(w->a, "%s[%s]", w->kept[b->number][at], index), C_ATOM, 1};
     }
@@ -191,17 +199,18 @@ static void write_value(Writer *w, const Body *b, uint32_t offset, Slot s, const
     return;
   }
   Piece x = cwriter_spell(w, i);
+  int carried = b->l->carried[offset];
   if (!kept && b->own_uses[offset] <= 1 && cwriter_is_short(w, x)) {
     w->piece[s] = x;
     return;
   }
-  if (b->own_uses[offset]) {
+  if (b->own_uses[offset] || carried) {
     Ins named = *i;
-    if (named.name) named.name = stem_of(w->a, named.name);
+    if (named.name) named.name = cloop_stem(w->a, named.name);
     cwriter_declare(w, s, cwriter_name(w, &named), x);
     x = w->piece[s];
   }
-  if (!kept) return;
+  if (!kept || carried) return;
   cwriter_statement(w, arena_printf(w->a, "%s[%s] = %s;", w->kept[b->number][offset], index_text(w, kept - 1, 1), x.text));
   sb_putc(w->out, '\n');
 }
@@ -222,6 +231,22 @@ static void write_turn(Writer *w, const Body *b) {
   }
 }
 
+/* What the turn leaves: outputs, and the values that the next one takes. */
+static void write_turn_end(Writer *w, const Body *b) {
+  const Loop *l = b->l;
+  for (uint32_t k = 0; k < l->stores.n; k++) {
+    const LoopStore *s = &l->stores.at[k];
+    cwriter_statement(w, arena_printf(w->a, "%s[%s] = %s;", w->style->out[s->array], index_text(w, s->index, s->step),
+                                      cwriter_operand(w, code_of(w, l, 0, s->offset)).text));
+    sb_printf(w->out, " /* %s ... %s */\n", comment_text(w->a, s->first), comment_text(w->a, s->last));
+  }
+  for (uint32_t k = 0; k < l->period; k++) {
+    if (!l->carried[k]) continue;
+    cwriter_statement(w, arena_printf(w->a, "%s = %s;", w->kept[b->number][k], w->piece[code_of(w, l, 0, k)].text));
+    sb_putc(w->out, '\n');
+  }
+}
+
 void cloop_write(Writer *w, uint32_t loop) {
   Body b = {.l = loop_at(w, loop), .number = loop};
   b.own_uses = ARENA_ARRAY(w->a, uint32_t, b.l->period);
@@ -236,13 +261,14 @@ void cloop_write(Writer *w, uint32_t loop) {
   w->indent += 2;
   name_turn_loads(w, &b);
   write_turn(w, &b);
+  write_turn_end(w, &b);
   w->indent -= 2;
   cwriter_statement(w, "}");
   sb_putc(w->out, '\n');
   for (uint32_t k = 0; k < b.l->period; k++)
     for (uint32_t t = 0; t < b.l->count && b.l->kept[k]; t++) {
       Slot s = code_of(w, b.l, t, k);
-      w->piece[s] = kept_value(w, w->rolls.place[s] - 1, 0);
+      w->piece[s] = b.l->carried[k] ? (Piece){w->kept[loop][k], C_ATOM, 1} : kept_value(w, w->rolls.place[s] - 1, 0);
     }
 }
 

@@ -250,7 +250,8 @@ void cwriter_declare(Writer *w, Slot s, Piece name, Piece x) {
   cwriter_flush_title(w);
   const char *type = ir_is_condition(i->op) ? "MASK" : "REAL";
   cwriter_statement(w, arena_printf(w->a, "const %s_%s %s = %s;", w->style->prefix, type, name.text, x.text));
-  if (i->name && strcmp(i->name, name.text) != 0) sb_printf(w->out, " /* %s */", comment_text(w->a, meaning(w, i->name)));
+  const char *said = i->name && w->indent ? cloop_stem(w->a, i->name) : i->name; /* in loops, of all turns */
+  if (said && strcmp(said, name.text) != 0) sb_printf(w->out, " /* %s */", comment_text(w->a, meaning(w, said)));
   sb_putc(w->out, '\n');
   w->piece[s] = name;
 }
@@ -405,6 +406,10 @@ static int is_paired(const Writer *w, const Store *st) { return (w->style->paire
 static void write_stores(Writer *w) {
   for (uint32_t k = 0; k < w->p->stores.n;) {
     if (!k) sb_putc(w->out, '\n');
+    if (w->rolls.stored[k]) {
+      k++;
+      continue;
+    }
     uint32_t n = cloop_stores(w, k);
     if (n) cloop_write_stores(w, k, n);
     else if (is_paired(w, &w->p->stores.at[k])) n = write_pair(w, k);
@@ -418,6 +423,16 @@ static unsigned arrays_by_index(const CStyle *style) {
   return style->params ? 1u << ARR_Q | 1u << ARR_V | 1u << ARR_Z | 1u << ARR_U : ~(1u << ARR_T | 1u << ARR_ORDER | 1u << ARR_PER_ORDER | 1u << ARR_UP);
 }
 
+/* Whether no array that is written is read, too. */
+static int stores_apart(const Prog *p, const CStyle *style) {
+  for (int k = 0; k < ARR_COUNT; k++) {
+    if (!prog_reads(p, (IrArray)k)) continue;
+    for (uint32_t s = 0; s < p->stores.n; s++)
+      if (strcmp(style->in[k], style->out[p->stores.at[s].array]) == 0) return 0;
+  }
+  return 1;
+}
+
 static void write_code(Writer *w) {
   uint32_t next = 0; /* loop */
   for (Slot s = 1; s < w->p->ins.n; s++) {
@@ -429,7 +444,7 @@ static void write_code(Writer *w) {
 
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
-  w.rolls = roll_find(p, arrays_by_index(style));
+  w.rolls = roll_find(p, arrays_by_index(style), style->seldom_called ? ROLL_SELDOM_FROM : ROLL_FROM, stores_apart(p, style));
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
   w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);

@@ -51,6 +51,9 @@ void cloop_prepare(Writer *w);
 /* Whether a load gets a name at the top of the function. */
 int cloop_names_load(const Writer *w, Slot s);
 
+/* x[3]' -> x', D12 -> D, L2_11 -> L: what the turns' names have in common. */
+const char *cloop_stem(Arena *a, const char *name);
+
 /* A whole loop. */
 void cloop_write(Writer *w, uint32_t loop);
 

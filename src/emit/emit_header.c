@@ -77,12 +77,17 @@ static Header header_new(const IrUnit *u, const char *name, StrBuf *out) {
 
 /* The equations; what stands above them, and the operation count, are in the head already. */
 static void comment_lines(const Header *h, const char *text) {
+  enum { MOST_LINES = 80, MOST_COLUMNS = 300 };
   const char *body = strstr(text, "\n\n"), *safe = comment_text(h->a, body ? body + 1 : text);
-  while (*safe) {
-    size_t n = strcspn(safe, "\n");
-    if (strncmp(safe, "accelerations:", 14) != 0) sb_printf(h->out, " *%s%.*s\n", n ? " " : "", (int)n, safe);
+  uint32_t lines = 0, left = 0;
+  for (; *safe; lines++) {
+    size_t n = strcspn(safe, "\n"), shown = n > MOST_COLUMNS ? MOST_COLUMNS : n;
+    while (shown > 0 && shown < n && (safe[shown] & 0xc0) == 0x80) shown--; /* between characters of UTF-8 */
+    if (lines >= MOST_LINES) left += n > 0;
+    else if (strncmp(safe, "accelerations:", 14) != 0) sb_printf(h->out, " *%s%.*s%s\n", n ? " " : "", (int)shown, safe, shown < n ? " ..." : "");
     safe += n + (safe[n] == '\n');
   }
+  if (left) sb_printf(h->out, " * ... and %u lines more: `lagc derive` shows them.\n", left);
 }
 
 static void write_usage(const Header *h) {

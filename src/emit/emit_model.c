@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "base/digits.h"
 #include "emit/cfunction.h"
+#include "emit/ctable.h"
 #include "emit/emit_taylor.h"
 
 /* One emitted file. */
@@ -35,7 +35,7 @@ static const char *const abi_names[] = {
   "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_lanes", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
   "taylor_rest", "taylor_squares", "TAYLOR_SQUARES",
   "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
-  "curves",
+  "curves", "LAG_EACH", "LAG_10", "LAG_100", "LAG_1000", "LAG_10000",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -101,9 +101,17 @@ static CStyle style_for(const File *f, const char *const *own, const char *const
   return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .spline = "lag_spline"};
 }
 
+/* Once a step, or a row of output. */
+static int is_seldom_called(const IrUnit *u, const Prog *p) {
+  int seldom = p == u->energy;
+  for (uint32_t i = 0; i < u->scenes.n; i++) seldom |= p == u->scenes.at[i].observe;
+  return seldom;
+}
+
 static void function(const File *f, const Prog *p, const char *comment, const char *head, const char *const *own,
                      const char *const *written) {
   CStyle st = style_for(f, own, written);
+  st.seldom_called = is_seldom_called(f->u, p);
   CFunction c = {.comment = comment, .head = head, .end = "  return LAG_OK;\n"};
   cfunction(p, &st, &c, f->out);
 }
@@ -273,23 +281,12 @@ static void emit_exact(const File *f, const IrScene *s, const char *id) {
 
 /* --- tables --- */
 
-/* A number of a table in the precision of the model: the digits where there are any, integers as they are. */
-static const char *number_text(Arena *a, double x, const char *digits) {
-  const char *text = double_text(a, x);
-  if (!strpbrk(text, ".e")) return text;
-  return arena_printf(a, "LAG_NUMBER(%s)", digits && strlen(digits) > strlen(text) ? digits : text);
-}
-
-static void table(const IrUnit *u, const char *name, const IrVar *v, uint32_t n, StrBuf *out) {
-  if (!n) return;
-  sb_printf(out, "\nstatic const lag_var %s[] = {\n", name);
-  for (uint32_t i = 0; i < n; i++) {
-    const char *label = c_string(u->arena, v[i].name), *unit = c_string(u->arena, v[i].unit);
-    const char *offset = number_text(u->arena, v[i].offset, NULL);
-    const char *factor = number_text(u->arena, v[i].factor, digits_text(u->arena, v[i].ratio, v[i].pi_power));
-    sb_printf(out, "  {%s, %s, %s, %d, %d, %s},\n", label, unit, factor, v[i].periodic, v[i].sign, offset);
-  }
-  sb_puts(out, "};\n");
+/* Whether a table of the unit is written with macros. */
+static int has_long_tables(const IrUnit *u) {
+  int is_long = ctable_is_long(u->q.at, u->q.n) || ctable_is_long(u->z.at, u->z.n) || ctable_is_long(u->p.at, u->p.n) ||
+                ctable_is_long(u->u.at, u->u.n);
+  for (uint32_t i = 0; i < u->scenes.n; i++) is_long |= ctable_is_long(u->scenes.at[i].outputs.at, u->scenes.at[i].outputs.n);
+  return is_long;
 }
 
 static uint32_t work_size(const IrUnit *u) {
@@ -344,10 +341,10 @@ static void second_table(const IrUnit *u, StrBuf *out) {
 }
 
 static void emit_tables(const IrUnit *u, const char *name, const char *digest, StrBuf *out) {
-  table(u, "q_table", u->q.at, u->q.n, out);
-  table(u, "z_table", u->z.at, u->z.n, out);
-  table(u, "p_table", u->p.at, u->p.n, out);
-  table(u, "u_table", u->u.at, u->u.n, out);
+  ctable_vars("q_table", u->q.at, u->q.n, u->arena, out);
+  ctable_vars("z_table", u->z.at, u->z.n, u->arena, out);
+  ctable_vars("p_table", u->p.at, u->p.n, u->arena, out);
+  ctable_vars("u_table", u->u.at, u->u.n, u->arena, out);
   if (u->events.n) {
     sb_puts(out, "\nstatic const lag_event ev_table[] = {\n");
     for (uint32_t i = 0; i < u->events.n; i++)
@@ -376,12 +373,12 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
 }
 
 static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
-  table(u, arena_printf(u->arena, "outputs_%s", id), s->outputs.at, s->outputs.n, out);
+  ctable_vars(arena_printf(u->arena, "outputs_%s", id), s->outputs.at, s->outputs.n, u->arena, out);
   if (s->options.n) {
     sb_printf(out, "\nstatic const lag_option options_%s[] = {\n", id);
     for (uint32_t i = 0; i < s->options.n; i++) {
       const IrOption *o = &s->options.at[i];
-      sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, o->name), number_text(u->arena, o->value, NULL), o->text ? c_string(u->arena, o->text) : "NULL");
+      sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, o->name), ctable_number(u->arena, o->value, NULL), o->text ? c_string(u->arena, o->text) : "NULL");
     }
     sb_puts(out, "};\n");
   }
@@ -389,7 +386,7 @@ static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, 
     sb_printf(out, "\nstatic const lag_monitor monitors_%s[] = {\n", id);
     for (uint32_t i = 0; i < s->monitors.n; i++) {
       const IrMonitor *m = &s->monitors.at[i];
-      sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output, number_text(u->arena, m->limit, NULL), m->absolute);
+      sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output, ctable_number(u->arena, m->limit, NULL), m->absolute);
     }
     sb_puts(out, "};\n");
   }
@@ -412,12 +409,12 @@ static void emit_scene(const File *f, uint32_t index) {
   sb_printf(out, "\nconst lag_scene %s_%s = {\n", name, id);
   sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
   sb_printf(out, "  .model = &%s,\n  .params = params_%s, .start = start_%s,\n", name, id, id);
-  sb_printf(out, "  .t0 = %s, .t1 = %s, .has_span = %d,\n", number_text(u->arena, s->t0, NULL), number_text(u->arena, s->t1, s->t1_digits), s->has_span);
+  sb_printf(out, "  .t0 = %s, .t1 = %s, .has_span = %d,\n", ctable_number(u->arena, s->t0, NULL), ctable_number(u->arena, s->t1, s->t1_digits), s->has_span);
   sb_printf(out, "  .method = %s, .noptions = %u, .options = %s,\n", s->method ? c_string(u->arena, s->method) : "NULL", s->options.n,
             list_name(u, s->options.n, "options", id));
-  sb_printf(out, "  .tolerance = %s,\n", number_text(u->arena, s->tolerance, NULL));
+  sb_printf(out, "  .tolerance = %s,\n", ctable_number(u->arena, s->tolerance, NULL));
   sb_printf(out, "  .nout = %u, .outputs = %s, .every = %s, .observe = observe_%s,\n", s->outputs.n, list_name(u, s->outputs.n, "outputs", id),
-            number_text(u->arena, s->every, NULL), id);
+            ctable_number(u->arena, s->every, NULL), id);
   if (s->exact_of.n) sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
   sb_printf(out, "  .nmonitors = %u, .monitors = %s,\n};\n", s->monitors.n, list_name(u, s->monitors.n, "monitors", id));
 }
@@ -435,6 +432,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_head(u, out);
   sb_puts(out, prelude);
   csupport_logic("LAG", out);
+  if (has_long_tables(u)) ctable_macros(out);
   if (work_size(u)) csupport_solver("LAG", "lag", out);
   if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
   size_t begin = out->n;

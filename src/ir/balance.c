@@ -113,7 +113,7 @@ static Slot add_up(Balance *b) {
 
 Prog *prog_balance(const Prog *p, const uint32_t *loads) {
   Arena *a = p->arena;
-  Balance b = {.from = p, .to = prog_new(a), .map = ARENA_ARRAY(a, Slot, p->ins.n), .uses = prog_uses(p),
+  Balance b = {.from = p, .to = prog_like(p), .map = ARENA_ARRAY(a, Slot, p->ins.n), .uses = prog_uses(p),
                .inside = ARENA_ARRAY(a, unsigned char, p->ins.n), .loads = loads};
   mark_inside(&b);
   for (Slot s = 1; s < p->ins.n; s++) {

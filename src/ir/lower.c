@@ -99,7 +99,8 @@ static Slot scaled(Lower *l, Slot t, Num c) {
   c = num_abs(c);
   if (num_is_one(c)) return t;
   int dyadic = !num_is_exact(c) || (c.den & (c.den - 1)) == 0;
-  Slot up = number(l, dyadic ? c : num_int(c.num)), down = dyadic ? 0 : number(l, num_int(c.den));
+  int64_t more = !dyadic && l->denominator && l->denominator % c.den == 0 ? l->denominator / c.den : 1;
+  Slot up = number(l, dyadic ? c : num_int(c.num * more)), down = dyadic ? 0 : number(l, num_int(c.den * more));
   const Ins *i = &l->p->ins.at[t];
   const Ins *top = &l->p->ins.at[i->a];
   if (i->op == IR_DIV && top->op == IR_CONST && num_is_one(top->number)) {
@@ -265,6 +266,13 @@ static Lower lower_new(const Eqns *e) {
 
 static const char *text_of_symbol(const Lower *l, SymId s) { return expr_symbol(l->g, s)->name; }
 
+/* Whether each coordinate has its acceleration to itself. */
+static int is_diagonal(const Eqns *e) {
+  uint32_t off = e->system.ndefs;
+  for (uint32_t k = 0; k < e->system.H.n; k++) off += e->system.H.at[k].row != e->system.H.at[k].col;
+  return off == 0;
+}
+
 Prog *lower_accel(const Eqns *e) {
   Lower l = lower_new(e);
   const Model *m = e->m;
@@ -274,7 +282,9 @@ Prog *lower_accel(const Eqns *e) {
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
-  return prog_tidy(l.p);
+  enum { LONG = 1500 }; /* as for loops */
+  Prog *p = prog_factor(prog_tidy(l.p));
+  return is_diagonal(e) && p->ins.n > LONG ? prog_by_demand(p) : p;
 }
 
 /* Where a constant may stand instead of the formula of an input, `free` says which holds. */
@@ -504,9 +514,33 @@ Prog *lower_param(const Eqns *e, uint32_t i) {
   return prog_tidy(l.p);
 }
 
+/* A common multiple of the denominators of a long family's coefficients, i/(N + 1) say, when it is small: numerators that
+ * count up make a loop. */
+static int64_t common_denominator(const Lower *l, const Scene *sc) {
+  enum { MANY = 64, LARGEST = 1 << 20 };
+  int64_t all = 1;
+  VEC(Expr) roots = {0};
+  if (sc->starts.n < MANY) return 0;
+  for (uint32_t i = 0; i < sc->starts.n; i++) vec_push(l->p->arena, &roots, sc->starts.at[i].value);
+  ExprList nodes = expr_topo(l->g, roots.at, roots.n);
+  for (uint32_t k = 0; k < nodes.n; k++) {
+    if (expr_op(l->g, nodes.at[k]) != EX_SUM) continue;
+    for (uint32_t i = 0; i < expr_pairs(l->g, nodes.at[k], EX_SUM); i++) {
+      Num c;
+      expr_pair(l->g, nodes.at[k], EX_SUM, i, &c);
+      if (!num_is_exact(c) || (c.den & (c.den - 1)) == 0 || all % c.den == 0) continue;
+      int64_t shared = num_gcd(num_int(all), num_int(c.den)).num;
+      if (c.den > LARGEST || all / shared * c.den > LARGEST) return 0;
+      all = all / shared * c.den;
+    }
+  }
+  return all > 1 ? all : 0;
+}
+
 Prog *lower_start(const Eqns *e) {
   Lower l = lower_new(e);
   const Scene *sc = &e->m->scene;
+  l.denominator = common_denominator(&l, sc);
   for (uint32_t i = 0; i < sc->starts.n; i++) lower_roots(&l, &sc->starts.at[i].value, 1);
   for (uint32_t i = 0; i < sc->starts.n; i++) store_target(&l, sc->starts.at[i].target, sc->starts.at[i].value);
   return prog_tidy(l.p);

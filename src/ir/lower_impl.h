@@ -11,6 +11,7 @@ typedef struct {
   Prog *p;
   ExprMap slots;   /* node -> slot + 1 */
   ExprMap circular; /* u -> 1 where sin u or cos u is needed anyway */
+  int64_t denominator; /* a multiple of those of coefficients, which are written over it so that they count up evenly; 0: none */
   int direct;       /* sin(a - b) is computed as it stands: for series, it is cheaper than the addition theorem */
   Factored *factored; /* where the solution leaves its factors, and x[n + ndefs] itself; NULL: nowhere */
   Slot *x;

@@ -11,9 +11,23 @@ Prog *prog_new(Arena *a) {
   return p;
 }
 
+Prog *prog_like(const Prog *p) {
+  Prog *r = ARENA_NEW(p->arena, Prog);
+  r->arena = p->arena;
+  r->ins.cap = p->ins.n + 1;
+  r->ins.at = ARENA_ARRAY(p->arena, Ins, r->ins.cap);
+  r->stores.cap = p->stores.n + 1;
+  r->stores.at = ARENA_ARRAY(p->arena, Store, r->stores.cap);
+  vec_push(p->arena, &r->ins, ((Ins){0}));
+  for (r->table_cap = 256; r->table_cap < 2 * (p->ins.n + 1);) r->table_cap *= 2;
+  r->table = ARENA_ARRAY(p->arena, uint32_t, r->table_cap);
+  return r;
+}
+
 /* --- value numbering --- */
 
-static int is_pure(IrOp op) { return op != IR_PIVOT && op != IR_SOLVE && op != IR_TITLE; }
+/* Done once is done: a pivot that was checked need not be checked again. */
+static int is_pure(IrOp op) { return op != IR_SOLVE && op != IR_TITLE; }
 
 static uint32_t hash_ins(const Ins *i) {
   uint32_t h = (uint32_t)i->op * 0x9e3779b9u;
@@ -181,7 +195,7 @@ uint32_t *prog_uses(const Prog *p) {
 
 Prog *prog_tidy(const Prog *p) {
   Arena *arena = p->arena;
-  Prog *r = prog_new(arena);
+  Prog *r = prog_like(p);
   unsigned char *need = ARENA_ARRAY(arena, unsigned char, p->ins.n);
   uint32_t *divisions = ARENA_ARRAY(arena, uint32_t, p->ins.n);
   Slot *map = ARENA_ARRAY(arena, Slot, p->ins.n);

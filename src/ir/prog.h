@@ -99,6 +99,9 @@ typedef struct {
 
 Prog *prog_new(Arena *a);
 
+/* An empty one with room for as much as p has: growing would take twice the memory. */
+Prog *prog_like(const Prog *p);
+
 /* Appends an instruction, or finds the same computation done before. Sums and products are
  * commutative: their operands are ordered. Folds what adds 0 or multiplies by 1. */
 Slot prog_ins(Prog *p, Ins i);
@@ -115,6 +118,14 @@ int ir_is_condition(IrOp op);
 /* Divisions by one value that occur more than once become products with its reciprocal; what no
  * store needs goes. Keeps the order of what stays. Needs nothing, breaks nothing. */
 Prog *prog_tidy(const Prog *p);
+
+/* a*x + a*y becomes a*(x + y) where both products are used there alone, as long as that saves operations. Needs a tidy
+ * program and leaves one; changes rounding. */
+Prog *prog_factor(Prog *p);
+
+/* The same instructions in the order in which the stores need them, pivots first; without titles. What one store needs
+ * stands together, and makes one loop with what its neighbours need. Not for programs with solves. */
+Prog *prog_by_demand(const Prog *p);
 
 /* Whether two programs compute the same. */
 int prog_same(const Prog *a, const Prog *b);

@@ -2,8 +2,7 @@
 
 #include <string.h>
 
-/* Shorter programs read better without loops, and compile in no time. */
-enum { SHORTEST_CODE = 1500, LONGEST_PERIOD = 400, FEWEST_TURNS = 8, MOST_BACK = 2 };
+enum { LONGEST_PERIOD = 400, FEWEST_TURNS = 8, MOST_BACK = 2 };
 
 Slot roll_operand(const Ins *i, int which) { return which == 0 ? i->a : which == 1 ? i->b : i->c; }
 
@@ -26,6 +25,8 @@ typedef struct {
   Rolls *r;
   const uint32_t *cls; /* by place */
   unsigned by_index;
+  uint32_t *alike_to;  /* by period: classes a period apart are equal up to there, from where it was asked last */
+  uint32_t *failed;    /* by period: the place, from 1, whose instruction does not go on: groups with it fail, too */
 } Search;
 
 static const Ins *code_at(const Rolls *r, uint32_t place) { return &r->p->ins.at[r->code[place]]; }
@@ -110,27 +111,33 @@ static int same_sharing(const Rolls *r, uint32_t begin, uint32_t period, uint32_
   return (x->a == x->b) == (y->a == y->b) && (x->a == x->c) == (y->a == y->c) && (x->b == x->c) == (y->b == y->c);
 }
 
+/* How many instructions from `begin` on are of the classes of those a period later. The search goes forth, and each
+ * period is compared once. */
+static uint32_t alike(const Search *f, uint32_t begin, uint32_t period) {
+  uint32_t *to = &f->alike_to[period];
+  if (*to <= begin)
+    for (*to = begin; *to + period < f->r->n && f->cls[*to] == f->cls[*to + period];) ++*to;
+  return *to - begin;
+}
+
 /* The same, from the first instruction of the group on, for at most `most` turns. */
 static uint32_t turns_within(const Search *f, uint32_t begin, uint32_t period, uint32_t most) {
   const Rolls *r = f->r;
-  uint32_t same = 0;
-  uint64_t enough = (uint64_t)(most - 1) * period;
-  while (same < enough && begin + same + period < r->n && f->cls[begin + same] == f->cls[begin + same + period]) same++;
-  uint32_t turns = same / period + 1;
+  uint32_t turns = alike(f, begin, period) / period + 1;
+  if (turns > most) turns = most;
   for (uint32_t k = 0; k < period && turns >= FEWEST_TURNS; k++) {
-    if (!same_sharing(r, begin, period, k)) return 1;
+    if (!same_sharing(r, begin, period, k)) turns = 1;
     for (int which = 0; which < 3 && turns >= FEWEST_TURNS; which++)
       if (roll_operand(code_at(r, begin + k), which)) turns = turns_of(f, begin, period, k, which, turns);
+    if (turns < FEWEST_TURNS) f->failed[period] = begin + k + 1;
   }
   return turns;
 }
 
-/* Whether the group's first instruction alone goes on for the fewest turns: most groups fail here. */
+/* Whether the classes and the group's first instruction go on for the fewest turns: most groups fail here. */
 static int may_begin(const Search *f, uint32_t begin, uint32_t period) {
   const Rolls *r = f->r;
-  if (begin + (uint64_t)(FEWEST_TURNS - 1) * period >= r->n) return 0;
-  for (uint32_t t = 1; t < FEWEST_TURNS; t++)
-    if (f->cls[begin + t * period] != f->cls[begin]) return 0;
+  if (alike(f, begin, period) < (FEWEST_TURNS - 1) * period) return 0;
   for (int which = 0; which < 3; which++)
     if (roll_operand(code_at(r, begin), which) && turns_of(f, begin, period, 0, which, FEWEST_TURNS) < FEWEST_TURNS) return 0;
   return 1;
@@ -138,7 +145,7 @@ static int may_begin(const Search *f, uint32_t begin, uint32_t period) {
 
 /* For how many turns the group goes on; 1 when for fewer than the fewest. */
 static uint32_t turns_at(const Search *f, uint32_t begin, uint32_t period) {
-  if (!may_begin(f, begin, period) || turns_within(f, begin, period, FEWEST_TURNS) < FEWEST_TURNS) return 1;
+  if (begin < f->failed[period] || !may_begin(f, begin, period) || turns_within(f, begin, period, FEWEST_TURNS) < FEWEST_TURNS) return 1;
   return turns_within(f, begin, period, f->r->n / period + 1);
 }
 
@@ -158,7 +165,7 @@ static Loop well_cut(const Search *f, Loop l) {
   Loop best = l;
   uint32_t least = carried(f->r, &l);
   for (uint32_t k = 1; k < l.period && l.count > FEWEST_TURNS; k++) {
-    Loop x = {l.begin + k, l.period, l.count - 1, NULL};
+    Loop x = {.begin = l.begin + k, .period = l.period, .count = l.count - 1};
     uint32_t n = carried(f->r, &x);
     if (n >= least || turns_at(f, x.begin, x.period) < x.count) continue;
     least = n;
@@ -172,39 +179,84 @@ static Loop longest_at(const Search *f, uint32_t begin) {
   Loop best = {.begin = begin, .period = 1};
   for (uint32_t period = 1; period <= LONGEST_PERIOD && begin + period < f->r->n; period++) {
     uint32_t turns = turns_at(f, begin, period);
-    if (turns >= FEWEST_TURNS && turns * period > best.count * best.period + period) best = (Loop){begin, period, turns, NULL};
+    if (turns >= FEWEST_TURNS && turns * period > best.count * best.period + period) best = (Loop){.begin = begin, .period = period, .count = turns};
   }
   return best;
 }
 
-/* --- what must be kept --- */
+/* --- what is stored, kept and carried --- */
+
+/* The turn of its loop in which a value is computed. */
+static uint32_t turn_of(const Loop *l, uint32_t place) { return (place - l->begin) / l->period; }
+static uint32_t offset_of(const Loop *l, uint32_t place) { return (place - l->begin) % l->period; }
+
+/* Stores of one value of a loop, in the order of turns: 1 + the number of the store; 0: none. */
+typedef struct {
+  uint32_t *by_turn;
+  int twice; /* a turn stores it at two places */
+} Stored;
+
+static int is_even(const Rolls *r, const Loop *l, const uint32_t *by_turn) {
+  const Store *at = r->p->stores.at;
+  for (uint32_t t = 0; t < l->count; t++)
+    if (!by_turn[t]) return 0;
+  const Store *first = &at[by_turn[0] - 1], *second = &at[by_turn[1] - 1];
+  int64_t step = (int64_t)second->index - first->index;
+  for (uint32_t t = 0; t < l->count; t++) {
+    const Store *now = &at[by_turn[t] - 1];
+    if (now->array != first->array || (int64_t)now->index != first->index + t * step) return 0;
+  }
+  return 1;
+}
+
+/* A value that each turn stores once, at places by equal steps, is stored in the loop. */
+static void find_stores(Rolls *r) {
+  Arena *a = r->p->arena;
+  Stored **of = ARENA_ARRAY(a, Stored *, r->loops.n + 1);
+  for (uint32_t k = 0; k < r->p->stores.n; k++) {
+    Slot x = r->p->stores.at[k].slot;
+    uint32_t place = x && r->place[x] ? place_of(r, x) : 0, in = x && r->place[x] ? r->loop[place] : 0;
+    if (!in) continue;
+    const Loop *l = &r->loops.at[in - 1];
+    if (!of[in - 1]) of[in - 1] = ARENA_ARRAY(a, Stored, l->period);
+    Stored *s = &of[in - 1][offset_of(l, place)];
+    if (!s->by_turn) s->by_turn = ARENA_ARRAY(a, uint32_t, l->count);
+    uint32_t *turn = &s->by_turn[turn_of(l, place)];
+    if (*turn) s->twice = 1;
+    *turn = k + 1;
+  }
+  for (uint32_t in = 0; in < r->loops.n; in++) {
+    Loop *l = &r->loops.at[in];
+    for (uint32_t k = 0; of[in] && k < l->period; k++) {
+      const Stored *s = &of[in][k];
+      if (!s->by_turn || s->twice || !is_even(r, l, s->by_turn)) continue;
+      const Store *first = &r->p->stores.at[s->by_turn[0] - 1], *second = &r->p->stores.at[s->by_turn[1] - 1];
+      LoopStore now = {k, first->array, first->index, (int64_t)second->index - first->index, first->comment,
+                       r->p->stores.at[s->by_turn[l->count - 1] - 1].comment};
+      vec_push(a, &l->stores, now);
+      for (uint32_t t = 0; t < l->count; t++) r->stored[s->by_turn[t] - 1] = 1;
+    }
+  }
+}
 
 static void keep(Rolls *r, uint32_t place, uint32_t back) {
   const Loop *l = &r->loops.at[r->loop[place] - 1];
-  uint32_t *kept = &l->kept[(place - l->begin) % l->period];
+  uint32_t *kept = &l->kept[offset_of(l, place)];
   if (*kept < back + 1) *kept = back + 1;
 }
 
-/* A value of a loop that is needed outside of its own turn. */
+/* A value of a loop that is needed outside of it. */
 static void keep_from(Rolls *r, Slot x, uint32_t user) {
   if (!x || !r->place[x]) return;
   uint32_t at = place_of(r, x), in = r->loop[at];
-  if (!in) return;
+  if (!in || (user < r->n && r->loop[user] == in)) return;
   const Loop *l = &r->loops.at[in - 1];
-  int own = user < r->n && r->loop[user] == in && (user - l->begin) / l->period == (at - l->begin) / l->period;
-  if (!own) keep(r, at, 0);
+  keep(r, at, 0);
+  if (turn_of(l, at) + 1 < l->count) l->carried[offset_of(l, at)] = 0;
 }
 
-static void find_kept(Rolls *r) {
-  for (uint32_t k = 0; k < r->n; k++) {
-    const Ins *i = code_at(r, k);
-    for (int which = 0; which < 3; which++) keep_from(r, roll_operand(i, which), k);
-    if (i->op != IR_SOLVE) continue;
-    const Solve *s = &r->p->solves.at[i->index];
-    for (uint32_t j = 0; s->matrix && j < s->n * s->n; j++) keep_from(r, s->matrix[j], UINT32_MAX);
-    for (uint32_t j = 0; j < s->n; j++) keep_from(r, s->rhs[j], UINT32_MAX);
-  }
-  for (uint32_t k = 0; k < r->p->stores.n; k++) keep_from(r, r->p->stores.at[k].slot, UINT32_MAX);
+/* What turns take from turns before. */
+static void keep_carried(Rolls *r) {
   for (uint32_t k = 0; k < r->loops.n; k++) {
     const Loop *l = &r->loops.at[k];
     for (uint32_t offset = 0; offset < l->period; offset++)
@@ -215,10 +267,26 @@ static void find_kept(Rolls *r) {
         uint32_t from = place_of(r, roll_operand(code_at(r, l->begin + offset), which)) + s.back * l->period;
         keep(r, from, s.back);
       }
+    for (uint32_t offset = 0; offset < l->period; offset++) l->carried[offset] &= l->kept[offset] == 2;
   }
 }
 
-Rolls roll_find(const Prog *p, unsigned by_index) {
+static void find_kept(Rolls *r) {
+  for (uint32_t k = 0; k < r->loops.n; k++) memset(r->loops.at[k].carried, 1, r->loops.at[k].period);
+  for (uint32_t k = 0; k < r->n; k++) {
+    const Ins *i = code_at(r, k);
+    for (int which = 0; which < 3; which++) keep_from(r, roll_operand(i, which), k);
+    if (i->op != IR_SOLVE) continue;
+    const Solve *s = &r->p->solves.at[i->index];
+    for (uint32_t j = 0; s->matrix && j < s->n * s->n; j++) keep_from(r, s->matrix[j], UINT32_MAX);
+    for (uint32_t j = 0; j < s->n; j++) keep_from(r, s->rhs[j], UINT32_MAX);
+  }
+  for (uint32_t k = 0; k < r->p->stores.n; k++)
+    if (!r->stored[k]) keep_from(r, r->p->stores.at[k].slot, UINT32_MAX);
+  keep_carried(r);
+}
+
+Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early) {
   Arena *a = p->arena;
   Rolls r = {.p = p};
   Slot *code = ARENA_ARRAY(a, Slot, p->ins.n);
@@ -232,8 +300,8 @@ Rolls roll_find(const Prog *p, unsigned by_index) {
   r.code = code;
   r.place = place;
   r.loop = loop;
-  Search f = {&r, cls, by_index};
-  for (uint32_t i = 0; i < r.n && r.n >= SHORTEST_CODE;) {
+  Search f = {&r, cls, by_index, ARENA_ARRAY(a, uint32_t, LONGEST_PERIOD + 1), ARENA_ARRAY(a, uint32_t, LONGEST_PERIOD + 1)};
+  for (uint32_t i = 0; i < r.n && r.n >= from;) {
     Loop l = longest_at(&f, i);
     if (!l.count) {
       i++;
@@ -242,10 +310,14 @@ Rolls roll_find(const Prog *p, unsigned by_index) {
     l = well_cut(&f, l);
     i = l.begin;
     l.kept = ARENA_ARRAY(a, uint32_t, l.period);
+    l.carried = ARENA_ARRAY(a, unsigned char, l.period);
     vec_push(a, &r.loops, l);
     for (uint32_t k = 0; k < l.period * l.count; k++) loop[i + k] = r.loops.n;
     i += l.period * l.count;
+    memset(f.failed, 0, (LONGEST_PERIOD + 1) * sizeof *f.failed); /* what lies in a loop can be taken by its turns */
   }
+  r.stored = ARENA_ARRAY(a, unsigned char, p->stores.n + 1);
+  if (early) find_stores(&r);
   find_kept(&r);
   return r;
 }

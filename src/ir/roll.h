@@ -8,10 +8,19 @@
 
 #include "ir/prog.h"
 
+/* A value that every iteration stores: out[array][index + r*step]. */
+typedef struct {
+  uint32_t offset, array;
+  int64_t index, step;
+  const char *first, *last; /* comments */
+} LoopStore;
+
 /* `count` times the `period` instructions from place `begin` of the code on. */
 typedef struct {
   uint32_t begin, period, count;
-  uint32_t *kept;  /* [period] 1 + how many iterations back a value is needed; 0: in its own iteration only */
+  uint32_t *kept;         /* [period] 1 + how many iterations back a value is needed; 0: in its own iteration only */
+  unsigned char *carried; /* [period] 1: the next iteration needs it, and behind the loop at most the last one is needed */
+  VEC(LoopStore) stores;
 } Loop;
 
 /* How an operand changes from iteration to iteration. */
@@ -37,11 +46,15 @@ typedef struct {
   const uint32_t *place; /* by slot: its place in code, from 1; 0: a leaf */
   VEC(Loop) loops;       /* in order */
   const uint32_t *loop;  /* by place: the loop that holds it, from 1 */
+  unsigned char *stored; /* by store of p: 1 when a loop has it in its `stores` */
 } Rolls;
 
-/* by_index: the arrays of loads that can be indexed by a variable, as bits 1 << IrArray. Programs that are
- * short anyway get no loops. */
-Rolls roll_find(const Prog *p, unsigned by_index);
+/* Programs of fewer instructions get no loops: straight-line code is faster there, and reads better. */
+enum { ROLL_FROM = 1500, ROLL_SELDOM_FROM = 500 };
+
+/* by_index: the arrays of loads that can be indexed by a variable, as bits 1 << IrArray. A program of fewer than `from`
+ * instructions gets no loops. early: stores may come before the last load. */
+Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early);
 
 /* How operand `which` (0, 1, 2) of instruction `offset` of the loop changes. */
 Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which);

@@ -189,20 +189,22 @@ static Expr as_differentiated(ExprGraph *g, Expr x) {
   return x;
 }
 
-/* The cheapest form of s; its operations in *ops. */
-static LinearSystem best_form(Eqns *e, const LinearSystem *s, uint64_t *ops) {
+enum { LOOK_THROUGH = 1 };
+
+/* The cheapest form of s; its operations in *ops. Forms that look through lets grow with the square of a chain's length. */
+static LinearSystem best_form(Eqns *e, const LinearSystem *s, int how, uint64_t *ops) {
   LinearSystem best = *s;
   *ops = UINT64_MAX;
   try_form(e, s, as_differentiated, &best, ops);
   try_form(e, s, simplify_shallow, &best, ops);
-  if (s->H.n + s->C.n + e->n <= SIMPLIFY_MAX_ENTRIES) try_form(e, s, simplify, &best, ops);
+  if (how == LOOK_THROUGH && s->H.n + s->C.n + e->n <= SIMPLIFY_MAX_ENTRIES) try_form(e, s, simplify, &best, ops);
   return best;
 }
 
 /* Whether the mass matrix, entries and solution, takes many times what the system without it takes:
  * then it is not derived at all. */
 static int mass_is_hopeless(Eqns *e, LinearSystem *lifted) {
-  enum { FEW_COORDINATES = 24, MANY_TIMES = 4 };
+  enum { FEW_COORDINATES = 12, MANY_TIMES = 3 };
   if (e->n <= FEW_COORDINATES || !lifted->ndefs || e->m->expects.n) return 0;
   order_best(e->m->arena, e->g, lifted);
   LinearSystem dense = *lifted;
@@ -219,18 +221,18 @@ void lagrange_momenta_and_forces(Eqns *e) {
   lifted.f = f;
   if (mass_is_hopeless(e, &lifted) && lagrange_definite(e, &lifted)) {
     e->definite_mass = 1;
-    e->system = best_form(e, &lifted, &lifted_ops);
+    e->system = best_form(e, &lifted, 0, &lifted_ops);
     e->f = e->system.f;
     return;
   }
-  LinearSystem raw = {.n = e->n, .H = raw_mass(e), .f = f}, dense = best_form(e, &raw, &dense_ops);
+  LinearSystem raw = {.n = e->n, .H = raw_mass(e), .f = f}, dense = best_form(e, &raw, LOOK_THROUGH, &dense_ops);
   e->mass = dense.H;
   e->mass_known = 1;
   e->f = dense.f;
   e->system = dense;
   e->definite_mass = lagrange_definite(e, &dense);
   if (!lifted.ndefs || !e->definite_mass) return;
-  lifted = best_form(e, &lifted, &lifted_ops);
+  lifted = best_form(e, &lifted, LOOK_THROUGH, &lifted_ops);
   if (lifted_ops < dense_ops) e->system = lifted;
 }
 

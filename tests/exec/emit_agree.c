@@ -12,6 +12,7 @@
 #include "lag_model.h"
 #include "mech/eqns.h"
 #include "model/model.h"
+#include "sym/eval.h"
 #include "syntax/parse.h"
 
 extern const lag_scene *const all_scenes[];
@@ -19,7 +20,10 @@ extern const lag_scene *const all_scenes[];
 #ifndef MAX
 #define MAX 64
 #endif
-enum { STATES = 20 };
+#ifndef LOOSE
+#define LOOSE 0 /* what differs may differ by, where arithmetic is not that of the processor */
+#endif
+enum { STATES = 20, GRAPH_STATES = 5 };
 
 typedef long double Real;
 typedef struct {
@@ -39,7 +43,7 @@ static void random_state(Point *s) {
 
 static int differs(const char *name, const char *what, const Real *a, const Real *b, int n, int exact) {
   for (int i = 0; i < n; i++) {
-    Real tolerance = exact ? 0 : 1e-15L * (1 + fabsl(b[i]));
+    Real tolerance = fmaxl(LOOSE, exact ? 0 : 1e-15L) * (1 + fabsl(b[i]));
     if (fabsl(a[i] - b[i]) <= tolerance) continue;
     printf("%s: %s[%d] is %.21Lg in emitted C, %.21Lg evaluated\n", name, what, i, a[i], b[i]);
     return 1;
@@ -64,6 +68,58 @@ static int compare(const lag_model *m, const Prog *accel, const Prog *energy, Po
   m->energy(s->t, s->q, s->v, s->z, s->p, s->u, e, s->w);
   prog_eval(energy, in, out_energy);
   return differs(m->name, "energy", e, f, 2, is_exact(energy));
+}
+
+/* The values of all symbols at the state; q'' and z' as they are in the array. */
+static Real *symbol_values(const Eqns *e, const Point *s) {
+  Real *v = ARENA_ARRAY(e->m->arena, Real, expr_symbol_count(e->g) + 1);
+  for (SymId k = 1; k <= expr_symbol_count(e->g); k++) {
+    const Symbol *sym = expr_symbol(e->g, k);
+    switch (sym->kind) {
+      case SYM_TIME: v[k] = s->t; break;
+      case SYM_COORD: v[k] = s->q[sym->index]; break;
+      case SYM_VEL: v[k] = s->v[sym->index]; break;
+      case SYM_STATE: v[k] = s->z[sym->index]; break;
+      case SYM_PARAM: v[k] = s->p[sym->index]; break;
+      case SYM_INPUT: v[k] = s->u[sym->index]; break;
+      case SYM_CONST: v[k] = 3.14159265358979323846264338327950288L; break;
+      case SYM_ACC: case SYM_RATE: case SYM_LOCAL: break;
+    }
+  }
+  return v;
+}
+
+/* Programs against the graph that they come from, evaluated node by node: M q'' = f, the rates, the energy. Rounding is
+ * 1e-19 (5e-20 of 64 bits), and sums and eliminations of some hundred terms make more of it. */
+static int compare_graph(Eqns *e, const Prog *accel, const Prog *energy, const Point *s) {
+  Arena *arena = e->m->arena;
+  uint32_t n = e->n, nz = e->m->states.n, total = n + nz + 2 + e->mass.n, k = 0;
+  Real a[2 * MAX], f[2], *left = ARENA_ARRAY(arena, Real, n + 1), *size = ARENA_ARRAY(arena, Real, n + 1), tolerance = fmaxl(LOOSE, 1e-15L);
+  const Real *in[ARR_COUNT] = {&s->t, s->q, s->v, s->z, s->p, s->u};
+  Real *out[] = {a, a + n}, *out_energy[] = {f}, *value = ARENA_ARRAY(arena, Real, total);
+  Expr *roots = ARENA_ARRAY(arena, Expr, total);
+  for (uint32_t i = 0; i < n; i++) roots[k++] = e->f[i];
+  for (uint32_t i = 0; i < nz; i++) roots[k++] = e->flow[i];
+  for (uint32_t i = 0; i < e->mass.n; i++) roots[k++] = e->mass.at[i].e;
+  if (e->energy) roots[k++] = e->energy_stable, roots[k++] = e->energy_scale;
+  expr_eval(e->g, roots, k, symbol_values(e, s), value);
+  if (prog_eval(accel, in, out) != 0) return 0;
+  for (uint32_t i = 0; i < n; i++) left[i] = -value[i], size[i] = 1 + fabsl(value[i]);
+  for (uint32_t i = 0; i < e->mass.n; i++) {
+    uint32_t r = e->mass.at[i].row, c = e->mass.at[i].col;
+    Real M = value[n + nz + i];
+    left[r] += M * a[c], size[r] += fabsl(M * a[c]);
+    if (r != c) left[c] += M * a[r], size[c] += fabsl(M * a[r]);
+  }
+  for (uint32_t i = 0; i < n; i++)
+    if (!(fabsl(left[i]) <= tolerance * size[i])) return printf("%s: row %u of M q'' = f is left with %Lg of %Lg\n", e->m->name, i, left[i], size[i]), 1;
+  for (uint32_t i = 0; i < nz; i++)
+    if (!(fabsl(a[n + i] - value[n + i]) <= tolerance * (1 + fabsl(value[n + i])))) return printf("%s: rate %u\n", e->m->name, i), 1;
+  if (!e->energy) return 0;
+  prog_eval(energy, in, out_energy);
+  Real scale = 1 + fabsl(value[k - 1]);
+  if (fabsl(f[0] - value[k - 2]) <= tolerance * scale && fabsl(f[1] - value[k - 1]) <= tolerance * scale) return 0;
+  return printf("%s: the energy is %.21Lg, of the graph %.21Lg\n", e->m->name, f[0], value[k - 2]), 1;
 }
 
 /* dL/dq, dL/dq', Q and their derivatives. */
@@ -101,9 +157,11 @@ static int check_model(Arena *arena, const char *path, const lag_scene *scene) {
   Prog *accel = lower_accel(e), *energy = lower_energy(e);
   Point s;
   scene->params(s.p, none);
+  eqns_derive_mass(e); /* where the program does without */
   for (int i = 0; i < STATES; i++) {
     random_state(&s);
     if (compare(scene->model, accel, energy, &s)) return 1;
+    if (i < GRAPH_STATES && compare_graph(e, accel, energy, &s)) return 1;
     if (scene->model->variation && i < 3 && compare_variation(scene->model, e, &s)) return 1;
   }
   return 0;

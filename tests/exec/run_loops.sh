@@ -83,7 +83,36 @@ check "a chain by hand rolls, too" has_loops by_hand 250
 check "500 masses on springs" has_loops string_500 60
 check "a lattice" has_loops lattice 700
 check "links in space" has_loops spatial 800
+check "pairs of 20 bodies" has_loops bodies 1000
 check "choices and functions" has_loops odd 120
+in_one_loop() { "$LAGC" derive "$TMP/m/string_500.lag" --format c | grep -q '^    a\[k + [0-9]*\] = '; }
+check "a string's accelerations are stored where they are computed" in_one_loop
+small() { "$LAGC" emit models/string.lag hard -DN=10000 -o "$TMP/string.c" && [ "$(wc -c <"$TMP/string.c")" -lt 65536 ]; }
+check "10,000 masses on springs: less than 64 kB of C" small
+start_agrees() { # the start of the mode, and the names, against their formulas
+  cat >"$TMP/start.c" <<'END'
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include "lag_model.h"
+extern const lag_scene string_hard;
+static double p[8], q[10000], v[10000];
+int main(void) {
+  static const unsigned char none[8];
+  char name[16];
+  string_hard.params(p, none);
+  string_hard.start(p, q, v, NULL);
+  for (int i = 1; i <= 10000; i++) {
+    snprintf(name, sizeof name, "u[%d]", i);
+    if (strcmp(string_hard.model->q[i - 1].name, name) != 0 || strcmp(string_hard.model->q[i - 1].unit, "m") != 0) return 1;
+    if (!(fabs(q[i - 1] - sin(i*3.14159265358979323846/10001)) < 1e-15)) return 2; /* rounding of an argument up to pi */
+  }
+  return string_hard.model->nq != 10000;
+}
+END
+  "$CC" -std=c11 -w -I"$INC" "$TMP/start.c" "$TMP/string.c" -lm -o "$TMP/start" && "$TMP/start"
+}
+check "its start and its names" start_agrees
 is "a short model has none" 0 "$("$LAGC" derive models/chain.lag --format c | grep -c 'for (int k')"
 
 strict='-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror'

@@ -108,6 +108,7 @@ static void check_scene(Ast *ast, const char *path, const char *scene) {
   Eqns *e = m ? eqns_derive(m) : NULL;
   if (!e) fail_msg("%s has no equations", where);
   Prog *accel = lower_accel(e);
+  eqns_derive_mass(e); /* where the solution did without */
   const char *wrong = prog_verify(accel);
   if (wrong) fail_msg("%s: %s", where, wrong);
   uint64_t seed = 3;

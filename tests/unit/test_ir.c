@@ -105,7 +105,31 @@ static void test_tidy(void **state) {
   arena_free(a);
 }
 
-/* A pivot that is zero, negative or not a number stops the program. */
+/* a*x - a*y and b*(a*x) + y*a share a factor; a*x + b*z none, and a product that is needed itself stays. */
+static void test_factor(void **state) {
+  (void)state;
+  Arena *arena = arena_new(NULL);
+  Prog *p = prog_new(arena);
+  Slot a = load(p, 0), b = load(p, 1), x = load(p, 2), y = load(p, 3), z = load(p, 4);
+  Slot ax = prog_op(p, IR_MUL, a, x), ay = prog_op(p, IR_MUL, a, y), az = prog_op(p, IR_MUL, a, z), bz = prog_op(p, IR_MUL, b, z);
+  Slot bx = prog_op(p, IR_MUL, b, x), abx = prog_op(p, IR_MUL, a, bx), by = prog_op(p, IR_MUL, b, y);
+  prog_store(p, 0, 0, prog_op(p, IR_SUB, ax, ay), "a*(x - y)");
+  prog_store(p, 0, 1, prog_op(p, IR_ADD, abx, az), "a*(b*x + z)");
+  prog_store(p, 0, 2, prog_op(p, IR_ADD, bz, by), "b*z + b*y, of which the first is stored, too");
+  prog_store(p, 0, 3, bz, "b*z");
+  Prog *f = prog_factor(prog_tidy(p));
+  assert_null(prog_verify(f));
+  assert_int_equal(ops_total(prog_count(p)), 10);
+  assert_int_equal(count(f, IR_MUL), 5);
+  assert_int_equal(ops_total(prog_count(f)), 8);
+  Real q[5] = {3, 7, 5, 11, 2}, out[4], *outs[1] = {out}, want[4] = {-18, 111, 91, 14};
+  const Real *in[ARR_COUNT] = {[ARR_Q] = q};
+  assert_int_equal(prog_eval(f, in, outs), 0);
+  for (int i = 0; i < 4; i++) assert_true(out[i] == want[i]); /* small integers: exact */
+  arena_free(arena);
+}
+
+/* A pivot that is zero, negative or not a number stops the program; one is checked once. */
 static void test_pivot(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
@@ -113,6 +137,8 @@ static void test_pivot(void **state) {
     Prog *p = prog_new(a);
     Slot x = load(p, 0);
     prog_ins(p, (Ins){.op = IR_PIVOT, .a = x, .index = positive});
+    prog_ins(p, (Ins){.op = IR_PIVOT, .a = x, .index = positive});
+    assert_int_equal(count(p, IR_PIVOT), 1);
     prog_store(p, 0, 0, x, "x");
     p = prog_tidy(p);
     const struct { Real x; int ok[2]; } cases[] = {{1, {1, 1}}, {0, {0, 0}}, {-1, {1, 0}}};
@@ -245,7 +271,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_verify), cmocka_unit_test(test_numbering),      cmocka_unit_test(test_tidy),
     cmocka_unit_test(test_pivot),  cmocka_unit_test(test_lower),          cmocka_unit_test(test_solve_definite),
-    cmocka_unit_test(test_solve_indefinite),
+    cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,92 @@
+#include "ir/prog.h"
+
+/* A product as its factors: what is multiplied in it and used nowhere else is taken apart. */
+enum { MOST_FACTORS = 8, NONE = MOST_FACTORS };
+typedef struct {
+  Slot at[MOST_FACTORS];
+  uint32_t n;
+} Product;
+
+typedef struct {
+  const Prog *from;
+  Prog *to;
+  Slot *map;
+  const uint32_t *uses;
+} Factor;
+
+/* Whether the value is a product that goes when the sum that uses it is written otherwise. */
+static int is_part(const Factor *f, Slot s) {
+  const Ins *i = &f->from->ins.at[s];
+  return s && i->op == IR_MUL && f->uses[s] == 1 && !i->name;
+}
+
+static Product factors_of(const Factor *f, Slot s) {
+  Product p = {{s}, 1};
+  for (uint32_t k = 0; k < p.n;) {
+    const Ins *i = &f->from->ins.at[p.at[k]];
+    if (p.n == MOST_FACTORS || !is_part(f, p.at[k])) {
+      k++;
+      continue;
+    }
+    p.at[k] = i->a;
+    for (uint32_t j = p.n++; j > k + 1; j--) p.at[j] = p.at[j - 1];
+    p.at[k + 1] = i->b;
+  }
+  return p;
+}
+
+/* The first factor of x that is one of y, too: its place there in *other; or NONE. Numbers are no factors to take out:
+ * 2*a + 2*b would be as long. */
+static uint32_t common_factor(const Factor *f, const Product *x, const Product *y, uint32_t *other) {
+  for (uint32_t i = 0; i < x->n; i++)
+    for (*other = 0; *other < y->n; ++*other)
+      if (x->at[i] == y->at[*other] && f->from->ins.at[x->at[i]].op != IR_CONST) return i;
+  return NONE;
+}
+
+/* The product without factor `out`, in the new program. */
+static Slot product_without(Factor *f, const Product *p, uint32_t out) {
+  Slot r = 0;
+  for (uint32_t k = 0; k < p->n; k++) {
+    if (k == out) continue;
+    Slot x = f->map[p->at[k]];
+    r = r ? prog_op(f->to, IR_MUL, r, x) : x;
+  }
+  return r;
+}
+
+/* a*x + a*y as a*(x + y); 0 where it cannot be written so. */
+static Slot factored_sum(Factor *f, const Ins *i) {
+  if (!is_part(f, i->a) || !is_part(f, i->b)) return 0;
+  Product x = factors_of(f, i->a), y = factors_of(f, i->b);
+  uint32_t in_y, in_x = common_factor(f, &x, &y, &in_y);
+  if (in_x == NONE) return 0;
+  Slot a = product_without(f, &x, in_x), b = product_without(f, &y, in_y);
+  Slot sum = prog_op(f->to, i->op, a, b);
+  return prog_op(f->to, IR_MUL, f->map[x.at[in_x]], sum);
+}
+
+static Prog *factor_once(const Prog *p) {
+  Factor f = {.from = p, .to = prog_like(p), .map = ARENA_ARRAY(p->arena, Slot, p->ins.n), .uses = prog_uses(p)};
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    Slot sum = i->op == IR_ADD || i->op == IR_SUB ? factored_sum(&f, i) : 0;
+    f.map[s] = sum ? sum : prog_ins(f.to, prog_moved(f.to, p, f.map, *i));
+    prog_name(f.to, f.map[s], i->name);
+  }
+  for (uint32_t k = 0; k < p->stores.n; k++) {
+    Store st = p->stores.at[k];
+    prog_store(f.to, st.array, st.index, f.map[st.slot], st.comment);
+  }
+  return prog_tidy(f.to);
+}
+
+Prog *prog_factor(Prog *p) {
+  enum { TURNS = 3, LONG = 100000 };
+  for (int turn = 0; turn < (p->ins.n < LONG ? TURNS : 1); turn++) {
+    Prog *next = factor_once(p);
+    if (ops_total(prog_count(next)) >= ops_total(prog_count(p))) return p;
+    p = next;
+  }
+  return p;
+}
