@@ -15,6 +15,7 @@ static const struct {
   {"variational", WANT_VARIATION, 0}, {"gauss", WANT_VARIATION, 0},  {"symplectic_euler", WANT_VARIATION, 1},
   {"verlet", WANT_VARIATION, 1},      {"verlet4", WANT_VARIATION, 1}, {"verlet6", WANT_VARIATION, 1},
   {"verlet8", WANT_VARIATION, 1},     {"radau", WANT_LINEAR, 0},
+  {"taylor", WANT_TAYLOR, 0},
 };
 
 /* Of NAME or NAME(option=value, ...). */

@@ -73,9 +73,6 @@ int lag_fail(lag_sim *sim, int status, const char *format, ...);
 /* Why a step failed, with when and where. Returns status. */
 int lag_explain(lag_sim *sim, int status);
 
-/* u at t: formula or constant. */
-int lag_inputs(lag_problem *pb, double t);
-
 /* setup.c: the state at the start, of a run that has not begun. */
 int lag_setup_start(lag_sim *sim);
 

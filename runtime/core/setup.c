@@ -50,7 +50,7 @@ static int alloc_scratch(lag_sim *s)
 {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
-  size_t nu = (size_t)m->nu, nw = (size_t)m->nw, nuu = nu + (size_t)s->scene->nexact;
+  size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
   double *x = calloc(nuu + nw + 3 * n + 8 * nev + nout + 2 + 1, sizeof *x);
 
   s->scratch = x;
@@ -225,7 +225,11 @@ static int check_method(lag_sim *s, const lag_method *method)
                     method->name);
   }
   int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE);
-  if (((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) || ((needs & LAG_METHOD_JACOBIAN) && !m->linear)) {
+  if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH)) {
+    return lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min and max; dop853 does not", method->name);
+  }
+  if (((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) || ((needs & LAG_METHOD_JACOBIAN) && !m->linear) ||
+      ((needs & LAG_METHOD_TAYLOR) && !m->taylor)) {
     return lag_fail(s, LAG_EMETHOD,
                     "method %s needs derivatives of the model that this program was built without; `lagc run MODEL --method %s` and "
                     "`lagc build MODEL --method %s` build them in; rk45 and dop853 do without", method->name, method->name, method->name);

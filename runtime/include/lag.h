@@ -76,6 +76,9 @@ typedef struct lag_problem {
 /* The model's facts (LAG_AUTONOMOUS, ...) without those that a function in place of an input takes away. */
 unsigned lag_facts(const lag_problem *pb);
 
+/* pb->u at t: by the model's formulas, or the constants of pb->hold. Returns what the model returned. */
+int lag_inputs(lag_problem *pb, double t);
+
 /* dy[n] = f(t, y[n]). Returns what the model returned; does not look for NaN. */
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
 
@@ -122,6 +125,7 @@ enum {
   LAG_METHOD_NO_SAVE = 64,     /* work holds pointers: its state cannot be saved */
   LAG_METHOD_NO_STATES = 128,  /* refuses models with nz > 0 */
   LAG_METHOD_SPLITS = 512,     /* explicit for models with LAG_SEPARABLE, which then need no derivatives */
+  LAG_METHOD_TAYLOR = 256,     /* needs the model's Taylor coefficients: lag_model.taylor */
   LAG_METHOD_JACOBIAN = 2048,  /* needs the model's linearisation: lag_model.linear */
   LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS where it does not split */
 };
@@ -182,6 +186,8 @@ extern const lag_method lag_symplectic_euler, lag_verlet, lag_verlet4, lag_verle
 extern const lag_method lag_variational, lag_gauss;
 /* Radau IIA of order 5, implicit, adaptive: for stiff models; of a model that holds its linearisation. */
 extern const lag_method lag_radau;
+/* The model's own Taylor series, adaptive, for tolerances below about 1e-9; of a model that holds them (lag_model.taylor). */
+extern const lag_method lag_taylor_method;
 /* The methods of liblag.a, the default first. */
 extern const lag_method *const lag_methods[];
 extern const int lag_nmethods;

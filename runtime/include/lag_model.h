@@ -22,6 +22,12 @@ extern "C" {
 /* The scalar that a model is compiled for: double, float, long double or __float128. */
 #ifndef LAG_REAL
 #define LAG_REAL double
+#define LAG_REAL_IS_DOUBLE 1
+#endif
+
+/* The highest order of Taylor series that a program has room for. */
+#ifndef LAG_TAYLOR_ORDER
+#define LAG_TAYLOR_ORDER 40
 #endif
 
 enum {
@@ -94,6 +100,26 @@ typedef struct lag_second {
   int part, row, col;
 } lag_second;
 
+/* The Taylor coefficients of a model's motion, x^(k)(t) T^k / k!, by automatic differentiation of its program.
+ *
+ * Coefficient k of y_i, y = [q|v|z], is x[k*columns + i]; behind those of y stand those of the rates of v and z. first
+ * makes those of order 0 for about the cost of accel, rest those of the orders 1 to n <= order from what first has left in
+ * x and w[nw]. T > 0 is the unit of time; a power of 2 changes no bits. (The rates have no order n.) */
+typedef struct lag_taylor {
+  int order;   /* the highest */
+  int columns, width, nw;
+  int cost_first, cost_next, sums; /* operations of order 0 and of another order, and the sums of k - 1 products in order k */
+
+  /* follows[nu]: 1 where the input follows its formula, 0 where it stays as u says. Returns as accel does. */
+  int (*first)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+               const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *x, LAG_REAL *w);
+  void (*rest)(int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *w);
+
+  /* y[width], of which the first 2 nq + nz count, is what the orders from 1 to n add up to at t + s T; dy its derivative
+   * by s. */
+  void (*at)(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy);
+} lag_taylor;
+
 typedef struct lag_model {
   int abi;           /* LAG_ABI */
   size_t real_size;  /* sizeof(LAG_REAL) */
@@ -145,6 +171,9 @@ typedef struct lag_model {
                 const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *h, LAG_REAL *w);
   const lag_second *second_at;
   int nsecond;
+
+  /* NULL, too, where a value of the model is not analytic (if, abs, sign, min, max). */
+  const lag_taylor *taylor;
 
   const lag_linear *linear;
 } lag_model;

@@ -2,5 +2,6 @@
 #include "lag.h"
 
 const lag_method *const lag_methods[] = {&lag_rk45, &lag_dop853, &lag_rk4, &lag_symplectic_euler, &lag_verlet,
-                                         &lag_verlet4, &lag_verlet6, &lag_verlet8, &lag_variational, &lag_gauss, &lag_radau};
+                                         &lag_verlet4, &lag_verlet6, &lag_verlet8, &lag_variational, &lag_gauss, &lag_radau,
+                                         &lag_taylor_method};
 const int lag_nmethods = (int)(sizeof lag_methods / sizeof *lag_methods);

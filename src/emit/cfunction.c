@@ -75,6 +75,47 @@ static const char *const spline =
   "  return y;\n"
   "}\n";
 
+/* The same elimination, with the multipliers kept below the diagonal and the exchanges of rows in `rows`. */
+static const char *const factorizer =
+  "\n/* Factors M[n*n] of w = [M | b | rows] by elimination with partial pivoting. */\n"
+  "static int lag_factor(int n, LAG_REAL *w) {\n"
+  "  LAG_REAL *const M = w, *const rows = w + n*n + n;\n"
+  "  for (int k = 0; k < n; k++) {\n"
+  "    int top = k;\n"
+  "    for (int i = k + 1; i < n; i++)\n"
+  "      if (LAG_FN(fabs)(M[i*n + k]) > LAG_FN(fabs)(M[top*n + k])) top = i;\n"
+  "    if (!(LAG_FN(fabs)(M[top*n + k]) > LAG_C(0.0))) return LAG_ESINGULAR;\n"
+  "    rows[k] = (LAG_REAL)top;\n"
+  "    for (int j = 0; j < n; j++) {\n"
+  "      const LAG_REAL was = M[k*n + j];\n"
+  "      M[k*n + j] = M[top*n + j];\n"
+  "      M[top*n + j] = was;\n"
+  "    }\n"
+  "    for (int i = k + 1; i < n; i++) {\n"
+  "      const LAG_REAL factor = M[i*n + k] /= M[k*n + k];\n"
+  "      for (int j = k + 1; j < n; j++) M[i*n + j] -= factor*M[k*n + j];\n"
+  "    }\n"
+  "  }\n"
+  "  return LAG_OK;\n"
+  "}\n"
+  "\n/* b becomes the solution of M x = b, M as lag_factor left it. */\n"
+  "static void lag_substitute(int n, LAG_REAL *w) {\n"
+  "  const LAG_REAL *const M = w, *const rows = w + n*n + n;\n"
+  "  LAG_REAL *const b = w + n*n;\n"
+  "  for (int k = 0; k < n; k++) {\n"
+  "    const int top = (int)rows[k];\n"
+  "    const LAG_REAL x = b[top];\n"
+  "    b[top] = b[k];\n"
+  "    b[k] = x;\n"
+  "  }\n"
+  "  for (int i = 1; i < n; i++)\n"
+  "    for (int j = 0; j < i; j++) b[i] -= M[i*n + j]*b[j];\n"
+  "  for (int i = n - 1; i >= 0; i--) {\n"
+  "    for (int j = i + 1; j < n; j++) b[i] -= M[i*n + j]*b[j];\n"
+  "    b[i] /= M[i*n + i];\n"
+  "  }\n"
+  "}\n";
+
 void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out) {
   for (const char *s = text; *s;) {
     int upper = strncmp(s, "LAG_", 4) == 0, is_lower = strncmp(s, "lag_", 4) == 0;
@@ -88,6 +129,7 @@ void csupport_fill(const char *text, const char *prefix, const char *lower, StrB
 }
 
 void csupport_logic(const char *prefix, StrBuf *out) { csupport_fill(logic, prefix, "", out); }
+void csupport_factor(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(factorizer, prefix, lower, out); }
 void csupport_solver(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(solver, prefix, lower, out); }
 void csupport_spline(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(spline, prefix, lower, out); }
 
@@ -95,7 +137,7 @@ void csupport_spline(const char *prefix, const char *lower, StrBuf *out) { csupp
 static int is_used(const Prog *p, const CStyle *st, const char *name) {
   if (strcmp(name, "w") == 0) return p->solves.n > 0;
   for (int k = 0; k < ARR_COUNT; k++)
-    if (strcmp(name, st->in[k]) == 0 && prog_reads(p, (IrArray)k)) return 1;
+    if (st->in[k] && strcmp(name, st->in[k]) == 0 && prog_reads(p, (IrArray)k)) return 1;
   for (uint32_t k = 0; k < p->stores.n; k++)
     if (strcmp(st->out[p->stores.at[k].array], name) == 0) return 1;
   return 0;

@@ -15,6 +15,10 @@ void csupport_solver(const char *prefix, const char *lower, StrBuf *out);
 /* `static LAG_REAL lower_spline(t, n, row)`, for the inputs that have a table. */
 void csupport_spline(const char *prefix, const char *lower, StrBuf *out);
 
+/* The same in two functions, lag_factor(n, w) and lag_substitute(n, w), with w[n*n + 2 n] = matrix, right-hand side, order
+ * of the rows: one factorization for several right-hand sides. */
+void csupport_factor(const char *prefix, const char *lower, StrBuf *out);
+
 /* text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
 void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out);
 

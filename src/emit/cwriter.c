@@ -130,7 +130,7 @@ static const char *element(const Writer *w, const char *array, uint32_t index) {
 
 static Piece load(const Writer *w, const Ins *i) {
   const char *array = w->style->in[i->array];
-  return (Piece){i->array == ARR_T ? array : element(w, array, i->index), C_ATOM, 0};
+  return (Piece){ir_is_scalar(i->array) ? array : element(w, array, i->index), C_ATOM, 0};
 }
 
 /* sign(x) and the choice of the smaller or larger, through SELECT: vectors have no ternary. */
@@ -144,8 +144,8 @@ static Piece choose(Writer *w, const Ins *i) {
 }
 
 static Piece solved(Writer *w, const Ins *i) {
-  uint32_t n = w->p->solves.at[w->p->ins.at[i->a].index].n;
-  return (Piece){arena_printf(w->a, "w[%u]", n * n + i->index), C_ATOM, 0};
+  const Solve *k = &w->p->solves.at[w->p->ins.at[i->a].index];
+  return (Piece){arena_printf(w->a, "w[%u]", k->place + k->n * k->n + i->index), C_ATOM, 0};
 }
 
 Piece cwriter_spell(Writer *w, const Ins *i) {
@@ -264,12 +264,14 @@ void cwriter_pivot(Writer *w, const Ins *i) {
 
 static void write_solve(Writer *w, const Ins *i) {
   const Solve *k = &w->p->solves.at[i->index];
-  uint32_t n = k->n;
+  const CStyle *st = w->style;
+  uint32_t n = k->n, M = k->place, b = M + n * n;
   cwriter_flush_title(w);
-  for (uint32_t r = 0; r < n; r++)
-    for (uint32_t c = 0; c < n; c++) sb_printf(w->out, "  w[%u] = %s;\n", r * n + c, cwriter_operand(w, k->matrix[r * n + c]).text);
-  for (uint32_t r = 0; r < n; r++) sb_printf(w->out, "  w[%u] = %s;\n", n * n + r, cwriter_operand(w, k->rhs[r]).text);
-  sb_printf(w->out, "  if (%s(%u, w, w + %u)) return %s_ESINGULAR;\n", w->style->solve, n, n * n, w->style->prefix);
+  for (uint32_t j = 0; k->matrix && j < n * n; j++) sb_printf(w->out, "  w[%u] = %s;\n", M + j, cwriter_operand(w, k->matrix[j]).text);
+  if (st->factor && k->matrix) sb_printf(w->out, "  if (%s(%u, w + %u)) return %s_ESINGULAR;\n", st->factor, n, M, st->prefix);
+  for (uint32_t r = 0; r < n; r++) sb_printf(w->out, "  w[%u] = %s;\n", b + r, cwriter_operand(w, k->rhs[r]).text);
+  if (st->factor) sb_printf(w->out, "  %s(%u, w + %u);\n", st->substitute, n, M);
+  else sb_printf(w->out, "  if (%s(%u, w, w + %u)) return %s_ESINGULAR;\n", st->solve, n, b, st->prefix);
 }
 
 /* As many rows on a line as fit. */
@@ -321,7 +323,7 @@ static void write_array(Writer *w, int array) {
   for (uint32_t k = 0; k < n; k++) {
     if (!at[k]) continue;
     Piece x = load(w, &w->p->ins.at[at[k]]);
-    if (w->style->loads_inline || array == ARR_T) {
+    if (w->style->loads_inline || ir_is_scalar((IrArray)array) || array >= ARR_SUMS) {
       w->piece[at[k]] = x;
       continue;
     }
@@ -341,24 +343,14 @@ static void write_array(Writer *w, int array) {
 
 static void count_uses(Writer *w) {
   const Prog *p = w->p;
+  w->uses = prog_uses(p);
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
-    w->uses[i->a]++;
+    if (i->op != IR_PIVOT && i->op != IR_SIGN && i->op != IR_MIN && i->op != IR_MAX) continue;
+    w->uses[i->a]++; /* spelled twice */
     w->uses[i->b]++;
-    w->uses[i->c]++;
-    if (i->op == IR_PIVOT || i->op == IR_SIGN || i->op == IR_MIN || i->op == IR_MAX) { /* spelled twice */
-      w->uses[i->a]++;
-      w->uses[i->b]++;
-    }
-    if (i->op != IR_SOLVE) continue;
-    const Solve *k = &p->solves.at[i->index];
-    for (uint32_t j = 0; j < k->n * k->n; j++) w->uses[k->matrix[j]]++;
-    for (uint32_t j = 0; j < k->n; j++) w->uses[k->rhs[j]]++;
   }
-  for (uint32_t k = 0; k < p->stores.n; k++) {
-    w->uses[p->stores.at[k].slot]++;
-    w->stored[p->stores.at[k].slot] = p->stores.at[k].comment;
-  }
+  for (uint32_t k = 0; k < p->stores.n; k++) w->stored[p->stores.at[k].slot] = p->stores.at[k].comment;
 }
 
 static void write_instruction(Writer *w, Slot s) {
@@ -391,17 +383,31 @@ static void write_instruction(Writer *w, Slot s) {
 static void write_store(Writer *w, const Store *st) {
   const char *text = cwriter_operand(w, st->slot).text;
   const char *target = element(w, w->style->out[st->array], st->index), *member = strstr(target, "->");
-  int said = strcmp(st->comment, text) == 0 || (w->style->params && member && strcmp(member + 2, st->comment) == 0);
+  int said = !st->comment[0] || strcmp(st->comment, text) == 0 || (w->style->params && member && strcmp(member + 2, st->comment) == 0);
   cwriter_statement(w, arena_printf(w->a, "%s = %s;", target, text));
   if (!said) sb_printf(w->out, " /* %s */", comment_text(w->a, st->comment));
   sb_putc(w->out, '\n');
 }
+
+/* Stores k and k + 1, which stand side by side in their array, the first at an even place; there is room for two also where
+ * k is the last. */
+static uint32_t write_pair(Writer *w, uint32_t k) {
+  const Store *st = &w->p->stores.at[k];
+  int two = k + 1 < w->p->stores.n && st[1].array == st->array && st[1].index == st->index + 1;
+  const char *x = cwriter_operand(w, st->slot).text, *y = cwriter_operand(w, two ? st[1].slot : 0).text;
+  cwriter_statement(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
+  sb_putc(w->out, '\n');
+  return two ? 2 : 1;
+}
+
+static int is_paired(const Writer *w, const Store *st) { return (w->style->paired >> st->array & 1) && st->index % 2 == 0; }
 
 static void write_stores(Writer *w) {
   for (uint32_t k = 0; k < w->p->stores.n;) {
     if (!k) sb_putc(w->out, '\n');
     uint32_t n = cloop_stores(w, k);
     if (n) cloop_write_stores(w, k, n);
+    else if (is_paired(w, &w->p->stores.at[k])) n = write_pair(w, k);
     else write_store(w, &w->p->stores.at[k]);
     k += n ? n : 1;
   }
@@ -409,7 +415,7 @@ static void write_stores(Writer *w) {
 
 /* Arrays that can be indexed by a variable: t is none, nor are members of a struct. */
 static unsigned arrays_by_index(const CStyle *style) {
-  return style->params ? 1u << ARR_Q | 1u << ARR_V | 1u << ARR_Z | 1u << ARR_U : ~(1u << ARR_T);
+  return style->params ? 1u << ARR_Q | 1u << ARR_V | 1u << ARR_Z | 1u << ARR_U : ~(1u << ARR_T | 1u << ARR_ORDER | 1u << ARR_PER_ORDER | 1u << ARR_UP);
 }
 
 static void write_code(Writer *w) {
@@ -424,7 +430,6 @@ static void write_code(Writer *w) {
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
   w.rolls = roll_find(p, arrays_by_index(style));
-  w.uses = ARENA_ARRAY(a, uint32_t, p->ins.n);
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
   w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);

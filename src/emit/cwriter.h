@@ -14,9 +14,11 @@ typedef struct {
   const char *const *in;            /* [ARR_COUNT] names of the arrays read: t is no array */
   const char *const *params;        /* NULL: p[3]; else p->name of parameter i, read and written */
   const char *const *out;           /* names of the arrays written */
+  unsigned paired;                  /* bit i: stores to out[i] go two at a time, through PREFIX_PAIR(array, index, x, y) */
   const char *const *own;           /* names in the function's scope, NULL at the end */
   const char *const *globals;         /* names that the function must not hide, NULL at the end; or NULL */
-  const char *solve;                /* name of the solver function */
+  const char *solve;                /* name of the function that factors and solves */
+  const char *factor, *substitute;  /* instead of it, where factors are kept; or NULL */
   const char *spline;               /* name of the function that evaluates tables, */
   const char *const *rows;          /* and of their arrays; NULL: they stand in the body */
   int loads_inline;                 /* spell loads at their use instead of naming them at the top */

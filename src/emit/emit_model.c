@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "emit/cfunction.h"
+#include "emit/emit_taylor.h"
 
 /* One emitted file. */
 typedef struct {
@@ -27,7 +28,11 @@ static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
   "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_cubic",
   "lag_spline", "lag_var", "lag_event", "lag_model", "lag_option", "lag_monitor", "lag_table", "lag_scene", "lag_program",
-  "lag_entry", "lag_linear", "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
+  "lag_entry", "lag_linear", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
+  "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL",
+  "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_lanes", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
+  "taylor_rest", "taylor_squares", "TAYLOR_SQUARES",
+  "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
   "curves",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
@@ -59,7 +64,7 @@ static const char *const *rows_names(const IrUnit *u) {
 }
 
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel", "energy", "linearise", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
+  static const char *const taken[] = {"accel", "energy", "linearise", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
                                       "outputs", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
@@ -355,6 +360,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->variation)
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
+  if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (u->linear) sb_puts(out, "  .linear = &linear,\n");
   sb_puts(out, "};\n");
 }
@@ -428,6 +434,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_inputs(&f);
   const char *digest = digest_text(u->arena, sb_text(out) + begin);
   emit_linear(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
+  if (u->taylor) emit_taylor(u->taylor, f.globals, out);
   emit_variation(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, i);

@@ -140,6 +140,16 @@ static void substitute(System *y, uint32_t v) {
   }
 }
 
+/* An eliminated variable's row is what it was then. */
+static void keep_factors(const System *y) {
+  Lower *l = y->l;
+  Slot *pivot = ARENA_ARRAY(l->p->arena, Slot, y->s->n + 1);
+  for (uint32_t v = 0; v < y->s->n; v++) pivot[v] = sparse_get(&y->H, v, v);
+  *l->factored = (Factored){.n = y->s->n, .ndefs = y->s->ndefs, .straight = 1, .order = y->s->order, .pivot = pivot, .below = y->factor,
+                            .C = y->C, .row = y->H.rows};
+  l->x = y->x;
+}
+
 void lower_elimination(Lower *l, Slot *acc) {
   System y = system_new(l);
   uint32_t total = y.s->n + y.s->ndefs;
@@ -152,4 +162,5 @@ void lower_elimination(Lower *l, Slot *acc) {
   }
   for (uint32_t k = total; k-- > 0;) substitute(&y, y.s->order[k]);
   for (uint32_t i = 0; i < y.s->n; i++) acc[i] = y.x[i];
+  if (l->factored) keep_factors(&y);
 }

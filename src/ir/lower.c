@@ -245,7 +245,7 @@ static Slot lower_node(Lower *l, Expr e) {
 
 void lower_roots(Lower *l, const Expr *roots, uint32_t n) {
   ExprList list = expr_topo(l->g, roots, n);
-  for (uint32_t i = 0; i < list.n; i++) {
+  for (uint32_t i = 0; i < list.n && !l->direct; i++) {
     ExprOp o = expr_op(l->g, list.at[i]);
     if (o == EX_SIN || o == EX_COS) expr_map_set(&l->circular, expr_arg(l->g, list.at[i], 0), 1);
   }
@@ -275,6 +275,57 @@ Prog *lower_accel(const Eqns *e) {
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
   return prog_tidy(l.p);
+}
+
+/* Where a constant may stand instead of the formula of an input, `free` says which holds. */
+static void lower_inputs_along(Lower *l) {
+  const Model *m = l->e->m;
+  for (uint32_t i = 0; i < m->inputs.n; i++) {
+    const Input *in = &m->inputs.at[i];
+    Expr symbol = expr_symbol(l->g, in->sym)->node;
+    lower_roots(l, &in->value, 1);
+    lower_roots(l, &symbol, 1);
+    Slot is_free = prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_FREE, .index = i, .name = in->name});
+    Slot holds = op(l, IR_LT, 0, is_free), formula = lower_slot(l, in->value), constant = lower_slot(l, symbol);
+    Slot s = prog_ins(l->p, (Ins){.op = IR_SELECT, .a = holds, .b = formula, .c = constant});
+    expr_map_set(&l->slots, symbol, s + 1);
+  }
+}
+
+static void take_entries(const Lower *l, const Entries *from, IrEntries *to) {
+  for (uint32_t k = 0; k < from->n; k++)
+    vec_push(l->p->arena, to, ((IrSlotEntry){from->at[k].row, from->at[k].col, lower_slot(l, from->at[k].e)}));
+}
+
+IrSystem lower_system(const Eqns *e) {
+  Lower l = lower_new(e);
+  const Model *m = e->m;
+  Arena *a = m->arena;
+  Slot *acc = ARENA_ARRAY(a, Slot, e->n + 1), *f = ARENA_ARRAY(a, Slot, e->n + 1), *flow = ARENA_ARRAY(a, Slot, m->states.n + 1);
+  Name *rates = ARENA_ARRAY(a, Name, e->n + m->states.n + 1), *velocities = ARENA_ARRAY(a, Name, e->n + 1);
+  Factored *factored = ARENA_NEW(a, Factored);
+  IrSystem sys = {.p = l.p, .nq = e->n, .ndefs = e->n ? e->system.ndefs : 0, .nz = m->states.n, .f = f, .flow = flow, .rates = rates,
+                  .velocities = velocities, .factored = factored};
+  l.direct = 1;
+  l.factored = factored;
+  lower_inputs_along(&l);
+  lower_solution(&l, acc);
+  lower_roots(&l, e->flow, m->states.n);
+  for (uint32_t i = 0; i < e->n; i++) {
+    f[i] = lower_slot(&l, e->system.f[i]);
+    rates[i] = text_of_symbol(&l, m->coords.at[i].a);
+    velocities[i] = text_of_symbol(&l, m->coords.at[i].v);
+  }
+  for (uint32_t i = 0; i < m->states.n; i++) {
+    flow[i] = lower_slot(&l, e->flow[i]);
+    rates[e->n + i] = text_of_symbol(&l, m->states.at[i].rate);
+  }
+  if (e->n) {
+    take_entries(&l, &e->system.H, &sys.H);
+    take_entries(&l, &e->system.C, &sys.C);
+  }
+  sys.x = l.x;
+  return sys;
 }
 
 /* Expressions that may contain q'' and z': the accelerations are computed first. */

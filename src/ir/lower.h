@@ -6,11 +6,15 @@
 #define LAGC_LOWER_H
 
 #include "ir/prog.h"
+#include "ir/series.h"
+#include "ir/series.h"
 #include "ir/unit.h"
 #include "mech/eqns.h"
 #include "mech/variation.h"
 
 Prog *lower_accel(const Eqns *e);   /* out 0: a[nq], out 1: zd[nz] */
+IrSystem lower_system(const Eqns *e); /* M, f and the rates of the states, with the formulas of inputs put in */
+IrSystem lower_system(const Eqns *e); /* the same before it is solved, and solved, with the formulas of inputs put in */
 Prog *lower_energy(const Eqns *e);  /* out 0: e[2] */
 Prog *lower_variation(const Eqns *e, const Variation *x); /* out 0, 1, 2: dL/dq[nq], dL/dq'[nq], Q[nq] */
 Prog *lower_second(const Eqns *e, const Variation *x);    /* out 0: h[number of entries] */

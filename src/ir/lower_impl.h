@@ -2,6 +2,7 @@
 #ifndef LAGC_LOWER_IMPL_H
 #define LAGC_LOWER_IMPL_H
 
+#include "ir/factored.h"
 #include "ir/lower.h"
 
 typedef struct {
@@ -10,6 +11,9 @@ typedef struct {
   Prog *p;
   ExprMap slots;   /* node -> slot + 1 */
   ExprMap circular; /* u -> 1 where sin u or cos u is needed anyway */
+  int direct;       /* sin(a - b) is computed as it stands: for series, it is cheaper than the addition theorem */
+  Factored *factored; /* where the solution leaves its factors, and x[n + ndefs] itself; NULL: nowhere */
+  Slot *x;
 } Lower;
 
 /* Lowers all nodes that the roots need; then lower_slot gives each root's slot. */

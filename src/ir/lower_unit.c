@@ -41,6 +41,12 @@ static void add_variation(IrUnit *u, const Eqns *e) {
   }
 }
 
+static void add_taylor(IrUnit *u, const Eqns *e) {
+  const char *why;
+  IrSystem system = lower_system(e);
+  u->taylor = series_new(&system, &why);
+}
+
 IrUnit *unit_new(const Eqns *e, const char *source) {
   const Model *m = e->m;
   IrUnit *u = ARENA_NEW(m->arena, IrUnit);
@@ -89,6 +95,7 @@ void unit_want(IrUnit *u, Eqns *e, unsigned wants) {
   unsigned fresh = wants & ~u->wants;
   u->wants |= wants;
   if (fresh & WANT_VARIATION && e->n) add_variation(u, e);
+  if (fresh & WANT_TAYLOR) add_taylor(u, e);
   if (fresh & WANT_LINEAR) add_linear(u, e);
 }
 

@@ -119,6 +119,8 @@ void prog_name(Prog *p, Slot s, Name name) {
   if (!i->name && i->op != IR_CONST && i->op != IR_PI && i->op != IR_LOAD) i->name = name;
 }
 
+int ir_is_scalar(IrArray array) { return array == ARR_T || array == ARR_ORDER || array == ARR_PER_ORDER || array == ARR_UP; }
+
 int ir_is_condition(IrOp op) { return op >= IR_LT && op <= IR_OR; }
 
 /* --- passes --- */
@@ -132,15 +134,49 @@ static void mark_needed(const Prog *p, unsigned char *need) {
     need[i->a] = need[i->b] = need[i->c] = 1;
     if (i->op != IR_SOLVE) continue;
     const Solve *k = &p->solves.at[i->index];
-    for (uint32_t j = 0; j < k->n * k->n; j++) need[k->matrix[j]] = 1;
+    for (uint32_t j = 0; k->matrix && j < k->n * k->n; j++) need[k->matrix[j]] = 1;
     for (uint32_t j = 0; j < k->n; j++) need[k->rhs[j]] = 1;
   }
 }
 
 static const Slot *moved(Arena *a, const Slot *map, const Slot *from, uint32_t n) {
+  if (!from) return NULL;
   Slot *to = ARENA_ARRAY(a, Slot, n);
   for (uint32_t i = 0; i < n; i++) to[i] = map[from[i]];
   return to;
+}
+
+Ins prog_moved(Prog *to, const Prog *from, const Slot *map, Ins i) {
+  i.a = map[i.a];
+  i.b = map[i.b];
+  i.c = map[i.c];
+  if (i.op == IR_TABLE) {
+    vec_push(to->arena, &to->tables, from->tables.at[i.index]);
+    i.index = to->tables.n - 1;
+  }
+  if (i.op != IR_SOLVE) return i;
+  Solve k = from->solves.at[i.index];
+  k.matrix = moved(to->arena, map, k.matrix, k.n * k.n);
+  k.rhs = moved(to->arena, map, k.rhs, k.n);
+  i.index = to->solves.n;
+  vec_push(to->arena, &to->solves, k);
+  return i;
+}
+
+uint32_t *prog_uses(const Prog *p) {
+  uint32_t *uses = ARENA_ARRAY(p->arena, uint32_t, p->ins.n);
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    uses[i->a]++;
+    uses[i->b]++;
+    uses[i->c]++;
+    if (i->op != IR_SOLVE) continue;
+    const Solve *k = &p->solves.at[i->index];
+    for (uint32_t j = 0; k->matrix && j < k->n * k->n; j++) uses[k->matrix[j]]++;
+    for (uint32_t j = 0; j < k->n; j++) uses[k->rhs[j]]++;
+  }
+  for (uint32_t k = 0; k < p->stores.n; k++) uses[p->stores.at[k].slot]++;
+  return uses;
 }
 
 Prog *prog_tidy(const Prog *p) {
@@ -155,22 +191,8 @@ Prog *prog_tidy(const Prog *p) {
   Slot one = 0;
   for (Slot s = 1; s < p->ins.n; s++) {
     if (!need[s]) continue;
-    Ins i = p->ins.at[s];
-    uint32_t shared = i.op == IR_DIV ? divisions[i.b] : 0;
-    i.a = map[i.a];
-    i.b = map[i.b];
-    i.c = map[i.c];
-    if (i.op == IR_SOLVE) {
-      Solve k = p->solves.at[i.index];
-      k.matrix = moved(arena, map, k.matrix, k.n * k.n);
-      k.rhs = moved(arena, map, k.rhs, k.n);
-      i.index = r->solves.n;
-      vec_push(arena, &r->solves, k);
-    }
-    if (i.op == IR_TABLE) {
-      vec_push(arena, &r->tables, p->tables.at[i.index]);
-      i.index = r->tables.n - 1;
-    }
+    uint32_t shared = p->ins.at[s].op == IR_DIV ? divisions[p->ins.at[s].b] : 0;
+    Ins i = prog_moved(r, p, map, p->ins.at[s]);
     if (shared > 1) {
       one = prog_num(r, num_int(1));
       Slot inverse = prog_op(r, IR_DIV, one, i.b);
@@ -263,7 +285,7 @@ static const char *const op_names[] = {
   "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "table", "title",
 };
 
-static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a"};
+static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "free", "x", "s", "c", "order", "per_order", "up"};
 
 void prog_dump(const Prog *p, StrBuf *out) {
   for (Slot s = 1; s < p->ins.n; s++) {

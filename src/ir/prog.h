@@ -41,8 +41,16 @@ typedef enum {
   IR_TITLE   /* text: a comment line that heads what follows */
 } IrOp;
 
-/* The arrays that a function reads; accelerations only in the linearisation. */
-typedef enum { ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_A, ARR_COUNT } IrArray;
+/* The arrays that a function reads; accelerations only in the linearisation. The second line is of Taylor coefficients
+ * (ir/series.h): whether an input is free of a constant, coefficients k, sums over those below k, what order 0 leaves for all
+ * others; k, 1/k and T/(k + 1) are no arrays. */
+typedef enum {
+  ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_A,
+  ARR_FREE, ARR_COEF, ARR_SUMS, ARR_STEP, ARR_ORDER, ARR_PER_ORDER, ARR_UP, ARR_COUNT
+} IrArray;
+
+/* Whether an array is a number, not to be indexed. */
+int ir_is_scalar(IrArray array);
 
 typedef struct {
   IrOp op;
@@ -62,9 +70,10 @@ typedef struct {
   const char *comment;
 } Store;
 
-/* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. */
+/* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it stands in the
+ * work space. matrix is NULL where the one at that place was factored before, by another function. */
 typedef struct {
-  uint32_t n;
+  uint32_t n, place;
   const Slot *matrix, *rhs;
 } Solve;
 
@@ -109,6 +118,17 @@ Prog *prog_tidy(const Prog *p);
 
 /* Whether two programs compute the same. */
 int prog_same(const Prog *a, const Prog *b);
+
+/* The instruction with its operands, and the solve that it names, as they are in the program `to`; map: the slots there. */
+Ins prog_moved(Prog *to, const Prog *from, const Slot *map, Ins i);
+
+/* How many instructions, stores and solves take each value: [p->ins.n]. */
+uint32_t *prog_uses(const Prog *p);
+
+/* Sums of several terms are added up in the order in which the terms can be there, earliest first: what comes late passes
+ * through few additions. ready[p->ins.n]: when the value of each load can be there, in cycles of a processor. Changes the
+ * order of rounding; drops names of parts of sums. */
+Prog *prog_balance(const Prog *p, const uint32_t *ready);
 
 /* Checks that operands precede their use, conditions feed only selections, stores are in order.
  * NULL, or what is wrong. */

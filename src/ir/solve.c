@@ -14,6 +14,7 @@ typedef struct {
   uint32_t *at; /* the coordinates of the block */
   Slot *M;      /* [n*n], lower triangle filled */
   Slot *f;
+  Slot divisor; /* of two: the determinant */
 } Block;
 
 /* --- blocks --- */
@@ -88,11 +89,12 @@ static void solve_one(Lower *l, const Block *b, Slot *x) {
 /* Two coordinates whose mass matrix may be indefinite (L = x'*y'): Cramer's rule. It needs no pivoting,
  * and for 2 x 2 its error is that of the matrix's condition (Higham, Accuracy and Stability of Numerical
  * Algorithms, 2nd ed., section 1.10.1). */
-static void solve_two(Lower *l, const Block *b, Slot *x) {
+static void solve_two(Lower *l, Block *b, Slot *x) {
   Slot m11 = b->M[0], m12 = b->M[2], m22 = b->M[3];
   Slot square = op(l, IR_MUL, m11, m22);
   Slot det = lower_minus_product(l, square, m12, m12);
   prog_name(l->p, det, "det_M");
+  b->divisor = det;
   lower_pivot(l, det, 0);
   Slot top1 = op(l, IR_MUL, b->f[0], m22), top2 = op(l, IR_MUL, m11, b->f[1]);
   Slot n1 = lower_minus_product(l, top1, m12, b->f[1]), n2 = lower_minus_product(l, top2, m12, b->f[0]);
@@ -105,7 +107,7 @@ static void solve_loop(Lower *l, const Block *b, Slot *x) {
   Slot *full = ARENA_ARRAY(a, Slot, b->n * b->n);
   for (uint32_t i = 0; i < b->n; i++)
     for (uint32_t j = 0; j < b->n; j++) full[i * b->n + j] = i >= j ? b->M[i * b->n + j] : b->M[j * b->n + i];
-  vec_push(a, &l->p->solves, ((Solve){b->n, full, b->f}));
+  vec_push(a, &l->p->solves, ((Solve){b->n, 0, full, b->f}));
   Slot s = prog_ins(l->p, (Ins){.op = IR_SOLVE, .index = l->p->solves.n - 1});
   for (uint32_t i = 0; i < b->n; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
@@ -113,6 +115,22 @@ static void solve_loop(Lower *l, const Block *b, Slot *x) {
 static int goes_straight(const Eqns *e) {
   const LinearSystem *s = &e->system;
   return e->definite_mass && (s->ndefs || s->ops <= STRAIGHT_OPS_A_VARIABLE * (uint64_t)e->n);
+}
+
+/* Each block that is factored by a loop gets a place of its own. */
+static void keep_factors(Lower *l, const Block *blocks, uint32_t n, Slot *x) {
+  Factored *f = l->factored;
+  uint32_t place = 0, loop = 0;
+  *f = (Factored){.n = l->e->n};
+  for (uint32_t k = 0; k < n; k++) {
+    const Block *b = &blocks[k];
+    FactoredBlock kept = {.n = b->n, .at = b->at, .M = b->M, .divisor = b->n == 2 ? b->divisor : b->M[0], .place = place};
+    vec_push(l->p->arena, &f->blocks, kept);
+    if (b->n < 3) continue;
+    l->p->solves.at[loop++].place = place;
+    place += factored_room(b->n);
+  }
+  l->x = x;
 }
 
 static void solve_blocks(Lower *l, Slot *acc) {
@@ -123,12 +141,13 @@ static void solve_blocks(Lower *l, Slot *acc) {
   prog_title(l->p, "M q'' = f");
   Slot *x = ARENA_ARRAY(a, Slot, e->n);
   for (uint32_t k = 0; k < n; k++) {
-    const Block *b = &blocks[k];
+    Block *b = &blocks[k];
     if (b->n == 1) solve_one(l, b, x);
     else if (b->n == 2) solve_two(l, b, x);
     else solve_loop(l, b, x);
     for (uint32_t i = 0; i < b->n; i++) acc[b->at[i]] = x[i];
   }
+  if (l->factored) keep_factors(l, blocks, n, acc);
 }
 
 void lower_solution(Lower *l, Slot *acc) {

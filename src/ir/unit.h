@@ -3,7 +3,7 @@
 #ifndef LAGC_IR_UNIT_H
 #define LAGC_IR_UNIT_H
 
-#include "ir/prog.h"
+#include "ir/series.h"
 
 typedef struct {
   const char *name, *unit; /* as the user wrote them */
@@ -54,7 +54,7 @@ typedef struct {
 } IrEntry;
 
 /* What only some methods of integration need, and is not made for the others. */
-enum { WANT_VARIATION = 1, WANT_LINEAR = 4 };
+enum { WANT_VARIATION = 1, WANT_TAYLOR = 2, WANT_LINEAR = 4 };
 
 /* An entry of the second derivatives: part as in mech/variation.h. */
 typedef struct {
@@ -72,6 +72,7 @@ typedef struct {
   unsigned wants;
   const Prog *variation, *second; /* NULL unless WANT_VARIATION */
   VEC(IrSecond) second_at;        /* what the values of `second` are */
+  const Series *taylor;         /* NULL unless WANT_TAYLOR, and where a value is not analytic */
   const Prog *linear;           /* NULL: not asked for */
   VEC(IrEntry) linear_dr, linear_mass; /* what its outputs 0 and 1 are */
   VEC(IrScene) scenes;

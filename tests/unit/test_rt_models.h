@@ -20,6 +20,8 @@
       UNUSED const double *p, UNUSED const double *u
 #define MODEL(text) .abi = LAG_ABI, .real_size = sizeof(double), .name = text, .doc = "", .effects = ""
 
+#include "test_rt_taylor.h"
+
 /* The derivatives of L that implicit methods need: name_variation, name_second and name_at. */
 #define FIRST(name) UNUSED static int name##_variation(ARGS, double *Lq, double *Lv, double *Q, UNUSED double *w)
 #define SECOND(name) UNUSED static int name##_second(ARGS, double *h, UNUSED double *w)
@@ -31,6 +33,8 @@
   UNUSED static const lag_linear name##_linear = {.ndr = (int)(sizeof name##_dr / sizeof *name##_dr), .dr = name##_dr, \
       .nmass = (int)(sizeof name##_mass / sizeof *name##_mass), .mass = name##_mass, .eval = name##_linearise}
 #define EXACT(name) DERIVATIVES(name), .linear = &name##_linear
+/* And the series that taylor needs. */
+#define ANALYTIC(name) EXACT(name), .taylor = &name##_taylor
 UNUSED static const lag_entry full_2[] = {{0, 0}, {0, 1}, {1, 0}, {1, 1}}, diagonal_2[] = {{0, 0}, {1, 1}}, lower_2[] = {{0, 0}, {1, 0}, {1, 1}};
 
 /* Of one coordinate with unit mass and a force that falls by `slope` with it. */
@@ -150,9 +154,11 @@ UNUSED static const lag_second kepler_at[] = {{LAG_QQ, 0, 0}, {LAG_QQ, 1, 0}, {L
 #define kepler_dr full_2
 #define kepler_mass diagonal_2
 UNIT_MASSES(kepler);
+TAYLOR(kepler, 2, 0);
 
-UNUSED static const lag_model kepler_model = {MODEL("kepler"), .flags = LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 2,
-    .q = names_q, .accel = kepler_accel, .energy = kepler_energy, EXACT(kepler)};
+UNUSED static const lag_model kepler_model = {MODEL("kepler"), .flags = LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS | LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_SMOOTH,
+    .nq = 2,
+    .q = names_q, .accel = kepler_accel, .energy = kepler_energy, ANALYTIC(kepler)};
 UNUSED static const lag_scene kepler = {.name = "orbit", .doc = "", .model = &kepler_model, .start = kepler_start, .t1 = 10,
     .has_span = 1};
 
@@ -177,8 +183,9 @@ UNUSED static void osc_start(UNUSED const double *p, double *q, double *v, UNUSE
 }
 
 UNIT_MASS(osc, osc_accel, 1);
-UNUSED static const lag_model osc_model = {MODEL("oscillator"), .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 1, .q = names_q,
-    .accel = osc_accel, .energy = osc_energy, EXACT(osc)};
+TAYLOR_LINEAR(osc, 1, 0);
+UNUSED static const lag_model osc_model = {MODEL("oscillator"), .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .q = names_q,
+    .accel = osc_accel, .energy = osc_energy, ANALYTIC(osc)};
 UNUSED static const lag_scene osc = {.name = "osc", .doc = "", .model = &osc_model, .start = osc_start, .t1 = 10, .has_span = 1};
 
 /* ---- ball: y'' = -g, y(0) = h, bounces with restitution e. p = {g, h, e}. */
@@ -226,8 +233,9 @@ UNUSED static void ball_start(const double *p, double *q, double *v, UNUSED doub
 }
 
 UNIT_MASS(ball, ball_accel, 0);
-UNUSED static const lag_model ball_model = {MODEL("ball"), .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 1, .np = 3, .nev = 1,
-    .q = names_q + 1, .p = ball_p, .ev = ball_ev, .accel = ball_accel, .energy = ball_energy, .events = ball_events, .act = ball_act, EXACT(ball)};
+TAYLOR_LINEAR(ball, 0, 0);
+UNUSED static const lag_model ball_model = {MODEL("ball"), .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .np = 3, .nev = 1,
+    .q = names_q + 1, .p = ball_p, .ev = ball_ev, .accel = ball_accel, .energy = ball_energy, .events = ball_events, .act = ball_act, ANALYTIC(ball)};
 UNUSED static const lag_scene ball = {.name = "drop", .doc = "", .model = &ball_model, .params = ball_params,
     .start = ball_start, .t1 = 5, .has_span = 1};
 

@@ -1,0 +1,357 @@
+/* taylor: the Taylor series of the motion, in steps and of an order that follow from the tolerance. Enters: t, y; leaves:
+ * the next accepted t, y. Holds: what a step needs of the model is its series at the start of the step and one evaluation at
+ * the end, which is order 0 of the next series; M is factored once a step.
+ *
+ * Source of the recurrences: ir/series.h of the compiler. Of the step: A. Jorba, M. Zou, Experimental Mathematics 14
+ * (2005) 99, DOI 10.1080/10586458.2005.10128904, section 3, made robust. With x_k the coefficient of order k, T about the
+ * last step, and |x| = max |x_i| / (|y_i| + |T y_i'| + atol/rtol), so that a component may pass through zero, theirs is h = c min(|x_(p-1)|^(-1/(p-1)), |x_p|^(-1/p)): the root test of the radius of
+ * convergence. Motions with symmetries have series with gaps: a pendulum that starts from rest at a right angle has only the
+ * coefficients 2, 6, 10, ... of its angle. So here
+ *  1. the root test is made with the last WINDOW coefficients, r = max_k |x_k|^(1/k), and the step is such that a series
+ *     with |x_k| = r^k leaves out a fraction of the tolerance: (r h)^(p+1) = rtol/4, and less near rounding;
+ *  2. the defect at the end of the step, y'(h) of the polynomial against the model's f(y(h)), sees all coefficients that
+ *     are left out. What it says of the error must be below the tolerance, or the step is made smaller. A defect that
+ *     does not shrink with the step as h^p is rounding, and is accepted.
+ * The order p is the one that covers the most time for its operations: h = rtol^(1/(p+1))/r, and order k costs an
+ * evaluation and k - 1 terms of each sum. */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "lag.h"
+#include "methods/near.h"
+#include "methods/steps.h"
+
+enum { WINDOW = 5, LEAST_ORDER = 6, AIM = 2 };
+
+enum { OPT_STEP, OPT_MAX, OPT_ATOL, OPT_ADAPT, OPT_ORDER, NOPTIONS };
+
+static const char *const on_off[] = {"on", "off", NULL};
+
+static const lag_method_option options[NOPTIONS] = {
+    {"step", "size of the step [s] where adapt is off; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL},
+    {"max_step", "largest step [s]; 0: a tenth of the scene's span, or the time since the start", 0, 0, HUGE_VAL, NULL},
+    {"atol", "absolute tolerance [SI]; 0: the same number as the relative one", 0, 0, HUGE_VAL, NULL},
+    {"adapt", "off: every step has the size `step`, whatever the error", 0, 0, 1, on_off},
+    {"order", "order of the series; 0: chosen from the tolerance and what an order costs", 0, 0, LAG_TAYLOR_ORDER, NULL},
+};
+
+/* One block of doubles; behind it the arrays below. */
+typedef struct Taylor {
+  double order;
+  double h_option, h_max, fixed;
+  double floor;     /* absolute over relative tolerance: a state below it is judged like one of this size */
+  double ready;     /* 1: series[now] is that at t, y */
+  double now;       /* 0 or 1: which series the next step goes along; the other one is that of the last step */
+  double t0, dt;    /* the last step */
+  double unit[2];   /* the unit of time of each series, with the sign of the direction */
+  double noise;     /* the defect that was found to be rounding, in tolerances; forgotten by a tenth a step */
+  double t_begin, begun;
+  double x[];
+} Taylor;
+
+enum { COMP, COMP1, Y1, SUM, SLOPE, SCALE, ARRAYS }; /* of `width` doubles each; behind them the series */
+
+static int width(const lag_problem *pb)
+{
+  return pb->model->taylor->width;
+}
+
+static double *array(Taylor *w, const lag_problem *pb, int which)
+{
+  return w->x + which * width(pb);
+}
+
+/* Series 0 or 1. */
+static double *series(Taylor *w, const lag_problem *pb, double which)
+{
+  const lag_taylor *ty = pb->model->taylor;
+
+  return w->x + ARRAYS * ty->width + (which > 0 ? (ty->order + 1) * ty->columns : 0);
+}
+
+/* [nu] 1 where the input follows its formula. */
+static double *follows(Taylor *w, const lag_problem *pb)
+{
+  const lag_taylor *ty = pb->model->taylor;
+
+  return w->x + ARRAYS * ty->width + 2 * (ty->order + 1) * ty->columns;
+}
+
+static size_t work_size(const lag_problem *pb)
+{
+  const lag_taylor *ty = pb->model->taylor;
+  size_t head = sizeof(Taylor) / sizeof(double);
+
+  return ty ? head + (size_t)(ARRAYS * ty->width + 2 * (ty->order + 1) * ty->columns + pb->model->nu) : head;
+}
+
+static void reset(void *work, lag_problem *pb)
+{
+  Taylor *w = work;
+
+  w->ready = 0;
+  memset(array(w, pb, COMP), 0, (size_t)width(pb) * sizeof(double));
+}
+
+/* The error that the step aims at, as -log2 of a relative one: a fraction of the tolerance, and far below what rounding leaves
+ * where the tolerance comes near to that: an error of each step in one direction would add up as the number of steps, rounding
+ * as its root. */
+static double aim(const lag_problem *pb)
+{
+  double left = 1.5 * (9 - lag_log2_near(pb->tol / DBL_EPSILON)); /* 10 at 1e-15, 0 at 1e-13 */
+
+  return AIM - lag_log2_near(pb->tol) + (left < 0 ? 0 : left > 10 ? 10 : left);
+}
+
+/* The order that covers the most time for its operations. Of a step itself, 300 of them; the products of the sums are made
+ * two at a time. */
+static double best_order(const lag_problem *pb)
+{
+  const lag_taylor *ty = pb->model->taylor;
+  double bits = aim(pb), least = HUGE_VAL;
+  int best = LEAST_ORDER;
+
+  for (int p = LEAST_ORDER; p <= ty->order; p++) {
+    double cost = (300.0 + ty->cost_first + (double)p * ty->cost_next + p * (p - 1) / 2.0 * ty->sums) * exp2(bits / (p + 1));
+    best = cost < least ? p : best;
+    least = fmin(cost, least);
+  }
+  return best;
+}
+
+static int init(void *work, lag_problem *pb, const double *opt)
+{
+  Taylor *w = work;
+
+  w->order = fmin(pb->model->taylor->order, opt[OPT_ORDER] > 0 ? ceil(opt[OPT_ORDER]) : best_order(pb));
+  w->fixed = opt[OPT_ADAPT];
+  w->h_option = lag_step_size(pb, opt[OPT_STEP]);
+  w->h_max = opt[OPT_MAX] > 0 ? opt[OPT_MAX] : pb->span / 10;
+  w->floor = opt[OPT_ATOL] > 0 ? opt[OPT_ATOL] / pb->tol : 1;
+  for (int i = 0; i < pb->model->nu; i++) {
+    follows(w, pb)[i] = isnan(pb->hold[i]) && pb->model->inputs;
+  }
+  reset(work, pb);
+  return LAG_OK;
+}
+
+/* Order 0 at t, y of series[which]. 0, or as the model says; > 0, too, where a rate is not finite: pb->bad_index >= 0. */
+static int first(Taylor *w, lag_problem *pb, double which, double t, const double *y)
+{
+  int nq = pb->nq, rc = lag_inputs(pb, t);
+  double *x = series(w, pb, which);
+
+  pb->rhs_calls++;
+  pb->bad_index = -1;
+  rc = rc ? rc : pb->model->taylor->first(t, y, y + nq, y + 2 * nq, pb->p, pb->u, follows(w, pb), x, pb->work);
+  if (rc == 0) {
+    int bad = lag_not_finite(nq + pb->nz, x + pb->n);
+    pb->bad_index = bad < 0 ? -1 : nq + bad;
+    rc = bad < 0 ? 0 : LAG_ERETRY;
+  }
+  return rc;
+}
+
+/* The time in which the state changes, as a power of 2: the unit of the first series. Of the others it is about the step. */
+static double guess_unit(Taylor *w, const lag_problem *pb, const double *y)
+{
+  double fastest = 0;
+  const double *rates = series(w, pb, w->now) + pb->n;
+
+  for (int i = 0; i < pb->n; i++) {
+    fastest = fmax(fastest, fabs(i < pb->nq ? y[pb->nq + i] : rates[i - pb->nq]) / (fabs(y[i]) + w->floor));
+  }
+  return fastest > 0 && isfinite(fastest) ? ldexp(1, -ilogb(fastest)) : 1;
+}
+
+/* All orders of series[which] from its order 0; unit: of time. 0 when they are not finite. */
+static int expand(Taylor *w, lag_problem *pb, double which, double unit)
+{
+  const lag_taylor *ty = pb->model->taylor;
+  int order = (int)w->order;
+  double *x = series(w, pb, which);
+
+  for (int attempt = 0; attempt < 8; attempt++, unit *= 0x1p-40) {
+    w->unit[which > 0] = pb->dir * unit;
+    ty->rest(order, pb->dir * unit, x, pb->work);
+    if (lag_not_finite(pb->n, x + order * ty->columns) < 0) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* The series at t, y, where there is none yet: at the start, and after an event. */
+static int prepare(Taylor *w, lag_problem *pb, double t, const double *y)
+{
+  if (w->begun == 0.0) {
+    w->begun = 1;
+    w->t_begin = t;
+  }
+  if (w->ready != 0.0) {
+    return LAG_OK;
+  }
+  int rc = first(w, pb, w->now, t, y);
+  if (rc) {
+    return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, t) : lag_step_refused(pb, rc, t);
+  }
+  if (!expand(w, pb, w->now, guess_unit(w, pb, y))) {
+    pb->detail = "its Taylor series does not exist here; dop853 needs none";
+    return lag_step_failed(pb, LAG_ENAN, t);
+  }
+  w->ready = 1;
+  return LAG_OK;
+}
+
+/* The step that the series allows: item 1 above. HUGE_VAL for a polynomial. */
+static double allowed(Taylor *w, lag_problem *pb, const double *y)
+{
+  int n = pb->n, order = (int)w->order, columns = pb->model->taylor->columns;
+  const double *x = series(w, pb, w->now);
+  double *scale = array(w, pb, SCALE), root = -HUGE_VAL;
+
+  for (int i = 0; i < n; i++) {
+    scale[i] = 1 / (fabs(y[i]) + fabs(x[columns + i]) + w->floor);
+  }
+  for (int k = order; k > order - WINDOW && k > 0; k--) {
+    const double *row = x + k * columns;
+    double most = 0;
+    for (int i = 0; i < n; i++) {
+      double size = fabs(row[i]) * scale[i];
+      most = size > most ? size : most;
+    }
+    double here = most > 0 ? lag_log2_near(most) / k : -HUGE_VAL;
+    root = here > root ? here : root;
+  }
+  if (root == -HUGE_VAL) {
+    return HUGE_VAL;
+  }
+  return fabs(w->unit[w->now > 0]) * lag_exp2_near(-aim(pb) / (order + 1) - root);
+}
+
+/* The error of a step of dt that ends at Y1, in tolerances: item 2 above. The polynomial leaves out c t^(p+1) and what
+ * follows; its defect at the end is (p + 1) c h^p, and that of q is by one order smaller. */
+static double error_of(Taylor *w, lag_problem *pb, double dt)
+{
+  int nq = pb->nq, m = nq + pb->nz, order = (int)w->order;
+  double per_unit = 1 / w->unit[w->now > 0], worst = 0, h = fabs(dt), to_v = h / (order + 1), to_q = h / (order + 2);
+  const double *slope = array(w, pb, SLOPE) + nq, *scale = array(w, pb, SCALE), *rates = series(w, pb, 1 - w->now) + pb->n;
+
+  for (int i = 0; i < m; i++) {
+    double error = fabs(slope[i] * per_unit - rates[i]) * to_v, size = error * scale[nq + i];
+    double of_q = i < nq ? error * to_q * scale[i] : 0;
+    worst = size > worst ? size : worst;
+    worst = of_q > worst ? of_q : worst;
+  }
+  return worst / pb->tol;
+}
+
+/* The limit on steps: the option, or else what has been seen of the motion so far. */
+static double longest(const Taylor *w, double t)
+{
+  double seen = fabs(t - w->t_begin);
+
+  return w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
+}
+
+/* Y1, COMP1 := the state at t + dt. */
+static void advance(Taylor *w, lag_problem *pb, const double *y, double dt)
+{
+  const double *comp = array(w, pb, COMP);
+  double *sum = array(w, pb, SUM), *y1 = array(w, pb, Y1), *comp1 = array(w, pb, COMP1);
+
+  pb->model->taylor->at((int)w->order, dt / w->unit[w->now > 0], series(w, pb, w->now), sum, array(w, pb, SLOPE));
+  for (int i = 0; i < pb->n; i++) {
+    comp1[i] = comp[i];
+    y1[i] = lag_sum(y[i], sum[i], &comp1[i]);
+  }
+}
+
+/* Takes the step; what order 0 at its end leads to is the next series. */
+static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, double tb)
+{
+  const double *y1 = array(w, pb, Y1), *comp1 = array(w, pb, COMP1);
+  double *comp = array(w, pb, COMP);
+
+  for (int i = 0; i < pb->n; i++) {
+    y[i] = y1[i];
+    comp[i] = comp1[i];
+  }
+  w->t0 = *t;
+  w->dt = dt;
+  *t = tb;
+  w->now = 1 - w->now;
+  w->ready = expand(w, pb, w->now, ldexp(1, ilogb(dt)));
+}
+
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
+{
+  Taylor *w = work;
+  int cause = LAG_ESTEP, rc = prepare(w, pb, *t, y);
+
+  (void)t_stop;
+  if (rc) {
+    return rc;
+  }
+  double h = allowed(w, pb, y), most = longest(w, *t), last = HUGE_VAL;
+  h = w->fixed != 0.0 ? w->h_option : h < most ? h : most;
+  h = isfinite(h) ? h : 1;
+  for (;;) {
+    double tb = *t + pb->dir * h, dt = tb - *t; /* a step between two times that are numbers */
+    if (!(fabs(dt) > 4 * DBL_EPSILON * fabs(*t)) || h < DBL_MIN / DBL_EPSILON) {
+      return cause == LAG_ESTEP || cause == LAG_ESINGULAR ? lag_step_failed(pb, cause, *t) : cause;
+    }
+    advance(w, pb, y, dt);
+    rc = first(w, pb, 1 - w->now, tb, array(w, pb, Y1));
+    if (rc < 0 && rc != LAG_ESINGULAR) {
+      return lag_step_refused(pb, rc, tb);
+    }
+    double error = rc ? NAN : error_of(w, pb, dt);
+    if (error > last / 2) { /* a shorter step, and the same defect: it is rounding */
+      w->noise = error;
+    }
+    if (error <= 1 || error <= 2 * w->noise || (w->fixed != 0.0 && rc == 0)) {
+      w->noise *= 0.9;
+      accept(w, pb, t, y, dt, tb);
+      return LAG_OK;
+    }
+    cause = rc ? (pb->bad_index >= 0 ? LAG_ENAN : rc < 0 ? LAG_ESINGULAR : LAG_EDOMAIN) : LAG_ESTEP;
+    pb->bad_t = tb;
+    if (w->fixed != 0.0) {
+      return cause;
+    }
+    last = rc ? HUGE_VAL : error;
+    h *= rc ? 0.5 : fmax(0.5, lag_exp2_near(-(lag_log2_near(error) + AIM) / (w->order + 1)));
+    pb->rejected++;
+  }
+}
+
+static void dense(void *work, lag_problem *pb, double t, double *y)
+{
+  Taylor *w = work;
+  double which = 1 - w->now, *sum = array(w, pb, SUM);
+  const double *x = series(w, pb, which);
+
+  pb->model->taylor->at((int)w->order, (t - w->t0) / w->unit[which > 0], x, sum, array(w, pb, SLOPE));
+  for (int i = 0; i < pb->n; i++) {
+    y[i] = x[i] + sum[i];
+  }
+}
+
+const lag_method lag_taylor_method = {
+    .name = "taylor",
+    .order = 20,
+    .dense_order = 20,
+    .order_least = 1,
+    .order_most = LAG_TAYLOR_ORDER,
+    .doc = "Taylor series of an order that follows from the tolerance, for tolerances below 1e-9. DOI 10.1080/10586458.2005.10128904",
+    .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_TAYLOR,
+    .noptions = NOPTIONS,
+    .options = options,
+    .work_size = work_size,
+    .init = init,
+    .step = step,
+    .dense = dense,
+    .reset = reset,
+};

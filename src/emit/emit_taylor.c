@@ -1,0 +1,231 @@
+#include "emit/emit_taylor.h"
+
+#include <string.h>
+
+#include "emit/cfunction.h"
+
+enum { LANES = 4 };    /* rows are a multiple of so many numbers */
+enum { CALL = 25 };    /* what a function costs more than another operation */
+enum { LOOP_FROM = 9 }; /* statements that differ in an index only: so many become a loop */
+
+static const char *const arrays[ARR_COUNT] = {
+  "t", "q", "v", "z", "p", "u", [ARR_FREE] = "follows", [ARR_COEF] = "x", [ARR_SUMS] = "s", [ARR_STEP] = "c",
+  [ARR_ORDER] = "order", [ARR_PER_ORDER] = "per_order", [ARR_UP] = "up",
+};
+
+static const char *const head =
+  "\n/* --- Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... --- */\n"
+  "\n/* Numbers side by side, where the compiler has such types: pairs, and as many as an instruction takes. */\n"
+  "#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE)\n"
+  "typedef double taylor_pair __attribute__((vector_size(16), aligned(8), may_alias));\n"
+  "#define LAG_PAIR(a, i, x, y) (((taylor_pair *)(a))[(i)/2] = (taylor_pair){x, y})\n"
+  "#else\n"
+  "typedef LAG_REAL taylor_pair;\n"
+  "#define LAG_PAIR(a, i, x, y) ((a)[i] = (x), (a)[(i) + 1] = (y))\n"
+  "#endif\n"
+  "#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE) && defined(__AVX__)\n"
+  "typedef double taylor_lanes __attribute__((vector_size(32), aligned(8), may_alias));\n"
+  "#else\n"
+  "typedef taylor_pair taylor_lanes;\n"
+  "#endif\n"
+  "#if defined(__GNUC__) && !defined(__clang__)\n"
+  "#define TAYLOR_UNROLL _Pragma(\"GCC unroll 16\")\n"
+  "#else\n"
+  "#define TAYLOR_UNROLL\n"
+  "#endif\n"
+  "enum { TAYLOR_LANES = sizeof(taylor_lanes)/sizeof(LAG_REAL), TAYLOR_PAIR = sizeof(taylor_pair)/sizeof(LAG_REAL) };\n\n";
+
+static const char *const at =
+  "\n/* y = x[1] s + ... + x[n] s^n for q, v and z, and dy its derivative by s: by Horner's rule. Both have room for\n"
+  " * TAYLOR_WIDTH. */\n"
+  "static void taylor_at(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
+  "  enum { PART = 4/TAYLOR_LANES };\n"
+  "  for (int i = 0; i < TAYLOR_WIDTH; i += 4) {\n"
+  "    taylor_lanes sum[PART] = {0}, slope[PART] = {0};\n"
+  "    for (int k = n; k > 0; k--) {\n"
+  "      const taylor_lanes *const row = (const taylor_lanes *)(x + k*TAYLOR_COLUMNS + i);\n"
+  "      TAYLOR_UNROLL\n"
+  "      for (int g = 0; g < PART; g++) {\n"
+  "        slope[g] = slope[g]*s + sum[g];\n"
+  "        sum[g] = sum[g]*s + row[g];\n"
+  "      }\n"
+  "    }\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < PART; g++) {\n"
+  "      ((taylor_lanes *)(y + i))[g] = sum[g]*s;\n"
+  "      ((taylor_lanes *)(dy + i))[g] = slope[g]*s + sum[g];\n"
+  "    }\n"
+  "  }\n"
+  "}\n";
+
+static const char *const sums =
+  "\n/* s = a[1] b[k-1] + ... + a[k-1] b[1]. What order k - 1 has just made comes last, and in pairs, as it was stored: a processor\n"
+  " * hands on what it has just stored only to loads of no more than that. */\n"
+  "static void taylor_sums(int k, taylor_work *w) {\n"
+  "  enum { WIDE = TAYLOR_GROUP/TAYLOR_LANES, NARROW = TAYLOR_GROUP/TAYLOR_PAIR };\n"
+  "  const int last = k - 1;\n"
+  "  for (int i = 0; i < TAYLOR_SQUARES; i += TAYLOR_GROUP) {\n"
+  "    taylor_lanes s[WIDE] = {0};\n"
+  "    for (int j = 2; j < last; j++) {\n"
+  "      const taylor_lanes *const a = (const taylor_lanes *)(w->a[j] + i), *const b = (const taylor_lanes *)(w->b[k - j] + i);\n"
+  "      TAYLOR_UNROLL\n"
+  "      for (int g = 0; g < WIDE; g++) s[g] += a[g]*b[g];\n"
+  "    }\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < WIDE; g++) ((taylor_lanes *)(w->s + i))[g] = s[g];\n"
+  "    const taylor_pair *const a1 = (const taylor_pair *)(w->a[1] + i), *const b1 = (const taylor_pair *)(w->b[1] + i);\n"
+  "    const taylor_pair *const an = (const taylor_pair *)(w->a[last] + i), *const bn = (const taylor_pair *)(w->b[last] + i);\n"
+  "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
+  "    if (k > 2) {\n"
+  "      TAYLOR_UNROLL\n"
+  "      for (int g = 0; g < NARROW; g++) out[g] = out[g] + an[g]*b1[g] + a1[g]*bn[g];\n"
+  "    } else if (k == 2) {\n"
+  "      TAYLOR_UNROLL\n"
+  "      for (int g = 0; g < NARROW; g++) out[g] = a1[g]*bn[g];\n"
+  "    }\n"
+  "  }\n"
+  "}\n";
+
+static const char *const squares =
+  "\n/* The same where b is a: twice the first half, and the middle. */\n"
+  "static void taylor_squares(int k, taylor_work *w) {\n"
+  "  enum { WIDE = TAYLOR_GROUP/TAYLOR_LANES, NARROW = TAYLOR_GROUP/TAYLOR_PAIR };\n"
+  "  const int last = k - 1, half = k/2;\n"
+  "  const LAG_REAL twice = LAG_C(2.0);\n"
+  "  for (int i = TAYLOR_SQUARES; i < TAYLOR_SUMS; i += TAYLOR_GROUP) {\n"
+  "    taylor_lanes s[WIDE] = {0};\n"
+  "    for (int j = 2; j < k - j; j++) {\n"
+  "      const taylor_lanes *const a = (const taylor_lanes *)(w->a[j] + i), *const b = (const taylor_lanes *)(w->a[k - j] + i);\n"
+  "      TAYLOR_UNROLL\n"
+  "      for (int g = 0; g < WIDE; g++) s[g] += a[g]*b[g];\n"
+  "    }\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < WIDE; g++) s[g] *= twice;\n"
+  "    const taylor_lanes *const m = (const taylor_lanes *)(w->a[half] + i);\n"
+  "    if (half > 1 && 2*half == k) {\n"
+  "      TAYLOR_UNROLL\n"
+  "      for (int g = 0; g < WIDE; g++) s[g] += m[g]*m[g];\n"
+  "    }\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < WIDE; g++) ((taylor_lanes *)(w->s + i))[g] = s[g];\n"
+  "    if (k < 2) continue;\n"
+  "    const taylor_pair *const a = (const taylor_pair *)(w->a[1] + i), *const b = (const taylor_pair *)(w->a[last] + i);\n"
+  "    const LAG_REAL weight = k > 2 ? twice : LAG_C(1.0);\n"
+  "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < NARROW; g++) out[g] += weight*(a[g]*b[g]);\n"
+  "  }\n"
+  "}\n";
+
+typedef struct {
+  const Series *s;
+  const char *const *globals;
+  Arena *a;
+  StrBuf *out;
+} Writer;
+
+static CStyle style_for(const Writer *w, const char *const *own, const char *const *written) {
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = w->globals, .factor = "lag_factor", .substitute = "lag_substitute"};
+}
+
+static void work(const Writer *w) {
+  const Series *s = w->s;
+  uint32_t width = (2 * s->nq + s->nz + LANES - 1) / LANES * LANES;
+  sb_printf(w->out, "enum { TAYLOR_COLUMNS = %u, TAYLOR_WIDTH = %u, TAYLOR_GROUP = %u, TAYLOR_SQUARES = %u, TAYLOR_SUMS = %u, TAYLOR_CONSTANTS = %u };\n",
+            s->columns, width, s->group, s->first_square, s->width, s->constants ? s->constants : 1);
+  sb_puts(w->out, "typedef struct {\n"
+    "  LAG_REAL a[LAG_TAYLOR_ORDER][TAYLOR_SUMS]; /* by order: what sums are made of  */\n"
+    "  LAG_REAL b[LAG_TAYLOR_ORDER][TAYLOR_SQUARES];\n"
+    "  LAG_REAL s[TAYLOR_SUMS];\n"
+    "  LAG_REAL c[TAYLOR_CONSTANTS];              /* what order 0 leaves for all others */\n");
+  if (s->room) sb_printf(w->out, "  LAG_REAL m[%u];\n", s->room);
+  sb_puts(w->out, "} taylor_work;\n");
+}
+
+static void copy(const Writer *w, const char *name, uint32_t n, uint32_t from) {
+  for (uint32_t i = 0; i < n && n < LOOP_FROM; i++) sb_printf(w->out, "  x[%u] = %s[%u];\n", from + i, name, i);
+  if (n >= LOOP_FROM) sb_printf(w->out, from ? "  for (int i = 0; i < %u; i++) x[i + %u] = %s[i];\n" : "  for (int i = 0; i < %u; i++) x[i%.0u] = %s[i];\n", n, from, name);
+}
+
+static void first(const Writer *w) {
+  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "follows", "x", "c", "w", "work", NULL};
+  static const char *const written[] = {"x", "c"};
+  const Series *s = w->s;
+  CStyle st = style_for(w, own, written);
+  sb_printf(w->out, "\n/* Order 0: %s. */\n", ops_text(s->first, w->a));
+  sb_puts(w->out, "static int taylor_first(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,\n"
+                  "    const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *x, LAG_REAL *work) {\n"
+                  "  LAG_REAL *const c = ((taylor_work *)(void *)work)->c;\n");
+  if (s->room) sb_puts(w->out, "  LAG_REAL *const w = ((taylor_work *)(void *)work)->m;\n");
+  sb_puts(w->out, "  (void)t; (void)q; (void)v; (void)z; (void)p; (void)u; (void)follows; (void)c;\n");
+  copy(w, "q", s->nq, 0);
+  copy(w, "v", s->nq, s->nq);
+  copy(w, "z", s->nz, 2 * s->nq);
+  cwrite_body(s->first, &st, w->a, w->out);
+  sb_puts(w->out, "  return LAG_OK;\n}\n");
+}
+
+static void next(const Writer *w) {
+  static const char *const own[] = {"x", "x1", "a", "b", "s", "c", "order", "per_order", "up", "w", NULL};
+  static const char *const written[] = {"x", "x1", "a", "b"};
+  const Series *s = w->s;
+  CStyle st = style_for(w, own, written);
+  st.paired = 1u << 2 | 1u << 3;
+  sb_printf(w->out, "\n/* Order k > 0, besides the sums: %s. Each name stands for coefficient k of its value. */\n", ops_text(s->next, w->a));
+  sb_puts(w->out, "static void taylor_next(LAG_REAL order, LAG_REAL per_order, LAG_REAL up, const LAG_REAL *s, const LAG_REAL *c, LAG_REAL *x,\n"
+                  "    LAG_REAL *x1, LAG_REAL *a, LAG_REAL *b");
+  sb_puts(w->out, s->room ? ", LAG_REAL *w) {\n" : ") {\n");
+  sb_puts(w->out, "  (void)order; (void)per_order; (void)up; (void)s; (void)c; (void)a; (void)b;\n");
+  cwrite_body(s->next, &st, w->a, w->out);
+  sb_puts(w->out, "}\n");
+}
+
+/* x[to + i] of order 1 := T times x[from + i] of order 0, for i < n. */
+static void rate(const Writer *w, uint32_t to, uint32_t from, uint32_t n) {
+  if (n) sb_printf(w->out, "  for (int i = %u; i < %u; i++) x[TAYLOR_COLUMNS + i] = T*x[i + %u];\n", to, to + n, from - to);
+}
+
+static void rest(const Writer *w) {
+  const Series *s = w->s;
+  uint32_t nq = s->nq, nz = s->nz, t = 3 * nq + 2 * nz;
+  sb_puts(w->out, "\n/* Orders 1 to n. */\n"
+                  "static void taylor_rest(int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *work) {\n"
+                  "  taylor_work *const w = (taylor_work *)(void *)work;\n"
+                  "  LAG_REAL per_k = LAG_C(1.0);\n");
+  rate(w, 0, nq, nq);
+  rate(w, nq, 2 * nq + nz, nq + nz);
+  if (s->uses_time) sb_printf(w->out, "  x[TAYLOR_COLUMNS + %u] = T;\n", t);
+  if (s->sums < s->first_square)
+    sb_printf(w->out, "  for (int k = 1; k < n; k++) /* what fills the last group */\n"
+                      "    for (int i = %u; i < TAYLOR_SQUARES; i++) w->a[k][i] = w->b[k][i] = LAG_C(0.0);\n", s->sums);
+  if (s->first_square + s->squares < s->width)
+    sb_printf(w->out, "  for (int k = 0; k < n; k++)\n"
+                      "    for (int i = %u; i < TAYLOR_SUMS; i++) w->a[k][i] = LAG_C(0.0);\n", s->first_square + s->squares);
+  sb_puts(w->out, "  for (int k = 1; k < n; k++) {\n"
+                  "    LAG_REAL *const y = x + k*TAYLOR_COLUMNS, *const z = y + TAYLOR_COLUMNS;\n"
+                  "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_REAL)(k + 1);\n");
+  if (s->sums) sb_puts(w->out, "    taylor_sums(k, w);\n");
+  if (s->squares) sb_puts(w->out, "    taylor_squares(k, w);\n");
+  sb_printf(w->out, "    taylor_next((LAG_REAL)k, per_k, T*per_next, w->s, w->c, y, z, w->a[k], w->b[k]%s);\n",
+            s->room ? ", w->m" : "");
+  if (s->uses_time) sb_printf(w->out, "    z[%u] = LAG_C(0.0);\n", t);
+  sb_puts(w->out, "    per_k = per_next;\n  }\n}\n");
+}
+
+void emit_taylor(const Series *s, const char *const *globals, StrBuf *out) {
+  Writer w = {.s = s, .globals = globals, .a = s->first->arena, .out = out};
+  sb_puts(out, head);
+  work(&w);
+  if (s->room) csupport_factor("LAG", "lag", out);
+  first(&w);
+  if (s->sums) sb_puts(out, sums);
+  if (s->squares) sb_puts(out, squares);
+  next(&w);
+  rest(&w);
+  sb_puts(out, at);
+  sb_puts(out, "\nstatic const lag_taylor taylor = {\n"
+    "  .order = LAG_TAYLOR_ORDER, .columns = TAYLOR_COLUMNS, .width = TAYLOR_WIDTH, .nw = (int)(sizeof(taylor_work)/sizeof(LAG_REAL)),\n");
+  OpCount c = prog_count(s->first);
+  sb_printf(out, "  .cost_first = %u, .cost_next = %u, .sums = %u,\n", ops_total(c) + CALL*c.fn, ops_total(prog_count(s->next)), s->sums + s->squares/2);
+  sb_puts(out, "  .first = taylor_first, .rest = taylor_rest, .at = taylor_at,\n};\n");
+}

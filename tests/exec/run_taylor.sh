@@ -1,0 +1,116 @@
+#!/bin/sh
+# Taylor coefficients in emitted code: every function against digits of mpmath, every model against its own accelerations, in
+# several precisions; and the method `taylor` that lives on them.
+. tests/tap.sh
+
+here=tests/exec/taylor
+models=$(ls models/*.lag tests/exec/models/*.lag | grep -v mutants) # those have the names of others
+name_of() { sed -n 's/^model \([^ ]*\).*/\1/p' "$1"; }
+gcc=
+for c in "$CC" gcc; do "$c" --version 2>/dev/null | grep -q 'Free Software' && gcc=$c && break; done
+echo '#include <quadmath.h>' >"$TMP/quad.h"
+quad=
+[ -n "$gcc" ] && echo 'int main(void) { return 0; }' | "$gcc" -include "$TMP/quad.h" -x c - -lquadmath -o "$TMP/quad" 2>/dev/null && quad=yes
+
+# build PRECISION FILES... -o PROGRAM
+build() {
+  precision=$1
+  shift
+  case $precision in
+    double) "$CC" -std=c11 -O1 -ffp-contract=off -I"$INC" "$@" -lm ;;
+    long) "$CC" -std=c11 -O1 -ffp-contract=off -I"$INC" -DREAL_LONG '-DLAG_REAL=long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L' "$@" -lm ;;
+    quad) "$gcc" -std=gnu11 -O1 -ffp-contract=off -I"$INC" -include "$TMP/quad.h" -DREAL_QUAD -DLAG_REAL=__float128 '-DLAG_FN(x)=x##q' \
+      '-DLAG_C(x)=x##Q' "$@" -lquadmath -lm ;;
+  esac
+}
+precisions="double long${quad:+ quad}"
+
+# ---- every function
+digits() { # PRECISION FILE.c
+  build "$1" "$2" $here/coefficients.c -o "$TMP/digits" && "$TMP/digits" $here/functions.expected
+}
+"$LAGC" emit $here/functions.lag --method taylor -o "$TMP/functions.c"
+for p in $precisions; do check "every function, its coefficients: $p" digits "$p" "$TMP/functions.c"; done
+[ -n "$quad" ] || skip "every function, its coefficients: quad" "there is no libquadmath"
+sed 's/\*per_order//' "$TMP/functions.c" >"$TMP/wrong.c"
+wrong_digits() { ! cmp "$TMP/functions.c" "$TMP/wrong.c" && build double "$TMP/wrong.c" $here/coefficients.c -o "$TMP/digits" && ! "$TMP/digits" $here/functions.expected; }
+check "this test sees a recurrence that lacks a factor" wrong_digits
+
+# ---- every model
+mkdir -p "$TMP/c"
+{
+  echo '#include "lag_model.h"'
+  for m in $models; do
+    n=$(name_of "$m")
+    "$LAGC" emit "$m" --method taylor -o "$TMP/c/$n.c"
+    sed -n 's/^const lag_scene \(.*\) = {/extern const lag_scene \1;/p' "$TMP/c/$n.c"
+  done
+  echo 'extern const lag_scene *const all_scenes[];'
+  echo 'const lag_scene *const all_scenes[] = {'
+  for m in $models; do sed -n 's/^const lag_scene \(.*\) = {/  \&\1,/p' "$TMP/c/$(name_of "$m").c"; done
+  echo '  0};'
+} >"$TMP/c/scenes.c"
+defects() { # PRECISION
+  build "$1" "$TMP"/c/*.c $here/defect.c -o "$TMP/defect" && "$TMP/defect" >"$TMP/defect.txt" || { cat "$TMP/defect.txt"; return 1; }
+}
+p=${quad:+quad}
+check "every model: its polynomials solve its equations, to their order" defects "${p:-long}"
+mkdir -p "$TMP/wrong"
+wrong_defect() { # a sign in one of the recurrences of the double pendulum
+  sed '/^static void taylor_next/,/^}/s/ - c\[/ + c[/' "$TMP/c/double_pendulum.c" >"$TMP/wrong/model.c" && ! cmp "$TMP/c/double_pendulum.c" "$TMP/wrong/model.c" &&
+    echo '#include "lag_model.h"
+      extern const lag_scene double_pendulum_swing, *const all_scenes[];
+      const lag_scene *const all_scenes[] = {&double_pendulum_swing, 0};' >"$TMP/wrong/scenes.c" &&
+    build "${p:-long}" "$TMP/wrong/model.c" "$TMP/wrong/scenes.c" $here/defect.c -o "$TMP/defect_wrong" && ! "$TMP/defect_wrong"
+}
+check "this test sees a wrong sign" wrong_defect
+is "models that are not analytic have none" "without: motor" "$(grep without "$TMP/defect.txt" | sort -u)"
+
+# ---- the method
+mkdir -p "$TMP/r"
+for m in "models/pendulum.lag wide" "models/double_pendulum.lag swing" "models/kepler.lag orbit" "models/bouncing_ball.lag drop" \
+  "tests/exec/cases/kepler_e0_6.lag go" "$here/gap.lag go"; do
+  # shellcheck disable=SC2086 # two words
+  set -- $m
+  "$LAGC" emit "$1" "$2" --method taylor -o "$TMP/r/$(basename "$1" .lag).c"
+done
+check "runs.c compiles" "$CC" -std=c11 -O1 -ffp-contract=off -I"$INC" "$TMP"/r/*.c $here/runs.c "$BUILD/liblag.a" -lm -o "$TMP/runs"
+"$TMP/runs" >"$TMP/runs.txt" 2>&1 || true
+grep -q '^1\.\.' "$TMP/runs.txt" || check "runs.c runs to its end" false
+while read -r line; do
+  case $line in
+    "ok "*) check "${line#ok * - }" true ;;
+    "not ok "*) check "${line#not ok * - }" false ;;
+    "# "*) echo "$line" ;;
+  esac
+done <"$TMP/runs.txt"
+
+run() { "$LAGC" run "$@" >"$TMP/out" 2>"$TMP/err"; }
+refused() { # WORDS ARGS...
+  words=$1
+  shift
+  run "$@"
+  [ $? = 2 ] && grep -qF -e "$words" "$TMP/err" || { cat "$TMP/out" "$TMP/err"; return 1; }
+}
+failed() { # WORDS ARGS...
+  words=$1
+  shift
+  run "$@"
+  [ $? = 3 ] && grep -q -e "$words" "$TMP/out" "$TMP/err" || { cat "$TMP/out" "$TMP/err"; return 1; }
+}
+check "if, abs, sign, min, max are refused, and dop853 is named" refused "without if, abs, sign, min and max; dop853" tests/exec/models/motor.lag --method taylor
+without() {
+  "$LAGC" build models/pendulum.lag -o "$TMP/sim" && ! "$TMP/sim" --method taylor 2>"$TMP/err" && grep -q 'lagc run MODEL --method taylor' "$TMP/err" &&
+    "$LAGC" build models/pendulum.lag --method taylor -o "$TMP/sim" && "$TMP/sim" --method taylor --quiet --until 1
+}
+check "a simulator that was built without series says how to build it" without
+check "a collision ends the run: when, and why" failed 't = 1.1107.*step became too small' $here/fall.lag --method taylor
+check "an order that is too high" refused "order = 99 is outside" models/pendulum.lag --method "taylor(order=99)"
+final() { sed -n "s/^  $1  *\([^ ]*\).*/\1/p" "$TMP/out"; }
+near() { awk -v x="$1" -v y="$2" 'BEGIN { d = x - y; exit !(d < 1e-14 && d > -1e-14) }'; }
+inputs() { # x' = 3 sin(2 t), and x' = 2 where a constant takes the place of the formula
+  run $here/driven.lag --method taylor --tol 1e-15 --until 1 && near "$(final x)" 2.1242202548207136 &&
+    run $here/driven.lag F=2 --method taylor --tol 1e-15 --until 1 && near "$(final x)" 2
+}
+check "an input: along its formula, and held" inputs
+tap_end
