@@ -74,6 +74,10 @@ $(BUILD)/gen/io/page.h: runtime/io/page.html
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
+$(BUILD)/gen/emit/lag_math.h: runtime/include/lag_math.h
+	@mkdir -p $(@D)
+	$(AS_C) >$@.part
+	@mv $@.part $@
 $(BUILD)/gen/cli/language.h: grammar/LANGUAGE.md
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
@@ -83,6 +87,7 @@ $(BUILD)/gen/cli/complete_%.h: src/cli/complete.%
 	$(AS_C) >$@.part
 	@mv $@.part $@
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
+$(BUILD)/obj/src/emit/cmath.o: $(BUILD)/gen/emit/lag_math.h
 $(BUILD)/obj/src/cli/reference.o: $(BUILD)/gen/cli/language.h
 $(BUILD)/obj/src/cli/shells.o: $(SHELLS:%=$(BUILD)/gen/cli/complete_%.h)
 # Generated code is not ours to warn about.
@@ -210,7 +215,7 @@ install: all
 	  $(COMPLETIONS:%='$(DESTDIR)$(PREFIX)/share/%')
 	install -m 755 $(BUILD)/lagc '$(DESTDIR)$(PREFIX)/bin'
 	install -m 644 $(LIBLAG) '$(DESTDIR)$(PREFIX)/lib'
-	install -m 644 runtime/include/lag.h runtime/include/lag_model.h '$(DESTDIR)$(PREFIX)/include'
+	install -m 644 runtime/include/lag.h runtime/include/lag_model.h runtime/include/lag_math.h '$(DESTDIR)$(PREFIX)/include'
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' runtime/liblag.pc.in >$(PC)
 	install -m 644 $(PC) '$(DESTDIR)$(PREFIX)/lib/pkgconfig'
 ifneq ($(GSL),)
@@ -227,7 +232,7 @@ endif
 
 # Removes what install puts there, and the folders that are lagc's own.
 uninstall:
-	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a include/lag.h include/lag_model.h \
+	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a include/lag.h include/lag_model.h include/lag_math.h \
 	  lib/pkgconfig/liblag.pc lib/pkgconfig/liblag_gsl.pc share/man/man1/lagc.1 share/bash-completion/completions/lagc \
 	  share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish && rm -rf share/lagc share/doc/lagc
 

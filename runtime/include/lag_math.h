@@ -76,7 +76,7 @@ LAG_INLINE LAG_REAL lag_lanes_fabs(LAG_REAL x) {
 
 LAG_INLINE LAG_REAL lag_lanes_sqrt(LAG_REAL x) {
 #if defined(__AVX512F__) && LAG_LANES == 8 && !defined(__clang__)
-  return __builtin_ia32_sqrtpd512_mask(x, x, (unsigned char)-1, 4);
+  return __builtin_ia32_sqrtpd512_mask(x, x, (char)-1, 4);
 #elif defined(__AVX512F__) && LAG_LANES == 8
   return __builtin_ia32_sqrtpd512(x, 4);
 #elif defined(__AVX__) && LAG_LANES == 4
@@ -98,8 +98,8 @@ LAG_INLINE LAG_REAL lag_lanes_sqrt(LAG_REAL x) {
     for (int k = 0; k < LAG_LANES; k++) x[k] = f(x[k], y[k]); \
     return x; \
   }
-LAG_LANES_1(sin) LAG_LANES_1(cos) LAG_LANES_1(tan) LAG_LANES_1(asin) LAG_LANES_1(acos) LAG_LANES_1(atan)
-LAG_LANES_1(sinh) LAG_LANES_1(cosh) LAG_LANES_1(tanh) LAG_LANES_1(exp) LAG_LANES_1(log) LAG_LANES_1(cbrt)
+LAG_LANES_1(tan) LAG_LANES_1(asin) LAG_LANES_1(acos) LAG_LANES_1(atan) LAG_LANES_1(sinh) LAG_LANES_1(cosh)
+LAG_LANES_1(tanh) LAG_LANES_1(cbrt)
 LAG_LANES_2(pow) LAG_LANES_2(atan2) LAG_LANES_2(hypot)
 
 #define LAG_MASK lag_lanes_mask
@@ -117,12 +117,14 @@ LAG_LANES_2(pow) LAG_LANES_2(atan2) LAG_LANES_2(hypot)
 #endif
 
 /* ---- own ---- */
-/* Whether LAG_REAL is what the functions below are for; for other scalars they are those of the C library. */
+/* Whether LAG_REAL is what the functions below are for; for other scalars, and with LAG_LIBM defined, they are the C library's. */
 #define LAG_JOIN2(a, b) a##b
 #define LAG_JOIN(a, b) LAG_JOIN2(a, b)
 #define LAG_IS_double 1
 #define LAG_IS_long 0 && /* double */
-#if defined(LAG_LANES) || LAG_JOIN(LAG_IS_, LAG_REAL)
+#if defined(LAG_LIBM)
+#define LAG_OWN 0
+#elif defined(LAG_LANES) || LAG_JOIN(LAG_IS_, LAG_REAL)
 #define LAG_OWN 1
 #else
 #define LAG_OWN 0
@@ -179,6 +181,11 @@ LAG_INLINE LAG_REAL lag_mad(LAG_REAL a, LAG_REAL b, LAG_REAL c) {
   return a;
 #endif
 }
+#endif
+
+/* ---- libm ---- */
+#if defined(LAG_LANES) && !LAG_OWN
+LAG_LANES_1(sin) LAG_LANES_1(cos) LAG_LANES_1(exp) LAG_LANES_1(log)
 #endif
 
 /* ---- sincos ---- */
@@ -378,6 +385,8 @@ LAG_INLINE LAG_REAL lag_cos(LAG_REAL x) {
   lag_sincos(x, &s, &c);
   return c;
 }
+#define lag_lanes_sin lag_sin
+#define lag_lanes_cos lag_cos
 #else
 #define lag_sincos(x, s, c) (void)(*(s) = LAG_FN(sin)(x), *(c) = LAG_FN(cos)(x))
 #define lag_sin(x) LAG_FN(sin)(x)
@@ -412,6 +421,7 @@ LAG_INLINE LAG_REAL lag_exp(LAG_REAL x) {
   const lag_word n = (lag_to_word(sum) + 2048) & 4095, half = n >> 1; /* k + 2048 */
   return (h + (l + lag_mad(y*y, p, tail)))*lag_to_real((half - 1) << 52)*lag_to_real((n - half - 1) << 52);
 }
+#define lag_lanes_exp lag_exp
 #else
 #define lag_exp(x) LAG_FN(exp)(x)
 #endif
@@ -457,6 +467,7 @@ LAG_INLINE LAG_REAL lag_log(LAG_REAL x) {
 #endif
   return y;
 }
+#define lag_lanes_log lag_log
 #else
 #define lag_log(x) LAG_FN(log)(x)
 #endif
@@ -498,4 +509,10 @@ LAG_INLINE LAG_REAL lag_rsqrt(LAG_REAL x) {
 #endif
 
 /* ---- end ---- */
+#ifndef LAG_FN
+#define LAG_FN(f) f
+#endif
+#ifndef LAG_C
+#define LAG_C(x) ((LAG_REAL)x)
+#endif
 #endif

@@ -19,10 +19,17 @@ extern "C" {
 
 #define LAG_ABI 3
 
-/* The scalar that a model is compiled for: double, float, long double or __float128. */
+/* The scalar that a model is compiled for: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of
+ * so many doubles: many states, or sets of parameters, at once. Then a status < 0 has bit k of its negative set when lane k
+ * is singular; the other lanes are right. */
 #ifndef LAG_REAL
+#ifdef LAG_LANES
+typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
+#define LAG_REAL lag_lanes
+#else
 #define LAG_REAL double
 #define LAG_REAL_IS_DOUBLE 1
+#endif
 #endif
 
 /* The highest order of Taylor series that a program has room for. */

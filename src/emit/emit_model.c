@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "emit/cfunction.h"
+#include "emit/cmath.h"
 #include "emit/emit_taylor.h"
 
 /* One emitted file. */
@@ -18,8 +19,7 @@ static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a"}
 
 static const char *const prelude =
   "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l'\n"
-  " * '-DLAG_C(x)=x##L'; a vector of lanes defines LAG_SELECT, LAG_ANY and the logic as well,\n"
-  " * LAG_MASK, the type of its comparisons, and LAG_LANE, the type of a lane. */\n"
+  " * '-DLAG_C(x)=x##L'; -DLAG_LANES=4 or 8: a vector of so many doubles, each with a state of its own. */\n"
   "#ifndef LAG_FN\n#define LAG_FN(f) f\n#endif\n"
   "#ifndef LAG_C\n#define LAG_C(x) ((LAG_REAL)x)\n#endif\n";
 
@@ -33,7 +33,8 @@ static const char *const abi_names[] = {
   "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_lanes", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
   "taylor_rest", "taylor_squares", "TAYLOR_SQUARES",
   "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
-  "curves",
+  "curves", "singular", "lag_sincos", "lag_sin", "lag_cos", "lag_lanes", "lag_lanes_mask", "LAG_LANES", "LAG_LIBM", "LAG_OWN", "LAG_FMA",
+  "LAG_INLINE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -96,13 +97,13 @@ static const char *const state_args =
   "    const LAG_REAL *p, const LAG_REAL *u";
 
 static CStyle style_for(const File *f, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .spline = "lag_spline"};
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .spline = "lag_spline", .math = cmath_prefix(f->u, "lag")};
 }
 
 static void function(const File *f, const Prog *p, const char *comment, const char *head, const char *const *own,
                      const char *const *written) {
   CStyle st = style_for(f, own, written);
-  CFunction c = {.comment = comment, .head = head, .end = "  return LAG_OK;\n"};
+  CFunction c = {.comment = comment, .head = head, .returns = 1};
   cfunction(p, &st, &c, f->out);
 }
 
@@ -169,7 +170,7 @@ static void emit_inputs(const File *f) {
     cwrite_rows(&p->tables.at[i], st.rows[i], "", f->a, f->out);
   }
   CFunction c = {.comment = p->tables.n ? "Inputs, by their formulas and tables." : "Inputs that have a formula.",
-                 .head = "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", .end = "  return LAG_OK;\n"};
+                 .head = "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", .returns = 1};
   cfunction(p, &st, &c, f->out);
 }
 
@@ -260,7 +261,7 @@ static void emit_exact(const File *f, const IrScene *s, const char *id) {
   if (!s->exact_of.n) return;
   CStyle st = style_for(f, own, written);
   st.in = from_start;
-  CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .end = "  return LAG_OK;\n"};
+  CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .returns = 1};
   c.head = arena_printf(f->a, "static int exact_%s(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,\n"
                               "    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out)", id);
   cfunction(s->exact, &st, &c, f->out);
@@ -416,6 +417,7 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
   sb_printf(out, "/* %s: %s\n", u->name, comment_text(u->arena, u->doc));
   sb_printf(out, " * Emitted by lagc; effects in use: %s.\n", u->effects[0] ? u->effects : "none");
   sb_printf(out, " * Accelerations: %s.\n", ops_text(u->accel, u->arena));
+  sb_printf(out, " * %s\n", cmath_text(u));
   sb_puts(out, " * This text may be used for any purpose without conditions (0BSD). */\n");
   sb_puts(out, "#include <math.h>\n\n#include \"lag_model.h\"\n\n");
 }
@@ -423,8 +425,11 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
 void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   File f = {.u = u, .a = u->arena, .name = name, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
+  cmath_lanes("LAG", "lag", out);
   sb_puts(out, prelude);
   csupport_logic("LAG", out);
+  sb_putc(out, '\n');
+  cmath_functions(u, "LAG", "lag", out);
   if (work_size(u)) csupport_solver("LAG", "lag", out);
   if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
   size_t begin = out->n;
@@ -434,7 +439,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_inputs(&f);
   const char *digest = digest_text(u->arena, sb_text(out) + begin);
   emit_linear(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
-  if (u->taylor) emit_taylor(u->taylor, f.globals, out);
+  if (u->taylor) emit_taylor(u->taylor, f.globals, cmath_prefix(u, "lag"), out);
   emit_variation(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, i);
