@@ -61,7 +61,9 @@ static void actions(const lag_model *m) {
     copy(out + m->nq, v, m->nq);
     copy(out + 2*m->nq, z, m->nz);
     const int status = m->act(k, t, q, v, z, p, u, out, out + m->nq, out + 2*m->nq, &stop, w);
-    print(m->name, stop ? "stops" : "acts", status, out, 2*m->nq + m->nz);
+    char name[32];
+    snprintf(name, sizeof name, "%s%d", stop ? "stops" : "acts", k);
+    print(m->name, name, status, out, 2*m->nq + m->nz);
   }
 }
 
@@ -83,8 +85,9 @@ static void series(const lag_model *m) {
   const lag_taylor *s = m->taylor;
   LAG_REAL follows[64], unit = t - t, step = unit;
   if (!s || s->columns*(ORDER + 1) > ROOM/2 || s->nw > ROOM) return;
-  for (int lane = 0; lane < LANES; lane++) put(&unit, lane, 0.03125), put(&step, lane, 0.25 + lane/16.0*(LANES > 1 ? 0 : 1));
+  for (int lane = 0; lane < LANES; lane++) put(&unit, lane, 0.03125), put(&step, lane, 0.25);
   for (int i = 0; i < m->nu; i++) follows[i] = unit*32;
+  memset(out, 0, ROOM * sizeof *out); /* what pads rows is not written */
   int status = s->first(t, q, v, z, p, u, follows, out, w);
   if (status >= 0) s->rest(ORDER, unit, out, w);
   print(m->name, "taylor", status, out, s->columns*ORDER);
