@@ -23,6 +23,10 @@ GSL := $(shell printf '\043include <gsl/gsl_odeiv2.h>\nint main(void) { return g
          $(CC) -x c - -o /dev/null -lgsl -lgslcblas -lm 2>/dev/null && echo yes)
 GSL_LIBS := $(if $(GSL),-lgsl -lgslcblas)
 
+# A flag that keeps the compiler from storing wrong numbers, where it does with these flags: src/cli/probe.in.
+SAFE := $(shell d=$$(mktemp -d) && $(CC) $(CFLAGS) -x c src/cli/probe.in -o $$d/probe 2>/dev/null && \
+          { $$d/probe; [ $$? != 1 ] || echo -fno-tree-slp-vectorize; }; rm -rf "$$d")
+
 # ---- what is made of what ---------------------------------------------------------------------------
 LAGC_SRC := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
 GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c)
@@ -63,14 +67,18 @@ $(BUILD)/gen/lag.lex.h: $(BUILD)/gen/lag.lex.c ;
 
 $(BUILD)/obj/src/%.o: src/%.c
 	@mkdir -p $(@D)
-	$(CC) $(WARN) $(SRC_FLAGS) $(CFLAGS) $(SAN) -MMD -MP -c -o $@ $<
+	$(CC) $(WARN) $(SRC_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
 $(BUILD)/obj/runtime/%.o: runtime/%.c
 	@mkdir -p $(@D)
-	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAN) -MMD -MP -c -o $@ $<
+	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
 SHELLS := bash zsh fish
 # Texts as C, in the order of their lines: `static const char *const NAME[]`, with the name of the file that they become.
 AS_C = { echo 'static const char *const $(basename $(@F))[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $<; echo '};'; }
 $(BUILD)/gen/io/page.h: runtime/io/page.html
+	@mkdir -p $(@D)
+	$(AS_C) >$@.part
+	@mv $@.part $@
+$(BUILD)/gen/cli/probe_text.h: src/cli/probe.in
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
@@ -88,12 +96,13 @@ $(BUILD)/gen/cli/complete_%.h: src/cli/complete.%
 	@mv $@.part $@
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
 $(BUILD)/obj/src/emit/cmath.o: $(BUILD)/gen/emit/lag_math.h
+$(BUILD)/obj/src/cli/probe.o: $(BUILD)/gen/cli/probe_text.h
 $(BUILD)/obj/src/cli/reference.o: $(BUILD)/gen/cli/language.h
 $(BUILD)/obj/src/cli/shells.o: $(SHELLS:%=$(BUILD)/gen/cli/complete_%.h)
 # Generated code is not ours to warn about.
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 	@mkdir -p $(@D)
-	$(CC) -std=c11 -w $(SRC_FLAGS) $(CFLAGS) $(SAN) -MMD -MP -c -o $@ $<
+	$(CC) -std=c11 -w $(SRC_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
 $(BUILD)/obj/src/syntax/parse.o: $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 
 # ---- the demonstration ------------------------------------------------------------------------------

@@ -183,6 +183,8 @@ typedef struct lag_model {
   const lag_taylor *taylor;
 
   const lag_linear *linear;
+
+  const char *math; /* whose sin and cos it calls; NULL: not known */
 } lag_model;
 
 /* An option of a method: step = 1e-3, quadrature = trapezoid (then text is set). */
@@ -240,6 +242,7 @@ typedef struct lag_program {
   const char *doc;
   const char *source;  /* the .lag file's path as given to lagc */
   const char *effects; /* names of all effects that the file declares, separated by spaces */
+  const char *build;   /* compiler and flags that it was compiled with; NULL: not known */
   int nscenes;
   const lag_scene *const *scenes;
 } lag_program;

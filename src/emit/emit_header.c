@@ -105,7 +105,12 @@ static void write_usage(const Header *h) {
             " * To define before the first include, the same in every file:\n"
             " *   %s_REAL    float, double (the default) or long double\n"
             " *   %s_STATIC  functions are static inline, in every file that includes this\n"
-            " *   %s_FN(x)   C99 with long double needs x##l here; C11 and C++ choose themselves\n", m, m, m);
+            " *   %s_FN(x)   C99 with long double needs x##l here; C11 and C++ choose themselves\n"
+            " *   %s_LANES   4 or 8, with GCC or Clang: %s_REAL is a vector of so many doubles, each with a state and parameters\n"
+            " *             of its own. A status is 0, or minus the sum of 2^k over the lanes k that are singular; others are right\n"
+            " *   %s_LIBM    the C library's functions in place of those below\n"
+            " * Not with -ffast-math. GCC 12.2 of Debian 12 stores wrong numbers at -O2 with AVX-512 (as -march=native may mean): add\n"
+            " * -fno-tree-slp-vectorize. -ffp-contract=off makes the same digits everywhere; contracted code is as good.\n", m, m, m, m, m, m);
 }
 
 static void write_head(const Header *h, const char *equations) {

@@ -363,7 +363,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
               or_null(u->second_at.n, "second_table"), u->second_at.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (u->linear) sb_puts(out, "  .linear = &linear,\n");
-  sb_puts(out, "};\n");
+  sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n};\n");
 }
 
 static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
@@ -458,13 +458,14 @@ void emit_program(const IrUnit *const *units, const char *const *names, uint32_t
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t k = 0; k < units[i]->scenes.n; k++, scenes++)
       sb_printf(out, "extern const lag_scene %s_%s;\n", names[i], scene_id(units[i], k));
+  sb_puts(out, "\n#ifndef LAG_BUILD /* compiler and flags */\n#define LAG_BUILD NULL\n#endif\n");
   sb_puts(out, "\nstatic const lag_scene *const scenes[] = {\n");
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t k = 0; k < units[i]->scenes.n; k++)
       sb_printf(out, "  &%s_%s,\n", names[i], scene_id(units[i], k));
   sb_puts(out, "};\n\n");
   const char *name = c_string(a, first->name), *doc = c_string(a, first->doc), *source = c_string(a, first->source);
-  sb_printf(out, "static const lag_program program = {\n  .name = %s,\n  .doc = %s,\n  .source = %s,\n  .effects = %s,\n  .nscenes = %u, .scenes = scenes,\n};\n\n",
+  sb_printf(out, "static const lag_program program = {\n  .name = %s,\n  .doc = %s,\n  .source = %s,\n  .effects = %s,\n  .build = LAG_BUILD,\n  .nscenes = %u, .scenes = scenes,\n};\n\n",
             name, doc, source, c_string(a, first->all_effects), scenes);
   emit_main(gsl, out);
 }
