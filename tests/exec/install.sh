@@ -10,7 +10,7 @@ check "make install" install_it
 gsl_files=
 [ -z "$GSL" ] || gsl_files='lib/liblag_gsl.a lib/pkgconfig/liblag_gsl.pc'
 models=$(cd models && ls -d -- *.lag *.csv 2>/dev/null)
-want=$(for f in bin/lagc include/lag.h include/lag_model.h lib/liblag.a lib/pkgconfig/liblag.pc $gsl_files \
+want=$(for f in bin/lagc include/lag.h include/lag_math.h include/lag_model.h lib/liblag.a lib/pkgconfig/liblag.pc $gsl_files \
   share/doc/lagc/LICENSE share/doc/lagc/README.md share/man/man1/lagc.1 share/bash-completion/completions/lagc \
   share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish share/lagc/lag.tmLanguage.json; do
   echo "$f"
