@@ -242,9 +242,9 @@ typedef struct lag_program {
   const char *doc;
   const char *source;  /* the .lag file's path as given to lagc */
   const char *effects; /* names of all effects that the file declares, separated by spaces */
-  const char *build;   /* compiler and flags that it was compiled with; NULL: not known */
   int nscenes;
   const lag_scene *const *scenes;
+  const char *build;   /* compiler and flags that it was compiled with; NULL: not known */
 } lag_program;
 
 #ifdef __cplusplus

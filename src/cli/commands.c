@@ -55,11 +55,13 @@ static const CommandRow commands[] = {
    "and in one file of a program\n\n"
    "  #define PEND_IMPLEMENTATION\n"
    "  #include \"pend.h\"\n\n"
-   "The others include it without the #define. Its first lines say how it is used."},
+   "The others include it without the #define. Its first lines say how it is used. With PEND_LANES defined as 4 or 8 it computes so many "
+   "states at once."},
   {CMD_EMIT, "emit", NULL, "MODEL [SCENE] [--method NAME] [--with linear] [-o FILE.c]", "write C for the runtime",
    "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h). What integrates them is "
    "liblag, whose interface is lag.h:\n\n"
-   "  cc main.c pendulum.c $(pkg-config --cflags --libs liblag)"},
+   "  cc main.c pendulum.c $(pkg-config --cflags --libs liblag)\n\n"
+   "With -DLAG_LANES=4 or 8 its functions take vectors of so many doubles: so many states at once."},
   {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
    "Lists the methods of integration: their order, what they keep, what they need of a model, and their options."},
   {CMD_HELP, "help", NULL, "[TOPIC]", NULL, "Says more on a command, a word of the language, a unit, a function or an option; alone, lists the topics."},
