@@ -31,6 +31,10 @@ QUAD_FOUND = $(shell mkdir -p $(BUILD) && printf '$(QUAD_PROBE)' | $(CC) -std=gn
 PRECISIONS ?= long $(QUAD_FOUND)
 PRECISIONS := $(PRECISIONS)
 
+# A flag that keeps the compiler from storing wrong numbers, where it does with these flags: src/cli/probe.in.
+SAFE := $(shell d=$$(mktemp -d) && $(CC) $(CFLAGS) -x c src/cli/probe.in -o $$d/probe 2>/dev/null && \
+          { $$d/probe; [ $$? != 1 ] || echo -fno-tree-slp-vectorize; }; rm -rf "$$d")
+
 # ---- what is made of what ---------------------------------------------------------------------------
 LAGC_SRC := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
 GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c)
@@ -72,10 +76,10 @@ $(BUILD)/gen/lag.lex.h: $(BUILD)/gen/lag.lex.c ;
 
 $(BUILD)/obj/src/%.o: src/%.c
 	@mkdir -p $(@D)
-	$(CC) $(WARN) $(SRC_FLAGS) $(CFLAGS) $(SAN) -MMD -MP -c -o $@ $<
+	$(CC) $(WARN) $(SRC_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
 $(BUILD)/obj/runtime/%.o: runtime/%.c
 	@mkdir -p $(@D)
-	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAN) -MMD -MP -c -o $@ $<
+	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
 
 # Of one text, by runtime/precision.awk, in $(BUILD)/gen/long and $(BUILD)/gen/quad; lagc finds the headers in $(BUILD)/lag-long
 # and $(BUILD)/lag-quad. src/cli/toolchain.c compiles models with the same LAG_REAL.
@@ -96,7 +100,7 @@ $(BUILD)/lag-$(1)/%.h: $(BUILD)/gen/$(1)/include/%.h
 	cp $$< $$@
 $(BUILD)/obj/$(1)/%.o: $(BUILD)/gen/$(1)/%.c $(RT_HEAD:%=$(BUILD)/gen/$(1)/%) | $(BUILD)/gen/io/page.h
 	@mkdir -p $$(@D)
-	$$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(CFLAGS) -c -o $$@ $$<
+	$$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(CFLAGS) $$(SAFE) -c -o $$@ $$<
 $(BUILD)/liblag_$(1).a: $(RT_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%)
 	@rm -f $$@
 	$$(AR) rcs $$@ $$(filter %.o,$$^)
@@ -108,6 +112,14 @@ SHELLS := bash zsh fish
 # Texts as C, in the order of their lines: `static const char *const NAME[]`, with the name of the file that they become.
 AS_C = { echo 'static const char *const $(basename $(@F))[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $<; echo '};'; }
 $(BUILD)/gen/io/page.h: runtime/io/page.html
+	@mkdir -p $(@D)
+	$(AS_C) >$@.part
+	@mv $@.part $@
+$(BUILD)/gen/cli/probe_text.h: src/cli/probe.in
+	@mkdir -p $(@D)
+	$(AS_C) >$@.part
+	@mv $@.part $@
+$(BUILD)/gen/emit/lag_math.h: runtime/include/lag_math.h
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
@@ -128,12 +140,14 @@ $(BUILD)/gen/base/method_rows.h: runtime/list_methods.c $(LIBLAG)
 	@mv $@.part $@
 $(BUILD)/obj/src/base/methods.o: $(BUILD)/gen/base/method_rows.h
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
+$(BUILD)/obj/src/emit/cmath.o: $(BUILD)/gen/emit/lag_math.h
+$(BUILD)/obj/src/cli/probe.o: $(BUILD)/gen/cli/probe_text.h
 $(BUILD)/obj/src/cli/reference.o: $(BUILD)/gen/cli/language.h
 $(BUILD)/obj/src/cli/shells.o: $(SHELLS:%=$(BUILD)/gen/cli/complete_%.h)
 # Generated code is not ours to warn about.
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 	@mkdir -p $(@D)
-	$(CC) -std=c11 -w $(SRC_FLAGS) $(CFLAGS) $(SAN) -MMD -MP -c -o $@ $<
+	$(CC) -std=c11 -w $(SRC_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
 $(BUILD)/obj/src/syntax/parse.o: $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 
 # ---- the demonstration ------------------------------------------------------------------------------
@@ -257,7 +271,7 @@ install: all
 	install -m 644 $(LIBLAG) $(LIBLAG_MORE) '$(DESTDIR)$(PREFIX)/lib'
 	for p in $(PRECISIONS); do install -d "$(DESTDIR)$(PREFIX)/lib/lag-$$p" && \
 	  install -m 644 $(BUILD)/lag-$$p/*.h "$(DESTDIR)$(PREFIX)/lib/lag-$$p" || exit 1; done
-	install -m 644 runtime/include/lag.h runtime/include/lag_model.h '$(DESTDIR)$(PREFIX)/include'
+	install -m 644 runtime/include/lag.h runtime/include/lag_model.h runtime/include/lag_math.h '$(DESTDIR)$(PREFIX)/include'
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' runtime/liblag.pc.in >$(PC)
 	install -m 644 $(PC) '$(DESTDIR)$(PREFIX)/lib/pkgconfig'
 ifneq ($(GSL),)
@@ -274,7 +288,7 @@ endif
 
 # Removes what install puts there, and the folders that are lagc's own.
 uninstall:
-	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a lib/liblag_long.a lib/liblag_quad.a include/lag.h include/lag_model.h \
+	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a lib/liblag_long.a lib/liblag_quad.a include/lag.h include/lag_model.h include/lag_math.h \
 	  lib/pkgconfig/liblag.pc lib/pkgconfig/liblag_gsl.pc share/man/man1/lagc.1 share/bash-completion/completions/lagc \
 	  share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish && rm -rf lib/lag-long lib/lag-quad share/lagc share/doc/lagc
 

@@ -125,9 +125,15 @@ static Eqns *derive_asked(Compiler *c, const char *scene) {
                                   .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
 }
 
+static IrUnit *new_unit(Compiler *c, Eqns *e) {
+  IrUnit *u = unit_new(e, c->o.file);
+  u->libm = c->o.math && strcmp(c->o.math, "libm") == 0;
+  return u;
+}
+
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
 static IrUnit *lower_scene(Compiler *c, Eqns *e) {
-  IrUnit *u = unit_new(e, c->o.file);
+  IrUnit *u = new_unit(c, e);
   unit_want(u, e, wants_of(e, &c->o));
   unit_add_scene(u, e);
   const char *wrong = prog_verify(u->accel);
@@ -225,7 +231,7 @@ static int lower_all(Compiler *c, Units *units) {
   for (uint32_t i = 0; i < scenes.n; i++) {
     Eqns *e = derive_asked(c, scenes.at[i]);
     if (!e) return 0;
-    IrUnit *fresh = unit_new(e, c->o.file), *home = NULL;
+    IrUnit *fresh = new_unit(c, e), *home = NULL;
     for (uint32_t k = 0; k < units->n && !home; k++)
       if (unit_shares(units->at[k], fresh)) home = units->at[k];
     if (!home) vec_push(c->arena, units, home = fresh);

@@ -75,5 +75,9 @@ void app_help(const App *app, FILE *f)
     list(f, "inputs: ", m->nu, m->u, NULL);
     lag_sim_free(sim);
   }
+  fprintf(f, "%s%s\n", p->build ? "\nbuilt by: " : "", p->build ? p->build : "");
+  if (p->nscenes > 0 && p->scenes[0]->model->math) {
+    fprintf(f, "%s\n", p->scenes[0]->model->math);
+  }
   fputs(text, f);
 }

@@ -281,5 +281,9 @@ void report_json(App *app, FILE *f)
     json_number(f, x);
   }
   final_outputs(app, f);
-  fputs("}}\n", f);
+  fputs("}, ", f);
+  field_string(f, "math", m->math);
+  fputs("\"build\": ", f);
+  json_string(f, app->program->build ? app->program->build : "");
+  fputs("}\n", f);
 }

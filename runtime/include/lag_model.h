@@ -19,10 +19,17 @@ extern "C" {
 
 #define LAG_ABI 3
 
-/* The scalar that a model is compiled for: double, float, long double or __float128. */
+/* The scalar that a model is compiled for: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of
+ * so many doubles: many states, or sets of parameters, at once. Then a status < 0 has bit k of its negative set when lane k
+ * is singular; the other lanes are right. */
 #ifndef LAG_REAL
+#ifdef LAG_LANES
+typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
+#define LAG_REAL lag_lanes
+#else
 #define LAG_REAL double
 #define LAG_REAL_IS_DOUBLE 1
+#endif
 #endif
 
 /* The highest order of Taylor series that a program has room for. */
@@ -176,6 +183,8 @@ typedef struct lag_model {
   const lag_taylor *taylor;
 
   const lag_linear *linear;
+
+  const char *math; /* whose sin and cos it calls; NULL: not known */
 } lag_model;
 
 /* An option of a method: step = 1e-3, quadrature = trapezoid (then text is set). */
@@ -235,6 +244,7 @@ typedef struct lag_program {
   const char *effects; /* names of all effects that the file declares, separated by spaces */
   int nscenes;
   const lag_scene *const *scenes;
+  const char *build;   /* compiler and flags that it was compiled with; NULL: not known */
 } lag_program;
 
 #ifdef __cplusplus

@@ -55,11 +55,13 @@ static const CommandRow commands[] = {
    "and in one file of a program\n\n"
    "  #define PEND_IMPLEMENTATION\n"
    "  #include \"pend.h\"\n\n"
-   "The others include it without the #define. Its first lines say how it is used."},
+   "The others include it without the #define. Its first lines say how it is used. With PEND_LANES defined as 4 or 8 it computes so many "
+   "states at once."},
   {CMD_EMIT, "emit", NULL, "MODEL [SCENE] [--method NAME] [--with linear] [-o FILE.c]", "write C for the runtime",
    "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h). What integrates them is "
    "liblag, whose interface is lag.h:\n\n"
-   "  cc main.c pendulum.c $(pkg-config --cflags --libs liblag)"},
+   "  cc main.c pendulum.c $(pkg-config --cflags --libs liblag)\n\n"
+   "With -DLAG_LANES=4 or 8 its functions take vectors of so many doubles: so many states at once."},
   {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
    "Lists the methods of integration: their order, what they keep, what they need of a model, and their options."},
   {CMD_HELP, "help", NULL, "[TOPIC]", NULL, "Says more on a command, a word of the language, a unit, a function or an option; alone, lists the topics."},
@@ -158,6 +160,9 @@ static const OptionRow options[] = {
   {"--define", "-D", "CONST=VALUE", TAKES_DEFINE, "", MODELS, OWN(defines), "gives a `const` of the model another value"},
   {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", STEPS | C(MODES) | C(COST) | C(BUILD), OWN(no_gsl),
    "leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole"},
+  {"--math", NULL, "own|libm", TAKES_CHOICE, "own libm", SIMULATE | C(MODES) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT), OWN(math),
+   "sin and cos from functions that the emitted C brings along (own, the default: faster, the same digits with every C library), "
+   "or from the C library"},
   {"--with", NULL, "linear", TAKES_CHOICE, "linear", C(BUILD) | C(EMIT), OWN(with), "with the exact linearisation of the model"},
   {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns prog", MODELS, OWN(dump), "what the stages of the compiler yield: ast, model, eqns, prog"},
   {"--help", "-h", NULL, TAKES_NOTHING, "", MODELS | C(COMPLETION), OWN(help), "this help"},

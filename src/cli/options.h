@@ -22,6 +22,7 @@ typedef struct {
   int allow_numeric;       /* check --allow-numeric */
   int no_gsl, ops;
   const char *precision;   /* of simulators: double, long, quad; NULL: double */
+  const char *math;        /* --math own|libm */
   const char *with;        /* --with linear: parts of a model that are emitted only where something needs them */
   VEC(Define) defines;
   OptionTexts rest;        /* run, plot, animate: what the simulator gets, the scene too; complete: the words */

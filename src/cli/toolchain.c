@@ -13,6 +13,7 @@
 
 #include "base/vec.h"
 #include "cli/files.h"
+#include "cli/probe.h"
 
 /* --- finding the runtime --- */
 
@@ -129,13 +130,26 @@ static void remove_folder(Arena *a, const char *dir, const SourceText *texts, si
   rmdir(dir);
 }
 
+Words toolchain_words(Arena *a, const char *cc) {
+  Words words = {0};
+  char *text = arena_strdup(a, cc);
+  for (char *w = strtok(text, " "); w; w = strtok(NULL, " ")) vec_push(a, &words, w);
+  return words;
+}
+
+/* With the flags that the simulator reports as LAG_BUILD: bits that do not depend on whether a processor multiplies and adds in
+ * one instruction, and what the compiler needs not to go wrong. */
 static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
-  VEC(char *) argv = {0};
-  const char *fixed[] = {t->optimise, "-std=c11", "-ffp-contract=off", "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
-  char *words = arena_strdup(a, t->cc); /* CC may hold options, as make has it */
-  for (char *w = strtok(words, " "); w; w = strtok(NULL, " ")) vec_push(a, &argv, w);
+  Words argv = toolchain_words(a, t->cc);
+  const char *safe = probe_flag(a, t->cc, t->optimise, dir, error);
+  if (!safe) return 0;
+  char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off%s%s\"", t->cc, t->optimise, *safe ? " " : "", safe);
+  for (char *c = build + strlen("-DLAG_BUILD=\""); c[1]; c++)
+    if (*c == '"' || *c == '\\') *c = ' ';
+  const char *fixed[] = {t->optimise, "-std=c11", "-ffp-contract=off", build, "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
   for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) vec_push(a, &argv, arena_strdup(a, fixed[i]));
   for (const char *const *f = t->flags; *f; f++) vec_push(a, &argv, arena_strdup(a, *f));
+  if (*safe) vec_push(a, &argv, arena_strdup(a, safe));
   for (size_t i = 0; i < n; i++) vec_push(a, &argv, arena_printf(a, "%s/%s", dir, texts[i].name));
   vec_push(a, &argv, arena_printf(a, "-L%s", t->lib));
   if (t->gsl) vec_push(a, &argv, arena_strdup(a, "-llag_gsl"));

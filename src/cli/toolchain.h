@@ -3,6 +3,7 @@
 #define LAGC_TOOLCHAIN_H
 
 #include "base/strbuf.h"
+#include "base/vec.h"
 
 typedef struct {
   const char *cc;        /* $CC or cc */
@@ -30,6 +31,10 @@ int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const cha
 /* Compiles and links the texts into the executable `output`, which appears only when all went
  * well. 0, with *error (it may contain the compiler's own messages), on failure. */
 int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output, const char **error);
+
+/* CC as words: it may hold options, as make has it. */
+typedef VEC(char *) Words;
+Words toolchain_words(Arena *a, const char *cc);
 
 /* Runs a program; its output and messages go to *said. Returns its exit status, or -1. */
 int toolchain_run(Arena *a, char *const *argv, char **said);

@@ -13,14 +13,21 @@ static const char *const logic =
   "#define LAG_OR(a, b) ((a) || (b))\n"
   "#define LAG_ANY(c) (c)\n"
   "#define LAG_MASK int\n"
+  "#define LAG_PIVOTS (void)0\n"
+  "#define LAG_PIVOT(c) do { if (!(c)) return LAG_ESINGULAR; } while (0)\n"
+  "#define LAG_PIVOTS_STATUS LAG_OK\n"
+  "#endif\n"
+  "#ifndef LAG_LANE\n"
+  "#define LAG_LANE LAG_REAL\n"
   "#endif\n";
 
 /* Gauss elimination with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed.,
  * algorithm 3.4.1). Rows change places under a mask, so that each lane of a vector has pivots of
  * its own. */
 static const char *const solver =
-  "\n/* M x = b by elimination with partial pivoting: M[n*n] row-major is destroyed, b becomes x. */\n"
-  "static int lag_solve(int n, LAG_REAL *M, LAG_REAL *b) {\n"
+  "\n/* M x = b by elimination with partial pivoting: M[n*n] row-major is destroyed, b becomes x. Returns whether M is regular. */\n"
+  "static LAG_MASK lag_solve(int n, LAG_REAL *M, LAG_REAL *b) {\n"
+  "  LAG_MASK regular = LAG_C(0.0) == LAG_C(0.0);\n"
   "  for (int k = 0; k < n; k++) {\n"
   "    for (int i = k + 1; i < n; i++) { /* the largest of column k comes to row k */\n"
   "      const LAG_MASK larger = LAG_FN(fabs)(M[i*n + k]) > LAG_FN(fabs)(M[k*n + k]);\n"
@@ -32,7 +39,8 @@ static const char *const solver =
   "        *lower = LAG_SELECT(larger, was, *lower);\n"
   "      }\n"
   "    }\n"
-  "    if (LAG_ANY(LAG_NOT(LAG_FN(fabs)(M[k*n + k]) > LAG_C(0.0)))) return LAG_ESINGULAR;\n"
+  "    regular = LAG_AND(regular, LAG_FN(fabs)(M[k*n + k]) > LAG_C(0.0));\n"
+  "    if (!LAG_ANY(regular)) break;\n"
   "    for (int i = k + 1; i < n; i++) {\n"
   "      const LAG_REAL factor = M[i*n + k]/M[k*n + k];\n"
   "      for (int j = k + 1; j < n; j++) M[i*n + j] -= factor*M[k*n + j];\n"
@@ -43,13 +51,11 @@ static const char *const solver =
   "    for (int j = k + 1; j < n; j++) b[k] -= M[k*n + j]*b[j];\n"
   "    b[k] /= M[k*n + k];\n"
   "  }\n"
-  "  return LAG_OK;\n"
+  "  return regular;\n"
   "}\n";
 
 /* Lanes that ask for different pieces get them one after the other. */
 static const char *const spline =
-  "\n/* What one lane of LAG_REAL holds. */\n"
-  "#ifndef LAG_LANE\n#define LAG_LANE LAG_REAL\n#endif\n"
   "\n/* The cubic between two rows of time, value and second derivative; outside of them the nearest value. */\n"
   "static LAG_REAL lag_cubic(LAG_REAL t, const double *a, const double *b) {\n"
   "  const LAG_LANE h = (LAG_LANE)(b[0] - a[0]);\n"
@@ -77,37 +83,47 @@ static const char *const spline =
 
 /* The same elimination, with the multipliers kept below the diagonal and the exchanges of rows in `rows`. */
 static const char *const factorizer =
-  "\n/* Factors M[n*n] of w = [M | b | rows] by elimination with partial pivoting. */\n"
-  "static int lag_factor(int n, LAG_REAL *w) {\n"
+  "\n/* Factors M[n*n] of w = [M | b | rows] by elimination with partial pivoting. Returns whether M is regular. */\n"
+  "static LAG_MASK lag_factor(int n, LAG_REAL *w) {\n"
   "  LAG_REAL *const M = w, *const rows = w + n*n + n;\n"
+  "  LAG_MASK regular = LAG_C(0.0) == LAG_C(0.0);\n"
   "  for (int k = 0; k < n; k++) {\n"
-  "    int top = k;\n"
-  "    for (int i = k + 1; i < n; i++)\n"
-  "      if (LAG_FN(fabs)(M[i*n + k]) > LAG_FN(fabs)(M[top*n + k])) top = i;\n"
-  "    if (!(LAG_FN(fabs)(M[top*n + k]) > LAG_C(0.0))) return LAG_ESINGULAR;\n"
-  "    rows[k] = (LAG_REAL)top;\n"
-  "    for (int j = 0; j < n; j++) {\n"
-  "      const LAG_REAL was = M[k*n + j];\n"
-  "      M[k*n + j] = M[top*n + j];\n"
-  "      M[top*n + j] = was;\n"
+  "    LAG_REAL most = LAG_FN(fabs)(M[k*n + k]), top = LAG_C(0.0) + (LAG_LANE)k;\n"
+  "    for (int i = k + 1; i < n; i++) {\n"
+  "      const LAG_REAL size = LAG_FN(fabs)(M[i*n + k]);\n"
+  "      const LAG_MASK larger = size > most;\n"
+  "      most = LAG_SELECT(larger, size, most);\n"
+  "      top = LAG_SELECT(larger, LAG_C(0.0) + (LAG_LANE)i, top);\n"
+  "    }\n"
+  "    regular = LAG_AND(regular, most > LAG_C(0.0));\n"
+  "    if (!LAG_ANY(regular)) break;\n"
+  "    rows[k] = top;\n"
+  "    for (int i = k + 1; i < n; i++) {\n"
+  "      const LAG_MASK here = top == LAG_C(0.0) + (LAG_LANE)i;\n"
+  "      for (int j = 0; j < n && LAG_ANY(here); j++) {\n"
+  "        const LAG_REAL was = M[k*n + j];\n"
+  "        M[k*n + j] = LAG_SELECT(here, M[i*n + j], was);\n"
+  "        M[i*n + j] = LAG_SELECT(here, was, M[i*n + j]);\n"
+  "      }\n"
   "    }\n"
   "    for (int i = k + 1; i < n; i++) {\n"
   "      const LAG_REAL factor = M[i*n + k] /= M[k*n + k];\n"
   "      for (int j = k + 1; j < n; j++) M[i*n + j] -= factor*M[k*n + j];\n"
   "    }\n"
   "  }\n"
-  "  return LAG_OK;\n"
+  "  return regular;\n"
   "}\n"
   "\n/* b becomes the solution of M x = b, M as lag_factor left it. */\n"
   "static void lag_substitute(int n, LAG_REAL *w) {\n"
   "  const LAG_REAL *const M = w, *const rows = w + n*n + n;\n"
   "  LAG_REAL *const b = w + n*n;\n"
-  "  for (int k = 0; k < n; k++) {\n"
-  "    const int top = (int)rows[k];\n"
-  "    const LAG_REAL x = b[top];\n"
-  "    b[top] = b[k];\n"
-  "    b[k] = x;\n"
-  "  }\n"
+  "  for (int k = 0; k < n; k++)\n"
+  "    for (int i = k + 1; i < n; i++) {\n"
+  "      const LAG_MASK here = rows[k] == LAG_C(0.0) + (LAG_LANE)i;\n"
+  "      const LAG_REAL was = b[k];\n"
+  "      b[k] = LAG_SELECT(here, b[i], was);\n"
+  "      b[i] = LAG_SELECT(here, was, b[i]);\n"
+  "    }\n"
   "  for (int i = 1; i < n; i++)\n"
   "    for (int j = 0; j < i; j++) b[i] -= M[i*n + j]*b[j];\n"
   "  for (int i = n - 1; i >= 0; i--) {\n"
@@ -150,6 +166,10 @@ static void write_unused(const Prog *p, const CStyle *st, StrBuf *out) {
   if (some) sb_putc(out, '\n');
 }
 
+const char *cfunction_status(const Prog *p, const CStyle *style) {
+  return arena_printf(p->arena, "%s_%s", style->prefix, prog_has_pivots(p) ? "PIVOTS_STATUS" : "OK");
+}
+
 void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *out) {
   sb_putc(out, '\n');
   if (f->comment) sb_printf(out, "/* %s */\n", comment_text(p->arena, f->comment));
@@ -157,7 +177,8 @@ void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *o
   write_unused(p, style, out);
   if (f->own_work && p->solves.n) sb_printf(out, "  %s_REAL w[%u];\n", style->prefix, prog_work(p));
   cwrite_body(p, style, p->arena, out);
-  sb_printf(out, "%s}\n", f->end);
+  if (f->returns) sb_printf(out, "  return %s;\n", cfunction_status(p, style));
+  sb_puts(out, "}\n");
 }
 
 const char *double_text(Arena *a, double x) {

@@ -25,9 +25,12 @@ void csupport_fill(const char *text, const char *prefix, const char *lower, StrB
 typedef struct {
   const char *comment; /* without the marks of a comment; or NULL */
   const char *head;    /* up to the brace */
-  const char *end;     /* the last statement, or "" */
+  int returns;         /* a status: OK, or whether all pivots were what they had to be */
   int own_work;        /* work space is a local array, not a parameter */
 } CFunction;
+
+/* What a function with the body of p returns at its end: PREFIX_OK, or what its pivots came to. */
+const char *cfunction_status(const Prog *p, const CStyle *style);
 
 /* The comment, the head, `(void)` for parameters that p does not need, the body. */
 void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *out);

@@ -11,6 +11,17 @@ static Slot code_of(const Writer *w, const Loop *l, uint32_t turn, uint32_t offs
   return w->rolls.code[l->begin + turn * l->period + offset];
 }
 
+int cloop_together(const Writer *w, Slot a, Slot b) {
+  uint32_t pa = w->rolls.place[a], pb = w->rolls.place[b];
+  uint32_t la = pa ? w->rolls.loop[pa - 1] : 0, lb = pb ? w->rolls.loop[pb - 1] : 0;
+  if (la != lb || !la) return la == lb;
+  const Loop *l = loop_at(w, la - 1);
+  pa -= 1 + l->begin, pb -= 1 + l->begin;
+  if (pa / l->period != pb / l->period) return 0;
+  Step x = roll_step(&w->rolls, l, pa % l->period, 0), y = roll_step(&w->rolls, l, pb % l->period, 0);
+  return x.kind == y.kind && x.step == y.step && x.back == y.back;
+}
+
 /* --- names and indices --- */
 
 const char *cloop_stem(Arena *a, const char *name) {
@@ -192,6 +203,12 @@ static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int w
   return w->piece[x];
 }
 
+static Ins named_by_stem(const Writer *w, const Ins *i) {
+  Ins named = *i;
+  if (named.name) named.name = cloop_stem(w->a, named.name);
+  return named;
+}
+
 static void write_value(Writer *w, const Body *b, uint32_t offset, Slot s, const Ins *i) {
   uint32_t kept = b->l->kept[offset];
   if (i->op == IR_PIVOT) {
@@ -200,13 +217,13 @@ static void write_value(Writer *w, const Body *b, uint32_t offset, Slot s, const
   }
   Piece x = cwriter_spell(w, i);
   int carried = b->l->carried[offset];
-  if (!kept && b->own_uses[offset] <= 1 && cwriter_is_short(w, x)) {
+  Ins named = named_by_stem(w, i), pair = named_by_stem(w, &w->p->ins.at[w->pair[s]]);
+  if (cwriter_pair(w, s, &named, &pair)) {
+    x = w->piece[s];
+  } else if (!kept && b->own_uses[offset] <= 1 && cwriter_is_short(w, x)) {
     w->piece[s] = x;
     return;
-  }
-  if (b->own_uses[offset] || carried) {
-    Ins named = *i;
-    if (named.name) named.name = cloop_stem(w->a, named.name);
+  } else if (b->own_uses[offset] || carried) {
     cwriter_declare(w, s, cwriter_name(w, &named), x);
     x = w->piece[s];
   }

@@ -112,7 +112,11 @@ static Piece macro(Writer *w, const char *name, Slot a, Slot b, Slot c, int n) {
   return (Piece){t, C_ATOM, 0};
 }
 
+/* Whether the file brings the function along. */
+static int is_own(const Writer *w, const char *fn) { return w->style->math && (strcmp(fn, "sin") == 0 || strcmp(fn, "cos") == 0); }
+
 static Piece call1(Writer *w, const char *fn, Slot a) {
+  if (is_own(w, fn)) return (Piece){arena_printf(w->a, "%s_%s(%s)", w->style->math, fn, cwriter_operand(w, a).text), C_ATOM, 0};
   return (Piece){arena_printf(w->a, "%s_FN(%s)(%s)", w->style->prefix, fn, cwriter_operand(w, a).text), C_ATOM, 0};
 }
 
@@ -259,7 +263,7 @@ void cwriter_declare(Writer *w, Slot s, Piece name, Piece x) {
 void cwriter_pivot(Writer *w, const Ins *i) {
   const char *d = wrapped(w, i->a, C_CMP + 1), *m = w->style->prefix;
   cwriter_flush_title(w);
-  cwriter_statement(w, arena_printf(w->a, "if (%s_ANY(%s_NOT(%s %s %s_C(0.0)))) return %s_ESINGULAR;", m, m, d, i->index ? ">" : "!=", m, m));
+  cwriter_statement(w, arena_printf(w->a, "%s_PIVOT(%s %s %s_C(0.0));", m, d, i->index ? ">" : "!=", m));
   sb_putc(w->out, '\n');
 }
 
@@ -269,10 +273,10 @@ static void write_solve(Writer *w, const Ins *i) {
   uint32_t n = k->n, M = k->place, b = M + n * n;
   cwriter_flush_title(w);
   for (uint32_t j = 0; k->matrix && j < n * n; j++) sb_printf(w->out, "  w[%u] = %s;\n", M + j, cwriter_operand(w, k->matrix[j]).text);
-  if (st->factor && k->matrix) sb_printf(w->out, "  if (%s(%u, w + %u)) return %s_ESINGULAR;\n", st->factor, n, M, st->prefix);
+  if (st->factor && k->matrix) sb_printf(w->out, "  %s_PIVOT(%s(%u, w + %u));\n", st->prefix, st->factor, n, M);
   for (uint32_t r = 0; r < n; r++) sb_printf(w->out, "  w[%u] = %s;\n", b + r, cwriter_operand(w, k->rhs[r]).text);
   if (st->factor) sb_printf(w->out, "  %s(%u, w + %u);\n", st->substitute, n, M);
-  else sb_printf(w->out, "  if (%s(%u, w, w + %u)) return %s_ESINGULAR;\n", st->solve, n, b, st->prefix);
+  else sb_printf(w->out, "  %s_PIVOT(%s(%u, w, w + %u));\n", st->prefix, st->solve, n, b);
 }
 
 /* As many rows on a line as fit. */
@@ -354,6 +358,36 @@ static void count_uses(Writer *w) {
   for (uint32_t k = 0; k < p->stores.n; k++) w->stored[p->stores.at[k].slot] = p->stores.at[k].comment;
 }
 
+/* Where both sine and cosine of a value are wanted, they are pairs: one call makes both. */
+static void find_pairs(Writer *w) {
+  const Prog *p = w->p;
+  Slot *sine = ARENA_ARRAY(w->a, Slot, p->ins.n);
+  w->pair = ARENA_ARRAY(w->a, Slot, p->ins.n);
+  for (int turn = 0; turn < 2 && w->style->math; turn++)
+    for (Slot s = 1; s < p->ins.n; s++) {
+      const Ins *i = &p->ins.at[s];
+      if (i->op != IR_FN1 || strcmp(i->text, turn ? "cos" : "sin") != 0) continue;
+      if (!turn) sine[i->a] = s;
+      else if (sine[i->a] && cloop_together(w, s, sine[i->a])) w->pair[w->pair[s] = sine[i->a]] = s;
+    }
+}
+
+/* One call for a value and its pair; 0 when it has none, or has been written with it. */
+int cwriter_pair(Writer *w, Slot s, const Ins *first, const Ins *second) {
+  Slot pair = w->pair[s];
+  if (!pair || pair < s) return pair != 0;
+  const char *x = cwriter_operand(w, first->a).text;
+  Piece a = cwriter_name(w, first), b = cwriter_name(w, second);
+  int in_order = strcmp(first->text, "sin") == 0;
+  cwriter_flush_title(w);
+  cwriter_statement(w, arena_printf(w->a, "%s_REAL %s, %s;", w->style->prefix, a.text, b.text));
+  const char *call = arena_printf(w->a, " %s_sincos(%s, &%s, &%s);", w->style->math, x, in_order ? a.text : b.text, in_order ? b.text : a.text);
+  sb_printf(w->out, "%s\n", call);
+  w->piece[s] = a;
+  w->piece[pair] = b;
+  return 1;
+}
+
 static void write_instruction(Writer *w, Slot s) {
   const Ins *i = &w->p->ins.at[s];
   if (i->op == IR_TITLE) {
@@ -372,7 +406,7 @@ static void write_instruction(Writer *w, Slot s) {
     write_table(w, s, i);
     return;
   }
-  if (i->op == IR_LOAD) return;
+  if (i->op == IR_LOAD || cwriter_pair(w, s, i, &w->p->ins.at[w->pair[s]])) return;
   Piece x = cwriter_spell(w, i);
   int leaf = i->op == IR_CONST || i->op == IR_PI;
   int told = !i->name || (w->stored[s] && strcmp(i->name, w->stored[s]) == 0); /* by the store's comment */
@@ -452,6 +486,8 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   if (p->solves.n) cnames_reserve(&w.names, "w");
   count_uses(&w);
   cloop_prepare(&w);
+  if (prog_has_pivots(p)) sb_printf(out, "  %s_PIVOTS;\n", style->prefix);
+  find_pairs(&w);
   for (int array = 0; array < ARR_COUNT; array++) write_array(&w, array);
   write_code(&w);
   write_stores(&w);

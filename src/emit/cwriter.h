@@ -22,6 +22,7 @@ typedef struct {
   const char *spline;               /* name of the function that evaluates tables, */
   const char *const *rows;          /* and of their arrays; NULL: they stand in the body */
   int seldom_called;                /* shorter code is worth more here than the last nanosecond */
+  const char *math;                 /* prefix of sincos, sin and cos where they come with the file; NULL: LAG_FN(sin) */
   int loads_inline;                 /* spell loads at their use instead of naming them at the top */
 } CStyle;
 

@@ -21,6 +21,7 @@ typedef struct {
   uint32_t *uses;
   const char **stored; /* by slot: the comment of the store that uses it */
   Piece *piece; /* by slot: how its value is spelled where it is used */
+  Slot *pair;   /* by slot: the cosine of a sine's operand, and the other way round, where one call makes both; or 0 */
   StrBuf *out;
   uint32_t temps;
   const char *title; /* pending: printed before the next statement */
@@ -44,6 +45,13 @@ Piece cwriter_name(Writer *w, const Ins *i);
 
 /* `const LAG_REAL name = x;`, and spells slot s by that name from now on. */
 void cwriter_declare(Writer *w, Slot s, Piece name, Piece x);
+
+/* Declares a value and its pair, with the names that their instructions have, by one call, unless the pair came first. 0 where
+ * it has no pair. */
+int cwriter_pair(Writer *w, Slot s, const Ins *first, const Ins *second);
+
+/* Whether two functions of one operand stand side by side: both in no loop, or in the same turn of one in all turns. */
+int cloop_together(const Writer *w, Slot a, Slot b);
 
 /* Before anything is written. */
 void cloop_prepare(Writer *w);

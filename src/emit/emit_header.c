@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "emit/cmath.h"
 #include "emit/header_impl.h"
 
 /* --- names --- */
@@ -16,7 +17,8 @@ static const char *cased(Arena *a, const char *s, int upper) {
 }
 
 static const char *const header_names[] = {"REAL", "API", "STATIC", "IMPLEMENTATION", "IMPLEMENTED", "H_INCLUDED", "MASK", "LANE",
-                                           "OK", "ESINGULAR", "NQ", "NZ", "NP", "NU", "NEV", "NOUT"};
+                                           "LANES", "LIBM", "OWN",
+                                           "FMA", "INLINE", "PIVOTS", "PIVOTS_STATUS", "OK", "ESINGULAR", "NQ", "NZ", "NP", "NU", "NEV", "NOUT"};
 
 /* PREFIX_NAME for each variable: an enumerator that nothing else in the header is called. */
 static const char **enumerators(Header *h, CNames *taken, const char *stem, const IrVar *v, uint32_t n) {
@@ -37,7 +39,7 @@ static const char **event_enumerators(Header *h, CNames *taken) {
 
 /* What a function's own names must not hide. */
 static const char *const *globals_of(Header *h) {
-  const char **all = ARENA_ARRAY(h->a, const char *, h->taken.taken.n + 12);
+  const char **all = ARENA_ARRAY(h->a, const char *, h->taken.taken.n + 20);
   uint32_t n = 0;
   for (uint32_t i = 0; i < h->taken.taken.n; i++) all[n++] = h->taken.taken.at[i];
   all[n++] = arena_printf(h->a, "%s_solve", h->lower);
@@ -47,6 +49,9 @@ static const char *const *globals_of(Header *h) {
   all[n++] = arena_printf(h->a, "%s_state", h->lower);
   all[n++] = arena_printf(h->a, "%s_step", h->lower);
   all[n++] = arena_printf(h->a, "%s_input_fn", h->lower);
+  static const char *const functions[] = {"sincos", "sin", "cos", "lanes", "lanes_mask"};
+  for (int i = 0; i < 5; i++) all[n++] = arena_printf(h->a, "%s_%s", h->lower, functions[i]);
+  all[n++] = "singular";
   return all;
 }
 
@@ -105,7 +110,12 @@ static void write_usage(const Header *h) {
             " * To define before the first include, the same in every file:\n"
             " *   %s_REAL    float, double (the default) or long double\n"
             " *   %s_STATIC  functions are static inline, in every file that includes this\n"
-            " *   %s_FN(x)   C99 with long double needs x##l here; C11 and C++ choose themselves\n", m, m, m);
+            " *   %s_FN(x)   C99 with long double needs x##l here; C11 and C++ choose themselves\n"
+            " *   %s_LANES   4 or 8, with GCC or Clang: %s_REAL is a vector of so many doubles, each with a state and parameters\n"
+            " *             of its own. A status is 0, or minus the sum of 2^k over the lanes k that are singular; others are right\n"
+            " *   %s_LIBM    the C library's functions in place of those below\n"
+            " * Not with -ffast-math. GCC 12.2 of Debian 12 stores wrong numbers at -O2 with AVX-512 (as -march=native may mean): add\n"
+            " * -fno-tree-slp-vectorize. -ffp-contract=off makes the same digits everywhere; contracted code is as good.\n", m, m, m, m, m, m);
 }
 
 static void write_head(const Header *h, const char *equations) {
@@ -113,6 +123,7 @@ static void write_head(const Header *h, const char *equations) {
   sb_printf(h->out, "/* %s.h: %s\n *\n", comment_text(h->a, h->file), comment_text(h->a, u->doc[0] ? u->doc : u->name));
   sb_printf(h->out, " * Made by lagc from the model %s, scene %s; effects in use: %s.\n", u->name, h->scene->name, u->effects[0] ? u->effects : "none");
   sb_printf(h->out, " * One evaluation of the equations of motion: %s.\n", ops_text(u->accel, h->a));
+  sb_printf(h->out, " * %s\n", cmath_text(u));
   sb_puts(h->out, " * C99 or C++, <math.h> only; allocates nothing, keeps nothing. All values are in SI units.\n");
   sb_puts(h->out, " * This text may be used for any purpose without conditions (0BSD).\n");
   write_usage(h);

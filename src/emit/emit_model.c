@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "emit/cfunction.h"
+#include "emit/cmath.h"
 #include "emit/ctable.h"
 #include "emit/emit_taylor.h"
 
@@ -19,8 +20,7 @@ static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a"}
 
 static const char *const prelude =
   "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l'\n"
-  " * '-DLAG_C(x)=x##L'; a vector of lanes defines LAG_SELECT, LAG_ANY and the logic as well,\n"
-  " * LAG_MASK, the type of its comparisons, and LAG_LANE, the type of a lane. */\n"
+  " * '-DLAG_C(x)=x##L'; -DLAG_LANES=4 or 8: a vector of so many doubles, each with a state of its own. */\n"
   "#ifndef LAG_NUMBER\n#define LAG_NUMBER(x) x /* of the tables below */\n#endif\n"
   "#ifndef LAG_FN\n#define LAG_FN(f) f\n#endif\n"
   "#ifndef LAG_C\n#define LAG_C(x) ((LAG_REAL)x)\n#endif\n";
@@ -36,6 +36,8 @@ static const char *const abi_names[] = {
   "taylor_rest", "taylor_squares", "TAYLOR_SQUARES",
   "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
   "curves", "LAG_EACH", "LAG_10", "LAG_100", "LAG_1000", "LAG_10000",
+  "singular", "lag_sincos", "lag_sin", "lag_cos", "lag_lanes", "lag_lanes_mask", "LAG_LANES", "LAG_LIBM", "LAG_OWN", "LAG_FMA",
+  "LAG_INLINE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -98,7 +100,7 @@ static const char *const state_args =
   "    const LAG_REAL *p, const LAG_REAL *u";
 
 static CStyle style_for(const File *f, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .spline = "lag_spline"};
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .spline = "lag_spline", .math = cmath_prefix(f->u, "lag")};
 }
 
 /* Once a step, or a row of output. */
@@ -112,7 +114,7 @@ static void function(const File *f, const Prog *p, const char *comment, const ch
                      const char *const *written) {
   CStyle st = style_for(f, own, written);
   st.seldom_called = is_seldom_called(f->u, p);
-  CFunction c = {.comment = comment, .head = head, .end = "  return LAG_OK;\n"};
+  CFunction c = {.comment = comment, .head = head, .returns = 1};
   cfunction(p, &st, &c, f->out);
 }
 
@@ -179,7 +181,7 @@ static void emit_inputs(const File *f) {
     cwrite_rows(&p->tables.at[i], st.rows[i], "", f->a, f->out);
   }
   CFunction c = {.comment = p->tables.n ? "Inputs, by their formulas and tables." : "Inputs that have a formula.",
-                 .head = "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", .end = "  return LAG_OK;\n"};
+                 .head = "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", .returns = 1};
   cfunction(p, &st, &c, f->out);
 }
 
@@ -270,7 +272,7 @@ static void emit_exact(const File *f, const IrScene *s, const char *id) {
   if (!s->exact_of.n) return;
   CStyle st = style_for(f, own, written);
   st.in = from_start;
-  CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .end = "  return LAG_OK;\n"};
+  CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .returns = 1};
   c.head = arena_printf(f->a, "static int exact_%s(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,\n"
                               "    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out)", id);
   cfunction(s->exact, &st, &c, f->out);
@@ -369,7 +371,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
               or_null(u->second_at.n, "second_table"), u->second_at.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (u->linear) sb_puts(out, "  .linear = &linear,\n");
-  sb_puts(out, "};\n");
+  sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n};\n");
 }
 
 static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
@@ -423,6 +425,7 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
   sb_printf(out, "/* %s: %s\n", u->name, comment_text(u->arena, u->doc));
   sb_printf(out, " * Emitted by lagc; effects in use: %s.\n", u->effects[0] ? u->effects : "none");
   sb_printf(out, " * Accelerations: %s.\n", ops_text(u->accel, u->arena));
+  sb_printf(out, " * %s\n", cmath_text(u));
   sb_puts(out, " * This text may be used for any purpose without conditions (0BSD). */\n");
   sb_puts(out, "#include <math.h>\n\n#include \"lag_model.h\"\n\n");
 }
@@ -430,8 +433,11 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
 void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   File f = {.u = u, .a = u->arena, .name = name, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
+  cmath_lanes("LAG", "lag", out);
   sb_puts(out, prelude);
   csupport_logic("LAG", out);
+  sb_putc(out, '\n');
+  cmath_functions(u, "LAG", "lag", out);
   if (has_long_tables(u)) ctable_macros(out);
   if (work_size(u)) csupport_solver("LAG", "lag", out);
   if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
@@ -442,7 +448,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_inputs(&f);
   const char *digest = digest_text(u->arena, sb_text(out) + begin);
   emit_linear(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
-  if (u->taylor) emit_taylor(u->taylor, f.globals, out);
+  if (u->taylor) emit_taylor(u->taylor, f.globals, cmath_prefix(u, "lag"), out);
   emit_variation(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, i);
@@ -461,13 +467,14 @@ void emit_program(const IrUnit *const *units, const char *const *names, uint32_t
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t k = 0; k < units[i]->scenes.n; k++, scenes++)
       sb_printf(out, "extern const lag_scene %s_%s;\n", names[i], scene_id(units[i], k));
+  sb_puts(out, "\n#ifndef LAG_BUILD /* compiler and flags */\n#define LAG_BUILD NULL\n#endif\n");
   sb_puts(out, "\nstatic const lag_scene *const scenes[] = {\n");
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t k = 0; k < units[i]->scenes.n; k++)
       sb_printf(out, "  &%s_%s,\n", names[i], scene_id(units[i], k));
   sb_puts(out, "};\n\n");
   const char *name = c_string(a, first->name), *doc = c_string(a, first->doc), *source = c_string(a, first->source);
-  sb_printf(out, "static const lag_program program = {\n  .name = %s,\n  .doc = %s,\n  .source = %s,\n  .effects = %s,\n  .nscenes = %u, .scenes = scenes,\n};\n\n",
+  sb_printf(out, "static const lag_program program = {\n  .name = %s,\n  .doc = %s,\n  .source = %s,\n  .effects = %s,\n  .build = LAG_BUILD,\n  .nscenes = %u, .scenes = scenes,\n};\n\n",
             name, doc, source, c_string(a, first->all_effects), scenes);
   emit_main(gsl, out);
 }

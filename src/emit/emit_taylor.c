@@ -120,12 +120,14 @@ static const char *const squares =
 typedef struct {
   const Series *s;
   const char *const *globals;
+  const char *math; /* as in CStyle */
   Arena *a;
   StrBuf *out;
 } Writer;
 
 static CStyle style_for(const Writer *w, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = w->globals, .factor = "lag_factor", .substitute = "lag_substitute"};
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = w->globals, .factor = "lag_factor", .substitute = "lag_substitute",
+                  .math = w->math};
 }
 
 static void work(const Writer *w) {
@@ -162,7 +164,7 @@ static void first(const Writer *w) {
   copy(w, "v", s->nq, s->nq);
   copy(w, "z", s->nz, 2 * s->nq);
   cwrite_body(s->first, &st, w->a, w->out);
-  sb_puts(w->out, "  return LAG_OK;\n}\n");
+  sb_printf(w->out, "  return %s;\n}\n", cfunction_status(s->first, &st));
 }
 
 static void next(const Writer *w) {
@@ -203,17 +205,17 @@ static void rest(const Writer *w) {
                       "    for (int i = %u; i < TAYLOR_SUMS; i++) w->a[k][i] = LAG_C(0.0);\n", s->first_square + s->squares);
   sb_puts(w->out, "  for (int k = 1; k < n; k++) {\n"
                   "    LAG_REAL *const y = x + k*TAYLOR_COLUMNS, *const z = y + TAYLOR_COLUMNS;\n"
-                  "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_REAL)(k + 1);\n");
+                  "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_LANE)(k + 1);\n");
   if (s->sums) sb_puts(w->out, "    taylor_sums(k, w);\n");
   if (s->squares) sb_puts(w->out, "    taylor_squares(k, w);\n");
-  sb_printf(w->out, "    taylor_next((LAG_REAL)k, per_k, T*per_next, w->s, w->c, y, z, w->a[k], w->b[k]%s);\n",
+  sb_printf(w->out, "    taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, w->s, w->c, y, z, w->a[k], w->b[k]%s);\n",
             s->room ? ", w->m" : "");
   if (s->uses_time) sb_printf(w->out, "    z[%u] = LAG_C(0.0);\n", t);
   sb_puts(w->out, "    per_k = per_next;\n  }\n}\n");
 }
 
-void emit_taylor(const Series *s, const char *const *globals, StrBuf *out) {
-  Writer w = {.s = s, .globals = globals, .a = s->first->arena, .out = out};
+void emit_taylor(const Series *s, const char *const *globals, const char *math, StrBuf *out) {
+  Writer w = {.s = s, .globals = globals, .math = math, .a = s->first->arena, .out = out};
   sb_puts(out, head);
   work(&w);
   if (s->room) csupport_factor("LAG", "lag", out);

@@ -6,6 +6,6 @@
 #include "ir/series.h"
 
 /* Functions and the const lag_taylor called `taylor`. globals: names that functions must not hide, NULL at the end. */
-void emit_taylor(const Series *s, const char *const *globals, StrBuf *out);
+void emit_taylor(const Series *s, const char *const *globals, const char *math, StrBuf *out);
 
 #endif

@@ -1,12 +1,12 @@
 /* The definitions of an emitted header. */
 #include <string.h>
 
+#include "emit/cmath.h"
 #include "emit/header_impl.h"
 
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a"};
 
 static const char *const macros =
-  "#include <math.h>\n\n"
   "/* Functions and constants in the scalar's precision. */\n"
   "#ifndef LAG_FN\n"
   "#if defined(__cplusplus)\n"
@@ -68,14 +68,15 @@ static const char *const *own_names(const Header *h, const char *const *extra) {
 
 static CStyle style_for(const Header *h, const char *const *own, const char *const *out) {
   return (CStyle){.prefix = h->upper, .in = arrays, .params = h->fields, .out = out, .own = own, .globals = h->globals,
-                  .solve = arena_printf(h->a, "%s_solve", h->lower), .spline = arena_printf(h->a, "%s_spline", h->lower)};
+                  .solve = arena_printf(h->a, "%s_solve", h->lower), .spline = arena_printf(h->a, "%s_spline", h->lower),
+                  .math = cmath_prefix(h->u, h->lower)};
 }
 
 static const char *api(const Header *h, HeaderFn f) { return header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, header_prototype(h, f))); }
 
 static void state_function(const Header *h, const Prog *p, const char *head, const char *const *out, int returns) {
   CStyle st = style_for(h, own_names(h, out), out);
-  CFunction c = {.head = head, .end = returns ? arena_printf(h->a, "  return %s_OK;\n", h->upper) : "", .own_work = 1};
+  CFunction c = {.head = head, .returns = returns, .own_work = 1};
   cfunction(p, &st, &c, h->out);
 }
 
@@ -83,7 +84,7 @@ static void accel(const Header *h) {
   static const char *const out[] = {"a", "zd"}, *const none[] = {"a", NULL}, *const both[] = {"a", "zd", NULL};
   const char *const *extra = !h->u->q.n ? both + 1 : h->u->z.n ? both : none;
   CStyle st = style_for(h, own_names(h, extra), out);
-  CFunction c = {.head = api(h, FN_ACCEL), .end = arena_printf(h->a, "  return %s_OK;\n", h->upper), .own_work = 1};
+  CFunction c = {.head = api(h, FN_ACCEL), .returns = 1, .own_work = 1};
   cfunction(h->u->accel, &st, &c, h->out);
 }
 
@@ -131,7 +132,7 @@ static void inputs(const Header *h) {
   static const char *const own[] = {"t", "p", "u", NULL}, *const out[] = {"u"};
   if (!header_has(h, FN_INPUTS)) return;
   CStyle st = style_for(h, own, out);
-  CFunction c = {.head = api(h, FN_INPUTS), .end = ""};
+  CFunction c = {.head = api(h, FN_INPUTS)};
   cfunction(h->u->inputs, &st, &c, h->out);
 }
 
@@ -156,7 +157,7 @@ static void action(const Header *h, uint32_t i) {
   sb_putc(&head, ')');
   CStyle st = style_for(h, own_names(h, own), out);
   CFunction c = {.comment = arena_printf(h->a, "What the event %s does: q1, v1, z1 hold the state after it.", h->u->events.at[i].name),
-                 .head = header_wrapped(h, sb_text(&head)), .end = arena_printf(h->a, "  return %s_OK;\n", h->upper), .own_work = 1};
+                 .head = header_wrapped(h, sb_text(&head)), .returns = 1, .own_work = 1};
   cfunction(h->u->events.at[i].action, &st, &c, h->out);
 }
 
@@ -202,8 +203,12 @@ static void rk4_step(const Header *h) {
 
 void header_implementation(const Header *h) {
   static const char *const e[] = {"e", NULL}, *const out[] = {"out", NULL}, *const g[] = {"g", NULL};
+  sb_puts(h->out, "#include <math.h>\n\n");
+  cmath_lanes(h->upper, h->lower, h->out);
   csupport_fill(macros, h->upper, h->lower, h->out);
   csupport_logic(h->upper, h->out);
+  sb_putc(h->out, '\n');
+  cmath_functions(h->u, h->upper, h->lower, h->out);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
   if (h->u->accel->solves.n || h->scene->observe_plain->solves.n) csupport_solver(h->upper, h->lower, h->out);
   if (h->u->inputs->tables.n) csupport_spline(h->upper, h->lower, h->out);

@@ -6,7 +6,9 @@
 
 static const char *const options =
   "/* The scalar. */\n"
-  "#ifndef LAG_REAL\n#define LAG_REAL double\n#endif\n\n"
+  "#ifndef LAG_REAL\n#ifdef LAG_LANES\n"
+  "typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));\n#define LAG_REAL lag_lanes\n"
+  "#else\n#define LAG_REAL double\n#endif\n#endif\n\n"
   "/* Linkage. */\n"
   "#ifndef LAG_API\n#ifdef LAG_STATIC\n#define LAG_API static inline\n#else\n#define LAG_API\n#endif\n#endif\n\n"
   "/* What functions return. */\n"

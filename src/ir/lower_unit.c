@@ -41,8 +41,11 @@ static void add_variation(IrUnit *u, const Eqns *e) {
   }
 }
 
+/* A table is no analytic function: a model with one has no series. */
 static void add_taylor(IrUnit *u, const Eqns *e) {
   const char *why;
+  for (uint32_t i = 0; i < e->m->inputs.n; i++)
+    if (e->m->inputs.at[i].table) return;
   IrSystem system = lower_system(e);
   u->taylor = series_new(&system, &why);
 }

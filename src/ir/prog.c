@@ -283,6 +283,12 @@ OpCount prog_count(const Prog *p) {
 
 uint32_t ops_total(OpCount c) { return c.add + c.mul + c.div + c.sqrt + c.fn + c.other; }
 
+int prog_has_pivots(const Prog *p) {
+  for (Slot s = 1; s < p->ins.n; s++)
+    if (p->ins.at[s].op == IR_PIVOT || p->ins.at[s].op == IR_SOLVE) return 1;
+  return 0;
+}
+
 uint32_t prog_work(const Prog *p) {
   uint32_t most = 0;
   for (uint32_t i = 0; i < p->solves.n; i++) {

@@ -148,6 +148,9 @@ const char *prog_verify(const Prog *p);
 /* A listing, one instruction a line, for --dump=prog. */
 void prog_dump(const Prog *p, StrBuf *out);
 
+/* Whether it divides by what may be 0: IR_PIVOT, IR_SOLVE. */
+int prog_has_pivots(const Prog *p);
+
 /* Room that IR_SOLVE needs, in reals. */
 uint32_t prog_work(const Prog *p);
 

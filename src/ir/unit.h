@@ -79,6 +79,7 @@ typedef struct {
   const Prog *linear;           /* NULL: not asked for */
   VEC(IrEntry) linear_dr, linear_mass; /* what its outputs 0 and 1 are */
   VEC(IrScene) scenes;
+  int libm;                     /* emitted code calls the C library's sin and cos */
 } IrUnit;
 
 #endif

@@ -35,14 +35,14 @@ int main(void) { return sinq(0.0Q) != 0; }' >"$dir/try.c" && $CC "$dir/try.c" -o
   awk -v first="$first" -v last="$((first + last - 1))" -v dir="$dir" '
     { line[NR] = $0 }
     END {
-      split(" - | + |cos|sin|(-", from, "|")
-      split(" + | - |sin|cos|(", to, "|")
+      split(" - | + |cos|sin|(-|lag_sincos(", from, "|")
+      split(" + | - |sin|cos|(|lag_sincos(-", to, "|")
       for (i = first; i <= last; i++)
-        for (k = 1; k <= 5; k++) {
-          if (from[k] ~ /cos|sin/ && line[i] !~ /LAG_FN/) continue
+        for (k = 1; k <= 6; k++) {
+          if (from[k] ~ /^(cos|sin)$/ && line[i] !~ /LAG_FN/) continue
           for (at = 1; (p = index(substr(line[i], at), from[k])) > 0; at += p + length(from[k]) - 1) {
             where = at + p - 1
-            if (from[k] ~ /cos|sin/ && substr(line[i], where - 7, 7) != "LAG_FN(") continue
+            if (from[k] ~ /^(cos|sin)$/ && substr(line[i], where - 7, 7) != "LAG_FN(") continue
             file = sprintf("%s/mutant_%03d.c", dir, ++mutants)
             for (j = 1; j <= NR; j++)
               if (j != i) print line[j] > file

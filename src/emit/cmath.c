@@ -1,0 +1,63 @@
+#include "emit/cmath.h"
+
+#include <string.h>
+
+#include "emit/cfunction.h"
+#include "emit/lag_math.h" /* static const char *const lag_math[]: generated from runtime/include/lag_math.h */
+
+enum { N_LINES = sizeof lag_math / sizeof *lag_math };
+
+/* The lines between the marker `---- NAME ----` and the next. */
+static void section(const char *name, const char *prefix, const char *lower, StrBuf *out) {
+  static const char mark[] = "/* ---- ";
+  size_t n = strlen(name), i = 0;
+  while (i < N_LINES && !(strncmp(lag_math[i], mark, sizeof mark - 1) == 0 && strncmp(lag_math[i] + sizeof mark - 1, name, n) == 0)) i++;
+  for (i++; i < N_LINES && strncmp(lag_math[i], mark, sizeof mark - 1) != 0; i++) csupport_fill(lag_math[i], prefix, lower, out);
+}
+
+static int calls(const Prog *p, const char *name) {
+  for (Slot s = 1; p && s < p->ins.n; s++)
+    if (p->ins.at[s].op == IR_FN1 && strcmp(p->ins.at[s].text, name) == 0) return 1;
+  return 0;
+}
+
+static int scene_calls(const IrScene *s, uint32_t params, const char *name) {
+  int some = calls(s->start, name) | calls(s->observe, name) | calls(s->exact, name);
+  for (uint32_t i = 0; i < params; i++) some |= calls(s->params[i], name);
+  return some;
+}
+
+static int unit_calls(const IrUnit *u, const char *name) {
+  int some = calls(u->accel, name) | calls(u->energy, name) | calls(u->inputs, name) | calls(u->linear, name);
+  some |= calls(u->variation, name) | calls(u->second, name) | calls(u->event_values, name);
+  if (u->taylor) some |= calls(u->taylor->first, name);
+  for (uint32_t i = 0; i < u->events.n; i++) some |= calls(u->events.at[i].action, name);
+  for (uint32_t i = 0; i < u->scenes.n; i++) some |= scene_calls(&u->scenes.at[i], u->p.n, name);
+  return some;
+}
+
+static int calls_sincos(const IrUnit *u) { return unit_calls(u, "sin") || unit_calls(u, "cos"); }
+
+void cmath_lanes(const char *prefix, const char *lower, StrBuf *out) {
+  sb_puts(out, "/* ---- arithmetic, over doubles and over lanes of them; the model comes after it ---- */\n\n");
+  section("lanes", prefix, lower, out);
+}
+
+void cmath_functions(const IrUnit *u, const char *prefix, const char *lower, StrBuf *out) {
+  int sincos = !u->libm && calls_sincos(u), e = !u->libm && unit_calls(u, "exp"), l = !u->libm && unit_calls(u, "log");
+  if (u->libm) sb_printf(out, "#define %s_OWN 0\n", prefix);
+  else section("own", prefix, lower, out);
+  section("libm", prefix, lower, out);
+  if (sincos) section("sincos", prefix, lower, out);
+  if (e) section("exp", prefix, lower, out);
+  if (l) section("log", prefix, lower, out);
+  sb_puts(out, "/* ---- the model ---- */\n");
+}
+
+const char *cmath_prefix(const IrUnit *u, const char *lower) { return u->libm ? NULL : lower; }
+
+const char *cmath_text(const IrUnit *u) {
+  if (u->libm) return "Functions: the C library's.";
+  if (!calls_sincos(u)) return "Functions: the C library's; over lanes exp and log are below.";
+  return "Functions: sin and cos are below, to less than 1 unit in the last place; the others are the C library's.";
+}

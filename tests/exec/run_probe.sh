@@ -1,0 +1,61 @@
+#!/bin/sh
+# The probe for compilers that store wrong numbers (src/cli/probe.in): what it says of this one, and what lagc and make do when it fails.
+: "${LAGC:=build/lagc}" "${CC:=cc}" "${MAKE:=make}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+. tests/tap.sh
+export XDG_CACHE_HOME="$TMP/cache"
+
+# probe COMPILER FLAGS...: its exit status.
+probe() {
+  "$@" -x c src/cli/probe.in -o "$TMP/probe" && "$TMP/probe"
+}
+check "as the build compiles, nothing is wrong" probe $CC -O2
+gcc_native() { # what is wrong with -march=native is mended by the flag
+  probe $CC -O2 -march=native -fno-tree-slp-vectorize
+}
+probe $CC -O2 -march=native >/dev/null 2>&1
+case $? in
+  0) skip "-march=native: found and mended" "this compiler, for this processor, is right" ;;
+  1) check "-march=native: found and mended" gcc_native ;;
+  *) skip "-march=native: found and mended" "the compiler has no -march=native" ;;
+esac
+
+# A compiler that says it is for AVX-512, and stores wrong numbers unless one of $MEND is among its options.
+mkdir -p "$TMP/bin"
+cat >"$TMP/bin/wrong" <<END
+#!/bin/sh
+echo "\$*" >>"$TMP/calls"
+case " \$* " in *" -dM "*) echo "#define __AVX512F__ 1"; exit 0 ;; esac
+for m in \$MEND; do case " \$* " in *" \$m "*) for o; do shift; case \$o in -march=*) ;; *) set -- "\$@" "\$o" ;; esac; done; exec $CC "\$@" ;; esac; done
+for o; do
+  shift
+  case \$o in */probe.c | */probe.in) sed '/void copied/,/^}/s/= 0;/= a;/' "\$o" >"$TMP/bad.c"; o=$TMP/bad.c ;; esac
+  set -- "\$@" "\$o"
+done
+exec $CC "\$@"
+END
+chmod +x "$TMP/bin/wrong"
+built_with() { # MEND WORDS: the simulator says that it was built with these
+  : >"$TMP/calls"
+  MEND=$1 CC=$TMP/bin/wrong "$LAGC" build models/pendulum.lag -o "$TMP/sim" || return 1
+  "$TMP/sim" --help | grep '^built by:' | grep -q -e "$2"
+}
+check "lagc: a flag where numbers are wrong" built_with -fno-tree-slp-vectorize '-ffp-contract=off -fno-tree-slp-vectorize$'
+check "lagc: another where that is not enough" built_with -march=x86-64-v3 '-ffp-contract=off -march=x86-64-v3$'
+no_help() {
+  rm -f "$TMP/none"
+  MEND= CC=$TMP/bin/wrong "$LAGC" build models/pendulum.lag -o "$TMP/none" 2>"$TMP/err"
+  [ $? = 2 ] && ! [ -e "$TMP/none" ] && grep -q 'stores wrong numbers.*set CC' "$TMP/err"
+}
+check "lagc: an error where nothing helps" no_help
+plain() { "$LAGC" build models/pendulum.lag -o "$TMP/sim" && "$TMP/sim" --help | grep '^built by:' | grep -q -e '-ffp-contract=off$'; }
+check "lagc: no flag where nothing is wrong" plain
+empty "the folder of the build is removed" "$(ls -d "$TMP"/sim.* "$TMP"/none.* 2>/dev/null)"
+
+makes() { # CC: how often the flag stands in what make would do
+  MEND=-fno-tree-slp-vectorize $MAKE -n BUILD="$TMP/b" CC="$1" all 2>/dev/null | grep -c -e '-O2 -g -fno-tree-slp-vectorize .*-c -o'
+}
+several() { [ "$(makes "$TMP/bin/wrong")" -gt 100 ]; }
+check "make: the flag where numbers are wrong" several
+is "make: no flag where nothing is wrong" 0 "$(makes "$CC")"
+tap_end
