@@ -112,24 +112,32 @@ void declare_param(Builder *b, const AstStmt *st, Name effect) {
   } while (next_member(&d.e, at));
 }
 
-/* -D N=50, or NULL. */
-static const char *defined(const Builder *b, Name name) {
-  const char *value = NULL;
+/* -D N=50, the last one; or NULL. */
+static const Define *defined(const Builder *b, Name name) {
+  const Define *d = NULL;
   for (uint32_t i = 0; i < b->ndefines; i++)
-    if (strcmp(b->defines[i].name, name) == 0) value = b->defines[i].value;
-  return value;
+    if (strcmp(b->defines[i].name, name) == 0) d = &b->defines[i];
+  return d;
 }
 
-/* Made of numbers and pi. A number on the command line is in the unit of the constant's value. */
+/* What the command line gives a constant whose value in the file is v. */
+static Value defined_value(Builder *b, const Define *d, const Value *v, Name effect) {
+  Value given = resolve(b, d->expr, IN_CONST, effect);
+  if (!given.e || !v->e || given.n == v->n) return given;
+  diag_error(b->diags, ast_expr(b->ast, d->expr)->span, "`%s` is %s, and %s is given here", d->name, shape_text(b, v->n), shape_text(b, given.n));
+  return (Value){0};
+}
+
+/* Made of numbers and pi. A bare number on the command line is in the unit of the constant's value. */
 void declare_const(Builder *b, const AstStmt *st, Name effect) {
   Value v = resolve(b, st->rhs, IN_CONST, effect);
   Entity e = {.kind = ENT_CONST, .index = b->constants.n, .name = st->name, .effect = effect, .span = st->name_span};
   if (!declare_entity(b, st, e)) return;
-  const char *text = defined(b, st->name);
-  if (text && v.n) diag_error(b->diags, (Span){0}, "-D %s=%s: `%s` is %s", st->name, text, st->name, shape_text(b, v.n));
-  else if (text) v = (Value){.e = expr_num(b->g, num_parse(text, strlen(text))), .dim = DIM_NONE, .bare = 1};
+  const Define *d = defined(b, st->name);
   Unit unit = unit_resolve(&st->unit, b->dims, b->diags, b->arena);
-  v = values_in(b, v, ast_expr(b->ast, st->rhs)->span, &unit);
+  if (d && !st->unit.n && v.e && !v.bare) unit = unit_of_dim(b->dims, v.dim);
+  if (d) v = defined_value(b, d, &v, effect);
+  v = values_in(b, v, ast_expr(b->ast, d ? d->expr : st->rhs)->span, &unit);
   if (st->unit.n) {
     v.bare = v.point = 0;
     v.dim = unit.dim;

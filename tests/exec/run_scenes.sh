@@ -120,6 +120,32 @@ check "-D: build" five "$dir/sim" "x[5]'=2"
 check "-D: plot" has_five "$dir/p.svg"
 check "-D: animate" has_five "$dir/p.html"
 
+cat >"$dir/c.lag" <<'END'
+model c "Constants of the command line"
+const A = -2, h = 50 [cm], w = 2*3 [rad/s]
+coord x [m], th [deg]
+param a = A, b [m] = h, f = w
+lagrangian = 1 [kg]/2*x'^2 + 1 [kg*m^2]/2*th'^2
+scene s { start x = h; output a, b, f; span 1 }
+scene minus { start th = -1/2 [deg] }
+scene minuses { start th = --1/2 [deg] }
+scene plus { start th = +1/2 [deg] }
+END
+c=$dir/c.lag
+constants() { "$LAGC" run "$c" s -o - --quiet "$@" 2>/dev/null | sed -n 2p | cut -d, -f2-; }
+is "-D: as declared" '-2,0.5,6' "$(constants)"
+is "-D: signs" '-3,0.5,6 -0.5,0.5,6 3,0.5,6 3,0.5,6' "$(constants -D A=-3) $(constants -DA=-.5) $(constants -D A=+3) $(constants -D A=--3)"
+is "-D: a bare number is in the declared unit, or that of the value" '-2,0.25,7' "$(constants -D h=25 -D w=7)"
+is "-D: units and formulas" '6,0.02,0.5' "$(constants -D 'A=2*3' -D 'h=20[mm]' -D 'w=(A/12) [rad/s]')"
+check "-D: a number without end" says 1 '-D A:1:' "$LAGC" check "$c" -D A=1e
+check "-D: a sign alone" says 1 'expected an expression after' "$LAGC" check "$c" -D A=-
+check "-D: an unknown name" says 1 'unknown name `B`' "$LAGC" check "$c" -D A=B
+check "-D: the wrong unit" says 1 'this value is in \[s\]' "$LAGC" check "$c" -D 'h=2[s]'
+check "-D: the wrong shape" says 1 '`h` is a number, and a vector of 2 components is given here' "$LAGC" check "$c" -D 'h=(1,2)'
+near "a negative fraction has the unit" 1e-12 -0.5 "$(final th "$c" minus)"
+near "with two signs" 1e-12 0.5 "$(final th "$c" minuses)"
+near "with a plus" 1e-12 0.5 "$(final th "$c" plus)"
+
 # ---- include: relative to the file that says it
 printf 'model whole "in parts"\ninclude "parts/body.lag"\nscene s { span 2 [s] }\n' >"$dir/whole.lag"
 printf 'include "../coords.lag"\nlagrangian = 1 [kg]/2*x%s^2 - 1 [N/m]/2*x^2\n' "'" >"$dir/parts/body.lag"
