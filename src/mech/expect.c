@@ -20,7 +20,7 @@ static void measure(ExprGraph *g, Expr side, const long double *symbols, long do
     Expr term = expr_pair(g, side, EX_SUM, i, &c);
     long double value = prove_value(g, term, symbols, NULL, &error), k = fabsl((long double)num_value(c));
     *size += k * fabsl(value);
-    *bound += k * error;
+    *bound += k * error + (long double)num_error(c) * fabsl(value);
   }
 }
 
@@ -203,6 +203,27 @@ static void report_refuted(const Eqns *e, const Expect *x, const char *label) {
   if (difference) diag_help(m->diags, "%s", difference);
 }
 
+/* Whether all numbers are exact: otherwise what differs need not be different. */
+static int numbers_are_exact(const Eqns *e, const Expect *x) {
+  VEC(Expr) roots = {0};
+  vec_push(e->m->arena, &roots, x->lhs);
+  vec_push(e->m->arena, &roots, x->rhs);
+  for (uint32_t i = 0; i < e->n; i++) vec_push(e->m->arena, &roots, e->f[i]);
+  for (uint32_t i = 0; i < e->mass.n; i++) vec_push(e->m->arena, &roots, e->mass.at[i].e);
+  for (uint32_t i = 0; i < e->m->states.n; i++) vec_push(e->m->arena, &roots, e->flow[i]);
+  ExprList l = expr_topo(e->g, roots.at, roots.n);
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_is_num(e->g, l.at[i]) && !num_is_exact(expr_number(e->g, l.at[i]))) return 0;
+  return 1;
+}
+
+#define EXACT_NUMBERS "numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits"
+
+static void report_inexact(const Eqns *e, const Expect *x, const char *label) {
+  diag_error(e->m->diags, x->span, "expect %s is not decided: the sides differ by what may be rounding", label);
+  diag_help(e->m->diags, EXACT_NUMBERS);
+}
+
 static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r, int allow_numeric) {
   Diags *d = e->m->diags;
   if (allow_numeric) {
@@ -210,7 +231,8 @@ static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r,
     return;
   }
   diag_error(d, x->span, "expect %s is not proved; the sides agree to %d digits at %d random states", r->label, r->digits, r->states);
-  diag_help(d, "write it in another form, or take agreement in numbers for enough: `lagc check --allow-numeric`");
+  const char *cure = "write it in another form, or take agreement in numbers for enough: `lagc check --allow-numeric`";
+  diag_help(d, "%s", r->inexact ? arena_printf(e->m->arena, EXACT_NUMBERS "; %s", cure) : cure);
 }
 
 static ExpectResult judge(const Eqns *e, const Expect *x) {
@@ -221,7 +243,8 @@ static ExpectResult judge(const Eqns *e, const Expect *x) {
     case NOT_DECIDED: break;
   }
   r.digits = agreement(e, x, &r.states);
-  r.verdict = !r.states ? EXPECT_UNKNOWN : r.digits < FEWEST_DIGITS ? EXPECT_REFUTED : EXPECT_AGREES;
+  r.inexact = !numbers_are_exact(e, x);
+  r.verdict = !r.states ? EXPECT_UNKNOWN : r.digits >= FEWEST_DIGITS ? EXPECT_AGREES : r.inexact ? EXPECT_INEXACT : EXPECT_REFUTED;
   return r;
 }
 
@@ -287,6 +310,7 @@ void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults 
     vec_push(m->arena, out, r);
     if (r.verdict == EXPECT_REFUTED) report_refuted(closed, &x, r.label);
     if (r.verdict == EXPECT_AGREES) report_agrees(closed, &x, &r, allow_numeric);
+    if (r.verdict == EXPECT_INEXACT) report_inexact(closed, &x, r.label);
     if (r.verdict == EXPECT_UNKNOWN) report_unknown(closed, &x, r.label);
   }
 }
@@ -298,7 +322,7 @@ static void print_one(const ExpectResult *r, const Sources *sources, StrBuf *out
     case EXPECT_PROVED: sb_puts(out, "proved\n"); return;
     case EXPECT_REFUTED: sb_puts(out, "refuted\n"); return;
     case EXPECT_AGREES: sb_printf(out, "not proved, agrees to %d digits\n", r->digits); return;
-    case EXPECT_UNKNOWN: sb_puts(out, "not decided\n"); return;
+    case EXPECT_INEXACT: case EXPECT_UNKNOWN: sb_puts(out, "not decided\n"); return;
   }
 }
 

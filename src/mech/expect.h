@@ -8,6 +8,7 @@ typedef enum {
   EXPECT_PROVED,
   EXPECT_REFUTED,
   EXPECT_AGREES, /* not decided by the prover; the sides agree to some digits */
+  EXPECT_INEXACT, /* not decided: they differ by less than what rounding may have left of numbers that are not exact */
   EXPECT_UNKNOWN /* not decided, and no state tried gives the sides values that mean something */
 } ExpectVerdict;
 
@@ -17,6 +18,7 @@ typedef struct {
   ExpectVerdict verdict;
   int digits; /* of agreement */
   int states; /* at which the sides were compared */
+  int inexact; /* a number in the sides, or in the equations, is not exact: that is why it is not decided */
 } ExpectResult;
 
 typedef VEC(ExpectResult) ExpectResults;

@@ -134,24 +134,33 @@ static int operands_fit(Eval *ev, const AstExpr *x) {
   return 1;
 }
 
-/* Numbers beyond the range of a double are refused where they arise. */
-static int is_finite(const ExprGraph *g, Expr e) {
+/* Whether `bad` is true of a number of the node itself. */
+static int has_number(const ExprGraph *g, Expr e, int (*bad)(Num n)) {
   ExprOp op = expr_op(g, e);
-  if (op == EX_NUM) return isfinite(num_value(expr_number(g, e)));
-  if (op != EX_SUM && op != EX_PROD) return 1;
+  if (op == EX_NUM) return bad(expr_number(g, e));
+  if (op != EX_SUM && op != EX_PROD) return 0;
   for (uint32_t i = 0; i < expr_nargs(g, e); i++) {
     Expr n = expr_arg(g, e, i);
-    if (expr_is_num(g, n) && !isfinite(num_value(expr_number(g, n)))) return 0;
+    if (expr_is_num(g, n) && bad(expr_number(g, n))) return 1;
   }
-  return 1;
+  return 0;
 }
 
-static Value finite_value(Eval *ev, const AstExpr *x, Value v) {
+static int is_infinite(Num n) { return !isfinite(num_value(n)); }
+
+/* Numbers beyond the range of a double, and those of which rounding leaves nothing, are refused where they arise. */
+static Value usable_value(Eval *ev, const AstExpr *x, Value v) {
   for (uint32_t k = 0; v.e && k < parts_of(&v); k++) {
-    if (is_finite(ev->b->g, v.at[k])) continue;
-    diag_error(ev->b->diags, x->span, "a number here is not finite");
-    diag_help(ev->b->diags, "numbers reach up to 1.8e308");
-    return FAILED;
+    if (has_number(ev->b->g, v.at[k], is_infinite)) {
+      diag_error(ev->b->diags, x->span, "a number here is not finite");
+      diag_help(ev->b->diags, "numbers reach up to 1.8e308");
+      return FAILED;
+    }
+    if (has_number(ev->b->g, v.at[k], num_is_lost)) {
+      diag_error(ev->b->diags, x->span, "rounding leaves fewer than six digits of a number here");
+      diag_help(ev->b->diags, "write what it comes to: numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits");
+      return FAILED;
+    }
   }
   return v;
 }
@@ -184,7 +193,7 @@ static int run(Eval *ev) {
     const AstExpr *x = ast_expr(b->ast, i);
     if (i == b->stand_in) *value_of(ev, i) = (Value){.e = b->stands_for, .dim = DIM_ANY};
     else if (!ev->open[i - ev->first]) {
-      Value v = operands_fit(ev, x) ? finite_value(ev, x, node_value(ev, i)) : FAILED;
+      Value v = operands_fit(ev, x) ? usable_value(ev, x, node_value(ev, i)) : FAILED;
       if (ev->waiting) return 0;
       if (b->unitless) v.dim = DIM_ANY;
       *value_of(ev, i) = v;

@@ -55,7 +55,7 @@ static Real sum_bound(const Bounds *b, Expr e) {
   for (uint32_t i = 0; i < n; i++) {
     Num c;
     Expr t = expr_pair(b->g, e, EX_SUM, i, &c);
-    bound += fabsl((Real)num_value(c)) * bound_of(b, t);
+    bound += fabsl((Real)num_value(c)) * bound_of(b, t) + (num_error(c) > 0 ? (Real)num_error(c) * (fabsl(value_of(b, t)) + bound_of(b, t)) : 0);
     size += fabsl((Real)num_value(c) * value_of(b, t));
   }
   return bound + (Real)(n + 2) * LDBL_EPSILON * size;
@@ -68,6 +68,7 @@ static Real prod_bound(const Bounds *b, Expr e, Real value) {
     Expr x = expr_pair(b->g, e, EX_PROD, i, &k);
     Real size = fabsl((Real)num_value(k));
     relative += size * bound_of(b, x) / fabsl(value_of(b, x)) + (size + 4) * LDBL_EPSILON;
+    if (num_error(k) > 0) relative += (Real)num_error(k) * fabsl(logl(fabsl(value_of(b, x))));
   }
   return isnan(relative) ? INFINITY : relative * fabsl(value);
 }
@@ -126,7 +127,7 @@ static Real unary_bound(const Bounds *b, Expr e, Real f) {
 
 static Real node_bound(const Bounds *b, Expr e, Real value, const Real *errors) {
   switch (expr_op(b->g, e)) {
-    case EX_NUM: return LDBL_EPSILON * fabsl(value);
+    case EX_NUM: return LDBL_EPSILON * fabsl(value) + (Real)num_error(expr_number(b->g, e));
     case EX_SYM: return errors ? errors[expr_sym_id(b->g, e)] : 0;
     case EX_SUM: return sum_bound(b, e);
     case EX_PROD: return prod_bound(b, e, value);
