@@ -47,7 +47,8 @@ static int agreement(const Eqns *e, const Expect *x, int *seen) {
   int least = FULL_DIGITS;
   *seen = 0;
   for (uint32_t seed = 1; seed <= 3 * SAMPLES && *seen < SAMPLES; seed++) {
-    prove_state(e->g, seed, symbols);
+    if (seed % 2) prove_state(e->g, seed, symbols);
+    else prove_state_wide(e->g, seed, symbols);
     if (!states_complete(solver, symbols)) continue;
     int digits = digits_at(e, x, symbols);
     if (digits < 0) continue;
@@ -119,7 +120,8 @@ static int find_showing(Showing *s) {
     if (differs(s, 0.01L)) return 1;
   }
   for (uint32_t seed = 1; seed <= SAMPLES; seed++) {
-    prove_state(s->e->g, seed, s->symbols);
+    if (seed % 2) prove_state(s->e->g, seed, s->symbols);
+    else prove_state_wide(s->e->g, seed, s->symbols);
     if (differs(s, 1e-12L)) return 1;
   }
   return 0;

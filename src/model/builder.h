@@ -294,6 +294,7 @@ void not_yet(Builder *b, Span span, const char *what);
 /* The source text of an expression on one line, without comments; and the same with its middle left
  * out where it is long. */
 const char *ast_text(const Builder *b, AstId id);
+const char *source_text(const Builder *b, Span s);
 const char *ast_short(const Builder *b, AstId id);
 Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 

@@ -36,6 +36,14 @@ void prove_state(const ExprGraph *g, uint32_t seed, long double *symbols) {
   for (SymId s = 1; s <= expr_symbol_count(g); s++) symbols[s] = state_value(expr_symbol(g, s), s, seed);
 }
 
+void prove_state_wide(const ExprGraph *g, uint32_t seed, long double *symbols) {
+  prove_state(g, seed, symbols);
+  for (SymId s = 1; s <= expr_symbol_count(g); s++) {
+    SymKind kind = expr_symbol(g, s)->kind;
+    if (kind == SYM_COORD || kind == SYM_STATE || kind == SYM_TIME) symbols[s] *= 4;
+  }
+}
+
 /* --- bounds --- */
 
 /* Values and bounds of the nodes in question, by place in their list. */
