@@ -221,11 +221,6 @@ static int numbers_are_exact(const Eqns *e, const Expect *x) {
 
 #define EXACT_NUMBERS "numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits"
 
-static void report_inexact(const Eqns *e, const Expect *x, const char *label) {
-  diag_error(e->m->diags, x->span, "expect %s is not decided: the sides differ by what may be rounding", label);
-  diag_help(e->m->diags, EXACT_NUMBERS);
-}
-
 static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r, int allow_numeric) {
   Diags *d = e->m->diags;
   if (allow_numeric) {
@@ -246,13 +241,13 @@ static ExpectResult judge(const Eqns *e, const Expect *x) {
   }
   r.digits = agreement(e, x, &r.states);
   r.inexact = !numbers_are_exact(e, x);
-  r.verdict = !r.states ? EXPECT_UNKNOWN : r.digits >= FEWEST_DIGITS ? EXPECT_AGREES : r.inexact ? EXPECT_INEXACT : EXPECT_REFUTED;
+  r.verdict = !r.states ? EXPECT_UNKNOWN : r.digits >= FEWEST_DIGITS ? EXPECT_AGREES : r.inexact ? EXPECT_UNKNOWN : EXPECT_REFUTED;
   return r;
 }
 
-static void report_unknown(const Eqns *e, const Expect *x, const char *label) {
-  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a value that means something", label);
-  diag_help(e->m->diags, "write it where its roots and logarithms are defined, and in numbers of ordinary size");
+static void report_unknown(const Eqns *e, const Expect *x, const ExpectResult *r) {
+  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a value that means something", r->label);
+  diag_help(e->m->diags, "%s", r->inexact ? EXACT_NUMBERS : "write it where its roots and logarithms are defined, and in numbers of ordinary size");
 }
 
 /* --- parameters that follow from others --- */
@@ -312,8 +307,7 @@ void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults 
     vec_push(m->arena, out, r);
     if (r.verdict == EXPECT_REFUTED) report_refuted(closed, &x, r.label);
     if (r.verdict == EXPECT_AGREES) report_agrees(closed, &x, &r, allow_numeric);
-    if (r.verdict == EXPECT_INEXACT) report_inexact(closed, &x, r.label);
-    if (r.verdict == EXPECT_UNKNOWN) report_unknown(closed, &x, r.label);
+    if (r.verdict == EXPECT_UNKNOWN) report_unknown(closed, &x, &r);
   }
 }
 
@@ -324,7 +318,7 @@ static void print_one(const ExpectResult *r, const Sources *sources, StrBuf *out
     case EXPECT_PROVED: sb_puts(out, "proved\n"); return;
     case EXPECT_REFUTED: sb_puts(out, "refuted\n"); return;
     case EXPECT_AGREES: sb_printf(out, "not proved, agrees to %d digits\n", r->digits); return;
-    case EXPECT_INEXACT: case EXPECT_UNKNOWN: sb_puts(out, "not decided\n"); return;
+    case EXPECT_UNKNOWN: sb_puts(out, "not decided\n"); return;
   }
 }
 

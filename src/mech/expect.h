@@ -8,7 +8,6 @@ typedef enum {
   EXPECT_PROVED,
   EXPECT_REFUTED,
   EXPECT_AGREES, /* not decided by the prover; the sides agree to some digits */
-  EXPECT_INEXACT, /* not decided: they differ by less than what rounding may have left of numbers that are not exact */
   EXPECT_UNKNOWN /* not decided, and no state tried gives the sides values that mean something */
 } ExpectVerdict;
 

@@ -363,7 +363,7 @@ static void warn_degrees(Builder *b, const Value *v, Span span, const Unit *unit
   symbols[b->m->pi] = 3.14159265358979323846264338327950288L;
   expr_eval(b->g, &v->e, 1, symbols, &x);
   const char *text = source_text(b, span);
-  diag_warning(b->diags, span, "`%s` is taken as %.6Lg [%s]", text, x, unit->text);
+  diag_warning(b->diags, span, "`%s` is taken as %s [%s]", text, arena_printf(b->arena, "%.6Lg", x), unit->text);
   diag_help(b->diags, "write `(%s) [rad]`, or `(%s) [%s]` where that is meant", text, text, unit->text);
 }
 

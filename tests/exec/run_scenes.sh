@@ -106,6 +106,40 @@ check "a constant" says 2 'write -D n=5' "$LAGC" run "$m" n=5
 near "a parameter that follows another" 1e-12 "$(calc '(1 + 4 + 9)/2 + 5*4/2 + 9*2/2')" "$(final energy "$m" vacuum mr=4)"
 near "and is given" 1e-12 "$(calc '(1 + 4 + 9)/2 + 5*4/2 + 9/2')" "$(final energy "$m" vacuum mr=4 half=1)"
 
+# ---- names of effects
+cat >"$dir/e.lag" <<'END'
+model e "effects with names of their own"
+coord x [m]
+param m = 1 [kg] > 0, k = 4 [N/m], c = 7 [kg/s], v = (1, 2)
+lagrangian = m/2*x'^2 - k/2*x^2
+effect drag { param c = 1 [kg/s], w[2] = 1, u = (1, 2); dissipation = c/2*x'^2; observe cc = c + w[1]*0 [kg/s]; observe uu = u.y; observe ww = w[2] }
+effect e1 { coord y [m]; lagrangian = m*y'^2/2 - k/2*y^2 }
+effect e2 { coord y [m], z[2] [m]; lagrangian = m*y'^2/2 - k/2*y^2 + m/2*(z[1]'^2 + z[2]'^2) }
+scene s { use drag(c=3); start x=1; span 1; output c, drag.c, cc, uu, ww every 1}
+scene n6 { like s; use none; use drag }
+scene n7 { like s; use none, drag }
+scene n9 { like n6; use drag }
+scene n10 { drag.c = 2; like n6 }
+scene n11 { like s; drag.u.y = 9; drag.w[2] = 5 }
+scene n12 { use drag(u.y = 8), e1, e2; start e1.y = 1 [m], e2.y = 2, e2.z[2] = 3, x = 4; span 1 }
+scene n13 { like n12; use none; use e1; start y = 5 }
+END
+e=$dir/e.lag
+first() { "$LAGC" run "$e" "$@" -o - --quiet 2>/dev/null | sed -n 2p | cut -d, -f2-; }
+check "an effect's name may be one of the model, declared before it" "$LAGC" check "$e"
+is "use drag(c = 3): the effect's c, not the model's" '7,3,3,2,1' "$(first s)"
+is "use none drops what was said before: used again" '7,1,1,2,1' "$(first n6)"
+is "in one statement" '7,1,1,2,1' "$(first n7)"
+is "through one more scene" '7,1,1,2,1' "$(first n9)"
+is "what is said after it stays" '7,2,2,2,1' "$(first n10)"
+is "components and members in a scene" '7,3,3,9,5' "$(first n11)"
+is "and on the command line" '7,3,3,4,6 7,3,3,4,6' "$(first s u.y=4 w=6) $(first s drag.u.y=4 'drag.w[1]=6' 'w[2]=6')"
+is "coordinates of one name in two effects" "t [s],x [m],e1.y [m],e2.y [m],z[1] [m],z[2] [m]" \
+  "$("$LAGC" run "$e" n12 -o - --quiet 2>/dev/null | sed -n 1p | cut -d, -f1-6)"
+is "start somewhere" "4,1,2,0,3" "$(first n12 | cut -d, -f1-5)"
+is "on the command line too" "4,7,2,0,3" "$(first n12 e1.y=7 | cut -d, -f1-5)"
+is "one of them has its plain name, and starts of the others are dropped" "4,5,0,0" "$(first n13 | cut -d, -f1-4)"
+
 # ---- -D on every command
 five() { "$@" 2>&1 | grep -q 'x\[5\]\|x_5\|X_5\|7 coord\|ok'; }
 has_five() { grep -q 'x\[5\]\|X_5' "$1"; }
