@@ -247,7 +247,7 @@ static ExpectResult judge(const Eqns *e, const Expect *x) {
 
 static void report_unknown(const Eqns *e, const Expect *x, const ExpectResult *r) {
   diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a value that means something", r->label);
-  diag_help(e->m->diags, "%s", r->inexact ? EXACT_NUMBERS : "write it where its roots and logarithms are defined, and in numbers of ordinary size");
+  diag_help(e->m->diags, "write it where its roots and logarithms are defined, and in numbers of ordinary size%s", r->inexact ? "; " EXACT_NUMBERS : "");
 }
 
 /* --- parameters that follow from others --- */

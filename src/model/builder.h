@@ -94,6 +94,7 @@ struct Builder {
   ExprGraph *g;
   Model *m;
   Scope scope, members;
+  Scope *named; /* events and expectations; NULL: none yet */
   IndexVars index; /* of the `for` around the statement in hand */
   VEC(struct Eval *) idle; /* evaluations to use again */
   VEC(Expr) scratch;
@@ -327,6 +328,12 @@ void explain_dims(Builder *b, Dim x, Dim y);
 
 /* Puts the units that were found into the model. */
 void settle_units(Builder *b);
+
+/* twice.c: names of scenes, effects, events and expectations, each declared once, and what a scene or an event says, said once;
+ * reported where they are not. */
+void check_names_once(Builder *b);
+void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span);
+void check_said_once(Builder *b, const AstStmt *block);
 
 /* scene.c: which statements are active (those of the effect `also` too), and the scene's contents. */
 void scene_select(Builder *b, const ModelChoice *choice);

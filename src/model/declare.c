@@ -274,7 +274,21 @@ static void declare_let(Builder *b, const AstStmt *st, Name effect) {
   vec_push(b->arena, &b->lets, ((Definition){.stmt = st, .name = st->name, .effect = effect}));
 }
 
+/* A name that the language has a meaning for would have two, and arguments of one name one. */
+static void check_function(Builder *b, const AstStmt *st) {
+  for (size_t i = 0; function_name(i); i++)
+    if (strcmp(function_name(i), st->name) == 0) {
+      diag_error(b->diags, st->name_span, "`%s` is a function of the language", st->name);
+      diag_help(b->diags, "choose another name");
+    }
+  for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next)
+    for (AstId k = st->args; k != i; k = ast_expr(b->ast, k)->next)
+      if (ast_expr(b->ast, k)->name == ast_expr(b->ast, i)->name)
+        diag_error(b->diags, ast_expr(b->ast, i)->span, "two arguments are called `%s`", ast_expr(b->ast, i)->name);
+}
+
 static void declare_function(Builder *b, const AstStmt *st, Name effect) {
+  check_function(b, st);
   if (!declare_name(b, st, effect, ENT_FUNCTION, b->functions.n)) return;
   vec_push(b->arena, &b->functions, ((Definition){.stmt = st, .name = st->name, .effect = effect}));
 }

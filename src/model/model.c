@@ -196,6 +196,7 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
     diag_error(b->diags, st->span, "units do not match: the left side is %s, the right side %s", in_dim(b, l.dim), in_dim(b, r.dim));
     explain_dims(b, l.dim, r.dim);
   }
+  if (st->name && !b->index.n) check_name_is_new(b, "expectation", st->name, effect, st->name_span);
   Expect x = {.name = st->name, .span = st->span, .lhs_ast = st->lhs, .rhs_ast = st->rhs, .effect = effect};
   x.elsewhere = l.n || b->index.n;
   for (uint32_t k = 0; k < (l.n ? l.n : 1); k++) {
@@ -234,6 +235,8 @@ static void add_event(Builder *b, const AstStmt *st, Name effect) {
   IndexRange r = {0};
   if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
   ev.name = member_name(b, st->name, r.lo, r.n);
+  check_name_is_new(b, "event", ev.name, effect, st->name_span);
+  check_said_once(b, st);
   Value g = resolve(b, st->lhs, IN_DYNAMICS, effect);
   if (g.n) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "this is %s, and a number is wanted here", shape_text(b, g.n));
   ev.g = g.e;

@@ -72,25 +72,6 @@ static void report_unknown(Builder *b, AstStmtKind kind, Span span, const char *
   else diag_help(b->diags, "the scenes are %s", all_scenes(b));
 }
 
-/* Names of scenes, and of effects, are each declared once. */
-static void check_twice(Builder *b) {
-  uint32_t n = 0, cap = 16;
-  for (const AstStmt *s = b->ast->first; s; s = s->next) n += s->kind == STMT_SCENE || s->kind == STMT_EFFECT;
-  while (cap < 2 * n) cap *= 2;
-  const AstStmt **seen = ARENA_ARRAY(b->arena, const AstStmt *, cap); /* by the address of the name */
-  for (const AstStmt *s = b->ast->first; s; s = s->next) {
-    if ((s->kind != STMT_SCENE && s->kind != STMT_EFFECT) || !s->name) continue;
-    uint32_t i = (uint32_t)((uintptr_t)s->name >> 4) & (cap - 1);
-    while (seen[i] && (seen[i]->name != s->name || seen[i]->kind != s->kind)) i = (i + 1) & (cap - 1);
-    if (!seen[i]) {
-      seen[i] = s;
-      continue;
-    }
-    diag_error(b->diags, s->name_span, "the %s `%s` is declared twice", s->kind == STMT_SCENE ? "scene" : "effect", s->name);
-    diag_also(b->diags, seen[i]->name_span, "first declared here");
-  }
-}
-
 /* The scene and those it is like, the farthest ancestor first; NULL-terminated. */
 static const AstStmt **scene_chain(Builder *b, const AstStmt *scene) {
   VEC(const AstStmt *) chain = {0};
@@ -125,10 +106,15 @@ static int uses(const Builder *b, Name effect) {
   return 0;
 }
 
+static int is_use_none(const AstStmt *st) { return st->kind == STMT_USE && strcmp(st->name, "none") == 0; }
+
 static void collect_uses(Builder *b, const AstStmt *scene) {
   for (const AstStmt *x = scene->body; x; x = x->next) {
     if (x->kind != STMT_USE) continue;
-    if (strcmp(x->name, "none") == 0) b->m->effects.n = 0;
+    if (is_use_none(x)) {
+      b->m->effects.n = 0;
+      if (x->body) diag_error(b->diags, x->body->span, "`use none` turns all effects off, and takes no values");
+    }
     else if (!find_stmt(b->ast, STMT_EFFECT, x->name)) report_unknown(b, STMT_EFFECT, x->name_span, x->name);
     else if (!uses(b, x->name)) vec_push(b->arena, &b->m->effects, x->name);
   }
@@ -181,6 +167,10 @@ static void take_model_name(Builder *b) {
     b->m->name = intern(b->ast->names, "model");
     return;
   }
+  if (m != b->ast->first) {
+    diag_error(b->diags, m->span, "the name of the model stands first");
+    diag_also(b->diags, b->ast->first->span, "this stands before it");
+  }
   b->m->name = m->name;
   b->m->doc = m->doc ? m->doc : "";
   b->m->span = m->name_span;
@@ -193,12 +183,15 @@ static void take_model_name(Builder *b) {
 
 void scene_select(Builder *b, const ModelChoice *choice) {
   take_model_name(b);
-  check_twice(b);
+  check_names_once(b);
   const AstStmt *st = choice->bare ? NULL : pick_scene(b, choice->scene);
   b->m->scene.name = st ? st->name : intern(b->ast->names, "default");
   b->m->scene.doc = st && st->doc ? st->doc : "";
   b->chain = scene_chain(b, st);
-  for (const AstStmt **s = b->chain; *s; s++) collect_uses(b, *s);
+  for (const AstStmt **s = b->chain; *s; s++) {
+    check_said_once(b, *s);
+    collect_uses(b, *s);
+  }
   if (choice->also) use_with_needs(b, choice->also);
   VEC(Name) in_order = {0};
   for (const AstStmt *s = b->ast->first; s; s = s->next) {
@@ -436,6 +429,11 @@ static void monitor_exact(Builder *b, Monitor mon, Span span) {
 }
 
 static void set_monitor(Builder *b, const AstStmt *st) {
+  if (!st->lhs) {
+    diag_error(b->diags, st->name_span, "`monitor %s` has no limit", st->name);
+    diag_help(b->diags, "say what the drift may be: `monitor %s 1e-8`; `monitor none` drops what was said before", st->name);
+    return;
+  }
   const AstExpr *x = ast_expr(b->ast, st->lhs);
   Unit none = no_unit();
   Monitor mon = {.output = -1, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit")};
@@ -471,9 +469,7 @@ static void set_tolerance(Builder *b, const AstStmt *st) {
   if (b->m->scene.tolerance <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the tolerance must be positive");
 }
 
-static void monitor_statement(Builder *b, const AstStmt *st) {
-  if (st->kind == STMT_MONITOR) set_monitor(b, st);
-}
+static int is_monitor_none(const AstStmt *st) { return st->kind == STMT_MONITOR && !st->lhs && strcmp(st->name, "none") == 0; }
 
 static void exact_statement(Builder *b, const AstStmt *st) {
   if (st->kind == STMT_EXACT) set_motion(b, st);
@@ -545,25 +541,34 @@ static int is_dropped(Builder *b, const AstStmt *st, int before_none, int inheri
   return effect && (before_none || (inherited && !uses(b, effect)));
 }
 
-static int is_use_none(const AstStmt *st) { return st->kind == STMT_USE && strcmp(st->name, "none") == 0; }
-
-/* The last `use none` of the scene and those that it is like; NULL: there is none. */
-static const AstStmt *last_none(const Builder *b) {
+/* The last such statement of the scene and those that it is like; NULL: there is none. */
+static const AstStmt *last_of(const Builder *b, int (*is)(const AstStmt *st)) {
   const AstStmt *last = NULL;
   for (const AstStmt **s = b->chain; *s; s++)
     for (const AstStmt *x = (*s)->body; x; x = x->next)
-      if (is_use_none(x)) last = x;
+      if (is(x)) last = x;
   return last;
 }
 
 /* Calls `apply` for the statements that have a part in the run. */
 static void each_said(Builder *b, void (*apply)(Builder *b, const AstStmt *st)) {
-  const AstStmt *none = last_none(b);
+  const AstStmt *none = last_of(b, is_use_none);
   int before = none != NULL;
   for (const AstStmt **s = b->chain; *s; s++)
     for (const AstStmt *x = (*s)->body; x; x = x->next) {
       before &= x != none;
       if (!is_dropped(b, x, before, s[1] != NULL)) apply(b, x);
+    }
+}
+
+/* Monitors of outputs add to these; `monitor none` drops those that were said before it. */
+static void set_monitors(Builder *b) {
+  const AstStmt *none = last_of(b, is_monitor_none);
+  int before = none != NULL;
+  for (const AstStmt **s = b->chain; *s; s++)
+    for (const AstStmt *x = (*s)->body; x; x = x->next) {
+      before &= x != none;
+      if (x->kind == STMT_MONITOR && x != none && !before) set_monitor(b, x);
     }
 }
 
@@ -577,6 +582,6 @@ void scene_build(Builder *b, const ModelChoice *choice) {
   for (uint32_t i = 0; i < choice->ngiven; i++)
     set_value(b, &(AstStmt){.kind = STMT_SET, .lhs = choice->given[i].what, .rhs = choice->given[i].value}, NULL);
   if (!sc->outputs.n) default_outputs(b);
-  each_said(b, monitor_statement); /* and monitors of outputs, to which they add */
+  set_monitors(b);
   for (uint32_t i = 0; i < choice->nasked; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
 }

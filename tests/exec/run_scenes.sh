@@ -280,6 +280,14 @@ coord x
 lagrangian = x'^2/2 - x^2/2
 scene s { start x = 1; monitor energy 1e-6; span 10 }
 END
+cat >>"$dir/e.lag" <<'END'
+scene dropped { like s; monitor none }
+scene other { like s; monitor none, (x^2) 9 }
+END
+check "monitor none: no monitor" "$LAGC" run "$dir/e.lag" dropped --quiet --method 'rk4(step=0.5)'
+check "and then another" "$LAGC" run "$dir/e.lag" other --quiet --method 'rk4(step=0.5)'
+is "the column of what was dropped is gone" "t [s],x,x',energy,x^2" "$("$LAGC" run "$dir/e.lag" other --quiet -o - 2>/dev/null | sed -n 1p)"
+check "a monitor without a limit" says 1 '`monitor energy` has no limit' sh -c 'echo "scene n { monitor energy }" | cat "$1/e.lag" - >"$1/h.lag"; "$0" check "$1/h.lag"' "$LAGC" "$dir"
 check "an expression needs parentheses" says 1 'what stands in parentheses' \
   sh -c 'sed "s/energy 1e-6/x + 1 1e-6/" "$1/e.lag" >"$1/g.lag"; "$0" check "$1/g.lag"' "$LAGC" "$dir"
 check "energy: rk45 holds it" "$LAGC" run "$dir/e.lag" --quiet
