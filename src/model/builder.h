@@ -276,6 +276,9 @@ void warn_unit_is_constant(Builder *b, const AstUnit *u);
 /* Reports a value that is not of the sign that its parameter is declared to have. */
 void check_sign(Builder *b, const Param *p, Span span);
 
+/* Warns of parameters whose value, made of others, is not of the sign that they are declared to have: a run refuses them. */
+void warn_signs(Builder *b);
+
 /* advice.c: adds a way out to the message about an unknown name, or an unknown `effect.name`. */
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare);
 void advise_unknown_member(Builder *b, Name effect, Name name);

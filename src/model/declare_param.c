@@ -1,5 +1,6 @@
 /* Parameters and constants: declarations that have a value at once. */
 #include "model/builder.h"
+#include "sym/eval.h"
 
 static ExprSign sign_of(AstSign s) {
   switch (s) {
@@ -12,14 +13,33 @@ static ExprSign sign_of(AstSign s) {
   return SIGN_UNKNOWN;
 }
 
+static const char *const sign_texts[] = {"", "> 0", ">= 0", "< 0", "<= 0"};
+
+static int has_sign(AstSign sign, long double x) {
+  return sign == SIGN_GT ? x > 0 : sign == SIGN_GE ? x >= 0 : sign == SIGN_LT ? x < 0 : sign != SIGN_LE || x <= 0;
+}
+
+void warn_signs(Builder *b) {
+  const Model *m = b->m;
+  long double *x = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1);
+  x[m->pi] = 3.14159265358979323846264338327950288L;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
+    if (!p->value) continue;
+    expr_eval(b->g, &p->value, 1, x, &x[p->sym]);
+    if (expr_is_num(b->g, p->value) || has_sign(p->sign, x[p->sym])) continue;
+    diag_warning(b->diags, p->span, "`%s` is declared %s, and comes to %s", p->name, sign_texts[p->sign], arena_printf(b->arena, "%.6Lg", x[p->sym]));
+    diag_help(b->diags, "a run refuses this: give it, or what it is made of, another value");
+  }
+}
+
 /* The value must be of the sign that the declaration states, or the simplifier would be misled. */
 void check_sign(Builder *b, const Param *p, Span span) {
-  static const char *const texts[] = {"", "> 0", ">= 0", "< 0", "<= 0"};
   if (p->sign == SIGN_ANY || !p->value) return;
   ExprSign s = expr_sign(b->g, p->value);
   int zero = expr_is_zero(b->g, p->value), above = s == SIGN_POSITIVE, below = s == SIGN_NEGATIVE;
   int wrong = p->sign == SIGN_GT ? below || zero : p->sign == SIGN_GE ? below : p->sign == SIGN_LT ? above || zero : above;
-  if (wrong) diag_error(b->diags, span, "`%s` is declared %s, and this value is not", p->name, texts[p->sign]);
+  if (wrong) diag_error(b->diags, span, "`%s` is declared %s, and this value is not", p->name, sign_texts[p->sign]);
 }
 
 /* A parameter that is being declared. */

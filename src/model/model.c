@@ -75,6 +75,10 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   en->failed |= st->kind != STMT_DISSIPATION && (!v.e || v.n);
   if (!v.e || v.n) return;
   if (st->kind == STMT_DISSIPATION) {
+    if (!expr_is_num(b->g, v.e) && !(expr_kinds(b->g, v.e) & 1u << SYM_VEL)) {
+      diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a dissipation function without velocities does nothing");
+      diag_help(b->diags, "its force is -dR/dq': `dissipation = c/2*x'^2`");
+    }
     check_later(b, en, st->rhs, &v, dim_base(b->dims, DIM_TIME), "a dissipation function");
   } else {
     check_energy_unit(b, st, &v, en);
@@ -438,5 +442,6 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   add_section(b, &choice->section);
   scene_build(b, choice);
   settle_units(b);
+  warn_signs(b);
   return ast->diags->errors ? NULL : b->m;
 }

@@ -140,6 +140,23 @@ is "start somewhere" "4,1,2,0,3" "$(first n12 | cut -d, -f1-5)"
 is "on the command line too" "4,7,2,0,3" "$(first n12 e1.y=7 | cut -d, -f1-5)"
 is "one of them has its plain name, and starts of the others are dropped" "4,5,0,0" "$(first n13 | cut -d, -f1-4)"
 
+# ---- momenta: m*(x' + l*th[1]') = 2, m*l^2*th[2]' = 36, m*r' = (2, 4), m*b[2]' = (6, 8)
+cat >"$dir/p.lag" <<'END'
+model p
+coord x [m], th[2] [rad], r: vec2 [m], b[2]: vec2 [m]
+param m = 2 [kg], l = 3 [m], q = 5 [kg*m/s]
+let px = x + l*sin(th[1])
+lagrangian = m/2*px'^2 + m*l^2/2*(th[1]'^2 + th[2]'^2) + m/2*(dot(r', r') + dot(b[1]', b[1]') + dot(b[2]', b[2]')) - 1 [N]*x
+observe a = p_x
+observe c[1] = p_th[2]
+observe d = p_r + p_b[2]
+expect p_x = m*px'
+expect p_b[2].y = m*b[2].y'
+scene s { start th[2]' = 2, x' = 1, r' = (1, 2), b[2]' = (3, 4); output a, c[1], d, p_x, p_th[2], p_r, p_r.x, p_b[1], p_b[2].y, l*p_x every 1; span 1 [s] }
+END
+is "momenta" "2,36,8,12,2,36,2,4,2,0,0,8,6" "$("$LAGC" run "$dir/p.lag" -o - --quiet 2>/dev/null | sed -n 2p | cut -d, -f2-)"
+check "in expectations" sh -c '"$0" check "$1" | grep -q "2 of 2 expectations proved"' "$LAGC" "$dir/p.lag"
+
 # ---- -D on every command
 five() { "$@" 2>&1 | grep -q 'x\[5\]\|x_5\|X_5\|7 coord\|ok'; }
 has_five() { grep -q 'x\[5\]\|X_5' "$1"; }
