@@ -5,11 +5,10 @@
  * 32 (1846) 85, DOI 10.1515/crll.1846.32.85). */
 #include "analysis/modes.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "analysis/matrices.h"
 #include "analysis/spectrum.h"
 
 typedef struct Work {
@@ -18,95 +17,11 @@ typedef struct Work {
   const lag_algebra *algebra;
   lag_problem *pb;
   int nq, n, ny;        /* n = nq + nz, ny = 2 nq + nz */
-  double *weight;       /* [nq] sqrt(M_ii): x weight is a coordinate with mass 1 */
-  double *K, *C, *M;    /* [nq * nq] in these coordinates */
-  double *values, *vectors; /* of K x = value M x */
-  double zero;          /* |value| below this is 0 */
+  Matrices m;
   int conserves;        /* the model has a conserved energy, and no states beside it */
-  int definite, symmetric, undamped; /* M; K; C = 0 */
   double *kernel;       /* [n * nkernel] zero modes in SI, columns */
   int nkernel;
 } Work;
-
-/* ---- The matrices */
-
-static double largest(size_t n, const double *x)
-{
-  double most = 0;
-
-  for (size_t i = 0; i < n; i++) {
-    most = fmax(most, fabs(x[i]));
-  }
-  return most;
-}
-
-/* K, C, M in coordinates of mass 1. Where M_ii is not positive (an indefinite mass matrix) the row's size serves. */
-static int matrices(Work *w)
-{
-  Rest *r = w->rest;
-  size_t nn = (size_t)w->nq * (size_t)w->nq;
-  int rc = lag_linearise(w->pb, r->sim->run->t, r->y, NULL, r->dr, r->M, r->work), nq = w->nq;
-
-  w->weight = pool_doubles(&w->out->pool, (size_t)nq);
-  w->K = pool_doubles(&w->out->pool, nn);
-  w->C = pool_doubles(&w->out->pool, nn);
-  w->M = pool_doubles(&w->out->pool, nn);
-  if (rc || w->out->pool.failed) {
-    return rc ? rc : LAG_ENOMEM;
-  }
-  w->definite = 1;
-  for (int i = 0; i < nq; i++) {
-    double m = r->M[i * nq + i], row = largest((size_t)nq, r->M + i * nq);
-    w->definite &= m > 0;
-    w->weight[i] = m > 0 ? sqrt(m) : row > 0 ? sqrt(row) : 1;
-  }
-  for (int i = 0; i < nq; i++) {
-    for (int j = 0; j < nq; j++) {
-      double d = w->weight[i] * w->weight[j];
-      w->K[i * nq + j] = -r->dr[i * w->ny + j] / d;
-      w->C[i * nq + j] = -r->dr[i * w->ny + nq + j] / d;
-      w->M[i * nq + j] = r->M[i * nq + j] / d;
-    }
-  }
-  double size = largest(nn, w->K);
-  w->symmetric = w->undamped = 1;
-  for (int i = 0; i < nq; i++) {
-    for (int j = 0; j < nq; j++) {
-      w->symmetric &= fabs(w->K[i * nq + j] - w->K[j * nq + i]) <= 1e-13 * size;
-      w->undamped &= fabs(w->C[i * nq + j]) <= 4 * DBL_EPSILON * sqrt(size);
-    }
-  }
-  return LAG_OK;
-}
-
-/* Eigenvalues of K by M, where both are symmetric and M is positive definite; else out->lowering stays -1. */
-static int signature(Work *w)
-{
-  size_t nq = (size_t)w->nq;
-  double *K = pool_doubles(&w->out->pool, nq * nq), *M = pool_doubles(&w->out->pool, nq * nq);
-
-  w->values = pool_doubles(&w->out->pool, nq);
-  w->vectors = pool_doubles(&w->out->pool, nq * nq);
-  if (w->out->pool.failed) {
-    return LAG_ENOMEM;
-  }
-  if (!w->symmetric || !w->definite || nq == 0) {
-    return LAG_OK;
-  }
-  memcpy(K, w->K, nq * nq * sizeof *K);
-  memcpy(M, w->M, nq * nq * sizeof *M);
-  int rc = w->algebra->symmetric(w->nq, K, M, w->values, w->vectors);
-  if (rc == LAG_EINVAL) {
-    w->definite = 0;
-    return LAG_OK;
-  }
-  w->zero = 32 * (double)nq * DBL_EPSILON * largest(nq, w->values);
-  w->out->lowering = 0;
-  for (size_t i = 0; i < nq && rc == LAG_OK; i++) {
-    w->out->lowering += w->values[i] < -w->zero;
-  }
-  return rc;
-}
 
 /* ---- Shapes */
 
@@ -125,7 +40,7 @@ static int reference(const Work *w, const double *re, const double *im)
   for (int i = 0; i < w->n; i++) {
     double e = extent(w, i, re[i], im[i]);
     if (i < w->nq) {
-      double kinetic = hypot(re[i], im[i]) * w->weight[i];
+      double kinetic = hypot(re[i], im[i]) * w->m.weight[i];
       far = fmax(far, e);
       if (kinetic > most * (1 + 1e-9)) { /* of equal ones the first, whatever rounding says */
         most = kinetic;
@@ -212,10 +127,11 @@ static void reduce_kernel(Work *w)
   }
 }
 
-/* Do all forces stay 0 along x[n], or along a curve that begins so (a rotation)? Looked at near and farther, on both sides. */
-static int is_free(Work *w, double *x)
+/* Do all forces stay 0 along x[n], or along a curve that begins so (a rotation)? Looked at near and as far as `most` scales, on both
+ * sides. */
+static int is_free(Work *w, const double *x, double most)
 {
-  static const double steps[] = {-0.1, 0.1, -0.3, 0.3};
+  const double steps[] = {-most / 3, most / 3, -most, most};
   double far = 0;
 
   for (int i = 0; i < w->n; i++) {
@@ -230,10 +146,31 @@ static int is_free(Work *w, double *x)
   return far > 0;
 }
 
+/* Is what is free along each of the zero modes free along sums of them, too? x^2 y^2 is 0 along x and along y. A few are
+ * tried, with coefficients in no simple ratio. */
+static int free_together(Work *w, double *x)
+{
+  int k = w->nkernel;
+
+  for (int pattern = 0; pattern < 4 && k > 1; pattern++) {
+    for (int i = 0; i < w->n; i++) {
+      x[i] = 0;
+      for (int j = 0; j < k; j++) {
+        int minus = (pattern & 1 && j & 1) != (pattern & 2 && j & 2);
+        x[i] += w->kernel[i * k + j] * (minus ? -1 : 1) * (0.7 + 0.11 * (j * 3 % 4));
+      }
+    }
+    if (!is_free(w, x, 0.1)) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
 static int add_zero_modes(Work *w)
 {
   double *x = pool_doubles(&w->out->pool, (size_t)w->n);
-  int rc = x ? LAG_OK : LAG_ENOMEM;
+  int rc = x ? LAG_OK : LAG_ENOMEM, all = 1;
 
   if (rc == LAG_OK) {
     reduce_kernel(w);
@@ -244,9 +181,11 @@ static int add_zero_modes(Work *w)
       x[i] = extent(w, i, x[i], 0) < 1e-12 ? 0 : x[i]; /* reduced: the largest is 1 or so */
     }
     Mode mode = {.repeats = 1};
-    mode.free = is_free(w, x);
+    mode.free = is_free(w, x, 0.3);
+    all &= mode.free;
     rc = add_mode(w, mode, x, NULL, 1);
   }
+  w->out->together = rc == LAG_OK && all && free_together(w, x);
   return rc;
 }
 
@@ -255,47 +194,29 @@ static int add_zero_modes(Work *w)
 /* Values w^2 of the symmetric problem: a negative one is a pair +-s. */
 static int modes_of_values(Work *w)
 {
+  const Matrices *m = &w->m;
   int nq = w->nq, rc = LAG_OK;
-  double *x = pool_doubles(&w->out->pool, (size_t)w->n);
 
-  w->kernel = pool_doubles(&w->out->pool, (size_t)w->n * (size_t)nq);
-  if (w->out->pool.failed) {
+  w->nkernel = m->flat;
+  w->kernel = pool_doubles(&w->out->pool, (size_t)w->n * (size_t)w->nkernel);
+  if (!w->kernel) {
     return LAG_ENOMEM;
   }
-  for (int k = 0; k < nq; k++) {
-    w->nkernel += fabs(w->values[k]) <= w->zero;
-  }
   for (int k = 0, zeros = 0; k < nq && rc == LAG_OK; k++) {
-    double value = w->values[k];
-    int is_zero = fabs(value) <= w->zero;
-    for (int i = 0; i < nq; i++) {
-      x[i] = w->vectors[i * nq + k] / w->weight[i];
-      if (is_zero) {
-        w->kernel[i * w->nkernel + zeros] = x[i];
-      }
-    }
-    zeros += is_zero;
-    if (!is_zero) {
+    double value = m->values[k];
+    if (fabs(value) > m->zero[k]) {
       Mode mode = {.re = value < 0 ? sqrt(-value) : 0, .im = value > 0 ? sqrt(value) : 0, .repeats = 1};
-      rc = add_mode(w, mode, x, NULL, 1);
+      rc = add_mode(w, mode, m->vectors + k, NULL, nq);
+      continue;
     }
+    for (int i = 0; i < nq; i++) {
+      w->kernel[i * w->nkernel + zeros] = m->vectors[i * nq + k];
+    }
+    zeros++;
   }
   w->out->drifts = w->nkernel > 0;
   w->out->pairs = 1;
   return rc ? rc : add_zero_modes(w);
-}
-
-/* A of y' = A y at rest. */
-static int state_matrix(Work *w, double *A)
-{
-  Rest *r = w->rest;
-  int nq = w->nq, ny = w->ny;
-  int rc = lag_jacobian(w->pb, r->sim->run->t, r->y, A + nq * ny, r->work);
-
-  for (int i = 0; i < nq; i++) {
-    A[i * ny + nq + i] = 1;
-  }
-  return rc;
 }
 
 /* Is the eigenvalue the other half of one that is listed? */
@@ -319,15 +240,15 @@ static int modes_of_matrix(Work *w)
 {
   Pool *pool = &w->out->pool;
   Spectrum s;
-  size_t ny = (size_t)w->ny, n = (size_t)w->n;
-  double *A = pool_doubles(pool, ny * ny), *re = pool_doubles(pool, n), *im = pool_doubles(pool, n);
-  int rc = pool->failed ? LAG_ENOMEM : state_matrix(w, A);
+  size_t n = (size_t)w->n;
+  double *A, *noise, *re = pool_doubles(pool, n), *im = pool_doubles(pool, n);
+  int rc = lag_state_matrix(pool, w->rest, &A, &noise);
 
-  rc = rc ? rc : lag_spectrum(&s, pool, w->algebra, w->ny, A);
+  rc = rc ? rc : pool->failed ? LAG_ENOMEM : lag_spectrum(&s, pool, w->algebra, w->ny, A, noise);
   if (rc) {
     return rc;
   }
-  int minimum = w->conserves && w->out->lowering == 0 && s.zeros == 0; /* then a real part is rounding */
+  int minimum = w->conserves && w->m.lowering == 0 && w->m.flat == 0; /* then a real part is rounding */
   w->nkernel = s.nkernel;
   w->out->drifts = s.zeros > s.nkernel;
   w->kernel = pool_doubles(pool, n * (size_t)s.nkernel);
@@ -369,6 +290,12 @@ static Verdict judge(const Work *w)
   if (grows) {
     return LAG_UNSTABLE;
   }
+  if (w->rest->pole) {
+    return LAG_POLE;
+  }
+  if (w->rest->rough) {
+    return LAG_ROUGH;
+  }
   if (stays == 0 && zeros == 0) {
     return LAG_DECAYS;
   }
@@ -378,8 +305,11 @@ static Verdict judge(const Work *w)
   if (bound) {
     return LAG_FLAT;
   }
+  if (zeros && !out->together) {
+    return LAG_CROSSED;
+  }
   if (w->conserves && out->lowering == 0) {
-    return zeros ? LAG_NEUTRAL : LAG_MINIMUM;
+    return zeros != w->m.flat ? LAG_FLAT : zeros ? LAG_NEUTRAL : LAG_MINIMUM;
   }
   if (w->conserves && out->lowering > 0) {
     return LAG_GYROSCOPIC;
@@ -394,7 +324,7 @@ const char *lag_verdict_name(Verdict verdict)
   case LAG_DECAYS: return "asymptotically stable";
   case LAG_MINIMUM: return "stable";
   case LAG_NEUTRAL: return "neutral";
-  case LAG_GYROSCOPIC: case LAG_FLAT: case LAG_DEFECTIVE: case LAG_CENTRE: return "undecided";
+  case LAG_GYROSCOPIC: case LAG_FLAT: case LAG_CROSSED: case LAG_POLE: case LAG_ROUGH: case LAG_DEFECTIVE: case LAG_CENTRE: break;
   }
   return "undecided";
 }
@@ -426,12 +356,12 @@ int lag_modes_find(Modes *out, Rest *rest, const lag_algebra *algebra)
   w.conserves = (pb->model->flags & LAG_CONSERVES_ENERGY) != 0 && pb->nz == 0;
   *out = (Modes){.lowering = -1, .pairs = w.conserves};
   out->mode = calloc((size_t)w.ny + 1, sizeof *out->mode);
-  int rc = out->mode ? matrices(&w) : LAG_ENOMEM;
-  rc = rc ? rc : signature(&w);
+  int rc = out->mode ? lag_matrices_find(&w.m, &out->pool, rest, algebra) : LAG_ENOMEM;
   if (rc) {
     return rc;
   }
-  rc = pb->nz == 0 && w.undamped && out->lowering >= 0 ? modes_of_values(&w) : modes_of_matrix(&w);
+  out->lowering = w.m.lowering;
+  rc = pb->nz == 0 && w.m.undamped && out->lowering >= 0 ? modes_of_values(&w) : modes_of_matrix(&w);
   qsort(out->mode, (size_t)out->n, sizeof *out->mode, by_class);
   out->verdict = judge(&w);
   return rc;

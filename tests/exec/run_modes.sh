@@ -135,6 +135,62 @@ find_modes $dir/vectors.lag # w^2 = kx, ky times the number of the mass, which c
 close "components of vectors" "sqrt(3*4)" "$(of_mode 6 im)"
 close "and their names" 1 "$(shape 6 'r\[3\].y')"
 
+# ---- soft forces beside stiff ones: what is at rest, and how slow it is
+find_modes $dir/sag.lag # k x = 2 m g, K (y - x) = m g
+close "it sags" "2*$g/100" "$(at_rest x)" 1e-7 # the rounding of K (y - x), 4e-6 N, over k
+close "a slow mode" "sqrt(100/2)" "$(of_mode 1 im)" 1e-6 # rounding of K over k: 1e-7
+find_modes $dir/sag.lag floating
+close "it goes back" 0 "$(at_rest x)" 1e-9
+close "slowly: w^2 = k/2m, less k/(4K) of it" 1 "$(calc "$(of_mode 1 im)/sqrt(1e-6/2)")" 1e-4 # rounding of K over k: 2e-5
+find_modes $dir/molecule.lag # x = -d/2, y = d/2, less k/2K of it; w^2 = k/m together
+verdict stable
+close "in the middle of the trap" -0.05 "$(at_rest x)" 1e-6
+close "in the middle of the trap" 0.05 "$(at_rest y)" 1e-6
+close "together" "sqrt(1e-6/2e-26)" "$(of_mode 1 im)" 1e-6
+for k in 1e5 1e6 1e7 1e10; do # a rod, almost; the floor of its valley is a circle
+  find_modes models/spring_pendulum.lag x=0.6 y=-0.7 k=$k
+  verdict stable
+  close "it hangs" "-1 - $g/$k" "$(at_rest y)" 1e-11 # the rounding of a position, k times, over m g/l
+  close "as a pendulum" "sqrt($g/(1 + $g/$k))" "$(of_mode 1 im)" 1e-6
+  find_modes models/spring_pendulum.lag x=0.6 y=-0.8 k=$k
+  is "$title: not sideways" 0 "$(at_rest x)"
+done
+find_modes $dir/apart.lag # sqrt(k/m), sqrt(K/M): 3e9 and 3e-5
+verdict stable
+is "$title: nothing to note" "" "$(head_text note)"
+close "of the house" 1 "$(calc "$(of_mode 1 im)/sqrt(1e-3/1e6)")"
+close "of the atom" 1 "$(calc "$(of_mode 2 im)/sqrt(1e-6/1e-25)")"
+find_modes $dir/apart.lag alike
+verdict stable
+close "the slow one" 1 "$(calc "$(of_mode 1 im)/sqrt(1e-6)")"
+find_modes $dir/apart.lag damped # y'' + 2 d y' + w^2 y = 0, d = 1e-3/1e6
+is "$title: both" 2 "$(count)"
+close "decay of the house" 1 "$(calc "($(of_mode 1 re))/-1e-9")" 1e-10 # of eigenvalues 3e-5 -+ rounding: 3e-16*3e-5/1e-9
+close "of the atom" 1 "$(calc "$(of_mode 2 im)/sqrt(1e-6/1e-25)")"
+find_modes $dir/valley.lag # x^3 y - y^2/2: no force at 0 alone, where x moves along y = x^3
+verdict undecided
+close "the end of the valley" 0 "$(at_rest x)" 0
+find_modes $dir/body.lag
+close "it stops" 0 "$(at_rest w3)" 0
+close "as it stood" 0.8 "$(at_rest a)" 0
+close "as it stood" 0.6 "$(at_rest b)" 0
+
+# ---- what rounding leaves of a stiffness that is 0
+for scene in go damped; do
+  find_modes $dir/buckle.lag $scene # m g l - k l^2 = 0; it falls
+  verdict undecided
+  because "a zero mode"
+done
+find_modes models/bead_on_hoop.lag critical # the bifurcation of th = 0
+verdict undecided
+close "at the bottom" 0 "$(at_rest th)" 0
+find_modes models/lorenz.lag rho=1 # and that of 0, which the search reaches slowly
+verdict undecided
+because "a zero mode"
+close "at 0" 0 "$(at_rest x)" 0
+close "-8/3" "-8/3" "$(of_mode 2 re)"
+close "-11" -11 "$(of_mode 3 re)"
+
 # ---- damped
 find_modes $dir/oscillator.lag # x'' + 2 d x' + w^2 x = 0, d = 0.2, w = 2
 verdict "asymptotically stable"
@@ -243,11 +299,31 @@ close "decay" -0.2 "$(of_mode 1 re)"
 find_modes $dir/quartic.lag bowl
 verdict undecided
 because "a zero mode"
-close "flat, but found" 0 "$(at_rest x)" 1e-7 # forces below 1e-9 of others: x^3 < 1e-9 3 x^2
+close "flat, but found" 0 "$(at_rest x)" 0
 is "$title: not free" false "$(of_mode 1 free)"
 find_modes $dir/quartic.lag crest # the derivative of the force is 0 at the start
 close "downhill from a stationary slope" "-pi/2" "$(at_rest x)"
 verdict stable
+
+for scene in hill valley; do # neither moves along x or y alone; V = -x^2 y^2 falls between them
+  find_modes $dir/cross.lag $scene
+  verdict undecided
+  because "no force along each zero mode alone, but along some together"
+  is "$title: free alone" true "$(of_mode 1 free)"
+done
+find_modes $dir/cross.lag along # on the x axis nothing pulls; y'' = 2 x^2 y
+verdict unstable
+close "it stays there" 0.3 "$(at_rest x)" 0
+close "growth" "sqrt(2)*0.3" "$(of_mode 2 re)"
+find_modes $dir/root.lag # x'' = -3/2 sqrt(x)
+verdict undecided
+because "jump here, or have no limit"
+find_modes $dir/root.lag two
+verdict undecided
+because "jump here, or have no limit"
+find_modes $dir/root.lag one
+verdict stable
+close "frequency" 1 "$(of_mode 1 im)"
 
 # ---- what is refused, and how
 refuses() { # STATUS WORDS ARGS...
@@ -264,6 +340,8 @@ find_modes $dir/driven.lag F=1
 close "an input that is held" 2 "$(at_rest x)" # (1 + 3)/k
 check "no equilibrium: what is left" refuses 3 "x'' is still -1 m/s^2; another start: x=VALUE" $dir/quartic.lag incline
 check "no equilibrium: it runs away" refuses 3 "forces only fade, far away" $dir/quartic.lag repelled
+check "no equilibrium: it fades at once" refuses 3 "forces only fade, far away" $dir/quartic.lag escaping
+check "no equilibrium: and leads nowhere" refuses 3 "no equilibrium found" models/swinging_atwood.lag
 check "no equilibrium, as JSON" sh -c "! '$LAGC' modes $dir/quartic.lag incline --json 2>/dev/null | grep -v '\"status\": \"no equilibrium\"'"
 check "a singular mass matrix" refuses 3 "the mass matrix is singular at the start: choose other coordinates" $dir/spherical.lag pole
 check "options of a run" refuses 2 '`--until` is an option of `lagc run`' models/pendulum.lag --until 3
@@ -286,5 +364,10 @@ check "phases" sh -c "'$LAGC' modes $dir/hill.lag | grep -q 'y 1@90' && '$LAGC' 
 check "damping ratio and decay time" sh -c "'$LAGC' modes $dir/oscillator.lag | grep -q '0.1  *decays 5 '"
 check "a model with abs or if: a note" sh -c "'$LAGC' modes tests/exec/models/motor.lag volt=0 | grep -q '^note: the model has if, abs'"
 check "a coordinate that lost its meaning: a note" sh -c "'$LAGC' modes $dir/spherical.lag | grep -q '^note: the mass matrix is nearly singular'"
+check "a note on the pole is not all" sh -c "'$LAGC' modes $dir/spherical.lag | grep -q '^undecided .*as a longitude does at a pole'"
+twins() { "$LAGC" modes "$@" | grep -q '^a mode that grows stands for two: another decays as fast'; }
+check "growth has a twin" twins models/pendulum.lag th=3 # +-sqrt(g/l)
+check "and so has a spiral" twins $dir/cr3bp.lag mu=0.04 # +-a +- bi
+check "not where energy is lost" sh -c "! '$LAGC' modes $dir/hill.lag rubbed | grep -q 'stands for two'"
 check "help" sh -c "'$LAGC' help modes | grep -q Lagrange || '$LAGC' help modes | grep -q equilibrium"
 tap_end
