@@ -113,7 +113,7 @@ Num num_double(double x) {
 
 int num_is_exact(Num a) { return a.den != 0; }
 int num_is_int(Num a) { return a.den == 1; }
-int num_is_zero(Num a) { return a.den && a.num == 0; }
+int num_is_zero(Num a) { return a.den ? a.num == 0 : a.approx == 0 && a.error == 0; } /* (Num){0} too */
 int num_is_one(Num a) { return a.num == 1 && a.den == 1; }
 double num_value(Num a) { return a.den ? (double)a.num / (double)a.den : a.approx; }
 double num_error(Num a) { return a.den ? 0 : a.error; }
@@ -122,6 +122,7 @@ Num num_rounded(Num a) { return a.den ? a : (Num){.error = 0, .den = 0, .approx 
 
 int num_sign(Num a) {
   if (a.den) return (a.num > 0) - (a.num < 0);
+  if (num_is_zero(a)) return 0;
   return is_negative(a) && !isnan(a.approx) ? -1 : 1; /* the negative of what is no number is itself */
 }
 

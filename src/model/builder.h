@@ -155,7 +155,7 @@ int resolve_whole(Builder *b, AstId id, Name effect, int64_t *out);
 int range_fits(Builder *b, int64_t from, int64_t to, Span span);
 
 /* The ends of a range; at most RANGE_MAX members. */
-enum { RANGE_MAX = 10000000 };
+enum { RANGE_MAX = 1000000 };
 int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *from, int64_t *to);
 
 /* The indices of a place, `[2]` or `[i in 1..N]`, as ranges (from == to where it is one number). */

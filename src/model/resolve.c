@@ -233,6 +233,7 @@ static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
   ev->kind = ENT_NONE;
   ev->in_statement = 1;
   ev->waiting = 0;
+  ev->rounds = 0;
   ev->first = ev->pc = root->first;
   ev->root = id;
   ev->index.n = ev->loops.n = ev->terms.n = 0;
