@@ -342,4 +342,7 @@ void check_said_once(Builder *b, const AstStmt *block);
 void scene_select(Builder *b, const ModelChoice *choice);
 void scene_build(Builder *b, const ModelChoice *choice);
 
+/* method.c: the scene's method. */
+void scene_method(Builder *b, const AstStmt *st);
+
 #endif
