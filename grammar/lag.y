@@ -232,7 +232,9 @@ option: place[p] "=" value[v] { $$ = stmt_pair(ast, STMT_SET, @$, $p, $v); };
 monitors: monitor[x]                 { $$ = stmts_one($x); }
         | monitors[l] "," monitor[x] { $$ = stmts_add($l, $x); }
         ;
-monitor: primary[w] number[e] { $$ = stmt_pair(ast, STMT_MONITOR, @$, $w, $e); };
+monitor: primary[w] number[e] { $$ = stmt_pair(ast, STMT_MONITOR, @$, $w, $e); }
+       | IDENT[n]             { $$ = stmt_name(ast, STMT_MONITOR, @$, $n); }
+       ;
 
 number: literal[n]         { $$ = $n; }
       | literal[n] UNIT[u] { $$ = ast_unit(ast, @$, $n, $u); }

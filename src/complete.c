@@ -8,6 +8,7 @@
 #include "cli/reference.h"
 #include "help.h"
 #include "model/model.h"
+#include "settings.h"
 #include "syntax/parse.h"
 
 /* The line so far: what the words before the last one said. */
@@ -46,6 +47,7 @@ static Ast *read_ast(Line *l) {
 static Model *read_model(Line *l) {
   Ast *ast = read_ast(l);
   if (!ast) return NULL;
+  if (!settings_defines(ast, l->defines.at, l->defines.n)) return NULL;
   ModelChoice choice = {.scene = l->scene, .defines = l->defines.at, .ndefines = l->defines.n};
   return model_build(ast, &choice);
 }
@@ -172,7 +174,7 @@ static void take_word(Line *l, const char *word) {
   const char *value = NULL;
   if (l->open) {
     const char *eq = strchr(word, '=');
-    if (l->open->takes == TAKES_DEFINE && eq) vec_push(l->arena, &l->defines, ((Define){arena_strndup(l->arena, word, (size_t)(eq - word)), eq + 1}));
+    if (l->open->takes == TAKES_DEFINE && eq) vec_push(l->arena, &l->defines, ((Define){.name = arena_strndup(l->arena, word, (size_t)(eq - word)), .value = eq + 1}));
     l->open = NULL;
     return;
   }

@@ -89,6 +89,7 @@ static int read_model(Compiler *c) {
   const Source *source = source_read(c->sources, c->o.file, &why);
   if (!source) return fail_usage(arena_printf(c->arena, "cannot read %s: %s", c->o.file, why));
   parse(c->ast, source);
+  settings_defines(c->ast, c->o.defines.at, c->o.defines.n);
   if (wants_dump(c, "ast")) {
     StrBuf b = strbuf(c->arena);
     ast_dump(c->ast, &b);

@@ -36,6 +36,16 @@ static const char *quoted_file(Arena *a, const char *text) {
   return text[0] != '"' && (named || file_exists(text)) ? arena_printf(a, "\"%s\"", text) : text;
 }
 
+int settings_defines(Ast *ast, Define *defines, uint32_t n) {
+  int ok = 1;
+  for (uint32_t i = 0; i < n; i++) {
+    Define *d = &defines[i];
+    if (!d->expr) d->expr = parse_setting(ast, arena_printf(ast->arena, "-D %s", d->name), d->value);
+    ok &= d->expr != 0;
+  }
+  return ok;
+}
+
 static int take(Ast *ast, const char *setting, GivenList *given) {
   const char *eq = strchr(setting, '=');
   const char *name = arena_strndup(ast->arena, setting, (size_t)(eq - setting));

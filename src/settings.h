@@ -1,10 +1,13 @@
-/* What `name=value` behind run, plot and animate says that a simulator, which takes plain numbers in declared units,
+/* What the command line gives to names. -D CONST=VALUE; and what `name=value` behind run, plot and animate says that a simulator, which takes plain numbers in declared units,
  * cannot: inputs with a formula or a table are compiled in, values with units and formulas of numbers become numbers. */
 #ifndef LAGC_SETTINGS_H
 #define LAGC_SETTINGS_H
 
 #include "cli/options.h"
 #include "model/model.h"
+
+/* Parses the values of constants. 0 on a mistake, which is in ast->diags. */
+int settings_defines(Ast *ast, Define *defines, uint32_t n);
 
 typedef VEC(Given) GivenList;
 

@@ -121,6 +121,8 @@ enum { LAG_IS_NOTHING, LAG_IS_P, LAG_IS_Q, LAG_IS_V, LAG_IS_Z, LAG_IS_U };
 /* Finds name; *var is its description. LAG_IS_NOTHING: unknown. */
 int lag_find(const lag_model *model, const char *name, int *index, const lag_var **var);
 /* Whether var is the name of a member of the family called so: th[2] of th, r[1].x of r.x. */
+/* What an effect calls its own: c of drag.c, v.x of wind.v.x; NULL where there is no dot. */
+const char *lag_own_name(const char *var);
 int lag_is_member(const char *var, const char *family, size_t length);
 /* The known name nearest to `name` into best; 0 when none is near. */
 int lag_nearest(const lag_model *model, const char *name, char *best, size_t nbest);

@@ -17,14 +17,21 @@ static int find_in(const lag_var *vars, int n, const char *name, size_t length)
   return -1;
 }
 
-/* The one that ends in ".name", and how many do. */
+const char *lag_own_name(const char *var)
+{
+  const char *dot = strpbrk(var, ".[");
+
+  return dot && *dot == '.' ? dot + 1 : NULL;
+}
+
+/* The one that is called so inside its effect, and how many are. */
 static int find_suffix(const lag_var *vars, int n, const char *name, int *count)
 {
   int found = -1;
 
   for (int i = 0; i < n; i++) {
-    const char *dot = strrchr(vars[i].name, '.');
-    if (dot && strcmp(dot + 1, name) == 0) {
+    const char *own = lag_own_name(vars[i].name);
+    if (own && strcmp(own, name) == 0) {
       found = i;
       ++*count;
     }

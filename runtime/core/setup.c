@@ -2,6 +2,7 @@
  * sets by name; leaves: the state at the start of the span. Holds: a setting that is refused changes nothing. */
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -384,6 +385,26 @@ static int set_family(lag_sim *s, const char *name, double value)
   return found;
 }
 
+/* The family of one effect that calls it `name`: its name in full. 0 where there is none, or more than one effect has it. */
+static int effects_family(const lag_model *m, const char *name, char *full, size_t nfull)
+{
+  int known = 0;
+
+  for (int i = 0; i < m->np; i++) {
+    const char *var = m->p[i].name, *own = lag_own_name(var);
+    if (!own || !lag_is_member(own, name, strlen(name))) {
+      continue;
+    }
+    size_t effect = (size_t)(own - var);
+    if (known && strncmp(full, var, effect) != 0) {
+      return 0;
+    }
+    snprintf(full, nfull, "%.*s%s", (int)effect, var, name);
+    known = 1;
+  }
+  return known;
+}
+
 int lag_sim_set(lag_sim *s, const char *name, double value)
 {
   const lag_model *m = s->scene->model;
@@ -391,7 +412,11 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
   int i, rc = begun(s), kind = lag_find(m, name, &i, &var);
 
   if (rc == 0 && kind == LAG_IS_NOTHING) {
+    char full[128];
     rc = set_family(s, name, value);
+    if (rc == 0 && effects_family(m, name, full, sizeof full)) {
+      rc = set_family(s, full, value);
+    }
     rc = rc == 0 ? unknown_name(s, name) : rc > 0 ? LAG_OK : rc;
   } else if (rc == 0 && (rc = check_value(s, kind, var, name, value)) == 0) {
     give(s, kind, i, in_si(kind, var, value));

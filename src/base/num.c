@@ -1,5 +1,6 @@
 #include "base/num.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +21,66 @@ static Wide wide_gcd(Wide a, Wide b) {
   return a;
 }
 
-static Num inexact(double x) { return (Num){.num = 0, .den = 0, .approx = x}; }
+/* --- residues --- */
+
+static const uint64_t PRIME = 4611686018427387847u; /* the largest below 2^62 */
+
+__extension__ typedef unsigned __int128 Product;
+
+static uint64_t mod_mul(uint64_t a, uint64_t b) { return (uint64_t)((Product)a * b % PRIME); }
+static uint64_t mod_add(uint64_t a, uint64_t b) { return (a + b) % PRIME; }
+static uint64_t mod_neg(uint64_t a) { return a ? PRIME - a : 0; }
+
+static uint64_t mod_pow(uint64_t a, uint64_t n) {
+  uint64_t r = 1;
+  for (; n; n >>= 1, a = mod_mul(a, a))
+    if (n & 1) r = mod_mul(r, a);
+  return r;
+}
+
+/* SplitMix64's finaliser (Steele, Lea, Flood 2014, DOI 10.1145/2714064.2660195). */
+static uint64_t scramble(uint64_t x) {
+  x ^= x >> 30;
+  x *= 0xbf58476d1ce4e5b9u;
+  x ^= x >> 27;
+  x *= 0x94d049bb133111ebu;
+  return x ^ x >> 31;
+}
+
+/* A residue for what has none of its own. */
+static uint64_t mod_drawn(uint64_t a, uint64_t b) { return scramble(scramble(a + 0x9e3779b97f4a7c15u) ^ b) % PRIME; }
+
+static uint64_t mod_div(uint64_t a, uint64_t b) { return b == 1 ? a : b ? mod_mul(a, mod_pow(b, PRIME - 2)) : mod_drawn(a, b); }
+
+static uint64_t mod_ratio(Wide n, Wide d) {
+  uint64_t top = (uint64_t)((Product)wide_abs(n) % PRIME), bottom = (uint64_t)((Product)d % PRIME);
+  return mod_div(n < 0 ? mod_neg(top) : top, bottom);
+}
+
+static uint64_t residue(Num a) { return a.den ? mod_ratio(a.num, a.den) : a.residue; }
+
+/* --- numbers that are not exact --- */
+
+static uint64_t bits_of(double x) {
+  uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+
+/* The last rounding, and those of the bound itself, are added to the error of the operands. */
+static Num inexact(double x, double error, uint64_t residue) {
+  error = error * (1 + 1e-9) + fabs(x) * DBL_EPSILON + DBL_MIN * DBL_EPSILON;
+  if (residue == 0 && fabs(x) <= error) return (Num){.num = 0, .den = 1};
+  return (Num){.error = isnan(error) ? INFINITY : error, .den = 0, .approx = x, .residue = residue};
+}
+
+/* How far num_value(a) may be off: also where a is exact, and its quotient is not a double. */
+static double value_error(Num a) {
+  if (!a.den) return a.error;
+  return a.den == 1 && llabs(a.num) <= 1ll << 53 ? 0 : 4 * DBL_EPSILON * fabs(num_value(a));
+}
+
+static int is_negative(Num a) { return a.den ? a.num < 0 : signbit(a.approx) != 0; }
 
 /* n/d in lowest terms; a double when it does not fit. */
 static Num reduce(Wide n, Wide d) {
@@ -33,30 +93,40 @@ static Num reduce(Wide n, Wide d) {
     n /= g;
     d /= g;
   }
-  if (wide_abs(n) > INT64_MAX || d > INT64_MAX) return inexact((double)n / (double)d);
+  if (wide_abs(n) > INT64_MAX || d > INT64_MAX) {
+    double x = (double)n / (double)d;
+    return inexact(x, 2 * DBL_EPSILON * fabs(x), mod_ratio(n, d));
+  }
   return (Num){.num = (int64_t)n, .den = (int64_t)d};
 }
 
-Num num_int(int64_t n) { return n == INT64_MIN ? inexact((double)n) : (Num){.num = n, .den = 1}; }
+Num num_int(int64_t n) { return n == INT64_MIN ? reduce(n, 1) : (Num){.num = n, .den = 1}; }
 Num num_ratio(int64_t n, int64_t d) { return reduce(n, d); }
 
 Num num_double(double x) {
   if (x == floor(x) && fabs(x) < 9e15) return num_int((int64_t)x);
   for (int64_t d = 2; d <= 1024; d *= 2)
     if (x * (double)d == floor(x * (double)d) && fabs(x) < 1e12) return num_ratio((int64_t)(x * (double)d), d);
-  return inexact(x);
+  uint64_t drawn = mod_drawn(bits_of(fabs(x)), 1);
+  return inexact(x, 0, x < 0 ? mod_neg(drawn) : drawn);
 }
 
 int num_is_exact(Num a) { return a.den != 0; }
 int num_is_int(Num a) { return a.den == 1; }
-int num_is_zero(Num a) { return a.den ? a.num == 0 : a.approx == 0; }
-int num_is_one(Num a) { return a.den ? a.num == 1 && a.den == 1 : a.approx == 1; }
+int num_is_zero(Num a) { return a.den ? a.num == 0 : a.approx == 0 && a.error == 0; } /* (Num){0} too */
+int num_is_one(Num a) { return a.num == 1 && a.den == 1; }
 double num_value(Num a) { return a.den ? (double)a.num / (double)a.den : a.approx; }
+double num_error(Num a) { return a.den ? 0 : a.error; }
+int num_is_lost(Num a) { return !a.den && !(a.error <= 1e-6 * fabs(a.approx)); }
+Num num_rounded(Num a) { return a.den ? a : (Num){.error = 0, .den = 0, .approx = a.approx}; }
 
 int num_sign(Num a) {
   if (a.den) return (a.num > 0) - (a.num < 0);
-  return (a.approx > 0) - (a.approx < 0);
+  if (num_is_zero(a)) return 0;
+  return is_negative(a) && !isnan(a.approx) ? -1 : 1; /* the negative of what is no number is itself */
 }
+
+int num_sign_is_sure(Num a) { return a.den || fabs(a.approx) > a.error; }
 
 int num_cmp(Num a, Num b) {
   if (a.den && b.den) {
@@ -68,20 +138,31 @@ int num_cmp(Num a, Num b) {
 }
 
 int num_equal(Num a, Num b) {
-  return a.den == b.den && a.num == b.num && (a.den || memcmp(&a.approx, &b.approx, sizeof a.approx) == 0);
-}
-
-Num num_add(Num a, Num b) {
-  if (!a.den || !b.den) return inexact(num_value(a) + num_value(b));
-  Wide n1 = (Wide)a.num * b.den, n2 = (Wide)b.num * a.den, n;
-  if (__builtin_add_overflow(n1, n2, &n)) return inexact(num_value(a) + num_value(b));
-  return reduce(n, (Wide)a.den * b.den);
+  if (a.den || b.den) return a.den == b.den && a.num == b.num;
+  return a.residue == b.residue && bits_of(a.approx) == bits_of(b.approx);
 }
 
 Num num_neg(Num a) {
-  if (!a.den) return inexact(-a.approx);
-  a.num = -a.num;
+  if (a.den) {
+    a.num = -a.num;
+    return a;
+  }
+  a.approx = -a.approx;
+  a.residue = mod_neg(a.residue);
   return a;
+}
+
+static Num add_inexact(Num a, Num b) {
+  if (num_is_zero(a)) return b;
+  if (num_is_zero(b)) return a;
+  return inexact(num_value(a) + num_value(b), value_error(a) + value_error(b), mod_add(residue(a), residue(b)));
+}
+
+Num num_add(Num a, Num b) {
+  if (!a.den || !b.den) return add_inexact(a, b);
+  Wide n1 = (Wide)a.num * b.den, n2 = (Wide)b.num * a.den, n;
+  if (__builtin_add_overflow(n1, n2, &n)) return add_inexact(a, b);
+  return reduce(n, (Wide)a.den * b.den);
 }
 
 Num num_abs(Num a) { return num_sign(a) < 0 ? num_neg(a) : a; }
@@ -89,13 +170,32 @@ Num num_sub(Num a, Num b) { return num_add(a, num_neg(b)); }
 
 Num num_mul(Num a, Num b) {
   if (num_is_zero(a) || num_is_zero(b)) return num_int(0);
-  if (!a.den || !b.den) return inexact(num_value(a) * num_value(b));
-  return reduce((Wide)a.num * b.num, (Wide)a.den * b.den);
+  if (num_is_one(a)) return b;
+  if (num_is_one(b)) return a;
+  if (a.den && b.den) return reduce((Wide)a.num * b.num, (Wide)a.den * b.den);
+  double p = num_value(a), q = num_value(b), ea = value_error(a), eb = value_error(b);
+  return inexact(p * q, fabs(p) * eb + fabs(q) * ea + ea * eb, mod_mul(residue(a), residue(b)));
 }
 
 Num num_div(Num a, Num b) {
-  if (!a.den || !b.den) return inexact(num_value(a) / num_value(b));
-  return reduce((Wide)a.num * b.den, (Wide)a.den * b.num);
+  if (num_is_zero(a) || num_is_one(b)) return a;
+  if (a.den && b.den) return reduce((Wide)a.num * b.den, (Wide)a.den * b.num);
+  double r = num_value(a) / num_value(b), least = fabs(num_value(b)) - value_error(b);
+  double error = least > 0 ? (value_error(a) + fabs(r) * value_error(b)) / least : INFINITY;
+  return inexact(r, error, mod_div(residue(a), residue(b)));
+}
+
+static uint64_t residue_of_power(Num a, Num b) {
+  if (!num_is_int(b)) return mod_drawn(residue(a), residue(b));
+  uint64_t r = mod_pow(residue(a), (uint64_t)llabs(b.num));
+  return b.num < 0 ? mod_div(1, r) : r;
+}
+
+/* a^b where it is not exact. |ln r| is off by |b| times what ln |a| is, and by |ln |a|| times what b is. */
+static Num pow_inexact(Num a, Num b) {
+  double x = num_value(a), y = num_value(b), r = pow(x, y), ea = value_error(a), eb = value_error(b), least = fabs(x) - ea;
+  double relative = least > 0 ? fabs(y) * ea / least + fabs(log(fabs(x))) * eb + 4 * DBL_EPSILON : INFINITY;
+  return inexact(r, relative < 0.1 ? 2 * relative * fabs(r) : INFINITY, residue_of_power(a, b));
 }
 
 /* a^n for n >= 0 by squaring; sets *exact 0 once it overflows. */
@@ -125,27 +225,27 @@ Num num_pow(Num a, Num b, int *exact) {
   *exact = 1;
   if (!num_is_exact(a) || !num_is_exact(b)) {
     *exact = num_is_int(b);
-    return inexact(pow(num_value(a), num_value(b)));
+    return pow_inexact(a, b);
   }
   int64_t n = b.num;
   if (num_is_zero(a)) {
     if (n > 0) return num_int(0);
     if (n == 0) return num_int(1);
     *exact = 0;
-    return inexact(INFINITY);
+    return inexact(INFINITY, INFINITY, 1);
   }
   if (b.den != 1) {
     int64_t top = a.num >= 0 && b.den <= 64 ? int_root(a.num, b.den) : -1;
     int64_t bottom = b.den <= 64 ? int_root(a.den, b.den) : -1;
     if (top < 0 || bottom < 0) {
       *exact = 0;
-      return inexact(pow(num_value(a), num_value(b)));
+      return pow_inexact(a, b);
     }
     a = (Num){.num = top, .den = bottom};
   }
   Num base = n < 0 ? num_div(num_int(1), a) : a;
   Num r = pow_int(base, n < 0 ? -n : n, exact);
-  return *exact ? r : inexact(pow(num_value(a), num_value(num_int(n))));
+  return *exact ? r : pow_inexact(a, num_int(n));
 }
 
 Num num_gcd(Num a, Num b) {
@@ -154,6 +254,15 @@ Num num_gcd(Num a, Num b) {
   if (num_is_zero(b)) return num_abs(a);
   Wide n = wide_gcd((Wide)a.num * b.den, (Wide)b.num * a.den);
   return num_abs(reduce(n, (Wide)a.den * b.den));
+}
+
+/* Of a literal, whose last digit counts 10^exponent. */
+static uint64_t literal_residue(const char *s, size_t n, int64_t exponent) {
+  uint64_t r = 0;
+  for (size_t i = 0; i < n && s[i] != 'e' && s[i] != 'E'; i++)
+    if (s[i] != '.') r = mod_add(mod_mul(r, 10), (uint64_t)(s[i] - '0'));
+  uint64_t power = mod_pow(10, (uint64_t)llabs(exponent));
+  return exponent < 0 ? mod_div(r, power) : mod_mul(r, power);
 }
 
 Num num_parse(const char *s, size_t n) {
@@ -177,6 +286,7 @@ Num num_parse(const char *s, size_t n) {
     if (negative) exponent = -exponent;
   }
   exponent -= scale;
+  int64_t whole = exponent;
   Wide num = digits, den = 1;
   /* Trailing zeros of "1.5000e-30" should not cost exactness. */
   while (exponent < 0 && num && num % 10 == 0) {
@@ -195,7 +305,8 @@ Num num_parse(const char *s, size_t n) {
   size_t len = n < sizeof text - 1 ? n : sizeof text - 1;
   memcpy(text, s, len);
   text[len] = '\0';
-  return inexact(strtod(text, NULL));
+  double x = strtod(text, NULL);
+  return inexact(x, isinf(x) ? INFINITY : 0, literal_residue(s, n, whole));
 }
 
 void num_format_double(char *out, double x) {

@@ -1,5 +1,10 @@
-/* Num: an exact rational, or a double where a rational would overflow 64 bits.
- * Always in lowest terms with den > 0; den == 0 marks the double. Pure values: no memory. */
+/* Num: an exact rational, or a double with a bound of its error where a rational would overflow 64 bits.
+ * Always in lowest terms with den > 0; den == 0 marks the double. Pure values: no memory.
+ *
+ * What rests on equality stays sound where numbers are not exact: such a number is never "zero" or "one". Beside its value
+ * stands the residue of the true one modulo a prime, which arithmetic follows without rounding; a difference is 0, exactly,
+ * where both say so. Then two different numbers pass for one by a coincidence of one in 4e18 (Schwartz 1980, DOI
+ * 10.1145/322217.322225), and 1 + 1e-20 is not 1. */
 #ifndef LAGC_NUM_H
 #define LAGC_NUM_H
 
@@ -8,8 +13,13 @@
 #include "base/strbuf.h"
 
 typedef struct {
-  int64_t num, den;
-  double approx; /* the value when den == 0; otherwise 0 */
+  union {
+    int64_t num;
+    double error; /* when den == 0: the true value is at most so far from approx */
+  };
+  int64_t den;
+  double approx;    /* the value when den == 0; otherwise 0 */
+  uint64_t residue; /* of the true value when den == 0; what is irrational has one drawn from its computation. Otherwise 0 */
 } Num;
 
 Num num_int(int64_t n);
@@ -21,12 +31,16 @@ Num num_parse(const char *s, size_t n);
 
 int num_is_exact(Num a);
 int num_is_int(Num a);
-int num_is_zero(Num a);
-int num_is_one(Num a);
-int num_sign(Num a); /* -1, 0, 1 */
-int num_equal(Num a, Num b);
-int num_cmp(Num a, Num b);
+int num_is_zero(Num a); /* certainly */
+int num_is_one(Num a);  /* certainly */
+int num_sign(Num a);    /* -1, 0, 1; 0 is that of the exact 0 alone */
+int num_sign_is_sure(Num a);
+int num_equal(Num a, Num b); /* certainly */
+int num_cmp(Num a, Num b);   /* of the values; sure where num_sign_is_sure(num_sub(a, b)) */
 double num_value(Num a);
+double num_error(Num a); /* a bound of what num_value, as a long double, is off; 0 where a is exact */
+int num_is_lost(Num a);  /* less than six digits of it are known */
+Num num_rounded(Num a);  /* without what is known of its error: equal where the values are */
 
 Num num_add(Num a, Num b);
 Num num_sub(Num a, Num b);

@@ -31,11 +31,7 @@ static int add_define(Arena *a, Options *o, const char *text, const char **error
     *error = "-D takes CONST=VALUE, for example -D N=50";
     return 0;
   }
-  if (strspn(eq + 1, "0123456789.eE+-") != strlen(eq + 1)) {
-    *error = arena_printf(a, "-D %s: `%s` is not a number", text, eq + 1);
-    return 0;
-  }
-  Define d = {arena_strndup(a, text, (size_t)(eq - text)), eq + 1};
+  Define d = {.name = arena_strndup(a, text, (size_t)(eq - text)), .value = eq + 1};
   vec_push(a, &o->defines, d);
   return 1;
 }

@@ -120,7 +120,7 @@ Slot prog_ins(Prog *p, Ins i) {
 }
 
 Slot prog_op(Prog *p, IrOp op, Slot a, Slot b) { return prog_ins(p, (Ins){.op = op, .a = a, .b = b}); }
-Slot prog_num(Prog *p, Num n) { return num_is_zero(n) ? 0 : prog_ins(p, (Ins){.op = IR_CONST, .number = n}); }
+Slot prog_num(Prog *p, Num n) { return num_value(n) == 0 ? 0 : prog_ins(p, (Ins){.op = IR_CONST, .number = num_rounded(n)}); }
 void prog_title(Prog *p, const char *text) { prog_ins(p, (Ins){.op = IR_TITLE, .text = text}); }
 
 void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *comment) {

@@ -142,7 +142,7 @@ static void classify(Eqns *e) {
                         !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_INPUT)));
 }
 
-/* Derivatives may multiply numbers past the range of a double. */
+/* Derivatives may multiply numbers past the range of a double, and terms of different statements cancel. */
 static int check_numbers(const Eqns *e) {
   const Model *m = e->m;
   VEC(Expr) roots = {0};
@@ -154,12 +154,21 @@ static int check_numbers(const Eqns *e) {
   for (uint32_t i = 0; i < e->noutputs; i++) vec_push(m->arena, &roots, e->outputs[i].value);
   vec_push(m->arena, &roots, e->energy_scale);
   ExprList l = expr_topo(e->g, roots.at, roots.n);
-  for (uint32_t i = 0; i < l.n; i++)
-    if (expr_is_num(e->g, l.at[i]) && !isfinite(num_value(expr_number(e->g, l.at[i])))) {
-      diag_error(m->diags, m->lagrangian_span.end ? m->lagrangian_span : m->span, "a number in the equations of motion is not finite");
+  Span span = m->lagrangian_span.end ? m->lagrangian_span : m->span;
+  for (uint32_t i = 0; i < l.n; i++) {
+    if (!expr_is_num(e->g, l.at[i])) continue;
+    Num n = expr_number(e->g, l.at[i]);
+    if (!isfinite(num_value(n))) {
+      diag_error(m->diags, span, "a number in the equations of motion is not finite");
       diag_help(m->diags, "numbers reach up to 1.8e308; measure in other units");
       return 0;
     }
+    if (num_is_lost(n)) {
+      diag_error(m->diags, span, "rounding leaves fewer than six digits of a number in the equations of motion");
+      diag_help(m->diags, "numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits; write what such numbers come to");
+      return 0;
+    }
+  }
   return 1;
 }
 

@@ -20,7 +20,7 @@ static void measure(ExprGraph *g, Expr side, const long double *symbols, long do
     Expr term = expr_pair(g, side, EX_SUM, i, &c);
     long double value = prove_value(g, term, symbols, NULL, &error), k = fabsl((long double)num_value(c));
     *size += k * fabsl(value);
-    *bound += k * error;
+    *bound += k * error + (long double)num_error(c) * fabsl(value);
   }
 }
 
@@ -47,7 +47,8 @@ static int agreement(const Eqns *e, const Expect *x, int *seen) {
   int least = FULL_DIGITS;
   *seen = 0;
   for (uint32_t seed = 1; seed <= 3 * SAMPLES && *seen < SAMPLES; seed++) {
-    prove_state(e->g, seed, symbols);
+    if (seed % 2) prove_state(e->g, seed, symbols);
+    else prove_state_wide(e->g, seed, symbols);
     if (!states_complete(solver, symbols)) continue;
     int digits = digits_at(e, x, symbols);
     if (digits < 0) continue;
@@ -119,7 +120,8 @@ static int find_showing(Showing *s) {
     if (differs(s, 0.01L)) return 1;
   }
   for (uint32_t seed = 1; seed <= SAMPLES; seed++) {
-    prove_state(s->e->g, seed, s->symbols);
+    if (seed % 2) prove_state(s->e->g, seed, s->symbols);
+    else prove_state_wide(s->e->g, seed, s->symbols);
     if (differs(s, 1e-12L)) return 1;
   }
   return 0;
@@ -203,6 +205,22 @@ static void report_refuted(const Eqns *e, const Expect *x, const char *label) {
   if (difference) diag_help(m->diags, "%s", difference);
 }
 
+/* Whether all numbers are exact: otherwise what differs need not be different. */
+static int numbers_are_exact(const Eqns *e, const Expect *x) {
+  VEC(Expr) roots = {0};
+  vec_push(e->m->arena, &roots, x->lhs);
+  vec_push(e->m->arena, &roots, x->rhs);
+  for (uint32_t i = 0; i < e->n; i++) vec_push(e->m->arena, &roots, e->f[i]);
+  for (uint32_t i = 0; i < e->mass.n; i++) vec_push(e->m->arena, &roots, e->mass.at[i].e);
+  for (uint32_t i = 0; i < e->m->states.n; i++) vec_push(e->m->arena, &roots, e->flow[i]);
+  ExprList l = expr_topo(e->g, roots.at, roots.n);
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_is_num(e->g, l.at[i]) && !num_is_exact(expr_number(e->g, l.at[i]))) return 0;
+  return 1;
+}
+
+#define EXACT_NUMBERS "numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits"
+
 static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r, int allow_numeric) {
   Diags *d = e->m->diags;
   if (allow_numeric) {
@@ -210,7 +228,8 @@ static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r,
     return;
   }
   diag_error(d, x->span, "expect %s is not proved; the sides agree to %d digits at %d random states", r->label, r->digits, r->states);
-  diag_help(d, "write it in another form, or take agreement in numbers for enough: `lagc check --allow-numeric`");
+  const char *cure = "write it in another form, or take agreement in numbers for enough: `lagc check --allow-numeric`";
+  diag_help(d, "%s", r->inexact ? arena_printf(e->m->arena, EXACT_NUMBERS "; %s", cure) : cure);
 }
 
 static ExpectResult judge(const Eqns *e, const Expect *x) {
@@ -221,13 +240,14 @@ static ExpectResult judge(const Eqns *e, const Expect *x) {
     case NOT_DECIDED: break;
   }
   r.digits = agreement(e, x, &r.states);
-  r.verdict = !r.states ? EXPECT_UNKNOWN : r.digits < FEWEST_DIGITS ? EXPECT_REFUTED : EXPECT_AGREES;
+  r.inexact = !numbers_are_exact(e, x);
+  r.verdict = !r.states ? EXPECT_UNKNOWN : r.digits >= FEWEST_DIGITS ? EXPECT_AGREES : r.inexact ? EXPECT_UNKNOWN : EXPECT_REFUTED;
   return r;
 }
 
-static void report_unknown(const Eqns *e, const Expect *x, const char *label) {
-  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a value that means something", label);
-  diag_help(e->m->diags, "write it where its roots and logarithms are defined, and in numbers of ordinary size");
+static void report_unknown(const Eqns *e, const Expect *x, const ExpectResult *r) {
+  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a value that means something", r->label);
+  diag_help(e->m->diags, "write it where its roots and logarithms are defined, and in numbers of ordinary size%s", r->inexact ? "; " EXACT_NUMBERS : "");
 }
 
 /* --- parameters that follow from others --- */
@@ -287,7 +307,7 @@ void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults 
     vec_push(m->arena, out, r);
     if (r.verdict == EXPECT_REFUTED) report_refuted(closed, &x, r.label);
     if (r.verdict == EXPECT_AGREES) report_agrees(closed, &x, &r, allow_numeric);
-    if (r.verdict == EXPECT_UNKNOWN) report_unknown(closed, &x, r.label);
+    if (r.verdict == EXPECT_UNKNOWN) report_unknown(closed, &x, &r);
   }
 }
 

@@ -17,6 +17,7 @@ typedef struct {
   ExpectVerdict verdict;
   int digits; /* of agreement */
   int states; /* at which the sides were compared */
+  int inexact; /* a number in the sides, or in the equations, is not exact: that is why it is not decided */
 } ExpectResult;
 
 typedef VEC(ExpectResult) ExpectResults;

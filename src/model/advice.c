@@ -128,6 +128,7 @@ int advise_unknown_function(Builder *b, Name name) {
 }
 
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare) {
+  if (b->diags->list.n > DIAG_MAX) return; /* this message is not shown; to search for a near name costs as many names as there are */
   const AstStmt *later = declared_in_use(b, name, effect);
   if (later && span.begin >= later->span.begin && span.end <= later->span.end) {
     diag_help(b->diags, "its own value cannot contain it");

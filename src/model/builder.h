@@ -94,6 +94,7 @@ struct Builder {
   ExprGraph *g;
   Model *m;
   Scope scope, members;
+  Scope *named; /* events and expectations; NULL: none yet */
   IndexVars index; /* of the `for` around the statement in hand */
   VEC(struct Eval *) idle; /* evaluations to use again */
   VEC(Expr) scratch;
@@ -154,7 +155,7 @@ int resolve_whole(Builder *b, AstId id, Name effect, int64_t *out);
 int range_fits(Builder *b, int64_t from, int64_t to, Span span);
 
 /* The ends of a range; at most RANGE_MAX members. */
-enum { RANGE_MAX = 10000000 };
+enum { RANGE_MAX = 1000000 };
 int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *from, int64_t *to);
 
 /* The indices of a place, `[2]` or `[i in 1..N]`, as ranges (from == to where it is one number). */
@@ -279,6 +280,9 @@ void warn_unit_is_constant(Builder *b, const AstUnit *u);
 /* Reports a value that is not of the sign that its parameter is declared to have. */
 void check_sign(Builder *b, const Param *p, Span span);
 
+/* Warns of parameters whose value, made of others, is not of the sign that they are declared to have: a run refuses them. */
+void warn_signs(Builder *b);
+
 /* advice.c: adds a way out to the message about an unknown name, or an unknown `effect.name`. */
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare);
 void advise_unknown_member(Builder *b, Name effect, Name name);
@@ -298,6 +302,7 @@ void not_yet(Builder *b, Span span, const char *what);
 /* The source text of an expression on one line, without comments; and the same with its middle left
  * out where it is long. */
 const char *ast_text(const Builder *b, AstId id);
+const char *source_text(const Builder *b, Span s);
 const char *ast_short(const Builder *b, AstId id);
 Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
@@ -330,6 +335,12 @@ void explain_dims(Builder *b, Dim x, Dim y);
 
 /* Puts the units that were found into the model. */
 void settle_units(Builder *b);
+
+/* twice.c: names of scenes, effects, events and expectations, each declared once, and what a scene or an event says, said once;
+ * reported where they are not. */
+void check_names_once(Builder *b);
+void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span);
+void check_said_once(Builder *b, const AstStmt *block);
 
 /* scene.c: which statements are active (those of the effect `also` too), and the scene's contents. */
 void scene_select(Builder *b, const ModelChoice *choice);

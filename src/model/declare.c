@@ -13,9 +13,7 @@ SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSi
 }
 
 int declare_entity(Builder *b, const AstStmt *st, Entity e) {
-  Name effect = e.effect;
-  const Entity *old = scope_own(&b->scope, st->name, effect);
-  if (!old && effect) old = scope_own(&b->scope, st->name, NULL);
+  const Entity *old = scope_own(&b->scope, st->name, e.effect);
   if (old) {
     diag_error(b->diags, st->name_span, "`%s` is declared twice", st->name);
     diag_also(b->diags, old->span, "first declared here, as %s", ent_kind_text(old->kind));
@@ -125,6 +123,18 @@ int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts) {
   return 0;
 }
 
+static int declares_motion(const AstStmt *st) { return st->kind == STMT_COORD || st->kind == STMT_STATE; }
+
+/* Coordinates and states are called by their name alone, unless the model, or another effect in use, has such a name too. */
+static Name plain_name(Builder *b, const AstStmt *st, Name effect) {
+  if (!effect) return st->name;
+  for (uint32_t i = 0; i < b->active.n; i++) {
+    const Active *a = &b->active.at[i];
+    if (a->effect != effect && a->stmt->name == st->name && declares_motion(a->stmt)) return intern_printf(b, "%s.%s", effect, st->name);
+  }
+  return st->name;
+}
+
 static void add_coord(Builder *b, const AstStmt *st, Name name, Unit unit) {
   Model *m = b->m;
   uint32_t i = m->coords.n;
@@ -152,8 +162,9 @@ static void declare_coord(Builder *b, const AstStmt *st, Name effect) {
   Unit unit = declared_unit(b, st, effect);
   if (st->periodic) check_angle(b, st, &unit);
   int64_t at[2] = {1, 1};
+  Name stem = plain_name(b, st, effect);
   do
-    for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++) add_coord(b, st, scalar_name(b, &e, st->name, at, k), unit);
+    for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++) add_coord(b, st, scalar_name(b, &e, stem, at, k), unit);
   while (next_member(&e, at));
 }
 
@@ -173,8 +184,9 @@ static void declare_state(Builder *b, const AstStmt *st, Name effect) {
   if (!declare_family(b, st, effect, ENT_STATE, b->m->states.n, parts, &e)) return;
   Unit unit = declared_unit(b, st, effect);
   int64_t at[2] = {1, 1};
+  Name stem = plain_name(b, st, effect);
   do
-    for (uint32_t k = 0; k < (parts ? parts : 1u); k++) add_state(b, st, scalar_name(b, &e, st->name, at, k), unit);
+    for (uint32_t k = 0; k < (parts ? parts : 1u); k++) add_state(b, st, scalar_name(b, &e, stem, at, k), unit);
   while (next_member(&e, at));
 }
 
@@ -262,7 +274,21 @@ static void declare_let(Builder *b, const AstStmt *st, Name effect) {
   vec_push(b->arena, &b->lets, ((Definition){.stmt = st, .name = st->name, .effect = effect}));
 }
 
+/* A name that the language has a meaning for would have two, and arguments of one name one. */
+static void check_function(Builder *b, const AstStmt *st) {
+  for (size_t i = 0; function_name(i); i++)
+    if (strcmp(function_name(i), st->name) == 0) {
+      diag_error(b->diags, st->name_span, "`%s` is a function of the language", st->name);
+      diag_help(b->diags, "choose another name");
+    }
+  for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next)
+    for (AstId k = st->args; k != i; k = ast_expr(b->ast, k)->next)
+      if (ast_expr(b->ast, k)->name == ast_expr(b->ast, i)->name)
+        diag_error(b->diags, ast_expr(b->ast, i)->span, "two arguments are called `%s`", ast_expr(b->ast, i)->name);
+}
+
 static void declare_function(Builder *b, const AstStmt *st, Name effect) {
+  check_function(b, st);
   if (!declare_name(b, st, effect, ENT_FUNCTION, b->functions.n)) return;
   vec_push(b->arena, &b->functions, ((Definition){.stmt = st, .name = st->name, .effect = effect}));
 }

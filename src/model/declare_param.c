@@ -1,5 +1,6 @@
 /* Parameters and constants: declarations that have a value at once. */
 #include "model/builder.h"
+#include "sym/eval.h"
 
 static ExprSign sign_of(AstSign s) {
   switch (s) {
@@ -12,14 +13,33 @@ static ExprSign sign_of(AstSign s) {
   return SIGN_UNKNOWN;
 }
 
+static const char *const sign_texts[] = {"", "> 0", ">= 0", "< 0", "<= 0"};
+
+static int has_sign(AstSign sign, long double x) {
+  return sign == SIGN_GT ? x > 0 : sign == SIGN_GE ? x >= 0 : sign == SIGN_LT ? x < 0 : sign != SIGN_LE || x <= 0;
+}
+
+void warn_signs(Builder *b) {
+  const Model *m = b->m;
+  long double *x = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1);
+  x[m->pi] = 3.14159265358979323846264338327950288L;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
+    if (!p->value) continue;
+    expr_eval(b->g, &p->value, 1, x, &x[p->sym]);
+    if (expr_is_num(b->g, p->value) || has_sign(p->sign, x[p->sym])) continue;
+    diag_warning(b->diags, p->span, "`%s` is declared %s, and comes to %s", p->name, sign_texts[p->sign], arena_printf(b->arena, "%.6Lg", x[p->sym]));
+    diag_help(b->diags, "a run refuses this: give it, or what it is made of, another value");
+  }
+}
+
 /* The value must be of the sign that the declaration states, or the simplifier would be misled. */
 void check_sign(Builder *b, const Param *p, Span span) {
-  static const char *const texts[] = {"", "> 0", ">= 0", "< 0", "<= 0"};
   if (p->sign == SIGN_ANY || !p->value) return;
   ExprSign s = expr_sign(b->g, p->value);
   int zero = expr_is_zero(b->g, p->value), above = s == SIGN_POSITIVE, below = s == SIGN_NEGATIVE;
   int wrong = p->sign == SIGN_GT ? below || zero : p->sign == SIGN_GE ? below : p->sign == SIGN_LT ? above || zero : above;
-  if (wrong) diag_error(b->diags, span, "`%s` is declared %s, and this value is not", p->name, texts[p->sign]);
+  if (wrong) diag_error(b->diags, span, "`%s` is declared %s, and this value is not", p->name, sign_texts[p->sign]);
 }
 
 /* A parameter that is being declared. */
@@ -112,24 +132,32 @@ void declare_param(Builder *b, const AstStmt *st, Name effect) {
   } while (next_member(&d.e, at));
 }
 
-/* -D N=50, or NULL. */
-static const char *defined(const Builder *b, Name name) {
-  const char *value = NULL;
+/* -D N=50, the last one; or NULL. */
+static const Define *defined(const Builder *b, Name name) {
+  const Define *d = NULL;
   for (uint32_t i = 0; i < b->ndefines; i++)
-    if (strcmp(b->defines[i].name, name) == 0) value = b->defines[i].value;
-  return value;
+    if (strcmp(b->defines[i].name, name) == 0) d = &b->defines[i];
+  return d;
 }
 
-/* Made of numbers and pi. A number on the command line is in the unit of the constant's value. */
+/* What the command line gives a constant whose value in the file is v. */
+static Value defined_value(Builder *b, const Define *d, const Value *v, Name effect) {
+  Value given = resolve(b, d->expr, IN_CONST, effect);
+  if (!given.e || !v->e || given.n == v->n) return given;
+  diag_error(b->diags, ast_expr(b->ast, d->expr)->span, "`%s` is %s, and %s is given here", d->name, shape_text(b, v->n), shape_text(b, given.n));
+  return (Value){0};
+}
+
+/* Made of numbers and pi. A bare number on the command line is in the unit of the constant's value. */
 void declare_const(Builder *b, const AstStmt *st, Name effect) {
   Value v = resolve(b, st->rhs, IN_CONST, effect);
   Entity e = {.kind = ENT_CONST, .index = b->constants.n, .name = st->name, .effect = effect, .span = st->name_span};
   if (!declare_entity(b, st, e)) return;
-  const char *text = defined(b, st->name);
-  if (text && v.n) diag_error(b->diags, (Span){0}, "-D %s=%s: `%s` is %s", st->name, text, st->name, shape_text(b, v.n));
-  else if (text) v = (Value){.e = expr_num(b->g, num_parse(text, strlen(text))), .dim = DIM_NONE, .bare = 1};
+  const Define *d = defined(b, st->name);
   Unit unit = unit_resolve(&st->unit, b->dims, b->diags, b->arena);
-  v = values_in(b, v, ast_expr(b->ast, st->rhs)->span, &unit);
+  if (d && !st->unit.n && v.e && !v.bare) unit = unit_of_dim(b->dims, v.dim);
+  if (d) v = defined_value(b, d, &v, effect);
+  v = values_in(b, v, ast_expr(b->ast, d ? d->expr : st->rhs)->span, &unit);
   if (st->unit.n) {
     v.bare = v.point = 0;
     v.dim = unit.dim;

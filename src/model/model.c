@@ -75,6 +75,10 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   en->failed |= st->kind != STMT_DISSIPATION && (!v.e || v.n);
   if (!v.e || v.n) return;
   if (st->kind == STMT_DISSIPATION) {
+    if (!expr_is_num(b->g, v.e) && !(expr_kinds(b->g, v.e) & 1u << SYM_VEL)) {
+      diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a dissipation function without velocities does nothing");
+      diag_help(b->diags, "its force is -dR/dq': `dissipation = c/2*x'^2`");
+    }
     check_later(b, en, st->rhs, &v, dim_base(b->dims, DIM_TIME), "a dissipation function");
   } else {
     check_energy_unit(b, st, &v, en);
@@ -196,6 +200,7 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
     diag_error(b->diags, st->span, "units do not match: the left side is %s, the right side %s", in_dim(b, l.dim), in_dim(b, r.dim));
     explain_dims(b, l.dim, r.dim);
   }
+  if (st->name && !b->index.n) check_name_is_new(b, "expectation", st->name, effect, st->name_span);
   Expect x = {.name = st->name, .span = st->span, .lhs_ast = st->lhs, .rhs_ast = st->rhs, .effect = effect};
   x.elsewhere = l.n || b->index.n;
   for (uint32_t k = 0; k < (l.n ? l.n : 1); k++) {
@@ -234,6 +239,8 @@ static void add_event(Builder *b, const AstStmt *st, Name effect) {
   IndexRange r = {0};
   if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
   ev.name = member_name(b, st->name, r.lo, r.n);
+  check_name_is_new(b, "event", ev.name, effect, st->name_span);
+  check_said_once(b, st);
   Value g = resolve(b, st->lhs, IN_DYNAMICS, effect);
   if (g.n) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "this is %s, and a number is wanted here", shape_text(b, g.n));
   ev.g = g.e;
@@ -435,5 +442,6 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   add_section(b, &choice->section);
   scene_build(b, choice);
   settle_units(b);
+  warn_signs(b);
   return ast->diags->errors ? NULL : b->m;
 }

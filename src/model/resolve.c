@@ -40,10 +40,10 @@ static void mark_branches(Eval *ev, AstId id, const AstExpr *x) {
 }
 
 /* The names before an index or a dot stand for nothing by themselves: th[2], drag.c, drag.c[2]. */
-static void mark_name(Eval *ev, AstId id) {
-  const AstExpr *x = ast_expr(ev->b->ast, id);
-  if (x->kind == AST_NAME) ev->open[id - ev->first] = 1;
-  if (x->kind == AST_MEMBER && ast_expr(ev->b->ast, x->a)->kind == AST_NAME) ev->open[id - ev->first] = 1;
+static void mark_name(Eval *ev, const AstExpr *x) {
+  const AstExpr *of = ast_expr(ev->b->ast, x->a);
+  int effects = x->kind == AST_INDEX && of->kind == AST_MEMBER && ast_expr(ev->b->ast, of->a)->kind == AST_NAME;
+  if (of->kind == AST_NAME || effects) ev->open[x->a - ev->first] = 1;
 }
 
 static void mark(Eval *ev) {
@@ -60,7 +60,7 @@ static void mark(Eval *ev) {
     else if (x->kind == AST_ADD || x->kind == AST_SUB || x->kind == AST_MUL || x->kind == AST_DIV) mark_chain(ev, x);
     else if (x->kind == AST_SUM || x->kind == AST_PRODUCT) guard(ev, i, x->c);
     else if (x->kind == AST_CALL) mark_branches(ev, i, x);
-    else if (x->kind == AST_INDEX || x->kind == AST_MEMBER) mark_name(ev, x->a);
+    else if (x->kind == AST_INDEX || x->kind == AST_MEMBER) mark_name(ev, x);
   }
 }
 
@@ -135,24 +135,33 @@ static int operands_fit(Eval *ev, const AstExpr *x) {
   return 1;
 }
 
-/* Numbers beyond the range of a double are refused where they arise. */
-static int is_finite(const ExprGraph *g, Expr e) {
+/* Whether `bad` is true of a number of the node itself. */
+static int has_number(const ExprGraph *g, Expr e, int (*bad)(Num n)) {
   ExprOp op = expr_op(g, e);
-  if (op == EX_NUM) return isfinite(num_value(expr_number(g, e)));
-  if (op != EX_SUM && op != EX_PROD) return 1;
+  if (op == EX_NUM) return bad(expr_number(g, e));
+  if (op != EX_SUM && op != EX_PROD) return 0;
   for (uint32_t i = 0; i < expr_nargs(g, e); i++) {
     Expr n = expr_arg(g, e, i);
-    if (expr_is_num(g, n) && !isfinite(num_value(expr_number(g, n)))) return 0;
+    if (expr_is_num(g, n) && bad(expr_number(g, n))) return 1;
   }
-  return 1;
+  return 0;
 }
 
-static Value finite_value(Eval *ev, const AstExpr *x, Value v) {
+static int is_infinite(Num n) { return !isfinite(num_value(n)); }
+
+/* Numbers beyond the range of a double, and those of which rounding leaves nothing, are refused where they arise. */
+static Value usable_value(Eval *ev, const AstExpr *x, Value v) {
   for (uint32_t k = 0; v.e && k < parts_of(&v); k++) {
-    if (is_finite(ev->b->g, v.at[k])) continue;
-    diag_error(ev->b->diags, x->span, "a number here is not finite");
-    diag_help(ev->b->diags, "numbers reach up to 1.8e308");
-    return FAILED;
+    if (has_number(ev->b->g, v.at[k], is_infinite)) {
+      diag_error(ev->b->diags, x->span, "a number here is not finite");
+      diag_help(ev->b->diags, "numbers reach up to 1.8e308");
+      return FAILED;
+    }
+    if (has_number(ev->b->g, v.at[k], num_is_lost)) {
+      diag_error(ev->b->diags, x->span, "rounding leaves fewer than six digits of a number here");
+      diag_help(ev->b->diags, "write what it comes to: numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits");
+      return FAILED;
+    }
   }
   return v;
 }
@@ -185,7 +194,7 @@ static int run(Eval *ev) {
     const AstExpr *x = ast_expr(b->ast, i);
     if (i == b->stand_in) *value_of(ev, i) = (Value){.e = b->stands_for, .dim = DIM_ANY};
     else if (!ev->open[i - ev->first]) {
-      Value v = operands_fit(ev, x) ? finite_value(ev, x, node_value(ev, i)) : FAILED;
+      Value v = operands_fit(ev, x) ? usable_value(ev, x, node_value(ev, i)) : FAILED;
       if (ev->waiting) return 0;
       if (b->unitless) v.dim = DIM_ANY;
       *value_of(ev, i) = v;
@@ -225,6 +234,7 @@ static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
   ev->kind = ENT_NONE;
   ev->in_statement = 1;
   ev->waiting = 0;
+  ev->rounds = 0;
   ev->first = ev->pc = root->first;
   ev->root = id;
   ev->index.n = ev->loops.n = ev->terms.n = 0;
@@ -264,10 +274,22 @@ static void finish_let(Builder *b, Definition *d, Value v) {
   d->value = v;
 }
 
+/* A bug; but nothing a user wrote is left out in silence. */
+static void report_silence(Builder *b, AstId id) {
+  if (!b->diags->errors)
+    diag_error(b->diags, ast_expr(b->ast, id)->span, "internal error: `%s` has no value, and no reason is known", ast_short(b, id));
+}
+
 static void finish_definition(Eval *ev) {
   Builder *b = ev->b;
   Definition *d = definition(b, ev->kind, ev->definition);
   Value v = *value_of(ev, ev->root);
+  if (!v.e) report_silence(b, ev->root);
+  if (ev->kind == ENT_OBSERVE && v.bare && d->stmt->unit.n) {
+    Unit own = unit_resolve(&d->stmt->unit, b->dims, b->diags, b->arena);
+    v = values_in(b, v, ast_expr(b->ast, ev->root)->span, &own);
+    v.dim = own.dim;
+  }
   v.bare = v.point = 0;
   d->progress = DONE;
   if (ev->kind == ENT_LET) {
@@ -327,8 +349,7 @@ static Value evaluate(Builder *b, AstId id, Context where, Name effect) {
 Value resolve(Builder *b, AstId id, Context where, Name effect) {
   if (!id) return FAILED;
   Value v = evaluate(b, id, where, effect);
-  if (!v.e && !b->diags->errors) /* a bug; but nothing a user wrote is left out in silence */
-    diag_error(b->diags, ast_expr(b->ast, id)->span, "internal error: `%s` has no value, and no reason is known", ast_short(b, id));
+  if (!v.e) report_silence(b, id);
   if (!v.e || !v.condition) return v;
   report_condition(b, id);
   return FAILED;
@@ -336,9 +357,22 @@ Value resolve(Builder *b, AstId id, Context where, Name effect) {
 
 /* --- values for something with a unit --- */
 
+/* pi/2 given to a name in degrees: it takes their unit, as 90 does, and is hardly meant so. */
+static void warn_degrees(Builder *b, const Value *v, Span span, const Unit *unit) {
+  if (v->n || expr_is_num(b->g, v->e) || !unit->text[0] || dim_found(b->dims, unit->dim) != DIM_NONE) return;
+  if (num_is_one(unit->factor) && !unit->pi_power) return;
+  long double *symbols = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1), x = 0;
+  symbols[b->m->pi] = 3.14159265358979323846264338327950288L;
+  expr_eval(b->g, &v->e, 1, symbols, &x);
+  const char *text = source_text(b, span);
+  diag_warning(b->diags, span, "`%s` is taken as %s [%s]", text, arena_printf(b->arena, "%.6Lg", x), unit->text);
+  diag_help(b->diags, "write `(%s) [rad]`, or `(%s) [%s]` where that is meant", text, text, unit->text);
+}
+
 Value values_in(Builder *b, Value v, Span span, const Unit *unit) {
   if (!v.e) return FAILED;
   if (v.bare) {
+    warn_degrees(b, &v, span, unit);
     for (uint32_t k = 0; k < parts_of(&v); k++) v.at[k] = times_unit(b, v.at[k], unit);
     return v;
   }

@@ -167,6 +167,16 @@ static void take_shapes(uint32_t k, uint32_t n, uint32_t *shapes) {
   for (uint32_t i = 0; i < n; i++, k /= 3) shapes[i] = kinds[k % 3];
 }
 
+/* What a try in vain has left: instances that failed, and whose messages were not heard. */
+static void forget_instances(Builder *b, uint32_t n) {
+  while (b->instances.n > n) {
+    const Instance *in = b->instances.at[--b->instances.n];
+    Definition *f = &b->functions.at[in->function];
+    f->instances = in->next;
+    f->progress = TODO;
+  }
+}
+
 void check_uncalled(Builder *b, uint32_t function) {
   enum { MOST_ARGS = 4 };
   const Definition *f = &b->functions.at[function];
@@ -179,9 +189,12 @@ void check_uncalled(Builder *b, uint32_t function) {
   for (uint32_t k = 0; k < tries && !good; k++) {
     take_shapes(k, n, shapes);
     b->diags = diags_new(b->arena, b->ast->sources);
+    uint32_t instances = b->instances.n;
     resolve_instance(b, function, shapes);
     good = !b->diags->errors;
-    if (!good) dims_undo(b->dims, mark);
+    if (good) break;
+    dims_undo(b->dims, mark);
+    forget_instances(b, instances);
   }
   b->diags = heard;
   take_shapes(0, n, shapes);

@@ -35,6 +35,7 @@ struct Eval {
   AstId *guarded;      /* the sum, product or `if` whose body or branch begins at node first + i, or 0 */
   VEC(Loop) loops;
   VEC(Value) terms;    /* of all open loops */
+  uint32_t rounds;     /* of all loops so far */
   VEC(Operand) operands;
 };
 

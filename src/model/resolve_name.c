@@ -1,5 +1,6 @@
 /* Names in expressions: what they stand for, members of families, components, parts of effects. */
 #include "model/resolve_impl.h"
+#include "sym/diff.h"
 
 const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const char *declare) {
   int ambiguous;
@@ -121,6 +122,28 @@ static int builtin_quantity(Eval *ev, Name name, Value *out) {
   return 1;
 }
 
+/* The coordinate that `p_x` is the momentum of; NULL: it is none, or something is called so. */
+static const Entity *momentum_of(const Eval *ev, Name name) {
+  int ambiguous;
+  Builder *b = ev->b;
+  if (ev->where < IN_OBSERVE || strncmp(name, "p_", 2) != 0 || !b->m->lagrangian || scope_find(&b->scope, name, ev->effect, &ambiguous)) return NULL;
+  const Entity *e = scope_find(&b->scope, intern(b->ast->names, name + 2), ev->effect, &ambiguous);
+  return e && e->kind == ENT_COORD && !ambiguous ? e : NULL;
+}
+
+/* dL/dq' of a coordinate, or of member `at` of a family. */
+static Value momentum_value(const Eval *ev, const Entity *e, const int64_t *at) {
+  Builder *b = ev->b;
+  uint32_t i = e->index + member_offset(e, at);
+  Value r = {.n = e->parts};
+  for (uint32_t k = 0; k < parts_of(&r); k++) {
+    SymId v = b->m->coords.at[i + k].v;
+    r.at[k] = expr_diff(b->g, b->m->lagrangian, v);
+    r.dim = dim_div(b->dims, b->energy, b->dim_of.at[v]);
+  }
+  return r;
+}
+
 /* The innermost index of that name, or NULL. */
 static const IndexVar *find_index(const Eval *ev, Name name) {
   for (uint32_t i = ev->index.n; i-- > 0;)
@@ -147,7 +170,9 @@ Value name_value(Eval *ev, const AstExpr *x) {
   int ambiguous;
   Value v;
   if (!scope_find(&b->scope, x->name, ev->effect, &ambiguous) && builtin_quantity(ev, x->name, &v)) return v;
-  const Entity *e = resolve_name(b, x->name, x->span, ev->effect, NULL);
+  const Entity *q = momentum_of(ev, x->name);
+  if (q && !q->ndims) return momentum_value(ev, q, NULL);
+  const Entity *e = q ? q : resolve_name(b, x->name, x->span, ev->effect, NULL);
   return e ? whole_value(ev, e, x->span) : FAILED;
 }
 
@@ -184,7 +209,7 @@ int index_in_range(Builder *b, const Entity *e, const int64_t *at, Span span) {
   return 0;
 }
 
-static Value indexed_value(Eval *ev, const Entity *e, const AstExpr *x) {
+static Value indexed_value(Eval *ev, const Entity *e, const AstExpr *x, int momentum) {
   Builder *b = ev->b;
   int64_t at[2] = {0};
   uint32_t n = 0;
@@ -209,13 +234,14 @@ static Value indexed_value(Eval *ev, const Entity *e, const AstExpr *x) {
     report_range(b, e, at, x->span, indices_text(ev));
     return FAILED;
   }
-  return entity_value(ev, member, at, x->span);
+  return momentum ? momentum_value(ev, e, at) : entity_value(ev, member, at, x->span);
 }
 
 Value index_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const AstExpr *of = ast_expr(b->ast, x->a);
   const Entity *e = NULL;
+  if (of->kind == AST_NAME && (e = momentum_of(ev, of->name))) return indexed_value(ev, e, x, 1);
   if (of->kind == AST_NAME) {
     e = resolve_name(b, of->name, of->span, ev->effect, NULL);
   } else if (of->kind == AST_MEMBER && ast_expr(b->ast, of->a)->kind == AST_NAME) {
@@ -228,7 +254,7 @@ Value index_value(Eval *ev, const AstExpr *x) {
   } else if (of->kind != AST_ERROR) {
     diag_error(b->diags, x->span, "an index stands directly behind the name of a family");
   }
-  return e ? indexed_value(ev, e, x) : FAILED;
+  return e ? indexed_value(ev, e, x, 0) : FAILED;
 }
 
 /* --- components --- */
@@ -252,7 +278,7 @@ Value member_value(Eval *ev, const AstExpr *x) {
   const Entity *e = scope_own(&b->scope, x->name, left->name);
   if (e) return whole_value(ev, e, x->span);
   int ambiguous;
-  if (scope_find(&b->scope, left->name, ev->effect, &ambiguous) || find_index(ev, left->name) ||
+  if (scope_find(&b->scope, left->name, ev->effect, &ambiguous) || momentum_of(ev, left->name) || find_index(ev, left->name) ||
       function_argument(b, ev->function, left->name)) {
     Value v = name_value(ev, left);
     return ev->waiting ? FAILED : component(ev, x, v);

@@ -317,6 +317,11 @@ int loop_next(Eval *ev) {
     v = FAILED;
   }
   if (v.e) vec_push(b->arena, &ev->terms, v);
+  if (v.e && ++ev->rounds > RANGE_MAX) {
+    diag_error(b->diags, x->span, "sums inside sums run through more than %d terms here", RANGE_MAX);
+    diag_help(b->diags, "take a sum that does not depend on the outer index out of it: `let s = sum(...)`");
+    v = FAILED;
+  }
   if (v.e && l->at < l->hi) {
     ev->index.at[ev->index.n - 1].at = ++l->at;
     return 1;

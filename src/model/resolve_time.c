@@ -58,6 +58,11 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
     diag_help(b->diags, "declare the derivative as an input of its own");
     return FAILED;
   }
+  if (kinds & second && !(kinds & 1u << SYM_ACC)) {
+    diag_error(b->diags, span, "a state has a rate, and no second one");
+    diag_help(b->diags, "write the derivative of what its flow says");
+    return FAILED;
+  }
   if (kinds & second) {
     diag_error(b->diags, span, "third derivatives do not occur in mechanics");
     return FAILED;
@@ -70,6 +75,11 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
   Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};
   const Expr *seed = time_seeds(b);
   expr_tangent(b->g, of.at, parts_of(&of), seed, b->nseeds + 1, "'", &b->rates, r.at);
+  if (where < IN_OBSERVE && kinds_in(b, &r) & second && !(kinds_in(b, &r) & 1u << SYM_ACC)) {
+    diag_error(b->diags, span, "the rate of a state may stand only in `expect`, `observe` and `output`");
+    diag_help(b->diags, "write what its flow says: a `let` may stand for both");
+    return FAILED;
+  }
   if (where < IN_OBSERVE && kinds_in(b, &r) & second) {
     diag_error(b->diags, span, "a second derivative may stand only in `expect` and `observe`");
     diag_help(b->diags, "L and forces are functions of q, q' and t; accelerations follow from them");

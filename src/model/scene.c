@@ -72,25 +72,6 @@ static void report_unknown(Builder *b, AstStmtKind kind, Span span, const char *
   else diag_help(b->diags, "the scenes are %s", all_scenes(b));
 }
 
-/* Names of scenes, and of effects, are each declared once. */
-static void check_twice(Builder *b) {
-  uint32_t n = 0, cap = 16;
-  for (const AstStmt *s = b->ast->first; s; s = s->next) n += s->kind == STMT_SCENE || s->kind == STMT_EFFECT;
-  while (cap < 2 * n) cap *= 2;
-  const AstStmt **seen = ARENA_ARRAY(b->arena, const AstStmt *, cap); /* by the address of the name */
-  for (const AstStmt *s = b->ast->first; s; s = s->next) {
-    if ((s->kind != STMT_SCENE && s->kind != STMT_EFFECT) || !s->name) continue;
-    uint32_t i = (uint32_t)((uintptr_t)s->name >> 4) & (cap - 1);
-    while (seen[i] && (seen[i]->name != s->name || seen[i]->kind != s->kind)) i = (i + 1) & (cap - 1);
-    if (!seen[i]) {
-      seen[i] = s;
-      continue;
-    }
-    diag_error(b->diags, s->name_span, "the %s `%s` is declared twice", s->kind == STMT_SCENE ? "scene" : "effect", s->name);
-    diag_also(b->diags, seen[i]->name_span, "first declared here");
-  }
-}
-
 /* The scene and those it is like, the farthest ancestor first; NULL-terminated. */
 static const AstStmt **scene_chain(Builder *b, const AstStmt *scene) {
   VEC(const AstStmt *) chain = {0};
@@ -125,10 +106,15 @@ static int uses(const Builder *b, Name effect) {
   return 0;
 }
 
+static int is_use_none(const AstStmt *st) { return st->kind == STMT_USE && strcmp(st->name, "none") == 0; }
+
 static void collect_uses(Builder *b, const AstStmt *scene) {
   for (const AstStmt *x = scene->body; x; x = x->next) {
     if (x->kind != STMT_USE) continue;
-    if (strcmp(x->name, "none") == 0) b->m->effects.n = 0;
+    if (is_use_none(x)) {
+      b->m->effects.n = 0;
+      if (x->body) diag_error(b->diags, x->body->span, "`use none` turns all effects off, and takes no values");
+    }
     else if (!find_stmt(b->ast, STMT_EFFECT, x->name)) report_unknown(b, STMT_EFFECT, x->name_span, x->name);
     else if (!uses(b, x->name)) vec_push(b->arena, &b->m->effects, x->name);
   }
@@ -181,6 +167,10 @@ static void take_model_name(Builder *b) {
     b->m->name = intern(b->ast->names, "model");
     return;
   }
+  if (m != b->ast->first) {
+    diag_error(b->diags, m->span, "the name of the model stands first");
+    diag_also(b->diags, b->ast->first->span, "this stands before it");
+  }
   b->m->name = m->name;
   b->m->doc = m->doc ? m->doc : "";
   b->m->span = m->name_span;
@@ -193,12 +183,15 @@ static void take_model_name(Builder *b) {
 
 void scene_select(Builder *b, const ModelChoice *choice) {
   take_model_name(b);
-  check_twice(b);
+  check_names_once(b);
   const AstStmt *st = choice->bare ? NULL : pick_scene(b, choice->scene);
   b->m->scene.name = st ? st->name : intern(b->ast->names, "default");
   b->m->scene.doc = st && st->doc ? st->doc : "";
   b->chain = scene_chain(b, st);
-  for (const AstStmt **s = b->chain; *s; s++) collect_uses(b, *s);
+  for (const AstStmt **s = b->chain; *s; s++) {
+    check_said_once(b, *s);
+    collect_uses(b, *s);
+  }
   if (choice->also) use_with_needs(b, choice->also);
   VEC(Name) in_order = {0};
   for (const AstStmt *s = b->ast->first; s; s = s->next) {
@@ -218,6 +211,11 @@ void scene_select(Builder *b, const ModelChoice *choice) {
 
 /* --- the scene's contents --- */
 
+static void report_no_member(Builder *b, Span span, Name effect, Name name) {
+  diag_error(b->diags, span, "no effect in use declares `%s.%s`", effect, name);
+  advise_unknown_member(b, effect, name);
+}
+
 /* The parameter or input that `c` or `drag.c` names; in `use drag(c = 1)`, effect is drag, and only its
  * own count. Reported when it is none; NULL then. */
 static const Entity *find_settable(Builder *b, AstId id, Name effect) {
@@ -227,10 +225,7 @@ static const Entity *find_settable(Builder *b, AstId id, Name effect) {
   if (member || (x->kind == AST_NAME && effect)) {
     Name owner = member ? ast_expr(b->ast, x->a)->name : effect;
     e = scope_own(&b->scope, x->name, owner);
-    if (!e) {
-      diag_error(b->diags, x->span, "no effect in use declares `%s.%s`", owner, x->name);
-      advise_unknown_member(b, owner, x->name);
-    }
+    if (!e) report_no_member(b, x->span, owner, x->name);
   } else if (x->kind == AST_NAME) {
     e = resolve_name(b, x->name, x->span, NULL, "param");
   } else if (x->kind != AST_ERROR) {
@@ -341,13 +336,15 @@ static void set_motion(Builder *b, const AstStmt *st) {
   int exact = st->kind == STMT_EXACT;
   Target p = read_target(b, st->lhs);
   const AstExpr *x = ast_expr(b->ast, st->lhs), *name = ast_expr(b->ast, p.stem);
-  if (p.wrong || p.primes > 1 || name->kind != AST_NAME) {
+  Name owner = name->kind == AST_MEMBER && !p.wrong ? ast_expr(b->ast, name->a)->name : NULL; /* e1.y */
+  if (p.wrong || p.primes > 1 || (name->kind != AST_NAME && !owner) || (owner && declared_in_use(b, owner, NULL))) {
     if (name->kind == AST_ERROR) return;
     if (exact) diag_error(b->diags, x->span, "a closed form is that of a coordinate, a velocity or a state: `exact x = x(0)*cos(w*t)`");
     else diag_error(b->diags, x->span, "a start gives a coordinate or a velocity: `start th = 90 [deg]`");
     return;
   }
-  const Entity *e = resolve_name(b, name->name, name->span, NULL, "coord");
+  const Entity *e = owner ? scope_own(&b->scope, name->name, owner) : resolve_name(b, name->name, name->span, NULL, "coord");
+  if (!e && owner) report_no_member(b, name->span, owner, name->name);
   if (!e) return;
   if (e->kind == ENT_NONE) return;
   if (e->kind != ENT_COORD && e->kind != ENT_STATE) {
@@ -410,6 +407,11 @@ static void monitor_exact(Builder *b, Monitor mon, Span span) {
 }
 
 static void set_monitor(Builder *b, const AstStmt *st) {
+  if (!st->lhs) {
+    diag_error(b->diags, st->name_span, "`monitor %s` has no limit", st->name);
+    diag_help(b->diags, "say what the drift may be: `monitor %s 1e-8`; `monitor none` drops what was said before", st->name);
+    return;
+  }
   const AstExpr *x = ast_expr(b->ast, st->lhs);
   Unit none = no_unit();
   Monitor mon = {.output = -1, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit")};
@@ -443,6 +445,12 @@ static void set_tolerance(Builder *b, const AstStmt *st) {
   Unit none = no_unit();
   b->m->scene.tolerance = resolve_number(b, st->rhs, &none, "the tolerance");
   if (b->m->scene.tolerance <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the tolerance must be positive");
+}
+
+static int is_monitor_none(const AstStmt *st) { return st->kind == STMT_MONITOR && !st->lhs && strcmp(st->name, "none") == 0; }
+
+static void exact_statement(Builder *b, const AstStmt *st) {
+  if (st->kind == STMT_EXACT) set_motion(b, st);
 }
 
 static void scene_statement(Builder *b, const AstStmt *st) {
@@ -484,40 +492,74 @@ static void default_outputs(Builder *b) {
   vec_push(b->arena, &sc->outputs, o);
 }
 
-/* Whether a statement gives a value to something of an effect that is declared, but turned off: it comes from a scene
- * that uses it, and that this one is like. */
-static int is_of_dropped_effect(Builder *b, const AstStmt *st) {
-  if (st->kind != STMT_SET) return 0;
+static int gives_value(const AstStmt *st) { return st->kind == STMT_SET || st->kind == STMT_START || st->kind == STMT_EXACT; }
+
+/* The effect whose own a statement gives a value to, in use or not; NULL: it is the model's. */
+static Name effect_given(Builder *b, const AstStmt *st) {
   int ambiguous;
   Target p = read_target(b, st->lhs);
   const AstExpr *x = ast_expr(b->ast, p.stem);
   if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME) {
     Name owner = ast_expr(b->ast, x->a)->name;
-    return !uses(b, owner) && effect_declares(find_stmt(b->ast, STMT_EFFECT, owner), x->name);
+    return effect_declares(find_stmt(b->ast, STMT_EFFECT, owner), x->name) ? owner : NULL;
   }
-  if (x->kind != AST_NAME || scope_find(&b->scope, x->name, NULL, &ambiguous)) return 0;
-  return declaring_effect(b, x->name) != NULL;
+  if (x->kind != AST_NAME) return NULL;
+  const Entity *e = scope_find(&b->scope, x->name, NULL, &ambiguous);
+  if (e) return e->effect;
+  const AstStmt *effect = declaring_effect(b, x->name);
+  return effect ? effect->name : NULL;
 }
 
-/* The statements of one kind, of the scene and of those that it is like. */
-static void each_of(Builder *b, AstStmtKind kind, void (*apply)(Builder *b, const AstStmt *st)) {
+/* Whether what a statement says of an effect has no part in the run: it stands before a `use none`, or it is about one that is
+ * turned off, and comes from a scene that uses it and that this one is like. */
+static int is_dropped(Builder *b, const AstStmt *st, int before_none, int inherited) {
+  if (st->kind == STMT_USE) return before_none;
+  if (!gives_value(st)) return 0;
+  Name effect = effect_given(b, st);
+  return effect && (before_none || (inherited && !uses(b, effect)));
+}
+
+/* The last such statement of the scene and those that it is like; NULL: there is none. */
+static const AstStmt *last_of(const Builder *b, int (*is)(const AstStmt *st)) {
+  const AstStmt *last = NULL;
   for (const AstStmt **s = b->chain; *s; s++)
     for (const AstStmt *x = (*s)->body; x; x = x->next)
-      if (x->kind == kind) apply(b, x);
+      if (is(x)) last = x;
+  return last;
+}
+
+/* Calls `apply` for the statements that have a part in the run. */
+static void each_said(Builder *b, void (*apply)(Builder *b, const AstStmt *st)) {
+  const AstStmt *none = last_of(b, is_use_none);
+  int before = none != NULL;
+  for (const AstStmt **s = b->chain; *s; s++)
+    for (const AstStmt *x = (*s)->body; x; x = x->next) {
+      before &= x != none;
+      if (!is_dropped(b, x, before, s[1] != NULL)) apply(b, x);
+    }
+}
+
+/* Monitors of outputs add to these; `monitor none` drops those that were said before it. */
+static void set_monitors(Builder *b) {
+  const AstStmt *none = last_of(b, is_monitor_none);
+  int before = none != NULL;
+  for (const AstStmt **s = b->chain; *s; s++)
+    for (const AstStmt *x = (*s)->body; x; x = x->next) {
+      before &= x != none;
+      if (x->kind == STMT_MONITOR && x != none && !before) set_monitor(b, x);
+    }
 }
 
 void scene_build(Builder *b, const ModelChoice *choice) {
   Scene *sc = &b->m->scene;
   sc->t1 = 10;
-  each_of(b, STMT_EXACT, set_motion); /* outputs speak of closed forms, */
-  for (const AstStmt **s = b->chain; *s; s++) {
-    for (const AstStmt *x = (*s)->body; x; x = x->next)
-      if (!s[1] || !is_of_dropped_effect(b, x)) scene_statement(b, x);
+  each_said(b, exact_statement); /* outputs speak of closed forms, */
+  each_said(b, scene_statement);
+  for (const AstStmt **s = b->chain; *s; s++)
     if ((*s)->doc) sc->doc = (*s)->doc;
-  }
   for (uint32_t i = 0; i < choice->ngiven; i++)
     set_value(b, &(AstStmt){.kind = STMT_SET, .lhs = choice->given[i].what, .rhs = choice->given[i].value}, NULL);
   if (!sc->outputs.n) default_outputs(b);
-  each_of(b, STMT_MONITOR, set_monitor); /* and monitors of outputs, to which they add */
+  set_monitors(b);
   for (uint32_t i = 0; i < choice->nasked; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
 }

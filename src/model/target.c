@@ -11,7 +11,10 @@ Target read_target(const Builder *b, AstId id) {
   int ambiguous;
   if (x->kind == AST_MEMBER) {
     const AstExpr *left = ast_expr(b->ast, x->a);
-    int component = left->kind == AST_INDEX || (left->kind == AST_NAME && !scope_own(&b->scope, x->name, left->name) &&
+    const AstExpr *owner = left->kind == AST_MEMBER ? ast_expr(b->ast, left->a) : NULL; /* wind.v.x */
+    int of_effect = owner && owner->kind == AST_NAME &&
+                    (scope_own(&b->scope, left->name, owner->name) || !scope_find(&b->scope, owner->name, NULL, &ambiguous));
+    int component = left->kind == AST_INDEX || of_effect || (left->kind == AST_NAME && !scope_own(&b->scope, x->name, left->name) &&
                                                 scope_find(&b->scope, left->name, NULL, &ambiguous));
     if (component) {
       p.part = strcmp(x->name, "x") == 0 ? 0 : strcmp(x->name, "y") == 0 ? 1 : strcmp(x->name, "z") == 0 ? 2 : 3;

@@ -16,8 +16,9 @@ void not_yet(Builder *b, Span span, const char *what) {
   diag_help(b->diags, "lagc understands the syntax but cannot give it meaning in this version");
 }
 
-const char *ast_text(const Builder *b, AstId id) {
-  Span s = ast_expr(b->ast, id)->span;
+const char *ast_text(const Builder *b, AstId id) { return source_text(b, ast_expr(b->ast, id)->span); }
+
+const char *source_text(const Builder *b, Span s) {
   Place p = source_place(b->ast->sources, s.begin);
   if (!p.file || s.end <= s.begin) return "";
   StrBuf out = strbuf(b->arena);

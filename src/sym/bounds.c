@@ -36,6 +36,14 @@ void prove_state(const ExprGraph *g, uint32_t seed, long double *symbols) {
   for (SymId s = 1; s <= expr_symbol_count(g); s++) symbols[s] = state_value(expr_symbol(g, s), s, seed);
 }
 
+void prove_state_wide(const ExprGraph *g, uint32_t seed, long double *symbols) {
+  prove_state(g, seed, symbols);
+  for (SymId s = 1; s <= expr_symbol_count(g); s++) {
+    SymKind kind = expr_symbol(g, s)->kind;
+    if (kind == SYM_COORD || kind == SYM_STATE || kind == SYM_TIME) symbols[s] *= 4;
+  }
+}
+
 /* --- bounds --- */
 
 /* Values and bounds of the nodes in question, by place in their list. */
@@ -55,7 +63,7 @@ static Real sum_bound(const Bounds *b, Expr e) {
   for (uint32_t i = 0; i < n; i++) {
     Num c;
     Expr t = expr_pair(b->g, e, EX_SUM, i, &c);
-    bound += fabsl((Real)num_value(c)) * bound_of(b, t);
+    bound += fabsl((Real)num_value(c)) * bound_of(b, t) + (num_error(c) > 0 ? (Real)num_error(c) * (fabsl(value_of(b, t)) + bound_of(b, t)) : 0);
     size += fabsl((Real)num_value(c) * value_of(b, t));
   }
   return bound + (Real)(n + 2) * LDBL_EPSILON * size;
@@ -68,6 +76,7 @@ static Real prod_bound(const Bounds *b, Expr e, Real value) {
     Expr x = expr_pair(b->g, e, EX_PROD, i, &k);
     Real size = fabsl((Real)num_value(k));
     relative += size * bound_of(b, x) / fabsl(value_of(b, x)) + (size + 4) * LDBL_EPSILON;
+    if (num_error(k) > 0) relative += (Real)num_error(k) * fabsl(logl(fabsl(value_of(b, x))));
   }
   return isnan(relative) ? INFINITY : relative * fabsl(value);
 }
@@ -126,7 +135,7 @@ static Real unary_bound(const Bounds *b, Expr e, Real f) {
 
 static Real node_bound(const Bounds *b, Expr e, Real value, const Real *errors) {
   switch (expr_op(b->g, e)) {
-    case EX_NUM: return LDBL_EPSILON * fabsl(value);
+    case EX_NUM: return LDBL_EPSILON * fabsl(value) + (Real)num_error(expr_number(b->g, e));
     case EX_SYM: return errors ? errors[expr_sym_id(b->g, e)] : 0;
     case EX_SUM: return sum_bound(b, e);
     case EX_PROD: return prod_bound(b, e, value);

@@ -396,7 +396,9 @@ static Expr truth(ExprGraph *g, int yes) { return yes ? g->one : g->zero; }
 
 static Expr fold_fn2(ExprGraph *g, ExprOp op, Expr a, Expr b) {
   int numbers = expr_is_num(g, a) && expr_is_num(g, b);
-  int cmp = numbers ? num_cmp(expr_number(g, a), expr_number(g, b)) : 0;
+  Num gap = numbers ? num_sub(expr_number(g, a), expr_number(g, b)) : num_int(0);
+  int cmp = num_sign(gap);
+  numbers &= num_sign_is_sure(gap);
   switch (op) {
     case EX_LT: return numbers ? truth(g, cmp < 0) : a == b ? g->zero : 0;
     case EX_LE: return numbers ? truth(g, cmp <= 0) : a == b ? g->one : 0;

@@ -113,7 +113,7 @@ Expr expr_num(ExprGraph *g, Num v) {
   }
   int s = num_sign(v);
   Node n = {.op = EX_NUM, .payload = g->numbers.n};
-  n.sign = s > 0 ? SIGN_POSITIVE : s < 0 ? SIGN_NEGATIVE : SIGN_NONNEGATIVE;
+  n.sign = !num_sign_is_sure(v) ? SIGN_UNKNOWN : s > 0 ? SIGN_POSITIVE : s < 0 ? SIGN_NEGATIVE : SIGN_NONNEGATIVE;
   vec_push(g->arena, &g->numbers, v);
   return add_node(g, n, hash);
 }
@@ -224,7 +224,9 @@ static ExprSign sum_sign(const ExprGraph *g, const Expr *args, uint32_t n) {
   int all_nonneg = 1, all_nonpos = 1, strict = 0;
   for (uint32_t i = 0; i < n; i += 2) {
     ExprSign s = expr_sign(g, args[i]);
-    if (num_sign(expr_number(g, args[i + 1])) < 0) s = flip(s);
+    Num c = expr_number(g, args[i + 1]);
+    if (!num_sign_is_sure(c)) return SIGN_UNKNOWN;
+    if (num_sign(c) < 0) s = flip(s);
     all_nonneg &= is_nonneg(s);
     all_nonpos &= is_nonpos(s);
     strict |= s == SIGN_POSITIVE || s == SIGN_NEGATIVE;

@@ -16,9 +16,10 @@ static int clearly_nonzero(long double value, long double bound) {
 
 static Verdict nonzero_by_value(ExprGraph *g, Expr e) {
   long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
-  for (uint32_t seed = 1; seed <= STATES; seed++) {
+  for (uint32_t seed = 1; seed <= 2 * STATES; seed++) {
     long double bound, value;
-    prove_state(g, seed, symbols);
+    if (seed <= STATES) prove_state(g, seed, symbols);
+    else prove_state_wide(g, seed, symbols);
     value = prove_value(g, e, symbols, NULL, &bound);
     if (clearly_nonzero(value, bound)) return PROVED_NONZERO;
   }
@@ -353,9 +354,10 @@ static Verdict system_nonzero_by_value(const System *s) {
   Arena *a = expr_arena(s->g);
   uint32_t count = expr_symbol_count(s->g) + 1;
   long double *symbols = ARENA_ARRAY(a, long double, count), *errors = ARENA_ARRAY(a, long double, count);
-  for (uint32_t seed = 1; seed <= STATES; seed++) {
+  for (uint32_t seed = 1; seed <= 2 * STATES; seed++) {
     long double bound;
-    prove_state(s->g, seed, symbols);
+    if (seed <= STATES) prove_state(s->g, seed, symbols);
+    else prove_state_wide(s->g, seed, symbols);
     if (!solve_at(s, symbols, errors)) continue;
     long double value = prove_value(s->g, s->e, symbols, errors, &bound);
     if (clearly_nonzero(value, bound)) return PROVED_NONZERO;

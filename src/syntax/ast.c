@@ -55,7 +55,7 @@ AstId ast_declared(Ast *ast, Ident name) {
 }
 
 /* A unit belongs to the whole literal before it: -5 [degC] is minus five degrees, 1/2 [m] half a
- * metre. The unit was attached to the last number; here it changes places with its new operand. */
+ * metre, -1/2 [m] minus half a metre. The unit was attached to the last number; here it changes places with its new operand. */
 static AstId lift_unit(Ast *ast, AstExpr outer, AstId unit_id) {
   AstExpr unit = *at(ast, unit_id);
   AstId id = append(ast, unit); /* the same unit, now around what is put into its old place */
@@ -83,9 +83,15 @@ AstId ast_unary(Ast *ast, AstKind kind, Span span, Span op, AstId a) {
   return append(ast, e);
 }
 
+/* 1, -1: what may stand above the line of a fraction that has a unit. */
+static int is_signed_number(const Ast *ast, AstId id) {
+  while (ast_expr(ast, id)->kind == AST_NEG) id = ast_expr(ast, id)->a;
+  return ast_expr(ast, id)->kind == AST_NUM;
+}
+
 AstId ast_binary(Ast *ast, AstKind kind, Span span, Span op, AstId a, AstId b) {
   AstExpr e = {.kind = kind, .span = span, .op_span = op, .a = a, .b = b};
-  if (kind == AST_DIV && ast_expr(ast, a)->kind == AST_NUM && is_number_with_unit(ast, b))
+  if (kind == AST_DIV && is_signed_number(ast, a) && is_number_with_unit(ast, b))
     return lift_unit(ast, e, b);
   return append(ast, e);
 }

@@ -32,7 +32,7 @@ src/main.c        picture.h help.h complete.h settings.h wants.h
 src/wants.c       wants.h
 src/picture.c     picture.h
 src/help.c        help.h
-src/complete.c    complete.h help.h
+src/complete.c    complete.h help.h settings.h
 src/settings.c    settings.h
 '
 # The inside of a folder, shared by its own files only.

@@ -76,4 +76,10 @@ check 'a derivative past the range of a double' limit overflow 1 'a number in th
 check '50,000 primes' limit primes 1 'second derivative'
 { lines 1000 'printf "let a%d = a%d\n", i, i % 1000 + 1'; echo "lagrangian = x'^2/2"; } | model ring
 check 'a ring of 1,000 lets' limit ring 1 'defined by itself'
+{ printf "lagrangian = x'^2/2 + "; lines 40 'printf "sum(i in 1..2, "'; printf x; lines 40 'printf ")"'; echo; } | model sums
+check '40 sums inside each other' limit sums 1 'sums inside sums run through more than'
+{ lines 20000 'printf "let a%d = q%d\n", i, i'; echo "lagrangian = x'^2/2"; } | model unknown
+check '20,000 unknown names' limit unknown 1 'unknown name'
+echo "lagrangian = x'^2/2 - sum(i in 1..1000000, i)*x" | model longest
+check 'the longest range there may be' timeout 60 "$LAGC" check "$dir/longest.lag"
 tap_end

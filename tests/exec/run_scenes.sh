@@ -106,6 +106,57 @@ check "a constant" says 2 'write -D n=5' "$LAGC" run "$m" n=5
 near "a parameter that follows another" 1e-12 "$(calc '(1 + 4 + 9)/2 + 5*4/2 + 9*2/2')" "$(final energy "$m" vacuum mr=4)"
 near "and is given" 1e-12 "$(calc '(1 + 4 + 9)/2 + 5*4/2 + 9/2')" "$(final energy "$m" vacuum mr=4 half=1)"
 
+# ---- names of effects
+cat >"$dir/e.lag" <<'END'
+model e "effects with names of their own"
+coord x [m]
+param m = 1 [kg] > 0, k = 4 [N/m], c = 7 [kg/s], v = (1, 2)
+lagrangian = m/2*x'^2 - k/2*x^2
+effect drag { param c = 1 [kg/s], w[2] = 1, u = (1, 2); dissipation = c/2*x'^2; observe cc = c + w[1]*0 [kg/s]; observe uu = u.y; observe ww = w[2] }
+effect e1 { coord y [m]; lagrangian = m*y'^2/2 - k/2*y^2 }
+effect e2 { coord y [m], z[2] [m]; lagrangian = m*y'^2/2 - k/2*y^2 + m/2*(z[1]'^2 + z[2]'^2) }
+scene s { use drag(c=3); start x=1; span 1; output c, drag.c, cc, uu, ww every 1}
+scene n6 { like s; use none; use drag }
+scene n7 { like s; use none, drag }
+scene n9 { like n6; use drag }
+scene n10 { drag.c = 2; like n6 }
+scene n11 { like s; drag.u.y = 9; drag.w[2] = 5 }
+scene n12 { use drag(u.y = 8), e1, e2; start e1.y = 1 [m], e2.y = 2, e2.z[2] = 3, x = 4; span 1 }
+scene n13 { like n12; use none; use e1; start y = 5 }
+END
+e=$dir/e.lag
+first() { "$LAGC" run "$e" "$@" -o - --quiet 2>/dev/null | sed -n 2p | cut -d, -f2-; }
+check "an effect's name may be one of the model, declared before it" "$LAGC" check "$e"
+is "use drag(c = 3): the effect's c, not the model's" '7,3,3,2,1' "$(first s)"
+is "use none drops what was said before: used again" '7,1,1,2,1' "$(first n6)"
+is "in one statement" '7,1,1,2,1' "$(first n7)"
+is "through one more scene" '7,1,1,2,1' "$(first n9)"
+is "what is said after it stays" '7,2,2,2,1' "$(first n10)"
+is "components and members in a scene" '7,3,3,9,5' "$(first n11)"
+is "and on the command line" '7,3,3,4,6 7,3,3,4,6' "$(first s u.y=4 w=6) $(first s drag.u.y=4 'drag.w[1]=6' 'w[2]=6')"
+is "coordinates of one name in two effects" "t [s],x [m],e1.y [m],e2.y [m],z[1] [m],z[2] [m]" \
+  "$("$LAGC" run "$e" n12 -o - --quiet 2>/dev/null | sed -n 1p | cut -d, -f1-6)"
+is "start somewhere" "4,1,2,0,3" "$(first n12 | cut -d, -f1-5)"
+is "on the command line too" "4,7,2,0,3" "$(first n12 e1.y=7 | cut -d, -f1-5)"
+is "one of them has its plain name, and starts of the others are dropped" "4,5,0,0" "$(first n13 | cut -d, -f1-4)"
+
+# ---- momenta: m*(x' + l*th[1]') = 2, m*l^2*th[2]' = 36, m*r' = (2, 4), m*b[2]' = (6, 8)
+cat >"$dir/p.lag" <<'END'
+model p
+coord x [m], th[2] [rad], r: vec2 [m], b[2]: vec2 [m]
+param m = 2 [kg], l = 3 [m], q = 5 [kg*m/s]
+let px = x + l*sin(th[1])
+lagrangian = m/2*px'^2 + m*l^2/2*(th[1]'^2 + th[2]'^2) + m/2*(dot(r', r') + dot(b[1]', b[1]') + dot(b[2]', b[2]')) - 1 [N]*x
+observe a = p_x
+observe c[1] = p_th[2]
+observe d = p_r + p_b[2]
+expect p_x = m*px'
+expect p_b[2].y = m*b[2].y'
+scene s { start th[2]' = 2, x' = 1, r' = (1, 2), b[2]' = (3, 4); output a, c[1], d, p_x, p_th[2], p_r, p_r.x, p_b[1], p_b[2].y, l*p_x every 1; span 1 [s] }
+END
+is "momenta" "2,36,8,12,2,36,2,4,2,0,0,8,6" "$("$LAGC" run "$dir/p.lag" -o - --quiet 2>/dev/null | sed -n 2p | cut -d, -f2-)"
+check "in expectations" sh -c '"$0" check "$1" | grep -q "2 of 2 expectations proved"' "$LAGC" "$dir/p.lag"
+
 # ---- -D on every command
 five() { "$@" 2>&1 | grep -q 'x\[5\]\|x_5\|X_5\|7 coord\|ok'; }
 has_five() { grep -q 'x\[5\]\|X_5' "$1"; }
@@ -119,6 +170,32 @@ check "-D: check" says 1 'out of range' sh -c 'sed "s/start x.i in 1..n./start x
 check "-D: build" five "$dir/sim" "x[5]'=2"
 check "-D: plot" has_five "$dir/p.svg"
 check "-D: animate" has_five "$dir/p.html"
+
+cat >"$dir/c.lag" <<'END'
+model c "Constants of the command line"
+const A = -2, h = 50 [cm], w = 2*3 [rad/s]
+coord x [m], th [deg]
+param a = A, b [m] = h, f = w
+lagrangian = 1 [kg]/2*x'^2 + 1 [kg*m^2]/2*th'^2
+scene s { start x = h; output a, b, f; span 1 }
+scene minus { start th = -1/2 [deg] }
+scene minuses { start th = --1/2 [deg] }
+scene plus { start th = +1/2 [deg] }
+END
+c=$dir/c.lag
+constants() { "$LAGC" run "$c" s -o - --quiet "$@" 2>/dev/null | sed -n 2p | cut -d, -f2-; }
+is "-D: as declared" '-2,0.5,6' "$(constants)"
+is "-D: signs" '-3,0.5,6 -0.5,0.5,6 3,0.5,6 3,0.5,6' "$(constants -D A=-3) $(constants -DA=-.5) $(constants -D A=+3) $(constants -D A=--3)"
+is "-D: a bare number is in the declared unit, or that of the value" '-2,0.25,7' "$(constants -D h=25 -D w=7)"
+is "-D: units and formulas" '6,0.02,0.5' "$(constants -D 'A=2*3' -D 'h=20[mm]' -D 'w=(A/12) [rad/s]')"
+check "-D: a number without end" says 1 '-D A:1:' "$LAGC" check "$c" -D A=1e
+check "-D: a sign alone" says 1 'expected an expression after' "$LAGC" check "$c" -D A=-
+check "-D: an unknown name" says 1 'unknown name `B`' "$LAGC" check "$c" -D A=B
+check "-D: the wrong unit" says 1 'this value is in \[s\]' "$LAGC" check "$c" -D 'h=2[s]'
+check "-D: the wrong shape" says 1 '`h` is a number, and a vector of 2 components is given here' "$LAGC" check "$c" -D 'h=(1,2)'
+near "a negative fraction has the unit" 1e-12 -0.5 "$(final th "$c" minus)"
+near "with two signs" 1e-12 0.5 "$(final th "$c" minuses)"
+near "with a plus" 1e-12 0.5 "$(final th "$c" plus)"
 
 # ---- include: relative to the file that says it
 printf 'model whole "in parts"\ninclude "parts/body.lag"\nscene s { span 2 [s] }\n' >"$dir/whole.lag"
@@ -220,6 +297,14 @@ coord x
 lagrangian = x'^2/2 - x^2/2
 scene s { start x = 1; monitor energy 1e-6; span 10 }
 END
+cat >>"$dir/e.lag" <<'END'
+scene dropped { like s; monitor none }
+scene other { like s; monitor none, (x^2) 9 }
+END
+check "monitor none: no monitor" "$LAGC" run "$dir/e.lag" dropped --quiet --method 'rk4(step=0.5)'
+check "and then another" "$LAGC" run "$dir/e.lag" other --quiet --method 'rk4(step=0.5)'
+is "the column of what was dropped is gone" "t [s],x,x',energy,x^2" "$("$LAGC" run "$dir/e.lag" other --quiet -o - 2>/dev/null | sed -n 1p)"
+check "a monitor without a limit" says 1 '`monitor energy` has no limit' sh -c 'echo "scene n { monitor energy }" | cat "$1/e.lag" - >"$1/h.lag"; "$0" check "$1/h.lag"' "$LAGC" "$dir"
 check "an expression needs parentheses" says 1 'what stands in parentheses' \
   sh -c 'sed "s/energy 1e-6/x + 1 1e-6/" "$1/e.lag" >"$1/g.lag"; "$0" check "$1/g.lag"' "$LAGC" "$dir"
 check "energy: rk45 holds it" "$LAGC" run "$dir/e.lag" --quiet

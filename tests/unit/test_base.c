@@ -107,6 +107,47 @@ static void test_parse(void **state) {
   assert_num(parse("0.000000000000000001"), 1, 1000000000000000000);
 }
 
+/* Numbers beyond 64 bits: differences are 0 where they are, and nowhere else; errors are bounded. */
+static void test_num_inexact(void **state) {
+  (void)state;
+  Num one = num_int(1), tiny = parse("1e-20"), large = parse("1e20"), near = num_add(one, tiny);
+  assert_false(num_is_exact(near));
+  assert_false(num_is_one(near));
+  assert_false(num_equal(near, num_add(one, parse("2e-20"))));
+  assert_true(num_equal(near, num_add(tiny, one)));
+  assert_true(num_is_zero(num_sub(near, near)));
+  Num gap = num_sub(near, one);
+  assert_false(num_is_zero(gap));
+  assert_false(num_sign_is_sure(gap));
+  assert_true(num_is_lost(gap));
+  assert_true(num_is_zero(num_sub(num_sub(near, one), tiny))); /* as it is, however it was computed */
+  assert_false(num_is_zero(num_mul(parse("1e-200"), parse("1e-200"))));
+  assert_true(num_is_lost(num_mul(parse("1e-200"), parse("1e-200"))));
+  assert_true(num_is_lost(num_sub(num_add(large, one), large)));
+  assert_false(num_equal(parse("123456789012345678901"), parse("123456789012345678902")));
+  assert_true(num_equal(parse("1.50e-30"), parse("0.15e-29")));
+  assert_true(num_is_zero(num_sub(num_mul(large, num_ratio(1, 3)), num_div(large, num_int(3)))));
+  int exact;
+  Num third = num_pow(num_ratio(1, 3), num_int(60), &exact), back = num_pow(num_int(3), num_int(60), &exact);
+  assert_false(exact);
+  assert_true(num_is_zero(num_sub(num_mul(third, back), one)));
+  assert_true(num_is_zero(num_sub(num_neg(near), num_neg(near))));
+  assert_true(num_is_zero(num_add(near, num_neg(near))));
+  assert_int_equal(num_sign(num_neg(large)), -1);
+  assert_true(num_sign_is_sure(large));
+  Num eV = parse("1.602176634e-19"), same = num_div(num_int(1602176634), num_pow(num_int(10), num_int(28), &exact));
+  assert_true(num_is_zero(num_sub(eV, same)));
+  /* against long double, which has eleven bits more: the value is within its bound, and the bound is a few roundings */
+  for (int i = 0; i < 2000; i++) {
+    int64_t p = between(INT64_MAX / 2, INT64_MAX), q = between(INT64_MAX / 2, INT64_MAX);
+    Num sum = num_add(num_ratio(p, 7), num_ratio(q, 11)), product = num_mul(num_int(p), num_ratio(q, 3));
+    long double s = (long double)p / 7 + (long double)q / 11, m = (long double)p * ((long double)q / 3);
+    if (!num_is_exact(sum)) assert_true(fabsl(num_value(sum) - s) <= num_error(sum) + 1e-18L * s);
+    if (!num_is_exact(product)) assert_true(fabsl(num_value(product) - m) <= num_error(product) + 1e-18L * m);
+    if (!num_is_exact(product)) assert_true(num_error(product) <= 1e-14 * num_value(product));
+  }
+}
+
 /* What is printed reads back as the same number. */
 static void test_print(void **state) {
   (void)state;
@@ -372,7 +413,7 @@ int main(void) {
     cmocka_unit_test(test_gcd),          cmocka_unit_test(test_arena),          cmocka_unit_test(test_intern),
     cmocka_unit_test(test_strbuf),       cmocka_unit_test(test_diag_layout),    cmocka_unit_test(test_diag_utf8),
     cmocka_unit_test(test_diag_long_line), cmocka_unit_test(test_diag_edges),   cmocka_unit_test(test_diag_many),
-    cmocka_unit_test(test_suggest),
+    cmocka_unit_test(test_num_inexact),  cmocka_unit_test(test_suggest),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -164,7 +164,7 @@ static void test_brackets(void **state) {
   expect_expr("{1, 2} [m]", "(unit (list 1 2) [m])");
   expect_expr("-90 [deg]", "(unit (- 90) [deg])");
   expect_expr("1/2 [m]", "(unit (/ 1 2) [m])");
-  expect_expr("-1/2 [m]", "(/ (- 1) (unit 2 [m]))");
+  expect_expr("-1/2 [m]", "(unit (/ (- 1) 2) [m])");
   expect_expr("x/2 [m]", "(/ x (unit 2 [m]))");
   expect_expr("x - 1 [m]", "(- x (unit 1 [m]))");
   expect_no_expr("(a, b)[m]");

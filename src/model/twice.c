@@ -1,0 +1,83 @@
+/* What may be said once: names, and settings. Where the second would silently win, it is an error. */
+#include "model/builder.h"
+
+void check_names_once(Builder *b) {
+  uint32_t n = 0, cap = 16;
+  for (const AstStmt *s = b->ast->first; s; s = s->next) n += s->kind == STMT_SCENE || s->kind == STMT_EFFECT;
+  while (cap < 2 * n) cap *= 2;
+  const AstStmt **seen = ARENA_ARRAY(b->arena, const AstStmt *, cap); /* by the address of the name */
+  for (const AstStmt *s = b->ast->first; s; s = s->next) {
+    if ((s->kind != STMT_SCENE && s->kind != STMT_EFFECT) || !s->name) continue;
+    if (s->kind == STMT_EFFECT && strcmp(s->name, "none") == 0) {
+      diag_error(b->diags, s->name_span, "an effect cannot be called `none`: `use none` turns all off");
+      diag_help(b->diags, "choose another name");
+    }
+    uint32_t i = (uint32_t)((uintptr_t)s->name >> 4) & (cap - 1);
+    while (seen[i] && (seen[i]->name != s->name || seen[i]->kind != s->kind)) i = (i + 1) & (cap - 1);
+    if (!seen[i]) {
+      seen[i] = s;
+      continue;
+    }
+    diag_error(b->diags, s->name_span, "the %s `%s` is declared twice", s->kind == STMT_SCENE ? "scene" : "effect", s->name);
+    diag_also(b->diags, seen[i]->name_span, "first declared here");
+  }
+}
+
+static Scope *new_scope(Builder *b) {
+  Scope *s = ARENA_NEW(b->arena, Scope);
+  s->arena = b->arena;
+  return s;
+}
+
+void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span) {
+  Name key = intern_printf(b, "%s `%s`", what, name);
+  if (!b->named) b->named = new_scope(b);
+  const Entity *old = scope_own(b->named, key, effect);
+  if (!old) {
+    scope_add(b->named, (Entity){.name = key, .effect = effect, .span = span});
+    return;
+  }
+  diag_error(b->diags, span, "the %s is declared twice", key);
+  diag_also(b->diags, old->span, "first declared here");
+}
+
+/* What a statement says, as a text that is the same for what would take its place; NULL: it may be said often. */
+static Name said_key(Builder *b, const AstStmt *st, const char *owner) {
+  switch (st->kind) {
+    case STMT_SPAN: return intern_printf(b, "span");
+    case STMT_METHOD: return intern_printf(b, "method");
+    case STMT_TOLERANCE: return intern_printf(b, "tolerance");
+    case STMT_OUTPUT: return intern_printf(b, "output");
+    case STMT_LIKE: return intern_printf(b, "like");
+    case STMT_MONITOR: return intern_printf(b, "monitor %s", st->lhs ? ast_text(b, st->lhs) : st->name);
+    case STMT_START: return intern_printf(b, "start %s", ast_text(b, st->lhs));
+    case STMT_EXACT: return intern_printf(b, "exact %s", ast_text(b, st->lhs));
+    case STMT_SET: return intern_printf(b, "%s%s = ...", owner, ast_text(b, st->lhs));
+    default: return NULL;
+  }
+}
+
+static void check_said(Builder *b, Scope *said, const AstStmt *st, const char *owner) {
+  Name key = said_key(b, st, owner);
+  const Entity *old = key ? scope_own(said, key, NULL) : NULL;
+  if (key && !old) scope_add(said, (Entity){.name = key, .span = st->span});
+  if (!old) return;
+  diag_error(b->diags, st->span, "`%s` is said twice: the second would win", key);
+  diag_help(b->diags, "leave out one of them");
+  diag_also(b->diags, old->span, "first said here");
+}
+
+void check_said_once(Builder *b, const AstStmt *block) {
+  Scope *said = new_scope(b);
+  for (const AstStmt *x = block->body; x; x = x->next) {
+    if (x->kind != STMT_USE && x->kind != STMT_METHOD) {
+      check_said(b, said, x, "");
+      continue;
+    }
+    if (x->kind == STMT_USE && strcmp(x->name, "none") == 0) said = new_scope(b); /* what stands before has no part in the run */
+    if (x->kind == STMT_METHOD) check_said(b, said, x, "");
+    Scope *values = x->kind == STMT_METHOD ? new_scope(b) : said;
+    const char *owner = x->kind == STMT_USE ? arena_printf(b->arena, "%s.", x->name) : "";
+    for (const AstStmt *o = x->body; o; o = o->next) check_said(b, values, o, owner);
+  }
+}
