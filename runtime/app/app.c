@@ -28,7 +28,7 @@ static double seconds_since(const struct timespec *t)
 }
 
 /* After each step: Ctrl-C, and the progress line (a terminal, after 1 s, at most 5 times a second). */
-static int after_step(void *context, const lag_sim *sim)
+int app_after_step(void *context, const lag_sim *sim)
 {
   App *app = context;
 
@@ -38,7 +38,7 @@ static int after_step(void *context, const lag_sim *sim)
     clock_gettime(CLOCK_MONOTONIC, &app->shown);
     app->progress = 1;
   }
-  return interrupted != 0 || app->bad_file;
+  return interrupted != 0 || app->bad_file || app->section_rc;
 }
 
 /* ---- What to compute */
@@ -87,7 +87,7 @@ static int same_file(const char *a, const char *b)
 }
 
 /* A mistyped name must not cost the model, the simulator or another result. */
-static int check_outputs(const App *app)
+int app_check_outputs(const App *app)
 {
   const Args *a = &app->args;
   const char *const to[] = {a->out, a->svg, a->html, a->save, a->events}, *const keep[] = {app->program->source, "/proc/self/exe", a->resume};
@@ -132,7 +132,7 @@ static int choose_grid(App *app)
     every = fabs(app->until - t) / (a->out || a->svg ? 1000 : 280); /* 280: the dots across a sketch, twice */
     origin = t;
   }
-  if ((a->out || a->svg || a->html || a->sketch) && fabs(app->until - t) / every > 1e9) {
+  if (app->section < 0 && (a->out || a->svg || a->html || a->sketch) && fabs(app->until - t) / every > 1e9) {
     return app_error(a, "a row every %g s for %g s is %.3g rows; write a larger --every", every, fabs(app->until - t),
                      fabs(app->until - t) / every);
   }
@@ -155,12 +155,13 @@ static double row_time(const App *app, const double *grid)
 
 /* ---- Running */
 
-static int put_row(App *app)
+int app_put_row(App *app)
 {
   double t = lag_sim_time(app->sim);
 
   app->row[0] = app->last_row = t;
   int rc = lag_sim_outputs(app->sim, app->row + 1);
+  rc = rc ? rc : tangent_row(app);
   if (rc) {
     return rc;
   }
@@ -186,7 +187,7 @@ static int run_rows(App *app)
       app->until = t; /* the same time but for rounding */
     }
     rc = interrupted ? LAG_INTERRUPTED : lag_sim_advance(app->sim, t);
-    rc = rc ? rc : put_row(app);
+    rc = rc ? rc : app_put_row(app);
     grid[2] += rc == 0;
   }
   return rc;
@@ -194,20 +195,23 @@ static int run_rows(App *app)
 
 static void run(App *app)
 {
-  int rows = app->args.out || app->table.keep, rc = rows ? run_rows(app) : 0;
+  int rows = (app->args.out || app->table.keep) && app->section < 0, rc = rows ? run_rows(app) : 0;
 
   if (rc == 0) {
     rc = lag_sim_advance(app->sim, app->until);
   }
   if (rows && rc >= 0 && app->last_row != lag_sim_time(app->sim)) {
-    int bad = put_row(app);
+    int bad = app_put_row(app);
     rc = bad ? bad : rc;
   }
-  app->status = app->bad_file ? LAG_EIO : rc;
-  app->wall = seconds_since(&app->begun);
-  if (app->progress > 0) {
-    fputs("\r\33[K", stderr);
-  }
+  app->status = app->bad_file ? LAG_EIO : app->section_rc && rc >= 0 ? app->section_rc : rc;
+  app_unwatch(app);
+}
+
+static void on_event(void *context, int k, double t, const double *before, const double *after)
+{
+  events_note(context, k, t, before, after);
+  section_note(context, k);
 }
 
 /* ---- Files */
@@ -232,6 +236,10 @@ static int open_output(App *app, int *plot_x, int *plot_y)
   if (table_init(&app->table, app->sim, a->svg || a->sketch || a->html) ||
       !(app->row = calloc((size_t)app->table.ncols, sizeof *app->row))) {
     return app_error(a, "out of memory");
+  }
+  app->table.points = app->section >= 0;
+  if (tangent_open(app)) {
+    return EXIT_USAGE;
   }
   if ((a->plot_x && (*plot_x = app_column(app, a->plot_x)) < 0) || (a->plot_y && (*plot_y = app_column(app, a->plot_y)) < 0)) {
     return EXIT_USAGE;
@@ -273,7 +281,7 @@ static int save_state(const App *app)
 static int finish(App *app, int plot_x, int plot_y)
 {
   const Args *a = &app->args;
-  int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? EXIT_SIGNAL + interrupted : EXIT_FINE, bad = 0;
+  int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? app_interrupted() : EXIT_FINE, bad = 0;
   int on_stdout = (a->out && strcmp(a->out, "-") == 0) || (a->events && strcmp(a->events, "-") == 0);
   FILE *f = on_stdout ? stderr : stdout;
   char title[300];
@@ -291,7 +299,8 @@ static int finish(App *app, int plot_x, int plot_y)
   if (rows_close(&app->log_rows, 1)) {
     bad = app_io_error(app, a->events);
   }
-  snprintf(title, sizeof title, "%s: %s", app->scene->model->name, app->scene->name);
+  snprintf(title, sizeof title, "%s: %s%s%s", app->scene->model->name, app->scene->name, app->section < 0 ? "" : ", ",
+           app->section < 0 ? "" : app->scene->model->ev[app->section].name);
   if (a->svg && svg_write(a->svg, &app->table, title, plot_x, plot_y)) {
     bad = app_io_error(app, a->svg);
   }
@@ -341,11 +350,32 @@ static void catch_interrupt(void)
   }
 }
 
+void app_watch(App *app)
+{
+  catch_interrupt();
+  app->progress = isatty(2) && !app->args.quiet ? 0 : -1;
+  clock_gettime(CLOCK_MONOTONIC, &app->begun);
+  app->shown = app->begun;
+}
+
+void app_unwatch(App *app)
+{
+  app->wall = seconds_since(&app->begun);
+  if (app->progress > 0) {
+    fputs("\r\33[K", stderr);
+  }
+}
+
+int app_interrupted(void)
+{
+  return EXIT_SIGNAL + interrupted;
+}
+
 static int simulate(App *app)
 {
   int plot_x = 0, plot_y = -1, rc = app_choose(app);
 
-  if (rc || (rc = check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
+  if (rc || (rc = section_choose(app)) != 0 || (rc = app_check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
     return rc;
   }
   if (app->args.save && (lag_sim_method(app->sim)->flags & LAG_METHOD_NO_SAVE)) {
@@ -356,12 +386,9 @@ static int simulate(App *app)
     return rc;
   }
   note_tables(app);
-  lag_sim_on_step(app->sim, after_step, app);
-  lag_sim_on_event(app->sim, events_note, app);
-  catch_interrupt();
-  app->progress = isatty(2) && !app->args.quiet ? 0 : -1;
-  clock_gettime(CLOCK_MONOTONIC, &app->begun);
-  app->shown = app->begun;
+  lag_sim_on_step(app->sim, app_after_step, app);
+  lag_sim_on_event(app->sim, on_event, app);
+  app_watch(app);
   run(app);
   return finish(app, plot_x, plot_y);
 }
@@ -377,6 +404,10 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     app_list_methods(&app, stdout);
   } else if (rc == 0 && app.args.modes) {
     rc = app_modes(&app);
+  } else if (rc == 0 && app.args.lyapunov) {
+    rc = app_lyapunov(&app);
+  } else if (rc == 0 && (app.args.cost || app.args.reference)) {
+    rc = app_cost(&app);
   } else if (rc == 0) {
     rc = simulate(&app);
   }

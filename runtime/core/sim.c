@@ -178,6 +178,8 @@ int lag_sim_advance(lag_sim *s, double t)
     }
     if (r->have_step != 0.0) {
       rc = pass(s);
+      int bad = rc < 0 ? rc : lag_tangent_pass(s);
+      rc = bad ? bad : rc;
     } else if (r->t == t) {
       return LAG_OK;
     } else {
