@@ -215,6 +215,23 @@ find_modes $dir/oscillator.lag pushed # negative damping
 verdict unstable
 close "growth" 0.2 "$(of_mode 1 re)"
 
+# ---- a minimum of an energy that nothing can raise is stable, though some mode does not decay (Thomson & Tait, par. 345; Chetaev)
+for scene in one none; do # c >= 0, as declared
+  find_modes $dir/braked.lag $scene
+  verdict stable
+  because "nothing raises it"
+  close "what is not braked" 2 "$(of_mode 2 im)"
+done
+close "nor this, without a brake" 1 "$(of_mode 1 im)"
+find_modes $dir/braked.lag pulled F=4 # an input that is held: 4 k y = F
+verdict stable
+close "pulled aside" 1 "$(at_rest y)"
+for scene in driven rubbed "led F=1"; do # a belt may drive; -x'^3 does not, but is not proved; F x in y has no energy
+  find_modes $dir/braked.lag $scene
+  verdict undecided
+  because "no energy is known"
+done
+
 # ---- gyroscopic: z'' = -i W z' + z, z = x + i y, W = b/m, on a hill of strength k/m = 1: w = (W -+ sqrt(W^2 - 4))/2
 find_modes $dir/hill.lag
 verdict undecided
