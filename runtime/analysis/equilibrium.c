@@ -293,7 +293,7 @@ static int friction(void *context, const double *x, double *f, double *J)
   return rc;
 }
 
-/* The mass matrix in the units of the lag_rest_equations, and the identity for rates; the first step goes 0.3 of a scale. */
+/* The mass matrix in the units of the equations, and the identity for rates; the first step goes 0.3 of a scale. */
 static void prepare_friction(Rest *r)
 {
   int n = r->n, nq = r->sim->pb.nq;

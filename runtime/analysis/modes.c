@@ -18,6 +18,7 @@ typedef struct Work {
   lag_problem *pb;
   int nq, n, ny;        /* n = nq + nz, ny = 2 nq + nz */
   Matrices m;
+  int loses;            /* the model has no states, and nothing raises its energy, less the work of constant forces */
   int conserves;        /* the model has a conserved energy, and no states beside it */
   double *kernel;       /* [n * nkernel] zero modes in SI, columns */
   int nkernel;
@@ -311,6 +312,9 @@ static Verdict judge(const Work *w)
   if (w->conserves && out->lowering == 0) {
     return zeros != w->m.flat ? LAG_FLAT : zeros ? LAG_NEUTRAL : LAG_MINIMUM;
   }
+  if (w->loses && out->lowering == 0 && zeros == 0 && w->m.flat == 0) {
+    return LAG_BRAKED;
+  }
   if (w->conserves && out->lowering > 0) {
     return LAG_GYROSCOPIC;
   }
@@ -322,7 +326,7 @@ const char *lag_verdict_name(Verdict verdict)
   switch (verdict) {
   case LAG_UNSTABLE: return "unstable";
   case LAG_DECAYS: return "asymptotically stable";
-  case LAG_MINIMUM: return "stable";
+  case LAG_MINIMUM: case LAG_BRAKED: return "stable";
   case LAG_NEUTRAL: return "neutral";
   case LAG_GYROSCOPIC: case LAG_FLAT: case LAG_CROSSED: case LAG_POLE: case LAG_ROUGH: case LAG_DEFECTIVE: case LAG_CENTRE: break;
   }
@@ -354,6 +358,7 @@ int lag_modes_find(Modes *out, Rest *rest, const lag_algebra *algebra)
   Work w = {.out = out, .rest = rest, .algebra = algebra, .pb = pb, .nq = pb->nq, .n = rest->n, .ny = pb->n};
 
   w.conserves = (pb->model->flags & LAG_CONSERVES_ENERGY) != 0 && pb->nz == 0;
+  w.loses = (pb->model->flags & LAG_LOSES_ENERGY) != 0 && pb->nz == 0;
   *out = (Modes){.lowering = -1, .pairs = w.conserves};
   out->mode = calloc((size_t)w.ny + 1, sizeof *out->mode);
   int rc = out->mode ? lag_matrices_find(&w.m, &out->pool, rest, algebra) : LAG_ENOMEM;

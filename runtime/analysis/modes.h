@@ -18,6 +18,7 @@ typedef enum Verdict {
   LAG_UNSTABLE,    /* a mode grows */
   LAG_DECAYS,      /* all modes decay: asymptotically stable */
   LAG_MINIMUM,     /* a strict minimum of a conserved energy: stable (Lagrange, Dirichlet) */
+  LAG_BRAKED,      /* a strict minimum of an energy that nothing raises: stable (Thomson & Tait; Chetaev) */
   LAG_NEUTRAL,     /* free motions; otherwise a minimum, or all modes decay */
   LAG_GYROSCOPIC,  /* not decided: all modes oscillate, but the energy has no minimum */
   LAG_FLAT,        /* not decided: a zero mode that is no free motion */

@@ -116,6 +116,9 @@ void modes_reason(const Modes *s, char *text, size_t n)
   case LAG_MINIMUM:
     snprintf(text, n, "the energy, which is conserved, has a minimum here (Lagrange, Dirichlet)");
     return;
+  case LAG_BRAKED:
+    snprintf(text, n, "the energy, less the work of constant forces, has a minimum here, and nothing raises it (Lagrange, Dirichlet, Kelvin)");
+    return;
   case LAG_NEUTRAL:
     snprintf(text, n, "no force along the zero modes%s%s", s->drifts ? ", where a push goes on for ever" : "",
              m[last].re == 0.0 && m[last].im == 0.0              ? "; there are no others"

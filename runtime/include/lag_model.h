@@ -50,7 +50,9 @@ enum {
   LAG_AUTONOMOUS = 4,       /* the right-hand side does not contain t */
   LAG_SMOOTH = 8,           /* no if, abs, sign, min, max, and no table */
   LAG_SEPARABLE = 16,       /* constant mass matrix, accelerations that do not depend on velocities, no states */
-  LAG_TIMELESS = 32         /* t enters by the formulas and tables of inputs, if at all */
+  LAG_TIMELESS = 32,        /* t enters by the formulas and tables of inputs, if at all */
+  LAG_LOSES_ENERGY = 64     /* not conserved, but with constant inputs the energy, less the work of forces, which are constant,
+                             * never grows: the dissipation is quadratic in q' and nowhere negative, for the signs declared */
 };
 
 /* A named quantity. unit is as declared ("deg"), or as found from the equations, "" when none; x units are

@@ -28,7 +28,7 @@ static const char *const prelude =
 /* What lag_model.h and the head of an emitted file define. */
 static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
-  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_cubic",
+  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_cubic",
   "lag_spline", "lag_var", "lag_event", "lag_model", "lag_option", "lag_monitor", "lag_table", "lag_scene", "lag_program",
   "lag_entry", "lag_linear", "LAG_NUMBER", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
   "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL",
@@ -303,9 +303,9 @@ static uint32_t work_size(const IrUnit *u) {
 
 static void flag_text(unsigned flags, StrBuf *out) {
   static const char *const names[] = {"LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS", "LAG_AUTONOMOUS", "LAG_SMOOTH",
-                                       "LAG_SEPARABLE", "LAG_TIMELESS"};
+                                       "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY"};
   int some = 0;
-  for (int i = 0; i < 6; i++)
+  for (int i = 0; i < 7; i++)
     if (flags >> i & 1) sb_printf(out, "%s%s", some++ ? " | " : "", names[i]);
   if (!some) sb_putc(out, '0');
 }

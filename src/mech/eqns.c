@@ -116,6 +116,39 @@ static void follow_inputs(Eqns *e, ExprVec *roots) {
   }
 }
 
+/* Whether the dissipation takes energy for every velocity: a sum of terms that are never negative, quadratic, and 0 at rest,
+ * so that the power q' dR/dq' = 2 R is not negative. Not (q' - c)^2: a belt drives. */
+static int only_brakes(const Eqns *e) {
+  const Model *m = e->m;
+  ExprGraph *g = e->g;
+  Expr R = m->dissipation;
+  for (uint32_t i = 0; i < expr_pairs(g, R, EX_SUM); i++) {
+    Num c;
+    ExprSign sign = expr_sign(g, expr_pair(g, R, EX_SUM, i, &c));
+    if (num_sign(c) <= 0 || (sign != SIGN_POSITIVE && sign != SIGN_NONNEGATIVE)) return 0;
+  }
+  Expr *rest = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(g) + 1);
+  for (SymId s = 1; s <= expr_symbol_count(g); s++)
+    if (expr_symbol(g, s)->kind == SYM_VEL) rest[s] = expr_int(g, 0);
+  if (!expr_is_zero(g, expr_substitute(g, R, rest, expr_symbol_count(g) + 1, ""))) return 0;
+  ExprPartials d = expr_gradient_sparse(g, R, SYM_VEL, e->n);
+  for (uint32_t i = 0; i < d.n; i++) {
+    ExprPartials dd = expr_gradient_sparse(g, d.at[i].e, SYM_VEL, e->n);
+    for (uint32_t k = 0; k < dd.n; k++)
+      if (contains_kind(e, dd.at[k].e, SYM_VEL)) return 0;
+  }
+  return !(expr_kinds(g, R) & (bit(SYM_TIME) | bit(SYM_STATE)));
+}
+
+/* Whether the energy, less the work of forces, can only fall while inputs stay as they are. */
+static int loses_energy(const Eqns *e, unsigned lagrangian) {
+  const Model *m = e->m;
+  unsigned forces = 0;
+  for (uint32_t i = 0; i < m->forces.n; i++) forces |= expr_kinds(e->g, m->forces.at[i].f);
+  return m->lagrangian && !e->conserves_energy && !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) &&
+         !(forces & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_COORD) | bit(SYM_VEL))) && (!m->dissipation || only_brakes(e));
+}
+
 /* Facts that hold for every state, read off the graph. */
 static void classify(Eqns *e) {
   const Model *m = e->m;
@@ -140,6 +173,7 @@ static void classify(Eqns *e) {
   unsigned lagrangian = kinds_in(e, &m->lagrangian, 1);
   e->conserves_energy = m->lagrangian && !m->forces.n && !m->dissipation && !inputs &&
                         !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_INPUT)));
+  e->loses_energy = loses_energy(e, lagrangian);
 }
 
 /* Derivatives may multiply numbers past the range of a double, and terms of different statements cancel. */

@@ -138,10 +138,10 @@ check "resume: another table is another model" says 2 "saved by another model" "
 
 # ---- facts
 flags() { "$LAGC" emit "$m" "$1" | sed -n 's/.*\.flags = //p'; }
-is "a table is neither smooth nor autonomous" "LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_TIMELESS," "$(flags table)"
-is "a constant is" "LAG_CONSTANT_MASS | LAG_AUTONOMOUS | LAG_SMOOTH | LAG_SEPARABLE | LAG_TIMELESS," "$(flags push)"
-is "a formula of t is smooth" "LAG_CONSTANT_MASS | LAG_SMOOTH | LAG_SEPARABLE | LAG_TIMELESS," "$(flags formula)"
-is "a choice is not" "LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_TIMELESS," "$("$LAGC" emit tests/exec/models/tables.lag still | sed -n 's/.*\.flags = //p')"
+is "a table is neither smooth nor autonomous" "LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_TIMELESS | LAG_LOSES_ENERGY," "$(flags table)"
+is "a constant is" "LAG_CONSTANT_MASS | LAG_AUTONOMOUS | LAG_SMOOTH | LAG_SEPARABLE | LAG_TIMELESS | LAG_LOSES_ENERGY," "$(flags push)"
+is "a formula of t is smooth" "LAG_CONSTANT_MASS | LAG_SMOOTH | LAG_SEPARABLE | LAG_TIMELESS | LAG_LOSES_ENERGY," "$(flags formula)"
+is "a choice is not" "LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_TIMELESS | LAG_LOSES_ENERGY," "$("$LAGC" emit tests/exec/models/tables.lag still | sed -n 's/.*\.flags = //p')"
 
 # ---- functions of the program around the model
 strict='-std=c11 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror -O1'

@@ -176,8 +176,8 @@ close "as it stood" 0.8 "$(at_rest a)" 0
 close "as it stood" 0.6 "$(at_rest b)" 0
 
 # ---- what rounding leaves of a stiffness that is 0
-for scene in go damped; do
-  find_modes $dir/buckle.lag $scene # m g l - k l^2 = 0; it falls
+for of in "go m=0.7 l=0.2" "go m=0.1 l=0.7" "go m=0.7 l=1.3" "damped m=0.7 l=0.2" "damped m=0.1 l=0.7" "damped m=0.7 l=1.3"; do
+  find_modes $dir/buckle.lag $of # m g l - k l^2 = 0; it falls
   verdict undecided
   because "a zero mode"
 done
@@ -214,6 +214,23 @@ close "decay" -0.4 "$(of_mode 2 re)"
 find_modes $dir/oscillator.lag pushed # negative damping
 verdict unstable
 close "growth" 0.2 "$(of_mode 1 re)"
+
+# ---- a minimum of an energy that nothing can raise is stable, though some mode does not decay (Thomson & Tait, par. 345; Chetaev)
+for scene in one none; do # c >= 0, as declared
+  find_modes $dir/braked.lag $scene
+  verdict stable
+  because "nothing raises it"
+  close "what is not braked" 2 "$(of_mode 2 im)"
+done
+close "nor this, without a brake" 1 "$(of_mode 1 im)"
+find_modes $dir/braked.lag pulled F=4 # an input that is held: 4 k y = F
+verdict stable
+close "pulled aside" 1 "$(at_rest y)"
+for scene in driven rubbed "led F=1"; do # a belt may drive; -x'^3 does not, but is not proved; F x in y has no energy
+  find_modes $dir/braked.lag $scene
+  verdict undecided
+  because "no energy is known"
+done
 
 # ---- gyroscopic: z'' = -i W z' + z, z = x + i y, W = b/m, on a hill of strength k/m = 1: w = (W -+ sqrt(W^2 - 4))/2
 find_modes $dir/hill.lag
