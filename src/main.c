@@ -76,6 +76,12 @@ static int write_out(Compiler *c, const char *path, const StrBuf *text) {
   return fail_usage(arena_printf(c->arena, "cannot write %s: %s", path ? path : "standard output", why));
 }
 
+static void print_messages(const Compiler *c) {
+  StrBuf messages = strbuf(c->arena);
+  diags_print(c->diags, &messages);
+  fputs(sb_text(&messages), stderr);
+}
+
 /* --- the stages --- */
 
 static int read_model(Compiler *c) {
@@ -271,6 +277,7 @@ static int do_run(Compiler *c) {
   if (status != STATUS_OK) return status;
   if (writes_source(c)) return STATUS_USAGE;
   fflush(stdout);
+  print_messages(c); /* warnings: the simulator does not come back */
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
   execv(path, c->picture.argv.at);
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
@@ -399,9 +406,7 @@ static int compile(Compiler *c) {
   c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
   int status = read_model(c);
   if (status == STATUS_OK) status = do_command(c);
-  StrBuf messages = strbuf(c->arena);
-  diags_print(c->diags, &messages);
-  fputs(sb_text(&messages), stderr);
+  print_messages(c);
   return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
 }
 

@@ -3,7 +3,7 @@
  * A table has lines of numbers: time in s, value in the input's unit; blank lines and lines that begin with # do not
  * count. Between the numbers stand commas, semicolons, tabs or, where a table has none of these, blanks. A first line
  * whose first field is no number is a head: the column called `t` (or `time`) is the time, otherwise the first; the
- * one called like the input is the value, or, where there are only two, the other one. A head may state units, as lagc's
+ * one called like the input is the value, or, where there are only two, the other one. Two rows of one time are a jump. A head may state units, as lagc's
  * own output does: `t [s],u [N]`; they must be those of the input. Without a head the first two columns count. */
 #include <math.h>
 #include <stdlib.h>
@@ -23,7 +23,8 @@ typedef struct {
   int begun;         /* the head, or the first row, is behind us */
   int wrong_head;    /* every row would be wrong */
   int mistakes;
-  double before;     /* the time of the row before */
+  double before;     /* the time of the row before, */
+  int jumped;        /* which is the second of its time */
   VEC(double) numbers; /* time and value, row by row */
 } Table;
 
@@ -172,14 +173,16 @@ static void read_row(Table *t, Piece line) {
   double time, value;
   Piece at, of;
   if (!read_number(t, line, t->time, "time", &time, &at) || !read_number(t, line, t->value, "value", &value, &of)) return;
-  int late = !t->numbers.n || time > t->before;
   double before = t->before;
-  t->before = time;
-  if (!late) {
-    mistake(t, at, arena_printf(t->b->arena, "times must increase, and %.17g does not come after %.17g", time, before));
-    diag_help(t->b->diags, "sort the rows; a jump is two rows with a short time between them");
+  int jumps = t->numbers.n && time == before;
+  if (t->numbers.n && (time < before || (jumps && t->jumped))) {
+    mistake(t, at, arena_printf(t->b->arena, jumps ? "this is the third row at %.17g" : "times must increase, and %.17g does not come after %.17g", time, before));
+    diag_help(t->b->diags, "sort the rows; a jump is two rows of one time: the value before it, and the one after it");
     return;
   }
+  t->before = time;
+  t->jumped = jumps;
+  if (jumps) time = nextafter(time, HUGE_VAL); /* the runtime goes over such a gap in no step */
   vec_push(t->b->arena, &t->numbers, time);
   vec_push(t->b->arena, &t->numbers, value * unit_factor(&t->in->unit) + num_value(t->in->unit.offset));
 }
@@ -264,7 +267,17 @@ static void warn_of_swings(const Table *t, const Spline *s) {
   double unit = unit_factor(&t->in->unit), zero = num_value(t->in->unit.offset);
   diag_warning(t->b->diags, ast_expr(t->b->ast, t->id)->span, "between its rows the curve goes from %.3g to %.3g, and the rows from %.3g to %.3g",
                (low - zero) / unit, (high - zero) / unit, (lo - zero) / unit, (hi - zero) / unit);
-  diag_help(t->b->diags, "a cubic swings where rows lie far apart beside a jump: add rows there");
+  diag_help(t->b->diags, "a cubic swings where rows lie far apart beside a steep rise: add rows there, or make it a jump, two rows of one time");
+}
+
+/* A spline for each piece between two jumps. */
+static int fit_pieces(Arena *a, double (*row)[3], uint32_t n) {
+  for (uint32_t from = 0, to = 1; to <= n; to++) {
+    if (to < n && row[to][0] != nextafter(row[to - 1][0], HUGE_VAL)) continue;
+    if (!spline_fit(a, row + from, to - from)) return 0;
+    from = to;
+  }
+  return 1;
 }
 
 /* The rows with their second derivatives; NULL after an error. */
@@ -282,7 +295,7 @@ static const Spline *fit(Table *t) {
     row[i][0] = t->numbers.at[2 * i];
     row[i][1] = t->numbers.at[2 * i + 1];
   }
-  if (!spline_fit(b->arena, row, n)) {
+  if (!fit_pieces(b->arena, row, n)) {
     diag_error(b->diags, span, "the curve through `%s` is not finite", t->file.path);
     diag_help(b->diags, "rows are too close, or values too far apart, for double precision");
     return NULL;
