@@ -373,15 +373,19 @@ static Unit seconds(const Builder *b) {
 
 static Unit no_unit(void) { return (Unit){.dim = DIM_NONE, .factor = num_int(1), .offset = num_int(0), .text = "1"}; }
 
-static void set_output(Builder *b, const AstStmt *st) {
-  b->m->scene.outputs.n = 0;
-  for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) add_outputs(b, i);
+static void set_every(Builder *b, const AstStmt *st) {
   Unit s = seconds(b);
   if (st->rhs) {
     double every = resolve_number(b, st->rhs, &s, "the output interval");
     if (every <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the output interval must be positive");
     b->m->scene.every = every;
   }
+}
+
+static void set_output(Builder *b, const AstStmt *st) {
+  b->m->scene.outputs.n = 0;
+  for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) add_outputs(b, i);
+  set_every(b, st);
 }
 
 /* A limit for what has one already takes its place. */
@@ -499,11 +503,28 @@ static int is_of_dropped_effect(Builder *b, const AstStmt *st) {
   return declaring_effect(b, x->name) != NULL;
 }
 
+/* Statement st of scene *s of the chain. A mistake that it makes only in a scene that is like this one names both. */
+static void apply_in_chain(Builder *b, const AstStmt *const *s, const AstStmt *st, void (*apply)(Builder *b, const AstStmt *st)) {
+  uint32_t errors = b->diags->errors;
+  apply(b, st);
+  if (!s[1] || b->diags->errors == errors || b->diags->list.at[b->diags->latest].note) return;
+  while (s[1]) s++;
+  diag_also(b->diags, (*s)->name_span, "in the scene `%s`, which takes this over by `like`", (*s)->name);
+}
+
 /* The statements of one kind, of the scene and of those that it is like. */
 static void each_of(Builder *b, AstStmtKind kind, void (*apply)(Builder *b, const AstStmt *st)) {
   for (const AstStmt **s = b->chain; *s; s++)
     for (const AstStmt *x = (*s)->body; x; x = x->next)
-      if (x->kind == kind) apply(b, x);
+      if (x->kind == kind) apply_in_chain(b, s, x, apply);
+}
+
+/* Whether one of these scenes of the chain has columns of its own: they take the place of those before them. */
+static int shows_others(const AstStmt *const *s) {
+  for (; *s; s++)
+    for (const AstStmt *x = (*s)->body; x; x = x->next)
+      if (x->kind == STMT_OUTPUT) return 1;
+  return 0;
 }
 
 void scene_build(Builder *b, const ModelChoice *choice) {
@@ -512,7 +533,8 @@ void scene_build(Builder *b, const ModelChoice *choice) {
   each_of(b, STMT_EXACT, set_motion); /* outputs speak of closed forms, */
   for (const AstStmt **s = b->chain; *s; s++) {
     for (const AstStmt *x = (*s)->body; x; x = x->next)
-      if (!s[1] || !is_of_dropped_effect(b, x)) scene_statement(b, x);
+      if (!s[1] || !is_of_dropped_effect(b, x))
+        apply_in_chain(b, s, x, x->kind == STMT_OUTPUT && shows_others(s + 1) ? set_every : scene_statement);
     if ((*s)->doc) sc->doc = (*s)->doc;
   }
   for (uint32_t i = 0; i < choice->ngiven; i++)

@@ -7,8 +7,10 @@
  * own output does: `t [s],u [N]`; they must be those of the input. Without a head the first two columns count. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "model/builder.h"
+#include "syntax/parse.h"
 
 enum { TABLE_ROWS_MAX = 100000, TABLE_MISTAKES_MAX = 5 };
 
@@ -120,17 +122,50 @@ static uint32_t find_column(const Table *t, Piece line, const char *name, uint32
   return none;
 }
 
-/* A unit that the head states is the one that the model has for it. */
-static void check_unit(Table *t, Piece line, uint32_t column, const char *want, const char *whose) {
+/* What [text] means; reported, and of any dimension, when it is no unit. */
+static Unit unit_written(const Table *t, const char *text) {
+  Builder *b = t->b;
+  const char *whole = arena_printf(b->arena, "1 [%s]", text);
+  const Source *source = source_add(b->ast->sources, arena_printf(b->arena, "unit in %s", t->file.path), whole, strlen(whole));
+  AstId id = source ? parse_expression(b->ast, source) : 0;
+  AstUnit none = {0};
+  int is_unit = id && ast_expr(b->ast, id)->kind == AST_UNIT;
+  return unit_resolve(is_unit ? &ast_expr(b->ast, id)->unit : &none, b->dims, b->diags, b->arena);
+}
+
+static int same_unit(const Table *t, const Unit *x, const Unit *y, Span why) {
+  return dim_equate(t->b->dims, x->dim, y->dim, why) && num_equal(x->factor, y->factor) && x->pi_power == y->pi_power && num_equal(x->offset, y->offset);
+}
+
+/* A unit that the head states is the one that the model has for it, however it is written. want: NULL for a time. */
+static void check_unit(Table *t, Piece line, uint32_t column, const Unit *want, const char *whose) {
   Piece field, unit;
   fields(t, line, column, &field);
   is_called(t, field, "", &unit);
-  const char *text = text_of(t, trimmed(t, unit));
-  if (!*text || strcmp(text, want) == 0) return;
-  const char *is = *want ? arena_printf(t->b->arena, "is in [%s]", want) : "has no unit";
-  mistake(t, field, arena_printf(t->b->arena, "this column is in [%s], and %s %s", text, whose, is));
-  if (column == t->value) diag_help(t->b->diags, "convert the column, or declare `input %s [%s] = ...`", t->stem, text);
-  else diag_help(t->b->diags, "convert the column to seconds");
+  const char *text = text_of(t, trimmed(t, unit)), *wanted = want ? want->text : "s";
+  if (!*text || strcmp(text, wanted) == 0) return;
+  uint32_t errors = t->b->diags->errors;
+  Unit is = unit_written(t, text), second = want ? *want : unit_written(t, "s");
+  if (t->b->diags->errors > errors) t->mistakes++;
+  else if (!*wanted || !same_unit(t, &is, &second, span_of(t, field))) {
+    const char *other = *wanted ? arena_printf(t->b->arena, "is in [%s]", wanted) : "has no unit";
+    mistake(t, field, arena_printf(t->b->arena, "this column is in [%s], and %s %s", text, whose, other));
+    if (want) diag_help(t->b->diags, "convert the column, or declare `input %s [%s] = ...`", t->stem, text);
+    else diag_help(t->b->diags, "convert the column to seconds");
+  }
+}
+
+/* A name that two columns have would be a guess. */
+static void check_once(Table *t, Piece line, uint32_t column, const char *name) {
+  Piece field, unit;
+  uint32_t n = fields(t, line, 0, &field);
+  for (uint32_t i = column + 1; i < n; i++) {
+    fields(t, line, i, &field);
+    if (!is_called(t, field, name, &unit)) continue;
+    mistake(t, field, arena_printf(t->b->arena, "two columns are called `%s`", name));
+    diag_help(t->b->diags, "give one of them another name");
+    return;
+  }
 }
 
 static void read_head(Table *t, Piece line) {
@@ -145,8 +180,9 @@ static void read_head(Table *t, Piece line) {
     diag_help(t->b->diags, "give the column of the values that name");
   } else if (t->value == t->time) mistake(t, field, "the column of the time is also that of the value");
   else {
-    check_unit(t, line, t->time, "s", "the time");
-    check_unit(t, line, t->value, t->in->unit.text, whose);
+    check_unit(t, line, t->time, NULL, "the time");
+    check_unit(t, line, t->value, &t->in->unit, whose);
+    check_once(t, line, t->value, t->stem);
   }
   t->wrong_head = t->mistakes > 0;
 }
@@ -172,6 +208,13 @@ static int read_number(Table *t, Piece line, uint32_t column, const char *what, 
 static void read_row(Table *t, Piece line) {
   double time, value;
   Piece at, of;
+  const char *nul = memchr(t->file.text + line.begin, '\0', line.end - line.begin);
+  if (nul) {
+    uint32_t place = (uint32_t)(nul - t->file.text);
+    mistake(t, (Piece){place, place + 1}, "this byte is no text");
+    diag_help(t->b->diags, "a table is a text of numbers");
+    return;
+  }
   if (!read_number(t, line, t->time, "time", &time, &at) || !read_number(t, line, t->value, "value", &value, &of)) return;
   double before = t->before;
   int jumps = t->numbers.n && time == before;
@@ -222,6 +265,7 @@ static void read_lines(Table *t) {
 /* The file, read once for all scenes. */
 static int open_table(Table *t, const char *path) {
   Builder *b = t->b;
+  if (!*path) path = ".";
   const Sources *all = b->ast->sources;
   for (uint32_t i = 0; i < all->files.n; i++)
     if (strcmp(all->files.at[i].path, path) == 0) {
