@@ -356,7 +356,7 @@ static int do_run(Compiler *c) {
   if (writes_source(c)) return STATUS_USAGE;
   if (c->o.command == CMD_COST) give_reference(c, &units);
   fflush(stdout);
-  if (options_more_digits(&c->o)) print_messages(c); /* what was rounded */
+  print_messages(c); /* warnings: the simulator does not come back */
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
   execv(path, c->picture.argv.at);
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));

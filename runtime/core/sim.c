@@ -102,10 +102,24 @@ static int begin(lag_sim *s, double t)
   return rc ? rc : lag_events_arm(s);
 }
 
+/* A table jumps between two rows that are next to each other in double precision: from one to the other without a step. */
+static void pass_jump(lag_sim *s)
+{
+  Run *r = s->run;
+  double row;
+
+  if (lag_next_row(&s->pb, r->t, &row) < HUGE_VAL && row == nextafter(r->t, r->dir * HUGE_VAL)) {
+    r->t = row;
+    s->method->reset(s->method_work, &s->pb);
+  }
+}
+
 /* A new step of the method, and the first event in it. */
 static int take(lag_sim *s, double t_stop)
 {
   Run *r = s->run;
+
+  pass_jump(s);
   double t = r->t, row = t_stop;
 
   if (lag_next_row(&s->pb, t, &row) < fabs(t_stop - t)) {

@@ -106,6 +106,8 @@ int lag_watch_see(lag_sim *s, double t, const double *y)
     if (k >= 0) {
       s->mon_peak[i] = larger(s->mon_peak[i], fabs(s->out[k] - s->mon_first[i]));
     }
+  }
+  for (int i = 0; i < c->nmonitors; i++) { /* when all are known: a report shows them all */
     double drift = lag_sim_monitor_drift(s, i);
     if (!(drift <= c->monitors[i].limit)) {
       return lag_fail(s, LAG_EMONITOR, "monitor %s: drift %.3g is past its limit %.3g at t = %.17g s", c->monitors[i].name,

@@ -18,7 +18,7 @@ typedef struct {
   const double (*row)[3];
 } Spline;
 
-/* Fills in the second derivatives row[i][2] from n >= 2 places and values. 0 when one is not finite: rows are too
+/* Fills in the second derivatives row[i][2] from n >= 1 places and values. 0 when one is not finite: rows are too
  * close, or values too far apart, for double precision. */
 int spline_fit(Arena *a, double (*row)[3], uint32_t n);
 

@@ -74,6 +74,11 @@ static const char *const letters[][2] = {
   {"H", "the energy is `energy`, in outputs, observables and expectations"},
   {"L", "the Lagrangian is `lagrangian`, in outputs, observables and expectations"},
   {"g", "gravity is a parameter, too: `param g = 9.81 [m/s^2]`"},
+  {"energy", "the energy may stand in outputs, monitors, observables and expectations; here write it with coordinates and velocities"},
+  {"lagrangian", "the Lagrangian may stand in outputs, observables and expectations; here write it with coordinates and velocities"},
+  {"T", "of a model that gives `kinetic`, the kinetic energy is `T`, in outputs, observables and expectations"},
+  {"V", "of a model that gives `potential`, the potential energy is `V`, in outputs, observables and expectations"},
+  {"t", "`t` is the time, which a run gives its value: `span 20 [s]` says how long it is"},
   {"e", "the number is `exp(1)`; a parameter is declared: `param e = 0.9`"},
 };
 
@@ -153,7 +158,8 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
   }
   known[n++] = "t";
   known[n++] = "pi";
-  Name near = strcmp(name, "dt") == 0 ? NULL : suggest(name, known, n); /* and not t */
+  int paper = strcmp(name, "dt") == 0 || strcmp(name, "T") == 0 || strcmp(name, "t") == 0; /* and not t */
+  Name near = paper ? NULL : suggest(name, known, n);
   if (!near && advise_letter(b, name)) return;
   if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else if (declare) diag_help(b->diags, "declare it: `%s %s`", declare, name);

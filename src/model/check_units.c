@@ -1,4 +1,6 @@
 /* Dimensions of values: what may be added, and what the messages say where it may not; units that were found. */
+#include <string.h>
+
 #include "model/resolve_impl.h"
 
 int is_zero(const Builder *b, const Value *v) {
@@ -70,7 +72,9 @@ int need_pure(Eval *ev, AstId arg, const char *what) {
   Span span = ast_expr(b->ast, arg)->span;
   if (dim_equate(b->dims, v->dim, DIM_NONE, span)) return 1;
   diag_error(b->diags, span, "%s takes a pure number or an angle; `%s` is in [%s]", what, ast_short(b, arg), shown_unit(b, v));
-  if (!dim_is_open(b->dims, dim_found(b->dims, v->dim)))
+  if (strcmp(what, "an exponent") == 0 && ast_expr(b->ast, arg)->kind == AST_UNIT)
+    diag_help(b->diags, "a unit belongs to what stands directly before it, here to the exponent: write `5 [N/s^2]*t^2`, or `(5*t^2) [...]`");
+  else if (!dim_is_open(b->dims, dim_found(b->dims, v->dim)))
     diag_help(b->diags, "where a number in it has a unit, write it: `[%s]`", dim_text(b->dims, dim_pow(b->dims, v->dim, num_int(-1))));
   explain_dims(b, v->dim, DIM_ANY);
   return 0;

@@ -217,6 +217,7 @@ static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
     SymKind kind = expr_op(b->g, target.at[k]) == EX_SYM ? expr_sym_of(b->g, target.at[k])->kind : SYM_LOCAL;
     if (kind == SYM_COORD || kind == SYM_VEL || kind == SYM_STATE) continue;
     diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "an event can set a coordinate, a velocity or a state");
+    diag_help(b->diags, "what an event changes is a `state`: `state k`, with `flow k' = 0` where nothing else does");
     return;
   }
   SymId sym = expr_sym_id(b->g, target.e);

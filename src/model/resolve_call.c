@@ -51,6 +51,7 @@ int arity_is(Eval *ev, const AstExpr *x, uint32_t want) {
   uint32_t n = list_length(ev->b, x->args);
   if (n == want) return 1;
   diag_error(ev->b->diags, x->span, "`%s` takes %u argument%s, here it has %u", x->name, want, want == 1 ? "" : "s", n);
+  if (n == 1 && (strcmp(x->name, "dot") == 0 || strcmp(x->name, "d") == 0)) diag_help(ev->b->diags, "a time derivative is written with a prime: `x'`");
   return 0;
 }
 

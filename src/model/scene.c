@@ -370,15 +370,19 @@ static Unit seconds(const Builder *b) {
 
 static Unit no_unit(void) { return (Unit){.dim = DIM_NONE, .factor = num_int(1), .offset = num_int(0), .text = "1"}; }
 
-static void set_output(Builder *b, const AstStmt *st) {
-  b->m->scene.outputs.n = 0;
-  for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) add_outputs(b, i);
+static void set_every(Builder *b, const AstStmt *st) {
   Unit s = seconds(b);
   if (st->rhs) {
     double every = resolve_number(b, st->rhs, &s, "the output interval");
     if (every <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the output interval must be positive");
     b->m->scene.every = every;
   }
+}
+
+static void set_output(Builder *b, const AstStmt *st) {
+  b->m->scene.outputs.n = 0;
+  for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) add_outputs(b, i);
+  set_every(b, st);
 }
 
 /* A limit for what has one already takes its place. */
@@ -510,6 +514,23 @@ static Name effect_given(Builder *b, const AstStmt *st) {
   return effect ? effect->name : NULL;
 }
 
+/* Statement st of scene *s of the chain. A mistake that it makes only in a scene that is like this one names both. */
+static void apply_in_chain(Builder *b, const AstStmt *const *s, const AstStmt *st, void (*apply)(Builder *b, const AstStmt *st)) {
+  uint32_t errors = b->diags->errors;
+  apply(b, st);
+  if (!s[1] || b->diags->errors == errors || b->diags->list.at[b->diags->latest].note) return;
+  while (s[1]) s++;
+  diag_also(b->diags, (*s)->name_span, "in the scene `%s`, which takes this over by `like`", (*s)->name);
+}
+
+/* Whether one of these scenes of the chain has columns of its own: they take the place of those before them. */
+static int shows_others(const AstStmt *const *s) {
+  for (; *s; s++)
+    for (const AstStmt *x = (*s)->body; x; x = x->next)
+      if (x->kind == STMT_OUTPUT) return 1;
+  return 0;
+}
+
 /* Whether what a statement says of an effect has no part in the run: it stands before a `use none`, or it is about one that is
  * turned off, and comes from a scene that uses it and that this one is like. */
 static int is_dropped(Builder *b, const AstStmt *st, int before_none, int inherited) {
@@ -535,7 +556,9 @@ static void each_said(Builder *b, void (*apply)(Builder *b, const AstStmt *st)) 
   for (const AstStmt **s = b->chain; *s; s++)
     for (const AstStmt *x = (*s)->body; x; x = x->next) {
       before &= x != none;
-      if (!is_dropped(b, x, before, s[1] != NULL)) apply(b, x);
+      if (is_dropped(b, x, before, s[1] != NULL)) continue;
+      int hidden = apply == scene_statement && x->kind == STMT_OUTPUT && shows_others(s + 1);
+      apply_in_chain(b, s, x, hidden ? set_every : apply);
     }
 }
 
@@ -546,7 +569,7 @@ static void set_monitors(Builder *b) {
   for (const AstStmt **s = b->chain; *s; s++)
     for (const AstStmt *x = (*s)->body; x; x = x->next) {
       before &= x != none;
-      if (x->kind == STMT_MONITOR && x != none && !before) set_monitor(b, x);
+      if (x->kind == STMT_MONITOR && x != none && !before) apply_in_chain(b, s, x, set_monitor);
     }
 }
 

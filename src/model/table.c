@@ -3,12 +3,14 @@
  * A table has lines of numbers: time in s, value in the input's unit; blank lines and lines that begin with # do not
  * count. Between the numbers stand commas, semicolons, tabs or, where a table has none of these, blanks. A first line
  * whose first field is no number is a head: the column called `t` (or `time`) is the time, otherwise the first; the
- * one called like the input is the value, or, where there are only two, the other one. A head may state units, as lagc's
+ * one called like the input is the value, or, where there are only two, the other one. Two rows of one time are a jump. A head may state units, as lagc's
  * own output does: `t [s],u [N]`; they must be those of the input. Without a head the first two columns count. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "model/builder.h"
+#include "syntax/parse.h"
 
 enum { TABLE_ROWS_MAX = 100000, TABLE_MISTAKES_MAX = 5 };
 
@@ -23,7 +25,8 @@ typedef struct {
   int begun;         /* the head, or the first row, is behind us */
   int wrong_head;    /* every row would be wrong */
   int mistakes;
-  double before;     /* the time of the row before */
+  double before;     /* the time of the row before, */
+  int jumped;        /* which is the second of its time */
   VEC(double) numbers; /* time and value, row by row */
 } Table;
 
@@ -119,17 +122,50 @@ static uint32_t find_column(const Table *t, Piece line, const char *name, uint32
   return none;
 }
 
-/* A unit that the head states is the one that the model has for it. */
-static void check_unit(Table *t, Piece line, uint32_t column, const char *want, const char *whose) {
+/* What [text] means; reported, and of any dimension, when it is no unit. */
+static Unit unit_written(const Table *t, const char *text) {
+  Builder *b = t->b;
+  const char *whole = arena_printf(b->arena, "1 [%s]", text);
+  const Source *source = source_add(b->ast->sources, arena_printf(b->arena, "unit in %s", t->file.path), whole, strlen(whole));
+  AstId id = source ? parse_expression(b->ast, source) : 0;
+  AstUnit none = {0};
+  int is_unit = id && ast_expr(b->ast, id)->kind == AST_UNIT;
+  return unit_resolve(is_unit ? &ast_expr(b->ast, id)->unit : &none, b->dims, b->diags, b->arena);
+}
+
+static int same_unit(const Table *t, const Unit *x, const Unit *y, Span why) {
+  return dim_equate(t->b->dims, x->dim, y->dim, why) && num_equal(x->factor, y->factor) && x->pi_power == y->pi_power && num_equal(x->offset, y->offset);
+}
+
+/* A unit that the head states is the one that the model has for it, however it is written. want: NULL for a time. */
+static void check_unit(Table *t, Piece line, uint32_t column, const Unit *want, const char *whose) {
   Piece field, unit;
   fields(t, line, column, &field);
   is_called(t, field, "", &unit);
-  const char *text = text_of(t, trimmed(t, unit));
-  if (!*text || strcmp(text, want) == 0) return;
-  const char *is = *want ? arena_printf(t->b->arena, "is in [%s]", want) : "has no unit";
-  mistake(t, field, arena_printf(t->b->arena, "this column is in [%s], and %s %s", text, whose, is));
-  if (column == t->value) diag_help(t->b->diags, "convert the column, or declare `input %s [%s] = ...`", t->stem, text);
-  else diag_help(t->b->diags, "convert the column to seconds");
+  const char *text = text_of(t, trimmed(t, unit)), *wanted = want ? want->text : "s";
+  if (!*text || strcmp(text, wanted) == 0) return;
+  uint32_t errors = t->b->diags->errors;
+  Unit is = unit_written(t, text), second = want ? *want : unit_written(t, "s");
+  if (t->b->diags->errors > errors) t->mistakes++;
+  else if (!*wanted || !same_unit(t, &is, &second, span_of(t, field))) {
+    const char *other = *wanted ? arena_printf(t->b->arena, "is in [%s]", wanted) : "has no unit";
+    mistake(t, field, arena_printf(t->b->arena, "this column is in [%s], and %s %s", text, whose, other));
+    if (want) diag_help(t->b->diags, "convert the column, or declare `input %s [%s] = ...`", t->stem, text);
+    else diag_help(t->b->diags, "convert the column to seconds");
+  }
+}
+
+/* A name that two columns have would be a guess. */
+static void check_once(Table *t, Piece line, uint32_t column, const char *name) {
+  Piece field, unit;
+  uint32_t n = fields(t, line, 0, &field);
+  for (uint32_t i = column + 1; i < n; i++) {
+    fields(t, line, i, &field);
+    if (!is_called(t, field, name, &unit)) continue;
+    mistake(t, field, arena_printf(t->b->arena, "two columns are called `%s`", name));
+    diag_help(t->b->diags, "give one of them another name");
+    return;
+  }
 }
 
 static void read_head(Table *t, Piece line) {
@@ -144,8 +180,9 @@ static void read_head(Table *t, Piece line) {
     diag_help(t->b->diags, "give the column of the values that name");
   } else if (t->value == t->time) mistake(t, field, "the column of the time is also that of the value");
   else {
-    check_unit(t, line, t->time, "s", "the time");
-    check_unit(t, line, t->value, t->in->unit.text, whose);
+    check_unit(t, line, t->time, NULL, "the time");
+    check_unit(t, line, t->value, &t->in->unit, whose);
+    check_once(t, line, t->value, t->stem);
   }
   t->wrong_head = t->mistakes > 0;
 }
@@ -171,15 +208,24 @@ static int read_number(Table *t, Piece line, uint32_t column, const char *what, 
 static void read_row(Table *t, Piece line) {
   double time, value;
   Piece at, of;
-  if (!read_number(t, line, t->time, "time", &time, &at) || !read_number(t, line, t->value, "value", &value, &of)) return;
-  int late = !t->numbers.n || time > t->before;
-  double before = t->before;
-  t->before = time;
-  if (!late) {
-    mistake(t, at, arena_printf(t->b->arena, "times must increase, and %.17g does not come after %.17g", time, before));
-    diag_help(t->b->diags, "sort the rows; a jump is two rows with a short time between them");
+  const char *nul = memchr(t->file.text + line.begin, '\0', line.end - line.begin);
+  if (nul) {
+    uint32_t place = (uint32_t)(nul - t->file.text);
+    mistake(t, (Piece){place, place + 1}, "this byte is no text");
+    diag_help(t->b->diags, "a table is a text of numbers");
     return;
   }
+  if (!read_number(t, line, t->time, "time", &time, &at) || !read_number(t, line, t->value, "value", &value, &of)) return;
+  double before = t->before;
+  int jumps = t->numbers.n && time == before;
+  if (t->numbers.n && (time < before || (jumps && t->jumped))) {
+    mistake(t, at, arena_printf(t->b->arena, jumps ? "this is the third row at %.17g" : "times must increase, and %.17g does not come after %.17g", time, before));
+    diag_help(t->b->diags, "sort the rows; a jump is two rows of one time: the value before it, and the one after it");
+    return;
+  }
+  t->before = time;
+  t->jumped = jumps;
+  if (jumps) time = nextafter(time, HUGE_VAL); /* the runtime goes over such a gap in no step */
   vec_push(t->b->arena, &t->numbers, time);
   vec_push(t->b->arena, &t->numbers, value * unit_factor(&t->in->unit) + num_value(t->in->unit.offset));
 }
@@ -219,6 +265,7 @@ static void read_lines(Table *t) {
 /* The file, read once for all scenes. */
 static int open_table(Table *t, const char *path) {
   Builder *b = t->b;
+  if (!*path) path = ".";
   const Sources *all = b->ast->sources;
   for (uint32_t i = 0; i < all->files.n; i++)
     if (strcmp(all->files.at[i].path, path) == 0) {
@@ -264,7 +311,17 @@ static void warn_of_swings(const Table *t, const Spline *s) {
   double unit = unit_factor(&t->in->unit), zero = num_value(t->in->unit.offset);
   diag_warning(t->b->diags, ast_expr(t->b->ast, t->id)->span, "between its rows the curve goes from %.3g to %.3g, and the rows from %.3g to %.3g",
                (low - zero) / unit, (high - zero) / unit, (lo - zero) / unit, (hi - zero) / unit);
-  diag_help(t->b->diags, "a cubic swings where rows lie far apart beside a jump: add rows there");
+  diag_help(t->b->diags, "a cubic swings where rows lie far apart beside a steep rise: add rows there, or make it a jump, two rows of one time");
+}
+
+/* A spline for each piece between two jumps. */
+static int fit_pieces(Arena *a, double (*row)[3], uint32_t n) {
+  for (uint32_t from = 0, to = 1; to <= n; to++) {
+    if (to < n && row[to][0] != nextafter(row[to - 1][0], HUGE_VAL)) continue;
+    if (!spline_fit(a, row + from, to - from)) return 0;
+    from = to;
+  }
+  return 1;
 }
 
 /* The rows with their second derivatives; NULL after an error. */
@@ -282,7 +339,7 @@ static const Spline *fit(Table *t) {
     row[i][0] = t->numbers.at[2 * i];
     row[i][1] = t->numbers.at[2 * i + 1];
   }
-  if (!spline_fit(b->arena, row, n)) {
+  if (!fit_pieces(b->arena, row, n)) {
     diag_error(b->diags, span, "the curve through `%s` is not finite", t->file.path);
     diag_help(b->diags, "rows are too close, or values too far apart, for double precision");
     return NULL;

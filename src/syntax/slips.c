@@ -105,11 +105,30 @@ static const char *missing_comma(const Parse *cx, const TokKind *set, int n) {
 /* After an operand where an operator is due. */
 static const char *missing_operator(const Parse *cx) {
   const Token *t = &cx->current, *b = &cx->before;
+  if ((t->name && has_word("if then else when where", t->name)) || (b->name && has_word("if then else", b->name)))
+    return "a choice is written `if(x > 0, a, b)`: a where the condition holds, b where not";
   if (t->kind == TOK_IDENT && b->kind == TOK_NUMBER)
     return arena_printf(cx->ast->arena, "a unit stands in brackets: `[%s]`; a product is written with `*`", t->name);
   if (b->kind == TOK_IDENT && is_function(b->name))
     return arena_printf(cx->ast->arena, "a function takes its argument in parentheses: `%s(...)`", b->name);
   return "a product is written with `*`";
+}
+
+/* `name(` where a value is due. */
+static const char *unexpected_call(const Parse *cx) {
+  const char *name = cx->before.name ? cx->before.name : "f";
+  switch (cx->filter->word) {
+    case TOK_LET: return arena_printf(cx->ast->arena, "a function of one's own is `function %s(x) = …`", name);
+    case TOK_FORCE: return "a force acts along a coordinate, `force x = …`, or at a point, `force (px, py) = (…, …)`";
+    case TOK_PARAM: case TOK_CONST: case TOK_INPUT: case TOK_OBSERVE: case TOK_COORD: case TOK_STATE:
+      return arena_printf(cx->ast->arena, "a name has no arguments here; a function of one's own is `function %s(x) = …`", name);
+    default: return "a start is written `start x = 1, x' = 0`";
+  }
+}
+
+static const char *unexpected_comma(const TokKind *set, int n) {
+  if (has(set, n, TOK_IN) || has(set, n, TOK_RANGE)) return "a range is written `i in 1..N`";
+  return has(set, n, TOK_RPAREN) ? "what has several arguments is a function, and its name has no `.`: `pow(x, 2)`" : NULL;
 }
 
 static const char *after_method(const Parse *cx) {
@@ -128,6 +147,7 @@ static const char *misshapen_title(const Parse *cx, const TokKind *set, int n) {
 
 static const char *unexpected_assign(const Parse *cx, const TokKind *set, int n) {
   TokKind word = cx->filter->word;
+  if (word == TOK_EVENT && has(set, n, TOK_RISING)) return "an event is where an expression passes zero: `event e: x - 1 rising { … }`";
   if (has(set, n, TOK_EQ)) return "write `==` to compare";
   if (has(set, n, TOK_IN)) return "a range is written `i in 1..N`";
   if (word == TOK_COORD || word == TOK_STATE) return "where it starts stands in a scene: `start x = …`";
@@ -150,24 +170,30 @@ const char *slip_token(const Parse *cx, const TokKind *set, int n) {
   if (cx->filter->word == TOK_MONITOR && !has(set, n, TOK_TIMES) && ends_operand(b) && (token_flags(t->kind) & T_BINARY))
     return "a monitor watches a name, or what stands in parentheses: `monitor (x + y) 1e-6`";
   switch (t->kind) {
-    case TOK_COMMA: return has(set, n, TOK_IN) ? "a range is written `i in 1..N`" : NULL;
+    case TOK_COMMA: return unexpected_comma(set, n);
+    case TOK_RANGE: return has(set, n, TOK_RBRACKET) ? "a family has a size: `x[N]` has the members 1 to N" : NULL;
+    case TOK_UNIT: return b->kind == TOK_UNIT ? "an index touches what it belongs to, and a unit does not: `x[N] [m]`" : NULL;
     case TOK_EQ: return has(set, n, TOK_ASSIGN) ? "write `=`: it states an equation; `==` compares two numbers" : NULL;
     case TOK_ASSIGN: return unexpected_assign(cx, set, n);
     case TOK_COLON:
       if (wants_block(set, n)) return "a block begins with `{`";
       return has(set, n, TOK_ASSIGN) ? arena_printf(a, "write `%s = …`", b->name ? b->name : "NAME") : NULL;
-    case TOK_END:
+    case TOK_END: case TOK_RBRACE:
+      if (cx->filter->word == TOK_MONITOR && has(set, n, TOK_NUMBER)) return "a monitor has a limit: `monitor energy 1e-8`";
+      if (t->kind == TOK_RBRACE) return NULL;
       if (cx->filter->word == TOK_PARAM && has(set, n, TOK_ASSIGN)) return "a parameter has a value, which scenes can change: `param m = 1 [kg]`";
       return wants_block(set, n) ? "a block begins with `{`" : NULL;
     case TOK_INDEX: return has(set, n, TOK_UNIT) ? "a unit stands apart from the name: `u [N]`" : NULL;
-    case TOK_PRIME: return b->kind == TOK_END ? "a `'` never continues a line: put it on the line of its name" : NULL;
+    case TOK_PRIME: 
+      if (b->kind == TOK_IDENT && b->span.begin == t->span.begin) return "a dot above a letter is a time derivative, as a `'` is: declare the name without it";
+      return b->kind == TOK_END ? "a `'` never continues a line: put it on the line of its name" : NULL;
     case TOK_RPAREN: case TOK_RBRACKET:
       return has(set, n, TOK_TIMES) && !cx->open.span.end ? arena_printf(a, "this `%s` closes nothing", token_word(t->kind)) : NULL;
     case TOK_LT: case TOK_LE: case TOK_GT: case TOK_GE: case TOK_NE: return unexpected_comparison(cx, set, n);
     case TOK_IN: case TOK_AND: case TOK_OR: case TOK_NOT:
       return has(set, n, TOK_IDENT) ? arena_printf(a, "`%s` is a reserved word", token_word(t->kind)) : NULL;
     case TOK_IDENT: case TOK_NUMBER: case TOK_LPAREN: case TOK_SUM: case TOK_PRODUCT:
-      if (t->kind == TOK_LPAREN && has(set, n, TOK_ASSIGN)) return "a start is written `start x = 1, x' = 0`";
+      if (t->kind == TOK_LPAREN && has(set, n, TOK_ASSIGN)) return unexpected_call(cx);
       return has(set, n, TOK_TIMES) && ends_operand(b) ? missing_operator(cx) : NULL;
     default: return NULL;
   }

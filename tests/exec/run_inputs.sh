@@ -156,4 +156,22 @@ embedded() { # HEADER|LIBLAG
 }
 check "inputs of an embedded header" embedded HEADER
 check "inputs by a function, with liblag" embedded LIBLAG
+# A jump is two rows of one time. m x'' = u, u = 0 before 1 s and 4 after it: x(3) = 4/m*2^2/2 = 4, x(1.5) = 4/m*0.5^2/2. The same
+# backwards, where u = 4 is before: x(-3) from rest. Values before a jump at the first row, and behind one at the last.
+printf '0,0\n0.5,0\n1,0\n1,4\n3,4\n' >"$dir/data/jump.csv"
+printf '0,0\n1,0\n1,4\n' >"$dir/data/last.csv"
+printf '0,0\n0,4\n1,4\n' >"$dir/data/first.csv"
+printf -- '-3,4\n-1,4\n-1,0\n0,0\n' >"$dir/data/back.csv"
+for method in rk45 dop853 'gauss --step 0.01' 'verlet4 --step 0.01'; do
+  # shellcheck disable=SC2086
+  near "$method: a jump" 1e-9 4 "$(last "$m" push u="$dir/data/jump.csv" --until 3 --method $method)"
+done
+near "soon after a jump" 1e-12 0.25 "$(last "$m" push u="$dir/data/jump.csv" --until 1.5)"
+near "a jump at the last row" 1e-12 4 "$(last "$m" push u="$dir/data/last.csv" --until 3)"
+near "a jump at the first row" 1e-12 9 "$(last "$m" push u="$dir/data/first.csv" --until 3)"
+near "a jump, backwards" 1e-12 4 "$(last "$m" push u="$dir/data/back.csv" --until=-3)"
+rejected() { "$LAGC" run "$m" push u="$dir/data/jump.csv" --until 3 --json 2>"$dir/err" | sed 's/.*"rejected": \([0-9]*\).*/\1/'; }
+is "no step is tried across a jump" 0 "$(rejected)"
+printf '0,0\n1,0\n1.000001,1\n2,1\n' >"$dir/data/steep.csv"
+check "lagc run shows the model's warnings" says 0 "warning: between its rows the curve goes from" "$LAGC" run "$m" push u="$dir/data/steep.csv" --quiet
 tap_end

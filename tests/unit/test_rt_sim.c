@@ -176,6 +176,23 @@ static int watch_x(ARGS, double *out, UNUSED double *w)
   return 0;
 }
 
+/* Where one monitor fails, the drift of those behind it is known, too. */
+static void all_monitors_are_known_where_one_fails(void **state)
+{
+  const lag_monitor both[] = {{"energy", -1, 1e-9, 0}, {"x", 0, 10, 0}};
+  lag_scene c = osc;
+  (void)state;
+  c.nmonitors = 2;
+  c.monitors = both;
+  c.nout = 1;
+  c.outputs = names_q;
+  c.observe = watch_x;
+  lag_sim *s = sim_with(&c, &lag_rk4, 0, 1, (lag_option[]){{"step", 0.1, NULL}});
+  assert_int_equal(lag_sim_advance(s, 10), LAG_EMONITOR);
+  assert_close(lag_sim_monitor_drift(s, 1), 1 - cos(0.1), 1e-6); /* rk4: 0.1^5/120 */
+  lag_sim_free(s);
+}
+
 static void monitors_end_the_run(void **state)
 {
   const lag_monitor tight = {"energy", -1, 1e-9, 0}, loose = {"energy", -1, 1e-3, 0}, x = {"x", 0, 0.5, 0};
@@ -328,6 +345,7 @@ int main(void)
       cmocka_unit_test(a_constant_takes_the_place_of_a_function),
       cmocka_unit_test(a_function_takes_facts_away),
       cmocka_unit_test(energy_drift_is_what_the_method_loses),
+      cmocka_unit_test(all_monitors_are_known_where_one_fails),
       cmocka_unit_test(monitors_end_the_run),
       cmocka_unit_test(asking_more_often_changes_nothing),
       cmocka_unit_test(a_saved_run_goes_on_bit_by_bit),
