@@ -62,21 +62,6 @@ static int choose_number(const App *app, int *k)
   return 0;
 }
 
-/* A scene's method that has no tangent gives way to one that has; one that the user names is refused. */
-static void replace_method(App *app)
-{
-  const lag_scene *c = app->scene;
-  const lag_method *m = c->method ? app_find_method(app, c->method) : NULL;
-
-  if (!app->args.method && m && !m->tangent) {
-    app->args.method = lag_dop853.name;
-    if (!app->args.quiet) {
-      fprintf(stderr, "%s: note: %s of scene %s has no derivative of its steps; %s takes its place\n", app->args.self, m->name, c->name,
-              lag_dop853.name);
-    }
-  }
-}
-
 /* t and the running estimates, in place of the scene's outputs. */
 static int make_table(App *app, int k)
 {
@@ -306,7 +291,6 @@ static int choose(App *app, Job *job)
   if (!app->sim) {
     return app_error(&app->args, "out of memory");
   }
-  replace_method(app);
   rc = app_choose_method(app);
   return rc ? rc : app_set_values(app);
 }
