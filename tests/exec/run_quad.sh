@@ -10,7 +10,7 @@ if [ -z "$gcc" ] || ! echo 'int main(void) { return 0; }' | $gcc $flags -x c - -
   exit 0
 fi
 for m in models/pendulum models/double_pendulum models/kepler tests/exec/models/magnet tests/exec/models/shaken; do
-  "$LAGC" emit $m.lag --method gauss -o "$TMP/$(basename $m).c" || exit 1
+  "$LAGC" emit $m.lag --method gauss --with linear -o "$TMP/$(basename $m).c" || exit 1
 done
 $gcc $flags -DLAG_REAL=__float128 '-DLAG_FN(x)=x##q' '-DLAG_C(x)=x##Q' -I"$INC" -Iruntime "$TMP"/*.c runtime/core/*.c \
   runtime/methods/*.c tests/exec/quad_methods.c -lquadmath -lm -o "$TMP/quad" || exit 1
