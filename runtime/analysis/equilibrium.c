@@ -38,8 +38,7 @@ static void choose_scales(Rest *r)
   }
 }
 
-/* The state of x[n]. */
-static void place(Rest *r, const double *x)
+void lag_rest_place(Rest *r, const double *x)
 {
   int nq = r->sim->pb.nq;
 
@@ -56,7 +55,7 @@ static int equations(void *context, const double *x, double *f, double *J)
   int nq = pb->nq, n = r->n;
   double t = r->sim->run->t;
 
-  place(r, x);
+  lag_rest_place(r, x);
   int rc = lag_rhs(pb, t, r->y, r->rate);
   rc = rc ? rc : lag_linearise(pb, t, r->y, NULL, r->dr, r->M, r->work);
   for (int i = 0; i < n && rc == 0; i++) {
@@ -421,6 +420,47 @@ static int allocate(Rest *r)
   return r->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
 
+/* ---- Coordinates that lose their meaning */
+
+/* How near M[n * n] is to a singular one, where size[n] are its diagonal's usual ones: the least pivot of Cholesky's
+ * method. M is destroyed. */
+static double least_pivot(int n, double *M, const double *size)
+{
+  double least = HUGE_VAL;
+
+  for (int k = 0; k < n; k++) {
+    double pivot = M[k * n + k];
+    least = size[k] > 0 ? fmin(least, fabs(pivot) / size[k]) : least;
+    for (int i = k + 1; i < n && pivot != 0.0; i++) {
+      double factor = M[i * n + k] / pivot;
+      for (int j = k + 1; j < n && factor != 0.0; j++) {
+        M[i * n + j] -= factor * M[k * n + j];
+      }
+    }
+  }
+  return least;
+}
+
+/* Is the mass matrix at x much nearer to a singular one than it is beside x, a tenth of a scale away? */
+static void look_for_poles(Rest *r)
+{
+  int n = r->n, nq = r->sim->pb.nq;
+  double *size = r->dx, here, beside;
+
+  for (int i = 0; i < n; i++) {
+    r->trial[i] = r->x[i] + 0.1 / (1 + 0.3 * (i % 3));
+  }
+  if (equations(r, r->trial, r->f, NULL)) {
+    return;
+  }
+  for (int i = 0; i < nq; i++) {
+    size[i] = fabs(r->M[i * nq + i]);
+  }
+  beside = least_pivot(nq, r->M, size);
+  here = equations(r, r->x, r->f, NULL) ? 0 : least_pivot(nq, r->M, size);
+  r->singular = here < 1e-9 * beside;
+}
+
 /* How far from x the root may be: what rounding of forces, with two patterns of signs, moves Newton's method by, and what it
  * would still do. Leaves all values at x. */
 static int settle(Rest *r)
@@ -439,6 +479,7 @@ static int settle(Rest *r)
       r->spread[i] = fmax(r->spread[i], fmin(fabs(r->dx[i]), 0.1));
     }
   }
+  look_for_poles(r);
   rc = rc ? rc : equations(r, r->x, r->f, r->J);
   return rc ? (rc < 0 ? rc : LAG_EDOMAIN) : 1;
 }
@@ -469,6 +510,10 @@ int lag_rest_find(Rest *r, lag_sim *sim, const lag_algebra *algebra)
     clean(r);
     return settle(r);
   }
+  if (rc == 0) {
+    look_for_poles(r);
+    holds(r, r->x);
+  }
   return rc;
 }
 
@@ -478,7 +523,7 @@ int lag_rest_holds(Rest *r, const double *dx, double c)
     r->trial[i] = r->x[i] + c * dx[i] / r->scale[i];
   }
   int good = holds(r, r->trial);
-  place(r, r->x);
+  lag_rest_place(r, r->x);
   return good;
 }
 
@@ -501,7 +546,7 @@ int lag_rest_continues(Rest *r, const lag_algebra *algebra, const double *dx, do
     off = fmax(off, fabs(r->from[i] - r->x[i] - step));
     far = fmax(far, fabs(step));
   }
-  place(r, r->x);
+  lag_rest_place(r, r->x);
   return found && off < 0.4 * far;
 }
 

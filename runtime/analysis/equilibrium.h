@@ -25,6 +25,7 @@ typedef struct Rest {
   double *values, *noise, *scratch; /* [n + n * n] f and J, and what rounding of the model's numbers makes of them */
   double *spread; /* [n] how far the root may be from x, by rounding */
   int rank;       /* of J there */
+  int singular;   /* the mass matrix nearly is, there, as it is not beside it: a coordinate loses its meaning */
   double delta;
   double *dr, *M, *work;   /* of lag_linearise */
 } Rest;
@@ -36,6 +37,9 @@ typedef struct Rest {
  * lag_rest_free in every case. */
 int lag_rest_find(Rest *rest, lag_sim *sim, const lag_algebra *algebra);
 void lag_rest_free(Rest *rest);
+
+/* y := the state, at rest, of the unknowns x[n]. */
+void lag_rest_place(Rest *rest, const double *x);
 
 /* Whether a root is at, or so near that it cannot be told from, the state at rest moved by c times dx[n] (in SI). */
 int lag_rest_holds(Rest *rest, const double *dx, double c);

@@ -155,6 +155,18 @@ for k in 1e5 1e6 1e7 1e10; do # a rod, almost; the floor of its valley is a circ
   find_modes models/spring_pendulum.lag x=0.6 y=-0.8 k=$k
   is "$title: not sideways" 0 "$(at_rest x)"
 done
+find_modes $dir/apart.lag # sqrt(k/m), sqrt(K/M): 3e9 and 3e-5
+verdict stable
+is "$title: nothing to note" "" "$(head_text note)"
+close "of the house" 1 "$(calc "$(of_mode 1 im)/sqrt(1e-3/1e6)")"
+close "of the atom" 1 "$(calc "$(of_mode 2 im)/sqrt(1e-6/1e-25)")"
+find_modes $dir/apart.lag alike
+verdict stable
+close "the slow one" 1 "$(calc "$(of_mode 1 im)/sqrt(1e-6)")"
+find_modes $dir/apart.lag damped # y'' + 2 d y' + w^2 y = 0, d = 1e-3/1e6
+is "$title: both" 2 "$(count)"
+close "decay of the house" 1 "$(calc "($(of_mode 1 re))/-1e-9")" 1e-10 # of eigenvalues 3e-5 -+ rounding: 3e-16*3e-5/1e-9
+close "of the atom" 1 "$(calc "$(of_mode 2 im)/sqrt(1e-6/1e-25)")"
 find_modes $dir/valley.lag # x^3 y - y^2/2: no force at 0 alone, where x moves along y = x^3
 verdict undecided
 close "the end of the valley" 0 "$(at_rest x)" 0
@@ -162,6 +174,22 @@ find_modes $dir/body.lag
 close "it stops" 0 "$(at_rest w3)" 0
 close "as it stood" 0.8 "$(at_rest a)" 0
 close "as it stood" 0.6 "$(at_rest b)" 0
+
+# ---- what rounding leaves of a stiffness that is 0
+for scene in go damped; do
+  find_modes $dir/buckle.lag $scene # m g l - k l^2 = 0; it falls
+  verdict undecided
+  because "a zero mode"
+done
+find_modes models/bead_on_hoop.lag critical # the bifurcation of th = 0
+verdict undecided
+close "at the bottom" 0 "$(at_rest th)" 0
+find_modes models/lorenz.lag rho=1 # and that of 0, which the search reaches slowly
+verdict undecided
+because "a zero mode"
+close "at 0" 0 "$(at_rest x)" 0
+close "-8/3" "-8/3" "$(of_mode 2 re)"
+close "-11" -11 "$(of_mode 3 re)"
 
 # ---- damped
 find_modes $dir/oscillator.lag # x'' + 2 d x' + w^2 x = 0, d = 0.2, w = 2
