@@ -1,6 +1,7 @@
 #include "wants.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "ir/unit.h"
@@ -46,8 +47,19 @@ static unsigned wants_of_all(const Eqns *e) {
   return wants;
 }
 
+/* What the simulator may choose where nobody names a method: taylor for small tolerances, radau where friction or flows may be
+ * stiff. Not for long models, whose series and Jacobians take long to compile. */
+static unsigned wants_of_choice(const Eqns *e, const Options *o) {
+  enum { LONG = 40 };
+  const double below_taylor = 1e-9; /* as in runtime/app/automatic.c */
+  double tol = o->tol ? strtod(o->tol, NULL) : e->m->scene.tolerance;
+  int runs = command_simulates(o->command) || o->command == CMD_BUILD;
+  if (!runs || e->m->scene.method || o->method || e->n + e->m->states.n > LONG) return 0;
+  return (tol > 0 && tol < below_taylor ? WANT_TAYLOR : 0u) | (e->conserves_energy ? 0u : WANT_LINEAR);
+}
+
 unsigned wants_of(const Eqns *e, const Options *o) {
   if (o->command == CMD_COST) return wants_of_all(e);
-  unsigned wants = wants_of_method(e, e->m->scene.method) | wants_of_method(e, o->method) | (o->with ? WANT_LINEAR : 0u);
+  unsigned wants = wants_of_method(e, e->m->scene.method) | wants_of_method(e, o->method) | wants_of_choice(e, o) | (o->with ? WANT_LINEAR : 0u);
   return o->resume ? wants | wants_of_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

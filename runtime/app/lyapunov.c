@@ -128,6 +128,9 @@ static void put_text(FILE *f, App *app, const Lyapunov *l)
 
   report_method(app, method, sizeof method);
   fprintf(f, "model %s, scene %s, method %s\n", app->scene->model->name, app->scene->name, method);
+  if (app->why[0]) {
+    fprintf(f, "chosen: %s\n", app->why);
+  }
   if (!(l->t > l->begun)) {
     fprintf(f, "no step of the run lies after t = %g s, from where on it is measured; run longer: --until\n", l->from);
     return;
@@ -190,6 +193,8 @@ static void put_json(FILE *f, const App *app, const Lyapunov *l)
   json_string(f, app->scene->name);
   fputs(", \"method\": ", f);
   json_string(f, lag_sim_method(app->sim)->name);
+  fputs(", \"chosen\": ", f);
+  json_string(f, app->why[0] ? app->why : NULL);
   fputs(", \"status\": ", f);
   json_string(f, app->status < 0 ? "failed" : lag_status_name(app->status));
   json_field(f, "from", l->begun);
@@ -291,8 +296,8 @@ static int choose(App *app, Job *job)
   if (!app->sim) {
     return app_error(&app->args, "out of memory");
   }
-  rc = app_choose_method(app);
-  return rc ? rc : app_set_values(app);
+  rc = app_set_values(app);
+  return rc ? rc : app_choose_method(app);
 }
 
 int app_lyapunov(App *app)
