@@ -42,7 +42,7 @@ int app_choose_automatically(App *app, const lag_option *opt, int n)
   const lag_method *plain = tol > above_rk45 ? &lag_rk45 : &lag_dop853;
   char *why = app->why;
   size_t size = sizeof app->why;
-  int exponents = app->args.tangent || app->args.lyapunov; /* taylor has no tangent */
+  int exponents = app->args.lyapunov; /* taylor has to take steps of dop853 for tangent vectors */
   Stiffness s = {0};
 
   if (is_stiff(app, plain, &s) && set(app, &lag_radau, opt, n)) {
@@ -53,6 +53,8 @@ int app_choose_automatically(App *app, const lag_option *opt, int n)
   } else if (set(app, plain, opt, n)) {
     if (plain == &lag_rk45) {
       snprintf(why, size, "rk45, since the tolerance is above %g", above_rk45);
+    } else if (exponents && tol < below_taylor) {
+      snprintf(why, size, "dop853, since tangent vectors cost it less than taylor");
     } else {
       snprintf(why, size, "dop853, since %s %g", tol < below_taylor ? "taylor cannot take this run, with its tolerance below"
                                                                       : "the tolerance is at most", tol < below_taylor ? below_taylor : above_rk45);

@@ -62,21 +62,6 @@ static int choose_number(const App *app, int *k)
   return 0;
 }
 
-/* A scene's method that has no tangent gives way to one that has; one that the user names is refused. */
-static void replace_method(App *app)
-{
-  const lag_scene *c = app->scene;
-  const lag_method *m = c->method ? app_find_method(app, c->method) : NULL;
-
-  if (!app->args.method && m && !m->tangent) {
-    app->args.method = lag_dop853.name;
-    if (!app->args.quiet) {
-      fprintf(stderr, "%s: note: %s of scene %s has no derivative of its steps; %s takes its place\n", app->args.self, m->name, c->name,
-              lag_dop853.name);
-    }
-  }
-}
-
 /* t and the running estimates, in place of the scene's outputs. */
 static int make_table(App *app, int k)
 {
@@ -143,6 +128,9 @@ static void put_text(FILE *f, App *app, const Lyapunov *l)
 
   report_method(app, method, sizeof method);
   fprintf(f, "model %s, scene %s, method %s\n", app->scene->model->name, app->scene->name, method);
+  if (app->why[0]) {
+    fprintf(f, "chosen: %s\n", app->why);
+  }
   if (!(l->t > l->begun)) {
     fprintf(f, "no step of the run lies after t = %g s, from where on it is measured; run longer: --until\n", l->from);
     return;
@@ -205,6 +193,8 @@ static void put_json(FILE *f, const App *app, const Lyapunov *l)
   json_string(f, app->scene->name);
   fputs(", \"method\": ", f);
   json_string(f, lag_sim_method(app->sim)->name);
+  fputs(", \"chosen\": ", f);
+  json_string(f, app->why[0] ? app->why : NULL);
   fputs(", \"status\": ", f);
   json_string(f, app->status < 0 ? "failed" : lag_status_name(app->status));
   json_field(f, "from", l->begun);
@@ -306,9 +296,8 @@ static int choose(App *app, Job *job)
   if (!app->sim) {
     return app_error(&app->args, "out of memory");
   }
-  replace_method(app);
-  rc = app_choose_method(app);
-  return rc ? rc : app_set_values(app);
+  rc = app_set_values(app);
+  return rc ? rc : app_choose_method(app);
 }
 
 int app_lyapunov(App *app)

@@ -17,13 +17,13 @@ static void row(const lag_method *m, FILE *f)
   unsigned is = m->flags;
   char order[32], dense[32];
 
-  fprintf(f, "  %-16s  %-5s  %-5s  %-8s  %-21s  %-16s  %-6s  %s\n", m->name, order_text(m, m->order, order, sizeof order),
+  fprintf(f, "  %-16s  %-5s  %-5s  %-8s  %-21s  %-16s  %-6s  %-6s  %s\n", m->name, order_text(m, m->order, order, sizeof order),
           order_text(m, m->dense_order, dense, sizeof dense),
           is & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed",
           is & LAG_METHOD_SYMMETRIC ? is & LAG_METHOD_SYMPLECTIC ? "symplectic, symmetric" : "symmetric"
           : is & LAG_METHOD_SYMPLECTIC ? "symplectic" : "-",
           is & LAG_METHOD_SPLITS ? "unless separable" : is & LAG_METHOD_NEWTON ? "yes" : "no",
-          is & LAG_METHOD_CONSERVATIVE ? "no" : "yes", is & LAG_METHOD_NO_STATES ? "no" : "yes");
+          is & LAG_METHOD_CONSERVATIVE ? "no" : "yes", is & LAG_METHOD_NO_STATES ? "no" : "yes", m->tangent ? "yes" : "no");
 }
 
 static void words(const lag_method *m, FILE *f)
@@ -39,15 +39,15 @@ static void words(const lag_method *m, FILE *f)
 
 void app_list_methods(const App *app, FILE *f)
 {
-  fprintf(f, "  %-16s  %-5s  %-5s  %-8s  %-21s  %-16s  %-6s  %s\n", "method", "order", "dense", "steps", "keeps", "Newton's method",
-          "forces", "states");
+  fprintf(f, "  %-16s  %-5s  %-5s  %-8s  %-21s  %-16s  %-6s  %-6s  %s\n", "method", "order", "dense", "steps", "keeps", "Newton's method",
+          "forces", "states", "tangent");
   for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
     row(i < lag_nmethods ? lag_methods[i] : app->extras.methods[i - lag_nmethods], f);
   }
   fputs("\nWhere none is named, a run chooses and says why. dense: order between steps. forces: whether the model may have forces\n"
         "and explicit time; what a symplectic method keeps without them it does not keep with them. states: whether it may have\n"
-        "a `state`. separable: with constant mass matrix, and accelerations that do not depend on velocities. Options, with their\n"
-        "defaults:\n", f);
+        "a `state`. tangent: whether its steps have a derivative (--tangent, lagc lyapunov). separable: with constant mass matrix, and\n"
+        "accelerations that do not depend on velocities. Options, with their defaults:\n", f);
   for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
     words(i < lag_nmethods ? lag_methods[i] : app->extras.methods[i - lag_nmethods], f);
   }

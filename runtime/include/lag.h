@@ -175,7 +175,8 @@ typedef struct lag_method {
   void (*fini)(void *work);
 
   /* Y[n * k] := D Y, where D is the derivative by y0 of the step that leads from the beginning of the last step to t. At its
-   * end that is the derivative of the step itself, at fixed step size; before it, of a shorter one. scratch has
+   * end that is the derivative of the step itself, at fixed step size (of taylor, of the flow, to the tolerance); before it,
+   * of a shorter one. scratch has
    * tangent_size(pb, k) doubles. 0, or < 0 as step. Later steps do not depend on whether it was called. NULL: the method
    * has none. */
   size_t (*tangent_size)(const lag_problem *pb, int k);

@@ -144,3 +144,75 @@ int lag_tangent_implicit(int stages, const double *A, const double *c, lag_probl
   }
   return LAG_OK;
 }
+
+/* A vector and two matrices stand before those of the stages. */
+size_t lag_tangent_along_size(const lag_problem *pb, int k)
+{
+  return lag_tangent_size(pb, lag_dop853_tableau.stages, k);
+}
+
+/* out[m] := sum coef_j F_j over j < count */
+static void combine(int m, int count, const double *coef, const double *F, double *out)
+{
+  memset(out, 0, (size_t)m * sizeof *out);
+  for (int j = 0; j < count; j++) {
+    if (coef[j] != 0.0) {
+      lag_tangent_add(m, coef[j], F + j * m, out);
+    }
+  }
+}
+
+/* sum (e_i / s_i)^2 of an estimate, s_i = |Y_i| and what it would gain in dt, the mean of |dt F_i| over the stages. */
+static double square(int m, int stages, const double *e, const double *Y, const double *F, double dt)
+{
+  double sum = 0;
+
+  for (int i = 0; i < m; i++) {
+    double gain = 0;
+    for (int j = 0; j < stages; j++) {
+      gain += fabs(F[j * m + i]) / stages;
+    }
+    double x = e[i] != 0.0 ? e[i] / (fabs(Y[i]) + fabs(dt) * gain) : 0;
+    sum += x * x;
+  }
+  return sum;
+}
+
+int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, double t0, double dt, int k, double *Y, double *scratch)
+{
+  const lag_tableau *tab = &lag_dop853_tableau;
+  const double tol = fmax(pb->tol, 1e-14), safety = 0.9, shrink_most = 0.2, grow_most = 6, least = 1e-6;
+  int n = pb->n, m = n * k, stages = tab->stages - 1, rc;
+  double *rest;
+  lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
+  double *y = rest, *Ys = y + n, *error = Ys + m, *F = error + m;
+
+  for (double done = 0, part = 1; done < 1;) {
+    part = fmin(part, 1 - done);
+    double h = part * dt, t = t0 + done * dt;
+    for (int s = 0; s < stages; s++) {
+      combine(m, s, tab->a[s], F, error);
+      memcpy(Ys, Y, (size_t)m * sizeof *Ys);
+      lag_tangent_add(m, h, error, Ys);
+      path(work, pb, t + tab->c[s] * h, y);
+      if ((rc = lag_tangent_at(&w, t + tab->c[s] * h, y, NULL)) != 0) {
+        return rc;
+      }
+      lag_tangent_times(&w, Ys, F + s * m);
+    }
+    combine(m, stages, tab->e, F, error);
+    double fine = square(m, stages, error, Y, F, dt);
+    combine(m, stages, tab->e3, F, error);
+    double both = fine + 0.01 * square(m, stages, error, Y, F, dt), err = both > 0 ? fabs(h) * fine / sqrt(m * both) / tol : 0;
+    if (!isfinite(err)) {
+      return lag_step_failed(pb, LAG_ENAN, t);
+    }
+    if (err <= 1 || part < least) {
+      combine(m, stages, tab->a[stages], F, error);
+      lag_tangent_add(m, h, error, Y);
+      done = part >= 1 - done ? 1 : done + part;
+    }
+    part *= fmin(grow_most, fmax(shrink_most, err > 0 ? safety * pow(err, -1.0 / 8) : grow_most));
+  }
+  return LAG_OK;
+}

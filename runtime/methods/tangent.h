@@ -23,6 +23,12 @@ size_t lag_tangent_implicit_size(const lag_problem *pb, int stages, int k);
 int lag_tangent_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt, const double *ys, int k,
                          double *Y, double *scratch);
 
+/* The same along a path that is known to the tolerance, whatever made it: Y' = Df(t, path(t)) Y by dop853, in steps of its own
+ * whose error is below the tolerance pb->tol in each entry of Y, relative to it or to what it gains in dt, or below 1e-14. */
+typedef void lag_tangent_path(void *work, lag_problem *pb, double t, double *y);
+size_t lag_tangent_along_size(const lag_problem *pb, int k);
+int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, double t0, double dt, int k, double *Y, double *scratch);
+
 /* What a stage needs: df/dy at (t, y) from here on. f[n], unless NULL: f(t, y), too. */
 typedef struct lag_tangent {
   lag_problem *pb;

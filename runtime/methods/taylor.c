@@ -21,6 +21,7 @@
 #include "lag.h"
 #include "methods/near.h"
 #include "methods/steps.h"
+#include "methods/tangent.h"
 
 enum { WINDOW = 5, LEAST_ORDER = 6, AIM = 2 };
 
@@ -339,6 +340,19 @@ static void dense(void *work, lag_problem *pb, double t, double *y)
   }
 }
 
+static size_t tangent_size(const lag_problem *pb, int k)
+{
+  return lag_tangent_along_size(pb, k);
+}
+
+/* The series is the motion, to the tolerance; so is its derivative that of the flow. */
+static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+{
+  const Taylor *w = work;
+
+  return lag_tangent_along(dense, work, pb, w->t0, t - w->t0, k, Y, scratch);
+}
+
 const lag_method lag_taylor_method = {
     .name = "taylor",
     .order = 20,
@@ -354,4 +368,6 @@ const lag_method lag_taylor_method = {
     .step = step,
     .dense = dense,
     .reset = reset,
+    .tangent_size = tangent_size,
+    .tangent = tangent,
 };

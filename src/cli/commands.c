@@ -36,7 +36,8 @@ static const CommandRow commands[] = {
   {CMD_LYAPUNOV, "lyapunov", "exponents", "MODEL [SCENE] [name=value ...] [--until T] [--exponents K] [--json]", "Lyapunov exponents: how fast neighbouring motions part",
    "Runs the scene for long with the exact tangent of its flow, and prints the Lyapunov exponents: the mean rates at which small "
    "changes of the start grow, in the space of coordinates, velocities and states. The spread is the standard error from 20 blocks of the time "
-   "measured; `at half the time` is what the estimate was then. An exponent that is zero comes near it as log(t)/t only.\n\n"
+   "measured; `at half the time` is what the estimate was then. An exponent that is zero comes near it as log(t)/t only. "
+   "Method and steps are chosen as for `lagc run`: --method, --tol, --step.\n\n"
    "  name=value            a parameter, another start, an input: as for lagc run"},
   {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [-o FILE.svg]", "what accuracy costs in time: all methods, side by side",
    "Runs every method that can honour the model over a range of tolerances or steps, and prints for each run its error, its time, "

@@ -182,6 +182,14 @@ static void published_digits(void **state)
   assert_close(distance(16, J, orbit), 0, 1e-9); /* its own error at this step */
   tangent_tol(&pendulum, &lag_dop853, 1e-14, 5, high, J);
   assert_close(distance(4, J, swing), 0, 2e-12);
+  tangent_tol(&kepler, &lag_taylor_method, 1e-14, 2, peri, J);
+  print_message("# taylor: %.1e\n", distance(16, J, orbit));
+  assert_close(distance(16, J, orbit), 0, 1e-11);
+  tangent_tol(&kepler, &lag_taylor_method, 1e-6, 2, peri, J);
+  assert_close(distance(16, J, orbit), 0, 1e-3);
+  tangent_tol(&osc, &lag_taylor_method, 1e-14, 3.7, high, J);
+  assert_close(J[0], cos(3.7), 1e-13);
+  assert_close(J[1], sin(3.7), 1e-13);
 }
 
 /* ---- The derivative of the map itself, by central differences of order 8: rounding 1e-15/0.02, truncation 0.02^8/630 times
@@ -522,7 +530,9 @@ static void columns_may_be_replaced(void **state)
 
 static void refusals(void **state)
 {
-  lag_sim *s = sim_with(&kepler, &lag_taylor_method, 0, 0, NULL);
+  lag_method bare = lag_rk4;
+  bare.tangent = NULL;
+  lag_sim *s = sim_with(&kepler, &bare, 0, 0, NULL);
   double x[1000];
   (void)state;
   assert_int_equal(lag_sim_set_tangent(s, 4, NULL), LAG_EMETHOD);
