@@ -156,6 +156,10 @@ large() { # NAME SECONDS KIBIBYTES COMMAND...
   result "$name" $?
 }
 large "a string of 10000 masses" 30 1500000 "$LAGC" derive models/string.lag -D N=10000 --ops
+# The text is 3 MB; what derives it needs some 400 MB.
+for f in text latex; do
+  large "a string of 10000 masses, printed as $f" 30 1000000 "$LAGC" derive models/string.lag -D N=10000 --format $f
+done
 large "a chain of 300 links" 30 1500000 "$LAGC" check models/chain.lag swing -D N=300
 cat >"$dir/long.lag" <<'LAG'
 model long
