@@ -125,11 +125,8 @@ static int choose_grid(App *app)
     }
     origin = app->scene->t0;
   }
-  if (a->html && !a->every && !a->out && !a->svg) {
-    every = fabs(app->until - t) / html_frames(fabs(app->until - t));
-    origin = t;
-  } else if (!(every > 0)) {
-    every = fabs(app->until - t) / (a->out || a->svg ? 1000 : 280); /* 280: the dots across a sketch, twice */
+  if (!(every > 0)) {
+    every = fabs(app->until - t) / 1000;
     origin = t;
   }
   if ((a->out || a->svg || a->html || a->sketch) && fabs(app->until - t) / every > 1e9) {
@@ -168,7 +165,7 @@ static int put_row(App *app)
     app->bad_file = app->args.out;
     return LAG_EIO;
   }
-  return table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
+  return app->args.every && table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK; /* without --every film.c chooses those of pictures */
 }
 
 /* Rows on the grid as far as `until`. */
@@ -185,7 +182,7 @@ static int run_rows(App *app)
     if (fabs(rest) <= 1e-9 * grid[1]) {
       app->until = t; /* the same time but for rounding */
     }
-    rc = interrupted ? LAG_INTERRUPTED : lag_sim_advance(app->sim, t);
+    rc = interrupted ? LAG_INTERRUPTED : film_advance(app, t);
     rc = rc ? rc : put_row(app);
     grid[2] += rc == 0;
   }
@@ -194,14 +191,17 @@ static int run_rows(App *app)
 
 static void run(App *app)
 {
-  int rows = app->args.out || app->table.keep, rc = rows ? run_rows(app) : 0;
+  int rows = app->args.out || (app->table.keep && app->args.every), rc = rows ? run_rows(app) : 0;
 
   if (rc == 0) {
-    rc = lag_sim_advance(app->sim, app->until);
+    rc = film_advance(app, app->until);
   }
   if (rows && rc >= 0 && app->last_row != lag_sim_time(app->sim)) {
     int bad = put_row(app);
     rc = bad ? bad : rc;
+  }
+  if (film_close(app)) {
+    rc = LAG_ENOMEM;
   }
   app->status = app->bad_file ? LAG_EIO : rc;
   app->wall = seconds_since(&app->begun);
@@ -242,7 +242,8 @@ static int open_output(App *app, int *plot_x, int *plot_y)
   if (try_file(app, a->svg) || try_file(app, a->html) || try_file(app, a->save)) {
     return EXIT_USAGE;
   }
-  int rc = events_open(app);
+  int rc = film_open(app, *plot_x, *plot_y);
+  rc = rc ? rc : events_open(app);
   return rc ? rc : a->out && rows_open(&app->rows, a->out, &app->table) ? app_io_error(app, a->out) : 0;
 }
 
@@ -276,7 +277,7 @@ static int finish(App *app, int plot_x, int plot_y)
   int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? EXIT_SIGNAL + interrupted : EXIT_FINE, bad = 0;
   int on_stdout = (a->out && strcmp(a->out, "-") == 0) || (a->events && strcmp(a->events, "-") == 0);
   FILE *f = on_stdout ? stderr : stdout;
-  char title[300];
+  char title[300], note[300];
 
   if (app->status == LAG_EINVAL || app->status == LAG_ENOMEM || app->status == LAG_EIO) {
     rows_close(&app->rows, 0);
@@ -291,6 +292,8 @@ static int finish(App *app, int plot_x, int plot_y)
   if (rows_close(&app->log_rows, 1)) {
     bad = app_io_error(app, a->events);
   }
+  film_warn(app, note, sizeof note);
+  app->show.note = note;
   snprintf(title, sizeof title, "%s: %s", app->scene->model->name, app->scene->name);
   if (a->svg && svg_write(a->svg, &app->table, title, plot_x, plot_y)) {
     bad = app_io_error(app, a->svg);
@@ -383,6 +386,7 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
   lag_sim_free(app.sim);
   table_free(&app.table);
   events_free(&app);
+  film_free(&app);
   free(app.show.cols);
   free(app.row);
   free(app.args.sets);

@@ -21,6 +21,15 @@ typedef struct Args {
   int nsets;
 } Args;
 
+/* What pictures show of the run: see film.c. */
+typedef struct Film {
+  int on, places;   /* places of the last step that were looked at */
+  Thin rows;
+  double soonest;   /* steps that end sooner after the last are not looked at */
+  double seen_to, length; /* length: how long a step may be of which a few places show what happens */
+  double *y, *seen; /* [n]; rows [MOST_PLACES + 1][ncols] */
+} Film;
+
 typedef struct App {
   const lag_program *program;
   lag_extras extras;
@@ -30,6 +39,7 @@ typedef struct App {
   State state;      /* that was resumed */
   int resumed;
   Table table;
+  Film film;
   Rows rows;
   Animation show;
   double *row;      /* [ncols] */
@@ -69,6 +79,14 @@ void app_list_methods(const App *app, FILE *f);
 int app_column(const App *app, const char *name);
 /* Fills app->show from --points and --from. 0, or EXIT_USAGE after a message. */
 int app_choose_points(App *app);
+
+/* film.c: rows of pictures. film_open: after app_choose_points; plot_y < 0: all columns. film_advance: lag_sim_advance, looking at
+ * the motion on the way. film_warn: what should be said of the picture, "" when nothing; also said on standard error. */
+int film_open(App *app, int plot_x, int plot_y);
+int film_advance(App *app, double until);
+int film_close(App *app);
+void film_warn(App *app, char *note, size_t size);
+void film_free(App *app);
 
 /* modes.c: --modes. Returns the exit status. */
 int app_modes(App *app);

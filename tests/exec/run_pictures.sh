@@ -162,8 +162,19 @@ check "points by expressions, with spaces and signs" \
 is "are taken apart" 'false false false [["l*sin(th)/2", "-l*cos(th)/2"], ["0 [m]", "-l"], ["atan2(th, 1)*1 [m]", "l - 1 [m]"]]' "$(hook b.html)"
 check "one point from another" a "$p" --points 'x,y' --from '0,l' -o b.html
 is "with its rod" 'true false true [["0", "l"], ["x", "y"]]' "$(hook b.html)"
-check "at most 2000 frames" a "$p" --every 0.001 -o b.html
-is "of 20001 rows" "1820" "$(sed -n '/^"v"/,/]}$/p' b.html | wc -l)"
+# page_frames FILE: how many lines its data have, one a frame
+page_frames() { sed -n '/^"v"/,/]}$/p' "$1" | wc -l; }
+check "frames as asked" a "$p" --every 0.001 -o b.html
+is "a row is a frame" "20001" "$(page_frames b.html)"
+# By default frames follow the motion: 5254 swings of Foucault's pendulum are some 50 frames each, in a few MB.
+f=$models/foucault.lag
+check "a day of swings" a "$f" -o day.html
+check "has more frames than 20 a swing" [ "$(page_frames day.html)" -gt 105080 ]
+check "in less than 8 MB" [ "$(wc -c <day.html)" -lt 8000000 ]
+check "coarse frames are told" says 0 'note: rows every 60 s are too coarse for this motion' animate "$f" --until 3600 --every 60 -o b.html
+check "in the page, too" grep -q '"note": "rows every 60 s' b.html
+check "fine ones are not" runs animate "$f" --until 3600 --every 0.25 -o b.html
+check "by no word" not_grep note: err
 
 # A curve that hardly moves is flat in the terminal: the ends of its axis differ in the digits that are shown.
 flat() {
@@ -232,6 +243,26 @@ tried() {
     [ "$(grep -c 'ok - ' dom)" -ge 12 ] && quiet_console
 }
 check "its controls do what they say" tried double.html
+# Where the pendulum is after 3600 s and a bit, by a run that ends there; the period is 16.4 s.
+"$LAGC" run "$f" --until 3602.4 -o rows.csv --quiet
+check "in a day of swings every place is one that occurs" near "$(places 'day.html#t=3602.4')" "$(row '$' rows.csv | awk '{ print $2, $3 }')" 0.006
+check "it plays no faster than one can follow" [ "$(sed -n 's/.*"speed": \([0-9.]*\),.*/\1/p' day.html)" -lt 100 ]
+"$LAGC" run "$d" chaos --until 12.5 --tol 1e-6 --observe x1 --observe y1 -o rows.csv --quiet
+a "$d" chaos --until 2000 --tol 1e-6 -o long.html
+check "and in a long chaos" near "$(places 'long.html#t=12.5')" "$(row '$' rows.csv | awk '{ print $7, $8, $4, $5 }')" 0.008
+cat >tiny.lag <<'END'
+model tiny "A bond that vibrates, some 20 fs a period"
+coord x [m]
+param m = 1e-26 [kg] > 0, k = 1000 [N/m] > 0
+kinetic = m/2*x'^2
+potential = k/2*x^2
+scene s { start x = 1e-11 [m]; span 1e-13 [s] }
+END
+check "a tenth of a picosecond" a tiny.lag -o tiny.html
+check "opens as others do" tried tiny.html
+visit 'tiny.html#t=5e-14'
+check "its clock goes" grep -q '>t = 0.0500[0-9]* ps<' dom
+check "and it says how fast" grep -q '>1 s shows 5 fs<' dom
 a "$models/mercury.lag" -o mercury.html
 check "a span of months" tried mercury.html
 check "is told in days" grep -q '>1 s shows 10 d<' dom
