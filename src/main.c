@@ -115,7 +115,7 @@ static Eqns *derive_scene(Compiler *c, const char *scene) { return derive_with(c
 /* With what the command line asks for besides the scene's outputs. */
 static Eqns *derive_asked(Compiler *c, const char *scene) {
   return derive(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nasked = c->picture.asked.n,
-                                  .given = c->given.at, .ngiven = c->given.n});
+                                  .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
 }
 
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
@@ -187,7 +187,7 @@ typedef VEC(IrUnit *) Units;
 
 static int lower_all(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast);
-  if (c->picture.asked.n || c->given.n) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
+  if (c->picture.asked.n || c->given.n || c->picture.section.expr) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
   for (uint32_t i = 0; i < scenes.n; i++) {
     Eqns *e = derive_asked(c, scenes.at[i]);
     if (!e) return 0;
@@ -376,7 +376,7 @@ static int do_command(Compiler *c) {
     case CMD_EMIT: return do_emit(c);
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
-    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: return do_run(c);
+    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: case CMD_COST: return do_run(c);
     case CMD_METHODS: case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
   }
   return STATUS_USAGE;

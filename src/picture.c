@@ -46,6 +46,38 @@ static const char *file_name(Maker *k, const char *suffix) {
   return arena_printf(k->arena, "%s_%s.%s", model, k->p->scene ? k->p->scene : model_scenes(k->ast).at[0], suffix);
 }
 
+/* --- sections --- */
+
+/* The direction that the last word says; *n is the length of what stands before it. -1: it says none. */
+static int section_direction(const char *text, size_t *n) {
+  static const char *const words[] = {[CROSS_BOTH] = "crossing", [CROSS_RISING] = "rising", [CROSS_FALLING] = "falling"};
+  const char *space = strrchr(text, ' ');
+  for (int k = 0; space && k < (int)(sizeof words / sizeof *words); k++) {
+    if (strcmp(space + 1, words[k]) != 0) continue;
+    *n = (size_t)(space - text);
+    return k;
+  }
+  return -1;
+}
+
+/* 'EXPR rising' becomes an event of the model, after which the simulator is told to put out rows. */
+static int prepare_section(Maker *k, const char **error) {
+  const char *text = k->o->section;
+  size_t n = 0;
+  if (!text) return 1;
+  text = text_trimmed(k->arena, text, strlen(text));
+  int direction = section_direction(text, &n);
+  if (direction < 0) {
+    *error = arena_printf(k->arena, "--section %s: crossed in which direction? write --section '%s rising', falling or crossing (both)", text, text);
+    return 0;
+  }
+  const Source *source = source_add(k->ast->sources, "--section", text, n);
+  k->p->section = (Section){source ? parse_expression(k->ast, source) : 0, (AstDirection)direction, intern(k->ast->names, text)};
+  if (!k->p->section.expr) return 0;
+  argument(k, "--section", text);
+  return 1;
+}
+
 /* --- plot --- */
 
 /* A name takes a prime as it is; anything else in parentheses. */
@@ -194,12 +226,15 @@ int picture_prepare(Picture *p, Ast *ast, const Options *o, const char **error) 
   int ok = 1;
   p->scene = o->scene ? intern(ast->names, o->scene) : NULL;
   const char *self = o->command == CMD_PLOT ? "lagc plot" : o->command == CMD_ANIMATE ? "lagc animate"
-                   : o->command == CMD_MODES ? "lagc modes" : "lagc run";
+                   : o->command == CMD_MODES ? "lagc modes" : o->command == CMD_COST ? "lagc cost" : "lagc run";
   argument(&k, self, NULL); /* what its messages begin with */
   for (uint32_t i = 0; i < o->observe.n; i++) ok &= ask(&k, "--observe", o->observe.at[i]) != NULL;
-  if (o->command == CMD_PLOT) ok &= prepare_plot(&k, error);
-  if (o->command == CMD_ANIMATE) ok &= prepare_animate(&k, error);
+  ok = ok && prepare_section(&k, error);
+  if (o->command == CMD_PLOT) ok = ok && prepare_plot(&k, error);
+  if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
   if (o->command == CMD_MODES) argument(&k, "--modes", NULL);
+  if (o->command == CMD_COST) argument(&k, "--cost", NULL);
+  if (o->command == CMD_COST && o->output) argument(&k, "--svg", o->output);
   for (uint32_t i = 0; i < o->rest.n; i++) argument(&k, o->rest.at[i], NULL);
   vec_push(k.arena, &p->argv, NULL);
   return ok;

@@ -10,6 +10,7 @@
 
 typedef struct {
   VEC(Asked) asked;
+  Section section;  /* where rows are put out; or none */
   Name scene;       /* that is run; NULL: the first */
   VEC(char *) argv; /* of the simulator, NULL-terminated */
   const char *note; /* what was chosen for the user, or NULL */

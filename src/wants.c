@@ -39,7 +39,15 @@ static const char *method_of_state(Arena *a, const char *path) {
   return name;
 }
 
+/* What all methods need. */
+static unsigned wants_of_all(const Eqns *e) {
+  unsigned wants = 0;
+  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) wants |= wants_of_method(e, methods[i].name);
+  return wants;
+}
+
 unsigned wants_of(const Eqns *e, const Options *o) {
+  if (o->command == CMD_COST) return wants_of_all(e);
   unsigned wants = wants_of_method(e, e->m->scene.method) | wants_of_method(e, o->method) | (o->with ? WANT_LINEAR : 0u);
   return o->resume ? wants | wants_of_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

@@ -38,7 +38,7 @@ static int after_step(void *context, const lag_sim *sim)
     clock_gettime(CLOCK_MONOTONIC, &app->shown);
     app->progress = 1;
   }
-  return interrupted != 0 || app->bad_file;
+  return interrupted != 0 || app->bad_file || app->section_rc;
 }
 
 /* ---- What to compute */
@@ -129,7 +129,7 @@ static int choose_grid(App *app)
     every = fabs(app->until - t) / 1000;
     origin = t;
   }
-  if ((a->out || a->svg || a->html || a->sketch) && fabs(app->until - t) / every > 1e9) {
+  if (app->section < 0 && (a->out || a->svg || a->html || a->sketch) && fabs(app->until - t) / every > 1e9) {
     return app_error(a, "a row every %g s for %g s is %.3g rows; write a larger --every", every, fabs(app->until - t),
                      fabs(app->until - t) / every);
   }
@@ -152,7 +152,7 @@ static double row_time(const App *app, const double *grid)
 
 /* ---- Running */
 
-static int put_row(App *app)
+int app_put_row(App *app)
 {
   double t = lag_sim_time(app->sim);
 
@@ -165,7 +165,7 @@ static int put_row(App *app)
     app->bad_file = app->args.out;
     return LAG_EIO;
   }
-  return app->args.every && table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK; /* without --every film.c chooses those of pictures */
+  return (app->args.every || app->section >= 0) && table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK; /* without --every film.c chooses those of pictures */
 }
 
 /* Rows on the grid as far as `until`. */
@@ -183,7 +183,7 @@ static int run_rows(App *app)
       app->until = t; /* the same time but for rounding */
     }
     rc = interrupted ? LAG_INTERRUPTED : film_advance(app, t);
-    rc = rc ? rc : put_row(app);
+    rc = rc ? rc : app_put_row(app);
     grid[2] += rc == 0;
   }
   return rc;
@@ -191,23 +191,29 @@ static int run_rows(App *app)
 
 static void run(App *app)
 {
-  int rows = app->args.out || (app->table.keep && app->args.every), rc = rows ? run_rows(app) : 0;
+  int rows = app->section < 0 && (app->args.out || (app->table.keep && app->args.every)), rc = rows ? run_rows(app) : 0;
 
   if (rc == 0) {
     rc = film_advance(app, app->until);
   }
   if (rows && rc >= 0 && app->last_row != lag_sim_time(app->sim)) {
-    int bad = put_row(app);
+    int bad = app_put_row(app);
     rc = bad ? bad : rc;
   }
   if (film_close(app)) {
     rc = LAG_ENOMEM;
   }
-  app->status = app->bad_file ? LAG_EIO : rc;
+  app->status = app->bad_file ? LAG_EIO : app->section_rc && rc >= 0 ? app->section_rc : rc;
   app->wall = seconds_since(&app->begun);
   if (app->progress > 0) {
     fputs("\r\33[K", stderr);
   }
+}
+
+static void on_event(void *context, int k, double t, const double *before, const double *after)
+{
+  events_note(context, k, t, before, after);
+  section_note(context, k);
 }
 
 /* ---- Files */
@@ -233,6 +239,7 @@ static int open_output(App *app, int *plot_x, int *plot_y)
       !(app->row = calloc((size_t)app->table.ncols, sizeof *app->row))) {
     return app_error(a, "out of memory");
   }
+  app->table.points = app->section >= 0;
   if ((a->plot_x && (*plot_x = app_column(app, a->plot_x)) < 0) || (a->plot_y && (*plot_y = app_column(app, a->plot_y)) < 0)) {
     return EXIT_USAGE;
   }
@@ -294,7 +301,8 @@ static int finish(App *app, int plot_x, int plot_y)
   }
   film_warn(app, note, sizeof note);
   app->show.note = note;
-  snprintf(title, sizeof title, "%s: %s", app->scene->model->name, app->scene->name);
+  snprintf(title, sizeof title, "%s: %s%s%s", app->scene->model->name, app->scene->name, app->section < 0 ? "" : ", ",
+           app->section < 0 ? "" : app->scene->model->ev[app->section].name);
   if (a->svg && svg_write(a->svg, &app->table, title, plot_x, plot_y)) {
     bad = app_io_error(app, a->svg);
   }
@@ -348,7 +356,7 @@ static int simulate(App *app)
 {
   int plot_x = 0, plot_y = -1, rc = app_choose(app);
 
-  if (rc || (rc = check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
+  if (rc || (rc = section_choose(app)) != 0 || (rc = check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
     return rc;
   }
   if (app->args.save && (lag_sim_method(app->sim)->flags & LAG_METHOD_NO_SAVE)) {
@@ -360,7 +368,7 @@ static int simulate(App *app)
   }
   note_tables(app);
   lag_sim_on_step(app->sim, after_step, app);
-  lag_sim_on_event(app->sim, events_note, app);
+  lag_sim_on_event(app->sim, on_event, app);
   catch_interrupt();
   app->progress = isatty(2) && !app->args.quiet ? 0 : -1;
   clock_gettime(CLOCK_MONOTONIC, &app->begun);
@@ -380,6 +388,8 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     app_list_methods(&app, stdout);
   } else if (rc == 0 && app.args.modes) {
     rc = app_modes(&app);
+  } else if (rc == 0 && (app.args.cost || app.args.reference)) {
+    rc = app_cost(&app);
   } else if (rc == 0) {
     rc = simulate(&app);
   }

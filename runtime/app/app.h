@@ -15,8 +15,9 @@ extern const char *const args_own_options[OWN_OPTIONS];
 /* The command line as written; numbers are still text. */
 typedef struct Args {
   const char *method_options[OWN_OPTIONS]; /* values of --quadrature, --order, --stages */
-  const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events;
-  int json, sketch, quiet, help, trace, no_rods, modes;
+  const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section;
+  const char *target, *longest, *methods, *against; /* of --cost */
+  int json, sketch, quiet, help, trace, no_rods, modes, cost, reference;
   char **sets; /* name=value, in order */
   int nsets;
 } Args;
@@ -45,6 +46,8 @@ typedef struct App {
   double *row;      /* [ncols] */
   double last_row;  /* time of the last row, NaN before the first */
   double until;
+  int section;      /* the event that rows are put out at; -1: they are put out in time */
+  int section_rc;   /* why its last row could not be made */
   int status;       /* LAG_... of the run */
   int written;      /* rows were completed */
   struct timespec begun, shown;
@@ -70,7 +73,13 @@ int app_error(const Args *a, const char *format, ...);
 /* choose.c: scene, method and values; without a method. 0, or EXIT_USAGE after a message. */
 int app_choose(App *app);
 int app_choose_start(App *app);
+/* The name=value of the command line, into app->sim. */
+int app_set_values(App *app);
+/* Method i of this program; NULL past the last. */
+const lag_method *app_method_at(const App *app, int i);
 const lag_method *app_find_method(const App *app, const char *name);
+/* The message that there is no such method; returns EXIT_USAGE. */
+int app_unknown_method(const App *app, const char *name);
 
 /* methods.c */
 void app_list_methods(const App *app, FILE *f);
@@ -88,8 +97,18 @@ int film_close(App *app);
 void film_warn(App *app, char *note, size_t size);
 void film_free(App *app);
 
+/* app.c: a row of the present state. LAG_OK, or why there is none. */
+int app_put_row(App *app);
+
+/* section.c: --section. 0, or EXIT_USAGE after a message; note: event k happens. */
+int section_choose(App *app);
+void section_note(App *app, int k);
+
 /* modes.c: --modes. Returns the exit status. */
 int app_modes(App *app);
+
+/* cost.c: --cost and --reference. Returns the exit status. */
+int app_cost(App *app);
 
 /* help.c */
 void app_help(const App *app, FILE *f);

@@ -62,10 +62,13 @@ static const Option options[] = {
     {"from", offsetof(Args, from), 0},     {"no-rods", offsetof(Args, no_rods), 1},
     {"trace", offsetof(Args, trace), 1},
     {"save-state", offsetof(Args, save), 0}, {"resume", offsetof(Args, resume), 0},
-    {"events", offsetof(Args, events), 0},
+    {"events", offsetof(Args, events), 0}, {"section", offsetof(Args, section), 0},
     {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
     {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
     {"modes", offsetof(Args, modes), 1},   {"help", offsetof(Args, help), 1},
+    {"cost", offsetof(Args, cost), 1},     {"reference", offsetof(Args, reference), 1},
+    {"target", offsetof(Args, target), 0}, {"longest", offsetof(Args, longest), 0},
+    {"methods", offsetof(Args, methods), 0}, {"against", offsetof(Args, against), 0},
     {"quadrature", offsetof(Args, method_options[0]), 0}, {"order", offsetof(Args, method_options[1]), 0},
     {"stages", offsetof(Args, method_options[2]), 0},
 };
@@ -150,20 +153,28 @@ static int one_argument(Args *a, int argc, char **argv, int *i)
   return 0;
 }
 
-/* --modes takes values and --json; nothing else would have a meaning. */
-static int check_modes(const Args *a)
+/* What takes the place of a run has no use for most of its options. */
+static int check_analysis(const Args *a)
 {
+  int cost = a->cost || a->reference;
   const struct {
     const char *name;
     int given;
-  } others[] = {{"--method", a->method != NULL}, {"--tol", a->tol != NULL}, {"--step", a->step != NULL},
-                {"--until", a->until != NULL}, {"--every", a->every != NULL}, {"-o", a->out != NULL}, {"--svg", a->svg != NULL},
-                {"--html", a->html != NULL}, {"--sketch", a->sketch}, {"--save-state", a->save != NULL}, {"--resume", a->resume != NULL}};
+    int of_cost; /* it has a meaning there */
+  } others[] = {{"--method", a->method != NULL, 0}, {"--tol", a->tol != NULL, 0}, {"--step", a->step != NULL, 0},
+                {"--until", a->until != NULL, 1}, {"--every", a->every != NULL, 0}, {"-o", a->out != NULL, 0}, {"--svg", a->svg != NULL, 1},
+                {"--html", a->html != NULL, 0}, {"--section", a->section != NULL, 0}, {"--sketch", a->sketch, 0}, {"--events", a->events != NULL, 0},
+                {"--save-state", a->save != NULL, 0}, {"--resume", a->resume != NULL, 0}};
 
-  for (size_t i = 0; a->modes && i < sizeof others / sizeof *others; i++) {
-    if (others[i].given) {
-      return app_error(a, "%s has no meaning for modes of small motion: they take name=value and --json", others[i].name);
+  for (size_t i = 0; (a->modes || cost) && i < sizeof others / sizeof *others; i++) {
+    if (others[i].given && !(cost && others[i].of_cost)) {
+      return app_error(a, "%s has no meaning for %s", others[i].name,
+                       cost ? "what accuracy costs: all methods are run, at many tolerances and steps; --methods NAME,NAME takes some of them"
+                            : "modes of small motion: they take name=value and --json");
     }
+  }
+  if (!a->cost && (a->target || a->longest || a->methods || a->against)) {
+    return app_error(a, "--target, --longest, --methods and --against are for --cost");
   }
   return 0;
 }
@@ -190,7 +201,13 @@ static int check(const Args *a)
   if (a->html && !a->points) {
     return app_error(a, "--html %s: which points? add --points 'X,Y X,Y ...' with the names of outputs", a->html);
   }
-  return check_modes(a);
+  if (a->section && a->html) {
+    return app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
+  }
+  if (a->section && a->every) {
+    return app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
+  }
+  return check_analysis(a);
 }
 
 int args_parse(Args *a, int argc, char **argv)

@@ -38,8 +38,7 @@ static int choose_scene(App *app)
   return name ? no_scene(app, name) : app_error(&app->args, "this program has no scenes");
 }
 
-/* Method i of this program; NULL past the last. */
-static const lag_method *method_at(const App *app, int i)
+const lag_method *app_method_at(const App *app, int i)
 {
   return i < lag_nmethods ? lag_methods[i] : i - lag_nmethods < app->extras.nmethods ? app->extras.methods[i - lag_nmethods] : NULL;
 }
@@ -48,7 +47,7 @@ const lag_method *app_find_method(const App *app, const char *name)
 {
   const lag_method *m = NULL;
 
-  for (int i = 0; (m = method_at(app, i)) != NULL && strcmp(m->name, name) != 0;) {
+  for (int i = 0; (m = app_method_at(app, i)) != NULL && strcmp(m->name, name) != 0;) {
     i++;
   }
   return m;
@@ -113,12 +112,12 @@ static int parse_method(const Args *a, Choice *c)
 }
 
 /* The one that was meant, or all. */
-static int unknown_method(const App *app, const char *name)
+int app_unknown_method(const App *app, const char *name)
 {
   const lag_method *near = NULL, *m;
   int least = LAG_FAR;
 
-  for (int i = 0; (m = method_at(app, i)) != NULL; i++) {
+  for (int i = 0; (m = app_method_at(app, i)) != NULL; i++) {
     int d = lag_near(name, m->name);
     if (d < least) {
       least = d;
@@ -144,7 +143,7 @@ static int choose_method(App *app)
   }
   const lag_method *m = app_find_method(app, c.name);
   if (!m) {
-    return unknown_method(app, c.name);
+    return app_unknown_method(app, c.name);
   }
   if (app->scene->method && strcmp(app->scene->method, c.name) == 0 && c.n == 0) {
     for (int i = 0; i < app->scene->noptions && c.n < MOST_OPTIONS - 1; i++) {
@@ -347,7 +346,7 @@ static int new_simulation(App *app)
   return 0;
 }
 
-static int set_values(App *app)
+int app_set_values(App *app)
 {
   const Args *a = &app->args;
   int rc = 0;
@@ -362,7 +361,7 @@ int app_choose_start(App *app)
 {
   int rc = new_simulation(app);
 
-  return rc ? rc : set_values(app);
+  return rc ? rc : app_set_values(app);
 }
 
 int app_choose(App *app)
@@ -378,5 +377,5 @@ int app_choose(App *app)
   if ((rc = set_tolerance(app)) != 0 || (rc = choose_method(app)) != 0) {
     return rc;
   }
-  return set_values(app);
+  return app_set_values(app);
 }

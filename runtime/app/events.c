@@ -90,10 +90,11 @@ void report_events(const App *app, FILE *f)
   for (int k = 0; k < m->nev && k < MOST_EVENTS; k++) {
     double first, last;
     long long n = lag_sim_event_times(app->sim, k, &first, &last);
+    fprintf(f, "%s %s: ", k == app->section ? "section" : "event", m->ev[k].name);
     if (n == 0) {
-      fprintf(f, "event %s: never", m->ev[k].name);
+      fputs("never", f);
     } else {
-      fprintf(f, "event %s: %lld time%s", m->ev[k].name, n, n == 1 ? "" : "s");
+      fprintf(f, "%lld time%s", n, n == 1 ? "" : "s");
     }
     if (n == 1) {
       fprintf(f, ", t = %.17g s", first);

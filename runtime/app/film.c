@@ -39,7 +39,7 @@ int film_open(App *app, int plot_x, int plot_y)
   double span = fabs(app->until - lag_sim_time(app->sim));
   size_t ncols = (size_t)app->table.ncols;
 
-  if (!app->table.keep) {
+  if (!app->table.keep || app->section >= 0) {
     return 0;
   }
   f->on = 1;

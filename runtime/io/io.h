@@ -29,6 +29,7 @@ typedef struct Table {
   int ncols;
   Column *cols;
   int keep;
+  int points; /* rows are points by themselves, not of a curve */
   double *data;
   size_t nrows, capacity;
 } Table;
@@ -85,6 +86,17 @@ double nice_step(double lo, double hi, int n);
 
 /* The columns named x and y (NULL: all against t) as SVG. -1 with errno set. */
 int svg_write(const char *path, const Table *t, const char *title, int x, int y);
+
+/* Points (x, y), all positive, joined in their order. */
+typedef struct Series {
+  char name[96];
+  int n;
+  const double *x, *y;
+} Series;
+
+/* Curves of points on two logarithmic axes, each with its name beside it. -1 with errno set. */
+int svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n);
+
 void sketch_print(FILE *f, const Table *t);
 
 /* The same for one column against another. */

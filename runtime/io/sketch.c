@@ -1,5 +1,5 @@
 /* A run in a terminal. Enters: a table of rows; leaves: charts of braille dots (2 by 4 a letter): each of the first
- * columns against time, or one column against another. Holds: between two rows the line is drawn, so that steep curves have no holes. */
+ * columns against time, or one column against another. Holds: between two rows of a curve the line is drawn, so that steep curves have no holes. */
 #include <math.h>
 #include <string.h>
 
@@ -75,7 +75,7 @@ static void draw(Chart *c, const Table *t, int col_x, int col)
     }
     int xb = to_x(c, x), yb = to_y(c, y);
     line(c, have ? xa : xb, have ? ya : yb, xb, yb);
-    have = 1;
+    have = !t->points;
     xa = xb;
     ya = yb;
   }

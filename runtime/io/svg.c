@@ -17,6 +17,7 @@ typedef struct Panel {
   double x, y, w, h;         /* on paper */
   double x0, x1, y0, y1;     /* in the data */
   const char *xlabel;
+  int powers;                /* data are exponents of ten, and labels say so */
 } Panel;
 
 double nice_step(double lo, double hi, int n)
@@ -89,9 +90,16 @@ static double py(const Panel *p, double y)
   return p->y + p->h - (y - p->y0) / (p->y1 - p->y0) * p->h;
 }
 
-static void tick_label(char *s, size_t n, double value, double step)
+static void tick_label(char *s, size_t n, const Panel *p, double value, double step)
 {
-  snprintf(s, n, "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value);
+  snprintf(s, n, p->powers ? "1e%.6g" : "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value);
+}
+
+static double tick_step(const Panel *p, double lo, double hi, int n)
+{
+  double step = nice_step(lo, hi, n);
+
+  return p->powers ? fmax(step, 1) : step;
 }
 
 /* What labels of y leave out: a value that nearly stands still would have the same label at each tick. */
@@ -108,7 +116,7 @@ static double label_stride(const Panel *p, double dx)
   size_t longest = 0;
   char s[32];
   for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
-    tick_label(s, sizeof s, k * dx, dx);
+    tick_label(s, sizeof s, p, k * dx, dx);
     if (strlen(s) > longest) {
       longest = strlen(s);
     }
@@ -119,13 +127,13 @@ static double label_stride(const Panel *p, double dx)
 static void axes(FILE *f, const Panel *p, const char *ylabel, int last)
 {
   char s[32];
-  double dx = nice_step(p->x0, p->x1, 8), dy = nice_step(p->y0, p->y1, p->h > 220 ? 7 : 4), base = base_of(p, dy);
+  double dx = tick_step(p, p->x0, p->x1, 8), dy = tick_step(p, p->y0, p->y1, p->h > 220 ? 7 : 4), base = base_of(p, dy);
   double stride = label_stride(p, dx);
 
   fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" stroke=\"#999\"/>\n", p->x, p->y, p->w, p->h);
   for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
     fprintf(f, "<path d=\"M%.2f %.1fv%.1f\" class=\"g\"/>\n", px(p, k * dx), p->y, p->h);
-    tick_label(s, sizeof s, k * dx, dx);
+    tick_label(s, sizeof s, p, k * dx, dx);
     if (last && fmod(k, stride) == 0.0) {
       text(f, px(p, k * dx), p->y + p->h + 17, "text-anchor=\"middle\"", s);
     }
@@ -133,7 +141,7 @@ static void axes(FILE *f, const Panel *p, const char *ylabel, int last)
   for (double k = ceil((p->y0 - base) / dy - 1e-9); k * dy <= p->y1 - base + 1e-9 * dy; k++) {
     double y = py(p, base + k * dy);
     fprintf(f, "<path d=\"M%.1f %.2fh%.1f\" class=\"g\"/>\n", p->x, y, p->w);
-    tick_label(s, sizeof s, k * dy, dy);
+    tick_label(s, sizeof s, p, k * dy, dy);
     text(f, p->x - 7, y + 4, "text-anchor=\"end\"", s);
   }
   if (base != 0.0) {
@@ -159,8 +167,27 @@ static void point(FILE *f, const Panel *p, double x, double y, int *pen)
   *pen = 1;
 }
 
+/* Dots as strokes of no length with round ends: one element for all. The more there are, the smaller. */
+static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, const char *stroke)
+{
+  double width = t->nrows > 2000 ? 2 : t->nrows > 300 ? 2.6 : 4;
+
+  fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"%.1f\" stroke-linecap=\"round\" d=\"", stroke, width);
+  for (size_t i = 0; i < t->nrows; i++) {
+    double x = cell(t, i, xcol), y = cell(t, i, ycol);
+    if (isfinite(x) && isfinite(y)) {
+      fprintf(f, "M%.2f %.2fh0", px(p, x), py(p, y));
+    }
+  }
+  fputs("\"/>\n", f);
+}
+
 static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, const char *stroke)
 {
+  if (t->points) {
+    dots(f, p, t, xcol, ycol, stroke);
+    return;
+  }
   size_t per = xcol == 0 ? t->nrows / (size_t)(2 * p->w) : t->nrows / 20000;
   int pen = 0;
 
@@ -320,9 +347,70 @@ static void one_against_other(FILE *f, const Table *t, const char *title, int x,
   head(f, TOP + (int)p.h + BOTTOM, title);
   axes(f, &p, ylabel, 1);
   curve(f, &p, t, x, y, colour[0]);
-  if (x) {
+  if (x && !t->points) {
     mark_ends(f, &p, t, x, y);
   }
+}
+
+/* ---- Logarithmic charts */
+
+/* Series k: its colour; the second eight are dashed, the third dotted. */
+static void stroke_of(int k, char *text, size_t n)
+{
+  static const char *const dashes[] = {"", " stroke-dasharray=\"5 3\"", " stroke-dasharray=\"1.5 2.5\""};
+
+  snprintf(text, n, "stroke=\"%s\"%s", colour[k % 8], dashes[k / 8 % 3]);
+}
+
+static void series_curve(FILE *f, const Panel *p, const Series *s, int k)
+{
+  char stroke[64];
+  int pen = 0;
+
+  stroke_of(k, stroke, sizeof stroke);
+  fprintf(f, "<path fill=\"none\" %s stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"", stroke);
+  for (int i = 0; i < s->n; i++) {
+    point(f, p, log10(s->x[i]), log10(s->y[i]), &pen);
+  }
+  fputs("\"/>\n", f);
+  for (int i = 0; i < s->n; i++) {
+    fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"2.6\" fill=\"%s\"/>\n", px(p, log10(s->x[i])), py(p, log10(s->y[i])), colour[k % 8]);
+  }
+}
+
+int svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n)
+{
+  enum { LINE = 18, NAMES = 190 };
+  double high = n * LINE + 12;
+  Panel p = {.x = LEFT, .y = TOP, .w = WIDTH - LEFT - NAMES, .h = high > 460 ? high : 460,
+             .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL, .xlabel = xlabel, .powers = 1};
+  Outfile o;
+
+  if (outfile_open(&o, path)) {
+    return -1;
+  }
+  for (int k = 0; k < n; k++) {
+    for (int i = 0; i < s[k].n; i++) {
+      p.x0 = fmin(p.x0, log10(s[k].x[i]));
+      p.x1 = fmax(p.x1, log10(s[k].x[i]));
+      p.y0 = fmin(p.y0, log10(s[k].y[i]));
+      p.y1 = fmax(p.y1, log10(s[k].y[i]));
+    }
+  }
+  widen(&p.x0, &p.x1, 0.04);
+  widen(&p.y0, &p.y1, 0.04);
+  head(o.f, TOP + (int)p.h + BOTTOM, title);
+  axes(o.f, &p, ylabel, 1);
+  for (int k = 0; k < n; k++) {
+    char stroke[64];
+    double y = p.y + 12 + LINE * k, x = p.x + p.w + 14;
+    series_curve(o.f, &p, &s[k], k);
+    stroke_of(k, stroke, sizeof stroke);
+    fprintf(o.f, "<path d=\"M%.1f %.1fh20\" %s stroke-width=\"2.5\"/>\n", x, y, stroke);
+    text(o.f, x + 27, y + 4, "", s[k].name);
+  }
+  fputs("</svg>\n", o.f);
+  return outfile_close(&o, 1);
 }
 
 int svg_write(const char *path, const Table *t, const char *title, int x, int y)

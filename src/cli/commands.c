@@ -33,6 +33,13 @@ static const CommandRow commands[] = {
    "unit; 0.5@-90 is an amplitude of 0.5, a quarter of a period behind it. A zero mode is `free` where no force arises far "
    "along it. Needs GSL. Exit status 3: no equilibrium was found.\n\n"
    "  name=value            a parameter, another start (th=3), an input to hold"},
+  {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [-o FILE.svg]", "what accuracy costs in time: all methods, side by side",
+   "Runs every method that can honour the model over a range of tolerances or steps, and prints for each run its error, its time, "
+   "its calls of the right-hand side; for each method the order that was measured; and which settings nothing beats. The error is "
+   "the largest difference, at 16 times, from a reference by Taylor series in the highest precision that there is, relative to the "
+   "largest value of its kind and unit. Times are those of this processor, now.\n\n"
+   "  name=value            a parameter, another start, an input, as for `lagc run`\n\n"
+   "Exit status 3: no setting reaches the target."},
   {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--method NAME] [--with linear]", "make a simulator",
    "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options, which are those of "
    "`lagc run`."},
@@ -66,7 +73,7 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 #define C(name) (1u << CMD_##name)
 #define SIMULATE (C(RUN) | C(PLOT) | C(ANIMATE))
-#define MODELS (SIMULATE | C(MODES) | C(CHECK) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT))
+#define MODELS (SIMULATE | C(MODES) | C(COST) | C(CHECK) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT))
 #define OWN(f) 0, offsetof(Options, f)
 #define PASSED 1, 0
 
@@ -79,6 +86,8 @@ static const OptionRow options[] = {
 
   {"--observe", NULL, "EXPR", TAKES_EXPRS, "", C(RUN), OWN(observe),
    "one more column: any expression of the model, --observe 'l*sin(th)'; can be repeated"},
+  {"--section", NULL, "'EXPR rising'", TAKES_EXPR, "", C(RUN) | C(PLOT), OWN(section),
+   "a Poincare section: one row, or one point, each time EXPR crosses zero; or falling, or crossing (both ways). For an angle that turns: 'sin(th2) rising'"},
   {"--y", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(y), "draws this against time,"},
   {"--x", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(x), "or against this: a path, with one scale for both axes where their units agree"},
   {"--phase", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(phase), "its rate against it: --phase th draws th' against th"},
@@ -94,6 +103,7 @@ static const OptionRow options[] = {
   {"--output", "-o", "FILE.h", TAKES_FILE, "h hpp", C(HEADER), OWN(output), "the header to write; default: standard output"},
   {"--output", "-o", "FILE.c", TAKES_FILE, "c", C(EMIT), OWN(output), "the C file to write; default: standard output"},
   {"--output", "-o", "FILE.svg", TAKES_FILE, "svg", C(PLOT), OWN(output), "default: MODEL_SCENE.svg in this folder"},
+  {"--output", "-o", "FILE.svg", TAKES_FILE, "svg", C(COST), OWN(output), "a picture: time against error, on logarithmic axes"},
   {"--output", "-o", "FILE.html", TAKES_FILE, "html", C(ANIMATE), OWN(output), "default: MODEL_SCENE.html in this folder"},
   {"--output", "-o", "FILE", TAKES_FILE, "csv npy", C(RUN), PASSED, "rows of output: CSV, or NumPy where FILE ends in .npy; - is standard output"},
 
@@ -106,7 +116,10 @@ static const OptionRow options[] = {
   {"--stages", NULL, "N", TAKES_NUMBER, "", SIMULATE, PASSED, "of the method gauss"},
   {"--tol", NULL, "X", TAKES_NUMBER, "", SIMULATE, PASSED, "tolerance, absolute and relative"},
   {"--step", NULL, "H", TAKES_NUMBER, "", SIMULATE, PASSED, "step [s]; the first one tried where the method chooses its own"},
-  {"--until", NULL, "T", TAKES_NUMBER, "", SIMULATE, PASSED, "run to time T [s]; before the start: backwards"},
+  {"--target", NULL, "X", TAKES_NUMBER, "", C(COST), PASSED, "names the cheapest setting whose error is at most X"},
+  {"--methods", NULL, "NAME,NAME", TAKES_TEXT, "", C(COST), PASSED, "only these methods"},
+  {"--longest", NULL, "S", TAKES_NUMBER, "", C(COST), PASSED, "no method goes on to finer settings after a run of S seconds; default: 0.5"},
+  {"--until", NULL, "T", TAKES_NUMBER, "", SIMULATE | C(COST), PASSED, "run to time T [s]; before the start: backwards"},
   {"--every", NULL, "DT", TAKES_NUMBER, "", SIMULATE, PASSED, "time between rows [s]; default: as the scene says, or a 1000th of the span"},
   {"--svg", NULL, "FILE.svg", TAKES_FILE, "svg", SIMULATE, PASSED, "a picture of all output against time"},
   {"--plot-x", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "with --plot-y NAME: the picture shows one output against another"},
@@ -118,15 +131,16 @@ static const OptionRow options[] = {
   {"--no-rods", NULL, NULL, TAKES_NOTHING, "", C(RUN) | C(PLOT), PASSED, "points only"},
   {"--trace", NULL, NULL, TAKES_NOTHING, "", C(RUN) | C(PLOT), PASSED, "the path of the last point"},
   {"--json", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report as one JSON object"},
+  {"--json", NULL, NULL, TAKES_NOTHING, "", C(COST), PASSED, "all runs, to 17 digits, as one JSON object"},
   {"--json", NULL, NULL, TAKES_NOTHING, "", C(MODES), PASSED, "all modes, to 17 digits, as one JSON object"},
   {"--events", NULL, "FILE.csv", TAKES_FILE, "csv", SIMULATE, PASSED, "each event with its time and the state before and after it"},
-  {"--quiet", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "no report"},
+  {"--quiet", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(COST), PASSED, "no report"},
   {"--save-state", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED, "write the complete state at the end;"},
   {"--resume", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED,
    "go on from there, with the same scene, method and values: results are those of an uninterrupted run, bit by bit"},
 
   {"--define", "-D", "CONST=VALUE", TAKES_DEFINE, "", MODELS, OWN(defines), "gives a `const` of the model another value"},
-  {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(MODES) | C(BUILD), OWN(no_gsl),
+  {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(MODES) | C(COST) | C(BUILD), OWN(no_gsl),
    "leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole"},
   {"--with", NULL, "linear", TAKES_CHOICE, "linear", C(BUILD) | C(EMIT), OWN(with), "with the exact linearisation of the model"},
   {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns prog", MODELS, OWN(dump), "what the stages of the compiler yield: ast, model, eqns, prog"},
@@ -171,5 +185,5 @@ const OptionRow *option_find(Command c, const char *arg, const char **value) {
   return NULL;
 }
 
-int command_simulates(Command c) { return ((SIMULATE | C(MODES)) & 1u << c) != 0; }
+int command_simulates(Command c) { return ((SIMULATE | C(MODES) | C(COST)) & 1u << c) != 0; }
 int command_reads_model(Command c) { return (MODELS & 1u << c) != 0; }

@@ -24,6 +24,7 @@ typedef struct {
   VEC(Define) defines;
   OptionTexts rest;        /* run, plot, animate: what the simulator gets, the scene too; complete: the words */
   OptionTexts observe;     /* run --observe: expressions */
+  const char *section;     /* run, plot --section */
   const char *x, *y, *phase; /* plot */
   const char *points, *from; /* animate */
   int no_rods;

@@ -244,6 +244,25 @@ static void add_event(Builder *b, const AstStmt *st, Name effect) {
   if (g.e) vec_push(b->arena, &b->m->events, ev);
 }
 
+/* A surface of the state alone: what it contains is known before accelerations are. */
+static void add_section(Builder *b, const Section *s) {
+  if (!s->expr) return;
+  Span span = ast_expr(b->ast, s->expr)->span;
+  Value g = resolve(b, s->expr, IN_OBSERVE, NULL);
+  if (!g.e) return;
+  if (g.n) {
+    diag_error(b->diags, span, "this is %s, and a number is wanted here", shape_text(b, g.n));
+    diag_help(b->diags, "a section is where one number is zero: name a component");
+    return;
+  }
+  if (expr_kinds(b->g, g.e) & (1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_LOCAL)) {
+    diag_error(b->diags, span, "a section is a surface in the space of states: it cannot contain accelerations, rates of states or `energy`");
+    diag_help(b->diags, "write it with coordinates, velocities, states, t and lets");
+    return;
+  }
+  vec_push(b->arena, &b->m->events, ((Event){.name = s->name, .span = span, .g = g.e, .direction = s->direction}));
+}
+
 static void fill_input(Builder *b, const AstStmt *st, Name effect) {
   const Entity *e = scope_own(&b->scope, st->name, effect);
   if (e && e->kind == ENT_INPUT) give_input(b, e->index, st->name, st->rhs, effect);
@@ -413,6 +432,7 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   for (uint32_t i = 0; i < b->observes.n; i++) resolve_observe(b, i);
   each_active(b, expect, NULL);
   check_whole(b);
+  add_section(b, &choice->section);
   scene_build(b, choice);
   settle_units(b);
   return ast->diags->errors ? NULL : b->m;

@@ -195,6 +195,13 @@ typedef struct {
   AstId what, value;
 } Given;
 
+/* A surface that the motion crosses, for a Poincare section: an event that changes nothing. */
+typedef struct {
+  AstId expr; /* 0: none is asked for */
+  AstDirection direction;
+  Name name;
+} Section;
+
 /* What to build a model for. */
 typedef struct {
   const char *scene; /* NULL: the first */
@@ -206,6 +213,7 @@ typedef struct {
   uint32_t nasked;
   const Given *given; /* values that win over the scene's */
   uint32_t ngiven;
+  Section section;
 } ModelChoice;
 
 /* Builds the model. NULL when there were errors; they are in ast->diags, all of them. */

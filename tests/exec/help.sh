@@ -54,8 +54,8 @@ not_listed() {
 empty "functions and units of the reference" "$(not_listed)"
 
 # What lagc hands to a simulator is what a simulator takes: two tables in two programs that share no header.
-taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/".*//' | grep -v -x -e --help -e --modes | sort; } # --modes is what lagc modes says
-handed() { { words 'passed run'; words 'passed animate'; } | grep -e -- | sort -u; }
+taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/".*//' | grep -v -x -e --help -e --modes -e --cost -e --reference -e --against -e --section | sort; } # --modes, --cost: what lagc modes, lagc cost say, --section an event that lagc makes
+handed() { { words 'passed run'; words 'passed animate'; words 'passed cost'; } | grep -e -- | sort -u; }
 check "a simulator has options" [ "$(taken | wc -l)" -gt 10 ]
 is "options of a simulator" "$(taken)" "$(handed)"
 

@@ -8,6 +8,7 @@ elsewhere='internal error
 -D %s
 this does not belong in a scene
 nothing that a run sets
+a section is a surface in the space of states
 this is not a finite number
 this is nested too deep'
 

@@ -1,0 +1,328 @@
+/* --cost: every method at many settings, against a reference. --reference N: that reference, for a simulator that computes
+ * with fewer digits. Enters: the command line; leaves: a table, JSON, a picture; or samples as text. Holds: times are of one
+ * process, on its processor's clock. */
+#include "app/cost.h"
+
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/core.h"
+
+enum { SAMPLES = 16 };
+
+/* The same scene without what would end a rough run early, or cost time beside the method. */
+typedef struct Bare {
+  App *app;
+  lag_scene scene;
+} Bare;
+
+static lag_sim *fresh(void *context)
+{
+  Bare *b = context;
+  App *app = b->app;
+
+  app->sim = lag_sim_new(&b->scene);
+  if (app->sim && app_set_values(app)) {
+    lag_sim_free(app->sim);
+    app->sim = NULL;
+  }
+  lag_sim *sim = app->sim;
+  app->sim = NULL;
+  return sim;
+}
+
+/* ---- The reference */
+
+/* Runs `method` at a tolerance into s. 0, or an exit status after a message. */
+static int take(Bare *b, const lag_method *method, double tol, Samples *s)
+{
+  const Args *a = &b->app->args;
+  lag_sim *sim = fresh(b);
+
+  if (!sim) {
+    return app_error(a, "out of memory");
+  }
+  int rc = lag_sim_set_method(sim, method, NULL, 0);
+  rc = rc ? rc : lag_sim_set_tolerance(sim, tol);
+  rc = rc ? rc : lag_samples_take(s, sim);
+  if (rc) {
+    app_error(a, "no reference, by %s(tol=%g): %s", method->name, tol, lag_sim_message(sim));
+  }
+  lag_sim_free(sim);
+  return rc ? EXIT_RUN : 0;
+}
+
+/* By taylor, or by dop853 where the model has no Taylor series; at two tolerances, whose difference is the uncertainty. */
+static int compute_reference(Bare *b, Cost *c)
+{
+  App *app = b->app;
+  const lag_model *m = b->scene.model;
+  int series = m->taylor != NULL, n = c->reference.n;
+  const lag_method *method = series ? &lag_taylor_method : &lag_dop853;
+  double tol = series ? 9 * DBL_EPSILON : pow(DBL_EPSILON, 0.75), *scale = calloc((size_t)n + 1, sizeof *scale);
+  Samples rough;
+  int rc = lag_samples_init(&rough, c->reference.rows, n) || !scale ? app_error(&app->args, "out of memory") : 0;
+
+  if (rc == 0) {
+    memcpy(rough.t, c->reference.t, (size_t)rough.rows * sizeof(double));
+    rc = take(b, method, tol, &c->reference);
+    rc = rc ? rc : take(b, method, 10 * tol, &rough);
+  }
+  if (rc == 0) {
+    lag_sim *sim = fresh(b);
+    if (sim) {
+      lag_cost_scales(&c->reference, sim, scale);
+      c->reference.uncertainty = fmax(lag_cost_error(&rough, &c->reference, scale), DBL_EPSILON);
+    }
+    lag_sim_free(sim);
+  }
+  lag_samples_free(&rough);
+  free(scale);
+  snprintf(c->reference_name, sizeof c->reference_name, "%s, %d digits", method->name, (int)(DBL_MANT_DIG * 0.30103));
+  return rc;
+}
+
+/* The times of samples, equally spaced over what is to be run. */
+static int choose_times(App *app, Cost *c)
+{
+  const Args *a = &app->args;
+  double t0 = app->scene->t0, t1 = app->scene->has_span ? app->scene->t1 : t0 + 10;
+
+  if (a->until && !args_number(a, "--until", a->until, "--until 20", &t1)) {
+    return EXIT_USAGE;
+  }
+  if (t1 == t0) {
+    return app_error(a, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", t0);
+  }
+  for (int i = 0; i < SAMPLES; i++) {
+    c->reference.t[i] = t0 + (t1 - t0) * (i + 1) / SAMPLES;
+  }
+  return 0;
+}
+
+static void write_reference(FILE *f, const Cost *c)
+{
+  const Samples *s = &c->reference;
+
+  fprintf(f, "samples %d %d\nby %s\nuncertainty %.17g\n", s->rows, s->n, c->reference_name, s->uncertainty);
+  for (int i = 0; i < s->rows; i++) {
+    fprintf(f, "%.17g", s->t[i]);
+    for (int k = 0; k < s->n; k++) {
+      fprintf(f, " %.17g", s->y[(size_t)i * (size_t)s->n + (size_t)k]);
+    }
+    putc('\n', f);
+  }
+}
+
+/* A number that stands next in the file. */
+static int read_number(FILE *f, double *x)
+{
+  char word[128], *end;
+
+  if (fscanf(f, "%127s", word) != 1) {
+    return 0;
+  }
+  *x = strtod(word, &end);
+  return *end == '\0';
+}
+
+static int read_reference(App *app, Cost *c)
+{
+  const Args *a = &app->args;
+  Samples *s = &c->reference;
+  FILE *f = strcmp(a->against, "-") == 0 ? stdin : fopen(a->against, "r");
+  int rows, n, good;
+
+  if (!f) {
+    return app_error(a, "cannot read %s: %s", a->against, strerror(errno));
+  }
+  good = fscanf(f, "samples %d %d by %95[^\n]", &rows, &n, c->reference_name) == 3 && rows > 0 && rows <= s->rows && n == s->n;
+  good = good && fscanf(f, " uncertainty") == 0 && read_number(f, &s->uncertainty);
+  for (int i = 0; good && i < rows; i++) {
+    good = read_number(f, &s->t[i]);
+    for (int k = 0; good && k < n; k++) {
+      good = read_number(f, &s->y[(size_t)i * (size_t)n + (size_t)k]);
+    }
+  }
+  s->rows = rows;
+  if (f != stdin) {
+    fclose(f);
+  }
+  return good ? 0 : app_error(a, "%s holds no reference for this scene; `--reference` of a simulator of the same model writes one",
+                              strcmp(a->against, "-") == 0 ? "standard input" : a->against);
+}
+
+/* ---- What is measured */
+
+/* Methods whose order is an option: each value is measured as a method of its own. */
+static const struct {
+  const char *method, *option;
+  int from, to, by;
+} families[] = {{"variational", "order", 2, 8, 2}, {"gauss", "stages", 1, 4, 1}};
+
+/* Is the method among those that --methods names, or is there no --methods? */
+static int wanted(const Args *a, const lag_method *m)
+{
+  size_t n = strlen(m->name);
+
+  for (const char *s = a->methods ? a->methods : m->name; *s; s += strcspn(s, ", "), s += strspn(s, ", ")) {
+    if (strcspn(s, ", ") == n && strncmp(s, m->name, n) == 0) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+static int add(Cost *c, const lag_method *m, lag_option option)
+{
+  CostMethod *all = realloc(c->method, ((size_t)c->nmethods + 1) * sizeof *all);
+
+  if (!all) {
+    return LAG_ENOMEM;
+  }
+  c->method = all;
+  c->method[c->nmethods++] = (CostMethod){.method = m, .option = option};
+  return LAG_OK;
+}
+
+static int list_methods(App *app, Cost *c)
+{
+  const lag_method *m;
+  int bad = 0;
+
+  for (int i = 0; (m = app_method_at(app, i)) != NULL; i++) {
+    int plain = 1;
+    for (size_t k = 0; wanted(&app->args, m) && k < sizeof families / sizeof *families; k++) {
+      for (int x = families[k].from; strcmp(families[k].method, m->name) == 0 && x <= families[k].to; x += families[k].by) {
+        bad |= add(c, m, (lag_option){.name = families[k].option, .value = x});
+        plain = 0;
+      }
+    }
+    if (plain && wanted(&app->args, m)) {
+      bad |= add(c, m, (lag_option){0});
+    }
+  }
+  if (c->nmethods == 0) {
+    return app_error(&app->args, "--methods %s: none of them is a method; --method help lists them", app->args.methods);
+  }
+  return bad ? app_error(&app->args, "out of memory") : 0;
+}
+
+/* Names that are no methods are mistakes. */
+static int check_methods(App *app)
+{
+  const Args *a = &app->args;
+  char name[64];
+
+  for (const char *s = a->methods; s && *s; s += strcspn(s, ", "), s += strspn(s, ", ")) {
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(s, ", "), s);
+    if (!app_find_method(app, name)) {
+      return app_unknown_method(app, name);
+    }
+  }
+  return 0;
+}
+
+static int measure(Bare *b, Cost *c, double longest)
+{
+  App *app = b->app;
+  double *scale = calloc((size_t)c->reference.n + 1, sizeof *scale);
+  lag_sim *sim = fresh(b);
+  int rc = scale && sim ? LAG_OK : LAG_ENOMEM;
+  CostScene scene = {fresh, b, b->scene.t0};
+
+  if (rc == LAG_OK) {
+    lag_cost_scales(&c->reference, sim, scale);
+  }
+  for (int i = 0; i < c->nmethods && rc == LAG_OK; i++) {
+    if (app->progress >= 0) {
+      fprintf(stderr, "\r\33[K%s (%d of %d)", c->method[i].method->name, i + 1, c->nmethods);
+      fflush(stderr);
+    }
+    rc = lag_cost_measure(&c->method[i], &scene, &c->reference, scale, longest);
+  }
+  if (app->progress >= 0) {
+    fputs("\r\33[K", stderr);
+  }
+  lag_sim_free(sim);
+  free(scale);
+  lag_cost_front(c->method, c->nmethods);
+  return rc ? app_error(&app->args, "out of memory") : 0;
+}
+
+static int show(App *app, const Cost *c)
+{
+  const Args *a = &app->args;
+  const CostRun *run;
+
+  if (a->json) {
+    cost_json(stdout, app, c);
+  } else if (!a->quiet) {
+    cost_text(stdout, app, c);
+  }
+  if (a->svg && cost_picture(a->svg, app, c)) {
+    return app_io_error(app, a->svg);
+  }
+  if (fflush(stdout)) {
+    return app_io_error(app, "standard output");
+  }
+  if (c->target > 0 && !lag_cost_cheapest(c->method, c->nmethods, c->target, &run)) {
+    return EXIT_RUN;
+  }
+  return EXIT_FINE;
+}
+
+static int run_cost(Bare *b, Cost *c)
+{
+  App *app = b->app;
+  const Args *a = &app->args;
+  double longest = 0.5;
+  int rc = check_methods(app);
+
+  if (rc == 0 && a->target && (!args_number(a, "--target", a->target, "--target 1e-8", &c->target) || c->target <= 0)) {
+    rc = app_error(a, "--target %s: an error to reach, relative and positive; for example --target 1e-8", a->target);
+  }
+  if (rc == 0 && a->longest && (!args_number(a, "--longest", a->longest, "--longest 10", &longest) || longest <= 0)) {
+    rc = app_error(a, "--longest %s: a time in seconds, for example --longest 10", a->longest);
+  }
+  rc = rc ? rc : a->against ? read_reference(app, c) : compute_reference(b, c);
+  if (rc == 0 && c->reference.rows == 0) {
+    rc = app_error(a, "an event ends the run before t = %g s, the first time of comparison; write --until with an earlier time", c->reference.t[0]);
+  }
+  rc = rc ? rc : list_methods(app, c);
+  app->progress = isatty(2) && !a->quiet ? 0 : -1;
+  rc = rc ? rc : measure(b, c, longest);
+  return rc ? rc : show(app, c);
+}
+
+int app_cost(App *app)
+{
+  Cost cost = {0};
+  int rc = app_choose_start(app);
+  Bare b = {.app = app};
+
+  if (rc == 0) {
+    b.scene = *app->scene;
+    b.scene.nmonitors = b.scene.nexact = 0;
+    lag_sim_free(app->sim);
+    app->sim = NULL;
+    rc = lag_samples_init(&cost.reference, SAMPLES, 2 * b.scene.model->nq + b.scene.model->nz) ? app_error(&app->args, "out of memory") : 0;
+  }
+  rc = rc ? rc : choose_times(app, &cost);
+  if (rc == 0 && app->args.reference) {
+    rc = compute_reference(&b, &cost);
+    if (rc == 0) {
+      write_reference(stdout, &cost);
+      rc = fflush(stdout) ? app_io_error(app, "standard output") : EXIT_FINE;
+    }
+  } else if (rc == 0) {
+    rc = run_cost(&b, &cost);
+  }
+  lag_samples_free(&cost.reference);
+  free(cost.method);
+  return rc;
+}

@@ -1,0 +1,238 @@
+/* What --cost prints: the table of all runs, what each accuracy costs, JSON, and the picture. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/cost.h"
+
+static int adaptive(const CostMethod *m)
+{
+  return (m->method->flags & LAG_METHOD_ADAPTIVE) != 0;
+}
+
+/* variational(order=4) */
+static void name_of(const CostMethod *m, char *text, size_t n)
+{
+  if (m->option.name) {
+    snprintf(text, n, "%s(%s=%g)", m->method->name, m->option.name, m->option.value);
+  } else {
+    snprintf(text, n, "%s", m->method->name);
+  }
+}
+
+void cost_setting(const CostMethod *m, const CostRun *run, char *text, size_t n)
+{
+  char option[64] = "";
+
+  if (m->option.name) {
+    snprintf(option, sizeof option, "%s=%g, ", m->option.name, m->option.value);
+  }
+  snprintf(text, n, "%s(%s%s=%.9g)", m->method->name, option, adaptive(m) ? "tol" : "step", run->knob);
+}
+
+void cost_options(const CostMethod *m, const CostRun *run, char *text, size_t n)
+{
+  char option[64] = "";
+
+  if (m->option.name) {
+    snprintf(option, sizeof option, " --%s %g", m->option.name, m->option.value);
+  }
+  snprintf(text, n, "--method %s%s --%s %.9g", m->method->name, option, adaptive(m) ? "tol" : "step", run->knob);
+}
+
+static const char *order_of(const CostMethod *m, char *text, size_t n)
+{
+  snprintf(text, n, adaptive(m) ? "%.1f" : "%.2f", m->order);
+  return isnan(m->order) ? "-" : text;
+}
+
+static void table(FILE *f, const Cost *c)
+{
+  char setting[160], order[32], spread[32];
+
+  fprintf(f, "  %-44s %-9s %12s %6s %10s %11s  %s\n", "", "error", "time [ms]", "+-", "steps", "calls", "order");
+  for (int i = 0; i < c->nmethods; i++) {
+    const CostMethod *m = &c->method[i];
+    for (int k = 0; k < m->nruns; k++) {
+      const CostRun *r = &m->run[k];
+      cost_setting(m, r, setting, sizeof setting);
+      snprintf(spread, sizeof spread, "%.0f %%", 50 * r->spread);
+      fprintf(f, "%c %-44s %-9.2e %12.4g %6s %10lld %11lld%s%s\n", r->best ? '*' : ' ', setting, r->error, 1e3 * r->time,
+              isnan(r->spread) ? "-" : spread, r->steps, r->calls, k == 0 ? "  " : "", k == 0 ? order_of(m, order, sizeof order) : "");
+    }
+  }
+  fputs("* nothing else is both faster and more accurate. time: of the processor, the median; +- half of what the middle half of\n"
+        "the times spans. order: the slope of log error against log steps, last where rounding does not show\n", f);
+}
+
+/* The fastest run of one method with this error; NULL: there is none. */
+static const CostRun *fastest(const CostMethod *m, double error)
+{
+  const CostRun *best = NULL;
+
+  return lag_cost_cheapest(m, 1, error, &best) ? best : NULL;
+}
+
+/* A line for each method: what errors of 1e-2, 1e-4, ... cost. */
+static void digest(FILE *f, const Cost *c)
+{
+  enum { COLUMNS = 7 };
+  char name[96];
+
+  fprintf(f, "\n  %-30s", "time [ms] for an error of");
+  for (int e = 1; e <= COLUMNS; e++) {
+    snprintf(name, sizeof name, "1e-%d", 2 * e);
+    fprintf(f, " %9s", name);
+  }
+  putc('\n', f);
+  for (int i = 0; i < c->nmethods; i++) {
+    const CostMethod *m = &c->method[i];
+    if (m->nruns == 0) {
+      continue;
+    }
+    name_of(m, name, sizeof name);
+    fprintf(f, "  %-30s", name);
+    for (int e = 1; e <= COLUMNS; e++) {
+      const double error = pow(10, -2 * e);
+      const CostRun *own = fastest(m, error), *any;
+      if (own) {
+        lag_cost_cheapest(c->method, c->nmethods, error, &any);
+        fprintf(f, " %8.3g%c", 1e3 * own->time, own == any ? '*' : ' ');
+      } else {
+        fprintf(f, " %8s ", "-");
+      }
+    }
+    putc('\n', f);
+  }
+}
+
+static void left_out(FILE *f, const Cost *c)
+{
+  char name[96];
+
+  for (int i = 0; i < c->nmethods; i++) {
+    const CostMethod *m = &c->method[i];
+    if (m->nruns == 0) {
+      name_of(m, name, sizeof name);
+      fprintf(f, "not in the table: %s: %s\n", name, m->why[0] ? m->why : "no run had an error below 0.3 in the time allowed (--longest)");
+    }
+  }
+}
+
+static void target(FILE *f, const App *app, const Cost *c)
+{
+  const CostRun *run;
+  const CostMethod *m = lag_cost_cheapest(c->method, c->nmethods, c->target, &run);
+  char options[160];
+
+  if (m) {
+    cost_options(m, run, options, sizeof options);
+    fprintf(f, "\nan error of %g at least cost: %s (error %.2e, %.4g ms)\n  lagc run %s %s %s\n", c->target, options, run->error,
+            1e3 * run->time, app->program->source, app->scene->name, options);
+  } else {
+    fprintf(f, "\nno setting has an error of %g or less; ask for more, or for slower runs: --longest SECONDS\n", c->target);
+  }
+}
+
+void cost_text(FILE *f, const App *app, const Cost *c)
+{
+  const Samples *s = &c->reference;
+
+  fprintf(f, "model %s, scene %s, to t = %.15g s\n", app->scene->model->name, app->scene->name, s->t[s->rows - 1]);
+  fprintf(f, "error: the largest difference from the reference at %d times, relative to the largest value of its kind and unit\n", s->rows);
+  fprintf(f, "reference: %s, itself uncertain by %.1e\n\n", c->reference_name, s->uncertainty);
+  table(f, c);
+  digest(f, c);
+  left_out(f, c);
+  if (c->target > 0) {
+    target(f, app, c);
+  }
+}
+
+/* ---- JSON */
+
+void cost_json(FILE *f, const App *app, const Cost *c)
+{
+  const Samples *s = &c->reference;
+  const CostRun *cheapest = NULL;
+
+  if (c->target > 0) {
+    lag_cost_cheapest(c->method, c->nmethods, c->target, &cheapest);
+  }
+  fputs("{\"model\": ", f);
+  json_string(f, app->scene->model->name);
+  fputs(", \"scene\": ", f);
+  json_string(f, app->scene->name);
+  fputs(", \"until\": ", f);
+  json_number(f, s->t[s->rows - 1]);
+  fputs(", \"reference\": ", f);
+  json_string(f, c->reference_name);
+  fputs(", \"uncertainty\": ", f);
+  json_number(f, s->uncertainty);
+  fputs(", \"target\": ", f);
+  json_number(f, c->target > 0 ? c->target : NAN);
+  fputs(", \"methods\": [", f);
+  for (int i = 0; i < c->nmethods; i++) {
+    const CostMethod *m = &c->method[i];
+    char name[96];
+    name_of(m, name, sizeof name);
+    fputs(i ? ", {\"method\": " : "{\"method\": ", f);
+    json_string(f, name);
+    fputs(", \"order\": ", f);
+    json_number(f, m->order);
+    fputs(", \"refused\": ", f);
+    json_string(f, m->why[0] ? m->why : NULL);
+    fputs(", \"runs\": [", f);
+    for (int k = 0; k < m->nruns; k++) {
+      const CostRun *r = &m->run[k];
+      fprintf(f, k ? ", {\"%s\": " : "{\"%s\": ", adaptive(m) ? "tolerance" : "step");
+      json_number(f, r->knob);
+      fputs(", \"error\": ", f);
+      json_number(f, r->error);
+      fputs(", \"seconds\": ", f);
+      json_number(f, r->time);
+      fputs(", \"spread\": ", f);
+      json_number(f, r->spread);
+      fprintf(f, ", \"steps\": %lld, \"calls\": %lld, \"front\": %s, \"cheapest\": %s}", r->steps, r->calls, r->best ? "true" : "false",
+              r == cheapest ? "true" : "false");
+    }
+    fputs("]}", f);
+  }
+  fputs("]}\n", f);
+}
+
+/* ---- Picture */
+
+int cost_picture(const char *path, const App *app, const Cost *c)
+{
+  Series *series = calloc((size_t)c->nmethods + 1, sizeof *series);
+  double *values = calloc((size_t)c->nmethods * LAG_COST_MOST_RUNS * 2 + 1, sizeof *values);
+  char title[300];
+  int n = 0, rc = -1;
+
+  for (int i = 0; series && values && i < c->nmethods; i++) {
+    const CostMethod *m = &c->method[i];
+    Series *s = &series[n];
+    double *at = values + (size_t)i * LAG_COST_MOST_RUNS * 2;
+    if (m->nruns == 0) {
+      continue;
+    }
+    name_of(m, s->name, sizeof s->name);
+    s->n = m->nruns;
+    s->x = at;
+    s->y = at + LAG_COST_MOST_RUNS;
+    for (int k = 0; k < m->nruns; k++) {
+      at[k] = fmax(m->run[k].error, DBL_EPSILON / 1024);
+      at[LAG_COST_MOST_RUNS + k] = m->run[k].time;
+    }
+    n++;
+  }
+  snprintf(title, sizeof title, "%s, %s: what accuracy costs", app->scene->model->name, app->scene->name);
+  if (series && values) {
+    rc = svg_chart(path, title, "error", "processor time [s]", series, n);
+  }
+  free(series);
+  free(values);
+  return rc;
+}

@@ -1,0 +1,110 @@
+#!/bin/sh
+# lagc cost: errors against what they must be by hand, measured orders, the Pareto front and the target recomputed from the JSON
+# object, what is left out and why, bad input. Nothing here depends on how long anything takes.
+: "${LAGC:=build/lagc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+export TMP
+. tests/tap.sh
+
+# cost ARGS...: rows of `method knob error seconds front cheapest order`
+cost() {
+  "$LAGC" cost "$@" --json >"$TMP/json" 2>"$TMP/err" || return 1
+  sed 's/{"method"/\n&/g; s/{"tolerance"/\n&/g; s/{"step"/\n&/g' "$TMP/json" | tr -d '{}[]' | awk -F ', ' '
+    /^"method"/ { split($1, m, "\""); method = m[4]; sub(/.*: /, "", $2); order = $2 }
+    /^"(tolerance|step)"/ { for (i = 1; i <= 8; i++) sub(/.*: /, "", $i); print method, $1, $2, $3, $7, $8, order }' >"$TMP/runs"
+}
+
+# RK4 on x'' = -w^2 x multiplies x + i x'/w by R(-i w h) a step, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24; the motion is
+# cos(w t). k = 4, m = 1: w = 2; 16 times up to 20 s. Rounding is 1e-16 a step, of errors that are 1e-9 and more.
+check "a spring by rk4" cost models/spring.lag free --methods rk4 --longest 0.02
+rk4_by_hand() {
+  [ "$(wc -l <"$TMP/runs")" -gt 8 ] || return 1
+  awk '$3 > 1e-9 {
+    n = 20/$2; wh = 2*$2; a = 1 - wh^2/2 + wh^4/24; b = -(wh - wh^3/6)
+    re = 1; im = 0; worst = top = 0
+    for (i = 1; i <= n; i++) {
+      x = re*a - im*b; im = re*b + im*a; re = x
+      if (i % (n/16) == 0) {
+        t = i*$2; c = cos(2*t); s = -sin(2*t)
+        if (c^2 > X) X = c^2; if (s^2 > V) V = s^2
+        dx[i] = (re - c)^2; dv[i] = (im - s)^2
+      }
+    }
+    for (i in dx) { e = sqrt(dx[i]/X); if (e > worst) worst = e; e = sqrt(dv[i]/V); if (e > worst) worst = e }
+    delete dx; delete dv
+    if ((worst - $3)^2 > (1e-6*worst + 1e-13)^2) { printf "step %s: error %s, not %.6e\n", $2, $3, worst; bad = 1 }
+  } END { exit bad }' "$TMP/runs"
+}
+check "its errors are those of the recursion" rk4_by_hand
+
+# 0.15: what is left of higher terms where rounding does not show yet
+check "a pendulum by methods of fixed steps" cost models/pendulum.lag --until 4 --methods rk4,symplectic_euler,verlet,verlet4,variational,gauss --longest 0.05
+order() { awk -v m="$1" '$1 == m { print $7; exit }' "$TMP/runs"; }
+has_order() { check "$1 has order $2" awk -v got="$(order "$1")" -v want="$2" 'BEGIN { exit !(got != "" && got != "null" && (got - want)^2 < 0.15^2) }'; }
+has_order rk4 4
+has_order symplectic_euler 1
+has_order verlet 2
+has_order verlet4 4
+has_order 'variational(order=2)' 2
+has_order 'variational(order=4)' 4
+has_order 'gauss(stages=1)' 2
+has_order 'gauss(stages=2)' 4
+
+# The front and the target are functions of errors and times: recomputed.
+check "all methods, with a target" cost models/pendulum.lag --until 2 --longest 0.01 --target 1e-8
+front() {
+  awk '{ e[NR] = $3; t[NR] = $4; f[NR] = $5 } END {
+    for (i = 1; i <= NR; i++) {
+      best = "true"
+      for (j = 1; j <= NR; j++) if (t[j] <= t[i] && e[j] <= e[i] && (t[j] < t[i] || e[j] < e[i])) best = "false"
+      if (best != f[i]) { print "run", i, "is", f[i], "not", best; bad = 1 }
+      n += best == "true"
+    }
+    exit bad || n < 3 || NR < 50 }' "$TMP/runs"
+}
+check "the front is what nothing beats" front
+cheapest() { awk '$6 == "true" { n++; e = $3; t = $4 } { if ($3 <= 1e-8 && (best == "" || $4 < best)) best = $4 } END { exit !(n == 1 && e <= 1e-8 && t == best) }' "$TMP/runs"; }
+check "the cheapest that reaches the target" cheapest
+all_there() { for m in rk45 dop853 rk4 verlet8 'gauss(stages=4)' radau taylor; do grep -qF "$m " "$TMP/runs" || { echo "no $m"; return 1; }; done; }
+check "every method of liblag is there" all_there
+
+text() { "$LAGC" cost "$@" >"$TMP/text" 2>"$TMP/err"; }
+check "as a table" text models/pendulum.lag --until 2 --methods rk45,verlet --target 1e-6 --longest 0.01
+says() { check "it says: $1" grep -q -e "$1" "$TMP/text"; }
+says '^reference: taylor'
+says '^an error of 1e-06 at least cost: --method '
+# What it names reaches what it says: the pendulum's own closed form judges (models/pendulum.facts has it checked).
+named() { sed -n 's/^  lagc run //p' "$TMP/text" >"$TMP/words" && read -r words <"$TMP/words" && sh -c "$LAGC run $words --until 2 --quiet -o $TMP/rows.csv" && [ -s "$TMP/rows.csv" ]; }
+check "the command that it names runs" named
+unreached() { text models/pendulum.lag --until 2 --methods symplectic_euler --longest 0.001 --target 1e-12; [ $? = 3 ]; }
+check "a target out of reach is exit status 3" unreached
+says '^no setting has an error of 1e-12'
+
+check "a flow" text models/lorenz.lag --until 1 --methods rk45,verlet,taylor --longest 0.01
+says '^not in the table: verlet: .*states'
+says '^. taylor(tol=1e-09)'
+
+check "a picture" text models/pendulum.lag --until 1 --longest 0.01 --methods rk4,rk45 -o "$TMP/cost.svg" --quiet
+check "is whole" grep -q '^</svg>' "$TMP/cost.svg"
+check "has a curve for each method" [ "$(grep -c '<path fill="none"' "$TMP/cost.svg")" = 2 ]
+check "and no other output" [ ! -s "$TMP/text" ]
+
+refused() { # NAME PATTERN ARGS...
+  name=$1 pattern=$2
+  shift 2
+  text "$@"
+  status=$?
+  check "$name is refused" [ "$status" = 2 ]
+  check "with advice" grep -q -e "$pattern" "$TMP/err"
+}
+refused "an unknown method" 'did you mean verlet' models/pendulum.lag --methods verlet5
+refused "a target of zero" 'example --target 1e-8' models/pendulum.lag --target 0
+refused "no time to run" 'nothing to compute' models/pendulum.lag --until 0
+refused "a tolerance" 'is an option of .lagc run' models/pendulum.lag --tol 1e-9
+echo garbage >"$TMP/garbage"
+"$LAGC" build models/pendulum.lag --method taylor -o "$TMP/sim" >"$TMP/out" 2>&1
+bad_reference() { "$TMP/sim" --cost --against "$TMP/garbage" 2>"$TMP/err"; [ $? = 2 ] && grep -q 'holds no reference' "$TMP/err"; }
+check "what is no reference is refused" bad_reference
+own_reference() { "$TMP/sim" --reference >"$TMP/reference" && "$TMP/sim" --cost --against "$TMP/reference" --methods rk45 >"$TMP/out" && grep -q 'rk45(tol=1e-10)' "$TMP/out"; }
+check "one simulator's reference serves another" own_reference
+tap_end
