@@ -165,7 +165,8 @@ int app_put_row(App *app)
     app->bad_file = app->args.out;
     return LAG_EIO;
   }
-  return (app->args.every || app->section >= 0) && table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK; /* without --every film.c chooses those of pictures */
+  int drawn = app->args.every || app->section >= 0; /* else film.c chooses the rows of pictures */
+  return drawn && table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
 
 /* Rows on the grid as far as `until`. */
@@ -303,11 +304,12 @@ static int finish(App *app, int plot_x, int plot_y)
   app->show.note = note;
   snprintf(title, sizeof title, "%s: %s%s%s", app->scene->model->name, app->scene->name, app->section < 0 ? "" : ", ",
            app->section < 0 ? "" : app->scene->model->ev[app->section].name);
-  if (a->svg && svg_write(a->svg, &app->table, title, plot_x, plot_y)) {
-    bad = app_io_error(app, a->svg);
-  }
   if (a->html && html_write(a->html, &app->table, title, &app->show)) {
     bad = app_io_error(app, a->html);
+  }
+  table_long_time(&app->table);
+  if (a->svg && svg_write(a->svg, &app->table, title, plot_x, plot_y)) {
+    bad = app_io_error(app, a->svg);
   }
   if (a->save && app->status >= 0 && save_state(app)) {
     bad = EXIT_USAGE;

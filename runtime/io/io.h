@@ -37,6 +37,8 @@ typedef struct Table {
 int table_init(Table *t, const lag_sim *sim, int keep);
 void table_free(Table *t);
 int table_add(Table *t, const double *row);
+/* The time in years, days or hours where the rows span two of them or more, for pictures; as it is where nothing has a unit. */
+void table_long_time(Table *t);
 
 /* Rows to a file: .npy by its suffix, else CSV. */
 typedef struct Rows {
