@@ -232,7 +232,7 @@ static int try_file(const App *app, const char *path)
   return path && (outfile_open(&o, path) || outfile_close(&o, 0)) ? app_io_error(app, path) : 0;
 }
 
-static int open_output(App *app, int *plot_x, int *plot_y)
+static int open_output(App *app)
 {
   const Args *a = &app->args;
 
@@ -241,7 +241,7 @@ static int open_output(App *app, int *plot_x, int *plot_y)
     return app_error(a, "out of memory");
   }
   app->table.points = app->section >= 0;
-  if ((a->plot_x && (*plot_x = app_column(app, a->plot_x)) < 0) || (a->plot_y && (*plot_y = app_column(app, a->plot_y)) < 0)) {
+  if (app_choose_drawn(app)) {
     return EXIT_USAGE;
   }
   if (a->html && app_choose_points(app)) {
@@ -250,7 +250,7 @@ static int open_output(App *app, int *plot_x, int *plot_y)
   if (try_file(app, a->svg) || try_file(app, a->html) || try_file(app, a->save)) {
     return EXIT_USAGE;
   }
-  int rc = film_open(app, *plot_x, *plot_y);
+  int rc = film_open(app);
   rc = rc ? rc : events_open(app);
   return rc ? rc : a->out && rows_open(&app->rows, a->out, &app->table) ? app_io_error(app, a->out) : 0;
 }
@@ -279,7 +279,7 @@ static int save_state(const App *app)
 }
 
 /* Completes the files, says what happened. */
-static int finish(App *app, int plot_x, int plot_y)
+static int finish(App *app)
 {
   const Args *a = &app->args;
   int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? EXIT_SIGNAL + interrupted : EXIT_FINE, bad = 0;
@@ -308,7 +308,7 @@ static int finish(App *app, int plot_x, int plot_y)
     bad = app_io_error(app, a->html);
   }
   table_long_time(&app->table);
-  if (a->svg && svg_write(a->svg, &app->table, title, plot_x, plot_y)) {
+  if (a->svg && svg_write(a->svg, &app->table, title, &app->drawn)) {
     bad = app_io_error(app, a->svg);
   }
   if (a->save && app->status >= 0 && save_state(app)) {
@@ -316,11 +316,7 @@ static int finish(App *app, int plot_x, int plot_y)
   }
   if (a->sketch) {
     FILE *to = a->json ? stderr : f;
-    if (plot_y >= 0) {
-      sketch_path(to, &app->table, plot_x, plot_y);
-    } else {
-      sketch_print(to, &app->table);
-    }
+    sketch(to, &app->table, &app->drawn);
   }
   if (a->json) {
     report_json(app, stdout);
@@ -356,7 +352,7 @@ static void catch_interrupt(void)
 
 static int simulate(App *app)
 {
-  int plot_x = 0, plot_y = -1, rc = app_choose(app);
+  int rc = app_choose(app);
 
   if (rc || (rc = section_choose(app)) != 0 || (rc = check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
     return rc;
@@ -365,7 +361,7 @@ static int simulate(App *app)
     return app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",
                      lag_sim_method(app->sim)->name);
   }
-  if ((rc = open_output(app, &plot_x, &plot_y)) != 0) {
+  if ((rc = open_output(app)) != 0) {
     return rc;
   }
   note_tables(app);
@@ -376,7 +372,7 @@ static int simulate(App *app)
   clock_gettime(CLOCK_MONOTONIC, &app->begun);
   app->shown = app->begun;
   run(app);
-  return finish(app, plot_x, plot_y);
+  return finish(app);
 }
 
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras)
@@ -400,6 +396,7 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
   events_free(&app);
   film_free(&app);
   free(app.show.cols);
+  free(app.drawn.x);
   free(app.row);
   free(app.args.sets);
   free(app.state.data);

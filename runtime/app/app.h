@@ -43,6 +43,7 @@ typedef struct App {
   Film film;
   Rows rows;
   Animation show;
+  Drawn drawn;
   double *row;      /* [ncols] */
   double last_row;  /* time of the last row, NaN before the first */
   double until;
@@ -84,14 +85,14 @@ int app_unknown_method(const App *app, const char *name);
 /* methods.c */
 void app_list_methods(const App *app, FILE *f);
 
-/* columns.c. The index of a column by its name; -1 after a message. */
-int app_column(const App *app, const char *name);
+/* columns.c. What pictures draw: --plot-x and --plot-y, or everything. 0, or EXIT_USAGE after a message. */
+int app_choose_drawn(App *app);
 /* Fills app->show from --points and --from. 0, or EXIT_USAGE after a message. */
 int app_choose_points(App *app);
 
-/* film.c: rows of pictures. film_open: after app_choose_points; plot_y < 0: all columns. film_advance: lag_sim_advance, looking at
+/* film.c: rows of pictures. film_open: after app_choose_drawn and app_choose_points. film_advance: lag_sim_advance, looking at
  * the motion on the way. film_warn: what should be said of the picture, "" when nothing; also said on standard error. */
-int film_open(App *app, int plot_x, int plot_y);
+int film_open(App *app);
 int film_advance(App *app, double until);
 int film_close(App *app);
 void film_warn(App *app, char *note, size_t size);

@@ -11,9 +11,9 @@
 
 enum { MOST_PLACES = 64 };          /* in a step */
 enum { MOST_VALUES = 1 << 24 };     /* in memory */
-static const double PART = 1. / 1500; /* of the picture: half a pixel */
+static const double PART = 1. / 3000; /* of the picture: a third of a pixel */
 
-static void choose_columns(App *app, int plot_x, int plot_y)
+static void choose_columns(App *app)
 {
   Thin *w = &app->film.rows;
 
@@ -23,17 +23,13 @@ static void choose_columns(App *app, int plot_x, int plot_y)
     }
     w->common = !app->args.svg && !app->args.sketch;
   }
-  if (plot_y >= 0) {
-    thin_draw(w, plot_x);
-    thin_draw(w, plot_y);
-  } else if (app->args.svg || app->args.sketch) {
-    for (int i = 1; i < app->table.ncols; i++) {
-      thin_draw(w, i);
-    }
+  for (int i = 0; i < app->drawn.n && (app->args.svg || app->args.sketch); i++) {
+    thin_draw(w, app->drawn.x[i]);
+    thin_draw(w, app->drawn.y[i]);
   }
 }
 
-int film_open(App *app, int plot_x, int plot_y)
+int film_open(App *app)
 {
   Film *f = &app->film;
   double span = fabs(app->until - lag_sim_time(app->sim));
@@ -50,7 +46,7 @@ int film_open(App *app, int plot_x, int plot_y)
   if (thin_init(&f->rows, &app->table, !app->args.every, PART, span / 400) || !f->y || !f->seen) {
     return app_error(&app->args, "out of memory");
   }
-  choose_columns(app, plot_x, plot_y);
+  choose_columns(app);
   return 0;
 }
 
@@ -179,7 +175,7 @@ void film_warn(App *app, char *note, size_t size)
   if (!f->rows.store && f->rows.kept > FINER * app->table.nrows) {
     snprintf(note, size, "rows every %s s are too coarse for this motion, and straight lines join them: leave --every out, or write --every %g",
              app->args.every, fine_enough(app));
-  } else if (f->rows.part > 16 * PART) {
+  } else if (f->rows.part > 32 * PART) {
     snprintf(note, size, "the run is too long to be shown finely: lines stray by up to %.2g %% of the picture; an earlier --until shows it better",
              100 * f->rows.part);
   }

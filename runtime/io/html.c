@@ -68,14 +68,34 @@ static double choose_speed(double span)
   return nice_step(0, span, 20);
 }
 
-/* How fast it can be followed: frames are as near to each other as the motion needs, some fifty in a swing, and about
+/* How fast it can be followed: frames are as near to each other as the motion needs, some seventy in a swing, and about
  * four swings a second can be told apart. */
 static double watchable(const Table *t, double span)
 {
-  enum { FRAMES_A_SECOND = 200 };
+  enum { FRAMES_A_SECOND = 280 };
   double speed = choose_speed(span), most = t->nrows ? FRAMES_A_SECOND * span / (double)t->nrows : 0;
 
   return most > 0 && speed > most ? nice_step(0, most / 1.6, 1) : speed;
+}
+
+/* Whether what goes across is no place: numbers without unit that stand still, as those of the masses of a string are. */
+static int counts(const Table *t, const Animation *a)
+{
+  int differ = 0;
+
+  for (int i = 0; i < a->npoints; i++) {
+    int x = a->cols[2 * i];
+    if (t->cols[x].unit[0] || x == 0) {
+      return 0;
+    }
+    for (size_t k = 1; k < t->nrows; k++) {
+      if (cell(t, k, x) != cell(t, 0, x)) {
+        return 0;
+      }
+    }
+    differ |= t->nrows && cell(t, 0, x) != cell(t, 0, a->cols[0]);
+  }
+  return differ;
 }
 
 /* Times between frames, in ticks. */
@@ -116,7 +136,7 @@ static void put_data(FILE *f, const Table *t, const Animation *a)
   fprintf(f, "\"rods\": %s, \"trace\": %s, \"from\": %s, \"unit\": ", a->rods ? "true" : "false", a->trace ? "true" : "false",
           a->from ? "true" : "false");
   script_string(f, a->unit);
-  fputs(", \"note\": ", f);
+  fprintf(f, ", \"free\": %s, \"note\": ", counts(t, a) ? "true" : "false");
   script_string(f, a->note ? a->note : "");
   fputs(", ", f);
   put_names(f, t, a);

@@ -86,8 +86,14 @@ int thin_again(Thin *w, size_t most);
 /* Ticks: a round step (1, 2, 5 times a power of ten) of which about n fit between lo and hi. */
 double nice_step(double lo, double hi, int n);
 
-/* The columns named x and y (NULL: all against t) as SVG. -1 with errno set. */
-int svg_write(const char *path, const Table *t, const char *title, int x, int y);
+/* What a picture draws: column y[i] against column x[i]. Column 0 is the time. */
+typedef struct Drawn {
+  int n, *x, *y;
+  const char *xname, *yname; /* of what has several columns; NULL: everything against the time */
+} Drawn;
+
+/* As SVG. -1 with errno set. */
+int svg_write(const char *path, const Table *t, const char *title, const Drawn *d);
 
 /* Points (x, y), all positive, joined in their order. */
 typedef struct Series {
@@ -99,10 +105,8 @@ typedef struct Series {
 /* Curves of points on two logarithmic axes, each with its name beside it. -1 with errno set. */
 int svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n);
 
-void sketch_print(FILE *f, const Table *t);
-
-/* The same for one column against another. */
-void sketch_path(FILE *f, const Table *t, int col_x, int col_y);
+/* The same as text, the first few of them. */
+void sketch(FILE *f, const Table *t, const Drawn *d);
 
 /* What an animation shows: points whose x and y are columns, in one unit. */
 typedef struct Animation {

@@ -305,62 +305,72 @@ static void cut(const char *from, int most, char *s, size_t n)
 }
 
 /* Name and unit in `room` pixels: a long name is cut, the unit stays. */
-static void label_of(const Column *c, double room, char *s, size_t n)
+static void label_of(const char *name, const char *unit, double room, char *s, size_t n)
 {
   const double width_of_character = 8;
-  char name[sizeof c->name];
+  char short_name[96];
 
-  cut(c->name, (int)(room / width_of_character) - (int)strlen(c->unit) - 3, name, sizeof name);
-  snprintf(s, n, c->unit[0] ? "%s [%s]" : "%s", name, c->unit);
+  cut(name, (int)(room / width_of_character) - (int)strlen(unit) - 3, short_name, sizeof short_name);
+  snprintf(s, n, unit[0] ? "%s [%s]" : "%s", short_name, unit);
 }
 
-/* All columns of one unit. */
-static void unit_panel(FILE *f, const Table *t, Panel *p, const char *unit, int last)
+/* Line i of a legend of `total` series, of which `room` lines have place. */
+static void legend(FILE *f, const Panel *p, int i, int total, int room, int k, const char *name)
+{
+  char stroke[64], s[160];
+  double y = p->y + 12 + 18 * i, x = p->x + p->w + 14;
+
+  if (i + 1 < room || (i + 1 == room && total == room)) {
+    stroke_of(k, stroke, sizeof stroke);
+    fprintf(f, "<path d=\"M%.1f %.1fh20\" %s stroke-width=\"2.5\"/>\n", x, y, stroke);
+    cut(name, MOST_NAME, s, sizeof s);
+    text(f, x + 27, y + 4, "", s);
+  } else if (i + 1 == room) {
+    snprintf(s, sizeof s, "and %d more", total - i);
+    text(f, x, y + 4, "", s);
+  }
+}
+
+static int legend_room(const Panel *p)
+{
+  return (int)(p->h / 18) < MOST_LEGEND ? (int)(p->h / 18) : MOST_LEGEND;
+}
+
+/* All series of one unit. */
+static void unit_panel(FILE *f, const Table *t, const Drawn *d, Panel *p, const char *unit, int last)
 {
   char s[176];
   int shown = 0, total = 0;
 
   p->y0 = HUGE_VAL;
   p->y1 = -HUGE_VAL;
-  for (int c = 1; c < t->ncols; c++) {
-    if (strcmp(t->cols[c].unit, unit) == 0) {
-      range_of(t, c, &p->y0, &p->y1);
+  for (int i = 0; i < d->n; i++) {
+    if (strcmp(t->cols[d->y[i]].unit, unit) == 0) {
+      range_of(t, d->y[i], &p->y0, &p->y1);
       total++;
     }
   }
   widen(&p->y0, &p->y1, 0.06);
   snprintf(s, sizeof s, "[%s]", unit);
   axes(f, p, unit[0] ? s : "", last);
-  int room = (int)(p->h / 18) < MOST_LEGEND ? (int)(p->h / 18) : MOST_LEGEND;
-  for (int c = 1; c < t->ncols; c++) {
-    if (strcmp(t->cols[c].unit, unit) != 0) {
-      continue;
+  for (int i = 0; i < d->n; i++) {
+    const Column *c = &t->cols[d->y[i]];
+    if (strcmp(c->unit, unit) == 0) {
+      curve(f, p, t, 0, d->y[i], i);
+      legend(f, p, shown++, total, legend_room(p), i, c->name);
     }
-    char stroke[64];
-    double y = p->y + 12 + 18 * shown, x = p->x + p->w + 14;
-    curve(f, p, t, 0, c, c - 1);
-    stroke_of(c - 1, stroke, sizeof stroke);
-    if (shown + 1 < room || (shown + 1 == room && total == room)) {
-      fprintf(f, "<path d=\"M%.1f %.1fh20\" %s stroke-width=\"2.5\"/>\n", x, y, stroke);
-      cut(t->cols[c].name, MOST_NAME, s, sizeof s);
-      text(f, x + 27, y + 4, "", s);
-    } else if (shown + 1 == room) {
-      snprintf(s, sizeof s, "and %d more", total - shown);
-      text(f, x, y + 4, "", s);
-    }
-    shown++;
   }
 }
 
 /* How much room the longest name of the legend takes, on the right of the panels. */
-static int legend_width(const Table *t)
+static int legend_width(const Table *t, const Drawn *d)
 {
   enum { KEY = 41, CHARACTER = 8 };
   int most = (RIGHT - KEY) / CHARACTER;
   char s[sizeof t->cols->name];
 
-  for (int c = 1; c < t->ncols; c++) {
-    cut(t->cols[c].name, MOST_NAME, s, sizeof s);
+  for (int i = 0; i < d->n; i++) {
+    cut(t->cols[d->y[i]].name, MOST_NAME, s, sizeof s);
     most = (int)strlen(s) > most ? (int)strlen(s) : most;
   }
   return KEY + CHARACTER * most;
@@ -381,36 +391,37 @@ static void head(FILE *f, int width, int height, const char *title)
 }
 
 /* The distinct units, in order of first use, at most MOST_PANELS. */
-static int units_of(const Table *t, const char *units[MOST_PANELS])
+static int units_of(const Table *t, const Drawn *d, const char *units[MOST_PANELS])
 {
   int n = 0;
 
-  for (int c = 1; c < t->ncols; c++) {
+  for (int i = 0; i < d->n; i++) {
+    const char *unit = t->cols[d->y[i]].unit;
     int k = 0;
-    while (k < n && strcmp(units[k], t->cols[c].unit) != 0) {
+    while (k < n && strcmp(units[k], unit) != 0) {
       k++;
     }
     if (k == n && n < MOST_PANELS) {
-      units[n++] = t->cols[c].unit;
+      units[n++] = unit;
     }
   }
   return n;
 }
 
-static void against_time(FILE *f, const Table *t, const char *title)
+static void against_time(FILE *f, const Table *t, const char *title, const Drawn *d)
 {
   const char *units[MOST_PANELS];
   char xlabel[176];
-  int n = units_of(t, units);
+  int n = units_of(t, d, units);
   double h = n == 1 ? 380 : n == 2 ? 230 : 170;
   Panel p = {.x = LEFT, .y = TOP, .w = WIDTH - LEFT - RIGHT, .h = h, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .xlabel = xlabel};
 
-  label_of(&t->cols[0], p.w, xlabel, sizeof xlabel);
-  head(f, LEFT + (int)p.w + legend_width(t), TOP + (int)h * n + GAP * (n - 1) + BOTTOM, title);
+  label_of(t->cols[0].name, t->cols[0].unit, p.w, xlabel, sizeof xlabel);
+  head(f, LEFT + (int)p.w + legend_width(t, d), TOP + (int)h * n + GAP * (n - 1) + BOTTOM, title);
   range_of(t, 0, &p.x0, &p.x1);
   widen(&p.x0, &p.x1, 0);
   for (int k = 0; k < n; k++) {
-    unit_panel(f, t, &p, units[k], k == n - 1);
+    unit_panel(f, t, d, &p, units[k], k == n - 1);
     p.y += h + GAP;
   }
 }
@@ -470,27 +481,45 @@ static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y)
   }
 }
 
-static void one_against_other(FILE *f, const Table *t, const char *title, int x, int y)
+/* The label of an axis: the column's, or what several have in common. */
+static void axis_label(const Table *t, int n, const int *cols, const char *name, double room, char *s, size_t size)
+{
+  const char *unit = "";
+
+  for (int i = n; i-- > 0;) {
+    unit = t->cols[cols[i]].unit[0] ? t->cols[cols[i]].unit : unit;
+  }
+  label_of(n == 1 ? t->cols[cols[0]].name : name, unit, room, s, size);
+}
+
+static void paths(FILE *f, const Table *t, const char *title, const Drawn *d)
 {
   char xlabel[176], ylabel[176];
-  Panel p = {.x = LEFT, .y = TOP, .w = x ? 600 : WIDTH - LEFT - 30, .h = x ? 520 : 380,
+  int x = d->x[0];
+  Panel p = {.x = LEFT, .y = TOP, .w = x ? 600 : WIDTH - LEFT - 30, .h = x ? 520 : 380, .xlabel = xlabel,
              .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL};
 
-  p.xlabel = xlabel;
-  range_of(t, x, &p.x0, &p.x1);
-  range_of(t, y, &p.y0, &p.y1);
+  for (int i = 0; i < d->n; i++) {
+    range_of(t, d->x[i], &p.x0, &p.x1);
+    range_of(t, d->y[i], &p.y0, &p.y1);
+  }
   widen(&p.x0, &p.x1, x ? 0.05 : 0);
   widen(&p.y0, &p.y1, 0.05);
-  if (x && shares_scale(t, x, y, &p)) {
+  if (x && shares_scale(t, d->x[d->n - 1], d->y[d->n - 1], &p)) {
     same_scale(&p);
   }
-  label_of(&t->cols[x], p.w, xlabel, sizeof xlabel);
-  label_of(&t->cols[y], p.h + 40, ylabel, sizeof ylabel);
-  head(f, WIDTH, TOP + (int)p.h + BOTTOM, title);
+  axis_label(t, d->n, d->x, d->xname, p.w, xlabel, sizeof xlabel);
+  axis_label(t, d->n, d->y, d->yname, p.h + 40, ylabel, sizeof ylabel);
+  head(f, d->n > 1 ? LEFT + (int)p.w + legend_width(t, d) : WIDTH, TOP + (int)p.h + BOTTOM, title);
   axes(f, &p, ylabel, 1);
-  curve(f, &p, t, x, y, 0);
-  if (x && !t->points) {
-    mark_ends(f, &p, t, x, y);
+  for (int i = 0; i < d->n; i++) {
+    curve(f, &p, t, d->x[i], d->y[i], i);
+    if (d->n > 1) {
+      legend(f, &p, i, d->n, legend_room(&p), i, t->cols[d->y[i]].name);
+    }
+  }
+  if (x && !t->points && d->n == 1) {
+    mark_ends(f, &p, t, x, d->y[0]);
   }
 }
 
@@ -547,17 +576,17 @@ int svg_chart(const char *path, const char *title, const char *xlabel, const cha
   return outfile_close(&o, 1);
 }
 
-int svg_write(const char *path, const Table *t, const char *title, int x, int y)
+int svg_write(const char *path, const Table *t, const char *title, const Drawn *d)
 {
   Outfile o;
 
   if (outfile_open(&o, path)) {
     return -1;
   }
-  if (y < 0) {
-    against_time(o.f, t, title);
+  if (!d->yname || (d->n > 1 && d->x[0] == 0)) {
+    against_time(o.f, t, title, d);
   } else {
-    one_against_other(o.f, t, title, x, y);
+    paths(o.f, t, title, d);
   }
   fputs("</svg>\n", o.f);
   return outfile_close(&o, 1);

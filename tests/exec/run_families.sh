@@ -128,7 +128,7 @@ refused "r' has parts: set r.x', and so on" run "$dir/vector.lag" "r'=1"
 result "and so has its velocity" $?
 refused "k = -1: the model declares k[1] > 0" run "$dir/vector.lag" k=-1
 result "a family of the wrong sign" $?
-refused "r has parts, each an output of its own; name one: r.x" plot "$dir/vector.lag" --y r
+"$LAGC" plot "$dir/vector.lag" --y r -o "$dir/r.svg" >"$dir/out" 2>&1 && [ "$(grep -c '>r\.[xy]<' "$dir/r.svg")" = 2 ]
 result "an output that is a vector" $?
 refused "kk: no such parameter, coordinate or input in model vector" run "$dir/vector.lag" kk=1
 result "a name that is none" $?
