@@ -129,7 +129,7 @@ static int choose_grid(App *app)
     every = fabs(app->until - t) / 1000;
     origin = t;
   }
-  if (app->section < 0 && (a->out || a->svg || a->html || a->sketch) && fabs(app->until - t) / every > 1e9) {
+  if (app->section < 0 && (a->out || (a->every && (a->svg || a->html || a->sketch))) && fabs(app->until - t) / every > 1e9) {
     return app_error(a, "a row every %g s for %g s is %.3g rows; write a larger --every", every, fabs(app->until - t),
                      fabs(app->until - t) / every);
   }
