@@ -376,7 +376,7 @@ static int do_command(Compiler *c) {
     case CMD_EMIT: return do_emit(c);
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return do_build(c);
-    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: case CMD_COST: return do_run(c);
+    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: case CMD_LYAPUNOV: case CMD_COST: return do_run(c);
     case CMD_METHODS: case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
   }
   return STATUS_USAGE;

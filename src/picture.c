@@ -254,13 +254,14 @@ int picture_prepare(Picture *p, Ast *ast, const Options *o, const char **error) 
   int ok = 1;
   p->scene = o->scene ? intern(ast->names, o->scene) : NULL;
   const char *self = o->command == CMD_PLOT ? "lagc plot" : o->command == CMD_ANIMATE ? "lagc animate"
-                   : o->command == CMD_MODES ? "lagc modes" : o->command == CMD_COST ? "lagc cost" : "lagc run";
+                   : o->command == CMD_MODES ? "lagc modes" : o->command == CMD_LYAPUNOV ? "lagc lyapunov" : o->command == CMD_COST ? "lagc cost" : "lagc run";
   argument(&k, self, NULL); /* what its messages begin with */
   for (uint32_t i = 0; i < o->observe.n; i++) ok &= ask(&k, "--observe", o->observe.at[i]) != NULL;
   ok = ok && prepare_section(&k, error);
   if (o->command == CMD_PLOT) ok = ok && prepare_plot(&k, error);
   if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
   if (o->command == CMD_MODES) argument(&k, "--modes", NULL);
+  if (o->command == CMD_LYAPUNOV) argument(&k, "--lyapunov", NULL);
   if (o->command == CMD_COST) argument(&k, "--cost", NULL);
   if (o->command == CMD_COST && o->output) argument(&k, "--svg", o->output);
   for (uint32_t i = 0; i < o->rest.n; i++) argument(&k, o->rest.at[i], NULL);

@@ -105,7 +105,7 @@ static int convert_setting(Converter *c, const char **arg) {
 
 /* --until 2[min], --until=2[min]. */
 static int convert_time(Converter *c, uint32_t *i) {
-  static const char *const options[] = {"--until", "--every", "--step"};
+  static const char *const options[] = {"--until", "--every", "--step", "--transient"};
   const char **at = c->o->rest.at;
   for (size_t k = 0; k < sizeof options / sizeof *options; k++) {
     size_t n = strlen(options[k]);

@@ -1,12 +1,18 @@
 #include "analysis/equilibrium.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "analysis/blur.h"
+#include "analysis/pivot.h"
+
 enum { MOST_STEPS = 200, MOST_DESCENT = 200 };
 
-/* A force counts as 0 when displacements of this size, relative to the state and its scale, make more. */
-static const double SMALL = 1e-9;
+/* A root counts as reached when Newton's method would move by no more than this, relative to the state and its scale. */
+static const double NEAR = 1e-9;
+/* How many times what rounding of the model's numbers does to a force the force may be: it has a few operations more. */
+static const double CERTAIN = 8;
 
 static const lag_var *unknown(const Rest *r, int i)
 {
@@ -32,8 +38,7 @@ static void choose_scales(Rest *r)
   }
 }
 
-/* The state of x[n]. */
-static void place(Rest *r, const double *x)
+void lag_rest_place(Rest *r, const double *x)
 {
   int nq = r->sim->pb.nq;
 
@@ -50,7 +55,7 @@ static int equations(void *context, const double *x, double *f, double *J)
   int nq = pb->nq, n = r->n;
   double t = r->sim->run->t;
 
-  place(r, x);
+  lag_rest_place(r, x);
   int rc = lag_rhs(pb, t, r->y, r->rate);
   rc = rc ? rc : lag_linearise(pb, t, r->y, NULL, r->dr, r->M, r->work);
   for (int i = 0; i < n && rc == 0; i++) {
@@ -93,43 +98,169 @@ static int choose_rows(Rest *r)
   return LAG_OK;
 }
 
-/* Are all equations 0 at x[n]? A force that nothing changes must be exactly 0. */
-static int holds(Rest *r, const double *x)
-{
-  double most = 0;
-  int n = r->n, good = 1;
+/* ---- What is a root */
 
-  r->worst = 0;
-  if (equations(r, x, r->f, r->J) || lag_not_finite(n, r->f) >= 0) {
-    return 0;
+static int forces(Rest *r, const double *x, double *out)
+{
+  return equations(r, x, out, out + r->n);
+}
+
+/* r->f, r->J and what rounding makes of them, r->noise[n | n * n], at x[n]. */
+static int forces_and_noise(Rest *r, const double *x)
+{
+  size_t n = (size_t)r->n;
+  int rc = lag_blur(r, forces, x, n + n * n, r->values, r->noise, r->scratch);
+
+  if (rc || lag_not_finite((int)(n + n * n), r->values) >= 0) {
+    return rc ? rc : LAG_ENAN;
+  }
+  memcpy(r->f, r->values, n * sizeof(double));
+  memcpy(r->J, r->values + n, n * n * sizeof(double));
+  for (size_t i = 0; i < n; i++) { /* M a is a sum that no parameter shows */
+    double sum = 0;
+    size_t nq = (size_t)r->sim->pb.nq;
+    for (size_t j = 0; j < nq && i < nq; j++) {
+      sum += fabs(r->M[i * nq + j] * r->rate[nq + j]);
+    }
+    r->noise[i] += i < nq ? DBL_EPSILON * sum * r->scale[i] * r->row[i] : 0;
+  }
+  return equations(r, x, r->f, NULL); /* r->rate at x */
+}
+
+/* J dx = -b, b[n] of the size of noise; all but dx is destroyed. `noise` may be NULL: J is what it seems. Returns the rank. */
+static int solve(Rest *r, double *b, const double *noise)
+{
+  int n = r->n;
+  double *size = r->scratch, *error = size + n * n, *work = error + n;
+
+  for (int i = 0; i < n * n; i++) {
+    size[i] = fabs(r->J[i]) + (noise ? noise[n + i] / DBL_EPSILON : 0);
   }
   for (int i = 0; i < n; i++) {
-    double allowed = 0;
-    for (int j = 0; j < n; j++) {
-      allowed += SMALL * fabs(r->J[i * n + j]) * (fabs(x[j]) + 1);
+    b[i] = -b[i];
+    error[i] = noise ? noise[i] : 0;
+  }
+  int rank = lag_pivot_solve(n, r->J, size, b, error, r->dx, work);
+  for (int i = rank; i < n && noise; i++) {
+    b[i] = fabs(b[i]) <= CERTAIN * error[i] ? 0 : b[i];
+  }
+  return rank;
+}
+
+/* How far dx goes, relative to the state and its scale. */
+static double reach(const Rest *r, const double *x, const double *dx)
+{
+  double most = 0;
+
+  for (int i = 0; i < r->n; i++) {
+    most = fmax(most, fabs(dx[i]) / (fabs(x[i]) + 1));
+  }
+  return most;
+}
+
+/* Would Newton's method stay, and does nothing pull where it cannot go? */
+static int stays(Rest *r, const double *x)
+{
+  int n = r->n;
+  double *b = r->step;
+
+  memcpy(b, r->f, (size_t)n * sizeof *b);
+  for (int k = solve(r, b, r->noise); k < n; k++) {
+    if (b[k] != 0.0) {
+      return 0;
     }
-    if (fabs(r->f[i]) <= allowed) {
-      continue;
-    }
-    good = 0;
-    if (fabs(r->f[i]) > most) {
+  }
+  return reach(r, x, r->dx) <= NEAR;
+}
+
+/* Are the forces that were computed last what rounding makes of 0? Sets the worst. */
+static int none_pulls(Rest *r)
+{
+  double most = 0;
+
+  r->worst = 0;
+  for (int i = 0; i < r->n; i++) {
+    if (fabs(r->f[i]) > CERTAIN * r->noise[i] && fabs(r->f[i]) > most) {
       most = fabs(r->f[i]);
       r->worst = i;
     }
   }
-  return good;
+  return most == 0.0;
 }
 
-/* 1e-27 is 0 where 0 is as good. */
+/* Do all forces vanish at x[n]? */
+static int vanish(Rest *r, const double *x)
+{
+  return forces_and_noise(r, x) == 0 && none_pulls(r);
+}
+
+/* Is x[n] a root: do all forces vanish there, or next to it? The size of a force says little, as stiff ones stand
+ * beside soft ones. */
+static int holds(Rest *r, const double *x)
+{
+  return forces_and_noise(r, x) == 0 && (none_pulls(r) || stays(r, x));
+}
+
+/* 1e-9 is 0 where 0 is as good. */
 static void clean(Rest *r)
 {
+  static const double small[] = {1e-4, 1e-8, 1e-12};
+
+  for (size_t k = 0; k < sizeof small / sizeof *small; k++) {
+    int changes = 0;
+    for (int i = 0; i < r->n; i++) {
+      int is_small = fabs(r->x[i]) <= small[k];
+      changes |= is_small && r->x[i] != 0.0;
+      r->trial[i] = is_small ? 0 : r->x[i];
+    }
+    if (changes && vanish(r, r->trial)) {
+      memcpy(r->x, r->trial, (size_t)r->n * sizeof *r->x);
+      break;
+    }
+  }
+}
+
+/* What nothing pulls at stays where it began. */
+static void restore(Rest *r)
+{
+  size_t bytes = (size_t)r->n * sizeof(double);
+
+  if (forces_and_noise(r, r->x) || solve(r, r->f, r->noise) == r->n) {
+    return;
+  }
   for (int i = 0; i < r->n; i++) {
-    r->trial[i] = fabs(r->x[i]) > 1e-12 ? r->x[i] : 0;
+    memcpy(r->trial, r->x, bytes);
+    r->trial[i] = r->begin[i];
+    if (r->x[i] != r->begin[i] && vanish(r, r->trial)) {
+      memcpy(r->x, r->trial, bytes);
+    }
   }
-  if (holds(r, r->trial)) {
-    memcpy(r->x, r->trial, (size_t)r->n * sizeof *r->x);
+}
+
+/* ---- Newton's method */
+
+/* Newton's method, unbridled: along the floor of a steep valley it makes large steps where one that must reduce forces at each creeps.
+ * 1: x[n] moves no more. */
+static int newton(Rest *r, lag_equations *zero, double *x, int most)
+{
+  double last = HUGE_VAL;
+
+  for (int k = 0; k < most; k++) {
+    if (zero(r, x, r->f, r->J) || lag_not_finite(r->n, r->f) >= 0 || lag_not_finite(r->n * r->n, r->J) >= 0) {
+      return 0;
+    }
+    solve(r, r->f, NULL);
+    double far = reach(r, x, r->dx);
+    for (int i = 0; i < r->n; i++) {
+      x[i] += r->dx[i];
+    }
+    r->steps++;
+    if (!isfinite(far) || far < DBL_EPSILON || (far < 1e-6 && far > 0.95 * last)) {
+      return isfinite(far);
+    }
+    last = far;
   }
-  holds(r, r->x);
+  return 0;
 }
 
 /* ---- Downhill */
@@ -168,7 +299,7 @@ static void prepare_friction(Rest *r)
   int n = r->n, nq = r->sim->pb.nq;
   double fastest = 0;
 
-  holds(r, r->x);
+  equations(r, r->x, r->f, r->J);
   for (int i = 0; i < n; i++) {
     fastest = fmax(fastest, fabs(r->rate[nq + i]) / r->scale[i]);
     for (int j = 0; j < n; j++) {
@@ -180,30 +311,24 @@ static void prepare_friction(Rest *r)
 }
 
 /* Follows friction from x[n] until hardly anything moves. */
-static int descend(Rest *r, const lag_algebra *algebra)
+static void descend(Rest *r)
 {
   size_t bytes = (size_t)r->n * sizeof(double);
 
   prepare_friction(r);
   for (int k = 0; k < MOST_DESCENT; k++) {
-    int steps = 0;
     memcpy(r->from, r->x, bytes);
-    int rc = algebra->root(r->n, r->x, friction, r, 20, &steps);
+    int found = newton(r, friction, r->x, 20);
     double moved = distance(r, r->x, r->from);
-    r->steps += steps;
-    if (rc == LAG_ENOMEM) {
-      return rc;
-    }
-    if (rc || !(moved < 0.5)) {
+    if (!found || !(moved < 0.5)) {
       memcpy(r->x, r->from, bytes);
       r->delta /= 4;
     } else if (moved < 1e-3) {
-      return LAG_OK;
+      return;
     } else {
       r->delta *= moved < 0.2 ? 2 : 1;
     }
   }
-  return LAG_OK;
 }
 
 /* ---- The search */
@@ -219,12 +344,41 @@ static int ran_away(const Rest *r)
   return distance(r, r->x, r->begin) > 1e4 * start;
 }
 
+/* x := the root to which Newton's method leads from there[n], if it is one and not too far; else x stays. */
+static int polish(Rest *r, const double *there, double farthest)
+{
+  size_t bytes = (size_t)r->n * sizeof(double);
+
+  memcpy(r->kept, r->x, bytes);
+  memcpy(r->x, there, bytes);
+  if (newton(r, equations, r->x, MOST_STEPS) && distance(r, r->x, there) <= farthest) {
+    clean(r);
+    if (holds(r, r->x)) {
+      return 1;
+    }
+  }
+  memcpy(r->x, r->kept, bytes);
+  return 0;
+}
+
+/* A root from x on: where a trust region leads; or, if that is stuck, Newton's method alone. */
 static int find_root(Rest *r, const lag_algebra *algebra)
 {
-  int steps = 0, rc = algebra->root(r->n, r->x, equations, r, MOST_STEPS, &steps);
+  size_t bytes = (size_t)r->n * sizeof(double);
+  int steps = 0;
 
+  memcpy(r->from, r->x, bytes);
+  int rc = algebra->root(r->n, r->x, equations, r, MOST_STEPS, &steps);
   r->steps += steps;
-  return rc ? rc : holds(r, r->x);
+  if (rc) {
+    return rc;
+  }
+  clean(r);
+  if (vanish(r, r->x)) {
+    return 1;
+  }
+  memcpy(r->near, r->x, bytes);
+  return polish(r, r->near, 0.1) || holds(r, r->x) || polish(r, r->from, HUGE_VAL) || holds(r, r->x);
 }
 
 /* A root near the start, stable or not; else one downhill; else any. */
@@ -240,8 +394,8 @@ static int search(Rest *r, const lag_algebra *algebra)
   r->away = rc == 0 && ran_away(r);
   int first = rc;
   memcpy(r->x, r->begin, bytes);
-  rc = descend(r, algebra);
-  rc = rc ? rc : find_root(r, algebra);
+  descend(r);
+  rc = find_root(r, algebra);
   if (rc != 0) {
     return rc;
   }
@@ -254,14 +408,80 @@ static int allocate(Rest *r)
 {
   const lag_model *m = r->sim->scene->model;
   size_t n = (size_t)r->n, nq = (size_t)m->nq, ny = (size_t)r->sim->pb.n;
-  double **const parts[] = {&r->start, &r->y, &r->rate, &r->scale, &r->x, &r->begin, &r->from, &r->first, &r->trial,
-                            &r->f, &r->row, &r->J, &r->W, &r->dr, &r->M, &r->work};
-  const size_t sizes[] = {n, ny, ny, n, n, n, n, n, n, n, n, n * n, n * n, n * ny, nq * nq, lag_linear_work(m)};
+  double **const parts[] = {&r->start, &r->y, &r->rate, &r->scale, &r->x, &r->begin, &r->from, &r->first, &r->trial, &r->near, &r->kept,
+                            &r->f, &r->row, &r->dx, &r->step, &r->spread, &r->J, &r->W, &r->values, &r->noise, &r->scratch, &r->dr, &r->M,
+                            &r->work};
+  const size_t sizes[] = {n, ny, ny, n, n, n, n, n, n, n, n, n, n, n, n, n, n * n, n * n, n + n * n, n + n * n, n * n + 3 * n + (size_t)m->np,
+                          n * ny, nq * nq, lag_linear_work(m)};
 
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = pool_doubles(&r->pool, sizes[i]);
   }
   return r->pool.failed ? LAG_ENOMEM : LAG_OK;
+}
+
+/* ---- Coordinates that lose their meaning */
+
+/* How near M[n * n] is to a singular one, where size[n] are its diagonal's usual ones: the least pivot of Cholesky's
+ * method. M is destroyed. */
+static double least_pivot(int n, double *M, const double *size)
+{
+  double least = HUGE_VAL;
+
+  for (int k = 0; k < n; k++) {
+    double pivot = M[k * n + k];
+    least = size[k] > 0 ? fmin(least, fabs(pivot) / size[k]) : least;
+    for (int i = k + 1; i < n && pivot != 0.0; i++) {
+      double factor = M[i * n + k] / pivot;
+      for (int j = k + 1; j < n && factor != 0.0; j++) {
+        M[i * n + j] -= factor * M[k * n + j];
+      }
+    }
+  }
+  return least;
+}
+
+/* Is the mass matrix at x much nearer to a singular one than it is beside x, a tenth of a scale away? */
+static void look_for_poles(Rest *r)
+{
+  int n = r->n, nq = r->sim->pb.nq;
+  double *size = r->dx, here, beside;
+
+  for (int i = 0; i < n; i++) {
+    r->trial[i] = r->x[i] + 0.1 / (1 + 0.3 * (i % 3));
+  }
+  if (equations(r, r->trial, r->f, NULL)) {
+    return;
+  }
+  for (int i = 0; i < nq; i++) {
+    size[i] = fabs(r->M[i * nq + i]);
+  }
+  beside = least_pivot(nq, r->M, size);
+  here = equations(r, r->x, r->f, NULL) ? 0 : least_pivot(nq, r->M, size);
+  r->singular = here < 1e-9 * beside;
+}
+
+/* How far from x the root may be: what rounding of forces, with two patterns of signs, moves Newton's method by, and what it
+ * would still do. Leaves all values at x. */
+static int settle(Rest *r)
+{
+  int n = r->n, rc = 0;
+
+  for (int pattern = 0; pattern < 3 && rc == 0; pattern++) {
+    rc = forces_and_noise(r, r->x);
+    for (int i = 0; i < n; i++) {
+      r->step[i] = pattern == 0 ? r->f[i] : CERTAIN * r->noise[i] * (pattern == 2 && i % 2 ? -1 : 1);
+    }
+    if (rc == 0) {
+      r->rank = solve(r, r->step, r->noise);
+    }
+    for (int i = 0; i < n && rc == 0; i++) {
+      r->spread[i] = fmax(r->spread[i], fmin(fabs(r->dx[i]), 0.1));
+    }
+  }
+  look_for_poles(r);
+  rc = rc ? rc : equations(r, r->x, r->f, r->J);
+  return rc ? (rc < 0 ? rc : LAG_EDOMAIN) : 1;
 }
 
 int lag_rest_find(Rest *r, lag_sim *sim, const lag_algebra *algebra)
@@ -286,6 +506,13 @@ int lag_rest_find(Rest *r, lag_sim *sim, const lag_algebra *algebra)
   rc = holds(r, r->x) ? 1 : search(r, algebra);
   if (rc == 1) {
     clean(r);
+    restore(r);
+    clean(r);
+    return settle(r);
+  }
+  if (rc == 0) {
+    look_for_poles(r);
+    holds(r, r->x);
   }
   return rc;
 }
@@ -296,26 +523,31 @@ int lag_rest_holds(Rest *r, const double *dx, double c)
     r->trial[i] = r->x[i] + c * dx[i] / r->scale[i];
   }
   int good = holds(r, r->trial);
-  holds(r, r->x);
+  lag_rest_place(r, r->x);
   return good;
 }
 
 int lag_rest_continues(Rest *r, const lag_algebra *algebra, const double *dx, double c)
 {
-  double along = 0, size = 0;
+  double off = 0, far = 0;
   int steps;
 
   for (int i = 0; i < r->n; i++) {
     r->from[i] = r->x[i] + c * dx[i] / r->scale[i];
   }
-  int found = algebra->root(r->n, r->from, equations, r, MOST_STEPS, &steps) == LAG_OK && holds(r, r->from);
+  int found = algebra->root(r->n, r->from, equations, r, MOST_STEPS, &steps) == LAG_OK;
+  if (found) {
+    memcpy(r->trial, r->from, (size_t)r->n * sizeof(double));
+    found = newton(r, equations, r->trial, MOST_STEPS) && distance(r, r->trial, r->from) <= 0.1 * fabs(c) && holds(r, r->trial);
+    found = found || holds(r, r->from);
+  }
   for (int i = 0; i < r->n; i++) {
     double step = c * dx[i] / r->scale[i];
-    along += (r->from[i] - r->x[i]) * step;
-    size += step * step;
+    off = fmax(off, fabs(r->from[i] - r->x[i] - step));
+    far = fmax(far, fabs(step));
   }
-  holds(r, r->x);
-  return found && along > 0.5 * size;
+  lag_rest_place(r, r->x);
+  return found && off < 0.4 * far;
 }
 
 void lag_rest_free(Rest *r)

@@ -19,24 +19,32 @@ typedef struct Rest {
   int steps;      /* that it took */
   int worst;      /* not found: the equation that is farthest from 0, */
   int away;       /* and whether forces only fade, far away */
-  double *x, *begin, *from, *first, *trial; /* [n] unknowns: now, at the start, and of the search */
+  double *x, *begin, *from, *first, *trial, *near, *kept; /* [n] unknowns: now, at the start, and of the search */
   double *f, *row, *J, *W; /* equations, what makes them alike in size, their derivatives; friction */
+  double *dx, *step;       /* [n] of Newton's method */
+  double *values, *noise, *scratch; /* [n + n * n] f and J, and what rounding of the model's numbers makes of them */
+  double *spread; /* [n] how far the root may be from x, by rounding */
+  int rank;       /* of J there */
+  int singular;   /* the mass matrix nearly is, there, as it is not beside it: a coordinate loses its meaning */
   double delta;
   double *dr, *M, *work;   /* of lag_linearise */
 } Rest;
 
 /* Finds an equilibrium from the simulation's start (velocities do not matter) by algebra->root, stable or not. Is there
  * none within one scale of the start, it looks where the system would come to rest if all inertia were
- * friction; and takes any other root last. The model must not depend on time.
+ * friction; and takes any other root last. What nothing pulls at stays where it began. The model must not depend on time.
  * 1: found. 0: not found, see worst and rate. < 0: a status; LAG_EDOMAIN and others from the model: no values at the start. Call
  * lag_rest_free in every case. */
 int lag_rest_find(Rest *rest, lag_sim *sim, const lag_algebra *algebra);
 void lag_rest_free(Rest *rest);
 
-/* Whether all forces are 0, to rounding, at the state at rest moved by c times dx[n] (in SI). */
+/* y := the state, at rest, of the unknowns x[n]. */
+void lag_rest_place(Rest *rest, const double *x);
+
+/* Whether a root is at, or so near that it cannot be told from, the state at rest moved by c times dx[n] (in SI). */
 int lag_rest_holds(Rest *rest, const double *dx, double c);
 
-/* Whether there is another equilibrium beside that place, away from the first one: then they form a curve. */
+/* Whether there is another equilibrium beside that place, nearer to it than to the first one: then they form a curve. */
 int lag_rest_continues(Rest *rest, const lag_algebra *algebra, const double *dx, double c);
 
 #endif

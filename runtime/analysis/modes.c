@@ -5,11 +5,10 @@
  * 32 (1846) 85, DOI 10.1515/crll.1846.32.85). */
 #include "analysis/modes.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "analysis/matrices.h"
 #include "analysis/spectrum.h"
 
 typedef struct Work {
@@ -18,95 +17,11 @@ typedef struct Work {
   const lag_algebra *algebra;
   lag_problem *pb;
   int nq, n, ny;        /* n = nq + nz, ny = 2 nq + nz */
-  double *weight;       /* [nq] sqrt(M_ii): x weight is a coordinate with mass 1 */
-  double *K, *C, *M;    /* [nq * nq] in these coordinates */
-  double *values, *vectors; /* of K x = value M x */
-  double zero;          /* |value| below this is 0 */
+  Matrices m;
   int conserves;        /* the model has a conserved energy, and no states beside it */
-  int definite, symmetric, undamped; /* M; K; C = 0 */
   double *kernel;       /* [n * nkernel] zero modes in SI, columns */
   int nkernel;
 } Work;
-
-/* ---- The matrices */
-
-static double largest(size_t n, const double *x)
-{
-  double most = 0;
-
-  for (size_t i = 0; i < n; i++) {
-    most = fmax(most, fabs(x[i]));
-  }
-  return most;
-}
-
-/* K, C, M in coordinates of mass 1. Where M_ii is not positive (an indefinite mass matrix) the row's size serves. */
-static int matrices(Work *w)
-{
-  Rest *r = w->rest;
-  size_t nn = (size_t)w->nq * (size_t)w->nq;
-  int rc = lag_linearise(w->pb, r->sim->run->t, r->y, NULL, r->dr, r->M, r->work), nq = w->nq;
-
-  w->weight = pool_doubles(&w->out->pool, (size_t)nq);
-  w->K = pool_doubles(&w->out->pool, nn);
-  w->C = pool_doubles(&w->out->pool, nn);
-  w->M = pool_doubles(&w->out->pool, nn);
-  if (rc || w->out->pool.failed) {
-    return rc ? rc : LAG_ENOMEM;
-  }
-  w->definite = 1;
-  for (int i = 0; i < nq; i++) {
-    double m = r->M[i * nq + i], row = largest((size_t)nq, r->M + i * nq);
-    w->definite &= m > 0;
-    w->weight[i] = m > 0 ? sqrt(m) : row > 0 ? sqrt(row) : 1;
-  }
-  for (int i = 0; i < nq; i++) {
-    for (int j = 0; j < nq; j++) {
-      double d = w->weight[i] * w->weight[j];
-      w->K[i * nq + j] = -r->dr[i * w->ny + j] / d;
-      w->C[i * nq + j] = -r->dr[i * w->ny + nq + j] / d;
-      w->M[i * nq + j] = r->M[i * nq + j] / d;
-    }
-  }
-  double size = largest(nn, w->K);
-  w->symmetric = w->undamped = 1;
-  for (int i = 0; i < nq; i++) {
-    for (int j = 0; j < nq; j++) {
-      w->symmetric &= fabs(w->K[i * nq + j] - w->K[j * nq + i]) <= 1e-13 * size;
-      w->undamped &= fabs(w->C[i * nq + j]) <= 4 * DBL_EPSILON * sqrt(size);
-    }
-  }
-  return LAG_OK;
-}
-
-/* Eigenvalues of K by M, where both are symmetric and M is positive definite; else out->lowering stays -1. */
-static int signature(Work *w)
-{
-  size_t nq = (size_t)w->nq;
-  double *K = pool_doubles(&w->out->pool, nq * nq), *M = pool_doubles(&w->out->pool, nq * nq);
-
-  w->values = pool_doubles(&w->out->pool, nq);
-  w->vectors = pool_doubles(&w->out->pool, nq * nq);
-  if (w->out->pool.failed) {
-    return LAG_ENOMEM;
-  }
-  if (!w->symmetric || !w->definite || nq == 0) {
-    return LAG_OK;
-  }
-  memcpy(K, w->K, nq * nq * sizeof *K);
-  memcpy(M, w->M, nq * nq * sizeof *M);
-  int rc = w->algebra->symmetric(w->nq, K, M, w->values, w->vectors);
-  if (rc == LAG_EINVAL) {
-    w->definite = 0;
-    return LAG_OK;
-  }
-  w->zero = 32 * (double)nq * DBL_EPSILON * largest(nq, w->values);
-  w->out->lowering = 0;
-  for (size_t i = 0; i < nq && rc == LAG_OK; i++) {
-    w->out->lowering += w->values[i] < -w->zero;
-  }
-  return rc;
-}
 
 /* ---- Shapes */
 
@@ -125,7 +40,7 @@ static int reference(const Work *w, const double *re, const double *im)
   for (int i = 0; i < w->n; i++) {
     double e = extent(w, i, re[i], im[i]);
     if (i < w->nq) {
-      double kinetic = hypot(re[i], im[i]) * w->weight[i];
+      double kinetic = hypot(re[i], im[i]) * w->m.weight[i];
       far = fmax(far, e);
       if (kinetic > most * (1 + 1e-9)) { /* of equal ones the first, whatever rounding says */
         most = kinetic;
@@ -255,47 +170,29 @@ static int add_zero_modes(Work *w)
 /* Values w^2 of the symmetric problem: a negative one is a pair +-s. */
 static int modes_of_values(Work *w)
 {
+  const Matrices *m = &w->m;
   int nq = w->nq, rc = LAG_OK;
-  double *x = pool_doubles(&w->out->pool, (size_t)w->n);
 
-  w->kernel = pool_doubles(&w->out->pool, (size_t)w->n * (size_t)nq);
-  if (w->out->pool.failed) {
+  w->nkernel = m->flat;
+  w->kernel = pool_doubles(&w->out->pool, (size_t)w->n * (size_t)w->nkernel);
+  if (!w->kernel) {
     return LAG_ENOMEM;
   }
-  for (int k = 0; k < nq; k++) {
-    w->nkernel += fabs(w->values[k]) <= w->zero;
-  }
   for (int k = 0, zeros = 0; k < nq && rc == LAG_OK; k++) {
-    double value = w->values[k];
-    int is_zero = fabs(value) <= w->zero;
-    for (int i = 0; i < nq; i++) {
-      x[i] = w->vectors[i * nq + k] / w->weight[i];
-      if (is_zero) {
-        w->kernel[i * w->nkernel + zeros] = x[i];
-      }
-    }
-    zeros += is_zero;
-    if (!is_zero) {
+    double value = m->values[k];
+    if (fabs(value) > m->zero[k]) {
       Mode mode = {.re = value < 0 ? sqrt(-value) : 0, .im = value > 0 ? sqrt(value) : 0, .repeats = 1};
-      rc = add_mode(w, mode, x, NULL, 1);
+      rc = add_mode(w, mode, m->vectors + k, NULL, nq);
+      continue;
     }
+    for (int i = 0; i < nq; i++) {
+      w->kernel[i * w->nkernel + zeros] = m->vectors[i * nq + k];
+    }
+    zeros++;
   }
   w->out->drifts = w->nkernel > 0;
   w->out->pairs = 1;
   return rc ? rc : add_zero_modes(w);
-}
-
-/* A of y' = A y at rest. */
-static int state_matrix(Work *w, double *A)
-{
-  Rest *r = w->rest;
-  int nq = w->nq, ny = w->ny;
-  int rc = lag_jacobian(w->pb, r->sim->run->t, r->y, A + nq * ny, r->work);
-
-  for (int i = 0; i < nq; i++) {
-    A[i * ny + nq + i] = 1;
-  }
-  return rc;
 }
 
 /* Is the eigenvalue the other half of one that is listed? */
@@ -319,15 +216,15 @@ static int modes_of_matrix(Work *w)
 {
   Pool *pool = &w->out->pool;
   Spectrum s;
-  size_t ny = (size_t)w->ny, n = (size_t)w->n;
-  double *A = pool_doubles(pool, ny * ny), *re = pool_doubles(pool, n), *im = pool_doubles(pool, n);
-  int rc = pool->failed ? LAG_ENOMEM : state_matrix(w, A);
+  size_t n = (size_t)w->n;
+  double *A, *noise, *re = pool_doubles(pool, n), *im = pool_doubles(pool, n);
+  int rc = lag_state_matrix(pool, w->rest, &A, &noise);
 
-  rc = rc ? rc : lag_spectrum(&s, pool, w->algebra, w->ny, A);
+  rc = rc ? rc : pool->failed ? LAG_ENOMEM : lag_spectrum(&s, pool, w->algebra, w->ny, A, noise);
   if (rc) {
     return rc;
   }
-  int minimum = w->conserves && w->out->lowering == 0 && s.zeros == 0; /* then a real part is rounding */
+  int minimum = w->conserves && w->m.lowering == 0 && w->m.flat == 0; /* then a real part is rounding */
   w->nkernel = s.nkernel;
   w->out->drifts = s.zeros > s.nkernel;
   w->kernel = pool_doubles(pool, n * (size_t)s.nkernel);
@@ -379,7 +276,7 @@ static Verdict judge(const Work *w)
     return LAG_FLAT;
   }
   if (w->conserves && out->lowering == 0) {
-    return zeros ? LAG_NEUTRAL : LAG_MINIMUM;
+    return zeros != w->m.flat ? LAG_FLAT : zeros ? LAG_NEUTRAL : LAG_MINIMUM;
   }
   if (w->conserves && out->lowering > 0) {
     return LAG_GYROSCOPIC;
@@ -426,12 +323,12 @@ int lag_modes_find(Modes *out, Rest *rest, const lag_algebra *algebra)
   w.conserves = (pb->model->flags & LAG_CONSERVES_ENERGY) != 0 && pb->nz == 0;
   *out = (Modes){.lowering = -1, .pairs = w.conserves};
   out->mode = calloc((size_t)w.ny + 1, sizeof *out->mode);
-  int rc = out->mode ? matrices(&w) : LAG_ENOMEM;
-  rc = rc ? rc : signature(&w);
+  int rc = out->mode ? lag_matrices_find(&w.m, &out->pool, rest, algebra) : LAG_ENOMEM;
   if (rc) {
     return rc;
   }
-  rc = pb->nz == 0 && w.undamped && out->lowering >= 0 ? modes_of_values(&w) : modes_of_matrix(&w);
+  out->lowering = w.m.lowering;
+  rc = pb->nz == 0 && w.m.undamped && out->lowering >= 0 ? modes_of_values(&w) : modes_of_matrix(&w);
   qsort(out->mode, (size_t)out->n, sizeof *out->mode, by_class);
   out->verdict = judge(&w);
   return rc;

@@ -3,12 +3,14 @@
  * DOI 10.1016/0041-5553(66)90031-1; G. Golub, J. Wilkinson, SIAM Rev. 18 (1976) 578, DOI 10.1137/1018113). Of
  * the rest, eigenvalues that lie within each other's uncertainty (J. Wilkinson, The Algebraic Eigenvalue
  * Problem, 1965, chapter 2: error times sensitivity) are replaced by their mean, which is well determined
- * where they are not. */
+ * where they are not. Parts that are not linked are matrices of their own. */
 #include "analysis/spectrum.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
+
+#include "analysis/blocks.h"
 
 enum { MOST_STAGES = 8 };
 
@@ -25,6 +27,7 @@ typedef struct Work {
   double *A;    /* [m * m], what is left */
   double *scale; /* [n] of balancing */
   double size;  /* of the balanced matrix */
+  double noise; /* of its rounding */
   int m;
   Stage stage[MOST_STAGES];
   int nstages;
@@ -74,7 +77,7 @@ static int deflate(Work *w, int *more)
   int m = w->m, rank = m;
   size_t mm = (size_t)m * (size_t)m;
   double *Q = pool_doubles(w->pool, mm);
-  int rc = Q ? w->algebra->kernel(m, w->A, 8 * sqrt(m) * DBL_EPSILON * w->size, Q, &rank) : LAG_ENOMEM;
+  int rc = Q ? w->algebra->kernel(m, w->A, 8 * sqrt(m) * w->noise, Q, &rank) : LAG_ENOMEM;
 
   *more = rc == LAG_OK && rank < m;
   if (!*more) {
@@ -187,7 +190,7 @@ static int settle_cluster(Work *w, int first, const double *cluster, double *unc
       s->re[i] = re;
       s->im[i] = im;
       s->repeats[i] = found < members ? members : 1;
-      uncertain[i] = 1e-11 * w->size; /* of a mean: far above rounding, far below what parts the members */
+      uncertain[i] = fmax(1e-11 * w->size, w->noise); /* of a mean: far above rounding, far below what parts the members */
     }
   }
   return rc;
@@ -207,7 +210,7 @@ static int solve(Work *w)
   memcpy(A, w->A, m * m * sizeof *A);
   int rc = w->algebra->general(w->m, A, s->re, s->im, s->vre, s->vim, uncertain);
   for (size_t i = 0; i < m; i++) {
-    uncertain[i] = fmin(8 * DBL_EPSILON * uncertain[i], 1e-3) * w->size;
+    uncertain[i] = fmin(8 * uncertain[i] * w->noise, 1e-3 * w->size);
     s->repeats[i] = 1;
   }
   if (rc == LAG_OK) {
@@ -276,28 +279,127 @@ static int lift_all(Work *w)
   return rc;
 }
 
-int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A)
+/* For count eigenvalues of a matrix of n rows. */
+static int allocate(Spectrum *s, Pool *pool, int n, int count)
+{
+  size_t c = (size_t)count, size = (size_t)n * c;
+
+  s->count = count;
+  s->re = pool_doubles(pool, c);
+  s->im = pool_doubles(pool, c);
+  s->repeats = pool_doubles(pool, c);
+  s->vre = pool_doubles(pool, size);
+  s->vim = pool_doubles(pool, size);
+  return pool->failed ? LAG_ENOMEM : LAG_OK;
+}
+
+/* A := D^-1 A D, and noise, by the D that balances the terms that entries are made of. */
+static int balance(Work *w, int n, double *A, double *noise)
+{
+  double *terms = pool_doubles(w->pool, (size_t)n * (size_t)n);
+
+  for (int i = 0; i < n * n && terms; i++) {
+    terms[i] = fmax(fabs(A[i]), noise[i] / DBL_EPSILON);
+  }
+  int rc = terms ? w->algebra->balance(n, terms, w->scale) : LAG_ENOMEM;
+  for (int i = 0; i < n * n && rc == LAG_OK; i++) {
+    double d = w->scale[i % n] / w->scale[i / n];
+    A[i] *= d;
+    noise[i] *= d;
+  }
+  return rc;
+}
+
+/* Of one block of a matrix, A[n * n], which is destroyed, as is noise. */
+static int solve_block(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A, double *noise)
 {
   Work w = {.s = s, .pool = pool, .algebra = algebra, .A = A, .m = n};
 
   *s = (Spectrum){.n = n};
   w.scale = pool_doubles(pool, (size_t)n);
-  int rc = w.scale ? algebra->balance(n, A, w.scale) : LAG_ENOMEM;
-  w.size = frobenius(n, A);
-  rc = rc ? rc : take_zeros(&w);
+  int rc = w.scale ? balance(&w, n, A, noise) : LAG_ENOMEM;
   if (rc) {
     return rc;
   }
-  size_t count = (size_t)w.m, size = (size_t)n * count;
-  s->count = w.m;
-  s->re = pool_doubles(pool, count);
-  s->im = pool_doubles(pool, count);
-  s->repeats = pool_doubles(pool, count);
-  s->vre = pool_doubles(pool, size);
-  s->vim = pool_doubles(pool, size);
-  if (pool->failed) {
-    return LAG_ENOMEM;
+  w.size = frobenius(n, A);
+  w.noise = fmax(DBL_EPSILON * w.size, frobenius(n, noise));
+  rc = take_zeros(&w);
+  if (rc || allocate(s, pool, n, w.m)) {
+    return rc ? rc : LAG_ENOMEM;
   }
   rc = w.m > 0 ? solve(&w) : LAG_OK;
   return rc ? rc : lift_all(&w);
+}
+
+/* Columns of a block, over its n rows at[], become columns of the whole from `to` on. */
+static void put_columns(int n, const int *at, int from, const double *part, int columns, double *whole, int to)
+{
+  for (int i = 0; i < n; i++) {
+    for (int k = 0; k < from; k++) {
+      whole[at[i] * columns + to + k] = part[i * from + k];
+    }
+  }
+}
+
+/* The blocks' spectra side by side. member[i], of n, are the rows of one block after the other. */
+static int join(Spectrum *s, Pool *pool, int nparts, const Spectrum *part, const int *member)
+{
+  int count = 0, nkernel = 0;
+
+  for (int b = 0; b < nparts; b++) {
+    count += part[b].count;
+    nkernel += part[b].nkernel;
+    s->zeros += part[b].zeros;
+  }
+  s->nkernel = nkernel;
+  s->kernel = pool_doubles(pool, (size_t)s->n * (size_t)nkernel);
+  if (allocate(s, pool, s->n, count) || pool->failed) {
+    return LAG_ENOMEM;
+  }
+  int at = 0, zero = 0;
+  for (int b = 0; b < nparts; b++) {
+    const Spectrum *p = &part[b];
+    size_t bytes = (size_t)p->count * sizeof(double);
+    memcpy(s->re + at, p->re, bytes);
+    memcpy(s->im + at, p->im, bytes);
+    memcpy(s->repeats + at, p->repeats, bytes);
+    put_columns(p->n, member, p->count, p->vre, count, s->vre, at);
+    put_columns(p->n, member, p->count, p->vim, count, s->vim, at);
+    put_columns(p->n, member, p->nkernel, p->kernel, nkernel, s->kernel, zero);
+    at += p->count;
+    zero += p->nkernel;
+    member += p->n;
+  }
+  return LAG_OK;
+}
+
+int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, const double *A, const double *noise)
+{
+  size_t size = (size_t)n;
+  int *block = (int *)(void *)pool_doubles(pool, size), *member = (int *)(void *)pool_doubles(pool, size), nparts = 0, done = 0;
+  Spectrum *part = (Spectrum *)(void *)pool_doubles(pool, size * (sizeof *part / sizeof(double) + 1));
+
+  *s = (Spectrum){.n = n};
+  if (pool->failed) {
+    return LAG_ENOMEM;
+  }
+  lag_blocks(n, A, NULL, block);
+  for (int first = 0; first < n; first++) {
+    int m = lag_block_members(n, block, first, member + done);
+    double *a = pool_doubles(pool, (size_t)m * (size_t)m), *e = pool_doubles(pool, (size_t)m * (size_t)m);
+    if (pool->failed) {
+      return LAG_ENOMEM;
+    }
+    if (m == 0) {
+      continue;
+    }
+    lag_block_take(n, A, m, member + done, a);
+    lag_block_take(n, noise, m, member + done, e);
+    int rc = solve_block(&part[nparts++], pool, algebra, m, a, e);
+    if (rc) {
+      return rc;
+    }
+    done += m;
+  }
+  return join(s, pool, nparts, part, member);
 }

@@ -17,7 +17,8 @@ typedef struct Spectrum {
   double *kernel;    /* [n * nkernel], columns */
 } Spectrum;
 
-/* Of A[n * n], which is destroyed. Memory is the pool's. LAG_OK, LAG_ENOMEM, LAG_EMETHOD. */
-int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A);
+/* Of A[n * n], whose entries may be wrong by noise[n * n] >= 0; less than rounding is taken as rounding. Memory is the pool's. LAG_OK, LAG_ENOMEM,
+ * LAG_EMETHOD. */
+int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, const double *A, const double *noise);
 
 #endif

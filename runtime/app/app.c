@@ -28,7 +28,7 @@ static double seconds_since(const struct timespec *t)
 }
 
 /* After each step: Ctrl-C, and the progress line (a terminal, after 1 s, at most 5 times a second). */
-static int after_step(void *context, const lag_sim *sim)
+int app_after_step(void *context, const lag_sim *sim)
 {
   App *app = context;
 
@@ -87,7 +87,7 @@ static int same_file(const char *a, const char *b)
 }
 
 /* A mistyped name must not cost the model, the simulator or another result. */
-static int check_outputs(const App *app)
+int app_check_outputs(const App *app)
 {
   const Args *a = &app->args;
   const char *const to[] = {a->out, a->svg, a->html, a->save, a->events}, *const keep[] = {app->program->source, "/proc/self/exe", a->resume};
@@ -129,7 +129,7 @@ static int choose_grid(App *app)
     every = fabs(app->until - t) / 1000;
     origin = t;
   }
-  if (app->section < 0 && (a->out || (a->every && (a->svg || a->html || a->sketch))) && fabs(app->until - t) / every > 1e9) {
+  if (app->section < 0 && (a->out || ((a->every || a->tangent) && (a->svg || a->html || a->sketch))) && fabs(app->until - t) / every > 1e9) {
     return app_error(a, "a row every %g s for %g s is %.3g rows; write a larger --every", every, fabs(app->until - t),
                      fabs(app->until - t) / every);
   }
@@ -158,6 +158,7 @@ int app_put_row(App *app)
 
   app->row[0] = app->last_row = t;
   int rc = lag_sim_outputs(app->sim, app->row + 1);
+  rc = rc ? rc : tangent_row(app);
   if (rc) {
     return rc;
   }
@@ -165,7 +166,7 @@ int app_put_row(App *app)
     app->bad_file = app->args.out;
     return LAG_EIO;
   }
-  int drawn = app->args.every || app->section >= 0; /* else film.c chooses the rows of pictures */
+  int drawn = app->args.every || !app->film.on; /* else film.c chooses the rows of pictures */
   return drawn && table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
 
@@ -192,7 +193,7 @@ static int run_rows(App *app)
 
 static void run(App *app)
 {
-  int rows = app->section < 0 && (app->args.out || (app->table.keep && app->args.every)), rc = rows ? run_rows(app) : 0;
+  int rows = app->section < 0 && (app->args.out || (app->table.keep && (app->args.every || !app->film.on))), rc = rows ? run_rows(app) : 0;
 
   if (rc == 0) {
     rc = film_advance(app, app->until);
@@ -205,10 +206,7 @@ static void run(App *app)
     rc = LAG_ENOMEM;
   }
   app->status = app->bad_file ? LAG_EIO : app->section_rc && rc >= 0 ? app->section_rc : rc;
-  app->wall = seconds_since(&app->begun);
-  if (app->progress > 0) {
-    fputs("\r\33[K", stderr);
-  }
+  app_unwatch(app);
 }
 
 static void on_event(void *context, int k, double t, const double *before, const double *after)
@@ -241,7 +239,7 @@ static int open_output(App *app)
     return app_error(a, "out of memory");
   }
   app->table.points = app->section >= 0;
-  if (app_choose_drawn(app)) {
+  if (tangent_open(app) || app_choose_drawn(app)) {
     return EXIT_USAGE;
   }
   if (a->html && app_choose_points(app)) {
@@ -282,7 +280,7 @@ static int save_state(const App *app)
 static int finish(App *app)
 {
   const Args *a = &app->args;
-  int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? EXIT_SIGNAL + interrupted : EXIT_FINE, bad = 0;
+  int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? app_interrupted() : EXIT_FINE, bad = 0;
   int on_stdout = (a->out && strcmp(a->out, "-") == 0) || (a->events && strcmp(a->events, "-") == 0);
   FILE *f = on_stdout ? stderr : stdout;
   char title[300], note[300];
@@ -350,11 +348,32 @@ static void catch_interrupt(void)
   }
 }
 
+void app_watch(App *app)
+{
+  catch_interrupt();
+  app->progress = isatty(2) && !app->args.quiet ? 0 : -1;
+  clock_gettime(CLOCK_MONOTONIC, &app->begun);
+  app->shown = app->begun;
+}
+
+void app_unwatch(App *app)
+{
+  app->wall = seconds_since(&app->begun);
+  if (app->progress > 0) {
+    fputs("\r\33[K", stderr);
+  }
+}
+
+int app_interrupted(void)
+{
+  return EXIT_SIGNAL + interrupted;
+}
+
 static int simulate(App *app)
 {
   int rc = app_choose(app);
 
-  if (rc || (rc = section_choose(app)) != 0 || (rc = check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
+  if (rc || (rc = section_choose(app)) != 0 || (rc = app_check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
     return rc;
   }
   if (app->args.save && (lag_sim_method(app->sim)->flags & LAG_METHOD_NO_SAVE)) {
@@ -365,12 +384,9 @@ static int simulate(App *app)
     return rc;
   }
   note_tables(app);
-  lag_sim_on_step(app->sim, after_step, app);
+  lag_sim_on_step(app->sim, app_after_step, app);
   lag_sim_on_event(app->sim, on_event, app);
-  catch_interrupt();
-  app->progress = isatty(2) && !app->args.quiet ? 0 : -1;
-  clock_gettime(CLOCK_MONOTONIC, &app->begun);
-  app->shown = app->begun;
+  app_watch(app);
   run(app);
   return finish(app);
 }
@@ -386,6 +402,8 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     app_list_methods(&app, stdout);
   } else if (rc == 0 && app.args.modes) {
     rc = app_modes(&app);
+  } else if (rc == 0 && app.args.lyapunov) {
+    rc = app_lyapunov(&app);
   } else if (rc == 0 && (app.args.cost || app.args.reference)) {
     rc = app_cost(&app);
   } else if (rc == 0) {

@@ -16,8 +16,9 @@ extern const char *const args_own_options[OWN_OPTIONS];
 typedef struct Args {
   const char *method_options[OWN_OPTIONS]; /* values of --quadrature, --order, --stages */
   const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section;
+  const char *transient, *exponents; /* of --lyapunov */
   const char *target, *longest, *methods, *against; /* of --cost */
-  int json, sketch, quiet, help, trace, no_rods, modes, cost, reference;
+  int json, sketch, quiet, help, trace, no_rods, modes, tangent, lyapunov, cost, reference;
   char **sets; /* name=value, in order */
   int nsets;
 } Args;
@@ -76,6 +77,8 @@ int app_choose(App *app);
 int app_choose_start(App *app);
 /* The name=value of the command line, into app->sim. */
 int app_set_values(App *app);
+/* Tolerance and method, for a simulation that has none of its own yet. 0, or EXIT_USAGE after a message. */
+int app_choose_method(App *app);
 /* Method i of this program; NULL past the last. */
 const lag_method *app_method_at(const App *app, int i);
 const lag_method *app_find_method(const App *app, const char *name);
@@ -100,10 +103,28 @@ void film_free(App *app);
 
 /* app.c: a row of the present state. LAG_OK, or why there is none. */
 int app_put_row(App *app);
+/* What a long run does: watch before it begins and unwatch at its end, for Ctrl-C and the progress line; after_step is for
+ * lag_sim_on_step. interrupted: the exit status that follows from the signal. */
+void app_watch(App *app);
+int app_after_step(void *app, const lag_sim *sim);
+void app_unwatch(App *app);
+int app_interrupted(void);
+/* Whether files that are written would overwrite what is needed. 0, or EXIT_USAGE after a message. */
+int app_check_outputs(const App *app);
 
 /* section.c: --section. 0, or EXIT_USAGE after a message; note: event k happens. */
 int section_choose(App *app);
 void section_note(App *app, int k);
+
+/* tangent.c: --tangent. open: columns behind those of the table; 0, or EXIT_USAGE after a
+ * message. row: their values; LAG_OK, or why there are none. */
+int tangent_open(App *app);
+int tangent_row(App *app);
+void report_tangent(App *app, FILE *f);
+void report_tangent_json(App *app, FILE *f);
+
+/* lyapunov.c: --lyapunov. Returns the exit status. */
+int app_lyapunov(App *app);
 
 /* modes.c: --modes. Returns the exit status. */
 int app_modes(App *app);

@@ -65,7 +65,9 @@ static const Option options[] = {
     {"events", offsetof(Args, events), 0}, {"section", offsetof(Args, section), 0},
     {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
     {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
-    {"modes", offsetof(Args, modes), 1},   {"help", offsetof(Args, help), 1},
+    {"tangent", offsetof(Args, tangent), 1}, {"modes", offsetof(Args, modes), 1},
+    {"lyapunov", offsetof(Args, lyapunov), 1}, {"transient", offsetof(Args, transient), 0}, {"exponents", offsetof(Args, exponents), 0},
+    {"help", offsetof(Args, help), 1},
     {"cost", offsetof(Args, cost), 1},     {"reference", offsetof(Args, reference), 1},
     {"target", offsetof(Args, target), 0}, {"longest", offsetof(Args, longest), 0},
     {"methods", offsetof(Args, methods), 0}, {"against", offsetof(Args, against), 0},
@@ -156,25 +158,31 @@ static int one_argument(Args *a, int argc, char **argv, int *i)
 /* What takes the place of a run has no use for most of its options. */
 static int check_analysis(const Args *a)
 {
-  int cost = a->cost || a->reference;
+  enum { MODES = 1, COST = 2, LYAPUNOV = 4 };
+  const int what = a->modes ? MODES : a->cost || a->reference ? COST : a->lyapunov ? LYAPUNOV : 0;
   const struct {
     const char *name;
     int given;
-    int of_cost; /* it has a meaning there */
-  } others[] = {{"--method", a->method != NULL, 0}, {"--tol", a->tol != NULL, 0}, {"--step", a->step != NULL, 0},
-                {"--until", a->until != NULL, 1}, {"--every", a->every != NULL, 0}, {"-o", a->out != NULL, 0}, {"--svg", a->svg != NULL, 1},
-                {"--html", a->html != NULL, 0}, {"--section", a->section != NULL, 0}, {"--sketch", a->sketch, 0}, {"--events", a->events != NULL, 0},
+    int takes; /* what it has a meaning for */
+  } others[] = {{"--method", a->method != NULL, LYAPUNOV}, {"--tol", a->tol != NULL, LYAPUNOV}, {"--step", a->step != NULL, LYAPUNOV},
+                {"--until", a->until != NULL, COST | LYAPUNOV}, {"--every", a->every != NULL, 0}, {"-o", a->out != NULL, LYAPUNOV},
+                {"--svg", a->svg != NULL, COST | LYAPUNOV}, {"--html", a->html != NULL, 0}, {"--section", a->section != NULL, 0},
+                {"--tangent", a->tangent, 0}, {"--sketch", a->sketch, 0}, {"--events", a->events != NULL, 0},
                 {"--save-state", a->save != NULL, 0}, {"--resume", a->resume != NULL, 0}};
 
-  for (size_t i = 0; (a->modes || cost) && i < sizeof others / sizeof *others; i++) {
-    if (others[i].given && !(cost && others[i].of_cost)) {
+  for (size_t i = 0; what && i < sizeof others / sizeof *others; i++) {
+    if (others[i].given && !(others[i].takes & what)) {
       return app_error(a, "%s has no meaning for %s", others[i].name,
-                       cost ? "what accuracy costs: all methods are run, at many tolerances and steps; --methods NAME,NAME takes some of them"
-                            : "modes of small motion: they take name=value and --json");
+                       what == COST ? "what accuracy costs: all methods are run, at many tolerances and steps; --methods NAME,NAME takes some of them"
+                       : what == MODES ? "modes of small motion: they take name=value and --json"
+                                       : "Lyapunov exponents: they take name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
     }
   }
   if (!a->cost && (a->target || a->longest || a->methods || a->against)) {
     return app_error(a, "--target, --longest, --methods and --against are for --cost");
+  }
+  if (!a->lyapunov && (a->transient || a->exponents)) {
+    return app_error(a, "--transient and --exponents are for --lyapunov");
   }
   return 0;
 }
@@ -203,6 +211,9 @@ static int check(const Args *a)
   }
   if (a->section && a->html) {
     return app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
+  }
+  if (a->tangent && (a->save || a->resume)) {
+    return app_error(a, "--tangent and --%s: a saved state holds no tangent; run it in one piece", a->save ? "save-state" : "resume");
   }
   if (a->section && a->every) {
     return app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");

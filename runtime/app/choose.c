@@ -357,6 +357,13 @@ int app_set_values(App *app)
   return rc;
 }
 
+int app_choose_method(App *app)
+{
+  int rc = set_tolerance(app);
+
+  return rc ? rc : choose_method(app);
+}
+
 int app_choose_start(App *app)
 {
   int rc = new_simulation(app);
@@ -374,8 +381,6 @@ int app_choose(App *app)
   if (app->resumed) {
     return resume(app);
   }
-  if ((rc = set_tolerance(app)) != 0 || (rc = choose_method(app)) != 0) {
-    return rc;
-  }
-  return app_set_values(app);
+  rc = app_choose_method(app);
+  return rc ? rc : app_set_values(app);
 }

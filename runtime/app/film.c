@@ -35,7 +35,7 @@ int film_open(App *app)
   double span = fabs(app->until - lag_sim_time(app->sim));
   size_t ncols = (size_t)app->table.ncols;
 
-  if (!app->table.keep || app->section >= 0) {
+  if (!app->table.keep || app->section >= 0 || app->args.tangent) { /* a tangent is known where rows are, only */
     return 0;
   }
   f->on = 1;

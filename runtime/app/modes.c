@@ -76,23 +76,9 @@ static int refuse(const App *app)
 
 /* ---- What is to be said of a result */
 
-/* Has a coordinate nearly lost its mass where the search ended? */
-static int nearly_singular(const Rest *r)
-{
-  int nq = r->sim->pb.nq;
-  double most = 0, least = HUGE_VAL;
-
-  for (int i = 0; i < nq; i++) {
-    double m = fabs(r->M[i * nq + i]) * r->scale[i] * r->scale[i];
-    most = fmax(most, m);
-    least = fmin(least, m);
-  }
-  return nq > 0 && least < 1e-12 * most;
-}
-
 const char *modes_caution(const App *app, const Rest *r)
 {
-  if (nearly_singular(r)) {
+  if (r->singular) {
     return "the mass matrix is nearly singular here: a coordinate may have lost its meaning";
   }
   if (!(app->scene->model->flags & LAG_SMOOTH)) {
@@ -241,7 +227,7 @@ static int not_found(const App *app, const Rest *r)
   app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s; another "
                         "start: %s=VALUE", r->steps, app->scene->name, v->name, (r->y[i < nq ? i : nq + i] - v->offset) / v->factor,
             v->unit[0] ? " " : "", v->unit, v->name, i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
-            nearly_singular(r) ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
+            r->singular ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
   return EXIT_RUN;
 }
 

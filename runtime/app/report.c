@@ -175,6 +175,7 @@ void report_text(App *app, FILE *f)
   }
   exact(app, f);
   report_events(app, f);
+  report_tangent(app, f);
   if (app->written && app->args.out) {
     fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
   }
@@ -265,6 +266,7 @@ void report_json(App *app, FILE *f)
   charges(app, f);
   report_events_json(app, f);
   exact_json(app, f);
+  report_tangent_json(app, f);
   fputs("\"constraint_residual\": null, \"final\": {", f);
   for (int i = 0; i < n; i++) {
     Column c;

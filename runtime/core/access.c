@@ -190,6 +190,9 @@ int lag_sim_load(lag_sim *s, const double *x)
   if (s->method->flags & LAG_METHOD_NO_SAVE) {
     return lag_fail(s, LAG_EINVAL, "the state of method %s cannot be resumed", s->method->name);
   }
+  if (s->tangent) {
+    return lag_fail(s, LAG_EINVAL, "a saved state holds no tangent: load it first, then begin one");
+  }
   memcpy(s->saved, x, s->nsaved * sizeof *x);
   s->pb.rhs_calls = s->run->rhs_calls;
   s->pb.rejected = s->run->rejected;

@@ -54,6 +54,8 @@ struct lag_sim {
   double *mon_first, *mon_peak; /* [nmonitors] */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
   double *method_work;
+  double *tangent, *tangent_scratch; /* [n * tangent_columns] at step_t0, or now where there is no step; NULL */
+  int tangent_columns;
   int (*on_step)(void *, const lag_sim *);
   void *on_step_context;
   lag_event_fn *on_event;
@@ -82,6 +84,11 @@ int lag_events_arm(lag_sim *sim);
 int lag_events_locate(lag_sim *sim);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
+
+/* tangent.c. pass: the step has been used up. refuse: event k changes the state. */
+int lag_tangent_pass(lag_sim *sim);
+int lag_tangent_refuse(lag_sim *sim, int k);
+void lag_tangent_free(lag_sim *sim);
 
 /* exact.c. at: the closed forms at t, behind the inputs in s->u; lag_inputs comes first. see: as in watch.c. */
 int lag_exact_at(lag_sim *sim, double t);

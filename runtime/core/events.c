@@ -332,6 +332,9 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   }
   if (memcmp(s->yb, s->now, bytes) != 0) {
     *changed = 1;
+    if ((rc = lag_tangent_refuse(s, k)) != 0) {
+      return rc;
+    }
     rc = lag_watch_jump(s, r->t, s->now, s->yb);
     memcpy(s->now, s->yb, bytes);
   }

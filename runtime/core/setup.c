@@ -154,6 +154,7 @@ void lag_sim_free(lag_sim *s)
   if (s->run && s->run->begun != 0.0 && s->method->fini) {
     s->method->fini(s->method_work);
   }
+  lag_tangent_free(s);
   free(s->options);
   free(s->fixed);
   free(s->start);
@@ -258,6 +259,7 @@ int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *o
     free(values);
     return rc;
   }
+  lag_tangent_free(s);
   free(s->options);
   s->options = values;
   place(s);

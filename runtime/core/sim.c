@@ -175,8 +175,15 @@ static int ready(lag_sim *s, double t)
 /* Ends the step under way, or makes one. */
 static int go_on(lag_sim *s, double t)
 {
-  int rc = s->run->have_step != 0.0 ? pass(s) : take(s, t);
+  int rc;
 
+  if (s->run->have_step != 0.0) {
+    rc = pass(s);
+    int bad = rc < 0 ? rc : lag_tangent_pass(s);
+    rc = bad ? bad : rc;
+  } else {
+    rc = take(s, t);
+  }
   if (rc == 0 && s->run->have_step == 0.0 && s->on_step && s->on_step(s->on_step_context, s)) {
     rc = LAG_INTERRUPTED;
   }

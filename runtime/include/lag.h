@@ -62,6 +62,7 @@ typedef struct lag_problem {
   const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
+  double longest;      /* embedded methods take no longer steps than this [s], 0: no limit */
   double span;         /* length of the scene's span, 0 when it has none. Not where this run ends */
   double rhs_calls;    /* counted by lag_rhs */
   double rejected;     /* counted by the method */
@@ -99,7 +100,7 @@ int lag_second_derivatives(lag_problem *pb, double t, const double *q, const dou
 size_t lag_linear_work(const lag_model *model);
 
 /* J[(nq + nz) * n]: the derivatives of the accelerations and of the rates, the rows of f below the first nq, by
- * y. With the nq rows [0 | 1 | 0] above it J is df/dy. Calls lag_rhs once. */
+ * y. With the nq rows [0 | 1 | 0] above it J is df/dy. Calls lag_rhs once, and leaves f(t, y) in the first n of work. */
 int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
 
 /* dr[(nq + nz) * n]: the derivatives of the residuals r = (f - M a, flow) by y at given accelerations a[nq] (NULL:
@@ -172,6 +173,13 @@ typedef struct lag_method {
 
   /* Frees what init allocated; NULL when it allocates nothing. */
   void (*fini)(void *work);
+
+  /* Y[n * k] := D Y, where D is the derivative by y0 of the step that leads from the beginning of the last step to t. At its
+   * end that is the derivative of the step itself, at fixed step size; before it, of a shorter one. scratch has
+   * tangent_size(pb, k) doubles. 0, or < 0 as step. Later steps do not depend on whether it was called. NULL: the method
+   * has none. */
+  size_t (*tangent_size)(const lag_problem *pb, int k);
+  int (*tangent)(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
 } lag_method;
 
 /* Classical Runge-Kutta, fixed step. */
@@ -276,6 +284,17 @@ double lag_sim_output_info(const lag_sim *sim, int i, char *name, size_t nname, 
 int lag_sim_outputs(lag_sim *sim, double *out);
 /* The same at a time that lag_sim_eval knows; y[n] is the state there. */
 int lag_sim_outputs_at(lag_sim *sim, double t, double *y, double *out);
+
+/* The tangent of the flow: Y[n * k], row by row, of which each column is a small change of the state, carried along exactly, as
+ * the derivative of what the method computes. From here on Y is what it is now, NULL (k = n): the identity, so that it
+ * becomes dy(t)/dy(0); k = 0: nothing any more. Before the first advance, after the method is set; later at ends of steps
+ * only, as in the function of lag_sim_on_step. Needs the model's linearisation, or what an implicit method needs itself.
+ * LAG_EMETHOD: method or model have no such derivatives; the message names a method that has. In a run with a tangent
+ * an event that changes the state fails (LAG_EMETHOD), and nothing can be loaded. At a branch of if, abs, sign, min, max the
+ * derivative is that of the branch taken. */
+int lag_sim_set_tangent(lag_sim *sim, int k, const double *Y);
+/* Y[n * k] at the present time. Between the ends of steps: by one shorter step of the method. */
+int lag_sim_tangent(lag_sim *sim, double *Y);
 
 void lag_sim_stats(lag_sim *sim, lag_stats *stats);
 /* The drift of monitor i so far, as judged against its limit. */

@@ -9,6 +9,7 @@
 
 #include "methods/band.h"
 #include "methods/steps.h"
+#include "methods/tangent.h"
 
 enum { MOST_CORRECTIONS = 25 };
 
@@ -273,4 +274,108 @@ int lag_discrete_solve(const lag_discrete *d)
     before = now;
   }
   return gave_up(d, &w);
+}
+
+/* ---- The derivative of the step */
+
+void lag_second_times(const lag_problem *pb, const double *h, int k, const double *dQ, const double *dV, double *dP, double *dF)
+{
+  const lag_model *m = pb->model;
+
+  for (int e = 0; e < m->nsecond; e++) {
+    int row = m->second_at[e].row * k, col = m->second_at[e].col * k, part = m->second_at[e].part;
+    int of_p = part == LAG_VV || part == LAG_VQ, by_v = part == LAG_VV || part == LAG_FV;
+    const double *by = by_v ? dV : dQ;
+    double *of = of_p ? dP : dF;
+    if (by && of) {
+      lag_tangent_add(k, h[e], by + col, of + row);
+    }
+    if (part == LAG_VQ && dV && dF) {
+      lag_tangent_add(k, h[e], dV + row, dF + col); /* d2L/dq dv */
+    } else if (row != col && (part == LAG_QQ || part == LAG_VV) && by && of) {
+      lag_tangent_add(k, h[e], by + row, of + col);
+    }
+  }
+}
+
+/* Changes of momenta and forces at a point, of coordinates and velocities there, of velocities of one column. */
+size_t lag_discrete_tangent_size(const lag_problem *pb, int free, int k)
+{
+  return (size_t)(pb->nq * (4 * k + free));
+}
+
+/* -dR/d(q, p) (dq, dp) into du, at fixed u. */
+static int pushed(const lag_discrete *d, const Parts *w, int k, const double *dq, const double *dp, double *du, double *dP, double *dF)
+{
+  const lag_rule *r = d->rule;
+  int m = w->n * k;
+
+  memset(du, 0, (size_t)(w->free * m) * sizeof *du);
+  for (int j = 0; j < w->free; j++) {
+    lag_tangent_add(m, r->whole[j], dp, du + j * m);
+  }
+  for (int i = 0; i < w->points; i++) {
+    place(d, w, i);
+    int rc = lag_second_derivatives(d->pb, time_of(d, i), w->Q, w->V, w->h);
+    if (rc) {
+      return lag_step_refused(d->pb, rc, time_of(d, i));
+    }
+    memset(dP, 0, (size_t)(2 * m) * sizeof *dP); /* dF stands behind it */
+    lag_second_times(d->pb, w->h, k, dq, NULL, dP, dF);
+    for (int j = 0; j < w->free; j++) {
+      lag_tangent_add(m, -r->b[i] * r->value[i][j], dP, du + j * m);
+      lag_tangent_add(m, d->h * r->b[i] * (r->whole[j] - r->integral[i][j]), dF, du + j * m);
+    }
+  }
+  return LAG_OK;
+}
+
+/* du := (dR/du)^-1 du, a column at a time. */
+static void solve_columns(const Parts *w, int k, double *du, double *column)
+{
+  for (int c = 0; c < k; c++) {
+    for (int a = 0; a < w->n; a++) {
+      for (int j = 0; j < w->free; j++) {
+        column[a * w->free + j] = du[(j * w->n + a) * k + c];
+      }
+    }
+    lag_band_solve(&w->J, column);
+    for (int a = 0; a < w->n; a++) {
+      for (int j = 0; j < w->free; j++) {
+        du[(j * w->n + a) * k + c] = column[a * w->free + j];
+      }
+    }
+  }
+}
+
+int lag_discrete_tangent(const lag_discrete *d, int k, double *dq, double *dp, double *du, double *scratch)
+{
+  const lag_rule *r = d->rule;
+  Parts w = layout(d);
+  int m = w.n * k, rc = matrix(d, &w);
+  double *dP = scratch, *dF = dP + m, *dQ = dF + m, *dV = dQ + m, *column = dV + m;
+
+  if (rc || (rc = pushed(d, &w, k, dq, dp, du, dP, dF)) != 0) {
+    return rc;
+  }
+  solve_columns(&w, k, du, column);
+  for (int i = 0; i < w.points && d->h != 0.0; i++) {
+    place(d, &w, i);
+    if ((rc = lag_second_derivatives(d->pb, time_of(d, i), w.Q, w.V, w.h)) != 0) {
+      return lag_step_refused(d->pb, rc, time_of(d, i));
+    }
+    memcpy(dQ, dq, (size_t)m * sizeof *dQ);
+    memset(dV, 0, (size_t)m * sizeof *dV);
+    memset(dF, 0, (size_t)m * sizeof *dF);
+    for (int j = 0; j < w.free; j++) {
+      lag_tangent_add(m, d->h * r->integral[i][j], du + j * m, dQ);
+      lag_tangent_add(m, r->value[i][j], du + j * m, dV);
+    }
+    lag_second_times(d->pb, w.h, k, dQ, dV, NULL, dF);
+    lag_tangent_add(m, d->h * r->b[i], dF, dp);
+  }
+  for (int j = 0; j < w.free; j++) {
+    lag_tangent_add(m, d->h * r->whole[j], du + j * m, dq);
+  }
+  return LAG_OK;
 }

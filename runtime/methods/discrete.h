@@ -35,4 +35,13 @@ size_t lag_discrete_size(const lag_problem *pb, int free);
  * and reason in pb; u is then spoilt. */
 int lag_discrete_solve(const lag_discrete *d);
 
+/* How the second derivatives h[nsecond] of L and of the forces act on changes dQ, dV[nq * k] of coordinates and velocities: dP,
+ * of momenta, and dF, of dL/dq + Q, are added to. Row by row; dV and dP may be NULL. */
+void lag_second_times(const lag_problem *pb, const double *h, int k, const double *dQ, const double *dV, double *dP, double *dF);
+
+/* The derivative of the step, by the implicit function theorem: du[free nq * k], and on return dq, dp[nq * k] at its end, where
+ * they were changes at its beginning. Needs the u of the step; scratch has lag_discrete_tangent_size doubles. */
+size_t lag_discrete_tangent_size(const lag_problem *pb, int free, int k);
+int lag_discrete_tangent(const lag_discrete *d, int k, double *dq, double *dp, double *du, double *scratch);
+
 #endif

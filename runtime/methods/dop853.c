@@ -143,6 +143,16 @@ static void dense(void *work, lag_problem *pb, double t, double *y)
   }
 }
 
+static size_t tangent_size(const lag_problem *pb, int k)
+{
+  return lag_embedded_tangent_size(&pair, pb, k);
+}
+
+static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+{
+  return lag_embedded_tangent(&pair, work, pb, t, k, Y, scratch);
+}
+
 const lag_method lag_dop853 = {
     .name = "dop853",
     .order = 8,

@@ -16,6 +16,7 @@
 
 #include "methods/control.h"
 #include "methods/steps.h"
+#include "methods/tangent.h"
 
 static const double safety = 0.9;
 
@@ -191,17 +192,14 @@ static double error_of(const EmbeddedPair *pair, Embedded *w, const lag_problem 
   return !isfinite(both) ? NAN : both > 0 ? h * fine / sqrt(n * both) : 0;
 }
 
-/* The limit on steps: the option, or else what has been seen of the motion so far. */
-static double longest(const Embedded *w, double t)
+/* The limit on steps: the option, or else what has been seen of the motion so far; and what the problem says. */
+static double longest(const Embedded *w, const lag_problem *pb, double t)
 {
   if (w->fixed != 0.0) {
     return w->h_option;
   }
-  if (w->h_max > 0) {
-    return w->h_max;
-  }
-  double seen = fabs(t - w->t_begin);
-  return seen > 0 ? seen : HUGE_VAL;
+  double seen = fabs(t - w->t_begin), most = w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
+  return pb->longest > 0 ? fmin(most, pb->longest) : most;
 }
 
 /* The size of the next step. One pow for the error, one for its memory. */
@@ -261,7 +259,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
   int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
 
   while (rc == 0) {
-    double wanted = fmin(w->h, longest(w, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row(pb, *t, &row);
+    double wanted = fmin(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row(pb, *t, &row);
     int clipped = wanted * (1 + 1e-4) >= gap; /* what is left would be too short a step */
     w->h = clipped ? gap : wanted;
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_sum(*t, dt, &tc);
@@ -300,4 +298,16 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
     rc = 0;
   }
   return rc;
+}
+
+size_t lag_embedded_tangent_size(const EmbeddedPair *pair, const lag_problem *pb, int k)
+{
+  return lag_tangent_size(pb, pair->tab->stages, k);
+}
+
+int lag_embedded_tangent(const EmbeddedPair *pair, void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+{
+  Embedded *w = work;
+
+  return lag_tangent_explicit(pair->tab, pb, w->t0, lag_tangent_span(w->t0, t, w->dt), array(w, pb, EMBEDDED_Y0), k, Y, scratch);
 }

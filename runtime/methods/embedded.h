@@ -42,10 +42,15 @@ int lag_embedded_init(void *work, lag_problem *pb, const double *opt);
 void lag_embedded_reset(void *work, lag_problem *pb);
 int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y);
 
-/* What the descriptors have in common, after their own work_size, step and dense. */
+/* The derivative of the last step, or of a shorter one. */
+size_t lag_embedded_tangent_size(const EmbeddedPair *pair, const lag_problem *pb, int k);
+int lag_embedded_tangent(const EmbeddedPair *pair, void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
+
+/* What the descriptors have in common, after their own work_size, step, dense and tangent. */
 #define EMBEDDED_DESCRIPTOR                                                                          \
   .flags = LAG_METHOD_ADAPTIVE, .noptions = EMBEDDED_NOPTIONS, .options = lag_embedded_options,      \
-  .work_size = work_size, .init = lag_embedded_init, .step = step, .dense = dense, .reset = lag_embedded_reset
+  .work_size = work_size, .init = lag_embedded_init, .step = step, .dense = dense, .reset = lag_embedded_reset,      \
+  .tangent_size = tangent_size, .tangent = tangent
 
 /* out := sum_j coef[j] K_j over j < count. */
 void lag_embedded_sum(const double *k, int n, int count, const double *coef, double *restrict out);

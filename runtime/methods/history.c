@@ -35,6 +35,11 @@ int lag_history_guess(const double *history, int m, double *x)
   return 1;
 }
 
+void lag_history_last(const double *history, int m, double *x)
+{
+  memcpy(x, ((const History *)(const void *)history)->x, (size_t)m * sizeof *x);
+}
+
 /* The largest difference of order j, each component against its own size. */
 static double missed(const History *h, int m, int j)
 {

@@ -10,6 +10,9 @@ size_t lag_history_size(int m);
 /* x := what the vector will be next, by the degree that would have been best the last time. 0: nothing is known. */
 int lag_history_guess(const double *history, int m, double *x);
 
+/* x := what the vector was last. */
+void lag_history_last(const double *history, int m, double *x);
+
 /* The vector has become x. */
 void lag_history_add(double *history, int m, const double *x);
 

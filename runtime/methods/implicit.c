@@ -10,6 +10,7 @@
 #include "methods/history.h"
 #include "methods/path.h"
 #include "methods/steps.h"
+#include "methods/tangent.h"
 
 /* One block of doubles; the arrays of x are in Arrays. */
 typedef struct Implicit {
@@ -281,4 +282,106 @@ void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y)
   } else {
     lag_path_at(a.path, pb, &ends, w->have_path > 0 ? level : 0, s, y);
   }
+}
+
+/* ---- The derivative of a step */
+
+/* q and p so far are sums as in lag_discrete; u, force, h: of one link; du, rest: scratch of its derivative. */
+typedef struct Changes {
+  double *p, *ql, *pl, *v;    /* [nq] */
+  double *u, *force, *second; /* [free nq], [points nq], [nsecond] */
+  double *dv, *du, *rest;     /* [nq k], [free nq k] */
+} Changes;
+
+size_t lag_implicit_tangent_size(const lag_problem *pb, int k)
+{
+  size_t nq = (size_t)pb->nq, m = nq * (size_t)k;
+
+  return 4 * nq + (LAG_RULE_FREE + LAG_RULE_POINTS) * nq + (size_t)pb->model->nsecond + (1 + LAG_RULE_FREE) * m +
+         lag_discrete_tangent_size(pb, LAG_RULE_FREE, k);
+}
+
+static Changes changes(const lag_problem *pb, int k, double *x)
+{
+  Changes c;
+  int nq = pb->nq;
+
+  c.p = x;
+  c.ql = c.p + nq;
+  c.pl = c.ql + nq;
+  c.v = c.pl + nq;
+  c.u = c.v + nq;
+  c.force = c.u + LAG_RULE_FREE * nq;
+  c.second = c.force + LAG_RULE_POINTS * nq;
+  c.dv = c.second + pb->model->nsecond;
+  c.du = c.dv + nq * k;
+  c.rest = c.du + LAG_RULE_FREE * nq * k;
+  memset(c.ql, 0, (size_t)(2 * nq) * sizeof *x);
+  return c;
+}
+
+/* Y = (dq, dv) becomes (dq, dp) at the beginning of the last step, and p is known there. */
+static int to_momenta(const Implicit *w, const Arrays *a, lag_problem *pb, const Changes *c, int k, double *Y)
+{
+  int nq = pb->nq, m = nq * k, rc = lag_variation(pb, w->t0, a->y0, a->y0 + nq, c->v, c->p, c->force);
+
+  rc = rc ? rc : lag_second_derivatives(pb, w->t0, a->y0, a->y0 + nq, c->second);
+  if (rc) {
+    return lag_step_refused(pb, rc, w->t0);
+  }
+  memcpy(c->dv, Y + m, (size_t)m * sizeof *Y);
+  memset(Y + m, 0, (size_t)m * sizeof *Y);
+  lag_second_times(pb, c->second, k, Y, c->dv, Y + m, NULL);
+  return LAG_OK;
+}
+
+/* Over link j, which begins at `at` of the step of length dt; whole: this is the step that was taken, whose velocities are known. */
+static int over_link(const Implicit *w, const Arrays *a, lag_problem *pb, const Changes *c, int j, double at, double dt, int whole, int k,
+                     double *Y)
+{
+  const lag_rule *r = &w->rule[j % 2];
+  int nq = pb->nq, rc = 0;
+  double h = w->part[j] * dt;
+  lag_discrete d = {.rule = r, .pb = pb, .t = w->t0 + at * dt, .h = h, .size = w->h, .q = a->y0, .dq = c->ql, .p = c->p,
+                    .dp = c->pl, .u = c->u, .force = c->force, .work = a->discrete};
+
+  lag_history_last(a->history + (size_t)j * history_size(pb, w), nq * (int)r->free, c->u);
+  rc = whole ? 0 : lag_discrete_solve(&d);
+  rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + nq * k, c->du, c->rest);
+  for (int i = 0; i < (int)r->free && rc == 0; i++) {
+    lag_tangent_add(nq, h * r->whole[i], c->u + i * nq, c->ql);
+  }
+  for (int i = 0; i < (int)r->points && rc == 0 && !whole; i++) {
+    lag_tangent_add(nq, h * r->b[i], c->force + i * nq, c->pl);
+  }
+  return rc;
+}
+
+/* Y = (dq, dp) becomes (dq, dv) at the end, t. */
+static int to_velocities(const Implicit *w, const Arrays *a, lag_problem *pb, const Changes *c, double t, int whole, int k, double *Y)
+{
+  int nq = pb->nq, m = nq * k, rc = 0;
+  lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = t, .h = 0, .size = w->h, .q = a->y0, .dq = c->ql, .p = c->p, .dp = c->pl,
+                    .u = c->v, .force = c->force, .work = a->discrete};
+
+  memcpy(c->v, a->y1 + nq, (size_t)nq * sizeof *Y);
+  rc = whole ? 0 : lag_discrete_solve(&d);
+  rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + m, c->du, c->rest);
+  memcpy(Y + m, c->du, (size_t)m * sizeof *Y);
+  return rc;
+}
+
+int lag_implicit_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+{
+  Implicit *w = work;
+  Arrays a = arrays(w, pb);
+  Changes c = changes(pb, k, scratch);
+  double step = w->h * pb->dir, dt = lag_tangent_span(w->t0, t, step), at = 0;
+  int whole = dt == step, rc = to_momenta(w, &a, pb, &c, k, Y);
+
+  for (int j = 0; j < (int)w->links && rc == 0; j++) {
+    rc = over_link(w, &a, pb, &c, j, at, dt, whole, k, Y);
+    at += w->part[j];
+  }
+  return rc ? rc : to_velocities(w, &a, pb, &c, t, whole, k, Y);
 }

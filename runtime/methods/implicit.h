@@ -20,4 +20,8 @@ void lag_implicit_reset(void *work, lag_problem *pb);
 int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y);
 void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y);
 
+/* The derivative of the last step, or of a shorter one, in q and v. */
+size_t lag_implicit_tangent_size(const lag_problem *pb, int k);
+int lag_implicit_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
+
 #endif

@@ -17,6 +17,7 @@
 #include "methods/control.h"
 #include "methods/embedded.h"
 #include "methods/steps.h"
+#include "methods/tangent.h"
 
 enum { MOST_CORRECTIONS = 7, MOST_WHEN_FIXED = 30, STAGES = 3 };
 
@@ -27,8 +28,12 @@ static const double safety = 0.9, shrink_most = 0.2, grow_most = 8;
 static const double contracts_well = 1e-3; /* Newton's method: the Jacobian is kept */
 static const double keep_least = 1, keep_most = 1.2; /* a step that would grow by so little stays, with its factors */
 
-/* The method: nodes, the eigenvalues of the inverse of its matrix, and its eigenvectors T. */
+/* The method: nodes, its matrix (table IV.5.6), the eigenvalues of its inverse, and its eigenvectors T. */
 static const double node[STAGES] = {0.15505102572168219018027159252941, 0.64494897427831780981972840747059, 1};
+static const double butcher[STAGES][STAGES] = {
+    {0.19681547722366042586838614299183, -0.0655354258501983881085227825696087, 0.0237709743482201524204082321071897},
+    {0.394424314739087276997411671458498, 0.292073411665228463020502745897059, -0.0415487521259979301981860098849674},
+    {0.376403062700467275050075442369281, 0.512485826188421613838813446519608, 0.111111111111111111111111111111111}};
 static const double real_eigenvalue = 3.6378342527444957322084185135777;
 static const double eigenvalue[2] = {2.6810828736277521338957907432111, 3.0504301992474105694263776247876};
 static const double T[STAGES][STAGES] = {
@@ -551,6 +556,26 @@ static void dense(void *work, lag_problem *pb, double t, double *y)
   }
 }
 
+/* ---- The derivative of a step */
+
+static size_t tangent_size(const lag_problem *pb, int k)
+{
+  return lag_tangent_implicit_size(pb, STAGES, k) + (size_t)(STAGES * pb->n);
+}
+
+/* At the points of the collocation polynomial, which are the stages. */
+static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+{
+  Radau *w = work;
+  int n = pb->n;
+  double dt = lag_tangent_span(w->t0, t, w->dt);
+
+  for (int s = 0; s < STAGES; s++) {
+    dense(w, pb, w->t0 + node[s] * dt, scratch + s * n);
+  }
+  return lag_tangent_implicit(STAGES, butcher[0], node, pb, w->t0, dt, scratch, k, Y, scratch + STAGES * n);
+}
+
 const lag_method lag_radau = {
     .name = "radau",
     .order = 5,
@@ -564,4 +589,6 @@ const lag_method lag_radau = {
     .step = step,
     .dense = dense,
     .reset = reset,
+    .tangent_size = tangent_size,
+    .tangent = tangent,
 };

@@ -8,6 +8,7 @@
 
 #include "lag.h"
 #include "methods/steps.h"
+#include "methods/tangent.h"
 
 /* One block of doubles; x holds the arrays of n named below. */
 typedef struct Rk4 {
@@ -121,6 +122,26 @@ static void dense(void *work, lag_problem *pb, double t, double *y)
               w->x + K1 * n, y);
 }
 
+static const lag_tableau tableau = {
+    .stages = 5,
+    .order = 4,
+    .c = {0, 0.5, 0.5, 1, 1},
+    .a = {{0}, {0.5}, {0, 0.5}, {0, 0, 1}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}},
+};
+
+static size_t tangent_size(const lag_problem *pb, int k)
+{
+  return lag_tangent_size(pb, tableau.stages, k);
+}
+
+static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+{
+  Rk4 *w = work;
+  double dt = lag_tangent_span(w->t0, t, w->h * pb->dir);
+
+  return lag_tangent_explicit(&tableau, pb, w->t0, dt, w->x + Y0 * pb->n, k, Y, scratch);
+}
+
 const lag_method lag_rk4 = {
     .name = "rk4",
     .order = 4,
@@ -133,4 +154,6 @@ const lag_method lag_rk4 = {
     .step = step,
     .dense = dense,
     .reset = reset,
+    .tangent_size = tangent_size,
+    .tangent = tangent,
 };

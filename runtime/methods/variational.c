@@ -86,7 +86,8 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   .order_least = 2, .order_most = 8,                                                                  \
   .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | \
            LAG_METHOD_NEWTON,                                                                         \
-  .step = step, .dense = lag_implicit_dense, .reset = lag_implicit_reset
+  .step = step, .dense = lag_implicit_dense, .reset = lag_implicit_reset, \
+  .tangent_size = lag_implicit_tangent_size, .tangent = lag_implicit_tangent
 
 const lag_method lag_variational = {
     .name = "variational",

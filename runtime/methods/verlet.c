@@ -16,6 +16,7 @@
 #include "methods/implicit.h"
 #include "methods/path.h"
 #include "methods/steps.h"
+#include "methods/tangent.h"
 
 /* One block of doubles; x holds the arrays of n named below, then the path of path.h. */
 typedef struct Verlet {
@@ -192,6 +193,44 @@ static void dense(const lag_composition *c, void *work, lag_problem *pb, double 
   lag_path_at(path, pb, &ends, w->have_path > 0 ? c->refine : 0, (t - w->t0) / w->dt, y);
 }
 
+static size_t tangent_size(const lag_problem *pb, int k)
+{
+  return is_explicit(pb) ? lag_tangent_size(pb, 0, k) : lag_implicit_tangent_size(pb, k);
+}
+
+/* One kick of y by f, and of Y by its derivative F. */
+static void kick_both(int nq, int k, double h, const double *f, const double *F, double *y, double *Y)
+{
+  lag_tangent_add(nq, h, f + nq, y + nq);
+  lag_tangent_add(nq * k, h, F + nq * k, Y + nq * k);
+}
+
+/* The kicks and drifts of compose once more, with what they do to Y: a kick adds to dv the derivative of the force, a drift
+ * adds dv to dq. */
+static int tangent(const lag_composition *c, void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+{
+  Verlet *w = work;
+  int n = pb->n, nq = pb->nq, rc = 0;
+  double dt = lag_tangent_span(w->t0, t, w->h * pb->dir), at = 0, *rest;
+  lag_tangent all = lag_tangent_layout(pb, k, scratch, &rest);
+  double *y = rest, *f = y + n, *F = f + n;
+
+  memcpy(y, w->x + Y0 * n, (size_t)n * sizeof *y);
+  for (int s = 0; s <= c->stages; s++) {
+    if ((rc = lag_tangent_at(&all, w->t0 + at * dt, y, f)) != 0) {
+      return rc;
+    }
+    lag_tangent_times(&all, Y, F);
+    kick_both(nq, k, c->kick[s] * dt, f, F, y, Y);
+    if (s < c->stages) {
+      lag_tangent_add(nq, c->drift[s] * dt, y + nq, y);
+      lag_tangent_add(nq * k, c->drift[s] * dt, Y + nq * k, Y);
+      at += c->drift[s];
+    }
+  }
+  return LAG_OK;
+}
+
 /* name, tables, order, flags, words */
 #define METHODS(X)                                                                                                       \
   X(symplectic_euler, euler, euler, 1, 0, "kick, drift; one force a step. DOI 10.1017/S0962492902000144")                \
@@ -227,6 +266,11 @@ static void dense(const lag_composition *c, void *work, lag_problem *pb, double 
       lag_implicit_dense(work, pb, t, y);                                                \
     }                                                                                    \
   }                                                                                      \
+  static int tangent_##id(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) \
+  {                                                                                      \
+    return is_explicit(pb) ? tangent(&lag_compose_##table, work, pb, t, k, Y, scratch)   \
+                           : lag_implicit_tangent(work, pb, t, k, Y, scratch);           \
+  }                                                                                      \
   const lag_method lag_##id = {                                                          \
       .name = #id,                                                                       \
       .order = p,                                                                        \
@@ -240,5 +284,7 @@ static void dense(const lag_composition *c, void *work, lag_problem *pb, double 
       .step = step_##id,                                                                 \
       .dense = dense_##id,                                                               \
       .reset = reset,                                                                    \
+      .tangent_size = tangent_size,                                                      \
+      .tangent = tangent_##id,                                                           \
   };
 METHODS(DEFINE)

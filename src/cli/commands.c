@@ -33,6 +33,11 @@ static const CommandRow commands[] = {
    "unit; 0.5@-90 is an amplitude of 0.5, a quarter of a period behind it. A zero mode is `free` where no force arises far "
    "along it. Needs GSL. Exit status 3: no equilibrium was found.\n\n"
    "  name=value            a parameter, another start (th=3), an input to hold"},
+  {CMD_LYAPUNOV, "lyapunov", "exponents", "MODEL [SCENE] [name=value ...] [--until T] [--exponents K] [--json]", "Lyapunov exponents: how fast neighbouring motions part",
+   "Runs the scene for long with the exact tangent of its flow, and prints the Lyapunov exponents: the mean rates at which small "
+   "changes of the start grow, in the space of coordinates, velocities and states. The spread is the standard error from 20 blocks of the time "
+   "measured; `at half the time` is what the estimate was then. An exponent that is zero comes near it as log(t)/t only.\n\n"
+   "  name=value            a parameter, another start, an input: as for lagc run"},
   {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [-o FILE.svg]", "what accuracy costs in time: all methods, side by side",
    "Runs every method that can honour the model over a range of tolerances or steps, and prints for each run its error, its time, "
    "its calls of the right-hand side; for each method the order that was measured; and which settings nothing beats. The error is "
@@ -73,7 +78,8 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 #define C(name) (1u << CMD_##name)
 #define SIMULATE (C(RUN) | C(PLOT) | C(ANIMATE))
-#define MODELS (SIMULATE | C(MODES) | C(COST) | C(CHECK) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT))
+#define STEPS (SIMULATE | C(LYAPUNOV))
+#define MODELS (STEPS | C(MODES) | C(COST) | C(CHECK) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT))
 #define OWN(f) 0, offsetof(Options, f)
 #define PASSED 1, 0
 
@@ -106,22 +112,29 @@ static const OptionRow options[] = {
   {"--output", "-o", "FILE.svg", TAKES_FILE, "svg", C(COST), OWN(output), "a picture: time against error, on logarithmic axes"},
   {"--output", "-o", "FILE.html", TAKES_FILE, "html", C(ANIMATE), OWN(output), "default: MODEL_SCENE.html in this folder"},
   {"--output", "-o", "FILE", TAKES_FILE, "csv npy", C(RUN), PASSED, "rows of output: CSV, or NumPy where FILE ends in .npy; - is standard output"},
+  {"--output", "-o", "FILE", TAKES_FILE, "csv npy", C(LYAPUNOV), PASSED, "the estimates as they settle: CSV, or NumPy where FILE ends in .npy"},
 
-  {"--method", NULL, "NAME", TAKES_METHOD, "", SIMULATE, PASSED,
+  {"--method", NULL, "NAME", TAKES_METHOD, "", STEPS, PASSED,
    "method of integration, NAME or \"NAME(option=value, ...)\"; `lagc help methods` lists them"},
   {"--method", NULL, "NAME", TAKES_METHOD, "", C(BUILD) | C(EMIT), OWN(method),
    "with what this method needs of the model besides accelerations; the scenes' own methods need no mention"},
-  {"--quadrature", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "of the method variational: midpoint, trapezoid, gauss or lobatto"},
-  {"--order", NULL, "N", TAKES_NUMBER, "", SIMULATE, PASSED, "of the method variational"},
-  {"--stages", NULL, "N", TAKES_NUMBER, "", SIMULATE, PASSED, "of the method gauss"},
-  {"--tol", NULL, "X", TAKES_NUMBER, "", SIMULATE, PASSED, "tolerance, absolute and relative"},
-  {"--step", NULL, "H", TAKES_NUMBER, "", SIMULATE, PASSED, "step [s]; the first one tried where the method chooses its own"},
+  {"--quadrature", NULL, "NAME", TAKES_TEXT, "", STEPS, PASSED, "of the method variational: midpoint, trapezoid, gauss or lobatto"},
+  {"--order", NULL, "N", TAKES_NUMBER, "", STEPS, PASSED, "of the method variational"},
+  {"--stages", NULL, "N", TAKES_NUMBER, "", STEPS, PASSED, "of the method gauss"},
+  {"--tol", NULL, "X", TAKES_NUMBER, "", STEPS, PASSED, "tolerance, absolute and relative"},
+  {"--step", NULL, "H", TAKES_NUMBER, "", STEPS, PASSED, "step [s]; the first one tried where the method chooses its own"},
   {"--target", NULL, "X", TAKES_NUMBER, "", C(COST), PASSED, "names the cheapest setting whose error is at most X"},
   {"--methods", NULL, "NAME,NAME", TAKES_TEXT, "", C(COST), PASSED, "only these methods"},
   {"--longest", NULL, "S", TAKES_NUMBER, "", C(COST), PASSED, "no method goes on to finer settings after a run of S seconds; default: 0.5"},
   {"--until", NULL, "T", TAKES_NUMBER, "", SIMULATE | C(COST), PASSED, "run to time T [s]; before the start: backwards"},
+  {"--until", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "measure to time T [s]; default: 20 spans of the scene"},
+  {"--transient", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "what is left out at the beginning [s]; default: a tenth"},
+  {"--exponents", NULL, "K", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "only the K largest"},
   {"--every", NULL, "DT", TAKES_NUMBER, "", SIMULATE, PASSED, "time between rows [s]; default: as the scene says, or a 1000th of the span; in pictures, as the motion needs"},
+  {"--tangent", NULL, NULL, TAKES_NOTHING, "", C(RUN), PASSED,
+   "the tangent of the flow: how each coordinate, velocity and state follows those at the start, dx/dy(0), as columns more and in the report"},
   {"--svg", NULL, "FILE.svg", TAKES_FILE, "svg", SIMULATE, PASSED, "a picture of all output against time"},
+  {"--svg", NULL, "FILE.svg", TAKES_FILE, "svg", C(LYAPUNOV), PASSED, "a picture of the estimates as they settle"},
   {"--plot-x", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "with --plot-y NAME: the picture shows one output against another"},
   {"--plot-y", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "the picture shows this output"},
   {"--sketch", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "a picture in the terminal"},
@@ -131,16 +144,17 @@ static const OptionRow options[] = {
   {"--no-rods", NULL, NULL, TAKES_NOTHING, "", C(RUN) | C(PLOT), PASSED, "points only"},
   {"--trace", NULL, NULL, TAKES_NOTHING, "", C(RUN) | C(PLOT), PASSED, "the path of the last point"},
   {"--json", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report as one JSON object"},
+  {"--json", NULL, NULL, TAKES_NOTHING, "", C(LYAPUNOV), PASSED, "exponents and spreads, to 17 digits, as one JSON object"},
   {"--json", NULL, NULL, TAKES_NOTHING, "", C(COST), PASSED, "all runs, to 17 digits, as one JSON object"},
   {"--json", NULL, NULL, TAKES_NOTHING, "", C(MODES), PASSED, "all modes, to 17 digits, as one JSON object"},
   {"--events", NULL, "FILE.csv", TAKES_FILE, "csv", SIMULATE, PASSED, "each event with its time and the state before and after it"},
-  {"--quiet", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(COST), PASSED, "no report"},
+  {"--quiet", NULL, NULL, TAKES_NOTHING, "", STEPS | C(COST), PASSED, "no report"},
   {"--save-state", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED, "write the complete state at the end;"},
   {"--resume", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED,
    "go on from there, with the same scene, method and values: results are those of an uninterrupted run, bit by bit"},
 
   {"--define", "-D", "CONST=VALUE", TAKES_DEFINE, "", MODELS, OWN(defines), "gives a `const` of the model another value"},
-  {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(MODES) | C(COST) | C(BUILD), OWN(no_gsl),
+  {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", STEPS | C(MODES) | C(COST) | C(BUILD), OWN(no_gsl),
    "leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole"},
   {"--with", NULL, "linear", TAKES_CHOICE, "linear", C(BUILD) | C(EMIT), OWN(with), "with the exact linearisation of the model"},
   {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns prog", MODELS, OWN(dump), "what the stages of the compiler yield: ast, model, eqns, prog"},
@@ -185,5 +199,5 @@ const OptionRow *option_find(Command c, const char *arg, const char **value) {
   return NULL;
 }
 
-int command_simulates(Command c) { return ((SIMULATE | C(MODES) | C(COST)) & 1u << c) != 0; }
+int command_simulates(Command c) { return ((STEPS | C(MODES) | C(COST)) & 1u << c) != 0; }
 int command_reads_model(Command c) { return (MODELS & 1u << c) != 0; }

@@ -13,7 +13,7 @@ static const char *unknown_command(Arena *a, const char *word) {
   Name names[CMD_COUNT];
   size_t n = 0;
   for (const CommandRow *row; n < CMD_COUNT && (row = command_row(n)) != NULL && row->help; n++) names[n] = row->name;
-  static const char *const later[] = {"cost", "effects", "noether", "lyapunov"};
+  static const char *const later[] = {"effects", "noether"};
   for (size_t i = 0; i < sizeof later / sizeof *later; i++)
     if (strcmp(word, later[i]) == 0) return arena_printf(a, "not yet: `lagc %s`", word);
   size_t len = strlen(word);
@@ -121,6 +121,7 @@ static int read_option(Arena *a, int argc, char **argv, int *i, Options *o, cons
   }
   if (strcmp(row->name, "--method") == 0) o->method = value; /* passed on, and looked at: what a method needs is compiled in */
   if (strcmp(row->name, "--resume") == 0) o->resume = value;
+  if (strcmp(row->name, "--tangent") == 0) o->with = "linear";
   return row->passed || set_value(a, o, row, value, error);
 }
 
@@ -201,7 +202,7 @@ int options_read(Arena *a, int argc, char **argv, Options *o, const char **error
     for (int i = 2; i < argc; i++) vec_push(a, &o->rest, argv[i]);
     return 1;
   }
-  if (o->command == CMD_MODES) o->with = "linear";
+  if (o->command == CMD_MODES || o->command == CMD_LYAPUNOV) o->with = "linear";
   if (command_reads_model(o->command)) return read_arguments(a, argc, argv, o, error);
   return read_one_word(a, argc, argv, o, error);
 }

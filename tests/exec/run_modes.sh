@@ -135,6 +135,62 @@ find_modes $dir/vectors.lag # w^2 = kx, ky times the number of the mass, which c
 close "components of vectors" "sqrt(3*4)" "$(of_mode 6 im)"
 close "and their names" 1 "$(shape 6 'r\[3\].y')"
 
+# ---- soft forces beside stiff ones: what is at rest, and how slow it is
+find_modes $dir/sag.lag # k x = 2 m g, K (y - x) = m g
+close "it sags" "2*$g/100" "$(at_rest x)" 1e-7 # the rounding of K (y - x), 4e-6 N, over k
+close "a slow mode" "sqrt(100/2)" "$(of_mode 1 im)" 1e-6 # rounding of K over k: 1e-7
+find_modes $dir/sag.lag floating
+close "it goes back" 0 "$(at_rest x)" 1e-9
+close "slowly: w^2 = k/2m, less k/(4K) of it" 1 "$(calc "$(of_mode 1 im)/sqrt(1e-6/2)")" 1e-4 # rounding of K over k: 2e-5
+find_modes $dir/molecule.lag # x = -d/2, y = d/2, less k/2K of it; w^2 = k/m together
+verdict stable
+close "in the middle of the trap" -0.05 "$(at_rest x)" 1e-6
+close "in the middle of the trap" 0.05 "$(at_rest y)" 1e-6
+close "together" "sqrt(1e-6/2e-26)" "$(of_mode 1 im)" 1e-6
+for k in 1e5 1e6 1e7 1e10; do # a rod, almost; the floor of its valley is a circle
+  find_modes models/spring_pendulum.lag x=0.6 y=-0.7 k=$k
+  verdict stable
+  close "it hangs" "-1 - $g/$k" "$(at_rest y)" 1e-11 # the rounding of a position, k times, over m g/l
+  close "as a pendulum" "sqrt($g/(1 + $g/$k))" "$(of_mode 1 im)" 1e-6
+  find_modes models/spring_pendulum.lag x=0.6 y=-0.8 k=$k
+  is "$title: not sideways" 0 "$(at_rest x)"
+done
+find_modes $dir/apart.lag # sqrt(k/m), sqrt(K/M): 3e9 and 3e-5
+verdict stable
+is "$title: nothing to note" "" "$(head_text note)"
+close "of the house" 1 "$(calc "$(of_mode 1 im)/sqrt(1e-3/1e6)")"
+close "of the atom" 1 "$(calc "$(of_mode 2 im)/sqrt(1e-6/1e-25)")"
+find_modes $dir/apart.lag alike
+verdict stable
+close "the slow one" 1 "$(calc "$(of_mode 1 im)/sqrt(1e-6)")"
+find_modes $dir/apart.lag damped # y'' + 2 d y' + w^2 y = 0, d = 1e-3/1e6
+is "$title: both" 2 "$(count)"
+close "decay of the house" 1 "$(calc "($(of_mode 1 re))/-1e-9")" 1e-10 # of eigenvalues 3e-5 -+ rounding: 3e-16*3e-5/1e-9
+close "of the atom" 1 "$(calc "$(of_mode 2 im)/sqrt(1e-6/1e-25)")"
+find_modes $dir/valley.lag # x^3 y - y^2/2: no force at 0 alone, where x moves along y = x^3
+verdict undecided
+close "the end of the valley" 0 "$(at_rest x)" 0
+find_modes $dir/body.lag
+close "it stops" 0 "$(at_rest w3)" 0
+close "as it stood" 0.8 "$(at_rest a)" 0
+close "as it stood" 0.6 "$(at_rest b)" 0
+
+# ---- what rounding leaves of a stiffness that is 0
+for scene in go damped; do
+  find_modes $dir/buckle.lag $scene # m g l - k l^2 = 0; it falls
+  verdict undecided
+  because "a zero mode"
+done
+find_modes models/bead_on_hoop.lag critical # the bifurcation of th = 0
+verdict undecided
+close "at the bottom" 0 "$(at_rest th)" 0
+find_modes models/lorenz.lag rho=1 # and that of 0, which the search reaches slowly
+verdict undecided
+because "a zero mode"
+close "at 0" 0 "$(at_rest x)" 0
+close "-8/3" "-8/3" "$(of_mode 2 re)"
+close "-11" -11 "$(of_mode 3 re)"
+
 # ---- damped
 find_modes $dir/oscillator.lag # x'' + 2 d x' + w^2 x = 0, d = 0.2, w = 2
 verdict "asymptotically stable"
@@ -243,7 +299,7 @@ close "decay" -0.2 "$(of_mode 1 re)"
 find_modes $dir/quartic.lag bowl
 verdict undecided
 because "a zero mode"
-close "flat, but found" 0 "$(at_rest x)" 1e-7 # forces below 1e-9 of others: x^3 < 1e-9 3 x^2
+close "flat, but found" 0 "$(at_rest x)" 0
 is "$title: not free" false "$(of_mode 1 free)"
 find_modes $dir/quartic.lag crest # the derivative of the force is 0 at the start
 close "downhill from a stationary slope" "-pi/2" "$(at_rest x)"

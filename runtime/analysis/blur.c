@@ -1,0 +1,46 @@
+#include "analysis/blur.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { MOST_TURNS = 32 };
+
+/* So far a parameter is moved, relative to itself: what changes is then exact to half of its digits. */
+static const double MOVE = 1.0 / (1 << 26);
+
+/* Every MOST_TURNS-th of z[n], where the whole list of which it is the part from `first` on has its turn. */
+static void move(double *z, int n, int first, int turn)
+{
+  for (int i = 0; i < n; i++) {
+    int at = first + i;
+    if (at % MOST_TURNS == turn) {
+      z[i] *= at / MOST_TURNS % 2 ? 1 - MOVE : 1 + MOVE;
+    }
+  }
+}
+
+int lag_blur(Rest *r, lag_values *values, const double *x, size_t count, double *base, double *noise, double *scratch)
+{
+  lag_problem *pb = &r->sim->pb;
+  const double *given = pb->p;
+  int np = pb->model->np, n = r->n, turns = np + n < MOST_TURNS ? np + n : MOST_TURNS;
+  double *out = scratch, *p = out + count, *at = p + np;
+  int rc = values(r, x, base);
+
+  memset(noise, 0, count * sizeof *noise);
+  for (int turn = 0; turn < turns && rc == 0; turn++) {
+    memcpy(p, given, (size_t)np * sizeof *p);
+    memcpy(at, x, (size_t)n * sizeof *at);
+    move(p, np, 0, turn);
+    move(at, n, np, turn);
+    pb->p = p;
+    if (values(r, at, out) == 0 && lag_not_finite((int)count, out) < 0) {
+      for (size_t i = 0; i < count; i++) {
+        noise[i] += fabs(out[i] - base[i]) * (DBL_EPSILON / MOVE);
+      }
+    }
+    pb->p = given;
+  }
+  return rc;
+}

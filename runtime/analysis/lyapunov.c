@@ -1,0 +1,246 @@
+#include "analysis/lyapunov.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "core/core.h"
+
+/* Longest step times fastest rate: a step of order 5 is then wrong by some 1e-9 of each vector. */
+static const double resolution = 0.1;
+
+void lag_lyapunov_free(Lyapunov *l)
+{
+  pool_free(&l->pool);
+}
+
+static double dot(const Lyapunov *l, int a, int b)
+{
+  double s = 0;
+
+  for (int i = 0; i < l->n; i++) {
+    s += l->Y[i * l->k + a] * l->Y[i * l->k + b];
+  }
+  return s;
+}
+
+/* Y := Q of Y = Q R, by Gram and Schmidt, modified: after one step vectors are still nearly orthogonal. What they have grown by, the
+ * diagonal of R, goes into `sum` where `counts`. */
+static int orthonormalise(Lyapunov *l, int counts)
+{
+  for (int a = 0; a < l->k; a++) {
+    for (int b = 0; b < a; b++) {
+      double c = dot(l, a, b);
+      for (int i = 0; i < l->n; i++) {
+        l->Y[i * l->k + a] -= c * l->Y[i * l->k + b];
+      }
+    }
+    double length = sqrt(dot(l, a, a));
+    if (!(length > 0) || !isfinite(length)) {
+      return LAG_EDOMAIN;
+    }
+    for (int i = 0; i < l->n; i++) {
+      l->Y[i * l->k + a] /= length;
+    }
+    l->sum[a] += counts ? log(length) : 0;
+  }
+  return LAG_OK;
+}
+
+/* Vectors in no special direction, the same in every run: the axes of a model may be directions that its flow never leaves. The
+ * generator: D.E. Knuth, MMIX; the upper bits of its states. */
+static void scatter(Lyapunov *l)
+{
+  uint64_t x = 1;
+
+  for (int i = 0; i < l->n * l->k; i++) {
+    x = x * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    l->Y[i] = ldexp((double)(x >> 32), -31) - 1;
+  }
+}
+
+int lag_lyapunov_begin(Lyapunov *l, lag_sim *sim, int k, double from, double until)
+{
+  const lag_model *m = lag_sim_scene(sim)->model;
+  size_t kk = (size_t)k, nn = (size_t)(2 * m->nq + m->nz) * (size_t)(2 * m->nq + m->nz);
+
+  *l = (Lyapunov){.n = 2 * m->nq + m->nz, .k = k, .from = from, .until = until, .begun = NAN, .t = NAN, .half = NAN};
+  l->sum = pool_doubles(&l->pool, kk);
+  l->at_half = pool_doubles(&l->pool, kk);
+  l->block_sum = pool_doubles(&l->pool, kk);
+  l->block = pool_doubles(&l->pool, (size_t)LAG_LYAPUNOV_BLOCKS * (kk + 1));
+  l->Y = pool_doubles(&l->pool, (size_t)l->n * kk);
+  l->J = pool_doubles(&l->pool, nn);
+  l->A = pool_doubles(&l->pool, nn);
+  l->B = pool_doubles(&l->pool, nn);
+  l->work = pool_doubles(&l->pool, lag_linear_work(m) + 1);
+  if (l->pool.failed) {
+    return LAG_ENOMEM;
+  }
+  scatter(l);
+  orthonormalise(l, 0);
+  return lag_sim_set_tangent(sim, k, l->Y);
+}
+
+/* The present block ends here. */
+static void close_block(Lyapunov *l)
+{
+  double *rate = l->block + l->nblocks * (l->k + 1), length = l->t - l->block_from;
+
+  rate[l->k] = 0;
+  for (int a = 0; a < l->k; a++) {
+    rate[a] = (l->sum[a] - l->block_sum[a]) / length;
+    rate[l->k] += rate[a];
+  }
+  memcpy(l->block_sum, l->sum, (size_t)l->k * sizeof(double));
+  l->block_from = l->t;
+  l->nblocks++;
+}
+
+/* How fast the fastest change is, the spectral radius of A = Df, from above: |A^16|^(1/16), in which units hardly count. A is
+ * destroyed. */
+static double fastest(Lyapunov *l)
+{
+  double rate = 1, root = 1;
+  int n = l->n;
+
+  for (int turn = 0; turn < 5; turn++, root /= 2) {
+    double size = 0;
+    for (int i = 0; i < n * n; i++) {
+      size += l->A[i] * l->A[i];
+    }
+    size = sqrt(size);
+    rate *= pow(size, root);
+    if (!(size > 0)) {
+      return 0;
+    }
+    memset(l->B, 0, (size_t)(n * n) * sizeof(double));
+    for (int i = 0; i < n * n; i++) {
+      l->A[i] /= size;
+    }
+    for (int i = 0; i < n && turn < 4; i++) {
+      for (int k = 0; k < n; k++) {
+        double a = l->A[i * n + k];
+        for (int j = 0; j < n && a != 0.0; j++) {
+          l->B[i * n + j] += a * l->A[k * n + j];
+        }
+      }
+    }
+    memcpy(l->A, l->B, (size_t)(n * n) * sizeof(double));
+  }
+  return rate;
+}
+
+/* Df at the end of the step: its trace into the divergence, and how long the next step may be. */
+static int look_ahead(Lyapunov *l, lag_sim *sim, double dt)
+{
+  lag_problem *pb = &sim->pb;
+  int n = l->n, nq = pb->nq;
+  double before = l->trace;
+
+  if (!pb->model->linear) {
+    return LAG_OK;
+  }
+  if (lag_jacobian(pb, l->t, sim->now, l->J, l->work) || lag_not_finite((n - nq) * n, l->J) >= 0) {
+    return LAG_EDOMAIN;
+  }
+  memset(l->A, 0, (size_t)(n * n) * sizeof(double));
+  memcpy(l->A + nq * n, l->J, (size_t)((n - nq) * n) * sizeof(double));
+  l->trace = 0;
+  for (int i = 0; i < n; i++) {
+    l->trace += l->A[i * n + i];
+    if (i < nq) {
+      l->A[i * n + nq + i] = 1;
+    }
+  }
+  l->divergence += dt * (before + l->trace) / 2;
+  double rate = fastest(l);
+  pb->longest = rate > 0 ? resolution / rate : 0;
+  return LAG_OK;
+}
+
+int lag_lyapunov_step(Lyapunov *l, lag_sim *sim)
+{
+  int rc = lag_sim_tangent(sim, l->Y), counts = !isnan(l->begun);
+  double dt = counts ? lag_sim_time(sim) - l->t : 0;
+
+  rc = rc ? rc : orthonormalise(l, counts);
+  rc = rc ? rc : lag_sim_set_tangent(sim, l->k, l->Y);
+  l->t = lag_sim_time(sim);
+  rc = rc ? rc : look_ahead(l, sim, dt);
+  if (rc) {
+    return rc;
+  }
+  if (!counts && l->t >= l->from) {
+    l->begun = l->block_from = l->t;
+    return LAG_OK;
+  }
+  if (!counts) {
+    return LAG_OK;
+  }
+  l->steps++;
+  double part = (l->t - l->begun) / (l->until - l->begun);
+  if (isnan(l->half) && part >= 0.5) {
+    l->half = l->t;
+    for (int a = 0; a < l->k; a++) {
+      l->at_half[a] = lag_lyapunov_exponent(l, a);
+    }
+  }
+  if (l->nblocks < LAG_LYAPUNOV_BLOCKS - 1 && part * LAG_LYAPUNOV_BLOCKS >= l->nblocks + 1) {
+    close_block(l);
+  }
+  return LAG_OK;
+}
+
+void lag_lyapunov_end(Lyapunov *l)
+{
+  double whole = (l->until - l->begun) / LAG_LYAPUNOV_BLOCKS;
+
+  if (!isnan(l->begun) && l->nblocks < LAG_LYAPUNOV_BLOCKS && l->t - l->block_from >= whole / 2) {
+    close_block(l);
+  }
+}
+
+double lag_lyapunov_exponent(const Lyapunov *l, int i)
+{
+  double s = 0;
+
+  for (int a = 0; a < l->k; a++) {
+    s += a == i || i == l->k ? l->sum[a] : 0;
+  }
+  return l->t > l->begun ? s / (l->t - l->begun) : NAN;
+}
+
+double lag_lyapunov_spread(const Lyapunov *l, int i)
+{
+  double mean = 0, square = 0;
+  int n = l->nblocks;
+
+  for (int b = 0; b < n; b++) {
+    mean += l->block[b * (l->k + 1) + i] / n;
+  }
+  for (int b = 0; b < n; b++) {
+    double d = l->block[b * (l->k + 1) + i] - mean;
+    square += d * d;
+  }
+  return n > 1 ? sqrt(square / (n - 1) / n) : NAN;
+}
+
+double lag_lyapunov_divergence(const Lyapunov *l)
+{
+  return l->t > l->begun ? l->divergence / (l->t - l->begun) : NAN;
+}
+
+double lag_lyapunov_dimension(const Lyapunov *l)
+{
+  double sum = 0;
+
+  for (int i = 0; i < l->k; i++) {
+    double x = lag_lyapunov_exponent(l, i);
+    if (isnan(x) || sum + x < 0) {
+      return i + sum / fabs(x);
+    }
+    sum += x;
+  }
+  return l->k;
+}

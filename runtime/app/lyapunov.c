@@ -1,0 +1,331 @@
+/* --lyapunov: the Lyapunov exponents of a scene's motion. Enters: the command line; leaves: a table, JSON, rows and a picture of
+ * the running estimates. Holds: what was computed before an interruption is reported. */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/lyapunov.h"
+#include "app/app.h"
+#include "core/core.h"
+
+enum { SPANS = 20, TURNING = 10, ROWS = 500 }; /* default: 20 spans of the scene, of which a tenth for vectors to turn */
+
+typedef struct Job {
+  App *app;
+  Lyapunov l;
+  lag_scene bare;  /* the scene without what would end the run, or cost time beside it */
+  int rc;          /* why it cannot go on */
+  double next_row;
+} Job;
+
+/* ---- What to compute */
+
+static int choose_times(App *app, double *from)
+{
+  const Args *a = &app->args;
+  const lag_scene *c = app->scene;
+  double t0 = c->t0, span = c->has_span ? fabs(c->t1 - t0) : 10;
+
+  app->until = t0 + SPANS * span;
+  if (a->until && !args_number(a, "--until", a->until, "--until 1000", &app->until)) {
+    return EXIT_USAGE;
+  }
+  if (!(app->until > t0)) {
+    return app_error(a, "--until %s: exponents are means over a long time from t = %g s on; write a later one", a->until ? a->until : "", t0);
+  }
+  double turning = (app->until - t0) / TURNING;
+  if (a->transient && !args_number(a, "--transient", a->transient, "--transient 100", &turning)) {
+    return EXIT_USAGE;
+  }
+  if (turning < 0 || turning >= app->until - t0) {
+    return app_error(a, "--transient %g: it is what is left out at the beginning, between 0 and %g s", turning, app->until - t0);
+  }
+  *from = t0 + turning;
+  return 0;
+}
+
+static int choose_number(const App *app, int *k)
+{
+  const lag_model *m = app->scene->model;
+  const Args *a = &app->args;
+  int n = 2 * m->nq + m->nz;
+  double x = n;
+
+  if (a->exponents && !args_number(a, "--exponents", a->exponents, "--exponents 1", &x)) {
+    return EXIT_USAGE;
+  }
+  if (x < 1 || x > n || x != floor(x)) {
+    return app_error(a, "--exponents %s: write a whole number from 1 to %d, the coordinates, velocities and states of the model", a->exponents, n);
+  }
+  *k = (int)x;
+  return 0;
+}
+
+/* A scene's method that has no tangent gives way to one that has; one that the user names is refused. */
+static void replace_method(App *app)
+{
+  const lag_scene *c = app->scene;
+  const lag_method *m = c->method ? app_find_method(app, c->method) : NULL;
+
+  if (!app->args.method && m && !m->tangent) {
+    app->args.method = lag_dop853.name;
+    if (!app->args.quiet) {
+      fprintf(stderr, "%s: note: %s of scene %s has no derivative of its steps; %s takes its place\n", app->args.self, m->name, c->name,
+              lag_dop853.name);
+    }
+  }
+}
+
+/* t and the running estimates, in place of the scene's outputs. */
+static int make_table(App *app, int k)
+{
+  Table *t = &app->table;
+
+  *t = (Table){.ncols = k + 1, .keep = 1, .cols = calloc((size_t)k + 1, sizeof *t->cols)};
+  app->row = calloc((size_t)k + 1, sizeof *app->row);
+  if (!t->cols || !app->row) {
+    return app_error(&app->args, "out of memory");
+  }
+  for (int i = 0; i <= k; i++) {
+    snprintf(t->cols[i].name, sizeof t->cols[i].name, i ? "exponent %d" : "t", i);
+    strcpy(t->cols[i].unit, i ? "1/s" : "s");
+  }
+  return 0;
+}
+
+/* ---- The run */
+
+static int put_estimates(Job *job)
+{
+  App *app = job->app;
+
+  app->row[0] = job->l.t;
+  for (int i = 0; i < job->l.k; i++) {
+    app->row[i + 1] = lag_lyapunov_exponent(&job->l, i);
+  }
+  if (app->rows.open && rows_write(&app->rows, app->row)) {
+    app->bad_file = app->args.out;
+    return LAG_EIO;
+  }
+  return table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
+}
+
+static int after_step(void *context, const lag_sim *sim)
+{
+  Job *job = context;
+  Lyapunov *l = &job->l;
+
+  job->rc = lag_lyapunov_step(l, job->app->sim);
+  if (job->rc == 0 && l->t > l->begun && l->t >= job->next_row) {
+    job->rc = put_estimates(job);
+    job->next_row = l->t + (l->until - l->from) / ROWS;
+  }
+  return app_after_step(job->app, sim) || job->rc != 0;
+}
+
+/* ---- The report */
+
+/* The sum is the mean of the divergence; where they differ, steps do not resolve how fast something decays. */
+static void caution(FILE *f, const Lyapunov *l)
+{
+  double sum = lag_lyapunov_exponent(l, l->k), divergence = lag_lyapunov_divergence(l), size = fabs(lag_lyapunov_exponent(l, l->k - 1));
+
+  if (fabs(sum - divergence) > 1e-3 * fmax(size, fabs(divergence)) + 3 * lag_lyapunov_spread(l, l->k)) {
+    fprintf(f, "note: the sum should be the mean divergence of the flow, %.6g: the steps are too long for what decays fastest; take smaller ones, "
+               "or believe the first exponents only\n", divergence);
+  }
+}
+
+static void put_text(FILE *f, App *app, const Lyapunov *l)
+{
+  char method[256];
+
+  report_method(app, method, sizeof method);
+  fprintf(f, "model %s, scene %s, method %s\n", app->scene->model->name, app->scene->name, method);
+  if (!(l->t > l->begun)) {
+    fprintf(f, "no step of the run lies after t = %g s, from where on it is measured; run longer: --until\n", l->from);
+    return;
+  }
+  fprintf(f, "measured from t = %.6g to %.6g s, over %lld step%s\n", l->begun, l->t, l->steps, l->steps == 1 ? "" : "s");
+  fprintf(f, "  %-4s%18s%14s%22s\n", "", "exponent [1/s]", "spread", "at half the time");
+  for (int i = 0; i < l->k; i++) {
+    fprintf(f, "  %-4d%18.8g%14.2g%22.8g\n", i + 1, lag_lyapunov_exponent(l, i), lag_lyapunov_spread(l, i), l->at_half[i]);
+  }
+  if (l->k == l->n) {
+    double sum = 0;
+    for (int i = 0; i < l->k; i++) {
+      sum += l->at_half[i];
+    }
+    fprintf(f, "  %-4s%18.8g%14.2g%22.8g\n", "sum", lag_lyapunov_exponent(l, l->k), lag_lyapunov_spread(l, l->k), sum);
+    caution(f, l);
+  }
+  double first = lag_lyapunov_exponent(l, 0);
+  if (first > 3 * lag_lyapunov_spread(l, 0) && fabs(first - l->at_half[0]) < 0.25 * first) { /* no log(t)/t */
+    fprintf(f, "small errors grow by a factor of e in %.4g s, in the mean\n", 1 / first);
+  }
+  if (l->k == l->n && lag_lyapunov_exponent(l, l->k) < -1e-6 * fabs(lag_lyapunov_exponent(l, l->k - 1))) {
+    fprintf(f, "dimension by Kaplan and Yorke: %.4g\n", lag_lyapunov_dimension(l));
+  }
+  if (l->nblocks < 2) {
+    fputs("no spread: the time measured is too short\n", f);
+    return;
+  }
+  fprintf(f, "spread: the standard error from %d blocks. An exponent that is zero comes near it as log(t)/t only\n", l->nblocks);
+}
+
+static void json_list(FILE *f, const char *name, const Lyapunov *l, double (*value)(const Lyapunov *, int))
+{
+  fprintf(f, ", \"%s\": [", name);
+  for (int i = 0; i < l->k; i++) {
+    fputs(i ? ", " : "", f);
+    json_number(f, value(l, i));
+  }
+  putc(']', f);
+}
+
+static double at_half(const Lyapunov *l, int i)
+{
+  return l->at_half[i];
+}
+
+static void json_field(FILE *f, const char *name, double x)
+{
+  fprintf(f, ", \"%s\": ", name);
+  json_number(f, x);
+}
+
+static void put_json(FILE *f, const App *app, const Lyapunov *l)
+{
+  int all = l->k == l->n;
+
+  fputs("{\"model\": ", f);
+  json_string(f, app->scene->model->name);
+  fputs(", \"scene\": ", f);
+  json_string(f, app->scene->name);
+  fputs(", \"method\": ", f);
+  json_string(f, lag_sim_method(app->sim)->name);
+  fputs(", \"status\": ", f);
+  json_string(f, app->status < 0 ? "failed" : lag_status_name(app->status));
+  json_field(f, "from", l->begun);
+  json_field(f, "until", l->t);
+  fprintf(f, ", \"steps\": %lld, \"blocks\": %d", l->steps, l->nblocks);
+  json_list(f, "exponents", l, lag_lyapunov_exponent);
+  json_list(f, "spread", l, lag_lyapunov_spread);
+  json_list(f, "at_half", l, at_half);
+  json_field(f, "sum", all ? lag_lyapunov_exponent(l, l->k) : NAN);
+  json_field(f, "sum_spread", all ? lag_lyapunov_spread(l, l->k) : NAN);
+  json_field(f, "divergence", lag_lyapunov_divergence(l));
+  json_field(f, "dimension", all ? lag_lyapunov_dimension(l) : NAN);
+  fputs("}\n", f);
+}
+
+/* ---- All of it */
+
+/* Why there is no result; otherwise 0. */
+static int failed(App *app, const Job *job)
+{
+  const Args *a = &app->args;
+
+  if (app->bad_file) {
+    return app_io_error(app, app->bad_file);
+  }
+  if (job->rc == LAG_EDOMAIN) {
+    app_error(a, "at t = %g s neighbouring motions become one within a step, an exponent of minus infinity; take fewer: --exponents %d, or "
+                 "smaller steps", lag_sim_time(app->sim), job->l.k > 1 ? job->l.k - 1 : 1);
+    return EXIT_RUN;
+  }
+  if (job->rc || app->status < 0) {
+    app_error(a, "%s", job->rc == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
+    return EXIT_RUN;
+  }
+  if (app->status == LAG_STOPPED) {
+    app_error(a, "an event stopped the run at t = %g s: exponents are means over a motion that goes on; take another start, or an earlier "
+                 "--until", lag_sim_time(app->sim));
+    return EXIT_RUN;
+  }
+  return 0;
+}
+
+static int finish(App *app, Job *job)
+{
+  const Args *a = &app->args;
+  int on_stdout = a->out && strcmp(a->out, "-") == 0, rc = failed(app, job);
+  char title[300];
+
+  lag_lyapunov_end(&job->l);
+  if (rc) {
+    rows_close(&app->rows, 0);
+    return rc;
+  }
+  snprintf(title, sizeof title, "%s: %s, Lyapunov exponents so far", app->scene->model->name, app->scene->name);
+  if (rows_close(&app->rows, 1)) {
+    rc = app_io_error(app, a->out);
+  }
+  if (a->svg && (app_choose_drawn(app) || svg_write(a->svg, &app->table, title, &app->drawn))) {
+    rc = app_io_error(app, a->svg);
+  }
+  if (a->json) {
+    put_json(stdout, app, &job->l);
+  } else if (!a->quiet) {
+    put_text(on_stdout ? stderr : stdout, app, &job->l);
+  }
+  if (fflush(stdout) != 0) {
+    rc = app_io_error(app, "standard output");
+  }
+  return rc ? rc : app->status == LAG_INTERRUPTED ? app_interrupted() : EXIT_FINE;
+}
+
+static int run(App *app, Job *job)
+{
+  const Args *a = &app->args;
+
+  if (a->out && rows_open(&app->rows, a->out, &app->table)) {
+    return app_io_error(app, a->out);
+  }
+  lag_sim_on_step(app->sim, after_step, job);
+  app_watch(app);
+  app->status = lag_sim_advance(app->sim, app->until);
+  app_unwatch(app);
+  return finish(app, job);
+}
+
+/* The scene bare of monitors and closed forms, with the values and the method that the command line says. */
+static int choose(App *app, Job *job)
+{
+  int rc = app_choose_start(app);
+
+  if (rc) {
+    return rc;
+  }
+  job->bare = *app->scene;
+  job->bare.nmonitors = job->bare.nexact = 0;
+  app->scene = &job->bare;
+  lag_sim_free(app->sim);
+  app->sim = lag_sim_new(app->scene);
+  if (!app->sim) {
+    return app_error(&app->args, "out of memory");
+  }
+  replace_method(app);
+  rc = app_choose_method(app);
+  return rc ? rc : app_set_values(app);
+}
+
+int app_lyapunov(App *app)
+{
+  Job job = {.app = app};
+  double from = 0;
+  int k = 0, rc = choose(app, &job);
+
+  rc = rc ? rc : app_check_outputs(app);
+  rc = rc ? rc : choose_times(app, &from);
+  rc = rc ? rc : choose_number(app, &k);
+  rc = rc ? rc : make_table(app, k);
+  if (rc == 0 && lag_lyapunov_begin(&job.l, app->sim, k, from, app->until)) {
+    rc = app_error(&app->args, "%s", job.l.pool.failed ? "out of memory" : lag_sim_message(app->sim));
+  }
+  job.next_row = from + (app->until - from) / ROWS;
+  rc = rc ? rc : run(app, &job);
+  lag_lyapunov_free(&job.l);
+  return rc;
+}

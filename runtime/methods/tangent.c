@@ -1,0 +1,146 @@
+/* The variational equations Y' = Df Y by the method that integrates y: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary
+ * Differential Equations I, 2nd ed. (1993), I.14. Applied to both together an explicit Runge-Kutta method yields exactly the
+ * derivative of its own step. */
+#include "methods/tangent.h"
+
+#include <string.h>
+
+#include "methods/band.h"
+#include "methods/steps.h"
+
+lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double **rest)
+{
+  lag_tangent w = {pb, k, scratch, scratch + (pb->nq + pb->nz) * pb->n};
+
+  *rest = w.linear + lag_linear_work(pb->model);
+  return w;
+}
+
+/* Jacobian, scratch of the linearisation, y of a stage and f there, Y of a stage, Y of the result; each stage's f and its
+ * derivative. */
+size_t lag_tangent_size(const lag_problem *pb, int stages, int k)
+{
+  size_t n = (size_t)pb->n, block = n * (size_t)k;
+
+  return (size_t)(pb->nq + pb->nz) * n + lag_linear_work(pb->model) + 2 * n + 2 * block + (size_t)stages * (n + block);
+}
+
+int lag_tangent_at(const lag_tangent *w, double t, const double *y, double *f)
+{
+  int n = w->pb->n, rc = lag_jacobian(w->pb, t, y, w->jacobian, w->linear);
+
+  if (rc == LAG_EMETHOD) {
+    return lag_step_failed(w->pb, rc, t);
+  }
+  if (rc) {
+    return lag_step_refused(w->pb, rc, t);
+  }
+  if (f) {
+    memcpy(f, w->linear, (size_t)n * sizeof *f);
+  }
+  return lag_not_finite((w->pb->nq + w->pb->nz) * n, w->jacobian) >= 0 ? lag_step_failed(w->pb, LAG_ENAN, t) : LAG_OK;
+}
+
+void lag_tangent_times(const lag_tangent *w, const double *Y, double *out)
+{
+  int n = w->pb->n, nq = w->pb->nq, k = w->k;
+
+  memcpy(out, Y + nq * k, (size_t)(nq * k) * sizeof *out);
+  memset(out + nq * k, 0, (size_t)((n - nq) * k) * sizeof *out);
+  for (int i = 0; i < n - nq; i++) {
+    for (int j = 0; j < n; j++) {
+      double c = w->jacobian[i * n + j];
+      if (c != 0.0) {
+        lag_tangent_add(k, c, Y + j * k, out + (nq + i) * k);
+      }
+    }
+  }
+}
+
+int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, int k, double *Y,
+                         double *scratch)
+{
+  int n = pb->n, m = n * k, last = tab->stages - 1;
+  double *rest;
+  lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
+  double *ys = rest, *Ys = ys + n, *f = Ys + m, *F = f + last * n; /* f and F: of the stages */
+
+  for (int s = 0; s <= last; s++) {
+    memcpy(ys, y0, (size_t)n * sizeof *ys);
+    memcpy(Ys, Y, (size_t)m * sizeof *Ys);
+    for (int j = 0; j < s; j++) {
+      double c = dt * tab->a[s][j];
+      if (c != 0.0) {
+        lag_tangent_add(n, c, f + j * n, ys);
+        lag_tangent_add(m, c, F + j * m, Ys);
+      }
+    }
+    if (s == last) {
+      break;
+    }
+    int rc = lag_tangent_at(&w, t0 + tab->c[s] * dt, ys, f + s * n);
+    if (rc) {
+      return rc;
+    }
+    lag_tangent_times(&w, Ys, F + s * m);
+  }
+  memcpy(Y, Ys, (size_t)m * sizeof *Y);
+  return LAG_OK;
+}
+
+/* A stage's matrices and right-hand sides, column, pivots, scale; the matrix of all stages. */
+size_t lag_tangent_implicit_size(const lag_problem *pb, int stages, int k)
+{
+  size_t big = (size_t)(stages * pb->n);
+
+  return lag_tangent_size(pb, 0, k) + big * ((size_t)k + 3 + big);
+}
+
+/* The rows of stage s of m = 1 - dt A x J. */
+static void put_stage(const lag_tangent *w, const lag_band *m, int stages, int s, double dt, const double *a)
+{
+  int n = w->pb->n, nq = w->pb->nq;
+
+  for (int i = 0; i < n; i++) {
+    const double *J = i < nq ? NULL : w->jacobian + (i - nq) * n;
+    for (int q = 0; q < stages; q++) {
+      double *row = lag_band_at(m, s * n + i, q * n);
+      for (int j = 0; j < n; j++) {
+        row[j] = (q == s && i == j ? 1 : 0) - dt * a[q] * (J ? J[j] : j == nq + i);
+      }
+    }
+  }
+}
+
+/* The stages' derivatives K solve K_s = J_s (Y + dt sum_q a_sq K_q). */
+int lag_tangent_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt, const double *ys, int k,
+                         double *Y, double *scratch)
+{
+  int n = pb->n, big = stages * n, rc;
+  double *rest;
+  lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
+  double *K = rest, *column = K + big * k, *scale = column + big;
+  lag_band m = {big, big - 1, scale + 2 * big, scale + big};
+
+  for (int s = 0; s < stages; s++) {
+    if ((rc = lag_tangent_at(&w, t0 + c[s] * dt, ys + s * n, NULL)) != 0) {
+      return rc;
+    }
+    put_stage(&w, &m, stages, s, dt, A + s * stages);
+    lag_tangent_times(&w, Y, K + s * n * k);
+  }
+  if (lag_band_factor(&m, scale)) {
+    pb->detail = "the equations of the tangent are singular; take smaller steps";
+    return lag_step_failed(pb, LAG_EMETHOD, t0);
+  }
+  for (int j = 0; j < k; j++) {
+    for (int i = 0; i < big; i++) {
+      column[i] = K[i * k + j];
+    }
+    lag_band_solve(&m, column);
+    for (int i = 0; i < big; i++) {
+      Y[i % n * k + j] += dt * A[(stages - 1) * stages + i / n] * column[i];
+    }
+  }
+  return LAG_OK;
+}

@@ -1,0 +1,112 @@
+#!/bin/sh
+# lagc lyapunov: exponents of linear models against closed forms, of Lorenz's against the published 0.9056, 0, -14.5723 (J.C. Sprott,
+# Chaos and Time-Series Analysis (2003), table 4.3), pairs of Hamiltonian ones, the sum against the divergence; rows, JSON, refusals.
+: "${LAGC:=build/lagc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+export TMP
+. tests/tap.sh
+
+# find MODEL ARGS...: the JSON object; list KEY K; number KEY
+find_them() {
+  title="$*"
+  "$LAGC" lyapunov "$@" --json >"$TMP/json" 2>"$TMP/err" || cat "$TMP/err" >&2
+}
+list() { sed -n "s/.*\"$1\": \[\([^]]*\)\].*/\1/p" "$TMP/json" | cut -d, -f"$2"; }
+number() { sed -n "s/.*\"$1\": \([^,}]*\).*/\1/p" "$TMP/json"; }
+close() { # WHAT EXPRESSION GOT TOLERANCE
+  check "$title: $1" awk -v got="$3" -v tolerance="$4" "
+    BEGIN { want = $2; d = got - want
+      if (got != \"\" && d <= tolerance && -d <= tolerance) exit 0
+      printf \"%.17g, not %.17g within %g\\n\", got, want, tolerance; exit 1 }"
+}
+
+# ---- linear: the real parts of eigenvalues. Embedded methods keep their steps so short that Y is right to some 1e-8.
+cat >"$TMP/saddle.lag" <<'X'
+model saddle "Uphill on both sides"
+coord x
+lagrangian = x'^2/2 + 2*x^2
+X
+find_them "$TMP/saddle.lag" --transient 10 --until 40 # vectors point where they should to exp(-40); x rests at 0
+close "it grows as exp(2t)" 2 "$(list exponents 1)" 1e-7
+close "and decays as exp(-2t)" -2 "$(list exponents 2)" 1e-7
+cat >"$TMP/stairs.lag" <<'X'
+model stairs "A triangular flow: its diagonal"
+state a, b, c
+flow a' = -a + 3*b - c
+flow b' = -4*b + c
+flow c' = 0.5*c
+scene s { start a = 1, b = 2, c = 0
+  span 10
+  method dop853 }
+X
+find_them "$TMP/stairs.lag" # what is left of other directions after 20 s, exp(-1.5 20)
+close "first" 0.5 "$(list exponents 1)" 1e-9
+close "second" -1 "$(list exponents 2)" 1e-9
+close "third" -4 "$(list exponents 3)" 1e-9
+close "sum" -4.5 "$(number sum)" 1e-9
+close "divergence" -4.5 "$(number divergence)" 1e-12
+
+find_them models/damped_oscillator.lag over # -w (z -+ sqrt(z^2 - 1)) with w = 2, z = 3
+close "slow" "-2*(3 - sqrt(8))" "$(list exponents 1)" 1e-7
+close "fast" "-2*(3 + sqrt(8))" "$(list exponents 2)" 1e-7
+close "sum" -12 "$(number sum)" 1e-7
+find_them models/damped_oscillator.lag under # both c/(2m) = 0.2, but for the swing of the ellipse, log(w) at most, over 360 s
+close "one" -0.2 "$(list exponents 1)" 0.004
+close "other" -0.2 "$(list exponents 2)" 0.004
+close "sum" -0.4 "$(number sum)" 1e-6
+find_them models/spring.lag free
+close "nothing grows" 0 "$(list exponents 1)" 0.004
+close "nothing decays" 0 "$(list exponents 2)" 0.004
+find_them models/spring.lag free --until 4000 # ten times as near
+close "nothing grows" 0 "$(list exponents 1)" 0.0004
+
+# ---- chaos
+within() { awk -v x="$1" -v want="$2" -v s="$3" 'BEGIN { d = x - want; if (d < 0) d = -d; if (d > 4*s || s <= 0 || s > 0.02) { print x, "+-", s, "not", want; exit 1 } }'; }
+find_them models/lorenz.lag --until 2000 --tol 1e-9
+check "Lorenz: the first" within "$(list exponents 1)" 0.9056 "$(list spread 1)"
+check "Lorenz: the second" within "$(list exponents 2)" 0 "$(list spread 2)"
+check "Lorenz: the third" within "$(list exponents 3)" -14.5723 "$(list spread 3)"
+close "the sum is -(sigma + 1 + beta)" "-(10 + 1 + 8/3)" "$(number sum)" 1e-9
+close "the dimension" 2.062 "$(number dimension)" 0.002
+first=$(list exponents 1)
+find_them models/lorenz.lag --until 2000 --tol 1e-9 --exponents 1
+is "the first alone is the same" "$first" "$(list exponents 1)"
+check "and no sum" grep -q '"sum": null' "$TMP/json"
+
+pairs() { # METHOD TOLERANCE
+  find_them models/henon_heiles.lag chaos --until 3000 --method "$1"
+  close "first and last" "-($(list exponents 1))" "$(list exponents 4)" "$2"
+  close "second and third" "-($(list exponents 2))" "$(list exponents 3)" "$2"
+  close "sum" 0 "$(number sum)" "$2"
+  check "$title: chaos" awk -v x="$(list exponents 1)" 'BEGIN { exit !(x > 0.02 && x < 0.08) }'
+}
+pairs 'verlet8(step=0.1)' 1e-8 # what is left of the vectors' first directions, a number of order 1 in logarithms, over the time
+pairs 'gauss(stages=3, step=0.1)' 1e-8
+pairs dop853 1e-8
+
+# ---- what a person sees
+"$LAGC" lyapunov models/lorenz.lag --until 100 --tol 1e-9 -o "$TMP/rows.csv" --svg "$TMP/it.svg" >"$TMP/out"
+check "a table" grep -q '^ *exponent \[1/s\] *spread *at half the time$' "$TMP/out"
+check "rows of running estimates" sh -c "head -1 '$TMP/rows.csv' | grep -q '^t \[s\],exponent 1 \[1/s\],exponent 2' && [ \$(wc -l <'$TMP/rows.csv') -gt 400 ]"
+check "a picture" grep -q 'Lyapunov exponents so far' "$TMP/it.svg"
+coarse() { "$LAGC" lyapunov models/damped_oscillator.lag over --method 'rk4(step=0.2)' | grep -q 'the sum should be the mean divergence of the flow, -12: the steps are too long'; }
+check "steps that are too long are seen" coarse
+replaced() { "$LAGC" lyapunov "$TMP/stairs.lag" --until 3 2>&1 | grep -q "taylor of scene s has no derivative of its steps; dop853 takes its place"; }
+sed -i 's/method dop853/method taylor/' "$TMP/stairs.lag"
+check "a scene's taylor gives way" replaced
+
+refused() { # STATUS TEXT ARGS...
+  status=$1
+  text=$2
+  shift 2
+  "$LAGC" lyapunov "$@" >"$TMP/out" 2>&1
+  [ $? = "$status" ] && grep -q -e "$text" "$TMP/out" || { cat "$TMP/out"; return 1; }
+}
+check "taylor, named" refused 2 "method taylor has no derivative of its steps; dop853 has" models/lorenz.lag --method taylor
+check "an event that changes the state" refused 3 "event floor changes the state" models/bouncing_ball.lag drop
+check "an event that stops" refused 3 "an event stopped the run at t = 50.88" models/henon_heiles.lag free
+check "too many" refused 2 "from 1 to 3" models/lorenz.lag --exponents 4
+check "no time left" refused 2 "between 0 and 10 s" models/lorenz.lag --until 10 --transient 10
+check "backwards" refused 2 "write a later one" models/lorenz.lag --until -10
+check "an option of run" refused 2 "is an option of .lagc run." models/lorenz.lag --section 'x rising'
+tap_end
