@@ -253,6 +253,7 @@ static int writes_source(Compiler *c) {
 /* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
 static int do_run(Compiler *c) {
   const char *path, *error = NULL;
+  if (c->o.scene && !model_has_scene(c->ast, c->o.scene)) return STATUS_MODEL;
   if (!settings_inputs(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
   if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? fail_usage(error) : STATUS_MODEL;

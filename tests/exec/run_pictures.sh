@@ -25,6 +25,7 @@ well_formed() {
 }
 
 not() { ! "$@"; }
+not_grep() { ! grep -n -e "$1" "$2"; }
 
 # ---- measuring an SVG: the frame, the scale by its ticks, the points of each curve ----
 # measure FILE: "inside" or "outside"; then "first X Y" and "last X Y" of the last curve, in the units of the axes
@@ -117,6 +118,11 @@ check "a condition" says 1 'is a condition, no number' run "$p" --observe 'th > 
 check "--x without --y" says 2 'add --y' plot "$p" --x th
 check "--phase with --x" says 2 'leave out --x and --y' plot "$p" --phase th --x th
 check "an unknown scene" says 1 'unknown scene `wied`' plot "$p" wied --phase th
+check "of any command" says 1 'did you mean `wide`?' plot "$p" wied
+check "before a simulator is built" not_grep 'this build' err
+check "or far from all names" says 1 'the scenes are `small`, `tiny`' modes "$p" nosuch
+check "a name far from all names" says 1 'the model has th, ' plot "$p" --y nosuch
+check "is not to be declared" not_grep 'declare it' err
 check "a value is missing" says 2 'needs a value' plot "$p" --x
 check "an effect that the scene does not use" says 1 'friction' plot "$p" wide --y 'friction.b*th' -o none.svg
 check "a folder that is not there" says 2 'cannot write' plot "$p" -o none/a.svg
@@ -220,7 +226,6 @@ unbalanced() {
   done
 }
 empty "its tags are closed" "$(unbalanced $page)"
-not_grep() { ! grep -n -e "$1" "$2"; }
 check "nothing of the template is left" not_grep '@[A-Z]*@' $page
 
 hook() { sed -n 's/^"rods": \([a-z]*\), "trace": \([a-z]*\), "from": \([a-z]*\),.*"names": \(.*\),$/\1 \2 \3 \4/p' "$1"; }
