@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/diag.h"
+#include "base/suggest.h"
 #include "cli/files.h"
 #include "cli/methods.h"
 #include "cli/options.h"
@@ -344,10 +345,10 @@ static int do_check(Compiler *c) {
   return c->diags->errors ? STATUS_MODEL : status;
 }
 
-/* The runtime has them: asked with `--method help`, it prints its table. */
-static int help_methods(Compiler *c) {
+/* The runtime has them: asked with `--method help` it prints its table, with `--method "help NAME"` one of them. */
+static int help_methods(Compiler *c, const char *name) {
   const char *error = NULL, *path = methods_program(c->arena, c->argv0, 1, &error);
-  char *argv[] = {"lagc", "--method", "help", NULL};
+  char *argv[] = {"lagc", "--method", name ? arena_printf(c->arena, "help %s", name) : "help", NULL};
   if (!path) return fail_usage(error);
   execv(path, argv);
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
@@ -355,10 +356,19 @@ static int help_methods(Compiler *c) {
 
 static int do_help(Compiler *c) {
   StrBuf out = strbuf(c->arena);
-  const char *topic = c->o.topic;
+  const char *topic = c->o.topic, *error;
   Name near;
-  if (topic && strcmp(topic, "methods") == 0) return help_methods(c);
+  Methods methods = {0};
+  if (topic && strcmp(topic, "methods") == 0) return help_methods(c, NULL);
   if (help_print(&out, topic, &near)) return write_out(c, NULL, &out);
+  methods_list(c->arena, c->argv0, 1, &methods, &error); /* without a C compiler there are none */
+  VEC(Name) names = {0};
+  for (uint32_t i = 0; i < methods.n; i++) {
+    if (strcmp(methods.at[i].name, topic) == 0) return help_methods(c, topic);
+    vec_push(c->arena, &names, methods.at[i].name);
+  }
+  Name method = suggest(topic, names.at, names.n);
+  near = near ? near : method;
   return fail_usage(near ? arena_printf(c->arena, "no help on `%s`: did you mean `%s`?", topic, near)
                          : arena_printf(c->arena, "no help on `%s`; `lagc help` lists the topics", topic));
 }

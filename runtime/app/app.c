@@ -400,6 +400,8 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     app_help(&app, stdout);
   } else if (rc == 0 && app.args.method && strcmp(app.args.method, "help") == 0) {
     app_list_methods(&app, stdout);
+  } else if (rc == 0 && app.args.method && strncmp(app.args.method, "help ", 5) == 0 && app_explain_method(&app, app.args.method + 5, stdout)) {
+    rc = 0;
   } else if (rc == 0 && app.args.modes) {
     rc = app_modes(&app);
   } else if (rc == 0 && app.args.lyapunov) {

@@ -87,6 +87,8 @@ int app_unknown_method(const App *app, const char *name);
 
 /* methods.c */
 void app_list_methods(const App *app, FILE *f);
+/* Of one method; 0 when there is none of this name. */
+int app_explain_method(const App *app, const char *name, FILE *f);
 
 /* columns.c. What pictures draw: --plot-x and --plot-y, or everything. 0, or EXIT_USAGE after a message. */
 int app_choose_drawn(App *app);

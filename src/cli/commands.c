@@ -18,7 +18,7 @@ static const CommandRow commands[] = {
    "                        th=pi/3) or an input; a bare number is in the declared\n"
    "                        unit; drag.c=0.2 for one of an effect, m=3 for a family\n"
    "  u=FILE.csv            a table for the input u; 'u=2*sin(t/(1 [s]))' a formula"},
-  {CMD_PLOT, "plot", NULL, "MODEL [SCENE] [name=value ...] [--x EXPR --y EXPR | --phase EXPR]", "simulate and draw, as SVG",
+  {CMD_PLOT, "plot", "picture", "MODEL [SCENE] [name=value ...] [--x EXPR --y EXPR | --phase EXPR]", "simulate and draw, as SVG",
    "Runs the model and draws it: all outputs against time, or one quantity against another. "
    "EXPR is any expression of the model: th, energy, an observable, 'l1*sin(th1)', \"th1' - th2'\". "
    "The options of `lagc run` are options here too."},
@@ -26,7 +26,7 @@ static const CommandRow commands[] = {
    "simulate and show the motion, as one HTML file",
    "Runs the model and writes its motion as one HTML file, which needs no network and no other file: space plays and "
    "pauses, arrow keys step, the slider scrubs. The options of `lagc run` are options here too."},
-  {CMD_MODES, "modes", NULL, "MODEL [SCENE] [name=value ...] [--json]", "equilibrium, stability, frequencies, shapes and damping",
+  {CMD_MODES, "modes", "equilibrium", "MODEL [SCENE] [name=value ...] [--json]", "equilibrium, stability, frequencies, shapes and damping",
    "Finds the equilibrium next to the scene's start, says whether it is stable and by which argument, and prints small motion "
    "about it: frequencies, damping, shapes. The linearisation is exact.\n\n"
    "Velocities of the start do not matter. In a shape the coordinate with the largest kinetic energy is 1 of its declared "
