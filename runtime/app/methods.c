@@ -112,7 +112,7 @@ void app_list_methods(const App *app, FILE *f)
     row(method(app, i), f);
   }
   putc('\n', f);
-  wrapped(f, "The first is the default. dense: order between steps. sympl., sym.: symplectic and symmetric. Newton: whether each step solves "
+  wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. sympl., sym.: symplectic and symmetric. Newton: whether each step solves "
              "equations by Newton's method; partly: unless the model is separable, with constant mass matrix, and accelerations that do not "
              "depend on velocities. forces: whether the model may have forces and explicit time; what a symplectic method keeps without "
              "them it does not keep with them. states: whether it may have a `state`. Options, with their defaults:", 0, 0);
