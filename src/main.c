@@ -9,6 +9,7 @@
 
 #include "base/diag.h"
 #include "base/methods.h"
+#include "base/suggest.h"
 #include "cli/files.h"
 #include "cli/methods.h"
 #include "cli/options.h"
@@ -347,6 +348,7 @@ static void give_reference(Compiler *c, const Units *units) {
 /* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
 static int do_run(Compiler *c) {
   const char *path, *error = NULL;
+  if (c->o.scene && !model_has_scene(c->ast, c->o.scene)) return STATUS_MODEL;
   if (!settings_inputs(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
   if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? fail_usage(error) : STATUS_MODEL;
@@ -440,10 +442,10 @@ static int do_check(Compiler *c) {
   return c->diags->errors ? STATUS_MODEL : status;
 }
 
-/* The runtime has them: asked with `--method help`, it prints its table. */
-static int help_methods(Compiler *c) {
+/* The runtime has them: asked with `--method help` it prints its table, with `--method "help NAME"` one of them. */
+static int help_methods(Compiler *c, const char *name) {
   const char *error = NULL, *path = methods_program(c->arena, c->argv0, 1, &error);
-  char *argv[] = {"lagc", "--method", "help", NULL};
+  char *argv[] = {"lagc", "--method", name ? arena_printf(c->arena, "help %s", name) : "help", NULL};
   if (!path) return fail_usage(error);
   execv(path, argv);
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
@@ -451,10 +453,19 @@ static int help_methods(Compiler *c) {
 
 static int do_help(Compiler *c) {
   StrBuf out = strbuf(c->arena);
-  const char *topic = c->o.topic;
+  const char *topic = c->o.topic, *error;
   Name near;
-  if (topic && strcmp(topic, "methods") == 0) return help_methods(c);
+  Methods methods = {0};
+  if (topic && strcmp(topic, "methods") == 0) return help_methods(c, NULL);
   if (help_print(&out, topic, &near)) return write_out(c, NULL, &out);
+  methods_list(c->arena, c->argv0, 1, &methods, &error); /* without a C compiler there are none */
+  VEC(Name) names = {0};
+  for (uint32_t i = 0; i < methods.n; i++) {
+    if (strcmp(methods.at[i].name, topic) == 0) return help_methods(c, topic);
+    vec_push(c->arena, &names, methods.at[i].name);
+  }
+  Name method = suggest(topic, names.at, names.n);
+  near = near ? near : method;
   return fail_usage(near ? arena_printf(c->arena, "no help on `%s`: did you mean `%s`?", topic, near)
                          : arena_printf(c->arena, "no help on `%s`; `lagc help` lists the topics", topic));
 }

@@ -88,8 +88,21 @@ static const char *rate_of(Maker *k, const char *text) {
   return arena_printf(k->arena, plain ? "%s'" : "(%s)'", text);
 }
 
+/* A suffix that promises another kind of picture. */
+static int other_kind(Maker *k, const char *own, const char *writes, const char **error) {
+  static const char *const kinds[] = {"svg", "html", "png", "pdf", "jpg", "jpeg", "gif", "webp", "eps", "ps", "mp4", "webm"};
+  const char *path = k->o->output, *dot = path ? strrchr(path, '.') : NULL;
+  for (size_t i = 0; dot && i < sizeof kinds / sizeof *kinds; i++) {
+    if (strcmp(dot + 1, kinds[i]) != 0 || strcmp(dot + 1, own) == 0) continue;
+    *error = arena_printf(k->arena, "-o %s: %s; write -o %.*s.%s", path, writes, (int)(dot - path), path, own);
+    return 1;
+  }
+  return 0;
+}
+
 static int prepare_plot(Maker *k, const char **error) {
   const Options *o = k->o;
+  if (other_kind(k, "svg", "plot writes SVG, which browsers and `rsvg-convert` turn into other kinds", error)) return 0;
   const char *x = o->phase ? o->phase : o->x, *y = o->phase ? rate_of(k, o->phase) : o->y;
   if (o->phase && (o->x || o->y)) *error = "--phase EXPR draws the rate of EXPR against it; leave out --x and --y";
   else if (x && !y) *error = arena_printf(k->arena, "--x %s: against what? add --y EXPR", x);
@@ -104,11 +117,11 @@ static int prepare_plot(Maker *k, const char **error) {
 
 /* --- animate --- */
 
-/* The statement outside of effects that makes `name` a number; NULL when there is none. */
+/* The statement outside of effects that makes `name` a number or a family of them; NULL when there is none. */
 static const AstStmt *find_quantity(const Ast *ast, const char *name) {
   for (const AstStmt *s = ast->first; s; s = s->next) {
     int counts = s->kind == STMT_COORD || s->kind == STMT_STATE || s->kind == STMT_LET || s->kind == STMT_OBSERVE;
-    if (counts && s->name && !s->dims && !s->type && strcmp(s->name, name) == 0) return s;
+    if (counts && s->name && !s->type && strcmp(s->name, name) == 0) return s;
   }
   return NULL;
 }
@@ -120,8 +133,8 @@ typedef struct {
 } Found;
 
 static int find_pair(Maker *k, const char *x, const char *y, StrBuf *points, int *rods) {
-  const AstStmt *s = find_quantity(k->ast, x);
-  if (!s || !find_quantity(k->ast, y)) return 0;
+  const AstStmt *s = find_quantity(k->ast, x), *t = find_quantity(k->ast, y);
+  if (!s || !t || !s->dims != !t->dims) return 0;
   sb_printf(points, "%s%s,%s", points->n ? " " : "", x, y);
   *rods = s->kind == STMT_LET;
   return 1;
@@ -141,6 +154,19 @@ static void find_only(Maker *k, Found *f) {
   f->points = arena_printf(k->arena, only->periodic ? "sin(%s),-cos(%s)" : "%s,0", only->name, only->name);
 }
 
+/* Of a family of numbers, u[1] u[2] ...: each at the place of its number. */
+static void find_row(const Model *m, StrBuf *points) {
+  enum { MOST = 1000 };
+  for (uint32_t i = 0; i < m->coords.n && i < MOST; i++) {
+    const char *name = m->coords.at[i].name, *at = strchr(name, '[');
+    if (!at || strchr(at, ',') || strchr(at, '.') || (i && strncmp(name, m->coords.at[0].name, (size_t)(at - name + 1)) != 0)) {
+      points->n = 0;
+      return;
+    }
+    sb_printf(points, "%s%.*s,%s", i ? " " : "", (int)strcspn(at + 1, "]"), at + 1, name);
+  }
+}
+
 /* The vectors among the coordinates, members of families too: r.x,r.y or b[1].x,b[1].y b[2].x,b[2].y. Only the model knows
  * how many there are. 0 when the model has mistakes. */
 static int find_vectors(Maker *k, Found *f) {
@@ -155,6 +181,7 @@ static int find_vectors(Maker *k, Found *f) {
     if (len < 3 || strcmp(x + len - 2, ".x") != 0 || strlen(y) != len || strncmp(x, y, len - 1) != 0) continue;
     sb_printf(&points, "%s%s,%s", n++ ? " " : "", x, y);
   }
+  if (!points.n) find_row(m, &points);
   if (points.n) f->points = sb_text(&points);
   return 1;
 }
@@ -197,6 +224,7 @@ static int is_quiet(const Options *o) {
 static int prepare_animate(Maker *k, const char **error) {
   enum { SHOWN_POINTS = 60 };
   const Options *o = k->o;
+  if (other_kind(k, "html", "animate writes HTML, a page for browsers", error)) return 0;
   Found f = {.points = o->points, .rods = 1};
   if (!f.points) {
     f = find_points(k);

@@ -125,14 +125,11 @@ static int choose_grid(App *app)
     }
     origin = app->scene->t0;
   }
-  if (a->html && !a->every && !a->out && !a->svg) {
-    every = fabs(app->until - t) / html_frames(fabs(app->until - t));
-    origin = t;
-  } else if (!(every > 0)) {
-    every = fabs(app->until - t) / (a->out || a->svg ? 1000 : 280); /* 280: the dots across a sketch, twice */
+  if (!(every > 0)) {
+    every = fabs(app->until - t) / 1000;
     origin = t;
   }
-  if (app->section < 0 && (a->out || a->svg || a->html || a->sketch) && fabs(app->until - t) / every > 1e9) {
+  if (app->section < 0 && (a->out || ((a->every || a->tangent) && (a->svg || a->html || a->sketch))) && fabs(app->until - t) / every > 1e9) {
     return app_error(a, "a row every %g s for %g s is %.3g rows; write a larger --every", every, fabs(app->until - t),
                      fabs(app->until - t) / every);
   }
@@ -169,7 +166,8 @@ int app_put_row(App *app)
     app->bad_file = app->args.out;
     return LAG_EIO;
   }
-  return table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
+  int drawn = app->args.every || !app->film.on; /* else film.c chooses the rows of pictures */
+  return drawn && table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
 
 /* Rows on the grid as far as `until`. */
@@ -186,7 +184,7 @@ static int run_rows(App *app)
     if (fabs(rest) <= 1e-9 * grid[1]) {
       app->until = t; /* the same time but for rounding */
     }
-    rc = interrupted ? LAG_INTERRUPTED : lag_sim_advance(app->sim, t);
+    rc = interrupted ? LAG_INTERRUPTED : film_advance(app, t);
     rc = rc ? rc : app_put_row(app);
     grid[2] += rc == 0;
   }
@@ -195,14 +193,17 @@ static int run_rows(App *app)
 
 static void run(App *app)
 {
-  int rows = (app->args.out || app->table.keep) && app->section < 0, rc = rows ? run_rows(app) : 0;
+  int rows = app->section < 0 && (app->args.out || (app->table.keep && (app->args.every || !app->film.on))), rc = rows ? run_rows(app) : 0;
 
   if (rc == 0) {
-    rc = lag_sim_advance(app->sim, app->until);
+    rc = film_advance(app, app->until);
   }
   if (rows && rc >= 0 && app->last_row != lag_sim_time(app->sim)) {
     int bad = app_put_row(app);
     rc = bad ? bad : rc;
+  }
+  if (film_close(app)) {
+    rc = LAG_ENOMEM;
   }
   app->status = app->bad_file ? LAG_EIO : app->section_rc && rc >= 0 ? app->section_rc : rc;
   app_unwatch(app);
@@ -229,7 +230,7 @@ static int try_file(const App *app, const char *path)
   return path && (outfile_open(&o, path) || outfile_close(&o, 0)) ? app_io_error(app, path) : 0;
 }
 
-static int open_output(App *app, int *plot_x, int *plot_y)
+static int open_output(App *app)
 {
   const Args *a = &app->args;
 
@@ -238,10 +239,7 @@ static int open_output(App *app, int *plot_x, int *plot_y)
     return app_error(a, "out of memory");
   }
   app->table.points = app->section >= 0;
-  if (tangent_open(app)) {
-    return EXIT_USAGE;
-  }
-  if ((a->plot_x && (*plot_x = app_column(app, a->plot_x)) < 0) || (a->plot_y && (*plot_y = app_column(app, a->plot_y)) < 0)) {
+  if (tangent_open(app) || app_choose_drawn(app)) {
     return EXIT_USAGE;
   }
   if (a->html && app_choose_points(app)) {
@@ -250,7 +248,8 @@ static int open_output(App *app, int *plot_x, int *plot_y)
   if (try_file(app, a->svg) || try_file(app, a->html) || try_file(app, a->save)) {
     return EXIT_USAGE;
   }
-  int rc = events_open(app);
+  int rc = film_open(app);
+  rc = rc ? rc : events_open(app);
   return rc ? rc : a->out && rows_open(&app->rows, a->out, &app->table) ? app_io_error(app, a->out) : 0;
 }
 
@@ -278,13 +277,13 @@ static int save_state(const App *app)
 }
 
 /* Completes the files, says what happened. */
-static int finish(App *app, int plot_x, int plot_y)
+static int finish(App *app)
 {
   const Args *a = &app->args;
   int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? app_interrupted() : EXIT_FINE, bad = 0;
   int on_stdout = (a->out && strcmp(a->out, "-") == 0) || (a->events && strcmp(a->events, "-") == 0);
   FILE *f = on_stdout ? stderr : stdout;
-  char title[300];
+  char title[300], note[300];
 
   if (app->status == LAG_EINVAL || app->status == LAG_ENOMEM || app->status == LAG_EIO) {
     rows_close(&app->rows, 0);
@@ -299,24 +298,23 @@ static int finish(App *app, int plot_x, int plot_y)
   if (rows_close(&app->log_rows, 1)) {
     bad = app_io_error(app, a->events);
   }
+  film_warn(app, note, sizeof note);
+  app->show.note = note;
   snprintf(title, sizeof title, "%s: %s%s%s", app->scene->model->name, app->scene->name, app->section < 0 ? "" : ", ",
            app->section < 0 ? "" : app->scene->model->ev[app->section].name);
-  if (a->svg && svg_write(a->svg, &app->table, title, plot_x, plot_y)) {
-    bad = app_io_error(app, a->svg);
-  }
   if (a->html && html_write(a->html, &app->table, title, &app->show)) {
     bad = app_io_error(app, a->html);
+  }
+  table_long_time(&app->table);
+  if (a->svg && svg_write(a->svg, &app->table, title, &app->drawn)) {
+    bad = app_io_error(app, a->svg);
   }
   if (a->save && app->status >= 0 && save_state(app)) {
     bad = EXIT_USAGE;
   }
   if (a->sketch) {
     FILE *to = a->json ? stderr : f;
-    if (plot_y >= 0) {
-      sketch_path(to, &app->table, plot_x, plot_y);
-    } else {
-      sketch_print(to, &app->table);
-    }
+    sketch(to, &app->table, &app->drawn);
   }
   if (a->json) {
     report_json(app, stdout);
@@ -373,7 +371,7 @@ int app_interrupted(void)
 
 static int simulate(App *app)
 {
-  int plot_x = 0, plot_y = -1, rc = app_choose(app);
+  int rc = app_choose(app);
 
   if (rc || (rc = section_choose(app)) != 0 || (rc = app_check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
     return rc;
@@ -382,7 +380,7 @@ static int simulate(App *app)
     return app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",
                      lag_sim_method(app->sim)->name);
   }
-  if ((rc = open_output(app, &plot_x, &plot_y)) != 0) {
+  if ((rc = open_output(app)) != 0) {
     return rc;
   }
   note_tables(app);
@@ -390,7 +388,7 @@ static int simulate(App *app)
   lag_sim_on_event(app->sim, on_event, app);
   app_watch(app);
   run(app);
-  return finish(app, plot_x, plot_y);
+  return finish(app);
 }
 
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras)
@@ -402,6 +400,8 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     app_help(&app, stdout);
   } else if (rc == 0 && app.args.method && strcmp(app.args.method, "help") == 0) {
     app_list_methods(&app, stdout);
+  } else if (rc == 0 && app.args.method && strncmp(app.args.method, "help ", 5) == 0 && app_explain_method(&app, app.args.method + 5, stdout)) {
+    rc = 0;
   } else if (rc == 0 && app.args.modes) {
     rc = app_modes(&app);
   } else if (rc == 0 && app.args.lyapunov) {
@@ -414,7 +414,9 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
   lag_sim_free(app.sim);
   table_free(&app.table);
   events_free(&app);
+  film_free(&app);
   free(app.show.cols);
+  free(app.drawn.x);
   free(app.row);
   free(app.args.sets);
   free(app.state.data);

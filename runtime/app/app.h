@@ -23,6 +23,15 @@ typedef struct Args {
   int nsets;
 } Args;
 
+/* What pictures show of the run: see film.c. */
+typedef struct Film {
+  int on, places;   /* places of the last step that were looked at */
+  Thin rows;
+  double soonest;   /* steps that end sooner after the last are not looked at */
+  double seen_to, length; /* length: how long a step may be of which a few places show what happens */
+  double *y, *seen; /* [n]; rows [MOST_PLACES + 1][ncols] */
+} Film;
+
 typedef struct App {
   const lag_program *program;
   lag_extras extras;
@@ -32,8 +41,10 @@ typedef struct App {
   State state;      /* that was resumed */
   int resumed;
   Table table;
+  Film film;
   Rows rows;
   Animation show;
+  Drawn drawn;
   double *row;      /* [ncols] */
   double last_row;  /* time of the last row, NaN before the first */
   double until;
@@ -80,11 +91,21 @@ int app_choose_automatically(App *app, const lag_option *opt, int n);
 
 /* methods.c */
 void app_list_methods(const App *app, FILE *f);
+/* Of one method; 0 when there is none of this name. */
+int app_explain_method(const App *app, const char *name, FILE *f);
 
-/* columns.c. The index of a column by its name; -1 after a message. */
-int app_column(const App *app, const char *name);
+/* columns.c. What pictures draw: --plot-x and --plot-y, or everything. 0, or EXIT_USAGE after a message. */
+int app_choose_drawn(App *app);
 /* Fills app->show from --points and --from. 0, or EXIT_USAGE after a message. */
 int app_choose_points(App *app);
+
+/* film.c: rows of pictures. film_open: after app_choose_drawn and app_choose_points. film_advance: lag_sim_advance, looking at
+ * the motion on the way. film_warn: what should be said of the picture, "" when nothing; also said on standard error. */
+int film_open(App *app);
+int film_advance(App *app, double until);
+int film_close(App *app);
+void film_warn(App *app, char *note, size_t size);
+void film_free(App *app);
 
 /* app.c: a row of the present state. LAG_OK, or why there is none. */
 int app_put_row(App *app);

@@ -5,84 +5,188 @@
 #include "app/app.h"
 #include "core/core.h"
 
-/* The first column that is a member or a component of `name`, or NULL. */
-static const char *part_of(const App *app, const char *name)
+/* Whether a column is a member or a component of `name`: th[2]' of th', r[1].x of r or of r.x. */
+static int is_part(const char *column, const char *name)
 {
-  size_t n = strlen(name);
+  size_t primes = 0, n = strlen(name);
 
-  for (int i = 0; i < app->table.ncols; i++) {
-    const char *whole = app->table.cols[i].name;
-    if (strncmp(whole, name, n) == 0 && (whole[n] == '[' || whole[n] == '.')) {
-      return whole;
+  while (n > primes && name[n - primes - 1] == '\'') {
+    primes++;
+  }
+  n -= primes;
+  for (size_t i = 0; i < n; i++) {
+    if (*column == '[' && name[i] != '[') {
+      column += strcspn(column, "]");
+      column += *column == ']';
+    }
+    if (*column++ != name[i]) {
+      return 0;
     }
   }
-  return NULL;
+  if (*column == '[') {
+    column += strcspn(column, "]");
+    column += *column == ']';
+  }
+  if (*column == '.') {
+    column += column[1] ? 2 : 1;
+  }
+  return strlen(column) == primes && strspn(column, "'") == primes;
 }
 
-int app_column(const App *app, const char *name)
+/* -1 after a message that there is no such column. */
+static int no_column(const App *app, const char *name)
 {
-  const char *best = NULL, *part;
+  const char *best = NULL;
   int least = LAG_FAR;
 
   for (int i = 0; i < app->table.ncols; i++) {
     int d = lag_near(name, app->table.cols[i].name);
-    if (d == 0) {
-      return i;
-    }
     if (d < least) {
       least = d;
       best = app->table.cols[i].name;
     }
   }
-  if ((part = part_of(app, name)) != NULL) {
-    app_error(&app->args, "%s has parts, each an output of its own; name one: %s", name, part);
-  } else {
-    app_error(&app->args, best ? "no output is named %s; did you mean %s?" : "no output is named %s", name, best);
-  }
+  app_error(&app->args, best ? "no output is named %s; did you mean %s?" : "no output is named %s", name, best);
   return -1;
 }
 
-/* The column whose name stands at *s, the longest one: names may hold spaces and commas themselves. *s is moved behind it. */
-static int column_at(const App *app, const char **s)
+/* Like strcmp, with numbers by their values: x[2] before x[10]. */
+static int compare(const char *a, const char *b)
+{
+  for (;;) {
+    int digits = *a >= '0' && *a <= '9' && *b >= '0' && *b <= '9';
+    char *behind_a, *behind_b;
+    long x = digits ? strtol(a, &behind_a, 10) : (unsigned char)*a, y = digits ? strtol(b, &behind_b, 10) : (unsigned char)*b;
+    if (x != y || *a == '\0') {
+      return x < y ? -1 : x > y;
+    }
+    a = digits ? behind_a : a + 1;
+    b = digits ? behind_b : b + 1;
+  }
+}
+
+/* The columns that a name stands for: its own, or all its parts, by their indices. Their number; -1 after a message. */
+static int columns_of(const App *app, const char *name, int *cols)
+{
+  const Column *c = app->table.cols;
+  int n = 0;
+
+  for (int i = 0; i < app->table.ncols; i++) {
+    if (strcmp(name, c[i].name) == 0) {
+      cols[0] = i;
+      return 1;
+    }
+  }
+  for (int i = 1; i < app->table.ncols; i++) {
+    if (is_part(c[i].name, name)) {
+      int k = n++;
+      for (; k > 0 && compare(c[cols[k - 1]].name, c[i].name) > 0; k--) {
+        cols[k] = cols[k - 1];
+      }
+      cols[k] = i;
+    }
+  }
+  return n ? n : no_column(app, name);
+}
+
+int app_choose_drawn(App *app)
+{
+  const Args *a = &app->args;
+  Drawn *d = &app->drawn;
+  int most = app->table.ncols, nx = 1;
+
+  *d = (Drawn){.n = most - 1, .x = calloc(2 * (size_t)most, sizeof *d->x), .xname = a->plot_x ? a->plot_x : "t", .yname = a->plot_y};
+  if (!d->x) {
+    return app_error(a, "out of memory");
+  }
+  d->y = d->x + most;
+  for (int i = 1; i < most; i++) {
+    d->y[i - 1] = i;
+  }
+  if ((a->plot_x && (nx = columns_of(app, a->plot_x, d->x)) < 0) || (a->plot_y && (d->n = columns_of(app, a->plot_y, d->y)) < 0)) {
+    return EXIT_USAGE;
+  }
+  if (nx != 1 && nx != d->n) {
+    return app_error(a, "--plot-x %s has %d parts, --plot-y %s has %d; draw one against the other by naming a part", a->plot_x, nx, a->plot_y, d->n);
+  }
+  for (int i = nx; i < d->n; i++) {
+    d->x[i] = d->x[0];
+  }
+  return 0;
+}
+
+/* The columns whose name stands at *s, the longest name that there is (names may hold spaces and commas themselves), or all parts
+ * of what is named. *s is moved behind it. Their number; -1 after a message. */
+static int columns_at(const App *app, const char **s, int *cols)
 {
   size_t longest = 0;
-  int found = -1;
 
   for (int i = 0; i < app->table.ncols; i++) {
     const char *name = app->table.cols[i].name;
     size_t n = strlen(name);
     if (n > longest && strncmp(*s, name, n) == 0 && strchr(" ,;", (*s)[n])) { /* or the end: strchr finds it too */
       longest = n;
-      found = i;
+      cols[0] = i;
     }
   }
-  if (found < 0) {
-    char word[96];
-    snprintf(word, sizeof word, "%.*s", (int)strcspn(*s, " ,;"), *s);
-    return app_column(app, word);
+  if (longest) {
+    *s += longest;
+    return 1;
   }
-  *s += longest;
-  return found;
+  char word[96];
+  size_t n = strcspn(*s, " ,;");
+  snprintf(word, sizeof word, "%.*s", (int)n, *s);
+  *s += n;
+  return columns_of(app, word, cols);
 }
 
-/* Appends the columns of "X,Y X,Y ..." to the animation's. */
-static int add_points(App *app, const char *option, const char *text)
+/* Where a family of points begins with number 0, the rods hang from it. */
+static void hang_from_zero(App *app, int x)
+{
+  const char *name = app->table.cols[x].name, *at = strstr(name, "[0]");
+
+  if (at && app->show.rods && !app->show.from && app->show.npoints == 0) {
+    app->show.from = 1;
+  }
+}
+
+/* Appends the points of "X,Y X,Y ..." to the animation's; x and y have room for all columns. */
+static int add_points(App *app, const char *option, const char *text, int *x, int *y)
 {
   Animation *show = &app->show;
-  int n = 0;
+  const char *s = text + strspn(text, " ,;");
 
-  for (const char *s = text + strspn(text, " ,;"); *s; s += strspn(s, " ,;"), n++) {
-    int col = column_at(app, &s);
-    if (col < 0) {
+  while (*s) {
+    int nx = columns_at(app, &s, x), ny = 0;
+    s += strspn(s, " ,;");
+    if (nx > 0 && *s) {
+      ny = columns_at(app, &s, y);
+      s += strspn(s, " ,;");
+    }
+    if (nx < 0 || ny < 0) {
       return EXIT_USAGE;
     }
-    show->cols[2 * show->npoints + n] = col;
+    if (ny == 0) {
+      return app_error(&app->args, "%s \"%s\": each point is X,Y, two names of outputs", option, text);
+    }
+    if (nx != ny && nx != 1 && ny != 1) {
+      return app_error(&app->args, "%s \"%s\": %d places across for %d up", option, text, nx, ny);
+    }
+    int n = nx > ny ? nx : ny;
+    int *cols = realloc(show->cols, 2 * (size_t)(show->npoints + n) * sizeof *cols);
+    if (!cols) {
+      return app_error(&app->args, "out of memory");
+    }
+    show->cols = cols;
+    if (nx > 1) {
+      hang_from_zero(app, x[0]);
+    }
+    for (int k = 0; k < n; k++) {
+      cols[2 * show->npoints] = x[nx > 1 ? k : 0];
+      cols[2 * show->npoints++ + 1] = y[ny > 1 ? k : 0];
+    }
   }
-  if (n == 0 || n % 2) {
-    return app_error(&app->args, "%s \"%s\": each point is X,Y, two names of outputs", option, text);
-  }
-  show->npoints += n / 2;
-  return 0;
+  return show->npoints ? 0 : app_error(&app->args, "%s \"%s\": each point is X,Y, two names of outputs", option, text);
 }
 
 /* One unit for all: where it is empty, anything goes. */
@@ -110,17 +214,19 @@ int app_choose_points(App *app)
 {
   const Args *a = &app->args;
   Animation *show = &app->show;
+  int *found = calloc(2 * (size_t)app->table.ncols, sizeof *found), *x = found, *y = found + app->table.ncols, rc = 0;
 
   *show = (Animation){.rods = !a->no_rods, .trace = a->trace, .from = a->from && !a->no_rods};
-  show->cols = calloc(strlen(a->points) + (a->from ? strlen(a->from) : 0) + 2, sizeof *show->cols);
-  if (!show->cols) {
+  if (!found) {
     return app_error(a, "out of memory");
   }
-  if (show->from && add_points(app, "--from", a->from)) {
-    return EXIT_USAGE;
+  if (show->from) {
+    rc = add_points(app, "--from", a->from, x, y);
   }
-  if (show->from && show->npoints != 1) {
-    return app_error(a, "--from \"%s\": one point, X,Y", a->from);
+  if (rc == 0 && show->from && show->npoints != 1) {
+    rc = app_error(a, "--from \"%s\": one point, X,Y", a->from);
   }
-  return add_points(app, "--points", a->points) ? EXIT_USAGE : choose_unit(app);
+  rc = rc ? rc : add_points(app, "--points", a->points, x, y);
+  free(found);
+  return rc ? rc : choose_unit(app);
 }

@@ -13,6 +13,7 @@ static const char text[] =
     "  --step H             step [s]; the first one tried where the method chooses its own\n"
     "  -o FILE              rows of output: CSV, or NumPy when FILE ends in .npy; - is standard output\n"
     "  --every DT           time between rows [s]; default: as the scene says, or a 1000th of the span\n"
+    "                       (in pictures: as many as the motion needs)\n"
     "  --events FILE        a row for each event, as -o writes them: time, event, the state before and after it\n"
     "  --section EVENT      rows, and points of pictures, each time this event happens, instead of in time\n"
     "  --tangent            columns dx/dy(0) more: how the state follows that at the start, exactly\n"

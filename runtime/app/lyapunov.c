@@ -252,7 +252,7 @@ static int finish(App *app, Job *job)
   if (rows_close(&app->rows, 1)) {
     rc = app_io_error(app, a->out);
   }
-  if (a->svg && svg_write(a->svg, &app->table, title, 0, -1)) {
+  if (a->svg && (app_choose_drawn(app) || svg_write(a->svg, &app->table, title, &app->drawn))) {
     rc = app_io_error(app, a->svg);
   }
   if (a->json) {

@@ -1,5 +1,33 @@
-/* `lagc methods` and --method help: what the descriptors of methods say, as a table and in words. */
+/* `lagc methods` and --method help: what the descriptors of methods say, as a table and in words; `--method "help NAME"`: what
+ * one says. Holds: lines have at most 80 columns. */
+#include <string.h>
+
 #include "app/app.h"
+
+enum { WIDTH = 80 };
+
+/* Words in lines that begin with `indent` spaces, the first with `first`. */
+static void wrapped(FILE *f, const char *text, int first, int indent)
+{
+  int column = fprintf(f, "%*s", first, "");
+
+  for (int fresh = 1; *text; fresh = 0) {
+    int n = (int)strcspn(text, " ");
+    if (!fresh && column + 1 + n > WIDTH) {
+      column = fprintf(f, "\n%*s", indent, "") - 1;
+    } else if (!fresh) {
+      column += fprintf(f, " ");
+    }
+    column += fprintf(f, "%.*s", n, text);
+    text += n + (text[n] == ' ');
+  }
+  putc('\n', f);
+}
+
+static const lag_method *method(const App *app, int i)
+{
+  return i < lag_nmethods ? lag_methods[i] : app->extras.methods[i - lag_nmethods];
+}
 
 /* 5, or 2-8 where options choose. */
 static const char *order_text(const lag_method *m, int order, char *text, size_t size)
@@ -17,38 +45,78 @@ static void row(const lag_method *m, FILE *f)
   unsigned is = m->flags;
   char order[32], dense[32];
 
-  fprintf(f, "  %-16s  %-5s  %-5s  %-8s  %-21s  %-16s  %-6s  %-6s  %s\n", m->name, order_text(m, m->order, order, sizeof order),
+  fprintf(f, "  %-16s  %-5s  %-5s  %-8s  %-12s  %-6s  %-6s  %-6s  %s\n", m->name, order_text(m, m->order, order, sizeof order),
           order_text(m, m->dense_order, dense, sizeof dense),
           is & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed",
-          is & LAG_METHOD_SYMMETRIC ? is & LAG_METHOD_SYMPLECTIC ? "symplectic, symmetric" : "symmetric"
+          is & LAG_METHOD_SYMMETRIC ? is & LAG_METHOD_SYMPLECTIC ? "sympl., sym." : "symmetric"
           : is & LAG_METHOD_SYMPLECTIC ? "symplectic" : "-",
-          is & LAG_METHOD_SPLITS ? "unless separable" : is & LAG_METHOD_NEWTON ? "yes" : "no",
+          is & LAG_METHOD_SPLITS ? "partly" : is & LAG_METHOD_NEWTON ? "yes" : "no",
           is & LAG_METHOD_CONSERVATIVE ? "no" : "yes", is & LAG_METHOD_NO_STATES ? "no" : "yes", m->tangent ? "yes" : "no");
+}
+
+static void options(const lag_method *m, FILE *f, int indent)
+{
+  for (int i = 0; i < m->noptions; i++) {
+    const lag_method_option *o = &m->options[i];
+    char number[32], text[400];
+    snprintf(number, sizeof number, "%g", o->value);
+    snprintf(text, sizeof text, "%s = %s: %s", o->name, o->choices ? o->choices[(int)o->value] : number, o->doc);
+    wrapped(f, text, indent, indent + 2);
+  }
+}
+
+static const char *saved(const lag_method *m)
+{
+  return m->flags & LAG_METHOD_NO_SAVE ? "; its state cannot be saved" : "";
 }
 
 static void words(const lag_method *m, FILE *f)
 {
-  fprintf(f, "\n  %s: %s%s\n", m->name, m->doc, m->flags & LAG_METHOD_NO_SAVE ? "; its state cannot be saved" : "");
-  for (int i = 0; i < m->noptions; i++) {
-    const lag_method_option *o = &m->options[i];
-    char number[32];
-    snprintf(number, sizeof number, "%g", o->value);
-    fprintf(f, "      %s = %s: %s\n", o->name, o->choices ? o->choices[(int)o->value] : number, o->doc);
+  char text[400];
+
+  snprintf(text, sizeof text, "%s: %s%s", m->name, m->doc, saved(m));
+  putc('\n', f);
+  wrapped(f, text, 2, 4);
+  options(m, f, 6);
+}
+
+int app_explain_method(const App *app, const char *name, FILE *f)
+{
+  char order[32], dense[32], text[500];
+
+  for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
+    const lag_method *m = method(app, i);
+    unsigned is = m->flags;
+    if (strcmp(m->name, name) != 0) {
+      continue;
+    }
+    snprintf(text, sizeof text, "%s, of order %s (dense output %s), %s steps%s%s%s%s%s.", m->name, order_text(m, m->order, order, sizeof order),
+             order_text(m, m->dense_order, dense, sizeof dense), is & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed",
+             is & LAG_METHOD_SYMPLECTIC ? ", symplectic" : "", is & LAG_METHOD_SYMMETRIC ? ", symmetric" : "",
+             is & LAG_METHOD_CONSERVATIVE ? ", for models without forces, explicit time and states"
+             : is & LAG_METHOD_NO_STATES ? ", for models without states" : "",
+             is & LAG_METHOD_SPLITS ? "; Newton's method where the model is not separable" : is & LAG_METHOD_NEWTON ? "; Newton's method" : "",
+             saved(m));
+    wrapped(f, text, 0, 0);
+    wrapped(f, m->doc, 0, 0);
+    options(m, f, 2);
+    return 1;
   }
+  return 0;
 }
 
 void app_list_methods(const App *app, FILE *f)
 {
-  fprintf(f, "  %-16s  %-5s  %-5s  %-8s  %-21s  %-16s  %-6s  %-6s  %s\n", "method", "order", "dense", "steps", "keeps", "Newton's method",
-          "forces", "states", "tangent");
+  fprintf(f, "  %-16s  %-5s  %-5s  %-8s  %-12s  %-6s  %-6s  %-6s  %s\n", "method", "order", "dense", "steps", "keeps", "Newton", "forces", "states", "tangent");
   for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
-    row(i < lag_nmethods ? lag_methods[i] : app->extras.methods[i - lag_nmethods], f);
+    row(method(app, i), f);
   }
-  fputs("\nWhere none is named, a run chooses and says why. dense: order between steps. forces: whether the model may have forces\n"
-        "and explicit time; what a symplectic method keeps without them it does not keep with them. states: whether it may have\n"
-        "a `state`. tangent: whether its steps have a derivative (--tangent, lagc lyapunov). separable: with constant mass matrix, and\n"
-        "accelerations that do not depend on velocities. Options, with their defaults:\n", f);
+  putc('\n', f);
+  wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. sympl., sym.: symplectic and symmetric. Newton: whether each step solves "
+             "equations by Newton's method; partly: unless the model is separable, with constant mass matrix, and accelerations that do not "
+             "depend on velocities. forces: whether the model may have forces and explicit time; what a symplectic method keeps without "
+             "them it does not keep with them. states: whether it may have a `state`. tangent: whether its steps have a derivative (--tangent, lagc lyapunov). Options, with their defaults:", 0, 0);
   for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
-    words(i < lag_nmethods ? lag_methods[i] : app->extras.methods[i - lag_nmethods], f);
+    words(method(app, i), f);
   }
 }

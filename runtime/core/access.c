@@ -132,28 +132,39 @@ double lag_sim_output_info(const lag_sim *s, int i, char *name, size_t nname, ch
   return put_info(&s->scene->outputs[i], 0, name, nname, unit, nunit);
 }
 
-int lag_sim_outputs(lag_sim *s, double *out)
+static int outputs(lag_sim *s, double t, const double *y, double *out)
 {
   const lag_scene *c = s->scene;
   int rc = 0, nout = lag_sim_noutputs(s);
-  const double *y = s->now;
 
   if (c->nout > 0) {
-    rc = lag_inputs(&s->pb, s->run->t);
-    rc = rc ? rc : lag_exact_at(s, s->run->t);
-    rc = rc ? rc : c->observe(s->run->t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
+    rc = lag_inputs(&s->pb, t);
+    rc = rc ? rc : lag_exact_at(s, t);
+    rc = rc ? rc : c->observe(t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
     if (rc) {
-      return lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN, "the outputs cannot be computed at t = %.17g s", s->run->t);
+      return lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN, "the outputs cannot be computed at t = %.17g s", t);
     }
   } else {
     for (int i = 0; i < nout; i++) {
-      out[i] = lag_sim_state_value(s, i);
+      out[i] = lag_sim_declared(s, i, y[i]);
     }
   }
   for (int i = 0; i < c->nout; i++) {
     out[i] = lag_declared(&c->outputs[i], out[i]);
   }
   return LAG_OK;
+}
+
+int lag_sim_outputs(lag_sim *s, double *out)
+{
+  return outputs(s, s->run->t, s->now, out);
+}
+
+int lag_sim_outputs_at(lag_sim *s, double t, double *y, double *out)
+{
+  int rc = lag_sim_eval(s, t, y);
+
+  return rc ? rc : outputs(s, t, y, out);
 }
 
 size_t lag_sim_save_size(const lag_sim *s)

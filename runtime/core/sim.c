@@ -171,9 +171,10 @@ static int pass(lag_sim *s)
   return LAG_OK;
 }
 
-int lag_sim_advance(lag_sim *s, double t)
+/* Whether a run can go on to t; it begins here. */
+static int ready(lag_sim *s, double t)
 {
-  Run *r = s->run;
+  const Run *r = s->run;
   int rc = 0;
 
   if (!isfinite(t)) {
@@ -182,27 +183,54 @@ int lag_sim_advance(lag_sim *s, double t)
   if (r->begun == 0.0 && (rc = begin(s, t)) != 0) {
     return rc;
   }
-  if ((t - r->t) * r->dir < 0) {
-    return lag_fail(s, LAG_EINVAL, "cannot go from t = %g back to %g", r->t, t);
+  return (t - r->t) * r->dir < 0 ? lag_fail(s, LAG_EINVAL, "cannot go from t = %g back to %g", r->t, t) : LAG_OK;
+}
+
+/* Ends the step under way, or makes one. */
+static int go_on(lag_sim *s, double t)
+{
+  int rc;
+
+  if (s->run->have_step != 0.0) {
+    rc = pass(s);
+    int bad = rc < 0 ? rc : lag_tangent_pass(s);
+    rc = bad ? bad : rc;
+  } else {
+    rc = take(s, t);
   }
+  if (rc == 0 && s->run->have_step == 0.0 && s->on_step && s->on_step(s->on_step_context, s)) {
+    rc = LAG_INTERRUPTED;
+  }
+  return rc;
+}
+
+int lag_sim_advance(lag_sim *s, double t)
+{
+  const Run *r = s->run;
+  int rc = ready(s, t);
+
   while (rc == 0) {
     if (r->have_step != 0.0 && (r->limit - t) * r->dir >= 0) {
       settle(s, t);
       return LAG_OK;
     }
-    if (r->have_step != 0.0) {
-      rc = pass(s);
-      int bad = rc < 0 ? rc : lag_tangent_pass(s);
-      rc = bad ? bad : rc;
-    } else if (r->t == t) {
+    if (r->have_step == 0.0 && r->t == t) {
       return LAG_OK;
-    } else {
-      rc = take(s, t);
     }
-    if (rc == 0 && r->have_step == 0.0 && s->on_step && s->on_step(s->on_step_context, s)) {
-      rc = LAG_INTERRUPTED;
-    }
+    rc = go_on(s, t);
   }
+  return rc;
+}
+
+int lag_sim_reach(lag_sim *s, double t, double *reach)
+{
+  const Run *r = s->run;
+  int rc = ready(s, t);
+
+  while (rc == 0 && r->t != t && (r->have_step == 0.0 || r->limit == r->t)) {
+    rc = go_on(s, t);
+  }
+  *reach = r->t == t || rc ? r->t : (r->limit - t) * r->dir < 0 ? r->limit : t;
   return rc;
 }
 

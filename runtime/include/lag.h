@@ -251,6 +251,11 @@ int lag_sim_set_input(lag_sim *sim, const char *name, lag_input_fn *fn, void *co
  * LAG_OK: the state is at t. LAG_STOPPED, LAG_INTERRUPTED: at lag_sim_time(). < 0: failure. */
 int lag_sim_advance(lag_sim *sim, double t);
 
+/* Makes the step that leads on from the present state towards t, unless it is made: up to *reach, lag_sim_eval and
+ * lag_sim_outputs_at know the motion. *reach is t, the step's end or the next event, whichever is first. An event at the
+ * present time happens here. Returns what lag_sim_advance would; then *reach is lag_sim_time(). */
+int lag_sim_reach(lag_sim *sim, double t, double *reach);
+
 /* y[n] at time t within the last step and not after the next event, else LAG_EINVAL. Moves nothing; may call the
  * model. */
 int lag_sim_eval(lag_sim *sim, double t, double *y);
@@ -280,6 +285,8 @@ double lag_sim_state_value(const lag_sim *sim, int i);
 double lag_sim_output_info(const lag_sim *sim, int i, char *name, size_t nname, char *unit, size_t nunit);
 /* out[noutputs] at the present state, in declared units. */
 int lag_sim_outputs(lag_sim *sim, double *out);
+/* The same at a time that lag_sim_eval knows; y[n] is the state there. */
+int lag_sim_outputs_at(lag_sim *sim, double t, double *y, double *out);
 
 /* The tangent of the flow: Y[n * k], row by row, of which each column is a small change of the state, carried along exactly, as
  * the derivative of what the method computes. From here on Y is what it is now, NULL (k = n): the identity, so that it

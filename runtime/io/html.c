@@ -1,6 +1,6 @@
 /* An animation. Enters: a table of rows, and which of its columns are the points; leaves: one HTML file that needs
- * nothing else (its page is page.html, turned into C by the Makefile). Holds: coordinates are written as whole numbers,
- * a hundred thousandth of the largest extent each: finer than any screen. */
+ * nothing else (its page is page.html, turned into C by the Makefile). Holds: a row is a frame; coordinates are written as
+ * whole numbers, a hundred thousandth of the largest extent each: finer than any screen. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "io/io.h"
 #include "io/page.h"
 
-enum { GRAINS = 100000, MOST_FRAMES = 2000 };
+enum { GRAINS = 100000, TICKS = 1000000000 };
 
 static double cell(const Table *t, size_t row, int col)
 {
@@ -68,26 +68,53 @@ static double choose_speed(double span)
   return nice_step(0, span, 20);
 }
 
-int html_frames(double span)
+/* How fast it can be followed: frames are as near to each other as the motion needs, some seventy in a swing, and about
+ * four swings a second can be told apart. */
+static double watchable(const Table *t, double span)
 {
-  double n = 60 * span / choose_speed(span);
+  enum { FRAMES_A_SECOND = 280 };
+  double speed = choose_speed(span), most = t->nrows ? FRAMES_A_SECOND * span / (double)t->nrows : 0;
 
-  return n < 300 ? 300 : n < MOST_FRAMES ? (int)n : MOST_FRAMES;
+  return most > 0 && speed > most ? nice_step(0, most / 1.6, 1) : speed;
 }
 
-static void put_data(FILE *f, const Table *t, const Animation *a)
+/* Whether what goes across is no place: numbers without unit that stand still, as those of the masses of a string are. */
+static int counts(const Table *t, const Animation *a)
 {
-  size_t n = t->nrows, every = n > MOST_FRAMES ? (n + MOST_FRAMES - 2) / (MOST_FRAMES - 1) : 1;
-  double t0 = n ? cell(t, 0, 0) : 0, t1 = n ? cell(t, n - 1, 0) : 0, zero, scale;
-  double dt = n > 1 ? (double)every * (cell(t, 1, 0) - t0) : 0;
+  int differ = 0;
 
-  choose_grain(t, a, &zero, &scale);
-  fprintf(f, "{\"t0\": %.17g, \"dt\": %.17g, \"t1\": %.17g, \"speed\": %.6g, \"zero\": %.17g, \"scale\": %.17g,\n", t0, dt, t1,
-          choose_speed(fabs(t1 - t0)), zero, scale);
-  fprintf(f, "\"rods\": %s, \"trace\": %s, \"from\": %s, \"unit\": ", a->rods ? "true" : "false", a->trace ? "true" : "false",
-          a->from ? "true" : "false");
-  script_string(f, a->unit);
-  fputs(", \"names\": [", f);
+  for (int i = 0; i < a->npoints; i++) {
+    int x = a->cols[2 * i];
+    if (t->cols[x].unit[0] || x == 0) {
+      return 0;
+    }
+    for (size_t k = 1; k < t->nrows; k++) {
+      if (cell(t, k, x) != cell(t, 0, x)) {
+        return 0;
+      }
+    }
+    differ |= t->nrows && cell(t, 0, x) != cell(t, 0, a->cols[0]);
+  }
+  return differ;
+}
+
+/* Times between frames, in ticks. */
+static void put_times(FILE *f, const Table *t, double t0, double tick)
+{
+  double before = 0;
+
+  fputs("\"dt\": [", f);
+  for (size_t i = 1; i < t->nrows; i++) {
+    double at = nearbyint((cell(t, i, 0) - t0) / tick);
+    fprintf(f, i > 1 ? ",%.0f" : "%.0f", at - before);
+    before = at;
+  }
+  fputs("],\n", f);
+}
+
+static void put_names(FILE *f, const Table *t, const Animation *a)
+{
+  fputs("\"names\": [", f);
   for (int i = 0; i < a->npoints; i++) {
     fputs(i ? ", [" : "[", f);
     script_string(f, t->cols[a->cols[2 * i]].name);
@@ -95,8 +122,27 @@ static void put_data(FILE *f, const Table *t, const Animation *a)
     script_string(f, t->cols[a->cols[2 * i + 1]].name);
     putc(']', f);
   }
-  fputs("],\n\"v\": [", f);
-  for (size_t i = 0; i < n; i = i + every < n || i == n - 1 ? i + every : n - 1) {
+  fputs("],\n", f);
+}
+
+static void put_data(FILE *f, const Table *t, const Animation *a)
+{
+  size_t n = t->nrows;
+  double t0 = n ? cell(t, 0, 0) : 0, t1 = n ? cell(t, n - 1, 0) : 0, tick = t1 != t0 ? (t1 - t0) / TICKS : 1, zero, scale;
+
+  choose_grain(t, a, &zero, &scale);
+  fprintf(f, "{\"t0\": %.17g, \"tick\": %.17g, \"t1\": %.17g, \"speed\": %.6g, \"zero\": %.17g, \"scale\": %.17g,\n", t0, tick, t1,
+          watchable(t, fabs(t1 - t0)), zero, scale);
+  fprintf(f, "\"rods\": %s, \"trace\": %s, \"from\": %s, \"unit\": ", a->rods ? "true" : "false", a->trace ? "true" : "false",
+          a->from ? "true" : "false");
+  script_string(f, a->unit);
+  fprintf(f, ", \"free\": %s, \"note\": ", counts(t, a) ? "true" : "false");
+  script_string(f, a->note ? a->note : "");
+  fputs(", ", f);
+  put_names(f, t, a);
+  put_times(f, t, t0, tick);
+  fputs("\"v\": [", f);
+  for (size_t i = 0; i < n; i++) {
     for (int k = 0; k < 2 * a->npoints; k++) {
       double x = (cell(t, i, a->cols[k]) - zero) / scale;
       fputs(k ? "," : i ? ",\n" : "", f);

@@ -37,6 +37,8 @@ typedef struct Table {
 int table_init(Table *t, const lag_sim *sim, int keep);
 void table_free(Table *t);
 int table_add(Table *t, const double *row);
+/* The time in years, days or hours where the rows span two of them or more, for pictures; as it is where nothing has a unit. */
+void table_long_time(Table *t);
 
 /* Rows to a file: .npy by its suffix, else CSV. */
 typedef struct Rows {
@@ -52,11 +54,46 @@ int rows_open(Rows *r, const char *path, const Table *t);
 int rows_write(Rows *r, const double *row);
 int rows_close(Rows *r, int keep);
 
+/* The rows that a picture needs, of those that are added: straight lines between them miss no row by more than a part
+ * of the range of each column that is drawn. */
+typedef struct Thin {
+  Table *table;    /* where they go; with store 0 they are only counted */
+  int store;
+  double part;     /* of the range that is not seen */
+  double longest;  /* time between two of them */
+  int common;      /* the columns share one scale, the widest range's */
+  size_t kept;
+  int ndrawn, *drawn;   /* [ncols], the columns */
+  double *memory, *low, *high, *least, *most, *from, *last, *width; /* [ncols] each */
+  int have_last;
+} Thin;
+
+/* -1: no memory. Free it with thin_free in any case. */
+int thin_init(Thin *w, Table *t, int store, double part, double longest);
+void thin_free(Thin *w);
+/* The column is drawn. */
+void thin_draw(Thin *w, int col);
+/* Widens the ranges by a row. A row must be seen before it is added. */
+void thin_see(Thin *w, const double *row);
+/* Whether the row `between` two others lies on the line that joins them, as far as one can see. */
+int thin_straight(const Thin *w, const double *a, const double *b, const double *between);
+/* Rows in the order of time; the last is kept by thin_end, after which more may follow. -1: no memory. */
+int thin_add(Thin *w, const double *row);
+int thin_end(Thin *w);
+/* Keeps fewer rows: doubles the part until at most `most` are left, or it is 1/2. -1: no memory. */
+int thin_again(Thin *w, size_t most);
+
 /* Ticks: a round step (1, 2, 5 times a power of ten) of which about n fit between lo and hi. */
 double nice_step(double lo, double hi, int n);
 
-/* The columns named x and y (NULL: all against t) as SVG. -1 with errno set. */
-int svg_write(const char *path, const Table *t, const char *title, int x, int y);
+/* What a picture draws: column y[i] against column x[i]. Column 0 is the time. */
+typedef struct Drawn {
+  int n, *x, *y;
+  const char *xname, *yname; /* of what has several columns; NULL: everything against the time */
+} Drawn;
+
+/* As SVG. -1 with errno set. */
+int svg_write(const char *path, const Table *t, const char *title, const Drawn *d);
 
 /* Points (x, y), all positive, joined in their order. */
 typedef struct Series {
@@ -68,10 +105,8 @@ typedef struct Series {
 /* Curves of points on two logarithmic axes, each with its name beside it. -1 with errno set. */
 int svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n);
 
-void sketch_print(FILE *f, const Table *t);
-
-/* The same for one column against another. */
-void sketch_path(FILE *f, const Table *t, int col_x, int col_y);
+/* The same as text, the first few of them. */
+void sketch(FILE *f, const Table *t, const Drawn *d);
 
 /* What an animation shows: points whose x and y are columns, in one unit. */
 typedef struct Animation {
@@ -80,12 +115,11 @@ typedef struct Animation {
   int from;         /* the first point is where the first rod begins, and no body */
   int rods, trace;
   const char *unit;
+  const char *note; /* for those who watch, or "" */
 } Animation;
 
 /* The table as a page that plays it. -1 with errno set. */
 int html_write(const char *path, const Table *t, const char *title, const Animation *a);
-/* How many frames suit a run of so many seconds. */
-int html_frames(double span);
 
 /* JSON text: a string in quotes or null; a number with 17 digits or null. */
 void json_string(FILE *f, const char *s);

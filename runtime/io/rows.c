@@ -5,6 +5,7 @@
  * longest has); the field's title is "name [unit]": a = numpy.load("f.npy"); a["th"], a["th [deg]"], a.dtype.fields. Format: NumPy
  * Enhancement Proposal 1; version 1.0, and 3.0 where a name is not ASCII. */
 #include <errno.h>
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,6 +52,29 @@ int table_add(Table *t, const double *row)
   memcpy(t->data + t->nrows * (size_t)t->ncols, row, (size_t)t->ncols * sizeof *row);
   t->nrows++;
   return 0;
+}
+
+void table_long_time(Table *t)
+{
+  static const struct {
+    double seconds;
+    const char *name;
+  } units[] = {{31557600, "yr"}, {86400, "d"}, {3600, "h"}};
+  double span = t->nrows ? fabs(t->data[(t->nrows - 1) * (size_t)t->ncols] - t->data[0]) : 0;
+  int has_units = 0;
+
+  for (int i = 1; i < t->ncols; i++) {
+    has_units |= t->cols[i].unit[0] && strcmp(t->cols[i].unit, "rad") != 0;
+  }
+  for (size_t k = 0; k < sizeof units / sizeof *units && has_units; k++) {
+    if (span >= 2 * units[k].seconds) {
+      for (size_t i = 0; i < t->nrows; i++) {
+        t->data[i * (size_t)t->ncols] /= units[k].seconds;
+      }
+      strcpy(t->cols[0].unit, units[k].name);
+      return;
+    }
+  }
 }
 
 /* RFC 4180: quoted when it holds a comma, a quote or a line break; a quote is doubled. */

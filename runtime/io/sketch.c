@@ -131,7 +131,7 @@ static void same_scale(Chart *c)
   c->y1 += more_y;
 }
 
-void sketch_path(FILE *f, const Table *t, int col_x, int col_y)
+static void path(FILE *f, const Table *t, int col_x, int col_y)
 {
   Chart c = {.rows = MOST_ROWS};
 
@@ -145,21 +145,32 @@ void sketch_path(FILE *f, const Table *t, int col_x, int col_y)
   print_x_axis(f, &c, &t->cols[col_x]);
 }
 
-void sketch_print(FILE *f, const Table *t)
+static void against_time(FILE *f, const Table *t, const Drawn *d, int n)
 {
-  int n = t->ncols - 1 < MOST_CHARTS ? t->ncols - 1 : MOST_CHARTS;
-
-  for (int k = 1; k <= n; k++) {
+  for (int k = 0; k < n; k++) {
     Chart c = {.rows = n == 1 ? CHART_ROWS : n <= 3 ? CHART_ROWS / 2 : 5};
     range(t, 0, 0, &c.x0, &c.x1);
-    range(t, k, 1e-4, &c.y0, &c.y1); /* the labels of the axis have four digits */
-    draw(&c, t, 0, k);
-    print_chart(f, &c, &t->cols[k]);
-    if (k == n) {
+    range(t, d->y[k], 1e-4, &c.y0, &c.y1); /* the labels of the axis have four digits */
+    draw(&c, t, 0, d->y[k]);
+    print_chart(f, &c, &t->cols[d->y[k]]);
+    if (k == n - 1) {
       print_x_axis(f, &c, &t->cols[0]);
     }
   }
-  if (t->ncols - 1 > n) {
-    fprintf(f, "%13s(and %d more columns)\n", "", t->ncols - 1 - n);
+}
+
+void sketch(FILE *f, const Table *t, const Drawn *d)
+{
+  int n = d->n < MOST_CHARTS ? d->n : MOST_CHARTS;
+
+  if (d->yname && (d->n == 1 || d->x[0] != 0)) {
+    for (int k = 0; k < n; k++) {
+      path(f, t, d->x[k], d->y[k]);
+    }
+  } else {
+    against_time(f, t, d, n);
+  }
+  if (d->n > n) {
+    fprintf(f, "%13s(and %d more columns)\n", "", d->n - n);
   }
 }

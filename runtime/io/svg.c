@@ -1,6 +1,7 @@
 /* A picture of a run. Enters: a table of rows; leaves: an SVG file: one panel for each unit against a common
  * time axis, or one panel with one column against another. Holds: a curve of more points than the panel is wide is
- * thinned to the least and largest value of each pixel column, so that no peak is lost. */
+ * thinned to the least and largest value of each pixel column, so that no peak is lost; a path to the corners between which
+ * straight lines stray by less than a quarter of a pixel. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -8,10 +9,18 @@
 
 #include "io/io.h"
 
-enum { WIDTH = 860, LEFT = 84, RIGHT = 150, TOP = 44, GAP = 26, BOTTOM = 52, MOST_PANELS = 6, MOST_LEGEND = 12 };
+enum { WIDTH = 860, LEFT = 84, RIGHT = 150, TOP = 50, GAP = 26, BOTTOM = 52, MOST_PANELS = 6, MOST_LEGEND = 24, MOST_NAME = 48 };
 
 /* Eight colours that differ for all kinds of colour vision (Okabe and Ito), yellow darkened. */
 static const char *const colour[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7f00", "#444444"};
+
+/* Series k: its colour; the second eight are dashed, the third dotted. */
+static void stroke_of(int k, char *text, size_t n)
+{
+  static const char *const dashes[] = {"", " stroke-dasharray=\"5 3\"", " stroke-dasharray=\"1.5 2.5\""};
+
+  snprintf(text, n, "stroke=\"%s\"%s", colour[k % 8], dashes[k / 8 % 3]);
+}
 
 typedef struct Panel {
   double x, y, w, h;         /* on paper */
@@ -182,115 +191,237 @@ static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, co
   fputs("\"/>\n", f);
 }
 
-static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, const char *stroke)
+/* Against time: each pixel column's least and largest value. */
+static void graph(FILE *f, const Panel *p, const Table *t, int ycol)
 {
-  if (t->points) {
-    dots(f, p, t, xcol, ycol, stroke);
-    return;
-  }
-  size_t per = xcol == 0 ? t->nrows / (size_t)(2 * p->w) : t->nrows / 20000;
+  size_t per = t->nrows / (size_t)(2 * p->w);
   int pen = 0;
 
-  fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"", stroke);
   for (size_t i = 0; i < t->nrows; i += per + 1) {
     size_t lo = i, hi = i, end = i + per + 1 < t->nrows ? i + per + 1 : t->nrows;
-    for (size_t j = i + 1; j < end && xcol == 0; j++) {
+    for (size_t j = i + 1; j < end; j++) {
       lo = cell(t, j, ycol) < cell(t, lo, ycol) ? j : lo;
       hi = cell(t, j, ycol) > cell(t, hi, ycol) ? j : hi;
     }
     size_t first = lo < hi ? lo : hi, second = lo < hi ? hi : lo;
-    point(f, p, cell(t, first, xcol), cell(t, first, ycol), &pen);
+    point(f, p, cell(t, first, 0), cell(t, first, ycol), &pen);
     if (second != first) {
-      point(f, p, cell(t, second, xcol), cell(t, second, ycol), &pen);
+      point(f, p, cell(t, second, 0), cell(t, second, ycol), &pen);
     }
+  }
+}
+
+/* The directions from a corner on paper whose line passes all points since, and how far it has gone. */
+typedef struct Sight {
+  double x, y, first, low, high, farthest;
+} Sight;
+
+/* Whether the line from the corner can go on to a point; if so, it must pass near it from now on. */
+static int in_sight(Sight *s, double x, double y)
+{
+  const double near = 0.25, turn = 2 * acos(-1);
+  double r = hypot(x - s->x, y - s->y), way = atan2(y - s->y, x - s->x);
+
+  if (r <= near) {
+    return s->farthest <= near;
+  }
+  if (s->farthest <= near) {
+    s->first = way;
+    s->low = -HUGE_VAL;
+    s->high = HUGE_VAL;
+  }
+  way = remainder(way - s->first, turn);
+  if (way < s->low || way > s->high || r < s->farthest - near) {
+    return 0;
+  }
+  s->low = fmax(s->low, way - asin(near / r));
+  s->high = fmin(s->high, way + asin(near / r));
+  s->farthest = fmax(s->farthest, r);
+  return 1;
+}
+
+/* One column against another, or few rows: the corners. */
+static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol)
+{
+  Sight s = {0};
+  size_t last = 0, drawn = 0;
+  int pen = 0;
+
+  for (size_t i = 0; i < t->nrows; i++) {
+    double x = px(p, cell(t, i, xcol)), y = py(p, cell(t, i, ycol));
+    int gap = !isfinite(x) || !isfinite(y), begins = !pen;
+    if (pen && (gap || !in_sight(&s, x, y)) && drawn < last) {
+      point(f, p, cell(t, last, xcol), cell(t, last, ycol), &pen);
+      s = (Sight){.x = px(p, cell(t, last, xcol)), .y = py(p, cell(t, last, ycol))};
+      drawn = last;
+      in_sight(&s, x, y);
+    }
+    if (gap || begins) {
+      point(f, p, cell(t, i, xcol), cell(t, i, ycol), &pen);
+      s = (Sight){.x = x, .y = y};
+      drawn = i;
+    }
+    last = i;
+  }
+  if (pen && drawn < last) {
+    point(f, p, cell(t, last, xcol), cell(t, last, ycol), &pen);
+  }
+}
+
+static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, int k)
+{
+  char stroke[64];
+
+  if (t->points) {
+    dots(f, p, t, xcol, ycol, colour[k % 8]);
+    return;
+  }
+  stroke_of(k, stroke, sizeof stroke);
+  fprintf(f, "<path fill=\"none\" %s stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"", stroke);
+  if (xcol == 0 && t->nrows > (size_t)(2 * p->w)) {
+    graph(f, p, t, ycol);
+  } else {
+    path(f, p, t, xcol, ycol);
   }
   fputs("\"/>\n", f);
 }
 
-static void label_of(const Column *c, char *s, size_t n)
+/* A text of at most `most` characters: a long one is cut. */
+static void cut(const char *from, int most, char *s, size_t n)
 {
-  snprintf(s, n, c->unit[0] ? "%s [%s]" : "%s", c->name, c->unit);
+  int chars = 0;
+  size_t i = 0;
+
+  for (; from[i] && i + 4 < n; i++) {
+    int begins = ((unsigned char)from[i] & 0xC0) != 0x80;
+    if (begins && chars == most - 3 && strlen(from + i) > 3) {
+      memcpy(s + i, "...", 4);
+      return;
+    }
+    chars += begins;
+    s[i] = from[i];
+  }
+  s[i] = '\0';
 }
 
-/* All columns of one unit. */
-static void unit_panel(FILE *f, const Table *t, Panel *p, const char *unit, int last)
+/* Name and unit in `room` pixels: a long name is cut, the unit stays. */
+static void label_of(const char *name, const char *unit, double room, char *s, size_t n)
+{
+  const double width_of_character = 8;
+  char short_name[96];
+
+  cut(name, (int)(room / width_of_character) - (int)strlen(unit) - 3, short_name, sizeof short_name);
+  snprintf(s, n, unit[0] ? "%s [%s]" : "%s", short_name, unit);
+}
+
+/* Line i of a legend of `total` series, of which `room` lines have place. */
+static void legend(FILE *f, const Panel *p, int i, int total, int room, int k, const char *name)
+{
+  char stroke[64], s[160];
+  double y = p->y + 12 + 18 * i, x = p->x + p->w + 14;
+
+  if (i + 1 < room || (i + 1 == room && total == room)) {
+    stroke_of(k, stroke, sizeof stroke);
+    fprintf(f, "<path d=\"M%.1f %.1fh20\" %s stroke-width=\"2.5\"/>\n", x, y, stroke);
+    cut(name, MOST_NAME, s, sizeof s);
+    text(f, x + 27, y + 4, "", s);
+  } else if (i + 1 == room) {
+    snprintf(s, sizeof s, "and %d more", total - i);
+    text(f, x, y + 4, "", s);
+  }
+}
+
+static int legend_room(const Panel *p)
+{
+  return (int)(p->h / 18) < MOST_LEGEND ? (int)(p->h / 18) : MOST_LEGEND;
+}
+
+/* All series of one unit. */
+static void unit_panel(FILE *f, const Table *t, const Drawn *d, Panel *p, const char *unit, int last)
 {
   char s[176];
   int shown = 0, total = 0;
 
   p->y0 = HUGE_VAL;
   p->y1 = -HUGE_VAL;
-  for (int c = 1; c < t->ncols; c++) {
-    if (strcmp(t->cols[c].unit, unit) == 0) {
-      range_of(t, c, &p->y0, &p->y1);
+  for (int i = 0; i < d->n; i++) {
+    if (strcmp(t->cols[d->y[i]].unit, unit) == 0) {
+      range_of(t, d->y[i], &p->y0, &p->y1);
       total++;
     }
   }
   widen(&p->y0, &p->y1, 0.06);
   snprintf(s, sizeof s, "[%s]", unit);
   axes(f, p, unit[0] ? s : "", last);
-  int room = (int)(p->h / 18) < MOST_LEGEND ? (int)(p->h / 18) : MOST_LEGEND;
-  for (int c = 1; c < t->ncols; c++) {
-    if (strcmp(t->cols[c].unit, unit) != 0) {
-      continue;
+  for (int i = 0; i < d->n; i++) {
+    const Column *c = &t->cols[d->y[i]];
+    if (strcmp(c->unit, unit) == 0) {
+      curve(f, p, t, 0, d->y[i], i);
+      legend(f, p, shown++, total, legend_room(p), i, c->name);
     }
-    const char *stroke = colour[(c - 1) % 8];
-    double y = p->y + 12 + 18 * shown, x = p->x + p->w + 14;
-    curve(f, p, t, 0, c, stroke);
-    if (shown + 1 < room || (shown + 1 == room && total == room)) {
-      fprintf(f, "<path d=\"M%.1f %.1fh20\" stroke=\"%s\" stroke-width=\"2.5\"/>\n", x, y, stroke);
-      text(f, x + 27, y + 4, "", t->cols[c].name);
-    } else if (shown + 1 == room) {
-      snprintf(s, sizeof s, "and %d more", total - shown);
-      text(f, x, y + 4, "", s);
-    }
-    shown++;
   }
 }
 
-static void head(FILE *f, int height, const char *title)
+/* How much room the longest name of the legend takes, on the right of the panels. */
+static int legend_width(const Table *t, const Drawn *d)
+{
+  enum { KEY = 41, CHARACTER = 8 };
+  int most = (RIGHT - KEY) / CHARACTER;
+  char s[sizeof t->cols->name];
+
+  for (int i = 0; i < d->n; i++) {
+    cut(t->cols[d->y[i]].name, MOST_NAME, s, sizeof s);
+    most = (int)strlen(s) > most ? (int)strlen(s) : most;
+  }
+  return KEY + CHARACTER * most;
+}
+
+static void head(FILE *f, int width, int height, const char *title)
 {
   fprintf(f,
           "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" "
           "font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"12\" fill=\"#333\">\n<title>",
-          WIDTH, height, WIDTH, height);
+          width, height, width, height);
   io_markup(f, title);
   fprintf(f,
           "</title>\n<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:13px}</style>\n"
           "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
-          WIDTH, height);
+          width, height);
   text(f, LEFT, 26, "font-size=\"15\" font-weight=\"bold\"", title);
 }
 
 /* The distinct units, in order of first use, at most MOST_PANELS. */
-static int units_of(const Table *t, const char *units[MOST_PANELS])
+static int units_of(const Table *t, const Drawn *d, const char *units[MOST_PANELS])
 {
   int n = 0;
 
-  for (int c = 1; c < t->ncols; c++) {
+  for (int i = 0; i < d->n; i++) {
+    const char *unit = t->cols[d->y[i]].unit;
     int k = 0;
-    while (k < n && strcmp(units[k], t->cols[c].unit) != 0) {
+    while (k < n && strcmp(units[k], unit) != 0) {
       k++;
     }
     if (k == n && n < MOST_PANELS) {
-      units[n++] = t->cols[c].unit;
+      units[n++] = unit;
     }
   }
   return n;
 }
 
-static void against_time(FILE *f, const Table *t, const char *title)
+static void against_time(FILE *f, const Table *t, const char *title, const Drawn *d)
 {
   const char *units[MOST_PANELS];
-  int n = units_of(t, units);
+  char xlabel[176];
+  int n = units_of(t, d, units);
   double h = n == 1 ? 380 : n == 2 ? 230 : 170;
-  Panel p = {.x = LEFT, .y = TOP, .w = WIDTH - LEFT - RIGHT, .h = h, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .xlabel = "t [s]"};
+  Panel p = {.x = LEFT, .y = TOP, .w = WIDTH - LEFT - RIGHT, .h = h, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .xlabel = xlabel};
 
-  head(f, TOP + (int)h * n + GAP * (n - 1) + BOTTOM, title);
+  label_of(t->cols[0].name, t->cols[0].unit, p.w, xlabel, sizeof xlabel);
+  head(f, LEFT + (int)p.w + legend_width(t, d), TOP + (int)h * n + GAP * (n - 1) + BOTTOM, title);
   range_of(t, 0, &p.x0, &p.x1);
   widen(&p.x0, &p.x1, 0);
   for (int k = 0; k < n; k++) {
-    unit_panel(f, t, &p, units[k], k == n - 1);
+    unit_panel(f, t, d, &p, units[k], k == n - 1);
     p.y += h + GAP;
   }
 }
@@ -306,6 +437,28 @@ static void same_scale(Panel *p)
   p->x1 = mx + scale * p->w / 2;
   p->y0 = my - scale * p->h / 2;
   p->y1 = my + scale * p->h / 2;
+}
+
+/* Whether one column is the rate of another: its name with a prime, or in parentheses with a prime. */
+static int is_rate(const char *rate, const char *of)
+{
+  size_t n = strlen(of);
+
+  rate += rate[0] == '(' && of[0] != '(';
+  return strncmp(rate, of, n) == 0 && (strcmp(rate + n, "'") == 0 || strcmp(rate + n, ")'") == 0);
+}
+
+/* Whether a step to the right is to be as long as the same step up: both are in one unit. Without units, where they are alike in
+ * size, and none is the rate of the other. */
+static int shares_scale(const Table *t, int x, int y, const Panel *p)
+{
+  const Column *a = &t->cols[x], *b = &t->cols[y];
+  double ratio = (p->x1 - p->x0) / (p->y1 - p->y0);
+
+  if (strcmp(a->unit, b->unit) != 0 || is_rate(a->name, b->name) || is_rate(b->name, a->name)) {
+    return 0;
+  }
+  return a->unit[0] || (ratio > 1. / 4 && ratio < 4);
 }
 
 static void mark(FILE *f, double x, double y, const char *fill)
@@ -328,39 +481,49 @@ static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y)
   }
 }
 
-static void one_against_other(FILE *f, const Table *t, const char *title, int x, int y)
+/* The label of an axis: the column's, or what several have in common. */
+static void axis_label(const Table *t, int n, const int *cols, const char *name, double room, char *s, size_t size)
+{
+  const char *unit = "";
+
+  for (int i = n; i-- > 0;) {
+    unit = t->cols[cols[i]].unit[0] ? t->cols[cols[i]].unit : unit;
+  }
+  label_of(n == 1 ? t->cols[cols[0]].name : name, unit, room, s, size);
+}
+
+static void paths(FILE *f, const Table *t, const char *title, const Drawn *d)
 {
   char xlabel[176], ylabel[176];
-  Panel p = {.x = LEFT, .y = TOP, .w = x ? 600 : WIDTH - LEFT - 30, .h = x ? 520 : 380,
+  int x = d->x[0];
+  Panel p = {.x = LEFT, .y = TOP, .w = x ? 600 : WIDTH - LEFT - 30, .h = x ? 520 : 380, .xlabel = xlabel,
              .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL};
 
-  label_of(&t->cols[x], xlabel, sizeof xlabel);
-  label_of(&t->cols[y], ylabel, sizeof ylabel);
-  p.xlabel = xlabel;
-  range_of(t, x, &p.x0, &p.x1);
-  range_of(t, y, &p.y0, &p.y1);
+  for (int i = 0; i < d->n; i++) {
+    range_of(t, d->x[i], &p.x0, &p.x1);
+    range_of(t, d->y[i], &p.y0, &p.y1);
+  }
   widen(&p.x0, &p.x1, x ? 0.05 : 0);
   widen(&p.y0, &p.y1, 0.05);
-  if (x && strcmp(t->cols[x].unit, t->cols[y].unit) == 0) {
+  if (x && shares_scale(t, d->x[d->n - 1], d->y[d->n - 1], &p)) {
     same_scale(&p);
   }
-  head(f, TOP + (int)p.h + BOTTOM, title);
+  axis_label(t, d->n, d->x, d->xname, p.w, xlabel, sizeof xlabel);
+  axis_label(t, d->n, d->y, d->yname, p.h + 40, ylabel, sizeof ylabel);
+  head(f, d->n > 1 ? LEFT + (int)p.w + legend_width(t, d) : WIDTH, TOP + (int)p.h + BOTTOM, title);
   axes(f, &p, ylabel, 1);
-  curve(f, &p, t, x, y, colour[0]);
-  if (x && !t->points) {
-    mark_ends(f, &p, t, x, y);
+  for (int i = 0; i < d->n; i++) {
+    curve(f, &p, t, d->x[i], d->y[i], i);
+    if (d->n > 1) {
+      legend(f, &p, i, d->n, legend_room(&p), i, t->cols[d->y[i]].name);
+    }
+  }
+  if (x && !t->points && d->n == 1) {
+    mark_ends(f, &p, t, x, d->y[0]);
   }
 }
 
 /* ---- Logarithmic charts */
-
-/* Series k: its colour; the second eight are dashed, the third dotted. */
-static void stroke_of(int k, char *text, size_t n)
-{
-  static const char *const dashes[] = {"", " stroke-dasharray=\"5 3\"", " stroke-dasharray=\"1.5 2.5\""};
-
-  snprintf(text, n, "stroke=\"%s\"%s", colour[k % 8], dashes[k / 8 % 3]);
-}
 
 static void series_curve(FILE *f, const Panel *p, const Series *s, int k)
 {
@@ -399,7 +562,7 @@ int svg_chart(const char *path, const char *title, const char *xlabel, const cha
   }
   widen(&p.x0, &p.x1, 0.04);
   widen(&p.y0, &p.y1, 0.04);
-  head(o.f, TOP + (int)p.h + BOTTOM, title);
+  head(o.f, WIDTH, TOP + (int)p.h + BOTTOM, title);
   axes(o.f, &p, ylabel, 1);
   for (int k = 0; k < n; k++) {
     char stroke[64];
@@ -413,17 +576,17 @@ int svg_chart(const char *path, const char *title, const char *xlabel, const cha
   return outfile_close(&o, 1);
 }
 
-int svg_write(const char *path, const Table *t, const char *title, int x, int y)
+int svg_write(const char *path, const Table *t, const char *title, const Drawn *d)
 {
   Outfile o;
 
   if (outfile_open(&o, path)) {
     return -1;
   }
-  if (y < 0) {
-    against_time(o.f, t, title);
+  if (!d->yname || (d->n > 1 && d->x[0] == 0)) {
+    against_time(o.f, t, title, d);
   } else {
-    one_against_other(o.f, t, title, x, y);
+    paths(o.f, t, title, d);
   }
   fputs("</svg>\n", o.f);
   return outfile_close(&o, 1);

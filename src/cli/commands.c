@@ -18,7 +18,7 @@ static const CommandRow commands[] = {
    "                        th=pi/3) or an input; a bare number is in the declared\n"
    "                        unit; drag.c=0.2 for one of an effect, m=3 for a family\n"
    "  u=FILE.csv            a table for the input u; 'u=2*sin(t/(1 [s]))' a formula"},
-  {CMD_PLOT, "plot", NULL, "MODEL [SCENE] [name=value ...] [--x EXPR --y EXPR | --phase EXPR]", "simulate and draw, as SVG",
+  {CMD_PLOT, "plot", "picture", "MODEL [SCENE] [name=value ...] [--x EXPR --y EXPR | --phase EXPR]", "simulate and draw, as SVG",
    "Runs the model and draws it: all outputs against time, or one quantity against another. "
    "EXPR is any expression of the model: th, energy, an observable, 'l1*sin(th1)', \"th1' - th2'\". "
    "The options of `lagc run` are options here too."},
@@ -26,7 +26,7 @@ static const CommandRow commands[] = {
    "simulate and show the motion, as one HTML file",
    "Runs the model and writes its motion as one HTML file, which needs no network and no other file: space plays and "
    "pauses, arrow keys step, the slider scrubs. The options of `lagc run` are options here too."},
-  {CMD_MODES, "modes", NULL, "MODEL [SCENE] [name=value ...] [--json]", "equilibrium, stability, frequencies, shapes and damping",
+  {CMD_MODES, "modes", "equilibrium", "MODEL [SCENE] [name=value ...] [--json]", "equilibrium, stability, frequencies, shapes and damping",
    "Finds the equilibrium next to the scene's start, says whether it is stable and by which argument, and prints small motion "
    "about it: frequencies, damping, shapes. The linearisation is exact.\n\n"
    "Velocities of the start do not matter. In a shape the coordinate with the largest kinetic energy is 1 of its declared "
@@ -97,12 +97,12 @@ static const OptionRow options[] = {
    "one more column: any expression of the model, --observe 'l*sin(th)'; can be repeated"},
   {"--section", NULL, "'EXPR rising'", TAKES_EXPR, "", C(RUN) | C(PLOT), OWN(section),
    "a Poincare section: one row, or one point, each time EXPR crosses zero; or falling, or crossing (both ways). For an angle that turns: 'sin(th2) rising'"},
-  {"--y", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(y), "draws this against time,"},
+  {"--y", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(y), "draws this against time, all members of a family,"},
   {"--x", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(x), "or against this: a path, with one scale for both axes where their units agree"},
   {"--phase", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(phase), "its rate against it: --phase th draws th' against th"},
   {"--points", NULL, "'X,Y X,Y'", TAKES_EXPR, "", C(ANIMATE), OWN(points),
-   "the points to draw, each two expressions, joined by rods in this order. Without it: the model's x,y; or x1,y1 x2,y2 ...; or "
-   "px,py; or what its only coordinate gives; or the vectors among its coordinates"},
+   "the points to draw, each two expressions, joined by rods in this order; of families all members. Without it: the model's x,y; or "
+   "x1,y1 x2,y2 ...; or px,py; or what its only coordinate gives; or the vectors among its coordinates; or a family, at its numbers"},
   {"--from", NULL, "'X,Y'", TAKES_EXPR, "", C(ANIMATE), OWN(from), "where the first rod begins; default: the origin"},
   {"--no-rods", NULL, NULL, TAKES_NOTHING, "", C(ANIMATE), OWN(no_rods), "points only"},
   {"--trace", NULL, NULL, TAKES_NOTHING, "", C(ANIMATE), PASSED, "the path of the last point, fading"},
@@ -133,7 +133,7 @@ static const OptionRow options[] = {
   {"--until", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "measure to time T [s]; default: 20 spans of the scene"},
   {"--transient", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "what is left out at the beginning [s]; default: a tenth"},
   {"--exponents", NULL, "K", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "only the K largest"},
-  {"--every", NULL, "DT", TAKES_NUMBER, "", SIMULATE, PASSED, "time between rows [s]; default: as the scene says, or a 1000th of the span"},
+  {"--every", NULL, "DT", TAKES_NUMBER, "", SIMULATE, PASSED, "time between rows [s]; default: as the scene says, or a 1000th of the span; in pictures, as the motion needs"},
   {"--tangent", NULL, NULL, TAKES_NOTHING, "", C(RUN), PASSED,
    "the tangent of the flow: how each coordinate, velocity and state follows those at the start, dx/dy(0), as columns more and in the report"},
   {"--svg", NULL, "FILE.svg", TAKES_FILE, "svg", SIMULATE, PASSED, "a picture of all output against time"},

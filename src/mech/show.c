@@ -76,15 +76,30 @@ static Expr shown(const Text *t, Expr x) {
   return t->e->n <= SHORT_MAX_COORDS ? simplify(t->g, x) : x;
 }
 
-/* Row i of M q'' as one expression. */
-static Expr mass_row(Text *t, uint32_t i) {
+/* The rows of M q'' as expressions, in time and memory in proportion to the entries that are not zero. */
+static const Expr *mass_rows(Text *t) {
   const Eqns *e = t->e;
-  Expr *terms = ARENA_ARRAY(e->m->arena, Expr, e->n);
-  for (uint32_t j = 0; j < e->n; j++) {
-    Expr m = shown(t, eqns_mass(e, i, j)), a = expr_symbol(t->g, e->m->coords.at[j].a)->node;
-    terms[j] = expr_mul(t->g, m, a);
+  uint32_t n = e->n, *next = ARENA_ARRAY(e->m->arena, uint32_t, n + 1), begin = 0;
+  Expr *rows = ARENA_ARRAY(e->m->arena, Expr, n + 1), *terms = ARENA_ARRAY(e->m->arena, Expr, 2 * (size_t)e->mass.n + 1);
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    const MassEntry *x = &e->mass.at[k];
+    next[x->row]++;
+    next[x->col] += x->row != x->col;
   }
-  return expr_add_n(t->g, terms, e->n);
+  for (uint32_t i = 0; i < n; i++) { /* from how many there are to where they begin */
+    uint32_t count = next[i];
+    next[i] = begin;
+    begin += count;
+  }
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    const MassEntry *x = &e->mass.at[k];
+    Expr m = shown(t, x->e), a = expr_symbol(t->g, e->m->coords.at[x->col].a)->node;
+    Expr b = expr_symbol(t->g, e->m->coords.at[x->row].a)->node;
+    terms[next[x->row]++] = expr_mul(t->g, m, a);
+    if (x->row != x->col) terms[next[x->col]++] = expr_mul(t->g, m, b);
+  }
+  for (uint32_t i = 0, from = 0; i < n; from = next[i++]) rows[i] = expr_add_n(t->g, terms + from, next[i] - from);
+  return rows;
 }
 
 static void momenta(Text *t) {
@@ -155,10 +170,8 @@ static void motion(Text *t) {
   const Model *m = e->m;
   if (e->n && !e->mass_known) lifted_motion(t);
   else heading(t, "equations of motion");
-  for (uint32_t i = 0; i < e->n && e->mass_known; i++) {
-    Expr row = mass_row(t, i);
-    equation(t, row, shown(t, e->f[i]), i + 1 == e->n && !m->states.n);
-  }
+  const Expr *rows = e->mass_known ? mass_rows(t) : NULL;
+  for (uint32_t i = 0; rows && i < e->n; i++) equation(t, rows[i], shown(t, e->f[i]), i + 1 == e->n && !m->states.n);
   for (uint32_t i = 0; i < m->states.n; i++)
     equation(t, expr_symbol(t->g, m->states.at[i].rate)->node, e->flow[i], i + 1 == m->states.n);
   end_block(t);

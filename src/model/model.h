@@ -180,6 +180,9 @@ typedef struct {
 } SceneList, EffectList;
 SceneList model_scenes(const Ast *ast);
 
+/* Whether the file has this scene; if not, a message in its diags names the nearest. */
+int model_has_scene(Ast *ast, const char *scene);
+
 /* The effects that no scene uses. */
 EffectList model_unused_effects(const Ast *ast);
 

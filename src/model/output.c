@@ -112,7 +112,7 @@ int add_outputs(Builder *b, AstId id) {
   Target p = read_target(b, id);
   const Entity *e = named(b, &p);
   Span span = ast_expr(b->ast, id)->span;
-  if (e && e->ndims && !p.indices && e->kind != ENT_NONE && p.part < 0) {
+  if (e && e->ndims && !p.indices && e->kind != ENT_NONE) {
     add_family(b, id, &p, e);
     return -1;
   }

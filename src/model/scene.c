@@ -55,21 +55,29 @@ static Name nearest(const Ast *ast, AstStmtKind kind, const char *wrong) {
   return suggest(wrong, names.at, names.n);
 }
 
-static const char *all_scenes(const Builder *b) {
-  StrBuf list = strbuf(b->arena);
-  SceneList scenes = model_scenes(b->ast);
+static const char *all_scenes(const Ast *ast) {
+  StrBuf list = strbuf(ast->arena);
+  SceneList scenes = model_scenes(ast);
   for (uint32_t i = 0; i < scenes.n && i < 12; i++) sb_printf(&list, "%s`%s`", i ? ", " : "", scenes.at[i]);
   if (scenes.n > 12) sb_puts(&list, ", ...");
   return sb_text(&list);
 }
 
-static void report_unknown(Builder *b, AstStmtKind kind, Span span, const char *name) {
+static void report_unknown(const Ast *ast, AstStmtKind kind, Span span, const char *name) {
   const char *what = kind == STMT_SCENE ? "scene" : "effect";
-  diag_error(b->diags, span, "unknown %s `%s`", what, name);
-  Name near = nearest(b->ast, kind, name);
-  if (near) diag_help(b->diags, "did you mean `%s`?", near);
-  else if (kind == STMT_EFFECT) diag_help(b->diags, "declare it: `effect %s { ... }`", name);
-  else diag_help(b->diags, "the scenes are %s", all_scenes(b));
+  diag_error(ast->diags, span, "unknown %s `%s`", what, name);
+  Name near = nearest(ast, kind, name);
+  if (near) diag_help(ast->diags, "did you mean `%s`?", near);
+  else if (kind == STMT_EFFECT) diag_help(ast->diags, "declare it: `effect %s { ... }`", name);
+  else diag_help(ast->diags, "the scenes are %s", all_scenes(ast));
+}
+
+int model_has_scene(Ast *ast, const char *scene) {
+  SceneList scenes = model_scenes(ast);
+  for (uint32_t i = 0; i < scenes.n; i++)
+    if (strcmp(scenes.at[i], scene) == 0) return 1;
+  report_unknown(ast, STMT_SCENE, (Span){0}, scene);
+  return 0;
 }
 
 /* The scene and those it is like, the farthest ancestor first; NULL-terminated. */
@@ -89,7 +97,7 @@ static const AstStmt **scene_chain(Builder *b, const AstStmt *scene) {
     for (const AstStmt *x = s->body; x; x = x->next)
       if (x->kind == STMT_LIKE) {
         next = find_stmt(b->ast, STMT_SCENE, x->name);
-        if (!next) report_unknown(b, STMT_SCENE, x->name_span, x->name);
+        if (!next) report_unknown(b->ast, STMT_SCENE, x->name_span, x->name);
       }
     s = next;
   }
@@ -115,7 +123,7 @@ static void collect_uses(Builder *b, const AstStmt *scene) {
       b->m->effects.n = 0;
       if (x->body) diag_error(b->diags, x->body->span, "`use none` turns all effects off, and takes no values");
     }
-    else if (!find_stmt(b->ast, STMT_EFFECT, x->name)) report_unknown(b, STMT_EFFECT, x->name_span, x->name);
+    else if (!find_stmt(b->ast, STMT_EFFECT, x->name)) report_unknown(b->ast, STMT_EFFECT, x->name_span, x->name);
     else if (!uses(b, x->name)) vec_push(b->arena, &b->m->effects, x->name);
   }
 }
@@ -136,7 +144,7 @@ static void check_effect_needs(Builder *b, const AstStmt *effect) {
   for (const AstStmt *x = effect->body; x; x = x->next) {
     if (x->kind != STMT_REQUIRES && x->kind != STMT_EXCLUDES) continue;
     if (!find_stmt(b->ast, STMT_EFFECT, x->name)) {
-      report_unknown(b, STMT_EFFECT, x->name_span, x->name);
+      report_unknown(b->ast, STMT_EFFECT, x->name_span, x->name);
     } else if (x->kind == STMT_REQUIRES && !uses(b, x->name)) {
       diag_error(b->diags, x->span, "the effect `%s` requires `%s`, which the scene `%s` does not use", effect->name, x->name,
                  b->m->scene.name);
@@ -154,7 +162,7 @@ static const AstStmt *pick_scene(Builder *b, const char *scene) {
   const AstStmt *st = find_stmt(b->ast, STMT_SCENE, scene);
   if (st || !scene) return st;
   if (strcmp(scene, "default") == 0 && !find_stmt(b->ast, STMT_SCENE, NULL)) return NULL;
-  report_unknown(b, STMT_SCENE, (Span){0}, scene);
+  report_unknown(b->ast, STMT_SCENE, (Span){0}, scene);
   return NULL;
 }
 

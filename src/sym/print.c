@@ -43,10 +43,8 @@ typedef struct {
   int rank;
 } Factor;
 
-static int varies(const Symbol *s, const void *data) {
-  (void)data;
-  return s->kind != SYM_PARAM && s->kind != SYM_CONST;
-}
+/* Whether more than parameters and constants is in it. */
+static int varies(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) != 0; }
 
 /* Numbers, sums of parameters, parameters, then coordinates and what is made of them, velocities
  * last: (m1 + m2)*g*l*sin(th)*th'. */
@@ -62,7 +60,7 @@ static int rank_of(ExprGraph *g, Expr e) {
         case SYM_ACC: return 8;
       }
       return 4;
-    case EX_SUM: return expr_contains(g, e, varies, NULL) ? 3 : 0;
+    case EX_SUM: return varies(g, e) ? 3 : 0;
     case EX_DEF: return 5;
     default: return 6; /* functions, and powers that are bases */
   }

@@ -82,10 +82,10 @@ is "lagc --help, too" "$(cat "$TMP/overview")" "$("$LAGC" --help)"
 differing() { words command | while read -r c; do "$LAGC" "$c" --help >"$TMP/out" 2>&1 && "$LAGC" help "$c" | cmp -s - "$TMP/out" || echo "$c"; done; }
 empty "lagc COMMAND --help is lagc help COMMAND" "$(differing | grep -v -x -e help -e version)"
 
-# What is no code fits into 80 columns: characters, not bytes.
+# All fits into 80 columns: characters, not bytes.
 wide() {
-  { words command; sed -n 's/^  \([a-z-]*\)  *.*/\1/p' "$TMP/overview"; } | grep -v methods | while read -r t; do
-    chapter "$t" | grep -v '^    ' | sed 's/[^ -~][^ -~]*/?/g' | awk -v t="$t" 'length > 80 { print t ": " $0 }'
+  { words command; sed -n 's/^  \([a-z-]*\)  *.*/\1/p' "$TMP/overview"; } | while read -r t; do
+    chapter "$t" | sed 's/[^ -~][^ -~]*/?/g' | awk -v t="$t" 'length > 80 { print t ": " $0 }'
   done
 }
 empty "80 columns" "$(wide)"
@@ -129,4 +129,13 @@ embeds() {
 }
 check "the header of lagc help header" embeds
 is "lagc help methods is run --method help" "$("$LAGC" run $m --method help)" "$("$LAGC" help methods)"
+
+# ---- methods of integration, by their names ----
+is "a method" "$(printf '%s\n' 'verlet, of order 2 (dense output 2), fixed steps, symplectic, symmetric, for' \
+  'models without states; Newton'"'"'s method where the model is not separable.' \
+  'Stoermer-Verlet as kick, drift, kick; one force a step. DOI' '10.1103/PhysRev.159.98')" "$(chapter verlet | sed '/^ *step =/,$d')"
+check "and its options" sh -c '"$0" help verlet | grep -q "^  step = "' "$LAGC"
+no_help() { for w in $(chapter methods | sed -n 's/^  \([a-z0-9_-]*\)  *[0-9].*/\1/p') equilibrium picture; do explains "$w" || echo "$w"; done; }
+empty "every method has help" "$(no_help)"
+check "a mistyped method" says 'no help on `verlett`: did you mean `verlet`?' help verlett
 tap_end

@@ -128,7 +128,7 @@ refused "r' has parts: set r.x', and so on" run "$dir/vector.lag" "r'=1"
 result "and so has its velocity" $?
 refused "k = -1: the model declares k[1] > 0" run "$dir/vector.lag" k=-1
 result "a family of the wrong sign" $?
-refused "r has parts, each an output of its own; name one: r.x" plot "$dir/vector.lag" --y r
+"$LAGC" plot "$dir/vector.lag" --y r -o "$dir/r.svg" >"$dir/out" 2>&1 && [ "$(grep -c '>r\.[xy]<' "$dir/r.svg")" = 2 ]
 result "an output that is a vector" $?
 refused "kk: no such parameter, coordinate or input in model vector" run "$dir/vector.lag" kk=1
 result "a name that is none" $?
@@ -156,6 +156,10 @@ large() { # NAME SECONDS KIBIBYTES COMMAND...
   result "$name" $?
 }
 large "a string of 10000 masses" 30 1500000 "$LAGC" derive models/string.lag -D N=10000 --ops
+# The text is 3 MB; what derives it needs some 400 MB.
+for f in text latex; do
+  large "a string of 10000 masses, printed as $f" 30 1000000 "$LAGC" derive models/string.lag -D N=10000 --format $f
+done
 large "a chain of 300 links" 30 1500000 "$LAGC" check models/chain.lag swing -D N=300
 cat >"$dir/long.lag" <<'LAG'
 model long

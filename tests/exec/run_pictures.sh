@@ -24,6 +24,9 @@ well_formed() {
   else head -n 1 "$1" | grep -q '^<svg ' && tail -n 1 "$1" | grep -qx '</svg>' && ! grep -q '<[^>]*<' "$1"; fi
 }
 
+not() { ! "$@"; }
+not_grep() { ! grep -n -e "$1" "$2"; }
+
 # ---- measuring an SVG: the frame, the scale by its ticks, the points of each curve ----
 # measure FILE: "inside" or "outside"; then "first X Y" and "last X Y" of the last curve, in the units of the axes
 cat >measure.awk <<'END'
@@ -115,11 +118,96 @@ check "a condition" says 1 'is a condition, no number' run "$p" --observe 'th > 
 check "--x without --y" says 2 'add --y' plot "$p" --x th
 check "--phase with --x" says 2 'leave out --x and --y' plot "$p" --phase th --x th
 check "an unknown scene" says 1 'unknown scene `wied`' plot "$p" wied --phase th
+check "of any command" says 1 'did you mean `wide`?' plot "$p" wied
+check "before a simulator is built" not_grep 'this build' err
+check "or far from all names" says 1 'the scenes are `small`, `tiny`' modes "$p" nosuch
+check "a name far from all names" says 1 'the model has th, ' plot "$p" --y nosuch
+check "is not to be declared" not_grep 'declare it' err
 check "a value is missing" says 2 'needs a value' plot "$p" --x
 check "an effect that the scene does not use" says 1 'friction' plot "$p" wide --y 'friction.b*th' -o none.svg
 check "a folder that is not there" says 2 'cannot write' plot "$p" -o none/a.svg
 check "a value that the model does not allow" says 2 'declares l > 0' plot "$p" l=-1 -o none.svg
 check "nothing is left of all that" [ -z "$(ls none* ./*.part 2>/dev/null)" ]
+
+# ---- plot: what is drawn is what happens between rows, too ----
+f=$models/foucault.lag
+# turns FILE: how often its last curve turns round in y
+turns() {
+  grep '^<path fill="none"' "$1" | tail -n 1 | sed 's/.* d="//; s/".*//; s/[ML]/ /g' |
+    awk '{ for (i = 4; i <= NF; i += 2) { d = $i - $(i - 2); if (d*was < 0) n++; if (d) was = d } print n + 0 }'
+}
+check "swings that are shorter than the scene's rows are long" runs plot "$f" --until 200 --y x -o swings.svg
+is "are all there: 12 periods of 16.42 s" 24 "$(turns swings.svg)"
+check "an orbit with a row a year" runs plot "$models/outer_planets.lag" --x 'r[2].x' --y 'r[2].y' --until 4e8 -o orbit.svg
+# corner FILE: the sharpest corner of its last curve, in degrees
+corner() {
+  grep '^<path fill="none"' "$1" | tail -n 1 | sed 's/.* d="//; s/".*//; s/[ML]/ /g' | awk '{
+    for (i = 5; i < NF; i += 2) {
+      ax = $(i - 2) - $(i - 4); ay = $(i - 1) - $(i - 3); bx = $i - $(i - 2); by = $(i + 1) - $(i - 1)
+      c = atan2(ax*by - ay*bx, ax*bx + ay*by); c = c < 0 ? -c : c; if (c > worst) worst = c
+    }
+    printf "%.0f\n", worst*57.3 }'
+}
+check "has no corners" [ "$(corner orbit.svg)" -lt 10 ]
+check "a run that is shorter than a row" runs plot "$f" --until 5 --y x -o short.svg
+check "is drawn" [ "$(grep '^<path fill="none"' short.svg | tr 'L' '\n' | wc -l)" -gt 10 ]
+check "rows that are asked for are drawn as they are, with a note" \
+  says 0 'rows every 10 s are too coarse for this motion' plot "$f" --until 200 --y x --every 10 -o coarse.svg
+check "a method that steps to its rows" runs plot "$f" --until 200 --y x --method gsl-rk8pd -o gsl.svg
+[ -z "$GSL" ] || is "is drawn as finely" 24 "$(turns gsl.svg)"
+
+# ---- plot: legends, labels, scales ----
+cat >names.lag <<'END'
+model names
+const N = 20
+coord u[N] [m], angular_momentum_of_the_body [m]
+kinetic = sum(i in 1..N, (1 [kg])*u[i]'^2/2) + (1 [kg])*angular_momentum_of_the_body'^2/2
+potential = sum(i in 1..N, (1 [N/m])*i/2*u[i]^2)
+scene s { start u = 1 [m]; span 3 [h]; output u, angular_momentum_of_the_body every 1 [s] }
+END
+check "twenty lines" runs plot names.lag --until 9 -o many.svg
+is "are twenty different ones" 20 "$(grep '^<path d=.*h20' many.svg | sed 's/.*h20" //' | sort -u | head -n 20 | wc -l)"
+# legend_fits FILE: no text of it ends right of the picture, at 7.5 pixels a character
+legend_fits() {
+  awk '/^<svg/ { match($0, "width=\"[0-9]*"); w = substr($0, RSTART + 7, RLENGTH - 7) }
+    /^<text x="[0-9.]*" y="[0-9.]*" >/ { x = $0; sub(/<text x="/, "", x); v = $0; gsub(/<[^>]*>/, "", v); if (x + 7.5*length(v) > w) { print v; exit 1 } n++ }
+    END { exit n < 1 }' "$1"
+}
+check "long names" runs plot names.lag --until 9 -D N=2 -o names.svg
+check "are not cut off" legend_fits names.svg
+check "and written out" grep -q '>angular_momentum_of_the_body<' names.svg
+check "hours" runs plot names.lag -D N=1 -o hours.svg
+check "are called so" grep -q '>t \[h\]<' hours.svg
+cat >needle.lag <<'END'
+model needle
+coord x
+lagrangian = x'^2/2 - 1e4*x^2/2
+scene s { start x = 1; span 1 }
+END
+check "a quantity and its rate" runs plot needle.lag --phase x -o needle.svg
+check "fill the frame" awk '/^<rect x=/ { exit !(match($0, "height=\"520") && match($0, "width=\"600")) }' needle.svg
+narrow() { awk '/^<path fill="none"/ { d = $0; sub(/.* d="/, "", d); gsub(/[ML]/, " ", d); n = split(d, c, " ")
+  for (i = 1; i < n; i += 2) { if (!lo || c[i] < lo) lo = c[i]; if (c[i] > hi) hi = c[i] } } END { exit hi - lo > 400 }' "$1"; }
+check "across, too" not narrow needle.svg
+check "long labels" runs plot "$p" --x th --y "th'+0*th'+0*th'+0*th'+0*th'+0*th'+0*th'+0*th'+0*th'+0*th'+0*th'+0*th'" -o label.svg
+check "keep their unit" grep -q '\.\.\. \[1/s\]<' label.svg
+touching() { awk '/>[-0-9.e]* \+<\/text>/ { match($0, "y=\"[0-9.]*"); y = substr($0, RSTART + 3, RLENGTH - 3); if (y - 11 < 30) exit 1; n++ } END { exit !n }' "$1"; }
+check "what labels leave out" runs plot "$p" wide --y 'x/1e7 + 1 [m]' --until 3 -o offset.svg
+check "is said below the title" touching offset.svg
+check "a picture that plot does not write" says 2 'plot writes SVG' plot "$p" -o path.png
+check "a page that animate does not write" says 2 'animate writes HTML' animate "$p" -o path.pdf
+
+# ---- families ----
+c=$models/chain.lag
+check "all members of a family" runs plot "$c" --y th --until 2 -o th.svg
+is "have a line each" "th[1] th[2] th[3] " "$(grep '^<text x="[0-9.]*" y="[0-9.]*" >' th.svg | sed 's/<[^>]*>//g' | tr '\n' ' ')"
+check "in phase space" runs plot "$c" --phase th --until 2 -o phase.svg
+is "a curve each" 3 "$(grep -c '^<path fill="none"' phase.svg)"
+check "in the plane" runs plot "$c" --x x --y y --until 2 -o plane.svg
+is "in the order of their numbers" "y[0] y[1] y[2] y[3] " "$(grep '^<text x="[0-9.]*" y="[0-9.]*" >' plane.svg | sed 's/<[^>]*>//g' | tr '\n' ' ')"
+check "components of a family of vectors" runs plot "$models/outer_planets.lag" --x r.x --y r.y --until 4e8 -o plane.svg
+is "a curve each" 6 "$(grep -c '^<path fill="none"' plane.svg)"
+check "families of different sizes" says 2 'has 3 parts' plot "$c" --x th --y x -o none.svg
 
 # ---- animate: the file ----
 a() { runs animate "$@" --quiet; }
@@ -138,7 +226,6 @@ unbalanced() {
   done
 }
 empty "its tags are closed" "$(unbalanced $page)"
-not_grep() { ! grep -n -e "$1" "$2"; }
 check "nothing of the template is left" not_grep '@[A-Z]*@' $page
 
 hook() { sed -n 's/^"rods": \([a-z]*\), "trace": \([a-z]*\), "from": \([a-z]*\),.*"names": \(.*\),$/\1 \2 \3 \4/p' "$1"; }
@@ -149,6 +236,13 @@ check "a planet" a "$models/kepler.lag" --trace -o b.html
 is "is on no rod" 'false true false [["x", "y"]]' "$(hook b.html)"
 check "a spring" a "$models/spring.lag" -o b.html
 is "moves along a line" 'false false false [["x", "0"]]' "$(hook b.html)"
+check "a family of points hangs from its number 0" a "$c" -o b.html
+is "each from the one before" 'true false true [["x[0]", "y[0]"], ["x[1]", "y[1]"], ["x[2]", "y[2]"], ["x[3]", "y[3]"]]' "$(hook b.html)"
+check "or is named" a "$c" --points 'x,y' --no-rods --until 1 -o b.html
+is "point by point" 'false false false [["x[0]", "y[0]"], ["x[1]", "y[1]"], ["x[2]", "y[2]"], ["x[3]", "y[3]"]]' "$(hook b.html)"
+check "a row of masses" a "$models/string.lag" -D N=3 -o b.html
+is "each at its number" 'false false false [["1", "u[1]"], ["2", "u[2]"], ["3", "u[3]"]]' "$(hook b.html)"
+check "each axis on its own scale" grep -q '"free": true' b.html
 cat >only.lag <<'END'
 model only "One angle"
 coord th periodic
@@ -162,8 +256,19 @@ check "points by expressions, with spaces and signs" \
 is "are taken apart" 'false false false [["l*sin(th)/2", "-l*cos(th)/2"], ["0 [m]", "-l"], ["atan2(th, 1)*1 [m]", "l - 1 [m]"]]' "$(hook b.html)"
 check "one point from another" a "$p" --points 'x,y' --from '0,l' -o b.html
 is "with its rod" 'true false true [["0", "l"], ["x", "y"]]' "$(hook b.html)"
-check "at most 2000 frames" a "$p" --every 0.001 -o b.html
-is "of 20001 rows" "1820" "$(sed -n '/^"v"/,/]}$/p' b.html | wc -l)"
+# page_frames FILE: how many lines its data have, one a frame
+page_frames() { sed -n '/^"v"/,/]}$/p' "$1" | wc -l; }
+check "frames as asked" a "$p" --every 0.001 -o b.html
+is "a row is a frame" "20001" "$(page_frames b.html)"
+# By default frames follow the motion: 5254 swings of Foucault's pendulum are some 70 frames each, in a few MB.
+f=$models/foucault.lag
+check "a day of swings" a "$f" -o day.html
+check "has more frames than 20 a swing" [ "$(page_frames day.html)" -gt 105080 ]
+check "in less than 8 MB" [ "$(wc -c <day.html)" -lt 8000000 ]
+check "coarse frames are told" says 0 'note: rows every 60 s are too coarse for this motion' animate "$f" --until 3600 --every 60 -o b.html
+check "in the page, too" grep -q '"note": "rows every 60 s' b.html
+check "fine ones are not" runs animate "$f" --until 3600 --every 0.25 -o b.html
+check "by no word" not_grep note: err
 
 # A curve that hardly moves is flat in the terminal: the ends of its axis differ in the digits that are shown.
 flat() {
@@ -232,6 +337,26 @@ tried() {
     [ "$(grep -c 'ok - ' dom)" -ge 12 ] && quiet_console
 }
 check "its controls do what they say" tried double.html
+# Where the pendulum is after 3600 s and a bit, by a run that ends there; the period is 16.4 s.
+"$LAGC" run "$f" --until 3602.4 -o rows.csv --quiet
+check "in a day of swings every place is one that occurs" near "$(places 'day.html#t=3602.4')" "$(row '$' rows.csv | awk '{ print $2, $3 }')" 0.006
+check "it plays no faster than one can follow" [ "$(sed -n 's/.*"speed": \([0-9.]*\),.*/\1/p' day.html)" -lt 100 ]
+"$LAGC" run "$d" chaos --until 12.5 --tol 1e-6 --observe x1 --observe y1 -o rows.csv --quiet
+a "$d" chaos --until 2000 --tol 1e-6 -o long.html
+check "and in a long chaos" near "$(places 'long.html#t=12.5')" "$(row '$' rows.csv | awk '{ print $7, $8, $4, $5 }')" 0.008
+cat >tiny.lag <<'END'
+model tiny "A bond that vibrates, some 20 fs a period"
+coord x [m]
+param m = 1e-26 [kg] > 0, k = 1000 [N/m] > 0
+kinetic = m/2*x'^2
+potential = k/2*x^2
+scene s { start x = 1e-11 [m]; span 1e-13 [s] }
+END
+check "a tenth of a picosecond" a tiny.lag -o tiny.html
+check "opens as others do" tried tiny.html
+visit 'tiny.html#t=5e-14'
+check "its clock goes" grep -q '>t = 0.0500[0-9]* ps<' dom
+check "and it says how fast" grep -q '>1 s shows 5 fs<' dom
 a "$models/mercury.lag" -o mercury.html
 check "a span of months" tried mercury.html
 check "is told in days" grep -q '>1 s shows 10 d<' dom

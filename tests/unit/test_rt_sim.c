@@ -264,6 +264,59 @@ static void check_cut(const lag_scene *scene, const lag_method *m, double cut, d
   lag_sim_free(second);
 }
 
+/* Looking at every step in between, an event included, gives the outputs that advance finds there, and the same run. */
+static void looking_ahead_changes_nothing(void **state)
+{
+  lag_sim *plain = lag_sim_new(&kepler), *looked = lag_sim_new(&kepler);
+  double y[4], here[4], there[4], reach;
+  int steps = 0;
+  (void)state;
+  assert_int_equal(lag_sim_advance(plain, 5), LAG_OK);
+  while (lag_sim_time(looked) < 5) {
+    assert_int_equal(lag_sim_reach(looked, 5, &reach), LAG_OK);
+    double t = lag_sim_time(looked), middle = t + (reach - t) / 2;
+    assert_true(reach > t && reach <= 5);
+    assert_int_equal(lag_sim_outputs_at(looked, reach, y, there), LAG_OK);
+    assert_int_equal(lag_sim_outputs_at(looked, middle, y, there), LAG_OK);
+    assert_true(lag_sim_time(looked) == t);
+    assert_int_equal(lag_sim_advance(looked, middle), LAG_OK);
+    assert_int_equal(lag_sim_outputs(looked, here), LAG_OK);
+    assert_memory_equal(here, there, sizeof here);
+    assert_int_equal(lag_sim_outputs_at(looked, reach + 10, y, there), LAG_EINVAL);
+    assert_int_equal(lag_sim_advance(looked, reach), LAG_OK);
+    steps++;
+  }
+  assert_true(steps > 10);
+  assert_memory_equal(lag_sim_q(plain), lag_sim_q(looked), 2 * sizeof(double));
+  assert_memory_equal(lag_sim_v(plain), lag_sim_v(looked), 2 * sizeof(double));
+  lag_sim_free(plain);
+  lag_sim_free(looked);
+}
+
+/* An event is at the end of what is known, and happens in the next call. */
+static void looking_ahead_ends_at_events(void **state)
+{
+  lag_sim *s = lag_sim_new(&ball);
+  double reach, hit = 0;
+  (void)state;
+  assert_int_equal(lag_sim_set(s, "y", 1), 0);
+  assert_int_equal(lag_sim_set(s, "y'", 0), 0);
+  assert_int_equal(lag_sim_advance(s, 0), LAG_OK);
+  double floor_at = sqrt(2 * (lag_sim_q(s)[0]) / 9.81);
+  while (hit == 0.0 && lag_sim_time(s) < 3) {
+    assert_int_equal(lag_sim_reach(s, 3, &reach), LAG_OK);
+    assert_int_equal(lag_sim_advance(s, reach), LAG_OK);
+    if (fabs(reach - floor_at) < 1e-6) {
+      hit = reach;
+    }
+  }
+  assert_close(hit, floor_at, 1e-9);
+  assert_true(lag_sim_v(s)[0] < 0);
+  assert_int_equal(lag_sim_reach(s, 3, &reach), LAG_OK);
+  assert_true(lag_sim_time(s) == hit && lag_sim_v(s)[0] > 0);
+  lag_sim_free(s);
+}
+
 static void a_saved_run_goes_on_bit_by_bit(void **state)
 {
   (void)state;
@@ -348,6 +401,8 @@ int main(void)
       cmocka_unit_test(all_monitors_are_known_where_one_fails),
       cmocka_unit_test(monitors_end_the_run),
       cmocka_unit_test(asking_more_often_changes_nothing),
+      cmocka_unit_test(looking_ahead_changes_nothing),
+      cmocka_unit_test(looking_ahead_ends_at_events),
       cmocka_unit_test(a_saved_run_goes_on_bit_by_bit),
       cmocka_unit_test(what_cannot_be_saved_says_so),
       cmocka_unit_test(all_methods_agree),

@@ -1,0 +1,185 @@
+/* The rows of pictures. Enters: a run under way; leaves: in its table, as many rows as the motion needs, whatever the
+ * steps of the method are: each step is looked at in ever more places until straight lines follow it. Holds: what
+ * is looked at changes nothing in the run (STEPS_TO methods apart, whose steps end where they are asked to). */
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "core/core.h"
+
+enum { MOST_PLACES = 64 };          /* in a step */
+enum { MOST_VALUES = 1 << 24 };     /* in memory */
+static const double PART = 1. / 3000; /* of the picture: a third of a pixel */
+
+static void choose_columns(App *app)
+{
+  Thin *w = &app->film.rows;
+
+  if (app->args.html) {
+    for (int i = 0; i < 2 * app->show.npoints; i++) {
+      thin_draw(w, app->show.cols[i]);
+    }
+    w->common = !app->args.svg && !app->args.sketch;
+  }
+  for (int i = 0; i < app->drawn.n && (app->args.svg || app->args.sketch); i++) {
+    thin_draw(w, app->drawn.x[i]);
+    thin_draw(w, app->drawn.y[i]);
+  }
+}
+
+int film_open(App *app)
+{
+  Film *f = &app->film;
+  double span = fabs(app->until - lag_sim_time(app->sim));
+  size_t ncols = (size_t)app->table.ncols;
+
+  if (!app->table.keep || app->section >= 0 || app->args.tangent) { /* a tangent is known where rows are, only */
+    return 0;
+  }
+  f->on = 1;
+  f->places = 16;
+  f->soonest = span / (1 << 20);
+  f->y = malloc((size_t)app->sim->pb.n * sizeof *f->y);
+  f->seen = malloc((MOST_PLACES + 1) * ncols * sizeof *f->seen);
+  if (thin_init(&f->rows, &app->table, !app->args.every, PART, span / 400) || !f->y || !f->seen) {
+    return app_error(&app->args, "out of memory");
+  }
+  choose_columns(app);
+  return 0;
+}
+
+void film_free(App *app)
+{
+  thin_free(&app->film.rows);
+  free(app->film.y);
+  free(app->film.seen);
+}
+
+/* The row at time t, which the present step knows, as place k of those seen. Where outputs have no value there is a gap. */
+static void look(App *app, int k, double t)
+{
+  Film *f = &app->film;
+  double *row = f->seen + (size_t)k * (size_t)app->table.ncols;
+
+  row[0] = t;
+  if (lag_sim_outputs_at(app->sim, t, f->y, row + 1)) {
+    for (int i = 1; i < app->table.ncols; i++) {
+      row[i] = NAN;
+    }
+  }
+  thin_see(&f->rows, row);
+}
+
+/* Whether the odd ones of n + 1 places lie on lines between their neighbours. */
+static int followed(const App *app, int n)
+{
+  const Film *f = &app->film;
+  size_t ncols = (size_t)app->table.ncols, by = (size_t)(MOST_PLACES / n) * ncols;
+
+  for (int k = 1; k < n; k += 2) {
+    const double *row = f->seen + (size_t)k * by;
+    if (!thin_straight(&f->rows, row - by, row + by, row)) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+/* What happens between times a and b of the present step; place k of n stands at MOST_PLACES/n k. */
+static int film_step(App *app, double a, double b)
+{
+  Film *f = &app->film;
+  int n = f->places / 2 > 2 ? f->places / 2 : 2, rc = 0;
+
+  for (int k = 0; k <= n; k++) {
+    look(app, MOST_PLACES / n * k, k == n ? b : a + k * (b - a) / n);
+  }
+  while (n < MOST_PLACES && !followed(app, n)) {
+    n *= 2;
+    for (int k = 1; k < n; k += 2) {
+      look(app, MOST_PLACES / n * k, a + k * (b - a) / n);
+    }
+  }
+  f->places = n;
+  for (int k = 0; k <= n && rc == 0; k++) {
+    rc = thin_add(&f->rows, f->seen + (size_t)(MOST_PLACES / n * k) * (size_t)app->table.ncols);
+  }
+  if (rc == 0 && f->rows.store && app->table.nrows * (size_t)app->table.ncols > MOST_VALUES) {
+    rc = thin_again(&f->rows, MOST_VALUES / 2 / (size_t)app->table.ncols);
+  }
+  return rc ? LAG_ENOMEM : LAG_OK;
+}
+
+/* A method that must step to each time of output is given steps of which a few places show what happens. */
+static double film_stop(const App *app, double t, double until)
+{
+  const Film *f = &app->film;
+  double most = f->length > 0 ? f->length : fabs(app->until - t) / 1000;
+
+  return lag_sim_method(app->sim)->flags & LAG_METHOD_STEPS_TO && fabs(until - t) > most ? t + copysign(most, until - t) : until;
+}
+
+int film_advance(App *app, double until)
+{
+  Film *f = &app->film;
+  double reach;
+  int rc = f->on ? lag_sim_advance(app->sim, lag_sim_time(app->sim)) : LAG_OK; /* the run begins */
+
+  while (rc == 0 && f->on && lag_sim_time(app->sim) != until) {
+    rc = lag_sim_reach(app->sim, film_stop(app, lag_sim_time(app->sim), until), &reach);
+    double t = lag_sim_time(app->sim);
+    if (rc < 0) {
+      return rc;
+    }
+    if (rc || reach == until || f->rows.kept == 0 || fabs(reach - f->seen_to) >= f->soonest) {
+      int bad = film_step(app, t, reach);
+      rc = bad ? bad : rc;
+      f->length = fabs(reach - t) * 4 / f->places;
+      f->seen_to = reach;
+    }
+    rc = rc ? rc : lag_sim_advance(app->sim, reach);
+  }
+  return rc ? rc : lag_sim_advance(app->sim, until);
+}
+
+/* What is left to do before pictures are drawn: pages hold so many numbers. */
+int film_close(App *app)
+{
+  enum { MOST_NUMBERS = 2000000 }; /* 12 MB */
+  Film *f = &app->film;
+  size_t most = app->args.html ? MOST_NUMBERS / (size_t)(2 * app->show.npoints + 1) : SIZE_MAX;
+
+  return f->on && thin_again(&f->rows, most) ? -1 : 0;
+}
+
+/* A round time between rows that shows the motion. */
+static double fine_enough(const App *app)
+{
+  const Table *t = &app->table;
+  double span = fabs(t->data[(t->nrows - 1) * (size_t)t->ncols] - t->data[0]), raw = span / (double)app->film.rows.kept;
+
+  return nice_step(0, raw / 1.6, 1);
+}
+
+void film_warn(App *app, char *note, size_t size)
+{
+  enum { FINER = 2 }; /* equal times need more rows than chosen ones */
+  const Film *f = &app->film;
+
+  note[0] = '\0';
+  if (!f->on || !app->table.nrows) {
+    return;
+  }
+  if (!f->rows.store && f->rows.kept > FINER * app->table.nrows) {
+    snprintf(note, size, "rows every %s s are too coarse for this motion, and straight lines join them: leave --every out, or write --every %g",
+             app->args.every, fine_enough(app));
+  } else if (f->rows.part > 32 * PART) {
+    snprintf(note, size, "the run is too long to be shown finely: lines stray by up to %.2g %% of the picture; an earlier --until shows it better",
+             100 * f->rows.part);
+  }
+  if (note[0] && !app->args.quiet) {
+    fprintf(stderr, "%s: note: %s\n", app->args.self, note);
+  }
+}
