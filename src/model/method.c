@@ -25,7 +25,7 @@ static const MethodInfo *known_method(Builder *b, const AstStmt *st) {
   const char *near = method_suggest(b->arena, st->name);
   diag_error(b->diags, st->name_span, "unknown method `%s`", st->name);
   if (near) diag_help(b->diags, "did you mean `%s`? `lagc methods` lists them", near);
-  else diag_help(b->diags, "`lagc methods` lists them; without a `method` it is `%s`", method_at(0)->name);
+  else diag_help(b->diags, "`lagc methods` lists them; without a `method` the run chooses one");
   return NULL;
 }
 
