@@ -6,6 +6,7 @@
 
 #include "analysis/blur.h"
 #include "analysis/pivot.h"
+#include "analysis/place.h"
 
 enum { MOST_STEPS = 200, MOST_DESCENT = 200 };
 
@@ -47,8 +48,7 @@ void lag_rest_place(Rest *r, const double *x)
   }
 }
 
-/* Forces M a (a from the model, so that both vanish together) and rates, and their derivatives, at r->y. */
-static int equations(void *context, const double *x, double *f, double *J)
+int lag_rest_equations(void *context, const double *x, double *f, double *J)
 {
   Rest *r = context;
   lag_problem *pb = &r->sim->pb;
@@ -80,7 +80,7 @@ static int choose_rows(Rest *r)
   for (int i = 0; i < n; i++) {
     r->row[i] = 1;
   }
-  int rc = equations(r, r->x, r->f, r->J);
+  int rc = lag_rest_equations(r, r->x, r->f, r->J);
   if (rc) {
     return rc;
   }
@@ -102,7 +102,7 @@ static int choose_rows(Rest *r)
 
 static int forces(Rest *r, const double *x, double *out)
 {
-  return equations(r, x, out, out + r->n);
+  return lag_rest_equations(r, x, out, out + r->n);
 }
 
 /* r->f, r->J and what rounding makes of them, r->noise[n | n * n], at x[n]. */
@@ -124,7 +124,7 @@ static int forces_and_noise(Rest *r, const double *x)
     }
     r->noise[i] += i < nq ? DBL_EPSILON * sum * r->scale[i] * r->row[i] : 0;
   }
-  return equations(r, x, r->f, NULL); /* r->rate at x */
+  return lag_rest_equations(r, x, r->f, NULL); /* r->rate at x */
 }
 
 /* J dx = -b, b[n] of the size of noise; all but dx is destroyed. `noise` may be NULL: J is what it seems. Returns the rank. */
@@ -280,7 +280,7 @@ static double distance(const Rest *r, const double *x, const double *y)
 static int friction(void *context, const double *x, double *f, double *J)
 {
   Rest *r = context;
-  int n = r->n, rc = equations(r, x, f, J);
+  int n = r->n, rc = lag_rest_equations(r, x, f, J);
 
   for (int i = 0; i < n && rc == 0; i++) {
     for (int j = 0; j < n; j++) {
@@ -293,13 +293,13 @@ static int friction(void *context, const double *x, double *f, double *J)
   return rc;
 }
 
-/* The mass matrix in the units of the equations, and the identity for rates; the first step goes 0.3 of a scale. */
+/* The mass matrix in the units of the lag_rest_equations, and the identity for rates; the first step goes 0.3 of a scale. */
 static void prepare_friction(Rest *r)
 {
   int n = r->n, nq = r->sim->pb.nq;
   double fastest = 0;
 
-  equations(r, r->x, r->f, r->J);
+  lag_rest_equations(r, r->x, r->f, r->J);
   for (int i = 0; i < n; i++) {
     fastest = fmax(fastest, fabs(r->rate[nq + i]) / r->scale[i]);
     for (int j = 0; j < n; j++) {
@@ -333,15 +333,25 @@ static void descend(Rest *r)
 
 /* ---- The search */
 
-/* Has x left everything behind? Forces that fade have no root there. */
-static int ran_away(const Rest *r)
+static double largest_force(Rest *r, const double *x)
+{
+  double most = 0;
+
+  for (int i = 0; i < r->n && (i > 0 || lag_rest_equations(r, x, r->f, NULL) == 0); i++) {
+    most = fmax(most, fabs(r->f[i]));
+  }
+  return most;
+}
+
+/* Has x left everything behind, or nearly all of the force at the start? Forces that fade have no root there. */
+static int ran_away(Rest *r)
 {
   double start = 1;
 
   for (int i = 0; i < r->n; i++) {
     start = fmax(start, fabs(r->begin[i]));
   }
-  return distance(r, r->x, r->begin) > 1e4 * start;
+  return distance(r, r->x, r->begin) > 1e4 * start || largest_force(r, r->x) < 1e-6 * largest_force(r, r->begin);
 }
 
 /* x := the root to which Newton's method leads from there[n], if it is one and not too far; else x stays. */
@@ -351,7 +361,7 @@ static int polish(Rest *r, const double *there, double farthest)
 
   memcpy(r->kept, r->x, bytes);
   memcpy(r->x, there, bytes);
-  if (newton(r, equations, r->x, MOST_STEPS) && distance(r, r->x, there) <= farthest) {
+  if (newton(r, lag_rest_equations, r->x, MOST_STEPS) && distance(r, r->x, there) <= farthest) {
     clean(r);
     if (holds(r, r->x)) {
       return 1;
@@ -368,7 +378,7 @@ static int find_root(Rest *r, const lag_algebra *algebra)
   int steps = 0;
 
   memcpy(r->from, r->x, bytes);
-  int rc = algebra->root(r->n, r->x, equations, r, MOST_STEPS, &steps);
+  int rc = algebra->root(r->n, r->x, lag_rest_equations, r, MOST_STEPS, &steps);
   r->steps += steps;
   if (rc) {
     return rc;
@@ -378,7 +388,7 @@ static int find_root(Rest *r, const lag_algebra *algebra)
     return 1;
   }
   memcpy(r->near, r->x, bytes);
-  return polish(r, r->near, 0.1) || holds(r, r->x) || polish(r, r->from, HUGE_VAL) || holds(r, r->x);
+  return polish(r, r->near, 0.1) || holds(r, r->x) || polish(r, r->from, 10) || holds(r, r->x);
 }
 
 /* A root near the start, stable or not; else one downhill; else any. */
@@ -420,47 +430,6 @@ static int allocate(Rest *r)
   return r->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
 
-/* ---- Coordinates that lose their meaning */
-
-/* How near M[n * n] is to a singular one, where size[n] are its diagonal's usual ones: the least pivot of Cholesky's
- * method. M is destroyed. */
-static double least_pivot(int n, double *M, const double *size)
-{
-  double least = HUGE_VAL;
-
-  for (int k = 0; k < n; k++) {
-    double pivot = M[k * n + k];
-    least = size[k] > 0 ? fmin(least, fabs(pivot) / size[k]) : least;
-    for (int i = k + 1; i < n && pivot != 0.0; i++) {
-      double factor = M[i * n + k] / pivot;
-      for (int j = k + 1; j < n && factor != 0.0; j++) {
-        M[i * n + j] -= factor * M[k * n + j];
-      }
-    }
-  }
-  return least;
-}
-
-/* Is the mass matrix at x much nearer to a singular one than it is beside x, a tenth of a scale away? */
-static void look_for_poles(Rest *r)
-{
-  int n = r->n, nq = r->sim->pb.nq;
-  double *size = r->dx, here, beside;
-
-  for (int i = 0; i < n; i++) {
-    r->trial[i] = r->x[i] + 0.1 / (1 + 0.3 * (i % 3));
-  }
-  if (equations(r, r->trial, r->f, NULL)) {
-    return;
-  }
-  for (int i = 0; i < nq; i++) {
-    size[i] = fabs(r->M[i * nq + i]);
-  }
-  beside = least_pivot(nq, r->M, size);
-  here = equations(r, r->x, r->f, NULL) ? 0 : least_pivot(nq, r->M, size);
-  r->singular = here < 1e-9 * beside;
-}
-
 /* How far from x the root may be: what rounding of forces, with two patterns of signs, moves Newton's method by, and what it
  * would still do. Leaves all values at x. */
 static int settle(Rest *r)
@@ -479,8 +448,9 @@ static int settle(Rest *r)
       r->spread[i] = fmax(r->spread[i], fmin(fabs(r->dx[i]), 0.1));
     }
   }
-  look_for_poles(r);
-  rc = rc ? rc : equations(r, r->x, r->f, r->J);
+  r->pole = lag_place_is_pole(r);
+  r->rough = rc == 0 && lag_place_is_rough(r);
+  rc = rc ? rc : lag_rest_equations(r, r->x, r->f, r->J);
   return rc ? (rc < 0 ? rc : LAG_EDOMAIN) : 1;
 }
 
@@ -511,7 +481,7 @@ int lag_rest_find(Rest *r, lag_sim *sim, const lag_algebra *algebra)
     return settle(r);
   }
   if (rc == 0) {
-    look_for_poles(r);
+    r->pole = lag_place_is_pole(r);
     holds(r, r->x);
   }
   return rc;
@@ -535,10 +505,10 @@ int lag_rest_continues(Rest *r, const lag_algebra *algebra, const double *dx, do
   for (int i = 0; i < r->n; i++) {
     r->from[i] = r->x[i] + c * dx[i] / r->scale[i];
   }
-  int found = algebra->root(r->n, r->from, equations, r, MOST_STEPS, &steps) == LAG_OK;
+  int found = algebra->root(r->n, r->from, lag_rest_equations, r, MOST_STEPS, &steps) == LAG_OK;
   if (found) {
     memcpy(r->trial, r->from, (size_t)r->n * sizeof(double));
-    found = newton(r, equations, r->trial, MOST_STEPS) && distance(r, r->trial, r->from) <= 0.1 * fabs(c) && holds(r, r->trial);
+    found = newton(r, lag_rest_equations, r->trial, MOST_STEPS) && distance(r, r->trial, r->from) <= 0.1 * fabs(c) && holds(r, r->trial);
     found = found || holds(r, r->from);
   }
   for (int i = 0; i < r->n; i++) {

@@ -25,7 +25,7 @@ typedef struct Rest {
   double *values, *noise, *scratch; /* [n + n * n] f and J, and what rounding of the model's numbers makes of them */
   double *spread; /* [n] how far the root may be from x, by rounding */
   int rank;       /* of J there */
-  int singular;   /* the mass matrix nearly is, there, as it is not beside it: a coordinate loses its meaning */
+  int pole, rough; /* what place.h says of it */
   double delta;
   double *dr, *M, *work;   /* of lag_linearise */
 } Rest;
@@ -37,6 +37,10 @@ typedef struct Rest {
  * lag_rest_free in every case. */
 int lag_rest_find(Rest *rest, lag_sim *sim, const lag_algebra *algebra);
 void lag_rest_free(Rest *rest);
+
+/* An lag_equations: forces M a (a from the model, so that both vanish together) and rates, of a Rest at x[n]. Leaves the state in y,
+ * y' in rate, and M. */
+int lag_rest_equations(void *rest, const double *x, double *f, double *J);
 
 /* y := the state, at rest, of the unknowns x[n]. */
 void lag_rest_place(Rest *rest, const double *x);

@@ -127,10 +127,11 @@ static void reduce_kernel(Work *w)
   }
 }
 
-/* Do all forces stay 0 along x[n], or along a curve that begins so (a rotation)? Looked at near and farther, on both sides. */
-static int is_free(Work *w, double *x)
+/* Do all forces stay 0 along x[n], or along a curve that begins so (a rotation)? Looked at near and as far as `most` scales, on both
+ * sides. */
+static int is_free(Work *w, const double *x, double most)
 {
-  static const double steps[] = {-0.1, 0.1, -0.3, 0.3};
+  const double steps[] = {-most / 3, most / 3, -most, most};
   double far = 0;
 
   for (int i = 0; i < w->n; i++) {
@@ -145,10 +146,31 @@ static int is_free(Work *w, double *x)
   return far > 0;
 }
 
+/* Is what is free along each of the zero modes free along sums of them, too? x^2 y^2 is 0 along x and along y. A few are
+ * tried, with coefficients in no simple ratio. */
+static int free_together(Work *w, double *x)
+{
+  int k = w->nkernel;
+
+  for (int pattern = 0; pattern < 4 && k > 1; pattern++) {
+    for (int i = 0; i < w->n; i++) {
+      x[i] = 0;
+      for (int j = 0; j < k; j++) {
+        int minus = (pattern & 1 && j & 1) != (pattern & 2 && j & 2);
+        x[i] += w->kernel[i * k + j] * (minus ? -1 : 1) * (0.7 + 0.11 * (j * 3 % 4));
+      }
+    }
+    if (!is_free(w, x, 0.1)) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
 static int add_zero_modes(Work *w)
 {
   double *x = pool_doubles(&w->out->pool, (size_t)w->n);
-  int rc = x ? LAG_OK : LAG_ENOMEM;
+  int rc = x ? LAG_OK : LAG_ENOMEM, all = 1;
 
   if (rc == LAG_OK) {
     reduce_kernel(w);
@@ -159,9 +181,11 @@ static int add_zero_modes(Work *w)
       x[i] = extent(w, i, x[i], 0) < 1e-12 ? 0 : x[i]; /* reduced: the largest is 1 or so */
     }
     Mode mode = {.repeats = 1};
-    mode.free = is_free(w, x);
+    mode.free = is_free(w, x, 0.3);
+    all &= mode.free;
     rc = add_mode(w, mode, x, NULL, 1);
   }
+  w->out->together = rc == LAG_OK && all && free_together(w, x);
   return rc;
 }
 
@@ -266,6 +290,12 @@ static Verdict judge(const Work *w)
   if (grows) {
     return LAG_UNSTABLE;
   }
+  if (w->rest->pole) {
+    return LAG_POLE;
+  }
+  if (w->rest->rough) {
+    return LAG_ROUGH;
+  }
   if (stays == 0 && zeros == 0) {
     return LAG_DECAYS;
   }
@@ -274,6 +304,9 @@ static Verdict judge(const Work *w)
   }
   if (bound) {
     return LAG_FLAT;
+  }
+  if (zeros && !out->together) {
+    return LAG_CROSSED;
   }
   if (w->conserves && out->lowering == 0) {
     return zeros != w->m.flat ? LAG_FLAT : zeros ? LAG_NEUTRAL : LAG_MINIMUM;
@@ -291,7 +324,7 @@ const char *lag_verdict_name(Verdict verdict)
   case LAG_DECAYS: return "asymptotically stable";
   case LAG_MINIMUM: return "stable";
   case LAG_NEUTRAL: return "neutral";
-  case LAG_GYROSCOPIC: case LAG_FLAT: case LAG_DEFECTIVE: case LAG_CENTRE: return "undecided";
+  case LAG_GYROSCOPIC: case LAG_FLAT: case LAG_CROSSED: case LAG_POLE: case LAG_ROUGH: case LAG_DEFECTIVE: case LAG_CENTRE: break;
   }
   return "undecided";
 }

@@ -21,6 +21,9 @@ typedef enum Verdict {
   LAG_NEUTRAL,     /* free motions; otherwise a minimum, or all modes decay */
   LAG_GYROSCOPIC,  /* not decided: all modes oscillate, but the energy has no minimum */
   LAG_FLAT,        /* not decided: a zero mode that is no free motion */
+  LAG_CROSSED,     /* not decided: zero modes that are free one by one, but not together */
+  LAG_POLE,        /* not decided: a coordinate loses its meaning here */
+  LAG_ROUGH,       /* not decided: derivatives of forces jump here, or have no limit */
   LAG_DEFECTIVE,   /* not decided: a multiple imaginary eigenvalue that lacks shapes */
   LAG_CENTRE       /* not decided: some modes neither grow nor decay, and no energy is known to be conserved */
 } Verdict;
@@ -32,6 +35,7 @@ typedef struct Modes {
   Verdict verdict;
   int pairs;     /* each mode stands for both +-(re + i im) */
   int drifts;    /* along a zero mode a push goes on for ever */
+  int together;  /* zero modes that are free are so in any combination */
   int lowering;  /* directions in which the energy falls; -1: not known */
 } Modes;
 

@@ -78,11 +78,11 @@ static int refuse(const App *app)
 
 const char *modes_caution(const App *app, const Rest *r)
 {
-  if (r->singular) {
-    return "the mass matrix is nearly singular here: a coordinate may have lost its meaning";
+  if (r->pole) {
+    return "the mass matrix is nearly singular here: a coordinate has lost its meaning";
   }
   if (!(app->scene->model->flags & LAG_SMOOTH)) {
-    return "the model has if, abs, sign, min or max: where they switch here, small motion is that of one side";
+    return "the model has if, abs, sign, min, max or roots: where they switch here, small motion is that of one side";
   }
   return NULL;
 }
@@ -129,6 +129,16 @@ void modes_reason(const Modes *s, char *text, size_t n)
     return;
   case LAG_FLAT:
     snprintf(text, n, "a zero mode: to second order there is no force along it, and what comes after is not linear");
+    return;
+  case LAG_CROSSED:
+    snprintf(text, n, "no force along each zero mode alone, but along some together, and what comes after the second order is not linear");
+    return;
+  case LAG_POLE:
+    snprintf(text, n, "a coordinate has lost its meaning here, as a longitude does at a pole; these are the modes of the others, and "
+                      "coordinates without a pole here would show all");
+    return;
+  case LAG_ROUGH:
+    snprintf(text, n, "the forces' derivatives jump here, or have no limit, so that no motion is small enough to be linear");
     return;
   case LAG_DEFECTIVE:
     snprintf(text, n, "a multiple frequency with too few shapes: small motion grows in proportion to time, until what is not "
@@ -227,7 +237,7 @@ static int not_found(const App *app, const Rest *r)
   app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s; another "
                         "start: %s=VALUE", r->steps, app->scene->name, v->name, (r->y[i < nq ? i : nq + i] - v->offset) / v->factor,
             v->unit[0] ? " " : "", v->unit, v->name, i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
-            r->singular ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
+            r->pole ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
   return EXIT_RUN;
 }
 

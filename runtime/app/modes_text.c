@@ -222,6 +222,17 @@ static void put_mode(FILE *f, const lag_model *model, const Mode *m, int k, int 
   putc('\n', f);
 }
 
+/* Does one of the modes listed stand for a growing motion and for the one that decays as fast? */
+static int has_twins(const Modes *s)
+{
+  int twins = 0;
+
+  for (int i = 0; i < s->n && i < MOST_MODES; i++) {
+    twins |= s->pairs && s->mode[i].re > 0;
+  }
+  return twins;
+}
+
 /* Is any component out of phase with the one that is 1? */
 static int has_phases(const lag_model *m, const Modes *s)
 {
@@ -259,6 +270,9 @@ static void put_modes(FILE *f, const App *app, const Modes *s)
   }
   if (s->n > MOST_MODES) {
     fprintf(f, "(and %d more; --json has all)\n", s->n - MOST_MODES);
+  }
+  if (has_twins(s)) {
+    fputs("a mode that grows stands for two: another decays as fast\n", f);
   }
   if (has_phases(app->scene->model, s)) {
     fputs("a@p: amplitude a, p degrees ahead\n", f);

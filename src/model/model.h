@@ -128,6 +128,7 @@ typedef struct {
   const char *t1_digits; /* more than a double has, or NULL */
   int has_span;
   Name method; /* or NULL */
+  Span method_span;
   VEC(Option) options;
   double tolerance; /* 0: not given */
   VEC(Output) outputs;

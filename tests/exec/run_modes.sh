@@ -305,6 +305,26 @@ find_modes $dir/quartic.lag crest # the derivative of the force is 0 at the star
 close "downhill from a stationary slope" "-pi/2" "$(at_rest x)"
 verdict stable
 
+for scene in hill valley; do # neither moves along x or y alone; V = -x^2 y^2 falls between them
+  find_modes $dir/cross.lag $scene
+  verdict undecided
+  because "no force along each zero mode alone, but along some together"
+  is "$title: free alone" true "$(of_mode 1 free)"
+done
+find_modes $dir/cross.lag along # on the x axis nothing pulls; y'' = 2 x^2 y
+verdict unstable
+close "it stays there" 0.3 "$(at_rest x)" 0
+close "growth" "sqrt(2)*0.3" "$(of_mode 2 re)"
+find_modes $dir/root.lag # x'' = -3/2 sqrt(x)
+verdict undecided
+because "jump here, or have no limit"
+find_modes $dir/root.lag two
+verdict undecided
+because "jump here, or have no limit"
+find_modes $dir/root.lag one
+verdict stable
+close "frequency" 1 "$(of_mode 1 im)"
+
 # ---- what is refused, and how
 refuses() { # STATUS WORDS ARGS...
   want=$1 words=$2
@@ -320,6 +340,8 @@ find_modes $dir/driven.lag F=1
 close "an input that is held" 2 "$(at_rest x)" # (1 + 3)/k
 check "no equilibrium: what is left" refuses 3 "x'' is still -1 m/s^2; another start: x=VALUE" $dir/quartic.lag incline
 check "no equilibrium: it runs away" refuses 3 "forces only fade, far away" $dir/quartic.lag repelled
+check "no equilibrium: it fades at once" refuses 3 "forces only fade, far away" $dir/quartic.lag escaping
+check "no equilibrium: and leads nowhere" refuses 3 "no equilibrium found" models/swinging_atwood.lag
 check "no equilibrium, as JSON" sh -c "! '$LAGC' modes $dir/quartic.lag incline --json 2>/dev/null | grep -v '\"status\": \"no equilibrium\"'"
 check "a singular mass matrix" refuses 3 "the mass matrix is singular at the start: choose other coordinates" $dir/spherical.lag pole
 check "options of a run" refuses 2 '`--until` is an option of `lagc run`' models/pendulum.lag --until 3
@@ -342,5 +364,10 @@ check "phases" sh -c "'$LAGC' modes $dir/hill.lag | grep -q 'y 1@90' && '$LAGC' 
 check "damping ratio and decay time" sh -c "'$LAGC' modes $dir/oscillator.lag | grep -q '0.1  *decays 5 '"
 check "a model with abs or if: a note" sh -c "'$LAGC' modes tests/exec/models/motor.lag volt=0 | grep -q '^note: the model has if, abs'"
 check "a coordinate that lost its meaning: a note" sh -c "'$LAGC' modes $dir/spherical.lag | grep -q '^note: the mass matrix is nearly singular'"
+check "a note on the pole is not all" sh -c "'$LAGC' modes $dir/spherical.lag | grep -q '^undecided .*as a longitude does at a pole'"
+twins() { "$LAGC" modes "$@" | grep -q '^a mode that grows stands for two: another decays as fast'; }
+check "growth has a twin" twins models/pendulum.lag th=3 # +-sqrt(g/l)
+check "and so has a spiral" twins $dir/cr3bp.lag mu=0.04 # +-a +- bi
+check "not where energy is lost" sh -c "! '$LAGC' modes $dir/hill.lag rubbed | grep -q 'stands for two'"
 check "help" sh -c "'$LAGC' help modes | grep -q Lagrange || '$LAGC' help modes | grep -q equilibrium"
 tap_end

@@ -1,0 +1,81 @@
+#include "analysis/place.h"
+
+#include <math.h>
+
+/* How near M[n * n] is to a singular one, where size[n] are its diagonal's usual ones: the least pivot of Cholesky's
+ * method. M is destroyed. */
+static double least_pivot(int n, double *M, const double *size)
+{
+  double least = HUGE_VAL;
+
+  for (int k = 0; k < n; k++) {
+    double pivot = M[k * n + k];
+    least = size[k] > 0 ? fmin(least, fabs(pivot) / size[k]) : least;
+    for (int i = k + 1; i < n && pivot != 0.0; i++) {
+      double factor = M[i * n + k] / pivot;
+      for (int j = k + 1; j < n && factor != 0.0; j++) {
+        M[i * n + j] -= factor * M[k * n + j];
+      }
+    }
+  }
+  return least;
+}
+
+int lag_place_is_pole(Rest *r)
+{
+  int n = r->n, nq = r->sim->pb.nq;
+  double *size = r->dx;
+
+  for (int i = 0; i < n; i++) { /* a tenth of a scale away, along no diagonal */
+    r->trial[i] = r->x[i] + 0.1 / (1 + 0.3 * (i % 3));
+  }
+  if (lag_rest_equations(r, r->trial, r->f, NULL)) {
+    return 0;
+  }
+  for (int i = 0; i < nq; i++) {
+    size[i] = fabs(r->M[i * nq + i]);
+  }
+  double beside = least_pivot(nq, r->M, size);
+  double here = lag_rest_equations(r, r->x, r->f, NULL) ? 0 : least_pivot(nq, r->M, size);
+  return here < 1e-9 * beside;
+}
+
+/* to[n * n] := derivatives of forces with each unknown moved by +-c. */
+static int moved(Rest *r, int pattern, double c, double *to)
+{
+  for (int i = 0; i < r->n; i++) {
+    double sign = (pattern & 1 ? -1 : 1) * (pattern & 2 && i % 2 ? -1 : 1);
+    r->trial[i] = r->x[i] + sign * c;
+  }
+  return lag_rest_equations(r, r->trial, r->f, to);
+}
+
+/* Do they change within a billionth of a scale as much as within a thousandth? Smooth ones change a million times less. */
+static int changes_at_once(int n, const double *here, const double *near, const double *far)
+{
+  for (int i = 0; i < n; i++) {
+    double most = 0;
+    for (int j = 0; j < n; j++) {
+      most = fmax(most, fmax(fabs(here[i * n + j]), fabs(far[i * n + j])));
+    }
+    for (int j = 0; j < n; j++) {
+      double a = fabs(near[i * n + j] - here[i * n + j]), b = fabs(far[i * n + j] - here[i * n + j]);
+      if (a > 0.1 * b && a > 1e-6 * most) {
+        return 1;
+      }
+    }
+  }
+  return 0;
+}
+
+int lag_place_is_rough(Rest *r)
+{
+  double *here = r->J, *near = r->W, *far = r->scratch;
+  int rough = 0;
+
+  for (int pattern = 0; pattern < 4 && !rough; pattern++) {
+    rough = moved(r, pattern, 0, here) == 0 && moved(r, pattern, 1e-9, near) == 0 && moved(r, pattern, 1e-3, far) == 0 &&
+            changes_at_once(r->n, here, near, far);
+  }
+  return rough;
+}
