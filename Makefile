@@ -94,6 +94,14 @@ $(BUILD)/gen/cli/complete_%.h: src/cli/complete.%
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
+# What the compiler knows of methods is what the runtime says.
+$(BUILD)/gen/base/method_rows.h: runtime/list_methods.c $(LIBLAG)
+	@mkdir -p $(@D)
+	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAN) $(if $(GSL),-DWITH_GSL) -o $(BUILD)/list_methods $< $(if $(GSL),$(BUILD)/liblag_gsl.a) \
+	  $(BUILD)/liblag.a $(GSL_LIBS) -lm
+	$(BUILD)/list_methods >$@.part
+	@mv $@.part $@
+$(BUILD)/obj/src/base/methods.o: $(BUILD)/gen/base/method_rows.h
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
 $(BUILD)/obj/src/emit/cmath.o: $(BUILD)/gen/emit/lag_math.h
 $(BUILD)/obj/src/cli/probe.o: $(BUILD)/gen/cli/probe_text.h

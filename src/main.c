@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/diag.h"
+#include "base/methods.h"
 #include "cli/files.h"
 #include "cli/methods.h"
 #include "cli/options.h"
@@ -241,6 +242,16 @@ static int make_simulator(Compiler *c, const char *output, const char **path) {
   return make_program(c, &tools, &texts, output, path);
 }
 
+/* Of `emit` and `build`, which emit what it needs. That of a run is the simulator's to judge. */
+static int method_is_known(Compiler *c) {
+  size_t n = c->o.method ? strcspn(c->o.method, " (") : 0;
+  if (!n || method_find(c->o.method, n) || method_is_foreign(c->o.method)) return 1;
+  const char *name = arena_strndup(c->arena, c->o.method, n), *near = method_suggest(c->arena, name);
+  const char *help = near ? arena_printf(c->arena, "did you mean %s? ", near) : "";
+  fail_usage(arena_printf(c->arena, "unknown method %s; %s`lagc methods` lists them", name, help));
+  return 0;
+}
+
 static int do_build(Compiler *c) {
   const char *path;
   if (!c->o.output) return fail_usage("`lagc build` needs -o SIMULATOR");
@@ -379,9 +390,9 @@ static int do_command(Compiler *c) {
   switch (c->o.command) {
     case CMD_CHECK: return do_check(c);
     case CMD_DERIVE: return do_derive(c);
-    case CMD_EMIT: return do_emit(c);
+    case CMD_EMIT: return method_is_known(c) ? do_emit(c) : STATUS_USAGE;
     case CMD_HEADER: return do_header(c);
-    case CMD_BUILD: return do_build(c);
+    case CMD_BUILD: return method_is_known(c) ? do_build(c) : STATUS_USAGE;
     case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: case CMD_LYAPUNOV: case CMD_COST: return do_run(c);
     case CMD_METHODS: case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
   }

@@ -1,30 +1,23 @@
 #include "wants.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/methods.h"
 #include "ir/unit.h"
 
-/* The methods of the runtime that need more than accelerations; tests/exec/run_methods.sh compares this with what they say
- * themselves. An explicit method for separable models turns into an implicit one for the others. */
-static const struct {
-  const char *name;
-  unsigned wants;
-  int unless_separable;
-} methods[] = {
-  {"variational", WANT_VARIATION, 0}, {"gauss", WANT_VARIATION, 0},  {"symplectic_euler", WANT_VARIATION, 1},
-  {"verlet", WANT_VARIATION, 1},      {"verlet4", WANT_VARIATION, 1}, {"verlet6", WANT_VARIATION, 1},
-  {"verlet8", WANT_VARIATION, 1},     {"radau", WANT_LINEAR, 0},
-  {"taylor", WANT_TAYLOR, 0},
-};
+/* Of a method; an explicit one for separable models turns into an implicit one for the others. */
+static unsigned wants_of_info(const Eqns *e, const MethodInfo *m) {
+  int splits = (m->flags & METHOD_SPLITS) && e->separable;
+  return ((m->flags & METHOD_VARIATION) && !splits ? WANT_VARIATION : 0u) | (m->flags & METHOD_JACOBIAN ? WANT_LINEAR : 0u) |
+         (m->flags & METHOD_TAYLOR ? WANT_TAYLOR : 0u);
+}
 
 /* Of NAME or NAME(option=value, ...). */
 static unsigned wants_of_method(const Eqns *e, const char *text) {
-  size_t n = text ? strcspn(text, " (") : 0;
-  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
-    if (strlen(methods[i].name) == n && strncmp(methods[i].name, text, n) == 0 && !(methods[i].unless_separable && e->separable))
-      return methods[i].wants;
-  return 0;
+  const MethodInfo *m = text ? method_find(text, strcspn(text, " (")) : NULL;
+  return m ? wants_of_info(e, m) : 0;
 }
 
 /* The method that a saved state goes on with stands near its head, on a line of its own. A file that is none is the
@@ -42,12 +35,23 @@ static const char *method_of_state(Arena *a, const char *path) {
 /* What all methods need. */
 static unsigned wants_of_all(const Eqns *e) {
   unsigned wants = 0;
-  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) wants |= wants_of_method(e, methods[i].name);
+  for (size_t i = 0; method_at(i); i++) wants |= wants_of_info(e, method_at(i));
   return wants;
+}
+
+/* What the simulator may choose where nobody names a method: taylor for small tolerances, radau where friction or flows may be
+ * stiff. Not for long models, whose series and Jacobians take long to compile. */
+static unsigned wants_of_choice(const Eqns *e, const Options *o) {
+  enum { LONG = 40 };
+  const double below_taylor = 1e-9; /* as in runtime/app/automatic.c */
+  double tol = o->tol ? strtod(o->tol, NULL) : e->m->scene.tolerance;
+  int runs = command_simulates(o->command) || o->command == CMD_BUILD;
+  if (!runs || e->m->scene.method || o->method || e->n + e->m->states.n > LONG) return 0;
+  return (tol > 0 && tol < below_taylor ? WANT_TAYLOR : 0u) | (e->conserves_energy ? 0u : WANT_LINEAR);
 }
 
 unsigned wants_of(const Eqns *e, const Options *o) {
   if (o->command == CMD_COST) return wants_of_all(e);
-  unsigned wants = wants_of_method(e, e->m->scene.method) | wants_of_method(e, o->method) | (o->with ? WANT_LINEAR : 0u);
+  unsigned wants = wants_of_method(e, e->m->scene.method) | wants_of_method(e, o->method) | wants_of_choice(e, o) | (o->with ? WANT_LINEAR : 0u);
   return o->resume ? wants | wants_of_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

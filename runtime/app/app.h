@@ -39,6 +39,7 @@ typedef struct App {
   double until;
   int section;      /* the event that rows are put out at; -1: they are put out in time */
   int section_rc;   /* why its last row could not be made */
+  char why[200];    /* this method, where nobody named one; "" where somebody did */
   int status;       /* LAG_... of the run */
   int written;      /* rows were completed */
   struct timespec begun, shown;
@@ -73,6 +74,9 @@ const lag_method *app_method_at(const App *app, int i);
 const lag_method *app_find_method(const App *app, const char *name);
 /* The message that there is no such method; returns EXIT_USAGE. */
 int app_unknown_method(const App *app, const char *name);
+
+/* automatic.c: a method for app->sim, whose values are set, with these options; fills app->why. 0, or EXIT_USAGE after a message. */
+int app_choose_automatically(App *app, const lag_option *opt, int n);
 
 /* methods.c */
 void app_list_methods(const App *app, FILE *f);

@@ -135,14 +135,14 @@ int app_unknown_method(const App *app, const char *name)
 static int choose_method(App *app)
 {
   const Args *a = &app->args;
-  Choice c = {.name = app->scene->method ? app->scene->method : lag_methods[0]->name};
+  Choice c = {.name = app->scene->method};
   int rc = a->method ? parse_method(a, &c) : 0;
 
   if (rc) {
     return rc;
   }
-  const lag_method *m = app_find_method(app, c.name);
-  if (!m) {
+  const lag_method *m = c.name ? app_find_method(app, c.name) : NULL;
+  if (c.name && !m) {
     return app_unknown_method(app, c.name);
   }
   if (app->scene->method && strcmp(app->scene->method, c.name) == 0 && c.n == 0) {
@@ -167,6 +167,9 @@ static int choose_method(App *app)
     if (a->method_options[i]) {
       add_option(&c, args_own_options[i], a->method_options[i]);
     }
+  }
+  if (!m) {
+    return app_choose_automatically(app, c.opt, c.n);
   }
   rc = lag_sim_set_method(app->sim, m, c.opt, c.n);
   if (rc == 0 && a->tol && !(m->flags & LAG_METHOD_ADAPTIVE) && !a->quiet) {
@@ -381,6 +384,6 @@ int app_choose(App *app)
   if (app->resumed) {
     return resume(app);
   }
-  rc = app_choose_method(app);
-  return rc ? rc : app_set_values(app);
+  rc = app_set_values(app);
+  return rc ? rc : app_choose_method(app);
 }

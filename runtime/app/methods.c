@@ -44,9 +44,10 @@ void app_list_methods(const App *app, FILE *f)
   for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
     row(i < lag_nmethods ? lag_methods[i] : app->extras.methods[i - lag_nmethods], f);
   }
-  fputs("\nThe first is the default. dense: order between steps. forces: whether the model may have forces and explicit time; what a\n"
-        "symplectic method keeps without them it does not keep with them. states: whether it may have a `state`. separable: with\n"
-        "constant mass matrix, and accelerations that do not depend on velocities. Options, with their defaults:\n", f);
+  fputs("\nWhere none is named, a run chooses and says why. dense: order between steps. forces: whether the model may have forces\n"
+        "and explicit time; what a symplectic method keeps without them it does not keep with them. states: whether it may have\n"
+        "a `state`. separable: with constant mass matrix, and accelerations that do not depend on velocities. Options, with their\n"
+        "defaults:\n", f);
   for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
     words(i < lag_nmethods ? lag_methods[i] : app->extras.methods[i - lag_nmethods], f);
   }

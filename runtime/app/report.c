@@ -164,6 +164,9 @@ void report_text(App *app, FILE *f)
   lag_sim_stats(app->sim, &st);
   report_method(app, method, sizeof method);
   fprintf(f, "model %s, scene %s, method %s\n", c->model->name, c->name, method);
+  if (app->why[0]) {
+    fprintf(f, "chosen: %s\n", app->why);
+  }
   verdict(app, f);
   final_state(app, f);
   fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
@@ -255,6 +258,7 @@ void report_json(App *app, FILE *f)
   field_string(f, "model", m->name);
   field_string(f, "scene", app->scene->name);
   field_string(f, "method", lag_sim_method(app->sim)->name);
+  field_string(f, "chosen", app->why[0] ? app->why : NULL);
   field_string(f, "status", app->status < 0 ? "failed" : lag_status_name(app->status));
   field_string(f, "message", app->status < 0 ? lag_sim_message(app->sim) : NULL);
   field_number(f, "t_end", st.t);

@@ -22,7 +22,6 @@ typedef struct Run {
   double limit, pending; /* pending: events fire at limit */
   double steps, rejected, rhs_calls, systems, iterations, events;
   double e_first, e_last, e_peak, e_scale; /* energy: E0, last, largest |E - E0|, largest |p.v| + |L| */
-  double zeno_k, zeno_t, zeno_dt, zeno_count; /* the last event, its time, interval, how many ever shorter */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
 } Run;
 
@@ -51,6 +50,7 @@ struct lag_sim {
   double *sign_end;      /* [nev] sign at the end of the step */
   double *count;         /* [nev] */
   double *first, *last;  /* [nev] times, where count is not 0 */
+  double *interval, *shorter; /* [nev] between the last two firings, and how many were each shorter than the one before */
   double *mon_first, *mon_peak; /* [nmonitors] */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
   double *method_work;
@@ -78,10 +78,12 @@ int lag_explain(lag_sim *sim, int status);
 /* setup.c: the state at the start, of a run that has not begun. */
 int lag_setup_start(lag_sim *sim);
 
-/* events.c. arm: signs at the start of a step chain. locate: the first event in (run->from, step_t1],
- * sets limit and pending. fire: applies the events at limit. */
+/* events.c. arm: signs at the start of a step chain. locate (locate.c): the first event in (run->from, step_t1],
+ * sets limit and pending. spread (locate.c): how much g[nev] differs from its values at limit within the last digits of the time,
+ * which is what a step's dense output leaves open. fire: applies the events at limit. */
 int lag_events_arm(lag_sim *sim);
 int lag_events_locate(lag_sim *sim);
+int lag_events_spread(lag_sim *sim, const double *at_event, double *spread);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
 

@@ -14,7 +14,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
 {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
-  size_t nmon = (size_t)s->scene->nmonitors, fixed = RUN_DOUBLES + np + nu + 4 * n + 7 * nev + 2 * nmon + (size_t)s->scene->nexact;
+  size_t nmon = (size_t)s->scene->nmonitors, fixed = RUN_DOUBLES + np + nu + 4 * n + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
   lag_problem sized = s->pb;
   sized.opt = opt;
   size_t total = fixed + method->work_size(&sized);
@@ -32,9 +32,9 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->nsaved = total;
   s->run = (Run *)(void *)b;
   double **const parts[] = {&s->p, &s->hold, &s->begin, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
-                            &s->count, &s->first, &s->last, &s->mon_first, &s->mon_peak,
+                            &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->mon_first, &s->mon_peak,
                             &s->exact_peak, &s->method_work};
-  const size_t sizes[] = {np, nu, n, n, n, n, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, 0};
+  const size_t sizes[] = {np, nu, n, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, 0};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
@@ -51,7 +51,7 @@ static int alloc_scratch(lag_sim *s)
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
   size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
-  double *x = calloc(nuu + nw + 3 * n + 8 * nev + nout + 2 + 1, sizeof *x);
+  double *x = calloc(nuu + nw + 3 * n + 13 * nev + nout + 2 + 1, sizeof *x);
 
   s->scratch = x;
   s->fixed = calloc((size_t)m->np + 1, 1);
@@ -64,7 +64,7 @@ static int alloc_scratch(lag_sim *s)
     s->start[i] = NAN;
   }
   double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare};
-  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 5 * nev};
+  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];

@@ -14,6 +14,7 @@ typedef struct {
   const char *output;      /* -o */
   const char *method;      /* emit, build --method; of run, plot, animate, which pass it on */
   const char *resume;      /* of run */
+  const char *tol;         /* of run, plot, animate */
   const char *format;      /* derive --format */
   const char *dump;        /* --dump=ast,model,eqns,prog */
   const char *topic;       /* of help; the shell of completion */

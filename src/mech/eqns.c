@@ -1,7 +1,9 @@
 #include "mech/eqns.h"
 
 #include <math.h>
+#include <string.h>
 
+#include "base/methods.h"
 #include "mech/lagrange.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
@@ -161,6 +163,16 @@ static int check_numbers(const Eqns *e) {
   return 1;
 }
 
+/* What model/method.c could not see yet. */
+static int check_method(const Eqns *e) {
+  const Scene *sc = &e->m->scene;
+  const MethodInfo *method = sc->method ? method_find(sc->method, strlen(sc->method)) : NULL;
+  if (!method || !(method->flags & METHOD_TAYLOR) || e->smooth) return 1;
+  diag_error(e->m->diags, sc->method_span, "the method `%s` needs a model without if, abs, sign, min, max and tables", method->name);
+  diag_help(e->m->diags, "`dop853` does not");
+  return 0;
+}
+
 Eqns *eqns_derive(Model *m) {
   Eqns *e = ARENA_NEW(m->arena, Eqns);
   e->m = m;
@@ -176,5 +188,5 @@ Eqns *eqns_derive(Model *m) {
   }
   classify(e);
   fill_outputs(e);
-  return check_numbers(e) ? e : NULL;
+  return check_numbers(e) && check_method(e) ? e : NULL;
 }

@@ -331,4 +331,7 @@ void settle_units(Builder *b);
 void scene_select(Builder *b, const ModelChoice *choice);
 void scene_build(Builder *b, const ModelChoice *choice);
 
+/* method.c: the scene's method. */
+void scene_method(Builder *b, const AstStmt *st);
+
 #endif

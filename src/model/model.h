@@ -127,6 +127,7 @@ typedef struct {
   double t0, t1;
   int has_span;
   Name method; /* or NULL */
+  Span method_span;
   VEC(Option) options;
   double tolerance; /* 0: not given */
   VEC(Output) outputs;

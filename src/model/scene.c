@@ -297,28 +297,6 @@ static void set_value(Builder *b, const AstStmt *st, Name effect) {
   else give_input(b, e->index, e->name, st->rhs, effect);
 }
 
-static Name method_text(const Builder *b, AstId id) {
-  const AstExpr *x = ast_expr(b->ast, id);
-  return x->kind == AST_NAME ? x->name : NULL;
-}
-
-static void set_method(Builder *b, const AstStmt *st) {
-  Scene *sc = &b->m->scene;
-  Unit any = {.dim = DIM_ANY, .factor = num_int(1), .offset = num_int(0), .text = ""};
-  sc->method = st->name;
-  sc->options.n = 0;
-  for (const AstStmt *o = st->body; o; o = o->next) {
-    const AstExpr *l = ast_expr(b->ast, o->lhs);
-    if (l->kind != AST_NAME) {
-      diag_error(b->diags, l->span, "an option is `name = value`");
-      continue;
-    }
-    Option opt = {.name = l->name, .text = method_text(b, o->rhs)};
-    if (!opt.text) opt.value = resolve_number(b, o->rhs, &any, "an option");
-    vec_push(b->arena, &sc->options, opt);
-  }
-}
-
 typedef struct {
   EntKind kind;
   int velocity;
@@ -476,7 +454,7 @@ static void scene_statement(Builder *b, const AstStmt *st) {
         for (const AstStmt *x = st->body; x; x = x->next) set_value(b, x, st->name);
       return;
     case STMT_SPAN: set_span(b, st); return;
-    case STMT_METHOD: set_method(b, st); return;
+    case STMT_METHOD: scene_method(b, st); return;
     case STMT_TOLERANCE: set_tolerance(b, st); return;
     case STMT_OUTPUT: set_output(b, st); return;
     case STMT_EXACT: case STMT_MONITOR: case STMT_LIKE: return; /* see scene_build, scene_chain */

@@ -15,6 +15,7 @@ src/emit      emit/ ir/ base/
 src/cli       cli/ base/
 src           base/ syntax/ sym/ model/ mech/ ir/ emit/ cli/
 grammar       syntax/scan.h syntax/parse_state.h
+runtime           lag.h
 runtime/core      core/ lag.h lag_model.h
 runtime/methods   methods/ lag.h lag_model.h
 runtime/analysis  analysis/ core/ lag.h lag_model.h

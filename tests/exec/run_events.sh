@@ -12,6 +12,29 @@ for method in rk45 dop853; do
   is "$method: 500 rad/s, near a multiple of the sampling" 795 "$(strikes $method 500)"
 done
 
+# A strike that changes the motion begins a new step, so that strikes lie anywhere in steps: floor(2 w/(2 pi)) in 2 s. And an
+# oscillation that is above the event for a moment only, a hundred times.
+"$LAGC" build tests/exec/models/kicks.lag -o "$TMP/kicks" >"$TMP/out" 2>&1
+while read -r w n; do
+  is "kicked at $w rad/s" "$n" "$("$TMP/kicks" --json "w=$w" | sed 's/.*"j": {"count": \([0-9]*\).*/\1/')"
+done <<'END'
+500 159
+800 254
+850 270
+900 286
+950 302
+1000 318
+1037 330
+1100 350
+1150 366
+1200 381
+END
+for method in rk45 dop853 'verlet8 --step 0.3' taylor; do
+  # shellcheck disable=SC2086
+  is "$method: short excursions" 100 "$("$LAGC" run tests/exec/models/graze.lag --method $method --json |
+    sed 's/.*"up": {"count": \([0-9]*\).*/\1/')"
+done
+
 piles_up() { # METHOD
   "$LAGC" run models/bouncing_ball.lag drop --until 4.2 --method "$1" >"$TMP/out" 2>&1
   [ $? = 3 ] && grep -q 'event floor repeats in ever shorter intervals: .* at t = 4.0637' "$TMP/out"

@@ -68,7 +68,12 @@ check "and the command that builds it in" grep -q 'lagc build MODEL --method gau
 built gauss
 check "built with --method it runs" sim --method gauss --until 1
 check "and any other that needs the same" sim --method verlet --until 1
-# Every method that is listed finds in a program what it needs: src/wants.c agrees with the runtime.
+for command in emit build; do
+  "$LAGC" $command models/double_pendulum.lag -o "$TMP/none" --method verlte 2>"$TMP/err"
+  is "$command --method: one that there is not ends with status 2" 2 $?
+  check "and is told from one that there is" grep -q 'unknown method verlte; did you mean verlet?' "$TMP/err"
+done
+# Every method that is listed finds in a program what it needs.
 run models/double_pendulum.lag --method help
 for m in $(sed -n 's/^  \([a-z][a-z0-9_-]*\) .* \(adaptive\|fixed\) .*/\1/p' "$TMP/out"); do
   check "$m has what it needs" run models/double_pendulum.lag --method "$m" --until 0.01

@@ -2,8 +2,6 @@
 # Golden tests of what `lagc check` says, as TAP:
 #   tests/golden/err/sem_NAME.lag + .expected    a bad model: exit status 1, the messages exactly, nothing on stdout
 #   tests/golden/err/warn_NAME.lag + .expected   a good one that draws warnings: exit status 0, the messages exactly
-#   tests/golden/err/run_NAME.lag + .expected    a good one that cannot be run as its first scene says: exit status 2, the
-#                                                messages of `lagc run` exactly, nothing on stdout
 #   tests/golden/ok/NAME.lag                     a good one, the near miss of an error: exit status 0, no messages
 # rows.txt is the list of what is refused, with the file of each row and its near miss.
 # Every bad model is also given to the commands that write files: none may be left, whole or in part.
@@ -27,13 +25,12 @@ result() { # NAME PROBLEM
   fi
 }
 
-for lag in tests/golden/err/sem_*.lag tests/golden/err/warn_*.lag tests/golden/err/run_*.lag tests/golden/ok/*.lag; do
+for lag in tests/golden/err/sem_*.lag tests/golden/err/warn_*.lag tests/golden/ok/*.lag; do
   want=${lag%.lag}.expected
   status=1
   command=check
   case $lag in
     */warn_*) status=0 ;;
-    */run_*) status=2 command=run ;;
     */ok/method.lag) status=0 want=/dev/null command='run --quiet' ;;
     */ok/*) status=0 want=/dev/null ;;
   esac

@@ -1,0 +1,64 @@
+/* The method of a run for which nobody named one. Enters: a simulation with its values and tolerance; leaves: its method, and
+ * why it is that one. Holds: the choice depends on the model, the values and the tolerance, never on how long anything takes. */
+#include <math.h>
+
+#include "analysis/stiff.h"
+#include "app/app.h"
+
+/* Where each of them is the cheapest: `lagc cost`. */
+static const double below_taylor = 1e-9, above_rk45 = 1e-6;
+
+enum { MOST_OF_TRIAL = 200 }; /* components of the state: past them the Jacobian of each step takes too long */
+
+/* Is it stiff? The trial's values are those of the run. */
+static int is_stiff(App *app, const lag_method *method, Stiffness *s)
+{
+  const lag_scene *scene = app->scene;
+  lag_sim *run = app->sim, *trial;
+  int rc = LAG_ENOMEM;
+
+  if (!scene->model->linear || 2 * scene->model->nq + scene->model->nz > MOST_OF_TRIAL) {
+    return 0;
+  }
+  trial = app->sim = lag_sim_new(scene);
+  if (trial && app_set_values(app) == 0 && lag_sim_set_tolerance(trial, lag_sim_tolerance(run)) == 0 &&
+      lag_sim_set_method(trial, method, NULL, 0) == 0) {
+    rc = lag_stiffness(trial, scene->has_span ? scene->t1 : scene->t0 + 10, method == &lag_rk45 ? 3.3 : 6.1, s);
+  }
+  app->sim = run;
+  lag_sim_free(trial);
+  return rc == LAG_OK && lag_is_stiff(s);
+}
+
+/* Whether it takes this model and these options. */
+static int set(App *app, const lag_method *method, const lag_option *opt, int n)
+{
+  return lag_sim_set_method(app->sim, method, opt, n) == 0;
+}
+
+int app_choose_automatically(App *app, const lag_option *opt, int n)
+{
+  double tol = lag_sim_tolerance(app->sim);
+  const lag_method *plain = tol > above_rk45 ? &lag_rk45 : &lag_dop853;
+  char *why = app->why;
+  size_t size = sizeof app->why;
+  int exponents = app->args.tangent || app->args.lyapunov; /* taylor has no tangent */
+  Stiffness s = {0};
+
+  if (is_stiff(app, plain, &s) && set(app, &lag_radau, opt, n)) {
+    snprintf(why, size, "radau, since the model is stiff: stability, not the tolerance, would limit %.0f %% of the first steps of %s",
+             100.0 * s.limited / s.looked, plain->name);
+  } else if (tol < below_taylor && !exponents && set(app, &lag_taylor_method, opt, n)) {
+    snprintf(why, size, "taylor, since the tolerance is below %g", below_taylor);
+  } else if (set(app, plain, opt, n)) {
+    if (plain == &lag_rk45) {
+      snprintf(why, size, "rk45, since the tolerance is above %g", above_rk45);
+    } else {
+      snprintf(why, size, "dop853, since %s %g", tol < below_taylor ? "taylor cannot take this run, with its tolerance below"
+                                                                      : "the tolerance is at most", tol < below_taylor ? below_taylor : above_rk45);
+    }
+  } else {
+    return app_error(&app->args, "%s", lag_sim_message(app->sim));
+  }
+  return 0;
+}

@@ -1,0 +1,47 @@
+/* Prints the methods of the runtime as rows of the table in src/base/methods.c. Runs once, when lagc is built: the compiler includes
+ * no header of the runtime, and has no second list of what methods are called, take and need. */
+#include <math.h>
+#include <stdio.h>
+
+#include "lag.h"
+
+static void list_options(const lag_method *m)
+{
+  printf("   (const MethodOption[]){");
+  for (int i = 0; i < m->noptions; i++) {
+    const lag_method_option *o = &m->options[i];
+    printf("{\"%s\", %.17g, ", o->name, o->min);
+    if (isinf(o->max)) {
+      printf("HUGE_VAL, ");
+    } else {
+      printf("%.17g, ", o->max);
+    }
+    printf("%s", o->choices ? "(const char *const[]){" : "NULL");
+    for (int j = 0; o->choices && o->choices[j]; j++) {
+      printf("\"%s\", ", o->choices[j]);
+    }
+    printf("%s", o->choices ? "NULL}}, " : "}, ");
+  }
+  printf("{NULL, 0, 0, NULL}}},\n");
+}
+
+static void list(const lag_method *const *methods, int n)
+{
+  for (int i = 0; i < n; i++) {
+    const lag_method *m = methods[i];
+    printf("  {\"%s\", 0%s%s%s%s%s,\n", m->name, m->flags & LAG_METHOD_NO_STATES ? " | METHOD_NO_STATES" : "",
+           m->flags & LAG_METHOD_VARIATION ? " | METHOD_VARIATION" : "", m->flags & LAG_METHOD_SPLITS ? " | METHOD_SPLITS" : "",
+           m->flags & LAG_METHOD_JACOBIAN ? " | METHOD_JACOBIAN" : "", m->flags & LAG_METHOD_TAYLOR ? " | METHOD_TAYLOR" : "");
+    list_options(m);
+  }
+}
+
+int main(void)
+{
+  printf("/* Made by runtime/list_methods.c. */\n");
+  list(lag_methods, lag_nmethods);
+#ifdef WITH_GSL
+  list(lag_gsl_methods, lag_gsl_nmethods);
+#endif
+  return 0;
+}

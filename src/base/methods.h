@@ -1,0 +1,43 @@
+/* The methods of integration, for those who check a model or emit code for one: what they are called, their options and what they need.
+ * The table is made from the runtime's own when lagc is built (runtime/list_methods.c). */
+#ifndef LAGC_BASE_METHODS_H
+#define LAGC_BASE_METHODS_H
+
+#include "base/intern.h"
+
+enum {
+  METHOD_NO_STATES = 1,  /* refuses models with states */
+  METHOD_VARIATION = 2,  /* needs derivatives of L, */
+  METHOD_SPLITS = 4,     /* but not of a separable model */
+  METHOD_JACOBIAN = 8,   /* needs the linearisation */
+  METHOD_TAYLOR = 16     /* needs Taylor coefficients, and so a smooth model */
+};
+
+typedef struct {
+  const char *name;               /* NULL: past the last */
+  double min, max;
+  const char *const *choices;     /* NULL-terminated; NULL: a number from min to max */
+} MethodOption;
+
+typedef struct {
+  const char *name;
+  unsigned flags;
+  const MethodOption *options;
+} MethodInfo;
+
+/* Method i, the default first; NULL past the last. */
+const MethodInfo *method_at(size_t i);
+
+/* The method whose name is the n bytes at `name`, or NULL. */
+const MethodInfo *method_find(const char *name, size_t n);
+
+/* Whether the name may be that of a method of a library that lagc was built without. */
+int method_is_foreign(const char *name);
+
+/* The known name nearest to a wrong one, or NULL. */
+const char *method_suggest(Arena *a, const char *wrong);
+
+/* The option of that name, or NULL. */
+const MethodOption *method_option(const MethodInfo *m, const char *name);
+
+#endif

@@ -1,0 +1,89 @@
+/* `method NAME(option = value, ...)` of a scene. Enters: the statement; leaves: the scene's method and its options, names and values
+ * as the runtime knows them. */
+#include <string.h>
+
+#include "base/methods.h"
+#include "base/suggest.h"
+#include "model/builder.h"
+
+static const char *list_options(const Builder *b, const MethodInfo *m) {
+  StrBuf list = strbuf(b->arena);
+  for (const MethodOption *o = m->options; o->name; o++) sb_printf(&list, "%s`%s`", o == m->options ? "" : ", ", o->name);
+  return sb_text(&list);
+}
+
+static const char *list_choices(const Builder *b, const MethodOption *o) {
+  StrBuf list = strbuf(b->arena);
+  for (const char *const *c = o->choices; *c; c++) sb_printf(&list, "%s`%s`", c == o->choices ? "" : ", ", *c);
+  return sb_text(&list);
+}
+
+/* NULL, reported, when there is none; NULL too when it is one that only the runtime knows. */
+static const MethodInfo *known_method(Builder *b, const AstStmt *st) {
+  const MethodInfo *m = method_find(st->name, strlen(st->name));
+  if (m || method_is_foreign(st->name)) return m;
+  const char *near = method_suggest(b->arena, st->name);
+  diag_error(b->diags, st->name_span, "unknown method `%s`", st->name);
+  if (near) diag_help(b->diags, "did you mean `%s`? `lagc methods` lists them", near);
+  else diag_help(b->diags, "`lagc methods` lists them; without a `method` it is `%s`", method_at(0)->name);
+  return NULL;
+}
+
+static void unknown_option(Builder *b, const MethodInfo *m, const AstExpr *name) {
+  VEC(Name) names = {0};
+  for (const MethodOption *o = m->options; o->name; o++) vec_push(b->arena, &names, o->name);
+  Name near = suggest(name->name, names.at, names.n);
+  diag_error(b->diags, name->span, "the method `%s` has no option `%s`", m->name, name->name);
+  if (near) diag_help(b->diags, "did you mean `%s`? `lagc methods` lists the options", near);
+  else if (names.n) diag_help(b->diags, "its options: %s; `lagc methods` tells what they mean", list_options(b, m));
+  else diag_help(b->diags, "it has no options");
+}
+
+static void check_value(Builder *b, const MethodOption *o, const Option *given, Span span) {
+  if (given->text && !o->choices) {
+    diag_error(b->diags, span, "the option `%s` is a number", o->name);
+    diag_help(b->diags, "write `%s = 0.01`", o->name);
+  } else if (given->text) {
+    for (const char *const *c = o->choices; *c; c++)
+      if (strcmp(*c, given->text) == 0) return;
+    diag_error(b->diags, span, "the option `%s` cannot be `%s`", o->name, given->text);
+    diag_help(b->diags, "it is one of %s", list_choices(b, o));
+  } else if (!(given->value >= o->min && given->value <= o->max)) {
+    diag_error(b->diags, span, "the option `%s` cannot be %.6g", o->name, given->value);
+    if (o->choices) diag_help(b->diags, "it is one of %s", list_choices(b, o));
+    else if (o->max < 1e300) diag_help(b->diags, "it is a number from %g to %g", o->min, o->max);
+    else diag_help(b->diags, "it is at least %g", o->min);
+  }
+}
+
+static void take_option(Builder *b, const MethodInfo *m, const AstStmt *st) {
+  static const Unit any = {.dim = DIM_ANY, .text = ""};
+  const AstExpr *l = ast_expr(b->ast, st->lhs), *r = ast_expr(b->ast, st->rhs);
+  Unit unit = any;
+  unit.factor = num_int(1);
+  unit.offset = num_int(0);
+  if (l->kind != AST_NAME) {
+    diag_error(b->diags, l->span, "an option is `name = value`");
+    return;
+  }
+  Option opt = {.name = l->name, .text = r->kind == AST_NAME ? r->name : NULL};
+  if (!opt.text) opt.value = resolve_number(b, st->rhs, &unit, "an option");
+  const MethodOption *o = m ? method_option(m, l->name) : NULL;
+  if (o) check_value(b, o, &opt, r->span);
+  else if (m) unknown_option(b, m, l);
+  vec_push(b->arena, &b->m->scene.options, opt);
+}
+
+void scene_method(Builder *b, const AstStmt *st) {
+  Scene *sc = &b->m->scene;
+  const MethodInfo *m = known_method(b, st);
+  sc->method = st->name;
+  sc->method_span = st->name_span;
+  sc->options.n = 0;
+  if (m && (m->flags & METHOD_NO_STATES) && b->m->states.n) {
+    diag_error(b->diags, st->name_span, "the method `%s` cannot integrate a model with states", m->name);
+    diag_also(b->diags, b->m->states.at[0].span, "here is a state");
+    diag_help(b->diags, "`rk45` and `dop853` can");
+  }
+  for (const AstStmt *o = st->body; o; o = o->next) take_option(b, m, o);
+}

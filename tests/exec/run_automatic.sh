@@ -1,0 +1,52 @@
+#!/bin/sh
+# Which method a run takes when nobody names one, and what it says of that.
+: "${LAGC:=build/lagc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+export TMP
+. tests/tap.sh
+
+cat >"$TMP/van_der_pol.lag" <<'EOF'
+model van_der_pol "an oscillator that takes in energy when small, and loses it when large"
+state x, y
+param mu = 1000
+flow x' = y
+flow y' = mu*(1 - x^2)*y - x
+scene run { start x = 2; span 2000 [s] }
+EOF
+cat >"$TMP/wall.lag" <<'EOF'
+model wall
+coord x
+lagrangian = x'^2/2 - if(x > 0, x^2, 3*x^2)
+scene run { start x = 1; span 2 [s] }
+EOF
+
+# takes METHOD MODEL ARGS...: it is chosen, and the report says so
+takes() {
+  method=$1
+  shift
+  "$LAGC" run "$@" >"$TMP/out" 2>"$TMP/err" && grep -q "method $method(" "$TMP/out" && grep -q "^chosen: $method, since" "$TMP/out" || { cat "$TMP/out" "$TMP/err"; return 1; }
+}
+vdp=$TMP/van_der_pol.lag
+check "stiff: radau" takes radau "$vdp" --tol 1e-9
+# x(2000) = 1.706167732170469, y(2000) = -0.8928097010248e-3 for mu = 1000: problem vdpol of F. Mazzia, C. Magherini, Test Set
+# for Initial Value Problem Solvers, release 2.4 (2008). 1e-6: the tolerance, and the slow drift along the limit cycle.
+published() { awk '$1 == "x" { x = $2 } $1 == "y" { y = $2 } END { dx = x - 1.706167732170469; dy = y + 0.8928097010248e-3
+  if (dx*dx < 1e-12 && dy*dy < 1e-18) exit 0; print x, y; exit 1 }' "$TMP/out"; }
+check "with the published values at t = 2000" published
+check "not stiff: dop853" takes dop853 "$vdp" mu=1 --until 20
+check "a rough tolerance: rk45" takes rk45 "$vdp" mu=1 --until 20 --tol 1e-4
+check "a tolerance below 1e-9: taylor" takes taylor "$vdp" mu=1 --until 20 --tol 1e-11
+check "by the scene's tolerance, too" takes taylor models/double_pendulum.lag swing
+check "with if: dop853" takes dop853 "$TMP/wall.lag" --tol 1e-11
+check "with --tangent: dop853" takes dop853 models/double_pendulum.lag swing --tangent
+check "past 40 coordinates: dop853" takes dop853 models/chain.lag -D N=50 --until 0.1
+named() { "$LAGC" run "$@" >"$TMP/out" 2>&1 && ! grep -q '^chosen' "$TMP/out"; }
+check "nothing is chosen where the command line names one" named "$vdp" mu=1 --until 20 --method rk45
+check "or the scene" named models/lorenz.lag --until 1
+json() { "$LAGC" run "$vdp" --json >"$TMP/json" && grep -q '"method": "radau", "chosen": "radau, since the model is stiff' "$TMP/json"; }
+check "as JSON" json
+built() { "$LAGC" build "$vdp" -o "$TMP/vdp" && "$TMP/vdp" --until 1 >"$TMP/out" && grep -q '^chosen: radau' "$TMP/out"; }
+check "a simulator that was built chooses, too" built
+resumed() { "$LAGC" run "$vdp" --until 100 --save-state "$TMP/state" --quiet && "$LAGC" run "$vdp" --resume "$TMP/state" --until 200 >"$TMP/out" && grep -q 'method radau' "$TMP/out"; }
+check "a run goes on with what it began with" resumed
+tap_end
