@@ -271,6 +271,8 @@ void report_json(App *app, FILE *f)
   report_events_json(app, f);
   exact_json(app, f);
   report_tangent_json(app, f);
+  field_string(f, "math", m->math);
+  field_string(f, "build", app->program->build);
   fputs("\"constraint_residual\": null, \"final\": {", f);
   for (int i = 0; i < n; i++) {
     Column c;
@@ -281,9 +283,5 @@ void report_json(App *app, FILE *f)
     json_number(f, x);
   }
   final_outputs(app, f);
-  fputs("}, ", f);
-  field_string(f, "math", m->math);
-  fputs("\"build\": ", f);
-  json_string(f, app->program->build ? app->program->build : "");
-  fputs("}\n", f);
+  fputs("}}\n", f);
 }
