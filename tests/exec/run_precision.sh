@@ -54,7 +54,7 @@ says_nothing() { ! run "$TMP/long.lag" | grep warning; }
 # A number, a function or a constant that runtime/precision.awk left a double would lose digits in silence.
 no_doubles() {
   gen=$BUILD/gen/quad
-  "$CC" -std=gnu11 -fsyntax-only -w -Werror=float-conversion -Werror=double-promotion -Werror=unsuffixed-float-constants \
+  "$CC" -std=gnu11 -fsyntax-only -Werror=float-conversion -Werror=unsuffixed-float-constants \
     -D_XOPEN_SOURCE=700 -DLAG_REAL=__float128 '-DLAG_PRECISION="quad"' -include quadmath.h -I"$gen/include" -I"$gen" -I"$BUILD/gen" "$gen"/*/*.c
 }
 check "no doubles are left in the runtime" no_doubles
