@@ -45,7 +45,7 @@ static void row(const lag_method *m, FILE *f)
   unsigned is = m->flags;
   char order[32], dense[32];
 
-  fprintf(f, "  %-16s  %-5s  %-5s  %-8s  %-12s  %-6s  %-6s  %-6s  %s\n", m->name, order_text(m, m->order, order, sizeof order),
+  fprintf(f, "  %-16s %-5s %-5s %-8s %-12s %-6s %-6s %-6s %s\n", m->name, order_text(m, m->order, order, sizeof order),
           order_text(m, m->dense_order, dense, sizeof dense),
           is & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed",
           is & LAG_METHOD_SYMMETRIC ? is & LAG_METHOD_SYMPLECTIC ? "sympl., sym." : "symmetric"
@@ -107,7 +107,7 @@ int app_explain_method(const App *app, const char *name, FILE *f)
 
 void app_list_methods(const App *app, FILE *f)
 {
-  fprintf(f, "  %-16s  %-5s  %-5s  %-8s  %-12s  %-6s  %-6s  %-6s  %s\n", "method", "order", "dense", "steps", "keeps", "Newton", "forces", "states", "tangent");
+  fprintf(f, "  %-16s %-5s %-5s %-8s %-12s %-6s %-6s %-6s %s\n", "method", "order", "dense", "steps", "keeps", "Newton", "forces", "states", "deriv");
   for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
     row(method(app, i), f);
   }
@@ -115,7 +115,7 @@ void app_list_methods(const App *app, FILE *f)
   wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. sympl., sym.: symplectic and symmetric. Newton: whether each step solves "
              "equations by Newton's method; partly: unless the model is separable, with constant mass matrix, and accelerations that do not "
              "depend on velocities. forces: whether the model may have forces and explicit time; what a symplectic method keeps without "
-             "them it does not keep with them. states: whether it may have a `state`. tangent: whether its steps have a derivative (--tangent, lagc lyapunov). Options, with their defaults:", 0, 0);
+             "them it does not keep with them. states: whether it may have a `state`. deriv: whether its steps have a derivative (--tangent, lagc lyapunov). Options, with their defaults:", 0, 0);
   for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
     words(method(app, i), f);
   }

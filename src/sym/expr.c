@@ -45,12 +45,13 @@ static uint32_t hash_parts(ExprOp op, const Expr *args, uint32_t n, Name name) {
   return h ^ (h >> 15);
 }
 
+static uint32_t mix_64(uint32_t h, uint64_t x) { return mix(mix(h, (uint32_t)x), (uint32_t)(x >> 32)); }
+
+/* Of what num_equal compares: not of the error of a number that is not exact. */
 static uint32_t hash_num(Num n) {
   uint64_t bits = 0;
   memcpy(&bits, &n.approx, sizeof bits);
-  uint32_t h = mix(mix(7, (uint32_t)n.num), (uint32_t)((uint64_t)n.num >> 32));
-  h = mix(mix(h, (uint32_t)n.den), (uint32_t)((uint64_t)n.den >> 32));
-  h = mix(mix(h, (uint32_t)bits), (uint32_t)(bits >> 32));
+  uint32_t h = n.den ? mix_64(mix_64(7, (uint64_t)n.num), (uint64_t)n.den) : mix_64(mix_64(11, bits), n.residue);
   return h ^ (h >> 15);
 }
 

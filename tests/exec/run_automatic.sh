@@ -38,7 +38,7 @@ check "a rough tolerance: rk45" takes rk45 "$vdp" mu=1 --until 20 --tol 1e-4
 check "a tolerance below 1e-9: taylor" takes taylor "$vdp" mu=1 --until 20 --tol 1e-11
 check "by the scene's tolerance, too" takes taylor models/double_pendulum.lag swing
 check "with if: dop853" takes dop853 "$TMP/wall.lag" --tol 1e-11
-check "with --tangent: dop853" takes dop853 models/double_pendulum.lag swing --tangent
+check "with --tangent: taylor, too" takes taylor models/double_pendulum.lag swing --tangent
 check "past 40 coordinates: dop853" takes dop853 models/chain.lag -D N=50 --until 0.1
 named() { "$LAGC" run "$@" >"$TMP/out" 2>&1 && ! grep -q '^chosen' "$TMP/out"; }
 check "nothing is chosen where the command line names one" named "$vdp" mu=1 --until 20 --method rk45
