@@ -93,7 +93,7 @@ missing = 0
 def show(x):
     global missing
     print('  %.17g' % x)
-    if text is not None and '%.17g' % x not in text:
+    if text is not None and '%.17g' % abs(x) not in text:  # a sign may stand in the formula; run_math.sh would see it wrong
         print('  is not in', sys.argv[1])
         missing = 1
 
