@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <string.h>
 
+#include "base/suggest.h"
 #include "cli/page.h"
 
 #include "cli/language.h" /* static const char *const language[]: generated from grammar/LANGUAGE.md */
@@ -43,16 +44,6 @@ const char *word_at(Arena *a, const char *words, size_t i) {
     words += strspn(words, " ");
   }
   return *words ? arena_strndup(a, words, strcspn(words, " ")) : NULL;
-}
-
-static int has_word(const char *words, const char *word) {
-  size_t n = strlen(word);
-  for (const char *s = words; *s; s += strspn(s, " ")) {
-    size_t len = strcspn(s, " ");
-    if (len == n && strncmp(s, word, n) == 0) return 1;
-    s += len;
-  }
-  return 0;
 }
 
 /* Whether some code that begins with the word stands before `end` (a | or a colon) in the line. */

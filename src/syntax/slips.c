@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "base/suggest.h"
+
 /* ---- words ---- */
 
 enum { W_MODEL = W_FILE | W_EFFECT | W_FOR };
@@ -42,16 +44,6 @@ static const struct {
   {"set let", W_SCENE, "a value is set by `name = 2`, a start by `start x = 1`"},
   {"terminate end halt exit quit", W_EVENT, "the run is ended by `stop`"},
 };
-
-static int has_word(const char *words, const char *word) {
-  size_t n = strlen(word);
-  for (const char *s = words; *s; s += strspn(s, " ")) {
-    size_t len = strcspn(s, " ");
-    if (len == n && strncmp(s, word, n) == 0) return 1;
-    s += len;
-  }
-  return 0;
-}
 
 const char *slip_word(const char *word, unsigned where) {
   for (size_t i = 0; i < sizeof ways / sizeof *ways; i++)
