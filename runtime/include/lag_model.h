@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 3
+#define LAG_ABI 4
 
 /* The scalar that a model is compiled for: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of
  * so many doubles: many states, or sets of parameters, at once. Then a status < 0 has bit k of its negative set when lane k
@@ -102,6 +102,44 @@ typedef struct lag_linear {
               const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w);
 } lag_linear;
 
+/* One scalar constraint. */
+typedef struct lag_constraint {
+  const char *name; /* "rod", "rod[2]", "grip.x" */
+  int holonomic;    /* c(q, t) = 0; else r(q, v, t) = 0, linear in v */
+  const char *unit; /* of c, or of r; "" when none */
+  int line;         /* of the model's text where it stands; 0: not known */
+} lag_constraint;
+
+/* The constraints of a model, n in all, of which the first nholonomic are c(q, t) = 0. On the level of velocities all are
+ * r = A(q, t) v + b(q, t) = 0, where r = dc/dt of the holonomic ones. accel obeys them: its accelerations are those of
+ * M a = f + A^T lambda, dr/dt = 0. They leave c and r as they are, so a step's error is to be taken back by the functions below.
+ *
+ * A change d[nq] of the state with A d = g, and the least for d^T M d, is that of M d = A^T mu. Constraints may be redundant,
+ * and then g belongs to those that are not; M may be singular where A fixes what it leaves open. */
+typedef struct lag_constraints {
+  int n, nholonomic;
+  const lag_constraint *of; /* [n] */
+  int njacobian;
+  const lag_entry *jacobian; /* [njacobian] of A, row < n, col < nq; row by row, columns ascending; others are zero */
+  int nmass;
+  const lag_entry *mass;     /* [nmass] of M's lower triangle, col <= row */
+
+  /* c[nholonomic] and r[n]. */
+  int (*residuals)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                   const LAG_REAL *u, LAG_REAL *c, LAG_REAL *r, LAG_REAL *w);
+
+  /* A[njacobian] and M[nmass]. */
+  int (*matrices)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                  const LAG_REAL *u, LAG_REAL *A, LAG_REAL *M, LAG_REAL *w);
+
+  /* d[nq], and A^T mu as force[nq], for g[nholonomic] and the holonomic constraints alone, for positions; and for g[n] and all
+   * of them, for velocities. A and M are those of the state given. */
+  int (*position)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                  const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
+  int (*velocity)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                  const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
+} lag_constraints;
+
 /* One of the second derivatives that lag_model.second computes: of L by two of q, v, where of LAG_QQ and LAG_VV only
  * row >= col is given and the row of LAG_VQ is that of v; or of the generalised force `row` by q or v. */
 enum { LAG_QQ, LAG_VQ, LAG_VV, LAG_FQ, LAG_FV };
@@ -169,6 +207,8 @@ typedef struct lag_model {
   int ntables;
   const lag_table *tables; /* [ntables] the inputs that have a table */
 
+  const lag_constraints *constraints; /* NULL: none */
+
   /* The rest is NULL in a program that was not emitted for a method that needs it (lagc build --method NAME). */
 
   /* Lq[nq] = dL/dq, the momenta Lv[nq] = dL/dv, and Q[nq], the generalised forces that are in no L. */
@@ -213,6 +253,11 @@ typedef struct lag_scene {
 
   /* The state at the start of the span. */
   void (*start)(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z);
+
+  /* Of a model with constraints: given[i] != 0 where the start sets component i of [q|v|z], the others give way first; NULL: it
+   * sets none. exactly: a start that the constraints contradict is refused. */
+  const unsigned char *given;
+  int exactly;
 
   double t0, t1;      /* span */
   int has_span;       /* 0: the scene gives none; t1 is then a default of 10 */
