@@ -119,7 +119,7 @@ $(BUILD)/gen/cli/probe_text.h: src/cli/probe.in
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
-$(BUILD)/gen/emit/lag_math.h: runtime/include/lag_math.h
+$(BUILD)/gen/emit/%.h: runtime/include/%.h
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
@@ -140,7 +140,7 @@ $(BUILD)/gen/base/method_rows.h: runtime/list_methods.c $(LIBLAG)
 	@mv $@.part $@
 $(BUILD)/obj/src/base/methods.o: $(BUILD)/gen/base/method_rows.h
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
-$(BUILD)/obj/src/emit/cmath.o: $(BUILD)/gen/emit/lag_math.h
+$(BUILD)/obj/src/emit/cmath.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen/emit/lag_kkt.h
 $(BUILD)/obj/src/cli/probe.o: $(BUILD)/gen/cli/probe_text.h
 $(BUILD)/obj/src/cli/reference.o: $(BUILD)/gen/cli/language.h
 $(BUILD)/obj/src/cli/shells.o: $(SHELLS:%=$(BUILD)/gen/cli/complete_%.h)
@@ -271,7 +271,7 @@ install: all
 	install -m 644 $(LIBLAG) $(LIBLAG_MORE) '$(DESTDIR)$(PREFIX)/lib'
 	for p in $(PRECISIONS); do install -d "$(DESTDIR)$(PREFIX)/lib/lag-$$p" && \
 	  install -m 644 $(BUILD)/lag-$$p/*.h "$(DESTDIR)$(PREFIX)/lib/lag-$$p" || exit 1; done
-	install -m 644 runtime/include/lag.h runtime/include/lag_model.h runtime/include/lag_math.h '$(DESTDIR)$(PREFIX)/include'
+	install -m 644 runtime/include/lag.h runtime/include/lag_model.h runtime/include/lag_math.h runtime/include/lag_kkt.h '$(DESTDIR)$(PREFIX)/include'
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' runtime/liblag.pc.in >$(PC)
 	install -m 644 $(PC) '$(DESTDIR)$(PREFIX)/lib/pkgconfig'
 ifneq ($(GSL),)
@@ -288,7 +288,7 @@ endif
 
 # Removes what install puts there, and the folders that are lagc's own.
 uninstall:
-	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a lib/liblag_long.a lib/liblag_quad.a include/lag.h include/lag_model.h include/lag_math.h \
+	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a lib/liblag_long.a lib/liblag_quad.a include/lag.h include/lag_model.h include/lag_math.h include/lag_kkt.h \
 	  lib/pkgconfig/liblag.pc lib/pkgconfig/liblag_gsl.pc share/man/man1/lagc.1 share/bash-completion/completions/lagc \
 	  share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish && rm -rf lib/lag-long lib/lag-quad share/lagc share/doc/lagc
 
