@@ -219,7 +219,8 @@ void lagrange_momenta_and_forces(Eqns *e) {
   const Expr *f = differentiate(e);
   LinearSystem lifted = lift_system(e);
   lifted.f = f;
-  if (mass_is_hopeless(e, &lifted) && lagrange_definite(e, &lifted)) {
+  int constrained = e->m->constraints.n > 0; /* then M itself is needed */
+  if (!constrained && mass_is_hopeless(e, &lifted) && lagrange_definite(e, &lifted)) {
     e->definite_mass = 1;
     e->system = best_form(e, &lifted, 0, &lifted_ops);
     e->f = e->system.f;
@@ -231,7 +232,7 @@ void lagrange_momenta_and_forces(Eqns *e) {
   e->f = dense.f;
   e->system = dense;
   e->definite_mass = lagrange_definite(e, &dense);
-  if (!lifted.ndefs || !e->definite_mass) return;
+  if (constrained || !lifted.ndefs || !e->definite_mass) return;
   lifted = best_form(e, &lifted, LOOK_THROUGH, &lifted_ops);
   if (lifted_ops < dense_ops) e->system = lifted;
 }
@@ -302,12 +303,26 @@ static void report_singular(const Eqns *e, const long double *null) {
     diag_error(d, m->lagrangian_span, "the mass matrix is zero: L is linear in the velocities, or does not contain them");
     diag_help(d, "not yet: Lagrangians of first order; a quantity without inertia can be a `state` with a `flow`");
   } else if (involved == 1) {
-    diag_error(d, m->coords.at[last].span, "the mass matrix is singular in every state: `%s` has no inertia", m->coords.at[last].name);
+    diag_error(d, m->coords.at[last].span, "the mass matrix is singular in every state: `%s` has no inertia%s", m->coords.at[last].name,
+               m->constraints.n ? ", and no constraint moves it" : "");
     diag_help(d, "L contains no `%s'^2`; add its kinetic energy, or declare it as a `let` or a `state`", m->coords.at[last].name);
   } else {
     diag_error(d, m->lagrangian_span, "the mass matrix is singular in every state: one combination of %s has no inertia", sb_text(&names));
     diag_help(d, "the kinetic energy depends on fewer combinations of velocities than there are coordinates");
   }
+}
+
+/* Adds A^T A to a[n*n]: what constraints fix needs no inertia. */
+static void add_constraints(const Eqns *e, const long double *symbols, long double *a) {
+  const Entries *A = &e->constraints.A;
+  uint32_t n = e->n;
+  Expr *entries = ARENA_ARRAY(e->m->arena, Expr, A->n + 1);
+  long double *values = ARENA_ARRAY(e->m->arena, long double, A->n + 1);
+  for (uint32_t k = 0; k < A->n; k++) entries[k] = A->at[k].e;
+  expr_eval(e->g, entries, A->n, symbols, values);
+  for (uint32_t k = 0; k < A->n; k++)
+    for (uint32_t j = 0; j < A->n; j++)
+      if (A->at[j].row == A->at[k].row && isfinite(values[k] * values[j])) a[A->at[k].col * n + A->at[j].col] += values[k] * values[j];
 }
 
 /* Every state tried is singular; a determinant that is not identically zero vanishes at a random
@@ -335,6 +350,7 @@ int lagrange_check_mass(Eqns *e) {
       finite &= isfinite(values[k]) != 0;
     }
     if (!finite) continue;
+    add_constraints(e, symbols, a);
     if (regular(a, n, perm, null)) return 1;
     judged = 1;
   }

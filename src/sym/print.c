@@ -55,7 +55,7 @@ static int rank_of(ExprGraph *g, Expr e) {
       switch (expr_sym_of(g, e)->kind) {
         case SYM_PARAM: case SYM_CONST: return 1;
         case SYM_INPUT: case SYM_TIME: case SYM_LOCAL: return 2;
-        case SYM_COORD: case SYM_STATE: return 4;
+        case SYM_COORD: case SYM_STATE: case SYM_MULTIPLIER: return 4;
         case SYM_VEL: case SYM_RATE: return 7;
         case SYM_ACC: return 8;
       }
