@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/dense.h"
 #include "ir/prog.h"
 
 typedef long double Real;
@@ -55,49 +56,7 @@ static int solve(Real *a, Real *b, uint32_t n) {
   return 0;
 }
 
-static void exchange(Real *a, Real *b, uint32_t n, uint32_t stride) {
-  for (uint32_t i = 0; i < n; i++) {
-    Real t = a[i * stride];
-    a[i * stride] = b[i * stride];
-    b[i * stride] = t;
-  }
-}
-
-/* [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations by elimination with full pivoting. What is left of it at the end may
- * be zero where constraints are redundant; then some multipliers are taken to be 0. */
-static int solve_constrained(Arena *arena, Real *system, Real *b, uint32_t total) {
-  const Real rest = 1e-13L;
-  Real largest = 0, *x = ARENA_ARRAY(arena, Real, total);
-  uint32_t *column = ARENA_ARRAY(arena, uint32_t, total), rank = 0;
-  for (uint32_t i = 0; i < total; i++) column[i] = i;
-  for (uint32_t i = 0; i < total * total; i++) largest = fmaxl(largest, fabsl(system[i]));
-  for (; rank < total; rank++) {
-    uint32_t r = rank, c = rank;
-    for (uint32_t i = rank; i < total; i++)
-      for (uint32_t j = rank; j < total; j++)
-        if (fabsl(system[i * total + j]) > fabsl(system[r * total + c])) r = i, c = j;
-    if (!(fabsl(system[r * total + c]) > rest * largest)) break;
-    exchange(system + rank * total, system + r * total, total, 1);
-    exchange(system + rank, system + c, total, total);
-    exchange(b + rank, b + r, 1, 1);
-    uint32_t was = column[rank];
-    column[rank] = column[c];
-    column[c] = was;
-    for (uint32_t i = rank + 1; i < total; i++) {
-      Real f = system[i * total + rank] / system[rank * total + rank];
-      for (uint32_t j = rank; j < total; j++) system[i * total + j] -= f * system[rank * total + j];
-      b[i] -= f * b[rank];
-    }
-  }
-  for (uint32_t k = rank; k-- > 0;) {
-    Real s = b[k];
-    for (uint32_t j = k + 1; j < rank; j++) s -= system[k * total + j] * x[column[j]];
-    x[column[k]] = s / system[k * total + k];
-  }
-  memcpy(b, x, total * sizeof *b);
-  return isfinite(b[0]) ? 0 : -1;
-}
-
+/* [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations. Where constraints are redundant some multipliers are taken to be 0. */
 static const Real *solved_constrained(const Prog *p, const Solve *s, const Real *v, int *status) {
   uint32_t n = s->n, total = solve_unknowns(s);
   Real *system = ARENA_ARRAY(p->arena, Real, total * total), *b = ARENA_ARRAY(p->arena, Real, total);
@@ -106,7 +65,8 @@ static const Real *solved_constrained(const Prog *p, const Solve *s, const Real 
     for (uint32_t j = 0; j < n; j++) system[i * total + j] = v[s->matrix[i * n + j]];
   for (uint32_t i = n; i < total; i++)
     for (uint32_t j = 0; j < n; j++) system[j * total + i] = -system[i * total + j];
-  *status = solve_constrained(p->arena, system, b, total);
+  dense_solve(total, system, b, 1e-13L, ARENA_ARRAY(p->arena, uint32_t, total), NULL);
+  *status = isfinite(b[0]) ? 0 : -1;
   return b;
 }
 

@@ -59,9 +59,10 @@ static void add_variation(IrUnit *u, const Eqns *e) {
   }
 }
 
-/* A table is no analytic function: a model with one has no series. */
+/* A table is no analytic function: a model with one has no series. Nor has one with constraints, so far. */
 static void add_taylor(IrUnit *u, const Eqns *e) {
   const char *why;
+  if (e->constraints.n) return;
   for (uint32_t i = 0; i < e->m->inputs.n; i++)
     if (e->m->inputs.at[i].table) return;
   IrSystem system = lower_system(e);
@@ -118,7 +119,7 @@ void unit_want(IrUnit *u, Eqns *e, unsigned wants) {
   u->wants |= wants;
   if (fresh & WANT_VARIATION && e->n) add_variation(u, e);
   if (fresh & WANT_TAYLOR) add_taylor(u, e);
-  if (fresh & WANT_LINEAR) add_linear(u, e);
+  if (fresh & WANT_LINEAR && !e->constraints.n) add_linear(u, e); /* multipliers would change, too */
 }
 
 void unit_add_scene(IrUnit *u, const Eqns *e) {

@@ -106,10 +106,9 @@ int constrain(Eqns *e) {
   Arena *a = m->arena;
   uint32_t n = m->constraints.n;
   if (!n) return 1;
-  if (!check_count(e)) return 0;
   const Constraint **of = ARENA_ARRAY(a, const Constraint *, n);
   Expr *c = ARENA_ARRAY(a, Expr, n), *r = ARENA_ARRAY(a, Expr, n), *demand = ARENA_ARRAY(a, Expr, n);
-  int good = 1;
+  int good = check_count(e);
   for (int turn = 1; turn >= 0; turn--) {
     for (uint32_t i = 0; i < n; i++) {
       const Constraint *k = &m->constraints.at[i];

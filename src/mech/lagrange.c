@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "base/dense.h"
 #include "mech/lift.h"
 #include "mech/order.h"
 #include "sym/diff.h"
@@ -257,38 +258,6 @@ static void random_state(const Eqns *e, uint64_t *state, long double *values) {
   }
 }
 
-/* Rank-revealing elimination with full pivoting on the dense matrix a[n*n]: 1 when regular. On
- * failure null[n] spans the kernel's first direction. */
-static int regular(long double *a, uint32_t n, uint32_t *perm, long double *null) {
-  long double largest = 0;
-  for (uint32_t i = 0; i < n * n; i++) largest = fmaxl(largest, fabsl(a[i]));
-  for (uint32_t i = 0; i < n; i++) perm[i] = i;
-  for (uint32_t k = 0; k < n; k++) {
-    uint32_t pr = k, pc = k;
-    for (uint32_t i = k; i < n; i++)
-      for (uint32_t j = k; j < n; j++)
-        if (fabsl(a[i * n + j]) > fabsl(a[pr * n + pc])) pr = i, pc = j;
-    if (!(fabsl(a[pr * n + pc]) > 1e-13L * largest)) {
-      for (uint32_t i = 0; i < n; i++) null[i] = 0;
-      null[perm[k]] = 1;
-      for (uint32_t i = k; i-- > 0;) {
-        long double s = a[i * n + k];
-        for (uint32_t j = i + 1; j < k; j++) s += a[i * n + j] * null[perm[j]];
-        null[perm[i]] = -s / a[i * n + i];
-      }
-      return 0;
-    }
-    for (uint32_t j = 0; j < n; j++) { long double t = a[k * n + j]; a[k * n + j] = a[pr * n + j]; a[pr * n + j] = t; }
-    for (uint32_t i = 0; i < n; i++) { long double t = a[i * n + k]; a[i * n + k] = a[i * n + pc]; a[i * n + pc] = t; }
-    uint32_t t = perm[k]; perm[k] = perm[pc]; perm[pc] = t;
-    for (uint32_t i = k + 1; i < n; i++) {
-      long double factor = a[i * n + k] / a[k * n + k];
-      for (uint32_t j = k; j < n; j++) a[i * n + j] -= factor * a[k * n + j];
-    }
-  }
-  return 1;
-}
-
 static void report_singular(const Eqns *e, const long double *null) {
   const Model *m = e->m;
   Diags *d = m->diags;
@@ -351,7 +320,7 @@ int lagrange_check_mass(Eqns *e) {
     }
     if (!finite) continue;
     add_constraints(e, symbols, a);
-    if (regular(a, n, perm, null)) return 1;
+    if (dense_solve(n, a, NULL, 1e-13L, perm, null) == n) return 1;
     judged = 1;
   }
   if (!judged) return 1; /* the tries all lay outside the model's domain: runs will tell */

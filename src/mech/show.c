@@ -189,7 +189,7 @@ static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 void show_facts(const Eqns *e, StrBuf *out) {
   if (!e->n) return;
   sb_printf(out, "%u coordinate%s; mass matrix %s%s; energy is %s\n", e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
-            e->definite_mass ? ", positive definite" : "", e->conserves_energy ? "conserved" : "not conserved (force, dissipation, input or explicit time)");
+            e->definite_mass ? ", positive definite" : "", e->conserves_energy ? "conserved" : "not conserved (force, dissipation, input, explicit time, or a constraint that moves)");
 }
 
 static void facts(Text *t, const char *cost) {

@@ -10,7 +10,8 @@ typedef struct StateSolver StateSolver;
 
 StateSolver *states_new(const Eqns *e);
 
-/* Fills in q'', z' and the energy. 0 where M is singular, or a value is not finite. */
+/* Fills in q'', z', the energy and multipliers; with constraints it first moves the state to the nearest one that obeys them. 0 where M
+ * is singular, there is no such state, or a value is not finite. */
 int states_complete(StateSolver *s, long double *symbols);
 
 /* e with z' and the energy replaced by what they are; q'' stays. */
