@@ -22,8 +22,11 @@ static long double *start_of(const Eqns *e) {
 static void report_infeasible(const Eqns *e, StateSolver *solver, const long double *symbols) {
   const Model *m = e->m;
   long double residual;
-  const Constraint *k = e->constraints.of[states_worst(solver, symbols, &residual)];
-  diag_error(m->diags, k->span, "scene %s: no state near its start obeys the constraint `%s`; it is left with %.3Lg", m->scene.name, k->name, residual);
+  uint32_t worst = states_worst(solver, symbols, &residual);
+  const Constraint *k = e->constraints.of[worst];
+  const char *unit = dim_text(m->dims, k->dim);
+  diag_error(m->diags, k->span, "scene %s: no state near its start obeys the constraint `%s`; it is off by %.3Lg%s%s%s", m->scene.name, k->name,
+             fabsl(residual), *unit == '1' ? "" : " [", *unit == '1' ? "" : unit, *unit == '1' ? "" : "]");
   diag_help(m->diags, "start nearer to where it holds; at a place where its derivatives vanish no direction leads there");
 }
 
