@@ -115,7 +115,9 @@ static const char *form(const App *app, const char **why)
   if (!(lag_sim_method(app->sim)->flags & LAG_METHOD_SPLITS)) {
     return NULL;
   }
-  *why = has & LAG_SEPARABLE ? "the model is separable"
+  has = app->scene->model->constraints ? has & ~(unsigned)LAG_SEPARABLE : has;
+  *why = app->scene->model->constraints ? "in q and p by Newton's method: the model has constraints"
+         : has & LAG_SEPARABLE ? "the model is separable"
          : has & LAG_CONSTANT_MASS ? "in q and p by Newton's method: forces depend on velocities"
                                    : "in q and p by Newton's method: the mass matrix varies";
   return has & LAG_SEPARABLE ? "explicit" : "implicit";
