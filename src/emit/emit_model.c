@@ -349,18 +349,12 @@ static uint32_t work_size(const IrUnit *u) {
   return most;
 }
 
-static int solves_plainly(const Prog *p) {
-  for (uint32_t i = 0; p && i < p->solves.n; i++)
-    if (!p->solves.at[i].m) return 1;
-  return 0;
-}
-
 /* Whether a linear system without constraints is solved by a loop. */
 static int needs_solver(const IrUnit *u) {
   const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear};
   int some = 0;
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) some |= solves_plainly(all[i]);
-  for (uint32_t i = 0; i < u->scenes.n; i++) some |= solves_plainly(u->scenes.at[i].observe);
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) some |= prog_solves(all[i], 0);
+  for (uint32_t i = 0; i < u->scenes.n; i++) some |= prog_solves(u->scenes.at[i].observe, 0);
   return some;
 }
 
