@@ -435,7 +435,12 @@ static uint32_t write_pair(Writer *w, uint32_t k) {
   return two ? 2 : 1;
 }
 
-static int is_paired(const Writer *w, const Store *st) { return (w->style->paired >> st->array & 1) && st->index % 2 == 0; }
+/* Not with what a loop has stored. */
+static int is_paired(const Writer *w, uint32_t k) {
+  const Store *st = &w->p->stores.at[k];
+  int in_loop = k + 1 < w->p->stores.n && w->rolls.stored[k + 1] && st[1].array == st->array && st[1].index == st->index + 1;
+  return (w->style->paired >> st->array & 1) && st->index % 2 == 0 && !in_loop;
+}
 
 static void write_stores(Writer *w) {
   for (uint32_t k = 0; k < w->p->stores.n;) {
@@ -446,7 +451,7 @@ static void write_stores(Writer *w) {
     }
     uint32_t n = cloop_stores(w, k);
     if (n) cloop_write_stores(w, k, n);
-    else if (is_paired(w, &w->p->stores.at[k])) n = write_pair(w, k);
+    else if (is_paired(w, k)) n = write_pair(w, k);
     else write_store(w, &w->p->stores.at[k]);
     k += n ? n : 1;
   }
@@ -457,8 +462,9 @@ static unsigned arrays_by_index(const CStyle *style) {
   return style->params ? 1u << ARR_Q | 1u << ARR_V | 1u << ARR_Z | 1u << ARR_U : ~(1u << ARR_T | 1u << ARR_ORDER | 1u << ARR_PER_ORDER | 1u << ARR_UP);
 }
 
-/* Whether no array that is written is read, too. */
+/* Whether nothing that is written is read, too. */
 static int stores_apart(const Prog *p, const CStyle *style) {
+  if (style->apart) return 1;
   for (int k = 0; k < ARR_COUNT; k++) {
     if (!prog_reads(p, (IrArray)k)) continue;
     for (uint32_t s = 0; s < p->stores.n; s++)

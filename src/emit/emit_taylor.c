@@ -173,6 +173,7 @@ static void next(const Writer *w) {
   const Series *s = w->s;
   CStyle st = style_for(w, own, written);
   st.paired = 1u << 2 | 1u << 3;
+  st.apart = 1; /* of x, it reads y and t, and writes the rates */
   sb_printf(w->out, "\n/* Order k > 0, besides the sums: %s. Each name stands for coefficient k of its value. */\n", ops_text(s->next, w->a));
   sb_puts(w->out, "static void taylor_next(LAG_REAL order, LAG_REAL per_order, LAG_REAL up, const LAG_REAL *s, const LAG_REAL *c, LAG_REAL *x,\n"
                   "    LAG_REAL *x1, LAG_REAL *a, LAG_REAL *b");

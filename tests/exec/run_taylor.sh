@@ -5,6 +5,12 @@
 
 here=tests/exec/taylor
 models=$(ls models/*.lag tests/exec/models/*.lag | grep -v mutants) # those have the names of others
+longer() { # MODEL N: a long family, whose recurrences are loops
+  sed "s/^const N = .*/const N = $2/; s/^model $1/model $1_$2/; s/ b = 0 / b = 0.3 /" "models/$1.lag" >"$TMP/$1_$2.lag"
+  models="$models $TMP/$1_$2.lag"
+}
+longer chain 120
+longer string 400
 name_of() { sed -n 's/^model \([^ ]*\).*/\1/p' "$1"; }
 gcc=
 for c in "$CC" gcc; do "$c" --version 2>/dev/null | grep -q 'Free Software' && gcc=$c && break; done
@@ -64,6 +70,20 @@ wrong_defect() { # a sign in one of the recurrences of the double pendulum
     build "${p:-long}" "$TMP/wrong/model.c" "$TMP/wrong/scenes.c" $here/defect.c -o "$TMP/defect_wrong" && ! "$TMP/defect_wrong"
 }
 check "this test sees a wrong sign" wrong_defect
+wrong_place() { # a loop that reads its neighbours' constants
+  sed '/^static void taylor_next/,/^}/s/ = c\[k + 1\];/ = c[k + 2];/' "$TMP/c/string_400.c" >"$TMP/wrong/model.c" && ! cmp "$TMP/c/string_400.c" "$TMP/wrong/model.c" &&
+    echo '#include "lag_model.h"
+      extern const lag_scene string_400_mode, *const all_scenes[];
+      const lag_scene *const all_scenes[] = {&string_400_mode, 0};' >"$TMP/wrong/scenes.c" &&
+    build "${p:-long}" "$TMP/wrong/model.c" "$TMP/wrong/scenes.c" $here/defect.c -o "$TMP/defect_wrong" && ! "$TMP/defect_wrong"
+}
+check "this test sees a loop that reads what stands one further" wrong_place
+short() { # MODEL N: four times the length has as much C, but for the digits of numbers
+  for n in "$2" $((4 * $2)); do "$LAGC" emit "models/$1.lag" -D N="$n" --method taylor -o "$TMP/size$n.c" || return 1; done
+  [ "$(wc -c <"$TMP/size$((4 * $2)).c")" -lt $(($(wc -c <"$TMP/size$2.c") * 11 / 10)) ] || { wc -c "$TMP/size$2.c" "$TMP/size$((4 * $2)).c"; return 1; }
+}
+check "a chain of any length has recurrences of the same length" short chain 150
+check "a string of any length has recurrences of the same length" short string 400
 is "models that are not analytic have none: if, and a table" "without: motor
 without: tables" "$(grep without "$TMP/defect.txt" | sort -u)"
 
