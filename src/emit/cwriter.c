@@ -424,22 +424,25 @@ static void write_store(Writer *w, const Store *st) {
   sb_putc(w->out, '\n');
 }
 
-/* Stores k and k + 1, which stand side by side in their array, the first at an even place; there is room for two also where
- * k is the last. */
-static uint32_t write_pair(Writer *w, uint32_t k) {
+/* Store k + 1 where it stands beside k in its array, and no loop has it; else NULL. */
+static const Store *beside(const Writer *w, uint32_t k) {
   const Store *st = &w->p->stores.at[k];
-  int two = k + 1 < w->p->stores.n && st[1].array == st->array && st[1].index == st->index + 1;
-  const char *x = cwriter_operand(w, st->slot).text, *y = cwriter_operand(w, two ? st[1].slot : 0).text;
-  cwriter_statement(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
-  sb_putc(w->out, '\n');
-  return two ? 2 : 1;
+  return k + 1 < w->p->stores.n && st[1].array == st->array && st[1].index == st->index + 1 ? st + 1 : NULL;
 }
 
-/* Not with what a loop has stored. */
+/* Whether store k, at an even place, is one of two that go together. */
 static int is_paired(const Writer *w, uint32_t k) {
-  const Store *st = &w->p->stores.at[k];
-  int in_loop = k + 1 < w->p->stores.n && w->rolls.stored[k + 1] && st[1].array == st->array && st[1].index == st->index + 1;
-  return (w->style->paired >> st->array & 1) && st->index % 2 == 0 && !in_loop;
+  const Store *st = &w->p->stores.at[k], *other = beside(w, k);
+  if (!(w->style->paired >> st->array & 1) || st->index % 2 != 0) return 0;
+  return other ? !w->rolls.stored[k + 1] : (w->style->padded >> st->array & 1) != 0;
+}
+
+static uint32_t write_pair(Writer *w, uint32_t k) {
+  const Store *st = &w->p->stores.at[k], *other = beside(w, k);
+  const char *x = cwriter_operand(w, st->slot).text, *y = cwriter_operand(w, other ? other->slot : 0).text;
+  cwriter_statement(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
+  sb_putc(w->out, '\n');
+  return other ? 2 : 1;
 }
 
 static void write_stores(Writer *w) {

@@ -63,7 +63,7 @@ p=${quad:+quad}
 check "every model: its polynomials solve its equations, to their order" defects "${p:-long}"
 mkdir -p "$TMP/wrong"
 wrong_defect() { # a sign in one of the recurrences of the double pendulum
-  sed '/^static void taylor_next/,/^}/s/ - c\[/ + c[/' "$TMP/c/double_pendulum.c" >"$TMP/wrong/model.c" && ! cmp "$TMP/c/double_pendulum.c" "$TMP/wrong/model.c" &&
+  sed '/^static .*taylor_next(/,/^}/s/ - c\[/ + c[/' "$TMP/c/double_pendulum.c" >"$TMP/wrong/model.c" && ! cmp "$TMP/c/double_pendulum.c" "$TMP/wrong/model.c" &&
     echo '#include "lag_model.h"
       extern const lag_scene double_pendulum_swing, *const all_scenes[];
       const lag_scene *const all_scenes[] = {&double_pendulum_swing, 0};' >"$TMP/wrong/scenes.c" &&
@@ -71,7 +71,7 @@ wrong_defect() { # a sign in one of the recurrences of the double pendulum
 }
 check "this test sees a wrong sign" wrong_defect
 wrong_place() { # a loop that reads its neighbours' constants
-  sed '/^static void taylor_next/,/^}/s/ = c\[k + 1\];/ = c[k + 2];/' "$TMP/c/string_400.c" >"$TMP/wrong/model.c" && ! cmp "$TMP/c/string_400.c" "$TMP/wrong/model.c" &&
+  sed '/^static .*taylor_next(/,/^}/s/ = c\[k + 1\];/ = c[k + 2];/' "$TMP/c/string_400.c" >"$TMP/wrong/model.c" && ! cmp "$TMP/c/string_400.c" "$TMP/wrong/model.c" &&
     echo '#include "lag_model.h"
       extern const lag_scene string_400_mode, *const all_scenes[];
       const lag_scene *const all_scenes[] = {&string_400_mode, 0};' >"$TMP/wrong/scenes.c" &&
@@ -86,6 +86,33 @@ check "a chain of any length has recurrences of the same length" short chain 150
 check "a string of any length has recurrences of the same length" short string 400
 is "models that are not analytic have none: if, and a table" "without: motor
 without: tables" "$(grep without "$TMP/defect.txt" | sort -u)"
+
+# ---- pairs and fours
+mkdir -p "$TMP/narrow"
+for n in double_pendulum kepler outer_planets chain_120 swinging_atwood; do # products, squares, and loops
+  sed 's/defined(__x86_64__)/0/' "$TMP/c/$n.c" >"$TMP/narrow/$n.c"
+  sed -n 's/^const lag_scene \(.*\) = {/\1/p' "$TMP/narrow/$n.c" | head -n 1
+done >"$TMP/narrow/names"
+{
+  echo '#include "lag_model.h"'
+  sed 's/.*/extern const lag_scene &;/' "$TMP/narrow/names"
+  echo 'extern const lag_scene *const all_scenes[]; const lag_scene *const all_scenes[] = {'
+  sed 's/.*/  \&&,/' "$TMP/narrow/names"
+  echo '0};'
+} >"$TMP/narrow/scenes.c"
+bits() { # OUT FILES... with the scenes
+  out=$1
+  shift
+  "$CC" -std=c11 -O2 -ffp-contract=off -I"$INC" "$@" "$TMP/narrow/scenes.c" $here/bits.c -lm -o "$TMP/bits" && "$TMP/bits" >"$out"
+}
+wide_files() { for f in "$TMP"/narrow/[!s]*.c "$TMP"/narrow/sw*.c; do echo "$TMP/c/${f##*/}"; done; }
+same_bits() {
+  # shellcheck disable=SC2046 # a list of files
+  bits "$TMP/narrow.txt" "$TMP"/narrow/[!s]*.c "$TMP"/narrow/sw*.c && bits "$TMP/wide.txt" $(wide_files) && [ "$(wc -l <"$TMP/wide.txt")" -gt 1000 ] &&
+    cmp "$TMP/narrow.txt" "$TMP/wide.txt"
+}
+if grep -qs '^flags.* avx2' /proc/cpuinfo; then check "two or four numbers side by side: the same bits" same_bits
+else skip "two or four numbers side by side: the same bits" "not on this processor"; fi
 
 # ---- the method
 mkdir -p "$TMP/r"
