@@ -65,7 +65,7 @@ static int direction(Start *w, double pull, double *d)
     for (int k = 0; k < w->n; k++) {
       l[k] = -w->residual[k];
     }
-    regular = lag_kkt(nf, w->n, w->kkt);
+    regular = lag_kkt(nf, w->n, 0, w->kkt);
     rc = regular || pass == 0 ? 0 : LAG_ESINGULAR;
   }
   memcpy(d, x, (size_t)nf * sizeof *d);
@@ -269,7 +269,7 @@ static int rank(Start *w, double *marks)
   for (int e = 0; e < of->njacobian && rc == 0; e++) {
     A[of->jacobian[e].row * nq + of->jacobian[e].col] = w->A[e];
   }
-  r = lag_rank(nq, m, A, diag, beta, scale, order);
+  r = lag_rank(nq, m, 0, A, diag, beta, scale, order);
   for (int k = 0; k < m; k++) {
     marks[(int)order[k]] = k >= r;
   }

@@ -160,18 +160,30 @@ static double square_along(Embedded *w, lag_problem *pb, double tb, int count, c
   return sum * w->per;
 }
 
-double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt)
+double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt, double whole)
 {
   double fine = dt * dt * square_along(w, pb, tb, tab->stages - late, tab->e);
   double coarse = late ? 0.01 * dt * dt * square_along(w, pb, tb, tab->stages - 1, tab->e3) : 0, both = fine + coarse;
 
+  w->across = whole;
   return !isfinite(both) ? NAN : late ? (both > 0 ? fine * (fine / both) : 0) : fine;
+}
+
+/* Whether to try a step again that is good along the constraints, but has gone so far across them that the square of that counts. Its
+ * stages came near a position where constraints become dependent; of another size it will pass it better. Estimates are too small there,
+ * by a factor of some ten, squared. That comes to an end: steps that shrink until their estimates are good would never pass. */
+static int lands_badly(const Embedded *w, const lag_problem *pb, int *tries)
+{
+  const double factor = 100;
+  enum { MOST = 6 };
+
+  return factor * w->across * pb->tol > 1 && ++*tries <= MOST;
 }
 
 int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y)
 {
   Embedded *w = work;
-  int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
+  int cause = LAG_ESTEP, retried = 0, tries = 0, rc = prepare(pair, w, pb, *t, y);
 
   while (rc == 0) {
     double wanted = fmin(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row(pb, *t, &row);
@@ -185,9 +197,15 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
     if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) {
       return too_small(pair, w, pb, *t, cause);
     }
+    w->across = 0;
     double err = pair->trial(w, pb, *t, tb, dt, &rc); /* squared */
     if (rc < 0) {
       return rc;
+    }
+    if (err <= 1 && w->fixed == 0.0 && lands_badly(w, pb, &tries)) {
+      w->h *= 0.8;
+      pb->rejected++;
+      continue;
     }
     if (err <= 1 || (w->fixed != 0.0 && !isnan(err))) {
       if (w->fixed == 0.0) {

@@ -34,6 +34,7 @@ struct Embedded {
   double t_begin;   /* where the first step began */
   double begun;
   double per;       /* 1/n */
+  double across;    /* the square of the error with what the projection takes back, where that was left out of it; or 0 */
   double x[];
 };
 
@@ -64,8 +65,8 @@ void lag_embedded_reset(void *work, lag_problem *pb);
 int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y);
 
 /* The square of the error of the step just computed, without what its projection takes back: near positions where constraints become
- * dependent that part is large, and says nothing. */
-double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt);
+ * dependent that part is large, and says nothing. whole: with it. */
+double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt, double whole);
 
 /* The derivative of the last step, or of a shorter one. */
 size_t lag_embedded_tangent_size(const EmbeddedPair *pair, const lag_problem *pb, int k);

@@ -163,7 +163,7 @@ LAG_HERE double embedded_trial(const lag_tableau *tab, int late, Embedded *w, la
   }
   double err = embedded_error(tab, late, w, pb, as, dt);
   if (err > 1 && pb->model->constraints) {
-    err = lag_embedded_error_along(tab, late, w, pb, tb, dt);
+    err = lag_embedded_error_along(tab, late, w, pb, tb, dt, err);
   }
   if (late && (err <= 1 || (w->fixed != 0.0 && !isnan(err)))) {
     *rc = embedded_end(pb, w, as, tb, k + last * row);

@@ -276,7 +276,7 @@ static void write_solve(Writer *w, const Ins *i) {
     b += k->m * n;
     for (uint32_t j = 0; j < solve_elements(k); j++) sb_printf(w->out, "  w[%u] = %s;\n", j, cwriter_operand(w, k->matrix[j]).text);
     for (uint32_t j = 0; j < solve_unknowns(k); j++) sb_printf(w->out, "  w[%u] = %s;\n", b + j, cwriter_operand(w, k->rhs[j]).text);
-    sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, w));\n", st->prefix, st->kkt, n, k->m);
+    sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, %d, w));\n", st->prefix, st->kkt, n, k->m, k->coarse);
     return;
   }
   for (uint32_t j = 0; k->matrix && j < n * n; j++) sb_printf(w->out, "  w[%u] = %s;\n", M + j, cwriter_operand(w, k->matrix[j]).text);
