@@ -65,6 +65,19 @@ static void energy(const App *app, const lag_stats *st, FILE *f)
   }
 }
 
+/* A contact is no constraint as long as it is open. */
+static int is_redundant(const App *app, int k)
+{
+  const lag_model *m = app->scene->model;
+
+  for (int i = 0; i < m->ncontacts; i++) {
+    if (m->contacts[i].constraint == k) {
+      return 0;
+    }
+  }
+  return lag_sim_is_redundant(app->sim, k);
+}
+
 /* What the constraints did to the start, and how well they were kept. */
 static void constraints(const App *app, const lag_stats *st, FILE *f)
 {
@@ -87,14 +100,16 @@ static void constraints(const App *app, const lag_stats *st, FILE *f)
   if (!of) {
     return;
   }
-  fprintf(f, "constraints: %d, %d independent at the start", of->n, lag_sim_rank(app->sim));
+  if (of->n > m->ncontacts) {
+    fprintf(f, "constraints: %d, %d independent at the start", of->n - m->ncontacts, lag_sim_rank(app->sim));
+  }
   for (int k = 0; k < of->n; k++) {
-    if (lag_sim_is_redundant(app->sim, k) && redundant++ < MOST_LINES) {
+    if (is_redundant(app, k) && redundant++ < MOST_LINES) {
       fprintf(f, "%s%s", redundant == 1 ? "; redundant: " : ", ", of->of[k].name);
     }
   }
-  fprintf(f, "%s\nconstraint residual: %.3g, of rates %.3g (the largest, in SI)\n", redundant > MOST_LINES ? ", ..." : "", st->constraint,
-          st->constraint_rate);
+  fprintf(f, "%s%sconstraint residual: %.3g, of rates %.3g (the largest, in SI)\n", redundant > MOST_LINES ? ", ..." : "", of->n > m->ncontacts ? "\n" : "",
+          st->constraint, st->constraint_rate);
 }
 
 /* A symplectic method on a model that is not conservative: what its name no longer promises. */
@@ -290,9 +305,9 @@ static void constraints_json(const App *app, FILE *f)
   if (!of) {
     return;
   }
-  fprintf(f, "\"constraints\": %d, \"rank\": %d, \"redundant\": [", of->n, lag_sim_rank(app->sim));
+  fprintf(f, "\"constraints\": %d, \"rank\": %d, \"redundant\": [", of->n - m->ncontacts, lag_sim_rank(app->sim));
   for (int k = 0; k < of->n; k++) {
-    if (lag_sim_is_redundant(app->sim, k)) {
+    if (is_redundant(app, k)) {
       fputs(redundant++ ? ", " : "", f);
       json_string(f, of->of[k].name);
     }
