@@ -181,8 +181,7 @@ static const char *const docs[FN_COUNT] = {
   [FN_OBSERVE] = "What the scene puts out: out[LAG_NOUT].",
   [FN_EVENTS] = "The event functions g[LAG_NEV].",
   [FN_ACT] = "What an event does to the state; *stop becomes 1 when it ends the run.",
-  [FN_HOLD] = "Moves the state to the nearest one that obeys the constraints, in the metric of the mass matrix: the start, and what an\n"
-              " * integrator of your own has made of it. LAG_rk4_step does so itself.",
+  [FN_HOLD] = "Moves the state to the nearest one that obeys the constraints, by the metric of the mass matrix; _rk4_step does so itself.",
   [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was.",
   [FN_RK4_STEP_WITH] = "The same with inputs that change during the step: input(context, t, u) finds the model's own in u.",
 };
