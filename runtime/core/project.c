@@ -271,3 +271,38 @@ int lag_project(lag_problem *pb, double t, double *y, double *lost)
   pb->detail = rc ? pb->detail : said;
   return rc < LAG_ESINGULAR ? LAG_EMODEL : rc;
 }
+
+/* g := -A x */
+static void opposed(const Held *w, int n, const double *x, double *g)
+{
+  memset(g, 0, (size_t)n * sizeof *g);
+  for (int e = 0; e < w->of->njacobian; e++) {
+    const lag_entry *at = &w->of->jacobian[e];
+    if (at->row < n) {
+      g[at->row] -= w->A[e] * x[at->col];
+    }
+  }
+}
+
+int lag_along_constraints(lag_problem *pb, double t, const double *y, double *e)
+{
+  if (!pb->model->constraints) {
+    return LAG_OK;
+  }
+  Held w = layout(pb);
+  int nq = pb->nq, rc = lag_inputs(pb, t);
+
+  rc = rc ? rc : w.of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w.A, w.M, pb->work);
+  for (int level = 0; level < 2 && rc == 0; level++) {
+    double *x = e + level * nq;
+    if (!level && !w.of->nholonomic) {
+      continue;
+    }
+    opposed(&w, level ? w.of->n : w.of->nholonomic, x, w.g);
+    rc = lag_least_change(pb, t, y, !level, w.g, w.d, w.force);
+    for (int i = 0; i < nq && rc == 0; i++) {
+      x[i] += w.d[i];
+    }
+  }
+  return rc;
+}

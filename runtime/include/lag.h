@@ -128,6 +128,8 @@ int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, 
  * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), IV.4, DOI 10.1007/3-540-30666-8: projection
  * keeps the order of a method. */
 int lag_project(lag_problem *pb, double t, double *y, double *lost);
+/* Takes from a small change e[n] of the state y what lag_project would take back, to first order. */
+int lag_along_constraints(lag_problem *pb, double t, const double *y, double *e);
 
 /* size[nholonomic], or size[n] of their rates: how large the terms are of which c (holonomic) or r of y at t is the sum. */
 int lag_constraint_terms(lag_problem *pb, double t, const double *y, int holonomic, double *size);

@@ -77,8 +77,8 @@ void cloop_prepare(Writer *w) {
     }
     if (i->op != IR_SOLVE) continue;
     const Solve *s = &w->p->solves.at[i->index];
-    for (uint32_t j = 0; s->matrix && j < s->n * s->n; j++) name_load(w, s->matrix[j]);
-    for (uint32_t j = 0; j < s->n; j++) name_load(w, s->rhs[j]);
+    for (uint32_t j = 0; j < solve_elements(s); j++) name_load(w, s->matrix[j]);
+    for (uint32_t j = 0; j < solve_unknowns(s); j++) name_load(w, s->rhs[j]);
   }
   for (uint32_t k = 0; k < w->p->stores.n;) {
     uint32_t n = cloop_stores(w, k);

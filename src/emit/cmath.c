@@ -3,16 +3,23 @@
 #include <string.h>
 
 #include "emit/cfunction.h"
+#include "emit/lag_kkt.h"  /* static const char *const lag_kkt[]: generated from runtime/include/lag_kkt.h */
 #include "emit/lag_math.h" /* static const char *const lag_math[]: generated from runtime/include/lag_math.h */
 
-enum { N_LINES = sizeof lag_math / sizeof *lag_math };
-
 /* The lines between the marker `---- NAME ----` and the next. */
-static void section(const char *name, const char *prefix, const char *lower, StrBuf *out) {
+static void section_of(const char *const *line, size_t lines, const char *name, const char *prefix, const char *lower, StrBuf *out) {
   static const char mark[] = "/* ---- ";
   size_t n = strlen(name), i = 0;
-  while (i < N_LINES && !(strncmp(lag_math[i], mark, sizeof mark - 1) == 0 && strncmp(lag_math[i] + sizeof mark - 1, name, n) == 0)) i++;
-  for (i++; i < N_LINES && strncmp(lag_math[i], mark, sizeof mark - 1) != 0; i++) csupport_fill(lag_math[i], prefix, lower, out);
+  while (i < lines && !(strncmp(line[i], mark, sizeof mark - 1) == 0 && strncmp(line[i] + sizeof mark - 1, name, n) == 0)) i++;
+  for (i++; i < lines && strncmp(line[i], mark, sizeof mark - 1) != 0; i++) csupport_fill(line[i], prefix, lower, out);
+}
+
+static void section(const char *name, const char *prefix, const char *lower, StrBuf *out) {
+  section_of(lag_math, sizeof lag_math / sizeof *lag_math, name, prefix, lower, out);
+}
+
+void cmath_kkt(const IrUnit *u, const char *prefix, const char *lower, StrBuf *out) {
+  if (u->constraints.of.n) section_of(lag_kkt, sizeof lag_kkt / sizeof *lag_kkt, "kkt", prefix, lower, out);
 }
 
 static int calls(const Prog *p, const char *name) {

@@ -149,7 +149,7 @@ static Piece choose(Writer *w, const Ins *i) {
 
 static Piece solved(Writer *w, const Ins *i) {
   const Solve *k = &w->p->solves.at[w->p->ins.at[i->a].index];
-  return (Piece){arena_printf(w->a, "w[%u]", k->place + k->n * k->n + i->index), C_ATOM, 0};
+  return (Piece){arena_printf(w->a, "w[%u]", k->place + (k->n + k->m) * k->n + i->index), C_ATOM, 0};
 }
 
 Piece cwriter_spell(Writer *w, const Ins *i) {
@@ -272,6 +272,13 @@ static void write_solve(Writer *w, const Ins *i) {
   const CStyle *st = w->style;
   uint32_t n = k->n, M = k->place, b = M + n * n;
   cwriter_flush_title(w);
+  if (k->m) {
+    b += k->m * n;
+    for (uint32_t j = 0; j < solve_elements(k); j++) sb_printf(w->out, "  w[%u] = %s;\n", j, cwriter_operand(w, k->matrix[j]).text);
+    for (uint32_t j = 0; j < solve_unknowns(k); j++) sb_printf(w->out, "  w[%u] = %s;\n", b + j, cwriter_operand(w, k->rhs[j]).text);
+    sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, w));\n", st->prefix, st->kkt, n, k->m);
+    return;
+  }
   for (uint32_t j = 0; k->matrix && j < n * n; j++) sb_printf(w->out, "  w[%u] = %s;\n", M + j, cwriter_operand(w, k->matrix[j]).text);
   if (st->factor && k->matrix) sb_printf(w->out, "  %s_PIVOT(%s(%u, w + %u));\n", st->prefix, st->factor, n, M);
   for (uint32_t r = 0; r < n; r++) sb_printf(w->out, "  w[%u] = %s;\n", b + r, cwriter_operand(w, k->rhs[r]).text);

@@ -16,7 +16,7 @@ typedef struct {
   StrBuf *out;
 } File;
 
-static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a"};
+static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
 
 static const char *const prelude =
   "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l'\n"
@@ -37,7 +37,8 @@ static const char *const abi_names[] = {
   "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
   "curves", "LAG_EACH", "LAG_10", "LAG_100", "LAG_1000", "LAG_10000",
   "singular", "lag_sincos", "lag_sin", "lag_cos", "lag_lanes", "lag_lanes_mask", "LAG_LANES", "LAG_LIBM", "LAG_OWN", "LAG_FMA",
-  "LAG_INLINE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS",
+  "LAG_INLINE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS", "LAG_LANE_FN", "lag_reflect", "lag_reflector", "lag_rank", "lag_multipliers", "lag_kkt", "lag_kkt_lane",
+  "constraint_table", "jacobian_table", "inertia_table", "constraints", "lag_constraint", "lag_constraints",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -69,7 +70,7 @@ static const char *const *rows_names(const IrUnit *u) {
 
 const char *model_id(Arena *a, const char *name) {
   static const char *const taken[] = {"accel", "energy", "linearise", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
-                                      "outputs", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of"};
+                                      "outputs", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "correct_positions", "correct_velocities"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -78,17 +79,17 @@ const char *model_id(Arena *a, const char *name) {
 }
 
 static const char *const *globals_of(const IrUnit *u, const char *name) {
-  uint32_t n = N_ABI_NAMES, tables = u->inputs->tables.n, max = n + 6 * u->scenes.n + tables + 2;
+  uint32_t n = N_ABI_NAMES, tables = u->inputs->tables.n, max = n + 7 * u->scenes.n + tables + 2;
   const char **all = ARENA_ARRAY(u->arena, const char *, max);
   memcpy(all, abi_names, sizeof abi_names);
   if (!name) return all;
   all[n++] = name;
   for (uint32_t i = 0; i < tables; i++) all[n++] = rows_names(u)[i];
-  static const char *const lists[] = {"outputs", "options", "monitors", "exact_of"};
+  static const char *const lists[] = {"outputs", "options", "monitors", "exact_of", "given"};
   for (uint32_t i = 0; i < u->scenes.n; i++) {
     const char *id = scene_id(u, i);
     all[n++] = arena_printf(u->arena, "%s_%s", name, id);
-    for (int k = 0; k < 4; k++) all[n++] = arena_printf(u->arena, "%s_%s", lists[k], id);
+    for (int k = 0; k < 5; k++) all[n++] = arena_printf(u->arena, "%s_%s", lists[k], id);
   }
   return all;
 }
@@ -100,7 +101,7 @@ static const char *const state_args =
   "    const LAG_REAL *p, const LAG_REAL *u";
 
 static CStyle style_for(const File *f, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .spline = "lag_spline", .math = cmath_prefix(f->u, "lag")};
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .kkt = "lag_kkt", .spline = "lag_spline", .math = cmath_prefix(f->u, "lag")};
 }
 
 /* Once a step, or a row of output. */
@@ -207,6 +208,44 @@ static void emit_linear(const File *f) {
             ops_total(prog_count(u->linear)));
 }
 
+/* --- constraints --- */
+
+static void emit_change(const File *f, const Prog *p, const char *name, const char *comment) {
+  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "g", "d", "force", "w", NULL}, *const written[] = {"d", "force"};
+  const char *head = arena_printf(f->a, "static int %s(%s, const LAG_REAL *g,\n    LAG_REAL *d, LAG_REAL *force, LAG_REAL *w)", name, state_args);
+  function(f, p, comment, head, own, written);
+}
+
+static void constraint_table(const IrConstraints *k, Arena *a, StrBuf *out) {
+  sb_puts(out, "\nstatic const lag_constraint constraint_table[] = {\n");
+  for (uint32_t i = 0; i < k->of.n; i++)
+    sb_printf(out, "  {%s, %d, %s, %u},\n", c_string(a, k->of.at[i].name), i < k->nholonomic, c_string(a, k->of.at[i].unit), k->of.at[i].line);
+  sb_puts(out, "};\n");
+}
+
+static void emit_constraints(const File *f) {
+  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "c", "r", "w", NULL}, *const written[] = {"c", "r"};
+  static const char *const own2[] = {"t", "q", "v", "z", "p", "u", "A", "M", "w", NULL}, *const written2[] = {"A", "M"};
+  const IrConstraints *k = &f->u->constraints;
+  if (!k->of.n) return;
+  const char *head = arena_printf(f->a, "static int residuals(%s, LAG_REAL *c, LAG_REAL *r, LAG_REAL *w)", state_args);
+  function(f, k->residuals, "What the constraints say is zero: c on positions, r on velocities.", head, own, written);
+  head = arena_printf(f->a, "static int matrices(%s, LAG_REAL *A, LAG_REAL *M, LAG_REAL *w)", state_args);
+  function(f, k->matrices, "A, the derivatives of r by the velocities, and the mass matrix: the entries that are not zero.", head, own2, written2);
+  int both = k->velocity == k->position;
+  if (k->nholonomic)
+    emit_change(f, k->position, "correct_positions", both ? "The least change d with A d = g, for positions or velocities; force: M d."
+                                                           : "The least change d of positions with A d = g; force: M d.");
+  if (!both) emit_change(f, k->velocity, "correct_velocities", "The least change d of velocities with A d = g; force: M d.");
+  constraint_table(k, f->a, f->out);
+  entries("jacobian_table", k->jacobian.at, k->jacobian.n, f->out);
+  entries("inertia_table", k->mass.at, k->mass.n, f->out);
+  sb_printf(f->out, "\nstatic const lag_constraints constraints = {\n  .n = %u, .nholonomic = %u, .of = constraint_table,\n", k->of.n, k->nholonomic);
+  sb_printf(f->out, "  .njacobian = %u, .jacobian = jacobian_table, .nmass = %u, .mass = %s,\n", k->jacobian.n, k->mass.n, k->mass.n ? "inertia_table" : "NULL");
+  sb_printf(f->out, "  .residuals = residuals, .matrices = matrices,\n  .position = %s, .velocity = %s,\n};\n",
+            k->nholonomic ? "correct_positions" : "NULL", both ? "correct_positions" : "correct_velocities");
+}
+
 /* --- a scene's functions --- */
 
 /* Parameters one by one: each may use those before it, as they are then. */
@@ -293,12 +332,27 @@ static int has_long_tables(const IrUnit *u) {
 
 static uint32_t work_size(const IrUnit *u) {
   uint32_t most = 0;
-  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear};
+  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->constraints.position, u->constraints.velocity};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     if (all[i] && prog_work(all[i]) > most) most = prog_work(all[i]);
   for (uint32_t i = 0; i < u->scenes.n; i++)
     if (prog_work(u->scenes.at[i].observe) > most) most = prog_work(u->scenes.at[i].observe);
   return most;
+}
+
+static int solves_plainly(const Prog *p) {
+  for (uint32_t i = 0; p && i < p->solves.n; i++)
+    if (!p->solves.at[i].m) return 1;
+  return 0;
+}
+
+/* Whether a linear system without constraints is solved by a loop. */
+static int needs_solver(const IrUnit *u) {
+  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear};
+  int some = 0;
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) some |= solves_plainly(all[i]);
+  for (uint32_t i = 0; i < u->scenes.n; i++) some |= solves_plainly(u->scenes.at[i].observe);
+  return some;
 }
 
 static void flag_text(unsigned flags, StrBuf *out) {
@@ -369,6 +423,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->variation)
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
+  if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (u->linear) sb_puts(out, "  .linear = &linear,\n");
   sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n};\n");
@@ -394,6 +449,17 @@ static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, 
   }
 }
 
+/* Which components of the state the start sets. */
+static void emit_given(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
+  uint32_t n = u->q.n, total = 2 * n + u->z.n, after[] = {0, n, 2 * n};
+  if (!u->constraints.of.n) return;
+  unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, total);
+  for (uint32_t k = 0; k < s->start->stores.n; k++) given[after[s->start->stores.at[k].array] + s->start->stores.at[k].index] = 1;
+  sb_printf(out, "\nstatic const unsigned char given_%s[] = {", id);
+  for (uint32_t i = 0; i < total; i++) sb_printf(out, "%s%d", i ? ", " : "", given[i]);
+  sb_puts(out, "};\n");
+}
+
 static const char *list_name(const IrUnit *u, uint32_t n, const char *stem, const char *id) {
   return n ? arena_printf(u->arena, "%s_%s", stem, id) : "NULL";
 }
@@ -408,9 +474,11 @@ static void emit_scene(const File *f, uint32_t index) {
   emit_observe(f, s, id);
   emit_exact(f, s, id);
   emit_scene_lists(u, s, id, out);
+  emit_given(u, s, id, out);
   sb_printf(out, "\nconst lag_scene %s_%s = {\n", name, id);
   sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
   sb_printf(out, "  .model = &%s,\n  .params = params_%s, .start = start_%s,\n", name, id, id);
+  if (u->constraints.of.n) sb_printf(out, "  .given = given_%s, .exactly = %d,\n", id, s->exactly);
   sb_printf(out, "  .t0 = %s, .t1 = %s, .has_span = %d,\n", ctable_number(u->arena, s->t0, NULL), ctable_number(u->arena, s->t1, s->t1_digits), s->has_span);
   sb_printf(out, "  .method = %s, .noptions = %u, .options = %s,\n", s->method ? c_string(u->arena, s->method) : "NULL", s->options.n,
             list_name(u, s->options.n, "options", id));
@@ -439,13 +507,15 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   sb_putc(out, '\n');
   cmath_functions(u, "LAG", "lag", out);
   if (has_long_tables(u)) ctable_macros(out);
-  if (work_size(u)) csupport_solver("LAG", "lag", out);
+  if (needs_solver(u)) csupport_solver("LAG", "lag", out);
+  cmath_kkt(u, "LAG", "lag", out);
   if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
   size_t begin = out->n;
   accel(&f);
   emit_energy(&f);
   emit_events(&f);
   emit_inputs(&f);
+  emit_constraints(&f);
   const char *digest = digest_text(u->arena, sb_text(out) + begin);
   emit_linear(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
   if (u->taylor) emit_taylor(u->taylor, f.globals, cmath_prefix(u, "lag"), out);

@@ -68,7 +68,7 @@ static const char *const *own_names(const Header *h, const char *const *extra) {
 
 static CStyle style_for(const Header *h, const char *const *own, const char *const *out) {
   return (CStyle){.prefix = h->upper, .in = arrays, .params = h->fields, .out = out, .own = own, .globals = h->globals,
-                  .solve = arena_printf(h->a, "%s_solve", h->lower), .spline = arena_printf(h->a, "%s_spline", h->lower),
+                  .solve = arena_printf(h->a, "%s_solve", h->lower), .kkt = arena_printf(h->a, "%s_kkt", h->lower), .spline = arena_printf(h->a, "%s_spline", h->lower),
                   .math = cmath_prefix(h->u, h->lower)};
 }
 
@@ -211,6 +211,7 @@ void header_implementation(const Header *h) {
   cmath_functions(h->u, h->upper, h->lower, h->out);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
   if (h->u->accel->solves.n || h->scene->observe_plain->solves.n) csupport_solver(h->upper, h->lower, h->out);
+  cmath_kkt(h->u, h->upper, h->lower, h->out);
   if (h->u->inputs->tables.n) csupport_spline(h->upper, h->lower, h->out);
   defaults(h);
   param(h);

@@ -43,7 +43,7 @@ static Slot timed(Balance *b, Slot s, Slot was) {
   uint32_t t = latest(ready(b, i->a), latest(ready(b, i->b), ready(b, i->c)));
   if (i->op == IR_SOLVE) {
     const Solve *k = &b->to->solves.at[i->index];
-    for (uint32_t r = 0; r < k->n; r++) t = latest(t, ready(b, k->rhs[r]));
+    for (uint32_t r = 0; r < solve_unknowns(k); r++) t = latest(t, ready(b, k->rhs[r]));
   }
   b->ready.at[s] = i->op == IR_LOAD ? b->loads[was] : t + time_of(i->op);
   return s;

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/dense.h"
 #include "ir/prog.h"
 
 typedef long double Real;
@@ -55,7 +56,22 @@ static int solve(Real *a, Real *b, uint32_t n) {
   return 0;
 }
 
+/* [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations. Where constraints are redundant some multipliers are taken to be 0. */
+static const Real *solved_constrained(const Prog *p, const Solve *s, const Real *v, int *status) {
+  uint32_t n = s->n, total = solve_unknowns(s);
+  Real *system = ARENA_ARRAY(p->arena, Real, total * total), *b = ARENA_ARRAY(p->arena, Real, total);
+  for (uint32_t i = 0; i < total; i++) b[i] = v[s->rhs[i]];
+  for (uint32_t i = 0; i < total; i++)
+    for (uint32_t j = 0; j < n; j++) system[i * total + j] = v[s->matrix[i * n + j]];
+  for (uint32_t i = n; i < total; i++)
+    for (uint32_t j = 0; j < n; j++) system[j * total + i] = -system[i * total + j];
+  dense_solve(total, system, b, 1e-13L, ARENA_ARRAY(p->arena, uint32_t, total), NULL);
+  *status = isfinite(b[0]) ? 0 : -1;
+  return b;
+}
+
 static const Real *solved(const Prog *p, const Solve *s, const Real *v, int *status) {
+  if (s->m) return solved_constrained(p, s, v, status);
   Real *a = ARENA_ARRAY(p->arena, Real, s->n * s->n), *b = ARENA_ARRAY(p->arena, Real, s->n);
   for (uint32_t i = 0; i < s->n * s->n; i++) a[i] = v[s->matrix[i]];
   for (uint32_t i = 0; i < s->n; i++) b[i] = v[s->rhs[i]];

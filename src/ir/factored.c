@@ -63,7 +63,7 @@ static void solve_pair(Prog *p, const Factored *f, uint32_t k, const Slot *b, Sl
 static void solve_loop(Prog *p, const FactoredBlock *m, const Slot *b, Slot *x) {
   Slot *rhs = ARENA_ARRAY(p->arena, Slot, m->n);
   for (uint32_t i = 0; i < m->n; i++) rhs[i] = b[m->at[i]];
-  vec_push(p->arena, &p->solves, ((Solve){m->n, m->place, NULL, rhs}));
+  vec_push(p->arena, &p->solves, ((Solve){.n = m->n, .place = m->place, .rhs = rhs}));
   Slot s = prog_ins(p, (Ins){.op = IR_SOLVE, .index = p->solves.n - 1});
   for (uint32_t i = 0; i < m->n; i++) x[m->at[i]] = prog_ins(p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }

@@ -200,7 +200,7 @@ static Slot lower_symbol(Lower *l, Expr e) {
     case SYM_PARAM: return load(l, ARR_P, s);
     case SYM_INPUT: return load(l, ARR_U, s);
     case SYM_CONST: return prog_ins(l->p, (Ins){.op = IR_PI});
-    case SYM_ACC: case SYM_RATE: case SYM_LOCAL: break; /* set before: see lower_with_accelerations */
+    case SYM_ACC: case SYM_RATE: case SYM_MULTIPLIER: case SYM_LOCAL: break; /* set before: see lower_with_accelerations */
   }
   return 0;
 }
@@ -259,16 +259,16 @@ void lower_roots(Lower *l, const Expr *roots, uint32_t n) {
 
 /* --- the functions of a model --- */
 
-static Lower lower_new(const Eqns *e) {
+Lower lower_new(const Eqns *e) {
   Arena *a = e->m->arena;
   return (Lower){.e = e, .g = e->g, .p = prog_new(a), .slots = expr_map(a), .circular = expr_map(a)};
 }
 
 static const char *text_of_symbol(const Lower *l, SymId s) { return expr_symbol(l->g, s)->name; }
 
-/* Whether each coordinate has its acceleration to itself. */
+/* Whether each coordinate has its acceleration to itself: nothing is solved for several at once. */
 static int is_diagonal(const Eqns *e) {
-  uint32_t off = e->system.ndefs;
+  uint32_t off = e->system.ndefs + e->constraints.n;
   for (uint32_t k = 0; k < e->system.H.n; k++) off += e->system.H.at[k].row != e->system.H.at[k].col;
   return off == 0;
 }
@@ -342,11 +342,13 @@ IrSystem lower_system(const Eqns *e) {
 static void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   const Model *m = l->e->m;
   int needed = 0;
-  for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE);
+  for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_MULTIPLIER);
   if (needed) {
     Slot *acc = ARENA_ARRAY(m->arena, Slot, l->e->n + 1);
     lower_solution(l, acc);
     for (uint32_t i = 0; i < l->e->n; i++) expr_map_set(&l->slots, expr_symbol(l->g, m->coords.at[i].a)->node, acc[i] + 1);
+    for (uint32_t i = 0; i < l->e->constraints.n; i++)
+      expr_map_set(&l->slots, expr_symbol(l->g, l->e->constraints.of[i]->multiplier)->node, l->multipliers[i] + 1);
     lower_roots(l, l->e->flow, m->states.n);
     for (uint32_t i = 0; i < m->states.n; i++)
       expr_map_set(&l->slots, expr_symbol(l->g, m->states.at[i].rate)->node, lower_slot(l, l->e->flow[i]) + 1);

@@ -15,7 +15,10 @@ typedef struct {
   int direct;       /* sin(a - b) is computed as it stands: for series, it is cheaper than the addition theorem */
   Factored *factored; /* where the solution leaves its factors, and x[n + ndefs] itself; NULL: nowhere */
   Slot *x;
+  Slot *multipliers; /* of the constraints, once the solution is lowered */
 } Lower;
+
+Lower lower_new(const Eqns *e);
 
 /* Lowers all nodes that the roots need; then lower_slot gives each root's slot. */
 void lower_roots(Lower *l, const Expr *roots, uint32_t n);
@@ -23,6 +26,9 @@ Slot lower_slot(const Lower *l, Expr e);
 
 /* Lowers M q'' = f and its solution; acc[n] receives the slots of q''. */
 void lower_solution(Lower *l, Slot *acc);
+
+/* The least change d[n] with A d = g for the first nrows constraints, and the forces A^T mu that make it. */
+void lower_correction(Lower *l, uint32_t nrows, const Slot *g, Slot *d, Slot *force);
 
 /* The same by elimination without pivoting, for entries and forces that are lowered. */
 void lower_elimination(Lower *l, Slot *acc);

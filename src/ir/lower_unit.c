@@ -31,6 +31,24 @@ static void add_events(IrUnit *u, const Eqns *e) {
   u->event_values = lower_events(e);
 }
 
+static void add_constraints(IrUnit *u, const Eqns *e) {
+  const Constraints *k = &e->constraints;
+  IrConstraints *to = &u->constraints;
+  if (!k->n) return;
+  for (uint32_t i = 0; i < k->n; i++) {
+    const char *unit = dim_text(e->m->dims, k->of[i]->dim);
+    Place place = source_place(e->m->ast->sources, k->of[i]->span.begin);
+    vec_push(u->arena, &to->of, ((IrConstraint){k->of[i]->name, strcmp(unit, "1") == 0 ? "" : unit, place.file ? place.line : 0}));
+  }
+  for (uint32_t i = 0; i < k->A.n; i++) vec_push(u->arena, &to->jacobian, ((IrEntry){k->A.at[i].row, k->A.at[i].col}));
+  for (uint32_t i = 0; i < e->mass.n; i++) vec_push(u->arena, &to->mass, ((IrEntry){e->mass.at[i].row, e->mass.at[i].col}));
+  to->nholonomic = k->nholonomic;
+  to->residuals = lower_residuals(e);
+  to->matrices = lower_matrices(e);
+  to->position = lower_change(e, k->nholonomic);
+  to->velocity = k->nholonomic == k->n ? to->position : lower_change(e, k->n);
+}
+
 static void add_variation(IrUnit *u, const Eqns *e) {
   Variation *x = variation_derive(e);
   u->variation = lower_variation(e, x);
@@ -41,9 +59,10 @@ static void add_variation(IrUnit *u, const Eqns *e) {
   }
 }
 
-/* A table is no analytic function: a model with one has no series. */
+/* A table is no analytic function: a model with one has no series. Nor has one with constraints, so far. */
 static void add_taylor(IrUnit *u, const Eqns *e) {
   const char *why;
+  if (e->constraints.n) return;
   for (uint32_t i = 0; i < e->m->inputs.n; i++)
     if (e->m->inputs.at[i].table) return;
   IrSystem system = lower_system(e);
@@ -68,6 +87,7 @@ IrUnit *unit_new(const Eqns *e, const char *source) {
   u->energy = e->energy ? lower_energy(e) : NULL;
   u->inputs = lower_inputs(e);
   add_events(u, e);
+  add_constraints(u, e);
   return u;
 }
 
@@ -99,13 +119,13 @@ void unit_want(IrUnit *u, Eqns *e, unsigned wants) {
   u->wants |= wants;
   if (fresh & WANT_VARIATION && e->n) add_variation(u, e);
   if (fresh & WANT_TAYLOR) add_taylor(u, e);
-  if (fresh & WANT_LINEAR) add_linear(u, e);
+  if (fresh & WANT_LINEAR && !e->constraints.n) add_linear(u, e); /* multipliers would change, too */
 }
 
 void unit_add_scene(IrUnit *u, const Eqns *e) {
   const Model *m = e->m;
   const Scene *sc = &m->scene;
-  IrScene s = {.name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .t1_digits = sc->t1_digits, .has_span = sc->has_span, .method = sc->method,
+  IrScene s = {.exactly = sc->exactly.end != 0, .name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .t1_digits = sc->t1_digits, .has_span = sc->has_span, .method = sc->method,
                .tolerance = sc->tolerance, .every = sc->every};
   const Prog **params = ARENA_ARRAY(m->arena, const Prog *, m->params.n + 1);
   for (uint32_t i = 0; i < m->params.n; i++) params[i] = lower_param(e, i);

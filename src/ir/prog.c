@@ -148,8 +148,8 @@ static void mark_needed(const Prog *p, unsigned char *need) {
     need[i->a] = need[i->b] = need[i->c] = 1;
     if (i->op != IR_SOLVE) continue;
     const Solve *k = &p->solves.at[i->index];
-    for (uint32_t j = 0; k->matrix && j < k->n * k->n; j++) need[k->matrix[j]] = 1;
-    for (uint32_t j = 0; j < k->n; j++) need[k->rhs[j]] = 1;
+    for (uint32_t j = 0; j < solve_elements(k); j++) need[k->matrix[j]] = 1;
+    for (uint32_t j = 0; j < solve_unknowns(k); j++) need[k->rhs[j]] = 1;
   }
 }
 
@@ -170,8 +170,8 @@ Ins prog_moved(Prog *to, const Prog *from, const Slot *map, Ins i) {
   }
   if (i.op != IR_SOLVE) return i;
   Solve k = from->solves.at[i.index];
-  k.matrix = moved(to->arena, map, k.matrix, k.n * k.n);
-  k.rhs = moved(to->arena, map, k.rhs, k.n);
+  k.matrix = moved(to->arena, map, k.matrix, solve_elements(&k));
+  k.rhs = moved(to->arena, map, k.rhs, solve_unknowns(&k));
   i.index = to->solves.n;
   vec_push(to->arena, &to->solves, k);
   return i;
@@ -186,8 +186,8 @@ uint32_t *prog_uses(const Prog *p) {
     uses[i->c]++;
     if (i->op != IR_SOLVE) continue;
     const Solve *k = &p->solves.at[i->index];
-    for (uint32_t j = 0; k->matrix && j < k->n * k->n; j++) uses[k->matrix[j]]++;
-    for (uint32_t j = 0; j < k->n; j++) uses[k->rhs[j]]++;
+    for (uint32_t j = 0; j < solve_elements(k); j++) uses[k->matrix[j]]++;
+    for (uint32_t j = 0; j < solve_unknowns(k); j++) uses[k->rhs[j]]++;
   }
   for (uint32_t k = 0; k < p->stores.n; k++) uses[p->stores.at[k].slot]++;
   return uses;
@@ -269,7 +269,15 @@ OpCount prog_count(const Prog *p) {
       case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND:
       case IR_OR: case IR_SELECT: c.other++; break;
       case IR_SOLVE: {
-        uint32_t n = p->solves.at[i->index].n;
+        uint32_t n = p->solves.at[i->index].n, m = p->solves.at[i->index].m, free = n > m ? n - m : 0;
+        if (m) { /* Householder's factorization of A^T, its reflections of M from both sides, elimination of what is left */
+          uint32_t both = m * m * (n - m / 3) + 4 * n * n * m + free * free * (free + 3) / 3 + 4 * n * m;
+          c.add += both;
+          c.mul += both;
+          c.div += n * m + free * (free + 1) / 2;
+          c.sqrt += m;
+          break;
+        }
         c.add += n * (n - 1) * (2 * n + 5) / 6; /* elimination with two substitutions */
         c.mul += n * (n - 1) * (2 * n + 5) / 6;
         c.div += n * (n + 1) / 2;
@@ -292,7 +300,10 @@ int prog_has_pivots(const Prog *p) {
 uint32_t prog_work(const Prog *p) {
   uint32_t most = 0;
   for (uint32_t i = 0; i < p->solves.n; i++) {
-    uint32_t n = p->solves.at[i].n, need = n * n + n;
+    const Solve *k = &p->solves.at[i];
+    uint32_t n = k->n, m = k->m, system = n * n + m * n + n + m, scratch = m * m + 9 * m;
+    uint32_t lane = (system + scratch + 3) / 4; /* over lanes each is solved by itself, in a fourth of the room at most */
+    uint32_t need = system + (!m ? 0 : scratch > lane ? scratch : lane);
     if (need > most) most = need;
   }
   return most;
@@ -305,7 +316,7 @@ static const char *const op_names[] = {
   "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "table", "title",
 };
 
-static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "free", "x", "s", "c", "order", "per_order", "up"};
+static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g", "free", "x", "s", "c", "order", "per_order", "up"};
 
 void prog_dump(const Prog *p, StrBuf *out) {
   for (Slot s = 1; s < p->ins.n; s++) {

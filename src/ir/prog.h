@@ -41,11 +41,11 @@ typedef enum {
   IR_TITLE   /* text: a comment line that heads what follows */
 } IrOp;
 
-/* The arrays that a function reads; accelerations only in the linearisation. The second line is of Taylor coefficients
+/* The arrays that a function reads; accelerations only in the linearisation, what A d must be (g) only where a state is corrected. The second line is of Taylor coefficients
  * (ir/series.h): whether an input is free of a constant, coefficients k, sums over those below k, what order 0 leaves for all
  * others; k, 1/k and T/(k + 1) are no arrays. */
 typedef enum {
-  ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_A,
+  ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_A, ARR_G,
   ARR_FREE, ARR_COEF, ARR_SUMS, ARR_STEP, ARR_ORDER, ARR_PER_ORDER, ARR_UP, ARR_COUNT
 } IrArray;
 
@@ -71,11 +71,16 @@ typedef struct {
 } Store;
 
 /* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it stands in the
- * work space. matrix is NULL where the one at that place was factored before, by another function. */
+ * work space. matrix is NULL where the one at that place was factored before, by another function. With m constraints A x = g on
+ * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. */
 typedef struct {
-  uint32_t n, place;
+  uint32_t n, m, place;
   const Slot *matrix, *rhs;
 } Solve;
+
+/* Elements of matrix and rhs. */
+static inline uint32_t solve_elements(const Solve *k) { return k->matrix ? (k->n + k->m) * k->n : 0; }
+static inline uint32_t solve_unknowns(const Solve *k) { return k->n + k->m; }
 
 /* A table that the user gave for what is called `name`. */
 typedef struct {

@@ -278,8 +278,8 @@ static void find_kept(Rolls *r) {
     for (int which = 0; which < 3; which++) keep_from(r, roll_operand(i, which), k);
     if (i->op != IR_SOLVE) continue;
     const Solve *s = &r->p->solves.at[i->index];
-    for (uint32_t j = 0; s->matrix && j < s->n * s->n; j++) keep_from(r, s->matrix[j], UINT32_MAX);
-    for (uint32_t j = 0; j < s->n; j++) keep_from(r, s->rhs[j], UINT32_MAX);
+    for (uint32_t j = 0; j < solve_elements(s); j++) keep_from(r, s->matrix[j], UINT32_MAX);
+    for (uint32_t j = 0; j < solve_unknowns(s); j++) keep_from(r, s->rhs[j], UINT32_MAX);
   }
   for (uint32_t k = 0; k < r->p->stores.n; k++)
     if (!r->stored[k]) keep_from(r, r->p->stores.at[k].slot, UINT32_MAX);

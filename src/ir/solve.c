@@ -2,7 +2,7 @@
  *
  * A mass matrix that is proved positive definite is eliminated by eliminate.c, in straight-line code.
  * Otherwise blocks of coupled coordinates: pairs by Cramer's rule, other blocks, and large dense
- * ones, by a loop with partial pivoting. */
+ * ones, by a loop with partial pivoting. Coordinates that a constraint couples are one block, solved with their multipliers. */
 #include "ir/lower_impl.h"
 
 /* Straight-line elimination of a dense matrix takes n^3/3 lines. Measured: it is faster than a loop
@@ -15,7 +15,18 @@ typedef struct {
   Slot *M;      /* [n*n], lower triangle filled */
   Slot *f;
   Slot divisor; /* of two: the determinant */
+  uint32_t m;   /* constraints on them, */
+  uint32_t *rows;
+  Slot *A, *g;  /* [m*n], [m] */
 } Block;
+
+/* Right-hand sides: f[n] (0: zero), and g[nrows] of the first nrows constraints. */
+typedef struct {
+  const Slot *f, *g;
+  uint32_t nrows;
+} Sides;
+
+typedef VEC(Expr) ExprVec;
 
 /* --- blocks --- */
 
@@ -24,15 +35,20 @@ static uint32_t find_root(uint32_t *parent, uint32_t i) {
   return i;
 }
 
+static void join(uint32_t *parent, uint32_t i, uint32_t j) {
+  uint32_t a = find_root(parent, i), b = find_root(parent, j);
+  if (a < b) parent[b] = a;
+  else parent[a] = b;
+}
+
 /* label[i]: the first coordinate of the block that i belongs to. */
-static uint32_t *label_blocks(const Eqns *e) {
+static uint32_t *label_blocks(const Eqns *e, uint32_t nrows) {
   uint32_t *parent = ARENA_ARRAY(e->m->arena, uint32_t, e->n + 1);
+  const Entries *H = &e->system.H, *A = &e->constraints.A;
   for (uint32_t i = 0; i < e->n; i++) parent[i] = i;
-  for (uint32_t k = 0; k < e->system.H.n; k++) {
-    uint32_t a = find_root(parent, e->system.H.at[k].row), b = find_root(parent, e->system.H.at[k].col);
-    if (a < b) parent[b] = a;
-    else parent[a] = b;
-  }
+  for (uint32_t k = 0; k < H->n; k++) join(parent, H->at[k].row, H->at[k].col);
+  for (uint32_t k = 1; k < A->n && A->at[k].row < nrows; k++)
+    if (A->at[k].row == A->at[k - 1].row) join(parent, A->at[k].col, A->at[k - 1].col);
   for (uint32_t i = 0; i < e->n; i++) parent[i] = find_root(parent, i);
   return parent;
 }
@@ -44,36 +60,80 @@ Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j) {
   return arena_printf(a, l->e->n > 9 ? "%s%u_%u" : "%s%u%u", stem, j + 1, i + 1);
 }
 
-/* The blocks in the order of their first coordinates, filled in one pass over coordinates and entries. */
-static uint32_t make_blocks(Lower *l, Block *blocks) {
+/* Coordinate i, or constraint k, has place[] in block[] of blocks. */
+typedef struct {
+  Block *blocks;
+  uint32_t n, *block, *place, *row_block, *row_place;
+} Layout;
+
+static void place_rows(Lower *l, const Sides *s, Layout *y) {
+  const Eqns *e = l->e;
+  const Entries *A = &e->constraints.A;
+  Arena *a = l->p->arena;
+  y->row_block = ARENA_ARRAY(a, uint32_t, s->nrows + 1);
+  y->row_place = ARENA_ARRAY(a, uint32_t, s->nrows + 1);
+  for (uint32_t k = 0; k < A->n && A->at[k].row < s->nrows; k++) {
+    uint32_t row = A->at[k].row;
+    if (k && A->at[k - 1].row == row) continue;
+    y->row_block[row] = y->block[A->at[k].col];
+    y->row_place[row] = y->blocks[y->row_block[row]].m++;
+  }
+}
+
+/* The blocks in the order of their first coordinates, sized in one pass over coordinates and constraints. */
+static Layout make_layout(Lower *l, const Sides *s) {
   const Eqns *e = l->e;
   Arena *a = l->p->arena;
-  const uint32_t *label = label_blocks(e);
-  uint32_t n = 0, *block = ARENA_ARRAY(a, uint32_t, e->n), *place = ARENA_ARRAY(a, uint32_t, e->n);
+  const uint32_t *label = label_blocks(e, s->nrows);
+  Layout y = {.blocks = ARENA_ARRAY(a, Block, e->n), .block = ARENA_ARRAY(a, uint32_t, e->n), .place = ARENA_ARRAY(a, uint32_t, e->n)};
   for (uint32_t i = 0; i < e->n; i++) {
-    block[i] = label[i] == i ? n++ : block[label[i]];
-    place[i] = blocks[block[i]].n++;
+    y.block[i] = label[i] == i ? y.n++ : y.block[label[i]];
+    y.place[i] = y.blocks[y.block[i]].n++;
   }
-  for (uint32_t k = 0; k < n; k++) {
-    Block *b = &blocks[k];
+  place_rows(l, s, &y);
+  for (uint32_t k = 0; k < y.n; k++) {
+    Block *b = &y.blocks[k];
     b->at = ARENA_ARRAY(a, uint32_t, b->n);
     b->f = ARENA_ARRAY(a, Slot, b->n);
     b->M = ARENA_ARRAY(a, Slot, (size_t)b->n * b->n);
+    if (!b->m) continue;
+    b->rows = ARENA_ARRAY(a, uint32_t, b->m);
+    b->A = ARENA_ARRAY(a, Slot, (size_t)b->m * b->n);
+    b->g = ARENA_ARRAY(a, Slot, b->m);
   }
+  return y;
+}
+
+static void fill_constraints(Lower *l, const Sides *s, const Layout *y) {
+  const Entries *A = &l->e->constraints.A;
+  for (uint32_t k = 0; k < A->n && A->at[k].row < s->nrows; k++) {
+    uint32_t row = A->at[k].row;
+    Block *b = &y->blocks[y->row_block[row]];
+    b->A[y->row_place[row] * b->n + y->place[A->at[k].col]] = lower_slot(l, A->at[k].e);
+    b->rows[y->row_place[row]] = row;
+    b->g[y->row_place[row]] = s->g[row];
+  }
+}
+
+static uint32_t make_blocks(Lower *l, const Sides *s, Block **blocks) {
+  const Eqns *e = l->e;
+  Layout y = make_layout(l, s);
   for (uint32_t k = 0; k < e->system.H.n; k++) {
     const MassEntry *x = &e->system.H.at[k];
-    Block *b = &blocks[block[x->row]];
-    Slot s = lower_slot(l, x->e);
-    prog_name(l->p, s, lower_numbered(l, "M", x->row, x->col));
-    b->M[place[x->row] * b->n + place[x->col]] = s;
+    Block *b = &y.blocks[y.block[x->row]];
+    Slot slot = lower_slot(l, x->e);
+    prog_name(l->p, slot, lower_numbered(l, "M", x->row, x->col));
+    b->M[y.place[x->row] * b->n + y.place[x->col]] = slot;
   }
   for (uint32_t i = 0; i < e->n; i++) {
-    Block *b = &blocks[block[i]];
-    b->at[place[i]] = i;
-    b->f[place[i]] = lower_slot(l, e->system.f[i]);
-    prog_name(l->p, b->f[place[i]], lower_numbered(l, "f", i, UINT32_MAX));
+    Block *b = &y.blocks[y.block[i]];
+    b->at[y.place[i]] = i;
+    b->f[y.place[i]] = s->f[i];
+    if (s->f[i]) prog_name(l->p, s->f[i], lower_numbered(l, "f", i, UINT32_MAX));
   }
-  return n;
+  fill_constraints(l, s, &y);
+  *blocks = y.blocks;
+  return y.n;
 }
 
 /* --- one coordinate, two, and loops --- */
@@ -102,19 +162,23 @@ static void solve_two(Lower *l, Block *b, Slot *x) {
   x[1] = op(l, IR_DIV, n2, det);
 }
 
+/* x[n], and behind it the multipliers of the constraints. */
 static void solve_loop(Lower *l, const Block *b, Slot *x) {
   Arena *a = l->p->arena;
-  Slot *full = ARENA_ARRAY(a, Slot, b->n * b->n);
-  for (uint32_t i = 0; i < b->n; i++)
-    for (uint32_t j = 0; j < b->n; j++) full[i * b->n + j] = i >= j ? b->M[i * b->n + j] : b->M[j * b->n + i];
-  vec_push(a, &l->p->solves, ((Solve){b->n, 0, full, b->f}));
+  size_t n = b->n, m = b->m;
+  Slot *full = ARENA_ARRAY(a, Slot, (n + m) * n), *rhs = ARENA_ARRAY(a, Slot, n + m);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < n; j++) full[i * n + j] = i >= j ? b->M[i * n + j] : b->M[j * n + i];
+  for (size_t k = 0; k < m * n; k++) full[n * n + k] = b->A[k];
+  for (size_t i = 0; i < n + m; i++) rhs[i] = i < n ? b->f[i] : b->g[i - n];
+  vec_push(a, &l->p->solves, ((Solve){.n = b->n, .m = b->m, .matrix = full, .rhs = rhs}));
   Slot s = prog_ins(l->p, (Ins){.op = IR_SOLVE, .index = l->p->solves.n - 1});
-  for (uint32_t i = 0; i < b->n; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
+  for (uint32_t i = 0; i < n + m; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
 
 static int goes_straight(const Eqns *e) {
   const LinearSystem *s = &e->system;
-  return e->definite_mass && (s->ndefs || s->ops <= STRAIGHT_OPS_A_VARIABLE * (uint64_t)e->n);
+  return e->definite_mass && !e->constraints.n && (s->ndefs || s->ops <= STRAIGHT_OPS_A_VARIABLE * (uint64_t)e->n);
 }
 
 /* Each block that is factored by a loop gets a place of its own. */
@@ -133,34 +197,78 @@ static void keep_factors(Lower *l, const Block *blocks, uint32_t n, Slot *x) {
   l->x = x;
 }
 
-static void solve_blocks(Lower *l, Slot *acc) {
-  const Eqns *e = l->e;
-  Arena *a = l->p->arena;
-  Block *blocks = ARENA_ARRAY(a, Block, e->n);
-  uint32_t n = make_blocks(l, blocks);
-  prog_title(l->p, "M q'' = f");
-  Slot *x = ARENA_ARRAY(a, Slot, e->n);
+/* Whether nothing accelerates it. */
+static int is_empty(const Block *b) {
+  for (uint32_t i = 0; i < b->n; i++)
+    if (b->f[i]) return 0;
+  return 1;
+}
+
+/* acc[n], and the multipliers of the first nrows constraints. */
+static void solve_blocks(Lower *l, const Sides *s, Slot *acc, Slot *multipliers) {
+  Block *blocks;
+  uint32_t n = make_blocks(l, s, &blocks), nrows = s->nrows;
+  Slot *x = ARENA_ARRAY(l->p->arena, Slot, l->e->n + nrows + 1);
   for (uint32_t k = 0; k < n; k++) {
     Block *b = &blocks[k];
-    if (b->n == 1) solve_one(l, b, x);
-    else if (b->n == 2) solve_two(l, b, x);
-    else solve_loop(l, b, x);
+    if (!b->m && is_empty(b)) continue;
+    if (b->n > 2 || b->m) solve_loop(l, b, x);
+    else if (b->n == 1) solve_one(l, b, x);
+    else solve_two(l, b, x);
     for (uint32_t i = 0; i < b->n; i++) acc[b->at[i]] = x[i];
+    for (uint32_t i = 0; i < b->m; i++) multipliers[b->rows[i]] = x[b->n + i];
   }
   if (l->factored) keep_factors(l, blocks, n, acc);
+}
+
+static void push_entries(Lower *l, ExprVec *roots, const Entries *from) {
+  for (uint32_t k = 0; k < from->n; k++) vec_push(l->p->arena, roots, from->at[k].e);
+}
+
+static const Slot *slots_of(Lower *l, const Expr *of, uint32_t n) {
+  Slot *s = ARENA_ARRAY(l->p->arena, Slot, n + 1);
+  for (uint32_t i = 0; i < n; i++) s[i] = lower_slot(l, of[i]);
+  return s;
 }
 
 void lower_solution(Lower *l, Slot *acc) {
   const Eqns *e = l->e;
   const LinearSystem *s = &e->system;
+  const Constraints *k = &e->constraints;
   if (!e->n) return;
-  VEC(Expr) roots = {0};
-  for (uint32_t k = 0; k < s->H.n; k++) vec_push(l->p->arena, &roots, s->H.at[k].e);
-  for (uint32_t k = 0; k < s->C.n; k++) vec_push(l->p->arena, &roots, s->C.at[k].e);
+  ExprVec roots = {0};
+  push_entries(l, &roots, &s->H);
+  push_entries(l, &roots, &s->C);
+  push_entries(l, &roots, &k->A);
   for (uint32_t i = 0; i < e->n; i++) vec_push(l->p->arena, &roots, s->f[i]);
-  prog_title(l->p, "mass matrix M and forces f");
+  for (uint32_t i = 0; i < k->n; i++) vec_push(l->p->arena, &roots, k->demand[i]);
+  prog_title(l->p, k->n ? "mass matrix M, forces f, constraints A q'' = g" : "mass matrix M and forces f");
   lower_roots(l, roots.at, roots.n);
-  if (goes_straight(e)) lower_elimination(l, acc);
-  else solve_blocks(l, acc);
+  l->multipliers = ARENA_ARRAY(l->p->arena, Slot, k->n + 1);
+  if (goes_straight(e)) {
+    lower_elimination(l, acc);
+  } else {
+    Sides sides = {slots_of(l, s->f, e->n), slots_of(l, k->demand, k->n), k->n};
+    prog_title(l->p, k->n ? "M q'' = f + A^T lambda" : "M q'' = f");
+    solve_blocks(l, &sides, acc, l->multipliers);
+  }
   for (uint32_t i = 0; i < e->n; i++) prog_name(l->p, acc[i], expr_symbol(e->g, e->m->coords.at[i].a)->name);
+}
+
+void lower_correction(Lower *l, uint32_t nrows, const Slot *g, Slot *d, Slot *force) {
+  const Eqns *e = l->e;
+  const Entries *A = &e->constraints.A;
+  Arena *a = l->p->arena;
+  ExprVec roots = {0};
+  push_entries(l, &roots, &e->system.H);
+  push_entries(l, &roots, A);
+  lower_roots(l, roots.at, roots.n);
+  Slot *multipliers = ARENA_ARRAY(a, Slot, nrows + 1);
+  Sides sides = {ARENA_ARRAY(a, Slot, e->n + 1), g, nrows};
+  solve_blocks(l, &sides, d, multipliers);
+  for (uint32_t i = 0; i < e->n; i++) force[i] = 0;
+  for (uint32_t k = 0; k < A->n && A->at[k].row < nrows; k++) {
+    Slot part = op(l, IR_MUL, lower_slot(l, A->at[k].e), multipliers[A->at[k].row]), *sum = &force[A->at[k].col];
+    *sum = op(l, IR_ADD, *sum, part);
+  }
 }

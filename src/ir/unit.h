@@ -40,6 +40,7 @@ typedef struct {
   double t0, t1;
   const char *t1_digits; /* more than a double has, or NULL */
   int has_span;
+  int exactly;        /* constraints may not move what the start gives */
   const char *method; /* or NULL */
   VEC(IrOption) options;
   double tolerance, every;
@@ -66,12 +67,26 @@ typedef struct {
 } IrSecond;
 
 typedef struct {
+  const char *name, *unit;
+  uint32_t line;
+} IrConstraint;
+
+/* The holonomic ones first; the programs are those of lower.h. */
+typedef struct {
+  VEC(IrConstraint) of;
+  uint32_t nholonomic;
+  VEC(IrEntry) jacobian, mass;
+  const Prog *residuals, *matrices, *position, *velocity;
+} IrConstraints;
+
+typedef struct {
   Arena *arena;
   const char *name, *doc, *source, *effects, *all_effects;
   unsigned flags;
   VEC(IrVar) q, z, p, u;
   VEC(IrEvent) events;
   const Prog *accel, *energy, *event_values, *inputs;
+  IrConstraints constraints;
   unsigned wants;
   const Prog *variation, *second; /* NULL unless WANT_VARIATION */
   VEC(IrSecond) second_at;        /* what the values of `second` are */

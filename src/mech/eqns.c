@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/methods.h"
+#include "mech/constrain.h"
 #include "mech/lagrange.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
@@ -145,7 +146,7 @@ static int loses_energy(const Eqns *e, unsigned lagrangian) {
   const Model *m = e->m;
   unsigned forces = 0;
   for (uint32_t i = 0; i < m->forces.n; i++) forces |= expr_kinds(e->g, m->forces.at[i].f);
-  return m->lagrangian && !e->conserves_energy && !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) &&
+  return m->lagrangian && !e->conserves_energy && constraints_do_no_work(e) && !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) &&
          !(forces & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_COORD) | bit(SYM_VEL))) && (!m->dissipation || only_brakes(e));
 }
 
@@ -158,9 +159,11 @@ static void classify(Eqns *e) {
   for (uint32_t i = 0; i < C->n && !e->mass_known; i++) vec_push(m->arena, &entries, C->at[i].e);
   for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->f[i]);
   for (uint32_t i = 0; i < m->states.n; i++) vec_push(m->arena, &roots, e->flow[i]);
+  const Constraints *k = &e->constraints;
+  for (uint32_t i = 0; i < k->n; i++) vec_push(m->arena, &roots, k->demand[i]);
   unsigned mass = kinds_in(e, entries.at, entries.n), rest = kinds_in(e, roots.at, roots.n);
   e->constant_mass = !(mass & (bit(SYM_COORD) | bit(SYM_VEL) | bit(SYM_TIME) | bit(SYM_STATE)));
-  e->separable = e->n && e->constant_mass && !m->states.n && !(rest & bit(SYM_VEL));
+  e->separable = e->n && e->constant_mass && !m->states.n && !(rest & bit(SYM_VEL)) && !k->n;
   e->autonomous = e->timeless = !((mass | rest) & bit(SYM_TIME));
   int inputs = (rest & bit(SYM_INPUT)) != 0;
   e->smooth = 1;
@@ -171,7 +174,7 @@ static void classify(Eqns *e) {
     e->smooth &= op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_MIN && op != EX_MAX;
   }
   unsigned lagrangian = kinds_in(e, &m->lagrangian, 1);
-  e->conserves_energy = m->lagrangian && !m->forces.n && !m->dissipation && !inputs &&
+  e->conserves_energy = m->lagrangian && !m->forces.n && !m->dissipation && !inputs && constraints_do_no_work(e) &&
                         !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_INPUT)));
   e->loses_energy = loses_energy(e, lagrangian);
 }
@@ -226,7 +229,7 @@ Eqns *eqns_derive(Model *m) {
   e->flow = flow;
   if (e->n) {
     lagrange_momenta_and_forces(e);
-    if (!check_momenta(e) || !lagrange_check_mass(e)) return NULL;
+    if (!constrain(e) || !check_momenta(e) || !lagrange_check_mass(e)) return NULL;
     derive_energy(e);
   }
   classify(e);

@@ -6,6 +6,10 @@
  *   M q'' = f                         solved numerically, never inverted symbolically
  *   Q_i = sum F dr/dq_i - dR/dq_i'    generalised forces: point forces, Rayleigh dissipation
  *
+ * With constraints r = A q' + b = 0, where r = dc/dt of a holonomic one, c(q, t) = 0 (mech/constrain.h):
+ *   M q'' = f + A^T lambda, A q'' = -(A' q' + b')
+ * that is L' = L + lambda c, and Lagrange-d'Alembert's principle for those on velocities.
+ *
  * (dp/dq) q' + dp/dt is one forward directional derivative of p. Every expression here is in q, q',
  * z, t, parameters and inputs; accelerations and rates occur in expects and outputs only. */
 #ifndef LAGC_EQNS_H
@@ -33,6 +37,16 @@ typedef struct {
   uint64_t ops;          /* of elimination and substitution, about */
 } LinearSystem;
 
+/* Constraints, the holonomic ones first. */
+typedef struct {
+  uint32_t n, nholonomic;
+  const Constraint *const *of; /* [n] */
+  const Expr *c;               /* [nholonomic] */
+  const Expr *r;               /* [n] */
+  const Expr *demand;          /* [n] what A q'' must be */
+  Entries A;                   /* row by row, columns ascending */
+} Constraints;
+
 typedef struct {
   const Model *m;
   ExprGraph *g;
@@ -42,8 +56,9 @@ typedef struct {
   const Expr *momenta;   /* [n] the same, as a person would write them */
   Entries mass;          /* the entries of the lower triangle that are not zero, row by row */
   int mass_known;        /* 0: too many, and the system below does without; see eqns_derive_mass */
-  const Expr *f;         /* [n] */
-  LinearSystem system;   /* the cheapest form of M q'' = f found */
+  const Expr *f;         /* [n]; with A^T lambda, made of the symbols of multipliers */
+  LinearSystem system;   /* the cheapest form of M q'' = f found; without multipliers */
+  Constraints constraints;
   const Expr *Q;         /* [n] generalised forces, inside f already */
   const Expr *flow;      /* [number of states] */
   Expr energy;           /* p q' - L, to show; 0 without coordinates */
@@ -52,7 +67,7 @@ typedef struct {
   const Output *outputs; /* of the scene, with the energy filled in */
   uint32_t noutputs;
   const Expr *definitions; /* by symbol: what stands for parameters given by others, where that was put in; or NULL */
-  int constant_mass, definite_mass, conserves_energy, autonomous, smooth;
+  int constant_mass, definite_mass, singular_mass, conserves_energy, autonomous, smooth;
   int loses_energy;      /* not conserved; but no force beside L can raise it, less the work of those that are constant */
   int timeless;          /* t enters by the formulas of inputs, if at all */
   int separable;         /* constant mass, no velocity in f, no states: a splitting method can integrate it */

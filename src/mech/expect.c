@@ -236,7 +236,10 @@ static ExpectResult judge(const Eqns *e, const Expect *x) {
   ExpectResult r = {.label = label_of(e->m, x), .span = x->span};
   switch (mend_verdict(e, x->lhs, x->rhs)) {
     case PROVED_ZERO: r.verdict = EXPECT_PROVED; return r;
-    case PROVED_NONZERO: r.verdict = EXPECT_REFUTED; return r;
+    case PROVED_NONZERO:
+      if (e->constraints.n) break; /* not for all states; but for those that obey the constraints it may hold */
+      r.verdict = EXPECT_REFUTED;
+      return r;
     case NOT_DECIDED: break;
   }
   r.digits = agreement(e, x, &r.states);

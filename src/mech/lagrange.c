@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "base/dense.h"
 #include "mech/lift.h"
 #include "mech/order.h"
 #include "sym/diff.h"
@@ -219,7 +220,8 @@ void lagrange_momenta_and_forces(Eqns *e) {
   const Expr *f = differentiate(e);
   LinearSystem lifted = lift_system(e);
   lifted.f = f;
-  if (mass_is_hopeless(e, &lifted) && lagrange_definite(e, &lifted)) {
+  int constrained = e->m->constraints.n > 0; /* then M itself is needed */
+  if (!constrained && mass_is_hopeless(e, &lifted) && lagrange_definite(e, &lifted)) {
     e->definite_mass = 1;
     e->system = best_form(e, &lifted, 0, &lifted_ops);
     e->f = e->system.f;
@@ -231,7 +233,7 @@ void lagrange_momenta_and_forces(Eqns *e) {
   e->f = dense.f;
   e->system = dense;
   e->definite_mass = lagrange_definite(e, &dense);
-  if (!lifted.ndefs || !e->definite_mass) return;
+  if (constrained || !lifted.ndefs || !e->definite_mass) return;
   lifted = best_form(e, &lifted, LOOK_THROUGH, &lifted_ops);
   if (lifted_ops < dense_ops) e->system = lifted;
 }
@@ -256,38 +258,6 @@ static void random_state(const Eqns *e, uint64_t *state, long double *values) {
   }
 }
 
-/* Rank-revealing elimination with full pivoting on the dense matrix a[n*n]: 1 when regular. On
- * failure null[n] spans the kernel's first direction. */
-static int regular(long double *a, uint32_t n, uint32_t *perm, long double *null) {
-  long double largest = 0;
-  for (uint32_t i = 0; i < n * n; i++) largest = fmaxl(largest, fabsl(a[i]));
-  for (uint32_t i = 0; i < n; i++) perm[i] = i;
-  for (uint32_t k = 0; k < n; k++) {
-    uint32_t pr = k, pc = k;
-    for (uint32_t i = k; i < n; i++)
-      for (uint32_t j = k; j < n; j++)
-        if (fabsl(a[i * n + j]) > fabsl(a[pr * n + pc])) pr = i, pc = j;
-    if (!(fabsl(a[pr * n + pc]) > 1e-13L * largest)) {
-      for (uint32_t i = 0; i < n; i++) null[i] = 0;
-      null[perm[k]] = 1;
-      for (uint32_t i = k; i-- > 0;) {
-        long double s = a[i * n + k];
-        for (uint32_t j = i + 1; j < k; j++) s += a[i * n + j] * null[perm[j]];
-        null[perm[i]] = -s / a[i * n + i];
-      }
-      return 0;
-    }
-    for (uint32_t j = 0; j < n; j++) { long double t = a[k * n + j]; a[k * n + j] = a[pr * n + j]; a[pr * n + j] = t; }
-    for (uint32_t i = 0; i < n; i++) { long double t = a[i * n + k]; a[i * n + k] = a[i * n + pc]; a[i * n + pc] = t; }
-    uint32_t t = perm[k]; perm[k] = perm[pc]; perm[pc] = t;
-    for (uint32_t i = k + 1; i < n; i++) {
-      long double factor = a[i * n + k] / a[k * n + k];
-      for (uint32_t j = k; j < n; j++) a[i * n + j] -= factor * a[k * n + j];
-    }
-  }
-  return 1;
-}
-
 static void report_singular(const Eqns *e, const long double *null) {
   const Model *m = e->m;
   Diags *d = m->diags;
@@ -302,12 +272,26 @@ static void report_singular(const Eqns *e, const long double *null) {
     diag_error(d, m->lagrangian_span, "the mass matrix is zero: L is linear in the velocities, or does not contain them");
     diag_help(d, "not yet: Lagrangians of first order; a quantity without inertia can be a `state` with a `flow`");
   } else if (involved == 1) {
-    diag_error(d, m->coords.at[last].span, "the mass matrix is singular in every state: `%s` has no inertia", m->coords.at[last].name);
+    diag_error(d, m->coords.at[last].span, "the mass matrix is singular in every state: `%s` has no inertia%s", m->coords.at[last].name,
+               m->constraints.n ? ", and no constraint moves it" : "");
     diag_help(d, "L contains no `%s'^2`; add its kinetic energy, or declare it as a `let` or a `state`", m->coords.at[last].name);
   } else {
     diag_error(d, m->lagrangian_span, "the mass matrix is singular in every state: one combination of %s has no inertia", sb_text(&names));
     diag_help(d, "the kinetic energy depends on fewer combinations of velocities than there are coordinates");
   }
+}
+
+/* Adds A^T A to a[n*n]: what constraints fix needs no inertia. */
+static void add_constraints(const Eqns *e, const long double *symbols, long double *a) {
+  const Entries *A = &e->constraints.A;
+  uint32_t n = e->n;
+  Expr *entries = ARENA_ARRAY(e->m->arena, Expr, A->n + 1);
+  long double *values = ARENA_ARRAY(e->m->arena, long double, A->n + 1);
+  for (uint32_t k = 0; k < A->n; k++) entries[k] = A->at[k].e;
+  expr_eval(e->g, entries, A->n, symbols, values);
+  for (uint32_t k = 0; k < A->n; k++)
+    for (uint32_t j = 0; j < A->n; j++)
+      if (A->at[j].row == A->at[k].row && isfinite(values[k] * values[j])) a[A->at[k].col * n + A->at[j].col] += values[k] * values[j];
 }
 
 /* Every state tried is singular; a determinant that is not identically zero vanishes at a random
@@ -321,7 +305,7 @@ int lagrange_check_mass(Eqns *e) {
   for (uint32_t k = 0; k < e->mass.n; k++) entries[k] = e->mass.at[k].e;
   long double *symbols = ARENA_ARRAY(arena, long double, expr_symbol_count(e->g) + 1);
   long double *values = ARENA_ARRAY(arena, long double, e->mass.n + 1), *a = ARENA_ARRAY(arena, long double, n * n);
-  long double *null = ARENA_ARRAY(arena, long double, n);
+  long double *null = ARENA_ARRAY(arena, long double, n), *unconstrained = ARENA_ARRAY(arena, long double, n * n);
   uint32_t *perm = ARENA_ARRAY(arena, uint32_t, n);
   uint64_t seed = 1;
   int judged = 0;
@@ -335,7 +319,12 @@ int lagrange_check_mass(Eqns *e) {
       finite &= isfinite(values[k]) != 0;
     }
     if (!finite) continue;
-    if (regular(a, n, perm, null)) return 1;
+    if (e->constraints.n) {
+      for (uint32_t i = 0; i < n * n; i++) unconstrained[i] = a[i];
+      e->singular_mass = dense_solve(n, unconstrained, NULL, 1e-13L, perm, NULL) < n;
+      add_constraints(e, symbols, a);
+    }
+    if (dense_solve(n, a, NULL, 1e-13L, perm, null) == n) return 1;
     judged = 1;
   }
   if (!judged) return 1; /* the tries all lay outside the model's domain: runs will tell */

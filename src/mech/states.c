@@ -2,73 +2,147 @@
 
 #include <math.h>
 
+#include "base/dense.h"
+
 struct StateSolver {
   const Eqns *e;
-  EvalTape *tape; /* the entries of M, then f, then the flows, then the energy */
-  long double *out, *a; /* its results; M with f as its last column */
+  EvalTape *tape; /* the entries of M, then f, the flows, the energy; of constraints A, c, r, what A q'' is */
+  uint32_t first_entry; /* of A in it */
+  long double *out, *a, *b; /* its results; a system of equations, its right-hand side */
+  uint32_t *column;
   uint32_t nflows;
 };
 
 StateSolver *states_new(const Eqns *e) {
   Arena *arena = e->m->arena;
   StateSolver *s = ARENA_NEW(arena, StateSolver);
-  uint32_t n = e->n, count = 0;
+  const Constraints *k = &e->constraints;
+  uint32_t n = e->n, count = 0, total = n + k->n;
   s->e = e;
   s->nflows = e->m->states.n;
-  Expr *roots = ARENA_ARRAY(arena, Expr, e->mass.n + n + s->nflows + 1);
+  Expr *roots = ARENA_ARRAY(arena, Expr, e->mass.n + n + s->nflows + 1 + k->A.n + 3 * (size_t)k->n);
   for (uint32_t i = 0; i < e->mass.n; i++) roots[count++] = e->mass.at[i].e;
   for (uint32_t i = 0; i < n; i++) roots[count++] = e->f[i];
   for (uint32_t i = 0; i < s->nflows; i++) roots[count++] = e->flow[i];
   roots[count++] = e->energy;
+  s->first_entry = count;
+  for (uint32_t i = 0; i < k->A.n; i++) roots[count++] = k->A.at[i].e;
+  for (uint32_t i = 0; i < k->nholonomic; i++) roots[count++] = k->c[i];
+  for (uint32_t i = 0; i < k->n; i++) roots[count++] = k->r[i];
+  for (uint32_t i = 0; i < k->n; i++) roots[count++] = k->demand[i];
   s->tape = eval_tape(e->g, roots, count);
   s->out = ARENA_ARRAY(arena, long double, count);
-  s->a = ARENA_ARRAY(arena, long double, n * (n + 1) + 1);
+  s->a = ARENA_ARRAY(arena, long double, (size_t)total * total + 1);
+  s->b = ARENA_ARRAY(arena, long double, total + 1);
+  s->column = ARENA_ARRAY(arena, uint32_t, total + 1);
   return s;
 }
 
-static void swap_rows(long double *a, uint32_t w, uint32_t x, uint32_t y) {
-  for (uint32_t k = 0; x != y && k < w; k++) {
-    long double kept = a[x * w + k];
-    a[x * w + k] = a[y * w + k];
-    a[y * w + k] = kept;
+/* Values at a state: the tape's results. */
+static const long double *run(StateSolver *s, const long double *symbols) {
+  eval_run(s->tape, symbols, s->out);
+  return s->out;
+}
+
+/* The system [D -A^T; A 0] into a[(n + m)^2], D = M or 1. */
+static void fill(StateSolver *s, int with_mass) {
+  const Eqns *e = s->e;
+  uint32_t n = e->n, w = n + e->constraints.n;
+  const Entries *A = &e->constraints.A;
+  const long double *values = s->out + s->first_entry;
+  for (size_t i = 0; i < (size_t)w * w; i++) s->a[i] = 0;
+  for (uint32_t i = 0; i < n && !with_mass; i++) s->a[i * w + i] = 1;
+  for (uint32_t k = 0; k < e->mass.n && with_mass; k++) {
+    const MassEntry *x = &e->mass.at[k];
+    s->a[x->row * w + x->col] = s->a[x->col * w + x->row] = s->out[k];
+  }
+  for (uint32_t k = 0; k < A->n; k++) {
+    uint32_t row = n + A->at[k].row, col = A->at[k].col;
+    s->a[row * w + col] = values[k];
+    s->a[col * w + row] = -values[k];
   }
 }
 
-/* Gauss-Jordan with row exchange on n rows of n + 1; the last column becomes the solution. */
-static int solve(long double *a, uint32_t n) {
-  uint32_t w = n + 1;
-  for (uint32_t c = 0; c < n; c++) {
-    uint32_t best = c;
-    for (uint32_t i = c + 1; i < n; i++)
-      if (fabsl(a[i * w + c]) > fabsl(a[best * w + c])) best = i;
-    if (!(fabsl(a[best * w + c]) > 0) || !isfinite(a[best * w + c])) return 0;
-    swap_rows(a, w, c, best);
-    for (uint32_t i = 0; i < n; i++) {
-      long double ratio = a[i * w + c] / a[c * w + c];
-      for (uint32_t k = c; i != c && k < w; k++) a[i * w + k] -= ratio * a[c * w + k];
-    }
-  }
-  for (uint32_t i = 0; i < n; i++) {
-    a[i * w + n] /= a[i * w + i];
-    if (!isfinite(a[i * w + n])) return 0;
-  }
+/* The least change with A d = -g of the first rows; others are 0. 0 where there is none. */
+static int change(StateSolver *s, const long double *g, uint32_t rows) {
+  uint32_t n = s->e->n, m = s->e->constraints.n, w = n + m;
+  fill(s, 0);
+  for (uint32_t i = 0; i < w; i++) s->b[i] = i < n || i >= n + rows ? 0 : -g[i - n];
+  for (uint32_t k = rows; k < m; k++) /* constraints on velocities do not hold back positions */
+    for (uint32_t j = 0; j < n; j++) s->a[(n + k) * w + j] = s->a[j * w + n + k] = 0;
+  dense_solve(w, s->a, s->b, 1e-13L, s->column, NULL);
+  for (uint32_t i = 0; i < n; i++)
+    if (!isfinite(s->b[i])) return 0;
   return 1;
+}
+
+static long double largest(const long double *x, uint32_t n) {
+  long double most = 0;
+  for (uint32_t i = 0; i < n; i++) most = isnan(x[i]) ? INFINITY : fmaxl(most, fabsl(x[i]));
+  return most;
+}
+
+int states_obey(StateSolver *s, long double *symbols) {
+  enum { MOST = 60 };
+  const Constraints *k = &s->e->constraints;
+  const Model *m = s->e->m;
+  for (int i = 0; i < MOST; i++) {
+    const long double *c = run(s, symbols) + s->first_entry + k->A.n;
+    if (largest(c, k->nholonomic) < 1e-16L) break;
+    if (i + 1 == MOST || !change(s, c, k->nholonomic)) return 0;
+    for (uint32_t j = 0; j < s->e->n; j++) symbols[m->coords.at[j].q] += s->b[j];
+  }
+  if (!change(s, run(s, symbols) + s->first_entry + k->A.n + k->nholonomic, k->n)) return 0;
+  for (uint32_t j = 0; j < s->e->n; j++) symbols[m->coords.at[j].v] += s->b[j];
+  return largest(run(s, symbols) + s->first_entry + k->A.n + k->nholonomic, k->n) < 1e-12L;
+}
+
+uint32_t states_worst(StateSolver *s, const long double *symbols, long double *residual) {
+  const Constraints *k = &s->e->constraints;
+  const long double *c = run(s, symbols) + s->first_entry + k->A.n, *r = c + k->nholonomic;
+  uint32_t worst = 0;
+  *residual = 0;
+  for (uint32_t i = 0; i < k->n; i++) {
+    long double x = i < k->nholonomic ? c[i] : r[i];
+    if (fabsl(x) <= fabsl(*residual) && !isnan(x)) continue;
+    *residual = x;
+    worst = i;
+  }
+  return worst;
+}
+
+uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts) {
+  const long double independent = 1e-10L; /* states obey constraints to 1e-16 */
+  const Eqns *e = s->e;
+  const Entries *A = &e->constraints.A;
+  uint32_t n = e->n, rank = 0, at = 0;
+  for (uint32_t k = 0; k < e->constraints.n; k++) {
+    long double *row = s->a + (size_t)rank * n;
+    for (uint32_t j = 0; j < n; j++) row[j] = 0;
+    for (; at < A->n && A->at[at].row == k; at++) row[A->at[at].col] = s->out[s->first_entry + at];
+    counts[k] = k != without && dense_reduce(n, row, s->a, rank) > independent;
+    rank += counts[k];
+  }
+  return rank;
 }
 
 int states_complete(StateSolver *s, long double *symbols) {
   const Eqns *e = s->e;
   const Model *m = e->m;
-  uint32_t n = e->n, w = n + 1;
-  eval_run(s->tape, symbols, s->out);
-  const long double *f = s->out + e->mass.n, *flow = f + n;
-  for (uint32_t i = 0; i < n * w; i++) s->a[i] = 0;
-  for (uint32_t k = 0; k < e->mass.n; k++) {
-    const MassEntry *x = &e->mass.at[k];
-    s->a[x->row * w + x->col] = s->a[x->col * w + x->row] = s->out[k];
-  }
-  for (uint32_t i = 0; i < n; i++) s->a[i * w + n] = f[i];
-  if (!solve(s->a, n)) return 0;
-  for (uint32_t i = 0; i < n; i++) symbols[m->coords.at[i].a] = s->a[i * w + n];
+  const Constraints *k = &e->constraints;
+  uint32_t n = e->n, rank;
+  for (uint32_t i = 0; i < k->n; i++) symbols[k->of[i]->multiplier] = 0;
+  if (k->n && !states_obey(s, symbols)) return 0;
+  run(s, symbols);
+  const long double *f = s->out + e->mass.n, *flow = f + n, *demand = s->out + s->first_entry + k->A.n + k->nholonomic + k->n;
+  fill(s, 1);
+  for (uint32_t i = 0; i < n + k->n; i++) s->b[i] = i < n ? f[i] : demand[i - n];
+  rank = dense_solve(n + k->n, s->a, s->b, k->n ? 1e-13L : 0, s->column, NULL);
+  if (rank < n + k->n && !k->n) return 0;
+  for (uint32_t i = 0; i < n + k->n; i++)
+    if (!isfinite(s->b[i])) return 0;
+  for (uint32_t i = 0; i < n; i++) symbols[m->coords.at[i].a] = s->b[i];
+  for (uint32_t i = 0; i < k->n; i++) symbols[k->of[i]->multiplier] = s->b[n + i];
   for (uint32_t i = 0; i < s->nflows; i++) {
     symbols[m->states.at[i].rate] = flow[i];
     if (!isfinite(flow[i])) return 0;

@@ -94,6 +94,7 @@ struct Builder {
   ExprGraph *g;
   Model *m;
   Scope scope, members;
+  Scope constraints; /* by name; the index is that of the first component */
   Scope *named; /* events and expectations; NULL: none yet */
   IndexVars index; /* of the `for` around the statement in hand */
   VEC(struct Eval *) idle; /* evaluations to use again */
@@ -335,6 +336,10 @@ void explain_dims(Builder *b, Dim x, Dim y);
 
 /* Puts the units that were found into the model. */
 void settle_units(Builder *b);
+
+/* constraint.c: adds what a constraint says to the model; the multiplier of the constraint that an argument names, FAILED (reported)
+ * where there is none. */
+void add_constraint(Builder *b, const AstStmt *st, Name effect);
 
 /* twice.c: names of scenes, effects, events and expectations, each declared once, and what a scene or an event says, said once;
  * reported where they are not. */

@@ -307,8 +307,9 @@ static void apply(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_FLOW: add_flow(b, st, effect); return;
     case STMT_INPUT: fill_input(b, st, effect); return;
     case STMT_EVENT: add_event(b, st, effect); return;
+    case STMT_CONSTRAINT: add_constraint(b, st, effect); return;
     case STMT_LET: case STMT_FUNCTION: case STMT_EXPECT: case STMT_OBSERVE: /* after L is known */
-    case STMT_COORD: case STMT_STATE: case STMT_PARAM: case STMT_CONST: case STMT_CONSTRAINT:
+    case STMT_COORD: case STMT_STATE: case STMT_PARAM: case STMT_CONST:
     case STMT_SYMMETRY: case STMT_CONTACT: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE:
     case STMT_MAP: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
     case STMT_START: case STMT_EXACT: case STMT_SET: case STMT_USE: case STMT_SPAN: case STMT_METHOD:
@@ -343,7 +344,10 @@ static void each_active(Builder *b, StatementFn *fn, void *data) {
 static void check_contained(Builder *b) {
   Model *m = b->m;
   uint8_t *found = ARENA_ARRAY(b->arena, uint8_t, m->coords.n + 1);
-  ExprList l = expr_topo(b->g, &m->lagrangian, 1);
+  Expr *roots = ARENA_ARRAY(b->arena, Expr, m->constraints.n + 1);
+  roots[0] = m->lagrangian;
+  for (uint32_t i = 0; i < m->constraints.n; i++) roots[i + 1] = m->constraints.at[i].c;
+  ExprList l = expr_topo(b->g, roots, m->constraints.n + 1);
   for (uint32_t i = 0; i < l.n; i++) {
     if (expr_op(b->g, l.at[i]) != EX_SYM) continue;
     const Symbol *s = expr_sym_of(b->g, l.at[i]);
@@ -394,7 +398,7 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   b->arena = a;
   b->g = expr_graph(a, ast->names);
   b->dims = dims_new(a);
-  b->scope.arena = b->members.arena = a;
+  b->scope.arena = b->members.arena = b->constraints.arena = a;
   b->defines = choice->defines;
   b->ndefines = choice->ndefines;
   Model *m = b->m = ARENA_NEW(a, Model);

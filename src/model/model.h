@@ -78,6 +78,15 @@ typedef struct {
   int stop;
 } Event;
 
+/* c = 0, made of coordinates and t, or of velocities, too. A constraint of vectors is one for each component. */
+typedef struct {
+  Name name; /* "rod", "rod[2]", "grip.x" */
+  Span span;
+  Expr c;
+  Dim dim;
+  SymId multiplier;
+} Constraint;
+
 /* A named quantity: what a scene puts out, or an observe statement. */
 typedef struct {
   Name name;
@@ -124,6 +133,7 @@ typedef struct {
   Name name;
   const char *doc;
   VEC(Start) starts;
+  Span exactly; /* of the first `start exactly` */
   double t0, t1;
   const char *t1_digits; /* more than a double has, or NULL */
   int has_span;
@@ -158,6 +168,7 @@ typedef struct {
   Span lagrangian_span;
   Expr dissipation;        /* sum of Rayleigh functions, or 0 */
   VEC(Force) forces;
+  VEC(Constraint) constraints;
   VEC(Expect) expects;
   VEC(Event) events;
   VEC(Output) observes;

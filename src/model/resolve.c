@@ -46,6 +46,15 @@ static void mark_name(Eval *ev, const AstExpr *x) {
   if (of->kind == AST_NAME || effects) ev->open[x->a - ev->first] = 1;
 }
 
+/* The name of a constraint stands for nothing but itself: lambda(rod), lambda(rod[2]), lambda(drag.rod). */
+static void mark_constraint(Eval *ev, const AstExpr *x) {
+  if (strcmp(x->name, "lambda") != 0 || !x->args || own_function(ev, x)) return;
+  for (AstId i = x->args; i; i = ast_expr(ev->b->ast, i)->next) {
+    AstKind kind = ast_expr(ev->b->ast, i)->kind;
+    if (kind == AST_NAME || kind == AST_INDEX || kind == AST_MEMBER) ev->open[i - ev->first] = 1;
+  }
+}
+
 static void mark(Eval *ev) {
   const Ast *ast = ev->b->ast;
   AstId quiet = 0; /* what is refused as a whole */
@@ -59,7 +68,10 @@ static void mark(Eval *ev) {
     if (is_refused(x)) quiet = i;
     else if (x->kind == AST_ADD || x->kind == AST_SUB || x->kind == AST_MUL || x->kind == AST_DIV) mark_chain(ev, x);
     else if (x->kind == AST_SUM || x->kind == AST_PRODUCT) guard(ev, i, x->c);
-    else if (x->kind == AST_CALL) mark_branches(ev, i, x);
+    else if (x->kind == AST_CALL) {
+      mark_branches(ev, i, x);
+      mark_constraint(ev, x);
+    }
     else if (x->kind == AST_INDEX || x->kind == AST_MEMBER) mark_name(ev, x);
   }
 }

@@ -18,8 +18,8 @@ static const struct {
   {"abs", EX_ABS}, {"sign", EX_SIGN},
 }, binary_functions[] = {{"atan2", EX_ATAN2}, {"hypot", EX_HYPOT}, {"min", EX_MIN}, {"max", EX_MAX}};
 
-static const char *const other_functions[] = {"sqrt", "pow", "if", "d", "dot", "cross", "norm"};
-static const char *const later_functions[] = {"omega", "lambda"};
+static const char *const other_functions[] = {"sqrt", "pow", "if", "d", "dot", "cross", "norm", "lambda"};
+static const char *const later_functions[] = {"omega"};
 
 const char *function_name(size_t i) {
   enum { NU = sizeof unary_functions / sizeof *unary_functions, NB = sizeof binary_functions / sizeof *binary_functions, NO = sizeof other_functions / sizeof *other_functions };
@@ -41,7 +41,7 @@ const Entity *own_function(const Eval *ev, const AstExpr *x) {
 }
 
 int call_takes_vectors(const Eval *ev, const AstExpr *x) {
-  static const char *const names[] = {"if", "d", "dot", "cross", "norm", "exact", "error"};
+  static const char *const names[] = {"if", "d", "dot", "cross", "norm", "exact", "error", "lambda"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (strcmp(x->name, names[i]) == 0) return 1;
   return own_function(ev, x) != NULL;
@@ -268,6 +268,7 @@ Value call_value(Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "dot") == 0) return call_dot(ev, x);
   if (strcmp(x->name, "cross") == 0) return call_cross(ev, x);
   if (strcmp(x->name, "norm") == 0) return call_norm(ev, x);
+  if (strcmp(x->name, "lambda") == 0) return multiplier_value(ev, x);
   if (strcmp(x->name, "pow") == 0)
     return arity_is(ev, x, 2) ? power_value(ev, x, x->args, ast_expr(ast, x->args)->next) : FAILED;
   return unknown_function(ev, x);

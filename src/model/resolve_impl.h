@@ -96,6 +96,9 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e);
 /* The function of the model's own that x calls, or NULL. */
 const Entity *own_function(const Eval *ev, const AstExpr *x);
 
+/* constraint.c: lambda(NAME), the multiplier of a constraint; of a constraint of vectors a vector. */
+Value multiplier_value(Eval *ev, const AstExpr *x);
+
 /* The number an index expression stands for, or 0, reported. */
 int whole_number(Builder *b, const Value *v, AstId id, int64_t *out);
 

@@ -338,8 +338,8 @@ static void give_closed_form(Builder *b, uint32_t i, Expr value, Span span, void
   give_exact(b, start_target(b, of, i), start_unit(b, i, data), periodic, value, span);
 }
 
-/* `start q = ...`, `exact q = ...`: what a coordinate, a velocity or a state is at the start, or always. Without
- * constraints `start exactly` says no more than `start`: every state is consistent. */
+/* `start q = ...`, `exact q = ...`: what a coordinate, a velocity or a state is at the start, or always. With `start exactly`
+ * constraints may not move it. */
 static void set_motion(Builder *b, const AstStmt *st) {
   int exact = st->kind == STMT_EXACT;
   Target p = read_target(b, st->lhs);
@@ -367,6 +367,7 @@ static void set_motion(Builder *b, const AstStmt *st) {
     else diag_help(b->diags, "the state itself starts somewhere: `start %s = ...`", name->name);
     return;
   }
+  if (st->exactly && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;
   StartOf of = {.kind = e->kind, .velocity = p.primes > 0};
   Giver giver = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of};
   assign_values(b, &p, e, st->lhs, st->rhs, &giver);

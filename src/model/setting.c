@@ -15,7 +15,7 @@ static int setting_unit(Builder *b, Expr x, Unit *unit) {
     case SYM_STATE: *unit = m->states.at[s->index].unit; return 1;
     case SYM_PARAM: *unit = m->params.at[s->index].unit; return 1;
     case SYM_INPUT: *unit = m->inputs.at[s->index].unit; return 1;
-    case SYM_ACC: case SYM_RATE: case SYM_TIME: case SYM_CONST: case SYM_LOCAL: break;
+    case SYM_ACC: case SYM_RATE: case SYM_TIME: case SYM_CONST: case SYM_MULTIPLIER: case SYM_LOCAL: break;
   }
   return 0;
 }

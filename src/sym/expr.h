@@ -41,6 +41,7 @@ typedef enum {
   SYM_PARAM,
   SYM_INPUT,
   SYM_CONST,  /* pi */
+  SYM_MULTIPLIER, /* of a constraint */
   SYM_LOCAL  /* the group parameter of a symmetry; scratch symbols of a pass */
 } SymKind;
 

@@ -55,7 +55,7 @@ static int rank_of(ExprGraph *g, Expr e) {
       switch (expr_sym_of(g, e)->kind) {
         case SYM_PARAM: case SYM_CONST: return 1;
         case SYM_INPUT: case SYM_TIME: case SYM_LOCAL: return 2;
-        case SYM_COORD: case SYM_STATE: return 4;
+        case SYM_COORD: case SYM_STATE: case SYM_MULTIPLIER: return 4;
         case SYM_VEL: case SYM_RATE: return 7;
         case SYM_ACC: return 8;
       }
@@ -354,6 +354,8 @@ static void latex_name(Name name, StrBuf *out) {
 }
 
 void name_print(Name name, PrintStyle style, StrBuf *out) {
+  size_t n = strlen(name);
   if (style == PRINT_TEXT) sb_puts(out, name);
+  else if (strncmp(name, "lambda(", 7) == 0) sb_printf(out, "\\lambda_{\\mathrm{%.*s}}", (int)(n - 8), name + 7); /* a multiplier */
   else latex_name(name, out);
 }

@@ -1,0 +1,136 @@
+/* Holonomic constraints by index reduction: c = 0 is kept as c, c' and c'' (E. Hairer, G. Wanner, Solving Ordinary Differential Equations
+ * II, 2nd ed. (1996), VII.1, DOI 10.1007/978-3-642-05221-7); constraints on velocities by Lagrange-d'Alembert's principle:
+ * their forces do no work on virtual displacements, A dq = 0. (Vakonomic mechanics, where lambda c stands in the action, gives other
+ * motions, and is not meant.) */
+#include "mech/constrain.h"
+
+#include "sym/diff.h"
+#include "sym/simplify.h"
+
+static int is_holonomic(const Eqns *e, const Constraint *k) { return !(expr_kinds(e->g, k->c) & 1u << SYM_VEL); }
+
+/* c without velocities, and r of a constraint on velocities. */
+static Expr at_rest(const Eqns *e, Expr x) {
+  ExprGraph *g = e->g;
+  Expr *rest = ARENA_ARRAY(e->m->arena, Expr, expr_symbol_count(g) + 1);
+  for (uint32_t i = 0; i < e->n; i++) rest[e->m->coords.at[i].v] = expr_int(g, 0);
+  return simplify(g, expr_substitute(g, x, rest, expr_symbol_count(g) + 1, "_at_rest"));
+}
+
+/* The part of d/dt without q''. */
+static Expr rate(const Eqns *e, Expr x, const char *suffix) {
+  const Model *m = e->m;
+  Expr out, *seed = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(e->g) + 1);
+  seed[m->time] = expr_int(e->g, 1);
+  for (uint32_t i = 0; i < e->n; i++) seed[m->coords.at[i].q] = expr_symbol(e->g, m->coords.at[i].v)->node;
+  expr_tangent(e->g, &x, 1, seed, expr_symbol_count(e->g) + 1, suffix, NULL, &out);
+  return out;
+}
+
+static int check_linear(const Eqns *e, const Constraint *k, const ExprPartials *row) {
+  Diags *d = e->m->diags;
+  for (uint32_t i = 0; i < row->n; i++)
+    if (expr_kinds(e->g, simplify(e->g, row->at[i].e)) & 1u << SYM_VEL) {
+      diag_error(d, k->span, "the constraint `%s` is not linear in the velocities", k->name);
+      diag_help(d, "Lagrange-d'Alembert's principle holds for A(q, t) q' + b(q, t) = 0");
+      return 0;
+    }
+  return 1;
+}
+
+static int check_contains(const Eqns *e, const Constraint *k, const ExprPartials *row) {
+  Diags *d = e->m->diags;
+  if (row->n) return 1;
+  diag_error(d, k->span, "the constraint `%s` contains no coordinate", k->name);
+  diag_help(d, "it says something of parameters and time alone, which no force can bring about");
+  return 0;
+}
+
+/* c = 0 and c + 1 = 0 cannot both hold. */
+static int check_contradiction(const Eqns *e, const Constraint *k) {
+  ExprGraph *g = e->g;
+  Diags *d = e->m->diags;
+  for (const Constraint *other = e->m->constraints.at; other < k; other++) {
+    for (int sum = 0; sum < 2; sum++) {
+      Expr both = simplify(g, sum ? expr_add(g, k->c, other->c) : expr_sub(g, k->c, other->c));
+      if (!expr_is_num(g, both) || expr_is_zero(g, both)) continue;
+      diag_error(d, k->span, "the constraint `%s` contradicts `%s`", k->name, other->name);
+      diag_also(d, other->span, "that one is here");
+      return 0;
+    }
+  }
+  return 1;
+}
+
+static int check_count(const Eqns *e) {
+  const Model *m = e->m;
+  if (m->constraints.n <= e->n) return 1;
+  const Constraint *k = &m->constraints.at[e->n];
+  diag_error(m->diags, k->span, "there are more constraints than coordinates: `%s` is number %u, of %u coordinates", k->name, e->n + 1, e->n);
+  diag_help(m->diags, "leave out those that follow from others");
+  return 0;
+}
+
+/* Comparing all pairs is for the lists that people write by hand. */
+enum { COMPARE_MAX = 64 };
+
+static int add(Eqns *e, const Constraint *k, Expr *c, Expr *r, Expr *demand) {
+  Constraints *all = &e->constraints;
+  int holonomic = is_holonomic(e, k);
+  ExprPartials row = expr_gradient_sparse(e->g, k->c, holonomic ? SYM_COORD : SYM_VEL, e->n);
+  if (!check_contains(e, k, &row) || (!holonomic && !check_linear(e, k, &row))) return 0;
+  if (e->m->constraints.n <= COMPARE_MAX && !check_contradiction(e, k)) return 0;
+  uint32_t at = all->n++;
+  if (holonomic) c[at] = k->c;
+  r[at] = holonomic ? rate(e, k->c, "'") : k->c;
+  demand[at] = expr_neg(e->g, rate(e, r[at], "_drift"));
+  for (uint32_t i = 0; i < row.n; i++) vec_push(e->m->arena, &all->A, ((MassEntry){at, row.at[i].index, row.at[i].e}));
+  return 1;
+}
+
+static void add_forces(Eqns *e) {
+  ExprGraph *g = e->g;
+  const Constraints *k = &e->constraints;
+  Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) f[i] = e->f[i];
+  for (uint32_t j = 0; j < k->A.n; j++) {
+    const MassEntry *x = &k->A.at[j];
+    Expr part = expr_mul(g, x->e, expr_symbol(g, k->of[x->row]->multiplier)->node);
+    f[x->col] = expr_add(g, f[x->col], part);
+  }
+  e->f = f;
+}
+
+int constrain(Eqns *e) {
+  const Model *m = e->m;
+  Arena *a = m->arena;
+  uint32_t n = m->constraints.n;
+  if (!n) return 1;
+  const Constraint **of = ARENA_ARRAY(a, const Constraint *, n);
+  Expr *c = ARENA_ARRAY(a, Expr, n), *r = ARENA_ARRAY(a, Expr, n), *demand = ARENA_ARRAY(a, Expr, n);
+  int good = check_count(e);
+  for (int turn = 1; turn >= 0; turn--) {
+    for (uint32_t i = 0; i < n; i++) {
+      const Constraint *k = &m->constraints.at[i];
+      if (is_holonomic(e, k) != turn) continue;
+      of[e->constraints.n] = k;
+      good &= add(e, k, c, r, demand);
+    }
+    if (turn) e->constraints.nholonomic = e->constraints.n;
+  }
+  e->constraints.of = of;
+  e->constraints.c = c;
+  e->constraints.r = r;
+  e->constraints.demand = demand;
+  if (good) add_forces(e);
+  return good;
+}
+
+int constraints_do_no_work(const Eqns *e) {
+  const Constraints *k = &e->constraints;
+  for (uint32_t i = 0; i < k->n; i++) {
+    int moves = i < k->nholonomic ? (expr_kinds(e->g, k->c[i]) & 1u << SYM_TIME) != 0 : !expr_is_zero(e->g, at_rest(e, k->r[i]));
+    if (moves) return 0;
+  }
+  return 1;
+}
