@@ -58,26 +58,15 @@ static int off(const Arrays *a, lag_problem *pb, double t0, double t1, double h,
   return rc;
 }
 
-/* The largest correction against what the block does to q. */
-static double part_of(const Block *b, int nq, double h)
+/* The largest correction d[nq] of x against what x is, of the same unit. */
+static double part_of(const lag_problem *pb, const double *d, const double *x)
 {
   double most = 0;
 
-  for (int i = 0; i < nq; i++) {
-    double d = fabs(b->d[i]);
-    most = fmax(most, d == 0.0 ? 0 : fmin(d / (fabs(h * b->to[nq + i]) + 0x1p-10 * fabs(b->to[i])), 1));
+  for (int i = 0; i < pb->nq; i++) {
+    most = fmax(most, d[i] == 0.0 ? 0 : fabs(d[i]) / lag_size_like(pb, x, i));
   }
   return most;
-}
-
-static int is_lost(const Block *b, int nq)
-{
-  for (int i = 0; i < nq; i++) {
-    if (!(fabs(b->d[i]) <= DBL_EPSILON / 4 * fabs(b->to[i]))) {
-      return 0;
-    }
-  }
-  return 1;
 }
 
 /* A change of the end of a block, h long, takes this impulse at its beginning. */
@@ -132,8 +121,8 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
     if (lag_not_finite(nq, b->d) >= 0) {
       break;
     }
-    double part = part_of(b, nq, h);
-    if (is_lost(b, nq) || (part <= 1e-8 && part >= before / 2)) {
+    double part = part_of(pb, b->d, b->to);
+    if (part <= DBL_EPSILON / 4 || (part <= 1e-8 && part >= before / 2)) {
       lag_history_add(history, of->n, b->sum);
       return LAG_OK;
     }
@@ -163,12 +152,11 @@ static int project(const Implicit *w, const Arrays *a, lag_problem *pb, double t
     if (rc || lag_not_finite(nq, b->d) >= 0) {
       return rc ? lag_step_refused(pb, rc, tb) : lag_step_failed(pb, LAG_ENAN, tb);
     }
-    done = 1;
     for (int i = 0; i < nq; i++) {
       a->dp[i] += b->force[i];
       a->v[i] += b->d[i];
-      done &= fabs(b->d[i]) <= 1e-8 * fabs(a->v[i]) || turn + 1 == MOST_PROJECTIONS;
     }
+    done = part_of(pb, b->d, a->v) <= 1e-8;
   }
   return LAG_OK;
 }
