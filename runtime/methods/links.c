@@ -17,9 +17,11 @@ size_t lag_links_history(const lag_problem *pb, const Implicit *w)
 static Block block(double *x, const lag_problem *pb)
 {
   Block b;
-  int n = pb->n, nq = pb->nq, nc = pb->model->constraints->n;
-  double **const parts[] = {&b.from, &b.to, &b.dq, &b.dp, &b.impulse, &b.d, &b.force, &b.c, &b.r, &b.g, &b.sum, &b.history};
-  const int sizes[] = {n, n, nq, nq, nq, nq, nq, nc, nc, nc, nc, 0};
+  const lag_constraints *of = pb->model->constraints;
+  int n = pb->n, nq = pb->nq, nc = of->n;
+  double **const parts[] = {&b.from, &b.to, &b.dq, &b.dp, &b.impulse, &b.d, &b.force, &b.c, &b.r, &b.g, &b.sum,
+                            &b.A, &b.M, &b.change, &b.turned, &b.history};
+  const int sizes[] = {n, n, nq, nq, nq, nq, nq, nc, nc, nc, nc, of->njacobian, of->nmass, nc * nq, nc * nc, 0};
 
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
@@ -32,7 +34,7 @@ static size_t block_size(const lag_problem *pb, int links)
 {
   const lag_constraints *of = pb->model->constraints;
 
-  return of ? (size_t)(2 * pb->n + 5 * pb->nq + 4 * of->n) + (size_t)links * lag_history_size(of->n) : 0;
+  return of ? (size_t)(2 * pb->n + 5 * pb->nq + 4 * of->n + of->njacobian + of->nmass + of->n * (pb->nq + of->n)) + (size_t)links * lag_history_size(of->n) : 0;
 }
 
 Arrays lag_links_arrays(Implicit *w, const lag_problem *pb)

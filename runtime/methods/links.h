@@ -28,6 +28,8 @@ typedef struct Block {
   double *from, *to;                   /* [n] */
   double *dq, *dp, *impulse, *d, *force; /* [nq] */
   double *c, *r, *g, *sum;             /* [constraints]; the sum of all g, from which the impulse follows */
+  double *A, *M;                       /* entries, as in lag_constraints */
+  double *change, *turned;             /* [constraints nq], [constraints constraints]: see rattle.c */
   double *history;                     /* of the sum in each block */
 } Block;
 
