@@ -88,6 +88,7 @@ static int begin(lag_sim *s, double t)
   s->run->dir = s->pb.dir = t < s->scene->t0 ? -1 : 1;
   int rc = lag_setup_start(s);
 
+  rc = rc ? rc : lag_contact_begin(s);
   if (rc || t == s->scene->t0) {
     return rc;
   }

@@ -140,6 +140,14 @@ typedef struct lag_constraints {
                   const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
 } lag_constraints;
 
+/* A gap that stays at least 0. While it is closed it is a constraint: the model multiplies that by an input, which is 1 then and else
+ * 0. The runtime closes it where impacts follow each other ever faster, or one leaves no speed, and opens it where its multiplier
+ * becomes negative. */
+typedef struct lag_contact {
+  int input, constraint; /* places in u and in the constraints */
+  int impact, release;   /* events: the gap closes, its multiplier falls below 0 */
+} lag_contact;
+
 /* One of the second derivatives that lag_model.second computes: of L by two of q, v, where of LAG_QQ and LAG_VV only
  * row >= col is given and the row of LAG_VQ is that of v; or of the generalised force `row` by q or v. */
 enum { LAG_QQ, LAG_VQ, LAG_VV, LAG_FQ, LAG_FV };
@@ -208,6 +216,8 @@ typedef struct lag_model {
   const lag_table *tables; /* [ntables] the inputs that have a table */
 
   const lag_constraints *constraints; /* NULL: none */
+  int ncontacts;
+  const lag_contact *contacts;        /* [ncontacts] */
 
   /* The rest is NULL in a program that was not emitted for a method that needs it (lagc build --method NAME). */
 

@@ -436,7 +436,9 @@ Prog *lower_second(const Eqns *e, const Variation *x) {
 Prog *lower_events(const Eqns *e) {
   Lower l = lower_new(e);
   const Model *m = e->m;
-  for (uint32_t i = 0; i < m->events.n; i++) lower_roots(&l, &m->events.at[i].g, 1);
+  Expr *roots = ARENA_ARRAY(m->arena, Expr, m->events.n + 1);
+  for (uint32_t i = 0; i < m->events.n; i++) roots[i] = m->events.at[i].g;
+  lower_with_accelerations(&l, roots, m->events.n);
   for (uint32_t i = 0; i < m->events.n; i++) prog_store(l.p, 0, i, lower_slot(&l, m->events.at[i].g), m->events.at[i].name);
   return prog_tidy(l.p);
 }

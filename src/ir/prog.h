@@ -156,6 +156,9 @@ void prog_dump(const Prog *p, StrBuf *out);
 /* Whether it divides by what may be 0: IR_PIVOT, IR_SOLVE. */
 int prog_has_pivots(const Prog *p);
 
+/* Whether it solves a system by a loop: with constraints, or without. p may be NULL. */
+int prog_solves(const Prog *p, int constrained);
+
 /* Room that IR_SOLVE needs, in reals. */
 uint32_t prog_work(const Prog *p);
 
