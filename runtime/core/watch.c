@@ -140,6 +140,8 @@ int lag_watch_jump(lag_sim *s, double t, const double *ya, const double *yb)
   double ea = energy_at(s, t, ya, s->e) ? NAN : s->e[0];
   double eb = energy_at(s, t, yb, s->e) ? NAN : s->e[0];
 
+  see_constraints(s, t, yb);
+
   r->e_first += eb - ea;
   r->e_scale = fmax(r->e_scale, s->e[1]);
   if (watches_outputs(c)) {

@@ -128,6 +128,9 @@ int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, 
  * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), IV.4, DOI 10.1007/3-540-30666-8: projection
  * keeps the order of a method. */
 int lag_project(lag_problem *pb, double t, double *y, double *lost);
+/* The largest of |x[j]| over the coordinates (or their velocities) that have the unit of coordinate i: what rounding in it is measured
+ * with, where it is small itself. */
+double lag_size_like(const lag_problem *pb, const double *x, int i);
 /* Takes from a small change e[n] of the state y what lag_project would take back, to first order. */
 int lag_along_constraints(lag_problem *pb, double t, const double *y, double *e);
 
