@@ -349,7 +349,7 @@ void report_json(App *app, FILE *f)
   fprintf(f, "\"steps\": %lld, \"rejected\": %lld, \"rhs_calls\": %lld, ", st.steps, st.rejected, st.rhs_calls);
   field_string(f, "form", form(app, &why));
   fprintf(f, "\"newton_systems\": %lld, \"newton_iterations\": %lld, ", st.systems, st.iterations);
-  field_number(f, "wall_s", app->wall);
+  fprintf(f, "\"wall_s\": %.6g, ", app->wall); /* a clock has no more digits, in no precision */
   field_number(f, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null: it is no drift */
   charges(app, f);
   report_events_json(app, f);

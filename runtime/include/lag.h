@@ -63,7 +63,7 @@ typedef struct lag_problem {
   const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
-  double longest;      /* embedded methods take no longer steps than this [s], 0: no limit */
+  double longest;      /* embedded methods and radau take no longer steps than this [s], 0: no limit */
   double span;         /* length of the scene's span, 0 when it has none. Not where this run ends */
   double rhs_calls;    /* counted by lag_rhs */
   double rejected;     /* counted by the method */
