@@ -53,7 +53,7 @@ static void final_state(const App *app, FILE *f)
 
 static void energy(const App *app, const lag_stats *st, FILE *f)
 {
-  if (!app->scene->model->energy || app->scene->model->nq == 0) {
+  if (!app->scene->model->energy) {
     return;
   }
   if (!isfinite(st->energy_drift)) {

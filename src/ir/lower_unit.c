@@ -78,7 +78,7 @@ IrUnit *unit_new(const Eqns *e, const char *source) {
   for (uint32_t i = 0; i < m->coords.n; i++)
     vec_push(m->arena, &u->q, var_of(m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->states.n; i++)
-    vec_push(m->arena, &u->z, var_of(m->states.at[i].name, &m->states.at[i].unit, 0, SIGN_ANY));
+    vec_push(m->arena, &u->z, var_of(m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->params.n; i++)
     vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
   for (uint32_t i = 0; i < m->inputs.n; i++)
