@@ -22,7 +22,7 @@ void lag_tangent_free(lag_sim *s)
 static int check(lag_sim *s)
 {
   const lag_model *m = s->scene->model;
-  int in_p = (s->method->flags & LAG_METHOD_VARIATION) && !((s->method->flags & LAG_METHOD_SPLITS) && (m->flags & LAG_SEPARABLE));
+  int in_p = m->nq > 0 && (s->method->flags & LAG_METHOD_VARIATION) && !((s->method->flags & LAG_METHOD_SPLITS) && (m->flags & LAG_SEPARABLE));
 
   if (!s->method->tangent) {
     return lag_fail(s, LAG_EMETHOD, "method %s has no derivative of its steps; %s has", s->method->name,

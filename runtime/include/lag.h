@@ -128,7 +128,8 @@ enum {
   LAG_METHOD_SPLITS = 512,     /* explicit for models with LAG_SEPARABLE, which then need no derivatives */
   LAG_METHOD_TAYLOR = 256,     /* needs the model's Taylor coefficients: lag_model.taylor */
   LAG_METHOD_JACOBIAN = 2048,  /* needs the model's linearisation: lag_model.linear */
-  LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS where it does not split */
+  LAG_METHOD_NEWTON = 1024,    /* solves equations by Newton's method; with SPLITS where it does not split */
+  LAG_METHOD_FLOWS = 4096      /* takes models of states alone (nq = 0), with the linearisation in place of derivatives of L */
 };
 
 /* An option of a method. With choices (NULL-terminated) the value is the index of the choice. */
