@@ -203,7 +203,7 @@ static void motion(Text *t) {
   for (uint32_t i = 0; rows && i < e->n; i++) equation(t, rows[i], shown(t, e->f[i]), i + 1 == e->n && !m->states.n);
   if (e->first.n) first_order_motion(t);
   for (uint32_t i = 0; i < m->states.n; i++)
-    if (!m->states.at[i].coordinate) equation(t, expr_symbol(t->g, m->states.at[i].rate)->node, e->flow[i], i + 1 == m->states.n);
+    if (!m->states.at[i].coordinate) equation(t, expr_symbol(t->g, m->states.at[i].rate)->node, m->states.at[i].flow, i + 1 == m->states.n);
   end_block(t);
 }
 
@@ -253,7 +253,8 @@ void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *o
   for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->momenta[i]);
   for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, shown(&t, e->f[i]));
   for (uint32_t i = 0; i < e->mass.n; i++) vec_push(m->arena, &roots, shown(&t, e->mass.at[i].e));
-  for (uint32_t i = 0; i < m->states.n; i++) vec_push(m->arena, &roots, e->flow[i]);
+  for (uint32_t i = 0; i < m->states.n; i++)
+    if (!m->states.at[i].coordinate) vec_push(m->arena, &roots, m->states.at[i].flow);
   for (uint32_t i = 0; i < e->first.n; i++) {
     vec_push(m->arena, &roots, e->first.theta[i]);
     vec_push(m->arena, &roots, shown(&t, e->first.rates[i]));
