@@ -53,7 +53,7 @@ static void final_state(const App *app, FILE *f)
 
 static void energy(const App *app, const lag_stats *st, FILE *f)
 {
-  if (!app->scene->model->energy || app->scene->model->nq == 0) {
+  if (!app->scene->model->energy) {
     return;
   }
   if (!isfinite(st->energy_drift)) {
@@ -112,12 +112,20 @@ static void constraints(const App *app, const lag_stats *st, FILE *f)
           st->constraint, st->constraint_rate);
 }
 
-/* A symplectic method on a model that is not conservative: what its name no longer promises. */
+/* A symplectic method on a model that is not conservative, or whose two-form varies: what its name no longer promises. */
 static void caveat(const App *app, FILE *f)
 {
   const lag_method *m = lag_sim_method(app->sim);
+  unsigned has = app->scene->model->flags;
 
-  if ((m->flags & LAG_METHOD_SYMPLECTIC) && !(app->scene->model->flags & LAG_CONSERVES_ENERGY)) {
+  if (!(m->flags & LAG_METHOD_SYMPLECTIC)) {
+    return;
+  }
+  if (app->scene->model->nq == 0 && !(has & LAG_FIRST_ORDER)) {
+    fprintf(f, "note: %s is symplectic for Lagrangians; here it is symmetric, and keeps quadratic invariants\n", m->name);
+  } else if ((has & LAG_FIRST_ORDER) && (has & LAG_CONSERVES_ENERGY) && !(has & LAG_CONSTANT_FORM)) {
+    fprintf(f, "note: %s is symplectic where the two-form of L is constant; here it varies, and the method is symmetric\n", m->name);
+  } else if (!(has & LAG_CONSERVES_ENERGY)) {
     fprintf(f, "note: %s is symplectic for conservative models; this one has forces or explicit time\n", m->name);
   }
 }
