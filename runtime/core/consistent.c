@@ -311,7 +311,7 @@ static double *make_room(Start *w)
 {
   size_t n = (size_t)w->pb->n, nq = (size_t)w->nq, m = (size_t)w->of->n;
   const size_t sizes[] = {n, n, 2 * n + nq, m, m, m, (size_t)w->of->njacobian, (size_t)w->of->nmass, nq * nq,
-                          nq * nq + m * nq + nq + m + m * m + 9 * m};
+                          2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m};
   double **const parts[] = {&w->y, &w->asked, &w->best, &w->residual, &w->other, &w->size, &w->A, &w->M, &w->full, &w->kkt};
   size_t total = 0;
 

@@ -9,7 +9,8 @@
  * those before it decides whether it is counted (Golub & Van Loan, Matrix Computations, 4th ed. (2013), 5.4.2). In the
  * coordinates Q^T x the first r components follow from g, and the others from M without constraints (the null space method: Benzi, Golub,
  * Liesen, Acta Numerica 14 (2005) 1, section 6, DOI 10.1017/S0962492904000212); l is the least solution of R l = what M x - f is there,
- * by a second factorization where r < m.
+ * by a second factorization where r < m. Where M is positive definite and the constraints are far from dependent, as they mostly are,
+ * Schur's complement is as good, and cheaper.
  *
  * Near a position where constraints become dependent, a coarse rank is the right one for corrections of a state, whose right-hand
  * side is little more than rounding: what is 1e-16 there moves a position by 1e-16/s, where s is how independent the weakest
@@ -129,9 +130,107 @@ static void lag_multipliers(int n, int m, int r, const LAG_LANE *A, const LAG_LA
   for (int k = r - 1; k >= 0; k--) lag_reflect(m - k, S + k*m + k, beta[k], mu + k, 1);
 }
 
-/* x[n], l[m] hold f and g, and become the solution; M and A are destroyed. w[m*m + 9*m] is scratch. Returns whether M is regular on
- * the kernel of A. */
+/* The first, or the last, element of x[n] that is not zero; none: n, or -1. */
+static int lag_first(int n, const LAG_LANE *x) {
+  int i = 0;
+  while (i < n && !(x[i] < 0 || x[i] > 0)) i++;
+  return i;
+}
+
+static int lag_last(int n, const LAG_LANE *x) {
+  while (n > 0 && !(x[n - 1] < 0 || x[n - 1] > 0)) n--;
+  return n - 1;
+}
+
+/* M = L L^T within the envelope of M's lower triangle, which L replaces: row i begins at from[i]. Returns whether each pivot is more
+ * than `least` of what stood there. */
+static int lag_cholesky(int n, LAG_LANE *M, const LAG_LANE *from, LAG_LANE least) {
+  for (int i = 0; i < n; i++) {
+    const int begin = (int)from[i];
+    for (int j = begin; j <= i; j++) {
+      LAG_LANE s = M[i*n + j];
+      const LAG_LANE was = s;
+      for (int k = begin > (int)from[j] ? begin : (int)from[j]; k < j; k++) s -= M[i*n + k]*M[j*n + k];
+      if (j == i && !(s > least*was)) return 0;
+      M[i*n + j] = j == i ? LAG_LANE_FN(sqrt)(s) : s/M[j*n + j];
+    }
+  }
+  return 1;
+}
+
+/* x := L^-1 x, of which the elements before `begin` are zero; x := L^-T x. */
+static void lag_forward(int n, const LAG_LANE *L, const LAG_LANE *from, int begin, LAG_LANE *x) {
+  for (int i = begin; i < n; i++) {
+    for (int k = (int)from[i] > begin ? (int)from[i] : begin; k < i; k++) x[i] -= L[i*n + k]*x[k];
+    x[i] /= L[i*n + i];
+  }
+}
+
+static void lag_backward(int n, const LAG_LANE *L, const LAG_LANE *from, LAG_LANE *x) {
+  for (int i = n - 1; i >= 0; i--) {
+    x[i] /= L[i*n + i];
+    for (int k = (int)from[i]; k < i; k++) x[k] -= L[i*n + k]*x[i];
+  }
+}
+
+/* By Schur's complement S = A M^-1 A^T, where M is positive definite and the constraints are far from dependent (a part of 1e-2 of
+ * each is independent of the others: S has lost no more than 4 digits), with one step of refinement. x and l hold f and g. Returns
+ * whether it has solved the system; M and A stay. w[n*n + m*n + m*m + 2*n + 5*m] is scratch. The work follows the envelopes of M, L^-1 A^T and S:
+ * along a chain whose coordinates stand in its order it grows linearly. */
+static int lag_schur(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
+  LAG_LANE *const L = w, *const W = L + n*n, *const S = W + m*n, *const from = S + m*m, *const y = from + n;
+  LAG_LANE *const begin = y + n, *const end = begin + m, *const row = end + m, *const mu = row + m, *const rest = mu + m;
+  if (m > n) return 0;
+  for (int i = 0; i < n; i++) {
+    if (!(M[i*n + i] > 0)) return 0;
+    for (int j = 0; j <= i; j++) L[i*n + j] = M[i*n + j];
+    from[i] = (LAG_LANE)lag_first(i, L + i*n);
+    y[i] = x[i];
+  }
+  if (!lag_cholesky(n, L, from, (LAG_LANE)1e-12)) return 0;
+  for (int j = 0; j < m; j++) {
+    for (int i = 0; i < n; i++) W[j*n + i] = A[j*n + i];
+    begin[j] = (LAG_LANE)lag_first(n, W + j*n);
+    lag_forward(n, L, from, (int)begin[j], W + j*n);
+    end[j] = (LAG_LANE)lag_last(n, W + j*n);
+    row[j] = (LAG_LANE)j;
+    for (int k = j; k >= 0; k--) {
+      LAG_LANE s = 0;
+      const int a = (int)(begin[j] > begin[k] ? begin[j] : begin[k]), b = (int)(end[j] < end[k] ? end[j] : end[k]);
+      for (int i = a; i <= b; i++) s += W[j*n + i]*W[k*n + i];
+      S[j*m + k] = s;
+      if (a <= b) row[j] = (LAG_LANE)k;
+    }
+  }
+  if (!lag_cholesky(m, S, row, (LAG_LANE)1e-4)) return 0;
+  lag_forward(n, L, from, 0, y);
+  for (int j = 0; j < m; j++) {
+    mu[j] = l[j];
+    for (int i = (int)begin[j]; i <= (int)end[j]; i++) mu[j] -= W[j*n + i]*y[i];
+    rest[j] = l[j];
+    l[j] = 0;
+  }
+  for (int turn = 0; turn < 2; turn++) {
+    lag_forward(m, S, row, 0, mu);
+    lag_backward(m, S, row, mu);
+    for (int j = 0; j < m; j++) {
+      l[j] += mu[j];
+      for (int i = (int)begin[j]; i <= (int)end[j]; i++) y[i] += mu[j]*W[j*n + i];
+    }
+    for (int i = 0; i < n; i++) x[i] = y[i];
+    lag_backward(n, L, from, x);
+    for (int j = 0; j < m && !turn; j++) {
+      mu[j] = rest[j];
+      for (int i = 0; i < n; i++) mu[j] -= A[j*n + i]*x[i];
+    }
+  }
+  return 1;
+}
+
+/* x[n], l[m] hold f and g, and become the solution; M and A are destroyed. w[n*n + m*n + m*m + 2*n + 9*m] is scratch. Returns
+ * whether M is regular on the kernel of A. */
 static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
+  if (lag_schur(n, m, M, A, x, l, w)) return 1;
   LAG_LANE *const diag = w, *const beta = w + m, *const scale = w + 2*m, *const order = w + 3*m;
   LAG_LANE *const y = w + 4*m, *const s = w + 5*m, *const mu = w + 6*m, *const S = w + 7*m;
   const int r = lag_rank(n, m, coarse, A, diag, beta, scale, order);

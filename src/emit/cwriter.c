@@ -267,16 +267,25 @@ void cwriter_pivot(Writer *w, const Ins *i) {
   sb_putc(w->out, '\n');
 }
 
+/* What is not zero of a system with constraints, which is mostly zeros where it is large. */
+static void write_constrained(Writer *w, const Solve *k) {
+  const CStyle *st = w->style;
+  uint32_t b = k->m * k->n + k->n * k->n;
+  sb_printf(w->out, "  for (int i = 0; i < %u; i++) w[i] = %s_C(0.0);\n", b + solve_unknowns(k), st->prefix);
+  for (uint32_t j = 0; j < solve_elements(k); j++)
+    if (k->matrix[j]) sb_printf(w->out, "  w[%u] = %s;\n", j, cwriter_operand(w, k->matrix[j]).text);
+  for (uint32_t j = 0; j < solve_unknowns(k); j++)
+    if (k->rhs[j]) sb_printf(w->out, "  w[%u] = %s;\n", b + j, cwriter_operand(w, k->rhs[j]).text);
+  sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, %d, w));\n", st->prefix, st->kkt, k->n, k->m, k->coarse);
+}
+
 static void write_solve(Writer *w, const Ins *i) {
   const Solve *k = &w->p->solves.at[i->index];
   const CStyle *st = w->style;
   uint32_t n = k->n, M = k->place, b = M + n * n;
   cwriter_flush_title(w);
   if (k->m) {
-    b += k->m * n;
-    for (uint32_t j = 0; j < solve_elements(k); j++) sb_printf(w->out, "  w[%u] = %s;\n", j, cwriter_operand(w, k->matrix[j]).text);
-    for (uint32_t j = 0; j < solve_unknowns(k); j++) sb_printf(w->out, "  w[%u] = %s;\n", b + j, cwriter_operand(w, k->rhs[j]).text);
-    sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, %d, w));\n", st->prefix, st->kkt, n, k->m, k->coarse);
+    write_constrained(w, k);
     return;
   }
   for (uint32_t j = 0; k->matrix && j < n * n; j++) sb_printf(w->out, "  w[%u] = %s;\n", M + j, cwriter_operand(w, k->matrix[j]).text);

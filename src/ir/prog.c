@@ -269,13 +269,13 @@ OpCount prog_count(const Prog *p) {
       case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND:
       case IR_OR: case IR_SELECT: c.other++; break;
       case IR_SOLVE: {
-        uint32_t n = p->solves.at[i->index].n, m = p->solves.at[i->index].m, free = n > m ? n - m : 0;
-        if (m) { /* Householder's factorization of A^T, its reflections of M from both sides, elimination of what is left */
-          uint32_t both = m * m * (n - m / 3) + 4 * n * n * m + free * free * (free + 3) / 3 + 4 * n * m;
+        uint32_t n = p->solves.at[i->index].n, m = p->solves.at[i->index].m;
+        if (m) { /* Schur's complement: factorizations of M and S, A M^-1 A^T, substitutions; all entries counted */
+          uint32_t both = n * n * n / 6 + m * n * n / 2 + m * m * n / 2 + m * m * m / 6 + 3 * n * n + 4 * m * n + 2 * m * m;
           c.add += both;
           c.mul += both;
-          c.div += n * m + free * (free + 1) / 2;
-          c.sqrt += m;
+          c.div += n * n / 2 + m * n + m * m / 2 + 2 * (n + m);
+          c.sqrt += n + m;
           break;
         }
         c.add += n * (n - 1) * (2 * n + 5) / 6; /* elimination with two substitutions */
@@ -307,7 +307,7 @@ uint32_t prog_work(const Prog *p) {
   uint32_t most = 0;
   for (uint32_t i = 0; i < p->solves.n; i++) {
     const Solve *k = &p->solves.at[i];
-    uint32_t n = k->n, m = k->m, system = n * n + m * n + n + m, scratch = m * m + 9 * m;
+    uint32_t n = k->n, m = k->m, system = n * n + m * n + n + m, scratch = n * n + m * n + m * m + 2 * n + 9 * m;
     uint32_t lane = (system + scratch + 3) / 4; /* over lanes each is solved by itself, in a fourth of the room at most */
     uint32_t need = system + (!m ? 0 : scratch > lane ? scratch : lane);
     if (need > most) most = need;

@@ -237,7 +237,8 @@ static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 static const char *half(const Eqns *e, uint32_t n) { return arena_printf(e->m->arena, "%u%s", n / 2, n % 2 ? " 1/2" : ""); }
 
 void show_facts(const Eqns *e, StrBuf *out) {
-  const char *energy = e->conserves_energy ? "conserved" : "not conserved (force, dissipation, input, explicit time, or a constraint that moves)";
+  const char *energy = e->conserves_energy ? "conserved" : e->constraints.n ? "not conserved (force, dissipation, input, explicit time, or a constraint that moves)"
+                                           : "not conserved (force, dissipation, input or explicit time)";
   if (e->first.n)
     sb_printf(out, "first-order Lagrangian, %u coordinates, %s degree%s of freedom; two-form %s; energy is %s\n", e->first.n, half(e, e->first.n),
               e->first.n == 2 ? "" : "s", e->first.constant ? "constant" : "variable", energy);

@@ -13,7 +13,7 @@ enum { MOST_Q = 6, MOST_C = 3 };
 /* Least changes by the solver that emitted code has, of a model whose A and M are of these sizes; M is diagonal. */
 static inline int least(int nq, int n, int nj, const lag_entry *at, const double *A, const double *M, const double *g, double *d, double *force)
 {
-  double w[MOST_Q * MOST_Q + MOST_C * MOST_Q + MOST_Q + MOST_C + MOST_C * MOST_C + 9 * MOST_C] = {0};
+  double w[2 * (MOST_Q * MOST_Q + MOST_C * MOST_Q) + 3 * MOST_Q + MOST_C + MOST_C * MOST_C + 9 * MOST_C] = {0};
   double *rows = w + nq * nq, *x = rows + n * nq, *l = x + nq;
   for (int i = 0; i < nq; i++) {
     w[i * nq + i] = M[i];

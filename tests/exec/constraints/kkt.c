@@ -10,7 +10,7 @@
 
 #include "lag_kkt.h"
 
-enum { N = 7, M = 5, MAX = 400 };
+enum { N = 7, M = 5, MAX = 600 };
 enum { PLAIN, REDUNDANT, SCALED, ZERO, INDEFINITE, SINGULAR, PERMUTED, KINDS };
 static const char *const names[] = {"independent", "redundant", "redundant, scaled by 1e-3 to 1e3", "with a zero row", "indefinite M", "singular M", "redundant, in another order"};
 
