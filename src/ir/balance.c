@@ -4,8 +4,8 @@
 
 typedef struct {
   Slot slot;
-  int minus;
-  uint32_t ready, rank; /* rank: place among the terms, where two are ready at once */
+  int minus, product; /* product: of one use, that an addition may take in */
+  uint32_t ready, rank; /* rank: place among the terms, where two are ready at once; of a product: its factors */
 } Term;
 
 typedef struct {
@@ -14,7 +14,8 @@ typedef struct {
   Slot *map;
   const uint32_t *uses;
   unsigned char *inside;  /* of a larger sum */
-  const uint32_t *loads;  /* when loads are ready */
+  const uint32_t *loads;  /* when loads are ready; NULL: all at once */
+  int fused;              /* products are added as they are made; sums with names stay whole */
   VEC(uint32_t) ready;    /* by slot of `to` */
   VEC(Term) terms, sums, open;
 } Balance;
@@ -45,7 +46,7 @@ static Slot timed(Balance *b, Slot s, Slot was) {
     const Solve *k = &b->to->solves.at[i->index];
     for (uint32_t r = 0; r < k->n; r++) t = latest(t, ready(b, k->rhs[r]));
   }
-  b->ready.at[s] = i->op == IR_LOAD ? b->loads[was] : t + time_of(i->op);
+  b->ready.at[s] = i->op == IR_LOAD ? (b->loads ? b->loads[was] : 0) : t + time_of(i->op);
   return s;
 }
 
@@ -55,9 +56,19 @@ static void mark_inside(Balance *b) {
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     if (!is_sum(i->op)) continue;
-    if (b->uses[i->a] == 1 && is_sum(p->ins.at[i->a].op)) b->inside[i->a] = 1;
-    if (b->uses[i->b] == 1 && is_sum(p->ins.at[i->b].op)) b->inside[i->b] = 1;
+    const Slot parts[] = {i->a, i->b};
+    for (int k = 0; k < 2; k++) {
+      const Ins *part = &p->ins.at[parts[k]];
+      if (b->uses[parts[k]] == 1 && is_sum(part->op) && !(b->fused && part->name)) b->inside[parts[k]] = 1;
+    }
   }
+}
+
+static Term term(const Balance *b, Slot s, int minus, int once) {
+  const Ins *i = &b->to->ins.at[s];
+  Term t = {s, minus, b->fused && once && i->op == IR_MUL, ready(b, s), b->terms.n};
+  if (t.product) t.ready = latest(ready(b, i->a), ready(b, i->b));
+  return t;
 }
 
 /* The terms of the sum s. */
@@ -70,7 +81,7 @@ static void gather(Balance *b, Slot s) {
     const Ins *i = &b->from->ins.at[t.slot];
     if (t.slot != s && !b->inside[t.slot]) {
       Slot there = b->map[t.slot];
-      if (there) vec_push(a, &b->terms, ((Term){there, t.minus, ready(b, there), b->terms.n}));
+      if (there) vec_push(a, &b->terms, term(b, there, t.minus, b->uses[t.slot] == 1));
       continue;
     }
     if (i->b) vec_push(a, &b->open, ((Term){.slot = i->b, .minus = i->op == IR_SUB ? !t.minus : t.minus}));
@@ -89,7 +100,29 @@ static Term add(Balance *b, Term x, Term y) {
   if (x.minus == y.minus) s = prog_op(b->to, IR_ADD, x.slot, y.slot);
   else s = x.minus ? prog_op(b->to, IR_SUB, y.slot, x.slot) : prog_op(b->to, IR_SUB, x.slot, y.slot);
   timed(b, s, 0);
-  return (Term){s, x.minus && y.minus, ready(b, s), 0};
+  if (y.product) b->ready.at[s] = latest(x.product ? ready(b, x.slot) : x.ready, y.ready) + time_of(IR_ADD);
+  return (Term){.slot = s, .minus = x.minus && y.minus, .ready = ready(b, s)};
+}
+
+/* The term to begin with, of those in order: a product that comes first takes a multiplication of its own, so better what is none,
+ * unless that is late. */
+static uint32_t first_of(const Balance *b) {
+  const Term *t = b->terms.at;
+  for (uint32_t k = 0; k < b->terms.n; k++)
+    if (!t[k].product && (t[k].ready <= t[0].ready + time_of(IR_MUL))) return k;
+  return 0;
+}
+
+/* One after the other, as fused multiply-adds do. */
+static Slot add_in_a_row(Balance *b) {
+  Term *t = b->terms.at;
+  qsort(t, b->terms.n, sizeof *t, by_time);
+  if (!b->terms.n) return 0;
+  uint32_t first = first_of(b);
+  Term sum = t[first];
+  for (uint32_t k = first; k > 0; k--) t[k] = t[k - 1];
+  for (uint32_t k = 1; k < b->terms.n; k++) sum = add(b, sum, t[k]);
+  return sum.minus ? timed(b, prog_op(b->to, IR_NEG, sum.slot, 0), 0) : sum.slot;
 }
 
 /* The two earliest, again and again: terms and partial sums are queues in order of time (Huffman's tree by two queues; J. van
@@ -111,17 +144,17 @@ static Slot add_up(Balance *b) {
   return last.minus ? timed(b, prog_op(b->to, IR_NEG, last.slot, 0), 0) : last.slot;
 }
 
-Prog *prog_balance(const Prog *p, const uint32_t *loads) {
+static Prog *balance(const Prog *p, const uint32_t *loads, int fused) {
   Arena *a = p->arena;
   Balance b = {.from = p, .to = prog_like(p), .map = ARENA_ARRAY(a, Slot, p->ins.n), .uses = prog_uses(p),
-               .inside = ARENA_ARRAY(a, unsigned char, p->ins.n), .loads = loads};
+               .inside = ARENA_ARRAY(a, unsigned char, p->ins.n), .loads = loads, .fused = fused};
   mark_inside(&b);
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     if (b.inside[s]) continue;
     if (is_sum(i->op)) {
       gather(&b, s);
-      b.map[s] = add_up(&b);
+      b.map[s] = fused ? add_in_a_row(&b) : add_up(&b);
     } else {
       b.map[s] = timed(&b, prog_ins(b.to, prog_moved(b.to, p, b.map, *i)), s);
     }
@@ -133,3 +166,6 @@ Prog *prog_balance(const Prog *p, const uint32_t *loads) {
   }
   return b.to;
 }
+
+Prog *prog_balance(const Prog *p, const uint32_t *ready) { return balance(p, ready, 0); }
+Prog *prog_in_time(const Prog *p) { return balance(p, NULL, 1); }

@@ -141,6 +141,11 @@ uint32_t *prog_uses(const Prog *p);
  * order of rounding; drops names of parts of sums. */
 Prog *prog_balance(const Prog *p, const uint32_t *ready);
 
+/* The same for a processor that multiplies and adds at once, from loads that are there at the start: the terms in a row,
+ * earliest first, so that each product is taken in by its addition. Keeps names. Of two orders that are as fast it
+ * takes the one with fewer instructions; the operations are the same. */
+Prog *prog_in_time(const Prog *p);
+
 /* Checks that operands precede their use, conditions feed only selections, stores are in order.
  * NULL, or what is wrong. */
 const char *prog_verify(const Prog *p);

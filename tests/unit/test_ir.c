@@ -129,6 +129,38 @@ static void test_factor(void **state) {
   arena_free(arena);
 }
 
+/* s*b - c*d + e - named with s = sin a, the slowest: e begins, since a product in front would be rounded by itself, s*b comes last,
+ * and a sum with a name stays one. */
+static void test_in_time(void **state) {
+  (void)state;
+  Arena *arena = arena_new(NULL);
+  Prog *p = prog_new(arena);
+  Slot a = load(p, 0), b = load(p, 1), c = load(p, 2), d = load(p, 3), e = load(p, 4);
+  Slot s = prog_ins(p, (Ins){.op = IR_FN1, .a = a, .text = "sin"});
+  Slot sb = prog_op(p, IR_MUL, s, b), cd = prog_op(p, IR_MUL, c, d), named = prog_op(p, IR_ADD, b, d);
+  prog_name(p, named, "named");
+  Slot sum = prog_op(p, IR_SUB, sb, cd);
+  sum = prog_op(p, IR_ADD, sum, e);
+  sum = prog_op(p, IR_SUB, sum, named);
+  prog_store(p, 0, 0, sum, "sum");
+  Slot less = prog_op(p, IR_ADD, cd, sb); /* -(cd + sb) */
+  prog_store(p, 0, 1, prog_op(p, IR_NEG, less, 0), "minus");
+  Prog *t = prog_in_time(p);
+  assert_null(prog_verify(t));
+  assert_int_equal(ops_total(prog_count(t)), ops_total(prog_count(p)));
+  const Ins *last = &t->ins.at[t->stores.at[0].slot];
+  assert_int_equal(last->op, IR_ADD);
+  assert_true(t->ins.at[last->b].op == IR_MUL && t->ins.at[t->ins.at[last->b].a].op == IR_FN1);
+  int names = 0;
+  for (Slot k = 1; k < t->ins.n; k++) names += t->ins.at[k].op == IR_ADD && t->ins.at[k].name != NULL;
+  assert_int_equal(names, 1);
+  Real q[5] = {0, 7, 5, 11, 2}, out[2], *outs[1] = {out}, want[2] = {-55 + 2 - 18, -55};
+  const Real *in[ARR_COUNT] = {[ARR_Q] = q};
+  assert_int_equal(prog_eval(t, in, outs), 0);
+  for (int i = 0; i < 2; i++) assert_true(out[i] == want[i]);
+  arena_free(arena);
+}
+
 /* A pivot that is zero, negative or not a number stops the program; one is checked once. */
 static void test_pivot(void **state) {
   (void)state;
@@ -271,7 +303,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_verify), cmocka_unit_test(test_numbering),      cmocka_unit_test(test_tidy),
     cmocka_unit_test(test_pivot),  cmocka_unit_test(test_lower),          cmocka_unit_test(test_solve_definite),
-    cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor),
+    cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor), cmocka_unit_test(test_in_time),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
