@@ -53,9 +53,15 @@ LAG_INLINE LAG_REAL lag_lanes_select(lag_lanes_mask c, LAG_REAL a, LAG_REAL b) {
 
 /* Bit k: whether the condition holds in lane k. */
 LAG_INLINE int lag_lanes_bits(lag_lanes_mask c) {
+#if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
+  return (unsigned char)__builtin_ia32_cvtq2mask512(c);
+#elif defined(__AVX__) && LAG_LANES == 4
+  return __builtin_ia32_movmskpd256((LAG_REAL)c);
+#else
   int bits = 0;
   for (int k = 0; k < LAG_LANES; k++) bits |= (int)(c[k] & 1) << k;
   return bits;
+#endif
 }
 
 LAG_INLINE int lag_lanes_any(lag_lanes_mask c) {
@@ -68,6 +74,19 @@ LAG_INLINE int lag_lanes_any(lag_lanes_mask c) {
   long long some = h[0] | h[1];
   for (int k = 2; k < LAG_LANES/2; k++) some |= h[k];
   return some != 0;
+#endif
+}
+
+/* Whether a lane is 2^bit or more. */
+LAG_INLINE int lag_lanes_reach(lag_lanes_word w, int bit) {
+#if defined(__AVX512F__) && LAG_LANES == 8 && !defined(__clang__)
+  const lag_lanes_mask no = {0}, all = no + (long long)(~0ULL << bit);
+  return __builtin_ia32_ptestmq512((lag_lanes_mask)w, all, (unsigned char)-1) != 0;
+#elif defined(__AVX__) && LAG_LANES == 4
+  const lag_lanes_mask no = {0}, all = no + (long long)(~0ULL << bit);
+  return !__builtin_ia32_ptestz256((lag_lanes_mask)w, all);
+#else
+  return lag_lanes_any((lag_lanes_mask)(w >> bit));
 #endif
 }
 
@@ -255,29 +274,10 @@ static double lag_reduce(double x, double *lo, unsigned long long *quarter) {
 }
 
 #ifdef LAG_LANES
-/* Sine and cosine of x. W. Cody, W. Waite, Software Manual for the Elementary Functions, 1980: x - k pi/2 with pi/2 in three
- * parts, the products of k with the first two exact for k < 2^17. What is lost is known (y - lo is the reduced x to
- * 2^-129 |x|), and enters to first order; no double in this range is so near to a multiple of pi/2 that it would matter.
- * The polynomials are minimax, by tests/math/remez.py. */
-LAG_INLINE void lag_sincos(LAG_REAL x, LAG_REAL *s, LAG_REAL *c) {
-  const LAG_REAL round = LAG_K(6755399441055744.0); /* 1.5 2^52: what is added to it is rounded to an integer */
-  const LAG_REAL sum = lag_mad(x, LAG_K(0.63661977236758138), round), k = sum - round;
-  lag_word quarter = lag_to_word(sum);
-  const LAG_REAL first = lag_mad(k, LAG_K(-1.5707963267923333), x);
-  const LAG_REAL second = lag_mad(k, LAG_K(-2.5633441515839558e-12), first);
-  const LAG_REAL third = lag_mad(k, LAG_K(1.0562999066987428e-23), lag_mad(k, LAG_K(2.5633441515839558e-12), second - first));
-  LAG_REAL y = second - third, lo = (y - second) + third;
-  const LAG_MASK near = lag_lanes_fabs(x) <= 2e5;
-  if (__builtin_expect(LAG_ANY(~near), 0)) {
-    for (int lane = 0; lane < LAG_LANES; lane++) {
-      double low = lo[lane];
-      unsigned long long quarters = quarter[lane];
-      if (!near[lane]) y[lane] = lag_reduce(x[lane], &low, &quarters);
-      lo[lane] = low;
-      quarter[lane] = quarters;
-    }
-  }
-  const LAG_REAL z = y*y, h = LAG_K(0.5)*z, w = LAG_K(1.0) - h;
+/* Sine and cosine of x - k pi/2 - lo, |x - k pi/2| <= pi/4, in quarter `quarter`, that is k modulo 4. The polynomials are minimax, by
+ * tests/math/remez.py. */
+LAG_INLINE void lag_sincos_turned(LAG_REAL y, LAG_REAL lo, lag_word quarter, LAG_REAL *s, LAG_REAL *c) {
+  const LAG_REAL z = y*y, w = lag_mad(z, LAG_K(-0.5), LAG_K(1.0)), rest = lag_mad(z, LAG_K(-0.5), LAG_K(1.0) - w);
   LAG_REAL p = lag_mad(z, LAG_K(-1.5895432975868974e-10), LAG_K(2.5050734385284707e-08));
   LAG_REAL q = lag_mad(z, LAG_K(-1.1358749174703273e-11), LAG_K(2.087570539521945e-09));
   p = lag_mad(z, p, LAG_K(-2.7557313538498488e-06));
@@ -288,10 +288,77 @@ LAG_INLINE void lag_sincos(LAG_REAL x, LAG_REAL *s, LAG_REAL *c) {
   q = lag_mad(z, q, LAG_K(-0.0013888888888873342));
   p = lag_mad(z, p, LAG_K(0.1666666666666663));
   q = lag_mad(z, q, LAG_K(0.041666666666666595));
-  const LAG_REAL sine = y - lag_mad(z*y, p, lo), cosine = w + (((LAG_K(1.0) - w) - h) + lag_mad(z*z, q, y*lo));
-  const lag_word a = lag_to_word(sine), b = lag_to_word(cosine), swap = (a ^ b) & (0 - (quarter & 1));
-  *s = lag_to_real(a ^ swap ^ (quarter & 2) << 62);
-  *c = lag_to_real(b ^ swap ^ ((quarter + 1) & 2) << 62);
+  const LAG_REAL sine = y - lag_mad(z*y, p, lo), cosine = w + (rest + lag_mad(z*z, q, y*lo));
+  const lag_word a = lag_to_word(sine), b = lag_to_word(cosine), odd = quarter << 63, minus = quarter << 62 & lag_to_word(LAG_K(-0.0));
+  const lag_word swap = (a ^ b) & (lag_word)((LAG_MASK)odd >> 63);
+  *s = lag_to_real(a ^ swap ^ minus);
+  *c = lag_to_real(b ^ swap ^ minus ^ odd);
+}
+
+/* x in quarters, made an integer by what is added: 1.5 2^52, and 2^17, so that the bits of all integers from -2^17 to 2^17 - 1 begin
+ * alike. */
+LAG_INLINE LAG_REAL lag_quarters(LAG_REAL x) { return lag_mad(x, LAG_K(0.63661977236758138), LAG_K(6755399441186816.0)); }
+/* From 2^18 on in lanes with others. */
+LAG_INLINE lag_word lag_quarters_far(LAG_REAL sum) { return lag_to_word(sum) ^ lag_to_word(LAG_K(6755399441055744.0)); }
+
+/* y - *lo = x - k pi/2 for |k| <= 2^17. W. Cody, W. Waite, Software Manual for the Elementary Functions, 1980, with pi/2 in three parts:
+ * the products of k with the first two are exact. What is lost is known, to 2^-129 |x|, and enters to first order; no double in this
+ * range is so near to a multiple of pi/2 that it would matter. */
+LAG_INLINE LAG_REAL lag_sincos_reduce(LAG_REAL x, LAG_REAL sum, LAG_REAL *lo) {
+  const LAG_REAL k = sum - LAG_K(6755399441186816.0);
+  const LAG_REAL first = lag_mad(k, LAG_K(-1.5707963267923333), x);
+  const LAG_REAL y = lag_mad(k, LAG_K(-2.5633441515839558e-12), first);
+  *lo = lag_mad(k, LAG_K(1.0562999066987428e-23), lag_mad(k, LAG_K(2.5633441515839558e-12), y - first));
+  return y;
+}
+
+/* The same for any x. Apart, and by address, so that what is near keeps the registers. */
+__attribute__((cold, noinline, unused)) static void lag_sincos_far(const LAG_REAL *x, LAG_REAL *s, LAG_REAL *c) {
+  const LAG_REAL sum = lag_quarters(*x);
+  LAG_REAL lo, y = lag_sincos_reduce(*x, sum, &lo);
+  lag_word quarter = lag_to_word(sum);
+  const lag_word far = lag_quarters_far(sum) >> 18;
+  for (int lane = 0; lane < LAG_LANES; lane++) {
+    double low = lo[lane];
+    unsigned long long quarters = quarter[lane];
+    if (far[lane]) y[lane] = lag_reduce((*x)[lane], &low, &quarters);
+    lo[lane] = low;
+    quarter[lane] = quarters;
+  }
+  lag_sincos_turned(y, lo, quarter, s, c);
+}
+
+LAG_INLINE void lag_sincos_near(LAG_REAL x, LAG_REAL sum, LAG_REAL *s, LAG_REAL *c) {
+  LAG_REAL lo;
+  const LAG_REAL y = lag_sincos_reduce(x, sum, &lo);
+  lag_sincos_turned(y, lo, lag_to_word(sum), s, c);
+}
+
+LAG_INLINE void lag_sincos(LAG_REAL x, LAG_REAL *s, LAG_REAL *c) {
+  const LAG_REAL sum = lag_quarters(x);
+  if (__builtin_expect(lag_lanes_reach(lag_quarters_far(sum), 18), 0)) {
+    LAG_REAL at = x, sine, cosine;
+    lag_sincos_far(&at, &sine, &cosine);
+    *s = sine;
+    *c = cosine;
+    return;
+  }
+  lag_sincos_near(x, sum, s, c);
+}
+
+/* Two angles: one question whether they are near. */
+#define LAG_SINCOS_2 1
+LAG_INLINE void lag_sincos2(LAG_REAL a, LAG_REAL *sin_a, LAG_REAL *cos_a, LAG_REAL b, LAG_REAL *sin_b, LAG_REAL *cos_b) {
+  const LAG_REAL sum_a = lag_quarters(a), sum_b = lag_quarters(b);
+  if (__builtin_expect(lag_lanes_reach(lag_quarters_far(sum_a) | lag_quarters_far(sum_b), 18), 0)) {
+    LAG_REAL at_a = a, at_b = b, s, c, sine, cosine;
+    lag_sincos_far(&at_a, &s, &c);
+    lag_sincos_far(&at_b, &sine, &cosine);
+    *sin_a = s, *cos_a = c, *sin_b = sine, *cos_b = cosine;
+    return;
+  }
+  lag_sincos_near(a, sum_a, sin_a, cos_a);
+  lag_sincos_near(b, sum_b, sin_b, cos_b);
 }
 #else
 typedef struct lag_pair {

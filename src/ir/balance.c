@@ -1,6 +1,6 @@
 #include <stdlib.h>
 
-#include "ir/prog.h"
+#include "ir/product.h"
 
 typedef struct {
   Slot slot;
@@ -13,7 +13,7 @@ typedef struct {
   Prog *to;
   Slot *map;
   const uint32_t *uses;
-  unsigned char *inside;  /* of a larger sum */
+  unsigned char *inside;  /* of a larger sum, or product */
   const uint32_t *loads;  /* when loads are ready; NULL: all at once */
   int fused;              /* products are added as they are made; sums with names stay whole */
   VEC(uint32_t) ready;    /* by slot of `to` */
@@ -144,17 +144,44 @@ static Slot add_up(Balance *b) {
   return last.minus ? timed(b, prog_op(b->to, IR_NEG, last.slot, 0), 0) : last.slot;
 }
 
+/* --- products --- */
+
+static void mark_factors(Balance *b) {
+  for (Slot s = b->from->ins.n; s-- > 1;) {
+    if (b->from->ins.at[s].op != IR_MUL || b->inside[s]) continue;
+    Product of = product_of(b->from, b->uses, s);
+    product_mark_inside(b->from, b->uses, s, &of, b->inside);
+  }
+}
+
+/* The two earliest factors, again and again. */
+static Slot multiply(Balance *b, Slot s) {
+  Product of = product_of(b->from, b->uses, s);
+  Term t[MOST_FACTORS];
+  for (uint32_t k = 0; k < of.n; k++) t[k] = (Term){.slot = b->map[of.at[k]], .ready = ready(b, b->map[of.at[k]]), .rank = k};
+  for (uint32_t n = of.n; n > 1; n--) {
+    if (of.n > 2) qsort(t, n, sizeof *t, by_time);
+    Slot two = timed(b, prog_op(b->to, IR_MUL, t[0].slot, t[1].slot), 0);
+    t[0] = (Term){.slot = two, .ready = ready(b, two), .rank = t[0].rank};
+    t[1] = t[n - 1];
+  }
+  return t[0].slot;
+}
+
 static Prog *balance(const Prog *p, const uint32_t *loads, int fused) {
   Arena *a = p->arena;
   Balance b = {.from = p, .to = prog_like(p), .map = ARENA_ARRAY(a, Slot, p->ins.n), .uses = prog_uses(p),
                .inside = ARENA_ARRAY(a, unsigned char, p->ins.n), .loads = loads, .fused = fused};
   mark_inside(&b);
+  if (fused) mark_factors(&b);
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     if (b.inside[s]) continue;
     if (is_sum(i->op)) {
       gather(&b, s);
       b.map[s] = fused ? add_in_a_row(&b) : add_up(&b);
+    } else if (fused && i->op == IR_MUL) {
+      b.map[s] = multiply(&b, s);
     } else {
       b.map[s] = timed(&b, prog_ins(b.to, prog_moved(b.to, p, b.map, *i)), s);
     }

@@ -284,7 +284,7 @@ Prog *lower_accel(const Eqns *e) {
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
   enum { LONG = 1500 }; /* as for loops */
   Prog *p = prog_factor(prog_tidy(l.p));
-  if (p->ins.n <= LONG) return prog_in_time(p);
+  if (p->ins.n <= LONG) return prog_in_time(prog_share(p));
   return is_diagonal(e) ? prog_by_demand(p) : p;
 }
 

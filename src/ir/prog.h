@@ -123,6 +123,12 @@ Prog *prog_tidy(const Prog *p);
  * program and leaves one; changes rounding. */
 Prog *prog_factor(Prog *p);
 
+/* m*l*a and m*l*b share m*l: the pair of factors that most products contain becomes a value of its own, again and again (M. Breuer,
+ * Generation of optimal code for expressions via factorization, Comm. ACM 12 (1969) 333, doi:10.1145/363011.363153). Time
+ * grows with the number of products times that of pairs: for programs that are not long. Needs a tidy program and
+ * leaves one, with fewer operations or the same; changes rounding. */
+Prog *prog_share(Prog *p);
+
 /* The same instructions in the order in which the stores need them, pivots first; without titles. What one store needs
  * stands together, and makes one loop with what its neighbours need. Not for programs with solves. */
 Prog *prog_by_demand(const Prog *p);
@@ -142,7 +148,7 @@ uint32_t *prog_uses(const Prog *p);
 Prog *prog_balance(const Prog *p, const uint32_t *ready);
 
 /* The same for a processor that multiplies and adds at once, from loads that are there at the start: the terms in a row,
- * earliest first, so that each product is taken in by its addition. Keeps names. Of two orders that are as fast it
+ * earliest first, so that each product is taken in by its addition; so are factors. Keeps names. Of two orders that are as fast it
  * takes the one with fewer instructions; the operations are the same. */
 Prog *prog_in_time(const Prog *p);
 

@@ -161,6 +161,48 @@ static void test_in_time(void **state) {
   arena_free(arena);
 }
 
+/* a*b*x, a*b*y, a*a*b and a*b: three multiplications less with a*b made once; a product that is stored, x*y, is a factor as it is. */
+static void test_share(void **state) {
+  (void)state;
+  Arena *arena = arena_new(NULL);
+  Prog *p = prog_new(arena);
+  Slot a = load(p, 0), b = load(p, 1), x = load(p, 2), y = load(p, 3), xy = prog_op(p, IR_MUL, x, y);
+  Slot ax = prog_op(p, IR_MUL, a, x), by = prog_op(p, IR_MUL, b, y), aa = prog_op(p, IR_MUL, a, a);
+  prog_store(p, 0, 0, prog_op(p, IR_MUL, ax, b), "a*x*b");
+  prog_store(p, 0, 1, prog_op(p, IR_MUL, a, by), "a*(b*y)");
+  prog_store(p, 0, 2, prog_op(p, IR_MUL, aa, b), "a*a*b");
+  prog_store(p, 0, 3, prog_op(p, IR_MUL, a, b), "a*b");
+  prog_store(p, 0, 4, xy, "x*y");
+  prog_store(p, 0, 5, prog_op(p, IR_MUL, xy, b), "x*y*b");
+  Prog *s = prog_share(prog_tidy(p));
+  assert_null(prog_verify(s));
+  assert_int_equal(count(p, IR_MUL), 9);
+  assert_int_equal(count(s, IR_MUL), 6);
+  Real q[4] = {3, 7, 5, 11}, out[6], *outs[1] = {out}, want[6] = {105, 231, 63, 21, 55, 385};
+  const Real *in[ARR_COUNT] = {[ARR_Q] = q};
+  assert_int_equal(prog_eval(s, in, outs), 0);
+  for (int i = 0; i < 6; i++) assert_true(out[i] == want[i]);
+  arena_free(arena);
+}
+
+/* s*a*a*b with s = sin x: what is there at the start is multiplied first. */
+static void test_factors_in_time(void **state) {
+  (void)state;
+  Arena *arena = arena_new(NULL);
+  Prog *p = prog_new(arena);
+  Slot x = load(p, 0), a = load(p, 1), b = load(p, 2);
+  Slot s = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "sin"});
+  Slot all = prog_op(p, IR_MUL, s, a);
+  all = prog_op(p, IR_MUL, all, a);
+  prog_store(p, 0, 0, prog_op(p, IR_MUL, all, b), "s*a*a*b");
+  Prog *t = prog_in_time(p);
+  assert_null(prog_verify(t));
+  assert_int_equal(count(t, IR_MUL), 3);
+  const Ins *last = &t->ins.at[t->stores.at[0].slot];
+  assert_true(t->ins.at[last->a].op == IR_FN1 || t->ins.at[last->b].op == IR_FN1);
+  arena_free(arena);
+}
+
 /* A pivot that is zero, negative or not a number stops the program; one is checked once. */
 static void test_pivot(void **state) {
   (void)state;
@@ -303,7 +345,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_verify), cmocka_unit_test(test_numbering),      cmocka_unit_test(test_tidy),
     cmocka_unit_test(test_pivot),  cmocka_unit_test(test_lower),          cmocka_unit_test(test_solve_definite),
-    cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor), cmocka_unit_test(test_in_time),
+    cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor), cmocka_unit_test(test_in_time), cmocka_unit_test(test_share),
+    cmocka_unit_test(test_factors_in_time),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
