@@ -24,17 +24,6 @@ static int is_sum(IrOp op) { return op == IR_ADD || op == IR_SUB || op == IR_NEG
 
 static uint32_t ready(const Balance *b, Slot s) { return s < b->ready.n ? b->ready.at[s] : 0; }
 
-static uint32_t time_of(IrOp op) {
-  switch (op) {
-    case IR_ADD: case IR_SUB: case IR_MUL: case IR_SOLVE: return 4;
-    case IR_NEG: case IR_SELECT: return 1;
-    case IR_DIV: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_TABLE: return 16;
-    case IR_CONST: case IR_PI: case IR_LOAD: case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ:
-    case IR_NOT: case IR_AND: case IR_OR: case IR_PIVOT: case IR_SOLVED: case IR_TITLE: break;
-  }
-  return 0;
-}
-
 static uint32_t latest(uint32_t x, uint32_t y) { return x > y ? x : y; }
 
 /* Notes when the value of a slot is there; was: the slot of a load in the program that it comes from. */
@@ -46,7 +35,7 @@ static Slot timed(Balance *b, Slot s, Slot was) {
     const Solve *k = &b->to->solves.at[i->index];
     for (uint32_t r = 0; r < k->n; r++) t = latest(t, ready(b, k->rhs[r]));
   }
-  b->ready.at[s] = i->op == IR_LOAD ? (b->loads ? b->loads[was] : 0) : t + time_of(i->op);
+  b->ready.at[s] = i->op == IR_LOAD ? (b->loads ? b->loads[was] : 0) : t + ir_latency(i->op);
   return s;
 }
 
@@ -100,7 +89,7 @@ static Term add(Balance *b, Term x, Term y) {
   if (x.minus == y.minus) s = prog_op(b->to, IR_ADD, x.slot, y.slot);
   else s = x.minus ? prog_op(b->to, IR_SUB, y.slot, x.slot) : prog_op(b->to, IR_SUB, x.slot, y.slot);
   timed(b, s, 0);
-  if (y.product) b->ready.at[s] = latest(x.product ? ready(b, x.slot) : x.ready, y.ready) + time_of(IR_ADD);
+  if (y.product) b->ready.at[s] = latest(x.product ? ready(b, x.slot) : x.ready, y.ready) + ir_latency(IR_ADD);
   return (Term){.slot = s, .minus = x.minus && y.minus, .ready = ready(b, s)};
 }
 
@@ -109,7 +98,7 @@ static Term add(Balance *b, Term x, Term y) {
 static uint32_t first_of(const Balance *b) {
   const Term *t = b->terms.at;
   for (uint32_t k = 0; k < b->terms.n; k++)
-    if (!t[k].product && (t[k].ready <= t[0].ready + time_of(IR_MUL))) return k;
+    if (!t[k].product && (t[k].ready <= t[0].ready + ir_latency(IR_MUL))) return k;
   return 0;
 }
 

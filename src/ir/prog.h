@@ -133,6 +133,14 @@ Prog *prog_share(Prog *p);
  * stands together, and makes one loop with what its neighbours need. Not for programs with solves. */
 Prog *prog_by_demand(const Prog *p);
 
+/* The same instructions in the order in which they must begin for nothing to wait: what is on the longest way to the end comes first,
+ * what is needed late stands where it is needed. calls_first: functions are calls, before which all values in registers would have to
+ * be put away: they come first. Without titles; programs with solves keep their order. */
+Prog *prog_by_deadline(const Prog *p, int calls_first);
+
+/* After how many cycles a processor has the result, about. */
+uint32_t ir_latency(IrOp op);
+
 /* Whether two programs compute the same. */
 int prog_same(const Prog *a, const Prog *b);
 

@@ -142,7 +142,9 @@ Prog *prog_share(Prog *p) {
   Share s = {.from = p, .to = prog_like(p), .uses = prog_uses(p), .inside = ARENA_ARRAY(a, unsigned char, p->ins.n),
              .product = ARENA_ARRAY(a, uint32_t, p->ins.n), .map = ARENA_ARRAY(a, Slot, p->ins.n)};
   find_products(&s);
-  for (s.room = 256; s.room < MOST_FACTORS * MOST_FACTORS * s.products.n;) s.room *= 2;
+  uint32_t pairs = 0;
+  for (uint32_t w = 0; w < s.products.n; w++) pairs += s.products.at[w].of.n * (s.products.at[w].of.n - 1) / 2;
+  for (s.room = 256; s.room < 2 * pairs;) s.room *= 2;
   s.table = ARENA_ARRAY(a, Tally, s.room);
   for (Tally t; t = most_frequent(&s), t.count > 1;) take_out_everywhere(&s, &t);
   rebuild(&s);

@@ -107,7 +107,7 @@ static void check_scene(Ast *ast, const char *path, const char *scene) {
   Model *m = model_build(ast, &(ModelChoice){.scene = scene});
   Eqns *e = m ? eqns_derive(m) : NULL;
   if (!e) fail_msg("%s has no equations", where);
-  Prog *accel = lower_accel(e);
+  Prog *accel = lower_accel(e, 0);
   eqns_derive_mass(e); /* where the solution did without */
   const char *wrong = prog_verify(accel);
   if (wrong) fail_msg("%s: %s", where, wrong);

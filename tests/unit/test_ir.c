@@ -203,6 +203,44 @@ static void test_factors_in_time(void **state) {
   arena_free(arena);
 }
 
+static uint32_t place(const Prog *p, IrOp op) {
+  for (Slot k = 1; k < p->ins.n; k++)
+    if (p->ins.at[k].op == op) return k;
+  return 0;
+}
+
+/* 1/(x^9 - sin y) and z + 1, written with what is needed last in front: the powers, on which all waits, come first; the sum, which
+ * nothing waits for, last; the sine when it is needed, or first of all where it is a call; the pivot before its division. */
+static void test_by_deadline(void **state) {
+  (void)state;
+  Arena *arena = arena_new(NULL);
+  Prog *p = prog_new(arena);
+  Slot x = load(p, 0), y = load(p, 1), z = load(p, 2), one = prog_num(p, num_int(1));
+  Slot sum = prog_op(p, IR_ADD, z, one), sine = prog_ins(p, (Ins){.op = IR_FN1, .a = y, .text = "sin"}), power = x;
+  prog_title(p, "powers");
+  for (int k = 0; k < 8; k++) power = prog_op(p, IR_MUL, power, x);
+  Slot less = prog_op(p, IR_SUB, power, sine);
+  prog_ins(p, (Ins){.op = IR_PIVOT, .a = less, .index = 1});
+  prog_store(p, 0, 0, prog_op(p, IR_DIV, one, less), "1/(x^9 - sin y)");
+  prog_store(p, 0, 1, sum, "z + 1");
+  for (int calls_first = 0; calls_first < 2; calls_first++) {
+    Prog *d = prog_by_deadline(p, calls_first);
+    assert_null(prog_verify(d));
+    assert_int_equal(ops_total(prog_count(d)), ops_total(prog_count(p)));
+    assert_int_equal(place(d, IR_TITLE), 0);
+    assert_int_equal(place(d, IR_ADD), d->ins.n - 1);
+    assert_true((place(d, IR_FN1) < place(d, IR_MUL)) == calls_first);
+    assert_true(place(d, IR_SUB) < place(d, IR_PIVOT) && place(d, IR_PIVOT) < place(d, IR_DIV));
+    Real q[3] = {2, 0, 5}, out[2], *outs[1] = {out};
+    const Real *in[ARR_COUNT] = {[ARR_Q] = q};
+    assert_int_equal(prog_eval(d, in, outs), 0);
+    assert_true(out[0] == 1 / 512.0L && out[1] == 6);
+    q[0] = -2;
+    assert_int_equal(prog_eval(d, in, outs), -1);
+  }
+  arena_free(arena);
+}
+
 /* A pivot that is zero, negative or not a number stops the program; one is checked once. */
 static void test_pivot(void **state) {
   (void)state;
@@ -245,7 +283,7 @@ static void test_lower(void **state) {
   sb_puts(&lag, "flow x' = y\nflow y' = -x\n");
   Eqns *e = equations(a, sb_text(&lag), NULL);
   assert_non_null(e);
-  Prog *p = lower_accel(e);
+  Prog *p = lower_accel(e, 0);
   assert_null(prog_verify(p));
   for (int trial = 0; trial < 100; trial++) {
     const Real *v = random_point(e);
@@ -307,7 +345,7 @@ static void check_solution(int n, int reach, int definite) {
   assert_non_null(e);
   assert_int_equal(e->definite_mass, definite);
   uint32_t N = (uint32_t)n;
-  Prog *p = lower_accel(e);
+  Prog *p = lower_accel(e, 0);
   assert_null(prog_verify(p));
   if (definite && n > 1 && n <= 12) assert_int_equal(p->solves.n, 0); /* straight-line LDL^T */
   if (!definite) assert_int_equal(p->solves.n, n > 2); /* a pair in the open, more by a loop with pivoting */
@@ -346,7 +384,7 @@ int main(void) {
     cmocka_unit_test(test_verify), cmocka_unit_test(test_numbering),      cmocka_unit_test(test_tidy),
     cmocka_unit_test(test_pivot),  cmocka_unit_test(test_lower),          cmocka_unit_test(test_solve_definite),
     cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor), cmocka_unit_test(test_in_time), cmocka_unit_test(test_share),
-    cmocka_unit_test(test_factors_in_time),
+    cmocka_unit_test(test_factors_in_time), cmocka_unit_test(test_by_deadline),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
