@@ -129,9 +129,7 @@ static Eqns *derive_asked(Compiler *c, const char *scene) {
 }
 
 static IrUnit *new_unit(Compiler *c, Eqns *e) {
-  IrUnit *u = unit_new(e, c->o.file);
-  u->libm = c->o.math && strcmp(c->o.math, "libm") == 0;
-  return u;
+  return unit_new(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0);
 }
 
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */

@@ -22,6 +22,8 @@ int cloop_together(const Writer *w, Slot a, Slot b) {
   return x.kind == y.kind && x.step == y.step && x.back == y.back;
 }
 
+int cloop_holds(const Writer *w, Slot s) { return w->rolls.place[s] && w->rolls.loop[w->rolls.place[s] - 1]; }
+
 /* --- names and indices --- */
 
 const char *cloop_stem(Arena *a, const char *name) {

@@ -388,19 +388,54 @@ static void find_pairs(Writer *w) {
     }
 }
 
-/* One call for a value and its pair; 0 when it has none, or has been written with it. */
-int cwriter_pair(Writer *w, Slot s, const Ins *first, const Ins *second) {
-  Slot pair = w->pair[s];
-  if (!pair || pair < s) return pair != 0;
+/* "LAG_REAL sin_x, cos_x;" and "x, &sin_x, &cos_x", each after what stands there. */
+static void declare_pair(Writer *w, Slot s, const Ins *first, const Ins *second, StrBuf *names, StrBuf *arguments) {
   const char *x = cwriter_operand(w, first->a).text;
   Piece a = cwriter_name(w, first), b = cwriter_name(w, second);
   int in_order = strcmp(first->text, "sin") == 0;
-  cwriter_flush_title(w);
-  cwriter_statement(w, arena_printf(w->a, "%s_REAL %s, %s;", w->style->prefix, a.text, b.text));
-  const char *call = arena_printf(w->a, " %s_sincos(%s, &%s, &%s);", w->style->math, x, in_order ? a.text : b.text, in_order ? b.text : a.text);
-  sb_printf(w->out, "%s\n", call);
+  sb_printf(names, "%s%s, %s", names->n ? ", " : "", a.text, b.text);
+  sb_printf(arguments, "%s%s, &%s, &%s", arguments->n ? ", " : "", x, in_order ? a.text : b.text, in_order ? b.text : a.text);
   w->piece[s] = a;
-  w->piece[pair] = b;
+  w->piece[w->pair[s]] = b;
+}
+
+int cwriter_pair(Writer *w, Slot s, const Ins *first, const Ins *second) {
+  Slot pair = w->pair[s];
+  if (!pair || pair < s) return pair != 0;
+  StrBuf names = strbuf(w->a), arguments = strbuf(w->a);
+  declare_pair(w, s, first, second, &names, &arguments);
+  cwriter_flush_title(w);
+  cwriter_statement(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&names)));
+  sb_printf(w->out, " %s_sincos(%s);\n", w->style->math, sb_text(&arguments));
+  return 1;
+}
+
+static int is_there(const Writer *w, Slot x, Slot s) { return x < s || w->p->ins.at[x].op == IR_LOAD; }
+
+/* From s on, the first values with pairs whose operands are there when s is computed: so many, at most ABREAST. */
+static uint32_t find_abreast(const Writer *w, Slot s, Slot *at) {
+  enum { NEAR = 400 };
+  uint32_t n = 0;
+  for (Slot k = s; k < w->p->ins.n && k < s + NEAR && n < ABREAST; k++)
+    if (w->pair[k] > k && !w->piece[k].text && !cloop_holds(w, k) && is_there(w, w->p->ins.at[k].a, s)) at[n++] = k;
+  return n;
+}
+
+/* Sines and cosines that stand outside of loops, two or four angles a call: processors compute them abreast. 0 where s is none,
+ * or too few are left. */
+static int write_abreast(Writer *w, Slot s) {
+  if (!w->pair[s] || w->piece[s].text) return w->pair[s] != 0;
+  Slot at[ABREAST];
+  uint32_t n = find_abreast(w, s, at);
+  if (n < 2) return 0;
+  n = n < ABREAST ? 2 : ABREAST;
+  StrBuf names = strbuf(w->a), arguments = strbuf(w->a);
+  for (uint32_t k = 0; k < n; k++) declare_pair(w, at[k], &w->p->ins.at[at[k]], &w->p->ins.at[w->pair[at[k]]], &names, &arguments);
+  cwriter_flush_title(w);
+  cwriter_statement(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&names)));
+  sb_putc(w->out, '\n');
+  cwriter_statement(w, arena_printf(w->a, "%s_sincos%u(%s);", w->style->math, n, sb_text(&arguments)));
+  sb_putc(w->out, '\n');
   return 1;
 }
 
@@ -422,7 +457,7 @@ static void write_instruction(Writer *w, Slot s) {
     write_table(w, s, i);
     return;
   }
-  if (i->op == IR_LOAD || cwriter_pair(w, s, i, &w->p->ins.at[w->pair[s]])) return;
+  if (i->op == IR_LOAD || write_abreast(w, s) || cwriter_pair(w, s, i, &w->p->ins.at[w->pair[s]])) return;
   Piece x = cwriter_spell(w, i);
   int leaf = i->op == IR_CONST || i->op == IR_PI;
   int told = !i->name || (w->stored[s] && strcmp(i->name, w->stored[s]) == 0); /* by the store's comment */

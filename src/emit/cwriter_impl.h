@@ -5,6 +5,7 @@
 #include "emit/cwriter.h"
 #include "ir/roll.h"
 
+enum { ABREAST = 4 }; /* sines and cosines of so many angles by one call, at most */
 enum { C_SELECT = 1, C_OR, C_AND, C_CMP, C_ADD, C_MUL, C_UNARY, C_ATOM };
 
 typedef struct {
@@ -52,6 +53,9 @@ int cwriter_pair(Writer *w, Slot s, const Ins *first, const Ins *second);
 
 /* Whether two functions of one operand stand side by side: both in no loop, or in the same turn of one in all turns. */
 int cloop_together(const Writer *w, Slot a, Slot b);
+
+/* Whether a loop computes it. */
+int cloop_holds(const Writer *w, Slot s);
 
 /* Before anything is written. */
 void cloop_prepare(Writer *w);

@@ -49,8 +49,8 @@ static const char *const *globals_of(Header *h) {
   all[n++] = arena_printf(h->a, "%s_state", h->lower);
   all[n++] = arena_printf(h->a, "%s_step", h->lower);
   all[n++] = arena_printf(h->a, "%s_input_fn", h->lower);
-  static const char *const functions[] = {"sincos", "sin", "cos", "lanes", "lanes_mask"};
-  for (int i = 0; i < 5; i++) all[n++] = arena_printf(h->a, "%s_%s", h->lower, functions[i]);
+  static const char *const functions[] = {"sincos", "sincos2", "sincos4", "sin", "cos", "lanes", "lanes_mask"};
+  for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) all[n++] = arena_printf(h->a, "%s_%s", h->lower, functions[i]);
   all[n++] = "singular";
   return all;
 }

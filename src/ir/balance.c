@@ -1,11 +1,11 @@
 #include <stdlib.h>
 
-#include "ir/prog.h"
+#include "ir/product.h"
 
 typedef struct {
   Slot slot;
-  int minus;
-  uint32_t ready, rank; /* rank: place among the terms, where two are ready at once */
+  int minus, product; /* product: of one use, that an addition may take in */
+  uint32_t ready, rank; /* rank: place among the terms, where two are ready at once; of a product: its factors */
 } Term;
 
 typedef struct {
@@ -13,8 +13,9 @@ typedef struct {
   Prog *to;
   Slot *map;
   const uint32_t *uses;
-  unsigned char *inside;  /* of a larger sum */
-  const uint32_t *loads;  /* when loads are ready */
+  unsigned char *inside;  /* of a larger sum, or product */
+  const uint32_t *loads;  /* when loads are ready; NULL: all at once */
+  int fused;              /* products are added as they are made; sums with names stay whole */
   VEC(uint32_t) ready;    /* by slot of `to` */
   VEC(Term) terms, sums, open;
 } Balance;
@@ -22,17 +23,6 @@ typedef struct {
 static int is_sum(IrOp op) { return op == IR_ADD || op == IR_SUB || op == IR_NEG; }
 
 static uint32_t ready(const Balance *b, Slot s) { return s < b->ready.n ? b->ready.at[s] : 0; }
-
-static uint32_t time_of(IrOp op) {
-  switch (op) {
-    case IR_ADD: case IR_SUB: case IR_MUL: case IR_SOLVE: return 4;
-    case IR_NEG: case IR_SELECT: return 1;
-    case IR_DIV: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_TABLE: return 16;
-    case IR_CONST: case IR_PI: case IR_LOAD: case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ:
-    case IR_NOT: case IR_AND: case IR_OR: case IR_PIVOT: case IR_SOLVED: case IR_TITLE: break;
-  }
-  return 0;
-}
 
 static uint32_t latest(uint32_t x, uint32_t y) { return x > y ? x : y; }
 
@@ -45,7 +35,7 @@ static Slot timed(Balance *b, Slot s, Slot was) {
     const Solve *k = &b->to->solves.at[i->index];
     for (uint32_t r = 0; r < solve_unknowns(k); r++) t = latest(t, ready(b, k->rhs[r]));
   }
-  b->ready.at[s] = i->op == IR_LOAD ? b->loads[was] : t + time_of(i->op);
+  b->ready.at[s] = i->op == IR_LOAD ? (b->loads ? b->loads[was] : 0) : t + ir_latency(i->op);
   return s;
 }
 
@@ -55,9 +45,19 @@ static void mark_inside(Balance *b) {
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     if (!is_sum(i->op)) continue;
-    if (b->uses[i->a] == 1 && is_sum(p->ins.at[i->a].op)) b->inside[i->a] = 1;
-    if (b->uses[i->b] == 1 && is_sum(p->ins.at[i->b].op)) b->inside[i->b] = 1;
+    const Slot parts[] = {i->a, i->b};
+    for (int k = 0; k < 2; k++) {
+      const Ins *part = &p->ins.at[parts[k]];
+      if (b->uses[parts[k]] == 1 && is_sum(part->op) && !(b->fused && part->name)) b->inside[parts[k]] = 1;
+    }
   }
+}
+
+static Term term(const Balance *b, Slot s, int minus, int once) {
+  const Ins *i = &b->to->ins.at[s];
+  Term t = {s, minus, b->fused && once && i->op == IR_MUL, ready(b, s), b->terms.n};
+  if (t.product) t.ready = latest(ready(b, i->a), ready(b, i->b));
+  return t;
 }
 
 /* The terms of the sum s. */
@@ -70,7 +70,7 @@ static void gather(Balance *b, Slot s) {
     const Ins *i = &b->from->ins.at[t.slot];
     if (t.slot != s && !b->inside[t.slot]) {
       Slot there = b->map[t.slot];
-      if (there) vec_push(a, &b->terms, ((Term){there, t.minus, ready(b, there), b->terms.n}));
+      if (there) vec_push(a, &b->terms, term(b, there, t.minus, b->uses[t.slot] == 1));
       continue;
     }
     if (i->b) vec_push(a, &b->open, ((Term){.slot = i->b, .minus = i->op == IR_SUB ? !t.minus : t.minus}));
@@ -89,7 +89,29 @@ static Term add(Balance *b, Term x, Term y) {
   if (x.minus == y.minus) s = prog_op(b->to, IR_ADD, x.slot, y.slot);
   else s = x.minus ? prog_op(b->to, IR_SUB, y.slot, x.slot) : prog_op(b->to, IR_SUB, x.slot, y.slot);
   timed(b, s, 0);
-  return (Term){s, x.minus && y.minus, ready(b, s), 0};
+  if (y.product) b->ready.at[s] = latest(x.product ? ready(b, x.slot) : x.ready, y.ready) + ir_latency(IR_ADD);
+  return (Term){.slot = s, .minus = x.minus && y.minus, .ready = ready(b, s)};
+}
+
+/* The term to begin with, of those in order: a product that comes first takes a multiplication of its own, so better what is none,
+ * unless that is late. */
+static uint32_t first_of(const Balance *b) {
+  const Term *t = b->terms.at;
+  for (uint32_t k = 0; k < b->terms.n; k++)
+    if (!t[k].product && (t[k].ready <= t[0].ready + ir_latency(IR_MUL))) return k;
+  return 0;
+}
+
+/* One after the other, as fused multiply-adds do. */
+static Slot add_in_a_row(Balance *b) {
+  Term *t = b->terms.at;
+  qsort(t, b->terms.n, sizeof *t, by_time);
+  if (!b->terms.n) return 0;
+  uint32_t first = first_of(b);
+  Term sum = t[first];
+  for (uint32_t k = first; k > 0; k--) t[k] = t[k - 1];
+  for (uint32_t k = 1; k < b->terms.n; k++) sum = add(b, sum, t[k]);
+  return sum.minus ? timed(b, prog_op(b->to, IR_NEG, sum.slot, 0), 0) : sum.slot;
 }
 
 /* The two earliest, again and again: terms and partial sums are queues in order of time (Huffman's tree by two queues; J. van
@@ -111,17 +133,44 @@ static Slot add_up(Balance *b) {
   return last.minus ? timed(b, prog_op(b->to, IR_NEG, last.slot, 0), 0) : last.slot;
 }
 
-Prog *prog_balance(const Prog *p, const uint32_t *loads) {
+/* --- products --- */
+
+static void mark_factors(Balance *b) {
+  for (Slot s = b->from->ins.n; s-- > 1;) {
+    if (b->from->ins.at[s].op != IR_MUL || b->inside[s]) continue;
+    Product of = product_of(b->from, b->uses, s);
+    product_mark_inside(b->from, b->uses, s, &of, b->inside);
+  }
+}
+
+/* The two earliest factors, again and again. */
+static Slot multiply(Balance *b, Slot s) {
+  Product of = product_of(b->from, b->uses, s);
+  Term t[MOST_FACTORS];
+  for (uint32_t k = 0; k < of.n; k++) t[k] = (Term){.slot = b->map[of.at[k]], .ready = ready(b, b->map[of.at[k]]), .rank = k};
+  for (uint32_t n = of.n; n > 1; n--) {
+    if (of.n > 2) qsort(t, n, sizeof *t, by_time);
+    Slot two = timed(b, prog_op(b->to, IR_MUL, t[0].slot, t[1].slot), 0);
+    t[0] = (Term){.slot = two, .ready = ready(b, two), .rank = t[0].rank};
+    t[1] = t[n - 1];
+  }
+  return t[0].slot;
+}
+
+static Prog *balance(const Prog *p, const uint32_t *loads, int fused) {
   Arena *a = p->arena;
   Balance b = {.from = p, .to = prog_like(p), .map = ARENA_ARRAY(a, Slot, p->ins.n), .uses = prog_uses(p),
-               .inside = ARENA_ARRAY(a, unsigned char, p->ins.n), .loads = loads};
+               .inside = ARENA_ARRAY(a, unsigned char, p->ins.n), .loads = loads, .fused = fused};
   mark_inside(&b);
+  if (fused) mark_factors(&b);
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     if (b.inside[s]) continue;
     if (is_sum(i->op)) {
       gather(&b, s);
-      b.map[s] = add_up(&b);
+      b.map[s] = fused ? add_in_a_row(&b) : add_up(&b);
+    } else if (fused && i->op == IR_MUL) {
+      b.map[s] = multiply(&b, s);
     } else {
       b.map[s] = timed(&b, prog_ins(b.to, prog_moved(b.to, p, b.map, *i)), s);
     }
@@ -133,3 +182,6 @@ Prog *prog_balance(const Prog *p, const uint32_t *loads) {
   }
   return b.to;
 }
+
+Prog *prog_balance(const Prog *p, const uint32_t *ready) { return balance(p, ready, 0); }
+Prog *prog_in_time(const Prog *p) { return balance(p, NULL, 1); }

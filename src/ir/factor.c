@@ -1,11 +1,6 @@
-#include "ir/prog.h"
+#include "ir/product.h"
 
-/* A product as its factors: what is multiplied in it and used nowhere else is taken apart. */
-enum { MOST_FACTORS = 8, NONE = MOST_FACTORS };
-typedef struct {
-  Slot at[MOST_FACTORS];
-  uint32_t n;
-} Product;
+enum { NONE = MOST_FACTORS };
 
 typedef struct {
   const Prog *from;
@@ -13,27 +8,6 @@ typedef struct {
   Slot *map;
   const uint32_t *uses;
 } Factor;
-
-/* Whether the value is a product that goes when the sum that uses it is written otherwise. */
-static int is_part(const Factor *f, Slot s) {
-  const Ins *i = &f->from->ins.at[s];
-  return s && i->op == IR_MUL && f->uses[s] == 1 && !i->name;
-}
-
-static Product factors_of(const Factor *f, Slot s) {
-  Product p = {{s}, 1};
-  for (uint32_t k = 0; k < p.n;) {
-    const Ins *i = &f->from->ins.at[p.at[k]];
-    if (p.n == MOST_FACTORS || !is_part(f, p.at[k])) {
-      k++;
-      continue;
-    }
-    p.at[k] = i->a;
-    for (uint32_t j = p.n++; j > k + 1; j--) p.at[j] = p.at[j - 1];
-    p.at[k + 1] = i->b;
-  }
-  return p;
-}
 
 /* The first factor of x that is one of y, too: its place there in *other; or NONE. Numbers are no factors to take out:
  * 2*a + 2*b would be as long. */
@@ -57,8 +31,8 @@ static Slot product_without(Factor *f, const Product *p, uint32_t out) {
 
 /* a*x + a*y as a*(x + y); 0 where it cannot be written so. */
 static Slot factored_sum(Factor *f, const Ins *i) {
-  if (!is_part(f, i->a) || !is_part(f, i->b)) return 0;
-  Product x = factors_of(f, i->a), y = factors_of(f, i->b);
+  if (!product_is_part(f->from, f->uses, i->a) || !product_is_part(f->from, f->uses, i->b)) return 0;
+  Product x = product_of(f->from, f->uses, i->a), y = product_of(f->from, f->uses, i->b);
   uint32_t in_y, in_x = common_factor(f, &x, &y, &in_y);
   if (in_x == NONE) return 0;
   Slot a = product_without(f, &x, in_x), b = product_without(f, &y, in_y);

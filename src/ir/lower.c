@@ -273,7 +273,7 @@ static int is_diagonal(const Eqns *e) {
   return off == 0;
 }
 
-Prog *lower_accel(const Eqns *e) {
+Prog *lower_accel(const Eqns *e, int libm) {
   Lower l = lower_new(e);
   const Model *m = e->m;
   Slot *acc = ARENA_ARRAY(m->arena, Slot, e->n + 1);
@@ -284,9 +284,13 @@ Prog *lower_accel(const Eqns *e) {
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
-  enum { LONG = 1500 }; /* as for loops */
+  enum { PAGE = 200, LONG = 1500 }; /* as for loops; short ones processors take in as a whole, and people read */
   Prog *p = prog_factor(prog_tidy(l.p));
-  return is_diagonal(e) && p->ins.n > LONG ? prog_by_demand(p) : p;
+  if (p->ins.n <= LONG) {
+    p = prog_in_time(prog_share(p));
+    return p->ins.n > PAGE ? prog_by_deadline(p, libm) : p;
+  }
+  return is_diagonal(e) ? prog_by_demand(p) : p;
 }
 
 /* Where a constant may stand instead of the formula of an input, `free` says which holds. */

@@ -12,7 +12,7 @@
 #include "mech/eqns.h"
 #include "mech/variation.h"
 
-Prog *lower_accel(const Eqns *e);   /* out 0: a[nq], out 1: zd[nz] */
+Prog *lower_accel(const Eqns *e, int libm); /* out 0: a[nq], out 1: zd[nz]; libm: functions are called, not in the text */
 IrSystem lower_system(const Eqns *e); /* M, f and the rates of the states, with the formulas of inputs put in */
 IrSystem lower_system(const Eqns *e); /* the same before it is solved, and solved, with the formulas of inputs put in */
 Prog *lower_energy(const Eqns *e);  /* out 0: e[2] */
@@ -36,8 +36,9 @@ Prog *lower_param(const Eqns *e, uint32_t i); /* out 0: p[i], of earlier paramet
 Prog *lower_start(const Eqns *e);   /* out 0, 1, 2: q, v, z; only what a start gives */
 
 /* The unit of these equations without scenes, and a scene added to it: e must come from the same
- * file with the same effects in use and the same inputs. source: the file's path as the user gave it. */
-IrUnit *unit_new(const Eqns *e, const char *source);
+ * file with the same effects in use and the same inputs. source: the file's path as the user gave it; libm: sin and cos
+ * are the C library's. */
+IrUnit *unit_new(const Eqns *e, const char *source, int libm);
 int unit_shares(const IrUnit *a, const IrUnit *b); /* whether scenes of b fit into a */
 void unit_add_scene(IrUnit *u, const Eqns *e);
 

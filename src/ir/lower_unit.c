@@ -88,10 +88,11 @@ static void add_taylor(IrUnit *u, const Eqns *e) {
   u->taylor = series_new(&system, &why);
 }
 
-IrUnit *unit_new(const Eqns *e, const char *source) {
+IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
   const Model *m = e->m;
   IrUnit *u = ARENA_NEW(m->arena, IrUnit);
-  *u = (IrUnit){.arena = m->arena, .name = m->name, .doc = m->doc ? m->doc : "", .source = source, .flags = flags_of(e)};
+  *u = (IrUnit){.arena = m->arena, .name = m->name, .doc = m->doc ? m->doc : "", .source = source, .flags = flags_of(e),
+                .libm = libm};
   u->effects = joined(m->arena, m->effects.at, m->effects.n);
   u->all_effects = joined(m->arena, m->all_effects.at, m->all_effects.n);
   for (uint32_t i = 0; i < m->coords.n; i++)
@@ -102,7 +103,7 @@ IrUnit *unit_new(const Eqns *e, const char *source) {
     vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
   for (uint32_t i = 0; i < m->inputs.n; i++)
     vec_push(m->arena, &u->u, var_of(m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
-  u->accel = lower_accel(e);
+  u->accel = lower_accel(e, libm);
   u->energy = e->energy ? lower_energy(e) : NULL;
   u->inputs = lower_inputs(e);
   add_events(u, e);

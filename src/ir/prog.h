@@ -130,9 +130,23 @@ Prog *prog_tidy(const Prog *p);
  * program and leaves one; changes rounding. */
 Prog *prog_factor(Prog *p);
 
+/* m*l*a and m*l*b share m*l: the pair of factors that most products contain becomes a value of its own, again and again (M. Breuer,
+ * Generation of optimal code for expressions via factorization, Comm. ACM 12 (1969) 333, doi:10.1145/363011.363153). Time
+ * grows with the number of products times that of pairs: for programs that are not long. Needs a tidy program and
+ * leaves one, with fewer operations or the same; changes rounding. */
+Prog *prog_share(Prog *p);
+
 /* The same instructions in the order in which the stores need them, pivots first; without titles. What one store needs
  * stands together, and makes one loop with what its neighbours need. Not for programs with solves. */
 Prog *prog_by_demand(const Prog *p);
+
+/* The same instructions in the order in which they must begin for nothing to wait: what is on the longest way to the end comes first,
+ * what is needed late stands where it is needed. calls_first: functions are calls, before which all values in registers would have to
+ * be put away: they come first. Without titles; programs with solves keep their order. */
+Prog *prog_by_deadline(const Prog *p, int calls_first);
+
+/* After how many cycles a processor has the result, about. */
+uint32_t ir_latency(IrOp op);
 
 /* Whether two programs compute the same. */
 int prog_same(const Prog *a, const Prog *b);
@@ -147,6 +161,11 @@ uint32_t *prog_uses(const Prog *p);
  * through few additions. ready[p->ins.n]: when the value of each load can be there, in cycles of a processor. Changes the
  * order of rounding; drops names of parts of sums. */
 Prog *prog_balance(const Prog *p, const uint32_t *ready);
+
+/* The same for a processor that multiplies and adds at once, from loads that are there at the start: the terms in a row,
+ * earliest first, so that each product is taken in by its addition; so are factors. Keeps names. Of two orders that are as fast it
+ * takes the one with fewer instructions; the operations are the same. */
+Prog *prog_in_time(const Prog *p);
 
 /* Checks that operands precede their use, conditions feed only selections, stores are in order.
  * NULL, or what is wrong. */

@@ -171,7 +171,7 @@ static int check_model(Arena *arena, const char *path, const lag_scene *scene) {
   Model *m = model_build(ast, &(ModelChoice){0});
   Eqns *e = m ? eqns_derive(m) : NULL;
   if (!e || strcmp(m->name, scene->model->name) != 0) return printf("%s is not %s\n", path, scene->model->name), 1;
-  Prog *accel = lower_accel(e), *energy = lower_energy(e);
+  Prog *accel = lower_accel(e, 0), *energy = lower_energy(e);
   Point s;
   scene->params(s.p, none);
   eqns_derive_mass(e); /* where the program does without */

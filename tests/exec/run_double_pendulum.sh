@@ -35,10 +35,10 @@ int main(void) { return sinq(0.0Q) != 0; }' >"$dir/try.c" && $CC "$dir/try.c" -o
   awk -v first="$first" -v last="$((first + last - 1))" -v dir="$dir" '
     { line[NR] = $0 }
     END {
-      split(" - | + |cos|sin|(-|lag_sincos(", from, "|")
-      split(" + | - |sin|cos|(|lag_sincos(-", to, "|")
+      split(" - | + |cos|sin|(-|lag_sincos2(|, th2, ", from, "|")
+      split(" + | - |sin|cos|(|lag_sincos2(-|, -th2, ", to, "|")
       for (i = first; i <= last; i++)
-        for (k = 1; k <= 6; k++) {
+        for (k = 1; k <= 7; k++) {
           if (from[k] ~ /^(cos|sin)$/ && line[i] !~ /LAG_FN/) continue
           for (at = 1; (p = index(substr(line[i], at), from[k])) > 0; at += p + length(from[k]) - 1) {
             where = at + p - 1

@@ -26,7 +26,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 enum { FUZZ_MEMORY = 256 * 1024 * 1024, MAX_SCENES = 8 };
 
 static void write_everything(Arena *a, Eqns *e) {
-  IrUnit *u = unit_new(e, "fuzz.lag");
+  IrUnit *u = unit_new(e, "fuzz.lag", 0);
   unit_want(u, e, WANT_VARIATION);
   unit_add_scene(u, e);
   if (prog_verify(u->accel)) abort();

@@ -11,4 +11,8 @@ void own_exp(const LAG_REAL *x, LAG_REAL *y);
 void own_log(const LAG_REAL *x, LAG_REAL *y);
 void own_rsqrt(const LAG_REAL *x, LAG_REAL *y);
 
+/* Of x[2] and x[4]. */
+void own_sincos2(const LAG_REAL *x, LAG_REAL *s, LAG_REAL *c);
+void own_sincos4(const LAG_REAL *x, LAG_REAL *s, LAG_REAL *c);
+
 #endif

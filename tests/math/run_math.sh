@@ -59,7 +59,7 @@ done
 cat "$TMP"/*.1.txt "$TMP"/*.8.txt | sed 's/^/# /' # shown where something fails
 
 clean() { # COMPILER LANGUAGE STANDARD
-  printf '#include "lag_math.h"\n%s\n' 'double f(double x); double f(double x) { double s, c; lag_sincos(x, &s, &c); return s + lag_exp(c) + lag_log(x) + lag_rsqrt(x) + lag_sin(x) + lag_cos(x); }' >"$TMP/clean.c"
+  printf '#include "lag_math.h"\n%s\n' 'double f(double x); double f(double x) { double s, c; lag_sincos(x, &s, &c); lag_sincos2(s, &s, &c, x, &x, &s); lag_sincos4(s, &s, &c, x, &x, &s, c, &c, &x, 1, &x, &x); return s + lag_exp(c) + lag_log(x) + lag_rsqrt(x) + lag_sin(x) + lag_cos(x); }' >"$TMP/clean.c"
   $1 -x "$2" -std="$3" -O1 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror -I"$INC" -c "$TMP/clean.c" -o "$TMP/clean.o"
 }
 for c in "$CC" $clang; do

@@ -59,7 +59,8 @@ static double near_multiple(void) {
 static const double angles[] = {
   5.3193726483265414e+255 /* 6381956970095103 2^797 */, 1.5707963267948966, 3.1415926535897931, 4.71238898038469, 6.2831853071795862,
   7.8539816339744828, 22, 355, 103993, 104348, 833719/2.0, 2e5, 200000.00000000003, 199999.99999999997, 1e22, 1e300, 1.7976931348623157e308,
-  2.2250738585072014e-308, 5e-324, 1e-300, 0.78539816339744828, 0.78539816339744839, 2.3561944901923448, 3.9269908169872414, 1e-8, 710};
+  2.2250738585072014e-308, 5e-324, 1e-300, 0.78539816339744828, 0.78539816339744839, 2.3561944901923448, 3.9269908169872414, 1e-8, 710,
+  25735.829, 25735.878, 25735.927, 25735.976, 25736.025};
 
 static double angle(long i, long n) {
   const long hard = (long)(sizeof angles/sizeof *angles);
@@ -137,6 +138,33 @@ static int measure(const Function *f, long n) {
   return !(worst <= 1);
 }
 
+/* --- angles abreast --- */
+
+/* Whether two and four angles a call give the bits of one after the other, whatever stands beside what. */
+static int abreast(long n) {
+  enum { MOST = 4 };
+  int bad = 0;
+  seed = 5;
+  for (long i = 0; i + MOST*LANES <= n && !bad; i += MOST*LANES) {
+    LAG_REAL x[MOST], s[3][MOST], c[3][MOST];
+    for (int k = 0; k < MOST; k++) {
+      for (int lane = 0; lane < LANES; lane++) put(&x[k], lane, bits()%64 ? angle(i + k*LANES + lane, n) : bits() & 1 ? HUGE_VAL : (double)NAN);
+      own_sin(&x[k], &s[0][k]);
+      own_cos(&x[k], &c[0][k]);
+    }
+    own_sincos2(x, s[1], c[1]);
+    own_sincos2(x + 2, s[1] + 2, c[1] + 2);
+    own_sincos4(x, s[2], c[2]);
+    for (int k = 0; k < MOST; k++)
+      for (int way = 1; way <= 2; way++)
+        if (memcmp(&s[way][k], &s[0][k], sizeof *x) != 0 || memcmp(&c[way][k], &c[0][k], sizeof *x) != 0) {
+          printf("%d angles abreast: another sine or cosine of %.17g\n", 2*way, get(&x[k], 0));
+          bad = 1;
+        }
+  }
+  return bad;
+}
+
 /* --- special values --- */
 
 static int special(const char *name, void (*f)(const LAG_REAL *, LAG_REAL *), double x, double want) {
@@ -174,7 +202,7 @@ static int specials(void) {
 
 int main(int argc, char **argv) {
   const long n = argc > 1 ? atol(argv[1])/8*8 : 100000;
-  int bad = specials();
+  int bad = specials() | abreast(n);
   for (size_t i = 0; i < sizeof functions/sizeof *functions; i++) bad |= measure(&functions[i], n);
   return bad;
 }

@@ -140,7 +140,7 @@ static void check_scene(Ast *ast, const char *path, const char *scene) {
   Model *m = model_build(ast, &(ModelChoice){.scene = scene});
   Eqns *e = m ? eqns_derive(m) : NULL;
   if (!e) fail_msg("%s has no equations", where);
-  Prog *accel = lower_accel(e);
+  Prog *accel = lower_accel(e, 0);
   eqns_derive_mass(e); /* where the solution did without */
   const char *wrong = prog_verify(accel);
   if (wrong) fail_msg("%s: %s", where, wrong);
@@ -204,14 +204,16 @@ static void test_numbers(void **state) {
 
 /* --- how sums and products are written --- */
 
-static const char *body(Prog *p, Slot s) {
+static const char *body_with(Prog *p, const char *math, Slot s) {
   static const char *const in[ARR_COUNT] = {"t", "q", "v", "z", "p", "u"}, *const out[] = {"a"}, *const own[] = {"q", "a", NULL};
-  CStyle style = {.prefix = "R", .in = in, .out = out, .own = own, .solve = "solve", .loads_inline = 1};
+  CStyle style = {.prefix = "R", .in = in, .out = out, .own = own, .solve = "solve", .loads_inline = 1, .math = math};
   prog_store(p, 0, 0, s, "it");
   StrBuf b = strbuf(arena);
   cwrite_body(prog_tidy(p), &style, arena, &b);
   return sb_text(&b);
 }
+
+static const char *body(Prog *p, Slot s) { return body_with(p, NULL, s); }
 
 static Slot q(Prog *p, uint32_t i) { return prog_ins(p, (Ins){.op = IR_LOAD, .array = ARR_Q, .index = i, .name = "q"}); }
 
@@ -231,11 +233,40 @@ static void test_grouping(void **state) {
   assert_string_equal(body(p, prog_op(p, IR_NEG, product, 0)), "\n  a[0] = -q[0]*q[1]; /* it */\n");
 }
 
+/* sum + sin x + cos x */
+static Slot plus_circle(Prog *p, Slot sum, Slot x) {
+  Slot s = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "sin"}), c = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "cos"});
+  Slot both = prog_op(p, IR_ADD, s, c);
+  return prog_op(p, IR_ADD, sum, both);
+}
+
+static int count_text(const char *text, const char *what) {
+  int n = 0;
+  for (const char *at = text; (at = strstr(at, what)) != NULL; at++) n++;
+  return n;
+}
+
+/* Of seven angles four go by one call, two by another, one alone; that of a sum of sines waits for these and goes alone, too. */
+static void test_abreast(void **state) {
+  (void)state;
+  Prog *p = prog_new(arena);
+  Slot sum = 0;
+  for (uint32_t i = 0; i < 7; i++) sum = plus_circle(p, sum, q(p, i));
+  const char *text = body_with(p, "r", plus_circle(p, sum, sum));
+  assert_int_equal(count_text(text, "r_sincos4("), 1);
+  assert_int_equal(count_text(text, "r_sincos2("), 1);
+  assert_int_equal(count_text(text, "r_sincos("), 2);
+  assert_true(strstr(text, "r_sincos4(") < strstr(text, "r_sincos2(") && strstr(text, "r_sincos2(") < strstr(text, "r_sincos("));
+  assert_int_equal(count_text(text, "r_sin("), 0);
+  for (int i = 0; i < 7; i++)
+    assert_int_equal(count_text(text, arena_printf(arena, "(q[%d], &", i)) + count_text(text, arena_printf(arena, " q[%d], &", i)), 1);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test_setup_teardown(test_equations, setup, teardown), cmocka_unit_test_setup_teardown(test_names, setup, teardown),
     cmocka_unit_test_setup_teardown(test_strings, setup, teardown),   cmocka_unit_test_setup_teardown(test_numbers, setup, teardown),
-    cmocka_unit_test_setup_teardown(test_grouping, setup, teardown),
+    cmocka_unit_test_setup_teardown(test_grouping, setup, teardown), cmocka_unit_test_setup_teardown(test_abreast, setup, teardown),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -129,6 +129,118 @@ static void test_factor(void **state) {
   arena_free(arena);
 }
 
+/* s*b - c*d + e - named with s = sin a, the slowest: e begins, since a product in front would be rounded by itself, s*b comes last,
+ * and a sum with a name stays one. */
+static void test_in_time(void **state) {
+  (void)state;
+  Arena *arena = arena_new(NULL);
+  Prog *p = prog_new(arena);
+  Slot a = load(p, 0), b = load(p, 1), c = load(p, 2), d = load(p, 3), e = load(p, 4);
+  Slot s = prog_ins(p, (Ins){.op = IR_FN1, .a = a, .text = "sin"});
+  Slot sb = prog_op(p, IR_MUL, s, b), cd = prog_op(p, IR_MUL, c, d), named = prog_op(p, IR_ADD, b, d);
+  prog_name(p, named, "named");
+  Slot sum = prog_op(p, IR_SUB, sb, cd);
+  sum = prog_op(p, IR_ADD, sum, e);
+  sum = prog_op(p, IR_SUB, sum, named);
+  prog_store(p, 0, 0, sum, "sum");
+  Slot less = prog_op(p, IR_ADD, cd, sb); /* -(cd + sb) */
+  prog_store(p, 0, 1, prog_op(p, IR_NEG, less, 0), "minus");
+  Prog *t = prog_in_time(p);
+  assert_null(prog_verify(t));
+  assert_int_equal(ops_total(prog_count(t)), ops_total(prog_count(p)));
+  const Ins *last = &t->ins.at[t->stores.at[0].slot];
+  assert_int_equal(last->op, IR_ADD);
+  assert_true(t->ins.at[last->b].op == IR_MUL && t->ins.at[t->ins.at[last->b].a].op == IR_FN1);
+  int names = 0;
+  for (Slot k = 1; k < t->ins.n; k++) names += t->ins.at[k].op == IR_ADD && t->ins.at[k].name != NULL;
+  assert_int_equal(names, 1);
+  Real q[5] = {0, 7, 5, 11, 2}, out[2], *outs[1] = {out}, want[2] = {-55 + 2 - 18, -55};
+  const Real *in[ARR_COUNT] = {[ARR_Q] = q};
+  assert_int_equal(prog_eval(t, in, outs), 0);
+  for (int i = 0; i < 2; i++) assert_true(out[i] == want[i]);
+  arena_free(arena);
+}
+
+/* a*b*x, a*b*y, a*a*b and a*b: three multiplications less with a*b made once; a product that is stored, x*y, is a factor as it is. */
+static void test_share(void **state) {
+  (void)state;
+  Arena *arena = arena_new(NULL);
+  Prog *p = prog_new(arena);
+  Slot a = load(p, 0), b = load(p, 1), x = load(p, 2), y = load(p, 3), xy = prog_op(p, IR_MUL, x, y);
+  Slot ax = prog_op(p, IR_MUL, a, x), by = prog_op(p, IR_MUL, b, y), aa = prog_op(p, IR_MUL, a, a);
+  prog_store(p, 0, 0, prog_op(p, IR_MUL, ax, b), "a*x*b");
+  prog_store(p, 0, 1, prog_op(p, IR_MUL, a, by), "a*(b*y)");
+  prog_store(p, 0, 2, prog_op(p, IR_MUL, aa, b), "a*a*b");
+  prog_store(p, 0, 3, prog_op(p, IR_MUL, a, b), "a*b");
+  prog_store(p, 0, 4, xy, "x*y");
+  prog_store(p, 0, 5, prog_op(p, IR_MUL, xy, b), "x*y*b");
+  Prog *s = prog_share(prog_tidy(p));
+  assert_null(prog_verify(s));
+  assert_int_equal(count(p, IR_MUL), 9);
+  assert_int_equal(count(s, IR_MUL), 6);
+  Real q[4] = {3, 7, 5, 11}, out[6], *outs[1] = {out}, want[6] = {105, 231, 63, 21, 55, 385};
+  const Real *in[ARR_COUNT] = {[ARR_Q] = q};
+  assert_int_equal(prog_eval(s, in, outs), 0);
+  for (int i = 0; i < 6; i++) assert_true(out[i] == want[i]);
+  arena_free(arena);
+}
+
+/* s*a*a*b with s = sin x: what is there at the start is multiplied first. */
+static void test_factors_in_time(void **state) {
+  (void)state;
+  Arena *arena = arena_new(NULL);
+  Prog *p = prog_new(arena);
+  Slot x = load(p, 0), a = load(p, 1), b = load(p, 2);
+  Slot s = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "sin"});
+  Slot all = prog_op(p, IR_MUL, s, a);
+  all = prog_op(p, IR_MUL, all, a);
+  prog_store(p, 0, 0, prog_op(p, IR_MUL, all, b), "s*a*a*b");
+  Prog *t = prog_in_time(p);
+  assert_null(prog_verify(t));
+  assert_int_equal(count(t, IR_MUL), 3);
+  const Ins *last = &t->ins.at[t->stores.at[0].slot];
+  assert_true(t->ins.at[last->a].op == IR_FN1 || t->ins.at[last->b].op == IR_FN1);
+  arena_free(arena);
+}
+
+static uint32_t place(const Prog *p, IrOp op) {
+  for (Slot k = 1; k < p->ins.n; k++)
+    if (p->ins.at[k].op == op) return k;
+  return 0;
+}
+
+/* 1/(x^9 - sin y) and z + 1, written with what is needed last in front: the powers, on which all waits, come first; the sum, which
+ * nothing waits for, last; the sine when it is needed, or first of all where it is a call; the pivot before its division. */
+static void test_by_deadline(void **state) {
+  (void)state;
+  Arena *arena = arena_new(NULL);
+  Prog *p = prog_new(arena);
+  Slot x = load(p, 0), y = load(p, 1), z = load(p, 2), one = prog_num(p, num_int(1));
+  Slot sum = prog_op(p, IR_ADD, z, one), sine = prog_ins(p, (Ins){.op = IR_FN1, .a = y, .text = "sin"}), power = x;
+  prog_title(p, "powers");
+  for (int k = 0; k < 8; k++) power = prog_op(p, IR_MUL, power, x);
+  Slot less = prog_op(p, IR_SUB, power, sine);
+  prog_ins(p, (Ins){.op = IR_PIVOT, .a = less, .index = 1});
+  prog_store(p, 0, 0, prog_op(p, IR_DIV, one, less), "1/(x^9 - sin y)");
+  prog_store(p, 0, 1, sum, "z + 1");
+  for (int calls_first = 0; calls_first < 2; calls_first++) {
+    Prog *d = prog_by_deadline(p, calls_first);
+    assert_null(prog_verify(d));
+    assert_int_equal(ops_total(prog_count(d)), ops_total(prog_count(p)));
+    assert_int_equal(place(d, IR_TITLE), 0);
+    assert_int_equal(place(d, IR_ADD), d->ins.n - 1);
+    assert_true((place(d, IR_FN1) < place(d, IR_MUL)) == calls_first);
+    assert_true(place(d, IR_SUB) < place(d, IR_PIVOT) && place(d, IR_PIVOT) < place(d, IR_DIV));
+    Real q[3] = {2, 0, 5}, out[2], *outs[1] = {out};
+    const Real *in[ARR_COUNT] = {[ARR_Q] = q};
+    assert_int_equal(prog_eval(d, in, outs), 0);
+    assert_true(out[0] == 1 / 512.0L && out[1] == 6);
+    q[0] = -2;
+    assert_int_equal(prog_eval(d, in, outs), -1);
+  }
+  arena_free(arena);
+}
+
 /* A pivot that is zero, negative or not a number stops the program; one is checked once. */
 static void test_pivot(void **state) {
   (void)state;
@@ -171,7 +283,7 @@ static void test_lower(void **state) {
   sb_puts(&lag, "flow x' = y\nflow y' = -x\n");
   Eqns *e = equations(a, sb_text(&lag), NULL);
   assert_non_null(e);
-  Prog *p = lower_accel(e);
+  Prog *p = lower_accel(e, 0);
   assert_null(prog_verify(p));
   for (int trial = 0; trial < 100; trial++) {
     const Real *v = random_point(e);
@@ -233,7 +345,7 @@ static void check_solution(int n, int reach, int definite) {
   assert_non_null(e);
   assert_int_equal(e->definite_mass, definite);
   uint32_t N = (uint32_t)n;
-  Prog *p = lower_accel(e);
+  Prog *p = lower_accel(e, 0);
   assert_null(prog_verify(p));
   if (definite && n > 1 && n <= 12) assert_int_equal(p->solves.n, 0); /* straight-line LDL^T */
   if (!definite) assert_int_equal(p->solves.n, n > 2); /* a pair in the open, more by a loop with pivoting */
@@ -271,7 +383,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_verify), cmocka_unit_test(test_numbering),      cmocka_unit_test(test_tidy),
     cmocka_unit_test(test_pivot),  cmocka_unit_test(test_lower),          cmocka_unit_test(test_solve_definite),
-    cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor),
+    cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor), cmocka_unit_test(test_in_time), cmocka_unit_test(test_share),
+    cmocka_unit_test(test_factors_in_time), cmocka_unit_test(test_by_deadline),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

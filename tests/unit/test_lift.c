@@ -59,7 +59,7 @@ static uint32_t check(const char *lag, int lifted) {
   assert_non_null(e);
   assert_true(e->definite_mass);
   if ((e->system.ndefs > 0) != lifted) fail_msg("%s\n%u definitions in the solution", lag, e->system.ndefs);
-  Prog *p = lower_accel(e);
+  Prog *p = lower_accel(e, 0);
   assert_null(prog_verify(p));
   Real *got = ARENA_ARRAY(arena, Real, e->n), *want = ARENA_ARRAY(arena, Real, e->n);
   for (int trial = 0; trial < 5; trial++) {
@@ -93,7 +93,7 @@ static void test_textbook(void **state) {
   Arena *arena = arena_new(NULL);
   Eqns *e = equations(arena, arena_printf(arena, CHAIN ENERGIES, N), NULL);
   assert_non_null(e);
-  Prog *p = lower_accel(e);
+  Prog *p = lower_accel(e, 0);
   assert_true(e->system.ndefs > 0);
   for (int trial = 0; trial < 20; trial++) {
     const Real *v = random_point(e), g = 9.81L, l = 0.7L, m = 1.3L;

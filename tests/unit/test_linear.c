@@ -181,7 +181,7 @@ static void test_double_pendulum(void **state) {
   v[symbol_named(e, "th2")] = -0.7L;
   v[symbol_named(e, "th1'")] = 1.1L;
   v[symbol_named(e, "th2'")] = -0.4L;
-  assert_int_equal(run_prog(e, lower_accel(e), v, acc, NULL), 0);
+  assert_int_equal(run_prog(e, lower_accel(e, 0), v, acc, NULL), 0);
   v[symbol_named(e, "th1''")] = acc[0];
   v[symbol_named(e, "th2''")] = acc[1];
   Moment s = {.e = e, .v = v};

@@ -26,7 +26,7 @@ static void compare(const char *lag, ByHand by_hand) {
   Arena *arena = arena_new(NULL);
   Eqns *e = equations(arena, lag, NULL);
   assert_non_null(e);
-  Prog *p = lower_accel(e);
+  Prog *p = lower_accel(e, 0);
   assert_null(prog_verify(p));
   for (int trial = 0; trial < 50; trial++) {
     Moment s = {e, random_point(e)};

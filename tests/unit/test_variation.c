@@ -185,7 +185,7 @@ static const char spring[] =
 static const char *emitted(Arena *arena, unsigned wants) {
   Eqns *e = equations(arena, spring, NULL);
   assert_non_null(e);
-  IrUnit *u = unit_new(e, "test.lag");
+  IrUnit *u = unit_new(e, "test.lag", 0);
   unit_want(u, e, wants);
   unit_want(u, e, wants);
   unit_add_scene(u, e);
