@@ -24,6 +24,7 @@
 #include "ir/lower.h"
 #include "mech/eqns.h"
 #include "mech/expect.h"
+#include "mech/freedom.h"
 #include "mech/show.h"
 #include "model/model.h"
 #include "picture.h"
@@ -424,7 +425,7 @@ static int do_check(Compiler *c) {
     if (!e) continue;
     if (!out.n) show_facts(e, &out);
     collect_units(c, e->m, &found);
-    sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], effects_text(c, e->m));
+    if (freedom_show(e, &out)) sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], effects_text(c, e->m));
   }
   if (c->o.scene && !out.n) derive_scene(c, c->o.scene); /* says that there is no such scene */
   EffectList unused = model_unused_effects(c->ast);

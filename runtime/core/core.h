@@ -22,6 +22,8 @@ typedef struct Run {
   double limit, pending; /* pending: events fire at limit */
   double steps, rejected, rhs_calls, systems, iterations, events;
   double e_first, e_last, e_peak, e_scale; /* energy: E0, last, largest |E - E0|, largest |p.v| + |L| */
+  double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
+  double rank;           /* constraints at the start that do not follow from others */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
 } Run;
 
@@ -44,12 +46,15 @@ struct lag_sim {
   lag_signal *signal;    /* [nu] set by the caller; not part of what is saved */
   double *start;         /* [n] NaN: as the scene says */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
+  double *contact_room;  /* [2 n of constraints, or nev, whichever is more] */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
   double *saved;         /* one block: Run, and the arrays below */
   size_t nsaved;
   Run *run;
   double *p, *hold;      /* [np], [nu] */
   double *begin;         /* [n] at the start of the run */
+  double *asked;         /* [n] the same before it was brought to the constraints */
+  double *redundant;     /* [constraints] 1: at the start it follows from others */
   double *y;             /* [n] at step_t1 */
   double *y0;            /* [n] at step_t0 */
   double *now;           /* [n] at t */
@@ -84,6 +89,12 @@ int lag_fail(lag_sim *sim, int status, const char *format, ...);
 /* Why a step failed, with when and where. Returns status. */
 int lag_explain(lag_sim *sim, int status);
 
+/* sim.c: y[n] at t within the last step, on the constraints. LAG_OK, or a failure that is explained. */
+int lag_between(lag_sim *sim, double t, double *y);
+
+/* consistent.c: now[n], the start as it was set, becomes the nearest start that obeys the constraints; asked, redundant and run->rank are set. */
+int lag_consistent(lag_sim *sim);
+
 /* setup.c: the state at the start, of a run that has not begun. */
 int lag_setup_start(lag_sim *sim);
 
@@ -95,6 +106,13 @@ int lag_events_locate(lag_sim *sim);
 int lag_events_spread(lag_sim *sim, const double *at_event, double *spread);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
+
+/* contact.c. of: the contact that the event is one of, or NULL. after: event k has led from `before` to y; closes the gap when the impacts
+ * have come to their end, or one leaves no speed, and opens it when it is released. begin: gaps that are closed at the start. */
+const lag_contact *lag_contact_of(const lag_model *m, int event);
+int lag_contact_is_closed(const lag_sim *sim, const lag_contact *contact);
+int lag_contact_after(lag_sim *sim, int event, int ends, const double *before, double *y);
+int lag_contact_begin(lag_sim *sim);
 
 /* tangent.c. pass: the step has been used up. refuse: event k changes the state. */
 int lag_tangent_pass(lag_sim *sim);

@@ -16,7 +16,8 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
 {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
-  size_t nmon = (size_t)s->scene->nmonitors, fixed = RUN_DOUBLES + np + nu + 4 * n + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
+  size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
+  size_t fixed = RUN_DOUBLES + np + nu + 5 * n + nc + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
   lag_problem sized = s->pb;
   sized.opt = opt;
   size_t total = fixed + method->work_size(&sized);
@@ -33,10 +34,10 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  double **const parts[] = {&s->p, &s->hold, &s->begin, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
+  double **const parts[] = {&s->p, &s->hold, &s->begin, &s->asked, &s->redundant, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
                             &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->mon_first, &s->mon_peak,
                             &s->exact_peak, &s->method_work};
-  const size_t sizes[] = {np, nu, n, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, 0};
+  const size_t sizes[] = {np, nu, n, n, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, 0};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
@@ -53,7 +54,8 @@ static int alloc_scratch(lag_sim *s)
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
   size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
-  double *x = calloc(nuu + nw + 3 * n + 13 * nev + nout + 2 + 1, sizeof *x);
+  size_t held = lag_held_room(m), touching = m->ncontacts ? 2 * (size_t)m->constraints->n + nev : 0;
+  double *x = calloc(nuu + nw + 3 * n + 13 * nev + nout + 2 + held + touching + 1, sizeof *x);
 
   s->scratch = x;
   s->fixed = calloc((size_t)m->np + 1, 1);
@@ -65,8 +67,8 @@ static int alloc_scratch(lag_sim *s)
   for (size_t i = 0; i < n; i++) {
     s->start[i] = NAN;
   }
-  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare};
-  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev};
+  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->contact_room};
+  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, touching};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
@@ -211,6 +213,8 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
     }
   }
   const char *wrong = m->check ? m->check(values) : NULL;
+
+  wrong = !wrong && m->refuses ? m->refuses(s->scene->model, values) : wrong;
   return wrong ? lag_fail(s, LAG_EINVAL, "method %s: %s", m->name, wrong) : LAG_OK;
 }
 
@@ -237,6 +241,10 @@ static int check_method(lag_sim *s, const lag_method *method)
     return lag_fail(s, LAG_EMETHOD, "method %s needs momenta beside coordinates, and L is linear in the velocities; gauss is symplectic there, rk45 and "
                     "dop853 can, too", method->name);
   }
+  if (m->constraints && !(needs & LAG_METHOD_CONSTRAINTS)) {
+    return lag_fail(s, LAG_EMETHOD, "method %s cannot hold constraints (%s); rk45, dop853 and variational can", method->name,
+                    m->constraints->of[0].name);
+  }
   if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0) {
     return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can", method->name);
   }
@@ -244,7 +252,7 @@ static int check_method(lag_sim *s, const lag_method *method)
     return lag_fail(s, LAG_EMETHOD, "method %s needs a model without forces, dissipation or explicit time; rk45 and dop853 do not",
                     method->name);
   }
-  int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE);
+  int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !m->constraints;
   if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH)) {
     return lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min and max; dop853 does not", method->name);
   }
@@ -480,6 +488,10 @@ int lag_setup_start(lag_sim *s)
   if (lag_not_finite(n, s->now) >= 0) {
     return lag_fail(s, LAG_ENAN, "the start is not finite");
   }
+  if ((rc = lag_consistent(s)) != 0) {
+    return rc;
+  }
+  memcpy(s->begin, s->now, (size_t)n * sizeof(double));
   memcpy(s->y, s->now, (size_t)n * sizeof(double));
   s->run->t = s->run->from = c->t0;
   return LAG_OK;

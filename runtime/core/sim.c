@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 
 const char *lag_status_name(int status)
 {
@@ -88,6 +89,7 @@ static int begin(lag_sim *s, double t)
   s->run->dir = s->pb.dir = t < s->scene->t0 ? -1 : 1;
   int rc = lag_setup_start(s);
 
+  rc = rc ? rc : lag_contact_begin(s);
   if (rc || t == s->scene->t0) {
     return rc;
   }
@@ -125,7 +127,7 @@ static int take(lag_sim *s, double t_stop)
   if (lag_next_row(&s->pb, t, &row) < fabs(t_stop - t)) {
     t_stop = row;
   }
-  memcpy(s->y0, s->now, (size_t)s->pb.n * sizeof(double));
+  lag_copy(s->pb.n, s->now, s->y0);
   s->pb.detail = NULL;
   s->pb.bad_t = t;
   int rc = s->method->step(s->method_work, &s->pb, &t, s->y, t_stop);
@@ -139,18 +141,30 @@ static int take(lag_sim *s, double t_stop)
   return lag_events_locate(s);
 }
 
+int lag_between(lag_sim *s, double t, double *y)
+{
+  s->method->dense(s->method_work, &s->pb, t, y);
+  s->pb.detail = NULL;
+  int rc = lag_project(&s->pb, t, y, NULL);
+  return rc ? lag_explain(s, rc > 0 ? LAG_EMETHOD : rc) : LAG_OK;
+}
+
 /* `now` := the state at t of the present step. */
-static void settle(lag_sim *s, double t)
+static int settle(lag_sim *s, double t)
 {
   const Run *r = s->run;
-  size_t bytes = (size_t)s->pb.n * sizeof(double);
 
   if (t == r->step_t1) {
-    memcpy(s->now, s->y, bytes);
+    lag_copy(s->pb.n, s->y, s->now);
   } else if (t != r->t) {
-    s->method->dense(s->method_work, &s->pb, t, s->now);
+    int rc = lag_between(s, t, s->yc);
+    if (rc) {
+      return rc;
+    }
+    lag_copy(s->pb.n, s->yc, s->now);
   }
   s->run->t = t;
+  return LAG_OK;
 }
 
 /* Moves to the end of what is known: an event, or the end of the step. */
@@ -158,8 +172,9 @@ static int pass(lag_sim *s)
 {
   Run *r = s->run;
 
-  settle(s, r->limit);
-  int rc = lag_watch_see(s, r->t, s->now);
+  int rc = settle(s, r->limit);
+
+  rc = rc ? rc : lag_watch_see(s, r->t, s->now);
   if (rc) {
     return rc;
   }
@@ -167,7 +182,7 @@ static int pass(lag_sim *s)
     return lag_events_fire(s);
   }
   r->have_step = 0;
-  memcpy(s->sign, s->sign_end, (size_t)s->scene->model->nev * sizeof(double));
+  lag_copy(s->scene->model->nev, s->sign_end, s->sign);
   return LAG_OK;
 }
 
@@ -211,8 +226,7 @@ int lag_sim_advance(lag_sim *s, double t)
 
   while (rc == 0) {
     if (r->have_step != 0.0 && (r->limit - t) * r->dir >= 0) {
-      settle(s, t);
-      return LAG_OK;
+      return settle(s, t);
     }
     if (r->have_step == 0.0 && r->t == t) {
       return LAG_OK;
@@ -248,8 +262,7 @@ int lag_sim_eval(lag_sim *s, double t, double *y)
   }
   if (t == r->step_t1) {
     memcpy(y, s->y, bytes);
-  } else {
-    s->method->dense(s->method_work, &s->pb, t, y);
+    return LAG_OK;
   }
-  return LAG_OK;
+  return lag_between(s, t, y);
 }

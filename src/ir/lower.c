@@ -266,9 +266,9 @@ Lower lower_new(const Eqns *e) {
 
 static const char *text_of_symbol(const Lower *l, SymId s) { return expr_symbol(l->g, s)->name; }
 
-/* Whether each coordinate has its acceleration to itself. */
+/* Whether each coordinate has its acceleration to itself: nothing is solved for several at once. */
 static int is_diagonal(const Eqns *e) {
-  uint32_t off = e->system.ndefs;
+  uint32_t off = e->system.ndefs + e->constraints.n;
   for (uint32_t k = 0; k < e->system.H.n; k++) off += e->system.H.at[k].row != e->system.H.at[k].col;
   return off == 0;
 }
@@ -438,7 +438,9 @@ Prog *lower_second(const Eqns *e, const Variation *x) {
 Prog *lower_events(const Eqns *e) {
   Lower l = lower_new(e);
   const Model *m = e->m;
-  for (uint32_t i = 0; i < m->events.n; i++) lower_roots(&l, &m->events.at[i].g, 1);
+  Expr *roots = ARENA_ARRAY(m->arena, Expr, m->events.n + 1);
+  for (uint32_t i = 0; i < m->events.n; i++) roots[i] = m->events.at[i].g;
+  lower_with_accelerations(&l, roots, m->events.n);
   for (uint32_t i = 0; i < m->events.n; i++) prog_store(l.p, 0, i, lower_slot(&l, m->events.at[i].g), m->events.at[i].name);
   return prog_tidy(l.p);
 }

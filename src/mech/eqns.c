@@ -175,7 +175,7 @@ static void classify(Eqns *e) {
   e->constant_mass = !(mass & (bit(SYM_COORD) | bit(SYM_VEL) | bit(SYM_TIME) | bit(SYM_STATE)));
   e->separable = e->n && e->constant_mass && !m->states.n && !(rest & bit(SYM_VEL)) && !k->n;
   e->autonomous = e->timeless = !((mass | rest) & bit(SYM_TIME));
-  int inputs = (rest & bit(SYM_INPUT)) != 0;
+  int inputs = (rest & bit(SYM_INPUT)) != 0 && m->inputs.n > m->contacts.n; /* those of contacts do no work */
   e->smooth = 1;
   if (inputs) follow_inputs(e, &roots);
   ExprList l = expr_topo(e->g, roots.at, roots.n);

@@ -83,7 +83,7 @@ typedef struct {
   const Output *outputs; /* of the scene, with the energy filled in */
   uint32_t noutputs;
   const Expr *definitions; /* by symbol: what stands for parameters given by others, where that was put in; or NULL */
-  int constant_mass, definite_mass, conserves_energy, autonomous, smooth;
+  int constant_mass, definite_mass, singular_mass, conserves_energy, autonomous, smooth;
   int loses_energy;      /* not conserved; but no force beside L can raise it, less the work of those that are constant */
   int timeless;          /* t enters by the formulas of inputs, if at all */
   int separable;         /* constant mass, no velocity in f, no states: a splitting method can integrate it */

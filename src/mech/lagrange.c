@@ -327,12 +327,13 @@ int lagrange_check_mass(Eqns *e) {
   for (uint32_t k = 0; k < e->mass.n; k++) entries[k] = e->mass.at[k].e;
   long double *symbols = ARENA_ARRAY(arena, long double, expr_symbol_count(e->g) + 1);
   long double *values = ARENA_ARRAY(arena, long double, e->mass.n + 1), *a = ARENA_ARRAY(arena, long double, n * n);
-  long double *null = ARENA_ARRAY(arena, long double, n);
+  long double *null = ARENA_ARRAY(arena, long double, n), *unconstrained = ARENA_ARRAY(arena, long double, n * n);
   uint32_t *perm = ARENA_ARRAY(arena, uint32_t, n);
   uint64_t seed = 1;
   int judged = 0;
   for (int t = 0; t < TRIES; t++) {
     random_state(e, &seed, symbols);
+    for (uint32_t i = 0; i < e->m->contacts.n; i++) symbols[e->m->contacts.at[i].closed] = 0;
     expr_eval(e->g, entries, e->mass.n, symbols, values);
     int finite = 1;
     for (uint32_t i = 0; i < n * n; i++) a[i] = 0;
@@ -341,7 +342,11 @@ int lagrange_check_mass(Eqns *e) {
       finite &= isfinite(values[k]) != 0;
     }
     if (!finite) continue;
-    add_constraints(e, symbols, a);
+    if (e->constraints.n) {
+      for (uint32_t i = 0; i < n * n; i++) unconstrained[i] = a[i];
+      e->singular_mass = dense_solve(n, unconstrained, NULL, 1e-13L, perm, NULL) < n;
+      add_constraints(e, symbols, a);
+    }
     if (dense_solve(n, a, NULL, 1e-13L, perm, null) == n) return 1;
     judged = 1;
   }

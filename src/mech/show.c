@@ -207,6 +207,23 @@ static void motion(Text *t) {
   end_block(t);
 }
 
+/* What the constraints say, and what they demand of accelerations. */
+static void constraints(Text *t) {
+  const Eqns *e = t->e;
+  const Constraints *k = &e->constraints;
+  Expr zero = expr_int(t->g, 0);
+  if (!k->n) return;
+  heading(t, "constraints");
+  for (uint32_t i = 0; i < k->n; i++) equation(t, i < k->nholonomic ? k->c[i] : k->r[i], zero, i + 1 == k->n);
+  end_block(t);
+  Expr *rows = ARENA_ARRAY(e->m->arena, Expr, k->n);
+  for (uint32_t i = 0; i < k->n; i++) rows[i] = zero;
+  for (uint32_t i = 0; i < k->A.n; i++) add_product(t, &rows[k->A.at[i].row], shown(t, k->A.at[i].e), expr_symbol(t->g, e->m->coords.at[k->A.at[i].col].a)->node);
+  heading(t, "what they demand of accelerations");
+  for (uint32_t i = 0; i < k->n; i++) equation(t, rows[i], shown(t, k->demand[i]), i + 1 == k->n);
+  end_block(t);
+}
+
 static void title(Text *t) {
   const Model *m = t->e->m;
   sb_printf(t->out, latex(t) ? "%% %s: %s\n%% scene %s" : "%s: %s\nscene %s", m->name, m->doc, m->scene.name);
@@ -226,7 +243,7 @@ void show_facts(const Eqns *e, StrBuf *out) {
               e->first.n == 2 ? "" : "s", e->first.constant ? "constant" : "variable", energy);
   if (!e->n) return;
   sb_printf(out, "%u coordinate%s; mass matrix %s%s; energy is %s\n", e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
-            e->definite_mass ? ", positive definite" : "", energy);
+            e->singular_mass ? ", singular where no constraint holds" : e->definite_mass ? ", positive definite" : "", energy);
 }
 
 static void facts(Text *t, const char *cost) {
@@ -248,6 +265,7 @@ void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *o
     momenta(&t);
   }
   motion(&t);
+  constraints(&t);
   VEC(Expr) roots = {0};
   if (m->lagrangian) vec_push(m->arena, &roots, m->lagrangian);
   for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->momenta[i]);
@@ -259,6 +277,8 @@ void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *o
     vec_push(m->arena, &roots, e->first.theta[i]);
     vec_push(m->arena, &roots, shown(&t, e->first.rates[i]));
   }
+  for (uint32_t i = 0; i < e->constraints.n; i++) vec_push(m->arena, &roots, m->constraints.at[i].c);
+  for (uint32_t i = 0; i < e->constraints.n; i++) vec_push(m->arena, &roots, shown(&t, e->constraints.demand[i]));
   if (e->energy) {
     vec_push(m->arena, &roots, e->energy);
     heading(&t, "energy");
@@ -283,6 +303,10 @@ void dump_equations(const Eqns *e, StrBuf *out) {
   for (uint32_t i = 0; i < e->n; i++) entry(e, arena_printf(a, "f[%s]", m->coords.at[i].name), e->f[i], out);
   for (uint32_t i = 0; i < e->n; i++) entry(e, arena_printf(a, "Q[%s]", m->coords.at[i].name), e->Q[i], out);
   for (uint32_t i = 0; i < m->states.n; i++) entry(e, arena_printf(a, "flow[%s]", m->states.at[i].name), e->flow[i], out);
+  const Constraints *k = &e->constraints;
+  for (uint32_t i = 0; i < k->n; i++) entry(e, arena_printf(a, i < k->nholonomic ? "c[%s]" : "r[%s]", k->of[i]->name), i < k->nholonomic ? k->c[i] : k->r[i], out);
+  for (uint32_t i = 0; i < k->A.n; i++) entry(e, arena_printf(a, "A[%s,%s]", k->of[k->A.at[i].row]->name, m->coords.at[k->A.at[i].col].name), k->A.at[i].e, out);
+  for (uint32_t i = 0; i < k->n; i++) entry(e, arena_printf(a, "g[%s]", k->of[i]->name), k->demand[i], out);
   if (e->energy_stable) entry(e, "E", e->energy_stable, out);
   sb_printf(out, "facts:%s%s%s%s%s\n", e->constant_mass ? " constant-mass" : "", e->definite_mass ? " definite-mass" : "",
             e->conserves_energy ? " conserves-energy" : "", e->autonomous ? " autonomous" : "", e->smooth ? " smooth" : "");

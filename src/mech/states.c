@@ -82,8 +82,7 @@ static long double largest(const long double *x, uint32_t n) {
   return most;
 }
 
-/* Moves the state to one that obeys the constraints, by Newton's method: positions, then velocities. */
-static int obey(StateSolver *s, long double *symbols) {
+int states_obey(StateSolver *s, long double *symbols) {
   enum { MOST = 60 };
   const Constraints *k = &s->e->constraints;
   const Model *m = s->e->m;
@@ -98,13 +97,43 @@ static int obey(StateSolver *s, long double *symbols) {
   return largest(run(s, symbols) + s->first_entry + k->A.n + k->nholonomic, k->n) < 1e-12L;
 }
 
+uint32_t states_worst(StateSolver *s, const long double *symbols, long double *residual) {
+  const Constraints *k = &s->e->constraints;
+  const long double *c = run(s, symbols) + s->first_entry + k->A.n, *r = c + k->nholonomic;
+  uint32_t worst = 0;
+  *residual = 0;
+  for (uint32_t i = 0; i < k->n; i++) {
+    long double x = i < k->nholonomic ? c[i] : r[i];
+    if (fabsl(x) <= fabsl(*residual) && !isnan(x)) continue;
+    *residual = x;
+    worst = i;
+  }
+  return worst;
+}
+
+uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts) {
+  const long double independent = 1e-10L; /* states obey constraints to 1e-16 */
+  const Eqns *e = s->e;
+  const Entries *A = &e->constraints.A;
+  uint32_t n = e->n, rank = 0, at = 0;
+  for (uint32_t k = 0; k < e->constraints.n; k++) {
+    long double *row = s->a + (size_t)rank * n;
+    for (uint32_t j = 0; j < n; j++) row[j] = 0;
+    for (; at < A->n && A->at[at].row == k; at++) row[A->at[at].col] = s->out[s->first_entry + at];
+    counts[k] = k != without && dense_reduce(n, row, s->a, rank) > independent;
+    rank += counts[k];
+  }
+  return rank;
+}
+
 int states_complete(StateSolver *s, long double *symbols) {
   const Eqns *e = s->e;
   const Model *m = e->m;
   const Constraints *k = &e->constraints;
   uint32_t n = e->n, rank;
   for (uint32_t i = 0; i < k->n; i++) symbols[k->of[i]->multiplier] = 0;
-  if (k->n && !obey(s, symbols)) return 0;
+  for (uint32_t i = 0; i < m->contacts.n; i++) symbols[m->contacts.at[i].closed] = 0;
+  if (k->n && !states_obey(s, symbols)) return 0;
   run(s, symbols);
   const long double *f = s->out + e->mass.n, *flow = f + n, *demand = s->out + s->first_entry + k->A.n + k->nholonomic + k->n;
   fill(s, 1);

@@ -14,6 +14,16 @@ StateSolver *states_new(const Eqns *e);
  * is singular, there is no such state, or a value is not finite. */
 int states_complete(StateSolver *s, long double *symbols);
 
+/* Moves the state to the nearest one that obeys the constraints, by Newton's method: positions, then velocities. 0: it found none. */
+int states_obey(StateSolver *s, long double *symbols);
+
+/* The constraint that is broken most, and by how much. */
+uint32_t states_worst(StateSolver *s, const long double *symbols, long double *residual);
+
+/* The rank of the constraints, less one of them (UINT32_MAX: of all), where states_obey was; counts[k]: constraint k is independent of
+ * those before it. */
+uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts);
+
 /* e with z' and the energy replaced by what they are; q'' stays. */
 Expr states_substitute(const Eqns *e, Expr x);
 

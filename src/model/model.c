@@ -310,9 +310,10 @@ static void apply(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_INPUT: fill_input(b, st, effect); return;
     case STMT_EVENT: add_event(b, st, effect); return;
     case STMT_CONSTRAINT: add_constraint(b, st, effect); return;
+    case STMT_CONTACT: add_contact(b, st, effect); return;
     case STMT_LET: case STMT_FUNCTION: case STMT_EXPECT: case STMT_OBSERVE: /* after L is known */
     case STMT_COORD: case STMT_STATE: case STMT_PARAM: case STMT_CONST:
-    case STMT_SYMMETRY: case STMT_CONTACT: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE:
+    case STMT_SYMMETRY: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE:
     case STMT_MAP: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
     case STMT_START: case STMT_EXACT: case STMT_SET: case STMT_USE: case STMT_SPAN: case STMT_METHOD:
     case STMT_TOLERANCE: case STMT_OUTPUT: case STMT_MONITOR: case STMT_LIKE: case STMT_STOP: return;
@@ -487,7 +488,7 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
 Model *model_build(Ast *ast, const ModelChoice *choice) {
   Builder *b = build(ast, choice, 0);
   if (!ast->diags->errors && is_first_order(b->m)) {
-    if (b->m->constraints.n) not_yet(b, b->m->constraints.at[0].span, "constraints where L is linear in the velocities");
+    if (b->m->constraints.n) not_yet(b, b->m->constraints.at[0].span, "constraints and contacts where L is linear in the velocities");
     else b = build(ast, choice, 1);
   }
   add_section(b, &choice->section);

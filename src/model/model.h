@@ -89,6 +89,15 @@ typedef struct {
   SymId multiplier;
 } Constraint;
 
+/* A gap that cannot become negative. While it is closed it is a constraint: c = closed*gap. */
+typedef struct {
+  Name name;
+  Expr gap, restitution;
+  SymId closed;                  /* an input of the model's own: 1 while the gap is closed, else 0 */
+  uint32_t constraint;           /* in constraints, */
+  uint32_t impact, release;      /* in events */
+} Contact;
+
 /* A named quantity: what a scene puts out, or an observe statement. */
 typedef struct {
   Name name;
@@ -172,6 +181,7 @@ typedef struct {
   Expr dissipation;        /* sum of Rayleigh functions, or 0 */
   VEC(Force) forces;
   VEC(Constraint) constraints;
+  VEC(Contact) contacts;
   VEC(Expect) expects;
   VEC(Event) events;
   VEC(Output) observes;

@@ -354,6 +354,8 @@ static void latex_name(Name name, StrBuf *out) {
 }
 
 void name_print(Name name, PrintStyle style, StrBuf *out) {
+  size_t n = strlen(name);
   if (style == PRINT_TEXT) sb_puts(out, name);
+  else if (strncmp(name, "lambda(", 7) == 0) sb_printf(out, "\\lambda_{\\mathrm{%.*s}}", (int)(n - 8), name + 7); /* a multiplier */
   else latex_name(name, out);
 }
