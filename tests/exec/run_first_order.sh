@@ -101,7 +101,7 @@ check "of first order without an effect, of second with it" "$LAGC" check "$TMP/
 check "the drift has a closed form" "$LAGC" run "$TMP/charge.lag" drift
 check "which is the motion with inertia that does not gyrate" sh -c "'$LAGC' run '$TMP/charge.lag' gyrate --json | grep -q '\"r.x\": 0.7[45][09]*'"
 check "vectors are points of a film" "$LAGC" animate "$TMP/charge.lag" drift --quiet -o "$TMP/charge.html"
-completes() { "$LAGC" complete "$LAGC" run "$TMP/charge.lag" "$1" | grep -q "$2"; }
+completes() { "$LAGC" complete run "$TMP/charge.lag" "$1" | grep -q "$2"; }
 check "completion calls them coordinates" completes "r.x" "start of the coordinate"
 
 # ---- in other programs
