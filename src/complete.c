@@ -73,7 +73,8 @@ static void offer_settings(Line *l) {
     offer_setting(l, c->name, "start of the coordinate", &c->unit);
     offer_setting(l, arena_printf(l->arena, "%s'", c->name), "start of its velocity", NULL);
   }
-  for (uint32_t i = 0; i < m->states.n; i++) offer_setting(l, m->states.at[i].name, "start of the state", &m->states.at[i].unit);
+  for (uint32_t i = 0; i < m->states.n; i++)
+    offer_setting(l, m->states.at[i].name, m->states.at[i].coordinate ? "start of the coordinate" : "start of the state", &m->states.at[i].unit);
   for (uint32_t i = 0; i < m->inputs.n; i++) offer_setting(l, m->inputs.at[i].name, "input, held constant", &m->inputs.at[i].unit);
 }
 

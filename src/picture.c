@@ -157,9 +157,10 @@ static void find_only(Maker *k, Found *f) {
 /* Of a family of numbers, u[1] u[2] ...: each at the place of its number. */
 static void find_row(const Model *m, StrBuf *points) {
   enum { MOST = 1000 };
-  for (uint32_t i = 0; i < m->coords.n && i < MOST; i++) {
-    const char *name = m->coords.at[i].name, *at = strchr(name, '[');
-    if (!at || strchr(at, ',') || strchr(at, '.') || (i && strncmp(name, m->coords.at[0].name, (size_t)(at - name + 1)) != 0)) {
+  CoordList coords = model_coordinates(m);
+  for (uint32_t i = 0; i < coords.n && i < MOST; i++) {
+    const char *name = coords.at[i], *at = strchr(name, '[');
+    if (!at || strchr(at, ',') || strchr(at, '.') || (i && strncmp(name, coords.at[0], (size_t)(at - name + 1)) != 0)) {
       points->n = 0;
       return;
     }
@@ -175,8 +176,9 @@ static int find_vectors(Maker *k, Found *f) {
   const Model *m = model_build(k->ast, &choice);
   StrBuf points = strbuf(k->arena);
   if (!m) return 0;
-  for (uint32_t i = 0, n = 0; i + 1 < m->coords.n && n < MOST; i++) {
-    const char *x = m->coords.at[i].name, *y = m->coords.at[i + 1].name;
+  CoordList coords = model_coordinates(m);
+  for (uint32_t i = 0, n = 0; i + 1 < coords.n && n < MOST; i++) {
+    const char *x = coords.at[i], *y = coords.at[i + 1];
     size_t len = strlen(x);
     if (len < 3 || strcmp(x + len - 2, ".x") != 0 || strlen(y) != len || strncmp(x, y, len - 1) != 0) continue;
     sb_printf(&points, "%s%s,%s", n++ ? " " : "", x, y);

@@ -51,11 +51,11 @@ enum {
   LAG_SMOOTH = 8,           /* no if, abs, sign, min, max, and no table */
   LAG_SEPARABLE = 16,       /* constant mass matrix, accelerations that do not depend on velocities, no states */
   LAG_TIMELESS = 32,        /* t enters by the formulas and tables of inputs, if at all */
-  LAG_FIRST_ORDER = 128,    /* L is linear in all velocities: coordinates are among z, nq is 0, and M zd = dH is solved with the
-                             * two-form omega = d(dL/dv) in place of a mass matrix */
-  LAG_CONSTANT_FORM = 256,  /* and omega depends on no coordinate, state or time, and no force on velocities */
-  LAG_LOSES_ENERGY = 64     /* not conserved, but with constant inputs the energy, less the work of forces, which are constant,
+  LAG_LOSES_ENERGY = 64,    /* not conserved, but with constant inputs the energy, less the work of forces, which are constant,
                              * never grows: the dissipation is quadratic in q' and nowhere negative, for the signs declared */
+  LAG_FIRST_ORDER = 128,    /* L = theta(q, t) v - H is linear in all velocities: coordinates are among z, nq is 0, and their rates solve
+                             * omega zd = dH/dq + ... with the two-form omega = dtheta in place of a mass matrix */
+  LAG_CONSTANT_FORM = 256   /* and omega depends on no coordinate, state or time, and no force on velocities */
 };
 
 /* A named quantity. unit is as declared ("deg"), or as found from the equations, "" when none; x units are

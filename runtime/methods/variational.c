@@ -124,7 +124,7 @@ static int gauss_tangent(void *work, lag_problem *pb, double t, int k, double *Y
   return (pb->nq ? lag_implicit_tangent : lag_collocation_tangent)(work, pb, t, k, Y, scratch);
 }
 
-#define KEEPS (LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_NEWTON)
+#define PROPERTIES (LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_NEWTON)
 
 const lag_method lag_variational = {
     .name = "variational",
@@ -133,7 +133,7 @@ const lag_method lag_variational = {
     .order_most = 8,
     .dense_order = 2,
     .doc = "discrete Lagrangian, Newton's method. DOI 10.1017/S096249290100006X",
-    .flags = KEEPS | LAG_METHOD_CONSTRAINTS,
+    .flags = PROPERTIES | LAG_METHOD_CONSTRAINTS,
     .noptions = 3,
     .options = variational_options,
     .check = variational_check,
@@ -155,7 +155,7 @@ const lag_method lag_gauss = {
     .dense_order = 4,
     .doc = "Gauss collocation in q and p, Newton's method; where L is linear in the velocities, or there are states alone, in these. DOI "
            "10.1007/3-540-30666-8, VI.4 and VI.6",
-    .flags = KEEPS | LAG_METHOD_FLOWS,
+    .flags = PROPERTIES | LAG_METHOD_FLOWS,
     .noptions = 2,
     .options = gauss_options,
     .check = gauss_check,

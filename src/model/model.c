@@ -434,6 +434,14 @@ static void find_units(Builder *b) {
   else b->energy = b->dim_of.at[m->energy_sym] = dim_unknown(b->dims, NULL);
 }
 
+CoordList model_coordinates(const Model *m) {
+  VEC(Name) names = {0};
+  for (uint32_t i = 0; i < m->coords.n; i++) vec_push(m->arena, &names, m->coords.at[i].name);
+  for (uint32_t i = 0; i < m->states.n; i++)
+    if (m->states.at[i].coordinate) vec_push(m->arena, &names, m->states.at[i].name);
+  return (CoordList){names.at, names.n};
+}
+
 /* The degree in velocities of a node of L whose arguments have the degrees given; 2 stands for all that is not linear. */
 static uint8_t degree_of(const ExprGraph *g, Expr x, const ExprMap *degrees) {
   uint32_t degree = 0;
@@ -488,7 +496,7 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
 Model *model_build(Ast *ast, const ModelChoice *choice) {
   Builder *b = build(ast, choice, 0);
   if (!ast->diags->errors && is_first_order(b->m)) {
-    if (b->m->constraints.n) not_yet(b, b->m->constraints.at[0].span, "constraints where L is linear in the velocities");
+    if (b->m->constraints.n) not_yet(b, b->m->constraints.at[0].span, "constraints and contacts where L is linear in the velocities");
     else b = build(ast, choice, 1);
   }
   add_section(b, &choice->section);

@@ -201,7 +201,7 @@ void model_dump(const Model *m, StrBuf *out);
 typedef struct {
   const Name *at;
   uint32_t n;
-} SceneList, EffectList;
+} SceneList, EffectList, CoordList;
 SceneList model_scenes(const Ast *ast);
 
 /* Whether the file has this scene; if not, a message in its diags names the nearest. */
@@ -244,6 +244,9 @@ typedef struct {
   uint32_t ngiven;
   Section section;
 } ModelChoice;
+
+/* The names that `coord` declares, in order, whatever the order of L. */
+CoordList model_coordinates(const Model *m);
 
 /* Builds the model. NULL when there were errors; they are in ast->diags, all of them. */
 Model *model_build(Ast *ast, const ModelChoice *choice);

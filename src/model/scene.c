@@ -361,15 +361,12 @@ static void set_motion(Builder *b, const AstStmt *st) {
     if (e->kind == ENT_PARAM && !exact) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
     return;
   }
-  if (p.primes && e->kind == ENT_STATE && b->m->states.at[e->index].coordinate) {
-    diag_error(b->diags, x->span, "`%s'` follows from the coordinates: L is linear in the velocities, and the motion of first order", name->name);
-    diag_help(b->diags, exact ? "the coordinate itself has a closed form: `exact %s = ...`" : "leave it out; `start %s = ...` is all that it needs", name->name);
-    return;
-  }
   if (p.primes && e->kind == ENT_STATE) {
-    diag_error(b->diags, x->span, "the rate of a state follows from its flow");
-    if (exact) diag_help(b->diags, "the state itself has a closed form: `exact %s = ...`", name->name);
-    else diag_help(b->diags, "the state itself starts somewhere: `start %s = ...`", name->name);
+    int is_coord = b->m->states.at[e->index].coordinate;
+    if (is_coord) diag_error(b->diags, x->span, "`%s'` follows from the coordinates: L is linear in the velocities, and the motion of first order", name->name);
+    else diag_error(b->diags, x->span, "the rate of a state follows from its flow");
+    diag_help(b->diags, exact ? "the %s itself has a closed form: `exact %s = ...`" : "the %s itself starts somewhere: `start %s = ...`",
+              is_coord ? "coordinate" : "state", name->name);
     return;
   }
   if (st->exactly && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;

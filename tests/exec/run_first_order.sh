@@ -77,6 +77,33 @@ check "a singular two-form is an error" refuses "at t = 0 s: the two-form of L i
 "$LAGC" run "$TMP/fold.lag" towards --json --until 0.3 >"$TMP/fold.json"
 check "x^2 = 1 - 2 t before that" awk '{ if (match($0, /"x": *[0-9.]*/)) { x = substr($0, RSTART, RLENGTH); sub(/.*: */, "", x); d = x*x - 0.4; exit !(d < 1e-8 && d > -1e-8) } }' "$TMP/fold.json"
 
+# ---- vectors, effects that bring inertia, and pictures
+cat >"$TMP/charge.lag" <<'LAG'
+model charge "with and without inertia"
+coord r: vec2 [m]
+param B = 2 [T] > 0, q = 1 [C] > 0, E = 0.3 [V/m]
+lagrangian = q*B/2*(r.x*r.y' - r.y*r.x') + q*E*r.y
+effect inertia {
+  param m = 0.01 [kg] > 0
+  kinetic = m/2*dot(r', r')
+  expect m*r.y'' = q*E - q*B*r.x'
+}
+effect shaker {
+  input F [N] = 0.1 [N]*sin(2 [rad/s]*t)
+  force r.x = F
+  expect r.y' = -F/(q*B)
+}
+expect r.x' = E/B
+scene drift { start r = (0, 1); span 5 [s]; exact r.x = r.x(0) + E/B*t; monitor exact 1e-12 }
+scene gyrate { like drift; use inertia; start r' = (0.15, 0); monitor none; output r, r' }
+LAG
+check "of first order without an effect, of second with it" "$LAGC" check "$TMP/charge.lag"
+check "the drift has a closed form" "$LAGC" run "$TMP/charge.lag" drift
+check "which is the motion with inertia that does not gyrate" sh -c "'$LAGC' run '$TMP/charge.lag' gyrate --json | grep -q '\"r.x\": 0.7[45][09]*'"
+check "vectors are points of a film" "$LAGC" animate "$TMP/charge.lag" drift --quiet -o "$TMP/charge.html"
+completes() { "$LAGC" complete run "$TMP/charge.lag" "$1" | grep -q "$2"; }
+check "completion calls them coordinates" completes "r.x" "start of the coordinate"
+
 # ---- in other programs
 printf '#define PV_IMPLEMENTATION\n#include "pv.h"\n#include <stdio.h>\nint main(void) { pv_params p; pv_state s; pv_defaults(&p); pv_start(&p, &s);\n  for (int i = 0; i < 5000; i++) if (pv_rk4_step(&p, &s, 0.001) != PV_OK) return 1;\n  printf("%%.9f\\n", (double)s.z[0]); return 0; }\n' >"$TMP/pv_main.c.txt"
 "$LAGC" header models/point_vortices.lag -o "$TMP/pv.h"
