@@ -40,6 +40,7 @@ static const lag_method_option options[NOPTIONS] = {
 /* One block of doubles; behind it the arrays below. */
 typedef struct Taylor {
   double order, bits; /* bits: what aim says */
+  double per_order[WINDOW]; /* 1/k of the orders that `allowed` looks at, from the highest down */
   double h_option, h_max, fixed;
   double floor;     /* absolute over relative tolerance: a state below it is judged like one of this size */
   double ready;     /* 1: series[now] is that at t, y */
@@ -113,11 +114,14 @@ static const double per_step = 400, per_first = 0.5, per_term = 1, per_product =
 static const double per_step = 100, per_first = 1, per_term = 1, per_product = 2;
 #endif
 
-/* The order that covers the most time for its operations. */
+/* The order that covers the most time for its operations. What a step adds is rounded in proportion to its length: where nothing
+ * but rounding is left, products count fully, which makes orders lower and steps shorter. */
 static double best_order(const lag_problem *pb)
 {
+  enum { ROUNDING = 16 };
   const lag_taylor *ty = pb->model->taylor;
-  double bits = aim(pb), least = HUGE_VAL, term = per_term + per_product * ty->sums;
+  double product = pb->tol < ROUNDING * DBL_EPSILON ? fmax(per_product, 1) : per_product;
+  double bits = aim(pb), least = HUGE_VAL, term = per_term + product * ty->sums;
   int best = LEAST_ORDER;
 
   for (int p = LEAST_ORDER; p <= ty->order; p++) {
@@ -135,6 +139,9 @@ static int init(void *work, lag_problem *pb, const double *opt)
 
   w->bits = aim(pb);
   w->order = fmin(pb->model->taylor->order, opt[OPT_ORDER] > 0 ? ceil(opt[OPT_ORDER]) : best_order(pb));
+  for (int i = 0; i < WINDOW; i++) {
+    w->per_order[i] = 1 / fmax(w->order - i, 1);
+  }
   w->fixed = opt[OPT_ADAPT];
   w->h_option = lag_step_size(pb, opt[OPT_STEP]);
   w->h_max = opt[OPT_MAX] > 0 ? opt[OPT_MAX] : pb->span / 10;
@@ -231,7 +238,7 @@ static double allowed(Taylor *w, lag_problem *pb, const double *y)
       double size = fabs(row[i]) * scale[i];
       most = size > most ? size : most;
     }
-    double here = most > 0 ? lag_log2_near(most) / k : -HUGE_VAL;
+    double here = most > 0 ? lag_log2_near(most) * w->per_order[order - k] : -HUGE_VAL;
     root = here > root ? here : root;
   }
   if (root == -HUGE_VAL) {
