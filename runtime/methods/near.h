@@ -24,6 +24,18 @@ static inline double lag_log2_near(double x)
   return e + m * (2 - m / 3) - 5.0 / 3;
 }
 
+/* The power of 2 next to |x| towards 0; of subnormal numbers 0. */
+static inline double lag_binade(double x)
+{
+  uint64_t bits;
+  double power;
+
+  memcpy(&bits, &x, sizeof bits);
+  bits &= UINT64_C(0x7ff) << LAG_FRACTION_BITS;
+  memcpy(&power, &bits, sizeof power);
+  return power;
+}
+
 /* 2^x to 0.3 %, within the range of normal numbers. */
 static inline double lag_exp2_near(double x)
 {
@@ -46,6 +58,11 @@ static inline double lag_log2_near(double x)
 static inline double lag_exp2_near(double x)
 {
   return exp2(x);
+}
+
+static inline double lag_binade(double x)
+{
+  return ldexp(1, ilogb(x));
 }
 
 #endif

@@ -39,7 +39,8 @@ static const lag_method_option options[NOPTIONS] = {
 
 /* One block of doubles; behind it the arrays below. */
 typedef struct Taylor {
-  double order;
+  double order, bits; /* bits: what aim says */
+  double per_order[WINDOW]; /* 1/k of the orders that `allowed` looks at, from the highest down */
   double h_option, h_max, fixed;
   double floor;     /* absolute over relative tolerance: a state below it is judged like one of this size */
   double ready;     /* 1: series[now] is that at t, y */
@@ -105,16 +106,27 @@ static double aim(const lag_problem *pb)
   return AIM - lag_log2_near(pb->tol) + (left < 0 ? 0 : left > 10 ? 10 : left);
 }
 
-/* The order that covers the most time for its operations. Of a step itself, 300 of them; the products of the sums are made
- * two at a time. */
+/* What a step costs besides its series, what a term costs that every order sums over the orders below it, and what each sum of
+ * it costs, in operations of `next`: measured where numbers are doubles, of which two or four are summed at a time. */
+#if DBL_MANT_DIG == 53
+static const double per_step = 400, per_first = 0.5, per_term = 1, per_product = 0.2;
+#else
+static const double per_step = 100, per_first = 1, per_term = 1, per_product = 2;
+#endif
+
+/* The order that covers the most time for its operations. What a step adds is rounded in proportion to its length: where nothing
+ * but rounding is left, products count fully, which makes orders lower and steps shorter. */
 static double best_order(const lag_problem *pb)
 {
+  enum { ROUNDING = 16 };
   const lag_taylor *ty = pb->model->taylor;
-  double bits = aim(pb), least = HUGE_VAL;
+  double product = pb->tol < ROUNDING * DBL_EPSILON ? fmax(per_product, 1) : per_product;
+  double bits = aim(pb), least = HUGE_VAL, term = per_term + product * ty->sums;
   int best = LEAST_ORDER;
 
   for (int p = LEAST_ORDER; p <= ty->order; p++) {
-    double cost = (300.0 + ty->cost_first + (double)p * ty->cost_next + p * (p - 1) / 2.0 * ty->sums) * exp2(bits / (p + 1));
+    double orders = p * (ty->cost_next + 5.0) + p * (p - 1) / 2.0 * term;
+    double cost = (per_step + per_first * ty->cost_first + orders) * exp2(bits / (p + 1));
     best = cost < least ? p : best;
     least = fmin(cost, least);
   }
@@ -125,7 +137,11 @@ static int init(void *work, lag_problem *pb, const double *opt)
 {
   Taylor *w = work;
 
+  w->bits = aim(pb);
   w->order = fmin(pb->model->taylor->order, opt[OPT_ORDER] > 0 ? ceil(opt[OPT_ORDER]) : best_order(pb));
+  for (int i = 0; i < WINDOW; i++) {
+    w->per_order[i] = 1 / fmax(w->order - i, 1);
+  }
   w->fixed = opt[OPT_ADAPT];
   w->h_option = lag_step_size(pb, opt[OPT_STEP]);
   w->h_max = opt[OPT_MAX] > 0 ? opt[OPT_MAX] : pb->span / 10;
@@ -222,13 +238,13 @@ static double allowed(Taylor *w, lag_problem *pb, const double *y)
       double size = fabs(row[i]) * scale[i];
       most = size > most ? size : most;
     }
-    double here = most > 0 ? lag_log2_near(most) / k : -HUGE_VAL;
+    double here = most > 0 ? lag_log2_near(most) * w->per_order[order - k] : -HUGE_VAL;
     root = here > root ? here : root;
   }
   if (root == -HUGE_VAL) {
     return HUGE_VAL;
   }
-  return fabs(w->unit[w->now > 0]) * lag_exp2_near(-aim(pb) / (order + 1) - root);
+  return fabs(w->unit[w->now > 0]) * lag_exp2_near(-w->bits / (order + 1) - root);
 }
 
 /* The error of a step of dt that ends at Y1, in tolerances: item 2 above. The polynomial leaves out c t^(p+1) and what
@@ -283,7 +299,7 @@ static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, 
   w->dt = dt;
   *t = tb;
   w->now = 1 - w->now;
-  w->ready = expand(w, pb, w->now, ldexp(1, ilogb(dt)));
+  w->ready = expand(w, pb, w->now, lag_binade(dt));
 }
 
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)

@@ -31,7 +31,7 @@ static const char *const abi_names[] = {
   "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_cubic",
   "lag_spline", "lag_var", "lag_event", "lag_model", "lag_option", "lag_monitor", "lag_table", "lag_scene", "lag_program",
   "lag_entry", "lag_linear", "LAG_NUMBER", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
-  "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL",
+  "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL", "TAYLOR_UNROLL_4",
   "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
   "taylor_rest", "taylor_squares", "TAYLOR_SQUARES", "taylor_four", "TAYLOR_WIDE", "TAYLOR_INLINE", "taylor_sums_wide", "taylor_squares_wide",
   "taylor_rest_wide", "taylor_at_wide", "taylor_rest_any", "taylor_at_any",

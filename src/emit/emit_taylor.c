@@ -28,8 +28,10 @@ static const char *const head =
   "#endif\n"
   "#if defined(__GNUC__) && !defined(__clang__)\n"
   "#define TAYLOR_UNROLL _Pragma(\"GCC unroll 16\")\n"
+  "#define TAYLOR_UNROLL_4 _Pragma(\"GCC unroll 4\")\n"
   "#else\n"
   "#define TAYLOR_UNROLL\n"
+  "#define TAYLOR_UNROLL_4\n"
   "#endif\n";
 
 /* Where sums are too few to fill fours, pairs are as fast everywhere. */
@@ -40,24 +42,34 @@ static const char *const wide_head =
   "typedef double taylor_four __attribute__((vector_size(32), aligned(8), may_alias));\n"
   "#endif\n";
 
-/* $: nothing, or _wide; # the type of numbers side by side; @: an attribute. */
+/* $: nothing, or _wide; # the type of numbers side by side; @: an attribute; %: where the loop over orders is unrolled. */
 static const char *const at =
   "\n@static void taylor_at$(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
   "  enum { PARTS = 4*sizeof(LAG_REAL)/sizeof(#) };\n"
+  "  const LAG_REAL u = s*s, twice = LAG_C(2.0);\n"
   "  for (int i = 0; i < TAYLOR_WIDTH; i += 4) {\n"
-  "    # sum[PARTS] = {0}, slope[PARTS] = {0};\n"
-  "    for (int k = n; k > 0; k--) {\n"
-  "      const # *const row = (const # *)(x + k*TAYLOR_COLUMNS + i);\n"
+  "    # e[PARTS] = {0}, de[PARTS] = {0}, o[PARTS] = {0}, d[PARTS] = {0};\n"
+  "    int k = n;\n"
+  "    for (const # *const row = (const # *)(x + k*TAYLOR_COLUMNS + i); k%2 == 0; k--)\n"
+  "      for (int g = 0; g < (int)PARTS; g++) e[g] = row[g];\n"
+  "    for (; k > 0; k -= 2) {\n"
+  "      const # *const odd = (const # *)(x + k*TAYLOR_COLUMNS + i), *const even = (const # *)(x + (k - 1)*TAYLOR_COLUMNS + i);\n"
   "      TAYLOR_UNROLL\n"
   "      for (int g = 0; g < (int)PARTS; g++) {\n"
-  "        slope[g] = slope[g]*s + sum[g];\n"
-  "        sum[g] = sum[g]*s + row[g];\n"
+  "        d[g] = d[g]*u + o[g];\n"
+  "        o[g] = o[g]*u + odd[g];\n"
+  "      }\n"
+  "      if (k == 1) break;\n"
+  "      TAYLOR_UNROLL\n"
+  "      for (int g = 0; g < (int)PARTS; g++) {\n"
+  "        de[g] = de[g]*u + e[g];\n"
+  "        e[g] = e[g]*u + even[g];\n"
   "      }\n"
   "    }\n"
   "    TAYLOR_UNROLL\n"
   "    for (int g = 0; g < (int)PARTS; g++) {\n"
-  "      ((# *)(y + i))[g] = sum[g]*s;\n"
-  "      ((# *)(dy + i))[g] = slope[g]*s + sum[g];\n"
+  "      ((# *)(y + i))[g] = e[g]*u + o[g]*s;\n"
+  "      ((# *)(dy + i))[g] = (de[g]*u + e[g])*(twice*s) + d[g]*(twice*u) + o[g];\n"
   "    }\n"
   "  }\n"
   "}\n";
@@ -68,7 +80,7 @@ static const char *const sums =
   "  const int last = k - 1;\n"
   "  for (int i = 0; i < TAYLOR_SQUARES; i += TAYLOR_GROUP) {\n"
   "    # s[PARTS] = {0};\n"
-  "    for (int j = 2; j < last; j++) {\n"
+  "%    for (int j = 2; j < last; j++) {\n"
   "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->b[k - j] + i);\n"
   "      TAYLOR_UNROLL\n"
   "      for (int g = 0; g < (int)PARTS; g++) s[g] += a[g]*b[g];\n"
@@ -95,7 +107,7 @@ static const char *const squares =
   "  const LAG_REAL twice = LAG_C(2.0);\n"
   "  for (int i = TAYLOR_SQUARES; i < TAYLOR_SUMS; i += TAYLOR_GROUP) {\n"
   "    # s[PARTS] = {0};\n"
-  "    for (int j = 2; j < k - j; j++) {\n"
+  "%    for (int j = 2; j < k - j; j++) {\n"
   "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->a[k - j] + i);\n"
   "      TAYLOR_UNROLL\n"
   "      for (int g = 0; g < (int)PARTS; g++) s[g] += a[g]*b[g];\n"
@@ -124,8 +136,8 @@ static const char *const along_rows_comment =
   " *                    stored: a processor hands on what it has just stored only to loads of no more than that.\n"
   " *   taylor_squares   the same where b is a: twice the first half, and the middle\n"
   " *   taylor_rest      orders 1 to n\n"
-  " *   taylor_at        y = x[1] s + ... + x[n] s^n for q, v and z, and dy its derivative by s: by Horner's rule. Both have room\n"
-  " *                    for TAYLOR_WIDTH. */";
+  " *   taylor_at        y = x[1] s + ... + x[n] s^n for q, v and z, and dy its derivative by s: even and odd powers by\n"
+  " *                    Horner's rule, side by side: u e(u) + s o(u), u = s^2. Both have room for TAYLOR_WIDTH. */";
 
 typedef struct {
   const Series *s;
@@ -233,23 +245,25 @@ static void rest(const Writer *w, const char *suffix, const char *attribute) {
   sb_puts(w->out, "    per_k = per_next;\n  }\n}\n");
 }
 
-/* text with $, # and @ filled in: see above. */
-static void fill(const char *text, const char *suffix, const char *type, const char *attribute, StrBuf *out) {
+/* text with its marks filled in: see above. The loop over orders is short work where there is one group of sums only. */
+static void fill(const Writer *w, const char *text, const char *suffix, const char *type, const char *attribute) {
+  StrBuf *out = w->out;
   for (; *text; text++) {
     if (*text == '$') sb_puts(out, suffix);
     else if (*text == '#' && text[1] == ' ') sb_puts(out, type);
     else if (*text == '#' && text[1] == ')') sb_puts(out, type);
     else if (*text == '@') sb_puts(out, attribute);
+    else if (*text == '%' && text[1] == ' ') sb_puts(out, w->s->first_square == w->s->group ? "    TAYLOR_UNROLL_4\n" : "");
     else sb_putc(out, *text);
   }
 }
 
 /* What goes along rows of numbers. */
 static void along_rows(const Writer *w, const char *suffix, const char *type, const char *attribute) {
-  if (w->s->sums) fill(sums, suffix, type, attribute, w->out);
-  if (w->s->squares) fill(squares, suffix, type, attribute, w->out);
+  if (w->s->sums) fill(w, sums, suffix, type, attribute);
+  if (w->s->squares) fill(w, squares, suffix, type, attribute);
   rest(w, suffix, attribute);
-  fill(at, suffix, type, attribute, w->out);
+  fill(w, at, suffix, type, attribute);
 }
 
 static int is_wide(const Series *s) { return s->group > LANES || 2 * s->nq + s->nz > 2 * LANES; }
