@@ -65,7 +65,7 @@ static int direction(Start *w, double pull, double *d)
     for (int k = 0; k < w->n; k++) {
       l[k] = -w->residual[k];
     }
-    regular = lag_kkt(nf, w->n, w->kkt);
+    regular = lag_kkt(nf, w->n, 0, w->kkt);
     rc = regular || pass == 0 ? 0 : LAG_ESINGULAR;
   }
   memcpy(d, x, (size_t)nf * sizeof *d);

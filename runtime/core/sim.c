@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 
 const char *lag_status_name(int status)
 {
@@ -126,7 +127,7 @@ static int take(lag_sim *s, double t_stop)
   if (lag_next_row(&s->pb, t, &row) < fabs(t_stop - t)) {
     t_stop = row;
   }
-  memcpy(s->y0, s->now, (size_t)s->pb.n * sizeof(double));
+  lag_copy(s->pb.n, s->now, s->y0);
   s->pb.detail = NULL;
   s->pb.bad_t = t;
   int rc = s->method->step(s->method_work, &s->pb, &t, s->y, t_stop);
@@ -152,16 +153,15 @@ int lag_between(lag_sim *s, double t, double *y)
 static int settle(lag_sim *s, double t)
 {
   const Run *r = s->run;
-  size_t bytes = (size_t)s->pb.n * sizeof(double);
 
   if (t == r->step_t1) {
-    memcpy(s->now, s->y, bytes);
+    lag_copy(s->pb.n, s->y, s->now);
   } else if (t != r->t) {
     int rc = lag_between(s, t, s->yc);
     if (rc) {
       return rc;
     }
-    memcpy(s->now, s->yc, bytes);
+    lag_copy(s->pb.n, s->yc, s->now);
   }
   s->run->t = t;
   return LAG_OK;
@@ -182,7 +182,7 @@ static int pass(lag_sim *s)
     return lag_events_fire(s);
   }
   r->have_step = 0;
-  memcpy(s->sign, s->sign_end, (size_t)s->scene->model->nev * sizeof(double));
+  lag_copy(s->scene->model->nev, s->sign_end, s->sign);
   return LAG_OK;
 }
 

@@ -36,7 +36,7 @@ Prog *lower_change(const Eqns *e, uint32_t nrows) {
   Slot *g = ARENA_ARRAY(a, Slot, nrows + 1), *d = ARENA_ARRAY(a, Slot, e->n + 1), *force = ARENA_ARRAY(a, Slot, e->n + 1);
   for (uint32_t i = 0; i < nrows; i++)
     g[i] = prog_ins(l.p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = i, .name = e->constraints.of[i]->name});
-  lower_correction(&l, nrows, g, d, force);
+  lower_correction(&l, nrows, 1, g, d, force);
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, d[i], m->coords.at[i].name);
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 1, i, force[i], m->coords.at[i].name);
   return prog_tidy(l.p);
@@ -68,7 +68,7 @@ Prog *lower_impact(const Eqns *e, const Contact *contact) {
     lower_roots(&l, &back, 1);
     demand[i] = lower_slot(&l, back);
   }
-  lower_correction(&l, k->n, demand, d, force);
+  lower_correction(&l, k->n, 0, demand, d, force);
   for (uint32_t i = 0; i < e->n; i++) {
     Expr v = expr_symbol(g, m->coords.at[i].v)->node;
     lower_roots(&l, &v, 1);

@@ -72,9 +72,11 @@ typedef struct {
 
 /* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it stands in the
  * work space. matrix is NULL where the one at that place was factored before, by another function. With m constraints A x = g on
- * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. */
+ * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. coarse: constraints that are nearly dependent count as
+ * dependent (lag_kkt.h). */
 typedef struct {
   uint32_t n, m, place;
+  int coarse;
   const Slot *matrix, *rhs;
 } Solve;
 
