@@ -10,7 +10,8 @@ enum {
   METHOD_VARIATION = 2,  /* needs derivatives of L, */
   METHOD_SPLITS = 4,     /* but not of a separable model */
   METHOD_JACOBIAN = 8,   /* needs the linearisation */
-  METHOD_TAYLOR = 16     /* needs Taylor coefficients, and so a smooth model */
+  METHOD_TAYLOR = 16,    /* needs Taylor coefficients, and so a smooth model */
+  METHOD_CONSTRAINTS = 32 /* holds constraints */
 };
 
 typedef struct {
