@@ -238,6 +238,13 @@ static int check_method(lag_sim *s, const lag_method *method)
     return lag_fail(s, LAG_EMETHOD, "method %s cannot hold constraints (%s); rk45, dop853 and variational can", method->name,
                     m->constraints->of[0].name);
   }
+  if ((needs & LAG_METHOD_FLOWS) && m->nq == 0) {
+    needs = (needs & ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION)) | LAG_METHOD_JACOBIAN;
+  }
+  if ((needs & LAG_METHOD_NO_STATES) && (has & LAG_FIRST_ORDER)) {
+    return lag_fail(s, LAG_EMETHOD, "method %s needs momenta beside coordinates, and L is linear in the velocities; gauss is symplectic there, rk45 and "
+                    "dop853 can, too", method->name);
+  }
   if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0) {
     return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can", method->name);
   }

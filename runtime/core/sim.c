@@ -50,10 +50,10 @@ static void name_rate(const lag_sim *s, int i, char *text, size_t size)
   }
 }
 
-static const char *reason(int status)
+static const char *reason(const lag_model *m, int status)
 {
   switch (status) {
-  case LAG_ESINGULAR: return "the mass matrix is singular";
+  case LAG_ESINGULAR: return m->flags & LAG_FIRST_ORDER ? "the two-form of L is singular" : "the mass matrix is singular";
   case LAG_ENAN: return "the model gives no finite value";
   case LAG_EDOMAIN: return "the model left its domain, and no smaller step helps";
   case LAG_ESTEP: return "the step became too small: a singularity, or the tolerance is too strict";
@@ -78,7 +78,7 @@ int lag_explain(lag_sim *s, int status)
     used += (size_t)snprintf(text + used, sizeof text - used, "%s%s%s = %.6g", i ? ", " : "", v->name,
                              i >= m->nq && i < 2 * m->nq ? "'" : "", lag_sim_state_value(s, i));
   }
-  return lag_fail(s, status, "at t = %.9g s: %s%s%s%s%s%s; last good state, t = %.9g s: %s%s", pb->bad_t, reason(status),
+  return lag_fail(s, status, "at t = %.9g s: %s%s%s%s%s%s; last good state, t = %.9g s: %s%s", pb->bad_t, reason(m, status),
                   name[0] ? " for " : "", name, pb->detail ? " (" : "", pb->detail ? pb->detail : "",
                   pb->detail ? ")" : "", s->run->t, text, pb->n > 8 ? ", ..." : "");
 }

@@ -11,7 +11,7 @@ static int energy_at(lag_sim *s, double t, const double *y, double *e)
   int rc = lag_inputs(&s->pb, t);
 
   e[0] = e[1] = NAN;
-  if (rc || !m->energy || m->nq == 0) {
+  if (rc || !m->energy) {
     return rc;
   }
   return m->energy(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, e, s->work);

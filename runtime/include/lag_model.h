@@ -40,7 +40,7 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 enum {
   LAG_OK = 0,
   LAG_ERETRY = 1,     /* outside the domain here: a smaller step may help */
-  LAG_ESINGULAR = -1  /* the mass matrix is singular at this state */
+  LAG_ESINGULAR = -1  /* the mass matrix is singular at this state; with LAG_FIRST_ORDER, the two-form */
 };
 
 /* Facts about a model, with the inputs that it gives itself, that the compiler proved. */
@@ -51,6 +51,9 @@ enum {
   LAG_SMOOTH = 8,           /* no if, abs, sign, min, max, and no table */
   LAG_SEPARABLE = 16,       /* constant mass matrix, accelerations that do not depend on velocities, no states */
   LAG_TIMELESS = 32,        /* t enters by the formulas and tables of inputs, if at all */
+  LAG_FIRST_ORDER = 128,    /* L is linear in all velocities: coordinates are among z, nq is 0, and M zd = dH is solved with the
+                             * two-form omega = d(dL/dv) in place of a mass matrix */
+  LAG_CONSTANT_FORM = 256,  /* and omega depends on no coordinate, state or time, and no force on velocities */
   LAG_LOSES_ENERGY = 64     /* not conserved, but with constant inputs the energy, less the work of forces, which are constant,
                              * never grows: the dissipation is quadratic in q' and nowhere negative, for the signs declared */
 };

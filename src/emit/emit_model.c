@@ -361,9 +361,9 @@ static int needs_solver(const IrUnit *u) {
 
 static void flag_text(unsigned flags, StrBuf *out) {
   static const char *const names[] = {"LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS", "LAG_AUTONOMOUS", "LAG_SMOOTH",
-                                       "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY"};
+                                       "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_FIRST_ORDER", "LAG_CONSTANT_FORM"};
   int some = 0;
-  for (int i = 0; i < 7; i++)
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (flags >> i & 1) sb_printf(out, "%s%s", some++ ? " | " : "", names[i]);
   if (!some) sb_putc(out, '0');
 }

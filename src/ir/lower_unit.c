@@ -18,7 +18,8 @@ static const char *joined(Arena *a, const Name *names, uint32_t n) {
 
 static unsigned flags_of(const Eqns *e) {
   return (e->conserves_energy ? 1u : 0) | (e->constant_mass ? 2u : 0) | (e->autonomous ? 4u : 0) | (e->smooth ? 8u : 0) |
-         (e->separable ? 16u : 0) | (e->timeless ? 32u : 0) | (e->loses_energy ? 64u : 0);
+         (e->separable ? 16u : 0) | (e->timeless ? 32u : 0) | (e->loses_energy ? 64u : 0) |
+         (e->first.n ? 128u : 0) | (e->first.n && e->first.constant && e->first.closed ? 256u : 0);
 }
 
 /* The contact whose impact is event i, or NULL. */
@@ -96,7 +97,7 @@ IrUnit *unit_new(const Eqns *e, const char *source) {
   for (uint32_t i = 0; i < m->coords.n; i++)
     vec_push(m->arena, &u->q, var_of(m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->states.n; i++)
-    vec_push(m->arena, &u->z, var_of(m->states.at[i].name, &m->states.at[i].unit, 0, SIGN_ANY));
+    vec_push(m->arena, &u->z, var_of(m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->params.n; i++)
     vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
   for (uint32_t i = 0; i < m->inputs.n; i++)

@@ -114,7 +114,6 @@ void add_contact(Builder *b, const AstStmt *st, Name effect) {
   IndexRange r = {0};
   if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
   Name name = member_name(b, st->name, r.lo, r.n);
-  check_name_is_new(b, "contact", name, effect, st->name_span);
   check_name_is_new(b, "constraint", name, effect, st->name_span);
   Value gap = resolve(b, st->lhs, IN_DYNAMICS, effect), e = resolve(b, st->rhs, IN_DYNAMICS, effect);
   if (!gap.e || !e.e || !check_contact(b, st, name, &gap, &e)) return;
