@@ -296,8 +296,8 @@ static int rank(Start *w, double *marks)
     for (int i = 0; i < nq && size > 0; i++) {
       row[i] /= size;
     }
-    double left = remainder_of(nq, r, Q, row);
-    marks[k] = !(left > least);
+    double left = size > 0 ? remainder_of(nq, r, Q, row) : 0;
+    marks[k] = size > 0 && !(left > least); /* a contact that is open demands nothing */
     for (int i = 0; i < nq && left > least; i++) {
       Q[r * nq + i] = row[i] / left;
     }

@@ -11,8 +11,8 @@ enum {
   METHOD_SPLITS = 4,     /* but not of a separable model */
   METHOD_JACOBIAN = 8,   /* needs the linearisation */
   METHOD_TAYLOR = 16,    /* needs Taylor coefficients, and so a smooth model */
-  METHOD_CONSTRAINTS = 64, /* holds constraints */
-  METHOD_FLOWS = 32      /* takes models of states alone, with the linearisation, though it refuses states beside coordinates */
+  METHOD_FLOWS = 32,     /* takes models of states alone, with the linearisation, though it refuses states beside coordinates */
+  METHOD_CONSTRAINTS = 64 /* holds constraints */
 };
 
 typedef struct {

@@ -223,11 +223,6 @@ static int check_numbers(const Eqns *e) {
 static int check_method(const Eqns *e) {
   const Scene *sc = &e->m->scene;
   const MethodInfo *method = sc->method ? method_find(sc->method, strlen(sc->method)) : NULL;
-  if (method && e->constraints.n && !(method->flags & METHOD_CONSTRAINTS)) {
-    diag_error(e->m->diags, sc->method_span, "the method `%s` cannot hold constraints", method->name);
-    diag_help(e->m->diags, "`rk45`, `dop853`, `verlet` and `variational` can");
-    return 0;
-  }
   if (!method || !(method->flags & METHOD_TAYLOR) || e->smooth) return 1;
   diag_error(e->m->diags, sc->method_span, "the method `%s` needs a model without if, abs, sign, min, max and tables", method->name);
   diag_help(e->m->diags, "`dop853` does not");

@@ -91,5 +91,10 @@ void scene_method(Builder *b, const AstStmt *st) {
     diag_also(b->diags, b->m->states.at[0].span, "here is a state");
     diag_help(b->diags, "`rk45` and `dop853` can");
   }
+  if (m && !(m->flags & METHOD_CONSTRAINTS) && b->m->constraints.n) {
+    diag_error(b->diags, st->name_span, "the method `%s` cannot hold constraints", m->name);
+    diag_also(b->diags, b->m->constraints.at[0].span, "here is a constraint");
+    diag_help(b->diags, "`rk45`, `dop853` and `variational` can");
+  }
   for (const AstStmt *o = st->body; o; o = o->next) take_option(b, m, o);
 }
