@@ -86,10 +86,10 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
     s->on_event(s->on_event_context, k, r->t, s->now, s->yb);
   }
   if (memcmp(s->yb, s->now, bytes) != 0) {
-    *changed = 1;
-    if ((rc = lag_tangent_refuse(s, k)) != 0) {
+    if ((rc = lag_tangent_jump(s, k, *changed)) != 0) {
       return rc;
     }
+    *changed = 1;
     rc = lag_watch_jump(s, r->t, s->now, s->yb);
     memcpy(s->now, s->yb, bytes);
   }

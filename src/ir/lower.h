@@ -22,6 +22,7 @@ Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
 Prog *lower_action(const Eqns *e, uint32_t event); /* out 0, 1, 2: q1, v1, z1; only what is set */
 Prog *lower_inputs(const Eqns *e);  /* out 0: u[nu] */
 Prog *lower_linear(const Eqns *e, Partials dr); /* out 0: dr, in the order of the entries, out 1: M, likewise; reads q'' */
+Prog *lower_jumps(const Eqns *e, Jumps jumps); /* out 0: in the order of the entries */
 Prog *lower_outputs(const Eqns *e); /* out 0: out[nout] */
 Prog *lower_plain_outputs(const Eqns *e); /* likewise, of those without closed forms */
 int output_is_plain(const Eqns *e, uint32_t i);
