@@ -218,7 +218,7 @@ int lag_tangent_jump(lag_sim *s, int k, int more)
     return refuse(s, k, "its derivatives cannot be computed");
   }
   if (!njump(s) || !gather(s, k, &j)) {
-    return refuse(s, k, "it depends on an input, whose rate a model does not have");
+    return refuse(s, k, "it depends on an input, whose rate a model does not have"); /* the compiler lists all others */
   }
   int rc = s->run->have_step != 0.0 && t != s->run->step_t0 ? carry(s, t, s->tangent) : LAG_OK;
   if (rc || lag_rhs(pb, t, s->now, j.before) || lag_rhs(pb, t, s->yb, j.after)) {
