@@ -96,11 +96,26 @@ static int put_estimates(Job *job)
   return table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
 
+/* The sum of exponents would no longer be the mean divergence, which tells whether steps are short enough. */
+static void at_event(void *context, int k, double t, const double *before, const double *after)
+{
+  Job *job = context;
+  const lag_model *m = job->app->scene->model;
+
+  if (memcmp(before, after, (size_t)job->l.n * sizeof *before) != 0) {
+    job->rc = lag_fail(job->app->sim, LAG_EMETHOD, "event %s changes the state at t = %.17g s, which exponents do not go over; take a scene "
+                       "without it, or end the run before", m->ev[k].name, t);
+  }
+}
+
 static int after_step(void *context, const lag_sim *sim)
 {
   Job *job = context;
   Lyapunov *l = &job->l;
 
+  if (job->rc) {
+    return 1;
+  }
   job->rc = lag_lyapunov_step(l, job->app->sim);
   if (job->rc == 0 && l->t > l->begun && l->t >= job->next_row) {
     job->rc = put_estimates(job);
@@ -274,6 +289,7 @@ static int run(App *app, Job *job)
     return app_io_error(app, a->out);
   }
   lag_sim_on_step(app->sim, after_step, job);
+  lag_sim_on_event(app->sim, at_event, job);
   app_watch(app);
   app->status = lag_sim_advance(app->sim, app->until);
   app_unwatch(app);

@@ -68,8 +68,8 @@ struct lag_sim {
   double *mon_first, *mon_peak; /* [nmonitors] */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
   double *method_work;
-  double *tangent, *tangent_scratch; /* [n * tangent_columns] at step_t0, or now where there is no step; NULL */
-  int tangent_columns;
+  double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or now where there is no step; NULL */
+  int tangent_columns, tangent_at_event; /* at_event: it is what an event made of it at this time */
   int (*on_step)(void *, const lag_sim *);
   void *on_step_context;
   lag_event_fn *on_event;
@@ -114,9 +114,9 @@ int lag_contact_is_closed(const lag_sim *sim, const lag_contact *contact);
 int lag_contact_after(lag_sim *sim, int event, int ends, const double *before, double *y);
 int lag_contact_begin(lag_sim *sim);
 
-/* tangent.c. pass: the step has been used up. refuse: event k changes the state. */
+/* tangent.c. pass: the step has been used up. jump: event k changes the state from `now` to yb; more: another one has at this time. */
 int lag_tangent_pass(lag_sim *sim);
-int lag_tangent_refuse(lag_sim *sim, int k);
+int lag_tangent_jump(lag_sim *sim, int k, int more);
 void lag_tangent_free(lag_sim *sim);
 
 /* exact.c. at: the closed forms at t, behind the inputs in s->u; lag_inputs comes first. see: as in watch.c. */

@@ -91,15 +91,16 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   if ((rc = lag_contact_after(s, k, ends, s->now, s->yb)) != 0) {
     return lag_fail(s, LAG_EMODEL, "the contact %s has no finite values at t = %.17g s", m->ev[k].name, r->t);
   }
+  int more = *changed;
   *changed |= contact != NULL; /* another model moves on */
   if (s->on_event) {
     s->on_event(s->on_event_context, k, r->t, s->now, s->yb);
   }
   if (memcmp(s->yb, s->now, bytes) != 0) {
-    *changed = 1;
-    if ((rc = lag_tangent_refuse(s, k)) != 0) {
+    if ((rc = lag_tangent_jump(s, k, more)) != 0) {
       return rc;
     }
+    *changed = 1;
     rc = lag_watch_jump(s, r->t, s->now, s->yb);
     memcpy(s->now, s->yb, bytes);
   }

@@ -1,6 +1,13 @@
 /* The tangent of a run: small changes of the state, carried along. Enters: what they are at one time; leaves: what has become
  * of them. Holds: the run itself is the same, bit by bit, with a tangent or without: steps are differentiated after they
- * were taken, and the counts of the run do not include what that costs. */
+ * were taken, and the counts of the run do not include what that costs.
+ *
+ * An event that changes the state from y to y+ = R(t, y) where g(t, y) = 0 moves in time when y moves; so what becomes of small
+ * changes is, with f and f+ the rates before and after it,
+ *   S = R_y + (f+ - R_y f - R_t) g_y / (g_y f + g_t),
+ * the saltation matrix: R.I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004), ch. 7, DOI
+ * 10.1007/978-3-540-44398-8. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +21,8 @@ static size_t block(const lag_sim *s)
 void lag_tangent_free(lag_sim *s)
 {
   free(s->tangent);
-  s->tangent = s->tangent_scratch = NULL;
+  s->tangent = s->tangent_jump = s->tangent_scratch = NULL;
+  s->tangent_at_event = 0;
   s->tangent_columns = 0;
 }
 
@@ -40,6 +48,21 @@ static int check(lag_sim *s)
   return LAG_OK;
 }
 
+static int njump(const lag_sim *s)
+{
+  const lag_linear *l = s->scene->model->linear;
+
+  return l && l->jumps ? l->njump : 0;
+}
+
+/* What a jump takes: its entries, S[n n], four vectors and a copy of Y[n k]. */
+static size_t jump_size(const lag_sim *s, int k)
+{
+  size_t n = (size_t)s->pb.n;
+
+  return njump(s) ? (size_t)njump(s) + n * n + 4 * (n + 1) + n * (size_t)k : 0;
+}
+
 /* Room for k columns, when there is another number of them. */
 static int make_room(lag_sim *s, int k)
 {
@@ -49,11 +72,12 @@ static int make_room(lag_sim *s, int k)
     return LAG_OK;
   }
   lag_tangent_free(s);
-  s->tangent = calloc(size + s->method->tangent_size(&s->pb, k) + 1, sizeof *s->tangent);
+  s->tangent = calloc(size + jump_size(s, k) + s->method->tangent_size(&s->pb, k) + 1, sizeof *s->tangent);
   if (!s->tangent) {
     return lag_fail(s, LAG_ENOMEM, "out of memory");
   }
-  s->tangent_scratch = s->tangent + size;
+  s->tangent_jump = s->tangent + size;
+  s->tangent_scratch = s->tangent_jump + jump_size(s, k);
   s->tangent_columns = k;
   return LAG_OK;
 }
@@ -103,18 +127,123 @@ static int carry(lag_sim *s, double t, double *Y)
 
 int lag_tangent_pass(lag_sim *s)
 {
-  return s->tangent && s->run->have_step == 0.0 ? carry(s, s->run->t, s->tangent) : LAG_OK;
+  if (!s->tangent || s->run->have_step != 0.0 || s->tangent_at_event) {
+    s->tangent_at_event = 0;
+    return LAG_OK;
+  }
+  return carry(s, s->run->t, s->tangent);
 }
 
-int lag_tangent_refuse(lag_sim *s, int k)
+/* ---- Events that change the state */
+
+static int refuse(lag_sim *s, int k, const char *why)
 {
+  return lag_fail(s, LAG_EMETHOD, "event %s changes the state at t = %.17g s: %s; take a scene without it, or end the run before",
+                  s->scene->model->ev[k].name, s->run->t, why);
+}
+
+typedef struct Jump {
+  double *d, *S, *g, *Rt, *before, *after, *Y; /* entries; S[n n]; gradient of g, and g_t; dR/dt; f and f+; a copy of the tangent */
+} Jump;
+
+static Jump parts(const lag_sim *s)
+{
+  int n = s->pb.n;
+  double *x = s->tangent_jump;
+  Jump j = {.d = x};
+
+  j.S = j.d + njump(s);
+  j.g = j.S + n * n;
+  j.Rt = j.g + n + 1;
+  j.before = j.Rt + n + 1;
+  j.after = j.before + n + 1;
+  j.Y = j.after + n + 1;
+  return j;
+}
+
+/* R_y into S, R_t, and the gradient of g with g_t behind it, of event k. 0: the model has none. */
+static int gather(const lag_sim *s, int k, const Jump *j)
+{
+  const lag_linear *l = s->scene->model->linear;
+  int n = s->pb.n, listed = 0;
+
+  memset(j->S, 0, (size_t)(n * n) * sizeof(double));
+  memset(j->Rt, 0, (size_t)n * sizeof(double));
+  memset(j->g, 0, (size_t)(n + 1) * sizeof(double));
+  for (int i = 0; i < n; i++) {
+    j->S[i * n + i] = 1;
+  }
+  for (int e = 0; e < njump(s); e++) { /* the entry of its own component is there for each that is set */
+    const lag_jump *at = &l->jump[e];
+    if (at->event == k) {
+      double *to = at->row < 0 ? &j->g[at->col] : at->col < n ? &j->S[at->row * n + at->col] : &j->Rt[at->row];
+      *to = j->d[e];
+      listed = 1;
+    }
+  }
+  return listed;
+}
+
+/* S and the copy of Y are known: Y := S Y. */
+static int apply(lag_sim *s, const Jump *j)
+{
+  int n = s->pb.n, k = s->tangent_columns;
+
+  memcpy(j->Y, s->tangent, block(s) * sizeof(double));
+  memset(s->tangent, 0, block(s) * sizeof(double));
+  for (int i = 0; i < n; i++) {
+    for (int c = 0; c < n; c++) {
+      for (int b = 0; b < k; b++) {
+        s->tangent[i * k + b] += j->S[i * n + c] * j->Y[c * k + b];
+      }
+    }
+  }
+  return lag_not_finite(n * k, s->tangent) < 0;
+}
+
+int lag_tangent_jump(lag_sim *s, int k, int more)
+{
+  const lag_model *m = s->scene->model;
+  lag_problem *pb = &s->pb;
+  int n = pb->n, nq = pb->nq;
+  double t = s->run->t, rhs_calls = pb->rhs_calls, rate = 0;
+
   if (!s->tangent) {
     return LAG_OK;
   }
-  return lag_fail(s, LAG_EMETHOD,
-                  "event %s changes the state at t = %.17g s: what it does to neighbouring motions needs derivatives of its function and "
-                  "its actions, which a model does not have; take a scene without it, or end the run before",
-                  s->scene->model->ev[k].name, s->run->t);
+  if (!m->linear) {
+    return refuse(s, k, "what that does to neighbouring motions needs derivatives, which `lagc build --with linear` builds in");
+  }
+  if (more) {
+    return refuse(s, k, "another one does at the same time, and neighbouring motions may meet them in either order");
+  }
+  Jump j = parts(s);
+  if (njump(s) && (lag_inputs(pb, t) || m->linear->jumps(t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, j.d, s->work))) {
+    return refuse(s, k, "its derivatives cannot be computed");
+  }
+  if (!njump(s) || !gather(s, k, &j)) {
+    return refuse(s, k, "it depends on an input, whose rate a model does not have"); /* the compiler lists all others */
+  }
+  int rc = s->run->have_step != 0.0 && t != s->run->step_t0 ? carry(s, t, s->tangent) : LAG_OK;
+  if (rc || lag_rhs(pb, t, s->now, j.before) || lag_rhs(pb, t, s->yb, j.after)) {
+    return rc ? rc : refuse(s, k, "the rates there cannot be computed");
+  }
+  pb->rhs_calls = rhs_calls;
+  for (int c = 0; c < n; c++) {
+    rate += j.g[c] * j.before[c];
+  }
+  rate += j.g[n];
+  for (int i = 0; i < n; i++) {
+    double gain = j.after[i] - j.Rt[i];
+    for (int c = 0; c < n; c++) {
+      gain -= j.S[i * n + c] * j.before[c];
+    }
+    for (int c = 0; c < n; c++) {
+      j.S[i * n + c] += gain * j.g[c] / rate;
+    }
+  }
+  s->tangent_at_event = 1;
+  return apply(s, &j) ? LAG_OK : refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
 }
 
 int lag_sim_tangent(lag_sim *s, double *Y)

@@ -345,8 +345,9 @@ int lag_sim_outputs_at(lag_sim *sim, double t, double *y, double *out);
  * the derivative of what the method computes. From here on Y is what it is now, NULL (k = n): the identity, so that it
  * becomes dy(t)/dy(0); k = 0: nothing any more. Before the first advance, after the method is set; later at ends of steps
  * only, as in the function of lag_sim_on_step. Needs the model's linearisation, or what an implicit method needs itself.
- * LAG_EMETHOD: method or model have no such derivatives; the message names a method that has. In a run with a tangent
- * an event that changes the state fails (LAG_EMETHOD), and nothing can be loaded. At a branch of if, abs, sign, min, max the
+ * LAG_EMETHOD: method or model have no such derivatives; the message names a method that has. Over an event that
+ * changes the state it goes by the saltation matrix; the run fails (LAG_EMETHOD) where there is none: the event depends on an input, another one
+ * changes the state at the same time, or the motion only touches it. Nothing can be loaded. At a branch of if, abs, sign, min, max the
  * derivative is that of the branch taken. */
 int lag_sim_set_tangent(lag_sim *sim, int k, const double *Y);
 /* Y[n * k] at the present time. Between the ends of steps: by one shorter step of the method. */

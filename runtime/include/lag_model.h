@@ -87,6 +87,12 @@ typedef struct lag_entry {
   int row, col;
 } lag_entry;
 
+/* A derivative of event `event`: of its function (row < 0), or of the value that its actions give to component `row` of (q, v, z);
+ * by component `col`, or by the time where col is 2 nq + nz. */
+typedef struct lag_jump {
+  int event, row, col;
+} lag_jump;
+
 /* The linearisation of a model, exact: emitted where something needs it (lagc --with linear).
  *
  * The residuals r[nq + nz] vanish along a motion: r_i = f_i - sum_j M_ij a_j for coordinates i, r_(nq + k) =
@@ -103,6 +109,13 @@ typedef struct lag_linear {
   /* dr[ndr] and M[nmass] at a state, with the accelerations a[nq] there (or others: 0 gives df/dy). */
   int (*eval)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
               const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w);
+
+  /* What events do to small changes: d[njump], the derivatives that are listed. Those of g that are not are zero, and so are those of
+   * a value that is set; each that is set has the entry of its own component. Events that depend on inputs are not listed. */
+  int njump;
+  const lag_jump *jump;
+  int (*jumps)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+               const LAG_REAL *u, LAG_REAL *d, LAG_REAL *w);
 } lag_linear;
 
 /* One scalar constraint. */

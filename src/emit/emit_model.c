@@ -30,7 +30,7 @@ static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
   "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_cubic",
   "lag_spline", "lag_var", "lag_event", "lag_model", "lag_option", "lag_monitor", "lag_table", "lag_scene", "lag_program",
-  "lag_entry", "lag_linear", "LAG_NUMBER", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
+  "lag_entry", "lag_linear", "lag_jump", "jump_table", "LAG_NUMBER", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
   "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL", "TAYLOR_UNROLL_4",
   "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
   "taylor_rest", "taylor_squares", "TAYLOR_SQUARES", "taylor_four", "TAYLOR_WIDE", "TAYLOR_INLINE", "taylor_sums_wide", "taylor_squares_wide",
@@ -70,7 +70,7 @@ static const char *const *rows_names(const IrUnit *u) {
 }
 
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel", "energy", "linearise", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
+  static const char *const taken[] = {"accel", "energy", "linearise", "jumps", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
                                       "outputs", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "correct_positions", "correct_velocities"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
@@ -195,6 +195,19 @@ static void entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out
   sb_puts(out, "\n};\n");
 }
 
+static void emit_jumps(const File *f) {
+  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "d", "w", NULL}, *const written[] = {"d"};
+  const IrUnit *u = f->u;
+  enum { A_LINE = 8 };
+  if (!u->jumps) return;
+  const char *head = arena_printf(f->a, "static int jumps(%s, LAG_REAL *d, LAG_REAL *w)", state_args);
+  function(f, u->jumps, "What events do to small changes: derivatives of their functions, and of what their actions set.", head, own, written);
+  sb_puts(f->out, "\nstatic const lag_jump jump_table[] = {");
+  for (uint32_t i = 0; i < u->jump_at.n; i++)
+    sb_printf(f->out, "%s{%u, %d, %u},", i % A_LINE ? " " : "\n  ", u->jump_at.at[i].event, u->jump_at.at[i].row, u->jump_at.at[i].col);
+  sb_puts(f->out, "\n};\n");
+}
+
 static void emit_linear(const File *f) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "a", "dr", "M", "w", NULL}, *const written[] = {"dr", "M"};
   const IrUnit *u = f->u;
@@ -204,9 +217,12 @@ static void emit_linear(const File *f) {
   function(f, u->linear, comment, head, own, written);
   entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
   entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
-  sb_printf(f->out, "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval = linearise,\n};\n",
+  emit_jumps(f);
+  sb_printf(f->out, "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval = linearise,\n",
             u->linear_dr.n, u->linear_dr.n ? "dr_table" : "NULL", u->linear_mass.n, u->linear_mass.n ? "mass_table" : "NULL",
             ops_total(prog_count(u->linear)));
+  if (u->jumps) sb_printf(f->out, "  .njump = %u, .jump = jump_table, .jumps = jumps,\n", u->jump_at.n);
+  sb_puts(f->out, "};\n");
 }
 
 /* --- constraints --- */
@@ -340,7 +356,7 @@ static int has_long_tables(const IrUnit *u) {
 
 static uint32_t work_size(const IrUnit *u) {
   uint32_t most = 0;
-  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->constraints.position, u->constraints.velocity};
+  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->jumps, u->constraints.position, u->constraints.velocity};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     if (all[i] && prog_work(all[i]) > most) most = prog_work(all[i]);
   for (uint32_t i = 0; i < u->events.n; i++)

@@ -399,6 +399,19 @@ Prog *lower_linear(const Eqns *e, Partials dr) {
   return prog_tidy(l.p);
 }
 
+Prog *lower_jumps(const Eqns *e, Jumps jumps) {
+  Lower l = lower_new(e);
+  Arena *a = e->m->arena;
+  for (uint32_t k = 0; k < jumps.n; k++) lower_roots(&l, &jumps.at[k].e, 1);
+  for (uint32_t k = 0; k < jumps.n; k++) {
+    const Jump *j = &jumps.at[k];
+    const char *event = e->m->events.at[j->event].name, *of = j->row < 0 ? "its function" : component(&l, (uint32_t)j->row);
+    const char *by = j->col < 2 * e->n + e->m->states.n ? component(&l, j->col) : "t";
+    prog_store(l.p, 0, k, lower_slot(&l, j->e), arena_printf(a, "event %s: %s by %s", event, of, by));
+  }
+  return prog_tidy(l.p);
+}
+
 Prog *lower_energy(const Eqns *e) {
   Lower l = lower_new(e);
   if (!e->energy) return l.p;

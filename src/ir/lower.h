@@ -22,6 +22,7 @@ Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
 Prog *lower_action(const Eqns *e, uint32_t event); /* out 0, 1, 2: q1, v1, z1; only what is set */
 Prog *lower_inputs(const Eqns *e);  /* out 0: u[nu] */
 Prog *lower_linear(const Eqns *e, Partials dr); /* out 0: dr, in the order of the entries, out 1: M, likewise; reads q'' */
+Prog *lower_jumps(const Eqns *e, Jumps jumps); /* out 0: in the order of the entries */
 /* Of a model with constraints (lower_constraints.c): out 0, 1: c, r; out 0, 1: A and M, the entries that are not zero; out 0, 1: the least
  * change d[nq] of the state with A d = g for the first nrows constraints, and the forces that make it. */
 Prog *lower_residuals(const Eqns *e);

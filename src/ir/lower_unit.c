@@ -135,12 +135,22 @@ static void add_linear(IrUnit *u, Eqns *e) {
   for (uint32_t k = 0; k < e->mass.n; k++) vec_push(u->arena, &u->linear_mass, ((IrEntry){e->mass.at[k].row, e->mass.at[k].col}));
 }
 
+static void add_jumps(IrUnit *u, const Eqns *e) {
+  Jumps jumps = eqns_jumps(e);
+  if (!jumps.n) return;
+  u->jumps = lower_jumps(e, jumps);
+  for (uint32_t k = 0; k < jumps.n; k++) vec_push(u->arena, &u->jump_at, ((IrJump){jumps.at[k].event, jumps.at[k].row, jumps.at[k].col}));
+}
+
 void unit_want(IrUnit *u, Eqns *e, unsigned wants) {
   unsigned fresh = wants & ~u->wants;
   u->wants |= wants;
   if (fresh & WANT_VARIATION && e->n) add_variation(u, e);
   if (fresh & WANT_TAYLOR) add_taylor(u, e);
-  if (fresh & WANT_LINEAR && !e->constraints.n) add_linear(u, e); /* multipliers would change, too */
+  if (fresh & WANT_LINEAR && !e->constraints.n) { /* multipliers would change, too */
+    add_linear(u, e);
+    add_jumps(u, e);
+  }
 }
 
 void unit_add_scene(IrUnit *u, const Eqns *e) {

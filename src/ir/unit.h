@@ -57,6 +57,13 @@ typedef struct {
   uint32_t row, col;
 } IrEntry;
 
+/* An entry of the derivatives of events: as in mech/eqns.h. */
+typedef struct {
+  uint32_t event;
+  int row;
+  uint32_t col;
+} IrJump;
+
 /* What only some methods of integration need, and is not made for the others. */
 enum { WANT_VARIATION = 1, WANT_TAYLOR = 2, WANT_LINEAR = 4 };
 
@@ -99,6 +106,8 @@ typedef struct {
   const Series *taylor;         /* NULL unless WANT_TAYLOR, and where a value is not analytic */
   const Prog *linear;           /* NULL: not asked for */
   VEC(IrEntry) linear_dr, linear_mass; /* what its outputs 0 and 1 are */
+  const Prog *jumps;            /* NULL: not asked for, or no event changes the state */
+  VEC(IrJump) jump_at;          /* what its outputs are */
   VEC(IrScene) scenes;
   int libm;                     /* emitted code calls the C library's sin and cos */
 } IrUnit;

@@ -121,17 +121,20 @@ static double run(const Problem *p, const Series *s, double tol, double *error) 
 
 static void measure(const Problem *p, Series *s) {
   double least = 0;
+  int failed = 0;
   for (int e = 0; e < 3 && p->errors[e] > 0; e++) least = p->errors[e];
   s->n = 0;
   for (double tol = p->only_tol > 0 ? p->only_tol : 1e-4; tol >= 0.9e-15; tol /= sqrt(10)) {
     double best = HUGE_VAL, spent = 0;
     for (int i = 0; i < 100 && (i < 2 || spent < 0.02) && spent < 0.2; i++) {
       double t = run(p, s, fmax(tol, 1e-15), &s->error[s->n]);
-      best = fmin(best, t < 0 ? HUGE_VAL : t);
-      spent += fabs(t);
+      if (t < 0) break; /* it failed: too large steps, or too many */
+      best = fmin(best, t);
+      spent += t;
     }
+    failed = best == HUGE_VAL ? failed + 1 : 0;
     s->time[s->n++] = best;
-    if (p->only_tol > 0 || spent > 0.5 || best == HUGE_VAL || (s->n > 2 && s->error[s->n - 1] < least/3 && s->error[s->n - 2] < least/3)) break;
+    if (p->only_tol > 0 || spent > 0.5 || failed > 4 || (s->n > 2 && s->error[s->n - 1] < least/3 && s->error[s->n - 2] < least/3)) break;
   }
 }
 

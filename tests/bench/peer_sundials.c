@@ -20,7 +20,7 @@ double peer_adams(int problem, bench_rhs *f, int n, double t, double tol, double
   void *mem = CVodeCreate(CV_ADAMS, context);
   SUNNonlinearSolver solver = SUNNonlinSol_FixedPoint(v, 0, context);
   int rc = CVodeInit(mem, call, 0, v) || CVodeSStolerances(mem, tol, tol) || CVodeSetUserData(mem, &f) ||
-           CVodeSetMaxNumSteps(mem, 400000) || CVodeSetNonlinearSolver(mem, solver) || CVodeSetStopTime(mem, t);
+           CVodeSetMaxNumSteps(mem, 200000) || CVodeSetNonlinearSolver(mem, solver) || CVodeSetStopTime(mem, t);
   CVodeSetErrFile(mem, NULL);
   double t0 = bench_now();
   rc = rc || CVode(mem, t, v, &at, CV_NORMAL) < 0;
@@ -40,7 +40,7 @@ double peer_arkode(int problem, bench_rhs *f, int n, double t, double tol, doubl
   N_Vector v = N_VMake_Serial(n, y, context);
   void *mem = ERKStepCreate(call, 0, v, context);
   int rc = ERKStepSStolerances(mem, tol, tol) || ERKStepSetUserData(mem, &f) || ERKStepSetOrder(mem, 8) ||
-           ERKStepSetMaxNumSteps(mem, 400000) || ERKStepSetStopTime(mem, t);
+           ERKStepSetMaxNumSteps(mem, 200000) || ERKStepSetStopTime(mem, t);
   ERKStepSetErrFile(mem, NULL);
   double t0 = bench_now();
   rc = rc || ERKStepEvolve(mem, t, v, &at, ARK_NORMAL) < 0;

@@ -57,6 +57,50 @@ for model in double_pendulum spring_pendulum kepler; do
   check "$model: verlet8 as dop853" same_flow models/$model.lag 'verlet8(step=0.002)'
 done
 
+# ---- across events that change the state
+# A ball from h at rest: w = sqrt(2 g h) at the first bounce, after n of them up with e^n w at T = w/g (1 + 2 e + ... + 2 e^(n-1)).
+ball="g = 9.81; e = 0.8; w = sqrt(2*g); a = g/w; for (k = 1; k < 19; k++) s += e^k; dT = (1 + 2*s)/w; T = w*w*dT/g; du = e^19*a; u = e^19*w; r = 4 - T"
+sums() { awk "BEGIN { $ball; printf \"%.17g\", $1 }"; } # 19 bounces in 4 s
+for method in dop853 taylor radau rk45 'verlet(step=0.01)' 'gauss(stages=2, step=0.02)'; do
+  last models/bouncing_ball.lag drop --method "$method"
+  close "dy/dy, 19 bounces" "$(sums 'du*r - (u - g*r)*dT')" "$(entry 'dy/dy(0)')" 2e-8 # the last bounces are 1e-2 s apart, found to 1e-10 of that
+  close "dy'/dy" "$(sums 'du + g*dT')" "$(entry "dy'/dy(0)" '(m/s)/m')" 2e-8
+  close "dy'/dy'" 1 "$(entry "dy'/dy'(0)")" 2e-8 # a later start: T moves, u does not
+done
+last models/bouncing_ball.lag rubber --method 'verlet(step=0.01)'
+close "a ball that loses nothing keeps areas" 1 "$(det2_of() { awk -F, -v a="$(column 'dy/dy(0)')" 'END { printf "%.17g", $a*$(a + 3) - $(a + 1)*$(a + 2) }' "$TMP/last"; }; det2_of)" 1e-9
+
+# Hit once, at cos T = T/10 - 1/2 with speed -sin T: by the chain rule along x0 cos t, the bounce, and what follows.
+wall="T = 1.9; for (k = 0; k < 30; k++) T -= (cos(T) - T/10 + 0.5)/(-sin(T) - 0.1); e = 0.7; x = cos(T); m = -sin(T); p = -e*m + (1 + e)/10; h = 4 - T
+  c = cos(h); s = sin(h); dT = by_v ? -sin(T)/(m - 0.1) : -cos(T)/(m - 0.1); dx = (by_v ? sin(T) : cos(T)) + m*dT; dp = -e*((by_v ? cos(T) : -sin(T)) - x*dT)"
+after() { awk "BEGIN { by_v = $1; $wall; printf \"%.17g\", $2 }"; }
+for method in dop853 taylor 'verlet8(step=0.05)' 'gauss(stages=4, step=0.05)'; do
+  last tests/exec/models/moving_wall.lag --method "$method"
+  close "dx/dx" "$(after 0 'dx*c + dp*s - (p*c - x*s)*dT')" "$(entry 'dx/dx(0)')" 1e-9
+  close "dx'/dx" "$(after 0 'dp*c - dx*s + (x*c + p*s)*dT')" "$(entry "dx'/dx(0)" '1/s')" 1e-9
+  close "dx/dx'" "$(after 1 'dx*c + dp*s - (p*c - x*s)*dT')" "$(entry "dx/dx'(0)" s)" 1e-9
+  close "dx'/dx'" "$(after 1 'dp*c - dx*s + (x*c + p*s)*dT')" "$(entry "dx'/dx'(0)")" 1e-9
+done
+
+# Everything by everything, two hits: differences of order 4 over starts 1e-3 apart; what they leave is 1e-12 times a fifth derivative,
+# and 1e-13 of the runs over 1e-3.
+differences() {
+  "$LAGC" build tests/exec/models/jumps.lag --method taylor --with linear -o "$TMP/jumps" && "$TMP/jumps" --tangent --tol 1e-14 --json >"$TMP/json" &&
+    awk -v sim="$TMP/jumps" 'function end(name, x, i, line, out, n) {
+        command = sim " --tol 1e-14 --json \"" name "=" sprintf("%.17g", x) "\""
+        command | getline line; close(command); line = substr(line, index(line, "\"final\""))
+        n = split(line, out, /[:,]/); for (i = 1; i <= 6; i++) { sub(/[^-+.e0-9]*/, "", out[2*i + 1]); y[i] = out[2*i + 1] + 0 }; return n > 13 }
+      { $0 = substr($0, index($0, "\"tangent\"")); n = split($0, J, /[^-+.e0-9]+/); for (i = 1; i <= n; i++) if (J[i] ~ /^-?[0-9.]+/) D[++m] = J[i] + 0 }
+      END { split("x y x\047 y\047 z s", name, " "); split("1 0.3 0.2 0 0.1 0", start, " "); h = 1e-3
+        for (c = 1; c <= 6; c++) { for (i = 1; i <= 6; i++) d[i] = 0
+          for (k = -2; k <= 2; k++) if (k) { if (!end(name[c], start[c] + k*h)) exit 1
+            for (i = 1; i <= 6; i++) d[i] += (k == 1 || k == -1 ? 8*k : -k/2)*y[i]/(12*h) }
+          for (i = 1; i <= 6; i++) { off = d[i] - D[6*(i - 1) + c]; seen++
+            if (off > 2e-9 || off < -2e-9) { print name[i], "by", name[c], d[i], D[6*(i - 1) + c]; bad = 1 } } }
+        exit bad || seen != 36 }' "$TMP/json"
+}
+check "two events that depend on everything, against differences" differences
+
 # ---- what a person sees
 "$LAGC" run models/spring.lag free --tangent --until 1 >"$TMP/out"
 check "the report has the matrix" sh -c "grep -q \"x(0) *x'(0)\" '$TMP/out' && grep -q '^  x  *-0.416146' '$TMP/out'"
@@ -80,7 +124,28 @@ if [ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ]; then
 else
   skip "a method without" "GSL is not installed"
 fi
-check "an event that changes the state" refused 3 "event floor changes the state" models/bouncing_ball.lag drop
+cat >"$TMP/driven.lag" <<'X'
+model driven
+coord x
+input u = sin(t)
+lagrangian = x'^2/2 - x^2/2
+event wall: x + u/10 falling { x' = -x' }
+event one: x - 0.5 falling { x' = 0.9*x' }
+event other: x^2 - 0.25 falling { x' = 0.8*x' }
+scene go { start x = 0.3; span 4 }
+scene both { like go
+  start x = 1 }
+X
+check "an event that depends on an input" refused 3 'event wall changes the state at t = .*: it depends on an input' "$TMP/driven.lag"
+check "two at once" refused 3 'event other changes the state at t = .*: another one does at the same time' "$TMP/driven.lag" both
+cat >"$TMP/touch.lag" <<'X'
+model touch
+coord x
+lagrangian = x'^2/2 + x*0
+event floor: (x - 1)^3 rising { x' = 2*x' }
+scene go { start x = 0, x' = 1; span 3 }
+X
+check "one that is only touched" refused 3 'the motion only touches it' "$TMP/touch.lag"
 check "a saved state" refused 2 "a saved state holds no tangent" models/spring.lag free --save-state "$TMP/state"
 without() { "$LAGC" build models/spring.lag -o "$TMP/spring" && ! "$TMP/spring" --tangent >"$TMP/out" 2>&1 && grep -q 'lagc build --with linear' "$TMP/out"; }
 check "a simulator without derivatives" without

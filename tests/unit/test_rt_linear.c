@@ -23,7 +23,7 @@ static int pair_linear(ARGS, UNUSED const double *a, double *dr, double *M, UNUS
 }
 
 static const lag_entry pair_dr[] = {{0, 0}, {0, 1}, {0, 2}, {1, 0}, {2, 0}, {2, 4}}, pair_mass[] = {{1, 0}, {1, 1}};
-static const lag_linear pair_linearised = {6, pair_dr, 2, pair_mass, 0, pair_linear};
+static const lag_linear pair_linearised = {.ndr = 6, .dr = pair_dr, .nmass = 2, .mass = pair_mass, .eval = pair_linear};
 static const lag_model pair = {MODEL("pair"), .nq = 2, .nz = 1, .q = names_q, .z = names_z, .accel = pair_accel,
                                .linear = &pair_linearised};
 
@@ -100,7 +100,7 @@ static void test_elimination(void **state)
   (void)state;
   static const lag_entry dr[] = {{0, 0}, {0, 1}, {0, 2}, {1, 0}, {1, 1}, {1, 2}, {2, 0}, {2, 1}, {2, 2}};
   static const lag_entry mass[] = {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}};
-  const lag_linear linear = {9, dr, 6, mass, 0, full_linear};
+  const lag_linear linear = {.ndr = 9, .dr = dr, .nmass = 6, .mass = mass, .eval = full_linear};
   const lag_model m = {MODEL("full"), .nq = 3, .accel = full_accel, .linear = &linear};
   lag_problem pb = problem(&m);
   const double y[6] = {0};
@@ -131,7 +131,7 @@ static int leaves(ARGS, UNUSED const double *a, UNUSED double *dr, UNUSED double
 static void test_errors(void **state)
 {
   (void)state;
-  const lag_linear singular = {6, pair_dr, 2, pair_mass, 0, null_mass}, outside = {6, pair_dr, 2, pair_mass, 0, leaves};
+  const lag_linear singular = {.ndr = 6, .dr = pair_dr, .nmass = 2, .mass = pair_mass, .eval = null_mass}, outside = {.ndr = 6, .dr = pair_dr, .nmass = 2, .mass = pair_mass, .eval = leaves};
   const double y[5] = {0};
   double J[15], *work = calloc(lag_linear_work(&pair), sizeof *work);
   lag_model m = pair;
