@@ -173,7 +173,7 @@ static void name_turn_loads(Writer *w, Body *b) {
       const Ins *i = &w->p->ins.at[x];
       const char *name = cnames_take(&w->names, cloop_stem(w->a, i->name));
       vec_push(w->a, &b->loads, ((TurnLoad){x, s.step, name}));
-      cwriter_statement(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, w->style->in[i->array],
+      cwriter_statement(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, cwriter_array(w, i->array),
                                         index_text(w, i->index, s.step)));
       sb_putc(w->out, '\n');
     }
@@ -316,7 +316,7 @@ static const char *stored_value(const Writer *w, const Store *first) {
   const Ins *i = &w->p->ins.at[x];
   if (x == y) return cwriter_operand(w, x).text;
   if (i->op == IR_LOAD)
-    return arena_printf(w->a, "%s[%s]", w->style->in[i->array], index_text(w, i->index, (int64_t)w->p->ins.at[y].index - i->index));
+    return arena_printf(w->a, "%s[%s]", cwriter_array(w, i->array), index_text(w, i->index, (int64_t)w->p->ins.at[y].index - i->index));
   int64_t px = loop_place(w, x), py = loop_place(w, y);
   return kept_value(w, (uint32_t)px, (py - px) / (int64_t)loop_at(w, w->rolls.loop[px] - 1)->period).text;
 }

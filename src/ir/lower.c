@@ -3,6 +3,8 @@
 #include <stdlib.h>
 
 #include "ir/lower_impl.h"
+#include "ir/nest.h"
+#include "ir/roll.h"
 
 /* --- numbers and powers --- */
 
@@ -282,9 +284,8 @@ Prog *lower_accel(const Eqns *e) {
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
-  enum { LONG = 1500 }; /* as for loops */
-  Prog *p = prog_factor(prog_tidy(l.p));
-  return is_diagonal(e) && p->ins.n > LONG ? prog_by_demand(p) : p;
+  Prog *p = prog_factor(prog_tidy(l.p)), *nested = prog_nest(p, ROLL_FROM);
+  return is_diagonal(e) && p->ins.n > ROLL_FROM ? prog_by_demand(nested) : nested;
 }
 
 /* Where a constant may stand instead of the formula of an input, `free` says which holds. */
@@ -398,7 +399,7 @@ Prog *lower_energy(const Eqns *e) {
   lower_roots(&l, roots, 2);
   prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), "energy p q' - L");
   prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
-  return prog_tidy(l.p);
+  return prog_nest(prog_tidy(l.p), ROLL_FROM);
 }
 
 Prog *lower_variation(const Eqns *e, const Variation *x) {

@@ -15,6 +15,9 @@ static void compute(Schedule *d, Slot s) {
     Slot x = d->open.at[d->open.n - 1];
     const Ins *i = &d->from->ins.at[x];
     Slot next = !i->a || d->done[i->a] ? !i->b || d->done[i->b] ? !i->c || d->done[i->c] ? 0 : i->c : i->b : i->a;
+    const Nest *n = i->op == IR_NEST ? &d->from->nests.at[i->index] : NULL;
+    for (uint32_t k = 0; n && !next && k < n->nouter; k++)
+      if (!d->done[n->outer[k]]) next = n->outer[k];
     if (!d->done[x] && next) {
       vec_push(d->to->arena, &d->open, next);
       continue;
