@@ -64,7 +64,8 @@ static void write_load(Nesting *x, const Writer *around, Slot s) {
     w->piece[s] = (Piece){w->style->in[i->array], C_ATOM, 0};
   } else {
     const char *name = cnames_take(&w->names, cloop_stem(w->a, i->name ? i->name : "sum"));
-    line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, cwriter_array(w, i->array), place(x, i->index)));
+    line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name,
+                         i->array == ARR_P && w->parameters ? w->parameters : cwriter_array(w, i->array), place(x, i->index)));
     w->piece[s] = (Piece){name, C_ATOM, 0};
   }
 }
@@ -150,8 +151,39 @@ void cnest_write(Writer *w, const Ins *i) {
   w->temps = x.body.temps;
 }
 
+/* One more than the highest index at a place of the nest: in one of the corners. */
+static int64_t end_of(const Nest *n, uint32_t k) {
+  int64_t end = 0;
+  for (int corner = 0; corner < 4; corner++) {
+    int64_t i = corner & 1 ? n->rows - 1 : 0, j = n->skew*i + (corner & 2 ? n->turns + n->more*i - 1 : 0);
+    int64_t index = n->at[k].first + n->at[k].by_row*i + n->at[k].by_turn*j;
+    if (index >= end) end = index + 1;
+  }
+  return end;
+}
+
+/* Members of a struct have no index: those that nests read are copied. */
+static void copy_parameters(Writer *w) {
+  int64_t end = 0;
+  for (uint32_t k = 0; k < w->p->nests.n; k++) {
+    const Nest *n = &w->p->nests.at[k];
+    for (Slot s = 1; s < n->body->ins.n; s++) {
+      const Ins *i = &n->body->ins.at[s];
+      if (i->op == IR_LOAD && i->array == ARR_P && end_of(n, i->index) > end) end = end_of(n, i->index);
+    }
+  }
+  if (!end) return;
+  StrBuf text = strbuf(w->a);
+  w->parameters = cnames_take(&w->names, "values");
+  sb_printf(&text, "const %s_REAL %s[%lld] = {", w->style->prefix, w->parameters, (long long)end);
+  for (int64_t k = 0; k < end; k++) sb_printf(&text, "%s%s->%s", k ? ", " : "", w->style->in[ARR_P], w->style->params[k]);
+  sb_puts(&text, "};");
+  line(w, sb_text(&text));
+}
+
 void cnest_prepare(Writer *w) {
   if (!w->p->nests.n) return;
+  if (w->style->params) copy_parameters(w);
   w->cells = cnames_take(&w->names, "sum");
   w->row = cnames_take(&w->names, "i");
   w->turn = cnames_take(&w->names, "j");

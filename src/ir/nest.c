@@ -298,6 +298,17 @@ static Prog *with_nests(const Search *s) {
   return prog_tidy(r.to);
 }
 
+/* Loops of one level are found in straight-line code, too (ir/roll.h), and keep there what they share with their surroundings: nests
+ * are worth it where there are loops inside loops, and most of the program is in them. */
+static int is_worth_it(const Search *s) {
+  uint64_t inside = 0;
+  int deep = 0;
+  for (uint32_t k = 0; k < s->c.pieces.n; k++)
+    if (s->nested[k + 1]) inside += s->c.pieces.at[k].n;
+  for (uint32_t k = 0; k < s->found.n; k++) deep |= s->found.at[k].nest.rows > 1 && s->found.at[k].nest.count > s->found.at[k].nest.rows;
+  return deep && 2 * inside > s->c.p->ins.n;
+}
+
 Prog *prog_nest(Prog *p, uint32_t from) {
   Arena *a = p->arena;
   if (p->ins.n < from || p->solves.n || p->nests.n) return p;
@@ -309,5 +320,5 @@ Prog *prog_nest(Prog *p, uint32_t from) {
   s.terms = ARENA_ARRAY(a, uint32_t, p->ins.n);
   s.last = ARENA_ARRAY(a, uint32_t, p->ins.n);
   search_all(&s);
-  return s.found.n ? with_nests(&s) : p;
+  return is_worth_it(&s) ? with_nests(&s) : p;
 }
