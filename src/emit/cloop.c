@@ -179,6 +179,14 @@ static void name_turn_loads(Writer *w, Body *b) {
     }
 }
 
+/* unit*index; a denominator that is no power of two divides last, which rounds once. */
+static Piece multiple(const Writer *w, Num unit, const char *index) {
+  int dyadic = (unit.den & (unit.den - 1)) == 0;
+  const char *up = c_number(w->a, w->style->prefix, dyadic ? unit : num_int(unit.num));
+  if (dyadic) return (Piece){arena_printf(w->a, "%s*(%s)", up, index), C_MUL, 0};
+  return (Piece){arena_printf(w->a, "%s*(%s)/%s", up, index, c_number(w->a, w->style->prefix, num_int(unit.den))), C_MUL, 0};
+}
+
 static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int which, Slot x) {
   Step s = roll_step(&w->rolls, b->l, offset, which);
   uint32_t place = w->rolls.place[x] - 1; /* of values that are no loads */
@@ -189,7 +197,7 @@ static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int w
       int64_t first = 0;
       Slot y = roll_operand(&w->p->ins.at[code_of(w, b->l, 1, offset)], which);
       roll_number(&w->p->ins.at[x], &w->p->ins.at[y], &unit, &first);
-      return (Piece){arena_printf(w->a, "%s*(%s)", c_number(w->a, w->style->prefix, unit), index_text(w, first, 1)), C_MUL, 0};
+      return multiple(w, unit, index_text(w, first, 1));
     }
     case STEP_LOAD: return (Piece){turn_load(b, x, s.step)->name, C_ATOM, 0};
     case STEP_BEFORE: {

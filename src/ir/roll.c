@@ -38,7 +38,7 @@ int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first) {
   enum { LARGEST = 1 << 22 };
   if (x->op != IR_CONST || y->op != IR_CONST || !num_is_exact(x->number) || !num_is_exact(y->number)) return 0;
   *unit = num_sub(y->number, x->number);
-  if (!num_is_exact(*unit) || num_is_zero(*unit) || (unit->den & (unit->den - 1)) != 0 || unit->den > LARGEST) return 0;
+  if (!num_is_exact(*unit) || num_is_zero(*unit) || unit->den > LARGEST) return 0;
   Num times = num_div(x->number, *unit);
   *first = times.num;
   return num_is_exact(times) && times.den == 1 && times.num > -LARGEST && times.num < LARGEST && unit->num > -LARGEST && unit->num < LARGEST;
