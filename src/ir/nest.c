@@ -72,6 +72,7 @@ static Tape copy_tape(Arena *a, const Tape *t) {
   COPY(a, r.gives);
   COPY(a, r.words);
   COPY(a, r.class_of);
+  COPY(a, r.array);
   return r;
 }
 
@@ -113,7 +114,7 @@ static void find_nests(Search *s, const Alike *x) {
   uint32_t n = x->pieces.n, *order = ARENA_ARRAY(a, uint32_t, n);
   Fits fits = {0};
   for (uint32_t k = 0; k < n; k++) order[k] = k;
-  nest_fit(a, x->columns.at, x->tape.columns.n, order, n, &fits);
+  nest_fit(a, x->columns.at, x->tape.array.at, x->tape.columns.n, order, n, &fits);
   for (uint32_t k = 0; k < fits.n; k++) add_nest(s, x, &fits.at[k], order);
 }
 
@@ -298,27 +299,39 @@ static Prog *with_nests(const Search *s) {
   return prog_tidy(r.to);
 }
 
-/* Loops of one level are found in straight-line code, too (ir/roll.h), and keep there what they share with their surroundings: nests
- * are worth it where there are loops inside loops, and most of the program is in them. */
-static int is_worth_it(const Search *s) {
-  uint64_t inside = 0;
+/* How many instructions nests take in. Loops of one level are found in straight-line code, too (ir/roll.h), and keep there what
+ * they share with their surroundings: nothing is gained where there are no loops inside loops. */
+static uint32_t taken_in(const Search *s) {
+  uint32_t inside = 0;
   int deep = 0;
   for (uint32_t k = 0; k < s->c.pieces.n; k++)
     if (s->nested[k + 1]) inside += s->c.pieces.at[k].n;
+  for (Slot x = 1; x < s->c.p->ins.n; x++) inside += s->c.sum[x] && s->c.celled[s->c.sum[x]] == 2;
   for (uint32_t k = 0; k < s->found.n; k++) deep |= s->found.at[k].nest.rows > 1 && s->found.at[k].nest.count > s->found.at[k].nest.rows;
-  return deep && 2 * inside > s->c.p->ins.n;
+  return deep ? inside : 0;
 }
 
-Prog *prog_nest(Prog *p, uint32_t from) {
+static Search search(const Prog *p, CutEnds ends) {
   Arena *a = p->arena;
-  if (p->ins.n < from || p->solves.n || p->nests.n) return p;
-  Search s = {.c = nest_cut(p), .table_cap = 256};
-  if (!s.c.hubs.n || s.c.pieces.n < FEWEST_PIECES) return p;
+  Search s = {.c = nest_cut(p, ends), .table_cap = 256};
   s.local = ARENA_ARRAY(a, Local, p->ins.n);
   s.table = ARENA_ARRAY(a, uint32_t, s.table_cap);
   s.nested = ARENA_ARRAY(a, uint32_t, s.c.pieces.n + 1);
   s.terms = ARENA_ARRAY(a, uint32_t, p->ins.n);
   s.last = ARENA_ARRAY(a, uint32_t, p->ins.n);
-  search_all(&s);
-  return is_worth_it(&s) ? with_nests(&s) : p;
+  if (s.c.hubs.n && s.c.pieces.n >= FEWEST_PIECES) search_all(&s);
+  return s;
+}
+
+Prog *prog_nest(Prog *p, uint32_t from) {
+  if (p->ins.n < from || p->solves.n || p->nests.n) return p;
+  Search best = {0};
+  uint32_t most = p->ins.n / 2; /* else the rest is what counts */
+  for (int ends = 0; ends < CUT_KINDS && most < p->ins.n - p->ins.n / 8; ends++) {
+    Search s = search(p, (CutEnds)ends);
+    if (taken_in(&s) <= most) continue;
+    most = taken_in(&s);
+    best = s;
+  }
+  return best.found.n ? with_nests(&best) : p;
 }

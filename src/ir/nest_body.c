@@ -172,6 +172,28 @@ static Slot value(Making *m, uint32_t id) {
   return prog_ins(m->body, (Ins){.op = i->op, .a = x[0], .b = x[1], .c = x[2], .index = i->index, .text = i->text});
 }
 
+static int same_place(const Making *m, uint32_t x, uint32_t y) {
+  const Fit *f = m->f;
+  return m->t->array.at[x] == m->t->array.at[y] && f->first[x] == f->first[y] && f->row[x] == f->row[y] && f->turn[x] == f->turn[y];
+}
+
+/* What goes to one sum goes there together. */
+static void store_gives(Making *m) {
+  uint32_t n = m->t->gives.n, first = m->t->columns.n - n;
+  unsigned char *done = ARENA_ARRAY(m->c->a, unsigned char, n + 1);
+  for (uint32_t k = 0; k < n; k++) {
+    Link x = m->t->gives.at[k];
+    Slot sum = m->slot[x.id];
+    if (done[k]) continue;
+    for (uint32_t j = k + 1; j < n; j++) {
+      if (!same_place(m, first + k, first + j)) continue;
+      sum = prog_op(m->body, m->t->gives.at[j].minus == x.minus ? IR_ADD : IR_SUB, sum, m->slot[m->t->gives.at[j].id]);
+      done[j] = 1;
+    }
+    prog_store(m->body, (uint32_t)x.minus, first + k, sum, "");
+  }
+}
+
 const Prog *nest_body(const Cut *c, const Tape *t, const Fit *f, const Slot **outer, uint32_t *nouter) {
   Arena *a = c->a;
   uint32_t n = t->nodes.n;
@@ -186,8 +208,7 @@ const Prog *nest_body(const Cut *c, const Tape *t, const Fit *f, const Slot **ou
     m.slot[id] = value(&m, id);
     if (t->nodes.at[id].kind == NODE_OP && !nest_is_sum(c->p->ins.at[t->nodes.at[id].slot].op)) prog_name(m.body, m.slot[id], c->p->ins.at[t->nodes.at[id].slot].name);
   }
-  for (uint32_t k = 0; k < t->gives.n; k++)
-    prog_store(m.body, (uint32_t)t->gives.at[k].minus, t->columns.n - t->gives.n + k, m.slot[t->gives.at[k].id], "");
+  store_gives(&m);
   *outer = m.outer.at;
   *nouter = m.outer.n;
   return prog_tidy(m.body);

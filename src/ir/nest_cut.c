@@ -36,8 +36,27 @@ static void find_long_sums(Cut *c) {
       if (operand(i, k)) terms[s] += c->joined[operand(i, k)] ? terms[operand(i, k)] : 1;
     if (!c->joined[s] && terms[s] >= FEWEST_TERMS) c->hub[s] = HUB_SUM;
   }
-  for (Slot s = p->ins.n; s-- > 1;) {
-    const Ins *i = &p->ins.at[s];
+}
+
+/* Sums with a term that another sum has, too, as by Newton's third law: springs of a net. */
+static void find_sums_in_common(Cut *c) {
+  const Prog *p = c->p;
+  uint32_t *uses = ARENA_ARRAY(c->a, uint32_t, p->ins.n);
+  for (Slot s = 1; s < p->ins.n; s++)
+    for (int k = 0; k < 2 && nest_is_sum(op_of(c, s)); k++) uses[operand(&p->ins.at[s], k)]++;
+  for (Slot s = 1; s < p->ins.n; s++) {
+    if (!nest_is_sum(op_of(c, s)) || c->joined[s]) continue;
+    c->terms->n = 0;
+    nest_terms(c, s, c->terms);
+    for (uint32_t k = 0; k < c->terms->n && c->terms->n > 1; k++)
+      if (uses[c->terms->at[k].value] > 1 && !nest_is_leaf(op_of(c, c->terms->at[k].value))) c->hub[s] = HUB_SUM;
+  }
+}
+
+/* Which sum each part belongs to. */
+static void mark_parts(Cut *c) {
+  for (Slot s = c->p->ins.n; s-- > 1;) {
+    const Ins *i = &c->p->ins.at[s];
     if (c->hub[s] == HUB_SUM) c->sum[s] = s;
     for (int k = 0; k < 2 && c->sum[s]; k++)
       if (c->joined[operand(i, k)]) c->sum[operand(i, k)] = c->sum[s];
@@ -150,6 +169,14 @@ static void find_shared(Cut *c) {
     if (can_share(c, s) && bsearch(&c->sig[s], often.at, often.n, sizeof *often.at, by_value)) c->hub[s] = HUB_SHARED;
 }
 
+/* What is stored, so that pieces may end there. */
+static void find_stored(Cut *c) {
+  for (uint32_t k = 0; k < c->p->stores.n; k++) {
+    Slot s = c->p->stores.at[k].slot;
+    if (s && !c->hub[s] && can_share(c, s)) c->hub[s] = HUB_STORED;
+  }
+}
+
 /* --- pieces --- */
 
 static Slot root_of(Slot *parent, Slot s) {
@@ -245,7 +272,7 @@ static void find_shares(Cut *c) {
       if (operand(i, k) && c->hub[operand(i, k)] && c->piece[operand(i, k)] != c->piece[s]) wait_for(c, operand(i, k), c->piece[s], 0);
     terms.n = 0;
     if (c->hub[s] == HUB_SUM) nest_terms(c, s, &terms);
-    if (c->hub[s] == HUB_SHARED) vec_push(c->a, &terms, ((Share){s, s, 0}));
+    if (c->hub[s] == HUB_SHARED || c->hub[s] == HUB_STORED) vec_push(c->a, &terms, ((Share){s, s, 0}));
     for (uint32_t k = 0; k < terms.n; k++) {
       Slot x = terms.at[k].value;
       c->terms_of[s]++;
@@ -258,7 +285,7 @@ static void find_shares(Cut *c) {
   for (uint32_t k = 0; k < p->stores.n; k++) not_apart(c, p->stores.at[k].slot);
 }
 
-/* Sums are one class, shared values one for each signature. Numbers follow the order in which stores need the hubs. */
+/* Sums are one class, what is stored another, shared values one for each signature. Numbers follow the order in which stores need the hubs. */
 static void number_hubs(Cut *c) {
   const Prog *p = c->p;
   unsigned char *seen = ARENA_ARRAY(c->a, unsigned char, p->ins.n);
@@ -278,7 +305,7 @@ static void number_hubs(Cut *c) {
   }
   for (uint32_t k = 0; k < c->hubs.n; k++) {
     Slot s = c->hubs.at[k];
-    uint64_t sig = c->hub[s] == HUB_SUM ? 5 : c->sig[s];
+    uint64_t sig = c->hub[s] == HUB_SUM ? 5 : c->hub[s] == HUB_STORED ? 9 : c->sig[s];
     uint32_t x = 0;
     while (x < sigs.n && sigs.at[x] != sig) x++;
     if (x == sigs.n) {
@@ -291,7 +318,7 @@ static void number_hubs(Cut *c) {
   c->classes = sigs.n;
 }
 
-Cut nest_cut(const Prog *p) {
+Cut nest_cut(const Prog *p, CutEnds ends) {
   Arena *a = p->arena;
   uint32_t n = p->ins.n;
   Cut c = {.p = p, .a = a, .uses = prog_uses(p), .open = ARENA_NEW(a, Shares), .terms = ARENA_NEW(a, Shares)};
@@ -311,8 +338,11 @@ Cut nest_cut(const Prog *p) {
   c.last_waiting = ARENA_ARRAY(a, uint32_t, n);
   find_joined(&c);
   find_long_sums(&c);
+  if (ends != CUT_LONG_SUMS) find_sums_in_common(&c);
+  mark_parts(&c);
   for (Slot s = 1; s < n; s++) sign(&c, s);
   find_shared(&c);
+  if (ends == CUT_STORES) find_stored(&c);
   for (Slot s = 1; s < n; s++) order(&c, s);
   find_pieces(&c);
   find_shares(&c);

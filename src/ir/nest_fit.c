@@ -1,15 +1,17 @@
-/* Indices as loops: sorted pieces are rows of equal steps, and rows whose first indices and lengths go by equal steps are a nest. */
-#include <stdlib.h>
+/* Indices as loops. Where pieces have few shapes (a spring to the right, a spring downwards), each shape is for itself. Sorted pieces
+ * are rows of equal steps, and rows whose first indices and lengths go by equal steps are a nest. */
+#include <string.h>
 
 #include "ir/nest_impl.h"
 
-enum { FEWEST_TURNS = 16 };
+enum { FEWEST_TURNS = 16, MOST_SHAPES = 24 };
 
 typedef struct {
   Arena *a;
   const int64_t *columns;
   uint32_t width, n;
   uint32_t *order;
+  const unsigned char *varies; /* [width] */
 } Group;
 
 /* A row: `count` pieces of the order from `begin` on, each by the same step from the one before. */
@@ -20,6 +22,54 @@ typedef struct {
 typedef VEC(Row) Rows;
 
 static const int64_t *indices(const Group *g, uint32_t k) { return g->columns + (size_t)g->order[k] * g->width; }
+
+/* --- shapes --- */
+
+/* The first index that varies. */
+static uint32_t first_varying(const Group *g) {
+  uint32_t k = 0;
+  while (k + 1 < g->width && !g->varies[k]) k++;
+  return k;
+}
+
+static void find_varying(Group *g) {
+  unsigned char *varies = ARENA_ARRAY(g->a, unsigned char, g->width + 1);
+  for (uint32_t i = 1; i < g->n; i++)
+    for (uint32_t k = 0; k < g->width; k++) varies[k] |= indices(g, i)[k] != indices(g, 0)[k];
+  g->varies = varies;
+}
+
+/* Indices into the array of the first index that varies, less that one. */
+static uint64_t shape_of(const Group *g, const uint32_t *array, uint32_t first, uint32_t k) {
+  const int64_t *at = indices(g, k);
+  uint64_t h = 0;
+  for (uint32_t j = 0; j < g->width; j++)
+    if (array[j] == array[first] && g->varies[j]) h = (h ^ (uint64_t)(at[j] - at[first])) * 0x100000001b3u + 1;
+  return h;
+}
+
+/* Puts pieces of one shape side by side, in their order; returns the number of shapes, or 1 when they are many. */
+static uint32_t split(Group *g, const uint32_t *array, uint32_t first, uint32_t *end) {
+  uint64_t known[MOST_SHAPES];
+  uint32_t n = 0, *shape = ARENA_ARRAY(g->a, uint32_t, g->n), *to = ARENA_ARRAY(g->a, uint32_t, g->n), put = 0;
+  for (uint32_t k = 0; k < g->n; k++) {
+    uint64_t h = shape_of(g, array, first, k);
+    while (shape[k] < n && known[shape[k]] != h) shape[k]++;
+    if (shape[k] < n) continue;
+    if (n == MOST_SHAPES) {
+      end[0] = g->n;
+      return 1;
+    }
+    known[n++] = h;
+  }
+  for (uint32_t x = 0; x < n; x++) {
+    for (uint32_t k = 0; k < g->n; k++)
+      if (shape[k] == x) to[put++] = g->order[k];
+    end[x] = put;
+  }
+  memcpy(g->order, to, g->n * sizeof *to);
+  return n;
+}
 
 /* --- sorting: a merge, since qsort takes no context --- */
 
@@ -41,7 +91,7 @@ static void sort(Group *g) {
     from = to;
     to = t;
   }
-  g->order = from;
+  if (from != g->order) memcpy(g->order, from, g->n * sizeof *from);
 }
 
 /* --- rows --- */
@@ -52,14 +102,6 @@ static int even(const Group *g, uint32_t x, uint32_t y, uint32_t z) {
   for (uint32_t k = 0; k < g->width; k++)
     if (c[k] - b[k] != b[k] - a[k]) return 0;
   return 1;
-}
-
-/* The first index that varies. */
-static uint32_t first_varying(const Group *g) {
-  for (uint32_t k = 0; k < g->width; k++)
-    for (uint32_t i = 1; i < g->n; i++)
-      if (indices(g, i)[k] != indices(g, 0)[k]) return k;
-  return 0;
 }
 
 /* Rows of pieces with an index in common, where there are such, else of whatever goes on evenly. */
@@ -120,31 +162,44 @@ static int64_t skew_of(const Group *g, const Growing *w) {
   return 0;
 }
 
-static Fit fit_of(const Group *g, const Growing *w, uint32_t count) {
+static Fit fit_of(const Group *g, const Growing *w, uint32_t offset, uint32_t count) {
   int64_t *first = ARENA_ARRAY(g->a, int64_t, g->width + 1);
   for (uint32_t k = 0; k < g->width; k++) first[k] = indices(g, w->rows->begin)[k];
-  Fit f = {.rows = w->n, .turns = w->rows->count, .first = first, .row = w->row, .turn = w->turn, .begin = w->rows->begin, .count = count};
+  Fit f = {.rows = w->n, .turns = w->rows->count, .first = first, .row = w->row, .turn = w->turn, .begin = offset + w->rows->begin, .count = count};
   if (w->n > 1) f.more = (int64_t)w->rows[1].count - w->rows[0].count;
   f.skew = skew_of(g, w);
   for (uint32_t k = 0; k < g->width; k++) w->row[k] -= f.skew * w->turn[k];
   return f;
 }
 
-void nest_fit(Arena *a, const int64_t *columns, uint32_t width, uint32_t *order, uint32_t n, Fits *fits) {
-  Group g = {a, columns, width, n, order};
-  sort(&g);
-  if (g.order != order) memcpy(order, g.order, n * sizeof *order);
-  Rows rows = find_rows(&g);
+static void fit_shape(Group *g, uint32_t offset, Fits *fits) {
+  sort(g);
+  find_varying(g);
+  Rows rows = find_rows(g);
   for (uint32_t i = 0; i < rows.n;) {
-    Growing w = {.rows = rows.at + i, .n = 1, .row = ARENA_ARRAY(a, int64_t, width + 1), .turn = ARENA_ARRAY(a, int64_t, width + 1)};
+    Growing w = {.rows = rows.at + i, .n = 1, .row = ARENA_ARRAY(g->a, int64_t, g->width + 1), .turn = ARENA_ARRAY(g->a, int64_t, g->width + 1)};
     if (w.rows->count >= 2) {
-      difference(&g, w.rows->begin, w.rows->begin + 1, w.turn);
+      difference(g, w.rows->begin, w.rows->begin + 1, w.turn);
       w.steps = 1;
     }
-    while (i + w.n < rows.n && takes_row(&g, &w)) {}
+    while (i + w.n < rows.n && takes_row(g, &w)) {}
     uint32_t count = 0;
     for (uint32_t k = 0; k < w.n; k++) count += w.rows[k].count;
-    if (count >= FEWEST_TURNS) vec_push(a, fits, fit_of(&g, &w, count));
+    if (count >= FEWEST_TURNS) vec_push(g->a, fits, fit_of(g, &w, offset, count));
     i += w.n;
+  }
+}
+
+void nest_fit(Arena *a, const int64_t *columns, const uint32_t *array, uint32_t width, uint32_t *order, uint32_t n, Fits *fits) {
+  Group all = {.a = a, .columns = columns, .width = width, .n = n, .order = order};
+  uint32_t end[MOST_SHAPES], begin = 0;
+  find_varying(&all);
+  uint32_t shapes = split(&all, array, first_varying(&all), end);
+  for (uint32_t k = 0; k < shapes; k++) {
+    Group g = all;
+    g.order = order + begin;
+    g.n = end[k] - begin;
+    fit_shape(&g, begin, fits);
+    begin = end[k];
   }
 }

@@ -13,7 +13,7 @@ typedef struct {
 
 typedef VEC(Share) Shares;
 
-typedef enum { HUB_NO, HUB_SUM, HUB_SHARED } HubKind;
+typedef enum { HUB_NO, HUB_SUM, HUB_SHARED, HUB_STORED } HubKind;
 
 typedef struct {
   Slot *slots;  /* in order */
@@ -57,8 +57,11 @@ typedef struct {
 int nest_is_leaf(IrOp op);
 int nest_is_sum(IrOp op);
 
+/* Where pieces end: at long sums, and what many use; at sums with terms in common, too; at what is stored, too. */
+typedef enum { CUT_LONG_SUMS, CUT_COMMON_TERMS, CUT_STORES, CUT_KINDS } CutEnds;
+
 /* Everything but celled. */
-Cut nest_cut(const Prog *p);
+Cut nest_cut(const Prog *p, CutEnds ends);
 
 /* The terms of a sum, through the parts that are joined to it; hub is the sum. */
 void nest_terms(const Cut *c, Slot sum, Shares *terms);
@@ -97,6 +100,7 @@ typedef struct {
   VEC(uint32_t) words;       /* all this, for comparison */
   VEC(int64_t) columns;      /* indices of one piece */
   VEC(uint32_t) class_of;    /* by column: of cells, from 1; 0: of an array */
+  VEC(uint32_t) array;       /* by column: the array, or past them the class */
   Children children, given;  /* scratch */
   VEC(Slot) open;
 } Tape;
@@ -117,8 +121,9 @@ typedef struct {
 
 typedef VEC(Fit) Fits;
 
-/* `n` pieces with `width` indices each; sorts `order`, which holds their numbers, and appends the loops that make FEWEST turns. */
-void nest_fit(Arena *a, const int64_t *columns, uint32_t width, uint32_t *order, uint32_t n, Fits *fits);
+/* `n` pieces with `width` indices each, of which number k goes into array[k]; sorts `order`, which holds the pieces' numbers, and
+ * appends the loops of enough turns. */
+void nest_fit(Arena *a, const int64_t *columns, const uint32_t *array, uint32_t width, uint32_t *order, uint32_t n, Fits *fits);
 
 /* The program of one turn. */
 const Prog *nest_body(const Cut *c, const Tape *t, const Fit *f, const Slot **outer, uint32_t *nouter);

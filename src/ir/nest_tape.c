@@ -58,9 +58,11 @@ static void word(Writing *w, uint64_t x) {
   vec_push(w->c->a, &w->t->words, (uint32_t)(x >> 32));
 }
 
-static uint32_t column(Writing *w, int64_t index, uint32_t class_of) {
+/* array: the array, or past them the class of hubs. */
+static uint32_t column(Writing *w, int64_t index, uint32_t array) {
   vec_push(w->c->a, &w->t->columns, index);
-  vec_push(w->c->a, &w->t->class_of, class_of);
+  vec_push(w->c->a, &w->t->array, array);
+  vec_push(w->c->a, &w->t->class_of, array < ARR_COUNT ? 0 : array - ARR_COUNT + 1);
   return w->t->columns.n - 1;
 }
 
@@ -72,11 +74,11 @@ static Node node_of(Writing *w, Slot s) {
   if (c->hub[s] && c->piece[s] != w->stamp) {
     n.kind = c->celled[s] == 2 ? NODE_CELL : NODE_OUTER;
     word(w, c->celled[s] == 2 ? c->class_of[s] : s);
-    if (n.kind == NODE_CELL) n.column = column(w, c->number[s], c->class_of[s] + 1);
+    if (n.kind == NODE_CELL) n.column = column(w, c->number[s], ARR_COUNT + c->class_of[s]);
   } else if (i->op == IR_LOAD) {
     n.kind = NODE_LOAD;
     word(w, (uint64_t)i->array);
-    if (!ir_is_scalar(i->array)) n.column = column(w, i->index, 0);
+    if (!ir_is_scalar(i->array)) n.column = column(w, i->index, (uint32_t)i->array);
   } else if (i->op == IR_CONST || i->op == IR_PI) {
     n.kind = NODE_CONST;
     word(w, c->sig[s]);
@@ -125,7 +127,7 @@ static void write_value(Writing *w, Slot s) {
 
 void nest_tape(const Cut *c, Piece *piece, Local *local, uint32_t stamp, Tape *t) {
   Writing w = {.c = c, .local = local, .stamp = stamp, .t = t};
-  t->nodes.n = t->links.n = t->gives.n = t->words.n = t->columns.n = t->class_of.n = t->given.n = 0;
+  t->nodes.n = t->links.n = t->gives.n = t->words.n = t->columns.n = t->class_of.n = t->array.n = t->given.n = 0;
   for (uint32_t k = 0; k < piece->gives.n; k++) {
     Share s = piece->gives.at[k];
     vec_push(c->a, &t->given, ((Child){s.value, s.minus, c->sig[s.value], c->number[s.hub], k}));
@@ -138,6 +140,6 @@ void nest_tape(const Cut *c, Piece *piece, Local *local, uint32_t stamp, Tape *t
     vec_push(c->a, &t->gives, l);
     word(&w, (uint64_t)l.id << 1 | (uint64_t)l.minus);
     word(&w, c->class_of[hub]);
-    column(&w, c->number[hub], c->class_of[hub] + 1);
+    column(&w, c->number[hub], ARR_COUNT + c->class_of[hub]);
   }
 }
