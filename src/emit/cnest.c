@@ -14,7 +14,6 @@ typedef struct {
 } Nesting;
 
 static int has_rows(const Nest *n) { return n->rows > 1; }
-static int has_turns(const Nest *n) { return n->rows == 1 || n->turns != 1 || n->more != 0; }
 
 /* " + 3*i" */
 static void put_term(StrBuf *b, int64_t factor, const char *counter) {
@@ -28,16 +27,13 @@ static void put_term(StrBuf *b, int64_t factor, const char *counter) {
 static const char *affine(const Nesting *x, int64_t first, int64_t by_row, int64_t by_turn) {
   StrBuf b = strbuf(x->body.a);
   put_term(&b, has_rows(x->n) ? by_row : 0, x->i);
-  put_term(&b, has_turns(x->n) ? by_turn : 0, x->j);
+  put_term(&b, nest_has_turns(x->n) ? by_turn : 0, x->j);
   if (!b.n) sb_printf(&b, "%lld", (long long)first);
   else if (first) sb_printf(&b, " %c %lld", first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first));
   return sb_text(&b);
 }
 
 static const char *place(const Nesting *x, uint32_t k) { return affine(x, x->n->at[k].first, x->n->at[k].by_row, x->n->at[k].by_turn); }
-
-/* Whether an index changes from turn to turn of the innermost loop. */
-static int moves(const Nesting *x, uint32_t k) { return (has_turns(x->n) ? x->n->at[k].by_turn : x->n->at[k].by_row) != 0; }
 
 static void line(Writer *w, const char *text) {
   cwriter_statement(w, text);
@@ -50,7 +46,7 @@ static void find_each(Nesting *x) {
   const Prog *p = x->n->body;
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
-    if (i->op == IR_LOAD && i->array != ARR_OUTER && !ir_is_scalar(i->array)) x->each[s] = (unsigned char)moves(x, i->index);
+    if (i->op == IR_LOAD && i->array != ARR_OUTER && !ir_is_scalar(i->array)) x->each[s] = (unsigned char)nest_moves(x->n, i->index);
     else x->each[s] = x->each[i->a] | x->each[i->b] | x->each[i->c];
   }
 }
@@ -104,7 +100,7 @@ static void declare_partial(Nesting *x) {
   Writer *w = &x->body;
   StrBuf text = strbuf(w->a);
   for (uint32_t k = 0; k < w->p->stores.n; k++) {
-    if (moves(x, w->p->stores.at[k].index)) continue;
+    if (nest_moves(x->n, w->p->stores.at[k].index)) continue;
     x->partial[k] = cnames_take(&w->names, "part");
     sb_printf(&text, "%s%s = %s_C(0.0)", text.n ? ", " : "", x->partial[k], w->style->prefix);
   }
@@ -120,16 +116,16 @@ static void add_partial(Nesting *x) {
 static void write_rows(Nesting *x, const Writer *around) {
   Writer *w = &x->body;
   const Nest *n = x->n;
-  if (has_rows(n) && has_turns(n)) open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
+  if (has_rows(n) && nest_has_turns(n)) open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
   write_values(x, around, 0);
   declare_partial(x);
-  if (has_turns(n)) open_loop(w, x->j, affine(x, 0, n->skew, 0), affine(x, n->turns, n->skew + n->more, 0));
+  if (nest_has_turns(n)) open_loop(w, x->j, affine(x, 0, n->skew, 0), affine(x, n->turns, n->skew + n->more, 0));
   else open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
   write_values(x, around, 1);
   write_additions(x);
   close_loop(w);
   add_partial(x);
-  if (has_rows(n) && has_turns(n)) close_loop(w);
+  if (has_rows(n) && nest_has_turns(n)) close_loop(w);
 }
 
 void cnest_write(Writer *w, const Ins *i) {

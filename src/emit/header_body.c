@@ -124,7 +124,6 @@ static void start(const Header *h) {
   sb_printf(h->out, "  s->t = %s_C(%s);\n", h->upper, double_text(h->a, h->scene->t0));
   if (h->u->q.n) sb_printf(h->out, "  for (int i = 0; i < %s_NQ; i++) s->q[i] = s->v[i] = %s_C(0.0);\n", h->upper, h->upper);
   if (h->u->z.n) sb_printf(h->out, "  for (int i = 0; i < %s_NZ; i++) s->z[i] = %s_C(0.0);\n", h->upper, h->upper);
-  st.seldom_called = 1;
   cwrite_body(h->scene->start, &st, h->a, h->out);
   sb_puts(h->out, "}\n");
 }

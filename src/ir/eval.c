@@ -126,17 +126,34 @@ static int run_turn(Run *body, const Run *r, const Nest *n, int64_t i, int64_t j
   return 0;
 }
 
+/* Adds what the turn stores: to the sums, or to what the loop adds up. */
+static void add_stores(const Run *r, const Run *body, const Nest *n, Real *part, int64_t i, int64_t j) {
+  for (uint32_t k = 0; k < body->p->stores.n; k++) {
+    const Store *st = &body->p->stores.at[k];
+    Real *to = nest_moves(n, st->index) ? &r->cells[place(n, st->index, i, j)] : &part[k];
+    *to += st->array ? -body->v[st->slot] : body->v[st->slot];
+  }
+}
+
+static void add_parts(const Run *r, const Nest *n, Real *part, int64_t i) {
+  for (uint32_t k = 0; k < n->body->stores.n; k++) {
+    const Store *st = &n->body->stores.at[k];
+    if (!nest_moves(n, st->index)) r->cells[place(n, st->index, i, 0)] += part[k];
+    part[k] = 0;
+  }
+}
+
 static int run_nest(Run *r, const Nest *n) {
   const Prog *p = n->body;
   Run body = {.p = p, .in = r->in, .v = ARENA_ARRAY(p->arena, Real, p->ins.n), .cells = r->cells};
-  for (int64_t i = 0; i < n->rows; i++)
+  Real *part = ARENA_ARRAY(p->arena, Real, p->stores.n + 1);
+  for (int64_t i = 0; i < n->rows; i++) {
     for (int64_t j = n->skew*i; j < (n->skew + n->more)*i + n->turns; j++) {
       if (run_turn(&body, r, n, i, j) != 0) return -1;
-      for (uint32_t k = 0; k < p->stores.n; k++) {
-        const Store *st = &p->stores.at[k];
-        r->cells[place(n, st->index, i, j)] += st->array ? -body.v[st->slot] : body.v[st->slot];
-      }
+      add_stores(r, &body, n, part, i, j);
     }
+    if (nest_has_turns(n) || i + 1 == n->rows) add_parts(r, n, part, i);
+  }
   return 0;
 }
 

@@ -199,7 +199,7 @@ static int in_piece(const Cut *c, Slot s) {
 
 /* A shared value whose users are all of one piece is a value of that piece. Returns whether there was one. */
 static int take_back(Cut *c, Slot *parent) {
-  enum { MIXED = UINT32_MAX };
+  static const Slot MIXED = UINT32_MAX;
   int some = 0;
   Slot *user = ARENA_ARRAY(c->a, Slot, c->p->ins.n);
   for (Slot s = 1; s < c->p->ins.n; s++)

@@ -86,7 +86,8 @@ typedef struct {
 } IrPlace;
 
 /* for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1: what the body computes is added to sums, which are 0
- * before the first nest. The body is a program without nests: its loads of arrays and sums, and its stores, have numbers of `at`
+ * before the first nest; what goes to one sum in all turns of the inner loop, or of the only one, is added up from 0 before it is
+ * added. The body is a program without nests: its loads of arrays and sums, and its stores, have numbers of `at`
  * as index (those that are no arrays have none); its loads of ARR_OUTER have numbers of `outer`. A store to array 0 adds, to array 1
  * subtracts. */
 typedef struct {
@@ -97,6 +98,12 @@ typedef struct {
   const Slot *outer;    /* [nouter] values of the program that the nest is in */
   uint32_t n, nouter;
 } Nest;
+
+/* Whether there is a loop over j: one over i is the only one where each row has one turn. */
+static inline int nest_has_turns(const Nest *n) { return n->rows == 1 || n->turns != 1 || n->more != 0; }
+
+/* Whether place k of `at` moves from turn to turn of the inner loop, or of the only one. */
+static inline int nest_moves(const Nest *n, uint32_t k) { return (nest_has_turns(n) ? n->at[k].by_turn : n->at[k].by_row) != 0; }
 
 /* A table that the user gave for what is called `name`. */
 typedef struct {
