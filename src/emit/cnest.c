@@ -59,7 +59,7 @@ static void write_load(Nesting *x, const Writer *around, Slot s) {
   } else if (ir_is_scalar(i->array)) {
     w->piece[s] = (Piece){w->style->in[i->array], C_ATOM, 0};
   } else {
-    const char *name = cnames_take(&w->names, cloop_stem(w->a, i->name ? i->name : "sum"));
+    const char *name = cnames_take(&w->names, i->name ? i->name : "sum");
     line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name,
                          i->array == ARR_P && w->parameters ? w->parameters : cwriter_array(w, i->array), place(x, i->index)));
     w->piece[s] = (Piece){name, C_ATOM, 0};
@@ -128,10 +128,21 @@ static void write_rows(Nesting *x, const Writer *around) {
   if (has_rows(n) && nest_has_turns(n)) close_loop(w);
 }
 
+/* The body with what the names of its values have in common in all turns. */
+static const Prog *named_by_stems(const Writer *w, const Prog *p) {
+  Prog *r = ARENA_NEW(w->a, Prog);
+  *r = *p;
+  r->ins.at = ARENA_ARRAY(w->a, Ins, p->ins.n);
+  memcpy(r->ins.at, p->ins.at, p->ins.n * sizeof *p->ins.at);
+  for (Slot s = 1; s < p->ins.n; s++)
+    if (r->ins.at[s].name) r->ins.at[s].name = cloop_stem(w->a, r->ins.at[s].name);
+  return r;
+}
+
 void cnest_write(Writer *w, const Ins *i) {
   const Nest *n = &w->p->nests.at[i->index];
   Nesting x = {.n = n, .body = *w, .i = w->row, .j = w->turn};
-  x.body.p = n->body;
+  x.body.p = named_by_stems(w, n->body);
   x.body.uses = prog_uses(n->body);
   x.body.stored = ARENA_ARRAY(w->a, const char *, n->body->ins.n);
   x.body.piece = ARENA_ARRAY(w->a, Piece, n->body->ins.n);

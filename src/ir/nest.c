@@ -184,10 +184,10 @@ static void number_cells(Rebuild *r) {
   const Search *s = r->s;
   const Cut *c = &s->c;
   uint32_t *size = ARENA_ARRAY(c->a, uint32_t, c->classes + 1);
-  for (uint32_t k = 0; k < c->hubs.n; k++)
-    if (s->terms[c->hubs.at[k]]) size[c->class_of[c->hubs.at[k]]] = 1;
-  for (uint32_t k = 0; k < c->hubs.n; k++)
-    if (size[c->class_of[c->hubs.at[k]]]) size[c->class_of[c->hubs.at[k]]] = c->number[c->hubs.at[k]] + 1;
+  for (uint32_t k = 0; k < c->hubs.n; k++) {
+    Slot hub = c->hubs.at[k];
+    if (s->terms[hub] && size[c->class_of[hub]] <= c->number[hub]) size[c->class_of[hub]] = c->number[hub] + 1;
+  }
   r->base = ARENA_ARRAY(c->a, uint32_t, c->classes + 1);
   for (uint32_t k = 0; k < c->classes; k++) {
     r->base[k] = r->to->cells;

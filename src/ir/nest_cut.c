@@ -133,17 +133,21 @@ static void sign(Cut *c, Slot s) {
   }
 }
 
+/* A long sum reads what all others read: only how much tells them apart. */
 static void order(Cut *c, Slot s) {
   const Ins *i = &c->p->ins.at[s];
   c->low[s] = UINT64_MAX;
-  if (i->op == IR_LOAD && !ir_is_scalar(i->array)) c->low[s] = c->mass[s] = (uint64_t)i->array << 40 | i->index;
-  if (c->hub[s]) c->low[s] = c->mass[s] = (uint64_t)ARR_COUNT << 40 | s;
-  for (int k = 0; k < 3 && !c->hub[s]; k++) {
+  if (i->op == IR_LOAD && !ir_is_scalar(i->array)) {
+    c->low[s] = (uint64_t)i->array << 40 | i->index;
+    c->mass[s] = (uint64_t)i->index + 1;
+  }
+  for (int k = 0; k < 3; k++) {
     Slot x = operand(i, k);
     if (!x) continue;
     c->mass[s] += c->mass[x];
     if (c->low[x] < c->low[s]) c->low[s] = c->low[x];
   }
+  if (c->hub[s] == HUB_SUM) c->low[s] = (uint64_t)ARR_COUNT << 40;
 }
 
 /* --- shared values --- */
@@ -285,13 +289,11 @@ static void find_shares(Cut *c) {
   for (uint32_t k = 0; k < p->stores.n; k++) not_apart(c, p->stores.at[k].slot);
 }
 
-/* Sums are one class, what is stored another, shared values one for each signature. Numbers follow the order in which stores need the hubs. */
-static void number_hubs(Cut *c) {
+/* Hubs in the order in which stores need them. */
+static void list_hubs(Cut *c) {
   const Prog *p = c->p;
   unsigned char *seen = ARENA_ARRAY(c->a, unsigned char, p->ins.n);
   VEC(Slot) open = {0};
-  VEC(uint64_t) sigs = {0};
-  VEC(uint32_t) sizes = {0};
   for (uint32_t k = 0; k < p->stores.n; k++) {
     vec_push(c->a, &open, p->stores.at[k].slot);
     while (open.n) {
@@ -303,19 +305,41 @@ static void number_hubs(Cut *c) {
         if (operand(&p->ins.at[s], j)) vec_push(c->a, &open, operand(&p->ins.at[s], j));
     }
   }
-  for (uint32_t k = 0; k < c->hubs.n; k++) {
-    Slot s = c->hubs.at[k];
-    uint64_t sig = c->hub[s] == HUB_SUM ? 5 : c->hub[s] == HUB_STORED ? 9 : c->sig[s];
-    uint32_t x = 0;
-    while (x < sigs.n && sigs.at[x] != sig) x++;
-    if (x == sigs.n) {
-      vec_push(c->a, &sigs, sig);
-      vec_push(c->a, &sizes, 0);
+}
+
+typedef struct {
+  uint64_t sig, low, mass;
+  uint32_t rank; /* place among the hubs */
+} HubKey;
+
+/* Shared values are in the order of the elements that they are computed from, others in that of stores. */
+static HubKey key_of(const Cut *c, uint32_t rank) {
+  Slot s = c->hubs.at[rank];
+  return c->hub[s] == HUB_SHARED ? (HubKey){c->sig[s], c->low[s], c->mass[s], rank} : (HubKey){.sig = c->hub[s], .rank = rank};
+}
+
+static int by_key(const void *x, const void *y) {
+  const HubKey *a = x, *b = y;
+  if (a->sig != b->sig) return a->sig < b->sig ? -1 : 1;
+  if (a->low != b->low) return a->low < b->low ? -1 : 1;
+  if (a->mass != b->mass) return a->mass < b->mass ? -1 : 1;
+  return (a->rank > b->rank) - (a->rank < b->rank);
+}
+
+/* Sums are one class, what is stored another, shared values one for each signature. */
+static void number_hubs(Cut *c) {
+  HubKey *keys = ARENA_ARRAY(c->a, HubKey, c->hubs.n + 1);
+  for (uint32_t k = 0; k < c->hubs.n; k++) keys[k] = key_of(c, k);
+  qsort(keys, c->hubs.n, sizeof *keys, by_key);
+  for (uint32_t k = 0, first = 0; k < c->hubs.n; k++) {
+    Slot s = c->hubs.at[keys[k].rank];
+    if (!k || keys[k].sig != keys[k - 1].sig) {
+      first = k;
+      c->classes++;
     }
-    c->class_of[s] = x;
-    c->number[s] = sizes.at[x]++;
+    c->class_of[s] = c->classes - 1;
+    c->number[s] = k - first;
   }
-  c->classes = sigs.n;
 }
 
 Cut nest_cut(const Prog *p, CutEnds ends) {
@@ -346,6 +370,7 @@ Cut nest_cut(const Prog *p, CutEnds ends) {
   for (Slot s = 1; s < n; s++) order(&c, s);
   find_pieces(&c);
   find_shares(&c);
+  list_hubs(&c);
   number_hubs(&c);
   return c;
 }

@@ -48,7 +48,8 @@ static uint64_t shape_of(const Group *g, const uint32_t *array, uint32_t first, 
   return h;
 }
 
-/* Puts pieces of one shape side by side, in their order; returns the number of shapes, or 1 when they are many. */
+/* Puts pieces of one shape side by side, in their order; returns the number of shapes, or 1 when they are many: of all pairs of
+ * n bodies there are n - 1. */
 static uint32_t split(Group *g, const uint32_t *array, uint32_t first, uint32_t *end) {
   uint64_t known[MOST_SHAPES];
   uint32_t n = 0, *shape = ARENA_ARRAY(g->a, uint32_t, g->n), *to = ARENA_ARRAY(g->a, uint32_t, g->n), put = 0;
@@ -56,7 +57,7 @@ static uint32_t split(Group *g, const uint32_t *array, uint32_t first, uint32_t 
     uint64_t h = shape_of(g, array, first, k);
     while (shape[k] < n && known[shape[k]] != h) shape[k]++;
     if (shape[k] < n) continue;
-    if (n == MOST_SHAPES) {
+    if (4*(n + 1)*(n + 1) > g->n || n == MOST_SHAPES) {
       end[0] = g->n;
       return 1;
     }
