@@ -266,8 +266,8 @@ static Lower lower_new(const Eqns *e) {
   return (Lower){.e = e, .g = e->g, .p = prog_new(a), .slots = expr_map(a), .circular = expr_map(a)};
 }
 
-/* Sums over pairs as loops, in long programs. */
-static Prog *finished(const Lower *l) { return prog_nest(prog_tidy(l->p), ROLL_FROM); }
+/* Sums over pairs as loops, in programs of as many instructions as get loops. */
+static Prog *finished(const Lower *l, uint32_t from) { return prog_nest(prog_tidy(l->p), from); }
 
 static const char *text_of_symbol(const Lower *l, SymId s) { return expr_symbol(l->g, s)->name; }
 
@@ -402,7 +402,7 @@ Prog *lower_energy(const Eqns *e) {
   lower_roots(&l, roots, 2);
   prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), "energy p q' - L");
   prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
-  return finished(&l);
+  return finished(&l, ROLL_SELDOM_FROM);
 }
 
 Prog *lower_variation(const Eqns *e, const Variation *x) {
@@ -413,7 +413,7 @@ Prog *lower_variation(const Eqns *e, const Variation *x) {
   for (uint32_t k = 0; k < 3; k++)
     for (uint32_t i = 0; i < e->n; i++)
       prog_store(l.p, k, i, lower_slot(&l, parts[k][i]), arena_printf(l.p->arena, words[k], e->m->coords.at[i].name));
-  return finished(&l);
+  return finished(&l, ROLL_FROM);
 }
 
 /* d2L/dx' dx, or dQ_x/dx'. */
@@ -432,7 +432,7 @@ Prog *lower_second(const Eqns *e, const Variation *x) {
   for (uint32_t k = 0; k < x->second.n; k++) roots[k] = x->second.at[k].e;
   lower_roots(&l, roots, x->second.n);
   for (uint32_t k = 0; k < x->second.n; k++) prog_store(l.p, 0, k, lower_slot(&l, roots[k]), second_text(&l, &x->second.at[k]));
-  return finished(&l);
+  return finished(&l, ROLL_FROM);
 }
 
 Prog *lower_events(const Eqns *e) {
@@ -440,7 +440,7 @@ Prog *lower_events(const Eqns *e) {
   const Model *m = e->m;
   for (uint32_t i = 0; i < m->events.n; i++) lower_roots(&l, &m->events.at[i].g, 1);
   for (uint32_t i = 0; i < m->events.n; i++) prog_store(l.p, 0, i, lower_slot(&l, m->events.at[i].g), m->events.at[i].name);
-  return finished(&l);
+  return finished(&l, ROLL_FROM);
 }
 
 static uint32_t array_of_target(SymKind k) { return k == SYM_COORD ? 0 : k == SYM_VEL ? 1 : 2; }
@@ -496,7 +496,7 @@ static Prog *outputs(const Eqns *e, int plain_only) {
   }
   lower_with_accelerations(&l, roots, n);
   for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), of[i]->name);
-  return finished(&l);
+  return finished(&l, ROLL_SELDOM_FROM);
 }
 
 Prog *lower_outputs(const Eqns *e) { return outputs(e, 0); }

@@ -4,7 +4,7 @@
 
 #include "ir/nest_impl.h"
 
-enum { FEWEST_PIECES = 16, MOST_VALUES = 2000 };
+enum { FEWEST_PIECES = 8, MOST_VALUES = 2000 };
 
 /* Pieces that compute the same. */
 typedef struct {

@@ -4,7 +4,7 @@
 
 #include "ir/nest_impl.h"
 
-enum { FEWEST_TURNS = 16, MOST_SHAPES = 24 };
+enum { FEWEST_TURNS = 8, MOST_SHAPES = 24 };
 
 typedef struct {
   Arena *a;
