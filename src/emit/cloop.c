@@ -330,14 +330,14 @@ static const char *stored_value(const Writer *w, const Store *first) {
 }
 
 uint32_t cloop_stores(const Writer *w, uint32_t k) {
-  enum { FEWEST = 16 };
   const Prog *p = w->p;
   const Store *first = &p->stores.at[k];
-  if (k + FEWEST > p->stores.n || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0)) return 0;
+  uint32_t fewest = p->nests.n ? 8 : 16; /* nests leave rows of nets */
+  if (k + fewest > p->stores.n || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0)) return 0;
   if (w->style->params && p->ins.at[first->slot].op == IR_LOAD && p->ins.at[first->slot].array == ARR_P) return 0;
   uint32_t n = 1;
   while (k + n < p->stores.n && follows(w, first, n)) n++;
-  return n >= FEWEST ? n : 0;
+  return n >= fewest ? n : 0;
 }
 
 void cloop_write_stores(Writer *w, uint32_t k, uint32_t n) {
