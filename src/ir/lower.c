@@ -392,7 +392,7 @@ Prog *lower_linear(const Eqns *e, Partials dr) {
     const MassEntry *M = &e->mass.at[k];
     prog_store(l.p, 1, k, lower_slot(&l, M->e), arena_printf(a, "%s, %s", component(&l, M->row), component(&l, M->col)));
   }
-  return prog_tidy(l.p);
+  return finished(&l, ROLL_FROM);
 }
 
 Prog *lower_energy(const Eqns *e) {

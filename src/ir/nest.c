@@ -197,10 +197,10 @@ static void number_cells(Rebuild *r) {
 
 static int has_cell(const Rebuild *r, Slot x) { return r->s->c.hub[x] && r->s->terms[x]; }
 
-/* Whether nests add the term to its hub. */
-static int is_nested(const Rebuild *r, Slot hub, Slot term) {
-  const Cut *c = &r->s->c;
-  return c->piece[term] && (!c->hub[term] || term == hub) && r->s->nested[c->piece[term]];
+/* Whether nests add the term to its hubs. */
+static int is_nested(const Rebuild *r, Slot term) {
+  uint32_t piece = r->s->c.piece[term];
+  return piece && r->s->nested[piece];
 }
 
 static void want(Rebuild *r, uint32_t item) {
@@ -214,7 +214,7 @@ static void other_terms(const Rebuild *r, Slot hub, Shares *terms) {
   if (c->hub[hub] == HUB_SUM) nest_terms(c, hub, terms);
   uint32_t n = 0;
   for (uint32_t k = 0; k < terms->n; k++)
-    if (!is_nested(r, hub, terms->at[k].value)) terms->at[n++] = terms->at[k];
+    if (!is_nested(r, terms->at[k].value)) terms->at[n++] = terms->at[k];
   terms->n = n;
 }
 
@@ -311,7 +311,7 @@ static uint32_t taken_in(const Search *s) {
   return deep ? inside : 0;
 }
 
-static Search search(const Prog *p, CutEnds ends) {
+static Search search(const Prog *p, unsigned ends) {
   Arena *a = p->arena;
   Search s = {.c = nest_cut(p, ends), .table_cap = 256};
   s.local = ARENA_ARRAY(a, Local, p->ins.n);
@@ -327,8 +327,8 @@ Prog *prog_nest(Prog *p, uint32_t from) {
   if (p->ins.n < from || p->solves.n || p->nests.n) return p;
   Search best = {0};
   uint32_t most = p->ins.n / 2; /* else the rest is what counts */
-  for (int ends = 0; ends < CUT_KINDS && most < p->ins.n - p->ins.n / 8; ends++) {
-    Search s = search(p, (CutEnds)ends);
+  for (unsigned ends = 0; ends < CUT_KINDS && most < p->ins.n - p->ins.n / 8; ends++) {
+    Search s = search(p, ends);
     if (taken_in(&s) <= most) continue;
     most = taken_in(&s);
     best = s;

@@ -49,7 +49,7 @@ static void find_sums_in_common(Cut *c) {
     c->terms->n = 0;
     nest_terms(c, s, c->terms);
     for (uint32_t k = 0; k < c->terms->n && c->terms->n > 1; k++)
-      if (uses[c->terms->at[k].value] > 1 && !nest_is_leaf(op_of(c, c->terms->at[k].value))) c->hub[s] = HUB_SUM;
+      if (uses[c->terms->at[k].value] > 1 && !nest_is_leaf(op_of(c, c->terms->at[k].value)) && !c->hub[s]) c->hub[s] = HUB_COMMON;
   }
 }
 
@@ -57,7 +57,7 @@ static void find_sums_in_common(Cut *c) {
 static void mark_parts(Cut *c) {
   for (Slot s = c->p->ins.n; s-- > 1;) {
     const Ins *i = &c->p->ins.at[s];
-    if (c->hub[s] == HUB_SUM) c->sum[s] = s;
+    if (c->hub[s]) c->sum[s] = s;
     for (int k = 0; k < 2 && c->sum[s]; k++)
       if (c->joined[operand(i, k)]) c->sum[operand(i, k)] = c->sum[s];
   }
@@ -112,7 +112,7 @@ static uint64_t part_of_product(const Cut *c, Slot x) { return c->joined[x] && o
 static void sign_sum(Cut *c, Slot s, const Ins *i) {
   int a = i->op == IR_NEG, b = i->op == IR_SUB;
   uint64_t plus = part_of_sum(c, i->a, a) + part_of_sum(c, i->b, b), minus = part_of_sum(c, i->a, !a) + part_of_sum(c, i->b, !b);
-  c->sig[s] = c->hub[s] ? 5 : c->joined[s] ? plus : with(6, plus);
+  c->sig[s] = c->hub[s] == HUB_SUM ? 5 : c->joined[s] ? plus : with(6, plus);
   c->flip[s] = minus;
 }
 
@@ -147,7 +147,7 @@ static void order(Cut *c, Slot s) {
     c->mass[s] += c->mass[x];
     if (c->low[x] < c->low[s]) c->low[s] = c->low[x];
   }
-  if (c->hub[s] == HUB_SUM) c->low[s] = (uint64_t)ARR_COUNT << 40;
+  if (c->hub[s] == HUB_SUM || c->hub[s] == HUB_COMMON) c->low[s] = (uint64_t)ARR_COUNT << 40;
 }
 
 /* --- shared values --- */
@@ -201,24 +201,50 @@ static int in_piece(const Cut *c, Slot s) {
   return s && !nest_is_leaf(op) && !c->sum[s] && op != IR_PIVOT && op != IR_TITLE;
 }
 
-/* A shared value whose users are all of one piece is a value of that piece. Returns whether there was one. */
-static int take_back(Cut *c, Slot *parent) {
-  static const Slot MIXED = UINT32_MAX;
-  int some = 0;
+static const Slot MIXED = UINT32_MAX;
+
+static Slot same_or_mixed(Slot known, Slot x) { return !known || known == x ? x : MIXED; }
+
+/* By hub that may be taken back: the piece of all its users; MIXED where they are of several. */
+static Slot *find_users(const Cut *c, Slot *parent) {
   Slot *user = ARENA_ARRAY(c->a, Slot, c->p->ins.n);
   for (Slot s = 1; s < c->p->ins.n; s++)
     for (int k = 0; k < 3; k++) {
       Slot x = operand(&c->p->ins.at[s], k);
-      if (!x || c->hub[x] != HUB_SHARED) continue;
-      Slot by = in_piece(c, s) ? root_of(parent, s) : MIXED;
-      user[x] = !user[x] || user[x] == by ? by : MIXED;
+      if (x && c->hub[x]) user[x] = same_or_mixed(user[x], in_piece(c, s) ? root_of(parent, s) : MIXED);
     }
   for (uint32_t k = 0; k < c->p->stores.n; k++) user[c->p->stores.at[k].slot] = MIXED;
+  return user;
+}
+
+/* Whether all terms that pieces give to a sum are of the piece of its users. */
+static int is_of_one_piece(Cut *c, Slot *parent, Slot sum, Slot user) {
+  c->terms->n = 0;
+  nest_terms(c, sum, c->terms);
+  for (uint32_t k = 0; k < c->terms->n; k++) {
+    Slot x = c->terms->at[k].value;
+    if (c->hub[x] || (in_piece(c, x) && root_of(parent, x) != user)) return 0;
+  }
+  return 1;
+}
+
+/* A shared value whose users are all of one piece is a value of that piece, and so is a sum whose terms are of it, too. Returns
+ * whether there was one. */
+static int take_back(Cut *c, Slot *parent) {
+  int some = 0;
+  const Slot *user = find_users(c, parent);
   for (Slot s = 1; s < c->p->ins.n; s++) {
-    if (c->hub[s] != HUB_SHARED || user[s] == MIXED || !user[s]) continue;
+    if ((c->hub[s] != HUB_SHARED && c->hub[s] != HUB_COMMON) || user[s] == MIXED || !user[s]) continue;
+    if (c->hub[s] == HUB_COMMON && !is_of_one_piece(c, parent, s, root_of(parent, user[s]))) continue;
     c->hub[s] = HUB_NO;
     join(parent, s, user[s]);
     some = 1;
+  }
+  for (Slot s = 1; s < c->p->ins.n; s++) {
+    Slot sum = c->sum[s];
+    if (!sum || c->hub[sum]) continue;
+    c->sum[s] = 0; /* roots come after their parts */
+    join(parent, s, sum);
   }
   return some;
 }
@@ -234,6 +260,8 @@ static void find_pieces(Cut *c) {
       if (in_piece(c, x) && !c->hub[x]) join(parent, s, x);
     }
   for (int turn = 0; turn < TURNS && take_back(c, parent); turn++) {}
+  for (Slot s = 1; s < p->ins.n; s++)
+    if (c->hub[s] == HUB_COMMON) c->hub[s] = HUB_SUM;
   for (Slot s = 1; s < p->ins.n; s++) {
     if (!in_piece(c, s)) continue;
     Slot r = root_of(parent, s);
@@ -280,8 +308,8 @@ static void find_shares(Cut *c) {
     for (uint32_t k = 0; k < terms.n; k++) {
       Slot x = terms.at[k].value;
       c->terms_of[s]++;
-      if (c->hub[x] && x != s) wait_for(c, x, 0, s);
-      if (!c->piece[x] || (c->hub[x] && x != s)) continue; /* a leaf, or a hub of its own */
+      if (!c->piece[x] && c->hub[x]) wait_for(c, x, 0, s);
+      if (!c->piece[x]) continue; /* a leaf, or another sum */
       c->waits[s]++;
       vec_push(c->a, &c->pieces.at[c->piece[x] - 1].gives, terms.at[k]);
     }
@@ -326,7 +354,8 @@ static int by_key(const void *x, const void *y) {
   return (a->rank > b->rank) - (a->rank < b->rank);
 }
 
-/* Sums are one class, what is stored another, shared values one for each signature. */
+/* Sums are one class, what is stored another, shared values one for each signature. What is stored has the number of its first
+ * store, with gaps, so that a loop stores it. */
 static void number_hubs(Cut *c) {
   HubKey *keys = ARENA_ARRAY(c->a, HubKey, c->hubs.n + 1);
   for (uint32_t k = 0; k < c->hubs.n; k++) keys[k] = key_of(c, k);
@@ -340,9 +369,11 @@ static void number_hubs(Cut *c) {
     c->class_of[s] = c->classes - 1;
     c->number[s] = k - first;
   }
+  for (uint32_t k = c->p->stores.n; k-- > 0;)
+    if (c->hub[c->p->stores.at[k].slot] == HUB_STORED) c->number[c->p->stores.at[k].slot] = k;
 }
 
-Cut nest_cut(const Prog *p, CutEnds ends) {
+Cut nest_cut(const Prog *p, unsigned ends) {
   Arena *a = p->arena;
   uint32_t n = p->ins.n;
   Cut c = {.p = p, .a = a, .uses = prog_uses(p), .open = ARENA_NEW(a, Shares), .terms = ARENA_NEW(a, Shares)};
@@ -362,11 +393,11 @@ Cut nest_cut(const Prog *p, CutEnds ends) {
   c.last_waiting = ARENA_ARRAY(a, uint32_t, n);
   find_joined(&c);
   find_long_sums(&c);
-  if (ends != CUT_LONG_SUMS) find_sums_in_common(&c);
+  if (ends & CUT_COMMON_TERMS) find_sums_in_common(&c);
   mark_parts(&c);
   for (Slot s = 1; s < n; s++) sign(&c, s);
   find_shared(&c);
-  if (ends == CUT_STORES) find_stored(&c);
+  if (ends & CUT_STORES) find_stored(&c);
   for (Slot s = 1; s < n; s++) order(&c, s);
   find_pieces(&c);
   find_shares(&c);

@@ -13,7 +13,8 @@ typedef struct {
 
 typedef VEC(Share) Shares;
 
-typedef enum { HUB_NO, HUB_SUM, HUB_SHARED, HUB_STORED } HubKind;
+/* HUB_COMMON: a sum with terms in common with others, while pieces are found; a HUB_SUM then. */
+typedef enum { HUB_NO, HUB_SUM, HUB_SHARED, HUB_STORED, HUB_COMMON } HubKind;
 
 typedef struct {
   Slot *slots;  /* in order */
@@ -57,11 +58,11 @@ typedef struct {
 int nest_is_leaf(IrOp op);
 int nest_is_sum(IrOp op);
 
-/* Where pieces end: at long sums, and what many use; at sums with terms in common, too; at what is stored, too. */
-typedef enum { CUT_LONG_SUMS, CUT_COMMON_TERMS, CUT_STORES, CUT_KINDS } CutEnds;
+/* Where pieces end, besides long sums and what many use: at sums with terms in common, at what is stored. */
+enum { CUT_COMMON_TERMS = 1, CUT_STORES = 2, CUT_KINDS = 4 };
 
-/* Everything but celled. */
-Cut nest_cut(const Prog *p, CutEnds ends);
+/* Everything but celled. ends: of these bits. */
+Cut nest_cut(const Prog *p, unsigned ends);
 
 /* The terms of a sum, through the parts that are joined to it; hub is the sum. */
 void nest_terms(const Cut *c, Slot sum, Shares *terms);
