@@ -275,7 +275,8 @@ static void rebuild(Rebuild *r, uint32_t item) {
     r->open.n--;
     if (r->done[x]) continue;
     r->done[x] = 1;
-    r->map[x] = x >= n ? make_nest(r, x - n) : has_cell(r, x) ? make_hub(r, x) : prog_ins(r->to, prog_moved(r->to, r->from, r->map, r->from->ins.at[x]));
+    r->map[x] = x >= n ? make_nest(r, x - n)
+                : has_cell(r, x) ? make_hub(r, x) : prog_ins(r->to, prog_moved(r->to, r->from, r->map, r->from->ins.at[x]));
     if (x < n) prog_name(r->to, r->map[x], r->from->ins.at[x].name);
   }
 }
@@ -283,7 +284,8 @@ static void rebuild(Rebuild *r, uint32_t item) {
 static Prog *with_nests(const Search *s) {
   const Prog *p = s->c.p;
   uint32_t items = p->ins.n + s->found.n;
-  Rebuild r = {.s = s, .from = p, .to = prog_new(p->arena), .map = ARENA_ARRAY(p->arena, Slot, items), .done = ARENA_ARRAY(p->arena, unsigned char, items)};
+  Rebuild r = {.s = s, .from = p, .to = prog_new(p->arena), .map = ARENA_ARRAY(p->arena, Slot, items)};
+  r.done = ARENA_ARRAY(p->arena, unsigned char, items);
   number_cells(&r);
   for (Slot x = 1; x < p->ins.n; x++) {
     uint32_t piece = s->c.piece[x];

@@ -9,11 +9,7 @@ enum { MOST_PRODUCTS = 64, MOST_FACTORS = 24 };
 /* How often a value is computed. */
 enum { ONCE, EACH_ROW, EACH_TURN };
 
-typedef struct {
-  const uint32_t *at; /* ids: of nodes, and past them of pairs */
-  uint32_t n;
-} Factors;
-
+/* Two factors: ids of nodes, and past them of pairs. */
 typedef struct {
   uint32_t a, b;
 } Pair;
@@ -205,8 +201,9 @@ const Prog *nest_body(const Cut *c, const Tape *t, const Fit *f, const Slot **ou
   find_factors(&m);
   share_pairs(&m);
   for (uint32_t id = 0; id < n; id++) {
+    const Ins *was = &c->p->ins.at[t->nodes.at[id].slot];
     m.slot[id] = value(&m, id);
-    if (t->nodes.at[id].kind == NODE_OP && !nest_is_sum(c->p->ins.at[t->nodes.at[id].slot].op)) prog_name(m.body, m.slot[id], c->p->ins.at[t->nodes.at[id].slot].name);
+    if (t->nodes.at[id].kind == NODE_OP && !nest_is_sum(was->op)) prog_name(m.body, m.slot[id], was->name);
   }
   store_gives(&m);
   *outer = m.outer.at;

@@ -4,7 +4,7 @@
 
 #include "ir/nest_impl.h"
 
-enum { FEWEST_TURNS = 8, MOST_SHAPES = 24 };
+enum { FEWEST_TURNS = 8, MOST_SHAPES = 24, MANY = 0 };
 
 typedef struct {
   Arena *a;
@@ -39,28 +39,43 @@ static void find_varying(Group *g) {
   g->varies = varies;
 }
 
-/* Indices into the array of the first index that varies, less that one. */
-static uint64_t shape_of(const Group *g, const uint32_t *array, uint32_t first, uint32_t k) {
+static int64_t gcd(int64_t a, int64_t b) {
+  while (b) {
+    int64_t r = a % b;
+    a = b;
+    b = r;
+  }
+  return a < 0 ? -a : a;
+}
+
+/* What all distances of a piece's indices in one array are multiples of: 2, where x and y are for themselves. 0 where there are none. */
+static int64_t spacing(const Group *g, const uint32_t *array, uint32_t first) {
+  int64_t all = 0;
+  for (uint32_t k = 0; k < g->n && all != 1; k++)
+    for (uint32_t j = 0; j < g->width; j++)
+      if (array[j] == array[first] && g->varies[j]) all = gcd(all, indices(g, k)[j] - indices(g, k)[first]);
+  return all;
+}
+
+/* The first index that varies modulo the spacing; where that is 0, the other indices into its array less that one. */
+static uint64_t shape_of(const Group *g, const uint32_t *array, uint32_t first, uint32_t k, int64_t modulo) {
   const int64_t *at = indices(g, k);
-  uint64_t h = 0;
-  for (uint32_t j = 0; j < g->width; j++)
+  uint64_t h = modulo ? (uint64_t)(at[first] % modulo) : 0;
+  for (uint32_t j = 0; j < g->width && !modulo; j++)
     if (array[j] == array[first] && g->varies[j]) h = (h ^ (uint64_t)(at[j] - at[first])) * 0x100000001b3u + 1;
   return h;
 }
 
-/* Puts pieces of one shape side by side, in their order; returns the number of shapes, or 1 when they are many: of all pairs of
- * n bodies there are n - 1. */
-static uint32_t split(Group *g, const uint32_t *array, uint32_t first, uint32_t *end) {
+/* Puts pieces of one shape side by side, in their order; returns the number of shapes, or MANY: of all pairs of n bodies there
+ * are n - 1. */
+static uint32_t split(Group *g, const uint32_t *array, uint32_t first, int64_t modulo, uint32_t *end) {
   uint64_t known[MOST_SHAPES];
   uint32_t n = 0, *shape = ARENA_ARRAY(g->a, uint32_t, g->n), *to = ARENA_ARRAY(g->a, uint32_t, g->n), put = 0;
   for (uint32_t k = 0; k < g->n; k++) {
-    uint64_t h = shape_of(g, array, first, k);
+    uint64_t h = shape_of(g, array, first, k, modulo);
     while (shape[k] < n && known[shape[k]] != h) shape[k]++;
     if (shape[k] < n) continue;
-    if (4*(n + 1)*(n + 1) > g->n || n == MOST_SHAPES) {
-      end[0] = g->n;
-      return 1;
-    }
+    if (4*(n + 1)*(n + 1) > g->n || n == MOST_SHAPES) return MANY;
     known[n++] = h;
   }
   for (uint32_t x = 0; x < n; x++) {
@@ -195,7 +210,9 @@ void nest_fit(Arena *a, const int64_t *columns, const uint32_t *array, uint32_t 
   Group all = {.a = a, .columns = columns, .width = width, .n = n, .order = order};
   uint32_t end[MOST_SHAPES], begin = 0;
   find_varying(&all);
-  uint32_t shapes = split(&all, array, first_varying(&all), end);
+  uint32_t first = first_varying(&all), shapes = split(&all, array, first, 0, end);
+  if (shapes == MANY) shapes = split(&all, array, first, spacing(&all, array, first), end);
+  if (shapes == MANY) end[0] = n, shapes = 1;
   for (uint32_t k = 0; k < shapes; k++) {
     Group g = all;
     g.order = order + begin;
