@@ -175,10 +175,18 @@ static void name_turn_loads(Writer *w, Body *b) {
       const Ins *i = &w->p->ins.at[x];
       const char *name = cnames_take(&w->names, cloop_stem(w->a, i->name));
       vec_push(w->a, &b->loads, ((TurnLoad){x, s.step, name}));
-      cwriter_statement(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, w->style->in[i->array],
+      cwriter_statement(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, cwriter_array(w, i->array),
                                         index_text(w, i->index, s.step)));
       sb_putc(w->out, '\n');
     }
+}
+
+/* unit*index; a denominator that is no power of two divides last, which rounds once. */
+static Piece multiple(const Writer *w, Num unit, const char *index) {
+  int dyadic = (unit.den & (unit.den - 1)) == 0;
+  const char *up = c_number(w->a, w->style->prefix, dyadic ? unit : num_int(unit.num));
+  if (dyadic) return (Piece){arena_printf(w->a, "%s*(%s)", up, index), C_MUL, 0};
+  return (Piece){arena_printf(w->a, "%s*(%s)/%s", up, index, c_number(w->a, w->style->prefix, num_int(unit.den))), C_MUL, 0};
 }
 
 static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int which, Slot x) {
@@ -191,7 +199,7 @@ static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int w
       int64_t first = 0;
       Slot y = roll_operand(&w->p->ins.at[code_of(w, b->l, 1, offset)], which);
       roll_number(&w->p->ins.at[x], &w->p->ins.at[y], &unit, &first);
-      return (Piece){arena_printf(w->a, "%s*(%s)", c_number(w->a, w->style->prefix, unit), index_text(w, first, 1)), C_MUL, 0};
+      return multiple(w, unit, index_text(w, first, 1));
     }
     case STEP_LOAD: return (Piece){turn_load(b, x, s.step)->name, C_ATOM, 0};
     case STEP_BEFORE: {
@@ -318,20 +326,20 @@ static const char *stored_value(const Writer *w, const Store *first) {
   const Ins *i = &w->p->ins.at[x];
   if (x == y) return cwriter_operand(w, x).text;
   if (i->op == IR_LOAD)
-    return arena_printf(w->a, "%s[%s]", w->style->in[i->array], index_text(w, i->index, (int64_t)w->p->ins.at[y].index - i->index));
+    return arena_printf(w->a, "%s[%s]", cwriter_array(w, i->array), index_text(w, i->index, (int64_t)w->p->ins.at[y].index - i->index));
   int64_t px = loop_place(w, x), py = loop_place(w, y);
   return kept_value(w, (uint32_t)px, (py - px) / (int64_t)loop_at(w, w->rolls.loop[px] - 1)->period).text;
 }
 
 uint32_t cloop_stores(const Writer *w, uint32_t k) {
-  enum { FEWEST = 16 };
   const Prog *p = w->p;
   const Store *first = &p->stores.at[k];
-  if (k + FEWEST > p->stores.n || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0)) return 0;
+  uint32_t fewest = p->nests.n ? 8 : 16; /* nests leave rows of nets */
+  if (k + fewest > p->stores.n || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0)) return 0;
   if (w->style->params && p->ins.at[first->slot].op == IR_LOAD && p->ins.at[first->slot].array == ARR_P) return 0;
   uint32_t n = 1;
   while (k + n < p->stores.n && follows(w, first, n)) n++;
-  return n >= FEWEST ? n : 0;
+  return n >= fewest ? n : 0;
 }
 
 void cloop_write_stores(Writer *w, uint32_t k, uint32_t n) {

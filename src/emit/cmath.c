@@ -23,8 +23,9 @@ void cmath_kkt(const IrUnit *u, const char *prefix, const char *lower, StrBuf *o
 }
 
 static int calls(const Prog *p, const char *name) {
-  for (Slot s = 1; p && s < p->ins.n; s++)
-    if (p->ins.at[s].op == IR_FN1 && strcmp(p->ins.at[s].text, name) == 0) return 1;
+  for (uint32_t k = 0; p && k < prog_parts(p); k++)
+    for (Slot s = 1; s < prog_part(p, k)->ins.n; s++)
+      if (prog_part(p, k)->ins.at[s].op == IR_FN1 && strcmp(prog_part(p, k)->ins.at[s].text, name) == 0) return 1;
   return 0;
 }
 

@@ -132,8 +132,10 @@ static const char *element(const Writer *w, const char *array, uint32_t index) {
   return member ? arena_printf(w->a, "%s->%s", array, st->params[index]) : arena_printf(w->a, "%s[%u]", array, index);
 }
 
+const char *cwriter_array(const Writer *w, IrArray array) { return array == ARR_CELL ? w->cells : w->style->in[array]; }
+
 static Piece load(const Writer *w, const Ins *i) {
-  const char *array = w->style->in[i->array];
+  const char *array = cwriter_array(w, i->array);
   return (Piece){ir_is_scalar(i->array) ? array : element(w, array, i->index), C_ATOM, 0};
 }
 
@@ -175,7 +177,7 @@ Piece cwriter_spell(Writer *w, const Ins *i) {
     case IR_OR: return macro(w, "OR", i->a, i->b, 0, 2);
     case IR_SELECT: return macro(w, "SELECT", i->a, i->b, i->c, 3);
     case IR_SOLVED: return solved(w, i);
-    case IR_PIVOT: case IR_SOLVE: case IR_TABLE: case IR_TITLE: break;
+    case IR_PIVOT: case IR_SOLVE: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
   }
   return (Piece){"", C_ATOM, 0};
 }
@@ -375,7 +377,7 @@ static void count_uses(Writer *w) {
 }
 
 /* Where both sine and cosine of a value are wanted, they are pairs: one call makes both. */
-static void find_pairs(Writer *w) {
+void cwriter_find_pairs(Writer *w) {
   const Prog *p = w->p;
   Slot *sine = ARENA_ARRAY(w->a, Slot, p->ins.n);
   w->pair = ARENA_ARRAY(w->a, Slot, p->ins.n);
@@ -439,7 +441,7 @@ static int write_abreast(Writer *w, Slot s) {
   return 1;
 }
 
-static void write_instruction(Writer *w, Slot s) {
+void cwriter_instruction(Writer *w, Slot s) {
   const Ins *i = &w->p->ins.at[s];
   if (i->op == IR_TITLE) {
     w->title = i->text;
@@ -455,6 +457,10 @@ static void write_instruction(Writer *w, Slot s) {
   }
   if (i->op == IR_TABLE) {
     write_table(w, s, i);
+    return;
+  }
+  if (i->op == IR_NEST) {
+    cnest_write(w, i);
     return;
   }
   if (i->op == IR_LOAD || write_abreast(w, s) || cwriter_pair(w, s, i, &w->p->ins.at[w->pair[s]])) return;
@@ -513,14 +519,14 @@ static void write_stores(Writer *w) {
 
 /* Arrays that can be indexed by a variable: t is none, nor are members of a struct. */
 static unsigned arrays_by_index(const CStyle *style) {
-  return style->params ? 1u << ARR_Q | 1u << ARR_V | 1u << ARR_Z | 1u << ARR_U : ~(1u << ARR_T | 1u << ARR_ORDER | 1u << ARR_PER_ORDER | 1u << ARR_UP);
+  return style->params ? 1u << ARR_Q | 1u << ARR_V | 1u << ARR_Z | 1u << ARR_U | 1u << ARR_CELL : ~(1u << ARR_T | 1u << ARR_ORDER | 1u << ARR_PER_ORDER | 1u << ARR_UP);
 }
 
 /* Whether nothing that is written is read, too. */
 static int stores_apart(const Prog *p, const CStyle *style) {
   if (style->apart) return 1;
   for (int k = 0; k < ARR_COUNT; k++) {
-    if (!prog_reads(p, (IrArray)k)) continue;
+    if (k == ARR_CELL || k == ARR_OUTER || !prog_reads(p, (IrArray)k)) continue; /* local */
     for (uint32_t s = 0; s < p->stores.n; s++)
       if (strcmp(style->in[k], style->out[p->stores.at[s].array]) == 0) return 0;
   }
@@ -531,14 +537,15 @@ static void write_code(Writer *w) {
   uint32_t next = 0; /* loop */
   for (Slot s = 1; s < w->p->ins.n; s++) {
     uint32_t in = w->rolls.place[s] ? w->rolls.loop[w->rolls.place[s] - 1] : 0;
-    if (!in) write_instruction(w, s);
+    if (!in) cwriter_instruction(w, s);
     else if (in > next) cloop_write(w, in - 1), next = in;
   }
 }
 
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
-  w.rolls = roll_find(p, arrays_by_index(style), style->seldom_called ? ROLL_SELDOM_FROM : ROLL_FROM, stores_apart(p, style));
+  uint32_t from = p->nests.n ? 0 : style->seldom_called ? ROLL_SELDOM_FROM : ROLL_FROM; /* what has nests is long */
+  w.rolls = roll_find(p, arrays_by_index(style), from, stores_apart(p, style));
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
   w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
@@ -546,16 +553,18 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   if (p->solves.n) cnames_reserve(&w.names, "w");
   count_uses(&w);
   cloop_prepare(&w);
+  cnest_prepare(&w);
   if (prog_has_pivots(p)) sb_printf(out, "  %s_PIVOTS;\n", style->prefix);
-  find_pairs(&w);
+  cwriter_find_pairs(&w);
   for (int array = 0; array < ARR_COUNT; array++) write_array(&w, array);
   write_code(&w);
   write_stores(&w);
 }
 
 int prog_reads(const Prog *p, IrArray array) {
-  for (Slot s = 1; s < p->ins.n; s++)
-    if (p->ins.at[s].op == IR_LOAD && p->ins.at[s].array == array) return 1;
+  for (uint32_t k = 0; k < prog_parts(p); k++)
+    for (Slot s = 1; s < prog_part(p, k)->ins.n; s++)
+      if (prog_part(p, k)->ins.at[s].op == IR_LOAD && prog_part(p, k)->ins.at[s].array == array) return 1;
   return 0;
 }
 

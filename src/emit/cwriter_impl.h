@@ -1,4 +1,4 @@
-/* The inside of the writer of function bodies: cwriter.c writes statements, cloop.c loops. */
+/* The inside of the writer of function bodies: cwriter.c writes statements, cloop.c loops, cnest.c loops inside loops. */
 #ifndef LAGC_CWRITER_IMPL_H
 #define LAGC_CWRITER_IMPL_H
 
@@ -30,6 +30,8 @@ typedef struct {
   Rolls rolls;
   const char ***kept; /* [loops][period] the arrays that hold the values of all turns; NULL where none */
   unsigned char *named_load; /* by slot: a load that is used outside of loops, or by all turns of one */
+  const char *cells, *row, *turn; /* the array of sums that nests add to, and their counters */
+  const char *parameters; /* an array with the parameters that nests read, where they are members of a struct; or NULL */
 } Writer;
 
 Piece cwriter_operand(const Writer *w, Slot s);
@@ -40,6 +42,15 @@ int cwriter_is_short(const Writer *w, Piece x);
 void cwriter_statement(Writer *w, const char *text);
 void cwriter_pivot(Writer *w, const Ins *i);
 void cwriter_flush_title(Writer *w);
+
+/* What an array that is read is called. */
+const char *cwriter_array(const Writer *w, IrArray array);
+
+/* An instruction that is in no loop of cloop.c. */
+void cwriter_instruction(Writer *w, Slot s);
+
+/* Finds sines and cosines that one call makes. */
+void cwriter_find_pairs(Writer *w);
 
 /* A name for the value: the user's, one made of what it is made of, or w1, w2, ... */
 Piece cwriter_name(Writer *w, const Ins *i);
@@ -68,6 +79,10 @@ const char *cloop_stem(Arena *a, const char *name);
 
 /* A whole loop. */
 void cloop_write(Writer *w, uint32_t loop);
+
+/* Before anything is written; a nest. */
+void cnest_prepare(Writer *w);
+void cnest_write(Writer *w, const Ins *i);
 
 /* How many stores from number k on can be written as a loop; 0 for none. And that loop. */
 uint32_t cloop_stores(const Writer *w, uint32_t k);

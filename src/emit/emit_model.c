@@ -317,6 +317,7 @@ static void emit_start(const File *f, const IrScene *s, const char *id) {
   sb_puts(f->out, "  (void)p; (void)q; (void)v; (void)z;\n");
   if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
   if (f->u->z.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) z[i] = LAG_C(0.0);\n", f->u->z.n);
+  st.seldom_called = 1;
   cwrite_body(s->start, &st, f->a, f->out);
   sb_puts(f->out, "}\n");
 }

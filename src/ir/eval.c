@@ -79,42 +79,105 @@ static const Real *solved(const Prog *p, const Solve *s, const Real *v, int *sta
   return b;
 }
 
-int prog_eval(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out) {
-  Real *v = ARENA_ARRAY(p->arena, Real, p->ins.n);
-  const Real **solution = ARENA_ARRAY(p->arena, const Real *, p->ins.n);
+typedef struct {
+  const Prog *p;
+  const Real *const *in;
+  Real *v, *cells;
+  const Real **solution;
+} Run;
+
+static int run_nest(Run *r, const Nest *n);
+
+/* Computes v[s]; -1 when a pivot failed. */
+static int run_ins(Run *r, Slot s, const Ins *i) {
+  Real *v = r->v, x = v[i->a], y = v[i->b];
   int status = 0;
+  switch (i->op) {
+    case IR_CONST: v[s] = num_is_exact(i->number) ? (Real)i->number.num / (Real)i->number.den : i->number.approx; break;
+    case IR_PI: v[s] = 3.14159265358979323846264338327950288L; break;
+    case IR_LOAD: v[s] = i->array == ARR_CELL ? r->cells[i->index] : r->in[i->array][i->index]; break;
+    case IR_ADD: v[s] = x + y; break;
+    case IR_SUB: v[s] = x - y; break;
+    case IR_MUL: v[s] = x * y; break;
+    case IR_DIV: v[s] = x / y; break;
+    case IR_NEG: v[s] = -x; break;
+    case IR_SQRT: v[s] = sqrtl(x); break;
+    case IR_FN1: v[s] = call1(i->text, x); break;
+    case IR_FN2: v[s] = call2(i->text, x, y); break;
+    case IR_MIN: v[s] = x < y ? x : y; break;
+    case IR_MAX: v[s] = x > y ? x : y; break;
+    case IR_SIGN: v[s] = (Real)((x > 0) - (x < 0)); break;
+    case IR_LT: v[s] = x < y; break;
+    case IR_LE: v[s] = x <= y; break;
+    case IR_EQ: v[s] = x == y; break;
+    case IR_NOT: v[s] = x == 0; break;
+    case IR_AND: v[s] = x != 0 && y != 0; break;
+    case IR_OR: v[s] = x != 0 || y != 0; break;
+    case IR_SELECT: v[s] = x != 0 ? y : v[i->c]; break;
+    case IR_PIVOT: return (i->index ? x > 0 : x != 0) ? 0 : -1;
+    case IR_SOLVE: r->solution[s] = solved(r->p, &r->p->solves.at[i->index], v, &status); return status;
+    case IR_SOLVED: v[s] = r->solution[i->a][i->index]; break;
+    case IR_NEST: return run_nest(r, &r->p->nests.at[i->index]);
+    case IR_TABLE: v[s] = spline_at(r->p->tables.at[i->index].curve, x); break;
+    case IR_TITLE: break;
+  }
+  return 0;
+}
+
+static int64_t place(const Nest *n, uint32_t k, int64_t i, int64_t j) { return n->at[k].first + n->at[k].by_row*i + n->at[k].by_turn*j; }
+
+/* One turn; a load of the body stands at other places than the same load of the program around. */
+static int run_turn(Run *body, const Run *r, const Nest *n, int64_t i, int64_t j) {
+  const Prog *p = n->body;
   for (Slot s = 1; s < p->ins.n; s++) {
-    const Ins *i = &p->ins.at[s];
-    Real x = v[i->a], y = v[i->b];
-    switch (i->op) {
-      case IR_CONST: v[s] = num_is_exact(i->number) ? (Real)i->number.num / (Real)i->number.den : i->number.approx; break;
-      case IR_PI: v[s] = 3.14159265358979323846264338327950288L; break;
-      case IR_LOAD: v[s] = in[i->array][i->index]; break;
-      case IR_ADD: v[s] = x + y; break;
-      case IR_SUB: v[s] = x - y; break;
-      case IR_MUL: v[s] = x * y; break;
-      case IR_DIV: v[s] = x / y; break;
-      case IR_NEG: v[s] = -x; break;
-      case IR_SQRT: v[s] = sqrtl(x); break;
-      case IR_FN1: v[s] = call1(i->text, x); break;
-      case IR_FN2: v[s] = call2(i->text, x, y); break;
-      case IR_MIN: v[s] = x < y ? x : y; break;
-      case IR_MAX: v[s] = x > y ? x : y; break;
-      case IR_SIGN: v[s] = (Real)((x > 0) - (x < 0)); break;
-      case IR_LT: v[s] = x < y; break;
-      case IR_LE: v[s] = x <= y; break;
-      case IR_EQ: v[s] = x == y; break;
-      case IR_NOT: v[s] = x == 0; break;
-      case IR_AND: v[s] = x != 0 && y != 0; break;
-      case IR_OR: v[s] = x != 0 || y != 0; break;
-      case IR_SELECT: v[s] = x != 0 ? y : v[i->c]; break;
-      case IR_PIVOT: if (!(i->index ? x > 0 : x != 0)) return -1; break;
-      case IR_SOLVE: solution[s] = solved(p, &p->solves.at[i->index], v, &status); if (status) return -1; break;
-      case IR_SOLVED: v[s] = solution[i->a][i->index]; break;
-      case IR_TABLE: v[s] = spline_at(p->tables.at[i->index].curve, x); break;
-      case IR_TITLE: break;
+    const Ins *x = &p->ins.at[s];
+    if (x->op != IR_LOAD || ir_is_scalar(x->array)) {
+      if (run_ins(body, s, x) != 0) return -1;
+    } else if (x->array == ARR_OUTER) {
+      body->v[s] = r->v[n->outer[x->index]];
+    } else {
+      body->v[s] = (x->array == ARR_CELL ? r->cells : r->in[x->array])[place(n, x->index, i, j)];
     }
   }
-  for (uint32_t k = 0; k < p->stores.n; k++) out[p->stores.at[k].array][p->stores.at[k].index] = v[p->stores.at[k].slot];
+  return 0;
+}
+
+/* Adds what the turn stores: to the sums, or to what the loop adds up. */
+static void add_stores(const Run *r, const Run *body, const Nest *n, Real *part, int64_t i, int64_t j) {
+  for (uint32_t k = 0; k < body->p->stores.n; k++) {
+    const Store *st = &body->p->stores.at[k];
+    Real *to = nest_moves(n, st->index) ? &r->cells[place(n, st->index, i, j)] : &part[k];
+    *to += st->array ? -body->v[st->slot] : body->v[st->slot];
+  }
+}
+
+static void add_parts(const Run *r, const Nest *n, Real *part, int64_t i) {
+  for (uint32_t k = 0; k < n->body->stores.n; k++) {
+    const Store *st = &n->body->stores.at[k];
+    if (!nest_moves(n, st->index)) r->cells[place(n, st->index, i, 0)] += part[k];
+    part[k] = 0;
+  }
+}
+
+static int run_nest(Run *r, const Nest *n) {
+  const Prog *p = n->body;
+  Run body = {.p = p, .in = r->in, .v = ARENA_ARRAY(p->arena, Real, p->ins.n), .cells = r->cells};
+  Real *part = ARENA_ARRAY(p->arena, Real, p->stores.n + 1);
+  for (int64_t i = 0; i < n->rows; i++) {
+    for (int64_t j = n->skew*i; j < (n->skew + n->more)*i + n->turns; j++) {
+      if (run_turn(&body, r, n, i, j) != 0) return -1;
+      add_stores(r, &body, n, part, i, j);
+    }
+    if (nest_has_turns(n) || i + 1 == n->rows) add_parts(r, n, part, i);
+  }
+  return 0;
+}
+
+int prog_eval(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out) {
+  Run r = {.p = p, .in = in, .v = ARENA_ARRAY(p->arena, Real, p->ins.n), .cells = ARENA_ARRAY(p->arena, Real, p->cells + 1),
+           .solution = ARENA_ARRAY(p->arena, const Real *, p->ins.n)};
+  for (Slot s = 1; s < p->ins.n; s++)
+    if (run_ins(&r, s, &p->ins.at[s]) != 0) return -1;
+  for (uint32_t k = 0; k < p->stores.n; k++) out[p->stores.at[k].array][p->stores.at[k].index] = r.v[p->stores.at[k].slot];
   return 0;
 }

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 
 #include "ir/lower_impl.h"
+#include "ir/nest.h"
+#include "ir/roll.h"
 
 /* --- numbers and powers --- */
 
@@ -264,6 +266,9 @@ Lower lower_new(const Eqns *e) {
   return (Lower){.e = e, .g = e->g, .p = prog_new(a), .slots = expr_map(a), .circular = expr_map(a)};
 }
 
+/* Sums over pairs as loops, in programs of as many instructions as get loops. */
+static Prog *finished(const Lower *l, uint32_t from) { return prog_nest(prog_tidy(l->p), from); }
+
 static const char *text_of_symbol(const Lower *l, SymId s) { return expr_symbol(l->g, s)->name; }
 
 /* Whether each coordinate has its acceleration to itself: nothing is solved for several at once. */
@@ -284,13 +289,14 @@ Prog *lower_accel(const Eqns *e, int libm) {
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
-  enum { PAGE = 200, LONG = 1500 }; /* as for loops; short ones processors take in as a whole, and people read */
+  enum { PAGE = 200 }; /* short ones processors take in as a whole, and people read */
   Prog *p = prog_factor(prog_tidy(l.p));
-  if (p->ins.n <= LONG) {
+  if (p->ins.n <= ROLL_FROM) {
     p = prog_in_time(prog_share(p));
     return p->ins.n > PAGE ? prog_by_deadline(p, libm) : p;
   }
-  return is_diagonal(e) ? prog_by_demand(p) : p;
+  Prog *nested = prog_nest(p, ROLL_FROM);
+  return is_diagonal(e) ? prog_by_demand(nested) : nested;
 }
 
 /* Where a constant may stand instead of the formula of an input, `free` says which holds. */
@@ -396,7 +402,7 @@ Prog *lower_linear(const Eqns *e, Partials dr) {
     const MassEntry *M = &e->mass.at[k];
     prog_store(l.p, 1, k, lower_slot(&l, M->e), arena_printf(a, "%s, %s", component(&l, M->row), component(&l, M->col)));
   }
-  return prog_tidy(l.p);
+  return finished(&l, ROLL_FROM);
 }
 
 Prog *lower_jumps(const Eqns *e, Jumps jumps) {
@@ -419,7 +425,7 @@ Prog *lower_energy(const Eqns *e) {
   lower_with_accelerations(&l, roots, 2); /* of first order velocities are rates */
   prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), "energy p q' - L");
   prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
-  return prog_tidy(l.p);
+  return finished(&l, ROLL_SELDOM_FROM);
 }
 
 Prog *lower_variation(const Eqns *e, const Variation *x) {
@@ -430,7 +436,7 @@ Prog *lower_variation(const Eqns *e, const Variation *x) {
   for (uint32_t k = 0; k < 3; k++)
     for (uint32_t i = 0; i < e->n; i++)
       prog_store(l.p, k, i, lower_slot(&l, parts[k][i]), arena_printf(l.p->arena, words[k], e->m->coords.at[i].name));
-  return prog_tidy(l.p);
+  return finished(&l, ROLL_FROM);
 }
 
 /* d2L/dx' dx, or dQ_x/dx'. */
@@ -449,7 +455,7 @@ Prog *lower_second(const Eqns *e, const Variation *x) {
   for (uint32_t k = 0; k < x->second.n; k++) roots[k] = x->second.at[k].e;
   lower_roots(&l, roots, x->second.n);
   for (uint32_t k = 0; k < x->second.n; k++) prog_store(l.p, 0, k, lower_slot(&l, roots[k]), second_text(&l, &x->second.at[k]));
-  return prog_tidy(l.p);
+  return finished(&l, ROLL_FROM);
 }
 
 Prog *lower_events(const Eqns *e) {
@@ -459,7 +465,7 @@ Prog *lower_events(const Eqns *e) {
   for (uint32_t i = 0; i < m->events.n; i++) roots[i] = m->events.at[i].g;
   lower_with_accelerations(&l, roots, m->events.n);
   for (uint32_t i = 0; i < m->events.n; i++) prog_store(l.p, 0, i, lower_slot(&l, m->events.at[i].g), m->events.at[i].name);
-  return prog_tidy(l.p);
+  return finished(&l, ROLL_FROM);
 }
 
 static uint32_t array_of_target(SymKind k) { return k == SYM_COORD ? 0 : k == SYM_VEL ? 1 : 2; }
@@ -515,7 +521,7 @@ static Prog *outputs(const Eqns *e, int plain_only) {
   }
   lower_with_accelerations(&l, roots, n);
   for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), of[i]->name);
-  return prog_tidy(l.p);
+  return finished(&l, ROLL_SELDOM_FROM);
 }
 
 Prog *lower_outputs(const Eqns *e) { return outputs(e, 0); }

@@ -27,7 +27,7 @@ Prog *prog_like(const Prog *p) {
 /* --- value numbering --- */
 
 /* Done once is done: a pivot that was checked need not be checked again. */
-static int is_pure(IrOp op) { return op != IR_SOLVE && op != IR_TITLE; }
+static int is_pure(IrOp op) { return op != IR_SOLVE && op != IR_NEST && op != IR_TITLE; }
 
 static uint32_t hash_ins(const Ins *i) {
   uint32_t h = (uint32_t)i->op * 0x9e3779b9u;
@@ -99,7 +99,7 @@ static Slot fold(Prog *p, const Ins *i) {
       return p->ins.at[i->a].op == IR_NEG ? p->ins.at[i->a].a : NOT_FOLDED;
     case IR_CONST: case IR_PI: case IR_LOAD: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_MIN: case IR_MAX:
     case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND: case IR_OR: case IR_SELECT:
-    case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_TABLE: case IR_TITLE: break;
+    case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
   }
   return NOT_FOLDED;
 }
@@ -146,6 +146,7 @@ static void mark_needed(const Prog *p, unsigned char *need) {
     if (i->op == IR_PIVOT || i->op == IR_TITLE) need[s] = 1;
     if (!need[s]) continue;
     need[i->a] = need[i->b] = need[i->c] = 1;
+    for (uint32_t j = 0; i->op == IR_NEST && j < p->nests.at[i->index].nouter; j++) need[p->nests.at[i->index].outer[j]] = 1;
     if (i->op != IR_SOLVE) continue;
     const Solve *k = &p->solves.at[i->index];
     for (uint32_t j = 0; j < solve_elements(k); j++) need[k->matrix[j]] = 1;
@@ -168,6 +169,13 @@ Ins prog_moved(Prog *to, const Prog *from, const Slot *map, Ins i) {
     vec_push(to->arena, &to->tables, from->tables.at[i.index]);
     i.index = to->tables.n - 1;
   }
+  if (i.op == IR_NEST) {
+    Nest n = from->nests.at[i.index];
+    n.outer = moved(to->arena, map, n.outer, n.nouter);
+    i.index = to->nests.n;
+    to->cells = from->cells;
+    vec_push(to->arena, &to->nests, n);
+  }
   if (i.op != IR_SOLVE) return i;
   Solve k = from->solves.at[i.index];
   k.matrix = moved(to->arena, map, k.matrix, solve_elements(&k));
@@ -177,6 +185,9 @@ Ins prog_moved(Prog *to, const Prog *from, const Slot *map, Ins i) {
   return i;
 }
 
+uint32_t prog_parts(const Prog *p) { return p->nests.n + 1; }
+const Prog *prog_part(const Prog *p, uint32_t k) { return k ? p->nests.at[k - 1].body : p; }
+
 uint32_t *prog_uses(const Prog *p) {
   uint32_t *uses = ARENA_ARRAY(p->arena, uint32_t, p->ins.n);
   for (Slot s = 1; s < p->ins.n; s++) {
@@ -184,6 +195,7 @@ uint32_t *prog_uses(const Prog *p) {
     uses[i->a]++;
     uses[i->b]++;
     uses[i->c]++;
+    for (uint32_t j = 0; i->op == IR_NEST && j < p->nests.at[i->index].nouter; j++) uses[p->nests.at[i->index].outer[j]]++;
     if (i->op != IR_SOLVE) continue;
     const Solve *k = &p->solves.at[i->index];
     for (uint32_t j = 0; j < solve_elements(k); j++) uses[k->matrix[j]]++;
@@ -224,9 +236,25 @@ Prog *prog_tidy(const Prog *p) {
   return r;
 }
 
+/* What the nest at slot s takes. */
+static const char *verify_nest(const Prog *p, Slot s) {
+  const Nest *n = &p->nests.at[p->ins.at[s].index];
+  for (uint32_t k = 0; k < n->nouter; k++)
+    if (n->outer[k] >= s) return arena_printf(p->arena, "nest %u uses a later instruction", s);
+  for (Slot k = 1; k < n->body->ins.n; k++) {
+    const Ins *i = &n->body->ins.at[k];
+    if (i->op == IR_LOAD && !ir_is_scalar(i->array) && i->index >= (i->array == ARR_OUTER ? n->nouter : n->n))
+      return arena_printf(p->arena, "nest %u loads what is not there", s);
+  }
+  return prog_verify(n->body);
+}
+
 const char *prog_verify(const Prog *p) {
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
+    const char *wrong = i->op == IR_NEST ? verify_nest(p, s) : NULL;
+    if (wrong) return wrong;
+    if (i->op == IR_LOAD && i->array == ARR_CELL && i->a && p->ins.at[i->a].op != IR_NEST) return arena_printf(p->arena, "sum %u has no nest", s);
     if (i->a >= s || i->b >= s || i->c >= s) return arena_printf(p->arena, "instruction %u uses a later one", s);
     int takes_condition = i->op == IR_NOT || i->op == IR_AND || i->op == IR_OR;
     if (i->a && ir_is_condition(p->ins.at[i->a].op) && !takes_condition && i->op != IR_SELECT)
@@ -256,6 +284,13 @@ int prog_same(const Prog *a, const Prog *b) {
 
 /* --- counting --- */
 
+/* Of all turns of a nest. */
+static OpCount count_nest(const Nest *n) {
+  OpCount c = prog_count(n->body);
+  uint32_t t = n->count;
+  return (OpCount){(c.add + n->body->stores.n)*t, c.mul*t, c.div*t, c.sqrt*t, c.fn*t, c.other*t};
+}
+
 OpCount prog_count(const Prog *p) {
   OpCount c = {0};
   for (Slot s = 1; s < p->ins.n; s++) {
@@ -281,6 +316,11 @@ OpCount prog_count(const Prog *p) {
         c.add += n * (n - 1) * (2 * n + 5) / 6; /* elimination with two substitutions */
         c.mul += n * (n - 1) * (2 * n + 5) / 6;
         c.div += n * (n + 1) / 2;
+        break;
+      }
+      case IR_NEST: {
+        OpCount n = count_nest(&p->nests.at[i->index]);
+        c = (OpCount){c.add + n.add, c.mul + n.mul, c.div + n.div, c.sqrt + n.sqrt, c.fn + n.fn, c.other + n.other};
         break;
       }
       case IR_NEG: case IR_CONST: case IR_PI: case IR_LOAD: case IR_PIVOT: case IR_SOLVED: case IR_TITLE: break;
@@ -319,10 +359,19 @@ uint32_t prog_work(const Prog *p) {
 
 static const char *const op_names[] = {
   "const", "pi", "load", "add", "sub", "mul", "div", "neg", "sqrt", "fn", "fn2", "min", "max", "sign",
-  "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "table", "title",
+  "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "nest", "table", "title",
 };
 
-static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g", "free", "x", "s", "c", "order", "per_order", "up"};
+static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g", "free", "x", "s", "c", "order", "per_order", "up", "sum", "outer"};
+
+static void dump_nest(const Nest *n, StrBuf *out) {
+  sb_printf(out, "  %u rows, %lld + %lld*i turns from %lld*i\n", n->rows, (long long)n->turns, (long long)n->more, (long long)n->skew);
+  for (uint32_t k = 0; k < n->n; k++)
+    sb_printf(out, "  #%u: %lld + %lld*i + %lld*j\n", k, (long long)n->at[k].first, (long long)n->at[k].by_row, (long long)n->at[k].by_turn);
+  for (uint32_t k = 0; k < n->nouter; k++) sb_printf(out, "  outer[%u]: %%%u\n", k, n->outer[k]);
+  prog_dump(n->body, out);
+  sb_puts(out, "  end of nest\n");
+}
 
 void prog_dump(const Prog *p, StrBuf *out) {
   for (Slot s = 1; s < p->ins.n; s++) {
@@ -334,12 +383,13 @@ void prog_dump(const Prog *p, StrBuf *out) {
     }
     if (i->op == IR_LOAD) sb_printf(out, " %s[%u]", array_names[i->array], i->index);
     if (i->text) sb_printf(out, " %s", i->text);
-    if (i->op == IR_PIVOT || i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_TABLE) sb_printf(out, " #%u", i->index);
+    if (i->op == IR_PIVOT || i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_NEST || i->op == IR_TABLE) sb_printf(out, " #%u", i->index);
     if (i->a) sb_printf(out, " %%%u", i->a);
     if (i->b) sb_printf(out, " %%%u", i->b);
     if (i->c) sb_printf(out, " %%%u", i->c);
     if (i->name) sb_printf(out, "  ; %s", i->name);
     sb_putc(out, '\n');
+    if (i->op == IR_NEST) dump_nest(&p->nests.at[i->index], out);
   }
   for (uint32_t k = 0; k < p->stores.n; k++)
     sb_printf(out, "out%u[%u] = %%%u  ; %s\n", p->stores.at[k].array, p->stores.at[k].index, p->stores.at[k].slot, p->stores.at[k].comment);

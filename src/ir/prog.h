@@ -1,4 +1,4 @@
-/* Prog: what one emitted function computes, as straight-line code in single assignment.
+/* Prog: what one emitted function computes, as straight-line code in single assignment, but for nests of loops that add up sums.
  *
  * An instruction's operands have lower numbers; every value is computed once. A Prog knows names
  * for its values and carries its own texts, so that nothing after it needs the model. */
@@ -37,16 +37,19 @@ typedef enum {
   IR_PIVOT,  /* fails unless a > 0 (index 1), or a != 0 (index 0) */
   IR_SOLVE,  /* solves block `index` of prog->solves, with pivoting; fails when singular */
   IR_SOLVED, /* component `index` of the solution of solve a */
+  IR_NEST,   /* runs nest `index` of prog->nests; a: the nest that has run before it, or 0 */
   IR_TABLE,  /* the curve of table `index` of prog->tables at a */
   IR_TITLE   /* text: a comment line that heads what follows */
 } IrOp;
 
 /* The arrays that a function reads; accelerations only in the linearisation, what A d must be (g) only where a state is corrected. The second line is of Taylor coefficients
  * (ir/series.h): whether an input is free of a constant, coefficients k, sums over those below k, what order 0 leaves for all
- * others; k, 1/k and T/(k + 1) are no arrays. */
+ * others; k, 1/k and T/(k + 1) are no arrays. The third line is of nests: sums, whose loads have the nest as operand a; what a body takes
+ * from the code around it. */
 typedef enum {
   ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_A, ARR_G,
-  ARR_FREE, ARR_COEF, ARR_SUMS, ARR_STEP, ARR_ORDER, ARR_PER_ORDER, ARR_UP, ARR_COUNT
+  ARR_FREE, ARR_COEF, ARR_SUMS, ARR_STEP, ARR_ORDER, ARR_PER_ORDER, ARR_UP,
+  ARR_CELL, ARR_OUTER, ARR_COUNT
 } IrArray;
 
 /* Whether an array is a number, not to be indexed. */
@@ -84,18 +87,45 @@ typedef struct {
 static inline uint32_t solve_elements(const Solve *k) { return k->matrix ? (k->n + k->m) * k->n : 0; }
 static inline uint32_t solve_unknowns(const Solve *k) { return k->n + k->m; }
 
+/* Index first + by_row*i + by_turn*j. */
+typedef struct {
+  int64_t first, by_row, by_turn;
+} IrPlace;
+
+/* for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1: what the body computes is added to sums, which are 0
+ * before the first nest; what goes to one sum in all turns of the inner loop, or of the only one, is added up from 0 before it is
+ * added. The body is a program without nests: its loads of arrays and sums, and its stores, have numbers of `at`
+ * as index (those that are no arrays have none); its loads of ARR_OUTER have numbers of `outer`. A store to array 0 adds, to array 1
+ * subtracts. */
+typedef struct {
+  uint32_t rows, count; /* count: of all turns */
+  int64_t skew, turns, more;
+  const struct Prog *body;
+  const IrPlace *at;    /* [n] */
+  const Slot *outer;    /* [nouter] values of the program that the nest is in */
+  uint32_t n, nouter;
+} Nest;
+
+/* Whether there is a loop over j: one over i is the only one where each row has one turn. */
+static inline int nest_has_turns(const Nest *n) { return n->rows == 1 || n->turns != 1 || n->more != 0; }
+
+/* Whether place k of `at` moves from turn to turn of the inner loop, or of the only one. */
+static inline int nest_moves(const Nest *n, uint32_t k) { return (nest_has_turns(n) ? n->at[k].by_turn : n->at[k].by_row) != 0; }
+
 /* A table that the user gave for what is called `name`. */
 typedef struct {
   const char *name, *file;
   const Spline *curve;
 } IrTable;
 
-typedef struct {
+typedef struct Prog {
   Arena *arena;
   VEC(Ins) ins;       /* [0] unused */
   VEC(Store) stores;
   VEC(Solve) solves;
   VEC(IrTable) tables;
+  VEC(Nest) nests;
+  uint32_t cells;     /* sums of ARR_CELL */
   uint32_t *table;    /* value numbering */
   uint32_t table_cap;
 } Prog;
@@ -154,7 +184,11 @@ int prog_same(const Prog *a, const Prog *b);
 /* The instruction with its operands, and the solve that it names, as they are in the program `to`; map: the slots there. */
 Ins prog_moved(Prog *to, const Prog *from, const Slot *map, Ins i);
 
-/* How many instructions, stores and solves take each value: [p->ins.n]. */
+/* The program itself, 0, and the bodies of its nests, 1 ... prog_parts - 1: where instructions are. */
+uint32_t prog_parts(const Prog *p);
+const Prog *prog_part(const Prog *p, uint32_t k);
+
+/* How many instructions, stores, solves and nests take each value: [p->ins.n]. */
 uint32_t *prog_uses(const Prog *p);
 
 /* Sums of several terms are added up in the order in which the terms can be there, earliest first: what comes late passes
@@ -167,7 +201,7 @@ Prog *prog_balance(const Prog *p, const uint32_t *ready);
  * takes the one with fewer instructions; the operations are the same. */
 Prog *prog_in_time(const Prog *p);
 
-/* Checks that operands precede their use, conditions feed only selections, stores are in order.
+/* Checks that operands precede their use, conditions feed only selections, stores and what nests take are there.
  * NULL, or what is wrong. */
 const char *prog_verify(const Prog *p);
 

@@ -11,7 +11,7 @@ static int is_leaf(IrOp op) { return op == IR_CONST || op == IR_PI || op == IR_L
 /* Instructions of one class differ in their operands only. Solves, tables and titles are alike to none. */
 static uint32_t class_of(const Prog *p, Slot s) {
   const Ins *i = &p->ins.at[s];
-  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_TITLE || i->op == IR_TABLE) return UINT32_MAX - s;
+  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_NEST || i->op == IR_TITLE || i->op == IR_TABLE) return UINT32_MAX - s;
   uint32_t h = (uint32_t)i->op * 31 + i->index;
   for (const char *c = i->text; c && *c; c++) h = (h ^ (unsigned char)*c) * 16777619u;
   for (int k = 0; k < 3; k++) { /* structural zeros and leaves stay what they are */
@@ -38,7 +38,7 @@ int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first) {
   enum { LARGEST = 1 << 22 };
   if (x->op != IR_CONST || y->op != IR_CONST || !num_is_exact(x->number) || !num_is_exact(y->number)) return 0;
   *unit = num_sub(y->number, x->number);
-  if (!num_is_exact(*unit) || num_is_zero(*unit) || (unit->den & (unit->den - 1)) != 0 || unit->den > LARGEST) return 0;
+  if (!num_is_exact(*unit) || num_is_zero(*unit) || unit->den > LARGEST) return 0;
   Num times = num_div(x->number, *unit);
   *first = times.num;
   return num_is_exact(times) && times.den == 1 && times.num > -LARGEST && times.num < LARGEST && unit->num > -LARGEST && unit->num < LARGEST;
@@ -276,6 +276,7 @@ static void find_kept(Rolls *r) {
   for (uint32_t k = 0; k < r->n; k++) {
     const Ins *i = code_at(r, k);
     for (int which = 0; which < 3; which++) keep_from(r, roll_operand(i, which), k);
+    for (uint32_t j = 0; i->op == IR_NEST && j < r->p->nests.at[i->index].nouter; j++) keep_from(r, r->p->nests.at[i->index].outer[j], k);
     if (i->op != IR_SOLVE) continue;
     const Solve *s = &r->p->solves.at[i->index];
     for (uint32_t j = 0; j < solve_elements(s); j++) keep_from(r, s->matrix[j], UINT32_MAX);

@@ -59,8 +59,8 @@ Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early);
 /* How operand `which` (0, 1, 2) of instruction `offset` of the loop changes. */
 Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which);
 
-/* The numbers of a STEP_NUMBER that begins with x and y: y - x is a unit whose multiples are exact in binary, and
- * x is `first` times that. 0 when they are not like that. */
+/* The numbers of a STEP_NUMBER that begins with x and y: y - x is a unit whose numerator has exact multiples in binary, so that
+ * dividing them by its denominator rounds as the number itself does; x is `first` times that. 0 when they are not like that. */
 int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first);
 
 Slot roll_operand(const Ins *i, int which);

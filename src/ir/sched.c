@@ -8,7 +8,7 @@ uint32_t ir_latency(IrOp op) {
     case IR_NEG: case IR_SELECT: return 1;
     case IR_DIV: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_TABLE: return 16;
     case IR_CONST: case IR_PI: case IR_LOAD: case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ:
-    case IR_NOT: case IR_AND: case IR_OR: case IR_PIVOT: case IR_SOLVED: case IR_TITLE: break;
+    case IR_NOT: case IR_AND: case IR_OR: case IR_PIVOT: case IR_SOLVED: case IR_NEST: case IR_TITLE: break;
   }
   return 0;
 }
@@ -30,6 +30,9 @@ static void compute(Schedule *d, Slot s) {
     Slot x = d->open.at[d->open.n - 1];
     const Ins *i = &d->from->ins.at[x];
     Slot next = !i->a || d->done[i->a] ? !i->b || d->done[i->b] ? !i->c || d->done[i->c] ? 0 : i->c : i->b : i->a;
+    const Nest *n = i->op == IR_NEST ? &d->from->nests.at[i->index] : NULL;
+    for (uint32_t k = 0; n && !next && k < n->nouter; k++)
+      if (!d->done[n->outer[k]]) next = n->outer[k];
     if (!d->done[x] && next) {
       vec_push(d->to->arena, &d->open, next);
       continue;

@@ -151,7 +151,7 @@ static int64_t column_of(Model *w, const Ins *i) {
     case ARR_Z: return 2 * sys->nq + i->index;
     case ARR_T: w->out->uses_time = 1; return 3 * sys->nq + 2 * sys->nz;
     case ARR_P: case ARR_U: case ARR_A: case ARR_G: case ARR_FREE: case ARR_COEF: case ARR_SUMS: case ARR_STEP: case ARR_ORDER: case ARR_PER_ORDER:
-    case ARR_UP: case ARR_COUNT: break;
+    case ARR_UP: case ARR_CELL: case ARR_OUTER: case ARR_COUNT: break;
   }
   return -1;
 }

@@ -172,12 +172,23 @@ static Entries rewritten(const Eqns *e, const Entries *from, Expr (*rule)(ExprGr
   return to;
 }
 
+/* Whether the rule changes forces. Of many, a few tell: the sum over all other bodies takes long to bring to another form, and
+ * is alike for all. */
+static int changes_forces(const Eqns *e, const LinearSystem *s, Expr (*rule)(ExprGraph *, Expr)) {
+  enum { MANY = 64, SAMPLE = 16 };
+  uint32_t step = e->n > MANY ? e->n / SAMPLE : 1;
+  for (uint32_t i = 0; i < e->n; i += step)
+    if (rule(e->g, s->f[i]) != s->f[i]) return 1;
+  return 0;
+}
+
 /* Replaces *best when s with all its entries rewritten costs no more: entry by entry they may be
  * shorter and still lose what they share, so they are weighed together. */
 static void try_form(Eqns *e, const LinearSystem *s, Expr (*rule)(ExprGraph *, Expr), LinearSystem *best, uint64_t *ops) {
   LinearSystem t = {.n = s->n, .ndefs = s->ndefs, .defs = s->defs, .H = rewritten(e, &s->H, rule), .C = rewritten(e, &s->C, rule)};
   Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n);
-  for (uint32_t i = 0; i < e->n; i++) f[i] = rule(e->g, s->f[i]);
+  int some = changes_forces(e, s, rule);
+  for (uint32_t i = 0; i < e->n; i++) f[i] = some ? rule(e->g, s->f[i]) : s->f[i];
   t.f = f;
   uint64_t mine = system_ops(e, &t);
   if (mine > *ops) return;

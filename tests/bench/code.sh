@@ -198,7 +198,7 @@ long_model() { # WHAT SCENE MODEL PEER.c "PEERS" options...
   done
 }
 long_model 'string of 10,000 masses' string_hard models/string.lag $here/hand/string.c 'loop twice' hard -DN=10000
-long_model '256 gravitating bodies' bodies_drift $here/models/bodies.lag $here/hand/bodies.c pairs
+long_model '256 gravitating bodies' bodies_drift $here/models/bodies.lag $here/hand/bodies.c 'pairs ordered'
 
 # ---- in space
 "$LAGC" emit $here/models/spherical_chain.lag -o "$TMP/spherical.c"

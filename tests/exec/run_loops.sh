@@ -52,6 +52,25 @@ let z[i in 1..N] = z[i-1] - cos(th[i])
 kinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2 + z[i]'^2) + I/2*ph[i]'^2)
 potential = sum(i in 1..N, m*g*z[i])
 END
+# Bodies without families, one by one, pairs in another order; a net of hard springs with two indices.
+awk 'BEGIN {
+  print "model bodies_by_hand\nparam G = 0.7, e = 0.01"
+  for (i = 1; i <= 24; i++) {
+    printf "param mass%d = %d > 0\ncoord x%d, y%d\n", i, i, i, i
+    T = T (i > 1 ? " + " : "") sprintf("mass%d/2*(x%d'"'"'^2 + y%d'"'"'^2)", i, i, i)
+    for (d = 1; d < i; d++) V = V sprintf(" - G*mass%d*mass%d/sqrt((x%d - x%d)^2 + (y%d - y%d)^2 + e)", i, i - d, i, i - d, i, i - d)
+  }
+  print "kinetic = " T "\npotential = 0" V
+}' >"$TMP/m/bodies_by_hand.lag"
+cat >"$TMP/m/net.lag" <<'END'
+model net
+const N = 20, K = 30
+coord u[N,K]
+param m = 1 > 0, k = 1, b = 0.3
+kinetic = sum(i in 1..N, sum(j in 1..K, m/2*u[i,j]'^2))
+potential = sum(i in 1..N, sum(j in 1..K-1, k/2*(u[i,j+1] - u[i,j])^2 + b/4*(u[i,j+1] - u[i,j])^4)) +
+            sum(i in 1..N-1, sum(j in 1..K, k/2*(u[i+1,j] - u[i,j])^2 + b/4*(u[i+1,j] - u[i,j])^4))
+END
 # Choices, functions, and steps of two.
 cat >"$TMP/m/odd.lag" <<'END'
 model odd
@@ -81,9 +100,11 @@ has_loops() { # MODEL LINES: at most so many between the braces of accel
 check "a chain of 120 links: as long as one of 20" has_loops chain_120 250
 check "a chain by hand rolls, too" has_loops by_hand 250
 check "500 masses on springs" has_loops string_500 60
-check "a lattice" has_loops lattice 700
+check "a lattice" has_loops lattice 140
+check "a net of springs" has_loops net 80
 check "links in space" has_loops spatial 800
-check "pairs of 20 bodies" has_loops bodies 1000
+check "pairs of 20 bodies" has_loops bodies 70
+check "24 bodies by hand" has_loops bodies_by_hand 80
 check "choices and functions" has_loops odd 120
 in_one_loop() { "$LAGC" derive "$TMP/m/string_500.lag" --format c | grep -q '^    a\[k + [0-9]*\] = '; }
 check "a string's accelerations are stored where they are computed" in_one_loop
@@ -113,6 +134,14 @@ END
   "$CC" -std=c11 -w -I"$INC" "$TMP/start.c" "$TMP/string.c" -lm -o "$TMP/start" && "$TMP/start"
 }
 check "its start and its names" start_agrees
+bodies() {
+  timeout 100 "$LAGC" emit tests/bench/models/bodies.lag -DN=256 -o "$TMP/bodies.c" || { echo "not emitted in 100 s"; return 1; }
+  bytes=$(wc -c <"$TMP/bodies.c")
+  [ "$bytes" -lt 65536 ] || { echo "$bytes bytes"; return 1; }
+  timeout 100 "$CC" -O2 -std=c11 -I"$INC" -c "$TMP/bodies.c" -o "$TMP/bodies.o" || { echo "not compiled in 100 s"; return 1; }
+  "$CC" -std=c11 -w -I"$INC" tests/exec/bodies_256.c "$TMP/bodies.o" -lm -o "$TMP/bodies" && "$TMP/bodies"
+}
+check "256 bodies: less than 64 kB of C, which computes what loops by hand do" bodies
 is "a short model has none" 0 "$("$LAGC" derive models/chain.lag --format c | grep -c 'for (int k')"
 
 strict='-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror'

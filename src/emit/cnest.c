@@ -1,0 +1,200 @@
+/* Nests of a program as loops inside loops.
+ *
+ * Their sums are elements of one local array. What is added to the same element in all turns of a loop is added up in a variable. */
+#include <string.h>
+
+#include "emit/cwriter_impl.h"
+
+typedef struct {
+  const Nest *n;
+  Writer body;             /* writes the turn, with names of the function */
+  const char *i, *j;       /* the counters */
+  unsigned char *each;     /* by slot of the body: 1: it changes from turn to turn */
+  const char **partial;    /* by store of the body: the variable that adds it up; NULL: the sum itself */
+} Nesting;
+
+static int has_rows(const Nest *n) { return n->rows > 1; }
+
+/* " + 3*i" */
+static void put_term(StrBuf *b, int64_t factor, const char *counter) {
+  if (!factor) return;
+  const char *sign = factor < 0 ? b->n ? " - " : "-" : b->n ? " + " : "";
+  int64_t size = factor < 0 ? -factor : factor;
+  if (size == 1) sb_printf(b, "%s%s", sign, counter);
+  else sb_printf(b, "%s%lld*%s", sign, (long long)size, counter);
+}
+
+static const char *affine(const Nesting *x, int64_t first, int64_t by_row, int64_t by_turn) {
+  StrBuf b = strbuf(x->body.a);
+  put_term(&b, has_rows(x->n) ? by_row : 0, x->i);
+  put_term(&b, nest_has_turns(x->n) ? by_turn : 0, x->j);
+  if (!b.n) sb_printf(&b, "%lld", (long long)first);
+  else if (first) sb_printf(&b, " %c %lld", first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first));
+  return sb_text(&b);
+}
+
+static const char *place(const Nesting *x, uint32_t k) { return affine(x, x->n->at[k].first, x->n->at[k].by_row, x->n->at[k].by_turn); }
+
+static void line(Writer *w, const char *text) {
+  cwriter_statement(w, text);
+  sb_putc(w->out, '\n');
+}
+
+/* --- the turn --- */
+
+static void find_each(Nesting *x) {
+  const Prog *p = x->n->body;
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    if (i->op == IR_LOAD && i->array != ARR_OUTER && !ir_is_scalar(i->array)) x->each[s] = (unsigned char)nest_moves(x->n, i->index);
+    else x->each[s] = x->each[i->a] | x->each[i->b] | x->each[i->c];
+  }
+}
+
+static void write_load(Nesting *x, const Writer *around, Slot s) {
+  Writer *w = &x->body;
+  const Ins *i = &w->p->ins.at[s];
+  if (i->array == ARR_OUTER) {
+    w->piece[s] = cwriter_operand(around, x->n->outer[i->index]);
+  } else if (ir_is_scalar(i->array)) {
+    w->piece[s] = (Piece){w->style->in[i->array], C_ATOM, 0};
+  } else {
+    const char *name = cnames_take(&w->names, i->name ? i->name : "sum");
+    line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name,
+                         i->array == ARR_P && w->parameters ? w->parameters : cwriter_array(w, i->array), place(x, i->index)));
+    w->piece[s] = (Piece){name, C_ATOM, 0};
+  }
+}
+
+/* What changes from turn to turn, or what does not. */
+static void write_values(Nesting *x, const Writer *around, int each) {
+  Writer *w = &x->body;
+  for (Slot s = 1; s < w->p->ins.n; s++)
+    if (w->p->ins.at[s].op == IR_LOAD && x->each[s] == each) write_load(x, around, s);
+  for (Slot s = 1; s < w->p->ins.n; s++)
+    if (w->p->ins.at[s].op != IR_LOAD && x->each[s] == each) cwriter_instruction(w, s);
+}
+
+static void write_additions(Nesting *x) {
+  Writer *w = &x->body;
+  for (uint32_t k = 0; k < w->p->stores.n; k++) {
+    const Store *st = &w->p->stores.at[k];
+    const char *sum = x->partial[k] ? x->partial[k] : arena_printf(w->a, "%s[%s]", w->cells, place(x, st->index));
+    line(w, arena_printf(w->a, "%s %s %s;", sum, st->array ? "-=" : "+=", cwriter_operand(w, st->slot).text));
+  }
+}
+
+/* --- the loops --- */
+
+static void open_loop(Writer *w, const char *counter, const char *from, const char *end) {
+  line(w, arena_printf(w->a, "for (int %s = %s; %s < %s; %s++) {", counter, from, counter, end, counter));
+  w->indent += 2;
+}
+
+static void close_loop(Writer *w) {
+  w->indent -= 2;
+  line(w, "}");
+}
+
+static void declare_partial(Nesting *x) {
+  Writer *w = &x->body;
+  StrBuf text = strbuf(w->a);
+  for (uint32_t k = 0; k < w->p->stores.n; k++) {
+    if (nest_moves(x->n, w->p->stores.at[k].index)) continue;
+    x->partial[k] = cnames_take(&w->names, "part");
+    sb_printf(&text, "%s%s = %s_C(0.0)", text.n ? ", " : "", x->partial[k], w->style->prefix);
+  }
+  if (text.n) line(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&text)));
+}
+
+static void add_partial(Nesting *x) {
+  Writer *w = &x->body;
+  for (uint32_t k = 0; k < w->p->stores.n; k++)
+    if (x->partial[k]) line(w, arena_printf(w->a, "%s[%s] += %s;", w->cells, place(x, w->p->stores.at[k].index), x->partial[k]));
+}
+
+static void write_rows(Nesting *x, const Writer *around) {
+  Writer *w = &x->body;
+  const Nest *n = x->n;
+  if (has_rows(n) && nest_has_turns(n)) open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
+  write_values(x, around, 0);
+  declare_partial(x);
+  if (nest_has_turns(n)) open_loop(w, x->j, affine(x, 0, n->skew, 0), affine(x, n->turns, n->skew + n->more, 0));
+  else open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
+  write_values(x, around, 1);
+  write_additions(x);
+  close_loop(w);
+  add_partial(x);
+  if (has_rows(n) && nest_has_turns(n)) close_loop(w);
+}
+
+/* The body with what the names of its values have in common in all turns. */
+static const Prog *named_by_stems(const Writer *w, const Prog *p) {
+  Prog *r = ARENA_NEW(w->a, Prog);
+  *r = *p;
+  r->ins.at = ARENA_ARRAY(w->a, Ins, p->ins.n);
+  memcpy(r->ins.at, p->ins.at, p->ins.n * sizeof *p->ins.at);
+  for (Slot s = 1; s < p->ins.n; s++)
+    if (r->ins.at[s].name) r->ins.at[s].name = cloop_stem(w->a, r->ins.at[s].name);
+  return r;
+}
+
+void cnest_write(Writer *w, const Ins *i) {
+  const Nest *n = &w->p->nests.at[i->index];
+  Nesting x = {.n = n, .body = *w, .i = w->row, .j = w->turn};
+  x.body.p = named_by_stems(w, n->body);
+  x.body.uses = prog_uses(n->body);
+  x.body.stored = ARENA_ARRAY(w->a, const char *, n->body->ins.n);
+  x.body.piece = ARENA_ARRAY(w->a, Piece, n->body->ins.n);
+  x.body.rolls = roll_find(n->body, 0, UINT32_MAX, 0);
+  x.each = ARENA_ARRAY(w->a, unsigned char, n->body->ins.n);
+  x.partial = ARENA_ARRAY(w->a, const char *, n->body->stores.n + 1);
+  cwriter_find_pairs(&x.body);
+  find_each(&x);
+  cwriter_flush_title(w);
+  x.body.title = NULL;
+  write_rows(&x, w);
+  w->names = x.body.names;
+  w->temps = x.body.temps;
+}
+
+/* One more than the highest index at a place of the nest: in one of the corners. */
+static int64_t end_of(const Nest *n, uint32_t k) {
+  int64_t end = 0;
+  for (int corner = 0; corner < 4; corner++) {
+    int64_t i = corner & 1 ? n->rows - 1 : 0, j = n->skew*i + (corner & 2 ? n->turns + n->more*i - 1 : 0);
+    int64_t index = n->at[k].first + n->at[k].by_row*i + n->at[k].by_turn*j;
+    if (index >= end) end = index + 1;
+  }
+  return end;
+}
+
+/* Members of a struct have no index: those that nests read are copied. */
+static void copy_parameters(Writer *w) {
+  int64_t end = 0;
+  for (uint32_t k = 0; k < w->p->nests.n; k++) {
+    const Nest *n = &w->p->nests.at[k];
+    for (Slot s = 1; s < n->body->ins.n; s++) {
+      const Ins *i = &n->body->ins.at[s];
+      if (i->op == IR_LOAD && i->array == ARR_P && end_of(n, i->index) > end) end = end_of(n, i->index);
+    }
+  }
+  if (!end) return;
+  StrBuf text = strbuf(w->a);
+  w->parameters = cnames_take(&w->names, "values");
+  sb_printf(&text, "const %s_REAL %s[%lld] = {", w->style->prefix, w->parameters, (long long)end);
+  for (int64_t k = 0; k < end; k++) sb_printf(&text, "%s%s->%s", k ? ", " : "", w->style->in[ARR_P], w->style->params[k]);
+  sb_puts(&text, "};");
+  line(w, sb_text(&text));
+}
+
+void cnest_prepare(Writer *w) {
+  if (!w->p->nests.n) return;
+  if (w->style->params) copy_parameters(w);
+  w->cells = cnames_take(&w->names, "sum");
+  w->row = cnames_take(&w->names, "i");
+  w->turn = cnames_take(&w->names, "j");
+  line(w, arena_printf(w->a, "%s_REAL %s[%u];", w->style->prefix, w->cells, w->p->cells));
+  line(w, arena_printf(w->a, "for (int %s = 0; %s < %u; %s++) %s[%s] = %s_C(0.0);", w->row, w->row, w->p->cells, w->row, w->cells, w->row,
+                       w->style->prefix));
+}

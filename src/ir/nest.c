@@ -1,0 +1,339 @@
+#include "ir/nest.h"
+
+#include <stdlib.h>
+
+#include "ir/nest_impl.h"
+
+enum { FEWEST_PIECES = 8, MOST_VALUES = 2000 };
+
+/* Pieces that compute the same. */
+typedef struct {
+  Tape tape;
+  uint64_t hash;
+  VEC(int64_t) columns; /* of all pieces, one after the other */
+  VEC(uint32_t) pieces;
+} Alike;
+
+typedef struct {
+  Nest nest;
+  const uint32_t *class_of; /* by place of nest.at: of cells, from 1 */
+} Found;
+
+typedef struct {
+  Cut c;
+  Local *local;
+  Tape tape;
+  VEC(Alike) alike;     /* of one wave */
+  uint32_t *table;      /* of `alike`, from 1; open addressing */
+  uint32_t table_cap;
+  VEC(uint32_t) ready;  /* pieces, from 1, that have all that they need */
+  VEC(Slot) complete;   /* hubs that have just got all their terms */
+  VEC(Found) found;
+  uint32_t *nested;     /* by piece: its nest, from 1 */
+  uint32_t *terms;      /* by slot of hubs: how many of its terms nests give, */
+  uint32_t *last;       /* and the last of these nests, from 1 */
+} Search;
+
+/* --- groups --- */
+
+static uint64_t hash_words(const Tape *t) {
+  uint64_t h = t->words.n;
+  for (uint32_t k = 0; k < t->words.n; k++) h = (h ^ t->words.at[k]) * 0x100000001b3u;
+  return h ^ h >> 29;
+}
+
+static int same_words(const Tape *x, const Tape *y) {
+  return x->words.n == y->words.n && x->columns.n == y->columns.n && memcmp(x->words.at, y->words.at, x->words.n * sizeof *x->words.at) == 0;
+}
+
+static void table_insert(Search *s, uint32_t number) {
+  uint32_t k = (uint32_t)s->alike.at[number - 1].hash & (s->table_cap - 1);
+  while (s->table[k]) k = (k + 1) & (s->table_cap - 1);
+  s->table[k] = number;
+}
+
+static void grow_table(Search *s) {
+  if (2 * (s->alike.n + 1) < s->table_cap) return;
+  s->table_cap *= 2;
+  s->table = ARENA_ARRAY(s->c.a, uint32_t, s->table_cap);
+  for (uint32_t k = 1; k <= s->alike.n; k++) table_insert(s, k);
+}
+
+#define COPY(a, v) \
+  do { \
+    (v).at = memcpy(arena_alloc((a), ((v).n + 1) * sizeof *(v).at), (v).at, (v).n * sizeof *(v).at); \
+    (v).cap = (v).n; \
+  } while (0)
+
+static Tape copy_tape(Arena *a, const Tape *t) {
+  Tape r = *t;
+  COPY(a, r.nodes);
+  COPY(a, r.links);
+  COPY(a, r.gives);
+  COPY(a, r.words);
+  COPY(a, r.class_of);
+  COPY(a, r.array);
+  return r;
+}
+
+static Alike *group_of(Search *s, const Tape *t) {
+  uint64_t hash = hash_words(t);
+  grow_table(s);
+  for (uint32_t k = (uint32_t)hash & (s->table_cap - 1); s->table[k]; k = (k + 1) & (s->table_cap - 1)) {
+    Alike *x = &s->alike.at[s->table[k] - 1];
+    if (x->hash == hash && same_words(&x->tape, t)) return x;
+  }
+  vec_push(s->c.a, &s->alike, ((Alike){.tape = copy_tape(s->c.a, t), .hash = hash}));
+  table_insert(s, s->alike.n);
+  return &s->alike.at[s->alike.n - 1];
+}
+
+/* --- nests --- */
+
+static void add_nest(Search *s, const Alike *x, const Fit *f, const uint32_t *order) {
+  Arena *a = s->c.a;
+  uint32_t width = x->tape.columns.n;
+  IrPlace *at = ARENA_ARRAY(a, IrPlace, width + 1);
+  for (uint32_t k = 0; k < width; k++) at[k] = (IrPlace){f->first[k], f->row[k], f->turn[k]};
+  Nest n = {.rows = f->rows, .skew = f->skew, .turns = f->turns, .more = f->more, .at = at, .n = width, .count = f->count};
+  n.body = nest_body(&s->c, &x->tape, f, &n.outer, &n.nouter);
+  vec_push(a, &s->found, ((Found){n, x->tape.class_of.at}));
+  for (uint32_t k = f->begin; k < f->begin + f->count; k++) {
+    uint32_t piece = x->pieces.at[order[k]];
+    const Shares *gives = &s->c.pieces.at[piece - 1].gives;
+    s->nested[piece] = s->found.n;
+    for (uint32_t j = 0; j < gives->n; j++) {
+      s->terms[gives->at[j].hub]++;
+      s->last[gives->at[j].hub] = s->found.n;
+    }
+  }
+}
+
+static void find_nests(Search *s, const Alike *x) {
+  Arena *a = s->c.a;
+  uint32_t n = x->pieces.n, *order = ARENA_ARRAY(a, uint32_t, n);
+  Fits fits = {0};
+  for (uint32_t k = 0; k < n; k++) order[k] = k;
+  nest_fit(a, x->columns.at, x->tape.array.at, x->tape.columns.n, order, n, &fits);
+  for (uint32_t k = 0; k < fits.n; k++) add_nest(s, x, &fits.at[k], order);
+}
+
+/* Pieces that may be turns of loops, from number `from` of the ready ones on. */
+static void search_wave(Search *s, uint32_t from) {
+  s->alike.n = 0;
+  memset(s->table, 0, s->table_cap * sizeof *s->table);
+  for (uint32_t k = from; k < s->ready.n; k++) {
+    Piece *q = &s->c.pieces.at[s->ready.at[k] - 1];
+    if (!q->apart || !q->gives.n || q->n > MOST_VALUES) continue;
+    nest_tape(&s->c, q, s->local, s->ready.at[k], &s->tape);
+    Alike *x = group_of(s, &s->tape);
+    for (uint32_t j = 0; j < s->tape.columns.n; j++) vec_push(s->c.a, &x->columns, s->tape.columns.at[j]);
+    vec_push(s->c.a, &x->pieces, s->ready.at[k]);
+  }
+  for (uint32_t k = 0; k < s->alike.n; k++)
+    if (s->alike.at[k].pieces.n >= FEWEST_PIECES) find_nests(s, &s->alike.at[k]);
+}
+
+/* --- waves: what has all that it needs, then what that makes ready --- */
+
+static void complete_hubs(Search *s) {
+  Cut *c = &s->c;
+  while (s->complete.n) {
+    Slot hub = s->complete.at[--s->complete.n];
+    c->celled[hub] = s->terms[hub] == 0 ? 0 : s->terms[hub] == c->terms_of[hub] ? 2 : 1;
+    for (uint32_t k = c->last_waiting[hub]; k; k = c->waiting.at[k - 1].before) {
+      const Waiting *w = &c->waiting.at[k - 1];
+      if (w->sum && --c->waits[w->sum] == 0) vec_push(c->a, &s->complete, w->sum);
+      if (w->piece && --c->pieces.at[w->piece - 1].waits == 0) vec_push(c->a, &s->ready, w->piece);
+    }
+  }
+}
+
+static void search_all(Search *s) {
+  Cut *c = &s->c;
+  for (uint32_t k = 1; k <= c->pieces.n; k++)
+    if (!c->pieces.at[k - 1].waits) vec_push(c->a, &s->ready, k);
+  for (uint32_t k = 0; k < c->hubs.n; k++)
+    if (!c->waits[c->hubs.at[k]]) vec_push(c->a, &s->complete, c->hubs.at[k]);
+  complete_hubs(s);
+  for (uint32_t from = 0; from < s->ready.n;) {
+    uint32_t end = s->ready.n;
+    if (end - from >= FEWEST_PIECES) search_wave(s, from);
+    for (; from < end; from++) {
+      const Shares *gives = &c->pieces.at[s->ready.at[from] - 1].gives;
+      for (uint32_t k = 0; k < gives->n; k++)
+        if (--c->waits[gives->at[k].hub] == 0) vec_push(c->a, &s->complete, gives->at[k].hub);
+    }
+    complete_hubs(s);
+  }
+}
+
+/* --- the program with its nests --- */
+
+typedef struct {
+  const Search *s;
+  const Prog *from;
+  Prog *to;
+  uint32_t *base;      /* by class of hubs: its first cell */
+  Slot *map;           /* by item: a slot of `from`, or past them a nest */
+  unsigned char *done;
+  VEC(uint32_t) open;
+} Rebuild;
+
+static void number_cells(Rebuild *r) {
+  const Search *s = r->s;
+  const Cut *c = &s->c;
+  uint32_t *size = ARENA_ARRAY(c->a, uint32_t, c->classes + 1);
+  for (uint32_t k = 0; k < c->hubs.n; k++) {
+    Slot hub = c->hubs.at[k];
+    if (s->terms[hub] && size[c->class_of[hub]] <= c->number[hub]) size[c->class_of[hub]] = c->number[hub] + 1;
+  }
+  r->base = ARENA_ARRAY(c->a, uint32_t, c->classes + 1);
+  for (uint32_t k = 0; k < c->classes; k++) {
+    r->base[k] = r->to->cells;
+    r->to->cells += size[k];
+  }
+}
+
+static int has_cell(const Rebuild *r, Slot x) { return r->s->c.hub[x] && r->s->terms[x]; }
+
+/* Whether nests add the term to its hubs. */
+static int is_nested(const Rebuild *r, Slot term) {
+  uint32_t piece = r->s->c.piece[term];
+  return piece && r->s->nested[piece];
+}
+
+static void want(Rebuild *r, uint32_t item) {
+  if (item && !r->done[item]) vec_push(r->to->arena, &r->open, item);
+}
+
+/* The terms that nests do not give. */
+static void other_terms(const Rebuild *r, Slot hub, Shares *terms) {
+  const Cut *c = &r->s->c;
+  terms->n = 0;
+  if (c->hub[hub] == HUB_SUM) nest_terms(c, hub, terms);
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < terms->n; k++)
+    if (!is_nested(r, terms->at[k].value)) terms->at[n++] = terms->at[k];
+  terms->n = n;
+}
+
+static void want_operands(Rebuild *r, uint32_t item) {
+  const Search *s = r->s;
+  uint32_t n = r->from->ins.n;
+  if (item >= n) {
+    const Nest *x = &s->found.at[item - n].nest;
+    for (uint32_t k = x->nouter; k-- > 0;) want(r, x->outer[k]);
+    if (item > n) want(r, item - 1);
+  } else if (has_cell(r, item)) {
+    other_terms(r, item, s->c.terms);
+    for (uint32_t k = s->c.terms->n; k-- > 0;) want(r, s->c.terms->at[k].value);
+    want(r, n + s->last[item] - 1);
+  } else {
+    for (int k = 3; k-- > 0;) {
+      const Ins *i = &r->from->ins.at[item];
+      want(r, k == 0 ? i->a : k == 1 ? i->b : i->c);
+    }
+  }
+}
+
+static Slot make_nest(Rebuild *r, uint32_t k) {
+  const Found *f = &r->s->found.at[k];
+  Nest n = f->nest;
+  IrPlace *at = ARENA_ARRAY(r->to->arena, IrPlace, n.n + 1);
+  for (uint32_t j = 0; j < n.n; j++) {
+    at[j] = n.at[j];
+    if (f->class_of[j]) at[j].first += r->base[f->class_of[j] - 1];
+  }
+  Slot *outer = ARENA_ARRAY(r->to->arena, Slot, n.nouter + 1);
+  for (uint32_t j = 0; j < n.nouter; j++) outer[j] = r->map[n.outer[j]];
+  n.at = at;
+  n.outer = outer;
+  vec_push(r->to->arena, &r->to->nests, n);
+  return prog_ins(r->to, (Ins){.op = IR_NEST, .a = k ? r->map[r->from->ins.n + k - 1] : 0, .index = k});
+}
+
+static Slot make_hub(Rebuild *r, Slot hub) {
+  const Search *s = r->s;
+  Name name = r->from->ins.at[hub].name;
+  Slot sum = prog_ins(r->to, (Ins){.op = IR_LOAD, .array = ARR_CELL, .a = r->map[r->from->ins.n + s->last[hub] - 1],
+                                   .index = r->base[s->c.class_of[hub]] + s->c.number[hub], .name = name ? name : "sum"});
+  other_terms(r, hub, s->c.terms);
+  for (uint32_t k = 0; k < s->c.terms->n; k++)
+    sum = prog_op(r->to, s->c.terms->at[k].minus ? IR_SUB : IR_ADD, sum, r->map[s->c.terms->at[k].value]);
+  return sum;
+}
+
+/* What the item needs first, then itself. */
+static void rebuild(Rebuild *r, uint32_t item) {
+  uint32_t n = r->from->ins.n;
+  want(r, item);
+  while (r->open.n) {
+    uint32_t x = r->open.at[r->open.n - 1], before = r->open.n;
+    if (!r->done[x]) want_operands(r, x);
+    if (r->open.n > before) continue;
+    r->open.n--;
+    if (r->done[x]) continue;
+    r->done[x] = 1;
+    r->map[x] = x >= n ? make_nest(r, x - n)
+                : has_cell(r, x) ? make_hub(r, x) : prog_ins(r->to, prog_moved(r->to, r->from, r->map, r->from->ins.at[x]));
+    if (x < n) prog_name(r->to, r->map[x], r->from->ins.at[x].name);
+  }
+}
+
+static Prog *with_nests(const Search *s) {
+  const Prog *p = s->c.p;
+  uint32_t items = p->ins.n + s->found.n;
+  Rebuild r = {.s = s, .from = p, .to = prog_new(p->arena), .map = ARENA_ARRAY(p->arena, Slot, items)};
+  r.done = ARENA_ARRAY(p->arena, unsigned char, items);
+  number_cells(&r);
+  for (Slot x = 1; x < p->ins.n; x++) {
+    uint32_t piece = s->c.piece[x];
+    Slot sum = s->c.sum[x];
+    int gone = (piece && s->nested[piece]) || (sum && sum != x && has_cell(&r, sum)) || nest_is_leaf(p->ins.at[x].op);
+    if (!gone) rebuild(&r, x);
+  }
+  for (uint32_t k = 0; k < p->stores.n; k++) {
+    Store st = p->stores.at[k];
+    rebuild(&r, st.slot);
+    prog_store(r.to, st.array, st.index, r.map[st.slot], st.comment);
+  }
+  return prog_tidy(r.to);
+}
+
+/* How many instructions nests take in. Loops of one level are found in straight-line code, too (ir/roll.h), and keep there what
+ * they share with their surroundings: nothing is gained where there are no loops inside loops. */
+static uint32_t taken_in(const Search *s) {
+  uint32_t inside = 0;
+  int deep = 0;
+  for (uint32_t k = 0; k < s->c.pieces.n; k++)
+    if (s->nested[k + 1]) inside += s->c.pieces.at[k].n;
+  for (Slot x = 1; x < s->c.p->ins.n; x++) inside += s->c.sum[x] && s->c.celled[s->c.sum[x]] == 2;
+  for (uint32_t k = 0; k < s->found.n; k++) deep |= s->found.at[k].nest.rows > 1 && s->found.at[k].nest.count > s->found.at[k].nest.rows;
+  return deep ? inside : 0;
+}
+
+static Search search(const Prog *p, unsigned ends) {
+  Arena *a = p->arena;
+  Search s = {.c = nest_cut(p, ends), .table_cap = 256};
+  s.local = ARENA_ARRAY(a, Local, p->ins.n);
+  s.table = ARENA_ARRAY(a, uint32_t, s.table_cap);
+  s.nested = ARENA_ARRAY(a, uint32_t, s.c.pieces.n + 1);
+  s.terms = ARENA_ARRAY(a, uint32_t, p->ins.n);
+  s.last = ARENA_ARRAY(a, uint32_t, p->ins.n);
+  if (s.c.hubs.n && s.c.pieces.n >= FEWEST_PIECES) search_all(&s);
+  return s;
+}
+
+Prog *prog_nest(Prog *p, uint32_t from) {
+  if (p->ins.n < from || p->solves.n || p->nests.n) return p;
+  Search best = {0};
+  uint32_t most = p->ins.n / 2; /* else the rest is what counts */
+  for (unsigned ends = 0; ends < CUT_KINDS && most < p->ins.n - p->ins.n / 8; ends++) {
+    Search s = search(p, ends);
+    if (taken_in(&s) <= most) continue;
+    most = taken_in(&s);
+    best = s;
+  }
+  return best.found.n ? with_nests(&best) : p;
+}

@@ -1,0 +1,407 @@
+/* Hubs, and the pieces that are left without them. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "ir/nest_impl.h"
+
+/* FEWEST_TERMS make a sum long; what more than FEW use is shared. */
+enum { FEWEST_TERMS = 8, FEW = 8 };
+
+int nest_is_leaf(IrOp op) { return op == IR_CONST || op == IR_PI || op == IR_LOAD; }
+int nest_is_sum(IrOp op) { return op == IR_ADD || op == IR_SUB || op == IR_NEG; }
+
+static IrOp op_of(const Cut *c, Slot s) { return c->p->ins.at[s].op; }
+static Slot operand(const Ins *i, int k) { return k == 0 ? i->a : k == 1 ? i->b : i->c; }
+
+/* --- long sums --- */
+
+static void find_joined(Cut *c) {
+  for (Slot s = 1; s < c->p->ins.n; s++) {
+    const Ins *i = &c->p->ins.at[s];
+    for (int k = 0; k < 2; k++) {
+      Slot x = operand(i, k);
+      int alike = nest_is_sum(i->op) ? nest_is_sum(op_of(c, x)) : i->op == IR_MUL && op_of(c, x) == IR_MUL;
+      if (x && alike && c->uses[x] == 1) c->joined[x] = 1;
+    }
+  }
+}
+
+static void find_long_sums(Cut *c) {
+  const Prog *p = c->p;
+  uint32_t *terms = ARENA_ARRAY(c->a, uint32_t, p->ins.n);
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    if (!nest_is_sum(i->op)) continue;
+    for (int k = 0; k < 2; k++)
+      if (operand(i, k)) terms[s] += c->joined[operand(i, k)] ? terms[operand(i, k)] : 1;
+    if (!c->joined[s] && terms[s] >= FEWEST_TERMS) c->hub[s] = HUB_SUM;
+  }
+}
+
+/* Sums with a term that another sum has, too, as by Newton's third law: springs of a net. */
+static void find_sums_in_common(Cut *c) {
+  const Prog *p = c->p;
+  uint32_t *uses = ARENA_ARRAY(c->a, uint32_t, p->ins.n);
+  for (Slot s = 1; s < p->ins.n; s++)
+    for (int k = 0; k < 2 && nest_is_sum(op_of(c, s)); k++) uses[operand(&p->ins.at[s], k)]++;
+  for (Slot s = 1; s < p->ins.n; s++) {
+    if (!nest_is_sum(op_of(c, s)) || c->joined[s]) continue;
+    c->terms->n = 0;
+    nest_terms(c, s, c->terms);
+    for (uint32_t k = 0; k < c->terms->n && c->terms->n > 1; k++)
+      if (uses[c->terms->at[k].value] > 1 && !nest_is_leaf(op_of(c, c->terms->at[k].value)) && !c->hub[s]) c->hub[s] = HUB_COMMON;
+  }
+}
+
+/* Which sum each part belongs to. */
+static void mark_parts(Cut *c) {
+  for (Slot s = c->p->ins.n; s-- > 1;) {
+    const Ins *i = &c->p->ins.at[s];
+    if (c->hub[s]) c->sum[s] = s;
+    for (int k = 0; k < 2 && c->sum[s]; k++)
+      if (c->joined[operand(i, k)]) c->sum[operand(i, k)] = c->sum[s];
+  }
+}
+
+void nest_terms(const Cut *c, Slot sum, Shares *terms) {
+  Shares *open = c->open;
+  open->n = 0;
+  vec_push(c->a, open, ((Share){sum, sum, 0}));
+  while (open->n) {
+    Share t = open->at[--open->n];
+    const Ins *i = &c->p->ins.at[t.value];
+    if (t.value != sum && !(c->joined[t.value] && nest_is_sum(i->op))) {
+      vec_push(c->a, terms, t);
+      continue;
+    }
+    int turned = i->op == IR_NEG || i->op == IR_SUB;
+    if (i->b) vec_push(c->a, open, ((Share){i->b, sum, turned ? !t.minus : t.minus}));
+    if (i->a) vec_push(c->a, open, ((Share){i->a, sum, i->op == IR_NEG ? !t.minus : t.minus}));
+  }
+}
+
+/* --- signatures --- */
+
+/* The finisher of splitmix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014, DOI 10.1145/2660193.2660195). */
+static uint64_t mixed(uint64_t x) {
+  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ x >> 27) * 0x94d049bb133111ebu;
+  return x ^ x >> 31;
+}
+
+static uint64_t with(uint64_t h, uint64_t x) { return mixed(h * 0x9e3779b97f4a7c15u + x + 1); }
+
+static uint64_t leaf_signature(const Ins *i) {
+  uint64_t h = with(1, (uint64_t)i->op);
+  if (i->op == IR_LOAD) return with(h, (uint64_t)i->array);
+  if (i->op != IR_CONST) return h;
+  uint64_t bits;
+  memcpy(&bits, &i->number.approx, sizeof bits);
+  return num_is_exact(i->number) ? with(with(h, (uint64_t)i->number.num), (uint64_t)i->number.den) : with(h, bits);
+}
+
+/* Operand x as a part of a sum, or of its negative. */
+static uint64_t part_of_sum(const Cut *c, Slot x, int minus) {
+  if (!x) return 0;
+  if (c->joined[x] && nest_is_sum(op_of(c, x))) return minus ? c->flip[x] : c->sig[x];
+  return with(minus ? 2 : 3, c->sig[x]);
+}
+
+static uint64_t part_of_product(const Cut *c, Slot x) { return c->joined[x] && op_of(c, x) == IR_MUL ? c->sig[x] : with(4, c->sig[x]); }
+
+static void sign_sum(Cut *c, Slot s, const Ins *i) {
+  int a = i->op == IR_NEG, b = i->op == IR_SUB;
+  uint64_t plus = part_of_sum(c, i->a, a) + part_of_sum(c, i->b, b), minus = part_of_sum(c, i->a, !a) + part_of_sum(c, i->b, !b);
+  c->sig[s] = c->hub[s] == HUB_SUM ? 5 : c->joined[s] ? plus : with(6, plus);
+  c->flip[s] = minus;
+}
+
+static void sign(Cut *c, Slot s) {
+  const Ins *i = &c->p->ins.at[s];
+  if (nest_is_sum(i->op)) {
+    sign_sum(c, s, i);
+  } else if (i->op == IR_MUL) {
+    uint64_t all = part_of_product(c, i->a) + part_of_product(c, i->b);
+    c->sig[s] = c->joined[s] ? all : with(7, all);
+  } else if (nest_is_leaf(i->op)) {
+    c->sig[s] = leaf_signature(i);
+  } else {
+    uint64_t h = with(with(8, (uint64_t)i->op), i->index);
+    for (const char *t = i->text; t && *t; t++) h = with(h, (unsigned char)*t);
+    for (int k = 0; k < 3; k++) h = with(h, c->sig[operand(i, k)]);
+    c->sig[s] = h;
+  }
+}
+
+/* A long sum reads what all others read: only how much tells them apart. */
+static void order(Cut *c, Slot s) {
+  const Ins *i = &c->p->ins.at[s];
+  c->low[s] = UINT64_MAX;
+  if (i->op == IR_LOAD && !ir_is_scalar(i->array)) {
+    c->low[s] = (uint64_t)i->array << 40 | i->index;
+    c->mass[s] = (uint64_t)i->index + 1;
+  }
+  for (int k = 0; k < 3; k++) {
+    Slot x = operand(i, k);
+    if (!x) continue;
+    c->mass[s] += c->mass[x];
+    if (c->low[x] < c->low[s]) c->low[s] = c->low[x];
+  }
+  if (c->hub[s] == HUB_SUM || c->hub[s] == HUB_COMMON) c->low[s] = (uint64_t)ARR_COUNT << 40;
+}
+
+/* --- shared values --- */
+
+static int can_share(const Cut *c, Slot s) {
+  IrOp op = op_of(c, s);
+  return !nest_is_leaf(op) && !ir_is_condition(op) && !c->sum[s] && !c->joined[s] && op != IR_PIVOT && op != IR_TITLE;
+}
+
+static int by_value(const void *x, const void *y) {
+  uint64_t a = *(const uint64_t *)x, b = *(const uint64_t *)y;
+  return (a > b) - (a < b);
+}
+
+/* What many use, and what is computed alike: the last of a family of bodies has few users. */
+static void find_shared(Cut *c) {
+  VEC(uint64_t) often = {0};
+  for (Slot s = 1; s < c->p->ins.n; s++)
+    if (c->uses[s] > FEW && can_share(c, s)) vec_push(c->a, &often, c->sig[s]);
+  if (!often.n) return;
+  qsort(often.at, often.n, sizeof *often.at, by_value);
+  for (Slot s = 1; s < c->p->ins.n; s++)
+    if (can_share(c, s) && bsearch(&c->sig[s], often.at, often.n, sizeof *often.at, by_value)) c->hub[s] = HUB_SHARED;
+}
+
+/* What is stored, so that pieces may end there. */
+static void find_stored(Cut *c) {
+  for (uint32_t k = 0; k < c->p->stores.n; k++) {
+    Slot s = c->p->stores.at[k].slot;
+    if (s && !c->hub[s] && can_share(c, s)) c->hub[s] = HUB_STORED;
+  }
+}
+
+/* --- pieces --- */
+
+static Slot root_of(Slot *parent, Slot s) {
+  while (parent[s] != s) s = parent[s] = parent[parent[s]];
+  return s;
+}
+
+static void join(Slot *parent, Slot a, Slot b) {
+  a = root_of(parent, a);
+  b = root_of(parent, b);
+  if (a < b) parent[b] = a;
+  else parent[a] = b;
+}
+
+/* Whether a value belongs to a piece. */
+static int in_piece(const Cut *c, Slot s) {
+  IrOp op = op_of(c, s);
+  return s && !nest_is_leaf(op) && !c->sum[s] && op != IR_PIVOT && op != IR_TITLE;
+}
+
+static const Slot MIXED = UINT32_MAX;
+
+static Slot same_or_mixed(Slot known, Slot x) { return !known || known == x ? x : MIXED; }
+
+/* By hub that may be taken back: the piece of all its users; MIXED where they are of several. */
+static Slot *find_users(const Cut *c, Slot *parent) {
+  Slot *user = ARENA_ARRAY(c->a, Slot, c->p->ins.n);
+  for (Slot s = 1; s < c->p->ins.n; s++)
+    for (int k = 0; k < 3; k++) {
+      Slot x = operand(&c->p->ins.at[s], k);
+      if (x && c->hub[x]) user[x] = same_or_mixed(user[x], in_piece(c, s) ? root_of(parent, s) : MIXED);
+    }
+  for (uint32_t k = 0; k < c->p->stores.n; k++) user[c->p->stores.at[k].slot] = MIXED;
+  return user;
+}
+
+/* Whether all terms that pieces give to a sum are of the piece of its users. */
+static int is_of_one_piece(Cut *c, Slot *parent, Slot sum, Slot user) {
+  c->terms->n = 0;
+  nest_terms(c, sum, c->terms);
+  for (uint32_t k = 0; k < c->terms->n; k++) {
+    Slot x = c->terms->at[k].value;
+    if (c->hub[x] || (in_piece(c, x) && root_of(parent, x) != user)) return 0;
+  }
+  return 1;
+}
+
+/* A shared value whose users are all of one piece is a value of that piece, and so is a sum whose terms are of it, too. Returns
+ * whether there was one. */
+static int take_back(Cut *c, Slot *parent) {
+  int some = 0;
+  const Slot *user = find_users(c, parent);
+  for (Slot s = 1; s < c->p->ins.n; s++) {
+    if ((c->hub[s] != HUB_SHARED && c->hub[s] != HUB_COMMON) || user[s] == MIXED || !user[s]) continue;
+    if (c->hub[s] == HUB_COMMON && !is_of_one_piece(c, parent, s, root_of(parent, user[s]))) continue;
+    c->hub[s] = HUB_NO;
+    join(parent, s, user[s]);
+    some = 1;
+  }
+  for (Slot s = 1; s < c->p->ins.n; s++) {
+    Slot sum = c->sum[s];
+    if (!sum || c->hub[sum]) continue;
+    c->sum[s] = 0; /* roots come after their parts */
+    join(parent, s, sum);
+  }
+  return some;
+}
+
+static void find_pieces(Cut *c) {
+  enum { TURNS = 3 };
+  const Prog *p = c->p;
+  Slot *parent = ARENA_ARRAY(c->a, Slot, p->ins.n);
+  for (Slot s = 0; s < p->ins.n; s++) parent[s] = s;
+  for (Slot s = 1; s < p->ins.n; s++)
+    for (int k = 0; k < 3 && in_piece(c, s); k++) {
+      Slot x = operand(&p->ins.at[s], k);
+      if (in_piece(c, x) && !c->hub[x]) join(parent, s, x);
+    }
+  for (int turn = 0; turn < TURNS && take_back(c, parent); turn++) {}
+  for (Slot s = 1; s < p->ins.n; s++)
+    if (c->hub[s] == HUB_COMMON) c->hub[s] = HUB_SUM;
+  for (Slot s = 1; s < p->ins.n; s++) {
+    if (!in_piece(c, s)) continue;
+    Slot r = root_of(parent, s);
+    if (r == s) vec_push(c->a, &c->pieces, ((Piece){.apart = 1}));
+    c->piece[s] = r == s ? c->pieces.n : c->piece[r];
+    c->pieces.at[c->piece[s] - 1].n++;
+  }
+  for (uint32_t k = 0; k < c->pieces.n; k++) {
+    c->pieces.at[k].slots = ARENA_ARRAY(c->a, Slot, c->pieces.at[k].n);
+    c->pieces.at[k].n = 0;
+  }
+  for (Slot s = 1; s < p->ins.n; s++) {
+    if (!c->piece[s]) continue;
+    Piece *q = &c->pieces.at[c->piece[s] - 1];
+    q->slots[q->n++] = s;
+    if (op_of(c, s) == IR_TABLE) q->apart = 0;
+  }
+}
+
+/* --- what goes between pieces and hubs --- */
+
+static void not_apart(Cut *c, Slot s) {
+  if (c->piece[s] && !c->hub[s]) c->pieces.at[c->piece[s] - 1].apart = 0;
+}
+
+static void wait_for(Cut *c, Slot hub, uint32_t piece, Slot sum) {
+  vec_push(c->a, &c->waiting, ((Waiting){piece, sum, c->last_waiting[hub]}));
+  c->last_waiting[hub] = c->waiting.n;
+  if (sum) c->waits[sum]++;
+  else c->pieces.at[piece - 1].waits++;
+}
+
+static void find_shares(Cut *c) {
+  const Prog *p = c->p;
+  Shares terms = {0};
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    if (i->op == IR_PIVOT) not_apart(c, i->a);
+    for (int k = 0; k < 3 && c->piece[s]; k++)
+      if (operand(i, k) && c->hub[operand(i, k)] && c->piece[operand(i, k)] != c->piece[s]) wait_for(c, operand(i, k), c->piece[s], 0);
+    terms.n = 0;
+    if (c->hub[s] == HUB_SUM) nest_terms(c, s, &terms);
+    if (c->hub[s] == HUB_SHARED || c->hub[s] == HUB_STORED) vec_push(c->a, &terms, ((Share){s, s, 0}));
+    for (uint32_t k = 0; k < terms.n; k++) {
+      Slot x = terms.at[k].value;
+      c->terms_of[s]++;
+      if (!c->piece[x] && c->hub[x]) wait_for(c, x, 0, s);
+      if (!c->piece[x]) continue; /* a leaf, or another sum */
+      c->waits[s]++;
+      vec_push(c->a, &c->pieces.at[c->piece[x] - 1].gives, terms.at[k]);
+    }
+  }
+  for (uint32_t k = 0; k < p->stores.n; k++) not_apart(c, p->stores.at[k].slot);
+}
+
+/* Hubs in the order in which stores need them. */
+static void list_hubs(Cut *c) {
+  const Prog *p = c->p;
+  unsigned char *seen = ARENA_ARRAY(c->a, unsigned char, p->ins.n);
+  VEC(Slot) open = {0};
+  for (uint32_t k = 0; k < p->stores.n; k++) {
+    vec_push(c->a, &open, p->stores.at[k].slot);
+    while (open.n) {
+      Slot s = open.at[--open.n];
+      if (seen[s]) continue;
+      seen[s] = 1;
+      if (c->hub[s]) vec_push(c->a, &c->hubs, s);
+      for (int j = 3; j-- > 0;)
+        if (operand(&p->ins.at[s], j)) vec_push(c->a, &open, operand(&p->ins.at[s], j));
+    }
+  }
+}
+
+typedef struct {
+  uint64_t sig, low, mass;
+  uint32_t rank; /* place among the hubs */
+} HubKey;
+
+/* Shared values are in the order of the elements that they are computed from, others in that of stores. */
+static HubKey key_of(const Cut *c, uint32_t rank) {
+  Slot s = c->hubs.at[rank];
+  return c->hub[s] == HUB_SHARED ? (HubKey){c->sig[s], c->low[s], c->mass[s], rank} : (HubKey){.sig = c->hub[s], .rank = rank};
+}
+
+static int by_key(const void *x, const void *y) {
+  const HubKey *a = x, *b = y;
+  if (a->sig != b->sig) return a->sig < b->sig ? -1 : 1;
+  if (a->low != b->low) return a->low < b->low ? -1 : 1;
+  if (a->mass != b->mass) return a->mass < b->mass ? -1 : 1;
+  return (a->rank > b->rank) - (a->rank < b->rank);
+}
+
+/* Sums are one class, what is stored another, shared values one for each signature. What is stored has the number of its first
+ * store, with gaps, so that a loop stores it. */
+static void number_hubs(Cut *c) {
+  HubKey *keys = ARENA_ARRAY(c->a, HubKey, c->hubs.n + 1);
+  for (uint32_t k = 0; k < c->hubs.n; k++) keys[k] = key_of(c, k);
+  qsort(keys, c->hubs.n, sizeof *keys, by_key);
+  for (uint32_t k = 0, first = 0; k < c->hubs.n; k++) {
+    Slot s = c->hubs.at[keys[k].rank];
+    if (!k || keys[k].sig != keys[k - 1].sig) {
+      first = k;
+      c->classes++;
+    }
+    c->class_of[s] = c->classes - 1;
+    c->number[s] = k - first;
+  }
+  for (uint32_t k = c->p->stores.n; k-- > 0;)
+    if (c->hub[c->p->stores.at[k].slot] == HUB_STORED) c->number[c->p->stores.at[k].slot] = k;
+}
+
+Cut nest_cut(const Prog *p, unsigned ends) {
+  Arena *a = p->arena;
+  uint32_t n = p->ins.n;
+  Cut c = {.p = p, .a = a, .uses = prog_uses(p), .open = ARENA_NEW(a, Shares), .terms = ARENA_NEW(a, Shares)};
+  c.joined = ARENA_ARRAY(a, unsigned char, n);
+  c.hub = ARENA_ARRAY(a, unsigned char, n);
+  c.celled = ARENA_ARRAY(a, unsigned char, n);
+  c.sum = ARENA_ARRAY(a, Slot, n);
+  c.sig = ARENA_ARRAY(a, uint64_t, n);
+  c.flip = ARENA_ARRAY(a, uint64_t, n);
+  c.low = ARENA_ARRAY(a, uint64_t, n);
+  c.mass = ARENA_ARRAY(a, uint64_t, n);
+  c.piece = ARENA_ARRAY(a, uint32_t, n);
+  c.class_of = ARENA_ARRAY(a, uint32_t, n);
+  c.number = ARENA_ARRAY(a, uint32_t, n);
+  c.waits = ARENA_ARRAY(a, uint32_t, n);
+  c.terms_of = ARENA_ARRAY(a, uint32_t, n);
+  c.last_waiting = ARENA_ARRAY(a, uint32_t, n);
+  find_joined(&c);
+  find_long_sums(&c);
+  if (ends & CUT_COMMON_TERMS) find_sums_in_common(&c);
+  mark_parts(&c);
+  for (Slot s = 1; s < n; s++) sign(&c, s);
+  find_shared(&c);
+  if (ends & CUT_STORES) find_stored(&c);
+  for (Slot s = 1; s < n; s++) order(&c, s);
+  find_pieces(&c);
+  find_shares(&c);
+  list_hubs(&c);
+  number_hubs(&c);
+  return c;
+}
