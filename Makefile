@@ -119,7 +119,15 @@ $(BUILD)/gen/cli/probe_text.h: src/cli/probe.in
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
-$(BUILD)/gen/emit/%.h: runtime/include/%.h
+# With its section in place, without that file's first line.
+$(BUILD)/gen/emit/lag_math.txt: runtime/include/lag_math.h runtime/include/lag_sincos.h
+	@mkdir -p $(@D)
+	{ sed '/^#include "lag_sincos.h"$$/,$$d' $<; sed 1d runtime/include/lag_sincos.h; sed '1,/^#include "lag_sincos.h"$$/d' $<; } >$@.part
+	@mv $@.part $@
+$(BUILD)/gen/emit/lag_math.h: $(BUILD)/gen/emit/lag_math.txt
+	$(AS_C) >$@.part
+	@mv $@.part $@
+$(BUILD)/gen/emit/lag_kkt.h: runtime/include/lag_kkt.h
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
@@ -271,7 +279,8 @@ install: all
 	install -m 644 $(LIBLAG) $(LIBLAG_MORE) '$(DESTDIR)$(PREFIX)/lib'
 	for p in $(PRECISIONS); do install -d "$(DESTDIR)$(PREFIX)/lib/lag-$$p" && \
 	  install -m 644 $(BUILD)/lag-$$p/*.h "$(DESTDIR)$(PREFIX)/lib/lag-$$p" || exit 1; done
-	install -m 644 runtime/include/lag.h runtime/include/lag_model.h runtime/include/lag_math.h runtime/include/lag_kkt.h '$(DESTDIR)$(PREFIX)/include'
+	install -m 644 runtime/include/lag.h $(addprefix runtime/include/,lag_model.h lag_math.h lag_sincos.h lag_kkt.h) \
+	  '$(DESTDIR)$(PREFIX)/include'
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' runtime/liblag.pc.in >$(PC)
 	install -m 644 $(PC) '$(DESTDIR)$(PREFIX)/lib/pkgconfig'
 ifneq ($(GSL),)
@@ -288,7 +297,7 @@ endif
 
 # Removes what install puts there, and the folders that are lagc's own.
 uninstall:
-	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a lib/liblag_long.a lib/liblag_quad.a include/lag.h include/lag_model.h include/lag_math.h include/lag_kkt.h \
+	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a lib/liblag_long.a lib/liblag_quad.a include/lag.h include/lag_model.h include/lag_math.h include/lag_sincos.h include/lag_kkt.h \
 	  lib/pkgconfig/liblag.pc lib/pkgconfig/liblag_gsl.pc share/man/man1/lagc.1 share/bash-completion/completions/lagc \
 	  share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish && rm -rf lib/lag-long lib/lag-quad share/lagc share/doc/lagc
 

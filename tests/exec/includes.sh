@@ -28,6 +28,7 @@ besides='
 src/ir/lower.c    mech/eqns.h
 src/ir/lower.h    mech/eqns.h mech/variation.h
 runtime/include/lag.h  lag_model.h
+runtime/include/lag_math.h  lag_sincos.h
 src/main.c        picture.h help.h complete.h settings.h wants.h
 src/wants.c       wants.h
 src/picture.c     picture.h

@@ -7,7 +7,7 @@ POINTS=1000000 sh tests/math/run_math.sh || bad=1
 if /usr/bin/env python3 -c 'import mpmath' 2>/dev/null || /usr/bin/python3 -c 'import mpmath' 2>/dev/null; then
   python=python3
   python3 -c 'import mpmath' 2>/dev/null || python=/usr/bin/python3
-  check "the coefficients are those of tests/math/remez.py" $python tests/math/remez.py runtime/include/lag_math.h
+  check "the coefficients are those of tests/math/remez.py" $python tests/math/remez.py runtime/include/lag_math.h runtime/include/lag_sincos.h
 else
   skip "the coefficients are those of tests/math/remez.py" "there is no python3 with mpmath"
 fi

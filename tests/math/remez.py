@@ -86,7 +86,7 @@ jobs = [
     ('log((1 + s)/(1 - s)) = 2 s + s^3 p(s^2), |s| <= (sqrt 2 - 1)/(sqrt 2 + 1)', 7, tiny, s_max,
      lambda z: (atanh2(root(z)) - 2 * root(z)) / root(z) ** 3, lambda z: root(z) ** 3 / atanh2(root(z))),
 ]
-text = open(sys.argv[1]).read() if len(sys.argv) > 1 else None
+text = "".join(open(f).read() for f in sys.argv[1:]) or None
 missing = 0
 
 
