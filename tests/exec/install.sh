@@ -13,7 +13,7 @@ for p in long quad; do
   [ ! -f "$BUILD/liblag_$p.a" ] || more_files="$more_files lib/liblag_$p.a lib/lag-$p/lag.h lib/lag-$p/lag_model.h"
 done
 models=$(cd models && ls -d -- *.lag *.csv 2>/dev/null)
-want=$(for f in bin/lagc include/lag.h include/lag_math.h include/lag_model.h include/lag_sincos.h lib/liblag.a lib/pkgconfig/liblag.pc $more_files \
+want=$(for f in bin/lagc include/lag.h include/lag_kkt.h include/lag_math.h include/lag_model.h include/lag_sincos.h lib/liblag.a lib/pkgconfig/liblag.pc $more_files \
   share/doc/lagc/LICENSE share/doc/lagc/README.md share/man/man1/lagc.1 share/bash-completion/completions/lagc \
   share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish share/lagc/lag.tmLanguage.json; do
   echo "$f"
