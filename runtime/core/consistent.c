@@ -306,6 +306,17 @@ static int rank(Start *w, double *marks)
   return r;
 }
 
+/* What moved by less than a last digit of what has its unit did not move. */
+static void keep_rounding_out(const Start *w)
+{
+  for (int i = 0; i < 2 * w->nq; i++) {
+    const double *level = i < w->nq ? w->y : w->y + w->nq;
+    if (fabs(w->y[i] - w->asked[i]) <= DBL_EPSILON / 4 * lag_size_like(w->pb, level, i % w->nq)) {
+      w->y[i] = w->asked[i];
+    }
+  }
+}
+
 /* The work space: one block. */
 static double *make_room(Start *w)
 {
@@ -344,6 +355,7 @@ int lag_consistent(lag_sim *s)
     rc = settle(&w, 1);
     rc = rc ? rc : settle(&w, 0);
     if (rc == 0) {
+      keep_rounding_out(&w);
       memcpy(s->now, w.y, bytes);
       s->run->rank = rank(&w, s->redundant);
     }

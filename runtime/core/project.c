@@ -13,6 +13,7 @@ enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
 typedef struct Held {
   const lag_constraints *of;
   double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
+  double *terms[2];               /* [n] of the rates, of the holonomic ones: as they were when they were last asked for */
   double *d, *force, *other;      /* [nq], [nq], [2 nq + nz] */
   double *M;                      /* [nmass] */
 } Held;
@@ -21,14 +22,14 @@ size_t lag_held_room(const lag_model *m)
 {
   const lag_constraints *of = m->constraints;
 
-  return of ? (size_t)(4 * of->n + of->njacobian + of->nmass + 4 * m->nq + m->nz) : 0;
+  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 4 * m->nq + m->nz) : 0;
 }
 
 static Held layout(const lag_problem *pb)
 {
   Held w = {.of = pb->model->constraints};
-  double *x = pb->held, **const parts[] = {&w.c, &w.r, &w.before, &w.g, &w.A, &w.M, &w.d, &w.force, &w.other};
-  const int n = w.of->n, sizes[] = {n, n, n, n, w.of->njacobian, w.of->nmass, pb->nq, pb->nq, 0};
+  double *x = pb->held, **const parts[] = {&w.c, &w.r, &w.before, &w.g, &w.terms[0], &w.terms[1], &w.A, &w.M, &w.d, &w.force, &w.other};
+  const int n = w.of->n, sizes[] = {n, n, n, n, n, n, w.of->njacobian, w.of->nmass, pb->nq, pb->nq, 0};
 
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
@@ -152,8 +153,12 @@ void lag_say_constraint(lag_problem *pb, int k, double residual, const char *wor
   if (c->line > 0) {
     snprintf(line, sizeof line, " (line %d)", c->line);
   }
-  snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s%s", c->name, line, residual, c->unit[0] ? " " : "", c->unit,
-           words);
+  if (isnan(residual)) {
+    snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, line, words);
+  } else {
+    snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s%s", c->name, line, residual, c->unit[0] ? " " : "", c->unit,
+             words);
+  }
   pb->detail = pb->words;
 }
 
@@ -209,18 +214,29 @@ static int unmet(lag_problem *pb, const Held *w, double t, const double *y, int 
 
   if (k >= 0) {
     lag_say_constraint(pb, k, fabs(holonomic ? w->c[k] : w->r[k]),
-                       holonomic ? ", and no small change of the coordinates meets it" : " for any velocities: it contradicts the others");
+                       holonomic                 ? ", and no small change of the coordinates meets it"
+                       : k < w->of->nholonomic ? "/s for any velocities: it contradicts the others"
+                                               : " for any velocities: it contradicts the others");
   }
   pb->bad_t = t;
   return LAG_ERETRY;
 }
 
-/* Whether nothing but rounding is left. Then w->c and w->r are the residuals of y, as they were. */
-static int is_met(lag_problem *pb, double t, const double *y, int holonomic)
+int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual)
 {
-  double worst = HUGE_VAL;
+  const double rounding = 0x1p10 * DBL_EPSILON;
+  Held w = layout(pb);
+  double *terms = w.terms[holonomic], worst = HUGE_VAL;
+  int n = holonomic ? w.of->nholonomic : w.of->n, met = 1;
 
+  for (int k = 0; k < n; k++) {
+    met &= fabs(residual[k]) <= rounding * terms[k] / 4; /* what they were will do, where it is clear */
+  }
+  if (met) {
+    return 1;
+  }
   lag_worst_constraint(pb, t, y, holonomic, &worst);
+  memcpy(terms, w.g, (size_t)n * sizeof *terms);
   return worst <= 0x1p10;
 }
 
@@ -250,11 +266,12 @@ static int newton(lag_problem *pb, const Held *w, double t, double *y, double *l
       return rc;
     }
     double most = parts_left(n, residual, w->before, &least);
-    if (is_rounding(nq, x, w->d, most)) {
+    int lost_in_rounding = is_rounding(nq, x, w->d, most);
+    if (lost_in_rounding && most < 0.5) {
       return LAG_OK;
     }
-    if (!(least < 0.5)) { /* nothing shrinks any more */
-      if (is_met(pb, t, y, holonomic)) {
+    if (lost_in_rounding || !(least < 0.5)) { /* nothing shrinks any more, or one that the correction cannot reach does not */
+      if (lag_is_met(pb, t, y, holonomic, residual)) {
         return LAG_OK;
       }
       if (++strikes == MOST_STRIKES) {
@@ -262,7 +279,7 @@ static int newton(lag_problem *pb, const Held *w, double t, double *y, double *l
       }
     }
   }
-  return is_met(pb, t, y, holonomic) ? LAG_OK : unmet(pb, w, t, y, holonomic);
+  return lag_is_met(pb, t, y, holonomic, residual) ? LAG_OK : unmet(pb, w, t, y, holonomic);
 }
 
 int lag_project(lag_problem *pb, double t, double *y, double *lost)

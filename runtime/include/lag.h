@@ -141,7 +141,10 @@ int lag_constraint_terms(lag_problem *pb, double t, const double *y, int holonom
  * not NULL: how many times the terms' rounding it is. -1: there is none, or no values. */
 int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonomic, double *size);
 
-/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`. */
+/* Whether the residuals of y at t, c (holonomic) or r, are rounding: up to 2^10 times that of their terms. */
+int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual);
+
+/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; a residual of NaN: "is not met". */
 void lag_say_constraint(lag_problem *pb, int k, double residual, const char *words);
 
 /* The index of the first of x[n] that is not finite, -1 when all are. */

@@ -155,6 +155,17 @@ static int steer(const Arrays *a, lag_problem *pb, double t1, double least)
   return rc;
 }
 
+/* No change meets all constraints: some contradict each other. */
+static int unmet(lag_problem *pb, double t, const double *y, int holonomic)
+{
+  int k = lag_worst_constraint(pb, t, y, holonomic, NULL);
+
+  if (k >= 0) {
+    lag_say_constraint(pb, k, NAN, ", and no small change meets it: it contradicts others, or depends on them here");
+  }
+  return lag_step_failed(pb, LAG_EMETHOD, t);
+}
+
 /* A change of the end of a block, h long, takes this impulse at its beginning. */
 static void add_impulse(const Block *b, int nq, int nc, double h)
 {
@@ -220,7 +231,8 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
         continue;
       }
       lag_history_add(history, of->n, b->sum);
-      return LAG_OK;
+      rc = lag_residuals(pb, t1, b->to, b->c, b->r);
+      return rc ? lag_step_refused(pb, rc, t1) : lag_is_met(pb, t1, b->to, 1, b->c) ? LAG_OK : unmet(pb, t1, b->to, 1);
     }
     if (!steered && turn > 0 && part > before / 16) { /* too slow */
       steered = 1;
@@ -243,7 +255,7 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
 static int project(const Implicit *w, const Arrays *a, lag_problem *pb, double tb, const double *y, int last)
 {
   const Block *b = &a->block;
-  int nq = pb->nq, rc, done = 0;
+  int nq = pb->nq, rc = 0, done = 0;
 
   for (int turn = 0; turn < MOST_PROJECTIONS && !done; turn++) {
     if ((rc = lag_links_velocity(w, a, pb, tb, y, turn > 0 || !last)) != 0) {
@@ -264,7 +276,9 @@ static int project(const Implicit *w, const Arrays *a, lag_problem *pb, double t
     }
     done = part_of(pb, b->d, b->to + nq, a->v) <= 1e-8;
   }
-  return LAG_OK;
+  memcpy(b->to + nq, a->v, (size_t)nq * sizeof(double));
+  rc = lag_residuals(pb, tb, b->to, b->c, b->r);
+  return rc ? lag_step_refused(pb, rc, tb) : lag_is_met(pb, tb, b->to, 0, b->r) ? LAG_OK : unmet(pb, tb, b->to, 0);
 }
 
 int lag_rattle(const Implicit *w, const Arrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)

@@ -429,6 +429,34 @@ static void impossible_starts_are_refused(void **state)
   lag_sim_free(s);
 }
 
+/* x^2 + y^2 = 1 and 3 (x^2 + y^2) = 3 + t^3, which agree at the start. */
+static int parting_residuals(ARGS, double *c, double *r, double *w)
+{
+  twice_residuals(t, q, v, z, p, u, c, r, w);
+  c[1] -= t * t * t;
+  r[1] -= 3 * t * t;
+  return 0;
+}
+
+static void constraints_that_part_are_named(void **state)
+{
+  static const lag_method *const methods[] = {&lag_rk4, &lag_rk45, &lag_dop853, &lag_variational, &lag_verlet4};
+  lag_constraints of = twice_held;
+  lag_model model = twice_model;
+  lag_scene scene = twice;
+  (void)state;
+  of.residuals = parting_residuals;
+  model.constraints = &of;
+  scene.model = &model;
+  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+    lag_sim *s = sim_with(&scene, methods[i], 1e-9, 0, NULL);
+    assert_true(lag_sim_advance(s, 1) < 0);
+    assert_true(lag_sim_time(s) < 0.01);
+    assert_non_null(strstr(lag_sim_message(s), "constraint "));
+    lag_sim_free(s);
+  }
+}
+
 static void redundant_constraints_are_found(void **state)
 {
   (void)state;
@@ -460,6 +488,7 @@ int main(void)
       cmocka_unit_test(velocities_move_the_least),
       cmocka_unit_test(exactly_means_that),
       cmocka_unit_test(impossible_starts_are_refused),
+      cmocka_unit_test(constraints_that_part_are_named),
       cmocka_unit_test(redundant_constraints_are_found),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
