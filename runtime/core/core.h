@@ -84,6 +84,9 @@ int lag_fail(lag_sim *sim, int status, const char *format, ...);
 /* Why a step failed, with when and where. Returns status. */
 int lag_explain(lag_sim *sim, int status);
 
+/* sim.c: y[n] at t within the last step, on the constraints. LAG_OK, or a failure that is explained. */
+int lag_between(lag_sim *sim, double t, double *y);
+
 /* setup.c: the state at the start, of a run that has not begun. */
 int lag_setup_start(lag_sim *sim);
 

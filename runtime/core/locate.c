@@ -32,7 +32,7 @@ static double sign_of(double g)
 }
 
 /* The state at t of the step, exactly at its ends. */
-static void state_at(lag_sim *s, double t, double *y)
+static int state_at(lag_sim *s, double t, double *y)
 {
   size_t bytes = (size_t)s->pb.n * sizeof *y;
 
@@ -41,15 +41,17 @@ static void state_at(lag_sim *s, double t, double *y)
   } else if (t == s->run->step_t0) {
     memcpy(y, s->y0, bytes);
   } else {
-    s->method->dense(s->method_work, &s->pb, t, y);
+    return lag_between(s, t, y);
   }
+  return LAG_OK;
 }
 
 /* g[nev] at t of the step. */
 static int g_at(lag_sim *s, double t, double *g)
 {
-  state_at(s, t, s->yc);
-  return lag_events_eval(s, t, s->yc, g);
+  int rc = state_at(s, t, s->yc);
+
+  return rc ? rc : lag_events_eval(s, t, s->yc, g);
 }
 
 int lag_events_spread(lag_sim *s, const double *at_event, double *spread)

@@ -53,7 +53,8 @@ static int alloc_scratch(lag_sim *s)
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
   size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
-  double *x = calloc(nuu + nw + 3 * n + 13 * nev + nout + 2 + 1, sizeof *x);
+  size_t held = lag_held_room(m);
+  double *x = calloc(nuu + nw + 3 * n + 13 * nev + nout + 2 + held + 1, sizeof *x);
 
   s->scratch = x;
   s->fixed = calloc((size_t)m->np + 1, 1);
@@ -65,8 +66,8 @@ static int alloc_scratch(lag_sim *s)
   for (size_t i = 0; i < n; i++) {
     s->start[i] = NAN;
   }
-  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare};
-  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev};
+  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held};
+  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
@@ -211,6 +212,8 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
     }
   }
   const char *wrong = m->check ? m->check(values) : NULL;
+
+  wrong = !wrong && m->refuses ? m->refuses(s->scene->model, values) : wrong;
   return wrong ? lag_fail(s, LAG_EINVAL, "method %s: %s", m->name, wrong) : LAG_OK;
 }
 
@@ -230,6 +233,10 @@ static int check_method(lag_sim *s, const lag_method *method)
   const lag_model *m = s->scene->model;
   unsigned needs = method->flags, has = lag_facts(&s->pb);
 
+  if (m->constraints && !(needs & LAG_METHOD_CONSTRAINTS)) {
+    return lag_fail(s, LAG_EMETHOD, "method %s cannot hold constraints (%s); rk45, dop853 and variational can", method->name,
+                    m->constraints->of[0].name);
+  }
   if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0) {
     return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can", method->name);
   }

@@ -139,8 +139,16 @@ static int take(lag_sim *s, double t_stop)
   return lag_events_locate(s);
 }
 
+int lag_between(lag_sim *s, double t, double *y)
+{
+  s->method->dense(s->method_work, &s->pb, t, y);
+  s->pb.detail = NULL;
+  int rc = lag_project(&s->pb, t, y, NULL);
+  return rc ? lag_explain(s, rc > 0 ? LAG_EMETHOD : rc) : LAG_OK;
+}
+
 /* `now` := the state at t of the present step. */
-static void settle(lag_sim *s, double t)
+static int settle(lag_sim *s, double t)
 {
   const Run *r = s->run;
   size_t bytes = (size_t)s->pb.n * sizeof(double);
@@ -148,9 +156,14 @@ static void settle(lag_sim *s, double t)
   if (t == r->step_t1) {
     memcpy(s->now, s->y, bytes);
   } else if (t != r->t) {
-    s->method->dense(s->method_work, &s->pb, t, s->now);
+    int rc = lag_between(s, t, s->yc);
+    if (rc) {
+      return rc;
+    }
+    memcpy(s->now, s->yc, bytes);
   }
   s->run->t = t;
+  return LAG_OK;
 }
 
 /* Moves to the end of what is known: an event, or the end of the step. */
@@ -158,8 +171,9 @@ static int pass(lag_sim *s)
 {
   Run *r = s->run;
 
-  settle(s, r->limit);
-  int rc = lag_watch_see(s, r->t, s->now);
+  int rc = settle(s, r->limit);
+
+  rc = rc ? rc : lag_watch_see(s, r->t, s->now);
   if (rc) {
     return rc;
   }
@@ -211,8 +225,7 @@ int lag_sim_advance(lag_sim *s, double t)
 
   while (rc == 0) {
     if (r->have_step != 0.0 && (r->limit - t) * r->dir >= 0) {
-      settle(s, t);
-      return LAG_OK;
+      return settle(s, t);
     }
     if (r->have_step == 0.0 && r->t == t) {
       return LAG_OK;
@@ -248,8 +261,7 @@ int lag_sim_eval(lag_sim *s, double t, double *y)
   }
   if (t == r->step_t1) {
     memcpy(y, s->y, bytes);
-  } else {
-    s->method->dense(s->method_work, &s->pb, t, y);
+    return LAG_OK;
   }
-  return LAG_OK;
+  return lag_between(s, t, y);
 }

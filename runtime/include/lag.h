@@ -59,6 +59,7 @@ typedef struct lag_problem {
   const double *hold;  /* [nu] constants that replace inputs; NaN where there is none */
   const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
+  double *held;        /* [lag_held_room] scratch of the functions for constraints below */
   const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
@@ -107,6 +108,34 @@ int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *
  * 0); M[nq * nq]: the mass matrix. J above is M^-1 dr in its first nq rows. */
 int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, double *dr, double *M, double *work);
 
+/* ---- Constraints: for models that have them (model->constraints, in lag_model.h). Return what the model returned. */
+
+/* Doubles that pb->held must have; 0 without constraints. */
+size_t lag_held_room(const lag_model *model);
+
+/* c[nholonomic] and r[n] of the state y[n] at t. */
+int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r);
+
+/* The least change d[nq] in the mass metric with A d = g, A and M those of y at t, and force[nq] = M d = A^T mu. holonomic: g[nholonomic], and
+ * these constraints alone; else g[n], and all. */
+int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, const double *g, double *d, double *force);
+
+/* Brings y[n] back to the constraints at t: positions by Newton's iteration, each correction the least in the mass metric, until
+ * what is left is rounding; then velocities. lost[n], or NULL: what y has lost to rounding as a sum of steps
+ * (methods/steps.h); it is kept right. > 0: the constraints cannot be met from here, a smaller step may help; pb->detail names the one that is
+ * worst. y and lost are then undefined. Does nothing without constraints.
+ *
+ * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), IV.4, DOI 10.1007/3-540-30666-8: projection
+ * keeps the order of a method. */
+int lag_project(lag_problem *pb, double t, double *y, double *lost);
+
+/* Where the constraints are worst: the index of the one of which c (holonomic) or r of y at t is the largest against its terms; *size, if
+ * not NULL: how many times the terms' rounding it is. -1: there is none, or no values. */
+int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonomic, double *size);
+
+/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`. */
+void lag_say_constraint(lag_problem *pb, int k, double residual, const char *words);
+
 /* The index of the first of x[n] that is not finite, -1 when all are. */
 int lag_not_finite(int n, const double *x);
 
@@ -128,6 +157,7 @@ enum {
   LAG_METHOD_SPLITS = 512,     /* explicit for models with LAG_SEPARABLE, which then need no derivatives */
   LAG_METHOD_TAYLOR = 256,     /* needs the model's Taylor coefficients: lag_model.taylor */
   LAG_METHOD_JACOBIAN = 2048,  /* needs the model's linearisation: lag_model.linear */
+  LAG_METHOD_CONSTRAINTS = 4096, /* steps end on the constraints of a model that has them */
   LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS where it does not split */
 };
 
@@ -153,6 +183,9 @@ typedef struct lag_method {
 
   /* What is wrong with these values of the options, and what to write; NULL when they fit together. May itself be NULL. */
   const char *(*check)(const double *opt);
+
+  /* Why it cannot integrate this model with these values, and what to write; NULL when it can. May itself be NULL. */
+  const char *(*refuses)(const lag_model *model, const double *opt);
 
   /* Doubles of work that init needs with the options pb->opt. */
   size_t (*work_size)(const lag_problem *pb);

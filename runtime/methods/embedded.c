@@ -137,10 +137,12 @@ int lag_embedded_stage(const lag_tableau *tab, lag_problem *pb, int s, double t0
   return call(pb, t0 + tab->c[s] * dt, ys, k + s * n);
 }
 
-/* The last stage: f at the end of the step. */
+/* The last stage: f at the end of the step, which is brought back to the constraints first. */
 static int last_stage(const lag_tableau *tab, Embedded *w, lag_problem *pb, double tb)
 {
-  return call(pb, tb, array(w, pb, EMBEDDED_Y1), array(w, pb, EMBEDDED_K1 + tab->stages - 1));
+  int rc = lag_project(pb, tb, array(w, pb, EMBEDDED_Y1), array(w, pb, EMBEDDED_COMP1));
+
+  return rc ? rc : call(pb, tb, array(w, pb, EMBEDDED_Y1), array(w, pb, EMBEDDED_K1 + tab->stages - 1));
 }
 
 /* The stages, and the result in Y1 with what it lost in COMP1. > 0: a smaller step may help. */

@@ -100,6 +100,9 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     y1[i] = lag_sum(y[i], dt * ys[i], &comp[i]);
   }
   w->ready = 0;
+  if ((rc = lag_project(pb, tb, y1, comp)) != 0) {
+    return lag_step_unmet(pb, rc, tb);
+  }
   rc = lag_step_rhs(pb, tb, y1, w->x + K1 * n);
   if (rc) {
     return rc;
@@ -146,6 +149,7 @@ const lag_method lag_rk4 = {
     .name = "rk4",
     .order = 4,
     .dense_order = 4,
+    .flags = LAG_METHOD_CONSTRAINTS,
     .doc = "classical Runge-Kutta, fixed step. Kutta 1901",
     .noptions = 1,
     .options = options,

@@ -38,6 +38,12 @@ static inline int lag_step_refused(lag_problem *pb, int rc, double t)
   return lag_step_failed(pb, rc > 0 ? LAG_EDOMAIN : rc == LAG_ESINGULAR ? LAG_ESINGULAR : LAG_EMODEL, t);
 }
 
+/* The same of lag_project. */
+static inline int lag_step_unmet(lag_problem *pb, int rc, double t)
+{
+  return rc > 0 ? lag_step_failed(pb, LAG_EMETHOD, t) : lag_step_refused(pb, rc, t);
+}
+
 /* f(t, y) into dy for a method that cannot take a smaller step: LAG_OK, or the failure. */
 static inline int lag_step_rhs(lag_problem *pb, double t, const double *y, double *dy)
 {

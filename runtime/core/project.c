@@ -1,0 +1,253 @@
+/* Back to the constraints. Enters: a state near them; leaves: the nearest one on them in the mass metric, positions first. Holds: a
+ * state that obeys them to rounding stays as it is, bit by bit. */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/core.h"
+
+enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
+
+/* pb->held, laid out. */
+typedef struct Held {
+  const lag_constraints *of;
+  double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
+  double *d, *force, *other;      /* [nq], [nq], [2 nq + nz] */
+  double *M;                      /* [nmass] */
+} Held;
+
+size_t lag_held_room(const lag_model *m)
+{
+  const lag_constraints *of = m->constraints;
+
+  return of ? (size_t)(4 * of->n + of->njacobian + of->nmass + 4 * m->nq + m->nz) : 0;
+}
+
+static Held layout(const lag_problem *pb)
+{
+  Held w = {.of = pb->model->constraints};
+  double *x = pb->held, **const parts[] = {&w.c, &w.r, &w.before, &w.g, &w.A, &w.M, &w.d, &w.force, &w.other};
+  const int n = w.of->n, sizes[] = {n, n, n, n, w.of->njacobian, w.of->nmass, pb->nq, pb->nq, 0};
+
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    *parts[i] = x;
+    x += sizes[i];
+  }
+  return w;
+}
+
+int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r)
+{
+  int rc = lag_inputs(pb, t), nq = pb->nq;
+
+  return rc ? rc : pb->model->constraints->residuals(t, y, y + nq, y + 2 * nq, pb->p, pb->u, c, r, pb->work);
+}
+
+int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, const double *g, double *d, double *force)
+{
+  const lag_constraints *of = pb->model->constraints;
+  int rc = lag_inputs(pb, t), nq = pb->nq;
+
+  return rc ? rc : (holonomic ? of->position : of->velocity)(t, y, y + nq, y + 2 * nq, pb->p, pb->u, g, d, force, pb->work);
+}
+
+/* ---- how large a residual is */
+
+/* size[n] := the size of the terms of each constraint: what moving each coordinate (each velocity) from 0 to where it is makes of it, to
+ * first order; where that is less than |x|, what a state makes of it that is another by about 1 everywhere. Scratch: w.A, w.other. */
+static int sizes(lag_problem *pb, const Held *w, double t, const double *y, int holonomic, double *size)
+{
+  const lag_constraints *of = w->of;
+  int nq = pb->nq, n = holonomic ? of->nholonomic : of->n, at = holonomic ? 0 : nq, rc = lag_inputs(pb, t);
+
+  rc = rc ? rc : of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work);
+  if (rc) {
+    return rc;
+  }
+  memset(size, 0, (size_t)n * sizeof *size);
+  for (int e = 0; e < of->njacobian; e++) {
+    int row = of->jacobian[e].row;
+    if (row < n) {
+      size[row] += fabs(w->A[e] * y[at + of->jacobian[e].col]);
+    }
+  }
+  return 0;
+}
+
+/* The same for the constraints that have no such terms here, as a folded linkage or a body at rest. */
+static int other_sizes(lag_problem *pb, const Held *w, double t, const double *y, int holonomic, double *size)
+{
+  const double step = 0.618033988749894848; /* any number, so that nothing cancels */
+  int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : nq;
+  double *c = w->c, *r = w->r;
+
+  memcpy(w->other, y, (size_t)pb->n * sizeof *y);
+  for (int i = 0; i < nq; i++) {
+    w->other[at + i] += (1 + fabs(y[at + i])) * (0.5 + fmod(step * (i + 1), 1));
+  }
+  int rc = lag_residuals(pb, t, w->other, c, r);
+  for (int k = 0; k < n && rc == 0; k++) {
+    size[k] = fmax(size[k], fabs(holonomic ? c[k] : r[k]));
+  }
+  return rc;
+}
+
+int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonomic, double *worst)
+{
+  const lag_constraints *of = pb->model->constraints;
+  Held w = layout(pb);
+  double most = -1;
+  int which = -1, n = holonomic ? of->nholonomic : of->n;
+
+  if (sizes(pb, &w, t, y, holonomic, w.g) || other_sizes(pb, &w, t, y, holonomic, w.g) || lag_residuals(pb, t, y, w.c, w.r)) {
+    return -1;
+  }
+  for (int k = 0; k < n; k++) {
+    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x > 0 ? x / (DBL_EPSILON * w.g[k]) : 0;
+    if (!(part <= most)) {
+      most = part;
+      which = k;
+    }
+  }
+  if (worst) {
+    *worst = most;
+  }
+  return which;
+}
+
+void lag_say_constraint(lag_problem *pb, int k, double residual, const char *words)
+{
+  const lag_constraint *c = &pb->model->constraints->of[k];
+  char line[32] = "";
+
+  if (c->line > 0) {
+    snprintf(line, sizeof line, " (line %d)", c->line);
+  }
+  snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s%s", c->name, line, residual, c->unit[0] ? " " : "", c->unit,
+           words);
+  pb->detail = pb->words;
+}
+
+/* ---- Newton's iteration */
+
+static double ratio(double x, double y)
+{
+  return x == 0.0 ? 0 : fabs(x / y);
+}
+
+/* Whether what is left after a correction, the part `left` of it, is rounding. */
+static int is_rounding(int n, const double *x, const double *d, double left)
+{
+  for (int i = 0; i < n; i++) {
+    if (!(left * fabs(d[i]) <= 2 * DBL_EPSILON * fabs(x[i]))) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+/* The largest and the least part that a correction left of a residual. */
+static double parts_left(int n, const double *now, const double *before, double *least)
+{
+  double most = 0;
+
+  *least = HUGE_VAL;
+  for (int k = 0; k < n; k++) {
+    double part = ratio(now[k], before[k]);
+    most = fmax(most, part);
+    *least = now[k] == 0.0 ? *least : fmin(*least, part);
+  }
+  return most;
+}
+
+/* x += d, and what that loses. */
+static void add(int n, double *x, double *lost, const double *d)
+{
+  for (int i = 0; i < n; i++) {
+    double before = x[i], add = d[i] + (lost ? lost[i] : 0), b;
+    x[i] = before + add;
+    b = x[i] - before;
+    if (lost) { /* as lag_sum of methods/steps.h */
+      lost[i] = (before - (x[i] - b)) + (add - b);
+    }
+  }
+}
+
+/* The constraints cannot be met: which is worst. */
+static int unmet(lag_problem *pb, const Held *w, double t, const double *y, int holonomic)
+{
+  int k = lag_worst_constraint(pb, t, y, holonomic, NULL);
+
+  if (k >= 0) {
+    lag_say_constraint(pb, k, fabs(holonomic ? w->c[k] : w->r[k]),
+                       holonomic ? ", and no small change of the coordinates meets it" : " for any velocities: it contradicts the others");
+  }
+  pb->bad_t = t;
+  return LAG_ERETRY;
+}
+
+/* Whether nothing but rounding is left. Then w->c and w->r are the residuals of y, as they were. */
+static int is_met(lag_problem *pb, double t, const double *y, int holonomic)
+{
+  double worst = HUGE_VAL;
+
+  lag_worst_constraint(pb, t, y, holonomic, &worst);
+  return worst <= 0x1p10;
+}
+
+/* Positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of y, before and after. */
+static int newton(lag_problem *pb, const Held *w, double t, double *y, double *lost, int holonomic)
+{
+  int n = holonomic ? w->of->nholonomic : w->of->n, nq = pb->nq, strikes = 0;
+  double *x = holonomic ? y : y + nq, *residual = holonomic ? w->c : w->r, least;
+  double *lost_x = lost ? lost + (x - y) : NULL;
+
+  for (int turn = 0; turn < MOST_TURNS; turn++) {
+    int busy = 0;
+    for (int k = 0; k < n; k++) {
+      busy |= !(residual[k] == 0.0);
+      w->g[k] = -residual[k];
+    }
+    if (!busy) {
+      return LAG_OK;
+    }
+    memcpy(w->before, residual, (size_t)n * sizeof *residual);
+    int rc = lag_least_change(pb, t, y, holonomic, w->g, w->d, w->force);
+    if (rc || lag_not_finite(nq, w->d) >= 0) {
+      return rc < 0 ? rc : unmet(pb, w, t, y, holonomic);
+    }
+    add(nq, x, lost_x, w->d);
+    if ((rc = lag_residuals(pb, t, y, w->c, w->r)) != 0) {
+      return rc;
+    }
+    double most = parts_left(n, residual, w->before, &least);
+    if (is_rounding(nq, x, w->d, most)) {
+      return LAG_OK;
+    }
+    if (!(least < 0.5)) { /* nothing shrinks any more */
+      if (is_met(pb, t, y, holonomic)) {
+        return LAG_OK;
+      }
+      if (++strikes == MOST_STRIKES) {
+        return unmet(pb, w, t, y, holonomic);
+      }
+    }
+  }
+  return is_met(pb, t, y, holonomic) ? LAG_OK : unmet(pb, w, t, y, holonomic);
+}
+
+int lag_project(lag_problem *pb, double t, double *y, double *lost)
+{
+  if (!pb->model->constraints || lag_not_finite(pb->n, y) >= 0) { /* the latter is for the method to find */
+    return LAG_OK;
+  }
+  Held w = layout(pb);
+  const char *said = pb->detail;
+  int rc = lag_residuals(pb, t, y, w.c, w.r);
+
+  rc = rc ? rc : newton(pb, &w, t, y, lost, 1);
+  rc = rc ? rc : newton(pb, &w, t, y, lost, 0);
+  pb->detail = rc ? pb->detail : said;
+  return rc < LAG_ESINGULAR ? LAG_EMODEL : rc;
+}
