@@ -17,7 +17,7 @@ static int is_stiff(App *app, const lag_method *method, Stiffness *s)
   lag_sim *run = app->sim, *trial;
   int rc = LAG_ENOMEM;
 
-  if (!scene->model->linear || 2 * scene->model->nq + scene->model->nz > MOST_OF_TRIAL) {
+  if (!scene->model->linear || scene->model->constraints || 2 * scene->model->nq + scene->model->nz > MOST_OF_TRIAL) {
     return 0;
   }
   trial = app->sim = lag_sim_new(scene);
@@ -55,6 +55,8 @@ int app_choose_automatically(App *app, const lag_option *opt, int n)
       snprintf(why, size, "rk45, since the tolerance is above %g", above_rk45);
     } else if (exponents && tol < below_taylor) {
       snprintf(why, size, "dop853, since tangent vectors cost it less than taylor");
+    } else if (tol < below_taylor && app->scene->model->constraints) {
+      snprintf(why, size, "dop853, since taylor cannot hold constraints, with the tolerance below %g", below_taylor);
     } else {
       snprintf(why, size, "dop853, since %s %g", tol < below_taylor ? "taylor cannot take this run, with its tolerance below"
                                                                       : "the tolerance is at most", tol < below_taylor ? below_taylor : above_rk45);

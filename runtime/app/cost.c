@@ -61,7 +61,7 @@ static int compute_reference(Bare *b, Cost *c)
 {
   App *app = b->app;
   const lag_model *m = b->scene.model;
-  int series = m->taylor != NULL, n = c->reference.n;
+  int series = m->taylor && !m->constraints, n = c->reference.n;
   const lag_method *method = series ? &lag_taylor_method : &lag_dop853;
   double tol = series ? 9 * DBL_EPSILON : pow(DBL_EPSILON, 0.75), *scale = calloc((size_t)n + 1, sizeof *scale);
   Samples rough;

@@ -5,6 +5,7 @@
 #include "app/app.h"
 
 enum { WIDTH = 80 };
+#define ROW "  %-16s %-5s %-5s %-5s %-10s %-6s %-6s %-6s %-5s %s\n"
 
 /* Words in lines that begin with `indent` spaces, the first with `first`. */
 static void wrapped(FILE *f, const char *text, int first, int indent)
@@ -45,13 +46,14 @@ static void row(const lag_method *m, FILE *f)
   unsigned is = m->flags;
   char order[32], dense[32];
 
-  fprintf(f, "  %-16s %-5s %-5s %-8s %-12s %-6s %-6s %-6s %s\n", m->name, order_text(m, m->order, order, sizeof order),
+  fprintf(f, ROW, m->name, order_text(m, m->order, order, sizeof order),
           order_text(m, m->dense_order, dense, sizeof dense),
-          is & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed",
-          is & LAG_METHOD_SYMMETRIC ? is & LAG_METHOD_SYMPLECTIC ? "sympl., sym." : "symmetric"
+          is & LAG_METHOD_ADAPTIVE ? "adapt" : "fixed",
+          is & LAG_METHOD_SYMMETRIC ? is & LAG_METHOD_SYMPLECTIC ? "both" : "symmetric"
           : is & LAG_METHOD_SYMPLECTIC ? "symplectic" : "-",
           is & LAG_METHOD_SPLITS ? "partly" : is & LAG_METHOD_NEWTON ? "yes" : "no",
-          is & LAG_METHOD_CONSERVATIVE ? "no" : "yes", is & LAG_METHOD_NO_STATES ? "no" : "yes", m->tangent ? "yes" : "no");
+          is & LAG_METHOD_CONSERVATIVE ? "no" : "yes", is & LAG_METHOD_NO_STATES ? "no" : "yes", m->tangent ? "yes" : "no",
+          is & LAG_METHOD_CONSTRAINTS ? "yes" : "no");
 }
 
 static void options(const lag_method *m, FILE *f, int indent)
@@ -90,13 +92,13 @@ int app_explain_method(const App *app, const char *name, FILE *f)
     if (strcmp(m->name, name) != 0) {
       continue;
     }
-    snprintf(text, sizeof text, "%s, of order %s (dense output %s), %s steps%s%s%s%s%s.", m->name, order_text(m, m->order, order, sizeof order),
+    snprintf(text, sizeof text, "%s, of order %s (dense output %s), %s steps%s%s%s%s%s%s.", m->name, order_text(m, m->order, order, sizeof order),
              order_text(m, m->dense_order, dense, sizeof dense), is & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed",
              is & LAG_METHOD_SYMPLECTIC ? ", symplectic" : "", is & LAG_METHOD_SYMMETRIC ? ", symmetric" : "",
              is & LAG_METHOD_CONSERVATIVE ? ", for models without forces, explicit time and states"
              : is & LAG_METHOD_NO_STATES ? ", for models without states" : "",
              is & LAG_METHOD_SPLITS ? "; Newton's method where the model is not separable" : is & LAG_METHOD_NEWTON ? "; Newton's method" : "",
-             saved(m));
+             is & LAG_METHOD_CONSTRAINTS ? "; with constraints or without" : "; not for models with constraints", saved(m));
     wrapped(f, text, 0, 0);
     wrapped(f, m->doc, 0, 0);
     options(m, f, 2);
@@ -107,15 +109,16 @@ int app_explain_method(const App *app, const char *name, FILE *f)
 
 void app_list_methods(const App *app, FILE *f)
 {
-  fprintf(f, "  %-16s %-5s %-5s %-8s %-12s %-6s %-6s %-6s %s\n", "method", "order", "dense", "steps", "keeps", "Newton", "forces", "states", "deriv");
+  fprintf(f, ROW, "method", "order", "dense", "steps", "keeps", "Newton", "forces", "states", "deriv", "holds");
   for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
     row(method(app, i), f);
   }
   putc('\n', f);
-  wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. sympl., sym.: symplectic and symmetric. Newton: whether each step solves "
+  wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. both: symplectic and symmetric. Newton: whether each step solves "
              "equations by Newton's method; partly: unless the model is separable, with constant mass matrix, and accelerations that do not "
              "depend on velocities. forces: whether the model may have forces and explicit time; what a symplectic method keeps without "
-             "them it does not keep with them. states: whether it may have a `state`. deriv: whether its steps have a derivative (--tangent, lagc lyapunov). Options, with their defaults:", 0, 0);
+             "them it does not keep with them. states: whether it may have a `state`. deriv: whether its steps have a derivative (--tangent, lagc lyapunov). holds: whether its steps end on "
+             "constraints. Options, with their defaults:", 0, 0);
   for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
     words(method(app, i), f);
   }

@@ -54,6 +54,9 @@ static int refuse(const App *app)
     return app_error(a, "this simulator was built without GSL, which finds roots and eigenvalues; install GSL (libgsl-dev), make "
                         "lagc anew, and leave out --no-gsl");
   }
+  if (m->constraints) {
+    return app_error(a, "lagc modes cannot treat constraints yet (%s): give the model coordinates that need none", m->constraints->of[0].name);
+  }
   if (!m->linear) {
     return app_error(a, "this simulator was built without the model's linearisation; write lagc modes %s, or build it with: lagc "
                         "build %s --with linear", source, source);

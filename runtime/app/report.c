@@ -65,6 +65,38 @@ static void energy(const App *app, const lag_stats *st, FILE *f)
   }
 }
 
+/* What the constraints did to the start, and how well they were kept. */
+static void constraints(const App *app, const lag_stats *st, FILE *f)
+{
+  const lag_model *m = app->scene->model;
+  const lag_constraints *of = m->constraints;
+  int n = 2 * m->nq, moved = 0, redundant = 0;
+
+  for (int i = 0; of && i < n; i++) {
+    Column c;
+    double asked = lag_sim_asked(app->sim, i), begin = lag_sim_begin(app->sim, i);
+    if (asked != begin && moved++ < MOST_LINES) {
+      state_var(app, i, &c);
+      fprintf(f, "%s %s from %.15g to %.15g%s%s (by %.3g)\n", moved == 1 ? "start moved to the constraints:" : "  and", c.name, asked, begin,
+              c.unit[0] ? " " : "", c.unit, begin - asked);
+    }
+  }
+  if (moved > MOST_LINES) {
+    fprintf(f, "  (and %d more)\n", moved - MOST_LINES);
+  }
+  if (!of) {
+    return;
+  }
+  fprintf(f, "constraints: %d, %d independent at the start", of->n, lag_sim_rank(app->sim));
+  for (int k = 0; k < of->n; k++) {
+    if (lag_sim_is_redundant(app->sim, k) && redundant++ < MOST_LINES) {
+      fprintf(f, "%s%s", redundant == 1 ? "; redundant: " : ", ", of->of[k].name);
+    }
+  }
+  fprintf(f, "%s\nconstraint residual: %.3g, of rates %.3g (the largest, in SI)\n", redundant > MOST_LINES ? ", ..." : "", st->constraint,
+          st->constraint_rate);
+}
+
 /* A symplectic method on a model that is not conservative: what its name no longer promises. */
 static void caveat(const App *app, FILE *f)
 {
@@ -83,7 +115,9 @@ static const char *form(const App *app, const char **why)
   if (!(lag_sim_method(app->sim)->flags & LAG_METHOD_SPLITS)) {
     return NULL;
   }
-  *why = has & LAG_SEPARABLE ? "the model is separable"
+  has = app->scene->model->constraints ? has & ~(unsigned)LAG_SEPARABLE : has;
+  *why = app->scene->model->constraints ? "in q and p by Newton's method: the model has constraints"
+         : has & LAG_SEPARABLE ? "the model is separable"
          : has & LAG_CONSTANT_MASS ? "in q and p by Newton's method: forces depend on velocities"
                                    : "in q and p by Newton's method: the mass matrix varies";
   return has & LAG_SEPARABLE ? "explicit" : "implicit";
@@ -172,6 +206,7 @@ void report_text(App *app, FILE *f)
   fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
   newton(app, &st, f);
   energy(app, &st, f);
+  constraints(app, &st, f);
   caveat(app, f);
   for (int i = 0; i < c->nmonitors; i++) {
     fprintf(f, "monitor %s: drift %.3g, limit %.3g\n", c->monitors[i].name, lag_sim_monitor_drift(app->sim, i), c->monitors[i].limit);
@@ -246,6 +281,40 @@ static void charges(const App *app, FILE *f)
   fputs("}, ", f);
 }
 
+static void constraints_json(const App *app, FILE *f)
+{
+  const lag_model *m = app->scene->model;
+  const lag_constraints *of = m->constraints;
+  int moved = 0, redundant = 0;
+
+  if (!of) {
+    return;
+  }
+  fprintf(f, "\"constraints\": %d, \"rank\": %d, \"redundant\": [", of->n, lag_sim_rank(app->sim));
+  for (int k = 0; k < of->n; k++) {
+    if (lag_sim_is_redundant(app->sim, k)) {
+      fputs(redundant++ ? ", " : "", f);
+      json_string(f, of->of[k].name);
+    }
+  }
+  fputs("], \"start_moved\": {", f);
+  for (int i = 0; i < 2 * m->nq; i++) {
+    Column c;
+    double asked = lag_sim_asked(app->sim, i), begin = lag_sim_begin(app->sim, i);
+    if (asked != begin) {
+      state_var(app, i, &c);
+      fputs(moved++ ? ", " : "", f);
+      json_string(f, c.name);
+      fputs(": [", f);
+      json_number(f, asked);
+      fputs(", ", f);
+      json_number(f, begin);
+      putc(']', f);
+    }
+  }
+  fputs("}, ", f);
+}
+
 void report_json(App *app, FILE *f)
 {
   const lag_model *m = app->scene->model;
@@ -273,7 +342,10 @@ void report_json(App *app, FILE *f)
   report_tangent_json(app, f);
   field_string(f, "math", m->math);
   field_string(f, "build", app->program->build);
-  fputs("\"constraint_residual\": null, \"final\": {", f);
+  field_number(f, "constraint_residual", st.constraint); /* null: none */
+  field_number(f, "constraint_rate_residual", st.constraint_rate);
+  constraints_json(app, f);
+  fputs("\"final\": {", f);
   for (int i = 0; i < n; i++) {
     Column c;
     double x = state_var(app, i, &c);

@@ -124,6 +124,26 @@ double lag_sim_state_value(const lag_sim *s, int i)
   return lag_sim_declared(s, i, s->now[i]);
 }
 
+double lag_sim_asked(const lag_sim *s, int i)
+{
+  return lag_sim_declared(s, i, s->asked[i]);
+}
+
+double lag_sim_begin(const lag_sim *s, int i)
+{
+  return lag_sim_declared(s, i, s->begin[i]);
+}
+
+int lag_sim_rank(const lag_sim *s)
+{
+  return (int)s->run->rank;
+}
+
+int lag_sim_is_redundant(const lag_sim *s, int k)
+{
+  return s->redundant[k] != 0.0;
+}
+
 double lag_sim_output_info(const lag_sim *s, int i, char *name, size_t nname, char *unit, size_t nunit)
 {
   if (s->scene->nout == 0) {

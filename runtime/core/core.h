@@ -22,6 +22,8 @@ typedef struct Run {
   double limit, pending; /* pending: events fire at limit */
   double steps, rejected, rhs_calls, systems, iterations, events;
   double e_first, e_last, e_peak, e_scale; /* energy: E0, last, largest |E - E0|, largest |p.v| + |L| */
+  double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
+  double rank;           /* constraints at the start that do not follow from others */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
 } Run;
 
@@ -50,6 +52,8 @@ struct lag_sim {
   Run *run;
   double *p, *hold;      /* [np], [nu] */
   double *begin;         /* [n] at the start of the run */
+  double *asked;         /* [n] the same before it was brought to the constraints */
+  double *redundant;     /* [constraints] 1: at the start it follows from others */
   double *y;             /* [n] at step_t1 */
   double *y0;            /* [n] at step_t0 */
   double *now;           /* [n] at t */
@@ -86,6 +90,9 @@ int lag_explain(lag_sim *sim, int status);
 
 /* sim.c: y[n] at t within the last step, on the constraints. LAG_OK, or a failure that is explained. */
 int lag_between(lag_sim *sim, double t, double *y);
+
+/* consistent.c: now[n], the start as it was set, becomes the nearest start that obeys the constraints; asked, redundant and run->rank are set. */
+int lag_consistent(lag_sim *sim);
 
 /* setup.c: the state at the start, of a run that has not begun. */
 int lag_setup_start(lag_sim *sim);

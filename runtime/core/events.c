@@ -82,6 +82,10 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
     return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its action gives no finite state at t = %.17g s", m->ev[k].name,
                     r->t);
   }
+  if (memcmp(s->yb, s->now, bytes) != 0 && lag_project(&s->pb, r->t, s->yb, NULL) != 0) {
+    return lag_fail(s, LAG_EMODEL, "event %s: its action at t = %.17g s leaves the constraints: %s", m->ev[k].name, r->t,
+                    s->pb.detail ? s->pb.detail : "");
+  }
   if (s->on_event) {
     s->on_event(s->on_event_context, k, r->t, s->now, s->yb);
   }

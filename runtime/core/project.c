@@ -54,8 +54,7 @@ int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, 
 
 /* ---- how large a residual is */
 
-/* size[n] := the size of the terms of each constraint: what moving each coordinate (each velocity) from 0 to where it is makes of it, to
- * first order; where that is less than |x|, what a state makes of it that is another by about 1 everywhere. Scratch: w.A, w.other. */
+/* size[n] := what moving each coordinate (each velocity) from 0 to where it is makes of a constraint, to first order. */
 static int sizes(lag_problem *pb, const Held *w, double t, const double *y, int holonomic, double *size)
 {
   const lag_constraints *of = w->of;
@@ -75,7 +74,20 @@ static int sizes(lag_problem *pb, const Held *w, double t, const double *y, int 
   return 0;
 }
 
-/* The same for the constraints that have no such terms here, as a folded linkage or a body at rest. */
+/* How far component i may be from 0: as far as one of the same unit is; of an angle, 1. */
+static double reach(const lag_problem *pb, const double *x, int i)
+{
+  const lag_var *q = pb->model->q;
+  double most = q[i].periodic || !q[i].unit[0] ? 1 : 0;
+
+  for (int j = 0; j < pb->nq; j++) {
+    most = fabs(x[j]) > most && strcmp(q[i].unit, q[j].unit) == 0 ? fabs(x[j]) : most;
+  }
+  return most > 0 ? most : 1;
+}
+
+/* At least what a state makes of them that is another by as much everywhere: there may be no terms here of first order, as of a folded
+ * linkage or a body at rest. */
 static int other_sizes(lag_problem *pb, const Held *w, double t, const double *y, int holonomic, double *size)
 {
   const double step = 0.618033988749894848; /* any number, so that nothing cancels */
@@ -84,13 +96,21 @@ static int other_sizes(lag_problem *pb, const Held *w, double t, const double *y
 
   memcpy(w->other, y, (size_t)pb->n * sizeof *y);
   for (int i = 0; i < nq; i++) {
-    w->other[at + i] += (1 + fabs(y[at + i])) * (0.5 + fmod(step * (i + 1), 1));
+    w->other[at + i] += reach(pb, y + at, i) * (0.5 + fmod(step * (i + 1), 1));
   }
   int rc = lag_residuals(pb, t, w->other, c, r);
   for (int k = 0; k < n && rc == 0; k++) {
     size[k] = fmax(size[k], fabs(holonomic ? c[k] : r[k]));
   }
   return rc;
+}
+
+int lag_constraint_terms(lag_problem *pb, double t, const double *y, int holonomic, double *size)
+{
+  Held w = layout(pb);
+  int rc = sizes(pb, &w, t, y, holonomic, size);
+
+  return rc ? rc : other_sizes(pb, &w, t, y, holonomic, size);
 }
 
 int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonomic, double *worst)
@@ -100,7 +120,7 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
   double most = -1;
   int which = -1, n = holonomic ? of->nholonomic : of->n;
 
-  if (sizes(pb, &w, t, y, holonomic, w.g) || other_sizes(pb, &w, t, y, holonomic, w.g) || lag_residuals(pb, t, y, w.c, w.r)) {
+  if (lag_constraint_terms(pb, t, y, holonomic, w.g) || lag_residuals(pb, t, y, w.c, w.r)) {
     return -1;
   }
   for (int k = 0; k < n; k++) {
@@ -250,4 +270,39 @@ int lag_project(lag_problem *pb, double t, double *y, double *lost)
   rc = rc ? rc : newton(pb, &w, t, y, lost, 0);
   pb->detail = rc ? pb->detail : said;
   return rc < LAG_ESINGULAR ? LAG_EMODEL : rc;
+}
+
+/* g := -A x */
+static void opposed(const Held *w, int n, const double *x, double *g)
+{
+  memset(g, 0, (size_t)n * sizeof *g);
+  for (int e = 0; e < w->of->njacobian; e++) {
+    const lag_entry *at = &w->of->jacobian[e];
+    if (at->row < n) {
+      g[at->row] -= w->A[e] * x[at->col];
+    }
+  }
+}
+
+int lag_along_constraints(lag_problem *pb, double t, const double *y, double *e)
+{
+  if (!pb->model->constraints) {
+    return LAG_OK;
+  }
+  Held w = layout(pb);
+  int nq = pb->nq, rc = lag_inputs(pb, t);
+
+  rc = rc ? rc : w.of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w.A, w.M, pb->work);
+  for (int level = 0; level < 2 && rc == 0; level++) {
+    double *x = e + level * nq;
+    if (!level && !w.of->nholonomic) {
+      continue;
+    }
+    opposed(&w, level ? w.of->n : w.of->nholonomic, x, w.g);
+    rc = lag_least_change(pb, t, y, !level, w.g, w.d, w.force);
+    for (int i = 0; i < nq && rc == 0; i++) {
+      x[i] += w.d[i];
+    }
+  }
+  return rc;
 }

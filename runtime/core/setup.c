@@ -16,7 +16,8 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
 {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
-  size_t nmon = (size_t)s->scene->nmonitors, fixed = RUN_DOUBLES + np + nu + 4 * n + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
+  size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
+  size_t fixed = RUN_DOUBLES + np + nu + 5 * n + nc + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
   lag_problem sized = s->pb;
   sized.opt = opt;
   size_t total = fixed + method->work_size(&sized);
@@ -33,10 +34,10 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  double **const parts[] = {&s->p, &s->hold, &s->begin, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
+  double **const parts[] = {&s->p, &s->hold, &s->begin, &s->asked, &s->redundant, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
                             &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->mon_first, &s->mon_peak,
                             &s->exact_peak, &s->method_work};
-  const size_t sizes[] = {np, nu, n, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, 0};
+  const size_t sizes[] = {np, nu, n, n, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, 0};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
@@ -244,7 +245,7 @@ static int check_method(lag_sim *s, const lag_method *method)
     return lag_fail(s, LAG_EMETHOD, "method %s needs a model without forces, dissipation or explicit time; rk45 and dop853 do not",
                     method->name);
   }
-  int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE);
+  int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !m->constraints;
   if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH)) {
     return lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min and max; dop853 does not", method->name);
   }
@@ -480,6 +481,10 @@ int lag_setup_start(lag_sim *s)
   if (lag_not_finite(n, s->now) >= 0) {
     return lag_fail(s, LAG_ENAN, "the start is not finite");
   }
+  if ((rc = lag_consistent(s)) != 0) {
+    return rc;
+  }
+  memcpy(s->begin, s->now, (size_t)n * sizeof(double));
   memcpy(s->y, s->now, (size_t)n * sizeof(double));
   s->run->t = s->run->from = c->t0;
   return LAG_OK;

@@ -24,6 +24,10 @@ static int check(lag_sim *s)
   const lag_model *m = s->scene->model;
   int in_p = (s->method->flags & LAG_METHOD_VARIATION) && !((s->method->flags & LAG_METHOD_SPLITS) && (m->flags & LAG_SEPARABLE));
 
+  if (m->constraints) {
+    return lag_fail(s, LAG_EMETHOD, "there is no tangent of a motion with constraints yet (%s): give the model coordinates that need none",
+                    m->constraints->of[0].name);
+  }
   if (!s->method->tangent) {
     return lag_fail(s, LAG_EMETHOD, "method %s has no derivative of its steps; %s has", s->method->name,
                     s->method->flags & LAG_METHOD_SYMPLECTIC ? "verlet8" : "dop853");

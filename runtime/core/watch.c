@@ -39,9 +39,24 @@ static int watches_outputs(const lag_scene *c)
   return 0;
 }
 
+/* The largest residuals of the constraints so far. */
+static void see_constraints(lag_sim *s, double t, const double *y)
+{
+  const lag_constraints *of = s->scene->model->constraints;
+  double *c = s->pb.held, *r = c + (of ? of->n : 0);
+  int rc = of ? lag_residuals(&s->pb, t, y, c, r) : 1;
+
+  for (int k = 0; k < (rc ? 0 : of->n); k++) {
+    s->run->c_peak = k < of->nholonomic ? fmax(s->run->c_peak, fabs(c[k])) : s->run->c_peak;
+    s->run->r_peak = fmax(s->run->r_peak, fabs(r[k]));
+  }
+}
+
 int lag_watch_begin(lag_sim *s)
 {
   const lag_scene *c = s->scene;
+
+  see_constraints(s, s->run->t, s->now);
 
   if (energy_at(s, s->run->t, s->now, s->e)) {
     s->e[0] = NAN;
@@ -95,6 +110,7 @@ int lag_watch_see(lag_sim *s, double t, const double *y)
   r->e_last = s->e[0];
   r->e_scale = fmax(r->e_scale, s->e[1]);
   r->e_peak = larger(r->e_peak, fabs(s->e[0] - r->e_first));
+  see_constraints(s, t, y);
   if (lag_exact_see(s, t, y)) {
     return LAG_EMODEL;
   }
@@ -143,6 +159,7 @@ int lag_watch_jump(lag_sim *s, double t, const double *ya, const double *yb)
 void lag_sim_stats(lag_sim *s, lag_stats *st)
 {
   const Run *r = s->run;
+  const lag_constraints *c = s->scene->model->constraints;
   double peak = r->e_peak;
 
   st->t = r->t;
@@ -152,6 +169,8 @@ void lag_sim_stats(lag_sim *s, lag_stats *st)
   st->events = (long long)r->events;
   st->systems = (long long)s->pb.systems;
   st->iterations = (long long)s->pb.iterations;
+  st->constraint = c ? r->c_peak : NAN;
+  st->constraint_rate = c ? r->r_peak : NAN;
   st->energy = energy_at(s, r->t, s->now, s->e) ? NAN : s->e[0];
   if (r->begun != 0.0) {
     peak = larger(peak, fabs(st->energy - r->e_first));

@@ -128,6 +128,11 @@ int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, 
  * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), IV.4, DOI 10.1007/3-540-30666-8: projection
  * keeps the order of a method. */
 int lag_project(lag_problem *pb, double t, double *y, double *lost);
+/* Takes from a small change e[n] of the state y what lag_project would take back, to first order. */
+int lag_along_constraints(lag_problem *pb, double t, const double *y, double *e);
+
+/* size[nholonomic], or size[n] of their rates: how large the terms are of which c (holonomic) or r of y at t is the sum. */
+int lag_constraint_terms(lag_problem *pb, double t, const double *y, int holonomic, double *size);
 
 /* Where the constraints are worst: the index of the one of which c (holonomic) or r of y at t is the largest against its terms; *size, if
  * not NULL: how many times the terms' rounding it is. -1: there is none, or no values. */
@@ -250,6 +255,8 @@ typedef struct lag_stats {
   double energy;        /* now */
   double energy_drift;  /* largest |E - E0| over the run relative to max(|E0|, max(|p.v| + |L|)); what events
                          * do to the energy is not counted. NaN when the model has no energy */
+  double constraint, constraint_rate; /* largest |c| of a holonomic constraint and |r| of any (lag_model.h) at ends of steps [SI];
+                         * NaN without constraints */
 } lag_stats;
 
 /* A simulation of the scene at the start of its span, with the scene's method (when it is one of
@@ -270,6 +277,15 @@ int lag_sim_set_tolerance(lag_sim *sim, double tol);
  * a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that replaces an input; of a family one
  * member ("m[2]", "r[1].x'") or all ("m", "r.x'"). A parameter of the wrong sign is an error. */
 int lag_sim_set(lag_sim *sim, const char *name, double value);
+/* Of a model with constraints the first advance brings the start to them: the nearest position in the mass metric, and then the nearest
+ * velocity, at which what was not set gives way, and all only where that does not suffice. LAG_EINVAL: there is none near, or the
+ * scene says `exactly` and its start is another; the message names the constraint that is worst. Component i of [q|v|z] as it was set,
+ * in its declared unit: lag_sim_begin of it is where the run began. */
+double lag_sim_asked(const lag_sim *sim, int i);
+double lag_sim_begin(const lag_sim *sim, int i);
+/* How many constraints are independent at the start; whether number k follows from others there (not before the first advance). */
+int lag_sim_rank(const lag_sim *sim);
+int lag_sim_is_redundant(const lag_sim *sim, int k);
 /* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI units
  * unlike lag_sim_set; fn NULL: as the model says again. It must be a function of t alone: methods, events and outputs
  * call it for times that go forth and back, more than once for some. What depends on the motion is a force of the

@@ -70,7 +70,7 @@ static int lag_rank(int n, int m, LAG_LANE *A, LAG_LANE *diag, LAG_LANE *beta, L
     LAG_LANE *const row = A + j*n, size = 0;
     for (int i = 0; i < n; i++) size = LAG_LANE_FN(fabs)(row[i]) > size ? LAG_LANE_FN(fabs)(row[i]) : size;
     scale[j] = size > 0 ? size : 1;
-    order[j] = j;
+    order[j] = (LAG_LANE)j;
     for (int i = 0; i < n; i++) row[i] /= scale[j];
   }
   for (int k = 0; k < m && k < n; k++) {

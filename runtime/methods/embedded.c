@@ -168,12 +168,15 @@ static int stages(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double
 }
 
 /* sum (e_i / s_i)^2 over the components of the estimate sum coef_j K_j, not yet scaled by the step. */
-static double square(Embedded *w, const lag_problem *pb, int count, const double *coef, const double *y)
+static double square(Embedded *w, lag_problem *pb, const double *along, int count, const double *coef, const double *y)
 {
   const double *y1 = array(w, pb, EMBEDDED_Y1);
   double s = 0, *err = array(w, pb, EMBEDDED_YS);
 
   lag_embedded_sum(array(w, pb, EMBEDDED_K1), pb->n, count, coef, err);
+  if (along && lag_along_constraints(pb, *along, y1, err)) {
+    return NAN;
+  }
   for (int i = 0; i < pb->n; i++) {
     double a = fabs(y[i]), b = fabs(y1[i]), e = err[i] / (w->atol + pb->tol * (a > b ? a : b));
     s += e * e;
@@ -182,15 +185,15 @@ static double square(Embedded *w, const lag_problem *pb, int count, const double
 }
 
 /* The norm of the error of the step just computed; NaN when anything in it is not finite. */
-static double error_of(const EmbeddedPair *pair, Embedded *w, const lag_problem *pb, const double *y, double dt)
+static double error_of(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, const double *along, const double *y, double dt)
 {
   const lag_tableau *tab = pair->tab;
-  double n = pb->n ? pb->n : 1, fine = square(w, pb, tab->stages - pair->late, tab->e, y), h = fabs(dt);
+  double n = pb->n ? pb->n : 1, fine = square(w, pb, along, tab->stages - pair->late, tab->e, y), h = fabs(dt);
 
   if (!pair->late) {
     return isfinite(fine) ? h * sqrt(fine / n) : NAN;
   }
-  double coarse = square(w, pb, tab->stages - 1, tab->e3, y), both = fine + 0.01 * coarse;
+  double coarse = square(w, pb, along, tab->stages - 1, tab->e3, y), both = fine + 0.01 * coarse;
   return !isfinite(both) ? NAN : both > 0 ? h * fine / sqrt(n * both) : 0;
 }
 
@@ -244,8 +247,11 @@ static double trial(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, doub
                     int *rc)
 {
   *rc = stages(pair, w, pb, t, tb, y, dt);
-  double err = *rc ? NAN : error_of(pair, w, pb, y, dt);
+  double err = *rc ? NAN : error_of(pair, w, pb, NULL, y, dt);
 
+  if (err > 1 && pb->model->constraints) { /* what the constraints take back is no error */
+    err = error_of(pair, w, pb, &tb, y, dt);
+  }
   if (pair->late && (err <= 1 || (w->fixed != 0.0 && !isnan(err)))) {
     *rc = last_stage(pair->tab, w, pb, tb);
     if (*rc || lag_not_finite(pb->n, array(w, pb, EMBEDDED_K1 + pair->tab->stages - 1)) >= 0) {

@@ -37,6 +37,14 @@ static const char *variational_check(const double *opt)
   return NULL;
 }
 
+static const char *variational_refuses(const lag_model *model, const double *opt)
+{
+  return model->constraints && opt[OPT_ORDER] > 2
+             ? "with constraints it has order 2: of a higher order they would have to hold at points within the step, too; verlet4, verlet6 and "
+               "verlet8 compose steps of order 2"
+             : NULL;
+}
+
 static int variational_init(void *work, lag_problem *pb, const double *opt)
 {
   int quadrature = (int)opt[OPT_QUADRATURE], u = (int)(opt[OPT_ORDER] / 2);
@@ -82,10 +90,10 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return lag_implicit_step(work, pb, t, y);
 }
 
+#define PROPERTIES (LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_NEWTON)
+
 #define COMMON                                                                                        \
   .order_least = 2, .order_most = 8,                                                                  \
-  .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | \
-           LAG_METHOD_NEWTON,                                                                         \
   .step = step, .dense = lag_implicit_dense, .reset = lag_implicit_reset, \
   .tangent_size = lag_implicit_tangent_size, .tangent = lag_implicit_tangent
 
@@ -97,9 +105,11 @@ const lag_method lag_variational = {
     .noptions = 3,
     .options = variational_options,
     .check = variational_check,
+    .refuses = variational_refuses,
     .work_size = variational_size,
     .init = variational_init,
     COMMON,
+    .flags = PROPERTIES | LAG_METHOD_CONSTRAINTS,
 };
 
 const lag_method lag_gauss = {
@@ -113,4 +123,5 @@ const lag_method lag_gauss = {
     .work_size = gauss_size,
     .init = gauss_init,
     COMMON,
+    .flags = PROPERTIES,
 };

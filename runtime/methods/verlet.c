@@ -40,7 +40,7 @@ typedef struct Member {
 
 static int is_explicit(const lag_problem *pb)
 {
-  return (pb->model->flags & LAG_SEPARABLE) != 0;
+  return (pb->model->flags & LAG_SEPARABLE) && !pb->model->constraints;
 }
 
 static size_t work_size(const Member *m, const lag_problem *pb)
@@ -276,7 +276,8 @@ static int tangent(const lag_composition *c, void *work, lag_problem *pb, double
       .order = p,                                                                        \
       .dense_order = p,                                                                  \
       .doc = words,                                                                      \
-      .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_NEWTON | (properties), \
+      .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_NEWTON | \
+               LAG_METHOD_CONSTRAINTS | (properties), \
       .noptions = 1,                                                                     \
       .options = options,                                                                \
       .work_size = size_##id,                                                            \

@@ -69,3 +69,18 @@ uint32_t dense_solve(uint32_t n, long double *a, long double *b, long double res
   unscramble(n, b, rank < n ? null : NULL, column);
   return rank;
 }
+
+long double dense_reduce(uint32_t n, long double *row, const long double *before, uint32_t rank) {
+  long double was = 0, left = 0;
+  for (uint32_t j = 0; j < n; j++) was += row[j] * row[j];
+  for (uint32_t k = 0; k < 2 * rank; k++) {
+    const long double *q = before + (size_t)(k % rank) * n;
+    long double along = 0;
+    for (uint32_t j = 0; j < n; j++) along += q[j] * row[j];
+    for (uint32_t j = 0; j < n; j++) row[j] -= along * q[j];
+  }
+  for (uint32_t j = 0; j < n; j++) left += row[j] * row[j];
+  left = sqrtl(left);
+  for (uint32_t j = 0; j < n && left > 0; j++) row[j] /= left;
+  return was > 0 ? left / sqrtl(was) : 0;
+}

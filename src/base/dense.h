@@ -10,4 +10,9 @@
  * Golub & Van Loan, Matrix Computations, 4th ed. (2013), 3.4.8. */
 uint32_t dense_solve(uint32_t n, long double *a, long double *b, long double rest, uint32_t *column, long double *null);
 
+/* row[n] less its parts along the `rank` orthonormal rows of `before`, taken off twice so that rounding does not count, and scaled to 1
+ * where something is left. Returns how much of it was left, from 0 to 1. Kahan's "twice is enough", in B. Parlett, The Symmetric
+ * Eigenvalue Problem (1980), 6.9, DOI 10.1137/1.9781611971163. */
+long double dense_reduce(uint32_t n, long double *row, const long double *before, uint32_t rank);
+
 #endif

@@ -266,9 +266,9 @@ Lower lower_new(const Eqns *e) {
 
 static const char *text_of_symbol(const Lower *l, SymId s) { return expr_symbol(l->g, s)->name; }
 
-/* Whether each coordinate has its acceleration to itself. */
+/* Whether each coordinate has its acceleration to itself: nothing is solved for several at once. */
 static int is_diagonal(const Eqns *e) {
-  uint32_t off = e->system.ndefs;
+  uint32_t off = e->system.ndefs + e->constraints.n;
   for (uint32_t k = 0; k < e->system.H.n; k++) off += e->system.H.at[k].row != e->system.H.at[k].col;
   return off == 0;
 }

@@ -2,7 +2,8 @@
 
 #include <math.h>
 
-#include "mech/states.h"
+#include "mech/frobenius.h"
+#include "sym/print.h"
 
 /* The scene's start: parameters at their values, what it does not give at 0. */
 static long double *start_of(const Eqns *e) {
@@ -22,8 +23,11 @@ static long double *start_of(const Eqns *e) {
 static void report_infeasible(const Eqns *e, StateSolver *solver, const long double *symbols) {
   const Model *m = e->m;
   long double residual;
-  const Constraint *k = e->constraints.of[states_worst(solver, symbols, &residual)];
-  diag_error(m->diags, k->span, "scene %s: no state near its start obeys the constraint `%s`; it is left with %.3Lg", m->scene.name, k->name, residual);
+  uint32_t worst = states_worst(solver, symbols, &residual);
+  const Constraint *k = e->constraints.of[worst];
+  const char *unit = dim_text(m->dims, k->dim);
+  diag_error(m->diags, k->span, "scene %s: no state near its start obeys the constraint `%s`; it is off by %.3Lg%s%s%s", m->scene.name, k->name,
+             fabsl(residual), *unit == '1' ? "" : " [", *unit == '1' ? "" : unit, *unit == '1' ? "" : "]");
   diag_help(m->diags, "start nearer to where it holds; at a place where its derivatives vanish no direction leads there");
 }
 
@@ -50,6 +54,22 @@ static void show_one(const Eqns *e, StateSolver *s, const unsigned char *counts,
   sb_putc(out, '\n');
 }
 
+static void show_integrability(const Eqns *e, StateSolver *s, StrBuf *out) {
+  static const char *const words[] = {[INTEGRABLE_NO] = "are not integrable: the system is nonholonomic",
+                                      [INTEGRABLE_PROVED] = "are integrable: they could be stated for positions",
+                                      [INTEGRABLE_UNDECIDED] = "look integrable; that is not decided"};
+  const Constraints *all = &e->constraints;
+  if (all->nholonomic == all->n) return;
+  sb_printf(out, "  constraints on velocities %s\n", words[frobenius(e, s)]);
+  for (uint32_t i = all->nholonomic; i < all->n; i++) {
+    Expr leaf = frobenius_leaf(e, i);
+    if (!leaf) continue;
+    sb_printf(out, "  constraint %s keeps ", all->of[i]->name);
+    expr_print(e->g, leaf, PRINT_TEXT, out);
+    sb_puts(out, " as it is at the start\n");
+  }
+}
+
 int freedom_show(const Eqns *e, StrBuf *out) {
   const Constraints *all = &e->constraints;
   if (!all->n) return 1;
@@ -65,5 +85,6 @@ int freedom_show(const Eqns *e, StrBuf *out) {
   sb_printf(out, "scene %s: %u degree%s of freedom; %u constraint%s, of rank %u at the start\n", e->m->scene.name, free, plural(free), all->n,
             plural(all->n), rank);
   for (uint32_t k = 0; k < all->n; k++) show_one(e, s, counts, k, rank, out);
+  show_integrability(e, s, out);
   return 1;
 }

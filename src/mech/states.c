@@ -111,22 +111,6 @@ uint32_t states_worst(StateSolver *s, const long double *symbols, long double *r
   return worst;
 }
 
-/* row[n] less its parts along those before it; twice, so that rounding does not count. Returns what is left, of what there was. */
-static long double reduce(uint32_t n, long double *row, const long double *before, uint32_t rank) {
-  long double was = 0, left = 0;
-  for (uint32_t j = 0; j < n; j++) was += row[j] * row[j];
-  for (uint32_t k = 0; k < 2 * rank; k++) {
-    const long double *q = before + (size_t)(k % rank) * n;
-    long double along = 0;
-    for (uint32_t j = 0; j < n; j++) along += q[j] * row[j];
-    for (uint32_t j = 0; j < n; j++) row[j] -= along * q[j];
-  }
-  for (uint32_t j = 0; j < n; j++) left += row[j] * row[j];
-  left = sqrtl(left);
-  for (uint32_t j = 0; j < n && left > 0; j++) row[j] /= left;
-  return was > 0 ? left / sqrtl(was) : 0;
-}
-
 uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts) {
   const long double independent = 1e-10L; /* states obey constraints to 1e-16 */
   const Eqns *e = s->e;
@@ -136,7 +120,7 @@ uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts) {
     long double *row = s->a + (size_t)rank * n;
     for (uint32_t j = 0; j < n; j++) row[j] = 0;
     for (; at < A->n && A->at[at].row == k; at++) row[A->at[at].col] = s->out[s->first_entry + at];
-    counts[k] = k != without && reduce(n, row, s->a, rank) > independent;
+    counts[k] = k != without && dense_reduce(n, row, s->a, rank) > independent;
     rank += counts[k];
   }
   return rank;

@@ -129,7 +129,8 @@ int add_outputs(Builder *b, AstId id) {
   }
   if (e && v.n) return add_value(b, ast_text(b, p.stem), p.primes, e, span, &v);
   const char *text = ast_text(b, id);
-  if (v.n) return add_value(b, arena_printf(b->arena, "(%s)", text), 0, NULL, span, &v);
+  int call = ast_expr(b->ast, id)->kind == AST_CALL;
+  if (v.n) return add_value(b, arena_printf(b->arena, call ? "%s" : "(%s)", text), 0, NULL, span, &v);
   Unit unit = output_unit(b, e, p.primes, v.dim);
   return add_one(b, intern(b->ast->names, text), span, unit, v.e);
 }

@@ -49,8 +49,10 @@ static void mark_name(Eval *ev, const AstExpr *x) {
 /* The name of a constraint stands for nothing but itself: lambda(rod), lambda(rod[2]), lambda(drag.rod). */
 static void mark_constraint(Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "lambda") != 0 || !x->args || own_function(ev, x)) return;
-  const AstExpr *of = ast_expr(ev->b->ast, x->args);
-  if (of->kind == AST_NAME || of->kind == AST_INDEX || of->kind == AST_MEMBER) ev->open[x->args - ev->first] = 1;
+  for (AstId i = x->args; i; i = ast_expr(ev->b->ast, i)->next) {
+    AstKind kind = ast_expr(ev->b->ast, i)->kind;
+    if (kind == AST_NAME || kind == AST_INDEX || kind == AST_MEMBER) ev->open[i - ev->first] = 1;
+  }
 }
 
 static void mark(Eval *ev) {

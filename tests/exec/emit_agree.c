@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/dense.h"
 #include "ir/lower.h"
 #include "lag_model.h"
 #include "mech/eqns.h"
@@ -83,10 +84,25 @@ static Real *symbol_values(const Eqns *e, const Point *s) {
       case SYM_PARAM: v[k] = s->p[sym->index]; break;
       case SYM_INPUT: v[k] = s->u[sym->index]; break;
       case SYM_CONST: v[k] = 3.14159265358979323846264338327950288L; break;
-      case SYM_ACC: case SYM_RATE: case SYM_LOCAL: break;
+      case SYM_ACC: case SYM_RATE: case SYM_MULTIPLIER: case SYM_LOCAL: break;
     }
   }
   return v;
+}
+
+/* left[n] without what multipliers make up for: its part in the kernel of A. */
+static void take_away_multipliers(const Eqns *e, const Real *symbols, Real *left) {
+  Arena *arena = e->m->arena;
+  const Entries *A = &e->constraints.A;
+  uint32_t n = e->n, w = n + e->constraints.n;
+  Expr *roots = ARENA_ARRAY(arena, Expr, A->n + 1);
+  Real *K = ARENA_ARRAY(arena, Real, w * w), *x = ARENA_ARRAY(arena, Real, w), *value = ARENA_ARRAY(arena, Real, A->n + 1);
+  for (uint32_t k = 0; k < A->n; k++) roots[k] = A->at[k].e;
+  expr_eval(e->g, roots, A->n, symbols, value);
+  for (uint32_t i = 0; i < n; i++) K[i * w + i] = 1, x[i] = left[i];
+  for (uint32_t k = 0; k < A->n; k++) K[(n + A->at[k].row) * w + A->at[k].col] = K[A->at[k].col * w + n + A->at[k].row] = value[k];
+  dense_solve(w, K, x, 1e-15L, ARENA_ARRAY(arena, uint32_t, w), NULL);
+  for (uint32_t i = 0; i < n; i++) left[i] = x[i];
 }
 
 /* Programs against the graph that they come from, evaluated node by node: M q'' = f, the rates, the energy. Rounding is
@@ -98,7 +114,7 @@ static int compare_graph(Eqns *e, const Prog *accel, const Prog *energy, const P
   const Real *in[ARR_COUNT] = {&s->t, s->q, s->v, s->z, s->p, s->u};
   Real *out[] = {a, a + n}, *out_energy[] = {f}, *value = ARENA_ARRAY(arena, Real, total);
   Expr *roots = ARENA_ARRAY(arena, Expr, total);
-  for (uint32_t i = 0; i < n; i++) roots[k++] = e->f[i];
+  for (uint32_t i = 0; i < n; i++) roots[k++] = e->constraints.n ? e->system.f[i] : e->f[i];
   for (uint32_t i = 0; i < nz; i++) roots[k++] = e->flow[i];
   for (uint32_t i = 0; i < e->mass.n; i++) roots[k++] = e->mass.at[i].e;
   if (e->energy) roots[k++] = e->energy_stable, roots[k++] = e->energy_scale;
@@ -111,6 +127,7 @@ static int compare_graph(Eqns *e, const Prog *accel, const Prog *energy, const P
     left[r] += M * a[c], size[r] += fabsl(M * a[c]);
     if (r != c) left[c] += M * a[r], size[c] += fabsl(M * a[r]);
   }
+  if (e->constraints.n) take_away_multipliers(e, symbol_values(e, s), left);
   for (uint32_t i = 0; i < n; i++)
     if (!(fabsl(left[i]) <= tolerance * size[i])) return printf("%s: row %u of M q'' = f is left with %Lg of %Lg\n", e->m->name, i, left[i], size[i]), 1;
   for (uint32_t i = 0; i < nz; i++)

@@ -16,7 +16,7 @@ src/cli       cli/ base/
 src           base/ syntax/ sym/ model/ mech/ ir/ emit/ cli/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime           lag.h
-runtime/core      core/ lag.h lag_model.h
+runtime/core      core/ lag.h lag_model.h lag_kkt.h
 runtime/methods   methods/ lag.h lag_model.h
 runtime/analysis  analysis/ core/ lag.h lag_model.h
 runtime/io        io/ lag.h lag_model.h

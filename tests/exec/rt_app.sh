@@ -123,7 +123,7 @@ ok "input held constant" sh -c "./sim drop wind=9.81 --json | grep -q '\"y\": 1[
 ok "--opt=value and two words" sh -c './sim swing --tol=1e-10 -o t1.csv --quiet && ./sim swing --tol 1e-10 -o t2.csv --quiet && cmp t1.csv t2.csv'
 ok "method with options" sh -c './sim swing --method "rk4(step=0.01)" | grep -q "rk4(step=0.01)"'
 ok "scene's method and step" sh -c './sim fixed | grep -q "rk4(step=0.001)"'
-ok "--method help" sh -c './sim --method help | grep -q "verlet6 *6 *6 *fixed *sympl., sym. *partly *yes *no"'
+ok "--method help" sh -c './sim --method help | grep -q "verlet6 *6 *6 *fixed *both *partly *yes *no"'
 ok "--help" sh -c './sim --help | grep -q -- --save-state'
 
 # --- mistakes

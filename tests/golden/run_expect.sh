@@ -1,6 +1,6 @@
 #!/bin/sh
-# Golden tests of false expectations, as TAP: `lagc check` of tests/golden/err/expect_NAME.lag fails with status 1 and
-# prints expect_NAME.expected, exactly. A new test is these two files; BLESS=1 rewrites the expectations, on purpose.
+# Golden tests of false expectations, and of what else only `lagc check` refuses, as TAP: of tests/golden/err/expect_NAME.lag and
+# check_NAME.lag it fails with status 1 and prints NAME.expected, exactly. A new test is these two files; BLESS=1 rewrites the expectations, on purpose.
 . tests/tap.sh
 
 # The verdicts come first, then the messages.
@@ -15,7 +15,7 @@ golden() {
   [ "$code" = 1 ] || echo "exit status $code, expected 1"
   diff -u "${1%.lag}.expected" "$TMP/out" && [ "$code" = 1 ]
 }
-for lag in tests/golden/err/expect_*.lag; do
+for lag in tests/golden/err/expect_*.lag tests/golden/err/check_*.lag; do
   check "$lag" golden "$lag"
 done
 

@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "base/dense.h"
 #include "emit/cwriter.h"
 #include "ir/lower.h"
 #include "mech/eqns.h"
@@ -70,7 +71,7 @@ static void split(const Eqns *e, const Real *value, Real *in[ARR_COUNT]) {
       case SYM_STATE: in[ARR_Z][sym->index] = value[s]; break;
       case SYM_PARAM: in[ARR_P][sym->index] = value[s]; break;
       case SYM_INPUT: in[ARR_U][sym->index] = value[s]; break;
-      case SYM_ACC: case SYM_RATE: case SYM_CONST: case SYM_LOCAL: break;
+      case SYM_ACC: case SYM_RATE: case SYM_CONST: case SYM_MULTIPLIER: case SYM_LOCAL: break;
     }
   }
 }
@@ -81,21 +82,53 @@ static Real value_of(const Eqns *e, Expr x, const Real *value) {
   return r;
 }
 
+/* What is left of a residual that no multiplier can take away: its part in the kernel of A. */
+static void take_away_multipliers(const Eqns *e, const Real *value, Real *left) {
+  const Entries *A = &e->constraints.A;
+  uint32_t n = e->n, w = n + e->constraints.n, *column = ARENA_ARRAY(arena, uint32_t, w);
+  Real *K = ARENA_ARRAY(arena, Real, w * w), *x = ARENA_ARRAY(arena, Real, w);
+  for (uint32_t i = 0; i < n; i++) K[i * w + i] = 1, x[i] = left[i];
+  for (uint32_t k = 0; k < A->n; k++)
+    K[(n + A->at[k].row) * w + A->at[k].col] = K[A->at[k].col * w + n + A->at[k].row] = value_of(e, A->at[k].e, value);
+  dense_solve(w, K, x, 1e-15L, column, NULL);
+  for (uint32_t i = 0; i < n; i++) left[i] = x[i];
+}
+
+/* A q'' against what it must be. */
+static void check_demand(const Eqns *e, const char *where, const Real *value, const Real *a) {
+  const Constraints *k = &e->constraints;
+  for (uint32_t row = 0; row < k->n; row++) {
+    Real want = value_of(e, k->demand[row], value), left = -want, size = 1 + fabsl(want);
+    for (uint32_t j = 0; j < k->A.n; j++) {
+      Real term = k->A.at[j].row == row ? value_of(e, k->A.at[j].e, value) * a[k->A.at[j].col] : 0;
+      left += term;
+      size += fabsl(term);
+    }
+    if (!(fabsl(left) <= 1e-15L * size)) fail_msg("%s: constraint %s is left with %Lg of %Lg", where, k->of[row]->name, left, size);
+  }
+}
+
 /* |M q'' - f| against |M| |q''| + |f|: rounding is 1e-19, and f itself is a sum with cancellation. */
 static void check_state(const Eqns *e, const Prog *accel, const char *where, const Real *value) {
   Real *in[ARR_COUNT], *a = ARENA_ARRAY(arena, Real, e->n + 1), *zd = ARENA_ARRAY(arena, Real, e->m->states.n + 1);
   Real *out[] = {a, zd};
   split(e, value, in);
   if (prog_eval(accel, (const Real *const *)in, out) != 0) fail_msg("%s: singular", where);
+  Real *left = ARENA_ARRAY(arena, Real, e->n + 1), *size = ARENA_ARRAY(arena, Real, e->n + 1);
   for (uint32_t i = 0; i < e->n; i++) {
-    Real f = value_of(e, e->f[i], value), left = -f, size = 1 + fabsl(f);
+    Real f = value_of(e, e->system.f[i], value);
+    left[i] = -f;
+    size[i] = 1 + fabsl(f);
     for (uint32_t j = 0; j < e->n; j++) {
       Real term = value_of(e, eqns_mass(e, i, j), value) * a[j];
-      left += term;
-      size += fabsl(term);
+      left[i] += term;
+      size[i] += fabsl(term);
     }
-    if (!(fabsl(left) <= 1e-15L * size)) fail_msg("%s: row %u is left with %Lg of %Lg", where, i, left, size);
   }
+  if (e->constraints.n) take_away_multipliers(e, value, left);
+  for (uint32_t i = 0; i < e->n; i++)
+    if (!(fabsl(left[i]) <= 1e-15L * size[i])) fail_msg("%s: row %u is left with %Lg of %Lg", where, i, left[i], size[i]);
+  check_demand(e, where, value, a);
   for (uint32_t i = 0; i < e->m->states.n; i++) {
     Real want = value_of(e, e->flow[i], value);
     if (!(fabsl(zd[i] - want) <= 1e-15L * (1 + fabsl(want)))) fail_msg("%s: rate %u is %Lg, not %Lg", where, i, zd[i], want);

@@ -153,6 +153,187 @@ static void what_cannot_hold_refuses(void **state)
   }
 }
 
+/* ---- RATTLE */
+
+/* Exact digits of the algorithm itself, in 40- and 60-digit arithmetic by an independent script: p0+ = p0 + A(q0)^T lambda, c(q1) = 0,
+ * A(q1) v1 = 0, from (1, 0) at rest, 1000 steps of 0.01. */
+static void verlet_is_rattle(void **state)
+{
+  static const double end[4] = {0.2692700072386528, -0.9630647243551486, -4.1855810639246435, -1.1702759066309615};
+  static const lag_option trapezoid[] = {{"step", 0.01, NULL}, {"quadrature", 0, "trapezoid"}};
+  const double e0 = 0;
+  (void)state;
+  for (int pass = 0; pass < 2; pass++) {
+    lag_sim *s = sim_with(&rod, pass ? &lag_variational : &lag_verlet, 0, 1 + pass, trapezoid);
+    lag_stats st;
+    double worst = 0, e[2];
+    for (int i = 1; i <= 1000; i++) {
+      assert_int_equal(lag_sim_advance(s, i < 1000 ? i * 0.01 + 0.005 : 10), LAG_OK); /* past the end of the step */
+      double y[4] = {0};
+      lag_sim_eval(s, i * 0.01, y);
+      rod_energy(0, lag_sim_q(s), lag_sim_v(s), NULL, NULL, NULL, e, NULL);
+    }
+    lag_sim_stats(s, &st);
+    (void)worst;
+    (void)e0;
+    assert_close(distance(2, lag_sim_q(s), end), 0, 1e-11);
+    assert_close(distance(2, lag_sim_v(s), end + 2), 0, 1e-11);
+    lag_sim_free(s);
+  }
+}
+
+/* ---- starts */
+
+typedef struct Given {
+  const lag_scene *of;
+  double x, y; /* NaN: not given */
+  double at[2];
+  double within;
+} Given;
+
+/* The rod from what is given of its end: the other coordinate follows; where that cannot be, both move to the nearest place. */
+static void starts_are_made_consistent(void **state)
+{
+  static const unsigned char none[4] = {0};
+  static const Given given[] = {
+      {&rod, 0.6, NAN, {0.6, 0.8}, 1e-15},       /* in the middle between 0.8 and -0.8: the upper one */
+      {&rod, NAN, -0.8, {0.6, -0.8}, 1e-15},     /* x is 1 as the scene has it, and gives way */
+      {&rod, 3, -4, {0.6, -0.8}, 1e-15},         /* both given: along the radius */
+      {&twice, 3, -4, {0.6, -0.8}, 1e-15},
+      {&rod, 2, NAN, {1, 0}, 1e-8},              /* no y helps; the nearest place is a double root in y */
+  };
+  (void)state;
+  for (size_t k = 0; k < sizeof given / sizeof *given; k++) {
+    lag_scene scene = *given[k].of;
+    scene.given = none;
+    lag_sim *s = lag_sim_new(&scene);
+    assert_int_equal(isnan(given[k].x) ? 0 : lag_sim_set(s, "x", given[k].x), 0);
+    assert_int_equal(isnan(given[k].y) ? 0 : lag_sim_set(s, "y", given[k].y), 0);
+    assert_int_equal(lag_sim_set(s, "x'", 1), 0);
+    assert_int_equal(lag_sim_advance(s, 0), LAG_OK);
+    double x = given[k].at[0], y = given[k].at[1];
+    assert_close(lag_sim_q(s)[0], x, given[k].within);
+    assert_close(lag_sim_q(s)[1], y, given[k].within);
+    if (y != 0.0) { /* x' = 1 stays, and y' follows */
+      assert_close(lag_sim_v(s)[0], 1, 1e-15);
+      assert_close(lag_sim_v(s)[1], -x / y, 4e-15);
+    }
+    assert_close(lag_sim_asked(s, 0), isnan(given[k].x) ? 1 : given[k].x, 0);
+    assert_close(lag_sim_begin(s, 0), lag_sim_q(s)[0], 0);
+    lag_sim_free(s);
+  }
+}
+
+/* On x^2/4 + y^2 = 1 the nearest place to (3, 1) is where the way to it stands upright on the curve. */
+static int oval_residuals(ARGS, double *c, double *r, UNUSED double *w)
+{
+  c[0] = q[0] * q[0] / 4 + q[1] * q[1] - 1;
+  r[0] = q[0] * v[0] / 2 + 2 * q[1] * v[1];
+  return 0;
+}
+
+static int oval_matrices(ARGS, double *A, double *M, UNUSED double *w)
+{
+  A[0] = q[0] / 2;
+  A[1] = 2 * q[1];
+  M[0] = 1;
+  M[1] = 9; /* the way is measured with it */
+  return 0;
+}
+
+#define oval_of rod_of
+#define oval_jacobian rod_jacobian
+CONSTRAINED(oval, 2, 1, 1, 2);
+
+static void positions_move_the_least(void **state)
+{
+  lag_model model = rod_model;
+  lag_scene scene = rod;
+  (void)state;
+  model.constraints = &oval_held;
+  scene.model = &model;
+  lag_sim *s = lag_sim_new(&scene);
+  assert_int_equal(lag_sim_set(s, "x", 3), 0);
+  assert_int_equal(lag_sim_set(s, "y", 1), 0);
+  assert_int_equal(lag_sim_advance(s, 0), LAG_OK);
+  double x = lag_sim_q(s)[0], y = lag_sim_q(s)[1];
+  assert_close(x * x / 4 + y * y, 1, 4e-16);
+  assert_close((3 - x) * 2 * y - 9 * (1 - y) * x / 2, 0, 1e-6); /* at a minimum, half the digits decide */
+  assert_true(x > 1 && y > 0);
+  lag_sim_free(s);
+}
+
+/* Without what is given, all velocities move to the nearest: (1, 1) at 45 degrees on the rod loses what is radial. */
+static void velocities_move_the_least(void **state)
+{
+  (void)state;
+  lag_sim *s = lag_sim_new(&rod);
+  assert_int_equal(lag_sim_set(s, "x", sqrt(0.5)), 0);
+  assert_int_equal(lag_sim_set(s, "y", -sqrt(0.5)), 0);
+  assert_int_equal(lag_sim_set(s, "x'", 3), 0);
+  assert_int_equal(lag_sim_set(s, "y'", 1), 0);
+  assert_int_equal(lag_sim_advance(s, 0), LAG_OK);
+  assert_close(lag_sim_v(s)[0], 2, 1e-15);
+  assert_close(lag_sim_v(s)[1], 2, 1e-15);
+  lag_sim_free(s);
+}
+
+static void exactly_means_that(void **state)
+{
+  lag_scene scene = rod;
+  (void)state;
+  scene.exactly = 1;
+  lag_sim *s = lag_sim_new(&scene);
+  assert_int_equal(lag_sim_set(s, "x", 1.1), 0);
+  assert_int_equal(lag_sim_advance(s, 1), LAG_EINVAL);
+  assert_non_null(strstr(lag_sim_message(s), "constraint rod (line 7) is off by 0.21 m^2; without `exactly`"));
+  lag_sim_free(s);
+  s = lag_sim_new(&scene); /* what digits of a text leave out is no contradiction */
+  assert_int_equal(lag_sim_set(s, "x", 0.7071067812), 0);
+  assert_int_equal(lag_sim_set(s, "y", 0.7071067812), 0);
+  assert_int_equal(lag_sim_advance(s, 0), LAG_OK);
+  assert_close(off(&scene, 0, lag_sim_q(s)), 0, 5e-16);
+  lag_sim_free(s);
+}
+
+/* x^2 + y^2 = 1 and x^2 + y^2 = -1. */
+static int never_residuals(ARGS, double *c, double *r, double *w)
+{
+  twice_residuals(t, q, v, z, p, u, c, r, w);
+  c[1] = q[0] * q[0] + q[1] * q[1] + 1;
+  return 0;
+}
+
+static void impossible_starts_are_refused(void **state)
+{
+  lag_constraints of = twice_held;
+  lag_model model = twice_model;
+  lag_scene scene = twice;
+  (void)state;
+  of.residuals = never_residuals;
+  model.constraints = &of;
+  scene.model = &model;
+  lag_sim *s = lag_sim_new(&scene);
+  assert_int_equal(lag_sim_advance(s, 1), LAG_EINVAL);
+  assert_non_null(strstr(lag_sim_message(s), "no start obeys the constraints"));
+  assert_non_null(strstr(lag_sim_message(s), "constraint again (line 8)"));
+  lag_sim_free(s);
+}
+
+static void redundant_constraints_are_found(void **state)
+{
+  (void)state;
+  lag_sim *s = lag_sim_new(&twice);
+  assert_int_equal(lag_sim_advance(s, 0), LAG_OK);
+  assert_int_equal(lag_sim_rank(s), 1);
+  assert_int_equal(lag_sim_is_redundant(s, 0) + lag_sim_is_redundant(s, 1), 1);
+  lag_sim_free(s);
+  s = lag_sim_new(&turntable);
+  assert_int_equal(lag_sim_advance(s, 0), LAG_OK);
+  assert_int_equal(lag_sim_rank(s), 2);
+  lag_sim_free(s);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -160,6 +341,13 @@ int main(void)
       cmocka_unit_test(projection_keeps_the_order),
       cmocka_unit_test(long_runs_stay),
       cmocka_unit_test(what_cannot_hold_refuses),
+      cmocka_unit_test(verlet_is_rattle),
+      cmocka_unit_test(starts_are_made_consistent),
+      cmocka_unit_test(positions_move_the_least),
+      cmocka_unit_test(velocities_move_the_least),
+      cmocka_unit_test(exactly_means_that),
+      cmocka_unit_test(impossible_starts_are_refused),
+      cmocka_unit_test(redundant_constraints_are_found),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,324 @@
+/* A start that obeys the constraints. Enters: the start as scene and caller set it, and which components they set; leaves: the nearest
+ * start on the constraints. Holds: what nobody set gives way first, what somebody set only where that does not suffice; a start
+ * that obeys the constraints to rounding is not touched.
+ *
+ * Positions: Gauss-Newton steps, damped until the residual falls (P. Deuflhard, Newton Methods for Nonlinear Problems (2004), 4.3, DOI
+ * 10.1007/978-3-642-23899-4), then Newton-like steps along the constraints to the nearest place in the mass metric. Velocities: one
+ * linear problem, repeated for its rounding. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/core.h"
+#include "lag_kkt.h"
+
+enum { MOST_STEPS = 100, MOST_HALVINGS = 30, TRIES = 9 };
+
+typedef struct Start {
+  lag_sim *sim;
+  lag_problem *pb;
+  const lag_constraints *of;
+  int n, nq, holonomic;      /* of the level at hand: constraints */
+  int *free, nfree;          /* components of q, or of v, that may move */
+  double *y, *asked, *best;  /* [n of the state] */
+  double *residual, *other;  /* [constraints] c or r, and the one that is not asked for */
+  double *size;              /* [constraints] of which parts are taken in the sum that falls */
+  double *A, *M;             /* entries */
+  double *full, *kkt;        /* [nq nq], work of lag_kkt */
+} Start;
+
+/* M, A as dense matrices of the free components, and d = the solution of M d - A^T l = pull M (asked - y), A d = -residual. */
+static int direction(Start *w, double pull, double *d)
+{
+  lag_problem *pb = w->pb;
+  const lag_constraints *of = w->of;
+  int nq = w->nq, nf = w->nfree, at = w->holonomic ? 0 : nq, rc = lag_inputs(pb, w->sim->scene->t0);
+  const double *y = w->y;
+  double *A = w->kkt + nf * nf, *x = A + w->n * nf, *l = x + nf;
+
+  rc = rc ? rc : of->matrices(w->sim->scene->t0, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work);
+  for (int regular = 0, pass = 0; pass < 2 && rc == 0 && !regular; pass++) {
+    memset(w->full, 0, (size_t)(nq * nq) * sizeof(double));
+    for (int e = 0; e < of->nmass; e++) {
+      int i = of->mass[e].row, j = of->mass[e].col;
+      w->full[i * nq + j] = w->full[j * nq + i] = w->M[e];
+    }
+    for (int i = 0; i < nq && pass == 1; i++) { /* no mass that says what is near: all coordinates count alike */
+      memset(w->full + i * nq, 0, (size_t)nq * sizeof(double));
+      w->full[i * nq + i] = 1;
+    }
+    memset(A, 0, (size_t)(w->n * nf) * sizeof(double));
+    for (int a = 0; a < nf; a++) {
+      x[a] = 0;
+      for (int b = 0; b < nf; b++) {
+        double m = w->full[w->free[a] * nq + w->free[b]];
+        w->kkt[a * nf + b] = m;
+        x[a] += pull * m * (w->asked[at + w->free[b]] - y[at + w->free[b]]);
+      }
+      for (int e = 0; e < of->njacobian; e++) {
+        if (of->jacobian[e].row < w->n && of->jacobian[e].col == w->free[a]) {
+          A[of->jacobian[e].row * nf + a] = w->A[e];
+        }
+      }
+    }
+    for (int k = 0; k < w->n; k++) {
+      l[k] = -w->residual[k];
+    }
+    regular = lag_kkt(nf, w->n, w->kkt);
+    rc = regular || pass == 0 ? 0 : LAG_ESINGULAR;
+  }
+  memcpy(d, x, (size_t)nf * sizeof *d);
+  return rc ? rc : lag_not_finite(nf, d) >= 0 ? LAG_ENAN : 0;
+}
+
+static int residuals(Start *w)
+{
+  return lag_residuals(w->pb, w->sim->scene->t0, w->y, w->holonomic ? w->residual : w->other, w->holonomic ? w->other : w->residual);
+}
+
+/* What falls: the residuals against their terms at the start. NaN, or infinite: no step leads there. */
+static double merit(Start *w)
+{
+  double s = 0;
+
+  if (residuals(w)) {
+    return HUGE_VAL;
+  }
+  for (int k = 0; k < w->n; k++) {
+    double x = w->residual[k] / w->size[k];
+    s += x * x;
+  }
+  return isfinite(s) ? s : HUGE_VAL;
+}
+
+static void move(Start *w, const double *from, double part, const double *d)
+{
+  int at = w->holonomic ? 0 : w->nq;
+
+  for (int a = 0; a < w->nfree; a++) {
+    w->y[at + w->free[a]] = from[at + w->free[a]] + part * d[a];
+  }
+}
+
+/* How many times the rounding of its terms the worst constraint is off. */
+static double worst(Start *w)
+{
+  double size = HUGE_VAL;
+
+  lag_worst_constraint(w->pb, w->sim->scene->t0, w->y, w->holonomic, &size);
+  return size;
+}
+
+/* Whether damped Gauss-Newton steps lead from y to the constraints, y then being there. */
+static int descend(Start *w)
+{
+  double *d = w->best + w->pb->n, *from = d + w->nq, before = merit(w);
+
+  for (int step = 0; step < MOST_STEPS && before > 0 && w->nfree > 0; step++) {
+    double part = 1, now = HUGE_VAL;
+    memcpy(from, w->y, (size_t)w->pb->n * sizeof *from);
+    if (direction(w, 0, d)) {
+      return 0;
+    }
+    for (int i = 0; i < MOST_HALVINGS && !(now < before); i++, part /= 2) {
+      move(w, from, part, d);
+      now = merit(w);
+    }
+    if (!(now < before * (1 - 1e-6))) {
+      break;
+    }
+    before = now;
+  }
+  if (!(merit(w) <= before)) {
+    memcpy(w->y, from, (size_t)w->pb->n * sizeof *from);
+  }
+  return worst(w) <= 0x1p10;
+}
+
+/* |y - asked|^2 in the mass metric at y; w->full is M. */
+static double distance(const Start *w)
+{
+  double s = 0;
+  int at = w->holonomic ? 0 : w->nq;
+
+  for (int i = 0; i < w->nq; i++) {
+    for (int j = 0; j < w->nq; j++) {
+      s += (w->y[at + i] - w->asked[at + i]) * w->full[i * w->nq + j] * (w->y[at + j] - w->asked[at + j]);
+    }
+  }
+  return s;
+}
+
+/* From a place on the constraints to the nearest one: steps that are taken as long as they lead nearer. */
+static void approach(Start *w)
+{
+  double *d = w->best + w->pb->n;
+  size_t bytes = (size_t)w->pb->n * sizeof(double);
+
+  for (int step = 0; step < MOST_STEPS; step++) {
+    memcpy(w->best, w->y, bytes);
+    if (residuals(w) || direction(w, 1, d)) {
+      break;
+    }
+    double before = distance(w);
+    move(w, w->best, 1, d);
+    if (!descend(w) || !(distance(w) < before * (1 - 1e-14))) {
+      memcpy(w->y, w->best, bytes);
+      break;
+    }
+  }
+}
+
+/* Onto the constraints by moving what is free. Where no step helps, as in the middle between two ways out, it tries from places
+ * beside: first above, ever further. */
+static int reach(Start *w)
+{
+  static const double beside[TRIES] = {0, 1e-3, -1e-3, 0.03, -0.03, 0.3, -0.3, 1, -1};
+  double typical = 0;
+  int at = w->holonomic ? 0 : w->nq, tries = w->holonomic ? TRIES : 1;
+
+  for (int i = 0; i < w->nq; i++) {
+    typical = fmax(typical, fabs(w->asked[at + i]));
+  }
+  for (int k = 0; k < tries && w->nfree > 0; k++) {
+    memcpy(w->y + at, w->asked + at, (size_t)w->nq * sizeof(double));
+    for (int a = 0; a < w->nfree; a++) {
+      w->y[at + w->free[a]] += beside[k] * (typical > 0 ? typical : 1) * (0.5 + fmod(0.618033988749894848 * (a + 1), 1));
+    }
+    if (descend(w)) {
+      if (w->holonomic) {
+        approach(w);
+      }
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* The free components: those that nobody set, or all. */
+static void choose_free(Start *w, int all)
+{
+  const lag_scene *c = w->sim->scene;
+  int at = w->holonomic ? 0 : w->nq;
+
+  w->nfree = 0;
+  for (int i = 0; i < w->nq; i++) {
+    int given = (c->given && c->given[at + i]) || !isnan(w->sim->start[at + i]);
+    if (all || !given) {
+      w->free[w->nfree++] = i;
+    }
+  }
+}
+
+/* The error that constraint k cannot be met, or is not met. */
+static int refuse(Start *w, int exactly)
+{
+  int k = lag_worst_constraint(w->pb, w->sim->scene->t0, w->y, w->holonomic, NULL);
+
+  if (residuals(w) || k < 0) {
+    return lag_fail(w->sim, LAG_EINVAL, "the constraints have no value at the start");
+  }
+  lag_say_constraint(w->pb, k, fabs(w->residual[k]), "");
+  if (exactly) {
+    return lag_fail(w->sim, LAG_EINVAL, "the start contradicts its constraints: %s%s; without `exactly` the nearest start is taken",
+                    w->pb->words, w->holonomic ? "" : "/s, in its velocities");
+  }
+  return lag_fail(w->sim, LAG_EINVAL, "no start obeys the constraints: from the one given, none is found nearer than this: %s%s",
+                  w->pb->words, w->holonomic ? "" : " in its rate");
+}
+
+/* Positions, or velocities. */
+static int settle(Start *w, int holonomic)
+{
+  w->holonomic = holonomic;
+  w->n = holonomic ? w->of->nholonomic : w->of->n;
+  if (w->n == 0) {
+    return LAG_OK;
+  }
+  double off = worst(w);
+  int rc = lag_constraint_terms(w->pb, w->sim->scene->t0, w->y, holonomic, w->size);
+  for (int k = 0; k < w->n; k++) {
+    w->size[k] = rc == 0 && w->size[k] > 0 && isfinite(w->size[k]) ? w->size[k] : 1;
+  }
+  if (off <= 2) {
+    return LAG_OK;
+  }
+  if (w->sim->scene->exactly && !(off <= sqrt(DBL_EPSILON) / DBL_EPSILON)) {
+    return refuse(w, 1);
+  }
+  for (int all = 0; all < 2; all++) {
+    choose_free(w, all);
+    if (reach(w)) {
+      return LAG_OK;
+    }
+  }
+  return refuse(w, 0);
+}
+
+/* Which constraints follow from the others here: marks[n], and how many do not. */
+static int rank(Start *w, double *marks)
+{
+  const lag_constraints *of = w->of;
+  int nq = w->nq, m = of->n, r;
+  double *A = w->kkt, *diag = A + m * nq, *beta = diag + m, *scale = beta + m, *order = scale + m;
+  const double *y = w->y;
+  int rc = of->matrices(w->sim->scene->t0, y, y + nq, y + 2 * nq, w->pb->p, w->pb->u, w->A, w->M, w->pb->work);
+
+  memset(A, 0, (size_t)(m * nq) * sizeof(double));
+  for (int e = 0; e < of->njacobian && rc == 0; e++) {
+    A[of->jacobian[e].row * nq + of->jacobian[e].col] = w->A[e];
+  }
+  r = lag_rank(nq, m, A, diag, beta, scale, order);
+  for (int k = 0; k < m; k++) {
+    marks[(int)order[k]] = k >= r;
+  }
+  return r;
+}
+
+/* The work space: one block. */
+static double *make_room(Start *w)
+{
+  size_t n = (size_t)w->pb->n, nq = (size_t)w->nq, m = (size_t)w->of->n;
+  const size_t sizes[] = {n, n, 2 * n + nq, m, m, m, (size_t)w->of->njacobian, (size_t)w->of->nmass, nq * nq,
+                          nq * nq + m * nq + nq + m + m * m + 9 * m};
+  double **const parts[] = {&w->y, &w->asked, &w->best, &w->residual, &w->other, &w->size, &w->A, &w->M, &w->full, &w->kkt};
+  size_t total = 0;
+
+  for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+    total += sizes[i];
+  }
+  double *block = calloc(total, sizeof *block), *x = block;
+  for (size_t i = 0; i < sizeof sizes / sizeof *sizes && block; i++) {
+    *parts[i] = x;
+    x += sizes[i];
+  }
+  return block;
+}
+
+int lag_consistent(lag_sim *s)
+{
+  Start w = {.sim = s, .pb = &s->pb, .of = s->scene->model->constraints, .nq = s->pb.nq};
+  size_t bytes = (size_t)s->pb.n * sizeof(double);
+  int rc = LAG_ENOMEM;
+
+  memcpy(s->asked, s->now, bytes);
+  if (!w.of) {
+    return LAG_OK;
+  }
+  double *block = make_room(&w);
+  w.free = malloc(((size_t)w.nq + 1) * sizeof *w.free);
+  if (block && w.free) {
+    memcpy(w.y, s->now, bytes);
+    memcpy(w.asked, s->now, bytes);
+    rc = settle(&w, 1);
+    rc = rc ? rc : settle(&w, 0);
+    if (rc == 0) {
+      memcpy(s->now, w.y, bytes);
+      s->run->rank = rank(&w, s->redundant);
+    }
+  }
+  free(block);
+  free(w.free);
+  return rc == LAG_ENOMEM ? lag_fail(s, rc, "out of memory") : rc;
+}

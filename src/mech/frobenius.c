@@ -1,0 +1,217 @@
+#include "mech/frobenius.h"
+
+#include <math.h>
+
+#include "base/dense.h"
+#include "sym/diff.h"
+#include "sym/prove.h"
+#include "sym/simplify.h"
+
+enum { MOST_COORDINATES = 64, MOST_FORMS = 3, MOST_DIMENSIONS = 8 };
+
+/* All forms, in the coordinates q and t: form[m * w], and the antisymmetric d[m * w * w], w = n + 1. 0: zero. */
+typedef struct {
+  const Eqns *e;
+  ExprGraph *g;
+  uint32_t m, w;
+  Expr *form, *d;
+} Forms;
+
+static Expr at_rest(const Eqns *e, Expr x) {
+  Expr *rest = ARENA_ARRAY(e->m->arena, Expr, expr_symbol_count(e->g) + 1);
+  for (uint32_t i = 0; i < e->n; i++) rest[e->m->coords.at[i].v] = expr_int(e->g, 0);
+  return simplify(e->g, expr_substitute(e->g, x, rest, expr_symbol_count(e->g) + 1, "_at_rest"));
+}
+
+/* d omega_jk = d_j omega_k - d_k omega_j, for what coefficient k adds to it. */
+static void add_derivative(Forms *f, uint32_t i, uint32_t j, uint32_t k, Expr x) {
+  Expr *d = f->d + (size_t)i * f->w * f->w, *jk = &d[j * f->w + k], *kj = &d[k * f->w + j];
+  if (j == k) return;
+  *jk = *jk ? expr_add(f->g, *jk, x) : x;
+  *kj = *kj ? expr_sub(f->g, *kj, x) : expr_neg(f->g, x);
+}
+
+static void differentiate(Forms *f, uint32_t i) {
+  const Eqns *e = f->e;
+  for (uint32_t k = 0; k < f->w; k++) {
+    Expr x = f->form[i * f->w + k];
+    if (!x) continue;
+    ExprPartials by_q = expr_gradient_sparse(f->g, x, SYM_COORD, e->n);
+    for (uint32_t j = 0; j < by_q.n; j++) add_derivative(f, i, by_q.at[j].index, k, by_q.at[j].e);
+    add_derivative(f, i, e->n, k, expr_diff(f->g, x, e->m->time));
+  }
+  for (uint32_t p = 0; p < f->w * f->w; p++) {
+    Expr *x = &f->d[(size_t)i * f->w * f->w + p];
+    if (*x) *x = simplify(f->g, *x);
+    if (*x && expr_is_zero(f->g, *x)) *x = 0;
+  }
+}
+
+static Forms make_forms(const Eqns *e) {
+  const Constraints *all = &e->constraints;
+  Forms f = {.e = e, .g = e->g, .m = all->n, .w = e->n + 1};
+  f.form = ARENA_ARRAY(e->m->arena, Expr, (size_t)f.m * f.w);
+  f.d = ARENA_ARRAY(e->m->arena, Expr, (size_t)f.m * f.w * f.w);
+  for (uint32_t k = 0; k < all->A.n; k++) f.form[all->A.at[k].row * f.w + all->A.at[k].col] = all->A.at[k].e;
+  for (uint32_t i = 0; i < all->n; i++) {
+    Expr b = at_rest(e, all->r[i]);
+    if (!expr_is_zero(e->g, b)) f.form[i * f.w + e->n] = b;
+    if (i >= all->nholonomic) differentiate(&f, i);
+  }
+  return f;
+}
+
+/* --- by value --- */
+
+static void values(const Forms *f, const Expr *from, size_t n, const long double *symbols, long double *to) {
+  for (size_t i = 0; i < n; i++) {
+    to[i] = 0;
+    if (from[i]) expr_eval(f->g, &from[i], 1, symbols, &to[i]);
+  }
+}
+
+/* Directions that all forms allow, orthonormal, behind the forms themselves: basis[w * w]. Returns where they begin. */
+static uint32_t allowed(const Forms *f, const long double *form, long double *basis) {
+  const long double independent = 1e-9L;
+  uint32_t n = 0, first;
+  for (uint32_t i = 0; i < f->m; i++) {
+    for (uint32_t j = 0; j < f->w; j++) basis[n * f->w + j] = form[i * f->w + j];
+    n += dense_reduce(f->w, basis + n * f->w, basis, n) > independent;
+  }
+  first = n;
+  for (uint32_t i = 0; i < f->w && n < f->w; i++) {
+    for (uint32_t j = 0; j < f->w; j++) basis[n * f->w + j] = j == i;
+    n += dense_reduce(f->w, basis + n * f->w, basis, n) > independent;
+  }
+  return first;
+}
+
+/* Whether d omega_i vanishes on all pairs of allowed directions at this state. */
+static int vanishes(const Forms *f, uint32_t i, const long double *symbols, const long double *basis, uint32_t first) {
+  const long double nothing = 1e-9L;
+  uint32_t w = f->w;
+  long double *d = ARENA_ARRAY(f->e->m->arena, long double, (size_t)w * w);
+  values(f, f->d + (size_t)i * w * w, (size_t)w * w, symbols, d);
+  for (uint32_t a = first; a < w; a++)
+    for (uint32_t b = first; b < a; b++) {
+      long double sum = 0, size = 0;
+      for (uint32_t j = 0; j < w; j++)
+        for (uint32_t k = 0; k < w; k++) {
+          long double term = basis[a * w + j] * d[j * w + k] * basis[b * w + k];
+          sum += term;
+          size += fabsl(d[j * w + k]);
+        }
+      if (!(fabsl(sum) <= nothing * size)) return 0;
+    }
+  return 1;
+}
+
+/* -1: no state was found at which to look. */
+static int looks_integrable(const Forms *f, StateSolver *solver) {
+  enum { TRIES = 12, ENOUGH = 4 };
+  Arena *arena = f->e->m->arena;
+  long double *symbols = ARENA_ARRAY(arena, long double, expr_symbol_count(f->g) + 1), *form = ARENA_ARRAY(arena, long double, (size_t)f->m * f->w);
+  long double *basis = ARENA_ARRAY(arena, long double, (size_t)(f->w + 1) * f->w);
+  int seen = 0;
+  for (uint32_t seed = 1; seed <= TRIES && seen < ENOUGH; seed++) {
+    prove_state(f->g, seed, symbols);
+    if (!states_obey(solver, symbols)) continue;
+    values(f, f->form, (size_t)f->m * f->w, symbols, form);
+    uint32_t first = allowed(f, form, basis);
+    for (uint32_t i = f->e->constraints.nholonomic; i < f->m; i++)
+      if (!vanishes(f, i, symbols, basis, first)) return 0;
+    seen++;
+  }
+  return seen ? 1 : -1;
+}
+
+/* --- proved --- */
+
+/* The determinant of the forms at columns at[m], m <= 3. */
+static Expr determinant(const Forms *f, const uint32_t *at) {
+  static const uint8_t order[6][4] = {{0, 1, 2, 0}, {1, 2, 0, 0}, {2, 0, 1, 0}, {0, 2, 1, 1}, {2, 1, 0, 1}, {1, 0, 2, 1}};
+  static const uint8_t order2[2][4] = {{0, 1, 0, 0}, {1, 0, 0, 1}};
+  static const uint32_t permutations[] = {1, 1, 2, 6};
+  ExprGraph *g = f->g;
+  Expr sum = expr_int(g, 0);
+  for (uint32_t p = 0; p < permutations[f->m]; p++) {
+    const uint8_t *o = f->m == 3 ? order[p] : order2[p];
+    Expr product = expr_int(g, o[3] ? -1 : 1);
+    for (uint32_t i = 0; i < f->m; i++) {
+      Expr x = f->form[i * f->w + at[o[i]]];
+      product = expr_mul(g, product, x ? x : expr_int(g, 0));
+    }
+    sum = expr_add(g, sum, product);
+  }
+  return sum;
+}
+
+/* The coefficient of d omega_i ^ omega_1 ^ ... ^ omega_m at the columns at[m + 2], ascending. */
+static Expr coefficient(const Forms *f, uint32_t i, const uint32_t *at) {
+  ExprGraph *g = f->g;
+  Expr sum = expr_int(g, 0);
+  for (uint32_t a = 0; a < f->m + 2; a++)
+    for (uint32_t b = a + 1; b < f->m + 2; b++) {
+      Expr d = f->d[((size_t)i * f->w + at[a]) * f->w + at[b]];
+      uint32_t rest[MOST_FORMS], n = 0;
+      if (!d) continue;
+      for (uint32_t k = 0; k < f->m + 2; k++)
+        if (k != a && k != b) rest[n++] = at[k];
+      Expr product = expr_mul(g, d, determinant(f, rest)); /* moving a and b to the front takes a + b - 1 exchanges */
+      sum = (a + b) % 2 ? expr_add(g, sum, product) : expr_sub(g, sum, product);
+    }
+  return sum;
+}
+
+/* The next combination of n columns out of w; 0 after the last. */
+static int next_columns(uint32_t *at, uint32_t n, uint32_t w) {
+  uint32_t k = n;
+  while (k-- > 0)
+    if (at[k] < w - n + k) {
+      at[k]++;
+      for (uint32_t j = k + 1; j < n; j++) at[j] = at[j - 1] + 1;
+      return 1;
+    }
+  return 0;
+}
+
+static int is_closed(const Forms *f, uint32_t i) {
+  for (uint32_t p = 0; p < f->w * f->w; p++)
+    if (f->d[(size_t)i * f->w * f->w + p]) return 0;
+  return 1;
+}
+
+static int is_proved(const Forms *f) {
+  for (uint32_t i = f->e->constraints.nholonomic; i < f->m; i++) {
+    if (is_closed(f, i) || f->m + 2 > f->w) continue;
+    if (f->m > MOST_FORMS || f->w > MOST_DIMENSIONS) return 0;
+    uint32_t at[MOST_FORMS + 2];
+    for (uint32_t k = 0; k < f->m + 2; k++) at[k] = k;
+    do
+      if (prove_zero(f->g, coefficient(f, i, at), NULL) != PROVED_ZERO) return 0;
+    while (next_columns(at, f->m + 2, f->w));
+  }
+  return 1;
+}
+
+Integrable frobenius(const Eqns *e, StateSolver *solver) {
+  if (e->n > MOST_COORDINATES) return INTEGRABLE_UNDECIDED;
+  Forms f = make_forms(e);
+  int looks = looks_integrable(&f, solver);
+  return looks == 0 ? INTEGRABLE_NO : is_proved(&f) ? INTEGRABLE_PROVED : INTEGRABLE_UNDECIDED;
+}
+
+Expr frobenius_leaf(const Eqns *e, uint32_t i) {
+  const Constraints *all = &e->constraints;
+  const unsigned moving = 1u << SYM_COORD | 1u << SYM_TIME;
+  ExprGraph *g = e->g;
+  Expr b = at_rest(e, all->r[i]), leaf = expr_mul(g, b, expr_symbol(g, e->m->time)->node);
+  if (expr_kinds(g, b) & moving) return 0;
+  for (uint32_t k = 0; k < all->A.n; k++) {
+    if (all->A.at[k].row != i) continue;
+    if (expr_kinds(g, all->A.at[k].e) & moving) return 0;
+    Expr part = expr_mul(g, all->A.at[k].e, expr_symbol(g, e->m->coords.at[all->A.at[k].col].q)->node);
+    leaf = expr_add(g, leaf, part);
+  }
+  return leaf;
+}

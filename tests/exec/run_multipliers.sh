@@ -1,0 +1,57 @@
+#!/bin/sh
+# What constraints do to accelerations, and their multipliers:
+#   1. the solver of lag_kkt.h against GSL's singular value decomposition, redundant constraints and all;
+#   2. systems with a closed form, one for each kind of constraint (models/constrained.lag).
+. tests/tap.sh
+model=tests/exec/models/constrained.lag
+
+# ---- 1. the solver ----
+if [ -n "$GSL" ]; then
+  kkt() { $CC -std=c11 -O1 -Wall -Wextra -Werror -Wno-misleading-indentation -Iruntime/include -o "$TMP/kkt" tests/exec/constraints/kkt.c -lgsl -lgslcblas -lm && "$TMP/kkt"; }
+  check "lag_kkt: solution and least multipliers to 1e-10 of an SVD" kkt
+fi
+
+# ---- 2. closed forms ----
+# At the start of the scene, in the order of its outputs, by the theory of each small system:
+#   rod     lambda = m (g y - v^2)/(2 l^2), x'' = 2 x lambda/m
+#   table   lambda = m g
+#   grows   r'' = 0, so lambda = -m r th'^2 with th' = (X Y' - Y X')/r^2, X'' = lambda X/(r m)
+#   blade   along the blade at speed 1, turning at 2: (s'', k'') = 2 (-sin a, cos a), lambda = -2 m
+#   roll    r'' = 2/7 W e_z x r' (any textbook: the ball on a turntable), lambda = m bx''
+#   curve   u'' = -2 u, and the force that holds what has no inertia, m
+#   tied    m + 3 m falls by the weight of m: n.y'' = -g/4, lambda = (0, 3 m g/4)
+#   apart   the weight m g on m + 2 m + 3 m; of l1 + 2 l3 = -5 m g/6, l2 + 2 l3 = -m g/2 the least: 18 l3 = 8 (-4/3 m g/2)
+expected() {
+  awk 'BEGIN { OFMT = "%.17g"; m = 2; g = 9.81; l = 3; W = 3; a = 0.7
+    lr = m*(g*(-2.4) - 0.25)/(2*l*l); print 2*1.8*lr/m; print lr; print 0; print m*g
+    th = (2.4*(-0.5) - 1.8*1)/9; lg = -m*l*th*th; print lg*2.4/(l*m); print lg
+    print -2*sin(a); print 2*cos(a); print -2*m
+    print -2/7*W*0.1; print 2/7*W*0.2; print -m*2/7*W*0.1
+    print -0.6; print m; print 0; print -g/4; print 0; print 3*m*g/4
+    z = -(8/18)*(4/3)*m*g/2; print -g/12*2*m/m/1; print -5*m*g/6 - 2*z; print -m*g/2 - 2*z; print z }'
+}
+row() { sed -n 2p "$1" | tr ',' '\n' | sed 1d; }
+near() { # FILE TOLERANCE: two columns, got and expected
+  awk -v tol="$2" '{ d = $1 - $2; size = $2 < 0 ? -$2 : $2; if (size < 1) size = 1
+    if (!(d <= tol*size && -d <= tol*size)) { print NR ": " $0; bad = 1 } } END { exit bad || NR != 22 }' "$1"
+}
+agrees() { # TOLERANCE OPTIONS...
+  tol=$1
+  shift
+  "$LAGC" run $model --method rk45 -o "$TMP/out.csv" "$@" >"$TMP/log" 2>&1 || { cat "$TMP/log"; return 1; }
+  row "$TMP/out.csv" >"$TMP/got"
+  expected >"$TMP/expected"
+  paste "$TMP/got" "$TMP/expected" >"$TMP/both"
+  near "$TMP/both" "$tol"
+}
+# Rounding: 21 coordinates, 12 constraints, numbers of the order of 10.
+check "accelerations and multipliers of closed forms" agrees 1e-13
+# awk has doubles, and so has the start's text
+check "the same with 34 digits" agrees 1e-15 --precision quad
+check "lagc check counts freedoms and names what is redundant" sh -c '"$1" check "$2" | grep -q "10 degrees of freedom; 12 constraints, of rank 11"' sh "$LAGC" $model
+redundant() { "$LAGC" check $model | grep 'follows from' | sed 's/^ *constraint \([^ ]*\).*/\1/'; }
+is "what follows from others" again "$(redundant)"
+loose() { "$LAGC" check $model | grep -c 'not unique'; }
+is "multipliers that are not unique" 3 "$(loose)"
+
+tap_end
