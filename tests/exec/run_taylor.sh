@@ -70,7 +70,7 @@ without: tables" "$(grep without "$TMP/defect.txt" | sort -u)"
 # ---- the method
 mkdir -p "$TMP/r"
 for m in "models/pendulum.lag wide" "models/double_pendulum.lag swing" "models/kepler.lag orbit" "models/bouncing_ball.lag drop" \
-  "tests/exec/cases/kepler_e0_6.lag go" "$here/gap.lag go"; do
+  "tests/hard/cases/kepler_e0_6.lag go" "$here/gap.lag go"; do
   # shellcheck disable=SC2086 # two words
   set -- $m
   "$LAGC" emit "$1" "$2" --method taylor -o "$TMP/r/$(basename "$1" .lag).c"

@@ -320,7 +320,7 @@ static void report(const Run *r, const char *id, const char *scene, const Trial 
   snprintf(name, sizeof name, "%s%s%s", id, strcmp(scene, "go") == 0 ? "" : ", ", strcmp(scene, "go") == 0 ? "" : scene);
   if (getenv("TABLE")) {
     difficulty(cases, id, why, sizeof why);
-    printf("%-41s %-34.34s %-16s %8.2g %8.2g %8.2g %9lld %8.2g  %s\n", name, why, r->method, x->worst, x->residual, x->stats.energy_drift,
+    printf("%-41s %-34.34s %-12s %8.2g %8.2g %8.2g %9lld %8.2g  %s\n", name, why, r->method, x->worst, x->residual, x->stats.energy_drift,
            x->stats.steps, seconds(), x->refused ? "refuses" : x->limit > 0 && x->worst > 1 ? "limit" : fine ? "pass" : "FAIL");
   } else if (x->refused) {
     printf("ok %d - %s by %s: refused: %s\n", ++count, name, r->method, x->message);
@@ -349,7 +349,7 @@ static int run_case(const Run *r, const char *id, const char *cases) {
     else snprintf(x.message, sizeof x.message, "no such scene or method");
     for (long long steps = x.steps_least; s; steps *= 2) {
       run_once(s, id, method, &x, steps);
-      if (x.worst <= 1 || x.refused || 2 * steps > x.steps_most) break;
+      if (x.worst <= 1 || x.refused || steps == 0 || 2 * steps > x.steps_most) break;
     }
     fine &= x.refused || x.worst <= (x.limit > 0 ? x.limit : 1);
     report(r, id, scene, &x, cases);

@@ -51,3 +51,6 @@ tap_of() {
     esac
   done <"$TMP/out"
 }
+
+# hard_runs TIER [CASE | METHOD ...]: by the program that compile_cases made.
+hard_runs() { "$TMP/hard" $hard/cases.json $hard/expected.txt $hard/runs.txt "$@"; }
