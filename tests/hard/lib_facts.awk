@@ -44,6 +44,9 @@ function relative(    scale, n, i, words) {
 function is(x) { return $6 > 0.97*x && $6 < 1.03*x }
 function complain(what) { print "line " FNR ": " $0 ": " what }
 
+# What is no output of the scene.
+function of_run() { return $4 ~ /^(energy|residual|drift|growth)$/ }
+
 # Of the places where the value stands, the one of the line's time; else the first.
 function place(of,    n, i, labels) {
   n = (of, $5) in leaf ? split(substr(leaf[of, $5], 2), labels, "|") : 0
@@ -55,11 +58,11 @@ function place(of,    n, i, labels) {
   of = $1 == "trap-redundant-pendulum" && $4 != "residual" ? "mbs-a01-pendulum" : $1
   label = place(of)
   used[of, $5] = 1
-  if (!((of, $5) in leaf) && !(($1, $4) in excused) && $4 != "energy" && $4 != "residual" && !states($1, $5)) complain("no reference value of " of)
+  if (!((of, $5) in leaf) && !(($1, $4) in excused) && !of_run() && !states($1, $5)) complain("no reference value of " of)
   if (((of, $5) in leaf) && label ~ /^t=[0-9.]+$/ && $3 ~ /^[0-9]/ && substr(label, 3) + 0 != $3 + 0) complain("the value is that of " label)
   if ($6 ~ /^quad:/) {
     if (stated[$1, label] !~ /not reachable in double/) complain("doubles reach it: " stated[$1, label])
-  } else if ($4 == "energy" || $4 == "residual") {
+  } else if (of_run()) {
     if (!states($1, $6) && !relative()) complain("no such tolerance: " text[$1])
   } else if (($1, label) in stated && name[of, $5] != "rod_tension") {
     if (stated[$1, label] + 0 != $6 + 0) complain("the tolerance is " stated[$1, label])
