@@ -29,9 +29,10 @@ static void list(const lag_method *const *methods, int n)
 {
   for (int i = 0; i < n; i++) {
     const lag_method *m = methods[i];
-    printf("  {\"%s\", 0%s%s%s%s%s,\n", m->name, m->flags & LAG_METHOD_NO_STATES ? " | METHOD_NO_STATES" : "",
+    printf("  {\"%s\", 0%s%s%s%s%s%s,\n", m->name, m->flags & LAG_METHOD_NO_STATES ? " | METHOD_NO_STATES" : "",
            m->flags & LAG_METHOD_VARIATION ? " | METHOD_VARIATION" : "", m->flags & LAG_METHOD_SPLITS ? " | METHOD_SPLITS" : "",
-           m->flags & LAG_METHOD_JACOBIAN ? " | METHOD_JACOBIAN" : "", m->flags & LAG_METHOD_TAYLOR ? " | METHOD_TAYLOR" : "");
+           m->flags & LAG_METHOD_JACOBIAN ? " | METHOD_JACOBIAN" : "", m->flags & LAG_METHOD_TAYLOR ? " | METHOD_TAYLOR" : "",
+           m->flags & LAG_METHOD_FLOWS ? " | METHOD_FLOWS" : "");
     list_options(m);
   }
 }

@@ -10,6 +10,7 @@
 /* Of a method; an explicit one for separable models turns into an implicit one for the others. */
 static unsigned wants_of_info(const Eqns *e, const MethodInfo *m) {
   int splits = (m->flags & METHOD_SPLITS) && e->separable;
+  if ((m->flags & METHOD_FLOWS) && !e->n) return WANT_LINEAR;
   return ((m->flags & METHOD_VARIATION) && !splits ? WANT_VARIATION : 0u) | (m->flags & METHOD_JACOBIAN ? WANT_LINEAR : 0u) |
          (m->flags & METHOD_TAYLOR ? WANT_TAYLOR : 0u);
 }

@@ -52,8 +52,8 @@ static void row(const lag_method *m, FILE *f)
           is & LAG_METHOD_SYMMETRIC ? is & LAG_METHOD_SYMPLECTIC ? "both" : "symmetric"
           : is & LAG_METHOD_SYMPLECTIC ? "symplectic" : "-",
           is & LAG_METHOD_SPLITS ? "partly" : is & LAG_METHOD_NEWTON ? "yes" : "no",
-          is & LAG_METHOD_CONSERVATIVE ? "no" : "yes", is & LAG_METHOD_NO_STATES ? "no" : "yes", m->tangent ? "yes" : "no",
-          is & LAG_METHOD_CONSTRAINTS ? "yes" : "no");
+          is & LAG_METHOD_CONSERVATIVE ? "no" : "yes", is & LAG_METHOD_FLOWS ? "alone" : is & LAG_METHOD_NO_STATES ? "no" : "yes",
+          m->tangent ? "yes" : "no", is & LAG_METHOD_CONSTRAINTS ? "yes" : "no");
 }
 
 static void options(const lag_method *m, FILE *f, int indent)
@@ -96,6 +96,7 @@ int app_explain_method(const App *app, const char *name, FILE *f)
              order_text(m, m->dense_order, dense, sizeof dense), is & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed",
              is & LAG_METHOD_SYMPLECTIC ? ", symplectic" : "", is & LAG_METHOD_SYMMETRIC ? ", symmetric" : "",
              is & LAG_METHOD_CONSERVATIVE ? ", for models without forces, explicit time and states"
+             : is & LAG_METHOD_FLOWS ? ", for models of coordinates alone or of states alone"
              : is & LAG_METHOD_NO_STATES ? ", for models without states" : "",
              is & LAG_METHOD_SPLITS ? "; Newton's method where the model is not separable" : is & LAG_METHOD_NEWTON ? "; Newton's method" : "",
              is & LAG_METHOD_CONSTRAINTS ? "; with constraints or without" : "; not for models with constraints", saved(m));
@@ -117,7 +118,8 @@ void app_list_methods(const App *app, FILE *f)
   wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. both: symplectic and symmetric. Newton: whether each step solves "
              "equations by Newton's method; partly: unless the model is separable, with constant mass matrix, and accelerations that do not "
              "depend on velocities. forces: whether the model may have forces and explicit time; what a symplectic method keeps without "
-             "them it does not keep with them. states: whether it may have a `state`. deriv: whether its steps have a derivative (--tangent, lagc lyapunov). holds: whether its steps end on "
+             "them it does not keep with them. states: whether it may have a `state`; alone: without coordinates, or where L is linear in "
+             "all velocities. deriv: whether its steps have a derivative (--tangent, lagc lyapunov). holds: whether its steps end on "
              "constraints. Options, with their defaults:", 0, 0);
   for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
     words(method(app, i), f);

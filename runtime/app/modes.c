@@ -256,7 +256,8 @@ static int failed(const App *app, int rc, const char *where)
     return app_error(a, "out of memory");
   }
   if (rc == LAG_ESINGULAR) {
-    app_error(a, "the mass matrix is singular %s: choose other coordinates there, or another start: name=VALUE", where);
+    app_error(a, "the %s is singular %s: choose other coordinates there, or another start: name=VALUE",
+              app->scene->model->flags & LAG_FIRST_ORDER ? "two-form of L" : "mass matrix", where);
   } else {
     app_error(a, "%s %s; another start: name=VALUE", rc == LAG_EMETHOD ? "the eigenvalues do not converge" : "the model has no values", where);
   }

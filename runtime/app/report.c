@@ -53,7 +53,7 @@ static void final_state(const App *app, FILE *f)
 
 static void energy(const App *app, const lag_stats *st, FILE *f)
 {
-  if (!app->scene->model->energy || app->scene->model->nq == 0) {
+  if (!app->scene->model->energy) {
     return;
   }
   if (!isfinite(st->energy_drift)) {
@@ -63,6 +63,19 @@ static void energy(const App *app, const lag_stats *st, FILE *f)
   } else {
     fprintf(f, "energy change: %.3g (not conserved: forces or explicit time)\n", st->energy_drift);
   }
+}
+
+/* A contact is no constraint as long as it is open. */
+static int is_redundant(const App *app, int k)
+{
+  const lag_model *m = app->scene->model;
+
+  for (int i = 0; i < m->ncontacts; i++) {
+    if (m->contacts[i].constraint == k) {
+      return 0;
+    }
+  }
+  return lag_sim_is_redundant(app->sim, k);
 }
 
 /* What the constraints did to the start, and how well they were kept. */
@@ -87,22 +100,32 @@ static void constraints(const App *app, const lag_stats *st, FILE *f)
   if (!of) {
     return;
   }
-  fprintf(f, "constraints: %d, %d independent at the start", of->n, lag_sim_rank(app->sim));
+  if (of->n > m->ncontacts) {
+    fprintf(f, "constraints: %d, %d independent at the start", of->n - m->ncontacts, lag_sim_rank(app->sim));
+  }
   for (int k = 0; k < of->n; k++) {
-    if (lag_sim_is_redundant(app->sim, k) && redundant++ < MOST_LINES) {
+    if (is_redundant(app, k) && redundant++ < MOST_LINES) {
       fprintf(f, "%s%s", redundant == 1 ? "; redundant: " : ", ", of->of[k].name);
     }
   }
-  fprintf(f, "%s\nconstraint residual: %.3g, of rates %.3g (the largest, in SI)\n", redundant > MOST_LINES ? ", ..." : "", st->constraint,
-          st->constraint_rate);
+  fprintf(f, "%s%sconstraint residual: %.3g, of rates %.3g (the largest, in SI)\n", redundant > MOST_LINES ? ", ..." : "", of->n > m->ncontacts ? "\n" : "",
+          st->constraint, st->constraint_rate);
 }
 
-/* A symplectic method on a model that is not conservative: what its name no longer promises. */
+/* A symplectic method on a model that is not conservative, or whose two-form varies: what its name no longer promises. */
 static void caveat(const App *app, FILE *f)
 {
   const lag_method *m = lag_sim_method(app->sim);
+  unsigned has = app->scene->model->flags;
 
-  if ((m->flags & LAG_METHOD_SYMPLECTIC) && !(app->scene->model->flags & LAG_CONSERVES_ENERGY)) {
+  if (!(m->flags & LAG_METHOD_SYMPLECTIC)) {
+    return;
+  }
+  if (app->scene->model->nq == 0 && !(has & LAG_FIRST_ORDER)) {
+    fprintf(f, "note: %s is symplectic for Lagrangians; here it is symmetric, and keeps quadratic invariants\n", m->name);
+  } else if ((has & LAG_FIRST_ORDER) && (has & LAG_CONSERVES_ENERGY) && !(has & LAG_CONSTANT_FORM)) {
+    fprintf(f, "note: %s is symplectic where the two-form of L is constant; here it varies, and the method is symmetric\n", m->name);
+  } else if (!(has & LAG_CONSERVES_ENERGY)) {
     fprintf(f, "note: %s is symplectic for conservative models; this one has forces or explicit time\n", m->name);
   }
 }
@@ -290,9 +313,9 @@ static void constraints_json(const App *app, FILE *f)
   if (!of) {
     return;
   }
-  fprintf(f, "\"constraints\": %d, \"rank\": %d, \"redundant\": [", of->n, lag_sim_rank(app->sim));
+  fprintf(f, "\"constraints\": %d, \"rank\": %d, \"redundant\": [", of->n - m->ncontacts, lag_sim_rank(app->sim));
   for (int k = 0; k < of->n; k++) {
-    if (lag_sim_is_redundant(app->sim, k)) {
+    if (is_redundant(app, k)) {
       fputs(redundant++ ? ", " : "", f);
       json_string(f, of->of[k].name);
     }
@@ -334,7 +357,7 @@ void report_json(App *app, FILE *f)
   fprintf(f, "\"steps\": %lld, \"rejected\": %lld, \"rhs_calls\": %lld, ", st.steps, st.rejected, st.rhs_calls);
   field_string(f, "form", form(app, &why));
   fprintf(f, "\"newton_systems\": %lld, \"newton_iterations\": %lld, ", st.systems, st.iterations);
-  field_number(f, "wall_s", app->wall);
+  fprintf(f, "\"wall_s\": %.6g, ", app->wall); /* a clock has no more digits, in no precision */
   field_number(f, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null: it is no drift */
   charges(app, f);
   report_events_json(app, f);

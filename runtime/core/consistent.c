@@ -65,7 +65,7 @@ static int direction(Start *w, double pull, double *d)
     for (int k = 0; k < w->n; k++) {
       l[k] = -w->residual[k];
     }
-    regular = lag_kkt(nf, w->n, w->kkt);
+    regular = lag_kkt(nf, w->n, 0, w->kkt);
     rc = regular || pass == 0 ? 0 : LAG_ESINGULAR;
   }
   memcpy(d, x, (size_t)nf * sizeof *d);
@@ -256,12 +256,34 @@ static int settle(Start *w, int holonomic)
   return refuse(w, 0);
 }
 
-/* Which constraints follow from the others here: marks[n], and how many do not. */
+/* x := what is left of row x[n] beside the orthonormal rows Q[r * n]; twice, so that rounding is gone. Returns its length. */
+static double remainder_of(int n, int r, const double *Q, double *x)
+{
+  double s = 0;
+
+  for (int k = 0; k < 2 * r; k++) {
+    const double *q = Q + k % r * n;
+    double along = 0;
+    for (int i = 0; i < n; i++) {
+      along += q[i] * x[i];
+    }
+    for (int i = 0; i < n; i++) {
+      x[i] -= along * q[i];
+    }
+  }
+  for (int i = 0; i < n; i++) {
+    s += x[i] * x[i];
+  }
+  return sqrt(s);
+}
+
+/* Which constraints follow here from those before them: marks[n], and how many do not. What counts as nothing left is as in lag_kkt.h. */
 static int rank(Start *w, double *marks)
 {
+  const double least = cbrt(DBL_EPSILON) * cbrt(DBL_EPSILON);
   const lag_constraints *of = w->of;
-  int nq = w->nq, m = of->n, r;
-  double *A = w->kkt, *diag = A + m * nq, *beta = diag + m, *scale = beta + m, *order = scale + m;
+  int nq = w->nq, m = of->n, r = 0;
+  double *A = w->kkt, *Q = A;
   const double *y = w->y;
   int rc = of->matrices(w->sim->scene->t0, y, y + nq, y + 2 * nq, w->pb->p, w->pb->u, w->A, w->M, w->pb->work);
 
@@ -269,9 +291,17 @@ static int rank(Start *w, double *marks)
   for (int e = 0; e < of->njacobian && rc == 0; e++) {
     A[of->jacobian[e].row * nq + of->jacobian[e].col] = w->A[e];
   }
-  r = lag_rank(nq, m, A, diag, beta, scale, order);
   for (int k = 0; k < m; k++) {
-    marks[(int)order[k]] = k >= r;
+    double *row = A + k * nq, size = remainder_of(nq, 0, Q, row);
+    for (int i = 0; i < nq && size > 0; i++) {
+      row[i] /= size;
+    }
+    double left = remainder_of(nq, r, Q, row);
+    marks[k] = !(left > least);
+    for (int i = 0; i < nq && left > least; i++) {
+      Q[r * nq + i] = row[i] / left;
+    }
+    r += left > least;
   }
   return r;
 }

@@ -46,6 +46,7 @@ struct lag_sim {
   lag_signal *signal;    /* [nu] set by the caller; not part of what is saved */
   double *start;         /* [n] NaN: as the scene says */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
+  double *contact_room;  /* [2 n of constraints, or nev, whichever is more] */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
   double *saved;         /* one block: Run, and the arrays below */
   size_t nsaved;
@@ -105,6 +106,13 @@ int lag_events_locate(lag_sim *sim);
 int lag_events_spread(lag_sim *sim, const double *at_event, double *spread);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
+
+/* contact.c. of: the contact that the event is one of, or NULL. after: event k has led from `before` to y; closes the gap when the impacts
+ * have come to their end, or one leaves no speed, and opens it when it is released. begin: gaps that are closed at the start. */
+const lag_contact *lag_contact_of(const lag_model *m, int event);
+int lag_contact_is_closed(const lag_sim *sim, const lag_contact *contact);
+int lag_contact_after(lag_sim *sim, int event, int ends, const double *before, double *y);
+int lag_contact_begin(lag_sim *sim);
 
 /* tangent.c. pass: the step has been used up. refuse: event k changes the state. */
 int lag_tangent_pass(lag_sim *sim);

@@ -45,18 +45,18 @@ int lag_events_arm(lag_sim *s)
 
 /* An event that repeats faster and faster (a ball coming to rest) would never let time pass. Others may fire between. dt: since
  * it fired last. */
-static int zeno(lag_sim *s, int k, double dt)
+static int is_zeno(lag_sim *s, int k, double dt)
 {
-  double t = s->run->t;
-
   s->shorter[k] = dt < s->interval[k] ? s->shorter[k] + 1 : 0;
   s->interval[k] = dt;
-  if (s->shorter[k] >= 10 && dt <= 1e-7 * fabs(t - s->scene->t0)) {
-    return lag_fail(s, LAG_EZENO,
-                    "event %s repeats in ever shorter intervals: %.3g s at t = %.17g s. Let it stop the run, or come to rest",
-                    s->scene->model->ev[k].name, dt, t);
-  }
-  return LAG_OK;
+  return s->shorter[k] >= 10 && dt <= 1e-7 * fabs(s->run->t - s->scene->t0);
+}
+
+static int fail_zeno(lag_sim *s, int k)
+{
+  return lag_fail(s, LAG_EZENO,
+                  "event %s repeats in ever shorter intervals: %.3g s at t = %.17g s. Let it stop the run, or make it a contact, "
+                  "which comes to rest", s->scene->model->ev[k].name, s->interval[k], s->run->t);
 }
 
 /* The action of event k on `now`, by way of yb. changed: the state is another one. */
@@ -86,6 +86,12 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
     return lag_fail(s, LAG_EMODEL, "event %s: its action at t = %.17g s leaves the constraints: %s", m->ev[k].name, r->t,
                     s->pb.detail ? s->pb.detail : "");
   }
+  int ends = is_zeno(s, k, since);
+  const lag_contact *contact = lag_contact_of(m, k);
+  if ((rc = lag_contact_after(s, k, ends, s->now, s->yb)) != 0) {
+    return lag_fail(s, LAG_EMODEL, "the contact %s has no finite values at t = %.17g s", m->ev[k].name, r->t);
+  }
+  *changed |= contact != NULL; /* another model moves on */
   if (s->on_event) {
     s->on_event(s->on_event_context, k, r->t, s->now, s->yb);
   }
@@ -97,7 +103,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
     rc = lag_watch_jump(s, r->t, s->now, s->yb);
     memcpy(s->now, s->yb, bytes);
   }
-  return rc ? rc : zeno(s, k, since);
+  return rc ? rc : ends && !contact ? fail_zeno(s, k) : LAG_OK;
 }
 
 /* Signs after the events at t. before: the values before the actions; spread: what is rounding in them. */

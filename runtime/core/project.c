@@ -74,16 +74,24 @@ static int sizes(lag_problem *pb, const Held *w, double t, const double *y, int 
   return 0;
 }
 
+double lag_size_like(const lag_problem *pb, const double *x, int i)
+{
+  const lag_var *q = pb->model->q;
+  double most = 0;
+
+  for (int j = 0; j < pb->nq; j++) {
+    most = fabs(x[j]) > most && (q[i].unit == q[j].unit || strcmp(q[i].unit, q[j].unit) == 0) ? fabs(x[j]) : most;
+  }
+  return most;
+}
+
 /* How far component i may be from 0: as far as one of the same unit is; of an angle, 1. */
 static double reach(const lag_problem *pb, const double *x, int i)
 {
-  const lag_var *q = pb->model->q;
-  double most = q[i].periodic || !q[i].unit[0] ? 1 : 0;
+  const lag_var *q = &pb->model->q[i];
+  double most = lag_size_like(pb, x, i);
 
-  for (int j = 0; j < pb->nq; j++) {
-    most = fabs(x[j]) > most && strcmp(q[i].unit, q[j].unit) == 0 ? fabs(x[j]) : most;
-  }
-  return most > 0 ? most : 1;
+  return most <= 0 || (most < 1 && (q->periodic || !q->unit[0])) ? 1 : most;
 }
 
 /* At least what a state makes of them that is another by as much everywhere: there may be no terms here of first order, as of a folded

@@ -1,9 +1,9 @@
 /* The model as y' = f(t, y), the only way in which methods call it. Enters: t, y = [q|v|z]; leaves:
  * y' = [v|a|z']. Holds: an input is the model's formula or table unless a function or a constant replaces it. */
 #include <math.h>
-#include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 
 int lag_inputs(lag_problem *pb, double t)
 {
@@ -47,15 +47,7 @@ unsigned lag_facts(const lag_problem *pb)
 
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy)
 {
-  int nq = pb->nq;
-  int rc = lag_inputs(pb, t);
-
-  pb->rhs_calls++;
-  if (rc) {
-    return rc;
-  }
-  memcpy(dy, y + nq, (size_t)nq * sizeof *dy);
-  return pb->model->accel(t, y, y + nq, y + 2 * nq, pb->p, pb->u, dy + nq, dy + 2 * nq, pb->work);
+  return lag_rhs_here(pb, pb->nq, t, y, dy);
 }
 
 /* The first row after t in direction dir; -1: none. */

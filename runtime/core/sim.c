@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 
 const char *lag_status_name(int status)
 {
@@ -49,10 +50,10 @@ static void name_rate(const lag_sim *s, int i, char *text, size_t size)
   }
 }
 
-static const char *reason(int status)
+static const char *reason(const lag_model *m, int status)
 {
   switch (status) {
-  case LAG_ESINGULAR: return "the mass matrix is singular";
+  case LAG_ESINGULAR: return m->flags & LAG_FIRST_ORDER ? "the two-form of L is singular" : "the mass matrix is singular";
   case LAG_ENAN: return "the model gives no finite value";
   case LAG_EDOMAIN: return "the model left its domain, and no smaller step helps";
   case LAG_ESTEP: return "the step became too small: a singularity, or the tolerance is too strict";
@@ -77,7 +78,7 @@ int lag_explain(lag_sim *s, int status)
     used += (size_t)snprintf(text + used, sizeof text - used, "%s%s%s = %.6g", i ? ", " : "", v->name,
                              i >= m->nq && i < 2 * m->nq ? "'" : "", lag_sim_state_value(s, i));
   }
-  return lag_fail(s, status, "at t = %.9g s: %s%s%s%s%s%s; last good state, t = %.9g s: %s%s", pb->bad_t, reason(status),
+  return lag_fail(s, status, "at t = %.9g s: %s%s%s%s%s%s; last good state, t = %.9g s: %s%s", pb->bad_t, reason(m, status),
                   name[0] ? " for " : "", name, pb->detail ? " (" : "", pb->detail ? pb->detail : "",
                   pb->detail ? ")" : "", s->run->t, text, pb->n > 8 ? ", ..." : "");
 }
@@ -88,6 +89,7 @@ static int begin(lag_sim *s, double t)
   s->run->dir = s->pb.dir = t < s->scene->t0 ? -1 : 1;
   int rc = lag_setup_start(s);
 
+  rc = rc ? rc : lag_contact_begin(s);
   if (rc || t == s->scene->t0) {
     return rc;
   }
@@ -125,7 +127,7 @@ static int take(lag_sim *s, double t_stop)
   if (lag_next_row(&s->pb, t, &row) < fabs(t_stop - t)) {
     t_stop = row;
   }
-  memcpy(s->y0, s->now, (size_t)s->pb.n * sizeof(double));
+  lag_copy(s->pb.n, s->now, s->y0);
   s->pb.detail = NULL;
   s->pb.bad_t = t;
   int rc = s->method->step(s->method_work, &s->pb, &t, s->y, t_stop);
@@ -151,16 +153,15 @@ int lag_between(lag_sim *s, double t, double *y)
 static int settle(lag_sim *s, double t)
 {
   const Run *r = s->run;
-  size_t bytes = (size_t)s->pb.n * sizeof(double);
 
   if (t == r->step_t1) {
-    memcpy(s->now, s->y, bytes);
+    lag_copy(s->pb.n, s->y, s->now);
   } else if (t != r->t) {
     int rc = lag_between(s, t, s->yc);
     if (rc) {
       return rc;
     }
-    memcpy(s->now, s->yc, bytes);
+    lag_copy(s->pb.n, s->yc, s->now);
   }
   s->run->t = t;
   return LAG_OK;
@@ -181,7 +182,7 @@ static int pass(lag_sim *s)
     return lag_events_fire(s);
   }
   r->have_step = 0;
-  memcpy(s->sign, s->sign_end, (size_t)s->scene->model->nev * sizeof(double));
+  lag_copy(s->scene->model->nev, s->sign_end, s->sign);
   return LAG_OK;
 }
 

@@ -22,7 +22,7 @@ void lag_tangent_free(lag_sim *s)
 static int check(lag_sim *s)
 {
   const lag_model *m = s->scene->model;
-  int in_p = (s->method->flags & LAG_METHOD_VARIATION) && !((s->method->flags & LAG_METHOD_SPLITS) && (m->flags & LAG_SEPARABLE));
+  int in_p = m->nq > 0 && (s->method->flags & LAG_METHOD_VARIATION) && !((s->method->flags & LAG_METHOD_SPLITS) && (m->flags & LAG_SEPARABLE));
 
   if (m->constraints) {
     return lag_fail(s, LAG_EMETHOD, "there is no tangent of a motion with constraints yet (%s): give the model coordinates that need none",

@@ -11,7 +11,7 @@ static int energy_at(lag_sim *s, double t, const double *y, double *e)
   int rc = lag_inputs(&s->pb, t);
 
   e[0] = e[1] = NAN;
-  if (rc || !m->energy || m->nq == 0) {
+  if (rc || !m->energy) {
     return rc;
   }
   return m->energy(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, e, s->work);
@@ -139,6 +139,8 @@ int lag_watch_jump(lag_sim *s, double t, const double *ya, const double *yb)
   Run *r = s->run;
   double ea = energy_at(s, t, ya, s->e) ? NAN : s->e[0];
   double eb = energy_at(s, t, yb, s->e) ? NAN : s->e[0];
+
+  see_constraints(s, t, yb);
 
   r->e_first += eb - ea;
   r->e_scale = fmax(r->e_scale, s->e[1]);

@@ -63,7 +63,7 @@ typedef struct lag_problem {
   const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
-  double longest;      /* embedded methods take no longer steps than this [s], 0: no limit */
+  double longest;      /* embedded methods and radau take no longer steps than this [s], 0: no limit */
   double span;         /* length of the scene's span, 0 when it has none. Not where this run ends */
   double rhs_calls;    /* counted by lag_rhs */
   double rejected;     /* counted by the method */
@@ -128,6 +128,9 @@ int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, 
  * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), IV.4, DOI 10.1007/3-540-30666-8: projection
  * keeps the order of a method. */
 int lag_project(lag_problem *pb, double t, double *y, double *lost);
+/* The largest of |x[j]| over the coordinates (or their velocities) that have the unit of coordinate i: what rounding in it is measured
+ * with, where it is small itself. */
+double lag_size_like(const lag_problem *pb, const double *x, int i);
 /* Takes from a small change e[n] of the state y what lag_project would take back, to first order. */
 int lag_along_constraints(lag_problem *pb, double t, const double *y, double *e);
 
@@ -163,6 +166,7 @@ enum {
   LAG_METHOD_TAYLOR = 256,     /* needs the model's Taylor coefficients: lag_model.taylor */
   LAG_METHOD_JACOBIAN = 2048,  /* needs the model's linearisation: lag_model.linear */
   LAG_METHOD_CONSTRAINTS = 4096, /* steps end on the constraints of a model that has them */
+  LAG_METHOD_FLOWS = 8192,     /* takes models of states alone (nq = 0), with the linearisation in place of derivatives of L */
   LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS where it does not split */
 };
 

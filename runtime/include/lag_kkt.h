@@ -11,6 +11,10 @@
  * Liesen, Acta Numerica 14 (2005) 1, section 6, DOI 10.1017/S0962492904000212); l is the least solution of R l = what M x - f is there,
  * by a second factorization where r < m.
  *
+ * Near a position where constraints become dependent, a coarse rank is the right one for corrections of a state, whose right-hand
+ * side is little more than rounding: what is 1e-16 there moves a position by 1e-16/s, where s is how independent the weakest
+ * constraint still is, and that turns the directions which constraints allow by 1e-16/s^2.
+ *
  * lagc copies the section below into what it emits, with LAG_ and lag_ replaced by the prefix of an emitted header. There
  * LAG_REAL may be a vector; LAG_LANE is the scalar that it is made of. */
 #ifndef LAG_KKT_H
@@ -60,11 +64,11 @@ static LAG_LANE lag_reflector(int n, LAG_LANE *v, LAG_LANE *beta) {
 }
 
 /* A P = R^T Q^T, row by row: row k of A[m*n] is left as [R^T | vector k], diag[k] and beta[k] beside it; order[m]: which row
- * stands where; scale[m]: what each was divided by. Returns the rank: a row of which less than eps^(2/3) is independent
- * of those before it does not count. */
-static int lag_rank(int n, int m, LAG_LANE *A, LAG_LANE *diag, LAG_LANE *beta, LAG_LANE *scale, LAG_LANE *order) {
+ * stands where; scale[m]: what each was divided by. Returns the rank: a row of which less than eps^(2/3), or eps^(1/3) where it is
+ * coarse, is independent of those before it does not count. */
+static int lag_rank(int n, int m, int coarse, LAG_LANE *A, LAG_LANE *diag, LAG_LANE *beta, LAG_LANE *scale, LAG_LANE *order) {
   const LAG_LANE third = (LAG_LANE)4/3 - 1, eps = LAG_LANE_FN(fabs)(3*third - 1);
-  const LAG_LANE least = LAG_LANE_FN(cbrt)(eps)*LAG_LANE_FN(cbrt)(eps);
+  const LAG_LANE root = LAG_LANE_FN(cbrt)(eps), least = coarse ? root : root*root;
   int rank = 0;
   for (int j = 0; j < m; j++) {
     LAG_LANE *const row = A + j*n, size = 0;
@@ -127,10 +131,10 @@ static void lag_multipliers(int n, int m, int r, const LAG_LANE *A, const LAG_LA
 
 /* x[n], l[m] hold f and g, and become the solution; M and A are destroyed. w[m*m + 9*m] is scratch. Returns whether M is regular on
  * the kernel of A. */
-static int lag_kkt_lane(int n, int m, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
+static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
   LAG_LANE *const diag = w, *const beta = w + m, *const scale = w + 2*m, *const order = w + 3*m;
   LAG_LANE *const y = w + 4*m, *const s = w + 5*m, *const mu = w + 6*m, *const S = w + 7*m;
-  const int r = lag_rank(n, m, A, diag, beta, scale, order);
+  const int r = lag_rank(n, m, coarse, A, diag, beta, scale, order);
   for (int k = 0; k < r; k++) {
     y[k] = l[(int)order[k]]/scale[k];
     for (int i = 0; i < k; i++) y[k] -= A[k*n + i]*y[i];
@@ -178,19 +182,19 @@ static int lag_kkt_lane(int n, int m, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG
 
 #ifndef LAG_LANES
 /* w = [M | A | f, becomes x | g, becomes l | scratch]. Returns whether M is regular on the kernel of A. */
-static LAG_MASK lag_kkt(int n, int m, LAG_REAL *w) {
+static LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w) {
   LAG_REAL *const A = w + n*n, *const x = A + m*n;
-  return lag_kkt_lane(n, m, w, A, x, x + n, x + n + m);
+  return lag_kkt_lane(n, m, coarse, w, A, x, x + n, x + n + m);
 }
 #else
 /* The same, lane by lane: each has pivots, and a rank, of its own. */
-static LAG_MASK lag_kkt(int n, int m, LAG_REAL *w) {
+static LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w) {
   const int used = n*n + m*n + n + m;
   LAG_MASK regular;
   for (int k = 0; k < LAG_LANES; k++) {
     LAG_LANE *const M = (LAG_LANE *)(w + used), *const A = M + n*n, *const x = A + m*n;
     for (int i = 0; i < used; i++) M[i] = w[i][k];
-    regular[k] = lag_kkt_lane(n, m, M, A, x, x + n, x + n + m) ? -1 : 0;
+    regular[k] = lag_kkt_lane(n, m, coarse, M, A, x, x + n, x + n + m) ? -1 : 0;
     for (int i = 0; i < n + m; i++) w[n*n + m*n + i][k] = x[i];
   }
   return regular;

@@ -40,7 +40,7 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 enum {
   LAG_OK = 0,
   LAG_ERETRY = 1,     /* outside the domain here: a smaller step may help */
-  LAG_ESINGULAR = -1  /* the mass matrix is singular at this state */
+  LAG_ESINGULAR = -1  /* the mass matrix is singular at this state; with LAG_FIRST_ORDER, the two-form */
 };
 
 /* Facts about a model, with the inputs that it gives itself, that the compiler proved. */
@@ -51,6 +51,9 @@ enum {
   LAG_SMOOTH = 8,           /* no if, abs, sign, min, max, and no table */
   LAG_SEPARABLE = 16,       /* constant mass matrix, accelerations that do not depend on velocities, no states */
   LAG_TIMELESS = 32,        /* t enters by the formulas and tables of inputs, if at all */
+  LAG_FIRST_ORDER = 128,    /* L is linear in all velocities: coordinates are among z, nq is 0, and M zd = dH is solved with the
+                             * two-form omega = d(dL/dv) in place of a mass matrix */
+  LAG_CONSTANT_FORM = 256,  /* and omega depends on no coordinate, state or time, and no force on velocities */
   LAG_LOSES_ENERGY = 64     /* not conserved, but with constant inputs the energy, less the work of forces, which are constant,
                              * never grows: the dissipation is quadratic in q' and nowhere negative, for the signs declared */
 };
@@ -140,6 +143,14 @@ typedef struct lag_constraints {
                   const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
 } lag_constraints;
 
+/* A gap that stays at least 0. While it is closed it is a constraint: the model multiplies that by an input, which is 1 then and else
+ * 0. The runtime closes it where impacts follow each other ever faster, or one leaves no speed, and opens it where its multiplier
+ * becomes negative. */
+typedef struct lag_contact {
+  int input, constraint; /* places in u and in the constraints */
+  int impact, release;   /* events: the gap closes, its multiplier falls below 0 */
+} lag_contact;
+
 /* One of the second derivatives that lag_model.second computes: of L by two of q, v, where of LAG_QQ and LAG_VV only
  * row >= col is given and the row of LAG_VQ is that of v; or of the generalised force `row` by q or v. */
 enum { LAG_QQ, LAG_VQ, LAG_VV, LAG_FQ, LAG_FV };
@@ -208,6 +219,8 @@ typedef struct lag_model {
   const lag_table *tables; /* [ntables] the inputs that have a table */
 
   const lag_constraints *constraints; /* NULL: none */
+  int ncontacts;
+  const lag_contact *contacts;        /* [ncontacts] */
 
   /* The rest is NULL in a program that was not emitted for a method that needs it (lagc build --method NAME). */
 

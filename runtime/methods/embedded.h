@@ -6,15 +6,23 @@
 #include "lag.h"
 #include "methods/tableau.h"
 
-typedef struct EmbeddedPair {
+typedef struct EmbeddedPair EmbeddedPair;
+typedef struct Embedded Embedded;
+
+struct EmbeddedPair {
   const lag_tableau *tab;
   int late;            /* the error does not need the last stage: it waits until the step is accepted */
-  double power, beta;  /* h grows by safety err_old^beta / err^power */
-  double shrink_most, grow_most;
-} EmbeddedPair;
+  double beta;         /* h grows by safety err_old^beta / err^(ratio beta) */
+  int ratio;
+  double safety, shrink_most, grow_most;
 
-/* One block of doubles; x holds the arrays of n named below. */
-typedef struct Embedded {
+  /* Stages and error of one trial from (t, Y0) to tb = t + dt: Y1, COMP1, and the square of the error's norm; NaN when anything in
+   * it is not finite. *rc: the model's answer; > 0: a smaller step may help. By EMBEDDED_TRIAL of embedded_trial.h. */
+  double (*trial)(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc);
+};
+
+/* One block of doubles; x holds the arrays named below, each in a row of lag_embedded_row() doubles: n, and zeros. */
+struct Embedded {
   double h;         /* the next step to try, > 0; 0: not chosen yet */
   double h_option, h_max, atol;
   double fixed;     /* 1: every step has the size h */
@@ -25,8 +33,10 @@ typedef struct Embedded {
   double tc;        /* what t has lost to rounding */
   double t_begin;   /* where the first step began */
   double begun;
+  double per;       /* 1/n */
+  double across;    /* the square of the error with what the projection takes back, where that was left out of it; or 0 */
   double x[];
-} Embedded;
+};
 
 /* COMP: what y has lost to rounding; COMP1: the same after the step. K1: the first of stages + extra arrays. */
 enum { EMBEDDED_COMP, EMBEDDED_COMP1, EMBEDDED_Y0, EMBEDDED_Y1, EMBEDDED_YS, EMBEDDED_K1 };
@@ -34,13 +44,29 @@ enum { EMBEDDED_COMP, EMBEDDED_COMP1, EMBEDDED_Y0, EMBEDDED_Y1, EMBEDDED_YS, EMB
 enum { EMBEDDED_NOPTIONS = 4 };
 extern const lag_method_option lag_embedded_options[EMBEDDED_NOPTIONS];
 
-/* Doubles of work, with `more` arrays of n behind the stages. */
+/* Rows are whole pairs: sums over them have no remainder. Those of small models are of one size, which the compiler knows. */
+enum { EMBEDDED_SMALL = 8 };
+static inline int lag_embedded_row(const lag_problem *pb)
+{
+  return pb->n <= EMBEDDED_SMALL ? EMBEDDED_SMALL : (pb->n + 1) & ~1;
+}
+
+static inline double *lag_embedded_array(Embedded *w, const lag_problem *pb, int which)
+{
+  return w->x + which * lag_embedded_row(pb);
+}
+
+/* Doubles of work, with `more` rows behind the stages. */
 size_t lag_embedded_size(const EmbeddedPair *pair, const lag_problem *pb, int more);
 
 /* These are as lag_method says. */
 int lag_embedded_init(void *work, lag_problem *pb, const double *opt);
 void lag_embedded_reset(void *work, lag_problem *pb);
 int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y);
+
+/* The square of the error of the step just computed, without what its projection takes back: near positions where constraints become
+ * dependent that part is large, and says nothing. whole: with it. */
+double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt, double whole);
 
 /* The derivative of the last step, or of a shorter one. */
 size_t lag_embedded_tangent_size(const EmbeddedPair *pair, const lag_problem *pb, int k);
@@ -51,12 +77,5 @@ int lag_embedded_tangent(const EmbeddedPair *pair, void *work, lag_problem *pb, 
   .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_CONSTRAINTS, .noptions = EMBEDDED_NOPTIONS, .options = lag_embedded_options,      \
   .work_size = work_size, .init = lag_embedded_init, .step = step, .dense = dense, .reset = lag_embedded_reset,      \
   .tangent_size = tangent_size, .tangent = tangent
-
-/* out := sum_j coef[j] K_j over j < count. */
-void lag_embedded_sum(const double *k, int n, int count, const double *coef, double *restrict out);
-
-/* K_s = f(t0 + c_s dt, y0 + dt sum a_sj K_j). ys[n] is scratch. > 0: a smaller step may help. */
-int lag_embedded_stage(const lag_tableau *tab, lag_problem *pb, int s, double t0, double dt, const double *y0, double *k,
-                       double *ys);
 
 #endif

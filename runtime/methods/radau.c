@@ -450,12 +450,12 @@ static int prepare(Radau *w, const Arrays *a, lag_problem *pb, double t, const d
   return LAG_OK;
 }
 
-/* The limit on steps: the option, or else what has been seen of the motion so far. */
-static double longest(const Radau *w, double t)
+/* The limit on steps: the option, or else what has been seen of the motion so far; and what the problem says. */
+static double longest(const Radau *w, const lag_problem *pb, double t)
 {
-  double seen = fabs(t - w->t_begin);
+  double seen = fabs(t - w->t_begin), most = w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
 
-  return w->fixed != 0.0 ? w->h_option : w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
+  return w->fixed != 0.0 ? w->h_option : pb->longest > 0 ? fmin(most, pb->longest) : most;
 }
 
 /* Ends an accepted step, and chooses the next. */
@@ -520,7 +520,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
 
   (void)t_stop;
   while (rc == 0) {
-    w->h = fmin(w->h, longest(w, *t));
+    w->h = fmin(w->h, longest(w, pb, *t));
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_sum(*t, dt, &tc);
     if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) {
       return gave_up(w, pb, *t, why);

@@ -4,7 +4,7 @@
  * (coefficients). E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), II.6 with code
  * dopri5 (Shampine's dense output of order 4). */
 #include "lag.h"
-#include "methods/embedded.h"
+#include "methods/embedded_trial.h"
 
 const lag_tableau lag_dopri5_tableau = {
     .stages = 7,
@@ -23,8 +23,10 @@ const lag_tableau lag_dopri5_tableau = {
            701980252875.0 / 199316789632, -1453857185.0 / 822651844, 69997945.0 / 29380423}},
 };
 
+EMBEDDED_TRIAL(lag_dopri5_tableau, 0)
+
 /* HNW II.4: beta = 0.04 damps the steps of a mildly stiff problem at little cost elsewhere. */
-static const EmbeddedPair pair = {&lag_dopri5_tableau, 0, 0.2 - 0.75 * 0.04, 0.04, 0.2, 10};
+static const EmbeddedPair pair = {&lag_dopri5_tableau, 0, 0.04, 4, 0.9, 0.2, 10, trial};
 
 static size_t work_size(const lag_problem *pb)
 {
@@ -41,14 +43,16 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
 static void dense(void *work, lag_problem *pb, double t, double *y)
 {
   const Embedded *w = work;
-  int n = pb->n, last = pair.tab->stages - 1;
+  int n = pb->n, row = lag_embedded_row(pb), last = pair.tab->stages - 1;
   double s = (t - w->t0) / w->dt, r = 1 - s;
-  const double *k = w->x + EMBEDDED_K1 * n, *y0 = w->x + EMBEDDED_Y0 * n, *y1 = w->x + EMBEDDED_Y1 * n;
+  const double *k = w->x + EMBEDDED_K1 * row, *y0 = w->x + EMBEDDED_Y0 * row, *y1 = w->x + EMBEDDED_Y1 * row;
 
-  lag_embedded_sum(k, n, last + 1, pair.tab->d[0], y);
-  for (int i = 0; i < n; i++) {
-    double diff = y1[i] - y0[i], b = w->dt * k[i] - diff;
-    y[i] = y0[i] + s * (diff + r * (b + s * (diff - w->dt * k[last * n + i] - b + r * w->dt * y[i])));
+  for (int i = 0; i < n; i += 2) {
+    Pair2 high = embedded_sum(pair.tab->d[0], last + 1, k + i, row);
+    for (int j = i; j < i + 2 && j < n; j++) {
+      double diff = y1[j] - y0[j], b = w->dt * k[j] - diff;
+      y[j] = y0[j] + s * (diff + r * (b + s * (diff - w->dt * k[last * row + j] - b + r * w->dt * (j == i ? high.a : high.b))));
+    }
   }
 }
 

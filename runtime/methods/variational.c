@@ -1,8 +1,10 @@
 /* variational and gauss: discrete mechanics from one discrete Lagrangian a step, of order 2, 4, 6 or 8. Enters: t, y; leaves:
  * t + h, y one step later. Holds: the map is symplectic in q and dL/dv and symmetric for any L; a momentum that a symmetry
  * conserves is conserved to rounding where the symmetry moves q affinely. Forces enter by the discrete Lagrange-d'Alembert
- * principle. Steps: implicit.c; the tables and their sources: rule.h. */
+ * principle. Steps: implicit.c; the tables and their sources: rule.h. Models of states alone, such as Lagrangians that are linear in all
+ * velocities, have no p beside q: gauss collocates their flow (collocation.c, which says why variational is not for them). */
 #include "lag.h"
+#include "methods/collocation.h"
 #include "methods/implicit.h"
 #include "methods/steps.h"
 
@@ -69,6 +71,10 @@ static int gauss_init(void *work, lag_problem *pb, const double *opt)
   int u = (int)opt[OPT_STAGES];
   lag_rule rule;
 
+  if (pb->nq == 0) {
+    lag_collocation_init(work, pb, lag_step_size(pb, opt[OPT_STEP]), u);
+    return LAG_OK;
+  }
   lag_rule_gauss(&rule, u);
   lag_implicit_init(work, pb, lag_step_size(pb, opt[OPT_STEP]), 2 * u, &rule);
   return LAG_OK;
@@ -81,7 +87,9 @@ static size_t variational_size(const lag_problem *pb)
 
 static size_t gauss_size(const lag_problem *pb)
 {
-  return lag_implicit_size(pb, (int)pb->opt[OPT_STAGES]);
+  int u = (int)pb->opt[OPT_STAGES];
+
+  return pb->nq ? lag_implicit_size(pb, u) : lag_collocation_size(pb, u);
 }
 
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
@@ -90,38 +98,72 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return lag_implicit_step(work, pb, t, y);
 }
 
-#define PROPERTIES (LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_NEWTON)
+static int gauss_step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
+{
+  (void)t_stop;
+  return pb->nq ? lag_implicit_step(work, pb, t, y) : lag_collocation_step(work, pb, t, y);
+}
 
-#define COMMON                                                                                        \
-  .order_least = 2, .order_most = 8,                                                                  \
-  .step = step, .dense = lag_implicit_dense, .reset = lag_implicit_reset, \
-  .tangent_size = lag_implicit_tangent_size, .tangent = lag_implicit_tangent
+static void gauss_dense(void *work, lag_problem *pb, double t, double *y)
+{
+  (pb->nq ? lag_implicit_dense : lag_collocation_dense)(work, pb, t, y);
+}
+
+static void gauss_reset(void *work, lag_problem *pb)
+{
+  (pb->nq ? lag_implicit_reset : lag_collocation_reset)(work, pb);
+}
+
+static size_t gauss_tangent_size(const lag_problem *pb, int k)
+{
+  return (pb->nq ? lag_implicit_tangent_size : lag_collocation_tangent_size)(pb, k);
+}
+
+static int gauss_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+{
+  return (pb->nq ? lag_implicit_tangent : lag_collocation_tangent)(work, pb, t, k, Y, scratch);
+}
+
+#define KEEPS (LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_NEWTON)
 
 const lag_method lag_variational = {
     .name = "variational",
     .order = 2,
+    .order_least = 2,
+    .order_most = 8,
     .dense_order = 2,
     .doc = "discrete Lagrangian, Newton's method. DOI 10.1017/S096249290100006X",
+    .flags = KEEPS | LAG_METHOD_CONSTRAINTS,
     .noptions = 3,
     .options = variational_options,
     .check = variational_check,
     .refuses = variational_refuses,
     .work_size = variational_size,
     .init = variational_init,
-    COMMON,
-    .flags = PROPERTIES | LAG_METHOD_CONSTRAINTS,
+    .step = step,
+    .dense = lag_implicit_dense,
+    .reset = lag_implicit_reset,
+    .tangent_size = lag_implicit_tangent_size,
+    .tangent = lag_implicit_tangent,
 };
 
 const lag_method lag_gauss = {
     .name = "gauss",
     .order = 4,
+    .order_least = 2,
+    .order_most = 8,
     .dense_order = 4,
-    .doc = "Gauss collocation in q and p, Newton's method. DOI 10.1007/3-540-30666-8, VI.4 and VI.6",
+    .doc = "Gauss collocation in q and p, Newton's method; where L is linear in the velocities, or there are states alone, in these. DOI "
+           "10.1007/3-540-30666-8, VI.4 and VI.6",
+    .flags = KEEPS | LAG_METHOD_FLOWS,
     .noptions = 2,
     .options = gauss_options,
     .check = gauss_check,
     .work_size = gauss_size,
     .init = gauss_init,
-    COMMON,
-    .flags = PROPERTIES,
+    .step = gauss_step,
+    .dense = gauss_dense,
+    .reset = gauss_reset,
+    .tangent_size = gauss_tangent_size,
+    .tangent = gauss_tangent,
 };

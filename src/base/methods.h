@@ -10,7 +10,8 @@ enum {
   METHOD_VARIATION = 2,  /* needs derivatives of L, */
   METHOD_SPLITS = 4,     /* but not of a separable model */
   METHOD_JACOBIAN = 8,   /* needs the linearisation */
-  METHOD_TAYLOR = 16     /* needs Taylor coefficients, and so a smooth model */
+  METHOD_TAYLOR = 16,    /* needs Taylor coefficients, and so a smooth model */
+  METHOD_FLOWS = 32      /* takes models of states alone, with the linearisation, though it refuses states beside coordinates */
 };
 
 typedef struct {

@@ -161,7 +161,7 @@ static const OptionRow options[] = {
   {"--define", "-D", "CONST=VALUE", TAKES_DEFINE, "", MODELS, OWN(defines), "gives a `const` of the model another value"},
   {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", STEPS | C(MODES) | C(COST) | C(BUILD), OWN(no_gsl),
    "leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole"},
-  {"--math", NULL, "own|libm", TAKES_CHOICE, "own libm", SIMULATE | C(MODES) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT), OWN(math),
+  {"--math", NULL, "own|libm", TAKES_CHOICE, "own libm", STEPS | C(MODES) | C(COST) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT), OWN(math),
    "sin and cos from functions that the emitted C brings along (own, the default: faster, the same digits with every C library), "
    "or from the C library"},
   {"--with", NULL, "linear", TAKES_CHOICE, "linear", C(BUILD) | C(EMIT), OWN(with), "with the exact linearisation of the model"},

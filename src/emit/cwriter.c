@@ -276,7 +276,7 @@ static void write_solve(Writer *w, const Ins *i) {
     b += k->m * n;
     for (uint32_t j = 0; j < solve_elements(k); j++) sb_printf(w->out, "  w[%u] = %s;\n", j, cwriter_operand(w, k->matrix[j]).text);
     for (uint32_t j = 0; j < solve_unknowns(k); j++) sb_printf(w->out, "  w[%u] = %s;\n", b + j, cwriter_operand(w, k->rhs[j]).text);
-    sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, w));\n", st->prefix, st->kkt, n, k->m);
+    sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, %d, w));\n", st->prefix, st->kkt, n, k->m, k->coarse);
     return;
   }
   for (uint32_t j = 0; k->matrix && j < n * n; j++) sb_printf(w->out, "  w[%u] = %s;\n", M + j, cwriter_operand(w, k->matrix[j]).text);
@@ -431,18 +431,26 @@ static void write_store(Writer *w, const Store *st) {
   sb_putc(w->out, '\n');
 }
 
-/* Stores k and k + 1, which stand side by side in their array, the first at an even place; there is room for two also where
- * k is the last. */
-static uint32_t write_pair(Writer *w, uint32_t k) {
+/* Store k + 1 where it stands beside k in its array, and no loop has it; else NULL. */
+static const Store *beside(const Writer *w, uint32_t k) {
   const Store *st = &w->p->stores.at[k];
-  int two = k + 1 < w->p->stores.n && st[1].array == st->array && st[1].index == st->index + 1;
-  const char *x = cwriter_operand(w, st->slot).text, *y = cwriter_operand(w, two ? st[1].slot : 0).text;
-  cwriter_statement(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
-  sb_putc(w->out, '\n');
-  return two ? 2 : 1;
+  return k + 1 < w->p->stores.n && st[1].array == st->array && st[1].index == st->index + 1 ? st + 1 : NULL;
 }
 
-static int is_paired(const Writer *w, const Store *st) { return (w->style->paired >> st->array & 1) && st->index % 2 == 0; }
+/* Whether store k, at an even place, is one of two that go together. */
+static int is_paired(const Writer *w, uint32_t k) {
+  const Store *st = &w->p->stores.at[k], *other = beside(w, k);
+  if (!(w->style->paired >> st->array & 1) || st->index % 2 != 0) return 0;
+  return other ? !w->rolls.stored[k + 1] : (w->style->padded >> st->array & 1) != 0;
+}
+
+static uint32_t write_pair(Writer *w, uint32_t k) {
+  const Store *st = &w->p->stores.at[k], *other = beside(w, k);
+  const char *x = cwriter_operand(w, st->slot).text, *y = cwriter_operand(w, other ? other->slot : 0).text;
+  cwriter_statement(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
+  sb_putc(w->out, '\n');
+  return other ? 2 : 1;
+}
 
 static void write_stores(Writer *w) {
   for (uint32_t k = 0; k < w->p->stores.n;) {
@@ -453,7 +461,7 @@ static void write_stores(Writer *w) {
     }
     uint32_t n = cloop_stores(w, k);
     if (n) cloop_write_stores(w, k, n);
-    else if (is_paired(w, &w->p->stores.at[k])) n = write_pair(w, k);
+    else if (is_paired(w, k)) n = write_pair(w, k);
     else write_store(w, &w->p->stores.at[k]);
     k += n ? n : 1;
   }
@@ -464,8 +472,9 @@ static unsigned arrays_by_index(const CStyle *style) {
   return style->params ? 1u << ARR_Q | 1u << ARR_V | 1u << ARR_Z | 1u << ARR_U : ~(1u << ARR_T | 1u << ARR_ORDER | 1u << ARR_PER_ORDER | 1u << ARR_UP);
 }
 
-/* Whether no array that is written is read, too. */
+/* Whether nothing that is written is read, too. */
 static int stores_apart(const Prog *p, const CStyle *style) {
+  if (style->apart) return 1;
   for (int k = 0; k < ARR_COUNT; k++) {
     if (!prog_reads(p, (IrArray)k)) continue;
     for (uint32_t s = 0; s < p->stores.n; s++)

@@ -14,7 +14,9 @@ typedef struct {
   const char *const *in;            /* [ARR_COUNT] names of the arrays read: t is no array */
   const char *const *params;        /* NULL: p[3]; else p->name of parameter i, read and written */
   const char *const *out;           /* names of the arrays written */
-  unsigned paired;                  /* bit i: stores to out[i] go two at a time, through PREFIX_PAIR(array, index, x, y) */
+  int apart;                        /* no element is written that is read, though arrays are both */
+  unsigned paired;                  /* bit i: stores to out[i] go two at a time, through PREFIX_PAIR(array, index, x, y); */
+  unsigned padded;                  /* and there is room for two where the last stands alone */
   const char *const *own;           /* names in the function's scope, NULL at the end */
   const char *const *globals;         /* names that the function must not hide, NULL at the end; or NULL */
   const char *solve, *kkt;          /* names of the functions that factor and solve; with constraints */

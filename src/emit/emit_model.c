@@ -32,13 +32,14 @@ static const char *const abi_names[] = {
   "lag_spline", "lag_var", "lag_event", "lag_model", "lag_option", "lag_monitor", "lag_table", "lag_scene", "lag_program",
   "lag_entry", "lag_linear", "LAG_NUMBER", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
   "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL",
-  "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_lanes", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
-  "taylor_rest", "taylor_squares", "TAYLOR_SQUARES",
+  "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
+  "taylor_rest", "taylor_squares", "TAYLOR_SQUARES", "taylor_four", "TAYLOR_WIDE", "TAYLOR_INLINE", "taylor_sums_wide", "taylor_squares_wide",
+  "taylor_rest_wide", "taylor_at_wide", "taylor_rest_any", "taylor_at_any",
   "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
   "curves", "LAG_EACH", "LAG_10", "LAG_100", "LAG_1000", "LAG_10000",
   "singular", "lag_sincos", "lag_sin", "lag_cos", "lag_lanes", "lag_lanes_mask", "LAG_LANES", "LAG_LIBM", "LAG_OWN", "LAG_FMA",
   "LAG_INLINE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS", "LAG_LANE_FN", "lag_reflect", "lag_reflector", "lag_rank", "lag_multipliers", "lag_kkt", "lag_kkt_lane",
-  "constraint_table", "jacobian_table", "inertia_table", "constraints", "lag_constraint", "lag_constraints",
+  "constraint_table", "jacobian_table", "inertia_table", "constraints", "contact_table", "lag_contact", "lag_constraint", "lag_constraints",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -244,6 +245,13 @@ static void emit_constraints(const File *f) {
   sb_printf(f->out, "  .njacobian = %u, .jacobian = jacobian_table, .nmass = %u, .mass = %s,\n", k->jacobian.n, k->mass.n, k->mass.n ? "inertia_table" : "NULL");
   sb_printf(f->out, "  .residuals = residuals, .matrices = matrices,\n  .position = %s, .velocity = %s,\n};\n",
             k->nholonomic ? "correct_positions" : "NULL", both ? "correct_positions" : "correct_velocities");
+  if (!f->u->contacts.n) return;
+  sb_puts(f->out, "\nstatic const lag_contact contact_table[] = {\n");
+  for (uint32_t i = 0; i < f->u->contacts.n; i++) {
+    const IrContact *c = &f->u->contacts.at[i];
+    sb_printf(f->out, "  {%u, %u, %u, %u},\n", c->input, c->constraint, c->impact, c->release);
+  }
+  sb_puts(f->out, "};\n");
 }
 
 /* --- a scene's functions --- */
@@ -335,31 +343,27 @@ static uint32_t work_size(const IrUnit *u) {
   const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->constraints.position, u->constraints.velocity};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     if (all[i] && prog_work(all[i]) > most) most = prog_work(all[i]);
+  for (uint32_t i = 0; i < u->events.n; i++)
+    if (prog_work(u->events.at[i].action) > most) most = prog_work(u->events.at[i].action);
   for (uint32_t i = 0; i < u->scenes.n; i++)
     if (prog_work(u->scenes.at[i].observe) > most) most = prog_work(u->scenes.at[i].observe);
   return most;
-}
-
-static int solves_plainly(const Prog *p) {
-  for (uint32_t i = 0; p && i < p->solves.n; i++)
-    if (!p->solves.at[i].m) return 1;
-  return 0;
 }
 
 /* Whether a linear system without constraints is solved by a loop. */
 static int needs_solver(const IrUnit *u) {
   const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear};
   int some = 0;
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) some |= solves_plainly(all[i]);
-  for (uint32_t i = 0; i < u->scenes.n; i++) some |= solves_plainly(u->scenes.at[i].observe);
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) some |= prog_solves(all[i], 0);
+  for (uint32_t i = 0; i < u->scenes.n; i++) some |= prog_solves(u->scenes.at[i].observe, 0);
   return some;
 }
 
 static void flag_text(unsigned flags, StrBuf *out) {
   static const char *const names[] = {"LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS", "LAG_AUTONOMOUS", "LAG_SMOOTH",
-                                       "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY"};
+                                       "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_FIRST_ORDER", "LAG_CONSTANT_FORM"};
   int some = 0;
-  for (int i = 0; i < 7; i++)
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (flags >> i & 1) sb_printf(out, "%s%s", some++ ? " | " : "", names[i]);
   if (!some) sb_putc(out, '0');
 }
@@ -424,6 +428,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
   if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
+  if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (u->linear) sb_puts(out, "  .linear = &linear,\n");
   sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n};\n");

@@ -6,6 +6,7 @@
 
 enum { LANES = 4 };    /* rows are a multiple of so many numbers */
 enum { CALL = 25 };    /* what a function costs more than another operation */
+enum { INLINE_MAX = 300 }; /* operations of an order that stand in two functions, for pairs and for fours */
 enum { LOOP_FROM = 9 }; /* statements that differ in an index only: so many become a loop */
 
 static const char *const arrays[ARR_COUNT] = {
@@ -15,107 +16,116 @@ static const char *const arrays[ARR_COUNT] = {
 
 static const char *const head =
   "\n/* --- Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... --- */\n"
-  "\n/* Numbers side by side, where the compiler has such types: pairs, and as many as an instruction takes. */\n"
+  "\n/* Numbers side by side, where the compiler has such types: pairs. */\n"
   "#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE)\n"
   "typedef double taylor_pair __attribute__((vector_size(16), aligned(8), may_alias));\n"
   "#define LAG_PAIR(a, i, x, y) (((taylor_pair *)(a))[(i)/2] = (taylor_pair){x, y})\n"
+  "#define TAYLOR_INLINE __attribute__((always_inline)) inline\n"
   "#else\n"
   "typedef LAG_REAL taylor_pair;\n"
   "#define LAG_PAIR(a, i, x, y) ((a)[i] = (x), (a)[(i) + 1] = (y))\n"
-  "#endif\n"
-  "#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE) && defined(__AVX__)\n"
-  "typedef double taylor_lanes __attribute__((vector_size(32), aligned(8), may_alias));\n"
-  "#else\n"
-  "typedef taylor_pair taylor_lanes;\n"
+  "#define TAYLOR_INLINE inline\n"
   "#endif\n"
   "#if defined(__GNUC__) && !defined(__clang__)\n"
   "#define TAYLOR_UNROLL _Pragma(\"GCC unroll 16\")\n"
   "#else\n"
   "#define TAYLOR_UNROLL\n"
-  "#endif\n"
-  "enum { TAYLOR_LANES = sizeof(taylor_lanes)/sizeof(LAG_REAL), TAYLOR_PAIR = sizeof(taylor_pair)/sizeof(LAG_REAL) };\n\n";
+  "#endif\n";
 
+/* Where sums are too few to fill fours, pairs are as fast everywhere. */
+static const char *const wide_head =
+  "/* Fours on processors with AVX2: whatever the file was compiled for, this is asked as it runs. The bits are the same. */\n"
+  "#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE) && defined(__x86_64__)\n"
+  "#define TAYLOR_WIDE __attribute__((target(\"avx2\")))\n"
+  "typedef double taylor_four __attribute__((vector_size(32), aligned(8), may_alias));\n"
+  "#endif\n";
+
+/* $: nothing, or _wide; # the type of numbers side by side; @: an attribute. */
 static const char *const at =
-  "\n/* y = x[1] s + ... + x[n] s^n for q, v and z, and dy its derivative by s: by Horner's rule. Both have room for\n"
-  " * TAYLOR_WIDTH. */\n"
-  "static void taylor_at(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
-  "  enum { PART = 4/TAYLOR_LANES };\n"
+  "\n@static void taylor_at$(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
+  "  enum { PARTS = 4*sizeof(LAG_REAL)/sizeof(#) };\n"
   "  for (int i = 0; i < TAYLOR_WIDTH; i += 4) {\n"
-  "    taylor_lanes sum[PART] = {0}, slope[PART] = {0};\n"
+  "    # sum[PARTS] = {0}, slope[PARTS] = {0};\n"
   "    for (int k = n; k > 0; k--) {\n"
-  "      const taylor_lanes *const row = (const taylor_lanes *)(x + k*TAYLOR_COLUMNS + i);\n"
+  "      const # *const row = (const # *)(x + k*TAYLOR_COLUMNS + i);\n"
   "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < PART; g++) {\n"
+  "      for (int g = 0; g < (int)PARTS; g++) {\n"
   "        slope[g] = slope[g]*s + sum[g];\n"
   "        sum[g] = sum[g]*s + row[g];\n"
   "      }\n"
   "    }\n"
   "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < PART; g++) {\n"
-  "      ((taylor_lanes *)(y + i))[g] = sum[g]*s;\n"
-  "      ((taylor_lanes *)(dy + i))[g] = slope[g]*s + sum[g];\n"
+  "    for (int g = 0; g < (int)PARTS; g++) {\n"
+  "      ((# *)(y + i))[g] = sum[g]*s;\n"
+  "      ((# *)(dy + i))[g] = slope[g]*s + sum[g];\n"
   "    }\n"
   "  }\n"
   "}\n";
 
 static const char *const sums =
-  "\n/* s = a[1] b[k-1] + ... + a[k-1] b[1]. What order k - 1 has just made comes last, and in pairs, as it was stored: a processor\n"
-  " * hands on what it has just stored only to loads of no more than that. */\n"
-  "static void taylor_sums(int k, taylor_work *w) {\n"
-  "  enum { WIDE = TAYLOR_GROUP/TAYLOR_LANES, NARROW = TAYLOR_GROUP/TAYLOR_PAIR };\n"
+  "\n@static void taylor_sums$(int k, taylor_work *w) {\n"
+  "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
   "  const int last = k - 1;\n"
   "  for (int i = 0; i < TAYLOR_SQUARES; i += TAYLOR_GROUP) {\n"
-  "    taylor_lanes s[WIDE] = {0};\n"
+  "    # s[PARTS] = {0};\n"
   "    for (int j = 2; j < last; j++) {\n"
-  "      const taylor_lanes *const a = (const taylor_lanes *)(w->a[j] + i), *const b = (const taylor_lanes *)(w->b[k - j] + i);\n"
+  "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->b[k - j] + i);\n"
   "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < WIDE; g++) s[g] += a[g]*b[g];\n"
+  "      for (int g = 0; g < (int)PARTS; g++) s[g] += a[g]*b[g];\n"
   "    }\n"
   "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < WIDE; g++) ((taylor_lanes *)(w->s + i))[g] = s[g];\n"
+  "    for (int g = 0; g < (int)PARTS; g++) ((# *)(w->s + i))[g] = s[g];\n"
   "    const taylor_pair *const a1 = (const taylor_pair *)(w->a[1] + i), *const b1 = (const taylor_pair *)(w->b[1] + i);\n"
   "    const taylor_pair *const an = (const taylor_pair *)(w->a[last] + i), *const bn = (const taylor_pair *)(w->b[last] + i);\n"
   "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
   "    if (k > 2) {\n"
   "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < NARROW; g++) out[g] = out[g] + an[g]*b1[g] + a1[g]*bn[g];\n"
+  "      for (int g = 0; g < (int)PAIRS; g++) out[g] = out[g] + an[g]*b1[g] + a1[g]*bn[g];\n"
   "    } else if (k == 2) {\n"
   "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < NARROW; g++) out[g] = a1[g]*bn[g];\n"
+  "      for (int g = 0; g < (int)PAIRS; g++) out[g] = a1[g]*bn[g];\n"
   "    }\n"
   "  }\n"
   "}\n";
 
 static const char *const squares =
-  "\n/* The same where b is a: twice the first half, and the middle. */\n"
-  "static void taylor_squares(int k, taylor_work *w) {\n"
-  "  enum { WIDE = TAYLOR_GROUP/TAYLOR_LANES, NARROW = TAYLOR_GROUP/TAYLOR_PAIR };\n"
+  "\n@static void taylor_squares$(int k, taylor_work *w) {\n"
+  "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
   "  const int last = k - 1, half = k/2;\n"
   "  const LAG_REAL twice = LAG_C(2.0);\n"
   "  for (int i = TAYLOR_SQUARES; i < TAYLOR_SUMS; i += TAYLOR_GROUP) {\n"
-  "    taylor_lanes s[WIDE] = {0};\n"
+  "    # s[PARTS] = {0};\n"
   "    for (int j = 2; j < k - j; j++) {\n"
-  "      const taylor_lanes *const a = (const taylor_lanes *)(w->a[j] + i), *const b = (const taylor_lanes *)(w->a[k - j] + i);\n"
+  "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->a[k - j] + i);\n"
   "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < WIDE; g++) s[g] += a[g]*b[g];\n"
+  "      for (int g = 0; g < (int)PARTS; g++) s[g] += a[g]*b[g];\n"
   "    }\n"
   "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < WIDE; g++) s[g] *= twice;\n"
-  "    const taylor_lanes *const m = (const taylor_lanes *)(w->a[half] + i);\n"
+  "    for (int g = 0; g < (int)PARTS; g++) s[g] *= twice;\n"
+  "    const # *const m = (const # *)(w->a[half] + i);\n"
   "    if (half > 1 && 2*half == k) {\n"
   "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < WIDE; g++) s[g] += m[g]*m[g];\n"
+  "      for (int g = 0; g < (int)PARTS; g++) s[g] += m[g]*m[g];\n"
   "    }\n"
   "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < WIDE; g++) ((taylor_lanes *)(w->s + i))[g] = s[g];\n"
+  "    for (int g = 0; g < (int)PARTS; g++) ((# *)(w->s + i))[g] = s[g];\n"
   "    if (k < 2) continue;\n"
   "    const taylor_pair *const a = (const taylor_pair *)(w->a[1] + i), *const b = (const taylor_pair *)(w->a[last] + i);\n"
   "    const LAG_REAL weight = k > 2 ? twice : LAG_C(1.0);\n"
   "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
   "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < NARROW; g++) out[g] += weight*(a[g]*b[g]);\n"
+  "    for (int g = 0; g < (int)PAIRS; g++) out[g] += weight*(a[g]*b[g]);\n"
   "  }\n"
   "}\n";
+
+static const char *const along_rows_comment =
+  "\n/* Along rows of numbers.\n"
+  " *   taylor_sums      s = a[1] b[k-1] + ... + a[k-1] b[1]. What order k - 1 has just made comes last, and in pairs, as it was\n"
+  " *                    stored: a processor hands on what it has just stored only to loads of no more than that.\n"
+  " *   taylor_squares   the same where b is a: twice the first half, and the middle\n"
+  " *   taylor_rest      orders 1 to n\n"
+  " *   taylor_at        y = x[1] s + ... + x[n] s^n for q, v and z, and dy its derivative by s: by Horner's rule. Both have room\n"
+  " *                    for TAYLOR_WIDTH. */";
 
 typedef struct {
   const Series *s;
@@ -172,9 +182,12 @@ static void next(const Writer *w) {
   static const char *const written[] = {"x", "x1", "a", "b"};
   const Series *s = w->s;
   CStyle st = style_for(w, own, written);
-  st.paired = 1u << 2 | 1u << 3;
+  st.paired = 1u << 0 | 1u << 1 | 1u << 2 | 1u << 3;
+  st.padded = 1u << 2 | 1u << 3;
+  st.apart = 1; /* of x, it reads y and t, and writes the rates */
   sb_printf(w->out, "\n/* Order k > 0, besides the sums: %s. Each name stands for coefficient k of its value. */\n", ops_text(s->next, w->a));
-  sb_puts(w->out, "static void taylor_next(LAG_REAL order, LAG_REAL per_order, LAG_REAL up, const LAG_REAL *s, const LAG_REAL *c, LAG_REAL *x,\n"
+  sb_printf(w->out, "static %svoid taylor_next(", ops_total(prog_count(s->next)) <= INLINE_MAX ? "TAYLOR_INLINE " : "");
+  sb_puts(w->out, "LAG_REAL order, LAG_REAL per_order, LAG_REAL up, const LAG_REAL *s, const LAG_REAL *c, LAG_REAL *x,\n"
                   "    LAG_REAL *x1, LAG_REAL *a, LAG_REAL *b");
   sb_puts(w->out, s->room ? ", LAG_REAL *w) {\n" : ") {\n");
   sb_puts(w->out, "  (void)order; (void)per_order; (void)up; (void)s; (void)c; (void)a; (void)b;\n");
@@ -187,47 +200,103 @@ static void rate(const Writer *w, uint32_t to, uint32_t from, uint32_t n) {
   if (n) sb_printf(w->out, "  for (int i = %u; i < %u; i++) x[TAYLOR_COLUMNS + i] = T*x[i + %u];\n", to, to + n, from - to);
 }
 
-static void rest(const Writer *w) {
+/* What fills the last groups is zero. Up to 15 sums are stored in pairs, and the last of an odd number with a zero. */
+static void fill_groups(const Writer *w) {
   const Series *s = w->s;
-  uint32_t nq = s->nq, nz = s->nz, t = 3 * nq + 2 * nz;
-  sb_puts(w->out, "\n/* Orders 1 to n. */\n"
-                  "static void taylor_rest(int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *work) {\n"
-                  "  taylor_work *const w = (taylor_work *)(void *)work;\n"
-                  "  LAG_REAL per_k = LAG_C(1.0);\n");
-  rate(w, 0, nq, nq);
-  rate(w, nq, 2 * nq + nz, nq + nz);
-  if (s->uses_time) sb_printf(w->out, "  x[TAYLOR_COLUMNS + %u] = T;\n", t);
-  if (s->sums < s->first_square)
+  uint32_t filled = s->sums < 16 ? (s->sums + 1) / 2 * 2 : s->sums;
+  if (filled < s->first_square)
     sb_printf(w->out, "  for (int k = 1; k < n; k++) /* what fills the last group */\n"
-                      "    for (int i = %u; i < TAYLOR_SQUARES; i++) w->a[k][i] = w->b[k][i] = LAG_C(0.0);\n", s->sums);
+                      "    for (int i = %u; i < TAYLOR_SQUARES; i++) w->a[k][i] = w->b[k][i] = LAG_C(0.0);\n", filled);
   if (s->first_square + s->squares < s->width)
     sb_printf(w->out, "  for (int k = 0; k < n; k++)\n"
                       "    for (int i = %u; i < TAYLOR_SUMS; i++) w->a[k][i] = LAG_C(0.0);\n", s->first_square + s->squares);
+}
+
+static void rest(const Writer *w, const char *suffix, const char *attribute) {
+  const Series *s = w->s;
+  uint32_t nq = s->nq, nz = s->nz, t = 3 * nq + 2 * nz;
+  sb_printf(w->out, "\n%sstatic void taylor_rest%s(int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *work) {\n"
+                    "  taylor_work *const w = (taylor_work *)(void *)work;\n"
+                    "  LAG_REAL per_k = LAG_C(1.0);\n", attribute, suffix);
+  rate(w, 0, nq, nq);
+  rate(w, nq, 2 * nq + nz, nq + nz);
+  if (s->uses_time) sb_printf(w->out, "  x[TAYLOR_COLUMNS + %u] = T;\n", t);
+  fill_groups(w);
   sb_puts(w->out, "  for (int k = 1; k < n; k++) {\n"
                   "    LAG_REAL *const y = x + k*TAYLOR_COLUMNS, *const z = y + TAYLOR_COLUMNS;\n"
                   "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_LANE)(k + 1);\n");
-  if (s->sums) sb_puts(w->out, "    taylor_sums(k, w);\n");
-  if (s->squares) sb_puts(w->out, "    taylor_squares(k, w);\n");
+  if (s->sums) sb_printf(w->out, "    taylor_sums%s(k, w);\n", suffix);
+  if (s->squares) sb_printf(w->out, "    taylor_squares%s(k, w);\n", suffix);
   sb_printf(w->out, "    taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, w->s, w->c, y, z, w->a[k], w->b[k]%s);\n",
             s->room ? ", w->m" : "");
   if (s->uses_time) sb_printf(w->out, "    z[%u] = LAG_C(0.0);\n", t);
   sb_puts(w->out, "    per_k = per_next;\n  }\n}\n");
 }
 
+/* text with $, # and @ filled in: see above. */
+static void fill(const char *text, const char *suffix, const char *type, const char *attribute, StrBuf *out) {
+  for (; *text; text++) {
+    if (*text == '$') sb_puts(out, suffix);
+    else if (*text == '#' && text[1] == ' ') sb_puts(out, type);
+    else if (*text == '#' && text[1] == ')') sb_puts(out, type);
+    else if (*text == '@') sb_puts(out, attribute);
+    else sb_putc(out, *text);
+  }
+}
+
+/* What goes along rows of numbers. */
+static void along_rows(const Writer *w, const char *suffix, const char *type, const char *attribute) {
+  if (w->s->sums) fill(sums, suffix, type, attribute, w->out);
+  if (w->s->squares) fill(squares, suffix, type, attribute, w->out);
+  rest(w, suffix, attribute);
+  fill(at, suffix, type, attribute, w->out);
+}
+
+static int is_wide(const Series *s) { return s->group > LANES || 2 * s->nq + s->nz > 2 * LANES; }
+
+static void choose_width(StrBuf *out) {
+  sb_puts(out,
+    "\nstatic void taylor_rest_any(int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *work) {\n"
+    "#ifdef TAYLOR_WIDE\n"
+    "  if (__builtin_cpu_supports(\"avx2\")) {\n"
+    "    taylor_rest_wide(n, T, x, work);\n"
+    "    return;\n"
+    "  }\n"
+    "#endif\n"
+    "  taylor_rest(n, T, x, work);\n"
+    "}\n"
+    "\nstatic void taylor_at_any(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
+    "#ifdef TAYLOR_WIDE\n"
+    "  if (__builtin_cpu_supports(\"avx2\")) {\n"
+    "    taylor_at_wide(n, s, x, y, dy);\n"
+    "    return;\n"
+    "  }\n"
+    "#endif\n"
+    "  taylor_at(n, s, x, y, dy);\n"
+    "}\n");
+}
+
 void emit_taylor(const Series *s, const char *const *globals, const char *math, StrBuf *out) {
   Writer w = {.s = s, .globals = globals, .math = math, .a = s->first->arena, .out = out};
+  int wide = is_wide(s);
   sb_puts(out, head);
+  if (wide) sb_puts(out, wide_head);
+  sb_putc(out, '\n');
   work(&w);
   if (s->room) csupport_factor("LAG", "lag", out);
   first(&w);
-  if (s->sums) sb_puts(out, sums);
-  if (s->squares) sb_puts(out, squares);
   next(&w);
-  rest(&w);
-  sb_puts(out, at);
+  sb_puts(out, along_rows_comment);
+  along_rows(&w, "", "taylor_pair", "");
+  if (wide) {
+    sb_puts(out, "\n#ifdef TAYLOR_WIDE\n/* The same four at a time. */");
+    along_rows(&w, "_wide", "taylor_four", "TAYLOR_WIDE ");
+    sb_puts(out, "#endif\n");
+    choose_width(out);
+  }
   sb_puts(out, "\nstatic const lag_taylor taylor = {\n"
     "  .order = LAG_TAYLOR_ORDER, .columns = TAYLOR_COLUMNS, .width = TAYLOR_WIDTH, .nw = (int)(sizeof(taylor_work)/sizeof(LAG_REAL)),\n");
   OpCount c = prog_count(s->first);
   sb_printf(out, "  .cost_first = %u, .cost_next = %u, .sums = %u,\n", ops_total(c) + CALL*c.fn, ops_total(prog_count(s->next)), s->sums + s->squares/2);
-  sb_puts(out, "  .first = taylor_first, .rest = taylor_rest, .at = taylor_at,\n};\n");
+  sb_printf(out, "  .first = taylor_first, .rest = taylor_rest%s, .at = taylor_at%s,\n};\n", wide ? "_any" : "", wide ? "_any" : "");
 }

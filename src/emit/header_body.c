@@ -4,7 +4,7 @@
 #include "emit/cmath.h"
 #include "emit/header_impl.h"
 
-static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a"};
+static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
 
 static const char *const macros =
   "/* Functions and constants in the scalar's precision. */\n"
@@ -21,7 +21,7 @@ static const char *const macros =
   "#define LAG_C(x) (sizeof(LAG_REAL) > sizeof(double) ? (LAG_REAL)x##L : (LAG_REAL)x)\n"
   "#endif\n";
 
-/* Kutta (1901). A line that begins with q, z or u is for models that have those. */
+/* Kutta (1901). A line that begins with q, z, u or c is for models that have those; c: constraints. */
 static const char *const rk4_body =
   " |  const LAG_REAL weight[4] = {h/LAG_C(6.0), h/LAG_C(3.0), h/LAG_C(3.0), h/LAG_C(6.0)};\n"
   " |  const LAG_REAL next[4] = {LAG_C(0.5)*h, LAG_C(0.5)*h, h, h}; /* from *s to the stage after this */\n"
@@ -47,9 +47,36 @@ static const char *const rk4_body =
   " |    x.t = s->t + next[k];\n"
   " |  }\n"
   " |  sum.t = s->t + h;\n"
+  "c|  const int status = lag_hold(HELD);\n"
+  "c|  if (status != LAG_OK) return status;\n"
   " |  *s = sum;\n"
   " |  return LAG_OK;\n"
   "}";
+
+/* Newton's method, until nothing is halved any more: positions, then velocities. */
+static const char *const hold_body =
+  " {\n"
+  "  for (int level = LAG_FIRST; level < 2; level++) {\n"
+  "    LAG_REAL last = LAG_C(0.0);\n"
+  "    for (int turn = 0; turn < 20; turn++) {\n"
+  "      LAG_REAL c[LAG_NC], r[LAG_NC], g[LAG_NC], d[LAG_NQ], force[LAG_NQ], size = LAG_C(0.0);\n"
+  "      int status = lag_residuals(ARGS, c, r);\n"
+  "      for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++) {\n"
+  "        g[k] = -(level ? r[k] : c[k]);\n"
+  "        size += LAG_FN(fabs)(g[k]);\n"
+  "      }\n"
+  "      if (status != LAG_OK || !LAG_ANY(size > LAG_C(0.0)) || (turn && !LAG_ANY(size < LAG_C(0.5)*last))) break;\n"
+  "      last = size;\n"
+  "      status = CORRECT;\n"
+  "      if (status != LAG_OK) return status;\n"
+  "      for (int i = 0; i < LAG_NQ; i++) {\n"
+  "        if (level) s->v[i] += d[i];\n"
+  "        else s->q[i] += d[i];\n"
+  "      }\n"
+  "    }\n"
+  "  }\n"
+  "  return LAG_OK;\n"
+  "}\n";
 
 /* --- functions around programs --- */
 
@@ -172,6 +199,45 @@ static void act(const Header *h) {
   sb_printf(h->out, "    default: (void)stop; return %s_OK;\n  }\n}\n", h->upper);
 }
 
+/* --- constraints --- */
+
+/* `static int lower_NAME(state, extra...)` */
+static void inner(const Header *h, const Prog *p, const char *name, const char *params, const char *const *extra, const char *const *out) {
+  const char *head = arena_printf(h->a, "static int %s_%s(%s, %s)", h->lower, name, header_state_args(h, 1, ""), params);
+  CStyle st = style_for(h, own_names(h, extra), out);
+  CFunction c = {.head = header_wrapped(h, head), .returns = 1, .own_work = 1};
+  cfunction(p, &st, &c, h->out);
+}
+
+static void change(const Header *h, const Prog *p, const char *name) {
+  static const char *const extra[] = {"g", "d", "force", NULL}, *const out[] = {"d", "force"};
+  inner(h, p, name, arena_printf(h->a, "const %s_REAL *g, %s_REAL *d, %s_REAL *force", h->upper, h->upper, h->upper), extra, out);
+}
+
+static void hold(const Header *h) {
+  static const char *const extra[] = {"c", "r", NULL};
+  const IrConstraints *k = &h->u->constraints;
+  if (!header_has(h, FN_HOLD)) return;
+  int both = k->position == k->velocity;
+  const char *args = header_state_args(h, 0, "s->"), *R = h->upper, *m = h->lower;
+  inner(h, k->residuals, "residuals", arena_printf(h->a, "%s_REAL *c, %s_REAL *r", R, R), extra, extra);
+  if (k->nholonomic) change(h, k->position, both ? "correct" : "correct_positions");
+  if (!both) change(h, k->velocity, "correct_velocities");
+  const char *correct = both ? arena_printf(h->a, "%s_correct(%s, g, d, force)", m, args)
+                        : !k->nholonomic ? arena_printf(h->a, "%s_correct_velocities(%s, g, d, force)", m, args)
+                        : arena_printf(h->a, "level ? %s_correct_velocities(%s, g, d, force) : %s_correct_positions(%s, g, d, force)", m, args, m, args);
+  sb_printf(h->out, "\nenum { %s_NC = %u, %s_NHOLONOMIC = %u, %s_FIRST = %d }; /* constraints, those on positions; where %s_hold begins */\n", R, k->of.n, R, k->nholonomic, R,
+            k->nholonomic == 0, m);
+  sb_printf(h->out, "\n%s", api(h, FN_HOLD));
+  StrBuf text = strbuf(h->a);
+  for (const char *s = hold_body; *s;) {
+    if (strncmp(s, "ARGS", 4) == 0) sb_puts(&text, args), s += 4;
+    else if (strncmp(s, "CORRECT", 7) == 0) sb_puts(&text, correct), s += 7;
+    else sb_putc(&text, *s++);
+  }
+  csupport_fill(sb_text(&text), R, m, h->out);
+}
+
 /* --- a step --- */
 
 /* With inputs, one function that both kinds of step share: u held, or as they are at each time. */
@@ -183,9 +249,10 @@ static void rk4_step(const Header *h) {
   sb_printf(&call, "%s%s", u->q.n ? ", a" : "", u->z.n ? ", zd" : "");
   for (const char *s = rk4_body; *s;) {
     size_t n = strcspn(s, "\n") + (strchr(s, '\n') != NULL);
-    int wanted = *s == 'q' ? u->q.n > 0 : *s == 'z' ? u->z.n > 0 : *s == 'u' ? u->u.n > 0 : 1;
-    const char *line = *s == '}' ? arena_strdup(h->a, "}\n") : arena_strndup(h->a, s + 2, n - 2), *at = strstr(line, "CALL");
+    int wanted = *s == 'c' ? u->constraints.of.n > 0 : *s == 'q' ? u->q.n > 0 : *s == 'z' ? u->z.n > 0 : *s == 'u' ? u->u.n > 0 : 1;
+    const char *line = *s == '}' ? arena_strdup(h->a, "}\n") : arena_strndup(h->a, s + 2, n - 2), *at = strstr(line, "CALL"), *held = strstr(line, "HELD");
     if (wanted && at) sb_printf(&text, "%.*s%s%s", (int)(at - line), line, sb_text(&call), at + 4);
+    else if (wanted && held) sb_printf(&text, "%.*sp, &sum%s%s", (int)(held - line), line, u->u.n ? ", u ? u : now" : "", held + 4);
     else if (wanted) sb_puts(&text, line);
     s += n;
   }
@@ -210,7 +277,7 @@ void header_implementation(const Header *h) {
   sb_putc(h->out, '\n');
   cmath_functions(h->u, h->upper, h->lower, h->out);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
-  if (h->u->accel->solves.n || h->scene->observe_plain->solves.n) csupport_solver(h->upper, h->lower, h->out);
+  if (prog_solves(h->u->accel, 0) || prog_solves(h->scene->observe_plain, 0)) csupport_solver(h->upper, h->lower, h->out);
   cmath_kkt(h->u, h->upper, h->lower, h->out);
   if (h->u->inputs->tables.n) csupport_spline(h->upper, h->lower, h->out);
   defaults(h);
@@ -222,6 +289,7 @@ void header_implementation(const Header *h) {
   if (header_has(h, FN_OBSERVE)) state_function(h, h->scene->observe_plain, api(h, FN_OBSERVE), out, 1);
   if (header_has(h, FN_EVENTS)) state_function(h, h->u->event_values, api(h, FN_EVENTS), g, 1);
   act(h);
+  hold(h);
   rk4_step(h);
   sb_puts(h->out, "\n#ifdef __cplusplus\n}\n#endif\n");
 }

@@ -139,6 +139,7 @@ int header_has(const Header *h, HeaderFn f) {
     case FN_ENERGY: return u->energy != NULL;
     case FN_OBSERVE: return h->scene->plain.n > 0;
     case FN_EVENTS: case FN_ACT: return u->events.n > 0;
+    case FN_HOLD: return u->constraints.of.n > 0;
     case FN_DEFAULTS: case FN_PARAM: case FN_START: case FN_ACCEL: case FN_RK4_STEP: case FN_COUNT: break;
   }
   return 1;
@@ -161,6 +162,7 @@ const char *header_prototype(const Header *h, HeaderFn f) {
     case FN_OBSERVE: return arena_printf(a, "int %s_observe(%s, %s_REAL *out)", m, state, R);
     case FN_EVENTS: return arena_printf(a, "int %s_events(%s, %s_REAL *g)", m, state, R);
     case FN_ACT: return arena_printf(a, "int %s_act(int event, const %s_params *p, %s_state *s%s, int *stop)", m, m, m, u);
+    case FN_HOLD: return arena_printf(a, "int %s_hold(const %s_params *p, %s_state *s%s)", m, m, m, u);
     case FN_RK4_STEP: return arena_printf(a, "int %s_rk4_step(const %s_params *p, %s_state *s, %s_REAL h%s)", m, m, m, R, u);
     case FN_RK4_STEP_WITH:
       return arena_printf(a, "int %s_rk4_step_with(const %s_params *p, %s_state *s, %s_REAL h, %s_input_fn *input, void *context)", m, m, m, R, m);
@@ -179,6 +181,7 @@ static const char *const docs[FN_COUNT] = {
   [FN_OBSERVE] = "What the scene puts out: out[LAG_NOUT].",
   [FN_EVENTS] = "The event functions g[LAG_NEV].",
   [FN_ACT] = "What an event does to the state; *stop becomes 1 when it ends the run.",
+  [FN_HOLD] = "Moves the state to the nearest one that obeys the constraints, by the metric of the mass matrix; _rk4_step does so itself.",
   [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was.",
   [FN_RK4_STEP_WITH] = "The same with inputs that change during the step: input(context, t, u) finds the model's own in u.",
 };

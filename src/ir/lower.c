@@ -279,6 +279,8 @@ Prog *lower_accel(const Eqns *e) {
   Slot *acc = ARENA_ARRAY(m->arena, Slot, e->n + 1);
   lower_solution(&l, acc);
   if (m->states.n) lower_roots(&l, e->flow, m->states.n);
+  if (e->first.ndivisors) lower_roots(&l, e->first.divisors, e->first.ndivisors);
+  for (uint32_t i = 0; i < e->first.ndivisors; i++) lower_pivot(&l, lower_slot(&l, e->first.divisors[i]), 0);
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
@@ -397,7 +399,7 @@ Prog *lower_energy(const Eqns *e) {
   Lower l = lower_new(e);
   if (!e->energy) return l.p;
   Expr roots[2] = {e->energy_stable, e->energy_scale};
-  lower_roots(&l, roots, 2);
+  lower_with_accelerations(&l, roots, 2); /* of first order velocities are rates */
   prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), "energy p q' - L");
   prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
   return prog_tidy(l.p);
@@ -436,7 +438,9 @@ Prog *lower_second(const Eqns *e, const Variation *x) {
 Prog *lower_events(const Eqns *e) {
   Lower l = lower_new(e);
   const Model *m = e->m;
-  for (uint32_t i = 0; i < m->events.n; i++) lower_roots(&l, &m->events.at[i].g, 1);
+  Expr *roots = ARENA_ARRAY(m->arena, Expr, m->events.n + 1);
+  for (uint32_t i = 0; i < m->events.n; i++) roots[i] = m->events.at[i].g;
+  lower_with_accelerations(&l, roots, m->events.n);
   for (uint32_t i = 0; i < m->events.n; i++) prog_store(l.p, 0, i, lower_slot(&l, m->events.at[i].g), m->events.at[i].name);
   return prog_tidy(l.p);
 }

@@ -27,6 +27,7 @@ Prog *lower_linear(const Eqns *e, Partials dr); /* out 0: dr, in the order of th
 Prog *lower_residuals(const Eqns *e);
 Prog *lower_matrices(const Eqns *e);
 Prog *lower_change(const Eqns *e, uint32_t nrows);
+Prog *lower_impact(const Eqns *e, const Contact *c); /* out 1: v1, after the impact */
 Prog *lower_outputs(const Eqns *e); /* out 0: out[nout] */
 Prog *lower_plain_outputs(const Eqns *e); /* likewise, of those without closed forms */
 int output_is_plain(const Eqns *e, uint32_t i);

@@ -36,8 +36,44 @@ Prog *lower_change(const Eqns *e, uint32_t nrows) {
   Slot *g = ARENA_ARRAY(a, Slot, nrows + 1), *d = ARENA_ARRAY(a, Slot, e->n + 1), *force = ARENA_ARRAY(a, Slot, e->n + 1);
   for (uint32_t i = 0; i < nrows; i++)
     g[i] = prog_ins(l.p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = i, .name = e->constraints.of[i]->name});
-  lower_correction(&l, nrows, g, d, force);
+  lower_correction(&l, nrows, 1, g, d, force);
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, d[i], m->coords.at[i].name);
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 1, i, force[i], m->coords.at[i].name);
+  return prog_tidy(l.p);
+}
+
+/* Newton's law of restitution for the contact, J v1 + g_t = -e (J v + g_t), by the impulse that all constraints and closed gaps agree
+ * with: the least change of the velocities, M (v1 - v) = A^T Lambda, where the contact is one of the constraints. */
+Prog *lower_impact(const Eqns *e, const Contact *contact) {
+  const Model *m = e->m;
+  const Constraints *k = &e->constraints;
+  ExprGraph *g = e->g;
+  Arena *a = m->arena;
+  Eqns closed = *e;
+  Expr *with = ARENA_ARRAY(a, Expr, expr_symbol_count(g) + 1), back;
+  with[contact->closed] = expr_int(g, 1);
+  closed.constraints.A = (Entries){0};
+  for (uint32_t i = 0; i < k->A.n; i++) {
+    MassEntry x = k->A.at[i];
+    x.e = expr_substitute(g, x.e, with, expr_symbol_count(g) + 1, "");
+    vec_push(a, &closed.constraints.A, x);
+  }
+  Lower l = lower_new(&closed);
+  Slot *demand = ARENA_ARRAY(a, Slot, k->n + 1), *d = ARENA_ARRAY(a, Slot, e->n + 1), *force = ARENA_ARRAY(a, Slot, e->n + 1);
+  for (uint32_t i = 0; i < k->n; i++) {
+    if (k->of[i] != &m->constraints.at[contact->constraint]) continue;
+    Expr speed = expr_substitute(g, k->r[i], with, expr_symbol_count(g) + 1, ""), one = expr_int(g, 1);
+    Expr both = expr_add(g, one, contact->restitution), change = expr_mul(g, both, speed);
+    back = expr_neg(g, change);
+    lower_roots(&l, &back, 1);
+    demand[i] = lower_slot(&l, back);
+  }
+  lower_correction(&l, k->n, 0, demand, d, force);
+  for (uint32_t i = 0; i < e->n; i++) {
+    Expr v = expr_symbol(g, m->coords.at[i].v)->node;
+    lower_roots(&l, &v, 1);
+    Slot after = d[i] ? prog_op(l.p, IR_ADD, lower_slot(&l, v), d[i]) : 0;
+    if (after) prog_store(l.p, 1, i, after, expr_symbol(g, m->coords.at[i].v)->name);
+  }
   return prog_tidy(l.p);
 }

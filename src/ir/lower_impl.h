@@ -27,8 +27,8 @@ Slot lower_slot(const Lower *l, Expr e);
 /* Lowers M q'' = f and its solution; acc[n] receives the slots of q''. */
 void lower_solution(Lower *l, Slot *acc);
 
-/* The least change d[n] with A d = g for the first nrows constraints, and the forces A^T mu that make it. */
-void lower_correction(Lower *l, uint32_t nrows, const Slot *g, Slot *d, Slot *force);
+/* The least change d[n] with A d = g for the first nrows constraints, and the forces A^T mu that make it. coarse: as in Solve. */
+void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, Slot *d, Slot *force);
 
 /* The same by elimination without pivoting, for entries and forces that are lowered. */
 void lower_elimination(Lower *l, Slot *acc);

@@ -18,14 +18,33 @@ static const char *joined(Arena *a, const Name *names, uint32_t n) {
 
 static unsigned flags_of(const Eqns *e) {
   return (e->conserves_energy ? 1u : 0) | (e->constant_mass ? 2u : 0) | (e->autonomous ? 4u : 0) | (e->smooth ? 8u : 0) |
-         (e->separable ? 16u : 0) | (e->timeless ? 32u : 0) | (e->loses_energy ? 64u : 0);
+         (e->separable ? 16u : 0) | (e->timeless ? 32u : 0) | (e->loses_energy ? 64u : 0) |
+         (e->first.n ? 128u : 0) | (e->first.n && e->first.constant && e->first.closed ? 256u : 0);
+}
+
+/* The contact whose impact is event i, or NULL. */
+static const Contact *impact_of(const Eqns *e, uint32_t i) {
+  for (uint32_t k = 0; k < e->m->contacts.n; k++)
+    if (e->m->contacts.at[k].impact == i) return &e->m->contacts.at[k];
+  return NULL;
+}
+
+static void add_contacts(IrUnit *u, const Eqns *e) {
+  const Model *m = e->m;
+  for (uint32_t k = 0; k < m->contacts.n; k++) {
+    const Contact *c = &m->contacts.at[k];
+    IrContact one = {expr_symbol(e->g, c->closed)->index, 0, c->impact, c->release};
+    while (e->constraints.of[one.constraint] != &m->constraints.at[c->constraint]) one.constraint++;
+    vec_push(u->arena, &u->contacts, one);
+  }
 }
 
 static void add_events(IrUnit *u, const Eqns *e) {
   static const int directions[] = {[CROSS_BOTH] = 0, [CROSS_RISING] = 1, [CROSS_FALLING] = -1};
   for (uint32_t i = 0; i < e->m->events.n; i++) {
     const Event *ev = &e->m->events.at[i];
-    IrEvent one = {ev->name, directions[ev->direction], lower_action(e, i), ev->stop};
+    const Contact *contact = impact_of(e, i);
+    IrEvent one = {ev->name, directions[ev->direction], contact ? lower_impact(e, contact) : lower_action(e, i), ev->stop};
     vec_push(u->arena, &u->events, one);
   }
   u->event_values = lower_events(e);
@@ -78,7 +97,7 @@ IrUnit *unit_new(const Eqns *e, const char *source) {
   for (uint32_t i = 0; i < m->coords.n; i++)
     vec_push(m->arena, &u->q, var_of(m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->states.n; i++)
-    vec_push(m->arena, &u->z, var_of(m->states.at[i].name, &m->states.at[i].unit, 0, SIGN_ANY));
+    vec_push(m->arena, &u->z, var_of(m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->params.n; i++)
     vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
   for (uint32_t i = 0; i < m->inputs.n; i++)
@@ -88,6 +107,7 @@ IrUnit *unit_new(const Eqns *e, const char *source) {
   u->inputs = lower_inputs(e);
   add_events(u, e);
   add_constraints(u, e);
+  add_contacts(u, e);
   return u;
 }
 

@@ -297,6 +297,12 @@ int prog_has_pivots(const Prog *p) {
   return 0;
 }
 
+int prog_solves(const Prog *p, int constrained) {
+  for (uint32_t i = 0; p && i < p->solves.n; i++)
+    if ((p->solves.at[i].m > 0) == constrained) return 1;
+  return 0;
+}
+
 uint32_t prog_work(const Prog *p) {
   uint32_t most = 0;
   for (uint32_t i = 0; i < p->solves.n; i++) {

@@ -72,9 +72,11 @@ typedef struct {
 
 /* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it stands in the
  * work space. matrix is NULL where the one at that place was factored before, by another function. With m constraints A x = g on
- * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. */
+ * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. coarse: constraints that are nearly dependent count as
+ * dependent (lag_kkt.h). */
 typedef struct {
   uint32_t n, m, place;
+  int coarse;
   const Slot *matrix, *rhs;
 } Solve;
 
@@ -155,6 +157,9 @@ void prog_dump(const Prog *p, StrBuf *out);
 
 /* Whether it divides by what may be 0: IR_PIVOT, IR_SOLVE. */
 int prog_has_pivots(const Prog *p);
+
+/* Whether it solves a system by a loop: with constraints, or without. p may be NULL. */
+int prog_solves(const Prog *p, int constrained);
 
 /* Room that IR_SOLVE needs, in reals. */
 uint32_t prog_work(const Prog *p);

@@ -2,9 +2,7 @@
 
 #include "ir/series_impl.h"
 
-/* Sums are made side by side, in groups that a processor keeps in registers: of up to 16 numbers, in vectors of 2 or 4. */
-enum { LANES = 4, LEAST_GROUP = 8, MOST_GROUP = 16 };
-enum { INVERSE_MAX = 3, LEAST_SQUARES = 8 }; /* so many squares are worth a loop of their own */
+enum { INVERSE_MAX = 3 };
 
 /* --- values --- */
 
@@ -130,7 +128,6 @@ typedef struct {
   Val *value;          /* by slot of the program */
   EntryList *H, *row, *column; /* [nq + ndefs] of H, and of C */
   Val *u, *lambda;     /* [nq + ndefs] the rates u', and the adjoints of definitions */
-  VEC(uint32_t) columns; /* the pair whose sum stands in each column; UINT32_MAX: none */
 } Model;
 
 static void mark_roots(Model *w) {
@@ -365,43 +362,6 @@ static void solve(Model *w) {
 
 /* --- what leaves --- */
 
-static uint32_t rounded(uint32_t n, uint32_t group) { return (n + group - 1) / group * group; }
-
-/* The size of groups that leaves the fewest columns empty; of those the largest. */
-static void choose_group(Series *s, uint32_t sums, uint32_t squares) {
-  uint32_t n = sums + squares, least = UINT32_MAX;
-  s->sums = sums;
-  s->squares = squares;
-  for (uint32_t g = n <= LANES ? LANES : LEAST_GROUP; g <= MOST_GROUP; g += LANES) {
-    uint32_t first = rounded(sums ? sums : 1, g), width = first + rounded(squares, g);
-    if (width > least) continue;
-    s->group = g;
-    s->first_square = first;
-    s->width = least = width;
-  }
-}
-
-/* Gives each pair its column, squares behind the others where they are many, and tells the loads of sums. */
-static void place_sums(Model *w) {
-  Maker *m = &w->m;
-  uint32_t squares = 0, *column = ARENA_ARRAY(m->arena, uint32_t, m->pairs.n + 1);
-  for (uint32_t i = 0; i < m->pairs.n; i++) squares += m->pairs.at[i].a == m->pairs.at[i].b;
-  if (squares < LEAST_SQUARES) squares = 0;
-  choose_group(w->out, m->pairs.n - squares, squares);
-  for (int turn = 0; turn <= (squares > 0); turn++) {
-    while (turn && w->columns.n < w->out->first_square) vec_push(m->arena, &w->columns, UINT32_MAX);
-    for (uint32_t i = 0; i < m->pairs.n; i++) {
-      if (squares && (m->pairs.at[i].a == m->pairs.at[i].b) != turn) continue;
-      column[i] = w->columns.n;
-      vec_push(m->arena, &w->columns, i);
-    }
-  }
-  for (Slot s = 1; s < m->next->ins.n; s++) {
-    Ins *i = &m->next->ins.at[s];
-    if (i->op == IR_LOAD && i->array == ARR_SUMS) i->index = column[i->index];
-  }
-}
-
 static void store_rate(Model *w, uint32_t i, Slot zero, Slot coef) {
   Name name = w->sys->rates[i];
   uint32_t column = 2 * w->sys->nq + w->sys->nz + i;
@@ -426,12 +386,6 @@ static void store_all(Model *w) {
   for (uint32_t i = 0; i < nq; i++) store_state(w, i, load(m, ARR_COEF, nq + i, sys->velocities[i]));
   for (uint32_t i = 0; i < nq; i++) store_state(w, nq + i, m->values.at[w->u[i]].coef);
   for (uint32_t i = 0; i < nz; i++) store_state(w, 2 * nq + i, m->values.at[w->value[sys->flow[i]]].coef);
-  for (uint32_t c = 0; c < w->columns.n; c++) {
-    uint32_t i = w->columns.at[c];
-    if (i != UINT32_MAX) prog_store(m->next, 2, c, m->values.at[m->pairs.at[i].a].coef, "");
-  }
-  for (uint32_t c = 0; c < w->out->sums; c++) prog_store(m->next, 3, c, m->values.at[m->pairs.at[w->columns.at[c]].b].coef, "");
-  for (uint32_t i = 0; i < m->constants.n; i++) prog_store(m->first, 1, i, m->constants.at[i], "");
 }
 
 /* When the loads of `next` are there, in cycles of a processor: the rates of the order before, v and z, which are made of them,
@@ -446,7 +400,7 @@ static const uint32_t *when_ready(const Model *w, const Prog *next) {
     const Ins *i = &next->ins.at[s];
     if (i->op != IR_LOAD) continue;
     if (i->array == ARR_COEF && i->index >= w->sys->nq) ready[s] = ORDER + PRODUCT;
-    const Pair *pair = i->array == ARR_SUMS ? &w->m.pairs.at[w->columns.at[i->index]] : NULL;
+    const Pair *pair = i->array == ARR_SUMS ? &w->m.pairs.at[w->m.columns.at[i->index]] : NULL;
     if (pair && (late[pair->a] || late[pair->b])) ready[s] = ORDER;
   }
   return ready;
@@ -469,12 +423,13 @@ Series *series_new(const IrSystem *sys, const char **why) {
     return NULL;
   }
   solve(&w);
-  place_sums(&w);
   store_all(&w);
-  out->first = prog_tidy(w.m.first);
-  const Prog *next = prog_tidy(w.m.next);
-  out->next = prog_balance(next, when_ready(&w, next));
+  series_place(&w.m, out);
+  Prog *first = prog_tidy(w.m.first), *next = prog_tidy(w.m.next);
+  next = prog_balance(next, when_ready(&w, next));
   out->columns = (3 * sys->nq + 2 * sys->nz + (out->uses_time ? 1 : 0) + 3) / 4 * 4;
-  out->constants = w.m.constants.n;
+  series_arrange(out, first, next);
+  out->first = first;
+  out->next = next;
   return out;
 }

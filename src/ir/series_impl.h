@@ -31,6 +31,7 @@ typedef struct {
   VEC(Pair) pairs;
   VEC(Slot) constants;       /* c: slots in `first` */
   VEC(uint32_t) constant_at; /* by slot of `first`: index in c + 1 */
+  VEC(uint32_t) columns;     /* the pair whose sum stands in each column; UINT32_MAX: none. See series_place */
   const char *why;           /* the first thing that is not analytic */
 } Maker;
 
@@ -61,5 +62,11 @@ Val series_theta(Maker *m, Val v);
 /* The value of an instruction of the program; v, w, x are those of its operands, zero its slot in `first`.
  * 0 when it is not analytic: m->why says what. */
 Val series_instruction(Maker *m, const Ins *i, Slot zero, Val v, Val w, Val x);
+
+/* Gives the sums and constants that the stores of `next` need their places, and stores what they are made of. */
+void series_place(Maker *m, Series *s);
+
+/* Gives sums and constants of long families an order in which loops read and write neighbours. */
+void series_arrange(const Series *s, Prog *first, Prog *next);
 
 #endif

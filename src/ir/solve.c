@@ -24,6 +24,7 @@ typedef struct {
 typedef struct {
   const Slot *f, *g;
   uint32_t nrows;
+  int coarse; /* as in Solve */
 } Sides;
 
 typedef VEC(Expr) ExprVec;
@@ -163,7 +164,7 @@ static void solve_two(Lower *l, Block *b, Slot *x) {
 }
 
 /* x[n], and behind it the multipliers of the constraints. */
-static void solve_loop(Lower *l, const Block *b, Slot *x) {
+static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   Arena *a = l->p->arena;
   size_t n = b->n, m = b->m;
   Slot *full = ARENA_ARRAY(a, Slot, (n + m) * n), *rhs = ARENA_ARRAY(a, Slot, n + m);
@@ -171,7 +172,7 @@ static void solve_loop(Lower *l, const Block *b, Slot *x) {
     for (size_t j = 0; j < n; j++) full[i * n + j] = i >= j ? b->M[i * n + j] : b->M[j * n + i];
   for (size_t k = 0; k < m * n; k++) full[n * n + k] = b->A[k];
   for (size_t i = 0; i < n + m; i++) rhs[i] = i < n ? b->f[i] : b->g[i - n];
-  vec_push(a, &l->p->solves, ((Solve){.n = b->n, .m = b->m, .matrix = full, .rhs = rhs}));
+  vec_push(a, &l->p->solves, ((Solve){.n = b->n, .m = b->m, .coarse = coarse, .matrix = full, .rhs = rhs}));
   Slot s = prog_ins(l->p, (Ins){.op = IR_SOLVE, .index = l->p->solves.n - 1});
   for (uint32_t i = 0; i < n + m; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
@@ -212,7 +213,7 @@ static void solve_blocks(Lower *l, const Sides *s, Slot *acc, Slot *multipliers)
   for (uint32_t k = 0; k < n; k++) {
     Block *b = &blocks[k];
     if (!b->m && is_empty(b)) continue;
-    if (b->n > 2 || b->m) solve_loop(l, b, x);
+    if (b->n > 2 || b->m) solve_loop(l, b, s->coarse, x);
     else if (b->n == 1) solve_one(l, b, x);
     else solve_two(l, b, x);
     for (uint32_t i = 0; i < b->n; i++) acc[b->at[i]] = x[i];
@@ -248,14 +249,14 @@ void lower_solution(Lower *l, Slot *acc) {
   if (goes_straight(e)) {
     lower_elimination(l, acc);
   } else {
-    Sides sides = {slots_of(l, s->f, e->n), slots_of(l, k->demand, k->n), k->n};
+    Sides sides = {slots_of(l, s->f, e->n), slots_of(l, k->demand, k->n), k->n, 0};
     prog_title(l->p, k->n ? "M q'' = f + A^T lambda" : "M q'' = f");
     solve_blocks(l, &sides, acc, l->multipliers);
   }
   for (uint32_t i = 0; i < e->n; i++) prog_name(l->p, acc[i], expr_symbol(e->g, e->m->coords.at[i].a)->name);
 }
 
-void lower_correction(Lower *l, uint32_t nrows, const Slot *g, Slot *d, Slot *force) {
+void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, Slot *d, Slot *force) {
   const Eqns *e = l->e;
   const Entries *A = &e->constraints.A;
   Arena *a = l->p->arena;
@@ -264,7 +265,7 @@ void lower_correction(Lower *l, uint32_t nrows, const Slot *g, Slot *d, Slot *fo
   push_entries(l, &roots, A);
   lower_roots(l, roots.at, roots.n);
   Slot *multipliers = ARENA_ARRAY(a, Slot, nrows + 1);
-  Sides sides = {ARENA_ARRAY(a, Slot, e->n + 1), g, nrows};
+  Sides sides = {ARENA_ARRAY(a, Slot, e->n + 1), g, nrows, coarse};
   solve_blocks(l, &sides, d, multipliers);
   for (uint32_t i = 0; i < e->n; i++) force[i] = 0;
   for (uint32_t k = 0; k < A->n && A->at[k].row < nrows; k++) {

@@ -79,6 +79,11 @@ typedef struct {
   const Prog *residuals, *matrices, *position, *velocity;
 } IrConstraints;
 
+/* Places: of the input that says whether it is closed, in the constraints, of its events. */
+typedef struct {
+  uint32_t input, constraint, impact, release;
+} IrContact;
+
 typedef struct {
   Arena *arena;
   const char *name, *doc, *source, *effects, *all_effects;
@@ -87,6 +92,7 @@ typedef struct {
   VEC(IrEvent) events;
   const Prog *accel, *energy, *event_values, *inputs;
   IrConstraints constraints;
+  VEC(IrContact) contacts;
   unsigned wants;
   const Prog *variation, *second; /* NULL unless WANT_VARIATION */
   VEC(IrSecond) second_at;        /* what the values of `second` are */

@@ -62,10 +62,19 @@ static int check_contradiction(const Eqns *e, const Constraint *k) {
   return 1;
 }
 
+static int is_contact(const Model *m, uint32_t i) {
+  for (uint32_t k = 0; k < m->contacts.n; k++)
+    if (m->contacts.at[k].constraint == i) return 1;
+  return 0;
+}
+
+/* Contacts are not all closed at once. */
 static int check_count(const Eqns *e) {
   const Model *m = e->m;
-  if (m->constraints.n <= e->n) return 1;
-  const Constraint *k = &m->constraints.at[e->n];
+  uint32_t held = 0, i = 0;
+  while (i < m->constraints.n && (held += !is_contact(m, i)) <= e->n) i++;
+  if (held <= e->n) return 1;
+  const Constraint *k = &m->constraints.at[i];
   diag_error(m->diags, k->span, "there are more constraints than coordinates: `%s` is number %u, of %u coordinates", k->name, e->n + 1, e->n);
   diag_help(m->diags, "leave out those that follow from others");
   return 0;

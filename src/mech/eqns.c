@@ -5,6 +5,7 @@
 
 #include "base/methods.h"
 #include "mech/constrain.h"
+#include "mech/first_order.h"
 #include "mech/lagrange.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
@@ -146,8 +147,17 @@ static int loses_energy(const Eqns *e, unsigned lagrangian) {
   const Model *m = e->m;
   unsigned forces = 0;
   for (uint32_t i = 0; i < m->forces.n; i++) forces |= expr_kinds(e->g, m->forces.at[i].f);
-  return m->lagrangian && !e->conserves_energy && constraints_do_no_work(e) && !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) &&
+  return m->lagrangian && !e->first.n && !e->conserves_energy && constraints_do_no_work(e) && !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) &&
          !(forces & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_COORD) | bit(SYM_VEL))) && (!m->dissipation || only_brakes(e));
+}
+
+static int is_no_coordinate(const Symbol *s, const void *states) { return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate; }
+
+/* What L contains; coordinates are no states here, whatever the model's order. */
+static unsigned kinds_of_lagrangian(const Eqns *e) {
+  const Model *m = e->m;
+  unsigned kinds = kinds_in(e, &m->lagrangian, 1);
+  return e->first.n && !expr_contains(e->g, m->lagrangian, is_no_coordinate, m->states.at) ? kinds & ~bit(SYM_STATE) : kinds;
 }
 
 /* Facts that hold for every state, read off the graph. */
@@ -165,7 +175,7 @@ static void classify(Eqns *e) {
   e->constant_mass = !(mass & (bit(SYM_COORD) | bit(SYM_VEL) | bit(SYM_TIME) | bit(SYM_STATE)));
   e->separable = e->n && e->constant_mass && !m->states.n && !(rest & bit(SYM_VEL)) && !k->n;
   e->autonomous = e->timeless = !((mass | rest) & bit(SYM_TIME));
-  int inputs = (rest & bit(SYM_INPUT)) != 0;
+  int inputs = (rest & bit(SYM_INPUT)) != 0 && m->inputs.n > m->contacts.n; /* those of contacts do no work */
   e->smooth = 1;
   if (inputs) follow_inputs(e, &roots);
   ExprList l = expr_topo(e->g, roots.at, roots.n);
@@ -173,7 +183,7 @@ static void classify(Eqns *e) {
     ExprOp op = expr_op(e->g, l.at[i]);
     e->smooth &= op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_MIN && op != EX_MAX;
   }
-  unsigned lagrangian = kinds_in(e, &m->lagrangian, 1);
+  unsigned lagrangian = kinds_of_lagrangian(e);
   e->conserves_energy = m->lagrangian && !m->forces.n && !m->dissipation && !inputs && constraints_do_no_work(e) &&
                         !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_INPUT)));
   e->loses_energy = loses_energy(e, lagrangian);
@@ -232,6 +242,7 @@ Eqns *eqns_derive(Model *m) {
     if (!constrain(e) || !check_momenta(e) || !lagrange_check_mass(e)) return NULL;
     derive_energy(e);
   }
+  if (m->first_order && !first_order_derive(e, m)) return NULL;
   classify(e);
   fill_outputs(e);
   return check_numbers(e) && check_method(e) ? e : NULL;

@@ -47,10 +47,26 @@ typedef struct {
   Entries A;                   /* row by row, columns ascending */
 } Constraints;
 
+/* Of a Lagrangian that is linear in all velocities, L = theta(q, t) q' - H(q, t): see mech/first_order.h. */
+typedef struct {
+  uint32_t n;            /* number of coordinates; 0: L is not of first order */
+  const uint32_t *at;    /* [n] their states */
+  const Expr *theta;     /* [n] momenta */
+  Entries form;          /* row by row, columns ascending: the two-form omega, less dQ/dq' */
+  const Expr *rhs;       /* [n] what it makes of the velocities: dH/dq + dtheta/dt - Q */
+  const Expr *rates;     /* [n] what they are, each for itself; together they may be shorter: Eqns.flow */
+  const uint32_t *block; /* [n] coordinates of one number are coupled by the form, those of two are not */
+  const Expr *divisors;  /* [ndivisors] what rates are divided by, and may be 0 */
+  uint32_t ndivisors;
+  int closed;            /* the form is omega itself: no force contains velocities */
+  int constant;          /* it is free of coordinates, states and time */
+} FirstOrder;
+
 typedef struct {
   const Model *m;
   ExprGraph *g;
-  uint32_t n;            /* number of coordinates */
+  FirstOrder first;
+  uint32_t n;            /* number of coordinates with accelerations */
   const Expr *p;         /* [n] momenta, as differentiated */
   const Expr *dLdq;      /* [n] as differentiated */
   const Expr *momenta;   /* [n] the same, as a person would write them */
@@ -60,7 +76,7 @@ typedef struct {
   LinearSystem system;   /* the cheapest form of M q'' = f found; without multipliers */
   Constraints constraints;
   const Expr *Q;         /* [n] generalised forces, inside f already */
-  const Expr *flow;      /* [number of states] */
+  const Expr *flow;      /* [number of states]; free of rates */
   Expr energy;           /* p q' - L, to show; 0 without coordinates */
   Expr energy_stable;    /* the same, to compute */
   Expr energy_scale;     /* |p q'| + |L|: what a drift of the energy is compared with */

@@ -260,7 +260,7 @@ static int is_param(const Symbol *s, const void *data) {
   return s->kind == SYM_PARAM;
 }
 
-/* What parameters stand for that are given by others: param I = m*l^2 follows m and l. NULL when
+/* What parameters stand for that are given by others: param I = m*l^2 follows m and l. Contacts are open. NULL when
  * there are none. */
 static const Expr *param_definitions(const Model *m) {
   Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 1);
@@ -271,7 +271,8 @@ static const Expr *param_definitions(const Model *m) {
     with[p->sym] = expr_substitute(m->g, p->value, with, expr_symbol_count(m->g) + 1, "");
     some = 1;
   }
-  return some ? with : NULL;
+  for (uint32_t i = 0; i < m->contacts.n; i++) with[m->contacts.at[i].closed] = expr_int(m->g, 0);
+  return some || m->contacts.n ? with : NULL;
 }
 
 /* The equations with these definitions in the place of their parameters. */

@@ -45,12 +45,22 @@ static const char *kind_of(const Eqns *e, uint32_t k) {
   return expr_kinds(e->g, all->c[k]) & 1u << SYM_TIME ? "holonomic, with explicit time" : "holonomic";
 }
 
+static int is_contact(const Eqns *e, const Constraint *k) {
+  for (uint32_t i = 0; i < e->m->contacts.n; i++)
+    if (k == &e->m->constraints.at[e->m->contacts.at[i].constraint]) return 1;
+  return 0;
+}
+
 static void show_one(const Eqns *e, StateSolver *s, const unsigned char *counts, uint32_t k, uint32_t rank, StrBuf *out) {
   const Constraint *c = e->constraints.of[k];
   Place place = source_place(e->m->ast->sources, c->span.begin);
+  if (is_contact(e, c)) {
+    sb_printf(out, "  contact %s (line %u): a constraint while it is closed\n", c->name, place.line);
+    return;
+  }
   sb_printf(out, "  constraint %s (line %u): %s", c->name, place.line, kind_of(e, k));
   if (!counts[k]) sb_puts(out, "; follows from those before it");
-  if (rank < e->constraints.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the least one is taken");
+  if (rank < e->constraints.n - e->m->contacts.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the least one is taken");
   sb_putc(out, '\n');
 }
 
@@ -82,8 +92,10 @@ int freedom_show(const Eqns *e, StrBuf *out) {
   }
   unsigned char *counts = ARENA_ARRAY(e->m->arena, unsigned char, all->n);
   uint32_t rank = states_rank(s, UINT32_MAX, counts), free = e->n - rank;
-  sb_printf(out, "scene %s: %u degree%s of freedom; %u constraint%s, of rank %u at the start\n", e->m->scene.name, free, plural(free), all->n,
-            plural(all->n), rank);
+  uint32_t held = all->n - e->m->contacts.n;
+  sb_printf(out, "scene %s: %u degree%s of freedom", e->m->scene.name, free, plural(free));
+  if (held) sb_printf(out, "; %u constraint%s, of rank %u at the start", held, plural(held), rank);
+  sb_putc(out, '\n');
   for (uint32_t k = 0; k < all->n; k++) show_one(e, s, counts, k, rank, out);
   show_integrability(e, s, out);
   return 1;

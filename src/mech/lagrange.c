@@ -258,6 +258,21 @@ static void random_state(const Eqns *e, uint64_t *state, long double *values) {
   }
 }
 
+/* The coordinates that no entry of the mass matrix speaks of, in a list, where L contains the velocity of one; else NULL. */
+static const char *without_inertia(const Eqns *e) {
+  const Model *m = e->m;
+  StrBuf names = strbuf(m->arena);
+  uint8_t *heavy = ARENA_ARRAY(m->arena, uint8_t, e->n);
+  for (uint32_t k = 0; k < e->mass.n; k++) heavy[e->mass.at[k].row] = heavy[e->mass.at[k].col] = 1;
+  int linear = 0;
+  for (uint32_t i = 0; i < e->n; i++) {
+    if (heavy[i]) continue;
+    sb_printf(&names, "%s`%s`", names.n ? ", " : "", m->coords.at[i].name);
+    linear |= expr_contains_sym(e->g, m->lagrangian, m->coords.at[i].v);
+  }
+  return linear ? sb_text(&names) : NULL;
+}
+
 static void report_singular(const Eqns *e, const long double *null) {
   const Model *m = e->m;
   Diags *d = m->diags;
@@ -268,9 +283,16 @@ static void report_singular(const Eqns *e, const long double *null) {
       sb_printf(&names, "%s`%s'`", involved++ ? ", " : "", m->coords.at[i].name);
       last = i;
     }
-  if (e->mass.n == 0) {
-    diag_error(d, m->lagrangian_span, "the mass matrix is zero: L is linear in the velocities, or does not contain them");
-    diag_help(d, "not yet: Lagrangians of first order; a quantity without inertia can be a `state` with a `flow`");
+  const char *light = without_inertia(e);
+  if (e->mass.n == 0 && !(expr_kinds(e->g, m->lagrangian) & 1u << SYM_VEL)) {
+    diag_error(d, m->lagrangian_span, "the mass matrix is zero: L does not contain velocities");
+    diag_help(d, "nothing moves without kinetic energy, or terms like x*y' that make a coordinate the momentum of another");
+  } else if (e->mass.n == 0) {
+    diag_error(d, m->lagrangian_span, "the mass matrix is zero: what is not linear in the velocities cancels");
+    diag_help(d, "write L so that they stand in it linearly: it is then one of first order, without accelerations");
+  } else if (light) {
+    diag_error(d, m->lagrangian_span, "the mass matrix is singular in every state: without inertia: %s; L is linear in these velocities, not in the others", light);
+    diag_help(d, "not yet: Lagrangians of mixed order; give all coordinates inertia, or none, or take what follows at once for a `state` with a `flow`");
   } else if (involved == 1) {
     diag_error(d, m->coords.at[last].span, "the mass matrix is singular in every state: `%s` has no inertia%s", m->coords.at[last].name,
                m->constraints.n ? ", and no constraint moves it" : "");
@@ -311,6 +333,7 @@ int lagrange_check_mass(Eqns *e) {
   int judged = 0;
   for (int t = 0; t < TRIES; t++) {
     random_state(e, &seed, symbols);
+    for (uint32_t i = 0; i < e->m->contacts.n; i++) symbols[e->m->contacts.at[i].closed] = 0;
     expr_eval(e->g, entries, e->mass.n, symbols, values);
     int finite = 1;
     for (uint32_t i = 0; i < n * n; i++) a[i] = 0;

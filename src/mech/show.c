@@ -73,7 +73,7 @@ static void definitions(Text *t, const Expr *roots, uint32_t n) {
  * less to compute. Long chains keep their lets. */
 static Expr shown(const Text *t, Expr x) {
   enum { SHORT_MAX_COORDS = 16 };
-  return t->e->n <= SHORT_MAX_COORDS ? simplify(t->g, x) : x;
+  return t->e->n + t->e->first.n <= SHORT_MAX_COORDS ? simplify(t->g, x) : x;
 }
 
 /* The rows of M q'' as expressions, in time and memory in proportion to the entries that are not zero. */
@@ -104,12 +104,13 @@ static const Expr *mass_rows(Text *t) {
 
 static void momenta(Text *t) {
   const Eqns *e = t->e;
+  uint32_t n = e->n + e->first.n; /* one of them is 0 */
   heading(t, "momenta");
-  for (uint32_t i = 0; i < e->n; i++) {
-    Name name = e->m->coords.at[i].name;
+  for (uint32_t i = 0; i < n; i++) {
+    Name name = e->n ? e->m->coords.at[i].name : e->m->states.at[e->first.at[i]].name;
     const char *text = arena_printf(e->m->arena, "p_%s", name), *tex = arena_printf(e->m->arena, "p_{%s}", latex_of(t, name));
-    Expr shown = e->momenta[i];
-    named_equation(t, text, tex, shown, i + 1 == e->n);
+    Expr shown = e->n ? e->momenta[i] : e->first.theta[i];
+    named_equation(t, text, tex, shown, i + 1 == n);
   }
   end_block(t);
 }
@@ -165,6 +166,34 @@ static void lifted_motion(Text *t) {
   for (uint32_t i = 0; i < s->n; i++) equation(t, row[i], s->f[i], i + 1 == s->n && !e->m->states.n);
 }
 
+/* Whether the coordinate is coupled to no more than one other: then its rate says more than its row of the two-form. */
+static int is_in_pair(const FirstOrder *x, uint32_t i) {
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < x->n; k++) n += x->block[k] == x->block[i];
+  return n <= 2;
+}
+
+/* sum_j omega_ij q_j' = dH/dq_i + ..., with the first sign positive; the rate itself where the coordinate is one of a pair. */
+static void first_order_motion(Text *t) {
+  const Eqns *e = t->e;
+  const FirstOrder *x = &e->first;
+  uint32_t k = 0;
+  for (uint32_t i = 0; i < x->n; i++) {
+    int alone = is_in_pair(x, i);
+    Expr left = expr_int(t->g, 0), right = shown(t, x->rhs[i]);
+    for (; k < x->form.n && x->form.at[k].row == i; k++)
+      add_product(t, &left, x->form.at[k].e, expr_symbol(t->g, e->m->states.at[x->at[x->form.at[k].col]].rate)->node);
+    Num sign = num_int(1);
+    expr_pair(t->g, left, EX_SUM, 0, &sign);
+    if (num_sign(sign) < 0) {
+      left = expr_neg(t->g, left);
+      right = expr_neg(t->g, right);
+    }
+    if (alone) left = expr_symbol(t->g, e->m->states.at[x->at[i]].rate)->node;
+    equation(t, left, alone ? shown(t, x->rates[i]) : right, i + 1 == x->n && x->n == e->m->states.n);
+  }
+}
+
 static void motion(Text *t) {
   const Eqns *e = t->e;
   const Model *m = e->m;
@@ -172,8 +201,9 @@ static void motion(Text *t) {
   else heading(t, "equations of motion");
   const Expr *rows = e->mass_known ? mass_rows(t) : NULL;
   for (uint32_t i = 0; rows && i < e->n; i++) equation(t, rows[i], shown(t, e->f[i]), i + 1 == e->n && !m->states.n);
+  if (e->first.n) first_order_motion(t);
   for (uint32_t i = 0; i < m->states.n; i++)
-    equation(t, expr_symbol(t->g, m->states.at[i].rate)->node, e->flow[i], i + 1 == m->states.n);
+    if (!m->states.at[i].coordinate) equation(t, expr_symbol(t->g, m->states.at[i].rate)->node, m->states.at[i].flow, i + 1 == m->states.n);
   end_block(t);
 }
 
@@ -203,25 +233,32 @@ static void title(Text *t) {
 
 static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 
+/* A pair of coordinates is a degree of freedom; drag may couple an odd number. */
+static const char *half(const Eqns *e, uint32_t n) { return arena_printf(e->m->arena, "%u%s", n / 2, n % 2 ? " 1/2" : ""); }
+
 void show_facts(const Eqns *e, StrBuf *out) {
+  const char *energy = e->conserves_energy ? "conserved" : "not conserved (force, dissipation, input, explicit time, or a constraint that moves)";
+  if (e->first.n)
+    sb_printf(out, "first-order Lagrangian, %u coordinates, %s degree%s of freedom; two-form %s; energy is %s\n", e->first.n, half(e, e->first.n),
+              e->first.n == 2 ? "" : "s", e->first.constant ? "constant" : "variable", energy);
   if (!e->n) return;
   sb_printf(out, "%u coordinate%s; mass matrix %s%s; energy is %s\n", e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
-            e->singular_mass ? ", singular where no constraint holds" : e->definite_mass ? ", positive definite" : "", e->conserves_energy ? "conserved" : "not conserved (force, dissipation, input, explicit time, or a constraint that moves)");
+            e->singular_mass ? ", singular where no constraint holds" : e->definite_mass ? ", positive definite" : "", energy);
 }
 
 static void facts(Text *t, const char *cost) {
   const char *c = latex(t) ? "% " : "";
   sb_puts(t->out, latex(t) ? "" : "\n");
-  if (t->e->n) sb_puts(t->out, c);
+  if (t->e->m->lagrangian) sb_puts(t->out, c);
   show_facts(t->e, t->out);
-  sb_printf(t->out, "%saccelerations: %s\n", c, cost);
+  sb_printf(t->out, "%s%s: %s\n", c, t->e->first.n ? "rates" : "accelerations", cost);
 }
 
 void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *out) {
   Text t = {.e = e, .g = e->g, .style = style, .out = out};
   const Model *m = e->m;
   title(&t);
-  if (e->n) {
+  if (m->lagrangian) {
     heading(&t, "Lagrangian");
     named_equation(&t, "L", "L", m->lagrangian, 1);
     end_block(&t);
@@ -230,11 +267,16 @@ void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *o
   motion(&t);
   constraints(&t);
   VEC(Expr) roots = {0};
-  if (e->n) vec_push(m->arena, &roots, m->lagrangian);
+  if (m->lagrangian) vec_push(m->arena, &roots, m->lagrangian);
   for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, e->momenta[i]);
   for (uint32_t i = 0; i < e->n; i++) vec_push(m->arena, &roots, shown(&t, e->f[i]));
   for (uint32_t i = 0; i < e->mass.n; i++) vec_push(m->arena, &roots, shown(&t, e->mass.at[i].e));
-  for (uint32_t i = 0; i < m->states.n; i++) vec_push(m->arena, &roots, e->flow[i]);
+  for (uint32_t i = 0; i < m->states.n; i++)
+    if (!m->states.at[i].coordinate) vec_push(m->arena, &roots, m->states.at[i].flow);
+  for (uint32_t i = 0; i < e->first.n; i++) {
+    vec_push(m->arena, &roots, e->first.theta[i]);
+    vec_push(m->arena, &roots, shown(&t, e->first.rates[i]));
+  }
   for (uint32_t i = 0; i < e->constraints.n; i++) vec_push(m->arena, &roots, m->constraints.at[i].c);
   for (uint32_t i = 0; i < e->constraints.n; i++) vec_push(m->arena, &roots, shown(&t, e->constraints.demand[i]));
   if (e->energy) {

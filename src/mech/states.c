@@ -132,6 +132,7 @@ int states_complete(StateSolver *s, long double *symbols) {
   const Constraints *k = &e->constraints;
   uint32_t n = e->n, rank;
   for (uint32_t i = 0; i < k->n; i++) symbols[k->of[i]->multiplier] = 0;
+  for (uint32_t i = 0; i < m->contacts.n; i++) symbols[m->contacts.at[i].closed] = 0;
   if (k->n && !states_obey(s, symbols)) return 0;
   run(s, symbols);
   const long double *f = s->out + e->mass.n, *flow = f + n, *demand = s->out + s->first_entry + k->A.n + k->nholonomic + k->n;

@@ -340,6 +340,7 @@ void settle_units(Builder *b);
 /* constraint.c: adds what a constraint says to the model; the multiplier of the constraint that an argument names, FAILED (reported)
  * where there is none. */
 void add_constraint(Builder *b, const AstStmt *st, Name effect);
+void add_contact(Builder *b, const AstStmt *st, Name effect);
 
 /* twice.c: names of scenes, effects, events and expectations, each declared once, and what a scene or an event says, said once;
  * reported where they are not. */

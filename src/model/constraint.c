@@ -1,4 +1,4 @@
-/* Constraints: what they demand becomes c = 0 in the model, each with a multiplier that outputs can name. */
+/* Constraints and contacts: what they demand becomes c = 0 in the model, each with a multiplier that outputs can name. */
 #include "base/suggest.h"
 #include "model/resolve_impl.h"
 
@@ -9,15 +9,15 @@ static Dim multiplier_dim(Builder *b, Dim dim, int holonomic) {
 }
 
 /* What an equation of motion cannot follow. */
-static int is_refused(Builder *b, Expr c, Name name, Span span) {
+static int is_refused(Builder *b, Expr c, const char *what, Name name, Span span) {
   unsigned kinds = expr_kinds(b->g, c);
   if (kinds & 1u << SYM_STATE) {
-    diag_error(b->diags, span, "the constraint `%s` contains a state: constraints hold between coordinates", name);
+    diag_error(b->diags, span, "the %s `%s` contains a state: constraints hold between coordinates", what, name);
     diag_help(b->diags, "declare what it constrains as a coordinate");
     return 1;
   }
   if (kinds & 1u << SYM_INPUT) {
-    diag_error(b->diags, span, "the constraint `%s` contains an input, whose derivatives would be needed", name);
+    diag_error(b->diags, span, "the %s `%s` contains an input, whose derivatives would be needed", what, name);
     diag_help(b->diags, "write the input as a formula of t, inside the constraint");
     return 1;
   }
@@ -26,8 +26,7 @@ static int is_refused(Builder *b, Expr c, Name name, Span span) {
 
 static void add_one(Builder *b, Name name, Expr c, Dim dim, Span span) {
   Model *m = b->m;
-  if (is_refused(b, c, name, span)) return;
-  Constraint one = {.name = name, .span = span, .c = c, .dim = dim};
+    Constraint one = {.name = name, .span = span, .c = c, .dim = dim};
   int holonomic = !(expr_kinds(b->g, c) & 1u << SYM_VEL);
   one.multiplier = declare_symbol(b, SYM_MULTIPLIER, m->constraints.n, intern_printf(b, "lambda(%s)", name), SIGN_UNKNOWN,
                                   multiplier_dim(b, dim, holonomic));
@@ -59,8 +58,72 @@ void add_constraint(Builder *b, const AstStmt *st, Name effect) {
   scope_add(&b->constraints, (Entity){.index = b->m->constraints.n, .name = name, .effect = effect, .span = st->name_span, .parts = (uint8_t)left.n});
   for (uint32_t k = 0; k < parts_of(&left); k++) {
     Expr c = expr_sub(b->g, left.at[k], right.at[k]);
+    if (is_refused(b, c, "constraint", name, st->span)) return;
     add_one(b, left.n ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name, c, dim, st->span);
   }
+}
+
+/* --- contacts --- */
+
+static Expr symbol_node(const Builder *b, SymId s) { return expr_symbol(b->g, s)->node; }
+
+/* The input that says whether the gap is closed. Only the runtime sets it. */
+static SymId add_switch(Builder *b, Name name, Span span) {
+  Model *m = b->m;
+  Input in = {.name = intern_printf(b, "%s.closed", name), .span = span, .value = expr_int(b->g, 0)};
+  in.unit = (Unit){.dim = DIM_NONE, .factor = num_int(1), .offset = num_int(0), .text = ""};
+  in.sym = declare_symbol(b, SYM_INPUT, m->inputs.n, in.name, SIGN_NONNEGATIVE, DIM_NONE);
+  vec_push(b->arena, &m->inputs, in);
+  return in.sym;
+}
+
+/* An event where `value` falls through zero while the switch is on (or off), and nothing otherwise. */
+static uint32_t add_switched_event(Builder *b, const Contact *c, const char *suffix, int on, Expr value, Span span) {
+  ExprGraph *g = b->g;
+  Expr closed = expr_fn2(g, EX_LT, expr_num(g, num_ratio(1, 2)), symbol_node(b, c->closed)), one = expr_int(g, 1);
+  Event ev = {.name = intern_printf(b, "%s%s", c->name, suffix), .span = span, .direction = CROSS_FALLING};
+  ev.g = on ? expr_select(g, closed, value, one) : expr_select(g, closed, one, value);
+  vec_push(b->arena, &b->m->events, ev);
+  return b->m->events.n - 1;
+}
+
+static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *gap, const Value *e) {
+  Span span = ast_expr(b->ast, st->lhs)->span, bounce = ast_expr(b->ast, st->rhs)->span;
+  if (gap->n || e->n) {
+    diag_error(b->diags, gap->n ? span : bounce, "this is %s, and a number is wanted here", shape_text(b, gap->n ? gap->n : e->n));
+    return 0;
+  }
+  unsigned kinds = expr_kinds(b->g, gap->e);
+  if (is_refused(b, gap->e, "contact", name, span)) return 0;
+  if (kinds & 1u << SYM_VEL || !(kinds & 1u << SYM_COORD)) {
+    diag_error(b->diags, span, kinds & 1u << SYM_VEL ? "the gap of the contact `%s` contains a velocity" : "the gap of the contact `%s` contains no coordinate", name);
+    diag_help(b->diags, "a gap is a distance between positions: `contact floor: y >= 0, restitution = 0.8`");
+    return 0;
+  }
+  double value = expr_is_num(b->g, e->e) ? num_value(expr_number(b->g, e->e)) : 0.5;
+  if (expr_kinds(b->g, e->e) & ~(1u << SYM_PARAM | 1u << SYM_CONST) || value < 0 || value > 1) {
+    diag_error(b->diags, bounce, "a coefficient of restitution is a number from 0 to 1, or made of parameters");
+    return 0;
+  }
+  return dims_agree(b, e, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, bounce) ? 1 :
+         (diag_error(b->diags, bounce, "a coefficient of restitution is a pure number, and this is %s", in_dim(b, e->dim)), 0);
+}
+
+void add_contact(Builder *b, const AstStmt *st, Name effect) {
+  Model *m = b->m;
+  IndexRange r = {0};
+  if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
+  Name name = member_name(b, st->name, r.lo, r.n);
+  check_name_is_new(b, "constraint", name, effect, st->name_span);
+  Value gap = resolve(b, st->lhs, IN_DYNAMICS, effect), e = resolve(b, st->rhs, IN_DYNAMICS, effect);
+  if (!gap.e || !e.e || !check_contact(b, st, name, &gap, &e)) return;
+  Contact c = {.name = name, .gap = gap.e, .restitution = e.e, .constraint = m->constraints.n};
+  c.closed = add_switch(b, name, st->name_span);
+  scope_add(&b->constraints, (Entity){.index = m->constraints.n, .name = name, .effect = effect, .span = st->name_span});
+  add_one(b, name, expr_mul(b->g, symbol_node(b, c.closed), gap.e), gap.dim, st->span);
+  c.impact = add_switched_event(b, &c, "", 0, gap.e, st->span);
+  c.release = add_switched_event(b, &c, " opens", 1, symbol_node(b, m->constraints.at[c.constraint].multiplier), st->span);
+  vec_push(b->arena, &m->contacts, c);
 }
 
 /* --- lambda(NAME) --- */

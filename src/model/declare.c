@@ -135,6 +135,15 @@ static Name plain_name(Builder *b, const AstStmt *st, Name effect) {
   return st->name;
 }
 
+static void add_state(Builder *b, const AstStmt *st, Name name, Unit unit) {
+  Model *m = b->m;
+  uint32_t i = m->states.n;
+  State z = {.name = name, .span = st->name_span, .unit = unit, .coordinate = st->kind == STMT_COORD, .periodic = st->periodic};
+  z.z = declare_symbol(b, SYM_STATE, i, name, SIGN_UNKNOWN, unit.dim);
+  z.rate = declare_symbol(b, SYM_RATE, i, intern_printf(b, "%s'", name), SIGN_UNKNOWN, dim_per_second(b->dims, unit.dim));
+  vec_push(b->arena, &m->states, z);
+}
+
 static void add_coord(Builder *b, const AstStmt *st, Name name, Unit unit) {
   Model *m = b->m;
   uint32_t i = m->coords.n;
@@ -154,39 +163,21 @@ static void check_angle(Builder *b, const AstStmt *st, const Unit *unit) {
   diag_help(b->diags, "angles are in [rad], [deg] or [rev]; of other coordinates leave `periodic` out");
 }
 
-static void declare_coord(Builder *b, const AstStmt *st, Name effect) {
+/* Coordinates and states. Where L is linear in all velocities a coordinate is a state. */
+static void declare_motion(Builder *b, const AstStmt *st, Name effect) {
   Entity e;
   uint8_t parts;
+  int is_state = st->kind == STMT_STATE || b->m->first_order;
+  EntKind kind = is_state ? ENT_STATE : ENT_COORD;
+  uint32_t first = is_state ? b->m->states.n : b->m->coords.n;
   if (!read_type(b, st, effect, &parts)) return;
-  if (!declare_family(b, st, effect, ENT_COORD, b->m->coords.n, parts, &e)) return;
+  if (!declare_family(b, st, effect, kind, first, parts, &e)) return;
   Unit unit = declared_unit(b, st, effect);
   if (st->periodic) check_angle(b, st, &unit);
   int64_t at[2] = {1, 1};
   Name stem = plain_name(b, st, effect);
   do
-    for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++) add_coord(b, st, scalar_name(b, &e, stem, at, k), unit);
-  while (next_member(&e, at));
-}
-
-static void add_state(Builder *b, const AstStmt *st, Name name, Unit unit) {
-  Model *m = b->m;
-  uint32_t i = m->states.n;
-  State z = {.name = name, .span = st->name_span, .unit = unit};
-  z.z = declare_symbol(b, SYM_STATE, i, name, SIGN_UNKNOWN, unit.dim);
-  z.rate = declare_symbol(b, SYM_RATE, i, intern_printf(b, "%s'", name), SIGN_UNKNOWN, dim_per_second(b->dims, unit.dim));
-  vec_push(b->arena, &m->states, z);
-}
-
-static void declare_state(Builder *b, const AstStmt *st, Name effect) {
-  Entity e;
-  uint8_t parts;
-  if (!read_type(b, st, effect, &parts)) return;
-  if (!declare_family(b, st, effect, ENT_STATE, b->m->states.n, parts, &e)) return;
-  Unit unit = declared_unit(b, st, effect);
-  int64_t at[2] = {1, 1};
-  Name stem = plain_name(b, st, effect);
-  do
-    for (uint32_t k = 0; k < (parts ? parts : 1u); k++) add_state(b, st, scalar_name(b, &e, stem, at, k), unit);
+    for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++) (is_state ? add_state : add_coord)(b, st, scalar_name(b, &e, stem, at, k), unit);
   while (next_member(&e, at));
 }
 
@@ -314,8 +305,7 @@ static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
   (void)data;
   switch (st->kind) {
-    case STMT_COORD: declare_coord(b, st, effect); return;
-    case STMT_STATE: declare_state(b, st, effect); return;
+    case STMT_COORD: case STMT_STATE: declare_motion(b, st, effect); return;
     case STMT_PARAM: declare_param(b, st, effect); return;
     case STMT_CONST: declare_const(b, st, effect); return;
     case STMT_INPUT: declare_input(b, st, effect); return;
@@ -323,8 +313,7 @@ void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_FUNCTION: declare_function(b, st, effect); return;
     case STMT_OBSERVE: declare_observe(b, st, effect); return;
     case STMT_SYMMETRY: not_yet(b, st->span, "symmetries"); return;
-    case STMT_CONTACT: not_yet(b, st->span, "contacts"); return;
-    case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE: case STMT_LAGRANGIAN: case STMT_CONSTRAINT: case STMT_KINETIC: case STMT_POTENTIAL:
+    case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE: case STMT_LAGRANGIAN: case STMT_CONSTRAINT: case STMT_CONTACT: case STMT_KINETIC: case STMT_POTENTIAL:
     case STMT_DISSIPATION: case STMT_FORCE: case STMT_FLOW: case STMT_MAP: case STMT_EXPECT:
     case STMT_EVENT: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
     case STMT_START: case STMT_EXACT: case STMT_SET: case STMT_USE: case STMT_SPAN: case STMT_METHOD:

@@ -80,7 +80,13 @@ void scene_method(Builder *b, const AstStmt *st) {
   sc->method = st->name;
   sc->method_span = st->name_span;
   sc->options.n = 0;
-  if (m && (m->flags & METHOD_NO_STATES) && b->m->states.n) {
+  int flows_alone = m && (m->flags & METHOD_FLOWS) && !b->m->coords.n;
+  if (m && (m->flags & METHOD_NO_STATES) && b->m->states.n && !flows_alone) {
+    if (b->m->first_order) {
+      diag_error(b->diags, st->name_span, "the method `%s` needs momenta beside coordinates, and L is linear in the velocities", m->name);
+      diag_help(b->diags, "`gauss` is symplectic there; `rk45` and `dop853` can, too");
+      return;
+    }
     diag_error(b->diags, st->name_span, "the method `%s` cannot integrate a model with states", m->name);
     diag_also(b->diags, b->m->states.at[0].span, "here is a state");
     diag_help(b->diags, "`rk45` and `dop853` can");

@@ -75,7 +75,7 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   en->failed |= st->kind != STMT_DISSIPATION && (!v.e || v.n);
   if (!v.e || v.n) return;
   if (st->kind == STMT_DISSIPATION) {
-    if (!expr_is_num(b->g, v.e) && !(expr_kinds(b->g, v.e) & 1u << SYM_VEL)) {
+    if (!expr_is_num(b->g, v.e) && !(expr_kinds(b->g, v.e) & 1u << (b->m->first_order ? SYM_RATE : SYM_VEL))) {
       diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a dissipation function without velocities does nothing");
       diag_help(b->diags, "its force is -dR/dq': `dissipation = c/2*x'^2`");
     }
@@ -217,7 +217,8 @@ static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
     SymKind kind = expr_op(b->g, target.at[k]) == EX_SYM ? expr_sym_of(b->g, target.at[k])->kind : SYM_LOCAL;
     if (kind == SYM_COORD || kind == SYM_VEL || kind == SYM_STATE) continue;
     diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "an event can set a coordinate, a velocity or a state");
-    diag_help(b->diags, "what an event changes is a `state`: `state k`, with `flow k' = 0` where nothing else does");
+    if (kind == SYM_RATE && b->m->first_order) diag_help(b->diags, "L is linear in the velocities: `%s` follows from the coordinates", ast_text(b, st->lhs));
+    else diag_help(b->diags, "what an event changes is a `state`: `state k`, with `flow k' = 0` where nothing else does");
     return;
   }
   SymId sym = expr_sym_id(b->g, target.e);
@@ -263,7 +264,8 @@ static void add_section(Builder *b, const Section *s) {
     diag_help(b->diags, "a section is where one number is zero: name a component");
     return;
   }
-  if (expr_kinds(b->g, g.e) & (1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_LOCAL)) {
+  unsigned later = 1u << SYM_ACC | 1u << SYM_LOCAL | (b->m->first_order ? 0 : 1u << SYM_RATE);
+  if (expr_kinds(b->g, g.e) & later) {
     diag_error(b->diags, span, "a section is a surface in the space of states: it cannot contain accelerations, rates of states or `energy`");
     diag_help(b->diags, "write it with coordinates, velocities, states, t and lets");
     return;
@@ -308,9 +310,10 @@ static void apply(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_INPUT: fill_input(b, st, effect); return;
     case STMT_EVENT: add_event(b, st, effect); return;
     case STMT_CONSTRAINT: add_constraint(b, st, effect); return;
+    case STMT_CONTACT: add_contact(b, st, effect); return;
     case STMT_LET: case STMT_FUNCTION: case STMT_EXPECT: case STMT_OBSERVE: /* after L is known */
     case STMT_COORD: case STMT_STATE: case STMT_PARAM: case STMT_CONST:
-    case STMT_SYMMETRY: case STMT_CONTACT: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE:
+    case STMT_SYMMETRY: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE:
     case STMT_MAP: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
     case STMT_START: case STMT_EXACT: case STMT_SET: case STMT_USE: case STMT_SPAN: case STMT_METHOD:
     case STMT_TOLERANCE: case STMT_OUTPUT: case STMT_MONITOR: case STMT_LIKE: case STMT_STOP: return;
@@ -373,7 +376,7 @@ static void check_whole(Builder *b) {
   }
   if (m->coords.n && m->lagrangian) check_contained(b);
   for (uint32_t i = 0; i < m->states.n; i++)
-    if (!m->states.at[i].flow) {
+    if (!m->states.at[i].flow && !m->states.at[i].coordinate) {
       diag_error(b->diags, m->states.at[i].span, "the state `%s` has no flow", m->states.at[i].name);
       diag_help(b->diags, "give its rate: `flow %s' = ...`", m->states.at[i].name);
     }
@@ -431,8 +434,43 @@ static void find_units(Builder *b) {
   else b->energy = b->dim_of.at[m->energy_sym] = dim_unknown(b->dims, NULL);
 }
 
-Model *model_build(Ast *ast, const ModelChoice *choice) {
+/* The degree in velocities of a node of L whose arguments have the degrees given; 2 stands for all that is not linear. */
+static uint8_t degree_of(const ExprGraph *g, Expr x, const ExprMap *degrees) {
+  uint32_t degree = 0;
+  ExprOp op = expr_op(g, x);
+  if (op == EX_SYM) return expr_sym_of(g, x)->kind == SYM_VEL;
+  if (op == EX_DEF) return (uint8_t)expr_map_get(degrees, expr_arg(g, x, 0));
+  if (op != EX_SUM && op != EX_PROD) {
+    for (uint32_t i = 0; i < expr_nargs(g, x); i++)
+      if (expr_map_get(degrees, expr_arg(g, x, i))) return 2;
+    return 0;
+  }
+  for (uint32_t i = 0; i < expr_pairs(g, x, op); i++) {
+    Num k;
+    uint32_t one = expr_map_get(degrees, expr_pair(g, x, op, i, &k));
+    if (op == EX_SUM) degree = one > degree ? one : degree;
+    else degree += one && !num_is_one(k) ? 2 : one;
+  }
+  return degree > 2 ? 2 : (uint8_t)degree;
+}
+
+/* Whether L is linear in the velocities as it is written, and contains some. Makes no node: the order of nodes is that of text. */
+static int is_first_order(const Model *m) {
+  if (!m->coords.n || !m->lagrangian || !(expr_kinds(m->g, m->lagrangian) & 1u << SYM_VEL)) return 0;
+  ExprMap degrees = expr_map(m->arena);
+  ExprList l = expr_topo(m->g, &m->lagrangian, 1);
+  for (uint32_t i = 0; i < l.n; i++) {
+    if (!(expr_kinds(m->g, l.at[i]) & 1u << SYM_VEL)) continue;
+    uint8_t degree = degree_of(m->g, l.at[i], &degrees);
+    if (degree) expr_map_set(&degrees, l.at[i], degree);
+  }
+  return expr_map_get(&degrees, m->lagrangian) == 1;
+}
+
+/* The model up to its scene. */
+static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   Builder *b = builder_new(ast, choice);
+  b->m->first_order = first_order;
   scene_select(b, choice);
   find_units(b);
   each_active(b, declare_statement, NULL);
@@ -444,6 +482,15 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   for (uint32_t i = 0; i < b->observes.n; i++) resolve_observe(b, i);
   each_active(b, expect, NULL);
   check_whole(b);
+  return b;
+}
+
+Model *model_build(Ast *ast, const ModelChoice *choice) {
+  Builder *b = build(ast, choice, 0);
+  if (!ast->diags->errors && is_first_order(b->m)) {
+    if (b->m->constraints.n) not_yet(b, b->m->constraints.at[0].span, "constraints where L is linear in the velocities");
+    else b = build(ast, choice, 1);
+  }
   add_section(b, &choice->section);
   scene_build(b, choice);
   settle_units(b);

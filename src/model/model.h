@@ -25,7 +25,9 @@ typedef struct {
   Span span;
   Unit unit;
   SymId z, rate;
-  Expr flow; /* 0 until a flow statement gives it */
+  Expr flow;      /* 0 until a flow statement gives it; of a coordinate always */
+  int coordinate; /* the text declares it as one: see Model.first_order */
+  int periodic;
 } State;
 
 typedef struct {
@@ -86,6 +88,15 @@ typedef struct {
   Dim dim;
   SymId multiplier;
 } Constraint;
+
+/* A gap that cannot become negative. While it is closed it is a constraint: c = closed*gap. */
+typedef struct {
+  Name name;
+  Expr gap, restitution;
+  SymId closed;                  /* an input of the model's own: 1 while the gap is closed, else 0 */
+  uint32_t constraint;           /* in constraints, */
+  uint32_t impact, release;      /* in events */
+} Contact;
 
 /* A named quantity: what a scene puts out, or an observe statement. */
 typedef struct {
@@ -161,14 +172,16 @@ typedef struct {
   SymId time, pi;
   VEC(Coord) coords;
   VEC(State) states;
+  int first_order;         /* L is linear in all velocities: there are no coords, coordinates are states, velocities their rates */
   VEC(Param) params;
   VEC(Input) inputs;
   Expr kinetic, potential; /* 0 when L was given as a whole */
-  Expr lagrangian;         /* 0 when there are no coordinates */
+  Expr lagrangian;         /* 0 when the text declares no coordinates */
   Span lagrangian_span;
   Expr dissipation;        /* sum of Rayleigh functions, or 0 */
   VEC(Force) forces;
   VEC(Constraint) constraints;
+  VEC(Contact) contacts;
   VEC(Expect) expects;
   VEC(Event) events;
   VEC(Output) observes;

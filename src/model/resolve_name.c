@@ -128,7 +128,8 @@ static const Entity *momentum_of(const Eval *ev, Name name) {
   Builder *b = ev->b;
   if (ev->where < IN_OBSERVE || strncmp(name, "p_", 2) != 0 || !b->m->lagrangian || scope_find(&b->scope, name, ev->effect, &ambiguous)) return NULL;
   const Entity *e = scope_find(&b->scope, intern(b->ast->names, name + 2), ev->effect, &ambiguous);
-  return e && e->kind == ENT_COORD && !ambiguous ? e : NULL;
+  int moves = e && (e->kind == ENT_COORD || (e->kind == ENT_STATE && b->m->states.at[e->index].coordinate));
+  return moves && !ambiguous ? e : NULL;
 }
 
 /* dL/dq' of a coordinate, or of member `at` of a family. */
@@ -137,7 +138,7 @@ static Value momentum_value(const Eval *ev, const Entity *e, const int64_t *at) 
   uint32_t i = e->index + member_offset(e, at);
   Value r = {.n = e->parts};
   for (uint32_t k = 0; k < parts_of(&r); k++) {
-    SymId v = b->m->coords.at[i + k].v;
+    SymId v = e->kind == ENT_STATE ? b->m->states.at[i + k].rate : b->m->coords.at[i + k].v;
     r.at[k] = expr_diff(b->g, b->m->lagrangian, v);
     r.dim = dim_div(b->dims, b->energy, b->dim_of.at[v]);
   }

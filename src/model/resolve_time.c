@@ -59,8 +59,9 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
     return FAILED;
   }
   if (kinds & second && !(kinds & 1u << SYM_ACC)) {
-    diag_error(b->diags, span, "a state has a rate, and no second one");
-    diag_help(b->diags, "write the derivative of what its flow says");
+    diag_error(b->diags, span, b->m->first_order ? "L is linear in the velocities: they follow from the coordinates, and there is no second derivative"
+                                                 : "a state has a rate, and no second one");
+    diag_help(b->diags, b->m->first_order ? "write the derivative of what the equations of motion say" : "write the derivative of what its flow says");
     return FAILED;
   }
   if (kinds & second) {
@@ -75,6 +76,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
   Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};
   const Expr *seed = time_seeds(b);
   expr_tangent(b->g, of.at, parts_of(&of), seed, b->nseeds + 1, "'", &b->rates, r.at);
+  if (b->m->first_order) return r; /* rates are velocities; what has those of states was refused before L was known */
   if (where < IN_OBSERVE && kinds_in(b, &r) & second && !(kinds_in(b, &r) & 1u << SYM_ACC)) {
     diag_error(b->diags, span, "the rate of a state may stand only in `expect`, `observe` and `output`");
     diag_help(b->diags, "write what its flow says: a `let` may stand for both");

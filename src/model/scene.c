@@ -334,7 +334,7 @@ static void give_start(Builder *b, uint32_t i, Expr value, Span span, void *data
 
 static void give_closed_form(Builder *b, uint32_t i, Expr value, Span span, void *data) {
   const StartOf *of = data;
-  int periodic = of->kind == ENT_COORD && !of->velocity && b->m->coords.at[i].periodic;
+  int periodic = of->kind == ENT_STATE ? b->m->states.at[i].periodic : !of->velocity && b->m->coords.at[i].periodic;
   give_exact(b, start_target(b, of, i), start_unit(b, i, data), periodic, value, span);
 }
 
@@ -359,6 +359,11 @@ static void set_motion(Builder *b, const AstStmt *st) {
     diag_error(b->diags, name->span, "`%s` is %s; only coordinates, velocities and states %s", name->name, ent_kind_text(e->kind),
                exact ? "have a closed form" : "start somewhere");
     if (e->kind == ENT_PARAM && !exact) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
+    return;
+  }
+  if (p.primes && e->kind == ENT_STATE && b->m->states.at[e->index].coordinate) {
+    diag_error(b->diags, x->span, "`%s'` follows from the coordinates: L is linear in the velocities, and the motion of first order", name->name);
+    diag_help(b->diags, exact ? "the coordinate itself has a closed form: `exact %s = ...`" : "leave it out; `start %s = ...` is all that it needs", name->name);
     return;
   }
   if (p.primes && e->kind == ENT_STATE) {

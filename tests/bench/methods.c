@@ -1,69 +1,46 @@
-/* Time against error: methods of liblag on emitted models, next to GSL's rk8pd on hand-written ones, in one run.
- *   methods          prints, for each problem and each error to be reached, the fastest setting of each method
+/* Time against error: methods of liblag on emitted models, next to integrators of others on hand-written ones, in one run.
+ *   methods [own]    prints, for each problem and each error to be reached, the fastest setting of each method; own: only
+ *                    liblag's, rk8pd and dop853 inlined by hand
  *
- * Every method runs at tolerances from 1e-4 to 1e-15; its time is the least of several runs, its error the largest of the
- * coordinates at the end. liblag's times are of lag_sim_advance: they include the watch on the energy at each step, which
- * GSL's do not. Linked with the emitted models; without -DBENCH_GSL there are no peers. */
-#include <math.h>
+ * Every method runs at tolerances from 1e-4 to 1e-15 until the smallest error is reached, or it takes seconds; its time is the least of several runs, its
+ * error the largest of the coordinates at the end. The chains, whose motion is chaotic, run at one tolerance. liblag's times
+ * are of lag_sim_advance: they include the watch on the energy at each step, which those of others do not. Linked
+ * with the emitted models; a peer is there when its BENCH_ macro is defined. In brackets: the time over rk8pd's. */
+#include "methods.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "lag.h"
-#ifdef BENCH_GSL
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_odeiv2.h>
-#endif
 
-extern const lag_scene double_pendulum_swing, henon_heiles_regular, kepler_hundred, kepler_narrow, outer_planets_years;
-
-enum { MOST = 64 };
+extern const lag_scene double_pendulum_swing, henon_heiles_regular, kepler_hundred, kepler_narrow, outer_planets_years, chain_10_swing, chain_20_swing,
+  oscillators_go;
+int linear_10(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *a, double *zd, double *w);
+int linear_20(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *a, double *zd, double *w);
 
 typedef struct {
   const char *name;
   const lag_scene *scene;
-  int (*f)(double t, const double *y, double *dy, void *p); /* the same by hand */
+  int by_hand;
+  bench_rhs *f; /* the same by hand */
   double t;
   const double *exact; /* coordinates; where from: see below */
   double errors[3];    /* to be reached; 0: no more */
-  double least_tol;
+  double only_tol;     /* not 0: no errors, but this tolerance */
 } Problem;
 
-/* ---- the same by hand ---- */
+static const double masses_lengths_g[41] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 9.81};
 
-static int double_pendulum(double t, const double *y, double *d, void *p) {
-  const double g = 9.81, delta = y[0] - y[1], s = sin(delta), c = cos(delta);
-  const double f1 = -s*y[3]*y[3] - 2*g*sin(y[0]), f2 = s*y[2]*y[2] - g*sin(y[1]), det = 1/(2 - c*c);
-  (void)t, (void)p;
-  d[0] = y[2], d[1] = y[3], d[2] = (f1 - c*f2)*det, d[3] = (2*f2 - c*f1)*det;
-  return 0;
+int by_hand_chain_10(double t, const double *y, double *d, void *p) {
+  (void)p;
+  memcpy(d, y + 10, 10*sizeof *d);
+  return linear_10(t, y, y + 10, NULL, masses_lengths_g + 20, NULL, d + 10, NULL, NULL);
 }
-
-static int henon_heiles(double t, const double *y, double *d, void *p) {
-  (void)t, (void)p;
-  d[0] = y[2], d[1] = y[3], d[2] = -y[0] - 2*y[0]*y[1], d[3] = -y[1] - y[0]*y[0] + y[1]*y[1];
-  return 0;
-}
-
-static int kepler(double t, const double *y, double *d, void *p) {
-  const double r2 = y[0]*y[0] + y[1]*y[1], k = -1/(r2*sqrt(r2));
-  (void)t, (void)p;
-  d[0] = y[2], d[1] = y[3], d[2] = k*y[0], d[3] = k*y[1];
-  return 0;
-}
-
-static int planets(double t, const double *y, double *d, void *p) {
-  static const double m[6] = {1.00000597682, 0.000954786104043, 0.000285583733151, 0.0000437273164546, 0.0000517759138449, 1/1.3e8};
-  const double G = 2.95912208286e-4;
-  (void)t, (void)p;
-  for (int i = 0; i < 18; i++) d[i] = y[18 + i], d[18 + i] = 0;
-  for (int i = 0; i < 6; i++)
-    for (int j = 0; j < i; j++) {
-      const double x[3] = {y[3*i] - y[3*j], y[3*i + 1] - y[3*j + 1], y[3*i + 2] - y[3*j + 2]}, r2 = x[0]*x[0] + x[1]*x[1] + x[2]*x[2], k = G/(r2*sqrt(r2));
-      for (int c = 0; c < 3; c++) d[18 + 3*i + c] -= m[j]*k*x[c], d[18 + 3*j + c] += m[i]*k*x[c];
-    }
-  return 0;
+int by_hand_chain_20(double t, const double *y, double *d, void *p) {
+  (void)p;
+  memcpy(d, y + 20, 20*sizeof *d);
+  return linear_20(t, y, y + 20, NULL, masses_lengths_g, NULL, d + 20, NULL, NULL);
 }
 
 /* mpmath.odefun in 30 digits, from the double nearest to pi/2. */
@@ -77,29 +54,23 @@ static const double at_planets[] = {
 static const double at_kepler[] = {0.4, 0}, at_narrow[] = {-1.9, 0};
 
 static const Problem problems[] = {
-  {"double pendulum, th1 = th2 = pi/2, to t = 10", &double_pendulum_swing, double_pendulum, 10, at_double_pendulum, {1e-6, 1e-9, 1e-12}, 1e-15},
-  {"Henon-Heiles, E = 1/8, to t = 1000", &henon_heiles_regular, henon_heiles, 1000, at_henon_heiles, {1e-6, 1e-11, 0}, 1e-15},
-  {"Kepler, e = 0.6, 100 periods", &kepler_hundred, kepler, 628.31853071795864769, at_kepler, {1e-5, 1e-10, 0}, 1e-15},
-  {"Kepler, e = 0.9, 5.5 periods", &kepler_narrow, kepler, 34.557519189487725623, at_narrow, {1e-8, 0, 0}, 1e-15},
-  {"outer planets, 10^4 years", &outer_planets_years, planets, 3652500, at_planets, {2e-9, 5e-6, 0}, 1e-15},
+  {"double pendulum, th1 = th2 = pi/2, to t = 10", &double_pendulum_swing, DOUBLE_PENDULUM, by_hand_double_pendulum, 10, at_double_pendulum, {1e-6, 1e-9, 1e-12}, 0},
+  {"Henon-Heiles, E = 1/8, to t = 1000", &henon_heiles_regular, HENON_HEILES, by_hand_henon_heiles, 1000, at_henon_heiles, {1e-6, 1e-11, 0}, 0},
+  {"Kepler, e = 0.6, 100 periods", &kepler_hundred, KEPLER, by_hand_kepler, 628.31853071795864769, at_kepler, {1e-5, 1e-10, 0}, 0},
+  {"Kepler, e = 0.9, 5.5 periods", &kepler_narrow, KEPLER, by_hand_kepler, 34.557519189487725623, at_narrow, {1e-8, 0, 0}, 0},
+  {"outer planets, 10^4 years", &outer_planets_years, PLANETS, by_hand_planets, 3652500, at_planets, {5e-6, 2e-9, 0}, 0},
+  {"chain of 10 rods, to t = 10", &chain_10_swing, CHAIN_10, by_hand_chain_10, 10, NULL, {0}, 1e-12},
+  {"chain of 20 rods, to t = 10", &chain_20_swing, CHAIN_20, by_hand_chain_20, 10, NULL, {0}, 1e-12},
 };
 enum { N_PROBLEMS = sizeof problems/sizeof *problems };
 
 /* ---- one run ---- */
 
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9*(double)t.tv_nsec;
-}
-
 static double error_at(const Problem *p, const double *q) {
   double worst = 0;
-  for (int i = 0; i < p->scene->model->nq; i++) worst = fmax(worst, fabs(q[i] - p->exact[i]));
+  for (int i = 0; p->exact && i < p->scene->model->nq; i++) worst = fmax(worst, fabs(q[i] - p->exact[i]));
   return worst;
 }
-
-typedef double runner(const Problem *p, double tol, const char *method, double *error);
 
 static const lag_method *find(const char *name) {
   for (int i = 0; i < lag_nmethods; i++)
@@ -107,57 +78,60 @@ static const lag_method *find(const char *name) {
   return NULL;
 }
 
-static double run_liblag(const Problem *p, double tol, const char *name, double *error) {
+/* The state at p->t in y; *calls: of the right-hand side. */
+static double run_liblag(const Problem *p, double tol, const char *name, double *y, double *calls) {
   const lag_option opt = {"max_step", p->t, NULL};
   lag_sim *sim = lag_sim_new(p->scene);
+  lag_stats stats;
   if (lag_sim_set_tolerance(sim, tol) || lag_sim_set_method(sim, find(name), &opt, 1)) exit(1);
-  double t0 = now();
+  double t0 = bench_now();
   int rc = lag_sim_advance(sim, p->t);
-  double t = now() - t0;
-  *error = rc ? HUGE_VAL : error_at(p, lag_sim_q(sim));
+  double took = bench_now() - t0;
+  memcpy(y, lag_sim_q(sim), (size_t)p->scene->model->nq*sizeof *y);
+  lag_sim_stats(sim, &stats);
+  *calls = (double)stats.rhs_calls;
   lag_sim_free(sim);
-  return t;
+  return rc ? -1 : took;
 }
-
-#ifdef BENCH_GSL
-static double run_gsl(const Problem *p, double tol, const char *name, double *error) {
-  lag_sim *sim = lag_sim_new(p->scene);
-  int n = 2*p->scene->model->nq;
-  double y[MOST], t = 0;
-  (void)name;
-  memcpy(y, lag_sim_q(sim), (size_t)n*sizeof *y); /* q and v stand side by side */
-  lag_sim_free(sim);
-  gsl_odeiv2_system system = {p->f, NULL, (size_t)n, NULL};
-  double t0 = now();
-  gsl_odeiv2_driver *d = gsl_odeiv2_driver_alloc_y_new(&system, gsl_odeiv2_step_rk8pd, p->t*1e-4, tol, tol);
-  int rc = gsl_odeiv2_driver_apply(d, &t, p->t, y);
-  double took = now() - t0;
-  gsl_odeiv2_driver_free(d);
-  *error = rc ? HUGE_VAL : error_at(p, y);
-  return took;
-}
-#endif
-
-/* ---- all of them ---- */
 
 typedef struct {
-  const char *label, *method;
-  runner *run;
-  double time[40], error[40], tol[40];
+  const char *label, *method; /* method: of liblag */
+  bench_peer *peer;
+  int own; /* runs with `own`, too */
+  double time[40], error[40];
   int n;
 } Series;
 
+static double run(const Problem *p, const Series *s, double tol, double *error) {
+  double y[BENCH_MOST], calls, took;
+  if (s->method) {
+    took = run_liblag(p, tol, s->method, y, &calls);
+  } else {
+    lag_sim *sim = lag_sim_new(p->scene);
+    int n = 2*p->scene->model->nq;
+    memcpy(y, lag_sim_q(sim), (size_t)n*sizeof *y); /* q and v stand side by side */
+    lag_sim_free(sim);
+    took = s->peer(p->by_hand, p->f, n, p->t, tol, y);
+  }
+  *error = took < 0 ? HUGE_VAL : error_at(p, y);
+  return took;
+}
+
+/* ---- all of them ---- */
+
 static void measure(const Problem *p, Series *s) {
+  double least = 0;
+  for (int e = 0; e < 3 && p->errors[e] > 0; e++) least = p->errors[e];
   s->n = 0;
-  for (double tol = 1e-4; tol >= p->least_tol*0.9; tol /= sqrt(10), s->n++) {
+  for (double tol = p->only_tol > 0 ? p->only_tol : 1e-4; tol >= 0.9e-15; tol /= sqrt(10)) {
     double best = HUGE_VAL, spent = 0;
-    for (int i = 0; i < 200 && (i < 3 || spent < 0.05); i++) {
-      double t = s->run(p, fmax(tol, p->least_tol), s->method, &s->error[s->n]);
-      best = fmin(best, t);
-      spent += t;
+    for (int i = 0; i < 100 && (i < 2 || spent < 0.02) && spent < 0.2; i++) {
+      double t = run(p, s, fmax(tol, 1e-15), &s->error[s->n]);
+      best = fmin(best, t < 0 ? HUGE_VAL : t);
+      spent += fabs(t);
     }
-    s->time[s->n] = best;
-    s->tol[s->n] = tol;
+    s->time[s->n++] = best;
+    if (p->only_tol > 0 || spent > 0.5 || best == HUGE_VAL || (s->n > 2 && s->error[s->n - 1] < least/3 && s->error[s->n - 2] < least/3)) break;
   }
 }
 
@@ -165,37 +139,72 @@ static void measure(const Problem *p, Series *s) {
 static int fastest(const Series *s, double error) {
   int best = -1;
   for (int i = 0; i < s->n; i++)
-    if (s->error[i] <= error && (best < 0 || s->time[i] < s->time[best])) best = i;
+    if (s->error[i] <= error && s->time[i] < HUGE_VAL && (best < 0 || s->time[i] < s->time[best])) best = i;
   return best;
 }
 
-int main(void) {
+static void print_row(const Problem *p, const Series *s, const Series *first) {
+  printf("  %-28s", s->label);
+  for (int e = 0; e < 3 && (e == 0 || p->errors[e] > 0); e++) {
+    double error = p->only_tol > 0 ? HUGE_VAL : p->errors[e];
+    int at = fastest(s, error), one = first ? fastest(first, error) : -1;
+    if (at < 0) printf("  %16s", "-");
+    else if (one < 0) printf("  %16.3g", 1e3*s->time[at]);
+    else printf("  %9.3g (%4.2f)", 1e3*s->time[at], s->time[at]/first->time[one]);
+  }
+  putchar('\n');
+}
+
+/* Nanoseconds that a call takes where the right-hand side is next to nothing. */
+static double per_call;
+static int counted(double t, const double *y, double *d, void *p) { return per_call++, by_hand_oscillators(t, y, d, p); }
+
+static void print_overhead(const Series *s) {
+  static const Problem problem = {"", &oscillators_go, OSCILLATORS, counted, 1000, NULL, {0}, 1e-10};
+  double y[BENCH_MOST], best = HUGE_VAL, error, calls = 0;
+  for (int i = 0; i < 50; i++) {
+    per_call = 0;
+    double t = s->method ? run_liblag(&problem, 1e-10, s->method, y, &calls) : run(&problem, s, 1e-10, &error);
+    if (t < 0) return;
+    best = fmin(best, t);
+  }
+  calls = s->method ? calls : per_call;
+  if (calls > 0) printf("  %-28s  %7.1f\n", s->label, 1e9*best/calls);
+}
+
+int main(int argc, char **argv) {
   static Series series[] = {
 #ifdef BENCH_GSL
-    {.label = "GSL rk8pd, by hand", .run = run_gsl},
+    {.label = "GSL rk8pd", .peer = peer_rk8pd, .own = 1},
 #endif
-    {.label = "dop853", .method = "dop853", .run = run_liblag},
-    {.label = "taylor", .method = "taylor", .run = run_liblag},
+    {.label = "dop853 inlined by hand", .peer = peer_inlined, .own = 1},
+#ifdef BENCH_ODEINT
+    {.label = "Boost.odeint rkf78", .peer = peer_odeint},
+#endif
+#ifdef BENCH_SUNDIALS
+    {.label = "SUNDIALS CVODE Adams", .peer = peer_adams},
+    {.label = "SUNDIALS ARKODE 8", .peer = peer_arkode},
+#endif
+    {.label = "lagc dop853", .method = "dop853", .own = 1},
+    {.label = "lagc taylor", .method = "taylor", .own = 1},
   };
   enum { N_SERIES = sizeof series/sizeof *series };
-#ifdef BENCH_GSL
-  gsl_set_error_handler_off();
-#endif
+  int own = argc > 1 && strcmp(argv[1], "own") == 0;
   for (int i = 0; i < N_PROBLEMS; i++) {
-    const Problem *p = &problems[i];
-    printf("%s\n", p->name);
-    for (int k = 0; k < N_SERIES; k++) measure(p, &series[k]);
-    for (int e = 0; e < 3 && p->errors[e] > 0; e++) {
-      printf("  error %.0e: ", p->errors[e]);
-      int first = fastest(&series[0], p->errors[e]);
-      for (int k = 0; k < N_SERIES; k++) {
-        int at = fastest(&series[k], p->errors[e]);
-        if (at < 0) printf("%s%s does not reach it", k ? ", " : "", series[k].label);
-        else printf("%s%s %.3g ms", k ? ", " : "", series[k].label, 1e3*series[k].time[at]);
-        if (k && at >= 0 && first >= 0) printf(" (%.2f)", series[k].time[at]/series[0].time[first]);
-      }
-      putchar('\n');
+    const Problem *p = &problems[i], *shown = p;
+    const Series *first = series[0].peer && strcmp(series[0].label, "GSL rk8pd") == 0 ? &series[0] : NULL;
+    printf("%s: milliseconds to an error of", shown->name);
+    for (int e = 0; e < 3 && p->errors[e] > 0; e++) printf(" %.0e", p->errors[e]);
+    printf(p->only_tol > 0 ? " any size at tolerance %.0e\n" : "\n", p->only_tol);
+    for (int k = 0; k < N_SERIES; k++) {
+      if (own && !series[k].own) continue;
+      measure(p, &series[k]);
+      print_row(p, &series[k], &series[k] == first ? NULL : first);
+      fflush(stdout);
     }
   }
+  puts("nanoseconds a call, all in all, where a right-hand side of 4 equations is 2 negations");
+  for (int k = 0; k < N_SERIES; k++)
+    if (!own || series[k].own) print_overhead(&series[k]);
   return 0;
 }

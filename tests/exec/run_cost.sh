@@ -121,4 +121,5 @@ precise_reference() {
 if [ -f "${BUILD:-build}/liblag_quad.a" ]; then check "a reference of 34 digits" precise_reference; else skip "a reference of 34 digits" "no libquadmath"; fi
 own_reference() { "$TMP/sim" --reference >"$TMP/reference" && "$TMP/sim" --cost --against "$TMP/reference" --methods rk45 >"$TMP/out" && grep -q 'rk45(tol=1e-10)' "$TMP/out"; }
 check "one simulator's reference serves another" own_reference
+check "--math libm" "$LAGC" cost models/pendulum.lag --math libm --methods verlet4 --quiet
 tap_end

@@ -96,7 +96,7 @@ check "steps of equal size by an adaptive method" says "steps 100, rejected 0" m
 "$LAGC" methods >"$TMP/table"
 "$LAGC" run models/pendulum.lag --method help >"$TMP/help"
 check "lagc methods is what --method help says" cmp "$TMP/table" "$TMP/help"
-check "with order, what is kept and what is needed" grep -q '^  gauss  *2-8  *2-8  *fixed  *both  *yes  *yes  *no  *yes  *no$' "$TMP/table"
+check "with order, what is kept and what is needed" grep -q '^  gauss  *2-8  *2-8  *fixed  *both  *yes  *yes  *alone  *yes  *no$' "$TMP/table"
 "$LAGC" methods models/pendulum.lag 2>"$TMP/err"
 is "lagc methods takes no model" 2 $?
 tap_end

@@ -5,6 +5,12 @@
 
 here=tests/exec/taylor
 models=$(ls models/*.lag tests/exec/models/*.lag | grep -v mutants) # those have the names of others
+longer() { # MODEL N: a long family, whose recurrences are loops
+  sed "s/^const N = .*/const N = $2/; s/^model $1/model $1_$2/; s/ b = 0 / b = 0.3 /" "models/$1.lag" >"$TMP/$1_$2.lag"
+  models="$models $TMP/$1_$2.lag"
+}
+longer chain 120
+longer string 400
 name_of() { sed -n 's/^model \([^ ]*\).*/\1/p' "$1"; }
 gcc=
 for c in "$CC" gcc; do "$c" --version 2>/dev/null | grep -q 'Free Software' && gcc=$c && break; done
@@ -57,15 +63,56 @@ p=${quad:+quad}
 check "every model: its polynomials solve its equations, to their order" defects "${p:-long}"
 mkdir -p "$TMP/wrong"
 wrong_defect() { # a sign in one of the recurrences of the double pendulum
-  sed '/^static void taylor_next/,/^}/s/ - c\[/ + c[/' "$TMP/c/double_pendulum.c" >"$TMP/wrong/model.c" && ! cmp "$TMP/c/double_pendulum.c" "$TMP/wrong/model.c" &&
+  sed '/^static .*taylor_next(/,/^}/s/ - c\[/ + c[/' "$TMP/c/double_pendulum.c" >"$TMP/wrong/model.c" && ! cmp "$TMP/c/double_pendulum.c" "$TMP/wrong/model.c" &&
     echo '#include "lag_model.h"
       extern const lag_scene double_pendulum_swing, *const all_scenes[];
       const lag_scene *const all_scenes[] = {&double_pendulum_swing, 0};' >"$TMP/wrong/scenes.c" &&
     build "${p:-long}" "$TMP/wrong/model.c" "$TMP/wrong/scenes.c" $here/defect.c -o "$TMP/defect_wrong" && ! "$TMP/defect_wrong"
 }
 check "this test sees a wrong sign" wrong_defect
+wrong_place() { # a loop that reads its neighbours' constants
+  sed '/^static .*taylor_next(/,/^}/s/ = c\[k + 1\];/ = c[k + 2];/' "$TMP/c/string_400.c" >"$TMP/wrong/model.c" && ! cmp "$TMP/c/string_400.c" "$TMP/wrong/model.c" &&
+    echo '#include "lag_model.h"
+      extern const lag_scene string_400_mode, *const all_scenes[];
+      const lag_scene *const all_scenes[] = {&string_400_mode, 0};' >"$TMP/wrong/scenes.c" &&
+    build "${p:-long}" "$TMP/wrong/model.c" "$TMP/wrong/scenes.c" $here/defect.c -o "$TMP/defect_wrong" && ! "$TMP/defect_wrong"
+}
+check "this test sees a loop that reads what stands one further" wrong_place
+short() { # MODEL N: four times the length has as much C, but for the digits of numbers
+  for n in "$2" $((4 * $2)); do "$LAGC" emit "models/$1.lag" -D N="$n" --method taylor -o "$TMP/size$n.c" || return 1; done
+  [ "$(wc -c <"$TMP/size$((4 * $2)).c")" -lt $(($(wc -c <"$TMP/size$2.c") * 11 / 10)) ] || { wc -c "$TMP/size$2.c" "$TMP/size$((4 * $2)).c"; return 1; }
+}
+check "a chain of any length has recurrences of the same length" short chain 150
+check "a string of any length has recurrences of the same length" short string 400
 is "models that are not analytic have none: if, and a table" "without: motor
 without: tables" "$(grep without "$TMP/defect.txt" | sort -u)"
+
+# ---- pairs and fours
+mkdir -p "$TMP/narrow"
+for n in double_pendulum kepler outer_planets chain_120 swinging_atwood; do # products, squares, and loops
+  sed 's/defined(__x86_64__)/0/' "$TMP/c/$n.c" >"$TMP/narrow/$n.c"
+  sed -n 's/^const lag_scene \(.*\) = {/\1/p' "$TMP/narrow/$n.c" | head -n 1
+done >"$TMP/narrow/names"
+{
+  echo '#include "lag_model.h"'
+  sed 's/.*/extern const lag_scene &;/' "$TMP/narrow/names"
+  echo 'extern const lag_scene *const all_scenes[]; const lag_scene *const all_scenes[] = {'
+  sed 's/.*/  \&&,/' "$TMP/narrow/names"
+  echo '0};'
+} >"$TMP/narrow/scenes.c"
+bits() { # OUT FILES... with the scenes
+  out=$1
+  shift
+  "$CC" -std=c11 -O2 -ffp-contract=off -I"$INC" "$@" "$TMP/narrow/scenes.c" $here/bits.c -lm -o "$TMP/bits" && "$TMP/bits" >"$out"
+}
+wide_files() { for f in "$TMP"/narrow/[!s]*.c "$TMP"/narrow/sw*.c; do echo "$TMP/c/${f##*/}"; done; }
+same_bits() {
+  # shellcheck disable=SC2046 # a list of files
+  bits "$TMP/narrow.txt" "$TMP"/narrow/[!s]*.c "$TMP"/narrow/sw*.c && bits "$TMP/wide.txt" $(wide_files) && [ "$(wc -l <"$TMP/wide.txt")" -gt 1000 ] &&
+    cmp "$TMP/narrow.txt" "$TMP/wide.txt"
+}
+if grep -qs '^flags.* avx2' /proc/cpuinfo; then check "two or four numbers side by side: the same bits" same_bits
+else skip "two or four numbers side by side: the same bits" "not on this processor"; fi
 
 # ---- the method
 mkdir -p "$TMP/r"

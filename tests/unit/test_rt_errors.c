@@ -1,5 +1,5 @@
 /* Each way in which a run can fail: the status, when and where it says so, and the state that is left. */
-#include "test_rt_models.h"
+#include "test_rt_systems.h"
 
 static lag_option step_10ms[] = {{"step", 0.01, NULL}};
 
@@ -32,6 +32,50 @@ static void nan_stops_the_run(void **state)
   expect_failure(&nan_after_1, &lag_rk45, 5, LAG_ENAN, 1, 1e-6, "z'");
   expect_failure(&nan_after_1, &lag_rk4, 5, LAG_ENAN, 1, 0.011, "z'");
   expect_failure(&nan_after_1, lag_gsl_methods[0], 5, LAG_ENAN, 1, 1e-6, "z'");
+}
+
+/* x'' = -sqrt(1 - x), which is no number past x = 1. L = v^2/2 + 2/3 (1 - x)^(3/2). */
+static int cliff_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  a[0] = -sqrt(1 - q[0]);
+  return 0;
+}
+
+static void cliff_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = 0;
+  v[0] = 3;
+}
+
+UNIT_MASS(cliff, cliff_accel, -0.5 / sqrt(1 - q[0]));
+SYSTEM(cliff, 1, LAG_AUTONOMOUS | LAG_CONSTANT_MASS | LAG_SEPARABLE, NULL, EXACT(cliff));
+
+/* Explicit and implicit, separable and not: the last state is one before the cliff, and nothing that is no number is left. */
+static void nan_stops_every_method(void **state)
+{
+  lag_option step[] = {{"step", 1e-3, NULL}};
+  lag_model model = cliff_model;
+  lag_scene general = cliff;
+  int tried = 0;
+  (void)state;
+  model.flags &= ~(unsigned)LAG_SEPARABLE;
+  general.model = &model;
+  for (int i = 0; i < 2 * lag_nmethods; i++) {
+    const lag_method *m = lag_methods[i / 2];
+    if (m->flags & LAG_METHOD_TAYLOR) {
+      continue; /* its coefficients are emitted: tests/exec/run_taylor.sh */
+    }
+    lag_sim *s = sim_with(i % 2 ? &cliff : &general, m, 1e-8, 1, step);
+    int rc = lag_sim_advance(s, 2);
+    if (rc != LAG_ENAN || !strstr(lag_sim_message(s), "last good state, t = ")) {
+      fail_msg("%s: %s, \"%s\"", m->name, lag_status_name(rc), lag_sim_message(s));
+    }
+    assert_true(isfinite(lag_sim_q(s)[0]) && isfinite(lag_sim_v(s)[0]));
+    assert_true(lag_sim_q(s)[0] > 0.98 && lag_sim_q(s)[0] <= 1.01); /* a step is 0.003 long there; the end of one may lie past it */
+    lag_sim_free(s);
+    tried++;
+  }
+  assert_true(tried >= 20);
 }
 
 static void a_singular_mass_matrix_stops_the_run(void **state)
@@ -114,6 +158,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(nan_stops_the_run),
+      cmocka_unit_test(nan_stops_every_method),
       cmocka_unit_test(a_singular_mass_matrix_stops_the_run),
       cmocka_unit_test(outside_the_domain_smaller_steps_are_tried),
       cmocka_unit_test(a_singularity_stops_at_the_smallest_step),

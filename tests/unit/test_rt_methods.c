@@ -239,6 +239,42 @@ static void backwards_undoes_forwards(void **state)
   }
 }
 
+static int once(UNUSED void *context, UNUSED const lag_sim *s)
+{
+  return 1;
+}
+
+/* The first step from h; whether steps were rejected before, and how far it went. */
+static double first_step_of(const lag_method *m, double h, double *y, long long *rejected)
+{
+  lag_option opt[] = {{"step", h, NULL}, {"max_step", 100, NULL}};
+  lag_sim *s = sim_with(&kepler, m, 1e-8, 2, opt);
+  lag_stats st;
+  lag_sim_on_step(s, once, NULL);
+  assert_int_equal(lag_sim_advance(s, 50), LAG_INTERRUPTED);
+  memcpy(y, lag_sim_q(s), 4 * sizeof *y);
+  lag_sim_stats(s, &st);
+  *rejected = st.rejected;
+  double t = lag_sim_time(s);
+  lag_sim_free(s);
+  return t;
+}
+
+/* Steps that are refused leave nothing behind: the one that is taken is, bit by bit, the one taken without them. */
+static void a_refused_step_loses_no_state(void **state)
+{
+  const lag_method *const adaptive[] = {&lag_rk45, &lag_dop853, &lag_radau};
+  (void)state;
+  for (int i = 0; i < 3; i++) {
+    double y[2][4];
+    long long rejected;
+    double h = first_step_of(adaptive[i], 10, y[0], &rejected);
+    assert_true(rejected >= 2 && h < 5);
+    assert_true(first_step_of(adaptive[i], h, y[1], &rejected) == h && rejected == 0);
+    assert_memory_equal(y[0], y[1], sizeof y[0]);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -252,6 +288,7 @@ int main(void)
       cmocka_unit_test(rk4_does_not_gather_rounding),
       cmocka_unit_test(rk4_keeps_time),
       cmocka_unit_test(backwards_undoes_forwards),
+      cmocka_unit_test(a_refused_step_loses_no_state),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

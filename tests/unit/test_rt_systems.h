@@ -191,6 +191,20 @@ UNUSED static lag_sim *equal_steps(const lag_scene *scene, const lag_method *m, 
   return sim_with(scene, m, 0, m->flags & LAG_METHOD_ADAPTIVE ? 2 : 1, opt);
 }
 
+/* A method with its options, but for the step. */
+typedef struct Setting {
+  const lag_method *method;
+  lag_option option[2];
+  int noptions;
+  double within; /* for the test's own use */
+} Setting;
+
+UNUSED static lag_sim *sim_at(const lag_scene *scene, const Setting *k, double h)
+{
+  lag_option opt[3] = {{"step", h, NULL}, k->option[0], k->option[1]};
+  return sim_with(scene, k->method, 0, 1 + k->noptions, opt);
+}
+
 /* Largest difference between components. */
 UNUSED static double distance(int n, const double *a, const double *b)
 {

@@ -123,13 +123,7 @@ static void bands_are_solved(void **state)
 
 /* ---- Solutions */
 
-typedef struct Setting {
-  const lag_method *method;
-  lag_option option[2];
-  int noptions;
-  double within; /* of the solution, at steps of 0.01 to t = 4 */
-} Setting;
-
+/* within: of the solution, at steps of 0.01 to t = 4. */
 static const Setting settings[] = {
     {&lag_symplectic_euler, {{0}}, 0, 0.1},
     {&lag_verlet, {{0}}, 0, 3e-2},
@@ -146,12 +140,6 @@ static const Setting settings[] = {
     {&lag_gauss, {{"stages", 4, NULL}}, 1, 1e-11},
 };
 enum { SETTINGS = sizeof settings / sizeof *settings };
-
-static lag_sim *sim_at(const lag_scene *scene, const Setting *k, double h)
-{
-  lag_option opt[3] = {{"step", h, NULL}, k->option[0], k->option[1]};
-  return sim_with(scene, k->method, 0, 1 + k->noptions, opt);
-}
 
 static double end_of(const lag_scene *scene, const Setting *k, double h, double t, double *y)
 {

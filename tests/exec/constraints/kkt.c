@@ -68,7 +68,7 @@ static void ours(const System *s, double *x, double *l)
   memcpy(w + N * N, s->a, sizeof s->a);
   memcpy(w + N * N + M * N, s->f, sizeof s->f);
   memcpy(w + N * N + M * N + N, s->g, sizeof s->g);
-  if (!lag_kkt(N, M, w)) printf("refused\n");
+  if (!lag_kkt(N, M, 0, w)) printf("refused\n");
   memcpy(x, w + N * N + M * N, N * sizeof *x);
   memcpy(l, w + N * N + M * N + N, M * sizeof *l);
 }

@@ -10,7 +10,7 @@
 
 extern const lag_scene *const all_scenes[];
 
-enum { MOST = 128, ORDER = 9, STATES = 3 };
+enum { MOST = 1024, ORDER = 9, STATES = 3 };
 
 typedef struct {
   Real t, q[MOST], v[MOST], z[MOST], p[MOST], u[MOST], follows[MOST];

@@ -1,0 +1,43 @@
+/* What is called so often, for so few numbers, that a call of a function would take as long: the right-hand side as rhs.c and
+ * steps with many stages call it, and a copy. */
+#ifndef LAG_CORE_RHS_H
+#define LAG_CORE_RHS_H
+
+#include "lag.h"
+
+#ifdef __GNUC__
+#define LAG_HERE static inline __attribute__((always_inline))
+#else
+#define LAG_HERE static inline
+#endif
+
+/* to[n] := from[n]. */
+LAG_HERE void lag_copy(int n, const double *from, double *to)
+{
+  int i = 0;
+
+  for (; i + 1 < n; i += 2) {
+    double a = from[i], b = from[i + 1];
+    to[i] = a;
+    to[i + 1] = b;
+  }
+  if (i < n) {
+    to[i] = from[i];
+  }
+}
+
+/* As lag_rhs; nq is the model's, perhaps as a number that the compiler knows. */
+LAG_HERE int lag_rhs_here(lag_problem *pb, int nq, double t, const double *y, double *dy)
+{
+  const lag_model *m = pb->model;
+  int rc;
+
+  pb->rhs_calls++;
+  if (m->nu && (rc = lag_inputs(pb, t)) != 0) {
+    return rc;
+  }
+  lag_copy(nq, y + nq, dy);
+  return m->accel(t, y, y + nq, y + 2 * nq, pb->p, pb->u, dy + nq, dy + 2 * nq, pb->work);
+}
+
+#endif

@@ -1,0 +1,359 @@
+/* Gauss collocation of first-order systems. Enters: t, y; leaves: t + h, y one step later. Holds: the stages solve their equations to
+ * rounding, so that what the exact method conserves is conserved to rounding, for any step:
+ *
+ *   every quadratic invariant of the flow (G.J. Cooper, IMA J. Numer. Anal. 7 (1987) 1, DOI 10.1093/imanum/7.1.1), as the impulse and
+ *     the angular impulse of point vortices;
+ *   a two-form with constant coefficients that the flow conserves, because that is a quadratic invariant of the variational equation
+ *     (P.B. Bochev, C. Scovel, BIT 34 (1994) 337, DOI 10.1007/BF01935643): L = theta q' - H where the two-form dtheta is constant. There
+ *     the method is symplectic, and the energy stays within a band.
+ *
+ * Where the two-form varies it is symmetric: the energy has no trend for motions that are reversible, and no such bound is known for
+ * others. Why not a discrete Lagrangian of midpoints, of order 2 for any L: where L is linear in the velocities its equations are those
+ * of a method of two steps, whose second root, -1, is on the unit circle: neighbouring points fall apart into two families (C.L. Ellison
+ * et al., Phys. Plasmas 25 (2018) 052502, DOI 10.1063/1.5022277; M. Kraus, arXiv:1708.07356). Collocation has one step, and no such
+ * mode; for a constant two-form and a linear theta it is the variational integrator whose momenta are theta(q) at every step.
+ *
+ * Between steps of at most two stages y is the cubic through both ends, of more a shorter step. */
+#include "methods/collocation.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "methods/band.h"
+#include "methods/history.h"
+#include "methods/rule.h"
+#include "methods/steps.h"
+#include "methods/tangent.h"
+
+enum { MOST_CORRECTIONS = 25, STAGES_WITH_CUBIC = 2 };
+
+/* One block of doubles; the arrays of x are in Arrays. */
+typedef struct Collocation {
+  double h;      /* the step, > 0 */
+  double t0, dt; /* the last step */
+  double tc;     /* what t has lost to rounding */
+  double ends;   /* f0, f1 belong to the last step */
+  lag_rule rule;
+  double x[];
+} Collocation;
+
+typedef struct Arrays {
+  double *comp, *y0, *y1, *f0, *f1, *Y; /* [n] what y has lost; both ends of the last step; a stage */
+  double *u, *other;                    /* [stages n] slopes at the stages of the last step, of a shorter one */
+  double *R, *scale;                    /* [stages n] residuals, then corrections; scratch */
+  double *jacobian, *linear;            /* [n n], scratch of lag_jacobian */
+  double *history;
+  lag_band J;
+} Arrays;
+
+static Arrays arrays(Collocation *w, const lag_problem *pb)
+{
+  Arrays a;
+  double *x = w->x;
+  int n = pb->n, m = n * (int)w->rule.free;
+  double **const of_n[] = {&a.comp, &a.y0, &a.y1, &a.f0, &a.f1, &a.Y}, **const of_m[] = {&a.u, &a.other, &a.R, &a.scale, &a.J.pivot};
+
+  for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++, x += n) {
+    *of_n[i] = x;
+  }
+  for (size_t i = 0; i < sizeof of_m / sizeof *of_m; i++, x += m) {
+    *of_m[i] = x;
+  }
+  a.jacobian = x;
+  a.linear = a.jacobian + n * n;
+  a.history = a.linear + lag_linear_work(pb->model);
+  a.J.n = m;
+  a.J.band = m - 1;
+  a.J.a = a.history + lag_history_size(m);
+  return a;
+}
+
+size_t lag_collocation_size(const lag_problem *pb, int stages)
+{
+  size_t n = (size_t)pb->n, m = n * (size_t)stages;
+
+  return sizeof(Collocation) / sizeof(double) + 6 * n + 5 * m + n * n + lag_linear_work(pb->model) + lag_history_size((int)m) +
+         (size_t)lag_band_size((int)m, (int)m - 1);
+}
+
+void lag_collocation_reset(void *work, lag_problem *pb)
+{
+  Collocation *w = work;
+  Arrays a = arrays(w, pb);
+  int m = pb->n * (int)w->rule.free;
+
+  w->tc = w->ends = 0;
+  memset(a.comp, 0, (size_t)pb->n * sizeof(double));
+  memset(a.history, 0, lag_history_size(m) * sizeof(double));
+}
+
+void lag_collocation_init(void *work, lag_problem *pb, double h, int stages)
+{
+  Collocation *w = work;
+
+  w->h = h;
+  lag_rule_gauss(&w->rule, stages);
+  lag_collocation_reset(work, pb);
+}
+
+/* ---- The equations u_i = f(t + c_i h, y0 + h sum_k a_ik u_k) */
+
+/* A step that is to be found: from y0 (which has lost comp, or NULL) at t, of length h. */
+typedef struct Step {
+  double t, h;
+  const double *y0, *comp;
+  double *u;
+  int counted; /* its corrections count as iterations of the method */
+} Step;
+
+/* Y := stage i. */
+static void stage(const Collocation *w, const Step *s, int n, int i, double *Y)
+{
+  for (int j = 0; j < n; j++) {
+    double moved = 0;
+    for (int k = 0; k < (int)w->rule.free; k++) {
+      moved += w->rule.integral[i][k] * s->u[k * n + j];
+    }
+    Y[j] = s->y0[j] + ((s->comp ? s->comp[j] : 0) + s->h * moved);
+  }
+}
+
+static double time_of(const Collocation *w, const Step *s, int i)
+{
+  return s->t + w->rule.c[i] * s->h;
+}
+
+/* R := f - u at all stages. */
+static int residual(const Collocation *w, const Arrays *a, lag_problem *pb, const Step *s)
+{
+  int n = pb->n;
+
+  for (int i = 0; i < (int)w->rule.free; i++) {
+    stage(w, s, n, i, a->Y);
+    int rc = lag_step_rhs(pb, time_of(w, s, i), a->Y, a->R + i * n);
+    if (rc) {
+      return rc;
+    }
+    for (int j = 0; j < n; j++) {
+      a->R[i * n + j] -= s->u[i * n + j];
+    }
+  }
+  return LAG_OK;
+}
+
+/* The matrix 1 - h a_ik J_i at the present stages, factored. */
+static int matrix(const Collocation *w, Arrays *a, lag_problem *pb, const Step *s)
+{
+  int n = pb->n, stages = (int)w->rule.free;
+
+  for (int i = 0; i < stages; i++) {
+    stage(w, s, n, i, a->Y);
+    int rc = lag_jacobian(pb, time_of(w, s, i), a->Y, a->jacobian, a->linear);
+    if (rc) {
+      return lag_step_refused(pb, rc, time_of(w, s, i));
+    }
+    for (int j = 0; j < n; j++) {
+      for (int k = 0; k < stages; k++) {
+        double *row = lag_band_at(&a->J, i * n + j, k * n), c = s->h * w->rule.integral[i][k];
+        for (int l = 0; l < n; l++) {
+          row[l] = (i == k && j == l ? 1 : 0) - c * a->jacobian[j * n + l];
+        }
+      }
+    }
+  }
+  if (lag_band_factor(&a->J, a->scale)) {
+    pb->detail = "the matrix of Newton's method is singular; take another step size";
+    return lag_step_failed(pb, LAG_EMETHOD, s->t);
+  }
+  return LAG_OK;
+}
+
+/* Corrects u; the largest correction of a component, relative to what the step does to it. */
+static double correct(const Collocation *w, const Arrays *a, int n, const Step *s)
+{
+  int m = n * (int)w->rule.free;
+  double part = 0, h = fabs(w->h);
+
+  lag_band_solve(&a->J, a->R);
+  for (int i = 0; i < m; i++) {
+    double du = a->R[i];
+    s->u[i] += du;
+    double scale = h * fabs(s->u[i]) + 0x1p-10 * fabs(s->y0[i % n]);
+    part = fmax(part, du == 0.0 ? 0 : fmin(h * fabs(du) / scale, 1));
+  }
+  return part;
+}
+
+/* Whether the next correction would be lost in rounding, or this one was rounding itself: as in discrete.c. */
+static int is_settled(double now, double before, int fresh, int turn)
+{
+  double next = fresh ? 1000 * now * now : now * (now / before);
+
+  if (now == 0.0 || (next <= DBL_EPSILON / 16 && (fresh || now < before))) {
+    return 1;
+  }
+  return turn > 0 && now >= before / 2 && now <= 1e-8;
+}
+
+/* u from a guess. */
+static int solve(const Collocation *w, Arrays *a, lag_problem *pb, const Step *s)
+{
+  double before = 1;
+
+  pb->systems += s->counted;
+  for (int turn = 0; turn <= MOST_CORRECTIONS; turn++) {
+    int fresh = turn == 0 || before > 1e-3, rc = residual(w, a, pb, s);
+    rc = rc || !fresh ? rc : matrix(w, a, pb, s);
+    if (rc) {
+      return rc;
+    }
+    double now = correct(w, a, pb->n, s);
+    pb->iterations += s->counted;
+    if (is_settled(now, before, fresh, turn)) {
+      return LAG_OK;
+    }
+    before = now;
+  }
+  snprintf(pb->words, sizeof pb->words, "Newton's method did not converge in %d corrections; take smaller steps, or radau or dop853",
+           MOST_CORRECTIONS);
+  pb->detail = pb->words;
+  return lag_step_failed(pb, LAG_EMETHOD, s->t);
+}
+
+/* u := the slope at the beginning. */
+static int straight(const Collocation *w, const Arrays *a, lag_problem *pb, const Step *s)
+{
+  int n = pb->n, rc = lag_step_rhs(pb, s->t, s->y0, a->Y);
+
+  for (int i = 0; i < (int)w->rule.free && rc == 0; i++) {
+    memcpy(s->u + i * n, a->Y, (size_t)n * sizeof *s->u);
+  }
+  return rc;
+}
+
+int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y)
+{
+  Collocation *w = work;
+  Arrays a = arrays(w, pb);
+  int n = pb->n, m = n * (int)w->rule.free, rc = LAG_EMETHOD;
+  double dt = w->h * pb->dir, tc = w->tc, tb = lag_sum(*t, dt, &tc);
+  Step s = {.t = *t, .h = dt, .y0 = y, .comp = a.comp, .u = a.u, .counted = 1};
+
+  pb->bad_index = -1;
+  if (tb == *t) {
+    return lag_step_failed(pb, LAG_ESTEP, *t);
+  }
+  if (lag_history_guess(a.history, m, a.u)) {
+    rc = solve(w, &a, pb, &s);
+  }
+  if (rc != 0 && (rc = straight(w, &a, pb, &s)) == 0) {
+    rc = solve(w, &a, pb, &s);
+  }
+  if (rc) {
+    return rc;
+  }
+  pb->detail = NULL;
+  lag_history_add(a.history, m, a.u);
+  memcpy(a.y0, y, (size_t)n * sizeof *y);
+  for (int j = 0; j < n; j++) {
+    double moved = 0;
+    for (int k = 0; k < (int)w->rule.free; k++) {
+      moved += w->rule.whole[k] * a.u[k * n + j];
+    }
+    y[j] = lag_sum(y[j], dt * moved, &a.comp[j]);
+  }
+  memcpy(a.y1, y, (size_t)n * sizeof *y);
+  w->ends = 0;
+  w->t0 = *t;
+  w->dt = tb - *t;
+  w->tc = tc;
+  *t = tb;
+  return LAG_OK;
+}
+
+/* ---- Between steps */
+
+/* The slopes of a step from the beginning of the last one, of length dt, into a->other; their stages lie within the last one. */
+static int shorter(const Collocation *w, Arrays *a, lag_problem *pb, double dt)
+{
+  Step s = {.t = w->t0, .h = dt, .y0 = a->y0, .u = a->other};
+  int rc = straight(w, a, pb, &s);
+
+  return rc ? rc : solve(w, a, pb, &s);
+}
+
+/* The cubic; where the model has no value at an end, the straight line. */
+static void cubic(Collocation *w, const Arrays *a, lag_problem *pb, double s, double *y)
+{
+  int n = pb->n;
+
+  if (w->ends == 0.0) {
+    int rc = lag_rhs(pb, w->t0, a->y0, a->f0) || lag_rhs(pb, w->t0 + w->dt, a->y1, a->f1);
+    w->ends = rc || lag_not_finite(n, a->f0) >= 0 || lag_not_finite(n, a->f1) >= 0 ? -1 : 1;
+  }
+  if (w->ends > 0) {
+    lag_hermite(0, n, w->dt, s, a->y0, a->f0, a->y1, a->f1, y);
+    return;
+  }
+  for (int j = 0; j < n; j++) {
+    y[j] = a->y0[j] + s * (a->y1[j] - a->y0[j]);
+  }
+}
+
+void lag_collocation_dense(void *work, lag_problem *pb, double t, double *y)
+{
+  Collocation *w = work;
+  Arrays a = arrays(w, pb);
+  int n = pb->n, stages = (int)w->rule.free;
+  double dt = t - w->t0, s = dt / w->dt;
+
+  if (stages <= STAGES_WITH_CUBIC || s <= 0 || s >= 1 || shorter(w, &a, pb, dt) != 0) {
+    cubic(w, &a, pb, s, y);
+    return;
+  }
+  for (int j = 0; j < n; j++) {
+    double moved = 0;
+    for (int k = 0; k < stages; k++) {
+      moved += w->rule.whole[k] * a.other[k * n + j];
+    }
+    y[j] = a.y0[j] + dt * moved;
+  }
+}
+
+/* ---- The derivative of a step */
+
+enum { WITH_END = LAG_RULE_FREE + 1 };
+
+size_t lag_collocation_tangent_size(const lag_problem *pb, int k)
+{
+  return lag_tangent_implicit_size(pb, WITH_END, k) + (size_t)(WITH_END * pb->n);
+}
+
+/* The end of the step is one more stage, which no other depends on. */
+int lag_collocation_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+{
+  Collocation *w = work;
+  Arrays a = arrays(w, pb);
+  int n = pb->n, stages = (int)w->rule.free, all = stages + 1;
+  double A[WITH_END * WITH_END] = {0}, c[WITH_END], step = w->h * pb->dir, dt = lag_tangent_span(w->t0, t, step);
+  Step s = {.t = w->t0, .h = dt, .y0 = a.y0, .u = a.u};
+
+  if (dt != step) {
+    int rc = shorter(w, &a, pb, dt);
+    if (rc) {
+      return rc;
+    }
+    s.u = a.other;
+  }
+  for (int i = 0; i < stages; i++) {
+    memcpy(A + i * all, w->rule.integral[i], (size_t)stages * sizeof *A);
+    c[i] = w->rule.c[i];
+    stage(w, &s, n, i, scratch + i * n);
+  }
+  memcpy(A + stages * all, w->rule.whole, (size_t)stages * sizeof *A);
+  c[stages] = 1;
+  lag_collocation_dense(w, pb, t, scratch + stages * n);
+  return lag_tangent_implicit(all, A, c, pb, w->t0, dt, scratch, k, Y, scratch + WITH_END * n);
+}

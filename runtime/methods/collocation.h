@@ -1,0 +1,18 @@
+/* Gauss collocation of y' = f(t, y) for models of states alone: flows, and Lagrangians that are linear in all velocities. */
+#ifndef LAG_METHODS_COLLOCATION_H
+#define LAG_METHODS_COLLOCATION_H
+
+#include "lag.h"
+
+/* Steps of size h with 1 .. LAG_RULE_FREE stages, of twice that order. Needs the linearisation, and nq = 0. */
+size_t lag_collocation_size(const lag_problem *pb, int stages);
+void lag_collocation_init(void *work, lag_problem *pb, double h, int stages);
+
+/* As lag_method says. */
+void lag_collocation_reset(void *work, lag_problem *pb);
+int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y);
+void lag_collocation_dense(void *work, lag_problem *pb, double t, double *y);
+size_t lag_collocation_tangent_size(const lag_problem *pb, int k);
+int lag_collocation_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
+
+#endif

@@ -1,0 +1,189 @@
+/* The stages and the error of a step, for a tableau that the compiler knows: dop853.c and rk45.c include this text and say
+ * EMBEDDED_TRIAL. Each sum over stages then is a straight line without columns of zeros, over pairs of components.
+ * Holds: whatever n is, a component is summed in one order, so states do not depend on what stands beside them. */
+#ifndef LAG_METHODS_EMBEDDED_TRIAL_H
+#define LAG_METHODS_EMBEDDED_TRIAL_H
+
+#include <math.h>
+
+#include "core/rhs.h"
+#include "methods/embedded.h"
+#include "methods/steps.h"
+
+/* The sizes of a problem; row: of an array. */
+typedef struct EmbeddedShape {
+  int nq, n, row;
+} EmbeddedShape;
+
+LAG_HERE EmbeddedShape embedded_shape(const lag_problem *pb)
+{
+  EmbeddedShape as = {pb->nq, pb->n, lag_embedded_row(pb)};
+
+  return as;
+}
+
+typedef struct Pair2 {
+  double a, b;
+} Pair2;
+
+/* Two numbers that a model has just stored, one by one: processors hand on what was just stored only to loads of the same size, so
+ * they are loaded one by one, too. */
+LAG_HERE Pair2 embedded_newest(const volatile double *k)
+{
+  Pair2 s = {k[0], k[1]};
+
+  return s;
+}
+
+#define EMBEDDED_TERM(j)                  \
+  if (j < count && coef[j] != 0.0) {      \
+    s.a += coef[j] * k[(j) * row];        \
+    s.b += coef[j] * k[(j) * row + 1];    \
+  }
+
+/* sum_j coef[j] k_j over j < count of two components; coef[0] is not 0. */
+LAG_HERE Pair2 embedded_sum(const double *coef, int count, const double *k, int row)
+{
+  Pair2 s = {coef[0] * k[0], coef[0] * k[1]};
+
+  EMBEDDED_TERM(1) EMBEDDED_TERM(2) EMBEDDED_TERM(3) EMBEDDED_TERM(4) EMBEDDED_TERM(5) EMBEDDED_TERM(6) EMBEDDED_TERM(7)
+  EMBEDDED_TERM(8) EMBEDDED_TERM(9) EMBEDDED_TERM(10) EMBEDDED_TERM(11) EMBEDDED_TERM(12) EMBEDDED_TERM(13)
+  EMBEDDED_TERM(14) EMBEDDED_TERM(15)
+  return s;
+}
+
+/* f(t, y) into k. > 0: a smaller step may help. */
+LAG_HERE int embedded_call(lag_problem *pb, int nq, double t, const double *y, double *k)
+{
+  int rc = lag_rhs_here(pb, nq, t, y, k);
+
+  if (rc) {
+    pb->bad_t = t;
+  }
+  return rc < -1 ? LAG_EMODEL : rc;
+}
+
+/* K_s = f(t0 + c_s dt, y0 + dt sum a_sj K_j). What is newest comes last: the rest need not wait for it. */
+LAG_HERE int embedded_stage(const lag_tableau *tab, lag_problem *pb, EmbeddedShape as, int s, double t0, double dt, const double *y0, double *k,
+                                   double *ys)
+{
+  int row = as.row;
+  double newest = dt * tab->a[s][s - 1];
+
+  for (int i = 0; i < as.n; i += 2) {
+    const double *at = k + i;
+    Pair2 y = {y0[i], y0[i + 1]}, last = embedded_newest(at + (s - 1) * row);
+    if (s > 1) {
+      Pair2 sum = embedded_sum(tab->a[s], s - 1, at, row);
+      y.a += dt * sum.a;
+      y.b += dt * sum.b;
+    }
+    ys[i] = y.a + newest * last.a;
+    ys[i + 1] = y.b + newest * last.b;
+  }
+  return embedded_call(pb, as.nq, t0 + tab->c[s] * dt, ys, k + s * row);
+}
+
+/* The result in Y1, and what it lost in COMP1. */
+LAG_HERE void embedded_result(const lag_tableau *tab, Embedded *w, EmbeddedShape as, double dt)
+{
+  int row = as.row, last = tab->stages - 1;
+  double newest = tab->a[last][last - 1];
+  const double *comp = w->x + EMBEDDED_COMP * row, *y0 = w->x + EMBEDDED_Y0 * row, *k = w->x + EMBEDDED_K1 * row;
+  double *comp1 = w->x + EMBEDDED_COMP1 * row, *y1 = w->x + EMBEDDED_Y1 * row;
+
+  for (int i = 0; i < as.n; i += 2) {
+    Pair2 sum = embedded_sum(tab->a[last], last - 1, k + i, row), late = embedded_newest(k + i + (last - 1) * row);
+    Pair2 c = {comp[i], comp[i + 1]};
+    sum.a += newest * late.a;
+    sum.b += newest * late.b;
+    y1[i] = lag_sum(y0[i], dt * sum.a, &c.a);
+    y1[i + 1] = lag_sum(y0[i + 1], dt * sum.b, &c.b);
+    comp1[i] = c.a;
+    comp1[i + 1] = c.b;
+  }
+}
+
+/* What an error is divided by. */
+LAG_HERE double embedded_scale(const Embedded *w, const lag_problem *pb, double y0, double y1)
+{
+  double a = fabs(y0), b = fabs(y1);
+
+  return w->atol + pb->tol * (a > b ? a : b);
+}
+
+/* The square of the norm of the error of the step just computed. */
+LAG_HERE double embedded_error(const lag_tableau *tab, int late, Embedded *w, const lag_problem *pb, EmbeddedShape as, double dt)
+{
+  int row = as.row;
+  const double *y0 = w->x + EMBEDDED_Y0 * row, *y1 = w->x + EMBEDDED_Y1 * row, *k = w->x + EMBEDDED_K1 * row;
+  double fine = 0, coarse = 0;
+
+  for (int i = 0; i < as.n; i += 2) {
+    Pair2 r = {1 / embedded_scale(w, pb, y0[i], y1[i]), 1 / embedded_scale(w, pb, y0[i + 1], y1[i + 1])};
+    Pair2 e = embedded_sum(tab->e, tab->stages - late, k + i, row);
+    fine += e.a * r.a * (e.a * r.a) + e.b * r.b * (e.b * r.b);
+    if (late) {
+      Pair2 e3 = embedded_sum(tab->e3, tab->stages - 1, k + i, row);
+      coarse += e3.a * r.a * (e3.a * r.a) + e3.b * r.b * (e3.b * r.b);
+    }
+  }
+  fine *= dt * dt * w->per;
+  coarse *= 0.01 * dt * dt * w->per;
+  double both = fine + coarse;
+  return !isfinite(both) ? NAN : late ? (both > 0 ? fine * (fine / both) : 0) : fine;
+}
+
+/* The last stage: f at the end of the step, which is brought back to the constraints first. */
+LAG_HERE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double tb, double *k)
+{
+  double *y1 = w->x + EMBEDDED_Y1 * as.row;
+  int rc = pb->model->constraints ? lag_project(pb, tb, y1, w->x + EMBEDDED_COMP1 * as.row) : 0;
+
+  return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
+}
+
+#define EMBEDDED_STAGE(s)                                                 \
+  if (s < last && (*rc = embedded_stage(tab, pb, as, s, t, dt, y0, k, ys)) != 0) { \
+    return NAN;                                                           \
+  }
+
+LAG_HERE double embedded_trial(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, EmbeddedShape as, double t, double tb,
+                                      double dt, int *rc)
+{
+  int row = as.row, last = tab->stages - 1;
+  double *k = w->x + EMBEDDED_K1 * row, *ys = w->x + EMBEDDED_YS * row;
+  const double *y0 = w->x + EMBEDDED_Y0 * row;
+
+  EMBEDDED_STAGE(1) EMBEDDED_STAGE(2) EMBEDDED_STAGE(3) EMBEDDED_STAGE(4) EMBEDDED_STAGE(5) EMBEDDED_STAGE(6)
+  EMBEDDED_STAGE(7) EMBEDDED_STAGE(8) EMBEDDED_STAGE(9) EMBEDDED_STAGE(10) EMBEDDED_STAGE(11)
+  embedded_result(tab, w, as, dt);
+  if (!late && (*rc = embedded_end(pb, w, as, tb, k + last * row)) != 0) {
+    return NAN;
+  }
+  double err = embedded_error(tab, late, w, pb, as, dt);
+  if (err > 1 && pb->model->constraints) {
+    err = lag_embedded_error_along(tab, late, w, pb, tb, dt, err);
+  }
+  if (late && (err <= 1 || (w->fixed != 0.0 && !isnan(err)))) {
+    *rc = embedded_end(pb, w, as, tb, k + last * row);
+    if (*rc || lag_not_finite(pb->n, k + last * row) >= 0) {
+      return NAN;
+    }
+  }
+  return err;
+}
+
+/* EmbeddedPair.trial for a tableau of this file, with at most 13 stages: for one, two and three coordinates, and for any number. */
+#define EMBEDDED_TRIAL(tableau, late)                                                                     \
+  static double trial(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc)              \
+  {                                                                                                       \
+    switch (pb->nz == 0 ? pb->nq : 0) {                                                                   \
+    case 1: return embedded_trial(&tableau, late, w, pb, (EmbeddedShape){1, 2, EMBEDDED_SMALL}, t, tb, dt, rc); \
+    case 2: return embedded_trial(&tableau, late, w, pb, (EmbeddedShape){2, 4, EMBEDDED_SMALL}, t, tb, dt, rc); \
+    case 3: return embedded_trial(&tableau, late, w, pb, (EmbeddedShape){3, 6, EMBEDDED_SMALL}, t, tb, dt, rc); \
+    default: return embedded_trial(&tableau, late, w, pb, embedded_shape(pb), t, tb, dt, rc);             \
+    }                                                                                                     \
+  }
+
+#endif

@@ -1,0 +1,142 @@
+/* The links of a step in q and p. Enters: where the step is; leaves: what a link adds to q and p. Holds: q and p of a step are what they
+ * were at its beginning and increments, so that sums lose nothing. */
+#include "methods/links.h"
+
+#include <string.h>
+
+#include "methods/discrete.h"
+#include "methods/history.h"
+#include "methods/path.h"
+#include "methods/steps.h"
+
+size_t lag_links_history(const lag_problem *pb, const Implicit *w)
+{
+  return lag_history_size(pb->nq * (int)w->rule[0].free);
+}
+
+static Block block(double *x, const lag_problem *pb)
+{
+  Block b;
+  const lag_constraints *of = pb->model->constraints;
+  int n = pb->n, nq = pb->nq, nc = of->n;
+  double **const parts[] = {&b.from, &b.to, &b.dq, &b.dp, &b.impulse, &b.d, &b.force, &b.c, &b.r, &b.g, &b.sum,
+                            &b.A, &b.M, &b.change, &b.turned, &b.history};
+  const int sizes[] = {n, n, nq, nq, nq, nq, nq, nc, nc, nc, nc, of->njacobian, of->nmass, nc * nq, nc * nc, 0};
+
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    *parts[i] = x;
+    x += sizes[i];
+  }
+  return b;
+}
+
+static size_t block_size(const lag_problem *pb, int links)
+{
+  const lag_constraints *of = pb->model->constraints;
+
+  return of ? (size_t)(2 * pb->n + 5 * pb->nq + 4 * of->n + of->njacobian + of->nmass + of->n * (pb->nq + of->n)) + (size_t)links * lag_history_size(of->n) : 0;
+}
+
+Arrays lag_links_arrays(Implicit *w, const lag_problem *pb)
+{
+  Arrays a;
+  double *x = w->x;
+  int nq = pb->nq, free = (int)w->rule[0].free;
+  double **const of_nq[] = {&a.p, &a.qc, &a.pc, &a.dq, &a.dp, &a.ql, &a.pl, &a.v};
+  double **const of_n[] = {&a.y0, &a.y1, &a.f0, &a.f1};
+
+  for (size_t i = 0; i < sizeof of_nq / sizeof *of_nq; i++, x += nq) {
+    *of_nq[i] = x;
+  }
+  for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++, x += pb->n) {
+    *of_n[i] = x;
+  }
+  a.u = x;
+  a.force = a.u + 2 * free * nq;
+  a.history = a.force + (free + 1) * nq;
+  a.path = a.history + (size_t)w->links * lag_links_history(pb, w) + lag_history_size(nq);
+  a.discrete = a.path + lag_path_size(nq);
+  a.block = pb->model->constraints ? block(a.discrete + lag_discrete_size(pb, free), pb) : (Block){0};
+  return a;
+}
+
+size_t lag_links_size(const lag_problem *pb, int free, int links)
+{
+  size_t nq = (size_t)pb->nq, m = nq * (size_t)free;
+
+  return sizeof(Implicit) / sizeof(double) + 8 * nq + 4 * (size_t)pb->n + 3 * m + nq + block_size(pb, links) +
+         (size_t)links * lag_history_size((int)m) + lag_history_size((int)nq) + lag_path_size((int)nq) +
+         lag_discrete_size(pb, free);
+}
+
+/* u := velocities on a straight line through the present one, at the nodes of link k, which begins at `at` of the step. */
+static int straight(const Implicit *w, const Arrays *a, lag_problem *pb, double t, const double *y, double dt, int k, double at, double *u)
+{
+  const lag_rule *r = &w->rule[k % 2];
+  int nq = pb->nq, rc = lag_step_rhs(pb, t, y, a->f1);
+
+  for (int j = 0; j < (int)r->free && rc == 0; j++) {
+    for (int i = 0; i < nq; i++) {
+      u[j * nq + i] = y[nq + i] + dt * (at + w->part[k] * r->node[j]) * a->f1[nq + i];
+    }
+  }
+  return rc;
+}
+
+void lag_links_gather(const Arrays *a, int nq)
+{
+  for (int i = 0; i < nq; i++) {
+    a->ql[i] = a->qc[i] + a->dq[i];
+    a->pl[i] = a->pc[i] + a->dp[i];
+  }
+}
+
+int lag_link(const Implicit *w, const Arrays *a, lag_problem *pb, double t, const double *y, double dt, int k, double at, double *u,
+             int known)
+{
+  const lag_rule *r = &w->rule[k % 2];
+  int nq = pb->nq, m = nq * (int)r->free, rc = LAG_EMETHOD;
+  double *history = a->history + (size_t)k * lag_links_history(pb, w), h = w->part[k] * dt;
+  lag_discrete d = {.rule = r, .pb = pb, .t = t + at * dt, .h = h, .size = w->h, .q = y, .dq = a->ql, .p = a->p,
+                    .dp = a->pl, .u = u, .force = a->force, .work = a->discrete, .counted = 1};
+
+  lag_links_gather(a, nq);
+  if (known || lag_history_guess(history, m, u)) {
+    rc = lag_discrete_solve(&d);
+  }
+  if (rc != 0 && (rc = straight(w, a, pb, t, y, dt, k, at, u)) == 0) {
+    rc = lag_discrete_solve(&d);
+  }
+  if (rc) {
+    return rc;
+  }
+  pb->detail = NULL;
+  for (int i = 0; i < nq; i++) {
+    for (int j = 0; j < (int)r->free; j++) {
+      a->dq[i] += h * (r->whole[j] * u[j * nq + i]);
+    }
+    for (int j = 0; j < (int)r->points; j++) {
+      a->dp[i] += h * (r->b[j] * a->force[j * nq + i]);
+    }
+  }
+  return LAG_OK;
+}
+
+void lag_link_note(const Implicit *w, const Arrays *a, const lag_problem *pb, int k, const double *u)
+{
+  lag_history_add(a->history + (size_t)k * lag_links_history(pb, w), pb->nq * (int)w->rule[k % 2].free, u);
+}
+
+int lag_links_velocity(const Implicit *w, const Arrays *a, lag_problem *pb, double tb, const double *y, int known)
+{
+  int nq = pb->nq;
+  const double *history = a->history + (size_t)w->links * lag_links_history(pb, w);
+  lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = tb, .h = 0, .size = w->h, .q = y, .dq = a->ql, .p = a->p,
+                    .dp = a->pl, .u = a->v, .force = a->force, .work = a->discrete};
+
+  lag_links_gather(a, nq);
+  if (!known && !lag_history_guess(history, nq, a->v)) {
+    memcpy(a->v, a->u, (size_t)nq * sizeof(double));
+  }
+  return lag_discrete_solve(&d);
+}

@@ -1,0 +1,357 @@
+#include "mech/first_order.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/dense.h"
+#include "mech/lagrange.h"
+#include "mech/skew.h"
+#include "sym/diff.h"
+#include "sym/eval.h"
+#include "sym/prove.h"
+#include "sym/simplify.h"
+
+/* A term of an entry of the form. */
+typedef struct {
+  uint32_t row, col, order;
+  Expr e;
+} Part;
+
+/* What the derivation has in hand. */
+typedef struct {
+  Eqns *e;
+  const Model *m;
+  ExprGraph *g;
+  Arena *arena;
+  FirstOrder *to;
+  uint32_t n;
+  uint32_t *place; /* [states] of a coordinate its number plus 1, of other states 0 */
+  Expr *still;     /* by symbol: rates are 0 */
+  Expr *rhs;
+  VEC(Expr) divisors;
+  VEC(Part) parts;
+} Work;
+
+static unsigned bit(SymKind kind) { return 1u << kind; }
+static int has_rates(const Work *w, Expr x) { return (expr_kinds(w->g, x) & bit(SYM_RATE)) != 0; }
+static const State *state_of(const Work *w, uint32_t i) { return &w->m->states.at[w->to->at[i]]; }
+static Expr at_rest(const Work *w, Expr x) { return expr_substitute(w->g, x, w->still, expr_symbol_count(w->g) + 1, "_at_rest"); }
+
+static void find_coordinates(Work *w) {
+  uint32_t *at = ARENA_ARRAY(w->arena, uint32_t, w->m->states.n + 1);
+  w->place = ARENA_ARRAY(w->arena, uint32_t, w->m->states.n + 1);
+  w->still = ARENA_ARRAY(w->arena, Expr, expr_symbol_count(w->g) + 1);
+  for (uint32_t i = 0; i < w->m->states.n; i++) {
+    w->still[w->m->states.at[i].rate] = expr_int(w->g, 0);
+    if (!w->m->states.at[i].coordinate) continue;
+    at[w->n++] = i;
+    w->place[i] = w->n;
+  }
+  w->to->n = w->n;
+  w->to->at = at;
+}
+
+/* --- the parts of L --- */
+
+/* theta, and the parts of dL/dq_i - dtheta_i/dt without velocities, with the sign that they have on the right. */
+static int differentiate(Work *w) {
+  SymId *rates = ARENA_ARRAY(w->arena, SymId, w->n), *q = ARENA_ARRAY(w->arena, SymId, w->n);
+  Expr *theta = ARENA_ARRAY(w->arena, Expr, w->n), *dH = ARENA_ARRAY(w->arena, Expr, w->n);
+  for (uint32_t i = 0; i < w->n; i++) {
+    rates[i] = state_of(w, i)->rate;
+    q[i] = state_of(w, i)->z;
+  }
+  expr_gradient(w->g, w->m->lagrangian, rates, w->n, theta);
+  Expr still = at_rest(w, w->m->lagrangian), H = expr_neg(w->g, still);
+  expr_gradient(w->g, H, q, w->n, dH);
+  w->to->theta = theta;
+  w->rhs = dH;
+  w->e->energy = H;
+  for (uint32_t i = 0; i < w->n; i++) {
+    if (expr_kinds(w->g, theta[i]) & bit(SYM_INPUT)) {
+      diag_error(w->m->diags, w->m->lagrangian_span, "the momentum of `%s` depends on an input, whose derivative would be needed", state_of(w, i)->name);
+      diag_help(w->m->diags, "write the input as a formula of t inside L instead");
+      return 0;
+    }
+    Expr changing = expr_diff(w->g, theta[i], w->m->time);
+    w->rhs[i] = expr_add(w->g, w->rhs[i], changing);
+  }
+  return 1;
+}
+
+static void add_part(Work *w, uint32_t row, uint32_t col, Expr e) {
+  vec_push(w->arena, &w->parts, ((Part){row, col, w->parts.n, e}));
+}
+
+/* omega_ij += dtheta_j/dq_i - dtheta_i/dq_j. */
+static int add_form(Work *w) {
+  for (uint32_t i = 0; i < w->n; i++) {
+    ExprPartials d = expr_gradient_sparse(w->g, w->to->theta[i], SYM_STATE, w->m->states.n);
+    for (uint32_t k = 0; k < d.n; k++) {
+      uint32_t j = w->place[d.at[k].index];
+      if (!j) {
+        diag_error(w->m->diags, w->m->lagrangian_span, "the momentum of `%s` depends on the state `%s`", state_of(w, i)->name,
+                   w->m->states.at[d.at[k].index].name);
+        diag_help(w->m->diags, "not yet: where L is linear in the velocities, a state can stand in terms without velocities");
+        return 0;
+      }
+      Expr minus = expr_neg(w->g, d.at[k].e);
+      add_part(w, i, j - 1, minus);
+      add_part(w, j - 1, i, d.at[k].e);
+    }
+  }
+  return 1;
+}
+
+/* Q_i = sum of f d(point)/dq_i - dR/dq_i'. */
+static Expr *forces(const Work *w) {
+  const Model *m = w->m;
+  Expr *Q = ARENA_ARRAY(w->arena, Expr, w->n);
+  for (uint32_t i = 0; i < w->n; i++) Q[i] = expr_int(w->g, 0);
+  for (uint32_t k = 0; k < m->forces.n; k++) {
+    ExprPartials d = expr_gradient_sparse(w->g, m->forces.at[k].point, SYM_STATE, m->states.n);
+    for (uint32_t i = 0; i < d.n; i++) {
+      if (!w->place[d.at[i].index]) continue;
+      Expr part = expr_mul(w->g, m->forces.at[k].f, d.at[i].e), *Qi = &Q[w->place[d.at[i].index] - 1];
+      *Qi = expr_add(w->g, *Qi, part);
+    }
+  }
+  ExprPartials d = m->dissipation ? expr_gradient_sparse(w->g, m->dissipation, SYM_RATE, m->states.n) : (ExprPartials){0};
+  for (uint32_t i = 0; i < d.n; i++) {
+    Expr *Qi = &Q[w->place[d.at[i].index] - 1]; /* rates of other states cannot stand in a dissipation */
+    *Qi = expr_sub(w->g, *Qi, d.at[i].e);
+  }
+  return Q;
+}
+
+/* The form gains dQ/dq', the right-hand side loses what of Q is free of velocities. */
+static int add_forces(Work *w) {
+  Expr *Q = forces(w);
+  for (uint32_t i = 0; i < w->n; i++) {
+    ExprPartials d = has_rates(w, Q[i]) ? expr_gradient_sparse(w->g, Q[i], SYM_RATE, w->m->states.n) : (ExprPartials){0};
+    for (uint32_t k = 0; k < d.n; k++) {
+      Expr part = simplify(w->g, d.at[k].e);
+      if (has_rates(w, part)) {
+        diag_error(w->m->diags, w->m->lagrangian_span, "the force on `%s` is not linear in the velocities, and L has no inertia", state_of(w, i)->name);
+        diag_help(w->m->diags, "the velocities follow from a linear system where L is linear in them: write forces of q and t, or linear in q'");
+        return 0;
+      }
+      add_part(w, i, w->place[d.at[k].index] - 1, part);
+      w->to->closed = 0;
+    }
+    Expr still = at_rest(w, Q[i]);
+    w->rhs[i] = expr_sub(w->g, w->rhs[i], still);
+  }
+  return 1;
+}
+
+static int by_place(const void *a, const void *b) {
+  const Part *x = a, *y = b;
+  if (x->row != y->row) return x->row < y->row ? -1 : 1;
+  if (x->col != y->col) return x->col < y->col ? -1 : 1;
+  return (x->order > y->order) - (x->order < y->order);
+}
+
+/* The entries that are not zero, in their short forms. */
+static void collect(Work *w) {
+  unsigned kinds = 0;
+  if (w->parts.n) qsort(w->parts.at, w->parts.n, sizeof *w->parts.at, by_place);
+  for (uint32_t k = 0; k < w->parts.n;) {
+    Part x = w->parts.at[k];
+    for (k++; k < w->parts.n && w->parts.at[k].row == x.row && w->parts.at[k].col == x.col; k++) x.e = expr_add(w->g, x.e, w->parts.at[k].e);
+    x.e = simplify(w->g, x.e);
+    if (expr_is_zero(w->g, x.e)) continue;
+    kinds |= expr_kinds(w->g, x.e);
+    vec_push(w->arena, &w->to->form, ((MassEntry){x.row, x.col, x.e}));
+  }
+  w->to->constant = !(kinds & (bit(SYM_STATE) | bit(SYM_TIME)));
+}
+
+/* --- blocks --- */
+
+static uint32_t root(uint32_t *up, uint32_t i) {
+  while (up[i] != i) i = up[i] = up[up[i]];
+  return i;
+}
+
+/* Numbers the sets of coordinates that the form couples, in order of their first; their number. */
+static uint32_t find_blocks(Work *w) {
+  uint32_t *up = ARENA_ARRAY(w->arena, uint32_t, w->n), *block = ARENA_ARRAY(w->arena, uint32_t, w->n), count = 0;
+  for (uint32_t i = 0; i < w->n; i++) up[i] = i;
+  for (uint32_t k = 0; k < w->to->form.n; k++) {
+    uint32_t a = root(up, w->to->form.at[k].row), b = root(up, w->to->form.at[k].col);
+    if (a < b) up[b] = a;
+    else up[a] = b;
+  }
+  for (uint32_t i = 0; i < w->n; i++) block[i] = root(up, i) == i ? count++ : block[root(up, i)];
+  w->to->block = block;
+  return count;
+}
+
+/* One block: its coordinates, its part of the form and of the right-hand side. */
+typedef struct {
+  uint32_t n, *at;
+  Expr *A, *b;
+} Block;
+
+typedef VEC(Block) Blocks;
+
+static Blocks split(Work *w) {
+  Blocks blocks = {0};
+  uint32_t count = find_blocks(w), *inside = ARENA_ARRAY(w->arena, uint32_t, w->n);
+  for (uint32_t i = 0; i < count; i++) vec_push(w->arena, &blocks, ((Block){0}));
+  for (uint32_t i = 0; i < w->n; i++) inside[i] = blocks.at[w->to->block[i]].n++;
+  for (uint32_t i = 0; i < count; i++) {
+    Block *b = &blocks.at[i];
+    b->at = ARENA_ARRAY(w->arena, uint32_t, b->n);
+    b->A = ARENA_ARRAY(w->arena, Expr, (size_t)b->n * b->n);
+    b->b = ARENA_ARRAY(w->arena, Expr, b->n);
+    for (size_t k = 0; k < (size_t)b->n * b->n; k++) b->A[k] = expr_int(w->g, 0);
+  }
+  for (uint32_t i = 0; i < w->n; i++) {
+    Block *b = &blocks.at[w->to->block[i]];
+    b->at[inside[i]] = i;
+    b->b[inside[i]] = w->rhs[i];
+  }
+  for (uint32_t k = 0; k < w->to->form.n; k++) {
+    const MassEntry *x = &w->to->form.at[k];
+    Block *b = &blocks.at[w->to->block[x->row]];
+    b->A[(size_t)inside[x->row] * b->n + inside[x->col]] = x->e;
+  }
+  return blocks;
+}
+
+static const char *names_of(const Work *w, const Block *b, const uint32_t *which, uint32_t n) {
+  enum { FEW = 12 };
+  StrBuf names = strbuf(w->arena);
+  for (uint32_t i = 0; i < n && i < FEW; i++) sb_printf(&names, "%s`%s`", i ? ", " : "", state_of(w, b->at[which ? which[i] : i])->name);
+  if (n > FEW) sb_puts(&names, " and others");
+  return sb_text(&names);
+}
+
+/* A determinant that is not identically zero vanishes at a random state with probability zero. 1: regular somewhere, or nowhere defined. */
+static int is_regular(const Work *w, const Block *b) {
+  enum { TRIES = 8 };
+  long double *symbols = ARENA_ARRAY(w->arena, long double, expr_symbol_count(w->g) + 1);
+  long double *a = ARENA_ARRAY(w->arena, long double, (size_t)b->n * b->n);
+  uint32_t *column = ARENA_ARRAY(w->arena, uint32_t, b->n);
+  int judged = 0;
+  for (uint32_t seed = 1; seed <= TRIES; seed++) {
+    prove_state(w->g, seed, symbols);
+    expr_eval(w->g, b->A, b->n * b->n, symbols, a);
+    int finite = 1;
+    for (uint32_t k = 0; k < b->n * b->n; k++) finite &= isfinite(a[k]) != 0;
+    if (!finite) continue;
+    if (dense_solve(b->n, a, NULL, 1e-13L, column, NULL) == b->n) return 1;
+    judged = 1;
+  }
+  return !judged;
+}
+
+static void report_singular(const Work *w, const Block *b) {
+  Diags *d = w->m->diags;
+  Span span = w->m->lagrangian_span;
+  if (w->to->closed && w->n % 2) {
+    diag_error(d, span, "L is linear in the velocities, and has an odd number of coordinates, %u: they do not determine their motion", w->n);
+    diag_help(d, "of first order, coordinates come in pairs, as positions and momenta do; one whose rate is known is a `state` with a `flow`");
+  } else if (b->n == 1) {
+    diag_error(d, state_of(w, b->at[0])->span, "L is linear in the velocities, and does not determine that of `%s`", state_of(w, b->at[0])->name);
+    diag_help(d, "terms like x*y' must couple the coordinates in pairs; what is a total time derivative does not count");
+  } else {
+    diag_error(d, span, "L is linear in the velocities, and does not determine them: the two-form of %s is singular in every state", names_of(w, b, NULL, b->n));
+    diag_help(d, "with dL/dq_i' = theta_i, the matrix dtheta_j/dq_i - dtheta_i/dq_j must be regular; total time derivatives do not count");
+  }
+}
+
+/* --- rates --- */
+
+/* [0 A; -A^T 0] is antisymmetric whatever A is: (y, x) with A x = b, A^T y = 0. */
+static void double_block(const Work *w, Block *b) {
+  uint32_t n = b->n, m = 2 * n;
+  Expr *A = ARENA_ARRAY(w->arena, Expr, (size_t)m * m), *rhs = ARENA_ARRAY(w->arena, Expr, m);
+  for (size_t k = 0; k < (size_t)m * m; k++) A[k] = expr_int(w->g, 0);
+  for (uint32_t i = 0; i < n; i++) {
+    rhs[i] = b->b[i];
+    rhs[n + i] = expr_int(w->g, 0);
+    for (uint32_t j = 0; j < n; j++) {
+      A[(size_t)i * m + n + j] = b->A[(size_t)i * n + j];
+      A[(size_t)(n + j) * m + i] = expr_neg(w->g, b->A[(size_t)i * n + j]);
+    }
+  }
+  b->A = A;
+  b->b = rhs;
+}
+
+enum { BLOCK_MOST = 200 };
+
+/* Rates of the block's coordinates, into rate[n]. */
+static int solve(Work *w, Block *b, Expr *rate) {
+  Expr *x = ARENA_ARRAY(w->arena, Expr, 2 * (size_t)b->n), divisor = 0;
+  uint32_t *left = ARENA_ARRAY(w->arena, uint32_t, 2 * (size_t)b->n), nleft = 0, m = w->to->closed ? b->n : 2 * b->n;
+  Name name = intern(w->m->ast->names, "Pf");
+  if (!w->to->closed) double_block(w, b);
+  int many = b->n > BLOCK_MOST;
+  if (many || !skew_solve(w->g, m, b->A, b->b, name, x, &divisor, left, &nleft)) {
+    int all = many || !w->to->closed;
+    diag_error(w->m->diags, w->m->lagrangian_span, "not yet: L is linear in the velocities, and its two-form couples too many coordinates: %s",
+               names_of(w, b, all ? NULL : left, all ? b->n : nleft));
+    diag_help(w->m->diags, "pairs whose entry cannot vanish are eliminated first: declare signs of parameters, `param G = 1 > 0`");
+    return 0;
+  }
+  for (uint32_t i = 0; i < b->n; i++) rate[b->at[i]] = x[w->to->closed ? i : b->n + i];
+  if (divisor) vec_push(w->arena, &w->divisors, divisor);
+  return 1;
+}
+
+/* The rates in the form that takes the fewest operations, as flows; what contained rates of coordinates contains them. */
+static void put_flows(Work *w, Model *m, const Expr *rate) {
+  uint32_t nsymbols = expr_symbol_count(w->g) + 1;
+  const Expr *best = lagrange_short_forms(w->e, rate, w->n);
+  Expr *with = ARENA_ARRAY(w->arena, Expr, nsymbols), *flow = ARENA_ARRAY(w->arena, Expr, m->states.n + 1);
+  for (uint32_t i = 0; i < w->n; i++) with[state_of(w, i)->rate] = flow[w->to->at[i]] = best[i];
+  for (uint32_t i = 0; i < m->states.n; i++)
+    if (!w->place[i]) flow[i] = with[m->states.at[i].rate] = expr_substitute(w->g, m->states.at[i].flow, with, nsymbols, "");
+  for (uint32_t i = 0; i < m->events.n; i++) {
+    Event *ev = &m->events.at[i];
+    ev->g = expr_substitute(w->g, ev->g, with, nsymbols, "");
+    for (uint32_t k = 0; k < ev->actions.n; k++) ev->actions.at[k].value = expr_substitute(w->g, ev->actions.at[k].value, with, nsymbols, "");
+  }
+  w->e->flow = flow;
+}
+
+/* E = theta q' - L = H, and what a drift of it is compared with. */
+static void put_energy(Work *w) {
+  enum { SHORTEN_MAX = 64 };
+  ExprGraph *g = w->g;
+  Expr *terms = ARENA_ARRAY(w->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) terms[i] = expr_mul(g, w->to->theta[i], expr_symbol(g, state_of(w, i)->rate)->node);
+  Expr pv = expr_add_n(g, terms, w->n), size_pv = expr_fn(g, EX_ABS, pv), l = expr_sub(g, pv, w->e->energy), size_l = expr_fn(g, EX_ABS, l);
+  w->e->energy_stable = w->n <= SHORTEN_MAX ? simplify_stable(g, w->e->energy) : w->e->energy;
+  w->e->energy_scale = expr_add(g, size_pv, size_l);
+}
+
+int first_order_derive(Eqns *e, Model *m) {
+  Work w = {.e = e, .m = m, .g = m->g, .arena = m->arena, .to = &e->first};
+  w.to->closed = 1;
+  find_coordinates(&w);
+  if (!differentiate(&w) || !add_form(&w) || !add_forces(&w)) return 0;
+  collect(&w);
+  w.to->rhs = lagrange_short_forms(e, w.rhs, w.n);
+  w.rhs = ARENA_ARRAY(w.arena, Expr, w.n);
+  for (uint32_t i = 0; i < w.n; i++) w.rhs[i] = w.to->rhs[i];
+  Blocks blocks = split(&w);
+  Expr *rate = ARENA_ARRAY(w.arena, Expr, w.n);
+  for (uint32_t i = 0; i < blocks.n; i++) {
+    if (blocks.at[i].n <= BLOCK_MOST && !is_regular(&w, &blocks.at[i])) {
+      report_singular(&w, &blocks.at[i]);
+      return 0;
+    }
+    if (!solve(&w, &blocks.at[i], rate)) return 0;
+  }
+  w.to->rates = rate;
+  w.to->divisors = w.divisors.at;
+  w.to->ndivisors = w.divisors.n;
+  put_flows(&w, m, rate);
+  put_energy(&w);
+  return 1;
+}

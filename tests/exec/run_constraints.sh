@@ -1,0 +1,110 @@
+#!/bin/sh
+# Models with constraints, from the .lag file to the run: steps, outputs and what events leave lie on the constraints; starts are moved to
+# them, and the report says so; what cannot be done is refused. Expected values: closed forms, the same system in coordinates without
+# constraints, published rules.
+. tests/tap.sh
+models=tests/exec/models
+
+run() { "$LAGC" run "$@" >"$TMP/out" 2>"$TMP/err"; }
+says() { # says WORDS ARGS...
+  words=$1
+  shift
+  run "$@" && grep -q -e "$words" "$TMP/out"
+}
+refused() { # refused WORDS ARGS...: with exit status 2, and no file is left
+  words=$1
+  shift
+  rm -f "$TMP/rows.csv"
+  run "$@" -o "$TMP/rows.csv"
+  [ $? = 2 ] && grep -qF -e "$words" "$TMP/err" && [ ! -e "$TMP/rows.csv" ]
+}
+# number NAME: its value in the JSON report; within A B D: |A - B| <= D
+number() { sed -n "s/.*\"$1\": \\([-+0-9.e]*\\)[,}].*/\\1/p" "$TMP/out"; }
+within() { awk -v a="$1" -v b="$2" -v d="$3" 'BEGIN { x = a - b; exit !(a != "" && x*x <= d*d) }'; }
+ends() { # ends WITHIN NAME=VALUE... -- ARGS...: a run ends there, on the constraints to a few last digits
+  tolerance=$1
+  shift
+  wanted=
+  while [ "$1" != -- ]; do
+    wanted="$wanted $1"
+    shift
+  done
+  shift
+  run "$@" --json || return 1
+  within "$(number constraint_residual)" 0 1e-14 && within "$(number constraint_rate_residual)" 0 3e-14 || return 1
+  for pair in $wanted; do
+    within "$(number "${pair%%=*}")" "${pair#*=}" "$tolerance" || { echo "${pair%%=*}: $(number "${pair%%=*}"), not ${pair#*=}"; return 1; }
+  done
+}
+
+# ---- the double pendulum, against its two angles
+"$LAGC" run models/double_pendulum.lag th1=1 th2=-0.5 --until 3 --method dop853 --tol 1e-13 --json >"$TMP/out"
+x=$(awk -v a="$(number th1)" 'BEGIN { printf "%.15g", sin(a) }')
+y=$(awk -v a="$(number th1)" -v b="$(number th2)" 'BEGIN { printf "%.15g", -cos(a) - cos(b) }')
+for scene in swing thrice; do
+  # tolerance times what such a motion makes of it; the last by its order
+  check "$scene by rk45" ends 1e-6 "r\\[1\\].x=$x" "r\\[2\\].y=$y" -- $models/two_rods.lag $scene --method rk45
+  check "$scene by dop853" ends 1e-9 "r\\[1\\].x=$x" "r\\[2\\].y=$y" -- $models/two_rods.lag $scene --method dop853 --tol 1e-12
+  check "$scene by rk4" ends 1e-8 "r\\[1\\].x=$x" "r\\[2\\].y=$y" -- $models/two_rods.lag $scene --method rk4 --step 1e-3
+  check "$scene by verlet8" ends 1e-9 "r\\[1\\].x=$x" "r\\[2\\].y=$y" -- $models/two_rods.lag $scene --method verlet8 --step 1e-2
+  check "$scene by variational" ends 2e-3 "r\\[1\\].x=$x" "r\\[2\\].y=$y" -- $models/two_rods.lag $scene --method variational --step 1e-3
+done
+check "what was not set moves, and the report says so" says 'start moved to the constraints: y from 0 to 0.8 m' $models/rod.lag below
+check "velocities, too" says "  and y' from 0 to -0.6 m/s" $models/rod.lag below
+check "what was set stays" says '"start_moved": {"y": \[0, 0.80*[0-9]*\], "y.": \[0, -0.[56][0-9]*\]}' $models/rod.lag below --json
+check "what follows from others is named" says 'constraints: 3, 2 independent at the start; redundant: sum' $models/two_rods.lag thrice
+check "and in the JSON report" says '"rank": 2, "redundant": \["sum"\]' $models/two_rods.lag thrice --json
+
+# ---- RATTLE: digits of the algorithm in 60-digit arithmetic (tests/unit/test_rt_constraints.c)
+check "verlet is RATTLE" ends 1e-11 x=0.2692700072386528 y=-0.9630647243055349 "x'=-4.185581063924644" "y'=-1.170275906630961" -- \
+  $models/rod.lag drop --method verlet --step 0.01
+check "in long double, too" says 'constraint residual: [0-9.]*e-19, of rates [0-9.]*e-1[89]' $models/rod.lag drop --method verlet --step 0.01 --precision long
+check "dop853 in long double" says 'constraint residual: [0-9.]*e-19, of rates [0-9.]*e-1[89]' $models/rod.lag drop --method dop853 --tol 1e-15 --precision long
+
+# ---- through positions where all bars lie in one line: b stays 0, the cranks are one pendulum
+for m in rk45 dop853 "variational --step 1e-3" "variational --step 1.1e-2" "verlet4 --step 1e-2"; do
+  check "four bars by $m" ends 1e-9 "b\\[1\\]=0" "b\\[2\\]=0" -- $models/four_bars.lag --method $m
+  check "their energy" within "$(number energy_drift)" 0 5e-5 # of order 2 with the larger step
+done
+
+# ---- constraints of velocities
+check "a ball on a turntable by dop853" ends 1e-8 x=0.3044234691 y=0.0017758793 -- $models/turntable.lag --tol 1e-10
+check "by a rule of order 2" says 'exact x: largest deviation [0-9.]*e-0[6-9]' $models/turntable.lag --method variational --step 0.01
+check "by one of order 4" says 'exact x: largest deviation [0-9.]*e-1[0-9]' $models/turntable.lag --method verlet4 --step 0.01
+
+# ---- rows between steps, and what events leave
+worst() { awk -F, 'NR > 1 { c = $2*$2 + $3*$3 - 1; r = $2*$4 + $3*$5; c = c < 0 ? -c : c; r = r < 0 ? -r : r; m = c > m ? c : m; m = r > m ? r : m } END { exit !(m < 4e-15) }' "$TMP/rows.csv"; }
+for m in rk4 rk45 dop853 variational verlet; do
+  check "rows of $m" run $models/rod.lag drop --method $m --every 0.003 -o "$TMP/rows.csv"
+  check "lie on the constraint" worst
+done
+# At y = -1/2 it has v^2 = g l; half of x' and nothing of y' are v/4, of which the rod leaves v/8 along it, and v/16 of x'.
+check "an event that moves velocities off the constraint" ends 10 x=0 -- $models/rod.lag hit --events "$TMP/events.csv"
+check "leaves the part that is along it" sh -c 'tail -1 "$1" | awk -F, "{ d = \$9 + sqrt(9.81)/16; exit !(d*d < 1e-16) }"' - "$TMP/events.csv"
+
+# ---- bad input
+check "exactly" refused 'the start contradicts its constraints: constraint rod (line 6) is off by 0.21 m^2' $models/rod.lag exact
+check "no start at all" refused 'no start obeys the constraints: from the one given, none is found nearer than this: constraint' $models/rod.lag far
+check "with the constraint's line" grep -q '(line [67])' "$TMP/err"
+for m in gauss radau taylor; do
+  check "$m refuses" refused "method $m cannot hold constraints (rod); rk45, dop853 and variational can" $models/rod.lag drop --method $m
+done
+check "so do Galerkin methods of higher order" refused 'with constraints it has order 2' $models/rod.lag drop --method 'variational(order=4)'
+check "and the tangent" refused 'no tangent of a motion with constraints yet (rod)' $models/rod.lag drop --tangent
+cannot() { # cannot WORDS COMMAND...
+  words=$1
+  shift
+  "$LAGC" "$@" >"$TMP/out" 2>"$TMP/err"
+  [ $? = 2 ] && grep -qF -e "$words" "$TMP/err"
+}
+check "and Lyapunov exponents" cannot 'no tangent of a motion with constraints yet (rod)' lyapunov $models/rod.lag drop
+check "and modes" cannot 'cannot treat constraints yet (rod)' modes $models/rod.lag drop
+check "a step that is too long" sh -c '"$0" run "$1" drop --method variational --step 1 2>&1 | grep -q "no impulse was found.*take smaller steps"' "$LAGC" $models/rod.lag
+check "without a method, one that can is chosen" says 'method dop853' $models/rod.lag drop --tol 1e-12
+
+# ---- a run that is saved and resumed is the same run
+run $models/rod.lag drop --method variational --step 0.01 --until 5 --save-state "$TMP/state" && run $models/rod.lag drop --resume "$TMP/state" --until 10 --json
+whole=$(number x)
+run $models/rod.lag drop --method variational --step 0.01 --json
+is "resumed bit by bit" "$(number x)" "$whole"
+tap_end

@@ -1,0 +1,63 @@
+#!/bin/sh
+# Contacts against closed forms: impacts and the time at which they end, forces of what lies, the moment at which it leaves, impulses that
+# agree with constraints.
+. tests/tap.sh
+
+model() { cat >"$TMP/$1.lag"; }
+run() { "$LAGC" run "$TMP/$1.lag" "$2" --quiet -o "$TMP/out.csv" --json >"$TMP/out.json" 2>"$TMP/err" || { cat "$TMP/err"; return 1; }; }
+near() { awk -v got="$1" -v want="$2" -v tol="$3" 'BEGIN { d = got - want; print got, want, d; exit !(d <= tol && -d <= tol) }'; }
+cell() { awk -F, -v t="$1" -v c="$2" '$1 == t { print $c }' "$TMP/out.csv"; } # TIME COLUMN
+
+# A ball of restitution 0.8 from 1 m, and one that is pulled up by 15 N sin t after it has come to rest.
+model ball <<'EOF'
+model ball "A ball that comes to rest, and leaves when it is lifted"
+coord y [m], x [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2], e = 0.8, F = 0 [N]
+lagrangian = m/2*(y'^2 + x'^2) - m*g*y
+force y = F*sin(1 [1/s]*t)
+contact floor: y >= 0, restitution = e
+scene drop { start y = 1 [m], x' = 1 [m/s]; span 5 [s]; method dop853; tolerance 1e-12; output y, x, y', lambda(floor) every 0.5 [s] }
+scene plastic { like drop; e = 0; F = 15 [N]; span 1 [s]; start y = 0.01 [m], x' = 0 [m/s]; output y, y', lambda(floor) every 0.1 [s] }
+scene rest { like drop; start y = 0 [m]; span 1 [s] }
+scene inside { like drop; start y = -0.1 [m] }
+EOF
+check "a ball comes to rest" run ball drop
+# t_1 = sqrt(2/g), then flights of 2 e^k t_1; after k impacts t_k = t_1 (1 + 2 e (1 - e^(k-1))/(1 - e)); the end is at 9 t_1.
+impacts() { "$LAGC" run "$TMP/ball.lag" drop | sed -n 's/^event floor: .*first at t = \([^ ]*\) s, last at \([^ ]*\) s/\1 \2/p'; }
+set -- $(impacts)
+# the event's time is that of the method's path, whose error is the tolerance
+check "the first impact, sqrt(2/g)" near "$1" 0.451523640985730904450811124338 1e-11
+# flights shorter than 1e-7 of the time so far are not flown: 4 of those are left
+check "the end of impacts, 9 sqrt(2/g)" near "$2" 4.06371276887157814005730011904 2e-6
+check "it lies on the floor" near "$(cell 4.5 2)" 0 1e-12
+check "its weight presses" near "$(cell 4.5 5)" 9.81 1e-12
+check "and it slides on" near "$(cell 5 3)" 5 1e-12
+# With e = 0 the first impact is the last: the ball lies until 15 sin t = 9.81 lifts it, at 0.71286.
+check "e = 0 and a pull" run ball plastic
+lifted() { "$LAGC" run "$TMP/ball.lag" plastic | sed -n 's/^event floor opens: 1 time, t = \([^ ]*\) s/\1/p'; }
+check "it leaves when nothing presses, asin(g m/F)" near "$(lifted)" 0.712859977313621 1e-10
+check "pressed by m g - F sin t" near "$(cell 0.5 4)" "$(awk 'BEGIN { printf "%.17g", 9.81 - 15*sin(0.5) }')" 1e-12
+check "what lies at the start stays" run ball rest
+check "at rest" near "$(cell 1 2)" 0 0
+check "and presses" near "$(cell 1 5)" 9.81 1e-12
+inside() { ! "$LAGC" run "$TMP/ball.lag" inside >"$TMP/log" 2>&1 && grep -q 'the start is inside the contact floor: its gap is -0.1 m' "$TMP/log"; }
+check "a start inside is refused" inside
+
+# A pendulum in Cartesian coordinates strikes a wall: the rod takes part in the impulse, so that the speed along the circle turns round.
+model rod <<'EOF'
+model rod "A pendulum that strikes a wall"
+coord x [m], y [m], far [m]
+param m = 2 [kg] > 0, g = 9.81 [m/s^2], l = 1 [m] > 0, e = 0.5
+lagrangian = m/2*(x'^2 + y'^2 + far'^2) - m*g*y
+constraint rod: x^2 + y^2 = l^2
+contact wall: x >= -0.6 [m], restitution = e
+scene swing { start x = 0.8 [m], y = -0.6 [m], far' = 1 [m/s]; span 5 [s]; method dop853; tolerance 1e-12
+ output x, y, x', y', far', energy every 0.01 [s] }
+EOF
+check "a pendulum against a wall" run rod swing
+# The energy that n impacts leave: each takes all but e^2 of m v^2/2 = 0.2 m g, and the first costs the fall from -0.6 to -0.8.
+check "what is left of its energy" near "$(awk -F, 'END { printf "%.17g", $7 }' "$TMP/out.csv")" "$("$LAGC" run "$TMP/rod.lag" swing | awk '/^event wall:/ { n = $3 } END { v2 = 0.4*9.81*0.25^n; printf "%.17g", 2*(v2/2 - 9.81*0.8) + 1 }')" 1e-9
+check "what is far away is not touched" near "$(awk -F, 'END { print $6 }' "$TMP/out.csv")" 1 1e-12
+on_circle() { awk -F, 'NR > 1 { d = $2^2 + $3^2 - 1; if (d > 1e-14 || -d > 1e-14) exit 1 }' "$TMP/out.csv"; }
+check "on the circle throughout" on_circle
+tap_end
