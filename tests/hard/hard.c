@@ -9,7 +9,7 @@
  *   tol=X; steps=N or A..B: fixed steps a span, doubled from A until all is within its tolerance, at most B; most=N: more steps
  *   fail; limit=X: known not to reach the tolerance; fails where the error is more than X times what is allowed; inf: known not to come to the end.
  * TIER `quad`: what is allowed is a unit in the last digit of VALUE, or 1e-18 of TOLERANCE where that is more, as numbers of 34 digits are
- * to those of 16. A method that refuses a model says why; that is no failure. For other precisions it goes through
+ * to those of 16. Models have no inputs and no contacts. A method that refuses a model says why; that is no failure. For other precisions it goes through
  * runtime/precision.awk. Prints a line a run, as TAP; with TABLE in the environment, as a table. */
 #include <ctype.h>
 #include <math.h>
