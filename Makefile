@@ -208,6 +208,11 @@ bless:
 	$(SETUP) test
 	@$(MAKE) --no-print-directory build-tests
 	$(RUN_TESTS) --bless $(T)
+# A row a case of tests/hard: error, residual, steps, time.
+hard:
+	$(SETUP) build
+	$(QUIET) all
+	@LAGC='$(BUILD)/lagc' LIBS='$(GSL_LIBS) -lm' INC='runtime/include' BUILD='$(BUILD)' CC='$(CC)' GSL='$(GSL)' sh tests/hard/lib_table.sh
 bench:
 	$(SETUP) build
 	$(QUIET) all
@@ -311,6 +316,7 @@ help:
 	@echo 'make test         installs what is missing, then runs every test'
 	@echo '                  T="unit/test_num golden": only suites whose names begin so'
 	@echo 'make test-long    the suites that take minutes'
+	@echo 'make hard         hard cases with published digits: a row each, error beside what is allowed'
 	@echo 'make bench        instructions and times next to peers, to tests/bench/RESULTS.md; nothing fails by being slow'
 	@echo 'make bless        rewrites the expectations of golden tests: look at the diff before you commit it'
 	@echo 'make fuzz         looks for inputs that break the compiler; SECONDS=60, T=fuzz_parse'
@@ -322,4 +328,4 @@ help:
 
 -include $(LAGC_OBJ:.o=.d) $(RT_OBJ:.o=.d) $(GSL_OBJ:.o=.d) $(BUILD)/obj/src/main.d $(TEST_BIN:=.d)
 
-.PHONY: all demo run-demo gallery test test-long bless bench build-tests fuzz install uninstall clean help
+.PHONY: all demo run-demo gallery test test-long bless hard bench build-tests fuzz install uninstall clean help

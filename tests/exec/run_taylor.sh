@@ -117,7 +117,7 @@ else skip "two or four numbers side by side: the same bits" "not on this process
 # ---- the method
 mkdir -p "$TMP/r"
 for m in "models/pendulum.lag wide" "models/double_pendulum.lag swing" "models/kepler.lag orbit" "models/bouncing_ball.lag drop" \
-  "tests/exec/cases/kepler_e0_6.lag go" "$here/gap.lag go"; do
+  "tests/hard/cases/kepler_e0_6.lag go" "$here/gap.lag go"; do
   # shellcheck disable=SC2086 # two words
   set -- $m
   "$LAGC" emit "$1" "$2" --method taylor -o "$TMP/r/$(basename "$1" .lag).c"

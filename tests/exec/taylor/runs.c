@@ -148,7 +148,7 @@ static void pieces(void) {
   check(st.steps >= 200 && st.steps <= 201, "max_step is a limit", (double)st.steps, 200);
   lag_sim_free(one);
 
-  /* Dense output has the accuracy of the steps. Kepler's equation at t = 1 to 30 digits: tests/exec/cases/kepler_e0_6.lag. */
+  /* Dense output has the accuracy of the steps. Kepler's equation at t = 1 to 30 digits: tests/hard/cases/kepler_e0_6.lag. */
   one = start(&kepler_orbit, 1e-15, NULL, 0);
   go(one, 1);
   small(lag_sim_q(one)[0] + 0.628948176826624230582918587818, 5e-16, "between two steps: Kepler at t = 1");
