@@ -31,7 +31,7 @@ static void compare(const char *lag, int positive, void (*by_hand)(const Moment 
   assert_non_null(e);
   assert_true(e->m->first_order);
   assert_int_equal(e->m->coords.n, 0);
-  Prog *p = lower_accel(e);
+  Prog *p = lower_accel(e, 0);
   assert_null(prog_verify(p));
   for (int trial = 0; trial < TRIALS; trial++) {
     Real *point = random_point(e), z[MOST] = {0}, want[MOST] = {0};
@@ -147,7 +147,7 @@ static void check_coupled(uint32_t n, const char *sign, int banded) {
   Arena *arena = arena_new(NULL);
   Eqns *e = equations(arena, coupled(arena, n, sign, banded), NULL);
   assert_non_null(e);
-  Prog *p = lower_accel(e);
+  Prog *p = lower_accel(e, 0);
   assert_null(prog_verify(p));
   for (int trial = 0; trial < 10; trial++) {
     Real *v = random_point(e), got[MOST] = {0}, A[MOST * MOST] = {0}, b[MOST];

@@ -41,7 +41,7 @@ static uint32_t check_model(const char *lag, uint32_t terms) {
   Arena *a = arena_new(NULL);
   Eqns *e = equations(a, lag, NULL);
   assert_non_null(e);
-  Prog *p = lower_accel(e), *h = lower_energy(e);
+  Prog *p = lower_accel(e, 0), *h = lower_energy(e);
   assert_null(prog_verify(p));
   assert_null(prog_verify(h));
   const Real *in[ARR_COUNT] = {0}, *v = random_point(e);
@@ -112,7 +112,7 @@ static void test_by_hand(void **state) {
     }
   Eqns *e = equations(a, arena_printf(a, "%skinetic = %s\npotential = 0%s\n", sb_text(&b), sb_text(&T), sb_text(&V)), NULL);
   assert_non_null(e);
-  Prog *p = lower_accel(e);
+  Prog *p = lower_accel(e, 0);
   assert_true(p->nests.n > 0 && instructions(p) < 20*N);
   const Real *in[ARR_COUNT] = {0}, *v = random_point(e);
   Real got[2*N], *out[2] = {got, NULL};
