@@ -1,5 +1,5 @@
 /* The method gauss on Lagrangians that are linear in the velocities, by closed forms and by what the exact motion keeps: first_order TEST.
- * Linked with the emitted scenes pair, three (tests/exec/cases), cycle (models/lotka_volterra.lag) and banana (models/guiding_centre.lag).
+ * Linked with the emitted scenes pair, three (tests/hard/cases), cycle (models/lotka_volterra.lag) and banana (models/guiding_centre.lag).
  * Prints TAP. */
 #include <math.h>
 #include <stdio.h>

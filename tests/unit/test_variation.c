@@ -90,7 +90,7 @@ static void check_forces(const Case *c, const First *f, const Real *h) {
   differences(c, m->time, 1e-6L, &by_t); /* inputs may be fast */
   for (uint32_t i = 0; i < c->e->n && !m->states.n; i++) {
     Real want, size = 0;
-    expr_eval(c->e->g, &c->e->f[i], 1, c->v, &want);
+    expr_eval(c->e->g, c->e->constraints.n ? &c->e->system.f[i] : &c->e->f[i], 1, c->v, &want); /* without multipliers */
     want += by_t.part[1][i] - f->part[0][i];
     for (uint32_t j = 0; j < c->e->n; j++) {
       Real term = entry(c, h, SECOND_VQ, i, j) * c->v[m->coords.at[j].v];
