@@ -9,22 +9,46 @@
 
 /* --- proving --- */
 
+static Expr with_definitions(const Eqns *e, Expr x) {
+  return e->definitions ? expr_substitute(e->g, x, e->definitions, expr_symbol_count(e->g) + 1, "") : x;
+}
+
+/* With constraints the unknowns are accelerations and multipliers, of M q'' - A^T lambda = f, A q'' = what that must be. Redundant constraints
+ * leave that undecided, and so do contacts, whose rows are zero while they are open: these are left out. */
 static Verdict proof(const Eqns *e, Expr difference) {
   const Model *m = e->m;
-  uint32_t n = e->n;
-  Expr *M = ARENA_ARRAY(m->arena, Expr, n * n + 1);
-  SymId *acc = ARENA_ARRAY(m->arena, SymId, n + 1);
+  const Constraints *c = &e->constraints;
+  ExprGraph *g = e->g;
+  uint32_t n = e->n, w = n, *row = ARENA_ARRAY(m->arena, uint32_t, c->n + 1);
+  for (uint32_t i = 0; i < c->n; i++) row[i] = UINT32_MAX;
+  for (uint32_t k = 0; k < c->A.n; k++)
+    if (row[c->A.at[k].row] == UINT32_MAX && !expr_is_zero(g, with_definitions(e, c->A.at[k].e))) row[c->A.at[k].row] = w++;
+  Expr *M = ARENA_ARRAY(m->arena, Expr, (size_t)w * w + 1), *f = ARENA_ARRAY(m->arena, Expr, w + 1);
+  SymId *acc = ARENA_ARRAY(m->arena, SymId, w + 1);
+  for (size_t i = 0; i < (size_t)w * w; i++) M[i] = expr_int(g, 0);
   for (uint32_t i = 0; i < n; i++) {
     acc[i] = m->coords.at[i].a;
-    for (uint32_t k = 0; k < n; k++) M[i * n + k] = eqns_mass(e, i, k);
+    f[i] = c->n ? with_definitions(e, e->system.f[i]) : e->f[i];
+    for (uint32_t k = 0; k < n; k++) M[i * w + k] = eqns_mass(e, i, k);
   }
-  return prove_solves(e->g, n, M, e->f, acc, difference, NULL);
+  for (uint32_t i = 0; i < c->n; i++) {
+    if (row[i] == UINT32_MAX) continue;
+    acc[row[i]] = c->of[i]->multiplier;
+    f[row[i]] = with_definitions(e, c->demand[i]);
+  }
+  for (uint32_t k = 0; k < c->A.n; k++) {
+    uint32_t i = row[c->A.at[k].row], j = c->A.at[k].col;
+    if (i == UINT32_MAX) continue;
+    Expr x = with_definitions(e, c->A.at[k].e);
+    M[i * w + j] = x;
+    M[j * w + i] = expr_neg(g, x);
+  }
+  return prove_solves(g, w, M, f, acc, difference, NULL);
 }
 
 Verdict mend_verdict(const Eqns *e, Expr lhs, Expr rhs) {
   Expr difference = expr_sub(e->g, lhs, rhs);
-  if (e->definitions) difference = expr_substitute(e->g, difference, e->definitions, expr_symbol_count(e->g) + 1, "");
-  Expr closed = states_substitute(e, difference);
+  Expr closed = states_substitute(e, with_definitions(e, difference));
   return proof(e, closed);
 }
 

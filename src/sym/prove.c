@@ -112,7 +112,7 @@ static int is_diagonal(const System *s) {
   return 1;
 }
 
-static int has_unknown(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & 1u << SYM_ACC) != 0; }
+static int has_unknown(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0; }
 
 /* Sums and products only, none of them in a denominator: then nothing is lost by putting values in the place of unknowns. */
 static int is_polynomial(const System *s) {
