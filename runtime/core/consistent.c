@@ -170,6 +170,17 @@ static void approach(Start *w)
   }
 }
 
+/* Whether a constraint on positions contains coordinate i. */
+static int is_held(const Start *w, int i)
+{
+  for (int e = 0; e < w->of->njacobian; e++) {
+    if (w->of->jacobian[e].row < w->of->nholonomic && w->of->jacobian[e].col == i) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
 /* Onto the constraints by moving what is free. Where no step helps, as in the middle between two ways out, it tries from places
  * beside: first above, ever further. */
 static int reach(Start *w)
@@ -184,7 +195,7 @@ static int reach(Start *w)
   for (int k = 0; k < tries && w->nfree > 0; k++) {
     memcpy(w->y + at, w->asked + at, (size_t)w->nq * sizeof(double));
     for (int a = 0; a < w->nfree; a++) {
-      w->y[at + w->free[a]] += beside[k] * (typical > 0 ? typical : 1) * (0.5 + fmod(0.618033988749894848 * (a + 1), 1));
+      w->y[at + w->free[a]] += !is_held(w, w->free[a]) ? 0 : beside[k] * (typical > 0 ? typical : 1) * (0.5 + fmod(0.618033988749894848 * (a + 1), 1));
     }
     if (descend(w)) {
       if (w->holonomic) {
@@ -228,6 +239,36 @@ static int refuse(Start *w, int exactly)
                   w->pb->words, w->holonomic ? "" : " in its rate");
 }
 
+/* A constraint whose derivatives vanish where it holds, as those of x^2 = 0, holds nothing there. */
+static int check_derivatives(Start *w)
+{
+  const lag_constraints *of = w->of;
+  const lag_model *m = w->pb->model;
+  double t = w->sim->scene->t0, *size = w->other;
+  int nq = w->nq;
+
+  if (of->matrices(t, w->y, w->y + nq, w->y + 2 * nq, w->pb->p, w->pb->u, w->A, w->M, w->pb->work)) {
+    return LAG_OK;
+  }
+  memset(size, 0, (size_t)of->n * sizeof *size);
+  for (int e = 0; e < of->njacobian; e++) {
+    int i = of->jacobian[e].col;
+    double far = fmax(fabs(w->y[i]), fabs(w->asked[i]));
+    size[of->jacobian[e].row] += fabs(w->A[e]) * (far > 0 ? far : 1);
+  }
+  for (int k = 0; k < of->nholonomic; k++) {
+    int is_contact = 0;
+    for (int i = 0; i < m->ncontacts; i++) {
+      is_contact |= m->contacts[i].constraint == k;
+    }
+    if (!is_contact && size[k] < 1e-6 * w->size[k]) {
+      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s (line %d) vanish where it holds, so that no force can hold it: write it "
+                      "without a square", of->of[k].name, of->of[k].line);
+    }
+  }
+  return LAG_OK;
+}
+
 /* Positions, or velocities. */
 static int settle(Start *w, int holonomic)
 {
@@ -250,7 +291,7 @@ static int settle(Start *w, int holonomic)
   for (int all = 0; all < 2; all++) {
     choose_free(w, all);
     if (reach(w)) {
-      return LAG_OK;
+      return holonomic ? check_derivatives(w) : LAG_OK;
     }
   }
   return refuse(w, 0);

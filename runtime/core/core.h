@@ -108,10 +108,13 @@ int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
 
 /* contact.c. of: the contact that the event is one of, or NULL. after: event k has led from `before` to y; closes the gap when the impacts
- * have come to their end, or one leaves no speed, and opens it when it is released. begin: gaps that are closed at the start. */
+ * have come to their end, or one leaves no speed, and opens it when it is released. open: all of them, since the state will be another. meet: y, which
+ * `who` has made, may touch contacts, which strikes or closes them, and may not be inside of one. begin: the start. Failures are reported. */
 const lag_contact *lag_contact_of(const lag_model *m, int event);
 int lag_contact_is_closed(const lag_sim *sim, const lag_contact *contact);
 int lag_contact_after(lag_sim *sim, int event, int ends, const double *before, double *y);
+void lag_contact_open(lag_sim *sim);
+int lag_contact_meet(lag_sim *sim, double *y, const char *who);
 int lag_contact_begin(lag_sim *sim);
 
 /* tangent.c. pass: the step has been used up. jump: event k changes the state from `now` to yb; more: another one has at this time. */

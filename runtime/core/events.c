@@ -3,6 +3,7 @@
  * yet") until g has clearly left zero, so it never fires twice for one crossing. */
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/core.h"
@@ -82,14 +83,24 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
     return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its action gives no finite state at t = %.17g s", m->ev[k].name,
                     r->t);
   }
-  if (memcmp(s->yb, s->now, bytes) != 0 && lag_project(&s->pb, r->t, s->yb, NULL) != 0) {
+  int ends = is_zeno(s, k, since), moved = memcmp(s->yb, s->now, bytes) != 0;
+  const lag_contact *contact = lag_contact_of(m, k);
+  if (moved && !contact) {
+    lag_contact_open(s); /* what lay may have been lifted, or thrown */
+  }
+  if (moved && lag_project(&s->pb, r->t, s->yb, NULL) != 0) {
     return lag_fail(s, LAG_EMODEL, "event %s: its action at t = %.17g s leaves the constraints: %s", m->ev[k].name, r->t,
                     s->pb.detail ? s->pb.detail : "");
   }
-  int ends = is_zeno(s, k, since);
-  const lag_contact *contact = lag_contact_of(m, k);
-  if ((rc = lag_contact_after(s, k, ends, s->now, s->yb)) != 0) {
-    return lag_fail(s, LAG_EMODEL, "the contact %s has no finite values at t = %.17g s", m->ev[k].name, r->t);
+  if (contact) {
+    rc = lag_contact_after(s, k, ends, s->now, s->yb);
+  } else if (moved) {
+    char who[128];
+    snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
+    rc = lag_contact_meet(s, s->yb, who);
+  }
+  if (rc) {
+    return rc;
   }
   int more = *changed;
   *changed |= contact != NULL; /* another model moves on */

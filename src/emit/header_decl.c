@@ -182,7 +182,7 @@ static const char *const docs[FN_COUNT] = {
   [FN_EVENTS] = "The event functions g[LAG_NEV].",
   [FN_ACT] = "What an event does to the state; *stop becomes 1 when it ends the run.",
   [FN_HOLD] = "Moves the state to the nearest one that obeys the constraints, by the metric of the mass matrix; _rk4_step does so itself.",
-  [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was.",
+  [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was. Events, and contacts, are the caller's.",
   [FN_RK4_STEP_WITH] = "The same with inputs that change during the step: input(context, t, u) finds the model's own in u.",
 };
 
@@ -206,6 +206,8 @@ void header_declarations(const Header *h) {
     if (!header_has(h, (HeaderFn)f)) continue;
     const char *doc = f != FN_ACCEL || (u->q.n && u->z.n) ? docs[f] : u->q.n ? "Accelerations a[LAG_NQ]: what an integrator needs."
                                                                              : "Rates zd[LAG_NZ] of the states: what an integrator needs.";
+    if (f == FN_START && u->constraints.of.n)
+      doc = "The state at the start of the scene, as it gives it. _hold then leads to the constraints, moving all of it; lagc run moves what\n * the scene does not give first.";
     sb_puts(h->out, "\n/* ");
     csupport_fill(doc, h->upper, h->lower, h->out);
     if (f == FN_RK4_STEP && u->u.n) sb_puts(h->out, "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");

@@ -357,6 +357,7 @@ static void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_MULTIPLIER);
   if (needed) {
     Slot *acc = ARENA_ARRAY(m->arena, Slot, l->e->n + 1);
+    l->coarse = 1;
     lower_solution(l, acc);
     for (uint32_t i = 0; i < l->e->n; i++) expr_map_set(&l->slots, expr_symbol(l->g, m->coords.at[i].a)->node, acc[i] + 1);
     for (uint32_t i = 0; i < l->e->constraints.n; i++)

@@ -15,6 +15,7 @@ typedef struct {
   int direct;       /* sin(a - b) is computed as it stands: for series, it is cheaper than the addition theorem */
   Factored *factored; /* where the solution leaves its factors, and x[n + ndefs] itself; NULL: nowhere */
   Slot *x;
+  int coarse;         /* accelerations and multipliers are for the eye: as in Solve, so that they stay finite where constraints become dependent */
   Slot *multipliers; /* of the constraints, once the solution is lowered */
 } Lower;
 

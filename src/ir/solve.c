@@ -249,7 +249,7 @@ void lower_solution(Lower *l, Slot *acc) {
   if (goes_straight(e)) {
     lower_elimination(l, acc);
   } else {
-    Sides sides = {slots_of(l, s->f, e->n), slots_of(l, k->demand, k->n), k->n, 0};
+    Sides sides = {slots_of(l, s->f, e->n), slots_of(l, k->demand, k->n), k->n, l->coarse};
     prog_title(l->p, k->n ? "M q'' = f + A^T lambda" : "M q'' = f");
     solve_blocks(l, &sides, acc, l->multipliers);
   }

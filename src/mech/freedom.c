@@ -80,12 +80,27 @@ static void show_integrability(const Eqns *e, StateSolver *s, StrBuf *out) {
   }
 }
 
+/* From the start, or from places beside it, where it is in the middle between two ways out. */
+static int obey_from(const Eqns *e, StateSolver *s, long double *symbols) {
+  static const long double beside[] = {0, 1e-3L, 0.03L, 0.3L, 1};
+  uint32_t n = expr_symbol_count(e->g) + 1;
+  long double *tried = ARENA_ARRAY(e->m->arena, long double, n);
+  for (size_t k = 0; k < sizeof beside / sizeof *beside; k++) {
+    for (uint32_t i = 0; i < n; i++) tried[i] = symbols[i];
+    for (uint32_t i = 0; i < e->n; i++) tried[e->m->coords.at[i].q] += beside[k] * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
+    if (!states_obey(s, tried)) continue;
+    for (uint32_t i = 0; i < n; i++) symbols[i] = tried[i];
+    return 1;
+  }
+  return states_obey(s, symbols);
+}
+
 int freedom_show(const Eqns *e, StrBuf *out) {
   const Constraints *all = &e->constraints;
   if (!all->n) return 1;
   StateSolver *s = states_new(e);
   long double *symbols = start_of(e);
-  if (!states_obey(s, symbols)) {
+  if (!obey_from(e, s, symbols)) {
     if (e->m->scene.starts.n) report_infeasible(e, s, symbols);
     else sb_printf(out, "scene %s: %u constraint%s; without a start nothing is said of their rank\n", e->m->scene.name, all->n, plural(all->n));
     return !e->m->scene.starts.n;

@@ -43,6 +43,46 @@ check "and presses" near "$(cell 1 5)" 9.81 1e-12
 inside() { ! "$LAGC" run "$TMP/ball.lag" inside >"$TMP/log" 2>&1 && grep -q 'the start is inside the contact floor: its gap is -0.1 m' "$TMP/log"; }
 check "a start inside is refused" inside
 
+# ---- states that no motion has led to
+model kicked <<'EOF'
+model kicked "A ball that begins with an impact, and one that events put where it touches"
+coord y [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2], e = 0.5
+lagrangian = m/2*y'^2 - m*g*y
+contact floor: y >= 0, restitution = e
+event clock: t - 0.05 [s] rising { y = 0 [m]; y' = -2 [m/s] }
+event wrong: t - 0.9 [s] rising { y = -1 [m] }
+scene begin { start y' = -1 [m/s]; span 0.04 [s]; method dop853; tolerance 1e-12; output y, y' every 0.01 [s] }
+scene moved { like begin; start y = 1 [m]; span 0.1 [s] }
+scene inside { like begin; span 1 [s] }
+EOF
+check "a start with a closing gap is an impact" run kicked begin
+check "it leaves at e times its speed" near "$(cell 0 3)" 0.5 1e-12
+check "and rises" near "$(cell 0.04 2)" "$(awk 'BEGIN { printf "%.17g", 0.5*0.04 - 9.81*0.04^2/2 }')" 1e-12
+check "an event that puts the ball on the floor, moving down" run kicked moved
+check "is an impact, too" near "$(cell 0.06 3)" "$(awk 'BEGIN { printf "%.17g", 1 - 9.81*0.01 }')" 1e-12
+into() { ! "$LAGC" run "$TMP/kicked.lag" inside >"$TMP/log" 2>&1 && grep -q 'event wrong sets a state that is inside the contact floor: its gap is -1 m' "$TMP/log"; }
+check "one that puts it inside ends the run" into
+lively() { ! "$LAGC" run "$TMP/kicked.lag" begin e=2 >"$TMP/log" 2>&1 && grep -q 'the contact floor has a restitution of 2' "$TMP/log"; }
+check "a restitution of 2 is refused" lively
+# Three balls come to rest on each other, by methods of both kinds.
+model stack <<'EOF'
+model stack "Three balls fall onto each other"
+coord y[3] [m]
+param m[3] = {1, 3, 1} [kg] > 0, g = 9.81 [m/s^2], e = 0.5, d = 0.2 [m]
+kinetic = sum(i in 1..3, m[i]/2*y[i]'^2)
+potential = sum(i in 1..3, m[i]*g*y[i])
+contact floor: y[1] >= d/2, restitution = e
+for i in 1..2 { contact pair[i]: y[i+1] - y[i] >= d, restitution = e }
+scene fall { start y = {0.5, 1, 1.5}; span 3 [s]; output y[3], lambda(floor), lambda(pair[1]), lambda(pair[2]) every 1 [s] }
+EOF
+for method in dop853 'variational(step=1e-3)' 'verlet(step=1e-3)'; do
+  stack() { "$LAGC" run "$TMP/stack.lag" --method "$method" --quiet -o "$TMP/out.csv" >"$TMP/log" 2>&1 || { cat "$TMP/log"; return 1; }; }
+  check "a stack comes to rest: $method" stack
+  check "each carries what is above it" near "$(cell 3 3)" "$(awk 'BEGIN { printf "%.17g", 5*9.81 }')" 1e-9
+  check "and the uppermost its own weight" near "$(cell 3 5)" 9.81 1e-9
+done
+
 # A pendulum in Cartesian coordinates strikes a wall: the rod takes part in the impulse, so that the speed along the circle turns round.
 model rod <<'EOF'
 model rod "A pendulum that strikes a wall"
