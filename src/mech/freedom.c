@@ -58,7 +58,7 @@ static void show_one(const Eqns *e, StateSolver *s, const unsigned char *counts,
     sb_printf(out, "  contact %s (line %u): a constraint while it is closed\n", c->name, place.line);
     return;
   }
-  sb_printf(out, "  constraint %s (line %u): %s", c->name, place.line, kind_of(e, k));
+  sb_printf(out, "  constraint %s (line %u): %s%s", c->name, place.line, kind_of(e, k), c->inside ? ", the unit length of a rotation" : "");
   if (!counts[k]) sb_puts(out, "; follows from those before it");
   if (rank < e->constraints.n - e->m->contacts.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the least one is taken");
   sb_putc(out, '\n');
@@ -95,15 +95,21 @@ static int obey_from(const Eqns *e, StateSolver *s, long double *symbols) {
   return states_obey(s, symbols);
 }
 
+static int says_start(const Model *m) {
+  for (uint32_t i = 0; i < m->scene.starts.n; i++)
+    if (!m->scene.starts.at[i].implied) return 1;
+  return 0;
+}
+
 int freedom_show(const Eqns *e, StrBuf *out) {
   const Constraints *all = &e->constraints;
   if (!all->n) return 1;
   StateSolver *s = states_new(e);
   long double *symbols = start_of(e);
   if (!obey_from(e, s, symbols)) {
-    if (e->m->scene.starts.n) report_infeasible(e, s, symbols);
+    if (says_start(e->m)) report_infeasible(e, s, symbols);
     else sb_printf(out, "scene %s: %u constraint%s; without a start nothing is said of their rank\n", e->m->scene.name, all->n, plural(all->n));
-    return !e->m->scene.starts.n;
+    return !says_start(e->m);
   }
   unsigned char *counts = ARENA_ARRAY(e->m->arena, unsigned char, all->n);
   uint32_t rank = states_rank(s, UINT32_MAX, counts), free = e->n - rank;
