@@ -41,7 +41,7 @@ int lag_events_arm(lag_sim *s)
     s->sign[k] = sign_of(s->g1[k]);
     s->noise[k] = 0;
   }
-  return rc;
+  return rc ? rc : lag_contact_arm(s, s->g1);
 }
 
 /* An event that repeats faster and faster (a ball coming to rest) would never let time pass. Others may fire between. dt: since
@@ -73,9 +73,10 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   s->first[k] = s->count[k] > 0 ? s->first[k] : r->t;
   s->last[k] = r->t;
   s->count[k]++;
+  const lag_contact *contact = lag_contact_of(m, k);
   int rc = lag_inputs(&s->pb, r->t);
   memcpy(s->yb, s->now, bytes);
-  if (rc == 0 && m->act) {
+  if (rc == 0 && m->act && !contact) {
     rc = m->act(k, r->t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, s->yb, s->yb + nq, s->yb + 2 * nq, stop,
                 s->work);
   }
@@ -84,20 +85,17 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
                     r->t);
   }
   int ends = is_zeno(s, k, since), moved = memcmp(s->yb, s->now, bytes) != 0;
-  const lag_contact *contact = lag_contact_of(m, k);
-  if (moved && !contact) {
+  if (moved) {
     lag_contact_open(s); /* what lay may have been lifted, or thrown */
   }
   if (moved && lag_project(&s->pb, r->t, s->yb, NULL) != 0) {
     return lag_fail(s, LAG_EMODEL, "event %s: its action at t = %.17g s leaves the constraints: %s", m->ev[k].name, r->t,
                     s->pb.detail ? s->pb.detail : "");
   }
-  if (contact) {
-    rc = lag_contact_after(s, k, ends, s->now, s->yb);
-  } else if (moved) {
+  if (contact || moved) {
     char who[128];
     snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
-    rc = lag_contact_meet(s, s->yb, who);
+    rc = lag_contact_settle(s, s->yb, contact ? NULL : who, contact ? k : -1, ends);
   }
   if (rc) {
     return rc;
@@ -138,22 +136,33 @@ static int rearm(lag_sim *s, const double *before, const double *spread)
       s->noise[k] = 0;
     }
   }
-  return rc;
+  return rc ? rc : lag_contact_arm(s, s->g1);
+}
+
+/* An event that happens now and has not acted yet, in the order in which they are declared; -1: none. */
+static int next_due(const lag_sim *s)
+{
+  const Run *r = s->run;
+  double together = 4 * DBL_EPSILON * fmax(fabs(r->limit), fabs(r->step_t1));
+  int k = 0, nev = s->scene->model->nev;
+
+  while (k < nev && (isnan(s->root[k]) || !(fabs(s->root[k] - r->limit) <= together))) {
+    k++;
+  }
+  return k < nev ? k : -1;
 }
 
 int lag_events_fire(lag_sim *s)
 {
   Run *r = s->run;
-  int nev = s->scene->model->nev, stop = 0, changed = 0;
-  double *before = s->e + 2, *spread = s->spare, together = 4 * DBL_EPSILON * fmax(fabs(r->limit), fabs(r->step_t1));
+  int stop = 0, changed = 0;
+  double *before = s->e + 2, *spread = s->spare;
 
   int rc = lag_events_eval(s, r->t, s->now, before);
   rc = rc ? rc : lag_events_spread(s, before, spread);
-  for (int k = 0; k < nev && rc == 0; k++) {
-    if (!isnan(s->root[k]) && fabs(s->root[k] - r->limit) <= together) {
-      s->root[k] = HUGE_VAL; /* fired */
-      rc = act(s, k, &stop, &changed);
-    }
+  for (int k; rc == 0 && (k = next_due(s)) >= 0;) { /* an impact may make others happen at once */
+    s->root[k] = HUGE_VAL; /* fired */
+    rc = act(s, k, &stop, &changed);
   }
   rc = rc ? rc : rearm(s, before, spread);
   r->from = r->t;
