@@ -5,7 +5,8 @@
 #include <math.h>
 
 /* Parts of what is there that are rounding: of a pivot, whose row is then one that follows from others, and of a right-hand side. */
-static const double no_pivot = 1e-10, no_value = 1e-13;
+const double lag_no_pivot = 1e-10;
+static const double no_value = 1e-13;
 
 /* Row i becomes that of the other one of its pair. */
 static void pivot(int n, double *T, double *q, int r, int s)
@@ -79,12 +80,12 @@ int lag_complement(int n, double *M, double *q, double *scale, unsigned char *in
       }
       return 1;
     }
-    if (M[r * n + r] > no_pivot) {
+    if (M[r * n + r] > lag_no_pivot) {
       pivot(n, M, q, r, r);
       in[r] ^= 1;
       continue;
     }
-    while (s < n && !(M[r * n + s] > no_pivot)) {
+    while (s < n && !(M[r * n + s] > lag_no_pivot)) {
       s++;
     }
     *row = r;

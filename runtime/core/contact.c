@@ -122,15 +122,13 @@ static int rest(Touch *w, int event, int ends, const double *before, double *acc
 {
   const lag_model *m = w->sim->scene->model;
   double dir = w->sim->run->dir;
-  int released = -1;
 
   for (int a = 0; a < w->n; a++) {
     const lag_contact *c = &m->contacts[w->of[a]];
     double after = dir * w->rate[w->of[a]];
     w->part[a] = after <= no_gap * w->rate_size[w->of[a]] || after <= no_speed * fabs(before[a]) || (ends && c->impact == event);
-    released = c->release == event ? a : released;
   }
-  int rc = lag_touch_rest(w, released, acceleration), more = 0;
+  int rc = lag_touch_rest(w, acceleration), more = 0;
   for (int a = 0; a < w->n && rc == 0; a++) { /* one that is back before it has left */
     double after = w->rate[w->of[a]], back = -2 * acceleration[a] * no_flight * w->gap_size[w->of[a]];
     if (!w->part[a] && after * after <= back) {
@@ -138,7 +136,7 @@ static int rest(Touch *w, int event, int ends, const double *before, double *acc
       more = 1;
     }
   }
-  return rc == 0 && more ? lag_touch_rest(w, released, acceleration) : rc;
+  return rc == 0 && more ? lag_touch_rest(w, acceleration) : rc;
 }
 
 /* Closes what rests and is pressed, and takes what speed and gap are left there. */
@@ -235,7 +233,7 @@ int lag_contact_arm(lag_sim *s, const double *g)
   for (int i = 0; i < m->ncontacts; i++) {
     s->hold[m->contacts[i].input] = 1;
   }
-  int rc = lag_constraint_terms(&s->pb, s->run->t, s->now, 1, size);
+  int rc = lag_touch_sizes(s, s->now, 1, size, size + m->constraints->n);
   for (int i = 0; i < m->ncontacts; i++) {
     const lag_contact *c = &m->contacts[i];
     s->hold[c->input] = s->contact_was[i];
@@ -243,7 +241,7 @@ int lag_contact_arm(lag_sim *s, const double *g)
     double noise = k == c->release ? 1e-12 * most : no_flight * size[c->constraint];
     if (g[k] <= noise) { /* it has no sign yet: below -noise it happens */
       s->sign[k] = 0;
-      s->noise[k] = fmax(noise, 2 * fabs(g[k]));
+      s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* no more: at each impact it would grow */
     }
   }
   return rc;

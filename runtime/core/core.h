@@ -46,7 +46,7 @@ struct lag_sim {
   lag_signal *signal;    /* [nu] set by the caller; not part of what is saved */
   double *start;         /* [n] NaN: as the scene says */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
-  double *contact_room, *contact_was; /* [constraints], [contacts]: scratch of contact.c */
+  double *contact_room, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
   double *saved;         /* one block: Run, and the arrays below */
   size_t nsaved;

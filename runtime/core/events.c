@@ -45,12 +45,12 @@ int lag_events_arm(lag_sim *s)
 }
 
 /* An event that repeats faster and faster (a ball coming to rest) would never let time pass. Others may fire between. dt: since
- * it fired last. */
-static int is_zeno(lag_sim *s, int k, double dt)
+ * it fired last; few: so many intervals, each shorter than the one before, are enough (a block that rocks loses most of its speed at once). */
+static int is_zeno(lag_sim *s, int k, double dt, int few)
 {
   s->shorter[k] = dt < s->interval[k] ? s->shorter[k] + 1 : 0;
   s->interval[k] = dt;
-  return s->shorter[k] >= 10 && dt <= 1e-7 * fabs(s->run->t - s->scene->t0);
+  return s->shorter[k] >= few && dt <= 1e-7 * fabs(s->run->t - s->scene->t0);
 }
 
 static int fail_zeno(lag_sim *s, int k)
@@ -84,7 +84,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
     return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its action gives no finite state at t = %.17g s", m->ev[k].name,
                     r->t);
   }
-  int ends = is_zeno(s, k, since), moved = memcmp(s->yb, s->now, bytes) != 0;
+  int ends = is_zeno(s, k, since, contact ? 3 : 10), moved = memcmp(s->yb, s->now, bytes) != 0;
   if (moved) {
     lag_contact_open(s); /* what lay may have been lifted, or thrown */
   }

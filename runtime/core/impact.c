@@ -70,9 +70,10 @@ static int make_room(Touch *w)
   double *x = w->block = calloc(total, sizeof *x);
   w->of = calloc(p, sizeof *w->of);
   w->at = calloc(p, sizeof *w->at);
-  w->part = calloc(3 * p, 1);
+  w->part = calloc(4 * p, 1);
   w->in = w->part + p;
   w->was = w->in + p;
+  w->follows = w->was + p;
   for (size_t i = 0; i < sizeof parts / sizeof *parts && x; i++) {
     *parts[i] = x;
     x += sizes[i];
@@ -102,6 +103,18 @@ static int find_rates(Touch *w, const double *y, double *rate)
   return rc;
 }
 
+int lag_touch_sizes(lag_sim *s, const double *y, int holonomic, double *size, double *scratch)
+{
+  const lag_constraints *of = s->scene->model->constraints;
+  int rc = lag_constraint_terms(&s->pb, s->run->t, y, holonomic, size);
+
+  rc = rc ? rc : lag_constraint_terms(&s->pb, s->run->t, s->begin, holonomic, scratch);
+  for (int k = 0; k < (holonomic ? of->nholonomic : of->n) && rc == 0; k++) {
+    size[k] = fmax(size[k], isfinite(scratch[k]) ? scratch[k] : 0);
+  }
+  return rc;
+}
+
 int lag_touch_look(lag_sim *s, double *y, Touch *w)
 {
   const lag_model *m = s->scene->model;
@@ -123,11 +136,11 @@ int lag_touch_look(lag_sim *s, double *y, Touch *w)
       return no_values(w, i);
     }
   }
-  rc = lag_constraint_terms(pb, t, y, 1, w->g);
+  rc = lag_touch_sizes(s, y, 1, w->g, w->c);
   for (int i = 0; i < m->ncontacts; i++) {
     w->gap_size[i] = w->g[m->contacts[i].constraint];
   }
-  rc = rc ? rc : lag_constraint_terms(pb, t, y, 0, w->g);
+  rc = rc ? rc : lag_touch_sizes(s, y, 0, w->g, w->c);
   for (int i = 0; i < m->ncontacts; i++) {
     w->rate_size[i] = w->g[m->contacts[i].constraint];
   }
@@ -256,14 +269,15 @@ static int complement(Touch *w, const double *q)
   }
   int found = lag_complement(m, w->M, w->push, w->scale, w->in, &row);
   for (int k = n - 1; k >= m; k--) {
-    w->in[k] = 0;
+    w->in[k] = w->follows[k] = 0;
   }
   for (int k = m - 1; k >= 0; k--) { /* to their places, which are no lower */
     double push = w->push[k];
-    unsigned char in = w->in[k];
-    w->push[k] = w->in[k] = 0;
+    unsigned char in = w->in[k], follows = !in && w->M[k * m + k] <= lag_no_pivot;
+    w->push[k] = w->in[k] = w->follows[k] = 0;
     w->push[w->at[k]] = push;
     w->in[w->at[k]] = in;
+    w->follows[w->at[k]] = follows;
   }
   return found ? LAG_OK : squeezed(w, row < 0 ? -1 : w->at[row]);
 }
@@ -310,7 +324,7 @@ static int find_pulls(Touch *w)
   return LAG_OK;
 }
 
-/* Whether no contact pulls where those that `more` names are closed, too, so that what is redundant shares the load. */
+/* Whether no contact pulls where these are closed. */
 static int none_pulls(Touch *w, const unsigned char *closed)
 {
   double least = 0, most = 0;
@@ -324,30 +338,24 @@ static int none_pulls(Touch *w, const unsigned char *closed)
     least = fmin(least, force);
     most = fmax(most, force);
   }
-  return most > 0 && least >= -1e-10 * most;
+  return most > 0 && least >= 0;
 }
 
-int lag_touch_rest(Touch *w, int without, double *acceleration)
+int lag_touch_rest(Touch *w, double *acceleration)
 {
   int n = w->n, rc = find_pulls(w), more = 0;
-  double most = 0;
 
   rc = rc ? rc : complement(w, w->pull);
   for (int a = 0; a < n && rc == 0; a++) {
     acceleration[a] = w->pull[a];
-    most = fmax(most, fabs(w->pull[a]));
     for (int b = 0; b < n; b++) {
       acceleration[a] += w->in[b] ? w->W[a * n + b] * w->push[b] : 0;
-      most = fmax(most, w->in[b] ? fabs(w->W[a * n + b] * w->push[b]) : 0);
     }
+    more |= w->follows[a];
+    w->follows[a] |= w->in[a];
   }
-  unsigned char *shared = (unsigned char *)w->M;
-  for (int a = 0; a < n && rc == 0; a++) {
-    shared[a] = w->in[a] || (w->part[a] && a != without && fabs(acceleration[a]) <= 1e-10 * most);
-    more |= shared[a] && !w->in[a];
-  }
-  if (more && none_pulls(w, shared)) {
-    memcpy(w->in, shared, (size_t)n);
+  if (more && none_pulls(w, w->follows)) {
+    memcpy(w->in, w->follows, (size_t)n);
   }
   close_only(w, 0, -1);
   return rc;

@@ -18,10 +18,15 @@ typedef struct Touch {
   int *at;
   unsigned char *part, *in;     /* [n] takes part; pushes */
   unsigned char *was;           /* [contacts] it was closed */
+  unsigned char *follows;       /* [n] its gap is one that those which push hold already */
   double *g, *c, *r, *d, *force, *test, *events; /* scratch: [constraints], [constraints], [constraints], [nq], [nq], [n of the state], [nev] */
   double *A, *mass;             /* entries of the constraints' derivatives, with all contacts closed, and of M */
   double *block;
 } Touch;
+
+/* size[constraints]: of the terms of gaps, or of their rates, at y or at the start, whichever are larger: a ball that has come to lie at 0 is
+ * measured by what it fell. All contacts are closed for it. */
+int lag_touch_sizes(lag_sim *sim, const double *y, int holonomic, double *size, double *scratch);
 
 /* All contacts at the state y, which stays the caller's. touch->of has room for all; n is 0. */
 int lag_touch_look(lag_sim *sim, double *y, Touch *touch);
@@ -36,9 +41,9 @@ int lag_touch_responses(Touch *touch);
 /* The impulses where gaps close: rates change in y, and in touch->rate. e[n]: coefficients; struck[n]: those that were closing. */
 int lag_touch_impact(Touch *touch, const double *e, const unsigned char *struck);
 
-/* Which of those that take part stay closed under forces, touch->in; without: one that does not where it need not, or -1. y does not change,
- * and contacts are left open. acceleration[n]: of each gap then. */
-int lag_touch_rest(Touch *touch, int without, double *acceleration);
+/* Which of those that take part stay closed under forces, touch->in: those that press, and what follows from them, where it then shares the
+ * load and none pulls. y does not change, and contacts are left open. acceleration[n]: of each gap then. */
+int lag_touch_rest(Touch *touch, double *acceleration);
 
 /* Of the contacts named by touch, and no others: hold. */
 void lag_touch_close(const Touch *touch, const unsigned char *closed);

@@ -54,7 +54,7 @@ static int alloc_scratch(lag_sim *s)
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
   size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
-  size_t held = lag_held_room(m), sized = m->ncontacts ? (size_t)m->constraints->n : 0;
+  size_t held = lag_held_room(m), sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
   double *x = calloc(nuu + nw + 3 * n + 13 * nev + nout + 2 + held + sized + (size_t)m->ncontacts + 1, sizeof *x);
 
   s->scratch = x;
