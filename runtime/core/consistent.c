@@ -219,16 +219,27 @@ static int reach(Start *w)
   return 0;
 }
 
-/* The free components: those that nobody set, or all. */
-static void choose_free(Start *w, int all)
+/* What gives way to constraints, in this order: components that nobody set, rotations of which nothing is said, all. */
+enum { UNSET, ROTATIONS, ALL };
+
+static int yields_at(const Start *w, int i)
 {
   const lag_scene *c = w->sim->scene;
+
+  if (!isnan(w->sim->start[i]) || (c->given && c->given[i] == 1)) {
+    return ALL;
+  }
+  return c->given && c->given[i] ? ROTATIONS : UNSET;
+}
+
+/* The free components: those that give way at this stage. */
+static void choose_free(Start *w, int stage)
+{
   int at = w->holonomic ? 0 : w->nq;
 
   w->nfree = 0;
   for (int i = 0; i < w->nq; i++) {
-    int given = (c->given && c->given[at + i]) || !isnan(w->sim->start[at + i]);
-    if (all || !given) {
+    if (yields_at(w, at + i) <= stage) {
       w->free[w->nfree++] = i;
     }
   }
@@ -298,7 +309,7 @@ static int is_flat_beside(Start *w, int k)
   size_t bytes = (size_t)w->pb->n * sizeof(double);
 
   memcpy(here, w->y, bytes);
-  choose_free(w, 1);
+  choose_free(w, ALL);
   for (int i = 0; i < w->nq; i++) {
     double far = lag_size_like(w->pb, here, i);
     w->y[i] += !is_held(w, i) ? 0 : 0.01 * (far > 0 ? far : 1) * (0.5 + fmod(0.618033988749894848 * (i + 1), 1));
@@ -365,9 +376,10 @@ static int settle(Start *w, int holonomic)
   if (w->sim->scene->exactly && !(off <= sqrt(DBL_EPSILON) / DBL_EPSILON)) {
     return refuse(w, 1);
   }
-  for (int all = 0; all < 2; all++) {
-    choose_free(w, all);
-    if (reach(w)) {
+  for (int stage = UNSET; stage <= ALL; stage++) {
+    int before = w->nfree;
+    choose_free(w, stage);
+    if ((stage == UNSET || w->nfree != before) && reach(w)) {
       return holonomic ? check_derivatives(w, 1) : LAG_OK;
     }
   }
