@@ -115,12 +115,8 @@ static Eqns *derive(Compiler *c, const ModelChoice *choice) {
   return e;
 }
 
-/* Of one scene (NULL: the first) with one more effect (or NULL). */
-static Eqns *derive_with(Compiler *c, const char *scene, Name also) {
-  return derive(c, &(ModelChoice){.scene = scene, .also = also});
-}
-
-static Eqns *derive_scene(Compiler *c, const char *scene) { return derive_with(c, scene, NULL); }
+/* Of one scene (NULL: the first). */
+static Eqns *derive_scene(Compiler *c, const char *scene) { return derive(c, &(ModelChoice){.scene = scene}); }
 
 /* With what the command line asks for besides the scene's outputs. */
 static Eqns *derive_asked(Compiler *c, const char *scene) {
@@ -236,6 +232,7 @@ static int lower_all(Compiler *c, Units *units) {
     for (uint32_t k = 0; k < units->n && !home; k++)
       if (unit_shares(units->at[k], fresh)) home = units->at[k];
     if (!home) vec_push(c->arena, units, home = fresh);
+    home->lines = 1;
     unit_want(home, e, wants_of(e, &c->o));
     unit_add_scene(home, e);
     if (options_more_digits(&c->o) && i + 1 == scenes.n) warn_rounded(c, e->m->g);
@@ -428,7 +425,7 @@ static int do_check(Compiler *c) {
   if (c->o.scene && !out.n) derive_scene(c, c->o.scene); /* says that there is no such scene */
   EffectList unused = model_unused_effects(c->ast);
   for (uint32_t i = 0; i < unused.n && !c->o.scene; i++) {
-    Eqns *e = derive_with(c, NULL, unused.at[i]);
+    Eqns *e = derive(c, &(ModelChoice){.bare = 1, .also = unused.at[i]});
     if (!e) continue;
     collect_units(c, e->m, &found);
     sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);

@@ -7,6 +7,7 @@
  * linear problem, repeated for its rounding. */
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -262,8 +263,12 @@ static int check_derivatives(Start *w)
       is_contact |= m->contacts[i].constraint == k;
     }
     if (!is_contact && size[k] < 1e-6 * w->size[k]) {
-      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s (line %d) vanish where it holds, so that no force can hold it: write it "
-                      "without a square", of->of[k].name, of->of[k].line);
+      char line[32] = "";
+      if (of->of[k].line > 0) {
+        snprintf(line, sizeof line, " (line %d)", of->of[k].line);
+      }
+      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s vanish where it holds, so that no force can hold it: write it "
+                      "without a square", of->of[k].name, line);
     }
   }
   return LAG_OK;

@@ -123,7 +123,7 @@ typedef struct lag_constraint {
   const char *name; /* "rod", "rod[2]", "grip.x" */
   int holonomic;    /* c(q, t) = 0; else r(q, v, t) = 0, linear in v */
   const char *unit; /* of c, or of r; "" when none */
-  int line;         /* of the model's text where it stands; 0: not known */
+  int line;         /* of the model's text where it stands; 0: not known, as in C that `lagc emit` writes */
 } lag_constraint;
 
 /* The constraints of a model, n in all, of which the first nholonomic are c(q, t) = 0. On the level of velocities all are

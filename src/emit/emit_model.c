@@ -233,10 +233,12 @@ static void emit_change(const File *f, const Prog *p, const char *name, const ch
   function(f, p, comment, head, own, written);
 }
 
-static void constraint_table(const IrConstraints *k, Arena *a, StrBuf *out) {
+static void constraint_table(const IrUnit *u, StrBuf *out) {
+  const IrConstraints *k = &u->constraints;
+  Arena *a = u->arena;
   sb_puts(out, "\nstatic const lag_constraint constraint_table[] = {\n");
   for (uint32_t i = 0; i < k->of.n; i++)
-    sb_printf(out, "  {%s, %d, %s, %u},\n", c_string(a, k->of.at[i].name), i < k->nholonomic, c_string(a, k->of.at[i].unit), k->of.at[i].line);
+    sb_printf(out, "  {%s, %d, %s, %u},\n", c_string(a, k->of.at[i].name), i < k->nholonomic, c_string(a, k->of.at[i].unit), u->lines ? k->of.at[i].line : 0);
   sb_puts(out, "};\n");
 }
 
@@ -254,7 +256,7 @@ static void emit_constraints(const File *f) {
     emit_change(f, k->position, "correct_positions", both ? "The least change d with A d = g, for positions or velocities; force: M d."
                                                            : "The least change d of positions with A d = g; force: M d.");
   if (!both) emit_change(f, k->velocity, "correct_velocities", "The least change d of velocities with A d = g; force: M d.");
-  constraint_table(k, f->a, f->out);
+  constraint_table(f->u, f->out);
   entries("jacobian_table", k->jacobian.at, k->jacobian.n, f->out);
   entries("inertia_table", k->mass.at, k->mass.n, f->out);
   sb_printf(f->out, "\nstatic const lag_constraints constraints = {\n  .n = %u, .nholonomic = %u, .of = constraint_table,\n", k->of.n, k->nholonomic);

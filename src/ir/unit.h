@@ -110,6 +110,7 @@ typedef struct {
   VEC(IrJump) jump_at;          /* what its outputs are */
   VEC(IrScene) scenes;
   int libm;                     /* emitted code calls the C library's sin and cos */
+  int lines;                    /* constraints say in what line they stand: of simulators, which name their file */
 } IrUnit;
 
 #endif
