@@ -105,6 +105,7 @@ static Eqns *derive(Compiler *c, const ModelChoice *choice) {
   ModelChoice with_defines = *choice;
   with_defines.defines = c->o.defines.at;
   with_defines.ndefines = c->o.defines.n;
+  if (!choice->bare && !choice->unfixed) with_defines.fix = c->o.fix;
   Model *m = model_build(c->ast, &with_defines);
   if (!m) return NULL;
   StrBuf listing = strbuf(c->arena);
@@ -148,6 +149,12 @@ static IrUnit *lower_scene(Compiler *c, Eqns *e) {
 
 /* --- the commands --- */
 
+/* What the operations would be without --fix. */
+static const char *unfixed_cost(Compiler *c) {
+  Eqns *e = derive(c, &(ModelChoice){.scene = c->o.scene, .unfixed = 1});
+  return e ? arena_printf(c->arena, "without --fix: %s\n", ops_text(new_unit(c, e)->accel, c->arena)) : "";
+}
+
 static int do_derive(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
@@ -156,7 +163,7 @@ static int do_derive(Compiler *c) {
   StrBuf out = strbuf(c->arena);
   const char *format = c->o.format ? c->o.format : "text";
   const char *cost = ops_text(u->accel, c->arena);
-  if (c->o.ops) sb_printf(&out, "%s\n", cost);
+  if (c->o.ops) sb_printf(&out, "%s\n%s", cost, c->o.fix ? unfixed_cost(c) : "");
   else if (strcmp(format, "c") == 0) emit_accel(u, &out);
   else show_equations(e, cost, strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
   return write_out(c, c->o.output, &out);

@@ -253,6 +253,7 @@ typedef struct lag_model {
   const lag_linear *linear;
 
   const char *math; /* whose sin and cos it calls; NULL: not known */
+  const char *fixed; /* names of parameters that are numbers in this program, separated by spaces; NULL: none */
 } lag_model;
 
 /* An option of a method: step = 1e-3, quadrature = trapezoid (then text is set). */

@@ -450,6 +450,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (u->linear) sb_puts(out, "  .linear = &linear,\n");
+  if (u->fixed[0]) sb_printf(out, "  .fixed = %s,\n", c_string(u->arena, u->fixed));
   sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n};\n");
 }
 
@@ -516,6 +517,7 @@ static void emit_scene(const File *f, uint32_t index) {
 static void emit_head(const IrUnit *u, StrBuf *out) {
   sb_printf(out, "/* %s: %s\n", u->name, comment_text(u->arena, u->doc));
   sb_printf(out, " * Emitted by lagc; effects in use: %s.\n", u->effects[0] ? u->effects : "none");
+  if (u->fixed[0]) sb_printf(out, " * Parameters that are numbers here: %s.\n", u->fixed_values);
   sb_printf(out, " * Accelerations: %s.\n", ops_text(u->accel, u->arena));
   sb_printf(out, " * %s\n", cmath_text(u));
   sb_puts(out, " * This text may be used for any purpose without conditions (0BSD). */\n");

@@ -22,6 +22,19 @@ static unsigned flags_of(const Eqns *e) {
          (e->first.n ? 128u : 0) | (e->first.n && e->first.constant && e->first.closed ? 256u : 0);
 }
 
+static void add_fixed(IrUnit *u, const Model *m) {
+  StrBuf names = strbuf(m->arena), values = strbuf(m->arena);
+  for (uint32_t i = 0; i < m->fixed.n; i++) {
+    const Fixed *f = &m->fixed.at[i];
+    char text[32];
+    num_format_double(text, num_value(expr_number(m->g, f->value)));
+    sb_printf(&values, "%s%s = %s", i ? ", " : "", f->name, text);
+    if (i == 0 || m->fixed.at[i - 1].stem != f->stem) sb_printf(&names, "%s%s", i ? " " : "", f->stem);
+  }
+  u->fixed = sb_text(&names);
+  u->fixed_values = sb_text(&values);
+}
+
 /* The contact whose impact is event i, or NULL. */
 static const Contact *impact_of(const Eqns *e, uint32_t i) {
   for (uint32_t k = 0; k < e->m->contacts.n; k++)
@@ -95,6 +108,7 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
                 .libm = libm};
   u->effects = joined(m->arena, m->effects.at, m->effects.n);
   u->all_effects = joined(m->arena, m->all_effects.at, m->all_effects.n);
+  add_fixed(u, m);
   for (uint32_t i = 0; i < m->coords.n; i++)
     vec_push(m->arena, &u->q, var_of(m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->states.n; i++)
@@ -113,7 +127,7 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
 }
 
 int unit_shares(const IrUnit *a, const IrUnit *b) {
-  return strcmp(a->effects, b->effects) == 0 && prog_same(a->inputs, b->inputs);
+  return strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
 }
 
 static void add_exact(IrScene *s, const Eqns *e) {

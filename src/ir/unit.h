@@ -94,6 +94,8 @@ typedef struct {
 typedef struct {
   Arena *arena;
   const char *name, *doc, *source, *effects, *all_effects;
+  const char *fixed;        /* names of parameters that are numbers here, with spaces between them; "": none */
+  const char *fixed_values; /* "g = 9.81, drag.c = 0.2", in SI */
   unsigned flags;
   VEC(IrVar) q, z, p, u;
   VEC(IrEvent) events;

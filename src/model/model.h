@@ -41,6 +41,14 @@ typedef struct {
   int has_constant;
 } Param;
 
+/* A parameter that became a number when the model was built, with the scene's value. */
+typedef struct {
+  Name name, stem; /* "drag.w[2]", "drag.w" */
+  Span span;
+  Unit unit;
+  Expr value;      /* a number */
+} Fixed;
+
 typedef struct {
   Name name;           /* wind.gust for input gust of effect wind */
   Span span;
@@ -174,6 +182,7 @@ typedef struct {
   VEC(State) states;
   int first_order;         /* L is linear in all velocities: there are no coords, coordinates are states, velocities their rates */
   VEC(Param) params;
+  VEC(Fixed) fixed;        /* those that ModelChoice.fix names: no params any more */
   VEC(Input) inputs;
   Expr kinetic, potential; /* 0 when L was given as a whole */
   Expr lagrangian;         /* 0 when the text declares no coordinates */
@@ -243,6 +252,8 @@ typedef struct {
   const Given *given; /* values that win over the scene's */
   uint32_t ngiven;
   Section section;
+  const char *fix; /* parameters that become numbers, with the values that the scene gives them: "g,drag.c", "all"; NULL: none */
+  int unfixed;     /* none, whatever the command line says */
 } ModelChoice;
 
 /* The names that `coord` declares, in order, whatever the order of L. */
