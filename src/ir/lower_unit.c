@@ -24,12 +24,15 @@ static unsigned flags_of(const Eqns *e) {
 
 static void add_fixed(IrUnit *u, const Model *m) {
   StrBuf names = strbuf(m->arena), values = strbuf(m->arena);
-  for (uint32_t i = 0; i < m->fixed.n; i++) {
-    const Fixed *f = &m->fixed.at[i];
+  Name last = NULL;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
     char text[32];
-    num_format_double(text, num_value(expr_number(m->g, f->value)));
-    sb_printf(&values, "%s%s = %s", i ? ", " : "", f->name, text);
-    if (i == 0 || m->fixed.at[i - 1].stem != f->stem) sb_printf(&names, "%s%s", i ? " " : "", f->stem);
+    if (!p->fixed) continue;
+    num_format_double(text, num_value(p->number));
+    sb_printf(&values, "%s%s = %s", last ? ", " : "", p->name, text);
+    if (p->stem != last) sb_printf(&names, "%s%s", last ? " " : "", p->stem);
+    last = p->stem;
   }
   u->fixed = sb_text(&names);
   u->fixed_values = sb_text(&values);
@@ -114,7 +117,7 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
   for (uint32_t i = 0; i < m->states.n; i++)
     vec_push(m->arena, &u->z, var_of(m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->params.n; i++)
-    vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
+    if (!m->params.at[i].fixed) vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
   for (uint32_t i = 0; i < m->inputs.n; i++)
     vec_push(m->arena, &u->u, var_of(m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
   u->accel = lower_accel(e, libm);
@@ -173,7 +176,8 @@ void unit_add_scene(IrUnit *u, const Eqns *e) {
   IrScene s = {.exactly = sc->exactly.end != 0, .name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .t1_digits = sc->t1_digits, .has_span = sc->has_span, .method = sc->method,
                .tolerance = sc->tolerance, .every = sc->every};
   const Prog **params = ARENA_ARRAY(m->arena, const Prog *, m->params.n + 1);
-  for (uint32_t i = 0; i < m->params.n; i++) params[i] = lower_param(e, i);
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (!m->params.at[i].fixed) params[m->params.at[i].place] = lower_param(e, i);
   s.params = params;
   s.start = lower_start(e);
   s.observe = lower_outputs(e);

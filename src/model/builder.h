@@ -81,12 +81,6 @@ typedef struct {
   Dim dim;
 } Undeclared;
 
-/* A parameter, in order of declaration: whether it becomes a number, and which. */
-typedef struct {
-  int fixed;
-  Num value;
-} Fixing;
-
 typedef struct {
   const AstStmt *stmt;
   Name effect;
@@ -123,8 +117,6 @@ struct Builder {
   VEC(Undeclared) undeclared;
   const Define *defines;
   uint32_t ndefines;
-  const Fixing *fixing; /* of the parameters; NULL: none is fixed */
-  uint32_t nparams;     /* declared so far, fixed or not */
   const AstStmt **chain; /* the scene and those it is like, oldest first; NULL-terminated */
   int unitless;    /* nothing is measured in a unit: nothing is checked */
   AstId stand_in;  /* a node that stands for `stands_for` (see model_reresolve), or 0 */
@@ -269,8 +261,9 @@ int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts);
 /* "th", "th[2]", "r.x", "r[2].x": component k of member `at`. */
 Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k);
 
-/* fix.c: the parameters that the words name (--fix) with the values that this model has for them; NULL on a mistake, reported. */
-const Fixing *fix_params(Builder *b, const char *words);
+/* fix.c: fixes the parameters that the words name, with the values that the model has for them, and places the others. Mistakes are
+ * reported. words NULL: none is fixed. */
+void fix_params(Builder *b, const char *words);
 
 /* declare_param.c */
 void declare_param(Builder *b, const AstStmt *st, Name effect);

@@ -51,21 +51,10 @@ typedef struct {
   Name stem; /* drag.c */
 } Declared;
 
-static void add_fixed(const Declared *d, Name name, Num value) {
-  Builder *b = d->b;
-  Fixed f = {.name = name, .stem = d->stem, .span = d->st->name_span, .unit = d->unit, .value = expr_num(b->g, value)};
-  vec_push(b->arena, &b->m->fixed, f);
-}
-
 static void add_param(const Declared *d, Name name, Value v, Span span) {
   Builder *b = d->b;
-  uint32_t place = b->nparams++;
-  if (d->e.kind == ENT_FIXED) {
-    add_fixed(d, name, b->fixing[place].value);
-    return;
-  }
   AstSign sign = d->e.parts ? SIGN_ANY : d->st->sign;
-  Param p = {.name = name, .span = d->st->name_span, .sign = sign, .unit = d->unit};
+  Param p = {.name = name, .stem = d->stem, .span = d->st->name_span, .sign = sign, .unit = d->unit};
   p.value = value_in(b, v, span, &p.unit);
   p.sym = declare_symbol(b, SYM_PARAM, b->m->params.n, name, sign_of(sign), d->unit.dim);
   if (p.value && expr_is_num(b->g, p.value)) {
@@ -127,8 +116,7 @@ void declare_param(Builder *b, const AstStmt *st, Name effect) {
   ParamValues values = {0};
   uint8_t parts;
   if (!read_type(b, st, effect, &parts)) return;
-  int fixed = b->fixing && b->fixing[b->nparams].fixed;
-  int known = read_family(b, st, effect, fixed ? ENT_FIXED : ENT_PARAM, fixed ? b->m->fixed.n : b->m->params.n, parts, &d.e);
+  int known = read_family(b, st, effect, ENT_PARAM, b->m->params.n, parts, &d.e);
   if (!known) return;
   int fits = read_values(&d, effect, &values);
   if (!st->type && fits) d.e.parts = (uint8_t)values.at.at[0].n;

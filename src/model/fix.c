@@ -1,4 +1,4 @@
-/* Parameters that become numbers: which ones, and with what values, from a model that was built without that. */
+/* Parameters that become numbers in programs: which ones, and with what values. */
 #include "model/builder.h"
 #include "base/suggest.h"
 #include "sym/eval.h"
@@ -37,7 +37,7 @@ static const Entity *find_param(Builder *b, const char *word, int *off) {
 }
 
 /* Marks what the words name; those of effects that are off have no part in it. 0 on a mistake, reported. */
-static int mark(Builder *b, const char *words, Fixing *fix) {
+static int mark(Builder *b, const char *words) {
   uint32_t errors = b->diags->errors;
   for (const char *s = words; *s;) {
     size_t n = strcspn(s, ", ");
@@ -46,46 +46,40 @@ static int mark(Builder *b, const char *words, Fixing *fix) {
     const Entity *e = NULL;
     s += n + strspn(s + n, ", ");
     if (strcmp(word, "all") == 0 && !scope_own(&b->scope, intern(b->ast->names, "all"), NULL))
-      for (uint32_t i = 0; i < b->m->params.n; i++) fix[i].fixed = 1;
+      for (uint32_t i = 0; i < b->m->params.n; i++) b->m->params.at[i].fixed = 1;
     else if (n && (e = find_param(b, word, &off)) != NULL)
-      for (uint32_t i = 0; i < entity_size(e); i++) fix[e->index + i].fixed = 1;
+      for (uint32_t i = 0; i < entity_size(e); i++) b->m->params.at[e->index + i].fixed = 1;
   }
   return b->diags->errors == errors;
 }
 
 /* --- with what values --- */
 
-static int is_param(const Symbol *s, const void *data) {
-  (void)data;
-  return s->kind == SYM_PARAM;
-}
+static int is_free_param(const Symbol *s, const void *data) { return s->kind == SYM_PARAM && !((const Model *)data)->params.at[s->index].fixed; }
 
-typedef struct {
-  const Fixing *fix;
-} Marked;
-
-static int is_free_param(const Symbol *s, const void *data) { return s->kind == SYM_PARAM && !((const Marked *)data)->fix[s->index].fixed; }
-
-/* Exact where it is a fraction; where other parameters or pi are in it, a double. 0 on a mistake, reported. */
-static int evaluate(Builder *b, Fixing *fix) {
-  const Model *m = b->m;
+/* Exact where it is a fraction; where other parameters or pi are in it, a double. */
+static void evaluate(Builder *b) {
+  Model *m = b->m;
   long double *x = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1);
-  Marked marked = {fix};
   x[m->pi] = 3.14159265358979323846264338327950288L;
   for (uint32_t i = 0; i < m->params.n; i++) {
-    const Param *p = &m->params.at[i];
+    Param *p = &m->params.at[i];
     expr_eval(b->g, &p->value, 1, x, &x[p->sym]);
-    if (!fix[i].fixed) continue;
-    fix[i].value = expr_is_num(b->g, p->value) ? expr_number(b->g, p->value) : num_double((double)x[p->sym]);
-    if (!expr_contains(b->g, p->value, is_param, NULL) || !expr_contains(b->g, p->value, is_free_param, &marked)) continue;
+    if (!p->fixed) continue;
+    p->number = expr_is_num(b->g, p->value) ? expr_number(b->g, p->value) : num_double((double)x[p->sym]);
+    if (!expr_contains(b->g, p->value, is_free_param, m)) continue;
     diag_error(b->diags, p->span, "--fix: `%s` is made of other parameters, and they are not fixed", p->name);
-    diag_help(b->diags, "fix them, too, or --fix all; fixed themselves they may stand in what is not");
-    return 0;
+    diag_help(b->diags, "fix them, too, or --fix all; what follows from fixed parameters need not be fixed itself");
   }
-  return 1;
 }
 
-const Fixing *fix_params(Builder *b, const char *words) {
-  Fixing *fix = ARENA_ARRAY(b->arena, Fixing, b->m->params.n + 1);
-  return mark(b, words, fix) && evaluate(b, fix) ? fix : NULL;
+void fix_params(Builder *b, const char *words) {
+  Model *m = b->m;
+  uint32_t place = 0;
+  if (words && mark(b, words)) evaluate(b);
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    m->params.at[i].place = place;
+    place += !m->params.at[i].fixed;
+  }
+  m->nfixed = m->params.n - place;
 }

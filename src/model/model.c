@@ -476,9 +476,8 @@ static int is_first_order(const Model *m) {
 }
 
 /* The model up to its scene. */
-static Builder *build(Ast *ast, const ModelChoice *choice, const Fixing *fixing, int first_order) {
+static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   Builder *b = builder_new(ast, choice);
-  b->fixing = fixing;
   b->m->first_order = first_order;
   scene_select(b, choice);
   find_units(b);
@@ -494,26 +493,16 @@ static Builder *build(Ast *ast, const ModelChoice *choice, const Fixing *fixing,
   return b;
 }
 
-/* The whole model; its errors are in ast->diags. */
-static Builder *build_whole(Ast *ast, const ModelChoice *choice, const Fixing *fixing) {
-  Builder *b = build(ast, choice, fixing, 0);
+Model *model_build(Ast *ast, const ModelChoice *choice) {
+  Builder *b = build(ast, choice, 0);
   if (!ast->diags->errors && is_first_order(b->m)) {
     if (b->m->constraints.n) not_yet(b, b->m->constraints.at[0].span, "constraints and contacts where L is linear in the velocities");
-    else b = build(ast, choice, fixing, 1);
+    else b = build(ast, choice, 1);
   }
   add_section(b, &choice->section);
   scene_build(b, choice);
   settle_units(b);
-  return b;
-}
-
-/* What is fixed is so with the values that the scene gives it, which are known when the model is built. */
-Model *model_build(Ast *ast, const ModelChoice *choice) {
-  Builder *b = build_whole(ast, choice, NULL);
-  if (choice->fix && !ast->diags->errors) {
-    const Fixing *fixing = fix_params(b, choice->fix);
-    if (fixing) b = build_whole(ast, choice, fixing);
-  }
+  if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
   return ast->diags->errors ? NULL : b->m;
 }

@@ -39,15 +39,11 @@ typedef struct {
   Expr value;  /* of pi and earlier parameters */
   Num constant; /* the value, where it is a number at once (has_constant) */
   int has_constant;
+  Name stem;   /* of a member of a family: drag.w */
+  int fixed;   /* ModelChoice.fix: a number in programs, with the value that the scene gives it, */
+  Num number;  /* this one */
+  uint32_t place; /* in programs, among those that are not fixed */
 } Param;
-
-/* A parameter that became a number when the model was built, with the scene's value. */
-typedef struct {
-  Name name, stem; /* "drag.w[2]", "drag.w" */
-  Span span;
-  Unit unit;
-  Expr value;      /* a number */
-} Fixed;
 
 typedef struct {
   Name name;           /* wind.gust for input gust of effect wind */
@@ -182,7 +178,7 @@ typedef struct {
   VEC(State) states;
   int first_order;         /* L is linear in all velocities: there are no coords, coordinates are states, velocities their rates */
   VEC(Param) params;
-  VEC(Fixed) fixed;        /* those that ModelChoice.fix names: no params any more */
+  uint32_t nfixed;         /* how many of them are numbers */
   VEC(Input) inputs;
   Expr kinetic, potential; /* 0 when L was given as a whole */
   Expr lagrangian;         /* 0 when the text declares no coordinates */

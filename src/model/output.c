@@ -17,7 +17,6 @@ const Unit *entity_unit(const Builder *b, const Entity *e) {
     case ENT_STATE: return &m->states.at[e->index].unit;
     case ENT_INPUT: return &m->inputs.at[e->index].unit;
     case ENT_PARAM: return &m->params.at[e->index].unit;
-    case ENT_FIXED: return &m->fixed.at[e->index].unit;
     case ENT_OBSERVE: return &m->observes.at[e->index].unit;
     case ENT_NONE: case ENT_CONST: case ENT_LET: case ENT_FUNCTION: case ENT_BUILTIN: break;
   }

@@ -56,7 +56,7 @@ static const char *place_text(Context where) {
 static Context least_context(EntKind kind) {
   switch (kind) {
     case ENT_CONST: return IN_CONST;
-    case ENT_PARAM: case ENT_FIXED: return IN_PARAM;
+    case ENT_PARAM: return IN_PARAM;
     case ENT_OBSERVE: return IN_OBSERVE;
     case ENT_NONE: case ENT_COORD: case ENT_STATE: case ENT_INPUT: case ENT_LET: case ENT_FUNCTION: case ENT_BUILTIN: break;
   }
@@ -86,12 +86,6 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
       for (uint32_t k = 0; k < parts_of(&v); k++) v.at[k] = expr_symbol(b->g, symbol_of(b->m, e->kind, i + k))->node;
       v.dim = b->dim_of.at[symbol_of(b->m, e->kind, i)];
       v.unit = entity_unit(b, e)->text;
-      return v;
-    }
-    case ENT_FIXED: {
-      Value v = {.n = e->parts, .dim = b->m->fixed.at[e->index].unit.dim, .unit = b->m->fixed.at[e->index].unit.text};
-      uint32_t i = e->index + member_offset(e, at);
-      for (uint32_t k = 0; k < parts_of(&v); k++) v.at[k] = b->m->fixed.at[i + k].value;
       return v;
     }
     case ENT_CONST: return b->constants.at[e->index].value;

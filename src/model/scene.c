@@ -133,7 +133,7 @@ static const Entity *find_settable(Builder *b, AstId id, Name effect) {
     diag_error(b->diags, x->span, "a scene sets parameters and inputs: `name = value`");
     if (x->kind == AST_PRIME) diag_help(b->diags, "a start value is given by `start %s = ...`", ast_text(b, id));
   }
-  if (e && (e->kind == ENT_PARAM || e->kind == ENT_FIXED || e->kind == ENT_INPUT)) return e;
+  if (e && (e->kind == ENT_PARAM || e->kind == ENT_INPUT)) return e;
   if (e && e->kind != ENT_NONE) {
     diag_error(b->diags, x->span, "`%s` is %s, not a parameter", e->name, ent_kind_text(e->kind));
     if (e->kind == ENT_COORD || e->kind == ENT_STATE) diag_help(b->diags, "its start is set by `start %s = ...`", e->name);
@@ -187,7 +187,7 @@ static void set_value(Builder *b, const AstStmt *st, Name effect) {
   if (!effect && advise_statement(b, st)) return;
   Target p = read_target(b, st->lhs);
   const Entity *e = find_settable(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
-  if (!e || e->kind == ENT_FIXED) return; /* it has this value */
+  if (!e) return;
   if (e->kind == ENT_PARAM) assign_values(b, &p, e, st->lhs, st->rhs, &giver);
   else if (p.indices || p.part >= 0) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "`%s` is an input: it has no index and no component", e->name);
   else give_input(b, e->index, e->name, st->rhs, effect);
@@ -251,7 +251,7 @@ static void set_motion(Builder *b, const AstStmt *st) {
   if (e->kind != ENT_COORD && e->kind != ENT_STATE) {
     diag_error(b->diags, name->span, "`%s` is %s; only coordinates, velocities and states %s", name->name, ent_kind_text(e->kind),
                exact ? "have a closed form" : "start somewhere");
-    if ((e->kind == ENT_PARAM || e->kind == ENT_FIXED) && !exact) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
+    if (e->kind == ENT_PARAM && !exact) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
     return;
   }
   if (p.primes && e->kind == ENT_STATE) {

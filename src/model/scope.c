@@ -35,7 +35,7 @@ const char *ent_kind_text(EntKind kind) {
   switch (kind) {
     case ENT_COORD: return "a coordinate";
     case ENT_STATE: return "a state";
-    case ENT_PARAM: case ENT_FIXED: return "a parameter";
+    case ENT_PARAM: return "a parameter";
     case ENT_CONST: return "a constant";
     case ENT_INPUT: return "an input";
     case ENT_LET: return "a let";
