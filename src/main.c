@@ -493,12 +493,19 @@ static int do_command(Compiler *c) {
   return STATUS_USAGE;
 }
 
+/* Numbers are folded as doubles. */
+static int folds_digits(const Compiler *c) {
+  if (!c->o.fix || !options_more_digits(&c->o)) return 1;
+  fail_usage("--fix makes doubles of parameters: leave it out where --precision has more digits");
+  return 0;
+}
+
 static int compile(Compiler *c) {
   c->sources = sources_new(c->arena);
   c->diags = diags_new(c->arena, c->sources);
   c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
   int status = read_model(c);
-  if (status == STATUS_OK) status = do_command(c);
+  if (status == STATUS_OK) status = folds_digits(c) ? do_command(c) : STATUS_USAGE;
   print_messages(c);
   return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
 }

@@ -14,10 +14,28 @@ static Slot reckon_function(Prog *p, const Ins *i) {
   return isfinite(y) ? prog_num(p, num_double((double)y)) : NOT_A_SLOT;
 }
 
-/* Exactly where they are fractions: a + b, a - b, a*b, a/b; x/b as x*(1/b), and c*(b*x) as (c*b)*x. */
+/* The same slot without its sign; *minus changes where it had one. */
+static Slot without_sign(Prog *p, Slot s, int *minus) {
+  const Ins *i = &p->ins.at[s];
+  int negative = i->op == IR_NEG || (i->op == IR_CONST && num_sign(i->number) < 0);
+  if (!negative) return s;
+  *minus = !*minus;
+  return i->op == IR_NEG ? i->a : prog_num(p, num_neg(i->number));
+}
+
+/* Exactly where they are fractions: a + b, a - b, a*b, a/b; x/b as x*(1/b), and c*(b*x) as (c*b)*x. Signs go in front of
+ * products, where sums take them. */
 Slot prog_reckon(Prog *p, const Ins *i) {
   if (i->op == IR_SQRT || i->op == IR_FN1) return reckon_function(p, i);
   if ((i->op != IR_ADD && i->op != IR_SUB && i->op != IR_MUL && i->op != IR_DIV) || !i->a || !i->b) return NOT_A_SLOT;
+  if (i->op == IR_MUL || i->op == IR_DIV) {
+    int minus = 0;
+    Slot a = without_sign(p, i->a, &minus), b = without_sign(p, i->b, &minus);
+    if (a != i->a || b != i->b) {
+      Slot size = prog_op(p, i->op, a, b);
+      return minus ? prog_op(p, IR_NEG, size, 0) : size;
+    }
+  }
   if (i->op == IR_MUL && prog_is_number(p, i->a) && !prog_is_number(p, i->b)) return prog_reckon(p, &(Ins){.op = IR_MUL, .a = i->b, .b = i->a});
   if (!prog_is_number(p, i->b)) return NOT_A_SLOT;
   Num b = p->ins.at[i->b].number;
