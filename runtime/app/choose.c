@@ -212,12 +212,13 @@ static int has_word(const char *words, const char *word, size_t n)
 /* Does `name` say a parameter `word[n]`, a member or a component of it, or the last part of `drag.c`? */
 static int names_it(const char *name, const char *word, size_t n)
 {
-  size_t length = strcspn(name, "[");
-
-  if (length >= n && strncmp(name, word, n) == 0 && (length == n || name[n] == '.')) {
-    return 1;
+  for (size_t k = 1; name[k - 1]; k++) {
+    int whole = name[k] == '\0' || name[k] == '[' || name[k] == '.';
+    if (whole && k <= n && strncmp(name, word + n - k, k) == 0 && (k == n || word[n - k - 1] == '.')) {
+      return 1;
+    }
   }
-  return n > length && word[n - length - 1] == '.' && strncmp(word + n - length, name, length) == 0;
+  return 0;
 }
 
 /* A parameter that was made a number: exit status after a message with the command that makes a program that takes it. 0: it is none. */

@@ -36,6 +36,11 @@ static const Entity *find_param(Builder *b, const char *word, int *off) {
   return NULL;
 }
 
+static int names_param(const Builder *b, const char *word) {
+  const Entity *e = scope_own(&b->scope, intern(b->ast->names, word), NULL);
+  return e && e->kind == ENT_PARAM;
+}
+
 /* Marks what the words name; those of effects that are off have no part in it. 0 on a mistake, reported. */
 static int mark(Builder *b, const char *words) {
   uint32_t errors = b->diags->errors;
@@ -45,7 +50,7 @@ static int mark(Builder *b, const char *words) {
     int off = 0;
     const Entity *e = NULL;
     s += n + strspn(s + n, ", ");
-    if (strcmp(word, "all") == 0 && !scope_own(&b->scope, intern(b->ast->names, "all"), NULL))
+    if (strcmp(word, "all") == 0 && !names_param(b, word))
       for (uint32_t i = 0; i < b->m->params.n; i++) b->m->params.at[i].fixed = 1;
     else if (n && (e = find_param(b, word, &off)) != NULL)
       for (uint32_t i = 0; i < entity_size(e); i++) b->m->params.at[e->index + i].fixed = 1;
