@@ -88,6 +88,12 @@ check "no such parameter" says 1 'did you mean `m`?' "$LAGC" emit "$two" --fix m
 check "no parameter" says 1 '--fix x: it is a coordinate' "$LAGC" emit "$two" --fix x
 check "a constant" says 1 'constants are fixed as it is: -D n=' "$LAGC" emit "$two" --fix n
 check "made of others" says 1 '`d` is made of other parameters' "$LAGC" emit "$two" --fix d
+cat "$two" - >"$dir/both.lag" <<'END'
+effect wind { param F = 1 [N]; force x[2] = F }
+scene both { like driven; use wind }
+END
+check "declared twice" says 1 'say which: --fix wind.F' "$LAGC" derive "$dir/both.lag" both --fix F
+check "and once where the other effect is off" "$LAGC" derive "$dir/both.lag" driven --fix F
 check "together with them" "$LAGC" emit "$two" --fix c,d
 check "more digits" says 2 'leave it out where --precision has more digits' "$LAGC" run "$two" --fix m --precision quad
 check "completion" sh -c '"$0" complete emit "$1" --fix c,dr | grep -q "^c,drive.F"' "$LAGC" "$two"
