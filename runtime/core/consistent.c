@@ -257,7 +257,8 @@ static int refuse(Start *w, int exactly)
   }
   const lag_constraint *c = &w->of->of[k];
   if (!isfinite(w->residual[k])) {
-    return lag_fail(w->sim, LAG_EINVAL, "the constraint %s (line %d) has no value at the start: start where it has one", c->name, c->line);
+    char line[32];
+    return lag_fail(w->sim, LAG_EINVAL, "the constraint %s%s has no value at the start: start where it has one", c->name, lag_line_of(c, line));
   }
   lag_say_constraint(w->pb, k, w->holonomic, fabs(w->residual[k]), "");
   if (exactly) {
@@ -325,6 +326,7 @@ static int is_flat_beside(Start *w, int k)
 static int check_derivatives(Start *w, int reached)
 {
   double *size = w->other;
+  char line[32];
 
   if (!slopes(w, size)) {
     return LAG_OK;
@@ -335,12 +337,12 @@ static int check_derivatives(Start *w, int reached)
       continue;
     }
     if (!isfinite(size[k]) && reached) {
-      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s (line %d) have no value where it holds: write it so that they have, "
-                      "x = 1 in place of sqrt(x - 1) = 0", c->name, c->line);
+      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s have no value where it holds: write it so that they have, "
+                      "x = 1 in place of sqrt(x - 1) = 0", c->name, lag_line_of(c, line));
     }
     if (is_flat(w, k, size) && (!reached || is_flat_beside(w, k))) {
-      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s (line %d) vanish where it holds, so that no force can hold it: write it "
-                      "so that they do not, x = 0 in place of x^2 = 0", c->name, c->line);
+      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s vanish where it holds, so that no force can hold it: write it "
+                      "so that they do not, x = 0 in place of x^2 = 0", c->name, lag_line_of(c, line));
     }
   }
   return LAG_OK;

@@ -123,7 +123,7 @@ typedef struct lag_constraint {
   const char *name; /* "rod", "rod[2]", "grip.x" */
   int holonomic;    /* the model states c(q, t) = 0; else r(q, v, t) = 0, linear in v */
   const char *unit; /* of c, or of r; "" when none */
-  int line;         /* of the model's text where it stands; 0: not known */
+  int line;         /* of the model's text where it stands; 0: not known, as in C that `lagc emit` writes */
 } lag_constraint;
 
 /* The constraints of a model, n in all, of which the first nholonomic are on positions: c(q, t) = 0; or, where the model states
@@ -254,6 +254,7 @@ typedef struct lag_model {
   const lag_linear *linear;
 
   const char *math; /* whose sin and cos it calls; NULL: not known */
+  const char *fixed; /* names of parameters that are numbers in this program, separated by spaces; NULL: none */
 } lag_model;
 
 /* An option of a method: step = 1e-3, quadrature = trapezoid (then text is set). */
