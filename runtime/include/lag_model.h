@@ -123,7 +123,7 @@ typedef struct lag_constraint {
   const char *name; /* "rod", "rod[2]", "grip.x" */
   int holonomic;    /* the model states c(q, t) = 0; else r(q, v, t) = 0, linear in v */
   const char *unit; /* of c, or of r; "" when none */
-  int line;         /* of the model's text where it stands; 0: not known */
+  int line;         /* of the model's text where it stands; 0: not known, as in C that `lagc emit` writes */
 } lag_constraint;
 
 /* The constraints of a model, n in all, of which the first nholonomic are on positions: c(q, t) = 0; or, where the model states
@@ -162,7 +162,7 @@ typedef struct lag_constraints {
  * becomes negative. */
 typedef struct lag_contact {
   int input, constraint; /* places in u and in the constraints */
-  int impact, release;   /* events: the gap closes, its multiplier falls below 0 */
+  int impact, release;   /* events: the gap closes, its multiplier falls below 0. act(impact) is Newton's law for this gap alone, others as u says */
 } lag_contact;
 
 /* One of the second derivatives that lag_model.second computes: of L by two of q, v, where of LAG_QQ and LAG_VV only
@@ -254,6 +254,7 @@ typedef struct lag_model {
   const lag_linear *linear;
 
   const char *math; /* whose sin and cos it calls; NULL: not known */
+  const char *fixed; /* names of parameters that are numbers in this program, separated by spaces; NULL: none */
 } lag_model;
 
 /* An option of a method: step = 1e-3, quadrature = trapezoid (then text is set). */

@@ -241,6 +241,18 @@ void give_exact(Builder *b, SymId target, const Unit *unit, int periodic, Expr v
 const Exact *find_exact(const Builder *b, Expr e);
 Expr exact_error(Builder *b, const Exact *x);
 
+/* effect.c: the scene or the effect of that name (NULL: the first), or NULL; and what to say where there is none. */
+const AstStmt *find_named(const Ast *ast, AstStmtKind kind, const char *name);
+void report_unnamed(const Ast *ast, AstStmtKind kind, Span span, const char *name);
+
+/* Whether the effect is in use; a scene's `use` statements; an effect turned on together with what it requires; whether what an effect
+ * in use requires and excludes is so. */
+int uses_effect(const Builder *b, Name effect);
+int is_use_none(const AstStmt *st);
+void collect_uses(Builder *b, const AstStmt *scene);
+void use_with_needs(Builder *b, Name effect);
+void check_effect_needs(Builder *b, const AstStmt *effect);
+
 /* output.c: adds what an expression puts out to the scene's outputs. The place of the one number that
  * it is; -1 when it is more, or after an error. */
 int add_outputs(Builder *b, AstId id);
@@ -267,6 +279,10 @@ int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts);
 
 /* "th", "th[2]", "r.x", "r[2].x": component k of member `at`. */
 Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k);
+
+/* fix.c: fixes the parameters that the words name, with the values that the model has for them, and places the others. Mistakes are
+ * reported. words NULL: none is fixed. */
+void fix_params(Builder *b, const char *words);
 
 /* declare_param.c */
 void declare_param(Builder *b, const AstStmt *st, Name effect);

@@ -54,7 +54,7 @@ typedef struct {
 static void add_param(const Declared *d, Name name, Value v, Span span) {
   Builder *b = d->b;
   AstSign sign = d->e.parts ? SIGN_ANY : d->st->sign;
-  Param p = {.name = name, .span = d->st->name_span, .sign = sign, .unit = d->unit};
+  Param p = {.name = name, .stem = d->stem, .span = d->st->name_span, .sign = sign, .unit = d->unit};
   p.value = value_in(b, v, span, &p.unit);
   p.sym = declare_symbol(b, SYM_PARAM, b->m->params.n, name, sign_of(sign), d->unit.dim);
   if (p.value && expr_is_num(b->g, p.value)) {

@@ -438,6 +438,7 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   add_section(b, &choice->section);
   scene_build(b, choice);
   settle_units(b);
+  if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
   return ast->diags->errors ? NULL : b->m;
 }

@@ -39,6 +39,10 @@ typedef struct {
   Expr value;  /* of pi and earlier parameters */
   Num constant; /* the value, where it is a number at once (has_constant) */
   int has_constant;
+  Name stem;   /* of a member of a family: drag.w */
+  int fixed;   /* ModelChoice.fix: a number in programs, with the value that the scene gives it, */
+  Num number;  /* this one */
+  uint32_t place; /* in programs, among those that are not fixed */
 } Param;
 
 typedef struct {
@@ -176,6 +180,7 @@ typedef struct {
   VEC(State) states;
   int first_order;         /* L is linear in all velocities: there are no coords, coordinates are states, velocities their rates */
   VEC(Param) params;
+  uint32_t nfixed;         /* how many of them are numbers */
   VEC(Input) inputs;
   Expr kinetic, potential; /* 0 when L was given as a whole */
   Expr lagrangian;         /* 0 when the text declares no coordinates */
@@ -246,6 +251,8 @@ typedef struct {
   const Given *given; /* values that win over the scene's */
   uint32_t ngiven;
   Section section;
+  const char *fix; /* parameters that become numbers, with the values that the scene gives them: "g,drag.c", "all"; NULL: none */
+  int unfixed;     /* none, whatever the command line says */
 } ModelChoice;
 
 /* The names that `coord` declares, in order, whatever the order of L. */

@@ -1,16 +1,10 @@
 /* Scenes: which statements are active, and what a scene says of a run. */
 #include <math.h>
 
-#include "base/suggest.h"
 #include "model/builder.h"
+#include "model/effect.h"
 
 /* --- the file's scenes and effects --- */
-
-static const AstStmt *find_stmt(const Ast *ast, AstStmtKind kind, const char *name) {
-  for (const AstStmt *s = ast->first; s; s = s->next)
-    if (s->kind == kind && s->name && (!name || strcmp(s->name, name) == 0)) return s;
-  return NULL;
-}
 
 SceneList model_scenes(const Ast *ast) {
   VEC(Name) names = {0};
@@ -20,63 +14,11 @@ SceneList model_scenes(const Ast *ast) {
   return (SceneList){names.at, names.n};
 }
 
-EffectList model_unused_effects(const Ast *ast) {
-  VEC(Name) unused = {0};
-  for (const AstStmt *e = ast->first; e; e = e->next) {
-    if (e->kind != STMT_EFFECT || !e->name) continue;
-    int used = 0;
-    for (const AstStmt *s = ast->first; s; s = s->next)
-      for (const AstStmt *x = s->kind == STMT_SCENE ? s->body : NULL; x; x = x->next)
-        used |= x->kind == STMT_USE && x->name == e->name;
-    if (!used) vec_push(ast->arena, &unused, e->name);
-  }
-  return (EffectList){unused.at, unused.n};
-}
-
-/* Blocks nest at most as deep as the parser lets them. */
-static int contains_expect(const AstStmt *list) {
-  for (const AstStmt *s = list; s; s = s->next)
-    if (s->kind == STMT_EXPECT || (s->kind == STMT_FOR && contains_expect(s->body))) return 1;
-  return 0;
-}
-
-EffectList model_expecting_effects(const Ast *ast) {
-  VEC(Name) names = {0};
-  if (contains_expect(ast->first)) vec_push(ast->arena, &names, NULL);
-  for (const AstStmt *s = ast->first; s; s = s->next)
-    if (s->kind == STMT_EFFECT && s->name && contains_expect(s->body)) vec_push(ast->arena, &names, s->name);
-  return (EffectList){names.at, names.n};
-}
-
-static Name nearest(const Ast *ast, AstStmtKind kind, const char *wrong) {
-  VEC(Name) names = {0};
-  for (const AstStmt *s = ast->first; s; s = s->next)
-    if (s->kind == kind && s->name) vec_push(ast->arena, &names, s->name);
-  return suggest(wrong, names.at, names.n);
-}
-
-static const char *all_scenes(const Ast *ast) {
-  StrBuf list = strbuf(ast->arena);
-  SceneList scenes = model_scenes(ast);
-  for (uint32_t i = 0; i < scenes.n && i < 12; i++) sb_printf(&list, "%s`%s`", i ? ", " : "", scenes.at[i]);
-  if (scenes.n > 12) sb_puts(&list, ", ...");
-  return sb_text(&list);
-}
-
-static void report_unknown(const Ast *ast, AstStmtKind kind, Span span, const char *name) {
-  const char *what = kind == STMT_SCENE ? "scene" : "effect";
-  diag_error(ast->diags, span, "unknown %s `%s`", what, name);
-  Name near = nearest(ast, kind, name);
-  if (near) diag_help(ast->diags, "did you mean `%s`?", near);
-  else if (kind == STMT_EFFECT) diag_help(ast->diags, "declare it: `effect %s { ... }`", name);
-  else diag_help(ast->diags, "the scenes are %s", all_scenes(ast));
-}
-
 int model_has_scene(Ast *ast, const char *scene) {
   SceneList scenes = model_scenes(ast);
   for (uint32_t i = 0; i < scenes.n; i++)
     if (strcmp(scenes.at[i], scene) == 0) return 1;
-  report_unknown(ast, STMT_SCENE, (Span){0}, scene);
+  report_unnamed(ast, STMT_SCENE, (Span){0}, scene);
   return 0;
 }
 
@@ -96,8 +38,8 @@ static const AstStmt **scene_chain(Builder *b, const AstStmt *scene) {
     const AstStmt *next = NULL;
     for (const AstStmt *x = s->body; x; x = x->next)
       if (x->kind == STMT_LIKE) {
-        next = find_stmt(b->ast, STMT_SCENE, x->name);
-        if (!next) report_unknown(b->ast, STMT_SCENE, x->name_span, x->name);
+        next = find_named(b->ast, STMT_SCENE, x->name);
+        if (!next) report_unnamed(b->ast, STMT_SCENE, x->name_span, x->name);
       }
     s = next;
   }
@@ -106,68 +48,18 @@ static const AstStmt **scene_chain(Builder *b, const AstStmt *scene) {
   return out;
 }
 
-/* --- effects in use --- */
-
-static int uses(const Builder *b, Name effect) {
-  for (uint32_t i = 0; i < b->m->effects.n; i++)
-    if (b->m->effects.at[i] == effect) return 1;
-  return 0;
-}
-
-static int is_use_none(const AstStmt *st) { return st->kind == STMT_USE && strcmp(st->name, "none") == 0; }
-
-static void collect_uses(Builder *b, const AstStmt *scene) {
-  for (const AstStmt *x = scene->body; x; x = x->next) {
-    if (x->kind != STMT_USE) continue;
-    if (is_use_none(x)) {
-      b->m->effects.n = 0;
-      if (x->body) diag_error(b->diags, x->body->span, "`use none` turns all effects off, and takes no values");
-    }
-    else if (!find_stmt(b->ast, STMT_EFFECT, x->name)) report_unknown(b->ast, STMT_EFFECT, x->name_span, x->name);
-    else if (!uses(b, x->name)) vec_push(b->arena, &b->m->effects, x->name);
-  }
-}
-
-/* Turns an effect on together with what it requires. */
-static void use_with_needs(Builder *b, Name effect) {
-  if (uses(b, effect)) return;
-  vec_push(b->arena, &b->m->effects, effect);
-  for (uint32_t i = b->m->effects.n - 1; i < b->m->effects.n; i++) {
-    const AstStmt *st = find_stmt(b->ast, STMT_EFFECT, b->m->effects.at[i]);
-    for (const AstStmt *x = st ? st->body : NULL; x; x = x->next)
-      if (x->kind == STMT_REQUIRES && !uses(b, x->name) && find_stmt(b->ast, STMT_EFFECT, x->name))
-        vec_push(b->arena, &b->m->effects, x->name);
-  }
-}
-
-static void check_effect_needs(Builder *b, const AstStmt *effect) {
-  for (const AstStmt *x = effect->body; x; x = x->next) {
-    if (x->kind != STMT_REQUIRES && x->kind != STMT_EXCLUDES) continue;
-    if (!find_stmt(b->ast, STMT_EFFECT, x->name)) {
-      report_unknown(b->ast, STMT_EFFECT, x->name_span, x->name);
-    } else if (x->kind == STMT_REQUIRES && !uses(b, x->name)) {
-      diag_error(b->diags, x->span, "the effect `%s` requires `%s`, which the scene `%s` does not use", effect->name, x->name,
-                 b->m->scene.name);
-      diag_help(b->diags, "add `use %s` to the scene", x->name);
-    } else if (x->kind == STMT_EXCLUDES && uses(b, x->name)) {
-      diag_error(b->diags, x->span, "the effects `%s` and `%s` exclude each other, and the scene `%s` uses both", effect->name,
-                 x->name, b->m->scene.name);
-    }
-  }
-}
-
 /* --- which statements are active --- */
 
 static const AstStmt *pick_scene(Builder *b, const char *scene) {
-  const AstStmt *st = find_stmt(b->ast, STMT_SCENE, scene);
+  const AstStmt *st = find_named(b->ast, STMT_SCENE, scene);
   if (st || !scene) return st;
-  if (strcmp(scene, "default") == 0 && !find_stmt(b->ast, STMT_SCENE, NULL)) return NULL;
-  report_unknown(b->ast, STMT_SCENE, (Span){0}, scene);
+  if (strcmp(scene, "default") == 0 && !find_named(b->ast, STMT_SCENE, NULL)) return NULL;
+  report_unnamed(b->ast, STMT_SCENE, (Span){0}, scene);
   return NULL;
 }
 
 static void take_model_name(Builder *b) {
-  const AstStmt *m = find_stmt(b->ast, STMT_MODEL, NULL);
+  const AstStmt *m = find_named(b->ast, STMT_MODEL, NULL);
   if (!m) {
     Span start = b->ast->first ? b->ast->first->span : (Span){0};
     diag_error(b->diags, start, "the file does not name its model");
@@ -192,6 +84,7 @@ static void take_model_name(Builder *b) {
 void scene_select(Builder *b, const ModelChoice *choice) {
   take_model_name(b);
   check_names_once(b);
+  int related = effects_check(b->ast);
   const AstStmt *st = choice->bare ? NULL : pick_scene(b, choice->scene);
   b->m->scene.name = st ? st->name : intern(b->ast->names, "default");
   b->m->scene.doc = st && st->doc ? st->doc : "";
@@ -208,9 +101,9 @@ void scene_select(Builder *b, const ModelChoice *choice) {
       continue;
     }
     vec_push(b->arena, &b->m->all_effects, s->name);
-    if (!uses(b, s->name)) continue;
+    if (!uses_effect(b, s->name)) continue;
     vec_push(b->arena, &in_order, s->name);
-    check_effect_needs(b, s);
+    if (related) check_effect_needs(b, s);
     for (const AstStmt *x = s->body; x; x = x->next) vec_push(b->arena, &b->active, ((Active){x, s->name}));
   }
   b->m->effects.at = in_order.at;
@@ -393,7 +286,7 @@ static void scene_statement(Builder *b, const AstStmt *st) {
     case STMT_START: set_motion(b, st); return;
     case STMT_SET: set_value(b, st, NULL); return;
     case STMT_USE:
-      if (uses(b, st->name))
+      if (uses_effect(b, st->name))
         for (const AstStmt *x = st->body; x; x = x->next) set_value(b, x, st->name);
       return;
     case STMT_SPAN: set_span(b, st); return;
@@ -436,7 +329,7 @@ static Name effect_given(Builder *b, const AstStmt *st) {
   const AstExpr *x = ast_expr(b->ast, p.stem);
   if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME) {
     Name owner = ast_expr(b->ast, x->a)->name;
-    return effect_declares(find_stmt(b->ast, STMT_EFFECT, owner), x->name) ? owner : NULL;
+    return effect_declares(find_named(b->ast, STMT_EFFECT, owner), x->name) ? owner : NULL;
   }
   if (x->kind != AST_NAME) return NULL;
   const Entity *e = scope_find(&b->scope, x->name, NULL, &ambiguous);
@@ -468,7 +361,7 @@ static int is_dropped(Builder *b, const AstStmt *st, int before_none, int inheri
   if (st->kind == STMT_USE) return before_none;
   if (!gives_value(st)) return 0;
   Name effect = effect_given(b, st);
-  return effect && (before_none || (inherited && !uses(b, effect)));
+  return effect && (before_none || (inherited && !uses_effect(b, effect)));
 }
 
 /* The last such statement of the scene and those that it is like; NULL: there is none. */
