@@ -23,11 +23,7 @@ size_t lag_held_room(const lag_model *m)
 {
   const lag_constraints *of = m->constraints;
 
-<<<<<<< HEAD
-  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 4 * m->nq + m->nz + (2 * m->nq + m->nz)) : 0;
-=======
-  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz) : 0;
->>>>>>> integration
+  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz + (2 * m->nq + m->nz)) : 0;
 }
 
 static Held layout(const lag_problem *pb)
