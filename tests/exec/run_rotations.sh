@@ -79,6 +79,18 @@ check "Euler's equation agrees in numbers" grep -q "expect A\*omega(S)'.x: not p
 sed 's/(B - C)/(C - B)/' $spun >"$TMP/false.lag"
 check "a false one is refuted" sh -c '"$1" check "$2" --allow-numeric 2>&1 | grep -q "is false"' sh "$LAGC" "$TMP/false.lag"
 
+# ---- contacts ----
+# A box falls on its four corners and comes to rest: what carries it is three numbers, of four forces the least are a quarter of the weight each.
+for scene in flat tilted; do
+  out=$TMP/$scene.csv
+  check "a box falls, $scene" "$LAGC" run tests/exec/models/box.lag $scene -o "$out"
+  for k in a b c d; do check "$scene: corner $k carries a quarter" near "$out" "lambda($k)" 5 "9.81/4" 1e-12; done
+  check "$scene: it lies" near "$out" r.z 5 0.2 1e-14
+done
+# No friction: it slides on, and turns on; 30 steps at 1e-9.
+check "it slides on" near "$TMP/flat.csv" r.x 5 5 1e-12
+check "and turns on" near "$TMP/flat.csv" R.z 5 "sin(2.5)" 1e-8
+
 # ---- long runs ----
 # A body about its middle axis, 10^5 steps of order 2: the energy returns to its digits, and so does the length.
 long() {
