@@ -28,6 +28,7 @@
 #include "mech/eqns.h"
 #include "mech/expect.h"
 #include "mech/freedom.h"
+#include "mech/start.h"
 #include "mech/show.h"
 #include "model/model.h"
 #include "picture.h"
@@ -191,12 +192,22 @@ static const char *header_name(Compiler *c, const char *model) {
   return dot ? arena_strndup(c->arena, stem, (size_t)(dot - stem)) : stem;
 }
 
+/* A header does not look for the start that a run takes: it is told. */
+static int bake_start(Compiler *c, const Eqns *e, IrUnit *u) {
+  long double *found = ARENA_ARRAY(c->arena, long double, 2 * (size_t)e->n + 1);
+  unsigned char *moved = ARENA_ARRAY(c->arena, unsigned char, 2 * (size_t)e->n + 1);
+  if (!start_moves(e, found, moved)) return 0;
+  for (uint32_t i = 0; i < 2 * e->n; i++)
+    if (moved[i]) vec_push(c->arena, &u->scenes.at[0].moves, ((IrMove){i, (double)found[i]}));
+  return 1;
+}
+
 static int do_header(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   constraints_keep_none(e);
   IrUnit *u = lower_scene(c, e);
-  if (!u) return STATUS_MODEL;
+  if (!u || !bake_start(c, e, u)) return STATUS_MODEL;
   StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
   show_equations(e, "", PRINT_TEXT, &equations);
   emit_header(u, header_name(c, u->name), sb_text(&equations), &out);
