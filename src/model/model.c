@@ -335,6 +335,7 @@ static void apply_unused_lets(Builder *b) {
 static void expect(Builder *b, const AstStmt *st, Name effect, void *data) {
   (void)data;
   if (st->kind == STMT_EXPECT) add_expect(b, st, effect);
+  if (st->kind == STMT_SYMMETRY) add_symmetry(b, st, effect);
 }
 
 static void each_active(Builder *b, StatementFn *fn, void *data) {
