@@ -126,7 +126,7 @@ static void report_false(const Eqns *e, const Charge *c) {
 static void report_undecided(const Eqns *e, const Charge *c) {
   Diags *d = e->m->diags;
   diag_error(d, c->of->span, "the symmetry `%s` is not decided", c->name);
-  diag_help(d, "whether there is an F(q, t) with dF/dt = %s was not found out", text_of(e, c->proof.remainder));
+  diag_help(d, "neither an F(q, t) with dF/dt = %s was found, nor that there is none", text_of(e, c->proof.remainder));
 }
 
 int charges_judge(const Eqns *e, Name effect) {

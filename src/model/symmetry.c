@@ -90,6 +90,7 @@ static void add_move(const Mapping *p, SymId target, Expr to, Span span) {
     if (y->moves.at[i].target != target) continue;
     diag_error(b->diags, p->target, "the symmetry `%s` maps `%s` twice", y->name, name);
     diag_also(b->diags, y->moves.at[i].span, "first here; all maps are one transformation, of the old coordinates");
+    if (b->index.n) diag_help(b->diags, "maps behind a `for` belong to it, up to the next `for`: what it does not concern stands before it");
     return;
   }
   Move move = {.target = target, .span = p->map->span};
@@ -167,7 +168,7 @@ static void check_moves(Builder *b, const Symmetry *y) {
     good &= y->moves.at[i].rate != 0;
     some |= y->moves.at[i].rate && !expr_is_zero(b->g, y->moves.at[i].rate);
   }
-  if (some || !good || b->diags->errors) return;
+  if (some || !good || !y->moves.n) return;
   diag_error(b->diags, y->span, "the symmetry `%s` moves nothing, to first order in its parameter", y->name);
   diag_help(b->diags, "its charge would be 0");
 }
