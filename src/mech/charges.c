@@ -17,25 +17,12 @@ static Generator generator_of(const Eqns *e, const Symmetry *y) {
   return by;
 }
 
-/* The sum of the sizes of its terms. */
-static Expr size_of(ExprGraph *g, Expr x) {
-  Expr sum = expr_int(g, 0);
-  for (uint32_t i = 0; i < expr_pairs(g, x, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(g, x, EX_SUM, i, &c), size = expr_fn(g, EX_ABS, term);
-    size = expr_scale(g, num_abs(c), size);
-    sum = expr_add(g, sum, size);
-  }
-  return sum;
-}
-
-/* Of many terms, as of N bodies, the sizes of a shorter form would be no less. */
 static Charge charge_of(const Eqns *e, const Symmetry *y) {
   ExprGraph *g = e->g;
   Generator by = generator_of(e, y);
   Charge c = {.of = y, .name = y->name, .unit = y->unit, .proof = noether_prove(e, &by)};
   c.value = c.proof.charge == e->energy ? e->energy_stable : simplify_stable(g, c.proof.charge);
-  c.scale = size_of(g, c.value);
+  c.scale = simplify_stable(g, c.proof.scale);
   return c;
 }
 
