@@ -260,11 +260,32 @@ typedef struct lag_stats {
   long long steps, rejected, rhs_calls, events;
   long long systems, iterations; /* of nonlinear equations solved within steps, and the corrections that took */
   double energy;        /* now */
-  double energy_drift;  /* largest |E - E0| over the run relative to max(|E0|, max(|p.v| + |L|)); what events
-                         * do to the energy is not counted. NaN when the model has no energy */
+  double energy_drift;  /* that of charge 0 below. NaN when the model has no energy */
   double constraint, constraint_rate; /* largest |c| of a holonomic constraint and |r| of any (lag_model.h) at ends of steps [SI];
                          * NaN without constraints */
 } lag_stats;
+
+/* What a run makes of a charge: of its energy (number 0) and of those of its symmetries. */
+enum {
+  LAG_TREND_UNKNOWN,    /* too few steps */
+  LAG_TREND_ROUNDING,   /* the drift is no more than what rounding adds up to in so many steps */
+  LAG_TREND_OSCILLATES, /* a line does not explain what it varies by, averaged over parts of the run */
+  LAG_TREND_GROWS       /* it does */
+};
+
+typedef struct lag_charge_stats {
+  const char *name, *unit; /* of SI; as long as the scene lives */
+  unsigned flags;       /* LAG_CONSERVED, LAG_BALANCED (lag_model.h); neither: it is not known how it changes */
+  double begin, now;    /* Q */
+  double work;          /* int P dt, where P = dQ/dt is known and not 0 */
+  double drift;         /* largest |Q - int P dt - Q0| over the run, relative to the larger of |Q0| and the largest sum of the sizes of the
+                         * terms of Q; what events do to it is not counted */
+  double slope, slope_error; /* of a line fitted to Q - int P dt [1/s], and its standard error; NaN: too few steps */
+  int trend;
+} lag_charge_stats;
+
+int lag_sim_ncharges(const lag_sim *sim);
+void lag_sim_charge(lag_sim *sim, int k, lag_charge_stats *stats);
 
 /* A simulation of the scene at the start of its span, with the scene's method (when it is one of
  * liblag.a), tolerance and options. The scene must outlive it. NULL: no memory, or a model of another ABI

@@ -17,7 +17,7 @@ src           base/ syntax/ sym/ model/ mech/ ir/ emit/ cli/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime           lag.h
 runtime/core      core/ lag.h lag_model.h lag_kkt.h
-runtime/methods   methods/ core/rhs.h lag.h lag_model.h
+runtime/methods   methods/ core/rhs.h core/gauss.h lag.h lag_model.h
 runtime/analysis  analysis/ core/ lag.h lag_model.h
 runtime/io        io/ lag.h lag_model.h
 runtime/app       app/ core/ io/ analysis/ lag.h lag_model.h
