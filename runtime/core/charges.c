@@ -166,9 +166,9 @@ void lag_charges_jump(lag_sim *s, double t, const double *ya, const double *yb)
   }
 }
 
-static double relative(const Charge *c, double peak)
+static double relative(const Charge *c, double x)
 {
-  return peak == 0.0 ? 0 : peak / fmax(fabs(c->begin), c->scale);
+  return x == 0.0 ? 0 : x / fmax(fabs(c->begin), c->scale);
 }
 
 double lag_charge_drift(const lag_sim *s, int k)
@@ -229,4 +229,6 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
   }
   st->drift = relative(c, peak);
   st->trend = trend_of(c, r->steps, &st->slope, &st->slope_error);
+  st->slope = relative(c, st->slope);
+  st->slope_error = relative(c, st->slope_error);
 }

@@ -281,10 +281,11 @@ typedef struct lag_charge_stats {
   double work;          /* int P dt, where P = dQ/dt is known and not 0 */
   double drift;         /* largest |Q - int P dt - Q0| over the run, relative to the larger of |Q0| and the largest sum of the sizes of the
                          * terms of Q; what events do to it is not counted */
-  double slope, slope_error; /* of a line fitted to Q - int P dt [1/s], and its standard error; NaN: too few steps */
+  double slope, slope_error; /* of a line fitted to Q - int P dt, relative as drift [1/s], and its standard error; NaN: too few steps */
   int trend;
 } lag_charge_stats;
 
+/* How many charges the model has; 0 without a Lagrangian. And what has become of charge k so far. */
 int lag_sim_ncharges(const lag_sim *sim);
 void lag_sim_charge(lag_sim *sim, int k, lag_charge_stats *stats);
 

@@ -153,7 +153,7 @@ typedef struct {
 
 typedef struct {
   Name name;
-  int output; /* index into outputs; -1: the energy */
+  int output; /* index into outputs; -1: the energy; -2 - k: the charge of symmetry k */
   double limit;
   int absolute; /* the limit is one of size, not of change */
 } Monitor;
