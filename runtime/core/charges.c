@@ -2,7 +2,7 @@
  * brought, Q - int P dt. Enters: states that are part of the run, in order; leaves: for each charge the largest difference from the
  * start, and whether it grows.
  *
- * int P dt is a sum of Gauss quadratures on the dense output, of the order of the method: one over each part of a step between
+ * int P dt, where it is asked for, is a sum of Gauss quadratures on the dense output, of the order of the method: one over each part of a step between
  * events. What an event does to a charge moves the value that it is compared with.
  *
  * Whether it grows: the differences are averaged over 16 to 32 parts of the run, and a line is fitted to the averages. It grows where
@@ -28,6 +28,9 @@ unsigned lag_charge_flags(const lag_sim *s, int k)
   const lag_model *m = s->scene->model;
   unsigned flags = m->charges ? m->charges->of[k].flags : m->flags & LAG_CONSERVES_ENERGY ? LAG_CONSERVED | LAG_BALANCED : 0;
 
+  if (!(flags & LAG_CONSERVED) && s->run->balanced == 0.0) {
+    return 0;
+  }
   for (int i = 0; i < m->nu && (flags & LAG_BY_FORMULAS); i++) {
     if (!isnan(s->hold[i]) || s->signal[i].fn) {
       flags = 0;
@@ -58,6 +61,26 @@ static int has_powers(const lag_sim *s)
   const lag_model *m = s->scene->model;
 
   return m->charges && m->charges->powers;
+}
+
+int lag_sim_balance(lag_sim *s)
+{
+  if (s->run->begun != 0.0) {
+    return lag_fail(s, LAG_EINVAL, "the run has begun: ask for balances before the first step");
+  }
+  s->balances = 1;
+  return LAG_OK;
+}
+
+/* Whether the scene watches a charge, which is then compared with its balance. */
+static int watches_charges(const lag_scene *c)
+{
+  for (int i = 0; i < c->nmonitors; i++) {
+    if (c->monitors[i].output < 0) {
+      return 1;
+    }
+  }
+  return 0;
 }
 
 void lag_charges_method(lag_sim *s, const lag_method *method)
@@ -93,7 +116,7 @@ static void add_work(lag_sim *s, double t)
 {
   double *gain = s->charge_gain;
 
-  if (has_powers(s)) {
+  if (s->run->balanced != 0.0) {
     work_over(s, s->run->watched, t, gain);
     for (int k = 0; k < lag_sim_ncharges(s); k++) { /* compensated: W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723 */
       Charge *c = &s->charges[k];
@@ -137,6 +160,7 @@ void lag_charges_begin(lag_sim *s, double t, const double *y)
 {
   values_at(s, t, y);
   s->run->watched = t;
+  s->run->balanced = has_powers(s) && (s->balances || watches_charges(s->scene));
   for (int k = 0; k < lag_sim_ncharges(s); k++) {
     s->charges[k] = (Charge){.begin = s->charge_now[2 * k], .first = s->charge_now[2 * k], .scale = fmax(s->charge_now[2 * k + 1], 0), .width = 1};
   }
@@ -214,7 +238,7 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
 
   *st = (lag_charge_stats){.name = m->charges ? m->charges->of[k].name : "energy", .unit = m->charges ? m->charges->of[k].unit : "",
                            .flags = lag_charge_flags(s, k), .begin = c->begin};
-  if (r->begun != 0.0 && r->have_step != 0.0 && has_powers(s)) { /* the run's end is within a step */
+  if (r->begun != 0.0 && r->have_step != 0.0 && r->balanced != 0.0) { /* the run's end is within a step */
     work_over(s, r->watched, r->t, s->charge_gain);
     since = s->charge_gain[k];
   }

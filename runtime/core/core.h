@@ -22,6 +22,7 @@ typedef struct Run {
   double limit, pending; /* pending: events fire at limit */
   double steps, rejected, rhs_calls, systems, iterations, events;
   double watched;        /* up to here charges have been looked at */
+  double balanced;       /* 1: the work of forces on charges is integrated */
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
   double rank;           /* constraints at the start that do not follow from others */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
@@ -83,6 +84,7 @@ struct lag_sim {
   double *charge_now, *charge_power, *charge_gain; /* scratch: value and scale of each; P; int P dt */
   double node[LAG_NODES], weight[LAG_NODES]; /* of the quadrature over a step, */
   int nodes;             /* which has so many */
+  int balances;          /* lag_sim_balance was called */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
   double *method_work;
   double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or now where there is no step; NULL */

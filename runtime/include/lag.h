@@ -276,7 +276,7 @@ enum {
 
 typedef struct lag_charge_stats {
   const char *name, *unit; /* of SI; as long as the scene lives */
-  unsigned flags;       /* LAG_CONSERVED, LAG_BALANCED (lag_model.h); neither: it is not known how it changes */
+  unsigned flags;       /* LAG_CONSERVED, LAG_BALANCED (lag_model.h); neither: how it changes is not known, or not integrated (lag_sim_balance) */
   double begin, now;    /* Q */
   double work;          /* int P dt, where P = dQ/dt is known and not 0 */
   double drift;         /* largest |Q - int P dt - Q0| over the run, relative to the larger of |Q0| and the largest sum of the sizes of the
@@ -323,6 +323,9 @@ int lag_sim_is_redundant(const lag_sim *sim, int k);
  * that is not finite ends the run with LAG_ENAN. context must outlive the run. A saved state does not hold fn: set it
  * again before lag_sim_load. */
 int lag_sim_set_input(lag_sim *sim, const char *name, lag_input_fn *fn, void *context);
+/* Integrates, along the run, what forces do to charges, so that lag_sim_charge tells balances. Not done by itself, but where the scene
+ * watches a charge: it takes dense output at up to 8 places in each step. */
+int lag_sim_balance(lag_sim *sim);
 
 /* Integrates to time t, before or after t0, but always in one direction. The steps do not depend on
  * t: the state at t is evaluated on the dense output (STEPS_TO methods: reached exactly), so runs that are
