@@ -40,7 +40,7 @@ static void put_energy(const lag_charge_stats *c, FILE *f)
   if (c->flags & LAG_CONSERVED) {
     fprintf(f, "(%s)", size);
   } else if (c->flags & LAG_BALANCED) {
-    fprintf(f, "(E less the %.6g that forces and explicit time brought, %s)", c->work, size);
+    fprintf(f, "(forces and explicit time brought %.6g; %s)", c->work, size);
   } else {
     fputs("(not conserved: forces or explicit time)", f);
   }
@@ -52,7 +52,7 @@ static void put_charge(const lag_charge_stats *c, FILE *f)
   if (c->flags & LAG_CONSERVED) {
     fputs(")", f);
   } else if (c->flags & LAG_BALANCED) {
-    fprintf(f, ", less the %.6g that forces brought)", c->work);
+    fprintf(f, "; forces brought %.6g)", c->work);
   } else {
     fputs("; not conserved, and its rate is not known)", f);
   }

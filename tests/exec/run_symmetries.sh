@@ -58,7 +58,7 @@ for setting in "dop853 --tol 1e-11" "rk45 --tol 1e-11" "taylor --tol 1e-11" "rk4
 done
 # what is gone is by far more than what is not accounted for
 check "there is work to account for" between "$(of spin work)" -20 -1
-check "the report says what forces did" says '^spin balance: [0-9.e-]* \(from 0.375 kg\*m\^2/s, less the -[0-9.]* that forces brought\)' $planets disturbed
+check "the report says what forces did" says '^spin balance: [0-9.e-]* \(from 0.375 kg\*m\^2/s; forces brought -[0-9.]*\)' $planets disturbed
 run $planets disturbed --method rk4 --step 0.01 --json && coarse=$(of spin drift)
 run $planets disturbed --method rk4 --step 0.005 --json && fine=$(of spin drift)
 check "rk4: half the step, 2^4 times less" order 4
@@ -102,6 +102,29 @@ for k in 0 3 5; do
   moves flipped
   is "with the sign of acceleration $k flipped one fails" 3 $?
 done
+
+# ---- headers: charges and what they change by, at the start, worked out by hand
+"$LAGC" header $planets disturbed -o "$TMP/p.h" >/dev/null
+cat >"$TMP/h.c" <<'END'
+#define P_IMPLEMENTATION
+#include "p.h"
+#include <stdio.h>
+int main(void)
+{
+  p_params p;
+  p_state s;
+  double c[6], w[4];
+  p_defaults(&p);
+  p_start(&p, &s);
+  if (p_charges(s.t, s.q, s.v, &p, c) || p_powers(s.t, s.q, s.v, &p, w)) return 1;
+  printf("%g %g %g, %g %g %g %g\n", c[0], c[2], c[4], w[0], w[1], w[2], w[3] + 0.0);
+  return 0;
+}
+END
+check "a header has them" "$CC" -std=c99 -Wall -Wextra -Wno-unused-function "$TMP/h.c" -o "$TMP/h" -lm
+is "with their values and rates" "0.375 0.1 0.1, -0.00066 -0.0108 -0.0004 0" "$("$TMP/h")"
+"$LAGC" header models/pendulum.lag -o "$TMP/none.h" >/dev/null
+check "a model without symmetries has none" sh -c "! grep -q charges '$TMP/none.h'"
 
 # ---- every sign of a rotation counts
 rotated() { # rotated XX XY YX YY: signs of the four terms
