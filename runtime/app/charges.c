@@ -48,7 +48,7 @@ static void put_energy(const lag_charge_stats *c, FILE *f)
 
 static void put_charge(const lag_charge_stats *c, FILE *f)
 {
-  fprintf(f, "(from %.6g%s%s", c->begin, c->unit[0] ? " " : "", c->unit);
+  fprintf(f, "(from %.6g%s%s", c->begin + 0.0, c->unit[0] ? " " : "", c->unit);
   if (c->flags & LAG_CONSERVED) {
     fputs(")", f);
   } else if (c->flags & LAG_BALANCED) {
