@@ -7,7 +7,7 @@
 /* ---- the commands ---- */
 
 static const CommandRow commands[] = {
-  {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric]", "parse, derive, prove the `expect` lines",
+  {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric]", "parse, derive, prove symmetries and `expect` lines",
    "Parses and derives the model for every scene (or the one named), and proves or refutes its `expect` lines. "
    "Exit status 0 when all is well, 1 when not."},
   {CMD_DERIVE, "derive", NULL, "MODEL [SCENE] [--format text|latex|c] [--ops] [-o FILE]", "print the equations of motion",
