@@ -1,0 +1,206 @@
+/* The ansatz of the search for symmetries, and its linear equations at random states. */
+#include <math.h>
+
+#include "mech/noether_search.h"
+#include "mech/states.h"
+#include "sym/diff.h"
+
+enum { WHOLE_MOST = 20, CUBIC_MOST = 4 };
+
+/* --- the ansatz --- */
+
+/* Length of what names the vector of a coordinate: r[2] of r[2].x; 0: it is no component. */
+static size_t vector_part(Name name) {
+  const char *dot = strrchr(name, '.');
+  return dot ? (size_t)(dot - name) : 0;
+}
+
+static int same_vector(Name a, Name b) {
+  size_t n = vector_part(a);
+  return n && n == vector_part(b) && memcmp(a, b, n) == 0;
+}
+
+int ansatz_is_restricted(const Ansatz *a) { return a->n > WHOLE_MOST; }
+
+static void add_xi(Ansatz *s, Arena *a) {
+  const Model *m = s->e->m;
+  for (uint32_t i = 0; i < s->n; i++) vec_push(a, &s->xi, ((XiColumn){i, 0}));
+  for (uint32_t i = 0; i < s->n; i++)
+    for (uint32_t j = 0; j < s->n; j++)
+      if (!ansatz_is_restricted(s) || i == j || same_vector(m->coords.at[i].name, m->coords.at[j].name))
+        vec_push(a, &s->xi, ((XiColumn){i, j + 1}));
+}
+
+static void add_gauge(Ansatz *s, Arena *a) {
+  uint32_t quadratic = s->degree >= 2 ? s->n : 0, cubic = s->degree >= 3 ? s->n : 0;
+  for (uint32_t i = 0; i <= s->n; i++)
+    for (uint32_t j = 0; j <= i && j <= quadratic; j++)
+      for (uint32_t k = 0; k <= j && k <= cubic; k++) vec_push(a, &s->gauge, ((GaugeColumn){{i, j, k}}));
+}
+
+Ansatz *ansatz_new(Arena *a, const Eqns *e) {
+  Ansatz *s = ARENA_NEW(a, Ansatz);
+  SymId *q = ARENA_ARRAY(a, SymId, e->n + 1), *v = ARENA_ARRAY(a, SymId, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) {
+    q[i] = e->m->coords.at[i].q;
+    v[i] = e->m->coords.at[i].v;
+  }
+  s->e = e;
+  s->n = e->n;
+  s->q = q;
+  s->v = v;
+  s->degree = s->n <= CUBIC_MOST ? 3 : s->n <= WHOLE_MOST ? 2 : 1;
+  s->has_tau = !(expr_kinds(e->g, e->m->lagrangian) & (1u << SYM_INPUT | 1u << SYM_STATE | 1u << SYM_TIME));
+  add_xi(s, a);
+  add_gauge(s, a);
+  s->shown = 1 + s->xi.n;
+  s->columns = s->shown + s->gauge.n;
+  return s;
+}
+
+/* --- states --- */
+
+struct RowSource {
+  const Ansatz *of;
+  Arena *scratch;
+  EvalTape *tape;        /* L, dL/dq, p; then of constraints A and r */
+  StateSolver *solver;   /* or NULL */
+  long double *symbols, *out;
+  long double *phi, *rate; /* [n + 1] 1, q and their derivatives */
+  long double *part;     /* [2*columns] scratch */
+  uint64_t random;
+};
+
+/* Steele, Lea, Flood: Fast splittable pseudorandom number generators, OOPSLA 2014, DOI 10.1145/2660193.2660195. Of size 0.3 .. 1.7. */
+static long double next_value(RowSource *r) {
+  uint64_t z = r->random += 0x9e3779b97f4a7c15u;
+  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+  z ^= z >> 31;
+  long double size = 0.3L + 1.4L * (long double)(z >> 12) / 4503599627370496.0L;
+  return z & 1 ? size : -size;
+}
+
+RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *parameters) {
+  const Eqns *e = s->e;
+  const Constraints *k = &e->constraints;
+  RowSource *r = ARENA_NEW(scratch, RowSource);
+  uint32_t count = 0, symbols = expr_symbol_count(e->g) + 1;
+  Expr *roots = ARENA_ARRAY(scratch, Expr, 1 + 2 * (size_t)e->n + k->A.n + k->n);
+  roots[count++] = e->m->lagrangian;
+  for (uint32_t i = 0; i < e->n; i++) roots[count++] = e->dLdq[i];
+  for (uint32_t i = 0; i < e->n; i++) roots[count++] = e->p[i];
+  for (uint32_t i = 0; i < k->A.n; i++) roots[count++] = k->A.at[i].e;
+  for (uint32_t i = 0; i < k->n; i++) roots[count++] = k->r[i];
+  *r = (RowSource){.of = s, .scratch = scratch, .tape = eval_tape(e->g, roots, count), .solver = k->n ? states_new(e) : NULL, .random = 7};
+  r->symbols = ARENA_ARRAY(scratch, long double, symbols);
+  r->out = ARENA_ARRAY(scratch, long double, count);
+  r->phi = ARENA_ARRAY(scratch, long double, e->n + 1);
+  r->rate = ARENA_ARRAY(scratch, long double, e->n + 1);
+  r->part = ARENA_ARRAY(scratch, long double, 2 * (size_t)s->columns);
+  memcpy(r->symbols, parameters, symbols * sizeof *parameters);
+  return r;
+}
+
+/* Everything but parameters gets a new value. */
+static void draw(RowSource *r) {
+  const ExprGraph *g = r->of->e->g;
+  for (SymId s = 1; s <= expr_symbol_count(g); s++) {
+    const Symbol *x = expr_symbol(g, s);
+    if (x->kind == SYM_PARAM || x->kind == SYM_CONST) continue;
+    long double value = next_value(r);
+    r->symbols[s] = x->sign == SIGN_POSITIVE || x->sign == SIGN_NONNEGATIVE ? fabsl(value) : value;
+  }
+}
+
+static void set_velocities(RowSource *r, const long double *v, long double factor) {
+  for (uint32_t i = 0; i < r->of->n; i++) r->symbols[r->of->v[i]] = factor * v[i];
+}
+
+static void evaluate(RowSource *r) {
+  const Ansatz *s = r->of;
+  eval_run(r->tape, r->symbols, r->out);
+  r->phi[0] = 1;
+  r->rate[0] = 0;
+  for (uint32_t i = 0; i < s->n; i++) {
+    r->phi[i + 1] = r->symbols[s->q[i]];
+    r->rate[i + 1] = r->symbols[s->v[i]];
+  }
+}
+
+/* --- rows --- */
+
+/* Adds `weight` times the row of delta L - dF/dt at the state. */
+static void add_lagrangian_row(RowSource *r, long double weight, long double *b0, long double *b1) {
+  const Ansatz *s = r->of;
+  const long double *dLdq = r->out + 1, *p = dLdq + s->n;
+  long double energy = -r->out[0];
+  for (uint32_t i = 0; i < s->n; i++) energy += p[i] * r->rate[i + 1];
+  if (s->has_tau) b1[0] -= weight * energy;
+  for (uint32_t j = 0; j < s->xi.n; j++) {
+    uint32_t i = s->xi.at[j].i, k = s->xi.at[j].k;
+    b0[1 + j] += weight * (dLdq[i] * r->phi[k] + p[i] * r->rate[k]);
+    b1[1 + j] += weight * p[i] * r->phi[k];
+  }
+  for (uint32_t l = 0; l < s->gauge.n; l++) {
+    const uint32_t *of = s->gauge.at[l].of;
+    long double a = r->phi[of[0]], b = r->phi[of[1]], c = r->phi[of[2]];
+    b0[s->shown + l] -= weight * (r->rate[of[0]] * b * c + a * r->rate[of[1]] * c + a * b * r->rate[of[2]]);
+    b1[s->shown + l] -= weight * a * b * c;
+  }
+}
+
+/* The velocities stand in symbols. */
+static void lagrangian_rows(RowSource *r, RowKind kind, long double *b0, long double *b1) {
+  static const long double factors[3] = {1, -1, 0};
+  static const long double even[3] = {1, 1, -2}, rest[3] = {0, 0, 1}, all[3] = {1, 0, 0};
+  const long double *weight = kind == ROWS_EVEN ? even : kind == ROWS_AT_REST ? rest : all;
+  long double *v = r->part;
+  for (uint32_t i = 0; i < r->of->n; i++) v[i] = r->symbols[r->of->v[i]];
+  for (int k = 0; k < 3; k++) {
+    if (weight[k] == 0) continue;
+    set_velocities(r, v, factors[k]);
+    evaluate(r);
+    add_lagrangian_row(r, weight[k], b0, b1);
+  }
+}
+
+/* A xi + b tau, where the constraints r = A q' + b hold. */
+static int constraint_row(RowSource *r, uint32_t which, long double *b0) {
+  const Ansatz *s = r->of;
+  const Constraints *k = &s->e->constraints;
+  if (!states_obey(r->solver, r->symbols)) return 0;
+  evaluate(r);
+  const long double *A = r->out + 1 + 2 * (size_t)s->n;
+  long double b = A[k->A.n + which];
+  for (uint32_t x = 0; x < k->A.n; x++) {
+    if (k->A.at[x].row != which) continue;
+    b -= A[x] * r->rate[k->A.at[x].col + 1];
+    for (uint32_t j = 0; j < s->xi.n; j++)
+      if (s->xi.at[j].i == k->A.at[x].col) b0[1 + j] += A[x] * r->phi[s->xi.at[j].k];
+  }
+  if (s->has_tau) b0[0] = b;
+  return 1;
+}
+
+static int is_finite(const long double *x, uint32_t n) {
+  for (uint32_t i = 0; i < n; i++)
+    if (!isfinite(x[i])) return 0;
+  return 1;
+}
+
+uint32_t rows_fill(RowSource *r, RowKind kind, uint32_t n, long double *b0, long double *b1) {
+  enum { TRIES = 20 };
+  size_t w = r->of->columns;
+  uint32_t done = 0;
+  for (uint32_t tries = 0; done < n && tries < TRIES * (done + 10); tries++) {
+    long double *x = b0 + done * w, *y = b1 + done * w;
+    memset(x, 0, w * sizeof *x);
+    memset(y, 0, w * sizeof *y);
+    draw(r);
+    if (kind != ROWS_CONSTRAINTS) lagrangian_rows(r, kind, x, y);
+    else if (!constraint_row(r, done % r->of->e->constraints.n, x)) continue;
+    done += (uint32_t)(is_finite(x, (uint32_t)w) && is_finite(y, (uint32_t)w));
+  }
+  return done;
+}

@@ -1,0 +1,100 @@
+/* The space of solutions of B0 u + B1 u' = 0: cut down until its derivatives lie in it. */
+#include <math.h>
+
+#include "mech/noether_search.h"
+
+enum { SPARE_ROWS = 12 };
+static const long double REST = 1e-11L; /* of a column of length 1: rounding is 1e-18, random pivots were never seen below 1e-6 */
+
+/* The orthonormal rows of what spans the space; dependent ones are left out. */
+static DenseRows orthonormal(Arena *a, const DenseRows *from, uint32_t columns) {
+  DenseRows o = {.width = columns, .at = ARENA_ARRAY(a, long double, (size_t)from->n * columns + 1)};
+  for (uint32_t k = 0; k < from->n; k++) {
+    long double *row = o.at + (size_t)o.n * columns, length = 0;
+    memcpy(row, from->at + (size_t)k * from->width, columns * sizeof *row);
+    for (uint32_t j = 0; j < columns; j++) length += row[j] * row[j];
+    if (length > 0 && dense_reduce(columns, row, o.at, o.n) > 1e-9L) o.n++;
+    else memset(row, 0, columns * sizeof *row);
+  }
+  return o;
+}
+
+/* x * space: rows of coordinates become rows of u. */
+static DenseRows combine(Arena *a, const DenseRows *x, const DenseRows *space) {
+  DenseRows u = {x->n, space->width, ARENA_ARRAY(a, long double, (size_t)x->n * space->width + 1), x->gap};
+  for (size_t k = 0; k < x->n; k++)
+    for (size_t i = 0; i < space->n; i++)
+      for (size_t j = 0; j < space->width; j++) u.at[k * u.width + j] += x->at[k * x->width + i] * space->at[i * space->width + j];
+  return u;
+}
+
+/* to[n] = the products of a row with the rows of the space. */
+static void project(const DenseRows *space, const long double *row, long double *to) {
+  for (uint32_t k = 0; k < space->n; k++) {
+    const long double *u = space->at + (size_t)k * space->width;
+    to[k] = 0;
+    for (uint32_t j = 0; j < space->width; j++) to[k] += u[j] * row[j];
+  }
+}
+
+/* The kernel of (B0, B1) on pairs (x, y) of u = x*space, u' = y*space. */
+static DenseRows pairs(RowSource *r, Arena *a, RowKind kind, const DenseRows *space) {
+  uint32_t n = space->n, most = 2 * n + SPARE_ROWS;
+  long double *b0 = ARENA_ARRAY(a, long double, (size_t)most * space->width), *b1 = ARENA_ARRAY(a, long double, (size_t)most * space->width);
+  long double *m = ARENA_ARRAY(a, long double, (size_t)most * 2 * n + 1);
+  uint32_t rows = rows_fill(r, kind, most, b0, b1);
+  for (size_t i = 0; i < rows; i++) {
+    project(space, b0 + i * space->width, m + i * 2 * n);
+    project(space, b1 + i * space->width, m + i * 2 * n + n);
+  }
+  DenseRows kernel = rows < most ? (DenseRows){0} : dense_kernel(a, rows, 2 * n, m, REST);
+  if (rows < most) kernel.width = 2 * n;
+  return kernel;
+}
+
+/* What is left of the space by the rows of one kind. 0 where the rows could not be had. */
+static int cut(RowSource *r, Arena *a, RowKind kind, DenseRows *space, int *sure) {
+  DenseRows kernel = pairs(r, a, kind, space);
+  if (kernel.at == NULL) return 0;
+  if (kernel.gap < 1e4L) *sure = 0;
+  DenseRows x = orthonormal(a, &kernel, space->n), u = combine(a, &x, space);
+  *space = orthonormal(a, &u, u.width);
+  return 1;
+}
+
+static DenseRows everything(const Ansatz *s, Arena *a) {
+  DenseRows all = {.width = s->columns, .at = ARENA_ARRAY(a, long double, (size_t)s->columns * s->columns)};
+  for (uint32_t j = s->has_tau ? 0 : 1; j < s->columns; j++) all.at[(size_t)all.n++ * s->columns + j] = 1;
+  return all;
+}
+
+/* A of x' = A x: the kernel spans pairs (x, A x), and each x stands in one of them. */
+static long double *rates(RowSource *r, Arena *a, const DenseRows *space, int *sure) {
+  uint32_t n = space->n, *pivot = ARENA_ARRAY(a, uint32_t, 2 * n + 1);
+  long double *A = ARENA_ARRAY(a, long double, (size_t)n * n + 1);
+  DenseRows kernel = pairs(r, a, ROWS_ALL, space);
+  if (kernel.n != n) {
+    *sure = 0;
+    return A;
+  }
+  dense_echelon(n, 2 * n, kernel.at, 1e-12L, pivot);
+  for (uint32_t k = 0; k < n; k++) {
+    if (pivot[k] != k) *sure = 0; /* an x without a derivative: the space was not cut down far enough */
+    for (uint32_t i = 0; i < n; i++) A[(size_t)i * n + k] = kernel.at[(size_t)k * 2 * n + n + i];
+  }
+  return A;
+}
+
+SolutionSpace solution_space(const Ansatz *s, Arena *a, const long double *parameters) {
+  RowSource *r = rows_new(s, a, parameters);
+  SolutionSpace found = {.space = everything(s, a), .sure = 1};
+  DenseRows *space = &found.space;
+  if (!cut(r, a, ROWS_EVEN, space, &found.sure) || !cut(r, a, ROWS_AT_REST, space, &found.sure)) return (SolutionSpace){0};
+  for (uint32_t before = UINT32_MAX; before != space->n;) {
+    before = space->n;
+    if (!cut(r, a, ROWS_ALL, space, &found.sure)) return (SolutionSpace){0};
+    if (s->e->constraints.n && !cut(r, a, ROWS_CONSTRAINTS, space, &found.sure)) return (SolutionSpace){0};
+  }
+  found.A = rates(r, a, space, &found.sure);
+  return found;
+}
