@@ -1,0 +1,286 @@
+#include "mech/noether.h"
+
+#include <math.h>
+
+#include "mech/states.h"
+#include "sym/diff.h"
+#include "sym/integrate.h"
+#include "sym/prove.h"
+#include "sym/simplify.h"
+
+/* Past this many coordinates charges stay as they come, like the energy (mech/eqns.c). */
+enum { SHORTEN_MAX = 64 };
+
+typedef struct {
+  const Eqns *e;
+  const Model *m;
+  ExprGraph *g;
+  uint32_t n;
+  SymId *q, *v;     /* [n] */
+  const Expr *p;    /* [n] */
+  const Expr *xi;   /* [n] */
+  Expr tau;
+  Expr *Dxi, Dtau;  /* total time derivatives */
+  int by_value;
+} Work;
+
+uint32_t noether_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
+
+SymId noether_coordinate(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].q : e->m->states.at[e->first.at[i]].z; }
+
+static SymId velocity(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate; }
+
+static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
+
+static Expr *no_seed(const Work *w) { return ARENA_ARRAY(w->m->arena, Expr, expr_symbol_count(w->g) + 1); }
+
+/* What the sum of a_i b_i is; a b that is 0 counts as zero. */
+static Expr dot(const Work *w, const Expr *a, const Expr *b, uint32_t n) {
+  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, n + 1);
+  for (uint32_t i = 0; i < n; i++) terms[i] = expr_mul(w->g, a[i], b[i]);
+  return expr_add_n(w->g, terms, n);
+}
+
+static Expr tangent(const Work *w, Expr x, const Expr *seed, const char *suffix) {
+  Expr out;
+  expr_tangent(w->g, &x, 1, seed, expr_symbol_count(w->g) + 1, suffix, NULL, &out);
+  return out;
+}
+
+/* d/dt along q'. */
+static Expr total(const Work *w, Expr x) {
+  Expr *seed = no_seed(w);
+  seed[w->m->time] = expr_int(w->g, 1);
+  for (uint32_t i = 0; i < w->n; i++) seed[w->q[i]] = node(w, w->v[i]);
+  return tangent(w, x, seed, "'");
+}
+
+static Work begin(const Eqns *e, const Generator *by) {
+  Arena *a = e->m->arena;
+  Work w = {.e = e, .m = e->m, .g = e->g, .n = noether_coordinates(e)};
+  Expr zero = expr_int(w.g, 0), *xi = ARENA_ARRAY(a, Expr, w.n + 1);
+  w.q = ARENA_ARRAY(a, SymId, w.n + 1);
+  w.v = ARENA_ARRAY(a, SymId, w.n + 1);
+  w.Dxi = ARENA_ARRAY(a, Expr, w.n + 1);
+  w.p = e->n ? e->p : e->first.theta;
+  w.xi = xi;
+  w.tau = by->tau ? by->tau : zero;
+  for (uint32_t i = 0; i < w.n; i++) {
+    w.q[i] = noether_coordinate(e, i);
+    w.v[i] = velocity(e, i);
+    xi[i] = by->xi && by->xi[i] ? by->xi[i] : zero;
+  }
+  for (uint32_t i = 0; i < w.n; i++) w.Dxi[i] = total(&w, xi[i]);
+  w.Dtau = total(&w, w.tau);
+  return w;
+}
+
+/* --- delta L --- */
+
+/* delta of a term of L. */
+static Expr delta(const Work *w, Expr term) {
+  Expr *seed = no_seed(w), moved;
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr slower = expr_mul(w->g, node(w, w->v[i]), w->Dtau);
+    seed[w->q[i]] = w->xi[i];
+    seed[w->v[i]] = expr_sub(w->g, w->Dxi[i], slower);
+  }
+  seed[w->m->time] = w->tau;
+  moved = tangent(w, term, seed, "_delta");
+  Expr stretched = expr_mul(w->g, term, w->Dtau);
+  return expr_add(w->g, moved, stretched);
+}
+
+/* delta L without those of its terms that are invariant by themselves: the pairs of N bodies are judged one by one. */
+static Expr delta_lagrangian(const Work *w) {
+  ExprGraph *g = w->g;
+  Expr L = w->m->lagrangian;
+  VEC(Expr) left = {0};
+  for (uint32_t i = 0; i < expr_pairs(g, L, EX_SUM); i++) {
+    Num c;
+    Expr term = expr_pair(g, L, EX_SUM, i, &c), change = delta(w, term);
+    if (prove_zero(g, change, NULL) == PROVED_ZERO) continue;
+    change = expr_scale(g, c, change);
+    vec_push(w->m->arena, &left, change);
+  }
+  return expr_add_n(g, left.at, left.n);
+}
+
+/* --- zero on the constraints --- */
+
+/* Whether x is zero at random states that obey the constraints. */
+static int vanishes_by_value(const Work *w, Expr x) {
+  enum { STATES = 12 };
+  const long double tiny = 1e-14L; /* states obey to 1e-16; what x is made of is of the size of 1 */
+  const Eqns *e = w->e;
+  long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1), bound;
+  StateSolver *solver = states_new(e);
+  uint32_t seen = 0;
+  for (uint32_t seed = 1; seed <= 4 * STATES && seen < STATES; seed++) {
+    prove_state(w->g, seed, symbols);
+    if (!states_complete(solver, symbols)) continue;
+    long double value = prove_value(w->g, x, symbols, NULL, &bound), size = 0;
+    if (!isfinite(value)) continue;
+    for (uint32_t i = 0; i < expr_pairs(w->g, x, EX_SUM); i++) {
+      Num c;
+      Expr term = expr_pair(w->g, x, EX_SUM, i, &c);
+      size += fabsl((long double)num_value(c) * prove_value(w->g, term, symbols, NULL, &bound));
+    }
+    if (fabsl(value) > tiny * fmaxl(size, 1)) return 0;
+    seen++;
+  }
+  return seen == STATES;
+}
+
+/* Whether x is zero where the constraints hold. */
+static Verdict zero_on_constraints(Work *w, Expr x) {
+  Verdict v = prove_zero(w->g, x, NULL);
+  if (v == PROVED_ZERO || !w->e->constraints.n || !vanishes_by_value(w, x)) return v;
+  w->by_value = 1;
+  return PROVED_ZERO;
+}
+
+/* --- F --- */
+
+static Expr at_rest(const Work *w, Expr x) {
+  Expr *zero = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
+  return expr_replace(w->g, x, w->v, zero, w->n);
+}
+
+/* An F(q, t) whose total derivative takes off what it can of dL = a.q' + b + terms of higher order in q'. */
+static Expr find_gauge(const Work *w, Expr dL) {
+  Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1), b = at_rest(w, dL);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr slope = expr_diff(w->g, dL, w->v[i]);
+    a[i] = at_rest(w, slope);
+  }
+  Expr F = expr_potential(w->g, a, w->q, w->n), drift = expr_diff(w->g, F, w->m->time), left = expr_sub(w->g, b, drift);
+  left = simplify(w->g, left);
+  Expr rest = expr_integrate(w->g, left, w->m->time, 1u << SYM_COORD | 1u << SYM_STATE | 1u << SYM_INPUT);
+  return expr_add(w->g, F, rest);
+}
+
+/* The conditions for dL to be a total derivative are those that its Euler-Lagrange expressions vanish. PROVED_NONZERO: one does not. */
+static Verdict is_total_derivative(const Work *w, Expr dL) {
+  Verdict all = PROVED_ZERO;
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr a = expr_diff(w->g, dL, w->v[i]);
+    for (uint32_t k = 0; k <= i; k++) {
+      Expr twice = expr_diff(w->g, a, w->v[k]);
+      Verdict v = prove_zero(w->g, twice, NULL);
+      if (v == PROVED_NONZERO) return v;
+      if (v == NOT_DECIDED) all = v;
+    }
+    Expr change = total(w, a), force = expr_diff(w->g, dL, w->q[i]), left = expr_sub(w->g, force, change);
+    Verdict v = prove_zero(w->g, left, NULL);
+    if (v == PROVED_NONZERO) return v;
+    if (v == NOT_DECIDED) all = v;
+  }
+  return all;
+}
+
+static void judge(Work *w, Noether *to) {
+  ExprGraph *g = w->g;
+  Expr zero = expr_int(g, 0), dL = delta_lagrangian(w);
+  *to = (Noether){.F = zero, .remainder = zero, .by_constraints = zero};
+  if (zero_on_constraints(w, dL) == PROVED_ZERO) return;
+  dL = simplify(g, dL);
+  Expr F = simplify(g, find_gauge(w, dL)), DF = total(w, F), left = expr_sub(g, dL, DF);
+  if (!expr_is_zero(g, F) && zero_on_constraints(w, left) == PROVED_ZERO) {
+    to->is = INVARIANT_UP_TO_F;
+    to->F = F;
+    return;
+  }
+  left = simplify(g, left);
+  int better = expr_ops(g, &left, 1) < expr_ops(g, &dL, 1);
+  to->F = better ? F : zero;
+  to->remainder = better ? left : dL;
+  to->is = is_total_derivative(w, dL) == PROVED_NONZERO ? NOT_INVARIANT : INVARIANCE_NOT_DECIDED;
+}
+
+/* --- the charge and its balance --- */
+
+static Expr shorten(const Work *w, Expr x) { return w->n <= SHORTEN_MAX ? simplify(w->g, x) : x; }
+
+/* p.xi - E tau - F. The potential in E stays as it was written: see mech/eqns.c. */
+static Expr charge_of(const Work *w, Expr F) {
+  ExprGraph *g = w->g;
+  Expr px = dot(w, w->p, w->xi, w->n), minus_F = expr_neg(g, F), et = expr_mul(g, w->e->energy, w->tau), minus_et = expr_neg(g, et);
+  Expr front = expr_add(g, px, minus_F);
+  front = shorten(w, front);
+  return expr_add(g, front, minus_et);
+}
+
+/* lambda^T (A xi + b tau): of a holonomic constraint what the generator makes of c, of one on velocities r = A q' + b what it
+ * makes of r when displacements stand for velocities. */
+static Expr power_of_constraints(Work *w) {
+  ExprGraph *g = w->g;
+  const Constraints *k = &w->e->constraints;
+  Expr sum = expr_int(g, 0);
+  for (uint32_t i = 0; i < k->n; i++) {
+    Expr *seed = no_seed(w), moved;
+    if (i < k->nholonomic) {
+      for (uint32_t j = 0; j < w->n; j++) seed[w->q[j]] = w->xi[j];
+      seed[w->m->time] = w->tau;
+      moved = tangent(w, k->c[i], seed, "_delta");
+    } else {
+      Expr b = at_rest(w, k->r[i]), part = expr_mul(g, b, w->tau);
+      for (uint32_t j = 0; j < w->n; j++) seed[w->v[j]] = w->xi[j];
+      Expr slide = tangent(w, k->r[i], seed, "_delta");
+      moved = expr_add(g, slide, part);
+    }
+    if (zero_on_constraints(w, moved) == PROVED_ZERO) continue;
+    Expr force = expr_mul(g, node(w, k->of[i]->multiplier), shorten(w, moved));
+    sum = expr_add(g, sum, force);
+  }
+  return sum;
+}
+
+static int is_other_state(const Eqns *e, uint32_t i) { return !e->m->states.at[i].coordinate; }
+
+/* tau dL/dt of what changes in L beside q and t: states with their flow, inputs with that of their formula. */
+static Expr power_of_change(const Work *w, int *unknown) {
+  ExprGraph *g = w->g;
+  const Model *m = w->m;
+  Expr *seed = no_seed(w);
+  *unknown = 0;
+  if (expr_is_zero(g, w->tau)) return expr_int(g, 0);
+  for (uint32_t i = 0; i < m->states.n; i++)
+    if (is_other_state(w->e, i)) seed[m->states.at[i].z] = w->e->flow[i];
+  for (uint32_t i = 0; i < m->inputs.n; i++) {
+    const Input *in = &m->inputs.at[i];
+    int there = expr_contains_sym(g, m->lagrangian, in->sym);
+    if (in->value) seed[in->sym] = expr_diff(g, in->value, m->time);
+    else *unknown |= there;
+  }
+  Expr rate = tangent(w, m->lagrangian, seed, "_drift");
+  return expr_mul(g, w->tau, rate);
+}
+
+/* sum Q_i (xi_i - q_i' tau) */
+static Expr power_of_forces(const Work *w) {
+  ExprGraph *g = w->g;
+  Expr *along = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  if (!w->e->Q) return expr_int(g, 0);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr carried = expr_mul(g, node(w, w->v[i]), w->tau);
+    along[i] = expr_sub(g, w->xi[i], carried);
+  }
+  return dot(w, w->e->Q, along, w->n);
+}
+
+Noether noether_prove(const Eqns *e, const Generator *by) {
+  Work w = begin(e, by);
+  ExprGraph *g = w.g;
+  Noether out;
+  judge(&w, &out);
+  out.by_constraints = power_of_constraints(&w);
+  out.by_value = w.by_value;
+  out.charge = charge_of(&w, out.F);
+  Expr forces = power_of_forces(&w), change = power_of_change(&w, &out.power_unknown);
+  Expr parts[3] = {forces, change, out.remainder}, rest = expr_add_n(g, parts, 3);
+  rest = states_substitute(e, shorten(&w, rest));
+  out.power = expr_add(g, rest, out.by_constraints);
+  return out;
+}

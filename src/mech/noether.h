@@ -1,0 +1,46 @@
+/* Noether's theorem: what a transformation of coordinates and time makes of L, and the charge that it conserves.
+ *
+ * Enters: the generator of q_i -> q_i + s xi_i(q, t), t -> t + s tau(q, t). With D = d/dt along q',
+ *   delta L = sum_i (dL/dq_i xi_i + dL/dq_i' (D xi_i - q_i' D tau)) + dL/dt tau + L D tau
+ * is 0, or DF/dt of some F(q, t), or neither. Leaves: that verdict; the charge and its balance,
+ *   Q = sum_i p_i xi_i - E tau - F,
+ *   dQ/dt = sum_i Q_i (xi_i - q_i' tau) + lambda^T (A xi + b tau) + tau dL/dz z' + (delta L - DF).
+ * Must hold: what is called proved is proved by sym/prove.h; F is differentiated before it is believed.
+ * E. Noether, Nachr. Ges. Wiss. Goettingen (1918) 235, DOI 10.1080/00411457108231446 (translation); gauge terms: E. Bessel-Hagen,
+ * Math. Ann. 84 (1921) 258, DOI 10.1007/BF01459410. */
+#ifndef LAGC_NOETHER_H
+#define LAGC_NOETHER_H
+
+#include "mech/eqns.h"
+
+typedef struct {
+  const Expr *xi; /* [noether_coordinates] in q, t and parameters; 0: nothing */
+  Expr tau;       /* 0: nothing */
+} Generator;
+
+typedef enum {
+  INVARIANT,
+  INVARIANT_UP_TO_F,
+  NOT_INVARIANT,
+  INVARIANCE_NOT_DECIDED
+} Invariance;
+
+typedef struct {
+  Invariance is;
+  int by_value;      /* it holds on the constraints, which is not proved but seen at random states that obey them */
+  Expr F;            /* 0 (the number) where none is needed; where L is not invariant, what takes off most of delta L */
+  Expr remainder;    /* delta L - DF, in a short form; the number 0 where L is invariant */
+  Expr charge;       /* in q, q', z, t */
+  Expr power;        /* dQ/dt, in q, q', z, t, inputs and multipliers; the number 0: Q is conserved */
+  Expr by_constraints; /* the part of the power that constraints have, lambda^T (A xi + b tau); the number 0: none */
+  int power_unknown; /* L depends on an input whose rate of change is not known, and the generator moves time: power is none */
+} Noether;
+
+/* How many components a generator has: the coordinates, also those of a Lagrangian of first order; and their symbols. */
+uint32_t noether_coordinates(const Eqns *e);
+SymId noether_coordinate(const Eqns *e, uint32_t i);
+
+/* Needs a Lagrangian. */
+Noether noether_prove(const Eqns *e, const Generator *by);
+
+#endif

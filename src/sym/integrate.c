@@ -1,0 +1,258 @@
+#include "sym/integrate.h"
+
+#include "sym/diff.h"
+#include "sym/prove.h"
+
+enum { MAX_TERMS = 4000, MAX_WORK = 400000, MAX_HARMONICS = 256, MAX_POWER = 64 };
+
+/* c*sin(u) or c*cos(u) */
+typedef struct {
+  Num c;
+  Expr angle;
+  int is_sin;
+} Harmonic;
+
+typedef VEC(Harmonic) Harmonics;
+
+/* factor * x^power * exp(growth) * the sum of harmonics */
+typedef struct {
+  Expr factor, growth;
+  int32_t power;
+  Harmonics harmonics;
+} Product;
+
+typedef struct {
+  ExprGraph *g;
+  Expr e;
+  SymId x;
+  unsigned without;
+  Expr result;
+} Task;
+
+static int has_x(const Task *t, Expr e) { return expr_contains_sym(t->g, e, t->x); }
+
+/* --- a term into a product --- */
+
+/* times sin(u) or cos(u): products to sums. */
+static int times_circular(Normal *n, Harmonics *h, Expr u, int is_sin) {
+  Harmonics out = {0};
+  for (uint32_t i = 0; i < h->n; i++) {
+    Harmonic a = h->at[i];
+    Expr minus = expr_sub(n->g, a.angle, u), plus = expr_add(n->g, a.angle, u);
+    Num half = num_div(a.c, num_int(2)), other = num_neg(half);
+    int sine = a.is_sin != is_sin; /* sin a cos u, cos a sin u: sines; the others cosines */
+    vec_push(n->arena, &out, ((Harmonic){!a.is_sin && is_sin ? other : half, minus, sine}));
+    vec_push(n->arena, &out, ((Harmonic){a.is_sin && is_sin ? other : half, plus, sine}));
+  }
+  *h = out;
+  return out.n <= MAX_HARMONICS;
+}
+
+/* Whether du/dx is free of x, and u of what no term may contain. */
+static int is_linear(const Task *t, Expr u) {
+  Expr slope = expr_diff(t->g, u, t->x);
+  return !has_x(t, slope) && !(expr_kinds(t->g, slope) & t->without);
+}
+
+static int times_power(const Task *t, Product *p, const GenInfo *gen, int32_t exp) {
+  if (expr_op(t->g, gen->expr) != EX_EXP) return 0;
+  Expr u = expr_arg(t->g, gen->expr, 0), grown = expr_scale(t->g, num_int(exp), u);
+  p->growth = expr_add(t->g, p->growth, grown);
+  return is_linear(t, u);
+}
+
+/* A power of a generator that contains x. 0: not of the form. */
+static int times_gen(Normal *n, const Task *t, Product *p, GenId x, int32_t exp) {
+  const GenInfo gen = n->gens.at[x];
+  switch (gen.kind) {
+    case GEN_SYMBOL: p->power += exp; return exp <= MAX_POWER && exp >= -MAX_POWER;
+    case GEN_POWER: return times_power(t, p, &gen, exp);
+    case GEN_SIN: case GEN_COS: {
+      Expr u = expr_arg(t->g, gen.expr, 0);
+      int good = exp > 0 && is_linear(t, u);
+      for (int32_t i = 0; i < exp && good; i++) good = times_circular(n, &p->harmonics, u, gen.kind == GEN_SIN);
+      return good;
+    }
+    case GEN_ROOT: case GEN_OPAQUE: return 0;
+  }
+  return 0;
+}
+
+/* 0: the term is not of the form. */
+static int product_of(Normal *n, const Task *t, Term term, Expr divisor, Product *p) {
+  ExprGraph *g = t->g;
+  Mono mono = *mono_at(n->ring, term.mono);
+  *p = (Product){.factor = expr_num(g, term.c), .growth = expr_int(g, 0)};
+  vec_push(n->arena, &p->harmonics, ((Harmonic){num_int(1), expr_int(g, 0), 0}));
+  p->factor = expr_mul(g, p->factor, divisor);
+  for (uint32_t i = 0; i < mono.n; i++) {
+    Expr gen = n->gens.at[mono.at[i].gen].expr;
+    if (has_x(t, gen)) {
+      if (!times_gen(n, t, p, mono.at[i].gen, mono.at[i].exp)) return 0;
+      continue;
+    }
+    if (expr_kinds(g, gen) & t->without) return 0;
+    Expr power = expr_pow_num(g, gen, num_int(mono.at[i].exp));
+    p->factor = expr_mul(g, p->factor, power);
+  }
+  return 1;
+}
+
+/* --- antiderivatives --- */
+
+typedef struct {
+  Expr sin, cos;
+} Pair;
+
+/* x^k/(k + 1), or its logarithm */
+static Expr power_integral(const Task *t, int32_t k) {
+  ExprGraph *g = t->g;
+  Expr x = expr_symbol(g, t->x)->node;
+  if (k == -1) {
+    Expr size = expr_fn(g, EX_ABS, x);
+    return expr_fn(g, EX_LOG, size);
+  }
+  Expr power = expr_pow_num(g, x, num_int(k + 1));
+  return expr_scale(g, num_ratio(1, k + 1), power);
+}
+
+static Expr combine(ExprGraph *g, Expr a, Expr x, Expr b, Expr y) {
+  Expr ax = expr_mul(g, a, x), by = expr_mul(g, b, y);
+  return expr_add(g, ax, by);
+}
+
+/* The integrals of x^k exp(u) sin(w) and x^k exp(u) cos(w), u' = a, w' = b, by parts from k = 0 on:
+ *   int x^k exp(u) sin(w) = (x^k exp(u) (a sin w - b cos w) - k (a S - b C))/(a^2 + b^2), S and C those of k - 1. */
+static Pair harmonic_integrals(const Task *t, int32_t k, Expr u, Expr w) {
+  ExprGraph *g = t->g;
+  Expr a = expr_diff(g, u, t->x), b = expr_diff(g, w, t->x), minus_b = expr_neg(g, b), x = expr_symbol(g, t->x)->node;
+  Expr size = combine(g, a, a, b, b), inverse = expr_pow_num(g, size, num_int(-1));
+  Expr grown = expr_fn(g, EX_EXP, u), s = expr_fn(g, EX_SIN, w), c = expr_fn(g, EX_COS, w);
+  Pair done = {expr_int(g, 0), expr_int(g, 0)};
+  for (int32_t i = 0; i <= k; i++) {
+    Expr power = expr_pow_num(g, x, num_int(i)), front = expr_mul(g, power, grown);
+    Expr sine = combine(g, a, s, minus_b, c), cosine = combine(g, a, c, b, s);
+    Expr old_sine = combine(g, a, done.sin, minus_b, done.cos), old_cosine = combine(g, a, done.cos, b, done.sin);
+    old_sine = expr_scale(g, num_int(-i), old_sine);
+    old_cosine = expr_scale(g, num_int(-i), old_cosine);
+    Expr one = expr_int(g, 1), new_sine = combine(g, front, sine, one, old_sine), new_cosine = combine(g, front, cosine, one, old_cosine);
+    done.sin = expr_mul(g, new_sine, inverse);
+    done.cos = expr_mul(g, new_cosine, inverse);
+  }
+  return done;
+}
+
+/* 0 where a harmonic is not of the form. */
+static Expr product_integral(const Task *t, const Product *p) {
+  ExprGraph *g = t->g;
+  Expr sum = expr_int(g, 0);
+  for (uint32_t i = 0; i < p->harmonics.n; i++) {
+    Harmonic h = p->harmonics.at[i];
+    Expr part;
+    if (!has_x(t, h.angle) && !has_x(t, p->growth)) {
+      Expr value = expr_fn(g, h.is_sin ? EX_SIN : EX_COS, h.angle), grown = expr_fn(g, EX_EXP, p->growth);
+      value = expr_mul(g, value, grown);
+      part = power_integral(t, p->power);
+      part = expr_mul(g, value, part);
+    } else if (p->power < 0) {
+      return 0;
+    } else {
+      Pair both = harmonic_integrals(t, p->power, p->growth, h.angle);
+      part = h.is_sin ? both.sin : both.cos;
+    }
+    part = expr_scale(g, h.c, part);
+    sum = expr_add(g, sum, part);
+  }
+  return expr_mul(g, p->factor, sum);
+}
+
+static Expr divisor_expr(Normal *n, DenId den) {
+  Poly p = frac_den_poly(n->field, den);
+  Expr e = normal_poly_expr(n, p);
+  return expr_pow_num(n->g, e, num_int(-1));
+}
+
+static void integrate_work(Arena *scratch, void *data) {
+  Task *t = data;
+  Normal *n = normal_new(t->g, scratch, (NormalLimits){.max_terms = MAX_TERMS, .max_work = MAX_WORK});
+  Frac f;
+  if (normal_run(n, &t->e, 1, &f) != POLY_OK) return;
+  f = frac_cancel(n->field, f);
+  Expr divisor = divisor_expr(n, f.den);
+  if (n->ring->status != POLY_OK || has_x(t, divisor)) return;
+  VEC(Expr) parts = {0};
+  for (uint32_t i = 0; i < f.num.n; i++) {
+    Product p;
+    if (!product_of(n, t, f.num.at[i], divisor, &p)) continue;
+    Expr part = product_integral(t, &p);
+    if (part) vec_push(scratch, &parts, part);
+  }
+  t->result = expr_add_n(t->g, parts.at, parts.n);
+}
+
+Expr expr_integrate(ExprGraph *g, Expr e, SymId x, unsigned without) {
+  Task t = {.g = g, .e = e, .x = x, .without = without, .result = expr_int(g, 0)};
+  normal_with_scratch(g, integrate_work, &t);
+  return t.result;
+}
+
+/* --- potentials --- */
+
+/* Coordinate by coordinate: what is left of a_i when the F so far is taken off, integrated by q_i. */
+static Expr by_coordinates(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n) {
+  Expr F = expr_int(g, 0);
+  for (uint32_t i = 0; i < n; i++) {
+    Expr done = expr_diff(g, F, q[i]), left = expr_sub(g, a[i], done);
+    if (expr_is_zero(g, left)) continue;
+    Expr part = expr_integrate(g, left, q[i], 0);
+    F = expr_add(g, F, part);
+  }
+  return F;
+}
+
+static void homotopy_work(Arena *scratch, void *data) {
+  Task *t = data;
+  Normal *n = normal_new(t->g, scratch, (NormalLimits){.max_terms = MAX_TERMS, .max_work = MAX_WORK});
+  Frac f;
+  if (normal_run(n, &t->e, 1, &f) != POLY_OK) return;
+  f = frac_cancel(n->field, f);
+  Expr divisor = divisor_expr(n, f.den), sum = expr_int(t->g, 0);
+  if (n->ring->status != POLY_OK || has_x(t, divisor)) return;
+  for (uint32_t i = 0; i < f.num.n; i++) {
+    Product p;
+    if (!product_of(n, t, f.num.at[i], divisor, &p) || p.power == -1 || has_x(t, p.growth) || p.harmonics.n != 1) return;
+    Expr part = expr_scale(t->g, num_ratio(1, p.power + 1), p.factor);
+    sum = expr_add(t->g, sum, part);
+  }
+  t->result = sum;
+}
+
+/* int_0^1 q.a(s q) ds, where q.a(s q) is a sum of powers of s. */
+static Expr by_homotopy(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n) {
+  Arena *arena = expr_arena(g);
+  SymId s = expr_declare(g, SYM_LOCAL, 0, "s", SIGN_POSITIVE);
+  Expr scale = expr_symbol(g, s)->node, *with = ARENA_ARRAY(arena, Expr, n + 1), *terms = ARENA_ARRAY(arena, Expr, n + 1);
+  for (uint32_t i = 0; i < n; i++) with[i] = expr_mul(g, scale, expr_symbol(g, q[i])->node);
+  for (uint32_t i = 0; i < n; i++) {
+    Expr along = expr_replace(g, a[i], q, with, n);
+    terms[i] = expr_mul(g, along, expr_symbol(g, q[i])->node);
+  }
+  Task t = {.g = g, .e = expr_add_n(g, terms, n), .x = s};
+  normal_with_scratch(g, homotopy_work, &t);
+  return t.result;
+}
+
+static int is_potential(ExprGraph *g, Expr F, const Expr *a, const SymId *q, uint32_t n) {
+  for (uint32_t i = 0; i < n; i++) {
+    Expr d = expr_diff(g, F, q[i]), left = expr_sub(g, a[i], d);
+    if (prove_zero(g, left, NULL) != PROVED_ZERO) return 0;
+  }
+  return 1;
+}
+
+Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n) {
+  Expr F = by_coordinates(g, a, q, n);
+  if (is_potential(g, F, a, q, n)) return F;
+  Expr other = by_homotopy(g, a, q, n);
+  return other && is_potential(g, other, a, q, n) ? other : F;
+}

@@ -1,0 +1,166 @@
+/* noether_prove against closed forms: delta L, F, charges and powers of textbook symmetries. Generators are written as observables of
+ * the model: xi_NAME for each coordinate that moves, and tau; so are the F, the charge and the power that are expected, of which
+ * F and the charge are compared up to a constant, the power exactly. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compile_text.h"
+#include "mech/noether.h"
+#include "sym/print.h"
+#include "sym/prove.h"
+
+static Expr observed(const Eqns *e, const char *name) {
+  for (uint32_t i = 0; i < e->m->observes.n; i++)
+    if (strcmp(e->m->observes.at[i].name, name) == 0) return e->m->observes.at[i].value;
+  return 0;
+}
+
+static const char *text_of(const Eqns *e, Expr x) {
+  StrBuf b = strbuf(e->m->arena);
+  expr_print(e->g, x, PRINT_TEXT, &b);
+  return sb_text(&b);
+}
+
+typedef struct {
+  Arena *arena;
+  Eqns *e;
+  Noether n;
+} Proof;
+
+static Proof prove_model(const char *lag) {
+  Proof p = {.arena = arena_new(NULL)};
+  jmp_buf failed;
+  assert_non_null(p.arena);
+  if (setjmp(failed)) fail_msg("out of memory");
+  arena_guard(p.arena, &failed);
+  p.e = equations(p.arena, lag, NULL);
+  assert_non_null(p.e);
+  uint32_t n = noether_coordinates(p.e);
+  Expr *xi = ARENA_ARRAY(p.arena, Expr, n + 1);
+  for (uint32_t i = 0; i < n; i++) xi[i] = observed(p.e, arena_printf(p.arena, "xi_%s", expr_symbol(p.e->g, noether_coordinate(p.e, i))->name));
+  p.n = noether_prove(p.e, &(Generator){xi, observed(p.e, "tau")});
+  return p;
+}
+
+static void same(const Proof *p, const char *what, Expr found, const char *name) {
+  Expr expected = observed(p->e, name);
+  if (!expected) return;
+  Expr left = expr_sub(p->e->g, found, expected);
+  if (prove_zero(p->e->g, left, NULL) == PROVED_ZERO) return;
+  fail_msg("%s is %s, expected %s", what, text_of(p->e, found), text_of(p->e, expected));
+}
+
+static void proves(const char *lag, Invariance is) {
+  Proof p = prove_model(lag);
+  if (p.n.is != is) fail_msg("verdict %d instead of %d; F = %s, remainder %s", p.n.is, is, text_of(p.e, p.n.F), text_of(p.e, p.n.remainder));
+  same(&p, "F", p.n.F, "F");
+  same(&p, "the charge", p.n.charge, "Q");
+  same(&p, "the power", p.n.power, "P");
+  same(&p, "the remainder", p.n.remainder, "left");
+  arena_free(p.arena);
+}
+
+#define KEPLER "model k\ncoord x, y\nparam m = 1 > 0, k = 2 > 0\nlagrangian = m/2*(x'^2 + y'^2) + k/hypot(x, y)\n"
+
+static void kepler(void **state) {
+  (void)state;
+  proves(KEPLER "observe xi_x = -y\nobserve xi_y = x\nobserve F = 0\nobserve Q = m*(x*y' - y*x')\nobserve P = 0\n", INVARIANT);
+  proves(KEPLER "observe xi_x = y\nobserve xi_y = x\nobserve left = 2*m*x'*y' - 2*k*x*y/hypot(x, y)^3\n", NOT_INVARIANT);
+  proves(KEPLER "observe tau = -1\nobserve Q = m/2*(x'^2 + y'^2) - k/hypot(x, y)\nobserve P = 0\n", INVARIANT);
+  proves(KEPLER "observe xi_x = 1\nobserve left = -k*x/hypot(x, y)^3\nobserve P = -k*x/hypot(x, y)^3\n", NOT_INVARIANT);
+}
+
+/* Boosts: F = m x; in a uniform field what it does adds up to m g t^2/2. */
+static void boosts(void **state) {
+  (void)state;
+  proves("model b\ncoord x\nparam m = 2 > 0\nlagrangian = m/2*x'^2\nobserve xi_x = t\nobserve F = m*x\nobserve Q = m*t*x' - m*x\n", INVARIANT_UP_TO_F);
+  proves("model b\ncoord x\nparam m = 2 > 0, g = 9.81\nlagrangian = m/2*x'^2 - m*g*x\nobserve xi_x = t\nobserve F = m*x - m*g*t^2/2\nobserve P = 0\n",
+         INVARIANT_UP_TO_F);
+  proves("model b\ncoord x\nparam m = 2 > 0, g = 9.81\nlagrangian = m/2*x'^2 - m*g*x\nobserve xi_x = 1\nobserve F = -m*g*t\nobserve Q = m*x' + m*g*t\n",
+         INVARIANT_UP_TO_F);
+  proves("model b\ncoord x\nparam m = 2 > 0, k = 3\nlagrangian = m/2*x'^2 - k/4*x^4\nobserve xi_x = t\nobserve F = m*x\nobserve left = -k*t*x^3\n",
+         NOT_INVARIANT);
+}
+
+/* x -> x + s cos(w t) with w^2 = k/m, driven at another frequency: F has the integral of the drive, products of cosines. */
+static void oscillator(void **state) {
+  (void)state;
+  proves("model o\ncoord x\nparam m = 2 > 0, w = 3 > 0, a = 0.5, v = 1.5 > 0\nlagrangian = m/2*x'^2 - m*w^2/2*x^2 + a*x*cos(v*t)\n"
+         "observe xi_x = cos(w*t)\nobserve F = -m*w*x*sin(w*t) + a/2*(sin((v - w)*t)/(v - w) + sin((v + w)*t)/(v + w))\n"
+         "observe Q = m*x'*cos(w*t) + m*w*x*sin(w*t) - a/2*(sin((v - w)*t)/(v - w) + sin((v + w)*t)/(v + w))\nobserve P = 0\n",
+         INVARIANT_UP_TO_F);
+  proves("model o\ncoord x\nparam m = 2 > 0, g = 0.3 > 0, k = 1\nlagrangian = exp(2*g*t)*(m/2*x'^2 - k/2*x^2)\n"
+         "observe xi_x = -g*x\nobserve tau = 1\nobserve F = 0\nobserve Q = exp(2*g*t)*(-g*m*x*x' - m/2*x'^2 - k/2*x^2)\n",
+         INVARIANT);
+  proves("model o\ncoord x\nparam m = 2 > 0, g = 0.3 > 0\nlagrangian = m/2*x'^2 + x*t*exp(-g*t)\n"
+         "observe xi_x = 1\nobserve F = -(t/g + 1/g^2)*exp(-g*t)\n",
+         INVARIANT_UP_TO_F);
+}
+
+/* Gauge terms: magnetic translations, a gauge function with a sine, and one that is homogeneous of degree -1. */
+static void gauges(void **state) {
+  (void)state;
+  proves("model c\ncoord x, y\nparam m = 1 > 0, b = 2\nlagrangian = m/2*(x'^2 + y'^2) + b/2*(x*y' - y*x')\n"
+         "observe xi_x = 1\nobserve F = b/2*y\nobserve Q = m*x' - b*y\n",
+         INVARIANT_UP_TO_F);
+  proves("model c\ncoord x, y\nparam m = 1 > 0, b = 2\nlagrangian = m/2*(x'^2 + y'^2) + b*(cos(x)*x'*y + sin(x)*y')\n"
+         "observe xi_x = 1\nobserve F = b*y*cos(x)\nobserve Q = m*x' \n",
+         INVARIANT_UP_TO_F);
+  proves("model c\ncoord x, y\nparam m = 1 > 0, b = 2\nlagrangian = m/2*(x'^2 + y'^2) + b*(x*y' - y*x')/(x^2 + y^2)\n"
+         "observe xi_x = 1\nobserve F = -b*y/(x^2 + y^2)\nobserve Q = m*x'\n",
+         INVARIANT_UP_TO_F);
+}
+
+/* x -> exp(s/2) x, t -> exp(s) t leaves an inverse-square potential alone; another power does not. */
+static void scaling(void **state) {
+  (void)state;
+  proves("model i\ncoord x\nparam m = 1 > 0, k = 1\nlagrangian = m/2*x'^2 - k/x^2\n"
+         "observe xi_x = x/2\nobserve tau = t\nobserve Q = m*x*x'/2 - t*(m/2*x'^2 + k/x^2)\n",
+         INVARIANT);
+  proves("model i\ncoord x\nparam m = 1 > 0, k = 1\nlagrangian = m/2*x'^2 - k/x\n"
+         "observe xi_x = x/2\nobserve tau = t\nobserve left = -k/(2*x)\n",
+         NOT_INVARIANT);
+}
+
+/* Friction, a drive, and an input inside L. */
+static void balances(void **state) {
+  (void)state;
+  proves("model d\ncoord th\nparam c = 0.1, a = 1, w = 2\nlagrangian = th'^2/2 + cos(th)\ndissipation = c/2*th'^2\nforce th = a*cos(w*t)\n"
+         "observe tau = -1\nobserve Q = th'^2/2 - cos(th)\nobserve P = th'*(a*cos(w*t) - c*th')\n",
+         INVARIANT);
+  proves("model d\ncoord x\ninput u = sin(t)\nlagrangian = x'^2/2 - u*x\nobserve tau = -1\nobserve Q = x'^2/2 + u*x\nobserve P = x*cos(t)\n", INVARIANT);
+}
+
+static void constrained(void **state) {
+  (void)state;
+  proves("model s\ncoord x, y, z\nparam g = 9.81, l = 1 > 0\nlagrangian = (x'^2 + y'^2 + z'^2)/2 - g*z\nconstraint rod: x^2 + y^2 + z^2 = l^2\n"
+         "observe xi_x = -y\nobserve xi_y = x\nobserve Q = x*y' - y*x'\nobserve P = 0\n",
+         INVARIANT);
+  proves("model s\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2\nconstraint slope: y = 2*x\nobserve xi_x = 1\nobserve P = -2*lambda(slope)\n", INVARIANT);
+  proves("model s\ncoord x, y\nparam w = 1\nlagrangian = (x'^2 + y'^2)/2\nconstraint arm: x*sin(w*t) = y*cos(w*t)\n"
+         "observe tau = -1\nobserve P = -lambda(arm)*w*(x*cos(w*t) + y*sin(w*t))\n",
+         INVARIANT);
+  proves("model s\ncoord x, y, a\nparam w = 1\nlagrangian = (x'^2 + y'^2 + a'^2)/2\nconstraint belt: x' = a' + w\n"
+         "observe tau = -1\nobserve P = lambda(belt)*w\n",
+         INVARIANT);
+}
+
+/* L = theta q' - H: rotations of the plane for vortices. */
+static void first_order(void **state) {
+  (void)state;
+  proves("model v\ncoord x, y\nparam k = 1 > 0\nlagrangian = k*(x*y' - y*x')/2 - (x^2 + y^2)^2\nobserve xi_x = -y\nobserve xi_y = x\n"
+         "observe Q = k*(x^2 + y^2)/2\nobserve P = 0\n",
+         INVARIANT);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(kepler),  cmocka_unit_test(boosts),   cmocka_unit_test(oscillator),
+                                     cmocka_unit_test(gauges),  cmocka_unit_test(scaling),  cmocka_unit_test(balances),
+                                     cmocka_unit_test(constrained), cmocka_unit_test(first_order)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
