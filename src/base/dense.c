@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 static void exchange(long double *x, long double *y, uint32_t n, size_t stride) {
   for (size_t i = 0; i < n * stride; i += stride) {
@@ -199,4 +200,16 @@ uint32_t dense_echelon(uint32_t rows, uint32_t columns, long double *m, long dou
     for (size_t j = 0; j < w; j++)
       if (i >= rank || fabsl(m[i * w + j]) <= rest) m[i * w + j] = 0;
   return rank;
+}
+
+DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns) {
+  DenseRows o = {.width = columns, .at = ARENA_ARRAY(a, long double, (size_t)from->n * columns + 1)};
+  for (uint32_t k = 0; k < from->n; k++) {
+    long double *row = o.at + (size_t)o.n * columns, length = 0;
+    memcpy(row, from->at + (size_t)k * from->width, columns * sizeof *row);
+    for (uint32_t j = 0; j < columns; j++) length += row[j] * row[j];
+    if (length > 0 && dense_reduce(columns, row, o.at, o.n) > 1e-9L) o.n++;
+    else memset(row, 0, columns * sizeof *row);
+  }
+  return o;
 }

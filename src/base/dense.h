@@ -28,6 +28,9 @@ typedef struct {
  * zero. Householder's reflections with exchanged columns: Golub & Van Loan, 5.4.2. */
 DenseRows dense_kernel(Arena *a, uint32_t rows, uint32_t columns, long double *m, long double rest);
 
+/* Orthonormal rows that span the first `columns` columns of `from`; dependent ones are left out. */
+DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns);
+
 /* Brings the rows to reduced echelon form, pivots from the left; elements not above `rest` are zero, and so are all rows past the rank.
  * pivot[rows] gets the columns of the pivots. Returns the rank. */
 uint32_t dense_echelon(uint32_t rows, uint32_t columns, long double *m, long double rest, uint32_t *pivot);

@@ -22,12 +22,13 @@ static int same_vector(Name a, Name b) {
 
 int ansatz_is_restricted(const Ansatz *a) { return a->n > WHOLE_MOST; }
 
+static Name name_of(const Ansatz *s, uint32_t i) { return expr_symbol(s->e->g, s->q[i])->name; }
+
 static void add_xi(Ansatz *s, Arena *a) {
-  const Model *m = s->e->m;
   for (uint32_t i = 0; i < s->n; i++) vec_push(a, &s->xi, ((XiColumn){i, 0}));
   for (uint32_t i = 0; i < s->n; i++)
     for (uint32_t j = 0; j < s->n; j++)
-      if (!ansatz_is_restricted(s) || i == j || same_vector(m->coords.at[i].name, m->coords.at[j].name))
+      if (!ansatz_is_restricted(s) || i == j || same_vector(name_of(s, i), name_of(s, j)))
         vec_push(a, &s->xi, ((XiColumn){i, j + 1}));
 }
 
@@ -40,17 +41,19 @@ static void add_gauge(Ansatz *s, Arena *a) {
 
 Ansatz *ansatz_new(Arena *a, const Eqns *e) {
   Ansatz *s = ARENA_NEW(a, Ansatz);
-  SymId *q = ARENA_ARRAY(a, SymId, e->n + 1), *v = ARENA_ARRAY(a, SymId, e->n + 1);
-  for (uint32_t i = 0; i < e->n; i++) {
-    q[i] = e->m->coords.at[i].q;
-    v[i] = e->m->coords.at[i].v;
-  }
+  unsigned kinds = expr_kinds(e->g, e->m->lagrangian);
   s->e = e;
-  s->n = e->n;
+  s->n = noether_coordinates(e);
+  SymId *q = ARENA_ARRAY(a, SymId, s->n + 1), *v = ARENA_ARRAY(a, SymId, s->n + 1);
+  for (uint32_t i = 0; i < s->n; i++) {
+    q[i] = noether_coordinate(e, i);
+    v[i] = e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate;
+  }
   s->q = q;
   s->v = v;
   s->degree = s->n <= CUBIC_MOST ? 3 : s->n <= WHOLE_MOST ? 2 : 1;
-  s->has_tau = !(expr_kinds(e->g, e->m->lagrangian) & (1u << SYM_INPUT | 1u << SYM_STATE | 1u << SYM_TIME));
+  s->has_tau = !(kinds & (1u << SYM_INPUT | (e->n ? 1u << SYM_STATE : 0)));
+  s->has_time = (kinds & 1u << SYM_TIME) != 0;
   add_xi(s, a);
   add_gauge(s, a);
   s->shown = 1 + s->xi.n;
@@ -63,12 +66,13 @@ Ansatz *ansatz_new(Arena *a, const Eqns *e) {
 struct RowSource {
   const Ansatz *of;
   Arena *scratch;
-  EvalTape *tape;        /* L, dL/dq, p; then of constraints A and r */
+  EvalTape *tape;        /* L, dL/dt, dL/dq, p; then of constraints A and r */
   StateSolver *solver;   /* or NULL */
   long double *symbols, *out;
   long double *phi, *rate; /* [n + 1] 1, q and their derivatives */
   long double *part;     /* [2*columns] scratch */
   uint64_t random;
+  uint32_t turn;         /* of constraints, in rows at times */
 };
 
 /* Steele, Lea, Flood: Fast splittable pseudorandom number generators, OOPSLA 2014, DOI 10.1145/2660193.2660195. Of size 0.3 .. 1.7. */
@@ -86,29 +90,31 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
   const Constraints *k = &e->constraints;
   RowSource *r = ARENA_NEW(scratch, RowSource);
   uint32_t count = 0, symbols = expr_symbol_count(e->g) + 1;
-  Expr *roots = ARENA_ARRAY(scratch, Expr, 1 + 2 * (size_t)e->n + k->A.n + k->n);
-  roots[count++] = e->m->lagrangian;
-  for (uint32_t i = 0; i < e->n; i++) roots[count++] = e->dLdq[i];
-  for (uint32_t i = 0; i < e->n; i++) roots[count++] = e->p[i];
+  Expr *roots = ARENA_ARRAY(scratch, Expr, 2 + 2 * (size_t)s->n + k->A.n + k->n), L = e->m->lagrangian;
+  roots[count++] = L;
+  roots[count++] = expr_diff(e->g, L, e->m->time);
+  expr_gradient(e->g, L, s->q, s->n, roots + count);
+  count += s->n;
+  for (uint32_t i = 0; i < s->n; i++) roots[count++] = e->n ? e->p[i] : e->first.theta[i];
   for (uint32_t i = 0; i < k->A.n; i++) roots[count++] = k->A.at[i].e;
   for (uint32_t i = 0; i < k->n; i++) roots[count++] = k->r[i];
   *r = (RowSource){.of = s, .scratch = scratch, .tape = eval_tape(e->g, roots, count), .solver = k->n ? states_new(e) : NULL, .random = 7};
   r->symbols = ARENA_ARRAY(scratch, long double, symbols);
   r->out = ARENA_ARRAY(scratch, long double, count);
-  r->phi = ARENA_ARRAY(scratch, long double, e->n + 1);
-  r->rate = ARENA_ARRAY(scratch, long double, e->n + 1);
+  r->phi = ARENA_ARRAY(scratch, long double, s->n + 1);
+  r->rate = ARENA_ARRAY(scratch, long double, s->n + 1);
   r->part = ARENA_ARRAY(scratch, long double, 2 * (size_t)s->columns);
   memcpy(r->symbols, parameters, symbols * sizeof *parameters);
   return r;
 }
 
-/* Everything but parameters gets a new value. */
+/* Everything but parameters gets a new value. Times are further apart, so that functions of time are told from each other. */
 static void draw(RowSource *r) {
   const ExprGraph *g = r->of->e->g;
   for (SymId s = 1; s <= expr_symbol_count(g); s++) {
     const Symbol *x = expr_symbol(g, s);
     if (x->kind == SYM_PARAM || x->kind == SYM_CONST) continue;
-    long double value = next_value(r);
+    long double value = next_value(r) * (x->kind == SYM_TIME ? 4 : 1);
     r->symbols[s] = x->sign == SIGN_POSITIVE || x->sign == SIGN_NONNEGATIVE ? fabsl(value) : value;
   }
 }
@@ -133,10 +139,11 @@ static void evaluate(RowSource *r) {
 /* Adds `weight` times the row of delta L - dF/dt at the state. */
 static void add_lagrangian_row(RowSource *r, long double weight, long double *b0, long double *b1) {
   const Ansatz *s = r->of;
-  const long double *dLdq = r->out + 1, *p = dLdq + s->n;
+  const long double *dLdq = r->out + 2, *p = dLdq + s->n;
   long double energy = -r->out[0];
   for (uint32_t i = 0; i < s->n; i++) energy += p[i] * r->rate[i + 1];
   if (s->has_tau) b1[0] -= weight * energy;
+  if (s->has_tau) b0[0] += weight * r->out[1];
   for (uint32_t j = 0; j < s->xi.n; j++) {
     uint32_t i = s->xi.at[j].i, k = s->xi.at[j].k;
     b0[1 + j] += weight * (dLdq[i] * r->phi[k] + p[i] * r->rate[k]);
@@ -171,7 +178,7 @@ static int constraint_row(RowSource *r, uint32_t which, long double *b0) {
   const Constraints *k = &s->e->constraints;
   if (!states_obey(r->solver, r->symbols)) return 0;
   evaluate(r);
-  const long double *A = r->out + 1 + 2 * (size_t)s->n;
+  const long double *A = r->out + 2 + 2 * (size_t)s->n;
   long double b = A[k->A.n + which];
   for (uint32_t x = 0; x < k->A.n; x++) {
     if (k->A.at[x].row != which) continue;
@@ -189,18 +196,32 @@ static int is_finite(const long double *x, uint32_t n) {
   return 1;
 }
 
+/* A row at a new state; 0: a value is not finite. */
+static int try_row(RowSource *r, RowKind kind, uint32_t which, long double *b0, long double *b1) {
+  uint32_t w = r->of->columns;
+  memset(b0, 0, w * sizeof *b0);
+  memset(b1, 0, w * sizeof *b1);
+  draw(r);
+  if (kind != ROWS_CONSTRAINTS) lagrangian_rows(r, kind, b0, b1);
+  else if (!constraint_row(r, which % r->of->e->constraints.n, b0)) return 0;
+  return is_finite(b0, w) && is_finite(b1, w);
+}
+
+enum { TRIES = 20 };
+
 uint32_t rows_fill(RowSource *r, RowKind kind, uint32_t n, long double *b0, long double *b1) {
-  enum { TRIES = 20 };
   size_t w = r->of->columns;
   uint32_t done = 0;
-  for (uint32_t tries = 0; done < n && tries < TRIES * (done + 10); tries++) {
-    long double *x = b0 + done * w, *y = b1 + done * w;
-    memset(x, 0, w * sizeof *x);
-    memset(y, 0, w * sizeof *y);
-    draw(r);
-    if (kind != ROWS_CONSTRAINTS) lagrangian_rows(r, kind, x, y);
-    else if (!constraint_row(r, done % r->of->e->constraints.n, x)) continue;
-    done += (uint32_t)(is_finite(x, (uint32_t)w) && is_finite(y, (uint32_t)w));
-  }
+  for (uint32_t tries = 0; done < n && tries < TRIES * (done + 10); tries++)
+    done += (uint32_t)try_row(r, kind, done, b0 + done * w, b1 + done * w);
   return done;
+}
+
+int rows_at_time(RowSource *r, RowKind kind, long double *b0, long double *b1, long double *t) {
+  for (uint32_t tries = 0; tries < 10 * TRIES; tries++)
+    if (try_row(r, kind, r->turn++, b0, b1)) {
+      *t = r->symbols[r->of->e->m->time];
+      return 1;
+    }
+  return 0;
 }

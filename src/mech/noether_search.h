@@ -11,7 +11,7 @@
 #define LAGC_NOETHER_SEARCH_H
 
 #include "base/dense.h"
-#include "mech/eqns.h"
+#include "mech/noether.h"
 #include "sym/eval.h"
 
 /* xi_i contains c times phi_k: k is 0 for 1, j + 1 for q_j. */
@@ -29,16 +29,17 @@ typedef struct {
 typedef struct {
   const Eqns *e;
   uint32_t n;              /* coordinates */
-  const SymId *q, *v;      /* [n] */
+  const SymId *q, *v;      /* [n]; of an L of first order states and rates */
   uint32_t degree;         /* of the gauge function */
   int has_tau;             /* 0: L contains what is given from outside; column 0 then stays zero */
+  int has_time;            /* L contains t */
   VEC(XiColumn) xi;
   VEC(GaugeColumn) gauge;  /* the first is 1 */
   uint32_t shown;          /* columns of tau and xi: 1 + xi.n */
   uint32_t columns;        /* shown + gauge.n */
 } Ansatz;
 
-/* All of it for up to `whole` coordinates. Beyond that the linear part of xi mixes only the components of one vector. */
+/* All of it for up to 20 coordinates. Beyond that the linear part of xi mixes only the components of one vector. */
 Ansatz *ansatz_new(Arena *a, const Eqns *e);
 
 /* Whether the linear part was cut down. */
@@ -56,6 +57,9 @@ RowSource *rows_new(const Ansatz *a, Arena *scratch, const long double *paramete
 /* Fills in up to `n` rows at states not yet used; those of a state with values that are not finite are left out. b0 and b1 are
  * [n*columns]. Returns how many there are: 0 where no state works, or L has no such rows. */
 uint32_t rows_fill(RowSource *r, RowKind kind, uint32_t n, long double *b0, long double *b1);
+
+/* One more row of ROWS_ALL, or of constraints, at a state and a time, *t. 0: no state works. */
+int rows_at_time(RowSource *r, RowKind kind, long double *b0, long double *b1, long double *t);
 
 /* A space of solutions u(t): u = sum of x_a space[a], x' = A x. */
 typedef struct {

@@ -6,19 +6,6 @@
 enum { SPARE_ROWS = 12 };
 static const long double REST = 1e-11L; /* of a column of length 1: rounding is 1e-18, random pivots were never seen below 1e-6 */
 
-/* The orthonormal rows of what spans the space; dependent ones are left out. */
-static DenseRows orthonormal(Arena *a, const DenseRows *from, uint32_t columns) {
-  DenseRows o = {.width = columns, .at = ARENA_ARRAY(a, long double, (size_t)from->n * columns + 1)};
-  for (uint32_t k = 0; k < from->n; k++) {
-    long double *row = o.at + (size_t)o.n * columns, length = 0;
-    memcpy(row, from->at + (size_t)k * from->width, columns * sizeof *row);
-    for (uint32_t j = 0; j < columns; j++) length += row[j] * row[j];
-    if (length > 0 && dense_reduce(columns, row, o.at, o.n) > 1e-9L) o.n++;
-    else memset(row, 0, columns * sizeof *row);
-  }
-  return o;
-}
-
 /* x * space: rows of coordinates become rows of u. */
 static DenseRows combine(Arena *a, const DenseRows *x, const DenseRows *space) {
   DenseRows u = {x->n, space->width, ARENA_ARRAY(a, long double, (size_t)x->n * space->width + 1), x->gap};
@@ -57,8 +44,8 @@ static int cut(RowSource *r, Arena *a, RowKind kind, DenseRows *space, int *sure
   DenseRows kernel = pairs(r, a, kind, space);
   if (kernel.at == NULL) return 0;
   if (kernel.gap < 1e4L) *sure = 0;
-  DenseRows x = orthonormal(a, &kernel, space->n), u = combine(a, &x, space);
-  *space = orthonormal(a, &u, u.width);
+  DenseRows x = dense_orthonormal(a, &kernel, space->n), u = combine(a, &x, space);
+  *space = dense_orthonormal(a, &u, u.width);
   return 1;
 }
 

@@ -1,0 +1,225 @@
+#include "mech/noether_name.h"
+
+#include <ctype.h>
+
+enum { NO_AXIS = 3 };
+
+/* --- coordinates of bodies --- */
+
+/* r[2].x, x[2], x2 and x are components along x. */
+static uint32_t axis_of(Name name) {
+  const char *dot = strrchr(name, '.'), *letter = dot ? dot + 1 : name;
+  if (*letter < 'x' || *letter > 'z') return NO_AXIS;
+  if (dot ? letter[1] != '\0' : isalpha((unsigned char)letter[1])) return NO_AXIS;
+  return (uint32_t)(*letter - 'x');
+}
+
+/* Whether two components belong to one body: all but the letter agrees. */
+static int same_body(Name a, Name b) {
+  const char *x = strrchr(a, '.'), *y = strrchr(b, '.');
+  if (!x != !y) return 0;
+  if (!x) return strcmp(a + 1, b + 1) == 0;
+  return x - a == y - b && memcmp(a, b, (size_t)(x - a)) == 0;
+}
+
+static Name coord(const Eqns *e, uint32_t i) { return expr_symbol(e->g, noether_coordinate(e, i))->name; }
+
+static uint32_t along(const Eqns *e, uint32_t axis) {
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++) n += axis_of(coord(e, i)) == axis;
+  return n;
+}
+
+/* --- what a row is made of --- */
+
+typedef struct {
+  uint32_t tau, shift, linear; /* bits: the blocks in which they occur */
+} Parts;
+
+static Parts parts_of(const Eqns *e, const GeneratorRow *r) {
+  Parts p = {0};
+  for (uint32_t m = 0; m < r->blocks; m++) {
+    const Expr *c = r->c + (size_t)m * r->ansatz->shown;
+    if (!expr_is_zero(e->g, c[0])) p.tau |= 1u << m;
+    for (uint32_t j = 0; j < r->ansatz->xi.n; j++) {
+      if (expr_is_zero(e->g, c[1 + j])) continue;
+      if (r->ansatz->xi.at[j].k) p.linear |= 1u << m;
+      else p.shift |= 1u << m;
+    }
+  }
+  return p;
+}
+
+/* The coefficient of phi_k in xi_i, in block m. */
+static Expr entry(const Eqns *e, const GeneratorRow *r, uint32_t m, uint32_t i, uint32_t k) {
+  const Expr *c = r->c + (size_t)m * r->ansatz->shown + 1;
+  for (uint32_t j = 0; j < r->ansatz->xi.n; j++)
+    if (r->ansatz->xi.at[j].i == i && r->ansatz->xi.at[j].k == k) return c[j];
+  return expr_int(e->g, 0);
+}
+
+static int is_energy(Parts p) { return p.tau == 1 && !p.shift && !p.linear; }
+
+/* The linear part of block 0 turns q_i against q_j. */
+static int turns(const Eqns *e, const GeneratorRow *r, uint32_t i, uint32_t j) {
+  Expr a = entry(e, r, 0, i, j + 1), b = entry(e, r, 0, j, i + 1);
+  return !expr_is_zero(e->g, a) && a == expr_neg(e->g, b);
+}
+
+/* --- signs --- */
+
+static void flip(const Eqns *e, GeneratorRow *r) {
+  for (size_t k = 0; k < (size_t)r->blocks * r->ansatz->shown; k++) r->c[k] = expr_neg(e->g, r->c[k]);
+}
+
+/* Whether q_i grows with q_j in the sense of rotation of books: x -> -y, y -> x; z from x falls. */
+static int wrong_turn(const Eqns *e, uint32_t i, uint32_t j, Expr c) {
+  uint32_t a = axis_of(coord(e, i)), b = axis_of(coord(e, j));
+  int z_and_x = a == 0 && b == 2;
+  Num number;
+  expr_pair(e->g, c, EX_SUM, 0, &number);
+  return z_and_x ? num_sign(number) < 0 : num_sign(number) > 0;
+}
+
+void orient(const Eqns *e, GeneratorRow *r) {
+  Parts p = parts_of(e, r);
+  if (r->kind != TIME_POWERS && r->kind != TIME_LISTED) return;
+  if (p.tau == 1) {
+    if (num_sign(expr_is_num(e->g, r->c[0]) ? expr_number(e->g, r->c[0]) : num_int(1)) > 0) flip(e, r);
+    return;
+  }
+  if (p.tau || p.shift || p.linear != 1) return;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+    for (uint32_t j = i + 1; j < noether_coordinates(e); j++) {
+      if (!turns(e, r, i, j)) continue;
+      if (wrong_turn(e, i, j, entry(e, r, 0, i, j + 1))) flip(e, r);
+      return;
+    }
+}
+
+/* --- names --- */
+
+/* The only coordinate that block m shifts; UINT32_MAX: there are several. */
+static uint32_t only_shift(const Eqns *e, const GeneratorRow *r, uint32_t m) {
+  uint32_t only = UINT32_MAX, n = 0;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+    if (!expr_is_zero(e->g, entry(e, r, m, i, 0))) only = i, n++;
+  return n == 1 ? only : UINT32_MAX;
+}
+
+/* The axis along which block m shifts all bodies alike; NO_AXIS: it does something else. */
+static uint32_t common_shift(const Eqns *e, const GeneratorRow *r, uint32_t m) {
+  uint32_t axis = NO_AXIS, n = 0;
+  Expr one = 0;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++) {
+    Expr c = entry(e, r, m, i, 0);
+    if (expr_is_zero(e->g, c)) continue;
+    uint32_t own = axis_of(coord(e, i));
+    if (own == NO_AXIS || (one && (c != one || own != axis))) return NO_AXIS;
+    one = c;
+    axis = own;
+    n++;
+  }
+  return n && n == along(e, axis) ? axis : NO_AXIS;
+}
+
+static const char *axis_text(uint32_t axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
+
+static void name_shift(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  Arena *a = e->m->arena;
+  uint32_t axis = common_shift(e, r, 0), only = only_shift(e, r, 0);
+  int has_F = to->is.is == INVARIANT_UP_TO_F, magnetic = has_F && (expr_kinds(e->g, to->is.F) & 1u << SYM_COORD);
+  to->kind = SYMMETRY_MOMENTUM;
+  to->axis = axis;
+  to->of_all = axis != NO_AXIS;
+  if (only != UINT32_MAX)
+    to->name = arena_printf(a, magnetic ? "magnetic translation along %s" : has_F ? "translation along %s: momentum less the impulse of what is uniform" : "momentum of %s",
+                            coord(e, only));
+  else if (axis != NO_AXIS) to->name = arena_printf(a, magnetic ? "magnetic translation of all bodies along %s" : "total momentum along %s", axis_text(axis));
+  else to->name = magnetic ? "magnetic translation" : "momentum along a direction";
+}
+
+static void name_boost(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  uint32_t axis = common_shift(e, r, 1), only = only_shift(e, r, 1);
+  to->kind = SYMMETRY_BOOST;
+  to->axis = axis;
+  to->of_all = axis != NO_AXIS;
+  to->name = only != UINT32_MAX  ? arena_printf(e->m->arena, "boost along %s", coord(e, only))
+             : axis != NO_AXIS   ? arena_printf(e->m->arena, "boost along %s: the centre of mass moves uniformly", axis_text(axis))
+                                 : "boost";
+}
+
+/* Whether the linear part is a turn of some bodies about one axis by one angle; *bodies: how many. */
+static uint32_t common_turn(const Eqns *e, const GeneratorRow *r, uint32_t *bodies) {
+  uint32_t axis = NO_AXIS, terms = 0;
+  Expr one = 0;
+  *bodies = 0;
+  for (uint32_t j = 0; j < r->ansatz->xi.n; j++) terms += !expr_is_zero(e->g, r->c[1 + j]);
+  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+    for (uint32_t j = i + 1; j < noether_coordinates(e); j++) {
+      uint32_t a = axis_of(coord(e, i)), b = axis_of(coord(e, j));
+      if (!turns(e, r, i, j)) continue;
+      if (a == NO_AXIS || b == NO_AXIS || a == b || !same_body(coord(e, i), coord(e, j))) return NO_AXIS;
+      Expr c = entry(e, r, 0, i, j + 1);
+      if ((b + 3 - a) % 3 == 2) c = expr_neg(e->g, c);
+      if (one && (c != one || axis != 3 - a - b)) return NO_AXIS;
+      one = c;
+      axis = 3 - a - b;
+      ++*bodies;
+    }
+  return terms == 2 * *bodies ? axis : NO_AXIS;
+}
+
+static uint32_t bodies_with(const Eqns *e, uint32_t axis) {
+  uint32_t a = (axis + 1) % 3, n = 0;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+    for (uint32_t j = 0; j < noether_coordinates(e); j++)
+      n += axis_of(coord(e, i)) == a && axis_of(coord(e, j)) == (axis + 2) % 3 && same_body(coord(e, i), coord(e, j));
+  return n;
+}
+
+static void name_linear(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  uint32_t bodies, axis = common_turn(e, r, &bodies);
+  int antisymmetric = 1, space = along(e, 2) > 0 && along(e, 0) > 0;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+    for (uint32_t j = 0; j < noether_coordinates(e); j++)
+      if (!expr_is_zero(e->g, entry(e, r, 0, i, j + 1)) && !turns(e, r, i < j ? i : j, i < j ? j : i)) antisymmetric = 0;
+  if (axis != NO_AXIS) {
+    int all = bodies == bodies_with(e, axis);
+    to->kind = SYMMETRY_ROTATION;
+    to->axis = axis;
+    to->of_all = all;
+    const char *whole = all && bodies > 1 ? "total angular momentum" : "angular momentum";
+    to->name = space || axis != 2 ? arena_printf(e->m->arena, "%s about %s", whole, axis_text(axis)) : whole;
+  } else to->name = antisymmetric ? "rotation among coordinates" : "linear map of the coordinates";
+}
+
+void name_symmetry(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  Parts p = parts_of(e, r);
+  to->axis = NO_AXIS;
+  to->name = "point symmetry";
+  if (r->kind != TIME_POWERS && (r->kind != TIME_LISTED || (p.tau | p.shift | p.linear) > 3)) {
+    const char *what = p.tau ? "breathing" : p.linear ? "turning" : "shift along a solution";
+    to->name = r->kind == TIME_LISTED ? what : arena_printf(e->m->arena, "%s, %s", what, r->kind == TIME_CIRCULAR ? "periodic in t" : "exponential in t");
+  } else if (is_energy(p)) {
+    to->kind = SYMMETRY_ENERGY;
+    to->name = "energy";
+  } else if (p.tau == 1) to->name = "energy in a moving frame";
+  else if (!p.tau && !p.linear && p.shift == 1) name_shift(e, r, to);
+  else if (!p.tau && !p.linear && p.shift == 2) name_boost(e, r, to);
+  else if (!p.tau && !p.shift && p.linear == 1) name_linear(e, r, to);
+  else if (p.tau == 2 && p.linear == 1) {
+    to->kind = SYMMETRY_SCALING;
+    to->name = "scaling";
+  } else if (p.tau & 4) to->name = "expansion";
+}
+
+int has_galilean_charges(const FoundSymmetries *all) {
+  uint32_t seen[SYMMETRY_SCALING + 1] = {0};
+  for (uint32_t k = 0; k < all->all.n; k++) {
+    const FoundSymmetry *s = &all->all.at[k];
+    if (s->kind == SYMMETRY_ENERGY) seen[s->kind] = 7;
+    else if (s->of_all) seen[s->kind] |= 1u << s->axis;
+  }
+  return seen[SYMMETRY_ENERGY] && seen[SYMMETRY_MOMENTUM] == 7 && seen[SYMMETRY_ROTATION] == 7 && seen[SYMMETRY_BOOST] == 7;
+}
