@@ -168,8 +168,16 @@ static void need_moved(Search *s, Tables *t) {
   t->moved = 1;
 }
 
-/* The coefficient in `row` and `place`; 0: not recognised. The denominator of its number, where it has no other factor, enters *lcm. */
-static Expr coefficient(Search *s, Tables *t, uint32_t row, size_t place) {
+/* Whether the tables at all choices have one shape. */
+static int shapes_agree(Search *s, Tables *t) {
+  need_moved(s, t);
+  for (uint32_t i = CHOICE_SECOND; i < choice_count(s); i++)
+    if (!same_shape(&t->at[0], &t->at[i])) return 0;
+  return 1;
+}
+
+/* The coefficient in `row` and `place`; 0: not recognised. */
+static Expr coefficient(Search *s, Tables *t, uint32_t row, size_t place, int moved) {
   size_t at = (size_t)row * t->at[0].blocks * t->at[0].shown + place;
   long double *x = ARENA_ARRAY(s->scratch, long double, choice_count(s));
   Expr rate = t->family->rate;
@@ -179,11 +187,9 @@ static Expr coefficient(Search *s, Tables *t, uint32_t row, size_t place) {
   if (is_multiple(s, x, 0, &c)) return expr_num(s->g, c);
   if (rate && is_multiple(s, x, rate, &c)) return expr_scale(s->g, c, rate);
   if (rate && is_multiple(s, x, expr_pow_num(s->g, rate, num_int(-1)), &c)) return expr_scale(s->g, c, expr_pow_num(s->g, rate, num_int(-1)));
-  need_moved(s, t);
-  for (uint32_t i = CHOICE_MOVED; i < choice_count(s); i++) {
-    if (!same_shape(&t->at[0], &t->at[i])) return 0;
-    x[i] = t->at[i].at[at];
-  }
+  Expr ratio = ratio_of(&s->choices, x);
+  if (ratio || !moved) return ratio;
+  for (uint32_t i = CHOICE_MOVED; i < choice_count(s); i++) x[i] = t->at[i].at[at];
   return monomial_of(&s->choices, x);
 }
 
@@ -211,7 +217,60 @@ static void clear_fractions(Search *s, Expr *c, size_t n) {
   for (size_t k = 0; k < n; k++) c[k] = expr_scale(s->g, num_div(num_int(1), common), c[k]);
 }
 
+/* The lowest whole power of x in the monomials c, where it is negative. */
+static int32_t lowest_power(const ExprGraph *g, const Expr *c, size_t n, Expr x) {
+  int32_t lowest = 0;
+  for (size_t k = 0; k < n; k++) {
+    Num number, power;
+    Expr term = expr_pair(g, c[k], EX_SUM, 0, &number);
+    for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++)
+      if (expr_pair(g, term, EX_PROD, i, &power) == x && num_is_int(power) && power.num < lowest) lowest = (int32_t)power.num;
+  }
+  return lowest;
+}
+
+/* Parameters below fractions come away: m1/m2*x1 + x2 becomes m1*x1 + m2*x2. */
+static void clear_parameters(Search *s, Expr *c, size_t n) {
+  ExprGraph *g = s->g;
+  for (uint32_t p = 0; p < s->choices.n; p++) {
+    Expr x = expr_symbol(g, s->choices.param[p])->node;
+    int32_t lowest = lowest_power(g, c, n, x);
+    if (lowest == 0) continue;
+    Expr factor = expr_pow_num(g, x, num_int(-lowest));
+    for (size_t k = 0; k < n; k++) c[k] = expr_mul(g, c[k], factor);
+  }
+}
+
 static Expr phi(Search *s, uint32_t k) { return k ? expr_symbol(s->g, s->ansatz->q[k - 1])->node : expr_int(s->g, 1); }
+
+/* All coefficients of a row; 0 where one is not recognised. */
+static int row_coefficients(Search *s, Tables *t, uint32_t row, int moved, Expr *c) {
+  for (size_t k = 0; k < (size_t)t->at[0].blocks * t->at[0].shown; k++)
+    if (!(c[k] = coefficient(s, t, row, k, moved))) return 0;
+  return 1;
+}
+
+/* The same for a shorter row; the table is as it was. */
+static int shorter_coefficients(Search *s, Tables *t, uint32_t row, int moved, Expr *c) {
+  uint32_t n = moved ? choice_count(s) : CHOICE_MOVED, width = t->at[0].blocks * t->at[0].shown;
+  Table **all = ARENA_ARRAY(s->scratch, Table *, n);
+  long double *kept = ARENA_ARRAY(s->scratch, long double, (size_t)n * width);
+  for (uint32_t i = 0; i < n; i++) {
+    all[i] = &t->at[i];
+    memcpy(kept + (size_t)i * width, t->at[i].at + (size_t)row * width, width * sizeof *kept);
+  }
+  int found = table_shorten(s->scratch, all, n, row) && row_coefficients(s, t, row, moved, c);
+  for (uint32_t i = 0; i < n; i++) memcpy(t->at[i].at + (size_t)row * width, kept + (size_t)i * width, width * sizeof *kept);
+  if (found) clear_parameters(s, c, width);
+  return found;
+}
+
+/* The cheap ways first: what takes tables at all choices comes last. */
+static int recognise_row(Search *s, Tables *t, uint32_t row, Expr *c) {
+  if (row_coefficients(s, t, row, 0, c) || shorter_coefficients(s, t, row, 0, c)) return 1;
+  if (!shapes_agree(s, t)) return 0;
+  return row_coefficients(s, t, row, 1, c) || shorter_coefficients(s, t, row, 1, c);
+}
 
 /* Generator of a row; 0 where a coefficient is not recognised. */
 static int row_generator(Search *s, Tables *t, uint32_t row, GeneratorRow *to) {
@@ -219,8 +278,7 @@ static int row_generator(Search *s, Tables *t, uint32_t row, GeneratorRow *to) {
   uint32_t blocks = t->at[0].blocks;
   size_t n = (size_t)blocks * a->shown;
   to->c = ARENA_ARRAY(s->scratch, Expr, n);
-  for (size_t k = 0; k < n; k++)
-    if (!(to->c[k] = coefficient(s, t, row, k))) return 0;
+  if (!recognise_row(s, t, row, to->c)) return 0;
   clear_fractions(s, to->c, n);
   to->ansatz = a;
   to->kind = t->family->kind;

@@ -46,6 +46,28 @@ int rational_of(long double x, Num *out) {
   return 1;
 }
 
+static long double value_at(const Choices *c, uint32_t choice, uint32_t k) { return c->at[choice][c->param[k]]; }
+
+static Expr parameter(const Choices *c, uint32_t k, Num power) {
+  return expr_pow_num(c->e->g, expr_symbol(c->e->g, c->param[k])->node, power);
+}
+
+Expr ratio_of(const Choices *c, const long double *value) {
+  ExprGraph *g = c->e->g;
+  for (uint32_t i = 0; i < c->n; i++)
+    for (uint32_t k = 0; k <= i; k++)
+      for (int powers = 0; powers < 4; powers++) {
+        int a = powers & 1 ? -1 : 1, b = k == i ? 0 : powers & 2 ? -1 : 1;
+        long double first = powl(value_at(c, CHOICE_FIRST, i), a) * powl(value_at(c, CHOICE_FIRST, k), b);
+        long double second = powl(value_at(c, CHOICE_SECOND, i), a) * powl(value_at(c, CHOICE_SECOND, k), b), ratio = value[CHOICE_FIRST] / first;
+        Num number;
+        if (!(fabsl(ratio - value[CHOICE_SECOND] / second) < 1e-10L * fabsl(ratio)) || !rational_of(ratio, &number)) continue;
+        Expr one = parameter(c, i, num_int(a)), other = parameter(c, k, num_int(b));
+        return expr_scale(g, number, expr_mul(g, one, other));
+      }
+  return 0;
+}
+
 static int half_of(long double exponent, Num *out) {
   long double twice = roundl(2 * exponent);
   if (!(fabsl(2 * exponent - twice) < 1e-6L) || fabsl(twice) > 24) return 0;

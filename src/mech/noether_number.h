@@ -20,6 +20,9 @@ Choices choices_new(Arena *a, const Eqns *e);
 /* The rational p/q that x is, to its digits, with q small against them; 0: it is none. */
 int rational_of(long double x, Num *out);
 
+/* The same with a power of one parameter, or with the ratio or product of two, from the first two choices alone. */
+Expr ratio_of(const Choices *c, const long double *value);
+
 /* value[choice], 2 + n of them. 0: no such monomial takes these values. */
 Expr monomial_of(const Choices *c, const long double *value);
 

@@ -40,4 +40,8 @@ typedef struct {
 
 Rates space_rates(Arena *a, const SolutionSpace *s);
 
+/* Adds multiples of other rows to `row`, the same in all tables, so that its entries take fewer different values in the first: what stands in
+ * books has few. The pivots of the other rows come back into it. 0: there is no such change. */
+int table_shorten(Arena *a, Table *const *tables, uint32_t ntables, uint32_t row);
+
 #endif
