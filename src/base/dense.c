@@ -89,7 +89,7 @@ long double dense_reduce(uint32_t n, long double *row, const long double *before
 /* --- kernels --- */
 
 typedef struct {
-  uint32_t rows, columns;
+  uint32_t rows, columns, active; /* columns from `active` on are zero */
   long double *m;
   long double *along;  /* [columns] scratch */
   long double *scale;  /* [columns] 1 / length of the column, by its first place */
@@ -104,8 +104,17 @@ static long double squared_below(const Triangle *t, uint32_t row, uint32_t colum
   return s;
 }
 
+static void exchange_columns(Triangle *t, uint32_t one, uint32_t other) {
+  uint32_t from = t->from[one];
+  t->from[one] = t->from[other];
+  t->from[other] = from;
+  exchange(t->m + one, t->m + other, t->rows, t->columns);
+  exchange(t->length + one, t->length + other, 1, 1);
+  exchange(t->sure + one, t->sure + other, 1, 1);
+}
+
 static Triangle triangle_new(Arena *a, uint32_t rows, uint32_t columns, long double *m) {
-  Triangle t = {rows, columns, m, ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, long double, columns + 1),
+  Triangle t = {rows, columns, columns, m, ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, long double, columns + 1),
                 ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, uint32_t, columns + 1)};
   long double largest = 0;
   for (uint32_t j = 0; j < columns; j++) largest = fmaxl(largest, t.length[j] = sqrtl(squared_below(&t, 0, j)));
@@ -116,46 +125,44 @@ static Triangle triangle_new(Arena *a, uint32_t rows, uint32_t columns, long dou
     t.sure[j] = t.length[j] = zero ? 0 : 1;
     t.from[j] = j;
   }
+  for (uint32_t j = 0; j < t.active;)
+    if (t.length[j] == 0) exchange_columns(&t, j, --t.active);
+    else j++;
   return t;
 }
 
 /* The column of which most is left comes to k; how much that is. */
 static long double bring_longest(Triangle *t, uint32_t k) {
   uint32_t best = k;
-  for (uint32_t j = k; j < t->columns; j++) {
+  for (uint32_t j = k; j < t->active; j++) {
     if (t->length[j] < 1e-6L * t->sure[j]) t->sure[j] = t->length[j] = squared_below(t, k, j);
     if (t->length[j] > t->length[best]) best = j;
   }
-  uint32_t from = t->from[k];
-  t->from[k] = t->from[best];
-  t->from[best] = from;
-  exchange(t->m + k, t->m + best, t->rows, t->columns);
-  exchange(t->length + k, t->length + best, 1, 1);
-  exchange(t->sure + k, t->sure + best, 1, 1);
+  exchange_columns(t, k, best);
   return sqrtl(squared_below(t, k, k));
 }
 
 /* Reflects rows k.. so that column k has one element there, -+length; the columns behind it go along. */
 static void reflect(Triangle *t, uint32_t k, long double length) {
-  size_t w = t->columns;
+  size_t w = t->columns, to = t->active;
   long double *m = t->m, alpha = m[k * w + k] > 0 ? -length : length;
   m[k * w + k] -= alpha;
   long double half = -alpha * m[k * w + k]; /* |u|^2/2 of the u that stands in column k */
-  for (size_t j = k + 1; j < w; j++) t->along[j] = 0;
+  for (size_t j = k + 1; j < to; j++) t->along[j] = 0;
   for (size_t i = k; i < t->rows; i++)
-    for (size_t j = k + 1; j < w; j++) t->along[j] += m[i * w + k] * m[i * w + j];
-  for (size_t j = k + 1; j < w; j++) t->along[j] /= half;
+    for (size_t j = k + 1; j < to; j++) t->along[j] += m[i * w + k] * m[i * w + j];
+  for (size_t j = k + 1; j < to; j++) t->along[j] /= half;
   for (size_t i = k; i < t->rows; i++)
-    for (size_t j = k + 1; j < w; j++) m[i * w + j] -= m[i * w + k] * t->along[j];
+    for (size_t j = k + 1; j < to; j++) m[i * w + j] -= m[i * w + k] * t->along[j];
   m[k * w + k] = alpha;
-  for (size_t j = k + 1; j < w; j++) t->length[j] -= m[k * w + j] * m[k * w + j];
+  for (size_t j = k + 1; j < to; j++) t->length[j] -= m[k * w + j] * m[k * w + j];
 }
 
 DenseRows dense_kernel(Arena *a, uint32_t rows, uint32_t columns, long double *m, long double rest) {
   Triangle t = triangle_new(a, rows, columns, m);
   uint32_t rank = 0;
   long double taken = 1, left = 0;
-  for (; rank < columns && rank < rows; rank++) {
+  for (; rank < t.active && rank < rows; rank++) {
     long double length = bring_longest(&t, rank);
     if (!(length > rest)) {
       left = length;

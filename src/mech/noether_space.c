@@ -11,16 +11,39 @@ static DenseRows combine(Arena *a, const DenseRows *x, const DenseRows *space) {
   DenseRows u = {x->n, space->width, ARENA_ARRAY(a, long double, (size_t)x->n * space->width + 1), x->gap};
   for (size_t k = 0; k < x->n; k++)
     for (size_t i = 0; i < space->n; i++)
-      for (size_t j = 0; j < space->width; j++) u.at[k * u.width + j] += x->at[k * x->width + i] * space->at[i * space->width + j];
+      for (size_t j = 0; x->at[k * x->width + i] != 0 && j < space->width; j++)
+        u.at[k * u.width + j] += x->at[k * x->width + i] * space->at[i * space->width + j];
   return u;
 }
 
-/* to[n] = the products of a row with the rows of the space. */
-static void project(const DenseRows *space, const long double *row, long double *to) {
+/* The elements of the space's rows that are not zero: row k has those from begin[k] on. At first a row has one. */
+typedef struct {
+  uint32_t *begin, *column;
+  long double *value;
+} Sparse;
+
+static Sparse sparse_rows(Arena *a, const DenseRows *space) {
+  size_t all = (size_t)space->n * space->width, count = 0;
+  for (size_t i = 0; i < all; i++) count += space->at[i] != 0;
+  Sparse s = {ARENA_ARRAY(a, uint32_t, space->n + 1), ARENA_ARRAY(a, uint32_t, count + 1), ARENA_ARRAY(a, long double, count + 1)};
+  uint32_t next = 0;
   for (uint32_t k = 0; k < space->n; k++) {
-    const long double *u = space->at + (size_t)k * space->width;
+    for (uint32_t j = 0; j < space->width; j++) {
+      long double x = space->at[(size_t)k * space->width + j];
+      if (x == 0) continue;
+      s.column[next] = j;
+      s.value[next++] = x;
+    }
+    s.begin[k + 1] = next;
+  }
+  return s;
+}
+
+/* to[n] = the products of a row with the rows of the space. */
+static void project(const Sparse *s, uint32_t n, const long double *row, long double *to) {
+  for (uint32_t k = 0; k < n; k++) {
     to[k] = 0;
-    for (uint32_t j = 0; j < space->width; j++) to[k] += u[j] * row[j];
+    for (uint32_t x = s->begin[k]; x < s->begin[k + 1]; x++) to[k] += s->value[x] * row[s->column[x]];
   }
 }
 
@@ -29,10 +52,11 @@ static DenseRows pairs(RowSource *r, Arena *a, RowKind kind, const DenseRows *sp
   uint32_t n = space->n, most = 2 * n + SPARE_ROWS;
   long double *b0 = ARENA_ARRAY(a, long double, (size_t)most * space->width), *b1 = ARENA_ARRAY(a, long double, (size_t)most * space->width);
   long double *m = ARENA_ARRAY(a, long double, (size_t)most * 2 * n + 1);
+  Sparse sparse = sparse_rows(a, space);
   uint32_t rows = rows_fill(r, kind, most, b0, b1);
   for (size_t i = 0; i < rows; i++) {
-    project(space, b0 + i * space->width, m + i * 2 * n);
-    project(space, b1 + i * space->width, m + i * 2 * n + n);
+    project(&sparse, n, b0 + i * space->width, m + i * 2 * n);
+    project(&sparse, n, b1 + i * space->width, m + i * 2 * n + n);
   }
   DenseRows kernel = rows < most ? (DenseRows){0} : dense_kernel(a, rows, 2 * n, m, REST);
   if (rows < most) kernel.width = 2 * n;
