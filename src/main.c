@@ -23,6 +23,7 @@
 #include "help.h"
 #include "ir/lower.h"
 #include "mech/eqns.h"
+#include "mech/charges.h"
 #include "mech/expect.h"
 #include "mech/freedom.h"
 #include "mech/show.h"
@@ -379,12 +380,17 @@ static int do_methods(Compiler *c) {
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
 }
 
-/* An expectation is about the model without effects, or, inside an effect, with that effect and what
+/* An expectation, or a symmetry, is about the model without effects, or, inside an effect, with that effect and what
  * it requires: scenes have no part in it. */
-static void check_expects(Compiler *c, ExpectResults *results) {
-  EffectList where = model_expecting_effects(c->ast);
+static void check_claims(Compiler *c, ExpectResults *results, StrBuf *out) {
+  EffectList where = model_claiming_effects(c->ast);
   Eqns **e = ARENA_ARRAY(c->arena, Eqns *, where.n + 1);
   for (uint32_t i = 0; i < where.n; i++) e[i] = derive(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
+  for (uint32_t i = 0; i < where.n; i++) {
+    if (!e[i]) continue;
+    charges_judge(e[i], where.at[i]);
+    charges_print(e[i], where.at[i], out);
+  }
   for (uint32_t i = 0; i < where.n; i++)
     if (e[i]) expects_check(e[i], where.at[i], c->o.allow_numeric, results);
 }
@@ -423,7 +429,9 @@ static int do_check(Compiler *c) {
     if (!e) continue;
     if (!out.n) show_facts(e, &out);
     collect_units(c, e->m, &found);
-    if (freedom_show(e, &out)) sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], effects_text(c, e->m));
+    if (!freedom_show(e, &out)) continue;
+    sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], effects_text(c, e->m));
+    if (e->m->effects.n) charges_show_broken(e, &out);
   }
   if (c->o.scene && !out.n) derive_scene(c, c->o.scene); /* says that there is no such scene */
   EffectList unused = model_unused_effects(c->ast);
@@ -435,7 +443,7 @@ static int do_check(Compiler *c) {
   }
   list_units(&found, &out);
   if (c->diags->errors) return STATUS_MODEL; /* expectations of a wrong model say nothing */
-  check_expects(c, &results);
+  check_claims(c, &results, &out);
   expects_print(&results, c->sources, &out);
   int status = write_out(c, NULL, &out);
   return c->diags->errors ? STATUS_MODEL : status;

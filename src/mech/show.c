@@ -1,5 +1,6 @@
 #include "mech/show.h"
 
+#include "mech/charges.h"
 #include "sym/simplify.h"
 
 typedef struct {
@@ -224,6 +225,31 @@ static void constraints(Text *t) {
   end_block(t);
 }
 
+/* E and its balance; of each symmetry F where there is one, the charge, and its balance where it is not conserved. */
+static void energy(Text *t, const Charge *c) {
+  heading(t, "energy");
+  int moves = !t->e->conserves_energy && !c->proof.power_unknown;
+  named_equation(t, "E", "E", t->e->energy, !moves);
+  if (moves) named_equation(t, "dE/dt", "\\dot{E}", c->proof.power, 1);
+  end_block(t);
+}
+
+static void charges(Text *t) {
+  const Eqns *e = t->e;
+  Arena *a = e->m->arena;
+  if (e->ncharges < 2) return;
+  heading(t, "charges of symmetries");
+  for (uint32_t i = 1; i < e->ncharges; i++) {
+    const Charge *c = &e->charges[i];
+    const char *tex = latex_of(t, c->name);
+    int last = i + 1 == e->ncharges, moves = !c->proof.power_unknown && !expr_is_zero(t->g, c->proof.power);
+    if (!expr_is_zero(t->g, c->proof.F)) named_equation(t, arena_printf(a, "F(%s)", c->name), arena_printf(a, "F_{%s}", tex), c->proof.F, 0);
+    named_equation(t, c->name, arena_printf(a, "Q_{%s}", tex), c->proof.charge, last && !moves);
+    if (moves) named_equation(t, arena_printf(a, "d(%s)/dt", c->name), arena_printf(a, "\\dot{Q}_{%s}", tex), c->proof.power, last);
+  }
+  end_block(t);
+}
+
 static void title(Text *t) {
   const Model *m = t->e->m;
   sb_printf(t->out, latex(t) ? "%% %s: %s\n%% scene %s" : "%s: %s\nscene %s", m->name, m->doc, m->scene.name);
@@ -282,9 +308,12 @@ void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *o
   for (uint32_t i = 0; i < e->constraints.n; i++) vec_push(m->arena, &roots, shown(&t, e->constraints.demand[i]));
   if (e->energy) {
     vec_push(m->arena, &roots, e->energy);
-    heading(&t, "energy");
-    named_equation(&t, "E", "E", e->energy, 1);
-    end_block(&t);
+    energy(&t, &e->charges[0]);
+  }
+  charges(&t);
+  for (uint32_t i = 0; i < e->ncharges; i++) {
+    vec_push(m->arena, &roots, e->charges[i].proof.charge);
+    vec_push(m->arena, &roots, e->charges[i].proof.power);
   }
   definitions(&t, roots.at, roots.n);
   facts(&t, cost);

@@ -119,6 +119,8 @@ struct Builder {
   uint32_t ndefines;
   const AstStmt **chain; /* the scene and those it is like, oldest first; NULL-terminated */
   int unitless;    /* nothing is measured in a unit: nothing is checked */
+  Name group;      /* the parameter of the symmetry in hand, or NULL; */
+  SymId group_symbol;
   AstId stand_in;  /* a node that stands for `stands_for` (see model_reresolve), or 0 */
   Expr stands_for;
 };
@@ -213,6 +215,7 @@ typedef struct {
   const Unit *(*unit)(Builder *b, uint32_t scalar, void *data);
   void (*give)(Builder *b, uint32_t scalar, Expr value, Span span, void *data);
   void *data;
+  Name effect;   /* that the statement stands in, or NULL */
 } Giver;
 void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstId rhs, const Giver *giver);
 
@@ -341,6 +344,10 @@ void settle_units(Builder *b);
  * where there is none. */
 void add_constraint(Builder *b, const AstStmt *st, Name effect);
 void add_contact(Builder *b, const AstStmt *st, Name effect);
+
+/* symmetry.c: declares a symmetry, and its charge; reads what it does, after L is known. */
+void declare_symmetry(Builder *b, const AstStmt *st, Name effect);
+void add_symmetry(Builder *b, const AstStmt *st, Name effect);
 
 /* twice.c: names of scenes, effects, events and expectations, each declared once, and what a scene or an event says, said once;
  * reported where they are not. */

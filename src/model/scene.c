@@ -34,17 +34,17 @@ EffectList model_unused_effects(const Ast *ast) {
 }
 
 /* Blocks nest at most as deep as the parser lets them. */
-static int contains_expect(const AstStmt *list) {
+static int contains_claim(const AstStmt *list) {
   for (const AstStmt *s = list; s; s = s->next)
-    if (s->kind == STMT_EXPECT || (s->kind == STMT_FOR && contains_expect(s->body))) return 1;
+    if (s->kind == STMT_EXPECT || s->kind == STMT_SYMMETRY || (s->kind == STMT_FOR && contains_claim(s->body))) return 1;
   return 0;
 }
 
-EffectList model_expecting_effects(const Ast *ast) {
+EffectList model_claiming_effects(const Ast *ast) {
   VEC(Name) names = {0};
-  if (contains_expect(ast->first)) vec_push(ast->arena, &names, NULL);
+  if (contains_claim(ast->first)) vec_push(ast->arena, &names, NULL);
   for (const AstStmt *s = ast->first; s; s = s->next)
-    if (s->kind == STMT_EFFECT && s->name && contains_expect(s->body)) vec_push(ast->arena, &names, s->name);
+    if (s->kind == STMT_EFFECT && s->name && contains_claim(s->body)) vec_push(ast->arena, &names, s->name);
   return (EffectList){names.at, names.n};
 }
 
@@ -290,7 +290,7 @@ static void give_param(Builder *b, uint32_t i, Expr e, Span span, void *data) {
 }
 
 static void set_value(Builder *b, const AstStmt *st, Name effect) {
-  static const Giver giver = {IN_START, param_unit, give_param, NULL};
+  static const Giver giver = {IN_START, param_unit, give_param, NULL, NULL};
   if (!effect && advise_statement(b, st)) return;
   Target p = read_target(b, st->lhs);
   const Entity *e = find_settable(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
@@ -371,7 +371,7 @@ static void set_motion(Builder *b, const AstStmt *st) {
   }
   if (st->exactly && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;
   StartOf of = {.kind = e->kind, .velocity = p.primes > 0};
-  Giver giver = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of};
+  Giver giver = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of, NULL};
   assign_values(b, &p, e, st->lhs, st->rhs, &giver);
 }
 
