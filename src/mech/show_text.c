@@ -1,0 +1,57 @@
+#include "mech/show_text.h"
+
+int text_latex(const Text *t) { return t->style == PRINT_LATEX; }
+void text_put(Text *t, const char *text, const char *in_latex) { sb_puts(t->out, text_latex(t) ? in_latex : text); }
+
+void text_heading(Text *t, const char *title) {
+  if (text_latex(t)) sb_printf(t->out, "\n%% %s\n\\begin{align*}\n", title);
+  else sb_printf(t->out, "\n%s\n", title);
+}
+
+void text_end(Text *t) { text_put(t, "", "\\end{align*}\n"); }
+
+void text_expr(Text *t, Expr e) {
+  const double longest = 1e5, most_repeated = 8;
+  uint32_t distinct;
+  double size = expr_written_size(t->g, e, &distinct);
+  if (size <= longest || size <= most_repeated*distinct) {
+    expr_print(t->g, e, t->style, t->out);
+    return;
+  }
+  text_put(t, "(", "\\text{(");
+  sb_printf(t->out, "too long to print: %.2g parts written out, %u distinct ones; --format c shows the steps", size, distinct);
+  text_put(t, ")", ")}");
+}
+
+void text_equation(Text *t, Expr left, Expr right, int last) {
+  text_put(t, "  ", "  ");
+  text_expr(t, left);
+  text_put(t, " = ", " &= ");
+  text_expr(t, right);
+  text_put(t, "\n", last ? "\n" : " \\\\\n");
+}
+
+void text_named(Text *t, const char *text, const char *in_latex, Expr right, int last) {
+  text_put(t, "  ", "  ");
+  text_put(t, text, in_latex);
+  text_put(t, " = ", " &= ");
+  text_expr(t, right);
+  text_put(t, "\n", last ? "\n" : " \\\\\n");
+}
+
+const char *text_latex_name(Text *t, Name name) {
+  StrBuf b = strbuf(t->e->m->arena);
+  name_print(name, PRINT_LATEX, &b);
+  return sb_text(&b);
+}
+
+void text_definitions(Text *t, const Expr *roots, uint32_t n) {
+  ExprList l = expr_topo(t->g, roots, n);
+  uint32_t total = 0, shown = 0;
+  for (uint32_t i = 0; i < l.n; i++) total += expr_op(t->g, l.at[i]) == EX_DEF;
+  if (!total) return;
+  text_heading(t, "where");
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_op(t->g, l.at[i]) == EX_DEF) text_equation(t, l.at[i], expr_arg(t->g, l.at[i], 0), ++shown == total);
+  text_end(t);
+}
