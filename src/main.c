@@ -153,9 +153,23 @@ static IrUnit *lower_scene(Compiler *c, Eqns *e) {
 
 /* --- the commands --- */
 
+/* The Hamiltonian side; where there is none, the reason in c->diags. */
+static int do_hamiltonian(Compiler *c, Eqns *e) {
+  StrBuf out = strbuf(c->arena);
+  if (c->o.ops || (c->o.format && strcmp(c->o.format, "c") == 0)) return fail_usage("--hamiltonian goes with --format text or latex");
+  if (e->n == 0) {
+    diag_error(c->diags, e->m->span, e->first.n ? "no Hamiltonian by momenta: L is linear in velocities" : "no Hamiltonian: the model has no Lagrangian");
+    if (e->first.n) diag_help(c->diags, "coordinates are then canonical among themselves, and the energy is H: see `lagc derive` without --hamiltonian");
+    return STATUS_MODEL;
+  }
+  show_hamiltonian(e, c->o.format && strcmp(c->o.format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
+  return write_out(c, c->o.output, &out);
+}
+
 static int do_derive(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
+  if (c->o.hamiltonian) return do_hamiltonian(c, e);
   IrUnit *u = lower_scene(c, e);
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);

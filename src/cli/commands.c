@@ -10,8 +10,9 @@ static const CommandRow commands[] = {
   {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric]", "parse, derive, prove the `expect` lines",
    "Parses and derives the model for every scene (or the one named), and proves or refutes its `expect` lines. "
    "Exit status 0 when all is well, 1 when not."},
-  {CMD_DERIVE, "derive", NULL, "MODEL [SCENE] [--format text|latex|c] [--ops] [-o FILE]", "print the equations of motion",
-   "Prints the equations of motion: momenta, M q'' = f, energy, and the operation count."},
+  {CMD_DERIVE, "derive", NULL, "MODEL [SCENE] [--format text|latex|c] [--ops] [--hamiltonian] [-o FILE]", "print the equations of motion",
+   "Prints the equations of motion: momenta, M q'' = f, energy, and the operation count; with --hamiltonian momenta, H(q, p) and "
+   "Hamilton's equations, where the mass matrix is inverted in closed form: blocks of up to three coordinates with short results."},
   {CMD_RUN, "run", NULL, "MODEL [SCENE] [name=value ...] [options]", "simulate",
    "Builds the simulator (or takes it from the cache) and runs it.\n\n"
    "  name=value            a parameter, a start (th=1.2, \"th'=0.5\", th='90[deg]',\n"
@@ -92,6 +93,7 @@ static const OptionRow options[] = {
   {"--format", NULL, "text|latex|c", TAKES_CHOICE, "text latex c", C(DERIVE), OWN(format),
    "as text, as LaTeX, or as the C function that computes the accelerations"},
   {"--ops", NULL, NULL, TAKES_NOTHING, "", C(DERIVE), OWN(ops), "the operation counts only"},
+  {"--hamiltonian", NULL, NULL, TAKES_NOTHING, "", C(DERIVE), OWN(hamiltonian), "momenta, H and Hamilton's equations"},
 
   {"--observe", NULL, "EXPR", TAKES_EXPRS, "", C(RUN), OWN(observe),
    "one more column: any expression of the model, --observe 'l*sin(th)'; can be repeated"},

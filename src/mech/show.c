@@ -37,18 +37,6 @@ static const Expr *mass_rows(Text *t) {
   return rows;
 }
 
-static void momenta(Text *t) {
-  const Eqns *e = t->e;
-  uint32_t n = e->n + e->first.n; /* one of them is 0 */
-  text_heading(t, "momenta");
-  for (uint32_t i = 0; i < n; i++) {
-    Name name = e->n ? e->m->coords.at[i].name : e->m->states.at[e->first.at[i]].name;
-    const char *text = arena_printf(e->m->arena, "p_%s", name), *tex = arena_printf(e->m->arena, "p_{%s}", text_latex_name(t, name));
-    Expr shown = e->n ? e->momenta[i] : e->first.theta[i];
-    text_named(t, text, tex, shown, i + 1 == n);
-  }
-  text_end(t);
-}
 
 /* The unknowns of the system with definitions: accelerations, and per definition w the part of w' that
  * contains them, and the force that w passes on to what it contains. */
@@ -184,12 +172,6 @@ static void charges(Text *t) {
   text_end(t);
 }
 
-static void title(Text *t) {
-  const Model *m = t->e->m;
-  sb_printf(t->out, text_latex(t) ? "%% %s: %s\n%% scene %s" : "%s: %s\nscene %s", m->name, m->doc, m->scene.name);
-  for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(t->out, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
-  sb_putc(t->out, '\n');
-}
 
 static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 
@@ -218,12 +200,12 @@ static void facts(Text *t, const char *cost) {
 void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *out) {
   Text t = {.e = e, .g = e->g, .style = style, .out = out};
   const Model *m = e->m;
-  title(&t);
+  text_title(&t);
   if (m->lagrangian) {
     text_heading(&t, "Lagrangian");
     text_named(&t, "L", "L", m->lagrangian, 1);
     text_end(&t);
-    momenta(&t);
+    text_momenta(&t);
   }
   motion(&t);
   constraints(&t);

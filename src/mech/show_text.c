@@ -55,3 +55,23 @@ void text_definitions(Text *t, const Expr *roots, uint32_t n) {
     if (expr_op(t->g, l.at[i]) == EX_DEF) text_equation(t, l.at[i], expr_arg(t->g, l.at[i], 0), ++shown == total);
   text_end(t);
 }
+
+void text_title(Text *t) {
+  const Model *m = t->e->m;
+  sb_printf(t->out, text_latex(t) ? "%% %s: %s\n%% scene %s" : "%s: %s\nscene %s", m->name, m->doc, m->scene.name);
+  for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(t->out, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
+  sb_putc(t->out, '\n');
+}
+
+void text_momenta(Text *t) {
+  const Eqns *e = t->e;
+  uint32_t n = e->n + e->first.n; /* one of them is 0 */
+  text_heading(t, "momenta");
+  for (uint32_t i = 0; i < n; i++) {
+    Name name = e->n ? e->m->coords.at[i].name : e->m->states.at[e->first.at[i]].name;
+    const char *text = arena_printf(e->m->arena, "p_%s", name), *tex = arena_printf(e->m->arena, "p_{%s}", text_latex_name(t, name));
+    Expr shown = e->n ? e->momenta[i] : e->first.theta[i];
+    text_named(t, text, tex, shown, i + 1 == n);
+  }
+  text_end(t);
+}

@@ -15,6 +15,11 @@ typedef struct {
 int text_latex(const Text *t);
 void text_put(Text *t, const char *text, const char *in_latex);
 
+/* Model, scene and effects, on the first lines. */
+void text_title(Text *t);
+
+void text_momenta(Text *t);
+
 /* A block of equations, from its heading to its end. */
 void text_heading(Text *t, const char *title);
 void text_end(Text *t);
