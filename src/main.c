@@ -22,6 +22,7 @@
 #include "emit/emit_model.h"
 #include "help.h"
 #include "ir/lower.h"
+#include "mech/constrain.h"
 #include "mech/eqns.h"
 #include "mech/charges.h"
 #include "mech/expect.h"
@@ -202,6 +203,7 @@ static const char *header_name(Compiler *c, const char *model) {
 static int do_header(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
+  constraints_keep_none(e);
   IrUnit *u = lower_scene(c, e);
   if (!u) return STATUS_MODEL;
   StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);

@@ -170,11 +170,22 @@ static void approach(Start *w)
   }
 }
 
+/* Of the constraints on positions, those that do not just keep what the start is. */
+static int count_stated(const lag_constraints *of)
+{
+  int n = 0;
+
+  while (n < of->nholonomic && of->of[n].holonomic) {
+    n++;
+  }
+  return n;
+}
+
 /* Whether a constraint on positions contains coordinate i. */
 static int is_held(const Start *w, int i)
 {
   for (int e = 0; e < w->of->njacobian; e++) {
-    if (w->of->jacobian[e].row < w->of->nholonomic && w->of->jacobian[e].col == i) {
+    if (w->of->jacobian[e].row < count_stated(w->of) && w->of->jacobian[e].col == i) {
       return 1;
     }
   }
@@ -256,7 +267,7 @@ static int check_derivatives(Start *w)
     double far = fmax(fabs(w->y[i]), fabs(w->asked[i]));
     size[of->jacobian[e].row] += fabs(w->A[e]) * (far > 0 ? far : 1);
   }
-  for (int k = 0; k < of->nholonomic; k++) {
+  for (int k = 0; k < count_stated(of); k++) {
     int is_contact = 0;
     for (int i = 0; i < m->ncontacts; i++) {
       is_contact |= m->contacts[i].constraint == k;
@@ -273,7 +284,7 @@ static int check_derivatives(Start *w)
 static int settle(Start *w, int holonomic)
 {
   w->holonomic = holonomic;
-  w->n = holonomic ? w->of->nholonomic : w->of->n;
+  w->n = holonomic ? count_stated(w->of) : w->of->n;
   if (w->n == 0) {
     return LAG_OK;
   }
@@ -393,11 +404,13 @@ int lag_consistent(lag_sim *s)
   if (block && w.free) {
     memcpy(w.y, s->now, bytes);
     memcpy(w.asked, s->now, bytes);
+    lag_keep_nothing(s);
     rc = settle(&w, 1);
     rc = rc ? rc : settle(&w, 0);
     if (rc == 0) {
       keep_rounding_out(&w);
       memcpy(s->now, w.y, bytes);
+      rc = lag_keep(s, s->scene->t0, s->now);
       s->run->rank = rank(&w, s->redundant);
     }
   }

@@ -55,6 +55,7 @@ struct lag_sim {
   double *begin;         /* [n] at the start of the run */
   double *asked;         /* [n] the same before it was brought to the constraints */
   double *redundant;     /* [constraints] 1: at the start it follows from others */
+  double *kept;          /* [constraints] what those on positions are held at */
   double *y;             /* [n] at step_t1 */
   double *y0;            /* [n] at step_t0 */
   double *now;           /* [n] at t */
@@ -106,6 +107,11 @@ int lag_events_locate(lag_sim *sim);
 int lag_events_spread(lag_sim *sim, const double *at_event, double *spread);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
+
+/* project.c. Constraints on velocities that keep a function of positions: until it is said what, positions are free; then they keep what it
+ * is of y at t. Returns what the model returned. */
+void lag_keep_nothing(lag_sim *sim);
+int lag_keep(lag_sim *sim, double t, const double *y);
 
 /* contact.c. of: the contact that the event is one of, or NULL. after: event k has led from `before` to y; closes the gap when the impacts
  * have come to their end, or one leaves no speed, and opens it when it is released. open: all of them, since the state will be another. meet: y, which

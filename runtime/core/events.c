@@ -85,16 +85,23 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   }
   int ends = is_zeno(s, k, since), moved = memcmp(s->yb, s->now, bytes) != 0;
   const lag_contact *contact = lag_contact_of(m, k);
+  int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;
   if (moved && !contact) {
     lag_contact_open(s); /* what lay may have been lifted, or thrown */
+  }
+  if (elsewhere) {
+    lag_keep_nothing(s);
   }
   if (moved && lag_project(&s->pb, r->t, s->yb, NULL) != 0) {
     return lag_fail(s, LAG_EMODEL, "event %s: its action at t = %.17g s leaves the constraints: %s", m->ev[k].name, r->t,
                     s->pb.detail ? s->pb.detail : "");
   }
-  if (contact) {
+  if (elsewhere) {
+    rc = lag_keep(s, r->t, s->yb);
+  }
+  if (rc == 0 && contact) {
     rc = lag_contact_after(s, k, ends, s->now, s->yb);
-  } else if (moved) {
+  } else if (rc == 0 && moved) {
     char who[128];
     snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
     rc = lag_contact_meet(s, s->yb, who);

@@ -42,7 +42,36 @@ int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double 
 {
   int rc = lag_inputs(pb, t), nq = pb->nq;
 
-  return rc ? rc : pb->model->constraints->residuals(t, y, y + nq, y + 2 * nq, pb->p, pb->u, c, r, pb->work);
+  rc = rc ? rc : pb->model->constraints->residuals(t, y, y + nq, y + 2 * nq, pb->p, pb->u, c, r, pb->work);
+  for (int k = 0; pb->kept && k < pb->model->constraints->nholonomic; k++) {
+    c[k] = isnan(pb->kept[k]) ? 0 : c[k] - pb->kept[k];
+  }
+  return rc;
+}
+
+void lag_keep_nothing(lag_sim *s)
+{
+  const lag_constraints *of = s->scene->model->constraints;
+
+  for (int k = 0; of && k < of->n; k++) {
+    s->kept[k] = of->of[k].holonomic ? 0 : NAN;
+  }
+}
+
+int lag_keep(lag_sim *s, double t, const double *y)
+{
+  const lag_constraints *of = s->scene->model->constraints;
+
+  if (!of) {
+    return LAG_OK;
+  }
+  Held w = layout(&s->pb);
+  memset(s->kept, 0, (size_t)of->n * sizeof *s->kept);
+  int rc = lag_residuals(&s->pb, t, y, w.c, w.r);
+  for (int k = 0; k < of->nholonomic && rc == 0; k++) {
+    s->kept[k] = of->of[k].holonomic ? 0 : w.c[k];
+  }
+  return rc;
 }
 
 int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, const double *g, double *d, double *force)

@@ -17,7 +17,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  size_t fixed = RUN_DOUBLES + np + nu + 5 * n + nc + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
+  size_t fixed = RUN_DOUBLES + np + nu + 5 * n + 2 * nc + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
   lag_problem sized = s->pb;
   sized.opt = opt;
   size_t total = fixed + method->work_size(&sized);
@@ -34,16 +34,17 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  double **const parts[] = {&s->p, &s->hold, &s->begin, &s->asked, &s->redundant, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
+  double **const parts[] = {&s->p, &s->hold, &s->begin, &s->asked, &s->redundant, &s->kept, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
                             &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->mon_first, &s->mon_peak,
                             &s->exact_peak, &s->method_work};
-  const size_t sizes[] = {np, nu, n, n, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, 0};
+  const size_t sizes[] = {np, nu, n, n, nc, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, 0};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
   }
   s->pb.p = s->p;
   s->pb.hold = s->hold;
+  s->pb.kept = s->kept;
   s->pb.opt = opt;
   s->method = method;
   return LAG_OK;

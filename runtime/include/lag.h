@@ -60,6 +60,7 @@ typedef struct lag_problem {
   const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
   double *held;        /* [lag_held_room] scratch of the functions for constraints below */
+  const double *kept;  /* [nholonomic] what c is held at, NaN: at nothing yet; NULL: all at 0 */
   const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
@@ -113,7 +114,7 @@ int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, d
 /* Doubles that pb->held must have; 0 without constraints. */
 size_t lag_held_room(const lag_model *model);
 
-/* c[nholonomic] and r[n] of the state y[n] at t. */
+/* c[nholonomic], less what it is held at, and r[n] of the state y[n] at t. */
 int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r);
 
 /* The least change d[nq] in the mass metric with A d = g, A and M those of y at t, and force[nq] = M d = A^T mu. holonomic: g[nholonomic], and

@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 4
+#define LAG_ABI 5
 
 /* The scalar that a model is compiled for: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of
  * so many doubles: many states, or sets of parameters, at once. Then a status < 0 has bit k of its negative set when lane k
@@ -121,13 +121,14 @@ typedef struct lag_linear {
 /* One scalar constraint. */
 typedef struct lag_constraint {
   const char *name; /* "rod", "rod[2]", "grip.x" */
-  int holonomic;    /* c(q, t) = 0; else r(q, v, t) = 0, linear in v */
+  int holonomic;    /* the model states c(q, t) = 0; else r(q, v, t) = 0, linear in v */
   const char *unit; /* of c, or of r; "" when none */
   int line;         /* of the model's text where it stands; 0: not known */
 } lag_constraint;
 
-/* The constraints of a model, n in all, of which the first nholonomic are c(q, t) = 0. On the level of velocities all are
- * r = A(q, t) v + b(q, t) = 0, where r = dc/dt of the holonomic ones. accel obeys them: its accelerations are those of
+/* The constraints of a model, n in all, of which the first nholonomic are on positions: c(q, t) = 0; or, where the model states
+ * r = 0 and that is dc/dt, c(q, t) as it is at the start. On the level of velocities all are
+ * r = A(q, t) v + b(q, t) = 0, where r = dc/dt of those. accel obeys them: its accelerations are those of
  * M a = f + A^T lambda, dr/dt = 0. They leave c and r as they are, so a step's error is to be taken back by the functions below.
  *
  * A change d[nq] of the state with A d = g, and the least for d^T M d, is that of M d = A^T mu. Constraints may be redundant,

@@ -155,10 +155,14 @@ typedef struct lag_pair {
   double s, c;
 } lag_pair;
 
-/* The sine of k pi/32 and what rounding added to it, and so on; those of the cosine are 32 numbers further. The 0 is
- * negative for the sake of -0. */
-LAG_INLINE const double *lag_sines(lag_word k) {
-  static const double sines[160] = {
+/* sines: of k pi/32, and what rounding added to it, and so on; those of the cosine are 32 numbers further. The 0 is negative for the sake
+ * of -0. The other numbers stand here twice, as LAG_SINCOS_NEAR takes them for two angles at a time. */
+#define LAG_TWICE(x) {x, x}
+static const struct lag_sincos_table {
+  double sines[160], per_unit[2], whole[2], part1[2], part2[2], part3[2], s3[2], s5[2], s7[2], c2[2], c4[2], c6[2], c8[2];
+  lag_word off[2], high[2], row[2];
+} lag_sincos_table = {
+  {
     -0.0, 0, 0.098017140329560604, 1.634582362244256e-18, 0.19509032201612828, 7.9910790684617313e-18,
     0.29028467725446239, 1.8927978707774251e-17, 0.38268343236508978, 1.0050772696461588e-17, 0.47139673682599764, -6.516678136069013e-18,
     0.55557023301960218, -4.7094109405616768e-17, 0.63439328416364549, -1.0420901929280035e-17, 0.70710678118654757, 4.8336466567264567e-17,
@@ -185,15 +189,21 @@ LAG_INLINE const double *lag_sines(lag_word k) {
     0.47139673682599764, -6.516678136069013e-18, 0.55557023301960218, -4.7094109405616768e-17, 0.63439328416364549, -1.0420901929280035e-17,
     0.70710678118654757, 4.8336466567264567e-17, 0.77301045336273699, 3.2565907033649772e-17, 0.83146961230254524, -1.4073856984728024e-18,
     0.88192126434835505, 1.9843248405890562e-17, 0.92387953251128674, -1.7645047084336677e-17, 0.95694033573220882, -4.0553869861875701e-17,
-    0.98078528040323043, -1.8546939997825006e-17, 0.99518472667219693, 4.248691367830441e-17};
-  return sines + (2*k & 126);
-}
+    0.98078528040323043, -1.8546939997825006e-17, 0.99518472667219693, 4.248691367830441e-17},
+  LAG_TWICE(10.185916357881302), LAG_TWICE(6755399441055744.0), /* 1.5 2^52 */
+  LAG_TWICE(-0.09817477042452083), LAG_TWICE(-1.6020900947399724e-13), LAG_TWICE(6.6018744168671423e-25),
+  LAG_TWICE(0.16666666666665958), LAG_TWICE(-0.0083333333154962386), LAG_TWICE(0.00019839993603852713),
+  LAG_TWICE(0.5), LAG_TWICE(-0.041666666666665471), LAG_TWICE(0.0013888888865417341), LAG_TWICE(-2.4800157698025678e-05),
+  LAG_TWICE(0x4337fffffffc0000ULL), LAG_TWICE(~0x7ffffULL), LAG_TWICE(1008ULL)};
+#define LAG_SINCOS_K(name) LAG_K(lag_sincos_table.name[0])
+
+LAG_INLINE const double *lag_sines(lag_word k) { return lag_sincos_table.sines + (2*k & 126); }
 
 #if LAG_FMA
 #define LAG_SINCOS_SUM(real, mad, K) const real sine = S + mad(C, r, -t), cosine = C - mad(S, r, u)
 #else
 #define LAG_SINCOS_SUM(real, mad, K) /* near: 0 or 1; so much of C r is not rounded */ \
-  const real near_S = (S + K(6755399441055744.0)) - K(6755399441055744.0), near_C = (C + K(6755399441055744.0)) - K(6755399441055744.0); \
+  const real near_S = (S + K(whole)) - K(whole), near_C = (C + K(whole)) - K(whole); \
   const real sine = S + (near_C*r + ((C - near_C)*r - t)), cosine = C - (near_S*r + ((S - near_S)*r + u))
 #endif
 /* Sine and cosine of x, of a double or of some side by side, by the same operations: of a multiple of pi/32 from the table (S, C and
@@ -202,14 +212,14 @@ LAG_INLINE const double *lag_sines(lag_word k) {
  * (1989) 144, doi:10.1145/63522.214389, has the idea. sum: x in units of pi/32, made an integer by what LAG_SINCOS_INTEGER adds; its
  * products with the first two parts are exact; lost is 2^-130 |x|, and no double with |x| <= 2^18 pi/32 is so near to a multiple of
  * pi/2 that it would matter. */
-#define LAG_SINCOS_INTEGER(x, mad, K) mad(x, K(10.185916357881302), K(6755399441055744.0)) /* 1.5 2^52 */
+#define LAG_SINCOS_INTEGER(x, mad, K) mad(x, K(per_unit), K(whole))
 #define LAG_SINCOS_NEAR(real, mad, K, rest) \
-  const real k = sum - K(6755399441055744.0); \
-  const real first = mad(k, K(-0.09817477042452083), x), r = mad(k, K(-1.6020900947399724e-13), first); \
-  const real third = mad(k, K(6.6018744168671423e-25), mad(k, K(1.6020900947399724e-13), r - first)), low = rest; \
+  const real k = sum - K(whole); \
+  const real first = mad(k, K(part1), x), r = mad(k, K(part2), first); \
+  const real third = mad(k, K(part3), mad(-k, K(part2), r - first)), low = rest; \
   const real z = r*r; \
-  const real p = mad(z, mad(z, K(0.00019839993603852713), K(-0.0083333333154962386)), K(0.16666666666665958)); \
-  const real q = mad(z, mad(z, mad(z, K(-2.4800157698025678e-05), K(0.0013888888865417341)), K(-0.041666666666665471)), K(0.5)); \
+  const real p = mad(z, mad(z, K(s7), K(s5)), K(s3)); \
+  const real q = mad(z, mad(z, mad(z, K(c8), K(c6)), K(c4)), K(c2)); \
   const real less_s = mad(r*z, p, low), less_c = z*q; /* r - sin, 1 - cos of what is left */ \
   const real t = mad(C, less_s, mad(S, less_c, S_add)), u = mad(C, less_c, mad(-S, less_s, C_add)); \
   LAG_SINCOS_SUM(real, mad, K)
@@ -222,7 +232,7 @@ LAG_INLINE const double *lag_sines(lag_word k) {
 /* Of x - *lo (lo may be 0) and so many quarters. */
 LAG_INLINE lag_pair lag_sincos_near(double x, double sum, const double *lo, lag_word quarters) {
   const double *at = lag_sines(lag_to_word(sum) + 16*quarters), S = at[0], C = at[32], S_add = at[1], C_add = at[33];
-  LAG_SINCOS_NEAR(double, lag_mad, LAG_K, lo ? third + *lo : third);
+  LAG_SINCOS_NEAR(double, lag_mad, LAG_SINCOS_K, lo ? third + *lo : third);
   lag_pair y;
   y.s = sine;
   y.c = cosine;
@@ -236,11 +246,11 @@ static lag_pair lag_sincos_far(double x) {
   double lo;
   unsigned long long quarters;
   x = lag_reduce(x, &lo, &quarters);
-  return lag_sincos_near(x, LAG_SINCOS_INTEGER(x, lag_mad, LAG_K), &lo, quarters);
+  return lag_sincos_near(x, LAG_SINCOS_INTEGER(x, lag_mad, LAG_SINCOS_K), &lo, quarters);
 }
 
 LAG_INLINE void lag_sincos(double x, double *s, double *c) {
-  const double sum = LAG_SINCOS_INTEGER(x, lag_mad, LAG_K);
+  const double sum = LAG_SINCOS_INTEGER(x, lag_mad, LAG_SINCOS_K);
 #if defined(__GNUC__)
   const lag_pair y = __builtin_expect(LAG_SINCOS_FAR(LAG_SINCOS_OFF(lag_to_word(sum))), 0) ? lag_sincos_far(x) : lag_sincos_near(x, sum, 0, 0);
 #else
@@ -267,6 +277,7 @@ __attribute__((cold, noinline, unused)) static lag_pair lag_sincos_any(double x)
 
 typedef double lag_two __attribute__((vector_size(16)));
 typedef unsigned long long lag_two_words __attribute__((vector_size(16)));
+typedef long long lag_two_integers __attribute__((vector_size(16)));
 LAG_INLINE lag_two lag_two_mad(lag_two a, lag_two b, lag_two c) {
 #if LAG_FMA
   return __builtin_ia32_vfmaddpd(a, b, c);
@@ -274,23 +285,37 @@ LAG_INLINE lag_two lag_two_mad(lag_two a, lag_two b, lag_two c) {
   return a*b + c;
 #endif
 }
-LAG_INLINE lag_two lag_two_of(double x) {
-  const lag_two v = {x, x};
-  return v;
+typedef double lag_two_there __attribute__((vector_size(16), aligned(8), may_alias)); /* two numbers in memory */
+typedef unsigned long long lag_two_words_there __attribute__((vector_size(16), aligned(8), may_alias));
+#define LAG_TWO_K(name) (*(const lag_two_there *)table->name)
+#define LAG_TWO_WORDS(name) (*(const lag_two_words_there *)table->name)
+
+/* LAG_SINCOS_FAR of either. */
+LAG_INLINE int lag_two_far(const struct lag_sincos_table *table, lag_two_words sum) {
+  const lag_two_words off = sum - LAG_TWO_WORDS(off);
+#if defined(__SSE4_1__)
+  return !__builtin_ia32_ptestz128((lag_two_integers)off, (lag_two_integers)LAG_TWO_WORDS(high));
+#else
+  return LAG_SINCOS_FAR(off[0] | off[1]);
+#endif
 }
 
 LAG_INLINE void lag_sincos2(double a, double *sin_a, double *cos_a, double b, double *sin_b, double *cos_b) {
-  const lag_two x = {a, b}, sum = LAG_SINCOS_INTEGER(x, lag_two_mad, lag_two_of);
-  const lag_two_words word = (lag_two_words)sum;
-  const lag_word i = word[0], j = word[1];
-  if (__builtin_expect(LAG_SINCOS_FAR(LAG_SINCOS_OFF(i) | LAG_SINCOS_OFF(j)), 0)) {
+  const struct lag_sincos_table *table = &lag_sincos_table;
+  __asm__("" : "+r"(table)); /* or compilers make the numbers again, where a processor would take them from memory as it computes */
+  const lag_two x = {a, b}, sum = LAG_SINCOS_INTEGER(x, lag_two_mad, LAG_TWO_K);
+  if (__builtin_expect(lag_two_far(table, (lag_two_words)sum), 0)) {
     const lag_pair y = lag_sincos_any(a), z = lag_sincos_any(b);
     *sin_a = y.s, *cos_a = y.c, *sin_b = z.s, *cos_b = z.c;
     return;
   }
-  const double *const A = lag_sines(i), *const B = lag_sines(j);
-  const lag_two S = {A[0], B[0]}, S_add = {A[1], B[1]}, C = {A[32], B[32]}, C_add = {A[33], B[33]};
-  LAG_SINCOS_NEAR(lag_two, lag_two_mad, lag_two_of, third);
+  const lag_two_words row = (lag_two_words)sum << 4 & LAG_TWO_WORDS(row); /* in bytes, as lag_sines in numbers */
+  const lag_two_there *const A = (const lag_two_there *)((const char *)table + row[0]);
+  const lag_two_there *const B = (const lag_two_there *)((const char *)table + row[1]);
+  const lag_two sin_a_row = A[0], sin_b_row = B[0], cos_a_row = A[16], cos_b_row = B[16];
+  const lag_two S = {sin_a_row[0], sin_b_row[0]}, S_add = {sin_a_row[1], sin_b_row[1]};
+  const lag_two C = {cos_a_row[0], cos_b_row[0]}, C_add = {cos_a_row[1], cos_b_row[1]};
+  LAG_SINCOS_NEAR(lag_two, lag_two_mad, LAG_TWO_K, third);
   *sin_a = sine[0], *cos_a = cosine[0], *sin_b = sine[1], *cos_b = cosine[1];
 }
 #endif
@@ -303,6 +328,7 @@ LAG_INLINE lag_four lag_four_of(double x) {
   const lag_four v = {x, x, x, x};
   return v;
 }
+#define LAG_FOUR_K(name) lag_four_of(lag_sincos_table.name[0])
 /* Two rows of the table, one in each half of a register. */
 LAG_INLINE lag_four lag_sines_two(const double *low, const double *high) {
   const lag_two a = {low[0], low[1]}, b = {high[0], high[1]};
@@ -311,7 +337,7 @@ LAG_INLINE lag_four lag_sines_two(const double *low, const double *high) {
 
 LAG_INLINE void lag_sincos4(double a, double *sin_a, double *cos_a, double b, double *sin_b, double *cos_b,
                             double c, double *sin_c, double *cos_c, double d, double *sin_d, double *cos_d) {
-  const lag_four x = {a, b, c, d}, sum = LAG_SINCOS_INTEGER(x, lag_four_mad, lag_four_of);
+  const lag_four x = {a, b, c, d}, sum = LAG_SINCOS_INTEGER(x, lag_four_mad, LAG_FOUR_K);
   const lag_four_words word = (lag_four_words)sum;
   const lag_word i = word[0], j = word[1], m = word[2], n = word[3];
   if (__builtin_expect(LAG_SINCOS_FAR(LAG_SINCOS_OFF(i) | LAG_SINCOS_OFF(j) | LAG_SINCOS_OFF(m) | LAG_SINCOS_OFF(n)), 0)) {
@@ -324,7 +350,7 @@ LAG_INLINE void lag_sincos4(double a, double *sin_a, double *cos_a, double b, do
   const lag_four cos_ac = lag_sines_two(A + 32, G + 32), cos_bd = lag_sines_two(B + 32, D + 32);
   const lag_four S = __builtin_shufflevector(sin_ac, sin_bd, 0, 4, 2, 6), S_add = __builtin_shufflevector(sin_ac, sin_bd, 1, 5, 3, 7);
   const lag_four C = __builtin_shufflevector(cos_ac, cos_bd, 0, 4, 2, 6), C_add = __builtin_shufflevector(cos_ac, cos_bd, 1, 5, 3, 7);
-  LAG_SINCOS_NEAR(lag_four, lag_four_mad, lag_four_of, third);
+  LAG_SINCOS_NEAR(lag_four, lag_four_mad, LAG_FOUR_K, third);
   *sin_a = sine[0], *cos_a = cosine[0], *sin_b = sine[1], *cos_b = cosine[1];
   *sin_c = sine[2], *cos_c = cosine[2], *sin_d = sine[3], *cos_d = cosine[3];
 }

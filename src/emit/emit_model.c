@@ -246,21 +246,22 @@ static void emit_constraints(const File *f) {
   const IrConstraints *k = &f->u->constraints;
   if (!k->of.n) return;
   const char *head = arena_printf(f->a, "static int residuals(%s, LAG_REAL *c, LAG_REAL *r, LAG_REAL *w)", state_args);
-  function(f, k->residuals, "What the constraints say is zero: c on positions, r on velocities.", head, own, written);
+  function(f, k->residuals, k->nkept > k->nholonomic ? "What the constraints say is zero, or stays as it is at the start: c on positions; r on velocities."
+                                                            : "What the constraints say is zero: c on positions, r on velocities.", head, own, written);
   head = arena_printf(f->a, "static int matrices(%s, LAG_REAL *A, LAG_REAL *M, LAG_REAL *w)", state_args);
   function(f, k->matrices, "A, the derivatives of r by the velocities, and the mass matrix: the entries that are not zero.", head, own2, written2);
   int both = k->velocity == k->position;
-  if (k->nholonomic)
+  if (k->nkept)
     emit_change(f, k->position, "correct_positions", both ? "The least change d with A d = g, for positions or velocities; force: M d."
                                                            : "The least change d of positions with A d = g; force: M d.");
   if (!both) emit_change(f, k->velocity, "correct_velocities", "The least change d of velocities with A d = g; force: M d.");
   constraint_table(k, f->a, f->out);
   entries("jacobian_table", k->jacobian.at, k->jacobian.n, f->out);
   entries("inertia_table", k->mass.at, k->mass.n, f->out);
-  sb_printf(f->out, "\nstatic const lag_constraints constraints = {\n  .n = %u, .nholonomic = %u, .of = constraint_table,\n", k->of.n, k->nholonomic);
+  sb_printf(f->out, "\nstatic const lag_constraints constraints = {\n  .n = %u, .nholonomic = %u, .of = constraint_table,\n", k->of.n, k->nkept);
   sb_printf(f->out, "  .njacobian = %u, .jacobian = jacobian_table, .nmass = %u, .mass = %s,\n", k->jacobian.n, k->mass.n, k->mass.n ? "inertia_table" : "NULL");
   sb_printf(f->out, "  .residuals = residuals, .matrices = matrices,\n  .position = %s, .velocity = %s,\n};\n",
-            k->nholonomic ? "correct_positions" : "NULL", both ? "correct_positions" : "correct_velocities");
+            k->nkept ? "correct_positions" : "NULL", both ? "correct_positions" : "correct_velocities");
   if (!f->u->contacts.n) return;
   sb_puts(f->out, "\nstatic const lag_contact contact_table[] = {\n");
   for (uint32_t i = 0; i < f->u->contacts.n; i++) {

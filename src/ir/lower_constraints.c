@@ -5,11 +5,11 @@ Prog *lower_residuals(const Eqns *e) {
   const Constraints *k = &e->constraints;
   Lower l = lower_new(e);
   Arena *a = l.p->arena;
-  lower_roots(&l, k->c, k->nholonomic);
+  lower_roots(&l, k->c, k->nkept);
   lower_roots(&l, k->r, k->n);
-  for (uint32_t i = 0; i < k->nholonomic; i++) prog_store(l.p, 0, i, lower_slot(&l, k->c[i]), k->of[i]->name);
+  for (uint32_t i = 0; i < k->nkept; i++) prog_store(l.p, 0, i, lower_slot(&l, k->c[i]), k->of[i]->name);
   for (uint32_t i = 0; i < k->n; i++)
-    prog_store(l.p, 1, i, lower_slot(&l, k->r[i]), i < k->nholonomic ? arena_printf(a, "%s'", k->of[i]->name) : k->of[i]->name);
+    prog_store(l.p, 1, i, lower_slot(&l, k->r[i]), i < k->nkept ? arena_printf(a, "%s'", k->of[i]->name) : k->of[i]->name);
   return prog_tidy(l.p);
 }
 

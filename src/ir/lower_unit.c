@@ -62,10 +62,11 @@ static void add_constraints(IrUnit *u, const Eqns *e) {
   for (uint32_t i = 0; i < k->A.n; i++) vec_push(u->arena, &to->jacobian, ((IrEntry){k->A.at[i].row, k->A.at[i].col}));
   for (uint32_t i = 0; i < e->mass.n; i++) vec_push(u->arena, &to->mass, ((IrEntry){e->mass.at[i].row, e->mass.at[i].col}));
   to->nholonomic = k->nholonomic;
+  to->nkept = k->nkept;
   to->residuals = lower_residuals(e);
   to->matrices = lower_matrices(e);
-  to->position = lower_change(e, k->nholonomic);
-  to->velocity = k->nholonomic == k->n ? to->position : lower_change(e, k->n);
+  to->position = lower_change(e, k->nkept);
+  to->velocity = k->nkept == k->n ? to->position : lower_change(e, k->n);
 }
 
 static void add_variation(IrUnit *u, const Eqns *e) {

@@ -78,10 +78,10 @@ typedef struct {
   uint32_t line;
 } IrConstraint;
 
-/* The holonomic ones first; the programs are those of lower.h. */
+/* The holonomic ones first, then those that keep a function of positions; the programs are those of lower.h. */
 typedef struct {
   VEC(IrConstraint) of;
-  uint32_t nholonomic;
+  uint32_t nholonomic, nkept;
   VEC(IrEntry) jacobian, mass;
   const Prog *residuals, *matrices, *position, *velocity;
 } IrConstraints;

@@ -4,6 +4,7 @@
  * motions, and is not meant.) */
 #include "mech/constrain.h"
 
+#include "mech/frobenius.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
 
@@ -83,18 +84,29 @@ static int check_count(const Eqns *e) {
 /* Comparing all pairs is for the lists that people write by hand. */
 enum { COMPARE_MAX = 64 };
 
-static int add(Eqns *e, const Constraint *k, Expr *c, Expr *r, Expr *demand) {
-  Constraints *all = &e->constraints;
+/* c of a holonomic one; F of one on velocities that keeps F; 0. */
+typedef struct {
+  ExprPartials row;
+  Expr kept;
+} Kind;
+
+static int look_at(Eqns *e, const Constraint *k, Kind *to) {
   int holonomic = is_holonomic(e, k);
-  ExprPartials row = expr_gradient_sparse(e->g, k->c, holonomic ? SYM_COORD : SYM_VEL, e->n);
-  if (!check_contains(e, k, &row) || (!holonomic && !check_linear(e, k, &row))) return 0;
+  to->row = expr_gradient_sparse(e->g, k->c, holonomic ? SYM_COORD : SYM_VEL, e->n);
+  if (!check_contains(e, k, &to->row) || (!holonomic && !check_linear(e, k, &to->row))) return 0;
   if (e->m->constraints.n <= COMPARE_MAX && !check_contradiction(e, k)) return 0;
-  uint32_t at = all->n++;
-  if (holonomic) c[at] = k->c;
-  r[at] = holonomic ? rate(e, k->c, "'") : k->c;
-  demand[at] = expr_neg(e->g, rate(e, r[at], "_drift"));
-  for (uint32_t i = 0; i < row.n; i++) vec_push(e->m->arena, &all->A, ((MassEntry){at, row.at[i].index, row.at[i].e}));
+  to->kept = holonomic ? k->c : frobenius_leaf(e, k->c);
   return 1;
+}
+
+static void add(Eqns *e, const Constraint *k, const Kind *kind, const Constraint **of, Expr *c, Expr *r, Expr *demand) {
+  Constraints *all = &e->constraints;
+  uint32_t at = all->n++;
+  of[at] = k;
+  c[at] = kind->kept;
+  r[at] = is_holonomic(e, k) ? rate(e, k->c, "'") : k->c;
+  demand[at] = expr_neg(e->g, rate(e, r[at], "_drift"));
+  for (uint32_t i = 0; i < kind->row.n; i++) vec_push(e->m->arena, &all->A, ((MassEntry){at, kind->row.at[i].index, kind->row.at[i].e}));
 }
 
 static void add_forces(Eqns *e) {
@@ -117,15 +129,17 @@ int constrain(Eqns *e) {
   if (!n) return 1;
   const Constraint **of = ARENA_ARRAY(a, const Constraint *, n);
   Expr *c = ARENA_ARRAY(a, Expr, n), *r = ARENA_ARRAY(a, Expr, n), *demand = ARENA_ARRAY(a, Expr, n);
+  Kind *kinds = ARENA_ARRAY(a, Kind, n);
   int good = check_count(e);
-  for (int turn = 1; turn >= 0; turn--) {
+  for (uint32_t i = 0; i < n; i++) good &= look_at(e, &m->constraints.at[i], &kinds[i]);
+  for (int turn = 0; turn < 3 && good; turn++) {
     for (uint32_t i = 0; i < n; i++) {
       const Constraint *k = &m->constraints.at[i];
-      if (is_holonomic(e, k) != turn) continue;
-      of[e->constraints.n] = k;
-      good &= add(e, k, c, r, demand);
+      int kind = is_holonomic(e, k) ? 0 : kinds[i].kept ? 1 : 2;
+      if (kind == turn) add(e, k, &kinds[i], of, c, r, demand);
     }
-    if (turn) e->constraints.nholonomic = e->constraints.n;
+    if (turn == 0) e->constraints.nholonomic = e->constraints.n;
+    if (turn == 1) e->constraints.nkept = e->constraints.n;
   }
   e->constraints.of = of;
   e->constraints.c = c;
@@ -143,3 +157,5 @@ int constraints_do_no_work(const Eqns *e) {
   }
   return 1;
 }
+
+void constraints_keep_none(Eqns *e) { e->constraints.nkept = e->constraints.nholonomic; }

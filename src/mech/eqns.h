@@ -37,11 +37,12 @@ typedef struct {
   uint64_t ops;          /* of elimination and substitution, about */
 } LinearSystem;
 
-/* Constraints, the holonomic ones first. */
+/* Constraints: the holonomic ones first; then those on velocities that are the rate of a function of positions, r = dF/dt, and so keep F
+ * as it is at the start; then the others. */
 typedef struct {
-  uint32_t n, nholonomic;
+  uint32_t n, nholonomic, nkept; /* nkept: the first two kinds together */
   const Constraint *const *of; /* [n] */
-  const Expr *c;               /* [nholonomic] */
+  const Expr *c;               /* [nkept] c, or F */
   const Expr *r;               /* [n] */
   const Expr *demand;          /* [n] what A q'' must be */
   Entries A;                   /* row by row, columns ascending */

@@ -71,11 +71,9 @@ static void show_integrability(const Eqns *e, StateSolver *s, StrBuf *out) {
   const Constraints *all = &e->constraints;
   if (all->nholonomic == all->n) return;
   sb_printf(out, "  constraints on velocities %s\n", words[frobenius(e, s)]);
-  for (uint32_t i = all->nholonomic; i < all->n; i++) {
-    Expr leaf = frobenius_leaf(e, i);
-    if (!leaf) continue;
+  for (uint32_t i = all->nholonomic; i < all->nkept; i++) {
     sb_printf(out, "  constraint %s keeps ", all->of[i]->name);
-    expr_print(e->g, leaf, PRINT_TEXT, out);
+    expr_print(e->g, all->c[i], PRINT_TEXT, out);
     sb_puts(out, " as it is at the start\n");
   }
 }

@@ -4,6 +4,7 @@
 
 #include "base/dense.h"
 #include "sym/diff.h"
+#include "sym/integrate.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"
 
@@ -201,17 +202,21 @@ Integrable frobenius(const Eqns *e, StateSolver *solver) {
   return looks == 0 ? INTEGRABLE_NO : is_proved(&f) ? INTEGRABLE_PROVED : INTEGRABLE_UNDECIDED;
 }
 
-Expr frobenius_leaf(const Eqns *e, uint32_t i) {
-  const Constraints *all = &e->constraints;
-  const unsigned moving = 1u << SYM_COORD | 1u << SYM_TIME;
+Expr frobenius_leaf(const Eqns *e, Expr r) {
+  const Model *m = e->m;
   ExprGraph *g = e->g;
-  Expr b = at_rest(e, all->r[i]), leaf = expr_mul(g, b, expr_symbol(g, e->m->time)->node);
-  if (expr_kinds(g, b) & moving) return 0;
-  for (uint32_t k = 0; k < all->A.n; k++) {
-    if (all->A.at[k].row != i) continue;
-    if (expr_kinds(g, all->A.at[k].e) & moving) return 0;
-    Expr part = expr_mul(g, all->A.at[k].e, expr_symbol(g, e->m->coords.at[all->A.at[k].col].q)->node);
-    leaf = expr_add(g, leaf, part);
+  uint32_t n = e->n;
+  if (n > MOST_COORDINATES) return 0;
+  Expr *a = ARENA_ARRAY(m->arena, Expr, n + 1), rate = expr_int(g, 0);
+  SymId *q = ARENA_ARRAY(m->arena, SymId, n + 1);
+  for (uint32_t i = 0; i < n; i++) a[i] = expr_int(g, 0), q[i] = m->coords.at[i].q;
+  ExprPartials row = expr_gradient_sparse(g, r, SYM_VEL, n);
+  for (uint32_t i = 0; i < row.n; i++) a[row.at[i].index] = row.at[i].e;
+  a[n] = at_rest(e, r), q[n] = m->time;
+  Expr leaf = expr_potential(g, a, q, n + 1);
+  for (uint32_t i = 0; i <= n; i++) {
+    Expr x = expr_diff(g, leaf, q[i]);
+    rate = expr_add(g, rate, i < n ? expr_mul(g, x, expr_symbol(g, m->coords.at[i].v)->node) : x);
   }
-  return leaf;
+  return prove_zero(g, expr_sub(g, rate, r), NULL) == PROVED_ZERO ? leaf : 0;
 }

@@ -15,7 +15,7 @@ typedef enum {
  * up to three constraints of up to eight coordinates, and where every d omega_i is 0. */
 Integrable frobenius(const Eqns *e, StateSolver *solver);
 
-/* F(q, t) with dF/dt = r for constraint i on velocities whose coefficients are constant: it holds F fixed. 0 where there is none. */
-Expr frobenius_leaf(const Eqns *e, uint32_t i);
+/* F(q, t) with dF/dt = r, proved, for r = A q' + b of a constraint on velocities: it keeps F. 0 where none is found. */
+Expr frobenius_leaf(const Eqns *e, Expr r);
 
 #endif

@@ -88,6 +88,9 @@ is "models with constraints have none, nor those that are not analytic: if, and 
 without: four_bars
 without: motor
 without: rod
+without: rolling_ball
+without: room
+without: slider_crank
 without: tables
 without: turntable
 without: two_rods" "$(grep without "$TMP/defect.txt" | sort -u)"
