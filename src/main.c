@@ -27,6 +27,7 @@
 #include "mech/charges.h"
 #include "mech/expect.h"
 #include "mech/freedom.h"
+#include "mech/noether_report.h"
 #include "mech/show.h"
 #include "model/model.h"
 #include "picture.h"
@@ -164,6 +165,28 @@ static int do_hamiltonian(Compiler *c, Eqns *e) {
     return STATUS_MODEL;
   }
   show_hamiltonian(e, c->o.format && strcmp(c->o.format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
+  return write_out(c, c->o.output, &out);
+}
+
+/* Without a scene: the model without effects, and each effect alone. */
+static int do_noether(Compiler *c) {
+  Eqns *e = c->o.scene ? derive_scene(c, c->o.scene) : derive(c, &(ModelChoice){.bare = 1});
+  StrBuf out = strbuf(c->arena);
+  const char *format = c->o.format ? c->o.format : "text";
+  if (!e) return STATUS_MODEL;
+  if (!e->m->lagrangian) {
+    diag_error(c->diags, e->m->span, "no symmetries to look for: the model has no Lagrangian");
+    return STATUS_MODEL;
+  }
+  if (!c->o.scene && !charges_judge(e, NULL)) return STATUS_MODEL;
+  NoetherReport *r = noether_report(e);
+  for (uint32_t i = 0; i < e->m->all_effects.n && !c->o.scene; i++) {
+    Name effect = e->m->all_effects.at[i];
+    const Eqns *with = derive(c, &(ModelChoice){.bare = 1, .also = effect});
+    if (with) noether_report_effect(r, effect, with);
+  }
+  if (strcmp(format, "json") == 0) show_noether_json(r, &out);
+  else show_noether(r, strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
   return write_out(c, c->o.output, &out);
 }
 
@@ -443,7 +466,10 @@ static int do_check(Compiler *c) {
     if (c->o.scene && strcmp(c->o.scene, scenes.at[i]) != 0) continue;
     Eqns *e = derive_scene(c, scenes.at[i]);
     if (!e) continue;
-    if (!out.n) show_facts(e, &out);
+    if (!out.n) {
+      show_facts(e, &out);
+      show_cyclic(e, &out);
+    }
     collect_units(c, e->m, &found);
     if (!freedom_show(e, &out)) continue;
     sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], effects_text(c, e->m));
@@ -504,6 +530,7 @@ static int do_command(Compiler *c) {
   switch (c->o.command) {
     case CMD_CHECK: return do_check(c);
     case CMD_DERIVE: return do_derive(c);
+    case CMD_NOETHER: return do_noether(c);
     case CMD_EMIT: return method_is_known(c) ? do_emit(c) : STATUS_USAGE;
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return method_is_known(c) ? do_build(c) : STATUS_USAGE;

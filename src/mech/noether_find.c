@@ -1,15 +1,13 @@
 #include "mech/noether_find.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include "sym/print.h"
 
 #include "mech/noether_name.h"
 #include "mech/noether_number.h"
 #include "mech/noether_table.h"
 #include "sym/diff.h"
 #include "sym/normal.h"
+#include "sym/print.h"
 #include "sym/simplify.h"
 
 /* A family of generators with one dependence on time. */
@@ -312,9 +310,8 @@ static void add_family(Search *s, const Family *f) {
     GeneratorRow r = {0};
     FoundSymmetry found = {0};
     if (row_generator(s, &t, row, &r)) found.is = noether_prove(s->e, &r.by);
-    int proved = r.by.xi && (found.is.is == INVARIANT || found.is.is == INVARIANT_UP_TO_F) && !found.is.by_value;
+    int proved = r.by.xi && (found.is.is == INVARIANT || found.is.is == INVARIANT_UP_TO_F) && !found.is.by_value && !found.is.broken;
     if (!proved) {
-      if (getenv("NDBG")) { StrBuf b = strbuf(s->scratch); sb_printf(&b, "row %u rec %d is %d: ", row, r.by.xi != 0, found.is.is); for (uint32_t i = 0; r.by.xi && i < s->e->n; i++) { expr_print(s->g, r.by.xi[i], PRINT_TEXT, &b); sb_puts(&b, " | "); } if (r.by.xi) expr_print(s->g, found.is.remainder, PRINT_TEXT, &b); else for (size_t k = 0; k < t.at[0].blocks*t.at[0].shown; k++) sb_printf(&b, "%.6Lg/%.6Lg ", t.at[0].at[row*t.at[0].blocks*t.at[0].shown+k], t.at[1].at[row*t.at[0].blocks*t.at[0].shown+k]); fprintf(stderr, "%s\n", sb_text(&b)); }
       s->out->unproved++;
       continue;
     }

@@ -37,7 +37,6 @@ static const Expr *mass_rows(Text *t) {
   return rows;
 }
 
-
 /* The unknowns of the system with definitions: accelerations, and per definition w the part of w' that
  * contains them, and the force that w passes on to what it contains. */
 typedef struct {
@@ -147,7 +146,7 @@ static void constraints(Text *t) {
   text_end(t);
 }
 
-/* E and its balance; of each symmetry F where there is one, the charge, and its balance where it is not conserved. */
+/* E and its balance. */
 static void energy(Text *t, const Charge *c) {
   text_heading(t, "energy");
   int moves = !t->e->conserves_energy && !c->proof.power_unknown;
@@ -155,23 +154,6 @@ static void energy(Text *t, const Charge *c) {
   if (moves) text_named(t, "dE/dt", "\\dot{E}", c->proof.power, 1);
   text_end(t);
 }
-
-static void charges(Text *t) {
-  const Eqns *e = t->e;
-  Arena *a = e->m->arena;
-  if (e->ncharges < 2) return;
-  text_heading(t, "charges of symmetries");
-  for (uint32_t i = 1; i < e->ncharges; i++) {
-    const Charge *c = &e->charges[i];
-    const char *tex = text_latex_name(t, c->name);
-    int last = i + 1 == e->ncharges, moves = !c->proof.power_unknown && !expr_is_zero(t->g, c->proof.power);
-    if (!expr_is_zero(t->g, c->proof.F)) text_named(t, arena_printf(a, "F(%s)", c->name), arena_printf(a, "F_{%s}", tex), c->proof.F, 0);
-    text_named(t, c->name, arena_printf(a, "Q_{%s}", tex), c->proof.charge, last && !moves);
-    if (moves) text_named(t, arena_printf(a, "d(%s)/dt", c->name), arena_printf(a, "\\dot{Q}_{%s}", tex), c->proof.power, last);
-  }
-  text_end(t);
-}
-
 
 static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 
@@ -226,7 +208,7 @@ void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *o
     vec_push(m->arena, &roots, e->energy);
     energy(&t, &e->charges[0]);
   }
-  charges(&t);
+  text_charges(&t);
   for (uint32_t i = 0; i < e->ncharges; i++) {
     vec_push(m->arena, &roots, e->charges[i].proof.charge);
     vec_push(m->arena, &roots, e->charges[i].proof.power);

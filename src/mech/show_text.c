@@ -1,5 +1,7 @@
 #include "mech/show_text.h"
 
+#include "mech/charges.h"
+
 int text_latex(const Text *t) { return t->style == PRINT_LATEX; }
 void text_put(Text *t, const char *text, const char *in_latex) { sb_puts(t->out, text_latex(t) ? in_latex : text); }
 
@@ -72,6 +74,22 @@ void text_momenta(Text *t) {
     const char *text = arena_printf(e->m->arena, "p_%s", name), *tex = arena_printf(e->m->arena, "p_{%s}", text_latex_name(t, name));
     Expr shown = e->n ? e->momenta[i] : e->first.theta[i];
     text_named(t, text, tex, shown, i + 1 == n);
+  }
+  text_end(t);
+}
+
+void text_charges(Text *t) {
+  const Eqns *e = t->e;
+  Arena *a = e->m->arena;
+  if (e->ncharges < 2) return;
+  text_heading(t, "charges of symmetries");
+  for (uint32_t i = 1; i < e->ncharges; i++) {
+    const Charge *c = &e->charges[i];
+    const char *tex = text_latex_name(t, c->name);
+    int last = i + 1 == e->ncharges, moves = !c->proof.power_unknown && !expr_is_zero(t->g, c->proof.power);
+    if (!expr_is_zero(t->g, c->proof.F)) text_named(t, arena_printf(a, "F(%s)", c->name), arena_printf(a, "F_{%s}", tex), c->proof.F, 0);
+    text_named(t, c->name, arena_printf(a, "Q_{%s}", tex), c->proof.charge, last && !moves);
+    if (moves) text_named(t, arena_printf(a, "d(%s)/dt", c->name), arena_printf(a, "\\dot{Q}_{%s}", tex), c->proof.power, last);
   }
   text_end(t);
 }

@@ -20,6 +20,9 @@ void text_title(Text *t);
 
 void text_momenta(Text *t);
 
+/* Of each declared symmetry F where there is one, the charge, and its balance where it is not conserved. */
+void text_charges(Text *t);
+
 /* A block of equations, from its heading to its end. */
 void text_heading(Text *t, const char *title);
 void text_end(Text *t);
