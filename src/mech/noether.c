@@ -221,7 +221,7 @@ static Expr charge_of(const Work *w, Expr F) {
   return expr_add(g, front, minus_et);
 }
 
-static int is_contact(const Model *m, const Constraint *k) {
+int noether_is_contact(const Model *m, const Constraint *k) {
   for (uint32_t i = 0; i < m->contacts.n; i++)
     if (&m->constraints.at[m->contacts.at[i].constraint] == k) return 1;
   return 0;
@@ -247,7 +247,7 @@ static Expr power_of_constraints(Work *w, Noether *to) {
     }
     if (zero_on_constraints(w, moved) == PROVED_ZERO) continue;
     moved = shorten(w, moved);
-    if (i < k->nholonomic && !to->broken && !is_contact(w->m, k->of[i])) {
+    if (i < k->nholonomic && !to->broken && !noether_is_contact(w->m, k->of[i])) {
       to->broken = i + 1;
       to->breaks = moved;
     }

@@ -259,7 +259,6 @@ static int shorter_coefficients(Search *s, Tables *t, uint32_t row, int moved, E
   }
   int found = table_shorten(s->scratch, all, n, row) && row_coefficients(s, t, row, moved, c);
   for (uint32_t i = 0; i < n; i++) memcpy(t->at[i].at + (size_t)row * width, kept + (size_t)i * width, width * sizeof *kept);
-  if (found) clear_parameters(s, c, width);
   return found;
 }
 
@@ -277,6 +276,7 @@ static int row_generator(Search *s, Tables *t, uint32_t row, GeneratorRow *to) {
   size_t n = (size_t)blocks * a->shown;
   to->c = ARENA_ARRAY(s->scratch, Expr, n);
   if (!recognise_row(s, t, row, to->c)) return 0;
+  clear_parameters(s, to->c, n);
   clear_fractions(s, to->c, n);
   to->ansatz = a;
   to->kind = t->family->kind;
@@ -299,6 +299,11 @@ static int row_generator(Search *s, Tables *t, uint32_t row, GeneratorRow *to) {
   return 1;
 }
 
+/* The constraints of contacts, which are open in states at random, say nothing. */
+static int is_proved(const Search *s, const Noether *is) {
+  return (is->is == INVARIANT || is->is == INVARIANT_UP_TO_F) && !is->broken && (!is->by_value || s->ansatz->held.n == 0);
+}
+
 static void add_family(Search *s, const Family *f) {
   Tables t = {.family = f, .at = ARENA_ARRAY(s->scratch, Table, choice_count(s))};
   for (uint32_t i = 0; i < CHOICE_MOVED; i++) t.at[i] = table_at(s, f, i);
@@ -310,12 +315,13 @@ static void add_family(Search *s, const Family *f) {
     GeneratorRow r = {0};
     FoundSymmetry found = {0};
     if (row_generator(s, &t, row, &r)) found.is = noether_prove(s->e, &r.by);
-    int proved = r.by.xi && (found.is.is == INVARIANT || found.is.is == INVARIANT_UP_TO_F) && !found.is.by_value && !found.is.broken;
+    int proved = r.by.xi && is_proved(s, &found.is);
     if (!proved) {
       s->out->unproved++;
       continue;
     }
     found.by = r.by;
+    found.rate = f->rate;
     name_symmetry(s->e, &r, &found);
     vec_push(s->e->m->arena, &s->out->all, found);
   }
@@ -463,10 +469,19 @@ static void search_work(Arena *scratch, void *data) {
   if (!s->out->searched) s->out->note = "the linear equations of the search could not be solved reliably";
 }
 
+/* Events that set velocities or coordinates are no part of L. */
+static const char *note_on_impacts(const Model *m) {
+  uint32_t setting = 0;
+  if (m->contacts.n) return "impacts and contacts change charges: what is said holds between them";
+  for (uint32_t i = 0; i < m->events.n; i++) setting += m->events.at[i].actions.n > 0;
+  return setting ? "events change charges: what is said holds between them" : NULL;
+}
+
 FoundSymmetries noether_find(Eqns *e) {
   FoundSymmetries out = {0};
   Search s = {.e = e, .g = e->g, .out = &out};
   normal_with_scratch(e->g, search_work, &s);
   out.galilean = has_galilean_charges(&out);
+  if (!out.note) out.note = note_on_impacts(e->m);
   return out;
 }

@@ -23,6 +23,7 @@ typedef struct {
   int of_all;           /* it moves all coordinates of its directions alike */
   uint32_t axis;        /* momentum, boost: the component; rotation: the component that stays */
   Generator by;
+  Expr rate;            /* w of sin(w t), cos(w t), s of exp(s t); 0: it goes with powers of t, or functions of a list */
   Noether is;
 } FoundSymmetry;
 
@@ -32,7 +33,7 @@ typedef struct {
   int searched;         /* 0: not, for the reason in `note` */
   int galilean;         /* the ten charges of Galileo's group are among them */
   const char *ansatz;   /* in words */
-  const char *note;     /* or NULL */
+  const char *note;     /* or NULL: what else is to be said */
 } FoundSymmetries;
 
 /* For all values of the parameters. Needs a Lagrangian. */

@@ -178,6 +178,21 @@ static uint32_t bodies_with(const Eqns *e, uint32_t axis) {
   return n;
 }
 
+/* Whether the linear part turns two directions of bodies against one another, but not body by body: xi_x = -S y, xi_y = S x. */
+static int mixes_bodies(const Eqns *e, const GeneratorRow *r) {
+  for (uint32_t j = 0; j < r->ansatz->xi.n; j++) {
+    if (expr_is_zero(e->g, r->c[1 + j])) continue;
+    uint32_t i = r->ansatz->xi.at[j].i, k = r->ansatz->xi.at[j].k - 1, a = axis_of(coord(e, i)), b = axis_of(coord(e, k)), found = 0;
+    if (a == NO_AXIS || b == NO_AXIS || a == b) return 0;
+    for (uint32_t other = 0; other < noether_coordinates(e) && !found; other++)
+      for (uint32_t last = 0; last < noether_coordinates(e) && !found; last++)
+        found = same_body(coord(e, i), coord(e, other)) && axis_of(coord(e, other)) == b && same_body(coord(e, k), coord(e, last)) &&
+                axis_of(coord(e, last)) == a && entry(e, r, 0, other, last + 1) == expr_neg(e->g, r->c[1 + j]);
+    if (!found) return 0;
+  }
+  return 1;
+}
+
 static void name_linear(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
   uint32_t bodies, axis = common_turn(e, r, &bodies);
   int antisymmetric = 1, space = along(e, 2) > 0 && along(e, 0) > 0;
@@ -191,7 +206,8 @@ static void name_linear(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to)
     to->of_all = all;
     const char *whole = all && bodies > 1 ? "total angular momentum" : "angular momentum";
     to->name = space || axis != 2 ? arena_printf(e->m->arena, "%s about %s", whole, axis_text(axis)) : whole;
-  } else to->name = antisymmetric ? "rotation among coordinates" : "linear map of the coordinates";
+  } else if (mixes_bodies(e, r)) to->name = "angular momentum of a part of the motion";
+  else to->name = antisymmetric ? "rotation among coordinates" : "linear map of the coordinates";
 }
 
 void name_symmetry(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
@@ -210,8 +226,14 @@ void name_symmetry(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
   else if (!p.tau && !p.shift && p.linear == 1) name_linear(e, r, to);
   else if (p.tau == 2 && p.linear == 1) {
     to->kind = SYMMETRY_SCALING;
-    to->name = "scaling";
+    to->name = p.shift > 1 ? "scaling about a point that moves" : p.shift ? "scaling about another point" : "scaling";
   } else if (p.tau & 4) to->name = "expansion";
+  else if (!p.tau && p.linear == 1) {
+    int turn = 0;
+    for (uint32_t i = 0; i < noether_coordinates(e); i++)
+      for (uint32_t j = i + 1; j < noether_coordinates(e); j++) turn = turn || turns(e, r, i, j);
+    if (turn) to->name = p.shift > 1 ? "rotation about a point that moves" : "rotation about another point";
+  }
 }
 
 int has_galilean_charges(const FoundSymmetries *all) {

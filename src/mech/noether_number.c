@@ -93,6 +93,31 @@ Expr monomial_of(const Choices *c, const long double *value) {
   return expr_scale(g, number, product);
 }
 
+/* The multiple of 1/12 that x is, as a difference shows it; 0: it is none. */
+static int twelfth_of(long double x, Num *out) {
+  long double whole = roundl(12 * x);
+  if (!(fabsl(12 * x - whole) < 1e-6L) || fabsl(whole) > 1e6L) return 0;
+  *out = num_ratio((int64_t)whole, 12);
+  return 1;
+}
+
+Expr linear_of(const Choices *c, const long double *value) {
+  ExprGraph *g = c->e->g;
+  Expr sum = expr_int(g, 0);
+  Num number;
+  for (uint32_t k = 0; k < c->n; k++) {
+    long double step = 0.01L * c->at[CHOICE_FIRST][c->param[k]];
+    if (!twelfth_of((value[CHOICE_MOVED + k] - value[CHOICE_FIRST]) / step, &number)) return 0;
+    Expr term = expr_scale(g, number, parameter(c, k, num_int(1)));
+    sum = expr_add(g, sum, term);
+  }
+  long double rest = value[CHOICE_FIRST] - choice_value(c, CHOICE_FIRST, sum);
+  if (fabsl(rest) < 1e-10L) rest = 0;
+  if (!rational_of(rest, &number)) return 0;
+  sum = expr_add(g, sum, expr_num(g, number));
+  return fabsl(choice_value(c, CHOICE_SECOND, sum) - value[CHOICE_SECOND]) < 1e-9L * fabsl(value[CHOICE_SECOND]) ? sum : 0;
+}
+
 long double choice_value(const Choices *c, uint32_t choice, Expr e) {
   long double value;
   expr_eval(c->e->g, &e, 1, c->at[choice], &value);

@@ -23,6 +23,9 @@ int rational_of(long double x, Num *out);
 /* The same with a power of one parameter, or with the ratio or product of two, from the first two choices alone. */
 Expr ratio_of(const Choices *c, const long double *value);
 
+/* A sum of parameters times small fractions, and of such a fraction: m1 + m2. 0: none takes these values, 2 + n of them. */
+Expr linear_of(const Choices *c, const long double *value);
+
 /* value[choice], 2 + n of them. 0: no such monomial takes these values. */
 Expr monomial_of(const Choices *c, const long double *value);
 

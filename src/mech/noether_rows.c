@@ -39,6 +39,12 @@ static void add_gauge(Ansatz *s, Arena *a) {
       for (uint32_t k = 0; k <= j && k <= cubic; k++) vec_push(a, &s->gauge, ((GaugeColumn){{i, j, k}}));
 }
 
+static void add_held(Ansatz *s, Arena *a) {
+  const Constraints *k = &s->e->constraints;
+  for (uint32_t i = 0; i < k->n; i++)
+    if (!noether_is_contact(s->e->m, k->of[i])) vec_push(a, &s->held, i);
+}
+
 Ansatz *ansatz_new(Arena *a, const Eqns *e) {
   Ansatz *s = ARENA_NEW(a, Ansatz);
   unsigned kinds = expr_kinds(e->g, e->m->lagrangian);
@@ -56,6 +62,7 @@ Ansatz *ansatz_new(Arena *a, const Eqns *e) {
   s->has_time = (kinds & 1u << SYM_TIME) != 0;
   add_xi(s, a);
   add_gauge(s, a);
+  add_held(s, a);
   s->shown = 1 + s->xi.n;
   s->columns = s->shown + s->gauge.n;
   return s;
@@ -68,7 +75,7 @@ struct RowSource {
   Arena *scratch;
   EvalTape *tape;        /* L, dL/dt, dL/dq, p; then of constraints A and r */
   StateSolver *solver;   /* or NULL */
-  long double *symbols, *out;
+  long double *symbols, *kept, *out;
   long double *phi, *rate; /* [n + 1] 1, q and their derivatives */
   long double *part;     /* [2*columns] scratch */
   uint64_t random;
@@ -100,6 +107,7 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
   for (uint32_t i = 0; i < k->n; i++) roots[count++] = k->r[i];
   *r = (RowSource){.of = s, .scratch = scratch, .tape = eval_tape(e->g, roots, count), .solver = k->n ? states_new(e) : NULL, .random = 7};
   r->symbols = ARENA_ARRAY(scratch, long double, symbols);
+  r->kept = ARENA_ARRAY(scratch, long double, symbols);
   r->out = ARENA_ARRAY(scratch, long double, count);
   r->phi = ARENA_ARRAY(scratch, long double, s->n + 1);
   r->rate = ARENA_ARRAY(scratch, long double, s->n + 1);
@@ -108,15 +116,43 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
   return r;
 }
 
-/* Everything but parameters gets a new value. Times are further apart, so that functions of time are told from each other. */
-static void draw(RowSource *r) {
+/* Everything but parameters gets a new value, coordinates `spread` times as far out. Times are further apart, so that functions of time
+ * are told from each other. */
+static void draw(RowSource *r, long double spread) {
   const ExprGraph *g = r->of->e->g;
   for (SymId s = 1; s <= expr_symbol_count(g); s++) {
     const Symbol *x = expr_symbol(g, s);
     if (x->kind == SYM_PARAM || x->kind == SYM_CONST) continue;
-    long double value = next_value(r) * (x->kind == SYM_TIME ? 4 : 1);
+    long double value = next_value(r) * (x->kind == SYM_TIME ? 4 : x->kind == SYM_COORD ? spread : 1);
     r->symbols[s] = x->sign == SIGN_POSITIVE || x->sign == SIGN_NONNEGATIVE ? fabsl(value) : value;
   }
+}
+
+/* How steep L is there. */
+static long double steepness(RowSource *r) {
+  long double sum = 0;
+  eval_run(r->tape, r->symbols, r->out);
+  for (uint32_t i = 0; i < r->of->n; i++) sum += fabsl(r->out[2 + i]);
+  return sum;
+}
+
+/* The gentlest of some states, every second one of them wide: where two of many bodies nearly touch, their force drowns all others. */
+static void draw_gentle(RowSource *r) {
+  enum { FEW = 6, DRAWS = 24 };
+  size_t size = (expr_symbol_count(r->of->e->g) + 1) * sizeof *r->symbols;
+  long double least = INFINITY;
+  if (r->of->n < FEW) {
+    draw(r, 1);
+    return;
+  }
+  for (int k = 0; k < DRAWS; k++) {
+    draw(r, k % 2 ? 3 : 1);
+    long double now = steepness(r);
+    if (!(now < least)) continue;
+    least = now;
+    memcpy(r->kept, r->symbols, size);
+  }
+  if (least < INFINITY) memcpy(r->symbols, r->kept, size);
 }
 
 static void set_velocities(RowSource *r, const long double *v, long double factor) {
@@ -179,20 +215,26 @@ static int constraint_row(RowSource *r, uint32_t which, long double *b0) {
   if (!states_obey(r->solver, r->symbols)) return 0;
   evaluate(r);
   const long double *A = r->out + 2 + 2 * (size_t)s->n;
-  long double b = A[k->A.n + which];
+  long double b = A[k->A.n + which], size = fabsl(b);
   for (uint32_t x = 0; x < k->A.n; x++) {
     if (k->A.at[x].row != which) continue;
     b -= A[x] * r->rate[k->A.at[x].col + 1];
+    size += fabsl(A[x] * r->rate[k->A.at[x].col + 1]);
     for (uint32_t j = 0; j < s->xi.n; j++)
       if (s->xi.at[j].i == k->A.at[x].col) b0[1 + j] += A[x] * r->phi[s->xi.at[j].k];
   }
-  if (s->has_tau) b0[0] = b;
+  if (s->has_tau && fabsl(b) > 1e-14L * size) b0[0] = b; /* a state obeys to rounding */
   return 1;
 }
 
-static int is_finite(const long double *x, uint32_t n) {
-  for (uint32_t i = 0; i < n; i++)
-    if (!isfinite(x[i])) return 0;
+/* Each state counts as much as any other: bodies that nearly touch would drown them. 0: a value is not finite. */
+static int normalise(long double *b0, long double *b1, uint32_t n) {
+  long double most = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (!isfinite(b0[i]) || !isfinite(b1[i])) return 0;
+    most = fmaxl(most, fmaxl(fabsl(b0[i]), fabsl(b1[i])));
+  }
+  for (uint32_t i = 0; i < n && most > 0; i++) b0[i] /= most, b1[i] /= most;
   return 1;
 }
 
@@ -201,10 +243,10 @@ static int try_row(RowSource *r, RowKind kind, uint32_t which, long double *b0, 
   uint32_t w = r->of->columns;
   memset(b0, 0, w * sizeof *b0);
   memset(b1, 0, w * sizeof *b1);
-  draw(r);
+  draw_gentle(r);
   if (kind != ROWS_CONSTRAINTS) lagrangian_rows(r, kind, b0, b1);
-  else if (!constraint_row(r, which % r->of->e->constraints.n, b0)) return 0;
-  return is_finite(b0, w) && is_finite(b1, w);
+  else if (!constraint_row(r, r->of->held.at[which % r->of->held.n], b0)) return 0;
+  return normalise(b0, b1, w);
 }
 
 enum { TRIES = 20 };

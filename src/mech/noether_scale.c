@@ -1,3 +1,5 @@
+#include <math.h>
+
 #include "base/dense.h"
 #include "mech/noether_find.h"
 #include "mech/noether_number.h"
@@ -44,7 +46,7 @@ static const long double *exponents(Work *w, const long double *parameters, uint
       row[n] -= moved;
     }
     for (uint32_t j = 0; j < width; j++)
-      if (!(row[j] - row[j] == 0)) return NULL;
+      if (!isfinite(row[j])) return NULL;
   }
   DenseRows kernel = dense_kernel(w->scratch, rows, width, m, 1e-12L);
   return kernel.n == 1 && kernel.gap > 1e4L ? kernel.at : NULL;
@@ -88,7 +90,7 @@ static void scaling_work(Arena *scratch, void *data) {
   const long double *x = exponents(w, choices.at[CHOICE_FIRST], 1), *y = x ? exponents(w, choices.at[CHOICE_SECOND], 2) : NULL;
   Num *whole = ARENA_ARRAY(w->e->m->arena, Num, w->n + 2), other;
   uint32_t last = w->n + 1;
-  if (!y || !rational_of(x[last], &other) || num_is_zero(other)) return;
+  if (!y || fabsl(x[last]) < 1e-9L || fabsl(y[last]) < 1e-9L) return; /* kappa is 0: Noether's own */
   for (uint32_t i = 0; i <= last; i++)
     if (!rational_of(x[i] / x[last], &whole[i]) || !rational_of(y[i] / y[last], &other) || !num_equal(whole[i], other)) return;
   make_whole(whole, w->n + 2);

@@ -37,6 +37,7 @@ typedef struct {
   VEC(GaugeColumn) gauge;  /* the first is 1 */
   uint32_t shown;          /* columns of tau and xi: 1 + xi.n */
   uint32_t columns;        /* shown + gauge.n */
+  VEC(uint32_t) held;      /* constraints that always hold: contacts do not */
 } Ansatz;
 
 /* All of it for up to 20 coordinates. Beyond that the linear part of xi mixes only the components of one vector. */

@@ -104,7 +104,7 @@ SolutionSpace solution_space(const Ansatz *s, Arena *a, const long double *param
   for (uint32_t before = UINT32_MAX; before != space->n;) {
     before = space->n;
     if (!cut(r, a, ROWS_ALL, space, &found.sure)) return (SolutionSpace){0};
-    if (s->e->constraints.n && !cut(r, a, ROWS_CONSTRAINTS, space, &found.sure)) return (SolutionSpace){0};
+    if (s->held.n && !cut(r, a, ROWS_CONSTRAINTS, space, &found.sure)) return (SolutionSpace){0};
   }
   found.A = rates(r, a, space, &found.sure);
   return found;

@@ -191,7 +191,7 @@ Table table_listed(Arena *a, const Ansatz *s, const TimeList *times, const long 
   ExprGraph *g = s->e->g;
   SymId t = s->e->m->time;
   uint32_t gauge = s->columns - s->shown, nT = times->ngauge, width = times->n * s->shown + nT * gauge, rows = width + SPARE_ROWS;
-  uint32_t more = s->e->constraints.n ? times->n * s->shown + SPARE_ROWS : 0;
+  uint32_t more = s->held.n ? times->n * s->shown + SPARE_ROWS : 0;
   Expr *roots = ARENA_ARRAY(a, Expr, 2 * (size_t)nT);
   long double *value = ARENA_ARRAY(a, long double, 2 * (size_t)nT), *symbols = ARENA_ARRAY(a, long double, expr_symbol_count(g) + 1);
   long double *b0 = ARENA_ARRAY(a, long double, s->columns), *b1 = ARENA_ARRAY(a, long double, s->columns);

@@ -47,12 +47,29 @@ static void symmetries(Page *p) {
   say(p, arena_printf(a, "found: %u symmetr%s, each proved; Q = p.delta q - E delta t - F", f->all.n, f->all.n == 1 ? "y" : "ies"));
   if (f->unproved)
     say(p, arena_printf(a, "%u more direction%s of the solution space not written in closed form, or not proved: not listed", f->unproved, plural(f->unproved)));
+  if (f->note) say(p, f->note);
   if (f->galilean) say(p, "the ten charges of Galileo's group are among them");
   for (uint32_t k = 0; k < f->all.n; k++) symmetry(p, k);
-  if (!expr_is_zero(p->text.g, p->text.e->energy)) text_definitions(&p->text, &p->text.e->energy, 1);
+  Expr *roots = ARENA_ARRAY(a, Expr, 3 * (size_t)f->all.n + 1);
+  for (uint32_t k = 0; k < f->all.n; k++) {
+    const Noether *is = &f->all.at[k].is;
+    roots[3 * k] = is->charge, roots[3 * k + 1] = is->F, roots[3 * k + 2] = is->power;
+  }
+  text_definitions(&p->text, roots, 3 * f->all.n);
 }
 
 /* --- scaling --- */
+
+/* s, s^2, s^(-1), s^(3/2). */
+static const char *power_text(Page *p, Num power) {
+  StrBuf b = strbuf(p->text.e->m->arena);
+  int bare = num_is_int(power) && num_sign(power) > 0;
+  if (num_is_one(power)) return "s";
+  sb_puts(&b, bare ? "s^" : "s^(");
+  num_print(&b, power);
+  sb_puts(&b, bare ? "" : ")");
+  return sb_text(&b);
+}
 
 static void scaling(Page *p) {
   const NoetherReport *r = p->r;
@@ -65,13 +82,10 @@ static void scaling(Page *p) {
     Num power = i < t->e->n ? r->scaling.alpha[i] : r->scaling.beta;
     Name x = i < t->e->n ? t->e->m->coords.at[i].name : "t";
     if (num_is_zero(power)) continue;
-    sb_printf(&b, "%s %s -> s^(", b.n > sizeof "scaling:" ? "," : "", x);
-    num_print(&b, power);
-    sb_printf(&b, ")*%s", x);
+    sb_printf(&b, "%s %s -> %s*%s", b.n > sizeof "scaling:" ? "," : "", x, power_text(p, power), x);
   }
-  sb_puts(&b, " maps solutions to solutions; it multiplies the action by s^(");
-  num_print(&b, r->scaling.kappa);
-  sb_puts(&b, "), so it is no symmetry in Noether's sense and has no charge");
+  sb_printf(&b, " maps solutions to solutions; it multiplies the action by %s, so it is no symmetry in Noether's sense and has no charge",
+            power_text(p, r->scaling.kappa));
   say(p, sb_text(&b));
 }
 

@@ -90,7 +90,7 @@ void show_noether_json(const NoetherReport *r, StrBuf *out) {
   for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(out, "%s\"%s\"", comma(i), m->effects.at[i]);
   sb_puts(out, "], \"cyclic\": [");
   for (uint32_t i = 0; i < r->cyclic.n; i++) sb_printf(out, "%s\"%s\"", comma(i), m->coords.at[r->cyclic.at[i]].name);
-  sb_printf(out, "],\n \"ansatz\": \"%s\", \"searched\": %s, \"not_proved\": %u, \"galilean\": %s,\n \"symmetries\": [", f->ansatz, f->searched ? "true" : "false", f->unproved,
+  sb_printf(out, "],\n \"note\": \"%s\", \"ansatz\": \"%s\", \"searched\": %s, \"not_proved\": %u, \"galilean\": %s,\n \"symmetries\": [", f->note ? f->note : "", f->ansatz, f->searched ? "true" : "false", f->unproved,
             f->galilean ? "true" : "false");
   for (uint32_t k = 0; k < f->all.n; k++) {
     sb_puts(out, k ? ",\n  " : "\n  ");
