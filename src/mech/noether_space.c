@@ -39,11 +39,13 @@ static Sparse sparse_rows(Arena *a, const DenseRows *space) {
   return s;
 }
 
-/* to[n] = the products of a row with the rows of the space. */
+/* to[n] = the products of a row with the rows of the space. Both are of length 1 or so, and what is left of a product far below that is
+ * rounding: it must be 0, for a kernel scales columns. */
 static void project(const Sparse *s, uint32_t n, const long double *row, long double *to) {
   for (uint32_t k = 0; k < n; k++) {
     to[k] = 0;
     for (uint32_t x = s->begin[k]; x < s->begin[k + 1]; x++) to[k] += s->value[x] * row[s->column[x]];
+    if (fabsl(to[k]) < 1e-15L) to[k] = 0;
   }
 }
 
