@@ -122,15 +122,16 @@ static Hamilton result(Work *w) {
     }
     w->rate[i] = short_form(w, rate);
   }
-  Expr H = expr_add(g, short_form(w, kinetic), V), dH = expr_add(g, kinetic, V);
+  Expr H = expr_add(g, short_form(w, kinetic), V);
   for (uint32_t i = 0; i < w->n; i++) {
-    Expr force = expr_neg(g, expr_diff(g, dH, w->q[i])), other = expr_replace(g, w->e->Q[i], w->v, w->rate, w->n);
+    Expr force = expr_neg(g, expr_diff(g, kinetic, w->q[i])), pull = expr_neg(g, expr_diff(g, V, w->q[i])), other = expr_replace(g, w->e->Q[i], w->v, w->rate, w->n);
     for (uint32_t x = 0; x < k->A.n; x++)
       if (k->A.at[x].col == i) {
         Expr lambda = node(w, k->of[k->A.at[x].row]->multiplier), A = expr_replace(g, k->A.at[x].e, w->v, w->rate, w->n);
         other = expr_add(g, other, expr_mul(g, A, lambda));
       }
-    w->force[i] = expr_add(g, short_form(w, force), short_form(w, other));
+    force = expr_add(g, short_form(w, force), short_form(w, pull));
+    w->force[i] = expr_add(g, force, short_form(w, other));
   }
   return (Hamilton){1, NULL, w->p, w->inverse, w->a, H, w->rate, w->force};
 }

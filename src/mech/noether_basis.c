@@ -4,12 +4,6 @@
 
 #include "mech/noether_table.h"
 
-/* Row + factor*other makes the entries in two places equal, or opposite. */
-typedef struct {
-  uint32_t other, one, two;
-  int sign;
-} Change;
-
 static uint32_t width_of(const Table *t) { return t->blocks * t->shown; }
 static long double *row_of(const Table *t, uint32_t row) { return t->at + (size_t)row * width_of(t); }
 
@@ -28,8 +22,8 @@ static uint32_t sizes(uint32_t n, const long double *x, long double *seen) {
 }
 
 /* 0: there is no such factor. */
-static int factor_of(const Table *t, uint32_t row, Change c, long double *factor) {
-  const long double *x = row_of(t, row), *y = row_of(t, c.other);
+static int factor_of(const Table *t, TableChange c, long double *factor) {
+  const long double *x = row_of(t, c.row), *y = row_of(t, c.other);
   long double slope = y[c.one] - c.sign * y[c.two];
   if (fabsl(slope) < 1e-9L) return 0;
   *factor = (c.sign * x[c.two] - x[c.one]) / slope;
@@ -56,7 +50,7 @@ static uint32_t places(uint32_t n, const long double *x, const long double *y, u
   return count;
 }
 
-static int best_change(Arena *a, const Table *t, uint32_t row, Change *best) {
+static int best_change(Arena *a, const Table *t, uint32_t row, TableChange *best) {
   uint32_t n = width_of(t), *at = ARENA_ARRAY(a, uint32_t, n + 1);
   long double *to = ARENA_ARRAY(a, long double, n + 1), *seen = ARENA_ARRAY(a, long double, n + 1), factor;
   uint32_t fewest = sizes(n, row_of(t, row), seen), before = fewest;
@@ -66,8 +60,8 @@ static int best_change(Arena *a, const Table *t, uint32_t row, Change *best) {
     for (uint32_t i = 0; i < count; i++)
       for (uint32_t k = 0; k < count; k++)
         for (int sign = -1; sign <= 1; sign += 2) {
-          Change c = {other, at[i], at[k], sign};
-          if ((i == k && sign > 0) || !factor_of(t, row, c, &factor)) continue;
+          TableChange c = {row, other, at[i], at[k], sign};
+          if ((i == k && sign > 0) || !factor_of(t, c, &factor)) continue;
           changed(t, row, other, factor, to);
           uint32_t now = sizes(n, to, seen);
           if (now < fewest && now) fewest = now, *best = c;
@@ -76,16 +70,16 @@ static int best_change(Arena *a, const Table *t, uint32_t row, Change *best) {
   return fewest < before;
 }
 
-int table_shorten(Arena *a, Table *const *tables, uint32_t ntables, uint32_t row) {
-  enum { CHANGES_MOST = 3 };
-  long double *to = ARENA_ARRAY(a, long double, width_of(tables[0]) + 1), factor;
-  Change c;
-  int done = 0;
-  for (; done < CHANGES_MOST && best_change(a, tables[0], row, &c); done++)
-    for (uint32_t i = 0; i < ntables; i++) {
-      if (!factor_of(tables[i], row, c, &factor)) return 0;
-      changed(tables[i], row, c.other, factor, to);
-      memcpy(row_of(tables[i], row), to, width_of(tables[i]) * sizeof *to);
-    }
-  return done > 0;
+int table_change(Arena *a, Table *t, TableChange c) {
+  long double *to = ARENA_ARRAY(a, long double, width_of(t) + 1), factor;
+  if (!factor_of(t, c, &factor)) return 0;
+  changed(t, c.row, c.other, factor, to);
+  memcpy(row_of(t, c.row), to, width_of(t) * sizeof *to);
+  return 1;
+}
+
+uint32_t table_shorten(Arena *a, Table *t, uint32_t row, TableChange *to) {
+  uint32_t n = 0;
+  while (n < CHANGES_MOST && best_change(a, t, row, &to[n])) table_change(a, t, to[n++]);
+  return n;
 }

@@ -154,24 +154,24 @@ static int is_multiple(Search *s, const long double *x, Expr factor, Num *c) {
   return fabsl(a - b) < 1e-9L * fabsl(a) && rational_of(a, c);
 }
 
-/* The tables of a family at all choices, those that are moved only when they are needed. */
+/* The tables of a family at all choices, those that are moved only when they are needed; and how rows of them were shortened. */
 typedef struct {
   const Family *family;
   Table *at;
   int moved;
+  VEC(TableChange) changes;
 } Tables;
-
-static void need_moved(Search *s, Tables *t) {
-  for (uint32_t i = CHOICE_MOVED; i < choice_count(s) && !t->moved; i++) t->at[i] = table_at(s, t->family, i);
-  t->moved = 1;
-}
 
 /* Whether the tables at all choices have one shape. */
 static int shapes_agree(Search *s, Tables *t) {
-  need_moved(s, t);
-  for (uint32_t i = CHOICE_SECOND; i < choice_count(s); i++)
-    if (!same_shape(&t->at[0], &t->at[i])) return 0;
-  return 1;
+  int agree = 1;
+  for (uint32_t i = CHOICE_MOVED; i < choice_count(s) && !t->moved; i++) {
+    t->at[i] = table_at(s, t->family, i);
+    for (uint32_t k = 0; k < t->changes.n && same_shape(&t->at[0], &t->at[i]); k++) agree = table_change(s->scratch, &t->at[i], t->changes.at[k]) && agree;
+  }
+  t->moved = 1;
+  for (uint32_t i = CHOICE_SECOND; i < choice_count(s); i++) agree = agree && same_shape(&t->at[0], &t->at[i]);
+  return agree;
 }
 
 /* The coefficient in `row` and `place`; 0: not recognised. */
@@ -248,17 +248,19 @@ static int row_coefficients(Search *s, Tables *t, uint32_t row, int moved, Expr 
   return 1;
 }
 
-/* The same for a shorter row; the table is as it was. */
+/* The same for a shorter row, which takes the place of the other when it is recognised. */
 static int shorter_coefficients(Search *s, Tables *t, uint32_t row, int moved, Expr *c) {
-  uint32_t n = moved ? choice_count(s) : CHOICE_MOVED, width = t->at[0].blocks * t->at[0].shown;
-  Table **all = ARENA_ARRAY(s->scratch, Table *, n);
+  uint32_t n = moved || t->moved ? choice_count(s) : CHOICE_MOVED, width = t->at[0].blocks * t->at[0].shown;
   long double *kept = ARENA_ARRAY(s->scratch, long double, (size_t)n * width);
-  for (uint32_t i = 0; i < n; i++) {
-    all[i] = &t->at[i];
-    memcpy(kept + (size_t)i * width, t->at[i].at + (size_t)row * width, width * sizeof *kept);
-  }
-  int found = table_shorten(s->scratch, all, n, row) && row_coefficients(s, t, row, moved, c);
-  for (uint32_t i = 0; i < n; i++) memcpy(t->at[i].at + (size_t)row * width, kept + (size_t)i * width, width * sizeof *kept);
+  TableChange changes[CHANGES_MOST];
+  for (uint32_t i = 0; i < n; i++) memcpy(kept + (size_t)i * width, t->at[i].at + (size_t)row * width, width * sizeof *kept);
+  uint32_t count = table_shorten(s->scratch, &t->at[0], row, changes);
+  int found = count > 0;
+  for (uint32_t i = CHOICE_SECOND; i < n; i++)
+    for (uint32_t k = 0; k < count && found; k++) found = same_shape(&t->at[0], &t->at[i]) && table_change(s->scratch, &t->at[i], changes[k]);
+  found = found && row_coefficients(s, t, row, moved, c);
+  for (uint32_t i = 0; i < n && !found; i++) memcpy(t->at[i].at + (size_t)row * width, kept + (size_t)i * width, width * sizeof *kept);
+  for (uint32_t k = 0; k < count && found; k++) vec_push(s->scratch, &t->changes, changes[k]);
   return found;
 }
 

@@ -40,8 +40,19 @@ typedef struct {
 
 Rates space_rates(Arena *a, const SolutionSpace *s);
 
-/* Adds multiples of other rows to `row`, the same in all tables, so that its entries take fewer different values in the first: what stands in
- * books has few. The pivots of the other rows come back into it. 0: there is no such change. */
-int table_shorten(Arena *a, Table *const *tables, uint32_t ntables, uint32_t row);
+/* Row + factor*other makes the entries in two places equal, or opposite: that is the factor. */
+typedef struct {
+  uint32_t row, other, one, two;
+  int sign;
+} TableChange;
+
+enum { CHANGES_MOST = 3 };
+
+/* Changes after which the entries of a row take fewer different values: what stands in books has few. They are made, so the rows span what
+ * they did; the pivots of the other rows come back into this one. Returns how many, up to CHANGES_MOST, are in to[]. */
+uint32_t table_shorten(Arena *a, Table *t, uint32_t row, TableChange *to);
+
+/* Makes a change that was found on another table of this shape. 0: there is no such factor. */
+int table_change(Arena *a, Table *t, TableChange c);
 
 #endif

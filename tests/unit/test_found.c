@@ -263,6 +263,11 @@ static void constrained(void **state) {
   assert_int_equal(m.found.all.n, 1);
   contains_textbook(&m);
   arena_free(m.arena);
+  /* a ball on a turntable: the energy seen by the table, momenta about the place of contact, and what moves with them */
+  Model_ b = finds("model b\ncoord x, y, a, b\nparam m = 1 > 0, R = 0.5 > 0, I = 0.3 > 0, W = 2\nlagrangian = m/2*(x'^2 + y'^2) + I/2*(a'^2 + b'^2)\n"
+                   "constraint r: x' - R*b' = -W*y\nconstraint s: y' + R*a' = W*x\n"
+                   "observe A_x = -W*y\nobserve A_y = W*x\nobserve A_t = 1\nobserve B_x = R\nobserve B_b = 1\nobserve C_y = R*t\nobserve C_a = -t\n", 6);
+  arena_free(b.arena);
 }
 
 /* Three vortices: Kirchhoff's invariants, and sl(2) of the centre of vorticity, of which one turn is the common one's own part. */
