@@ -162,7 +162,7 @@ typedef struct lag_constraints {
  * becomes negative. */
 typedef struct lag_contact {
   int input, constraint; /* places in u and in the constraints */
-  int impact, release;   /* events: the gap closes, its multiplier falls below 0 */
+  int impact, release;   /* events: the gap closes, its multiplier falls below 0. act(impact) is Newton's law for this gap alone, others as u says */
 } lag_contact;
 
 /* One of the second derivatives that lag_model.second computes: of L by two of q, v, where of LAG_QQ and LAG_VV only
