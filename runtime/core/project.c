@@ -182,20 +182,26 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
   return which;
 }
 
+const char *lag_line_of(const lag_constraint *c, char text[32])
+{
+  text[0] = '\0';
+  if (c->line > 0) {
+    snprintf(text, 32, " (line %d)", c->line);
+  }
+  return text;
+}
+
 void lag_say_constraint(lag_problem *pb, int k, int holonomic, double residual, const char *words)
 {
   const lag_constraint *c = &pb->model->constraints->of[k];
   const char *level = c->holonomic == holonomic ? "" : holonomic ? "*s" : c->unit[0] ? "/s" : "1/s";
-  char line[32] = "", unit[64];
+  char line[32], unit[64];
 
-  if (c->line > 0) {
-    snprintf(line, sizeof line, " (line %d)", c->line);
-  }
   snprintf(unit, sizeof unit, "%s%s%s", c->unit[0] || level[0] ? " " : "", c->unit[0] || level[0] != '*' ? c->unit : "1", level);
   if (isnan(residual)) {
-    snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, line, words);
+    snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, lag_line_of(c, line), words);
   } else {
-    snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s", c->name, line, residual, unit, words);
+    snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s", c->name, lag_line_of(c, line), residual, unit, words);
   }
   pb->detail = pb->words;
 }

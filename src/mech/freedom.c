@@ -76,7 +76,7 @@ static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, 
     sb_printf(out, "  contact %s (line %u): a constraint while it is closed\n", c->name, place.line);
     return;
   }
-  sb_printf(out, "  constraint %s (line %u): %s", c->name, place.line, kind_of(e, k));
+  sb_printf(out, "  constraint %s (line %u): %s%s", c->name, place.line, kind_of(e, k), c->inside ? ", the unit length of a rotation" : "");
   if (!counts[k]) sb_puts(out, has_slope(e, s, symbols, k) ? "; follows from those before it" : "; its derivatives vanish at the start");
   if (rank < e->constraints.n - e->m->contacts.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the least one is taken");
   sb_putc(out, '\n');
@@ -230,6 +230,12 @@ static int check_contacts(const Eqns *e, const long double *symbols) {
   return 1;
 }
 
+static int says_start(const Model *m) {
+  for (uint32_t i = 0; i < m->scene.starts.n; i++)
+    if (!m->scene.starts.at[i].implied) return 1;
+  return 0;
+}
+
 int freedom_show(const Eqns *e, StrBuf *out) {
   const Constraints *all = &e->constraints;
   if (!all->n) return 1;
@@ -237,9 +243,9 @@ int freedom_show(const Eqns *e, StrBuf *out) {
   long double *symbols = start_asked(e);
   StartResult start = start_find(e, s, symbols);
   if (start.kind != START_FOUND) {
-    if (e->m->scene.starts.n) report(e, &start);
+    if (says_start(e->m)) report(e, &start);
     else sb_printf(out, "scene %s: %u constraint%s; without a start nothing is said of their rank\n", e->m->scene.name, all->n, plural(all->n));
-    return !e->m->scene.starts.n;
+    return !says_start(e->m);
   }
   states_at(s, symbols);
   unsigned char *counts = ARENA_ARRAY(e->m->arena, unsigned char, all->n);

@@ -157,6 +157,7 @@ Hamilton hamilton_derive(Eqns *e) {
     w.p[i] = expr_declare(e->g, SYM_LOCAL, i, arena_printf(a, "p_%s", c->name), SIGN_UNKNOWN);
   }
   Hamilton open = {.p = w.p, .why_not = is_quadratic(e) ? NULL : "L is not quadratic in velocities"};
+  if (e->m->across) open.why_not = "the components of a rotation are not independent";
   if (!open.why_not) open.why_not = invert(&w);
   return open.why_not ? open : result(&w);
 }

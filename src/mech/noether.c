@@ -28,6 +28,8 @@ uint32_t noether_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
 
 SymId noether_coordinate(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].q : e->m->states.at[e->first.at[i]].z; }
 
+const Expr *noether_momenta(const Eqns *e) { return e->first.n ? e->first.theta : e->m->across ? e->momenta : e->p; }
+
 static SymId velocity(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate; }
 
 static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
@@ -62,7 +64,7 @@ static Work begin(const Eqns *e, const Generator *by) {
   w.q = ARENA_ARRAY(a, SymId, w.n + 1);
   w.v = ARENA_ARRAY(a, SymId, w.n + 1);
   w.Dxi = ARENA_ARRAY(a, Expr, w.n + 1);
-  w.p = e->n ? e->p : e->first.theta;
+  w.p = noether_momenta(e);
   w.xi = xi;
   w.tau = by->tau ? by->tau : zero;
   for (uint32_t i = 0; i < w.n; i++) {

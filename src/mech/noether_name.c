@@ -22,11 +22,27 @@ static int same_body(Name a, Name b) {
   return x - a == y - b && memcmp(a, b, (size_t)(x - a)) == 0;
 }
 
+static Name coord(const Eqns *e, uint32_t i);
+
+/* The component `letter` of the vector or rotation that coordinate i belongs to; UINT32_MAX: there is none. */
+static uint32_t sibling(const Eqns *e, uint32_t i, char letter) {
+  Name name = coord(e, i);
+  const char *dot = strrchr(name, '.');
+  for (uint32_t k = 0; dot && k < noether_coordinates(e); k++) {
+    Name other = coord(e, k);
+    if (strncmp(other, name, (size_t)(dot + 1 - name)) == 0 && other[dot + 1 - name] == letter && !other[dot + 2 - name]) return k;
+  }
+  return UINT32_MAX;
+}
+
 static Name coord(const Eqns *e, uint32_t i) { return expr_symbol(e->g, noether_coordinate(e, i))->name; }
+
+/* Components of a rotation lie along no axis. */
+static uint32_t axis_at(const Eqns *e, uint32_t i) { return sibling(e, i, 'w') == UINT32_MAX ? axis_of(coord(e, i)) : NO_AXIS; }
 
 static uint32_t along(const Eqns *e, uint32_t axis) {
   uint32_t n = 0;
-  for (uint32_t i = 0; i < noether_coordinates(e); i++) n += axis_of(coord(e, i)) == axis;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++) n += axis_at(e, i) == axis;
   return n;
 }
 
@@ -74,7 +90,7 @@ static void flip(const Eqns *e, GeneratorRow *r) {
 
 /* Whether q_i grows with q_j in the sense of rotation of books: x -> -y, y -> x; z from x falls. */
 static int wrong_turn(const Eqns *e, uint32_t i, uint32_t j, Expr c) {
-  uint32_t a = axis_of(coord(e, i)), b = axis_of(coord(e, j));
+  uint32_t a = axis_at(e, i), b = axis_at(e, j);
   int z_and_x = a == 0 && b == 2;
   Num number;
   expr_pair(e->g, c, EX_SUM, 0, &number);
@@ -114,7 +130,7 @@ static uint32_t common_shift(const Eqns *e, const GeneratorRow *r, uint32_t m) {
   for (uint32_t i = 0; i < noether_coordinates(e); i++) {
     Expr c = entry(e, r, m, i, 0);
     if (expr_is_zero(e->g, c)) continue;
-    uint32_t own = axis_of(coord(e, i));
+    uint32_t own = axis_at(e, i);
     if (own == NO_AXIS || (one && (c != one || own != axis))) return NO_AXIS;
     one = c;
     axis = own;
@@ -149,15 +165,20 @@ static void name_boost(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) 
                                  : "boost";
 }
 
+static uint32_t terms_of(const Eqns *e, const GeneratorRow *r) {
+  uint32_t terms = 0;
+  for (uint32_t j = 0; j < r->ansatz->xi.n; j++) terms += !expr_is_zero(e->g, r->c[1 + j]);
+  return terms;
+}
+
 /* Whether the linear part is a turn of some bodies about one axis by one angle; *bodies: how many. */
 static uint32_t common_turn(const Eqns *e, const GeneratorRow *r, uint32_t *bodies) {
-  uint32_t axis = NO_AXIS, terms = 0;
+  uint32_t axis = NO_AXIS, terms = terms_of(e, r);
   Expr one = 0;
   *bodies = 0;
-  for (uint32_t j = 0; j < r->ansatz->xi.n; j++) terms += !expr_is_zero(e->g, r->c[1 + j]);
   for (uint32_t i = 0; i < noether_coordinates(e); i++)
     for (uint32_t j = i + 1; j < noether_coordinates(e); j++) {
-      uint32_t a = axis_of(coord(e, i)), b = axis_of(coord(e, j));
+      uint32_t a = axis_at(e, i), b = axis_at(e, j);
       if (!turns(e, r, i, j)) continue;
       if (a == NO_AXIS || b == NO_AXIS || a == b || !same_body(coord(e, i), coord(e, j))) return NO_AXIS;
       Expr c = entry(e, r, 0, i, j + 1);
@@ -174,7 +195,7 @@ static uint32_t bodies_with(const Eqns *e, uint32_t axis) {
   uint32_t a = (axis + 1) % 3, n = 0;
   for (uint32_t i = 0; i < noether_coordinates(e); i++)
     for (uint32_t j = 0; j < noether_coordinates(e); j++)
-      n += axis_of(coord(e, i)) == a && axis_of(coord(e, j)) == (axis + 2) % 3 && same_body(coord(e, i), coord(e, j));
+      n += axis_at(e, i) == a && axis_at(e, j) == (axis + 2) % 3 && same_body(coord(e, i), coord(e, j));
   return n;
 }
 
@@ -182,18 +203,40 @@ static uint32_t bodies_with(const Eqns *e, uint32_t axis) {
 static int mixes_bodies(const Eqns *e, const GeneratorRow *r) {
   for (uint32_t j = 0; j < r->ansatz->xi.n; j++) {
     if (expr_is_zero(e->g, r->c[1 + j])) continue;
-    uint32_t i = r->ansatz->xi.at[j].i, k = r->ansatz->xi.at[j].k - 1, a = axis_of(coord(e, i)), b = axis_of(coord(e, k)), found = 0;
+    uint32_t i = r->ansatz->xi.at[j].i, k = r->ansatz->xi.at[j].k - 1, a = axis_at(e, i), b = axis_at(e, k), found = 0;
     if (a == NO_AXIS || b == NO_AXIS || a == b) return 0;
     for (uint32_t other = 0; other < noether_coordinates(e) && !found; other++)
       for (uint32_t last = 0; last < noether_coordinates(e) && !found; last++)
-        found = same_body(coord(e, i), coord(e, other)) && axis_of(coord(e, other)) == b && same_body(coord(e, k), coord(e, last)) &&
-                axis_of(coord(e, last)) == a && entry(e, r, 0, other, last + 1) == expr_neg(e->g, r->c[1 + j]);
+        found = same_body(coord(e, i), coord(e, other)) && axis_at(e, other) == b && same_body(coord(e, k), coord(e, last)) &&
+                axis_at(e, last) == a && entry(e, r, 0, other, last + 1) == expr_neg(e->g, r->c[1 + j]);
     if (!found) return 0;
   }
   return 1;
 }
 
+/* Whether xi is a multiple of n q (in space) or q n (of the body's own), q the rotation that coordinate w begins and n its axis `x`, with y and z
+ * behind it in turn. */
+static int turns_rotation(const Eqns *e, const GeneratorRow *r, uint32_t w, uint32_t axis, int own) {
+  uint32_t x = sibling(e, w, (char)('x' + axis)), y = sibling(e, w, (char)('x' + (axis + 1) % 3)), z = sibling(e, w, (char)('x' + (axis + 2) % 3));
+  if (x == UINT32_MAX || y == UINT32_MAX || z == UINT32_MAX) return 0;
+  Expr c = entry(e, r, 0, x, w + 1), minus = expr_neg(e->g, c), other = own ? minus : c;
+  return !expr_is_zero(e->g, c) && entry(e, r, 0, w, x + 1) == minus && entry(e, r, 0, z, y + 1) == other && entry(e, r, 0, y, z + 1) == expr_neg(e->g, other);
+}
+
+/* 0: it is no turn of one rotation. */
+static int name_turn(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  for (uint32_t w = 0; w < noether_coordinates(e) && terms_of(e, r) == 4; w++)
+    for (uint32_t k = 0; k < 6 && sibling(e, w, 'w') == w; k++) {
+      if (!turns_rotation(e, r, w, k / 2, k % 2)) continue;
+      to->kind = SYMMETRY_OTHER;
+      to->name = arena_printf(e->m->arena, k % 2 ? "turns about the body's own %s: twice its angular momentum" : "turns about %s in space: twice the angular momentum", axis_text(k / 2));
+      return 1;
+    }
+  return 0;
+}
+
 static void name_linear(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  if (name_turn(e, r, to)) return;
   uint32_t bodies, axis = common_turn(e, r, &bodies);
   int antisymmetric = 1, space = along(e, 2) > 0 && along(e, 0) > 0;
   for (uint32_t i = 0; i < noether_coordinates(e); i++)

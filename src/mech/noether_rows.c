@@ -102,7 +102,7 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
   roots[count++] = expr_diff(e->g, L, e->m->time);
   expr_gradient(e->g, L, s->q, s->n, roots + count);
   count += s->n;
-  for (uint32_t i = 0; i < s->n; i++) roots[count++] = e->n ? e->p[i] : e->first.theta[i];
+  for (uint32_t i = 0; i < s->n; i++) roots[count++] = noether_momenta(e)[i];
   for (uint32_t i = 0; i < k->A.n; i++) roots[count++] = k->A.at[i].e;
   for (uint32_t i = 0; i < k->n; i++) roots[count++] = k->r[i];
   *r = (RowSource){.of = s, .scratch = scratch, .tape = eval_tape(e->g, roots, count), .solver = k->n ? states_new(e) : NULL, .random = 7};

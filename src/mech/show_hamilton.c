@@ -52,14 +52,14 @@ static void constraints(Text *t, Exprs *roots) {
 static void open_form(Text *t, Exprs *roots) {
   const Eqns *e = t->e;
   Arena *a = e->m->arena;
-  text_heading(t, "mass matrix: p = M q' + a");
-  for (uint32_t k = 0; k < e->mass.n; k++) {
+  if (e->mass.n && !e->m->across) text_heading(t, "mass matrix: p = M q' + a");
+  for (uint32_t k = 0; k < e->mass.n && !e->m->across; k++) {
     Name row = e->m->coords.at[e->mass.at[k].row].name, col = e->m->coords.at[e->mass.at[k].col].name;
     Expr x = e->n <= 16 ? simplify(t->g, e->mass.at[k].e) : e->mass.at[k].e;
     text_named(t, arena_printf(a, "M[%s,%s]", row, col), arena_printf(a, "M_{%s,%s}", text_latex_name(t, row), text_latex_name(t, col)), x, k + 1 == e->mass.n);
     keep(t, roots, x);
   }
-  text_end(t);
+  if (e->mass.n && !e->m->across) text_end(t);
   text_heading(t, "energy: H as a function of velocities");
   text_named(t, "E", "E", e->energy, 1);
   keep(t, roots, e->energy);

@@ -270,6 +270,32 @@ static void constrained(void **state) {
   arena_free(b.arena);
 }
 
+/* A free body: the angular momentum in space, to which the quaternion turns twice as fast; L*(1, 0, 0) of R*l is the textbook's. */
+static void rotations(void **state) {
+  (void)state;
+  static const char *const spins[3] = {"spin.x", "spin.y", "spin.z"};
+  Model_ m = model("model b\ncoord R: rotation\nparam A = 2 > 0, B = 1 > 0, C = 0.7 > 0\nlet w = omega(R)\nkinetic = A/2*w.x^2 + B/2*w.y^2 + C/2*w.z^2\npotential = 0\n"
+                   "observe spin = R*(A*w.x, B*w.y, C*w.z)\n");
+  assert_int_equal(m.found.all.n, 4);
+  assert_int_equal(m.found.unproved, 0);
+  StateSolver *solver = states_new(m.e);
+  for (int turn = 0; turn < 4; turn++) {
+    long double *symbols = random_point(m.e);
+    assert_true(states_complete(solver, symbols));
+    for (uint32_t k = 0; k < 3; k++) {
+      const FoundSymmetry *s = &m.found.all.at[k + 1];
+      Expr spin = observed(m.e, spins[k]);
+      long double Q, L;
+      assert_string_equal(s->name, arena_printf(m.arena, "turns about %c in space: twice the angular momentum", "xyz"[k]));
+      expr_eval(m.e->g, &s->is.charge, 1, symbols, &Q);
+      expr_eval(m.e->g, &spin, 1, symbols, &L);
+      assert_true(fabsl(Q - 2 * L) < 1e-15L * (1 + fabsl(Q)) * 100);
+    }
+  }
+  conserved(&m);
+  arena_free(m.arena);
+}
+
 /* Three vortices: Kirchhoff's invariants, and sl(2) of the centre of vorticity, of which one turn is the common one's own part. */
 static void first_order(void **state) {
   (void)state;
@@ -357,7 +383,7 @@ int main(void) {
     cmocka_unit_test(free_particle), cmocka_unit_test(uniform_field), cmocka_unit_test(kepler),    cmocka_unit_test(oscillators),
     cmocka_unit_test(magnetic),      cmocka_unit_test(inverse_square), cmocka_unit_test(bodies),   cmocka_unit_test(nothing_false),
     cmocka_unit_test(curved),        cmocka_unit_test(driven),        cmocka_unit_test(constrained), cmocka_unit_test(first_order),
-    cmocka_unit_test(affine_change), cmocka_unit_test(scalings),
+    cmocka_unit_test(affine_change), cmocka_unit_test(scalings),      cmocka_unit_test(rotations),
   };
   return cmocka_run_group_tests_name("found", tests, NULL, NULL);
 }
