@@ -17,25 +17,12 @@ static Generator generator_of(const Eqns *e, const Symmetry *y) {
   return by;
 }
 
-/* The sum of the sizes of its terms. */
-static Expr size_of(ExprGraph *g, Expr x) {
-  Expr sum = expr_int(g, 0);
-  for (uint32_t i = 0; i < expr_pairs(g, x, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(g, x, EX_SUM, i, &c), size = expr_fn(g, EX_ABS, term);
-    size = expr_scale(g, num_abs(c), size);
-    sum = expr_add(g, sum, size);
-  }
-  return sum;
-}
-
-/* Of many terms, as of N bodies, the sizes of a shorter form would be no less. */
 static Charge charge_of(const Eqns *e, const Symmetry *y) {
   ExprGraph *g = e->g;
   Generator by = generator_of(e, y);
   Charge c = {.of = y, .name = y->name, .unit = y->unit, .proof = noether_prove(e, &by)};
   c.value = c.proof.charge == e->energy ? e->energy_stable : simplify_stable(g, c.proof.charge);
-  c.scale = size_of(g, c.value);
+  c.scale = simplify_stable(g, c.proof.scale);
   return c;
 }
 
@@ -72,10 +59,36 @@ Expr charges_fill(const Eqns *e, Expr x) {
 
 /* --- verdicts --- */
 
+/* x without definitions that the user has not made: derivatives of lets, which have names only where all definitions are printed. */
+static Expr in_own_names(const Eqns *e, Expr x) {
+  enum { DEEPEST = 64 };
+  Arena *a = e->m->arena;
+  ExprMap own = expr_map(a);
+  VEC(Expr) said = {0};
+  vec_push(a, &said, e->m->lagrangian);
+  for (uint32_t i = 0; e->Q && i < e->n; i++) vec_push(a, &said, e->Q[i]);
+  for (uint32_t i = 0; i < e->constraints.n; i++) vec_push(a, &said, e->constraints.r[i]);
+  ExprList known = expr_topo(e->g, said.at, said.n);
+  for (uint32_t i = 0; i < known.n; i++) expr_map_set(&own, known.at[i], 1);
+  for (uint32_t turn = 0; turn < DEEPEST; turn++) {
+    VEC(Expr) defs = {0}, bodies = {0};
+    ExprList nodes = expr_topo_shallow(e->g, &x, 1);
+    for (uint32_t i = 0; i < nodes.n; i++) {
+      if (expr_op(e->g, nodes.at[i]) != EX_DEF || expr_map_get(&own, nodes.at[i])) continue;
+      vec_push(a, &defs, nodes.at[i]);
+      vec_push(a, &bodies, expr_arg(e->g, nodes.at[i], 0));
+    }
+    if (!defs.n) break;
+    expr_cut(e->g, &x, 1, defs.at, bodies.at, defs.n, &x);
+  }
+  return x;
+}
+
 static const char *text_of(const Eqns *e, Expr x) {
   enum { LONGEST = 4000 };
   uint32_t distinct;
   StrBuf b = strbuf(e->m->arena);
+  x = in_own_names(e, x);
   if (expr_written_size(e->g, x, &distinct) > LONGEST) return "(too long to print)";
   expr_print(e->g, x, PRINT_TEXT, &b);
   return sb_text(&b);

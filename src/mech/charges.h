@@ -10,7 +10,7 @@ struct Charge {
   Name name;
   Unit unit;
   Noether proof;
-  Expr value, scale; /* as they are computed: the scale is what a drift is compared with, the sum of the sizes of the terms */
+  Expr value, scale; /* as they are computed */
 };
 
 /* Fills e->charges: the energy first, then the symmetries in order. Nothing where there is no Lagrangian. */

@@ -229,6 +229,20 @@ int noether_is_contact(const Model *m, const Constraint *k) {
   return 0;
 }
 
+static Expr absolute_product(const Work *w, Expr a, Expr b) {
+  Expr product = expr_mul(w->g, a, b);
+  return expr_fn(w->g, EX_ABS, product);
+}
+
+static Expr scale_of(const Work *w, Expr F) {
+  const Expr *p = w->e->n ? w->e->momenta : w->p;
+  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 2), one = expr_int(w->g, 1);
+  for (uint32_t i = 0; i < w->n; i++) terms[i] = absolute_product(w, p[i], w->xi[i]);
+  terms[w->n] = absolute_product(w, w->e->energy_scale, w->tau);
+  terms[w->n + 1] = absolute_product(w, F, one);
+  return expr_add_n(w->g, terms, w->n + 2);
+}
+
 /* lambda^T (A xi + b tau): of a holonomic constraint what the generator makes of c, of one on velocities r = A q' + b what it
  * makes of r when displacements stand for velocities. */
 static Expr power_of_constraints(Work *w, Noether *to) {
@@ -316,13 +330,14 @@ Noether noether_prove(const Eqns *e, const Generator *by) {
   judge(&w, &out);
   put_power(&w, &out, out.remainder);
   out.charge = charge_of(&w, out.F);
+  out.scale = scale_of(&w, out.F);
   return out;
 }
 
 Noether noether_energy(const Eqns *e) {
   Work w = begin(e, &(Generator){.tau = expr_int(e->g, -1)});
   Expr zero = expr_int(w.g, 0), drift = expr_diff(w.g, w.m->lagrangian, w.m->time);
-  Noether out = {.is = INVARIANT, .F = zero, .remainder = zero, .charge = e->energy};
+  Noether out = {.is = INVARIANT, .F = zero, .remainder = zero, .charge = e->energy, .scale = e->energy_scale};
   put_power(&w, &out, expr_neg(w.g, drift));
   return out;
 }

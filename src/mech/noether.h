@@ -31,6 +31,7 @@ typedef struct {
   Expr F;            /* 0 (the number) where none is needed; where L is not invariant, what takes off most of delta L */
   Expr remainder;    /* delta L - DF, in a short form; the number 0 where L is invariant */
   Expr charge;       /* in q, q', z, t */
+  Expr scale;        /* sum |p_i xi_i| + |tau| (|p q'| + |L|) + |F|, which a drift of the charge is compared with */
   Expr power;        /* dQ/dt, in q, q', z, t, inputs and multipliers; the number 0: Q is conserved */
   Expr by_constraints; /* the part of the power that constraints have, lambda^T (A xi + b tau); the number 0: none */
   uint32_t broken; /* the first holonomic constraint, from 1, no contact, that the generator does not keep; 0: none */

@@ -128,6 +128,7 @@ struct Builder {
   const Define *defines;
   uint32_t ndefines;
   const AstStmt **chain; /* the scene and those it is like, oldest first; NULL-terminated */
+  int is_variant;  /* effects in use are ModelChoice.only */
   int unitless;    /* nothing is measured in a unit: nothing is checked */
   Name group;      /* the parameter of the symmetry in hand, or NULL; */
   SymId group_symbol;
@@ -265,6 +266,9 @@ int add_error(Builder *b, const Exact *x, Span span);
 
 /* The same as add_outputs under a name of the caller's choice. */
 int add_outputs_as(Builder *b, AstId id, Name label);
+
+/* monitor.c: `monitor q limit`. */
+void set_monitor(Builder *b, const AstStmt *st);
 
 /* table.c: gives input `index` its formula, or the table whose file is named; stem: its name without its effect. */
 void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);

@@ -159,7 +159,7 @@ typedef struct {
 
 typedef struct {
   Name name;
-  int output; /* index into outputs; -1: the energy */
+  int output; /* index into outputs; -1: the energy; -2 - k: the charge of symmetry k */
   double limit;
   int absolute; /* the limit is one of size, not of change */
 } Monitor;
@@ -263,6 +263,8 @@ typedef struct {
   const char *scene; /* NULL: the first */
   Name also;         /* an effect to turn on besides the scene's own, with what it requires; or NULL */
   int bare;          /* no scene at all: no effect but `also` is on */
+  const EffectList *only; /* these effects are in use, whatever the scene says; what it says of others, its outputs, monitors and closed
+                           * forms have no part in it. NULL: those of the scene */
   const Define *defines;
   uint32_t ndefines;
   const Asked *asked; /* outputs besides the scene's own */
