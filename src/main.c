@@ -330,7 +330,7 @@ static void give_reference(Compiler *c, const Units *units) {
 static int prepare_run(Compiler *c) {
   const char *error = NULL;
   if (c->o.scene && !model_has_scene(c->ast, c->o.scene)) return STATUS_MODEL;
-  if (!settings_inputs(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
+  if (!settings_compiled(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
   if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   return STATUS_OK;

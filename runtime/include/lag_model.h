@@ -162,7 +162,7 @@ typedef struct lag_constraints {
  * becomes negative. */
 typedef struct lag_contact {
   int input, constraint; /* places in u and in the constraints */
-  int impact, release;   /* events: the gap closes, its multiplier falls below 0 */
+  int impact, release;   /* events: the gap closes, its multiplier falls below 0. act(impact) is Newton's law for this gap alone, others as u says */
 } lag_contact;
 
 /* One of the second derivatives that lag_model.second computes: of L by two of q, v, where of LAG_QQ and LAG_VV only
@@ -282,8 +282,8 @@ typedef struct lag_scene {
   /* The state at the start of the span. */
   void (*start)(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z);
 
-  /* Of a model with constraints: given[i] != 0 where the start sets component i of [q|v|z], the others give way first; NULL: it
-   * sets none. exactly: a start that the constraints contradict is refused. */
+  /* Of a model with constraints: given[i] is 1 where the start sets component i of [q|v|z], 2 where i belongs to a rotation of
+   * which it says nothing; the others give way first, then those of 2; NULL: it sets none. exactly: a start that the constraints contradict is refused. */
   const unsigned char *given;
   int exactly;
 

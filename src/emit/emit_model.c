@@ -481,6 +481,7 @@ static void emit_given(const IrUnit *u, const IrScene *s, const char *id, StrBuf
   if (!u->constraints.of.n) return;
   unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, total);
   for (uint32_t k = 0; k < s->start->stores.n; k++) given[after[s->start->stores.at[k].array] + s->start->stores.at[k].index] = 1;
+  for (uint32_t k = 0; k < s->implied.n; k++) given[s->implied.at[k]] = 2;
   sb_printf(out, "\nstatic const unsigned char given_%s[] = {", id);
   for (uint32_t i = 0; i < total; i++) sb_printf(out, "%s%d", i ? ", " : "", given[i]);
   sb_puts(out, "};\n");

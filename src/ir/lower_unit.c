@@ -134,6 +134,20 @@ int unit_shares(const IrUnit *a, const IrUnit *b) {
   return strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
 }
 
+/* The four numbers of rotations that start where nobody said, less those that the scene gives. */
+static void add_implied(IrScene *s, const Model *m) {
+  unsigned char *said = ARENA_ARRAY(m->arena, unsigned char, m->coords.n + 1);
+  for (uint32_t i = 0; i < m->scene.starts.n; i++) {
+    const Symbol *of = expr_symbol(m->g, m->scene.starts.at[i].target);
+    if (of->kind == SYM_COORD && !m->scene.starts.at[i].implied) said[of->index] = 1;
+  }
+  for (uint32_t i = 0; i < m->scene.starts.n; i++) {
+    uint32_t first = expr_symbol(m->g, m->scene.starts.at[i].target)->index;
+    for (uint32_t k = first; m->scene.starts.at[i].implied && k < first + 4; k++)
+      if (!said[k]) vec_push(m->arena, &s->implied, k);
+  }
+}
+
 static void add_exact(IrScene *s, const Eqns *e) {
   const Model *m = e->m;
   const Scene *sc = &m->scene;
@@ -181,6 +195,7 @@ void unit_add_scene(IrUnit *u, const Eqns *e) {
     if (!m->params.at[i].fixed) params[m->params.at[i].place] = lower_param(e, i);
   s.params = params;
   s.start = lower_start(e);
+  add_implied(&s, m);
   s.observe = lower_outputs(e);
   for (uint32_t i = 0; i < sc->options.n; i++) {
     IrOption o = {sc->options.at[i].name, sc->options.at[i].text, sc->options.at[i].value};

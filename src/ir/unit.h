@@ -41,6 +41,7 @@ typedef struct {
   const char *t1_digits; /* more than a double has, or NULL */
   int has_span;
   int exactly;        /* constraints may not move what the start gives */
+  VEC(uint32_t) implied; /* coordinates of rotations of which the start says nothing */
   const char *method; /* or NULL */
   VEC(IrOption) options;
   double tolerance, every;

@@ -19,11 +19,12 @@ typedef enum {
   IN_OUTPUT    /* and closed forms */
 } Context;
 
-/* A number, or a vector of n = 2 or 3 components with one dimension. */
+/* A number, a vector of n = 2 or 3 components with one dimension, or a rotation: the n = ROTATION numbers w, x, y, z of a unit quaternion. */
+enum { ROTATION = 4 };
 typedef struct {
   union {
     Expr e; /* 0 after an error: reported already */
-    Expr at[3];
+    Expr at[4];
   };
   Dim dim;
   int bare;      /* made of numbers alone: takes on the unit of what it is given to */
@@ -86,6 +87,13 @@ typedef struct {
   Name effect;
 } Active;
 
+/* `start omega(R) = (a, b, c)` */
+typedef struct {
+  uint32_t coord; /* R.w */
+  Expr at[3];
+  Span span;
+} Spin;
+
 typedef struct Builder Builder;
 struct Builder {
   Ast *ast;
@@ -95,6 +103,8 @@ struct Builder {
   Model *m;
   Scope scope, members;
   Scope constraints; /* by name; the index is that of the first component */
+  VEC(uint32_t) rotations; /* the first coordinate of each */
+  VEC(Spin) spins; /* what the scene in hand says of their angular velocities */
   Scope *named; /* events and expectations; NULL: none yet */
   IndexVars index; /* of the `for` around the statement in hand */
   VEC(struct Eval *) idle; /* evaluations to use again */
@@ -171,7 +181,10 @@ int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out);
 /* Families have no third index. */
 void report_many_indices(Builder *b, Span span);
 
-/* "a number", "a vector of 3 components" */
+/* The letter of component k of n. */
+static inline char part_letter(uint32_t n, uint32_t k) { return "wxyz"[k + (n != ROTATION)]; }
+
+/* "a number", "a vector of 3 components", "a rotation" */
 const char *shape_text(const Builder *b, uint32_t n);
 
 /* Calls fn for each statement that `for` around it makes of st, with b->index set. */
@@ -182,11 +195,17 @@ void each_statement(Builder *b, const AstStmt *st, Name effect, StatementFn *fn,
 typedef struct {
   AstId stem;      /* the name, or effect.name */
   uint32_t primes;
-  int part;        /* the component; -1: all there are */
+  int part;        /* the component: 0, 1, 2, 3 for x, y, z, w, 4 where there is none of that name; -1: all there are */
   AstId indices;   /* 0: the whole family */
   int wrong;       /* it is not of this form */
 } Target;
 Target read_target(const Builder *b, AstId id);
+
+/* The place of component `part` of a target among n; -1: there is none. */
+static inline int part_place(uint32_t n, int part) {
+  int place = n == ROTATION ? (part + 1) % ROTATION : part;
+  return part < 0 || part > 3 || place >= (int)n ? -1 : place;
+}
 
 /* The list that gives a family its values, and the unit behind it: `{1, 3} [kg]`. NULL: it is no list. */
 const AstExpr *list_behind(const Builder *b, AstId id, const AstUnit **unit);
@@ -354,6 +373,25 @@ void explain_dims(Builder *b, Dim x, Dim y);
 /* Puts the units that were found into the model. */
 void settle_units(Builder *b);
 
+/* rotation.c */
+
+/* c = 0 for the unit quaternion whose first coordinate is given. */
+void hold_rotation(Builder *b, Name name, uint32_t coord, Span span);
+
+/* What L gains: a term in the rates that no motion has, so that the mass matrix is regular in all directions. */
+void add_rotation_inertia(Builder *b);
+
+/* The rates of a rotation q that turns at w, in its own frame; and back. */
+Value rotation_rates(Builder *b, const Value *q, const Expr *w);
+void rotation_spin(Builder *b, const Value *q, const Value *rates, Expr *w);
+
+/* The coordinate of a rotation, R.w, whose angular velocity a place speaks of, `omega(R)`; -1: it speaks of none. Wrong ones are reported, -2. */
+int spin_target(Builder *b, AstId place, Name effect);
+
+
+/* The force on a rotation is a torque in its own frame: what it is along the four components. */
+Value torque_force(Builder *b, const Value *q, const Value *torque);
+
 /* constraint.c: adds what a constraint says to the model; the multiplier of the constraint that an argument names, FAILED (reported)
  * where there is none. */
 void add_constraint(Builder *b, const AstStmt *st, Name effect);
@@ -364,6 +402,22 @@ void add_contact(Builder *b, const AstStmt *st, Name effect);
 void check_names_once(Builder *b);
 void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span);
 void check_said_once(Builder *b, const AstStmt *block);
+
+/* event.c: an event, and a section, of the model; a value given to a symbol: a coordinate, a state, or the rate of one, declared in `unit`;
+ * reports shapes that differ. */
+void add_event(Builder *b, const AstStmt *st, Name effect);
+void add_section(Builder *b, const Section *s);
+Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit);
+void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right);
+
+/* start.c: `start q = ...`, `exact q = ...`; what the scene says of rotations, when all of it is said (those that it does not set are no
+ * turn at all); the unit of angular velocities. */
+void set_motion(Builder *b, const AstStmt *st);
+void settle_rotations(Builder *b);
+Unit spin_unit(const Builder *b);
+
+/* advice.c: there is no `effect.name`. */
+void report_no_member(Builder *b, Span span, Name effect, Name name);
 
 /* scene.c: which statements are active (those of the effect `also` too), and the scene's contents. */
 void scene_select(Builder *b, const ModelChoice *choice);

@@ -1,5 +1,5 @@
 /* Parameters and constants: declarations that have a value at once. */
-#include "model/builder.h"
+#include "model/resolve_impl.h"
 #include "sym/eval.h"
 
 static ExprSign sign_of(AstSign s) {
@@ -72,6 +72,7 @@ static void add_member(const Declared *d, const int64_t *at, Value v, Span span)
     diag_error(b->diags, span, "`%s` is %s, and %s is given here", d->st->name, shape_text(b, d->e.parts), shape_text(b, v.n));
     v = (Value){0};
   }
+  if (v.e && v.n == ROTATION) v = refuse_rotation(b, span, source_text(b, span), TURN_VALUE);
   for (uint32_t k = 0; k < (d->e.parts ? d->e.parts : 1u); k++) {
     Value one = v;
     one.e = v.at[k];

@@ -91,6 +91,7 @@ typedef struct {
   Expr c;
   Dim dim;
   SymId multiplier;
+  int inside; /* it belongs to a rotation: nobody wrote it */
 } Constraint;
 
 /* A gap that cannot become negative. While it is closed it is a constraint: c = closed*gap. */
@@ -113,6 +114,7 @@ typedef struct {
 typedef struct {
   SymId target;
   Expr value; /* of parameters */
+  int implied; /* nobody said it: constraints may move it */
 } Start;
 
 /* What a coordinate, a velocity or a state should be. */
@@ -182,6 +184,7 @@ typedef struct {
   VEC(Input) inputs;
   Expr kinetic, potential; /* 0 when L was given as a whole */
   Expr lagrangian;         /* 0 when the text declares no coordinates */
+  Expr across;             /* or 0: quadratic in rates that rotations never have, added to L for a regular mass matrix */
   Span lagrangian_span;
   Expr dissipation;        /* sum of Rayleigh functions, or 0 */
   VEC(Force) forces;
@@ -224,7 +227,7 @@ typedef struct {
   Name name;
 } Asked;
 
-/* What the command line gives an input: its name, and a formula or a text that names a table. */
+/* What the command line gives an input: its name, and a formula or a text that names a table; or a rotation, omega(R), at the start. */
 typedef struct {
   AstId what, value;
 } Given;

@@ -115,11 +115,6 @@ void scene_select(Builder *b, const ModelChoice *choice) {
 
 /* --- the scene's contents --- */
 
-static void report_no_member(Builder *b, Span span, Name effect, Name name) {
-  diag_error(b->diags, span, "no effect in use declares `%s.%s`", effect, name);
-  advise_unknown_member(b, effect, name);
-}
-
 /* The parameter or input that `c` or `drag.c` names; in `use drag(c = 1)`, effect is drag, and only its
  * own count. Reported when it is none; NULL then. */
 static const Entity *find_settable(Builder *b, AstId id, Name effect) {
@@ -194,81 +189,6 @@ static void set_value(Builder *b, const AstStmt *st, Name effect) {
   if (e->kind == ENT_PARAM) assign_values(b, &p, e, st->lhs, st->rhs, &giver);
   else if (p.indices || p.part >= 0) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "`%s` is an input: it has no index and no component", e->name);
   else give_input(b, e->index, e->name, st->rhs, effect);
-}
-
-typedef struct {
-  EntKind kind;
-  int velocity;
-  Unit unit;
-} StartOf;
-
-static SymId start_target(const Builder *b, const StartOf *of, uint32_t i) {
-  if (of->kind == ENT_STATE) return b->m->states.at[i].z;
-  return of->velocity ? b->m->coords.at[i].v : b->m->coords.at[i].q;
-}
-
-/* That of the name; of a velocity, per second: the same factor. */
-static const Unit *start_unit(Builder *b, uint32_t i, void *data) {
-  StartOf *of = data;
-  of->unit = of->kind == ENT_STATE ? b->m->states.at[i].unit : b->m->coords.at[i].unit;
-  if (of->velocity) of->unit = unit_per_second(b, &of->unit);
-  return &of->unit;
-}
-
-static void give_start(Builder *b, uint32_t i, Expr value, Span span, void *data) {
-  (void)span;
-  Scene *sc = &b->m->scene;
-  SymId target = start_target(b, data, i);
-  if (!b->start_of) b->start_of = ARENA_ARRAY(b->arena, uint32_t, expr_symbol_count(b->g) + 1);
-  if (b->start_of[target]) {
-    sc->starts.at[b->start_of[target] - 1].value = value;
-    return;
-  }
-  vec_push(b->arena, &sc->starts, ((Start){target, value}));
-  b->start_of[target] = sc->starts.n;
-}
-
-static void give_closed_form(Builder *b, uint32_t i, Expr value, Span span, void *data) {
-  const StartOf *of = data;
-  int periodic = of->kind == ENT_STATE ? b->m->states.at[i].periodic : !of->velocity && b->m->coords.at[i].periodic;
-  give_exact(b, start_target(b, of, i), start_unit(b, i, data), periodic, value, span);
-}
-
-/* `start q = ...`, `exact q = ...`: what a coordinate, a velocity or a state is at the start, or always. With `start exactly`
- * constraints may not move it. */
-static void set_motion(Builder *b, const AstStmt *st) {
-  int exact = st->kind == STMT_EXACT;
-  Target p = read_target(b, st->lhs);
-  const AstExpr *x = ast_expr(b->ast, st->lhs), *name = ast_expr(b->ast, p.stem);
-  Name owner = name->kind == AST_MEMBER && !p.wrong ? ast_expr(b->ast, name->a)->name : NULL; /* e1.y */
-  if (p.wrong || p.primes > 1 || (name->kind != AST_NAME && !owner) || (owner && declared_in_use(b, owner, NULL))) {
-    if (name->kind == AST_ERROR) return;
-    if (exact) diag_error(b->diags, x->span, "a closed form is that of a coordinate, a velocity or a state: `exact x = x(0)*cos(w*t)`");
-    else diag_error(b->diags, x->span, "a start gives a coordinate or a velocity: `start th = 90 [deg]`");
-    return;
-  }
-  const Entity *e = owner ? scope_own(&b->scope, name->name, owner) : resolve_name(b, name->name, name->span, NULL, "coord");
-  if (!e && owner) report_no_member(b, name->span, owner, name->name);
-  if (!e) return;
-  if (e->kind == ENT_NONE) return;
-  if (e->kind != ENT_COORD && e->kind != ENT_STATE) {
-    diag_error(b->diags, name->span, "`%s` is %s; only coordinates, velocities and states %s", name->name, ent_kind_text(e->kind),
-               exact ? "have a closed form" : "start somewhere");
-    if (e->kind == ENT_PARAM && !exact) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
-    return;
-  }
-  if (p.primes && e->kind == ENT_STATE) {
-    int is_coord = b->m->states.at[e->index].coordinate;
-    if (is_coord) diag_error(b->diags, x->span, "`%s'` follows from the coordinates: L is linear in the velocities, and the motion of first order", name->name);
-    else diag_error(b->diags, x->span, "the rate of a state follows from its flow");
-    diag_help(b->diags, exact ? "the %s itself has a closed form: `exact %s = ...`" : "the %s itself starts somewhere: `start %s = ...`",
-              is_coord ? "coordinate" : "state", name->name);
-    return;
-  }
-  if (st->exactly && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;
-  StartOf of = {.kind = e->kind, .velocity = p.primes > 0};
-  Giver giver = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of};
-  assign_values(b, &p, e, st->lhs, st->rhs, &giver);
 }
 
 static Unit seconds(const Builder *b) {
@@ -483,6 +403,18 @@ static void set_monitors(Builder *b) {
     }
 }
 
+/* What the command line gives: a rotation at the start, or an input. */
+static void give(Builder *b, const Given *x) {
+  int ambiguous;
+  AstStmt st = {.lhs = x->what, .rhs = x->value, .span = ast_expr(b->ast, x->value)->span};
+  const AstExpr *name = ast_expr(b->ast, read_target(b, x->what).stem);
+  const Entity *e = name->kind == AST_NAME ? scope_find(&b->scope, name->name, NULL, &ambiguous) : NULL;
+  int starts = ast_expr(b->ast, x->what)->kind == AST_CALL || (e && e->kind == ENT_COORD);
+  st.kind = starts ? STMT_START : STMT_SET;
+  if (starts) set_motion(b, &st);
+  else set_value(b, &st, NULL);
+}
+
 void scene_build(Builder *b, const ModelChoice *choice) {
   Scene *sc = &b->m->scene;
   sc->t1 = 10;
@@ -490,8 +422,8 @@ void scene_build(Builder *b, const ModelChoice *choice) {
   each_said(b, scene_statement);
   for (const AstStmt **s = b->chain; *s; s++)
     if ((*s)->doc) sc->doc = (*s)->doc;
-  for (uint32_t i = 0; i < choice->ngiven; i++)
-    set_value(b, &(AstStmt){.kind = STMT_SET, .lhs = choice->given[i].what, .rhs = choice->given[i].value}, NULL);
+  for (uint32_t i = 0; i < choice->ngiven; i++) give(b, &choice->given[i]);
+  settle_rotations(b);
   if (!sc->outputs.n) default_outputs(b);
   if (!b->is_variant) set_monitors(b);
   for (uint32_t i = 0; i < choice->nasked; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
