@@ -107,6 +107,7 @@ static Eqns *derive(Compiler *c, const ModelChoice *choice) {
   ModelChoice with_defines = *choice;
   with_defines.defines = c->o.defines.at;
   with_defines.ndefines = c->o.defines.n;
+  if (!choice->bare && !choice->unfixed) with_defines.fix = c->o.fix;
   Model *m = model_build(c->ast, &with_defines);
   if (!m) return NULL;
   StrBuf listing = strbuf(c->arena);
@@ -117,12 +118,8 @@ static Eqns *derive(Compiler *c, const ModelChoice *choice) {
   return e;
 }
 
-/* Of one scene (NULL: the first) with one more effect (or NULL). */
-static Eqns *derive_with(Compiler *c, const char *scene, Name also) {
-  return derive(c, &(ModelChoice){.scene = scene, .also = also});
-}
-
-static Eqns *derive_scene(Compiler *c, const char *scene) { return derive_with(c, scene, NULL); }
+/* Of one scene (NULL: the first). */
+static Eqns *derive_scene(Compiler *c, const char *scene) { return derive(c, &(ModelChoice){.scene = scene}); }
 
 /* With what the command line asks for besides the scene's outputs. */
 static Eqns *derive_asked(Compiler *c, const char *scene) {
@@ -154,6 +151,12 @@ static IrUnit *lower_scene(Compiler *c, Eqns *e) {
 
 /* --- the commands --- */
 
+/* What the operations would be without --fix. */
+static const char *unfixed_cost(Compiler *c) {
+  Eqns *e = derive(c, &(ModelChoice){.scene = c->o.scene, .unfixed = 1});
+  return e ? arena_printf(c->arena, "without --fix: %s\n", ops_text(new_unit(c, e)->accel, c->arena)) : "";
+}
+
 static int do_derive(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
@@ -162,7 +165,7 @@ static int do_derive(Compiler *c) {
   StrBuf out = strbuf(c->arena);
   const char *format = c->o.format ? c->o.format : "text";
   const char *cost = ops_text(u->accel, c->arena);
-  if (c->o.ops) sb_printf(&out, "%s\n", cost);
+  if (c->o.ops) sb_printf(&out, "%s\n%s", cost, c->o.fix ? unfixed_cost(c) : "");
   else if (strcmp(format, "c") == 0) emit_accel(u, &out);
   else show_equations(e, cost, strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
   return write_out(c, c->o.output, &out);
@@ -239,6 +242,7 @@ static int lower_all(Compiler *c, Units *units) {
     for (uint32_t k = 0; k < units->n && !home; k++)
       if (unit_shares(units->at[k], fresh)) home = units->at[k];
     if (!home) vec_push(c->arena, units, home = fresh);
+    home->lines = 1;
     unit_want(home, e, wants_of(e, &c->o));
     unit_add_scene(home, e);
     if (options_more_digits(&c->o) && i + 1 == scenes.n) warn_rounded(c, e->m->g);
@@ -351,7 +355,7 @@ static void give_reference(Compiler *c, const Units *units) {
 static int do_run(Compiler *c) {
   const char *path, *error = NULL;
   if (c->o.scene && !model_has_scene(c->ast, c->o.scene)) return STATUS_MODEL;
-  if (!settings_inputs(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
+  if (!settings_compiled(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
   if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   Units units = {0};
@@ -438,7 +442,7 @@ static int do_check(Compiler *c) {
   if (c->o.scene && !out.n) derive_scene(c, c->o.scene); /* says that there is no such scene */
   EffectList unused = model_unused_effects(c->ast);
   for (uint32_t i = 0; i < unused.n && !c->o.scene; i++) {
-    Eqns *e = derive_with(c, NULL, unused.at[i]);
+    Eqns *e = derive(c, &(ModelChoice){.bare = 1, .also = unused.at[i]});
     if (!e) continue;
     collect_units(c, e->m, &found);
     sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);
@@ -499,12 +503,19 @@ static int do_command(Compiler *c) {
   return STATUS_USAGE;
 }
 
+/* Numbers are folded as doubles. */
+static int folds_digits(const Compiler *c) {
+  if (!c->o.fix || !options_more_digits(&c->o)) return 1;
+  fail_usage("--fix makes doubles of parameters: leave it out where --precision has more digits");
+  return 0;
+}
+
 static int compile(Compiler *c) {
   c->sources = sources_new(c->arena);
   c->diags = diags_new(c->arena, c->sources);
   c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
   int status = read_model(c);
-  if (status == STATUS_OK) status = do_command(c);
+  if (status == STATUS_OK) status = folds_digits(c) ? do_command(c) : STATUS_USAGE;
   print_messages(c);
   return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
 }

@@ -24,6 +24,7 @@ typedef struct Start {
   double *y, *asked, *best;  /* [n of the state] */
   double *residual, *other;  /* [constraints] c or r, and the one that is not asked for */
   double *size;              /* [constraints] of which parts are taken in the sum that falls */
+  double *says;              /* [constraints] whether it has such parts at all */
   double *A, *M;             /* entries */
   double *full, *kkt;        /* [nq nq], work of lag_kkt */
 } Start;
@@ -218,20 +219,33 @@ static int reach(Start *w)
   return 0;
 }
 
-/* The free components: those that nobody set, or all. */
-static void choose_free(Start *w, int all)
+/* What gives way to constraints, in this order: components that nobody set, rotations of which nothing is said, all. */
+enum { UNSET, ROTATIONS, ALL };
+
+static int yields_at(const Start *w, int i)
 {
   const lag_scene *c = w->sim->scene;
+
+  if (!isnan(w->sim->start[i]) || (c->given && c->given[i] == 1)) {
+    return ALL;
+  }
+  return c->given && c->given[i] ? ROTATIONS : UNSET;
+}
+
+/* The free components: those that give way at this stage. */
+static void choose_free(Start *w, int stage)
+{
   int at = w->holonomic ? 0 : w->nq;
 
   w->nfree = 0;
   for (int i = 0; i < w->nq; i++) {
-    int given = (c->given && c->given[at + i]) || !isnan(w->sim->start[at + i]);
-    if (all || !given) {
+    if (yields_at(w, at + i) <= stage) {
       w->free[w->nfree++] = i;
     }
   }
 }
+
+/* ---- starts that are refused */
 
 /* The error that constraint k cannot be met, or is not met. */
 static int refuse(Start *w, int exactly)
@@ -241,43 +255,108 @@ static int refuse(Start *w, int exactly)
   if (residuals(w) || k < 0) {
     return lag_fail(w->sim, LAG_EINVAL, "the constraints have no value at the start");
   }
-  lag_say_constraint(w->pb, k, fabs(w->residual[k]), "");
+  const lag_constraint *c = &w->of->of[k];
+  if (!isfinite(w->residual[k])) {
+    char line[32];
+    return lag_fail(w->sim, LAG_EINVAL, "the constraint %s%s has no value at the start: start where it has one", c->name, lag_line_of(c, line));
+  }
+  lag_say_constraint(w->pb, k, w->holonomic, fabs(w->residual[k]), "");
   if (exactly) {
     return lag_fail(w->sim, LAG_EINVAL, "the start contradicts its constraints: %s%s; without `exactly` the nearest start is taken",
-                    w->pb->words, w->holonomic ? "" : "/s, in its velocities");
+                    w->pb->words, w->holonomic ? "" : ", in its velocities");
   }
   return lag_fail(w->sim, LAG_EINVAL, "no start obeys the constraints: from the one given, none is found nearer than this: %s%s",
                   w->pb->words, w->holonomic ? "" : " in its rate");
 }
 
-/* A constraint whose derivatives vanish where it holds, as those of x^2 = 0, holds nothing there. */
-static int check_derivatives(Start *w)
+static int is_contact(const Start *w, int k)
+{
+  const lag_model *m = w->pb->model;
+  int i = 0;
+
+  while (i < m->ncontacts && m->contacts[i].constraint != k) {
+    i++;
+  }
+  return i < m->ncontacts;
+}
+
+/* size[n] := what moving each coordinate as far as some of its unit are makes of a constraint, to first order. */
+static int slopes(Start *w, double *size)
 {
   const lag_constraints *of = w->of;
-  const lag_model *m = w->pb->model;
-  double t = w->sim->scene->t0, *size = w->other;
   int nq = w->nq;
 
-  if (of->matrices(t, w->y, w->y + nq, w->y + 2 * nq, w->pb->p, w->pb->u, w->A, w->M, w->pb->work)) {
-    return LAG_OK;
-  }
   memset(size, 0, (size_t)of->n * sizeof *size);
+  if (of->matrices(w->sim->scene->t0, w->y, w->y + nq, w->y + 2 * nq, w->pb->p, w->pb->u, w->A, w->M, w->pb->work)) {
+    return 0;
+  }
   for (int e = 0; e < of->njacobian; e++) {
     int i = of->jacobian[e].col;
-    double far = fmax(fabs(w->y[i]), fabs(w->asked[i]));
+    double far = fmax(lag_size_like(w->pb, w->y, i), lag_size_like(w->pb, w->asked, i));
     size[of->jacobian[e].row] += fabs(w->A[e]) * (far > 0 ? far : 1);
   }
-  for (int k = 0; k < count_stated(of); k++) {
-    int is_contact = 0;
-    for (int i = 0; i < m->ncontacts; i++) {
-      is_contact |= m->contacts[i].constraint == k;
+  return 1;
+}
+
+static int is_flat(const Start *w, int k, const double *size)
+{
+  return w->says[k] != 0.0 && size[k] < 1e-6 * w->size[k];
+}
+
+/* Whether a constraint that is flat here is so beside, too, where all hold: not a linkage at its dead centre. y stays. */
+static int is_flat_beside(Start *w, int k)
+{
+  double *size = w->other, *here = w->best;
+  size_t bytes = (size_t)w->pb->n * sizeof(double);
+
+  memcpy(here, w->y, bytes);
+  choose_free(w, ALL);
+  for (int i = 0; i < w->nq; i++) {
+    double far = lag_size_like(w->pb, here, i);
+    w->y[i] += !is_held(w, i) ? 0 : 0.01 * (far > 0 ? far : 1) * (0.5 + fmod(0.618033988749894848 * (i + 1), 1));
+  }
+  int flat = !descend(w) || !slopes(w, size) || is_flat(w, k, size);
+  memcpy(w->y, here, bytes);
+  slopes(w, size);
+  return flat;
+}
+
+/* A constraint whose derivatives vanish where it holds, as those of x^2 = 0, holds nothing there; one that says nothing anywhere, as with a
+ * factor that is 0, is not meant. reached: it holds here. */
+static int check_derivatives(Start *w, int reached)
+{
+  double *size = w->other;
+  char line[32];
+
+  if (!slopes(w, size)) {
+    return LAG_OK;
+  }
+  for (int k = 0; k < count_stated(w->of); k++) {
+    const lag_constraint *c = &w->of->of[k];
+    if (is_contact(w, k)) {
+      continue;
     }
-    if (!is_contact && size[k] < 1e-6 * w->size[k]) {
-      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s (line %d) vanish where it holds, so that no force can hold it: write it "
-                      "without a square", of->of[k].name, of->of[k].line);
+    if (!isfinite(size[k]) && reached) {
+      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s have no value where it holds: write it so that they have, "
+                      "x = 1 in place of sqrt(x - 1) = 0", c->name, lag_line_of(c, line));
+    }
+    if (is_flat(w, k, size) && (!reached || is_flat_beside(w, k))) {
+      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s vanish where it holds, so that no force can hold it: write it "
+                      "so that they do not, x = 0 in place of x^2 = 0", c->name, lag_line_of(c, line));
     }
   }
   return LAG_OK;
+}
+
+/* w->size: terms of constraints at the start; w->says: there are such. */
+static void look_at_terms(Start *w)
+{
+  int rc = lag_constraint_terms(w->pb, w->sim->scene->t0, w->y, w->holonomic, w->size);
+
+  for (int k = 0; k < w->n; k++) {
+    w->says[k] = rc == 0 && w->size[k] > 0 && isfinite(w->size[k]);
+    w->size[k] = w->says[k] != 0.0 ? w->size[k] : 1;
+  }
 }
 
 /* Positions, or velocities. */
@@ -289,23 +368,25 @@ static int settle(Start *w, int holonomic)
     return LAG_OK;
   }
   double off = worst(w);
-  int rc = lag_constraint_terms(w->pb, w->sim->scene->t0, w->y, holonomic, w->size);
-  for (int k = 0; k < w->n; k++) {
-    w->size[k] = rc == 0 && w->size[k] > 0 && isfinite(w->size[k]) ? w->size[k] : 1;
+  look_at_terms(w);
+  if (!isfinite(merit(w))) {
+    return refuse(w, 0);
   }
   if (off <= 2) {
-    return LAG_OK;
+    return holonomic ? check_derivatives(w, 1) : LAG_OK;
   }
   if (w->sim->scene->exactly && !(off <= sqrt(DBL_EPSILON) / DBL_EPSILON)) {
     return refuse(w, 1);
   }
-  for (int all = 0; all < 2; all++) {
-    choose_free(w, all);
-    if (reach(w)) {
-      return holonomic ? check_derivatives(w) : LAG_OK;
+  for (int stage = UNSET; stage <= ALL; stage++) {
+    int before = w->nfree;
+    choose_free(w, stage);
+    if ((stage == UNSET || w->nfree != before) && reach(w)) {
+      return holonomic ? check_derivatives(w, 1) : LAG_OK;
     }
   }
-  return refuse(w, 0);
+  int rc = holonomic ? check_derivatives(w, 0) : LAG_OK;
+  return rc ? rc : refuse(w, 0);
 }
 
 /* x := what is left of row x[n] beside the orthonormal rows Q[r * n]; twice, so that rounding is gone. Returns its length. */
@@ -329,10 +410,11 @@ static double remainder_of(int n, int r, const double *Q, double *x)
   return sqrt(s);
 }
 
-/* Which constraints follow here from those before them: marks[n], and how many do not. What counts as nothing left is as in lag_kkt.h. */
+/* Which constraints follow here from those before them: marks[n], and how many do not. What counts as nothing left is what counts so for
+ * corrections in lag_kkt.h: a start is found at a singular place to sqrt(eps) only. */
 static int rank(Start *w, double *marks)
 {
-  const double least = cbrt(DBL_EPSILON) * cbrt(DBL_EPSILON);
+  const double least = cbrt(DBL_EPSILON);
   const lag_constraints *of = w->of;
   int nq = w->nq, m = of->n, r = 0;
   double *A = w->kkt, *Q = A;
@@ -373,9 +455,9 @@ static void keep_rounding_out(const Start *w)
 static double *make_room(Start *w)
 {
   size_t n = (size_t)w->pb->n, nq = (size_t)w->nq, m = (size_t)w->of->n;
-  const size_t sizes[] = {n, n, 2 * n + nq, m, m, m, (size_t)w->of->njacobian, (size_t)w->of->nmass, nq * nq,
+  const size_t sizes[] = {n, n, 2 * n + nq, m, m, m, m, (size_t)w->of->njacobian, (size_t)w->of->nmass, nq * nq,
                           2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m};
-  double **const parts[] = {&w->y, &w->asked, &w->best, &w->residual, &w->other, &w->size, &w->A, &w->M, &w->full, &w->kkt};
+  double **const parts[] = {&w->y, &w->asked, &w->best, &w->residual, &w->other, &w->size, &w->says, &w->A, &w->M, &w->full, &w->kkt};
   size_t total = 0;
 
   for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {

@@ -1,15 +1,17 @@
-/* Contacts: gaps that stay at least 0. Enters: a state in which one closes, opens, or is closed at the start; leaves: the model with that
- * gap as a constraint, or without. Holds: a closed gap is one whose input in `hold` is 1; its multiplier is not negative, but for the
- * time until its event is found. Impacts themselves are the model's (lag_model.act), after Newton's law of restitution.
+/* Contacts: gaps that stay at least 0. Enters: a state that events, or whoever set it, have led to; leaves: the state after what strikes
+ * has struck, with those gaps closed that are pressed. Holds: a closed gap is one whose input in `hold` is 1, a constraint of the model; none
+ * is closed that would have to pull; an open one that touches is armed anew, so that it is seen to close again.
  *
  * Impacts that follow each other ever faster come to an end in finite time (a ball that loses a fifth of its speed at each bounce). The
- * gap is closed when what is left of that time is too short to matter; Brogliato, Nonsmooth Mechanics, 3rd ed. (2016), 1.4 and 8.1, DOI
- * 10.1007/978-3-319-28664-8. */
+ * gap is closed when what is left of that time is too short to matter, or the next flight stays within rounding; Brogliato, Nonsmooth
+ * Mechanics, 3rd ed. (2016), 1.4 and 8.1, DOI 10.1007/978-3-319-28664-8. */
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/core.h"
+#include "core/impact.h"
 
 const lag_contact *lag_contact_of(const lag_model *m, int event)
 {
@@ -26,118 +28,6 @@ int lag_contact_is_closed(const lag_sim *s, const lag_contact *c)
   return s->hold[c->input] > 0.5;
 }
 
-/* The gap and its rate, as a constraint has them while it is closed. */
-static int gap_at(lag_sim *s, const lag_contact *c, const double *y, double *gap, double *rate)
-{
-  double was = s->hold[c->input], *room = s->contact_room, *r = room + s->scene->model->constraints->nholonomic;
-
-  s->hold[c->input] = 1;
-  int rc = lag_residuals(&s->pb, s->run->t, y, room, r);
-  s->hold[c->input] = was;
-  *gap = room[c->constraint];
-  *rate = r[c->constraint];
-  return rc;
-}
-
-/* Closes it, if its multiplier then presses; y loses the speed that is left. */
-static int close_gap(lag_sim *s, const lag_contact *c, double *y)
-{
-  double *g = s->contact_room;
-
-  s->hold[c->input] = 1;
-  int rc = lag_project(&s->pb, s->run->t, y, NULL);
-  rc = rc ? LAG_EMODEL : lag_events_eval(s, s->run->t, y, g);
-  if (rc == 0 && !(g[c->release] >= 0)) { /* pulled apart at once */
-    s->hold[c->input] = NAN;
-  }
-  return rc;
-}
-
-/* Of what an impact leaves of the speed, this is none; and a gap of this part of what there is of coordinates is closed. */
-static const double no_speed = 1e-9, no_gap = 1e-12;
-
-/* The model's impact at the state y. */
-static int strike(lag_sim *s, const lag_contact *c, double *y)
-{
-  const lag_model *m = s->scene->model;
-  size_t bytes = (size_t)s->pb.n * sizeof(double);
-  int stop = 0, nq = m->nq, rc = lag_inputs(&s->pb, s->run->t);
-
-  memcpy(s->yc, y, bytes);
-  return rc ? rc : m->act(c->impact, s->run->t, s->yc, s->yc + nq, s->yc + 2 * nq, s->p, s->u, y, y + nq, y + 2 * nq, &stop, s->work);
-}
-
-static int no_values(lag_sim *s, const char *name)
-{
-  return lag_fail(s, LAG_EMODEL, "the contact %s has no finite values at t = %.17g s", name, s->run->t);
-}
-
-/* What the model makes of a rate must be Newton's law with 0 <= e <= 1. */
-static int check_restitution(lag_sim *s, const char *name, double before, double after)
-{
-  double e = before < 0 ? -after / before : 0;
-
-  return e >= -no_speed && e <= 1 + no_speed ? LAG_OK
-                                             : lag_fail(s, LAG_EINVAL, "the contact %s has a restitution of %.3g: it is between 0 and 1", name, e);
-}
-
-int lag_contact_after(lag_sim *s, int event, int ends, const double *before, double *y)
-{
-  const lag_contact *c = lag_contact_of(s->scene->model, event);
-  double gap, rate, was;
-
-  if (!c) {
-    return LAG_OK;
-  }
-  const char *name = s->scene->model->constraints->of[c->constraint].name;
-  if (c->release == event) {
-    s->hold[c->input] = NAN;
-    return LAG_OK;
-  }
-  int rc = gap_at(s, c, before, &gap, &was);
-  rc = rc ? rc : gap_at(s, c, y, &gap, &rate);
-  if (rc) {
-    return no_values(s, name);
-  }
-  if ((rc = check_restitution(s, name, was, rate)) != 0) {
-    return rc;
-  }
-  return (ends || rate <= no_speed * fabs(was)) && close_gap(s, c, y) ? no_values(s, name) : LAG_OK;
-}
-
-/* The open contact c at the state y, which no motion has led to. *again: it has changed y. */
-static int meet(lag_sim *s, const lag_contact *c, double *y, const char *who, int *again)
-{
-  const lag_constraint *of = &s->scene->model->constraints->of[c->constraint];
-  double gap, rate, was, size = 1, speed = 1;
-
-  for (int i = 0; i < s->pb.nq; i++) {
-    size = fmax(size, fabs(y[i]));
-    speed = fmax(speed, fabs(y[s->pb.nq + i]));
-  }
-  if (gap_at(s, c, y, &gap, &was)) {
-    return no_values(s, of->name);
-  }
-  if (gap > no_gap * size || was > no_gap * speed) {
-    return LAG_OK;
-  }
-  if (gap < -no_gap * size) {
-    return lag_fail(s, LAG_EINVAL, "%s is inside the contact %s: its gap is %.3g %s", who, of->name, gap, of->unit);
-  }
-  rate = was;
-  if (was < -no_gap * speed) { /* it strikes */
-    *again = 1;
-    if (strike(s, c, y) || gap_at(s, c, y, &gap, &rate)) {
-      return no_values(s, of->name);
-    }
-    int rc = check_restitution(s, of->name, was, rate);
-    if (rc) {
-      return rc;
-    }
-  }
-  return rate <= fmax(no_gap * speed, no_speed * fabs(was)) && close_gap(s, c, y) ? no_values(s, of->name) : LAG_OK;
-}
-
 void lag_contact_open(lag_sim *s)
 {
   const lag_model *m = s->scene->model;
@@ -147,27 +37,212 @@ void lag_contact_open(lag_sim *s)
   }
 }
 
-int lag_contact_meet(lag_sim *s, double *y, const char *who)
+static const lag_constraint *constraint_of(const lag_sim *s, int i)
 {
-  enum { MOST = 100 }; /* impacts that lead to others at the same place, as of balls in a row */
   const lag_model *m = s->scene->model;
-  int again = 1, rc = LAG_OK;
 
-  for (int turn = 0; turn < MOST && again && rc == 0; turn++) {
-    again = 0;
-    for (int i = 0; i < m->ncontacts && rc == 0; i++) {
-      if (!lag_contact_is_closed(s, &m->contacts[i])) {
-        rc = meet(s, &m->contacts[i], y, who, &again);
-      }
+  return &m->constraints->of[m->contacts[i].constraint];
+}
+
+/* Of what an impact leaves of the speed, this is none; of the terms of a gap, or of its rate, this is rounding; and a flight that stays below
+ * this part of them is not flown. */
+static const double no_speed = 1e-9, no_gap = 0x1p12 * DBL_EPSILON, no_flight = 0x1p6 * DBL_EPSILON;
+
+/* ---- which touch */
+
+/* of[n]: what is closed, what the event is of, and what has no gap. who, if it is not NULL, may set no state with one inside. */
+static int gather(Touch *w, const char *who, int event)
+{
+  lag_sim *s = w->sim;
+  const lag_model *m = s->scene->model;
+
+  for (int i = 0; i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    int inside = w->gap[i] < -no_gap * w->gap_size[i];
+    if (inside && who) {
+      const lag_constraint *of = constraint_of(s, i);
+      return lag_fail(s, LAG_EINVAL, "%s is inside the contact %s: its gap is %.3g%s%s", who, of->name, w->gap[i], of->unit[0] ? " " : "", of->unit);
+    }
+    if (c->impact == event || c->release == event || w->was[i] || w->gap[i] <= no_gap * w->gap_size[i]) {
+      w->of[w->n++] = i;
     }
   }
+  return LAG_OK;
+}
+
+static int check_restitution(lag_sim *s, int i, double e)
+{
+  if (!isnan(e) && !(e >= -no_speed && e <= 1 + no_speed)) {
+    return lag_fail(s, LAG_EINVAL, "the contact %s has a restitution of %.3g: it is between 0 and 1", constraint_of(s, i)->name, e);
+  }
+  if (s->run->dir < 0 && e < 1 - no_speed) {
+    return lag_fail(s, LAG_EINVAL, "at t = %.9g s the contact %s, of restitution %.3g, ends the run backwards in time: an impact that takes energy "
+                    "does not tell what was before it", s->run->t, constraint_of(s, i)->name, e);
+  }
+  return LAG_OK;
+}
+
+/* ---- what strikes */
+
+/* Event k belongs to what happens now, unless it has led here. */
+static void happens(lag_sim *s, int k)
+{
+  s->root[k] = s->root[k] == HUGE_VAL ? HUGE_VAL : s->run->limit;
+}
+
+/* Impacts where gaps close. before[n]: the rates before it. */
+static int strike(Touch *w, int event, int ends, double *before, double *e, unsigned char *struck)
+{
+  lag_sim *s = w->sim;
+  const lag_model *m = s->scene->model;
+  int any = 0;
+
+  for (int a = 0; a < w->n; a++) {
+    int i = w->of[a];
+    before[a] = s->run->dir * w->rate[i];
+    struck[a] = before[a] < -no_gap * w->rate_size[i];
+    any |= struck[a];
+    if (struck[a]) {
+      e[a] = lag_touch_restitution(w, i);
+      int rc = check_restitution(s, i, e[a]);
+      if (rc) {
+        return rc;
+      }
+      e[a] = isnan(e[a]) || (ends && m->contacts[i].impact == event) ? 0 : e[a];
+      happens(s, m->contacts[i].impact);
+    }
+  }
+  return any ? lag_touch_impact(w, e, struck) : LAG_OK;
+}
+
+/* ---- what rests */
+
+/* Which rest, and of those which are pressed: closed. */
+static int rest(Touch *w, int event, int ends, const double *before, double *acceleration)
+{
+  const lag_model *m = w->sim->scene->model;
+  double dir = w->sim->run->dir;
+
+  for (int a = 0; a < w->n; a++) {
+    const lag_contact *c = &m->contacts[w->of[a]];
+    double after = dir * w->rate[w->of[a]];
+    w->part[a] = after <= no_gap * w->rate_size[w->of[a]] || after <= no_speed * fabs(before[a]) || (ends && c->impact == event);
+  }
+  int rc = lag_touch_rest(w, acceleration), more = 0;
+  for (int a = 0; a < w->n && rc == 0; a++) { /* one that is back before it has left */
+    double after = w->rate[w->of[a]], back = -2 * acceleration[a] * no_flight * w->gap_size[w->of[a]];
+    if (!w->part[a] && after * after <= back) {
+      w->part[a] = 1;
+      more = 1;
+    }
+  }
+  return rc == 0 && more ? lag_touch_rest(w, acceleration) : rc;
+}
+
+/* Closes what rests and is pressed, and takes what speed and gap are left there. */
+static int close_gaps(Touch *w)
+{
+  lag_sim *s = w->sim;
+
+  for (int a = 0; a < w->n; a++) {
+    if (w->was[w->of[a]] && !w->in[a]) {
+      happens(s, s->scene->model->contacts[w->of[a]].release);
+    }
+  }
+  lag_touch_close(w, w->in);
+  if (lag_project(&s->pb, s->run->t, w->y, NULL) == LAG_OK) {
+    return LAG_OK;
+  }
+  return lag_fail(s, LAG_EMODEL, "at t = %.9g s contacts cannot stay closed: %s", s->run->t, s->pb.detail ? s->pb.detail : "");
+}
+
+static int settle(Touch *w, const char *who, int event, int ends)
+{
+  int rc = gather(w, who, event);
+
+  lag_contact_open(w->sim);
+  if (rc || w->n == 0) {
+    return rc;
+  }
+  size_t n = (size_t)w->n;
+  double *room = calloc(3 * n, sizeof *room);
+  unsigned char *struck = calloc(n, 1);
+  rc = room && struck ? lag_touch_responses(w) : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  rc = rc ? rc : strike(w, event, ends, room, room + n, struck);
+  rc = rc ? rc : rest(w, event, ends, room, room + 2 * n);
+  rc = rc ? rc : close_gaps(w);
+  free(room);
+  free(struck);
+  return rc;
+}
+
+int lag_contact_settle(lag_sim *s, double *y, const char *who, int event, int ends)
+{
+  Touch w;
+
+  if (s->scene->model->ncontacts == 0) {
+    return LAG_OK;
+  }
+  int rc = lag_touch_look(s, y, &w);
+  rc = rc ? rc : settle(&w, who, event, ends);
+  lag_touch_free(&w);
+  return rc;
+}
+
+/* Every coefficient of restitution is between 0 and 1. */
+static int check_all(lag_sim *s)
+{
+  Touch w;
+  int rc = lag_touch_look(s, s->now, &w);
+
+  for (int i = 0; i < s->scene->model->ncontacts && rc == 0; i++) {
+    double e = lag_touch_restitution(&w, i);
+    rc = isfinite(e) ? check_restitution(s, i, s->run->dir < 0 ? fmax(e, 1) : e) : LAG_OK;
+  }
+  lag_touch_free(&w);
+  lag_contact_open(s);
   return rc;
 }
 
 int lag_contact_begin(lag_sim *s)
 {
-  int rc = lag_contact_meet(s, s->now, "the start");
+  int rc = LAG_OK;
 
+  if (s->scene->model->ncontacts > 0) {
+    lag_contact_open(s);
+    rc = check_all(s);
+    rc = rc ? rc : lag_contact_settle(s, s->now, "the start", -1, 0);
+  }
   memcpy(s->y, s->now, (size_t)s->pb.n * sizeof(double));
+  return rc;
+}
+
+int lag_contact_arm(lag_sim *s, const double *g)
+{
+  const lag_model *m = s->scene->model;
+  double most = 0, *size = s->contact_room;
+
+  if (m->ncontacts == 0) {
+    return LAG_OK;
+  }
+  for (int i = 0; i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    s->contact_was[i] = s->hold[c->input];
+    most = lag_contact_is_closed(s, c) ? fmax(most, fabs(g[c->release])) : most;
+  }
+  for (int i = 0; i < m->ncontacts; i++) {
+    s->hold[m->contacts[i].input] = 1;
+  }
+  int rc = lag_touch_sizes(s, s->now, 1, size, size + m->constraints->n);
+  for (int i = 0; i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    s->hold[c->input] = s->contact_was[i];
+    int k = lag_contact_is_closed(s, c) ? c->release : c->impact;
+    double noise = k == c->release ? 1e-12 * most : no_flight * size[c->constraint];
+    if (g[k] <= noise) { /* it has no sign yet: below -noise it happens */
+      s->sign[k] = 0;
+      s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* no more: at each impact it would grow */
+    }
+  }
   return rc;
 }

@@ -59,7 +59,7 @@ struct lag_sim {
   lag_signal *signal;    /* [nu] set by the caller; not part of what is saved */
   double *start;         /* [n] NaN: as the scene says */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
-  double *contact_room;  /* [2 n of constraints, or nev, whichever is more] */
+  double *contact_room, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
   double *saved;         /* one block: Run, and the arrays below */
   size_t nsaved;
@@ -131,15 +131,16 @@ int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
 void lag_keep_nothing(lag_sim *sim);
 int lag_keep(lag_sim *sim, double t, const double *y);
 
-/* contact.c. of: the contact that the event is one of, or NULL. after: event k has led from `before` to y; closes the gap when the impacts
- * have come to their end, or one leaves no speed, and opens it when it is released. open: all of them, since the state will be another. meet: y, which
- * `who` has made, may touch contacts, which strikes or closes them, and may not be inside of one. begin: the start. Failures are reported. */
+/* contact.c. of: the contact that the event is one of, or NULL. open: all of them, since the state will be another. settle: y, which a motion
+ * or `who` has made, after what strikes has struck and what rests is closed; event: the one of a contact that has led there, or -1; ends: its
+ * impacts have come to their end; who: it may set no state inside a contact, or NULL. begin: the start. arm: the signs of events of
+ * contacts in `now`, where they are g[nev]: those that touch have none. Failures are reported. */
 const lag_contact *lag_contact_of(const lag_model *m, int event);
 int lag_contact_is_closed(const lag_sim *sim, const lag_contact *contact);
-int lag_contact_after(lag_sim *sim, int event, int ends, const double *before, double *y);
 void lag_contact_open(lag_sim *sim);
-int lag_contact_meet(lag_sim *sim, double *y, const char *who);
+int lag_contact_settle(lag_sim *sim, double *y, const char *who, int event, int ends);
 int lag_contact_begin(lag_sim *sim);
+int lag_contact_arm(lag_sim *sim, const double *g);
 
 /* tangent.c. pass: the step has been used up. jump: event k changes the state from `now` to yb; more: another one has at this time. */
 int lag_tangent_pass(lag_sim *sim);

@@ -41,16 +41,16 @@ int lag_events_arm(lag_sim *s)
     s->sign[k] = sign_of(s->g1[k]);
     s->noise[k] = 0;
   }
-  return rc;
+  return rc ? rc : lag_contact_arm(s, s->g1);
 }
 
 /* An event that repeats faster and faster (a ball coming to rest) would never let time pass. Others may fire between. dt: since
- * it fired last. */
-static int is_zeno(lag_sim *s, int k, double dt)
+ * it fired last; few: so many intervals, each shorter than the one before, are enough (a block that rocks loses most of its speed at once). */
+static int is_zeno(lag_sim *s, int k, double dt, int few)
 {
   s->shorter[k] = dt < s->interval[k] ? s->shorter[k] + 1 : 0;
   s->interval[k] = dt;
-  return s->shorter[k] >= 10 && dt <= 1e-7 * fabs(s->run->t - s->scene->t0);
+  return s->shorter[k] >= few && dt <= 1e-7 * fabs(s->run->t - s->scene->t0);
 }
 
 static int fail_zeno(lag_sim *s, int k)
@@ -73,9 +73,10 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   s->first[k] = s->count[k] > 0 ? s->first[k] : r->t;
   s->last[k] = r->t;
   s->count[k]++;
+  const lag_contact *contact = lag_contact_of(m, k);
   int rc = lag_inputs(&s->pb, r->t);
   memcpy(s->yb, s->now, bytes);
-  if (rc == 0 && m->act) {
+  if (rc == 0 && m->act && !contact) {
     rc = m->act(k, r->t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, s->yb, s->yb + nq, s->yb + 2 * nq, stop,
                 s->work);
   }
@@ -83,10 +84,9 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
     return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its action gives no finite state at t = %.17g s", m->ev[k].name,
                     r->t);
   }
-  int ends = is_zeno(s, k, since), moved = memcmp(s->yb, s->now, bytes) != 0;
-  const lag_contact *contact = lag_contact_of(m, k);
+  int ends = is_zeno(s, k, since, contact ? 3 : 10), moved = memcmp(s->yb, s->now, bytes) != 0;
   int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;
-  if (moved && !contact) {
+  if (moved) {
     lag_contact_open(s); /* what lay may have been lifted, or thrown */
   }
   if (elsewhere) {
@@ -99,12 +99,10 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   if (elsewhere) {
     rc = lag_keep(s, r->t, s->yb);
   }
-  if (rc == 0 && contact) {
-    rc = lag_contact_after(s, k, ends, s->now, s->yb);
-  } else if (rc == 0 && moved) {
+  if (rc == 0 && (contact || moved)) {
     char who[128];
     snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
-    rc = lag_contact_meet(s, s->yb, who);
+    rc = lag_contact_settle(s, s->yb, contact ? NULL : who, contact ? k : -1, ends);
   }
   if (rc) {
     return rc;
@@ -145,22 +143,33 @@ static int rearm(lag_sim *s, const double *before, const double *spread)
       s->noise[k] = 0;
     }
   }
-  return rc;
+  return rc ? rc : lag_contact_arm(s, s->g1);
+}
+
+/* An event that happens now and has not acted yet, in the order in which they are declared; -1: none. */
+static int next_due(const lag_sim *s)
+{
+  const Run *r = s->run;
+  double together = 4 * DBL_EPSILON * fmax(fabs(r->limit), fabs(r->step_t1));
+  int k = 0, nev = s->scene->model->nev;
+
+  while (k < nev && (isnan(s->root[k]) || !(fabs(s->root[k] - r->limit) <= together))) {
+    k++;
+  }
+  return k < nev ? k : -1;
 }
 
 int lag_events_fire(lag_sim *s)
 {
   Run *r = s->run;
-  int nev = s->scene->model->nev, stop = 0, changed = 0;
-  double *before = s->e + 2, *spread = s->spare, together = 4 * DBL_EPSILON * fmax(fabs(r->limit), fabs(r->step_t1));
+  int stop = 0, changed = 0;
+  double *before = s->e + 2, *spread = s->spare;
 
   int rc = lag_events_eval(s, r->t, s->now, before);
   rc = rc ? rc : lag_events_spread(s, before, spread);
-  for (int k = 0; k < nev && rc == 0; k++) {
-    if (!isnan(s->root[k]) && fabs(s->root[k] - r->limit) <= together) {
-      s->root[k] = HUGE_VAL; /* fired */
-      rc = act(s, k, &stop, &changed);
-    }
+  for (int k; rc == 0 && (k = next_due(s)) >= 0;) { /* an impact may make others happen at once */
+    s->root[k] = HUGE_VAL; /* fired */
+    rc = act(s, k, &stop, &changed);
   }
   rc = rc ? rc : rearm(s, before, spread);
   r->from = r->t;

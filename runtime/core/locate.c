@@ -78,6 +78,7 @@ int lag_events_spread(lag_sim *s, const double *at_event, double *spread)
 typedef struct Crossing {
   lag_sim *sim;
   int k, rc;
+  double lift; /* of g */
 } Crossing;
 
 static double g_of(void *context, double t)
@@ -86,7 +87,16 @@ static double g_of(void *context, double t)
   int rc = g_at(c->sim, t, c->sim->g1);
 
   c->rc = rc ? rc : c->rc;
-  return c->sim->g1[c->k];
+  return c->sim->g1[c->k] + c->lift;
+}
+
+/* root[k]: where g + lift is zero. */
+static int cross(lag_sim *s, int k, double lift, double ta, double ga, double tb, double gb)
+{
+  Crossing c = {s, k, 0, lift};
+
+  s->root[k] = ga + lift > 0 || gb + lift > 0 ? lag_root(g_of, &c, ta, ga + lift, tb, gb + lift) : tb;
+  return c.rc;
 }
 
 /* What happens to the events between two values of g. Sets root[] of those that fire. */
@@ -99,13 +109,15 @@ static int compare(lag_sim *s, double ta, const double *ga, double tb, const dou
     double now = sign_of(gb[k]), was = s->sign_end[k];
     if (was == 0.0) {
       s->sign_end[k] = fabs(gb[k]) > s->noise[k] ? now : 0;
+      if (s->sign_end[k] < 0 && lag_contact_of(m, k)) { /* it may have been above: a gap that is closing, a force that pulls */
+        rc = cross(s, k, s->noise[k], ta, ga[k], tb, gb[k]);
+        *found = 1;
+      }
     } else if (now == -was) {
       int direction = m->ev[k].direction;
       s->sign_end[k] = now;
       if (direction == 0 || direction == (int)now) {
-        Crossing c = {s, k, 0};
-        s->root[k] = lag_root(g_of, &c, ta, ga[k], tb, gb[k]);
-        rc = c.rc;
+        rc = cross(s, k, 0, ta, ga[k], tb, gb[k]);
         *found = 1;
       }
     }

@@ -14,7 +14,8 @@ typedef struct Held {
   const lag_constraints *of;
   double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
   double *terms[2];               /* [n] of the rates, of the holonomic ones: as they were when they were last asked for */
-  double *d, *force, *other;      /* [nq], [nq], [2 nq + nz] */
+  double *d, *force, *step;       /* [nq], [nq], [nq] */
+  double *other;                  /* [2 nq + nz] */
   double *M;                      /* [nmass] */
 } Held;
 
@@ -22,14 +23,14 @@ size_t lag_held_room(const lag_model *m)
 {
   const lag_constraints *of = m->constraints;
 
-  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 4 * m->nq + m->nz) : 0;
+  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz) : 0;
 }
 
 static Held layout(const lag_problem *pb)
 {
   Held w = {.of = pb->model->constraints};
-  double *x = pb->held, **const parts[] = {&w.c, &w.r, &w.before, &w.g, &w.terms[0], &w.terms[1], &w.A, &w.M, &w.d, &w.force, &w.other};
-  const int n = w.of->n, sizes[] = {n, n, n, n, n, n, w.of->njacobian, w.of->nmass, pb->nq, pb->nq, 0};
+  double *x = pb->held, **const parts[] = {&w.c, &w.r, &w.before, &w.g, &w.terms[0], &w.terms[1], &w.A, &w.M, &w.d, &w.force, &w.step, &w.other};
+  const int n = w.of->n, sizes[] = {n, n, n, n, n, n, w.of->njacobian, w.of->nmass, pb->nq, pb->nq, pb->nq, 0};
 
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
@@ -126,7 +127,8 @@ static double reach(const lag_problem *pb, const double *y, int holonomic, int i
     most = fmax(most, lag_size_like(pb, y, i) / (pb->span > 0 ? pb->span : 1));
   }
 
-  return most <= 0 || (most < 1 && (q->periodic || !q->unit[0])) ? 1 : most;
+  int is_angle = q->periodic || !q->unit[0] || strcmp(q->unit, "rad") == 0 || strcmp(q->unit, "deg") == 0;
+  return most <= 0 || (most < 1 && is_angle) ? 1 : most;
 }
 
 /* At least what a state makes of them that is another by as much everywhere: there may be no terms here of first order, as of a folded
@@ -167,8 +169,9 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
     return -1;
   }
   for (int k = 0; k < n; k++) {
-    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x > 0 ? x / (DBL_EPSILON * w.g[k]) : 0;
-    if (!(part <= most)) {
+    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x == 0.0 ? 0 : x / (DBL_EPSILON * w.g[k]);
+    part = isnan(part) ? HUGE_VAL : part; /* it has no value */
+    if (part > most) {
       most = part;
       which = k;
     }
@@ -179,19 +182,26 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
   return which;
 }
 
-void lag_say_constraint(lag_problem *pb, int k, double residual, const char *words)
+const char *lag_line_of(const lag_constraint *c, char text[32])
+{
+  text[0] = '\0';
+  if (c->line > 0) {
+    snprintf(text, 32, " (line %d)", c->line);
+  }
+  return text;
+}
+
+void lag_say_constraint(lag_problem *pb, int k, int holonomic, double residual, const char *words)
 {
   const lag_constraint *c = &pb->model->constraints->of[k];
-  char line[32] = "";
+  const char *level = c->holonomic == holonomic ? "" : holonomic ? "*s" : c->unit[0] ? "/s" : "1/s";
+  char line[32], unit[64];
 
-  if (c->line > 0) {
-    snprintf(line, sizeof line, " (line %d)", c->line);
-  }
+  snprintf(unit, sizeof unit, "%s%s%s", c->unit[0] || level[0] ? " " : "", c->unit[0] || level[0] != '*' ? c->unit : "1", level);
   if (isnan(residual)) {
-    snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, line, words);
+    snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, lag_line_of(c, line), words);
   } else {
-    snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s%s", c->name, line, residual, c->unit[0] ? " " : "", c->unit,
-             words);
+    snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s", c->name, lag_line_of(c, line), residual, unit, words);
   }
   pb->detail = pb->words;
 }
@@ -247,10 +257,9 @@ static int unmet(lag_problem *pb, const Held *w, double t, const double *y, int 
   int k = lag_worst_constraint(pb, t, y, holonomic, NULL);
 
   if (k >= 0) {
-    lag_say_constraint(pb, k, fabs(holonomic ? w->c[k] : w->r[k]),
-                       holonomic                 ? ", and no small change of the coordinates meets it"
-                       : k < w->of->nholonomic ? "/s for any velocities: it contradicts the others"
-                                               : " for any velocities: it contradicts the others");
+    lag_say_constraint(pb, k, holonomic, fabs(holonomic ? w->c[k] : w->r[k]),
+                       holonomic ? ", and no small change of the coordinates meets it"
+                                 : " for any velocities: it contradicts the others");
   }
   pb->bad_t = t;
   return LAG_ERETRY;
@@ -329,6 +338,54 @@ int lag_project(lag_problem *pb, double t, double *y, double *lost)
   rc = rc ? rc : newton(pb, &w, t, y, lost, 0);
   pb->detail = rc ? pb->detail : said;
   return rc < LAG_ESINGULAR ? LAG_EMODEL : rc;
+}
+
+/* The coordinate that a projection from q to y has moved farther than a step from y0 led, or -1. What is that small beside what has its unit is
+ * none: near a singular position rounding moves that far. */
+static int leaps(const lag_problem *pb, const double *y0, const double *q, const double *y)
+{
+  const double small = 1e-6;
+
+  for (int i = 0; i < pb->nq; i++) {
+    double moved = fabs(y[i] - q[i]), led = 0;
+    if (!(moved > fabs(q[i] - y0[i]) + small * fabs(y[i]))) {
+      continue;
+    }
+    for (int j = 0; j < pb->nq; j++) {
+      led = strcmp(pb->model->q[i].unit, pb->model->q[j].unit) == 0 ? fmax(led, fabs(q[j] - y0[j])) : led;
+    }
+    if (moved > led + small * fmax(lag_size_like(pb, y, i), lag_size_like(pb, y0, i))) {
+      return i;
+    }
+  }
+  return -1;
+}
+
+int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost)
+{
+  if (!pb->model->constraints) {
+    return LAG_OK;
+  }
+  Held w = layout(pb);
+  size_t bytes = (size_t)pb->nq * sizeof(double);
+
+  memcpy(w.step, y, bytes);
+  int rc = lag_project(pb, t, y, lost), i = rc ? -1 : leaps(pb, y0, w.step, y);
+  if (i < 0) {
+    return rc;
+  }
+  double moved = fabs(y[i] - w.step[i]);
+  memcpy(y, w.step, bytes);
+  int k = lag_worst_constraint(pb, t, y, 1, NULL);
+  if (k >= 0) {
+    char words[128];
+    const lag_var *q = &pb->model->q[i];
+    snprintf(words, sizeof words, " after a step, and meeting it would move %s by %.3g %s: it jumps, or the step is too long", q->name, moved / q->factor,
+             q->unit);
+    lag_say_constraint(pb, k, 1, NAN, words);
+  }
+  pb->bad_t = t;
+  return LAG_ERETRY;
 }
 
 /* g := -A x */

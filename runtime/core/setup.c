@@ -58,9 +58,9 @@ static int alloc_scratch(lag_sim *s)
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
   size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
-  size_t held = lag_held_room(m), touching = m->ncontacts ? 2 * (size_t)m->constraints->n + nev : 0;
+  size_t held = lag_held_room(m), sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
   size_t nc = (size_t)lag_sim_ncharges(s);
-  double *x = calloc(nuu + nw + 3 * n + 13 * nev + nout + 2 + held + touching + 4 * nc + 1, sizeof *x);
+  double *x = calloc(nuu + nw + 3 * n + 13 * nev + nout + 2 + held + sized + (size_t)m->ncontacts + 4 * nc + 1, sizeof *x);
 
   s->scratch = x;
   s->fixed = calloc((size_t)m->np + 1, 1);
@@ -72,9 +72,9 @@ static int alloc_scratch(lag_sim *s)
   for (size_t i = 0; i < n; i++) {
     s->start[i] = NAN;
   }
-  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->contact_room,
+  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->contact_room, &s->contact_was,
                             &s->charge_now, &s->charge_power, &s->charge_gain};
-  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, touching, 2 * nc, nc, nc};
+  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, sized, (size_t)m->ncontacts, 2 * nc, nc, nc};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];

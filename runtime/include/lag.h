@@ -129,6 +129,9 @@ int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, 
  * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), IV.4, DOI 10.1007/3-540-30666-8: projection
  * keeps the order of a method. */
 int lag_project(lag_problem *pb, double t, double *y, double *lost);
+/* The same after a step from y0; > 0 also where it would lead farther than the step did: the constraint jumps there, or the step is too long. */
+int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost);
+
 /* The largest of |x[j]| over the coordinates (or their velocities) that have the unit of coordinate i: what rounding in it is measured
  * with, where it is small itself. */
 double lag_size_like(const lag_problem *pb, const double *x, int i);
@@ -145,8 +148,10 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
 /* Whether the residuals of y at t, c (holonomic) or r, are rounding: up to 2^10 times that of their terms. */
 int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual);
 
-/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; a residual of NaN: "is not met". */
-void lag_say_constraint(lag_problem *pb, int k, double residual, const char *words);
+/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; a residual of NaN: "is not met". holonomic: of c, else of r. */
+/* Where a constraint stands, " (line 7)", or nothing where the emitted C does not say; in text, which it returns. */
+const char *lag_line_of(const lag_constraint *c, char text[32]);
+void lag_say_constraint(lag_problem *pb, int k, int holonomic, double residual, const char *words);
 
 /* The index of the first of x[n] that is not finite, -1 when all are. */
 int lag_not_finite(int n, const double *x);

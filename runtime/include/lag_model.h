@@ -123,7 +123,7 @@ typedef struct lag_constraint {
   const char *name; /* "rod", "rod[2]", "grip.x" */
   int holonomic;    /* the model states c(q, t) = 0; else r(q, v, t) = 0, linear in v */
   const char *unit; /* of c, or of r; "" when none */
-  int line;         /* of the model's text where it stands; 0: not known */
+  int line;         /* of the model's text where it stands; 0: not known, as in C that `lagc emit` writes */
 } lag_constraint;
 
 /* The constraints of a model, n in all, of which the first nholonomic are on positions: c(q, t) = 0; or, where the model states
@@ -190,7 +190,7 @@ typedef struct lag_charges {
  * becomes negative. */
 typedef struct lag_contact {
   int input, constraint; /* places in u and in the constraints */
-  int impact, release;   /* events: the gap closes, its multiplier falls below 0 */
+  int impact, release;   /* events: the gap closes, its multiplier falls below 0. act(impact) is Newton's law for this gap alone, others as u says */
 } lag_contact;
 
 /* One of the second derivatives that lag_model.second computes: of L by two of q, v, where of LAG_QQ and LAG_VV only
@@ -283,6 +283,7 @@ typedef struct lag_model {
   const lag_linear *linear;
 
   const char *math; /* whose sin and cos it calls; NULL: not known */
+  const char *fixed; /* names of parameters that are numbers in this program, separated by spaces; NULL: none */
 } lag_model;
 
 /* An option of a method: step = 1e-3, quadrature = trapezoid (then text is set). */
@@ -310,8 +311,8 @@ typedef struct lag_scene {
   /* The state at the start of the span. */
   void (*start)(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z);
 
-  /* Of a model with constraints: given[i] != 0 where the start sets component i of [q|v|z], the others give way first; NULL: it
-   * sets none. exactly: a start that the constraints contradict is refused. */
+  /* Of a model with constraints: given[i] is 1 where the start sets component i of [q|v|z], 2 where i belongs to a rotation of
+   * which it says nothing; the others give way first, then those of 2; NULL: it sets none. exactly: a start that the constraints contradict is refused. */
   const unsigned char *given;
   int exactly;
 

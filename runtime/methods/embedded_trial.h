@@ -138,7 +138,7 @@ LAG_HERE double embedded_error(const lag_tableau *tab, int late, Embedded *w, co
 LAG_HERE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double tb, double *k)
 {
   double *y1 = w->x + EMBEDDED_Y1 * as.row;
-  int rc = pb->model->constraints ? lag_project(pb, tb, y1, w->x + EMBEDDED_COMP1 * as.row) : 0;
+  int rc = pb->model->constraints ? lag_project_step(pb, tb, w->x + EMBEDDED_Y0 * as.row, y1, w->x + EMBEDDED_COMP1 * as.row) : 0;
 
   return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
 }

@@ -161,7 +161,7 @@ static int unmet(lag_problem *pb, double t, const double *y, int holonomic)
   int k = lag_worst_constraint(pb, t, y, holonomic, NULL);
 
   if (k >= 0) {
-    lag_say_constraint(pb, k, NAN, ", and no small change meets it: it contradicts others, or depends on them here");
+    lag_say_constraint(pb, k, holonomic, NAN, ", and no small change meets it: it contradicts others, or depends on them here");
   }
   return lag_step_failed(pb, LAG_EMETHOD, t);
 }

@@ -100,7 +100,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     y1[i] = lag_sum(y[i], dt * ys[i], &comp[i]);
   }
   w->ready = 0;
-  if ((rc = lag_project(pb, tb, y1, comp)) != 0) {
+  if ((rc = lag_project_step(pb, tb, y, y1, comp)) != 0) {
     return lag_step_unmet(pb, rc, tb);
   }
   rc = lag_step_rhs(pb, tb, y1, w->x + K1 * n);

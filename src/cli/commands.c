@@ -165,6 +165,9 @@ static const OptionRow options[] = {
    "sin and cos from functions that the emitted C brings along (own, the default: faster, the same digits with every C library), "
    "or from the C library"},
   {"--with", NULL, "linear", TAKES_CHOICE, "linear", C(BUILD) | C(EMIT), OWN(with), "with the exact linearisation of the model"},
+  {"--fix", NULL, "NAME,NAME", TAKES_PARAMS, "all", SIMULATE | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT), OWN(fix),
+   "makes numbers of these parameters, with the values that the scene gives them: fewer operations, and no other value at the command line; "
+   "a family by its name, drag.c for one of an effect; all: all of them"},
   {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns prog", MODELS, OWN(dump), "what the stages of the compiler yield: ast, model, eqns, prog"},
   {"--help", "-h", NULL, TAKES_NOTHING, "", MODELS | C(COMPLETION), OWN(help), "this help"},
 };

@@ -28,6 +28,7 @@ typedef enum {
   TAKES_CHOICE,  /* hint: the choices */
   TAKES_CHOICES, /* the same, with commas between several */
   TAKES_METHOD,
+  TAKES_PARAMS,  /* names of parameters, with commas between several, or the hint */
   TAKES_EXPR,    /* of the model */
   TAKES_EXPRS,   /* the same; may be given several times: a list */
   TAKES_DEFINE   /* CONST=VALUE */

@@ -25,6 +25,7 @@ typedef struct {
   const char *math;        /* --math own|libm */
   const char *with;        /* --with linear: parts of a model that are emitted only where something needs them */
   VEC(Define) defines;
+  const char *fix;         /* --fix g,l: parameters that become numbers */
   OptionTexts rest;        /* run, plot, animate: what the simulator gets, the scene too; complete: the words */
   OptionTexts observe;     /* run --observe: expressions */
   const char *section;     /* run, plot --section */

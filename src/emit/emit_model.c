@@ -223,10 +223,12 @@ static void emit_change(const File *f, const Prog *p, const char *name, const ch
   emit_function(f, p, comment, head, own, written);
 }
 
-static void constraint_table(const IrConstraints *k, Arena *a, StrBuf *out) {
+static void constraint_table(const IrUnit *u, StrBuf *out) {
+  const IrConstraints *k = &u->constraints;
+  Arena *a = u->arena;
   sb_puts(out, "\nstatic const lag_constraint constraint_table[] = {\n");
   for (uint32_t i = 0; i < k->of.n; i++)
-    sb_printf(out, "  {%s, %d, %s, %u},\n", c_string(a, k->of.at[i].name), i < k->nholonomic, c_string(a, k->of.at[i].unit), k->of.at[i].line);
+    sb_printf(out, "  {%s, %d, %s, %u},\n", c_string(a, k->of.at[i].name), i < k->nholonomic, c_string(a, k->of.at[i].unit), u->lines ? k->of.at[i].line : 0);
   sb_puts(out, "};\n");
 }
 
@@ -245,7 +247,7 @@ static void emit_constraints(const File *f) {
     emit_change(f, k->position, "correct_positions", both ? "The least change d with A d = g, for positions or velocities; force: M d."
                                                            : "The least change d of positions with A d = g; force: M d.");
   if (!both) emit_change(f, k->velocity, "correct_velocities", "The least change d of velocities with A d = g; force: M d.");
-  constraint_table(k, f->a, f->out);
+  constraint_table(f->u, f->out);
   entries("jacobian_table", k->jacobian.at, k->jacobian.n, f->out);
   entries("inertia_table", k->mass.at, k->mass.n, f->out);
   sb_printf(f->out, "\nstatic const lag_constraints constraints = {\n  .n = %u, .nholonomic = %u, .of = constraint_table,\n", k->of.n, k->nkept);
@@ -440,6 +442,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (u->linear) sb_puts(out, "  .linear = &linear,\n");
+  if (u->fixed[0]) sb_printf(out, "  .fixed = %s,\n", c_string(u->arena, u->fixed));
   sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n};\n");
 }
 
@@ -469,6 +472,7 @@ static void emit_given(const IrUnit *u, const IrScene *s, const char *id, StrBuf
   if (!u->constraints.of.n) return;
   unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, total);
   for (uint32_t k = 0; k < s->start->stores.n; k++) given[after[s->start->stores.at[k].array] + s->start->stores.at[k].index] = 1;
+  for (uint32_t k = 0; k < s->implied.n; k++) given[s->implied.at[k]] = 2;
   sb_printf(out, "\nstatic const unsigned char given_%s[] = {", id);
   for (uint32_t i = 0; i < total; i++) sb_printf(out, "%s%d", i ? ", " : "", given[i]);
   sb_puts(out, "};\n");
@@ -506,6 +510,7 @@ static void emit_scene(const File *f, uint32_t index) {
 static void emit_head(const IrUnit *u, StrBuf *out) {
   sb_printf(out, "/* %s: %s\n", u->name, comment_text(u->arena, u->doc));
   sb_printf(out, " * Emitted by lagc; effects in use: %s.\n", u->effects[0] ? u->effects : "none");
+  if (u->fixed[0]) sb_printf(out, " * Parameters that are numbers here: %s.\n", u->fixed_values);
   sb_printf(out, " * Accelerations: %s.\n", ops_text(u->accel, u->arena));
   sb_printf(out, " * %s\n", cmath_text(u));
   sb_puts(out, " * This text may be used for any purpose without conditions (0BSD). */\n");

@@ -39,7 +39,7 @@ Prog *lower_param(const Eqns *e, uint32_t i); /* out 0: p[i], of earlier paramet
 Prog *lower_start(const Eqns *e);   /* out 0, 1, 2: q, v, z; only what a start gives */
 
 /* The unit of these equations without scenes, and a scene added to it: e must come from the same
- * file with the same effects in use and the same inputs. source: the file's path as the user gave it; libm: sin and cos
+ * file with the same effects in use, the same inputs and the same numbers in place of parameters. source: the file's path as the user gave it; libm: sin and cos
  * are the C library's. */
 IrUnit *unit_new(const Eqns *e, const char *source, int libm);
 int unit_shares(const IrUnit *a, const IrUnit *b); /* whether scenes of b fit into a */

@@ -23,6 +23,22 @@ static unsigned flags_of(const Eqns *e) {
          (e->first.n ? 128u : 0) | (e->first.n && e->first.constant && e->first.closed ? 256u : 0);
 }
 
+static void add_fixed(IrUnit *u, const Model *m) {
+  StrBuf names = strbuf(m->arena), values = strbuf(m->arena);
+  Name last = NULL;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
+    char text[32];
+    if (!p->fixed) continue;
+    num_format_double(text, num_value(p->number));
+    sb_printf(&values, "%s%s = %s", last ? ", " : "", p->name, text);
+    if (p->stem != last) sb_printf(&names, "%s%s", last ? " " : "", p->stem);
+    last = p->stem;
+  }
+  u->fixed = sb_text(&names);
+  u->fixed_values = sb_text(&values);
+}
+
 /* The contact whose impact is event i, or NULL. */
 static const Contact *impact_of(const Eqns *e, uint32_t i) {
   for (uint32_t k = 0; k < e->m->contacts.n; k++)
@@ -111,12 +127,13 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
                 .libm = libm};
   u->effects = joined(m->arena, m->effects.at, m->effects.n);
   u->all_effects = joined(m->arena, m->all_effects.at, m->all_effects.n);
+  add_fixed(u, m);
   for (uint32_t i = 0; i < m->coords.n; i++)
     vec_push(m->arena, &u->q, var_of(m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->states.n; i++)
     vec_push(m->arena, &u->z, var_of(m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->params.n; i++)
-    vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
+    if (!m->params.at[i].fixed) vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
   for (uint32_t i = 0; i < m->inputs.n; i++)
     vec_push(m->arena, &u->u, var_of(m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
   u->accel = lower_accel(e, libm);
@@ -130,7 +147,21 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
 }
 
 int unit_shares(const IrUnit *a, const IrUnit *b) {
-  return strcmp(a->effects, b->effects) == 0 && prog_same(a->inputs, b->inputs);
+  return strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
+}
+
+/* The four numbers of rotations that start where nobody said, less those that the scene gives. */
+static void add_implied(IrScene *s, const Model *m) {
+  unsigned char *said = ARENA_ARRAY(m->arena, unsigned char, m->coords.n + 1);
+  for (uint32_t i = 0; i < m->scene.starts.n; i++) {
+    const Symbol *of = expr_symbol(m->g, m->scene.starts.at[i].target);
+    if (of->kind == SYM_COORD && !m->scene.starts.at[i].implied) said[of->index] = 1;
+  }
+  for (uint32_t i = 0; i < m->scene.starts.n; i++) {
+    uint32_t first = expr_symbol(m->g, m->scene.starts.at[i].target)->index;
+    for (uint32_t k = first; m->scene.starts.at[i].implied && k < first + 4; k++)
+      if (!said[k]) vec_push(m->arena, &s->implied, k);
+  }
 }
 
 static void add_exact(IrScene *s, const Eqns *e) {
@@ -176,9 +207,11 @@ void unit_add_scene(IrUnit *u, const Eqns *e) {
   IrScene s = {.exactly = sc->exactly.end != 0, .name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .t1_digits = sc->t1_digits, .has_span = sc->has_span, .method = sc->method,
                .tolerance = sc->tolerance, .every = sc->every};
   const Prog **params = ARENA_ARRAY(m->arena, const Prog *, m->params.n + 1);
-  for (uint32_t i = 0; i < m->params.n; i++) params[i] = lower_param(e, i);
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (!m->params.at[i].fixed) params[m->params.at[i].place] = lower_param(e, i);
   s.params = params;
   s.start = lower_start(e);
+  add_implied(&s, m);
   s.observe = lower_outputs(e);
   for (uint32_t i = 0; i < sc->options.n; i++) {
     IrOption o = {sc->options.at[i].name, sc->options.at[i].text, sc->options.at[i].value};

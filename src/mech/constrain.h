@@ -9,9 +9,9 @@
 int constrain(Eqns *e);
 
 /* Whether their forces do no work on any motion that obeys them: q'.A^T lambda = -lambda.b is zero, b = 0. */
+int constraints_do_no_work(const Eqns *e);
+
 /* For programs that have no place for what constraints on velocities keep, as emitted headers: these are then held as what they say. */
 void constraints_keep_none(Eqns *e);
-
-int constraints_do_no_work(const Eqns *e);
 
 #endif

@@ -2,33 +2,48 @@
 
 #include <math.h>
 
+#include "base/dense.h"
 #include "mech/frobenius.h"
+#include "mech/start.h"
 #include "sym/print.h"
 
-/* The scene's start: parameters at their values, what it does not give at 0. */
-static long double *start_of(const Eqns *e) {
+/* "; it is off by 1e-3 [m]" */
+static const char *off_by(const Eqns *e, const StartResult *r) {
   const Model *m = e->m;
-  long double *symbols = ARENA_ARRAY(m->arena, long double, expr_symbol_count(e->g) + 1);
-  symbols[m->pi] = 3.14159265358979323846264338327950288L;
-  symbols[m->time] = (long double)m->scene.t0;
-  for (uint32_t i = 0; i < m->params.n; i++)
-    if (m->params.at[i].value) expr_eval(e->g, &m->params.at[i].value, 1, symbols, &symbols[m->params.at[i].sym]);
-  for (uint32_t i = 0; i < m->scene.starts.n; i++) {
-    const Start *s = &m->scene.starts.at[i];
-    expr_eval(e->g, &s->value, 1, symbols, &symbols[s->target]);
-  }
-  return symbols;
+  Dim dim = e->constraints.of[r->constraint]->dim;
+  int rate = r->velocities && r->constraint < e->constraints.nholonomic;
+  const char *unit = dim_text(m->dims, dim);
+  if (!isfinite(r->residual)) return "";
+  return arena_printf(m->arena, "; it is off by %.3Lg%s%s%s%s", fabsl(r->residual), *unit == '1' ? "" : " [", *unit == '1' ? "" : unit,
+                      *unit == '1' ? "" : "]", rate ? " in its rate" : r->velocities ? " in its velocities" : "");
 }
 
-static void report_infeasible(const Eqns *e, StateSolver *solver, const long double *symbols) {
+static void report(const Eqns *e, const StartResult *r) {
   const Model *m = e->m;
-  long double residual;
-  uint32_t worst = states_worst(solver, symbols, &residual);
-  const Constraint *k = e->constraints.of[worst];
-  const char *unit = dim_text(m->dims, k->dim);
-  diag_error(m->diags, k->span, "scene %s: no state near its start obeys the constraint `%s`; it is off by %.3Lg%s%s%s", m->scene.name, k->name,
-             fabsl(residual), *unit == '1' ? "" : " [", *unit == '1' ? "" : unit, *unit == '1' ? "" : "]");
-  diag_help(m->diags, "start nearer to where it holds; at a place where its derivatives vanish no direction leads there");
+  const Constraint *k = e->constraints.of[r->constraint];
+  const char *scene = m->scene.name, *off = off_by(e, r);
+  switch (r->kind) {
+    case START_FOUND: return;
+    case START_NO_VALUE:
+      diag_error(m->diags, k->span, "scene %s: the constraint `%s` has no value at the start", scene, k->name);
+      diag_help(m->diags, "start where it has one");
+      return;
+    case START_BROKEN:
+      diag_error(m->diags, k->span, "scene %s: the start contradicts the constraint `%s`%s", scene, k->name, off);
+      diag_help(m->diags, "without `exactly` the nearest start is taken");
+      return;
+    case START_FLAT:
+      diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` vanish where it holds, so that no force can hold it", scene, k->name);
+      diag_help(m->diags, "write it so that they do not: x = 0 in place of x^2 = 0");
+      return;
+    case START_STEEP:
+      diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` have no value where it holds", scene, k->name);
+      diag_help(m->diags, "write it so that they have: x = 1 in place of sqrt(x - 1) = 0");
+      return;
+    case START_NONE:
+      diag_error(m->diags, k->span, "scene %s: no state near its start obeys the constraint `%s`%s", scene, k->name, off);
+      diag_help(m->diags, "start nearer to where it holds; at a place where its derivatives vanish no direction leads there");
+  }
 }
 
 /* Whether the rank stays as it is without constraint k: then its reaction is not unique. */
@@ -51,15 +66,23 @@ static int is_contact(const Eqns *e, const Constraint *k) {
   return 0;
 }
 
-static void show_one(const Eqns *e, StateSolver *s, const unsigned char *counts, uint32_t k, uint32_t rank, StrBuf *out) {
+static int has_slope(const Eqns *e, StateSolver *s, const long double *symbols, uint32_t k) {
+  const Entries *A = &e->constraints.A;
+  StateValues v = states_at(s, symbols);
+  for (uint32_t i = 0; i < A->n; i++)
+    if (A->at[i].row == k && fabsl(v.A[i]) > 0) return 1;
+  return 0;
+}
+
+static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts, uint32_t k, uint32_t rank, StrBuf *out) {
   const Constraint *c = e->constraints.of[k];
   Place place = source_place(e->m->ast->sources, c->span.begin);
   if (is_contact(e, c)) {
     sb_printf(out, "  contact %s (line %u): a constraint while it is closed\n", c->name, place.line);
     return;
   }
-  sb_printf(out, "  constraint %s (line %u): %s", c->name, place.line, kind_of(e, k));
-  if (!counts[k]) sb_puts(out, "; follows from those before it");
+  sb_printf(out, "  constraint %s (line %u): %s%s", c->name, place.line, kind_of(e, k), c->inside ? ", the unit length of a rotation" : "");
+  if (!counts[k]) sb_puts(out, has_slope(e, s, symbols, k) ? "; follows from those before it" : "; its derivatives vanish at the start");
   if (rank < e->constraints.n - e->m->contacts.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the least one is taken");
   sb_putc(out, '\n');
 }
@@ -78,38 +101,168 @@ static void show_integrability(const Eqns *e, StateSolver *s, StrBuf *out) {
   }
 }
 
-/* From the start, or from places beside it, where it is in the middle between two ways out. */
-static int obey_from(const Eqns *e, StateSolver *s, long double *symbols) {
-  static const long double beside[] = {0, 1e-3L, 0.03L, 0.3L, 1};
-  uint32_t n = expr_symbol_count(e->g) + 1;
-  long double *tried = ARENA_ARRAY(e->m->arena, long double, n);
-  for (size_t k = 0; k < sizeof beside / sizeof *beside; k++) {
-    for (uint32_t i = 0; i < n; i++) tried[i] = symbols[i];
-    for (uint32_t i = 0; i < e->n; i++) tried[e->m->coords.at[i].q] += beside[k] * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
-    if (!states_obey(s, tried)) continue;
-    for (uint32_t i = 0; i < n; i++) symbols[i] = tried[i];
-    return 1;
+/* --- starts from which there is no motion --- */
+
+/* The first constraint that follows from those before it, and demands an acceleration that they exclude; UINT32_MAX: none. symbols: on the
+ * constraints. Demands below what moves by a billionth of its size in the time of the scene are rounding. */
+static uint32_t contradicting(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts) {
+  const Constraints *k = &e->constraints;
+  const Scene *scene = &e->m->scene;
+  Arena *arena = e->m->arena;
+  uint32_t n = e->n, w = n + 1, rank = 0, at = 0;
+  StateValues v = states_at(s, symbols);
+  long double *rows = ARENA_ARRAY(arena, long double, (size_t)(k->n + 1) * w), *size = ARENA_ARRAY(arena, long double, k->n), most = 0;
+  long double span = scene->has_span && scene->t1 != scene->t0 ? fabsl((long double)scene->t1 - scene->t0) : 1;
+  for (uint32_t i = 0; i < k->A.n; i++) size[k->A.at[i].row] += v.A[i] * v.A[i];
+  for (uint32_t i = 0; i < k->n; i++) {
+    size[i] = sqrtl(size[i]);
+    if (size[i] > 0) most = fmaxl(most, fabsl(v.demand[i]) / size[i]);
   }
-  return states_obey(s, symbols);
+  long double far = 0;
+  for (uint32_t i = 0; i < n; i++) far = fmaxl(far, fabsl(symbols[e->m->coords.at[i].q]));
+  if (!(most > 1e-9L * (far > 0 ? far : 1) / (span * span))) return UINT32_MAX;
+  for (uint32_t i = 0; i < k->n; i++) {
+    long double *row = rows + (size_t)rank * w;
+    for (uint32_t j = 0; j < w; j++) row[j] = 0;
+    for (; at < k->A.n && k->A.at[at].row == i; at++) row[k->A.at[at].col] = size[i] > 0 ? v.A[at] / size[i] : 0;
+    if (!(size[i] > 0)) continue;
+    row[n] = v.demand[i] / size[i] / most;
+    uint32_t more = dense_reduce(w, row, rows, rank) > 1e-5L;
+    if (more && !counts[i]) return i;
+    rank += more;
+  }
+  return UINT32_MAX;
+}
+
+static int report_contradiction(const Eqns *e, uint32_t k, const char *why) {
+  const Model *m = e->m;
+  diag_error(m->diags, e->constraints.of[k]->span, "scene %s: the constraint `%s` contradicts those before it: %s", m->scene.name,
+             e->constraints.of[k]->name, why);
+  diag_help(m->diags, "leave one of them out, or make them agree");
+  return 0;
+}
+
+/* Whether constraints that follow from each other at the start go on to agree: in what they demand there, and a little later. */
+static int check_agreement(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts) {
+  const Model *m = e->m;
+  uint32_t n = expr_symbol_count(e->g) + 1, k = contradicting(e, s, symbols, counts);
+  if (k != UINT32_MAX) return report_contradiction(e, k, "at the start it follows from them, and demands another acceleration");
+  long double *later = ARENA_ARRAY(m->arena, long double, n);
+  for (uint32_t i = 0; i < n; i++) later[i] = symbols[i];
+  later[m->time] += (m->scene.has_span ? (long double)m->scene.t1 - m->scene.t0 : 1) / 1024;
+  StartResult r = start_find(e, s, later);
+  if (r.kind == START_NONE || r.kind == START_BROKEN)
+    return report_contradiction(e, r.constraint, arena_printf(m->arena, "at t = %.3Lg s no state obeys them%s", later[m->time], off_by(e, &r)));
+  return 1;
+}
+
+/* M in coordinates that scale[] makes alike, on a basis of the directions that constraints allow: a[free free]. */
+static uint32_t reduced_mass(const Eqns *e, const StateValues *v, long double *scale, long double *basis, long double *a) {
+  const Entries *A = &e->constraints.A, *M = &e->mass;
+  uint32_t n = e->n, rank = 0, at = 0;
+  for (uint32_t i = 0; i < n; i++) scale[i] = 1;
+  for (uint32_t i = 0; i < M->n; i++)
+    if (M->at[i].row == M->at[i].col && v->mass[i] > 0) scale[M->at[i].row] = 1 / sqrtl(v->mass[i]);
+  for (uint32_t k = 0; k < e->constraints.n + n; k++) { /* constraints, then unit vectors: what is left of these */
+    long double *row = basis + (size_t)rank * n;
+    for (uint32_t j = 0; j < n; j++) row[j] = k == e->constraints.n + j;
+    for (; at < A->n && A->at[at].row == k; at++) row[A->at[at].col] = v->A[at] * scale[A->at[at].col];
+    if (dense_reduce(n, row, basis, rank) > (k < e->constraints.n ? 6e-6L : 1e-9L)) rank++;
+    if (k + 1 == e->constraints.n) scale[n] = rank;
+    if (rank == n) break;
+  }
+  uint32_t first = (uint32_t)scale[n], free = n - first;
+  for (uint32_t i = 0; i < free; i++)
+    for (uint32_t j = 0; j < free; j++) {
+      const long double *x = basis + (size_t)(first + i) * n, *y = basis + (size_t)(first + j) * n;
+      long double sum = 0;
+      for (uint32_t k = 0; k < M->n; k++) {
+        uint32_t r = M->at[k].row, c = M->at[k].col;
+        long double m = v->mass[k] * scale[r] * scale[c];
+        sum += x[r] * m * y[c] + (r != c ? x[c] * m * y[r] : 0);
+      }
+      a[i * free + j] = sum;
+    }
+  return first;
+}
+
+/* Whether each direction that constraints allow has inertia at the start. */
+static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbols) {
+  const Model *m = e->m;
+  uint32_t n = e->n;
+  if (!e->mass_known || e->definite_mass) return 1;
+  long double *scale = ARENA_ARRAY(m->arena, long double, n + 1), *basis = ARENA_ARRAY(m->arena, long double, (size_t)(n + 1) * n);
+  long double *a = ARENA_ARRAY(m->arena, long double, (size_t)n * n + 1), *null = ARENA_ARRAY(m->arena, long double, n + 1);
+  uint32_t *column = ARENA_ARRAY(m->arena, uint32_t, n + 1);
+  StateValues v = states_at(s, symbols);
+  uint32_t first = reduced_mass(e, &v, scale, basis, a), free = n - first, most = 0;
+  long double largest = 0;
+  for (uint32_t i = 0; i < free * free; i++) largest = fmaxl(largest, fabsl(a[i]));
+  if (free == 0 || (largest > 0 && dense_solve(free, a, NULL, 1e-12L, column, null) == free)) return 1;
+  if (!(largest > 0)) null[0] = 1;
+  for (uint32_t j = 0; j < n; j++) { /* the direction, in coordinates; scale[] is free now */
+    long double x = 0;
+    for (uint32_t i = 0; i < free; i++) x += null[i] * basis[(size_t)(first + i) * n + j];
+    scale[j] = fabsl(x);
+    if (scale[j] > scale[most] * (1 + 1e-9L)) most = j;
+  }
+  diag_error(m->diags, m->coords.at[most].span, "scene %s: nothing says how `%s` moves: it has no inertia at the start, and no constraint moves it", m->scene.name,
+             m->coords.at[most].name);
+  diag_help(m->diags, "give it a mass, or a constraint that depends on it");
+  return 0;
+}
+
+/* Whether no contact is beyond closed at the start, and restitutions are between 0 and 1. */
+static int check_contacts(const Eqns *e, const long double *symbols) {
+  const Model *m = e->m;
+  uint32_t n = m->contacts.n;
+  Expr *roots = ARENA_ARRAY(m->arena, Expr, 2 * (size_t)n + 1);
+  long double *value = ARENA_ARRAY(m->arena, long double, 2 * (size_t)n + 1), far = 0;
+  for (uint32_t i = 0; i < n; i++) roots[2 * i] = m->contacts.at[i].gap, roots[2 * i + 1] = m->contacts.at[i].restitution;
+  expr_eval(e->g, roots, 2 * n, symbols, value);
+  for (uint32_t i = 0; i < e->n; i++) far = fmaxl(far, fabsl(symbols[m->coords.at[i].q]));
+  for (uint32_t i = 0; i < n; i++) {
+    const Constraint *k = &m->constraints.at[m->contacts.at[i].constraint];
+    long double gap = value[2 * i], back = value[2 * i + 1];
+    const char *wrong = gap < -1e-12L * (far > 1 ? far : 1) ? arena_printf(m->arena, "the start is inside the contact `%s`: its gap is %.3Lg", k->name, gap)
+                        : isnan(gap) ? arena_printf(m->arena, "the contact `%s` has no value at the start", k->name)
+                        : !(back >= 0 && back <= 1) ? arena_printf(m->arena, "the contact `%s` has a restitution of %.3Lg: it is between 0 and 1", k->name, back)
+                                                    : NULL;
+    if (!wrong) continue;
+    diag_error(m->diags, k->span, "scene %s: %s", m->scene.name, wrong);
+    return 0;
+  }
+  return 1;
+}
+
+static int says_start(const Model *m) {
+  for (uint32_t i = 0; i < m->scene.starts.n; i++)
+    if (!m->scene.starts.at[i].implied) return 1;
+  return 0;
 }
 
 int freedom_show(const Eqns *e, StrBuf *out) {
   const Constraints *all = &e->constraints;
   if (!all->n) return 1;
   StateSolver *s = states_new(e);
-  long double *symbols = start_of(e);
-  if (!obey_from(e, s, symbols)) {
-    if (e->m->scene.starts.n) report_infeasible(e, s, symbols);
+  long double *symbols = start_asked(e);
+  StartResult start = start_find(e, s, symbols);
+  if (start.kind != START_FOUND) {
+    if (says_start(e->m)) report(e, &start);
     else sb_printf(out, "scene %s: %u constraint%s; without a start nothing is said of their rank\n", e->m->scene.name, all->n, plural(all->n));
-    return !e->m->scene.starts.n;
+    return !says_start(e->m);
   }
+  states_at(s, symbols);
   unsigned char *counts = ARENA_ARRAY(e->m->arena, unsigned char, all->n);
   uint32_t rank = states_rank(s, UINT32_MAX, counts), free = e->n - rank;
   uint32_t held = all->n - e->m->contacts.n;
+  if (rank < held && !check_agreement(e, s, symbols, counts)) return 0;
+  if (!check_inertia(e, s, symbols) || (e->m->scene.starts.n && !check_contacts(e, symbols))) return 0;
+  states_at(s, symbols);
   sb_printf(out, "scene %s: %u degree%s of freedom", e->m->scene.name, free, plural(free));
   if (held) sb_printf(out, "; %u constraint%s, of rank %u at the start", held, plural(held), rank);
   sb_putc(out, '\n');
-  for (uint32_t k = 0; k < all->n; k++) show_one(e, s, counts, k, rank, out);
+  for (uint32_t k = 0; k < all->n; k++) show_one(e, s, symbols, counts, k, rank, out);
   show_integrability(e, s, out);
   return 1;
 }

@@ -44,6 +44,12 @@ static const long double *run(StateSolver *s, const long double *symbols) {
   return s->out;
 }
 
+StateValues states_at(StateSolver *s, const long double *symbols) {
+  const Constraints *k = &s->e->constraints;
+  const long double *out = run(s, symbols), *A = out + s->first_entry, *c = A + k->A.n, *r = c + k->nholonomic;
+  return (StateValues){.mass = out, .A = A, .c = c, .r = r, .demand = r + k->n};
+}
+
 /* The system [D -A^T; A 0] into a[(n + m)^2], D = M or 1. */
 static void fill(StateSolver *s, int with_mass) {
   const Eqns *e = s->e;
@@ -87,32 +93,18 @@ int states_obey(StateSolver *s, long double *symbols) {
   const Constraints *k = &s->e->constraints;
   const Model *m = s->e->m;
   for (int i = 0; i < MOST; i++) {
-    const long double *c = run(s, symbols) + s->first_entry + k->A.n;
+    const long double *c = states_at(s, symbols).c;
     if (largest(c, k->nholonomic) < 1e-16L) break;
     if (i + 1 == MOST || !change(s, c, k->nholonomic)) return 0;
     for (uint32_t j = 0; j < s->e->n; j++) symbols[m->coords.at[j].q] += s->b[j];
   }
-  if (!change(s, run(s, symbols) + s->first_entry + k->A.n + k->nholonomic, k->n)) return 0;
+  if (!change(s, states_at(s, symbols).r, k->n)) return 0;
   for (uint32_t j = 0; j < s->e->n; j++) symbols[m->coords.at[j].v] += s->b[j];
-  return largest(run(s, symbols) + s->first_entry + k->A.n + k->nholonomic, k->n) < 1e-12L;
-}
-
-uint32_t states_worst(StateSolver *s, const long double *symbols, long double *residual) {
-  const Constraints *k = &s->e->constraints;
-  const long double *c = run(s, symbols) + s->first_entry + k->A.n, *r = c + k->nholonomic;
-  uint32_t worst = 0;
-  *residual = 0;
-  for (uint32_t i = 0; i < k->n; i++) {
-    long double x = i < k->nholonomic ? c[i] : r[i];
-    if (fabsl(x) <= fabsl(*residual) && !isnan(x)) continue;
-    *residual = x;
-    worst = i;
-  }
-  return worst;
+  return largest(states_at(s, symbols).r, k->n) < 1e-12L;
 }
 
 uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts) {
-  const long double independent = 1e-10L; /* states obey constraints to 1e-16 */
+  const long double independent = 6e-6L; /* a double's eps^(1/3), as in runtime/core/consistent.c: singular places are found to eps^(1/2) */
   const Eqns *e = s->e;
   const Entries *A = &e->constraints.A;
   uint32_t n = e->n, rank = 0, at = 0;
@@ -134,8 +126,7 @@ int states_complete(StateSolver *s, long double *symbols) {
   for (uint32_t i = 0; i < k->n; i++) symbols[k->of[i]->multiplier] = 0;
   for (uint32_t i = 0; i < m->contacts.n; i++) symbols[m->contacts.at[i].closed] = 0;
   if (k->n && !states_obey(s, symbols)) return 0;
-  run(s, symbols);
-  const long double *f = s->out + e->mass.n, *flow = f + n, *demand = s->out + s->first_entry + k->A.n + k->nholonomic + k->n;
+  const long double *demand = states_at(s, symbols).demand, *f = s->out + e->mass.n, *flow = f + n;
   fill(s, 1);
   for (uint32_t i = 0; i < n + k->n; i++) s->b[i] = i < n ? f[i] : demand[i - n];
   rank = dense_solve(n + k->n, s->a, s->b, k->n ? 1e-13L : 0, s->column, NULL);

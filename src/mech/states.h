@@ -10,6 +10,12 @@ typedef struct StateSolver StateSolver;
 
 StateSolver *states_new(const Eqns *e);
 
+/* Values at a state: the entries of M and A as Eqns lists them; c, r, and what A q'' must be. They stand until another state is looked at. */
+typedef struct {
+  const long double *mass, *A, *c, *r, *demand;
+} StateValues;
+StateValues states_at(StateSolver *s, const long double *symbols);
+
 /* Fills in q'', z', the energy and multipliers; with constraints it first moves the state to the nearest one that obeys them. 0 where M
  * is singular, there is no such state, or a value is not finite. */
 int states_complete(StateSolver *s, long double *symbols);
@@ -17,10 +23,7 @@ int states_complete(StateSolver *s, long double *symbols);
 /* Moves the state to the nearest one that obeys the constraints, by Newton's method: positions, then velocities. 0: it found none. */
 int states_obey(StateSolver *s, long double *symbols);
 
-/* The constraint that is broken most, and by how much. */
-uint32_t states_worst(StateSolver *s, const long double *symbols, long double *residual);
-
-/* The rank of the constraints, less one of them (UINT32_MAX: of all), where states_obey was; counts[k]: constraint k is independent of
+/* The rank of the constraints, less one of them (UINT32_MAX: of all), at the state that was looked at last; counts[k]: constraint k is independent of
  * those before it. */
 uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts);
 

@@ -39,6 +39,10 @@ typedef struct {
   Expr value;  /* of pi and earlier parameters */
   Num constant; /* the value, where it is a number at once (has_constant) */
   int has_constant;
+  Name stem;   /* of a member of a family: drag.w */
+  int fixed;   /* ModelChoice.fix: a number in programs, with the value that the scene gives it, */
+  Num number;  /* this one */
+  uint32_t place; /* in programs, among those that are not fixed */
 } Param;
 
 typedef struct {
@@ -87,6 +91,7 @@ typedef struct {
   Expr c;
   Dim dim;
   SymId multiplier;
+  int inside; /* it belongs to a rotation: nobody wrote it */
 } Constraint;
 
 /* A gap that cannot become negative. While it is closed it is a constraint: c = closed*gap. */
@@ -127,6 +132,7 @@ typedef struct {
 typedef struct {
   SymId target;
   Expr value; /* of parameters */
+  int implied; /* nobody said it: constraints may move it */
 } Start;
 
 /* What a coordinate, a velocity or a state should be. */
@@ -192,9 +198,11 @@ typedef struct {
   VEC(State) states;
   int first_order;         /* L is linear in all velocities: there are no coords, coordinates are states, velocities their rates */
   VEC(Param) params;
+  uint32_t nfixed;         /* how many of them are numbers */
   VEC(Input) inputs;
   Expr kinetic, potential; /* 0 when L was given as a whole */
   Expr lagrangian;         /* 0 when the text declares no coordinates */
+  Expr across;             /* or 0: quadratic in rates that rotations never have, added to L for a regular mass matrix */
   Span lagrangian_span;
   Expr dissipation;        /* sum of Rayleigh functions, or 0 */
   VEC(Force) forces;
@@ -238,7 +246,7 @@ typedef struct {
   Name name;
 } Asked;
 
-/* What the command line gives an input: its name, and a formula or a text that names a table. */
+/* What the command line gives an input: its name, and a formula or a text that names a table; or a rotation, omega(R), at the start. */
 typedef struct {
   AstId what, value;
 } Given;
@@ -262,6 +270,8 @@ typedef struct {
   const Given *given; /* values that win over the scene's */
   uint32_t ngiven;
   Section section;
+  const char *fix; /* parameters that become numbers, with the values that the scene gives them: "g,drag.c", "all"; NULL: none */
+  int unfixed;     /* none, whatever the command line says */
 } ModelChoice;
 
 /* The names that `coord` declares, in order, whatever the order of L. */

@@ -17,6 +17,7 @@ const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const 
 }
 
 const char *shape_text(const Builder *b, uint32_t n) {
+  if (n == ROTATION) return "a rotation";
   return n ? arena_printf(b->arena, "a vector of %u components", n) : "a number";
 }
 
@@ -226,7 +227,8 @@ static Value indexed_value(Eval *ev, const Entity *e, const AstExpr *x, int mome
   if (e->kind == ENT_NONE) return FAILED;
   if (!e->ndims) {
     diag_error(b->diags, x->span, "`%s` is %s without index", e->name, ent_kind_text(e->kind));
-    if (e->parts) diag_help(b->diags, "the components of a vector are `%s.x`, `%s.y`", e->name, e->name);
+    if (e->parts == ROTATION) diag_help(b->diags, "the components of a rotation are `%s.w`, `%s.x`, `%s.y`, `%s.z`", e->name, e->name, e->name, e->name);
+    else if (e->parts) diag_help(b->diags, "the components of a vector are `%s.x`, `%s.y`", e->name, e->name);
     else diag_help(b->diags, "a family is declared with its size: `%s[3]`; a unit stands apart: `%s [%s]`", e->name, e->name,
                    ast_text(b, x->args));
     return FAILED;
@@ -270,10 +272,15 @@ Value index_value(Eval *ev, const AstExpr *x) {
 static Value component(Eval *ev, const AstExpr *x, Value v) {
   Builder *b = ev->b;
   if (!v.e) return FAILED;
-  uint32_t k = strcmp(x->name, "x") == 0 ? 0 : strcmp(x->name, "y") == 0 ? 1 : strcmp(x->name, "z") == 0 ? 2 : 3;
-  if (k < v.n) return a_value(v.at[k], v.dim, v.bare);
+  uint32_t k = 0;
+  while (k < v.n && !(x->name[0] == part_letter(v.n, k) && !x->name[1])) k++;
+  if (k < v.n) {
+    Value one = a_value(v.at[k], v.dim, v.bare);
+    one.unit = v.unit;
+    return one;
+  }
   diag_error(b->diags, x->span, "`%s` has no component `%s`", ast_short(b, x->a), x->name);
-  if (v.n) diag_help(b->diags, "it is %s: %s", shape_text(b, v.n), v.n == 2 ? "`.x`, `.y`" : "`.x`, `.y`, `.z`");
+  if (v.n) diag_help(b->diags, "it is %s: %s", shape_text(b, v.n), v.n == 2 ? "`.x`, `.y`" : v.n == 3 ? "`.x`, `.y`, `.z`" : "`.w`, `.x`, `.y`, `.z`");
   else diag_help(b->diags, "it is a number; vectors are declared `coord r: vec3 [m]`, or written `(a, b, c)`");
   return FAILED;
 }
@@ -304,6 +311,7 @@ Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t pr
   if (member->kind == ENT_LET) resolve_let(b, member->index);
   if (member->kind == ENT_OBSERVE) resolve_observe(b, member->index);
   Value v = entity_value(&ev, member, at, span);
+  if (v.n == ROTATION && primes) return refuse_rotation(b, span, e->name, TURN_PRIME);
   for (; v.e && primes; primes--) v = time_derivative(b, v, span, where);
   return v;
 }

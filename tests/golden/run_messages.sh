@@ -6,6 +6,7 @@
 # Messages that are shown by other suites, by a part of their text.
 elsewhere='internal error
 -D %s
+--fix
 this does not belong in a scene
 nothing that a run sets
 a section is a surface in the space of states

@@ -1,0 +1,103 @@
+/* The criss-cross method. Holds: basic = q + T nonbasic, where row i is of w_i, or of z_i where in[i]; pivots are principal, so pairs stay
+ * together. */
+#include "core/complement.h"
+
+#include <math.h>
+
+/* Parts of what is there that are rounding: of a pivot, whose row is then one that follows from others, and of a right-hand side. */
+const double lag_no_pivot = 1e-10;
+static const double no_value = 1e-13;
+
+/* Row i becomes that of the other one of its pair. */
+static void pivot(int n, double *T, double *q, int r, int s)
+{
+  double at = T[r * n + s];
+
+  for (int j = 0; j < n; j++) { /* x_s = (basic_r - q_r - others)/at */
+    T[r * n + j] = j == s ? 1 / at : -T[r * n + j] / at;
+  }
+  q[r] = -q[r] / at;
+  for (int i = 0; i < n; i++) {
+    double factor = T[i * n + s];
+    for (int j = 0; j < n && i != r; j++) {
+      T[i * n + j] = j == s ? factor * T[r * n + s] : T[i * n + j] + factor * T[r * n + j];
+    }
+    q[i] += i == r ? 0 : factor * q[r];
+  }
+}
+
+static void swap(double *a, double *b)
+{
+  double was = *a;
+
+  *a = *b;
+  *b = was;
+}
+
+/* Rows and columns r and s, after pivots that have brought each to the other's place. */
+static void exchange(int n, double *T, double *q, int r, int s)
+{
+  swap(&q[r], &q[s]);
+  for (int j = 0; j < n; j++) {
+    swap(&T[r * n + j], &T[s * n + j]);
+  }
+  for (int i = 0; i < n; i++) {
+    swap(&T[i * n + r], &T[i * n + s]);
+  }
+}
+
+/* Units in which all contacts are alike. */
+static void balance(int n, double *M, double *q, double *scale)
+{
+  for (int i = 0; i < n; i++) {
+    scale[i] = M[i * n + i] > 0 ? 1 / sqrt(M[i * n + i]) : 1;
+  }
+  for (int i = 0; i < n; i++) {
+    q[i] *= scale[i];
+    for (int j = 0; j < n; j++) {
+      M[i * n + j] *= scale[i] * scale[j];
+    }
+  }
+}
+
+int lag_complement(int n, double *M, double *q, double *scale, unsigned char *in, int *row)
+{
+  double most = 0;
+
+  balance(n, M, q, scale);
+  for (int i = 0; i < n; i++) {
+    in[i] = 0;
+    most = fmax(most, fabs(q[i]));
+  }
+  for (int turn = 0; turn < 1000 + 100 * n; turn++) {
+    int r = 0, s = 0;
+    while (r < n && !(q[r] < -no_value * most)) {
+      r++;
+    }
+    if (r == n) {
+      for (int i = 0; i < n; i++) {
+        q[i] = fmax(q[i], 0) * (in[i] ? scale[i] : 1 / scale[i]);
+      }
+      return 1;
+    }
+    if (M[r * n + r] > lag_no_pivot) {
+      pivot(n, M, q, r, r);
+      in[r] ^= 1;
+      continue;
+    }
+    while (s < n && !(M[r * n + s] > lag_no_pivot)) {
+      s++;
+    }
+    *row = r;
+    if (s == n) {
+      return 0;
+    }
+    pivot(n, M, q, r, s);
+    pivot(n, M, q, s, r);
+    exchange(n, M, q, r, s);
+    in[r] ^= 1;
+    in[s] ^= 1;
+  }
+  *row = -1;
+  return 0;
+}

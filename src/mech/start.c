@@ -1,0 +1,360 @@
+/* Positions: Gauss-Newton steps, damped until the residual falls (P. Deuflhard, Newton Methods for Nonlinear Problems (2004), 4.3, DOI
+ * 10.1007/978-3-642-23899-4), from where the scene starts or from places beside; then Newton-like steps along the constraints. Velocities:
+ * one linear problem. Two programs, this and runtime/core/consistent.c, since compiler and runtime share no code; tests compare them. */
+#include "mech/start.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/dense.h"
+
+enum { MOST_STEPS = 100, MOST_HALVINGS = 30 };
+
+typedef struct {
+  const Eqns *e;
+  StateSolver *solver;
+  StateValues at;                 /* at symbols */
+  int velocities;                 /* the level at hand */
+  uint32_t n, rows;               /* coordinates; constraints of the level */
+  uint32_t *free, nfree;
+  const unsigned char *given;     /* by symbol: when it gives way */
+  long double *symbols, *asked, *best, *from; /* by symbol */
+  long double *size, *terms, *a, *b, *d;
+  unsigned char *says;            /* by constraint: it has terms */
+  uint32_t *column;
+  uint32_t nsymbols;
+} Finder;
+
+/* What gives way to constraints, in this order: components that nobody set, rotations of which nothing is said, all. */
+enum { UNSET, ROTATIONS, ALL };
+
+static SymId component(const Finder *f, uint32_t i) { return f->velocities ? f->e->m->coords.at[i].v : f->e->m->coords.at[i].q; }
+
+static void look(Finder *f) { f->at = states_at(f->solver, f->symbols); }
+
+/* As a double has it. */
+static long double residual(const Finder *f, uint32_t k) {
+  long double x = f->velocities ? f->at.r[k] : f->at.c[k];
+  return fabsl(x) > DBL_MAX ? INFINITY : x;
+}
+
+static void copy(const Finder *f, long double *to, const long double *from) { memcpy(to, from, f->nsymbols * sizeof *to); }
+
+/* --- what is large --- */
+
+/* The largest of what has the unit of coordinate i. */
+static long double like(const Finder *f, const long double *symbols, int velocities, uint32_t i) {
+  const Model *m = f->e->m;
+  long double most = 0;
+  for (uint32_t j = 0; j < f->n; j++)
+    if (strcmp(m->coords.at[i].unit.text, m->coords.at[j].unit.text) == 0)
+      most = fmaxl(most, fabsl(symbols[velocities ? m->coords.at[j].v : m->coords.at[j].q]));
+  return most;
+}
+
+static long double reach_of(const Finder *f, uint32_t i) {
+  const Model *m = f->e->m;
+  const Coord *q = &m->coords.at[i];
+  double span = m->scene.has_span ? fabs(m->scene.t1 - m->scene.t0) : 0;
+  long double most = like(f, f->symbols, f->velocities, i);
+  if (f->velocities) most = fmaxl(most, like(f, f->symbols, 0, i) / (span > 0 ? span : 1));
+  int is_angle = q->periodic || !*q->unit.text || strcmp(q->unit.text, "rad") == 0 || strcmp(q->unit.text, "deg") == 0;
+  return most <= 0 || (most < 1 && is_angle) ? 1 : most;
+}
+
+/* size[k] := how large the terms are of which constraint k is the sum. */
+static void find_terms(Finder *f, long double *size) {
+  const Entries *A = &f->e->constraints.A;
+  look(f);
+  for (uint32_t k = 0; k < f->rows; k++) size[k] = 0;
+  for (uint32_t i = 0; i < A->n; i++)
+    if (A->at[i].row < f->rows) size[A->at[i].row] += fabsl(f->at.A[i] * f->symbols[component(f, A->at[i].col)]);
+  long double *was = f->from;
+  copy(f, was, f->symbols);
+  for (uint32_t i = 0; i < f->n; i++) f->d[i] = reach_of(f, i) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
+  for (uint32_t i = 0; i < f->n; i++) f->symbols[component(f, i)] += f->d[i];
+  look(f);
+  for (uint32_t k = 0; k < f->rows; k++) size[k] = fmaxl(size[k], fabsl(residual(f, k)));
+  copy(f, f->symbols, was);
+  look(f);
+}
+
+/* The constraint that is off by most of its terms' rounding, and by how many times that. */
+static uint32_t worst(Finder *f, long double *times) {
+  uint32_t which = 0;
+  *times = -1;
+  find_terms(f, f->terms);
+  for (uint32_t k = 0; k < f->rows; k++) {
+    long double x = fabsl(residual(f, k)), part = x == 0 ? 0 : x / (DBL_EPSILON * f->terms[k]);
+    part = isnan(part) ? INFINITY : part;
+    if (part > *times) *times = part, which = k;
+  }
+  return which;
+}
+
+/* What falls; infinite where there is no value. */
+static long double merit(Finder *f) {
+  long double s = 0;
+  look(f);
+  for (uint32_t k = 0; k < f->rows; k++) s += residual(f, k) / f->size[k] * (residual(f, k) / f->size[k]);
+  return isfinite(s) ? s : INFINITY;
+}
+
+/* --- steps --- */
+
+static long double largest(const long double *x, uint32_t n) {
+  long double most = 0;
+  for (uint32_t i = 0; i < n; i++) most = fmaxl(most, fabsl(x[i]));
+  return most;
+}
+
+/* M of all coordinates into a[n n], in units in which it is as large as A, which changes no direction. 0: it is 0. */
+static int full_mass(Finder *f, long double *a) {
+  const Entries *M = &f->e->mass;
+  long double size = largest(f->at.mass, M->n), scale = largest(f->at.A, f->e->constraints.A.n);
+  memset(a, 0, (size_t)f->n * f->n * sizeof *a);
+  for (uint32_t i = 0; i < M->n && size > 0; i++)
+    a[M->at[i].row * f->n + M->at[i].col] = a[M->at[i].col * f->n + M->at[i].row] = f->at.mass[i] / size * (scale > 0 ? scale : 1);
+  return size > 0;
+}
+
+/* d[nfree]: M d - A^T l = pull M (asked - here), A d = -residual. */
+static int direction(Finder *f, int pull) {
+  const Entries *A = &f->e->constraints.A;
+  uint32_t nf = f->nfree, w = nf + f->rows, n = f->n;
+  long double *M = f->a + (size_t)w * w;
+  look(f);
+  int has_mass = full_mass(f, M);
+  memset(f->a, 0, (size_t)w * w * sizeof *f->a);
+  for (uint32_t i = 0; i < nf; i++) {
+    f->b[i] = 0;
+    for (uint32_t j = 0; j < nf; j++) {
+      SymId at = component(f, f->free[j]);
+      long double m = has_mass ? M[f->free[i] * n + f->free[j]] : i == j;
+      f->a[i * w + j] = m;
+      f->b[i] += pull ? m * (f->asked[at] - f->symbols[at]) : 0;
+    }
+  }
+  for (uint32_t e = 0; e < A->n; e++)
+    for (uint32_t i = 0; i < nf && A->at[e].row < f->rows; i++) {
+      if (f->free[i] != A->at[e].col) continue;
+      f->a[(nf + A->at[e].row) * w + i] = f->at.A[e];
+      f->a[i * w + nf + A->at[e].row] = -f->at.A[e];
+    }
+  for (uint32_t k = 0; k < f->rows; k++) f->b[nf + k] = -residual(f, k);
+  dense_solve(w, f->a, f->b, 1e-13L, f->column, NULL);
+  for (uint32_t i = 0; i < nf; i++) {
+    if (!isfinite(f->b[i])) return 0;
+    f->d[i] = f->b[i];
+  }
+  return 1;
+}
+
+static void move(Finder *f, const long double *from, long double part) {
+  for (uint32_t i = 0; i < f->nfree; i++) {
+    SymId at = component(f, f->free[i]);
+    f->symbols[at] = from[at] + part * f->d[i];
+  }
+}
+
+/* Whether damped steps lead to the constraints. */
+static int descend(Finder *f) {
+  long double before = merit(f), times;
+  for (int step = 0; step < MOST_STEPS && before > 0 && f->nfree > 0; step++) {
+    long double part = 1, now = INFINITY;
+    if (!direction(f, 0)) return 0;
+    copy(f, f->from, f->symbols);
+    for (int i = 0; i < MOST_HALVINGS && !(now < before); i++, part /= 2) {
+      move(f, f->from, part);
+      now = merit(f);
+    }
+    if (!(now <= before)) copy(f, f->symbols, f->from);
+    if (!(now < before * (1 - 1e-6L))) break;
+    before = now;
+  }
+  worst(f, &times);
+  return times <= 1024;
+}
+
+static long double distance(Finder *f) {
+  long double *M = f->a, s = 0;
+  look(f);
+  int has_mass = full_mass(f, M);
+  for (uint32_t i = 0; i < f->n; i++)
+    for (uint32_t j = 0; j < f->n; j++) {
+      long double x = f->symbols[component(f, i)] - f->asked[component(f, i)], y = f->symbols[component(f, j)] - f->asked[component(f, j)];
+      s += x * (has_mass ? M[i * f->n + j] : i == j) * y;
+    }
+  return s;
+}
+
+/* To the nearest place on the constraints, by steps that are taken as long as they lead nearer. */
+static void approach(Finder *f) {
+  for (int step = 0; step < MOST_STEPS; step++) {
+    copy(f, f->best, f->symbols);
+    if (!direction(f, 1)) return;
+    long double before = distance(f);
+    move(f, f->best, 1);
+    if (descend(f) && distance(f) < before * (1 - 1e-14L)) continue;
+    copy(f, f->symbols, f->best);
+    return;
+  }
+}
+
+static int is_held(const Finder *f, uint32_t i) {
+  const Entries *A = &f->e->constraints.A;
+  uint32_t k = 0;
+  while (k < A->n && !(A->at[k].col == i && A->at[k].row < f->rows)) k++;
+  return k < A->n;
+}
+
+static int reach(Finder *f) {
+  static const long double beside[] = {0, 1e-3L, -1e-3L, 0.03L, -0.03L, 0.3L, -0.3L, 1, -1};
+  long double typical = 0;
+  size_t tries = f->velocities ? 1 : sizeof beside / sizeof *beside;
+  for (uint32_t i = 0; i < f->n; i++) typical = fmaxl(typical, fabsl(f->asked[component(f, i)]));
+  for (size_t k = 0; k < tries && f->nfree > 0; k++) {
+    copy(f, f->symbols, f->asked);
+    for (uint32_t i = 0; i < f->nfree; i++)
+      if (is_held(f, f->free[i])) f->symbols[component(f, f->free[i])] += beside[k] * (typical > 0 ? typical : 1) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
+    if (!descend(f)) continue;
+    if (!f->velocities) approach(f);
+    return 1;
+  }
+  return 0;
+}
+
+/* The free components: those that give way at this stage. */
+static void choose_free(Finder *f, int stage) {
+  f->nfree = 0;
+  for (uint32_t i = 0; i < f->n; i++)
+    if (f->given[component(f, i)] <= stage) f->free[f->nfree++] = i;
+}
+
+/* --- what is refused --- */
+
+static StartResult fault(const Finder *f, StartKind kind, uint32_t k) { return (StartResult){kind, k, f->velocities, residual(f, k)}; }
+
+static int is_contact(const Eqns *e, uint32_t k) {
+  for (uint32_t i = 0; i < e->m->contacts.n; i++)
+    if (e->constraints.of[k] == &e->m->constraints.at[e->m->contacts.at[i].constraint]) return 1;
+  return 0;
+}
+
+/* f->terms := what moving each coordinate as far as some of its unit are makes of a constraint, to first order. */
+static void slopes(Finder *f) {
+  const Entries *A = &f->e->constraints.A;
+  look(f);
+  for (uint32_t k = 0; k < f->rows; k++) f->terms[k] = 0;
+  for (uint32_t i = 0; i < A->n; i++) {
+    long double far = fmaxl(like(f, f->symbols, 0, A->at[i].col), like(f, f->asked, 0, A->at[i].col));
+    if (A->at[i].row < f->rows) f->terms[A->at[i].row] += fabsl(f->at.A[i]) * (far > 0 ? far : 1);
+  }
+}
+
+static int is_flat(const Finder *f, uint32_t k) { return f->says[k] && f->terms[k] < 1e-6L * f->size[k]; }
+
+/* Whether a constraint that is flat here is so beside, too, where all hold: not a linkage at its dead centre. */
+static int is_flat_beside(Finder *f, uint32_t k) {
+  copy(f, f->best, f->symbols);
+  choose_free(f, ALL);
+  for (uint32_t i = 0; i < f->n; i++) {
+    long double far = like(f, f->best, 0, i);
+    if (is_held(f, i)) f->symbols[component(f, i)] += 0.01L * (far > 0 ? far : 1) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
+  }
+  int flat = !descend(f);
+  slopes(f);
+  flat |= is_flat(f, k);
+  copy(f, f->symbols, f->best);
+  slopes(f);
+  return flat;
+}
+
+static StartResult check_slopes(Finder *f, int reached) {
+  slopes(f);
+  for (uint32_t k = 0; k < f->rows; k++) {
+    if (is_contact(f->e, k)) continue;
+    if (!isfinite(f->terms[k]) && reached) return fault(f, START_STEEP, k);
+    if (is_flat(f, k) && (!reached || is_flat_beside(f, k))) return fault(f, START_FLAT, k);
+  }
+  return (StartResult){.kind = START_FOUND};
+}
+
+static StartResult settle(Finder *f, int velocities) {
+  const Constraints *k = &f->e->constraints;
+  f->velocities = velocities;
+  f->rows = velocities ? k->n : k->nholonomic;
+  if (!f->rows) return (StartResult){.kind = START_FOUND};
+  copy(f, f->asked, f->symbols);
+  long double off;
+  uint32_t which = worst(f, &off);
+  for (uint32_t i = 0; i < f->rows; i++) {
+    f->says[i] = f->terms[i] > 0 && isfinite(f->terms[i]);
+    f->size[i] = f->says[i] ? f->terms[i] : 1;
+  }
+  if (!isfinite(merit(f))) return fault(f, START_NO_VALUE, which);
+  if (off > 2) {
+    if (f->e->m->scene.exactly.end && !(off <= 1 / sqrtl(DBL_EPSILON))) return fault(f, START_BROKEN, which);
+    int found = 0;
+    for (int stage = UNSET; stage <= ALL && !found; stage++) {
+      uint32_t before = f->nfree;
+      choose_free(f, stage);
+      found = (stage == UNSET || f->nfree != before) && reach(f);
+    }
+    if (!found) {
+      StartResult flat = velocities ? (StartResult){.kind = START_FOUND} : check_slopes(f, 0);
+      which = worst(f, &off);
+      return flat.kind != START_FOUND ? flat : fault(f, START_NONE, which);
+    }
+  }
+  return velocities ? (StartResult){.kind = START_FOUND} : check_slopes(f, 1);
+}
+
+/* --- all of it --- */
+
+long double *start_asked(const Eqns *e) {
+  const Model *m = e->m;
+  long double *symbols = ARENA_ARRAY(m->arena, long double, expr_symbol_count(e->g) + 1);
+  symbols[m->pi] = 3.14159265358979323846264338327950288L;
+  symbols[m->time] = (long double)m->scene.t0;
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (m->params.at[i].value) expr_eval(e->g, &m->params.at[i].value, 1, symbols, &symbols[m->params.at[i].sym]);
+  for (uint32_t i = 0; i < m->scene.starts.n; i++) {
+    const Start *s = &m->scene.starts.at[i];
+    expr_eval(e->g, &s->value, 1, symbols, &symbols[s->target]);
+  }
+  return symbols;
+}
+
+static const unsigned char *given_by(const Eqns *e) {
+  const Model *m = e->m;
+  unsigned char *given = ARENA_ARRAY(m->arena, unsigned char, expr_symbol_count(e->g) + 1);
+  for (uint32_t i = 0; i < m->scene.starts.n; i++)
+    if (!m->scene.starts.at[i].implied) given[m->scene.starts.at[i].target] = ALL;
+  for (uint32_t i = 0; i < m->scene.starts.n; i++) { /* of the first of a rotation's four */
+    uint32_t first = expr_symbol(m->g, m->scene.starts.at[i].target)->index;
+    for (uint32_t k = first; m->scene.starts.at[i].implied && k < first + 4; k++)
+      if (!given[m->coords.at[k].q]) given[m->coords.at[k].q] = ROTATIONS;
+  }
+  return given;
+}
+
+StartResult start_find(const Eqns *e, StateSolver *solver, long double *symbols) {
+  Arena *a = e->m->arena;
+  uint32_t n = e->n, m = e->constraints.n, all = expr_symbol_count(e->g) + 1, w = n + m;
+  Finder f = {.e = e, .solver = solver, .n = n, .nsymbols = all, .symbols = symbols, .given = given_by(e)};
+  f.asked = ARENA_ARRAY(a, long double, all);
+  f.best = ARENA_ARRAY(a, long double, all);
+  f.from = ARENA_ARRAY(a, long double, all);
+  f.size = ARENA_ARRAY(a, long double, m + 1);
+  f.terms = ARENA_ARRAY(a, long double, m + 1);
+  f.says = ARENA_ARRAY(a, unsigned char, m + 1);
+  f.a = ARENA_ARRAY(a, long double, (size_t)w * w + (size_t)n * n + 1);
+  f.b = ARENA_ARRAY(a, long double, w + 1);
+  f.d = ARENA_ARRAY(a, long double, n + 1);
+  f.column = ARENA_ARRAY(a, uint32_t, w + 1);
+  f.free = ARENA_ARRAY(a, uint32_t, n + 1);
+  StartResult r = settle(&f, 0);
+  return r.kind == START_FOUND ? settle(&f, 1) : r;
+}

@@ -1,0 +1,139 @@
+#!/bin/sh
+# Starts of models with constraints: `lagc check` and `lagc run` say the same of them, since each finds the start for itself. What cannot
+# hold is refused by both, and the constraint to blame is named; what is taken has the same rank.
+. tests/tap.sh
+
+model() { cat >"$TMP/$1.lag"; }
+# one LINE...: a particle in the plane with a turning body, and what LINEs say
+one() {
+  {
+    echo 'model one "A particle that something holds"'
+    echo 'coord x [m], y [m], th [rad] periodic'
+    echo 'param m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0, l = 1 [m] > 0, J = 1 [kg*m^2] > 0, v = 1 [m/s]'
+    echo "lagrangian = m/2*(x'^2 + y'^2) + J/2*th'^2 - m*g*y"
+    printf '%s\n' "$@"
+  } >"$TMP/one.lag"
+}
+checks() { "$LAGC" check "$@" >"$TMP/check" 2>&1; }
+runs() { "$LAGC" run "$@" -o "$TMP/rows.csv" >"$TMP/run" 2>&1; }
+says() { grep -qF -e "$1" "$2" || { cat "$2"; return 1; }; }
+# refused CONSTRAINT WORDS [MODEL [SCENE]]: by both, with no rows
+refused() {
+  rm -f "$TMP/rows.csv"
+  checks "$TMP/${3:-one}.lag" && { cat "$TMP/check"; return 1; }
+  says "\`$1\`" "$TMP/check" && says "$2" "$TMP/check" || return 1
+  runs "$TMP/${3:-one}.lag" ${4:+"$4"} && { cat "$TMP/run"; return 1; }
+  says " $1 (line" "$TMP/run" && says "$2" "$TMP/run" && [ ! -e "$TMP/rows.csv" ]
+}
+# taken RANK COUNT MODEL [SCENE]: by both, with RANK of COUNT constraints independent
+taken() {
+  checks "$TMP/$3.lag" || { cat "$TMP/check"; return 1; }
+  runs "$TMP/$3.lag" ${4:+"$4"} || { cat "$TMP/run"; return 1; }
+  says "${4:+scene $4: }" "$TMP/check" && says "$2 constraint$([ "$2" = 1 ] || echo s), of rank $1 at the start" "$TMP/check" && says "constraints: $2, $1 independent" "$TMP/run"
+}
+value() { sed -n "s/^  $1  *\\([-+0-9.e]*\\) .*/\\1/p" "$TMP/run"; }
+near() { awk -v got="$1" -v want="$2" -v tol="$3" 'BEGIN { d = got - want; print got, want; exit !(got != "" && d <= tol && -d <= tol) }'; }
+
+# ---- what cannot be held
+one 'constraint c: x^2 = 0 [m^2]' 'scene s { start x = 1 [m]; span 2 [s] }'
+check "a square, from afar" refused c 'derivatives of the constraint'
+one 'constraint c: (x^2 + y^2 - l^2)^2 = 0 [m^4]' "scene s { start x = 1 [m], x' = 1 [m/s]; span 2 [s] }"
+check "a square, where it holds" refused c 'vanish where it holds'
+one 'constraint c: exp(th) = 0' 'scene s { start x = 1 [m]; span 2 [s] }'
+check "what holds at no place" refused c 'vanish where it holds'
+one 'constraint c: sqrt(x - l) = 0' 'scene s { start x = 2 [m]; span 2 [s] }'
+check "a root" refused c 'have no value where it holds'
+one 'constraint c: log(x/l) = 0' 'scene s { start x = -2 [m]; span 2 [s] }'
+check "where there is no value" refused c 'has no value at the start'
+one 'constraint c: x^2 + y^2 = l^2' 'contact wall: x >= -2*l, restitution = 0.5' 'scene s { start x = 1e200 [m]; span 2 [s] }'
+check "where it is too large" refused c 'has no value at the start'
+one 'constraint c: x^2 + y^2 = l^2' 'constraint d: x = 2*l' 'scene s { start x = 1 [m]; span 2 [s] }'
+check "two that exclude each other" refused c 'no st'
+one 'constraint c: x + y = 6 [m]' 'scene s { start exactly x = 1 [m]; span 1 [s] }'
+check "exactly" refused c 'without `exactly` the nearest start is taken'
+one 'constraint c: x = l' "scene s { start exactly x = 1 [m], x' = 1 [m/s]; span 1 [s] }"
+check "exactly, velocities" refused c 'without `exactly` the nearest start is taken'
+
+# ---- what agrees at the start and not after it
+contradicts() { # WORDS: check says so, and a run ends at once, naming the same constraint
+  checks "$TMP/one.lag" && return 1
+  says '`b` contradicts those before it: ' "$TMP/check" && says "$1" "$TMP/check" || return 1
+  runs "$TMP/one.lag" && return 1
+  says 'b (line 6) is off by' "$TMP/run" && says 'contradicts the others' "$TMP/run"
+}
+one 'constraint a: x = 0 [m]' "constraint b: x' = v*(t/1 [s])" 'scene s { span 1 [s] }'
+check "another acceleration" contradicts 'demands another acceleration'
+one 'constraint a: x = 0 [m]' "constraint b: x' = v*(t/1 [s])^2" 'scene s { span 1 [s] }'
+check "the same acceleration, and another speed" contradicts 'no state obeys them; it is off by 9.54e-07 [m/s]' # v (1/1024)^2
+one 'constraint a: x = 0 [m]' 'constraint b: 2*x = 0 [m]' "constraint c: x' + th'*0 [m] = 0 [m/s]" "scene s { start y = 1 [m], y' = 1 [m/s]; span 1 [s] }"
+check "those that say the same do not contradict" taken 1 3 one
+
+# ---- what lacks inertia
+model ker <<'END'
+model ker "A coordinate that a factor of 0 leaves alone"
+coord x [m], z [m]
+param m = 1 [kg] > 0, k = 0 [kg], c = 0 [1]
+lagrangian = m/2*x'^2 + k/2*z'^2
+constraint b: z*c = x*c
+scene s { start x = 1 [m], x' = 1 [m/s]; span 1 [s] }
+END
+lacks() { ! checks "$TMP/ker.lag" && says 'nothing says how `z` moves' "$TMP/check" && ! runs "$TMP/ker.lag" && says 'the mass matrix is singular' "$TMP/run"; }
+check "a coordinate without inertia that nothing moves" lacks
+sed -i 's/k = 0 /k = 1 /' "$TMP/ker.lag"
+free() { taken 0 1 ker && near "$(value x)" 2 1e-9 && near "$(value z)" 0 1e-12; }
+check "with inertia, a constraint that says nothing is none" free
+
+# ---- singular places
+model chain <<'END'
+model chain "A chain that lies folded on a line"
+const N = 5
+coord r[N]: vec2 [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0, l = 0.2 [m] > 0
+kinetic = sum(i in 1..N, m/2*dot(r[i]', r[i]'))
+potential = sum(i in 1..N, m*g*r[i].y)
+constraint first: norm(r[1]) = l
+for i in 2..N { constraint rod[i]: norm(r[i] - r[i-1]) = l }
+constraint last: r[N] = (0.6 [m], 0 [m])
+scene s { start r[1].x = 0.2 [m], r[2].x = 0.4 [m], r[3].x = 0.6 [m], r[4].x = 0.8 [m], r[5].x = 1 [m]; span 0.1 [s] }
+END
+check "a folded chain" taken 6 7 chain
+model dead <<'END'
+model dead "Four bars at their dead centre: one of the equations has no derivative there"
+coord a [rad], b [rad], c [rad]
+param m = 1 [kg] > 0, l = 1 [m] > 0
+kinetic = m*l^2/2*(a'^2 + b'^2 + c'^2)
+constraint cx: l*cos(a) + l*cos(b) = l + l*cos(c)
+constraint cy: l*sin(a) + l*sin(b) = l*sin(c)
+scene s { start a = 0 [rad]; span 0.1 [s] }
+END
+check "a linkage at its dead centre" taken 1 2 dead
+check "is said to be there" says 'constraint cx (line 5): holonomic; its derivatives vanish at the start' "$TMP/check"
+one 'constraint c: x^2 + y^2 = l^2' 'scene s { start x = 0 [m], y = 0 [m]; span 0.1 [s] }'
+check "in the middle of a circle" taken 1 1 one
+
+# ---- contacts
+model floor <<'END'
+model floor "A ball on a floor"
+coord y [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0, e = 0.5
+lagrangian = m/2*y'^2 - m*g*y
+contact ground: y >= 1 [m], restitution = e
+scene inside { start y = 0.9 [m]; span 1 [s] }
+END
+inside() { ! checks "$TMP/floor.lag" && says 'inside the contact `ground`: its gap is -0.1' "$TMP/check" && ! runs "$TMP/floor.lag" && says 'inside the contact ground: its gap is -0.1 m' "$TMP/run"; }
+check "inside a contact" inside
+sed -i 's/y = 0.9 .*; span/y = 2 [m]; e = 1.5; span/' "$TMP/floor.lag"
+more() { ! checks "$TMP/floor.lag" && says '`ground` has a restitution of 1.5' "$TMP/check" && ! runs "$TMP/floor.lag" && says 'ground has a restitution of 1.5' "$TMP/run"; }
+check "a restitution of more than 1" more
+
+# ---- a constraint that jumps
+one 'constraint c: if(t > 1 [s], x, y) = 0 [m]' 'scene s { start x = 1 [m]; span 2 [s] }'
+jumps() { # ARGS...: the run ends where it does, and x has not moved
+  ! runs "$TMP/one.lag" "$@" && says 'constraint c (line 5) is not met' "$TMP/run" && near "$(value x)" 1 1e-9
+}
+check "dop853 does not jump with it" jumps
+check "nor does rk45" jumps --method rk45 --tol 1e-6
+check "nor rk4" jumps --method rk4 --step 0.01
+check "nor verlet" jumps --method verlet --step 0.01
+check "nor variational" jumps --method variational --step 0.01
+tap_end
