@@ -2,6 +2,7 @@
 # Symmetries from the .lag file to the report: charges keep still, or balance what disturbs them, to what the method can do; monitors
 # see to it; what is false is refused. Expected values: orders of methods, rounding, and that nothing else is left.
 . tests/tap.sh
+. tests/exec/lib_charges.sh
 planets=tests/exec/models/planets.lag
 
 run() { "$LAGC" run "$@" >"$TMP/out" 2>"$TMP/err"; }
@@ -10,10 +11,6 @@ says() { # says WORDS ARGS...
   shift
   run "$@" && grep -qE -e "$words" "$TMP/out"
 }
-# of CHARGE FIELD: from the JSON report
-of() { sed -n "s/.*\"$1\": {\([^}]*\)}.*/\1, /p" "$TMP/out" | sed -n "s/.*\"$2\": \"\{0,1\}\([^,\"]*\)\"\{0,1\}, .*/\1/p"; }
-below() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && a + 0 <= b + 0) }'; }
-between() { awk -v a="$1" -v lo="$2" -v hi="$3" 'BEGIN { exit !(a != "" && a >= lo + 0 && a <= hi + 0) }'; }
 # kept WITHIN ARGS...: every charge of a symmetry stays within that
 kept() {
   within=$1
