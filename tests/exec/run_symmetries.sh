@@ -63,6 +63,23 @@ check "a driven, damped pendulum" run models/driven_damped_pendulum.lag chaos --
 check "closes to a hundred tolerances in its 200 s" below "$(of energy drift)" 1e-9
 check "without words nothing is integrated, but monitors see it" run $planets disturbed --quiet
 
+# ---- an input in L: what it does to the energy is known while it follows its formula. Held, the spring has a fixed end: the energy stays
+spring=tests/exec/models/pulled_spring.lag
+check "the formula's rate has a part in the balance" run $spring --json
+is "which is known" balanced "$(of energy is)"
+check "and closes" below "$(of energy drift)" 1e-9
+check "with another value" run $spring a=0.2 --json
+is "it is not" "not known" "$(of energy is)"
+check "so nothing is taken off the energy" below "$(of energy drift)" 1e-9
+cat >"$TMP/pull.csv" <<'END'
+t [s],a [m]
+0,0
+10,0.1
+20,0.3
+END
+sed 's|= 0.1 \[m\]\*sin(w\*t)|= "pull.csv"|' $spring >"$TMP/table.lag"
+check "of a table the rate is not known, and the report says so" says '^energy change: [0-9.e-]* \(not conserved, or not known to be\)' "$TMP/table.lag"
+
 # ---- monitors: of charges as of the energy
 run $planets quiet --method rk4 --step 0.1
 is "what drifts past its limit ends the run" 3 $?
