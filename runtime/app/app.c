@@ -409,6 +409,8 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     rc = app_modes(&app);
   } else if (rc == 0 && app.args.lyapunov) {
     rc = app_lyapunov(&app);
+  } else if (rc == 0 && app.args.effects) {
+    rc = app_effects(&app);
   } else if (rc == 0 && (app.args.cost || app.args.reference)) {
     rc = app_cost(&app);
   } else if (rc == 0) {

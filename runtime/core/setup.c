@@ -72,8 +72,8 @@ static int alloc_scratch(lag_sim *s)
   for (size_t i = 0; i < n; i++) {
     s->start[i] = NAN;
   }
-  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->contact_room, &s->contact_was,
-                            &s->charge_now, &s->charge_power, &s->charge_gain};
+  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->contact_room,
+                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain};
   const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, sized, (size_t)m->ncontacts, 2 * nc, nc, nc};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;

@@ -148,9 +148,9 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
 /* Whether the residuals of y at t, c (holonomic) or r, are rounding: up to 2^10 times that of their terms. */
 int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual);
 
-/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; a residual of NaN: "is not met". holonomic: of c, else of r. */
 /* Where a constraint stands, " (line 7)", or nothing where the emitted C does not say; in text, which it returns. */
 const char *lag_line_of(const lag_constraint *c, char text[32]);
+/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; a residual of NaN: "is not met". holonomic: of c, else of r. */
 void lag_say_constraint(lag_problem *pb, int k, int holonomic, double residual, const char *words);
 
 /* The index of the first of x[n] that is not finite, -1 when all are. */

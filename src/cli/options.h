@@ -26,6 +26,8 @@ typedef struct {
   const char *with;        /* --with linear: parts of a model that are emitted only where something needs them */
   VEC(Define) defines;
   const char *fix;         /* --fix g,l: parameters that become numbers */
+  const char *accuracy;    /* effects --accuracy */
+  int json;                /* of effects; others pass it on */
   OptionTexts rest;        /* run, plot, animate: what the simulator gets, the scene too; complete: the words */
   OptionTexts observe;     /* run --observe: expressions */
   const char *section;     /* run, plot --section */

@@ -568,8 +568,3 @@ void emit_program(const IrUnit *const *units, const char *const *names, uint32_t
             name, doc, source, c_string(a, first->all_effects), scenes);
   emit_main(gsl, out);
 }
-
-void emit_bare_program(int gsl, StrBuf *out) {
-  sb_puts(out, "#include \"lag.h\"\n\nstatic const lag_program program = {.name = \"lagc\", .doc = \"\", .source = \"\", .effects = \"\"};\n\n");
-  emit_main(gsl, out);
-}

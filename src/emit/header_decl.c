@@ -154,7 +154,7 @@ const char *header_prototype(const Header *h, HeaderFn f) {
   switch (f) {
     case FN_DEFAULTS: return arena_printf(a, "void %s_defaults(%s_params *p)", m, m);
     case FN_PARAM: return arena_printf(a, "%s_REAL *%s_param(%s_params *p, int index)", R, m, m);
-    case FN_START: return arena_printf(a, "void %s_start(const %s_params *p, %s_state *s)", m, m, m);
+    case FN_START: return arena_printf(a, "%s %s_start(const %s_params *p, %s_state *s)", header_has(h, FN_HOLD) ? "int" : "void", m, m, m);
     case FN_INPUTS: return arena_printf(a, "void %s_inputs(%s_REAL t, const %s_params *p, %s_REAL *u)", m, R, m, R);
     case FN_ACCEL: {
       const char *q = h->u->q.n ? arena_printf(a, ", %s_REAL *a", R) : "", *z = h->u->z.n ? arena_printf(a, ", %s_REAL *zd", R) : "";
@@ -220,7 +220,8 @@ void header_declarations(const Header *h) {
     const char *doc = f != FN_ACCEL || (u->q.n && u->z.n) ? docs[f] : u->q.n ? "Accelerations a[LAG_NQ]: what an integrator needs."
                                                                              : "Rates zd[LAG_NZ] of the states: what an integrator needs.";
     if (f == FN_START && u->constraints.of.n)
-      doc = "The state at the start of the scene, as it gives it. _hold then leads to the constraints, moving all of it; lagc run moves what\n * the scene does not give first.";
+      doc = "The state at the start of the scene, on the constraints, as `lagc run` finds it with the parameters of _defaults; with others, _hold\n"
+            " * leads from there to the nearest one that obeys them.";
     sb_puts(h->out, "\n/* ");
     csupport_fill(doc, h->upper, h->lower, h->out);
     if (f == FN_CHARGES) sb_printf(h->out, "\n * Symmetries: %s.", charge_names(h));

@@ -33,10 +33,17 @@ typedef struct {
   int absolute;
 } IrMonitor;
 
+/* A component of [q|v] that constraints move at the start, and where to. */
+typedef struct {
+  uint32_t component;
+  double value;
+} IrMove;
+
 typedef struct {
   const char *name, *doc;
   const Prog *const *params; /* [np] */
   const Prog *start, *observe;
+  VEC(IrMove) moves;  /* found with the scene's parameters; for programs that do not look for themselves */
   double t0, t1;
   const char *t1_digits; /* more than a double has, or NULL */
   int has_span;

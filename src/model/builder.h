@@ -128,6 +128,7 @@ struct Builder {
   const Define *defines;
   uint32_t ndefines;
   const AstStmt **chain; /* the scene and those it is like, oldest first; NULL-terminated */
+  int is_variant;  /* effects in use are ModelChoice.only */
   int unitless;    /* nothing is measured in a unit: nothing is checked */
   Name group;      /* the parameter of the symmetry in hand, or NULL; */
   SymId group_symbol;

@@ -94,6 +94,9 @@ void scene_select(Builder *b, const ModelChoice *choice) {
     collect_uses(b, *s);
   }
   if (choice->also) use_with_needs(b, choice->also);
+  b->is_variant = choice->only != NULL;
+  if (b->is_variant) b->m->effects.n = 0;
+  for (uint32_t i = 0; b->is_variant && i < choice->only->n; i++) vec_push(b->arena, &b->m->effects, choice->only->at[i]);
   VEC(Name) in_order = {0};
   for (const AstStmt *s = b->ast->first; s; s = s->next) {
     if (s->kind != STMT_EFFECT) {
@@ -303,13 +306,16 @@ static int shows_others(const AstStmt *const *s) {
   return 0;
 }
 
-/* Whether what a statement says of an effect has no part in the run: it stands before a `use none`, or it is about one that is
- * turned off, and comes from a scene that uses it and that this one is like. */
+static int is_shown(const AstStmt *st) { return st->kind == STMT_OUTPUT || st->kind == STMT_EXACT; }
+
+/* Whether what a statement says has no part in the run: it stands before a `use none`, or it is about an effect that is turned off, and
+ * comes from a scene that uses it and that this one is like. A variant shows nothing. */
 static int is_dropped(Builder *b, const AstStmt *st, int before_none, int inherited) {
   if (st->kind == STMT_USE) return before_none;
+  if (b->is_variant && is_shown(st)) return 1;
   if (!gives_value(st)) return 0;
   Name effect = effect_given(b, st);
-  return effect && (before_none || (inherited && !uses_effect(b, effect)));
+  return effect && (before_none || ((inherited || b->is_variant) && !uses_effect(b, effect)));
 }
 
 /* The last such statement of the scene and those that it is like; NULL: there is none. */
@@ -367,6 +373,6 @@ void scene_build(Builder *b, const ModelChoice *choice) {
   for (uint32_t i = 0; i < choice->ngiven; i++) give(b, &choice->given[i]);
   settle_rotations(b);
   if (!sc->outputs.n) default_outputs(b);
-  set_monitors(b);
+  if (!b->is_variant) set_monitors(b);
   for (uint32_t i = 0; i < choice->nasked; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
 }

@@ -31,7 +31,10 @@ src/ir/lower_unit.c mech/charges.h
 src/ir/lower_charges.c mech/charges.h
 runtime/include/lag.h  lag_model.h
 runtime/include/lag_math.h  lag_sincos.h
-src/main.c        picture.h help.h complete.h settings.h wants.h
+src/main.c        picture.h help.h complete.h settings.h wants.h effects.h rounded.h
+src/effects.c     effects.h
+src/effects_text.c effects.h
+src/rounded.c     rounded.h
 src/wants.c       wants.h
 src/picture.c     picture.h
 src/help.c        help.h
