@@ -48,7 +48,7 @@ check "where there is no value" refused c 'has no value at the start'
 one 'constraint c: x^2 + y^2 = l^2' 'contact wall: x >= -2*l, restitution = 0.5' 'scene s { start x = 1e200 [m]; span 2 [s] }'
 check "where it is too large" refused c 'has no value at the start'
 one 'constraint c: x^2 + y^2 = l^2' 'constraint d: x = 2*l' 'scene s { start x = 1 [m]; span 2 [s] }'
-check "two that exclude each other" refused c 'no st'
+check "two that exclude each other" refused d 'off by 1 '
 one 'constraint c: x + y = 6 [m]' 'scene s { start exactly x = 1 [m]; span 1 [s] }'
 check "exactly" refused c 'without `exactly` the nearest start is taken'
 one 'constraint c: x = l' "scene s { start exactly x = 1 [m], x' = 1 [m/s]; span 1 [s] }"
