@@ -244,7 +244,7 @@ static int refuse_fixed(const App *app, const char *name)
                    app->program->source, rest);
 }
 
-static int set_value(App *app, const char *text)
+int app_set_value(App *app, const char *text)
 {
   const Args *a = &app->args;
   const char *eq = strchr(text, '='), *dot = memchr(text, '.', (size_t)(eq - text));
@@ -332,7 +332,7 @@ static int same_values(App *app)
       memset(fresh->fixed, 1, np);
       memcpy(fresh->hold, run->hold, nu * sizeof(double));
       memcpy(fresh->start, run->begin, n * sizeof(double));
-      rc = set_value(app, a->sets[i]);
+      rc = app_set_value(app, a->sets[i]);
     }
     if (rc == 0 && (memcmp(fresh->p, run->p, np * sizeof(double)) != 0 || memcmp(fresh->begin, run->begin, n * sizeof(double)) != 0 ||
                     memcmp(fresh->hold, run->hold, nu * sizeof(double)) != 0)) {
@@ -397,7 +397,7 @@ int app_set_values(App *app)
   int rc = 0;
 
   for (int i = 0; i < a->nsets && rc == 0; i++) {
-    rc = set_value(app, a->sets[i]);
+    rc = app_set_value(app, a->sets[i]);
   }
   return rc;
 }

@@ -169,7 +169,7 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
     return -1;
   }
   for (int k = 0; k < n; k++) {
-    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x == 0.0 ? 0 : x / (DBL_EPSILON * w.g[k]);
+    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x < DBL_MIN ? 0 : x / (DBL_EPSILON * w.g[k]);
     part = isnan(part) ? HUGE_VAL : part; /* it has no value */
     if (part > most) {
       most = part;
@@ -273,7 +273,7 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
   int n = holonomic ? w.of->nholonomic : w.of->n, met = 1;
 
   for (int k = 0; k < n; k++) {
-    met &= fabs(residual[k]) <= rounding * terms[k] / 4; /* what they were will do, where it is clear */
+    met &= fabs(residual[k]) <= fmax(rounding * terms[k] / 4, DBL_MIN); /* what they were will do, where it is clear */
   }
   if (met) {
     return 1;

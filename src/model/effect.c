@@ -52,17 +52,17 @@ EffectList model_unused_effects(const Ast *ast) {
 }
 
 /* Blocks nest at most as deep as the parser lets them. */
-static int contains_expect(const AstStmt *list) {
+static int contains_claim(const AstStmt *list) {
   for (const AstStmt *s = list; s; s = s->next)
-    if (s->kind == STMT_EXPECT || (s->kind == STMT_FOR && contains_expect(s->body))) return 1;
+    if (s->kind == STMT_EXPECT || s->kind == STMT_SYMMETRY || (s->kind == STMT_FOR && contains_claim(s->body))) return 1;
   return 0;
 }
 
-EffectList model_expecting_effects(const Ast *ast) {
+EffectList model_claiming_effects(const Ast *ast) {
   VEC(Name) names = {0};
-  if (contains_expect(ast->first)) vec_push(ast->arena, &names, NULL);
+  if (contains_claim(ast->first)) vec_push(ast->arena, &names, NULL);
   for (const AstStmt *s = ast->first; s; s = s->next)
-    if (s->kind == STMT_EFFECT && s->name && contains_expect(s->body)) vec_push(ast->arena, &names, s->name);
+    if (s->kind == STMT_EFFECT && s->name && contains_claim(s->body)) vec_push(ast->arena, &names, s->name);
   return (EffectList){names.at, names.n};
 }
 
@@ -287,4 +287,17 @@ void check_effect_needs(Builder *b, const AstStmt *effect) {
       report_excluded(b, effect, x);
     }
   }
+}
+
+int mentions_off(const Builder *b, AstId value) {
+  Span all = ast_expr(b->ast, value)->span;
+  for (AstId i = 1; i < b->ast->exprs.n; i++) {
+    const AstExpr *x = ast_expr(b->ast, i);
+    int ambiguous;
+    if (x->kind != AST_NAME || x->span.begin < all.begin || x->span.end > all.end || scope_find(&b->scope, x->name, NULL, &ambiguous)) continue;
+    const AstStmt *effect = find_named(b->ast, STMT_EFFECT, x->name);
+    if (!effect) effect = declaring_effect(b, x->name);
+    if (effect && !uses_effect(b, effect->name)) return 1;
+  }
+  return 0;
 }

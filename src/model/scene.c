@@ -94,6 +94,9 @@ void scene_select(Builder *b, const ModelChoice *choice) {
     collect_uses(b, *s);
   }
   if (choice->also) use_with_needs(b, choice->also);
+  b->is_variant = choice->only != NULL;
+  if (b->is_variant) b->m->effects.n = 0;
+  for (uint32_t i = 0; b->is_variant && i < choice->only->n; i++) vec_push(b->arena, &b->m->effects, choice->only->at[i]);
   VEC(Name) in_order = {0};
   for (const AstStmt *s = b->ast->first; s; s = s->next) {
     if (s->kind != STMT_EFFECT) {
@@ -178,7 +181,7 @@ static void give_param(Builder *b, uint32_t i, Expr e, Span span, void *data) {
 }
 
 static void set_value(Builder *b, const AstStmt *st, Name effect) {
-  static const Giver giver = {IN_START, param_unit, give_param, NULL};
+  static const Giver giver = {IN_START, param_unit, give_param, NULL, NULL};
   if (!effect && advise_statement(b, st)) return;
   Target p = read_target(b, st->lhs);
   const Entity *e = find_settable(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
@@ -209,58 +212,6 @@ static void set_output(Builder *b, const AstStmt *st) {
   set_every(b, st);
 }
 
-/* A limit for what has one already takes its place. */
-static void add_monitor(Builder *b, Monitor mon) {
-  Scene *sc = &b->m->scene;
-  for (uint32_t i = 0; i < sc->monitors.n; i++)
-    if (sc->monitors.at[i].output == mon.output) {
-      sc->monitors.at[i] = mon;
-      return;
-    }
-  vec_push(b->arena, &sc->monitors, mon);
-}
-
-/* `monitor exact 1e-6`: all that have a closed form. */
-static void monitor_exact(Builder *b, Monitor mon, Span span) {
-  Scene *sc = &b->m->scene;
-  mon.absolute = 1;
-  for (uint32_t i = 0; i < sc->exacts.n; i++) {
-    mon.output = add_error(b, &sc->exacts.at[i], span);
-    mon.name = sc->outputs.at[mon.output].name;
-    add_monitor(b, mon);
-  }
-  if (sc->exacts.n) return;
-  diag_error(b->diags, span, "the scene has no closed form to compare with");
-  diag_help(b->diags, "`exact q = ...` gives one");
-}
-
-static void set_monitor(Builder *b, const AstStmt *st) {
-  if (!st->lhs) {
-    diag_error(b->diags, st->name_span, "`monitor %s` has no limit", st->name);
-    diag_help(b->diags, "say what the drift may be: `monitor %s 1e-8`; `monitor none` drops what was said before", st->name);
-    return;
-  }
-  const AstExpr *x = ast_expr(b->ast, st->lhs);
-  Unit none = no_unit();
-  Monitor mon = {.output = -1, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit")};
-  mon.name = intern(b->ast->names, ast_text(b, st->lhs));
-  mon.absolute = x->kind == AST_CALL && strcmp(x->name, "error") == 0;
-  if (mon.limit <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a monitor's limit must be positive");
-  if (x->kind == AST_NAME && strcmp(x->name, "exact") == 0 && !declared_in_use(b, x->name, NULL)) {
-    monitor_exact(b, mon, x->span);
-    return;
-  }
-  if (x->kind != AST_NAME || strcmp(x->name, "energy") != 0) {
-    uint32_t errors = b->diags->errors;
-    mon.output = add_outputs(b, st->lhs);
-    if (mon.output < 0) {
-      if (b->diags->errors == errors) diag_error(b->diags, x->span, "a monitor watches one number");
-      return;
-    }
-  }
-  add_monitor(b, mon);
-}
-
 static void set_span(Builder *b, const AstStmt *st) {
   Unit s = seconds(b);
   Scene *sc = &b->m->scene;
@@ -287,7 +238,8 @@ static void scene_statement(Builder *b, const AstStmt *st) {
     case STMT_SET: set_value(b, st, NULL); return;
     case STMT_USE:
       if (uses_effect(b, st->name))
-        for (const AstStmt *x = st->body; x; x = x->next) set_value(b, x, st->name);
+        for (const AstStmt *x = st->body; x; x = x->next)
+          if (!b->is_variant || !mentions_off(b, x->rhs)) set_value(b, x, st->name);
       return;
     case STMT_SPAN: set_span(b, st); return;
     case STMT_METHOD: scene_method(b, st); return;
@@ -355,13 +307,18 @@ static int shows_others(const AstStmt *const *s) {
   return 0;
 }
 
-/* Whether what a statement says of an effect has no part in the run: it stands before a `use none`, or it is about one that is
- * turned off, and comes from a scene that uses it and that this one is like. */
+static int is_shown(const AstStmt *st) { return st->kind == STMT_OUTPUT || st->kind == STMT_EXACT; }
+
+/* Whether what a statement says has no part in the run: it stands before a `use none`, or it is about an effect that is turned off, and
+ * comes from a scene that uses it and that this one is like. A variant shows nothing; what
+ * values of effects that are off would say is for the runtime to take from the scene itself. */
 static int is_dropped(Builder *b, const AstStmt *st, int before_none, int inherited) {
   if (st->kind == STMT_USE) return before_none;
+  if (b->is_variant && is_shown(st)) return 1;
   if (!gives_value(st)) return 0;
+  if (b->is_variant && mentions_off(b, st->rhs)) return 1;
   Name effect = effect_given(b, st);
-  return effect && (before_none || (inherited && !uses_effect(b, effect)));
+  return effect && (before_none || ((inherited || b->is_variant) && !uses_effect(b, effect)));
 }
 
 /* The last such statement of the scene and those that it is like; NULL: there is none. */
@@ -419,6 +376,6 @@ void scene_build(Builder *b, const ModelChoice *choice) {
   for (uint32_t i = 0; i < choice->ngiven; i++) give(b, &choice->given[i]);
   settle_rotations(b);
   if (!sc->outputs.n) default_outputs(b);
-  set_monitors(b);
+  if (!b->is_variant) set_monitors(b);
   for (uint32_t i = 0; i < choice->nasked; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
 }

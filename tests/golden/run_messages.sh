@@ -7,6 +7,8 @@
 elsewhere='internal error
 -D %s
 --fix
+lagc effects
+effects to compare
 this does not belong in a scene
 nothing that a run sets
 a section is a surface in the space of states
