@@ -79,7 +79,7 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %type <one> single coord param const input_ state let map map_item each required excluded
 %type <one> assign option use monitor
 %type <list> dims indices places_bound exprs args names
-%type <id> expr arith primary reach place bound value comparison every number literal declared gap tuple
+%type <id> expr arith primary reach place moved bound value comparison every number literal declared gap tuple
 %type <text> doc
 %type <unit> unit
 %type <ident> type method_name
@@ -149,7 +149,7 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "output" exprs[l] every[e]              { $$ = stmt_output(ast, @$, $l, $e); }
       | "like" IDENT[n]                         { $$ = stmt_name(ast, STMT_LIKE, @$, $n); }
       | "stop"                                  { $$ = stmt_plain(ast, STMT_STOP, @$); }
-      | place[p] "=" value[v]                   { $$ = stmt_pair(ast, STMT_SET, @$, $p, $v); }
+      | moved[p] "=" value[v]                   { $$ = stmt_pair(ast, STMT_SET, @$, $p, $v); }
       ;
 
 /* ---- lists of declarations: one statement each ---- */
@@ -213,7 +213,7 @@ map: place[q] "->" expr[e] { $$ = stmt_pair(ast, STMT_MAP, @$, $q, $e); };
 assigns: assign[x]                { $$ = stmts_one($x); }
        | assigns[l] "," assign[x] { $$ = stmts_add($l, $x); }
        ;
-assign: place[p] "=" expr[e] { $$ = stmt_pair(ast, STMT_SET, @$, $p, $e); };
+assign: moved[p] "=" expr[e] { $$ = stmt_pair(ast, STMT_SET, @$, $p, $e); };
 
 uses: use[x]             { $$ = stmts_one($x); }
     | uses[l] "," use[x] { $$ = stmts_add($l, $x); }
@@ -286,6 +286,10 @@ place: IDENT[n]                          { $$ = ast_name(ast, $n); }
      | place[a] "[" places_bound[l] "]"  { $$ = ast_index(ast, @$, $a, $l); }
      | place[a] "." IDENT[m]             { $$ = ast_member(ast, @$, $a, $m); }
      | place[a] "'"[op]                  { $$ = ast_prime(ast, @$, @op, $a); }
+     ;
+/* And the angular velocity of a rotation: omega(R). */
+moved: place[p]                       { $$ = $p; }
+     | IDENT[n] "(" place[p] ")"       { $$ = ast_call(ast, @$, $n, ast_list($p)); }
      ;
 places_bound: bound[x]                   { $$ = ast_list($x); }
             | places_bound[l] "," bound[x] { $$ = ast_list_add(ast, $l, $x); }

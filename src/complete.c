@@ -128,6 +128,18 @@ static void offer_choices(Line *l, const OptionRow *o) {
   for (size_t i = 0; word_at(l->arena, o->hint, i); i++) offer(l, word_at(l->arena, o->hint, i), "");
 }
 
+static void offer_params(Line *l, const OptionRow *o) {
+  const char *comma = strrchr(l->word, ',');
+  if (comma) l->head = arena_strndup(l->arena, l->word, (size_t)(comma - l->word) + 1);
+  offer(l, o->hint, "all parameters");
+  Ast *ast = read_ast(l);
+  for (const AstStmt *s = ast ? ast->first : NULL; s; s = s->next) {
+    if (s->kind == STMT_PARAM && s->name) offer(l, s->name, "parameter");
+    for (const AstStmt *x = s->kind == STMT_EFFECT ? s->body : NULL; x; x = x->next)
+      if (x->kind == STMT_PARAM && x->name) offer(l, arena_printf(l->arena, "%s.%s", s->name, x->name), "parameter");
+  }
+}
+
 static void offer_constants(Line *l) {
   Ast *ast = read_ast(l);
   for (const AstStmt *s = ast ? ast->first : NULL; s; s = s->next)
@@ -140,6 +152,7 @@ static void offer_value(Line *l, const OptionRow *o) {
     case TAKES_METHOD: offer_methods(l); break;
     case TAKES_CHOICE: case TAKES_CHOICES: offer_choices(l, o); break;
     case TAKES_EXPR: case TAKES_EXPRS: case TAKES_TEXT: offer_expression(l); break;
+    case TAKES_PARAMS: offer_params(l, o); break;
     case TAKES_DEFINE: offer_constants(l); break;
     case TAKES_NUMBER: case TAKES_NOTHING: break;
   }

@@ -4,6 +4,7 @@
  *
  * Exit status: 0 ok, 1 bad model, 2 usage or files, 3 the run failed (a simulator's status). */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -16,6 +17,7 @@
 #include "cli/shells.h"
 #include "cli/toolchain.h"
 #include "complete.h"
+#include "effects.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
@@ -24,19 +26,22 @@
 #include "ir/lower.h"
 #include "mech/constrain.h"
 #include "mech/eqns.h"
+#include "mech/charges.h"
 #include "mech/expect.h"
 #include "mech/freedom.h"
+#include "mech/noether_report.h"
 #include "mech/start.h"
 #include "mech/show.h"
 #include "model/model.h"
 #include "picture.h"
+#include "rounded.h"
 #include "settings.h"
 #include "syntax/parse.h"
 #include "wants.h"
 
 #define LAGC_VERSION "0.1"
 
-enum { STATUS_OK, STATUS_MODEL, STATUS_USAGE };
+enum { STATUS_OK, STATUS_MODEL, STATUS_USAGE, STATUS_RUN };
 enum { MEMORY_LIMIT_MIB = 2048 };
 
 /* One compilation. */
@@ -107,6 +112,7 @@ static Eqns *derive(Compiler *c, const ModelChoice *choice) {
   ModelChoice with_defines = *choice;
   with_defines.defines = c->o.defines.at;
   with_defines.ndefines = c->o.defines.n;
+  if (!choice->bare && !choice->unfixed) with_defines.fix = c->o.fix;
   Model *m = model_build(c->ast, &with_defines);
   if (!m) return NULL;
   StrBuf listing = strbuf(c->arena);
@@ -117,12 +123,8 @@ static Eqns *derive(Compiler *c, const ModelChoice *choice) {
   return e;
 }
 
-/* Of one scene (NULL: the first) with one more effect (or NULL). */
-static Eqns *derive_with(Compiler *c, const char *scene, Name also) {
-  return derive(c, &(ModelChoice){.scene = scene, .also = also});
-}
-
-static Eqns *derive_scene(Compiler *c, const char *scene) { return derive_with(c, scene, NULL); }
+/* Of one scene (NULL: the first). */
+static Eqns *derive_scene(Compiler *c, const char *scene) { return derive(c, &(ModelChoice){.scene = scene}); }
 
 /* With what the command line asks for besides the scene's outputs. */
 static Eqns *derive_asked(Compiler *c, const char *scene) {
@@ -154,15 +156,57 @@ static IrUnit *lower_scene(Compiler *c, Eqns *e) {
 
 /* --- the commands --- */
 
+/* The Hamiltonian side; where there is none, the reason in c->diags. */
+static int do_hamiltonian(Compiler *c, Eqns *e) {
+  StrBuf out = strbuf(c->arena);
+  if (c->o.ops || (c->o.format && strcmp(c->o.format, "c") == 0)) return fail_usage("--hamiltonian goes with --format text or latex");
+  if (e->n == 0) {
+    diag_error(c->diags, e->m->span, e->first.n ? "no Hamiltonian by momenta: L is linear in velocities" : "no Hamiltonian: the model has no Lagrangian");
+    if (e->first.n) diag_help(c->diags, "coordinates are then canonical among themselves, and the energy is H: see `lagc derive` without --hamiltonian");
+    return STATUS_MODEL;
+  }
+  show_hamiltonian(e, c->o.format && strcmp(c->o.format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
+  return write_out(c, c->o.output, &out);
+}
+
+/* Without a scene: the model without effects, and each effect alone. */
+static int do_noether(Compiler *c) {
+  Eqns *e = c->o.scene ? derive_scene(c, c->o.scene) : derive(c, &(ModelChoice){.bare = 1});
+  StrBuf out = strbuf(c->arena);
+  const char *format = c->o.format ? c->o.format : "text";
+  if (!e) return STATUS_MODEL;
+  if (!e->m->lagrangian) {
+    diag_error(c->diags, e->m->span, "no symmetries to look for: the model has no Lagrangian");
+    return STATUS_MODEL;
+  }
+  if (!c->o.scene && !charges_judge(e, NULL)) return STATUS_MODEL;
+  NoetherReport *r = noether_report(e);
+  for (uint32_t i = 0; i < e->m->all_effects.n && !c->o.scene; i++) {
+    Name effect = e->m->all_effects.at[i];
+    const Eqns *with = derive(c, &(ModelChoice){.bare = 1, .also = effect});
+    if (with) noether_report_effect(r, effect, with);
+  }
+  if (strcmp(format, "json") == 0) show_noether_json(r, &out);
+  else show_noether(r, strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
+  return write_out(c, c->o.output, &out);
+}
+
+/* What the operations would be without --fix. */
+static const char *unfixed_cost(Compiler *c) {
+  Eqns *e = derive(c, &(ModelChoice){.scene = c->o.scene, .unfixed = 1});
+  return e ? arena_printf(c->arena, "without --fix: %s\n", ops_text(new_unit(c, e)->accel, c->arena)) : "";
+}
+
 static int do_derive(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
+  if (c->o.hamiltonian) return do_hamiltonian(c, e);
   IrUnit *u = lower_scene(c, e);
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
   const char *format = c->o.format ? c->o.format : "text";
   const char *cost = ops_text(u->accel, c->arena);
-  if (c->o.ops) sb_printf(&out, "%s\n", cost);
+  if (c->o.ops) sb_printf(&out, "%s\n%s", cost, c->o.fix ? unfixed_cost(c) : "");
   else if (strcmp(format, "c") == 0) emit_accel(u, &out);
   else show_equations(e, cost, strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
   return write_out(c, c->o.output, &out);
@@ -212,33 +256,6 @@ static int do_header(Compiler *c) {
  * of one scene, and only that one is built then. */
 typedef VEC(IrUnit *) Units;
 
-/* Numbers of a model that are no fraction of 64 bits were rounded to a double. Those with few digits came to no harm. */
-static int warn_literal(const Compiler *c) {
-  enum { SAFE = 17 };
-  for (AstId i = 1; i < c->ast->exprs.n; i++) {
-    const AstExpr *e = ast_expr(c->ast, i);
-    if (e->kind != AST_NUM || num_is_exact(e->number) || e->span.end - e->span.begin <= SAFE) continue;
-    diag_warning(c->diags, e->span, "this number is rounded to 17 digits before --precision %s counts", c->o.precision);
-    diag_help(c->diags, "where more matter, make it a parameter or a start, and give the digits as name=value");
-    return 1;
-  }
-  return 0;
-}
-
-static void warn_rounded(const Compiler *c, const ExprGraph *g) {
-  enum { SAFE = 15, ROOM = 32 };
-  if (warn_literal(c)) return;
-  for (Expr e = 1; e <= expr_count(g); e++) {
-    char text[ROOM];
-    if (!expr_is_num(g, e) || num_is_exact(expr_number(g, e))) continue;
-    num_format_double(text, num_value(expr_number(g, e)));
-    if (strspn(text, "-0.123456789") - (text[0] == '-') - (strchr(text, '.') != NULL) <= SAFE) continue;
-    fprintf(stderr, "lagc: warning: --precision %s: numbers of the model multiply to %s, rounded to 17 digits; where more matter, make them "
-            "parameters\n", c->o.precision, text);
-    return;
-  }
-}
-
 static int lower_all(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast);
   if (c->picture.asked.n || c->given.n || c->picture.section.expr) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
@@ -249,9 +266,10 @@ static int lower_all(Compiler *c, Units *units) {
     for (uint32_t k = 0; k < units->n && !home; k++)
       if (unit_shares(units->at[k], fresh)) home = units->at[k];
     if (!home) vec_push(c->arena, units, home = fresh);
+    home->lines = 1;
     unit_want(home, e, wants_of(e, &c->o));
     unit_add_scene(home, e);
-    if (options_more_digits(&c->o) && i + 1 == scenes.n) warn_rounded(c, e->m->g);
+    if (options_more_digits(&c->o) && i + 1 == scenes.n) rounded_warn(c->ast, e->m->g, c->o.precision);
   }
   return 1;
 }
@@ -357,15 +375,23 @@ static void give_reference(Compiler *c, const Units *units) {
   vec_push(c->arena, &c->picture.argv, NULL);
 }
 
-/* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
-static int do_run(Compiler *c) {
-  const char *path, *error = NULL;
+/* What a simulator is told, and the names that it gives values to. */
+static int prepare_run(Compiler *c) {
+  const char *error = NULL;
   if (c->o.scene && !model_has_scene(c->ast, c->o.scene)) return STATUS_MODEL;
-  if (!settings_inputs(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
+  if (!settings_compiled(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
   if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
   if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? fail_usage(error) : STATUS_MODEL;
+  return STATUS_OK;
+}
+
+/* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
+static int do_run(Compiler *c) {
+  const char *path;
+  int status = prepare_run(c);
+  if (status != STATUS_OK) return status;
   Units units = {0};
-  int status = lower_all(c, &units) ? make_simulator(c, &units, NULL, &path) : STATUS_MODEL;
+  status = lower_all(c, &units) ? make_simulator(c, &units, NULL, &path) : STATUS_MODEL;
   if (status != STATUS_OK) return status;
   if (writes_source(c)) return STATUS_USAGE;
   if (c->o.command == CMD_COST) give_reference(c, &units);
@@ -376,33 +402,93 @@ static int do_run(Compiler *c) {
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
 }
 
-/* The runtime lists its own methods: a program without a model asks it. */
-static int do_methods(Compiler *c) {
-  Toolchain tools;
-  const char *path, *error = NULL;
-  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
-  StrBuf b = strbuf(c->arena);
-  emit_bare_program(tools.gsl, &b);
-  Texts texts = {0};
-  vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
-  int status = make_program(c, &tools, &texts, NULL, &path);
-  if (status != STATUS_OK) return status;
-  char self[] = "lagc methods", option[] = "--method", help[] = "help", *argv[] = {self, option, help, NULL};
-  execv(path, argv);
-  return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
+/* The scene with another set of effects, as a unit of its own. */
+static IrUnit *lower_variant(Compiler *c, EffectList effects, unsigned *wants) {
+  Eqns *e = derive(c, &(ModelChoice){.scene = c->o.scene, .only = &effects, .given = c->given.at, .ngiven = c->given.n});
+  if (!e) return NULL;
+  IrUnit *u = new_unit(c, e);
+  *wants |= wants_of(e, &c->o); /* all of them are to run by the first one's method */
+  unit_want(u, e, *wants);
+  unit_add_scene(u, e);
+  return u;
 }
 
-/* An expectation is about the model without effects, or, inside an effect, with that effect and what
+/* Makes a program of these variants, runs it, and reads what it measured. */
+static int run_variants(Compiler *c, EffectStudy *s, const EffectSets *sets, const char *what, Measured **measured) {
+  Toolchain tools;
+  Units units = {0};
+  unsigned wants = 0;
+  const char *error = NULL, *path, *rest;
+  char *said = NULL;
+  for (uint32_t i = 0; i < sets->n; i++) {
+    IrUnit *u = lower_variant(c, effects_of(s, sets->at[i]), &wants);
+    if (!u) return STATUS_MODEL;
+    vec_push(c->arena, &units, u);
+  }
+  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
+  if (strcmp(what, "runs") == 0) tools.optimise = "-O0"; /* the same bits, and compiling is what takes time */
+  Texts texts = program_texts(c, &units, tools.gsl);
+  int status = make_program(c, &tools, &texts, NULL, &path);
+  if (status != STATUS_OK) return status;
+  char *const program = arena_strdup(c->arena, path), **argv = ARENA_ARRAY(c->arena, char *, c->picture.argv.n);
+  memcpy(argv, c->picture.argv.at, c->picture.argv.n * sizeof *argv);
+  argv[2] = arena_strdup(c->arena, what);
+  status = toolchain_run_as(c->arena, program, argv, &said);
+  *measured = effects_read(s, said, sets->n, &rest);
+  fputs(rest, stderr);
+  if (status == STATUS_OK && !*measured) return fail_usage("the simulator of `lagc effects` did not say what it measured");
+  return status;
+}
+
+/* --accuracy: the smallest set of effects. */
+static int find_least(Compiler *c, EffectStudy *s) {
+  char *end;
+  Measured *measured = NULL;
+  s->accuracy = strtod(c->o.accuracy, &end);
+  if (*end || !(s->accuracy > 0)) return fail_usage(arena_printf(c->arena, "--accuracy %s: a difference that does not matter, relative and positive; for example 1e-6", c->o.accuracy));
+  if (!(s->error <= s->accuracy / 10)) {
+    fprintf(stderr, "lagc: --accuracy %g: the error of integration, %.2g, is not well below it; add --tol with a smaller number, or --step\n", s->accuracy, s->error);
+    return STATUS_RUN;
+  }
+  for (EffectSets sets = effects_try(s, NULL, NULL); sets.n;) {
+    int status = run_variants(c, s, &sets, "runs", &measured);
+    if (status != STATUS_OK) return status;
+    EffectSets next = effects_try(s, &sets, measured);
+    sets = next;
+  }
+  return STATUS_OK;
+}
+
+static int do_effects(Compiler *c) {
+  int status = prepare_run(c);
+  Model *m = status == STATUS_OK ? model_build(c->ast, &(ModelChoice){.scene = c->o.scene, .defines = c->o.defines.at, .ndefines = c->o.defines.n}) : NULL;
+  EffectStudy *s = m ? effects_plan(m) : NULL;
+  if (!s) return status == STATUS_OK ? STATUS_MODEL : status;
+  status = run_variants(c, s, &s->variants, "report", &s->measured);
+  if (status == STATUS_OK && c->o.accuracy) status = find_least(c, s);
+  if (status != STATUS_OK) return status;
+  StrBuf out = strbuf(c->arena);
+  if (c->o.json) effects_json(s, &out);
+  else effects_text(s, &out);
+  return write_out(c, NULL, &out);
+}
+
+/* An expectation, or a symmetry, is about the model without effects, or, inside an effect, with that effect and what
  * it requires: scenes have no part in it. */
-static void check_expects(Compiler *c, ExpectResults *results) {
-  EffectList where = model_expecting_effects(c->ast);
+static void check_claims(Compiler *c, ExpectResults *results, StrBuf *out) {
+  EffectList where = model_claiming_effects(c->ast);
   Eqns **e = ARENA_ARRAY(c->arena, Eqns *, where.n + 1);
   for (uint32_t i = 0; i < where.n; i++) e[i] = derive(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
+  for (uint32_t i = 0; i < where.n; i++) {
+    if (!e[i]) continue;
+    charges_judge(e[i], where.at[i]);
+    charges_print(e[i], where.at[i], out);
+  }
   for (uint32_t i = 0; i < where.n; i++)
     if (e[i]) expects_check(e[i], where.at[i], c->o.allow_numeric, results);
 }
 
-static const char *effects_text(Compiler *c, const Model *m) {
+static const char *with_effects(Compiler *c, const Model *m) {
   StrBuf b = strbuf(c->arena);
   for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(&b, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
   return sb_text(&b);
@@ -434,21 +520,26 @@ static int do_check(Compiler *c) {
     if (c->o.scene && strcmp(c->o.scene, scenes.at[i]) != 0) continue;
     Eqns *e = derive_scene(c, scenes.at[i]);
     if (!e) continue;
-    if (!out.n) show_facts(e, &out);
+    if (!out.n) {
+      show_facts(e, &out);
+      show_cyclic(e, &out);
+    }
     collect_units(c, e->m, &found);
-    if (freedom_show(e, &out)) sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], effects_text(c, e->m));
+    if (!freedom_show(e, &out)) continue;
+    sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], with_effects(c, e->m));
+    if (e->m->effects.n) charges_show_broken(e, &out);
   }
   if (c->o.scene && !out.n) derive_scene(c, c->o.scene); /* says that there is no such scene */
   EffectList unused = model_unused_effects(c->ast);
   for (uint32_t i = 0; i < unused.n && !c->o.scene; i++) {
-    Eqns *e = derive_with(c, NULL, unused.at[i]);
+    Eqns *e = derive(c, &(ModelChoice){.bare = 1, .also = unused.at[i]});
     if (!e) continue;
     collect_units(c, e->m, &found);
     sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);
   }
   list_units(&found, &out);
   if (c->diags->errors) return STATUS_MODEL; /* expectations of a wrong model say nothing */
-  check_expects(c, &results);
+  check_claims(c, &results, &out);
   expects_print(&results, c->sources, &out);
   int status = write_out(c, NULL, &out);
   return c->diags->errors ? STATUS_MODEL : status;
@@ -456,7 +547,7 @@ static int do_check(Compiler *c) {
 
 /* The runtime has them: asked with `--method help` it prints its table, with `--method "help NAME"` one of them. */
 static int help_methods(Compiler *c, const char *name) {
-  const char *error = NULL, *path = methods_program(c->arena, c->argv0, 1, &error);
+  const char *error = NULL, *path = methods_program(c->arena, c->argv0, !c->o.no_gsl, &error);
   char *argv[] = {"lagc", "--method", name ? arena_printf(c->arena, "help %s", name) : "help", NULL};
   if (!path) return fail_usage(error);
   execv(path, argv);
@@ -493,13 +584,22 @@ static int do_command(Compiler *c) {
   switch (c->o.command) {
     case CMD_CHECK: return do_check(c);
     case CMD_DERIVE: return do_derive(c);
+    case CMD_NOETHER: return do_noether(c);
     case CMD_EMIT: return method_is_known(c) ? do_emit(c) : STATUS_USAGE;
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return method_is_known(c) ? do_build(c) : STATUS_USAGE;
     case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: case CMD_LYAPUNOV: case CMD_COST: return do_run(c);
+    case CMD_EFFECTS: return do_effects(c);
     case CMD_METHODS: case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
   }
   return STATUS_USAGE;
+}
+
+/* Numbers are folded as doubles. */
+static int folds_digits(const Compiler *c) {
+  if (!c->o.fix || !options_more_digits(&c->o)) return 1;
+  fail_usage("--fix makes doubles of parameters: leave it out where --precision has more digits");
+  return 0;
 }
 
 static int compile(Compiler *c) {
@@ -507,7 +607,7 @@ static int compile(Compiler *c) {
   c->diags = diags_new(c->arena, c->sources);
   c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
   int status = read_model(c);
-  if (status == STATUS_OK) status = do_command(c);
+  if (status == STATUS_OK) status = folds_digits(c) ? do_command(c) : STATUS_USAGE;
   print_messages(c);
   return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
 }
@@ -518,7 +618,7 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   if (!options_read(c->arena, argc, argv, &c->o, &error)) return fail_usage(error);
   if (c->o.command == CMD_HELP) return do_help(c);
   if (c->o.command == CMD_COMPLETION || c->o.command == CMD_COMPLETE) return do_completion(c);
-  if (c->o.command == CMD_METHODS) return do_methods(c);
+  if (c->o.command == CMD_METHODS) return help_methods(c, NULL);
   if (c->o.command == CMD_VERSION) {
     puts("lagc " LAGC_VERSION);
     return fflush(stdout) == 0 ? STATUS_OK : fail_usage("cannot write standard output");

@@ -256,8 +256,10 @@ int picture_prepare(Picture *p, Ast *ast, const Options *o, const char **error) 
   int ok = 1;
   p->scene = o->scene ? intern(ast->names, o->scene) : NULL;
   const char *self = o->command == CMD_PLOT ? "lagc plot" : o->command == CMD_ANIMATE ? "lagc animate"
-                   : o->command == CMD_MODES ? "lagc modes" : o->command == CMD_LYAPUNOV ? "lagc lyapunov" : o->command == CMD_COST ? "lagc cost" : "lagc run";
+                   : o->command == CMD_MODES ? "lagc modes" : o->command == CMD_LYAPUNOV ? "lagc lyapunov" : o->command == CMD_COST ? "lagc cost"
+                   : o->command == CMD_EFFECTS ? "lagc effects" : "lagc run";
   argument(&k, self, NULL); /* what its messages begin with */
+  if (o->command == CMD_EFFECTS) argument(&k, "--effects", "report");
   for (uint32_t i = 0; i < o->observe.n; i++) ok &= ask(&k, "--observe", o->observe.at[i]) != NULL;
   ok = ok && prepare_section(&k, error);
   if (o->command == CMD_PLOT) ok = ok && prepare_plot(&k, error);

@@ -55,7 +55,16 @@ static int take(Ast *ast, const char *setting, GivenList *given) {
   return one.what && one.value;
 }
 
-int settings_inputs(Ast *ast, Options *o, GivenList *given, const char **error) {
+/* Whether a setting, up to its `=`, says how a rotation starts: R, R[2], R.w, omega(R). */
+static int starts_rotation(const Ast *ast, const char *name) {
+  const char *inner = strncmp(name, "omega(", 6) == 0 ? name + 6 : name;
+  while (*inner == ' ') inner++;
+  size_t n = strcspn(inner, "[.') ");
+  const AstStmt *st = find_declared(ast, STMT_COORD, arena_strndup(ast->arena, inner, n));
+  return st && st->type && strcmp(st->type, "rotation") == 0 && !strchr(inner, '\'');
+}
+
+int settings_compiled(Ast *ast, Options *o, GivenList *given, const char **error) {
   uint32_t kept = 0;
   int ok = 1;
   for (uint32_t i = 0; i < o->rest.n; i++) {
@@ -65,7 +74,8 @@ int settings_inputs(Ast *ast, Options *o, GivenList *given, const char **error) 
       *error = arena_printf(ast->arena, "%s: `%s` is a constant, fixed when compiling: write -D %s", arg, name, arg);
       return 0;
     }
-    if (eq && eq[1] && !is_number(eq + 1) && find_declared(ast, STMT_INPUT, name)) ok &= take(ast, arg, given);
+    int formula = eq && eq[1] && !is_number(eq + 1) && find_declared(ast, STMT_INPUT, name);
+    if (formula || (eq && eq[1] && starts_rotation(ast, name))) ok &= take(ast, arg, given);
     else o->rest.at[kept++] = arg;
   }
   o->rest.n = kept;

@@ -383,6 +383,9 @@ static int simulate(App *app)
   if ((rc = open_output(app)) != 0) {
     return rc;
   }
+  if (!app->args.quiet || app->args.json || app->args.save) {
+    lag_sim_balance(app->sim); /* of a resumed run it is settled */
+  }
   note_tables(app);
   lag_sim_on_step(app->sim, app_after_step, app);
   lag_sim_on_event(app->sim, on_event, app);
@@ -406,6 +409,8 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     rc = app_modes(&app);
   } else if (rc == 0 && app.args.lyapunov) {
     rc = app_lyapunov(&app);
+  } else if (rc == 0 && app.args.effects) {
+    rc = app_effects(&app);
   } else if (rc == 0 && (app.args.cost || app.args.reference)) {
     rc = app_cost(&app);
   } else if (rc == 0) {

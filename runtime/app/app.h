@@ -18,6 +18,7 @@ typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section;
   const char *transient, *exponents; /* of --lyapunov */
   const char *target, *longest, *methods, *against; /* of --cost */
+  const char *effects; /* --effects: which measurements of a program that lagc effects made */
   int json, sketch, quiet, help, trace, no_rods, modes, tangent, lyapunov, cost, reference;
   char **sets; /* name=value, in order */
   int nsets;
@@ -77,6 +78,7 @@ int app_error(const Args *a, const char *format, ...);
 int app_choose(App *app);
 int app_choose_start(App *app);
 /* The name=value of the command line, into app->sim. */
+int app_set_value(App *app, const char *text); /* one of them, name=value */
 int app_set_values(App *app);
 /* Tolerance and method, for a simulation that has none of its own yet. 0, or EXIT_USAGE after a message. */
 int app_choose_method(App *app);
@@ -129,11 +131,18 @@ int tangent_row(App *app);
 void report_tangent(App *app, FILE *f);
 void report_tangent_json(App *app, FILE *f);
 
+/* charges.c: what the report says of the energy and of other charges; in JSON also of monitors. */
+void report_charges(const App *app, FILE *f);
+void report_charges_json(const App *app, FILE *f);
+
 /* lyapunov.c: --lyapunov. Returns the exit status. */
 int app_lyapunov(App *app);
 
 /* modes.c: --modes. Returns the exit status. */
 int app_modes(App *app);
+
+/* effects.c: --effects. Returns the exit status. */
+int app_effects(App *app);
 
 /* cost.c: --cost and --reference. Returns the exit status. */
 int app_cost(App *app);

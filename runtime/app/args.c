@@ -67,7 +67,7 @@ static const Option options[] = {
     {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
     {"tangent", offsetof(Args, tangent), 1}, {"modes", offsetof(Args, modes), 1},
     {"lyapunov", offsetof(Args, lyapunov), 1}, {"transient", offsetof(Args, transient), 0}, {"exponents", offsetof(Args, exponents), 0},
-    {"help", offsetof(Args, help), 1},
+    {"effects", offsetof(Args, effects), 0}, {"help", offsetof(Args, help), 1},
     {"cost", offsetof(Args, cost), 1},     {"reference", offsetof(Args, reference), 1},
     {"target", offsetof(Args, target), 0}, {"longest", offsetof(Args, longest), 0},
     {"methods", offsetof(Args, methods), 0}, {"against", offsetof(Args, against), 0},
@@ -158,14 +158,15 @@ static int one_argument(Args *a, int argc, char **argv, int *i)
 /* What takes the place of a run has no use for most of its options. */
 static int check_analysis(const Args *a)
 {
-  enum { MODES = 1, COST = 2, LYAPUNOV = 4 };
-  const int what = a->modes ? MODES : a->cost || a->reference ? COST : a->lyapunov ? LYAPUNOV : 0;
+  enum { MODES = 1, COST = 2, LYAPUNOV = 4, EFFECTS = 8 };
+  const int what = a->modes ? MODES : a->cost || a->reference ? COST : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : 0;
   const struct {
     const char *name;
     int given;
     int takes; /* what it has a meaning for */
-  } others[] = {{"--method", a->method != NULL, LYAPUNOV}, {"--tol", a->tol != NULL, LYAPUNOV}, {"--step", a->step != NULL, LYAPUNOV},
-                {"--until", a->until != NULL, COST | LYAPUNOV}, {"--every", a->every != NULL, 0}, {"-o", a->out != NULL, LYAPUNOV},
+  } others[] = {{"--method", a->method != NULL, LYAPUNOV | EFFECTS}, {"--tol", a->tol != NULL, LYAPUNOV | EFFECTS},
+                {"--step", a->step != NULL, LYAPUNOV | EFFECTS},
+                {"--until", a->until != NULL, COST | LYAPUNOV | EFFECTS}, {"--every", a->every != NULL, 0}, {"-o", a->out != NULL, LYAPUNOV},
                 {"--svg", a->svg != NULL, COST | LYAPUNOV}, {"--html", a->html != NULL, 0}, {"--section", a->section != NULL, 0},
                 {"--tangent", a->tangent, 0}, {"--sketch", a->sketch, 0}, {"--events", a->events != NULL, 0},
                 {"--save-state", a->save != NULL, 0}, {"--resume", a->resume != NULL, 0}};
@@ -175,6 +176,7 @@ static int check_analysis(const Args *a)
       return app_error(a, "%s has no meaning for %s", others[i].name,
                        what == COST ? "what accuracy costs: all methods are run, at many tolerances and steps; --methods NAME,NAME takes some of them"
                        : what == MODES ? "modes of small motion: they take name=value and --json"
+                       : what == EFFECTS ? "what effects do: it takes name=value, --until and a method"
                                        : "Lyapunov exponents: they take name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
     }
   }

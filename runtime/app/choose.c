@@ -209,7 +209,42 @@ static int has_word(const char *words, const char *word, size_t n)
   return 0;
 }
 
-static int set_value(App *app, const char *text)
+/* Does `name` say a parameter `word[n]`, a member or a component of it, or the last part of `drag.c`? */
+static int names_it(const char *name, const char *word, size_t n)
+{
+  for (size_t k = 1; name[k - 1]; k++) {
+    int whole = name[k] == '\0' || name[k] == '[' || name[k] == '.';
+    if (whole && k <= n && strncmp(name, word + n - k, k) == 0 && (k == n || word[n - k - 1] == '.')) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* A parameter that was made a number: exit status after a message with the command that makes a program that takes it. 0: it is none. */
+static int refuse_fixed(const App *app, const char *name)
+{
+  const char *fixed = app->scene->model->fixed;
+  char rest[400] = "";
+  int found = 0;
+
+  for (const char *s = fixed ? fixed : ""; *s; s += strspn(s, " ")) {
+    size_t n = strcspn(s, " "), used = strlen(rest);
+    if (names_it(name, s, n)) {
+      found = 1;
+    } else if (used + n + 2 < sizeof rest) {
+      snprintf(rest + used, sizeof rest - used, "%s%.*s", used ? "," : " --fix ", (int)n, s);
+    }
+    s += n;
+  }
+  if (!found) {
+    return 0;
+  }
+  return app_error(&app->args, "%s is a number in this program (--fix); this builds one that takes it: lagc build %s -o SIMULATOR%s", name,
+                   app->program->source, rest);
+}
+
+int app_set_value(App *app, const char *text)
 {
   const Args *a = &app->args;
   const char *eq = strchr(text, '='), *dot = memchr(text, '.', (size_t)(eq - text));
@@ -223,6 +258,9 @@ static int set_value(App *app, const char *text)
                      "%s: effect %.*s is not in scene %s of this build; let the scene use it, then this builds and runs "
                      "it: lagc run %s %s",
                      name, (int)(dot - text), text, app->scene->name, app->program->source, app->scene->name);
+  }
+  if (refuse_fixed(app, name)) {
+    return EXIT_USAGE;
   }
   snprintf(example, sizeof example, "%s=1.5", name);
   if (!args_number(a, name, eq + 1, example, &x)) {
@@ -294,7 +332,7 @@ static int same_values(App *app)
       memset(fresh->fixed, 1, np);
       memcpy(fresh->hold, run->hold, nu * sizeof(double));
       memcpy(fresh->start, run->begin, n * sizeof(double));
-      rc = set_value(app, a->sets[i]);
+      rc = app_set_value(app, a->sets[i]);
     }
     if (rc == 0 && (memcmp(fresh->p, run->p, np * sizeof(double)) != 0 || memcmp(fresh->begin, run->begin, n * sizeof(double)) != 0 ||
                     memcmp(fresh->hold, run->hold, nu * sizeof(double)) != 0)) {
@@ -359,7 +397,7 @@ int app_set_values(App *app)
   int rc = 0;
 
   for (int i = 0; i < a->nsets && rc == 0; i++) {
-    rc = set_value(app, a->sets[i]);
+    rc = app_set_value(app, a->sets[i]);
   }
   return rc;
 }

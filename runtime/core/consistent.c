@@ -219,16 +219,27 @@ static int reach(Start *w)
   return 0;
 }
 
-/* The free components: those that nobody set, or all. */
-static void choose_free(Start *w, int all)
+/* What gives way to constraints, in this order: components that nobody set, rotations of which nothing is said, all. */
+enum { UNSET, ROTATIONS, ALL };
+
+static int yields_at(const Start *w, int i)
 {
   const lag_scene *c = w->sim->scene;
+
+  if (!isnan(w->sim->start[i]) || (c->given && c->given[i] == 1)) {
+    return ALL;
+  }
+  return c->given && c->given[i] ? ROTATIONS : UNSET;
+}
+
+/* The free components: those that give way at this stage. */
+static void choose_free(Start *w, int stage)
+{
   int at = w->holonomic ? 0 : w->nq;
 
   w->nfree = 0;
   for (int i = 0; i < w->nq; i++) {
-    int given = (c->given && c->given[at + i]) || !isnan(w->sim->start[at + i]);
-    if (all || !given) {
+    if (yields_at(w, at + i) <= stage) {
       w->free[w->nfree++] = i;
     }
   }
@@ -246,7 +257,8 @@ static int refuse(Start *w, int exactly)
   }
   const lag_constraint *c = &w->of->of[k];
   if (!isfinite(w->residual[k])) {
-    return lag_fail(w->sim, LAG_EINVAL, "the constraint %s (line %d) has no value at the start: start where it has one", c->name, c->line);
+    char line[32];
+    return lag_fail(w->sim, LAG_EINVAL, "the constraint %s%s has no value at the start: start where it has one", c->name, lag_line_of(c, line));
   }
   lag_say_constraint(w->pb, k, w->holonomic, fabs(w->residual[k]), "");
   if (exactly) {
@@ -298,7 +310,7 @@ static int is_flat_beside(Start *w, int k)
   size_t bytes = (size_t)w->pb->n * sizeof(double);
 
   memcpy(here, w->y, bytes);
-  choose_free(w, 1);
+  choose_free(w, ALL);
   for (int i = 0; i < w->nq; i++) {
     double far = lag_size_like(w->pb, here, i);
     w->y[i] += !is_held(w, i) ? 0 : 0.01 * (far > 0 ? far : 1) * (0.5 + fmod(0.618033988749894848 * (i + 1), 1));
@@ -314,6 +326,7 @@ static int is_flat_beside(Start *w, int k)
 static int check_derivatives(Start *w, int reached)
 {
   double *size = w->other;
+  char line[32];
 
   if (!slopes(w, size)) {
     return LAG_OK;
@@ -324,12 +337,12 @@ static int check_derivatives(Start *w, int reached)
       continue;
     }
     if (!isfinite(size[k]) && reached) {
-      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s (line %d) have no value where it holds: write it so that they have, "
-                      "x = 1 in place of sqrt(x - 1) = 0", c->name, c->line);
+      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s have no value where it holds: write it so that they have, "
+                      "x = 1 in place of sqrt(x - 1) = 0", c->name, lag_line_of(c, line));
     }
     if (is_flat(w, k, size) && (!reached || is_flat_beside(w, k))) {
-      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s (line %d) vanish where it holds, so that no force can hold it: write it "
-                      "so that they do not, x = 0 in place of x^2 = 0", c->name, c->line);
+      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s vanish where it holds, so that no force can hold it: write it "
+                      "so that they do not, x = 0 in place of x^2 = 0", c->name, lag_line_of(c, line));
     }
   }
   return LAG_OK;
@@ -365,9 +378,10 @@ static int settle(Start *w, int holonomic)
   if (w->sim->scene->exactly && !(off <= sqrt(DBL_EPSILON) / DBL_EPSILON)) {
     return refuse(w, 1);
   }
-  for (int all = 0; all < 2; all++) {
-    choose_free(w, all);
-    if (reach(w)) {
+  for (int stage = UNSET; stage <= ALL; stage++) {
+    int before = w->nfree;
+    choose_free(w, stage);
+    if ((stage == UNSET || w->nfree != before) && reach(w)) {
       return holonomic ? check_derivatives(w, 1) : LAG_OK;
     }
   }
@@ -428,6 +442,16 @@ static int rank(Start *w, double *marks)
   return r;
 }
 
+void lag_note_redundant(lag_sim *s)
+{
+  const lag_constraints *of = s->scene->model->constraints;
+
+  s->pb.redundant = 0;
+  for (int k = 0; of && k < of->n; k++) {
+    s->pb.redundant |= s->redundant[k] > 0;
+  }
+}
+
 /* What moved by less than a last digit of what has its unit did not move. */
 static void keep_rounding_out(const Start *w)
 {
@@ -482,6 +506,7 @@ int lag_consistent(lag_sim *s)
       memcpy(s->now, w.y, bytes);
       rc = lag_keep(s, s->scene->t0, s->now);
       s->run->rank = rank(&w, s->redundant);
+      lag_note_redundant(s);
     }
   }
   free(block);

@@ -9,7 +9,7 @@
 
 enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
 
-/* pb->held, laid out. */
+/* pb->held, laid out; behind it, a state for lag_rhs_prepare. */
 typedef struct Held {
   const lag_constraints *of;
   double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
@@ -23,7 +23,7 @@ size_t lag_held_room(const lag_model *m)
 {
   const lag_constraints *of = m->constraints;
 
-  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz) : 0;
+  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz + (2 * m->nq + m->nz)) : 0;
 }
 
 static Held layout(const lag_problem *pb)
@@ -182,20 +182,26 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
   return which;
 }
 
+const char *lag_line_of(const lag_constraint *c, char text[32])
+{
+  text[0] = '\0';
+  if (c->line > 0) {
+    snprintf(text, 32, " (line %d)", c->line);
+  }
+  return text;
+}
+
 void lag_say_constraint(lag_problem *pb, int k, int holonomic, double residual, const char *words)
 {
   const lag_constraint *c = &pb->model->constraints->of[k];
   const char *level = c->holonomic == holonomic ? "" : holonomic ? "*s" : c->unit[0] ? "/s" : "1/s";
-  char line[32] = "", unit[64];
+  char line[32], unit[64];
 
-  if (c->line > 0) {
-    snprintf(line, sizeof line, " (line %d)", c->line);
-  }
   snprintf(unit, sizeof unit, "%s%s%s", c->unit[0] || level[0] ? " " : "", c->unit[0] || level[0] != '*' ? c->unit : "1", level);
   if (isnan(residual)) {
-    snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, line, words);
+    snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, lag_line_of(c, line), words);
   } else {
-    snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s", c->name, line, residual, unit, words);
+    snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s", c->name, lag_line_of(c, line), residual, unit, words);
   }
   pb->detail = pb->words;
 }
@@ -277,6 +283,21 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
   return worst <= 0x1p10;
 }
 
+/* Whether the residuals of y, of which w->c and w->r are left as they are, are what the last digits of their terms make. */
+static int is_clean(lag_problem *pb, const Held *w, double t, const double *y, int holonomic)
+{
+  const double *residual = holonomic ? w->c : w->r;
+  int n = holonomic ? w->of->nholonomic : w->of->n, clean = 1;
+
+  if (lag_constraint_terms(pb, t, y, holonomic, w->g) || lag_residuals(pb, t, y, w->c, w->r)) {
+    return 0;
+  }
+  for (int k = 0; k < n; k++) {
+    clean &= fabs(residual[k]) <= 4 * DBL_EPSILON * w->g[k];
+  }
+  return clean;
+}
+
 /* Positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of y, before and after. */
 static int newton(lag_problem *pb, const Held *w, double t, double *y, double *lost, int holonomic)
 {
@@ -288,12 +309,14 @@ static int newton(lag_problem *pb, const Held *w, double t, double *y, double *l
     int busy = 0;
     for (int k = 0; k < n; k++) {
       busy |= !(residual[k] == 0.0);
+    }
+    if (!busy || (turn > holonomic && is_clean(pb, w, t, y, holonomic))) {
+      return LAG_OK; /* the latter: coordinates that are 0 but for rounding never stop moving by more than their last digits */
+    }
+    for (int k = 0; k < n; k++) {
+      w->before[k] = residual[k];
       w->g[k] = -residual[k];
     }
-    if (!busy) {
-      return LAG_OK;
-    }
-    memcpy(w->before, residual, (size_t)n * sizeof *residual);
     int rc = lag_least_change(pb, t, y, holonomic, w->g, w->d, w->force);
     if (rc || lag_not_finite(nq, w->d) >= 0) {
       return rc < 0 ? rc : unmet(pb, w, t, y, holonomic);
@@ -334,21 +357,29 @@ int lag_project(lag_problem *pb, double t, double *y, double *lost)
   return rc < LAG_ESINGULAR ? LAG_EMODEL : rc;
 }
 
-/* The coordinate that a projection from q to y has moved farther than a step from y0 led, or -1. What is that small beside what has its unit is
- * none: near a singular position rounding moves that far. */
+/* How far coordinate i is, or has been, from 0; at least 1e-10 of its unit, of which there may be nothing. */
+static double extent(const lag_problem *pb, const double *y0, const double *y, int i)
+{
+  double begin = pb->begin ? lag_size_like(pb, pb->begin, i) : 0;
+
+  return fmax(fmax(lag_size_like(pb, y0, i), lag_size_like(pb, y, i)), fmax(begin, 1e-10));
+}
+
+/* The coordinate that a projection from q to y has moved farther than a step from y0 led, twice over, or -1. What is small beside its extent
+ * is none: near a singular position rounding moves that far, and what lies at rest is moved by rounding alone. */
 static int leaps(const lag_problem *pb, const double *y0, const double *q, const double *y)
 {
   const double small = 1e-6;
 
   for (int i = 0; i < pb->nq; i++) {
     double moved = fabs(y[i] - q[i]), led = 0;
-    if (!(moved > fabs(q[i] - y0[i]) + small * fabs(y[i]))) {
+    if (!(moved > 2 * fabs(q[i] - y0[i]) + small * fabs(y[i]))) {
       continue;
     }
     for (int j = 0; j < pb->nq; j++) {
       led = strcmp(pb->model->q[i].unit, pb->model->q[j].unit) == 0 ? fmax(led, fabs(q[j] - y0[j])) : led;
     }
-    if (moved > led + small * fmax(lag_size_like(pb, y, i), lag_size_like(pb, y0, i))) {
+    if (moved > 2 * led + small * extent(pb, y0, y, i)) {
       return i;
     }
   }

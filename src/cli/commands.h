@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 typedef enum {
-  CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES, CMD_LYAPUNOV, CMD_COST, CMD_METHODS, CMD_BUILD, CMD_HEADER, CMD_EMIT,
+  CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_NOETHER, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES, CMD_LYAPUNOV, CMD_COST, CMD_EFFECTS, CMD_METHODS, CMD_BUILD, CMD_HEADER, CMD_EMIT,
   CMD_HELP, CMD_COMPLETION, CMD_VERSION, CMD_COMPLETE, CMD_COUNT
 } Command;
 
@@ -28,6 +28,7 @@ typedef enum {
   TAKES_CHOICE,  /* hint: the choices */
   TAKES_CHOICES, /* the same, with commas between several */
   TAKES_METHOD,
+  TAKES_PARAMS,  /* names of parameters, with commas between several, or the hint */
   TAKES_EXPR,    /* of the model */
   TAKES_EXPRS,   /* the same; may be given several times: a list */
   TAKES_DEFINE   /* CONST=VALUE */

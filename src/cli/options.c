@@ -76,7 +76,7 @@ static int set_value(Arena *a, Options *o, const OptionRow *row, const char *val
       if (!check_choices(a, row, value, error)) return 0;
       break;
     case TAKES_EXPRS: vec_push(a, (OptionTexts *)field, value); return 1;
-    case TAKES_TEXT: case TAKES_NUMBER: case TAKES_FILE: case TAKES_METHOD: case TAKES_EXPR: break;
+    case TAKES_TEXT: case TAKES_NUMBER: case TAKES_FILE: case TAKES_METHOD: case TAKES_PARAMS: case TAKES_EXPR: break;
   }
   *(const char **)field = value;
   return 1;

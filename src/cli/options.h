@@ -20,11 +20,14 @@ typedef struct {
   const char *topic;       /* of help; the shell of completion */
   int help;                /* --help: then command is CMD_HELP */
   int allow_numeric;       /* check --allow-numeric */
-  int no_gsl, ops;
+  int no_gsl, ops, hamiltonian;
   const char *precision;   /* of simulators: double, long, quad; NULL: double */
   const char *math;        /* --math own|libm */
   const char *with;        /* --with linear: parts of a model that are emitted only where something needs them */
   VEC(Define) defines;
+  const char *fix;         /* --fix g,l: parameters that become numbers */
+  const char *accuracy;    /* effects --accuracy */
+  int json;                /* of effects; others pass it on */
   OptionTexts rest;        /* run, plot, animate: what the simulator gets, the scene too; complete: the words */
   OptionTexts observe;     /* run --observe: expressions */
   const char *section;     /* run, plot --section */

@@ -88,7 +88,9 @@ static char *read_fd(Arena *a, int fd) {
   return arena_strdup(a, sb_text(&b));
 }
 
-int toolchain_run(Arena *a, char *const *argv, char **said) {
+int toolchain_run(Arena *a, char *const *argv, char **said) { return toolchain_run_as(a, argv[0], argv, said); }
+
+int toolchain_run_as(Arena *a, const char *path, char *const *argv, char **said) {
   int pipe_fd[2];
   if (pipe(pipe_fd) != 0) return -1;
   pid_t pid = fork();
@@ -97,7 +99,7 @@ int toolchain_run(Arena *a, char *const *argv, char **said) {
     dup2(pipe_fd[1], 2);
     close(pipe_fd[0]);
     close(pipe_fd[1]);
-    execvp(argv[0], argv);
+    execvp(path, argv);
     _exit(127);
   }
   close(pipe_fd[1]);

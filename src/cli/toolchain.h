@@ -38,6 +38,8 @@ Words toolchain_words(Arena *a, const char *cc);
 
 /* Runs a program; its output and messages go to *said. Returns its exit status, or -1. */
 int toolchain_run(Arena *a, char *const *argv, char **said);
+/* The same of the program at `path`, whatever its argv[0] is. */
+int toolchain_run_as(Arena *a, const char *path, char *const *argv, char **said);
 
 /* Runs the program at path: what it prints becomes the standard input of this one, from its beginning; its messages are
  * dropped. Its exit status, or -1; then the standard input is as it was. */

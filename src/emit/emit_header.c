@@ -122,6 +122,7 @@ static void write_head(const Header *h, const char *equations) {
   const IrUnit *u = h->u;
   sb_printf(h->out, "/* %s.h: %s\n *\n", comment_text(h->a, h->file), comment_text(h->a, u->doc[0] ? u->doc : u->name));
   sb_printf(h->out, " * Made by lagc from the model %s, scene %s; effects in use: %s.\n", u->name, h->scene->name, u->effects[0] ? u->effects : "none");
+  if (u->fixed[0]) sb_printf(h->out, " * Parameters that are numbers here: %s.\n", u->fixed_values);
   sb_printf(h->out, " * One evaluation of the equations of motion: %s.\n", ops_text(u->accel, h->a));
   sb_printf(h->out, " * %s\n", cmath_text(u));
   sb_puts(h->out, " * C99 or C++, <math.h> only; allocates nothing, keeps nothing. All values are in SI units.\n");

@@ -19,7 +19,4 @@ void emit_accel(const IrUnit *u, StrBuf *out);
  * a simulator. names[i] is the name given to units[i] above. gsl: link the gsl-* methods in. */
 void emit_program(const IrUnit *const *units, const char *const *names, uint32_t n, int gsl, StrBuf *out);
 
-/* The same without a model: it can say which methods there are. */
-void emit_bare_program(int gsl, StrBuf *out);
-
 #endif

@@ -294,6 +294,8 @@ void header_implementation(const Header *h) {
   inputs(h);
   accel(h);
   if (header_has(h, FN_ENERGY)) state_function(h, h->u->energy, api(h, FN_ENERGY), e, 0);
+  if (header_has(h, FN_CHARGES)) state_function(h, h->u->charge_values, api(h, FN_CHARGES), out, 1);
+  if (header_has(h, FN_POWERS)) state_function(h, h->u->charge_powers, api(h, FN_POWERS), out, 1);
   if (header_has(h, FN_OBSERVE)) state_function(h, h->scene->observe_plain, api(h, FN_OBSERVE), out, 1);
   if (header_has(h, FN_EVENTS)) state_function(h, h->u->event_values, api(h, FN_EVENTS), g, 1);
   act(h);

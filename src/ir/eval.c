@@ -21,6 +21,8 @@ static Real call1(const char *name, Real x) {
   return NAN;
 }
 
+long double prog_call1(const char *name, long double x) { return call1(name, x); }
+
 static Real call2(const char *name, Real x, Real y) {
   if (strcmp(name, "pow") == 0) return powl(x, y);
   if (strcmp(name, "atan2") == 0) return atan2l(x, y);

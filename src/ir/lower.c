@@ -69,6 +69,8 @@ static int by_rank(const void *a, const void *b) {
 
 static Slot multiply(Lower *l, Factor *f, uint32_t n) {
   if (!n) return 0;
+  for (uint32_t i = 0; i < n; i++)
+    if (l->p->reckons && prog_is_number(l->p, f[i].slot)) f[i].rank = 0;
   qsort(f, n, sizeof *f, by_rank);
   Slot r = 0;
   for (uint32_t i = 0; i < n; i++) {
@@ -100,7 +102,7 @@ static Slot lower_prod(Lower *l, Expr e) {
 static Slot scaled(Lower *l, Slot t, Num c) {
   c = num_abs(c);
   if (num_is_one(c)) return t;
-  int dyadic = !num_is_exact(c) || (c.den & (c.den - 1)) == 0;
+  int dyadic = l->p->reckons || !num_is_exact(c) || (c.den & (c.den - 1)) == 0;
   int64_t more = !dyadic && l->denominator && l->denominator % c.den == 0 ? l->denominator / c.den : 1;
   Slot up = number(l, dyadic ? c : num_int(c.num * more)), down = dyadic ? 0 : number(l, num_int(c.den * more));
   const Ins *i = &l->p->ins.at[t];
@@ -192,6 +194,12 @@ static Slot load(Lower *l, IrArray array, const Symbol *s) {
   return prog_ins(l->p, (Ins){.op = IR_LOAD, .array = array, .index = s->index, .name = s->name});
 }
 
+static Slot load_param(Lower *l, const Symbol *s) {
+  const Param *p = &l->e->m->params.at[s->index];
+  if (p->fixed) return prog_num(l->p, p->number);
+  return prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_P, .index = p->place, .name = s->name});
+}
+
 static Slot lower_symbol(Lower *l, Expr e) {
   const Symbol *s = expr_sym_of(l->g, e);
   switch (s->kind) {
@@ -199,9 +207,9 @@ static Slot lower_symbol(Lower *l, Expr e) {
     case SYM_COORD: return load(l, ARR_Q, s);
     case SYM_VEL: return load(l, ARR_V, s);
     case SYM_STATE: return load(l, ARR_Z, s);
-    case SYM_PARAM: return load(l, ARR_P, s);
+    case SYM_PARAM: return load_param(l, s);
     case SYM_INPUT: return load(l, ARR_U, s);
-    case SYM_CONST: return prog_ins(l->p, (Ins){.op = IR_PI});
+    case SYM_CONST: return l->p->reckons ? prog_num(l->p, num_double(3.14159265358979323846)) : prog_ins(l->p, (Ins){.op = IR_PI});
     case SYM_ACC: case SYM_RATE: case SYM_MULTIPLIER: case SYM_LOCAL: break; /* set before: see lower_with_accelerations */
   }
   return 0;
@@ -263,7 +271,9 @@ void lower_roots(Lower *l, const Expr *roots, uint32_t n) {
 
 Lower lower_new(const Eqns *e) {
   Arena *a = e->m->arena;
-  return (Lower){.e = e, .g = e->g, .p = prog_new(a), .slots = expr_map(a), .circular = expr_map(a)};
+  Prog *p = prog_new(a);
+  p->reckons = e->m->nfixed > 0;
+  return (Lower){.e = e, .g = e->g, .p = p, .slots = expr_map(a), .circular = expr_map(a)};
 }
 
 /* Sums over pairs as loops, in programs of as many instructions as get loops. */
@@ -350,8 +360,7 @@ IrSystem lower_system(const Eqns *e) {
   return sys;
 }
 
-/* Expressions that may contain q'' and z': the accelerations are computed first. */
-static void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
+void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   const Model *m = l->e->m;
   int needed = 0;
   for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_MULTIPLIER);
@@ -368,6 +377,8 @@ static void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   }
   lower_roots(l, roots, n);
 }
+
+Prog *lower_seldom(const Lower *l) { return finished(l, ROLL_SELDOM_FROM); }
 
 /* q'' is an argument here. */
 static void load_accelerations(Lower *l) {
@@ -426,7 +437,7 @@ Prog *lower_energy(const Eqns *e) {
   lower_with_accelerations(&l, roots, 2); /* of first order velocities are rates */
   prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), "energy p q' - L");
   prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
-  return finished(&l, ROLL_SELDOM_FROM);
+  return lower_seldom(&l);
 }
 
 Prog *lower_variation(const Eqns *e, const Variation *x) {
@@ -522,7 +533,7 @@ static Prog *outputs(const Eqns *e, int plain_only) {
   }
   lower_with_accelerations(&l, roots, n);
   for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), of[i]->name);
-  return finished(&l, ROLL_SELDOM_FROM);
+  return lower_seldom(&l);
 }
 
 Prog *lower_outputs(const Eqns *e) { return outputs(e, 0); }
@@ -540,7 +551,7 @@ Prog *lower_param(const Eqns *e, uint32_t i) {
   Lower l = lower_new(e);
   const Param *p = &e->m->params.at[i];
   lower_roots(&l, &p->value, 1);
-  prog_store(l.p, 0, i, lower_slot(&l, p->value), p->name);
+  prog_store(l.p, 0, p->place, lower_slot(&l, p->value), p->name);
   return prog_tidy(l.p);
 }
 

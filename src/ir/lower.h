@@ -16,6 +16,8 @@ Prog *lower_accel(const Eqns *e, int libm); /* out 0: a[nq], out 1: zd[nz]; libm
 IrSystem lower_system(const Eqns *e); /* M, f and the rates of the states, with the formulas of inputs put in */
 IrSystem lower_system(const Eqns *e); /* the same before it is solved, and solved, with the formulas of inputs put in */
 Prog *lower_energy(const Eqns *e);  /* out 0: e[2] */
+Prog *lower_charges(const Eqns *e); /* out 0: value and scale of each charge but the energy */
+Prog *lower_powers(const Eqns *e);  /* out 0: by what each charge changes, the energy first; NULL: all are conserved */
 Prog *lower_variation(const Eqns *e, const Variation *x); /* out 0, 1, 2: dL/dq[nq], dL/dq'[nq], Q[nq] */
 Prog *lower_second(const Eqns *e, const Variation *x);    /* out 0: h[number of entries] */
 Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
@@ -37,7 +39,7 @@ Prog *lower_param(const Eqns *e, uint32_t i); /* out 0: p[i], of earlier paramet
 Prog *lower_start(const Eqns *e);   /* out 0, 1, 2: q, v, z; only what a start gives */
 
 /* The unit of these equations without scenes, and a scene added to it: e must come from the same
- * file with the same effects in use and the same inputs. source: the file's path as the user gave it; libm: sin and cos
+ * file with the same effects in use, the same inputs and the same numbers in place of parameters. source: the file's path as the user gave it; libm: sin and cos
  * are the C library's. */
 IrUnit *unit_new(const Eqns *e, const char *source, int libm);
 int unit_shares(const IrUnit *a, const IrUnit *b); /* whether scenes of b fit into a */

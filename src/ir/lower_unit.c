@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "ir/lower.h"
+#include "mech/charges.h"
 
 static IrVar var_of(Name name, const Unit *u, int periodic, AstSign sign) {
   static const int signs[] = {[SIGN_ANY] = 0, [SIGN_GT] = 1, [SIGN_GE] = 2, [SIGN_LT] = -1, [SIGN_LE] = -2};
@@ -20,6 +21,22 @@ static unsigned flags_of(const Eqns *e) {
   return (e->conserves_energy ? 1u : 0) | (e->constant_mass ? 2u : 0) | (e->autonomous ? 4u : 0) | (e->smooth ? 8u : 0) |
          (e->separable ? 16u : 0) | (e->timeless ? 32u : 0) | (e->loses_energy ? 64u : 0) |
          (e->first.n ? 128u : 0) | (e->first.n && e->first.constant && e->first.closed ? 256u : 0) | (e->singular_mass ? 512u : 0);
+}
+
+static void add_fixed(IrUnit *u, const Model *m) {
+  StrBuf names = strbuf(m->arena), values = strbuf(m->arena);
+  Name last = NULL;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
+    char text[32];
+    if (!p->fixed) continue;
+    num_format_double(text, num_value(p->number));
+    sb_printf(&values, "%s%s = %s", last ? ", " : "", p->name, text);
+    if (p->stem != last) sb_printf(&names, "%s%s", last ? " " : "", p->stem);
+    last = p->stem;
+  }
+  u->fixed = sb_text(&names);
+  u->fixed_values = sb_text(&values);
 }
 
 /* The contact whose impact is event i, or NULL. */
@@ -69,6 +86,20 @@ static void add_constraints(IrUnit *u, const Eqns *e) {
   to->velocity = k->nkept == k->n ? to->position : lower_change(e, k->n);
 }
 
+/* Where the energy is the only charge, and conserved, there is nothing to add. */
+static void add_charges(IrUnit *u, const Eqns *e) {
+  const Prog *powers = e->ncharges ? lower_powers(e) : NULL;
+  if (e->ncharges < 2 && !powers) return;
+  for (uint32_t i = 0; i < e->ncharges; i++) {
+    const Charge *c = &e->charges[i];
+    int conserved = i ? expr_is_zero(e->g, c->proof.power) : e->conserves_energy;
+    unsigned flags = c->proof.power_unknown ? 0 : (conserved ? 1u : 0) | 2u | (c->proof.by_formulas ? 4u : 0);
+    vec_push(u->arena, &u->charges, ((IrCharge){c->name, c->unit.text, flags}));
+  }
+  u->charge_values = e->ncharges > 1 ? lower_charges(e) : NULL;
+  u->charge_powers = powers;
+}
+
 static void add_variation(IrUnit *u, const Eqns *e) {
   Variation *x = variation_derive(e);
   u->variation = lower_variation(e, x);
@@ -96,12 +127,13 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
                 .libm = libm};
   u->effects = joined(m->arena, m->effects.at, m->effects.n);
   u->all_effects = joined(m->arena, m->all_effects.at, m->all_effects.n);
+  add_fixed(u, m);
   for (uint32_t i = 0; i < m->coords.n; i++)
     vec_push(m->arena, &u->q, var_of(m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->states.n; i++)
     vec_push(m->arena, &u->z, var_of(m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->params.n; i++)
-    vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
+    if (!m->params.at[i].fixed) vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
   for (uint32_t i = 0; i < m->inputs.n; i++)
     vec_push(m->arena, &u->u, var_of(m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
   u->accel = lower_accel(e, libm);
@@ -110,11 +142,26 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
   add_events(u, e);
   add_constraints(u, e);
   add_contacts(u, e);
+  add_charges(u, e);
   return u;
 }
 
 int unit_shares(const IrUnit *a, const IrUnit *b) {
-  return strcmp(a->effects, b->effects) == 0 && prog_same(a->inputs, b->inputs);
+  return strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
+}
+
+/* The four numbers of rotations that start where nobody said, less those that the scene gives. */
+static void add_implied(IrScene *s, const Model *m) {
+  unsigned char *said = ARENA_ARRAY(m->arena, unsigned char, m->coords.n + 1);
+  for (uint32_t i = 0; i < m->scene.starts.n; i++) {
+    const Symbol *of = expr_symbol(m->g, m->scene.starts.at[i].target);
+    if (of->kind == SYM_COORD && !m->scene.starts.at[i].implied) said[of->index] = 1;
+  }
+  for (uint32_t i = 0; i < m->scene.starts.n; i++) {
+    uint32_t first = expr_symbol(m->g, m->scene.starts.at[i].target)->index;
+    for (uint32_t k = first; m->scene.starts.at[i].implied && k < first + 4; k++)
+      if (!said[k]) vec_push(m->arena, &s->implied, k);
+  }
 }
 
 static void add_exact(IrScene *s, const Eqns *e) {
@@ -160,9 +207,11 @@ void unit_add_scene(IrUnit *u, const Eqns *e) {
   IrScene s = {.exactly = sc->exactly.end != 0, .name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .t1_digits = sc->t1_digits, .has_span = sc->has_span, .method = sc->method,
                .tolerance = sc->tolerance, .every = sc->every};
   const Prog **params = ARENA_ARRAY(m->arena, const Prog *, m->params.n + 1);
-  for (uint32_t i = 0; i < m->params.n; i++) params[i] = lower_param(e, i);
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (!m->params.at[i].fixed) params[m->params.at[i].place] = lower_param(e, i);
   s.params = params;
   s.start = lower_start(e);
+  add_implied(&s, m);
   s.observe = lower_outputs(e);
   for (uint32_t i = 0; i < sc->options.n; i++) {
     IrOption o = {sc->options.at[i].name, sc->options.at[i].text, sc->options.at[i].value};

@@ -14,6 +14,7 @@ Prog *prog_new(Arena *a) {
 Prog *prog_like(const Prog *p) {
   Prog *r = ARENA_NEW(p->arena, Prog);
   r->arena = p->arena;
+  r->reckons = p->reckons;
   r->ins.cap = p->ins.n + 1;
   r->ins.at = ARENA_ARRAY(p->arena, Ins, r->ins.cap);
   r->stores.cap = p->stores.n + 1;
@@ -69,8 +70,6 @@ static int is_num(const Prog *p, Slot s, int64_t value) {
   return s && i->op == IR_CONST && num_equal(i->number, num_int(value));
 }
 
-static const Slot NOT_FOLDED = UINT32_MAX;
-
 /* x + 0, x - 0, 1*x, 0*x, x/1, 0/x, x + (-y), x - (-y), with slot 0 a structural zero. */
 static Slot fold(Prog *p, const Ins *i) {
   switch (i->op) {
@@ -78,35 +77,36 @@ static Slot fold(Prog *p, const Ins *i) {
       if (!i->a) return i->b;
       if (!i->b) return i->a;
       if (p->ins.at[i->b].op == IR_NEG) return prog_op(p, IR_SUB, i->a, p->ins.at[i->b].a);
-      return p->ins.at[i->a].op == IR_NEG ? prog_op(p, IR_SUB, i->b, p->ins.at[i->a].a) : NOT_FOLDED;
+      return p->ins.at[i->a].op == IR_NEG ? prog_op(p, IR_SUB, i->b, p->ins.at[i->a].a) : NOT_A_SLOT;
     case IR_SUB:
       if (!i->b) return i->a;
       if (!i->a) return prog_op(p, IR_NEG, i->b, 0);
-      return p->ins.at[i->b].op == IR_NEG ? prog_op(p, IR_ADD, i->a, p->ins.at[i->b].a) : NOT_FOLDED;
+      return p->ins.at[i->b].op == IR_NEG ? prog_op(p, IR_ADD, i->a, p->ins.at[i->b].a) : NOT_A_SLOT;
     case IR_MUL:
       if (!i->a || !i->b) return 0;
       if (is_num(p, i->a, -1)) return prog_op(p, IR_NEG, i->b, 0);
       if (is_num(p, i->b, -1)) return prog_op(p, IR_NEG, i->a, 0);
       if (is_num(p, i->a, 1)) return i->b;
-      return is_num(p, i->b, 1) ? i->a : NOT_FOLDED;
+      return is_num(p, i->b, 1) ? i->a : NOT_A_SLOT;
     case IR_DIV:
       if (!i->a) return 0;
       if (is_num(p, i->b, -1)) return prog_op(p, IR_NEG, i->a, 0);
-      return is_num(p, i->b, 1) ? i->a : NOT_FOLDED;
+      return is_num(p, i->b, 1) ? i->a : NOT_A_SLOT;
     case IR_NEG:
       if (!i->a) return 0;
       if (p->ins.at[i->a].op == IR_CONST) return prog_num(p, num_neg(p->ins.at[i->a].number));
-      return p->ins.at[i->a].op == IR_NEG ? p->ins.at[i->a].a : NOT_FOLDED;
+      return p->ins.at[i->a].op == IR_NEG ? p->ins.at[i->a].a : NOT_A_SLOT;
     case IR_CONST: case IR_PI: case IR_LOAD: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_MIN: case IR_MAX:
     case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND: case IR_OR: case IR_SELECT:
     case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
   }
-  return NOT_FOLDED;
+  return NOT_A_SLOT;
 }
 
 Slot prog_ins(Prog *p, Ins i) {
-  Slot folded = fold(p, &i);
-  if (folded != NOT_FOLDED) return folded;
+  Slot folded = p->reckons ? prog_reckon(p, &i) : NOT_A_SLOT;
+  if (folded == NOT_A_SLOT) folded = fold(p, &i);
+  if (folded != NOT_A_SLOT) return folded;
   if (!is_pure(i.op)) return append(p, i);
   Ins key = i;
   int commutes = i.op == IR_ADD || i.op == IR_MUL;

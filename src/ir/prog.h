@@ -11,6 +11,7 @@
 #include "base/vec.h"
 
 typedef uint32_t Slot; /* index of an instruction; 0: none (a structural zero) */
+enum { NOT_A_SLOT = UINT32_MAX };
 
 typedef enum {
   IR_CONST,  /* number */
@@ -126,6 +127,7 @@ typedef struct Prog {
   VEC(IrTable) tables;
   VEC(Nest) nests;
   uint32_t cells;     /* sums of ARR_CELL */
+  int reckons;        /* arithmetic of numbers alone is done now, and what a number divides is multiplied by its reciprocal */
   uint32_t *table;    /* value numbering */
   uint32_t table_cap;
 } Prog;
@@ -151,6 +153,13 @@ void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *com
 void prog_name(Prog *p, Slot s, Name name);
 
 int ir_is_condition(IrOp op);
+
+/* reckon.c: what the instruction comes to where its operands are numbers, appended; NOT_A_SLOT: not to a number. */
+Slot prog_reckon(Prog *p, const Ins *i);
+int prog_is_number(const Prog *p, Slot s);
+
+/* eval.c: a function of the C library by its name; NaN for unknown ones. */
+long double prog_call1(const char *name, long double x);
 
 /* Divisions by one value that occur more than once become products with its reciprocal; what no
  * store needs goes. Keeps the order of what stays. Needs nothing, breaks nothing. */

@@ -48,6 +48,7 @@ typedef struct {
   const char *t1_digits; /* more than a double has, or NULL */
   int has_span;
   int exactly;        /* constraints may not move what the start gives */
+  VEC(uint32_t) implied; /* coordinates of rotations of which the start says nothing */
   const char *method; /* or NULL */
   VEC(IrOption) options;
   double tolerance, every;
@@ -98,13 +99,23 @@ typedef struct {
   uint32_t input, constraint, impact, release;
 } IrContact;
 
+/* flags: 1 it is conserved, 2 its balance is known, 4 while inputs follow their formulas. */
+typedef struct {
+  const char *name, *unit;
+  unsigned flags;
+} IrCharge;
+
 typedef struct {
   Arena *arena;
   const char *name, *doc, *source, *effects, *all_effects;
+  const char *fixed;        /* names of parameters that are numbers here, with spaces between them; "": none */
+  const char *fixed_values; /* "g = 9.81, drag.c = 0.2", in SI */
   unsigned flags;
   VEC(IrVar) q, z, p, u;
   VEC(IrEvent) events;
   const Prog *accel, *energy, *event_values, *inputs;
+  VEC(IrCharge) charges;        /* the energy first; none where there is nothing to say of them but that it is conserved */
+  const Prog *charge_values, *charge_powers; /* NULL: there is only the energy; all are conserved */
   IrConstraints constraints;
   VEC(IrContact) contacts;
   unsigned wants;
@@ -117,6 +128,7 @@ typedef struct {
   VEC(IrJump) jump_at;          /* what its outputs are */
   VEC(IrScene) scenes;
   int libm;                     /* emitted code calls the C library's sin and cos */
+  int lines;                    /* constraints say in what line they stand: of simulators, which name their file */
 } IrUnit;
 
 #endif

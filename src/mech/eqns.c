@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/methods.h"
+#include "mech/charges.h"
 #include "mech/constrain.h"
 #include "mech/first_order.h"
 #include "mech/lagrange.h"
@@ -37,15 +38,27 @@ enum { SHORTEN_MAX_COORDS = 64 };
 
 static Expr shorten(const Eqns *e, Expr x) { return e->mass_known && e->n <= SHORTEN_MAX_COORDS ? simplify(e->g, x) : x; }
 
+/* The momenta of L as it was written. */
+static const Expr *plain_momenta(const Eqns *e) {
+  const Model *m = e->m;
+  if (!m->across) return e->p;
+  SymId *v = ARENA_ARRAY(m->arena, SymId, e->n + 1);
+  Expr *p = ARENA_ARRAY(m->arena, Expr, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) v[i] = m->coords.at[i].v;
+  expr_gradient(e->g, m->lagrangian, v, e->n, p);
+  return p;
+}
+
 /* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as it
  * was written: k/2*(r - l)^2 has more right digits than what it expands to. */
 static void derive_energy(Eqns *e) {
   ExprGraph *g = e->g;
   Arena *arena = e->m->arena;
   Expr *terms = ARENA_ARRAY(arena, Expr, e->n + 1), *momenta = ARENA_ARRAY(arena, Expr, e->n + 1);
+  const Expr *p = plain_momenta(e);
   for (uint32_t i = 0; i < e->n; i++) {
-    momenta[i] = shorten(e, e->p[i]);
-    terms[i] = expr_mul(g, e->p[i], expr_symbol(g, e->m->coords.at[i].v)->node);
+    momenta[i] = shorten(e, p[i]);
+    terms[i] = expr_mul(g, p[i], expr_symbol(g, e->m->coords.at[i].v)->node);
   }
   e->momenta = momenta;
   Expr pv = expr_add_n(g, terms, e->n), l = e->m->lagrangian;
@@ -79,6 +92,7 @@ static void fill_outputs(Eqns *e) {
   with[m->energy_sym] = e->energy_stable;
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) {
     out[i] = m->scene.outputs.at[i];
+    out[i].value = charges_fill(e, out[i].value);
     if (e->energy) out[i].value = expr_substitute(g, out[i].value, with, m->energy_sym + 1, "");
     out[i].value = simplify_stable(g, out[i].value);
   }
@@ -244,6 +258,8 @@ Eqns *eqns_derive(Model *m) {
   }
   if (m->first_order && !first_order_derive(e, m)) return NULL;
   classify(e);
+  charges_derive(e);
   fill_outputs(e);
+  if (!m->effects.n && !charges_judge(e, NULL)) return NULL; /* with effects it may be broken on purpose */
   return check_numbers(e) && check_method(e) ? e : NULL;
 }

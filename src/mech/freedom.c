@@ -6,6 +6,7 @@
 #include "base/dense.h"
 #include "base/methods.h"
 #include "mech/frobenius.h"
+#include "mech/noether.h"
 #include "mech/start.h"
 #include "sym/print.h"
 
@@ -23,12 +24,6 @@ static const char *kind_of(const Eqns *e, uint32_t k) {
   return expr_kinds(e->g, all->c[k]) & 1u << SYM_TIME ? "holonomic, with explicit time" : "holonomic";
 }
 
-static int is_contact(const Eqns *e, const Constraint *k) {
-  for (uint32_t i = 0; i < e->m->contacts.n; i++)
-    if (k == &e->m->constraints.at[e->m->contacts.at[i].constraint]) return 1;
-  return 0;
-}
-
 static int has_slope(const Eqns *e, StateSolver *s, const long double *symbols, uint32_t k) {
   const Entries *A = &e->constraints.A;
   StateValues v = states_at(s, symbols);
@@ -40,11 +35,11 @@ static int has_slope(const Eqns *e, StateSolver *s, const long double *symbols, 
 static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts, uint32_t k, uint32_t rank, StrBuf *out) {
   const Constraint *c = e->constraints.of[k];
   Place place = source_place(e->m->ast->sources, c->span.begin);
-  if (is_contact(e, c)) {
+  if (noether_is_contact(e->m, c)) {
     sb_printf(out, "  contact %s (line %u): a constraint while it is closed\n", c->name, place.line);
     return;
   }
-  sb_printf(out, "  constraint %s (line %u): %s", c->name, place.line, kind_of(e, k));
+  sb_printf(out, "  constraint %s (line %u): %s%s", c->name, place.line, kind_of(e, k), c->inside ? ", the unit length of a rotation" : "");
   if (!counts[k]) sb_puts(out, has_slope(e, s, symbols, k) ? "; follows from those before it" : "; its derivatives vanish at the start");
   if (rank < e->constraints.n - e->m->contacts.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the least one is taken");
   sb_putc(out, '\n');
@@ -204,6 +199,12 @@ static int check_contacts(const Eqns *e, const long double *symbols) {
   return 1;
 }
 
+static int says_start(const Model *m) {
+  for (uint32_t i = 0; i < m->scene.starts.n; i++)
+    if (!m->scene.starts.at[i].implied) return 1;
+  return 0;
+}
+
 int freedom_show(const Eqns *e, StrBuf *out) {
   const Constraints *all = &e->constraints;
   if (!all->n) return 1;
@@ -211,9 +212,9 @@ int freedom_show(const Eqns *e, StrBuf *out) {
   long double *symbols = start_asked(e);
   StartResult start = start_find(e, s, symbols);
   if (start.kind != START_FOUND) {
-    if (e->m->scene.starts.n) start_report(e, &start);
+    if (says_start(e->m)) start_report(e, &start);
     else sb_printf(out, "scene %s: %u constraint%s; without a start nothing is said of their rank\n", e->m->scene.name, all->n, plural(all->n));
-    return !e->m->scene.starts.n;
+    return !says_start(e->m);
   }
   states_at(s, symbols);
   unsigned char *counts = ARENA_ARRAY(e->m->arena, unsigned char, all->n);

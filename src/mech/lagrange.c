@@ -63,6 +63,9 @@ static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
   expr_tangent(g, p, e->n, seed, nseed, "_drift", &rates, out);
 }
 
+/* L, and what makes the mass matrix regular where rotations leave a direction without inertia. */
+static Expr lagrange_regular(const Eqns *e) { return e->m->across ? expr_add(e->g, e->m->lagrangian, e->m->across) : e->m->lagrangian; }
+
 /* The forces as differentiated, and the momenta. */
 static Expr *differentiate(Eqns *e) {
   const Model *m = e->m;
@@ -70,8 +73,9 @@ static Expr *differentiate(Eqns *e) {
   SymId *q = coordinate_symbols(e->m, 0), *v = coordinate_symbols(e->m, 1);
   Expr *p = ARENA_ARRAY(m->arena, Expr, e->n), *dLdq = ARENA_ARRAY(m->arena, Expr, e->n);
   Expr *convective = ARENA_ARRAY(m->arena, Expr, e->n), *f = ARENA_ARRAY(m->arena, Expr, e->n);
-  expr_gradient(g, m->lagrangian, v, e->n, p);
-  expr_gradient(g, m->lagrangian, q, e->n, dLdq);
+  Expr l = lagrange_regular(e);
+  expr_gradient(g, l, v, e->n, p);
+  expr_gradient(g, l, q, e->n, dLdq);
   e->p = p;
   e->Q = generalised_forces(e);
   convective_rates(e, p, convective);
@@ -115,7 +119,7 @@ static int is_linear(const Eqns *e, Expr term) {
  * matrix that is regular is positive definite, and no order of elimination needs pivoting. */
 static int lagrange_definite(const Eqns *e, const LinearSystem *s) {
   ExprGraph *g = e->g;
-  Expr l = e->m->lagrangian;
+  Expr l = lagrange_regular(e);
   for (uint32_t i = 0; i < expr_pairs(g, l, EX_SUM); i++) {
     Num c;
     Expr term = expr_pair(g, l, EX_SUM, i, &c);

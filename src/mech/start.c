@@ -18,13 +18,16 @@ typedef struct {
   int velocities;                 /* the level at hand */
   uint32_t n, rows;               /* coordinates; constraints of the level */
   uint32_t *free, nfree;
-  const unsigned char *given;     /* by symbol */
+  const unsigned char *given;     /* by symbol: when it gives way */
   long double *symbols, *asked, *best, *from; /* by symbol */
   long double *size, *terms, *a, *b, *d;
   unsigned char *says;            /* by constraint: it has terms */
   uint32_t *column;
   uint32_t nsymbols;
 } Finder;
+
+/* What gives way to constraints, in this order: components that nobody set, rotations of which nothing is said, all. */
+enum { UNSET, ROTATIONS, ALL };
 
 static SymId component(const Finder *f, uint32_t i) { return f->velocities ? f->e->m->coords.at[i].v : f->e->m->coords.at[i].q; }
 
@@ -223,10 +226,11 @@ static int reach(Finder *f) {
   return 0;
 }
 
-static void choose_free(Finder *f, int all) {
+/* The free components: those that give way at this stage. */
+static void choose_free(Finder *f, int stage) {
   f->nfree = 0;
   for (uint32_t i = 0; i < f->n; i++)
-    if (all || !f->given[component(f, i)]) f->free[f->nfree++] = i;
+    if (f->given[component(f, i)] <= stage) f->free[f->nfree++] = i;
 }
 
 /* --- what is refused --- */
@@ -255,7 +259,7 @@ static int is_flat(const Finder *f, uint32_t k) { return f->says[k] && f->terms[
 /* Whether a constraint that is flat here is so beside, too, where all hold: not a linkage at its dead centre. */
 static int is_flat_beside(Finder *f, uint32_t k) {
   copy(f, f->best, f->symbols);
-  choose_free(f, 1);
+  choose_free(f, ALL);
   for (uint32_t i = 0; i < f->n; i++) {
     long double far = like(f, f->best, 0, i);
     if (is_held(f, i)) f->symbols[component(f, i)] += 0.01L * (far > 0 ? far : 1) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
@@ -293,9 +297,12 @@ static StartResult settle(Finder *f, int velocities) {
   if (!isfinite(merit(f))) return fault(f, START_NO_VALUE, which);
   if (off > 2) {
     if (f->e->m->scene.exactly.end && !(off <= 1 / sqrtl(DBL_EPSILON))) return fault(f, START_BROKEN, which);
-    choose_free(f, 0);
-    int found = reach(f);
-    if (!found) choose_free(f, 1), found = reach(f);
+    int found = 0;
+    for (int stage = UNSET; stage <= ALL && !found; stage++) {
+      uint32_t before = f->nfree;
+      choose_free(f, stage);
+      found = (stage == UNSET || f->nfree != before) && reach(f);
+    }
     if (!found) {
       copy(f, f->symbols, f->asked);
       descend(f); /* as near as that goes from where it was asked for */
@@ -356,7 +363,13 @@ long double *start_asked(const Eqns *e) {
 static const unsigned char *given_by(const Eqns *e) {
   const Model *m = e->m;
   unsigned char *given = ARENA_ARRAY(m->arena, unsigned char, expr_symbol_count(e->g) + 1);
-  for (uint32_t i = 0; i < m->scene.starts.n; i++) given[m->scene.starts.at[i].target] = 1;
+  for (uint32_t i = 0; i < m->scene.starts.n; i++)
+    if (!m->scene.starts.at[i].implied) given[m->scene.starts.at[i].target] = ALL;
+  for (uint32_t i = 0; i < m->scene.starts.n; i++) { /* of the first of a rotation's four */
+    uint32_t first = expr_symbol(m->g, m->scene.starts.at[i].target)->index;
+    for (uint32_t k = first; m->scene.starts.at[i].implied && k < first + 4; k++)
+      if (!given[m->coords.at[k].q]) given[m->coords.at[k].q] = ROTATIONS;
+  }
   return given;
 }
 

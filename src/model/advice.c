@@ -230,3 +230,8 @@ void warn_unit_is_constant(Builder *b, const AstUnit *u) {
   diag_warning(b->diags, u->span, "`[%s]` is a unit here, not the constant `%s`", u->text, e->name);
   diag_help(b->diags, "an index touches what it belongs to: `x[%s]`", e->name);
 }
+
+void report_no_member(Builder *b, Span span, Name effect, Name name) {
+  diag_error(b->diags, span, "no effect in use declares `%s.%s`", effect, name);
+  advise_unknown_member(b, effect, name);
+}

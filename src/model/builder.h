@@ -19,11 +19,12 @@ typedef enum {
   IN_OUTPUT    /* and closed forms */
 } Context;
 
-/* A number, or a vector of n = 2 or 3 components with one dimension. */
+/* A number, a vector of n = 2 or 3 components with one dimension, or a rotation: the n = ROTATION numbers w, x, y, z of a unit quaternion. */
+enum { ROTATION = 4 };
 typedef struct {
   union {
     Expr e; /* 0 after an error: reported already */
-    Expr at[3];
+    Expr at[4];
   };
   Dim dim;
   int bare;      /* made of numbers alone: takes on the unit of what it is given to */
@@ -86,6 +87,13 @@ typedef struct {
   Name effect;
 } Active;
 
+/* `start omega(R) = (a, b, c)` */
+typedef struct {
+  uint32_t coord; /* R.w */
+  Expr at[3];
+  Span span;
+} Spin;
+
 typedef struct Builder Builder;
 struct Builder {
   Ast *ast;
@@ -95,6 +103,8 @@ struct Builder {
   Model *m;
   Scope scope, members;
   Scope constraints; /* by name; the index is that of the first component */
+  VEC(uint32_t) rotations; /* the first coordinate of each */
+  VEC(Spin) spins; /* what the scene in hand says of their angular velocities */
   Scope *named; /* events and expectations; NULL: none yet */
   IndexVars index; /* of the `for` around the statement in hand */
   VEC(struct Eval *) idle; /* evaluations to use again */
@@ -118,7 +128,10 @@ struct Builder {
   const Define *defines;
   uint32_t ndefines;
   const AstStmt **chain; /* the scene and those it is like, oldest first; NULL-terminated */
+  int is_variant;  /* effects in use are ModelChoice.only */
   int unitless;    /* nothing is measured in a unit: nothing is checked */
+  Name group;      /* the parameter of the symmetry in hand, or NULL; */
+  SymId group_symbol;
   AstId stand_in;  /* a node that stands for `stands_for` (see model_reresolve), or 0 */
   Expr stands_for;
 };
@@ -170,7 +183,10 @@ int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out);
 /* Families have no third index. */
 void report_many_indices(Builder *b, Span span);
 
-/* "a number", "a vector of 3 components" */
+/* The letter of component k of n. */
+static inline char part_letter(uint32_t n, uint32_t k) { return "wxyz"[k + (n != ROTATION)]; }
+
+/* "a number", "a vector of 3 components", "a rotation" */
 const char *shape_text(const Builder *b, uint32_t n);
 
 /* Calls fn for each statement that `for` around it makes of st, with b->index set. */
@@ -181,11 +197,17 @@ void each_statement(Builder *b, const AstStmt *st, Name effect, StatementFn *fn,
 typedef struct {
   AstId stem;      /* the name, or effect.name */
   uint32_t primes;
-  int part;        /* the component; -1: all there are */
+  int part;        /* the component: 0, 1, 2, 3 for x, y, z, w, 4 where there is none of that name; -1: all there are */
   AstId indices;   /* 0: the whole family */
   int wrong;       /* it is not of this form */
 } Target;
 Target read_target(const Builder *b, AstId id);
+
+/* The place of component `part` of a target among n; -1: there is none. */
+static inline int part_place(uint32_t n, int part) {
+  int place = n == ROTATION ? (part + 1) % ROTATION : part;
+  return part < 0 || part > 3 || place >= (int)n ? -1 : place;
+}
 
 /* The list that gives a family its values, and the unit behind it: `{1, 3} [kg]`. NULL: it is no list. */
 const AstExpr *list_behind(const Builder *b, AstId id, const AstUnit **unit);
@@ -213,6 +235,7 @@ typedef struct {
   const Unit *(*unit)(Builder *b, uint32_t scalar, void *data);
   void (*give)(Builder *b, uint32_t scalar, Expr value, Span span, void *data);
   void *data;
+  Name effect;   /* that the statement stands in, or NULL */
 } Giver;
 void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstId rhs, const Giver *giver);
 
@@ -221,6 +244,18 @@ void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstI
 void give_exact(Builder *b, SymId target, const Unit *unit, int periodic, Expr value, Span span);
 const Exact *find_exact(const Builder *b, Expr e);
 Expr exact_error(Builder *b, const Exact *x);
+
+/* effect.c: the scene or the effect of that name (NULL: the first), or NULL; and what to say where there is none. */
+const AstStmt *find_named(const Ast *ast, AstStmtKind kind, const char *name);
+void report_unnamed(const Ast *ast, AstStmtKind kind, Span span, const char *name);
+
+/* Whether the effect is in use; a scene's `use` statements; an effect turned on together with what it requires; whether what an effect
+ * in use requires and excludes is so. */
+int uses_effect(const Builder *b, Name effect);
+int is_use_none(const AstStmt *st);
+void collect_uses(Builder *b, const AstStmt *scene);
+void use_with_needs(Builder *b, Name effect);
+void check_effect_needs(Builder *b, const AstStmt *effect);
 
 /* output.c: adds what an expression puts out to the scene's outputs. The place of the one number that
  * it is; -1 when it is more, or after an error. */
@@ -231,6 +266,9 @@ int add_error(Builder *b, const Exact *x, Span span);
 
 /* The same as add_outputs under a name of the caller's choice. */
 int add_outputs_as(Builder *b, AstId id, Name label);
+
+/* monitor.c: `monitor q limit`. */
+void set_monitor(Builder *b, const AstStmt *st);
 
 /* table.c: gives input `index` its formula, or the table whose file is named; stem: its name without its effect. */
 void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
@@ -248,6 +286,10 @@ int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts);
 
 /* "th", "th[2]", "r.x", "r[2].x": component k of member `at`. */
 Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k);
+
+/* fix.c: fixes the parameters that the words name, with the values that the model has for them, and places the others. Mistakes are
+ * reported. words NULL: none is fixed. */
+void fix_params(Builder *b, const char *words);
 
 /* declare_param.c */
 void declare_param(Builder *b, const AstStmt *st, Name effect);
@@ -337,16 +379,55 @@ void explain_dims(Builder *b, Dim x, Dim y);
 /* Puts the units that were found into the model. */
 void settle_units(Builder *b);
 
+/* rotation.c */
+
+/* c = 0 for the unit quaternion whose first coordinate is given. */
+void hold_rotation(Builder *b, Name name, uint32_t coord, Span span);
+
+/* What L gains: a term in the rates that no motion has, so that the mass matrix is regular in all directions. */
+void add_rotation_inertia(Builder *b);
+
+/* The rates of a rotation q that turns at w, in its own frame; and back. */
+Value rotation_rates(Builder *b, const Value *q, const Expr *w);
+void rotation_spin(Builder *b, const Value *q, const Value *rates, Expr *w);
+
+/* The coordinate of a rotation, R.w, whose angular velocity a place speaks of, `omega(R)`; -1: it speaks of none. Wrong ones are reported, -2. */
+int spin_target(Builder *b, AstId place, Name effect);
+
+
+/* The force on a rotation is a torque in its own frame: what it is along the four components. */
+Value torque_force(Builder *b, const Value *q, const Value *torque);
+
 /* constraint.c: adds what a constraint says to the model; the multiplier of the constraint that an argument names, FAILED (reported)
  * where there is none. */
 void add_constraint(Builder *b, const AstStmt *st, Name effect);
 void add_contact(Builder *b, const AstStmt *st, Name effect);
+
+/* symmetry.c: declares a symmetry, and its charge; reads what it does, after L is known. */
+void declare_symmetry(Builder *b, const AstStmt *st, Name effect);
+void add_symmetry(Builder *b, const AstStmt *st, Name effect);
 
 /* twice.c: names of scenes, effects, events and expectations, each declared once, and what a scene or an event says, said once;
  * reported where they are not. */
 void check_names_once(Builder *b);
 void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span);
 void check_said_once(Builder *b, const AstStmt *block);
+
+/* event.c: an event, and a section, of the model; a value given to a symbol: a coordinate, a state, or the rate of one, declared in `unit`;
+ * reports shapes that differ. */
+void add_event(Builder *b, const AstStmt *st, Name effect);
+void add_section(Builder *b, const Section *s);
+Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit);
+void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right);
+
+/* start.c: `start q = ...`, `exact q = ...`; what the scene says of rotations, when all of it is said (those that it does not set are no
+ * turn at all); the unit of angular velocities. */
+void set_motion(Builder *b, const AstStmt *st);
+void settle_rotations(Builder *b);
+Unit spin_unit(const Builder *b);
+
+/* advice.c: there is no `effect.name`. */
+void report_no_member(Builder *b, Span span, Name effect, Name name);
 
 /* scene.c: which statements are active (those of the effect `also` too), and the scene's contents. */
 void scene_select(Builder *b, const ModelChoice *choice);

@@ -24,9 +24,9 @@ static int is_refused(Builder *b, Expr c, const char *what, Name name, Span span
   return 0;
 }
 
-static void add_one(Builder *b, Name name, Expr c, Dim dim, Span span) {
+void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span) {
   Model *m = b->m;
-    Constraint one = {.name = name, .span = span, .c = c, .dim = dim};
+  Constraint one = {.name = name, .span = span, .c = c, .dim = dim};
   int holonomic = !(expr_kinds(b->g, c) & 1u << SYM_VEL);
   one.multiplier = declare_symbol(b, SYM_MULTIPLIER, m->constraints.n, intern_printf(b, "lambda(%s)", name), SIGN_UNKNOWN,
                                   multiplier_dim(b, dim, holonomic));
@@ -37,6 +37,10 @@ static void add_one(Builder *b, Name name, Expr c, Dim dim, Span span) {
 static int sides_agree(Builder *b, const AstStmt *st, const Value *l, const Value *r) {
   if (l->n != r->n) {
     diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, l->n), shape_text(b, r->n));
+    return 0;
+  }
+  if (l->n == ROTATION) {
+    refuse_rotation(b, st->span, ast_text(b, st->lhs), TURN_EQUATION);
     return 0;
   }
   if (dims_agree(b, l, r, st->span)) return 1;
@@ -59,7 +63,7 @@ void add_constraint(Builder *b, const AstStmt *st, Name effect) {
   for (uint32_t k = 0; k < parts_of(&left); k++) {
     Expr c = expr_sub(b->g, left.at[k], right.at[k]);
     if (is_refused(b, c, "constraint", name, st->span)) return;
-    add_one(b, left.n ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name, c, dim, st->span);
+    add_scalar_constraint(b, left.n ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name, c, dim, st->span);
   }
 }
 
@@ -120,7 +124,7 @@ void add_contact(Builder *b, const AstStmt *st, Name effect) {
   Contact c = {.name = name, .gap = gap.e, .restitution = e.e, .constraint = m->constraints.n};
   c.closed = add_switch(b, name, st->name_span);
   scope_add(&b->constraints, (Entity){.index = m->constraints.n, .name = name, .effect = effect, .span = st->name_span});
-  add_one(b, name, expr_mul(b->g, symbol_node(b, c.closed), gap.e), gap.dim, st->span);
+  add_scalar_constraint(b, name, expr_mul(b->g, symbol_node(b, c.closed), gap.e), gap.dim, st->span);
   c.impact = add_switched_event(b, &c, "", 0, gap.e, st->span);
   c.release = add_switched_event(b, &c, " opens", 1, symbol_node(b, m->constraints.at[c.constraint].multiplier), st->span);
   vec_push(b->arena, &m->contacts, c);

@@ -102,7 +102,7 @@ static int declare_family(Builder *b, const AstStmt *st, Name effect, EntKind ki
 
 Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k) {
   Name name = member_name(b, stem, at, e->ndims);
-  return e->parts ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name;
+  return e->parts ? intern_printf(b, "%s.%c", name, part_letter(e->parts, k)) : name;
 }
 
 Unit declared_unit(Builder *b, const AstStmt *st, Name effect) {
@@ -113,12 +113,27 @@ Unit declared_unit(Builder *b, const AstStmt *st, Name effect) {
   return u;
 }
 
+static void report_rotation(Builder *b, const AstStmt *st) {
+  if (st->kind != STMT_COORD) {
+    diag_error(b->diags, st->name_span, "only a coordinate can be a rotation");
+    diag_help(b->diags, "a rotation made of others is a `let`: `let R0 = turn((0, 0, 1), a)*R`");
+  } else if (st->unit.n) {
+    diag_error(b->diags, st->unit.span, "a rotation has no unit: its four numbers are those of a unit quaternion");
+    diag_help(b->diags, "write `coord %s: rotation`", st->name);
+  } else {
+    diag_error(b->diags, st->name_span, "a rotation is no angle, and `periodic` is one");
+    diag_help(b->diags, "write `coord %s: rotation`", st->name);
+  }
+}
+
 /* 0, reported, when the statement asks for a type of which its kind has no values. */
 int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts) {
   int two = st->type && strcmp(st->type, "vec2") == 0, three = st->type && strcmp(st->type, "vec3") == 0;
   *parts = two ? 2 : three ? 3 : 0;
   if (!st->type || two || three) return 1;
-  not_yet(b, st->name_span, arena_printf(b->arena, "quantities of type `%s`", st->type));
+  *parts = ROTATION;
+  if (st->kind == STMT_COORD && !st->unit.n && !st->periodic) return 1;
+  report_rotation(b, st);
   declare_refused(b, st, effect);
   return 0;
 }
@@ -172,13 +187,14 @@ static void declare_motion(Builder *b, const AstStmt *st, Name effect) {
   uint32_t first = is_state ? b->m->states.n : b->m->coords.n;
   if (!read_type(b, st, effect, &parts)) return;
   if (!declare_family(b, st, effect, kind, first, parts, &e)) return;
-  Unit unit = declared_unit(b, st, effect);
+  Unit unit = parts == ROTATION ? (Unit){.dim = DIM_NONE, .factor = num_int(1), .offset = num_int(0), .text = ""} : declared_unit(b, st, effect);
   if (st->periodic) check_angle(b, st, &unit);
   int64_t at[2] = {1, 1};
   Name stem = plain_name(b, st, effect);
-  do
+  do {
     for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++) (is_state ? add_state : add_coord)(b, st, scalar_name(b, &e, stem, at, k), unit);
-  while (next_member(&e, at));
+    if (parts == ROTATION && !is_state) hold_rotation(b, member_name(b, stem, at, e.ndims), e.index + member_offset(&e, at), st->name_span);
+  } while (next_member(&e, at));
 }
 
 static void declare_input(Builder *b, const AstStmt *st, Name effect) {
@@ -312,7 +328,7 @@ void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_LET: declare_let(b, st, effect); return;
     case STMT_FUNCTION: declare_function(b, st, effect); return;
     case STMT_OBSERVE: declare_observe(b, st, effect); return;
-    case STMT_SYMMETRY: not_yet(b, st->span, "symmetries"); return;
+    case STMT_SYMMETRY: declare_symmetry(b, st, effect); return;
     case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE: case STMT_LAGRANGIAN: case STMT_CONSTRAINT: case STMT_CONTACT: case STMT_KINETIC: case STMT_POTENTIAL:
     case STMT_DISSIPATION: case STMT_FORCE: case STMT_FLOW: case STMT_MAP: case STMT_EXPECT:
     case STMT_EVENT: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:

@@ -1,5 +1,5 @@
 /* Parameters and constants: declarations that have a value at once. */
-#include "model/builder.h"
+#include "model/resolve_impl.h"
 #include "sym/eval.h"
 
 static ExprSign sign_of(AstSign s) {
@@ -54,7 +54,7 @@ typedef struct {
 static void add_param(const Declared *d, Name name, Value v, Span span) {
   Builder *b = d->b;
   AstSign sign = d->e.parts ? SIGN_ANY : d->st->sign;
-  Param p = {.name = name, .span = d->st->name_span, .sign = sign, .unit = d->unit};
+  Param p = {.name = name, .stem = d->stem, .span = d->st->name_span, .sign = sign, .unit = d->unit};
   p.value = value_in(b, v, span, &p.unit);
   p.sym = declare_symbol(b, SYM_PARAM, b->m->params.n, name, sign_of(sign), d->unit.dim);
   if (p.value && expr_is_num(b->g, p.value)) {
@@ -72,6 +72,7 @@ static void add_member(const Declared *d, const int64_t *at, Value v, Span span)
     diag_error(b->diags, span, "`%s` is %s, and %s is given here", d->st->name, shape_text(b, d->e.parts), shape_text(b, v.n));
     v = (Value){0};
   }
+  if (v.e && v.n == ROTATION) v = refuse_rotation(b, span, source_text(b, span), TURN_VALUE);
   for (uint32_t k = 0; k < (d->e.parts ? d->e.parts : 1u); k++) {
     Value one = v;
     one.e = v.at[k];

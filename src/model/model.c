@@ -113,6 +113,11 @@ static void report_force(Builder *b, const AstStmt *st) {
   diag_help(b->diags, "`force x = F`, `force (px, py) = (Fx, Fy)`, or `force r = F` with two vectors");
 }
 
+static void report_torque(Builder *b, const AstStmt *st) {
+  diag_error(b->diags, st->span, "a force on a rotation is a torque: a vector of 3 components, in the rotation's own frame");
+  diag_help(b->diags, "`force R = (0, 0, tau)`; a torque of space is `force R = transpose(R)*tau`, a force at a point of a body `let p = r + R*s`, `force p = F`");
+}
+
 static void add_forces(Builder *b, AstId li, AstId ri, const Value *point, const Value *f, Energies *en) {
   if (!point->e || !f->e) return;
   for (uint32_t k = 0; k < (f->n ? f->n : 1); k++) {
@@ -146,19 +151,12 @@ static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) 
     return;
   }
   Value point = resolve(b, st->lhs, IN_DYNAMICS, effect), f = resolve(b, st->rhs, IN_DYNAMICS, effect);
+  int torque = point.e && f.e && point.n == ROTATION;
+  if (torque && f.n == 3) f = torque_force(b, &point, &f);
+  else if (torque) report_torque(b, st);
+  if (torque && f.n != ROTATION) return;
   if (point.e && f.e && point.n != f.n) report_force(b, st);
   else add_forces(b, st->lhs, st->rhs, &point, &f, en);
-}
-
-/* A value given to a symbol: a coordinate, a state, or the rate of one, declared in `unit`. */
-static Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit) {
-  SymKind kind = expr_symbol(b->g, target)->kind;
-  Unit u = kind == SYM_VEL || kind == SYM_RATE ? unit_per_second(b, unit) : *unit;
-  return values_in(b, resolve(b, id, IN_DYNAMICS, effect), ast_expr(b->ast, id)->span, &u);
-}
-
-static void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right) {
-  diag_error(b->diags, span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, left), shape_text(b, right));
 }
 
 /* The value on the left of a flow says which state is meant: its rate. */
@@ -210,69 +208,6 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
   }
 }
 
-static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
-  Value target = resolve(b, st->lhs, IN_DYNAMICS, effect);
-  if (!target.e) return;
-  for (uint32_t k = 0; k < (target.n ? target.n : 1); k++) {
-    SymKind kind = expr_op(b->g, target.at[k]) == EX_SYM ? expr_sym_of(b->g, target.at[k])->kind : SYM_LOCAL;
-    if (kind == SYM_COORD || kind == SYM_VEL || kind == SYM_STATE) continue;
-    diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "an event can set a coordinate, a velocity or a state");
-    if (kind == SYM_RATE && b->m->first_order) diag_help(b->diags, "L is linear in the velocities: `%s` follows from the coordinates", ast_text(b, st->lhs));
-    else diag_help(b->diags, "what an event changes is a `state`: `state k`, with `flow k' = 0` where nothing else does");
-    return;
-  }
-  SymId sym = expr_sym_id(b->g, target.e);
-  uint32_t i = expr_sym_of(b->g, target.e)->index;
-  const Unit *unit = expr_sym_of(b->g, target.e)->kind == SYM_STATE ? &b->m->states.at[i].unit : &b->m->coords.at[i].unit;
-  Value v = resolve_for(b, st->rhs, effect, sym, unit);
-  if (!v.e) return;
-  if (target.n != v.n) {
-    report_shapes(b, st->span, target.n, v.n);
-    return;
-  }
-  for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
-    Action a = {expr_sym_id(b->g, target.at[k]), v.at[k]};
-    vec_push(b->arena, &ev->actions, a);
-  }
-}
-
-static void add_event(Builder *b, const AstStmt *st, Name effect) {
-  Event ev = {.name = st->name, .span = st->span, .direction = st->direction};
-  IndexRange r = {0};
-  if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
-  ev.name = member_name(b, st->name, r.lo, r.n);
-  check_name_is_new(b, "event", ev.name, effect, st->name_span);
-  check_said_once(b, st);
-  Value g = resolve(b, st->lhs, IN_DYNAMICS, effect);
-  if (g.n) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "this is %s, and a number is wanted here", shape_text(b, g.n));
-  ev.g = g.e;
-  for (const AstStmt *s = st->body; s; s = s->next) {
-    if (s->kind == STMT_STOP) ev.stop = 1;
-    else add_action(b, s, effect, &ev);
-  }
-  if (g.e) vec_push(b->arena, &b->m->events, ev);
-}
-
-/* A surface of the state alone: what it contains is known before accelerations are. */
-static void add_section(Builder *b, const Section *s) {
-  if (!s->expr) return;
-  Span span = ast_expr(b->ast, s->expr)->span;
-  Value g = resolve(b, s->expr, IN_OBSERVE, NULL);
-  if (!g.e) return;
-  if (g.n) {
-    diag_error(b->diags, span, "this is %s, and a number is wanted here", shape_text(b, g.n));
-    diag_help(b->diags, "a section is where one number is zero: name a component");
-    return;
-  }
-  unsigned later = 1u << SYM_ACC | 1u << SYM_LOCAL | (b->m->first_order ? 0 : 1u << SYM_RATE);
-  if (expr_kinds(b->g, g.e) & later) {
-    diag_error(b->diags, span, "a section is a surface in the space of states: it cannot contain accelerations, rates of states or `energy`");
-    diag_help(b->diags, "write it with coordinates, velocities, states, t and lets");
-    return;
-  }
-  vec_push(b->arena, &b->m->events, ((Event){.name = s->name, .span = span, .g = g.e, .direction = s->direction}));
-}
-
 static void fill_input(Builder *b, const AstStmt *st, Name effect) {
   const Entity *e = scope_own(&b->scope, st->name, effect);
   if (e && e->kind == ENT_INPUT) give_input(b, e->index, st->name, st->rhs, effect);
@@ -293,7 +228,7 @@ void finish_observe(Builder *b, uint32_t index, Value v) {
   Name stem = o.name;
   for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
     o.value = v.at[k];
-    if (v.n) o.name = intern_printf(b, "%s.%c", stem, "xyz"[k]);
+    if (v.n) o.name = intern_printf(b, "%s.%c", stem, part_letter(v.n, k));
     if (k) vec_push(b->arena, &b->m->observes, o);
     else b->m->observes.at[index] = o;
   }
@@ -335,6 +270,11 @@ static void apply_unused_lets(Builder *b) {
 static void expect(Builder *b, const AstStmt *st, Name effect, void *data) {
   (void)data;
   if (st->kind == STMT_EXPECT) add_expect(b, st, effect);
+}
+
+static void symmetry(Builder *b, const AstStmt *st, Name effect, void *data) {
+  (void)data;
+  if (st->kind == STMT_SYMMETRY) add_symmetry(b, st, effect);
 }
 
 static void each_active(Builder *b, StatementFn *fn, void *data) {
@@ -486,7 +426,9 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   Energies en = {0};
   each_active(b, apply, &en);
   finish_energies(b, &en);
+  add_rotation_inertia(b);
   apply_unused_lets(b);
+  each_active(b, symmetry, NULL); /* before its charge is used: its unit follows from it */
   for (uint32_t i = 0; i < b->observes.n; i++) resolve_observe(b, i);
   each_active(b, expect, NULL);
   check_whole(b);
@@ -502,6 +444,7 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   add_section(b, &choice->section);
   scene_build(b, choice);
   settle_units(b);
+  if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
   return ast->diags->errors ? NULL : b->m;
 }

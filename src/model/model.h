@@ -39,6 +39,10 @@ typedef struct {
   Expr value;  /* of pi and earlier parameters */
   Num constant; /* the value, where it is a number at once (has_constant) */
   int has_constant;
+  Name stem;   /* of a member of a family: drag.w */
+  int fixed;   /* ModelChoice.fix: a number in programs, with the value that the scene gives it, */
+  Num number;  /* this one */
+  uint32_t place; /* in programs, among those that are not fixed */
 } Param;
 
 typedef struct {
@@ -87,6 +91,7 @@ typedef struct {
   Expr c;
   Dim dim;
   SymId multiplier;
+  int inside; /* it belongs to a rotation: nobody wrote it */
 } Constraint;
 
 /* A gap that cannot become negative. While it is closed it is a constraint: c = closed*gap. */
@@ -106,9 +111,28 @@ typedef struct {
   Expr value; /* may contain q'', z' */
 } Output;
 
+/* What a symmetry does to a coordinate, or to t, to first order in its parameter. */
+typedef struct {
+  SymId target; /* of kind SYM_COORD, SYM_STATE (a coordinate) or SYM_TIME */
+  Expr rate;    /* in coordinates, t and parameters */
+  Span span;
+} Move;
+
+typedef struct {
+  Name name;       /* wind.gust for the symmetry gust of effect wind */
+  Name effect;     /* that it stands in, or NULL */
+  const char *doc; /* or NULL */
+  Span span;
+  const AstStmt *stmt;
+  SymId parameter, charge; /* its charge stands so in outputs, until mech knows it */
+  Unit unit;               /* of the charge */
+  VEC(Move) moves;         /* coordinates that it does not name stay */
+} Symmetry;
+
 typedef struct {
   SymId target;
   Expr value; /* of parameters */
+  int implied; /* nobody said it: constraints may move it */
 } Start;
 
 /* What a coordinate, a velocity or a state should be. */
@@ -135,7 +159,7 @@ typedef struct {
 
 typedef struct {
   Name name;
-  int output; /* index into outputs; -1: the energy */
+  int output; /* index into outputs; -1: the energy; -2 - k: the charge of symmetry k */
   double limit;
   int absolute; /* the limit is one of size, not of change */
 } Monitor;
@@ -174,14 +198,17 @@ typedef struct {
   VEC(State) states;
   int first_order;         /* L is linear in all velocities: there are no coords, coordinates are states, velocities their rates */
   VEC(Param) params;
+  uint32_t nfixed;         /* how many of them are numbers */
   VEC(Input) inputs;
   Expr kinetic, potential; /* 0 when L was given as a whole */
   Expr lagrangian;         /* 0 when the text declares no coordinates */
+  Expr across;             /* or 0: quadratic in rates that rotations never have, added to L for a regular mass matrix */
   Span lagrangian_span;
   Expr dissipation;        /* sum of Rayleigh functions, or 0 */
   VEC(Force) forces;
   VEC(Constraint) constraints;
   VEC(Contact) contacts;
+  VEC(Symmetry) symmetries;
   VEC(Expect) expects;
   VEC(Event) events;
   VEC(Output) observes;
@@ -210,8 +237,8 @@ int model_has_scene(Ast *ast, const char *scene);
 /* The effects that no scene uses. */
 EffectList model_unused_effects(const Ast *ast);
 
-/* The effects that contain an expectation; first NULL, when one stands outside of effects. */
-EffectList model_expecting_effects(const Ast *ast);
+/* The effects that contain an expectation or a symmetry; first NULL, when one stands outside of effects. */
+EffectList model_claiming_effects(const Ast *ast);
 
 /* An output that the command line asks for, and the name of its column. */
 typedef struct {
@@ -219,7 +246,7 @@ typedef struct {
   Name name;
 } Asked;
 
-/* What the command line gives an input: its name, and a formula or a text that names a table. */
+/* What the command line gives an input: its name, and a formula or a text that names a table; or a rotation, omega(R), at the start. */
 typedef struct {
   AstId what, value;
 } Given;
@@ -236,6 +263,8 @@ typedef struct {
   const char *scene; /* NULL: the first */
   Name also;         /* an effect to turn on besides the scene's own, with what it requires; or NULL */
   int bare;          /* no scene at all: no effect but `also` is on */
+  const EffectList *only; /* these effects are in use, whatever the scene says; what it says of others, its outputs, monitors and closed
+                           * forms have no part in it. NULL: those of the scene */
   const Define *defines;
   uint32_t ndefines;
   const Asked *asked; /* outputs besides the scene's own */
@@ -243,6 +272,8 @@ typedef struct {
   const Given *given; /* values that win over the scene's */
   uint32_t ngiven;
   Section section;
+  const char *fix; /* parameters that become numbers, with the values that the scene gives them: "g,drag.c", "all"; NULL: none */
+  int unfixed;     /* none, whatever the command line says */
 } ModelChoice;
 
 /* The names that `coord` declares, in order, whatever the order of L. */

@@ -18,6 +18,7 @@ const Unit *entity_unit(const Builder *b, const Entity *e) {
     case ENT_INPUT: return &m->inputs.at[e->index].unit;
     case ENT_PARAM: return &m->params.at[e->index].unit;
     case ENT_OBSERVE: return &m->observes.at[e->index].unit;
+    case ENT_SYMMETRY: return &m->symmetries.at[e->index].unit;
     case ENT_NONE: case ENT_CONST: case ENT_LET: case ENT_FUNCTION: case ENT_BUILTIN: break;
   }
   return NULL;
@@ -30,6 +31,12 @@ static Unit output_unit(Builder *b, const Entity *e, uint32_t primes, Dim dim) {
   for (; primes; primes--) u = unit_per_second(b, &u);
   u.dim = dim;
   return u;
+}
+
+/* Angular velocities are in rad/s. */
+static void show_spin(const Builder *b, const Value *v, Unit *unit) {
+  const char *spin = spin_unit(b).text;
+  if (!b->unitless && !unit->text[0] && v->unit && strcmp(v->unit, spin) == 0) unit->text = spin;
 }
 
 /* The place of an output; it is added when its label is not there. */
@@ -46,7 +53,7 @@ static int add_one(Builder *b, Name label, Span span, Unit unit, Expr value) {
 static Name label_of(Builder *b, const char *stem, int part, uint32_t primes) {
   StrBuf s = strbuf(b->arena);
   sb_puts(&s, stem);
-  if (part >= 0) sb_printf(&s, ".%c", "xyz"[part]);
+  if (part >= 0) sb_printf(&s, ".%c", "xyzw"[part]);
   for (uint32_t i = 0; i < primes; i++) sb_putc(&s, '\'');
   return intern(b->ast->names, sb_text(&s));
 }
@@ -54,8 +61,12 @@ static Name label_of(Builder *b, const char *stem, int part, uint32_t primes) {
 /* A number, or each component; the place of the first, -1 where there are more. */
 static int add_value(Builder *b, const char *stem, uint32_t primes, const Entity *e, Span span, const Value *v) {
   Unit unit = output_unit(b, e, primes, v->dim);
+  show_spin(b, v, &unit);
   if (!v->n) return add_one(b, label_of(b, stem, -1, primes), span, unit, v->e);
-  for (uint32_t k = 0; k < v->n; k++) add_one(b, label_of(b, stem, (int)k, primes), span, unit, v->at[k]);
+  for (uint32_t k = 0; k < v->n; k++) {
+    int part = v->n == ROTATION ? ((int)k + 3) % ROTATION : (int)k;
+    add_one(b, label_of(b, stem, part, primes), span, unit, v->at[k]);
+  }
   return -1;
 }
 
@@ -69,7 +80,8 @@ static void add_family(Builder *b, AstId id, const Target *p, const Entity *e) {
     if (!member) continue;
     Value v = resolve_member(b, e, at, p->primes, span, IN_OUTPUT);
     if (!v.e) return;
-    if (p->part >= 0 && (uint32_t)p->part < v.n) v = (Value){.e = v.at[p->part], .dim = v.dim};
+    int place = part_place(v.n, p->part);
+    if (place >= 0) v = (Value){.e = v.at[place], .dim = v.dim};
     Name name = member_name(b, stem, at, e->ndims);
     if (p->part >= 0) name = label_of(b, name, p->part, 0);
     add_value(b, name, p->primes, member, span, &v);
@@ -132,6 +144,7 @@ int add_outputs(Builder *b, AstId id) {
   int call = ast_expr(b->ast, id)->kind == AST_CALL;
   if (v.n) return add_value(b, arena_printf(b->arena, call ? "%s" : "(%s)", text), 0, NULL, span, &v);
   Unit unit = output_unit(b, e, p.primes, v.dim);
+  show_spin(b, &v, &unit);
   return add_one(b, intern(b->ast->names, text), span, unit, v.e);
 }
 

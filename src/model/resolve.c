@@ -13,10 +13,6 @@
 
 /* --- what is not evaluated node by node --- */
 
-/* Inside a call that is refused as a whole names may be bound that are not declared: the one message
- * about the construct is enough. */
-static int is_refused(const AstExpr *x) { return x->kind == AST_CALL && call_is_not_yet(x->name); }
-
 /* Marks the left operands that continue a chain of the same kind of operator: it is built as one sum
  * (or product), so that a sum of a million terms costs one sort. */
 static void mark_chain(Eval *ev, const AstExpr *x) {
@@ -57,16 +53,9 @@ static void mark_constraint(Eval *ev, const AstExpr *x) {
 
 static void mark(Eval *ev) {
   const Ast *ast = ev->b->ast;
-  AstId quiet = 0; /* what is refused as a whole */
   for (AstId i = ev->root; i >= ev->first; i--) {
     const AstExpr *x = ast_expr(ast, i);
-    if (quiet && i < ast_expr(ast, quiet)->first) quiet = 0;
-    if (quiet) {
-      ev->open[i - ev->first] = 1;
-      continue;
-    }
-    if (is_refused(x)) quiet = i;
-    else if (x->kind == AST_ADD || x->kind == AST_SUB || x->kind == AST_MUL || x->kind == AST_DIV) mark_chain(ev, x);
+    if (x->kind == AST_ADD || x->kind == AST_SUB || x->kind == AST_MUL || x->kind == AST_DIV) mark_chain(ev, x);
     else if (x->kind == AST_SUM || x->kind == AST_PRODUCT) guard(ev, i, x->c);
     else if (x->kind == AST_CALL) {
       mark_branches(ev, i, x);
@@ -88,6 +77,7 @@ static Value node_value(Eval *ev, AstId id) {
     case AST_PRIME: {
       const Value *v = value_of(ev, x->a);
       if (!v->e) return FAILED;
+      if (v->n == ROTATION) return refuse_rotation(b, x->span, ast_short(b, x->a), TURN_PRIME);
       if (ev->kind == ENT_FUNCTION) need_rates(b, b->instances.at[ev->definition]);
       return time_derivative(b, *v, x->span, ev->where);
     }
@@ -127,6 +117,10 @@ int operand_fits(Eval *ev, const AstExpr *x, AstId i) {
   int is_if = x->kind == AST_CALL && strcmp(x->name, "if") == 0;
   if (v->condition && !logic && !(is_if && i == x->args)) {
     report_condition(b, i);
+    return 0;
+  }
+  if (v->n == ROTATION && !takes_vectors(ev, x)) {
+    refuse_rotation(b, ast_expr(b->ast, i)->span, ast_short(b, i), TURN_NUMBER);
     return 0;
   }
   if (v->n && !takes_vectors(ev, x)) {
@@ -280,7 +274,7 @@ static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
 /* The value of a let is a definition, or one for each component: `r.x`. */
 static void finish_let(Builder *b, Definition *d, Value v) {
   for (uint32_t k = 0; v.e && k < parts_of(&v); k++) {
-    Name name = v.n ? intern_printf(b, "%s.%c", d->name, "xyz"[k]) : d->name;
+    Name name = v.n ? intern_printf(b, "%s.%c", d->name, part_letter(v.n, k)) : d->name;
     v.at[k] = expr_def(b->g, name, v.at[k]);
   }
   d->value = v;

@@ -19,19 +19,12 @@ static const struct {
 }, binary_functions[] = {{"atan2", EX_ATAN2}, {"hypot", EX_HYPOT}, {"min", EX_MIN}, {"max", EX_MAX}};
 
 static const char *const other_functions[] = {"sqrt", "pow", "if", "d", "dot", "cross", "norm", "lambda"};
-static const char *const later_functions[] = {"omega"};
 
 const char *function_name(size_t i) {
   enum { NU = sizeof unary_functions / sizeof *unary_functions, NB = sizeof binary_functions / sizeof *binary_functions, NO = sizeof other_functions / sizeof *other_functions };
   if (i < NU) return unary_functions[i].name;
   if (i < NU + NB) return binary_functions[i - NU].name;
-  return i < NU + NB + NO ? other_functions[i - NU - NB] : NULL;
-}
-
-int call_is_not_yet(Name name) {
-  for (size_t i = 0; i < sizeof later_functions / sizeof *later_functions; i++)
-    if (strcmp(name, later_functions[i]) == 0) return 1;
-  return 0;
+  return i < NU + NB + NO ? other_functions[i - NU - NB] : rotation_function_name(i - NU - NB - NO);
 }
 
 const Entity *own_function(const Eval *ev, const AstExpr *x) {
@@ -44,7 +37,7 @@ int call_takes_vectors(const Eval *ev, const AstExpr *x) {
   static const char *const names[] = {"if", "d", "dot", "cross", "norm", "exact", "error", "lambda"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (strcmp(x->name, names[i]) == 0) return 1;
-  return own_function(ev, x) != NULL;
+  return call_is_of_rotation(x->name) || own_function(ev, x) != NULL;
 }
 
 int arity_is(Eval *ev, const AstExpr *x, uint32_t want) {
@@ -109,6 +102,10 @@ static int two_vectors(Eval *ev, const AstExpr *x, const Value **v, const Value 
   *v = value_of(ev, x->args);
   *w = value_of(ev, second);
   if (!(*v)->e || !(*w)->e || !same_shape(ev, x->span, x->args, second)) return 0;
+  if ((*v)->n == ROTATION) {
+    refuse_rotation(b, ast_expr(b->ast, x->args)->span, ast_short(b, x->args), TURN_NUMBER);
+    return 0;
+  }
   if ((*v)->n) return 1;
   diag_error(b->diags, x->span, "`%s` takes vectors, and these are numbers", x->name);
   return 0;
@@ -152,6 +149,7 @@ static Value call_norm(Eval *ev, const AstExpr *x) {
   if (!arity_is(ev, x, 1)) return FAILED;
   const Value *v = value_of(ev, x->args);
   if (!v->e) return FAILED;
+  if (v->n == ROTATION) return refuse_rotation(b, ast_expr(b->ast, x->args)->span, ast_short(b, x->args), TURN_NUMBER);
   if (!v->n) {
     diag_error(b->diags, x->span, "`norm` takes a vector, and `%s` is a number", ast_short(b, x->args));
     diag_help(b->diags, "`abs(x)` is the size of a number");
@@ -184,6 +182,7 @@ static Value call_d(Eval *ev, const AstExpr *x) {
   AstId by = ast_expr(b->ast, x->args)->next;
   const Value *v = value_of(ev, x->args), *w = value_of(ev, by);
   if (!v->e || !w->e) return FAILED;
+  if (v->n == ROTATION) return refuse_rotation(b, ast_expr(b->ast, x->args)->span, ast_short(b, x->args), TURN_NUMBER);
   if (w->n) {
     diag_error(b->diags, ast_expr(b->ast, by)->span, "`%s` is %s: differentiate by its components", ast_short(b, by), shape_text(b, w->n));
     return FAILED;
@@ -222,10 +221,6 @@ static const Entity *called_motion(const Eval *ev, const AstExpr *x) {
 
 static Value unknown_function(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
-  if (call_is_not_yet(x->name)) {
-    not_yet(b, x->span, arena_printf(b->arena, "`%s`", x->name));
-    return FAILED;
-  }
   uint32_t n = 0;
   while (function_name(n)) n++;
   Name *known = ARENA_ARRAY(b->arena, Name, n + b->scope.all.n);
@@ -269,6 +264,7 @@ Value call_value(Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "cross") == 0) return call_cross(ev, x);
   if (strcmp(x->name, "norm") == 0) return call_norm(ev, x);
   if (strcmp(x->name, "lambda") == 0) return multiplier_value(ev, x);
+  if (call_is_of_rotation(x->name)) return rotation_function(ev, x);
   if (strcmp(x->name, "pow") == 0)
     return arity_is(ev, x, 2) ? power_value(ev, x, x->args, ast_expr(ast, x->args)->next) : FAILED;
   return unknown_function(ev, x);

@@ -21,7 +21,7 @@ static uint32_t count_args(const Builder *b, const Definition *f) {
 static Value new_argument(Builder *b, Instance *in, Name name, uint32_t shape) {
   Value v = {.n = shape, .dim = b->unitless ? DIM_ANY : dim_unknown(b->dims, name)};
   for (uint32_t k = 0; k < parts_of(&v); k++) {
-    Name part = shape ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name;
+    Name part = shape ? intern_printf(b, "%s.%c", name, part_letter(shape, k)) : name;
     SymId s = declare_symbol(b, SYM_LOCAL, in->symbols.n, part, SIGN_UNKNOWN, v.dim);
     vec_push(b->arena, &in->symbols, s);
     v.at[k] = expr_symbol(b->g, s)->node;

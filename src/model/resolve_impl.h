@@ -96,6 +96,25 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e);
 /* The function of the model's own that x calls, or NULL. */
 const Entity *own_function(const Eval *ev, const AstExpr *x);
 
+/* rotation.c: turns by q, then by p; the vector that q makes of v of three components; R as a value, from its first coordinate. */
+Value rotation_product(Builder *b, const Value *p, const Value *q);
+Value rotation_turn(Builder *b, const Value *q, const Value *v);
+Value rotation_coordinate(const Builder *b, uint32_t coord);
+
+/* omega(R), turn(axis, angle), transpose(R); their names, NULL past the end. */
+Value rotation_function(Eval *ev, const AstExpr *x);
+int call_is_of_rotation(Name name);
+const char *rotation_function_name(size_t i);
+
+/* Reports a rotation, written `text`, where it has no meaning; FAILED. */
+typedef enum {
+  TURN_SUM, TURN_NEGATION, TURN_DIVISOR, TURN_SCALED, TURN_BEHIND, TURN_PLANE, TURN_PRIME, TURN_UNIT, TURN_EQUATION, TURN_VALUE, TURN_NUMBER
+} TurnMistake;
+Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why);
+
+/* constraint.c: c = 0, of dimension dim. */
+void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span);
+
 /* constraint.c: lambda(NAME), the multiplier of a constraint; of a constraint of vectors a vector. */
 Value multiplier_value(Eval *ev, const AstExpr *x);
 
@@ -121,8 +140,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where);
 Value unit_value(Eval *ev, const AstExpr *x);
 Expr times_unit(Builder *b, Expr e, const Unit *u);
 
-/* Whether the language has a function that this version gives no meaning to; whether it takes vectors. */
-int call_is_not_yet(Name name);
+/* Whether a function takes vectors. */
 int call_takes_vectors(const Eval *ev, const AstExpr *x);
 
 /* Whether a call has so many arguments; reported when it has not. */

@@ -17,6 +17,7 @@ const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const 
 }
 
 const char *shape_text(const Builder *b, uint32_t n) {
+  if (n == ROTATION) return "a rotation";
   return n ? arena_printf(b->arena, "a vector of %u components", n) : "a number";
 }
 
@@ -57,7 +58,7 @@ static Context least_context(EntKind kind) {
   switch (kind) {
     case ENT_CONST: return IN_CONST;
     case ENT_PARAM: return IN_PARAM;
-    case ENT_OBSERVE: return IN_OBSERVE;
+    case ENT_OBSERVE: case ENT_SYMMETRY: return IN_OBSERVE;
     case ENT_NONE: case ENT_COORD: case ENT_STATE: case ENT_INPUT: case ENT_LET: case ENT_FUNCTION: case ENT_BUILTIN: break;
   }
   return IN_DYNAMICS;
@@ -89,6 +90,12 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
       return v;
     }
     case ENT_CONST: return b->constants.at[e->index].value;
+    case ENT_SYMMETRY: {
+      const Symmetry *y = &b->m->symmetries.at[e->index];
+      Value v = a_value(expr_symbol(b->g, y->charge)->node, y->unit.dim, 0);
+      v.unit = y->unit.text;
+      return v;
+    }
     case ENT_LET: case ENT_OBSERVE: return defined_value(ev, e, span);
     case ENT_FUNCTION:
       diag_error(b->diags, span, "`%s` is a function", e->name);
@@ -159,6 +166,7 @@ Value name_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const IndexVar *index = find_index(ev, x->name);
   if (index) return a_value(expr_int(b->g, index->at), DIM_NONE, 1);
+  if (b->group == x->name && ev->in_statement) return a_value(expr_symbol(b->g, b->group_symbol)->node, b->dim_of.at[b->group_symbol], 0);
   const Value *argument = function_argument(b, ev->function, x->name);
   if (argument) return *argument;
   if (strcmp(x->name, "pi") == 0) return a_value(expr_symbol(b->g, b->m->pi)->node, DIM_NONE, 1);
@@ -219,7 +227,8 @@ static Value indexed_value(Eval *ev, const Entity *e, const AstExpr *x, int mome
   if (e->kind == ENT_NONE) return FAILED;
   if (!e->ndims) {
     diag_error(b->diags, x->span, "`%s` is %s without index", e->name, ent_kind_text(e->kind));
-    if (e->parts) diag_help(b->diags, "the components of a vector are `%s.x`, `%s.y`", e->name, e->name);
+    if (e->parts == ROTATION) diag_help(b->diags, "the components of a rotation are `%s.w`, `%s.x`, `%s.y`, `%s.z`", e->name, e->name, e->name, e->name);
+    else if (e->parts) diag_help(b->diags, "the components of a vector are `%s.x`, `%s.y`", e->name, e->name);
     else diag_help(b->diags, "a family is declared with its size: `%s[3]`; a unit stands apart: `%s [%s]`", e->name, e->name,
                    ast_text(b, x->args));
     return FAILED;
@@ -263,10 +272,15 @@ Value index_value(Eval *ev, const AstExpr *x) {
 static Value component(Eval *ev, const AstExpr *x, Value v) {
   Builder *b = ev->b;
   if (!v.e) return FAILED;
-  uint32_t k = strcmp(x->name, "x") == 0 ? 0 : strcmp(x->name, "y") == 0 ? 1 : strcmp(x->name, "z") == 0 ? 2 : 3;
-  if (k < v.n) return a_value(v.at[k], v.dim, v.bare);
+  uint32_t k = 0;
+  while (k < v.n && !(x->name[0] == part_letter(v.n, k) && !x->name[1])) k++;
+  if (k < v.n) {
+    Value one = a_value(v.at[k], v.dim, v.bare);
+    one.unit = v.unit;
+    return one;
+  }
   diag_error(b->diags, x->span, "`%s` has no component `%s`", ast_short(b, x->a), x->name);
-  if (v.n) diag_help(b->diags, "it is %s: %s", shape_text(b, v.n), v.n == 2 ? "`.x`, `.y`" : "`.x`, `.y`, `.z`");
+  if (v.n) diag_help(b->diags, "it is %s: %s", shape_text(b, v.n), v.n == 2 ? "`.x`, `.y`" : v.n == 3 ? "`.x`, `.y`, `.z`" : "`.w`, `.x`, `.y`, `.z`");
   else diag_help(b->diags, "it is a number; vectors are declared `coord r: vec3 [m]`, or written `(a, b, c)`");
   return FAILED;
 }
@@ -297,6 +311,7 @@ Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t pr
   if (member->kind == ENT_LET) resolve_let(b, member->index);
   if (member->kind == ENT_OBSERVE) resolve_observe(b, member->index);
   Value v = entity_value(&ev, member, at, span);
+  if (v.n == ROTATION && primes) return refuse_rotation(b, span, e->name, TURN_PRIME);
   for (; v.e && primes; primes--) v = time_derivative(b, v, span, where);
   return v;
 }

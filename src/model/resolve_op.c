@@ -62,6 +62,11 @@ static int judge_sum(Eval *ev, const AstExpr *x, Value *r) {
   for (uint32_t i = 0; i < ev->operands.n; i++)
     if (!operand_fits(ev, x, ev->operands.at[i].at) || !value_of(ev, ev->operands.at[i].at)->e) return 0;
   r->n = value_of(ev, ev->operands.at[0].at)->n;
+  if (r->n == ROTATION) {
+    AstId first = ev->operands.at[0].at;
+    refuse_rotation(b, ast_expr(b->ast, first)->span, ast_short(b, first), TURN_SUM);
+    return 0;
+  }
   for (uint32_t i = 0; i < ev->operands.n; i++) {
     AstId at = ev->operands.at[i].at;
     const Value *v = value_of(ev, at);
@@ -94,51 +99,97 @@ static Value sum_value(Eval *ev, AstId id) {
   return r;
 }
 
-/* One factor may be a vector; nothing is divided by one. *vector: its place, or UINT32_MAX. */
-static int judge_product(Eval *ev, const AstExpr *x, Value *r, uint32_t *vector) {
+/* What the factors of a product are. */
+typedef struct {
+  uint32_t vector;         /* the place of the one that is a vector, or UINT32_MAX */
+  uint32_t turns, numbers; /* how many are rotations, and numbers */
+} Factors;
+
+/* Rotations stand before the vector that they turn, and are multiplied by nothing else. */
+static int rotation_fits(Eval *ev, uint32_t i, const Factors *f) {
+  Builder *b = ev->b;
+  Operand o = ev->operands.at[i];
+  if (!o.inverted && f->vector == UINT32_MAX) return 1;
+  refuse_rotation(b, ast_expr(b->ast, o.at)->span, ast_short(b, o.at), o.inverted ? TURN_DIVISOR : TURN_BEHIND);
+  return 0;
+}
+
+/* One factor may be a vector; nothing is divided by one. */
+static int factor_fits(Eval *ev, uint32_t i, const Value *r) {
+  Builder *b = ev->b;
+  Operand o = ev->operands.at[i];
+  const Value *v = value_of(ev, o.at);
+  Span span = ast_expr(b->ast, o.at)->span;
+  if (v->n && (o.inverted || r->n)) {
+    diag_error(b->diags, span, o.inverted ? "`%s` is %s, and nothing is divided by a vector" : "`%s` is %s, and so is a factor before it",
+               ast_short(b, o.at), shape_text(b, v->n));
+    diag_help(b->diags, "`dot(a, b)`, `cross(a, b)` and `norm(a)` say what is meant");
+    return 0;
+  }
+  if (o.inverted && expr_is_zero(b->g, v->e)) {
+    diag_error(b->diags, span, "division by zero");
+    return 0;
+  }
+  return 1;
+}
+
+static int judge_product(Eval *ev, const AstExpr *x, Value *r, Factors *f) {
   Builder *b = ev->b;
   int ok = 1;
+  AstId turn = 0;
   *r = (Value){.dim = DIM_NONE, .bare = 1};
-  *vector = UINT32_MAX;
+  *f = (Factors){UINT32_MAX, 0, 0};
   for (uint32_t i = 0; i < ev->operands.n; i++) {
     Operand o = ev->operands.at[i];
     const Value *v = value_of(ev, o.at);
-    Span span = ast_expr(b->ast, o.at)->span;
-    if (!operand_fits(ev, x, o.at) || !v->e) {
-      ok = 0;
-    } else if (v->n && (o.inverted || r->n)) {
-      diag_error(b->diags, span, o.inverted ? "`%s` is %s, and nothing is divided by a vector" : "`%s` is %s, and so is a factor before it",
-                 ast_short(b, o.at), shape_text(b, v->n));
-      diag_help(b->diags, "`dot(a, b)`, `cross(a, b)` and `norm(a)` say what is meant");
-      ok = 0;
-    } else if (o.inverted && expr_is_zero(b->g, v->e)) {
-      diag_error(b->diags, span, "division by zero");
-      ok = 0;
-    } else {
-      if (v->n) *vector = i;
-      if (v->n) r->n = v->n;
-      r->dim = o.inverted ? dim_div(b->dims, r->dim, v->dim) : dim_mul(b->dims, r->dim, v->dim);
-      r->bare &= v->bare;
-    }
+    int fits = operand_fits(ev, x, o.at) && v->e && (v->n == ROTATION ? rotation_fits(ev, i, f) : factor_fits(ev, i, r));
+    ok &= fits;
+    if (!fits) continue;
+    if (v->n == ROTATION) turn = o.at;
+    else if (v->n) f->vector = i;
+    f->turns += v->n == ROTATION;
+    f->numbers += !v->n;
+    if (v->n && v->n != ROTATION) r->n = v->n;
+    r->dim = o.inverted ? dim_div(b->dims, r->dim, v->dim) : dim_mul(b->dims, r->dim, v->dim);
+    r->bare &= v->bare;
   }
-  return ok;
+  if (!ok || !turn || r->n == 3 || (!r->n && !f->numbers)) return ok;
+  AstId wrong = r->n ? ev->operands.at[f->vector].at : turn;
+  refuse_rotation(b, ast_expr(b->ast, wrong)->span, ast_short(b, wrong), r->n ? TURN_PLANE : TURN_SCALED);
+  return 0;
+}
+
+/* What the rotations among the factors make of the vector, or, where there is none, together. */
+static Value turned_value(Eval *ev, const Factors *f) {
+  Builder *b = ev->b;
+  Value q = {0};
+  for (uint32_t i = 0; i < ev->operands.n; i++) {
+    const Value *v = value_of(ev, ev->operands.at[i].at);
+    if (v->n == ROTATION) q = q.e ? rotation_product(b, &q, v) : *v;
+  }
+  return f->vector == UINT32_MAX ? q : rotation_turn(b, &q, value_of(ev, ev->operands.at[f->vector].at));
 }
 
 static Value product_value(Eval *ev, AstId id) {
   Builder *b = ev->b;
   chain(ev, id, AST_DIV);
-  Value r;
-  uint32_t vector;
-  if (!judge_product(ev, ast_expr(b->ast, id), &r, &vector)) return FAILED;
+  Value r, turned = {0};
+  Factors f;
+  if (!judge_product(ev, ast_expr(b->ast, id), &r, &f)) return FAILED;
+  if (f.turns) turned = turned_value(ev, &f);
+  if (f.turns && f.vector == UINT32_MAX) return turned;
   for (uint32_t k = 0; k < parts_of(&r); k++) {
     for (uint32_t i = 0; i < ev->operands.n; i++) {
-      Expr e = value_of(ev, ev->operands.at[i].at)->at[i == vector ? k : 0];
+      const Value *v = value_of(ev, ev->operands.at[i].at);
+      if (v->n == ROTATION) continue;
+      Expr e = i == f.vector && f.turns ? turned.at[k] : v->at[i == f.vector ? k : 0];
       if (ev->operands.at[i].inverted) e = expr_pow_num(b->g, e, num_int(-1));
       vec_push(b->arena, &b->scratch, e);
     }
     r.at[k] = expr_mul_n(b->g, b->scratch.at, b->scratch.n);
     b->scratch.n = 0;
   }
+  r.bare &= !f.turns;
   return r;
 }
 
@@ -217,6 +268,7 @@ Value operator_value(Eval *ev, AstId id) {
     case AST_NUM: return a_value(expr_num(b->g, x->number), num_is_zero(x->number) ? DIM_ANY : DIM_NONE, 1);
     case AST_NEG: {
       Value v = *value_of(ev, x->a);
+      if (v.n == ROTATION) return refuse_rotation(b, x->span, ast_short(b, x->a), TURN_NEGATION);
       for (uint32_t k = 0; v.e && k < parts_of(&v); k++) v.at[k] = expr_neg(b->g, v.at[k]);
       return v;
     }
@@ -272,6 +324,10 @@ static int judge_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr *x
   int product = x->kind == AST_PRODUCT;
   *r = (Value){.dim = product ? DIM_NONE : DIM_ANY, .bare = 1, .n = term[0].n};
   Span span = ast_expr(b->ast, x->c)->span;
+  if (r->n == ROTATION) {
+    refuse_rotation(b, span, ast_short(b, x->c), TURN_SUM);
+    return 0;
+  }
   for (uint32_t i = 0; i < n; i++) {
     r->bare &= term[i].bare;
     if (term[i].n != r->n || (product && r->n)) {

@@ -30,7 +30,7 @@ static const Expr *time_seeds(Builder *b) {
   return seed;
 }
 
-/* Whether it has symbols whose rates are not known: the energy, second rates of arguments. */
+/* Whether it has symbols whose rates are not known: the energy, charges, second rates of arguments. */
 static int has_no_rate(Builder *b, const Value *v) {
   const Expr *seed = time_seeds(b);
   ExprList l = expr_topo(b->g, v->at, parts_of(v));
@@ -69,7 +69,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
     return FAILED;
   }
   if (kinds & 1u << SYM_LOCAL && has_no_rate(b, &of)) {
-    not_yet(b, span, "a time derivative of the energy, or a third one of a function's argument");
+    not_yet(b, span, "a time derivative of the energy or a charge, or a third one of a function's argument");
     diag_help(b->diags, "the energy changes by the power of forces: `force x = F` brings `F*x'`");
     return FAILED;
   }
@@ -105,6 +105,7 @@ Value unit_value(Eval *ev, const AstExpr *x) {
   const Value *v = value_of(ev, x->a);
   if (ast_expr(b->ast, x->a)->kind != AST_NUM) warn_unit_is_constant(b, &x->unit);
   Unit u = unit_resolve(&x->unit, b->dims, b->diags, b->arena);
+  if (v->e && v->n == ROTATION) return refuse_rotation(b, x->span, ast_short(b, x->a), TURN_UNIT);
   if (!v->e || (x->unit.n && u.dim == DIM_ANY)) return FAILED;
   if (!dim_equate(b->dims, v->dim, DIM_NONE, x->span)) {
     diag_error(b->diags, x->unit.span, "`%s` has a unit already: [%s]", ast_short(b, x->a), shown_unit(b, v));

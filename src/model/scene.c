@@ -1,16 +1,10 @@
 /* Scenes: which statements are active, and what a scene says of a run. */
 #include <math.h>
 
-#include "base/suggest.h"
 #include "model/builder.h"
+#include "model/effect.h"
 
 /* --- the file's scenes and effects --- */
-
-static const AstStmt *find_stmt(const Ast *ast, AstStmtKind kind, const char *name) {
-  for (const AstStmt *s = ast->first; s; s = s->next)
-    if (s->kind == kind && s->name && (!name || strcmp(s->name, name) == 0)) return s;
-  return NULL;
-}
 
 SceneList model_scenes(const Ast *ast) {
   VEC(Name) names = {0};
@@ -20,63 +14,11 @@ SceneList model_scenes(const Ast *ast) {
   return (SceneList){names.at, names.n};
 }
 
-EffectList model_unused_effects(const Ast *ast) {
-  VEC(Name) unused = {0};
-  for (const AstStmt *e = ast->first; e; e = e->next) {
-    if (e->kind != STMT_EFFECT || !e->name) continue;
-    int used = 0;
-    for (const AstStmt *s = ast->first; s; s = s->next)
-      for (const AstStmt *x = s->kind == STMT_SCENE ? s->body : NULL; x; x = x->next)
-        used |= x->kind == STMT_USE && x->name == e->name;
-    if (!used) vec_push(ast->arena, &unused, e->name);
-  }
-  return (EffectList){unused.at, unused.n};
-}
-
-/* Blocks nest at most as deep as the parser lets them. */
-static int contains_expect(const AstStmt *list) {
-  for (const AstStmt *s = list; s; s = s->next)
-    if (s->kind == STMT_EXPECT || (s->kind == STMT_FOR && contains_expect(s->body))) return 1;
-  return 0;
-}
-
-EffectList model_expecting_effects(const Ast *ast) {
-  VEC(Name) names = {0};
-  if (contains_expect(ast->first)) vec_push(ast->arena, &names, NULL);
-  for (const AstStmt *s = ast->first; s; s = s->next)
-    if (s->kind == STMT_EFFECT && s->name && contains_expect(s->body)) vec_push(ast->arena, &names, s->name);
-  return (EffectList){names.at, names.n};
-}
-
-static Name nearest(const Ast *ast, AstStmtKind kind, const char *wrong) {
-  VEC(Name) names = {0};
-  for (const AstStmt *s = ast->first; s; s = s->next)
-    if (s->kind == kind && s->name) vec_push(ast->arena, &names, s->name);
-  return suggest(wrong, names.at, names.n);
-}
-
-static const char *all_scenes(const Ast *ast) {
-  StrBuf list = strbuf(ast->arena);
-  SceneList scenes = model_scenes(ast);
-  for (uint32_t i = 0; i < scenes.n && i < 12; i++) sb_printf(&list, "%s`%s`", i ? ", " : "", scenes.at[i]);
-  if (scenes.n > 12) sb_puts(&list, ", ...");
-  return sb_text(&list);
-}
-
-static void report_unknown(const Ast *ast, AstStmtKind kind, Span span, const char *name) {
-  const char *what = kind == STMT_SCENE ? "scene" : "effect";
-  diag_error(ast->diags, span, "unknown %s `%s`", what, name);
-  Name near = nearest(ast, kind, name);
-  if (near) diag_help(ast->diags, "did you mean `%s`?", near);
-  else if (kind == STMT_EFFECT) diag_help(ast->diags, "declare it: `effect %s { ... }`", name);
-  else diag_help(ast->diags, "the scenes are %s", all_scenes(ast));
-}
-
 int model_has_scene(Ast *ast, const char *scene) {
   SceneList scenes = model_scenes(ast);
   for (uint32_t i = 0; i < scenes.n; i++)
     if (strcmp(scenes.at[i], scene) == 0) return 1;
-  report_unknown(ast, STMT_SCENE, (Span){0}, scene);
+  report_unnamed(ast, STMT_SCENE, (Span){0}, scene);
   return 0;
 }
 
@@ -96,8 +38,8 @@ static const AstStmt **scene_chain(Builder *b, const AstStmt *scene) {
     const AstStmt *next = NULL;
     for (const AstStmt *x = s->body; x; x = x->next)
       if (x->kind == STMT_LIKE) {
-        next = find_stmt(b->ast, STMT_SCENE, x->name);
-        if (!next) report_unknown(b->ast, STMT_SCENE, x->name_span, x->name);
+        next = find_named(b->ast, STMT_SCENE, x->name);
+        if (!next) report_unnamed(b->ast, STMT_SCENE, x->name_span, x->name);
       }
     s = next;
   }
@@ -106,68 +48,18 @@ static const AstStmt **scene_chain(Builder *b, const AstStmt *scene) {
   return out;
 }
 
-/* --- effects in use --- */
-
-static int uses(const Builder *b, Name effect) {
-  for (uint32_t i = 0; i < b->m->effects.n; i++)
-    if (b->m->effects.at[i] == effect) return 1;
-  return 0;
-}
-
-static int is_use_none(const AstStmt *st) { return st->kind == STMT_USE && strcmp(st->name, "none") == 0; }
-
-static void collect_uses(Builder *b, const AstStmt *scene) {
-  for (const AstStmt *x = scene->body; x; x = x->next) {
-    if (x->kind != STMT_USE) continue;
-    if (is_use_none(x)) {
-      b->m->effects.n = 0;
-      if (x->body) diag_error(b->diags, x->body->span, "`use none` turns all effects off, and takes no values");
-    }
-    else if (!find_stmt(b->ast, STMT_EFFECT, x->name)) report_unknown(b->ast, STMT_EFFECT, x->name_span, x->name);
-    else if (!uses(b, x->name)) vec_push(b->arena, &b->m->effects, x->name);
-  }
-}
-
-/* Turns an effect on together with what it requires. */
-static void use_with_needs(Builder *b, Name effect) {
-  if (uses(b, effect)) return;
-  vec_push(b->arena, &b->m->effects, effect);
-  for (uint32_t i = b->m->effects.n - 1; i < b->m->effects.n; i++) {
-    const AstStmt *st = find_stmt(b->ast, STMT_EFFECT, b->m->effects.at[i]);
-    for (const AstStmt *x = st ? st->body : NULL; x; x = x->next)
-      if (x->kind == STMT_REQUIRES && !uses(b, x->name) && find_stmt(b->ast, STMT_EFFECT, x->name))
-        vec_push(b->arena, &b->m->effects, x->name);
-  }
-}
-
-static void check_effect_needs(Builder *b, const AstStmt *effect) {
-  for (const AstStmt *x = effect->body; x; x = x->next) {
-    if (x->kind != STMT_REQUIRES && x->kind != STMT_EXCLUDES) continue;
-    if (!find_stmt(b->ast, STMT_EFFECT, x->name)) {
-      report_unknown(b->ast, STMT_EFFECT, x->name_span, x->name);
-    } else if (x->kind == STMT_REQUIRES && !uses(b, x->name)) {
-      diag_error(b->diags, x->span, "the effect `%s` requires `%s`, which the scene `%s` does not use", effect->name, x->name,
-                 b->m->scene.name);
-      diag_help(b->diags, "add `use %s` to the scene", x->name);
-    } else if (x->kind == STMT_EXCLUDES && uses(b, x->name)) {
-      diag_error(b->diags, x->span, "the effects `%s` and `%s` exclude each other, and the scene `%s` uses both", effect->name,
-                 x->name, b->m->scene.name);
-    }
-  }
-}
-
 /* --- which statements are active --- */
 
 static const AstStmt *pick_scene(Builder *b, const char *scene) {
-  const AstStmt *st = find_stmt(b->ast, STMT_SCENE, scene);
+  const AstStmt *st = find_named(b->ast, STMT_SCENE, scene);
   if (st || !scene) return st;
-  if (strcmp(scene, "default") == 0 && !find_stmt(b->ast, STMT_SCENE, NULL)) return NULL;
-  report_unknown(b->ast, STMT_SCENE, (Span){0}, scene);
+  if (strcmp(scene, "default") == 0 && !find_named(b->ast, STMT_SCENE, NULL)) return NULL;
+  report_unnamed(b->ast, STMT_SCENE, (Span){0}, scene);
   return NULL;
 }
 
 static void take_model_name(Builder *b) {
-  const AstStmt *m = find_stmt(b->ast, STMT_MODEL, NULL);
+  const AstStmt *m = find_named(b->ast, STMT_MODEL, NULL);
   if (!m) {
     Span start = b->ast->first ? b->ast->first->span : (Span){0};
     diag_error(b->diags, start, "the file does not name its model");
@@ -192,6 +84,7 @@ static void take_model_name(Builder *b) {
 void scene_select(Builder *b, const ModelChoice *choice) {
   take_model_name(b);
   check_names_once(b);
+  int related = effects_check(b->ast);
   const AstStmt *st = choice->bare ? NULL : pick_scene(b, choice->scene);
   b->m->scene.name = st ? st->name : intern(b->ast->names, "default");
   b->m->scene.doc = st && st->doc ? st->doc : "";
@@ -201,6 +94,9 @@ void scene_select(Builder *b, const ModelChoice *choice) {
     collect_uses(b, *s);
   }
   if (choice->also) use_with_needs(b, choice->also);
+  b->is_variant = choice->only != NULL;
+  if (b->is_variant) b->m->effects.n = 0;
+  for (uint32_t i = 0; b->is_variant && i < choice->only->n; i++) vec_push(b->arena, &b->m->effects, choice->only->at[i]);
   VEC(Name) in_order = {0};
   for (const AstStmt *s = b->ast->first; s; s = s->next) {
     if (s->kind != STMT_EFFECT) {
@@ -208,9 +104,9 @@ void scene_select(Builder *b, const ModelChoice *choice) {
       continue;
     }
     vec_push(b->arena, &b->m->all_effects, s->name);
-    if (!uses(b, s->name)) continue;
+    if (!uses_effect(b, s->name)) continue;
     vec_push(b->arena, &in_order, s->name);
-    check_effect_needs(b, s);
+    if (related) check_effect_needs(b, s);
     for (const AstStmt *x = s->body; x; x = x->next) vec_push(b->arena, &b->active, ((Active){x, s->name}));
   }
   b->m->effects.at = in_order.at;
@@ -218,11 +114,6 @@ void scene_select(Builder *b, const ModelChoice *choice) {
 }
 
 /* --- the scene's contents --- */
-
-static void report_no_member(Builder *b, Span span, Name effect, Name name) {
-  diag_error(b->diags, span, "no effect in use declares `%s.%s`", effect, name);
-  advise_unknown_member(b, effect, name);
-}
 
 /* The parameter or input that `c` or `drag.c` names; in `use drag(c = 1)`, effect is drag, and only its
  * own count. Reported when it is none; NULL then. */
@@ -290,7 +181,7 @@ static void give_param(Builder *b, uint32_t i, Expr e, Span span, void *data) {
 }
 
 static void set_value(Builder *b, const AstStmt *st, Name effect) {
-  static const Giver giver = {IN_START, param_unit, give_param, NULL};
+  static const Giver giver = {IN_START, param_unit, give_param, NULL, NULL};
   if (!effect && advise_statement(b, st)) return;
   Target p = read_target(b, st->lhs);
   const Entity *e = find_settable(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
@@ -298,81 +189,6 @@ static void set_value(Builder *b, const AstStmt *st, Name effect) {
   if (e->kind == ENT_PARAM) assign_values(b, &p, e, st->lhs, st->rhs, &giver);
   else if (p.indices || p.part >= 0) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "`%s` is an input: it has no index and no component", e->name);
   else give_input(b, e->index, e->name, st->rhs, effect);
-}
-
-typedef struct {
-  EntKind kind;
-  int velocity;
-  Unit unit;
-} StartOf;
-
-static SymId start_target(const Builder *b, const StartOf *of, uint32_t i) {
-  if (of->kind == ENT_STATE) return b->m->states.at[i].z;
-  return of->velocity ? b->m->coords.at[i].v : b->m->coords.at[i].q;
-}
-
-/* That of the name; of a velocity, per second: the same factor. */
-static const Unit *start_unit(Builder *b, uint32_t i, void *data) {
-  StartOf *of = data;
-  of->unit = of->kind == ENT_STATE ? b->m->states.at[i].unit : b->m->coords.at[i].unit;
-  if (of->velocity) of->unit = unit_per_second(b, &of->unit);
-  return &of->unit;
-}
-
-static void give_start(Builder *b, uint32_t i, Expr value, Span span, void *data) {
-  (void)span;
-  Scene *sc = &b->m->scene;
-  SymId target = start_target(b, data, i);
-  if (!b->start_of) b->start_of = ARENA_ARRAY(b->arena, uint32_t, expr_symbol_count(b->g) + 1);
-  if (b->start_of[target]) {
-    sc->starts.at[b->start_of[target] - 1].value = value;
-    return;
-  }
-  vec_push(b->arena, &sc->starts, ((Start){target, value}));
-  b->start_of[target] = sc->starts.n;
-}
-
-static void give_closed_form(Builder *b, uint32_t i, Expr value, Span span, void *data) {
-  const StartOf *of = data;
-  int periodic = of->kind == ENT_STATE ? b->m->states.at[i].periodic : !of->velocity && b->m->coords.at[i].periodic;
-  give_exact(b, start_target(b, of, i), start_unit(b, i, data), periodic, value, span);
-}
-
-/* `start q = ...`, `exact q = ...`: what a coordinate, a velocity or a state is at the start, or always. With `start exactly`
- * constraints may not move it. */
-static void set_motion(Builder *b, const AstStmt *st) {
-  int exact = st->kind == STMT_EXACT;
-  Target p = read_target(b, st->lhs);
-  const AstExpr *x = ast_expr(b->ast, st->lhs), *name = ast_expr(b->ast, p.stem);
-  Name owner = name->kind == AST_MEMBER && !p.wrong ? ast_expr(b->ast, name->a)->name : NULL; /* e1.y */
-  if (p.wrong || p.primes > 1 || (name->kind != AST_NAME && !owner) || (owner && declared_in_use(b, owner, NULL))) {
-    if (name->kind == AST_ERROR) return;
-    if (exact) diag_error(b->diags, x->span, "a closed form is that of a coordinate, a velocity or a state: `exact x = x(0)*cos(w*t)`");
-    else diag_error(b->diags, x->span, "a start gives a coordinate or a velocity: `start th = 90 [deg]`");
-    return;
-  }
-  const Entity *e = owner ? scope_own(&b->scope, name->name, owner) : resolve_name(b, name->name, name->span, NULL, "coord");
-  if (!e && owner) report_no_member(b, name->span, owner, name->name);
-  if (!e) return;
-  if (e->kind == ENT_NONE) return;
-  if (e->kind != ENT_COORD && e->kind != ENT_STATE) {
-    diag_error(b->diags, name->span, "`%s` is %s; only coordinates, velocities and states %s", name->name, ent_kind_text(e->kind),
-               exact ? "have a closed form" : "start somewhere");
-    if (e->kind == ENT_PARAM && !exact) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
-    return;
-  }
-  if (p.primes && e->kind == ENT_STATE) {
-    int is_coord = b->m->states.at[e->index].coordinate;
-    if (is_coord) diag_error(b->diags, x->span, "`%s'` follows from the coordinates: L is linear in the velocities, and the motion of first order", name->name);
-    else diag_error(b->diags, x->span, "the rate of a state follows from its flow");
-    diag_help(b->diags, exact ? "the %s itself has a closed form: `exact %s = ...`" : "the %s itself starts somewhere: `start %s = ...`",
-              is_coord ? "coordinate" : "state", name->name);
-    return;
-  }
-  if (st->exactly && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;
-  StartOf of = {.kind = e->kind, .velocity = p.primes > 0};
-  Giver giver = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of};
-  assign_values(b, &p, e, st->lhs, st->rhs, &giver);
 }
 
 static Unit seconds(const Builder *b) {
@@ -394,58 +210,6 @@ static void set_output(Builder *b, const AstStmt *st) {
   b->m->scene.outputs.n = 0;
   for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) add_outputs(b, i);
   set_every(b, st);
-}
-
-/* A limit for what has one already takes its place. */
-static void add_monitor(Builder *b, Monitor mon) {
-  Scene *sc = &b->m->scene;
-  for (uint32_t i = 0; i < sc->monitors.n; i++)
-    if (sc->monitors.at[i].output == mon.output) {
-      sc->monitors.at[i] = mon;
-      return;
-    }
-  vec_push(b->arena, &sc->monitors, mon);
-}
-
-/* `monitor exact 1e-6`: all that have a closed form. */
-static void monitor_exact(Builder *b, Monitor mon, Span span) {
-  Scene *sc = &b->m->scene;
-  mon.absolute = 1;
-  for (uint32_t i = 0; i < sc->exacts.n; i++) {
-    mon.output = add_error(b, &sc->exacts.at[i], span);
-    mon.name = sc->outputs.at[mon.output].name;
-    add_monitor(b, mon);
-  }
-  if (sc->exacts.n) return;
-  diag_error(b->diags, span, "the scene has no closed form to compare with");
-  diag_help(b->diags, "`exact q = ...` gives one");
-}
-
-static void set_monitor(Builder *b, const AstStmt *st) {
-  if (!st->lhs) {
-    diag_error(b->diags, st->name_span, "`monitor %s` has no limit", st->name);
-    diag_help(b->diags, "say what the drift may be: `monitor %s 1e-8`; `monitor none` drops what was said before", st->name);
-    return;
-  }
-  const AstExpr *x = ast_expr(b->ast, st->lhs);
-  Unit none = no_unit();
-  Monitor mon = {.output = -1, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit")};
-  mon.name = intern(b->ast->names, ast_text(b, st->lhs));
-  mon.absolute = x->kind == AST_CALL && strcmp(x->name, "error") == 0;
-  if (mon.limit <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a monitor's limit must be positive");
-  if (x->kind == AST_NAME && strcmp(x->name, "exact") == 0 && !declared_in_use(b, x->name, NULL)) {
-    monitor_exact(b, mon, x->span);
-    return;
-  }
-  if (x->kind != AST_NAME || strcmp(x->name, "energy") != 0) {
-    uint32_t errors = b->diags->errors;
-    mon.output = add_outputs(b, st->lhs);
-    if (mon.output < 0) {
-      if (b->diags->errors == errors) diag_error(b->diags, x->span, "a monitor watches one number");
-      return;
-    }
-  }
-  add_monitor(b, mon);
 }
 
 static void set_span(Builder *b, const AstStmt *st) {
@@ -473,7 +237,7 @@ static void scene_statement(Builder *b, const AstStmt *st) {
     case STMT_START: set_motion(b, st); return;
     case STMT_SET: set_value(b, st, NULL); return;
     case STMT_USE:
-      if (uses(b, st->name))
+      if (uses_effect(b, st->name))
         for (const AstStmt *x = st->body; x; x = x->next) set_value(b, x, st->name);
       return;
     case STMT_SPAN: set_span(b, st); return;
@@ -516,7 +280,7 @@ static Name effect_given(Builder *b, const AstStmt *st) {
   const AstExpr *x = ast_expr(b->ast, p.stem);
   if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME) {
     Name owner = ast_expr(b->ast, x->a)->name;
-    return effect_declares(find_stmt(b->ast, STMT_EFFECT, owner), x->name) ? owner : NULL;
+    return effect_declares(find_named(b->ast, STMT_EFFECT, owner), x->name) ? owner : NULL;
   }
   if (x->kind != AST_NAME) return NULL;
   const Entity *e = scope_find(&b->scope, x->name, NULL, &ambiguous);
@@ -542,13 +306,16 @@ static int shows_others(const AstStmt *const *s) {
   return 0;
 }
 
-/* Whether what a statement says of an effect has no part in the run: it stands before a `use none`, or it is about one that is
- * turned off, and comes from a scene that uses it and that this one is like. */
+static int is_shown(const AstStmt *st) { return st->kind == STMT_OUTPUT || st->kind == STMT_EXACT; }
+
+/* Whether what a statement says has no part in the run: it stands before a `use none`, or it is about an effect that is turned off, and
+ * comes from a scene that uses it and that this one is like. A variant shows nothing. */
 static int is_dropped(Builder *b, const AstStmt *st, int before_none, int inherited) {
   if (st->kind == STMT_USE) return before_none;
+  if (b->is_variant && is_shown(st)) return 1;
   if (!gives_value(st)) return 0;
   Name effect = effect_given(b, st);
-  return effect && (before_none || (inherited && !uses(b, effect)));
+  return effect && (before_none || ((inherited || b->is_variant) && !uses_effect(b, effect)));
 }
 
 /* The last such statement of the scene and those that it is like; NULL: there is none. */
@@ -584,6 +351,18 @@ static void set_monitors(Builder *b) {
     }
 }
 
+/* What the command line gives: a rotation at the start, or an input. */
+static void give(Builder *b, const Given *x) {
+  int ambiguous;
+  AstStmt st = {.lhs = x->what, .rhs = x->value, .span = ast_expr(b->ast, x->value)->span};
+  const AstExpr *name = ast_expr(b->ast, read_target(b, x->what).stem);
+  const Entity *e = name->kind == AST_NAME ? scope_find(&b->scope, name->name, NULL, &ambiguous) : NULL;
+  int starts = ast_expr(b->ast, x->what)->kind == AST_CALL || (e && e->kind == ENT_COORD);
+  st.kind = starts ? STMT_START : STMT_SET;
+  if (starts) set_motion(b, &st);
+  else set_value(b, &st, NULL);
+}
+
 void scene_build(Builder *b, const ModelChoice *choice) {
   Scene *sc = &b->m->scene;
   sc->t1 = 10;
@@ -591,9 +370,9 @@ void scene_build(Builder *b, const ModelChoice *choice) {
   each_said(b, scene_statement);
   for (const AstStmt **s = b->chain; *s; s++)
     if ((*s)->doc) sc->doc = (*s)->doc;
-  for (uint32_t i = 0; i < choice->ngiven; i++)
-    set_value(b, &(AstStmt){.kind = STMT_SET, .lhs = choice->given[i].what, .rhs = choice->given[i].value}, NULL);
+  for (uint32_t i = 0; i < choice->ngiven; i++) give(b, &choice->given[i]);
+  settle_rotations(b);
   if (!sc->outputs.n) default_outputs(b);
-  set_monitors(b);
+  if (!b->is_variant) set_monitors(b);
   for (uint32_t i = 0; i < choice->nasked; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
 }

@@ -2,6 +2,7 @@
 #include "model/builder.h"
 
 Target read_target(const Builder *b, AstId id) {
+  static const char letters[] = "xyzw";
   Target p = {.stem = id, .part = -1};
   const AstExpr *x = ast_expr(b->ast, id);
   for (; x->kind == AST_PRIME; x = ast_expr(b->ast, p.stem)) {
@@ -17,7 +18,7 @@ Target read_target(const Builder *b, AstId id) {
     int component = left->kind == AST_INDEX || of_effect || (left->kind == AST_NAME && !scope_own(&b->scope, x->name, left->name) &&
                                                 scope_find(&b->scope, left->name, NULL, &ambiguous));
     if (component) {
-      p.part = strcmp(x->name, "x") == 0 ? 0 : strcmp(x->name, "y") == 0 ? 1 : strcmp(x->name, "z") == 0 ? 2 : 3;
+      p.part = strlen(x->name) == 1 && strchr(letters, x->name[0]) ? (int)(strchr(letters, x->name[0]) - letters) : 4;
       p.stem = x->a;
       x = left;
     }
@@ -128,7 +129,7 @@ static int give_member(const Assign *s, const int64_t *at, AstId id, Value v) {
                shape_text(b, v.n));
     return 0;
   }
-  uint32_t first = s->e->index + member_offset(s->e, at) + (s->p->part > 0 ? (uint32_t)s->p->part : 0);
+  uint32_t first = s->e->index + member_offset(s->e, at) + (s->p->part < 0 ? 0 : (uint32_t)part_place(s->e->parts, s->p->part));
   v = values_in(b, v, span, s->giver->unit(b, first, s->giver->data));
   for (uint32_t k = 0; v.e && k < (v.n ? v.n : 1); k++) s->giver->give(b, first + k, v.at[k], span, s->giver->data);
   return v.e != 0;
@@ -178,7 +179,7 @@ static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list,
   if (!list_elements(s->b, list, behind, r, s->e->name, &elements)) return;
   int64_t at[2] = {r->lo[0], r->lo[1]};
   for (uint32_t i = 0; i < elements.n; i++) {
-    give_member(s, at, elements.at[i].id, element_value(s->b, &elements.at[i], s->giver->where, NULL));
+    give_member(s, at, elements.at[i].id, element_value(s->b, &elements.at[i], s->giver->where, s->giver->effect));
     next_in(r, at);
   }
 }
@@ -189,13 +190,13 @@ static void give_formula(const Assign *s, const IndexRange *r, AstId rhs) {
   uint32_t outer = b->index.n;
   int64_t at[2] = {r->lo[0], r->lo[1]};
   int named = r->name[0] || r->name[1];
-  Value v = named || !count_in(r) ? (Value){0} : resolve(b, rhs, s->giver->where, NULL);
+  Value v = named || !count_in(r) ? (Value){0} : resolve(b, rhs, s->giver->where, s->giver->effect);
   if (!count_in(r)) return;
   do {
     b->index.n = outer;
     for (uint32_t k = 0; k < r->n; k++)
       if (r->name[k]) vec_push(b->arena, &b->index, ((IndexVar){r->name[k], at[k]}));
-    if (named) v = resolve(b, rhs, s->giver->where, NULL);
+    if (named) v = resolve(b, rhs, s->giver->where, s->giver->effect);
     if (!give_member(s, at, rhs, v)) break;
   } while (next_in(r, at));
   b->index.n = outer;
@@ -204,7 +205,7 @@ static void give_formula(const Assign *s, const IndexRange *r, AstId rhs) {
 void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstId rhs, const Giver *giver) {
   Assign s = {.b = b, .p = p, .e = e, .giver = giver, .parts = p->part < 0 ? e->parts : 0};
   IndexRange r;
-  if (p->part >= (int)e->parts) {
+  if (p->part >= 0 && part_place(e->parts, p->part) < 0) {
     diag_error(b->diags, ast_expr(b->ast, lhs)->span, "`%s` is %s: it has no such component", e->name, shape_text(b, e->parts));
     return;
   }

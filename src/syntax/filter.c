@@ -127,7 +127,7 @@ static Token first_name(Filter *f, Token t) {
   t.follows = next;
   f->word = t.kind;
   f->has_block = (token_flags(t.kind) & T_BLOCK) != 0;
-  if (t.kind != TOK_IDENT) return t;
+  if (t.kind != TOK_IDENT || ((where & W_EVENT) && next == TOK_LPAREN)) return t; /* omega(R) = ... */
   /* The block of a mistyped or misplaced word is passed over as one. */
   t.kind = TOK_BADWORD;
   f->has_block = 1;

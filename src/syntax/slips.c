@@ -186,6 +186,7 @@ const char *slip_token(const Parse *cx, const TokKind *set, int n) {
       return has(set, n, TOK_IDENT) ? arena_printf(a, "`%s` is a reserved word", token_word(t->kind)) : NULL;
     case TOK_IDENT: case TOK_NUMBER: case TOK_LPAREN: case TOK_SUM: case TOK_PRODUCT:
       if (t->kind == TOK_LPAREN && has(set, n, TOK_ASSIGN)) return unexpected_call(cx);
+      if (t->kind == TOK_NUMBER && b->kind == TOK_LPAREN && cx->filter->word == TOK_START) return "a start is written `start x = 1, x' = 0`";
       return has(set, n, TOK_TIMES) && ends_operand(b) ? missing_operator(cx) : NULL;
     default: return NULL;
   }

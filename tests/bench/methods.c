@@ -5,7 +5,8 @@
  * Every method runs at tolerances from 1e-4 to 1e-15 until the smallest error is reached, or it takes seconds; its time is the least of several runs, its
  * error the largest of the coordinates at the end. The chains, whose motion is chaotic, run at one tolerance. liblag's times
  * are of lag_sim_advance: they include the watch on the energy at each step, which those of others do not. Linked
- * with the emitted models; a peer is there when its BENCH_ macro is defined. In brackets: the time over rk8pd's. */
+ * with the emitted models; a peer is there when its BENCH_ macro is defined. In brackets: the time over rk8pd's, and over
+ * that of dop853 inlined by hand. */
 #include "methods.h"
 
 #include <stdio.h>
@@ -97,8 +98,9 @@ static double run_liblag(const Problem *p, double tol, const char *name, double 
 typedef struct {
   const char *label, *method; /* method: of liblag */
   bench_peer *peer;
-  int own; /* runs with `own`, too */
-  double time[40], error[40];
+  int own;    /* runs with `own`, too */
+  int chains; /* only for chains */
+  double time[60], error[60];
   int n;
 } Series;
 
@@ -124,7 +126,7 @@ static void measure(const Problem *p, Series *s) {
   int failed = 0;
   for (int e = 0; e < 3 && p->errors[e] > 0; e++) least = p->errors[e];
   s->n = 0;
-  for (double tol = p->only_tol > 0 ? p->only_tol : 1e-4; tol >= 0.9e-15; tol /= sqrt(10)) {
+  for (double tol = p->only_tol > 0 ? p->only_tol : 1e-4; tol >= 0.9e-15; tol /= pow(10, 0.25)) {
     double best = HUGE_VAL, spent = 0;
     for (int i = 0; i < 100 && (i < 2 || spent < 0.02) && spent < 0.2; i++) {
       double t = run(p, s, fmax(tol, 1e-15), &s->error[s->n]);
@@ -146,14 +148,20 @@ static int fastest(const Series *s, double error) {
   return best;
 }
 
-static void print_row(const Problem *p, const Series *s, const Series *first) {
+/* first: rk8pd, or NULL; second: dop853 inlined by hand; both have been measured. */
+static void print_row(const Problem *p, const Series *s, const Series *first, const Series *second) {
   printf("  %-28s", s->label);
   for (int e = 0; e < 3 && (e == 0 || p->errors[e] > 0); e++) {
     double error = p->only_tol > 0 ? HUGE_VAL : p->errors[e];
-    int at = fastest(s, error), one = first ? fastest(first, error) : -1;
-    if (at < 0) printf("  %16s", "-");
-    else if (one < 0) printf("  %16.3g", 1e3*s->time[at]);
-    else printf("  %9.3g (%4.2f)", 1e3*s->time[at], s->time[at]/first->time[one]);
+    char ratios[40] = "", *end = ratios;
+    int at = fastest(s, error);
+    for (int k = 0; k < 2 && at >= 0; k++) {
+      const Series *peer = k == 0 ? first : second;
+      int one = peer && peer != s && peer->n ? fastest(peer, error) : -1;
+      if (one >= 0) end += sprintf(end, "%s%4.2f", end > ratios ? ", " : "(", s->time[at]/peer->time[one]);
+    }
+    if (at < 0) printf("  %9s %-12s", "-", "");
+    else printf("  %9.3g %s%-*s", 1e3*s->time[at], ratios, (int)(12 - (end - ratios)), end > ratios ? ")" : "");
   }
   putchar('\n');
 }
@@ -181,6 +189,9 @@ int main(int argc, char **argv) {
     {.label = "GSL rk8pd", .peer = peer_rk8pd, .own = 1},
 #endif
     {.label = "dop853 inlined by hand", .peer = peer_inlined, .own = 1},
+#ifdef BENCH_SYMPY
+    {.label = "the same, with SymPy's C", .peer = peer_sympy, .chains = 1},
+#endif
 #ifdef BENCH_ODEINT
     {.label = "Boost.odeint rkf78", .peer = peer_odeint},
 #endif
@@ -195,14 +206,15 @@ int main(int argc, char **argv) {
   int own = argc > 1 && strcmp(argv[1], "own") == 0;
   for (int i = 0; i < N_PROBLEMS; i++) {
     const Problem *p = &problems[i], *shown = p;
-    const Series *first = series[0].peer && strcmp(series[0].label, "GSL rk8pd") == 0 ? &series[0] : NULL;
+    const Series *first = strcmp(series[0].label, "GSL rk8pd") == 0 ? &series[0] : NULL, *second = first ? &series[1] : &series[0];
+    for (int k = 0; k < N_SERIES; k++) series[k].n = 0;
     printf("%s: milliseconds to an error of", shown->name);
     for (int e = 0; e < 3 && p->errors[e] > 0; e++) printf(" %.0e", p->errors[e]);
     printf(p->only_tol > 0 ? " any size at tolerance %.0e\n" : "\n", p->only_tol);
     for (int k = 0; k < N_SERIES; k++) {
-      if (own && !series[k].own) continue;
+      if ((own && !series[k].own) || (series[k].chains && p->only_tol == 0)) continue;
       measure(p, &series[k]);
-      print_row(p, &series[k], &series[k] == first ? NULL : first);
+      print_row(p, &series[k], &series[k] == first ? NULL : first, second);
       fflush(stdout);
     }
   }

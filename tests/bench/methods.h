@@ -17,7 +17,7 @@ typedef int bench_rhs(double t, const double *y, double *dy, void *calls);
 /* A peer: from y[n] at 0 to y at t, with absolute and relative tolerance tol. The processor's time of the steps in seconds, < 0 when it
  * fails. Objects of its own are made and freed outside of that time. */
 typedef double bench_peer(int problem, bench_rhs *f, int n, double t, double tol, double *y);
-bench_peer peer_rk8pd, peer_adams, peer_arkode, peer_odeint, peer_inlined;
+bench_peer peer_rk8pd, peer_adams, peer_arkode, peer_odeint, peer_inlined, peer_sympy;
 
 static inline double bench_now(void) {
   struct timespec t;

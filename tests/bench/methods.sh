@@ -1,17 +1,18 @@
 #!/bin/sh
 # Time against error of dop853 and taylor, next to integrators of others with right-hand sides written by hand, in one run: GSL's rk8pd,
-# dop853 inlined by hand, Boost.odeint's rkf78, SUNDIALS' CVODE (Adams) and ARKODE (order 8), SciPy's DOP853; those that are
-# installed (Debian: libgsl-dev, libboost-dev, libsundials-dev, python3-scipy). In brackets: the processor's time over that of rk8pd.
+# dop853 inlined by hand, Boost.odeint's rkf78, SUNDIALS' CVODE (Adams) and ARKODE (order 8), SciPy's DOP853, and, for the chains, what
+# SymPy writes in the dop853 by hand; those that are installed (Debian: libgsl-dev, libboost-dev, libsundials-dev, python3-scipy,
+# python3-sympy). In brackets: the processor's time over that of rk8pd, and over that of dop853 inlined by hand.
 set -eu
 : "${LAGC:=build/lagc}" "${CC:=cc}" "${CXX:=c++}" "${BUILD:=build}" "${INC:=runtime/include}" "${TMP:=$(mktemp -d)}"
 
 here=tests/bench
-"$LAGC" emit models/double_pendulum.lag swing --method taylor -o "$TMP/double_pendulum.c"
-"$LAGC" emit $here/models/henon_heiles.lag --method taylor -o "$TMP/henon_heiles.c"
-"$LAGC" emit $here/models/kepler.lag hundred --method taylor -o "$TMP/kepler.c"
-"$LAGC" emit $here/models/kepler.lag narrow --method taylor -o "$TMP/narrow.c"
-"$LAGC" emit $here/models/outer_planets.lag --method taylor -o "$TMP/outer_planets.c"
-"$LAGC" emit $here/models/oscillators.lag --method taylor -o "$TMP/oscillators.c"
+"$LAGC" emit models/double_pendulum.lag swing --fix all --method taylor -o "$TMP/double_pendulum.c"
+"$LAGC" emit $here/models/henon_heiles.lag --fix all --method taylor -o "$TMP/henon_heiles.c"
+"$LAGC" emit $here/models/kepler.lag hundred --fix all --method taylor -o "$TMP/kepler.c"
+"$LAGC" emit $here/models/kepler.lag narrow --fix all --method taylor -o "$TMP/narrow.c"
+"$LAGC" emit $here/models/outer_planets.lag --fix all --method taylor -o "$TMP/outer_planets.c"
+"$LAGC" emit $here/models/oscillators.lag --fix all --method taylor -o "$TMP/oscillators.c"
 sed -i 's/\<kepler\>/kepler_model_2/g' "$TMP/narrow.c" # two scenes of a model in one program
 for n in 10 20; do
   "$LAGC" emit models/chain.lag swing -DN=$n --method taylor -o "$TMP/chain_$n.c"
@@ -41,7 +42,18 @@ fi
 for n in 10 20; do
   "$CC" -O2 -std=gnu11 -DN=$n -Ddense=dense_$n -Dlinear=linear_$n -c $here/hand/chain.c -o "$TMP/by_hand_$n.o"
 done
-"$CC" -O3 -std=gnu11 -w -I"$INC" -Iruntime -c $here/peer_inlined.c -o "$TMP/peer_inlined.o"
+sympy=
+for p in python3 /usr/bin/python3; do
+  for n in 10 20; do
+    "$p" $here/sympy_peer.py chain $n "$TMP/sympy_$n.txt" >/dev/null 2>&1 && # not *.c: those are the models
+      "$CC" -O2 -std=gnu11 -w -I$here -Dsympy=sympy_$n -x c -c "$TMP/sympy_$n.txt" -o "$TMP/sympy_$n.o" || continue 2
+  done
+  sympy=-DBENCH_SYMPY peers="$peers -DBENCH_SYMPY $TMP/sympy_10.o $TMP/sympy_20.o"
+  break
+done
+[ -n "$sympy" ] || echo "there is no SymPy"
+# shellcheck disable=SC2086 # none or one
+"$CC" -O3 -std=gnu11 -w -I"$INC" -Iruntime $sympy -c $here/peer_inlined.c -o "$TMP/peer_inlined.o"
 
 run() { # WHICH FLAGS...
   which=$1

@@ -90,3 +90,29 @@ double peer_inlined(int problem, bench_rhs *f, int n, double t, double tol, doub
   default: return -1;
   }
 }
+
+#ifdef BENCH_SYMPY
+/* The same with what SymPy writes for the chains (sympy_peer.py); -1 for other problems. */
+#define SYMPY_CHAIN(n)                                                                                                              \
+  int sympy_##n(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *a, double *zd, \
+                double *w);                                                                                                         \
+  static int sympy_chain_##n(double t, const double *y, double *d, void *p) {                                                       \
+    double parameters[2*n + 1];                                                                                                     \
+    (void)p;                                                                                                                        \
+    for (int i = 0; i < 2*n; i++) parameters[i] = 1;                                                                                \
+    parameters[2*n] = 9.81;                                                                                                         \
+    memcpy(d, y + n, n*sizeof *d);                                                                                                  \
+    return sympy_##n(t, y, y + n, NULL, parameters, NULL, d + n, NULL, NULL);                                                       \
+  }
+SYMPY_CHAIN(10)
+SYMPY_CHAIN(20)
+
+double peer_sympy(int problem, bench_rhs *f, int n, double t, double tol, double *y) {
+  (void)f, (void)n;
+  switch (problem) {
+  case CHAIN_10: return integrate(sympy_chain_10, 20, t, tol, y);
+  case CHAIN_20: return integrate(sympy_chain_20, 40, t, tol, y);
+  default: return -1;
+  }
+}
+#endif

@@ -31,7 +31,7 @@ is "a base unit" 'unit:
   [s] of the SI, a base unit; takes the SI prefixes' "$(chapter s)"
 is "a unit with a prefix" 'unit:
   [kN], with an SI prefix; `lagc help units` has the table' "$(chapter kN)"
-is "an option" 'option of run, plot, animate, lyapunov:
+is "an option" 'option of run, plot, animate, lyapunov, effects:
   --tol X               tolerance, absolute and relative' "$(chapter tol)"
 is "an option with its dashes" "$(chapter tol)" "$(chapter --tol)"
 is "a word of paper" "losses are a Rayleigh function, \`dissipation = c/2*x'^2\`, or a \`force\`" "$(chapter friction)"
@@ -54,7 +54,7 @@ not_listed() {
 empty "functions and units of the reference" "$(not_listed)"
 
 # What lagc hands to a simulator is what a simulator takes: two tables in two programs that share no header.
-taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/".*//' | grep -v -x -e --help -e --modes -e --lyapunov -e --cost -e --reference -e --against -e --section | sort; } # --modes, --cost, --lyapunov: what lagc modes, lagc cost say, --section an event that lagc makes
+taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/".*//' | grep -v -x -e --help -e --effects -e --modes -e --lyapunov -e --cost -e --reference -e --against -e --section | sort; } # --modes, --cost, --lyapunov: what lagc modes, lagc cost, lagc effects say, --section an event that lagc makes
 handed() { { words 'passed run'; words 'passed animate'; words 'passed cost'; words 'passed lyapunov'; } | grep -e -- | sort -u; }
 check "a simulator has options" [ "$(taken | wc -l)" -gt 10 ]
 is "options of a simulator" "$(taken)" "$(handed)"

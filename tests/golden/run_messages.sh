@@ -6,6 +6,9 @@
 # Messages that are shown by other suites, by a part of their text.
 elsewhere='internal error
 -D %s
+--fix
+lagc effects
+effects to compare
 this does not belong in a scene
 nothing that a run sets
 a section is a surface in the space of states

@@ -1,0 +1,262 @@
+/* --effects: of a program that lagc effects made, whose first scene is the user's, and whose others are that scene with other effects in
+ * use. Enters: the command line; leaves: lines for lagc to read, `variant NUMBER OPERATIONS SECONDS DIFFERENCE WEIGHT` and what comes
+ * before them. `--effects runs`: differences only. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/variants.h"
+#include "app/app.h"
+#include "core/core.h"
+
+typedef struct Trial {
+  App *app;
+  const lag_program *program;
+  Variant *v;  /* [program->nscenes] */
+  Variant finer; /* the first one once more, with smaller errors */
+  double t0, t1;
+  const lag_method *method; /* the user's, or what was chosen for the first scene */
+  lag_option options[MOST_OPTIONS];
+  double tol;
+} Trial;
+
+/* ---- Simulations */
+
+/* Whether the model of a scene has what `name=value` sets. */
+static int knows(const lag_scene *scene, const char *text)
+{
+  char name[128], part[160];
+  const lag_var *var;
+  int index;
+
+  snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
+  return lag_find(scene->model, name, &index, &var) != LAG_IS_NOTHING || lag_part(scene->model, name, 0, part, sizeof part);
+}
+
+/* Values of effects that are off here, and on in another variant, have no part in this one. */
+static int set_values(Trial *k)
+{
+  App *app = k->app;
+
+  for (int i = 0; i < app->args.nsets; i++) {
+    int here = knows(app->scene, app->args.sets[i]), anywhere = here;
+    for (int s = 0; s < k->program->nscenes && !anywhere; s++) {
+      anywhere = knows(k->program->scenes[s], app->args.sets[i]);
+    }
+    int rc = here || !anywhere ? app_set_value(app, app->args.sets[i]) : 0;
+    if (rc) {
+      return rc;
+    }
+  }
+  return 0;
+}
+
+/* The options of the first scene's method, steps of one size shorter by this factor. */
+static void take_options(Trial *k, double shorter)
+{
+  const double *value = lag_sim_options(k->v[0].sim);
+
+  for (int i = 0; i < k->method->noptions; i++) {
+    k->options[i] = (lag_option){.name = k->method->options[i].name, .value = value[i]};
+    if (strcmp(k->options[i].name, "step") == 0) {
+      k->options[i].value = value[i] * shorter;
+    }
+  }
+}
+
+/* The method of the first scene, or, where this variant cannot have it, what is chosen for it. */
+static int set_method(Trial *k, lag_sim *sim, double tol)
+{
+  if (lag_sim_set_method(sim, k->method, k->options, k->method->noptions) == LAG_OK && lag_sim_set_tolerance(sim, tol) == LAG_OK) {
+    return 0;
+  }
+  return app_choose_method(k->app);
+}
+
+/* app->sim := a simulation of the scene with the user's values. */
+static int make(Trial *k, int scene)
+{
+  App *app = k->app;
+
+  app->scene = k->program->scenes[scene];
+  app->sim = lag_sim_new(app->scene);
+  return app->sim ? set_values(k) : app_error(&app->args, "out of memory");
+}
+
+/* The simulation of app becomes the variant's. */
+static int take(Trial *k, Variant *v)
+{
+  int rc = lag_variant_init(v, k->app->sim);
+
+  k->app->sim = NULL;
+  return rc ? app_error(&k->app->args, "out of memory") : 0;
+}
+
+static int prepare_first(Trial *k)
+{
+  App *app = k->app;
+  char method[256];
+  int rc = make(k, 0);
+
+  rc = rc ? rc : app_choose_method(app);
+  if (rc) {
+    return rc;
+  }
+  report_method(app, method, sizeof method);
+  printf("method %s\n", method);
+  k->method = lag_sim_method(app->sim);
+  k->tol = lag_sim_tolerance(app->sim);
+  return take(k, &k->v[0]);
+}
+
+static int choose_times(Trial *k)
+{
+  const Args *a = &k->app->args;
+  const lag_scene *c = k->program->scenes[0];
+
+  k->t0 = c->t0;
+  k->t1 = c->has_span ? c->t1 : c->t0 + 10;
+  if (a->until && !args_number(a, "--until", a->until, "--until 20", &k->t1)) {
+    return EXIT_USAGE;
+  }
+  if (k->t1 == k->t0) {
+    return app_error(a, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", k->t0);
+  }
+  printf("span %.17g\n", k->t1 - k->t0);
+  return 0;
+}
+
+static int prepare_others(Trial *k)
+{
+  int rc = 0;
+
+  take_options(k, 1);
+  for (int i = 1; i < k->program->nscenes && rc == 0; i++) {
+    rc = make(k, i);
+    rc = rc ? rc : set_method(k, k->app->sim, k->tol);
+    rc = rc ? rc : take(k, &k->v[i]);
+  }
+  return rc;
+}
+
+/* ---- Measurements */
+
+/* How far the scene is from itself with errors that are 100 times smaller, or steps of half the size. */
+static int measure_error(Trial *k)
+{
+  App *app = k->app;
+  double error = 0;
+  int rc = make(k, 0);
+
+  take_options(k, 0.5);
+  rc = rc ? rc : set_method(k, app->sim, fmax(k->tol / 100, 1e-15));
+  rc = rc ? rc : take(k, &k->finer);
+  if (rc == 0 && lag_variant_run(&k->finer, k->t0, k->t1) < 0) {
+    printf("error nan\n");
+    return 0;
+  }
+  rc = rc ? rc : lag_variant_difference(&k->v[0], &k->finer, &error) ? app_error(&app->args, "out of memory") : 0;
+  printf("error %.17g\n", error);
+  return rc;
+}
+
+/* Is each of these words among those? */
+static int all_among(const char *words, const char *those)
+{
+  for (const char *s = words; *s; s += strspn(s, " ")) {
+    size_t n = strcspn(s, " ");
+    const char *t = those;
+    while (*t && !(strcspn(t, " ") == n && memcmp(s, t, n) == 0)) {
+      t += strcspn(t, " ");
+      t += strspn(t, " ");
+    }
+    if (!*t) {
+      return 0;
+    }
+    s += n;
+  }
+  return 1;
+}
+
+static int has_all_coordinates(const lag_model *m, const lag_model *other)
+{
+  const lag_var *var;
+  int index, all = 1;
+
+  for (int i = 0; i < other->nq; i++) {
+    all &= lag_find(m, other->q[i].name, &index, &var) == LAG_IS_Q;
+  }
+  for (int i = 0; i < other->nz; i++) {
+    all &= lag_find(m, other->z[i].name, &index, &var) == LAG_IS_Z;
+  }
+  return all;
+}
+
+/* What the effects that the variant has less, or more, do to the accelerations. */
+static int weigh(Variant *scene, Variant *v)
+{
+  const lag_model *m = scene->sim->scene->model, *other = v->sim->scene->model;
+  const Variant *with = all_among(other->effects, m->effects) ? scene : v;
+  const Variant *along = has_all_coordinates(m, other) ? scene : v;
+
+  v->weight = NAN;
+  return along->why[0] ? 0 : lag_variant_weight(along, with, with == scene ? v : scene, &v->weight);
+}
+
+static int measure(Trial *k)
+{
+  const Args *a = &k->app->args;
+  int all = strcmp(a->effects, "runs") != 0, n = k->program->nscenes, rc;
+
+  if (lag_variant_run(&k->v[0], k->t0, k->t1) < 0) {
+    app_error(a, "%s", k->v[0].why);
+    return EXIT_RUN;
+  }
+  if (all && (rc = measure_error(k)) != 0) {
+    return rc;
+  }
+  for (int i = 1, bad = 0; i < n; i++) {
+    if (lag_variant_run(&k->v[i], k->t0, k->t1) < 0) {
+      k->v[i].difference = HUGE_VAL;
+    } else {
+      bad = lag_variant_difference(&k->v[0], &k->v[i], &k->v[i].difference);
+    }
+    if (bad || (all && weigh(&k->v[0], &k->v[i]))) {
+      return app_error(a, "out of memory");
+    }
+  }
+  return all && lag_variants_time(k->v, n) ? app_error(a, "out of memory") : 0;
+}
+
+static void print(const Trial *k)
+{
+  for (int i = 0; i < k->program->nscenes; i++) {
+    const Variant *v = &k->v[i];
+    printf("variant %d %d %.9g %.17g %.9g\n", i, k->program->scenes[i]->model->ops, v->time, v->difference, v->weight);
+    if (v->why[0]) {
+      printf("failed %d %s\n", i, v->why);
+    }
+  }
+}
+
+int app_effects(App *app)
+{
+  int n = app->program->nscenes;
+  Trial k = {.app = app, .program = app->program, .v = calloc((size_t)n + 1, sizeof *k.v)};
+  int rc = k.v ? prepare_first(&k) : app_error(&app->args, "out of memory");
+
+  rc = rc ? rc : choose_times(&k);
+  rc = rc ? rc : prepare_others(&k);
+  rc = rc ? rc : measure(&k);
+  if (rc == 0) {
+    print(&k);
+  }
+  for (int i = 0; k.v && i < n; i++) {
+    lag_sim_free(k.v[i].sim);
+    lag_variant_free(&k.v[i]);
+  }
+  lag_sim_free(k.finer.sim);
+  lag_variant_free(&k.finer);
+  free(k.v);
+  return rc ? rc : fflush(stdout) ? app_io_error(app, "standard output") : EXIT_FINE;
+}

@@ -1,0 +1,290 @@
+/* Effects: which are in use, and whether they go together. */
+#include "model/effect.h"
+
+#include "base/suggest.h"
+#include "model/builder.h"
+
+enum { NONE = UINT32_MAX };
+
+/* --- the file's effects and scenes, by name --- */
+
+const AstStmt *find_named(const Ast *ast, AstStmtKind kind, const char *name) {
+  for (const AstStmt *s = ast->first; s; s = s->next)
+    if (s->kind == kind && s->name && (!name || strcmp(s->name, name) == 0)) return s;
+  return NULL;
+}
+
+static Name nearest(const Ast *ast, AstStmtKind kind, const char *wrong) {
+  VEC(Name) names = {0};
+  for (const AstStmt *s = ast->first; s; s = s->next)
+    if (s->kind == kind && s->name) vec_push(ast->arena, &names, s->name);
+  return suggest(wrong, names.at, names.n);
+}
+
+static const char *all_scenes(const Ast *ast) {
+  StrBuf list = strbuf(ast->arena);
+  SceneList scenes = model_scenes(ast);
+  for (uint32_t i = 0; i < scenes.n && i < 12; i++) sb_printf(&list, "%s`%s`", i ? ", " : "", scenes.at[i]);
+  if (scenes.n > 12) sb_puts(&list, ", ...");
+  return sb_text(&list);
+}
+
+void report_unnamed(const Ast *ast, AstStmtKind kind, Span span, const char *name) {
+  const char *what = kind == STMT_SCENE ? "scene" : "effect";
+  diag_error(ast->diags, span, "unknown %s `%s`", what, name);
+  Name near = nearest(ast, kind, name);
+  if (near) diag_help(ast->diags, "did you mean `%s`?", near);
+  else if (kind == STMT_EFFECT) diag_help(ast->diags, "declare it: `effect %s { ... }`", name);
+  else diag_help(ast->diags, "the scenes are %s", all_scenes(ast));
+}
+
+EffectList model_unused_effects(const Ast *ast) {
+  VEC(Name) unused = {0};
+  for (const AstStmt *e = ast->first; e; e = e->next) {
+    if (e->kind != STMT_EFFECT || !e->name) continue;
+    int used = 0;
+    for (const AstStmt *s = ast->first; s; s = s->next)
+      for (const AstStmt *x = s->kind == STMT_SCENE ? s->body : NULL; x; x = x->next)
+        used |= x->kind == STMT_USE && x->name == e->name;
+    if (!used) vec_push(ast->arena, &unused, e->name);
+  }
+  return (EffectList){unused.at, unused.n};
+}
+
+/* Blocks nest at most as deep as the parser lets them. */
+static int contains_claim(const AstStmt *list) {
+  for (const AstStmt *s = list; s; s = s->next)
+    if (s->kind == STMT_EXPECT || s->kind == STMT_SYMMETRY || (s->kind == STMT_FOR && contains_claim(s->body))) return 1;
+  return 0;
+}
+
+EffectList model_claiming_effects(const Ast *ast) {
+  VEC(Name) names = {0};
+  if (contains_claim(ast->first)) vec_push(ast->arena, &names, NULL);
+  for (const AstStmt *s = ast->first; s; s = s->next)
+    if (s->kind == STMT_EFFECT && s->name && contains_claim(s->body)) vec_push(ast->arena, &names, s->name);
+  return (EffectList){names.at, names.n};
+}
+
+/* --- what requires and excludes what --- */
+
+static uint32_t place_of(const EffectGraph *g, Name name) {
+  for (uint32_t i = 0; i < g->n; i++)
+    if (g->at[i].stmt->name == name) return i;
+  return NONE;
+}
+
+EffectGraph effect_graph(const Ast *ast) {
+  VEC(EffectNode) nodes = {0};
+  for (const AstStmt *s = ast->first; s; s = s->next)
+    if (s->kind == STMT_EFFECT && s->name) vec_push(ast->arena, &nodes, ((EffectNode){.stmt = s}));
+  EffectGraph g = {nodes.at, nodes.n};
+  for (uint32_t i = 0; i < g.n; i++)
+    for (const AstStmt *x = g.at[i].stmt->body; x; x = x->next) {
+      if (x->kind != STMT_REQUIRES && x->kind != STMT_EXCLUDES) continue;
+      uint32_t other = place_of(&g, x->name);
+      if (other == NONE) continue;
+      if (x->kind == STMT_REQUIRES) {
+        vec_push(ast->arena, &g.at[i].requires, other);
+        vec_push(ast->arena, &g.at[other].required_by, i);
+      } else {
+        vec_push(ast->arena, &g.at[i].excludes, other);
+      }
+    }
+  return g;
+}
+
+void effect_reach(const Ast *ast, const EffectGraph *g, uint32_t effect, int up, uint8_t *in) {
+  uint32_t *queue = ARENA_ARRAY(ast->arena, uint32_t, g->n), n = 0;
+  if (!in[effect]) queue[n++] = effect;
+  in[effect] = 1;
+  for (uint32_t at = 0; at < n; at++) {
+    const EffectNode *node = &g->at[queue[at]];
+    for (uint32_t k = 0; k < (up ? node->required_by.n : node->requires.n); k++) {
+      uint32_t next = up ? node->required_by.at[k] : node->requires.at[k];
+      if (!in[next]) queue[n++] = next;
+      in[next] = 1;
+    }
+  }
+}
+
+static const AstStmt *statement_of(const EffectGraph *g, uint32_t i, AstStmtKind kind, uint32_t other) {
+  const AstStmt *x = g->at[i].stmt->body;
+  while (x->kind != kind || x->name != g->at[other].stmt->name) x = x->next;
+  return x;
+}
+
+/* The shortest way along requirements from i back to i over effects that are not before it: way[0..length), i first. 0: there is none. */
+static uint32_t find_circle(const Ast *ast, const EffectGraph *g, uint32_t i, uint32_t **way) {
+  uint32_t *from = ARENA_ARRAY(ast->arena, uint32_t, g->n), *queue = ARENA_ARRAY(ast->arena, uint32_t, g->n + 1), n = 0, last = NONE;
+  for (uint32_t k = 0; k < g->n; k++) from[k] = NONE;
+  queue[n++] = i;
+  for (uint32_t at = 0; at < n && last == NONE; at++) {
+    const EffectNode *node = &g->at[queue[at]];
+    for (uint32_t k = 0; k < node->requires.n; k++) {
+      uint32_t next = node->requires.at[k];
+      if (next == i) {
+        last = queue[at];
+        break;
+      }
+      if (next < i || from[next] != NONE) continue;
+      from[next] = queue[at];
+      queue[n++] = next;
+    }
+  }
+  if (last == NONE) return 0;
+  uint32_t length = 1;
+  for (uint32_t k = last; k != i; k = from[k]) length++;
+  *way = ARENA_ARRAY(ast->arena, uint32_t, length);
+  for (uint32_t at = length, k = last; at-- > 0; k = from[k]) (*way)[at] = k;
+  return length;
+}
+
+/* Each circle where its first effect stands. 0 when there is one. */
+static int check_circles(const Ast *ast, const EffectGraph *g) {
+  int fine = 1;
+  for (uint32_t i = 0; i < g->n; i++) {
+    uint32_t *way = NULL, length = g->at[i].requires.n ? find_circle(ast, g, i, &way) : 0;
+    if (!length) continue;
+    fine = 0;
+    Name first = g->at[i].stmt->name;
+    const AstStmt *st = statement_of(g, i, STMT_REQUIRES, way[length > 1]);
+    if (length == 1) {
+      diag_error(ast->diags, st->span, "the effect `%s` requires itself", first);
+      diag_help(ast->diags, "leave out this `requires`");
+      continue;
+    }
+    StrBuf names = strbuf(ast->arena);
+    for (uint32_t k = 1; k < length; k++) sb_printf(&names, "`%s`, which requires ", g->at[way[k]].stmt->name);
+    diag_error(ast->diags, st->span, "effects require each other in a circle: `%s` requires %s`%s`", first, sb_text(&names), first);
+    diag_help(ast->diags, "make one effect of them, or leave out one of these `requires`");
+    diag_also(ast->diags, statement_of(g, way[length - 1], STMT_REQUIRES, i)->span, "the circle closes here");
+  }
+  return fine;
+}
+
+/* The effect i excludes another; both are required by `user`, or are it. */
+static void report_clash(const Ast *ast, const EffectGraph *g, uint32_t user, uint32_t i, uint32_t other) {
+  const AstStmt *st = statement_of(g, i, STMT_EXCLUDES, other);
+  Name one = g->at[i].stmt->name, two = g->at[other].stmt->name, by = g->at[user].stmt->name;
+  if (i == other) {
+    diag_error(ast->diags, st->span, "the effect `%s` excludes itself", one);
+    diag_help(ast->diags, "leave out this `excludes`");
+    return;
+  }
+  if (user == i) diag_error(ast->diags, st->span, "the effect `%s` excludes `%s`, which it requires", one, two);
+  else if (user == other) diag_error(ast->diags, st->span, "the effect `%s` excludes `%s`, by which it is required", one, two);
+  else diag_error(ast->diags, st->span, "the effects `%s` and `%s` exclude each other, and `%s` requires both", one, two, by);
+  diag_help(ast->diags, "no scene could use `%s`: leave out this `excludes`, or a `requires`", by);
+  for (uint32_t k = 0; k < g->at[user].requires.n; k++) {
+    uint32_t needed = g->at[user].requires.at[k];
+    uint8_t *in = ARENA_ARRAY(ast->arena, uint8_t, g->n);
+    effect_reach(ast, g, needed, 0, in);
+    if (!in[user == other ? i : other]) continue;
+    diag_also(ast->diags, statement_of(g, user, STMT_REQUIRES, needed)->span, "required here");
+    return;
+  }
+}
+
+/* Each pair is told of the first effect that cannot do without it. 0 when there is one. */
+static int check_clashes(const Ast *ast, const EffectGraph *g) {
+  int fine = 1;
+  uint8_t *in = ARENA_ARRAY(ast->arena, uint8_t, g->n + 1), **told = ARENA_ARRAY(ast->arena, uint8_t *, g->n + 1);
+  for (uint32_t i = 0; i < g->n; i++) told[i] = ARENA_ARRAY(ast->arena, uint8_t, g->at[i].excludes.n + 1);
+  for (uint32_t user = 0; user < g->n; user++) {
+    memset(in, 0, g->n);
+    effect_reach(ast, g, user, 0, in);
+    for (uint32_t i = 0; i < g->n; i++)
+      for (uint32_t k = 0; in[i] && k < g->at[i].excludes.n; k++) {
+        uint32_t other = g->at[i].excludes.at[k];
+        if (!in[other] || told[i][k]) continue;
+        told[i][k] = 1;
+        for (uint32_t j = 0; j < g->at[other].excludes.n; j++) told[other][j] |= g->at[other].excludes.at[j] == i;
+        report_clash(ast, g, user, i, other);
+        fine = 0;
+      }
+  }
+  return fine;
+}
+
+int effects_check(const Ast *ast) {
+  EffectGraph g = effect_graph(ast);
+  int exclusive = 0;
+  for (uint32_t i = 0; i < g.n; i++) exclusive |= g.at[i].excludes.n > 0;
+  return check_circles(ast, &g) && (!exclusive || check_clashes(ast, &g));
+}
+
+/* --- effects in use --- */
+
+int uses_effect(const Builder *b, Name effect) {
+  for (uint32_t i = 0; i < b->m->effects.n; i++)
+    if (b->m->effects.at[i] == effect) return 1;
+  return 0;
+}
+
+int is_use_none(const AstStmt *st) { return st->kind == STMT_USE && strcmp(st->name, "none") == 0; }
+
+void collect_uses(Builder *b, const AstStmt *scene) {
+  for (const AstStmt *x = scene->body; x; x = x->next) {
+    if (x->kind != STMT_USE) continue;
+    if (is_use_none(x)) {
+      b->m->effects.n = 0;
+      if (x->body) diag_error(b->diags, x->body->span, "`use none` turns all effects off, and takes no values");
+    }
+    else if (!find_named(b->ast, STMT_EFFECT, x->name)) report_unnamed(b->ast, STMT_EFFECT, x->name_span, x->name);
+    else if (!uses_effect(b, x->name)) vec_push(b->arena, &b->m->effects, x->name);
+  }
+}
+
+void use_with_needs(Builder *b, Name effect) {
+  if (uses_effect(b, effect)) return;
+  vec_push(b->arena, &b->m->effects, effect);
+  for (uint32_t i = b->m->effects.n - 1; i < b->m->effects.n; i++) {
+    const AstStmt *st = find_named(b->ast, STMT_EFFECT, b->m->effects.at[i]);
+    for (const AstStmt *x = st ? st->body : NULL; x; x = x->next)
+      if (x->kind == STMT_REQUIRES && !uses_effect(b, x->name) && find_named(b->ast, STMT_EFFECT, x->name))
+        vec_push(b->arena, &b->m->effects, x->name);
+  }
+}
+
+/* Where the scene, or one that it is like, turns the effect on; NULL: it does not. */
+static const AstStmt *use_of(const Builder *b, Name effect) {
+  const AstStmt *found = NULL;
+  for (const AstStmt **s = b->chain; *s; s++)
+    for (const AstStmt *x = (*s)->body; x; x = x->next)
+      if (x->kind == STMT_USE && x->name == effect) found = x;
+  return found;
+}
+
+/* Whether the effect `name` excludes `other`. */
+static int excludes(const Builder *b, Name name, Name other) {
+  const AstStmt *e = find_named(b->ast, STMT_EFFECT, name);
+  for (const AstStmt *x = e ? e->body : NULL; x; x = x->next)
+    if (x->kind == STMT_EXCLUDES && x->name == other) return 1;
+  return 0;
+}
+
+/* Two that exclude each other are one mistake: that of the first. */
+static void report_excluded(Builder *b, const AstStmt *effect, const AstStmt *x) {
+  if (excludes(b, x->name, effect->name))
+    for (const AstStmt *s = b->ast->first; s != effect; s = s->next)
+      if (s->kind == STMT_EFFECT && s->name == x->name) return;
+  diag_error(b->diags, x->span, "the effects `%s` and `%s` exclude each other, and the scene `%s` uses both", effect->name, x->name, b->m->scene.name);
+  diag_help(b->diags, "use one of them; `use none` turns off what the scene has from others by `like`");
+  const AstStmt *use = use_of(b, x->name);
+  if (use) diag_also(b->diags, use->name_span, "`%s` is used here", x->name);
+}
+
+void check_effect_needs(Builder *b, const AstStmt *effect) {
+  for (const AstStmt *x = effect->body; x; x = x->next) {
+    if (x->kind != STMT_REQUIRES && x->kind != STMT_EXCLUDES) continue;
+    if (!find_named(b->ast, STMT_EFFECT, x->name)) {
+      report_unnamed(b->ast, STMT_EFFECT, x->name_span, x->name);
+    } else if (x->kind == STMT_REQUIRES && !uses_effect(b, x->name)) {
+      diag_error(b->diags, x->span, "the effect `%s` requires `%s`, which the scene `%s` does not use", effect->name, x->name, b->m->scene.name);
+      diag_help(b->diags, "add `use %s` to the scene", x->name);
+    } else if (x->kind == STMT_EXCLUDES && uses_effect(b, x->name)) {
+      report_excluded(b, effect, x);
+    }
+  }
+}

@@ -1,0 +1,90 @@
+/* Parameters that become numbers in programs: which ones, and with what values. */
+#include "model/builder.h"
+#include "base/suggest.h"
+#include "sym/eval.h"
+
+/* --- which --- */
+
+/* The entity that `g` or `drag.c` names; NULL, reported, when there is none here. *off: an effect that is not in use has it. */
+static const Entity *find_param(Builder *b, const char *word, int *off) {
+  const char *dot = strchr(word, '.');
+  Name effect = dot ? intern(b->ast->names, arena_strndup(b->arena, word, (size_t)(dot - word))) : NULL;
+  Name name = intern(b->ast->names, dot ? dot + 1 : word);
+  int ambiguous = 0;
+  const Entity *e = effect ? scope_own(&b->scope, name, effect) : scope_find(&b->scope, name, NULL, &ambiguous);
+  const AstStmt *owner = effect ? find_named(b->ast, STMT_EFFECT, effect) : declaring_effect(b, name);
+  *off = !e && owner && effect_declares(owner, name);
+  if (*off) return NULL;
+  if (e && !ambiguous && e->kind == ENT_PARAM) return e;
+  if (ambiguous) {
+    diag_error(b->diags, (Span){0}, "--fix %s: more than one effect in use declares it", word);
+    diag_help(b->diags, "say which: --fix %s.%s", e->effect, name);
+  } else if (e) {
+    diag_error(b->diags, (Span){0}, "--fix %s: it is %s; parameters are fixed", word, ent_kind_text(e->kind));
+    if (e->kind == ENT_CONST) diag_help(b->diags, "constants are fixed as it is: -D %s=...", word);
+  } else {
+    VEC(Name) known = {0};
+    for (uint32_t i = 0; i < b->scope.all.n; i++) {
+      const Entity *x = &b->scope.all.at[i];
+      if (x->kind == ENT_PARAM) vec_push(b->arena, &known, x->effect ? intern_printf(b, "%s.%s", x->effect, x->name) : x->name);
+    }
+    Name near = suggest(word, known.at, known.n);
+    diag_error(b->diags, (Span){0}, "--fix %s: the model has no such parameter", word);
+    if (near) diag_help(b->diags, "did you mean `%s`?", near);
+    else diag_help(b->diags, "a family is fixed by its name, a parameter of an effect by `effect.name`, all by --fix all");
+  }
+  return NULL;
+}
+
+static int names_param(const Builder *b, const char *word) {
+  const Entity *e = scope_own(&b->scope, intern(b->ast->names, word), NULL);
+  return e && e->kind == ENT_PARAM;
+}
+
+/* Marks what the words name; those of effects that are off have no part in it. 0 on a mistake, reported. */
+static int mark(Builder *b, const char *words) {
+  uint32_t errors = b->diags->errors;
+  for (const char *s = words; *s;) {
+    size_t n = strcspn(s, ", ");
+    const char *word = arena_strndup(b->arena, s, n);
+    int off = 0;
+    const Entity *e = NULL;
+    s += n + strspn(s + n, ", ");
+    if (strcmp(word, "all") == 0 && !names_param(b, word))
+      for (uint32_t i = 0; i < b->m->params.n; i++) b->m->params.at[i].fixed = 1;
+    else if (n && (e = find_param(b, word, &off)) != NULL)
+      for (uint32_t i = 0; i < entity_size(e); i++) b->m->params.at[e->index + i].fixed = 1;
+  }
+  return b->diags->errors == errors;
+}
+
+/* --- with what values --- */
+
+static int is_free_param(const Symbol *s, const void *data) { return s->kind == SYM_PARAM && !((const Model *)data)->params.at[s->index].fixed; }
+
+/* Exact where it is a fraction; where other parameters or pi are in it, a double. */
+static void evaluate(Builder *b) {
+  Model *m = b->m;
+  long double *x = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1);
+  x[m->pi] = 3.14159265358979323846264338327950288L;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    Param *p = &m->params.at[i];
+    expr_eval(b->g, &p->value, 1, x, &x[p->sym]);
+    if (!p->fixed) continue;
+    p->number = expr_is_num(b->g, p->value) ? expr_number(b->g, p->value) : num_double((double)x[p->sym]);
+    if (!expr_contains(b->g, p->value, is_free_param, m)) continue;
+    diag_error(b->diags, p->span, "--fix: `%s` is made of other parameters, and they are not fixed", p->name);
+    diag_help(b->diags, "fix them, too, or --fix all; what follows from fixed parameters need not be fixed itself");
+  }
+}
+
+void fix_params(Builder *b, const char *words) {
+  Model *m = b->m;
+  uint32_t place = 0;
+  if (words && mark(b, words)) evaluate(b);
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    m->params.at[i].place = place;
+    place += !m->params.at[i].fixed;
+  }
+  m->nfixed = m->params.n - place;
+}

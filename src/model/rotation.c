@@ -1,0 +1,280 @@
+/* Rotations: a coordinate that is a unit quaternion q = (w, x, y, z), which turns vectors of a body's frame into space. What is made of
+ * coordinates, `turn(axis, angle)`, products and `transpose` has length 1 where the constraint holds that belongs to the coordinate;
+ * formulas are those of unit quaternions, polynomials that have no pole, and are never divided by the length.
+ *
+ * Sources: W.R. Hamilton (1843); the rotation of a vector, v + 2 u x (u x v + w v) with q = (w, u), O. Rodrigues, J. Math. Pures Appl. 5 (1840) 380;
+ * the rates of q and the angular velocity in the body's frame, A. Cayley, Camb. Math. J. 3 (1843) 224: q' = q (0, omega)/2. */
+#include "model/resolve_impl.h"
+#include "sym/diff.h"
+#include "sym/simplify.h"
+
+/* --- quaternions --- */
+
+/* a1 b1 + s (a2 b2 + a3 b3 + a4 b4), of products written in pairs. */
+static Expr four(ExprGraph *g, const Expr *pairs, int s) {
+  Expr term[4];
+  for (int k = 0; k < 4; k++) {
+    Expr product = expr_mul(g, pairs[2 * k], pairs[2 * k + 1]);
+    term[k] = k && s < 0 ? expr_neg(g, product) : product;
+  }
+  return expr_add_n(g, term, 4);
+}
+
+static Value conjugate(Builder *b, const Value *q) {
+  Value r = *q;
+  for (int k = 1; k < ROTATION; k++) r.at[k] = expr_neg(b->g, q->at[k]);
+  return r;
+}
+
+Value rotation_product(Builder *b, const Value *p, const Value *q) {
+  ExprGraph *g = b->g;
+  const Expr *a = p->at, *c = q->at;
+  Value r = {.n = ROTATION, .dim = p->dim};
+  Expr scalar[] = {a[0], c[0], a[1], c[1], a[2], c[2], a[3], c[3]};
+  r.at[0] = four(g, scalar, -1);
+  for (int k = 1; k < ROTATION; k++) {
+    int i = k % 3 + 1, j = i % 3 + 1; /* the other two, in their order */
+    Expr minus = expr_neg(g, a[j]), vector[] = {a[0], c[k], a[k], c[0], a[i], c[j], minus, c[i]};
+    r.at[k] = four(g, vector, 1);
+  }
+  return r;
+}
+
+/* u x v of two vectors of three components. */
+static void cross3(ExprGraph *g, const Expr *u, const Expr *v, Expr *out) {
+  for (int k = 0; k < 3; k++) {
+    int i = (k + 1) % 3, j = (k + 2) % 3;
+    Expr plus = expr_mul(g, u[i], v[j]), minus = expr_mul(g, u[j], v[i]);
+    out[k] = expr_sub(g, plus, minus);
+  }
+}
+
+Value rotation_turn(Builder *b, const Value *q, const Value *v) {
+  ExprGraph *g = b->g;
+  Value r = *v;
+  Expr across[3], inner[3];
+  cross3(g, q->at + 1, v->at, across);
+  for (int k = 0; k < 3; k++) {
+    Expr along = expr_mul(g, q->at[0], v->at[k]);
+    inner[k] = expr_add(g, across[k], along);
+  }
+  Expr turned[3];
+  cross3(g, q->at + 1, inner, turned);
+  for (int k = 0; k < 3; k++) {
+    Expr twice = expr_scale(g, num_int(2), turned[k]);
+    r.at[k] = expr_add(g, v->at[k], twice);
+  }
+  r.bare = 0;
+  return r;
+}
+
+/* 2 (p conj) r, without its first part: of a unit quaternion and its rates the angular velocity. */
+void rotation_spin(Builder *b, const Value *q, const Value *rates, Expr *w) {
+  Value back = conjugate(b, q), product = rotation_product(b, &back, rates);
+  for (int k = 0; k < 3; k++) w[k] = expr_scale(b->g, num_int(2), product.at[k + 1]);
+}
+
+/* q (0, w). */
+static Value times_vector(Builder *b, const Value *q, const Expr *w) {
+  Value pure = {.n = ROTATION, .at = {expr_int(b->g, 0), w[0], w[1], w[2]}};
+  return rotation_product(b, q, &pure);
+}
+
+Value rotation_rates(Builder *b, const Value *q, const Expr *w) {
+  Value r = times_vector(b, q, w);
+  for (int k = 0; k < ROTATION; k++) r.at[k] = expr_scale(b->g, num_ratio(1, 2), r.at[k]);
+  return r;
+}
+
+/* The work of a torque, torque.omega = 2 torque.(conj(q) q'), is this times q'. */
+Value torque_force(Builder *b, const Value *q, const Value *torque) {
+  Value r = times_vector(b, q, torque->at);
+  for (int k = 0; k < ROTATION; k++) r.at[k] = expr_scale(b->g, num_int(2), r.at[k]);
+  r.dim = torque->dim;
+  return r;
+}
+
+/* --- functions of the language --- */
+
+/* An argument that must be a rotation; NULL, reported, where it is none. */
+static const Value *rotation_argument(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  if (!arity_is(ev, x, 1)) return NULL;
+  const Value *v = value_of(ev, x->args);
+  if (!v->e) return NULL;
+  if (v->n == ROTATION) return v;
+  diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` is %s, and `%s` is that of a rotation", ast_short(b, x->args), shape_text(b, v->n), x->name);
+  if (strcmp(x->name, "omega") == 0 && !v->n) diag_help(b->diags, "the rate of an angle is written with a prime: `th'`; a rotation is declared `coord R: rotation`");
+  else diag_help(b->diags, "a rotation is declared `coord R: rotation`, or made by `turn(axis, angle)`");
+  return NULL;
+}
+
+static Value omega_value(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  const Value *q = rotation_argument(ev, x);
+  if (!q) return FAILED;
+  if (ev->kind == ENT_FUNCTION) need_rates(b, b->instances.at[ev->definition]);
+  Value rates = time_derivative(b, *q, x->span, ev->where), w = {.n = 3, .unit = "rad/s"};
+  if (!rates.e) return FAILED;
+  rotation_spin(b, q, &rates, w.at);
+  w.dim = rates.dim;
+  return w;
+}
+
+static Value transpose_value(Eval *ev, const AstExpr *x) {
+  const Value *q = rotation_argument(ev, x);
+  return q ? conjugate(ev->b, q) : FAILED;
+}
+
+/* turn(axis, angle): (cos a/2, sin a/2 n). The axis need not have length 1. */
+static Value turn_value(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  ExprGraph *g = b->g;
+  if (!arity_is(ev, x, 2)) return FAILED;
+  AstId angle = ast_expr(b->ast, x->args)->next;
+  const Value *n = value_of(ev, x->args), *a = value_of(ev, angle);
+  if (!n->e || !a->e) return FAILED;
+  if (n->n != 3 || a->n) {
+    AstId wrong = n->n != 3 ? x->args : angle;
+    diag_error(b->diags, ast_expr(b->ast, wrong)->span, "`%s` is %s, and `turn` takes an axis and an angle", ast_short(b, wrong), shape_text(b, n->n != 3 ? n->n : a->n));
+    diag_help(b->diags, "`turn((0, 0, 1), 90 [deg])` turns about the third axis");
+    return FAILED;
+  }
+  if (is_zero(b, n)) {
+    diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` has no direction to turn about", ast_short(b, x->args));
+    diag_help(b->diags, "no turn at all is `turn((0, 0, 1), 0)`, and where a rotation starts that nothing is said of");
+    return FAILED;
+  }
+  if (!need_pure(ev, angle, "an angle")) return FAILED;
+  Expr half = expr_scale(g, num_ratio(1, 2), a->e), s = expr_fn(g, EX_SIN, half), square[3];
+  for (int k = 0; k < 3; k++) square[k] = expr_pow_num(g, n->at[k], num_int(2));
+  Expr length2 = expr_add_n(g, square, 3), scale = expr_pow_num(g, length2, num_ratio(-1, 2));
+  Value r = {.n = ROTATION, .dim = DIM_NONE};
+  r.at[0] = expr_fn(g, EX_COS, half);
+  for (int k = 0; k < 3; k++) {
+    Expr part[] = {s, scale, n->at[k]};
+    r.at[k + 1] = expr_mul_n(g, part, 3);
+  }
+  return r;
+}
+
+static const struct {
+  const char *name;
+  Value (*value)(Eval *ev, const AstExpr *x);
+} functions[] = {{"omega", omega_value}, {"turn", turn_value}, {"transpose", transpose_value}};
+
+enum { FUNCTIONS = sizeof functions / sizeof *functions };
+
+const char *rotation_function_name(size_t i) { return i < FUNCTIONS ? functions[i].name : NULL; }
+
+int call_is_of_rotation(Name name) {
+  for (size_t i = 0; i < FUNCTIONS; i++)
+    if (strcmp(name, functions[i].name) == 0) return 1;
+  return 0;
+}
+
+Value rotation_function(Eval *ev, const AstExpr *x) {
+  for (size_t i = 0; i < FUNCTIONS; i++)
+    if (strcmp(x->name, functions[i].name) == 0) return functions[i].value(ev, x);
+  return FAILED;
+}
+
+/* --- what has no meaning --- */
+
+static const char *const out_of[] = {
+  [TURN_SUM] = "products of rotations are rotations, sums are none: `R*S` turns by S, then by R",
+  [TURN_NEGATION] = "the rotation back is `transpose(R)`",
+  [TURN_DIVISOR] = "the rotation back is `transpose(R)`: `transpose(R)*v` is what v is in the body's frame",
+  [TURN_SCALED] = "vectors that it turns are scaled: `2*(R*v)`; a turn by another angle is `turn(axis, angle)`",
+  [TURN_BEHIND] = "`R*v` is what v of the body's frame is in space, `transpose(R)*v` what v of space is in the body's frame",
+  [TURN_PLANE] = "rotations turn vectors of 3 components: `R*(x, y, 0)`",
+  [TURN_PRIME] = "`omega(R)` is its angular velocity, in its own frame; `R.w'` the rate of one of its four numbers",
+  [TURN_UNIT] = "angles have units: `turn((0, 0, 1), 90 [deg])`",
+  [TURN_EQUATION] = "constrain directions: `constraint hinge: R*(0, 0, 1) = S*(0, 0, 1)`",
+  [TURN_VALUE] = "make it of parameters: `let R0 = turn((0, 0, 1), a)`",
+  [TURN_NUMBER] = "its four numbers are `.w`, `.x`, `.y`, `.z`; `R*v` turns a vector, `omega(R)` is its angular velocity",
+};
+
+static const char *const refusals[] = {
+  [TURN_SUM] = "`%s` is a rotation, and rotations are not added",
+  [TURN_NEGATION] = "`%s` is a rotation, and has no sign",
+  [TURN_DIVISOR] = "`%s` is a rotation, and nothing is divided by one",
+  [TURN_SCALED] = "`%s` is a rotation, and is not multiplied by a number",
+  [TURN_BEHIND] = "`%s` is a rotation, and stands behind the vector",
+  [TURN_PLANE] = "`%s` is a vector of 2 components, and a rotation stands before it",
+  [TURN_PRIME] = "`%s` is a rotation, and its rate is an angular velocity",
+  [TURN_UNIT] = "`%s` is a rotation, and has no unit",
+  [TURN_EQUATION] = "`%s` is a rotation: two that are equal may differ in the sign of all four numbers",
+  [TURN_VALUE] = "`%s` is a rotation, and no value of a parameter",
+  [TURN_NUMBER] = "`%s` is a rotation, neither a number nor a vector",
+};
+
+Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why) {
+  diag_error(b->diags, span, refusals[why], text);
+  diag_help(b->diags, "%s", out_of[why]);
+  return FAILED;
+}
+
+/* --- the coordinate --- */
+
+static Value rotation_at(const Builder *b, uint32_t coord, int rates) {
+  Value q = {.n = ROTATION, .dim = DIM_NONE};
+  for (uint32_t k = 0; k < ROTATION; k++) {
+    const Coord *c = &b->m->coords.at[coord + k];
+    q.at[k] = expr_symbol(b->g, rates ? c->v : c->q)->node;
+  }
+  return q;
+}
+
+Value rotation_coordinate(const Builder *b, uint32_t coord) { return rotation_at(b, coord, 0); }
+
+static Expr dot4(ExprGraph *g, const Value *p, const Value *q) {
+  Expr pairs[8];
+  for (int k = 0; k < 4; k++) {
+    pairs[2 * k] = p->at[k];
+    pairs[2 * k + 1] = q->at[k];
+  }
+  return four(g, pairs, 1);
+}
+
+void hold_rotation(Builder *b, Name name, uint32_t coord, Span span) {
+  Value q = rotation_at(b, coord, 0);
+  Expr square = dot4(b->g, &q, &q);
+  vec_push(b->arena, &b->rotations, coord);
+  check_name_is_new(b, "constraint", name, NULL, span);
+  add_scalar_constraint(b, name, expr_sub(b->g, square, expr_int(b->g, 1)), DIM_NONE, span);
+  b->m->constraints.at[b->m->constraints.n - 1].inside = 1;
+}
+
+/* The inertia of L in the rates of a rotation, summed over the four, where the rotation is none and all else is at rest at 0: four times the
+ * trace of the inertia tensor. 0 where it is not a constant that is known to be positive. */
+static Expr traced_inertia(Builder *b, uint32_t coord) {
+  const Model *m = b->m;
+  ExprGraph *g = b->g;
+  Expr term[ROTATION], *at = ARENA_ARRAY(b->arena, Expr, expr_symbol_count(g) + 1);
+  for (uint32_t k = 0; k < ROTATION; k++) {
+    Expr p = expr_diff(g, m->lagrangian, m->coords.at[coord + k].v);
+    term[k] = expr_diff(g, p, m->coords.at[coord + k].v);
+  }
+  for (uint32_t i = 0; i < m->coords.n; i++) at[m->coords.at[i].q] = at[m->coords.at[i].v] = expr_int(g, 0);
+  for (uint32_t i = 0; i < b->rotations.n; i++) at[m->coords.at[b->rotations.at[i]].q] = expr_int(g, 1);
+  Expr sum = expr_expand_defs(g, expr_add_n(g, term, ROTATION));
+  Expr trace = simplify(g, expr_substitute(g, sum, at, expr_symbol_count(g) + 1, ""));
+  unsigned fixed = 1u << SYM_PARAM | 1u << SYM_CONST;
+  return expr_kinds(g, trace) & ~fixed || expr_sign(g, trace) != SIGN_POSITIVE ? 0 : trace;
+}
+
+/* A third of the trace: what a spherical top has in all directions. */
+void add_rotation_inertia(Builder *b) {
+  Model *m = b->m;
+  ExprGraph *g = b->g;
+  for (uint32_t i = 0; m->lagrangian && i < b->rotations.n; i++) {
+    uint32_t coord = b->rotations.at[i];
+    Value q = rotation_at(b, coord, 0), v = rotation_at(b, coord, 1);
+    Expr trace = traced_inertia(b, coord), along = dot4(g, &q, &v);
+    if (!trace) trace = expr_int(g, 1);
+    Expr square = expr_pow_num(g, along, num_int(2)), product = expr_mul(g, trace, square);
+    Expr term = expr_scale(g, num_ratio(1, 6), product);
+    m->across = m->across ? expr_add(g, m->across, term) : term;
+  }
+}
