@@ -60,6 +60,7 @@ typedef struct lag_problem {
   const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
   double *held;        /* [lag_held_room] scratch of the functions for constraints below */
+  const double *begin; /* [n] where the run began, so that sizes are known where all is 0; NULL: not known */
   const double *kept;  /* [nholonomic] what c is held at, NaN: at nothing yet; NULL: all at 0 */
   int redundant;       /* constraints follow from others: f is asked for on the constraints only, see lag_rhs */
   const double *opt;   /* values of the method's options, [method->noptions] */
