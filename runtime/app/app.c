@@ -383,6 +383,9 @@ static int simulate(App *app)
   if ((rc = open_output(app)) != 0) {
     return rc;
   }
+  if (!app->args.quiet || app->args.json || app->args.save) {
+    lag_sim_balance(app->sim); /* of a resumed run it is settled */
+  }
   note_tables(app);
   lag_sim_on_step(app->sim, app_after_step, app);
   lag_sim_on_event(app->sim, on_event, app);

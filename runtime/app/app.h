@@ -131,6 +131,10 @@ int tangent_row(App *app);
 void report_tangent(App *app, FILE *f);
 void report_tangent_json(App *app, FILE *f);
 
+/* charges.c: what the report says of the energy and of other charges; in JSON also of monitors. */
+void report_charges(const App *app, FILE *f);
+void report_charges_json(const App *app, FILE *f);
+
 /* lyapunov.c: --lyapunov. Returns the exit status. */
 int app_lyapunov(App *app);
 

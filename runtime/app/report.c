@@ -51,20 +51,6 @@ static void final_state(const App *app, FILE *f)
   }
 }
 
-static void energy(const App *app, const lag_stats *st, FILE *f)
-{
-  if (!app->scene->model->energy) {
-    return;
-  }
-  if (!isfinite(st->energy_drift)) {
-    fputs("energy: not finite\n", f);
-  } else if (app->scene->model->flags & LAG_CONSERVES_ENERGY) {
-    fprintf(f, "energy drift: %.3g (relative to max(|E0|, max(|p.v| + |L|)))\n", st->energy_drift);
-  } else {
-    fprintf(f, "energy change: %.3g (not conserved: forces or explicit time)\n", st->energy_drift);
-  }
-}
-
 /* A contact is no constraint as long as it is open. */
 static int is_redundant(const App *app, int k)
 {
@@ -228,7 +214,7 @@ void report_text(App *app, FILE *f)
   final_state(app, f);
   fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
   newton(app, &st, f);
-  energy(app, &st, f);
+  report_charges(app, f);
   constraints(app, &st, f);
   caveat(app, f);
   for (int i = 0; i < c->nmonitors; i++) {
@@ -287,23 +273,6 @@ static void field_number(FILE *f, const char *name, double x)
   fputs(", ", f);
 }
 
-static void charges(const App *app, FILE *f)
-{
-  const lag_scene *c = app->scene;
-  int n = 0;
-
-  fputs("\"charges\": {", f);
-  for (int i = 0; i < c->nmonitors; i++) {
-    if (c->monitors[i].output >= 0) {
-      fputs(n++ ? ", " : "", f);
-      json_string(f, c->monitors[i].name);
-      fputs(": ", f);
-      json_number(f, lag_sim_monitor_drift(app->sim, i));
-    }
-  }
-  fputs("}, ", f);
-}
-
 static void constraints_json(const App *app, FILE *f)
 {
   const lag_model *m = app->scene->model;
@@ -359,7 +328,7 @@ void report_json(App *app, FILE *f)
   fprintf(f, "\"newton_systems\": %lld, \"newton_iterations\": %lld, ", st.systems, st.iterations);
   fprintf(f, "\"wall_s\": %.6g, ", app->wall); /* a clock has no more digits, in no precision */
   field_number(f, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null: it is no drift */
-  charges(app, f);
+  report_charges_json(app, f);
   report_events_json(app, f);
   exact_json(app, f);
   report_tangent_json(app, f);

@@ -21,11 +21,24 @@ typedef struct Run {
   double from;           /* events are located from here on */
   double limit, pending; /* pending: events fire at limit */
   double steps, rejected, rhs_calls, systems, iterations, events;
-  double e_first, e_last, e_peak, e_scale; /* energy: E0, last, largest |E - E0|, largest |p.v| + |L| */
+  double watched;        /* up to here charges have been looked at */
+  double balanced;       /* 1: the work of forces on charges is integrated */
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
   double rank;           /* constraints at the start that do not follow from others */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
 } Run;
+
+/* A charge along a run; only doubles, it is saved. Differences are those of Q - int P dt from `first`. */
+enum { LAG_BINS = 32, LAG_NODES = 8 };
+typedef struct Charge {
+  double begin;      /* Q at the start */
+  double first;      /* the same, moved by what events have done to it */
+  double peak;       /* the largest difference */
+  double scale;      /* the largest sum of the sizes of its terms */
+  double work, lost; /* int P dt, and what the sum has lost to rounding */
+  double bins, width, in_bin; /* bins that are full; looks that fill one, looks in the open one */
+  double t[LAG_BINS + 1], d[LAG_BINS + 1]; /* averages of time and difference over each bin; the last: sums over the open one */
+} Charge;
 
 /* The numbers that this library is compiled for, as `lagc run --precision` calls them, and what gives more of them. The
  * Makefile says so for others than doubles; see precision.awk. */
@@ -66,7 +79,12 @@ struct lag_sim {
   double *count;         /* [nev] */
   double *first, *last;  /* [nev] times, where count is not 0 */
   double *interval, *shorter; /* [nev] between the last two firings, and how many were each shorter than the one before */
-  double *mon_first, *mon_peak; /* [nmonitors] */
+  double *mon_first, *mon_peak; /* [nmonitors] of outputs */
+  Charge *charges;       /* [lag_sim_ncharges] the energy first */
+  double *charge_now, *charge_power, *charge_gain; /* scratch: value and scale of each; P; int P dt */
+  double node[LAG_NODES], weight[LAG_NODES]; /* of the quadrature over a step, */
+  int nodes;             /* which has so many */
+  int balances;          /* lag_sim_balance was called */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
   double *method_work;
   double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or now where there is no step; NULL */
@@ -95,6 +113,8 @@ int lag_between(lag_sim *sim, double t, double *y);
 
 /* consistent.c: now[n], the start as it was set, becomes the nearest start that obeys the constraints; asked, redundant and run->rank are set. */
 int lag_consistent(lag_sim *sim);
+/* pb.redundant, of what is found there or was saved. */
+void lag_note_redundant(lag_sim *sim);
 
 /* setup.c: the state at the start, of a run that has not begun. */
 int lag_setup_start(lag_sim *sim);
@@ -133,7 +153,16 @@ void lag_tangent_free(lag_sim *sim);
 int lag_exact_at(lag_sim *sim, double t);
 int lag_exact_see(lag_sim *sim, double t, const double *y);
 
-/* watch.c: energy and monitors. begin: first values. see: the state `y` at t is part of the run. jump: an
+/* charges.c: as in watch.c; method: the one that steps will be made with; the others compute what a state makes of the charges. drift: of
+ * charge k so far, relative to its size. flags: what is known of its rate of change, as inputs are set. */
+void lag_charges_method(lag_sim *sim, const lag_method *method);
+void lag_charges_begin(lag_sim *sim, double t, const double *y);
+void lag_charges_see(lag_sim *sim, double t, const double *y);
+void lag_charges_jump(lag_sim *sim, double t, const double *ya, const double *yb);
+double lag_charge_drift(const lag_sim *sim, int k);
+unsigned lag_charge_flags(const lag_sim *sim, int k);
+
+/* watch.c: charges and monitors. begin: first values. see: the state `y` at t is part of the run. jump: an
  * event changed the state from ya to yb. */
 int lag_watch_begin(lag_sim *sim);
 int lag_watch_see(lag_sim *sim, double t, const double *y);

@@ -18,9 +18,10 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
   size_t fixed = RUN_DOUBLES + np + nu + 5 * n + 2 * nc + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
+  size_t ncharges = (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double);
   lag_problem sized = s->pb;
   sized.opt = opt;
-  size_t total = fixed + method->work_size(&sized);
+  size_t total = fixed + ncharges + method->work_size(&sized);
   double *b = calloc(total, sizeof *b), *x = b + RUN_DOUBLES;
 
   if (!b) {
@@ -34,10 +35,10 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  double **const parts[] = {&s->p, &s->hold, &s->begin, &s->asked, &s->redundant, &s->kept, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
+  double *charges, **const parts[] = {&s->p, &s->hold, &s->begin, &s->asked, &s->redundant, &s->kept, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
                             &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->mon_first, &s->mon_peak,
-                            &s->exact_peak, &s->method_work};
-  const size_t sizes[] = {np, nu, n, n, nc, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, 0};
+                            &s->exact_peak, &charges, &s->method_work};
+  const size_t sizes[] = {np, nu, n, n, nc, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, ncharges, 0};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
@@ -46,7 +47,9 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->pb.hold = s->hold;
   s->pb.kept = s->kept;
   s->pb.opt = opt;
+  s->charges = (Charge *)(void *)charges;
   s->method = method;
+  lag_charges_method(s, method);
   return LAG_OK;
 }
 
@@ -56,7 +59,8 @@ static int alloc_scratch(lag_sim *s)
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
   size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
   size_t held = lag_held_room(m), sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
-  double *x = calloc(nuu + nw + 3 * n + 13 * nev + nout + 2 + held + sized + (size_t)m->ncontacts + 1, sizeof *x);
+  size_t nc = (size_t)lag_sim_ncharges(s);
+  double *x = calloc(nuu + nw + 3 * n + 13 * nev + nout + 2 + held + sized + (size_t)m->ncontacts + 4 * nc + 1, sizeof *x);
 
   s->scratch = x;
   s->fixed = calloc((size_t)m->np + 1, 1);
@@ -68,8 +72,9 @@ static int alloc_scratch(lag_sim *s)
   for (size_t i = 0; i < n; i++) {
     s->start[i] = NAN;
   }
-  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->contact_room, &s->contact_was};
-  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, sized, (size_t)m->ncontacts};
+  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->contact_room,
+                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain};
+  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, sized, (size_t)m->ncontacts, 2 * nc, nc, nc};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];

@@ -1,21 +1,9 @@
-/* What a run keeps an eye on: energy and monitors. Enters: states that are part of the run; leaves: largest
+/* What a run keeps an eye on: charges (charges.c) and monitors. Enters: states that are part of the run; leaves: largest
  * drifts, and a failure when one passes its limit.
  * Holds: what an event does to a quantity is not drift: the reference moves by the jump. */
 #include <math.h>
 
 #include "core/core.h"
-
-static int energy_at(lag_sim *s, double t, const double *y, double *e)
-{
-  const lag_model *m = s->scene->model;
-  int rc = lag_inputs(&s->pb, t);
-
-  e[0] = e[1] = NAN;
-  if (rc || !m->energy) {
-    return rc;
-  }
-  return m->energy(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, e, s->work);
-}
 
 static int outputs_at(lag_sim *s, double t, const double *y)
 {
@@ -57,19 +45,13 @@ int lag_watch_begin(lag_sim *s)
   const lag_scene *c = s->scene;
 
   see_constraints(s, s->run->t, s->now);
-
-  if (energy_at(s, s->run->t, s->now, s->e)) {
-    s->e[0] = NAN;
-  }
-  s->run->e_first = s->run->e_last = s->e[0];
-  s->run->e_scale = fmax(s->e[1], 0);
-  s->run->e_peak = 0;
+  lag_charges_begin(s, s->run->t, s->now);
   if (watches_outputs(c) && outputs_at(s, s->run->t, s->now)) {
     return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at the start");
   }
   for (int i = 0; i < c->nmonitors; i++) {
     int k = c->monitors[i].output;
-    s->mon_first[i] = c->monitors[i].absolute ? 0 : k >= 0 ? s->out[k] : s->e[0];
+    s->mon_first[i] = c->monitors[i].absolute || k < 0 ? 0 : s->out[k];
     s->mon_peak[i] = 0;
   }
   return lag_exact_see(s, s->run->t, s->now);
@@ -81,18 +63,12 @@ static double larger(double x, double y)
   return y > x || isnan(y) ? y : x;
 }
 
-static double drift_of_energy(const Run *r, double peak)
-{
-  double scale = fmax(fabs(r->e_first), r->e_scale);
-  return peak == 0.0 ? 0 : peak / scale;
-}
-
 double lag_sim_monitor_drift(const lag_sim *s, int i)
 {
   const lag_monitor *m = &s->scene->monitors[i];
 
   if (m->output < 0) {
-    return drift_of_energy(s->run, s->run->e_peak);
+    return lag_charge_drift(s, -1 - m->output);
   }
   /* A quantity that begins at zero has no size of its own: judged in its declared unit. */
   double unit = s->scene->outputs[m->output].factor, size = fabs(s->mon_first[i]);
@@ -102,14 +78,8 @@ double lag_sim_monitor_drift(const lag_sim *s, int i)
 int lag_watch_see(lag_sim *s, double t, const double *y)
 {
   const lag_scene *c = s->scene;
-  Run *r = s->run;
 
-  if (energy_at(s, t, y, s->e)) {
-    s->e[0] = NAN;
-  }
-  r->e_last = s->e[0];
-  r->e_scale = fmax(r->e_scale, s->e[1]);
-  r->e_peak = larger(r->e_peak, fabs(s->e[0] - r->e_first));
+  lag_charges_see(s, t, y);
   see_constraints(s, t, y);
   if (lag_exact_see(s, t, y)) {
     return LAG_EMODEL;
@@ -136,14 +106,9 @@ int lag_watch_see(lag_sim *s, double t, const double *y)
 int lag_watch_jump(lag_sim *s, double t, const double *ya, const double *yb)
 {
   const lag_scene *c = s->scene;
-  Run *r = s->run;
-  double ea = energy_at(s, t, ya, s->e) ? NAN : s->e[0];
-  double eb = energy_at(s, t, yb, s->e) ? NAN : s->e[0];
 
   see_constraints(s, t, yb);
-
-  r->e_first += eb - ea;
-  r->e_scale = fmax(r->e_scale, s->e[1]);
+  lag_charges_jump(s, t, ya, yb);
   if (watches_outputs(c)) {
     for (int pass = 0; pass < 2; pass++) {
       if (outputs_at(s, t, pass ? yb : ya)) {
@@ -162,7 +127,7 @@ void lag_sim_stats(lag_sim *s, lag_stats *st)
 {
   const Run *r = s->run;
   const lag_constraints *c = s->scene->model->constraints;
-  double peak = r->e_peak;
+  lag_charge_stats energy = {.now = NAN, .drift = NAN};
 
   st->t = r->t;
   st->steps = (long long)r->steps;
@@ -173,9 +138,9 @@ void lag_sim_stats(lag_sim *s, lag_stats *st)
   st->iterations = (long long)s->pb.iterations;
   st->constraint = c ? r->c_peak : NAN;
   st->constraint_rate = c ? r->r_peak : NAN;
-  st->energy = energy_at(s, r->t, s->now, s->e) ? NAN : s->e[0];
-  if (r->begun != 0.0) {
-    peak = larger(peak, fabs(st->energy - r->e_first));
+  if (lag_sim_ncharges(s)) {
+    lag_sim_charge(s, 0, &energy);
   }
-  st->energy_drift = drift_of_energy(r, peak);
+  st->energy = energy.now;
+  st->energy_drift = energy.drift;
 }

@@ -61,6 +61,7 @@ typedef struct lag_problem {
   double *work;        /* [nw] */
   double *held;        /* [lag_held_room] scratch of the functions for constraints below */
   const double *kept;  /* [nholonomic] what c is held at, NaN: at nothing yet; NULL: all at 0 */
+  int redundant;       /* constraints follow from others: f is asked for on the constraints only, see lag_rhs */
   const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
@@ -82,7 +83,9 @@ unsigned lag_facts(const lag_problem *pb);
 /* pb->u at t: by the model's formulas, or the constants of pb->hold. Returns what the model returned. */
 int lag_inputs(lag_problem *pb, double t);
 
-/* dy[n] = f(t, y[n]). Returns what the model returned; does not look for NaN. */
+/* dy[n] = f(t, y[n]). Returns what the model returned; does not look for NaN. Where constraints follow from others they do so on the
+ * constraints alone: beside them, where the stages of a step are, as many are independent as there are, and what they then demand is
+ * rounding over rounding. f is that of lag_project(y) there, which is the same on the constraints and as smooth beside them. */
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
 
 /* How far it is from t to the next row of an input's table in direction pb->dir; HUGE_VAL where there is none. The
@@ -148,9 +151,9 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
 /* Whether the residuals of y at t, c (holonomic) or r, are rounding: up to 2^10 times that of their terms. */
 int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual);
 
-/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; a residual of NaN: "is not met". holonomic: of c, else of r. */
 /* Where a constraint stands, " (line 7)", or nothing where the emitted C does not say; in text, which it returns. */
 const char *lag_line_of(const lag_constraint *c, char text[32]);
+/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; a residual of NaN: "is not met". holonomic: of c, else of r. */
 void lag_say_constraint(lag_problem *pb, int k, int holonomic, double residual, const char *words);
 
 /* The index of the first of x[n] that is not finite, -1 when all are. */
@@ -266,11 +269,33 @@ typedef struct lag_stats {
   long long steps, rejected, rhs_calls, events;
   long long systems, iterations; /* of nonlinear equations solved within steps, and the corrections that took */
   double energy;        /* now */
-  double energy_drift;  /* largest |E - E0| over the run relative to max(|E0|, max(|p.v| + |L|)); what events
-                         * do to the energy is not counted. NaN when the model has no energy */
+  double energy_drift;  /* that of charge 0 below. NaN when the model has no energy */
   double constraint, constraint_rate; /* largest |c| of a holonomic constraint and |r| of any (lag_model.h) at ends of steps [SI];
                          * NaN without constraints */
 } lag_stats;
+
+/* What a run makes of a charge: of its energy (number 0) and of those of its symmetries. */
+enum {
+  LAG_TREND_UNKNOWN,    /* too few steps */
+  LAG_TREND_ROUNDING,   /* the drift is no more than what rounding adds up to in so many steps */
+  LAG_TREND_OSCILLATES, /* a line does not explain what it varies by, averaged over parts of the run */
+  LAG_TREND_GROWS       /* it does */
+};
+
+typedef struct lag_charge_stats {
+  const char *name, *unit; /* of SI; as long as the scene lives */
+  unsigned flags;       /* LAG_CONSERVED, LAG_BALANCED (lag_model.h); neither: how it changes is not known, or not integrated (lag_sim_balance) */
+  double begin, now;    /* Q */
+  double work;          /* int P dt, where P = dQ/dt is known and not 0 */
+  double drift;         /* largest |Q - int P dt - Q0| over the run, relative to the larger of |Q0| and the largest sum of the sizes of the
+                         * terms of Q; what events do to it is not counted */
+  double slope, slope_error; /* of a line fitted to Q - int P dt, relative as drift [1/s], and its standard error; NaN: too few steps */
+  int trend;
+} lag_charge_stats;
+
+/* How many charges the model has; 0 without a Lagrangian. And what has become of charge k so far. */
+int lag_sim_ncharges(const lag_sim *sim);
+void lag_sim_charge(lag_sim *sim, int k, lag_charge_stats *stats);
 
 /* A simulation of the scene at the start of its span, with the scene's method (when it is one of
  * liblag.a), tolerance and options. The scene must outlive it. NULL: no memory, or a model of another ABI
@@ -306,6 +331,9 @@ int lag_sim_is_redundant(const lag_sim *sim, int k);
  * that is not finite ends the run with LAG_ENAN. context must outlive the run. A saved state does not hold fn: set it
  * again before lag_sim_load. */
 int lag_sim_set_input(lag_sim *sim, const char *name, lag_input_fn *fn, void *context);
+/* Integrates, along the run, what forces do to charges, so that lag_sim_charge tells balances. Not done by itself, but where the scene
+ * watches a charge: it takes dense output at up to 8 places in each step. */
+int lag_sim_balance(lag_sim *sim);
 
 /* Integrates to time t, before or after t0, but always in one direction. The steps do not depend on
  * t: the state at t is evaluated on the dense output (STEPS_TO methods: reached exactly), so runs that are

@@ -157,6 +157,34 @@ typedef struct lag_constraints {
                   const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
 } lag_constraints;
 
+/* What is known of dQ/dt of a charge Q. */
+enum {
+  LAG_CONSERVED = 1,   /* it is 0 */
+  LAG_BALANCED = 2,    /* it is what lag_charges.powers gives */
+  LAG_BY_FORMULAS = 4  /* the latter while inputs follow the model's formulas */
+};
+
+typedef struct lag_charge {
+  const char *name, *unit; /* unit of SI; "" when none */
+  unsigned flags;
+} lag_charge;
+
+/* Charges in the sense of Noether: what symmetries of L conserve, and forces, or constraints, change. The first is the energy, that of
+ * translations of time, whose value lag_model.energy gives. */
+typedef struct lag_charges {
+  int n;
+  const lag_charge *of; /* [n] */
+
+  /* out[2 (n - 1)]: of each charge but the energy its value, and the sum of the sizes of its terms, which drifts are compared with.
+   * NULL where n is 1. */
+  int (*values)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+
+  /* out[n]: dQ/dt of each, 0 where it is not known. NULL: all are conserved. */
+  int (*powers)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+} lag_charges;
+
 /* A gap that stays at least 0. While it is closed it is a constraint: the model multiplies that by an input, which is 1 then and else
  * 0. The runtime closes it where impacts follow each other ever faster, or one leaves no speed, and opens it where its multiplier
  * becomes negative. */
@@ -235,6 +263,7 @@ typedef struct lag_model {
   const lag_constraints *constraints; /* NULL: none */
   int ncontacts;
   const lag_contact *contacts;        /* [ncontacts] */
+  const lag_charges *charges;         /* NULL: none but the energy, of which no balance is known if it is not conserved */
 
   /* The rest is NULL in a program that was not emitted for a method that needs it (lagc build --method NAME). */
 
@@ -266,7 +295,7 @@ typedef struct lag_option {
 
 typedef struct lag_monitor {
   const char *name;
-  int output;    /* index into outputs, or -1 for the energy */
+  int output;    /* index into outputs, or -1 - k for charge k: -1 is the energy */
   double limit;  /* the run fails when the drift exceeds it */
   int absolute;  /* 1: when the value itself does, in its declared unit */
 } lag_monitor;

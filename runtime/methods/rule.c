@@ -1,43 +1,11 @@
-/* Nodes and weights from Legendre's polynomials, by Newton's method: P. Davis, P. Rabinowitz, Methods of Numerical
- * Integration, 2nd ed. (1984), 2.7; M. Abramowitz, I. Stegun, 25.4.29 and 25.4.32. No digits to mistype, and as many as the
- * scalar has. */
+/* Lobatto's nodes and weights from Legendre's polynomials, by Newton's method: P. Davis, P. Rabinowitz, Methods of Numerical
+ * Integration, 2nd ed. (1984), 2.7; M. Abramowitz, I. Stegun, 25.4.32. */
 #include "methods/rule.h"
 
 #include <math.h>
 #include <string.h>
 
-/* P_n and P_(n-1) at x. */
-static double legendre(int n, double x, double *below)
-{
-  double p = 1, q = 0;
-
-  for (int k = 1; k <= n; k++) {
-    double next = ((2 * k - 1) * x * p - (k - 1) * q) / k;
-    q = p;
-    p = next;
-  }
-  *below = q;
-  return p;
-}
-
-/* The first half of the zeros is found, the others are their images: what is symmetric stays so to the last bit. */
-static void gauss(int n, double *c, double *b)
-{
-  for (int i = 0; i < (n + 1) / 2; i++) {
-    double below, slope = 1, x = cos(3.141592653589793 * (i + 0.75) / (n + 0.5));
-    for (int turn = 0; turn < 10; turn++) {
-      double p = legendre(n, x, &below);
-      slope = n * (below - x * p) / (1 - x * x);
-      x -= p / slope;
-    }
-    x = 2 * i + 1 == n ? 0 : x;
-    legendre(n, x, &below);
-    slope = n * below / (1 - x * x); /* where P_n = 0 */
-    c[i] = 0.5 - x / 2;
-    c[n - 1 - i] = 0.5 + x / 2;
-    b[i] = b[n - 1 - i] = 1 / ((1 - x * x) * slope * slope);
-  }
-}
+#include "core/gauss.h"
 
 /* Ends, and the zeros of P'_(n-1): (1 - x^2) P'_m = m (P_(m-1) - x P_m), (1 - x^2) P''_m = 2 x P'_m - m (m + 1) P_m. */
 static void lobatto(int n, double *c, double *b)
@@ -47,12 +15,12 @@ static void lobatto(int n, double *c, double *b)
   for (int i = 0; i < (n + 1) / 2; i++) {
     double below, p, x = i == 0 ? 1 : cos(3.141592653589793 * i / m);
     for (int turn = 0; turn < 10 && i > 0; turn++) {
-      p = legendre(m, x, &below);
+      p = lag_legendre(m, x, &below);
       double first = m * (below - x * p) / (1 - x * x);
       x -= first / ((2 * x * first - m * (m + 1) * p) / (1 - x * x));
     }
     x = 2 * i + 1 == n ? 0 : x;
-    p = legendre(m, x, &below);
+    p = lag_legendre(m, x, &below);
     c[i] = 0.5 - x / 2;
     c[m - i] = 0.5 + x / 2;
     b[i] = b[m - i] = 1 / (n * m * p * p);
@@ -99,7 +67,7 @@ static void fill(lag_rule *r)
 void lag_rule_gauss(lag_rule *r, int u)
 {
   *r = (lag_rule){.points = u, .free = u};
-  gauss(u, r->c, r->b);
+  lag_gauss_points(u, r->c, r->b);
   memcpy(r->node, r->c, sizeof r->node);
   fill(r);
 }
@@ -110,7 +78,7 @@ void lag_rule_lobatto(lag_rule *r, int u)
 
   *r = (lag_rule){.points = u + 1, .free = u};
   lobatto(u + 1, r->c, r->b);
-  gauss(u, r->node, weights);
+  lag_gauss_points(u, r->node, weights);
   fill(r);
 }
 

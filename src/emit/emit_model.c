@@ -2,19 +2,10 @@
 
 #include <string.h>
 
-#include "emit/cfunction.h"
 #include "emit/cmath.h"
 #include "emit/ctable.h"
+#include "emit/emit_impl.h"
 #include "emit/emit_taylor.h"
-
-/* One emitted file. */
-typedef struct {
-  const IrUnit *u;
-  Arena *a;
-  const char *name;           /* of the lag_model */
-  const char *const *globals; /* what a function's own names must not hide; NULL at the end */
-  StrBuf *out;
-} File;
 
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
 
@@ -39,7 +30,7 @@ static const char *const abi_names[] = {
   "curves", "LAG_EACH", "LAG_10", "LAG_100", "LAG_1000", "LAG_10000",
   "singular", "lag_sincos", "lag_sincos2", "lag_sincos4", "LAG_SINCOS_2", "LAG_SINCOS_4", "lag_sin", "lag_cos", "lag_lanes", "lag_lanes_mask", "LAG_LANES", "LAG_LIBM", "LAG_OWN", "LAG_FMA",
   "LAG_INLINE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS", "LAG_LANE_FN", "lag_reflect", "lag_reflector", "lag_rank", "lag_multipliers", "lag_schur", "lag_cholesky", "lag_forward", "lag_backward", "lag_first", "lag_last", "lag_kkt", "lag_kkt_lane",
-  "constraint_table", "jacobian_table", "inertia_table", "constraints", "contact_table", "lag_contact", "lag_constraint", "lag_constraints",
+  "constraint_table", "jacobian_table", "inertia_table", "constraints", "contact_table", "charge_table", "charges", "lag_charge", "lag_charges", "LAG_CONSERVED", "LAG_BALANCED", "LAG_BY_FORMULAS", "lag_contact", "lag_constraint", "lag_constraints",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -71,7 +62,7 @@ static const char *const *rows_names(const IrUnit *u) {
 
 const char *model_id(Arena *a, const char *name) {
   static const char *const taken[] = {"accel", "energy", "linearise", "jumps", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
-                                      "outputs", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "correct_positions", "correct_velocities"};
+                                      "outputs", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "charge_values", "charge_powers", "correct_positions", "correct_velocities"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -97,7 +88,7 @@ static const char *const *globals_of(const IrUnit *u, const char *name) {
 
 /* --- functions --- */
 
-static const char *const state_args =
+const char *const emit_state_args =
   "LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n"
   "    const LAG_REAL *p, const LAG_REAL *u";
 
@@ -107,13 +98,12 @@ static CStyle style_for(const File *f, const char *const *own, const char *const
 
 /* Once a step, or a row of output. */
 static int is_seldom_called(const IrUnit *u, const Prog *p) {
-  int seldom = p == u->energy;
+  int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers;
   for (uint32_t i = 0; i < u->scenes.n; i++) seldom |= p == u->scenes.at[i].observe;
   return seldom;
 }
 
-static void function(const File *f, const Prog *p, const char *comment, const char *head, const char *const *own,
-                     const char *const *written) {
+void emit_function(const File *f, const Prog *p, const char *comment, const char *head, const char *const *own, const char *const *written) {
   CStyle st = style_for(f, own, written);
   st.seldom_called = is_seldom_called(f->u, p);
   CFunction c = {.comment = comment, .head = head, .returns = 1};
@@ -124,8 +114,8 @@ static void accel(const File *f) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "a", "zd", "w", NULL}, *const written[] = {"a", "zd"};
   const char *what = !f->u->z.n ? "Accelerations" : f->u->q.n ? "Accelerations and rates" : "Rates";
   const char *comment = arena_printf(f->a, "%s: %s.", what, ops_text(f->u->accel, f->a));
-  const char *head = arena_printf(f->a, "static int accel(%s, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w)", state_args);
-  function(f, f->u->accel, comment, head, own, written);
+  const char *head = arena_printf(f->a, "static int accel(%s, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w)", emit_state_args);
+  emit_function(f, f->u->accel, comment, head, own, written);
 }
 
 void emit_accel(const IrUnit *u, StrBuf *out) {
@@ -135,8 +125,8 @@ void emit_accel(const IrUnit *u, StrBuf *out) {
 static void emit_energy(const File *f) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "out", "w", NULL}, *const written[] = {"out"};
   if (!f->u->energy) return;
-  const char *head = arena_printf(f->a, "static int energy(%s, LAG_REAL *out, LAG_REAL *w)", state_args);
-  function(f, f->u->energy, "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", head, own, written);
+  const char *head = arena_printf(f->a, "static int energy(%s, LAG_REAL *out, LAG_REAL *w)", emit_state_args);
+  emit_function(f, f->u->energy, "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", head, own, written);
 }
 
 static void emit_variation(const File *f) {
@@ -144,28 +134,28 @@ static void emit_variation(const File *f) {
   static const char *const own2[] = {"t", "q", "v", "z", "p", "u", "h", "w", NULL}, *const written2[] = {"h"};
   const IrUnit *u = f->u;
   if (!u->variation) return;
-  const char *head = arena_printf(f->a, "static int variation(%s,\n    LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q, LAG_REAL *w)", state_args);
-  function(f, u->variation, "dL/dq, the momenta dL/dq', and the generalised forces that are in no L.", head, own, written);
-  head = arena_printf(f->a, "static int second(%s, LAG_REAL *h, LAG_REAL *w)", state_args);
-  function(f, u->second, arena_printf(f->a, "Their derivatives, those that are not zero: %s.", ops_text(u->second, f->a)), head, own2, written2);
+  const char *head = arena_printf(f->a, "static int variation(%s,\n    LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q, LAG_REAL *w)", emit_state_args);
+  emit_function(f, u->variation, "dL/dq, the momenta dL/dq', and the generalised forces that are in no L.", head, own, written);
+  head = arena_printf(f->a, "static int second(%s, LAG_REAL *h, LAG_REAL *w)", emit_state_args);
+  emit_function(f, u->second, arena_printf(f->a, "Their derivatives, those that are not zero: %s.", ops_text(u->second, f->a)), head, own2, written2);
 }
 
 static void emit_action(const File *f, uint32_t i) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "q1", "v1", "z1", "w", NULL}, *const written[] = {"q1", "v1", "z1"};
   const char *comment = arena_printf(f->a, "What the event %s does.", f->u->events.at[i].name);
   const char *head = arena_printf(f->a, "static int act_%s(%s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, LAG_REAL *w)",
-                                  event_id(f->u, i), state_args);
-  function(f, f->u->events.at[i].action, comment, head, own, written);
+                                  event_id(f->u, i), emit_state_args);
+  emit_function(f, f->u->events.at[i].action, comment, head, own, written);
 }
 
 static void emit_events(const File *f) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "out", "w", NULL}, *const written[] = {"out"};
   const IrUnit *u = f->u;
   if (!u->events.n) return;
-  const char *head = arena_printf(f->a, "static int events(%s, LAG_REAL *out, LAG_REAL *w)", state_args);
-  function(f, u->event_values, "An event happens where its function changes sign.", head, own, written);
+  const char *head = arena_printf(f->a, "static int events(%s, LAG_REAL *out, LAG_REAL *w)", emit_state_args);
+  emit_function(f, u->event_values, "An event happens where its function changes sign.", head, own, written);
   for (uint32_t i = 0; i < u->events.n; i++) emit_action(f, i);
-  sb_printf(f->out, "\nstatic int act(int k, %s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n", state_args);
+  sb_printf(f->out, "\nstatic int act(int k, %s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n", emit_state_args);
   sb_puts(f->out, "  switch (k) {\n");
   for (uint32_t i = 0; i < u->events.n; i++)
     sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, u->events.at[i].stop ? " *stop = 1;" : "", event_id(u, i));
@@ -200,8 +190,8 @@ static void emit_jumps(const File *f) {
   const IrUnit *u = f->u;
   enum { A_LINE = 8 };
   if (!u->jumps) return;
-  const char *head = arena_printf(f->a, "static int jumps(%s, LAG_REAL *d, LAG_REAL *w)", state_args);
-  function(f, u->jumps, "What events do to small changes: derivatives of their functions, and of what their actions set.", head, own, written);
+  const char *head = arena_printf(f->a, "static int jumps(%s, LAG_REAL *d, LAG_REAL *w)", emit_state_args);
+  emit_function(f, u->jumps, "What events do to small changes: derivatives of their functions, and of what their actions set.", head, own, written);
   sb_puts(f->out, "\nstatic const lag_jump jump_table[] = {");
   for (uint32_t i = 0; i < u->jump_at.n; i++)
     sb_printf(f->out, "%s{%u, %d, %u},", i % A_LINE ? " " : "\n  ", u->jump_at.at[i].event, u->jump_at.at[i].row, u->jump_at.at[i].col);
@@ -213,8 +203,8 @@ static void emit_linear(const File *f) {
   const IrUnit *u = f->u;
   if (!u->linear) return;
   const char *comment = arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.", ops_text(u->linear, f->a));
-  const char *head = arena_printf(f->a, "static int linearise(%s, const LAG_REAL *a,\n    LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w)", state_args);
-  function(f, u->linear, comment, head, own, written);
+  const char *head = arena_printf(f->a, "static int linearise(%s, const LAG_REAL *a,\n    LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w)", emit_state_args);
+  emit_function(f, u->linear, comment, head, own, written);
   entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
   entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
   emit_jumps(f);
@@ -229,8 +219,8 @@ static void emit_linear(const File *f) {
 
 static void emit_change(const File *f, const Prog *p, const char *name, const char *comment) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "g", "d", "force", "w", NULL}, *const written[] = {"d", "force"};
-  const char *head = arena_printf(f->a, "static int %s(%s, const LAG_REAL *g,\n    LAG_REAL *d, LAG_REAL *force, LAG_REAL *w)", name, state_args);
-  function(f, p, comment, head, own, written);
+  const char *head = arena_printf(f->a, "static int %s(%s, const LAG_REAL *g,\n    LAG_REAL *d, LAG_REAL *force, LAG_REAL *w)", name, emit_state_args);
+  emit_function(f, p, comment, head, own, written);
 }
 
 static void constraint_table(const IrUnit *u, StrBuf *out) {
@@ -247,11 +237,11 @@ static void emit_constraints(const File *f) {
   static const char *const own2[] = {"t", "q", "v", "z", "p", "u", "A", "M", "w", NULL}, *const written2[] = {"A", "M"};
   const IrConstraints *k = &f->u->constraints;
   if (!k->of.n) return;
-  const char *head = arena_printf(f->a, "static int residuals(%s, LAG_REAL *c, LAG_REAL *r, LAG_REAL *w)", state_args);
-  function(f, k->residuals, k->nkept > k->nholonomic ? "What the constraints say is zero, or stays as it is at the start: c on positions; r on velocities."
+  const char *head = arena_printf(f->a, "static int residuals(%s, LAG_REAL *c, LAG_REAL *r, LAG_REAL *w)", emit_state_args);
+  emit_function(f, k->residuals, k->nkept > k->nholonomic ? "What the constraints say is zero, or stays as it is at the start: c on positions; r on velocities."
                                                             : "What the constraints say is zero: c on positions, r on velocities.", head, own, written);
-  head = arena_printf(f->a, "static int matrices(%s, LAG_REAL *A, LAG_REAL *M, LAG_REAL *w)", state_args);
-  function(f, k->matrices, "A, the derivatives of r by the velocities, and the mass matrix: the entries that are not zero.", head, own2, written2);
+  head = arena_printf(f->a, "static int matrices(%s, LAG_REAL *A, LAG_REAL *M, LAG_REAL *w)", emit_state_args);
+  emit_function(f, k->matrices, "A, the derivatives of r by the velocities, and the mass matrix: the entries that are not zero.", head, own2, written2);
   int both = k->velocity == k->position;
   if (k->nkept)
     emit_change(f, k->position, "correct_positions", both ? "The least change d with A d = g, for positions or velocities; force: M d."
@@ -328,8 +318,8 @@ static void emit_start(const File *f, const IrScene *s, const char *id) {
 static void emit_observe(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "out", "w", NULL}, *const written[] = {"out"};
   const char *comment = arena_printf(f->a, "What the scene %s puts out.", s->name);
-  const char *head = arena_printf(f->a, "static int observe_%s(%s, LAG_REAL *out, LAG_REAL *w)", id, state_args);
-  function(f, s->observe, comment, head, own, written);
+  const char *head = arena_printf(f->a, "static int observe_%s(%s, LAG_REAL *out, LAG_REAL *w)", id, emit_state_args);
+  emit_function(f, s->observe, comment, head, own, written);
 }
 
 /* The closed forms; q0, v0, z0 are the start. */
@@ -360,7 +350,7 @@ static int has_long_tables(const IrUnit *u) {
 
 static uint32_t work_size(const IrUnit *u) {
   uint32_t most = 0;
-  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->jumps, u->constraints.position, u->constraints.velocity};
+  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->jumps, u->constraints.position, u->constraints.velocity, u->charge_values, u->charge_powers};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     if (all[i] && prog_work(all[i]) > most) most = prog_work(all[i]);
   for (uint32_t i = 0; i < u->events.n; i++)
@@ -372,7 +362,7 @@ static uint32_t work_size(const IrUnit *u) {
 
 /* Whether a linear system without constraints is solved by a loop. */
 static int needs_solver(const IrUnit *u) {
-  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear};
+  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->charge_powers};
   int some = 0;
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) some |= prog_solves(all[i], 0);
   for (uint32_t i = 0; i < u->scenes.n; i++) some |= prog_solves(u->scenes.at[i].observe, 0);
@@ -448,6 +438,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
   if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
+  if (u->charges.n) sb_puts(out, "  .charges = &charges,\n");
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (u->linear) sb_puts(out, "  .linear = &linear,\n");
@@ -545,6 +536,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_inputs(&f);
   emit_constraints(&f);
   const char *digest = digest_text(u->arena, sb_text(out) + begin);
+  emit_charges(&f);
   emit_linear(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
   if (u->taylor) emit_taylor(u->taylor, f.globals, cmath_prefix(u, "lag"), out);
   emit_variation(&f);

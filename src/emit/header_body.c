@@ -147,11 +147,19 @@ static void start(const Header *h) {
   static const char *const own[] = {"p", "s", NULL}, *const out[] = {"s->q", "s->v", "s->z"};
   CStyle st = style_for(h, own, out);
   sb_printf(h->out, "\n%s {\n", api(h, FN_START));
-  if (!prog_reads(h->scene->start, ARR_P)) sb_puts(h->out, "  (void)p;\n");
+  if (!prog_reads(h->scene->start, ARR_P) && !header_has(h, FN_HOLD)) sb_puts(h->out, "  (void)p;\n");
   sb_printf(h->out, "  s->t = %s_C(%s);\n", h->upper, double_text(h->a, h->scene->t0));
   if (h->u->q.n) sb_printf(h->out, "  for (int i = 0; i < %s_NQ; i++) s->q[i] = s->v[i] = %s_C(0.0);\n", h->upper, h->upper);
   if (h->u->z.n) sb_printf(h->out, "  for (int i = 0; i < %s_NZ; i++) s->z[i] = %s_C(0.0);\n", h->upper, h->upper);
   cwrite_body(h->scene->start, &st, h->a, h->out);
+  for (uint32_t i = 0; i < h->scene->moves.n; i++) {
+    const IrMove *x = &h->scene->moves.at[i];
+    uint32_t n = h->u->q.n;
+    sb_printf(h->out, "  s->%s[%s] = %s_C(%s);\n", x->component < n ? "q" : "v", h->q[x->component % n], h->upper, double_text(h->a, x->value));
+  }
+  if (header_has(h, FN_HOLD) && h->u->u.n)
+    sb_printf(h->out, "  %s_REAL u[%s_NU];\n  %s_inputs(s->t, p, u);\n", h->upper, h->upper, h->lower);
+  if (header_has(h, FN_HOLD)) sb_printf(h->out, "  return %s_hold(p, s%s);\n", h->lower, h->u->u.n ? ", u" : "");
   sb_puts(h->out, "}\n");
 }
 
@@ -286,6 +294,8 @@ void header_implementation(const Header *h) {
   inputs(h);
   accel(h);
   if (header_has(h, FN_ENERGY)) state_function(h, h->u->energy, api(h, FN_ENERGY), e, 0);
+  if (header_has(h, FN_CHARGES)) state_function(h, h->u->charge_values, api(h, FN_CHARGES), out, 1);
+  if (header_has(h, FN_POWERS)) state_function(h, h->u->charge_powers, api(h, FN_POWERS), out, 1);
   if (header_has(h, FN_OBSERVE)) state_function(h, h->scene->observe_plain, api(h, FN_OBSERVE), out, 1);
   if (header_has(h, FN_EVENTS)) state_function(h, h->u->event_values, api(h, FN_EVENTS), g, 1);
   act(h);

@@ -137,6 +137,8 @@ int header_has(const Header *h, HeaderFn f) {
   switch (f) {
     case FN_INPUTS: case FN_RK4_STEP_WITH: return u->u.n > 0;
     case FN_ENERGY: return u->energy != NULL;
+    case FN_CHARGES: return u->charge_values != NULL;
+    case FN_POWERS: return u->charge_values && u->charge_powers;
     case FN_OBSERVE: return h->scene->plain.n > 0;
     case FN_EVENTS: case FN_ACT: return u->events.n > 0;
     case FN_HOLD: return u->constraints.of.n > 0;
@@ -152,13 +154,15 @@ const char *header_prototype(const Header *h, HeaderFn f) {
   switch (f) {
     case FN_DEFAULTS: return arena_printf(a, "void %s_defaults(%s_params *p)", m, m);
     case FN_PARAM: return arena_printf(a, "%s_REAL *%s_param(%s_params *p, int index)", R, m, m);
-    case FN_START: return arena_printf(a, "void %s_start(const %s_params *p, %s_state *s)", m, m, m);
+    case FN_START: return arena_printf(a, "%s %s_start(const %s_params *p, %s_state *s)", header_has(h, FN_HOLD) ? "int" : "void", m, m, m);
     case FN_INPUTS: return arena_printf(a, "void %s_inputs(%s_REAL t, const %s_params *p, %s_REAL *u)", m, R, m, R);
     case FN_ACCEL: {
       const char *q = h->u->q.n ? arena_printf(a, ", %s_REAL *a", R) : "", *z = h->u->z.n ? arena_printf(a, ", %s_REAL *zd", R) : "";
       return arena_printf(a, "int %s_accel(%s%s%s)", m, state, q, z);
     }
     case FN_ENERGY: return arena_printf(a, "void %s_energy(%s, %s_REAL *e)", m, state, R);
+    case FN_CHARGES: return arena_printf(a, "int %s_charges(%s, %s_REAL *out)", m, state, R);
+    case FN_POWERS: return arena_printf(a, "int %s_powers(%s, %s_REAL *out)", m, state, R);
     case FN_OBSERVE: return arena_printf(a, "int %s_observe(%s, %s_REAL *out)", m, state, R);
     case FN_EVENTS: return arena_printf(a, "int %s_events(%s, %s_REAL *g)", m, state, R);
     case FN_ACT: return arena_printf(a, "int %s_act(int event, const %s_params *p, %s_state *s%s, int *stop)", m, m, m, u);
@@ -178,6 +182,8 @@ static const char *const docs[FN_COUNT] = {
   [FN_INPUTS] = "The inputs u[LAG_NU] at time t by the model's formulas and tables; a table holds its end values outside.",
   [FN_ACCEL] = "Accelerations a[LAG_NQ], rates zd[LAG_NZ] of the states: what an integrator needs.",
   [FN_ENERGY] = "e[0]: the energy p q' - L; e[1]: |p q'| + |L|, what its drift is compared with.",
+  [FN_CHARGES] = "out[2*k]: the charge of symmetry k; out[2*k + 1]: the sizes of its terms, what its drift is compared with.",
+  [FN_POWERS] = "What they change by a second: out[0] is that of the energy, out[k + 1] that of symmetry k.",
   [FN_OBSERVE] = "What the scene puts out: out[LAG_NOUT].",
   [FN_EVENTS] = "The event functions g[LAG_NEV].",
   [FN_ACT] = "What an event does to the state; *stop becomes 1 when it ends the run.",
@@ -185,6 +191,13 @@ static const char *const docs[FN_COUNT] = {
   [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was. Events, and contacts, are the caller's.",
   [FN_RK4_STEP_WITH] = "The same with inputs that change during the step: input(context, t, u) finds the model's own in u.",
 };
+
+/* "0 spin, 1 momentum" */
+static const char *charge_names(const Header *h) {
+  StrBuf b = strbuf(h->a);
+  for (uint32_t i = 1; i < h->u->charges.n; i++) sb_printf(&b, "%s%u %s", i > 1 ? ", " : "", i - 1, h->u->charges.at[i].name);
+  return comment_text(h->a, sb_text(&b));
+}
 
 void header_declarations(const Header *h) {
   const IrUnit *u = h->u;
@@ -207,9 +220,11 @@ void header_declarations(const Header *h) {
     const char *doc = f != FN_ACCEL || (u->q.n && u->z.n) ? docs[f] : u->q.n ? "Accelerations a[LAG_NQ]: what an integrator needs."
                                                                              : "Rates zd[LAG_NZ] of the states: what an integrator needs.";
     if (f == FN_START && u->constraints.of.n)
-      doc = "The state at the start of the scene, as it gives it. _hold then leads to the constraints, moving all of it; lagc run moves what\n * the scene does not give first.";
+      doc = "The state at the start of the scene, on the constraints, as `lagc run` finds it with the parameters of _defaults; with others, _hold\n"
+            " * leads from there to the nearest one that obeys them.";
     sb_puts(h->out, "\n/* ");
     csupport_fill(doc, h->upper, h->lower, h->out);
+    if (f == FN_CHARGES) sb_printf(h->out, "\n * Symmetries: %s.", charge_names(h));
     if (f == FN_RK4_STEP && u->u.n) sb_puts(h->out, "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
     const char *text = arena_printf(h->a, "%s_API %s;", h->upper, header_prototype(h, (HeaderFn)f));
     sb_printf(h->out, " */\n%s\n", header_wrapped(h, text));

@@ -23,7 +23,7 @@ void header_declarations(const Header *h);
 void header_implementation(const Header *h);
 
 /* The functions of a header; whether this model has one; its prototype without `;`. */
-typedef enum { FN_DEFAULTS, FN_PARAM, FN_START, FN_INPUTS, FN_ACCEL, FN_ENERGY, FN_OBSERVE, FN_EVENTS, FN_ACT, FN_HOLD, FN_RK4_STEP, FN_RK4_STEP_WITH, FN_COUNT } HeaderFn;
+typedef enum { FN_DEFAULTS, FN_PARAM, FN_START, FN_INPUTS, FN_ACCEL, FN_ENERGY, FN_CHARGES, FN_POWERS, FN_OBSERVE, FN_EVENTS, FN_ACT, FN_HOLD, FN_RK4_STEP, FN_RK4_STEP_WITH, FN_COUNT } HeaderFn;
 int header_has(const Header *h, HeaderFn f);
 const char *header_prototype(const Header *h, HeaderFn f);
 

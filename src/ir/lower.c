@@ -360,8 +360,7 @@ IrSystem lower_system(const Eqns *e) {
   return sys;
 }
 
-/* Expressions that may contain q'' and z': the accelerations are computed first. */
-static void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
+void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   const Model *m = l->e->m;
   int needed = 0;
   for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_MULTIPLIER);
@@ -378,6 +377,8 @@ static void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   }
   lower_roots(l, roots, n);
 }
+
+Prog *lower_seldom(const Lower *l) { return finished(l, ROLL_SELDOM_FROM); }
 
 /* q'' is an argument here. */
 static void load_accelerations(Lower *l) {
@@ -436,7 +437,7 @@ Prog *lower_energy(const Eqns *e) {
   lower_with_accelerations(&l, roots, 2); /* of first order velocities are rates */
   prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), "energy p q' - L");
   prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
-  return finished(&l, ROLL_SELDOM_FROM);
+  return lower_seldom(&l);
 }
 
 Prog *lower_variation(const Eqns *e, const Variation *x) {
@@ -532,7 +533,7 @@ static Prog *outputs(const Eqns *e, int plain_only) {
   }
   lower_with_accelerations(&l, roots, n);
   for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), of[i]->name);
-  return finished(&l, ROLL_SELDOM_FROM);
+  return lower_seldom(&l);
 }
 
 Prog *lower_outputs(const Eqns *e) { return outputs(e, 0); }

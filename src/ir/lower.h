@@ -16,6 +16,8 @@ Prog *lower_accel(const Eqns *e, int libm); /* out 0: a[nq], out 1: zd[nz]; libm
 IrSystem lower_system(const Eqns *e); /* M, f and the rates of the states, with the formulas of inputs put in */
 IrSystem lower_system(const Eqns *e); /* the same before it is solved, and solved, with the formulas of inputs put in */
 Prog *lower_energy(const Eqns *e);  /* out 0: e[2] */
+Prog *lower_charges(const Eqns *e); /* out 0: value and scale of each charge but the energy */
+Prog *lower_powers(const Eqns *e);  /* out 0: by what each charge changes, the energy first; NULL: all are conserved */
 Prog *lower_variation(const Eqns *e, const Variation *x); /* out 0, 1, 2: dL/dq[nq], dL/dq'[nq], Q[nq] */
 Prog *lower_second(const Eqns *e, const Variation *x);    /* out 0: h[number of entries] */
 Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */

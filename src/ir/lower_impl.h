@@ -25,6 +25,12 @@ Lower lower_new(const Eqns *e);
 void lower_roots(Lower *l, const Expr *roots, uint32_t n);
 Slot lower_slot(const Lower *l, Expr e);
 
+/* The same for expressions that may contain q'', z' and multipliers: the accelerations are computed first. */
+void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n);
+
+/* The program of a function that is called once a step, or a row of output. */
+Prog *lower_seldom(const Lower *l);
+
 /* Lowers M q'' = f and its solution; acc[n] receives the slots of q''. */
 void lower_solution(Lower *l, Slot *acc);
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "ir/lower.h"
+#include "mech/charges.h"
 
 static IrVar var_of(Name name, const Unit *u, int periodic, AstSign sign) {
   static const int signs[] = {[SIGN_ANY] = 0, [SIGN_GT] = 1, [SIGN_GE] = 2, [SIGN_LT] = -1, [SIGN_LE] = -2};
@@ -85,6 +86,20 @@ static void add_constraints(IrUnit *u, const Eqns *e) {
   to->velocity = k->nkept == k->n ? to->position : lower_change(e, k->n);
 }
 
+/* Where the energy is the only charge, and conserved, there is nothing to add. */
+static void add_charges(IrUnit *u, const Eqns *e) {
+  const Prog *powers = e->ncharges ? lower_powers(e) : NULL;
+  if (e->ncharges < 2 && !powers) return;
+  for (uint32_t i = 0; i < e->ncharges; i++) {
+    const Charge *c = &e->charges[i];
+    int conserved = i ? expr_is_zero(e->g, c->proof.power) : e->conserves_energy;
+    unsigned flags = c->proof.power_unknown ? 0 : (conserved ? 1u : 0) | 2u | (c->proof.by_formulas ? 4u : 0);
+    vec_push(u->arena, &u->charges, ((IrCharge){c->name, c->unit.text, flags}));
+  }
+  u->charge_values = e->ncharges > 1 ? lower_charges(e) : NULL;
+  u->charge_powers = powers;
+}
+
 static void add_variation(IrUnit *u, const Eqns *e) {
   Variation *x = variation_derive(e);
   u->variation = lower_variation(e, x);
@@ -127,6 +142,7 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
   add_events(u, e);
   add_constraints(u, e);
   add_contacts(u, e);
+  add_charges(u, e);
   return u;
 }
 

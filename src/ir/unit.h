@@ -33,10 +33,17 @@ typedef struct {
   int absolute;
 } IrMonitor;
 
+/* A component of [q|v] that constraints move at the start, and where to. */
+typedef struct {
+  uint32_t component;
+  double value;
+} IrMove;
+
 typedef struct {
   const char *name, *doc;
   const Prog *const *params; /* [np] */
   const Prog *start, *observe;
+  VEC(IrMove) moves;  /* found with the scene's parameters; for programs that do not look for themselves */
   double t0, t1;
   const char *t1_digits; /* more than a double has, or NULL */
   int has_span;
@@ -92,6 +99,12 @@ typedef struct {
   uint32_t input, constraint, impact, release;
 } IrContact;
 
+/* flags: 1 it is conserved, 2 its balance is known, 4 while inputs follow their formulas. */
+typedef struct {
+  const char *name, *unit;
+  unsigned flags;
+} IrCharge;
+
 typedef struct {
   Arena *arena;
   const char *name, *doc, *source, *effects, *all_effects;
@@ -101,6 +114,8 @@ typedef struct {
   VEC(IrVar) q, z, p, u;
   VEC(IrEvent) events;
   const Prog *accel, *energy, *event_values, *inputs;
+  VEC(IrCharge) charges;        /* the energy first; none where there is nothing to say of them but that it is conserved */
+  const Prog *charge_values, *charge_powers; /* NULL: there is only the energy; all are conserved */
   IrConstraints constraints;
   VEC(IrContact) contacts;
   unsigned wants;

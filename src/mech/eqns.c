@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/methods.h"
+#include "mech/charges.h"
 #include "mech/constrain.h"
 #include "mech/first_order.h"
 #include "mech/lagrange.h"
@@ -91,6 +92,7 @@ static void fill_outputs(Eqns *e) {
   with[m->energy_sym] = e->energy_stable;
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) {
     out[i] = m->scene.outputs.at[i];
+    out[i].value = charges_fill(e, out[i].value);
     if (e->energy) out[i].value = expr_substitute(g, out[i].value, with, m->energy_sym + 1, "");
     out[i].value = simplify_stable(g, out[i].value);
   }
@@ -256,6 +258,8 @@ Eqns *eqns_derive(Model *m) {
   }
   if (m->first_order && !first_order_derive(e, m)) return NULL;
   classify(e);
+  charges_derive(e);
   fill_outputs(e);
+  if (!m->effects.n && !charges_judge(e, NULL)) return NULL; /* with effects it may be broken on purpose */
   return check_numbers(e) && check_method(e) ? e : NULL;
 }

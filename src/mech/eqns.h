@@ -63,6 +63,8 @@ typedef struct {
   int constant;          /* it is free of coordinates, states and time */
 } FirstOrder;
 
+typedef struct Charge Charge; /* mech/charges.h */
+
 typedef struct {
   const Model *m;
   ExprGraph *g;
@@ -81,7 +83,9 @@ typedef struct {
   Expr energy;           /* p q' - L, to show; 0 without coordinates */
   Expr energy_stable;    /* the same, to compute */
   Expr energy_scale;     /* |p q'| + |L|: what a drift of the energy is compared with */
-  const Output *outputs; /* of the scene, with the energy filled in */
+  const Charge *charges; /* [ncharges] the energy, then those of the symmetries in order; none without L */
+  uint32_t ncharges;
+  const Output *outputs; /* of the scene, with the energy and charges filled in */
   uint32_t noutputs;
   const Expr *definitions; /* by symbol: what stands for parameters given by others, where that was put in; or NULL */
   int constant_mass, definite_mass, singular_mass, conserves_energy, autonomous, smooth;

@@ -3,6 +3,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "mech/charges.h"
 #include "mech/mend.h"
 #include "mech/sites.h"
 #include "mech/states.h"
@@ -305,6 +306,8 @@ void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults 
   for (uint32_t i = 0; i < m->expects.n; i++) {
     Expect x = m->expects.at[i];
     if (x.effect != effect) continue;
+    x.lhs = charges_fill(e, x.lhs);
+    x.rhs = charges_fill(e, x.rhs);
     if (with) x.lhs = expr_substitute(e->g, x.lhs, with, expr_symbol_count(e->g) + 1, "");
     if (with) x.rhs = expr_substitute(e->g, x.rhs, with, expr_symbol_count(e->g) + 1, "");
     ExpectResult r = judge(closed, &x);

@@ -4,47 +4,9 @@
 
 #include "base/dense.h"
 #include "mech/frobenius.h"
+#include "mech/noether.h"
 #include "mech/start.h"
 #include "sym/print.h"
-
-/* "; it is off by 1e-3 [m]" */
-static const char *off_by(const Eqns *e, const StartResult *r) {
-  const Model *m = e->m;
-  Dim dim = e->constraints.of[r->constraint]->dim;
-  int rate = r->velocities && r->constraint < e->constraints.nholonomic;
-  const char *unit = dim_text(m->dims, dim);
-  if (!isfinite(r->residual)) return "";
-  return arena_printf(m->arena, "; it is off by %.3Lg%s%s%s%s", fabsl(r->residual), *unit == '1' ? "" : " [", *unit == '1' ? "" : unit,
-                      *unit == '1' ? "" : "]", rate ? " in its rate" : r->velocities ? " in its velocities" : "");
-}
-
-static void report(const Eqns *e, const StartResult *r) {
-  const Model *m = e->m;
-  const Constraint *k = e->constraints.of[r->constraint];
-  const char *scene = m->scene.name, *off = off_by(e, r);
-  switch (r->kind) {
-    case START_FOUND: return;
-    case START_NO_VALUE:
-      diag_error(m->diags, k->span, "scene %s: the constraint `%s` has no value at the start", scene, k->name);
-      diag_help(m->diags, "start where it has one");
-      return;
-    case START_BROKEN:
-      diag_error(m->diags, k->span, "scene %s: the start contradicts the constraint `%s`%s", scene, k->name, off);
-      diag_help(m->diags, "without `exactly` the nearest start is taken");
-      return;
-    case START_FLAT:
-      diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` vanish where it holds, so that no force can hold it", scene, k->name);
-      diag_help(m->diags, "write it so that they do not: x = 0 in place of x^2 = 0");
-      return;
-    case START_STEEP:
-      diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` have no value where it holds", scene, k->name);
-      diag_help(m->diags, "write it so that they have: x = 1 in place of sqrt(x - 1) = 0");
-      return;
-    case START_NONE:
-      diag_error(m->diags, k->span, "scene %s: no state near its start obeys the constraint `%s`%s", scene, k->name, off);
-      diag_help(m->diags, "start nearer to where it holds; at a place where its derivatives vanish no direction leads there");
-  }
-}
 
 /* Whether the rank stays as it is without constraint k: then its reaction is not unique. */
 static int is_dispensable(StateSolver *s, const Eqns *e, uint32_t k, uint32_t rank) {
@@ -60,12 +22,6 @@ static const char *kind_of(const Eqns *e, uint32_t k) {
   return expr_kinds(e->g, all->c[k]) & 1u << SYM_TIME ? "holonomic, with explicit time" : "holonomic";
 }
 
-static int is_contact(const Eqns *e, const Constraint *k) {
-  for (uint32_t i = 0; i < e->m->contacts.n; i++)
-    if (k == &e->m->constraints.at[e->m->contacts.at[i].constraint]) return 1;
-  return 0;
-}
-
 static int has_slope(const Eqns *e, StateSolver *s, const long double *symbols, uint32_t k) {
   const Entries *A = &e->constraints.A;
   StateValues v = states_at(s, symbols);
@@ -77,7 +33,7 @@ static int has_slope(const Eqns *e, StateSolver *s, const long double *symbols, 
 static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts, uint32_t k, uint32_t rank, StrBuf *out) {
   const Constraint *c = e->constraints.of[k];
   Place place = source_place(e->m->ast->sources, c->span.begin);
-  if (is_contact(e, c)) {
+  if (noether_is_contact(e->m, c)) {
     sb_printf(out, "  contact %s (line %u): a constraint while it is closed\n", c->name, place.line);
     return;
   }
@@ -152,7 +108,7 @@ static int check_agreement(const Eqns *e, StateSolver *s, const long double *sym
   later[m->time] += (m->scene.has_span ? (long double)m->scene.t1 - m->scene.t0 : 1) / 1024;
   StartResult r = start_find(e, s, later);
   if (r.kind == START_NONE || r.kind == START_BROKEN)
-    return report_contradiction(e, r.constraint, arena_printf(m->arena, "at t = %.3Lg s no state obeys them%s", later[m->time], off_by(e, &r)));
+    return report_contradiction(e, r.constraint, arena_printf(m->arena, "at t = %.3Lg s no state obeys them%s", later[m->time], start_off_by(e, &r)));
   return 1;
 }
 
@@ -248,7 +204,7 @@ int freedom_show(const Eqns *e, StrBuf *out) {
   long double *symbols = start_asked(e);
   StartResult start = start_find(e, s, symbols);
   if (start.kind != START_FOUND) {
-    if (says_start(e->m)) report(e, &start);
+    if (says_start(e->m)) start_report(e, &start);
     else sb_printf(out, "scene %s: %u constraint%s; without a start nothing is said of their rank\n", e->m->scene.name, all->n, plural(all->n));
     return !says_start(e->m);
   }

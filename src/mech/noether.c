@@ -28,6 +28,8 @@ uint32_t noether_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
 
 SymId noether_coordinate(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].q : e->m->states.at[e->first.at[i]].z; }
 
+const Expr *noether_momenta(const Eqns *e) { return e->first.n ? e->first.theta : e->m->across ? e->momenta : e->p; }
+
 static SymId velocity(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate; }
 
 static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
@@ -62,7 +64,7 @@ static Work begin(const Eqns *e, const Generator *by) {
   w.q = ARENA_ARRAY(a, SymId, w.n + 1);
   w.v = ARENA_ARRAY(a, SymId, w.n + 1);
   w.Dxi = ARENA_ARRAY(a, Expr, w.n + 1);
-  w.p = e->n ? e->p : e->first.theta;
+  w.p = noether_momenta(e);
   w.xi = xi;
   w.tau = by->tau ? by->tau : zero;
   for (uint32_t i = 0; i < w.n; i++) {
@@ -73,6 +75,15 @@ static Work begin(const Eqns *e, const Generator *by) {
   for (uint32_t i = 0; i < w.n; i++) w.Dxi[i] = total(&w, xi[i]);
   w.Dtau = total(&w, w.tau);
   return w;
+}
+
+static Expr shorten(const Work *w, Expr x) { return w->n <= SHORTEN_MAX ? simplify(w->g, x) : x; }
+
+/* x or its short form, whichever is shorter to read. */
+static Expr readable(const Work *w, Expr x) {
+  uint32_t distinct;
+  Expr other = shorten(w, x);
+  return expr_written_size(w->g, other, &distinct) < expr_written_size(w->g, x, &distinct) ? other : x;
 }
 
 /* --- delta L --- */
@@ -91,7 +102,8 @@ static Expr delta(const Work *w, Expr term) {
   return expr_add(w->g, moved, stretched);
 }
 
-/* delta L without those of its terms that are invariant by themselves: the pairs of N bodies are judged one by one. */
+/* delta L without those of its terms that are invariant by themselves: the pairs of N bodies are judged one by one. What is left of
+ * each is in its short form. */
 static Expr delta_lagrangian(const Work *w) {
   ExprGraph *g = w->g;
   Expr L = w->m->lagrangian;
@@ -100,7 +112,7 @@ static Expr delta_lagrangian(const Work *w) {
     Num c;
     Expr term = expr_pair(g, L, EX_SUM, i, &c), change = delta(w, term);
     if (prove_zero(g, change, NULL) == PROVED_ZERO) continue;
-    change = expr_scale(g, c, change);
+    change = expr_scale(g, c, shorten(w, change));
     vec_push(w->m->arena, &left, change);
   }
   return expr_add_n(g, left.at, left.n);
@@ -185,7 +197,7 @@ static void judge(Work *w, Noether *to) {
   Expr zero = expr_int(g, 0), dL = delta_lagrangian(w);
   *to = (Noether){.F = zero, .remainder = zero, .by_constraints = zero};
   if (zero_on_constraints(w, dL) == PROVED_ZERO) return;
-  dL = simplify(g, dL);
+  dL = readable(w, dL);
   Expr F = simplify(g, find_gauge(w, dL)), DF = total(w, F), left = expr_sub(g, dL, DF);
   if (!expr_is_zero(g, F) && zero_on_constraints(w, left) == PROVED_ZERO) {
     to->is = INVARIANT_UP_TO_F;
@@ -193,15 +205,14 @@ static void judge(Work *w, Noether *to) {
     return;
   }
   left = simplify(g, left);
-  int better = expr_ops(g, &left, 1) < expr_ops(g, &dL, 1);
+  uint32_t distinct;
+  int better = expr_written_size(g, left, &distinct) < expr_written_size(g, dL, &distinct);
   to->F = better ? F : zero;
   to->remainder = better ? left : dL;
   to->is = is_total_derivative(w, dL) == PROVED_NONZERO ? NOT_INVARIANT : INVARIANCE_NOT_DECIDED;
 }
 
 /* --- the charge and its balance --- */
-
-static Expr shorten(const Work *w, Expr x) { return w->n <= SHORTEN_MAX ? simplify(w->g, x) : x; }
 
 /* p.xi - E tau - F. The potential in E stays as it was written: see mech/eqns.c. */
 static Expr charge_of(const Work *w, Expr F) {
@@ -212,9 +223,29 @@ static Expr charge_of(const Work *w, Expr F) {
   return expr_add(g, front, minus_et);
 }
 
+int noether_is_contact(const Model *m, const Constraint *k) {
+  for (uint32_t i = 0; i < m->contacts.n; i++)
+    if (&m->constraints.at[m->contacts.at[i].constraint] == k) return 1;
+  return 0;
+}
+
+static Expr absolute_product(const Work *w, Expr a, Expr b) {
+  Expr product = expr_mul(w->g, a, b);
+  return expr_fn(w->g, EX_ABS, product);
+}
+
+static Expr scale_of(const Work *w, Expr F) {
+  const Expr *p = w->e->n ? w->e->momenta : w->p;
+  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 2), one = expr_int(w->g, 1);
+  for (uint32_t i = 0; i < w->n; i++) terms[i] = absolute_product(w, p[i], w->xi[i]);
+  terms[w->n] = absolute_product(w, w->e->energy_scale, w->tau);
+  terms[w->n + 1] = absolute_product(w, F, one);
+  return expr_add_n(w->g, terms, w->n + 2);
+}
+
 /* lambda^T (A xi + b tau): of a holonomic constraint what the generator makes of c, of one on velocities r = A q' + b what it
  * makes of r when displacements stand for velocities. */
-static Expr power_of_constraints(Work *w) {
+static Expr power_of_constraints(Work *w, Noether *to) {
   ExprGraph *g = w->g;
   const Constraints *k = &w->e->constraints;
   Expr sum = expr_int(g, 0);
@@ -231,7 +262,12 @@ static Expr power_of_constraints(Work *w) {
       moved = expr_add(g, slide, part);
     }
     if (zero_on_constraints(w, moved) == PROVED_ZERO) continue;
-    Expr force = expr_mul(g, node(w, k->of[i]->multiplier), shorten(w, moved));
+    moved = shorten(w, moved);
+    if (i < k->nholonomic && !to->broken && !noether_is_contact(w->m, k->of[i])) {
+      to->broken = i + 1;
+      to->breaks = moved;
+    }
+    Expr force = expr_mul(g, node(w, k->of[i]->multiplier), moved);
     sum = expr_add(g, sum, force);
   }
   return sum;
@@ -239,20 +275,27 @@ static Expr power_of_constraints(Work *w) {
 
 static int is_other_state(const Eqns *e, uint32_t i) { return !e->m->states.at[i].coordinate; }
 
+/* Whether it is not the user's, but says whether a contact is closed. */
+static int is_switch(const Model *m, const Input *in) {
+  for (uint32_t i = 0; i < m->contacts.n; i++)
+    if (m->contacts.at[i].closed == in->sym) return 1;
+  return 0;
+}
+
 /* tau dL/dt of what changes in L beside q and t: states with their flow, inputs with that of their formula. */
-static Expr power_of_change(const Work *w, int *unknown) {
+static Expr power_of_change(const Work *w, Noether *to) {
   ExprGraph *g = w->g;
   const Model *m = w->m;
   Expr *seed = no_seed(w);
-  *unknown = 0;
   if (expr_is_zero(g, w->tau)) return expr_int(g, 0);
   for (uint32_t i = 0; i < m->states.n; i++)
     if (is_other_state(w->e, i)) seed[m->states.at[i].z] = w->e->flow[i];
   for (uint32_t i = 0; i < m->inputs.n; i++) {
     const Input *in = &m->inputs.at[i];
-    int there = expr_contains_sym(g, m->lagrangian, in->sym);
+    if (!(expr_kinds(g, m->lagrangian) & 1u << SYM_INPUT) || !expr_contains_sym(g, m->lagrangian, in->sym) || is_switch(m, in)) continue;
     if (in->value) seed[in->sym] = expr_diff(g, in->value, m->time);
-    else *unknown |= there;
+    to->by_formulas |= in->value != 0;
+    to->power_unknown |= !in->value;
   }
   Expr rate = tangent(w, m->lagrangian, seed, "_drift");
   return expr_mul(g, w->tau, rate);
@@ -270,17 +313,31 @@ static Expr power_of_forces(const Work *w) {
   return dot(w, w->e->Q, along, w->n);
 }
 
+/* The balance of the charge, and what constraints have to do with it. */
+static void put_power(Work *w, Noether *to, Expr remainder) {
+  ExprGraph *g = w->g;
+  to->by_constraints = power_of_constraints(w, to);
+  Expr forces = power_of_forces(w), change = power_of_change(w, to);
+  Expr parts[3] = {forces, change, remainder}, rest = expr_add_n(g, parts, 3);
+  rest = states_substitute(w->e, shorten(w, rest));
+  to->power = expr_add(g, rest, to->by_constraints);
+  to->by_value = w->by_value;
+}
+
 Noether noether_prove(const Eqns *e, const Generator *by) {
   Work w = begin(e, by);
-  ExprGraph *g = w.g;
   Noether out;
   judge(&w, &out);
-  out.by_constraints = power_of_constraints(&w);
-  out.by_value = w.by_value;
+  put_power(&w, &out, out.remainder);
   out.charge = charge_of(&w, out.F);
-  Expr forces = power_of_forces(&w), change = power_of_change(&w, &out.power_unknown);
-  Expr parts[3] = {forces, change, out.remainder}, rest = expr_add_n(g, parts, 3);
-  rest = states_substitute(e, shorten(&w, rest));
-  out.power = expr_add(g, rest, out.by_constraints);
+  out.scale = scale_of(&w, out.F);
+  return out;
+}
+
+Noether noether_energy(const Eqns *e) {
+  Work w = begin(e, &(Generator){.tau = expr_int(e->g, -1)});
+  Expr zero = expr_int(w.g, 0), drift = expr_diff(w.g, w.m->lagrangian, w.m->time);
+  Noether out = {.is = INVARIANT, .F = zero, .remainder = zero, .charge = e->energy, .scale = e->energy_scale};
+  put_power(&w, &out, expr_neg(w.g, drift));
   return out;
 }

@@ -31,16 +31,30 @@ typedef struct {
   Expr F;            /* 0 (the number) where none is needed; where L is not invariant, what takes off most of delta L */
   Expr remainder;    /* delta L - DF, in a short form; the number 0 where L is invariant */
   Expr charge;       /* in q, q', z, t */
+  Expr scale;        /* sum |p_i xi_i| + |tau| (|p q'| + |L|) + |F|, which a drift of the charge is compared with */
   Expr power;        /* dQ/dt, in q, q', z, t, inputs and multipliers; the number 0: Q is conserved */
   Expr by_constraints; /* the part of the power that constraints have, lambda^T (A xi + b tau); the number 0: none */
-  int power_unknown; /* L depends on an input whose rate of change is not known, and the generator moves time: power is none */
+  uint32_t broken; /* the first holonomic constraint, from 1, no contact, that the generator does not keep; 0: none */
+  Expr breaks;     /* what it does to that one, A xi + c_t tau */
+  int by_formulas; /* the power holds while inputs follow their formulas */
+  int power_unknown; /* L depends on an input whose rate of change is not known, and the generator moves time: power is not dQ/dt */
 } Noether;
 
 /* How many components a generator has: the coordinates, also those of a Lagrangian of first order; and their symbols. */
 uint32_t noether_coordinates(const Eqns *e);
 SymId noether_coordinate(const Eqns *e, uint32_t i);
 
+/* Momenta of L as it was written: without the inertia that makes the mass matrix of rotations regular. */
+const Expr *noether_momenta(const Eqns *e);
+
+/* Whether it is a contact's: it holds while that is closed. */
+int noether_is_contact(const Model *m, const Constraint *k);
+
 /* Needs a Lagrangian. */
 Noether noether_prove(const Eqns *e, const Generator *by);
+
+/* The energy as the charge of t -> t - s, F = 0: the charge is e->energy, the power that of forces, of moving constraints, and of what
+ * depends on time. Whether it is conserved is e->conserves_energy. */
+Noether noether_energy(const Eqns *e);
 
 #endif

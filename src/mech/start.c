@@ -109,14 +109,14 @@ static long double largest(const long double *x, uint32_t n) {
   return most;
 }
 
-/* M of all coordinates into a[n n], in units in which it is as large as A, which changes no direction. 0: it is 0. */
-static int full_mass(Finder *f, long double *a) {
+/* M of all coordinates into a[n n], its largest entry made `size`, or (0) as it is. Returns whether it is not 0. */
+static int full_mass(Finder *f, long double size, long double *a) {
   const Entries *M = &f->e->mass;
-  long double size = largest(f->at.mass, M->n), scale = largest(f->at.A, f->e->constraints.A.n);
+  long double most = largest(f->at.mass, M->n);
   memset(a, 0, (size_t)f->n * f->n * sizeof *a);
-  for (uint32_t i = 0; i < M->n && size > 0; i++)
-    a[M->at[i].row * f->n + M->at[i].col] = a[M->at[i].col * f->n + M->at[i].row] = f->at.mass[i] / size * (scale > 0 ? scale : 1);
-  return size > 0;
+  for (uint32_t i = 0; i < M->n && most > 0; i++)
+    a[M->at[i].row * f->n + M->at[i].col] = a[M->at[i].col * f->n + M->at[i].row] = size > 0 ? f->at.mass[i] / most * size : f->at.mass[i];
+  return most > 0;
 }
 
 /* d[nfree]: M d - A^T l = pull M (asked - here), A d = -residual. */
@@ -125,7 +125,8 @@ static int direction(Finder *f, int pull) {
   uint32_t nf = f->nfree, w = nf + f->rows, n = f->n;
   long double *M = f->a + (size_t)w * w;
   look(f);
-  int has_mass = full_mass(f, M);
+  long double size = largest(f->at.A, A->n); /* M as large as A: which changes no direction */
+  int has_mass = full_mass(f, size > 0 ? size : 1, M);
   memset(f->a, 0, (size_t)w * w * sizeof *f->a);
   for (uint32_t i = 0; i < nf; i++) {
     f->b[i] = 0;
@@ -180,7 +181,7 @@ static int descend(Finder *f) {
 static long double distance(Finder *f) {
   long double *M = f->a, s = 0;
   look(f);
-  int has_mass = full_mass(f, M);
+  int has_mass = full_mass(f, 0, M);
   for (uint32_t i = 0; i < f->n; i++)
     for (uint32_t j = 0; j < f->n; j++) {
       long double x = f->symbols[component(f, i)] - f->asked[component(f, i)], y = f->symbols[component(f, j)] - f->asked[component(f, j)];
@@ -312,6 +313,36 @@ static StartResult settle(Finder *f, int velocities) {
 }
 
 /* --- all of it --- */
+
+/* Whether component i of [q|v] is another number, beside the largest of its unit. */
+static int is_moved(const Eqns *e, const long double *asked, const long double *found, uint32_t i) {
+  const Model *m = e->m;
+  const Coord *q = &m->coords.at[i % e->n];
+  long double most = 0;
+  for (uint32_t j = 0; j < e->n; j++) {
+    SymId at = i < e->n ? m->coords.at[j].q : m->coords.at[j].v;
+    if (strcmp(q->unit.text, m->coords.at[j].unit.text) == 0) most = fmaxl(most, fabsl(found[at]));
+  }
+  SymId at = i < e->n ? q->q : q->v;
+  return fabsl(found[at] - asked[at]) > DBL_EPSILON / 4 * most;
+}
+
+int start_moves(const Eqns *e, long double *found, unsigned char *moved) {
+  const Model *m = e->m;
+  uint32_t all = expr_symbol_count(e->g) + 1;
+  long double *asked = start_asked(e), *symbols = ARENA_ARRAY(m->arena, long double, all);
+  for (uint32_t i = 0; i < all; i++) symbols[i] = asked[i];
+  StartResult r = e->constraints.n ? start_find(e, states_new(e), symbols) : (StartResult){.kind = START_FOUND};
+  if (r.kind != START_FOUND) {
+    if (m->scene.starts.n) start_report(e, &r);
+    symbols = asked;
+  }
+  for (uint32_t i = 0; i < 2 * e->n; i++) {
+    found[i] = symbols[i < e->n ? m->coords.at[i].q : m->coords.at[i - e->n].v];
+    moved[i] = symbols != asked && is_moved(e, asked, symbols, i);
+  }
+  return r.kind == START_FOUND || !m->scene.starts.n;
+}
 
 long double *start_asked(const Eqns *e) {
   const Model *m = e->m;

@@ -28,4 +28,14 @@ long double *start_asked(const Eqns *e);
  * to a double's rounding stays. Otherwise symbols are left at the last place that was tried. */
 StartResult start_find(const Eqns *e, StateSolver *solver, long double *symbols);
 
+/* The same from what the scene gives, where there are constraints: found[2 n] of [q|v], and whether each was moved by more than a double's
+ * rounding. Reported in the model's diagnostics when there is none and the scene gives a start; 0 then. */
+int start_moves(const Eqns *e, long double *found, unsigned char *moved);
+
+/* Says why there is none. */
+void start_report(const Eqns *e, const StartResult *result);
+
+/* What is said of how far a constraint is off: "; it is off by 0.1 [m]". */
+const char *start_off_by(const Eqns *e, const StartResult *result);
+
 #endif

@@ -130,6 +130,8 @@ struct Builder {
   const AstStmt **chain; /* the scene and those it is like, oldest first; NULL-terminated */
   int is_variant;  /* effects in use are ModelChoice.only */
   int unitless;    /* nothing is measured in a unit: nothing is checked */
+  Name group;      /* the parameter of the symmetry in hand, or NULL; */
+  SymId group_symbol;
   AstId stand_in;  /* a node that stands for `stands_for` (see model_reresolve), or 0 */
   Expr stands_for;
 };
@@ -233,6 +235,7 @@ typedef struct {
   const Unit *(*unit)(Builder *b, uint32_t scalar, void *data);
   void (*give)(Builder *b, uint32_t scalar, Expr value, Span span, void *data);
   void *data;
+  Name effect;   /* that the statement stands in, or NULL */
 } Giver;
 void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstId rhs, const Giver *giver);
 
@@ -265,6 +268,9 @@ int add_error(Builder *b, const Exact *x, Span span);
 
 /* The same as add_outputs under a name of the caller's choice. */
 int add_outputs_as(Builder *b, AstId id, Name label);
+
+/* monitor.c: `monitor q limit`. */
+void set_monitor(Builder *b, const AstStmt *st);
 
 /* table.c: gives input `index` its formula, or the table whose file is named; stem: its name without its effect. */
 void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
@@ -398,6 +404,10 @@ Value torque_force(Builder *b, const Value *q, const Value *torque);
  * where there is none. */
 void add_constraint(Builder *b, const AstStmt *st, Name effect);
 void add_contact(Builder *b, const AstStmt *st, Name effect);
+
+/* symmetry.c: declares a symmetry, and its charge; reads what it does, after L is known. */
+void declare_symmetry(Builder *b, const AstStmt *st, Name effect);
+void add_symmetry(Builder *b, const AstStmt *st, Name effect);
 
 /* twice.c: names of scenes, effects, events and expectations, each declared once, and what a scene or an event says, said once;
  * reported where they are not. */

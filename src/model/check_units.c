@@ -137,6 +137,7 @@ void settle_units(Builder *b) {
   for (uint32_t i = 0; i < m->states.n; i++) settle(b, &m->states.at[i].unit);
   for (uint32_t i = 0; i < m->params.n; i++) settle(b, &m->params.at[i].unit);
   for (uint32_t i = 0; i < m->inputs.n; i++) settle(b, &m->inputs.at[i].unit);
+  for (uint32_t i = 0; i < m->symmetries.n; i++) settle(b, &m->symmetries.at[i].unit);
   for (uint32_t i = 0; i < m->observes.n; i++) settle(b, &m->observes.at[i].unit);
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) settle(b, &m->scene.outputs.at[i].unit);
   for (uint32_t i = 0; i < b->undeclared.n; i++) {

@@ -328,7 +328,7 @@ void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_LET: declare_let(b, st, effect); return;
     case STMT_FUNCTION: declare_function(b, st, effect); return;
     case STMT_OBSERVE: declare_observe(b, st, effect); return;
-    case STMT_SYMMETRY: not_yet(b, st->span, "symmetries"); return;
+    case STMT_SYMMETRY: declare_symmetry(b, st, effect); return;
     case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE: case STMT_LAGRANGIAN: case STMT_CONSTRAINT: case STMT_CONTACT: case STMT_KINETIC: case STMT_POTENTIAL:
     case STMT_DISSIPATION: case STMT_FORCE: case STMT_FLOW: case STMT_MAP: case STMT_EXPECT:
     case STMT_EVENT: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:

@@ -52,17 +52,17 @@ EffectList model_unused_effects(const Ast *ast) {
 }
 
 /* Blocks nest at most as deep as the parser lets them. */
-static int contains_expect(const AstStmt *list) {
+static int contains_claim(const AstStmt *list) {
   for (const AstStmt *s = list; s; s = s->next)
-    if (s->kind == STMT_EXPECT || (s->kind == STMT_FOR && contains_expect(s->body))) return 1;
+    if (s->kind == STMT_EXPECT || s->kind == STMT_SYMMETRY || (s->kind == STMT_FOR && contains_claim(s->body))) return 1;
   return 0;
 }
 
-EffectList model_expecting_effects(const Ast *ast) {
+EffectList model_claiming_effects(const Ast *ast) {
   VEC(Name) names = {0};
-  if (contains_expect(ast->first)) vec_push(ast->arena, &names, NULL);
+  if (contains_claim(ast->first)) vec_push(ast->arena, &names, NULL);
   for (const AstStmt *s = ast->first; s; s = s->next)
-    if (s->kind == STMT_EFFECT && s->name && contains_expect(s->body)) vec_push(ast->arena, &names, s->name);
+    if (s->kind == STMT_EFFECT && s->name && contains_claim(s->body)) vec_push(ast->arena, &names, s->name);
   return (EffectList){names.at, names.n};
 }
 

@@ -272,6 +272,11 @@ static void expect(Builder *b, const AstStmt *st, Name effect, void *data) {
   if (st->kind == STMT_EXPECT) add_expect(b, st, effect);
 }
 
+static void symmetry(Builder *b, const AstStmt *st, Name effect, void *data) {
+  (void)data;
+  if (st->kind == STMT_SYMMETRY) add_symmetry(b, st, effect);
+}
+
 static void each_active(Builder *b, StatementFn *fn, void *data) {
   for (uint32_t i = 0; i < b->active.n; i++) each_statement(b, b->active.at[i].stmt, b->active.at[i].effect, fn, data);
 }
@@ -423,6 +428,7 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   finish_energies(b, &en);
   add_rotation_inertia(b);
   apply_unused_lets(b);
+  each_active(b, symmetry, NULL); /* before its charge is used: its unit follows from it */
   for (uint32_t i = 0; i < b->observes.n; i++) resolve_observe(b, i);
   each_active(b, expect, NULL);
   check_whole(b);

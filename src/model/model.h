@@ -111,6 +111,24 @@ typedef struct {
   Expr value; /* may contain q'', z' */
 } Output;
 
+/* What a symmetry does to a coordinate, or to t, to first order in its parameter. */
+typedef struct {
+  SymId target; /* of kind SYM_COORD, SYM_STATE (a coordinate) or SYM_TIME */
+  Expr rate;    /* in coordinates, t and parameters */
+  Span span;
+} Move;
+
+typedef struct {
+  Name name;       /* wind.gust for the symmetry gust of effect wind */
+  Name effect;     /* that it stands in, or NULL */
+  const char *doc; /* or NULL */
+  Span span;
+  const AstStmt *stmt;
+  SymId parameter, charge; /* its charge stands so in outputs, until mech knows it */
+  Unit unit;               /* of the charge */
+  VEC(Move) moves;         /* coordinates that it does not name stay */
+} Symmetry;
+
 typedef struct {
   SymId target;
   Expr value; /* of parameters */
@@ -141,7 +159,7 @@ typedef struct {
 
 typedef struct {
   Name name;
-  int output; /* index into outputs; -1: the energy */
+  int output; /* index into outputs; -1: the energy; -2 - k: the charge of symmetry k */
   double limit;
   int absolute; /* the limit is one of size, not of change */
 } Monitor;
@@ -190,6 +208,7 @@ typedef struct {
   VEC(Force) forces;
   VEC(Constraint) constraints;
   VEC(Contact) contacts;
+  VEC(Symmetry) symmetries;
   VEC(Expect) expects;
   VEC(Event) events;
   VEC(Output) observes;
@@ -218,8 +237,8 @@ int model_has_scene(Ast *ast, const char *scene);
 /* The effects that no scene uses. */
 EffectList model_unused_effects(const Ast *ast);
 
-/* The effects that contain an expectation; first NULL, when one stands outside of effects. */
-EffectList model_expecting_effects(const Ast *ast);
+/* The effects that contain an expectation or a symmetry; first NULL, when one stands outside of effects. */
+EffectList model_claiming_effects(const Ast *ast);
 
 /* An output that the command line asks for, and the name of its column. */
 typedef struct {

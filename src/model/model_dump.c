@@ -36,6 +36,12 @@ static void event(const Dump *d, const Event *ev) {
   if (ev->stop) sb_puts(d->out, "  stop\n");
 }
 
+/* A map a line, to first order. */
+static void symmetry(const Dump *d, const Symmetry *y) {
+  sb_printf(d->out, "symmetry %s(%s)\n", y->name, expr_symbol(d->m->g, y->parameter)->name);
+  for (uint32_t i = 0; i < y->moves.n; i++) line(d, "  rate of", expr_symbol(d->m->g, y->moves.at[i].target)->name, NULL, y->moves.at[i].rate);
+}
+
 static void scene(const Dump *d) {
   const Scene *s = &d->m->scene;
   sb_printf(d->out, "scene %s: t = %.17g .. %.17g", s->name, s->t0, s->t1);
@@ -68,6 +74,7 @@ void model_dump(const Model *m, StrBuf *out) {
     value(&d, m->forces.at[i].point);
     line(&d, ":", "F", NULL, m->forces.at[i].f);
   }
+  for (uint32_t i = 0; i < m->symmetries.n; i++) symmetry(&d, &m->symmetries.at[i]);
   for (uint32_t i = 0; i < m->events.n; i++) event(&d, &m->events.at[i]);
   for (uint32_t i = 0; i < m->observes.n; i++) line(&d, "observe", m->observes.at[i].name, &m->observes.at[i].unit, m->observes.at[i].value);
   scene(&d);

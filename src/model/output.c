@@ -18,6 +18,7 @@ const Unit *entity_unit(const Builder *b, const Entity *e) {
     case ENT_INPUT: return &m->inputs.at[e->index].unit;
     case ENT_PARAM: return &m->params.at[e->index].unit;
     case ENT_OBSERVE: return &m->observes.at[e->index].unit;
+    case ENT_SYMMETRY: return &m->symmetries.at[e->index].unit;
     case ENT_NONE: case ENT_CONST: case ENT_LET: case ENT_FUNCTION: case ENT_BUILTIN: break;
   }
   return NULL;

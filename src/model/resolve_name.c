@@ -58,7 +58,7 @@ static Context least_context(EntKind kind) {
   switch (kind) {
     case ENT_CONST: return IN_CONST;
     case ENT_PARAM: return IN_PARAM;
-    case ENT_OBSERVE: return IN_OBSERVE;
+    case ENT_OBSERVE: case ENT_SYMMETRY: return IN_OBSERVE;
     case ENT_NONE: case ENT_COORD: case ENT_STATE: case ENT_INPUT: case ENT_LET: case ENT_FUNCTION: case ENT_BUILTIN: break;
   }
   return IN_DYNAMICS;
@@ -90,6 +90,12 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
       return v;
     }
     case ENT_CONST: return b->constants.at[e->index].value;
+    case ENT_SYMMETRY: {
+      const Symmetry *y = &b->m->symmetries.at[e->index];
+      Value v = a_value(expr_symbol(b->g, y->charge)->node, y->unit.dim, 0);
+      v.unit = y->unit.text;
+      return v;
+    }
     case ENT_LET: case ENT_OBSERVE: return defined_value(ev, e, span);
     case ENT_FUNCTION:
       diag_error(b->diags, span, "`%s` is a function", e->name);
@@ -160,6 +166,7 @@ Value name_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const IndexVar *index = find_index(ev, x->name);
   if (index) return a_value(expr_int(b->g, index->at), DIM_NONE, 1);
+  if (b->group == x->name && ev->in_statement) return a_value(expr_symbol(b->g, b->group_symbol)->node, b->dim_of.at[b->group_symbol], 0);
   const Value *argument = function_argument(b, ev->function, x->name);
   if (argument) return *argument;
   if (strcmp(x->name, "pi") == 0) return a_value(expr_symbol(b->g, b->m->pi)->node, DIM_NONE, 1);

@@ -30,7 +30,7 @@ static const Expr *time_seeds(Builder *b) {
   return seed;
 }
 
-/* Whether it has symbols whose rates are not known: the energy, second rates of arguments. */
+/* Whether it has symbols whose rates are not known: the energy, charges, second rates of arguments. */
 static int has_no_rate(Builder *b, const Value *v) {
   const Expr *seed = time_seeds(b);
   ExprList l = expr_topo(b->g, v->at, parts_of(v));
@@ -69,7 +69,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
     return FAILED;
   }
   if (kinds & 1u << SYM_LOCAL && has_no_rate(b, &of)) {
-    not_yet(b, span, "a time derivative of the energy, or a third one of a function's argument");
+    not_yet(b, span, "a time derivative of the energy or a charge, or a third one of a function's argument");
     diag_help(b->diags, "the energy changes by the power of forces: `force x = F` brings `F*x'`");
     return FAILED;
   }

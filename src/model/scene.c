@@ -181,7 +181,7 @@ static void give_param(Builder *b, uint32_t i, Expr e, Span span, void *data) {
 }
 
 static void set_value(Builder *b, const AstStmt *st, Name effect) {
-  static const Giver giver = {IN_START, param_unit, give_param, NULL};
+  static const Giver giver = {IN_START, param_unit, give_param, NULL, NULL};
   if (!effect && advise_statement(b, st)) return;
   Target p = read_target(b, st->lhs);
   const Entity *e = find_settable(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
@@ -210,58 +210,6 @@ static void set_output(Builder *b, const AstStmt *st) {
   b->m->scene.outputs.n = 0;
   for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) add_outputs(b, i);
   set_every(b, st);
-}
-
-/* A limit for what has one already takes its place. */
-static void add_monitor(Builder *b, Monitor mon) {
-  Scene *sc = &b->m->scene;
-  for (uint32_t i = 0; i < sc->monitors.n; i++)
-    if (sc->monitors.at[i].output == mon.output) {
-      sc->monitors.at[i] = mon;
-      return;
-    }
-  vec_push(b->arena, &sc->monitors, mon);
-}
-
-/* `monitor exact 1e-6`: all that have a closed form. */
-static void monitor_exact(Builder *b, Monitor mon, Span span) {
-  Scene *sc = &b->m->scene;
-  mon.absolute = 1;
-  for (uint32_t i = 0; i < sc->exacts.n; i++) {
-    mon.output = add_error(b, &sc->exacts.at[i], span);
-    mon.name = sc->outputs.at[mon.output].name;
-    add_monitor(b, mon);
-  }
-  if (sc->exacts.n) return;
-  diag_error(b->diags, span, "the scene has no closed form to compare with");
-  diag_help(b->diags, "`exact q = ...` gives one");
-}
-
-static void set_monitor(Builder *b, const AstStmt *st) {
-  if (!st->lhs) {
-    diag_error(b->diags, st->name_span, "`monitor %s` has no limit", st->name);
-    diag_help(b->diags, "say what the drift may be: `monitor %s 1e-8`; `monitor none` drops what was said before", st->name);
-    return;
-  }
-  const AstExpr *x = ast_expr(b->ast, st->lhs);
-  Unit none = no_unit();
-  Monitor mon = {.output = -1, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit")};
-  mon.name = intern(b->ast->names, ast_text(b, st->lhs));
-  mon.absolute = x->kind == AST_CALL && strcmp(x->name, "error") == 0;
-  if (mon.limit <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a monitor's limit must be positive");
-  if (x->kind == AST_NAME && strcmp(x->name, "exact") == 0 && !declared_in_use(b, x->name, NULL)) {
-    monitor_exact(b, mon, x->span);
-    return;
-  }
-  if (x->kind != AST_NAME || strcmp(x->name, "energy") != 0) {
-    uint32_t errors = b->diags->errors;
-    mon.output = add_outputs(b, st->lhs);
-    if (mon.output < 0) {
-      if (b->diags->errors == errors) diag_error(b->diags, x->span, "a monitor watches one number");
-      return;
-    }
-  }
-  add_monitor(b, mon);
 }
 
 static void set_span(Builder *b, const AstStmt *st) {

@@ -41,6 +41,7 @@ const char *ent_kind_text(EntKind kind) {
     case ENT_LET: return "a let";
     case ENT_FUNCTION: return "a function";
     case ENT_OBSERVE: return "an observable";
+    case ENT_SYMMETRY: return "a symmetry";
     case ENT_BUILTIN: return "a built-in quantity";
     case ENT_NONE: break;
   }

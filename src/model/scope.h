@@ -12,7 +12,7 @@
 
 typedef enum {
   ENT_NONE, /* declared, but refused as "not yet": its uses are not reported again */
-  ENT_COORD, ENT_STATE, ENT_PARAM, ENT_CONST, ENT_INPUT, ENT_LET, ENT_FUNCTION, ENT_OBSERVE,
+  ENT_COORD, ENT_STATE, ENT_PARAM, ENT_CONST, ENT_INPUT, ENT_LET, ENT_FUNCTION, ENT_OBSERVE, ENT_SYMMETRY,
   ENT_BUILTIN /* lagrangian, energy, T, V */
 } EntKind;
 

@@ -84,7 +84,7 @@ void set_motion(Builder *b, const AstStmt *st) {
   }
   if (st->exactly && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;
   StartOf of = {.kind = e->kind, .velocity = p.primes > 0};
-  Giver giver = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of};
+  Giver giver = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of, NULL};
   assign_values(b, &p, e, st->lhs, st->rhs, &giver);
 }
 
@@ -161,7 +161,7 @@ static void give_spin(Builder *b, const AstStmt *st) {
   vectors.index = 0;
   vectors.parts = 3;
   if (!e->ndims) vectors.name = intern_printf(b, "omega(%s)", e->name);
-  Giver giver = {IN_START, unit_of_spin, take_spin, &of};
+  Giver giver = {IN_START, unit_of_spin, take_spin, &of, NULL};
   assign_values(b, &p, &vectors, st->lhs, st->rhs, &giver);
 }
 

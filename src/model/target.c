@@ -179,7 +179,7 @@ static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list,
   if (!list_elements(s->b, list, behind, r, s->e->name, &elements)) return;
   int64_t at[2] = {r->lo[0], r->lo[1]};
   for (uint32_t i = 0; i < elements.n; i++) {
-    give_member(s, at, elements.at[i].id, element_value(s->b, &elements.at[i], s->giver->where, NULL));
+    give_member(s, at, elements.at[i].id, element_value(s->b, &elements.at[i], s->giver->where, s->giver->effect));
     next_in(r, at);
   }
 }
@@ -190,13 +190,13 @@ static void give_formula(const Assign *s, const IndexRange *r, AstId rhs) {
   uint32_t outer = b->index.n;
   int64_t at[2] = {r->lo[0], r->lo[1]};
   int named = r->name[0] || r->name[1];
-  Value v = named || !count_in(r) ? (Value){0} : resolve(b, rhs, s->giver->where, NULL);
+  Value v = named || !count_in(r) ? (Value){0} : resolve(b, rhs, s->giver->where, s->giver->effect);
   if (!count_in(r)) return;
   do {
     b->index.n = outer;
     for (uint32_t k = 0; k < r->n; k++)
       if (r->name[k]) vec_push(b->arena, &b->index, ((IndexVar){r->name[k], at[k]}));
-    if (named) v = resolve(b, rhs, s->giver->where, NULL);
+    if (named) v = resolve(b, rhs, s->giver->where, s->giver->effect);
     if (!give_member(s, at, rhs, v)) break;
   } while (next_in(r, at));
   b->index.n = outer;

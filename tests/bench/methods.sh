@@ -7,12 +7,12 @@ set -eu
 : "${LAGC:=build/lagc}" "${CC:=cc}" "${CXX:=c++}" "${BUILD:=build}" "${INC:=runtime/include}" "${TMP:=$(mktemp -d)}"
 
 here=tests/bench
-"$LAGC" emit models/double_pendulum.lag swing --method taylor -o "$TMP/double_pendulum.c"
-"$LAGC" emit $here/models/henon_heiles.lag --method taylor -o "$TMP/henon_heiles.c"
-"$LAGC" emit $here/models/kepler.lag hundred --method taylor -o "$TMP/kepler.c"
-"$LAGC" emit $here/models/kepler.lag narrow --method taylor -o "$TMP/narrow.c"
-"$LAGC" emit $here/models/outer_planets.lag --method taylor -o "$TMP/outer_planets.c"
-"$LAGC" emit $here/models/oscillators.lag --method taylor -o "$TMP/oscillators.c"
+"$LAGC" emit models/double_pendulum.lag swing --fix all --method taylor -o "$TMP/double_pendulum.c"
+"$LAGC" emit $here/models/henon_heiles.lag --fix all --method taylor -o "$TMP/henon_heiles.c"
+"$LAGC" emit $here/models/kepler.lag hundred --fix all --method taylor -o "$TMP/kepler.c"
+"$LAGC" emit $here/models/kepler.lag narrow --fix all --method taylor -o "$TMP/narrow.c"
+"$LAGC" emit $here/models/outer_planets.lag --fix all --method taylor -o "$TMP/outer_planets.c"
+"$LAGC" emit $here/models/oscillators.lag --fix all --method taylor -o "$TMP/oscillators.c"
 sed -i 's/\<kepler\>/kepler_model_2/g' "$TMP/narrow.c" # two scenes of a model in one program
 for n in 10 20; do
   "$LAGC" emit models/chain.lag swing -DN=$n --method taylor -o "$TMP/chain_$n.c"

@@ -17,7 +17,7 @@ src           base/ syntax/ sym/ model/ mech/ ir/ emit/ cli/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime           lag.h
 runtime/core      core/ lag.h lag_model.h lag_kkt.h
-runtime/methods   methods/ core/rhs.h lag.h lag_model.h
+runtime/methods   methods/ core/rhs.h core/gauss.h lag.h lag_model.h
 runtime/analysis  analysis/ core/ lag.h lag_model.h
 runtime/io        io/ lag.h lag_model.h
 runtime/app       app/ core/ io/ analysis/ lag.h lag_model.h
@@ -27,6 +27,8 @@ runtime/gsl       gsl/ lag.h lag_model.h
 besides='
 src/ir/lower.c    mech/eqns.h
 src/ir/lower.h    mech/eqns.h mech/variation.h
+src/ir/lower_unit.c mech/charges.h
+src/ir/lower_charges.c mech/charges.h
 runtime/include/lag.h  lag_model.h
 runtime/include/lag_math.h  lag_sincos.h
 src/main.c        picture.h help.h complete.h settings.h wants.h effects.h rounded.h
@@ -41,7 +43,7 @@ src/settings.c    settings.h
 '
 # The inside of a folder, shared by its own files only.
 private='syntax/ast_build.h syntax/parse_state.h syntax/filter.h syntax/scan.h syntax/token.h syntax/slips.h model/builder.h
-  model/scope.h sym/expr_impl.h sym/ops.def ir/lower_impl.h ir/nest_impl.h emit/header_impl.h methods/tableau.h methods/embedded.h methods/embedded_trial.h
+  model/scope.h sym/expr_impl.h sym/ops.def ir/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h methods/tableau.h methods/embedded.h methods/embedded_trial.h
   methods/steps.h methods/composition.h methods/path.h methods/rule.h methods/discrete.h methods/implicit.h
   methods/history.h methods/band.h methods/control.h methods/links.h'
 

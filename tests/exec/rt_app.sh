@@ -101,12 +101,12 @@ fi
 
 # --- JSON
 ok "json" status 0 swing --json
-ok "json is one line, braces balance" awk '{ a = gsub(/{/, "{"); b = gsub(/}/, "}"); if (a != b || a != 4 || NR > 1) exit 1 }' out
+ok "json is one line, braces balance" awk '{ a = gsub(/{/, "{"); b = gsub(/}/, "}"); if (a != b || a < 4 || NR > 1) exit 1 }' out
 for key in model scene method status t_end steps rejected rhs_calls wall_s energy_drift charges events constraint_residual final; do
   ok "json has $key" grep -q "\"$key\": " out
 done
 ok "json strings are escaped" grep -qF '"E \"total\", T+V": -0.69' out
-ok "json charges are monitors of outputs" grep -q '"charges": {"H": [0-9.e-]*}' out
+ok "json has monitors" grep -q '"monitors": {.*"H": [0-9.e-]*}' out
 ok "json of a failed run" status 3 wall --json
 ok "json says failed, and why" sh -c 'grep -q "\"status\": \"failed\"" out && grep -q "no finite value" out'
 ok "json has null where there is no energy" grep -q '"energy_drift": null' out

@@ -194,6 +194,7 @@ off_is_absent() { # MODEL
   ! grep -q '^effect' "$TMP/off.lag" && grep -q '^scene' "$TMP/off.lag" || return 1
   for s in $(sed -n 's/^scene \([^ ]*\).*/\1/p' "$TMP/off.lag"); do
     "$LAGC" emit "$1" "$s" -o "$TMP/with.c" && "$LAGC" emit "$TMP/off.lag" "$s" -o "$TMP/off.c" && cmp "$TMP/with.c" "$TMP/off.c" || return 1
+    "$LAGC" check "$1" "$s" >"$TMP/out" 2>&1 || continue # it has no start
     "$LAGC" header "$1" "$s" >"$TMP/with.h" && "$LAGC" header "$TMP/off.lag" "$s" >"$TMP/off.h" && cmp "$TMP/with.h" "$TMP/off.h" || return 1
   done
 }

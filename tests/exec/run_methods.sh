@@ -38,7 +38,7 @@ check "and ends what symplectic means" says "symplectic for conservative models"
 check "without it the same model is separable" says "explicit steps" models/spring.lag free --method verlet
 for m in variational gauss 'variational(quadrature=trapezoid)' 'variational(quadrature=lobatto, order=8)' 'gauss(stages=4)'; do
   check "$m on the double pendulum" says "corrections a system, 1 systems a step" models/double_pendulum.lag --method "$m" --until 1
-  check "$m with forces" says "energy change" models/spring.lag damped --method "$m" --until 1
+  check "$m with forces" says "energy balance" models/spring.lag damped --method "$m" --until 1
 done
 wrong() { # wrong WORDS ARGS...
   words=$1

@@ -126,6 +126,55 @@ sed -i 's/y = 0.9 .*; span/y = 2 [m]; e = 1.5; span/' "$TMP/floor.lag"
 more() { ! checks "$TMP/floor.lag" && says '`ground` has a restitution of 1.5' "$TMP/check" && ! runs "$TMP/floor.lag" && says 'ground has a restitution of 1.5' "$TMP/run"; }
 check "a restitution of more than 1" more
 
+# ---- headers start where runs do
+# same TOLERANCE TIME MODEL [SCENE]: the header's start, and where its steps of 1e-3 lead, are those of the run; MAIN: what else its program does
+same() {
+  tolerance=$1
+  until=$2
+  shift 2
+  "$LAGC" header "$@" -o "$TMP/h.h" || return 1
+  cat >"$TMP/h.c" <<'END'
+#include <stdio.h>
+#define H_IMPLEMENTATION
+#include "h.h"
+int main(void) {
+  h_params p;
+  h_state s;
+  h_defaults(&p);
+  int status = h_start(&p, &s);
+  for (long i = 0; i < STEPS && status == H_OK; i++) status = h_rk4_step(&p, &s, 1e-3 HELD);
+  for (int i = 0; i < H_NQ; i++) printf("%s%.17g", i ? "," : "", s.q[i]);
+  for (int i = 0; i < H_NQ; i++) printf(",%.17g", s.v[i]);
+  printf("\n");
+  return status;
+}
+END
+  "$CC" -std=c99 -O1 "-DSTEPS=${until}000" "-DHELD=$held" -o "$TMP/h" "$TMP/h.c" -lm && "$TMP/h" >"$TMP/h.csv" || return 1
+  "$LAGC" run "$@" --until "$until" --tol 1e-13 --save-state "$TMP/state" --json >"$TMP/run" 2>&1 || return 1
+  sed 's/.*"final"//' "$TMP/run" | grep -o '": [-+0-9.e]*' | sed 's/": //' | head -"$(($(tr ',' '\n' <"$TMP/h.csv" | wc -l)))" | tr '\n' ',' >"$TMP/run.csv"
+  awk -F, -v tol="$tolerance" 'NR == FNR { for (i = 1; i <= NF; i++) want[i] = $i; next }
+    { for (i = 1; i <= NF; i++) { d = $i - want[i]; print $i, want[i]; if (!(want[i] != "" && d <= tol && -d <= tol)) bad = 1 } } END { exit bad || FNR != 1 }' "$TMP/run.csv" "$TMP/h.csv"
+}
+held=
+check "a ball on a turntable, 20 s" same 1e-9 20 models/turntable.lag
+model which <<'END'
+model which "What is moved: y and z, which the scene does not give, by their masses"
+coord x [m], y [m], z [m]
+param m = 1 [kg] > 0, M = 4 [kg] > 0
+lagrangian = m/2*x'^2 + M/2*(y'^2 + 3*z'^2)
+constraint a: x + y + z = 6 [m]
+constraint b: x^2 + z^2 = 2 [m^2]
+scene one { start x = 1 [m], y' = -1 [m/s]; span 1 [s] }
+scene square { start x = 1 [m], z = -3 [m], x' = 3 [m/s]; span 1 [s] }
+END
+check "what is not given moves" same 1e-9 1 "$TMP/which.lag" one
+check "by hand: 1, 4, 1" sh -c '"$0" run "$1" one | grep -q "z from 0 to 1 m"' "$LAGC" "$TMP/which.lag"
+# a distance is flat where it is least: the place has half of its digits
+check "and what is given where that does not suffice" same 1e-6 1 "$TMP/which.lag" square
+held=', 0'
+sed '/^constraint b/a contact floor: y + 100 [m] >= 0, restitution = 1' "$TMP/which.lag" >"$TMP/over.lag"
+check "with a contact" same 1e-9 1 "$TMP/over.lag" one
+
 # ---- a constraint that jumps
 one 'constraint c: if(t > 1 [s], x, y) = 0 [m]' 'scene s { start x = 1 [m]; span 2 [s] }'
 jumps() { # ARGS...: the run ends where it does, and x has not moved

@@ -74,7 +74,7 @@ static void run(Arena *a, const uint8_t *data, size_t size) {
     for (uint32_t i = 0; i < scenes.n && i < MAX_SCENES; i++) compile(ast, scenes.at[i], NULL);
     EffectList unused = model_unused_effects(ast);
     for (uint32_t i = 0; i < unused.n && i < MAX_SCENES; i++) compile(ast, NULL, unused.at[i]);
-    EffectList where = model_expecting_effects(ast);
+    EffectList where = model_claiming_effects(ast);
     for (uint32_t i = 0; i < where.n && i < MAX_SCENES && !ast->diags->errors; i++) judge(ast, where.at[i]);
   }
   StrBuf out = strbuf(a);

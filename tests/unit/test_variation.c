@@ -35,10 +35,11 @@ static int first_at(const Case *c, const Real *v, First *r) {
   return run_prog_into(c->e, c->variation, v, out);
 }
 
-static Real lagrangian(const Case *c, const Real *v) {
-  Real l;
-  expr_eval(c->e->g, &c->e->m->lagrangian, 1, v, &l);
-  return l;
+static Real lagrangian(const Case *c, const Real *v) { /* with what rotations add to it across their constraints */
+  const Expr parts[2] = {c->e->m->lagrangian, c->e->m->across ? c->e->m->across : c->e->m->lagrangian};
+  Real l[2];
+  expr_eval(c->e->g, parts, 2, v, l);
+  return c->e->m->across ? l[0] + l[1] : l[0];
 }
 
 static const Real step = 1e-5L, weight[4] = {1, -8, 8, -1}, place[4] = {-2, -1, 1, 2}; /* over 12 */

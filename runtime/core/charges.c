@@ -1,0 +1,258 @@
+/* What a run should keep: its energy, and the charges of its symmetries; of those that forces change, the charge less what they
+ * brought, Q - int P dt. Enters: states that are part of the run, in order; leaves: for each charge the largest difference from the
+ * start, and whether it grows.
+ *
+ * int P dt, where it is asked for, is a sum of Gauss quadratures on the dense output, of the order of the method: one over each part of a step between
+ * events. What an event does to a charge moves the value that it is compared with.
+ *
+ * Whether it grows: the differences are averaged over 16 to 32 parts of the run, and a line is fitted to the averages. It grows where
+ * the line explains most of what they vary by; what oscillates goes out in the averages, whatever its size. Batch means: B. Schmeiser,
+ * Oper. Res. 30 (1982) 556, DOI 10.1287/opre.30.3.556. What is no more than rounding adds up to is not judged: D. Brouwer,
+ * Astron. J. 46 (1937) 149, DOI 10.1086/105423. */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/core.h"
+#include "core/gauss.h"
+
+int lag_sim_ncharges(const lag_sim *s)
+{
+  const lag_model *m = s->scene->model;
+
+  return !m->energy ? 0 : m->charges ? m->charges->n : 1;
+}
+
+unsigned lag_charge_flags(const lag_sim *s, int k)
+{
+  const lag_model *m = s->scene->model;
+  unsigned flags = m->charges ? m->charges->of[k].flags : m->flags & LAG_CONSERVES_ENERGY ? LAG_CONSERVED | LAG_BALANCED : 0;
+
+  if (!(flags & LAG_CONSERVED) && s->run->balanced == 0.0) {
+    return 0;
+  }
+  for (int i = 0; i < m->nu && (flags & LAG_BY_FORMULAS); i++) {
+    if (!isnan(s->hold[i]) || s->signal[i].fn) {
+      flags = 0;
+    }
+  }
+  return flags;
+}
+
+/* charge_now: value and scale of each, NaN where there is none. */
+static void values_at(lag_sim *s, double t, const double *y)
+{
+  const lag_model *m = s->scene->model;
+  int n = lag_sim_ncharges(s), nq = m->nq, rc = n ? lag_inputs(&s->pb, t) : 1;
+
+  for (int i = 0; i < 2 * n; i++) {
+    s->charge_now[i] = NAN;
+  }
+  if (rc == 0 && m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now, s->work)) {
+    s->charge_now[0] = NAN;
+  }
+  if (rc == 0 && n > 1 && m->charges->values(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now + 2, s->work)) {
+    s->charge_now[2] = NAN;
+  }
+}
+
+static int has_powers(const lag_sim *s)
+{
+  const lag_model *m = s->scene->model;
+
+  return m->charges && m->charges->powers;
+}
+
+int lag_sim_balance(lag_sim *s)
+{
+  if (s->run->begun != 0.0) {
+    return lag_fail(s, LAG_EINVAL, "the run has begun: ask for balances before the first step");
+  }
+  s->balances = 1;
+  return LAG_OK;
+}
+
+/* Whether the scene watches a charge, which is then compared with its balance. */
+static int watches_charges(const lag_scene *c)
+{
+  for (int i = 0; i < c->nmonitors; i++) {
+    if (c->monitors[i].output < 0) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+void lag_charges_method(lag_sim *s, const lag_method *method)
+{
+  int order = method->order_most > method->order ? method->order_most : method->order, between = method->dense_order + 1;
+
+  order = order < between ? order : between;
+  s->nodes = (order + 1) / 2 > LAG_NODES ? LAG_NODES : order < 2 ? 1 : (order + 1) / 2;
+  lag_gauss_points(s->nodes, s->node, s->weight);
+}
+
+/* gain[n] := int P dt over [a, b], part of the last step; NaN where there is no value. */
+static void work_over(lag_sim *s, double a, double b, double *gain)
+{
+  const lag_model *m = s->scene->model;
+  int n = m->charges->n, nq = m->nq;
+  double *y = s->yc;
+
+  memset(gain, 0, (size_t)n * sizeof *gain);
+  for (int i = 0; i < s->nodes && a != b; i++) {
+    double t = a + s->node[i] * (b - a);
+    s->method->dense(s->method_work, &s->pb, t, y);
+    int rc = lag_inputs(&s->pb, t);
+    rc = rc ? rc : m->charges->powers(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_power, s->work);
+    for (int k = 0; k < n; k++) {
+      gain[k] += rc ? NAN : (b - a) * s->weight[i] * s->charge_power[k];
+    }
+  }
+}
+
+/* The work up to t: the last part of the step, which the method still knows. */
+static void add_work(lag_sim *s, double t)
+{
+  double *gain = s->charge_gain;
+
+  if (s->run->balanced != 0.0) {
+    work_over(s, s->run->watched, t, gain);
+    for (int k = 0; k < lag_sim_ncharges(s); k++) { /* compensated: W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723 */
+      Charge *c = &s->charges[k];
+      double x = gain[k] - c->lost, sum = c->work + x;
+      c->lost = (sum - c->work) - x;
+      c->work = sum;
+    }
+  }
+  s->run->watched = t;
+}
+
+/* Two bins each become one. */
+static void merge(Charge *c)
+{
+  for (int i = 0; i < LAG_BINS / 2; i++) {
+    c->t[i] = (c->t[2 * i] + c->t[2 * i + 1]) / 2;
+    c->d[i] = (c->d[2 * i] + c->d[2 * i + 1]) / 2;
+  }
+  c->bins = LAG_BINS / 2;
+  c->width *= 2;
+}
+
+static void add_to_trend(Charge *c, double t, double d)
+{
+  const int open = LAG_BINS;
+
+  c->t[open] += t;
+  c->d[open] += d;
+  if (++c->in_bin < c->width) {
+    return;
+  }
+  c->t[(int)c->bins] = c->t[open] / c->width;
+  c->d[(int)c->bins] = c->d[open] / c->width;
+  c->t[open] = c->d[open] = c->in_bin = 0;
+  if (++c->bins >= LAG_BINS) {
+    merge(c);
+  }
+}
+
+void lag_charges_begin(lag_sim *s, double t, const double *y)
+{
+  values_at(s, t, y);
+  s->run->watched = t;
+  s->run->balanced = has_powers(s) && (s->balances || watches_charges(s->scene));
+  for (int k = 0; k < lag_sim_ncharges(s); k++) {
+    s->charges[k] = (Charge){.begin = s->charge_now[2 * k], .first = s->charge_now[2 * k], .scale = fmax(s->charge_now[2 * k + 1], 0), .width = 1};
+  }
+}
+
+void lag_charges_see(lag_sim *s, double t, const double *y)
+{
+  add_work(s, t);
+  values_at(s, t, y);
+  for (int k = 0; k < lag_sim_ncharges(s); k++) {
+    Charge *c = &s->charges[k];
+    double d = s->charge_now[2 * k] - c->work - c->first;
+    c->scale = fmax(c->scale, s->charge_now[2 * k + 1]);
+    c->peak = fabs(d) > c->peak || isnan(d) ? fabs(d) : c->peak; /* a NaN must not be forgotten */
+    add_to_trend(c, t, d);
+  }
+}
+
+void lag_charges_jump(lag_sim *s, double t, const double *ya, const double *yb)
+{
+  for (int pass = 0; pass < 2; pass++) {
+    values_at(s, t, pass ? yb : ya);
+    for (int k = 0; k < lag_sim_ncharges(s); k++) {
+      s->charges[k].first += pass ? s->charge_now[2 * k] : -s->charge_now[2 * k];
+      s->charges[k].scale = fmax(s->charges[k].scale, s->charge_now[2 * k + 1]);
+    }
+  }
+}
+
+static double relative(const Charge *c, double x)
+{
+  return x == 0.0 ? 0 : x / fmax(fabs(c->begin), c->scale);
+}
+
+double lag_charge_drift(const lag_sim *s, int k)
+{
+  return relative(&s->charges[k], s->charges[k].peak);
+}
+
+/* The line through the bins, and how far it is to be trusted. */
+static int trend_of(const Charge *c, double steps, double *slope, double *error)
+{
+  const int fewest = 16;
+  const double explained = 0.8; /* of a sine whose period is the run, the most that a line can seem to explain, it is 6/pi^2 = 0.61 */
+  int n = (int)c->bins;
+  double t = 0, d = 0, tt = 0, td = 0, dd = 0;
+
+  *slope = *error = NAN;
+  if (n < fewest || !isfinite(c->peak)) {
+    return LAG_TREND_UNKNOWN;
+  }
+  for (int i = 0; i < n; i++) {
+    t += c->t[i] / n;
+    d += c->d[i] / n;
+  }
+  for (int i = 0; i < n; i++) {
+    tt += (c->t[i] - t) * (c->t[i] - t);
+    td += (c->t[i] - t) * (c->d[i] - d);
+    dd += (c->d[i] - d) * (c->d[i] - d);
+  }
+  *slope = td / tt;
+  *error = sqrt(fmax(dd - td * *slope, 0) / (n - 2) / tt);
+  if (c->peak <= 16 * DBL_EPSILON * c->scale * sqrt(steps)) {
+    return LAG_TREND_ROUNDING;
+  }
+  return td * td >= explained * tt * dd ? LAG_TREND_GROWS : LAG_TREND_OSCILLATES;
+}
+
+void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
+{
+  const lag_model *m = s->scene->model;
+  const Run *r = s->run;
+  const Charge *c = &s->charges[k];
+  double peak = c->peak, since = 0;
+
+  *st = (lag_charge_stats){.name = m->charges ? m->charges->of[k].name : "energy", .unit = m->charges ? m->charges->of[k].unit : "",
+                           .flags = lag_charge_flags(s, k), .begin = c->begin};
+  if (r->begun != 0.0 && r->have_step != 0.0 && r->balanced != 0.0) { /* the run's end is within a step */
+    work_over(s, r->watched, r->t, s->charge_gain);
+    since = s->charge_gain[k];
+  }
+  values_at(s, r->t, s->now);
+  st->now = s->charge_now[2 * k];
+  st->work = c->work + since;
+  if (r->begun == 0.0) {
+    st->begin = st->now;
+  } else {
+    double d = fabs(st->now - st->work - c->first);
+    peak = d > peak || isnan(d) ? d : peak;
+  }
+  st->drift = relative(c, peak);
+  st->trend = trend_of(c, r->steps, &st->slope, &st->slope_error);
+  st->slope = relative(c, st->slope);
+  st->slope_error = relative(c, st->slope_error);
+}

@@ -1,0 +1,190 @@
+/* Symmetries: `symmetry spin(s): x -> x*cos(s) - y*sin(s), y -> x*sin(s) + y*cos(s)`, one transformation of coordinates and time
+ * that is the identity at s = 0. What the model keeps is what it does to first order in s, its generator; the rest of it has no
+ * part in the theorem. Its name stands for its charge in outputs. */
+#include "model/resolve_impl.h"
+#include "sym/diff.h"
+#include "sym/print.h"
+#include "sym/prove.h"
+#include "sym/simplify.h"
+
+/* "wind.gust" */
+static Name full_name(Builder *b, Name name, Name effect) { return effect ? intern_printf(b, "%s.%s", effect, name) : name; }
+
+/* The group parameter's name: one, and nothing else's. NULL, reported, where it is not. */
+static Name parameter_name(Builder *b, const AstStmt *st, Name effect) {
+  const AstExpr *s = ast_expr(b->ast, st->args);
+  int ambiguous;
+  const Entity *other = scope_find(&b->scope, s->name, effect, &ambiguous);
+  if (s->next) {
+    diag_error(b->diags, ast_expr(b->ast, s->next)->span, "a symmetry has one parameter");
+    diag_help(b->diags, "what has two is two symmetries, each with a charge of its own");
+    return NULL;
+  }
+  if (!other) return s->name;
+  diag_error(b->diags, s->span, "`%s` is %s of the model, and here the parameter of a symmetry", s->name, ent_kind_text(other->kind));
+  diag_also(b->diags, other->span, "declared here");
+  return NULL;
+}
+
+void declare_symmetry(Builder *b, const AstStmt *st, Name effect) {
+  Model *m = b->m;
+  Entity e = {.kind = ENT_SYMMETRY, .index = m->symmetries.n, .name = st->name, .effect = effect, .span = st->name_span};
+  if (!declare_entity(b, st, e)) return;
+  Symmetry y = {.name = full_name(b, st->name, effect), .effect = effect, .doc = st->doc, .span = st->span, .stmt = st};
+  Name s = ast_expr(b->ast, st->args)->name;
+  Dim dim = b->unitless ? DIM_ANY : dim_unknown(b->dims, s), action = dim_mul(b->dims, b->energy, dim_base(b->dims, DIM_TIME));
+  y.parameter = declare_symbol(b, SYM_LOCAL, 0, s, SIGN_UNKNOWN, dim);
+  y.unit = (Unit){.dim = b->unitless ? DIM_ANY : dim_div(b->dims, action, dim), .factor = num_int(1), .offset = num_int(0), .text = ""};
+  y.charge = declare_symbol(b, SYM_LOCAL, 0, y.name, SIGN_UNKNOWN, y.unit.dim);
+  vec_push(b->arena, &m->symmetries, y);
+}
+
+/* --- maps --- */
+
+typedef struct {
+  Builder *b;
+  Symmetry *of;
+  const AstStmt *map;
+  Span target; /* what the map names */
+  EntKind kind;
+} Mapping;
+
+/* What a transformation of points may be made of. */
+static int is_of_points(const Mapping *p, Expr to, Span span) {
+  Builder *b = p->b;
+  const Model *m = b->m;
+  unsigned kinds = expr_kinds(b->g, to);
+  const char *what = kinds & (1u << SYM_VEL | 1u << SYM_RATE) ? "velocities" : kinds & 1u << SYM_INPUT ? "inputs" : NULL;
+  ExprList l = expr_topo(b->g, &to, 1);
+  for (uint32_t i = 0; i < l.n && !what && kinds & 1u << SYM_STATE; i++) {
+    const Symbol *s = expr_op(b->g, l.at[i]) == EX_SYM ? expr_sym_of(b->g, l.at[i]) : NULL;
+    if (s && s->kind == SYM_STATE && !m->states.at[s->index].coordinate) what = "states";
+  }
+  if (!what) return 1;
+  diag_error(b->diags, span, "a symmetry cannot depend on %s", what);
+  diag_help(b->diags, "it maps coordinates and t to functions of coordinates, t and parameters; velocities follow");
+  return 0;
+}
+
+/* Whether the map is the identity at s = 0. */
+static int begins_at_identity(const Mapping *p, SymId target, Expr to, Span span) {
+  Builder *b = p->b;
+  Expr zero = expr_int(b->g, 0), start = expr_replace(b->g, to, &p->of->parameter, &zero, 1), own = expr_symbol(b->g, target)->node;
+  Expr left = expr_sub(b->g, start, own);
+  Name s = expr_symbol(b->g, p->of->parameter)->name, name = expr_symbol(b->g, target)->name;
+  Verdict v = prove_zero(b->g, left, NULL);
+  if (v == PROVED_ZERO) return 1;
+  StrBuf text = strbuf(b->arena);
+  expr_print(b->g, simplify(b->g, start), PRINT_TEXT, &text);
+  if (v == PROVED_NONZERO) diag_error(b->diags, span, "at %s = 0 the symmetry `%s` maps `%s` to `%s`, not to itself", s, p->of->name, name, sb_text(&text));
+  else diag_error(b->diags, span, "that the symmetry `%s` maps `%s` to itself at %s = 0 is not proved: it becomes `%s`", p->of->name, name, s, sb_text(&text));
+  diag_help(b->diags, "write what the transformation does, as a function of %s that begins with `%s`: `%s -> %s + %s`", s, name, name, name, s);
+  return 0;
+}
+
+static void add_move(const Mapping *p, SymId target, Expr to, Span span) {
+  Builder *b = p->b;
+  Symmetry *y = p->of;
+  Name name = expr_symbol(b->g, target)->name;
+  for (uint32_t i = 0; i < y->moves.n; i++) {
+    if (y->moves.at[i].target != target) continue;
+    diag_error(b->diags, p->target, "the symmetry `%s` maps `%s` twice", y->name, name);
+    diag_also(b->diags, y->moves.at[i].span, "first here; all maps are one transformation, of the old coordinates");
+    if (b->index.n) diag_help(b->diags, "maps behind a `for` belong to it, up to the next `for`: what it does not concern stands before it");
+    return;
+  }
+  Move move = {.target = target, .span = p->map->span};
+  if (is_of_points(p, to, span) && begins_at_identity(p, target, to, span)) {
+    Expr zero = expr_int(b->g, 0), slope = expr_diff(b->g, to, y->parameter);
+    Expr rate = expr_replace(b->g, slope, &y->parameter, &zero, 1);
+    move.rate = simplify(b->g, rate);
+  }
+  vec_push(b->arena, &y->moves, move);
+}
+
+static const Unit *unit_of_target(Builder *b, uint32_t scalar, void *data) {
+  const Mapping *p = data;
+  return p->kind == ENT_STATE ? &b->m->states.at[scalar].unit : &b->m->coords.at[scalar].unit;
+}
+
+static void give_target(Builder *b, uint32_t scalar, Expr value, Span span, void *data) {
+  const Mapping *p = data;
+  add_move(p, p->kind == ENT_STATE ? b->m->states.at[scalar].z : b->m->coords.at[scalar].q, value, span);
+}
+
+/* t -> ... */
+static void map_time(Mapping *p, AstId rhs, Name effect) {
+  Builder *b = p->b;
+  Unit s = {.dim = b->dim_of.at[b->m->time], .factor = num_int(1), .offset = num_int(0), .text = "s"};
+  Expr to = resolve_in(b, rhs, IN_DYNAMICS, effect, &s);
+  if (to) add_move(p, b->m->time, to, ast_expr(b->ast, rhs)->span);
+}
+
+static int is_coordinate(const Builder *b, const Entity *e) {
+  return e->kind == ENT_COORD || (e->kind == ENT_STATE && b->m->states.at[e->index].coordinate);
+}
+
+static void report_target(Builder *b, const Target *p, const AstExpr *name, const Entity *e) {
+  const char *what = p->primes ? "a velocity" : ent_kind_text(e->kind);
+  diag_error(b->diags, name->span, "`%s` is %s: a symmetry maps coordinates and t", source_text(b, name->span), what);
+  if (p->primes) diag_help(b->diags, "velocities follow from what it does to coordinates and t");
+  else if (e->kind == ENT_PARAM) diag_help(b->diags, "another value of a parameter is another model");
+  else if (e->kind == ENT_STATE) diag_help(b->diags, "the states of a flow have no momenta");
+}
+
+static void add_map(Builder *b, const AstStmt *st, Name effect, void *data) {
+  Mapping p = {.b = b, .of = data, .map = st, .target = ast_expr(b->ast, st->lhs)->span};
+  Target target = read_target(b, st->lhs);
+  const AstExpr *whole = ast_expr(b->ast, st->lhs), *name = ast_expr(b->ast, target.stem);
+  if (name->kind == AST_ERROR) return;
+  if (!target.wrong && name->kind == AST_NAME && strcmp(name->name, "t") == 0 && !target.primes && !target.indices && target.part < 0) {
+    map_time(&p, st->rhs, effect);
+    return;
+  }
+  Name owner = name->kind == AST_MEMBER && !target.wrong ? ast_expr(b->ast, name->a)->name : NULL; /* wind.y */
+  if (target.wrong || (name->kind != AST_NAME && !owner)) {
+    diag_error(b->diags, whole->span, "a symmetry maps coordinates and t: `symmetry shift(s): x -> x + s`");
+    return;
+  }
+  const Entity *e = owner ? scope_own(&b->scope, name->name, owner) : resolve_name(b, name->name, name->span, effect, "coord");
+  if (!e && owner) {
+    diag_error(b->diags, name->span, "no effect in use declares `%s.%s`", owner, name->name);
+    advise_unknown_member(b, owner, name->name);
+  }
+  if (!e || e->kind == ENT_NONE) return;
+  p.kind = e->kind;
+  if (target.primes || !is_coordinate(b, e)) {
+    report_target(b, &target, target.primes ? whole : name, e);
+    return;
+  }
+  Giver giver = {IN_DYNAMICS, unit_of_target, give_target, &p, effect};
+  assign_values(b, &target, e, st->lhs, st->rhs, &giver);
+}
+
+/* What moves nothing to first order in s has no charge. */
+static void check_moves(Builder *b, const Symmetry *y) {
+  int good = 1, some = 0;
+  for (uint32_t i = 0; i < y->moves.n; i++) {
+    good &= y->moves.at[i].rate != 0;
+    some |= y->moves.at[i].rate && !expr_is_zero(b->g, y->moves.at[i].rate);
+  }
+  if (some || !good || !y->moves.n) return;
+  diag_error(b->diags, y->span, "the symmetry `%s` moves nothing, to first order in its parameter", y->name);
+  diag_help(b->diags, "its charge would be 0");
+}
+
+void add_symmetry(Builder *b, const AstStmt *st, Name effect) {
+  Symmetry *y = NULL;
+  for (uint32_t i = 0; i < b->m->symmetries.n; i++)
+    if (b->m->symmetries.at[i].stmt == st && b->m->symmetries.at[i].effect == effect) y = &b->m->symmetries.at[i];
+  if (!y) return; /* its name is another's: reported */
+  if (!b->m->lagrangian) {
+    diag_error(b->diags, st->span, "a symmetry is one of the Lagrangian, and the model has none");
+    return;
+  }
+  b->group = parameter_name(b, st, effect);
+  b->group_symbol = y->parameter;
+  for (const AstStmt *map = st->body; map && b->group; map = map->next) each_statement(b, map, effect, add_map, y);
+  if (b->group) check_moves(b, y);
+  b->group = NULL;
+}

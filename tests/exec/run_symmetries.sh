@@ -1,0 +1,155 @@
+#!/bin/sh
+# Symmetries from the .lag file to the report: charges keep still, or balance what disturbs them, to what the method can do; monitors
+# see to it; what is false is refused. Expected values: orders of methods, rounding, and that nothing else is left.
+. tests/tap.sh
+planets=tests/exec/models/planets.lag
+
+run() { "$LAGC" run "$@" >"$TMP/out" 2>"$TMP/err"; }
+says() { # says WORDS ARGS...
+  words=$1
+  shift
+  run "$@" && grep -qE -e "$words" "$TMP/out"
+}
+# of CHARGE FIELD: from the JSON report
+of() { sed -n "s/.*\"$1\": {\([^}]*\)}.*/\1, /p" "$TMP/out" | sed -n "s/.*\"$2\": \"\{0,1\}\([^,\"]*\)\"\{0,1\}, .*/\1/p"; }
+below() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && a + 0 <= b + 0) }'; }
+between() { awk -v a="$1" -v lo="$2" -v hi="$3" 'BEGIN { exit !(a != "" && a >= lo + 0 && a <= hi + 0) }'; }
+# kept WITHIN ARGS...: every charge of a symmetry stays within that
+kept() {
+  within=$1
+  shift
+  run "$@" --json || return 1
+  for name in spin momentum boost; do
+    below "$(of $name drift)" "$within" || { echo "$name: $(of $name drift), $(of $name trend)"; return 1; }
+  done
+}
+
+# ---- nothing disturbs: momenta of discrete Lagrangians are those of L. Rounding walks as the root of 5000 steps, with some 20 terms
+for m in verlet verlet4 variational; do
+  check "$m keeps them to rounding" kept 1e-13 $planets quiet --method $m --step 0.01
+  is "of the spin, the report says so" rounding "$(of spin trend)"
+done
+# Gauss's methods keep what is quadratic, to the last bit that Newton's method gives
+check "gauss keeps them" kept 1e-13 $planets quiet --method 'gauss(stages=2)' --step 0.01
+check "dop853 keeps them to what its steps lose" kept 2e-10 $planets quiet --tol 1e-11 --method dop853
+check "a conserved charge has no work" sh -c "grep -q '\"spin\": {\"is\": \"conserved\", \"initial\": 0.375.*\"work\": 0,' '$TMP/out'"
+check "the report has a line for each" says '^boost drift: [0-9.e-]* \(from 0.1 kg\*m\), rounding$' $planets quiet --method verlet --step 0.01
+check "and the energy's" says '^energy drift: [0-9.e-]* \(relative to .*\), oscillates \(as step\^2\)$' $planets quiet --method verlet --step 0.01
+
+# ---- the energy of symplectic methods: bounded, of the size h^p
+bounded() { # bounded METHOD ORDER STEP: the energy oscillates; half the step, 2^ORDER times less
+  run $planets quiet --method "$1" --step "$3" --json && coarse=$(of energy drift)
+  is "$1: the energy oscillates" oscillates "$(of energy trend)"
+  run $planets quiet --method "$1" --step "$(awk -v h="$3" 'BEGIN { print h/2 }')" --json && fine=$(of energy drift)
+  check "half the step, 2^$2 times less" order "$2"
+}
+order() { between "$(awk -v a="$coarse" -v b="$fine" 'BEGIN { print log(a/b)/log(2) }')" "$(($1 - 1)).6" "$1.6"; }
+bounded verlet 2 0.02
+bounded verlet4 4 0.08
+run $planets quiet --method rk4 --step 0.01 --json
+is "of rk4 it grows" grows "$(of energy trend)"
+
+# ---- friction, a field that grows with time, a wall: balances close as well as the charges did
+for setting in "dop853 --tol 1e-11" "rk45 --tol 1e-11" "taylor --tol 1e-11" "rk4 --step 1e-3"; do
+  # shellcheck disable=SC2086 # method and setting
+  check "$setting: balances close" kept 1e-9 $planets disturbed --method $setting
+  check "of the energy, too" below "$(of energy drift)" 1e-9
+  is "they are called that" "balanced balanced" "$(of energy is) $(of momentum is)"
+done
+# what is gone is by far more than what is not accounted for
+check "there is work to account for" between "$(of spin work)" -20 -1
+check "the report says what forces did" says '^spin balance: [0-9.e-]* \(from 0.375 kg\*m\^2/s; forces brought -[0-9.]*\)' $planets disturbed
+run $planets disturbed --method rk4 --step 0.01 --json && coarse=$(of spin drift)
+run $planets disturbed --method rk4 --step 0.005 --json && fine=$(of spin drift)
+check "rk4: half the step, 2^4 times less" order 4
+check "a driven, damped pendulum" run models/driven_damped_pendulum.lag chaos --tol 1e-11 --json
+check "closes to a hundred tolerances in its 200 s" below "$(of energy drift)" 1e-9
+check "without words nothing is integrated, but monitors see it" run $planets disturbed --quiet
+
+# ---- monitors: of charges as of the energy
+run $planets quiet --method rk4 --step 0.1
+is "what drifts past its limit ends the run" 3 $?
+check "and is named" grep -q "monitor spin: drift .* is past its limit 1e-06" "$TMP/out"
+sed 's/monitor spin 1e-6, /monitor energy 1e-9, spin 1e-9, /' $planets >"$TMP/planets.lag"
+check "balances are watched, not charges" run "$TMP/planets.lag" disturbed --tol 1e-11
+
+# ---- a sign in a force: the charges of L no longer fit the motion
+"$LAGC" emit $planets disturbed -o "$TMP/wrong.c" >/dev/null
+cat >"$TMP/main.c" <<'END'
+#include "lag.h"
+#include <stdio.h>
+int main(void)
+{
+  lag_sim *s = lag_sim_new(&planets_disturbed);
+  int rc = s ? lag_sim_advance(s, 5) : LAG_ENOMEM;
+  puts(s ? lag_sim_message(s) : "");
+  lag_sim_free(s);
+  return rc == LAG_OK ? 0 : rc == LAG_EMONITOR ? 3 : 1;
+}
+END
+moves() { # moves NAME: status of a run of NAME.c
+  sed 's/^#include "lag.h"/&\nextern const lag_scene planets_disturbed;/' "$TMP/main.c" >"$TMP/with.c"
+  # shellcheck disable=SC2086 # a list
+  "$CC" -std=c11 -O1 -w -ffp-contract=off -I"$INC" "$TMP/$1.c" "$TMP/with.c" $LIBLAG -lm -o "$TMP/$1" || return 9
+  "$TMP/$1" >"$TMP/out"
+}
+moves wrong
+is "emitted as it is, the monitors are content" 0 $?
+signs=$(grep -c '^  a\[[0-9]*\] = ' "$TMP/wrong.c")
+is "there are six accelerations" 6 "$signs"
+for k in 0 3 5; do
+  sed "s/^  a\[$k\] = \(.*\);/  a[$k] = -(\1);/" "$TMP/wrong.c" >"$TMP/flipped.c"
+  moves flipped
+  is "with the sign of acceleration $k flipped one fails" 3 $?
+done
+
+# ---- headers: charges and what they change by, at the start, worked out by hand
+"$LAGC" header $planets disturbed -o "$TMP/p.h" >/dev/null
+cat >"$TMP/h.c" <<'END'
+#define P_IMPLEMENTATION
+#include "p.h"
+#include <stdio.h>
+int main(void)
+{
+  p_params p;
+  p_state s;
+  double c[6], w[4];
+  p_defaults(&p);
+  p_start(&p, &s);
+  if (p_charges(s.t, s.q, s.v, &p, c) || p_powers(s.t, s.q, s.v, &p, w)) return 1;
+  printf("%g %g %g, %g %g %g %g\n", c[0], c[2], c[4], w[0], w[1], w[2], w[3] + 0.0);
+  return 0;
+}
+END
+check "a header has them" "$CC" -std=c99 -Wall -Wextra -Wno-unused-function "$TMP/h.c" -o "$TMP/h" -lm
+is "with their values and rates" "0.375 0.1 0.1, -0.00066 -0.0108 -0.0004 0" "$("$TMP/h")"
+"$LAGC" header models/pendulum.lag -o "$TMP/none.h" >/dev/null
+check "a model without symmetries has none" sh -c "! grep -q charges '$TMP/none.h'"
+
+# ---- every sign of a rotation counts
+rotated() { # rotated XX XY YX YY: signs of the four terms
+  printf 'model turn\ncoord x, y\nlagrangian = (x%s^2 + y%s^2)/2 + 1/hypot(x, y)\nsymmetry turn(s): x -> %sx*cos(s) %s y*sin(s), y -> %sx*sin(s) %s y*cos(s)\n' \
+    "'" "'" "$1" "$2" "$3" "$4" >"$TMP/turn.lag"
+  "$LAGC" check "$TMP/turn.lag" >"$TMP/out" 2>&1
+}
+check "as in the book it is proved" rotated '' - '' +
+check "and its inverse" rotated '' + - +
+for signs in "+,+,,+" ",-,-,+" ; do
+  old=$IFS IFS=,
+  # shellcheck disable=SC2086 # a list
+  set -- $signs
+  IFS=$old
+  rotated "$1" "$2" "$3" "$4"
+  is "signs $signs: refused" 1 $?
+  check "with what is left of delta L" grep -q 'what is left of delta L is .*x.*; it would be 0 if what it does to `x` or `y` had the other sign' "$TMP/out"
+done
+for signs in "-,-,,+" ",-,,-"; do
+  old=$IFS IFS=,
+  # shellcheck disable=SC2086 # a list
+  set -- $signs
+  IFS=$old
+  rotated "$1" "$2" "$3" "$4"
+  is "signs $signs: refused" 1 $?
+  check "as it is not the identity" grep -q 'at s = 0 the symmetry `turn` maps `[xy]` to `-[xy]`' "$TMP/out"
+done
+tap_end
