@@ -4,6 +4,7 @@
  *
  * Exit status: 0 ok, 1 bad model, 2 usage or files, 3 the run failed (a simulator's status). */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -15,8 +16,8 @@
 #include "cli/options.h"
 #include "cli/shells.h"
 #include "cli/toolchain.h"
-#include "compiler.h"
 #include "complete.h"
+#include "effects.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
@@ -40,7 +41,55 @@
 
 #define LAGC_VERSION "0.1"
 
+enum { STATUS_OK, STATUS_MODEL, STATUS_USAGE, STATUS_RUN };
 enum { MEMORY_LIMIT_MIB = 2048 };
+
+/* One compilation. */
+typedef struct {
+  Arena *arena;
+  Options o;
+  const char *argv0;
+  Sources *sources;
+  Diags *diags;
+  Ast *ast;
+  Picture picture; /* of run, plot and animate */
+  GivenList given; /* to them */
+} Compiler;
+
+static void print_messages(const Compiler *c) {
+  StrBuf messages = strbuf(c->arena);
+  diags_print(c->diags, &messages);
+  fputs(sb_text(&messages), stderr);
+}
+
+static int fail_usage(const char *message) {
+  fprintf(stderr, "lagc: %s\n", message);
+  return STATUS_USAGE;
+}
+
+static int wants_dump(const Compiler *c, const char *stage) {
+  const char *at = c->o.dump ? strstr(c->o.dump, stage) : NULL;
+  size_t n = strlen(stage);
+  return at && (at == c->o.dump || at[-1] == ',') && (at[n] == ',' || at[n] == '\0');
+}
+
+/* A mistyped output must not cost the model, nor a file that it is made of: includes, tables. */
+static int is_source(Compiler *c, const char *path) {
+  for (uint32_t i = 0; i < c->sources->files.n; i++) {
+    if (!file_same(path, c->sources->files.at[i].path)) continue;
+    const char *what = i == 0 ? "the model" : "a part of the model";
+    fail_usage(arena_printf(c->arena, "%s would be overwritten: it is %s; write to another file", path, what));
+    return 1;
+  }
+  return 0;
+}
+
+static int write_out(Compiler *c, const char *path, const StrBuf *text) {
+  const char *why;
+  if (path && c->sources && is_source(c, path)) return STATUS_USAGE;
+  if (file_write(c->arena, path ? path : "-", sb_text(text), text->n, &why)) return STATUS_OK;
+  return fail_usage(arena_printf(c->arena, "cannot write %s: %s", path ? path : "standard output", why));
+}
 
 /* --- the stages --- */
 
@@ -50,26 +99,46 @@ static int read_model(Compiler *c) {
   if (!source) return fail_usage(arena_printf(c->arena, "cannot read %s: %s", c->o.file, why));
   parse(c->ast, source);
   settings_defines(c->ast, c->o.defines.at, c->o.defines.n);
-  if (compiler_dumps(c, "ast")) {
+  if (wants_dump(c, "ast")) {
     StrBuf b = strbuf(c->arena);
     ast_dump(c->ast, &b);
-    compiler_write(c, NULL, &b);
+    write_out(c, NULL, &b);
   }
   return c->diags->errors ? STATUS_MODEL : STATUS_OK;
 }
 
+/* The equations of what was chosen; NULL with the reasons in c->diags. */
+static Eqns *derive(Compiler *c, const ModelChoice *choice) {
+  ModelChoice with_defines = *choice;
+  with_defines.defines = c->o.defines.at;
+  with_defines.ndefines = c->o.defines.n;
+  if (!choice->bare && !choice->unfixed) with_defines.fix = c->o.fix;
+  Model *m = model_build(c->ast, &with_defines);
+  if (!m) return NULL;
+  StrBuf listing = strbuf(c->arena);
+  if (wants_dump(c, "model")) model_dump(m, &listing);
+  Eqns *e = eqns_derive(m);
+  if (e && wants_dump(c, "eqns")) dump_equations(e, &listing);
+  if (listing.n) write_out(c, NULL, &listing);
+  return e;
+}
+
 /* Of one scene (NULL: the first). */
-static Eqns *derive_scene(Compiler *c, const char *scene) { return compiler_derive(c, &(ModelChoice){.scene = scene}); }
+static Eqns *derive_scene(Compiler *c, const char *scene) { return derive(c, &(ModelChoice){.scene = scene}); }
 
 /* With what the command line asks for besides the scene's outputs. */
 static Eqns *derive_asked(Compiler *c, const char *scene) {
-  return compiler_derive(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nasked = c->picture.asked.n,
+  return derive(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nasked = c->picture.asked.n,
                                   .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
+}
+
+static IrUnit *new_unit(Compiler *c, Eqns *e) {
+  return unit_new(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0);
 }
 
 /* NULL, with the reason in c->diags, when the program is wrong: a bug. */
 static IrUnit *lower_scene(Compiler *c, Eqns *e) {
-  IrUnit *u = compiler_unit(c, e);
+  IrUnit *u = new_unit(c, e);
   unit_want(u, e, wants_of(e, &c->o));
   unit_add_scene(u, e);
   const char *wrong = prog_verify(u->accel);
@@ -77,10 +146,10 @@ static IrUnit *lower_scene(Compiler *c, Eqns *e) {
     diag_error(c->diags, (Span){0}, "internal error: %s", wrong);
     return NULL;
   }
-  if (compiler_dumps(c, "prog")) {
+  if (wants_dump(c, "prog")) {
     StrBuf b = strbuf(c->arena);
     prog_dump(u->accel, &b);
-    compiler_write(c, NULL, &b);
+    write_out(c, NULL, &b);
   }
   return u;
 }
@@ -97,12 +166,12 @@ static int do_hamiltonian(Compiler *c, Eqns *e) {
     return STATUS_MODEL;
   }
   show_hamiltonian(e, c->o.format && strcmp(c->o.format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
-  return compiler_write(c, c->o.output, &out);
+  return write_out(c, c->o.output, &out);
 }
 
 /* Without a scene: the model without effects, and each effect alone. */
 static int do_noether(Compiler *c) {
-  Eqns *e = c->o.scene ? derive_scene(c, c->o.scene) : compiler_derive(c, &(ModelChoice){.bare = 1});
+  Eqns *e = c->o.scene ? derive_scene(c, c->o.scene) : derive(c, &(ModelChoice){.bare = 1});
   StrBuf out = strbuf(c->arena);
   const char *format = c->o.format ? c->o.format : "text";
   if (!e) return STATUS_MODEL;
@@ -114,18 +183,18 @@ static int do_noether(Compiler *c) {
   NoetherReport *r = noether_report(e);
   for (uint32_t i = 0; i < e->m->all_effects.n && !c->o.scene; i++) {
     Name effect = e->m->all_effects.at[i];
-    const Eqns *with = compiler_derive(c, &(ModelChoice){.bare = 1, .also = effect});
+    const Eqns *with = derive(c, &(ModelChoice){.bare = 1, .also = effect});
     if (with) noether_report_effect(r, effect, with);
   }
   if (strcmp(format, "json") == 0) show_noether_json(r, &out);
   else show_noether(r, strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
-  return compiler_write(c, c->o.output, &out);
+  return write_out(c, c->o.output, &out);
 }
 
 /* What the operations would be without --fix. */
 static const char *unfixed_cost(Compiler *c) {
-  Eqns *e = compiler_derive(c, &(ModelChoice){.scene = c->o.scene, .unfixed = 1});
-  return e ? arena_printf(c->arena, "without --fix: %s\n", ops_text(compiler_unit(c, e)->accel, c->arena)) : "";
+  Eqns *e = derive(c, &(ModelChoice){.scene = c->o.scene, .unfixed = 1});
+  return e ? arena_printf(c->arena, "without --fix: %s\n", ops_text(new_unit(c, e)->accel, c->arena)) : "";
 }
 
 static int do_derive(Compiler *c) {
@@ -140,7 +209,7 @@ static int do_derive(Compiler *c) {
   if (c->o.ops) sb_printf(&out, "%s\n%s", cost, c->o.fix ? unfixed_cost(c) : "");
   else if (strcmp(format, "c") == 0) emit_accel(u, &out);
   else show_equations(e, cost, strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
-  return compiler_write(c, c->o.output, &out);
+  return write_out(c, c->o.output, &out);
 }
 
 static int do_emit(Compiler *c) {
@@ -150,7 +219,7 @@ static int do_emit(Compiler *c) {
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
   emit_model(u, model_id(c->arena, u->name), &out);
-  return compiler_write(c, c->o.output, &out);
+  return write_out(c, c->o.output, &out);
 }
 
 /* A header is called by its file: pend.h has PEND_IMPLEMENTATION. On standard output, by its model. */
@@ -180,18 +249,20 @@ static int do_header(Compiler *c) {
   StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
   show_equations(e, "", PRINT_TEXT, &equations);
   emit_header(u, header_name(c, u->name), sb_text(&equations), &out);
-  return compiler_write(c, c->o.output, &out);
+  return write_out(c, c->o.output, &out);
 }
 
 /* The scenes of the file as units: those with the same effects and inputs share one. What the command line asks for is asked
  * of one scene, and only that one is built then. */
+typedef VEC(IrUnit *) Units;
+
 static int lower_all(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast);
   if (c->picture.asked.n || c->given.n || c->picture.section.expr) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
   for (uint32_t i = 0; i < scenes.n; i++) {
     Eqns *e = derive_asked(c, scenes.at[i]);
     if (!e) return 0;
-    IrUnit *fresh = compiler_unit(c, e), *home = NULL;
+    IrUnit *fresh = new_unit(c, e), *home = NULL;
     for (uint32_t k = 0; k < units->n && !home; k++)
       if (unit_shares(units->at[k], fresh)) home = units->at[k];
     if (!home) vec_push(c->arena, units, home = fresh);
@@ -203,15 +274,42 @@ static int lower_all(Compiler *c, Units *units) {
   return 1;
 }
 
+typedef VEC(SourceText) Texts;
+
+/* A program from these texts at `output`, or in the cache (NULL). */
+static int make_program(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path) {
+  const char *error = NULL;
+  *path = output ? output : toolchain_cached(c->arena, tools, texts->at, texts->n);
+  if (!output && toolchain_is_whole(c->arena, *path)) return STATUS_OK;
+  if (!toolchain_build(c->arena, tools, texts->at, texts->n, *path, &error)) return fail_usage(error);
+  if (!output) toolchain_seal(c->arena, *path);
+  return STATUS_OK;
+}
+
+static Texts program_texts(Compiler *c, const Units *units, int gsl) {
+  Texts texts = {0};
+  const char **names = ARENA_ARRAY(c->arena, const char *, units->n);
+  for (uint32_t i = 0; i < units->n; i++) {
+    names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units->at[i]->name), i);
+    StrBuf b = strbuf(c->arena);
+    emit_model(units->at[i], names[i], &b);
+    vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
+  }
+  StrBuf b = strbuf(c->arena);
+  emit_program((const IrUnit *const *)units->at, names, units->n, gsl, &b);
+  vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
+  return texts;
+}
+
 static int make_simulator(Compiler *c, const Units *units, const char *output, const char **path) {
-  if (output && compiler_reads(c, output)) return STATUS_USAGE;
+  if (output && is_source(c, output)) return STATUS_USAGE;
   Toolchain tools;
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
   if (c->o.precision && !toolchain_precision(c->arena, &tools, c->o.precision, &error)) return fail_usage(error);
   if (c->o.command == CMD_MODES) tools.optimise = "-O0";
-  Texts texts = compiler_texts(c, units, tools.gsl);
-  return compiler_make(c, &tools, &texts, output, path);
+  Texts texts = program_texts(c, units, tools.gsl);
+  return make_program(c, &tools, &texts, output, path);
 }
 
 /* Of `emit` and `build`, which emit what it needs. That of a run is the simulator's to judge. */
@@ -229,7 +327,7 @@ static const char *make_precise(Compiler *c, const Units *units) {
   Toolchain tools;
   const char *error = NULL, *path;
   if (!toolchain_find(c->arena, c->argv0, 0, &tools, &error) || !toolchain_precision(c->arena, &tools, "quad", &error)) return NULL;
-  Texts texts = compiler_texts(c, units, 0);
+  Texts texts = program_texts(c, units, 0);
   path = toolchain_cached(c->arena, &tools, texts.at, texts.n);
   if (toolchain_is_whole(c->arena, path)) return path;
   if (!toolchain_build(c->arena, &tools, texts.at, texts.n, path, &error)) return NULL;
@@ -248,7 +346,7 @@ static int do_build(Compiler *c) {
 static int writes_source(Compiler *c) {
   for (char *const *a = c->picture.argv.at; *a; a++) {
     const char *eq = strncmp(*a, "--", 2) == 0 ? strchr(*a, '=') : NULL;
-    if (compiler_reads(c, eq ? eq + 1 : *a)) return 1;
+    if (is_source(c, eq ? eq + 1 : *a)) return 1;
   }
   return 0;
 }
@@ -277,10 +375,20 @@ static void give_reference(Compiler *c, const Units *units) {
   vec_push(c->arena, &c->picture.argv, NULL);
 }
 
+/* What a simulator is told, and the names that it gives values to. */
+static int prepare_run(Compiler *c) {
+  const char *error = NULL;
+  if (c->o.scene && !model_has_scene(c->ast, c->o.scene)) return STATUS_MODEL;
+  if (!settings_compiled(c->ast, &c->o, &c->given, &error)) return error ? fail_usage(error) : STATUS_MODEL;
+  if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
+  if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? fail_usage(error) : STATUS_MODEL;
+  return STATUS_OK;
+}
+
 /* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
 static int do_run(Compiler *c) {
   const char *path;
-  int status = compiler_prepare(c);
+  int status = prepare_run(c);
   if (status != STATUS_OK) return status;
   Units units = {0};
   status = lower_all(c, &units) ? make_simulator(c, &units, NULL, &path) : STATUS_MODEL;
@@ -288,10 +396,81 @@ static int do_run(Compiler *c) {
   if (writes_source(c)) return STATUS_USAGE;
   if (c->o.command == CMD_COST) give_reference(c, &units);
   fflush(stdout);
-  compiler_messages(c); /* warnings: the simulator does not come back */
+  print_messages(c); /* warnings: the simulator does not come back */
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
   execv(path, c->picture.argv.at);
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
+}
+
+/* The scene with another set of effects, as a unit of its own. */
+static IrUnit *lower_variant(Compiler *c, EffectList effects, unsigned *wants) {
+  Eqns *e = derive(c, &(ModelChoice){.scene = c->o.scene, .only = &effects, .given = c->given.at, .ngiven = c->given.n});
+  if (!e) return NULL;
+  IrUnit *u = new_unit(c, e);
+  *wants |= wants_of(e, &c->o); /* all of them are to run by the first one's method */
+  unit_want(u, e, *wants);
+  unit_add_scene(u, e);
+  return u;
+}
+
+/* Makes a program of these variants, runs it, and reads what it measured. */
+static int run_variants(Compiler *c, EffectStudy *s, const EffectSets *sets, const char *what, Measured **measured) {
+  Toolchain tools;
+  Units units = {0};
+  unsigned wants = 0;
+  const char *error = NULL, *path, *rest;
+  char *said = NULL;
+  for (uint32_t i = 0; i < sets->n; i++) {
+    IrUnit *u = lower_variant(c, effects_of(s, sets->at[i]), &wants);
+    if (!u) return STATUS_MODEL;
+    vec_push(c->arena, &units, u);
+  }
+  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return fail_usage(error);
+  if (strcmp(what, "runs") == 0) tools.optimise = "-O0"; /* the same bits, and compiling is what takes time */
+  Texts texts = program_texts(c, &units, tools.gsl);
+  int status = make_program(c, &tools, &texts, NULL, &path);
+  if (status != STATUS_OK) return status;
+  char *const program = arena_strdup(c->arena, path), **argv = ARENA_ARRAY(c->arena, char *, c->picture.argv.n);
+  memcpy(argv, c->picture.argv.at, c->picture.argv.n * sizeof *argv);
+  argv[2] = arena_strdup(c->arena, what);
+  status = toolchain_run_as(c->arena, program, argv, &said);
+  *measured = effects_read(s, said, sets->n, &rest);
+  fputs(rest, stderr);
+  if (status == STATUS_OK && !*measured) return fail_usage("the simulator of `lagc effects` did not say what it measured");
+  return status;
+}
+
+/* --accuracy: the smallest set of effects. */
+static int find_least(Compiler *c, EffectStudy *s) {
+  char *end;
+  Measured *measured = NULL;
+  s->accuracy = strtod(c->o.accuracy, &end);
+  if (*end || !(s->accuracy > 0)) return fail_usage(arena_printf(c->arena, "--accuracy %s: a difference that does not matter, relative and positive; for example 1e-6", c->o.accuracy));
+  if (!(s->error <= s->accuracy / 10)) {
+    fprintf(stderr, "lagc: --accuracy %g: the error of integration, %.2g, is not well below it; add --tol with a smaller number, or --step\n", s->accuracy, s->error);
+    return STATUS_RUN;
+  }
+  for (EffectSets sets = effects_try(s, NULL, NULL); sets.n;) {
+    int status = run_variants(c, s, &sets, "runs", &measured);
+    if (status != STATUS_OK) return status;
+    EffectSets next = effects_try(s, &sets, measured);
+    sets = next;
+  }
+  return STATUS_OK;
+}
+
+static int do_effects(Compiler *c) {
+  int status = prepare_run(c);
+  Model *m = status == STATUS_OK ? model_build(c->ast, &(ModelChoice){.scene = c->o.scene, .defines = c->o.defines.at, .ndefines = c->o.defines.n}) : NULL;
+  EffectStudy *s = m ? effects_plan(m) : NULL;
+  if (!s) return status == STATUS_OK ? STATUS_MODEL : status;
+  status = run_variants(c, s, &s->variants, "report", &s->measured);
+  if (status == STATUS_OK && c->o.accuracy) status = find_least(c, s);
+  if (status != STATUS_OK) return status;
+  StrBuf out = strbuf(c->arena);
+  if (c->o.json) effects_json(s, &out);
+  else effects_text(s, &out);
+  return write_out(c, NULL, &out);
 }
 
 /* An expectation, or a symmetry, is about the model without effects, or, inside an effect, with that effect and what
@@ -299,7 +478,7 @@ static int do_run(Compiler *c) {
 static void check_claims(Compiler *c, ExpectResults *results, StrBuf *out) {
   EffectList where = model_claiming_effects(c->ast);
   Eqns **e = ARENA_ARRAY(c->arena, Eqns *, where.n + 1);
-  for (uint32_t i = 0; i < where.n; i++) e[i] = compiler_derive(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
+  for (uint32_t i = 0; i < where.n; i++) e[i] = derive(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
   for (uint32_t i = 0; i < where.n; i++) {
     if (!e[i]) continue;
     charges_judge(e[i], where.at[i]);
@@ -353,7 +532,7 @@ static int do_check(Compiler *c) {
   if (c->o.scene && !out.n) derive_scene(c, c->o.scene); /* says that there is no such scene */
   EffectList unused = model_unused_effects(c->ast);
   for (uint32_t i = 0; i < unused.n && !c->o.scene; i++) {
-    Eqns *e = compiler_derive(c, &(ModelChoice){.bare = 1, .also = unused.at[i]});
+    Eqns *e = derive(c, &(ModelChoice){.bare = 1, .also = unused.at[i]});
     if (!e) continue;
     collect_units(c, e->m, &found);
     sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);
@@ -362,7 +541,7 @@ static int do_check(Compiler *c) {
   if (c->diags->errors) return STATUS_MODEL; /* expectations of a wrong model say nothing */
   check_claims(c, &results, &out);
   expects_print(&results, c->sources, &out);
-  int status = compiler_write(c, NULL, &out);
+  int status = write_out(c, NULL, &out);
   return c->diags->errors ? STATUS_MODEL : status;
 }
 
@@ -381,7 +560,7 @@ static int do_help(Compiler *c) {
   Name near;
   Methods methods = {0};
   if (topic && strcmp(topic, "methods") == 0) return help_methods(c, NULL);
-  if (help_print(&out, topic, &near)) return compiler_write(c, NULL, &out);
+  if (help_print(&out, topic, &near)) return write_out(c, NULL, &out);
   methods_list(c->arena, c->argv0, 1, &methods, &error); /* without a C compiler there are none */
   VEC(Name) names = {0};
   for (uint32_t i = 0; i < methods.n; i++) {
@@ -398,7 +577,7 @@ static int do_completion(Compiler *c) {
   StrBuf out = strbuf(c->arena);
   if (c->o.command == CMD_COMPLETE) complete(&out, c->o.rest.at, c->o.rest.n, c->argv0);
   else completion_script(&out, c->o.topic);
-  return compiler_write(c, NULL, &out);
+  return write_out(c, NULL, &out);
 }
 
 static int do_command(Compiler *c) {
@@ -429,7 +608,7 @@ static int compile(Compiler *c) {
   c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
   int status = read_model(c);
   if (status == STATUS_OK) status = folds_digits(c) ? do_command(c) : STATUS_USAGE;
-  compiler_messages(c);
+  print_messages(c);
   return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
 }
 
