@@ -42,7 +42,7 @@ static void put_energy(const lag_charge_stats *c, FILE *f)
   } else if (c->flags & LAG_BALANCED) {
     fprintf(f, "(forces and explicit time brought %.6g; %s)", c->work, size);
   } else {
-    fputs("(not conserved: forces or explicit time)", f);
+    fputs("(not conserved, or not known to be)", f);
   }
 }
 
@@ -54,7 +54,7 @@ static void put_charge(const lag_charge_stats *c, FILE *f)
   } else if (c->flags & LAG_BALANCED) {
     fprintf(f, "; forces brought %.6g)", c->work);
   } else {
-    fputs("; not conserved, and its rate is not known)", f);
+    fputs("; not conserved, or not known to be)", f);
   }
 }
 
@@ -97,7 +97,7 @@ void report_charges_json(const App *app, FILE *f)
     lag_sim_charge(app->sim, k, &c);
     fputs(k ? ", " : "", f);
     json_string(f, c.name);
-    fprintf(f, ": {\"is\": \"%s\", ", c.flags & LAG_CONSERVED ? "conserved" : c.flags & LAG_BALANCED ? "balanced" : "not conserved");
+    fprintf(f, ": {\"is\": \"%s\", ", c.flags & LAG_CONSERVED ? "conserved" : c.flags & LAG_BALANCED ? "balanced" : "not known");
     field(f, "initial", c.begin);
     field(f, "final", c.now);
     field(f, "work", c.work);

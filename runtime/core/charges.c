@@ -120,7 +120,7 @@ static void add_work(lag_sim *s, double t)
     work_over(s, s->run->watched, t, gain);
     for (int k = 0; k < lag_sim_ncharges(s); k++) { /* compensated: W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723 */
       Charge *c = &s->charges[k];
-      double x = gain[k] - c->lost, sum = c->work + x;
+      double x = c->balanced * gain[k] - c->lost, sum = c->work + x;
       c->lost = (sum - c->work) - x;
       c->work = sum;
     }
@@ -163,6 +163,7 @@ void lag_charges_begin(lag_sim *s, double t, const double *y)
   s->run->balanced = has_powers(s) && (s->balances || watches_charges(s->scene));
   for (int k = 0; k < lag_sim_ncharges(s); k++) {
     s->charges[k] = (Charge){.begin = s->charge_now[2 * k], .first = s->charge_now[2 * k], .scale = fmax(s->charge_now[2 * k + 1], 0), .width = 1};
+    s->charges[k].balanced = (lag_charge_flags(s, k) & LAG_BALANCED) != 0;
   }
 }
 
@@ -240,7 +241,7 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
                            .flags = lag_charge_flags(s, k), .begin = c->begin};
   if (r->begun != 0.0 && r->have_step != 0.0 && r->balanced != 0.0) { /* the run's end is within a step */
     work_over(s, r->watched, r->t, s->charge_gain);
-    since = s->charge_gain[k];
+    since = c->balanced * s->charge_gain[k];
   }
   values_at(s, r->t, s->now);
   st->now = s->charge_now[2 * k];

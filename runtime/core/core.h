@@ -36,6 +36,7 @@ typedef struct Charge {
   double peak;       /* the largest difference */
   double scale;      /* the largest sum of the sizes of its terms */
   double work, lost; /* int P dt, and what the sum has lost to rounding */
+  double balanced;   /* 1: P is known, and integrated */
   double bins, width, in_bin; /* bins that are full; looks that fill one, looks in the open one */
   double t[LAG_BINS + 1], d[LAG_BINS + 1]; /* averages of time and difference over each bin; the last: sums over the open one */
 } Charge;

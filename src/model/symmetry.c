@@ -147,10 +147,7 @@ static void add_map(Builder *b, const AstStmt *st, Name effect, void *data) {
     return;
   }
   const Entity *e = owner ? scope_own(&b->scope, name->name, owner) : resolve_name(b, name->name, name->span, effect, "coord");
-  if (!e && owner) {
-    diag_error(b->diags, name->span, "no effect in use declares `%s.%s`", owner, name->name);
-    advise_unknown_member(b, owner, name->name);
-  }
+  if (!e && owner) report_no_member(b, name->span, owner, name->name);
   if (!e || e->kind == ENT_NONE) return;
   p.kind = e->kind;
   if (target.primes || !is_coordinate(b, e)) {

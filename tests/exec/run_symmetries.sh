@@ -2,6 +2,7 @@
 # Symmetries from the .lag file to the report: charges keep still, or balance what disturbs them, to what the method can do; monitors
 # see to it; what is false is refused. Expected values: orders of methods, rounding, and that nothing else is left.
 . tests/tap.sh
+. tests/exec/lib_charges.sh
 planets=tests/exec/models/planets.lag
 
 run() { "$LAGC" run "$@" >"$TMP/out" 2>"$TMP/err"; }
@@ -10,10 +11,6 @@ says() { # says WORDS ARGS...
   shift
   run "$@" && grep -qE -e "$words" "$TMP/out"
 }
-# of CHARGE FIELD: from the JSON report
-of() { sed -n "s/.*\"$1\": {\([^}]*\)}.*/\1, /p" "$TMP/out" | sed -n "s/.*\"$2\": \"\{0,1\}\([^,\"]*\)\"\{0,1\}, .*/\1/p"; }
-below() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && a + 0 <= b + 0) }'; }
-between() { awk -v a="$1" -v lo="$2" -v hi="$3" 'BEGIN { exit !(a != "" && a >= lo + 0 && a <= hi + 0) }'; }
 # kept WITHIN ARGS...: every charge of a symmetry stays within that
 kept() {
   within=$1
@@ -65,6 +62,23 @@ check "rk4: half the step, 2^4 times less" order 4
 check "a driven, damped pendulum" run models/driven_damped_pendulum.lag chaos --tol 1e-11 --json
 check "closes to a hundred tolerances in its 200 s" below "$(of energy drift)" 1e-9
 check "without words nothing is integrated, but monitors see it" run $planets disturbed --quiet
+
+# ---- an input in L: what it does to the energy is known while it follows its formula. Held, the spring has a fixed end: the energy stays
+spring=tests/exec/models/pulled_spring.lag
+check "the formula's rate has a part in the balance" run $spring --json
+is "which is known" balanced "$(of energy is)"
+check "and closes" below "$(of energy drift)" 1e-9
+check "with another value" run $spring a=0.2 --json
+is "it is not" "not known" "$(of energy is)"
+check "so nothing is taken off the energy" below "$(of energy drift)" 1e-9
+cat >"$TMP/pull.csv" <<'END'
+t [s],a [m]
+0,0
+10,0.1
+20,0.3
+END
+sed 's|= 0.1 \[m\]\*sin(w\*t)|= "pull.csv"|' $spring >"$TMP/table.lag"
+check "of a table the rate is not known, and the report says so" says '^energy change: [0-9.e-]* \(not conserved, or not known to be\)' "$TMP/table.lag"
 
 # ---- monitors: of charges as of the energy
 run $planets quiet --method rk4 --step 0.1

@@ -151,6 +151,8 @@ static void a_formula_that_is_replaced_ends_the_balance(void **state)
   assert_int_equal(lag_sim_set(s, "push", 0.5), LAG_OK);
   assert_int_equal(lag_sim_advance(s, 1), LAG_OK);
   assert_int_equal(charge(s, 2).flags, 0);
+  assert_close(charge(s, 2).work, 0, 0);
+  assert_close(charge(s, 2).drift, 1 - exp(-0.2), 1e-9); /* of the charge alone */
   assert_int_equal(charge(s, 1).flags, LAG_BALANCED);
   lag_sim_free(s);
 }
