@@ -29,6 +29,7 @@
 #include "mech/charges.h"
 #include "mech/expect.h"
 #include "mech/freedom.h"
+#include "mech/noether_report.h"
 #include "mech/start.h"
 #include "mech/show.h"
 #include "model/model.h"
@@ -155,6 +156,41 @@ static IrUnit *lower_scene(Compiler *c, Eqns *e) {
 
 /* --- the commands --- */
 
+/* The Hamiltonian side; where there is none, the reason in c->diags. */
+static int do_hamiltonian(Compiler *c, Eqns *e) {
+  StrBuf out = strbuf(c->arena);
+  if (c->o.ops || (c->o.format && strcmp(c->o.format, "c") == 0)) return fail_usage("--hamiltonian goes with --format text or latex");
+  if (e->n == 0) {
+    diag_error(c->diags, e->m->span, e->first.n ? "no Hamiltonian by momenta: L is linear in velocities" : "no Hamiltonian: the model has no Lagrangian");
+    if (e->first.n) diag_help(c->diags, "coordinates are then canonical among themselves, and the energy is H: see `lagc derive` without --hamiltonian");
+    return STATUS_MODEL;
+  }
+  show_hamiltonian(e, c->o.format && strcmp(c->o.format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
+  return write_out(c, c->o.output, &out);
+}
+
+/* Without a scene: the model without effects, and each effect alone. */
+static int do_noether(Compiler *c) {
+  Eqns *e = c->o.scene ? derive_scene(c, c->o.scene) : derive(c, &(ModelChoice){.bare = 1});
+  StrBuf out = strbuf(c->arena);
+  const char *format = c->o.format ? c->o.format : "text";
+  if (!e) return STATUS_MODEL;
+  if (!e->m->lagrangian) {
+    diag_error(c->diags, e->m->span, "no symmetries to look for: the model has no Lagrangian");
+    return STATUS_MODEL;
+  }
+  if (!c->o.scene && !charges_judge(e, NULL)) return STATUS_MODEL;
+  NoetherReport *r = noether_report(e);
+  for (uint32_t i = 0; i < e->m->all_effects.n && !c->o.scene; i++) {
+    Name effect = e->m->all_effects.at[i];
+    const Eqns *with = derive(c, &(ModelChoice){.bare = 1, .also = effect});
+    if (with) noether_report_effect(r, effect, with);
+  }
+  if (strcmp(format, "json") == 0) show_noether_json(r, &out);
+  else show_noether(r, strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
+  return write_out(c, c->o.output, &out);
+}
+
 /* What the operations would be without --fix. */
 static const char *unfixed_cost(Compiler *c) {
   Eqns *e = derive(c, &(ModelChoice){.scene = c->o.scene, .unfixed = 1});
@@ -164,6 +200,7 @@ static const char *unfixed_cost(Compiler *c) {
 static int do_derive(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
+  if (c->o.hamiltonian) return do_hamiltonian(c, e);
   IrUnit *u = lower_scene(c, e);
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
@@ -483,7 +520,10 @@ static int do_check(Compiler *c) {
     if (c->o.scene && strcmp(c->o.scene, scenes.at[i]) != 0) continue;
     Eqns *e = derive_scene(c, scenes.at[i]);
     if (!e) continue;
-    if (!out.n) show_facts(e, &out);
+    if (!out.n) {
+      show_facts(e, &out);
+      show_cyclic(e, &out);
+    }
     collect_units(c, e->m, &found);
     if (!freedom_show(e, &out)) continue;
     sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], with_effects(c, e->m));
@@ -544,6 +584,7 @@ static int do_command(Compiler *c) {
   switch (c->o.command) {
     case CMD_CHECK: return do_check(c);
     case CMD_DERIVE: return do_derive(c);
+    case CMD_NOETHER: return do_noether(c);
     case CMD_EMIT: return method_is_known(c) ? do_emit(c) : STATUS_USAGE;
     case CMD_HEADER: return do_header(c);
     case CMD_BUILD: return method_is_known(c) ? do_build(c) : STATUS_USAGE;

@@ -219,6 +219,7 @@ int lag_sim_load(lag_sim *s, const double *x)
   s->pb.systems = s->run->systems;
   s->pb.iterations = s->run->iterations;
   s->pb.dir = s->run->dir;
+  lag_note_redundant(s);
   return LAG_OK;
 }
 

@@ -440,6 +440,16 @@ static int rank(Start *w, double *marks)
   return r;
 }
 
+void lag_note_redundant(lag_sim *s)
+{
+  const lag_constraints *of = s->scene->model->constraints;
+
+  s->pb.redundant = 0;
+  for (int k = 0; of && k < of->n; k++) {
+    s->pb.redundant |= s->redundant[k] > 0;
+  }
+}
+
 /* What moved by less than a last digit of what has its unit did not move. */
 static void keep_rounding_out(const Start *w)
 {
@@ -494,6 +504,7 @@ int lag_consistent(lag_sim *s)
       memcpy(s->now, w.y, bytes);
       rc = lag_keep(s, s->scene->t0, s->now);
       s->run->rank = rank(&w, s->redundant);
+      lag_note_redundant(s);
     }
   }
   free(block);

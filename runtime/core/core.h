@@ -114,6 +114,8 @@ int lag_between(lag_sim *sim, double t, double *y);
 
 /* consistent.c: now[n], the start as it was set, becomes the nearest start that obeys the constraints; asked, redundant and run->rank are set. */
 int lag_consistent(lag_sim *sim);
+/* pb.redundant, of what is found there or was saved. */
+void lag_note_redundant(lag_sim *sim);
 
 /* setup.c: the state at the start, of a run that has not begun. */
 int lag_setup_start(lag_sim *sim);

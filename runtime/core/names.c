@@ -39,7 +39,19 @@ static int find_suffix(const lag_var *vars, int n, const char *name, int *count)
   return found;
 }
 
-int lag_find(const lag_model *m, const char *name, int *index, const lag_var **var)
+/* Whether a variable is an input that says which contact is closed: nobody's to set. */
+static int is_switch(const lag_model *m, const lag_var *var)
+{
+  int i = 0;
+
+  while (i < m->ncontacts && &m->u[m->contacts[i].input] != var) {
+    i++;
+  }
+  return i < m->ncontacts;
+}
+
+/* Of all names. */
+static int find(const lag_model *m, const char *name, int *index, const lag_var **var)
 {
   size_t n = strlen(name);
   const struct {
@@ -66,6 +78,13 @@ int lag_find(const lag_model *m, const char *name, int *index, const lag_var **v
   return p >= 0 ? LAG_IS_P : LAG_IS_U;
 }
 
+int lag_find(const lag_model *m, const char *name, int *index, const lag_var **var)
+{
+  int kind = find(m, name, index, var);
+
+  return kind == LAG_IS_U && is_switch(m, *var) ? LAG_IS_NOTHING : kind;
+}
+
 int lag_is_member(const char *var, const char *family, size_t length)
 {
   size_t stem = strcspn(var, "[");
@@ -86,7 +105,7 @@ int lag_part(const lag_model *m, const char *name, int k, char *part, size_t npa
   for (size_t i = rate; i < (rate ? 2 : sizeof tables / sizeof *tables); i++) { /* only coordinates have rates to set */
     for (int j = 0; j < tables[i].n; j++) {
       const char *whole = tables[i].vars[j].name;
-      if (strncmp(whole, name, n) != 0 || !whole[n] || !strchr("[.", whole[n]) || k-- > 0) {
+      if (strncmp(whole, name, n) != 0 || !whole[n] || !strchr("[.", whole[n]) || is_switch(m, &tables[i].vars[j]) || k-- > 0) {
         continue;
       }
       snprintf(part, npart, "%s%s", whole, rate ? "'" : "");
@@ -151,7 +170,7 @@ int lag_nearest(const lag_model *m, const char *name, char *best, size_t nbest)
       snprintf(full, sizeof full, "%s%s", tables[k].vars[i].name, tables[k].suffix);
       int part = strncmp(full, name, n) == 0 && (full[n] == '.' || full[n] == '['); /* r of r.x, drag of drag.c */
       int d = part ? 0 : lag_near(name, full);
-      if (d < least) {
+      if (d < least && !is_switch(m, &tables[k].vars[i])) {
         least = d;
         snprintf(best, nbest, "%s", full);
       }

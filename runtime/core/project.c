@@ -9,7 +9,7 @@
 
 enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
 
-/* pb->held, laid out. */
+/* pb->held, laid out; behind it, a state for lag_rhs_prepare. */
 typedef struct Held {
   const lag_constraints *of;
   double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
@@ -23,7 +23,7 @@ size_t lag_held_room(const lag_model *m)
 {
   const lag_constraints *of = m->constraints;
 
-  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz) : 0;
+  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz + (2 * m->nq + m->nz)) : 0;
 }
 
 static Held layout(const lag_problem *pb)
@@ -169,7 +169,7 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
     return -1;
   }
   for (int k = 0; k < n; k++) {
-    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x == 0.0 ? 0 : x / (DBL_EPSILON * w.g[k]);
+    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x < DBL_MIN ? 0 : x / (DBL_EPSILON * w.g[k]);
     part = isnan(part) ? HUGE_VAL : part; /* it has no value */
     if (part > most) {
       most = part;
@@ -273,7 +273,7 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
   int n = holonomic ? w.of->nholonomic : w.of->n, met = 1;
 
   for (int k = 0; k < n; k++) {
-    met &= fabs(residual[k]) <= rounding * terms[k] / 4; /* what they were will do, where it is clear */
+    met &= fabs(residual[k]) <= fmax(rounding * terms[k] / 4, DBL_MIN); /* what they were will do, where it is clear */
   }
   if (met) {
     return 1;
@@ -281,6 +281,21 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
   lag_worst_constraint(pb, t, y, holonomic, &worst);
   memcpy(terms, w.g, (size_t)n * sizeof *terms);
   return worst <= 0x1p10;
+}
+
+/* Whether the residuals of y, of which w->c and w->r are left as they are, are what the last digits of their terms make. */
+static int is_clean(lag_problem *pb, const Held *w, double t, const double *y, int holonomic)
+{
+  const double *residual = holonomic ? w->c : w->r;
+  int n = holonomic ? w->of->nholonomic : w->of->n, clean = 1;
+
+  if (lag_constraint_terms(pb, t, y, holonomic, w->g) || lag_residuals(pb, t, y, w->c, w->r)) {
+    return 0;
+  }
+  for (int k = 0; k < n; k++) {
+    clean &= fabs(residual[k]) <= 4 * DBL_EPSILON * w->g[k];
+  }
+  return clean;
 }
 
 /* Positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of y, before and after. */
@@ -294,12 +309,14 @@ static int newton(lag_problem *pb, const Held *w, double t, double *y, double *l
     int busy = 0;
     for (int k = 0; k < n; k++) {
       busy |= !(residual[k] == 0.0);
+    }
+    if (!busy || (turn > holonomic && is_clean(pb, w, t, y, holonomic))) {
+      return LAG_OK; /* the latter: coordinates that are 0 but for rounding never stop moving by more than their last digits */
+    }
+    for (int k = 0; k < n; k++) {
+      w->before[k] = residual[k];
       w->g[k] = -residual[k];
     }
-    if (!busy) {
-      return LAG_OK;
-    }
-    memcpy(w->before, residual, (size_t)n * sizeof *residual);
     int rc = lag_least_change(pb, t, y, holonomic, w->g, w->d, w->force);
     if (rc || lag_not_finite(nq, w->d) >= 0) {
       return rc < 0 ? rc : unmet(pb, w, t, y, holonomic);

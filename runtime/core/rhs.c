@@ -1,6 +1,7 @@
 /* The model as y' = f(t, y), the only way in which methods call it. Enters: t, y = [q|v|z]; leaves:
  * y' = [v|a|z']. Holds: an input is the model's formula or table unless a function or a constant replaces it. */
 #include <math.h>
+#include <string.h>
 
 #include "core/core.h"
 #include "core/rhs.h"
@@ -43,6 +44,18 @@ unsigned lag_facts(const lag_problem *pb)
     }
   }
   return flags;
+}
+
+int lag_rhs_prepare(lag_problem *pb, double t, const double **y)
+{
+  if (!pb->redundant) {
+    return lag_inputs(pb, t);
+  }
+  double *at = pb->held + lag_held_room(pb->model) - pb->n;
+  memcpy(at, *y, (size_t)pb->n * sizeof *at);
+  int rc = lag_project(pb, t, at, NULL);
+  *y = at;
+  return rc ? rc : lag_inputs(pb, t);
 }
 
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy)

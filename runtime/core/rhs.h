@@ -26,15 +26,20 @@ LAG_HERE void lag_copy(int n, const double *from, double *to)
   }
 }
 
+/* What few models have: inputs, and constraints that follow from others, for which *y is replaced by the state on them. */
+int lag_rhs_prepare(lag_problem *pb, double t, const double **y);
+
 /* As lag_rhs; nq is the model's, perhaps as a number that the compiler knows. */
 LAG_HERE int lag_rhs_here(lag_problem *pb, int nq, double t, const double *y, double *dy)
 {
   const lag_model *m = pb->model;
-  int rc;
 
   pb->rhs_calls++;
-  if (m->nu && (rc = lag_inputs(pb, t)) != 0) {
-    return rc;
+  if (m->nu | pb->redundant) {
+    int rc = lag_rhs_prepare(pb, t, &y);
+    if (rc) {
+      return rc;
+    }
   }
   lag_copy(nq, y + nq, dy);
   return m->accel(t, y, y + nq, y + 2 * nq, pb->p, pb->u, dy + nq, dy + 2 * nq, pb->work);

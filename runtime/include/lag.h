@@ -61,6 +61,7 @@ typedef struct lag_problem {
   double *work;        /* [nw] */
   double *held;        /* [lag_held_room] scratch of the functions for constraints below */
   const double *kept;  /* [nholonomic] what c is held at, NaN: at nothing yet; NULL: all at 0 */
+  int redundant;       /* constraints follow from others: f is asked for on the constraints only, see lag_rhs */
   const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
@@ -82,7 +83,9 @@ unsigned lag_facts(const lag_problem *pb);
 /* pb->u at t: by the model's formulas, or the constants of pb->hold. Returns what the model returned. */
 int lag_inputs(lag_problem *pb, double t);
 
-/* dy[n] = f(t, y[n]). Returns what the model returned; does not look for NaN. */
+/* dy[n] = f(t, y[n]). Returns what the model returned; does not look for NaN. Where constraints follow from others they do so on the
+ * constraints alone: beside them, where the stages of a step are, as many are independent as there are, and what they then demand is
+ * rounding over rounding. f is that of lag_project(y) there, which is the same on the constraints and as smooth beside them. */
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
 
 /* How far it is from t to the next row of an input's table in direction pb->dir; HUGE_VAL where there is none. The

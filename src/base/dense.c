@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 static void exchange(long double *x, long double *y, uint32_t n, size_t stride) {
   for (size_t i = 0; i < n * stride; i += stride) {
@@ -83,4 +84,139 @@ long double dense_reduce(uint32_t n, long double *row, const long double *before
   left = sqrtl(left);
   for (uint32_t j = 0; j < n && left > 0; j++) row[j] /= left;
   return was > 0 ? left / sqrtl(was) : 0;
+}
+
+/* --- kernels --- */
+
+typedef struct {
+  uint32_t rows, columns, active; /* columns from `active` on are zero */
+  long double *m;
+  long double *along;  /* [columns] scratch */
+  long double *scale;  /* [columns] 1 / length of the column, by its first place */
+  long double *length; /* [columns] squared, of what is below the triangle; */
+  long double *sure;   /* [columns] and when it was last computed as a whole */
+  uint32_t *from;      /* [columns] first place of the column that is now here */
+} Triangle;
+
+static long double squared_below(const Triangle *t, uint32_t row, uint32_t column) {
+  long double s = 0;
+  for (size_t i = row; i < t->rows; i++) s += t->m[i * t->columns + column] * t->m[i * t->columns + column];
+  return s;
+}
+
+static void exchange_columns(Triangle *t, uint32_t one, uint32_t other) {
+  uint32_t from = t->from[one];
+  t->from[one] = t->from[other];
+  t->from[other] = from;
+  exchange(t->m + one, t->m + other, t->rows, t->columns);
+  exchange(t->length + one, t->length + other, 1, 1);
+  exchange(t->sure + one, t->sure + other, 1, 1);
+}
+
+static Triangle triangle_new(Arena *a, uint32_t rows, uint32_t columns, long double *m) {
+  Triangle t = {rows, columns, columns, m, ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, long double, columns + 1),
+                ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, uint32_t, columns + 1)};
+  long double largest = 0;
+  for (uint32_t j = 0; j < columns; j++) largest = fmaxl(largest, t.length[j] = sqrtl(squared_below(&t, 0, j)));
+  for (uint32_t j = 0; j < columns; j++) {
+    int zero = !(t.length[j] > 1e-14L * largest);
+    t.scale[j] = zero ? 1 : 1 / t.length[j];
+    for (size_t i = 0; i < rows; i++) m[i * columns + j] *= zero ? 0 : t.scale[j];
+    t.sure[j] = t.length[j] = zero ? 0 : 1;
+    t.from[j] = j;
+  }
+  for (uint32_t j = 0; j < t.active;)
+    if (t.length[j] == 0) exchange_columns(&t, j, --t.active);
+    else j++;
+  return t;
+}
+
+/* The column of which most is left comes to k; how much that is. */
+static long double bring_longest(Triangle *t, uint32_t k) {
+  uint32_t best = k;
+  for (uint32_t j = k; j < t->active; j++) {
+    if (t->length[j] < 1e-6L * t->sure[j]) t->sure[j] = t->length[j] = squared_below(t, k, j);
+    if (t->length[j] > t->length[best]) best = j;
+  }
+  exchange_columns(t, k, best);
+  return sqrtl(squared_below(t, k, k));
+}
+
+/* Reflects rows k.. so that column k has one element there, -+length; the columns behind it go along. */
+static void reflect(Triangle *t, uint32_t k, long double length) {
+  size_t w = t->columns, to = t->active;
+  long double *m = t->m, alpha = m[k * w + k] > 0 ? -length : length;
+  m[k * w + k] -= alpha;
+  long double half = -alpha * m[k * w + k]; /* |u|^2/2 of the u that stands in column k */
+  for (size_t j = k + 1; j < to; j++) t->along[j] = 0;
+  for (size_t i = k; i < t->rows; i++)
+    for (size_t j = k + 1; j < to; j++) t->along[j] += m[i * w + k] * m[i * w + j];
+  for (size_t j = k + 1; j < to; j++) t->along[j] /= half;
+  for (size_t i = k; i < t->rows; i++)
+    for (size_t j = k + 1; j < to; j++) m[i * w + j] -= m[i * w + k] * t->along[j];
+  m[k * w + k] = alpha;
+  for (size_t j = k + 1; j < to; j++) t->length[j] -= m[k * w + j] * m[k * w + j];
+}
+
+DenseRows dense_kernel(Arena *a, uint32_t rows, uint32_t columns, long double *m, long double rest) {
+  Triangle t = triangle_new(a, rows, columns, m);
+  uint32_t rank = 0;
+  long double taken = 1, left = 0;
+  for (; rank < t.active && rank < rows; rank++) {
+    long double length = bring_longest(&t, rank);
+    if (!(length > rest)) {
+      left = length;
+      break;
+    }
+    taken = length;
+    reflect(&t, rank, length);
+  }
+  DenseRows null = {columns - rank, columns, ARENA_ARRAY(a, long double, (size_t)(columns - rank) * columns + 1), taken / fmaxl(left, 1e-20L)};
+  long double *x = t.along;
+  for (uint32_t k = 0; k < null.n; k++) {
+    for (uint32_t i = 0; i < rank; i++) x[i] = -m[(size_t)i * columns + rank + k];
+    for (size_t i = rank; i-- > 0;) {
+      for (size_t j = i + 1; j < rank; j++) x[i] -= m[i * columns + j] * x[j];
+      x[i] /= m[i * columns + i];
+    }
+    long double *row = null.at + (size_t)k * columns;
+    for (uint32_t i = 0; i < rank; i++) row[t.from[i]] = x[i] * t.scale[t.from[i]];
+    row[t.from[rank + k]] = t.scale[t.from[rank + k]];
+  }
+  return null;
+}
+
+uint32_t dense_echelon(uint32_t rows, uint32_t columns, long double *m, long double rest, uint32_t *pivot) {
+  size_t w = columns;
+  uint32_t rank = 0;
+  for (size_t c = 0; c < w && rank < rows; c++) {
+    size_t best = rank;
+    for (size_t i = rank; i < rows; i++)
+      if (fabsl(m[i * w + c]) > fabsl(m[best * w + c])) best = i;
+    if (!(fabsl(m[best * w + c]) > rest)) continue;
+    exchange(m + rank * w, m + best * w, columns, 1);
+    long double p = m[rank * w + c];
+    for (size_t j = c; j < w; j++) m[rank * w + j] /= p;
+    for (size_t i = 0; i < rows; i++) {
+      long double f = i == rank ? 0 : m[i * w + c];
+      for (size_t j = c; j < w && f != 0; j++) m[i * w + j] -= f * m[rank * w + j];
+    }
+    pivot[rank++] = (uint32_t)c;
+  }
+  for (size_t i = 0; i < rows; i++)
+    for (size_t j = 0; j < w; j++)
+      if (i >= rank || fabsl(m[i * w + j]) <= rest) m[i * w + j] = 0;
+  return rank;
+}
+
+DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns) {
+  DenseRows o = {.width = columns, .at = ARENA_ARRAY(a, long double, (size_t)from->n * columns + 1)};
+  for (uint32_t k = 0; k < from->n; k++) {
+    long double *row = o.at + (size_t)o.n * columns, length = 0;
+    memcpy(row, from->at + (size_t)k * from->width, columns * sizeof *row);
+    for (uint32_t j = 0; j < columns; j++) length += row[j] * row[j];
+    if (length > 0 && dense_reduce(columns, row, o.at, o.n) > 1e-9L) o.n++;
+    else memset(row, 0, columns * sizeof *row);
+  }
+  return o;
 }

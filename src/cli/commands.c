@@ -10,8 +10,14 @@ static const CommandRow commands[] = {
   {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric]", "parse, derive, prove symmetries and `expect` lines",
    "Parses and derives the model for every scene (or the one named), and proves or refutes its `expect` lines. "
    "Exit status 0 when all is well, 1 when not."},
-  {CMD_DERIVE, "derive", NULL, "MODEL [SCENE] [--format text|latex|c] [--ops] [-o FILE]", "print the equations of motion",
-   "Prints the equations of motion: momenta, M q'' = f, energy, and the operation count."},
+  {CMD_DERIVE, "derive", NULL, "MODEL [SCENE] [--format text|latex|c] [--ops] [--hamiltonian] [-o FILE]", "print the equations of motion",
+   "Prints the equations of motion: momenta, M q'' = f, energy, and the operation count; with --hamiltonian momenta, H(q, p) and "
+   "Hamilton's equations, where the mass matrix is inverted in closed form: blocks of up to three coordinates with short results."},
+  {CMD_NOETHER, "noether", "symmetries", "MODEL [SCENE] [--format text|latex|json] [-o FILE]", "find symmetries and conserved quantities",
+   "Searches for the symmetries of L: transformations of coordinates, affine in them with coefficients that depend on time, and of time, that change "
+   "L by a total derivative dF/dt at most. Each one that is listed is proved, with its generator, its F and its charge; then come the Poisson "
+   "brackets of the charges, declared symmetries, cyclic coordinates, and a scaling that maps solutions to solutions.\n\n"
+   "Without a scene, of the model without effects, and what each effect alone makes of the charges: dQ/dt = 0 becomes a balance."},
   {CMD_RUN, "run", NULL, "MODEL [SCENE] [name=value ...] [options]", "simulate",
    "Builds the simulator (or takes it from the cache) and runs it.\n\n"
    "  name=value            a parameter, a start (th=1.2, \"th'=0.5\", th='90[deg]',\n"
@@ -91,7 +97,7 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 #define C(name) (1u << CMD_##name)
 #define SIMULATE (C(RUN) | C(PLOT) | C(ANIMATE))
 #define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS))
-#define MODELS (STEPS | C(MODES) | C(COST) | C(CHECK) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT))
+#define MODELS (STEPS | C(MODES) | C(COST) | C(CHECK) | C(DERIVE) | C(NOETHER) | C(BUILD) | C(HEADER) | C(EMIT))
 #define OWN(f) 0, offsetof(Options, f)
 #define PASSED 1, 0
 
@@ -100,7 +106,9 @@ static const OptionRow options[] = {
    "an expectation that is not decided by the prover, but agrees numerically, does not fail the check"},
   {"--format", NULL, "text|latex|c", TAKES_CHOICE, "text latex c", C(DERIVE), OWN(format),
    "as text, as LaTeX, or as the C function that computes the accelerations"},
+  {"--format", NULL, "text|latex|json", TAKES_CHOICE, "text latex json", C(NOETHER), OWN(format), "as text, as LaTeX, or as one JSON object"},
   {"--ops", NULL, NULL, TAKES_NOTHING, "", C(DERIVE), OWN(ops), "the operation counts only"},
+  {"--hamiltonian", NULL, NULL, TAKES_NOTHING, "", C(DERIVE), OWN(hamiltonian), "momenta, H and Hamilton's equations"},
 
   {"--observe", NULL, "EXPR", TAKES_EXPRS, "", C(RUN), OWN(observe),
    "one more column: any expression of the model, --observe 'l*sin(th)'; can be repeated"},
@@ -116,7 +124,7 @@ static const OptionRow options[] = {
   {"--no-rods", NULL, NULL, TAKES_NOTHING, "", C(ANIMATE), OWN(no_rods), "points only"},
   {"--trace", NULL, NULL, TAKES_NOTHING, "", C(ANIMATE), PASSED, "the path of the last point, fading"},
 
-  {"--output", "-o", "FILE", TAKES_FILE, "", C(DERIVE), OWN(output), "writes to this file"},
+  {"--output", "-o", "FILE", TAKES_FILE, "", C(DERIVE) | C(NOETHER), OWN(output), "writes to this file"},
   {"--output", "-o", "SIMULATOR", TAKES_FILE, "", C(BUILD), OWN(output), "the program to make"},
   {"--output", "-o", "FILE.h", TAKES_FILE, "h hpp", C(HEADER), OWN(output), "the header to write; default: standard output"},
   {"--output", "-o", "FILE.c", TAKES_FILE, "c", C(EMIT), OWN(output), "the C file to write; default: standard output"},

@@ -20,7 +20,7 @@ typedef struct {
   const char *topic;       /* of help; the shell of completion */
   int help;                /* --help: then command is CMD_HELP */
   int allow_numeric;       /* check --allow-numeric */
-  int no_gsl, ops;
+  int no_gsl, ops, hamiltonian;
   const char *precision;   /* of simulators: double, long, quad; NULL: double */
   const char *math;        /* --math own|libm */
   const char *with;        /* --with linear: parts of a model that are emitted only where something needs them */

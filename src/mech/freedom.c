@@ -4,6 +4,7 @@
 
 #include "base/dense.h"
 #include "mech/frobenius.h"
+#include "mech/noether.h"
 #include "mech/start.h"
 #include "sym/print.h"
 
@@ -21,12 +22,6 @@ static const char *kind_of(const Eqns *e, uint32_t k) {
   return expr_kinds(e->g, all->c[k]) & 1u << SYM_TIME ? "holonomic, with explicit time" : "holonomic";
 }
 
-static int is_contact(const Eqns *e, const Constraint *k) {
-  for (uint32_t i = 0; i < e->m->contacts.n; i++)
-    if (k == &e->m->constraints.at[e->m->contacts.at[i].constraint]) return 1;
-  return 0;
-}
-
 static int has_slope(const Eqns *e, StateSolver *s, const long double *symbols, uint32_t k) {
   const Entries *A = &e->constraints.A;
   StateValues v = states_at(s, symbols);
@@ -38,7 +33,7 @@ static int has_slope(const Eqns *e, StateSolver *s, const long double *symbols, 
 static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts, uint32_t k, uint32_t rank, StrBuf *out) {
   const Constraint *c = e->constraints.of[k];
   Place place = source_place(e->m->ast->sources, c->span.begin);
-  if (is_contact(e, c)) {
+  if (noether_is_contact(e->m, c)) {
     sb_printf(out, "  contact %s (line %u): a constraint while it is closed\n", c->name, place.line);
     return;
   }

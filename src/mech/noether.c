@@ -28,6 +28,8 @@ uint32_t noether_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
 
 SymId noether_coordinate(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].q : e->m->states.at[e->first.at[i]].z; }
 
+const Expr *noether_momenta(const Eqns *e) { return e->first.n ? e->first.theta : e->m->across ? e->momenta : e->p; }
+
 static SymId velocity(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate; }
 
 static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
@@ -62,7 +64,7 @@ static Work begin(const Eqns *e, const Generator *by) {
   w.q = ARENA_ARRAY(a, SymId, w.n + 1);
   w.v = ARENA_ARRAY(a, SymId, w.n + 1);
   w.Dxi = ARENA_ARRAY(a, Expr, w.n + 1);
-  w.p = e->n ? e->p : e->first.theta;
+  w.p = noether_momenta(e);
   w.xi = xi;
   w.tau = by->tau ? by->tau : zero;
   for (uint32_t i = 0; i < w.n; i++) {
@@ -221,7 +223,7 @@ static Expr charge_of(const Work *w, Expr F) {
   return expr_add(g, front, minus_et);
 }
 
-static int is_contact(const Model *m, const Constraint *k) {
+int noether_is_contact(const Model *m, const Constraint *k) {
   for (uint32_t i = 0; i < m->contacts.n; i++)
     if (&m->constraints.at[m->contacts.at[i].constraint] == k) return 1;
   return 0;
@@ -261,7 +263,7 @@ static Expr power_of_constraints(Work *w, Noether *to) {
     }
     if (zero_on_constraints(w, moved) == PROVED_ZERO) continue;
     moved = shorten(w, moved);
-    if (i < k->nholonomic && !to->broken && !is_contact(w->m, k->of[i])) {
+    if (i < k->nholonomic && !to->broken && !noether_is_contact(w->m, k->of[i])) {
       to->broken = i + 1;
       to->breaks = moved;
     }

@@ -44,6 +44,12 @@ typedef struct {
 uint32_t noether_coordinates(const Eqns *e);
 SymId noether_coordinate(const Eqns *e, uint32_t i);
 
+/* Momenta of L as it was written: without the inertia that makes the mass matrix of rotations regular. */
+const Expr *noether_momenta(const Eqns *e);
+
+/* Whether it is a contact's: it holds while that is closed. */
+int noether_is_contact(const Model *m, const Constraint *k);
+
 /* Needs a Lagrangian. */
 Noether noether_prove(const Eqns *e, const Generator *by);
 

@@ -1,74 +1,8 @@
 #include "mech/show.h"
 
 #include "mech/charges.h"
+#include "mech/show_text.h"
 #include "sym/simplify.h"
-
-typedef struct {
-  const Eqns *e;
-  ExprGraph *g;
-  PrintStyle style;
-  StrBuf *out;
-} Text;
-
-static int latex(const Text *t) { return t->style == PRINT_LATEX; }
-static void put(Text *t, const char *text, const char *in_latex) { sb_puts(t->out, latex(t) ? in_latex : text); }
-
-static void heading(Text *t, const char *title) {
-  if (latex(t)) sb_printf(t->out, "\n%% %s\n\\begin{align*}\n", title);
-  else sb_printf(t->out, "\n%s\n", title);
-}
-
-static void end_block(Text *t) { put(t, "", "\\end{align*}\n"); }
-
-/* An expression that shares its parts can be far longer written out than it is to compute: past a
- * limit its length is said instead. */
-static void print_expr(Text *t, Expr e) {
-  const double longest = 1e5, most_repeated = 8;
-  uint32_t distinct;
-  double size = expr_written_size(t->g, e, &distinct);
-  if (size <= longest || size <= most_repeated*distinct) {
-    expr_print(t->g, e, t->style, t->out);
-    return;
-  }
-  put(t, "(", "\\text{(");
-  sb_printf(t->out, "too long to print: %.2g parts written out, %u distinct ones; --format c shows the steps", size, distinct);
-  put(t, ")", ")}");
-}
-
-/* "  left = right", with LaTeX's alignment. */
-static void equation(Text *t, Expr left, Expr right, int last) {
-  put(t, "  ", "  ");
-  print_expr(t, left);
-  put(t, " = ", " &= ");
-  print_expr(t, right);
-  put(t, "\n", last ? "\n" : " \\\\\n");
-}
-
-static void named_equation(Text *t, const char *text, const char *in_latex, Expr right, int last) {
-  put(t, "  ", "  ");
-  put(t, text, in_latex);
-  put(t, " = ", " &= ");
-  print_expr(t, right);
-  put(t, "\n", last ? "\n" : " \\\\\n");
-}
-
-static const char *latex_of(Text *t, Name name) {
-  StrBuf b = strbuf(t->e->m->arena);
-  name_print(name, PRINT_LATEX, &b);
-  return sb_text(&b);
-}
-
-/* The definitions that these expressions need, each before its use. */
-static void definitions(Text *t, const Expr *roots, uint32_t n) {
-  ExprList l = expr_topo(t->g, roots, n);
-  uint32_t total = 0, shown = 0;
-  for (uint32_t i = 0; i < l.n; i++) total += expr_op(t->g, l.at[i]) == EX_DEF;
-  if (!total) return;
-  heading(t, "where");
-  for (uint32_t i = 0; i < l.n; i++)
-    if (expr_op(t->g, l.at[i]) == EX_DEF) equation(t, l.at[i], expr_arg(t->g, l.at[i], 0), ++shown == total);
-  end_block(t);
-}
 
 /* What a person would write for an entry of M or f: its short form, also where the shared one costs
  * less to compute. Long chains keep their lets. */
@@ -101,19 +35,6 @@ static const Expr *mass_rows(Text *t) {
   }
   for (uint32_t i = 0, from = 0; i < n; from = next[i++]) rows[i] = expr_add_n(t->g, terms + from, next[i] - from);
   return rows;
-}
-
-static void momenta(Text *t) {
-  const Eqns *e = t->e;
-  uint32_t n = e->n + e->first.n; /* one of them is 0 */
-  heading(t, "momenta");
-  for (uint32_t i = 0; i < n; i++) {
-    Name name = e->n ? e->m->coords.at[i].name : e->m->states.at[e->first.at[i]].name;
-    const char *text = arena_printf(e->m->arena, "p_%s", name), *tex = arena_printf(e->m->arena, "p_{%s}", latex_of(t, name));
-    Expr shown = e->n ? e->momenta[i] : e->first.theta[i];
-    named_equation(t, text, tex, shown, i + 1 == n);
-  }
-  end_block(t);
 }
 
 /* The unknowns of the system with definitions: accelerations, and per definition w the part of w' that
@@ -161,10 +82,10 @@ static void lifted_motion(Text *t) {
     add_product(t, &row[x->col], x->e, u.force[x->row]);
     add_product(t, &rate[x->row], x->e, u.rate[x->col]);
   }
-  heading(t, "equations of motion: primes of lets without terms in velocities, F what they pass on");
-  for (uint32_t k = s->n; k < total; k++) equation(t, u.rate[k], rate[k], 0);
-  for (uint32_t k = total; k-- > s->n;) equation(t, u.force[k], row[k], 0);
-  for (uint32_t i = 0; i < s->n; i++) equation(t, row[i], s->f[i], i + 1 == s->n && !e->m->states.n);
+  text_heading(t, "equations of motion: primes of lets without terms in velocities, F what they pass on");
+  for (uint32_t k = s->n; k < total; k++) text_equation(t, u.rate[k], rate[k], 0);
+  for (uint32_t k = total; k-- > s->n;) text_equation(t, u.force[k], row[k], 0);
+  for (uint32_t i = 0; i < s->n; i++) text_equation(t, row[i], s->f[i], i + 1 == s->n && !e->m->states.n);
 }
 
 /* Whether the coordinate is coupled to no more than one other: then its rate says more than its row of the two-form. */
@@ -191,7 +112,7 @@ static void first_order_motion(Text *t) {
       right = expr_neg(t->g, right);
     }
     if (alone) left = expr_symbol(t->g, e->m->states.at[x->at[i]].rate)->node;
-    equation(t, left, alone ? shown(t, x->rates[i]) : right, i + 1 == x->n && x->n == e->m->states.n);
+    text_equation(t, left, alone ? shown(t, x->rates[i]) : right, i + 1 == x->n && x->n == e->m->states.n);
   }
 }
 
@@ -199,13 +120,13 @@ static void motion(Text *t) {
   const Eqns *e = t->e;
   const Model *m = e->m;
   if (e->n && !e->mass_known) lifted_motion(t);
-  else heading(t, "equations of motion");
+  else text_heading(t, "equations of motion");
   const Expr *rows = e->mass_known ? mass_rows(t) : NULL;
-  for (uint32_t i = 0; rows && i < e->n; i++) equation(t, rows[i], shown(t, e->f[i]), i + 1 == e->n && !m->states.n);
+  for (uint32_t i = 0; rows && i < e->n; i++) text_equation(t, rows[i], shown(t, e->f[i]), i + 1 == e->n && !m->states.n);
   if (e->first.n) first_order_motion(t);
   for (uint32_t i = 0; i < m->states.n; i++)
-    if (!m->states.at[i].coordinate) equation(t, expr_symbol(t->g, m->states.at[i].rate)->node, m->states.at[i].flow, i + 1 == m->states.n);
-  end_block(t);
+    if (!m->states.at[i].coordinate) text_equation(t, expr_symbol(t->g, m->states.at[i].rate)->node, m->states.at[i].flow, i + 1 == m->states.n);
+  text_end(t);
 }
 
 /* What the constraints say, and what they demand of accelerations. */
@@ -214,47 +135,24 @@ static void constraints(Text *t) {
   const Constraints *k = &e->constraints;
   Expr zero = expr_int(t->g, 0);
   if (!k->n) return;
-  heading(t, "constraints");
-  for (uint32_t i = 0; i < k->n; i++) equation(t, i < k->nholonomic ? k->c[i] : k->r[i], zero, i + 1 == k->n);
-  end_block(t);
+  text_heading(t, "constraints");
+  for (uint32_t i = 0; i < k->n; i++) text_equation(t, i < k->nholonomic ? k->c[i] : k->r[i], zero, i + 1 == k->n);
+  text_end(t);
   Expr *rows = ARENA_ARRAY(e->m->arena, Expr, k->n);
   for (uint32_t i = 0; i < k->n; i++) rows[i] = zero;
   for (uint32_t i = 0; i < k->A.n; i++) add_product(t, &rows[k->A.at[i].row], shown(t, k->A.at[i].e), expr_symbol(t->g, e->m->coords.at[k->A.at[i].col].a)->node);
-  heading(t, "what they demand of accelerations");
-  for (uint32_t i = 0; i < k->n; i++) equation(t, rows[i], shown(t, k->demand[i]), i + 1 == k->n);
-  end_block(t);
+  text_heading(t, "what they demand of accelerations");
+  for (uint32_t i = 0; i < k->n; i++) text_equation(t, rows[i], shown(t, k->demand[i]), i + 1 == k->n);
+  text_end(t);
 }
 
-/* E and its balance; of each symmetry F where there is one, the charge, and its balance where it is not conserved. */
+/* E and its balance. */
 static void energy(Text *t, const Charge *c) {
-  heading(t, "energy");
+  text_heading(t, "energy");
   int moves = !t->e->conserves_energy && !c->proof.power_unknown;
-  named_equation(t, "E", "E", t->e->energy, !moves);
-  if (moves) named_equation(t, "dE/dt", "\\dot{E}", c->proof.power, 1);
-  end_block(t);
-}
-
-static void charges(Text *t) {
-  const Eqns *e = t->e;
-  Arena *a = e->m->arena;
-  if (e->ncharges < 2) return;
-  heading(t, "charges of symmetries");
-  for (uint32_t i = 1; i < e->ncharges; i++) {
-    const Charge *c = &e->charges[i];
-    const char *tex = latex_of(t, c->name);
-    int last = i + 1 == e->ncharges, moves = !c->proof.power_unknown && !expr_is_zero(t->g, c->proof.power);
-    if (!expr_is_zero(t->g, c->proof.F)) named_equation(t, arena_printf(a, "F(%s)", c->name), arena_printf(a, "F_{%s}", tex), c->proof.F, 0);
-    named_equation(t, c->name, arena_printf(a, "Q_{%s}", tex), c->proof.charge, last && !moves);
-    if (moves) named_equation(t, arena_printf(a, "d(%s)/dt", c->name), arena_printf(a, "\\dot{Q}_{%s}", tex), c->proof.power, last);
-  }
-  end_block(t);
-}
-
-static void title(Text *t) {
-  const Model *m = t->e->m;
-  sb_printf(t->out, latex(t) ? "%% %s: %s\n%% scene %s" : "%s: %s\nscene %s", m->name, m->doc, m->scene.name);
-  for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(t->out, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
-  sb_putc(t->out, '\n');
+  text_named(t, "E", "E", t->e->energy, !moves);
+  if (moves) text_named(t, "dE/dt", "\\dot{E}", c->proof.power, 1);
+  text_end(t);
 }
 
 static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
@@ -274,8 +172,8 @@ void show_facts(const Eqns *e, StrBuf *out) {
 }
 
 static void facts(Text *t, const char *cost) {
-  const char *c = latex(t) ? "% " : "";
-  sb_puts(t->out, latex(t) ? "" : "\n");
+  const char *c = text_latex(t) ? "% " : "";
+  sb_puts(t->out, text_latex(t) ? "" : "\n");
   if (t->e->m->lagrangian) sb_puts(t->out, c);
   show_facts(t->e, t->out);
   sb_printf(t->out, "%s%s: %s\n", c, t->e->first.n ? "rates" : "accelerations", cost);
@@ -284,12 +182,12 @@ static void facts(Text *t, const char *cost) {
 void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *out) {
   Text t = {.e = e, .g = e->g, .style = style, .out = out};
   const Model *m = e->m;
-  title(&t);
+  text_title(&t);
   if (m->lagrangian) {
-    heading(&t, "Lagrangian");
-    named_equation(&t, "L", "L", m->lagrangian, 1);
-    end_block(&t);
-    momenta(&t);
+    text_heading(&t, "Lagrangian");
+    text_named(&t, "L", "L", m->lagrangian, 1);
+    text_end(&t);
+    text_momenta(&t);
   }
   motion(&t);
   constraints(&t);
@@ -310,12 +208,12 @@ void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *o
     vec_push(m->arena, &roots, e->energy);
     energy(&t, &e->charges[0]);
   }
-  charges(&t);
+  text_charges(&t);
   for (uint32_t i = 0; i < e->ncharges; i++) {
     vec_push(m->arena, &roots, e->charges[i].proof.charge);
     vec_push(m->arena, &roots, e->charges[i].proof.power);
   }
-  definitions(&t, roots.at, roots.n);
+  text_definitions(&t, roots.at, roots.n);
   facts(&t, cost);
 }
 

@@ -9,6 +9,9 @@
  * the model, and `cost`, a line on what the accelerations cost. */
 void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *out);
 
+/* Appends the Hamiltonian side: momenta, H, Hamilton's equations; where M is not inverted in closed form, what takes their place. */
+void show_hamiltonian(Eqns *e, PrintStyle style, StrBuf *out);
+
 /* Appends M, f, Q and the energy as they are computed, one entry a line, for --dump=eqns. */
 void dump_equations(const Eqns *e, StrBuf *out);
 

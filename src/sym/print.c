@@ -330,7 +330,7 @@ static void latex_stem(StrBuf *out, const char *s, size_t n) {
   else sb_printf(out, "\\mathrm{%.*s}", (int)n, s);
 }
 
-static void latex_name(Name name, StrBuf *out) {
+static void latex_plain(Name name, StrBuf *out) {
   const char *dot = strchr(name, '.'); /* drag.c: c of drag */
   const char *s = dot ? dot + 1 : name;
   size_t end = strlen(s), primes = 0;
@@ -351,6 +351,14 @@ static void latex_name(Name name, StrBuf *out) {
     if (dot) sb_printf(out, "%s\\mathrm{%.*s}", sub_end > sub ? "," : "", (int)(dot - name), name);
     sb_putc(out, '}');
   }
+}
+
+/* p_th1, the momentum of th1, has all of that name below it. */
+static void latex_name(Name name, StrBuf *out) {
+  int momentum = strncmp(name, "p_", 2) == 0 && name[2];
+  if (momentum) sb_puts(out, "p_{");
+  latex_plain(momentum ? name + 2 : name, out);
+  if (momentum) sb_putc(out, '}');
 }
 
 void name_print(Name name, PrintStyle style, StrBuf *out) {

@@ -1,0 +1,298 @@
+#include "mech/brackets.h"
+
+#include <math.h>
+
+#include "base/dense.h"
+#include "mech/noether_number.h"
+#include "sym/diff.h"
+#include "sym/eval.h"
+#include "sym/normal.h"
+#include "sym/prove.h"
+#include "sym/simplify.h"
+
+enum { CHARGES_MOST = 48, SPARE_STATES = 6 };
+
+typedef struct {
+  Eqns *e;
+  ExprGraph *g;
+  Arena *scratch;
+  const FoundSymmetries *of;
+  uint32_t n, r, pairs; /* coordinates, charges, pairs of charges */
+  const SymId *q, *v;   /* [n] */
+  EvalTape *tape;       /* [r] charges, [r*n] by q, [r*n] by v, [n*n] form, [n*n] dp/dq */
+  uint32_t roots;
+  Choices choices;
+  Algebra *out;
+} Work;
+
+static const FoundSymmetry *at(const Work *w, uint32_t a) { return &w->of->all.at[a]; }
+static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
+
+/* --- in numbers --- */
+
+/* M, or omega of an L of first order, into a square; zero nodes elsewhere. */
+static void form_roots(const Work *w, Expr *to) {
+  const Entries *form = w->e->n ? &w->e->mass : &w->e->first.form;
+  for (size_t k = 0; k < (size_t)w->n * w->n; k++) to[k] = expr_int(w->g, 0);
+  for (uint32_t k = 0; k < form->n; k++) {
+    MassEntry x = form->at[k];
+    to[x.row * w->n + x.col] = x.e;
+    if (w->e->n) to[x.col * w->n + x.row] = x.e;
+  }
+}
+
+static void lay_out(Work *w) {
+  size_t n = w->n, r = w->r, count = 0;
+  Expr *roots = ARENA_ARRAY(w->scratch, Expr, r + 2 * r * n + 2 * n * n + 1);
+  for (uint32_t a = 0; a < r; a++) roots[count++] = at(w, a)->is.charge;
+  for (uint32_t a = 0; a < r; a++, count += n) expr_gradient(w->g, at(w, a)->is.charge, w->q, w->n, roots + count);
+  for (uint32_t a = 0; a < r; a++, count += n) expr_gradient(w->g, at(w, a)->is.charge, w->v, w->n, roots + count);
+  form_roots(w, roots + count);
+  count += n * n;
+  for (uint32_t i = 0; i < n && w->e->n; i++, count += n) expr_gradient(w->g, w->e->p[i], w->q, w->n, roots + count);
+  w->roots = (uint32_t)count;
+  w->tape = eval_tape(w->g, roots, w->roots);
+}
+
+/* The inverse of m[n*n]; 0: there is none. */
+static int invert(Arena *a, uint32_t n, const long double *m, long double *inverse) {
+  uint32_t *column = ARENA_ARRAY(a, uint32_t, n + 1);
+  long double *copy = ARENA_ARRAY(a, long double, (size_t)n * n + 1), *b = ARENA_ARRAY(a, long double, n + 1);
+  for (uint32_t j = 0; j < n; j++) {
+    memcpy(copy, m, (size_t)n * n * sizeof *m);
+    for (uint32_t i = 0; i < n; i++) b[i] = i == j;
+    if (dense_solve(n, copy, b, 1e-13L, column, NULL) < n) return 0;
+    for (uint32_t i = 0; i < n; i++) inverse[(size_t)i * n + j] = b[i];
+  }
+  return 1;
+}
+
+/* to = m x. */
+static void apply(uint32_t n, const long double *m, const long double *x, long double *to) {
+  for (size_t i = 0; i < n; i++) {
+    to[i] = 0;
+    for (size_t j = 0; j < n; j++) to[i] += m[i * n + j] * x[j];
+  }
+}
+
+/* The derivatives in phase space in place of those by q and v. */
+static int to_phase_space(const Work *w, long double *out) {
+  size_t n = w->n, r = w->r;
+  long double *by_q = out + r, *by_v = by_q + r * n, *form = by_v + r * n, *slope = form + n * n;
+  long double *inverse = ARENA_ARRAY(w->scratch, long double, n * n + 1), *x = ARENA_ARRAY(w->scratch, long double, n + 1);
+  if (!invert(w->scratch, w->n, form, inverse)) return 0;
+  for (size_t a = 0; a < r; a++) {
+    apply(w->n, inverse, w->e->n ? by_v + a * n : by_q + a * n, x);
+    memcpy(by_v + a * n, x, n * sizeof *x);
+    for (size_t i = 0; i < n && w->e->n; i++)
+      for (size_t j = 0; j < n; j++) by_q[a * n + j] -= x[i] * slope[i * n + j];
+  }
+  return 1;
+}
+
+/* Brackets of a state, [pairs], from its derivatives in phase space. */
+static void all_brackets(const Work *w, const long double *out, long double *to) {
+  size_t n = w->n;
+  const long double *by_q = out + w->r, *by_p = by_q + w->r * n;
+  for (size_t a = 0; a < w->r; a++)
+    for (size_t b = a + 1; b < w->r; b++, to++) {
+      *to = 0;
+      for (size_t i = 0; i < n; i++) *to += by_q[a * n + i] * by_p[b * n + i] - (w->e->n ? by_p[a * n + i] * by_q[b * n + i] : 0);
+    }
+}
+
+/* Charges and a 1 at `states` random states, [states*(r + 1)], and brackets, [states*pairs]. 0: there are not so many states. */
+static int sample(const Work *w, uint32_t choice, uint32_t states, long double *charges, long double *brackets) {
+  uint32_t count = expr_symbol_count(w->g) + 1, done = 0;
+  long double *symbols = ARENA_ARRAY(w->scratch, long double, count), *out = ARENA_ARRAY(w->scratch, long double, w->roots + 1);
+  for (uint32_t seed = 1; done < states && seed < 20 + 4 * states; seed++) {
+    int finite = 1;
+    prove_state(w->g, 50 + seed, symbols);
+    for (uint32_t k = 0; k < w->choices.n; k++) symbols[w->choices.param[k]] = w->choices.at[choice][w->choices.param[k]];
+    eval_run(w->tape, symbols, out);
+    for (uint32_t k = 0; k < w->roots; k++) finite = finite && isfinite(out[k]);
+    if (!finite || !to_phase_space(w, out)) continue;
+    memcpy(charges + (size_t)done * (w->r + 1), out, w->r * sizeof *out);
+    charges[(size_t)done * (w->r + 1) + w->r] = 1;
+    all_brackets(w, out, brackets + (size_t)done * w->pairs);
+    done++;
+  }
+  return done == states;
+}
+
+/* Coefficients of all brackets, [pairs*(r + 1)]; those of a bracket that is no combination are NAN. 0: they cannot be had. */
+static int fit(const Work *w, uint32_t choice, long double *c) {
+  uint32_t m = w->r + 1, states = m + SPARE_STATES;
+  long double *charges = ARENA_ARRAY(w->scratch, long double, (size_t)states * m), *brackets = ARENA_ARRAY(w->scratch, long double, (size_t)states * w->pairs + 1);
+  long double *inverse = ARENA_ARRAY(w->scratch, long double, (size_t)m * m), *x = ARENA_ARRAY(w->scratch, long double, m);
+  if (!sample(w, choice, states, charges, brackets) || !invert(w->scratch, m, charges, inverse)) return 0;
+  for (size_t pair = 0; pair < w->pairs; pair++) {
+    long double worst = 0, size = 1e-3L;
+    for (uint32_t s = 0; s < m; s++) x[s] = brackets[s * w->pairs + pair];
+    apply(m, inverse, x, c + pair * m);
+    for (size_t s = m; s < states; s++) {
+      long double left = brackets[s * w->pairs + pair];
+      size = fmaxl(size, fabsl(left));
+      for (uint32_t k = 0; k < m; k++) left -= c[pair * m + k] * charges[s * m + k];
+      worst = fmaxl(worst, fabsl(left));
+    }
+    for (uint32_t k = 0; k < m; k++) {
+      if (worst > 1e-8L * size) c[pair * m + k] = NAN;
+      else if (fabsl(c[pair * m + k]) < 1e-9L * size) c[pair * m + k] = 0;
+    }
+  }
+  return 1;
+}
+
+/* --- symbolically --- */
+
+/* dA/dp_i and dA/dq_i at fixed p. */
+static void slopes(const Work *w, uint32_t a, Expr *by_p, Expr *by_q) {
+  ExprGraph *g = w->g;
+  const Generator *by = &at(w, a)->by;
+  Expr *of_xi = ARENA_ARRAY(w->scratch, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr rate = w->e->n ? node(w, w->v[i]) : w->e->first.rates[i], moved = expr_mul(g, by->tau, rate), fall = expr_diff(g, at(w, a)->is.F, w->q[i]);
+    by_p[i] = expr_sub(g, by->xi[i], moved);
+    by_q[i] = w->e->n ? expr_sub(g, expr_mul(g, by->tau, w->e->dLdq[i]), fall) : expr_int(g, 0);
+  }
+  for (uint32_t k = 0; k < w->n && w->e->n; k++) {
+    expr_gradient(g, by->xi[k], w->q, w->n, of_xi);
+    for (uint32_t i = 0; i < w->n; i++) by_q[i] = expr_add(g, by_q[i], expr_mul(g, w->e->p[k], of_xi[i]));
+  }
+}
+
+static int is_energy(const Work *w, uint32_t a) { return at(w, a)->kind == SYMMETRY_ENERGY && expr_is_zero(w->g, at(w, a)->is.power); }
+
+/* The bracket with the energy of an L without t is minus the change in time that Q has by itself: that Q is conserved is proved already. */
+static Expr with_energy(const Work *w, uint32_t a) { return expr_neg(w->g, expr_diff(w->g, at(w, a)->is.charge, w->e->m->time)); }
+
+static Expr symbolic(const Work *w, uint32_t a, uint32_t b) {
+  ExprGraph *g = w->g;
+  Expr *all = ARENA_ARRAY(w->scratch, Expr, 4 * (size_t)w->n + 1), *ap = all, *aq = ap + w->n, *bp = aq + w->n, *bq = bp + w->n, sum = expr_int(g, 0);
+  if (is_energy(w, b) && expr_is_zero(g, at(w, a)->is.power)) return with_energy(w, a);
+  if (is_energy(w, a) && expr_is_zero(g, at(w, b)->is.power)) return expr_neg(g, with_energy(w, b));
+  slopes(w, a, ap, aq);
+  slopes(w, b, bp, bq);
+  if (!w->e->n) { /* minus what A does to B */
+    expr_gradient(g, at(w, b)->is.charge, w->q, w->n, bq);
+    for (uint32_t i = 0; i < w->n; i++) sum = expr_sub(g, sum, expr_mul(g, bq[i], ap[i]));
+    return sum;
+  }
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr one = expr_mul(g, aq[i], bp[i]), other = expr_mul(g, ap[i], bq[i]), both = expr_sub(g, one, other);
+    sum = expr_add(g, sum, both);
+  }
+  return sum;
+}
+
+/* --- the brackets --- */
+
+/* x = c*rate^power at both choices, c rational. */
+static Expr multiple_of(const Work *w, const long double *x, Expr rate, int power) {
+  Num c;
+  Expr factor = expr_pow_num(w->g, rate, num_int(power));
+  long double one = x[CHOICE_FIRST] / choice_value(&w->choices, CHOICE_FIRST, factor), other = x[CHOICE_SECOND] / choice_value(&w->choices, CHOICE_SECOND, factor);
+  return fabsl(one - other) < 1e-9L * fabsl(one) && rational_of(one, &c) ? expr_scale(w->g, c, factor) : 0;
+}
+
+/* A coefficient, from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges themselves.
+ * 0: it is none of these. */
+static Expr recognise(const Work *w, long double *const *fits, size_t place) {
+  long double *x = ARENA_ARRAY(w->scratch, long double, 2 + w->choices.n);
+  int zero = 1;
+  Num c;
+  for (uint32_t k = 0; k < 2 + w->choices.n; k++) {
+    x[k] = fits[k][place];
+    zero = zero && x[k] == 0;
+    if (isnan(x[k])) return 0;
+  }
+  if (zero) return expr_int(w->g, 0);
+  if (fabsl(x[CHOICE_FIRST] - x[CHOICE_SECOND]) < 1e-9L * fabsl(x[CHOICE_FIRST]) && rational_of(x[CHOICE_FIRST], &c)) return expr_num(w->g, c);
+  Expr known = ratio_of(&w->choices, x);
+  for (uint32_t a = 0; a < w->r && !known; a++) {
+    if (at(w, a)->rate) known = multiple_of(w, x, at(w, a)->rate, 1);
+    if (at(w, a)->rate && !known) known = multiple_of(w, x, at(w, a)->rate, -1);
+  }
+  if (!known) known = linear_of(&w->choices, x);
+  return known ? known : monomial_of(&w->choices, x);
+}
+
+static int is_constant(const Work *w, Expr x) { return (expr_kinds(w->g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
+
+/* What is left of the bracket without its combination of charges is a constant: by its short form, or as recognised and then proved. */
+static void settle(const Work *w, Bracket *k, long double *const *fits, size_t place) {
+  ExprGraph *g = w->g;
+  Expr sum = expr_int(g, 0), left;
+  for (uint32_t i = 0; i < w->r; i++) sum = expr_add(g, sum, expr_mul(g, k->c[i], at(w, i)->is.charge));
+  left = simplify(g, expr_sub(g, k->value, sum));
+  k->constant = left;
+  k->proved = is_constant(w, left);
+  if (k->proved) return;
+  k->constant = recognise(w, fits, place + w->r);
+  if (k->constant) k->proved = prove_zero(g, expr_sub(g, left, k->constant), NULL) == PROVED_ZERO;
+  else k->c = NULL;
+}
+
+static Bracket bracket(const Work *w, uint32_t a, uint32_t b, long double *const *fits, size_t place) {
+  Expr *c = ARENA_ARRAY(w->e->m->arena, Expr, w->r + 1);
+  Bracket k = {.a = a, .b = b, .c = c, .constant = expr_int(w->g, 0), .value = symbolic(w, a, b)};
+  for (uint32_t i = 0; i < w->r && k.c; i++)
+    if (!(c[i] = recognise(w, fits, place + i))) k.c = NULL;
+  if (k.c) settle(w, &k, fits, place);
+  if (!k.c) k.value = simplify(w->g, k.value);
+  return k;
+}
+
+/* A bracket that is 0. */
+static int is_null(const Work *w, const Bracket *k) {
+  for (uint32_t i = 0; k->c && i < w->r; i++)
+    if (!expr_is_zero(w->g, k->c[i])) return 0;
+  return k->c && expr_is_zero(w->g, k->constant);
+}
+
+static void work(Arena *scratch, void *data) {
+  Work *w = data;
+  w->scratch = scratch;
+  w->choices = choices_new(scratch, w->e);
+  lay_out(w);
+  uint32_t choices = 2 + w->choices.n;
+  long double **fits = ARENA_ARRAY(scratch, long double *, choices);
+  for (uint32_t k = 0; k < choices; k++) {
+    fits[k] = ARENA_ARRAY(scratch, long double, (size_t)w->pairs * (w->r + 1) + 1);
+    if (!fit(w, k, fits[k])) {
+      w->out->why_not = "the charges depend on one another, or M has no inverse at random states";
+      return;
+    }
+  }
+  size_t place = 0;
+  for (uint32_t a = 0; a < w->r; a++)
+    for (uint32_t b = a + 1; b < w->r; b++, place += w->r + 1) {
+      Bracket k = bracket(w, a, b, fits, place);
+      w->out->by_value += !k.proved;
+      if (!is_null(w, &k)) vec_push(w->e->m->arena, &w->out->all, k);
+    }
+}
+
+static const char *reason_against(const Eqns *e, uint32_t r) {
+  if (e->constraints.n) return "the model has constraints, which take Dirac's brackets";
+  if (e->m->states.n && e->n) return "the model has states beside its coordinates";
+  if (r > CHARGES_MOST) return arena_printf(e->m->arena, "there are more than %d charges", CHARGES_MOST);
+  return NULL;
+}
+
+Algebra brackets_find(Eqns *e, const FoundSymmetries *of) {
+  Algebra out = {.n = of->all.n, .why_not = reason_against(e, of->all.n)};
+  Work w = {.e = e, .g = e->g, .of = of, .n = noether_coordinates(e), .r = of->all.n, .pairs = of->all.n * (of->all.n - 1) / 2, .out = &out};
+  SymId *q = ARENA_ARRAY(e->m->arena, SymId, 2 * (size_t)w.n + 1), *v = q + w.n;
+  if (out.why_not || of->all.n < 2) return out;
+  if (e->n && !e->mass_known) eqns_derive_mass(e);
+  for (uint32_t i = 0; i < w.n; i++) {
+    q[i] = noether_coordinate(e, i);
+    v[i] = e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate;
+  }
+  w.q = q;
+  w.v = v;
+  normal_with_scratch(e->g, work, &w);
+  return out;
+}

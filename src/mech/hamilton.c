@@ -1,0 +1,163 @@
+#include "mech/hamilton.h"
+
+#include "sym/diff.h"
+#include "sym/simplify.h"
+
+enum { BLOCK_MOST = 3, OPS_MOST = 120, SHORT_MOST = 24 };
+
+typedef struct {
+  Eqns *e;
+  ExprGraph *g;
+  Arena *arena;
+  uint32_t n;
+  SymId *q, *v, *p;
+  Expr *inverse, *a, *rate, *force;
+} Work;
+
+static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
+static Expr mul3(const Work *w, Expr a, Expr b, Expr c) { return expr_mul(w->g, a, expr_mul(w->g, b, c)); }
+
+/* --- the inverse of M --- */
+
+/* block[i]: the least coordinate that i is coupled to. */
+static void find_blocks(const Work *w, uint32_t *block) {
+  for (uint32_t i = 0; i < w->n; i++) block[i] = i;
+  for (int changed = 1; changed;) {
+    changed = 0;
+    for (uint32_t k = 0; k < w->e->mass.n; k++) {
+      uint32_t i = w->e->mass.at[k].row, j = w->e->mass.at[k].col, least = block[i] < block[j] ? block[i] : block[j];
+      changed |= block[i] != block[j];
+      block[i] = block[j] = least;
+    }
+  }
+}
+
+static Expr minor2(const Work *w, const Expr *m, uint32_t n, uint32_t r1, uint32_t r2, uint32_t c1, uint32_t c2) {
+  Expr a = expr_mul(w->g, m[r1 * n + c1], m[r2 * n + c2]), b = expr_mul(w->g, m[r1 * n + c2], m[r2 * n + c1]);
+  return simplify(w->g, expr_sub(w->g, a, b));
+}
+
+/* The cofactor of an element of m[n*n], n up to 3. */
+static Expr cofactor(const Work *w, const Expr *m, uint32_t n, uint32_t i, uint32_t j) {
+  if (n == 1) return expr_int(w->g, 1);
+  if (n == 2) return (i + j) % 2 ? expr_neg(w->g, m[(1 - i) * 2 + (1 - j)]) : m[(1 - i) * 2 + (1 - j)];
+  return minor2(w, m, 3, (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3); /* cyclic: the sign is in it */
+}
+
+/* 0: a result is long. */
+static int invert_block(Work *w, const uint32_t *at, uint32_t n) {
+  ExprGraph *g = w->g;
+  Expr m[BLOCK_MOST * BLOCK_MOST], det = expr_int(g, 0);
+  for (uint32_t i = 0; i < n; i++)
+    for (uint32_t j = 0; j < n; j++) m[i * n + j] = simplify(g, eqns_mass(w->e, at[i], at[j]));
+  for (uint32_t j = 0; j < n; j++) det = expr_add(g, det, expr_mul(g, m[j], cofactor(w, m, n, 0, j)));
+  det = simplify(g, det);
+  if (expr_is_zero(g, det)) return 0;
+  for (uint32_t i = 0; i < n; i++)
+    for (uint32_t j = 0; j < n; j++) {
+      Expr x = simplify(g, expr_div(g, cofactor(w, m, n, j, i), det));
+      w->inverse[at[i] * w->n + at[j]] = x;
+      if (expr_ops(g, &x, 1) > OPS_MOST) return 0;
+    }
+  return 1;
+}
+
+static const char *invert(Work *w) {
+  uint32_t *block = ARENA_ARRAY(w->arena, uint32_t, w->n + 1);
+  if (w->e->singular_mass) return "the mass matrix is singular";
+  find_blocks(w, block);
+  for (size_t i = 0; i < (size_t)w->n * w->n; i++) w->inverse[i] = expr_int(w->g, 0);
+  for (uint32_t i = 0; i < w->n; i++) {
+    uint32_t at[BLOCK_MOST], n = 0;
+    if (block[i] != i) continue;
+    for (uint32_t k = i; k < w->n; k++) {
+      if (block[k] != i) continue;
+      if (n == BLOCK_MOST) return "the mass matrix couples more than three velocities, and is inverted by the program";
+      at[n++] = k;
+    }
+    if (!invert_block(w, at, n)) return "the inverse of the mass matrix is long, and left to the program";
+  }
+  return NULL;
+}
+
+/* --- H --- */
+
+/* x without velocities. A definition that contains some is replaced by what it stands for. */
+static Expr at_rest(const Work *w, Expr x) {
+  Expr *zero = ARENA_ARRAY(w->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
+  if (!(expr_kinds(w->g, x) & 1u << SYM_VEL)) return x;
+  return expr_replace(w->g, expr_expand_defs(w->g, x), w->v, zero, w->n);
+}
+
+/* -L at rest, term by term: those without velocities stay as they were written. */
+static Expr potential(const Work *w) {
+  ExprGraph *g = w->g;
+  Expr L = w->e->m->lagrangian, V = expr_int(g, 0);
+  for (uint32_t i = 0; i < expr_pairs(g, L, EX_SUM); i++) {
+    Num c;
+    Expr term = expr_pair(g, L, EX_SUM, i, &c), rest = at_rest(w, term);
+    V = expr_sub(g, V, expr_scale(g, c, rest == term ? term : simplify(g, rest)));
+  }
+  return V;
+}
+
+static Expr short_form(const Work *w, Expr x) { return w->n <= SHORT_MOST ? simplify(w->g, x) : x; }
+
+static Hamilton result(Work *w) {
+  ExprGraph *g = w->g;
+  const Constraints *k = &w->e->constraints;
+  Expr *u = ARENA_ARRAY(w->arena, Expr, w->n + 1), kinetic = expr_int(g, 0), V = potential(w);
+  for (uint32_t i = 0; i < w->n; i++) {
+    w->a[i] = short_form(w, at_rest(w, w->e->p[i]));
+    u[i] = expr_sub(g, node(w, w->p[i]), w->a[i]);
+  }
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr rate = expr_int(g, 0);
+    for (uint32_t j = 0; j < w->n; j++) {
+      Expr x = w->inverse[i * w->n + j];
+      if (expr_is_zero(g, x)) continue;
+      rate = expr_add(g, rate, expr_mul(g, x, u[j]));
+      if (j <= i) kinetic = expr_add(g, kinetic, expr_scale(g, num_ratio(i == j ? 1 : 2, 2), mul3(w, x, u[i], u[j])));
+    }
+    w->rate[i] = short_form(w, rate);
+  }
+  Expr H = expr_add(g, short_form(w, kinetic), V);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr force = expr_neg(g, expr_diff(g, kinetic, w->q[i])), pull = expr_neg(g, expr_diff(g, V, w->q[i])), other = expr_replace(g, w->e->Q[i], w->v, w->rate, w->n);
+    for (uint32_t x = 0; x < k->A.n; x++)
+      if (k->A.at[x].col == i) {
+        Expr lambda = node(w, k->of[k->A.at[x].row]->multiplier), A = expr_replace(g, k->A.at[x].e, w->v, w->rate, w->n);
+        other = expr_add(g, other, expr_mul(g, A, lambda));
+      }
+    force = expr_add(g, short_form(w, force), short_form(w, pull));
+    w->force[i] = expr_add(g, force, short_form(w, other));
+  }
+  return (Hamilton){1, NULL, w->p, w->inverse, w->a, H, w->rate, w->force};
+}
+
+static int is_quadratic(const Eqns *e) {
+  for (uint32_t k = 0; k < e->mass.n; k++)
+    if (expr_kinds(e->g, e->mass.at[k].e) & 1u << SYM_VEL) return 0;
+  return 1;
+}
+
+Hamilton hamilton_derive(Eqns *e) {
+  Arena *a = e->m->arena;
+  Work w = {.e = e, .g = e->g, .arena = a, .n = e->n};
+  size_t n = e->n, nn = n * n;
+  if (!e->mass_known) eqns_derive_mass(e);
+  w.q = ARENA_ARRAY(a, SymId, n + 1), w.v = ARENA_ARRAY(a, SymId, n + 1), w.p = ARENA_ARRAY(a, SymId, n + 1);
+  w.a = ARENA_ARRAY(a, Expr, n + 1), w.rate = ARENA_ARRAY(a, Expr, n + 1), w.force = ARENA_ARRAY(a, Expr, n + 1);
+  w.inverse = ARENA_ARRAY(a, Expr, nn + 1);
+  for (uint32_t i = 0; i < e->n; i++) {
+    const Coord *c = &e->m->coords.at[i];
+    w.q[i] = c->q;
+    w.v[i] = c->v;
+    w.p[i] = expr_declare(e->g, SYM_LOCAL, i, arena_printf(a, "p_%s", c->name), SIGN_UNKNOWN);
+  }
+  Hamilton open = {.p = w.p, .why_not = is_quadratic(e) ? NULL : "L is not quadratic in velocities"};
+  if (e->m->across) open.why_not = "the components of a rotation are not independent";
+  if (!open.why_not) open.why_not = invert(&w);
+  return open.why_not ? open : result(&w);
+}

@@ -1,0 +1,290 @@
+#include "mech/noether_name.h"
+
+#include <ctype.h>
+
+enum { NO_AXIS = 3 };
+
+/* --- coordinates of bodies --- */
+
+/* r[2].x, x[2], x2 and x are components along x. */
+static uint32_t axis_of(Name name) {
+  const char *dot = strrchr(name, '.'), *letter = dot ? dot + 1 : name;
+  if (*letter < 'x' || *letter > 'z') return NO_AXIS;
+  if (dot ? letter[1] != '\0' : isalpha((unsigned char)letter[1])) return NO_AXIS;
+  return (uint32_t)(*letter - 'x');
+}
+
+/* Whether two components belong to one body: all but the letter agrees. */
+static int same_body(Name a, Name b) {
+  const char *x = strrchr(a, '.'), *y = strrchr(b, '.');
+  if (!x != !y) return 0;
+  if (!x) return strcmp(a + 1, b + 1) == 0;
+  return x - a == y - b && memcmp(a, b, (size_t)(x - a)) == 0;
+}
+
+static Name coord(const Eqns *e, uint32_t i);
+
+/* The component `letter` of the vector or rotation that coordinate i belongs to; UINT32_MAX: there is none. */
+static uint32_t sibling(const Eqns *e, uint32_t i, char letter) {
+  Name name = coord(e, i);
+  const char *dot = strrchr(name, '.');
+  for (uint32_t k = 0; dot && k < noether_coordinates(e); k++) {
+    Name other = coord(e, k);
+    if (strncmp(other, name, (size_t)(dot + 1 - name)) == 0 && other[dot + 1 - name] == letter && !other[dot + 2 - name]) return k;
+  }
+  return UINT32_MAX;
+}
+
+static Name coord(const Eqns *e, uint32_t i) { return expr_symbol(e->g, noether_coordinate(e, i))->name; }
+
+/* Components of a rotation lie along no axis. */
+static uint32_t axis_at(const Eqns *e, uint32_t i) { return sibling(e, i, 'w') == UINT32_MAX ? axis_of(coord(e, i)) : NO_AXIS; }
+
+static uint32_t along(const Eqns *e, uint32_t axis) {
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++) n += axis_at(e, i) == axis;
+  return n;
+}
+
+/* --- what a row is made of --- */
+
+typedef struct {
+  uint32_t tau, shift, linear; /* bits: the blocks in which they occur */
+} Parts;
+
+static Parts parts_of(const Eqns *e, const GeneratorRow *r) {
+  Parts p = {0};
+  for (uint32_t m = 0; m < r->blocks; m++) {
+    const Expr *c = r->c + (size_t)m * r->ansatz->shown;
+    if (!expr_is_zero(e->g, c[0])) p.tau |= 1u << m;
+    for (uint32_t j = 0; j < r->ansatz->xi.n; j++) {
+      if (expr_is_zero(e->g, c[1 + j])) continue;
+      if (r->ansatz->xi.at[j].k) p.linear |= 1u << m;
+      else p.shift |= 1u << m;
+    }
+  }
+  return p;
+}
+
+/* The coefficient of phi_k in xi_i, in block m. */
+static Expr entry(const Eqns *e, const GeneratorRow *r, uint32_t m, uint32_t i, uint32_t k) {
+  const Expr *c = r->c + (size_t)m * r->ansatz->shown + 1;
+  for (uint32_t j = 0; j < r->ansatz->xi.n; j++)
+    if (r->ansatz->xi.at[j].i == i && r->ansatz->xi.at[j].k == k) return c[j];
+  return expr_int(e->g, 0);
+}
+
+static int is_energy(Parts p) { return p.tau == 1 && !p.shift && !p.linear; }
+
+/* The linear part of block 0 turns q_i against q_j. */
+static int turns(const Eqns *e, const GeneratorRow *r, uint32_t i, uint32_t j) {
+  Expr a = entry(e, r, 0, i, j + 1), b = entry(e, r, 0, j, i + 1);
+  return !expr_is_zero(e->g, a) && a == expr_neg(e->g, b);
+}
+
+/* --- signs --- */
+
+static void flip(const Eqns *e, GeneratorRow *r) {
+  for (size_t k = 0; k < (size_t)r->blocks * r->ansatz->shown; k++) r->c[k] = expr_neg(e->g, r->c[k]);
+}
+
+/* Whether q_i grows with q_j in the sense of rotation of books: x -> -y, y -> x; z from x falls. */
+static int wrong_turn(const Eqns *e, uint32_t i, uint32_t j, Expr c) {
+  uint32_t a = axis_at(e, i), b = axis_at(e, j);
+  int z_and_x = a == 0 && b == 2;
+  Num number;
+  expr_pair(e->g, c, EX_SUM, 0, &number);
+  return z_and_x ? num_sign(number) < 0 : num_sign(number) > 0;
+}
+
+void orient(const Eqns *e, GeneratorRow *r) {
+  Parts p = parts_of(e, r);
+  if (r->kind != TIME_POWERS && r->kind != TIME_LISTED) return;
+  if (p.tau == 1) {
+    if (num_sign(expr_is_num(e->g, r->c[0]) ? expr_number(e->g, r->c[0]) : num_int(1)) > 0) flip(e, r);
+    return;
+  }
+  if (p.tau || p.shift || p.linear != 1) return;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+    for (uint32_t j = i + 1; j < noether_coordinates(e); j++) {
+      if (!turns(e, r, i, j)) continue;
+      if (wrong_turn(e, i, j, entry(e, r, 0, i, j + 1))) flip(e, r);
+      return;
+    }
+}
+
+/* --- names --- */
+
+/* The only coordinate that block m shifts; UINT32_MAX: there are several. */
+static uint32_t only_shift(const Eqns *e, const GeneratorRow *r, uint32_t m) {
+  uint32_t only = UINT32_MAX, n = 0;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+    if (!expr_is_zero(e->g, entry(e, r, m, i, 0))) only = i, n++;
+  return n == 1 ? only : UINT32_MAX;
+}
+
+/* The axis along which block m shifts all bodies alike; NO_AXIS: it does something else. */
+static uint32_t common_shift(const Eqns *e, const GeneratorRow *r, uint32_t m) {
+  uint32_t axis = NO_AXIS, n = 0;
+  Expr one = 0;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++) {
+    Expr c = entry(e, r, m, i, 0);
+    if (expr_is_zero(e->g, c)) continue;
+    uint32_t own = axis_at(e, i);
+    if (own == NO_AXIS || (one && (c != one || own != axis))) return NO_AXIS;
+    one = c;
+    axis = own;
+    n++;
+  }
+  return n && n == along(e, axis) ? axis : NO_AXIS;
+}
+
+static const char *axis_text(uint32_t axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
+
+static void name_shift(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  Arena *a = e->m->arena;
+  uint32_t axis = common_shift(e, r, 0), only = only_shift(e, r, 0);
+  int has_F = to->is.is == INVARIANT_UP_TO_F, magnetic = has_F && (expr_kinds(e->g, to->is.F) & 1u << SYM_COORD);
+  to->kind = SYMMETRY_MOMENTUM;
+  to->axis = axis;
+  to->of_all = axis != NO_AXIS;
+  if (only != UINT32_MAX)
+    to->name = arena_printf(a, magnetic ? "magnetic translation along %s" : has_F ? "translation along %s: momentum less the impulse of what is uniform" : "momentum of %s",
+                            coord(e, only));
+  else if (axis != NO_AXIS) to->name = arena_printf(a, magnetic ? "magnetic translation of all bodies along %s" : "total momentum along %s", axis_text(axis));
+  else to->name = magnetic ? "magnetic translation" : "momentum along a direction";
+}
+
+static void name_boost(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  uint32_t axis = common_shift(e, r, 1), only = only_shift(e, r, 1);
+  to->kind = SYMMETRY_BOOST;
+  to->axis = axis;
+  to->of_all = axis != NO_AXIS;
+  to->name = only != UINT32_MAX  ? arena_printf(e->m->arena, "boost along %s", coord(e, only))
+             : axis != NO_AXIS   ? arena_printf(e->m->arena, "boost along %s: the centre of mass moves uniformly", axis_text(axis))
+                                 : "boost";
+}
+
+static uint32_t terms_of(const Eqns *e, const GeneratorRow *r) {
+  uint32_t terms = 0;
+  for (uint32_t j = 0; j < r->ansatz->xi.n; j++) terms += !expr_is_zero(e->g, r->c[1 + j]);
+  return terms;
+}
+
+/* Whether the linear part is a turn of some bodies about one axis by one angle; *bodies: how many. */
+static uint32_t common_turn(const Eqns *e, const GeneratorRow *r, uint32_t *bodies) {
+  uint32_t axis = NO_AXIS, terms = terms_of(e, r);
+  Expr one = 0;
+  *bodies = 0;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+    for (uint32_t j = i + 1; j < noether_coordinates(e); j++) {
+      uint32_t a = axis_at(e, i), b = axis_at(e, j);
+      if (!turns(e, r, i, j)) continue;
+      if (a == NO_AXIS || b == NO_AXIS || a == b || !same_body(coord(e, i), coord(e, j))) return NO_AXIS;
+      Expr c = entry(e, r, 0, i, j + 1);
+      if ((b + 3 - a) % 3 == 2) c = expr_neg(e->g, c);
+      if (one && (c != one || axis != 3 - a - b)) return NO_AXIS;
+      one = c;
+      axis = 3 - a - b;
+      ++*bodies;
+    }
+  return terms == 2 * *bodies ? axis : NO_AXIS;
+}
+
+static uint32_t bodies_with(const Eqns *e, uint32_t axis) {
+  uint32_t a = (axis + 1) % 3, n = 0;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+    for (uint32_t j = 0; j < noether_coordinates(e); j++)
+      n += axis_at(e, i) == a && axis_at(e, j) == (axis + 2) % 3 && same_body(coord(e, i), coord(e, j));
+  return n;
+}
+
+/* Whether the linear part turns two directions of bodies against one another, but not body by body: xi_x = -S y, xi_y = S x. */
+static int mixes_bodies(const Eqns *e, const GeneratorRow *r) {
+  for (uint32_t j = 0; j < r->ansatz->xi.n; j++) {
+    if (expr_is_zero(e->g, r->c[1 + j])) continue;
+    uint32_t i = r->ansatz->xi.at[j].i, k = r->ansatz->xi.at[j].k - 1, a = axis_at(e, i), b = axis_at(e, k), found = 0;
+    if (a == NO_AXIS || b == NO_AXIS || a == b) return 0;
+    for (uint32_t other = 0; other < noether_coordinates(e) && !found; other++)
+      for (uint32_t last = 0; last < noether_coordinates(e) && !found; last++)
+        found = same_body(coord(e, i), coord(e, other)) && axis_at(e, other) == b && same_body(coord(e, k), coord(e, last)) &&
+                axis_at(e, last) == a && entry(e, r, 0, other, last + 1) == expr_neg(e->g, r->c[1 + j]);
+    if (!found) return 0;
+  }
+  return 1;
+}
+
+/* Whether xi is a multiple of n q (in space) or q n (of the body's own), q the rotation that coordinate w begins and n its axis `x`, with y and z
+ * behind it in turn. */
+static int turns_rotation(const Eqns *e, const GeneratorRow *r, uint32_t w, uint32_t axis, int own) {
+  uint32_t x = sibling(e, w, (char)('x' + axis)), y = sibling(e, w, (char)('x' + (axis + 1) % 3)), z = sibling(e, w, (char)('x' + (axis + 2) % 3));
+  if (x == UINT32_MAX || y == UINT32_MAX || z == UINT32_MAX) return 0;
+  Expr c = entry(e, r, 0, x, w + 1), minus = expr_neg(e->g, c), other = own ? minus : c;
+  return !expr_is_zero(e->g, c) && entry(e, r, 0, w, x + 1) == minus && entry(e, r, 0, z, y + 1) == other && entry(e, r, 0, y, z + 1) == expr_neg(e->g, other);
+}
+
+/* 0: it is no turn of one rotation. */
+static int name_turn(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  for (uint32_t w = 0; w < noether_coordinates(e) && terms_of(e, r) == 4; w++)
+    for (uint32_t k = 0; k < 6 && sibling(e, w, 'w') == w; k++) {
+      if (!turns_rotation(e, r, w, k / 2, k % 2)) continue;
+      to->kind = SYMMETRY_OTHER;
+      to->name = arena_printf(e->m->arena, k % 2 ? "turns about the body's own %s: twice its angular momentum" : "turns about %s in space: twice the angular momentum", axis_text(k / 2));
+      return 1;
+    }
+  return 0;
+}
+
+static void name_linear(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  if (name_turn(e, r, to)) return;
+  uint32_t bodies, axis = common_turn(e, r, &bodies);
+  int antisymmetric = 1, space = along(e, 2) > 0 && along(e, 0) > 0;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+    for (uint32_t j = 0; j < noether_coordinates(e); j++)
+      if (!expr_is_zero(e->g, entry(e, r, 0, i, j + 1)) && !turns(e, r, i < j ? i : j, i < j ? j : i)) antisymmetric = 0;
+  if (axis != NO_AXIS) {
+    int all = bodies == bodies_with(e, axis);
+    to->kind = SYMMETRY_ROTATION;
+    to->axis = axis;
+    to->of_all = all;
+    const char *whole = all && bodies > 1 ? "total angular momentum" : "angular momentum";
+    to->name = space || axis != 2 ? arena_printf(e->m->arena, "%s about %s", whole, axis_text(axis)) : whole;
+  } else if (mixes_bodies(e, r)) to->name = "angular momentum of a part of the motion";
+  else to->name = antisymmetric ? "rotation among coordinates" : "linear map of the coordinates";
+}
+
+void name_symmetry(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  Parts p = parts_of(e, r);
+  to->axis = NO_AXIS;
+  to->name = "point symmetry";
+  if (r->kind != TIME_POWERS && (r->kind != TIME_LISTED || (p.tau | p.shift | p.linear) > 3)) {
+    const char *what = p.tau ? "breathing" : p.linear ? "turning" : "shift along a solution";
+    to->name = r->kind == TIME_LISTED ? what : arena_printf(e->m->arena, "%s, %s", what, r->kind == TIME_CIRCULAR ? "periodic in t" : "exponential in t");
+  } else if (is_energy(p)) {
+    to->kind = SYMMETRY_ENERGY;
+    to->name = "energy";
+  } else if (p.tau == 1) to->name = "energy in a moving frame";
+  else if (!p.tau && !p.linear && p.shift == 1) name_shift(e, r, to);
+  else if (!p.tau && !p.linear && p.shift == 2) name_boost(e, r, to);
+  else if (!p.tau && !p.shift && p.linear == 1) name_linear(e, r, to);
+  else if (p.tau == 2 && p.linear == 1) {
+    to->kind = SYMMETRY_SCALING;
+    to->name = p.shift > 1 ? "scaling about a point that moves" : p.shift ? "scaling about another point" : "scaling";
+  } else if (p.tau & 4) to->name = "expansion";
+  else if (!p.tau && p.linear == 1) {
+    int turn = 0;
+    for (uint32_t i = 0; i < noether_coordinates(e); i++)
+      for (uint32_t j = i + 1; j < noether_coordinates(e); j++) turn = turn || turns(e, r, i, j);
+    if (turn) to->name = p.shift > 1 ? "rotation about a point that moves" : "rotation about another point";
+  }
+}
+
+int has_galilean_charges(const FoundSymmetries *all) {
+  uint32_t seen[SYMMETRY_SCALING + 1] = {0};
+  for (uint32_t k = 0; k < all->all.n; k++) {
+    const FoundSymmetry *s = &all->all.at[k];
+    if (s->kind == SYMMETRY_ENERGY) seen[s->kind] = 7;
+    else if (s->of_all) seen[s->kind] |= 1u << s->axis;
+  }
+  return seen[SYMMETRY_ENERGY] && seen[SYMMETRY_MOMENTUM] == 7 && seen[SYMMETRY_ROTATION] == 7 && seen[SYMMETRY_BOOST] == 7;
+}

@@ -1,0 +1,108 @@
+#include "mech/noether_report.h"
+
+#include "sym/prove.h"
+
+/* --- cyclic coordinates --- */
+
+Indices noether_cyclic(const Eqns *e) {
+  enum { PROVE_MOST = 20 }; /* past them, only those that do not stand in the text of L */
+  Indices all = {0};
+  for (uint32_t i = 0; i < e->n; i++) {
+    int absent = expr_is_zero(e->g, e->dLdq[i]);
+    if (!absent && e->n <= PROVE_MOST) absent = prove_zero(e->g, e->dLdq[i], NULL) == PROVED_ZERO;
+    if (absent) vec_push(e->m->arena, &all, i);
+  }
+  return all;
+}
+
+static int is_pushed(const Eqns *e, uint32_t i) {
+  for (uint32_t k = 0; k < e->constraints.A.n; k++)
+    if (e->constraints.A.at[k].col == i) return 1;
+  return !expr_is_zero(e->g, e->Q[i]);
+}
+
+void show_cyclic(const Eqns *e, StrBuf *out) {
+  Indices all = noether_cyclic(e);
+  for (uint32_t k = 0; k < all.n; k++) {
+    Name x = e->m->coords.at[all.at[k]].name;
+    sb_printf(out, "cyclic coordinate: %s; L does not contain it, and p_%s is %s\n", x, x, is_pushed(e, all.at[k]) ? "changed by forces and constraints alone" : "conserved");
+  }
+}
+
+/* --- the report --- */
+
+NoetherReport *noether_report(Eqns *e) {
+  NoetherReport *r = ARENA_NEW(e->m->arena, NoetherReport);
+  r->e = e;
+  r->cyclic = noether_cyclic(e);
+  r->found = noether_find(e);
+  r->algebra = brackets_find(e, &r->found);
+  r->scales = noether_scaling(e, &r->scaling);
+  return r;
+}
+
+/* --- generators in the graph of another model --- */
+
+/* The same symbol by name; 0: there is none. */
+static Expr symbol_in(const Eqns *to, const Symbol *s) {
+  for (SymId k = 1; k <= expr_symbol_count(to->g); k++) {
+    const Symbol *x = expr_symbol(to->g, k);
+    if (strcmp(x->name, s->name) == 0 && x->kind != SYM_LOCAL) return x->node;
+  }
+  return 0;
+}
+
+/* Generators are made of symbols, numbers, powers and functions of one argument; 0: not so, or a symbol is missing. */
+static Expr node_in(const Eqns *to, const ExprGraph *g, Expr x, const ExprMap *map) {
+  ExprGraph *other = to->g;
+  ExprOp op = expr_op(g, x);
+  if (op == EX_NUM) return expr_num(other, expr_number(g, x));
+  if (op == EX_SYM) return symbol_in(to, expr_sym_of(g, x));
+  if (op == EX_SUM || op == EX_PROD) {
+    Expr all = expr_int(other, op == EX_PROD);
+    for (uint32_t i = 0; i < expr_pairs(g, x, op); i++) {
+      Num c;
+      Expr part = expr_map_get(map, expr_pair(g, x, op, i, &c));
+      if (!part) return 0;
+      part = op == EX_SUM ? expr_scale(other, c, part) : expr_pow_num(other, part, c);
+      all = op == EX_SUM ? expr_add(other, all, part) : expr_mul(other, all, part);
+    }
+    return all;
+  }
+  Expr argument = expr_nargs(g, x) == 1 ? expr_map_get(map, expr_arg(g, x, 0)) : 0;
+  return !argument ? 0 : op == EX_DEF ? argument : expr_fn(other, op, argument);
+}
+
+static Expr in_graph(const Eqns *to, ExprGraph *g, Expr x) {
+  ExprMap map = expr_map(to->m->arena);
+  ExprList all = expr_topo(g, &x, 1);
+  for (uint32_t i = 0; i < all.n; i++) {
+    Expr same = node_in(to, g, all.at[i], &map);
+    if (same) expr_map_set(&map, all.at[i], same);
+  }
+  return expr_map_get(&map, x);
+}
+
+/* Coordinates that only the other model has stay as they are. 0: a name is missing there. */
+static int generator_in(const Eqns *to, const Eqns *from, const Generator *by, Generator *same) {
+  uint32_t n = noether_coordinates(to), placed = 0;
+  Expr *xi = ARENA_ARRAY(to->m->arena, Expr, n + 1);
+  for (uint32_t i = 0; i < n; i++)
+    for (uint32_t k = 0; k < noether_coordinates(from); k++) {
+      Name here = expr_symbol(to->g, noether_coordinate(to, i))->name, there = expr_symbol(from->g, noether_coordinate(from, k))->name;
+      if (strcmp(here, there) != 0) continue;
+      if (!(xi[i] = in_graph(to, from->g, by->xi[k]))) return 0;
+      placed++;
+    }
+  *same = (Generator){xi, in_graph(to, from->g, by->tau)};
+  return same->tau && placed == noether_coordinates(from);
+}
+
+void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with) {
+  Noether *is = ARENA_ARRAY(r->e->m->arena, Noether, r->found.all.n + 1);
+  for (uint32_t k = 0; k < r->found.all.n; k++) {
+    Generator same;
+    if (generator_in(with, r->e, &r->found.all.at[k].by, &same)) is[k] = noether_prove(with, &same);
+  }
+  vec_push(r->e->m->arena, &r->effects, ((EffectVerdict){effect, with, is}));
+}

@@ -1,0 +1,113 @@
+/* The space of solutions of B0 u + B1 u' = 0: cut down until its derivatives lie in it. */
+#include <math.h>
+
+#include "mech/noether_search.h"
+
+enum { SPARE_ROWS = 12 };
+static const long double REST = 1e-11L; /* of a column of length 1: rounding is 1e-18, random pivots were never seen below 1e-6 */
+
+/* x * space: rows of coordinates become rows of u. */
+static DenseRows combine(Arena *a, const DenseRows *x, const DenseRows *space) {
+  DenseRows u = {x->n, space->width, ARENA_ARRAY(a, long double, (size_t)x->n * space->width + 1), x->gap};
+  for (size_t k = 0; k < x->n; k++)
+    for (size_t i = 0; i < space->n; i++)
+      for (size_t j = 0; x->at[k * x->width + i] != 0 && j < space->width; j++)
+        u.at[k * u.width + j] += x->at[k * x->width + i] * space->at[i * space->width + j];
+  return u;
+}
+
+/* The elements of the space's rows that are not zero: row k has those from begin[k] on. At first a row has one. */
+typedef struct {
+  uint32_t *begin, *column;
+  long double *value;
+} Sparse;
+
+static Sparse sparse_rows(Arena *a, const DenseRows *space) {
+  size_t all = (size_t)space->n * space->width, count = 0;
+  for (size_t i = 0; i < all; i++) count += space->at[i] != 0;
+  Sparse s = {ARENA_ARRAY(a, uint32_t, space->n + 1), ARENA_ARRAY(a, uint32_t, count + 1), ARENA_ARRAY(a, long double, count + 1)};
+  uint32_t next = 0;
+  for (uint32_t k = 0; k < space->n; k++) {
+    for (uint32_t j = 0; j < space->width; j++) {
+      long double x = space->at[(size_t)k * space->width + j];
+      if (x == 0) continue;
+      s.column[next] = j;
+      s.value[next++] = x;
+    }
+    s.begin[k + 1] = next;
+  }
+  return s;
+}
+
+/* to[n] = the products of a row with the rows of the space. Both are of length 1 or so, and what is left of a product far below that is
+ * rounding: it must be 0, for a kernel scales columns. */
+static void project(const Sparse *s, uint32_t n, const long double *row, long double *to) {
+  for (uint32_t k = 0; k < n; k++) {
+    to[k] = 0;
+    for (uint32_t x = s->begin[k]; x < s->begin[k + 1]; x++) to[k] += s->value[x] * row[s->column[x]];
+    if (fabsl(to[k]) < 1e-15L) to[k] = 0;
+  }
+}
+
+/* The kernel of (B0, B1) on pairs (x, y) of u = x*space, u' = y*space. */
+static DenseRows pairs(RowSource *r, Arena *a, RowKind kind, const DenseRows *space) {
+  uint32_t n = space->n, most = 2 * n + SPARE_ROWS;
+  long double *b0 = ARENA_ARRAY(a, long double, (size_t)most * space->width), *b1 = ARENA_ARRAY(a, long double, (size_t)most * space->width);
+  long double *m = ARENA_ARRAY(a, long double, (size_t)most * 2 * n + 1);
+  Sparse sparse = sparse_rows(a, space);
+  uint32_t rows = rows_fill(r, kind, most, b0, b1);
+  for (size_t i = 0; i < rows; i++) {
+    project(&sparse, n, b0 + i * space->width, m + i * 2 * n);
+    project(&sparse, n, b1 + i * space->width, m + i * 2 * n + n);
+  }
+  DenseRows kernel = rows < most ? (DenseRows){0} : dense_kernel(a, rows, 2 * n, m, REST);
+  if (rows < most) kernel.width = 2 * n;
+  return kernel;
+}
+
+/* What is left of the space by the rows of one kind. 0 where the rows could not be had. */
+static int cut(RowSource *r, Arena *a, RowKind kind, DenseRows *space, int *sure) {
+  DenseRows kernel = pairs(r, a, kind, space);
+  if (kernel.at == NULL) return 0;
+  if (kernel.gap < 1e4L) *sure = 0;
+  DenseRows x = dense_orthonormal(a, &kernel, space->n), u = combine(a, &x, space);
+  *space = dense_orthonormal(a, &u, u.width);
+  return 1;
+}
+
+static DenseRows everything(const Ansatz *s, Arena *a) {
+  DenseRows all = {.width = s->columns, .at = ARENA_ARRAY(a, long double, (size_t)s->columns * s->columns)};
+  for (uint32_t j = s->has_tau ? 0 : 1; j < s->columns; j++) all.at[(size_t)all.n++ * s->columns + j] = 1;
+  return all;
+}
+
+/* A of x' = A x: the kernel spans pairs (x, A x), and each x stands in one of them. */
+static long double *rates(RowSource *r, Arena *a, const DenseRows *space, int *sure) {
+  uint32_t n = space->n, *pivot = ARENA_ARRAY(a, uint32_t, 2 * n + 1);
+  long double *A = ARENA_ARRAY(a, long double, (size_t)n * n + 1);
+  DenseRows kernel = pairs(r, a, ROWS_ALL, space);
+  if (kernel.n != n) {
+    *sure = 0;
+    return A;
+  }
+  dense_echelon(n, 2 * n, kernel.at, 1e-12L, pivot);
+  for (uint32_t k = 0; k < n; k++) {
+    if (pivot[k] != k) *sure = 0; /* an x without a derivative: the space was not cut down far enough */
+    for (uint32_t i = 0; i < n; i++) A[(size_t)i * n + k] = kernel.at[(size_t)k * 2 * n + n + i];
+  }
+  return A;
+}
+
+SolutionSpace solution_space(const Ansatz *s, Arena *a, const long double *parameters) {
+  RowSource *r = rows_new(s, a, parameters);
+  SolutionSpace found = {.space = everything(s, a), .sure = 1};
+  DenseRows *space = &found.space;
+  if (!cut(r, a, ROWS_EVEN, space, &found.sure) || !cut(r, a, ROWS_AT_REST, space, &found.sure)) return (SolutionSpace){0};
+  for (uint32_t before = UINT32_MAX; before != space->n;) {
+    before = space->n;
+    if (!cut(r, a, ROWS_ALL, space, &found.sure)) return (SolutionSpace){0};
+    if (s->held.n && !cut(r, a, ROWS_CONSTRAINTS, space, &found.sure)) return (SolutionSpace){0};
+  }
+  found.A = rates(r, a, space, &found.sure);
+  return found;
+}

@@ -1,0 +1,220 @@
+#include "mech/noether_table.h"
+
+#include <complex.h>
+#include <math.h>
+
+#include "sym/diff.h"
+
+static long double largest(const long double *x, size_t n) {
+  long double most = 0;
+  for (size_t i = 0; i < n; i++) most = fmaxl(most, fabsl(x[i]));
+  return most;
+}
+
+static void multiply(uint32_t n, const long double *a, const long double *b, long double *to) {
+  memset(to, 0, (size_t)n * n * sizeof *to);
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k < n; k++)
+      for (size_t j = 0; a[i * n + k] != 0 && j < n; j++) to[i * n + j] += a[i * n + k] * b[k * n + j];
+}
+
+/* A x. */
+static void apply(uint32_t n, const long double *A, const long double *x, long double *to) {
+  for (size_t i = 0; i < n; i++) {
+    to[i] = 0;
+    for (size_t k = 0; k < n; k++) to[i] += A[i * n + k] * x[k];
+  }
+}
+
+/* What rounding has left in the place of zeros of a matrix whose elements come from numbers of this size. */
+static void clean(long double *m, size_t n, long double size) {
+  for (size_t i = 0; i < n; i++)
+    if (fabsl(m[i]) < 1e-12L * size) m[i] = 0;
+}
+
+static long double size_of(const SolutionSpace *s) { return fmaxl(largest(s->A, (size_t)s->space.n * s->space.n), 1e-3L) * (long double)(s->space.n + 1); }
+
+/* The x that A^k x = 0 of some k, orthonormal: the kernel of A, what A takes there, and so on. */
+static DenseRows polynomials(Arena *a, const SolutionSpace *s) {
+  uint32_t n = s->space.n, before = UINT32_MAX;
+  DenseRows x = {.width = n, .at = ARENA_ARRAY(a, long double, (size_t)n * n + 1)};
+  for (int turn = 0; turn < TIME_BLOCKS_MOST && x.n != before; turn++) {
+    uint32_t w = n + x.n;
+    long double *m = ARENA_ARRAY(a, long double, (size_t)n * w + 1);
+    before = x.n;
+    for (size_t i = 0; i < n; i++) {
+      for (size_t j = 0; j < n; j++) m[i * w + j] = s->A[i * n + j];
+      for (size_t k = 0; k < x.n; k++) m[i * w + n + k] = x.at[k * n + i];
+    }
+    clean(m, (size_t)n * w, size_of(s));
+    DenseRows kernel = dense_kernel(a, n, w, m, 1e-8L);
+    x = dense_orthonormal(a, &kernel, n);
+  }
+  return x;
+}
+
+/* Adds `factor` times the shown part of the solution x to a block of a row. */
+static void show(const SolutionSpace *s, const long double *x, long double factor, uint32_t shown, long double *block) {
+  for (size_t k = 0; k < s->space.n; k++)
+    for (size_t j = 0; x[k] != 0 && j < shown; j++) block[j] += factor * x[k] * s->space.at[k * s->space.width + j];
+}
+
+static Table table_new(Arena *a, uint32_t rows, uint32_t blocks, uint32_t shown) {
+  size_t size = (size_t)rows * blocks * shown;
+  return (Table){rows, blocks, shown, ARENA_ARRAY(a, long double, size + 1), ARENA_ARRAY(a, uint32_t, rows + 1)};
+}
+
+static void reduce(Table *t) {
+  uint32_t width = t->blocks * t->shown;
+  long double size = largest(t->at, (size_t)t->rows * width);
+  t->rows = dense_echelon(t->rows, width, t->at, 1e-9L * size, t->pivot);
+}
+
+Table table_powers(Arena *a, const SolutionSpace *s, uint32_t shown) {
+  uint32_t n = s->space.n, width = TIME_BLOCKS_MOST * shown;
+  DenseRows x = polynomials(a, s);
+  Table t = table_new(a, x.n, TIME_BLOCKS_MOST, shown);
+  long double *at = ARENA_ARRAY(a, long double, n + 1), *next = ARENA_ARRAY(a, long double, n + 1);
+  for (uint32_t r = 0; r < x.n; r++) {
+    long double factor = 1;
+    memcpy(at, x.at + (size_t)r * n, n * sizeof *at);
+    for (uint32_t m = 0; m < TIME_BLOCKS_MOST; m++) {
+      show(s, at, factor, shown, t.at + (size_t)r * width + (size_t)m * shown);
+      apply(n, s->A, at, next);
+      clean(next, n, largest(at, n) * size_of(s));
+      memcpy(at, next, n * sizeof *at);
+      factor /= m + 1;
+    }
+  }
+  reduce(&t);
+  return t;
+}
+
+Table table_periodic(Arena *a, const SolutionSpace *s, uint32_t shown, long double rate2) {
+  uint32_t n = s->space.n;
+  long double rate = sqrtl(fabsl(rate2)), *m = ARENA_ARRAY(a, long double, (size_t)n * n + 1), *next = ARENA_ARRAY(a, long double, n + 1);
+  multiply(n, s->A, s->A, m);
+  for (size_t i = 0; i < n; i++) m[i * n + i] -= rate2;
+  clean(m, (size_t)n * n, size_of(s) * size_of(s));
+  DenseRows x = dense_kernel(a, n, n, m, 1e-8L);
+  Table t = table_new(a, x.n, 2, shown);
+  for (uint32_t r = 0; r < x.n; r++) {
+    const long double *at = x.at + (size_t)r * n;
+    long double *first = t.at + (size_t)r * 2 * shown, *second = first + shown;
+    apply(n, s->A, at, next);
+    if (rate2 < 0) {
+      show(s, at, 1, shown, first);
+      show(s, next, 1 / rate, shown, second);
+      continue;
+    }
+    show(s, at, 0.5L, shown, first);
+    show(s, next, 0.5L / rate, shown, first);
+    show(s, at, 0.5L, shown, second);
+    show(s, next, -0.5L / rate, shown, second);
+  }
+  reduce(&t);
+  return t;
+}
+
+/* --- rates --- */
+
+/* All roots of the monic polynomial sum of c[k] x^k (c[n] = 1) at once. Weierstrass 1891, Durand 1960, Kerner 1966. */
+static void roots_of(uint32_t n, const long double *c, complex long double *root) {
+  long double radius = 0;
+  for (uint32_t k = 0; k < n; k++) radius = fmaxl(radius, powl(fabsl(c[k]), 1.0L / (n - k)));
+  for (uint32_t k = 0; k < n; k++) root[k] = 1.2L * radius * cexpl((long double)(6.3 * k / n + 0.4) * (complex long double)I);
+  for (int turn = 0; turn < 500; turn++)
+    for (uint32_t k = 0; k < n; k++) {
+      complex long double value = 1, others = 1;
+      for (uint32_t j = n; j-- > 0;) value = value * root[k] + c[j];
+      for (uint32_t j = 0; j < n; j++)
+        if (j != k) others *= root[k] - root[j];
+      if (others != 0) root[k] -= value / others;
+    }
+}
+
+/* A on the space modulo its polynomials, where it has no kernel: C A C^T with C orthonormal and orthogonal to them. */
+static SolutionSpace without_polynomials(Arena *a, const SolutionSpace *s) {
+  uint32_t n = s->space.n;
+  DenseRows x = polynomials(a, s), all = {x.n + n, n, ARENA_ARRAY(a, long double, (size_t)(x.n + n) * n + 1), 0};
+  memcpy(all.at, x.at, (size_t)x.n * n * sizeof *all.at);
+  for (size_t i = 0; i < n; i++) all.at[(x.n + i) * n + i] = 1;
+  all = dense_orthonormal(a, &all, n);
+  SolutionSpace rest = {.space = {.n = n - x.n, .width = n, .at = all.at + (size_t)x.n * n}};
+  long double *moved = ARENA_ARRAY(a, long double, n + 1);
+  rest.A = ARENA_ARRAY(a, long double, (size_t)rest.space.n * rest.space.n + 1);
+  for (size_t j = 0; j < rest.space.n; j++) {
+    apply(n, s->A, rest.space.at + j * n, moved);
+    for (size_t i = 0; i < rest.space.n; i++)
+      for (size_t k = 0; k < n; k++) rest.A[i * rest.space.n + j] += rest.space.at[i * n + k] * moved[k];
+  }
+  return rest;
+}
+
+/* The minimal polynomial of A^2, from its powers on one vector; A. N. Krylov 1931. 0: of too high a degree. */
+static uint32_t minimal_polynomial(Arena *a, const SolutionSpace *s, uint32_t most, long double *c) {
+  uint32_t n = s->space.n, count = n < most ? n : most;
+  long double *x = ARENA_ARRAY(a, long double, n + 1), *y = ARENA_ARRAY(a, long double, n + 1);
+  long double *krylov = ARENA_ARRAY(a, long double, (size_t)n * (most + 1) + 1), *copy = ARENA_ARRAY(a, long double, (size_t)n * (most + 1) + 1);
+  for (uint32_t i = 0; i < n; i++) x[i] = sinl(1.0L + 17.0L * i);
+  for (uint32_t m = 0; m <= count; m++) {
+    for (uint32_t i = 0; i < n; i++) krylov[(size_t)i * (most + 1) + m] = x[i];
+    for (uint32_t i = 0; i < n; i++) memcpy(copy + (size_t)i * (m + 1), krylov + (size_t)i * (most + 1), (m + 1) * sizeof *copy);
+    DenseRows null = dense_kernel(a, n, m + 1, copy, 1e-10L);
+    if (null.n) {
+      for (uint32_t k = 0; k <= m; k++) c[k] = null.at[k] / null.at[m];
+      return m;
+    }
+    apply(n, s->A, x, y);
+    apply(n, s->A, y, x);
+  }
+  return 0;
+}
+
+Rates space_rates(Arena *a, const SolutionSpace *s) {
+  enum { MOST = 10 };
+  long double c[MOST + 1];
+  complex long double root[MOST];
+  SolutionSpace rest = without_polynomials(a, s);
+  uint32_t m = rest.space.n ? minimal_polynomial(a, &rest, MOST, c) : 0;
+  Rates r = {0, ARENA_ARRAY(a, long double, MOST)};
+  if (m) roots_of(m, c, root);
+  for (uint32_t k = 0; k < m; k++)
+    if (fabsl(cimagl(root[k])) < 1e-8L * cabsl(root[k])) r.at[r.n++] = creall(root[k]);
+  return r;
+}
+
+/* --- functions of time that are listed --- */
+
+Table table_listed(Arena *a, const Ansatz *s, const TimeList *times, const long double *parameters, int *sure) {
+  enum { SPARE_ROWS = 16 };
+  ExprGraph *g = s->e->g;
+  SymId t = s->e->m->time;
+  uint32_t gauge = s->columns - s->shown, nT = times->ngauge, width = times->n * s->shown + nT * gauge, rows = width + SPARE_ROWS;
+  uint32_t more = s->held.n ? times->n * s->shown + SPARE_ROWS : 0;
+  Expr *roots = ARENA_ARRAY(a, Expr, 2 * (size_t)nT);
+  long double *value = ARENA_ARRAY(a, long double, 2 * (size_t)nT), *symbols = ARENA_ARRAY(a, long double, expr_symbol_count(g) + 1);
+  long double *b0 = ARENA_ARRAY(a, long double, s->columns), *b1 = ARENA_ARRAY(a, long double, s->columns);
+  long double *m = ARENA_ARRAY(a, long double, (size_t)(rows + more) * width);
+  for (uint32_t k = 0; k < nT; k++) roots[k] = times->f[k], roots[nT + k] = expr_diff(g, times->f[k], t);
+  memcpy(symbols, parameters, (expr_symbol_count(g) + 1) * sizeof *symbols);
+  RowSource *source = rows_new(s, a, parameters);
+  EvalTape *tape = eval_tape(g, roots, 2 * nT);
+  *sure = 0;
+  for (size_t i = 0; i < rows + more; i++) {
+    long double *row = m + i * width;
+    if (!rows_at_time(source, i < rows ? ROWS_ALL : ROWS_CONSTRAINTS, b0, b1, &symbols[t])) return (Table){0};
+    eval_run(tape, symbols, value);
+    for (uint32_t k = 0; k < nT; k++) {
+      for (uint32_t j = 0; k < times->n && j < s->shown; j++) row[k * s->shown + j] = b0[j] * value[k] + b1[j] * value[nT + k];
+      for (uint32_t j = 0; j < gauge; j++)
+        row[times->n * s->shown + k * gauge + j] = b0[s->shown + j] * value[k] + b1[s->shown + j] * value[nT + k];
+    }
+  }
+  DenseRows kernel = dense_kernel(a, rows + more, width, m, 1e-12L);
+  Table to = table_new(a, kernel.n, times->n, s->shown);
+  for (size_t k = 0; k < kernel.n; k++) memcpy(to.at + k * times->n * s->shown, kernel.at + k * width, times->n * s->shown * sizeof *to.at);
+  *sure = kernel.gap > 1e3L;
+  reduce(&to);
+  return to;
+}

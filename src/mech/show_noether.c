@@ -1,0 +1,186 @@
+/* `lagc noether` as text and as LaTeX. */
+#include "mech/noether_report.h"
+#include "mech/show_text.h"
+
+typedef struct {
+  Text text;
+  const NoetherReport *r;
+} Page;
+
+/* A line of prose; in LaTeX a comment. */
+static void say(Page *p, const char *words) { sb_printf(p->text.out, "%s%s\n", text_latex(&p->text) ? "% " : "", words); }
+
+static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
+
+/* --- symmetries --- */
+
+static void put_delta(Page *p, Name name, Expr x) {
+  Text *t = &p->text;
+  Arena *a = t->e->m->arena;
+  if (!expr_is_zero(t->g, x)) text_named(t, arena_printf(a, "delta %s", name), arena_printf(a, "\\delta %s", text_latex_name(t, name)), x, 0);
+}
+
+static void symmetry(Page *p, uint32_t k) {
+  Text *t = &p->text;
+  Arena *a = t->e->m->arena;
+  const FoundSymmetry *s = &p->r->found.all.at[k];
+  int moves = !s->is.power_unknown && !expr_is_zero(t->g, s->is.power);
+  text_heading(t, arena_printf(a, "Q%u: %s", k + 1, s->name));
+  for (uint32_t i = 0; i < noether_coordinates(t->e); i++) put_delta(p, expr_symbol(t->g, noether_coordinate(t->e, i))->name, s->by.xi[i]);
+  put_delta(p, "t", s->by.tau);
+  if (!expr_is_zero(t->g, s->is.F)) text_named(t, "F", "F", s->is.F, 0);
+  text_named(t, arena_printf(a, "Q%u", k + 1), arena_printf(a, "Q_{%u}", k + 1), s->is.charge, !moves);
+  if (moves) text_named(t, arena_printf(a, "dQ%u/dt", k + 1), arena_printf(a, "\\dot{Q}_{%u}", k + 1), s->is.power, 1);
+  text_end(t);
+  if (s->is.power_unknown) say(p, "  not conserved: L depends on an input whose rate of change is not known");
+}
+
+static void symmetries(Page *p) {
+  const FoundSymmetries *f = &p->r->found;
+  Arena *a = p->text.e->m->arena;
+  sb_putc(p->text.out, '\n');
+  say(p, arena_printf(a, "looked for: %s", f->ansatz));
+  if (!f->searched) {
+    say(p, arena_printf(a, "not searched: %s", f->note));
+    return;
+  }
+  say(p, arena_printf(a, "found: %u symmetr%s, each proved; Q = p.delta q - E delta t - F", f->all.n, f->all.n == 1 ? "y" : "ies"));
+  if (f->unproved)
+    say(p, arena_printf(a, "%u more direction%s of the solution space not written in closed form, or not proved: not listed", f->unproved, plural(f->unproved)));
+  if (f->note) say(p, f->note);
+  if (f->galilean) say(p, "the ten charges of Galileo's group are among them");
+  for (uint32_t k = 0; k < f->all.n; k++) symmetry(p, k);
+  Expr *roots = ARENA_ARRAY(a, Expr, 3 * (size_t)f->all.n + 1);
+  for (uint32_t k = 0; k < f->all.n; k++) {
+    const Noether *is = &f->all.at[k].is;
+    roots[3 * k] = is->charge, roots[3 * k + 1] = is->F, roots[3 * k + 2] = is->power;
+  }
+  text_definitions(&p->text, roots, 3 * f->all.n);
+}
+
+/* --- scaling --- */
+
+/* s, s^2, s^(-1), s^(3/2). */
+static const char *power_text(Page *p, Num power) {
+  StrBuf b = strbuf(p->text.e->m->arena);
+  int bare = num_is_int(power) && num_sign(power) > 0;
+  if (num_is_one(power)) return "s";
+  sb_puts(&b, bare ? "s^" : "s^(");
+  num_print(&b, power);
+  sb_puts(&b, bare ? "" : ")");
+  return sb_text(&b);
+}
+
+static void scaling(Page *p) {
+  const NoetherReport *r = p->r;
+  Text *t = &p->text;
+  StrBuf b = strbuf(t->e->m->arena);
+  if (!r->scales) return;
+  sb_putc(t->out, '\n');
+  sb_puts(&b, "scaling:");
+  for (uint32_t i = 0; i <= t->e->n; i++) {
+    Num power = i < t->e->n ? r->scaling.alpha[i] : r->scaling.beta;
+    Name x = i < t->e->n ? t->e->m->coords.at[i].name : "t";
+    if (num_is_zero(power)) continue;
+    sb_printf(&b, "%s %s -> %s*%s", b.n > sizeof "scaling:" ? "," : "", x, power_text(p, power), x);
+  }
+  sb_printf(&b, " maps solutions to solutions; it multiplies the action by %s, so it is no symmetry in Noether's sense and has no charge",
+            power_text(p, r->scaling.kappa));
+  say(p, sb_text(&b));
+}
+
+/* --- the algebra --- */
+
+static Expr charge_symbol(Page *p, uint32_t k) {
+  Text *t = &p->text;
+  SymId s = expr_declare(t->g, SYM_LOCAL, k, arena_printf(t->e->m->arena, "Q%u", k + 1), SIGN_UNKNOWN);
+  return expr_symbol(t->g, s)->node;
+}
+
+static Expr combination(const NoetherReport *r, const Bracket *k, const Expr *charge) {
+  ExprGraph *g = r->e->g;
+  Expr sum = k->constant;
+  for (uint32_t i = 0; i < r->algebra.n; i++) sum = expr_add(g, sum, expr_mul(g, k->c[i], charge[i]));
+  return sum;
+}
+
+static void bracket(Page *p, const Bracket *k, const Expr *charge, int last) {
+  Text *t = &p->text;
+  Arena *a = t->e->m->arena;
+  Expr value = k->c ? combination(p->r, k, charge) : k->value;
+  const char *text = arena_printf(a, "{Q%u, Q%u}", k->a + 1, k->b + 1), *tex = arena_printf(a, "\\{Q_{%u}, Q_{%u}\\}", k->a + 1, k->b + 1);
+  text_named(t, text, tex, value, last);
+}
+
+static void algebra(Page *p) {
+  const Algebra *x = &p->r->algebra;
+  Arena *a = p->text.e->m->arena;
+  Expr *charge = ARENA_ARRAY(a, Expr, x->n + 1);
+  if (x->n < 2) return;
+  if (x->why_not) {
+    sb_putc(p->text.out, '\n');
+    say(p, arena_printf(a, "no Poisson brackets: %s", x->why_not));
+    return;
+  }
+  for (uint32_t k = 0; k < x->n; k++) charge[k] = charge_symbol(p, k);
+  uint32_t pairs = x->n * (x->n - 1) / 2, zero = pairs - x->all.n, open = 0;
+  if (x->all.n) text_heading(&p->text, "Poisson brackets");
+  else sb_putc(p->text.out, '\n');
+  for (uint32_t k = 0; k < x->all.n; k++) bracket(p, &x->all.at[k], charge, k + 1 == x->all.n);
+  if (x->all.n) text_end(&p->text);
+  for (uint32_t k = 0; k < x->all.n; k++) open += x->all.at[k].c == NULL;
+  if (open) say(p, arena_printf(a, "  %u of them %s no combination of these charges", open, open == 1 ? "is" : "are"));
+  const char *how = x->by_value ? arena_printf(a, "%u of %u proved, all seen at random states", pairs - x->by_value, pairs) : "all proved";
+  say(p, arena_printf(a, "  %s%s", !x->all.n ? "all Poisson brackets are 0: " : zero ? "the others are 0: " : "", how));
+}
+
+/* --- effects --- */
+
+static int is_broken(const EffectVerdict *v, const Noether *is) {
+  if (!is->charge) return 1;
+  return is->power_unknown || !expr_is_zero(v->e->g, is->power) || (is->is != INVARIANT && is->is != INVARIANT_UP_TO_F);
+}
+
+static void effect(Page *p, const EffectVerdict *v) {
+  Text of = {.e = v->e, .g = v->e->g, .style = p->text.style, .out = p->text.out};
+  Arena *a = v->e->m->arena;
+  uint32_t n = p->r->found.all.n, broken = 0, shown = 0;
+  for (uint32_t k = 0; k < n; k++) broken += (uint32_t)is_broken(v, &v->is[k]);
+  if (!broken) {
+    sb_putc(p->text.out, '\n');
+    say(p, arena_printf(a, "effect %s breaks none of them", v->effect));
+    return;
+  }
+  text_heading(&of, arena_printf(a, "effect %s breaks %u of %u", v->effect, broken, n));
+  for (uint32_t k = 0; k < n; k++) {
+    const Noether *is = &v->is[k];
+    if (!is_broken(v, is)) continue;
+    int last = ++shown == broken;
+    if (is->charge && !is->power_unknown) text_named(&of, arena_printf(a, "dQ%u/dt", k + 1), arena_printf(a, "\\dot{Q}_{%u}", k + 1), is->power, last);
+    else sb_printf(of.out, text_latex(&of) ? "  \\dot{Q}_{%u} &\\text{ is not known}\n" : "  dQ%u/dt is not known\n", k + 1);
+  }
+  text_end(&of);
+}
+
+/* --- the page --- */
+
+static void cyclic(Page *p) {
+  StrBuf b = strbuf(p->text.e->m->arena);
+  const char *at;
+  show_cyclic(p->text.e, &b);
+  if (!b.n) return;
+  sb_putc(p->text.out, '\n');
+  for (const char *line = sb_text(&b); (at = strchr(line, '\n')) != NULL; line = at + 1)
+    say(p, arena_strndup(p->text.e->m->arena, line, (size_t)(at - line)));
+}
+
+void show_noether(const NoetherReport *r, PrintStyle style, StrBuf *out) {
+  Page p = {.text = {.e = r->e, .g = r->e->g, .style = style, .out = out}, .r = r};
+  text_title(&p.text);
+  text_charges(&p.text);
+  cyclic(&p);
+  symmetries(&p);
+  scaling(&p);
+  algebra(&p);
+  for (uint32_t k = 0; k < r->effects.n; k++) effect(&p, &r->effects.at[k]);
+}

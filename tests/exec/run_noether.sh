@@ -1,0 +1,111 @@
+#!/bin/sh
+# lagc noether and lagc derive --hamiltonian as commands: what they refuse, where they write, effects, JSON. What they find is tested by
+# unit/test_found, test_brackets and test_hamilton, and how it looks by golden/run_eqns.
+. tests/tap.sh
+
+# refuses STATUS PATTERN COMMAND...: nothing on standard output, the pattern in the messages.
+refuses() {
+  status=$1 pattern=$2
+  shift 2
+  "$LAGC" "$@" >"$TMP/out" 2>"$TMP/err"
+  code=$?
+  [ "$code" = "$status" ] && ! [ -s "$TMP/out" ] && grep -q -e "$pattern" "$TMP/err" && return 0
+  echo "exit status $code, expected $status; messages:"
+  cat "$TMP/err"
+  return 1
+}
+says() { pattern=$1; shift; "$LAGC" "$@" >"$TMP/out" 2>&1 || return 1; grep -q -e "$pattern" "$TMP/out" || { cat "$TMP/out"; return 1; }; }
+is_silent() { pattern=$1; shift; "$LAGC" "$@" >"$TMP/out" 2>&1 || return 1; ! grep -e "$pattern" "$TMP/out"; }
+
+# ---- what is refused ----
+check "a model without a Lagrangian" refuses 1 "no symmetries to look for: the model has no Lagrangian" noether models/lorenz.lag
+check "a scene that is not there" refuses 1 "scene" noether models/kepler.lag nowhere
+check "a format that it does not have" refuses 2 "json" noether models/kepler.lag --format c
+check "the file of the model for an output" refuses 2 "would be overwritten" noether models/kepler.lag -o models/kepler.lag
+cat >"$TMP/false.lag" <<'END'
+model m
+coord x, y
+lagrangian = (x'^2 + y'^2)/2 + 1/hypot(x, y)
+symmetry spin(s): x -> x*cos(s) + y*sin(s), y -> x*sin(s) + y*cos(s)
+END
+check "a declared symmetry that is false" refuses 1 "the symmetry .spin. is false" noether "$TMP/false.lag"
+check "a Hamiltonian of an L of first order" refuses 1 "no Hamiltonian by momenta: L is linear in velocities" derive models/point_vortices.lag --hamiltonian
+check "a Hamiltonian without a Lagrangian" refuses 1 "no Hamiltonian: the model has no Lagrangian" derive models/lorenz.lag --hamiltonian
+check "a Hamiltonian as C" refuses 2 "text or latex" derive models/kepler.lag --hamiltonian --format c
+check "a Hamiltonian's operations" refuses 2 "text or latex" derive models/kepler.lag --hamiltonian --ops
+
+# ---- where it goes ----
+"$LAGC" noether models/kepler.lag >"$TMP/kepler" 2>&1
+check "to a file" sh -c '"$0" noether models/kepler.lag -o "$1" && cmp "$1" "$2"' "$LAGC" "$TMP/file" "$TMP/kepler"
+
+# ---- scenes and effects ----
+check "without a scene effects are off, and each is judged alone" says "effect drag breaks 8 of 8" noether models/projectile.lag
+check "a scene has its own" says "scene air, with wind_resistance" noether models/projectile.lag air
+check "and its balances" says "dQ2/dt = -wind_resistance.k\*sqrt(x'^2 + y'^2)\*x'" noether models/projectile.lag air
+check "which no list of effects follows" is_silent "^effect" noether models/projectile.lag air
+cat >"$TMP/wider.lag" <<'END'
+model m "A planet; with a moon, which is a coordinate of an effect; in a field; and in one that L cannot tell"
+coord x, y
+param k = 1 > 0
+lagrangian = (x'^2 + y'^2)/2 + k/hypot(x, y)
+effect moon { coord u; kinetic = u'^2/2; potential = u^2*(x^2 + y^2) }
+effect field { param g = 1; potential = g*x }
+effect again { requires field; param h = 1; potential = h*y }
+effect gauge { lagrangian = x*x' }
+END
+"$LAGC" noether "$TMP/wider.lag" >"$TMP/wider" 2>&1
+verdict() { sed -n "/^effect $1 /,/^\$/p" "$TMP/wider" | sed '/^$/d'; }
+is "an effect with a coordinate of its own, which stays" "effect moon breaks none of them" "$(verdict moon)"
+is "the torque of a field" "effect field breaks 1 of 2
+  dQ2/dt = field.g*y" "$(verdict field)"
+is "an effect with what it requires" "effect again breaks 1 of 2
+  dQ2/dt = field.g*y - again.h*x" "$(verdict again)"
+is "a total derivative breaks nothing" "effect gauge breaks none of them" "$(verdict gauge)"
+
+# ---- cyclic coordinates ----
+check "check says so" says "^cyclic coordinate: ph; L does not contain it, and p_ph is conserved" check models/spherical_pendulum.lag
+check "and says when forces or constraints act on it" says "^cyclic coordinate: x; .* changed by forces and constraints alone" check models/turntable.lag
+check "one that L contains is none" is_silent "cyclic coordinate: th" check models/spherical_pendulum.lag
+
+# ---- LaTeX and JSON ----
+blocks() { "$LAGC" "$@" --format latex | grep -c "$pattern"; }
+balanced() {
+  pattern='^.begin{align' && a=$(blocks "$@")
+  pattern='^.end{align' && b=$(blocks "$@")
+  [ "$a" -gt 2 ] && [ "$a" = "$b" ]
+}
+check "LaTeX closes what it opens" balanced noether models/charged_particle.lag
+check "and the Hamiltonian's" balanced derive models/charged_particle.lag --hamiltonian
+check "a last line of a block has no line break" sh -c '! "$0" noether models/spring.lag --format latex | grep -B1 "^.end" | grep -F "\\\\"' "$LAGC"
+if python3 -c 'import json' 2>/dev/null; then
+  cat >"$TMP/read.py" <<'END'
+import json, sys
+r = json.load(sys.stdin)
+assert r["searched"] and r["not_proved"] == 0, r
+assert [s["name"] for s in r["symmetries"]] == ["energy", "momentum of x", "momentum of th", "boost along x"], r
+assert r["symmetries"][3]["F"] == "m*x" and r["symmetries"][3]["delta"] == {"x": "t"}, r
+assert r["cyclic"] == ["x", "th"], r
+assert r["brackets"][-1] == {"of": [2, 4], "proved": True, "constant": "m", "charges": {}}, r
+assert r["effects"] == [{"effect": "drag", "powers": ["-drag.c*x'^2", "-drag.c*x'", "0", "-drag.c*t*x'"]}], r
+END
+  cat >"$TMP/json.lag" <<'END'
+model m
+coord x, th
+param m = 1 > 0
+lagrangian = m/2*x'^2 + cosh(th')
+effect drag { param c = 1; dissipation = c/2*x'^2 }
+END
+  check "JSON" sh -c '"$0" noether "$1" --format json >"$2" && python3 "$3" <"$2" || { cat "$2"; exit 1; }' "$LAGC" "$TMP/json.lag" "$TMP/report" "$TMP/read.py"
+  check "JSON of every model" sh -c 'for m in pendulum room turntable point_vortices kepler; do "$0" noether models/$m.lag --format json | python3 -m json.tool >/dev/null || exit 1; done' "$LAGC"
+else skip "JSON" "there is no python3"
+fi
+
+# ---- every model of the gallery with few coordinates is searched ----
+unsearched() {
+  for m in models/*.lag; do
+    case $m in */outer_planets.lag | */pleiades.lag | */lennard_jones.lag | */string.lag) continue ;; esac # seconds each
+    "$LAGC" noether "$m" 2>&1 | grep -e "not searched" -e "^ *[0-9]* of [0-9]* proved" | sed "s|^|$m: |"
+  done
+}
+empty "every model is searched, every bracket proved" "$(unsearched)"
+tap_end

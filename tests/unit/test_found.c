@@ -1,0 +1,389 @@
+/* The search for symmetries against theory: how many there are, that textbook generators are among them, that what is called conserved is
+ * conserved along the equations of motion, and that the space does not depend on coordinates. Dimensions of point symmetries that leave
+ * the action alone: U. Niederer, Helv. Phys. Acta 45 (1972) 802 and 46 (1973) 191 (free particle, oscillator, uniform field: 12 in three
+ * dimensions, n(n + 3)/2 + 3 in n), V. de Alfaro, S. Fubini, G. Furlan, Nuovo Cimento A 34 (1976) 569 (inverse square: sl(2)). */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "base/dense.h"
+#include "compile_text.h"
+#include "mech/noether_find.h"
+#include "mech/states.h"
+#include "sym/diff.h"
+
+typedef struct {
+  Arena *arena;
+  Eqns *e;
+  FoundSymmetries found;
+} Model_;
+
+static Model_ model(const char *lag) {
+  Model_ m = {.arena = arena_new(NULL)};
+  static jmp_buf failed;
+  assert_non_null(m.arena);
+  if (setjmp(failed)) fail_msg("out of memory");
+  arena_guard(m.arena, &failed);
+  m.e = equations(m.arena, lag, NULL);
+  assert_non_null(m.e);
+  m.found = noether_find(m.e);
+  return m;
+}
+
+/* --- every charge is conserved, by the accelerations of M q'' = f, which know nothing of Noether --- */
+
+static long double rate_of(const Model_ *m, Expr Q, const long double *symbols) {
+  const Eqns *e = m->e;
+  uint32_t count = expr_symbol_count(e->g) + 1;
+  Expr *seed = ARENA_ARRAY(m->arena, Expr, count), rate;
+  long double value;
+  seed[e->m->time] = expr_int(e->g, 1);
+  for (uint32_t i = 0; i < e->m->coords.n; i++) {
+    const Coord *c = &e->m->coords.at[i];
+    seed[c->q] = expr_symbol(e->g, c->v)->node;
+    seed[c->v] = expr_symbol(e->g, c->a)->node;
+  }
+  for (uint32_t i = 0; i < e->m->states.n; i++) seed[e->m->states.at[i].z] = expr_symbol(e->g, e->m->states.at[i].rate)->node;
+  expr_tangent(e->g, &Q, 1, seed, count, "'", NULL, &rate);
+  expr_eval(e->g, &rate, 1, symbols, &value);
+  return value;
+}
+
+static void conserved(const Model_ *m) {
+  StateSolver *solver = states_new(m->e);
+  for (int turn = 0; turn < 4; turn++) {
+    long double *symbols = random_point(m->e);
+    for (SymId s = 1; s <= expr_symbol_count(m->e->g); s++)
+      if (expr_symbol(m->e->g, s)->kind == SYM_COORD) symbols[s] += 2; /* away from where roots end */
+    assert_true(states_complete(solver, symbols));
+    for (uint32_t k = 0; k < m->found.all.n; k++) {
+      const FoundSymmetry *s = &m->found.all.at[k];
+      /* values are of the size of 1 .. 100, their digits 19 */
+      if (!(fabsl(rate_of(m, s->is.charge, symbols)) < 1e-13L)) fail_msg("%s: dQ/dt = %Lg", s->name, rate_of(m, s->is.charge, symbols));
+    }
+  }
+}
+
+/* --- spaces of generators, as their values at points --- */
+
+enum { POINTS = 24 };
+
+/* (xi, tau) of a generator at random points (q, t); map: what q and xi become. Rows of one model are taken at the same points. */
+static void values_of(const Model_ *m, const Generator *by, long double *to) {
+  uint32_t n = noether_coordinates(m->e);
+  test_rng = 17;
+  for (uint32_t p = 0; p < POINTS; p++) {
+    long double *symbols = random_point(m->e);
+    for (uint32_t i = 0; i < n; i++) symbols[noether_coordinate(m->e, i)] = uniform(-1, 1);
+    symbols[m->e->m->time] = uniform(0, 3);
+    for (uint32_t i = 0; i < n; i++) {
+      long double *at = to + (size_t)p * (n + 1) + i;
+      *at = 0;
+      if (by->xi && by->xi[i]) expr_eval(m->e->g, &by->xi[i], 1, symbols, at);
+    }
+    to[(size_t)p * (n + 1) + n] = 0;
+    if (by->tau) expr_eval(m->e->g, &by->tau, 1, symbols, &to[(size_t)p * (n + 1) + n]);
+  }
+}
+
+static uint32_t width_of(const Model_ *m) { return POINTS * (noether_coordinates(m->e) + 1); }
+
+static DenseRows space_of(const Model_ *m) {
+  uint32_t w = width_of(m);
+  DenseRows all = {m->found.all.n, w, ARENA_ARRAY(m->arena, long double, (size_t)m->found.all.n * w + 1), 0};
+  for (uint32_t k = 0; k < m->found.all.n; k++) values_of(m, &m->found.all.at[k].by, all.at + (size_t)k * w);
+  return dense_orthonormal(m->arena, &all, w);
+}
+
+static int is_in(const DenseRows *space, long double *row) { return dense_reduce(space->width, row, space->at, space->n) < 1e-9L; }
+
+static Expr observed(const Eqns *e, const char *name) {
+  for (uint32_t i = 0; i < e->m->observes.n; i++)
+    if (strcmp(e->m->observes.at[i].name, name) == 0) return e->m->observes.at[i].value;
+  return 0;
+}
+
+/* Generators of textbooks are observables of the model: A_x and so on for xi of the coordinate x, A_t for tau; A, B, ... */
+static void contains_textbook(const Model_ *m) {
+  DenseRows space = space_of(m);
+  uint32_t n = noether_coordinates(m->e);
+  for (char letter = 'A'; letter <= 'Z'; letter++) {
+    Expr *xi = ARENA_ARRAY(m->arena, Expr, n + 1), tau = observed(m->e, arena_printf(m->arena, "%c_t", letter));
+    int some = tau != 0;
+    for (uint32_t i = 0; i < n; i++) {
+      xi[i] = observed(m->e, arena_printf(m->arena, "%c_%s", letter, expr_symbol(m->e->g, noether_coordinate(m->e, i))->name));
+      some = some || xi[i];
+    }
+    if (!some) continue;
+    long double *row = ARENA_ARRAY(m->arena, long double, width_of(m));
+    values_of(m, &(Generator){xi, tau}, row);
+    if (!is_in(&space, row)) fail_msg("the generator %c is not found", letter);
+  }
+}
+
+/* So many, linearly independent, nothing left over, all conserved. */
+static Model_ finds(const char *lag, uint32_t dimension) {
+  Model_ m = model(lag);
+  if (m.found.all.n != dimension || m.found.unproved) fail_msg("%u found and %u not proved, instead of %u", m.found.all.n, m.found.unproved, dimension);
+  assert_int_equal(space_of(&m).n, dimension);
+  conserved(&m);
+  contains_textbook(&m);
+  return m;
+}
+
+static void has_only(const char *lag, uint32_t dimension) {
+  Model_ m = finds(lag, dimension);
+  arena_free(m.arena);
+}
+
+static void has_name(const Model_ *m, const char *name) {
+  for (uint32_t k = 0; k < m->found.all.n; k++)
+    if (strcmp(m->found.all.at[k].name, name) == 0) return;
+  fail_msg("no %s", name);
+}
+
+/* --- models --- */
+
+#define FREE "model f\ncoord x, y, z\nparam m = 2 > 0\nlagrangian = m/2*(x'^2 + y'^2 + z'^2)\n"
+
+/* Schroedinger's group: translations, boosts and rotations in space, and of time translation, scaling, expansion. */
+static void free_particle(void **state) {
+  (void)state;
+  Model_ m = finds(FREE "observe A_t = -1\nobserve B_x = 1\nobserve C_z = t\nobserve D_x = -y\nobserve D_y = x\n"
+                   "observe E_x = x\nobserve E_y = y\nobserve E_z = z\nobserve E_t = 2*t\n"
+                   "observe F_x = t*x\nobserve F_y = t*y\nobserve F_z = t*z\nobserve F_t = t^2\n", 12);
+  assert_true(m.found.galilean);
+  has_name(&m, "angular momentum about z");
+  has_name(&m, "boost along x");
+  has_name(&m, "scaling");
+  has_name(&m, "expansion");
+  arena_free(m.arena);
+}
+
+/* A uniform force leaves the group as it is, in coordinates that fall along. */
+static void uniform_field(void **state) {
+  (void)state;
+  has_only("model u\ncoord y\nparam m = 2 > 0, g = 9.81\nlagrangian = m/2*y'^2 - m*g*y\nobserve A_y = 1\nobserve B_y = t\nobserve C_t = 1\n", 5);
+}
+
+static void kepler(void **state) {
+  (void)state;
+  has_only("model k\ncoord x, y\nparam m = 2 > 0, k = 3 > 0\nlagrangian = m/2*(x'^2 + y'^2) + k/hypot(x, y)\nobserve A_x = -y\nobserve A_y = x\nobserve B_t = 1\n", 2);
+  Model_ m = finds("model k\ncoord x, y, z\nparam m = 2 > 0, k = 3 > 0\nlagrangian = m/2*(x'^2 + y'^2 + z'^2) + k/sqrt(x^2 + y^2 + z^2)\n"
+                   "observe A_x = -z\nobserve A_z = x\nobserve B_y = -z\nobserve B_z = y\n", 4);
+  assert_false(m.found.galilean);
+  arena_free(m.arena);
+}
+
+/* The same group as that of a free particle: shifts along solutions, the rotation, energy and two breathing ones. */
+static void oscillators(void **state) {
+  (void)state;
+  has_only("model o\ncoord x, y\nparam m = 2 > 0, k = 3 > 0\nlagrangian = m/2*(x'^2 + y'^2) - k/2*(x^2 + y^2)\n"
+           "observe A_x = cos(sqrt(k/m)*t)\nobserve B_y = sin(sqrt(k/m)*t)\nobserve C_x = -y\nobserve C_y = x\n"
+           "observe D_x = -sqrt(k/m)*x*sin(2*sqrt(k/m)*t)\nobserve D_y = -sqrt(k/m)*y*sin(2*sqrt(k/m)*t)\nobserve D_t = cos(2*sqrt(k/m)*t)\n", 8);
+  /* different frequencies: shifts and the energy */
+  has_only("model o\ncoord x, y\nparam m = 2 > 0, k = 3 > 0, c = 1 > 0\nlagrangian = m/2*(x'^2 + y'^2) - k/2*x^2 - c/2*y^2\nobserve A_x = cos(sqrt(k/m)*t)\n", 5);
+  /* on a hilltop */
+  has_only("model o\ncoord x\nparam m = 2 > 0, k = 3 > 0\nlagrangian = m/2*x'^2 + k/2*x^2\nobserve A_x = exp(sqrt(k/m)*t)\nobserve B_x = exp(-sqrt(k/m)*t)\n", 5);
+}
+
+/* Larmor: in a frame that turns with half the gyration a charge is an oscillator. */
+static void magnetic(void **state) {
+  (void)state;
+  Model_ m = finds("model b\ncoord x, y\nparam m = 2 > 0, b = 3\nlagrangian = m/2*(x'^2 + y'^2) + b/2*(x*y' - y*x')\n"
+                   "observe A_x = 1\nobserve B_y = 1\nobserve C_x = -y\nobserve C_y = x\nobserve D_x = cos(b*t/m)\nobserve D_y = -sin(b*t/m)\n", 8);
+  has_name(&m, "magnetic translation along x");
+  arena_free(m.arena);
+}
+
+static void inverse_square(void **state) {
+  (void)state;
+  has_only("model i\ncoord x, y\nparam m = 2 > 0, k = 3\nlagrangian = m/2*(x'^2 + y'^2) - k/(x^2 + y^2)\n"
+           "observe A_x = x\nobserve A_y = y\nobserve A_t = 2*t\nobserve B_x = t*x\nobserve B_y = t*y\nobserve B_t = t^2\n", 4);
+  /* another power: no scaling */
+  has_only("model i\ncoord x, y\nparam m = 2 > 0, k = 3\nlagrangian = m/2*(x'^2 + y'^2) - k/(x^2 + y^2)^2\n", 2);
+}
+
+/* Galileo's ten, and the turns of the centre of mass by itself. */
+static void bodies(void **state) {
+  (void)state;
+  Model_ m = finds("model n\ncoord r1: vec3, r2: vec3, r3: vec3\nparam G = 1 > 0, m1 = 1 > 0, m2 = 2 > 0, m3 = 3 > 0\n"
+                   "kinetic = m1/2*dot(r1', r1') + m2/2*dot(r2', r2') + m3/2*dot(r3', r3')\n"
+                   "potential = -G*m1*m2/norm(r1 - r2) - G*m1*m3/norm(r1 - r3) - G*m2*m3/norm(r2 - r3)\n", 13);
+  assert_true(m.found.galilean);
+  has_name(&m, "total angular momentum about x");
+  has_name(&m, "boost along z: the centre of mass moves uniformly");
+  arena_free(m.arena);
+}
+
+/* Chaotic ones have their energy, and nothing else may be found. */
+static void nothing_false(void **state) {
+  (void)state;
+  has_only("model p\ncoord th\nparam g = 9.81 > 0, l = 2 > 0\nlagrangian = l^2*th'^2/2 + g*l*cos(th)\n", 1);
+  has_only("model d\ncoord a, b\nparam m1 = 1 > 0, m2 = 2 > 0, l1 = 1 > 0, l2 = 2 > 0, g = 9.81\n"
+           "lagrangian = (m1 + m2)/2*l1^2*a'^2 + m2/2*l2^2*b'^2 + m2*l1*l2*a'*b'*cos(a - b) + (m1 + m2)*g*l1*cos(a) + m2*g*l2*cos(b)\n", 1);
+  has_only("model h\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 - (x^2 + y^2)/2 - x^2*y + y^3/3\n", 1);
+  has_only("model a\ncoord r, th\nparam M = 3 > 0, m = 1 > 0, g = 9.81\nlagrangian = (M + m)/2*r'^2 + m/2*r^2*th'^2 - g*r*(M - m*cos(th))\n", 1);
+}
+
+static void curved(void **state) {
+  (void)state;
+  has_only("model s\ncoord th, phi\nparam m = 2 > 0, l = 1 > 0, g = 9.81\nlagrangian = m*l^2/2*(th'^2 + sin(th)^2*phi'^2) + m*g*l*cos(th)\nobserve A_phi = 1\n", 2);
+  has_only("model t\ncoord x1, x2, x3\nlagrangian = (x1'^2 + x2'^2 + x3'^2)/2 - exp(x1 - x2) - exp(x2 - x3) - exp(x3 - x1)\n"
+           "observe A_x1 = 1\nobserve A_x2 = 1\nobserve A_x3 = 1\nobserve B_x1 = t\nobserve B_x2 = t\nobserve B_x3 = t\n", 3);
+}
+
+/* L contains t: the energy is none of the charges; shifts along the free oscillation are. The third one is the energy about the forced
+ * oscillation, whose amplitude a/(m (w^2 - v^2)) is no product of powers: it is counted, not listed. */
+static void driven(void **state) {
+  (void)state;
+  Model_ m = model("model o\ncoord x\nparam m = 2 > 0, w = 3 > 0, a = 0.5, v = 1.5 > 0\nlagrangian = m/2*x'^2 - m*w^2/2*x^2 + a*x*cos(v*t)\n"
+                   "observe A_x = cos(w*t)\nobserve B_x = sin(w*t)\n");
+  assert_int_equal(m.found.all.n, 2);
+  assert_int_equal(m.found.unproved, 1);
+  conserved(&m);
+  contains_textbook(&m);
+  arena_free(m.arena);
+}
+
+static void constrained(void **state) {
+  (void)state;
+  Model_ m = model("model s\ncoord x, y, z\nparam g = 9.81, l = 1 > 0\nlagrangian = (x'^2 + y'^2 + z'^2)/2 - g*z\nconstraint rod: x^2 + y^2 + z^2 = l^2\n"
+                   "observe A_x = -y\nobserve A_y = x\nobserve B_t = 1\n");
+  assert_int_equal(m.found.all.n, 2);
+  contains_textbook(&m);
+  arena_free(m.arena);
+  /* the arm carries the bead round: neither the energy nor angular momentum, but the energy in the turning frame */
+  m = model("model s\ncoord x, y\nparam w = 1\nlagrangian = (x'^2 + y'^2)/2\nconstraint arm: x*sin(w*t) = y*cos(w*t)\n"
+            "observe A_x = -w*y\nobserve A_y = w*x\nobserve A_t = 1\n");
+  assert_int_equal(m.found.all.n, 1);
+  contains_textbook(&m);
+  arena_free(m.arena);
+  /* a ball on a turntable: the energy seen by the table, momenta about the place of contact, and what moves with them */
+  Model_ b = finds("model b\ncoord x, y, a, b\nparam m = 1 > 0, R = 0.5 > 0, I = 0.3 > 0, W = 2\nlagrangian = m/2*(x'^2 + y'^2) + I/2*(a'^2 + b'^2)\n"
+                   "constraint r: x' - R*b' = -W*y\nconstraint s: y' + R*a' = W*x\n"
+                   "observe A_x = -W*y\nobserve A_y = W*x\nobserve A_t = 1\nobserve B_x = R\nobserve B_b = 1\nobserve C_y = R*t\nobserve C_a = -t\n", 6);
+  arena_free(b.arena);
+}
+
+/* A free body: the angular momentum in space, to which the quaternion turns twice as fast; L*(1, 0, 0) of R*l is the textbook's. */
+static void rotations(void **state) {
+  (void)state;
+  static const char *const spins[3] = {"spin.x", "spin.y", "spin.z"};
+  Model_ m = model("model b\ncoord R: rotation\nparam A = 2 > 0, B = 1 > 0, C = 0.7 > 0\nlet w = omega(R)\nkinetic = A/2*w.x^2 + B/2*w.y^2 + C/2*w.z^2\npotential = 0\n"
+                   "observe spin = R*(A*w.x, B*w.y, C*w.z)\n");
+  assert_int_equal(m.found.all.n, 4);
+  assert_int_equal(m.found.unproved, 0);
+  StateSolver *solver = states_new(m.e);
+  for (int turn = 0; turn < 4; turn++) {
+    long double *symbols = random_point(m.e);
+    assert_true(states_complete(solver, symbols));
+    for (uint32_t k = 0; k < 3; k++) {
+      const FoundSymmetry *s = &m.found.all.at[k + 1];
+      Expr spin = observed(m.e, spins[k]);
+      long double Q, L;
+      assert_string_equal(s->name, arena_printf(m.arena, "turns about %c in space: twice the angular momentum", "xyz"[k]));
+      expr_eval(m.e->g, &s->is.charge, 1, symbols, &Q);
+      expr_eval(m.e->g, &spin, 1, symbols, &L);
+      assert_true(fabsl(Q - 2 * L) < 1e-15L * (1 + fabsl(Q)) * 100);
+    }
+  }
+  conserved(&m);
+  arena_free(m.arena);
+}
+
+/* Three vortices: Kirchhoff's invariants, and sl(2) of the centre of vorticity, of which one turn is the common one's own part. */
+static void first_order(void **state) {
+  (void)state;
+  Model_ m = model("model v\ncoord x1, y1, x2, y2\nparam a = 1, b = 2\nlagrangian = a*(x1*y1' - y1*x1')/2 + b*(x2*y2' - y2*x2')/2 + a*b*log((x1 - x2)^2 + (y1 - y2)^2)\n"
+                   "observe A_x1 = 1\nobserve A_x2 = 1\nobserve B_x1 = -y1\nobserve B_x2 = -y2\nobserve B_y1 = x1\nobserve B_y2 = x2\n");
+  contains_textbook(&m);
+  assert_int_equal(m.found.unproved, 0);
+  conserved(&m);
+  arena_free(m.arena);
+}
+
+/* --- other coordinates --- */
+
+/* xi of old coordinates at q = A Q + b is A times that of the new ones, which stand in the same places of the text. */
+static void same_space(const char *old, const char *new, const long double A[2][2], const long double b[2]) {
+  Model_ m = model(old), w = model(new);
+  assert_int_equal(m.found.all.n, w.found.all.n);
+  assert_int_equal(w.found.unproved, 0);
+  conserved(&w);
+  uint32_t width = width_of(&m);
+  DenseRows all = {w.found.all.n, width, ARENA_ARRAY(m.arena, long double, (size_t)w.found.all.n * width), 0};
+  for (uint32_t k = 0; k < w.found.all.n; k++) {
+    const Generator *by = &w.found.all.at[k].by;
+    test_rng = 17;
+    for (uint32_t p = 0; p < POINTS; p++) {
+      random_point(m.e); /* the same numbers as in values_of */
+      long double *to = all.at + (size_t)k * width + p * 3, q[2], xi[2], det = A[0][0] * A[1][1] - A[0][1] * A[1][0];
+      for (int i = 0; i < 2; i++) q[i] = uniform(-1, 1) - b[i];
+      long double t = uniform(0, 3), *there = ARENA_ARRAY(w.arena, long double, expr_symbol_count(w.e->g) + 1);
+      for (uint32_t i = 0; i < w.e->m->params.n; i++) expr_eval(w.e->g, &w.e->m->params.at[i].value, 1, there, &there[w.e->m->params.at[i].sym]);
+      there[w.e->m->time] = t;
+      there[w.e->m->coords.at[0].q] = (A[1][1] * q[0] - A[0][1] * q[1]) / det;
+      there[w.e->m->coords.at[1].q] = (A[0][0] * q[1] - A[1][0] * q[0]) / det;
+      for (int i = 0; i < 2; i++) expr_eval(w.e->g, &by->xi[i], 1, there, &xi[i]);
+      for (int i = 0; i < 2; i++) to[i] = A[i][0] * xi[0] + A[i][1] * xi[1];
+      expr_eval(w.e->g, &by->tau, 1, there, &to[2]);
+    }
+  }
+  DenseRows space = space_of(&m);
+  for (uint32_t k = 0; k < all.n; k++)
+    if (!is_in(&space, all.at + (size_t)k * width)) fail_msg("%s is no symmetry in the old coordinates", w.found.all.at[k].name);
+  arena_free(m.arena);
+  arena_free(w.arena);
+}
+
+#define SKEW "let x = 2*X + Y/3 + 1/2\nlet y = -X/4 + 3*Y/5 - 2\n"
+
+static void affine_change(void **state) {
+  (void)state;
+  const long double A[2][2] = {{2, 1 / 3.0L}, {-0.25L, 0.6L}}, b[2] = {0.5L, -2};
+  same_space("model k\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 + 1/hypot(x, y)\n", "model k\ncoord X, Y\n" SKEW "lagrangian = (x'^2 + y'^2)/2 + 1/hypot(x, y)\n", A, b);
+  same_space("model o\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 - 2*(x^2 + y^2)\n", "model o\ncoord X, Y\n" SKEW "lagrangian = (x'^2 + y'^2)/2 - 2*(x^2 + y^2)\n", A, b);
+  same_space("model f\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2\n", "model f\ncoord X, Y\n" SKEW "lagrangian = (x'^2 + y'^2)/2\n", A, b);
+  same_space("model h\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 - x^2*y + y^3/3\n", "model h\ncoord X, Y\n" SKEW "lagrangian = (x'^2 + y'^2)/2 - x^2*y + y^3/3\n", A, b);
+}
+
+/* --- scalings that have no charge --- */
+
+static void scales(const char *lag, int64_t first, int64_t t, int64_t action) {
+  Model_ m = model(lag);
+  Scaling s;
+  assert_true(noether_scaling(m.e, &s));
+  assert_true(num_equal(s.alpha[0], num_int(first)) && num_equal(s.beta, num_int(t)) && num_equal(s.kappa, num_int(action)));
+  arena_free(m.arena);
+}
+
+/* Kepler's third law, Galileo's law of fall, an oscillator's independence of amplitude (Landau & Lifshitz, Mechanics, 10). */
+static void scalings(void **state) {
+  (void)state;
+  Scaling s;
+  scales("model k\ncoord x, y\nparam m = 2 > 0, k = 3 > 0\nlagrangian = m/2*(x'^2 + y'^2) + k/hypot(x, y)\n", 2, 3, 1);
+  scales("model u\ncoord x, y\nparam m = 2 > 0, g = 9.81\nlagrangian = m/2*(x'^2 + y'^2) - m*g*y\n", 2, 1, 3);
+  scales("model o\ncoord x\nparam m = 2 > 0, k = 3 > 0\nlagrangian = m/2*x'^2 - k/2*x^2\n", 1, 0, 2);
+  /* a pendulum has none; that of the inverse square has a charge */
+  Model_ m = model("model p\ncoord th\nlagrangian = th'^2/2 + cos(th)\n");
+  assert_false(noether_scaling(m.e, &s));
+  arena_free(m.arena);
+  m = model("model i\ncoord x\nparam k = 2\nlagrangian = x'^2/2 - k/x^2\n");
+  assert_false(noether_scaling(m.e, &s));
+  arena_free(m.arena);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(free_particle), cmocka_unit_test(uniform_field), cmocka_unit_test(kepler),    cmocka_unit_test(oscillators),
+    cmocka_unit_test(magnetic),      cmocka_unit_test(inverse_square), cmocka_unit_test(bodies),   cmocka_unit_test(nothing_false),
+    cmocka_unit_test(curved),        cmocka_unit_test(driven),        cmocka_unit_test(constrained), cmocka_unit_test(first_order),
+    cmocka_unit_test(affine_change), cmocka_unit_test(scalings),      cmocka_unit_test(rotations),
+  };
+  return cmocka_run_group_tests_name("found", tests, NULL, NULL);
+}
