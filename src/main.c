@@ -11,12 +11,14 @@
 #include "base/diag.h"
 #include "base/methods.h"
 #include "base/suggest.h"
+#include "check.h"
 #include "cli/files.h"
 #include "cli/methods.h"
 #include "cli/options.h"
 #include "cli/shells.h"
 #include "cli/toolchain.h"
 #include "complete.h"
+#include "conserved.h"
 #include "effects.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
@@ -26,10 +28,6 @@
 #include "ir/lower.h"
 #include "mech/constrain.h"
 #include "mech/eqns.h"
-#include "mech/charges.h"
-#include "mech/expect.h"
-#include "mech/freedom.h"
-#include "mech/noether_report.h"
 #include "mech/start.h"
 #include "mech/show.h"
 #include "model/model.h"
@@ -156,39 +154,17 @@ static IrUnit *lower_scene(Compiler *c, Eqns *e) {
 
 /* --- the commands --- */
 
-/* The Hamiltonian side; where there is none, the reason in c->diags. */
+static Eqns *derive_for(void *compiler, const ModelChoice *choice) { return derive(compiler, choice); }
+
+static int do_noether(Compiler *c) {
+  StrBuf out = strbuf(c->arena);
+  return conserved_print(&(Deriver){derive_for, c}, c->o.scene, c->o.format, &out) ? write_out(c, c->o.output, &out) : STATUS_MODEL;
+}
+
 static int do_hamiltonian(Compiler *c, Eqns *e) {
   StrBuf out = strbuf(c->arena);
   if (c->o.ops || (c->o.format && strcmp(c->o.format, "c") == 0)) return fail_usage("--hamiltonian goes with --format text or latex");
-  if (e->n == 0) {
-    diag_error(c->diags, e->m->span, e->first.n ? "no Hamiltonian by momenta: L is linear in velocities" : "no Hamiltonian: the model has no Lagrangian");
-    if (e->first.n) diag_help(c->diags, "coordinates are then canonical among themselves, and the energy is H: see `lagc derive` without --hamiltonian");
-    return STATUS_MODEL;
-  }
-  show_hamiltonian(e, c->o.format && strcmp(c->o.format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
-  return write_out(c, c->o.output, &out);
-}
-
-/* Without a scene: the model without effects, and each effect alone. */
-static int do_noether(Compiler *c) {
-  Eqns *e = c->o.scene ? derive_scene(c, c->o.scene) : derive(c, &(ModelChoice){.bare = 1});
-  StrBuf out = strbuf(c->arena);
-  const char *format = c->o.format ? c->o.format : "text";
-  if (!e) return STATUS_MODEL;
-  if (!e->m->lagrangian) {
-    diag_error(c->diags, e->m->span, "no symmetries to look for: the model has no Lagrangian");
-    return STATUS_MODEL;
-  }
-  if (!c->o.scene && !charges_judge(e, NULL)) return STATUS_MODEL;
-  NoetherReport *r = noether_report(e);
-  for (uint32_t i = 0; i < e->m->all_effects.n && !c->o.scene; i++) {
-    Name effect = e->m->all_effects.at[i];
-    const Eqns *with = derive(c, &(ModelChoice){.bare = 1, .also = effect});
-    if (with) noether_report_effect(r, effect, with);
-  }
-  if (strcmp(format, "json") == 0) show_noether_json(r, &out);
-  else show_noether(r, strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT, &out);
-  return write_out(c, c->o.output, &out);
+  return hamiltonian_print(e, c->o.format, &out) ? write_out(c, c->o.output, &out) : STATUS_MODEL;
 }
 
 /* What the operations would be without --fix. */
@@ -473,74 +449,9 @@ static int do_effects(Compiler *c) {
   return write_out(c, NULL, &out);
 }
 
-/* An expectation, or a symmetry, is about the model without effects, or, inside an effect, with that effect and what
- * it requires: scenes have no part in it. */
-static void check_claims(Compiler *c, ExpectResults *results, StrBuf *out) {
-  EffectList where = model_claiming_effects(c->ast);
-  Eqns **e = ARENA_ARRAY(c->arena, Eqns *, where.n + 1);
-  for (uint32_t i = 0; i < where.n; i++) e[i] = derive(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
-  for (uint32_t i = 0; i < where.n; i++) {
-    if (!e[i]) continue;
-    charges_judge(e[i], where.at[i]);
-    charges_print(e[i], where.at[i], out);
-  }
-  for (uint32_t i = 0; i < where.n; i++)
-    if (e[i]) expects_check(e[i], where.at[i], c->o.allow_numeric, results);
-}
-
-static const char *with_effects(Compiler *c, const Model *m) {
-  StrBuf b = strbuf(c->arena);
-  for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(&b, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
-  return sb_text(&b);
-}
-
-typedef VEC(FoundUnit) FoundUnits;
-
-/* The units that a scene's model found, those that are new. */
-static void collect_units(Compiler *c, const Model *m, FoundUnits *all) {
-  for (uint32_t i = 0; i < m->found.n; i++) {
-    FoundUnit u = m->found.at[i];
-    uint32_t k = 0;
-    while (k < all->n && (all->at[k].name != u.name || strcmp(all->at[k].unit, u.unit) != 0)) k++;
-    if (k == all->n) vec_push(c->arena, all, u);
-  }
-}
-
-static void list_units(const FoundUnits *all, StrBuf *out) {
-  for (uint32_t i = 0; i < all->n; i++) sb_printf(out, "%s%s [%s]", i ? ", " : "units found: ", all->at[i].name, all->at[i].unit);
-  if (all->n) sb_putc(out, '\n');
-}
-
 static int do_check(Compiler *c) {
-  SceneList scenes = model_scenes(c->ast);
   StrBuf out = strbuf(c->arena);
-  FoundUnits found = {0};
-  ExpectResults results = {0};
-  for (uint32_t i = 0; i < scenes.n; i++) {
-    if (c->o.scene && strcmp(c->o.scene, scenes.at[i]) != 0) continue;
-    Eqns *e = derive_scene(c, scenes.at[i]);
-    if (!e) continue;
-    if (!out.n) {
-      show_facts(e, &out);
-      show_cyclic(e, &out);
-    }
-    collect_units(c, e->m, &found);
-    if (!freedom_show(e, &out)) continue;
-    sb_printf(&out, "scene %s: ok%s\n", scenes.at[i], with_effects(c, e->m));
-    if (e->m->effects.n) charges_show_broken(e, &out);
-  }
-  if (c->o.scene && !out.n) derive_scene(c, c->o.scene); /* says that there is no such scene */
-  EffectList unused = model_unused_effects(c->ast);
-  for (uint32_t i = 0; i < unused.n && !c->o.scene; i++) {
-    Eqns *e = derive(c, &(ModelChoice){.bare = 1, .also = unused.at[i]});
-    if (!e) continue;
-    collect_units(c, e->m, &found);
-    sb_printf(&out, "effect %s (in no scene): ok\n", unused.at[i]);
-  }
-  list_units(&found, &out);
-  if (c->diags->errors) return STATUS_MODEL; /* expectations of a wrong model say nothing */
-  check_claims(c, &results, &out);
-  expects_print(&results, c->sources, &out);
+  if (!check_print(&(Deriver){derive_for, c}, c->ast, c->o.scene, c->o.allow_numeric, &out)) return STATUS_MODEL;
   int status = write_out(c, NULL, &out);
   return c->diags->errors ? STATUS_MODEL : status;
 }

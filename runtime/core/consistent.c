@@ -385,6 +385,8 @@ static int settle(Start *w, int holonomic)
       return holonomic ? check_derivatives(w, 1) : LAG_OK;
     }
   }
+  memcpy(w->y + (holonomic ? 0 : w->nq), w->asked + (holonomic ? 0 : w->nq), (size_t)w->nq * sizeof(double));
+  descend(w); /* as near as that goes from where it was asked for */
   int rc = holonomic ? check_derivatives(w, 0) : LAG_OK;
   return rc ? rc : refuse(w, 0);
 }

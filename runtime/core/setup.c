@@ -224,6 +224,23 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
   return wrong ? lag_fail(s, LAG_EINVAL, "method %s: %s", m->name, wrong) : LAG_OK;
 }
 
+/* A coordinate whose velocity is in no momentum, or else the first. */
+static const char *massless(const lag_model *m)
+{
+  const lag_constraints *of = m->constraints;
+
+  for (int i = 0; i < m->nq; i++) {
+    int e = 0;
+    while (e < of->nmass && of->mass[e].row != i && of->mass[e].col != i) {
+      e++;
+    }
+    if (e == of->nmass) {
+      return m->q[i].name;
+    }
+  }
+  return m->q[0].name;
+}
+
 /* Do the method's coefficients have the digits of the tolerance? */
 static int check_digits(lag_sim *s, const lag_method *method)
 {
@@ -243,6 +260,9 @@ static int check_method(lag_sim *s, const lag_method *method)
   if (m->constraints && !(needs & LAG_METHOD_CONSTRAINTS)) {
     return lag_fail(s, LAG_EMETHOD, "method %s cannot hold constraints (%s); rk45, dop853 and variational can", method->name,
                     m->constraints->of[0].name);
+  }
+  if (m->constraints && (has & LAG_MASSLESS) && (needs & LAG_METHOD_VARIATION)) {
+    return lag_fail(s, LAG_EMETHOD, "method %s finds velocities from momenta, and %s has no inertia; rk45 and dop853 can", method->name, massless(m));
   }
   if ((needs & LAG_METHOD_FLOWS) && m->nq == 0) {
     needs = (needs & ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION)) | LAG_METHOD_JACOBIAN;

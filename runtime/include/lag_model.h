@@ -55,7 +55,8 @@ enum {
                              * never grows: the dissipation is quadratic in q' and nowhere negative, for the signs declared */
   LAG_FIRST_ORDER = 128,    /* L = theta(q, t) v - H is linear in all velocities: coordinates are among z, nq is 0, and their rates solve
                              * omega zd = dH/dq + ... with the two-form omega = dtheta in place of a mass matrix */
-  LAG_CONSTANT_FORM = 256   /* and omega depends on no coordinate, state or time, and no force on velocities */
+  LAG_CONSTANT_FORM = 256,  /* and omega depends on no coordinate, state or time, and no force on velocities */
+  LAG_MASSLESS = 512        /* the mass matrix is singular; constraints say how what has no inertia moves */
 };
 
 /* A named quantity. unit is as declared ("deg"), or as found from the equations, "" when none; x units are

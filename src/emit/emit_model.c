@@ -371,7 +371,7 @@ static int needs_solver(const IrUnit *u) {
 
 static void flag_text(unsigned flags, StrBuf *out) {
   static const char *const names[] = {"LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS", "LAG_AUTONOMOUS", "LAG_SMOOTH",
-                                       "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_FIRST_ORDER", "LAG_CONSTANT_FORM"};
+                                       "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_FIRST_ORDER", "LAG_CONSTANT_FORM", "LAG_MASSLESS"};
   int some = 0;
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (flags >> i & 1) sb_printf(out, "%s%s", some++ ? " | " : "", names[i]);

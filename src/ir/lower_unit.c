@@ -20,7 +20,7 @@ static const char *joined(Arena *a, const Name *names, uint32_t n) {
 static unsigned flags_of(const Eqns *e) {
   return (e->conserves_energy ? 1u : 0) | (e->constant_mass ? 2u : 0) | (e->autonomous ? 4u : 0) | (e->smooth ? 8u : 0) |
          (e->separable ? 16u : 0) | (e->timeless ? 32u : 0) | (e->loses_energy ? 64u : 0) |
-         (e->first.n ? 128u : 0) | (e->first.n && e->first.constant && e->first.closed ? 256u : 0);
+         (e->first.n ? 128u : 0) | (e->first.n && e->first.constant && e->first.closed ? 256u : 0) | (e->singular_mass ? 512u : 0);
 }
 
 static void add_fixed(IrUnit *u, const Model *m) {

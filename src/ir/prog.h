@@ -11,7 +11,7 @@
 #include "base/vec.h"
 
 typedef uint32_t Slot; /* index of an instruction; 0: none (a structural zero) */
-enum { NOT_A_SLOT = UINT32_MAX };
+#define NOT_A_SLOT UINT32_MAX
 
 typedef enum {
   IR_CONST,  /* number */

@@ -188,14 +188,6 @@ static Expr symbolic(const Work *w, uint32_t a, uint32_t b) {
 
 /* --- the brackets --- */
 
-/* x = c*rate^power at both choices, c rational. */
-static Expr multiple_of(const Work *w, const long double *x, Expr rate, int power) {
-  Num c;
-  Expr factor = expr_pow_num(w->g, rate, num_int(power));
-  long double one = x[CHOICE_FIRST] / choice_value(&w->choices, CHOICE_FIRST, factor), other = x[CHOICE_SECOND] / choice_value(&w->choices, CHOICE_SECOND, factor);
-  return fabsl(one - other) < 1e-9L * fabsl(one) && rational_of(one, &c) ? expr_scale(w->g, c, factor) : 0;
-}
-
 /* A coefficient, from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges themselves.
  * 0: it is none of these. */
 static Expr recognise(const Work *w, long double *const *fits, size_t place) {
@@ -210,10 +202,10 @@ static Expr recognise(const Work *w, long double *const *fits, size_t place) {
   if (zero) return expr_int(w->g, 0);
   if (fabsl(x[CHOICE_FIRST] - x[CHOICE_SECOND]) < 1e-9L * fabsl(x[CHOICE_FIRST]) && rational_of(x[CHOICE_FIRST], &c)) return expr_num(w->g, c);
   Expr known = ratio_of(&w->choices, x);
-  for (uint32_t a = 0; a < w->r && !known; a++) {
-    if (at(w, a)->rate) known = multiple_of(w, x, at(w, a)->rate, 1);
-    if (at(w, a)->rate && !known) known = multiple_of(w, x, at(w, a)->rate, -1);
-  }
+  for (uint32_t a = 0; a < w->r && !known; a++)
+    if (at(w, a)->rate) known = power_of(&w->choices, x, at(w, a)->rate);
+  for (uint32_t a = 0; a < w->r && !known; a++)
+    if (at(w, a)->rate) known = ratio_with(&w->choices, x, at(w, a)->rate);
   if (!known) known = linear_of(&w->choices, x);
   return known ? known : monomial_of(&w->choices, x);
 }

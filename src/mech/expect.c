@@ -148,6 +148,13 @@ static int in_equations(const Eqns *e, SymId sym) {
   return 0;
 }
 
+/* Whether a symbol only says which contact is closed. */
+static int is_switch(const Model *m, SymId sym) {
+  for (uint32_t i = 0; i < m->contacts.n; i++)
+    if (m->contacts.at[i].closed == sym) return 1;
+  return 0;
+}
+
 /* "th1 = 1, th1' = 0, m1 = 1": the coordinates and what else the sides contain. */
 static const char *state_text(const Showing *s) {
   enum { FEW_COORDINATES = 4 };
@@ -164,7 +171,8 @@ static const char *state_text(const Showing *s) {
     }
   for (uint32_t i = 0; i < m->states.n; i++) put_value(&b, s, m->states.at[i].z, &m->states.at[i].unit);
   if (expr_contains_sym(g, both, m->time)) put_value(&b, s, m->time, &si);
-  for (uint32_t i = 0; i < m->inputs.n; i++) put_value(&b, s, m->inputs.at[i].sym, &m->inputs.at[i].unit);
+  for (uint32_t i = 0; i < m->inputs.n; i++)
+    if (!is_switch(m, m->inputs.at[i].sym)) put_value(&b, s, m->inputs.at[i].sym, &m->inputs.at[i].unit);
   int moves = expr_contains(g, both, is_acceleration, NULL); /* then all of M and f is in it */
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Param *p = &m->params.at[i];
@@ -261,9 +269,9 @@ static int is_param(const Symbol *s, const void *data) {
   return s->kind == SYM_PARAM;
 }
 
-/* What parameters stand for that are given by others: param I = m*l^2 follows m and l. Contacts are open. NULL when
- * there are none. */
-static const Expr *param_definitions(const Model *m) {
+/* What parameters stand for that are given by others: param I = m*l^2 follows m and l. Contacts are open, which leaves them no force, but
+ * number `closed` (-1: none). NULL when there are none. */
+static const Expr *definitions(const Model *m, int closed) {
   Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 1);
   int some = 0;
   for (uint32_t i = 0; i < m->params.n; i++) {
@@ -272,7 +280,11 @@ static const Expr *param_definitions(const Model *m) {
     with[p->sym] = expr_substitute(m->g, p->value, with, expr_symbol_count(m->g) + 1, "");
     some = 1;
   }
-  for (uint32_t i = 0; i < m->contacts.n; i++) with[m->contacts.at[i].closed] = expr_int(m->g, 0);
+  for (uint32_t i = 0; i < m->contacts.n; i++) {
+    const Contact *c = &m->contacts.at[i];
+    with[c->closed] = expr_int(m->g, (int)i == closed);
+    if ((int)i != closed) with[m->constraints.at[c->constraint].multiplier] = expr_int(m->g, 0);
+  }
   return some || m->contacts.n ? with : NULL;
 }
 
@@ -299,22 +311,57 @@ static const Eqns *with_definitions(const Eqns *e, const Expr *with) {
   return c;
 }
 
+/* The equations of motion with all contacts open, and with each closed alone. */
+typedef struct {
+  const Expr *with;
+  const Eqns *e;
+} Case;
+
+static Case *cases_of(const Eqns *e) {
+  uint32_t n = e->m->contacts.n;
+  Case *cases = ARENA_ARRAY(e->m->arena, Case, (size_t)n + 1);
+  for (uint32_t i = 0; i <= n; i++) {
+    cases[i].with = definitions(e->m, (int)i - 1);
+    cases[i].e = with_definitions(e, cases[i].with);
+  }
+  return cases;
+}
+
+/* The first case in which it is not proved, or the last. */
+static ExpectResult judge_cases(const Case *cases, const Expect *x, Expect *shown, const Eqns **e) {
+  const Model *m = cases[0].e->m;
+  ExpectResult r = {0};
+  for (uint32_t i = 0; i <= m->contacts.n; i++) {
+    const Expr *with = cases[i].with;
+    uint32_t n = expr_symbol_count(m->g) + 1;
+    *shown = *x;
+    *e = cases[i].e;
+    if (with) shown->lhs = expr_substitute(m->g, x->lhs, with, n, "");
+    if (with) shown->rhs = expr_substitute(m->g, x->rhs, with, n, "");
+    r = judge(*e, shown);
+    if (r.verdict == EXPECT_PROVED) continue;
+    if (m->contacts.n) r.label = i ? arena_printf(m->arena, "%s, while `%s` is closed,", r.label, m->contacts.at[i - 1].name)
+                                   : arena_printf(m->arena, "%s, while all contacts are open,", r.label);
+    break;
+  }
+  return r;
+}
+
 void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults *out) {
   const Model *m = e->m;
-  const Expr *with = param_definitions(m);
-  const Eqns *closed = with_definitions(e, with);
+  const Case *cases = cases_of(e);
   for (uint32_t i = 0; i < m->expects.n; i++) {
-    Expect x = m->expects.at[i];
-    if (x.effect != effect) continue;
-    x.lhs = charges_fill(e, x.lhs);
-    x.rhs = charges_fill(e, x.rhs);
-    if (with) x.lhs = expr_substitute(e->g, x.lhs, with, expr_symbol_count(e->g) + 1, "");
-    if (with) x.rhs = expr_substitute(e->g, x.rhs, with, expr_symbol_count(e->g) + 1, "");
-    ExpectResult r = judge(closed, &x);
+    const Eqns *at;
+    Expect x, said = m->expects.at[i];
+    if (said.effect != effect) continue;
+    said.lhs = charges_fill(e, said.lhs);
+    said.rhs = charges_fill(e, said.rhs);
+    ExpectResult r = judge_cases(cases, &said, &x, &at);
+    if (r.verdict == EXPECT_REFUTED) report_refuted(at, &x, r.label);
+    if (r.verdict == EXPECT_AGREES) report_agrees(at, &x, &r, allow_numeric);
+    if (r.verdict == EXPECT_UNKNOWN) report_unknown(at, &x, &r);
+    r.label = label_of(m, &x);
     vec_push(m->arena, out, r);
-    if (r.verdict == EXPECT_REFUTED) report_refuted(closed, &x, r.label);
-    if (r.verdict == EXPECT_AGREES) report_agrees(closed, &x, &r, allow_numeric);
-    if (r.verdict == EXPECT_UNKNOWN) report_unknown(closed, &x, &r);
   }
 }
 

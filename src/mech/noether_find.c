@@ -61,6 +61,7 @@ static void add_coupled(Search *s, Guesses *all, Expr beta, Expr kappa) {
   Expr root = expr_sqrt(g, inside), sum = expr_add(g, beta, root), difference = expr_sub(g, root, beta);
   add_guess(s, all, expr_scale(g, num_ratio(1, 2), sum));
   add_guess(s, all, expr_scale(g, num_ratio(1, 2), difference));
+  add_guess(s, all, root); /* of what breathes: the sum of both */
 }
 
 /* Of each coordinate whose own equation is m q'' = kappa m q + ..., and of pairs with the same kappa whose velocities are coupled. */
@@ -147,11 +148,9 @@ static int same_shape(const Table *a, const Table *b) {
   return a->rows == b->rows && a->shown == b->shown && memcmp(a->pivot, b->pivot, a->rows * sizeof *a->pivot) == 0;
 }
 
-/* x = c*factor at both choices, c rational. */
-static int is_multiple(Search *s, const long double *x, Expr factor, Num *c) {
-  long double a = x[CHOICE_FIRST], b = x[CHOICE_SECOND];
-  if (factor) a /= choice_value(&s->choices, CHOICE_FIRST, factor), b /= choice_value(&s->choices, CHOICE_SECOND, factor);
-  return fabsl(a - b) < 1e-9L * fabsl(a) && rational_of(a, c);
+/* x is the rational c at both choices. */
+static int is_same(const long double *x, Num *c) {
+  return fabsl(x[CHOICE_FIRST] - x[CHOICE_SECOND]) < 1e-9L * fabsl(x[CHOICE_FIRST]) && rational_of(x[CHOICE_FIRST], c);
 }
 
 /* The tables of a family at all choices, those that are moved only when they are needed; and how rows of them were shortened. */
@@ -182,10 +181,10 @@ static Expr coefficient(Search *s, Tables *t, uint32_t row, size_t place, int mo
   Num c;
   for (uint32_t i = 0; i < CHOICE_MOVED; i++) x[i] = t->at[i].at[at];
   if (x[CHOICE_FIRST] == 0 && x[CHOICE_SECOND] == 0) return expr_int(s->g, 0);
-  if (is_multiple(s, x, 0, &c)) return expr_num(s->g, c);
-  if (rate && is_multiple(s, x, rate, &c)) return expr_scale(s->g, c, rate);
-  if (rate && is_multiple(s, x, expr_pow_num(s->g, rate, num_int(-1)), &c)) return expr_scale(s->g, c, expr_pow_num(s->g, rate, num_int(-1)));
-  Expr ratio = ratio_of(&s->choices, x);
+  if (is_same(x, &c)) return expr_num(s->g, c);
+  Expr ratio = rate ? power_of(&s->choices, x, rate) : 0;
+  if (!ratio) ratio = ratio_of(&s->choices, x);
+  if (!ratio && rate) ratio = ratio_with(&s->choices, x, rate);
   if (ratio || !moved) return ratio;
   for (uint32_t i = CHOICE_MOVED; i < choice_count(s); i++) x[i] = t->at[i].at[at];
   return monomial_of(&s->choices, x);

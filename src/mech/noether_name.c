@@ -253,6 +253,12 @@ static void name_linear(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to)
   else to->name = antisymmetric ? "rotation among coordinates" : "linear map of the coordinates";
 }
 
+static int stretches(const Eqns *e, const GeneratorRow *r) {
+  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+    if (!expr_is_zero(e->g, entry(e, r, 0, i, i + 1))) return 1;
+  return 0;
+}
+
 void name_symmetry(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
   Parts p = parts_of(e, r);
   to->axis = NO_AXIS;
@@ -263,7 +269,7 @@ void name_symmetry(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
   } else if (is_energy(p)) {
     to->kind = SYMMETRY_ENERGY;
     to->name = "energy";
-  } else if (p.tau == 1) to->name = "energy in a moving frame";
+  } else if (p.tau == 1) to->name = stretches(e, r) ? "energy in a frame that stretches" : "energy in a moving frame";
   else if (!p.tau && !p.linear && p.shift == 1) name_shift(e, r, to);
   else if (!p.tau && !p.linear && p.shift == 2) name_boost(e, r, to);
   else if (!p.tau && !p.shift && p.linear == 1) name_linear(e, r, to);

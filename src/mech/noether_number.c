@@ -68,6 +68,27 @@ Expr ratio_of(const Choices *c, const long double *value) {
   return 0;
 }
 
+Expr power_of(const Choices *c, const long double *value, Expr rate) {
+  static const int powers[4] = {1, -1, 2, -2};
+  for (int k = 0; k < 4; k++) {
+    Expr factor = expr_pow_num(c->e->g, rate, num_int(powers[k]));
+    long double one = value[CHOICE_FIRST] / choice_value(c, CHOICE_FIRST, factor), other = value[CHOICE_SECOND] / choice_value(c, CHOICE_SECOND, factor);
+    Num number;
+    if (fabsl(one - other) < 1e-9L * fabsl(one) && rational_of(one, &number)) return expr_scale(c->e->g, number, factor);
+  }
+  return 0;
+}
+
+Expr ratio_with(const Choices *c, const long double *value, Expr rate) {
+  for (int power = 1; power >= -1; power -= 2) {
+    Expr factor = expr_pow_num(c->e->g, rate, num_int(power));
+    long double rest[2] = {value[CHOICE_FIRST] / choice_value(c, CHOICE_FIRST, factor), value[CHOICE_SECOND] / choice_value(c, CHOICE_SECOND, factor)};
+    Expr ratio = ratio_of(c, rest);
+    if (ratio) return expr_mul(c->e->g, ratio, factor);
+  }
+  return 0;
+}
+
 static int half_of(long double exponent, Num *out) {
   long double twice = roundl(2 * exponent);
   if (!(fabsl(2 * exponent - twice) < 1e-6L) || fabsl(twice) > 24) return 0;

@@ -26,6 +26,12 @@ Expr ratio_of(const Choices *c, const long double *value);
 /* A sum of parameters times small fractions, and of such a fraction: m1 + m2. 0: none takes these values, 2 + n of them. */
 Expr linear_of(const Choices *c, const long double *value);
 
+/* A rational times a power of `rate`, an expression of parameters: -2, -1, 1 or 2. */
+Expr power_of(const Choices *c, const long double *value, Expr rate);
+
+/* What ratio_of knows, times or over `rate`. */
+Expr ratio_with(const Choices *c, const long double *value, Expr rate);
+
 /* value[choice], 2 + n of them. 0: no such monomial takes these values. */
 Expr monomial_of(const Choices *c, const long double *value);
 

@@ -1,5 +1,6 @@
 #include "mech/noether_report.h"
 
+#include "mech/charges.h"
 #include "sym/prove.h"
 
 /* --- cyclic coordinates --- */
@@ -39,6 +40,13 @@ NoetherReport *noether_report(Eqns *e) {
   r->algebra = brackets_find(e, &r->found);
   r->scales = noether_scaling(e, &r->scaling);
   return r;
+}
+
+Name noether_declared(const NoetherReport *r, uint32_t k) {
+  Expr charge = r->found.all.at[k].is.charge, minus = expr_neg(r->e->g, charge);
+  for (uint32_t i = 1; i < r->e->ncharges; i++)
+    if (r->e->charges[i].proof.charge == charge || r->e->charges[i].proof.charge == minus) return r->e->charges[i].name;
+  return NULL;
 }
 
 /* --- generators in the graph of another model --- */

@@ -27,6 +27,9 @@ typedef struct {
 /* Needs a Lagrangian. */
 NoetherReport *noether_report(Eqns *e);
 
+/* The symmetry of the model's text with the same charge as found symmetry k, or its opposite; NULL: none is declared. */
+Name noether_declared(const NoetherReport *r, uint32_t k);
+
 /* Adds a verdict on the model with one more effect. */
 void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with);
 

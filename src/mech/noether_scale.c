@@ -100,7 +100,7 @@ static void scaling_work(Arena *scratch, void *data) {
 
 int noether_scaling(const Eqns *e, Scaling *found) {
   Work w = {.e = e, .g = e->g, .n = e->n, .out = found};
-  if (!e->n || e->constraints.n || e->m->states.n) return 0;
+  if (!e->n || e->constraints.n || e->m->states.n || expr_kinds(e->g, e->m->lagrangian) & 1u << SYM_INPUT) return 0;
   for (uint32_t i = 0; i < e->n; i++)
     if (!expr_is_zero(e->g, e->Q[i])) return 0;
   normal_with_scratch(e->g, scaling_work, &w);

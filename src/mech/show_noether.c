@@ -25,7 +25,8 @@ static void symmetry(Page *p, uint32_t k) {
   Arena *a = t->e->m->arena;
   const FoundSymmetry *s = &p->r->found.all.at[k];
   int moves = !s->is.power_unknown && !expr_is_zero(t->g, s->is.power);
-  text_heading(t, arena_printf(a, "Q%u: %s", k + 1, s->name));
+  Name declared = noether_declared(p->r, k);
+  text_heading(t, arena_printf(a, "Q%u: %s%s%s", k + 1, s->name, declared ? "; declared as " : "", declared ? declared : ""));
   for (uint32_t i = 0; i < noether_coordinates(t->e); i++) put_delta(p, expr_symbol(t->g, noether_coordinate(t->e, i))->name, s->by.xi[i]);
   put_delta(p, "t", s->by.tau);
   if (!expr_is_zero(t->g, s->is.F)) text_named(t, "F", "F", s->is.F, 0);

@@ -15,7 +15,10 @@ static void put_power(StrBuf *out, ExprGraph *g, const Noether *is) {
   else put_expr(out, g, is->power);
 }
 
-static void put_symmetry(StrBuf *out, const Eqns *e, const FoundSymmetry *s) {
+static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
+  const Eqns *e = r->e;
+  const FoundSymmetry *s = &r->found.all.at[k];
+  Name declared = noether_declared(r, k);
   uint32_t shown = 0;
   sb_printf(out, "{\"name\": \"%s\", \"delta\": {", s->name);
   for (uint32_t i = 0; i < noether_coordinates(e); i++) {
@@ -31,6 +34,7 @@ static void put_symmetry(StrBuf *out, const Eqns *e, const FoundSymmetry *s) {
   put_expr(out, e->g, s->is.charge);
   sb_puts(out, ", \"power\": ");
   put_power(out, e->g, &s->is);
+  if (declared) sb_printf(out, ", \"declared\": \"%s\"", declared);
   sb_putc(out, '}');
 }
 
@@ -94,7 +98,7 @@ void show_noether_json(const NoetherReport *r, StrBuf *out) {
             f->galilean ? "true" : "false");
   for (uint32_t k = 0; k < f->all.n; k++) {
     sb_puts(out, k ? ",\n  " : "\n  ");
-    put_symmetry(out, r->e, &f->all.at[k]);
+    put_symmetry(out, r, k);
   }
   sb_puts(out, "],\n \"scaling\": ");
   put_scaling(out, r);

@@ -304,6 +304,8 @@ static StartResult settle(Finder *f, int velocities) {
       found = (stage == UNSET || f->nfree != before) && reach(f);
     }
     if (!found) {
+      copy(f, f->symbols, f->asked);
+      descend(f); /* as near as that goes from where it was asked for */
       StartResult flat = velocities ? (StartResult){.kind = START_FOUND} : check_slopes(f, 0);
       which = worst(f, &off);
       return flat.kind != START_FOUND ? flat : fault(f, START_NONE, which);

@@ -124,7 +124,10 @@ int states_complete(StateSolver *s, long double *symbols) {
   const Constraints *k = &e->constraints;
   uint32_t n = e->n, rank;
   for (uint32_t i = 0; i < k->n; i++) symbols[k->of[i]->multiplier] = 0;
-  for (uint32_t i = 0; i < m->contacts.n; i++) symbols[m->contacts.at[i].closed] = 0;
+  for (uint32_t i = 0; i < m->contacts.n; i++) {
+    SymId closed = m->contacts.at[i].closed;
+    symbols[closed] = e->definitions && !expr_is_zero(e->g, e->definitions[closed]);
+  }
   if (k->n && !states_obey(s, symbols)) return 0;
   const long double *demand = states_at(s, symbols).demand, *f = s->out + e->mass.n, *flow = f + n;
   fill(s, 1);

@@ -256,6 +256,8 @@ int is_use_none(const AstStmt *st);
 void collect_uses(Builder *b, const AstStmt *scene);
 void use_with_needs(Builder *b, Name effect);
 void check_effect_needs(Builder *b, const AstStmt *effect);
+/* Whether a value speaks of an effect that is off. */
+int mentions_off(const Builder *b, AstId value);
 
 /* output.c: adds what an expression puts out to the scene's outputs. The place of the one number that
  * it is; -1 when it is more, or after an error. */

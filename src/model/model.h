@@ -263,8 +263,8 @@ typedef struct {
   const char *scene; /* NULL: the first */
   Name also;         /* an effect to turn on besides the scene's own, with what it requires; or NULL */
   int bare;          /* no scene at all: no effect but `also` is on */
-  const EffectList *only; /* these effects are in use, whatever the scene says; what it says of others, its outputs, monitors and closed
-                           * forms have no part in it. NULL: those of the scene */
+  const EffectList *only; /* these effects are in use, whatever the scene says; what it says of others, or by them, its outputs, monitors and
+                           * closed forms have no part in it. NULL: those of the scene */
   const Define *defines;
   uint32_t ndefines;
   const Asked *asked; /* outputs besides the scene's own */

@@ -238,7 +238,8 @@ static void scene_statement(Builder *b, const AstStmt *st) {
     case STMT_SET: set_value(b, st, NULL); return;
     case STMT_USE:
       if (uses_effect(b, st->name))
-        for (const AstStmt *x = st->body; x; x = x->next) set_value(b, x, st->name);
+        for (const AstStmt *x = st->body; x; x = x->next)
+          if (!b->is_variant || !mentions_off(b, x->rhs)) set_value(b, x, st->name);
       return;
     case STMT_SPAN: set_span(b, st); return;
     case STMT_METHOD: scene_method(b, st); return;
@@ -309,11 +310,13 @@ static int shows_others(const AstStmt *const *s) {
 static int is_shown(const AstStmt *st) { return st->kind == STMT_OUTPUT || st->kind == STMT_EXACT; }
 
 /* Whether what a statement says has no part in the run: it stands before a `use none`, or it is about an effect that is turned off, and
- * comes from a scene that uses it and that this one is like. A variant shows nothing. */
+ * comes from a scene that uses it and that this one is like. A variant shows nothing; what
+ * values of effects that are off would say is for the runtime to take from the scene itself. */
 static int is_dropped(Builder *b, const AstStmt *st, int before_none, int inherited) {
   if (st->kind == STMT_USE) return before_none;
   if (b->is_variant && is_shown(st)) return 1;
   if (!gives_value(st)) return 0;
+  if (b->is_variant && mentions_off(b, st->rhs)) return 1;
   Name effect = effect_given(b, st);
   return effect && (before_none || ((inherited || b->is_variant) && !uses_effect(b, effect)));
 }

@@ -31,7 +31,11 @@ src/ir/lower_unit.c mech/charges.h
 src/ir/lower_charges.c mech/charges.h
 runtime/include/lag.h  lag_model.h
 runtime/include/lag_math.h  lag_sincos.h
-src/main.c        picture.h help.h complete.h settings.h wants.h effects.h rounded.h
+src/main.c        picture.h help.h complete.h check.h conserved.h settings.h wants.h effects.h rounded.h
+src/check.h       deriver.h
+src/check.c       check.h
+src/conserved.h   deriver.h
+src/conserved.c   conserved.h
 src/effects.c     effects.h
 src/effects_text.c effects.h
 src/rounded.c     rounded.h

@@ -17,8 +17,12 @@ emitted() {
     { cat "$1.err"; return 1; }
 }
 
-# The scenes of a model, and their effects: as `lagc check` lists them.
-scenes() { "$LAGC" check "$1" 2>"$dir/err" | sed -n 's/^scene \(.*\): ok\(, with \)*\(.*\)$/\1 \3/p' | tr -d ,; }
+# The scenes of a model, and their effects: as emitted C lists them.
+scenes() {
+  for scene in $(sed -n 's/^scene \([A-Za-z0-9_]*\).*/\1/p' "$1"); do
+    "$LAGC" emit "$1" "$scene" 2>"$dir/err" | sed -n "s/^ \* Emitted by lagc; effects in use: \(.*\)\.$/$scene \1/p"
+  done
+}
 
 # Every scene of one file against the file without each effect that is off there, and without all of them.
 identical() { # FILE
@@ -27,7 +31,7 @@ identical() { # FILE
   cp "$from"/*.csv "$dir/cut" 2>/dev/null
   scenes "$1" >"$dir/scenes"
   [ -s "$dir/scenes" ] || { cat "$dir/err"; return 1; }
-  while read -r scene used; do
+  while read -r scene used; do # `none` is no effect
     off=
     while read -r effect; do
       case " $used " in *" $effect "*) ;; *) off="$off $effect" ;; esac

@@ -25,7 +25,7 @@ coord x[n] [m]
 param m = 2 [kg] > 0, k[n] = {3, 5} [N/m], c = 0.25 [N*s/m], w [rad/s] = 2*pi, still [m] = 0, d [N*s/m] = 2*c
 lagrangian = m/2*sum(i in 1..n, x[i]'^2) - sum(i in 1..n, k[i]/2*x[i]^2)
 for i in 1..n { force x[i] = -c*x[i]' + still*1 [N/m]*sin(w*t) }
-effect drive { param F = 3 [N], a: vec2 = (1, 2) [N]; force x[1] = F*cos(w*t) + a.y }
+effect drive { param F = 3 [N], a: vec2 = (1, 2) [N]; force x[1] = (F - 1 [N])*cos(w*t)/(m + 1 [kg])*1 [kg] + a.y }
 scene rest { start x[1] = 1, x[2] = 1; span 5; tolerance 1e-10 }
 scene heavy { like rest; m = 8; k[2] = 7 }
 scene driven { like rest; use drive(F = 4) }
@@ -56,7 +56,8 @@ agree() { # TOLERANCE MODEL SCENE...: two runs with and without
 # A difference of rounding in each of some hundred steps, of motions that are not chaotic: a thousand times 2e-16 is generous.
 for s in rest heavy driven; do check "two, $s" agree 1e-12 "$two" $s; done
 check "by Taylor series" agree 1e-12 "$two" driven --method taylor
-check "by an implicit method, with its Jacobian" agree 1e-11 "$two" driven --method radau
+# Newton's iteration stops below a part of the tolerance, 1e-10; rounding may end it one correction sooner, and in a hundred steps.
+check "by an implicit method, with its Jacobian" agree 1e-8 "$two" driven --method radau
 check "by a variational method, with second derivatives" agree 1e-11 "$two" rest --method 'variational(step = 0.01)'
 check "with constraints" agree 1e-10 models/slider_crank.lag --until 1
 check "of first order" agree 1e-10 models/vortices.lag --until 1

@@ -48,7 +48,7 @@ check "where there is no value" refused c 'has no value at the start'
 one 'constraint c: x^2 + y^2 = l^2' 'contact wall: x >= -2*l, restitution = 0.5' 'scene s { start x = 1e200 [m]; span 2 [s] }'
 check "where it is too large" refused c 'has no value at the start'
 one 'constraint c: x^2 + y^2 = l^2' 'constraint d: x = 2*l' 'scene s { start x = 1 [m]; span 2 [s] }'
-check "two that exclude each other" refused c 'no st'
+check "two that exclude each other" refused d 'off by 1 '
 one 'constraint c: x + y = 6 [m]' 'scene s { start exactly x = 1 [m]; span 1 [s] }'
 check "exactly" refused c 'without `exactly` the nearest start is taken'
 one 'constraint c: x = l' "scene s { start exactly x = 1 [m], x' = 1 [m/s]; span 1 [s] }"
@@ -82,6 +82,24 @@ check "a coordinate without inertia that nothing moves" lacks
 sed -i 's/k = 0 /k = 1 /' "$TMP/ker.lag"
 free() { taken 0 1 ker && near "$(value x)" 2 1e-9 && near "$(value z)" 0 1e-12; }
 check "with inertia, a constraint that says nothing is none" free
+
+model rail <<'END'
+model rail "A bead on a parabola: its parameter has no inertia"
+coord x [m], y [m], s [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0
+lagrangian = m/2*(x'^2 + y'^2) - m*g*y
+constraint a: x = 2*s
+constraint b: y = s^2/1 [m]
+scene one { start s = 1 [m]; span 1 [s] }
+scene kept { like one; method variational(step = 1e-3) }
+END
+check "by dop853 it moves" runs "$TMP/rail.lag" one
+for m in variational verlet symplectic_euler verlet8; do
+  no_momentum() { ! runs "$TMP/rail.lag" one --method $m --step 1e-3 && says "method $m finds velocities from momenta, and s has no inertia" "$TMP/run"; }
+  check "$m refuses what has no momentum" no_momentum
+done
+no_momentum() { ! checks "$TMP/rail.lag" kept && says 'the method `variational` finds velocities from momenta' "$TMP/check"; }
+check "so does lagc check" no_momentum
 
 # ---- singular places
 model chain <<'END'

@@ -48,6 +48,7 @@ scene cancel { use there, back, hand(f = 2e-9); span 2; tolerance 1e-9; method r
 scene nested { use hand, more; span 2; tolerance 1e-9; method rk45; more.f = 0.25 }
 scene ridden { use rider; start rider.y = 3 [m]; span 2; method rk45 }
 scene stopped { use wall; span 2; method rk45; tolerance 1e-9 }
+scene made { use hand, there; start x = hand.f*1 [m/N], x' = there.f*2 [m/N/s]; span 2; method rk45; tolerance 1e-9 }
 scene pure { span 2; method rk45 }
 END
 push=$dir/push.lag
@@ -72,6 +73,9 @@ near "alone, what requires it, with the scene's value" 1e-12 "$(calc "0.25/3.25"
 weigh "$push" ridden
 near "an effect with a coordinate: of those that both have" 1e-9 "$(calc "1/3")" "$(of rider difference)"
 near "an effect that ends the run: at 0.5 m instead of 2" 1e-9 3 "$(weigh "$push" stopped; of wall difference)"
+# from x = 1 m, x' = 1 m/s with a = 1.75 m/s^2 to 6.5 m, 4.5 m/s at 2 s; without the hand, a = 1.25, from the same start to 1 m, 1 m/s less
+weigh "$push" made
+near "values and starts that are made of what is left out stay" 1e-12 "$(calc "1/4.5")" "$(of hand difference)"
 weigh "$push" pure
 is "with a pole on the way the run fails" "would matter" "$(of pole verdict)"
 check "and says so" says 0 'with pole the run fails: ' "$LAGC" effects "$push" pure
@@ -159,6 +163,8 @@ check "pasted into the scene it does what was promised" pasted
 } >"$dir/many.lag"
 is "more than ten: one by one" "use e1, e2" "$(smallest "$dir/many.lag" s --accuracy 2e-3)"
 check "and says how" says 0 'found by leaving out one after the other' "$LAGC" effects "$dir/many.lag" s --accuracy 2e-3
+
+check "below the smallest tolerance there is none: a larger one tells" sh -c 'awk -v e="$1" "BEGIN { exit !(e > 0 && e < 1e-10) }"' - "$(weigh models/mercury.lag advance --until 1e7; of integration_error)"
 
 # ---- mistakes
 sed "/^effect/d; /^scene/d" "$push" >"$dir/none.lag"

@@ -144,6 +144,15 @@ static void magnetic(void **state) {
   arena_free(c.arena);
 }
 
+/* The algebra of a charge on a spring in a magnetic field closes, too. */
+static void two_rates(void **state) {
+  (void)state;
+  Charges c = charges("model b\ncoord x, y\nparam m = 2 > 0, b = 3 > 0, k = 1 > 0\nlagrangian = m/2*(x'^2 + y'^2) + b/2*(x*y' - y*x') - k/2*(x^2 + y^2)\n");
+  assert_int_equal(c.found.all.n, 8);
+  jacobi(&c);
+  arena_free(c.arena);
+}
+
 static void oscillator(void **state) {
   (void)state;
   Charges c = charges("model o\ncoord x, y\nparam m = 2 > 0, k = 8 > 0\nlagrangian = m/2*(x'^2 + y'^2) - k/2*(x^2 + y^2)\n");
@@ -179,6 +188,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(rotations), cmocka_unit_test(galilei),    cmocka_unit_test(two_bodies), cmocka_unit_test(inverse_square),
     cmocka_unit_test(magnetic),  cmocka_unit_test(oscillator), cmocka_unit_test(vortices),   cmocka_unit_test(refused),
+    cmocka_unit_test(two_rates),
   };
   return cmocka_run_group_tests_name("brackets", tests, NULL, NULL);
 }

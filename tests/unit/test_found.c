@@ -198,6 +198,9 @@ static void magnetic(void **state) {
                    "observe A_x = 1\nobserve B_y = 1\nobserve C_x = -y\nobserve C_y = x\nobserve D_x = cos(b*t/m)\nobserve D_y = -sin(b*t/m)\n", 8);
   has_name(&m, "magnetic translation along x");
   arena_free(m.arena);
+  /* with a spring: two frequencies, and breathing with their sum (V. Fock, Z. Phys. 47 (1928) 446) */
+  has_only("model b\ncoord x, y\nparam m = 2 > 0, b = 3, k = 1 > 0\nlagrangian = m/2*(x'^2 + y'^2) + b/2*(x*y' - y*x') - k/2*(x^2 + y^2)\nlet w = sqrt(b^2 + 4*m*k)/m\n"
+           "observe A_x = cos((w - b/m)*t/2)\nobserve A_y = sin((w - b/m)*t/2)\nobserve B_x = cos((w + b/m)*t/2)\nobserve B_y = -sin((w + b/m)*t/2)\n", 8);
 }
 
 static void inverse_square(void **state) {
@@ -371,6 +374,10 @@ static void scalings(void **state) {
   scales("model o\ncoord x\nparam m = 2 > 0, k = 3 > 0\nlagrangian = m/2*x'^2 - k/2*x^2\n", 1, 0, 2);
   /* a pendulum has none; that of the inverse square has a charge */
   Model_ m = model("model p\ncoord th\nlagrangian = th'^2/2 + cos(th)\n");
+  assert_false(noether_scaling(m.e, &s));
+  arena_free(m.arena);
+  /* what an input does in time is not for L to say */
+  m = model("model u\ncoord x\ninput u = sin(t)\nlagrangian = x'^2/2 - u*x\n");
   assert_false(noether_scaling(m.e, &s));
   arena_free(m.arena);
   m = model("model i\ncoord x\nparam k = 2\nlagrangian = x'^2/2 - k/x^2\n");

@@ -1,0 +1,12 @@
+/* How commands that look at several models of one text get them: scenes, effects one by one. */
+#ifndef LAGC_DERIVER_H
+#define LAGC_DERIVER_H
+
+#include "mech/eqns.h"
+
+typedef struct {
+  Eqns *(*derive)(void *data, const ModelChoice *choice); /* NULL with the reasons in the diags of the text */
+  void *data;
+} Deriver;
+
+#endif
