@@ -192,7 +192,9 @@ static int matrix(const lag_discrete *d, Parts *w)
     scatter(d, w, i);
   }
   if (lag_band_factor(&w->J, w->du)) {
-    d->pb->detail = "the matrix of Newton's method is singular; take another step size";
+    d->pb->detail = d->pb->model->constraints ? "the matrix of Newton's method is singular: where inertia is missing that constraints replace, dop853 can; "
+                                                 "else take another step size"
+                                               : "the matrix of Newton's method is singular; take another step size";
     return lag_step_failed(d->pb, LAG_EMETHOD, d->t);
   }
   return LAG_OK;

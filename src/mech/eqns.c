@@ -6,6 +6,7 @@
 #include "base/methods.h"
 #include "mech/charges.h"
 #include "mech/constrain.h"
+#include "mech/degree.h"
 #include "mech/first_order.h"
 #include "mech/lagrange.h"
 #include "sym/diff.h"
@@ -49,6 +50,22 @@ static const Expr *plain_momenta(const Eqns *e) {
   return p;
 }
 
+/* p q' - x of a part x of L, by the degrees of its terms (mech/degree.h); 0 where one has none. */
+static Expr moving_energy(const Eqns *e, Expr x) {
+  ExprGraph *g = e->g;
+  VEC(Expr) terms = {0};
+  for (uint32_t i = 0; i < expr_pairs(g, x, EX_SUM); i++) {
+    Num c;
+    Expr t = expr_pair(g, x, EX_SUM, i, &c);
+    uint8_t degree = velocity_degree(g, e->m->arena, t);
+    if (degree == NO_DEGREE) return 0;
+    Num times = num_mul(c, num_int(degree - 1));
+    Expr part = expr_scale(g, times, t);
+    vec_push(e->m->arena, &terms, part);
+  }
+  return expr_add_n(g, terms.at, terms.n);
+}
+
 /* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as it
  * was written: k/2*(r - l)^2 has more right digits than what it expands to. */
 static void derive_energy(Eqns *e) {
@@ -72,9 +89,13 @@ static void derive_energy(Eqns *e) {
   }
   Expr l0 = expr_add_n(g, still.at, still.n);
   Expr l_moving = expr_sub(g, l, l0);
-  Expr moving = expr_sub(g, pv, l_moving);
-  Expr kinetic = shorten(e, moving);
-  e->energy = expr_sub(g, kinetic, l0);
+  /* Of rotations p q' is long, and omega says the same. */
+  Expr moving = e->m->across ? moving_energy(e, l_moving) : 0;
+  if (!moving) {
+    Expr whole = expr_sub(g, pv, l_moving);
+    moving = shorten(e, whole);
+  }
+  e->energy = expr_sub(g, moving, l0);
   /* l + y with y = -l*cos(th) hides a difference of nearly equal numbers in a let. */
   Expr open = e->n <= EXPAND_MAX_COORDS ? expr_expand_defs(g, e->energy) : e->energy;
   e->energy_stable = e->n <= SHORTEN_MAX_COORDS ? simplify_stable(g, open) : open;

@@ -79,6 +79,36 @@ check "Euler's equation agrees in numbers" grep -q "expect A\*omega(S)'.x: not p
 sed 's/(B - C)/(C - B)/' $spun >"$TMP/false.lag"
 check "a false one is refuted" sh -c '"$1" check "$2" --allow-numeric 2>&1 | grep -q "is false"' sh "$LAGC" "$TMP/false.lag"
 
+# ---- contacts ----
+# A box falls on its four corners and comes to rest: what carries it is three numbers, of four forces the least are a quarter of the weight each.
+for scene in flat tilted; do
+  out=$TMP/$scene.csv
+  check "a box falls, $scene" "$LAGC" run tests/exec/models/box.lag $scene -o "$out"
+  for k in a b c d; do check "$scene: corner $k carries a quarter" near "$out" "lambda($k)" 5 "9.81/4" 1e-12; done
+  check "$scene: it lies" near "$out" r.z 5 0.2 1e-14
+done
+# No friction: it slides on, and turns on; 30 steps at 1e-9.
+check "it slides on" near "$TMP/flat.csv" r.x 5 5 1e-12
+check "and turns on" near "$TMP/flat.csv" R.z 5 "sin(2.5)" 1e-8
+
+# ---- what is derived ----
+energy_of() { "$LAGC" derive "models/$1.lag" | sed -n '/^energy/{n;s/^ *E = //p;}'; }
+is "the energy is told by omega" 'A*w.x^2/2 + B*w.y^2/2 + C*w.z^2/2' "$(energy_of free_body)"
+is "and by what else L is written with" "A*(w.x^2 + w.y^2)/2 + C*w.z^2/2 + m*g*h*axis.z" "$(energy_of lagrange_top)"
+# A term of the first degree, a gyroscope's in a turning frame, is none of the energy: E = T2 - T0 + V.
+cat >"$TMP/turning.lag" <<'E2'
+model turning "A dumb-bell on a table that turns: terms of degree 2, 1 and 0 in L"
+coord R: rotation, x [m]
+param A = 2 [kg*m^2] > 0, m = 1 [kg] > 0, W = 3 [rad/s]
+kinetic = A/2*dot(omega(R), omega(R)) + A*dot(omega(R), transpose(R)*(0, 0, W)) + A/2*W^2 + m/2*(x'^2 + (W*x)^2)
+potential = 0 [J]
+scene s { start omega(R) = (0, 0, 1), x = 2 [m], x' = 5 [m/s]; span 1 [s]; output energy every 1 [s] }
+E2
+"$LAGC" run "$TMP/turning.lag" -o "$TMP/turning.csv" --quiet
+# 2/2 1^2 - 2/2 3^2 + 5^2/2 - (3 2)^2/2
+check "terms of degree 1 are no energy" near "$TMP/turning.csv" energy 0 "1 - 9 + 12.5 - 18" 1e-14
+check "and it is conserved" near "$TMP/turning.csv" energy 1 "-13.5" 1e-7
+
 # ---- long runs ----
 # A body about its middle axis, 10^5 steps of order 2: the energy returns to its digits, and so does the length.
 long() {

@@ -1,0 +1,40 @@
+#include "mech/degree.h"
+
+/* Degrees as they are kept: one more, so that what is not in the map has none yet. */
+static uint8_t kept(const ExprMap *degrees, Expr x) { return (uint8_t)(expr_map_get(degrees, x) - 1); }
+
+/* That of a sum whose terms have it. */
+static uint8_t of_sum(const ExprGraph *g, Expr x, const ExprMap *degrees) {
+  Num k;
+  uint8_t first = kept(degrees, expr_pair(g, x, EX_SUM, 0, &k));
+  for (uint32_t i = 1; i < expr_pairs(g, x, EX_SUM); i++)
+    if (kept(degrees, expr_pair(g, x, EX_SUM, i, &k)) != first) return NO_DEGREE;
+  return first;
+}
+
+static uint8_t of_product(const ExprGraph *g, Expr x, const ExprMap *degrees) {
+  uint32_t sum = 0;
+  for (uint32_t i = 0; i < expr_pairs(g, x, EX_PROD); i++) {
+    Num k;
+    uint32_t one = kept(degrees, expr_pair(g, x, EX_PROD, i, &k));
+    if (!one) continue;
+    if (one == NO_DEGREE || !num_is_int(k) || k.num < 0 || k.num >= NO_DEGREE) return NO_DEGREE;
+    if ((sum += one * (uint32_t)k.num) >= NO_DEGREE) return NO_DEGREE;
+  }
+  return (uint8_t)sum;
+}
+
+static uint8_t of_node(const ExprGraph *g, Expr x, const ExprMap *degrees) {
+  ExprOp op = expr_op(g, x);
+  if (!(expr_kinds(g, x) & 1u << SYM_VEL)) return 0;
+  if (op == EX_SYM) return 1;
+  if (op == EX_DEF) return kept(degrees, expr_arg(g, x, 0));
+  return op == EX_SUM ? of_sum(g, x, degrees) : op == EX_PROD ? of_product(g, x, degrees) : NO_DEGREE;
+}
+
+uint8_t velocity_degree(ExprGraph *g, Arena *arena, Expr x) {
+  ExprMap degrees = expr_map(arena);
+  ExprList all = expr_topo(g, &x, 1);
+  for (uint32_t i = 0; i < all.n; i++) expr_map_set(&degrees, all.at[i], of_node(g, all.at[i], &degrees) + 1u);
+  return kept(&degrees, x);
+}
