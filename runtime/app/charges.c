@@ -33,7 +33,13 @@ static void put_trend(const App *app, const lag_charge_stats *c, FILE *f)
   }
 }
 
-static void put_energy(const lag_charge_stats *c, FILE *f)
+/* Why there is no balance. */
+static const char *why_not(const App *app)
+{
+  return lag_method_balances(lag_sim_method(app->sim)) ? "not conserved, or not known to be" : "not conserved, and the method tells too little between steps for a balance";
+}
+
+static void put_energy(const App *app, const lag_charge_stats *c, FILE *f)
 {
   const char *size = "relative to max(|E0|, max(|p.v| + |L|))";
 
@@ -42,11 +48,11 @@ static void put_energy(const lag_charge_stats *c, FILE *f)
   } else if (c->flags & LAG_BALANCED) {
     fprintf(f, "(forces and explicit time brought %.6g; %s)", c->work, size);
   } else {
-    fputs("(not conserved, or not known to be)", f);
+    fprintf(f, "(%s)", why_not(app));
   }
 }
 
-static void put_charge(const lag_charge_stats *c, FILE *f)
+static void put_charge(const App *app, const lag_charge_stats *c, FILE *f)
 {
   fprintf(f, "(from %.6g%s%s", c->begin + 0.0, c->unit[0] ? " " : "", c->unit);
   if (c->flags & LAG_CONSERVED) {
@@ -54,7 +60,7 @@ static void put_charge(const lag_charge_stats *c, FILE *f)
   } else if (c->flags & LAG_BALANCED) {
     fprintf(f, "; forces brought %.6g)", c->work);
   } else {
-    fputs("; not conserved, or not known to be)", f);
+    fprintf(f, "; %s)", why_not(app));
   }
 }
 
@@ -69,9 +75,9 @@ void report_charges(const App *app, FILE *f)
     }
     fprintf(f, "%s %s: %.3g ", c.name, what_of(&c), c.drift);
     if (k) {
-      put_charge(&c, f);
+      put_charge(app, &c, f);
     } else {
-      put_energy(&c, f);
+      put_energy(app, &c, f);
     }
     put_trend(app, &c, f);
     putc('\n', f);

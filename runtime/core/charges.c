@@ -2,8 +2,10 @@
  * brought, Q - int P dt. Enters: states that are part of the run, in order; leaves: for each charge the largest difference from the
  * start, and whether it grows.
  *
- * int P dt, where it is asked for, is a sum of Gauss quadratures on the dense output, of the order of the method: one over each part of a step between
- * events. What an event does to a charge moves the value that it is compared with.
+ * int P dt, where it is asked for, is a sum of quadratures on the dense output, of the order of the method: one over each part of a step between
+ * events. Where the ends of steps are better than what lies between them the nodes are Radau's: those of `radau` are its stages, whose errors
+ * cancel. Methods whose long steps have little between them, those of GSL, get no balance.
+ * What an event does to a charge moves the value that it is compared with.
  *
  * Whether it grows: the differences are averaged over 16 to 32 parts of the run, and a line is fitted to the averages. It grows where
  * the line explains most of what they vary by; what oscillates goes out in the averages, whatever its size. Batch means: B. Schmeiser,
@@ -72,6 +74,11 @@ int lag_sim_balance(lag_sim *s)
   return LAG_OK;
 }
 
+int lag_method_balances(const lag_method *m)
+{
+  return m->order_most > 0 || m->order <= m->dense_order + 2;
+}
+
 /* Whether the scene watches a charge, which is then compared with its balance. */
 static int watches_charges(const lag_scene *c)
 {
@@ -87,9 +94,10 @@ void lag_charges_method(lag_sim *s, const lag_method *method)
 {
   int order = method->order_most > method->order ? method->order_most : method->order, between = method->dense_order + 1;
 
-  order = order < between ? order : between;
+  int ends = method->order_most == 0 && order > between;
+  order = ends || order < between ? order : between;
   s->nodes = (order + 1) / 2 > LAG_NODES ? LAG_NODES : order < 2 ? 1 : (order + 1) / 2;
-  lag_gauss_points(s->nodes, s->node, s->weight);
+  (ends ? lag_radau_points : lag_gauss_points)(s->nodes, s->node, s->weight);
 }
 
 /* gain[n] := int P dt over [a, b], part of the last step; NaN where there is no value. */
@@ -160,7 +168,7 @@ void lag_charges_begin(lag_sim *s, double t, const double *y)
 {
   values_at(s, t, y);
   s->run->watched = t;
-  s->run->balanced = has_powers(s) && (s->balances || watches_charges(s->scene));
+  s->run->balanced = has_powers(s) && lag_method_balances(s->method) && (s->balances || watches_charges(s->scene));
   for (int k = 0; k < lag_sim_ncharges(s); k++) {
     s->charges[k] = (Charge){.begin = s->charge_now[2 * k], .first = s->charge_now[2 * k], .scale = fmax(s->charge_now[2 * k + 1], 0), .width = 1};
     s->charges[k].balanced = (lag_charge_flags(s, k) & LAG_BALANCED) != 0;

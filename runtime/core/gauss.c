@@ -1,5 +1,5 @@
 /* Nodes and weights from Legendre's polynomials, by Newton's method: P. Davis, P. Rabinowitz, Methods of Numerical
- * Integration, 2nd ed. (1984), 2.7; M. Abramowitz, I. Stegun, 25.4.29. No digits to mistype, and as many as the scalar has. */
+ * Integration, 2nd ed. (1984), 2.7; M. Abramowitz, I. Stegun, 25.4.29 and 25.4.31. No digits to mistype, and as many as the scalar has. */
 #include "core/gauss.h"
 
 #include <math.h>
@@ -34,4 +34,21 @@ void lag_gauss_points(int n, double *c, double *b)
     c[n - 1 - i] = 0.5 + x / 2;
     b[i] = b[n - 1 - i] = 1 / ((1 - x * x) * slope * slope);
   }
+}
+
+/* The zeros of P_n - P_(n-1), whose derivative is n (P_n + P_(n-1))/(1 + x); from those of Chebyshev's polynomials. */
+void lag_radau_points(int n, double *c, double *b)
+{
+  for (int i = 1; i < n; i++) {
+    double p, below, x = cos(2 * 3.141592653589793 * (n - i) / (2 * n - 1));
+    for (int turn = 0; turn < 10; turn++) {
+      p = lag_legendre(n, x, &below);
+      x -= (p - below) * (1 + x) / (n * (p + below));
+    }
+    lag_legendre(n, x, &below);
+    c[i - 1] = 0.5 + x / 2;
+    b[i - 1] = (1 + x) / (2 * n * n * below * below);
+  }
+  c[n - 1] = 1;
+  b[n - 1] = 1.0 / (n * n);
 }

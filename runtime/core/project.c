@@ -357,21 +357,29 @@ int lag_project(lag_problem *pb, double t, double *y, double *lost)
   return rc < LAG_ESINGULAR ? LAG_EMODEL : rc;
 }
 
-/* The coordinate that a projection from q to y has moved farther than a step from y0 led, or -1. What is that small beside what has its unit is
- * none: near a singular position rounding moves that far. */
+/* How far coordinate i is, or has been, from 0; at least 1e-10 of its unit, of which there may be nothing. */
+static double extent(const lag_problem *pb, const double *y0, const double *y, int i)
+{
+  double begin = pb->begin ? lag_size_like(pb, pb->begin, i) : 0;
+
+  return fmax(fmax(lag_size_like(pb, y0, i), lag_size_like(pb, y, i)), fmax(begin, 1e-10));
+}
+
+/* The coordinate that a projection from q to y has moved farther than a step from y0 led, twice over, or -1. What is small beside its extent
+ * is none: near a singular position rounding moves that far, and what lies at rest is moved by rounding alone. */
 static int leaps(const lag_problem *pb, const double *y0, const double *q, const double *y)
 {
   const double small = 1e-6;
 
   for (int i = 0; i < pb->nq; i++) {
     double moved = fabs(y[i] - q[i]), led = 0;
-    if (!(moved > fabs(q[i] - y0[i]) + small * fabs(y[i]))) {
+    if (!(moved > 2 * fabs(q[i] - y0[i]) + small * fabs(y[i]))) {
       continue;
     }
     for (int j = 0; j < pb->nq; j++) {
       led = strcmp(pb->model->q[i].unit, pb->model->q[j].unit) == 0 ? fmax(led, fabs(q[j] - y0[j])) : led;
     }
-    if (moved > led + small * fmax(lag_size_like(pb, y, i), lag_size_like(pb, y0, i))) {
+    if (moved > 2 * led + small * extent(pb, y0, y, i)) {
       return i;
     }
   }

@@ -46,6 +46,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->pb.p = s->p;
   s->pb.hold = s->hold;
   s->pb.kept = s->kept;
+  s->pb.begin = s->begin;
   s->pb.opt = opt;
   s->charges = (Charge *)(void *)charges;
   s->method = method;

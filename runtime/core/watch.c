@@ -96,8 +96,10 @@ int lag_watch_see(lag_sim *s, double t, const double *y)
   for (int i = 0; i < c->nmonitors; i++) { /* when all are known: a report shows them all */
     double drift = lag_sim_monitor_drift(s, i);
     if (!(drift <= c->monitors[i].limit)) {
-      return lag_fail(s, LAG_EMONITOR, "monitor %s: drift %.3g is past its limit %.3g at t = %.17g s", c->monitors[i].name,
-                      drift, c->monitors[i].limit, t);
+      int rough = c->monitors[i].output < 0 && !lag_charge_flags(s, -1 - c->monitors[i].output) && !lag_method_balances(s->method);
+      return lag_fail(s, LAG_EMONITOR, "monitor %s: drift %.3g is past its limit %.3g at t = %.17g s%s%s%s", c->monitors[i].name,
+                      drift, c->monitors[i].limit, t, rough ? "; what forces bring is not part of it, as " : "", rough ? s->method->name : "",
+                      rough ? " tells too little between its steps: take dop853" : "");
     }
   }
   return LAG_OK;

@@ -60,6 +60,7 @@ typedef struct lag_problem {
   const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
   double *held;        /* [lag_held_room] scratch of the functions for constraints below */
+  const double *begin; /* [n] where the run began, so that sizes are known where all is 0; NULL: not known */
   const double *kept;  /* [nholonomic] what c is held at, NaN: at nothing yet; NULL: all at 0 */
   int redundant;       /* constraints follow from others: f is asked for on the constraints only, see lag_rhs */
   const double *opt;   /* values of the method's options, [method->noptions] */
@@ -334,6 +335,8 @@ int lag_sim_set_input(lag_sim *sim, const char *name, lag_input_fn *fn, void *co
 /* Integrates, along the run, what forces do to charges, so that lag_sim_charge tells balances. Not done by itself, but where the scene
  * watches a charge: it takes dense output at up to 8 places in each step. */
 int lag_sim_balance(lag_sim *sim);
+/* Whether a method knows enough of what lies between the ends of its steps for that; otherwise it is not done. */
+int lag_method_balances(const lag_method *method);
 
 /* Integrates to time t, before or after t0, but always in one direction. The steps do not depend on
  * t: the state at t is evaluated on the dense output (STEPS_TO methods: reached exactly), so runs that are

@@ -57,7 +57,8 @@ static const CommandRow commands[] = {
    "and its share of the time of a call of the right-hand side; its weight, the largest ratio of |acceleration with - without it| to "
    "|acceleration| on the way; the difference that it makes, the largest at 16 times of the run and at its end, relative to the largest value of "
    "its kind and unit; and whether that is more than the error of integration, which a run with a hundredth of the tolerance, or half the step, tells. "
-   "An effect is left out together with those that require it. `shared` are operations that several effects need.\n\n"
+   "An effect is left out together with those that require it. `shared` are operations that several effects need. Method, steps and end are chosen as for "
+   "`lagc run`: --method, --tol, --step, --until. `lagc help effect` says more.\n\n"
    "  name=value            a parameter, another start, an input, as for `lagc run`\n\n"
    "With --accuracy X it looks for the smallest set of the scene's effects that differs by at most X, all effects that are left out together; runs say so, of "
    "all sets where the scene has up to ten effects. Prints the `use` line."},

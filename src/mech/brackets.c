@@ -54,39 +54,32 @@ static void lay_out(Work *w) {
   w->tape = eval_tape(w->g, roots, w->roots);
 }
 
-/* The inverse of m[n*n]; 0: there is none. */
-static int invert(Arena *a, uint32_t n, const long double *m, long double *inverse) {
-  uint32_t *column = ARENA_ARRAY(a, uint32_t, n + 1);
-  long double *copy = ARENA_ARRAY(a, long double, (size_t)n * n + 1), *b = ARENA_ARRAY(a, long double, n + 1);
-  for (uint32_t j = 0; j < n; j++) {
-    memcpy(copy, m, (size_t)n * n * sizeof *m);
-    for (uint32_t i = 0; i < n; i++) b[i] = i == j;
-    if (dense_solve(n, copy, b, 1e-13L, column, NULL) < n) return 0;
-    for (uint32_t i = 0; i < n; i++) inverse[(size_t)i * n + j] = b[i];
+/* x of m x = b for rows b of `rows`, [count*n], which become the x; m[n*n]. 0: m has no inverse. */
+static int solve(Arena *a, uint32_t n, const long double *m, uint32_t count, long double *rows) {
+  size_t w = (size_t)n + count;
+  long double *both = ARENA_ARRAY(a, long double, n * w + 1), largest = 0;
+  uint32_t *pivot = ARENA_ARRAY(a, uint32_t, n + 1);
+  for (size_t i = 0; i < n; i++) {
+    for (size_t j = 0; j < n; j++) largest = fmaxl(largest, fabsl(both[i * w + j] = m[i * n + j]));
+    for (size_t k = 0; k < count; k++) both[i * w + n + k] = rows[k * n + i];
+  }
+  dense_echelon(n, (uint32_t)w, both, 1e-13L * largest, pivot);
+  for (size_t i = 0; i < n; i++) {
+    if (pivot[i] != i || both[i * w + i] == 0) return 0;
+    for (size_t k = 0; k < count; k++) rows[k * n + i] = both[i * w + n + k];
   }
   return 1;
-}
-
-/* to = m x. */
-static void apply(uint32_t n, const long double *m, const long double *x, long double *to) {
-  for (size_t i = 0; i < n; i++) {
-    to[i] = 0;
-    for (size_t j = 0; j < n; j++) to[i] += m[i * n + j] * x[j];
-  }
 }
 
 /* The derivatives in phase space in place of those by q and v. */
 static int to_phase_space(const Work *w, long double *out) {
   size_t n = w->n, r = w->r;
   long double *by_q = out + r, *by_v = by_q + r * n, *form = by_v + r * n, *slope = form + n * n;
-  long double *inverse = ARENA_ARRAY(w->scratch, long double, n * n + 1), *x = ARENA_ARRAY(w->scratch, long double, n + 1);
-  if (!invert(w->scratch, w->n, form, inverse)) return 0;
-  for (size_t a = 0; a < r; a++) {
-    apply(w->n, inverse, w->e->n ? by_v + a * n : by_q + a * n, x);
-    memcpy(by_v + a * n, x, n * sizeof *x);
-    for (size_t i = 0; i < n && w->e->n; i++)
-      for (size_t j = 0; j < n; j++) by_q[a * n + j] -= x[i] * slope[i * n + j];
-  }
+  if (!w->e->n) memcpy(by_v, by_q, r * n * sizeof *by_v);
+  if (!solve(w->scratch, w->n, form, w->r, by_v)) return 0;
+  for (size_t a = 0; a < r && w->e->n; a++)
+    for (size_t i = 0; i < n; i++)
+      for (size_t j = 0; j < n; j++) by_q[a * n + j] -= by_v[a * n + i] * slope[i * n + j];
   return 1;
 }
 
@@ -124,12 +117,12 @@ static int sample(const Work *w, uint32_t choice, uint32_t states, long double *
 static int fit(const Work *w, uint32_t choice, long double *c) {
   uint32_t m = w->r + 1, states = m + SPARE_STATES;
   long double *charges = ARENA_ARRAY(w->scratch, long double, (size_t)states * m), *brackets = ARENA_ARRAY(w->scratch, long double, (size_t)states * w->pairs + 1);
-  long double *inverse = ARENA_ARRAY(w->scratch, long double, (size_t)m * m), *x = ARENA_ARRAY(w->scratch, long double, m);
-  if (!sample(w, choice, states, charges, brackets) || !invert(w->scratch, m, charges, inverse)) return 0;
+  if (!sample(w, choice, states, charges, brackets)) return 0;
+  for (size_t pair = 0; pair < w->pairs; pair++)
+    for (size_t s = 0; s < m; s++) c[pair * m + s] = brackets[s * w->pairs + pair];
+  if (!solve(w->scratch, m, charges, w->pairs, c)) return 0;
   for (size_t pair = 0; pair < w->pairs; pair++) {
     long double worst = 0, size = 1e-3L;
-    for (uint32_t s = 0; s < m; s++) x[s] = brackets[s * w->pairs + pair];
-    apply(m, inverse, x, c + pair * m);
     for (size_t s = m; s < states; s++) {
       long double left = brackets[s * w->pairs + pair];
       size = fmaxl(size, fabsl(left));

@@ -272,7 +272,7 @@ static int is_param(const Symbol *s, const void *data) {
 /* What parameters stand for that are given by others: param I = m*l^2 follows m and l. Contacts are open, which leaves them no force, but
  * number `closed` (-1: none). NULL when there are none. */
 static const Expr *definitions(const Model *m, int closed) {
-  Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 1);
+  Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 2 + m->expects.n); /* each expectation may declare one more */
   int some = 0;
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Param *p = &m->params.at[i];
@@ -351,15 +351,15 @@ void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults 
   const Model *m = e->m;
   const Case *cases = cases_of(e);
   for (uint32_t i = 0; i < m->expects.n; i++) {
+    Expect x = m->expects.at[i], shown;
     const Eqns *at;
-    Expect x, said = m->expects.at[i];
-    if (said.effect != effect) continue;
-    said.lhs = charges_fill(e, said.lhs);
-    said.rhs = charges_fill(e, said.rhs);
-    ExpectResult r = judge_cases(cases, &said, &x, &at);
-    if (r.verdict == EXPECT_REFUTED) report_refuted(at, &x, r.label);
-    if (r.verdict == EXPECT_AGREES) report_agrees(at, &x, &r, allow_numeric);
-    if (r.verdict == EXPECT_UNKNOWN) report_unknown(at, &x, &r);
+    if (x.effect != effect) continue;
+    x.lhs = charges_fill(e, x.lhs);
+    x.rhs = charges_fill(e, x.rhs);
+    ExpectResult r = judge_cases(cases, &x, &shown, &at);
+    if (r.verdict == EXPECT_REFUTED) report_refuted(at, &shown, r.label);
+    if (r.verdict == EXPECT_AGREES) report_agrees(at, &shown, &r, allow_numeric);
+    if (r.verdict == EXPECT_UNKNOWN) report_unknown(at, &shown, &r);
     r.label = label_of(m, &x);
     vec_push(m->arena, out, r);
   }

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "mech/noether_candidates.h"
 #include "mech/noether_name.h"
 #include "mech/noether_number.h"
 #include "mech/noether_table.h"
@@ -481,7 +482,8 @@ static const char *note_on_impacts(const Model *m) {
 FoundSymmetries noether_find(Eqns *e) {
   FoundSymmetries out = {0};
   Search s = {.e = e, .g = e->g, .out = &out};
-  normal_with_scratch(e->g, search_work, &s);
+  if (candidates_only(e)) candidates_try(e, &out);
+  else normal_with_scratch(e->g, search_work, &s);
   out.galilean = has_galilean_charges(&out);
   if (!out.note) out.note = note_on_impacts(e->m);
   return out;

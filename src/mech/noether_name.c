@@ -2,20 +2,17 @@
 
 #include <ctype.h>
 
-enum { NO_AXIS = 3 };
-
 /* --- coordinates of bodies --- */
 
 /* r[2].x, x[2], x2 and x are components along x. */
 static uint32_t axis_of(Name name) {
   const char *dot = strrchr(name, '.'), *letter = dot ? dot + 1 : name;
-  if (*letter < 'x' || *letter > 'z') return NO_AXIS;
-  if (dot ? letter[1] != '\0' : isalpha((unsigned char)letter[1])) return NO_AXIS;
+  if (*letter < 'x' || *letter > 'z') return AXIS_NONE;
+  if (dot ? letter[1] != '\0' : isalpha((unsigned char)letter[1])) return AXIS_NONE;
   return (uint32_t)(*letter - 'x');
 }
 
-/* Whether two components belong to one body: all but the letter agrees. */
-static int same_body(Name a, Name b) {
+int name_same_body(Name a, Name b) {
   const char *x = strrchr(a, '.'), *y = strrchr(b, '.');
   if (!x != !y) return 0;
   if (!x) return strcmp(a + 1, b + 1) == 0;
@@ -38,11 +35,11 @@ static uint32_t sibling(const Eqns *e, uint32_t i, char letter) {
 static Name coord(const Eqns *e, uint32_t i) { return expr_symbol(e->g, noether_coordinate(e, i))->name; }
 
 /* Components of a rotation lie along no axis. */
-static uint32_t axis_at(const Eqns *e, uint32_t i) { return sibling(e, i, 'w') == UINT32_MAX ? axis_of(coord(e, i)) : NO_AXIS; }
+uint32_t name_axis(const Eqns *e, uint32_t i) { return sibling(e, i, 'w') == UINT32_MAX ? axis_of(coord(e, i)) : AXIS_NONE; }
 
 static uint32_t along(const Eqns *e, uint32_t axis) {
   uint32_t n = 0;
-  for (uint32_t i = 0; i < noether_coordinates(e); i++) n += axis_at(e, i) == axis;
+  for (uint32_t i = 0; i < noether_coordinates(e); i++) n += name_axis(e, i) == axis;
   return n;
 }
 
@@ -90,7 +87,7 @@ static void flip(const Eqns *e, GeneratorRow *r) {
 
 /* Whether q_i grows with q_j in the sense of rotation of books: x -> -y, y -> x; z from x falls. */
 static int wrong_turn(const Eqns *e, uint32_t i, uint32_t j, Expr c) {
-  uint32_t a = axis_at(e, i), b = axis_at(e, j);
+  uint32_t a = name_axis(e, i), b = name_axis(e, j);
   int z_and_x = a == 0 && b == 2;
   Num number;
   expr_pair(e->g, c, EX_SUM, 0, &number);
@@ -123,23 +120,23 @@ static uint32_t only_shift(const Eqns *e, const GeneratorRow *r, uint32_t m) {
   return n == 1 ? only : UINT32_MAX;
 }
 
-/* The axis along which block m shifts all bodies alike; NO_AXIS: it does something else. */
+/* The axis along which block m shifts all bodies alike; AXIS_NONE: it does something else. */
 static uint32_t common_shift(const Eqns *e, const GeneratorRow *r, uint32_t m) {
-  uint32_t axis = NO_AXIS, n = 0;
+  uint32_t axis = AXIS_NONE, n = 0;
   Expr one = 0;
   for (uint32_t i = 0; i < noether_coordinates(e); i++) {
     Expr c = entry(e, r, m, i, 0);
     if (expr_is_zero(e->g, c)) continue;
-    uint32_t own = axis_at(e, i);
-    if (own == NO_AXIS || (one && (c != one || own != axis))) return NO_AXIS;
+    uint32_t own = name_axis(e, i);
+    if (own == AXIS_NONE || (one && (c != one || own != axis))) return AXIS_NONE;
     one = c;
     axis = own;
     n++;
   }
-  return n && n == along(e, axis) ? axis : NO_AXIS;
+  return n && n == along(e, axis) ? axis : AXIS_NONE;
 }
 
-static const char *axis_text(uint32_t axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
+const char *axis_text(uint32_t axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
 
 static void name_shift(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
   Arena *a = e->m->arena;
@@ -147,11 +144,11 @@ static void name_shift(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) 
   int has_F = to->is.is == INVARIANT_UP_TO_F, magnetic = has_F && (expr_kinds(e->g, to->is.F) & 1u << SYM_COORD);
   to->kind = SYMMETRY_MOMENTUM;
   to->axis = axis;
-  to->of_all = axis != NO_AXIS;
+  to->of_all = axis != AXIS_NONE;
   if (only != UINT32_MAX)
     to->name = arena_printf(a, magnetic ? "magnetic translation along %s" : has_F ? "translation along %s: momentum less the impulse of what is uniform" : "momentum of %s",
                             coord(e, only));
-  else if (axis != NO_AXIS) to->name = arena_printf(a, magnetic ? "magnetic translation of all bodies along %s" : "total momentum along %s", axis_text(axis));
+  else if (axis != AXIS_NONE) to->name = arena_printf(a, magnetic ? "magnetic translation of all bodies along %s" : "total momentum along %s", axis_text(axis));
   else to->name = magnetic ? "magnetic translation" : "momentum along a direction";
 }
 
@@ -159,9 +156,9 @@ static void name_boost(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) 
   uint32_t axis = common_shift(e, r, 1), only = only_shift(e, r, 1);
   to->kind = SYMMETRY_BOOST;
   to->axis = axis;
-  to->of_all = axis != NO_AXIS;
+  to->of_all = axis != AXIS_NONE;
   to->name = only != UINT32_MAX  ? arena_printf(e->m->arena, "boost along %s", coord(e, only))
-             : axis != NO_AXIS   ? arena_printf(e->m->arena, "boost along %s: the centre of mass moves uniformly", axis_text(axis))
+             : axis != AXIS_NONE   ? arena_printf(e->m->arena, "boost along %s: the centre of mass moves uniformly", axis_text(axis))
                                  : "boost";
 }
 
@@ -173,29 +170,29 @@ static uint32_t terms_of(const Eqns *e, const GeneratorRow *r) {
 
 /* Whether the linear part is a turn of some bodies about one axis by one angle; *bodies: how many. */
 static uint32_t common_turn(const Eqns *e, const GeneratorRow *r, uint32_t *bodies) {
-  uint32_t axis = NO_AXIS, terms = terms_of(e, r);
+  uint32_t axis = AXIS_NONE, terms = terms_of(e, r);
   Expr one = 0;
   *bodies = 0;
   for (uint32_t i = 0; i < noether_coordinates(e); i++)
     for (uint32_t j = i + 1; j < noether_coordinates(e); j++) {
-      uint32_t a = axis_at(e, i), b = axis_at(e, j);
+      uint32_t a = name_axis(e, i), b = name_axis(e, j);
       if (!turns(e, r, i, j)) continue;
-      if (a == NO_AXIS || b == NO_AXIS || a == b || !same_body(coord(e, i), coord(e, j))) return NO_AXIS;
+      if (a == AXIS_NONE || b == AXIS_NONE || a == b || !name_same_body(coord(e, i), coord(e, j))) return AXIS_NONE;
       Expr c = entry(e, r, 0, i, j + 1);
       if ((b + 3 - a) % 3 == 2) c = expr_neg(e->g, c);
-      if (one && (c != one || axis != 3 - a - b)) return NO_AXIS;
+      if (one && (c != one || axis != 3 - a - b)) return AXIS_NONE;
       one = c;
       axis = 3 - a - b;
       ++*bodies;
     }
-  return terms == 2 * *bodies ? axis : NO_AXIS;
+  return terms == 2 * *bodies ? axis : AXIS_NONE;
 }
 
 static uint32_t bodies_with(const Eqns *e, uint32_t axis) {
   uint32_t a = (axis + 1) % 3, n = 0;
   for (uint32_t i = 0; i < noether_coordinates(e); i++)
     for (uint32_t j = 0; j < noether_coordinates(e); j++)
-      n += axis_at(e, i) == a && axis_at(e, j) == (axis + 2) % 3 && same_body(coord(e, i), coord(e, j));
+      n += name_axis(e, i) == a && name_axis(e, j) == (axis + 2) % 3 && name_same_body(coord(e, i), coord(e, j));
   return n;
 }
 
@@ -203,12 +200,12 @@ static uint32_t bodies_with(const Eqns *e, uint32_t axis) {
 static int mixes_bodies(const Eqns *e, const GeneratorRow *r) {
   for (uint32_t j = 0; j < r->ansatz->xi.n; j++) {
     if (expr_is_zero(e->g, r->c[1 + j])) continue;
-    uint32_t i = r->ansatz->xi.at[j].i, k = r->ansatz->xi.at[j].k - 1, a = axis_at(e, i), b = axis_at(e, k), found = 0;
-    if (a == NO_AXIS || b == NO_AXIS || a == b) return 0;
+    uint32_t i = r->ansatz->xi.at[j].i, k = r->ansatz->xi.at[j].k - 1, a = name_axis(e, i), b = name_axis(e, k), found = 0;
+    if (a == AXIS_NONE || b == AXIS_NONE || a == b) return 0;
     for (uint32_t other = 0; other < noether_coordinates(e) && !found; other++)
       for (uint32_t last = 0; last < noether_coordinates(e) && !found; last++)
-        found = same_body(coord(e, i), coord(e, other)) && axis_at(e, other) == b && same_body(coord(e, k), coord(e, last)) &&
-                axis_at(e, last) == a && entry(e, r, 0, other, last + 1) == expr_neg(e->g, r->c[1 + j]);
+        found = name_same_body(coord(e, i), coord(e, other)) && name_axis(e, other) == b && name_same_body(coord(e, k), coord(e, last)) &&
+                name_axis(e, last) == a && entry(e, r, 0, other, last + 1) == expr_neg(e->g, r->c[1 + j]);
     if (!found) return 0;
   }
   return 1;
@@ -242,7 +239,7 @@ static void name_linear(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to)
   for (uint32_t i = 0; i < noether_coordinates(e); i++)
     for (uint32_t j = 0; j < noether_coordinates(e); j++)
       if (!expr_is_zero(e->g, entry(e, r, 0, i, j + 1)) && !turns(e, r, i < j ? i : j, i < j ? j : i)) antisymmetric = 0;
-  if (axis != NO_AXIS) {
+  if (axis != AXIS_NONE) {
     int all = bodies == bodies_with(e, axis);
     to->kind = SYMMETRY_ROTATION;
     to->axis = axis;
@@ -261,7 +258,7 @@ static int stretches(const Eqns *e, const GeneratorRow *r) {
 
 void name_symmetry(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
   Parts p = parts_of(e, r);
-  to->axis = NO_AXIS;
+  to->axis = AXIS_NONE;
   to->name = "point symmetry";
   if (r->kind != TIME_POWERS && (r->kind != TIME_LISTED || (p.tau | p.shift | p.linear) > 3)) {
     const char *what = p.tau ? "breathing" : p.linear ? "turning" : "shift along a solution";

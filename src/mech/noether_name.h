@@ -14,6 +14,15 @@ typedef struct {
   Generator by;
 } GeneratorRow;
 
+enum { AXIS_NONE = 3 };
+
+/* 0, 1, 2 where coordinate i lies along x, y, z by its name: r[2].x, x[2], x2, x; AXIS_NONE: it does not. Components of rotations do not. */
+uint32_t name_axis(const Eqns *e, uint32_t i);
+const char *axis_text(uint32_t axis);
+
+/* Whether two components belong to one body: all but the letter agrees. */
+int name_same_body(Name a, Name b);
+
 /* Signs as in books: the energy is E, a turn goes from x to y, from y to z, from z to x. */
 void orient(const Eqns *e, GeneratorRow *row);
 

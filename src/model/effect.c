@@ -4,7 +4,7 @@
 #include "base/suggest.h"
 #include "model/builder.h"
 
-enum { NONE = UINT32_MAX };
+#define NONE UINT32_MAX
 
 /* --- the file's effects and scenes, by name --- */
 

@@ -223,6 +223,21 @@ static void bodies(void **state) {
   arena_free(m.arena);
 }
 
+/* Past a hundred coordinates the usual ones are tried: on a free chain they hold, on one that hangs on a wall but one does not. */
+static void many(void **state) {
+  (void)state;
+#define CHAIN "model c\nconst N = 101\ncoord u[N]\nkinetic = sum(i in 1..N, u[i]'^2/2)\n"
+  Model_ m = finds(CHAIN "potential = sum(i in 1..N-1, (u[i+1] - u[i])^4/4)\n", 3);
+  has_name(&m, "total momentum along u");
+  arena_free(m.arena);
+  has_only(CHAIN "potential = sum(i in 1..N-1, (u[i+1] - u[i])^4/4) + u[1]^2/2\n", 1);
+  m = model("model n\nconst N = 34\ncoord r[N]: vec3\nparam G = 1 > 0, m[N] = 1 > 0\nkinetic = sum(i in 1..N, m[i]/2*dot(r[i]', r[i]'))\n"
+            "potential = -sum(i in 2..N, G*m[1]*m[i]/norm(r[i] - r[1]))\n");
+  assert_int_equal(m.found.all.n, 10);
+  assert_true(m.found.galilean);
+  arena_free(m.arena);
+}
+
 /* Chaotic ones have their energy, and nothing else may be found. */
 static void nothing_false(void **state) {
   (void)state;
@@ -391,6 +406,7 @@ int main(void) {
     cmocka_unit_test(magnetic),      cmocka_unit_test(inverse_square), cmocka_unit_test(bodies),   cmocka_unit_test(nothing_false),
     cmocka_unit_test(curved),        cmocka_unit_test(driven),        cmocka_unit_test(constrained), cmocka_unit_test(first_order),
     cmocka_unit_test(affine_change), cmocka_unit_test(scalings),      cmocka_unit_test(rotations),
+    cmocka_unit_test(many),
   };
   return cmocka_run_group_tests_name("found", tests, NULL, NULL);
 }

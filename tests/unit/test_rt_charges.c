@@ -1,5 +1,6 @@
 /* Charges along a run: drifts, balances with the work of forces integrated along, trends, monitors. Expected values: closed forms of
  * the damped oscillator, and orders of methods. */
+#include "core/gauss.h"
 #include "test_rt_systems.h"
 
 /* ---- a plane oscillator, damped: r'' = -r - c r', from (1, 0) with (0, 1/2); E' = -c v^2, L' = -c L; p = {c, how wrong L' is} */
@@ -90,6 +91,27 @@ static lag_charge_stats charge(lag_sim *s, int k)
   lag_charge_stats c;
   lag_sim_charge(s, k, &c);
   return c;
+}
+
+/* Exact for polynomials of degree 2 n - 1, of Radau's 2 n - 2, and for no more; symmetric, or with the end. */
+static void quadratures_have_their_order(void **state)
+{
+  (void)state;
+  for (int n = 1; n <= 8; n++) {
+    for (int radau = 0; radau < 2; radau++) {
+      double c[8], b[8];
+      (radau ? lag_radau_points : lag_gauss_points)(n, c, b);
+      for (int k = 0; k <= 2 * n - radau; k++) {
+        double sum = 0;
+        for (int i = 0; i < n; i++) {
+          sum += b[i] * pow(c[i], k);
+        }
+        double error = fabs(sum - 1.0 / (k + 1));
+        assert_true(k == 2 * n - radau ? error > 1e-10 : error < 1e-14); /* at least (n!)^4/((2 n + 1) ((2 n)!)^2), 3.6e-10; rounding */
+      }
+      assert_true(c[0] > 0 && (radau ? c[n - 1] == 1 : c[n - 1] == 1 - c[0]));
+    }
+  }
 }
 
 /* The work of damping at any time, also within a step, is what the closed form says that is gone. */
@@ -263,6 +285,7 @@ static void rounding_is_told_from_drift(void **state)
 int main(void)
 {
   static const struct CMUnitTest tests[] = {
+      cmocka_unit_test(quadratures_have_their_order),
       cmocka_unit_test(balances_close),
       cmocka_unit_test(without_being_asked_nothing_is_integrated),
       cmocka_unit_test(balances_are_of_the_order_of_the_method),

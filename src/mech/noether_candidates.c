@@ -1,0 +1,104 @@
+#include "mech/noether_candidates.h"
+
+#include "mech/noether_name.h"
+
+enum { SEARCH_MOST = 100, TRY_MOST = 1000, KINDS_MOST = 6 };
+
+typedef struct {
+  Eqns *e;
+  ExprGraph *g;
+  uint32_t n;
+  Expr t;
+  FoundSymmetries *out;
+} Work;
+
+static Name name_of(const Work *w, uint32_t i) { return expr_symbol(w->g, noether_coordinate(w->e, i))->name; }
+static Expr node(const Work *w, uint32_t i) { return expr_symbol(w->g, noether_coordinate(w->e, i))->node; }
+
+static Expr *nothing(const Work *w) {
+  Expr *xi = ARENA_ARRAY(w->e->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) xi[i] = expr_int(w->g, 0);
+  return xi;
+}
+
+/* Lists it where it is proved. */
+static int try_one(Work *w, const Expr *xi, Expr tau, FoundSymmetry as) {
+  as.by = (Generator){xi, tau};
+  as.is = noether_prove(w->e, &as.by);
+  if ((as.is.is != INVARIANT && as.is.is != INVARIANT_UP_TO_F) || as.is.by_value || as.is.broken) return 0;
+  vec_push(w->e->m->arena, &w->out->all, as);
+  return 1;
+}
+
+/* Two coordinates are of a kind: along one axis, or members of one family. */
+static int same_kind(const Work *w, uint32_t i, uint32_t k) {
+  uint32_t a = name_axis(w->e, i), b = name_axis(w->e, k);
+  Name one = name_of(w, i), other = name_of(w, k);
+  size_t n = strcspn(one, "[");
+  if (a != AXIS_NONE || b != AXIS_NONE) return a == b;
+  return n == strcspn(other, "[") && memcmp(one, other, n) == 0;
+}
+
+/* A translation of all coordinates of i's kind, and a boost. */
+static void try_kind(Work *w, uint32_t i) {
+  Arena *a = w->e->m->arena;
+  Expr *shift = nothing(w), *boost = nothing(w);
+  uint32_t axis = name_axis(w->e, i);
+  int of_all = axis != AXIS_NONE;
+  for (uint32_t k = i; k < w->n; k++)
+    if (same_kind(w, i, k)) shift[k] = expr_int(w->g, 1), boost[k] = w->t;
+  Name what = of_all ? axis_text(axis) : arena_strndup(a, name_of(w, i), strcspn(name_of(w, i), "["));
+  try_one(w, shift, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_MOMENTUM, .name = arena_printf(a, "total momentum along %s", what), .of_all = of_all, .axis = axis});
+  try_one(w, boost, expr_int(w->g, 0),
+          (FoundSymmetry){.kind = SYMMETRY_BOOST, .name = arena_printf(a, "boost along %s: the centre of mass moves uniformly", what), .of_all = of_all, .axis = axis});
+}
+
+static void try_kinds(Work *w) {
+  uint32_t kinds = 0;
+  for (uint32_t i = 0; i < w->n && kinds < KINDS_MOST; i++) {
+    uint32_t k = 0;
+    while (k < i && !same_kind(w, k, i)) k++;
+    if (k < i) continue;
+    try_kind(w, i);
+    kinds++;
+  }
+}
+
+static void try_turn(Work *w, uint32_t axis) {
+  Expr *xi = nothing(w);
+  uint32_t bodies = 0;
+  for (uint32_t i = 0; i < w->n; i++)
+    for (uint32_t k = 0; k < w->n && name_axis(w->e, i) == (axis + 1) % 3; k++) {
+      if (name_axis(w->e, k) != (axis + 2) % 3 || !name_same_body(name_of(w, i), name_of(w, k))) continue;
+      xi[i] = expr_neg(w->g, node(w, k));
+      xi[k] = node(w, i);
+      bodies++;
+    }
+  const char *name = arena_printf(w->e->m->arena, "total angular momentum about %s", axis_text(axis));
+  if (bodies) try_one(w, xi, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_ROTATION, .name = name, .of_all = 1, .axis = axis});
+}
+
+static void try_cyclic(Work *w) {
+  for (uint32_t i = 0; i < w->n && w->e->n; i++) {
+    if (!expr_is_zero(w->g, w->e->dLdq[i])) continue;
+    Expr *xi = nothing(w);
+    xi[i] = expr_int(w->g, 1);
+    try_one(w, xi, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_MOMENTUM, .name = arena_printf(w->e->m->arena, "momentum of %s", name_of(w, i)), .axis = AXIS_NONE});
+  }
+}
+
+int candidates_only(const Eqns *e) { return noether_coordinates(e) > SEARCH_MOST; }
+
+void candidates_try(Eqns *e, FoundSymmetries *out) {
+  Work w = {.e = e, .g = e->g, .n = noether_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .out = out};
+  out->ansatz = "of more than a hundred coordinates the energy, momenta of cyclic ones, and translations, boosts and turns of all of a kind together";
+  out->searched = w.n <= TRY_MOST;
+  if (!out->searched) {
+    out->note = "there are more than a thousand coordinates";
+    return;
+  }
+  try_one(&w, nothing(&w), expr_int(e->g, -1), (FoundSymmetry){.kind = SYMMETRY_ENERGY, .name = "energy", .axis = AXIS_NONE});
+  try_cyclic(&w);
+  try_kinds(&w);
+  for (uint32_t axis = 0; axis < 3; axis++) try_turn(&w, axis);
+}

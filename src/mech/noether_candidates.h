@@ -1,0 +1,14 @@
+/* Symmetries of models with so many coordinates that the linear equations of the search take too long: the usual ones are tried. */
+#ifndef LAGC_NOETHER_CANDIDATES_H
+#define LAGC_NOETHER_CANDIDATES_H
+
+#include "mech/noether_find.h"
+
+/* Whether the model is too large for the search of all. */
+int candidates_only(const Eqns *e);
+
+/* Tries the energy, momenta of cyclic coordinates, and translations, boosts and turns of all coordinates of a kind together: x, y, z of
+ * vectors, members of a family. Past a thousand coordinates nothing is tried, and out->searched is 0. */
+void candidates_try(Eqns *e, FoundSymmetries *out);
+
+#endif
