@@ -353,9 +353,22 @@ static void latex_plain(Name name, StrBuf *out) {
   }
 }
 
+/* x₁ as x1: LaTeX does not know the small digits. */
+static Name with_plain_digits(Arena *a, Name name) {
+  if (!strstr(name, "\xe2\x82")) return name;
+  StrBuf b = strbuf(a);
+  for (const unsigned char *s = (const unsigned char *)name; *s; s++) {
+    int small = s[0] == 0xe2 && s[1] == 0x82 && s[2] >= 0x80 && s[2] <= 0x89;
+    sb_putc(&b, small ? (char)('0' + (s[2] - 0x80)) : (char)*s);
+    if (small) s += 2;
+  }
+  return sb_text(&b);
+}
+
 /* p_th1, the momentum of th1, has all of that name below it. */
 static void latex_name(Name name, StrBuf *out) {
   int momentum = strncmp(name, "p_", 2) == 0 && name[2];
+  name = with_plain_digits(out->arena, name);
   if (momentum) sb_puts(out, "p_{");
   latex_plain(momentum ? name + 2 : name, out);
   if (momentum) sb_putc(out, '}');

@@ -255,6 +255,22 @@ static void test_substitute(void **state) {
 /* ---- printing ---- */
 
 /* Text is .lag syntax: read back, it has the same value. */
+/* What LaTeX reads, by hand. */
+static void test_latex_names(void **state) {
+  (void)state;
+  static const char *const rows[][2] = {
+    {"x", "x"}, {"th1", "\\theta_{1}"}, {"x_1", "x_{1}"}, {"x[3]", "x_{3}"}, {"mass", "\\mathrm{mass}"}, {"x'", "\\dot{x}"}, {"drag.c", "c_{\\mathrm{drag}}"},
+    {"p_th1", "p_{\\theta_{1}}"}, {"x\u2081", "x_{1}"}, {"\u03b8\u2081\u2080''", "\\ddot{\\theta}_{10}"}, {"\u00e9", "\\mathrm{\u00e9}"},
+  };
+  Arena *a = arena_new(NULL);
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    StrBuf out = strbuf(a);
+    name_print(rows[i][0], PRINT_LATEX, &out);
+    assert_string_equal(sb_text(&out), rows[i][1]);
+  }
+  arena_free(a);
+}
+
 static void test_print(void **state) {
   (void)state;
   int judged = 0;
@@ -348,7 +364,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_laws),        cmocka_unit_test(test_canonical),  cmocka_unit_test(test_eval),
     cmocka_unit_test(test_derivatives), cmocka_unit_test(test_definitions), cmocka_unit_test(test_substitute),
-    cmocka_unit_test(test_print),       cmocka_unit_test(test_depth),      cmocka_unit_test(test_long_chain),
+    cmocka_unit_test(test_latex_names), cmocka_unit_test(test_print),       cmocka_unit_test(test_depth),      cmocka_unit_test(test_long_chain),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
