@@ -1,4 +1,5 @@
-/* Numbers that depend on parameters, recognised: c * product of parameters^e, c rational, e halves of integers. */
+/* Numbers that depend on parameters, recognised: c * product of parameters^e, c rational or the
+ * root of a rational, e halves of integers. */
 #ifndef LAGC_NOETHER_NUMBER_H
 #define LAGC_NOETHER_NUMBER_H
 
