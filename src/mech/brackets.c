@@ -270,7 +270,13 @@ static Bracket bracket(const Work *w, uint32_t a, uint32_t b, long double *const
   for (uint32_t i = 0; i < w->r && k.c; i++)
     if (!(c[i] = recognise(w, fits, place + i))) k.c = NULL;
   if (k.c) settle(w, &k, fits, place);
-  if (!k.c) k.value = simplify(w->g, k.value);
+  if (k.c) return k;
+  k.value = simplify(w->g, k.value);
+  if (!expr_is_zero(w->g, k.value)) return k;
+  for (uint32_t i = 0; i < w->r; i++) c[i] = k.value; /* rounding has spoilt the fit of what is 0 */
+  k.c = c;
+  k.constant = k.value;
+  k.proved = 1;
   return k;
 }
 
@@ -306,6 +312,7 @@ static void work(Arena *scratch, void *data) {
 
 static const char *reason_against(const Eqns *e, uint32_t r) {
   if (e->constraints.n) return "the model has constraints, which take Dirac's brackets";
+  if (!e->n && (e->m->forces.n || e->m->dissipation)) return "L is linear in velocities, and forces change the form that brackets are taken with";
   if (e->m->states.n && e->n) return "the model has states beside its coordinates";
   if (r > CHARGES_MOST) return arena_printf(e->m->arena, "there are more than %d charges", CHARGES_MOST);
   return NULL;

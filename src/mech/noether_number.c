@@ -84,8 +84,9 @@ Expr power_of(const Choices *c, const long double *value, Expr rate) {
 }
 
 Expr ratio_with(const Choices *c, const long double *value, Expr rate) {
-  for (int power = 1; power >= -1; power -= 2) {
-    Expr factor = expr_pow_num(c->e->g, rate, num_int(power));
+  static const int powers[4] = {1, -1, 2, -2};
+  for (int k = 0; k < 4; k++) {
+    Expr factor = expr_pow_num(c->e->g, rate, num_int(powers[k]));
     long double rest[2] = {value[CHOICE_FIRST] / choice_value(c, CHOICE_FIRST, factor), value[CHOICE_SECOND] / choice_value(c, CHOICE_SECOND, factor)};
     Expr ratio = ratio_of(c, rest);
     if (ratio) return expr_mul(c->e->g, ratio, factor);

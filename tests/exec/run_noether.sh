@@ -63,14 +63,23 @@ is "an effect with what it requires" "effect again breaks 1 of 2
 is "a total derivative breaks nothing" "effect gauge breaks none of them" "$(verdict gauge)"
 
 # ---- brackets whose coefficients are not recognised ----
-cat >"$TMP/field.lag" <<'END'
+cat >"$TMP/driven.lag" <<'END'
 model m
 coord x, z
-param m = 2 > 0, a = 1 > 0, b = 3 > 0
-lagrangian = m*(x'^2 + z'^2)/2 + (a^2 + b)*(x*z' - z*x')
+param m = 2 > 0, k = 3 > 0, g = 1, a = 1 > 0, b = 3 > 0
+lagrangian = m/2*(x'^2 + z'^2) - g*cos(k*t)*x - (a^2 + b)*z^2/2
 END
-check "a combination that is not recognised is called so" says "1 of them is a combination of these charges with coefficients that were not recognised" noether "$TMP/field.lag"
-check "and never no combination" is_silent "no combination" noether "$TMP/field.lag"
+check "a combination that is not recognised is called so" says "2 of them are combinations of these charges with coefficients that were not recognised" noether "$TMP/driven.lag"
+check "and never no combination" is_silent "no combination" noether "$TMP/driven.lag"
+
+cat >"$TMP/pushed.lag" <<'END'
+model m
+coord x, y
+param a = 1
+lagrangian = (x*y' - y*x')/2 - (x^2 + y^2)^2/4
+force x = -a*x'
+END
+check "brackets of an L of first order with forces are refused" says "^no Poisson brackets: L is linear in velocities, and forces change the form" noether "$TMP/pushed.lag"
 
 # ---- names ----
 cat >"$TMP/screw.lag" <<'END'
