@@ -187,7 +187,7 @@ static long double value_of(const Charges *c, const char *name) {
 static void roots_of_numbers(void **state) {
   (void)state;
   Charges c = charges("model r\ncoord x, z\nparam m = 2 > 0, k = 3 > 0, g = 1\nlagrangian = m/2*(x'^2 + z'^2) - g*cos(k*t)*x - z^2\n");
-  uint32_t n = c.found.all.n, energy = 0;
+  uint32_t n = c.found.all.n, energy = charge(&c, "energy in a moving frame");
   for (uint32_t k = 0; k < c.algebra.all.n; k++) assert_non_null(c.algebra.all.at[k].c);
   long double got = 0;
   for (uint32_t i = n - 2; i < n; i++) got += fabsl(constant(&c, energy, n - 2, i));
