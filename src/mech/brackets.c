@@ -83,57 +83,95 @@ static int to_phase_space(const Work *w, long double *out) {
   return 1;
 }
 
-/* Brackets of a state, [pairs], from its derivatives in phase space. */
-static void all_brackets(const Work *w, const long double *out, long double *to) {
+static long double largest(const long double *x, size_t n) {
+  long double most = 0;
+  for (size_t i = 0; i < n; i++) most = fmaxl(most, fabsl(x[i]));
+  return most;
+}
+
+/* Brackets of a state, [pairs], from its derivatives in phase space, and in size[pairs] the largest products of derivatives so far, which
+ * rounding is a part of. */
+static void all_brackets(const Work *w, const long double *out, long double *to, long double *size) {
   size_t n = w->n;
   const long double *by_q = out + w->r, *by_p = by_q + w->r * n;
   for (size_t a = 0; a < w->r; a++)
-    for (size_t b = a + 1; b < w->r; b++, to++) {
+    for (size_t b = a + 1; b < w->r; b++, to++, size++) {
+      const long double *aq = by_q + a * n, *bq = by_q + b * n, *ap = by_p + a * n, *bp = by_p + b * n;
       *to = 0;
-      for (size_t i = 0; i < n; i++) *to += by_q[a * n + i] * by_p[b * n + i] - (w->e->n ? by_p[a * n + i] * by_q[b * n + i] : 0);
+      for (size_t i = 0; i < n; i++) *to += aq[i] * bp[i] - (w->e->n ? ap[i] * bq[i] : 0);
+      *size = fmaxl(*size, largest(aq, n) * largest(bp, n) + largest(ap, n) * largest(bq, n));
     }
 }
 
-/* Charges and a 1 at `states` random states, [states*(r + 1)], and brackets, [states*pairs]. 0: there are not so many states. */
-static int sample(const Work *w, uint32_t choice, uint32_t states, long double *charges, long double *brackets) {
+typedef struct {
+  uint32_t states;
+  long double *charges;  /* [states*(r + 1)] at random states, with a 1 behind them; divided by scale */
+  long double *brackets; /* [states*pairs] */
+  long double *scale;    /* [r + 1] the largest size of each charge */
+  long double *size;     /* [pairs] see all_brackets */
+} Sample;
+
+static Sample sample_new(const Work *w, uint32_t states) {
+  size_t m = w->r + 1;
+  return (Sample){states, ARENA_ARRAY(w->scratch, long double, states * m), ARENA_ARRAY(w->scratch, long double, (size_t)states * w->pairs + 1),
+                  ARENA_ARRAY(w->scratch, long double, m), ARENA_ARRAY(w->scratch, long double, w->pairs + 1)};
+}
+
+/* Charges that whole numbers have made large, and others that are small, count alike. */
+static void scale_charges(const Work *w, Sample *x) {
+  size_t m = w->r + 1;
+  for (size_t k = 0; k < m; k++) {
+    for (size_t s = 0; s < x->states; s++) x->scale[k] = fmaxl(x->scale[k], fabsl(x->charges[s * m + k]));
+    if (x->scale[k] == 0) x->scale[k] = 1;
+    for (size_t s = 0; s < x->states; s++) x->charges[s * m + k] /= x->scale[k];
+  }
+}
+
+/* 0: there are not so many states. */
+static int take_sample(const Work *w, uint32_t choice, Sample *x) {
   uint32_t count = expr_symbol_count(w->g) + 1, done = 0;
   long double *symbols = ARENA_ARRAY(w->scratch, long double, count), *out = ARENA_ARRAY(w->scratch, long double, w->roots + 1);
-  for (uint32_t seed = 1; done < states && seed < 20 + 4 * states; seed++) {
+  for (uint32_t seed = 1; done < x->states && seed < 20 + 4 * x->states; seed++) {
     int finite = 1;
     prove_state(w->g, 50 + seed, symbols);
     for (uint32_t k = 0; k < w->choices.n; k++) symbols[w->choices.param[k]] = w->choices.at[choice][w->choices.param[k]];
     eval_run(w->tape, symbols, out);
     for (uint32_t k = 0; k < w->roots; k++) finite = finite && isfinite(out[k]);
     if (!finite || !to_phase_space(w, out)) continue;
-    memcpy(charges + (size_t)done * (w->r + 1), out, w->r * sizeof *out);
-    charges[(size_t)done * (w->r + 1) + w->r] = 1;
-    all_brackets(w, out, brackets + (size_t)done * w->pairs);
+    memcpy(x->charges + (size_t)done * (w->r + 1), out, w->r * sizeof *out);
+    x->charges[(size_t)done * (w->r + 1) + w->r] = 1;
+    all_brackets(w, out, x->brackets + (size_t)done * w->pairs, x->size);
     done++;
   }
-  return done == states;
+  scale_charges(w, x);
+  return done == x->states;
+}
+
+/* Coefficients c[r + 1] of one bracket, as the first states gave them, are looked at with the others. They become NAN where it is no
+ * combination. */
+static void judge(const Work *w, const Sample *x, size_t pair, long double *c) {
+  uint32_t m = w->r + 1;
+  long double worst = 0;
+  for (size_t s = m; s < x->states; s++) {
+    long double left = x->brackets[s * w->pairs + pair];
+    for (uint32_t k = 0; k < m; k++) left -= c[k] * x->charges[s * m + k];
+    worst = fmaxl(worst, fabsl(left));
+  }
+  for (uint32_t k = 0; k < m; k++) {
+    if (worst > 1e-8L * x->size[pair]) c[k] = NAN;
+    else c[k] = fabsl(c[k]) < 1e-10L * x->size[pair] ? 0 : c[k] / x->scale[k];
+  }
 }
 
 /* Coefficients of all brackets, [pairs*(r + 1)]; those of a bracket that is no combination are NAN. 0: they cannot be had. */
 static int fit(const Work *w, uint32_t choice, long double *c) {
-  uint32_t m = w->r + 1, states = m + SPARE_STATES;
-  long double *charges = ARENA_ARRAY(w->scratch, long double, (size_t)states * m), *brackets = ARENA_ARRAY(w->scratch, long double, (size_t)states * w->pairs + 1);
-  if (!sample(w, choice, states, charges, brackets)) return 0;
+  uint32_t m = w->r + 1;
+  Sample x = sample_new(w, m + SPARE_STATES);
+  if (!take_sample(w, choice, &x)) return 0;
   for (size_t pair = 0; pair < w->pairs; pair++)
-    for (size_t s = 0; s < m; s++) c[pair * m + s] = brackets[s * w->pairs + pair];
-  if (!solve(w->scratch, m, charges, w->pairs, c)) return 0;
-  for (size_t pair = 0; pair < w->pairs; pair++) {
-    long double worst = 0, size = 1e-3L;
-    for (size_t s = m; s < states; s++) {
-      long double left = brackets[s * w->pairs + pair];
-      size = fmaxl(size, fabsl(left));
-      for (uint32_t k = 0; k < m; k++) left -= c[pair * m + k] * charges[s * m + k];
-      worst = fmaxl(worst, fabsl(left));
-    }
-    for (uint32_t k = 0; k < m; k++) {
-      if (worst > 1e-8L * size) c[pair * m + k] = NAN;
-      else if (fabsl(c[pair * m + k]) < 1e-9L * size) c[pair * m + k] = 0;
-    }
-  }
+    for (size_t s = 0; s < m; s++) c[pair * m + s] = x.brackets[s * w->pairs + pair];
+  if (!solve(w->scratch, m, x.charges, w->pairs, c)) return 0;
+  for (size_t pair = 0; pair < w->pairs; pair++) judge(w, &x, pair, c + pair * m);
   return 1;
 }
 
@@ -219,13 +257,26 @@ static void settle(const Work *w, Bracket *k, long double *const *fits, size_t p
   else k->c = NULL;
 }
 
+/* Whether the fit has failed at every choice: one that rounding has spoilt proves nothing. */
+static int is_outside(const Work *w, long double *const *fits, size_t place) {
+  for (uint32_t k = 0; k < 2 + w->choices.n; k++)
+    if (!isnan(fits[k][place])) return 0;
+  return 1;
+}
+
 static Bracket bracket(const Work *w, uint32_t a, uint32_t b, long double *const *fits, size_t place) {
   Expr *c = ARENA_ARRAY(w->e->m->arena, Expr, w->r + 1);
-  Bracket k = {.a = a, .b = b, .c = c, .constant = expr_int(w->g, 0), .value = symbolic(w, a, b)};
+  Bracket k = {.a = a, .b = b, .c = c, .constant = expr_int(w->g, 0), .value = symbolic(w, a, b), .is_outside = is_outside(w, fits, place)};
   for (uint32_t i = 0; i < w->r && k.c; i++)
     if (!(c[i] = recognise(w, fits, place + i))) k.c = NULL;
   if (k.c) settle(w, &k, fits, place);
-  if (!k.c) k.value = simplify(w->g, k.value);
+  if (k.c) return k;
+  k.value = simplify(w->g, k.value);
+  if (!expr_is_zero(w->g, k.value)) return k;
+  for (uint32_t i = 0; i < w->r; i++) c[i] = k.value; /* rounding has spoilt the fit of what is 0 */
+  k.c = c;
+  k.constant = k.value;
+  k.proved = 1;
   return k;
 }
 
@@ -261,6 +312,7 @@ static void work(Arena *scratch, void *data) {
 
 static const char *reason_against(const Eqns *e, uint32_t r) {
   if (e->constraints.n) return "the model has constraints, which take Dirac's brackets";
+  if (!e->n && (e->m->forces.n || e->m->dissipation)) return "L is linear in velocities, and forces change the form that brackets are taken with";
   if (e->m->states.n && e->n) return "the model has states beside its coordinates";
   if (r > CHARGES_MOST) return arena_printf(e->m->arena, "there are more than %d charges", CHARGES_MOST);
   return NULL;

@@ -15,6 +15,7 @@ typedef struct {
   uint32_t a, b;   /* a < b */
   const Expr *c;   /* [n] constants: the bracket is their combination of the charges, and `constant`; NULL: none was recognised */
   Expr constant;
+  int is_outside;  /* where c is NULL: random states say that it is no combination; otherwise it is one, with coefficients not recognised */
   Expr value;      /* in q, q', t */
   int proved;      /* symbolically; otherwise seen at random states */
 } Bracket;

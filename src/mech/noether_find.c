@@ -392,7 +392,7 @@ static void add_exponential(Search *s, Exprs *to, Expr rate) {
   add_once(s, to, expr_fn(s->g, EX_EXP, expr_neg(s->g, phase)));
 }
 
-/* 1, t and the functions of L's own rates for xi and tau; for F their products, too. An L of first order gets constants only: more
+/* 1, t and the functions of L's own rates for xi and tau; for what F has of coordinates their products, too. An L of first order gets constants only: more
  * would let each charge be multiplied by functions of others. */
 static TimeList time_list(Search *s) {
   enum { RATES_MOST = 4 };
@@ -411,6 +411,7 @@ static TimeList time_list(Search *s) {
   if (s->e->n) vec_push(s->scratch, &list, t);
   for (uint32_t k = 0; k < circular.n && s->e->n; k++) add_circular(s, &list, circular.at[k]);
   for (uint32_t k = 0; k < exponential.n && s->e->n; k++) add_exponential(s, &list, exponential.at[k]);
+  s->ansatz->far_times = !exponential.n;
   uint32_t own = list.n;
   add_once(s, &list, t);
   add_once(s, &list, expr_pow_num(g, t, num_int(2)));
@@ -422,7 +423,17 @@ static TimeList time_list(Search *s) {
     }
   }
   for (uint32_t k = 0; k < exponential.n; k++) add_exponential(s, &list, exponential.at[k]);
+  for (uint32_t k = 2; k < own; k++) add_once(s, &list, expr_mul(g, t, list.at[k]));
   return (TimeList){own, list.n, list.at};
+}
+
+static const char *functions_text(Search *s, const TimeList *times, uint32_t from, uint32_t to) {
+  StrBuf b = strbuf(s->e->m->arena);
+  for (uint32_t k = from; k < to; k++) {
+    sb_puts(&b, k > from ? ", " : "");
+    expr_print(s->g, times->f[k], PRINT_TEXT, &b);
+  }
+  return sb_text(&b);
 }
 
 static void search_listed(Search *s) {
@@ -431,13 +442,10 @@ static void search_listed(Search *s) {
   t.at[0] = table_at(s, &f, CHOICE_FIRST);
   s->out->searched = t.at[0].shown != 0;
   if (s->out->searched) add_family(s, &f);
-  StrBuf functions = strbuf(s->e->m->arena);
-  for (uint32_t k = 0; k < f.times.n; k++) {
-    sb_puts(&functions, k ? ", " : "");
-    expr_print(s->g, f.times.f[k], PRINT_TEXT, &functions);
-  }
-  s->out->ansatz = arena_printf(s->e->m->arena, "xi affine in the coordinates%s, tau, with coefficients in t: %s; F a polynomial of degree %u in the coordinates",
-                                ansatz_is_restricted(s->ansatz) ? " (turns and stretches of one vector only)" : "", sb_text(&functions), s->ansatz->degree);
+  s->out->ansatz = arena_printf(s->e->m->arena, "xi affine in the coordinates%s, tau, with coefficients in t: %s; F a polynomial of degree %u in the coordinates, "
+                                "with those%s%s, and any function of t alone",
+                                ansatz_is_restricted(s->ansatz) ? " (turns and stretches of one vector only)" : "", functions_text(s, &f.times, 0, f.times.n),
+                                s->ansatz->degree, f.times.n < f.times.ngauge ? " and " : "", functions_text(s, &f.times, f.times.n, f.times.ngauge));
 }
 
 /* --- the search --- */

@@ -220,6 +220,21 @@ static int turns_rotation(const Eqns *e, const GeneratorRow *r, uint32_t w, uint
   return !expr_is_zero(e->g, c) && entry(e, r, 0, w, x + 1) == minus && entry(e, r, 0, z, y + 1) == other && entry(e, r, 0, y, z + 1) == expr_neg(e->g, other);
 }
 
+/* Whether xi turns only w against `axis` (the sum of n q and q n), or only the two other components (their difference). */
+static int name_double_turn(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  for (uint32_t w = 0; w < noether_coordinates(e) && terms_of(e, r) == 2; w++)
+    for (uint32_t axis = 0; axis < 3 && sibling(e, w, 'w') == w; axis++) {
+      uint32_t x = sibling(e, w, (char)('x' + axis)), y = sibling(e, w, (char)('x' + (axis + 1) % 3)), z = sibling(e, w, (char)('x' + (axis + 2) % 3));
+      if (x == UINT32_MAX || y == UINT32_MAX || z == UINT32_MAX) continue;
+      int sum = turns(e, r, w, x);
+      if (!sum && !turns(e, r, y, z)) continue;
+      to->kind = SYMMETRY_OTHER;
+      to->name = arena_printf(e->m->arena, "turns about %s in space and about the body's own: the %s of the angular momenta", axis_text(axis), sum ? "sum" : "difference");
+      return 1;
+    }
+  return 0;
+}
+
 /* 0: it is no turn of one rotation. */
 static int name_turn(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
   for (uint32_t w = 0; w < noether_coordinates(e) && terms_of(e, r) == 4; w++)
@@ -232,13 +247,48 @@ static int name_turn(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
   return 0;
 }
 
-static void name_linear(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
-  if (name_turn(e, r, to)) return;
-  uint32_t bodies, axis = common_turn(e, r, &bodies);
-  int antisymmetric = 1, space = along(e, 2) > 0 && along(e, 0) > 0;
+/* Whether the linear part of block 0 is antisymmetric. */
+static int only_turns(const Eqns *e, const GeneratorRow *r) {
   for (uint32_t i = 0; i < noether_coordinates(e); i++)
     for (uint32_t j = 0; j < noether_coordinates(e); j++)
-      if (!expr_is_zero(e->g, entry(e, r, 0, i, j + 1)) && !turns(e, r, i < j ? i : j, i < j ? j : i)) antisymmetric = 0;
+      if (!expr_is_zero(e->g, entry(e, r, 0, i, j + 1)) && !turns(e, r, i < j ? i : j, i < j ? j : i)) return 0;
+  return 1;
+}
+
+/* Whether any block shifts a coordinate that the linear part of block 0 leaves alone. */
+static int shifts_beside(const Eqns *e, const GeneratorRow *r) {
+  for (uint32_t i = 0; i < noether_coordinates(e); i++) {
+    int shifted = 0, alone = 1;
+    for (uint32_t m = 0; m < r->blocks; m++) shifted = shifted || !expr_is_zero(e->g, entry(e, r, m, i, 0));
+    for (uint32_t j = 0; j < noether_coordinates(e) && shifted && alone; j++) alone = expr_is_zero(e->g, entry(e, r, 0, i, j + 1));
+    if (shifted && alone) return 1;
+  }
+  return 0;
+}
+
+/* A linear part in block 0 with a shift, at one time or at several. */
+static const char *affine_name(const Eqns *e, const GeneratorRow *r, Parts p) {
+  if (!only_turns(e, r)) return "affine map of the coordinates";
+  if (shifts_beside(e, r)) return "screw: a rotation and a translation at once";
+  return p.shift > 1 ? "rotation about a point that moves" : "rotation about another point";
+}
+
+/* Whether the linear part maps coordinates to others, not only to themselves. */
+static int mixes(const Eqns *e, const GeneratorRow *r) {
+  for (uint32_t j = 0; j < r->ansatz->xi.n; j++)
+    if (r->ansatz->xi.at[j].k && r->ansatz->xi.at[j].k != r->ansatz->xi.at[j].i + 1 && !expr_is_zero(e->g, r->c[1 + j])) return 1;
+  return 0;
+}
+
+static const char *scaling_name(const Eqns *e, const GeneratorRow *r, Parts p) {
+  if (mixes(e, r)) return p.shift ? "scaling with an affine map of the coordinates" : "scaling with a linear map of the coordinates";
+  return p.shift > 1 ? "scaling about a point that moves" : p.shift ? "scaling about another point" : "scaling";
+}
+
+static void name_linear(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+  if (name_turn(e, r, to) || name_double_turn(e, r, to)) return;
+  uint32_t bodies, axis = common_turn(e, r, &bodies);
+  int space = along(e, 2) > 0 && along(e, 0) > 0;
   if (axis != AXIS_NONE) {
     int all = bodies == bodies_with(e, axis);
     to->kind = SYMMETRY_ROTATION;
@@ -247,7 +297,7 @@ static void name_linear(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to)
     const char *whole = all && bodies > 1 ? "total angular momentum" : "angular momentum";
     to->name = space || axis != 2 ? arena_printf(e->m->arena, "%s about %s", whole, axis_text(axis)) : whole;
   } else if (mixes_bodies(e, r)) to->name = "angular momentum of a part of the motion";
-  else to->name = antisymmetric ? "rotation among coordinates" : "linear map of the coordinates";
+  else to->name = only_turns(e, r) ? "rotation among coordinates" : "linear map of the coordinates";
 }
 
 static int stretches(const Eqns *e, const GeneratorRow *r) {
@@ -260,7 +310,8 @@ void name_symmetry(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
   Parts p = parts_of(e, r);
   to->axis = AXIS_NONE;
   to->name = "point symmetry";
-  if (r->kind != TIME_POWERS && (r->kind != TIME_LISTED || (p.tau | p.shift | p.linear) > 3)) {
+  if (r->kind == TIME_LISTED && p.tau == 1 && p.shift > 1 && !p.linear) to->name = "energy in a moving frame"; /* that of the forced motion */
+  else if (r->kind != TIME_POWERS && (r->kind != TIME_LISTED || (p.tau | p.shift | p.linear) > 3)) {
     const char *what = p.tau ? "breathing" : p.linear ? "turning" : "shift along a solution";
     to->name = r->kind == TIME_LISTED ? what : arena_printf(e->m->arena, "%s, %s", what, r->kind == TIME_CIRCULAR ? "periodic in t" : "exponential in t");
   } else if (is_energy(p)) {
@@ -272,14 +323,9 @@ void name_symmetry(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
   else if (!p.tau && !p.shift && p.linear == 1) name_linear(e, r, to);
   else if (p.tau == 2 && p.linear == 1) {
     to->kind = SYMMETRY_SCALING;
-    to->name = p.shift > 1 ? "scaling about a point that moves" : p.shift ? "scaling about another point" : "scaling";
+    to->name = scaling_name(e, r, p);
   } else if (p.tau & 4) to->name = "expansion";
-  else if (!p.tau && p.linear == 1) {
-    int turn = 0;
-    for (uint32_t i = 0; i < noether_coordinates(e); i++)
-      for (uint32_t j = i + 1; j < noether_coordinates(e); j++) turn = turn || turns(e, r, i, j);
-    if (turn) to->name = p.shift > 1 ? "rotation about a point that moves" : "rotation about another point";
-  }
+  else if (!p.tau && p.linear == 1) to->name = affine_name(e, r, p);
 }
 
 int has_galilean_charges(const FoundSymmetries *all) {

@@ -27,23 +27,27 @@ Choices choices_new(Arena *a, const Eqns *e) {
   return (Choices){e, params.n, params.at, at};
 }
 
-/* Continued fraction. A number at random is so close to such a fraction once in 1e4 times. */
-int rational_of(long double x, Num *out) {
-  const long double digits = 1e-12L, largest = 1e5L;
+/* p/q within `error` of x, with p*q up to `most`: a number at random is so close to one once in |x|/(error*most) times. */
+static int fraction_of(long double x, long double error, long double most, Num *out) {
   long double rest = x, p0 = 1, q0 = 0, p1 = floorl(x), q1 = 1;
-  if (!(fabsl(x) < 1e6L)) return 0;
-  while (fabsl(x - p1 / q1) > digits * fmaxl(fabsl(x), 1)) {
+  while (fabsl(x - p1 / q1) > error) {
     rest = 1 / (rest - floorl(rest));
     long double whole = floorl(rest), p2 = whole * p1 + p0, q2 = whole * q1 + q0;
-    if (!(q2 <= largest)) return 0;
+    if (!(fabsl(p2) * q2 <= most)) return 0;
     p0 = p1;
     q0 = q1;
     p1 = p2;
     q1 = q2;
   }
-  if (fabsl(p1) > 1e9L) return 0;
+  if (!(fabsl(p1) * q1 <= most)) return 0;
   *out = num_ratio((int64_t)p1, (int64_t)q1);
   return 1;
+}
+
+/* Larger ones want more digits, which a value that rounding has not spoilt has. */
+int rational_of(long double x, Num *out) {
+  if (!(fabsl(x) < 1e14L)) return 0;
+  return fraction_of(x, 1e-12L * fmaxl(fabsl(x), 1), 1e10L, out) || fraction_of(x, 1e-17L * fabsl(x), 1e14L, out);
 }
 
 static long double value_at(const Choices *c, uint32_t choice, uint32_t k) { return c->at[choice][c->param[k]]; }
@@ -80,8 +84,9 @@ Expr power_of(const Choices *c, const long double *value, Expr rate) {
 }
 
 Expr ratio_with(const Choices *c, const long double *value, Expr rate) {
-  for (int power = 1; power >= -1; power -= 2) {
-    Expr factor = expr_pow_num(c->e->g, rate, num_int(power));
+  static const int powers[4] = {1, -1, 2, -2};
+  for (int k = 0; k < 4; k++) {
+    Expr factor = expr_pow_num(c->e->g, rate, num_int(powers[k]));
     long double rest[2] = {value[CHOICE_FIRST] / choice_value(c, CHOICE_FIRST, factor), value[CHOICE_SECOND] / choice_value(c, CHOICE_SECOND, factor)};
     Expr ratio = ratio_of(c, rest);
     if (ratio) return expr_mul(c->e->g, ratio, factor);
@@ -109,9 +114,12 @@ Expr monomial_of(const Choices *c, const long double *value) {
     other /= powl(c->at[CHOICE_SECOND][c->param[k]], (long double)num_value(exponent));
     vec_push(c->e->m->arena, &factors, power);
   }
-  if (!(fabsl(rest - other) < 1e-9L * fabsl(rest)) || !rational_of(rest, &number)) return 0;
+  if (!(fabsl(rest - other) < 1e-9L * fabsl(rest))) return 0;
   Expr product = expr_mul_n(g, factors.at, factors.n);
-  return expr_scale(g, number, product);
+  if (rational_of(rest, &number)) return expr_scale(g, number, product);
+  if (!rational_of(rest * rest, &number)) return 0;
+  Expr root = expr_mul(g, expr_sqrt(g, expr_num(g, number)), product);
+  return rest < 0 ? expr_neg(g, root) : root;
 }
 
 /* The multiple of 1/12 that x is, as a difference shows it; 0: it is none. */

@@ -1,4 +1,5 @@
-/* Numbers that depend on parameters, recognised: c * product of parameters^e, c rational, e halves of integers. */
+/* Numbers that depend on parameters, recognised: c * product of parameters^e, c rational or the
+ * root of a rational, e halves of integers. */
 #ifndef LAGC_NOETHER_NUMBER_H
 #define LAGC_NOETHER_NUMBER_H
 
@@ -29,7 +30,7 @@ Expr linear_of(const Choices *c, const long double *value);
 /* A rational times a power of `rate`, an expression of parameters: -2, -1, 1 or 2. */
 Expr power_of(const Choices *c, const long double *value, Expr rate);
 
-/* What ratio_of knows, times or over `rate`. */
+/* What ratio_of knows, times such a power of `rate`. */
 Expr ratio_with(const Choices *c, const long double *value, Expr rate);
 
 /* value[choice], 2 + n of them. 0: no such monomial takes these values. */

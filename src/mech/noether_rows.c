@@ -136,17 +136,14 @@ static long double steepness(RowSource *r) {
   return sum;
 }
 
-/* The gentlest of some states, every second one of them wide: where two of many bodies nearly touch, their force drowns all others. */
+/* The gentlest of some states: where two of several bodies nearly touch, their force drowns all others, and with 1/(x - y)^2 rounding of the
+ * potential drowns the kinetic energy. Of many bodies every second state is wide. */
 static void draw_gentle(RowSource *r) {
-  enum { FEW = 6, DRAWS = 24 };
+  enum { MANY = 6, DRAWS = 24 };
   size_t size = (expr_symbol_count(r->of->e->g) + 1) * sizeof *r->symbols;
   long double least = INFINITY;
-  if (r->of->n < FEW) {
-    draw(r, 1);
-    return;
-  }
   for (int k = 0; k < DRAWS; k++) {
-    draw(r, k % 2 ? 3 : 1);
+    draw(r, k % 2 && r->of->n >= MANY ? 3 : 1);
     long double now = steepness(r);
     if (!(now < least)) continue;
     least = now;
@@ -191,6 +188,18 @@ static void add_lagrangian_row(RowSource *r, long double weight, long double *b0
     b0[s->shown + l] -= weight * (r->rate[of[0]] * b * c + a * r->rate[of[1]] * c + a * b * r->rate[of[2]]);
     b1[s->shown + l] -= weight * a * b * c;
   }
+}
+
+/* From the state in symbols, and another one. */
+static void difference_row(RowSource *r, long double *b0, long double *b1) {
+  SymId time = r->of->e->m->time;
+  long double t = r->symbols[time] *= r->of->far_times && r->turn % 2 ? 4 : 1;
+  evaluate(r);
+  add_lagrangian_row(r, 1, b0, b1);
+  draw_gentle(r);
+  r->symbols[time] = t;
+  evaluate(r);
+  add_lagrangian_row(r, -1, b0, b1);
 }
 
 /* The velocities stand in symbols. */
@@ -244,7 +253,8 @@ static int try_row(RowSource *r, RowKind kind, uint32_t which, long double *b0, 
   memset(b0, 0, w * sizeof *b0);
   memset(b1, 0, w * sizeof *b1);
   draw_gentle(r);
-  if (kind != ROWS_CONSTRAINTS) lagrangian_rows(r, kind, b0, b1);
+  if (kind == ROWS_DIFFERENCE) difference_row(r, b0, b1);
+  else if (kind != ROWS_CONSTRAINTS) lagrangian_rows(r, kind, b0, b1);
   else if (!constraint_row(r, r->of->held.at[which % r->of->held.n], b0)) return 0;
   return normalise(b0, b1, w);
 }

@@ -33,6 +33,7 @@ typedef struct {
   uint32_t degree;         /* of the gauge function */
   int has_tau;             /* 0: L contains what is given from outside; column 0 then stays zero */
   int has_time;            /* L contains t */
+  int far_times;           /* every second time is four times as far out, which tells apart what oscillates with rates close to one another */
   VEC(XiColumn) xi;
   VEC(GaugeColumn) gauge;  /* the first is 1 */
   uint32_t shown;          /* columns of tau and xi: 1 + xi.n */
@@ -47,8 +48,9 @@ Ansatz *ansatz_new(Arena *a, const Eqns *e);
 int ansatz_is_restricted(const Ansatz *a);
 
 /* Which rows: of delta L - dF/dt; of its part that is even in velocities, without that at rest; of that at rest; of constraints, which a
- * generator must respect. */
-typedef enum { ROWS_EVEN, ROWS_AT_REST, ROWS_ALL, ROWS_CONSTRAINTS } RowKind;
+ * generator must respect. ROWS_DIFFERENCE: of delta L - dF/dt less that of another state at the same time, which does not ask what F has of
+ * t alone: its first gauge column is zero. */
+typedef enum { ROWS_EVEN, ROWS_AT_REST, ROWS_ALL, ROWS_DIFFERENCE, ROWS_CONSTRAINTS } RowKind;
 
 typedef struct RowSource RowSource;
 
@@ -59,7 +61,7 @@ RowSource *rows_new(const Ansatz *a, Arena *scratch, const long double *paramete
  * [n*columns]. Returns how many there are: 0 where no state works, or L has no such rows. */
 uint32_t rows_fill(RowSource *r, RowKind kind, uint32_t n, long double *b0, long double *b1);
 
-/* One more row of ROWS_ALL, or of constraints, at a state and a time, *t. 0: no state works. */
+/* One more row of ROWS_DIFFERENCE, or of constraints, at a state and a time, *t. 0: no state works. */
 int rows_at_time(RowSource *r, RowKind kind, long double *b0, long double *b1, long double *t);
 
 /* A space of solutions u(t): u = sum of x_a space[a], x' = A x. */

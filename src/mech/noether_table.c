@@ -190,7 +190,7 @@ Table table_listed(Arena *a, const Ansatz *s, const TimeList *times, const long 
   enum { SPARE_ROWS = 16 };
   ExprGraph *g = s->e->g;
   SymId t = s->e->m->time;
-  uint32_t gauge = s->columns - s->shown, nT = times->ngauge, width = times->n * s->shown + nT * gauge, rows = width + SPARE_ROWS;
+  uint32_t first = s->shown + 1, gauge = s->columns - first, nT = times->ngauge, width = times->n * s->shown + nT * gauge, rows = width + SPARE_ROWS;
   uint32_t more = s->held.n ? times->n * s->shown + SPARE_ROWS : 0;
   Expr *roots = ARENA_ARRAY(a, Expr, 2 * (size_t)nT);
   long double *value = ARENA_ARRAY(a, long double, 2 * (size_t)nT), *symbols = ARENA_ARRAY(a, long double, expr_symbol_count(g) + 1);
@@ -203,12 +203,12 @@ Table table_listed(Arena *a, const Ansatz *s, const TimeList *times, const long 
   *sure = 0;
   for (size_t i = 0; i < rows + more; i++) {
     long double *row = m + i * width;
-    if (!rows_at_time(source, i < rows ? ROWS_ALL : ROWS_CONSTRAINTS, b0, b1, &symbols[t])) return (Table){0};
+    if (!rows_at_time(source, i < rows ? ROWS_DIFFERENCE : ROWS_CONSTRAINTS, b0, b1, &symbols[t])) return (Table){0};
     eval_run(tape, symbols, value);
     for (uint32_t k = 0; k < nT; k++) {
       for (uint32_t j = 0; k < times->n && j < s->shown; j++) row[k * s->shown + j] = b0[j] * value[k] + b1[j] * value[nT + k];
       for (uint32_t j = 0; j < gauge; j++)
-        row[times->n * s->shown + k * gauge + j] = b0[s->shown + j] * value[k] + b1[s->shown + j] * value[nT + k];
+        row[times->n * s->shown + k * gauge + j] = b0[first + j] * value[k] + b1[first + j] * value[nT + k];
     }
   }
   DenseRows kernel = dense_kernel(a, rows + more, width, m, 1e-12L);

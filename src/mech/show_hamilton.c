@@ -48,11 +48,18 @@ static void constraints(Text *t, Exprs *roots) {
   text_end(t);
 }
 
+/* Momenta are M q' + a only while M has no velocities. */
+static const char *mass_heading(const Eqns *e) {
+  for (uint32_t k = 0; k < e->mass.n; k++)
+    if (expr_kinds(e->g, e->mass.at[k].e) & 1u << SYM_VEL) return "mass matrix: M = dp/dq'";
+  return "mass matrix: p = M q' + a";
+}
+
 /* M, entry by entry, and the energy, which is H as a function of velocities. */
 static void open_form(Text *t, Exprs *roots) {
   const Eqns *e = t->e;
   Arena *a = e->m->arena;
-  if (e->mass.n && !e->m->across) text_heading(t, "mass matrix: p = M q' + a");
+  if (e->mass.n && !e->m->across) text_heading(t, mass_heading(e));
   for (uint32_t k = 0; k < e->mass.n && !e->m->across; k++) {
     Name row = e->m->coords.at[e->mass.at[k].row].name, col = e->m->coords.at[e->mass.at[k].col].name;
     Expr x = e->n <= 16 ? simplify(t->g, e->mass.at[k].e) : e->mass.at[k].e;

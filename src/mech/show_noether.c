@@ -124,13 +124,17 @@ static void algebra(Page *p) {
     return;
   }
   for (uint32_t k = 0; k < x->n; k++) charge[k] = charge_symbol(p, k);
-  uint32_t pairs = x->n * (x->n - 1) / 2, zero = pairs - x->all.n, open = 0;
+  uint32_t pairs = x->n * (x->n - 1) / 2, zero = pairs - x->all.n, open = 0, outside = 0;
   if (x->all.n) text_heading(&p->text, "Poisson brackets");
   else sb_putc(p->text.out, '\n');
   for (uint32_t k = 0; k < x->all.n; k++) bracket(p, &x->all.at[k], charge, k + 1 == x->all.n);
   if (x->all.n) text_end(&p->text);
-  for (uint32_t k = 0; k < x->all.n; k++) open += x->all.at[k].c == NULL;
-  if (open) say(p, arena_printf(a, "  %u of them %s no combination of these charges", open, open == 1 ? "is" : "are"));
+  for (uint32_t k = 0; k < x->all.n; k++) {
+    open += !x->all.at[k].c && !x->all.at[k].is_outside;
+    outside += !x->all.at[k].c && x->all.at[k].is_outside;
+  }
+  if (outside) say(p, arena_printf(a, "  %u of them %s no combination of these charges", outside, outside == 1 ? "is" : "are"));
+  if (open) say(p, arena_printf(a, "  %u of them %s of these charges with coefficients that were not recognised", open, open == 1 ? "is a combination" : "are combinations"));
   const char *how = x->by_value ? arena_printf(a, "%u of %u proved, all seen at random states", pairs - x->by_value, pairs) : "all proved";
   say(p, arena_printf(a, "  %s%s", !x->all.n ? "all Poisson brackets are 0: " : zero ? "the others are 0: " : "", how));
 }

@@ -44,7 +44,7 @@ static void put_bracket(StrBuf *out, const NoetherReport *r, const Bracket *k) {
   uint32_t shown = 0;
   sb_printf(out, "{\"of\": [%u, %u], \"proved\": %s, ", k->a + 1, k->b + 1, k->proved ? "true" : "false");
   if (!k->c) {
-    sb_puts(out, "\"value\": ");
+    sb_printf(out, "\"is_combination\": %s, \"value\": ", k->is_outside ? "false" : "true");
     put_expr(out, g, k->value);
     sb_putc(out, '}');
     return;

@@ -62,6 +62,55 @@ is "an effect with what it requires" "effect again breaks 1 of 2
   dQ2/dt = field.g*y - again.h*x" "$(verdict again)"
 is "a total derivative breaks nothing" "effect gauge breaks none of them" "$(verdict gauge)"
 
+# ---- brackets whose coefficients are not recognised ----
+cat >"$TMP/driven.lag" <<'END'
+model m
+coord x, z
+param m = 2 > 0, k = 3 > 0, g = 1, a = 1 > 0, b = 3 > 0
+lagrangian = m/2*(x'^2 + z'^2) - g*cos(k*t)*x - (a^2 + b)*z^2/2
+END
+check "a combination that is not recognised is called so" says "2 of them are combinations of these charges with coefficients that were not recognised" noether "$TMP/driven.lag"
+check "and never no combination" is_silent "no combination" noether "$TMP/driven.lag"
+
+cat >"$TMP/pushed.lag" <<'END'
+model m
+coord x, y
+param a = 1
+lagrangian = (x*y' - y*x')/2 - (x^2 + y^2)^2/4
+force x = -a*x'
+END
+check "brackets of an L of first order with forces are refused" says "^no Poisson brackets: L is linear in velocities, and forces change the form" noether "$TMP/pushed.lag"
+
+# ---- names ----
+cat >"$TMP/screw.lag" <<'END'
+model m
+coord x, y, z
+param k = 2
+kinetic = (x'^2 + y'^2 + z'^2)/2
+potential = cos(atan2(y, x) - k*z)*(x^2 + y^2)
+END
+cat >"$TMP/oblique.lag" <<'END'
+model m
+coord u, v
+let x = 3*u/2 - 2*v/7 + 1/3
+let y = u/5 + 4*v/3 - 1/2
+lagrangian = (x'^2 + y'^2)/2 - 1/(x^2 + y^2)
+END
+cat >"$TMP/top.lag" <<'END'
+model m
+coord R: rotation
+param A = 1 > 0, C = 3 > 0, g = 9.8
+let w = omega(R)
+let tip = R*(0, 0, 1)
+kinetic = A/2*(w.x^2 + w.y^2) + C/2*w.z^2
+potential = g*tip.z
+END
+check "a screw is no rotation" says "^Q2: screw: a rotation and a translation at once" noether "$TMP/screw.lag"
+check "a scaling that turns is more than a scaling" says "^Q2: scaling with an affine map of the coordinates" noether "$TMP/oblique.lag"
+check "turns in space and of the body's own, together" says "^Q3: turns about z in space and about the body's own: the difference of the angular momenta" noether "$TMP/top.lag"
+printf "model m\ncoord x\nlagrangian = x'^4/4 + x'^2/2 - x^2/2\n" >"$TMP/quartic.lag"
+check "a mass matrix with velocities is dp/dq', not p over q'" says "^mass matrix: M = dp/dq'" derive "$TMP/quartic.lag" --hamiltonian
+
 # ---- cyclic coordinates ----
 check "check says so" says "^cyclic coordinate: ph; L does not contain it, and p_ph is conserved" check models/spherical_pendulum.lag
 check "and says when forces or constraints act on it" says "^cyclic coordinate: x; .* changed by forces and constraints alone" check models/turntable.lag

@@ -161,6 +161,41 @@ static void oscillator(void **state) {
   arena_free(c.arena);
 }
 
+/* An affine change of coordinates with fractions makes whole numbers large. Two that breathe, b1 and b2 = cos and sin of 2 t with delta t =
+ * N sin(2 t) ..., have {b1, b2} = +-2 N^2 of the energy; N clears the fractions of the shifts 95/648 and 343/864: 2592. */
+static void large_numbers(void **state) {
+  (void)state;
+  Charges c = charges("model o\ncoord u, v\nlet x = 3*u/2 - 2*v/7 + 1/3\nlet y = u/5 + 4*v/3 - 1/2\nlagrangian = (x'^2 + y'^2)/2 - (x^2 + y^2)/2\n");
+  uint32_t n = c.found.all.n;
+  assert_int_equal(n, 8);
+  for (uint32_t k = 0; k < c.algebra.all.n; k++) assert_non_null(c.algebra.all.at[k].c);
+  for (uint32_t k = 0; k <= n; k++) {
+    long double got = fabsl(constant(&c, n - 2, n - 1, k));
+    assert_true(got == (k == charge(&c, "energy") ? 2 * 2592.0L * 2592 : 0));
+  }
+  arena_free(c.arena);
+}
+
+static long double value_of(const Charges *c, const char *name) {
+  test_rng = 5;
+  for (SymId k = 1; k <= expr_symbol_count(c->e->g); k++)
+    if (strcmp(expr_symbol(c->e->g, k)->name, name) == 0) return random_point(c->e)[k];
+  return NAN;
+}
+
+/* z oscillates with w = sqrt(2/m) for itself, while L contains t: the energy in a moving frame, m k of it, turns cos into sin with w m k. */
+static void roots_of_numbers(void **state) {
+  (void)state;
+  Charges c = charges("model r\ncoord x, z\nparam m = 2 > 0, k = 3 > 0, g = 1\nlagrangian = m/2*(x'^2 + z'^2) - g*cos(k*t)*x - z^2\n");
+  uint32_t n = c.found.all.n, energy = charge(&c, "energy in a moving frame");
+  for (uint32_t k = 0; k < c.algebra.all.n; k++) assert_non_null(c.algebra.all.at[k].c);
+  long double got = 0;
+  for (uint32_t i = n - 2; i < n; i++) got += fabsl(constant(&c, energy, n - 2, i));
+  long double m = value_of(&c, "m"), k = value_of(&c, "k");
+  assert_true(fabsl(got - sqrtl(2 * m) * k) < 1e-15L * got);
+  arena_free(c.arena);
+}
+
 /* Momenta of vortices are coordinates of one another: the bracket of the two sums is the total circulation. L = G x y' gives {x, y} = 1/G;
  * Q along x is -G y, along y +G x, less their gauge, so {G y, -G x} = G {x, y} G. */
 static void vortices(void **state) {
@@ -188,7 +223,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(rotations), cmocka_unit_test(galilei),    cmocka_unit_test(two_bodies), cmocka_unit_test(inverse_square),
     cmocka_unit_test(magnetic),  cmocka_unit_test(oscillator), cmocka_unit_test(vortices),   cmocka_unit_test(refused),
-    cmocka_unit_test(two_rates),
+    cmocka_unit_test(two_rates), cmocka_unit_test(large_numbers), cmocka_unit_test(roots_of_numbers),
   };
   return cmocka_run_group_tests_name("brackets", tests, NULL, NULL);
 }
