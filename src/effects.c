@@ -136,7 +136,8 @@ Measured *effects_read(EffectStudy *s, char *said, uint32_t n, const char **rest
   return found == n ? m : NULL;
 }
 
-double effects_limit(const EffectStudy *s) { return s->accuracy > 0 ? s->accuracy : s->error; }
+/* What a difference is compared with: that of two runs has the error of each. */
+double effects_limit(const EffectStudy *s) { return s->accuracy > 0 ? s->accuracy : 2 * s->error; }
 
 const char *effects_verdict(const EffectStudy *s, const EffectRow *row) {
   if (row->excluded_by) return "excluded";

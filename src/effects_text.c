@@ -27,7 +27,7 @@ static const char *number(Arena *a, double x) {
   return isnan(x) ? "-" : isinf(x) ? "no number" : arena_printf(a, "%.2g", x);
 }
 
-static const char *percent(Arena *a, double x) { return isnan(x) ? "-" : arena_printf(a, "%.0f %%", 100 * x); }
+static const char *percent(Arena *a, double x) { return isfinite(x) ? arena_printf(a, "%.0f %%", 100 * x) : "-"; }
 
 static const char *joined(const EffectStudy *s, EffectSet set) {
   StrBuf b = strbuf(s->arena);
@@ -72,7 +72,8 @@ static void put_failures(const EffectStudy *s, StrBuf *out) {
 static void put_least(const EffectStudy *s, StrBuf *out) {
   if (!(s->accuracy > 0)) return;
   if (s->least == s->used) {
-    sb_printf(out, "no effect of the scene can be left out at an accuracy of %g: %u %s run\n", s->accuracy, s->tried, s->tried == 1 ? "other set was" : "other sets were");
+    const char *claim = s->exhaustive ? "no effect of the scene can be left out" : "leaving out one effect after the other, none can go";
+    sb_printf(out, "%s at an accuracy of %g: %u %s run\n", claim, s->accuracy, s->tried, s->tried == 1 ? "other set was" : "other sets were");
     return;
   }
   EffectSet gone = s->used & ~s->least;

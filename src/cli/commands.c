@@ -56,7 +56,7 @@ static const CommandRow commands[] = {
    "Runs the scene, and it again without each effect that it uses, and with each that it does not. Prints for each effect its operations "
    "and its share of the time of a call of the right-hand side; its weight, the largest ratio of |acceleration with - without it| to "
    "|acceleration| on the way; the difference that it makes, the largest at 16 times of the run and at its end, relative to the largest value of "
-   "its kind and unit; and whether that is more than the error of integration, which a run with a hundredth of the tolerance, or half the step, tells. "
+   "its kind and unit; and whether that is more than twice the error of integration, which a run with a hundredth of the tolerance, or half the step, tells. "
    "An effect is left out together with those that require it. `shared` are operations that several effects need. Method, steps and end are chosen as for "
    "`lagc run`: --method, --tol, --step, --until. `lagc help effect` says more.\n\n"
    "  name=value            a parameter, another start, an input, as for `lagc run`\n\n"

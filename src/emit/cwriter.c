@@ -549,6 +549,8 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
   w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
+  for (uint32_t k = 0; k < p->solves.n; k++)
+    if (p->solves.at[k].m) cnames_reserve(&w.names, "i"); /* write_constrained counts with it */
   for (const char *const *g = style->globals; g && *g; g++) cnames_reserve(&w.names, *g);
   if (p->solves.n) cnames_reserve(&w.names, "w");
   count_uses(&w);

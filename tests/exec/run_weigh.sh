@@ -164,6 +164,28 @@ check "pasted into the scene it does what was promised" pasted
 is "more than ten: one by one" "use e1, e2" "$(smallest "$dir/many.lag" s --accuracy 2e-3)"
 check "and says how" says 0 'found by leaving out one after the other' "$LAGC" effects "$dir/many.lag" s --accuracy 2e-3
 
+{
+  echo 'model pairs "Eleven, of which two cancel in pairs"'
+  echo 'coord x [m]'
+  echo "lagrangian = 1 [kg]/2*x'^2 + 1 [N]*x"
+  for i in 1 2 3 4 5 6; do echo "effect e$i { param f = 1e-$i [N]; force x = f }"; echo "effect o$i { param f = 1e-$i [N]; force x = -f }"; done
+  echo 'scene s { use e1, e2, e3, e4, e5, e6, o1, o2, o3, o4, o5, o6; span 1; method rk45 }'
+} >"$dir/pairs.lag"
+check "claims no more than it has tried" says 0 'leaving out one effect after the other, none can go' "$LAGC" effects "$dir/pairs.lag" s --accuracy 1e-8
+
+# A force that is 0 all the time: what the two runs differ by is rounding of steps of other sizes.
+cat >"$dir/nothing.lag" <<'END'
+model nothing "An effect that does nothing"
+coord x [m], y [m]
+param m = 1 [kg] > 0, k = 1 [N/m] > 0
+kinetic = m/2*(x'^2 + y'^2)
+potential = k/2*(x^2 + y^2)
+effect f { state q; flow q' = -q*1 [1/s]; force x = q*1 [N] }
+scene s { start x = 1, y' = 1; span 10 }
+END
+weigh "$dir/nothing.lag" s
+is "an effect that does nothing" "would not matter" "$(of f verdict)"
+
 check "below the smallest tolerance there is none: a larger one tells" sh -c 'awk -v e="$1" "BEGIN { exit !(e > 0 && e < 1e-10) }"' - "$(weigh models/mercury.lag advance --until 1e7; of integration_error)"
 
 # ---- mistakes
