@@ -46,6 +46,9 @@ static void list_units(const FoundUnits *all, StrBuf *out) {
   if (all->n) sb_putc(out, '\n');
 }
 
+/* Whether there are inputs whose formulas a scene gives: those of contacts are not. */
+static int has_inputs(const Model *m) { return m->inputs.n > m->contacts.n; }
+
 int check_print(const Deriver *d, Ast *ast, const char *scene, int allow_numeric, StrBuf *out) {
   SceneList scenes = model_scenes(ast);
   FoundUnits found = {0};
@@ -61,7 +64,7 @@ int check_print(const Deriver *d, Ast *ast, const char *scene, int allow_numeric
     collect_units(e->m, &found);
     if (!freedom_show(e, out)) continue;
     sb_printf(out, "scene %s: ok%s\n", scenes.at[i], with_effects(e->m));
-    if (e->m->effects.n) charges_show_broken(e, out);
+    if (e->m->effects.n || has_inputs(e->m)) charges_show_broken(e, out);
   }
   if (scene && !out->n) d->derive(d->data, &(ModelChoice){.scene = scene}); /* says that there is no such scene */
   EffectList unused = model_unused_effects(ast);

@@ -197,6 +197,7 @@ static void run(App *app)
 
   if (rc == 0) {
     rc = film_advance(app, app->until);
+    rc = rc ? rc : lag_sim_watch(app->sim);
   }
   if (rows && rc >= 0 && app->last_row != lag_sim_time(app->sim)) {
     int bad = app_put_row(app);

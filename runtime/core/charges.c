@@ -204,6 +204,15 @@ static double relative(const Charge *c, double x)
   return x == 0.0 ? 0 : x / fmax(fabs(c->begin), c->scale);
 }
 
+/* The present state is a part of the run, too. */
+static void with_present(Charge *c, double now, double work, double scale)
+{
+  double d = fabs(now - work - c->first);
+
+  c->peak = d > c->peak || isnan(d) ? d : c->peak;
+  c->scale = fmax(c->scale, scale);
+}
+
 double lag_charge_drift(const lag_sim *s, int k)
 {
   return relative(&s->charges[k], s->charges[k].peak);
@@ -242,8 +251,8 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
 {
   const lag_model *m = s->scene->model;
   const Run *r = s->run;
-  const Charge *c = &s->charges[k];
-  double peak = c->peak, since = 0;
+  Charge seen = s->charges[k], *c = &seen;
+  double since = 0;
 
   *st = (lag_charge_stats){.name = m->charges ? m->charges->of[k].name : "energy", .unit = m->charges ? m->charges->of[k].unit : "",
                            .flags = lag_charge_flags(s, k), .begin = c->begin};
@@ -257,10 +266,9 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
   if (r->begun == 0.0) {
     st->begin = st->now;
   } else {
-    double d = fabs(st->now - st->work - c->first);
-    peak = d > peak || isnan(d) ? d : peak;
+    with_present(c, st->now, st->work, s->charge_now[2 * k + 1]);
   }
-  st->drift = relative(c, peak);
+  st->drift = relative(c, c->peak);
   st->trend = trend_of(c, r->steps, &st->slope, &st->slope_error);
   st->slope = relative(c, st->slope);
   st->slope_error = relative(c, st->slope_error);

@@ -63,16 +63,52 @@ static double larger(double x, double y)
   return y > x || isnan(y) ? y : x;
 }
 
-double lag_sim_monitor_drift(const lag_sim *s, int i)
+/* A quantity that begins at zero has no size of its own: judged in its declared unit. */
+static double relative(const lag_sim *s, int i, double peak)
+{
+  double unit = s->scene->outputs[s->scene->monitors[i].output].factor, size = fabs(s->mon_first[i]);
+
+  return peak / (size > 1e-9 * unit ? size : unit);
+}
+
+double lag_sim_monitor_drift(lag_sim *s, int i)
+{
+  int k = s->scene->monitors[i].output;
+  double peak = s->mon_peak[i];
+
+  if (k < 0) {
+    lag_charge_stats c;
+    lag_sim_charge(s, -1 - k, &c);
+    return c.drift;
+  }
+  if (s->run->begun != 0.0) {
+    peak = larger(peak, outputs_at(s, s->run->t, s->now) ? NAN : fabs(s->out[k] - s->mon_first[i]));
+  }
+  return relative(s, i, peak);
+}
+
+/* What passes its limit fails the run. */
+static int judge(lag_sim *s, int i, double drift)
 {
   const lag_monitor *m = &s->scene->monitors[i];
 
-  if (m->output < 0) {
-    return lag_charge_drift(s, -1 - m->output);
+  if (drift <= m->limit) {
+    return LAG_OK;
   }
-  /* A quantity that begins at zero has no size of its own: judged in its declared unit. */
-  double unit = s->scene->outputs[m->output].factor, size = fabs(s->mon_first[i]);
-  return s->mon_peak[i] / (size > 1e-9 * unit ? size : unit);
+  int rough = m->output < 0 && !lag_charge_flags(s, -1 - m->output) && !lag_method_balances(s->method);
+  return lag_fail(s, LAG_EMONITOR, "monitor %s: drift %.3g is past its limit %.3g at t = %.17g s%s%s%s", m->name, drift, m->limit, s->run->t,
+                  rough ? "; what forces bring is not part of it, as " : "", rough ? s->method->name : "",
+                  rough ? " tells too little between its steps: take dop853" : "");
+}
+
+int lag_sim_watch(lag_sim *s)
+{
+  int rc = LAG_OK;
+
+  for (int i = 0; i < s->scene->nmonitors && rc == 0 && s->run->begun != 0.0; i++) {
+    rc = judge(s, i, lag_sim_monitor_drift(s, i));
+  }
+  return rc;
 }
 
 int lag_watch_see(lag_sim *s, double t, const double *y)
@@ -93,16 +129,12 @@ int lag_watch_see(lag_sim *s, double t, const double *y)
       s->mon_peak[i] = larger(s->mon_peak[i], fabs(s->out[k] - s->mon_first[i]));
     }
   }
-  for (int i = 0; i < c->nmonitors; i++) { /* when all are known: a report shows them all */
-    double drift = lag_sim_monitor_drift(s, i);
-    if (!(drift <= c->monitors[i].limit)) {
-      int rough = c->monitors[i].output < 0 && !lag_charge_flags(s, -1 - c->monitors[i].output) && !lag_method_balances(s->method);
-      return lag_fail(s, LAG_EMONITOR, "monitor %s: drift %.3g is past its limit %.3g at t = %.17g s%s%s%s", c->monitors[i].name,
-                      drift, c->monitors[i].limit, t, rough ? "; what forces bring is not part of it, as " : "", rough ? s->method->name : "",
-                      rough ? " tells too little between its steps: take dop853" : "");
-    }
+  int rc = LAG_OK;
+  for (int i = 0; i < c->nmonitors && rc == 0; i++) { /* when all are known: a report shows them all */
+    int k = c->monitors[i].output;
+    rc = judge(s, i, k < 0 ? lag_charge_drift(s, -1 - k) : relative(s, i, s->mon_peak[i]));
   }
-  return LAG_OK;
+  return rc;
 }
 
 int lag_watch_jump(lag_sim *s, double t, const double *ya, const double *yb)

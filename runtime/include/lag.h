@@ -394,8 +394,11 @@ int lag_sim_set_tangent(lag_sim *sim, int k, const double *Y);
 int lag_sim_tangent(lag_sim *sim, double *Y);
 
 void lag_sim_stats(lag_sim *sim, lag_stats *stats);
-/* The drift of monitor i so far, as judged against its limit. */
-double lag_sim_monitor_drift(const lag_sim *sim, int i);
+/* The drift of monitor i so far, as judged against its limit: at ends of steps, and at the present time. */
+double lag_sim_monitor_drift(lag_sim *sim, int i);
+/* Judges monitors at the present time, too: advancing judges them at ends of steps, whatever times are asked for. LAG_OK, or LAG_EMONITOR with
+ * a message; the run can go on as if it had not been asked. */
+int lag_sim_watch(lag_sim *sim);
 /* Closed form k of the scene (k < lag_sim_scene(sim)->nexact): the largest |motion - closed form| at the ends of steps so
  * far, and the difference now, both in the declared unit (of degC: K); of angles, the nearest way around. NaN: the closed form is no
  * number. */

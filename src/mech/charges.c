@@ -66,7 +66,7 @@ static Expr in_own_names(const Eqns *e, Expr x) {
   ExprMap own = expr_map(a);
   VEC(Expr) said = {0};
   vec_push(a, &said, e->m->lagrangian);
-  for (uint32_t i = 0; e->Q && i < e->n; i++) vec_push(a, &said, e->Q[i]);
+  for (uint32_t i = 0; e->Q && i < noether_coordinates(e); i++) vec_push(a, &said, e->Q[i]);
   for (uint32_t i = 0; i < e->constraints.n; i++) vec_push(a, &said, e->constraints.r[i]);
   ExprList known = expr_topo(e->g, said.at, said.n);
   for (uint32_t i = 0; i < known.n; i++) expr_map_set(&own, known.at[i], 1);
@@ -183,7 +183,8 @@ void charges_print(const Eqns *e, Name effect, StrBuf *out) {
 void charges_show_broken(const Eqns *e, StrBuf *out) {
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
-    if (c->proof.power_unknown || expr_is_zero(e->g, c->proof.power) || (!c->of && e->m->symmetries.n == 0)) continue;
-    sb_printf(out, "  d(%s)/dt = %s\n", c->name, text_of(e, c->proof.power));
+    if ((!c->proof.power_unknown && expr_is_zero(e->g, c->proof.power)) || (!c->of && e->m->symmetries.n == 0)) continue;
+    if (c->proof.power_unknown) sb_printf(out, "  d(%s)/dt: L depends on an input whose rate of change is not known\n", c->name);
+    else sb_printf(out, "  d(%s)/dt = %s\n", c->name, text_of(e, c->proof.power));
   }
 }

@@ -27,7 +27,7 @@ int charges_judge(const Eqns *e, Name effect);
 /* Appends a line for each symmetry of `effect` to what `lagc check` prints. */
 void charges_print(const Eqns *e, Name effect, StrBuf *out);
 
-/* Appends a line for each charge, of the energy too, that the effects in use have broken. */
+/* Appends a line for each charge, of the energy too, that is not conserved with the effects and inputs of the scene. */
 void charges_show_broken(const Eqns *e, StrBuf *out);
 
 #endif

@@ -78,7 +78,7 @@ typedef struct {
   const Expr *f;         /* [n]; with A^T lambda, made of the symbols of multipliers */
   LinearSystem system;   /* the cheapest form of M q'' = f found; without multipliers */
   Constraints constraints;
-  const Expr *Q;         /* [n] generalised forces, inside f already */
+  const Expr *Q;         /* [n], of first order [first.n], with rates: generalised forces, inside f, or rhs and form, already */
   const Expr *flow;      /* [number of states]; free of rates */
   Expr energy;           /* p q' - L, to show; 0 without coordinates */
   Expr energy_stable;    /* the same, to compute */

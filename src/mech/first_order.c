@@ -127,6 +127,7 @@ static Expr *forces(const Work *w) {
 /* The form gains dQ/dq', the right-hand side loses what of Q is free of velocities. */
 static int add_forces(Work *w) {
   Expr *Q = forces(w);
+  w->e->Q = Q;
   for (uint32_t i = 0; i < w->n; i++) {
     ExprPartials d = has_rates(w, Q[i]) ? expr_gradient_sparse(w->g, Q[i], SYM_RATE, w->m->states.n) : (ExprPartials){0};
     for (uint32_t k = 0; k < d.n; k++) {

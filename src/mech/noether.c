@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "mech/sizes.h"
 #include "mech/states.h"
 #include "sym/diff.h"
 #include "sym/integrate.h"
@@ -120,34 +121,56 @@ static Expr delta_lagrangian(const Work *w) {
 
 /* --- zero on the constraints --- */
 
-/* Whether x is zero at random states that obey the constraints. */
-static int vanishes_by_value(const Work *w, Expr x) {
-  enum { STATES = 12 };
+/* Whether x is not more than rounding at a state that obeys the constraints; -1: it has no value there. */
+static int is_small(const Work *w, Expr x, const long double *symbols) {
   const long double tiny = 1e-14L; /* states obey to 1e-16; what x is made of is of the size of 1 */
-  const Eqns *e = w->e;
-  long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1), bound;
-  StateSolver *solver = states_new(e);
-  uint32_t seen = 0;
-  for (uint32_t seed = 1; seed <= 4 * STATES && seen < STATES; seed++) {
-    prove_state(w->g, seed, symbols);
-    if (!states_complete(solver, symbols)) continue;
-    long double value = prove_value(w->g, x, symbols, NULL, &bound), size = 0;
-    if (!isfinite(value)) continue;
-    for (uint32_t i = 0; i < expr_pairs(w->g, x, EX_SUM); i++) {
-      Num c;
-      Expr term = expr_pair(w->g, x, EX_SUM, i, &c);
-      size += fabsl((long double)num_value(c) * prove_value(w->g, term, symbols, NULL, &bound));
-    }
-    if (fabsl(value) > tiny * fmaxl(size, 1)) return 0;
-    seen++;
+  long double bound, value = prove_value(w->g, x, symbols, NULL, &bound), size = 0;
+  if (!isfinite(value)) return -1;
+  for (uint32_t i = 0; i < expr_pairs(w->g, x, EX_SUM); i++) {
+    Num c;
+    Expr term = expr_pair(w->g, x, EX_SUM, i, &c);
+    size += fabsl((long double)num_value(c) * prove_value(w->g, term, symbols, NULL, &bound));
   }
-  return seen == STATES;
+  return fabsl(value) <= tiny * fmaxl(size, 1);
 }
 
-/* Whether x is zero where the constraints hold. */
+/* Coordinates times a power of two, with signs by the bits of the seed where none is known: where constraints hold in several parts, their
+ * nearest states lie on several. */
+static void spread(const Work *w, uint32_t seed, long double *symbols) {
+  static const int powers[] = {0, 2, -3, 4, 1, 7, -6, 3};
+  for (uint32_t i = 0; i < w->n; i++) {
+    const Symbol *q = expr_symbol(w->g, w->q[i]);
+    symbols[w->q[i]] = ldexpl(symbols[w->q[i]], powers[seed % 8]);
+    if (q->sign == SIGN_UNKNOWN && (seed / 8 * 5 + seed) >> (i + seed) % 8 & 1) symbols[w->q[i]] *= -1;
+  }
+}
+
+/* Whether x is zero at random states that obey the constraints: near ones first, then from starts that are far apart. What is large
+ * at a far one is judged by its own size. */
+static int vanishes_by_value(const Work *w, Expr x) {
+  enum { STATES = 12, NEAR = 4 * STATES, ALL = NEAR + 64 };
+  long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
+  StateSolver *solver = states_new(w->e);
+  uint32_t seen = 0;
+  for (uint32_t seed = 1; seed <= ALL; seed++) {
+    if (seed <= NEAR && seen == STATES) continue;
+    prove_state(w->g, seed, symbols);
+    if (seed > NEAR) spread(w, seed - NEAR - 1, symbols);
+    if (!states_complete(solver, symbols)) continue;
+    int small = is_small(w, x, symbols);
+    if (!small) return 0;
+    seen += small > 0;
+  }
+  return seen >= STATES;
+}
+
+/* Whether a constraint holds all the time. */
+static int is_constrained(const Work *w) { return w->e->constraints.n > w->m->contacts.n; }
+
+/* Whether x is zero where the constraints hold, contacts not among them. */
 static Verdict zero_on_constraints(Work *w, Expr x) {
   Verdict v = prove_zero(w->g, x, NULL);
-  if (v == PROVED_ZERO || !w->e->constraints.n || !vanishes_by_value(w, x)) return v;
+  if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x)) return v;
   w->by_value = 1;
   return PROVED_ZERO;
 }
@@ -223,27 +246,35 @@ static Expr charge_of(const Work *w, Expr F) {
   return expr_add(g, front, minus_et);
 }
 
-int noether_is_contact(const Model *m, const Constraint *k) {
+/* The contact whose constraint it is, or NULL. */
+static const Contact *contact_of(const Model *m, const Constraint *k) {
   for (uint32_t i = 0; i < m->contacts.n; i++)
-    if (&m->constraints.at[m->contacts.at[i].constraint] == k) return 1;
-  return 0;
+    if (&m->constraints.at[m->contacts.at[i].constraint] == k) return &m->contacts.at[i];
+  return NULL;
 }
 
-static Expr absolute_product(const Work *w, Expr a, Expr b) {
-  Expr product = expr_mul(w->g, a, b);
-  return expr_fn(w->g, EX_ABS, product);
+int noether_is_contact(const Model *m, const Constraint *k) { return contact_of(m, k) != NULL; }
+
+/* x of a contact's constraint as it is while that is closed; other x stay. */
+static Expr while_closed(const Work *w, const Contact *c, Expr x) {
+  Expr one = expr_int(w->g, 1);
+  return c ? expr_replace(w->g, x, &c->closed, &one, 1) : x;
 }
 
 static Expr scale_of(const Work *w, Expr F) {
+  ExprGraph *g = w->g;
   const Expr *p = w->e->n ? w->e->momenta : w->p;
-  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 2), one = expr_int(w->g, 1);
-  for (uint32_t i = 0; i < w->n; i++) terms[i] = absolute_product(w, p[i], w->xi[i]);
-  terms[w->n] = absolute_product(w, w->e->energy_scale, w->tau);
-  terms[w->n + 1] = absolute_product(w, F, one);
-  return expr_add_n(w->g, terms, w->n + 2);
+  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 2), size_tau = sizes_of_terms(g, w->tau);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr size_p = sizes_of_terms(g, p[i]), size_xi = sizes_of_terms(g, w->xi[i]);
+    terms[i] = expr_mul(g, size_p, size_xi);
+  }
+  terms[w->n] = expr_mul(g, w->e->energy_scale, size_tau);
+  terms[w->n + 1] = sizes_of_terms(g, F);
+  return expr_add_n(g, terms, w->n + 2);
 }
 
-/* lambda^T (A xi + b tau): of a holonomic constraint what the generator makes of c, of one on velocities r = A q' + b what it
+/* lambda^T (A xi + b tau), of contacts while they are closed: of a holonomic constraint what the generator makes of c, of one on velocities r = A q' + b what it
  * makes of r when displacements stand for velocities. */
 static Expr power_of_constraints(Work *w, Noether *to) {
   ExprGraph *g = w->g;
@@ -251,10 +282,11 @@ static Expr power_of_constraints(Work *w, Noether *to) {
   Expr sum = expr_int(g, 0);
   for (uint32_t i = 0; i < k->n; i++) {
     Expr *seed = no_seed(w), moved;
+    const Contact *contact = contact_of(w->m, k->of[i]);
     if (i < k->nholonomic) {
       for (uint32_t j = 0; j < w->n; j++) seed[w->q[j]] = w->xi[j];
       seed[w->m->time] = w->tau;
-      moved = tangent(w, k->c[i], seed, "_delta");
+      moved = tangent(w, while_closed(w, contact, k->c[i]), seed, "_delta");
     } else {
       Expr b = at_rest(w, k->r[i]), part = expr_mul(g, b, w->tau);
       for (uint32_t j = 0; j < w->n; j++) seed[w->v[j]] = w->xi[j];
@@ -263,11 +295,12 @@ static Expr power_of_constraints(Work *w, Noether *to) {
     }
     if (zero_on_constraints(w, moved) == PROVED_ZERO) continue;
     moved = shorten(w, moved);
-    if (i < k->nholonomic && !to->broken && !noether_is_contact(w->m, k->of[i])) {
+    if (i < k->nholonomic && !to->broken && !contact) {
       to->broken = i + 1;
       to->breaks = moved;
     }
     Expr force = expr_mul(g, node(w, k->of[i]->multiplier), moved);
+    if (contact) force = expr_mul(g, node(w, contact->closed), force);
     sum = expr_add(g, sum, force);
   }
   return sum;

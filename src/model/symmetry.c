@@ -1,6 +1,9 @@
 /* Symmetries: `symmetry spin(s): x -> x*cos(s) - y*sin(s), y -> x*sin(s) + y*cos(s)`, one transformation of coordinates and time
  * that is the identity at s = 0. What the model keeps is what it does to first order in s, its generator; the rest of it has no
  * part in the theorem. Its name stands for its charge in outputs. */
+#include <float.h>
+#include <math.h>
+
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
 #include "sym/print.h"
@@ -26,8 +29,19 @@ static Name parameter_name(Builder *b, const AstStmt *st, Name effect) {
   return NULL;
 }
 
+/* Whether its charge would stand for something that each model has already. */
+static int is_taken(Builder *b, const AstStmt *st) {
+  int energy = strcmp(st->name, "energy") == 0;
+  if (!energy && strcmp(st->name, "exact") != 0) return 0;
+  diag_error(b->diags, st->name_span, "a symmetry cannot be called `%s`", st->name);
+  if (energy) diag_help(b->diags, "`energy` is the charge of t -> t - s, which every model has, in outputs, monitors and reports; call it `%s_2`", st->name);
+  else diag_help(b->diags, "`monitor exact` watches the scene's closed forms; call it `%s_2`", st->name);
+  return 1;
+}
+
 void declare_symmetry(Builder *b, const AstStmt *st, Name effect) {
   Model *m = b->m;
+  if (is_taken(b, st)) return;
   Entity e = {.kind = ENT_SYMMETRY, .index = m->symmetries.n, .name = st->name, .effect = effect, .span = st->name_span};
   if (!declare_entity(b, st, e)) return;
   Symmetry y = {.name = full_name(b, st->name, effect), .effect = effect, .doc = st->doc, .span = st->span, .stmt = st};
@@ -82,6 +96,48 @@ static int begins_at_identity(const Mapping *p, SymId target, Expr to, Span span
   return 0;
 }
 
+/* (to(h) - to(0))/h at a state; NaN where it has no value. */
+static long double quotient(const Mapping *p, Expr to, long double h, long double at_zero, long double *symbols) {
+  SymId s = p->of->parameter;
+  long double bound;
+  symbols[s] = h;
+  long double value = prove_value(p->b->g, to, symbols, NULL, &bound);
+  symbols[s] = 0;
+  return (value - at_zero) / h;
+}
+
+/* Whether the difference quotients go to the rate from both sides; seen at random states. Of |s| they stay away by the same, of
+ * s^(3/2) there are none below 0, and of sqrt(s) the rate is not finite. */
+static int has_rate(const Mapping *p, Expr to, Expr rate) {
+  enum { STATES = 6, TRIES = 64 }; /* of some maps, as x + s*sqrt(k), random parameters make nothing */
+  const long double coarse = 1e-3L, fine = sqrtl(LDBL_EPSILON), rounding = 100 * LDBL_EPSILON / fine;
+  ExprGraph *g = p->b->g;
+  long double *symbols = ARENA_ARRAY(p->b->arena, long double, expr_symbol_count(g) + 1), bound;
+  int seen = 0;
+  for (uint32_t seed = 1; seed <= TRIES && seen < STATES; seed++) {
+    prove_state(g, seed, symbols);
+    symbols[p->of->parameter] = 0;
+    long double at_zero = prove_value(g, to, symbols, NULL, &bound), slope = prove_value(g, rate, symbols, NULL, &bound);
+    if (!isfinite(at_zero)) continue; /* the map has no value at that place at all */
+    if (!isfinite(slope)) return 0;
+    seen++;
+    for (int side = -1; side <= 1; side += 2) {
+      long double far = fabsl(quotient(p, to, side * coarse, at_zero, symbols) - slope);
+      long double near = fabsl(quotient(p, to, side * fine, at_zero, symbols) - slope);
+      int closer = near < far / 2 || (isnan(far) && !isnan(near)), equal = near <= rounding * fmaxl(fmaxl(fabsl(slope), fabsl(at_zero)), 1);
+      if (!closer && !equal) return 0;
+    }
+  }
+  return seen > 0;
+}
+
+static void report_no_rate(const Mapping *p, SymId target, Span span) {
+  Builder *b = p->b;
+  Name s = expr_symbol(b->g, p->of->parameter)->name, name = expr_symbol(b->g, target)->name;
+  diag_error(b->diags, span, "what the symmetry `%s` maps `%s` to has no derivative by %s at %s = 0, the same from both sides", p->of->name, name, s, s);
+  diag_help(b->diags, "a charge belongs to a transformation that is smooth in its parameter, as `%s -> %s + %s` is", name, name, s);
+}
+
 static void add_move(const Mapping *p, SymId target, Expr to, Span span) {
   Builder *b = p->b;
   Symmetry *y = p->of;
@@ -98,6 +154,10 @@ static void add_move(const Mapping *p, SymId target, Expr to, Span span) {
     Expr zero = expr_int(b->g, 0), slope = expr_diff(b->g, to, y->parameter);
     Expr rate = expr_replace(b->g, slope, &y->parameter, &zero, 1);
     move.rate = simplify(b->g, rate);
+    if (!has_rate(p, to, move.rate)) {
+      report_no_rate(p, target, span);
+      move.rate = 0;
+    }
   }
   vec_push(b->arena, &y->moves, move);
 }

@@ -82,6 +82,87 @@ END
 sed 's|= 0.1 \[m\]\*sin(w\*t)|= "pull.csv"|' $spring >"$TMP/table.lag"
 check "of a table the rate is not known, and the report says so" says '^energy change: [0-9.e-]* \(not conserved, or not known to be\)' "$TMP/table.lag"
 
+# ---- the input of a scene: check says what it brings. With u = 1 + t/5 in L = ... - u (x^2 + y^2)/2: u' (x^2 + y^2)/2
+cat >"$TMP/stiffer.lag" <<'END'
+model stiffer
+coord x, y
+input u = 0
+kinetic = (x'^2 + y'^2)/2
+potential = u*(x^2 + y^2)/2
+symmetry later(s): t -> t - s
+scene formula { start x = 1, y' = 0.3; span 5; u = 1 + t/5 }
+scene table { like formula; u = "pull.csv" }
+END
+printf 't,u\n0,1\n5,2\n9,4\n' >"$TMP/pull.csv"
+check "check knows the scenes' inputs" sh -c "'$LAGC' check '$TMP/stiffer.lag' >'$TMP/out' 2>&1"
+is "a formula's rate, and that a table's is not known" "d(later)/dt = x^2/10 + y^2/10|d(later)/dt: L depends on an input whose rate of change is not known|" \
+  "$(sed -n 's/^  \(d(later)\)/\1/p' "$TMP/out" | tr '\n' '|')"
+
+# ---- L linear in velocities: forces and dissipation work there, too
+for drag in "force x = -a*x'" "force x = -a*x" "dissipation = a*x'^2/2"; do
+  printf '%s\n' "model eddy" "coord x, y" "param a = 1" "lagrangian = (x*y' - y*x')/2 - (x^2 + y^2)^2/4" \
+    "symmetry spin(s): x -> x*cos(s) - y*sin(s), y -> x*sin(s) + y*cos(s)" "effect drag { $drag }" "scene s { start x = 1; span 10; use drag; monitor spin 1e-8, energy 1e-8 }" >"$TMP/eddy.lag"
+  check "$drag: monitors are content" run "$TMP/eddy.lag" --tol 1e-11 --json
+  is "these are balances" "balanced balanced" "$(of energy is) $(of spin is)"
+  # half the square of the distance at the end, by the state, less that at the start, 1/2
+  check "the work is what the motion shows" run "$TMP/eddy.lag" --tol 1e-11
+  moved=$(awk '$1 == "x" { x = $2 } $1 == "y" { y = $2 } END { print (x*x + y*y - 1)/2 }' "$TMP/out")
+  run "$TMP/eddy.lag" --tol 1e-11 --json
+  check "to a hundred tolerances" between "$(awk -v a="$(of spin work)" -v b="$moved" 'BEGIN { print a - b }')" -1e-6 1e-6
+done
+check "check shows them" sh -c "'$LAGC' check '$TMP/eddy.lag' | grep -q 'd(energy)/dt = '"
+
+# ---- contacts: what rests is pushed, m g = 19.62 N for 5 s; what strikes jumps
+cat >"$TMP/ball.lag" <<'END'
+model ball
+coord x [m], y [m]
+param m = 2 [kg] > 0, g = 9.81 [m/s^2] > 0
+kinetic = m/2*(x'^2 + y'^2)
+potential = m*g*y
+symmetry lift(s): y -> y + s
+symmetry level(s): x -> x + s
+symmetry along(s): x -> x + s, y -> y - s
+effect ground { contact floor: y >= 0, restitution = 0.5 }
+effect ramp { contact slope: x + y >= 0, restitution = 0 }
+scene rests { start y = 0, x' = 0.3; span 5; use ground; monitor lift 1e-12, level 1e-12 }
+scene drops { like rests; start y = 1; span 3; monitor lift 1e-7 }
+scene slides { start y = 0; span 2; use ramp; monitor along 1e-9, lift 1e-9, level 1e-9 }
+END
+check "a ball at rest on a floor" run "$TMP/ball.lag" rests --json
+check "the floor has brought 98.1 N*s" between "$(of lift work)" 98.09999999 98.10000001
+is "along the floor nothing does" conserved "$(of level is)"
+check "one that bounces, and comes to rest" run "$TMP/ball.lag" drops
+check "one that slides down a slope" run "$TMP/ball.lag" slides --json
+is "along which its momentum is a charge" conserved "$(of along is)"
+is "while neither component is" "balanced balanced" "$(of lift is) $(of level is)"
+
+# ---- the size of a charge is that of its terms: what cancels to rounding has not drifted
+cat >"$TMP/pair.lag" <<'END'
+model pair
+coord a, b
+param m1 = 1 > 0, m2 = 3 > 0
+kinetic = m1/2*a'^2 + m2/2*b'^2
+potential = (a - b)^2/2
+symmetry boost(s): a -> a + s*t, b -> b + s*t
+scene s { start a = 0.3, b = -0.1; span 1e-3; method rk4(step=1e-5); monitor boost 1e-14 }
+END
+check "two bodies about their centre of mass" run "$TMP/pair.lag" --json
+is "what changes is rounding" rounding "$(of boost trend)"
+
+# ---- the state at the end, within a step, is a part of the run
+cat >"$TMP/end.lag" <<'END'
+model end
+coord x, y
+kinetic = (x'^2 + y'^2)/2
+potential = x^2 + y^2
+symmetry spin(s): x -> x*cos(s) - y*sin(s), y -> x*sin(s) + y*cos(s)
+scene s { start x = 1, y' = 1; span 4; method dop853; tolerance 1e-9; monitor spin 2e-10 }
+END
+run "$TMP/end.lag"
+is "monitors see it" 3 $?
+drift=$(sed -n 's/^spin drift: \([^ ]*\) .*/\1/p' "$TMP/out")
+check "with the drift that the report has" grep -q "^monitor spin: drift $drift, limit 2e-10" "$TMP/out"
+
 # ---- monitors: of charges as of the energy
 run $planets quiet --method rk4 --step 0.1
 is "what drifts past its limit ends the run" 3 $?

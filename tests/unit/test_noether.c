@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -150,6 +151,26 @@ static void constrained(void **state) {
          INVARIANT);
 }
 
+/* A closed contact pushes: with closed, which is 0 or 1, times lambda along the change of its gap; also where it is the only constraint, and
+ * beside one that holds. */
+static void contacts(void **state) {
+  (void)state;
+#define BALL "model b\ncoord x, y\nparam m = 2 > 0, g = 9.81 > 0\nlagrangian = m/2*(x'^2 + y'^2) - m*g*y\n"
+  Proof p = prove_model(BALL "contact floor: y >= 0, restitution = 0.5\nobserve xi_y = 1\nobserve F = -m*g*t\n");
+  assert_int_equal(p.n.is, INVARIANT_UP_TO_F);
+  assert_false(p.n.by_value);
+  assert_string_equal(text_of(p.e, p.n.power), "floor.closed*lambda(floor)");
+  arena_free(p.arena);
+  p = prove_model(BALL "contact slope: x + y >= 0, restitution = 0\nobserve xi_x = 1\nobserve xi_y = -1\nobserve F = m*g*t\n");
+  assert_false(p.n.by_value);
+  assert_true(expr_is_zero(p.e->g, p.n.power));
+  arena_free(p.arena);
+  p = prove_model(BALL "constraint rail: y = x/2\ncontact wall: x >= 0, restitution = 0\nobserve xi_x = 2\nobserve xi_y = 1\n");
+  assert_int_equal(p.n.broken, 0);
+  assert_string_equal(text_of(p.e, p.n.power), "2*wall.closed*lambda(wall)");
+  arena_free(p.arena);
+}
+
 /* L = theta q' - H: rotations of the plane for vortices. */
 static void first_order(void **state) {
   (void)state;
@@ -158,9 +179,25 @@ static void first_order(void **state) {
          INVARIANT);
 }
 
+/* By hand: with H = r^4/4 and Q_x = -a x', x' = -r^2 y and y' = r^2 x - a r^2 y; so (r^2/2)' = -a r^2 y^2, H' = r^2 (r^2/2)'. */
+static void first_order_forced(void **state) {
+  (void)state;
+#define EDDY "model v\ncoord x, y\nparam a = 0.7\nlagrangian = (x*y' - y*x')/2 - (x^2 + y^2)^2/4\n"
+  static const char *const drags[] = {EDDY "force x = -a*x'\n", EDDY "dissipation = a/2*x'^2\n"};
+  for (int i = 0; i < 2; i++) {
+    char lag[1000];
+    snprintf(lag, sizeof lag, "%sobserve xi_x = -y\nobserve xi_y = x\nobserve P = -a*(x^2 + y^2)*y^2\n", drags[i]);
+    proves(lag, INVARIANT);
+    snprintf(lag, sizeof lag, "%sobserve tau = -1\nobserve P = -a*(x^2 + y^2)^2*y^2\n", drags[i]);
+    proves(lag, INVARIANT);
+  }
+  proves(EDDY "force x = -a*x\nobserve xi_x = -y\nobserve xi_y = x\nobserve P = a*x*y\n", INVARIANT);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(kepler),  cmocka_unit_test(boosts),   cmocka_unit_test(oscillator),
                                      cmocka_unit_test(gauges),  cmocka_unit_test(scaling),  cmocka_unit_test(balances),
-                                     cmocka_unit_test(constrained), cmocka_unit_test(first_order)};
+                                     cmocka_unit_test(constrained), cmocka_unit_test(first_order),
+                                     cmocka_unit_test(first_order_forced), cmocka_unit_test(contacts)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -192,6 +192,43 @@ static void monitors_watch_balances(void **state)
   }
 }
 
+/* The state that the caller gets lies within a step: what it has drifted counts, against a size that counts it, too. Here the charge is
+ * q, which grows as sin t from 0: in rk4's only step, of 1, it ends at sin 1/2 to the method's error, which is its whole scale as well. */
+static int swing_value(ARGS, double *out, UNUSED double *w)
+{
+  out[0] = q[0];
+  out[1] = fabs(q[0]);
+  return 0;
+}
+
+static void swing_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = q[1] = v[1] = 0;
+  v[0] = 1;
+}
+
+static void the_end_within_a_step_is_watched(void **state)
+{
+  static const lag_charge of[] = {{"energy", "", LAG_CONSERVED}, {"q", "", LAG_CONSERVED}};
+  static const lag_charges charges = {.n = 2, .of = of, .values = swing_value};
+  static const lag_monitor monitors[] = {{"q", -2, 0.9, 0}};
+  lag_model model = damped_model;
+  lag_scene scene = watched;
+  (void)state;
+  model.charges = &charges;
+  scene.model = &model;
+  scene.start = swing_start;
+  scene.monitors = monitors;
+  lag_sim *s = sim(&scene, &lag_rk4, 0, 1, 0);
+  assert_int_equal(lag_sim_set(s, "c", 1e-9), LAG_OK);
+  assert_int_equal(lag_sim_advance(s, 0.5), LAG_OK);
+  assert_close(charge(s, 1).now, sin(0.5), 1e-2);
+  assert_close(charge(s, 1).drift, 1, 0);
+  assert_close(lag_sim_monitor_drift(s, 0), 1, 0);
+  assert_int_equal(lag_sim_watch(s), LAG_EMONITOR);
+  lag_sim_free(s);
+}
+
 static void saved_balances_go_on(void **state)
 {
   lag_sim *whole = sim(&damped, &lag_dop853, 1e-9, 0, 1), *first = sim(&damped, &lag_dop853, 1e-9, 0, 1), *second = sim(&damped, &lag_dop853, 1e-9, 0, 0);
@@ -291,6 +328,7 @@ int main(void)
       cmocka_unit_test(balances_are_of_the_order_of_the_method),
       cmocka_unit_test(a_formula_that_is_replaced_ends_the_balance),
       cmocka_unit_test(monitors_watch_balances),
+      cmocka_unit_test(the_end_within_a_step_is_watched),
       cmocka_unit_test(saved_balances_go_on),
       cmocka_unit_test(symplectic_methods_oscillate),
       cmocka_unit_test(others_grow),
