@@ -135,6 +135,7 @@ int main(void) {
         fill(q, m->nq, lane, scale);
         fill(v, m->nq, lane, 1);
         fill(z, m->nz, lane, 1);
+        fill(u + m->nu, s->nexact, lane, 1); /* closed forms, as observe has them */
         for (int k = 0; k < m->np; k++) put(&p[k], lane, get(&p[k], lane) * (1 + next() / 16));
       }
       evaluate(s);
