@@ -88,7 +88,7 @@ differences() {
   "$LAGC" build tests/exec/models/jumps.lag --method taylor --with linear -o "$TMP/jumps" && "$TMP/jumps" --tangent --tol 1e-14 --json >"$TMP/json" &&
     awk -v sim="$TMP/jumps" 'function end(name, x, i, line, out, n) {
         command = sim " --tol 1e-14 --json \"" name "=" sprintf("%.17g", x) "\""
-        command | getline line; close(command); line = substr(line, index(line, "\"final\""))
+        command | getline line; close(command); line = substr(line, index(line, "\"final\": {"))
         n = split(line, out, /[:,]/); for (i = 1; i <= 6; i++) { sub(/[^-+.e0-9]*/, "", out[2*i + 1]); y[i] = out[2*i + 1] + 0 }; return n > 13 }
       { $0 = substr($0, index($0, "\"tangent\"")); n = split($0, J, /[^-+.e0-9]+/); for (i = 1; i <= n; i++) if (J[i] ~ /^-?[0-9.]+/) D[++m] = J[i] + 0 }
       END { split("x y x\047 y\047 z s", name, " "); split("1 0.3 0.2 0 0.1 0", start, " "); h = 1e-3
