@@ -1,5 +1,5 @@
 /* The stages and the error of a step, for a tableau that the compiler knows: dop853.c and rk45.c include this text and say
- * EMBEDDED_TRIAL. Each sum over stages then is a straight line without columns of zeros.
+ * EMBEDDED_TRIAL. Each sum over stages then is a straight line without columns of zeros, over pairs of components.
  * Holds: whatever n is, a component is summed in one order, so states do not depend on what stands beside them. */
 #ifndef LAG_METHODS_EMBEDDED_TRIAL_H
 #define LAG_METHODS_EMBEDDED_TRIAL_H
@@ -22,58 +22,34 @@ LAG_HERE EmbeddedShape embedded_shape(const lag_problem *pb)
   return as;
 }
 
-/* Numbers side by side, where the compiler has such types; elsewhere one by one. Not fours: they would hold rates beside coordinates, and
- * the coordinates of a stage, whose sines are most of its work, would wait for the newest rates. */
-#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE)
-typedef double embedded_part __attribute__((vector_size(16), aligned(8), may_alias));
-#else
-typedef double embedded_part;
-#endif
-enum { EMBEDDED_WIDTH = sizeof(embedded_part) / sizeof(double) };
+typedef struct Pair2 {
+  double a, b;
+} Pair2;
 
-LAG_HERE embedded_part embedded_at(const double *x)
+/* Two numbers that a model has just stored, one by one: processors hand on what was just stored only to loads of the same size, so
+ * they are loaded one by one, too. */
+LAG_HERE Pair2 embedded_newest(const volatile double *k)
 {
-  return *(const embedded_part *)(const void *)x;
+  Pair2 s = {k[0], k[1]};
+
+  return s;
 }
 
-LAG_HERE void embedded_set(double *x, embedded_part s)
-{
-  *(embedded_part *)(void *)x = s;
-}
-
-/* What a model has just stored, number by number: processors hand on what was just stored only to loads of the same size, so it is loaded
- * so, too. */
-LAG_HERE embedded_part embedded_newest(const volatile double *k)
-{
-#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE)
-  return (embedded_part){k[0], k[1]};
-#else
-  return k[0];
-#endif
-}
-
-#define EMBEDDED_TERM(j)                          \
-  if (j < count && coef[j] != 0.0) {              \
-    s += coef[j] * embedded_at(k + (j) * row);    \
+#define EMBEDDED_TERM(j)                  \
+  if (j < count && coef[j] != 0.0) {      \
+    s.a += coef[j] * k[(j) * row];        \
+    s.b += coef[j] * k[(j) * row + 1];    \
   }
 
-/* sum_j coef[j] k_j over j < count of the components of a part; coef[0] is not 0. */
-LAG_HERE embedded_part embedded_sum(const double *coef, int count, const double *k, int row)
+/* sum_j coef[j] k_j over j < count of two components; coef[0] is not 0. */
+LAG_HERE Pair2 embedded_sum(const double *coef, int count, const double *k, int row)
 {
-  embedded_part s = coef[0] * embedded_at(k);
+  Pair2 s = {coef[0] * k[0], coef[0] * k[1]};
 
   EMBEDDED_TERM(1) EMBEDDED_TERM(2) EMBEDDED_TERM(3) EMBEDDED_TERM(4) EMBEDDED_TERM(5) EMBEDDED_TERM(6) EMBEDDED_TERM(7)
   EMBEDDED_TERM(8) EMBEDDED_TERM(9) EMBEDDED_TERM(10) EMBEDDED_TERM(11) EMBEDDED_TERM(12) EMBEDDED_TERM(13)
   EMBEDDED_TERM(14) EMBEDDED_TERM(15)
   return s;
-}
-
-/* The same into a row. */
-LAG_HERE void embedded_combine(const double *coef, int count, EmbeddedShape as, const double *k, double *out)
-{
-  for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
-    embedded_set(out + i, embedded_sum(coef, count, k + i, as.row));
-  }
 }
 
 /* f(t, y) into k. > 0: a smaller step may help. */
@@ -94,12 +70,16 @@ LAG_HERE int embedded_stage(const lag_tableau *tab, lag_problem *pb, EmbeddedSha
   int row = as.row;
   double newest = dt * tab->a[s][s - 1];
 
-  for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
-    embedded_part y = embedded_at(y0 + i);
+  for (int i = 0; i < as.n; i += 2) {
+    const double *at = k + i;
+    Pair2 y = {y0[i], y0[i + 1]}, last = embedded_newest(at + (s - 1) * row);
     if (s > 1) {
-      y += dt * embedded_sum(tab->a[s], s - 1, k + i, row);
+      Pair2 sum = embedded_sum(tab->a[s], s - 1, at, row);
+      y.a += dt * sum.a;
+      y.b += dt * sum.b;
     }
-    embedded_set(ys + i, y + newest * embedded_newest(k + i + (s - 1) * row));
+    ys[i] = y.a + newest * last.a;
+    ys[i + 1] = y.b + newest * last.b;
   }
   return embedded_call(pb, as.nq, t0 + tab->c[s] * dt, ys, k + s * row);
 }
@@ -112,14 +92,15 @@ LAG_HERE void embedded_result(const lag_tableau *tab, Embedded *w, EmbeddedShape
   const double *comp = w->x + EMBEDDED_COMP * row, *y0 = w->x + EMBEDDED_Y0 * row, *k = w->x + EMBEDDED_K1 * row;
   double *comp1 = w->x + EMBEDDED_COMP1 * row, *y1 = w->x + EMBEDDED_Y1 * row;
 
-  for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
-    embedded_part sum = embedded_sum(tab->a[last], last - 1, k + i, row) + newest * embedded_newest(k + i + (last - 1) * row);
-    embedded_set(y1 + i, dt * sum);
-    for (int j = i; j < i + EMBEDDED_WIDTH; j++) {
-      double lost = comp[j];
-      y1[j] = lag_sum(y0[j], y1[j], &lost);
-      comp1[j] = lost;
-    }
+  for (int i = 0; i < as.n; i += 2) {
+    Pair2 sum = embedded_sum(tab->a[last], last - 1, k + i, row), late = embedded_newest(k + i + (last - 1) * row);
+    Pair2 c = {comp[i], comp[i + 1]};
+    sum.a += newest * late.a;
+    sum.b += newest * late.b;
+    y1[i] = lag_sum(y0[i], dt * sum.a, &c.a);
+    y1[i + 1] = lag_sum(y0[i + 1], dt * sum.b, &c.b);
+    comp1[i] = c.a;
+    comp1[i + 1] = c.b;
   }
 }
 
@@ -138,16 +119,13 @@ LAG_HERE double embedded_error(const lag_tableau *tab, int late, Embedded *w, co
   const double *y0 = w->x + EMBEDDED_Y0 * row, *y1 = w->x + EMBEDDED_Y1 * row, *k = w->x + EMBEDDED_K1 * row;
   double fine = 0, coarse = 0;
 
-  for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
-    double r[EMBEDDED_WIDTH], e[EMBEDDED_WIDTH], e3[EMBEDDED_WIDTH];
-    embedded_set(e, embedded_sum(tab->e, tab->stages - late, k + i, row));
+  for (int i = 0; i < as.n; i += 2) {
+    Pair2 r = {1 / embedded_scale(w, pb, y0[i], y1[i]), 1 / embedded_scale(w, pb, y0[i + 1], y1[i + 1])};
+    Pair2 e = embedded_sum(tab->e, tab->stages - late, k + i, row);
+    fine += e.a * r.a * (e.a * r.a) + e.b * r.b * (e.b * r.b);
     if (late) {
-      embedded_set(e3, embedded_sum(tab->e3, tab->stages - 1, k + i, row));
-    }
-    for (int j = 0; j < EMBEDDED_WIDTH; j++) {
-      r[j] = 1 / embedded_scale(w, pb, y0[i + j], y1[i + j]);
-      fine += e[j] * r[j] * (e[j] * r[j]);
-      coarse += late ? e3[j] * r[j] * (e3[j] * r[j]) : 0;
+      Pair2 e3 = embedded_sum(tab->e3, tab->stages - 1, k + i, row);
+      coarse += e3.a * r.a * (e3.a * r.a) + e3.b * r.b * (e3.b * r.b);
     }
   }
   fine *= dt * dt * w->per;
