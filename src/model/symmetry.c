@@ -110,7 +110,9 @@ static long double quotient(const Mapping *p, Expr to, long double h, long doubl
  * s^(3/2) there are none below 0, and of sqrt(s) the rate is not finite. */
 static int has_rate(const Mapping *p, Expr to, Expr rate) {
   enum { STATES = 6, TRIES = 64 }; /* of some maps, as x + s*sqrt(k), random parameters make nothing */
-  const long double coarse = 1e-3L, fine = sqrtl(LDBL_EPSILON), rounding = 100 * LDBL_EPSILON / fine;
+  volatile long double one = 1; /* valgrind reckons long doubles as doubles */
+  const long double epsilon = one + LDBL_EPSILON > one ? LDBL_EPSILON : DBL_EPSILON;
+  const long double coarse = 1e-3L, fine = sqrtl(epsilon), rounding = 100 * epsilon / fine;
   ExprGraph *g = p->b->g;
   long double *symbols = ARENA_ARRAY(p->b->arena, long double, expr_symbol_count(g) + 1), bound;
   int seen = 0;
