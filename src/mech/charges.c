@@ -169,7 +169,8 @@ static const char *place_text(const Eqns *e, const Symmetry *y) {
 void charges_print(const Eqns *e, Name effect, StrBuf *out) {
   for (uint32_t i = 1; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
-    const char *proved = c->proof.by_value ? "holds on the constraints, in numbers" : "proved";
+    const char *how = c->proof.by_value ? "holds on the constraints, in numbers" : "proved";
+    const char *proved = c->proof.jumps ? arena_printf(e->m->arena, "%s%s between jumps", how, c->proof.by_value ? "," : "") : how;
     if (c->of->effect != effect) continue;
     sb_printf(out, "%s: symmetry %s: ", place_text(e, c->of), c->name);
     if (!holds(c)) sb_puts(out, c->proof.is == INVARIANCE_NOT_DECIDED ? "not decided" : "false");
@@ -183,8 +184,8 @@ void charges_print(const Eqns *e, Name effect, StrBuf *out) {
 void charges_show_broken(const Eqns *e, StrBuf *out) {
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
-    if ((!c->proof.power_unknown && expr_is_zero(e->g, c->proof.power)) || (!c->of && e->m->symmetries.n == 0)) continue;
+    if ((!c->proof.power_unknown && !c->proof.jumps && expr_is_zero(e->g, c->proof.power)) || (!c->of && e->m->symmetries.n == 0)) continue;
     if (c->proof.power_unknown) sb_printf(out, "  d(%s)/dt: L depends on an input whose rate of change is not known\n", c->name);
-    else sb_printf(out, "  d(%s)/dt = %s\n", c->name, text_of(e, c->proof.power));
+    else sb_printf(out, "  d(%s)/dt = %s%s\n", c->name, text_of(e, c->proof.power), c->proof.jumps ? " between jumps of L" : "");
   }
 }

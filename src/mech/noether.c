@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "mech/discontinuity.h"
 #include "mech/sizes.h"
 #include "mech/states.h"
 #include "sym/diff.h"
@@ -89,17 +90,21 @@ static Expr readable(const Work *w, Expr x) {
 
 /* --- delta L --- */
 
-/* delta of a term of L. */
-static Expr delta(const Work *w, Expr term) {
-  Expr *seed = no_seed(w), moved;
+/* What the generator makes of x, to first order. */
+static Expr moved_by(const Work *w, Expr x) {
+  Expr *seed = no_seed(w);
   for (uint32_t i = 0; i < w->n; i++) {
     Expr slower = expr_mul(w->g, node(w, w->v[i]), w->Dtau);
     seed[w->q[i]] = w->xi[i];
     seed[w->v[i]] = expr_sub(w->g, w->Dxi[i], slower);
   }
   seed[w->m->time] = w->tau;
-  moved = tangent(w, term, seed, "_delta");
-  Expr stretched = expr_mul(w->g, term, w->Dtau);
+  return tangent(w, x, seed, "_delta");
+}
+
+/* delta of a term of L. */
+static Expr delta(const Work *w, Expr term) {
+  Expr moved = moved_by(w, term), stretched = expr_mul(w->g, term, w->Dtau);
   return expr_add(w->g, moved, stretched);
 }
 
@@ -346,6 +351,19 @@ static Expr power_of_forces(const Work *w) {
   return dot(w, w->e->Q, along, w->n);
 }
 
+/* Whether the places where L jumps do not stay where they are. */
+static int moves_jumps(const Work *w) {
+  const long double still = 1e-7L; /* states are on such a place to 1e-19 of their size, slopes are known to 1e-6 */
+  ExprJumps all = discontinuities_of(w->e, w->m->lagrangian);
+  for (uint32_t i = 0; i < all.n; i++) {
+    const ExprJump *jump = &all.at[i];
+    Expr change = moved_by(w, jump->side);
+    long double bound, value = prove_value(w->g, change, jump->symbols, NULL, &bound);
+    if (!(fabsl(value) <= still * fabsl(jump->slope))) return 1;
+  }
+  return 0;
+}
+
 /* The balance of the charge, and what constraints have to do with it. */
 static void put_power(Work *w, Noether *to, Expr remainder) {
   ExprGraph *g = w->g;
@@ -357,6 +375,11 @@ static void put_power(Work *w, Noether *to, Expr remainder) {
   to->by_value = w->by_value;
 }
 
+int noether_moves_jumps(const Eqns *e, const Generator *by) {
+  Work w = begin(e, by);
+  return moves_jumps(&w);
+}
+
 Noether noether_prove(const Eqns *e, const Generator *by) {
   Work w = begin(e, by);
   Noether out;
@@ -364,6 +387,7 @@ Noether noether_prove(const Eqns *e, const Generator *by) {
   put_power(&w, &out, out.remainder);
   out.charge = charge_of(&w, out.F);
   out.scale = scale_of(&w, out.F);
+  out.jumps = discontinuities_of(e, out.charge).n > 0 || moves_jumps(&w);
   return out;
 }
 
@@ -372,5 +396,6 @@ Noether noether_energy(const Eqns *e) {
   Expr zero = expr_int(w.g, 0), drift = expr_diff(w.g, w.m->lagrangian, w.m->time);
   Noether out = {.is = INVARIANT, .F = zero, .remainder = zero, .charge = e->energy, .scale = e->energy_scale};
   put_power(&w, &out, expr_neg(w.g, drift));
+  out.jumps = e->energy_jumps;
   return out;
 }

@@ -36,6 +36,7 @@ typedef struct {
   Expr by_constraints; /* the part of the power that constraints have, lambda^T (A xi + b tau); the number 0: none */
   uint32_t broken; /* the first holonomic constraint, from 1, no contact, that the generator does not keep; 0: none */
   Expr breaks;     /* what it does to that one, A xi + c_t tau */
+  int jumps;       /* what is said holds between jumps of L only: the charge jumps, too, or L is not invariant where it jumps */
   int by_formulas; /* the power holds while inputs follow their formulas */
   int power_unknown; /* L depends on an input whose rate of change is not known, and the generator moves time: power is not dQ/dt */
 } Noether;
@@ -52,6 +53,9 @@ int noether_is_contact(const Model *m, const Constraint *k);
 
 /* Needs a Lagrangian. */
 Noether noether_prove(const Eqns *e, const Generator *by);
+
+/* Whether the places where L jumps do not stay where they are: then delta L has more there than derivatives of its branches say. */
+int noether_moves_jumps(const Eqns *e, const Generator *by);
 
 /* The energy as the charge of t -> t - s, F = 0: the charge is e->energy, the power that of forces, of moving constraints, and of what
  * depends on time. Whether it is conserved is e->conserves_energy. */

@@ -1,9 +1,19 @@
 #include "mech/noether_report.h"
 
 #include "mech/charges.h"
+#include "mech/discontinuity.h"
 #include "sym/prove.h"
 
 /* --- cyclic coordinates --- */
+
+/* x_i -> x_i + s */
+static const Generator *shift(const Eqns *e, uint32_t i) {
+  Expr *xi = ARENA_ARRAY(e->m->arena, Expr, e->n);
+  Generator *by = ARENA_NEW(e->m->arena, Generator);
+  xi[i] = expr_int(e->g, 1);
+  by->xi = xi;
+  return by;
+}
 
 Indices noether_cyclic(const Eqns *e) {
   enum { PROVE_MOST = 20 }; /* past them, only those that do not stand in the text of L */
@@ -11,7 +21,7 @@ Indices noether_cyclic(const Eqns *e) {
   for (uint32_t i = 0; i < e->n; i++) {
     int absent = expr_is_zero(e->g, e->dLdq[i]);
     if (!absent && e->n <= PROVE_MOST) absent = prove_zero(e->g, e->dLdq[i], NULL) == PROVED_ZERO;
-    if (absent) vec_push(e->m->arena, &all, i);
+    if (absent && !noether_moves_jumps(e, shift(e, i))) vec_push(e->m->arena, &all, i);
   }
   return all;
 }
@@ -26,7 +36,9 @@ void show_cyclic(const Eqns *e, StrBuf *out) {
   Indices all = noether_cyclic(e);
   for (uint32_t k = 0; k < all.n; k++) {
     Name x = e->m->coords.at[all.at[k]].name;
-    sb_printf(out, "cyclic coordinate: %s; L does not contain it, and p_%s is %s\n", x, x, is_pushed(e, all.at[k]) ? "changed by forces and constraints alone" : "conserved");
+    int pushed = is_pushed(e, all.at[k]), jumps = discontinuities_of(e, noether_momenta(e)[all.at[k]]).n > 0;
+    sb_printf(out, "cyclic coordinate: %s; L does not contain it, and p_%s is %s%s\n", x, x, pushed ? "changed by forces and constraints alone" : "conserved",
+              jumps ? " between jumps" : "");
   }
 }
 

@@ -26,7 +26,7 @@ static void symmetry(Page *p, uint32_t k) {
   const FoundSymmetry *s = &p->r->found.all.at[k];
   int moves = !s->is.power_unknown && !expr_is_zero(t->g, s->is.power);
   Name declared = noether_declared(p->r, k);
-  text_heading(t, arena_printf(a, "Q%u: %s%s%s", k + 1, s->name, declared ? "; declared as " : "", declared ? declared : ""));
+  text_heading(t, arena_printf(a, "Q%u: %s%s%s%s", k + 1, s->name, declared ? "; declared as " : "", declared ? declared : "", s->is.jumps ? "; between jumps of L only" : ""));
   for (uint32_t i = 0; i < noether_coordinates(t->e); i++) put_delta(p, expr_symbol(t->g, noether_coordinate(t->e, i))->name, s->by.xi[i]);
   put_delta(p, "t", s->by.tau);
   if (!expr_is_zero(t->g, s->is.F)) text_named(t, "F", "F", s->is.F, 0);
@@ -34,6 +34,12 @@ static void symmetry(Page *p, uint32_t k) {
   if (moves) text_named(t, arena_printf(a, "dQ%u/dt", k + 1), arena_printf(a, "\\dot{Q}_{%u}", k + 1), s->is.power, 1);
   text_end(t);
   if (s->is.power_unknown) say(p, "  not conserved: L depends on an input whose rate of change is not known");
+}
+
+static int some_jump(const FoundSymmetries *f) {
+  int some = 0;
+  for (uint32_t k = 0; k < f->all.n; k++) some |= f->all.at[k].is.jumps;
+  return some;
 }
 
 static void symmetries(Page *p) {
@@ -45,7 +51,8 @@ static void symmetries(Page *p) {
     say(p, arena_printf(a, "not searched: %s", f->note));
     return;
   }
-  say(p, arena_printf(a, "found: %u symmetr%s, each proved; Q = p.delta q - E delta t - F", f->all.n, f->all.n == 1 ? "y" : "ies"));
+  say(p, f->all.n ? arena_printf(a, "found: %u symmetr%s, each proved%s; Q = p.delta q - E delta t - F", f->all.n, f->all.n == 1 ? "y" : "ies", some_jump(f) ? ", some between jumps of L only" : "")
+                  : "found: none");
   if (f->unproved)
     say(p, arena_printf(a, "%u more direction%s of the solution space not written in closed form, or not proved: not listed", f->unproved, plural(f->unproved)));
   if (f->note) say(p, f->note);
@@ -141,16 +148,16 @@ static void algebra(Page *p) {
 
 /* --- effects --- */
 
-static int is_broken(const EffectVerdict *v, const Noether *is) {
+static int is_broken(const EffectVerdict *v, const Noether *is, const Noether *before) {
   if (!is->charge) return 1;
-  return is->power_unknown || !expr_is_zero(v->e->g, is->power) || (is->is != INVARIANT && is->is != INVARIANT_UP_TO_F);
+  return is->power_unknown || (is->jumps && !before->jumps) || !expr_is_zero(v->e->g, is->power) || (is->is != INVARIANT && is->is != INVARIANT_UP_TO_F);
 }
 
 static void effect(Page *p, const EffectVerdict *v) {
   Text of = {.e = v->e, .g = v->e->g, .style = p->text.style, .out = p->text.out};
   Arena *a = v->e->m->arena;
   uint32_t n = p->r->found.all.n, broken = 0, shown = 0;
-  for (uint32_t k = 0; k < n; k++) broken += (uint32_t)is_broken(v, &v->is[k]);
+  for (uint32_t k = 0; k < n; k++) broken += (uint32_t)is_broken(v, &v->is[k], &p->r->found.all.at[k].is);
   if (!broken) {
     sb_putc(p->text.out, '\n');
     say(p, arena_printf(a, "effect %s breaks none of them", v->effect));
@@ -159,8 +166,9 @@ static void effect(Page *p, const EffectVerdict *v) {
   text_heading(&of, arena_printf(a, "effect %s breaks %u of %u", v->effect, broken, n));
   for (uint32_t k = 0; k < n; k++) {
     const Noether *is = &v->is[k];
-    if (!is_broken(v, is)) continue;
+    if (!is_broken(v, is, &p->r->found.all.at[k].is)) continue;
     int last = ++shown == broken;
+    if (is->charge && is->jumps) say(p, arena_printf(a, "  of Q%u between jumps of L only:", k + 1));
     if (is->charge && !is->power_unknown) text_named(&of, arena_printf(a, "dQ%u/dt", k + 1), arena_printf(a, "\\dot{Q}_{%u}", k + 1), is->power, last);
     else sb_printf(of.out, text_latex(&of) ? "  \\dot{Q}_{%u} &\\text{ is not known}\n" : "  dQ%u/dt is not known\n", k + 1);
   }

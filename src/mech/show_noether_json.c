@@ -34,6 +34,7 @@ static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
   put_expr(out, e->g, s->is.charge);
   sb_puts(out, ", \"power\": ");
   put_power(out, e->g, &s->is);
+  if (s->is.jumps) sb_puts(out, ", \"between_jumps\": true");
   if (declared) sb_printf(out, ", \"declared\": \"%s\"", declared);
   sb_putc(out, '}');
 }
