@@ -38,6 +38,10 @@ check "a Hamiltonian's operations" refuses 2 "text or latex" derive models/keple
 "$LAGC" noether models/kepler.lag >"$TMP/kepler" 2>&1
 check "to a file" sh -c '"$0" noether models/kepler.lag -o "$1" && cmp "$1" "$2"' "$LAGC" "$TMP/file" "$TMP/kepler"
 
+# ---- nothing is found ----
+check "where there is none" says '^found: none$' noether models/kapitza.lag
+check "no symmetry is called proved" is_silent 'proved' noether models/kapitza.lag
+
 # ---- scenes and effects ----
 check "without a scene effects are off, and each is judged alone" says "effect drag breaks 8 of 8" noether models/projectile.lag
 check "a scene has its own" says "scene air, with wind_resistance" noether models/projectile.lag air

@@ -231,22 +231,20 @@ rotated() { # rotated XX XY YX YY: signs of the four terms
 }
 check "as in the book it is proved" rotated '' - '' +
 check "and its inverse" rotated '' + - +
-for signs in "+,+,,+" ",-,-,+" ; do
+# signs XX,XY,YX,YY, and what is said of them
+refused() {
   old=$IFS IFS=,
   # shellcheck disable=SC2086 # a list
-  set -- $signs
+  set -- $1 "$2"
   IFS=$old
   rotated "$1" "$2" "$3" "$4"
-  is "signs $signs: refused" 1 $?
-  check "with what is left of delta L" grep -q 'what is left of delta L is .*x.*; it would be 0 if what it does to `x` or `y` had the other sign' "$TMP/out"
+  is "signs $1,$2,$3,$4: refused" 1 $?
+  check "with the reason" grep -q "$5" "$TMP/out"
+}
+for signs in "+,+,,+" ",-,-,+"; do
+  refused "$signs" 'what is left of delta L is .*x.*; it would be 0 if what it does to `x` or `y` had the other sign'
 done
 for signs in "-,-,,+" ",-,,-"; do
-  old=$IFS IFS=,
-  # shellcheck disable=SC2086 # a list
-  set -- $signs
-  IFS=$old
-  rotated "$1" "$2" "$3" "$4"
-  is "signs $signs: refused" 1 $?
-  check "as it is not the identity" grep -q 'at s = 0 the symmetry `turn` maps `[xy]` to `-[xy]`' "$TMP/out"
+  refused "$signs" 'at s = 0 the symmetry `turn` maps `[xy]` to `-[xy]`'
 done
 tap_end
