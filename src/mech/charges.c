@@ -139,6 +139,10 @@ static void report_false(const Eqns *e, const Charge *c) {
 static void report_undecided(const Eqns *e, const Charge *c) {
   Diags *d = e->m->diags;
   diag_error(d, c->of->span, "the symmetry `%s` is not decided", c->name);
+  if (c->proof.unreached) {
+    diag_help(d, "it holds where states were found, but none were on a part of the constraints, %s = 0; leave that part out, if it is not meant", text_of(e, c->proof.unreached));
+    return;
+  }
   diag_help(d, "neither an F(q, t) with dF/dt = %s was found, nor that there is none", text_of(e, c->proof.remainder));
 }
 

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "mech/discontinuity.h"
+#include "mech/parts.h"
 #include "mech/sizes.h"
 #include "mech/states.h"
 #include "sym/diff.h"
@@ -24,6 +25,7 @@ typedef struct {
   Expr tau;
   Expr *Dxi, Dtau;  /* total time derivatives */
   int by_value;
+  Expr unreached;   /* a factor of a constraint whose zeros were not found, with which nothing is decided; 0: none */
 } Work;
 
 uint32_t noether_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
@@ -169,13 +171,34 @@ static int vanishes_by_value(const Work *w, Expr x) {
   return seen >= STATES;
 }
 
+/* The same on each part of constraints that are products; one that no state was found on leaves it open. */
+static int vanishes_on_parts(Work *w, Expr x) {
+  enum { STATES = 6, SEEDS = 64 };
+  long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
+  ConstraintParts *parts = parts_new(w->e);
+  StateSolver *solver = states_new(w->e);
+  for (uint32_t k = 0; k < parts_count(parts); k++) {
+    uint32_t seen = 0;
+    for (uint32_t seed = 1; seed <= SEEDS && seen < STATES; seed++) {
+      prove_state(w->g, seed, symbols);
+      spread(w, seed, symbols);
+      if (!parts_go(parts, k, symbols) || !states_complete(solver, symbols) || !parts_is_on(parts, k, symbols)) continue;
+      int small = is_small(w, x, symbols);
+      if (!small) return 0;
+      seen += small > 0;
+    }
+    if (seen < STATES) w->unreached = parts_factor(parts, k);
+  }
+  return 1;
+}
+
 /* Whether a constraint holds all the time. */
 static int is_constrained(const Work *w) { return w->e->constraints.n > w->m->contacts.n; }
 
 /* Whether x is zero where the constraints hold, contacts not among them. */
 static Verdict zero_on_constraints(Work *w, Expr x) {
   Verdict v = prove_zero(w->g, x, NULL);
-  if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x)) return v;
+  if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x) || !vanishes_on_parts(w, x)) return v;
   w->by_value = 1;
   return PROVED_ZERO;
 }
@@ -373,6 +396,8 @@ static void put_power(Work *w, Noether *to, Expr remainder) {
   rest = states_substitute(w->e, shorten(w, rest));
   to->power = expr_add(g, rest, to->by_constraints);
   to->by_value = w->by_value;
+  to->unreached = w->unreached;
+  if (w->unreached && (to->is == INVARIANT || to->is == INVARIANT_UP_TO_F)) to->is = INVARIANCE_NOT_DECIDED;
 }
 
 int noether_moves_jumps(const Eqns *e, const Generator *by) {

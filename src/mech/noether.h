@@ -28,6 +28,7 @@ typedef enum {
 typedef struct {
   Invariance is;
   int by_value;      /* it holds on the constraints, which is not proved but seen at random states that obey them */
+  Expr unreached;    /* or 0: nothing is decided, as no states were found where this factor of a constraint is 0 */
   Expr F;            /* 0 (the number) where none is needed; where L is not invariant, what takes off most of delta L */
   Expr remainder;    /* delta L - DF, in a short form; the number 0 where L is invariant */
   Expr charge;       /* in q, q', z, t */

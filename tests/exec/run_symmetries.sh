@@ -223,6 +223,21 @@ is "with their values and rates" "0.375 0.1 0.1, -0.00066 -0.0108 -0.0004 0" "$(
 "$LAGC" header models/pendulum.lag -o "$TMP/none.h" >/dev/null
 check "a model without symmetries has none" sh -c "! grep -q charges '$TMP/none.h'"
 
+# ---- constraints that are products hold where one factor is 0, and a symmetry keeps to each of these parts, or is none
+parts() { # parts FACTOR: a circle, or where the factor is 0
+  printf 'model parts\ncoord x, y\nlagrangian = (x%s^2 + y%s^2)/2\nconstraint c: (x^2 + y^2 - 1)*(%s) = 0\nsymmetry turn(s): x -> x*cos(s) - y*sin(s), y -> x*sin(s) + y*cos(s)\nscene s { start x = 1 }\n' \
+    "'" "'" "$1" >"$TMP/parts.lag"
+  "$LAGC" check "$TMP/parts.lag" >"$TMP/out" 2>&1
+}
+says_of() { parts "$1" && false; grep -q "$2" "$TMP/out" || { cat "$TMP/out"; return 1; }; }
+check "a line near by" says_of 'x - 3' 'the symmetry .turn. does not keep to the constraint .c.'
+check "a line that no start goes to" says_of 'x - 500' 'the symmetry .turn. does not keep to the constraint .c.'
+check "another circle" parts '(x - y)^2 + 2*x*y - 4'
+check "is turned into itself" grep -q 'symmetry turn: \(proved\|holds on the constraints, in numbers\)' "$TMP/out"
+check "a part that there is none of leaves it open" says_of 'x*y + x^2 + y^2 + 1' 'but none were on a part of the constraints, 1 + x^2 + y^2 + x.y = 0'
+check "a factor that is positive by its signs is no part" parts 'x^2 + 1'
+check "and asks for nothing" grep -q 'symmetry turn: ' "$TMP/out"
+
 # ---- every sign of a rotation counts
 rotated() { # rotated XX XY YX YY: signs of the four terms
   printf 'model turn\ncoord x, y\nlagrangian = (x%s^2 + y%s^2)/2 + 1/hypot(x, y)\nsymmetry turn(s): x -> %sx*cos(s) %s y*sin(s), y -> %sx*sin(s) %s y*cos(s)\n' \
