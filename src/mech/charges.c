@@ -162,7 +162,14 @@ int charges_judge(const Eqns *e, Name effect) {
 /* "; d(spin)/dt = ..." where it is not conserved. */
 static void put_balance(const Eqns *e, const Charge *c, StrBuf *out) {
   if (c->proof.power_unknown) sb_puts(out, "; not conserved: L depends on an input whose rate of change is not known");
-  else if (!expr_is_zero(e->g, c->proof.power)) sb_printf(out, "; not conserved: d(%s)/dt = %s", c->name, text_of(e, c->proof.power));
+  else if (!expr_is_zero(e->g, c->proof.power)) sb_printf(out, "; %s: d(%s)/dt = %s", c->proof.over_time ? "without that integral" : "not conserved", c->name, text_of(e, c->proof.power));
+}
+
+/* F, with the integral that the charge is printed without. */
+static const char *gauge_text(const Eqns *e, const Noether *is) {
+  const char *F = text_of(e, is->F);
+  if (!is->over_time) return F;
+  return arena_printf(e->m->arena, "%s%sintegral of %s over t", expr_is_zero(e->g, is->F) ? "" : F, expr_is_zero(e->g, is->F) ? "" : " + the ", text_of(e, is->over_time));
 }
 
 static const char *place_text(const Eqns *e, const Symmetry *y) {
@@ -179,7 +186,7 @@ void charges_print(const Eqns *e, Name effect, StrBuf *out) {
     sb_printf(out, "%s: symmetry %s: ", place_text(e, c->of), c->name);
     if (!holds(c)) sb_puts(out, c->proof.is == INVARIANCE_NOT_DECIDED ? "not decided" : "false");
     else if (c->proof.is == INVARIANT) sb_printf(out, "%s; charge %s", proved, text_of(e, c->proof.charge));
-    else sb_printf(out, "%s up to dF/dt, F = %s; charge %s", proved, text_of(e, c->proof.F), text_of(e, c->proof.charge));
+    else sb_printf(out, "%s up to dF/dt, F = %s; charge %s", proved, gauge_text(e, &c->proof), text_of(e, c->proof.charge));
     if (holds(c)) put_balance(e, c, out);
     sb_putc(out, '\n');
   }

@@ -243,6 +243,11 @@ static Verdict is_total_derivative(const Work *w, Expr dL) {
   return all;
 }
 
+/* Whether x is a function of time alone, which is the derivative of its integral, whatever that looks like. */
+static int is_of_time(const Work *w, Expr x) {
+  return !expr_is_zero(w->g, x) && !(expr_kinds(w->g, x) & ~(1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_PARAM | 1u << SYM_CONST));
+}
+
 static void judge(Work *w, Noether *to) {
   ExprGraph *g = w->g;
   Expr zero = expr_int(g, 0), dL = delta_lagrangian(w);
@@ -256,6 +261,10 @@ static void judge(Work *w, Noether *to) {
     return;
   }
   left = simplify(g, left);
+  if (is_of_time(w, left)) {
+    *to = (Noether){.is = INVARIANT_UP_TO_F, .F = F, .remainder = left, .over_time = left, .by_constraints = zero};
+    return;
+  }
   uint32_t distinct;
   int better = expr_written_size(g, left, &distinct) < expr_written_size(g, dL, &distinct);
   to->F = better ? F : zero;

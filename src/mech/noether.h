@@ -30,7 +30,8 @@ typedef struct {
   int by_value;      /* it holds on the constraints, which is not proved but seen at random states that obey them */
   Expr unreached;    /* or 0: nothing is decided, as no states were found where this factor of a constraint is 0 */
   Expr F;            /* 0 (the number) where none is needed; where L is not invariant, what takes off most of delta L */
-  Expr remainder;    /* delta L - DF, in a short form; the number 0 where L is invariant */
+  Expr over_time;    /* or 0: F has the integral of this over t besides, which has no closed form here. The charge is without it, and this a part of the power */
+  Expr remainder;    /* delta L - DF, in a short form; over_time, or the number 0, where L is invariant */
   Expr charge;       /* in q, q', z, t */
   Expr scale;        /* sum |p_i xi_i| + |tau| (|p q'| + |L|) + |F|, which a drift of the charge is compared with */
   Expr power;        /* dQ/dt, in q, q', z, t, inputs and multipliers; the number 0: Q is conserved */

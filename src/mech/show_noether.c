@@ -30,6 +30,7 @@ static void symmetry(Page *p, uint32_t k) {
   for (uint32_t i = 0; i < noether_coordinates(t->e); i++) put_delta(p, expr_symbol(t->g, noether_coordinate(t->e, i))->name, s->by.xi[i]);
   put_delta(p, "t", s->by.tau);
   if (!expr_is_zero(t->g, s->is.F)) text_named(t, "F", "F", s->is.F, 0);
+  if (s->is.over_time) say(p, "  F has the integral over t of what stands as dQ/dt, too");
   text_named(t, arena_printf(a, "Q%u", k + 1), arena_printf(a, "Q_{%u}", k + 1), s->is.charge, !moves);
   if (moves) text_named(t, arena_printf(a, "dQ%u/dt", k + 1), arena_printf(a, "\\dot{Q}_{%u}", k + 1), s->is.power, 1);
   text_end(t);
