@@ -21,8 +21,8 @@ static void put_trend(const App *app, const lag_charge_stats *c, FILE *f)
     break;
   case LAG_TREND_OSCILLATES:
     fputs(", oscillates", f);
-    if ((m->flags & LAG_METHOD_SYMPLECTIC) && model_keeps && m->order_most == 0) {
-      fprintf(f, " (as step^%d)", m->order);
+    if ((m->flags & LAG_METHOD_SYMPLECTIC) && model_keeps) {
+      fprintf(f, " (as step^%d)", m->order_of ? m->order_of(lag_sim_options(app->sim)) : m->order);
     }
     break;
   case LAG_TREND_ROUNDING:

@@ -154,6 +154,19 @@ static int is_broken(const EffectVerdict *v, const Noether *is, const Noether *b
   return is->power_unknown || (is->jumps && !before->jumps) || !expr_is_zero(v->e->g, is->power) || (is->is != INVARIANT && is->is != INVARIANT_UP_TO_F);
 }
 
+static const char *text_in(const Eqns *e, Expr x) {
+  StrBuf b = strbuf(e->m->arena);
+  expr_print(e->g, x, PRINT_TEXT, &b);
+  return sb_text(&b);
+}
+
+/* The charge that dQ/dt is of, where the effect's L or F makes it another one than the model's. */
+static void other_charge(Page *p, const EffectVerdict *v, Text *of, uint32_t k) {
+  Arena *a = v->e->m->arena;
+  if (strcmp(text_in(p->r->e, p->r->found.all.at[k].is.charge), text_in(v->e, v->is[k].charge)) != 0)
+    text_named(of, arena_printf(a, "Q%u", k + 1), arena_printf(a, "Q_{%u}", k + 1), v->is[k].charge, 0);
+}
+
 static void effect(Page *p, const EffectVerdict *v) {
   Text of = {.e = v->e, .g = v->e->g, .style = p->text.style, .out = p->text.out};
   Arena *a = v->e->m->arena;
@@ -169,6 +182,7 @@ static void effect(Page *p, const EffectVerdict *v) {
     const Noether *is = &v->is[k];
     if (!is_broken(v, is, &p->r->found.all.at[k].is)) continue;
     int last = ++shown == broken;
+    if (is->charge) other_charge(p, v, &of, k);
     if (is->charge && is->jumps) say(p, arena_printf(a, "  of Q%u between jumps of L only:", k + 1));
     if (is->charge && !is->power_unknown) text_named(&of, arena_printf(a, "dQ%u/dt", k + 1), arena_printf(a, "\\dot{Q}_{%u}", k + 1), is->power, last);
     else sb_printf(of.out, text_latex(&of) ? "  \\dot{Q}_{%u} &\\text{ is not known}\n" : "  dQ%u/dt is not known\n", k + 1);

@@ -66,6 +66,19 @@ is "an effect with what it requires" "effect again breaks 1 of 2
   dQ2/dt = field.g*y - again.h*x" "$(verdict again)"
 is "a total derivative breaks nothing" "effect gauge breaks none of them" "$(verdict gauge)"
 
+# ---- an effect with a term of L makes another charge, of which dQ/dt is said ----
+cat >"$TMP/breathing.lag" <<'END'
+model breathing
+coord x
+param k = 2 > 0
+lagrangian = x'^2/2 - k/2*x^2
+effect field { param E = 1; potential = -E*x }
+effect air { param c = 1; force x = -c*x' }
+END
+"$LAGC" noether "$TMP/breathing.lag" >"$TMP/wider" 2>&1
+check "it is printed before" sh -c "grep -A1 '^  Q[45] = .*field.E' '$TMP/wider' | grep -q '^  dQ[45]/dt = .*field.E'"
+is "a force makes none" "" "$(verdict air | grep '^  Q')"
+
 # ---- brackets whose coefficients are not recognised ----
 cat >"$TMP/driven.lag" <<'END'
 model m

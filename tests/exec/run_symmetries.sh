@@ -43,6 +43,11 @@ bounded() { # bounded METHOD ORDER STEP: the energy oscillates; half the step, 2
 order() { between "$(awk -v a="$coarse" -v b="$fine" 'BEGIN { print log(a/b)/log(2) }')" "$(($1 - 1)).6" "$1.6"; }
 bounded verlet 2 0.02
 bounded verlet4 4 0.08
+bounded variational 2 0.02
+bounded 'variational(order=4)' 4 0.08
+bounded 'gauss(stages=2)' 4 0.08
+check "the report says so of orders that options choose" says '^energy drift: .* oscillates \(as step\^4\)$' $planets quiet --method 'gauss(stages=2)' --step 0.08
+check "and of their defaults" says '^energy drift: .* oscillates \(as step\^2\)$' $planets quiet --method variational --step 0.02
 run $planets quiet --method rk4 --step 0.01 --json
 is "of rk4 it grows" grows "$(of energy trend)"
 
