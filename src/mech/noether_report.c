@@ -1,5 +1,7 @@
 #include "mech/noether_report.h"
 
+#include <math.h>
+
 #include "mech/charges.h"
 #include "mech/discontinuity.h"
 #include "sym/prove.h"
@@ -125,4 +127,23 @@ void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with) {
     if (generator_in(with, r->e, &r->found.all.at[k].by, &same)) is[k] = noether_prove(with, &same);
   }
   vec_push(r->e->m->arena, &r->effects, ((EffectVerdict){effect, with, is}));
+}
+
+int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t k) {
+  enum { STATES = 3 };
+  const long double near = 1e-12L; /* long doubles, of values of the size of 1 */
+  const Eqns *with = v->e, *e = r->e;
+  long double *there = ARENA_ARRAY(with->m->arena, long double, expr_symbol_count(with->g) + 1), *here = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
+  for (uint32_t seed = 1; seed <= STATES; seed++) {
+    long double bound, one, other;
+    prove_state(with->g, seed, there);
+    for (SymId s = 1; s <= expr_symbol_count(e->g); s++) {
+      Expr same = symbol_in(with, expr_symbol(e->g, s));
+      if (same) here[s] = there[expr_sym_id(with->g, same)];
+    }
+    one = prove_value(e->g, r->found.all.at[k].is.charge, here, NULL, &bound);
+    other = prove_value(with->g, v->is[k].charge, there, NULL, &bound);
+    if (fabsl(one - other) > near * (1 + fabsl(one))) return 0;
+  }
+  return 1;
 }

@@ -79,6 +79,12 @@ END
 check "it is printed before" sh -c "grep -A1 '^  Q[45] = .*field.E' '$TMP/wider' | grep -q '^  dQ[45]/dt = .*field.E'"
 is "a force makes none" "" "$(verdict air | grep '^  Q')"
 
+# ---- charges have names that the model has not ----
+printf "model m\ncoord Q1, y\nlagrangian = (Q1'^2 + y'^2)/2 - (Q1^2 + y^2)^2\n" >"$TMP/names.lag"
+check "a coordinate called Q1" says "^  C2 = Q1\*y' - y\*Q1'" noether "$TMP/names.lag"
+check "in the head, too" says "; C = p.delta q - E delta t - F" noether "$TMP/names.lag"
+check "in LaTeX" says '^  C_{2} &= Q_{1}' noether "$TMP/names.lag" --format latex
+
 # ---- brackets whose coefficients are not recognised ----
 cat >"$TMP/driven.lag" <<'END'
 model m
