@@ -147,3 +147,30 @@ int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t
   }
   return 1;
 }
+
+static void add_condition(const Eqns *e, Conditions *to, Expr base) {
+  ExprSign sign = expr_sign(e->g, base);
+  int constant = !(expr_kinds(e->g, base) & ~(1u << SYM_PARAM | 1u << SYM_CONST));
+  if (!constant || sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE) return;
+  for (uint32_t i = 0; i < to->n; i++)
+    if (to->at[i] == base) return;
+  vec_push(e->m->arena, to, base);
+}
+
+Conditions noether_conditions(const NoetherReport *r, uint32_t k) {
+  const Eqns *e = r->e;
+  const FoundSymmetry *s = &r->found.all.at[k];
+  uint32_t n = noether_coordinates(e);
+  Conditions all = {0};
+  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, n + 3);
+  for (uint32_t i = 0; i < n; i++) roots[i] = s->by.xi[i];
+  roots[n] = s->by.tau, roots[n + 1] = s->is.charge, roots[n + 2] = s->is.F;
+  ExprList nodes = expr_topo(e->g, roots, n + 3);
+  for (uint32_t i = 0; i < nodes.n; i++)
+    for (uint32_t j = 0; expr_op(e->g, nodes.at[i]) == EX_PROD && j < expr_pairs(e->g, nodes.at[i], EX_PROD); j++) {
+      Num power;
+      Expr base = expr_pair(e->g, nodes.at[i], EX_PROD, j, &power);
+      if (power.den % 2 == 0) add_condition(e, &all, base);
+    }
+  return all;
+}

@@ -57,6 +57,19 @@ static void put_delta(Page *p, Name name, Expr x) {
   if (!expr_is_zero(t->g, x)) text_named(t, arena_printf(a, "delta %s", name), arena_printf(a, "\\delta %s", text_latex_name(t, name)), x, 0);
 }
 
+/* "  for k > 0" */
+static void put_conditions(Page *p, uint32_t k) {
+  Text *t = &p->text;
+  Conditions all = noether_conditions(p->r, k);
+  StrBuf b = strbuf(t->e->m->arena);
+  for (uint32_t i = 0; i < all.n; i++) {
+    sb_puts(&b, i ? ", " : "  for ");
+    expr_print(t->g, all.at[i], PRINT_TEXT, &b);
+    sb_puts(&b, " > 0");
+  }
+  if (all.n) say(p, sb_text(&b));
+}
+
 static void symmetry(Page *p, uint32_t k) {
   Text *t = &p->text;
   Arena *a = t->e->m->arena;
@@ -71,6 +84,7 @@ static void symmetry(Page *p, uint32_t k) {
   text_named(t, named(p, "", k, ""), named_latex(p, k, 0), s->is.charge, !moves);
   if (moves) text_named(t, named(p, "d", k, "/dt"), named_latex(p, k, 1), s->is.power, 1);
   text_end(t);
+  put_conditions(p, k);
   if (s->is.power_unknown) say(p, "  not conserved: L depends on an input whose rate of change is not known");
 }
 

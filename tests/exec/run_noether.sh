@@ -79,6 +79,12 @@ END
 check "it is printed before" sh -c "grep -A1 '^  Q[45] = .*field.E' '$TMP/wider' | grep -q '^  dQ[45]/dt = .*field.E'"
 is "a force makes none" "" "$(verdict air | grep '^  Q')"
 
+# ---- roots of parameters whose signs are not known ----
+printf "model m\ncoord x, y\nparam k = 2, m = 1 > 0\nlagrangian = m*(x'^2 + y'^2)/2 - k*x^2/2 - y^4\n" >"$TMP/roots.lag"
+check "what holds for some values of a parameter" says "^  for k > 0$" noether "$TMP/roots.lag"
+is "says so, once for each" 2 "$(grep -c '^  for k > 0$' "$TMP/out")"
+check "in JSON" says '"positive": \["k"\]' noether "$TMP/roots.lag" --format json
+
 # ---- charges have names that the model has not ----
 printf "model m\ncoord Q1, y\nlagrangian = (Q1'^2 + y'^2)/2 - (Q1^2 + y^2)^2\n" >"$TMP/names.lag"
 check "a coordinate called Q1" says "^  C2 = Q1\*y' - y\*Q1'" noether "$TMP/names.lag"
