@@ -19,7 +19,8 @@ typedef struct {
   ExprGraph *g;
   Arena *arena;
   uint32_t nsymbols;
-  uint32_t nterms;    /* of x, those that can jump; */
+  VEC(SymId) symbols; /* those that the source at hand and its terms are made of */
+  uint32_t nterms;    /* of x, those that jump where the source does; */
   EvalTape *tape;     /* their values, into term[] */
   Real *term;
   Real *base, *way;   /* a line: base + s way, */
@@ -32,14 +33,24 @@ typedef struct {
 
 typedef struct {
   Expr node, side;
-  int angle; /* not where side is 0, but where its cosine is */
+  int angle;     /* not where side is 0, but where its cosine is */
+  uint64_t made; /* of these symbols: two that jump at one place are made of the same */
 } Source;
 
 typedef VEC(Source) Sources;
 
+/* FNV-1a of its symbols, which come in the order of the graph. */
+static uint64_t made_of(const Search *s, Expr side) {
+  uint64_t hash = 0xcbf29ce484222325u;
+  ExprList l = expr_topo(s->g, &side, 1);
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_op(s->g, l.at[i]) == EX_SYM) hash = (hash ^ expr_sym_id(s->g, l.at[i])) * 0x100000001b3u;
+  return hash;
+}
+
 static void add(const Search *s, Sources *to, Expr node, Expr side, int angle) {
   if (!(expr_kinds(s->g, side) & varied) || to->n == MOST) return;
-  vec_push(s->arena, to, ((Source){node, side, angle}));
+  vec_push(s->arena, to, ((Source){node, side, angle, made_of(s, side)}));
 }
 
 /* Whether something that is finite can be made of what is not: atan(1/x), x/abs(x). */
@@ -78,44 +89,73 @@ static Sources sources_of(const Search *s, Expr x) {
   return all;
 }
 
-/* The terms of x that contain a source: others only add rounding. */
-static void take_terms(Search *s, const Sources *all, Expr x) {
+/* A term of x, and what its sources are made of. */
+typedef struct {
+  Expr term;
+  VEC(uint64_t) made;
+} Part;
+
+typedef VEC(Part) Parts;
+
+/* The terms of x that contain sources: others only add rounding. */
+static Parts parts_of(const Search *s, const Sources *all, Expr x) {
   ExprGraph *g = s->g;
   ExprMap nodes = expr_map(s->arena);
-  VEC(Expr) terms = {0};
-  for (uint32_t i = 0; i < all->n; i++) expr_map_set(&nodes, all->at[i].node, 1);
+  Parts parts = {0};
+  for (uint32_t i = 0; i < all->n; i++) expr_map_set(&nodes, all->at[i].node, i + 1);
   for (uint32_t i = 0; i < expr_pairs(g, x, EX_SUM); i++) {
     Num c;
-    Expr term = expr_pair(g, x, EX_SUM, i, &c);
-    ExprList l = expr_topo(g, &term, 1);
-    int has = 0;
-    for (uint32_t k = 0; k < l.n && !has; k++) has = expr_map_get(&nodes, l.at[k]) != 0;
-    if (!has) continue;
-    term = expr_scale(g, c, term);
-    vec_push(s->arena, &terms, term);
+    Part part = {.term = expr_pair(g, x, EX_SUM, i, &c)};
+    ExprList l = expr_topo(g, &part.term, 1);
+    for (uint32_t k = 0; k < l.n; k++) {
+      uint32_t source = expr_map_get(&nodes, l.at[k]);
+      if (source) vec_push(s->arena, &part.made, all->at[source - 1].made);
+    }
+    if (!part.made.n) continue;
+    part.term = expr_scale(g, c, part.term);
+    vec_push(s->arena, &parts, part);
   }
-  s->nterms = terms.n;
-  s->tape = eval_tape(g, terms.at, terms.n);
-  s->term = ARENA_ARRAY(s->arena, Real, terms.n + 1);
+  return parts;
+}
+
+/* Those that jump where the source does, and the symbols that they are made of. */
+static void take_terms(Search *s, const Parts *parts, const Source *from) {
+  ExprGraph *g = s->g;
+  VEC(Expr) roots = {0};
+  for (uint32_t i = 0; i < parts->n; i++) {
+    const Part *part = &parts->at[i];
+    uint32_t k = 0;
+    while (k < part->made.n && part->made.at[k] != from->made) k++;
+    if (k < part->made.n) vec_push(s->arena, &roots, part->term);
+  }
+  s->nterms = roots.n;
+  s->tape = eval_tape(g, roots.at, roots.n);
+  s->term = ARENA_ARRAY(s->arena, Real, roots.n + 1);
+  vec_push(s->arena, &roots, from->side);
+  ExprList l = expr_topo(g, roots.at, roots.n);
+  s->symbols.n = 0;
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_op(g, l.at[i]) == EX_SYM) vec_push(s->arena, &s->symbols, expr_sym_id(g, l.at[i]));
 }
 
 /* --- lines --- */
 
 /* Every second one goes through the origin, where all lengths and times are met: the radius of an atom, and of an orbit. */
 static void draw_line(Search *s, uint32_t seed) {
+  const Real wide = 4; /* past half a turn */
   s->from_origin = seed % 2 == 0;
-  prove_state_wide(s->g, seed, s->base);
-  prove_state(s->g, seed + 2 * LINES, s->way);
-  for (SymId k = 1; k <= s->nsymbols; k++) {
+  for (uint32_t i = 0; i < s->symbols.n; i++) {
+    SymId k = s->symbols.at[i];
     int moves = (1u << expr_symbol(s->g, k)->kind & varied) != 0;
-    if (!moves) s->way[k] = 0;
-    else if (s->from_origin) s->base[k] = 0;
+    s->base[k] = moves && s->from_origin ? 0 : prove_symbol(s->g, k, seed) * (moves ? wide : 1);
+    s->way[k] = moves ? prove_symbol(s->g, k, seed + 2 * LINES) : 0;
   }
 }
 
 /* The state at s.base + where*s.way; 0: a symbol has not its sign there. */
 static int go_to(Search *s, Real where) {
-  for (SymId k = 1; k <= s->nsymbols; k++) {
+  for (uint32_t i = 0; i < s->symbols.n; i++) {
+    SymId k = s->symbols.at[i];
     ExprSign sign = expr_symbol(s->g, k)->sign;
     Real x = s->at[k] = s->base[k] + where * s->way[k];
     if (((sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE) && x < 0) || ((sign == SIGN_NEGATIVE || sign == SIGN_NONPOSITIVE) && x > 0)) return 0;
@@ -205,9 +245,10 @@ static Real jump_at(Search *s, Real where) {
   return is;
 }
 
-static void try_source(Search *s, const Source *from) {
+static void try_source(Search *s, const Parts *parts, const Source *from) {
   EvalTape *side = eval_tape(s->g, &from->side, 1);
   uint32_t places = 0;
+  take_terms(s, parts, from);
   for (uint32_t seed = 1; seed <= LINES && places < PLACES; seed++) {
     Real where;
     draw_line(s, seed);
@@ -218,8 +259,9 @@ static void try_source(Search *s, const Source *from) {
     if (by == 0) continue;
     Real h = 1e-6L * unit_at(s, where), slope = (side_at(s, side, level, where + h) - side_at(s, side, level, where - h)) / (2 * h);
     Real *symbols = ARENA_ARRAY(s->arena, Real, s->nsymbols + 1);
+    prove_state(s->g, seed, symbols); /* those that have no part in it */
     go_to(s, where);
-    for (SymId k = 1; k <= s->nsymbols; k++) symbols[k] = s->at[k];
+    for (uint32_t i = 0; i < s->symbols.n; i++) symbols[s->symbols.at[i]] = s->at[s->symbols.at[i]];
     vec_push(s->arena, &s->found, ((ExprJump){from->node, from->side, symbols, by, slope}));
     return;
   }
@@ -230,10 +272,10 @@ ExprJumps expr_jumps(ExprGraph *g, Expr x) {
   if (!(expr_kinds(g, x) & varied)) return (ExprJumps){0};
   Sources all = sources_of(&s, x);
   if (!all.n) return (ExprJumps){0};
-  take_terms(&s, &all, x);
+  Parts parts = parts_of(&s, &all, x);
   s.base = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
   s.way = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
   s.at = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
-  for (uint32_t i = 0; i < all.n; i++) try_source(&s, &all.at[i]);
+  for (uint32_t i = 0; i < all.n; i++) try_source(&s, &parts, &all.at[i]);
   return (ExprJumps){s.found.at, s.found.n};
 }
