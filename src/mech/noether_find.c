@@ -6,6 +6,7 @@
 #include "mech/noether_fraction.h"
 #include "mech/noether_name.h"
 #include "mech/noether_number.h"
+#include "mech/noether_parametric.h"
 #include "mech/noether_table.h"
 #include "sym/diff.h"
 #include "sym/normal.h"
@@ -311,13 +312,11 @@ static int recognise_row(Search *s, Tables *t, uint32_t row, Expr *c) {
   return row_coefficients(s, t, row, 1, c) || shorter_coefficients(s, t, row, 1, c) || joint_coefficients(s, t, row, c) || scaled_coefficients(s, t, row, c);
 }
 
-/* Generator of a row; 0 where a coefficient is not recognised. */
-static int row_generator(Search *s, Tables *t, uint32_t row, GeneratorRow *to) {
+/* Generator with these coefficients, which are cleared of fractions. */
+static void make_generator(Search *s, const Tables *t, GeneratorRow *to) {
   const Ansatz *a = s->ansatz;
   uint32_t blocks = t->at[0].blocks;
   size_t n = (size_t)blocks * a->shown;
-  to->c = ARENA_ARRAY(s->scratch, Expr, n);
-  if (!recognise_row(s, t, row, to->c)) return 0;
   clear_parameters(s, to->c, n);
   clear_fractions(s, to->c, n);
   to->ansatz = a;
@@ -338,7 +337,6 @@ static int row_generator(Search *s, Tables *t, uint32_t row, GeneratorRow *to) {
     }
   }
   to->by = (Generator){xi, tau};
-  return 1;
 }
 
 /* The constraints of contacts, which are open in states at random, say nothing. */
@@ -346,27 +344,54 @@ static int is_proved(const Search *s, const Noether *is) {
   return (is->is == INVARIANT || is->is == INVARIANT_UP_TO_F) && !is->broken && (!is->by_value || s->ansatz->held.n == 0);
 }
 
+/* Lists a row whose coefficients are recognised, if it is proved. */
+static int add_row(Search *s, const Tables *t, Expr *c) {
+  GeneratorRow r = {.c = c};
+  make_generator(s, t, &r);
+  FoundSymmetry found = {.is = noether_prove(s->e, &r.by), .by = r.by, .rate = t->family->rate};
+  if (!is_proved(s, &found.is)) return 0;
+  name_symmetry(s->e, &r, &found);
+  vec_push(s->e->m->arena, &s->out->all, found);
+  return 1;
+}
+
+/* Takes the place of rows that were not listed: rows by their dependence on parameters, as far as those listed do not contain them. Returns how
+ * many. */
+static uint32_t add_parametric(Search *s, Tables *t, DenseRows *listed, uint32_t most) {
+  uint32_t width = listed->width, count = 0;
+  if (t->family->kind == TIME_LISTED || !shapes_agree(s, t)) return 0;
+  ParametricRows rows = parametric_rows(s->scratch, &s->choices, t->at, choice_count(s));
+  for (uint32_t k = 0; k < rows.n && count < most; k++) {
+    long double *row = listed->at + (size_t)listed->n * width;
+    memcpy(row, rows.at[k].value, width * sizeof *row);
+    if (dense_reduce(width, row, listed->at, listed->n) < 1e-6L || !add_row(s, t, rows.at[k].c)) continue;
+    listed->n++;
+    count++;
+  }
+  return count;
+}
+
 static void add_family(Search *s, const Family *f) {
   Tables t = {.family = f, .at = ARENA_ARRAY(s->scratch, Table, choice_count(s))};
   for (uint32_t i = 0; i < CHOICE_MOVED; i++) t.at[i] = table_at(s, f, i);
+  uint32_t width = t.at[0].blocks * t.at[0].shown, rows = t.at[0].rows, missing = 0;
+  DenseRows listed = {.width = width, .at = ARENA_ARRAY(s->scratch, long double, (size_t)(rows + 1) * width + 1)};
   if (!same_shape(&t.at[0], &t.at[1])) {
-    s->out->unproved += t.at[0].rows;
+    s->out->unproved += rows;
     return;
   }
-  for (uint32_t row = 0; row < t.at[0].rows; row++) {
-    GeneratorRow r = {0};
-    FoundSymmetry found = {0};
-    if (row_generator(s, &t, row, &r)) found.is = noether_prove(s->e, &r.by);
-    int proved = r.by.xi && is_proved(s, &found.is);
-    if (!proved) {
-      s->out->unproved++;
+  for (uint32_t row = 0; row < rows; row++) {
+    Expr *c = ARENA_ARRAY(s->scratch, Expr, width + 1);
+    if (!recognise_row(s, &t, row, c) || !add_row(s, &t, c)) {
+      missing++;
       continue;
     }
-    found.by = r.by;
-    found.rate = f->rate;
-    name_symmetry(s->e, &r, &found);
-    vec_push(s->e->m->arena, &s->out->all, found);
+    long double *kept = listed.at + (size_t)listed.n * width;
+    memcpy(kept, t.at[0].at + (size_t)row * width, width * sizeof *kept);
+    if (dense_reduce(width, kept, listed.at, listed.n) > 0) listed.n++;
   }
+  if (missing) missing -= add_parametric(s, &t, &listed, missing);
+  s->out->unproved += missing;
 }
 
 /* --- where coefficients may be any functions of time --- */

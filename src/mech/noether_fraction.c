@@ -7,7 +7,7 @@
 
 typedef long double Real;
 
-enum { VALUES = 7, DIM = VALUES + 1, TURNS = 4000 };
+enum { VALUES = 12, DIM = VALUES + 1, TURNS = 4000 };
 
 typedef struct {
   uint32_t n;             /* of the lattice: 1 + values */
