@@ -275,7 +275,7 @@ static int joint_coefficients(Search *s, const Tables *t, uint32_t row, Expr *c)
     c[k] = x[CHOICE_FIRST] == 0 && x[CHOICE_SECOND] == 0 ? expr_int(s->g, 0) : monomial_part(&s->choices, x, &number[k]);
     if (!c[k]) return 0;
   }
-  int64_t q = common_denominator(number, n);
+  int64_t q = common_denominator(s->scratch, number, n);
   for (uint32_t k = 0; k < n && q; k++) c[k] = expr_scale(s->g, num_ratio((int64_t)roundl(number[k] * (long double)q), q), c[k]);
   return q != 0;
 }

@@ -17,6 +17,7 @@ typedef struct {
   Expr mu[PARAMETERS_MOST + 1]; /* what rows of numbers are multiplied by */
   uint32_t nmu;
   ParametricRows out;
+  uint32_t most;                /* for out */
 } Fit;
 
 static Real entry(const Fit *f, uint32_t choice, uint32_t row, uint32_t column) { return f->at[choice].at[(size_t)row * f->width + column]; }
@@ -28,14 +29,14 @@ static uint32_t row_of_pivot(const Fit *f, uint32_t column) {
   return UINT32_MAX;
 }
 
-/* Columns that are not zero at all choices, less those that are to be left out. */
-static void take_columns(Fit *f, const unsigned char *left_out) {
+/* Columns that are not zero at all choices. */
+static void take_columns(Fit *f) {
   f->ncolumns = 0;
   for (uint32_t k = 0; k < f->width; k++) {
     int used = 0;
     for (uint32_t c = 0; c < f->count; c++)
       for (uint32_t r = 0; r < f->at[0].rows; r++) used |= entry(f, c, r, k) != 0;
-    if (used && !left_out[k]) f->column[f->ncolumns++] = k;
+    if (used) f->column[f->ncolumns++] = k;
   }
 }
 
@@ -60,50 +61,57 @@ static DenseRows kernel_of(Fit *f) {
   return dense_kernel(f->arena, rows, unknowns, m, 1e-9L);
 }
 
-/* A row of numbers as coefficients; 0: its fractions are not recognised. */
-static int recognise(Fit *f, const Real *x) {
+/* A row of whole numbers as coefficients. */
+static void add_row(Fit *f, const int64_t *x) {
   ExprGraph *g = f->choices->e->g;
+  if (f->out.n == f->most) return;
   ParametricRow row = {ARENA_ARRAY(f->arena, Expr, f->width), ARENA_ARRAY(f->arena, Real, f->width)};
-  int64_t q = common_denominator(x, f->nmu * f->ncolumns);
-  if (!q) return 0;
   for (uint32_t k = 0; k < f->width; k++) row.c[k] = expr_int(g, 0);
   for (uint32_t j = 0; j < f->nmu; j++)
     for (uint32_t k = 0; k < f->ncolumns; k++) {
-      Num number = num_ratio((int64_t)roundl(x[(size_t)j * f->ncolumns + k] * (Real)q), q);
-      Expr part = expr_scale(g, number, f->mu[j]);
-      row.c[f->column[k]] = expr_add(g, row.c[f->column[k]], part);
-      row.value[f->column[k]] += (Real)num_value(number) * choice_value(f->choices, CHOICE_FIRST, f->mu[j]);
+      int64_t number = x[(size_t)j * f->ncolumns + k];
+      uint32_t column = f->column[k];
+      Expr part = expr_scale(g, num_int(number), f->mu[j]);
+      row.c[column] = expr_add(g, row.c[column], part);
+      row.value[column] += (Real)number * choice_value(f->choices, CHOICE_FIRST, f->mu[j]);
     }
   f->out.at[f->out.n++] = row;
-  return 1;
 }
 
-/* All rows for this choice of mu; marks the columns of their pivots. */
-static void fit(Fit *f, unsigned char *pivots) {
+/* x times the common denominator of its entries; 0: there is none. */
+static int whole_row(const Fit *f, const Real *x, int64_t *whole) {
+  uint32_t n = f->nmu * f->ncolumns;
+  int64_t q = common_denominator(f->arena, x, n);
+  for (uint32_t k = 0; k < n; k++) whole[k] = (int64_t)roundl(x[k] * (Real)q);
+  return q != 0;
+}
+
+/* All rows for this choice of mu: those that are whole as they are, then short ones of the space that they span. */
+static void fit(Fit *f) {
   uint32_t unknowns = f->nmu * f->ncolumns;
   if (!unknowns || unknowns > UNKNOWNS_MOST) return;
   DenseRows kernel = kernel_of(f);
   uint32_t *pivot = ARENA_ARRAY(f->arena, uint32_t, kernel.n + 1);
+  int64_t *whole = ARENA_ARRAY(f->arena, int64_t, (size_t)kernel.n * unknowns + 1);
   if (kernel.gap < 1e2L) return;
   uint32_t rows = dense_echelon(kernel.n, unknowns, kernel.at, 1e-10L, pivot);
-  for (uint32_t r = 0; r < rows && f->out.n < f->at[0].rows * 4; r++) {
-    recognise(f, kernel.at + (size_t)r * unknowns);
-    if (f->nmu == 1) pivots[f->column[pivot[r]]] = 1;
-  }
+  for (uint32_t r = 0; r < rows; r++)
+    if (whole_row(f, kernel.at + (size_t)r * unknowns, whole)) add_row(f, whole);
+  rows = whole_members(f->arena, kernel.at, rows, unknowns, whole);
+  for (uint32_t r = 0; r < rows; r++) add_row(f, whole + (size_t)r * unknowns);
 }
 
 ParametricRows parametric_rows(Arena *a, const Choices *choices, const Table *at, uint32_t count) {
   ExprGraph *g = choices->e->g;
   Fit f = {.arena = a, .choices = choices, .at = at, .count = count, .width = at[0].blocks * at[0].shown, .nmu = 1};
-  unsigned char *pivots = ARENA_ARRAY(a, unsigned char, f.width + 1);
   f.column = ARENA_ARRAY(a, uint32_t, f.width + 1);
-  f.out.at = ARENA_ARRAY(a, ParametricRow, 4 * (size_t)at[0].rows + 1);
+  f.most = 4 * (1 + PARAMETERS_MOST) * at[0].rows;
+  f.out.at = ARENA_ARRAY(a, ParametricRow, (size_t)f.most + 1);
   f.mu[0] = expr_int(g, 1);
-  take_columns(&f, pivots);
-  fit(&f, pivots);
+  take_columns(&f);
+  fit(&f);
   if (choices->n < 2 || choices->n > PARAMETERS_MOST) return f.out;
   for (f.nmu = 0; f.nmu < choices->n; f.nmu++) f.mu[f.nmu] = expr_symbol(g, choices->param[f.nmu])->node;
-  take_columns(&f, pivots);
-  fit(&f, pivots);
+  fit(&f);
   return f.out;
 }

@@ -18,7 +18,7 @@ typedef struct {
 } ParametricRows;
 
 /* at[count]: tables of one shape at the first `count` choices. Rows free of parameters come first, those that are linear in all of them behind;
- * rows whose fractions are not recognised are left out. They need not be symmetries: that is for noether_prove to say. */
+ * rows that are not recognised as whole numbers are left out. They need not be symmetries: that is for noether_prove to say. */
 ParametricRows parametric_rows(Arena *a, const Choices *choices, const Table *at, uint32_t count);
 
 #endif

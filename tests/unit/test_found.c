@@ -423,6 +423,8 @@ static void affine_change_3d(void **state) {
   counts_skew("model b\ncoord u, v\nlet x = v/4 - u/2 + 2\nlet y = v - 3*u - 1/4\nlagrangian = (x'^2 + y'^2)/2 + (x*y' - y*x')/2\n", 8);
   counts_skew("model t\ncoord u, v, w, p\nlet x1 = v/4 - u/2 - 3*w + p - 2/3\nlet y1 = 2*u - v/4 + w + p - 3\nlet x2 = v - u/2 - 4*w - 2*p - 1/2\nlet y2 = w/2 + p/2 - 1/3\n"
               "lagrangian = (x1'^2 + y1'^2)/2 + 3*(x2'^2 + y2'^2)/2 + 1/hypot(x1 - x2, y1 - y2)\n", 7);
+  counts_skew("model p\ncoord u, v, w, p\nlet x1 = u - 2*v/7 + w/3 + 1\nlet y1 = u/5 + 4*v/3 - 1/2 - p/2\nlet x2 = w - 3*u/4 + v/11\nlet y2 = p - u/2 + w\nparam m1 = 1 > 0, m2 = 2 > 0\n"
+              "lagrangian = m1/2*(x1'^2 + y1'^2) + m2/2*(x2'^2 + y2'^2) + 1/hypot(x1 - x2, y1 - y2)\n", 7);
   counts_skew("model s\ncoord a, b, c, d\nparam m1 = 1 > 0, m2 = 2 > 0\nlagrangian = m1/2*((a' + c')^2 + (b' + d')^2) + m2/2*(c'^2 + d'^2) + 1/hypot(a, b)\n", 7);
 }
 
