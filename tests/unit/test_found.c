@@ -413,7 +413,7 @@ static void counts_skew(const char *lag, uint32_t dimension) {
 #define FAR3 "coord u, v, w\nlet x = 3*w/8 - 1/2 - u\nlet y = 3*u/7 - v/2 + 3*w - 4\nlet z = 2*u/7 - v/2 - 4/9\n"
 
 /* In space common denominators have some nine digits, and skew coordinates cost ranks theirs. Two bodies in a plane: seven, of which one turns the
- * separation alone. */
+ * separation alone; three: as many, of which one turns the centre of mass alone. */
 static void affine_change_3d(void **state) {
   (void)state;
   counts_skew("model k\n" SKEW3 "param k = 1 > 0\nlagrangian = (x'^2 + y'^2 + z'^2)/2 + k/sqrt(x^2 + y^2 + z^2)\n", 4);
@@ -425,6 +425,10 @@ static void affine_change_3d(void **state) {
               "lagrangian = (x1'^2 + y1'^2)/2 + 3*(x2'^2 + y2'^2)/2 + 1/hypot(x1 - x2, y1 - y2)\n", 7);
   counts_skew("model p\ncoord u, v, w, p\nlet x1 = u - 2*v/7 + w/3 + 1\nlet y1 = u/5 + 4*v/3 - 1/2 - p/2\nlet x2 = w - 3*u/4 + v/11\nlet y2 = p - u/2 + w\nparam m1 = 1 > 0, m2 = 2 > 0\n"
               "lagrangian = m1/2*(x1'^2 + y1'^2) + m2/2*(x2'^2 + y2'^2) + 1/hypot(x1 - x2, y1 - y2)\n", 7);
+  counts_skew("model b\ncoord u, v, w, p, q, s\nlet x1 = v/4 - u/2 - 3*w + p + 2*q - s/4 - 1\nlet y1 = u + v - w/2 + p - 4*q - 2*s + 1/3\n"
+              "let x2 = w/2 + p/2 - 2*q/3 - 3*s + 2\nlet y2 = 2*w/3 - u/2 - v/3 + p/2 + q/4 - s/3 - 4/3\n"
+              "let x3 = 4*w - 4*u/3 - 2*v/3 - p/3 - 3*s/4 - 4\nlet y3 = 3*u + v + w - 4*p/3 + q/2 - 3*s - 3\n"
+              "lagrangian = (x1'^2 + y1'^2)/2 + 3*(x2'^2 + y2'^2)/2 + x3'^2 + y3'^2 + 1/hypot(x1 - x2, y1 - y2) + 3/hypot(x1 - x3, y1 - y3) + 2/hypot(x3 - x2, y3 - y2)\n", 7);
   counts_skew("model s\ncoord a, b, c, d\nparam m1 = 1 > 0, m2 = 2 > 0\nlagrangian = m1/2*((a' + c')^2 + (b' + d')^2) + m2/2*(c'^2 + d'^2) + 1/hypot(a, b)\n", 7);
 }
 
