@@ -62,7 +62,8 @@ struct lag_sim {
   double *scratch;       /* one block: u, work, y, g, g, outputs */
   double *contact_room, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
-  double *saved;         /* one block: Run, and the arrays below */
+  double *saved;         /* one block: Run, and the arrays below; in `room`, which is freed */
+  char *room;
   size_t nsaved;
   Run *run;
   double *p, *hold;      /* [np], [nu] */

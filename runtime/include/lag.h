@@ -193,7 +193,9 @@ typedef struct lag_method_option {
 } lag_method_option;
 
 /* An integrator. Its state is one block of work_size doubles (only doubles, unless NO_SAVE: then the state
- * of a run can be written and read back bit by bit). */
+ * of a run can be written and read back bit by bit), which begins at a multiple of LAG_WORK_ALIGN bytes. */
+enum { LAG_WORK_ALIGN = 64 };
+
 typedef struct lag_method {
   const char *name;
   int order, dense_order;      /* of the steps and between them, the options at their defaults */
