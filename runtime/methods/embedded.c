@@ -169,21 +169,50 @@ double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, l
   return !isfinite(both) ? NAN : late ? (both > 0 ? fine * (fine / both) : 0) : fine;
 }
 
-/* Whether to try a step again that is good along the constraints, but has gone so far across them that the square of that counts. Its
- * stages came near a position where constraints become dependent; of another size it will pass it better. Estimates are too small there,
- * by a factor of some ten, squared. That comes to an end: steps that shrink until their estimates are good would never pass. */
-static int lands_badly(const Embedded *w, const lag_problem *pb, int *tries)
+/* The search for a step that passes a position where constraints become dependent. A step that is good along the constraints may have gone
+ * so far across them that the square of that counts: its stages came near such a position. What passes it better may be shorter, where the
+ * step ends there, or longer, where it begins there. Of the sizes that are tried the first is taken that lands well, or else the one that
+ * went least across: steps that shrink until all is good would never pass. */
+typedef struct Landing {
+  double base, best, least; /* the size that was to be; of those that are good along the constraints, the one that went least across */
+  int tries;
+} Landing;
+
+enum { LANDING_TRIES = 8 };
+
+/* Estimates of what goes across are too small there, by a factor of some ten, squared. */
+static int lands_badly(const Embedded *w, const lag_problem *pb)
 {
   const double factor = 100;
-  enum { MOST = 6 };
 
-  return factor * w->across * pb->tol > 1 && ++*tries <= MOST;
+  return factor * w->across * pb->tol > 1;
+}
+
+/* Whether to try another size, in w->h, than the one whose error is err (squared, or NaN). */
+static int land_elsewhere(Landing *l, Embedded *w, const lag_problem *pb, double err)
+{
+  int good = err <= 1, bad = good && lands_badly(w, pb);
+
+  if (l->tries > LANDING_TRIES || (l->tries == 0 && !bad) || (good && !bad)) {
+    return 0;
+  }
+  if (l->tries == 0) {
+    l->base = w->h;
+  }
+  if (good && (l->tries == 0 || w->across < l->least)) {
+    l->best = w->h;
+    l->least = w->across;
+  }
+  int k = l->tries++; /* 1/1.25, 1.25, 1/1.25^2, 1.25^2, ... */
+  w->h = k < LANDING_TRIES ? l->base * pow(1.25, k % 2 ? (k + 1) / 2 : -(k + 2) / 2) : l->best;
+  return 1;
 }
 
 int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y)
 {
   Embedded *w = work;
-  int cause = LAG_ESTEP, retried = 0, tries = 0, rc = prepare(pair, w, pb, *t, y);
+  Landing landing = {0, 0, 0, 0};
+  int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
 
   while (rc == 0) {
     double wanted = lag_lesser(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row(pb, *t, &row);
@@ -202,9 +231,9 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
     if (rc < 0) {
       return rc;
     }
-    if (err <= 1 && w->fixed == 0.0 && lands_badly(w, pb, &tries)) {
-      w->h *= 0.8;
+    if (w->fixed == 0.0 && land_elsewhere(&landing, w, pb, err)) {
       pb->rejected++;
+      rc = 0;
       continue;
     }
     if (err <= 1 || (w->fixed != 0.0 && !isnan(err))) {
