@@ -250,7 +250,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
       w->h /= 2;
     } else {
       cause = LAG_ESTEP;
-      w->h *= fmax(pair->shrink_most, pair->safety * pow(err, -0.5 * pair->ratio * pair->beta));
+      w->h *= fmax(pair->shrink_most, pair->safety * lag_rough_power(err, -0.5 * pair->ratio * pair->beta));
     }
     if (w->fixed != 0.0) {
       return too_small(pair, w, pb, *t, cause);
