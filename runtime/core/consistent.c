@@ -340,7 +340,8 @@ static int check_derivatives(Start *w, int reached)
       return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s have no value where it holds: write it so that they have, "
                       "x = 1 in place of sqrt(x - 1) = 0", c->name, lag_line_of(c, line));
     }
-    if (is_flat(w, k, size) && (!reached || is_flat_beside(w, k))) {
+    int held = reached || fabs(w->residual[k]) <= 1e-6 * w->size[k];
+    if (is_flat(w, k, size) && held && (!reached || is_flat_beside(w, k))) {
       return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s vanish where it holds, so that no force can hold it: write it "
                       "so that they do not, x = 0 in place of x^2 = 0", c->name, lag_line_of(c, line));
     }
@@ -452,6 +453,44 @@ void lag_note_redundant(lag_sim *s)
   }
 }
 
+/* From a start where the model has no accelerations there is no motion: which coordinate has no inertia, and no constraint that moves it. */
+static int check_inertia(Start *w)
+{
+  lag_problem *pb = w->pb;
+  const lag_constraints *of = w->of;
+  int nq = w->nq;
+  double *K = w->full, *size = w->other, most = 0;
+
+  if (lag_rhs(pb, w->sim->scene->t0, w->y, w->best) != LAG_ESINGULAR ||
+      of->matrices(w->sim->scene->t0, w->y, w->y + nq, w->y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work)) {
+    return LAG_OK;
+  }
+  memset(K, 0, (size_t)(nq * nq) * sizeof *K);
+  memset(size, 0, (size_t)of->n * sizeof *size);
+  for (int e = 0; e < of->nmass; e++) {
+    most = fmax(most, fabs(w->M[e]));
+  }
+  for (int e = 0; e < of->njacobian; e++) {
+    size[of->jacobian[e].row] += w->A[e] * w->A[e];
+  }
+  for (int e = 0; e < of->nmass && most > 0; e++) {
+    int i = of->mass[e].row, j = of->mass[e].col;
+    K[i * nq + j] = K[j * nq + i] = w->M[e] / most;
+  }
+  for (int e = 0; e < of->njacobian; e++) {
+    int row = of->jacobian[e].row;
+    for (int k = 0; k < of->njacobian && size[row] > 0; k++) {
+      if (of->jacobian[k].row == row) {
+        K[of->jacobian[e].col * nq + of->jacobian[k].col] += w->A[e] * w->A[k] / size[row];
+      }
+    }
+  }
+  int i = lag_weightless(nq, K, w->best, w->free);
+  return i < 0 ? LAG_OK
+               : lag_fail(w->sim, LAG_EINVAL, "the mass matrix is singular: nothing says how %s moves, which has no inertia at the start, and no "
+                          "constraint moves it; give it a mass, or a constraint that depends on it", pb->model->q[i].name);
+}
+
 /* What moved by less than a last digit of what has its unit did not move. */
 static void keep_rounding_out(const Start *w)
 {
@@ -507,6 +546,7 @@ int lag_consistent(lag_sim *s)
       rc = lag_keep(s, s->scene->t0, s->now);
       s->run->rank = rank(&w, s->redundant);
       lag_note_redundant(s);
+      rc = rc ? rc : check_inertia(&w);
     }
   }
   free(block);

@@ -114,6 +114,9 @@ int lag_between(lag_sim *sim, double t, double *y);
 
 /* consistent.c: now[n], the start as it was set, becomes the nearest start that obeys the constraints; asked, redundant and run->rank are set. */
 int lag_consistent(lag_sim *sim);
+/* weightless.c: the coordinate that moves most along a direction d with K d = 0, K[n n] being a mass matrix and a positive combination of
+ * what constraints fix, or -1 where there is none. K is destroyed; x[n] and column[n] are scratch. */
+int lag_weightless(int n, double *K, double *x, int *column);
 /* pb.redundant, of what is found there or was saved. */
 void lag_note_redundant(lag_sim *sim);
 

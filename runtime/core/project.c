@@ -365,25 +365,53 @@ static double extent(const lag_problem *pb, const double *y0, const double *y, i
   return fmax(fmax(lag_size_like(pb, y0, i), lag_size_like(pb, y, i)), fmax(begin, 1e-10));
 }
 
-/* The coordinate that a projection from q to y has moved farther than a step from y0 led, twice over, or -1. What is small beside its extent
- * is none: near a singular position rounding moves that far, and what lies at rest is moved by rounding alone. */
-static int leaps(const lag_problem *pb, const double *y0, const double *q, const double *y)
+/* Whether one constraint on positions contains coordinates i and j. */
+static int are_tied(const lag_constraints *of, int i, int j)
 {
+  for (int a = 0; a < of->njacobian; a++) {
+    for (int b = 0; of->jacobian[a].col == i && of->jacobian[a].row < of->nholonomic && b < of->njacobian; b++) {
+      if (of->jacobian[b].row == of->jacobian[a].row && of->jacobian[b].col == j) {
+        return 1;
+      }
+    }
+  }
+  return 0;
+}
+
+int lag_leaps(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led)
+{
+  const lag_constraints *of = pb->model->constraints;
   const double small = 1e-6;
 
   for (int i = 0; i < pb->nq; i++) {
-    double moved = fabs(y[i] - q[i]), led = 0;
-    if (!(moved > 2 * fabs(q[i] - y0[i]) + small * fabs(y[i]))) {
+    double most = fabs(led[i]);
+    if (!(fabs(moved[i]) > 2 * most + small * fabs(y[i]))) {
       continue;
     }
     for (int j = 0; j < pb->nq; j++) {
-      led = strcmp(pb->model->q[i].unit, pb->model->q[j].unit) == 0 ? fmax(led, fabs(q[j] - y0[j])) : led;
+      int alike = strcmp(pb->model->q[i].unit, pb->model->q[j].unit) == 0 && are_tied(of, i, j);
+      most = alike ? fmax(most, fabs(led[j])) : most;
     }
-    if (moved > 2 * led + small * extent(pb, y0, y, i)) {
+    if (fabs(moved[i]) > 2 * most + small * extent(pb, y0, y, i)) {
       return i;
     }
   }
   return -1;
+}
+
+int lag_say_leap(lag_problem *pb, double t, const double *y, int i, double moved)
+{
+  int k = lag_worst_constraint(pb, t, y, 1, NULL);
+
+  if (k >= 0) {
+    char words[128];
+    const lag_var *q = &pb->model->q[i];
+    snprintf(words, sizeof words, " after a step, and meeting it would move %s by %.3g %s: it jumps, or the step is too long", q->name,
+             fabs(moved) / q->factor, q->unit);
+    lag_say_constraint(pb, k, 1, NAN, words);
+  }
+  pb->bad_t = t;
+  return LAG_ERETRY;
 }
 
 int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost)
@@ -395,22 +423,18 @@ int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, dou
   size_t bytes = (size_t)pb->nq * sizeof(double);
 
   memcpy(w.step, y, bytes);
-  int rc = lag_project(pb, t, y, lost), i = rc ? -1 : leaps(pb, y0, w.step, y);
+  int rc = lag_project(pb, t, y, lost);
+  for (int i = 0; i < pb->nq; i++) {
+    w.d[i] = y[i] - w.step[i];
+    w.force[i] = w.step[i] - y0[i];
+  }
+  int i = rc ? -1 : lag_leaps(pb, y0, y, w.d, w.force);
   if (i < 0) {
     return rc;
   }
-  double moved = fabs(y[i] - w.step[i]);
+  double moved = w.d[i];
   memcpy(y, w.step, bytes);
-  int k = lag_worst_constraint(pb, t, y, 1, NULL);
-  if (k >= 0) {
-    char words[128];
-    const lag_var *q = &pb->model->q[i];
-    snprintf(words, sizeof words, " after a step, and meeting it would move %s by %.3g %s: it jumps, or the step is too long", q->name, moved / q->factor,
-             q->unit);
-    lag_say_constraint(pb, k, 1, NAN, words);
-  }
-  pb->bad_t = t;
-  return LAG_ERETRY;
+  return lag_say_leap(pb, t, y, i, moved);
 }
 
 /* g := -A x */

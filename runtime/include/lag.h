@@ -135,6 +135,12 @@ int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, 
 int lag_project(lag_problem *pb, double t, double *y, double *lost);
 /* The same after a step from y0; > 0 also where it would lead farther than the step did: the constraint jumps there, or the step is too long. */
 int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost);
+/* What lag_project_step calls farther: the first coordinate of a step from y0 to y that constraints moved by moved[nq], more than twice as
+ * far as what led there, led[nq], accounts for: its own part, or one of its unit that a constraint ties to it. -1: none. What is rounding near
+ * a singular position, a millionth of how far the coordinate has been from 0, is none. */
+int lag_leaps(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led);
+/* Says so of coordinate i, with the constraint on positions that y breaks most at t; returns LAG_ERETRY. */
+int lag_say_leap(lag_problem *pb, double t, const double *y, int i, double moved);
 
 /* The largest of |x[j]| over the coordinates (or their velocities) that have the unit of coordinate i: what rounding in it is measured
  * with, where it is small itself. */

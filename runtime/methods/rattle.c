@@ -281,6 +281,20 @@ static int project(const Implicit *w, const Arrays *a, lag_problem *pb, double t
   return rc ? lag_step_refused(pb, rc, tb) : lag_is_met(pb, tb, b->to, 0, b->r) ? LAG_OK : unmet(pb, tb, b->to, 0);
 }
 
+/* Whether a block, h long, has moved coordinates no farther than the velocities at its ends account for: elsewhere a constraint jumps. */
+static int check_leap(const Arrays *a, lag_problem *pb, double t1, double h)
+{
+  const Block *b = &a->block;
+  int nq = pb->nq;
+
+  for (int i = 0; i < nq; i++) {
+    b->d[i] = b->to[i] - b->from[i];
+    b->force[i] = h * fmax(fabs(b->from[nq + i]), fabs(a->v[i]));
+  }
+  int i = lag_leaps(pb, b->from, b->to, b->d, b->force);
+  return i < 0 ? LAG_OK : lag_step_unmet(pb, lag_say_leap(pb, t1, b->from, i, b->d[i]), t1);
+}
+
 int lag_rattle(const Implicit *w, const Arrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)
 {
   const Block *b = &a->block;
@@ -305,6 +319,7 @@ int lag_rattle(const Implicit *w, const Arrays *a, lag_problem *pb, double t, do
       memcpy(a->v, b->to + nq, (size_t)nq * sizeof(double));
     }
     rc = project(w, a, pb, t1, y, last);
+    rc = rc ? rc : check_leap(a, pb, t1, (at - begin) * dt);
     memcpy(b->from, b->to, (size_t)nq * sizeof(double));
     memcpy(b->from + nq, a->v, (size_t)nq * sizeof(double));
   }

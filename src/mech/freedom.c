@@ -213,7 +213,8 @@ int freedom_show(const Eqns *e, StrBuf *out) {
   StartResult start = start_find(e, s, symbols);
   if (start.kind != START_FOUND) {
     if (says_start(e->m)) start_report(e, &start);
-    else sb_printf(out, "scene %s: %u constraint%s; without a start nothing is said of their rank\n", e->m->scene.name, all->n, plural(all->n));
+    else sb_printf(out, "scene %s: %u constraint%s; it gives no start, and from 0 none is found that obeys `%s`%s\n", e->m->scene.name, all->n,
+                   plural(all->n), all->of[start.constraint]->name, start_off_by(e, &start));
     return !says_start(e->m);
   }
   states_at(s, symbols);

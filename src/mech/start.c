@@ -277,7 +277,9 @@ static StartResult check_slopes(Finder *f, int reached) {
   for (uint32_t k = 0; k < f->rows; k++) {
     if (is_contact(f->e, k)) continue;
     if (!isfinite(f->terms[k]) && reached) return fault(f, START_STEEP, k);
-    if (is_flat(f, k) && (!reached || is_flat_beside(f, k))) return fault(f, START_FLAT, k);
+    if (!is_flat(f, k)) continue;
+    if (!reached && fabsl(residual(f, k)) > 1e-6L * f->size[k]) return fault(f, START_NONE, k); /* it does not hold where it is flat */
+    if (!reached || is_flat_beside(f, k)) return fault(f, START_FLAT, k);
   }
   return (StartResult){.kind = START_FOUND};
 }

@@ -204,6 +204,7 @@ typedef struct {
   Expr lagrangian;         /* 0 when the text declares no coordinates */
   Expr across;             /* or 0: quadratic in rates that rotations never have, added to L for a regular mass matrix */
   Span lagrangian_span;
+  Span kinetic_span;       /* empty when L was given as a whole */
   Expr dissipation;        /* sum of Rayleigh functions, or 0 */
   VEC(Force) forces;
   VEC(Constraint) constraints;
