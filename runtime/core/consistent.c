@@ -392,8 +392,8 @@ static int settle(Start *w, int holonomic)
   return rc ? rc : refuse(w, 0);
 }
 
-/* x := what is left of row x[n] beside the orthonormal rows Q[r * n]; twice, so that rounding is gone. Returns its length. */
-static double remainder_of(int n, int r, const double *Q, double *x)
+/* Twice, so that rounding is gone. */
+double lag_remainder_of(int n, int r, const double *Q, double *x)
 {
   double s = 0;
 
@@ -429,11 +429,11 @@ static int rank(Start *w, double *marks)
     A[of->jacobian[e].row * nq + of->jacobian[e].col] = w->A[e];
   }
   for (int k = 0; k < m; k++) {
-    double *row = A + k * nq, size = remainder_of(nq, 0, Q, row);
+    double *row = A + k * nq, size = lag_remainder_of(nq, 0, Q, row);
     for (int i = 0; i < nq && size > 0; i++) {
       row[i] /= size;
     }
-    double left = size > 0 ? remainder_of(nq, r, Q, row) : 0;
+    double left = size > 0 ? lag_remainder_of(nq, r, Q, row) : 0;
     marks[k] = size > 0 && !(left > least); /* a contact that is open demands nothing */
     for (int i = 0; i < nq && left > least; i++) {
       Q[r * nq + i] = row[i] / left;

@@ -114,6 +114,11 @@ int lag_between(lag_sim *sim, double t, double *y);
 
 /* consistent.c: now[n], the start as it was set, becomes the nearest start that obeys the constraints; asked, redundant and run->rank are set. */
 int lag_consistent(lag_sim *sim);
+/* creep.c: how independent the weakest constraint is of those before it, of rows of length 1, where y is at t: from 1 to 0. *weakest: which, or
+ * -1; what follows from others altogether is left out. */
+double lag_independence(lag_problem *pb, double t, const double *y, int *weakest);
+/* x := what is left of row x[n] beside the orthonormal rows Q[r * n]. Returns its length. */
+double lag_remainder_of(int n, int r, const double *Q, double *x);
 /* weightless.c: the coordinate that moves most along a direction d with K d = 0, K[n n] being a mass matrix and a positive combination of
  * what constraints fix, or -1 where there is none. K is destroyed; x[n] and column[n] are scratch. */
 int lag_weightless(int n, double *K, double *x, int *column);

@@ -75,7 +75,7 @@ typedef struct lag_problem {
   double bad_t;        /* set before a failure: where, */
   int bad_index;       /* which component of y' (-1: unknown), */
   const char *detail;  /* and more words or NULL; a string that lives as long as this object, */
-  char words[160];     /* for example made here */
+  char words[320];     /* for example made here */
 } lag_problem;
 
 /* The model's facts (LAG_AUTONOMOUS, ...) without those that a function in place of an input takes away. */
@@ -141,6 +141,13 @@ int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, dou
 int lag_leaps(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led);
 /* Says so of coordinate i, with the constraint on positions that y breaks most at t; returns LAG_ERETRY. */
 int lag_say_leap(lag_problem *pb, double t, const double *y, int i, double moved);
+
+/* Whether steps creep towards a singular position: of a method that chooses its steps, which asks after each one, at y at t, of a run that began at
+ * `begin`. c is all 0 at first. Then pb says why, and the step fails with LAG_ESTEP. Rule and reason: core/creep.c. */
+typedef struct lag_creep {
+  double steps, since; /* steps since a time */
+} lag_creep;
+int lag_creeps(lag_problem *pb, lag_creep *c, double begin, double t, const double *y);
 
 /* The largest of |x[j]| over the coordinates (or their velocities) that have the unit of coordinate i: what rounding in it is measured
  * with, where it is small itself. */

@@ -213,7 +213,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
         w->h = clipped ? fmax(w->h, wanted) : w->h;
       }
       accept(w, pb, t, y, dt, tb, tc);
-      return LAG_OK;
+      return w->fixed == 0.0 && lag_creeps(pb, &w->creep, w->t_begin, tb, y) ? LAG_ESTEP : LAG_OK;
     }
     if (isnan(err)) {
       cause = rc ? LAG_EDOMAIN : LAG_ENAN;

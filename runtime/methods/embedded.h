@@ -35,6 +35,7 @@ struct Embedded {
   double begun;
   double per;       /* 1/n */
   double across;    /* the square of the error with what the projection takes back, where that was left out of it; or 0 */
+  lag_creep creep;
   double x[];
 };
 
