@@ -158,10 +158,7 @@ static int outputs(lag_sim *s, double t, const double *y, double *out)
   int rc = 0, nout = lag_sim_noutputs(s);
 
   if (c->nout > 0) {
-    rc = lag_inputs(&s->pb, t);
-    rc = rc ? rc : lag_exact_at(s, t);
-    rc = rc ? rc : c->observe(t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
-    if (rc) {
+    if ((rc = lag_observe(s, t, y, out)) != 0) {
       return lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN, "the outputs cannot be computed at t = %.17g s", t);
     }
   } else {

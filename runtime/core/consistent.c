@@ -292,8 +292,7 @@ static int slopes(Start *w, double *size)
   }
   for (int e = 0; e < of->njacobian; e++) {
     int i = of->jacobian[e].col;
-    double far = fmax(lag_size_like(w->pb, w->y, i), lag_size_like(w->pb, w->asked, i));
-    size[of->jacobian[e].row] += fabs(w->A[e]) * (far > 0 ? far : 1);
+    size[of->jacobian[e].row] += fabs(w->A[e]) * fmax(lag_reach(w->pb, w->y, 1, i), lag_size_like(w->pb, w->asked, i));
   }
   return 1;
 }
@@ -312,8 +311,7 @@ static int is_flat_beside(Start *w, int k)
   memcpy(here, w->y, bytes);
   choose_free(w, ALL);
   for (int i = 0; i < w->nq; i++) {
-    double far = lag_size_like(w->pb, here, i);
-    w->y[i] += !is_held(w, i) ? 0 : 0.01 * (far > 0 ? far : 1) * (0.5 + fmod(0.618033988749894848 * (i + 1), 1));
+    w->y[i] += !is_held(w, i) ? 0 : 0.01 * lag_reach(w->pb, here, 1, i) * (0.5 + fmod(0.618033988749894848 * (i + 1), 1));
   }
   int flat = !descend(w) || !slopes(w, size) || is_flat(w, k, size);
   memcpy(w->y, here, bytes);

@@ -7,44 +7,10 @@
  * what is fast throughout has covered more. And the constraints are nearly dependent there: elsewhere short steps are not for this reason. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "core/core.h"
 
 enum { MOST = 10000 };
-
-double lag_independence(lag_problem *pb, double t, const double *y, int *weakest)
-{
-  const lag_constraints *of = pb->model->constraints;
-  const double follows = 1e-9; /* not nearly, but always, or by chance */
-  int nq = pb->nq, n = of->n, r = 0, rc = lag_inputs(pb, t);
-  double least = 1, *A = calloc((size_t)(n * nq + of->njacobian + of->nmass + 1), sizeof *A), *entries = A + n * nq;
-
-  *weakest = -1;
-  rc = !A || rc || of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, entries, entries + of->njacobian, pb->work);
-  for (int e = 0; e < of->njacobian && rc == 0; e++) {
-    A[of->jacobian[e].row * nq + of->jacobian[e].col] = entries[e];
-  }
-  for (int k = 0; k < n && rc == 0; k++) {
-    double *row = A + k * nq, *to = A + r * nq, size = lag_remainder_of(nq, 0, A, row);
-    for (int i = 0; i < nq && size > 0; i++) {
-      row[i] /= size;
-    }
-    double left = size > 0 ? lag_remainder_of(nq, r, A, row) : 0;
-    left = left > follows ? left : 0;
-    if (left > 0 && left < least) {
-      least = left;
-      *weakest = k;
-    }
-    for (int i = 0; i < nq && left > 0; i++) {
-      to[i] = row[i] / left;
-    }
-    r += left > 0;
-  }
-  free(A);
-  return least;
-}
 
 int lag_creeps(lag_problem *pb, lag_creep *c, double begin, double t, const double *y)
 {

@@ -116,9 +116,7 @@ double lag_size_like(const lag_problem *pb, const double *x, int i)
   return most;
 }
 
-/* How far component i may be from 0: as far as one of the same unit is; of an angle, 1. A velocity at rest is rounding: it is compared
- * with one that leads through such a distance in the time of the run. */
-static double reach(const lag_problem *pb, const double *y, int holonomic, int i)
+double lag_reach(const lag_problem *pb, const double *y, int holonomic, int i)
 {
   const lag_var *q = &pb->model->q[i];
   double most = lag_size_like(pb, holonomic ? y : y + pb->nq, i);
@@ -141,7 +139,7 @@ static int other_sizes(lag_problem *pb, const Held *w, double t, const double *y
 
   memcpy(w->other, y, (size_t)pb->n * sizeof *y);
   for (int i = 0; i < nq; i++) {
-    w->other[at + i] += reach(pb, y, holonomic, i) * (0.5 + fmod(step * (i + 1), 1));
+    w->other[at + i] += lag_reach(pb, y, holonomic, i) * (0.5 + fmod(step * (i + 1), 1));
   }
   int rc = lag_residuals(pb, t, w->other, c, r);
   for (int k = 0; k < n && rc == 0; k++) {

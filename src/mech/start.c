@@ -249,8 +249,8 @@ static void slopes(Finder *f) {
   look(f);
   for (uint32_t k = 0; k < f->rows; k++) f->terms[k] = 0;
   for (uint32_t i = 0; i < A->n; i++) {
-    long double far = fmaxl(like(f, f->symbols, 0, A->at[i].col), like(f, f->asked, 0, A->at[i].col));
-    if (A->at[i].row < f->rows) f->terms[A->at[i].row] += fabsl(f->at.A[i]) * (far > 0 ? far : 1);
+    long double far = fmaxl(reach_of(f, A->at[i].col), like(f, f->asked, 0, A->at[i].col));
+    if (A->at[i].row < f->rows) f->terms[A->at[i].row] += fabsl(f->at.A[i]) * far;
   }
 }
 
@@ -260,10 +260,9 @@ static int is_flat(const Finder *f, uint32_t k) { return f->says[k] && f->terms[
 static int is_flat_beside(Finder *f, uint32_t k) {
   copy(f, f->best, f->symbols);
   choose_free(f, ALL);
-  for (uint32_t i = 0; i < f->n; i++) {
-    long double far = like(f, f->best, 0, i);
-    if (is_held(f, i)) f->symbols[component(f, i)] += 0.01L * (far > 0 ? far : 1) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
-  }
+  for (uint32_t i = 0; i < f->n; i++) f->d[i] = 0.01L * reach_of(f, i) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
+  for (uint32_t i = 0; i < f->n; i++)
+    if (is_held(f, i)) f->symbols[component(f, i)] += f->d[i];
   int flat = !descend(f);
   slopes(f);
   flat |= is_flat(f, k);

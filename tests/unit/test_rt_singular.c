@@ -10,7 +10,7 @@
 
 #include "core/core.h"
 
-/* c1 = x, c2 = x + y^2/2: of rows of length 1, what is left of the second beside the first is y/sqrt(1 + y^2). */
+/* x' = 0, x' + y y' = 0: of rows of length 1, what is left of the second beside the first is y/sqrt(1 + y^2). */
 static int matrices(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *A, double *M, double *w)
 {
   (void)t, (void)v, (void)z, (void)p, (void)u, (void)w;
@@ -22,8 +22,8 @@ static int matrices(double t, const double *q, const double *v, const double *z,
 }
 
 static const lag_entry entries[] = {{0, 0}, {1, 0}, {1, 1}}, diagonal[] = {{0, 0}, {1, 1}};
-static const lag_constraint named[] = {{"first", 1, "m", 3}, {"second", 1, "m", 4}};
-static const lag_constraints held = {.n = 2, .nholonomic = 2, .of = named, .njacobian = 3, .jacobian = entries, .nmass = 2, .mass = diagonal, .matrices = matrices};
+static const lag_constraint named[] = {{"first", 0, "m/s", 3}, {"second", 0, "m/s", 4}};
+static const lag_constraints held = {.n = 2, .nholonomic = 0, .of = named, .njacobian = 3, .jacobian = entries, .nmass = 2, .mass = diagonal, .matrices = matrices};
 static const lag_model model = {.name = "m", .nq = 2, .constraints = &held}, free_model = {.name = "f", .nq = 2};
 
 static void independence_is_what_is_left_of_a_row(void **state)
