@@ -144,6 +144,16 @@ int lag_sim_is_redundant(const lag_sim *s, int k)
   return s->redundant[k] != 0.0;
 }
 
+int lag_sim_rank_beside(const lag_sim *s)
+{
+  return (int)s->run->beside;
+}
+
+int lag_sim_is_loose(const lag_sim *s, int i)
+{
+  return s->loose[i] != 0.0;
+}
+
 double lag_sim_output_info(const lag_sim *s, int i, char *name, size_t nname, char *unit, size_t nunit)
 {
   if (s->scene->nout == 0) {

@@ -413,7 +413,7 @@ double lag_remainder_of(int n, int r, const double *Q, double *x)
 
 /* Which constraints follow here from those before them: marks[n], and how many do not. What counts as nothing left is what counts so for
  * corrections in lag_kkt.h: a start is found at a singular place to sqrt(eps) only. */
-static int rank(Start *w, double *marks)
+static int rank(Start *w, double *marks, double *held)
 {
   const double least = cbrt(DBL_EPSILON);
   const lag_constraints *of = w->of;
@@ -438,7 +438,46 @@ static int rank(Start *w, double *marks)
     }
     r += left > least;
   }
+  memset(held, 0, (size_t)nq * sizeof *held);
+  for (int i = 0; i < r * nq; i++) {
+    held[i % nq] += Q[i] * Q[i];
+  }
   return r;
+}
+
+/* y := a place a hundredth beside here[n of the state], where all hold; whether there is one. */
+static int go_beside(Start *w, const double *here)
+{
+  choose_free(w, ALL);
+  for (int i = 0; i < w->nq; i++) {
+    w->y[i] += 0.01 * lag_reach(w->pb, here, 1, i) * (0.5 + fmod(0.618033988749894848 * (i + 1), 1));
+  }
+  return descend(w);
+}
+
+/* Where constraints follow from others at the start: whether beside it, too. */
+static void look_beside(Start *w)
+{
+  lag_sim *s = w->sim;
+  const double part = 0.05; /* of a coordinate's direction: twice what a hundredth beside turns it */
+  double *here = w->best, *held = s->loose, *held_beside = w->full, *marks = w->other; /* full is scratch of go_beside */
+
+  s->run->rank = s->run->beside = rank(w, s->redundant, held);
+  if (s->run->rank >= w->of->n - w->pb->model->ncontacts || w->nq < 2) {
+    memset(s->loose, 0, (size_t)w->nq * sizeof(double));
+    return;
+  }
+  memcpy(here, w->y, (size_t)w->pb->n * sizeof *here);
+  w->holonomic = 1;
+  w->n = count_stated(w->of);
+  look_at_terms(w);
+  int r = go_beside(w, here) ? rank(w, marks, held_beside) : 0;
+  int singular = r > s->run->rank;
+  s->run->beside = singular ? r : s->run->rank;
+  for (int i = 0; i < w->nq; i++) {
+    s->loose[i] = singular && held_beside[i] - held[i] > part;
+  }
+  memcpy(w->y, here, (size_t)w->pb->n * sizeof *here);
 }
 
 void lag_note_redundant(lag_sim *s)
@@ -542,7 +581,7 @@ int lag_consistent(lag_sim *s)
       keep_rounding_out(&w);
       memcpy(s->now, w.y, bytes);
       rc = lag_keep(s, s->scene->t0, s->now);
-      s->run->rank = rank(&w, s->redundant);
+      look_beside(&w);
       lag_note_redundant(s);
       rc = rc ? rc : check_inertia(&w);
     }

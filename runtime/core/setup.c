@@ -17,7 +17,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  size_t fixed = RUN_DOUBLES + np + nu + 5 * n + 2 * nc + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
+  size_t fixed = RUN_DOUBLES + np + nu + 5 * n + (size_t)s->pb.nq + 2 * nc + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
   size_t ncharges = (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double);
   lag_problem sized = s->pb;
   sized.opt = opt;
@@ -35,10 +35,10 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  double *charges, **const parts[] = {&s->p, &s->hold, &s->begin, &s->asked, &s->redundant, &s->kept, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
+  double *charges, **const parts[] = {&s->p, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
                             &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->mon_first, &s->mon_peak,
                             &s->exact_peak, &charges, &s->method_work};
-  const size_t sizes[] = {np, nu, n, n, nc, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, ncharges, 0};
+  const size_t sizes[] = {np, nu, n, n, nc, (size_t)s->pb.nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, ncharges, 0};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];

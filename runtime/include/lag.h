@@ -338,6 +338,10 @@ double lag_sim_begin(const lag_sim *sim, int i);
 /* How many constraints are independent at the start; whether number k follows from others there (not before the first advance). */
 int lag_sim_rank(const lag_sim *sim);
 int lag_sim_is_redundant(const lag_sim *sim, int k);
+/* How many are independent a hundredth beside the start, if that is more: a singular start, as of bars in one line. Whether the velocity of
+ * coordinate i is determined there and not at the start, which then decides on which of several branches the motion goes on. */
+int lag_sim_rank_beside(const lag_sim *sim);
+int lag_sim_is_loose(const lag_sim *sim, int i);
 /* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI units
  * unlike lag_sim_set; fn NULL: as the model says again. It must be a function of t alone: methods, events and outputs
  * call it for times that go forth and back, more than once for some. What depends on the motion is a force of the

@@ -5,6 +5,7 @@
 
 #include "base/dense.h"
 #include "base/methods.h"
+#include "mech/beside.h"
 #include "mech/frobenius.h"
 #include "mech/noether.h"
 #include "mech/start.h"
@@ -43,6 +44,18 @@ static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, 
   if (!counts[k]) sb_puts(out, has_slope(e, s, symbols, k) ? "; follows from those before it" : "; its derivatives vanish at the start");
   if (rank < e->constraints.n - e->m->contacts.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the least one is taken");
   sb_putc(out, '\n');
+}
+
+/* That the rank is another one beside the start. */
+static void show_singular(const Eqns *e, StateSolver *s, const long double *symbols, uint32_t rank, StrBuf *out) {
+  unsigned char *loose = ARENA_ARRAY(e->m->arena, unsigned char, e->n + 1);
+  uint32_t beside = rank_beside(e, s, symbols, loose), shown = 0;
+  if (beside <= rank) return;
+  sb_printf(out, "  singular start: the rank is %u beside it", beside);
+  for (uint32_t i = 0; i < e->n; i++)
+    if (loose[i]) sb_printf(out, "%s%s'", shown++ ? ", " : "; the constraints do not determine ", e->m->coords.at[i].name);
+  sb_printf(out, "%s\n", shown ? " here, and what the start says of them decides which way it goes" : "");
+  states_at(s, symbols);
 }
 
 static void show_integrability(const Eqns *e, StateSolver *s, StrBuf *out) {
@@ -227,6 +240,7 @@ int freedom_show(const Eqns *e, StrBuf *out) {
   sb_printf(out, "scene %s: %u degree%s of freedom", e->m->scene.name, free, plural(free));
   if (held) sb_printf(out, "; %u constraint%s, of rank %u at the start", held, plural(held), rank);
   sb_putc(out, '\n');
+  if (rank < held) show_singular(e, s, symbols, rank, out);
   for (uint32_t k = 0; k < all->n; k++) show_one(e, s, symbols, counts, k, rank, out);
   show_integrability(e, s, out);
   return 1;

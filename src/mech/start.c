@@ -63,6 +63,12 @@ static long double reach_of(const Finder *f, uint32_t i) {
   return most <= 0 || (most < 1 && is_angle) ? 1 : most;
 }
 
+long double start_reach(const Eqns *e, const long double *symbols, uint32_t i) {
+  long double *values = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
+  memcpy(values, symbols, (expr_symbol_count(e->g) + 1) * sizeof *values);
+  return reach_of(&(Finder){.e = e, .n = e->n, .symbols = values}, i);
+}
+
 /* size[k] := how large the terms are of which constraint k is the sum. */
 static void find_terms(Finder *f, long double *size) {
   const Entries *A = &f->e->constraints.A;

@@ -133,9 +133,19 @@ constraint cy: l*sin(a) + l*sin(b) = l*sin(c)
 scene s { start a = 0 [rad]; span 0.1 [s] }
 END
 check "a linkage at its dead centre" taken 1 2 dead
+# a' + b' = c' of any ratio there; beside it b' = 0, or a' = 0
+singular() { says "singular start: the rank is 2 beside it; the constraints do not determine a', b', c' here" "$TMP/check" && says "1 independent at the start; singular: 2 beside it, and what the start says of a', b', c' decides which way it goes" "$TMP/run"; }
+check "and that its velocities are not determined" singular
+checks "$TMP/dead.lag"
 check "is said to be there" says 'constraint cx (line 5): holonomic; its derivatives vanish at the start' "$TMP/check"
 one 'constraint c: x^2 + y^2 = l^2' 'scene s { start x = 0 [m], y = 0 [m]; span 0.1 [s] }'
 check "in the middle of a circle" taken 1 1 one
+one 'constraint a: x = 0 [m]' 'constraint b: 2*x = 0 [m]' 'scene s { start y = 1 [m]; span 1 [s] }'
+regular() { taken 1 2 one && ! grep singular "$TMP/check" "$TMP/run"; }
+check "what follows from others everywhere is not singular" regular
+one "constraint a: x*x' + y*y' = l*x*th'" 'scene s { span 1 [s] }'
+velocities() { taken 0 1 one && says "singular start: the rank is 1 beside it; the constraints do not determine x', y'" "$TMP/check" && says "singular: 1 beside it, and what the start says of x', y'" "$TMP/run"; }
+check "a constraint on velocities that is none at the start" velocities
 
 # ---- contacts
 model floor <<'END'
