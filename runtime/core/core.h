@@ -124,9 +124,6 @@ int lag_observe(lag_sim *sim, double t, const double *y, double *out);
 double lag_independence(lag_problem *pb, double t, const double *y, int *weakest);
 /* x := what is left of row x[n] beside the orthonormal rows Q[r * n]. Returns its length. */
 double lag_remainder_of(int n, int r, const double *Q, double *x);
-/* project.c: how far component i of q (holonomic) or v may be from 0: as far as one of the same unit is; of an angle, 1. A velocity at rest is
- * rounding: it is compared with one that leads through such a distance in the time of the run. */
-double lag_reach(const lag_problem *pb, const double *y, int holonomic, int i);
 /* weightless.c: the coordinate that moves most along a direction d with K d = 0, K[n n] being a mass matrix and a positive combination of
  * what constraints fix, or -1 where there is none. K is destroyed; x[n] and column[n] are scratch. */
 int lag_weightless(int n, double *K, double *x, int *column);

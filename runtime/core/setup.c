@@ -263,7 +263,8 @@ static int check_method(lag_sim *s, const lag_method *method)
                     m->constraints->of[0].name);
   }
   if (m->constraints && (has & LAG_MASSLESS) && (needs & LAG_METHOD_VARIATION)) {
-    return lag_fail(s, LAG_EMETHOD, "method %s finds velocities from momenta, and %s has no inertia; rk45 and dop853 can", method->name, massless(m));
+    return lag_fail(s, LAG_EMETHOD, "method %s finds velocities from momenta, and %s has no inertia in this program; `lagc build --method %s` makes one where it has; "
+                    "rk45 and dop853 need none", method->name, massless(m), method->name);
   }
   if ((needs & LAG_METHOD_FLOWS) && m->nq == 0) {
     needs = (needs & ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION)) | LAG_METHOD_JACOBIAN;
@@ -515,6 +516,7 @@ int lag_setup_start(lag_sim *s)
   if (lag_not_finite(n, s->now) >= 0) {
     return lag_fail(s, LAG_ENAN, "the start is not finite");
   }
+  memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* what is asked for says how large things are */
   if ((rc = lag_consistent(s)) != 0) {
     return rc;
   }

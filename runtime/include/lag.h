@@ -152,6 +152,10 @@ int lag_creeps(lag_problem *pb, lag_creep *c, double begin, double t, const doub
 /* The largest of |x[j]| over the coordinates (or their velocities) that have the unit of coordinate i: what rounding in it is measured
  * with, where it is small itself. */
 double lag_size_like(const lag_problem *pb, const double *x, int i);
+/* How far component i of q (holonomic) or of v may be from 0: as far as one of the same unit is; of an angle, 1. Of a run that began at 0, where
+ * there is no length, at least a millionth; all being 0, 1. A velocity at rest is rounding: it is compared with one that leads through such
+ * a distance in the time of the run. */
+double lag_reach(const lag_problem *pb, const double *y, int holonomic, int i);
 /* Takes from a small change e[n] of the state y what lag_project would take back, to first order. */
 int lag_along_constraints(lag_problem *pb, double t, const double *y, double *e);
 

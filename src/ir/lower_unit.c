@@ -147,7 +147,7 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
 }
 
 int unit_shares(const IrUnit *a, const IrUnit *b) {
-  return strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
+  return a->flags == b->flags && strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
 }
 
 /* The four numbers of rotations that start where nobody said, less those that the scene gives. */

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "base/dense.h"
-#include "base/methods.h"
 #include "mech/beside.h"
 #include "mech/frobenius.h"
 #include "mech/noether.h"
@@ -160,13 +159,7 @@ static uint32_t reduced_mass(const Eqns *e, const StateValues *v, long double *s
 /* Whether each direction that constraints allow has inertia at the start. */
 static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbols) {
   const Model *m = e->m;
-  const MethodInfo *method = m->scene.method ? method_find(m->scene.method, strlen(m->scene.method)) : NULL;
   uint32_t n = e->n;
-  if (method && method->flags & METHOD_VARIATION && e->singular_mass) {
-    diag_error(m->diags, m->scene.method_span, "the method `%s` finds velocities from momenta, and the mass matrix is singular where no constraint holds", method->name);
-    diag_help(m->diags, "`rk45` and `dop853` can");
-    return 0;
-  }
   if (!e->mass_known || e->definite_mass) return 1;
   long double *scale = ARENA_ARRAY(m->arena, long double, n + 1), *basis = ARENA_ARRAY(m->arena, long double, (size_t)(n + 1) * n);
   long double *a = ARENA_ARRAY(m->arena, long double, (size_t)n * n + 1), *null = ARENA_ARRAY(m->arena, long double, n + 1);

@@ -1,4 +1,5 @@
 /* Singular places: steps that creep towards one end a run, others do not; what has neither inertia nor a constraint is named. */
+#include <float.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,10 +22,19 @@ static int matrices(double t, const double *q, const double *v, const double *z,
   return 0;
 }
 
+static int residuals(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *c, double *r, double *w)
+{
+  (void)t, (void)z, (void)p, (void)u, (void)c, (void)w;
+  r[0] = v[0];
+  r[1] = v[0] + q[1] * v[1];
+  return 0;
+}
+
 static const lag_entry entries[] = {{0, 0}, {1, 0}, {1, 1}}, diagonal[] = {{0, 0}, {1, 1}};
 static const lag_constraint named[] = {{"first", 0, "m/s", 3}, {"second", 0, "m/s", 4}};
-static const lag_constraints held = {.n = 2, .nholonomic = 0, .of = named, .njacobian = 3, .jacobian = entries, .nmass = 2, .mass = diagonal, .matrices = matrices};
-static const lag_model model = {.name = "m", .nq = 2, .constraints = &held}, free_model = {.name = "f", .nq = 2};
+static const lag_constraints held = {.n = 2, .nholonomic = 0, .of = named, .njacobian = 3, .jacobian = entries, .nmass = 2, .mass = diagonal, .matrices = matrices, .residuals = residuals};
+static const lag_var lengths[] = {{"x", "m", 1, 0, 0, 0}, {"y", "m", 1, 0, 0, 0}};
+static const lag_model model = {.name = "m", .nq = 2, .q = lengths, .constraints = &held}, free_model = {.name = "f", .nq = 2};
 
 static void independence_is_what_is_left_of_a_row(void **state)
 {
@@ -87,11 +97,27 @@ static void what_nothing_moves_is_named(void **state)
   assert_int_equal(lag_weightless(2, one, x, column), 1);
 }
 
+/* What has come to rest at 0 may have velocities of 1e-323 m/s, numbers with two bits: what they make of a constraint is no residual. */
+static void what_is_below_normal_numbers_is_no_residual(void **state)
+{
+  double held_room[100], begin[] = {1, 1, 0, 0}, times = -1, residual[] = {DBL_MIN / 0x1p50, DBL_MIN / 0x1p50};
+  const double still[] = {0, 0, DBL_MIN / 0x1p50, 0}, moves[] = {0, 0, DBL_MIN * 0x1p50, 0};
+  lag_problem pb = {.model = &model, .nq = 2, .n = 4, .held = held_room, .begin = begin, .span = 1};
+  (void)state;
+  assert_true(lag_held_room(&model) <= sizeof held_room / sizeof *held_room);
+  memset(held_room, 0, sizeof held_room);
+  assert_true(lag_worst_constraint(&pb, 0, still, 0, &times) >= 0);
+  assert_true(times == 0);
+  assert_true(lag_is_met(&pb, 0, still, 0, residual));
+  assert_int_equal(lag_worst_constraint(&pb, 0, moves, 0, &times), 0);
+  assert_true(times > 1e3); /* it is as large as its terms */
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(independence_is_what_is_left_of_a_row), cmocka_unit_test(steps_that_creep_end), cmocka_unit_test(other_short_steps_do_not),
-      cmocka_unit_test(what_nothing_moves_is_named),
+      cmocka_unit_test(what_nothing_moves_is_named), cmocka_unit_test(what_is_below_normal_numbers_is_no_residual),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
