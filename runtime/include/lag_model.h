@@ -327,6 +327,7 @@ typedef struct lag_scene {
   /* What a row of output holds besides t: out[nout]. */
   int nout;
   const lag_var *outputs;
+  const unsigned char *forces; /* [nout] 1: it contains multipliers or accelerations; NULL: none does */
   double every;       /* 0: the runtime's choice */
   int (*observe)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
                  const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);

@@ -36,6 +36,7 @@ struct Embedded {
   double begun;
   double per;       /* 1/n */
   double across;    /* the square of the error with what the projection takes back, where that was left out of it; or 0 */
+  lag_creep creep;
   _Alignas(LAG_WORK_ALIGN) double x[];
 };
 
