@@ -97,21 +97,21 @@ static double longest(const Embedded *w, const lag_problem *pb, double t)
     return w->h_option;
   }
   double seen = fabs(t - w->t_begin), most = w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
-  return pb->longest > 0 ? fmin(most, pb->longest) : most;
+  return pb->longest > 0 ? lag_lesser(most, pb->longest) : most;
 }
 
-/* The size of the next step; err2: the square of the error. One pow, for the error and for its memory. */
+/* The size of the next step; err2: the square of the error. One power, for the error and for its memory. */
 static void next_size(const EmbeddedPair *pair, Embedded *w, double err2, int retried)
 {
   const double least = 1e-8; /* what is remembered, squared; and where nothing is */
-  double power = pow(fmax(err2, 1e-24), pair->beta / 2), f = 1 / pair->safety;
-  double memory = err2 > least ? power : pow(least, pair->beta / 2);
+  double power = lag_rough_power(lag_greater(err2, 1e-24), -pair->beta / 2), f = pair->safety;
+  double memory = err2 > least ? power : lag_rough_power(least, -pair->beta / 2);
 
+  f /= w->err_power > 0 ? w->err_power : lag_rough_power(least, -pair->beta / 2);
   for (int i = 0; i < pair->ratio; i++) {
     f *= power;
   }
-  f /= w->err_power > 0 ? w->err_power : pow(least, pair->beta / 2);
-  w->h /= fmin(1 / pair->shrink_most, fmax(retried ? 1 : 1 / pair->grow_most, f));
+  w->h *= lag_greater(pair->shrink_most, lag_lesser(retried ? 1 : pair->grow_most, f));
   w->err_power = memory;
 }
 
@@ -186,7 +186,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
   int cause = LAG_ESTEP, retried = 0, tries = 0, rc = prepare(pair, w, pb, *t, y);
 
   while (rc == 0) {
-    double wanted = fmin(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row(pb, *t, &row);
+    double wanted = lag_lesser(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row(pb, *t, &row);
     int clipped = wanted * (1 + 1e-4) >= gap; /* what is left would be too short a step */
     w->h = clipped ? gap : wanted;
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_sum(*t, dt, &tc);
@@ -210,7 +210,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
     if (err <= 1 || (w->fixed != 0.0 && !isnan(err))) {
       if (w->fixed == 0.0) {
         next_size(pair, w, err, retried);
-        w->h = clipped ? fmax(w->h, wanted) : w->h;
+        w->h = clipped ? lag_greater(w->h, wanted) : w->h;
       }
       accept(w, pb, t, y, dt, tb, tc);
       return w->fixed == 0.0 && lag_creeps(pb, &w->creep, w->t_begin, tb, y) ? LAG_ESTEP : LAG_OK;

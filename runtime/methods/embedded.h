@@ -28,7 +28,7 @@ struct Embedded {
   double fixed;     /* 1: every step has the size h */
   double ready;     /* 1: K1 = f(t, y) is known; 2: it stands in the last stage */
   double have_extra; /* the stages of the dense output: 1 are known, -1 cannot be had, 0 not asked for yet */
-  double err_power; /* (error of the last accepted step)^beta, of the PI controller; 0: there is none */
+  double err_power; /* (error of the last accepted step)^-beta, of the PI controller; 0: there is none */
   double t0, dt;    /* the last step */
   double tc;        /* what t has lost to rounding */
   double t_begin;   /* where the first step began */

@@ -7,14 +7,6 @@ cd "$(dirname "$0")/../.." || exit 2
 . tests/tap.sh
 dir=$TMP/fix
 mkdir -p "$dir"
-says() { # STATUS WORDS COMMAND...
-  want=$1 words=$2
-  shift 2
-  "$@" >"$dir/out" 2>"$dir/err"
-  got=$?
-  cat "$dir/err"
-  [ $got = "$want" ] && grep -qF -e "$words" "$dir/err"
-}
 ops() { "$LAGC" derive "$1" --ops --fix "$2" | awk 'NR == 1 { a = $1 } NR == 2 { b = $3 } END { print a, b }'; } # with and without
 
 # ---- operations
