@@ -105,7 +105,8 @@ int lag_second_derivatives(lag_problem *pb, double t, const double *q, const dou
  * singular. Neither looks for NaN; after an error the matrices are undefined. */
 size_t lag_linear_work(const lag_model *model);
 
-/* J[(nq + nz) * n]: the derivatives of the accelerations and of the rates, the rows of f below the first nq, by
+/* Of models with constraints differences to half of the digits: good for a simplified Newton's method.
+ * J[(nq + nz) * n]: the derivatives of the accelerations and of the rates, the rows of f below the first nq, by
  * y. With the nq rows [0 | 1 | 0] above it J is df/dy. Calls lag_rhs once, and leaves f(t, y) in the first n of work. */
 int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
 
