@@ -27,6 +27,7 @@
 #include "help.h"
 #include "ir/lower.h"
 #include "mech/constrain.h"
+#include "mech/discontinuity.h"
 #include "mech/eqns.h"
 #include "mech/start.h"
 #include "mech/show.h"
@@ -247,6 +248,7 @@ static int lower_all(Compiler *c, Units *units) {
   for (uint32_t i = 0; i < scenes.n; i++) {
     Eqns *e = derive_asked(c, scenes.at[i]);
     if (!e) return 0;
+    if (command_simulates(c->o.command) && strcmp(c->picture.scene ? c->picture.scene : scenes.at[0], scenes.at[i]) == 0) discontinuity_warn(e);
     IrUnit *fresh = new_unit(c, e), *home = NULL;
     for (uint32_t k = 0; k < units->n && !home; k++)
       if (unit_shares(units->at[k], fresh)) home = units->at[k];

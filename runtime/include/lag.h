@@ -230,6 +230,9 @@ typedef struct lag_method {
   /* What is wrong with these values of the options, and what to write; NULL when they fit together. May itself be NULL. */
   const char *(*check)(const double *opt);
 
+  /* The order that steps have with these values; NULL: order. */
+  int (*order_of)(const double *opt);
+
   /* Why it cannot integrate this model with these values, and what to write; NULL when it can. May itself be NULL. */
   const char *(*refuses)(const lag_model *model, const double *opt);
 

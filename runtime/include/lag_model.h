@@ -162,7 +162,8 @@ typedef struct lag_constraints {
 enum {
   LAG_CONSERVED = 1,   /* it is 0 */
   LAG_BALANCED = 2,    /* it is what lag_charges.powers gives */
-  LAG_BY_FORMULAS = 4  /* the latter while inputs follow the model's formulas */
+  LAG_BY_FORMULAS = 4, /* the latter while inputs follow the model's formulas */
+  LAG_JUMPS = 8        /* it jumps where L does, or L is not invariant there; of no other kind then */
 };
 
 typedef struct lag_charge {

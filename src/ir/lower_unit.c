@@ -89,11 +89,11 @@ static void add_constraints(IrUnit *u, const Eqns *e) {
 /* Where the energy is the only charge, and conserved, there is nothing to add. */
 static void add_charges(IrUnit *u, const Eqns *e) {
   const Prog *powers = e->ncharges ? lower_powers(e) : NULL;
-  if (e->ncharges < 2 && !powers) return;
+  if (e->ncharges < 2 && !powers && !e->energy_jumps) return;
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
     int conserved = i ? expr_is_zero(e->g, c->proof.power) : e->conserves_energy;
-    unsigned flags = c->proof.power_unknown ? 0 : (conserved ? 1u : 0) | 2u | (c->proof.by_formulas ? 4u : 0);
+    unsigned flags = c->proof.jumps ? 8u : c->proof.power_unknown ? 0 : (conserved ? 1u : 0) | 2u | (c->proof.by_formulas ? 4u : 0);
     vec_push(u->arena, &u->charges, ((IrCharge){c->name, c->unit.text, flags}));
   }
   u->charge_values = e->ncharges > 1 ? lower_charges(e) : NULL;

@@ -7,6 +7,7 @@
 #include "mech/charges.h"
 #include "mech/constrain.h"
 #include "mech/degree.h"
+#include "mech/discontinuity.h"
 #include "mech/first_order.h"
 #include "mech/lagrange.h"
 #include "mech/lend.h"
@@ -220,9 +221,10 @@ static void classify(Eqns *e) {
     e->smooth &= op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_MIN && op != EX_MAX;
   }
   unsigned lagrangian = kinds_of_lagrangian(e);
-  e->conserves_energy = m->lagrangian && !m->forces.n && !m->dissipation && !inputs && constraints_do_no_work(e) &&
+  e->energy_jumps = e->energy && discontinuities_of(e, e->energy).n > 0;
+  e->conserves_energy = m->lagrangian && !e->energy_jumps && !m->forces.n && !m->dissipation && !inputs && constraints_do_no_work(e) &&
                         !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_INPUT)));
-  e->loses_energy = loses_energy(e, lagrangian);
+  e->loses_energy = !e->energy_jumps && loses_energy(e, lagrangian);
 }
 
 /* Derivatives may multiply numbers past the range of a double, and terms of different statements cancel. */

@@ -350,6 +350,7 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   m->diags = ast->diags;
   m->arena = a;
   m->g = b->g;
+  m->written = expr_map(a);
   m->dims = b->dims;
   m->builder = b;
   m->time = declare_symbol(b, SYM_TIME, 0, intern(ast->names, "t"), SIGN_UNKNOWN, dim_base(b->dims, DIM_TIME));

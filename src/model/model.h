@@ -216,6 +216,7 @@ typedef struct {
   VEC(Output) observes;
   Scene scene;
   VEC(FoundUnit) found;    /* names that were declared without a unit, where the equations tell it */
+  ExprMap written; /* comparisons and functions that may jump, as AstId */
   SymId energy_sym; /* stands for the energy p q' - L in outputs and expects, until mech knows it */
   struct Builder *builder; /* what model_reresolve needs */
 } Model;
