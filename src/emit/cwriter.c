@@ -463,12 +463,11 @@ void cwriter_instruction(Writer *w, Slot s) {
     cnest_write(w, i);
     return;
   }
-  if (i->op == IR_LOAD || write_abreast(w, s) || cwriter_pair(w, s, i, &w->p->ins.at[w->pair[s]])) return;
+  if (ir_is_leaf(i->op) || write_abreast(w, s) || cwriter_pair(w, s, i, &w->p->ins.at[w->pair[s]])) return;
   Piece x = cwriter_spell(w, i);
-  int leaf = i->op == IR_CONST || i->op == IR_PI;
   int told = !i->name || (w->stored[s] && strcmp(i->name, w->stored[s]) == 0); /* by the store's comment */
   int part = w->uses[s] <= 1 && told && cwriter_is_short(w, x) && i->op != IR_SOLVED;
-  if (leaf || part) w->piece[s] = x;
+  if (part) w->piece[s] = x;
   else cwriter_declare(w, s, cwriter_name(w, i), x);
 }
 
@@ -533,6 +532,14 @@ static int stores_apart(const Prog *p, const CStyle *style) {
   return 1;
 }
 
+void cwriter_new_pieces(Writer *w) {
+  w->piece = ARENA_ARRAY(w->a, Piece, w->p->ins.n);
+  for (Slot s = 1; s < w->p->ins.n; s++) {
+    const Ins *i = &w->p->ins.at[s];
+    if (i->op == IR_CONST || i->op == IR_PI) w->piece[s] = cwriter_spell(w, i);
+  }
+}
+
 static void write_code(Writer *w) {
   uint32_t next = 0; /* loop */
   for (Slot s = 1; s < w->p->ins.n; s++) {
@@ -547,7 +554,7 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   uint32_t from = p->nests.n ? 0 : style->seldom_called ? ROLL_SELDOM_FROM : ROLL_FROM; /* what has nests is long */
   w.rolls = roll_find(p, arrays_by_index(style), from, stores_apart(p, style));
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
-  w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
+  cwriter_new_pieces(&w);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
   for (uint32_t k = 0; k < p->solves.n; k++)
     if (p->solves.at[k].m) cnames_reserve(&w.names, "i"); /* write_constrained counts with it */

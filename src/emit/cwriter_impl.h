@@ -46,6 +46,9 @@ void cwriter_flush_title(Writer *w);
 /* What an array that is read is called. */
 const char *cwriter_array(const Writer *w, IrArray array);
 
+/* Before a program is written. Numbers need no statement, and are spelled now: in a loop they may stand in a later turn than their use. */
+void cwriter_new_pieces(Writer *w);
+
 /* An instruction that is in no loop of cloop.c. */
 void cwriter_instruction(Writer *w, Slot s);
 

@@ -81,11 +81,33 @@ kinetic = sum(i in 1..N, x[i]'^2/2)
 potential = sum(i in 1..N, k*sqrt(1 + x[i]^2)) + sum(i in 3..N, if(x[i] > x[i-2], (x[i] - x[i-2])^2, 0))
 for i in 2..N { force x[i] = -c[i]*max(x[i]', 0.1)*sign(x[i-1]) }
 END
+# A number that only later turns' places know; a value of the first turn that all turns take.
+cat >"$TMP/m/comb.lag" <<'END'
+model comb
+const N = 40
+coord th[N], s[N]
+param m = 1 > 0, n = 0.3 > 0
+let x[0] = 0, y[0] = 0
+let x[i in 1..N] = x[i-1] + sin(th[i])
+let y[i in 1..N] = y[i-1] - cos(th[i])
+let u[i in 1..N] = x[i] + 0.5*sin(s[i])
+let w[i in 1..N] = y[i] - 0.5*cos(s[i])
+kinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2) + n/2*(u[i]'^2 + w[i]'^2))
+potential = sum(i in 1..N, m*y[i] + n*w[i])
+END
+cat >"$TMP/m/star.lag" <<'END'
+model star
+const N = 600
+coord x[N]
+param k[N] = 1, c[N] = 1
+kinetic = sum(i in 1..N, x[i]'^2/2)
+for i in 1..N { force x[i] = c[i]*(tanh(x[i]) + k[i])*tanh(x[1]) }
+END
 models=$(ls "$TMP"/m/*.lag)
 
 # ---- what is emitted
 emit_all() {
-  n=0
+  n=10 # of two digits, as files are sorted
   for m in $models; do
     n=$((n + 1))
     "$LAGC" emit "$m" -o "$TMP/c/m$n.c" || return 1
@@ -106,6 +128,8 @@ check "links in space" has_loops spatial 800
 check "pairs of 20 bodies" has_loops bodies 70
 check "24 bodies by hand" has_loops bodies_by_hand 80
 check "choices and functions" has_loops odd 120
+check "side rods along a chain" has_loops comb 330
+check "all pulled by the first" has_loops star 20
 in_one_loop() { "$LAGC" derive "$TMP/m/string_500.lag" --format c | grep -q '^    a\[k + [0-9]*\] = '; }
 check "a string's accelerations are stored where they are computed" in_one_loop
 small() { "$LAGC" emit models/string.lag hard -DN=10000 -o "$TMP/string.c" && [ "$(wc -c <"$TMP/string.c")" -lt 65536 ]; }
