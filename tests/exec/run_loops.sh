@@ -103,6 +103,23 @@ param k[N] = 1, c[N] = 1
 kinetic = sum(i in 1..N, x[i]'^2/2)
 for i in 1..N { force x[i] = c[i]*(tanh(x[i]) + k[i])*tanh(x[1]) }
 END
+# A mass matrix without zeros, and one of a band that may be indefinite.
+cat >"$TMP/m/full.lag" <<'END'
+model full
+const N = 30
+coord x[N]
+param m = 1 > 0
+kinetic = sum(i in 1..N, m/2*x[i]'^2) + sum(i in 1..N, x[i]')^2/300
+potential = sum(i in 1..N, x[i]^4/4)
+END
+cat >"$TMP/m/band.lag" <<'END'
+model band
+const N = 30
+coord x[N]
+param m = 1 > 0, c = 0.1
+kinetic = sum(i in 1..N, m/2*x[i]'^2) + sum(i in 2..N, c*x[i]*x[i]'*x[i-1]')
+potential = sum(i in 1..N, x[i]^4/4)
+END
 models=$(ls "$TMP"/m/*.lag)
 
 # ---- what is emitted
@@ -130,6 +147,9 @@ check "24 bodies by hand" has_loops bodies_by_hand 80
 check "choices and functions" has_loops odd 120
 check "side rods along a chain" has_loops comb 330
 check "all pulled by the first" has_loops star 20
+short() { lines=$("$LAGC" derive "$TMP/m/$1.lag" --format c | wc -l); [ "$lines" -le "$2" ] || { echo "$lines lines"; return 1; }; }
+check "a full mass matrix: a line or two a row" short full 220
+check "a band: zeros take none" short band 320
 in_one_loop() { "$LAGC" derive "$TMP/m/string_500.lag" --format c | grep -q '^    a\[k + [0-9]*\] = '; }
 check "a string's accelerations are stored where they are computed" in_one_loop
 small() { "$LAGC" emit models/string.lag hard -DN=10000 -o "$TMP/string.c" && [ "$(wc -c <"$TMP/string.c")" -lt 65536 ]; }
