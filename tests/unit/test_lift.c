@@ -190,9 +190,17 @@ static const char *driven(Arena *a, int n) {
                          "dissipation = sum(i in 2..N, 0.1*(th[i]' - th[i-1]')^2)\nforce (x[N], y[N]) = (-x[N]', 2)\n", n);
 }
 
+/* A chain below a cart, whose velocity every term of the kinetic energy adds by itself; and a rotor that every link drives. */
+static const char *cart(Arena *a, int n) {
+  return arena_printf(a, "model m\nconst N = %d\ncoord c, th[N], w\nparam m = 1 > 0, g = 9.81 > 0\nlet x[0] = 0, y[0] = 0\n"
+                         "let x[i in 1..N] = x[i-1] + sin(th[i])\nlet y[i in 1..N] = y[i-1] - cos(th[i])\n"
+                         "kinetic = m*c'^2 + m*w'^2 + sum(i in 1..N, m/2*((x[i]' + c')^2 + y[i]'^2) + 0.1*(w' + th[i]')^2)\n"
+                         "potential = sum(i in 1..N, m*g*y[i])\n", n);
+}
+
 static void test_chains(void **state) {
   (void)state;
-  const Writer writers[] = {family, renamed, by_hand, relative, spatial, tree, squares, driven};
+  const Writer writers[] = {family, renamed, by_hand, relative, spatial, tree, squares, driven, cart};
   for (size_t i = 0; i < sizeof writers / sizeof *writers; i++) check_linear(writers[i]);
 }
 
