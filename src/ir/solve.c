@@ -255,6 +255,7 @@ void lower_solution(Lower *l, Slot *acc) {
   push_entries(l, &roots, &k->A);
   for (uint32_t i = 0; i < e->n; i++) vec_push(l->p->arena, &roots, s->f[i]);
   for (uint32_t i = 0; i < k->n; i++) vec_push(l->p->arena, &roots, k->demand[i]);
+  lower_grade(l, roots.at, roots.n);
   prog_title(l->p, k->n ? "mass matrix M, forces f, constraints A q'' = g" : "mass matrix M and forces f");
   lower_roots(l, roots.at, roots.n);
   l->multipliers = ARENA_ARRAY(l->p->arena, Slot, k->n + 1);

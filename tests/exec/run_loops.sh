@@ -120,6 +120,15 @@ param m = 1 > 0, c = 0.1
 kinetic = sum(i in 1..N, m/2*x[i]'^2) + sum(i in 2..N, c*x[i]*x[i]'*x[i-1]')
 potential = sum(i in 1..N, x[i]^4/4)
 END
+# Masses and springs that are graded: in lowest terms their numbers have gaps.
+cat >"$TMP/m/graded.lag" <<'END'
+model graded
+const N = 600
+coord u[N]
+param m = 1 > 0, k = 1
+kinetic = sum(i in 1..N, m*(1 + 0.1*i)/2*u[i]'^2)
+potential = sum(i in 2..N, k*(1 - i/(2*N))/2*(u[i] - u[i-1])^2) + k/2*u[1]^2
+END
 models=$(ls "$TMP"/m/*.lag)
 
 # ---- what is emitted
@@ -147,6 +156,7 @@ check "24 bodies by hand" has_loops bodies_by_hand 80
 check "choices and functions" has_loops odd 120
 check "side rods along a chain" has_loops comb 330
 check "all pulled by the first" has_loops star 20
+check "masses and springs graded along a string" has_loops graded 45
 short() { lines=$("$LAGC" derive "$TMP/m/$1.lag" --format c | wc -l); [ "$lines" -le "$2" ] || { echo "$lines lines"; return 1; }; }
 check "a full mass matrix: a line or two a row" short full 220
 check "a band: zeros take none" short band 320
