@@ -40,7 +40,7 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 enum {
   LAG_OK = 0,
   LAG_ERETRY = 1,     /* outside the domain here: a smaller step may help */
-  LAG_ESINGULAR = -1  /* the mass matrix is singular at this state; with LAG_FIRST_ORDER, the two-form */
+  LAG_ESINGULAR = -1  /* the mass matrix is singular at this state, or not positive definite as elsewhere; with LAG_FIRST_ORDER, the two-form */
 };
 
 /* Facts about a model, with the inputs that it gives itself, that the compiler proved. */
