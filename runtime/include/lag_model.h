@@ -40,7 +40,7 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 enum {
   LAG_OK = 0,
   LAG_ERETRY = 1,     /* outside the domain here: a smaller step may help */
-  LAG_ESINGULAR = -1  /* the mass matrix is singular at this state; with LAG_FIRST_ORDER, the two-form */
+  LAG_ESINGULAR = -1  /* the mass matrix is singular at this state, or not positive definite as elsewhere; with LAG_FIRST_ORDER, the two-form */
 };
 
 /* Facts about a model, with the inputs that it gives itself, that the compiler proved. */
@@ -328,6 +328,7 @@ typedef struct lag_scene {
   /* What a row of output holds besides t: out[nout]. */
   int nout;
   const lag_var *outputs;
+  const unsigned char *forces; /* [nout] 1: it contains multipliers or accelerations; NULL: none does */
   double every;       /* 0: the runtime's choice */
   int (*observe)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
                  const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);

@@ -169,21 +169,64 @@ double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, l
   return !isfinite(both) ? NAN : late ? (both > 0 ? fine * (fine / both) : 0) : fine;
 }
 
-/* Whether to try a step again that is good along the constraints, but has gone so far across them that the square of that counts. Its
- * stages came near a position where constraints become dependent; of another size it will pass it better. Estimates are too small there,
- * by a factor of some ten, squared. That comes to an end: steps that shrink until their estimates are good would never pass. */
-static int lands_badly(const Embedded *w, const lag_problem *pb, int *tries)
-{
-  const double factor = 100;
-  enum { MOST = 6 };
+/* The search for a step that passes a position where constraints become dependent. A step whose stages came near one goes far across the
+ * constraints; and one that ends near it hands the next a derivative that says little. What passes better may be shorter, where the
+ * step ends there, or longer, where it begins there. Of the sizes that are tried the first is taken that is good, or else the least bad of
+ * those whose error is small along the constraints: steps that shrink until all is good would never pass. */
+typedef struct Landing {
+  double base, base_err; /* the size that was to be, and its error, squared */
+  double best, least;    /* of those with a small error, the least bad, and how bad it is */
+  int tries;
+} Landing;
 
-  return factor * w->across * pb->tol > 1 && ++*tries <= MOST;
+enum { LANDING_TRIES = 8 };
+
+/* How bad a step is for the constraints, which is more than 1 for one that should be of another size; w->across is not 0 where it came
+ * near a position where they become dependent. */
+static double badness(const Embedded *w, lag_problem *pb, double tb)
+{
+  const double factor = 100;  /* estimates of what goes across are too small there, by a factor of some ten, squared */
+  const double weight = 1e-2; /* of the derivative at the end in the next step; its error is that of rounding over s^2 */
+  int weakest;
+
+  if (w->across == 0.0) {
+    return 0;
+  }
+  double across = factor * w->across * pb->tol, s = lag_independence(pb, tb, lag_embedded_array((Embedded *)w, pb, EMBEDDED_Y1), &weakest);
+  return lag_greater(across, weight * DBL_EPSILON / (pb->tol * s * s));
+}
+
+/* Whether to try a step of another size, in w->h, than the one to tb, whose error is *err, squared, or NaN. After all tries in vain *err is
+ * that of the first one, and w->h its size. */
+static int land_elsewhere(Landing *l, Embedded *w, lag_problem *pb, double tb, double *err)
+{
+  double bad = l->tries <= LANDING_TRIES ? badness(w, pb, tb) : 0;
+
+  if (!(bad > 1) && (l->tries == 0 || l->tries > LANDING_TRIES || *err <= 1)) {
+    return 0;
+  }
+  if (l->tries == 0) {
+    *l = (Landing){.base = w->h, .base_err = *err, .least = HUGE_VAL};
+  }
+  if (*err <= 1 && bad < l->least) {
+    l->best = w->h;
+    l->least = bad;
+  }
+  int k = l->tries++; /* 1/1.25, 1.25, 1/1.25^2, 1.25^2, ... */
+  if (k == LANDING_TRIES && l->best == 0.0) {
+    w->h = l->base;
+    *err = l->base_err;
+    return 0;
+  }
+  w->h = k < LANDING_TRIES ? l->base * pow(1.25, k % 2 ? (k + 1) / 2 : -(k + 2) / 2) : l->best;
+  return 1;
 }
 
 int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y)
 {
   Embedded *w = work;
-  int cause = LAG_ESTEP, retried = 0, tries = 0, rc = prepare(pair, w, pb, *t, y);
+  Landing landing = {.tries = 0};
+  int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
 
   while (rc == 0) {
     double wanted = lag_lesser(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row(pb, *t, &row);
@@ -202,9 +245,9 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
     if (rc < 0) {
       return rc;
     }
-    if (err <= 1 && w->fixed == 0.0 && lands_badly(w, pb, &tries)) {
-      w->h *= 0.8;
+    if (w->fixed == 0.0 && land_elsewhere(&landing, w, pb, tb, &err)) {
       pb->rejected++;
+      rc = 0;
       continue;
     }
     if (err <= 1 || (w->fixed != 0.0 && !isnan(err))) {
@@ -213,7 +256,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
         w->h = clipped ? lag_greater(w->h, wanted) : w->h;
       }
       accept(w, pb, t, y, dt, tb, tc);
-      return LAG_OK;
+      return w->fixed == 0.0 && lag_creeps(pb, &w->creep, w->t_begin, tb, y) ? LAG_ESTEP : LAG_OK;
     }
     if (isnan(err)) {
       cause = rc ? LAG_EDOMAIN : LAG_ENAN;
@@ -221,7 +264,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
       w->h /= 2;
     } else {
       cause = LAG_ESTEP;
-      w->h *= fmax(pair->shrink_most, pair->safety * pow(err, -0.5 * pair->ratio * pair->beta));
+      w->h *= fmax(pair->shrink_most, pair->safety * lag_rough_power(err, -0.5 * pair->ratio * pair->beta));
     }
     if (w->fixed != 0.0) {
       return too_small(pair, w, pb, *t, cause);

@@ -21,7 +21,8 @@ struct EmbeddedPair {
   double (*trial)(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc);
 };
 
-/* One block of doubles; x holds the arrays named below, each in a row of lag_embedded_row() doubles: n, and zeros. */
+/* One block of doubles; x holds the arrays named below, each in a row of lag_embedded_row() doubles: n, and zeros. It begins at a line of
+ * the cache: a pair across two lines is slow to read back, and the stages wait for little else. */
 struct Embedded {
   double h;         /* the next step to try, > 0; 0: not chosen yet */
   double h_option, h_max, atol;
@@ -35,7 +36,8 @@ struct Embedded {
   double begun;
   double per;       /* 1/n */
   double across;    /* the square of the error with what the projection takes back, where that was left out of it; or 0 */
-  double x[];
+  lag_creep creep;
+  _Alignas(LAG_WORK_ALIGN) double x[];
 };
 
 /* COMP: what y has lost to rounding; COMP1: the same after the step. K1: the first of stages + extra arrays. */

@@ -145,7 +145,7 @@ void cnest_write(Writer *w, const Ins *i) {
   x.body.p = named_by_stems(w, n->body);
   x.body.uses = prog_uses(n->body);
   x.body.stored = ARENA_ARRAY(w->a, const char *, n->body->ins.n);
-  x.body.piece = ARENA_ARRAY(w->a, Piece, n->body->ins.n);
+  cwriter_new_pieces(&x.body);
   x.body.rolls = roll_find(n->body, 0, UINT32_MAX, 0);
   x.each = ARENA_ARRAY(w->a, unsigned char, n->body->ins.n);
   x.partial = ARENA_ARRAY(w->a, const char *, n->body->stores.n + 1);

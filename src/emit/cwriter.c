@@ -269,34 +269,6 @@ void cwriter_pivot(Writer *w, const Ins *i) {
   sb_putc(w->out, '\n');
 }
 
-/* What is not zero of a system with constraints, which is mostly zeros where it is large. */
-static void write_constrained(Writer *w, const Solve *k) {
-  const CStyle *st = w->style;
-  uint32_t b = k->m * k->n + k->n * k->n;
-  sb_printf(w->out, "  for (int i = 0; i < %u; i++) w[i] = %s_C(0.0);\n", b + solve_unknowns(k), st->prefix);
-  for (uint32_t j = 0; j < solve_elements(k); j++)
-    if (k->matrix[j]) sb_printf(w->out, "  w[%u] = %s;\n", j, cwriter_operand(w, k->matrix[j]).text);
-  for (uint32_t j = 0; j < solve_unknowns(k); j++)
-    if (k->rhs[j]) sb_printf(w->out, "  w[%u] = %s;\n", b + j, cwriter_operand(w, k->rhs[j]).text);
-  sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, %d, w));\n", st->prefix, st->kkt, k->n, k->m, k->coarse);
-}
-
-static void write_solve(Writer *w, const Ins *i) {
-  const Solve *k = &w->p->solves.at[i->index];
-  const CStyle *st = w->style;
-  uint32_t n = k->n, M = k->place, b = M + n * n;
-  cwriter_flush_title(w);
-  if (k->m) {
-    write_constrained(w, k);
-    return;
-  }
-  for (uint32_t j = 0; k->matrix && j < n * n; j++) sb_printf(w->out, "  w[%u] = %s;\n", M + j, cwriter_operand(w, k->matrix[j]).text);
-  if (st->factor && k->matrix) sb_printf(w->out, "  %s_PIVOT(%s(%u, w + %u));\n", st->prefix, st->factor, n, M);
-  for (uint32_t r = 0; r < n; r++) sb_printf(w->out, "  w[%u] = %s;\n", b + r, cwriter_operand(w, k->rhs[r]).text);
-  if (st->factor) sb_printf(w->out, "  %s(%u, w + %u);\n", st->substitute, n, M);
-  else sb_printf(w->out, "  %s_PIVOT(%s(%u, w, w + %u));\n", st->prefix, st->solve, n, b);
-}
-
 /* As many rows on a line as fit. */
 void cwrite_rows(const IrTable *table, const char *name, const char *indent, Arena *a, StrBuf *out) {
   const Spline *c = table->curve;
@@ -452,7 +424,7 @@ void cwriter_instruction(Writer *w, Slot s) {
     return;
   }
   if (i->op == IR_SOLVE) {
-    write_solve(w, i);
+    csolve_write(w, i);
     return;
   }
   if (i->op == IR_TABLE) {
@@ -463,12 +435,11 @@ void cwriter_instruction(Writer *w, Slot s) {
     cnest_write(w, i);
     return;
   }
-  if (i->op == IR_LOAD || write_abreast(w, s) || cwriter_pair(w, s, i, &w->p->ins.at[w->pair[s]])) return;
+  if (ir_is_leaf(i->op) || write_abreast(w, s) || cwriter_pair(w, s, i, &w->p->ins.at[w->pair[s]])) return;
   Piece x = cwriter_spell(w, i);
-  int leaf = i->op == IR_CONST || i->op == IR_PI;
   int told = !i->name || (w->stored[s] && strcmp(i->name, w->stored[s]) == 0); /* by the store's comment */
   int part = w->uses[s] <= 1 && told && cwriter_is_short(w, x) && i->op != IR_SOLVED;
-  if (leaf || part) w->piece[s] = x;
+  if (part) w->piece[s] = x;
   else cwriter_declare(w, s, cwriter_name(w, i), x);
 }
 
@@ -533,6 +504,14 @@ static int stores_apart(const Prog *p, const CStyle *style) {
   return 1;
 }
 
+void cwriter_new_pieces(Writer *w) {
+  w->piece = ARENA_ARRAY(w->a, Piece, w->p->ins.n);
+  for (Slot s = 1; s < w->p->ins.n; s++) {
+    const Ins *i = &w->p->ins.at[s];
+    if (i->op == IR_CONST || i->op == IR_PI) w->piece[s] = cwriter_spell(w, i);
+  }
+}
+
 static void write_code(Writer *w) {
   uint32_t next = 0; /* loop */
   for (Slot s = 1; s < w->p->ins.n; s++) {
@@ -547,12 +526,10 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   uint32_t from = p->nests.n ? 0 : style->seldom_called ? ROLL_SELDOM_FROM : ROLL_FROM; /* what has nests is long */
   w.rolls = roll_find(p, arrays_by_index(style), from, stores_apart(p, style));
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
-  w.piece = ARENA_ARRAY(a, Piece, p->ins.n);
+  cwriter_new_pieces(&w);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
-  for (uint32_t k = 0; k < p->solves.n; k++)
-    if (p->solves.at[k].m) cnames_reserve(&w.names, "i"); /* write_constrained counts with it */
   for (const char *const *g = style->globals; g && *g; g++) cnames_reserve(&w.names, *g);
-  if (p->solves.n) cnames_reserve(&w.names, "w");
+  if (p->solves.n) cnames_reserve(&w.names, "w"), cnames_reserve(&w.names, "i"); /* csolve_write counts with it */
   count_uses(&w);
   cloop_prepare(&w);
   cnest_prepare(&w);

@@ -1,4 +1,4 @@
-/* The inside of the writer of function bodies: cwriter.c writes statements, cloop.c loops, cnest.c loops inside loops. */
+/* The inside of the writer of function bodies: cwriter.c writes statements, csolve.c linear systems, cloop.c loops, cnest.c loops inside loops. */
 #ifndef LAGC_CWRITER_IMPL_H
 #define LAGC_CWRITER_IMPL_H
 
@@ -46,6 +46,9 @@ void cwriter_flush_title(Writer *w);
 /* What an array that is read is called. */
 const char *cwriter_array(const Writer *w, IrArray array);
 
+/* Before a program is written. Numbers need no statement, and are spelled now: in a loop they may stand in a later turn than their use. */
+void cwriter_new_pieces(Writer *w);
+
 /* An instruction that is in no loop of cloop.c. */
 void cwriter_instruction(Writer *w, Slot s);
 
@@ -76,6 +79,9 @@ int cloop_names_load(const Writer *w, Slot s);
 
 /* x[3]' -> x', D12 -> D, L2_11 -> L: what the turns' names have in common. */
 const char *cloop_stem(Arena *a, const char *name);
+
+/* An IR_SOLVE. */
+void csolve_write(Writer *w, const Ins *i);
 
 /* A whole loop. */
 void cloop_write(Writer *w, uint32_t loop);

@@ -12,7 +12,7 @@ static const char *const options =
   "/* Linkage. */\n"
   "#ifndef LAG_API\n#ifdef LAG_STATIC\n#define LAG_API static inline\n#else\n#define LAG_API\n#endif\n#endif\n\n"
   "/* What functions return. */\n"
-  "enum {\n  LAG_OK = 0,\n  LAG_ESINGULAR = -1 /* the mass matrix is singular at this state */\n};\n";
+  "enum {\n  LAG_OK = 0,\n  LAG_ESINGULAR = -1 /* the mass matrix is singular at this state, or not positive definite as elsewhere */\n};\n";
 
 /* --- indices --- */
 

@@ -102,8 +102,8 @@ static Slot lower_prod(Lower *l, Expr e) {
 static Slot scaled(Lower *l, Slot t, Num c) {
   c = num_abs(c);
   if (num_is_one(c)) return t;
-  int dyadic = l->p->reckons || !num_is_exact(c) || (c.den & (c.den - 1)) == 0;
-  int64_t more = !dyadic && l->denominator && l->denominator % c.den == 0 ? l->denominator / c.den : 1;
+  int64_t more = l->p->reckons ? 1 : lower_grade_of(l, c);
+  int dyadic = more == 1 && (l->p->reckons || !num_is_exact(c) || (c.den & (c.den - 1)) == 0);
   Slot up = number(l, dyadic ? c : num_int(c.num * more)), down = dyadic ? 0 : number(l, num_int(c.den * more));
   const Ins *i = &l->p->ins.at[t];
   const Ins *top = &l->p->ins.at[i->a];
@@ -363,6 +363,7 @@ IrSystem lower_system(const Eqns *e) {
 void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   const Model *m = l->e->m;
   int needed = 0;
+  lower_grade(l, roots, n);
   for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_MULTIPLIER);
   if (needed) {
     Slot *acc = ARENA_ARRAY(m->arena, Slot, l->e->n + 1);
@@ -555,33 +556,12 @@ Prog *lower_param(const Eqns *e, uint32_t i) {
   return prog_tidy(l.p);
 }
 
-/* A common multiple of the denominators of a long family's coefficients, i/(N + 1) say, when it is small: numerators that
- * count up make a loop. */
-static int64_t common_denominator(const Lower *l, const Scene *sc) {
-  enum { MANY = 64, LARGEST = 1 << 20 };
-  int64_t all = 1;
-  VEC(Expr) roots = {0};
-  if (sc->starts.n < MANY) return 0;
-  for (uint32_t i = 0; i < sc->starts.n; i++) vec_push(l->p->arena, &roots, sc->starts.at[i].value);
-  ExprList nodes = expr_topo(l->g, roots.at, roots.n);
-  for (uint32_t k = 0; k < nodes.n; k++) {
-    if (expr_op(l->g, nodes.at[k]) != EX_SUM) continue;
-    for (uint32_t i = 0; i < expr_pairs(l->g, nodes.at[k], EX_SUM); i++) {
-      Num c;
-      expr_pair(l->g, nodes.at[k], EX_SUM, i, &c);
-      if (!num_is_exact(c) || (c.den & (c.den - 1)) == 0 || all % c.den == 0) continue;
-      int64_t shared = num_gcd(num_int(all), num_int(c.den)).num;
-      if (c.den > LARGEST || all / shared * c.den > LARGEST) return 0;
-      all = all / shared * c.den;
-    }
-  }
-  return all > 1 ? all : 0;
-}
-
 Prog *lower_start(const Eqns *e) {
   Lower l = lower_new(e);
   const Scene *sc = &e->m->scene;
-  l.denominator = common_denominator(&l, sc);
+  VEC(Expr) values = {0};
+  for (uint32_t i = 0; i < sc->starts.n; i++) vec_push(e->m->arena, &values, sc->starts.at[i].value);
+  lower_grade(&l, values.at, values.n);
   for (uint32_t i = 0; i < sc->starts.n; i++) lower_roots(&l, &sc->starts.at[i].value, 1);
   for (uint32_t i = 0; i < sc->starts.n; i++) store_target(&l, sc->starts.at[i].target, sc->starts.at[i].value);
   return prog_tidy(l.p);

@@ -11,7 +11,8 @@ typedef struct {
   Prog *p;
   ExprMap slots;   /* node -> slot + 1 */
   ExprMap circular; /* u -> 1 where sin u or cos u is needed anyway */
-  int64_t denominator; /* a multiple of those of coefficients, which are written over it so that they count up evenly; 0: none */
+  int64_t denominator; /* a multiple of those of coefficients, which are written over it so that they count up evenly; 0: none: lower_grade */
+  ExprMap often;   /* coefficients, as nodes -> how many terms have them */
   int direct;       /* sin(a - b) is computed as it stands: for series, it is cheaper than the addition theorem */
   Factored *factored; /* where the solution leaves its factors, and x[n + ndefs] itself; NULL: nowhere */
   Slot *x;
@@ -20,6 +21,12 @@ typedef struct {
 } Lower;
 
 Lower lower_new(const Eqns *e);
+
+/* grade.c. Before anything is lowered: whether the coefficients of the roots are graded along a family, as masses m*(1 + i/N) are. */
+void lower_grade(Lower *l, const Expr *roots, uint32_t n);
+
+/* By what the parts of a coefficient (exact or not) are multiplied when it is lowered: 1 where it is not one of those. */
+int64_t lower_grade_of(Lower *l, Num c);
 
 /* Lowers all nodes that the roots need; then lower_slot gives each root's slot. */
 void lower_roots(Lower *l, const Expr *roots, uint32_t n);

@@ -147,7 +147,7 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
 }
 
 int unit_shares(const IrUnit *a, const IrUnit *b) {
-  return strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
+  return a->flags == b->flags && strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
 }
 
 /* The four numbers of rotations that start where nobody said, less those that the scene gives. */
@@ -220,6 +220,7 @@ void unit_add_scene(IrUnit *u, const Eqns *e) {
   for (uint32_t i = 0; i < e->noutputs; i++) {
     IrVar v = var_of(e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
     vec_push(m->arena, &s.outputs, v);
+    if (e->constraints.n) vec_push(m->arena, &s.forces, (expr_kinds(e->g, e->outputs[i].value) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0);
     if (output_is_plain(e, i)) vec_push(m->arena, &s.plain, v);
   }
   add_exact(&s, e);

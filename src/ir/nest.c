@@ -290,7 +290,7 @@ static Prog *with_nests(const Search *s) {
   for (Slot x = 1; x < p->ins.n; x++) {
     uint32_t piece = s->c.piece[x];
     Slot sum = s->c.sum[x];
-    int gone = (piece && s->nested[piece]) || (sum && sum != x && has_cell(&r, sum)) || nest_is_leaf(p->ins.at[x].op);
+    int gone = (piece && s->nested[piece]) || (sum && sum != x && has_cell(&r, sum)) || ir_is_leaf(p->ins.at[x].op);
     if (!gone) rebuild(&r, x);
   }
   for (uint32_t k = 0; k < p->stores.n; k++) {

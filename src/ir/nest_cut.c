@@ -7,7 +7,6 @@
 /* FEWEST_TERMS make a sum long; what more than FEW use is shared. */
 enum { FEWEST_TERMS = 8, FEW = 8 };
 
-int nest_is_leaf(IrOp op) { return op == IR_CONST || op == IR_PI || op == IR_LOAD; }
 int nest_is_sum(IrOp op) { return op == IR_ADD || op == IR_SUB || op == IR_NEG; }
 
 static IrOp op_of(const Cut *c, Slot s) { return c->p->ins.at[s].op; }
@@ -49,7 +48,7 @@ static void find_sums_in_common(Cut *c) {
     c->terms->n = 0;
     nest_terms(c, s, c->terms);
     for (uint32_t k = 0; k < c->terms->n && c->terms->n > 1; k++)
-      if (uses[c->terms->at[k].value] > 1 && !nest_is_leaf(op_of(c, c->terms->at[k].value)) && !c->hub[s]) c->hub[s] = HUB_COMMON;
+      if (uses[c->terms->at[k].value] > 1 && !ir_is_leaf(op_of(c, c->terms->at[k].value)) && !c->hub[s]) c->hub[s] = HUB_COMMON;
   }
 }
 
@@ -123,7 +122,7 @@ static void sign(Cut *c, Slot s) {
   } else if (i->op == IR_MUL) {
     uint64_t all = part_of_product(c, i->a) + part_of_product(c, i->b);
     c->sig[s] = c->joined[s] ? all : with(7, all);
-  } else if (nest_is_leaf(i->op)) {
+  } else if (ir_is_leaf(i->op)) {
     c->sig[s] = leaf_signature(i);
   } else {
     uint64_t h = with(with(8, (uint64_t)i->op), i->index);
@@ -154,7 +153,7 @@ static void order(Cut *c, Slot s) {
 
 static int can_share(const Cut *c, Slot s) {
   IrOp op = op_of(c, s);
-  return !nest_is_leaf(op) && !ir_is_condition(op) && !c->sum[s] && !c->joined[s] && op != IR_PIVOT && op != IR_TITLE;
+  return !ir_is_leaf(op) && !ir_is_condition(op) && !c->sum[s] && !c->joined[s] && op != IR_PIVOT && op != IR_TITLE;
 }
 
 static int by_value(const void *x, const void *y) {
@@ -198,7 +197,7 @@ static void join(Slot *parent, Slot a, Slot b) {
 /* Whether a value belongs to a piece. */
 static int in_piece(const Cut *c, Slot s) {
   IrOp op = op_of(c, s);
-  return s && !nest_is_leaf(op) && !c->sum[s] && op != IR_PIVOT && op != IR_TITLE;
+  return s && !ir_is_leaf(op) && !c->sum[s] && op != IR_PIVOT && op != IR_TITLE;
 }
 
 static const Slot MIXED = UINT32_MAX;

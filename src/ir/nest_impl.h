@@ -55,7 +55,6 @@ typedef struct {
   Shares *open, *terms;  /* scratch */
 } Cut;
 
-int nest_is_leaf(IrOp op);
 int nest_is_sum(IrOp op);
 
 /* Where pieces end, besides long sums and what many use: at sums with terms in common, at what is stored. */

@@ -137,6 +137,8 @@ int ir_is_scalar(IrArray array) { return array == ARR_T || array == ARR_ORDER ||
 
 int ir_is_condition(IrOp op) { return op >= IR_LT && op <= IR_OR; }
 
+int ir_is_leaf(IrOp op) { return op == IR_CONST || op == IR_PI || op == IR_LOAD; }
+
 /* --- passes --- */
 
 static void mark_needed(const Prog *p, unsigned char *need) {

@@ -154,6 +154,9 @@ void prog_name(Prog *p, Slot s, Name name);
 
 int ir_is_condition(IrOp op);
 
+/* A number or a load: what takes no instruction of its own. */
+int ir_is_leaf(IrOp op);
+
 /* reckon.c: what the instruction comes to where its operands are numbers, appended; NOT_A_SLOT: not to a number. */
 Slot prog_reckon(Prog *p, const Ins *i);
 int prog_is_number(const Prog *p, Slot s);

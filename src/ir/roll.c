@@ -6,8 +6,6 @@ enum { LONGEST_PERIOD = 400, FEWEST_TURNS = 8, MOST_BACK = 2 };
 
 Slot roll_operand(const Ins *i, int which) { return which == 0 ? i->a : which == 1 ? i->b : i->c; }
 
-static int is_leaf(IrOp op) { return op == IR_CONST || op == IR_PI || op == IR_LOAD; }
-
 /* Instructions of one class differ in their operands only. Solves, tables and titles are alike to none. */
 static uint32_t class_of(const Prog *p, Slot s) {
   const Ins *i = &p->ins.at[s];
@@ -16,7 +14,7 @@ static uint32_t class_of(const Prog *p, Slot s) {
   for (const char *c = i->text; c && *c; c++) h = (h ^ (unsigned char)*c) * 16777619u;
   for (int k = 0; k < 3; k++) { /* structural zeros and leaves stay what they are */
     Slot x = roll_operand(i, k);
-    h = h * 5 + (!x ? 0 : !is_leaf(p->ins.at[x].op) ? 1 : p->ins.at[x].op == IR_LOAD ? 2 + 8 * (uint32_t)p->ins.at[x].array : 3);
+    h = h * 5 + (!x ? 0 : !ir_is_leaf(p->ins.at[x].op) ? 1 : p->ins.at[x].op == IR_LOAD ? 2 + 8 * (uint32_t)p->ins.at[x].array : 3);
   }
   return h & 0x3fffffffu;
 }
@@ -76,6 +74,7 @@ static uint32_t turns_of(const Search *f, uint32_t begin, uint32_t period, uint3
   uint32_t last = most;
   Num unit = {0};
   int64_t multiple = 0;
+  if (s.kind == STEP_SAME && r->place[x] && place_of(r, x) >= begin) return 1; /* in the first turn it would be that turn's own */
   if (s.kind == STEP_NUMBER && !roll_number(first, &r->p->ins.at[y], &unit, &multiple)) return 1;
   if (s.kind == STEP_LOAD && (first->op != IR_LOAD || !(f->by_index >> first->array & 1))) return 1;
   if (s.kind == STEP_OWN && s.step != period) return 1;
@@ -293,7 +292,7 @@ Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early) {
   Slot *code = ARENA_ARRAY(a, Slot, p->ins.n);
   uint32_t *place = ARENA_ARRAY(a, uint32_t, p->ins.n), *cls = ARENA_ARRAY(a, uint32_t, p->ins.n), *loop = ARENA_ARRAY(a, uint32_t, p->ins.n);
   for (Slot s = 1; s < p->ins.n; s++) {
-    if (is_leaf(p->ins.at[s].op)) continue;
+    if (ir_is_leaf(p->ins.at[s].op)) continue;
     cls[r.n] = class_of(p, s);
     code[r.n++] = s;
     place[s] = r.n;

@@ -177,9 +177,21 @@ static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   for (uint32_t i = 0; i < n + m; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
 
+/* Whether more than two coordinates are coupled. */
+static int has_large_block(const Eqns *e) {
+  const uint32_t *label = label_blocks(e, 0);
+  uint32_t *size = ARENA_ARRAY(e->m->arena, uint32_t, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++)
+    if (++size[label[i]] > 2) return 1;
+  return 0;
+}
+
+/* Without pivoting, where M is definite. Where that hangs on values of parameters, small blocks are as cheap by the rules below, which
+ * work with any. */
 static int goes_straight(const Eqns *e) {
   const LinearSystem *s = &e->system;
-  return e->definite_mass && !e->constraints.n && (s->ndefs || s->ops <= STRAIGHT_OPS_A_VARIABLE * (uint64_t)e->n);
+  int definite = e->definite_mass || (e->definite_by_values && (s->ndefs || has_large_block(e)));
+  return definite && !e->constraints.n && (s->ndefs || s->ops <= STRAIGHT_OPS_A_VARIABLE * (uint64_t)e->n);
 }
 
 /* Each block that is factored by a loop gets a place of its own. */
@@ -243,6 +255,7 @@ void lower_solution(Lower *l, Slot *acc) {
   push_entries(l, &roots, &k->A);
   for (uint32_t i = 0; i < e->n; i++) vec_push(l->p->arena, &roots, s->f[i]);
   for (uint32_t i = 0; i < k->n; i++) vec_push(l->p->arena, &roots, k->demand[i]);
+  lower_grade(l, roots.at, roots.n);
   prog_title(l->p, k->n ? "mass matrix M, forces f, constraints A q'' = g" : "mass matrix M and forces f");
   lower_roots(l, roots.at, roots.n);
   l->multipliers = ARENA_ARRAY(l->p->arena, Slot, k->n + 1);

@@ -10,6 +10,7 @@
 #include "mech/discontinuity.h"
 #include "mech/first_order.h"
 #include "mech/lagrange.h"
+#include "mech/lend.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
 
@@ -266,6 +267,14 @@ static int check_method(const Eqns *e) {
   return 0;
 }
 
+/* The same model, with a term in L that is 0 on the constraints. */
+static Model *lends_inertia(const Eqns *e, Model *m) {
+  Expr lent = lend_inertia(e);
+  m->across = m->across ? expr_add(e->g, m->across, lent) : lent;
+  m->lends = 0;
+  return m;
+}
+
 Eqns *eqns_derive(Model *m) {
   Eqns *e = ARENA_NEW(m->arena, Eqns);
   e->m = m;
@@ -277,6 +286,7 @@ Eqns *eqns_derive(Model *m) {
   if (e->n) {
     lagrange_momenta_and_forces(e);
     if (!constrain(e) || !check_momenta(e) || !lagrange_check_mass(e)) return NULL;
+    if (m->lends && e->singular_mass) return eqns_derive(lends_inertia(e, m));
     derive_energy(e);
   }
   if (m->first_order && !first_order_derive(e, m)) return NULL;

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/dense.h"
+#include "mech/definite.h"
 #include "mech/lift.h"
 #include "mech/order.h"
 #include "sym/diff.h"
@@ -103,40 +104,6 @@ void eqns_derive_mass(Eqns *e) {
   e->mass_known = 1;
 }
 
-/* --- definiteness --- */
-
-static int moves(const Eqns *e, Expr x) { return (expr_kinds(e->g, x) & 1u << SYM_VEL) != 0; }
-
-/* Linear in q', as Coriolis and magnetic terms are: such a term has no part in the mass matrix. */
-static int is_linear(const Eqns *e, Expr term) {
-  ExprPartials d = expr_gradient_sparse(e->g, term, SYM_VEL, e->n);
-  for (uint32_t i = 0; i < d.n; i++)
-    if (moves(e, d.at[i].e)) return 0;
-  return 1;
-}
-
-/* Whether L is a sum of terms that are never negative, linear in velocities, or free of them: then a mass
- * matrix that is regular is positive definite, and no order of elimination needs pivoting. */
-static int lagrange_definite(const Eqns *e, const LinearSystem *s) {
-  ExprGraph *g = e->g;
-  Expr l = lagrange_regular(e);
-  for (uint32_t i = 0; i < expr_pairs(g, l, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(g, l, EX_SUM, i, &c);
-    if (!moves(e, term)) continue;
-    ExprSign sign = expr_sign(g, term);
-    int positive = num_sign(c) > 0 && (sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE);
-    if (!positive && !is_linear(e, term)) return 0;
-  }
-  /* A term that is at least 0 and quadratic in q' has a Hessian that is at least 0; quadratic means
-   * that the Hessian of the whole is free of velocities. */
-  for (uint32_t i = 0; i < s->H.n; i++)
-    if (moves(e, s->H.at[i].e)) return 0;
-  for (uint32_t i = 0; i < s->C.n; i++)
-    if (moves(e, s->C.at[i].e)) return 0;
-  return 1;
-}
-
 /* --- the form that is solved --- */
 
 /* Above this many entries, what lets share is worth more than what a short form saves. */
@@ -229,6 +196,13 @@ static int mass_is_hopeless(Eqns *e, LinearSystem *lifted) {
   return dense.ops > many;
 }
 
+static int is_definite(Eqns *e, const LinearSystem *s) {
+  Expr l = lagrange_regular(e);
+  e->definite_mass = mass_is_definite(e, s, l);
+  e->definite_by_values = e->definite_mass || mass_is_definite_by_values(e, s, l);
+  return e->definite_by_values;
+}
+
 /* M and f, or M as the product that the text of L is, which needs pivots that are known to be positive. */
 void lagrange_momenta_and_forces(Eqns *e) {
   uint64_t dense_ops, lifted_ops;
@@ -236,8 +210,7 @@ void lagrange_momenta_and_forces(Eqns *e) {
   LinearSystem lifted = lift_system(e);
   lifted.f = f;
   int constrained = e->m->constraints.n > 0; /* then M itself is needed */
-  if (!constrained && mass_is_hopeless(e, &lifted) && lagrange_definite(e, &lifted)) {
-    e->definite_mass = 1;
+  if (!constrained && mass_is_hopeless(e, &lifted) && is_definite(e, &lifted)) {
     e->system = best_form(e, &lifted, 0, &lifted_ops);
     e->f = e->system.f;
     return;
@@ -247,8 +220,7 @@ void lagrange_momenta_and_forces(Eqns *e) {
   e->mass_known = 1;
   e->f = dense.f;
   e->system = dense;
-  e->definite_mass = lagrange_definite(e, &dense);
-  if (constrained || !lifted.ndefs || !e->definite_mass) return;
+  if (!is_definite(e, &dense) || constrained || !lifted.ndefs) return;
   lifted = best_form(e, &lifted, LOOK_THROUGH, &lifted_ops);
   if (lifted_ops < dense_ops) e->system = lifted;
 }
@@ -313,7 +285,8 @@ static void report_singular(const Eqns *e, const long double *null) {
                m->constraints.n ? ", and no constraint moves it" : "");
     diag_help(d, "L contains no `%s'^2`; add its kinetic energy, or declare it as a `let` or a `state`", m->coords.at[last].name);
   } else {
-    diag_error(d, m->lagrangian_span, "the mass matrix is singular in every state: one combination of %s has no inertia", sb_text(&names));
+    diag_error(d, m->kinetic_span.end ? m->kinetic_span : m->lagrangian_span, "the mass matrix is singular in every state: one combination of %s has no inertia%s", sb_text(&names),
+               m->constraints.n ? ", and no constraint moves it" : "");
     diag_help(d, "the kinetic energy depends on fewer combinations of velocities than there are coordinates");
   }
 }

@@ -53,10 +53,12 @@ static uint64_t cost_of(const Elimination *e, uint32_t v) {
 }
 
 static uint64_t key_of(const Elimination *e, uint32_t v) {
+  enum { HUB = 8 };
   int definition = v >= e->n;
   switch (e->rule) {
     case ORDER_CHEAPEST: return cost_of(e, v);
     case ORDER_OUTERMOST: return definition ? (uint64_t)e->total - e->depth[v] : 0;
+    case ORDER_OUTERMOST_HUBS_LAST: return definition ? (uint64_t)e->total - e->depth[v] : e->H.rows[v].n > HUB ? e->total + cost_of(e, v) : 0;
     case ORDER_DEFINITIONS_FIRST: return definition ? 0 : 1 + cost_of(e, v);
   }
   return 0;
@@ -158,9 +160,15 @@ void order_elimination(Arena *a, ExprGraph *g, LinearSystem *s, OrderRule rule, 
   s->ops = e.ops;
 }
 
-void order_best(Arena *a, ExprGraph *g, LinearSystem *s) {
+/* s by another rule where that takes fewer operations; as many: where equal says so. */
+static void try_rule(Arena *a, ExprGraph *g, LinearSystem *s, OrderRule rule, int equal) {
   LinearSystem other = *s;
+  order_elimination(a, g, &other, rule, s->ops);
+  if (other.ops < s->ops || (equal && other.ops == s->ops)) *s = other;
+}
+
+void order_best(Arena *a, ExprGraph *g, LinearSystem *s) {
   order_elimination(a, g, s, ORDER_OUTERMOST, UINT64_MAX);
-  order_elimination(a, g, &other, ORDER_CHEAPEST, s->ops);
-  if (other.ops <= s->ops) *s = other;
+  try_rule(a, g, s, ORDER_CHEAPEST, 1);
+  try_rule(a, g, s, ORDER_OUTERMOST_HUBS_LAST, 0);
 }

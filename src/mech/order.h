@@ -12,6 +12,7 @@ typedef enum {
                            * & Walker, Proc. IEEE 55 (1967) 1801, scheme 3) */
   ORDER_OUTERMOST,        /* the definition farthest from the coordinates first, these as soon as they can: from the
                            * tips of a tree to its root (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 7.3) */
+  ORDER_OUTERMOST_HUBS_LAST, /* the same, but coordinates that are coupled with many variables wait: a cart under a chain */
   ORDER_DEFINITIONS_FIRST /* which makes the mass matrix */
 } OrderRule;
 
@@ -19,7 +20,7 @@ typedef enum {
  * incomplete order, when more than `enough` operations have come together. */
 void order_elimination(Arena *a, ExprGraph *g, LinearSystem *s, OrderRule rule, uint64_t enough);
 
-/* The better of the first two rules. */
+/* The best of the first three rules. */
 void order_best(Arena *a, ExprGraph *g, LinearSystem *s);
 
 #endif

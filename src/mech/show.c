@@ -168,7 +168,8 @@ void show_facts(const Eqns *e, StrBuf *out) {
               e->first.n == 2 ? "" : "s", e->first.constant ? "constant" : "variable", energy);
   if (!e->n) return;
   sb_printf(out, "%u coordinate%s; mass matrix %s%s; energy is %s\n", e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
-            e->singular_mass ? ", singular where no constraint holds" : e->definite_mass ? ", positive definite" : "", energy);
+            e->singular_mass ? ", singular where no constraint holds" : e->definite_mass ? ", positive definite"
+            : e->definite_by_values ? ", positive definite by the signs of its parameters' values" : "", energy);
 }
 
 static void facts(Text *t, const char *cost) {

@@ -81,11 +81,59 @@ kinetic = sum(i in 1..N, x[i]'^2/2)
 potential = sum(i in 1..N, k*sqrt(1 + x[i]^2)) + sum(i in 3..N, if(x[i] > x[i-2], (x[i] - x[i-2])^2, 0))
 for i in 2..N { force x[i] = -c[i]*max(x[i]', 0.1)*sign(x[i-1]) }
 END
+# A number that only later turns' places know; a value of the first turn that all turns take.
+cat >"$TMP/m/comb.lag" <<'END'
+model comb
+const N = 40
+coord th[N], s[N]
+param m = 1 > 0, n = 0.3 > 0
+let x[0] = 0, y[0] = 0
+let x[i in 1..N] = x[i-1] + sin(th[i])
+let y[i in 1..N] = y[i-1] - cos(th[i])
+let u[i in 1..N] = x[i] + 0.5*sin(s[i])
+let w[i in 1..N] = y[i] - 0.5*cos(s[i])
+kinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2) + n/2*(u[i]'^2 + w[i]'^2))
+potential = sum(i in 1..N, m*y[i] + n*w[i])
+END
+cat >"$TMP/m/star.lag" <<'END'
+model star
+const N = 600
+coord x[N]
+param k[N] = 1, c[N] = 1
+kinetic = sum(i in 1..N, x[i]'^2/2)
+for i in 1..N { force x[i] = c[i]*(tanh(x[i]) + k[i])*tanh(x[1]) }
+END
+# A mass matrix without zeros, and one of a band that may be indefinite.
+cat >"$TMP/m/full.lag" <<'END'
+model full
+const N = 30
+coord x[N]
+param m = 1 > 0
+kinetic = sum(i in 1..N, m/2*x[i]'^2) + sum(i in 1..N, x[i]')^2/300
+potential = sum(i in 1..N, x[i]^4/4)
+END
+cat >"$TMP/m/band.lag" <<'END'
+model band
+const N = 30
+coord x[N]
+param m = 1 > 0, c = 0.1
+kinetic = sum(i in 1..N, m/2*x[i]'^2) + sum(i in 2..N, c*x[i]*x[i]'*x[i-1]')
+potential = sum(i in 1..N, x[i]^4/4)
+END
+# Masses and springs that are graded: in lowest terms their numbers have gaps.
+cat >"$TMP/m/graded.lag" <<'END'
+model graded
+const N = 600
+coord u[N]
+param m = 1 > 0, k = 1
+kinetic = sum(i in 1..N, m*(1 + 0.1*i)/2*u[i]'^2)
+potential = sum(i in 2..N, k*(1 - i/(2*N))/2*(u[i] - u[i-1])^2) + k/2*u[1]^2
+END
 models=$(ls "$TMP"/m/*.lag)
 
 # ---- what is emitted
 emit_all() {
-  n=0
+  n=10 # of two digits, as files are sorted
   for m in $models; do
     n=$((n + 1))
     "$LAGC" emit "$m" -o "$TMP/c/m$n.c" || return 1
@@ -106,6 +154,12 @@ check "links in space" has_loops spatial 800
 check "pairs of 20 bodies" has_loops bodies 70
 check "24 bodies by hand" has_loops bodies_by_hand 80
 check "choices and functions" has_loops odd 120
+check "side rods along a chain" has_loops comb 330
+check "all pulled by the first" has_loops star 20
+check "masses and springs graded along a string" has_loops graded 45
+short() { lines=$("$LAGC" derive "$TMP/m/$1.lag" --format c | wc -l); [ "$lines" -le "$2" ] || { echo "$lines lines"; return 1; }; }
+check "a full mass matrix: a line or two a row" short full 220
+check "a band: zeros take none" short band 320
 in_one_loop() { "$LAGC" derive "$TMP/m/string_500.lag" --format c | grep -q '^    a\[k + [0-9]*\] = '; }
 check "a string's accelerations are stored where they are computed" in_one_loop
 small() { "$LAGC" emit models/string.lag hard -DN=10000 -o "$TMP/string.c" && [ "$(wc -c <"$TMP/string.c")" -lt 65536 ]; }

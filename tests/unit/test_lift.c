@@ -190,9 +190,17 @@ static const char *driven(Arena *a, int n) {
                          "dissipation = sum(i in 2..N, 0.1*(th[i]' - th[i-1]')^2)\nforce (x[N], y[N]) = (-x[N]', 2)\n", n);
 }
 
+/* A chain below a cart, whose velocity every term of the kinetic energy adds by itself; and a rotor that every link drives. */
+static const char *cart(Arena *a, int n) {
+  return arena_printf(a, "model m\nconst N = %d\ncoord c, th[N], w\nparam m = 1 > 0, g = 9.81 > 0\nlet x[0] = 0, y[0] = 0\n"
+                         "let x[i in 1..N] = x[i-1] + sin(th[i])\nlet y[i in 1..N] = y[i-1] - cos(th[i])\n"
+                         "kinetic = m*c'^2 + m*w'^2 + sum(i in 1..N, m/2*((x[i]' + c')^2 + y[i]'^2) + 0.1*(w' + th[i]')^2)\n"
+                         "potential = sum(i in 1..N, m*g*y[i])\n", n);
+}
+
 static void test_chains(void **state) {
   (void)state;
-  const Writer writers[] = {family, renamed, by_hand, relative, spatial, tree, squares, driven};
+  const Writer writers[] = {family, renamed, by_hand, relative, spatial, tree, squares, driven, cart};
   for (size_t i = 0; i < sizeof writers / sizeof *writers; i++) check_linear(writers[i]);
 }
 
@@ -228,6 +236,40 @@ static void test_indefinite(void **state) {
   arena_free(arena);
 }
 
+/* Where parameters declare no sign those of their values count, and a pivot tells when they are others. */
+static void test_undeclared_signs(void **state) {
+  (void)state;
+  enum { N = 30 };
+  Arena *arena = arena_new(NULL);
+  const char *text = "model m\nconst N = %d\ncoord th[N]\nparam m[N] = 1.3, l = 0.7, g = 9.81\nlet x[0] = 0, y[0] = 0\n"
+                     "let x[i in 1..N] = x[i-1] + l*sin(th[i])\nlet y[i in 1..N] = y[i-1] - l*cos(th[i])\n" ENERGIES;
+  Eqns *e = equations(arena, arena_printf(arena, text, N), NULL);
+  assert_non_null(e);
+  assert_false(e->definite_mass);
+  assert_true(e->system.ndefs > 0);
+  Prog *p = lower_accel(e, 0);
+  Real *v = random_point(e), got[N], want[N];
+  for (uint32_t i = 0; i < e->m->params.n; i++) v[e->m->params.at[i].sym] = 1.5L;
+  assert_int_equal(run_prog(e, p, v, got, NULL), 0);
+  dense_accelerations(e, v, want);
+  for (int i = 0; i < N; i++) assert_true(fabsl(got[i] - want[i]) <= 1e-14L * (1 + fabsl(want[i])) * N);
+  v[e->m->params.at[N / 2].sym] = -100; /* a mass */
+  assert_int_equal(run_prog(e, p, v, got, NULL), -1);
+  arena_free(arena);
+}
+
+/* Inertia that couples neighbours, as elements of a rod do: what is zero stays out of the solution. */
+static void test_consistent_mass(void **state) {
+  (void)state;
+  const char *text = "model m\nconst N = %d\ncoord x[N]\nparam m = 1 > 0, k = 2\n"
+                     "kinetic = m/6*x[1]'^2 + sum(i in 2..N, m/6*(x[i-1]'^2 + x[i-1]'*x[i]' + x[i]'^2))\n"
+                     "potential = sum(i in 2..N, k/2*(x[i] - x[i-1])^2)\n";
+  Arena *arena = arena_new(NULL);
+  uint32_t ops = check(arena_printf(arena, text, 40), 0);
+  assert_true(ops < 15 * 40);
+  arena_free(arena);
+}
+
 /* No mass matrix is made for a long chain, and it can still be had. */
 static void test_long(void **state) {
   (void)state;
@@ -245,7 +287,7 @@ static void test_long(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_textbook), cmocka_unit_test(test_chains), cmocka_unit_test(test_net),
-    cmocka_unit_test(test_short_ones_stay_dense), cmocka_unit_test(test_indefinite), cmocka_unit_test(test_long),
+    cmocka_unit_test(test_short_ones_stay_dense), cmocka_unit_test(test_indefinite), cmocka_unit_test(test_undeclared_signs), cmocka_unit_test(test_consistent_mass), cmocka_unit_test(test_long),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

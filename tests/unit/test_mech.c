@@ -152,6 +152,14 @@ static void test_definite(void **state) {
   assert_true(definite("m/2*(x'^2 + y'^2) + b*(x*y' - y*x')"));
   assert_true(definite("m/2*(x'^2 + y'^2) - b*u - x^3*y'"));
   assert_false(definite("m/2*(x'^2 + y'^2) + b*x'*y'"));
+  assert_true(definite("m/6*(x'^2 + x'*y' + y'^2)")); /* a rod's, between its ends */
+  assert_true(definite("m/2*(x'^2 + y'^2) + 0.9*m*x'*y' + b*x'"));
+  assert_true(definite("m*cosh(x)*(2*(x'^2 + y'^2) - 3*(x' + u)*y' + 2*(x' + u)^2)"));
+  assert_false(definite("m/2*(x'^2 + y'^2) + 1.01*m*x'*y'"));
+  assert_false(definite("m/2*(x'^2 + y'^2) - 1.01*m*x'*y'"));
+  assert_false(definite("m/2*x'^2 + y'^2/2 + m/4*x'*y'")); /* not for m above 16 */
+  assert_false(definite("b*(x'^2 + y'^2)"));
+  assert_false(definite("sinh(b)*(x'^2 + x'*y' + y'^2)"));
   assert_false(definite("m/2*(x'^2 + y'^2) + b*u^2"));
   assert_false(definite("m/2*(x'^2 + y'^2) + b*x*y'^2"));
 }

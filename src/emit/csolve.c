@@ -1,0 +1,41 @@
+/* Linear systems that a loop solves: their entries go to the workspace w, and a function that stands before the model takes over. */
+#include "emit/cwriter_impl.h"
+
+/* w[at], ... = the values; what many neighbours have, as zeros of a sparse matrix, by a loop. */
+static void write_room(Writer *w, uint32_t at, const Slot *values, uint32_t n) {
+  enum { MANY = 8 };
+  for (uint32_t j = 0, end; j < n; j = end) {
+    for (end = j + 1; end < n && values[end] == values[j];) end++;
+    const char *x = cwriter_operand(w, values[j]).text;
+    if (end - j >= MANY) sb_printf(w->out, "  for (int i = %u; i < %u; i++) w[i] = %s;\n", at + j, at + end, x);
+    for (uint32_t k = j; k < end && end - j < MANY; k++) sb_printf(w->out, "  w[%u] = %s;\n", at + k, x);
+  }
+}
+
+/* What is not zero of a system with constraints, which is mostly zeros where it is large. */
+static void write_constrained(Writer *w, const Solve *k) {
+  const CStyle *st = w->style;
+  uint32_t b = k->m * k->n + k->n * k->n;
+  sb_printf(w->out, "  for (int i = 0; i < %u; i++) w[i] = %s_C(0.0);\n", b + solve_unknowns(k), st->prefix);
+  for (uint32_t j = 0; j < solve_elements(k); j++)
+    if (k->matrix[j]) sb_printf(w->out, "  w[%u] = %s;\n", j, cwriter_operand(w, k->matrix[j]).text);
+  for (uint32_t j = 0; j < solve_unknowns(k); j++)
+    if (k->rhs[j]) sb_printf(w->out, "  w[%u] = %s;\n", b + j, cwriter_operand(w, k->rhs[j]).text);
+  sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, %d, w));\n", st->prefix, st->kkt, k->n, k->m, k->coarse);
+}
+
+void csolve_write(Writer *w, const Ins *i) {
+  const Solve *k = &w->p->solves.at[i->index];
+  const CStyle *st = w->style;
+  uint32_t n = k->n, M = k->place, b = M + n * n;
+  cwriter_flush_title(w);
+  if (k->m) {
+    write_constrained(w, k);
+    return;
+  }
+  if (k->matrix) write_room(w, M, k->matrix, n * n);
+  if (st->factor && k->matrix) sb_printf(w->out, "  %s_PIVOT(%s(%u, w + %u));\n", st->prefix, st->factor, n, M);
+  write_room(w, b, k->rhs, n);
+  if (st->factor) sb_printf(w->out, "  %s(%u, w + %u);\n", st->substitute, n, M);
+  else sb_printf(w->out, "  %s_PIVOT(%s(%u, w, w + %u));\n", st->prefix, st->solve, n, b);
+}

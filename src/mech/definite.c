@@ -1,0 +1,148 @@
+#include "mech/definite.h"
+
+#include "sym/diff.h"
+#include "sym/eval.h"
+
+static int moves(const Eqns *e, Expr x) { return (expr_kinds(e->g, x) & 1u << SYM_VEL) != 0; }
+
+/* Linear in q', as Coriolis and magnetic terms are: such a term has no part in the mass matrix. */
+static int is_linear(const Eqns *e, Expr term) {
+  ExprPartials d = expr_gradient_sparse(e->g, term, SYM_VEL, e->n);
+  for (uint32_t i = 0; i < d.n; i++)
+    if (moves(e, d.at[i].e)) return 0;
+  return 1;
+}
+
+static int is_nonnegative(const Eqns *e, Expr x) {
+  ExprSign sign = expr_sign(e->g, x);
+  return sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE;
+}
+
+/* Each term of L by itself. */
+static int terms_are_nonnegative(const Eqns *e, Expr l) {
+  for (uint32_t i = 0; i < expr_pairs(e->g, l, EX_SUM); i++) {
+    Num c;
+    Expr term = expr_pair(e->g, l, EX_SUM, i, &c);
+    int positive = num_sign(c) > 0 && is_nonnegative(e, term);
+    if (moves(e, term) && !positive && !is_linear(e, term)) return 0;
+  }
+  return 1;
+}
+
+/* --- products of velocities --- */
+
+/* c*factor*form, a part of L. */
+typedef struct {
+  Num c;
+  Expr factor, form;
+} Part;
+
+/* L, multiplied out into c*factor*u*v. A square with the same factor pays for products: |u*v| is at most (u^2 + v^2)/2, so what
+ * is left of all squares must not be negative (Gershgorin's circles, one for each factor). */
+typedef struct {
+  const Eqns *e;
+  VEC(Part) open;
+  ExprMap place; /* of factor*u^2 in left, from 1 */
+  VEC(Num) left;
+} Squares;
+
+static void add_square(Squares *q, Expr factor, Expr u, Num c) {
+  ExprGraph *g = q->e->g;
+  Expr square = expr_pow_num(g, u, num_int(2)), key = expr_mul(g, factor, square);
+  uint32_t at = expr_map_get(&q->place, key);
+  if (!at) {
+    vec_push(q->e->m->arena, &q->left, num_int(0));
+    expr_map_set(&q->place, key, at = q->left.n);
+  }
+  q->left.at[at - 1] = num_add(q->left.at[at - 1], c);
+}
+
+/* A term of the form's sum that is no more than quadratic. 0 where it may be negative. */
+static int take_quadratic(Squares *q, Expr factor, Num c, Expr term) {
+  const Eqns *e = q->e;
+  ExprGraph *g = e->g;
+  Expr moving[2] = {0};
+  Num power[2];
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++) {
+    Num p;
+    Expr base = expr_pair(g, term, EX_PROD, i, &p);
+    if (!moves(e, base)) {
+      Expr still = expr_pow_num(g, base, p);
+      factor = expr_mul(g, factor, still);
+    } else {
+      if (n == 2) return 0;
+      moving[n] = base;
+      power[n++] = p;
+    }
+  }
+  if (!is_nonnegative(e, factor)) return 0;
+  if (n == 2) {
+    if (!num_is_one(power[0]) || !num_is_one(power[1])) return 0;
+    Num half = num_mul(num_abs(c), num_ratio(-1, 2));
+    add_square(q, factor, moving[0], half);
+    add_square(q, factor, moving[1], half);
+    return 1;
+  }
+  if (num_equal(power[0], num_int(2))) {
+    add_square(q, factor, moving[0], c);
+    return 1;
+  }
+  ExprOp op = expr_op(g, moving[0]);
+  if (num_is_one(power[0]) && (op == EX_SUM || op == EX_DEF)) {
+    vec_push(e->m->arena, &q->open, ((Part){c, factor, op == EX_DEF ? expr_arg(g, moving[0], 0) : moving[0]}));
+    return 1;
+  }
+  return num_sign(c) > 0 && is_nonnegative(e, term);
+}
+
+static int take_term(Squares *q, Expr factor, Num c, Expr term) {
+  return !moves(q->e, term) || take_quadratic(q, factor, c, term) || is_linear(q->e, term);
+}
+
+static int squares_pay(const Eqns *e, Expr l) {
+  enum { MOST_PARTS = 100000 }; /* lets that contain each other twice would be multiplied out for ever */
+  Squares q = {.e = e, .place = expr_map(e->m->arena)};
+  Expr one = expr_int(e->g, 1);
+  vec_push(e->m->arena, &q.open, ((Part){num_int(1), one, l}));
+  for (uint32_t k = 0; k < q.open.n; k++) {
+    Part p = q.open.at[k];
+    if (k == MOST_PARTS) return 0;
+    for (uint32_t i = 0; i < expr_pairs(e->g, p.form, EX_SUM); i++) {
+      Num c;
+      Expr term = expr_pair(e->g, p.form, EX_SUM, i, &c);
+      if (!take_term(&q, p.factor, num_mul(p.c, c), term)) return 0;
+    }
+  }
+  for (uint32_t k = 0; k < q.left.n; k++)
+    if (num_sign(q.left.at[k]) < 0 || !num_sign_is_sure(q.left.at[k])) return 0;
+  return 1;
+}
+
+int mass_is_definite(const Eqns *e, const LinearSystem *s, Expr lagrangian) {
+  /* A form that is at least 0 and quadratic in q' has a Hessian that is at least 0; quadratic means that the Hessian of the
+   * whole is free of velocities. */
+  for (uint32_t i = 0; i < s->H.n; i++)
+    if (moves(e, s->H.at[i].e)) return 0;
+  for (uint32_t i = 0; i < s->C.n; i++)
+    if (moves(e, s->C.at[i].e)) return 0;
+  return terms_are_nonnegative(e, lagrangian) || squares_pay(e, lagrangian);
+}
+
+int mass_is_definite_by_values(const Eqns *e, const LinearSystem *s, Expr lagrangian) {
+  const Model *m = e->m;
+  ExprGraph *g = e->g;
+  uint32_t n = expr_symbol_count(g) + 1, some = 0;
+  long double *value = ARENA_ARRAY(m->arena, long double, n);
+  Expr *with = ARENA_ARRAY(m->arena, Expr, n);
+  value[m->pi] = 3.14159265358979323846264338327950288L;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
+    if (p->value) expr_eval(g, &p->value, 1, value, &value[p->sym]);
+    if (expr_symbol(g, p->sym)->sign != SIGN_UNKNOWN || value[p->sym] == 0) continue;
+    Expr positive = expr_fn(g, EX_EXP, expr_symbol(g, p->sym)->node); /* any number of this sign */
+    with[p->sym] = value[p->sym] > 0 ? positive : expr_neg(g, positive);
+    some = 1;
+  }
+  return some && mass_is_definite(e, s, expr_substitute(g, lagrangian, with, n, ""));
+}
