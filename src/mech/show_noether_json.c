@@ -40,6 +40,10 @@ static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
     put_expr(out, e->g, positive.at[i]);
   }
   if (positive.n) sb_putc(out, ']');
+  if (s->is.over_time) {
+    sb_puts(out, ", \"F_integral_of\": ");
+    put_expr(out, e->g, s->is.over_time);
+  }
   if (s->is.jumps) sb_puts(out, ", \"between_jumps\": true");
   if (declared) sb_printf(out, ", \"declared\": \"%s\"", declared);
   sb_putc(out, '}');
