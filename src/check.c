@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "mech/charges.h"
+#include "mech/discontinuity.h"
 #include "mech/expect.h"
 #include "mech/freedom.h"
 #include "mech/noether_report.h"
@@ -62,15 +63,17 @@ int check_print(const Deriver *d, Ast *ast, const char *scene, int allow_numeric
       show_cyclic(e, out);
     }
     collect_units(e->m, &found);
+    discontinuity_warn(e);
     if (!freedom_show(e, out)) continue;
     sb_printf(out, "scene %s: ok%s\n", scenes.at[i], with_effects(e->m));
-    if (e->m->effects.n || has_inputs(e->m)) charges_show_broken(e, out);
+    if (e->m->effects.n || has_inputs(e->m) || e->energy_jumps) charges_show_broken(e, out);
   }
   if (scene && !out->n) d->derive(d->data, &(ModelChoice){.scene = scene}); /* says that there is no such scene */
   EffectList unused = model_unused_effects(ast);
   for (uint32_t i = 0; i < unused.n && !scene; i++) {
     Eqns *e = d->derive(d->data, &(ModelChoice){.bare = 1, .also = unused.at[i]});
     if (!e) continue;
+    discontinuity_warn(e);
     collect_units(e->m, &found);
     sb_printf(out, "effect %s (in no scene): ok\n", unused.at[i]);
   }

@@ -27,6 +27,7 @@
 #include "help.h"
 #include "ir/lower.h"
 #include "mech/constrain.h"
+#include "mech/discontinuity.h"
 #include "mech/eqns.h"
 #include "mech/start.h"
 #include "mech/show.h"
@@ -124,9 +125,18 @@ static Eqns *derive(Compiler *c, const ModelChoice *choice) {
 /* Of one scene (NULL: the first). */
 static Eqns *derive_scene(Compiler *c, const char *scene) { return derive(c, &(ModelChoice){.scene = scene}); }
 
+/* For a method that finds velocities from momenta, what has no inertia of its own gets some. */
+static Eqns *derive_wanted(Compiler *c, const ModelChoice *choice) {
+  Eqns *e = derive(c, choice);
+  if (!e || !e->singular_mass || !(wants_of(e, &c->o) & WANT_VARIATION)) return e;
+  ModelChoice lends = *choice;
+  lends.lends = 1;
+  return derive(c, &lends);
+}
+
 /* With what the command line asks for besides the scene's outputs. */
 static Eqns *derive_asked(Compiler *c, const char *scene) {
-  return derive(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nasked = c->picture.asked.n,
+  return derive_wanted(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nasked = c->picture.asked.n,
                                   .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
 }
 
@@ -238,6 +248,7 @@ static int lower_all(Compiler *c, Units *units) {
   for (uint32_t i = 0; i < scenes.n; i++) {
     Eqns *e = derive_asked(c, scenes.at[i]);
     if (!e) return 0;
+    if (command_simulates(c->o.command) && strcmp(c->picture.scene ? c->picture.scene : scenes.at[0], scenes.at[i]) == 0) discontinuity_warn(e);
     IrUnit *fresh = new_unit(c, e), *home = NULL;
     for (uint32_t k = 0; k < units->n && !home; k++)
       if (unit_shares(units->at[k], fresh)) home = units->at[k];
@@ -380,7 +391,7 @@ static int do_run(Compiler *c) {
 
 /* The scene with another set of effects, as a unit of its own. */
 static IrUnit *lower_variant(Compiler *c, EffectList effects, unsigned *wants) {
-  Eqns *e = derive(c, &(ModelChoice){.scene = c->o.scene, .only = &effects, .given = c->given.at, .ngiven = c->given.n});
+  Eqns *e = derive_wanted(c, &(ModelChoice){.scene = c->o.scene, .only = &effects, .given = c->given.at, .ngiven = c->given.n});
   if (!e) return NULL;
   IrUnit *u = new_unit(c, e);
   *wants |= wants_of(e, &c->o); /* all of them are to run by the first one's method */

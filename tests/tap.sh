@@ -38,6 +38,24 @@ empty() {
 }
 tap_empty() { [ -z "$tap_got" ] || { printf '%s\n' "$tap_got"; return 1; }; }
 
+# near NAME TOLERANCE EXPECTED GOT: ok when the numbers differ by no more.
+near() { check "$1" tap_near "$2" "$3" "$4"; }
+tap_near() {
+  echo "got $3, expected $2 within $1"
+  awk -v t="$1" -v e="$2" -v g="$3" 'BEGIN { d = g - e; exit !(g != "" && d <= t && -d <= t) }'
+}
+
+# says STATUS WORDS COMMAND...: the command ends with the status and says these very words: on standard error if the status is not 0.
+says() {
+  tap_status=$1 tap_words=$2
+  shift 2
+  "$@" >"$TMP/out" 2>"$TMP/err" </dev/null
+  tap_got=$?
+  cat "$TMP/out" "$TMP/err"
+  if [ "$tap_status" = 0 ]; then cat "$TMP/out" >>"$TMP/err"; fi
+  [ "$tap_got" = "$tap_status" ] && grep -qF -e "$tap_words" "$TMP/err"
+}
+
 skip() {
   tap_n=$((tap_n + 1))
   echo "ok $tap_n - $1 # SKIP $2"

@@ -21,8 +21,8 @@ static void put_trend(const App *app, const lag_charge_stats *c, FILE *f)
     break;
   case LAG_TREND_OSCILLATES:
     fputs(", oscillates", f);
-    if ((m->flags & LAG_METHOD_SYMPLECTIC) && model_keeps && m->order_most == 0) {
-      fprintf(f, " (as step^%d)", m->order);
+    if ((m->flags & LAG_METHOD_SYMPLECTIC) && model_keeps) {
+      fprintf(f, " (as step^%d)", m->order_of ? m->order_of(lag_sim_options(app->sim)) : m->order);
     }
     break;
   case LAG_TREND_ROUNDING:
@@ -34,8 +34,11 @@ static void put_trend(const App *app, const lag_charge_stats *c, FILE *f)
 }
 
 /* Why there is no balance. */
-static const char *why_not(const App *app)
+static const char *why_not(const App *app, const lag_charge_stats *c)
 {
+  if (c->flags & LAG_JUMPS) {
+    return "it jumps where L does";
+  }
   return lag_method_balances(lag_sim_method(app->sim)) ? "not conserved, or not known to be" : "not conserved, and the method tells too little between steps for a balance";
 }
 
@@ -48,7 +51,7 @@ static void put_energy(const App *app, const lag_charge_stats *c, FILE *f)
   } else if (c->flags & LAG_BALANCED) {
     fprintf(f, "(forces and explicit time brought %.6g; %s)", c->work, size);
   } else {
-    fprintf(f, "(%s)", why_not(app));
+    fprintf(f, "(%s)", why_not(app, c));
   }
 }
 
@@ -60,7 +63,7 @@ static void put_charge(const App *app, const lag_charge_stats *c, FILE *f)
   } else if (c->flags & LAG_BALANCED) {
     fprintf(f, "; forces brought %.6g)", c->work);
   } else {
-    fprintf(f, "; %s)", why_not(app));
+    fprintf(f, "; %s)", why_not(app, c));
   }
 }
 

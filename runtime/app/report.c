@@ -64,6 +64,20 @@ static int is_redundant(const App *app, int k)
   return lag_sim_is_redundant(app->sim, k);
 }
 
+/* Of a start where constraints are dependent that are not so beside it. */
+static void singular(const App *app, FILE *f)
+{
+  int n = 0;
+
+  fprintf(f, "; singular: %d beside it", lag_sim_rank_beside(app->sim));
+  for (int i = 0; i < app->scene->model->nq; i++) {
+    if (lag_sim_is_loose(app->sim, i) && n++ < MOST_LINES) {
+      fprintf(f, "%s%s'", n == 1 ? ", and what the start says of " : ", ", app->scene->model->q[i].name);
+    }
+  }
+  fprintf(f, "%s%s", n > MOST_LINES ? ", ..." : "", n ? " decides which way it goes" : "");
+}
+
 /* What the constraints did to the start, and how well they were kept. */
 static void constraints(const App *app, const lag_stats *st, FILE *f)
 {
@@ -93,6 +107,9 @@ static void constraints(const App *app, const lag_stats *st, FILE *f)
     if (is_redundant(app, k) && redundant++ < MOST_LINES) {
       fprintf(f, "%s%s", redundant == 1 ? "; redundant: " : ", ", of->of[k].name);
     }
+  }
+  if (lag_sim_rank_beside(app->sim) > lag_sim_rank(app->sim)) {
+    singular(app, f);
   }
   fprintf(f, "%s%sconstraint residual: %.3g, of rates %.3g (the largest, in SI)\n", redundant > MOST_LINES ? ", ..." : "", of->n > m->ncontacts ? "\n" : "",
           st->constraint, st->constraint_rate);
@@ -289,7 +306,7 @@ static void constraints_json(const App *app, FILE *f)
       json_string(f, of->of[k].name);
     }
   }
-  fputs("], \"start_moved\": {", f);
+  fprintf(f, "], \"rank_beside\": %d, \"start_moved\": {", lag_sim_rank_beside(app->sim));
   for (int i = 0; i < 2 * m->nq; i++) {
     Column c;
     double asked = lag_sim_asked(app->sim, i), begin = lag_sim_begin(app->sim, i);

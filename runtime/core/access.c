@@ -144,6 +144,16 @@ int lag_sim_is_redundant(const lag_sim *s, int k)
   return s->redundant[k] != 0.0;
 }
 
+int lag_sim_rank_beside(const lag_sim *s)
+{
+  return (int)s->run->beside;
+}
+
+int lag_sim_is_loose(const lag_sim *s, int i)
+{
+  return s->loose[i] != 0.0;
+}
+
 double lag_sim_output_info(const lag_sim *s, int i, char *name, size_t nname, char *unit, size_t nunit)
 {
   if (s->scene->nout == 0) {
@@ -158,10 +168,7 @@ static int outputs(lag_sim *s, double t, const double *y, double *out)
   int rc = 0, nout = lag_sim_noutputs(s);
 
   if (c->nout > 0) {
-    rc = lag_inputs(&s->pb, t);
-    rc = rc ? rc : lag_exact_at(s, t);
-    rc = rc ? rc : c->observe(t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
-    if (rc) {
+    if ((rc = lag_observe(s, t, y, out)) != 0) {
       return lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN, "the outputs cannot be computed at t = %.17g s", t);
     }
   } else {

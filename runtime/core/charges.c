@@ -31,7 +31,7 @@ unsigned lag_charge_flags(const lag_sim *s, int k)
   unsigned flags = m->charges ? m->charges->of[k].flags : m->flags & LAG_CONSERVES_ENERGY ? LAG_CONSERVED | LAG_BALANCED : 0;
 
   if (!(flags & LAG_CONSERVED) && s->run->balanced == 0.0) {
-    return 0;
+    return flags & LAG_JUMPS;
   }
   for (int i = 0; i < m->nu && (flags & LAG_BY_FORMULAS); i++) {
     if (!isnan(s->hold[i]) || s->signal[i].fn) {

@@ -292,8 +292,7 @@ static int slopes(Start *w, double *size)
   }
   for (int e = 0; e < of->njacobian; e++) {
     int i = of->jacobian[e].col;
-    double far = fmax(lag_size_like(w->pb, w->y, i), lag_size_like(w->pb, w->asked, i));
-    size[of->jacobian[e].row] += fabs(w->A[e]) * (far > 0 ? far : 1);
+    size[of->jacobian[e].row] += fabs(w->A[e]) * fmax(lag_reach(w->pb, w->y, 1, i), lag_size_like(w->pb, w->asked, i));
   }
   return 1;
 }
@@ -312,8 +311,7 @@ static int is_flat_beside(Start *w, int k)
   memcpy(here, w->y, bytes);
   choose_free(w, ALL);
   for (int i = 0; i < w->nq; i++) {
-    double far = lag_size_like(w->pb, here, i);
-    w->y[i] += !is_held(w, i) ? 0 : 0.01 * (far > 0 ? far : 1) * (0.5 + fmod(0.618033988749894848 * (i + 1), 1));
+    w->y[i] += !is_held(w, i) ? 0 : 0.01 * lag_reach(w->pb, here, 1, i) * (0.5 + fmod(0.618033988749894848 * (i + 1), 1));
   }
   int flat = !descend(w) || !slopes(w, size) || is_flat(w, k, size);
   memcpy(w->y, here, bytes);
@@ -340,7 +338,8 @@ static int check_derivatives(Start *w, int reached)
       return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s have no value where it holds: write it so that they have, "
                       "x = 1 in place of sqrt(x - 1) = 0", c->name, lag_line_of(c, line));
     }
-    if (is_flat(w, k, size) && (!reached || is_flat_beside(w, k))) {
+    int held = reached || fabs(w->residual[k]) <= 1e-6 * w->size[k];
+    if (is_flat(w, k, size) && held && (!reached || is_flat_beside(w, k))) {
       return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s vanish where it holds, so that no force can hold it: write it "
                       "so that they do not, x = 0 in place of x^2 = 0", c->name, lag_line_of(c, line));
     }
@@ -391,8 +390,8 @@ static int settle(Start *w, int holonomic)
   return rc ? rc : refuse(w, 0);
 }
 
-/* x := what is left of row x[n] beside the orthonormal rows Q[r * n]; twice, so that rounding is gone. Returns its length. */
-static double remainder_of(int n, int r, const double *Q, double *x)
+/* Twice, so that rounding is gone. */
+double lag_remainder_of(int n, int r, const double *Q, double *x)
 {
   double s = 0;
 
@@ -414,7 +413,7 @@ static double remainder_of(int n, int r, const double *Q, double *x)
 
 /* Which constraints follow here from those before them: marks[n], and how many do not. What counts as nothing left is what counts so for
  * corrections in lag_kkt.h: a start is found at a singular place to sqrt(eps) only. */
-static int rank(Start *w, double *marks)
+static int rank(Start *w, double *marks, double *held)
 {
   const double least = cbrt(DBL_EPSILON);
   const lag_constraints *of = w->of;
@@ -428,18 +427,57 @@ static int rank(Start *w, double *marks)
     A[of->jacobian[e].row * nq + of->jacobian[e].col] = w->A[e];
   }
   for (int k = 0; k < m; k++) {
-    double *row = A + k * nq, size = remainder_of(nq, 0, Q, row);
+    double *row = A + k * nq, size = lag_remainder_of(nq, 0, Q, row);
     for (int i = 0; i < nq && size > 0; i++) {
       row[i] /= size;
     }
-    double left = size > 0 ? remainder_of(nq, r, Q, row) : 0;
+    double left = size > 0 ? lag_remainder_of(nq, r, Q, row) : 0;
     marks[k] = size > 0 && !(left > least); /* a contact that is open demands nothing */
     for (int i = 0; i < nq && left > least; i++) {
       Q[r * nq + i] = row[i] / left;
     }
     r += left > least;
   }
+  memset(held, 0, (size_t)nq * sizeof *held);
+  for (int i = 0; i < r * nq; i++) {
+    held[i % nq] += Q[i] * Q[i];
+  }
   return r;
+}
+
+/* y := a place a hundredth beside here[n of the state], where all hold; whether there is one. */
+static int go_beside(Start *w, const double *here)
+{
+  choose_free(w, ALL);
+  for (int i = 0; i < w->nq; i++) {
+    w->y[i] += 0.01 * lag_reach(w->pb, here, 1, i) * (0.5 + fmod(0.618033988749894848 * (i + 1), 1));
+  }
+  return descend(w);
+}
+
+/* Where constraints follow from others at the start: whether beside it, too. */
+static void look_beside(Start *w)
+{
+  lag_sim *s = w->sim;
+  const double part = 0.05; /* of a coordinate's direction: twice what a hundredth beside turns it */
+  double *here = w->best, *held = s->loose, *held_beside = w->full, *marks = w->other; /* full is scratch of go_beside */
+
+  s->run->rank = s->run->beside = rank(w, s->redundant, held);
+  if (s->run->rank >= w->of->n - w->pb->model->ncontacts || w->nq < 2) {
+    memset(s->loose, 0, (size_t)w->nq * sizeof(double));
+    return;
+  }
+  memcpy(here, w->y, (size_t)w->pb->n * sizeof *here);
+  w->holonomic = 1;
+  w->n = count_stated(w->of);
+  look_at_terms(w);
+  int r = go_beside(w, here) ? rank(w, marks, held_beside) : 0;
+  int singular = r > s->run->rank;
+  s->run->beside = singular ? r : s->run->rank;
+  for (int i = 0; i < w->nq; i++) {
+    s->loose[i] = singular && held_beside[i] - held[i] > part;
+  }
+  memcpy(w->y, here, (size_t)w->pb->n * sizeof *here);
 }
 
 void lag_note_redundant(lag_sim *s)
@@ -450,6 +488,44 @@ void lag_note_redundant(lag_sim *s)
   for (int k = 0; of && k < of->n; k++) {
     s->pb.redundant |= s->redundant[k] > 0;
   }
+}
+
+/* From a start where the model has no accelerations there is no motion: which coordinate has no inertia, and no constraint that moves it. */
+static int check_inertia(Start *w)
+{
+  lag_problem *pb = w->pb;
+  const lag_constraints *of = w->of;
+  int nq = w->nq;
+  double *K = w->full, *size = w->other, most = 0;
+
+  if (lag_rhs(pb, w->sim->scene->t0, w->y, w->best) != LAG_ESINGULAR ||
+      of->matrices(w->sim->scene->t0, w->y, w->y + nq, w->y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work)) {
+    return LAG_OK;
+  }
+  memset(K, 0, (size_t)(nq * nq) * sizeof *K);
+  memset(size, 0, (size_t)of->n * sizeof *size);
+  for (int e = 0; e < of->nmass; e++) {
+    most = fmax(most, fabs(w->M[e]));
+  }
+  for (int e = 0; e < of->njacobian; e++) {
+    size[of->jacobian[e].row] += w->A[e] * w->A[e];
+  }
+  for (int e = 0; e < of->nmass && most > 0; e++) {
+    int i = of->mass[e].row, j = of->mass[e].col;
+    K[i * nq + j] = K[j * nq + i] = w->M[e] / most;
+  }
+  for (int e = 0; e < of->njacobian; e++) {
+    int row = of->jacobian[e].row;
+    for (int k = 0; k < of->njacobian && size[row] > 0; k++) {
+      if (of->jacobian[k].row == row) {
+        K[of->jacobian[e].col * nq + of->jacobian[k].col] += w->A[e] * w->A[k] / size[row];
+      }
+    }
+  }
+  int i = lag_weightless(nq, K, w->best, w->free);
+  return i < 0 ? LAG_OK
+               : lag_fail(w->sim, LAG_EINVAL, "the mass matrix is singular: nothing says how %s moves, which has no inertia at the start, and no "
+                          "constraint moves it; give it a mass, or a constraint that depends on it", pb->model->q[i].name);
 }
 
 /* What moved by less than a last digit of what has its unit did not move. */
@@ -505,8 +581,9 @@ int lag_consistent(lag_sim *s)
       keep_rounding_out(&w);
       memcpy(s->now, w.y, bytes);
       rc = lag_keep(s, s->scene->t0, s->now);
-      s->run->rank = rank(&w, s->redundant);
+      look_beside(&w);
       lag_note_redundant(s);
+      rc = rc ? rc : check_inertia(&w);
     }
   }
   free(block);

@@ -24,7 +24,7 @@ typedef struct Run {
   double watched;        /* up to here charges have been looked at */
   double balanced;       /* 1: the work of forces on charges is integrated */
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
-  double rank;           /* constraints at the start that do not follow from others */
+  double rank, beside;   /* constraints at the start that do not follow from others; where that is singular: a hundredth beside it */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
 } Run;
 
@@ -62,13 +62,15 @@ struct lag_sim {
   double *scratch;       /* one block: u, work, y, g, g, outputs */
   double *contact_room, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
-  double *saved;         /* one block: Run, and the arrays below */
+  double *saved;         /* one block: Run, and the arrays below; in `room`, which is freed */
+  char *room;
   size_t nsaved;
   Run *run;
   double *p, *hold;      /* [np], [nu] */
   double *begin;         /* [n] at the start of the run */
   double *asked;         /* [n] the same before it was brought to the constraints */
   double *redundant;     /* [constraints] 1: at the start it follows from others */
+  double *loose;         /* [nq] 1: beside a singular start its velocity is determined, and at it not */
   double *kept;          /* [constraints] what those on positions are held at */
   double *y;             /* [n] at step_t1 */
   double *y0;            /* [n] at step_t0 */
@@ -112,8 +114,17 @@ int lag_explain(lag_sim *sim, int status);
 /* sim.c: y[n] at t within the last step, on the constraints. LAG_OK, or a failure that is explained. */
 int lag_between(lag_sim *sim, double t, double *y);
 
-/* consistent.c: now[n], the start as it was set, becomes the nearest start that obeys the constraints; asked, redundant and run->rank are set. */
+/* consistent.c: now[n], the start as it was set, becomes the nearest start that obeys the constraints; asked, redundant, loose, run->rank and
+ * run->beside are set. */
 int lag_consistent(lag_sim *sim);
+/* forces.c. observe: out[nout] of the scene, in SI, of the state y at t. Multipliers and accelerations near a position where constraints
+ * become dependent are those that they tend to along the last step; NaN where there is none. LAG_OK, or what failed. */
+int lag_observe(lag_sim *sim, double t, const double *y, double *out);
+/* x := what is left of row x[n] beside the orthonormal rows Q[r * n]. Returns its length. */
+double lag_remainder_of(int n, int r, const double *Q, double *x);
+/* weightless.c: the coordinate that moves most along a direction d with K d = 0, K[n n] being a mass matrix and a positive combination of
+ * what constraints fix, or -1 where there is none. K is destroyed; x[n] and column[n] are scratch. */
+int lag_weightless(int n, double *K, double *x, int *column);
 /* pb.redundant, of what is found there or was saved. */
 void lag_note_redundant(lag_sim *sim);
 

@@ -1,5 +1,7 @@
 /* The linearisation of a model as dense matrices. Enters: a state; leaves: the derivatives of its residuals, or of
- * its right-hand side. Holds: both are exact, made of emitted derivatives; nothing is differenced. */
+ * its right-hand side. Holds: both are exact, made of emitted derivatives; but with constraints those of the right-hand side are differenced,
+ * to half of the digits, which is enough for a simplified Newton's method and for nothing else. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -28,7 +30,7 @@ size_t lag_linear_work(const lag_model *m)
 {
   size_t nq = (size_t)m->nq, n = 2 * nq + (size_t)m->nz;
 
-  return m->linear ? n + (size_t)m->linear->ndr + (size_t)m->linear->nmass + nq * nq : 0;
+  return m->linear ? n + (size_t)m->linear->ndr + (size_t)m->linear->nmass + nq * nq : m->constraints ? 3 * n : 0;
 }
 
 int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, double *dr, double *M, double *work)
@@ -111,10 +113,35 @@ static int solve(size_t n, size_t k, double *M, double *B)
   return LAG_OK;
 }
 
+/* Column by column, by steps forwards; backwards where the model has no value there. */
+static int difference(lag_problem *pb, double t, const double *y, double *J, double *work)
+{
+  int n = pb->n, nq = pb->nq, rc = lag_rhs(pb, t, y, work);
+  double *there = work + n, *rate = there + n;
+
+  for (int k = 0; k < n && rc == 0; k++) {
+    double far = k < 2 * nq ? lag_reach(pb, y, k < nq, k % nq) : fabs(y[k]) > 0 ? fabs(y[k]) : 1, step = sqrt(DBL_EPSILON) * far;
+    memcpy(there, y, (size_t)n * sizeof *y);
+    there[k] = y[k] + step;
+    rc = lag_rhs(pb, t, there, rate);
+    if (rc > 0 || lag_not_finite(n, rate) >= 0) {
+      there[k] = y[k] - step;
+      rc = lag_rhs(pb, t, there, rate);
+    }
+    for (int i = nq; i < n && rc == 0; i++) {
+      J[(size_t)(i - nq) * (size_t)n + (size_t)k] = (rate[i] - work[i]) / (there[k] - y[k]);
+    }
+  }
+  return rc;
+}
+
 int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work)
 {
   const lag_model *m = pb->model;
 
+  if (m->constraints) {
+    return difference(pb, t, y, J, work);
+  }
   if (!m->linear) {
     return lag_linearise(pb, t, y, NULL, J, NULL, work);
   }

@@ -116,16 +116,17 @@ double lag_size_like(const lag_problem *pb, const double *x, int i)
   return most;
 }
 
-/* How far component i may be from 0: as far as one of the same unit is; of an angle, 1. A velocity at rest is rounding: it is compared
- * with one that leads through such a distance in the time of the run. */
-static double reach(const lag_problem *pb, const double *y, int holonomic, int i)
+double lag_reach(const lag_problem *pb, const double *y, int holonomic, int i)
 {
   const lag_var *q = &pb->model->q[i];
-  double most = lag_size_like(pb, holonomic ? y : y + pb->nq, i);
+  const double unknown = 1e-6; /* of the unit: a run from 0 has no length, and what has moved off 0 by rounding is none */
+  int from_zero = pb->begin && !(lag_size_like(pb, pb->begin, i) > 0);
+  double time = holonomic ? 1 : pb->span > 0 ? pb->span : 1, most = lag_size_like(pb, holonomic ? y : y + pb->nq, i);
 
-  if (!holonomic) {
-    most = fmax(most, lag_size_like(pb, y, i) / (pb->span > 0 ? pb->span : 1));
+  if (most > 0 && from_zero) {
+    most = fmax(most, unknown / time);
   }
+  most = fmax(most, lag_size_like(pb, y, i) / time);
 
   int is_angle = q->periodic || !q->unit[0] || strcmp(q->unit, "rad") == 0 || strcmp(q->unit, "deg") == 0;
   return most <= 0 || (most < 1 && is_angle) ? 1 : most;
@@ -141,7 +142,7 @@ static int other_sizes(lag_problem *pb, const Held *w, double t, const double *y
 
   memcpy(w->other, y, (size_t)pb->n * sizeof *y);
   for (int i = 0; i < nq; i++) {
-    w->other[at + i] += reach(pb, y, holonomic, i) * (0.5 + fmod(step * (i + 1), 1));
+    w->other[at + i] += lag_reach(pb, y, holonomic, i) * (0.5 + fmod(step * (i + 1), 1));
   }
   int rc = lag_residuals(pb, t, w->other, c, r);
   for (int k = 0; k < n && rc == 0; k++) {
@@ -169,7 +170,7 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
     return -1;
   }
   for (int k = 0; k < n; k++) {
-    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x < DBL_MIN ? 0 : x / (DBL_EPSILON * w.g[k]);
+    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x < DBL_MIN ? 0 : x / (DBL_EPSILON * w.g[k]); /* numbers below that have lost digits: terms as small say nothing */
     part = isnan(part) ? HUGE_VAL : part; /* it has no value */
     if (part > most) {
       most = part;
@@ -265,6 +266,81 @@ static int unmet(lag_problem *pb, const Held *w, double t, const double *y, int 
   return LAG_ERETRY;
 }
 
+/* g := -A x */
+static void opposed(const Held *w, int n, const double *x, double *g)
+{
+  memset(g, 0, (size_t)n * sizeof *g);
+  for (int e = 0; e < w->of->njacobian; e++) {
+    const lag_entry *at = &w->of->jacobian[e];
+    if (at->row < n) {
+      g[at->row] -= w->A[e] * x[at->col];
+    }
+  }
+}
+
+/* w->before[k] := how far constraint k strays from the straight line that it is, but for rounding, along the change w->d that would take
+ * away what is left, -w->g. */
+static int stray(lag_problem *pb, const Held *w, double t, const double *y, int holonomic)
+{
+  static const double parts[] = {0.25, 0.5, 0.75, 1, 1.5, 2};
+  int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : nq, rc = 0;
+
+  memset(w->before, 0, (size_t)n * sizeof *w->before);
+  for (size_t j = 0; j < sizeof parts / sizeof *parts && rc == 0; j++) {
+    memcpy(w->other, y, (size_t)pb->n * sizeof *y);
+    for (int i = 0; i < nq; i++) {
+      w->other[at + i] += parts[j] * w->d[i];
+    }
+    rc = lag_residuals(pb, t, w->other, w->c, w->r);
+    for (int k = 0; k < n && rc == 0; k++) {
+      w->before[k] = fmax(w->before[k], fabs((holonomic ? w->c : w->r)[k] + (1 - parts[j]) * w->g[k]));
+    }
+  }
+  return rc;
+}
+
+/* Whether what is left of the constraints is what rounding makes of some of them, and what is left of the others takes a smaller change than
+ * that. What stands still at 0 shows no size, and 0.6^2 + 0.8^2 - 1 is rounding of terms that no coordinate shows. */
+static int is_noise(lag_problem *pb, const Held *w, double t, const double *y, int holonomic, const double *residual)
+{
+  int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, noise = 0;
+  double *rest = w->other;
+
+  for (int k = 0; k < n; k++) {
+    w->g[k] = -residual[k];
+  }
+  if (lag_least_change(pb, t, y, holonomic, w->g, w->d, w->force) || lag_not_finite(nq, w->d) >= 0 ||
+      w->of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work)) {
+    return 0;
+  }
+  opposed(w, n, w->d, w->before);
+  memset(w->c, 0, (size_t)n * sizeof *w->c); /* sizes of the terms of that */
+  for (int e = 0; e < w->of->njacobian; e++) {
+    const lag_entry *at_e = &w->of->jacobian[e];
+    w->c[at_e->row] += at_e->row < n ? fabs(w->A[e] * w->d[at_e->col]) : 0;
+  }
+  for (int k = 0; k < n; k++) {
+    if (!(fabs(w->before[k] + w->g[k]) <= 1e-3 * fabs(w->g[k]) + 1e-9 * w->c[k])) {
+      return 0; /* no change takes it away: it contradicts others */
+    }
+  }
+  if (stray(pb, w, t, y, holonomic)) {
+    return 0;
+  }
+  for (int k = 0; k < n; k++) {
+    int is = fabs(w->g[k]) <= 4 * w->before[k];
+    w->g[k] = is ? 0 : w->g[k];
+    noise |= is;
+  }
+  if (!noise || lag_least_change(pb, t, y, holonomic, w->g, rest, w->force)) {
+    return 0;
+  }
+  for (int i = 0; i < nq; i++) {
+    noise &= fabs(rest[i]) <= lag_size_like(pb, w->d, i);
+  }
+  return noise;
+}
+
 int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual)
 {
   const double rounding = 0x1p10 * DBL_EPSILON;
@@ -273,14 +349,15 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
   int n = holonomic ? w.of->nholonomic : w.of->n, met = 1;
 
   for (int k = 0; k < n; k++) {
-    met &= fabs(residual[k]) <= fmax(rounding * terms[k] / 4, DBL_MIN); /* what they were will do, where it is clear */
+    met &= fabs(residual[k]) <= rounding * terms[k] / 4; /* what they were will do, where it is clear */
   }
   if (met) {
     return 1;
   }
   lag_worst_constraint(pb, t, y, holonomic, &worst);
   memcpy(terms, w.g, (size_t)n * sizeof *terms);
-  return worst <= 0x1p10;
+  int noise = worst > 0x1p10 && is_noise(pb, &w, t, y, holonomic, residual);
+  return worst <= 0x1p10 || (noise && lag_residuals(pb, t, y, w.c, w.r) == 0); /* which newton() goes on with */
 }
 
 /* Whether the residuals of y, of which w->c and w->r are left as they are, are what the last digits of their terms make. */
@@ -362,28 +439,56 @@ static double extent(const lag_problem *pb, const double *y0, const double *y, i
 {
   double begin = pb->begin ? lag_size_like(pb, pb->begin, i) : 0;
 
-  return fmax(fmax(lag_size_like(pb, y0, i), lag_size_like(pb, y, i)), fmax(begin, 1e-10));
+  return fmax(fmax(lag_reach(pb, y0, 1, i), lag_reach(pb, y, 1, i)), fmax(begin, 1e-10));
 }
 
-/* The coordinate that a projection from q to y has moved farther than a step from y0 led, twice over, or -1. What is small beside its extent
- * is none: near a singular position rounding moves that far, and what lies at rest is moved by rounding alone. */
-static int leaps(const lag_problem *pb, const double *y0, const double *q, const double *y)
+/* Whether one constraint on positions contains coordinates i and j. */
+static int are_tied(const lag_constraints *of, int i, int j)
 {
+  for (int a = 0; a < of->njacobian; a++) {
+    for (int b = 0; of->jacobian[a].col == i && of->jacobian[a].row < of->nholonomic && b < of->njacobian; b++) {
+      if (of->jacobian[b].row == of->jacobian[a].row && of->jacobian[b].col == j) {
+        return 1;
+      }
+    }
+  }
+  return 0;
+}
+
+int lag_leaps(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led)
+{
+  const lag_constraints *of = pb->model->constraints;
   const double small = 1e-6;
 
   for (int i = 0; i < pb->nq; i++) {
-    double moved = fabs(y[i] - q[i]), led = 0;
-    if (!(moved > 2 * fabs(q[i] - y0[i]) + small * fabs(y[i]))) {
+    double most = fabs(led[i]);
+    if (!(fabs(moved[i]) > 2 * most + small * fabs(y[i]))) {
       continue;
     }
     for (int j = 0; j < pb->nq; j++) {
-      led = strcmp(pb->model->q[i].unit, pb->model->q[j].unit) == 0 ? fmax(led, fabs(q[j] - y0[j])) : led;
+      int alike = strcmp(pb->model->q[i].unit, pb->model->q[j].unit) == 0 && are_tied(of, i, j);
+      most = alike ? fmax(most, fabs(led[j])) : most;
     }
-    if (moved > 2 * led + small * extent(pb, y0, y, i)) {
+    if (fabs(moved[i]) > 2 * most + small * extent(pb, y0, y, i)) {
       return i;
     }
   }
   return -1;
+}
+
+int lag_say_leap(lag_problem *pb, double t, const double *y, int i, double moved)
+{
+  int k = lag_worst_constraint(pb, t, y, 1, NULL);
+
+  if (k >= 0) {
+    char words[128];
+    const lag_var *q = &pb->model->q[i];
+    snprintf(words, sizeof words, " after a step, and meeting it would move %s by %.3g %s: it jumps, or the step is too long", q->name,
+             fabs(moved) / q->factor, q->unit);
+    lag_say_constraint(pb, k, 1, NAN, words);
+  }
+  pb->bad_t = t;
+  return LAG_ERETRY;
 }
 
 int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost)
@@ -395,34 +500,18 @@ int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, dou
   size_t bytes = (size_t)pb->nq * sizeof(double);
 
   memcpy(w.step, y, bytes);
-  int rc = lag_project(pb, t, y, lost), i = rc ? -1 : leaps(pb, y0, w.step, y);
+  int rc = lag_project(pb, t, y, lost);
+  for (int i = 0; i < pb->nq; i++) {
+    w.d[i] = y[i] - w.step[i];
+    w.force[i] = w.step[i] - y0[i];
+  }
+  int i = rc ? -1 : lag_leaps(pb, y0, y, w.d, w.force);
   if (i < 0) {
     return rc;
   }
-  double moved = fabs(y[i] - w.step[i]);
+  double moved = w.d[i];
   memcpy(y, w.step, bytes);
-  int k = lag_worst_constraint(pb, t, y, 1, NULL);
-  if (k >= 0) {
-    char words[128];
-    const lag_var *q = &pb->model->q[i];
-    snprintf(words, sizeof words, " after a step, and meeting it would move %s by %.3g %s: it jumps, or the step is too long", q->name, moved / q->factor,
-             q->unit);
-    lag_say_constraint(pb, k, 1, NAN, words);
-  }
-  pb->bad_t = t;
-  return LAG_ERETRY;
-}
-
-/* g := -A x */
-static void opposed(const Held *w, int n, const double *x, double *g)
-{
-  memset(g, 0, (size_t)n * sizeof *g);
-  for (int e = 0; e < w->of->njacobian; e++) {
-    const lag_entry *at = &w->of->jacobian[e];
-    if (at->row < n) {
-      g[at->row] -= w->A[e] * x[at->col];
-    }
-  }
+  return lag_say_leap(pb, t, y, i, moved);
 }
 
 int lag_along_constraints(lag_problem *pb, double t, const double *y, double *e)

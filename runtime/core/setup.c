@@ -2,13 +2,14 @@
  * sets by name; leaves: the state at the start of the span. Holds: a setting that is refused changes nothing. */
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/core.h"
 
-enum { RUN_DOUBLES = sizeof(Run) / sizeof(double) };
+enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_DOUBLES = LINE / sizeof(double) };
 
 /* Lays out the blocks for this method, keeping nothing but what the caller has set (p, hold). opt: the values of its options;
  * they must live on. */
@@ -17,32 +18,35 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  size_t fixed = RUN_DOUBLES + np + nu + 5 * n + 2 * nc + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
+  size_t fixed = RUN_DOUBLES + np + nu + 5 * n + (size_t)s->pb.nq + 2 * nc + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
   size_t ncharges = (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double);
   lag_problem sized = s->pb;
   sized.opt = opt;
-  size_t total = fixed + ncharges + method->work_size(&sized);
-  double *b = calloc(total, sizeof *b), *x = b + RUN_DOUBLES;
+  size_t before = (fixed + ncharges + LINE_DOUBLES - 1) / LINE_DOUBLES * LINE_DOUBLES, total = before + method->work_size(&sized);
+  char *room = calloc(total * sizeof(double) + LINE - 1, 1);
 
-  if (!b) {
+  if (!room) {
     return LAG_ENOMEM;
   }
+  double *b = (double *)(void *)(room + (LINE - (uintptr_t)room % LINE) % LINE), *x = b + RUN_DOUBLES;
   if (s->saved) {
     memcpy(x, s->p, np * sizeof *x);
     memcpy(x + np, s->hold, nu * sizeof *x);
   }
-  free(s->saved);
+  free(s->room);
+  s->room = room;
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  double *charges, **const parts[] = {&s->p, &s->hold, &s->begin, &s->asked, &s->redundant, &s->kept, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
+  double *charges, **const parts[] = {&s->p, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
                             &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->mon_first, &s->mon_peak,
-                            &s->exact_peak, &charges, &s->method_work};
-  const size_t sizes[] = {np, nu, n, n, nc, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, ncharges, 0};
+                            &s->exact_peak, &charges};
+  const size_t sizes[] = {np, nu, n, n, nc, (size_t)s->pb.nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, ncharges};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
   }
+  s->method_work = b + before;
   s->pb.p = s->p;
   s->pb.hold = s->hold;
   s->pb.kept = s->kept;
@@ -171,7 +175,7 @@ void lag_sim_free(lag_sim *s)
   free(s->start);
   free(s->signal);
   free(s->scratch);
-  free(s->saved);
+  free(s->room);
   free(s);
 }
 
@@ -263,7 +267,8 @@ static int check_method(lag_sim *s, const lag_method *method)
                     m->constraints->of[0].name);
   }
   if (m->constraints && (has & LAG_MASSLESS) && (needs & LAG_METHOD_VARIATION)) {
-    return lag_fail(s, LAG_EMETHOD, "method %s finds velocities from momenta, and %s has no inertia; rk45 and dop853 can", method->name, massless(m));
+    return lag_fail(s, LAG_EMETHOD, "method %s finds velocities from momenta, and %s has no inertia in this program; `lagc build --method %s` makes one where it has; "
+                    "rk45 and dop853 need none", method->name, massless(m), method->name);
   }
   if ((needs & LAG_METHOD_FLOWS) && m->nq == 0) {
     needs = (needs & ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION)) | LAG_METHOD_JACOBIAN;
@@ -283,7 +288,7 @@ static int check_method(lag_sim *s, const lag_method *method)
   if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH)) {
     return lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min and max; dop853 does not", method->name);
   }
-  if (((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) || ((needs & LAG_METHOD_JACOBIAN) && !m->linear) ||
+  if (((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) || ((needs & LAG_METHOD_JACOBIAN) && !m->linear && !m->constraints) ||
       ((needs & LAG_METHOD_TAYLOR) && !m->taylor)) {
     return lag_fail(s, LAG_EMETHOD,
                     "method %s needs derivatives of the model that this program was built without; `lagc run MODEL --method %s` and "
@@ -515,6 +520,7 @@ int lag_setup_start(lag_sim *s)
   if (lag_not_finite(n, s->now) >= 0) {
     return lag_fail(s, LAG_ENAN, "the start is not finite");
   }
+  memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* what is asked for says how large things are */
   if ((rc = lag_consistent(s)) != 0) {
     return rc;
   }

@@ -7,14 +7,7 @@
 
 static int outputs_at(lag_sim *s, double t, const double *y)
 {
-  const lag_scene *c = s->scene;
-  int rc = lag_inputs(&s->pb, t);
-
-  rc = rc ? rc : lag_exact_at(s, t);
-  if (rc || !c->observe) {
-    return rc;
-  }
-  return c->observe(t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, s->out, s->work);
+  return s->scene->observe ? lag_observe(s, t, y, s->out) : 0;
 }
 
 static int watches_outputs(const lag_scene *c)

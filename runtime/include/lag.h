@@ -75,7 +75,7 @@ typedef struct lag_problem {
   double bad_t;        /* set before a failure: where, */
   int bad_index;       /* which component of y' (-1: unknown), */
   const char *detail;  /* and more words or NULL; a string that lives as long as this object, */
-  char words[160];     /* for example made here */
+  char words[320];     /* for example made here */
 } lag_problem;
 
 /* The model's facts (LAG_AUTONOMOUS, ...) without those that a function in place of an input takes away. */
@@ -105,7 +105,8 @@ int lag_second_derivatives(lag_problem *pb, double t, const double *q, const dou
  * singular. Neither looks for NaN; after an error the matrices are undefined. */
 size_t lag_linear_work(const lag_model *model);
 
-/* J[(nq + nz) * n]: the derivatives of the accelerations and of the rates, the rows of f below the first nq, by
+/* Of models with constraints differences to half of the digits: good for a simplified Newton's method.
+ * J[(nq + nz) * n]: the derivatives of the accelerations and of the rates, the rows of f below the first nq, by
  * y. With the nq rows [0 | 1 | 0] above it J is df/dy. Calls lag_rhs once, and leaves f(t, y) in the first n of work. */
 int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
 
@@ -135,10 +136,31 @@ int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, 
 int lag_project(lag_problem *pb, double t, double *y, double *lost);
 /* The same after a step from y0; > 0 also where it would lead farther than the step did: the constraint jumps there, or the step is too long. */
 int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost);
+/* What lag_project_step calls farther: the first coordinate of a step from y0 to y that constraints moved by moved[nq], more than twice as
+ * far as what led there, led[nq], accounts for: its own part, or one of its unit that a constraint ties to it. -1: none. What is rounding near
+ * a singular position, a millionth of how far the coordinate has been from 0, is none. */
+int lag_leaps(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led);
+/* Says so of coordinate i, with the constraint on positions that y breaks most at t; returns LAG_ERETRY. */
+int lag_say_leap(lag_problem *pb, double t, const double *y, int i, double moved);
+
+/* How independent the weakest constraint is where y is at t, from 1 to 0: what is left of its derivatives beside those of the constraints
+ * before it, and how large they are beside its terms. *weakest: which, or -1; what follows from others always is left out. (core/forces.c) */
+double lag_independence(lag_problem *pb, double t, const double *y, int *weakest);
+
+/* Whether steps creep towards a singular position: of a method that chooses its steps, which asks after each one, at y at t, of a run that began at
+ * `begin`. c is all 0 at first. Then pb says why, and the step fails with LAG_ESTEP. Rule and reason: core/creep.c. */
+typedef struct lag_creep {
+  double steps, since; /* steps since a time */
+} lag_creep;
+int lag_creeps(lag_problem *pb, lag_creep *c, double begin, double t, const double *y);
 
 /* The largest of |x[j]| over the coordinates (or their velocities) that have the unit of coordinate i: what rounding in it is measured
  * with, where it is small itself. */
 double lag_size_like(const lag_problem *pb, const double *x, int i);
+/* How far component i of q (holonomic) or of v may be from 0: as far as one of the same unit is; of an angle, 1. Of a run that began at 0, where
+ * there is no length, at least a millionth; all being 0, 1. A velocity at rest is rounding: it is compared with one that leads through such
+ * a distance in the time of the run. */
+double lag_reach(const lag_problem *pb, const double *y, int holonomic, int i);
 /* Takes from a small change e[n] of the state y what lag_project would take back, to first order. */
 int lag_along_constraints(lag_problem *pb, double t, const double *y, double *e);
 
@@ -193,7 +215,9 @@ typedef struct lag_method_option {
 } lag_method_option;
 
 /* An integrator. Its state is one block of work_size doubles (only doubles, unless NO_SAVE: then the state
- * of a run can be written and read back bit by bit). */
+ * of a run can be written and read back bit by bit), which begins at a multiple of LAG_WORK_ALIGN bytes. */
+enum { LAG_WORK_ALIGN = 64 };
+
 typedef struct lag_method {
   const char *name;
   int order, dense_order;      /* of the steps and between them, the options at their defaults */
@@ -205,6 +229,9 @@ typedef struct lag_method {
 
   /* What is wrong with these values of the options, and what to write; NULL when they fit together. May itself be NULL. */
   const char *(*check)(const double *opt);
+
+  /* The order that steps have with these values; NULL: order. */
+  int (*order_of)(const double *opt);
 
   /* Why it cannot integrate this model with these values, and what to write; NULL when it can. May itself be NULL. */
   const char *(*refuses)(const lag_model *model, const double *opt);
@@ -325,6 +352,10 @@ double lag_sim_begin(const lag_sim *sim, int i);
 /* How many constraints are independent at the start; whether number k follows from others there (not before the first advance). */
 int lag_sim_rank(const lag_sim *sim);
 int lag_sim_is_redundant(const lag_sim *sim, int k);
+/* How many are independent a hundredth beside the start, if that is more: a singular start, as of bars in one line. Whether the velocity of
+ * coordinate i is determined there and not at the start, which then decides on which of several branches the motion goes on. */
+int lag_sim_rank_beside(const lag_sim *sim);
+int lag_sim_is_loose(const lag_sim *sim, int i);
 /* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI units
  * unlike lag_sim_set; fn NULL: as the model says again. It must be a function of t alone: methods, events and outputs
  * call it for times that go forth and back, more than once for some. What depends on the motion is a force of the

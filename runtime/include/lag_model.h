@@ -162,7 +162,8 @@ typedef struct lag_constraints {
 enum {
   LAG_CONSERVED = 1,   /* it is 0 */
   LAG_BALANCED = 2,    /* it is what lag_charges.powers gives */
-  LAG_BY_FORMULAS = 4  /* the latter while inputs follow the model's formulas */
+  LAG_BY_FORMULAS = 4, /* the latter while inputs follow the model's formulas */
+  LAG_JUMPS = 8        /* it jumps where L does, or L is not invariant there; of no other kind then */
 };
 
 typedef struct lag_charge {
@@ -327,6 +328,7 @@ typedef struct lag_scene {
   /* What a row of output holds besides t: out[nout]. */
   int nout;
   const lag_var *outputs;
+  const unsigned char *forces; /* [nout] 1: it contains multipliers or accelerations; NULL: none does */
   double every;       /* 0: the runtime's choice */
   int (*observe)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
                  const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);

@@ -211,17 +211,17 @@ LAG_INLINE const double *lag_sines(lag_word k) { return lag_sincos_table.sines +
  * Functions, 1980) with pi/32 in three parts, from minimax polynomials (tests/math/remez.py); P. Tang, ACM Trans. Math. Softw. 15
  * (1989) 144, doi:10.1145/63522.214389, has the idea. sum: x in units of pi/32, made an integer by what LAG_SINCOS_INTEGER adds; its
  * products with the first two parts are exact; lost is 2^-130 |x|, and no double with |x| <= 2^18 pi/32 is so near to a multiple of
- * pi/2 that it would matter. */
+ * pi/2 that it would matter. Sums are bracketed for a short way from x to the end: a stage of an integrator waits for it. */
 #define LAG_SINCOS_INTEGER(x, mad, K) mad(x, K(per_unit), K(whole))
 #define LAG_SINCOS_NEAR(real, mad, K, rest) \
   const real k = sum - K(whole); \
   const real first = mad(k, K(part1), x), r = mad(k, K(part2), first); \
   const real third = mad(k, K(part3), mad(-k, K(part2), r - first)), low = rest; \
-  const real z = r*r; \
-  const real p = mad(z, mad(z, K(s7), K(s5)), K(s3)); \
-  const real q = mad(z, mad(z, mad(z, K(c8), K(c6)), K(c4)), K(c2)); \
-  const real less_s = mad(r*z, p, low), less_c = z*q; /* r - sin, 1 - cos of what is left */ \
-  const real t = mad(C, less_s, mad(S, less_c, S_add)), u = mad(C, less_c, mad(-S, less_s, C_add)); \
+  const real z = r*r, zz = z*z; \
+  const real p = mad(zz, K(s7), mad(z, K(s5), K(s3))); \
+  const real q = mad(zz, mad(z, K(c8), K(c6)), mad(z, K(c4), K(c2))); \
+  const real less_s = mad(r*z, p, low); /* r - sin of what is left; z q is 1 - cos */ \
+  const real t = mad(C, less_s, mad(S*z, q, S_add)), u = mad(-S, less_s, mad(C*z, q, C_add)); \
   LAG_SINCOS_SUM(real, mad, K)
 
 /* Whether sum is not 1.5 2^52 + k with |k| <= 2^18, that is |x| < 25735: asked of its bits, which the table wants anyway, of one or of

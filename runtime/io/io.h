@@ -40,7 +40,7 @@ int table_add(Table *t, const double *row);
 /* The time in years, days or hours where the rows span two of them or more, for pictures; as it is where nothing has a unit. */
 void table_long_time(Table *t);
 
-/* Rows to a file: .npy by its suffix, else CSV. */
+/* Rows to a file: .npy by its suffix, else CSV, whose header waits for the first row or the end: what fails before writes nothing. */
 typedef struct Rows {
   Outfile out;
   int open, npy;

@@ -249,17 +249,16 @@ int rows_open(Rows *r, const char *path, const Table *t)
     return -1;
   }
   r->open = 1;
-  if (r->npy) {
-    return npy_head(r);
-  }
-  csv_head(r);
-  return 0;
+  return r->npy ? npy_head(r) : 0;
 }
 
 int rows_write(Rows *r, const double *row)
 {
   FILE *f = r->out.f;
 
+  if (!r->npy && r->nrows == 0) {
+    csv_head(r);
+  }
   r->nrows++;
   for (int i = 0; i < r->ncols; i++) {
     const Column *c = &r->cols[i];
@@ -288,6 +287,9 @@ int rows_close(Rows *r, int keep)
     return 0;
   }
   r->open = 0;
+  if (!r->npy && keep && r->nrows == 0) {
+    csv_head(r);
+  }
   if (r->npy && keep && (fseek(r->out.f, 0, SEEK_SET) != 0 || npy_head(r))) {
     int error = errno;
     outfile_close(&r->out, 0);

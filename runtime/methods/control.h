@@ -2,11 +2,45 @@
 #ifndef LAG_METHODS_CONTROL_H
 #define LAG_METHODS_CONTROL_H
 
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
 #include "lag.h"
 
 typedef struct lag_tolerance {
   double absolute, relative;
 } lag_tolerance;
+
+/* The lesser and the greater of two numbers; the second where the first is none. */
+static inline double lag_lesser(double a, double b) { return a < b ? a : b; }
+static inline double lag_greater(double a, double b) { return a > b ? a : b; }
+
+/* x^p for a normal x > 0 and |p| <= 1/8, to 2e-4 of it: all that the size of a step asks for. The next step waits for it, and for pow it
+ * would wait for a tenth of a short step's time. log2(x) by its exponent and a cubic in what is left of it, 2^y likewise, both least at
+ * Chebyshev's points: errors 7e-4 of a binary order, and 8e-5. */
+static inline double lag_rough_power(double x, double p)
+{
+#ifdef LAG_REAL_IS_DOUBLE
+  const uint64_t root = 0x3fe6a09e667f3bcd; /* the bits of sqrt(1/2): 1 + u is between that and sqrt(2) */
+  const double whole = 6755399441055744.0;  /* 1.5 2^52: what is added to it becomes an integer */
+  uint64_t bits;
+  double u, two;
+
+  memcpy(&bits, &x, sizeof bits);
+  int64_t e = (int64_t)(bits - root) >> 52;
+  bits -= (uint64_t)e << 52;
+  memcpy(&u, &bits, sizeof u);
+  u -= 1;
+  double y = p * ((double)e + ((0.0005394920249608554 + 1.4462983444747144 * u) + u * u * (-0.7595145055376984 + 0.43966727293612035 * u)));
+  double k = (y + whole) - whole, f = y - k;
+  bits = (uint64_t)(int64_t)(k + 1023) << 52;
+  memcpy(&two, &bits, sizeof two);
+  return two * ((0.9999244814556045 + 0.6931210339915355 * f) + f * f * (0.24264008283279262 + 0.05592203564734233 * f));
+#else
+  return pow(x, p);
+#endif
+}
 
 /* Root mean square of x[n] against absolute + relative |y|. */
 double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const double *x, const double *y);

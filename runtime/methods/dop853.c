@@ -108,7 +108,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
 static void extend(Embedded *w, lag_problem *pb)
 {
   EmbeddedShape as = embedded_shape(pb);
-  int n = as.n, row = as.row;
+  int row = as.row;
   double *k = w->x + EMBEDDED_K1 * row, *y0 = w->x + EMBEDDED_Y0 * row, *ys = w->x + EMBEDDED_YS * row;
 
   w->have_extra = 1;
@@ -117,12 +117,8 @@ static void extend(Embedded *w, lag_problem *pb)
     w->have_extra = -1;
     return;
   }
-  for (int i = 0; i < n; i += 2) {
-    for (int j = 0; j < LAG_MAX_DENSE; j++) {
-      Pair2 sum = embedded_sum(pair.tab->d[j], NSTAGES, k + i, row);
-      w->x[(HIGH + j) * row + i] = sum.a;
-      w->x[(HIGH + j) * row + i + 1] = sum.b;
-    }
+  for (int j = 0; j < LAG_MAX_DENSE; j++) {
+    embedded_combine(pair.tab->d[j], NSTAGES, as, k, w->x + (HIGH + j) * row);
   }
 }
 

@@ -97,21 +97,21 @@ static double longest(const Embedded *w, const lag_problem *pb, double t)
     return w->h_option;
   }
   double seen = fabs(t - w->t_begin), most = w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
-  return pb->longest > 0 ? fmin(most, pb->longest) : most;
+  return pb->longest > 0 ? lag_lesser(most, pb->longest) : most;
 }
 
-/* The size of the next step; err2: the square of the error. One pow, for the error and for its memory. */
+/* The size of the next step; err2: the square of the error. One power, for the error and for its memory. */
 static void next_size(const EmbeddedPair *pair, Embedded *w, double err2, int retried)
 {
   const double least = 1e-8; /* what is remembered, squared; and where nothing is */
-  double power = pow(fmax(err2, 1e-24), pair->beta / 2), f = 1 / pair->safety;
-  double memory = err2 > least ? power : pow(least, pair->beta / 2);
+  double power = lag_rough_power(lag_greater(err2, 1e-24), -pair->beta / 2), f = pair->safety;
+  double memory = err2 > least ? power : lag_rough_power(least, -pair->beta / 2);
 
+  f /= w->err_power > 0 ? w->err_power : lag_rough_power(least, -pair->beta / 2);
   for (int i = 0; i < pair->ratio; i++) {
     f *= power;
   }
-  f /= w->err_power > 0 ? w->err_power : pow(least, pair->beta / 2);
-  w->h /= fmin(1 / pair->shrink_most, fmax(retried ? 1 : 1 / pair->grow_most, f));
+  w->h *= lag_greater(pair->shrink_most, lag_lesser(retried ? 1 : pair->grow_most, f));
   w->err_power = memory;
 }
 
@@ -169,24 +169,67 @@ double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, l
   return !isfinite(both) ? NAN : late ? (both > 0 ? fine * (fine / both) : 0) : fine;
 }
 
-/* Whether to try a step again that is good along the constraints, but has gone so far across them that the square of that counts. Its
- * stages came near a position where constraints become dependent; of another size it will pass it better. Estimates are too small there,
- * by a factor of some ten, squared. That comes to an end: steps that shrink until their estimates are good would never pass. */
-static int lands_badly(const Embedded *w, const lag_problem *pb, int *tries)
-{
-  const double factor = 100;
-  enum { MOST = 6 };
+/* The search for a step that passes a position where constraints become dependent. A step whose stages came near one goes far across the
+ * constraints; and one that ends near it hands the next a derivative that says little. What passes better may be shorter, where the
+ * step ends there, or longer, where it begins there. Of the sizes that are tried the first is taken that is good, or else the least bad of
+ * those whose error is small along the constraints: steps that shrink until all is good would never pass. */
+typedef struct Landing {
+  double base, base_err; /* the size that was to be, and its error, squared */
+  double best, least;    /* of those with a small error, the least bad, and how bad it is */
+  int tries;
+} Landing;
 
-  return factor * w->across * pb->tol > 1 && ++*tries <= MOST;
+enum { LANDING_TRIES = 8 };
+
+/* How bad a step is for the constraints, which is more than 1 for one that should be of another size; w->across is not 0 where it came
+ * near a position where they become dependent. */
+static double badness(const Embedded *w, lag_problem *pb, double tb)
+{
+  const double factor = 100;  /* estimates of what goes across are too small there, by a factor of some ten, squared */
+  const double weight = 1e-2; /* of the derivative at the end in the next step; its error is that of rounding over s^2 */
+  int weakest;
+
+  if (w->across == 0.0) {
+    return 0;
+  }
+  double across = factor * w->across * pb->tol, s = lag_independence(pb, tb, lag_embedded_array((Embedded *)w, pb, EMBEDDED_Y1), &weakest);
+  return lag_greater(across, weight * DBL_EPSILON / (pb->tol * s * s));
+}
+
+/* Whether to try a step of another size, in w->h, than the one to tb, whose error is *err, squared, or NaN. After all tries in vain *err is
+ * that of the first one, and w->h its size. */
+static int land_elsewhere(Landing *l, Embedded *w, lag_problem *pb, double tb, double *err)
+{
+  double bad = l->tries <= LANDING_TRIES ? badness(w, pb, tb) : 0;
+
+  if (!(bad > 1) && (l->tries == 0 || l->tries > LANDING_TRIES || *err <= 1)) {
+    return 0;
+  }
+  if (l->tries == 0) {
+    *l = (Landing){.base = w->h, .base_err = *err, .least = HUGE_VAL};
+  }
+  if (*err <= 1 && bad < l->least) {
+    l->best = w->h;
+    l->least = bad;
+  }
+  int k = l->tries++; /* 1/1.25, 1.25, 1/1.25^2, 1.25^2, ... */
+  if (k == LANDING_TRIES && l->best == 0.0) {
+    w->h = l->base;
+    *err = l->base_err;
+    return 0;
+  }
+  w->h = k < LANDING_TRIES ? l->base * pow(1.25, k % 2 ? (k + 1) / 2 : -(k + 2) / 2) : l->best;
+  return 1;
 }
 
 int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y)
 {
   Embedded *w = work;
-  int cause = LAG_ESTEP, retried = 0, tries = 0, rc = prepare(pair, w, pb, *t, y);
+  Landing landing = {.tries = 0};
+  int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
 
   while (rc == 0) {
-    double wanted = fmin(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row(pb, *t, &row);
+    double wanted = lag_lesser(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row(pb, *t, &row);
     int clipped = wanted * (1 + 1e-4) >= gap; /* what is left would be too short a step */
     w->h = clipped ? gap : wanted;
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_sum(*t, dt, &tc);
@@ -202,18 +245,18 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
     if (rc < 0) {
       return rc;
     }
-    if (err <= 1 && w->fixed == 0.0 && lands_badly(w, pb, &tries)) {
-      w->h *= 0.8;
+    if (w->fixed == 0.0 && land_elsewhere(&landing, w, pb, tb, &err)) {
       pb->rejected++;
+      rc = 0;
       continue;
     }
     if (err <= 1 || (w->fixed != 0.0 && !isnan(err))) {
       if (w->fixed == 0.0) {
         next_size(pair, w, err, retried);
-        w->h = clipped ? fmax(w->h, wanted) : w->h;
+        w->h = clipped ? lag_greater(w->h, wanted) : w->h;
       }
       accept(w, pb, t, y, dt, tb, tc);
-      return LAG_OK;
+      return w->fixed == 0.0 && lag_creeps(pb, &w->creep, w->t_begin, tb, y) ? LAG_ESTEP : LAG_OK;
     }
     if (isnan(err)) {
       cause = rc ? LAG_EDOMAIN : LAG_ENAN;
@@ -221,7 +264,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
       w->h /= 2;
     } else {
       cause = LAG_ESTEP;
-      w->h *= fmax(pair->shrink_most, pair->safety * pow(err, -0.5 * pair->ratio * pair->beta));
+      w->h *= fmax(pair->shrink_most, pair->safety * lag_rough_power(err, -0.5 * pair->ratio * pair->beta));
     }
     if (w->fixed != 0.0) {
       return too_small(pair, w, pb, *t, cause);

@@ -21,21 +21,23 @@ struct EmbeddedPair {
   double (*trial)(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc);
 };
 
-/* One block of doubles; x holds the arrays named below, each in a row of lag_embedded_row() doubles: n, and zeros. */
+/* One block of doubles; x holds the arrays named below, each in a row of lag_embedded_row() doubles: n, and zeros. It begins at a line of
+ * the cache: a pair across two lines is slow to read back, and the stages wait for little else. */
 struct Embedded {
   double h;         /* the next step to try, > 0; 0: not chosen yet */
   double h_option, h_max, atol;
   double fixed;     /* 1: every step has the size h */
   double ready;     /* 1: K1 = f(t, y) is known; 2: it stands in the last stage */
   double have_extra; /* the stages of the dense output: 1 are known, -1 cannot be had, 0 not asked for yet */
-  double err_power; /* (error of the last accepted step)^beta, of the PI controller; 0: there is none */
+  double err_power; /* (error of the last accepted step)^-beta, of the PI controller; 0: there is none */
   double t0, dt;    /* the last step */
   double tc;        /* what t has lost to rounding */
   double t_begin;   /* where the first step began */
   double begun;
   double per;       /* 1/n */
   double across;    /* the square of the error with what the projection takes back, where that was left out of it; or 0 */
-  double x[];
+  lag_creep creep;
+  _Alignas(LAG_WORK_ALIGN) double x[];
 };
 
 /* COMP: what y has lost to rounding; COMP1: the same after the step. K1: the first of stages + extra arrays. */

@@ -1,5 +1,5 @@
 /* The stages and the error of a step, for a tableau that the compiler knows: dop853.c and rk45.c include this text and say
- * EMBEDDED_TRIAL. Each sum over stages then is a straight line without columns of zeros, over pairs of components.
+ * EMBEDDED_TRIAL. Each sum over stages then is a straight line without columns of zeros.
  * Holds: whatever n is, a component is summed in one order, so states do not depend on what stands beside them. */
 #ifndef LAG_METHODS_EMBEDDED_TRIAL_H
 #define LAG_METHODS_EMBEDDED_TRIAL_H
@@ -8,7 +8,6 @@
 
 #include "core/rhs.h"
 #include "methods/embedded.h"
-#include "methods/steps.h"
 
 /* The sizes of a problem; row: of an array. */
 typedef struct EmbeddedShape {
@@ -22,34 +21,60 @@ LAG_HERE EmbeddedShape embedded_shape(const lag_problem *pb)
   return as;
 }
 
-typedef struct Pair2 {
-  double a, b;
-} Pair2;
+/* Numbers side by side, where the compiler has such types; elsewhere one by one. Not fours: they would hold rates beside coordinates, and
+ * the coordinates of a stage, whose sines are most of its work, would wait for the newest rates. */
+#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE)
+#define EMBEDDED_VECTORS 1
+typedef double embedded_part __attribute__((vector_size(16), aligned(8), may_alias));
+#else
+#define EMBEDDED_VECTORS 0
+typedef double embedded_part;
+#endif
+enum { EMBEDDED_WIDTH = sizeof(embedded_part) / sizeof(double) };
 
-/* Two numbers that a model has just stored, one by one: processors hand on what was just stored only to loads of the same size, so
- * they are loaded one by one, too. */
-LAG_HERE Pair2 embedded_newest(const volatile double *k)
+LAG_HERE embedded_part embedded_at(const double *x)
 {
-  Pair2 s = {k[0], k[1]};
-
-  return s;
+  return *(const embedded_part *)(const void *)x;
 }
 
-#define EMBEDDED_TERM(j)                  \
-  if (j < count && coef[j] != 0.0) {      \
-    s.a += coef[j] * k[(j) * row];        \
-    s.b += coef[j] * k[(j) * row + 1];    \
+LAG_HERE void embedded_set(double *x, embedded_part s)
+{
+  *(embedded_part *)(void *)x = s;
+}
+
+/* What a model has just stored, number by number: processors hand on what was just stored only to loads of the same size, so it is loaded
+ * so, too. */
+LAG_HERE embedded_part embedded_newest(const volatile double *k)
+{
+#if EMBEDDED_VECTORS
+  return (embedded_part){k[0], k[1]};
+#else
+  return k[0];
+#endif
+}
+
+#define EMBEDDED_TERM(j)                          \
+  if (j < count && coef[j] != 0.0) {              \
+    s += coef[j] * embedded_at(k + (j) * row);    \
   }
 
-/* sum_j coef[j] k_j over j < count of two components; coef[0] is not 0. */
-LAG_HERE Pair2 embedded_sum(const double *coef, int count, const double *k, int row)
+/* sum_j coef[j] k_j over j < count of the components of a part; coef[0] is not 0. */
+LAG_HERE embedded_part embedded_sum(const double *coef, int count, const double *k, int row)
 {
-  Pair2 s = {coef[0] * k[0], coef[0] * k[1]};
+  embedded_part s = coef[0] * embedded_at(k);
 
   EMBEDDED_TERM(1) EMBEDDED_TERM(2) EMBEDDED_TERM(3) EMBEDDED_TERM(4) EMBEDDED_TERM(5) EMBEDDED_TERM(6) EMBEDDED_TERM(7)
   EMBEDDED_TERM(8) EMBEDDED_TERM(9) EMBEDDED_TERM(10) EMBEDDED_TERM(11) EMBEDDED_TERM(12) EMBEDDED_TERM(13)
   EMBEDDED_TERM(14) EMBEDDED_TERM(15)
   return s;
+}
+
+/* The same into a row. */
+LAG_HERE void embedded_combine(const double *coef, int count, EmbeddedShape as, const double *k, double *out)
+{
+  for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
+    embedded_set(out + i, embedded_sum(coef, count, k + i, as.row));
+  }
 }
 
 /* f(t, y) into k. > 0: a smaller step may help. */
@@ -70,16 +95,12 @@ LAG_HERE int embedded_stage(const lag_tableau *tab, lag_problem *pb, EmbeddedSha
   int row = as.row;
   double newest = dt * tab->a[s][s - 1];
 
-  for (int i = 0; i < as.n; i += 2) {
-    const double *at = k + i;
-    Pair2 y = {y0[i], y0[i + 1]}, last = embedded_newest(at + (s - 1) * row);
+  for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
+    embedded_part y = embedded_at(y0 + i);
     if (s > 1) {
-      Pair2 sum = embedded_sum(tab->a[s], s - 1, at, row);
-      y.a += dt * sum.a;
-      y.b += dt * sum.b;
+      y += dt * embedded_sum(tab->a[s], s - 1, k + i, row);
     }
-    ys[i] = y.a + newest * last.a;
-    ys[i + 1] = y.b + newest * last.b;
+    embedded_set(ys + i, y + newest * embedded_newest(k + i + (s - 1) * row));
   }
   return embedded_call(pb, as.nq, t0 + tab->c[s] * dt, ys, k + s * row);
 }
@@ -92,15 +113,11 @@ LAG_HERE void embedded_result(const lag_tableau *tab, Embedded *w, EmbeddedShape
   const double *comp = w->x + EMBEDDED_COMP * row, *y0 = w->x + EMBEDDED_Y0 * row, *k = w->x + EMBEDDED_K1 * row;
   double *comp1 = w->x + EMBEDDED_COMP1 * row, *y1 = w->x + EMBEDDED_Y1 * row;
 
-  for (int i = 0; i < as.n; i += 2) {
-    Pair2 sum = embedded_sum(tab->a[last], last - 1, k + i, row), late = embedded_newest(k + i + (last - 1) * row);
-    Pair2 c = {comp[i], comp[i + 1]};
-    sum.a += newest * late.a;
-    sum.b += newest * late.b;
-    y1[i] = lag_sum(y0[i], dt * sum.a, &c.a);
-    y1[i + 1] = lag_sum(y0[i + 1], dt * sum.b, &c.b);
-    comp1[i] = c.a;
-    comp1[i + 1] = c.b;
+  for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
+    embedded_part sum = embedded_sum(tab->a[last], last - 1, k + i, row) + newest * embedded_newest(k + i + (last - 1) * row);
+    embedded_part y = embedded_at(y0 + i), x = dt * sum + embedded_at(comp + i), r = y + x, b = r - y; /* as lag_sum */
+    embedded_set(y1 + i, r);
+    embedded_set(comp1 + i, (y - (r - b)) + (x - b));
   }
 }
 
@@ -112,6 +129,16 @@ LAG_HERE double embedded_scale(const Embedded *w, const lag_problem *pb, double 
   return w->atol + pb->tol * (a > b ? a : b);
 }
 
+/* The sum of the squares of the components. */
+LAG_HERE double embedded_square(embedded_part x)
+{
+#if EMBEDDED_VECTORS
+  return x[0] * x[0] + x[1] * x[1];
+#else
+  return x * x;
+#endif
+}
+
 /* The square of the norm of the error of the step just computed. */
 LAG_HERE double embedded_error(const lag_tableau *tab, int late, Embedded *w, const lag_problem *pb, EmbeddedShape as, double dt)
 {
@@ -119,14 +146,14 @@ LAG_HERE double embedded_error(const lag_tableau *tab, int late, Embedded *w, co
   const double *y0 = w->x + EMBEDDED_Y0 * row, *y1 = w->x + EMBEDDED_Y1 * row, *k = w->x + EMBEDDED_K1 * row;
   double fine = 0, coarse = 0;
 
-  for (int i = 0; i < as.n; i += 2) {
-    Pair2 r = {1 / embedded_scale(w, pb, y0[i], y1[i]), 1 / embedded_scale(w, pb, y0[i + 1], y1[i + 1])};
-    Pair2 e = embedded_sum(tab->e, tab->stages - late, k + i, row);
-    fine += e.a * r.a * (e.a * r.a) + e.b * r.b * (e.b * r.b);
-    if (late) {
-      Pair2 e3 = embedded_sum(tab->e3, tab->stages - 1, k + i, row);
-      coarse += e3.a * r.a * (e3.a * r.a) + e3.b * r.b * (e3.b * r.b);
+  for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
+    double scale[EMBEDDED_WIDTH];
+    for (int j = 0; j < EMBEDDED_WIDTH; j++) {
+      scale[j] = embedded_scale(w, pb, y0[i + j], y1[i + j]);
     }
+    embedded_part per = 1 / embedded_at(scale);
+    fine += embedded_square(per * embedded_sum(tab->e, tab->stages - late, k + i, row));
+    coarse += late ? embedded_square(per * embedded_sum(tab->e3, tab->stages - 1, k + i, row)) : 0;
   }
   fine *= dt * dt * w->per;
   coarse *= 0.01 * dt * dt * w->per;

@@ -1,6 +1,7 @@
 /* radau: Radau IIA of order 5, implicit and L-stable, with adaptive steps and the exact Jacobian that the compiler emits: for
  * stiff models. Enters: t, y; leaves: the next accepted t, y. Holds: a rejected step leaves t, y as they were; f at the end of
- * a step is that of the next one's beginning; the Jacobian and its factors are kept while Newton's method contracts well.
+ * a step is that of the next one's beginning; the Jacobian and its factors are kept while Newton's method contracts well. Constraints: of
+ * index 1 within a step, whose end is projected; the Jacobian is differenced then.
  *
  * Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), DOI 10.1007/978-3-642-05221-7,
  * IV.8 and code RADAU5: simplified Newton iteration in coordinates in which the Butcher matrix is one real and one complex
@@ -62,6 +63,7 @@ typedef struct Radau {
   double t0, dt;       /* the last step */
   double tc;           /* what t has lost to rounding */
   double t_begin, begun;
+  lag_creep creep;
   double x[];
 } Radau;
 
@@ -410,16 +412,17 @@ static void accept(Radau *w, const Arrays *a, lag_problem *pb, double *t, double
   *t = tb;
 }
 
-/* y1 and f there into fs. > 0: a smaller step may help. */
+/* y1, on the constraints, and f there into fs. > 0: a smaller step may help. */
 static int finish(const Arrays *a, lag_problem *pb, double tb, const double *y)
 {
-  int n = pb->n;
+  int n = pb->n, rc;
 
   for (int i = 0; i < n; i++) {
     a->comp1[i] = a->comp[i];
     a->y1[i] = lag_sum(y[i], a->z[2 * n + i], &a->comp1[i]);
   }
-  int rc = lag_rhs(pb, tb, a->y1, a->fs);
+  rc = lag_project_step(pb, tb, y, a->y1, a->comp1);
+  rc = rc ? rc : lag_rhs(pb, tb, a->y1, a->fs);
   if (rc || (pb->bad_index = lag_not_finite(n, a->fs)) >= 0) {
     pb->bad_t = tb;
     return rc < -1 ? LAG_EMODEL : rc ? rc : LAG_ERETRY;
@@ -529,7 +532,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     why = attempt(w, &a, pb, *t, tb, y, dt);
     if (why == 0) {
       accept(w, &a, pb, t, y, dt, tb, tc);
-      return LAG_OK;
+      return w->fixed == 0.0 && lag_creeps(pb, &w->creep, w->t_begin, tb, y) ? LAG_ESTEP : LAG_OK;
     }
     if (why < 0) {
       return why;
@@ -580,8 +583,8 @@ const lag_method lag_radau = {
     .name = "radau",
     .order = 5,
     .dense_order = 3,
-    .doc = "Radau IIA with the exact Jacobian, for stiff models. DOI 10.1007/978-3-642-05221-7, IV.8",
-    .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_NEWTON | LAG_METHOD_JACOBIAN,
+    .doc = "Radau IIA with the exact Jacobian (of constrained models a differenced one), for stiff models. DOI 10.1007/978-3-642-05221-7, IV.8",
+    .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_NEWTON | LAG_METHOD_JACOBIAN | LAG_METHOD_CONSTRAINTS,
     .noptions = EMBEDDED_NOPTIONS,
     .options = lag_embedded_options,
     .work_size = work_size,

@@ -70,6 +70,23 @@ static double part_of(const lag_problem *pb, const double *d, const double *x, c
   return most;
 }
 
+/* The same of the correction b->d of a block's end, h long; or its impulse against the whole one, if that is less: what is held at 0 has no
+ * size, but the force that holds it there has one. */
+static double part_of_block(const lag_problem *pb, const Block *b, double h)
+{
+  double most = 0;
+
+  for (int i = 0; i < pb->nq; i++) {
+    double far = fmax(lag_size_like(pb, b->from, i), lag_size_like(pb, b->to, i)), whole = fabs(h) * lag_size_like(pb, b->impulse, i);
+    double part = b->d[i] == 0.0 ? 0 : fabs(b->d[i]) / (far > 0 ? far : lag_reach(pb, b->from, 1, i));
+    if (part > 0 && whole > 0) {
+      part = far > 0 ? fmin(part, lag_size_like(pb, b->force, i) / whole) : lag_size_like(pb, b->force, i) / whole;
+    }
+    most = fmax(most, part);
+  }
+  return most;
+}
+
 /* b->change := the least changes where the block begins that each change one constraint by 1. */
 static int find_changes(const Arrays *a, lag_problem *pb, double t0)
 {
@@ -222,9 +239,13 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
     if (lag_not_finite(nq, b->d) >= 0) {
       break;
     }
-    double part = part_of(pb, b->d, b->from, b->to);
+    double part = part_of_block(pb, b, h);
     double rounding = DBL_EPSILON * (steered ? 0x1p12 : 4); /* near a singular position it is magnified */
-    if (part <= DBL_EPSILON / 4 || (part <= rounding && part >= before / 2)) {
+    int settled = part <= DBL_EPSILON / 4 || (part <= rounding && part >= before / 2);
+    if (!settled && steered && part >= before / 2 && lag_residuals(pb, t1, b->to, b->c, b->r) == 0) {
+      settled = lag_is_met(pb, t1, b->to, 1, b->c); /* rounding of terms that no coordinate shows, as of one at 0 */
+    }
+    if (settled) {
       if (steered && least > LEAST) {
         least = LEAST;
         before = HUGE_VAL;
@@ -281,6 +302,20 @@ static int project(const Implicit *w, const Arrays *a, lag_problem *pb, double t
   return rc ? lag_step_refused(pb, rc, tb) : lag_is_met(pb, tb, b->to, 0, b->r) ? LAG_OK : unmet(pb, tb, b->to, 0);
 }
 
+/* Whether a block, h long, has moved coordinates no farther than the velocities at its ends account for: elsewhere a constraint jumps. */
+static int check_leap(const Arrays *a, lag_problem *pb, double t1, double h)
+{
+  const Block *b = &a->block;
+  int nq = pb->nq;
+
+  for (int i = 0; i < nq; i++) {
+    b->d[i] = b->to[i] - b->from[i];
+    b->force[i] = 2 * h * fmax(fabs(b->from[nq + i]), fabs(a->v[i])); /* in between it may be faster */
+  }
+  int i = lag_leaps(pb, b->from, b->to, b->d, b->force);
+  return i < 0 ? LAG_OK : lag_step_unmet(pb, lag_say_leap(pb, t1, b->from, i, b->d[i]), t1);
+}
+
 int lag_rattle(const Implicit *w, const Arrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)
 {
   const Block *b = &a->block;
@@ -305,6 +340,7 @@ int lag_rattle(const Implicit *w, const Arrays *a, lag_problem *pb, double t, do
       memcpy(a->v, b->to + nq, (size_t)nq * sizeof(double));
     }
     rc = project(w, a, pb, t1, y, last);
+    rc = rc ? rc : check_leap(a, pb, t1, (at - begin) * dt);
     memcpy(b->from, b->to, (size_t)nq * sizeof(double));
     memcpy(b->from + nq, a->v, (size_t)nq * sizeof(double));
   }

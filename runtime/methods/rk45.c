@@ -42,17 +42,15 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
 /* HNW II.6, code dopri5, function contd5. At the ends it returns the states themselves. */
 static void dense(void *work, lag_problem *pb, double t, double *y)
 {
-  const Embedded *w = work;
-  int n = pb->n, row = lag_embedded_row(pb), last = pair.tab->stages - 1;
-  double s = (t - w->t0) / w->dt, r = 1 - s;
+  Embedded *w = work;
+  int row = lag_embedded_row(pb), last = pair.tab->stages - 1;
+  double s = (t - w->t0) / w->dt, r = 1 - s, *high = w->x + EMBEDDED_YS * row;
   const double *k = w->x + EMBEDDED_K1 * row, *y0 = w->x + EMBEDDED_Y0 * row, *y1 = w->x + EMBEDDED_Y1 * row;
 
-  for (int i = 0; i < n; i += 2) {
-    Pair2 high = embedded_sum(pair.tab->d[0], last + 1, k + i, row);
-    for (int j = i; j < i + 2 && j < n; j++) {
-      double diff = y1[j] - y0[j], b = w->dt * k[j] - diff;
-      y[j] = y0[j] + s * (diff + r * (b + s * (diff - w->dt * k[last * row + j] - b + r * w->dt * (j == i ? high.a : high.b))));
-    }
+  embedded_combine(pair.tab->d[0], last + 1, embedded_shape(pb), k, high);
+  for (int i = 0; i < pb->n; i++) {
+    double diff = y1[i] - y0[i], b = w->dt * k[i] - diff;
+    y[i] = y0[i] + s * (diff + r * (b + s * (diff - w->dt * k[last * row + i] - b + r * w->dt * high[i])));
   }
 }
 

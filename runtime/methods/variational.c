@@ -39,6 +39,16 @@ static const char *variational_check(const double *opt)
   return NULL;
 }
 
+static int variational_order(const double *opt)
+{
+  return (int)opt[OPT_ORDER];
+}
+
+static int gauss_order(const double *opt)
+{
+  return 2 * (int)opt[OPT_STAGES];
+}
+
 static const char *variational_refuses(const lag_model *model, const double *opt)
 {
   return model->constraints && opt[OPT_ORDER] > 2
@@ -137,6 +147,7 @@ const lag_method lag_variational = {
     .noptions = 3,
     .options = variational_options,
     .check = variational_check,
+    .order_of = variational_order,
     .refuses = variational_refuses,
     .work_size = variational_size,
     .init = variational_init,
@@ -159,6 +170,7 @@ const lag_method lag_gauss = {
     .noptions = 2,
     .options = gauss_options,
     .check = gauss_check,
+    .order_of = gauss_order,
     .work_size = gauss_size,
     .init = gauss_init,
     .step = gauss_step,

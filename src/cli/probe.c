@@ -27,14 +27,14 @@ static int is_suspect(Arena *a, const char *cc, const char *source) {
 }
 
 static int fails_with(Arena *a, const char *cc, const char *optimise, const char *flag, const char *source, const char *program) {
-  const char *const more[] = {optimise, flag, "-o", program, source, NULL};
+  const char *const more[] = {optimise, TOOLCHAIN_SCALAR, flag, "-o", program, source, NULL};
   char *said = NULL, *argv[] = {arena_strdup(a, program), NULL};
   if (run_compiler(a, cc, more, &said) != 0) return 0; /* what is wrong then, the build itself will say */
   return toolchain_run(a, argv, &said) == WRONG;
 }
 
 const char *probe_flag(Arena *a, const char *cc, const char *optimise, const char *dir, const char **error) {
-  static const char *const flags[] = {"", "-fno-tree-slp-vectorize", "-march=x86-64-v3"};
+  static const char *const flags[] = {"", "-march=x86-64-v3"};
   enum { N_FLAGS = sizeof flags / sizeof *flags };
   const char *source = arena_printf(a, "%s/probe.c", dir), *program = arena_printf(a, "%s/probe", dir), *why;
   StrBuf text = strbuf(a);
@@ -46,6 +46,6 @@ const char *probe_flag(Arena *a, const char *cc, const char *optimise, const cha
   remove(source);
   remove(program);
   if (found < N_FLAGS) return flags[found];
-  *error = arena_printf(a, "the C compiler `%s` stores wrong numbers, with -fno-tree-slp-vectorize and -march=x86-64-v3 too; set CC to another", cc);
+  *error = arena_printf(a, "the C compiler `%s` stores wrong numbers, with " TOOLCHAIN_SCALAR " and -march=x86-64-v3 too; set CC to another", cc);
   return NULL;
 }

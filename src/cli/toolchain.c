@@ -140,15 +140,15 @@ Words toolchain_words(Arena *a, const char *cc) {
 }
 
 /* With the flags that the simulator reports as LAG_BUILD: bits that do not depend on whether a processor multiplies and adds in
- * one instruction, and what the compiler needs not to go wrong. */
+ * one instruction, numbers stored one by one, and what the compiler needs not to go wrong. */
 static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
   Words argv = toolchain_words(a, t->cc);
   const char *safe = probe_flag(a, t->cc, t->optimise, dir, error);
   if (!safe) return 0;
-  char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off%s%s\"", t->cc, t->optimise, *safe ? " " : "", safe);
+  char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc, t->optimise, *safe ? " " : "", safe);
   for (char *c = build + strlen("-DLAG_BUILD=\""); c[1]; c++)
     if (*c == '"' || *c == '\\') *c = ' ';
-  const char *fixed[] = {t->optimise, "-std=c11", "-ffp-contract=off", build, "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
+  const char *fixed[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, build, "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
   for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) vec_push(a, &argv, arena_strdup(a, fixed[i]));
   for (const char *const *f = t->flags; *f; f++) vec_push(a, &argv, arena_strdup(a, *f));
   if (*safe) vec_push(a, &argv, arena_strdup(a, safe));

@@ -5,6 +5,11 @@
 #include "base/strbuf.h"
 #include "base/vec.h"
 
+/* Emitted C stores what it computes number by number. The stages of an integrator wait for these numbers, and a processor hands on at
+ * once only what is read as it was stored; side by side they take 5 to 7 ns longer to come (make bench T=bench/methods has what that is
+ * of a step). The compiler fault of probe.in needs such stores, too. */
+#define TOOLCHAIN_SCALAR "-fno-tree-slp-vectorize"
+
 typedef struct {
   const char *cc;        /* $CC or cc */
   const char *include;   /* folder of lag.h */

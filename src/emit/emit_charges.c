@@ -4,7 +4,7 @@
 #include <string.h>
 
 static void table(const File *f) {
-  static const char *const flags[] = {"LAG_CONSERVED", "LAG_BALANCED", "LAG_BY_FORMULAS"};
+  static const char *const flags[] = {"LAG_CONSERVED", "LAG_BALANCED", "LAG_BY_FORMULAS", "LAG_JUMPS"};
   sb_puts(f->out, "\nstatic const lag_charge charge_table[] = {\n");
   for (uint32_t i = 0; i < f->u->charges.n; i++) {
     const IrCharge *c = &f->u->charges.at[i];

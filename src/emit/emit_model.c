@@ -30,7 +30,7 @@ static const char *const abi_names[] = {
   "curves", "LAG_EACH", "LAG_10", "LAG_100", "LAG_1000", "LAG_10000",
   "singular", "lag_sincos", "lag_sincos2", "lag_sincos4", "LAG_SINCOS_2", "LAG_SINCOS_4", "lag_sin", "lag_cos", "lag_lanes", "lag_lanes_mask", "LAG_LANES", "LAG_LIBM", "LAG_OWN", "LAG_FMA",
   "LAG_INLINE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS", "LAG_LANE_FN", "lag_reflect", "lag_reflector", "lag_rank", "lag_multipliers", "lag_schur", "lag_cholesky", "lag_forward", "lag_backward", "lag_first", "lag_last", "lag_kkt", "lag_kkt_lane",
-  "constraint_table", "jacobian_table", "inertia_table", "constraints", "contact_table", "charge_table", "charges", "lag_charge", "lag_charges", "LAG_CONSERVED", "LAG_BALANCED", "LAG_BY_FORMULAS", "lag_contact", "lag_constraint", "lag_constraints",
+  "constraint_table", "jacobian_table", "inertia_table", "constraints", "contact_table", "charge_table", "charges", "lag_charge", "lag_charges", "LAG_CONSERVED", "LAG_BALANCED", "LAG_BY_FORMULAS", "LAG_JUMPS", "lag_contact", "lag_constraint", "lag_constraints",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -62,7 +62,7 @@ static const char *const *rows_names(const IrUnit *u) {
 
 const char *model_id(Arena *a, const char *name) {
   static const char *const taken[] = {"accel", "energy", "linearise", "jumps", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
-                                      "outputs", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "charge_values", "charge_powers", "correct_positions", "correct_velocities"};
+                                      "outputs", "forces", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "charge_values", "charge_powers", "correct_positions", "correct_velocities"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -77,11 +77,11 @@ static const char *const *globals_of(const IrUnit *u, const char *name) {
   if (!name) return all;
   all[n++] = name;
   for (uint32_t i = 0; i < tables; i++) all[n++] = rows_names(u)[i];
-  static const char *const lists[] = {"outputs", "options", "monitors", "exact_of", "given"};
+  static const char *const lists[] = {"outputs", "forces", "options", "monitors", "exact_of", "given"};
   for (uint32_t i = 0; i < u->scenes.n; i++) {
     const char *id = scene_id(u, i);
     all[n++] = arena_printf(u->arena, "%s_%s", name, id);
-    for (int k = 0; k < 5; k++) all[n++] = arena_printf(u->arena, "%s_%s", lists[k], id);
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) all[n++] = arena_printf(u->arena, "%s_%s", lists[k], id);
   }
   return all;
 }
@@ -466,6 +466,12 @@ static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, 
   }
 }
 
+static void emit_flags(const char *stem, const char *id, const unsigned char *flags, uint32_t n, StrBuf *out) {
+  sb_printf(out, "\nstatic const unsigned char %s_%s[] = {", stem, id);
+  for (uint32_t i = 0; i < n; i++) sb_printf(out, "%s%d", i ? ", " : "", flags[i]);
+  sb_puts(out, "};\n");
+}
+
 /* Which components of the state the start sets. */
 static void emit_given(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
   uint32_t n = u->q.n, total = 2 * n + u->z.n, after[] = {0, n, 2 * n};
@@ -473,10 +479,11 @@ static void emit_given(const IrUnit *u, const IrScene *s, const char *id, StrBuf
   unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, total);
   for (uint32_t k = 0; k < s->start->stores.n; k++) given[after[s->start->stores.at[k].array] + s->start->stores.at[k].index] = 1;
   for (uint32_t k = 0; k < s->implied.n; k++) given[s->implied.at[k]] = 2;
-  sb_printf(out, "\nstatic const unsigned char given_%s[] = {", id);
-  for (uint32_t i = 0; i < total; i++) sb_printf(out, "%s%d", i ? ", " : "", given[i]);
-  sb_puts(out, "};\n");
+  emit_flags("given", id, given, total, out);
 }
+
+/* Outputs with forces in them; whether there are any. */
+static int has_forces(const IrScene *s) { return s->forces.n && memchr(s->forces.at, 1, s->forces.n); }
 
 static const char *list_name(const IrUnit *u, uint32_t n, const char *stem, const char *id) {
   return n ? arena_printf(u->arena, "%s_%s", stem, id) : "NULL";
@@ -493,6 +500,7 @@ static void emit_scene(const File *f, uint32_t index) {
   emit_exact(f, s, id);
   emit_scene_lists(u, s, id, out);
   emit_given(u, s, id, out);
+  if (has_forces(s)) emit_flags("forces", id, s->forces.at, s->forces.n, out);
   sb_printf(out, "\nconst lag_scene %s_%s = {\n", name, id);
   sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
   sb_printf(out, "  .model = &%s,\n  .params = params_%s, .start = start_%s,\n", name, id, id);
@@ -503,6 +511,7 @@ static void emit_scene(const File *f, uint32_t index) {
   sb_printf(out, "  .tolerance = %s,\n", ctable_number(u->arena, s->tolerance, NULL));
   sb_printf(out, "  .nout = %u, .outputs = %s, .every = %s, .observe = observe_%s,\n", s->outputs.n, list_name(u, s->outputs.n, "outputs", id),
             ctable_number(u->arena, s->every, NULL), id);
+  if (has_forces(s)) sb_printf(out, "  .forces = forces_%s,\n", id);
   if (s->exact_of.n) sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
   sb_printf(out, "  .nmonitors = %u, .monitors = %s,\n};\n", s->monitors.n, list_name(u, s->monitors.n, "monitors", id));
 }

@@ -89,11 +89,11 @@ static void add_constraints(IrUnit *u, const Eqns *e) {
 /* Where the energy is the only charge, and conserved, there is nothing to add. */
 static void add_charges(IrUnit *u, const Eqns *e) {
   const Prog *powers = e->ncharges ? lower_powers(e) : NULL;
-  if (e->ncharges < 2 && !powers) return;
+  if (e->ncharges < 2 && !powers && !e->energy_jumps) return;
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
     int conserved = i ? expr_is_zero(e->g, c->proof.power) : e->conserves_energy;
-    unsigned flags = c->proof.power_unknown ? 0 : (conserved ? 1u : 0) | 2u | (c->proof.by_formulas ? 4u : 0);
+    unsigned flags = c->proof.jumps ? 8u : c->proof.power_unknown ? 0 : (conserved ? 1u : 0) | 2u | (c->proof.by_formulas ? 4u : 0);
     vec_push(u->arena, &u->charges, ((IrCharge){c->name, c->unit.text, flags}));
   }
   u->charge_values = e->ncharges > 1 ? lower_charges(e) : NULL;
@@ -147,7 +147,7 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
 }
 
 int unit_shares(const IrUnit *a, const IrUnit *b) {
-  return strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
+  return a->flags == b->flags && strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
 }
 
 /* The four numbers of rotations that start where nobody said, less those that the scene gives. */
@@ -220,6 +220,7 @@ void unit_add_scene(IrUnit *u, const Eqns *e) {
   for (uint32_t i = 0; i < e->noutputs; i++) {
     IrVar v = var_of(e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
     vec_push(m->arena, &s.outputs, v);
+    if (e->constraints.n) vec_push(m->arena, &s.forces, (expr_kinds(e->g, e->outputs[i].value) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0);
     if (output_is_plain(e, i)) vec_push(m->arena, &s.plain, v);
   }
   add_exact(&s, e);

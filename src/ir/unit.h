@@ -53,6 +53,7 @@ typedef struct {
   VEC(IrOption) options;
   double tolerance, every;
   VEC(IrVar) outputs;
+  VEC(unsigned char) forces;    /* by output, of models with constraints: whether it contains multipliers or accelerations */
   const Prog *observe_plain; /* the same without closed forms, for programs that know of no start; */
   VEC(IrVar) plain;          /* and what that leaves */
   const Prog *exact;

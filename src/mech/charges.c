@@ -139,6 +139,10 @@ static void report_false(const Eqns *e, const Charge *c) {
 static void report_undecided(const Eqns *e, const Charge *c) {
   Diags *d = e->m->diags;
   diag_error(d, c->of->span, "the symmetry `%s` is not decided", c->name);
+  if (c->proof.unreached) {
+    diag_help(d, "it holds where states were found, but none were on a part of the constraints, %s = 0; leave that part out, if it is not meant", text_of(e, c->proof.unreached));
+    return;
+  }
   diag_help(d, "neither an F(q, t) with dF/dt = %s was found, nor that there is none", text_of(e, c->proof.remainder));
 }
 
@@ -158,7 +162,14 @@ int charges_judge(const Eqns *e, Name effect) {
 /* "; d(spin)/dt = ..." where it is not conserved. */
 static void put_balance(const Eqns *e, const Charge *c, StrBuf *out) {
   if (c->proof.power_unknown) sb_puts(out, "; not conserved: L depends on an input whose rate of change is not known");
-  else if (!expr_is_zero(e->g, c->proof.power)) sb_printf(out, "; not conserved: d(%s)/dt = %s", c->name, text_of(e, c->proof.power));
+  else if (!expr_is_zero(e->g, c->proof.power)) sb_printf(out, "; %s: d(%s)/dt = %s", c->proof.over_time ? "without that integral" : "not conserved", c->name, text_of(e, c->proof.power));
+}
+
+/* F, with the integral that the charge is printed without. */
+static const char *gauge_text(const Eqns *e, const Noether *is) {
+  const char *F = text_of(e, is->F);
+  if (!is->over_time) return F;
+  return arena_printf(e->m->arena, "%s%sintegral of %s over t", expr_is_zero(e->g, is->F) ? "" : F, expr_is_zero(e->g, is->F) ? "" : " + the ", text_of(e, is->over_time));
 }
 
 static const char *place_text(const Eqns *e, const Symmetry *y) {
@@ -169,12 +180,13 @@ static const char *place_text(const Eqns *e, const Symmetry *y) {
 void charges_print(const Eqns *e, Name effect, StrBuf *out) {
   for (uint32_t i = 1; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
-    const char *proved = c->proof.by_value ? "holds on the constraints, in numbers" : "proved";
+    const char *how = c->proof.by_value ? "holds on the constraints, in numbers" : "proved";
+    const char *proved = c->proof.jumps ? arena_printf(e->m->arena, "%s%s between jumps", how, c->proof.by_value ? "," : "") : how;
     if (c->of->effect != effect) continue;
     sb_printf(out, "%s: symmetry %s: ", place_text(e, c->of), c->name);
     if (!holds(c)) sb_puts(out, c->proof.is == INVARIANCE_NOT_DECIDED ? "not decided" : "false");
     else if (c->proof.is == INVARIANT) sb_printf(out, "%s; charge %s", proved, text_of(e, c->proof.charge));
-    else sb_printf(out, "%s up to dF/dt, F = %s; charge %s", proved, text_of(e, c->proof.F), text_of(e, c->proof.charge));
+    else sb_printf(out, "%s up to dF/dt, F = %s; charge %s", proved, gauge_text(e, &c->proof), text_of(e, c->proof.charge));
     if (holds(c)) put_balance(e, c, out);
     sb_putc(out, '\n');
   }
@@ -183,8 +195,8 @@ void charges_print(const Eqns *e, Name effect, StrBuf *out) {
 void charges_show_broken(const Eqns *e, StrBuf *out) {
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
-    if ((!c->proof.power_unknown && expr_is_zero(e->g, c->proof.power)) || (!c->of && e->m->symmetries.n == 0)) continue;
+    if ((!c->proof.power_unknown && !c->proof.jumps && expr_is_zero(e->g, c->proof.power)) || (!c->of && e->m->symmetries.n == 0)) continue;
     if (c->proof.power_unknown) sb_printf(out, "  d(%s)/dt: L depends on an input whose rate of change is not known\n", c->name);
-    else sb_printf(out, "  d(%s)/dt = %s\n", c->name, text_of(e, c->proof.power));
+    else sb_printf(out, "  d(%s)/dt = %s%s\n", c->name, text_of(e, c->proof.power), c->proof.jumps ? " between jumps of L" : "");
   }
 }

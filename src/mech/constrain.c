@@ -42,6 +42,11 @@ static int check_linear(const Eqns *e, const Constraint *k, const ExprPartials *
 static int check_contains(const Eqns *e, const Constraint *k, const ExprPartials *row) {
   Diags *d = e->m->diags;
   if (row->n) return 1;
+  if (expr_is_zero(e->g, simplify(e->g, k->c))) {
+    diag_error(d, k->span, "the constraint `%s` demands nothing: its sides are the same for all coordinates", k->name);
+    diag_help(d, "leave it out");
+    return 0;
+  }
   diag_error(d, k->span, "the constraint `%s` contains no coordinate", k->name);
   diag_help(d, "it says something of parameters and time alone, which no force can bring about");
   return 0;
@@ -77,7 +82,8 @@ static int check_count(const Eqns *e) {
   if (held <= e->n) return 1;
   const Constraint *k = &m->constraints.at[i];
   diag_error(m->diags, k->span, "there are more constraints than coordinates: `%s` is number %u, of %u coordinates", k->name, e->n + 1, e->n);
-  diag_help(m->diags, "leave out those that follow from others");
+  diag_help(m->diags, "at most %u of them are independent: leave out those that follow from others, which `lagc check` names where there are not too many",
+            e->n);
   return 0;
 }
 

@@ -7,8 +7,10 @@
 #include "mech/charges.h"
 #include "mech/constrain.h"
 #include "mech/degree.h"
+#include "mech/discontinuity.h"
 #include "mech/first_order.h"
 #include "mech/lagrange.h"
+#include "mech/lend.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
 
@@ -219,9 +221,10 @@ static void classify(Eqns *e) {
     e->smooth &= op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_MIN && op != EX_MAX;
   }
   unsigned lagrangian = kinds_of_lagrangian(e);
-  e->conserves_energy = m->lagrangian && !m->forces.n && !m->dissipation && !inputs && constraints_do_no_work(e) &&
+  e->energy_jumps = e->energy && discontinuities_of(e, e->energy).n > 0;
+  e->conserves_energy = m->lagrangian && !e->energy_jumps && !m->forces.n && !m->dissipation && !inputs && constraints_do_no_work(e) &&
                         !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_INPUT)));
-  e->loses_energy = loses_energy(e, lagrangian);
+  e->loses_energy = !e->energy_jumps && loses_energy(e, lagrangian);
 }
 
 /* Derivatives may multiply numbers past the range of a double, and terms of different statements cancel. */
@@ -264,6 +267,14 @@ static int check_method(const Eqns *e) {
   return 0;
 }
 
+/* The same model, with a term in L that is 0 on the constraints. */
+static Model *lends_inertia(const Eqns *e, Model *m) {
+  Expr lent = lend_inertia(e);
+  m->across = m->across ? expr_add(e->g, m->across, lent) : lent;
+  m->lends = 0;
+  return m;
+}
+
 Eqns *eqns_derive(Model *m) {
   Eqns *e = ARENA_NEW(m->arena, Eqns);
   e->m = m;
@@ -275,6 +286,7 @@ Eqns *eqns_derive(Model *m) {
   if (e->n) {
     lagrange_momenta_and_forces(e);
     if (!constrain(e) || !check_momenta(e) || !lagrange_check_mass(e)) return NULL;
+    if (m->lends && e->singular_mass) return eqns_derive(lends_inertia(e, m));
     derive_energy(e);
   }
   if (m->first_order && !first_order_derive(e, m)) return NULL;

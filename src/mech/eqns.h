@@ -90,6 +90,7 @@ typedef struct {
   const Expr *definitions; /* by symbol: what stands for parameters given by others, where that was put in; or NULL */
   int definite_by_values; /* definite_mass, or it would be if parameters declared the signs of their values: pivots tell */
   int constant_mass, definite_mass, singular_mass, conserves_energy, autonomous, smooth;
+  int energy_jumps;      /* as L does, somewhere: what is said of it holds between such places */
   int loses_energy;      /* not conserved; but no force beside L can raise it, less the work of those that are constant */
   int timeless;          /* t enters by the formulas of inputs, if at all */
   int separable;         /* constant mass, no velocity in f, no states: a splitting method can integrate it */

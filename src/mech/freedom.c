@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/dense.h"
-#include "base/methods.h"
+#include "mech/beside.h"
 #include "mech/frobenius.h"
 #include "mech/noether.h"
 #include "mech/start.h"
@@ -43,6 +43,18 @@ static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, 
   if (!counts[k]) sb_puts(out, has_slope(e, s, symbols, k) ? "; follows from those before it" : "; its derivatives vanish at the start");
   if (rank < e->constraints.n - e->m->contacts.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the least one is taken");
   sb_putc(out, '\n');
+}
+
+/* That the rank is another one beside the start. */
+static void show_singular(const Eqns *e, StateSolver *s, const long double *symbols, uint32_t rank, StrBuf *out) {
+  unsigned char *loose = ARENA_ARRAY(e->m->arena, unsigned char, e->n + 1);
+  uint32_t beside = rank_beside(e, s, symbols, loose), shown = 0;
+  if (beside <= rank) return;
+  sb_printf(out, "  singular start: the rank is %u beside it", beside);
+  for (uint32_t i = 0; i < e->n; i++)
+    if (loose[i]) sb_printf(out, "%s%s'", shown++ ? ", " : "; the constraints do not determine ", e->m->coords.at[i].name);
+  sb_printf(out, "%s\n", shown ? " here, and what the start says of them decides which way it goes" : "");
+  states_at(s, symbols);
 }
 
 static void show_integrability(const Eqns *e, StateSolver *s, StrBuf *out) {
@@ -147,13 +159,7 @@ static uint32_t reduced_mass(const Eqns *e, const StateValues *v, long double *s
 /* Whether each direction that constraints allow has inertia at the start. */
 static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbols) {
   const Model *m = e->m;
-  const MethodInfo *method = m->scene.method ? method_find(m->scene.method, strlen(m->scene.method)) : NULL;
   uint32_t n = e->n;
-  if (method && method->flags & METHOD_VARIATION && e->singular_mass) {
-    diag_error(m->diags, m->scene.method_span, "the method `%s` finds velocities from momenta, and the mass matrix is singular where no constraint holds", method->name);
-    diag_help(m->diags, "`rk45` and `dop853` can");
-    return 0;
-  }
   if (!e->mass_known || e->definite_mass) return 1;
   long double *scale = ARENA_ARRAY(m->arena, long double, n + 1), *basis = ARENA_ARRAY(m->arena, long double, (size_t)(n + 1) * n);
   long double *a = ARENA_ARRAY(m->arena, long double, (size_t)n * n + 1), *null = ARENA_ARRAY(m->arena, long double, n + 1);
@@ -213,7 +219,8 @@ int freedom_show(const Eqns *e, StrBuf *out) {
   StartResult start = start_find(e, s, symbols);
   if (start.kind != START_FOUND) {
     if (says_start(e->m)) start_report(e, &start);
-    else sb_printf(out, "scene %s: %u constraint%s; without a start nothing is said of their rank\n", e->m->scene.name, all->n, plural(all->n));
+    else sb_printf(out, "scene %s: %u constraint%s; it gives no start, and from 0 none is found that obeys `%s`%s\n", e->m->scene.name, all->n,
+                   plural(all->n), all->of[start.constraint]->name, start_off_by(e, &start));
     return !says_start(e->m);
   }
   states_at(s, symbols);
@@ -226,6 +233,7 @@ int freedom_show(const Eqns *e, StrBuf *out) {
   sb_printf(out, "scene %s: %u degree%s of freedom", e->m->scene.name, free, plural(free));
   if (held) sb_printf(out, "; %u constraint%s, of rank %u at the start", held, plural(held), rank);
   sb_putc(out, '\n');
+  if (rank < held) show_singular(e, s, symbols, rank, out);
   for (uint32_t k = 0; k < all->n; k++) show_one(e, s, symbols, counts, k, rank, out);
   show_integrability(e, s, out);
   return 1;

@@ -285,7 +285,8 @@ static void report_singular(const Eqns *e, const long double *null) {
                m->constraints.n ? ", and no constraint moves it" : "");
     diag_help(d, "L contains no `%s'^2`; add its kinetic energy, or declare it as a `let` or a `state`", m->coords.at[last].name);
   } else {
-    diag_error(d, m->lagrangian_span, "the mass matrix is singular in every state: one combination of %s has no inertia", sb_text(&names));
+    diag_error(d, m->kinetic_span.end ? m->kinetic_span : m->lagrangian_span, "the mass matrix is singular in every state: one combination of %s has no inertia%s", sb_text(&names),
+               m->constraints.n ? ", and no constraint moves it" : "");
     diag_help(d, "the kinetic energy depends on fewer combinations of velocities than there are coordinates");
   }
 }

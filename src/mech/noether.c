@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "mech/discontinuity.h"
+#include "mech/parts.h"
 #include "mech/sizes.h"
 #include "mech/states.h"
 #include "sym/diff.h"
@@ -23,6 +25,7 @@ typedef struct {
   Expr tau;
   Expr *Dxi, Dtau;  /* total time derivatives */
   int by_value;
+  Expr unreached;   /* a factor of a constraint whose zeros were not found, with which nothing is decided; 0: none */
 } Work;
 
 uint32_t noether_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
@@ -89,17 +92,21 @@ static Expr readable(const Work *w, Expr x) {
 
 /* --- delta L --- */
 
-/* delta of a term of L. */
-static Expr delta(const Work *w, Expr term) {
-  Expr *seed = no_seed(w), moved;
+/* What the generator makes of x, to first order. */
+static Expr moved_by(const Work *w, Expr x) {
+  Expr *seed = no_seed(w);
   for (uint32_t i = 0; i < w->n; i++) {
     Expr slower = expr_mul(w->g, node(w, w->v[i]), w->Dtau);
     seed[w->q[i]] = w->xi[i];
     seed[w->v[i]] = expr_sub(w->g, w->Dxi[i], slower);
   }
   seed[w->m->time] = w->tau;
-  moved = tangent(w, term, seed, "_delta");
-  Expr stretched = expr_mul(w->g, term, w->Dtau);
+  return tangent(w, x, seed, "_delta");
+}
+
+/* delta of a term of L. */
+static Expr delta(const Work *w, Expr term) {
+  Expr moved = moved_by(w, term), stretched = expr_mul(w->g, term, w->Dtau);
   return expr_add(w->g, moved, stretched);
 }
 
@@ -164,13 +171,34 @@ static int vanishes_by_value(const Work *w, Expr x) {
   return seen >= STATES;
 }
 
+/* The same on each part of constraints that are products; one that no state was found on leaves it open. */
+static int vanishes_on_parts(Work *w, Expr x) {
+  enum { STATES = 6, SEEDS = 64 };
+  long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
+  ConstraintParts *parts = parts_new(w->e);
+  StateSolver *solver = states_new(w->e);
+  for (uint32_t k = 0; k < parts_count(parts); k++) {
+    uint32_t seen = 0;
+    for (uint32_t seed = 1; seed <= SEEDS && seen < STATES; seed++) {
+      prove_state(w->g, seed, symbols);
+      spread(w, seed, symbols);
+      if (!parts_go(parts, k, symbols) || !states_complete(solver, symbols) || !parts_is_on(parts, k, symbols)) continue;
+      int small = is_small(w, x, symbols);
+      if (!small) return 0;
+      seen += small > 0;
+    }
+    if (seen < STATES) w->unreached = parts_factor(parts, k);
+  }
+  return 1;
+}
+
 /* Whether a constraint holds all the time. */
 static int is_constrained(const Work *w) { return w->e->constraints.n > w->m->contacts.n; }
 
 /* Whether x is zero where the constraints hold, contacts not among them. */
 static Verdict zero_on_constraints(Work *w, Expr x) {
   Verdict v = prove_zero(w->g, x, NULL);
-  if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x)) return v;
+  if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x) || !vanishes_on_parts(w, x)) return v;
   w->by_value = 1;
   return PROVED_ZERO;
 }
@@ -215,6 +243,11 @@ static Verdict is_total_derivative(const Work *w, Expr dL) {
   return all;
 }
 
+/* Whether x is a function of time alone, which is the derivative of its integral, whatever that looks like. */
+static int is_of_time(const Work *w, Expr x) {
+  return !expr_is_zero(w->g, x) && !(expr_kinds(w->g, x) & ~(1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_PARAM | 1u << SYM_CONST));
+}
+
 static void judge(Work *w, Noether *to) {
   ExprGraph *g = w->g;
   Expr zero = expr_int(g, 0), dL = delta_lagrangian(w);
@@ -228,6 +261,10 @@ static void judge(Work *w, Noether *to) {
     return;
   }
   left = simplify(g, left);
+  if (is_of_time(w, left)) {
+    *to = (Noether){.is = INVARIANT_UP_TO_F, .F = F, .remainder = left, .over_time = left, .by_constraints = zero};
+    return;
+  }
   uint32_t distinct;
   int better = expr_written_size(g, left, &distinct) < expr_written_size(g, dL, &distinct);
   to->F = better ? F : zero;
@@ -346,6 +383,19 @@ static Expr power_of_forces(const Work *w) {
   return dot(w, w->e->Q, along, w->n);
 }
 
+/* Whether the places where L jumps do not stay where they are. */
+static int moves_jumps(const Work *w) {
+  const long double still = 1e-7L; /* states are on such a place to 1e-19 of their size, slopes are known to 1e-6 */
+  ExprJumps all = discontinuities_of(w->e, w->m->lagrangian);
+  for (uint32_t i = 0; i < all.n; i++) {
+    const ExprJump *jump = &all.at[i];
+    Expr change = moved_by(w, jump->side);
+    long double bound, value = prove_value(w->g, change, jump->symbols, NULL, &bound);
+    if (!(fabsl(value) <= still * fabsl(jump->slope))) return 1;
+  }
+  return 0;
+}
+
 /* The balance of the charge, and what constraints have to do with it. */
 static void put_power(Work *w, Noether *to, Expr remainder) {
   ExprGraph *g = w->g;
@@ -355,6 +405,13 @@ static void put_power(Work *w, Noether *to, Expr remainder) {
   rest = states_substitute(w->e, shorten(w, rest));
   to->power = expr_add(g, rest, to->by_constraints);
   to->by_value = w->by_value;
+  to->unreached = w->unreached;
+  if (w->unreached && (to->is == INVARIANT || to->is == INVARIANT_UP_TO_F)) to->is = INVARIANCE_NOT_DECIDED;
+}
+
+int noether_moves_jumps(const Eqns *e, const Generator *by) {
+  Work w = begin(e, by);
+  return moves_jumps(&w);
 }
 
 Noether noether_prove(const Eqns *e, const Generator *by) {
@@ -364,6 +421,7 @@ Noether noether_prove(const Eqns *e, const Generator *by) {
   put_power(&w, &out, out.remainder);
   out.charge = charge_of(&w, out.F);
   out.scale = scale_of(&w, out.F);
+  out.jumps = discontinuities_of(e, out.charge).n > 0 || moves_jumps(&w);
   return out;
 }
 
@@ -372,5 +430,6 @@ Noether noether_energy(const Eqns *e) {
   Expr zero = expr_int(w.g, 0), drift = expr_diff(w.g, w.m->lagrangian, w.m->time);
   Noether out = {.is = INVARIANT, .F = zero, .remainder = zero, .charge = e->energy, .scale = e->energy_scale};
   put_power(&w, &out, expr_neg(w.g, drift));
+  out.jumps = e->energy_jumps;
   return out;
 }

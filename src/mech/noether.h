@@ -28,14 +28,17 @@ typedef enum {
 typedef struct {
   Invariance is;
   int by_value;      /* it holds on the constraints, which is not proved but seen at random states that obey them */
+  Expr unreached;    /* or 0: nothing is decided, as no states were found where this factor of a constraint is 0 */
   Expr F;            /* 0 (the number) where none is needed; where L is not invariant, what takes off most of delta L */
-  Expr remainder;    /* delta L - DF, in a short form; the number 0 where L is invariant */
+  Expr over_time;    /* or 0: F has the integral of this over t besides, which has no closed form here. The charge is without it, and this a part of the power */
+  Expr remainder;    /* delta L - DF, in a short form; over_time, or the number 0, where L is invariant */
   Expr charge;       /* in q, q', z, t */
   Expr scale;        /* sum |p_i xi_i| + |tau| (|p q'| + |L|) + |F|, which a drift of the charge is compared with */
   Expr power;        /* dQ/dt, in q, q', z, t, inputs and multipliers; the number 0: Q is conserved */
   Expr by_constraints; /* the part of the power that constraints have, lambda^T (A xi + b tau); the number 0: none */
   uint32_t broken; /* the first holonomic constraint, from 1, no contact, that the generator does not keep; 0: none */
   Expr breaks;     /* what it does to that one, A xi + c_t tau */
+  int jumps;       /* what is said holds between jumps of L only: the charge jumps, too, or L is not invariant where it jumps */
   int by_formulas; /* the power holds while inputs follow their formulas */
   int power_unknown; /* L depends on an input whose rate of change is not known, and the generator moves time: power is not dQ/dt */
 } Noether;
@@ -52,6 +55,9 @@ int noether_is_contact(const Model *m, const Constraint *k);
 
 /* Needs a Lagrangian. */
 Noether noether_prove(const Eqns *e, const Generator *by);
+
+/* Whether the places where L jumps do not stay where they are: then delta L has more there than derivatives of its branches say. */
+int noether_moves_jumps(const Eqns *e, const Generator *by);
 
 /* The energy as the charge of t -> t - s, F = 0: the charge is e->energy, the power that of forces, of moving constraints, and of what
  * depends on time. Whether it is conserved is e->conserves_energy. */

@@ -1,6 +1,8 @@
 #include "mech/noether_candidates.h"
 
 #include "mech/noether_name.h"
+#include "sym/diff.h"
+#include "sym/simplify.h"
 
 enum { SEARCH_MOST = 100, TRY_MOST = 1000, KINDS_MOST = 6 };
 
@@ -86,6 +88,60 @@ static void try_cyclic(Work *w) {
     try_one(w, xi, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_MOMENTUM, .name = arena_printf(w->e->m->arena, "momentum of %s", name_of(w, i)), .axis = AXIS_NONE});
   }
 }
+
+/* --- shifts along solutions --- */
+
+static int is_constant(const ExprGraph *g, Expr x) { return (expr_kinds(g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
+
+/* kappa of q'' = kappa q + constant, where coordinate i moves so on its own; 0: it does not. */
+static Expr own_rate(const Work *w, uint32_t i) {
+  Expr m = simplify(w->g, eqns_mass(w->e, i, i)), k = simplify(w->g, expr_diff(w->g, w->e->dLdq[i], noether_coordinate(w->e, i)));
+  if (expr_is_zero(w->g, m) || expr_is_zero(w->g, k) || !is_constant(w->g, m) || !is_constant(w->g, k)) return 0;
+  return simplify(w->g, expr_div(w->g, k, m));
+}
+
+static int is_listed(const Work *w, uint32_t i, Expr xi) {
+  for (uint32_t k = 0; k < w->out->all.n; k++)
+    if (w->out->all.at[k].by.xi && w->out->all.at[k].by.xi[i] == xi) return 1;
+  return 0;
+}
+
+static uint32_t try_shift(Work *w, uint32_t i, Expr of_time, Expr rate, const char *name) {
+  Expr *xi = nothing(w);
+  xi[i] = of_time;
+  if (is_listed(w, i, of_time)) return 0;
+  return (uint32_t)try_one(w, xi, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_OTHER, .name = name, .axis = AXIS_NONE, .rate = rate});
+}
+
+/* The sign of k that the text shows: of a number, or a monomial of parameters with signs; 0: not known. */
+static int sign_of(const ExprGraph *g, Expr k) {
+  switch (expr_sign(g, k)) {
+    case SIGN_POSITIVE: return 1;
+    case SIGN_NEGATIVE: return -1;
+    case SIGN_UNKNOWN: case SIGN_NONNEGATIVE: case SIGN_NONPOSITIVE: break;
+  }
+  return 0;
+}
+
+uint32_t candidates_try_shifts(Eqns *e, FoundSymmetries *out) {
+  Work w = {.e = e, .g = e->g, .n = e->n, .t = expr_symbol(e->g, e->m->time)->node, .out = out};
+  uint32_t found = 0;
+  if (e->n && !e->mass_known) eqns_derive_mass(e);
+  for (uint32_t i = 0; i < w.n; i++) {
+    Expr kappa = own_rate(&w, i);
+    int sign = kappa ? sign_of(w.g, kappa) : 0;
+    if (!sign) continue;
+    Expr rate = expr_sqrt(w.g, sign < 0 ? simplify(w.g, expr_neg(w.g, kappa)) : kappa), phase = expr_mul(w.g, rate, w.t);
+    const char *name = sign < 0 ? "shift along a solution, periodic in t" : "shift along a solution, exponential in t";
+    Expr first = expr_fn(w.g, sign < 0 ? EX_COS : EX_EXP, phase), other = sign < 0 ? phase : expr_neg(w.g, phase);
+    Expr second = expr_fn(w.g, sign < 0 ? EX_SIN : EX_EXP, other);
+    found += try_shift(&w, i, first, rate, name);
+    found += try_shift(&w, i, second, rate, name);
+  }
+  return found;
+}
+
+/* --- all of them --- */
 
 int candidates_only(const Eqns *e) { return noether_coordinates(e) > SEARCH_MOST; }
 

@@ -11,4 +11,8 @@ int candidates_only(const Eqns *e);
  * vectors, members of a family. Past a thousand coordinates nothing is tried, and out->searched is 0. */
 void candidates_try(Eqns *e, FoundSymmetries *out);
 
+/* Lists shifts of single coordinates along solutions of their own equations, q'' = kappa q with a kappa whose sign is known, where they are proved
+ * and not listed yet. Returns how many. */
+uint32_t candidates_try_shifts(Eqns *e, FoundSymmetries *out);
+
 #endif

@@ -3,8 +3,10 @@
 #include <math.h>
 
 #include "mech/noether_candidates.h"
+#include "mech/noether_fraction.h"
 #include "mech/noether_name.h"
 #include "mech/noether_number.h"
+#include "mech/noether_parametric.h"
 #include "mech/noether_table.h"
 #include "sym/diff.h"
 #include "sym/normal.h"
@@ -264,20 +266,57 @@ static int shorter_coefficients(Search *s, Tables *t, uint32_t row, int moved, E
   return found;
 }
 
+/* Monomials of parameters times fractions of one denominator: those of a space that some other coordinates would make simple. */
+static int joint_coefficients(Search *s, const Tables *t, uint32_t row, Expr *c) {
+  uint32_t n = t->at[0].blocks * t->at[0].shown, count = choice_count(s);
+  long double *x = ARENA_ARRAY(s->scratch, long double, count), *number = ARENA_ARRAY(s->scratch, long double, n);
+  for (uint32_t k = 0; k < n; k++) {
+    for (uint32_t i = 0; i < count; i++) x[i] = t->at[i].at[(size_t)row * n + k];
+    c[k] = x[CHOICE_FIRST] == 0 && x[CHOICE_SECOND] == 0 ? expr_int(s->g, 0) : monomial_part(&s->choices, x, &number[k]);
+    if (!c[k]) return 0;
+  }
+  int64_t q = common_denominator(number, n);
+  for (uint32_t k = 0; k < n && q; k++) c[k] = expr_scale(s->g, num_ratio((int64_t)roundl(number[k] * (long double)q), q), c[k]);
+  return q != 0;
+}
+
+/* Sums of parameters, when the row is multiplied by `scale`. */
+static int linear_coefficients(Search *s, const Tables *t, uint32_t row, Expr scale, Expr *c) {
+  uint32_t n = t->at[0].blocks * t->at[0].shown, count = choice_count(s);
+  long double *x = ARENA_ARRAY(s->scratch, long double, count);
+  for (uint32_t k = 0; k < n; k++) {
+    for (uint32_t i = 0; i < count; i++) x[i] = t->at[i].at[(size_t)row * n + k] * choice_value(&s->choices, i, scale);
+    c[k] = x[CHOICE_FIRST] == 0 && x[CHOICE_SECOND] == 0 ? expr_int(s->g, 0) : linear_of(&s->choices, x);
+    if (!c[k]) return 0;
+  }
+  return 1;
+}
+
+/* The same with each parameter, and each sum of two, as the scale: of two bodies m1/(m1 + m2). */
+static int scaled_coefficients(Search *s, const Tables *t, uint32_t row, Expr *c) {
+  enum { PARAMETERS_MOST = 12 };
+  ExprGraph *g = s->g;
+  if (s->choices.n > PARAMETERS_MOST) return 0;
+  for (uint32_t i = 0; i < s->choices.n; i++)
+    for (uint32_t k = 0; k <= i; k++) {
+      Expr one = expr_symbol(g, s->choices.param[i])->node, other = expr_symbol(g, s->choices.param[k])->node;
+      if (linear_coefficients(s, t, row, i == k ? one : expr_add(g, one, other), c)) return 1;
+    }
+  return 0;
+}
+
 /* The cheap ways first: what takes tables at all choices comes last. */
 static int recognise_row(Search *s, Tables *t, uint32_t row, Expr *c) {
   if (row_coefficients(s, t, row, 0, c) || shorter_coefficients(s, t, row, 0, c)) return 1;
   if (!shapes_agree(s, t)) return 0;
-  return row_coefficients(s, t, row, 1, c) || shorter_coefficients(s, t, row, 1, c);
+  return row_coefficients(s, t, row, 1, c) || shorter_coefficients(s, t, row, 1, c) || joint_coefficients(s, t, row, c) || scaled_coefficients(s, t, row, c);
 }
 
-/* Generator of a row; 0 where a coefficient is not recognised. */
-static int row_generator(Search *s, Tables *t, uint32_t row, GeneratorRow *to) {
+/* Generator with these coefficients, which are cleared of fractions. */
+static void make_generator(Search *s, const Tables *t, GeneratorRow *to) {
   const Ansatz *a = s->ansatz;
   uint32_t blocks = t->at[0].blocks;
   size_t n = (size_t)blocks * a->shown;
-  to->c = ARENA_ARRAY(s->scratch, Expr, n);
-  if (!recognise_row(s, t, row, to->c)) return 0;
   clear_parameters(s, to->c, n);
   clear_fractions(s, to->c, n);
   to->ansatz = a;
@@ -298,7 +337,6 @@ static int row_generator(Search *s, Tables *t, uint32_t row, GeneratorRow *to) {
     }
   }
   to->by = (Generator){xi, tau};
-  return 1;
 }
 
 /* The constraints of contacts, which are open in states at random, say nothing. */
@@ -306,27 +344,54 @@ static int is_proved(const Search *s, const Noether *is) {
   return (is->is == INVARIANT || is->is == INVARIANT_UP_TO_F) && !is->broken && (!is->by_value || s->ansatz->held.n == 0);
 }
 
+/* Lists a row whose coefficients are recognised, if it is proved. */
+static int add_row(Search *s, const Tables *t, Expr *c) {
+  GeneratorRow r = {.c = c};
+  make_generator(s, t, &r);
+  FoundSymmetry found = {.is = noether_prove(s->e, &r.by), .by = r.by, .rate = t->family->rate};
+  if (!is_proved(s, &found.is)) return 0;
+  name_symmetry(s->e, &r, &found);
+  vec_push(s->e->m->arena, &s->out->all, found);
+  return 1;
+}
+
+/* Takes the place of rows that were not listed: rows by their dependence on parameters, as far as those listed do not contain them. Returns how
+ * many. */
+static uint32_t add_parametric(Search *s, Tables *t, DenseRows *listed, uint32_t most) {
+  uint32_t width = listed->width, count = 0;
+  if (t->family->kind == TIME_LISTED || !shapes_agree(s, t)) return 0;
+  ParametricRows rows = parametric_rows(s->scratch, &s->choices, t->at, choice_count(s));
+  for (uint32_t k = 0; k < rows.n && count < most; k++) {
+    long double *row = listed->at + (size_t)listed->n * width;
+    memcpy(row, rows.at[k].value, width * sizeof *row);
+    if (dense_reduce(width, row, listed->at, listed->n) < 1e-6L || !add_row(s, t, rows.at[k].c)) continue;
+    listed->n++;
+    count++;
+  }
+  return count;
+}
+
 static void add_family(Search *s, const Family *f) {
   Tables t = {.family = f, .at = ARENA_ARRAY(s->scratch, Table, choice_count(s))};
   for (uint32_t i = 0; i < CHOICE_MOVED; i++) t.at[i] = table_at(s, f, i);
+  uint32_t width = t.at[0].blocks * t.at[0].shown, rows = t.at[0].rows, missing = 0;
+  DenseRows listed = {.width = width, .at = ARENA_ARRAY(s->scratch, long double, (size_t)(rows + 1) * width + 1)};
   if (!same_shape(&t.at[0], &t.at[1])) {
-    s->out->unproved += t.at[0].rows;
+    s->out->unproved += rows;
     return;
   }
-  for (uint32_t row = 0; row < t.at[0].rows; row++) {
-    GeneratorRow r = {0};
-    FoundSymmetry found = {0};
-    if (row_generator(s, &t, row, &r)) found.is = noether_prove(s->e, &r.by);
-    int proved = r.by.xi && is_proved(s, &found.is);
-    if (!proved) {
-      s->out->unproved++;
+  for (uint32_t row = 0; row < rows; row++) {
+    Expr *c = ARENA_ARRAY(s->scratch, Expr, width + 1);
+    if (!recognise_row(s, &t, row, c) || !add_row(s, &t, c)) {
+      missing++;
       continue;
     }
-    found.by = r.by;
-    found.rate = f->rate;
-    name_symmetry(s->e, &r, &found);
-    vec_push(s->e->m->arena, &s->out->all, found);
+    long double *kept = listed.at + (size_t)listed.n * width;
+    memcpy(kept, t.at[0].at + (size_t)row * width, width * sizeof *kept);
+    if (dense_reduce(width, kept, listed.at, listed.n) > 0) listed.n++;
   }
+  if (missing) missing -= add_parametric(s, &t, &listed, missing);
+  s->out->unproved += missing;
 }
 
 /* --- where coefficients may be any functions of time --- */
@@ -456,6 +521,8 @@ static const char *ansatz_text(const Search *s) {
                       ansatz_is_restricted(a) ? " (turns and stretches of one vector only)" : "", a->degree);
 }
 
+static const long double GAP_WEAK = 1e10L; /* what tells solutions from rounding; models have 1e13 and more */
+
 static void search_any(Search *s) {
   const SolutionSpace *space = space_at(s, CHOICE_FIRST);
   s->out->ansatz = ansatz_text(s);
@@ -466,6 +533,11 @@ static void search_any(Search *s) {
   search_rates(s);
   uint32_t dimension = space->space.n ? space->space.n - 1 : 0, known = s->out->all.n + s->out->unproved; /* less F = 1 */
   if (dimension > known) s->out->unproved += dimension - known;
+  int weak = space->space.gap < GAP_WEAK;
+  if (!weak && !s->out->unproved) return;
+  uint32_t more = candidates_try_shifts(s->e, s->out);
+  s->out->unproved -= more < s->out->unproved ? more : s->out->unproved;
+  if (weak) s->out->note = "rates or couplings lie so close to one another that some may be missing";
 }
 
 static void search_work(Arena *scratch, void *data) {
@@ -476,7 +548,11 @@ static void search_work(Arena *scratch, void *data) {
   s->spaces = ARENA_ARRAY(scratch, SolutionSpace, choice_count(s));
   if (s->ansatz->has_time || !s->e->n) search_listed(s);
   else search_any(s);
-  if (!s->out->searched) s->out->note = "the linear equations of the search could not be solved reliably";
+  if (s->out->searched) return;
+  candidates_try(s->e, s->out);
+  candidates_try_shifts(s->e, s->out);
+  s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and turns of all of a kind together, shifts along solutions of single coordinates";
+  s->out->note = "the linear equations of the search for more could not be solved reliably";
 }
 
 /* Events that set velocities or coordinates are no part of L. */

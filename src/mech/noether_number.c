@@ -101,9 +101,9 @@ static int half_of(long double exponent, Num *out) {
   return 1;
 }
 
-Expr monomial_of(const Choices *c, const long double *value) {
+Expr monomial_part(const Choices *c, const long double *value, long double *number) {
   ExprGraph *g = c->e->g;
-  Num number, exponent;
+  Num exponent;
   long double rest = value[CHOICE_FIRST], other = value[CHOICE_SECOND];
   VEC(Expr) factors = {0};
   for (uint32_t k = 0; k < c->n; k++) {
@@ -115,7 +115,16 @@ Expr monomial_of(const Choices *c, const long double *value) {
     vec_push(c->e->m->arena, &factors, power);
   }
   if (!(fabsl(rest - other) < 1e-9L * fabsl(rest))) return 0;
-  Expr product = expr_mul_n(g, factors.at, factors.n);
+  *number = rest;
+  return expr_mul_n(g, factors.at, factors.n);
+}
+
+Expr monomial_of(const Choices *c, const long double *value) {
+  ExprGraph *g = c->e->g;
+  long double rest;
+  Num number;
+  Expr product = monomial_part(c, value, &rest);
+  if (!product) return 0;
   if (rational_of(rest, &number)) return expr_scale(g, number, product);
   if (!rational_of(rest * rest, &number)) return 0;
   Expr root = expr_mul(g, expr_sqrt(g, expr_num(g, number)), product);

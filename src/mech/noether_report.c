@@ -1,9 +1,21 @@
 #include "mech/noether_report.h"
 
+#include <math.h>
+
 #include "mech/charges.h"
+#include "mech/discontinuity.h"
 #include "sym/prove.h"
 
 /* --- cyclic coordinates --- */
+
+/* x_i -> x_i + s */
+static const Generator *shift(const Eqns *e, uint32_t i) {
+  Expr *xi = ARENA_ARRAY(e->m->arena, Expr, e->n);
+  Generator *by = ARENA_NEW(e->m->arena, Generator);
+  xi[i] = expr_int(e->g, 1);
+  by->xi = xi;
+  return by;
+}
 
 Indices noether_cyclic(const Eqns *e) {
   enum { PROVE_MOST = 20 }; /* past them, only those that do not stand in the text of L */
@@ -11,7 +23,7 @@ Indices noether_cyclic(const Eqns *e) {
   for (uint32_t i = 0; i < e->n; i++) {
     int absent = expr_is_zero(e->g, e->dLdq[i]);
     if (!absent && e->n <= PROVE_MOST) absent = prove_zero(e->g, e->dLdq[i], NULL) == PROVED_ZERO;
-    if (absent) vec_push(e->m->arena, &all, i);
+    if (absent && !noether_moves_jumps(e, shift(e, i))) vec_push(e->m->arena, &all, i);
   }
   return all;
 }
@@ -26,7 +38,9 @@ void show_cyclic(const Eqns *e, StrBuf *out) {
   Indices all = noether_cyclic(e);
   for (uint32_t k = 0; k < all.n; k++) {
     Name x = e->m->coords.at[all.at[k]].name;
-    sb_printf(out, "cyclic coordinate: %s; L does not contain it, and p_%s is %s\n", x, x, is_pushed(e, all.at[k]) ? "changed by forces and constraints alone" : "conserved");
+    int pushed = is_pushed(e, all.at[k]), jumps = discontinuities_of(e, noether_momenta(e)[all.at[k]]).n > 0;
+    sb_printf(out, "cyclic coordinate: %s; L does not contain it, and p_%s is %s%s\n", x, x, pushed ? "changed by forces and constraints alone" : "conserved",
+              jumps ? " between jumps" : "");
   }
 }
 
@@ -113,4 +127,50 @@ void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with) {
     if (generator_in(with, r->e, &r->found.all.at[k].by, &same)) is[k] = noether_prove(with, &same);
   }
   vec_push(r->e->m->arena, &r->effects, ((EffectVerdict){effect, with, is}));
+}
+
+int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t k) {
+  enum { STATES = 3 };
+  const long double near = 1e-12L; /* long doubles, of values of the size of 1 */
+  const Eqns *with = v->e, *e = r->e;
+  long double *there = ARENA_ARRAY(with->m->arena, long double, expr_symbol_count(with->g) + 1), *here = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
+  for (uint32_t seed = 1; seed <= STATES; seed++) {
+    long double bound, one, other;
+    prove_state(with->g, seed, there);
+    for (SymId s = 1; s <= expr_symbol_count(e->g); s++) {
+      Expr same = symbol_in(with, expr_symbol(e->g, s));
+      if (same) here[s] = there[expr_sym_id(with->g, same)];
+    }
+    one = prove_value(e->g, r->found.all.at[k].is.charge, here, NULL, &bound);
+    other = prove_value(with->g, v->is[k].charge, there, NULL, &bound);
+    if (fabsl(one - other) > near * (1 + fabsl(one))) return 0;
+  }
+  return 1;
+}
+
+static void add_condition(const Eqns *e, Conditions *to, Expr base) {
+  ExprSign sign = expr_sign(e->g, base);
+  int constant = !(expr_kinds(e->g, base) & ~(1u << SYM_PARAM | 1u << SYM_CONST));
+  if (!constant || sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE) return;
+  for (uint32_t i = 0; i < to->n; i++)
+    if (to->at[i] == base) return;
+  vec_push(e->m->arena, to, base);
+}
+
+Conditions noether_conditions(const NoetherReport *r, uint32_t k) {
+  const Eqns *e = r->e;
+  const FoundSymmetry *s = &r->found.all.at[k];
+  uint32_t n = noether_coordinates(e);
+  Conditions all = {0};
+  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, n + 3);
+  for (uint32_t i = 0; i < n; i++) roots[i] = s->by.xi[i];
+  roots[n] = s->by.tau, roots[n + 1] = s->is.charge, roots[n + 2] = s->is.F;
+  ExprList nodes = expr_topo(e->g, roots, n + 3);
+  for (uint32_t i = 0; i < nodes.n; i++)
+    for (uint32_t j = 0; expr_op(e->g, nodes.at[i]) == EX_PROD && j < expr_pairs(e->g, nodes.at[i], EX_PROD); j++) {
+      Num power;
+      Expr base = expr_pair(e->g, nodes.at[i], EX_PROD, j, &power);
+      if (power.den % 2 == 0) add_condition(e, &all, base);
+    }
+  return all;
 }

@@ -33,6 +33,13 @@ Name noether_declared(const NoetherReport *r, uint32_t k);
 /* Adds a verdict on the model with one more effect. */
 void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with);
 
+/* What must be positive for the roots in found symmetry k to have values: constants whose signs the model does not tell. */
+typedef VEC(Expr) Conditions;
+Conditions noether_conditions(const NoetherReport *r, uint32_t k);
+
+/* Whether found symmetry k has the same charge with the effect on: at random states, whose symbols are known by their names. */
+int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t k);
+
 /* Coordinates that L does not contain. */
 Indices noether_cyclic(const Eqns *e);
 

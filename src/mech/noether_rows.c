@@ -1,7 +1,7 @@
 /* The ansatz of the search for symmetries, and its linear equations at random states. */
 #include <math.h>
 
-#include "mech/noether_search.h"
+#include "mech/noether_frame.h"
 #include "mech/states.h"
 #include "sym/diff.h"
 
@@ -75,9 +75,11 @@ struct RowSource {
   Arena *scratch;
   EvalTape *tape;        /* L, dL/dt, dL/dq, p; then of constraints A and r */
   StateSolver *solver;   /* or NULL */
+  const NoetherFrame *frame; /* or NULL */
   long double *symbols, *kept, *out;
   long double *phi, *rate; /* [n + 1] 1, q and their derivatives */
   long double *part;     /* [2*columns] scratch */
+  long double *point;    /* [2*n] scratch */
   uint64_t random;
   uint32_t turn;         /* of constraints, in rows at times */
 };
@@ -112,8 +114,20 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
   r->phi = ARENA_ARRAY(scratch, long double, s->n + 1);
   r->rate = ARENA_ARRAY(scratch, long double, s->n + 1);
   r->part = ARENA_ARRAY(scratch, long double, 2 * (size_t)s->columns);
+  r->point = ARENA_ARRAY(scratch, long double, 2 * (size_t)s->n + 1);
   memcpy(r->symbols, parameters, symbols * sizeof *parameters);
+  r->frame = frame_new(s, scratch, parameters);
   return r;
+}
+
+const NoetherFrame *rows_frame(const RowSource *r) { return r->frame; }
+
+/* What was drawn is a vector of the frame. */
+static void take_from_frame(RowSource *r, const SymId *symbol) {
+  uint32_t n = r->of->n;
+  for (uint32_t i = 0; i < n; i++) r->point[i] = r->symbols[symbol[i]];
+  frame_vector_back(r->frame, r->point, r->point + n);
+  for (uint32_t i = 0; i < n; i++) r->symbols[symbol[i]] = r->point[i];
 }
 
 /* Everything but parameters gets a new value, coordinates `spread` times as far out. Times are further apart, so that functions of time
@@ -126,6 +140,8 @@ static void draw(RowSource *r, long double spread) {
     long double value = next_value(r) * (x->kind == SYM_TIME ? 4 : x->kind == SYM_COORD ? spread : 1);
     r->symbols[s] = x->sign == SIGN_POSITIVE || x->sign == SIGN_NONNEGATIVE ? fabsl(value) : value;
   }
+  if (r->frame) take_from_frame(r, r->of->q);
+  if (r->frame) take_from_frame(r, r->of->v);
 }
 
 /* How steep L is there. */
@@ -165,6 +181,11 @@ static void evaluate(RowSource *r) {
     r->phi[i + 1] = r->symbols[s->q[i]];
     r->rate[i + 1] = r->symbols[s->v[i]];
   }
+  if (!r->frame) return;
+  frame_vector(r->frame, r->phi + 1, r->point);
+  frame_vector(r->frame, r->rate + 1, r->point);
+  frame_covector(r->frame, r->out + 2, r->point);
+  frame_covector(r->frame, r->out + 2 + s->n, r->point);
 }
 
 /* --- rows --- */

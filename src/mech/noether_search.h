@@ -53,6 +53,10 @@ int ansatz_is_restricted(const Ansatz *a);
 typedef enum { ROWS_EVEN, ROWS_AT_REST, ROWS_ALL, ROWS_DIFFERENCE, ROWS_CONSTRAINTS } RowKind;
 
 typedef struct RowSource RowSource;
+typedef struct NoetherFrame NoetherFrame;
+
+/* Rows are those of generators and gauge functions in other coordinates; NULL: in the model's own. */
+const NoetherFrame *rows_frame(const RowSource *r);
 
 /* parameters: values by symbol, those of kinds other than SYM_PARAM and SYM_CONST are not looked at. */
 RowSource *rows_new(const Ansatz *a, Arena *scratch, const long double *parameters);
@@ -66,7 +70,7 @@ int rows_at_time(RowSource *r, RowKind kind, long double *b0, long double *b1, l
 
 /* A space of solutions u(t): u = sum of x_a space[a], x' = A x. */
 typedef struct {
-  DenseRows space;   /* orthonormal; the gauge function 1, which means nothing, is one of its directions */
+  DenseRows space;   /* orthonormal in the frame of the search (its columns of xi are the model's, those of F the frame's); the gauge function 1, which means nothing, is one of its directions */
   long double *A;    /* [n*n] */
   int sure;          /* 0: ranks could not be told, or L has symmetries that are functions of time at will */
 } SolutionSpace;

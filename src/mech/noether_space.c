@@ -1,7 +1,7 @@
 /* The space of solutions of B0 u + B1 u' = 0: cut down until its derivatives lie in it. */
 #include <math.h>
 
-#include "mech/noether_search.h"
+#include "mech/noether_frame.h"
 
 enum { SPARE_ROWS = 12 };
 static const long double REST = 1e-11L; /* of a column of length 1: rounding is 1e-18, random pivots were never seen below 1e-6 */
@@ -39,13 +39,17 @@ static Sparse sparse_rows(Arena *a, const DenseRows *space) {
   return s;
 }
 
+/* What is rounding in products with the rows of a space: these are known to eps over the smallest pivot that they were solved with, and what was left
+ * beside that is some eps. */
+static long double rounding_of(const DenseRows *space) { return space->gap > 0 ? fmaxl(1e-15L, 30 / space->gap) : 1e-15L; }
+
 /* to[n] = the products of a row with the rows of the space. Both are of length 1 or so, and what is left of a product far below that is
  * rounding: it must be 0, for a kernel scales columns. */
-static void project(const Sparse *s, uint32_t n, const long double *row, long double *to) {
+static void project(const Sparse *s, uint32_t n, const long double *row, long double rounding, long double *to) {
   for (uint32_t k = 0; k < n; k++) {
     to[k] = 0;
     for (uint32_t x = s->begin[k]; x < s->begin[k + 1]; x++) to[k] += s->value[x] * row[s->column[x]];
-    if (fabsl(to[k]) < 1e-15L) to[k] = 0;
+    if (fabsl(to[k]) < rounding) to[k] = 0;
   }
 }
 
@@ -57,8 +61,8 @@ static DenseRows pairs(RowSource *r, Arena *a, RowKind kind, const DenseRows *sp
   Sparse sparse = sparse_rows(a, space);
   uint32_t rows = rows_fill(r, kind, most, b0, b1);
   for (size_t i = 0; i < rows; i++) {
-    project(&sparse, n, b0 + i * space->width, m + i * 2 * n);
-    project(&sparse, n, b1 + i * space->width, m + i * 2 * n + n);
+    project(&sparse, n, b0 + i * space->width, rounding_of(space), m + i * 2 * n);
+    project(&sparse, n, b1 + i * space->width, rounding_of(space), m + i * 2 * n + n);
   }
   DenseRows kernel = rows < most ? (DenseRows){0} : dense_kernel(a, rows, 2 * n, m, REST);
   if (rows < most) kernel.width = 2 * n;
@@ -71,7 +75,9 @@ static int cut(RowSource *r, Arena *a, RowKind kind, DenseRows *space, int *sure
   if (kernel.at == NULL) return 0;
   if (kernel.gap < 1e4L) *sure = 0;
   DenseRows x = dense_orthonormal(a, &kernel, space->n), u = combine(a, &x, space);
+  long double gap = space->gap > 0 ? fminl(space->gap, kernel.gap) : kernel.gap;
   *space = dense_orthonormal(a, &u, u.width);
+  space->gap = gap;
   return 1;
 }
 
@@ -109,5 +115,7 @@ SolutionSpace solution_space(const Ansatz *s, Arena *a, const long double *param
     if (s->held.n && !cut(r, a, ROWS_CONSTRAINTS, space, &found.sure)) return (SolutionSpace){0};
   }
   found.A = rates(r, a, space, &found.sure);
+  long double *scratch = ARENA_ARRAY(a, long double, (size_t)s->n * s->n + s->n + 1);
+  for (uint32_t k = 0; k < space->n && rows_frame(r); k++) frame_generator_back(rows_frame(r), space->at + (size_t)k * space->width, scratch);
   return found;
 }

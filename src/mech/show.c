@@ -148,7 +148,7 @@ static void constraints(Text *t) {
 
 /* E and its balance. */
 static void energy(Text *t, const Charge *c) {
-  text_heading(t, "energy");
+  text_heading(t, t->e->energy_jumps ? "energy; its balance holds between jumps of L" : "energy");
   int moves = !t->e->conserves_energy && !c->proof.power_unknown;
   text_named(t, "E", "E", t->e->energy, !moves);
   if (moves) text_named(t, "dE/dt", "\\dot{E}", c->proof.power, 1);
@@ -161,7 +161,7 @@ static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 static const char *half(const Eqns *e, uint32_t n) { return arena_printf(e->m->arena, "%u%s", n / 2, n % 2 ? " 1/2" : ""); }
 
 void show_facts(const Eqns *e, StrBuf *out) {
-  const char *energy = e->conserves_energy ? "conserved" : e->constraints.n ? "not conserved (force, dissipation, input, explicit time, or a constraint that moves)"
+  const char *energy = e->conserves_energy ? "conserved" : e->energy_jumps ? "not conserved (L jumps, and the energy with it)" : e->constraints.n ? "not conserved (force, dissipation, input, explicit time, or a constraint that moves)"
                                            : "not conserved (force, dissipation, input or explicit time)";
   if (e->first.n)
     sb_printf(out, "first-order Lagrangian, %u coordinates, %s degree%s of freedom; two-form %s; energy is %s\n", e->first.n, half(e, e->first.n),

@@ -5,7 +5,44 @@
 typedef struct {
   Text text;
   const NoetherReport *r;
+  const char *Q; /* what charges are called: Q1, Q2, ..; another letter where the model has such names */
 } Page;
+
+/* Whether x is `letter` and digits. */
+static int is_numbered(const char *x, const char *letter) {
+  size_t n = strlen(letter);
+  return strncmp(x, letter, n) == 0 && x[n] && x[n + strspn(x + n, "0123456789")] == '\0';
+}
+
+static int takes_names(const Eqns *e, const char *letter) {
+  const ExprGraph *g = e->g;
+  for (SymId k = 1; k <= expr_symbol_count(g); k++)
+    if (is_numbered(expr_symbol(g, k)->name, letter)) return 1;
+  for (Expr x = 1; x <= expr_count(g); x++)
+    if (expr_op(g, x) == EX_DEF && is_numbered(expr_def_name(g, x), letter)) return 1;
+  for (uint32_t k = 0; k < e->m->symmetries.n; k++)
+    if (is_numbered(e->m->symmetries.at[k].name, letter)) return 1;
+  return 0;
+}
+
+/* The first letters that the model has no names of. */
+static const char *free_letter(const Eqns *e) {
+  static const char *const letters[] = {"Q", "C", "J", "charge"};
+  enum { N = sizeof letters / sizeof *letters };
+  uint32_t k = 0;
+  while (k + 1 < N && takes_names(e, letters[k])) k++;
+  return letters[k];
+}
+
+/* Q1, dQ1/dt */
+static const char *named(const Page *p, const char *before, uint32_t k, const char *after) {
+  return arena_printf(p->text.e->m->arena, "%s%s%u%s", before, p->Q, k + 1, after);
+}
+
+static const char *named_latex(const Page *p, uint32_t k, int dot) {
+  const char *letter = strlen(p->Q) > 1 ? arena_printf(p->text.e->m->arena, "\\mathrm{%s}", p->Q) : p->Q;
+  return arena_printf(p->text.e->m->arena, dot ? "\\dot{%s}_{%u}" : "%s_{%u}", letter, k + 1);
+}
 
 /* A line of prose; in LaTeX a comment. */
 static void say(Page *p, const char *words) { sb_printf(p->text.out, "%s%s\n", text_latex(&p->text) ? "% " : "", words); }
@@ -20,20 +57,41 @@ static void put_delta(Page *p, Name name, Expr x) {
   if (!expr_is_zero(t->g, x)) text_named(t, arena_printf(a, "delta %s", name), arena_printf(a, "\\delta %s", text_latex_name(t, name)), x, 0);
 }
 
+/* "  for k > 0" */
+static void put_conditions(Page *p, uint32_t k) {
+  Text *t = &p->text;
+  Conditions all = noether_conditions(p->r, k);
+  StrBuf b = strbuf(t->e->m->arena);
+  for (uint32_t i = 0; i < all.n; i++) {
+    sb_puts(&b, i ? ", " : "  for ");
+    expr_print(t->g, all.at[i], PRINT_TEXT, &b);
+    sb_puts(&b, " > 0");
+  }
+  if (all.n) say(p, sb_text(&b));
+}
+
 static void symmetry(Page *p, uint32_t k) {
   Text *t = &p->text;
   Arena *a = t->e->m->arena;
   const FoundSymmetry *s = &p->r->found.all.at[k];
   int moves = !s->is.power_unknown && !expr_is_zero(t->g, s->is.power);
   Name declared = noether_declared(p->r, k);
-  text_heading(t, arena_printf(a, "Q%u: %s%s%s", k + 1, s->name, declared ? "; declared as " : "", declared ? declared : ""));
+  text_heading(t, arena_printf(a, "%s: %s%s%s%s", named(p, "", k, ""), s->name, declared ? "; declared as " : "", declared ? declared : "", s->is.jumps ? "; between jumps of L only" : ""));
   for (uint32_t i = 0; i < noether_coordinates(t->e); i++) put_delta(p, expr_symbol(t->g, noether_coordinate(t->e, i))->name, s->by.xi[i]);
   put_delta(p, "t", s->by.tau);
   if (!expr_is_zero(t->g, s->is.F)) text_named(t, "F", "F", s->is.F, 0);
-  text_named(t, arena_printf(a, "Q%u", k + 1), arena_printf(a, "Q_{%u}", k + 1), s->is.charge, !moves);
-  if (moves) text_named(t, arena_printf(a, "dQ%u/dt", k + 1), arena_printf(a, "\\dot{Q}_{%u}", k + 1), s->is.power, 1);
+  if (s->is.over_time) say(p, "  F has the integral over t of what stands as dQ/dt, too");
+  text_named(t, named(p, "", k, ""), named_latex(p, k, 0), s->is.charge, !moves);
+  if (moves) text_named(t, named(p, "d", k, "/dt"), named_latex(p, k, 1), s->is.power, 1);
   text_end(t);
+  put_conditions(p, k);
   if (s->is.power_unknown) say(p, "  not conserved: L depends on an input whose rate of change is not known");
+}
+
+static int some_jump(const FoundSymmetries *f) {
+  int some = 0;
+  for (uint32_t k = 0; k < f->all.n; k++) some |= f->all.at[k].is.jumps;
+  return some;
 }
 
 static void symmetries(Page *p) {
@@ -45,7 +103,8 @@ static void symmetries(Page *p) {
     say(p, arena_printf(a, "not searched: %s", f->note));
     return;
   }
-  say(p, arena_printf(a, "found: %u symmetr%s, each proved; Q = p.delta q - E delta t - F", f->all.n, f->all.n == 1 ? "y" : "ies"));
+  say(p, f->all.n ? arena_printf(a, "found: %u symmetr%s, each proved%s; %s = p.delta q - E delta t - F", f->all.n, f->all.n == 1 ? "y" : "ies", some_jump(f) ? ", some between jumps of L only" : "", p->Q)
+                  : "found: none");
   if (f->unproved)
     say(p, arena_printf(a, "%u more direction%s of the solution space not written in closed form, or not proved: not listed", f->unproved, plural(f->unproved)));
   if (f->note) say(p, f->note);
@@ -94,7 +153,7 @@ static void scaling(Page *p) {
 
 static Expr charge_symbol(Page *p, uint32_t k) {
   Text *t = &p->text;
-  SymId s = expr_declare(t->g, SYM_LOCAL, k, arena_printf(t->e->m->arena, "Q%u", k + 1), SIGN_UNKNOWN);
+  SymId s = expr_declare(t->g, SYM_LOCAL, k, named(p, "", k, ""), SIGN_UNKNOWN);
   return expr_symbol(t->g, s)->node;
 }
 
@@ -109,7 +168,8 @@ static void bracket(Page *p, const Bracket *k, const Expr *charge, int last) {
   Text *t = &p->text;
   Arena *a = t->e->m->arena;
   Expr value = k->c ? combination(p->r, k, charge) : k->value;
-  const char *text = arena_printf(a, "{Q%u, Q%u}", k->a + 1, k->b + 1), *tex = arena_printf(a, "\\{Q_{%u}, Q_{%u}\\}", k->a + 1, k->b + 1);
+  const char *text = arena_printf(a, "{%s, %s}", named(p, "", k->a, ""), named(p, "", k->b, ""));
+  const char *tex = arena_printf(a, "\\{%s, %s\\}", named_latex(p, k->a, 0), named_latex(p, k->b, 0));
   text_named(t, text, tex, value, last);
 }
 
@@ -141,16 +201,21 @@ static void algebra(Page *p) {
 
 /* --- effects --- */
 
-static int is_broken(const EffectVerdict *v, const Noether *is) {
+static int is_broken(const EffectVerdict *v, const Noether *is, const Noether *before) {
   if (!is->charge) return 1;
-  return is->power_unknown || !expr_is_zero(v->e->g, is->power) || (is->is != INVARIANT && is->is != INVARIANT_UP_TO_F);
+  return is->power_unknown || (is->jumps && !before->jumps) || !expr_is_zero(v->e->g, is->power) || (is->is != INVARIANT && is->is != INVARIANT_UP_TO_F);
+}
+
+/* The charge that dQ/dt is of, where the effect's L or F makes it another one than the model's. */
+static void other_charge(Page *p, const EffectVerdict *v, Text *of, uint32_t k) {
+  if (!noether_same_charge(p->r, v, k)) text_named(of, named(p, "", k, ""), named_latex(p, k, 0), v->is[k].charge, 0);
 }
 
 static void effect(Page *p, const EffectVerdict *v) {
   Text of = {.e = v->e, .g = v->e->g, .style = p->text.style, .out = p->text.out};
   Arena *a = v->e->m->arena;
   uint32_t n = p->r->found.all.n, broken = 0, shown = 0;
-  for (uint32_t k = 0; k < n; k++) broken += (uint32_t)is_broken(v, &v->is[k]);
+  for (uint32_t k = 0; k < n; k++) broken += (uint32_t)is_broken(v, &v->is[k], &p->r->found.all.at[k].is);
   if (!broken) {
     sb_putc(p->text.out, '\n');
     say(p, arena_printf(a, "effect %s breaks none of them", v->effect));
@@ -159,10 +224,12 @@ static void effect(Page *p, const EffectVerdict *v) {
   text_heading(&of, arena_printf(a, "effect %s breaks %u of %u", v->effect, broken, n));
   for (uint32_t k = 0; k < n; k++) {
     const Noether *is = &v->is[k];
-    if (!is_broken(v, is)) continue;
+    if (!is_broken(v, is, &p->r->found.all.at[k].is)) continue;
     int last = ++shown == broken;
-    if (is->charge && !is->power_unknown) text_named(&of, arena_printf(a, "dQ%u/dt", k + 1), arena_printf(a, "\\dot{Q}_{%u}", k + 1), is->power, last);
-    else sb_printf(of.out, text_latex(&of) ? "  \\dot{Q}_{%u} &\\text{ is not known}\n" : "  dQ%u/dt is not known\n", k + 1);
+    if (is->charge) other_charge(p, v, &of, k);
+    if (is->charge && is->jumps) say(p, arena_printf(a, "  of %s between jumps of L only:", named(p, "", k, "")));
+    if (is->charge && !is->power_unknown) text_named(&of, named(p, "d", k, "/dt"), named_latex(p, k, 1), is->power, last);
+    else sb_printf(of.out, text_latex(&of) ? "  %s &\\text{ is not known}\n" : "  %s is not known\n", text_latex(&of) ? named_latex(p, k, 1) : named(p, "d", k, "/dt"));
   }
   text_end(&of);
 }
@@ -180,7 +247,7 @@ static void cyclic(Page *p) {
 }
 
 void show_noether(const NoetherReport *r, PrintStyle style, StrBuf *out) {
-  Page p = {.text = {.e = r->e, .g = r->e->g, .style = style, .out = out}, .r = r};
+  Page p = {.text = {.e = r->e, .g = r->e->g, .style = style, .out = out}, .r = r, .Q = free_letter(r->e)};
   text_title(&p.text);
   text_charges(&p.text);
   cyclic(&p);

@@ -34,6 +34,13 @@ static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
   put_expr(out, e->g, s->is.charge);
   sb_puts(out, ", \"power\": ");
   put_power(out, e->g, &s->is);
+  Conditions positive = noether_conditions(r, k);
+  for (uint32_t i = 0; i < positive.n; i++) {
+    sb_puts(out, i ? ", " : ", \"positive\": [");
+    put_expr(out, e->g, positive.at[i]);
+  }
+  if (positive.n) sb_putc(out, ']');
+  if (s->is.jumps) sb_puts(out, ", \"between_jumps\": true");
   if (declared) sb_printf(out, ", \"declared\": \"%s\"", declared);
   sb_putc(out, '}');
 }

@@ -82,7 +82,9 @@ void text_charges(Text *t) {
   const Eqns *e = t->e;
   Arena *a = e->m->arena;
   if (e->ncharges < 2) return;
-  text_heading(t, "charges of symmetries");
+  int jumps = 0;
+  for (uint32_t i = 1; i < e->ncharges; i++) jumps |= e->charges[i].proof.jumps;
+  text_heading(t, jumps ? "charges of symmetries; some balances hold between jumps of L only: see `lagc check`" : "charges of symmetries");
   for (uint32_t i = 1; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
     const char *tex = text_latex_name(t, c->name);

@@ -63,6 +63,12 @@ static long double reach_of(const Finder *f, uint32_t i) {
   return most <= 0 || (most < 1 && is_angle) ? 1 : most;
 }
 
+long double start_reach(const Eqns *e, const long double *symbols, uint32_t i) {
+  long double *values = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
+  memcpy(values, symbols, (expr_symbol_count(e->g) + 1) * sizeof *values);
+  return reach_of(&(Finder){.e = e, .n = e->n, .symbols = values}, i);
+}
+
 /* size[k] := how large the terms are of which constraint k is the sum. */
 static void find_terms(Finder *f, long double *size) {
   const Entries *A = &f->e->constraints.A;
@@ -249,8 +255,8 @@ static void slopes(Finder *f) {
   look(f);
   for (uint32_t k = 0; k < f->rows; k++) f->terms[k] = 0;
   for (uint32_t i = 0; i < A->n; i++) {
-    long double far = fmaxl(like(f, f->symbols, 0, A->at[i].col), like(f, f->asked, 0, A->at[i].col));
-    if (A->at[i].row < f->rows) f->terms[A->at[i].row] += fabsl(f->at.A[i]) * (far > 0 ? far : 1);
+    long double far = fmaxl(reach_of(f, A->at[i].col), like(f, f->asked, 0, A->at[i].col));
+    if (A->at[i].row < f->rows) f->terms[A->at[i].row] += fabsl(f->at.A[i]) * far;
   }
 }
 
@@ -260,10 +266,9 @@ static int is_flat(const Finder *f, uint32_t k) { return f->says[k] && f->terms[
 static int is_flat_beside(Finder *f, uint32_t k) {
   copy(f, f->best, f->symbols);
   choose_free(f, ALL);
-  for (uint32_t i = 0; i < f->n; i++) {
-    long double far = like(f, f->best, 0, i);
-    if (is_held(f, i)) f->symbols[component(f, i)] += 0.01L * (far > 0 ? far : 1) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
-  }
+  for (uint32_t i = 0; i < f->n; i++) f->d[i] = 0.01L * reach_of(f, i) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
+  for (uint32_t i = 0; i < f->n; i++)
+    if (is_held(f, i)) f->symbols[component(f, i)] += f->d[i];
   int flat = !descend(f);
   slopes(f);
   flat |= is_flat(f, k);
@@ -277,7 +282,9 @@ static StartResult check_slopes(Finder *f, int reached) {
   for (uint32_t k = 0; k < f->rows; k++) {
     if (is_contact(f->e, k)) continue;
     if (!isfinite(f->terms[k]) && reached) return fault(f, START_STEEP, k);
-    if (is_flat(f, k) && (!reached || is_flat_beside(f, k))) return fault(f, START_FLAT, k);
+    if (!is_flat(f, k)) continue;
+    if (!reached && fabsl(residual(f, k)) > 1e-6L * f->size[k]) return fault(f, START_NONE, k); /* it does not hold where it is flat */
+    if (!reached || is_flat_beside(f, k)) return fault(f, START_FLAT, k);
   }
   return (StartResult){.kind = START_FOUND};
 }

@@ -7,10 +7,11 @@ const char *start_off_by(const Eqns *e, const StartResult *r) {
   const Model *m = e->m;
   Dim dim = e->constraints.of[r->constraint]->dim;
   int rate = r->velocities && r->constraint < e->constraints.nholonomic;
-  const char *unit = dim_text(m->dims, dim);
+  const char *unit = dim_text(m->dims, dim); /* "1", "?" where units are not known */
+  int bare = *unit == '1' || *unit == '?';
   if (!isfinite(r->residual)) return "";
-  return arena_printf(m->arena, "; it is off by %.3Lg%s%s%s%s", fabsl(r->residual), *unit == '1' ? "" : " [", *unit == '1' ? "" : unit,
-                      *unit == '1' ? "" : "]", rate ? " in its rate" : r->velocities ? " in its velocities" : "");
+  return arena_printf(m->arena, "; it is off by %.3Lg%s%s%s%s", fabsl(r->residual), bare ? "" : " [", bare ? "" : unit, bare ? "" : "]",
+                      rate ? " in its rate" : r->velocities ? " in its velocities" : "");
 }
 
 void start_report(const Eqns *e, const StartResult *r) {

@@ -207,9 +207,17 @@ static int check_clashes(const Ast *ast, const EffectGraph *g) {
   return fine;
 }
 
+/* What effects require and exclude exists, also what no scene uses. */
+static void check_names(const Ast *ast, const EffectGraph *g) {
+  for (uint32_t i = 0; i < g->n; i++)
+    for (const AstStmt *x = g->at[i].stmt->body; x; x = x->next)
+      if ((x->kind == STMT_REQUIRES || x->kind == STMT_EXCLUDES) && place_of(g, x->name) == NONE) report_unnamed(ast, STMT_EFFECT, x->name_span, x->name);
+}
+
 int effects_check(const Ast *ast) {
   EffectGraph g = effect_graph(ast);
   int exclusive = 0;
+  check_names(ast, &g);
   for (uint32_t i = 0; i < g.n; i++) exclusive |= g.at[i].excludes.n > 0;
   return check_circles(ast, &g) && (!exclusive || check_clashes(ast, &g));
 }
@@ -224,6 +232,16 @@ int uses_effect(const Builder *b, Name effect) {
 
 int is_use_none(const AstStmt *st) { return st->kind == STMT_USE && strcmp(st->name, "none") == 0; }
 
+/* The statement of this scene that turns the effect of `x` on before it, or NULL. */
+static const AstStmt *used_before(const AstStmt *scene, const AstStmt *x) {
+  const AstStmt *found = NULL;
+  for (const AstStmt *s = scene->body; s != x; s = s->next) {
+    if (is_use_none(s)) found = NULL;
+    else if (s->kind == STMT_USE && s->name == x->name) found = s;
+  }
+  return found;
+}
+
 void collect_uses(Builder *b, const AstStmt *scene) {
   for (const AstStmt *x = scene->body; x; x = x->next) {
     if (x->kind != STMT_USE) continue;
@@ -232,6 +250,10 @@ void collect_uses(Builder *b, const AstStmt *scene) {
       if (x->body) diag_error(b->diags, x->body->span, "`use none` turns all effects off, and takes no values");
     }
     else if (!find_named(b->ast, STMT_EFFECT, x->name)) report_unnamed(b->ast, STMT_EFFECT, x->name_span, x->name);
+    else if (used_before(scene, x)) {
+      diag_warning(b->diags, x->name_span, "the scene `%s` uses the effect `%s` twice", scene->name, x->name);
+      diag_also(b->diags, used_before(scene, x)->name_span, "it is on from here");
+    }
     else if (!uses_effect(b, x->name)) vec_push(b->arena, &b->m->effects, x->name);
   }
 }

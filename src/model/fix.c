@@ -14,7 +14,10 @@ static const Entity *find_param(Builder *b, const char *word, int *off) {
   const Entity *e = effect ? scope_own(&b->scope, name, effect) : scope_find(&b->scope, name, NULL, &ambiguous);
   const AstStmt *owner = effect ? find_named(b->ast, STMT_EFFECT, effect) : declaring_effect(b, name);
   *off = !e && owner && effect_declares(owner, name);
-  if (*off) return NULL;
+  if (*off) {
+    diag_note(b->diags, (Span){0}, "--fix %s: the effect `%s` is off in the scene `%s`, and has nothing to fix there", word, owner->name, b->m->scene.name);
+    return NULL;
+  }
   if (e && !ambiguous && e->kind == ENT_PARAM) return e;
   if (ambiguous) {
     diag_error(b->diags, (Span){0}, "--fix %s: more than one effect in use declares it", word);

@@ -70,6 +70,7 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   if (!effect && st->kind != STMT_DISSIPATION && !is_first_energy(b, st, en)) return;
   b->m->lagrangian_span = span_join(b->m->lagrangian_span, st->span);
   if (!effect || !b->m->lagrangian_span.end) b->m->lagrangian_span = st->span;
+  if (!effect && st->kind == STMT_KINETIC) b->m->kinetic_span = st->span;
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
   if (v.e && v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, and a number is wanted here", shape_text(b, v.n));
   en->failed |= st->kind != STMT_DISSIPATION && (!v.e || v.n);
@@ -349,6 +350,7 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   m->diags = ast->diags;
   m->arena = a;
   m->g = b->g;
+  m->written = expr_map(a);
   m->dims = b->dims;
   m->builder = b;
   m->time = declare_symbol(b, SYM_TIME, 0, intern(ast->names, "t"), SIGN_UNKNOWN, dim_base(b->dims, DIM_TIME));
@@ -446,5 +448,6 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   settle_units(b);
   if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
+  b->m->lends = choice->lends;
   return ast->diags->errors ? NULL : b->m;
 }

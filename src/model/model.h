@@ -203,7 +203,9 @@ typedef struct {
   Expr kinetic, potential; /* 0 when L was given as a whole */
   Expr lagrangian;         /* 0 when the text declares no coordinates */
   Expr across;             /* or 0: quadratic in rates that rotations never have, added to L for a regular mass matrix */
+  int lends;               /* constraints lend inertia to what has none: discrete Lagrangians need it, see mech/lend.h */
   Span lagrangian_span;
+  Span kinetic_span;       /* empty when L was given as a whole */
   Expr dissipation;        /* sum of Rayleigh functions, or 0 */
   VEC(Force) forces;
   VEC(Constraint) constraints;
@@ -214,6 +216,7 @@ typedef struct {
   VEC(Output) observes;
   Scene scene;
   VEC(FoundUnit) found;    /* names that were declared without a unit, where the equations tell it */
+  ExprMap written; /* comparisons and functions that may jump, as AstId */
   SymId energy_sym; /* stands for the energy p q' - L in outputs and expects, until mech knows it */
   struct Builder *builder; /* what model_reresolve needs */
 } Model;
@@ -273,6 +276,7 @@ typedef struct {
   uint32_t ngiven;
   Section section;
   const char *fix; /* parameters that become numbers, with the values that the scene gives them: "g,drag.c", "all"; NULL: none */
+  int lends;       /* Model.lends */
   int unfixed;     /* none, whatever the command line says */
 } ModelChoice;
 

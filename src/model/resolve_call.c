@@ -54,11 +54,11 @@ static Value call_unary(Eval *ev, const AstExpr *x, ExprOp op) {
   const Value *v = value_of(ev, x->args);
   if (!v->e) return FAILED;
   if (op == EX_ABS) return a_value(expr_fn(b->g, op, v->e), v->dim, v->bare);
-  if (op == EX_SIGN) return a_value(expr_fn(b->g, op, v->e), DIM_NONE, v->bare);
+  if (op == EX_SIGN) return a_value(note_written(ev, x, expr_fn(b->g, op, v->e)), DIM_NONE, v->bare);
   if (op == EX_CBRT) return a_value(expr_fn(b->g, op, v->e), dim_pow(b->dims, v->dim, num_ratio(1, 3)), v->bare);
   const char *what = arena_printf(b->arena, "`%s`", x->name);
   if (!need_pure(ev, x->args, what)) return FAILED;
-  return a_value(expr_fn(b->g, op, v->e), DIM_NONE, v->bare);
+  return a_value(note_written(ev, x, expr_fn(b->g, op, v->e)), DIM_NONE, v->bare);
 }
 
 static Value call_binary(Eval *ev, const AstExpr *x, ExprOp op) {
@@ -69,7 +69,7 @@ static Value call_binary(Eval *ev, const AstExpr *x, ExprOp op) {
   if (!v->e || !w->e) return FAILED;
   if (!operands_agree(ev, x->span, x->args, second)) return FAILED;
   Dim dim = v->dim != DIM_ANY ? v->dim : w->dim;
-  return a_value(expr_fn2(b->g, op, v->e, w->e), op == EX_ATAN2 ? DIM_NONE : dim, v->bare && w->bare);
+  return a_value(note_written(ev, x, expr_fn2(b->g, op, v->e, w->e)), op == EX_ATAN2 ? DIM_NONE : dim, v->bare && w->bare);
 }
 
 /* A branch that is not taken was not looked at. */

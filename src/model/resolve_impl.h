@@ -63,6 +63,9 @@ int operand_fits(Eval *ev, const AstExpr *x, AstId operand);
 /* Whether two values have the same shape; reported where they have not. */
 int same_shape(Eval *ev, Span span, AstId x, AstId y);
 
+/* e, which x stands for: noted in Model.written, where it may jump and is new there. */
+Expr note_written(Eval *ev, const AstExpr *x, Expr e);
+
 /* The value of a number, an operator, or a tuple. */
 Value operator_value(Eval *ev, AstId id);
 Value power_value(Eval *ev, const AstExpr *x, AstId base_id, AstId exp_id);

@@ -209,6 +209,14 @@ Value power_value(Eval *ev, const AstExpr *x, AstId base_id, AstId exp_id) {
   return a_value(expr_pow(b->g, base->e, e->e), DIM_NONE, 0);
 }
 
+Expr note_written(Eval *ev, const AstExpr *x, Expr e) {
+  const Builder *b = ev->b;
+  ExprOp op = expr_op(b->g, e);
+  int may_jump = op == EX_LT || op == EX_LE || op == EX_SIGN || op == EX_TAN || op == EX_ATAN2;
+  if (may_jump && !expr_map_get(&b->m->written, e)) expr_map_set(&b->m->written, e, (AstId)(x - b->ast->exprs.at));
+  return e;
+}
+
 static Value compare_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const Value *l = value_of(ev, x->a), *r = value_of(ev, x->b);
@@ -217,6 +225,7 @@ static Value compare_value(Eval *ev, const AstExpr *x) {
   int swapped = x->kind == AST_GT || x->kind == AST_GE;
   ExprOp op = x->kind == AST_LT || x->kind == AST_GT ? EX_LT : x->kind == AST_LE || x->kind == AST_GE ? EX_LE : EX_EQ;
   Expr e = expr_fn2(b->g, op, swapped ? r->e : l->e, swapped ? l->e : r->e);
+  note_written(ev, x, e);
   if (x->kind == AST_NE) e = expr_fn(b->g, EX_NOT, e);
   return (Value){.e = e, .dim = DIM_NONE, .condition = 1};
 }

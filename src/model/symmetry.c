@@ -80,6 +80,17 @@ static int is_of_points(const Mapping *p, Expr to, Span span) {
   return 0;
 }
 
+/* The name of the rotation that has the coordinate; NULL: it is none's. Of its four numbers one speaks for all. */
+static Name rotation_of(const Builder *b, SymId target) {
+  const Model *m = b->m;
+  for (uint32_t i = 0; i < b->rotations.n; i++)
+    for (uint32_t k = 0; k < ROTATION && b->rotations.at[i] + k < m->coords.n; k++) {
+      const Coord *c = &m->coords.at[b->rotations.at[i] + k];
+      if (c->q == target) return arena_strndup(b->arena, c->name, strlen(c->name) - strlen(".w"));
+    }
+  return NULL;
+}
+
 /* Whether the map is the identity at s = 0. */
 static int begins_at_identity(const Mapping *p, SymId target, Expr to, Span span) {
   Builder *b = p->b;
@@ -88,6 +99,13 @@ static int begins_at_identity(const Mapping *p, SymId target, Expr to, Span span
   Name s = expr_symbol(b->g, p->of->parameter)->name, name = expr_symbol(b->g, target)->name;
   Verdict v = prove_zero(b->g, left, NULL);
   if (v == PROVED_ZERO) return 1;
+  Name turned = rotation_of(b, target);
+  if (turned) {
+    diag_error(b->diags, span, "at %s = 0 the symmetry `%s` turns `%s`", s, p->of->name, turned);
+    diag_help(b->diags, "write by how much %s turns it: about an axis of space by `%s -> turn((0, 0, 1), %s)*%s`, about its own by `%s -> %s*turn((0, 0, 1), %s)`", s, turned, s, turned,
+              turned, turned, s);
+    return 0;
+  }
   StrBuf text = strbuf(b->arena);
   expr_print(b->g, simplify(b->g, start), PRINT_TEXT, &text);
   if (v == PROVED_NONZERO) diag_error(b->diags, span, "at %s = 0 the symmetry `%s` maps `%s` to `%s`, not to itself", s, p->of->name, name, sb_text(&text));
@@ -135,9 +153,10 @@ static int has_rate(const Mapping *p, Expr to, Expr rate) {
 
 static void report_no_rate(const Mapping *p, SymId target, Span span) {
   Builder *b = p->b;
-  Name s = expr_symbol(b->g, p->of->parameter)->name, name = expr_symbol(b->g, target)->name;
+  Name s = expr_symbol(b->g, p->of->parameter)->name, turned = rotation_of(b, target), name = turned ? turned : expr_symbol(b->g, target)->name;
   diag_error(b->diags, span, "what the symmetry `%s` maps `%s` to has no derivative by %s at %s = 0, the same from both sides", p->of->name, name, s, s);
-  diag_help(b->diags, "a charge belongs to a transformation that is smooth in its parameter, as `%s -> %s + %s` is", name, name, s);
+  const char *as = turned ? arena_printf(b->arena, "`%s -> turn((0, 0, 1), %s)*%s`", name, s, name) : arena_printf(b->arena, "`%s -> %s + %s`", name, name, s);
+  diag_help(b->diags, "a charge belongs to a transformation that is smooth in its parameter, as %s is", as);
 }
 
 static void add_move(const Mapping *p, SymId target, Expr to, Span span) {

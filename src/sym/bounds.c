@@ -32,8 +32,10 @@ static Real state_value(const Symbol *s, uint32_t id, uint32_t seed) {
   return fraction(2 * place + 1) < 0.5L ? size : -size;
 }
 
+long double prove_symbol(const ExprGraph *g, SymId s, uint32_t seed) { return state_value(expr_symbol(g, s), s, seed); }
+
 void prove_state(const ExprGraph *g, uint32_t seed, long double *symbols) {
-  for (SymId s = 1; s <= expr_symbol_count(g); s++) symbols[s] = state_value(expr_symbol(g, s), s, seed);
+  for (SymId s = 1; s <= expr_symbol_count(g); s++) symbols[s] = prove_symbol(g, s, seed);
 }
 
 void prove_state_wide(const ExprGraph *g, uint32_t seed, long double *symbols) {

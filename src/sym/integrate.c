@@ -2,6 +2,7 @@
 
 #include "sym/diff.h"
 #include "sym/prove.h"
+#include "sym/simplify.h"
 
 enum { MAX_TERMS = 4000, MAX_WORK = 400000, MAX_HARMONICS = 256, MAX_POWER = 64 };
 
@@ -196,6 +197,54 @@ Expr expr_integrate(ExprGraph *g, Expr e, SymId x, unsigned without) {
   return t.result;
 }
 
+/* --- the chain rule read backwards --- */
+
+/* An antiderivative of f by u, or 0. */
+static Expr outer_integral(ExprGraph *g, Expr f, Num power) {
+  Expr u = f, next;
+  if (!num_is_one(power)) {
+    if (num_equal(power, num_int(-1))) return expr_fn(g, EX_LOG, expr_fn(g, EX_ABS, u));
+    Num more = num_add(power, num_int(1));
+    next = expr_pow_num(g, u, more);
+    return expr_scale(g, num_div(num_int(1), more), next);
+  }
+  u = expr_nargs(g, f) == 1 ? expr_arg(g, f, 0) : 0;
+  switch (expr_op(g, f)) {
+    case EX_EXP: return f;
+    case EX_SIN: return expr_neg(g, expr_fn(g, EX_COS, u));
+    case EX_COS: return expr_fn(g, EX_SIN, u);
+    case EX_SINH: return expr_fn(g, EX_COSH, u);
+    case EX_COSH: return expr_fn(g, EX_SINH, u);
+    default: return 0;
+  }
+}
+
+/* A term f(u) u' c, with c free of x and f a power or one of some functions; 0: it is none. */
+static Expr substituted(ExprGraph *g, Expr term, SymId x) {
+  for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++) {
+    Num power;
+    Expr f = expr_pair(g, term, EX_PROD, i, &power), whole = expr_pow_num(g, f, power);
+    int function = num_is_one(power) && expr_op(g, f) != EX_SUM && expr_nargs(g, f) == 1;
+    Expr u = function ? expr_arg(g, f, 0) : f, slope = expr_diff(g, u, x);
+    Expr outer = expr_is_zero(g, slope) ? 0 : outer_integral(g, f, power);
+    if (!outer) continue;
+    Expr rest = expr_div(g, term, whole), c = simplify(g, expr_div(g, rest, slope));
+    if (!expr_contains_sym(g, c, x)) return expr_mul(g, c, outer);
+  }
+  return 0;
+}
+
+/* The sum over those terms of e that are of that form. */
+static Expr by_substitution(ExprGraph *g, Expr e, SymId x) {
+  Expr sum = expr_int(g, 0);
+  for (uint32_t i = 0; i < expr_pairs(g, e, EX_SUM); i++) {
+    Num c;
+    Expr term = expr_pair(g, e, EX_SUM, i, &c), part = substituted(g, term, x);
+    if (part) sum = expr_add(g, sum, expr_scale(g, c, part));
+  }
+  return sum;
+}
+
 /* --- potentials --- */
 
 /* Coordinate by coordinate: what is left of a_i when the F so far is taken off, integrated by q_i. */
@@ -204,7 +253,8 @@ static Expr by_coordinates(ExprGraph *g, const Expr *a, const SymId *q, uint32_t
   for (uint32_t i = 0; i < n; i++) {
     Expr done = expr_diff(g, F, q[i]), left = expr_sub(g, a[i], done);
     if (expr_is_zero(g, left)) continue;
-    Expr part = expr_integrate(g, left, q[i], 0);
+    Expr part = expr_integrate(g, left, q[i], 0), more = expr_diff(g, part, q[i]), rest = simplify(g, expr_sub(g, left, more));
+    if (!expr_is_zero(g, rest)) part = expr_add(g, part, by_substitution(g, rest, q[i]));
     F = expr_add(g, F, part);
   }
   return F;

@@ -12,7 +12,7 @@
  * is taken not to be 0. The result is no proof: callers differentiate it. Definitions are looked through. */
 Expr expr_integrate(ExprGraph *g, Expr e, SymId x, unsigned without);
 
-/* F with dF/dq_i = a_i for all i, where it finds one: coordinate by coordinate with expr_integrate, or, where q.a is a sum of terms
+/* F with dF/dq_i = a_i for all i, where it finds one: coordinate by coordinate with expr_integrate, and terms f(u) du/dq_i by substitution, or, where q.a is a sum of terms
  * homogeneous in all q together, none of degree 0, by the homotopy formula F = int_0^1 q.a(s q) ds. Otherwise an F that
  * takes off some of the terms, to be judged by what it leaves. */
 Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n);

@@ -23,6 +23,9 @@ Verdict prove_solves(ExprGraph *g, uint32_t n, const Expr *M, const Expr *f, con
  * within 0.3 .. 2 in size and of the sign that is known. pi is pi. */
 void prove_state(const ExprGraph *g, uint32_t seed, long double *symbols);
 
+/* The value of one of them there. */
+long double prove_symbol(const ExprGraph *g, SymId s, uint32_t seed);
+
 /* The same with coordinates, states and time of 1.2 .. 8 in size: angles past half a turn, where branches end. */
 void prove_state_wide(const ExprGraph *g, uint32_t seed, long double *symbols);
 

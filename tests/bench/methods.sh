@@ -59,7 +59,7 @@ run() { # WHICH FLAGS...
   which=$1
   shift
   # shellcheck disable=SC2086 # lists of words
-  "$CC" -O2 -std=gnu11 -ffp-contract=off "$@" $peers -I"$INC" "$TMP"/*.c $here/methods.c "$TMP"/peer_inlined.o "$TMP"/by_hand_*.o "$BUILD/liblag.a" $libs -lm \
+  "$CC" -O2 -std=gnu11 -ffp-contract=off -fno-tree-slp-vectorize "$@" $peers -I"$INC" "$TMP"/*.c $here/methods.c "$TMP"/peer_inlined.o "$TMP"/by_hand_*.o "$BUILD/liblag.a" $libs -lm \
     -o "$TMP/methods" 2>"$TMP/err" || {
     echo "not with $*: $(head -n 1 "$TMP/err")"
     return

@@ -7,14 +7,6 @@ cd "$(dirname "$0")/../.." || exit 2
 . tests/tap.sh
 dir=$TMP/fix
 mkdir -p "$dir"
-says() { # STATUS WORDS COMMAND...
-  want=$1 words=$2
-  shift 2
-  "$@" >"$dir/out" 2>"$dir/err"
-  got=$?
-  cat "$dir/err"
-  [ $got = "$want" ] && grep -qF -e "$words" "$dir/err"
-}
 ops() { "$LAGC" derive "$1" --ops --fix "$2" | awk 'NR == 1 { a = $1 } NR == 2 { b = $3 } END { print a, b }'; } # with and without
 
 # ---- operations
@@ -85,6 +77,7 @@ check "where the effect is off it is that" says 2 'effect drive is not in scene'
 check "others can be set" "$dir/sim" driven c=0.5 F=2 --quiet
 check "scenes keep their own numbers" sh -c '[ "$("$0" heavy --json | sed "s/.*final//")" != "$("$0" rest --json | sed "s/.*final//")" ]' "$dir/sim"
 check "run --fix" says 2 'm is a number' "$LAGC" run "$two" --fix m m=3
+check "of an effect that is off, it is said" says 0 'note: --fix drive.F: the effect `drive` is off in the scene `rest`, and has nothing to fix there' "$LAGC" derive "$two" rest --fix drive.F
 check "no such parameter" says 1 'did you mean `m`?' "$LAGC" emit "$two" --fix mm
 check "no parameter" says 1 '--fix x: it is a coordinate' "$LAGC" emit "$two" --fix x
 check "a constant" says 1 'constants are fixed as it is: -D n=' "$LAGC" emit "$two" --fix n

@@ -38,6 +38,10 @@ check "a Hamiltonian's operations" refuses 2 "text or latex" derive models/keple
 "$LAGC" noether models/kepler.lag >"$TMP/kepler" 2>&1
 check "to a file" sh -c '"$0" noether models/kepler.lag -o "$1" && cmp "$1" "$2"' "$LAGC" "$TMP/file" "$TMP/kepler"
 
+# ---- nothing is found ----
+check "where there is none" says '^found: none$' noether models/kapitza.lag
+check "no symmetry is called proved" is_silent 'proved' noether models/kapitza.lag
+
 # ---- scenes and effects ----
 check "without a scene effects are off, and each is judged alone" says "effect drag breaks 8 of 8" noether models/projectile.lag
 check "a scene has its own" says "scene air, with wind_resistance" noether models/projectile.lag air
@@ -61,6 +65,31 @@ is "the torque of a field" "effect field breaks 1 of 2
 is "an effect with what it requires" "effect again breaks 1 of 2
   dQ2/dt = field.g*y - again.h*x" "$(verdict again)"
 is "a total derivative breaks nothing" "effect gauge breaks none of them" "$(verdict gauge)"
+
+# ---- an effect with a term of L makes another charge, of which dQ/dt is said ----
+cat >"$TMP/breathing.lag" <<'END'
+model breathing
+coord x
+param k = 2 > 0
+lagrangian = x'^2/2 - k/2*x^2
+effect field { param E = 1; potential = -E*x }
+effect air { param c = 1; force x = -c*x' }
+END
+"$LAGC" noether "$TMP/breathing.lag" >"$TMP/wider" 2>&1
+check "it is printed before" sh -c "grep -A1 '^  Q[45] = .*field.E' '$TMP/wider' | grep -q '^  dQ[45]/dt = .*field.E'"
+is "a force makes none" "" "$(verdict air | grep '^  Q')"
+
+# ---- roots of parameters whose signs are not known ----
+printf "model m\ncoord x, y\nparam k = 2, m = 1 > 0\nlagrangian = m*(x'^2 + y'^2)/2 - k*x^2/2 - y^4\n" >"$TMP/roots.lag"
+check "what holds for some values of a parameter" says "^  for k > 0$" noether "$TMP/roots.lag"
+is "says so, once for each" 2 "$(grep -c '^  for k > 0$' "$TMP/out")"
+check "in JSON" says '"positive": \["k"\]' noether "$TMP/roots.lag" --format json
+
+# ---- charges have names that the model has not ----
+printf "model m\ncoord Q1, y\nlagrangian = (Q1'^2 + y'^2)/2 - (Q1^2 + y^2)^2\n" >"$TMP/names.lag"
+check "a coordinate called Q1" says "^  C2 = Q1\*y' - y\*Q1'" noether "$TMP/names.lag"
+check "in the head, too" says "; C = p.delta q - E delta t - F" noether "$TMP/names.lag"
+check "in LaTeX" says '^  C_{2} &= Q_{1}' noether "$TMP/names.lag" --format latex
 
 # ---- brackets whose coefficients are not recognised ----
 cat >"$TMP/driven.lag" <<'END'

@@ -14,16 +14,6 @@ final() {
   shift
   "$LAGC" run "$@" --json 2>"$dir/err" | sed -n "s/.*\"final\": {\\(.*\\)}}.*/, \\1/; s/.*, \"$name\": \\([-0-9.e+]*\\).*/\\1/p"
 }
-near() { check "$1" within "$2" "$3" "$4"; } # NAME TOLERANCE EXPECTED GOT
-within() { echo "got $3, expected $2 within $1"; awk -v t="$1" -v e="$2" -v g="$3" 'BEGIN { d = g - e; exit !(g != "" && d <= t && -d <= t) }'; }
-says() { # STATUS WORDS COMMAND...
-  want=$1 words=$2
-  shift 2
-  "$@" >"$dir/out" 2>"$dir/err"
-  got=$?
-  cat "$dir/err"
-  [ $got = "$want" ] && grep -q -e "$words" "$dir/err"
-}
 calc() { awk "BEGIN { e = exp(1); printf \"%.17g\", $1 }"; }
 
 # Free particles with drag c and a wind w: x' = (v0 - w/c) exp(-c t/m) + w/c.
@@ -96,9 +86,9 @@ near "a component" 1e-12 5 "$(final 'r.x' "$m" vacuum r.x=4)"
 near "of a velocity" 1e-12 8 "$(final 'r.y' "$m" vacuum "r.y'=8")"
 near "of a member" 1e-12 9 "$(final 'b\[2\].y' "$m" vacuum 'b[2].y=6')"
 near "of all members" 1e-12 6 "$(final 'b\[1\].y' "$m" vacuum 'b.y=6')"
-check "of the right sign" says 2 'declares m\[1\] > 0' "$LAGC" run "$m" m=-1
+check "of the right sign" says 2 'declares m[1] > 0' "$LAGC" run "$m" m=-1
 check "a vector as a whole is refused" says 2 'r has parts: set r.x' "$LAGC" run "$m" r=1
-check "a member too many" says 2 'did you mean x\[1\]?' "$LAGC" run "$m" 'x[4]=1'
+check "a member too many" says 2 'did you mean x[1]?' "$LAGC" run "$m" 'x[4]=1'
 check "an effect as a whole" says 2 'air has parts: set air.c' "$LAGC" run "$m" drag air=1
 check "an effect that is off" says 2 'effect storm is not in scene drag' "$LAGC" run "$m" drag storm.w=1
 check "a constant" says 2 'write -D n=5' "$LAGC" run "$m" n=5
@@ -191,7 +181,7 @@ is "-D: units and formulas" '6,0.02,0.5' "$(constants -D 'A=2*3' -D 'h=20[mm]' -
 check "-D: a number without end" says 1 '-D A:1:' "$LAGC" check "$c" -D A=1e
 check "-D: a sign alone" says 1 'expected an expression after' "$LAGC" check "$c" -D A=-
 check "-D: an unknown name" says 1 'unknown name `B`' "$LAGC" check "$c" -D A=B
-check "-D: the wrong unit" says 1 'this value is in \[s\]' "$LAGC" check "$c" -D 'h=2[s]'
+check "-D: the wrong unit" says 1 'this value is in [s]' "$LAGC" check "$c" -D 'h=2[s]'
 check "-D: the wrong shape" says 1 '`h` is a number, and a vector of 2 components is given here' "$LAGC" check "$c" -D 'h=(1,2)'
 near "a negative fraction has the unit" 1e-12 -0.5 "$(final th "$c" minus)"
 near "with two signs" 1e-12 0.5 "$(final th "$c" minuses)"
@@ -284,7 +274,7 @@ check "an event's log in degC" sh -c '"$0" run "$1" --until 80 --events - 2>/dev
 
 # ---- monitors
 check "a monitor that holds" "$LAGC" run "$o" watched --quiet
-check "of a wrong closed form" says 3 'monitor error(x): drift .* is past its limit' "$LAGC" run "$o" watched --quiet k=1 --method 'rk4(step=1)'
+check "of a wrong closed form" says 3 ' is past its limit' "$LAGC" run "$o" watched --quiet k=1 --method 'rk4(step=1)'
 check "a limit given once more is the new one" says 3 'past its limit 1e-09' "$LAGC" run "$o" strict --quiet
 check "also when it is laxer" "$LAGC" run "$o" lax --quiet
 check "a monitor before the outputs of another scene" "$LAGC" run "$o" late --quiet

@@ -43,6 +43,11 @@ bounded() { # bounded METHOD ORDER STEP: the energy oscillates; half the step, 2
 order() { between "$(awk -v a="$coarse" -v b="$fine" 'BEGIN { print log(a/b)/log(2) }')" "$(($1 - 1)).6" "$1.6"; }
 bounded verlet 2 0.02
 bounded verlet4 4 0.08
+bounded variational 2 0.02
+bounded 'variational(order=4)' 4 0.08
+bounded 'gauss(stages=2)' 4 0.08
+check "the report says so of orders that options choose" says '^energy drift: .* oscillates \(as step\^4\)$' $planets quiet --method 'gauss(stages=2)' --step 0.08
+check "and of their defaults" says '^energy drift: .* oscillates \(as step\^2\)$' $planets quiet --method variational --step 0.02
 run $planets quiet --method rk4 --step 0.01 --json
 is "of rk4 it grows" grows "$(of energy trend)"
 
@@ -223,6 +228,21 @@ is "with their values and rates" "0.375 0.1 0.1, -0.00066 -0.0108 -0.0004 0" "$(
 "$LAGC" header models/pendulum.lag -o "$TMP/none.h" >/dev/null
 check "a model without symmetries has none" sh -c "! grep -q charges '$TMP/none.h'"
 
+# ---- constraints that are products hold where one factor is 0, and a symmetry keeps to each of these parts, or is none
+parts() { # parts FACTOR: a circle, or where the factor is 0
+  printf 'model parts\ncoord x, y\nlagrangian = (x%s^2 + y%s^2)/2\nconstraint c: (x^2 + y^2 - 1)*(%s) = 0\nsymmetry turn(s): x -> x*cos(s) - y*sin(s), y -> x*sin(s) + y*cos(s)\nscene s { start x = 1 }\n' \
+    "'" "'" "$1" >"$TMP/parts.lag"
+  "$LAGC" check "$TMP/parts.lag" >"$TMP/out" 2>&1
+}
+says_of() { parts "$1" && false; grep -q "$2" "$TMP/out" || { cat "$TMP/out"; return 1; }; }
+check "a line near by" says_of 'x - 3' 'the symmetry .turn. does not keep to the constraint .c.'
+check "a line that no start goes to" says_of 'x - 500' 'the symmetry .turn. does not keep to the constraint .c.'
+check "another circle" parts '(x - y)^2 + 2*x*y - 4'
+check "is turned into itself" grep -q 'symmetry turn: \(proved\|holds on the constraints, in numbers\)' "$TMP/out"
+check "a part that there is none of leaves it open" says_of 'x*y + x^2 + y^2 + 1' 'but none were on a part of the constraints, 1 + x^2 + y^2 + x.y = 0'
+check "a factor that is positive by its signs is no part" parts 'x^2 + 1'
+check "and asks for nothing" grep -q 'symmetry turn: ' "$TMP/out"
+
 # ---- every sign of a rotation counts
 rotated() { # rotated XX XY YX YY: signs of the four terms
   printf 'model turn\ncoord x, y\nlagrangian = (x%s^2 + y%s^2)/2 + 1/hypot(x, y)\nsymmetry turn(s): x -> %sx*cos(s) %s y*sin(s), y -> %sx*sin(s) %s y*cos(s)\n' \
@@ -231,22 +251,20 @@ rotated() { # rotated XX XY YX YY: signs of the four terms
 }
 check "as in the book it is proved" rotated '' - '' +
 check "and its inverse" rotated '' + - +
-for signs in "+,+,,+" ",-,-,+" ; do
+# signs XX,XY,YX,YY, and what is said of them
+refused() {
   old=$IFS IFS=,
   # shellcheck disable=SC2086 # a list
-  set -- $signs
+  set -- $1 "$2"
   IFS=$old
   rotated "$1" "$2" "$3" "$4"
-  is "signs $signs: refused" 1 $?
-  check "with what is left of delta L" grep -q 'what is left of delta L is .*x.*; it would be 0 if what it does to `x` or `y` had the other sign' "$TMP/out"
+  is "signs $1,$2,$3,$4: refused" 1 $?
+  check "with the reason" grep -q "$5" "$TMP/out"
+}
+for signs in "+,+,,+" ",-,-,+"; do
+  refused "$signs" 'what is left of delta L is .*x.*; it would be 0 if what it does to `x` or `y` had the other sign'
 done
 for signs in "-,-,,+" ",-,,-"; do
-  old=$IFS IFS=,
-  # shellcheck disable=SC2086 # a list
-  set -- $signs
-  IFS=$old
-  rotated "$1" "$2" "$3" "$4"
-  is "signs $signs: refused" 1 $?
-  check "as it is not the identity" grep -q 'at s = 0 the symmetry `turn` maps `[xy]` to `-[xy]`' "$TMP/out"
+  refused "$signs" 'at s = 0 the symmetry `turn` maps `[xy]` to `-[xy]`'
 done
 tap_end

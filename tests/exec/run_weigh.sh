@@ -7,14 +7,6 @@ cd "$(dirname "$0")/../.." || exit 2
 . tests/tap.sh
 dir=$TMP/weigh
 mkdir -p "$dir"
-says() { # STATUS WORDS COMMAND...
-  want=$1 words=$2
-  shift 2
-  "$@" >"$dir/out" 2>&1
-  got=$?
-  cat "$dir/out"
-  [ $got = "$want" ] && grep -qF -e "$words" "$dir/out"
-}
 weigh() { "$LAGC" effects "$@" --json >"$dir/json" 2>"$dir/err" || cat "$dir/err"; }
 # of FIELD: of the whole; of EFFECT FIELD: of one effect
 of() {
@@ -25,8 +17,6 @@ of() {
 }
 whole() { sed 's/"effects": \[.*\]//' "$dir/json" | sed -n "s/.*\"$1\": \([^,}]*\).*/\1/p"; }
 calc() { awk "BEGIN { printf \"%.15g\", $1 }"; }
-near() { check "$1" within "$2" "$3" "$4"; } # NAME TOLERANCE EXPECTED GOT
-within() { echo "got $3, expected $2"; awk -v t="$1" -v e="$2" -v g="$3" 'BEGIN { d = g - e; exit !(g != "" && d <= t && -d <= t) }'; }
 
 # ---- a mass that is pushed: x = a t^2/2, and everything is a ratio of accelerations
 cat >"$dir/push.lag" <<'END'

@@ -117,6 +117,24 @@ static void gauges(void **state) {
          INVARIANT_UP_TO_F);
 }
 
+/* Derivatives d/dt of sqrt(1 + x^2), 1/(1 + y^2), exp(x y) and the like in L: what a shift makes of them is the derivative of their slope. */
+static void substitutions(void **state) {
+  (void)state;
+  proves("model g\ncoord x, y\nparam a = 2\nlagrangian = (x'^2 + y'^2)/2 + a*x'*sqrt(1 + x^2)\nobserve xi_x = 1\nobserve F = a*sqrt(1 + x^2)\nobserve Q = x'\n", INVARIANT_UP_TO_F);
+  proves("model g\ncoord x, y\nparam a = 2\nlagrangian = (x'^2 + y'^2)/2 + a*y'/(1 + y^2)\nobserve xi_y = 1\nobserve F = a/(1 + y^2)\nobserve Q = y'\n", INVARIANT_UP_TO_F);
+  proves("model g\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 + y'*exp(y^2)\nobserve xi_y = 1\nobserve F = exp(y^2)\n", INVARIANT_UP_TO_F);
+  proves("model g\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 + y'*sqrt(1 + y^2) + y*exp(x^2)\nobserve xi_y = 1\nobserve left = exp(x^2)\n", NOT_INVARIANT);
+}
+
+/* Functions of time without an integral in closed form, and inputs: any function of time is a derivative, and their part of the balance. */
+static void integrals(void **state) {
+  (void)state;
+  proves("model e\ncoord x\nlagrangian = x'^2/2 + x*exp(-t^2)\nobserve xi_x = 1\nobserve F = 0\nobserve Q = x'\nobserve P = exp(-t^2)\nobserve left = exp(-t^2)\n", INVARIANT_UP_TO_F);
+  proves("model e\ncoord x\ninput u = 0\nlagrangian = x'^2/2 + x*u\nobserve xi_x = t\nobserve F = x\nobserve Q = t*x' - x\nobserve P = t*u\n", INVARIANT_UP_TO_F);
+  proves("model e\ncoord x\ninput u = 0\nlagrangian = x'^2/2 + x^2*u\nobserve xi_x = 1\nobserve P = 2*x*u\n", NOT_INVARIANT);
+  proves("model e\ncoord x\nstate z\nflow z' = -z + x\nlagrangian = x'^2/2 + x*z\nobserve xi_x = 1\nobserve P = z\n", INVARIANCE_NOT_DECIDED);
+}
+
 /* x -> exp(s/2) x, t -> exp(s) t leaves an inverse-square potential alone; another power does not. */
 static void scaling(void **state) {
   (void)state;
@@ -196,7 +214,7 @@ static void first_order_forced(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(kepler),  cmocka_unit_test(boosts),   cmocka_unit_test(oscillator),
-                                     cmocka_unit_test(gauges),  cmocka_unit_test(scaling),  cmocka_unit_test(balances),
+                                     cmocka_unit_test(gauges), cmocka_unit_test(substitutions), cmocka_unit_test(integrals),  cmocka_unit_test(scaling),  cmocka_unit_test(balances),
                                      cmocka_unit_test(constrained), cmocka_unit_test(first_order),
                                      cmocka_unit_test(first_order_forced), cmocka_unit_test(contacts)};
   return cmocka_run_group_tests(tests, NULL, NULL);

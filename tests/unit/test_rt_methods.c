@@ -1,6 +1,7 @@
 /* Methods: order conditions, measured orders of steps and of dense output. Expected values: closed forms. */
 #include "test_rt_systems.h"
 
+#include "methods/control.h"
 #include "methods/tableau.h"
 
 /* ---- Order conditions (Butcher; HNW I II.2 theorem 2.13): sum b_i Phi_i(tree) = 1/gamma(tree). */
@@ -275,6 +276,17 @@ static void a_refused_step_loses_no_state(void **state)
   }
 }
 
+static void rough_powers_are_near(void **state)
+{
+  (void)state;
+  for (double x = 1e-24; x < 1e300; x *= 1.37) { /* errors, squared */
+    for (int k = -10; k <= 10; k++) {
+      double p = k / 80.0;
+      assert_true(fabs(lag_rough_power(x, p) / pow(x, p) - 1) < 2e-4);
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -289,6 +301,7 @@ int main(void)
       cmocka_unit_test(rk4_keeps_time),
       cmocka_unit_test(backwards_undoes_forwards),
       cmocka_unit_test(a_refused_step_loses_no_state),
+      cmocka_unit_test(rough_powers_are_near),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,60 @@
+#include "mech/discontinuity.h"
+
+#include "mech/noether.h"
+
+ExprJumps discontinuities_of(const Eqns *e, Expr x) {
+  const Model *m = e->m;
+  ExprGraph *g = e->g;
+  if (expr_kinds(g, x) & 1u << SYM_INPUT) {
+    Expr *formula = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(g) + 1);
+    for (uint32_t i = 0; i < m->inputs.n; i++) formula[m->inputs.at[i].sym] = m->inputs.at[i].value;
+    x = expr_substitute(g, x, formula, expr_symbol_count(g) + 1, "");
+  }
+  return expr_jumps(g, x);
+}
+
+/* Coordinates of first order are states. */
+static int is_of_motion(const Symbol *s, const void *model) {
+  const Model *m = model;
+  return s->kind == SYM_COORD || s->kind == SYM_VEL || s->kind == SYM_RATE || (s->kind == SYM_STATE && m->states.at[s->index].coordinate);
+}
+
+/* Where the text has it; without a place of its own, where L is. */
+static Span place_of(const Model *m, Expr node) {
+  AstId written = expr_map_get(&m->written, node);
+  return written ? ast_expr(m->ast, written)->span : m->lagrangian_span;
+}
+
+static int is_among(const ExprJumps *all, Expr node) {
+  uint32_t i = 0;
+  while (i < all->n && all->at[i].node != node) i++;
+  return i < all->n;
+}
+
+static void warn_of_momentum(const Eqns *e, uint32_t i, const ExprJumps *said) {
+  const Model *m = e->m;
+  ExprJumps all = discontinuities_of(e, noether_momenta(e)[i]);
+  Name q = expr_symbol(e->g, noether_coordinate(e, i))->name;
+  for (uint32_t k = 0; k < all.n; k++) {
+    if (is_among(said, all.at[k].node)) continue;
+    diag_warning(m->diags, place_of(m, all.at[k].node), "the momentum of `%s` jumps here, and the equations of motion have no impulse for it", q);
+    diag_help(m->diags, "smooth it, or let an event of the same place set the velocity: `event NAME: t - 1 [s] rising { %s' = ... }`", q);
+  }
+}
+
+void discontinuity_warn(const Eqns *e) {
+  enum { COORDINATES_MOST = 64 };
+  const Model *m = e->m;
+  uint32_t n = noether_coordinates(e);
+  VEC(ExprJump) said = {0};
+  if (!m->lagrangian) return;
+  ExprJumps all = discontinuities_of(e, m->lagrangian);
+  for (uint32_t i = 0; i < all.n; i++) {
+    if (!expr_contains(e->g, all.at[i].side, is_of_motion, m)) continue;
+    diag_warning(m->diags, place_of(m, all.at[i].node), "L jumps here, and the equations of motion have no impulse for it");
+    diag_help(m->diags, "forces are derivatives on each side of the jump: smooth it, as tanh(x/w) does sign(x), or let an event or a contact do what happens there");
+    vec_push(m->arena, &said, all.at[i]);
+  }
+  ExprJumps known = {said.at, said.n};
+  for (uint32_t i = 0; i < n && n <= COORDINATES_MOST; i++) warn_of_momentum(e, i, &known);
+}

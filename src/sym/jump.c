@@ -1,0 +1,281 @@
+#include "sym/jump.h"
+
+#include <math.h>
+
+#include "sym/eval.h"
+#include "sym/prove.h"
+
+typedef long double Real;
+
+enum {
+  MOST = 200,   /* nodes that are looked at: those of many bodies are alike */
+  LINES = 64,   /* through random states */
+  PLACES = 12   /* found on them, of which one suffices */
+};
+
+static const unsigned varied = 1u << SYM_TIME | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE;
+
+typedef struct {
+  ExprGraph *g;
+  Arena *arena;
+  uint32_t nsymbols;
+  VEC(SymId) symbols; /* those that the source at hand and its terms are made of */
+  uint32_t nterms;    /* of x, those that jump where the source does; */
+  EvalTape *tape;     /* their values, into term[] */
+  Real *term;
+  Real *base, *way;   /* a line: base + s way, */
+  int from_origin;    /* with coordinates, velocities and time 0 at its base */
+  Real *at;           /* a state on it */
+  VEC(ExprJump) found;
+} Search;
+
+/* --- what can jump --- */
+
+typedef struct {
+  Expr node, side;
+  int angle;     /* not where side is 0, but where its cosine is */
+  uint64_t made; /* of these symbols: two that jump at one place are made of the same */
+} Source;
+
+typedef VEC(Source) Sources;
+
+/* FNV-1a of its symbols, which come in the order of the graph. */
+static uint64_t made_of(const Search *s, Expr side) {
+  uint64_t hash = 0xcbf29ce484222325u;
+  ExprList l = expr_topo(s->g, &side, 1);
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_op(s->g, l.at[i]) == EX_SYM) hash = (hash ^ expr_sym_id(s->g, l.at[i])) * 0x100000001b3u;
+  return hash;
+}
+
+static void add(const Search *s, Sources *to, Expr node, Expr side, int angle) {
+  if (!(expr_kinds(s->g, side) & varied) || to->n == MOST) return;
+  vec_push(s->arena, to, ((Source){node, side, angle, made_of(s, side)}));
+}
+
+/* Whether something that is finite can be made of what is not: atan(1/x), x/abs(x). */
+static int tames_poles(ExprOp op) { return op == EX_ATAN || op == EX_ATAN2 || op == EX_TANH || op == EX_EXP || op == EX_ABS; }
+
+static void add_divisors(const Search *s, Sources *to, Expr product) {
+  ExprGraph *g = s->g;
+  for (uint32_t i = 0; i < expr_pairs(g, product, EX_PROD); i++) {
+    Num power;
+    Expr base = expr_pair(g, product, EX_PROD, i, &power);
+    if (num_sign(power) >= 0) continue;
+    if (expr_op(g, base) == EX_ABS) base = expr_arg(g, base, 0);
+    ExprSign sign = expr_sign(g, base);
+    if (sign == SIGN_UNKNOWN) add(s, to, base, base, 0);
+  }
+}
+
+static Sources sources_of(const Search *s, Expr x) {
+  ExprGraph *g = s->g;
+  Sources all = {0};
+  ExprList nodes = expr_topo(g, &x, 1);
+  int poles = 0;
+  for (uint32_t i = 0; i < nodes.n; i++) poles |= tames_poles(expr_op(g, nodes.at[i]));
+  for (uint32_t i = 0; i < nodes.n; i++) {
+    Expr e = nodes.at[i];
+    ExprOp op = expr_op(g, e);
+    if (op == EX_LT || op == EX_LE) {
+      Expr a = expr_arg(g, e, 0), b = expr_arg(g, e, 1);
+      add(s, &all, e, expr_sub(g, b, a), 0);
+    } else if (op == EX_SIGN || op == EX_ATAN2 || op == EX_TAN) {
+      add(s, &all, e, expr_arg(g, e, 0), op == EX_TAN);
+    } else if (op == EX_PROD && poles) {
+      add_divisors(s, &all, e);
+    }
+  }
+  return all;
+}
+
+/* A term of x, and what its sources are made of. */
+typedef struct {
+  Expr term;
+  VEC(uint64_t) made;
+} Part;
+
+typedef VEC(Part) Parts;
+
+/* The terms of x that contain sources: others only add rounding. */
+static Parts parts_of(const Search *s, const Sources *all, Expr x) {
+  ExprGraph *g = s->g;
+  ExprMap nodes = expr_map(s->arena);
+  Parts parts = {0};
+  for (uint32_t i = 0; i < all->n; i++) expr_map_set(&nodes, all->at[i].node, i + 1);
+  for (uint32_t i = 0; i < expr_pairs(g, x, EX_SUM); i++) {
+    Num c;
+    Part part = {.term = expr_pair(g, x, EX_SUM, i, &c)};
+    ExprList l = expr_topo(g, &part.term, 1);
+    for (uint32_t k = 0; k < l.n; k++) {
+      uint32_t source = expr_map_get(&nodes, l.at[k]);
+      if (source) vec_push(s->arena, &part.made, all->at[source - 1].made);
+    }
+    if (!part.made.n) continue;
+    part.term = expr_scale(g, c, part.term);
+    vec_push(s->arena, &parts, part);
+  }
+  return parts;
+}
+
+/* Those that jump where the source does, and the symbols that they are made of. */
+static void take_terms(Search *s, const Parts *parts, const Source *from) {
+  ExprGraph *g = s->g;
+  VEC(Expr) roots = {0};
+  for (uint32_t i = 0; i < parts->n; i++) {
+    const Part *part = &parts->at[i];
+    uint32_t k = 0;
+    while (k < part->made.n && part->made.at[k] != from->made) k++;
+    if (k < part->made.n) vec_push(s->arena, &roots, part->term);
+  }
+  s->nterms = roots.n;
+  s->tape = eval_tape(g, roots.at, roots.n);
+  s->term = ARENA_ARRAY(s->arena, Real, roots.n + 1);
+  vec_push(s->arena, &roots, from->side);
+  ExprList l = expr_topo(g, roots.at, roots.n);
+  s->symbols.n = 0;
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_op(g, l.at[i]) == EX_SYM) vec_push(s->arena, &s->symbols, expr_sym_id(g, l.at[i]));
+}
+
+/* --- lines --- */
+
+/* Every second one goes through the origin, where all lengths and times are met: the radius of an atom, and of an orbit. */
+static void draw_line(Search *s, uint32_t seed) {
+  const Real wide = 4; /* past half a turn */
+  s->from_origin = seed % 2 == 0;
+  for (uint32_t i = 0; i < s->symbols.n; i++) {
+    SymId k = s->symbols.at[i];
+    int moves = (1u << expr_symbol(s->g, k)->kind & varied) != 0;
+    s->base[k] = moves && s->from_origin ? 0 : prove_symbol(s->g, k, seed) * (moves ? wide : 1);
+    s->way[k] = moves ? prove_symbol(s->g, k, seed + 2 * LINES) : 0;
+  }
+}
+
+/* The state at s.base + where*s.way; 0: a symbol has not its sign there. */
+static int go_to(Search *s, Real where) {
+  for (uint32_t i = 0; i < s->symbols.n; i++) {
+    SymId k = s->symbols.at[i];
+    ExprSign sign = expr_symbol(s->g, k)->sign;
+    Real x = s->at[k] = s->base[k] + where * s->way[k];
+    if (((sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE) && x < 0) || ((sign == SIGN_NEGATIVE || sign == SIGN_NONPOSITIVE) && x > 0)) return 0;
+  }
+  return 1;
+}
+
+/* What tells the sides apart, less the value that it goes through. */
+static Real side_at(Search *s, EvalTape *side, Real level, Real where) {
+  Real value;
+  if (!go_to(s, where)) return NAN;
+  eval_run(side, s->at, &value);
+  return value - level;
+}
+
+/* The value that the side goes through next to where the line begins: of an angle an odd number of quarter turns. */
+static Real level_of(Search *s, EvalTape *side, int angle, uint32_t seed) {
+  const Real half_turn = acosl(-1);
+  if (!angle) return 0;
+  Real u = side_at(s, side, 0, 0);
+  return (floorl(u / half_turn) + 0.5L - (seed % 4 == 0) + (seed % 4 == 1)) * half_turn;
+}
+
+/* Where the line is looked at: at 0 and, to both sides, at powers of 10 or, beside the origin, of 2. */
+static Real mark(const Search *s, int i) {
+  int power = (i < 0 ? -i : i) - 1;
+  Real size = i == 0 ? 0 : s->from_origin ? powl(10, power - 9) : ldexpl(1, power - 2);
+  return i < 0 ? -size : size;
+}
+
+/* The change of sign on the line that is nearest to its base, to the last bit; 0: none was met. */
+static int find_change(Search *s, EvalTape *side, Real level, Real *where) {
+  enum { REACH = 24, HALVINGS = 200 };
+  Real lo = 0, hi = 0, first = side_at(s, side, level, 0), left = first, right = first;
+  for (int i = 1; i <= REACH && lo >= hi; i++) {
+    Real before = left, after = right;
+    left = side_at(s, side, level, mark(s, -i));
+    right = side_at(s, side, level, mark(s, i));
+    if (isfinite(before) && isfinite(left) && (left > 0) != (before > 0)) lo = mark(s, -i), hi = mark(s, 1 - i), first = left;
+    else if (isfinite(after) && isfinite(right) && (right > 0) != (after > 0)) lo = mark(s, i - 1), hi = mark(s, i), first = after;
+  }
+  for (int i = 0; i < HALVINGS && lo < hi; i++) {
+    Real mid = (lo + hi) / 2, value = side_at(s, side, level, mid);
+    if (!isfinite(value)) return 0;
+    if ((value > 0) == (first > 0)) lo = mid;
+    else hi = mid;
+  }
+  *where = (lo + hi) / 2;
+  return lo != 0 || hi != 0;
+}
+
+/* --- both sides --- */
+
+/* The value of x at a place of the line, and the size of its terms. */
+static Real value_at(Search *s, Real where, Real *size) {
+  Real value = 0;
+  *size = 0;
+  if (!go_to(s, where)) return NAN;
+  eval_run(s->tape, s->at, s->term);
+  for (uint32_t i = 0; i < s->nterms; i++) {
+    value += s->term[i];
+    *size += fabsl(s->term[i]);
+  }
+  return value;
+}
+
+/* What is a small part of this is near. */
+static Real unit_at(const Search *s, Real where) { return s->from_origin ? fabsl(where) : fmaxl(1, fabsl(where)); }
+
+/* How far x jumps at `where`; 0: it does not. The difference of both sides stays what it is as they come closer: that of a continuous x falls,
+ * to half for each step even where it is an eighth root; that of one with a pole, or of log, grows. */
+static Real jump_at(Search *s, Real where) {
+  static const Real distance[] = {1e-5L, 1e-7L, 1e-9L, 1e-11L};
+  enum { DISTANCES = sizeof distance / sizeof *distance };
+  const Real alike = 0.02L, least = 1e-9L; /* of the terms at the first distance; places are known to 1e-11 of that, also where long doubles are doubles */
+  Real far = unit_at(s, where), jump[DISTANCES], size, other, most = 0;
+  for (int i = 0; i < DISTANCES; i++) {
+    Real h = distance[i] * far, above = value_at(s, where + h, &size), below = value_at(s, where - h, &other);
+    jump[i] = above - below;
+    most = fmaxl(most, size + other);
+    if (!isfinite(jump[i])) return 0;
+  }
+  Real is = jump[DISTANCES - 1];
+  if (!(fabsl(is) > least * most) || !(fabsl(jump[1] - jump[0]) <= 10 * alike * fabsl(is))) return 0;
+  for (int i = 2; i < DISTANCES; i++)
+    if (!(fabsl(jump[i] - jump[i - 1]) <= alike * fabsl(is))) return 0;
+  return is;
+}
+
+static void try_source(Search *s, const Parts *parts, const Source *from) {
+  EvalTape *side = eval_tape(s->g, &from->side, 1);
+  uint32_t places = 0;
+  take_terms(s, parts, from);
+  for (uint32_t seed = 1; seed <= LINES && places < PLACES; seed++) {
+    Real where;
+    draw_line(s, seed);
+    Real level = level_of(s, side, from->angle, seed);
+    if (!find_change(s, side, level, &where)) continue;
+    places++;
+    Real by = jump_at(s, where);
+    if (by == 0) continue;
+    Real h = 1e-6L * unit_at(s, where), slope = (side_at(s, side, level, where + h) - side_at(s, side, level, where - h)) / (2 * h);
+    Real *symbols = ARENA_ARRAY(s->arena, Real, s->nsymbols + 1);
+    prove_state(s->g, seed, symbols); /* those that have no part in it */
+    go_to(s, where);
+    for (uint32_t i = 0; i < s->symbols.n; i++) symbols[s->symbols.at[i]] = s->at[s->symbols.at[i]];
+    vec_push(s->arena, &s->found, ((ExprJump){from->node, from->side, symbols, by, slope}));
+    return;
+  }
+}
+
+ExprJumps expr_jumps(ExprGraph *g, Expr x) {
+  Search s = {.g = g, .arena = expr_arena(g), .nsymbols = expr_symbol_count(g)};
+  if (!(expr_kinds(g, x) & varied)) return (ExprJumps){0};
+  Sources all = sources_of(&s, x);
+  if (!all.n) return (ExprJumps){0};
+  Parts parts = parts_of(&s, &all, x);
+  s.base = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
+  s.way = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
+  s.at = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
+  for (uint32_t i = 0; i < all.n; i++) try_source(&s, &parts, &all.at[i]);
+  return (ExprJumps){s.found.at, s.found.n};
+}
