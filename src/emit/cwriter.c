@@ -547,9 +547,9 @@ int prog_reads(const Prog *p, IrArray array) {
   return 0;
 }
 
-static void put_count(StrBuf *b, uint32_t n, const char *one, const char *many) {
+static void put_count(StrBuf *b, uint64_t n, const char *one, const char *many) {
   if (!n) return;
-  sb_printf(b, "%s%u %s", b->n ? ", " : "", n, n == 1 ? one : many);
+  sb_printf(b, "%s%llu %s", b->n ? ", " : "", (unsigned long long)n, n == 1 ? one : many);
 }
 
 const char *ops_text(const Prog *p, Arena *a) {
@@ -561,5 +561,5 @@ const char *ops_text(const Prog *p, Arena *a) {
   put_count(&b, c.sqrt, "square root", "square roots");
   put_count(&b, c.fn, "function call", "function calls");
   put_count(&b, c.other, "comparison or choice", "comparisons and choices");
-  return arena_printf(a, "%u operations%s%s", ops_total(c), b.n ? ": " : "", sb_text(&b));
+  return arena_printf(a, "%llu operations%s%s", (unsigned long long)ops_total(c), b.n ? ": " : "", sb_text(&b));
 }

@@ -210,7 +210,7 @@ static void emit_linear(const File *f) {
   emit_jumps(f);
   sb_printf(f->out, "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval = linearise,\n",
             u->linear_dr.n, u->linear_dr.n ? "dr_table" : "NULL", u->linear_mass.n, u->linear_mass.n ? "mass_table" : "NULL",
-            ops_total(prog_count(u->linear)));
+            ops_as_int(ops_total(prog_count(u->linear))));
   if (u->jumps) sb_printf(f->out, "  .njump = %u, .jump = jump_table, .jumps = jumps,\n", u->jump_at.n);
   sb_puts(f->out, "};\n");
 }
@@ -427,7 +427,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   sb_printf(out, "\nconst lag_model %s = {\n", name);
   sb_printf(out, "  .abi = LAG_ABI, .real_size = sizeof(LAG_REAL),\n  .name = %s,\n  .doc = %s,\n  .effects = %s,\n  .digest = \"%s\",\n  .flags = ", model, doc, effects, digest);
   flag_text(u->flags, out);
-  sb_printf(out, ",\n  .ops = %u,\n", ops_total(prog_count(u->accel)));
+  sb_printf(out, ",\n  .ops = %u,\n", ops_as_int(ops_total(prog_count(u->accel))));
   sb_printf(out, "  .nq = %u, .nz = %u, .np = %u, .nu = %u, .nev = %u, .nw = %u,\n", u->q.n, u->z.n, u->p.n, u->u.n, u->events.n, work_size(u));
   sb_printf(out, "  .q = %s, .z = %s, .p = %s, .u = %s, .ev = %s,\n", or_null(u->q.n, "q_table"), or_null(u->z.n, "z_table"),
             or_null(u->p.n, "p_table"), or_null(u->u.n, "u_table"), or_null(u->events.n, "ev_table"));

@@ -311,6 +311,6 @@ void emit_taylor(const Series *s, const char *const *globals, const char *math, 
   sb_puts(out, "\nstatic const lag_taylor taylor = {\n"
     "  .order = LAG_TAYLOR_ORDER, .columns = TAYLOR_COLUMNS, .width = TAYLOR_WIDTH, .nw = (int)(sizeof(taylor_work)/sizeof(LAG_REAL)),\n");
   OpCount c = prog_count(s->first);
-  sb_printf(out, "  .cost_first = %u, .cost_next = %u, .sums = %u,\n", ops_total(c) + CALL*c.fn, ops_total(prog_count(s->next)), s->sums + s->squares/2);
+  sb_printf(out, "  .cost_first = %u, .cost_next = %u, .sums = %u,\n", ops_as_int(ops_total(c) + CALL*c.fn), ops_as_int(ops_total(prog_count(s->next))), s->sums + s->squares/2);
   sb_printf(out, "  .first = taylor_first, .rest = taylor_rest%s, .at = taylor_at%s,\n};\n", wide ? "_any" : "", wide ? "_any" : "");
 }

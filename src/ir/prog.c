@@ -289,7 +289,7 @@ int prog_same(const Prog *a, const Prog *b) {
 /* Of all turns of a nest. */
 static OpCount count_nest(const Nest *n) {
   OpCount c = prog_count(n->body);
-  uint32_t t = n->count;
+  uint64_t t = n->count;
   return (OpCount){(c.add + n->body->stores.n)*t, c.mul*t, c.div*t, c.sqrt*t, c.fn*t, c.other*t};
 }
 
@@ -306,9 +306,9 @@ OpCount prog_count(const Prog *p) {
       case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND:
       case IR_OR: case IR_SELECT: c.other++; break;
       case IR_SOLVE: {
-        uint32_t n = p->solves.at[i->index].n, m = p->solves.at[i->index].m;
+        uint64_t n = p->solves.at[i->index].n, m = p->solves.at[i->index].m; /* their cubes pass 2^32 */
         if (m) { /* Schur's complement: factorizations of M and S, A M^-1 A^T, substitutions; all entries counted */
-          uint32_t both = n * n * n / 6 + m * n * n / 2 + m * m * n / 2 + m * m * m / 6 + 3 * n * n + 4 * m * n + 2 * m * m;
+          uint64_t both = n * n * n / 6 + m * n * n / 2 + m * m * n / 2 + m * m * m / 6 + 3 * n * n + 4 * m * n + 2 * m * m;
           c.add += both;
           c.mul += both;
           c.div += n * n / 2 + m * n + m * m / 2 + 2 * (n + m);
@@ -331,7 +331,9 @@ OpCount prog_count(const Prog *p) {
   return c;
 }
 
-uint32_t ops_total(OpCount c) { return c.add + c.mul + c.div + c.sqrt + c.fn + c.other; }
+uint64_t ops_total(OpCount c) { return c.add + c.mul + c.div + c.sqrt + c.fn + c.other; }
+
+uint32_t ops_as_int(uint64_t ops) { return ops < INT32_MAX ? (uint32_t)ops : INT32_MAX; }
 
 int prog_has_pivots(const Prog *p) {
   for (Slot s = 1; s < p->ins.n; s++)

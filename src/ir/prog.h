@@ -133,7 +133,7 @@ typedef struct Prog {
 } Prog;
 
 typedef struct {
-  uint32_t add, mul, div, sqrt, fn, other; /* fn: sin, cos, exp ... */
+  uint64_t add, mul, div, sqrt, fn, other; /* fn: sin, cos, exp ... */
 } OpCount;
 
 Prog *prog_new(Arena *a);
@@ -230,7 +230,10 @@ int prog_solves(const Prog *p, int constrained);
 uint32_t prog_work(const Prog *p);
 
 OpCount prog_count(const Prog *p);
-uint32_t ops_total(OpCount c);
+uint64_t ops_total(OpCount c);
+
+/* As what an int holds: its largest number stands for all beyond. */
+uint32_t ops_as_int(uint64_t ops);
 
 /* Runs the program in extended precision: in[array] are the inputs, out[array][index] the stores.
  * Returns 0, or -1 when a pivot failed. */

@@ -105,6 +105,20 @@ static void test_tidy(void **state) {
   arena_free(a);
 }
 
+/* Elimination of 2000 unknowns: n (n - 1) (2 n + 5)/6 products, as many sums, n (n + 1)/2 quotients, in all more than 2^32. */
+static void test_count_of_many(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  Prog *p = prog_new(a);
+  vec_push(a, &p->solves, ((Solve){.n = 2000}));
+  prog_ins(p, (Ins){.op = IR_SOLVE, .index = 0});
+  OpCount c = prog_count(p);
+  assert_true(c.mul == 2668665000u && c.add == c.mul && c.div == 2001000u);
+  assert_true(ops_total(c) == 5339331000u);
+  assert_int_equal(ops_as_int(ops_total(c)), INT32_MAX);
+  arena_free(a);
+}
+
 /* a*x - a*y and b*(a*x) + y*a share a factor; a*x + b*z none, and a product that is needed itself stays. */
 static void test_factor(void **state) {
   (void)state;
@@ -383,7 +397,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_verify), cmocka_unit_test(test_numbering),      cmocka_unit_test(test_tidy),
     cmocka_unit_test(test_pivot),  cmocka_unit_test(test_lower),          cmocka_unit_test(test_solve_definite),
-    cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor), cmocka_unit_test(test_in_time), cmocka_unit_test(test_share),
+    cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor), cmocka_unit_test(test_count_of_many), cmocka_unit_test(test_in_time), cmocka_unit_test(test_share),
     cmocka_unit_test(test_factors_in_time), cmocka_unit_test(test_by_deadline),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

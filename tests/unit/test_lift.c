@@ -71,7 +71,7 @@ static uint32_t check(const char *lag, int lifted) {
     for (uint32_t i = 0; i < e->n; i++) /* 64 bits, and a condition of M up to 1e4 */
       if (!(fabsl(got[i] - want[i]) <= 1e-14L * size)) fail_msg("%s\nacceleration %u: %Lg, dense %Lg", lag, i, got[i], want[i]);
   }
-  uint32_t ops = ops_total(prog_count(p));
+  uint32_t ops = (uint32_t)ops_total(prog_count(p));
   arena_free(arena);
   return ops;
 }
