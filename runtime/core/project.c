@@ -341,6 +341,17 @@ static int is_noise(lag_problem *pb, const Held *w, double t, const double *y, i
   return noise;
 }
 
+/* Whether coordinates of some unit were all 0 at the start, so that nothing tells how large they are. */
+static int began_at_0(const lag_problem *pb)
+{
+  int zero = 0;
+
+  for (int i = 0; i < pb->nq && pb->begin; i++) {
+    zero |= !(lag_size_like(pb, pb->begin, i) > 0);
+  }
+  return zero;
+}
+
 int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual)
 {
   const double rounding = 0x1p10 * DBL_EPSILON;
@@ -356,7 +367,7 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
   }
   lag_worst_constraint(pb, t, y, holonomic, &worst);
   memcpy(terms, w.g, (size_t)n * sizeof *terms);
-  int noise = worst > 0x1p10 && is_noise(pb, &w, t, y, holonomic, residual);
+  int noise = worst > 0x1p10 && began_at_0(pb) && is_noise(pb, &w, t, y, holonomic, residual);
   return worst <= 0x1p10 || (noise && lag_residuals(pb, t, y, w.c, w.r) == 0); /* which newton() goes on with */
 }
 

@@ -288,7 +288,7 @@ static void long_steps_say_what_is_wrong(void **state)
   lag_sim_free(s);
   s = sim_with(&rod, &lag_variational, 0, 1, (lag_option[]){{"step", 0.6, NULL}});
   assert_int_equal(lag_sim_advance(s, 10), LAG_EMETHOD);
-  assert_non_null(strstr(lag_sim_message(s), "the step is too long"));
+  assert_true(strstr(lag_sim_message(s), "the step is too long") || strstr(lag_sim_message(s), "take smaller steps"));
   lag_sim_free(s);
 }
 
