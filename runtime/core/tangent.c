@@ -201,6 +201,22 @@ static int apply(lag_sim *s, const Jump *j)
   return lag_not_finite(n * k, s->tangent) < 0;
 }
 
+/* Whether event k, whose function changes at this rate, goes through zero with no slope to speak of beside its values at the ends of the
+ * step. */
+static int only_touches(lag_sim *s, int k, double rate)
+{
+  const Run *r = s->run;
+  const double flat = 1e-6;
+  double size = 0;
+
+  for (int end = 0; end < 2; end++) {
+    if (lag_events_eval(s, end ? r->step_t1 : r->step_t0, end ? s->y : s->y0, s->g1) == LAG_OK) {
+      size = fmax(size, fabs(s->g1[k]));
+    }
+  }
+  return fabs(rate * (r->step_t1 - r->step_t0)) < flat * size;
+}
+
 int lag_tangent_jump(lag_sim *s, int k, int more)
 {
   const lag_model *m = s->scene->model;
@@ -233,6 +249,7 @@ int lag_tangent_jump(lag_sim *s, int k, int more)
     rate += j.g[c] * j.before[c];
   }
   rate += j.g[n];
+  int touches = only_touches(s, k, rate);
   for (int i = 0; i < n; i++) {
     double gain = j.after[i] - j.Rt[i];
     for (int c = 0; c < n; c++) {
@@ -243,7 +260,7 @@ int lag_tangent_jump(lag_sim *s, int k, int more)
     }
   }
   s->tangent_at_event = 1;
-  return apply(s, &j) ? LAG_OK : refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
+  return apply(s, &j) && !touches ? LAG_OK : refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
 }
 
 int lag_sim_tangent(lag_sim *s, double *Y)
