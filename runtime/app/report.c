@@ -215,6 +215,21 @@ static void exact_json(const App *app, FILE *f)
   fputs("}, ", f);
 }
 
+/* Where sines come from, and whether products and sums are rounded one by one: what bits depend on beside the method. */
+static void arithmetic(const App *app, FILE *f)
+{
+  static const char flag[] = "-ffp-contract=";
+  const char *math = app->scene->model->math, *build = app->program->build, *contraction = build ? strstr(build, flag) : NULL;
+
+  if (math) {
+    fprintf(f, "; %s", math);
+  }
+  if (contraction) {
+    fprintf(f, "; %.*s", (int)strcspn(contraction, " "), contraction);
+  }
+  putc('\n', f);
+}
+
 void report_text(App *app, FILE *f)
 {
   const lag_scene *c = app->scene;
@@ -229,7 +244,8 @@ void report_text(App *app, FILE *f)
   }
   verdict(app, f);
   final_state(app, f);
-  fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
+  fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s", st.steps, st.rejected, st.rhs_calls, app->wall);
+  arithmetic(app, f);
   newton(app, &st, f);
   report_charges(app, f);
   constraints(app, &st, f);
