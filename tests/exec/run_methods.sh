@@ -91,6 +91,8 @@ says "reached" tests/exec/models/gauge.lag go --method verlet4
 check "no such note on a conservative model" sh -c "! grep -q 'symplectic for' '$TMP/out'"
 check "dop853 on the double pendulum" says "energy drift: [0-9.]*e-1" models/double_pendulum.lag --method dop853 --tol 1e-12
 check "steps of equal size by an adaptive method" says "steps 100, rejected 0" models/pendulum.lag --method "rk45(step=0.1, adapt=off)" --until 10
+check "whose sines a run took" says "sin and cos: lag_math.h; -ffp-contract=off$" models/pendulum.lag --until 1
+check "or the C library's" says "sin and cos: the C library.*; -ffp-contract=off$" models/pendulum.lag --until 1 --math libm
 
 # ---- the table
 "$LAGC" methods >"$TMP/table"
