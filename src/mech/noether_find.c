@@ -317,6 +317,7 @@ static void make_generator(Search *s, const Tables *t, GeneratorRow *to) {
   const Ansatz *a = s->ansatz;
   uint32_t blocks = t->at[0].blocks;
   size_t n = (size_t)blocks * a->shown;
+  for (uint32_t m = 0; m < blocks && a->forms; m++) forms_to_coordinates(a->forms, s->g, to->c + (size_t)m * a->shown + 1);
   clear_parameters(s, to->c, n);
   clear_fractions(s, to->c, n);
   to->ansatz = a;
