@@ -1,5 +1,6 @@
 #include "mech/noether_forms.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { NODES_MOST = 20000 };
@@ -94,90 +95,138 @@ static ExprMap used_forms(Arena *a, const Forms *f, ExprList nodes) {
   return used;
 }
 
-/* row less multiples of the rows of done[count*width], whose first entries that are not zero are 1 in other places; the place of its own first one of the
- * `n`, or n. */
-static uint32_t reduce_row(Num *row, const Num *done, const uint32_t *pivot, uint32_t count, uint32_t width, uint32_t n) {
-  uint32_t first = 0;
-  for (uint32_t r = 0; r < count; r++) {
-    Num times = row[pivot[r]];
-    for (uint32_t k = 0; k < width && !num_is_zero(times); k++) row[k] = num_sub(row[k], num_mul(times, done[(size_t)r * width + k]));
+/* The place of the entry that is not zero and has the fewest digits: what is divided by it stays within 64 bits longest. n: all are zero. */
+static uint32_t shortest(const Num *row, uint32_t n) {
+  uint32_t best = n;
+  double least = INFINITY;
+  for (uint32_t k = 0; k < n; k++) {
+    double size = fabs((double)row[k].num) * (double)row[k].den;
+    if (num_is_zero(row[k]) || !num_is_exact(row[k]) || size >= least) continue;
+    least = size;
+    best = k;
   }
-  while (first < n && num_is_zero(row[first])) first++;
-  if (first == n) return n;
-  Num by = row[first];
-  for (uint32_t k = 0; k < width; k++) row[k] = num_div(row[k], by);
-  return first;
+  return best;
 }
 
-/* Gauss and Jordan, row by row: S comes with its inverse. */
+/* Rows in reduced echelon form, as they come (Gauss and Jordan). */
 typedef struct {
-  LinearForms *to;
-  uint32_t rows, *pivot;
-  Num *done; /* [n][2n] reduced rows of S, and what of the identity they took */
-} Elimination;
+  uint32_t rows, leading, width; /* pivots stand among the leading columns */
+  uint32_t *pivot;
+  Num *at;                       /* [rows*width] */
+} Echelon;
 
-/* Adds a row of S, where it is independent of those before it. */
-static void add_form(Elimination *e, const Num *c, Num *scratch) {
-  uint32_t n = e->to->n, w = 2 * n;
-  for (uint32_t i = 0; i < n; i++) scratch[i] = c[i], scratch[n + i] = num_int(i == e->rows);
-  uint32_t first = reduce_row(scratch, e->done, e->pivot, e->rows, w, n);
-  if (first == n) return;
-  memcpy(e->to->S + (size_t)e->rows * n, c, n * sizeof *c);
-  for (uint32_t r = 0; r < e->rows; r++) {
-    Num *row = e->done + (size_t)r * w, times = row[first];
-    for (uint32_t k = 0; k < w && !num_is_zero(times); k++) row[k] = num_sub(row[k], num_mul(times, scratch[k]));
-  }
-  memcpy(e->done + (size_t)e->rows * w, scratch, w * sizeof *scratch);
+static Echelon echelon(Arena *a, uint32_t leading, uint32_t width) {
+  return (Echelon){0, leading, width, ARENA_ARRAY(a, uint32_t, leading + 1), zeros(a, (size_t)leading * width)};
+}
+
+/* row less so many times the other. */
+static void subtract(uint32_t n, Num *row, Num times, const Num *other) {
+  for (uint32_t k = 0; k < n && !num_is_zero(times); k++) row[k] = num_sub(row[k], num_mul(times, other[k]));
+}
+
+/* Adds a row, which is destroyed; 0: its leading columns depend on those before it. */
+static int echelon_add(Echelon *e, Num *row) {
+  for (uint32_t r = 0; r < e->rows; r++) subtract(e->width, row, row[e->pivot[r]], e->at + (size_t)r * e->width);
+  uint32_t first = shortest(row, e->leading);
+  if (first == e->leading) return 0;
+  Num by = row[first];
+  for (uint32_t k = 0; k < e->width; k++) row[k] = num_div(row[k], by);
+  for (uint32_t r = 0; r < e->rows; r++) subtract(e->width, e->at + (size_t)r * e->width, e->at[(size_t)r * e->width + first], row);
+  memcpy(e->at + (size_t)e->rows * e->width, row, e->width * sizeof *row);
   e->pivot[e->rows++] = first;
+  return 1;
 }
 
 /* S and its inverse from the velocities' forms. */
 static int take_rows(Arena *a, const Forms *f, ExprList nodes, LinearForms *to) {
   ExprMap used = used_forms(a, f, nodes);
   size_t n = f->n;
-  Elimination e = {to, 0, ARENA_ARRAY(a, uint32_t, n), zeros(a, 2 * n * n)};
-  Num *scratch = zeros(a, 2 * n);
-  for (uint32_t k = 0; k < f->all.n && e.rows < n; k++)
-    if (expr_map_get(&used, f->all.at[k].node)) add_form(&e, f->all.at[k].c, scratch);
+  Echelon e = echelon(a, f->n, 2 * f->n); /* S beside the identity */
+  Num *row = zeros(a, 2 * n);
+  for (uint32_t k = 0; k < f->all.n && e.rows < n; k++) {
+    const Num *c = f->all.at[k].c;
+    uint32_t i = e.rows;
+    for (size_t x = 0; x < n; x++) row[x] = c[x], row[n + x] = num_int(x == i);
+    if (expr_map_get(&used, f->all.at[k].node) && echelon_add(&e, row)) memcpy(to->S + i * n, c, n * sizeof *c);
+  }
   if (e.rows < n) return 0;
   for (size_t r = 0; r < n; r++)
     for (size_t k = 0; k < n; k++) {
-      to->inverse[e.pivot[r] * n + k] = e.done[r * 2 * n + n + k];
+      to->inverse[e.pivot[r] * n + k] = e.at[r * 2 * n + n + k];
       if (!num_is_exact(to->inverse[e.pivot[r] * n + k])) return 0;
     }
   return 1;
 }
 
-/* The constant of the first form in q that is a multiple of row i. */
-static Num shift_of(const Forms *f, const Num *row) {
-  uint32_t first = 0;
-  while (num_is_zero(row[first])) first++;
-  for (uint32_t k = 0; k < f->all.n; k++) {
+/* Shifts with which the forms in q have no constant left when they are written in y: all of them, or the first ones. */
+static void take_shifts(Arena *a, const Forms *f, LinearForms *to) {
+  size_t n = f->n;
+  Echelon e = echelon(a, f->n, f->n + 1);
+  Num *row = zeros(a, n + 1);
+  for (uint32_t k = 0; k < f->all.n && e.rows < n; k++) {
     const Num *c = f->all.at[k].c;
-    Num times = num_div(c[first], row[first]);
-    int same = !num_is_zero(times);
-    for (uint32_t i = 0; i < f->n && same; i++) same = num_equal(c[i], num_mul(times, row[i]));
-    Num shift = same ? num_div(c[f->n], times) : num_int(0);
-    if (same && num_is_exact(shift)) return shift;
+    for (size_t i = 0; i <= n; i++) row[i] = i < n ? num_int(0) : c[n];
+    for (size_t i = 0; i < n; i++)
+      for (size_t j = 0; j < n; j++) row[i] = num_add(row[i], num_mul(c[j], to->inverse[j * n + i]));
+    if (expr_op(f->g, f->all.at[k].node) != EX_SYM) echelon_add(&e, row);
   }
-  return num_int(0);
+  for (uint32_t r = 0; r < e.rows; r++) {
+    Num shift = e.at[r * (n + 1) + n];
+    if (num_is_exact(shift)) to->shift[e.pivot[r]] = shift;
+  }
 }
 
-/* Whether column i of the inverse and column j of it are orthogonal in the metric of the mass matrix. */
-static int is_diagonal(Arena *a, const Eqns *e, const LinearForms *f) {
+/* M S^-1, [n*n] */
+static Expr *mass_times_inverse(Arena *a, const Eqns *e, const LinearForms *f) {
   size_t n = f->n;
-  Expr *terms = ARENA_ARRAY(a, Expr, 2 * e->mass.n + 1);
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < i; j++) {
-      uint32_t count = 0;
-      for (uint32_t k = 0; k < e->mass.n; k++) {
-        const MassEntry *m = &e->mass.at[k];
-        Num one = num_mul(f->inverse[m->row * n + i], f->inverse[m->col * n + j]);
-        Num other = m->row == m->col ? num_int(0) : num_mul(f->inverse[m->col * n + i], f->inverse[m->row * n + j]);
-        terms[count++] = expr_scale(e->g, num_add(one, other), m->e);
-      }
-      if (!expr_is_zero(e->g, expr_add_n(e->g, terms, count))) return 0;
+  Expr *to = ARENA_ARRAY(a, Expr, n * n + 1);
+  for (size_t k = 0; k < n * n; k++) to[k] = expr_int(e->g, 0);
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    const MassEntry *m = &e->mass.at[k];
+    for (size_t i = 0; i < n; i++) {
+      Expr one = expr_scale(e->g, f->inverse[m->col * n + i], m->e), other = expr_scale(e->g, f->inverse[m->row * n + i], m->e);
+      to[m->row * n + i] = expr_add(e->g, to[m->row * n + i], one);
+      if (m->row != m->col) to[m->col * n + i] = expr_add(e->g, to[m->col * n + i], other);
     }
+  }
+  return to;
+}
+
+/* The root of |x|, or of a number near it whose root is a fraction. */
+static Num near_root(Num x) {
+  int exact;
+  Num root = num_pow(num_abs(x), num_ratio(1, 2), &exact);
+  if (exact && num_is_exact(root)) return root;
+  double size = sqrt(fabs(num_value(x)));
+  if (!(size < 1e6) || !(size > 1e-6)) return num_int(1);
+  return size > 1 ? num_int((int64_t)round(size)) : num_ratio(1, (int64_t)round(1 / size));
+}
+
+/* Row i becomes so long that the number in its mass is 1, or near it: of (3 u' + 7 v')^2/200 it is a fourteenth of that. Then y are as large as what the
+ * search draws them from. */
+static void rescale(const ExprGraph *g, LinearForms *f, size_t i, Expr mass) {
+  size_t n = f->n;
+  Num number = num_int(1);
+  if (expr_is_num(g, mass)) number = expr_number(g, mass);
+  else expr_pair(g, mass, EX_SUM, 0, &number);
+  Num root = num_is_zero(number) || !num_is_exact(number) ? num_int(1) : near_root(number);
+  for (size_t k = 0; k < n; k++) f->S[i * n + k] = num_mul(f->S[i * n + k], root);
+  for (size_t k = 0; k < n; k++) f->inverse[k * n + i] = num_div(f->inverse[k * n + i], root);
+}
+
+/* Whether M = S^T D S with a diagonal D: each column of M S^-1 = S^T D is then a multiple of a row of S, which is made as long as its mass asks for. */
+static int is_diagonal(Arena *a, const Eqns *e, LinearForms *f) {
+  size_t n = f->n;
+  const Expr *by = mass_times_inverse(a, e, f);
+  for (size_t i = 0; i < n; i++) {
+    const Num *row = f->S + i * n;
+    size_t first = 0;
+    while (num_is_zero(row[first])) first++;
+    Expr mass = expr_scale(e->g, num_div(num_int(1), row[first]), by[first * n + i]);
+    for (size_t k = 0; k < n; k++)
+      if (by[k * n + i] != expr_scale(e->g, row[k], mass)) return 0;
+    rescale(e->g, f, i, mass);
+  }
   return 1;
 }
 
@@ -190,7 +239,7 @@ const LinearForms *forms_new(Arena *a, const Eqns *e, const SymId *q, const SymI
   Forms of_velocities = forms_in(a, e->g, nodes, v, n);
   if (!take_rows(a, &of_velocities, nodes, to) || !is_diagonal(a, e, to)) return NULL;
   Forms of_coordinates = forms_in(a, e->g, nodes, q, n);
-  for (uint32_t i = 0; i < n; i++) to->shift[i] = shift_of(&of_coordinates, to->S + (size_t)i * n);
+  take_shifts(a, &of_coordinates, to);
   return to;
 }
 

@@ -121,9 +121,9 @@ END
 cat >"$TMP/oblique.lag" <<'END'
 model m
 coord u, v
-let x = 3*u/2 - 2*v/7 + 1/3
-let y = u/5 + 4*v/3 - 1/2
-lagrangian = (x'^2 + y'^2)/2 - 1/(x^2 + y^2)
+let X = u + 1/3
+let Y = v - 1/2
+lagrangian = 229*u'^2/200 - 17*u'*v'/105 + 410*v'^2/441 - 1/(229*X^2/200 - 17*X*Y/105 + 410*Y^2/441)
 END
 cat >"$TMP/top.lag" <<'END'
 model m
