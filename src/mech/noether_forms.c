@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { NODES_MOST = 20000 };
+enum { NODES_MOST = 20000, COORDINATES_MOST = 20 };
 
 /* c[0] x_0 + ... + c[n-1] x_(n-1) + c[n]. */
 typedef struct {
@@ -230,24 +230,80 @@ static int is_diagonal(Arena *a, const Eqns *e, LinearForms *f) {
   return 1;
 }
 
-const LinearForms *forms_new(Arena *a, const Eqns *e, const SymId *q, const SymId *v, uint32_t n) {
-  Expr L = e->m->lagrangian;
-  ExprList nodes = expr_topo(e->g, &L, 1);
-  if (nodes.n > NODES_MOST) return NULL;
-  LinearForms *to = ARENA_NEW(a, LinearForms);
-  *to = (LinearForms){n, zeros(a, (size_t)n * n), zeros(a, (size_t)n * n), zeros(a, n)};
-  Forms of_velocities = forms_in(a, e->g, nodes, v, n);
-  if (!take_rows(a, &of_velocities, nodes, to) || !is_diagonal(a, e, to)) return NULL;
-  Forms of_coordinates = forms_in(a, e->g, nodes, q, n);
-  take_shifts(a, &of_coordinates, to);
-  return to;
-}
-
 /* sum of k[i*step] x[i*stride] */
 static Expr combination(ExprGraph *g, Arena *a, uint32_t n, const Num *k, size_t step, const Expr *x, size_t stride) {
   Expr *terms = ARENA_ARRAY(a, Expr, n + 1);
   for (size_t i = 0; i < n; i++) terms[i] = expr_scale(g, k[i * step], x[i * stride]);
   return expr_add_n(g, terms, n);
+}
+
+/* The row of S that c is a multiple of, and *times; n: there is none. */
+static uint32_t row_of(const LinearForms *f, const Num *c, Num *times) {
+  for (uint32_t i = 0; i < f->n; i++) {
+    const Num *row = f->S + (size_t)i * f->n;
+    uint32_t first = 0, same = 0;
+    while (num_is_zero(row[first])) first++;
+    *times = num_div(c[first], row[first]);
+    while (!num_is_zero(*times) && same < f->n && num_equal(c[same], num_mul(*times, row[same]))) same++;
+    if (same == f->n) return i;
+  }
+  return f->n;
+}
+
+/* Notes what forms are that are multiples of y less the shift, or of y', and of their symbols. */
+static void note_forms(Arena *a, const Forms *of, LinearForms *f, int shifted) {
+  ExprGraph *g = of->g;
+  Expr *y = ARENA_ARRAY(a, Expr, f->n + 1);
+  for (uint32_t i = 0; i < f->n; i++) {
+    Expr node = expr_symbol(g, of->symbol[i])->node, shift = expr_num(g, f->shift[i]);
+    y[i] = shifted ? expr_sub(g, node, shift) : node;
+  }
+  for (uint32_t k = 0; k < of->all.n; k++) {
+    Num times, constant = of->all.at[k].c[f->n];
+    uint32_t i = row_of(f, of->all.at[k].c, &times);
+    if (i == f->n || expr_op(g, of->all.at[k].node) == EX_SYM) continue;
+    Expr scaled = expr_scale(g, times, y[i]), rest = expr_num(g, constant);
+    vec_push(a, &f->node, of->all.at[k].node);
+    vec_push(a, &f->is, expr_add(g, scaled, rest));
+  }
+  for (uint32_t i = 0; i < f->n; i++) {
+    vec_push(a, &f->node, expr_symbol(g, of->symbol[i])->node);
+    vec_push(a, &f->is, combination(g, a, f->n, f->inverse + (size_t)i * f->n, 1, y, 1));
+  }
+}
+
+int forms_are_needed(const Eqns *e) {
+  int skew = 0;
+  if (!e->n || e->n > COORDINATES_MOST || !e->mass_known || !e->constant_mass || e->constraints.n) return 0;
+  for (uint32_t k = 0; k < e->mass.n; k++) skew |= e->mass.at[k].row != e->mass.at[k].col;
+  for (uint32_t i = 0; i < e->n; i++)
+    if (expr_symbol(e->g, e->m->coords.at[i].q)->sign != SIGN_UNKNOWN) return 0;
+  return skew;
+}
+
+const LinearForms *forms_new(Arena *a, const Eqns *e) {
+  uint32_t n = e->n;
+  Expr L = e->m->lagrangian;
+  if (!forms_are_needed(e)) return NULL;
+  ExprList nodes = expr_topo(e->g, &L, 1);
+  if (nodes.n > NODES_MOST) return NULL;
+  LinearForms *to = ARENA_NEW(a, LinearForms);
+  *to = (LinearForms){.n = n, .S = zeros(a, (size_t)n * n), .inverse = zeros(a, (size_t)n * n), .shift = zeros(a, n)};
+  SymId *q = ARENA_ARRAY(a, SymId, n), *v = ARENA_ARRAY(a, SymId, n);
+  for (uint32_t i = 0; i < n; i++) q[i] = e->m->coords.at[i].q, v[i] = e->m->coords.at[i].v;
+  Forms of_velocities = forms_in(a, e->g, nodes, v, n), of_coordinates = forms_in(a, e->g, nodes, q, n);
+  if (!take_rows(a, &of_velocities, nodes, to) || !is_diagonal(a, e, to)) return NULL;
+  take_shifts(a, &of_coordinates, to);
+  note_forms(a, &of_velocities, to, 0);
+  note_forms(a, &of_coordinates, to, 1);
+  return to;
+}
+
+Verdict forms_prove_zero(const LinearForms *f, ExprGraph *g, Expr x) {
+  Verdict v = prove_zero(g, x, NULL);
+  if (v != NOT_DECIDED || !f) return v;
+  expr_cut(g, &x, 1, f->node.at, f->is.at, f->node.n, &x);
+  return prove_zero(g, x, NULL);
 }
 
 void forms_to_coordinates(const LinearForms *f, ExprGraph *g, Expr *c) {

@@ -29,16 +29,6 @@ static void invert(uint32_t n, const long double *S, long double *to) {
     }
 }
 
-int frame_is_needed(const Ansatz *a) {
-  const Eqns *e = a->e;
-  int skew = 0;
-  if (!e->n || !e->mass_known || !e->constant_mass || e->constraints.n || ansatz_is_restricted(a)) return 0;
-  for (uint32_t k = 0; k < e->mass.n; k++) skew |= e->mass.at[k].row != e->mass.at[k].col;
-  for (uint32_t i = 0; i < a->n; i++)
-    if (expr_symbol(e->g, a->q[i])->sign != SIGN_UNKNOWN) return 0;
-  return skew;
-}
-
 static NoetherFrame *frame_sized(Arena *scratch, size_t n) {
   NoetherFrame *f = ARENA_NEW(scratch, NoetherFrame);
   *f = (NoetherFrame){(uint32_t)n, 0, ARENA_ARRAY(scratch, long double, n * n), ARENA_ARRAY(scratch, long double, n * n), ARENA_ARRAY(scratch, long double, n + 1)};
@@ -59,7 +49,7 @@ static const NoetherFrame *frame_of_forms(const LinearForms *forms, Arena *scrat
 const NoetherFrame *frame_new(const Ansatz *a, Arena *scratch, const long double *parameters) {
   const Eqns *e = a->e;
   if (a->forms) return frame_of_forms(a->forms, scratch);
-  if (!frame_is_needed(a)) return NULL;
+  if (!forms_are_needed(e) || ansatz_is_restricted(a)) return NULL;
   NoetherFrame *f = frame_sized(scratch, a->n);
   Expr *entry = ARENA_ARRAY(scratch, Expr, e->mass.n);
   long double *mass = ARENA_ARRAY(scratch, long double, e->mass.n);

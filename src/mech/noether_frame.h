@@ -14,9 +14,6 @@ struct NoetherFrame {
   long double *shift;       /* [n] */
 };
 
-/* Whether the mass matrix asks for a frame; not where there are constraints, or a coordinate has a sign. */
-int frame_is_needed(const Ansatz *a);
-
 /* NULL where the model's own coordinates are to be used. */
 const NoetherFrame *frame_new(const Ansatz *a, Arena *scratch, const long double *parameters);
 

@@ -65,7 +65,7 @@ Ansatz *ansatz_new(Arena *a, const Eqns *e) {
   add_held(s, a);
   s->shown = 1 + s->xi.n;
   s->columns = s->shown + s->gauge.n;
-  s->forms = frame_is_needed(s) ? forms_new(a, e, s->q, s->v, s->n) : NULL;
+  s->forms = ansatz_is_restricted(s) ? NULL : forms_new(a, e);
   return s;
 }
 

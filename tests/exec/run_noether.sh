@@ -136,6 +136,15 @@ potential = g*tip.z
 END
 check "a screw is no rotation" says "^Q2: screw: a rotation and a translation at once" noether "$TMP/screw.lag"
 check "a scaling that turns is more than a scaling" says "^Q2: scaling with an affine map of the coordinates" noether "$TMP/oblique.lag"
+cat >"$TMP/skew.lag" <<'END'
+model m
+coord u, v
+let x = 3*u/2 - 2*v/7 + 1/3
+let y = u/5 + 4*v/3 - 1/2
+lagrangian = (x'^2 + y'^2)/2 - 1/(x^2 + y^2)
+END
+check "in skew coordinates a scaling is one" says "^Q2: scaling about another point" noether "$TMP/skew.lag"
+check "and brackets are proved" says "^  the others are 0: all proved" noether "$TMP/skew.lag"
 check "turns in space and of the body's own, together" says "^Q3: turns about z in space and about the body's own: the difference of the angular momenta" noether "$TMP/top.lag"
 printf "model m\ncoord x\nlagrangian = x'^4/4 + x'^2/2 - x^2/2\n" >"$TMP/quartic.lag"
 check "a mass matrix with velocities is dp/dq', not p over q'" says "^mass matrix: M = dp/dq'" derive "$TMP/quartic.lag" --hamiltonian
