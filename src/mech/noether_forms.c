@@ -192,30 +192,8 @@ static Expr *mass_times_inverse(Arena *a, const Eqns *e, const LinearForms *f) {
   return to;
 }
 
-/* The root of |x|, or of a number near it whose root is a fraction. */
-static Num near_root(Num x) {
-  int exact;
-  Num root = num_pow(num_abs(x), num_ratio(1, 2), &exact);
-  if (exact && num_is_exact(root)) return root;
-  double size = sqrt(fabs(num_value(x)));
-  if (!(size < 1e6) || !(size > 1e-6)) return num_int(1);
-  return size > 1 ? num_int((int64_t)round(size)) : num_ratio(1, (int64_t)round(1 / size));
-}
-
-/* Row i becomes so long that the number in its mass is 1, or near it: of (3 u' + 7 v')^2/200 it is a fourteenth of that. Then y are as large as what the
- * search draws them from. */
-static void rescale(const ExprGraph *g, LinearForms *f, size_t i, Expr mass) {
-  size_t n = f->n;
-  Num number = num_int(1);
-  if (expr_is_num(g, mass)) number = expr_number(g, mass);
-  else expr_pair(g, mass, EX_SUM, 0, &number);
-  Num root = num_is_zero(number) || !num_is_exact(number) ? num_int(1) : near_root(number);
-  for (size_t k = 0; k < n; k++) f->S[i * n + k] = num_mul(f->S[i * n + k], root);
-  for (size_t k = 0; k < n; k++) f->inverse[k * n + i] = num_div(f->inverse[k * n + i], root);
-}
-
-/* Whether M = S^T D S with a diagonal D: each column of M S^-1 = S^T D is then a multiple of a row of S, which is made as long as its mass asks for. */
-static int is_diagonal(Arena *a, const Eqns *e, LinearForms *f) {
+/* Whether M = S^T D S with a diagonal D: each column of M S^-1 = S^T D is then a multiple of a row of S. */
+static int is_diagonal(Arena *a, const Eqns *e, const LinearForms *f) {
   size_t n = f->n;
   const Expr *by = mass_times_inverse(a, e, f);
   for (size_t i = 0; i < n; i++) {
@@ -225,7 +203,6 @@ static int is_diagonal(Arena *a, const Eqns *e, LinearForms *f) {
     Expr mass = expr_scale(e->g, num_div(num_int(1), row[first]), by[first * n + i]);
     for (size_t k = 0; k < n; k++)
       if (by[k * n + i] != expr_scale(e->g, row[k], mass)) return 0;
-    rescale(e->g, f, i, mass);
   }
   return 1;
 }
