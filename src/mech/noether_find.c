@@ -556,8 +556,7 @@ static void search_work(Arena *scratch, void *data) {
   s->out->note = "the linear equations of the search for more could not be solved reliably";
 }
 
-/* Events that set velocities or coordinates are no part of L. */
-static const char *note_on_impacts(const Model *m) {
+const char *noether_note_on_impacts(const Model *m) {
   uint32_t setting = 0;
   if (m->contacts.n) return "impacts and contacts change charges: what is said holds between them";
   for (uint32_t i = 0; i < m->events.n; i++) setting += m->events.at[i].actions.n > 0;
@@ -570,6 +569,6 @@ FoundSymmetries noether_find(Eqns *e) {
   if (candidates_only(e)) candidates_try(e, &out);
   else normal_with_scratch(e->g, search_work, &s);
   out.galilean = has_galilean_charges(&out);
-  if (!out.note) out.note = note_on_impacts(e->m);
+  if (!out.note) out.note = noether_note_on_impacts(e->m);
   return out;
 }

@@ -46,6 +46,9 @@ check "no symmetry is called proved" is_silent 'proved' noether models/kapitza.l
 check "without a scene effects are off, and each is judged alone" says "effect drag breaks 8 of 8" noether models/projectile.lag
 check "a scene has its own" says "scene air, with wind_resistance" noether models/projectile.lag air
 check "and its balances" says "dQ2/dt = -wind_resistance.k\*sqrt(x'^2 + y'^2)\*x'" noether models/projectile.lag air
+printf "model m\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2\neffect bounce { event wall: x - 1 rising { x' = -x' } }\neffect floor { contact ground: y >= 0, restitution = 0.5 }\n" >"$TMP/bounce.lag"
+check "events of an effect are no part of a balance, which is said" says "^  its events change charges: what is said holds between them" noether "$TMP/bounce.lag"
+check "nor are impacts" says "^  its impacts and contacts change charges: what is said holds between them" noether "$TMP/bounce.lag"
 check "which no list of effects follows" is_silent "^effect" noether models/projectile.lag air
 cat >"$TMP/wider.lag" <<'END'
 model m "A planet; with a moon, which is a coordinate of an effect; in a field; and in one that L cannot tell"
@@ -173,7 +176,7 @@ assert [s["name"] for s in r["symmetries"]] == ["energy", "momentum of x", "mome
 assert r["symmetries"][3]["F"] == "m*x" and r["symmetries"][3]["delta"] == {"x": "t"}, r
 assert r["cyclic"] == ["x", "th"], r
 assert r["brackets"][-1] == {"of": [2, 4], "proved": True, "constant": "m", "charges": {}}, r
-assert r["effects"] == [{"effect": "drag", "powers": ["-drag.c*x'^2", "-drag.c*x'", "0", "-drag.c*t*x'"]}], r
+assert r["effects"] == [{"effect": "drag", "note": "", "powers": ["-drag.c*x'^2", "-drag.c*x'", "0", "-drag.c*t*x'"]}], r
 END
   cat >"$TMP/json.lag" <<'END'
 model m
