@@ -282,12 +282,34 @@ static void driven(void **state) {
 }
 
 /* F has any part that is a function of t alone: of boosts by Newton's law, F = m x - g t^3/3 in a field that grows, and
- * F = m x - g (cos(k t) + k t sin(k t))/k^2 in one that oscillates. */
+ * F = m x - g (cos(k t) + k t sin(k t))/k^2 in one that oscillates. In the frame that falls as g t^3/6 the energy is conserved. */
 static void growing_field(void **state) {
   (void)state;
-  Model_ m = finds("model f\ncoord x\nparam m = 2 > 0, g = 3\nlagrangian = m/2*x'^2 - g*t*x\nobserve A_x = 1\nobserve B_x = t\n", 2);
+  Model_ m = finds("model f\ncoord x\nparam m = 2 > 0, g = 3\nlagrangian = m/2*x'^2 - g*t*x\nobserve A_x = 1\nobserve B_x = t\nobserve C_x = g*t^2/2\nobserve C_t = -m\n", 3);
   arena_free(m.arena);
   m = finds("model f\ncoord x, y\nparam m = 2 > 0, g = 3, k = 2 > 0\nlagrangian = m/2*(x'^2 + y'^2) - g*cos(k*t)*x\nobserve A_x = t\nobserve B_y = t\n", 6);
+  arena_free(m.arena);
+}
+
+/* Attraction that fades as 1/t (I.V. Meshcherskii 1893; J.P. Vinti, MNRAS 169 (1974) 417, DOI 10.1093/mnras/169.3.417): time -1/t makes it Kepler's problem,
+ * whose energy and angular momentum it keeps. */
+static void fading_attraction(void **state) {
+  (void)state;
+  Model_ m = finds("model v\ncoord x, y\nparam k = 1 > 0\nlagrangian = (x'^2 + y'^2)/2 + k/(t*hypot(x, y))\nobserve A_x = -y\nobserve A_y = x\nobserve B_x = t*x\nobserve B_y = t*y\nobserve B_t = t^2\n", 2);
+  assert_string_equal(m.found.all.at[1].name, "expansion");
+  arena_free(m.arena);
+}
+
+/* Modes of coupled oscillators, whose rates are roots of sums of parameters: the energy and four shifts; of three masses six, and a rotation of the pair of
+ * equal rates. */
+static void coupled(void **state) {
+  (void)state;
+  Model_ m = finds("model c\ncoord x, y\nparam m = 1.3 > 0, k = 1.1 > 0, c = 0.3 > 0\nlet w = sqrt((k + 2*c)/m)\n"
+                   "lagrangian = m/2*(x'^2 + y'^2) - k/2*(x^2 + y^2) - c/2*(x - y)^2\nobserve A_x = cos(w*t)\nobserve A_y = -cos(w*t)\nobserve B_x = sin(w*t)\nobserve B_y = -sin(w*t)\n", 5);
+  arena_free(m.arena);
+  m = finds("model c\ncoord x, y, z\nparam m = 1.3 > 0, k = 1.1 > 0, c = 0.3 > 0\nlet w = sqrt((k + 3*c)/m)\n"
+            "lagrangian = m/2*(x'^2 + y'^2 + z'^2) - k/2*(x^2 + y^2 + z^2) - c/2*((x - y)^2 + (y - z)^2 + (z - x)^2)\n"
+            "observe A_x = cos(w*t)\nobserve A_y = -cos(w*t)\nobserve B_x = y - z\nobserve B_y = z - x\nobserve B_z = x - y\n", 8);
   arena_free(m.arena);
 }
 
@@ -500,7 +522,7 @@ int main(void) {
     cmocka_unit_test(magnetic),      cmocka_unit_test(inverse_square), cmocka_unit_test(bodies),   cmocka_unit_test(nothing_false),
     cmocka_unit_test(curved),        cmocka_unit_test(driven),        cmocka_unit_test(constrained), cmocka_unit_test(first_order),
     cmocka_unit_test(affine_change), cmocka_unit_test(affine_change_3d), cmocka_unit_test(affine_change_bodies), cmocka_unit_test(near_rates), cmocka_unit_test(scalings), cmocka_unit_test(rotations),
-    cmocka_unit_test(many), cmocka_unit_test(growing_field),
+    cmocka_unit_test(many), cmocka_unit_test(growing_field), cmocka_unit_test(fading_attraction), cmocka_unit_test(coupled),
   };
   return cmocka_run_group_tests_name("found", tests, NULL, NULL);
 }
