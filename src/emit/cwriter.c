@@ -3,7 +3,7 @@
 
 #include "emit/cwriter_impl.h"
 
-enum { MADE_NAME_MAX = 14, LINE_MAX_COLUMNS = 100, WRAP_COLUMNS = 120 };
+enum { LINE_MAX_COLUMNS = 100, WRAP_COLUMNS = 120 };
 
 /* --- constants --- */
 
@@ -219,17 +219,13 @@ static int is_identifier(const char *s) {
   return 1;
 }
 
-static int tells(const Piece *x) { return !x->counted && is_identifier(x->text); }
+/* The name of an operand that has one which says something. */
+static const char *telling(const Piece *x) { return x->text && !x->counted && is_identifier(x->text) ? x->text : NULL; }
 
-/* sin_th1, m2_l1, th1_dot_sq, inv_M11: a name made of what the value is made of; or NULL. */
 static const char *made_name(Writer *w, const Ins *i) {
   Piece x = cwriter_operand(w, i->a), y = cwriter_operand(w, i->b);
-  if (i->op == IR_FN1 && tells(&x)) return arena_printf(w->a, "%s_%s", i->text, x.text);
-  if (i->op == IR_DIV && w->p->ins.at[i->a].op == IR_CONST && num_is_one(w->p->ins.at[i->a].number) && tells(&y))
-    return arena_printf(w->a, "inv_%s", y.text);
-  if (i->op != IR_MUL || !tells(&x) || !tells(&y)) return NULL;
-  if (i->a == i->b) return arena_printf(w->a, "%s_sq", x.text);
-  return strlen(x.text) + strlen(y.text) <= MADE_NAME_MAX ? arena_printf(w->a, "%s_%s", x.text, y.text) : NULL;
+  const Ins *top = &w->p->ins.at[i->a];
+  return ir_made_name(w->a, i, top->op == IR_CONST && num_is_one(top->number), telling(&x), telling(&y));
 }
 
 Piece cwriter_name(Writer *w, const Ins *i) {

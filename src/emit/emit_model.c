@@ -61,7 +61,7 @@ static const char *const *rows_names(const IrUnit *u) {
 }
 
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel", "energy", "linearise", "jumps", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
+  static const char *const taken[] = {"accel", "derive", "energy", "linearise", "jumps", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
                                       "outputs", "forces", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "charge_values", "charge_powers", "correct_positions", "correct_velocities"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
@@ -116,6 +116,16 @@ static void accel(const File *f) {
   const char *comment = arena_printf(f->a, "%s: %s.", what, ops_text(f->u->accel, f->a));
   const char *head = arena_printf(f->a, "static int accel(%s, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w)", emit_state_args);
   emit_function(f, f->u->accel, comment, head, own, written);
+}
+
+static void emit_derive(const File *f) {
+  static const char *const own[] = {"p", NULL}, *const written[] = {"p"};
+  if (!f->u->nderived) return;
+  CStyle st = style_for(f, own, written);
+  st.apart = st.seldom_called = 1;
+  CFunction c = {.comment = arena_printf(f->a, "Derived parameters, for the functions below: %s.", ops_text(f->u->derived, f->a)),
+                 .head = "static void derive(LAG_REAL *p)"};
+  cfunction(f->u->derived, &st, &c, f->out);
 }
 
 void emit_accel(const IrUnit *u, StrBuf *out) {
@@ -300,7 +310,7 @@ static void emit_params(const File *f, const IrScene *s, const char *id) {
     cwrite_body(s->params[i], &st, f->a, &body);
     cwrite_guarded(arena_printf(f->a, "if (!fixed[%u]) ", i), sb_text(&body), f->out);
   }
-  sb_puts(f->out, "}\n");
+  sb_puts(f->out, f->u->nderived ? "  derive(p);\n}\n" : "}\n");
 }
 
 static void emit_start(const File *f, const IrScene *s, const char *id) {
@@ -442,6 +452,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (u->linear) sb_puts(out, "  .linear = &linear,\n");
+  if (u->nderived) sb_printf(out, "  .nderived = %u, .derive = derive,\n", u->nderived);
   if (u->fixed[0]) sb_printf(out, "  .fixed = %s,\n", c_string(u->arena, u->fixed));
   sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n};\n");
 }
@@ -521,6 +532,7 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
   sb_printf(out, " * Emitted by lagc; effects in use: %s.\n", u->effects[0] ? u->effects : "none");
   if (u->fixed[0]) sb_printf(out, " * Parameters that are numbers here: %s.\n", u->fixed_values);
   sb_printf(out, " * Accelerations: %s.\n", ops_text(u->accel, u->arena));
+  if (u->nderived) sb_printf(out, " * Once for a set of parameters: %s.\n", ops_text(u->derived, u->arena));
   sb_printf(out, " * %s\n", cmath_text(u));
   sb_puts(out, " * This text may be used for any purpose without conditions (0BSD). */\n");
   sb_puts(out, "#include <math.h>\n\n#include \"lag_model.h\"\n\n");
@@ -539,6 +551,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   cmath_kkt(u, "LAG", "lag", out);
   if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
   size_t begin = out->n;
+  emit_derive(&f);
   accel(&f);
   emit_energy(&f);
   emit_events(&f);

@@ -137,6 +137,15 @@ int ir_is_scalar(IrArray array) { return array == ARR_T || array == ARR_ORDER ||
 
 int ir_is_condition(IrOp op) { return op >= IR_LT && op <= IR_OR; }
 
+const char *ir_made_name(Arena *a, const Ins *i, int of_one, const char *x, const char *y) {
+  enum { MADE_NAME_MAX = 14 };
+  if (i->op == IR_FN1 && x) return arena_printf(a, "%s_%s", i->text, x);
+  if (i->op == IR_DIV && of_one && y) return arena_printf(a, "inv_%s", y);
+  if (i->op != IR_MUL || !x || !y) return NULL;
+  if (i->a == i->b) return arena_printf(a, "%s_sq", x);
+  return strlen(x) + strlen(y) <= MADE_NAME_MAX ? arena_printf(a, "%s_%s", x, y) : NULL;
+}
+
 int ir_is_leaf(IrOp op) { return op == IR_CONST || op == IR_PI || op == IR_LOAD; }
 
 /* --- passes --- */

@@ -154,6 +154,10 @@ void prog_name(Prog *p, Slot s, Name name);
 
 int ir_is_condition(IrOp op);
 
+/* sin_th1, m2_l1, th1_dot_sq, inv_M11: a name made of those of the operands, x and y (NULL: they have none that says anything), for a value
+ * without one; or NULL. of_one: its first operand is the number 1. */
+const char *ir_made_name(Arena *a, const Ins *i, int of_one, const char *x, const char *y);
+
 /* A number or a load: what takes no instruction of its own. */
 int ir_is_leaf(IrOp op);
 
