@@ -15,6 +15,7 @@ static const char *const logic =
   "#define LAG_MASK int\n"
   "#define LAG_PIVOTS (void)0\n"
   "#define LAG_PIVOT(c) do { if (!(c)) return LAG_ESINGULAR; } while (0)\n"
+  "#define LAG_POSITIVE(d) LAG_PIVOT((d) > LAG_C(0.0))\n"
   "#define LAG_PIVOTS_STATUS LAG_OK\n"
   "#endif\n"
   "#ifndef LAG_LANE\n"

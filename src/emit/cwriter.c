@@ -259,9 +259,10 @@ void cwriter_declare(Writer *w, Slot s, Piece name, Piece x) {
 }
 
 void cwriter_pivot(Writer *w, const Ins *i) {
-  const char *d = wrapped(w, i->a, C_CMP + 1), *m = w->style->prefix;
+  const char *m = w->style->prefix;
   cwriter_flush_title(w);
-  cwriter_statement(w, arena_printf(w->a, "%s_PIVOT(%s %s %s_C(0.0));", m, d, i->index ? ">" : "!=", m));
+  cwriter_statement(w, i->index ? arena_printf(w->a, "%s_POSITIVE(%s);", m, cwriter_operand(w, i->a).text)
+                                : arena_printf(w->a, "%s_PIVOT(%s != %s_C(0.0));", m, wrapped(w, i->a, C_CMP + 1), m));
   sb_putc(w->out, '\n');
 }
 
@@ -306,10 +307,12 @@ static Slot *loads_of(Writer *w, int array, uint32_t *n) {
   return at;
 }
 
-/* Names the loads of an array: as many on a line as fit. */
+/* Names the loads of an array, unless that is done: as many on a line as fit. */
 static void write_array(Writer *w, int array) {
   size_t column = 0;
   uint32_t n;
+  if (w->named[array]) return;
+  w->named[array] = 1;
   const Slot *at = loads_of(w, array, &n);
   for (uint32_t k = 0; k < n; k++) {
     if (!at[k]) continue;
@@ -330,6 +333,18 @@ static void write_array(Writer *w, int array) {
     w->piece[at[k]] = (Piece){name, C_ATOM, 0};
   }
   if (column) sb_puts(w->out, ";\n");
+}
+
+static void write_arrays(Writer *w) {
+  for (int array = 0; array < ARR_COUNT; array++) write_array(w, array);
+}
+
+/* Names the arrays that instruction s loads from: there, and not at the top, or what is called before has to save them. */
+static void write_arrays_of(Writer *w, Slot s) {
+  for (int which = 0; which < 3; which++) {
+    const Ins *x = &w->p->ins.at[roll_operand(&w->p->ins.at[s], which)];
+    if (x->op == IR_LOAD) write_array(w, (int)x->array);
+  }
 }
 
 static void count_uses(Writer *w) {
@@ -399,6 +414,7 @@ static int write_abreast(Writer *w, Slot s) {
   uint32_t n = find_abreast(w, s, at);
   if (n < 2) return 0;
   n = n < ABREAST ? 2 : ABREAST;
+  for (uint32_t k = 0; k < n; k++) write_arrays_of(w, at[k]);
   StrBuf names = strbuf(w->a), arguments = strbuf(w->a);
   for (uint32_t k = 0; k < n; k++) declare_pair(w, at[k], &w->p->ins.at[at[k]], &w->p->ins.at[w->pair[at[k]]], &names, &arguments);
   cwriter_flush_title(w);
@@ -415,11 +431,13 @@ void cwriter_instruction(Writer *w, Slot s) {
     w->title = i->text;
     return;
   }
+  write_arrays_of(w, s);
   if (i->op == IR_PIVOT) {
     cwriter_pivot(w, i);
     return;
   }
   if (i->op == IR_SOLVE) {
+    write_arrays(w);
     csolve_write(w, i);
     return;
   }
@@ -531,8 +549,9 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   cnest_prepare(&w);
   if (prog_has_pivots(p)) sb_printf(out, "  %s_PIVOTS;\n", style->prefix);
   cwriter_find_pairs(&w);
-  for (int array = 0; array < ARR_COUNT; array++) write_array(&w, array);
+  if (w.rolls.loops.n || p->nests.n) write_arrays(&w);
   write_code(&w);
+  write_arrays(&w);
   write_stores(&w);
 }
 
