@@ -151,7 +151,7 @@ static Piece choose(Writer *w, const Ins *i) {
 
 static Piece solved(Writer *w, const Ins *i) {
   const Solve *k = &w->p->solves.at[w->p->ins.at[i->a].index];
-  return (Piece){arena_printf(w->a, "w[%u]", k->place + (k->n + k->m) * k->n + i->index), C_ATOM, 0};
+  return (Piece){arena_printf(w->a, "w[%u]", k->inverse ? k->n + i->index : k->place + (k->n + k->m) * k->n + i->index), C_ATOM, 0};
 }
 
 Piece cwriter_spell(Writer *w, const Ins *i) {
@@ -177,7 +177,7 @@ Piece cwriter_spell(Writer *w, const Ins *i) {
     case IR_OR: return macro(w, "OR", i->a, i->b, 0, 2);
     case IR_SELECT: return macro(w, "SELECT", i->a, i->b, i->c, 3);
     case IR_SOLVED: return solved(w, i);
-    case IR_PIVOT: case IR_SOLVE: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
+    case IR_PIVOT: case IR_SOLVE: case IR_INVERT: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
   }
   return (Piece){"", C_ATOM, 0};
 }
@@ -436,9 +436,10 @@ void cwriter_instruction(Writer *w, Slot s) {
     cwriter_pivot(w, i);
     return;
   }
-  if (i->op == IR_SOLVE) {
+  if (ir_has_solve(i->op)) {
     write_arrays(w);
-    csolve_write(w, i);
+    if (i->op == IR_SOLVE) csolve_write(w, i);
+    else csolve_write_inverse(w, i);
     return;
   }
   if (i->op == IR_TABLE) {

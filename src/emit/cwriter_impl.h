@@ -84,6 +84,9 @@ const char *cloop_stem(Arena *a, const char *name);
 /* An IR_SOLVE. */
 void csolve_write(Writer *w, const Ins *i);
 
+/* An IR_INVERT. */
+void csolve_write_inverse(Writer *w, const Ins *i);
+
 /* A whole loop. */
 void cloop_write(Writer *w, uint32_t loop);
 

@@ -21,7 +21,7 @@ static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
   "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_cubic",
   "lag_spline", "lag_var", "lag_event", "lag_model", "lag_option", "lag_monitor", "lag_table", "lag_scene", "lag_program",
-  "lag_entry", "lag_linear", "lag_jump", "jump_table", "LAG_NUMBER", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
+  "lag_entry", "lag_linear", "lag_jump", "jump_table", "LAG_NUMBER", "lag_taylor", "lag_factor", "lag_substitute", "lag_invert", "lag_multiply", "LAG_TAYLOR_ORDER",
   "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL", "TAYLOR_UNROLL_4",
   "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
   "taylor_rest", "taylor_squares", "TAYLOR_SQUARES", "taylor_four", "TAYLOR_WIDE", "TAYLOR_INLINE", "taylor_sums_wide", "taylor_squares_wide",
@@ -93,7 +93,7 @@ const char *const emit_state_args =
   "    const LAG_REAL *p, const LAG_REAL *u";
 
 static CStyle style_for(const File *f, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .kkt = "lag_kkt", .spline = "lag_spline", .math = cmath_prefix(f->u, "lag")};
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .invert = "lag_invert", .multiply = "lag_multiply", .kkt = "lag_kkt", .spline = "lag_spline", .math = cmath_prefix(f->u, "lag")};
 }
 
 /* Once a step, or a row of output. */
@@ -379,6 +379,14 @@ static int needs_solver(const IrUnit *u) {
   return some;
 }
 
+/* Whether the inverse of a matrix is derived from parameters; whether the program takes one, and by a loop. */
+static int inverts(const IrUnit *u) { return u->derived && u->derived->solves.n; }
+static int multiplies(const Prog *p) {
+  for (uint32_t k = 0; k < p->solves.n; k++)
+    if (p->solves.at[k].inverse) return 1;
+  return 0;
+}
+
 static void flag_text(unsigned flags, StrBuf *out) {
   static const char *const names[] = {"LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS", "LAG_AUTONOMOUS", "LAG_SMOOTH",
                                        "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_FIRST_ORDER", "LAG_CONSTANT_FORM", "LAG_MASSLESS"};
@@ -548,6 +556,9 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   cmath_functions(u, "LAG", "lag", out);
   if (has_long_tables(u)) ctable_macros(out);
   if (needs_solver(u)) csupport_solver("LAG", "lag", out);
+  if (inverts(u) || (u->taylor && u->taylor->room)) csupport_factor("LAG", "lag", out);
+  if (inverts(u)) csupport_inverter("LAG", "lag", out);
+  if (multiplies(u->accel)) csupport_multiplier("LAG", "lag", out);
   cmath_kkt(u, "LAG", "lag", out);
   if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
   size_t begin = out->n;

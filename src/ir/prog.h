@@ -38,6 +38,7 @@ typedef enum {
   IR_PIVOT,  /* fails unless a > 0 (index 1), or a != 0 (index 0) */
   IR_SOLVE,  /* solves block `index` of prog->solves, with pivoting; fails when singular */
   IR_SOLVED, /* component `index` of the solution of solve a */
+  IR_INVERT, /* the inverse of block `index` of prog->solves, with pivoting, to where that says: see Solve */
   IR_NEST,   /* runs nest `index` of prog->nests; a: the nest that has run before it, or 0 */
   IR_TABLE,  /* the curve of table `index` of prog->tables at a */
   IR_TITLE   /* text: a comment line that heads what follows */
@@ -77,16 +78,21 @@ typedef struct {
 /* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it stands in the
  * work space. matrix is NULL where the one at that place was factored before, by another function. With m constraints A x = g on
  * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. coarse: constraints that are nearly dependent count as
- * dependent (lag_kkt.h). */
+ * dependent (lag_kkt.h). inverse: where the inverse stands among the parameters, not 0: then there is no matrix, and a solution is a product. Of
+ * IR_INVERT: where that writes [matrix | n | n | inverse | 1 where there is one, and 0]; no right-hand side. */
 typedef struct {
-  uint32_t n, m, place;
+  uint32_t n, m, place, inverse;
   int coarse;
   const Slot *matrix, *rhs;
 } Solve;
 
 /* Elements of matrix and rhs. */
 static inline uint32_t solve_elements(const Solve *k) { return k->matrix ? (k->n + k->m) * k->n : 0; }
-static inline uint32_t solve_unknowns(const Solve *k) { return k->n + k->m; }
+static inline uint32_t solve_unknowns(const Solve *k) { return k->rhs ? k->n + k->m : 0; }
+
+/* Where, from its place on, IR_INVERT leaves the inverse, and whether there is one. */
+static inline uint32_t solve_inverse(const Solve *k) { return k->n * k->n + 2 * k->n; }
+static inline uint32_t solve_is_regular(const Solve *k) { return 2 * k->n * k->n + 2 * k->n; }
 
 /* Index first + by_row*i + by_turn*j. */
 typedef struct {
@@ -153,6 +159,9 @@ void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *com
 void prog_name(Prog *p, Slot s, Name name);
 
 int ir_is_condition(IrOp op);
+
+/* Whether `index` is that of a Solve. */
+int ir_has_solve(IrOp op);
 
 /* sin_th1, m2_l1, th1_dot_sq, inv_M11: a name made of those of the operands, x and y (NULL: they have none that says anything), for a value
  * without one; or NULL. of_one: its first operand is the number 1. */
@@ -227,7 +236,7 @@ void prog_dump(const Prog *p, StrBuf *out);
 /* Whether it divides by what may be 0: IR_PIVOT, IR_SOLVE. */
 int prog_has_pivots(const Prog *p);
 
-/* Whether it solves a system by a loop: with constraints, or without. p may be NULL. */
+/* Whether it solves a system by a loop: with constraints, or without, and with no inverse that is there. p may be NULL. */
 int prog_solves(const Prog *p, int constrained);
 
 /* Room that IR_SOLVE needs, in reals. */
