@@ -92,7 +92,7 @@ const char *const emit_state_args =
   "LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n"
   "    const LAG_REAL *p, const LAG_REAL *u";
 
-static CStyle style_for(const File *f, const char *const *own, const char *const *written) {
+CStyle emit_style(const File *f, const char *const *own, const char *const *written) {
   return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .invert = "lag_invert", .multiply = "lag_multiply", .kkt = "lag_kkt", .spline = "lag_spline", .math = cmath_prefix(f->u, "lag")};
 }
 
@@ -104,7 +104,7 @@ static int is_seldom_called(const IrUnit *u, const Prog *p) {
 }
 
 void emit_function(const File *f, const Prog *p, const char *comment, const char *head, const char *const *own, const char *const *written) {
-  CStyle st = style_for(f, own, written);
+  CStyle st = emit_style(f, own, written);
   st.seldom_called = is_seldom_called(f->u, p);
   CFunction c = {.comment = comment, .head = head, .returns = 1};
   cfunction(p, &st, &c, f->out);
@@ -116,16 +116,6 @@ static void accel(const File *f) {
   const char *comment = arena_printf(f->a, "%s: %s.", what, ops_text(f->u->accel, f->a));
   const char *head = arena_printf(f->a, "static int accel(%s, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w)", emit_state_args);
   emit_function(f, f->u->accel, comment, head, own, written);
-}
-
-static void emit_derive(const File *f) {
-  static const char *const own[] = {"p", NULL}, *const written[] = {"p"};
-  if (!f->u->nderived) return;
-  CStyle st = style_for(f, own, written);
-  st.apart = st.seldom_called = 1;
-  CFunction c = {.comment = arena_printf(f->a, "Derived parameters, for the functions below: %s.", ops_text(f->u->derived, f->a)),
-                 .head = "static void derive(LAG_REAL *p)"};
-  cfunction(f->u->derived, &st, &c, f->out);
 }
 
 void emit_accel(const IrUnit *u, StrBuf *out) {
@@ -176,7 +166,7 @@ static void emit_inputs(const File *f) {
   static const char *const own[] = {"t", "p", "u", NULL}, *const written[] = {"u"};
   const Prog *p = f->u->inputs;
   if (!f->u->u.n) return;
-  CStyle st = style_for(f, own, written);
+  CStyle st = emit_style(f, own, written);
   st.rows = rows_names(f->u);
   for (uint32_t i = 0; i < p->tables.n; i++) {
     sb_putc(f->out, '\n');
@@ -275,47 +265,9 @@ static void emit_constraints(const File *f) {
 
 /* --- a scene's functions --- */
 
-/* Parameters one by one: each may use those before it, as they are then. */
-/* Whether the parameter is a number, and the same as that of `like`. */
-static int is_number_like(const Prog *p, const Prog *like) {
-  if (p->stores.n != 1 || like->stores.n != 1) return 0;
-  const Ins *x = &p->ins.at[p->stores.at[0].slot], *y = &like->ins.at[like->stores.at[0].slot];
-  return p->stores.at[0].slot && like->stores.at[0].slot && x->op == IR_CONST && y->op == IR_CONST && num_equal(x->number, y->number);
-}
-
-/* The parameters from i on that are one number, when they are many; otherwise 1. */
-static uint32_t same_params(const IrUnit *u, const IrScene *s, uint32_t i) {
-  enum { MANY = 16 };
-  uint32_t n = 1;
-  while (i + n < u->p.n && is_number_like(s->params[i + n], s->params[i])) n++;
-  return n >= MANY ? n : 1;
-}
-
-static void emit_params(const File *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"p", "fixed", NULL}, *const written[] = {"p"};
-  sb_printf(f->out, "\nstatic void params_%s(LAG_REAL *p, const unsigned char *fixed) {\n", id);
-  if (!f->u->p.n) sb_puts(f->out, "  (void)p; (void)fixed;\n");
-  for (uint32_t i = 0, same; i < f->u->p.n; i += same) {
-    same = same_params(f->u, s, i);
-    if (same > 1) {
-      const Prog *p = s->params[i];
-      sb_printf(f->out, "  for (int k = 0; k < %u; k++) /* %s ... %s */\n    if (!fixed[k + %u]) p[k + %u] = %s;\n", same,
-                comment_text(f->a, f->u->p.at[i].name), comment_text(f->a, f->u->p.at[i + same - 1].name), i, i,
-                c_number(f->a, "LAG", p->ins.at[p->stores.at[0].slot].number));
-      continue;
-    }
-    CStyle st = style_for(f, own, written);
-    st.loads_inline = 1;
-    StrBuf body = strbuf(f->a);
-    cwrite_body(s->params[i], &st, f->a, &body);
-    cwrite_guarded(arena_printf(f->a, "if (!fixed[%u]) ", i), sb_text(&body), f->out);
-  }
-  sb_puts(f->out, f->u->nderived ? "  derive(p);\n}\n" : "}\n");
-}
-
 static void emit_start(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"p", "q", "v", "z", NULL}, *const written[] = {"q", "v", "z"};
-  CStyle st = style_for(f, own, written);
+  CStyle st = emit_style(f, own, written);
   sb_printf(f->out, "\nstatic void start_%s(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z) {\n", id);
   sb_puts(f->out, "  (void)p; (void)q; (void)v; (void)z;\n");
   if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
@@ -337,7 +289,7 @@ static void emit_exact(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"t", "q0", "v0", "z0", "p", "u", "out", NULL}, *const written[] = {"out"};
   static const char *const from_start[ARR_COUNT] = {"t", "q0", "v0", "z0", "p", "u", "a"};
   if (!s->exact_of.n) return;
-  CStyle st = style_for(f, own, written);
+  CStyle st = emit_style(f, own, written);
   st.in = from_start;
   CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .returns = 1};
   c.head = arena_printf(f->a, "static int exact_%s(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,\n"
@@ -377,14 +329,6 @@ static int needs_solver(const IrUnit *u) {
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) some |= prog_solves(all[i], 0);
   for (uint32_t i = 0; i < u->scenes.n; i++) some |= prog_solves(u->scenes.at[i].observe, 0);
   return some;
-}
-
-/* Whether the inverse of a matrix is derived from parameters; whether the program takes one, and by a loop. */
-static int inverts(const IrUnit *u) { return u->derived && u->derived->solves.n; }
-static int multiplies(const Prog *p) {
-  for (uint32_t k = 0; k < p->solves.n; k++)
-    if (p->solves.at[k].inverse) return 1;
-  return 0;
 }
 
 static void flag_text(unsigned flags, StrBuf *out) {
@@ -556,9 +500,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   cmath_functions(u, "LAG", "lag", out);
   if (has_long_tables(u)) ctable_macros(out);
   if (needs_solver(u)) csupport_solver("LAG", "lag", out);
-  if (inverts(u) || (u->taylor && u->taylor->room)) csupport_factor("LAG", "lag", out);
-  if (inverts(u)) csupport_inverter("LAG", "lag", out);
-  if (multiplies(u->accel)) csupport_multiplier("LAG", "lag", out);
+  emit_inverses(&f);
   cmath_kkt(u, "LAG", "lag", out);
   if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
   size_t begin = out->n;
