@@ -31,6 +31,7 @@ typedef struct {
   const char ***kept; /* [loops][period] the arrays that hold the values of all turns; NULL where none */
   unsigned char *named_load; /* by slot: a load that is used outside of loops, or by all turns of one */
   const char *cells, *row, *turn; /* the array of sums that nests add to, and their counters */
+  const CIndices *indices; /* tables that nests take indices from */
   const char *parameters; /* an array with the parameters that nests read, where they are members of a struct; or NULL */
 } Writer;
 

@@ -90,16 +90,13 @@ static Alike *group_of(Search *s, const Tape *t) {
 
 /* --- nests --- */
 
-static void add_nest(Search *s, const Alike *x, const Fit *f, const uint32_t *order) {
+static void add_nest(Search *s, const Alike *x, const Fit *f) {
   Arena *a = s->c.a;
-  uint32_t width = x->tape.columns.n;
-  IrPlace *at = ARENA_ARRAY(a, IrPlace, width + 1);
-  for (uint32_t k = 0; k < width; k++) at[k] = (IrPlace){f->first[k], f->row[k], f->turn[k]};
-  Nest n = {.rows = f->rows, .skew = f->skew, .turns = f->turns, .more = f->more, .at = at, .n = width, .count = f->count};
+  Nest n = {.rows = f->rows, .skew = f->skew, .turns = f->turns, .more = f->more, .begin = f->begin, .at = f->at, .n = x->tape.columns.n, .count = f->count};
   n.body = nest_body(&s->c, &x->tape, f, &n.outer, &n.nouter);
   vec_push(a, &s->found, ((Found){n, x->tape.class_of.at}));
-  for (uint32_t k = f->begin; k < f->begin + f->count; k++) {
-    uint32_t piece = x->pieces.at[order[k]];
+  for (uint32_t k = 0; k < f->count; k++) {
+    uint32_t piece = x->pieces.at[f->pieces[k]];
     const Shares *gives = &s->c.pieces.at[piece - 1].gives;
     s->nested[piece] = s->found.n;
     for (uint32_t j = 0; j < gives->n; j++) {
@@ -114,8 +111,9 @@ static void find_nests(Search *s, const Alike *x) {
   uint32_t n = x->pieces.n, *order = ARENA_ARRAY(a, uint32_t, n);
   Fits fits = {0};
   for (uint32_t k = 0; k < n; k++) order[k] = k;
-  nest_fit(a, x->columns.at, x->tape.array.at, x->tape.columns.n, order, n, &fits);
-  for (uint32_t k = 0; k < fits.n; k++) add_nest(s, x, &fits.at[k], order);
+  Indices all = {a, x->columns.at, x->tape.array.at, x->tape.columns.n, x->tape.nodes.n};
+  nest_fit(&all, order, n, &fits);
+  for (uint32_t k = 0; k < fits.n; k++) add_nest(s, x, &fits.at[k]);
 }
 
 /* Pieces that may be turns of loops, from number `from` of the ready ones on. */
@@ -301,15 +299,22 @@ static Prog *with_nests(const Search *s) {
   return prog_tidy(r.to);
 }
 
+/* What ir/roll.h would not find. */
+static int is_deep(const Nest *n) {
+  int by_table = 0;
+  for (uint32_t k = 0; k < n->n; k++) by_table |= n->at[k].turn_at != NULL;
+  return by_table || (n->rows > 1 && n->count > n->rows);
+}
+
 /* How many instructions nests take in. Loops of one level are found in straight-line code, too (ir/roll.h), and keep there what
- * they share with their surroundings: nothing is gained where there are no loops inside loops. */
+ * they share with their surroundings: nothing is gained where there are no loops inside loops, and none by tables. */
 static uint32_t taken_in(const Search *s) {
   uint32_t inside = 0;
   int deep = 0;
   for (uint32_t k = 0; k < s->c.pieces.n; k++)
     if (s->nested[k + 1]) inside += s->c.pieces.at[k].n;
   for (Slot x = 1; x < s->c.p->ins.n; x++) inside += s->c.sum[x] && s->c.celled[s->c.sum[x]] == 2;
-  for (uint32_t k = 0; k < s->found.n; k++) deep |= s->found.at[k].nest.rows > 1 && s->found.at[k].nest.count > s->found.at[k].nest.rows;
+  for (uint32_t k = 0; k < s->found.n; k++) deep |= is_deep(&s->found.at[k].nest);
   return deep ? inside : 0;
 }
 
