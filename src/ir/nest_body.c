@@ -209,5 +209,5 @@ const Prog *nest_body(const Cut *c, const Tape *t, const Fit *f, const Slot **ou
   store_gives(&m);
   *outer = m.outer.at;
   *nouter = m.outer.n;
-  return prog_tidy(m.body);
+  return prog_factor(prog_tidy(m.body));
 }

@@ -46,6 +46,8 @@ typedef struct {
   VEC(Slot) hubs;        /* in the order in which stores need them */
   uint32_t *class_of;    /* by slot of hubs: hubs of one class are numbered side by side, */
   uint32_t *number;      /* from 0 */
+  uint32_t *store;       /* by slot of hubs: the first store that needs it */
+  uint32_t *leaves;      /* by slot of hubs: the piece, from 1, of its first term that is a leaf, others follow; 0: they are in no pieces */
   uint32_t classes;
   uint32_t *terms_of;    /* by slot of hubs: how many terms there are, */
   uint32_t *waits;       /* and how many of pieces and hubs are still to come */
@@ -57,11 +59,14 @@ typedef struct {
 
 int nest_is_sum(IrOp op);
 
-/* Where pieces end, besides long sums and what many use: at sums with terms in common, at what is stored. */
-enum { CUT_COMMON_TERMS = 1, CUT_STORES = 2, CUT_KINDS = 4 };
+/* Where pieces end, besides long sums and what many use: at sums with terms in common, at what is stored, at sums of elements of arrays. */
+enum { CUT_COMMON_TERMS = 1, CUT_STORES = 2, CUT_LEAVES = 4 };
 
 /* Everything but celled. ends: of these bits. */
 Cut nest_cut(const Prog *p, unsigned ends);
+
+/* Whether a term of a sum is an element of an array, which may be a piece by itself. */
+int nest_is_leaf(const Cut *c, Slot term);
 
 /* The terms of a sum, through the parts that are joined to it; hub is the sum. */
 void nest_terms(const Cut *c, Slot sum, Shares *terms);

@@ -21,6 +21,8 @@ typedef struct {
 typedef struct {
   uint32_t *order; /* [n] places in Table.pieces */
   uint32_t *begin, rows;
+  const uint32_t *key; /* what rows are sorted by, */
+  int by_value;        /* where it is the number of the row: some may be empty */
   uint64_t entries;
 } Layout;
 
@@ -82,11 +84,18 @@ static uint32_t *sorted(const Table *t, uint32_t key) {
   return from;
 }
 
-/* Whether values of rows, which begin there, or of all turns, go by equal steps. */
-static int is_even(const uint32_t *values, const uint32_t *order, const uint32_t *begin, uint32_t n) {
+/* The value of row k, or of turn k. An empty row takes any. */
+static uint32_t value_at(const Layout *l, const uint32_t *values, int of_rows, uint32_t k) {
+  if (!of_rows) return values[l->order[k]];
+  if (l->begin[k] < l->begin[k + 1]) return values[l->order[l->begin[k]]];
+  return values == l->key ? k : 0;
+}
+
+/* Whether the n values go by equal steps. */
+static int is_even(const Layout *l, const uint32_t *values, int of_rows, uint32_t n) {
   for (uint32_t k = 2; k < n; k++) {
-    uint32_t x = order[begin ? begin[k - 2] : k - 2], y = order[begin ? begin[k - 1] : k - 1], z = order[begin ? begin[k] : k];
-    if (values[z] - values[y] != values[y] - values[x]) return 0;
+    uint32_t x = value_at(l, values, of_rows, k - 2), y = value_at(l, values, of_rows, k - 1), z = value_at(l, values, of_rows, k);
+    if (z - y != y - x) return 0;
   }
   return 1;
 }
@@ -102,20 +111,24 @@ static uint64_t entries_of(const Table *t, const Layout *l) {
   uint64_t entries = l->begin ? l->rows + 1 : 0;
   for (uint32_t k = 0; k < t->values.n; k++) {
     const uint32_t *v = t->values.at[k];
-    if (l->begin && is_of_rows(v, l)) entries += is_even(v, l->order, l->begin, l->rows) ? 0 : l->rows;
-    else entries += is_even(v, l->order, NULL, t->n) ? 0 : t->n;
+    if (l->begin && is_of_rows(v, l)) entries += is_even(l, v, 1, l->rows) ? 0 : l->rows;
+    else entries += is_even(l, v, 0, t->n) ? 0 : t->n;
   }
   return entries;
 }
 
-/* Rows of equal keys, two turns in each on the average; without begin where there are more. */
+/* Rows of equal keys, two turns in each on the average; without begin where there are more. Where few keys are left out, the key is the
+ * row's number. */
 static Layout in_rows(const Table *t, uint32_t key, uint32_t *order) {
-  Layout l = {.order = order, .begin = ARENA_ARRAY(t->x->a, uint32_t, t->n/2 + 2)};
   const uint32_t *v = t->values.at[key];
+  uint32_t rows = 1, most = v[order[t->n - 1]];
+  for (uint32_t k = 1; k < t->n; k++) rows += v[order[k]] != v[order[k - 1]];
+  if (rows > t->n/2) return (Layout){.order = order, .rows = 1};
+  Layout l = {.order = order, .key = v, .by_value = most < 2*rows};
+  l.begin = ARENA_ARRAY(t->x->a, uint32_t, (l.by_value ? most : rows) + 2);
   for (uint32_t k = 0; k < t->n; k++) {
-    if (k && v[order[k]] == v[order[k - 1]]) continue;
-    if (l.rows == t->n/2) return (Layout){.order = order, .rows = 1};
-    l.begin[l.rows++] = k;
+    int is_new = !k || v[order[k]] != v[order[k - 1]];
+    for (uint32_t end = l.by_value ? v[order[k]] + 1 : l.rows + 1; is_new && l.rows < end;) l.begin[l.rows++] = k;
   }
   l.begin[l.rows] = t->n;
   return l;
@@ -138,12 +151,11 @@ static Layout shortest(const Table *t) {
 
 /* Values of all rows, or of all turns, in their order; NULL and the step where they are even. */
 static const uint32_t *tabulated(const Table *t, const Layout *l, const uint32_t *values, int of_rows, int64_t *step, int64_t *first) {
-  const uint32_t *begin = of_rows ? l->begin : NULL;
   uint32_t n = of_rows ? l->rows : t->n, *r = ARENA_ARRAY(t->x->a, uint32_t, n);
-  for (uint32_t k = 0; k < n; k++) r[k] = values[l->order[begin ? begin[k] : k]];
+  for (uint32_t k = 0; k < n; k++) r[k] = value_at(l, values, of_rows, k);
   *step = 1;
   *first = 0;
-  if (!is_even(values, l->order, begin, n)) return r;
+  if (!is_even(l, values, of_rows, n)) return r;
   *step = n > 1 ? (int64_t)r[1] - r[0] : 0;
   *first = r[0];
   return NULL;
