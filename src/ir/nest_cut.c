@@ -70,9 +70,9 @@ static void find_long_sums(Cut *c, int leaves) {
 /* Sums with a term that another sum has, too, as by Newton's third law: springs of a net. */
 static void find_sums_in_common(Cut *c) {
   const Prog *p = c->p;
-  uint32_t *uses = ARENA_ARRAY(c->a, uint32_t, p->ins.n);
-  for (Slot s = 1; s < p->ins.n; s++)
-    for (int k = 0; k < 2 && nest_is_sum(op_of(c, s)); k++) uses[operand(&p->ins.at[s], k)]++;
+  uint32_t *uses = ARENA_ARRAY(c->a, uint32_t, p->ins.n); /* by how many sums; of a part, in how many it is */
+  for (Slot s = p->ins.n; s-- > 1;)
+    for (int k = 0; k < 2 && nest_is_sum(op_of(c, s)); k++) uses[operand(&p->ins.at[s], k)] += c->joined[s] ? uses[s] : 1;
   for (Slot s = 1; s < p->ins.n; s++) {
     if (!nest_is_sum(op_of(c, s)) || c->joined[s]) continue;
     c->terms->n = 0;
