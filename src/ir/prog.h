@@ -241,6 +241,10 @@ int prog_solves(const Prog *p, int constrained);
 /* Room that IR_SOLVE needs, in reals. */
 uint32_t prog_work(const Prog *p);
 
+/* solve_ops.c: of a system that is solved by a loop. Where constraints are mostly independent and M is positive definite, which is what
+ * is counted, zeros outside of envelopes cost nothing. */
+OpCount solve_count(Arena *a, const Solve *k);
+
 OpCount prog_count(const Prog *p);
 uint64_t ops_total(OpCount c);
 
