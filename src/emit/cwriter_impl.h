@@ -32,6 +32,7 @@ typedef struct {
   unsigned char named[ARR_COUNT]; /* arrays whose loads have their names */
   unsigned char *named_load; /* by slot: a load that is used outside of loops, or by all turns of one */
   const char *cells, *row, *turn; /* the array of sums that nests add to, and their counters */
+  const CIndices *indices; /* tables that nests take indices from */
   const char *parameters; /* an array with the parameters that nests read, where they are members of a struct; or NULL */
 } Writer;
 

@@ -11,6 +11,7 @@ typedef struct {
   const char *name;           /* of the lag_model */
   const char *const *globals; /* what a function's own names must not hide; NULL at the end */
   StrBuf *out;
+  CIndices *indices;          /* those that stand in the file */
 } File;
 
 /* The parameters that all functions of a state have, up to what they write. */

@@ -93,7 +93,8 @@ const char *const emit_state_args =
   "    const LAG_REAL *p, const LAG_REAL *u";
 
 CStyle emit_style(const File *f, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .invert = "lag_invert", .multiply = "lag_multiply", .kkt = "lag_kkt", .spline = "lag_spline", .math = cmath_prefix(f->u, "lag")};
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .invert = "lag_invert", .multiply = "lag_multiply", .kkt = "lag_kkt", .spline = "lag_spline", .math = cmath_prefix(f->u, "lag"),
+                  .indices = f->indices};
 }
 
 /* Once a step, or a row of output. */
@@ -273,6 +274,7 @@ static void emit_start(const File *f, const IrScene *s, const char *id) {
   if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
   if (f->u->z.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) z[i] = LAG_C(0.0);\n", f->u->z.n);
   st.seldom_called = 1;
+  st.indices = NULL;
   cwrite_body(s->start, &st, f->a, f->out);
   sb_puts(f->out, "}\n");
 }
@@ -491,7 +493,8 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
 }
 
 void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
-  File f = {.u = u, .a = u->arena, .name = name, .globals = globals_of(u, name), .out = out};
+  File f = {.u = u, .a = u->arena, .name = name, .globals = globals_of(u, name), .out = out, .indices = ARENA_NEW(u->arena, CIndices)};
+  f.indices->stem = "lag_index";
   emit_head(u, out);
   cmath_lanes("LAG", "lag", out);
   sb_puts(out, prelude);

@@ -297,6 +297,10 @@ int prog_same(const Prog *a, const Prog *b) {
 
 /* --- counting --- */
 
+static OpCount ops_sum(OpCount a, OpCount b) {
+  return (OpCount){a.add + b.add, a.mul + b.mul, a.div + b.div, a.sqrt + b.sqrt, a.fn + b.fn, a.other + b.other};
+}
+
 /* Of all turns of a nest. */
 static OpCount count_nest(const Nest *n) {
   OpCount c = prog_count(n->body);
@@ -316,38 +320,9 @@ OpCount prog_count(const Prog *p) {
       case IR_FN1: case IR_FN2: case IR_TABLE: c.fn++; break;
       case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND:
       case IR_OR: case IR_SELECT: c.other++; break;
-      case IR_SOLVE: {
-        uint64_t n = p->solves.at[i->index].n, m = p->solves.at[i->index].m; /* their cubes pass 2^32 */
-        if (m) { /* Schur's complement: factorizations of M and S, A M^-1 A^T, substitutions; all entries counted */
-          uint64_t both = n * n * n / 6 + m * n * n / 2 + m * m * n / 2 + m * m * m / 6 + 3 * n * n + 4 * m * n + 2 * m * m;
-          c.add += both;
-          c.mul += both;
-          c.div += n * n / 2 + m * n + m * m / 2 + 2 * (n + m);
-          c.sqrt += n + m;
-          break;
-        }
-        if (p->solves.at[i->index].inverse) {
-          c.add += n * (n - 1);
-          c.mul += n * n;
-          break;
-        }
-        c.add += n * (n - 1) * (2 * n + 5) / 6; /* elimination with two substitutions */
-        c.mul += n * (n - 1) * (2 * n + 5) / 6;
-        c.div += n * (n + 1) / 2;
-        break;
-      }
-      case IR_INVERT: {
-        uint64_t n = p->solves.at[i->index].n; /* a factorization, 2 n substitutions */
-        c.add += n * n * n / 3 + n * n * n;
-        c.mul += n * n * n / 3 + n * n * n;
-        c.div += n * n;
-        break;
-      }
-      case IR_NEST: {
-        OpCount n = count_nest(&p->nests.at[i->index]);
-        c = (OpCount){c.add + n.add, c.mul + n.mul, c.div + n.div, c.sqrt + n.sqrt, c.fn + n.fn, c.other + n.other};
-        break;
-      }
+      case IR_SOLVE: c = ops_sum(c, solve_count(p->arena, &p->solves.at[i->index])); break;
+      case IR_INVERT: c = ops_sum(c, invert_count(&p->solves.at[i->index])); break;
+      case IR_NEST: c = ops_sum(c, count_nest(&p->nests.at[i->index])); break;
       case IR_NEG: case IR_CONST: case IR_PI: case IR_LOAD: case IR_PIVOT: case IR_SOLVED: case IR_TITLE: break;
     }
   }
@@ -392,10 +367,21 @@ static const char *const op_names[] = {
 
 static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g", "free", "x", "s", "c", "order", "per_order", "up", "sum", "outer"};
 
+static void dump_table(const char *what, const uint32_t *at, uint32_t n, StrBuf *out) {
+  if (!at) return;
+  sb_printf(out, "  %s:", what);
+  for (uint32_t k = 0; k < n; k++) sb_printf(out, " %u", at[k]);
+  sb_putc(out, '\n');
+}
+
 static void dump_nest(const Nest *n, StrBuf *out) {
   sb_printf(out, "  %u rows, %lld + %lld*i turns from %lld*i\n", n->rows, (long long)n->turns, (long long)n->more, (long long)n->skew);
-  for (uint32_t k = 0; k < n->n; k++)
+  dump_table("begin", n->begin, n->rows + 1, out);
+  for (uint32_t k = 0; k < n->n; k++) {
     sb_printf(out, "  #%u: %lld + %lld*i + %lld*j\n", k, (long long)n->at[k].first, (long long)n->at[k].by_row, (long long)n->at[k].by_turn);
+    dump_table("i", n->at[k].row_at, n->rows, out);
+    dump_table("j", n->at[k].turn_at, n->count, out);
+  }
   for (uint32_t k = 0; k < n->nouter; k++) sb_printf(out, "  outer[%u]: %%%u\n", k, n->outer[k]);
   prog_dump(n->body, out);
   sb_puts(out, "  end of nest\n");

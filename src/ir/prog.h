@@ -94,12 +94,13 @@ static inline uint32_t solve_unknowns(const Solve *k) { return k->rhs ? k->n + k
 static inline uint32_t solve_inverse(const Solve *k) { return k->n * k->n + 2 * k->n; }
 static inline uint32_t solve_is_regular(const Solve *k) { return 2 * k->n * k->n + 2 * k->n; }
 
-/* Index first + by_row*i + by_turn*j. */
+/* Index first + by_row*row_at[i] + by_turn*turn_at[j]; a table that is NULL has i in place i. */
 typedef struct {
   int64_t first, by_row, by_turn;
+  const uint32_t *row_at, *turn_at;
 } IrPlace;
 
-/* for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1: what the body computes is added to sums, which are 0
+/* for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1, or in begin[i] .. begin[i + 1] - 1: what the body computes is added to sums, which are 0
  * before the first nest; what goes to one sum in all turns of the inner loop, or of the only one, is added up from 0 before it is
  * added. The body is a program without nests: its loads of arrays and sums, and its stores, have numbers of `at`
  * as index (those that are no arrays have none); its loads of ARR_OUTER have numbers of `outer`. A store to array 0 adds, to array 1
@@ -107,6 +108,7 @@ typedef struct {
 typedef struct {
   uint32_t rows, count; /* count: of all turns */
   int64_t skew, turns, more;
+  const uint32_t *begin; /* [rows + 1] of rows whose lengths follow no rule; or NULL */
   const struct Prog *body;
   const IrPlace *at;    /* [n] */
   const Slot *outer;    /* [nouter] values of the program that the nest is in */
@@ -114,10 +116,20 @@ typedef struct {
 } Nest;
 
 /* Whether there is a loop over j: one over i is the only one where each row has one turn. */
-static inline int nest_has_turns(const Nest *n) { return n->rows == 1 || n->turns != 1 || n->more != 0; }
+static inline int nest_has_turns(const Nest *n) { return n->rows == 1 || n->begin || n->turns != 1 || n->more != 0; }
 
 /* Whether place k of `at` moves from turn to turn of the inner loop, or of the only one. */
 static inline int nest_moves(const Nest *n, uint32_t k) { return (nest_has_turns(n) ? n->at[k].by_turn : n->at[k].by_row) != 0; }
+
+/* The first turn of row i, and the one behind its last. */
+static inline int64_t nest_from(const Nest *n, int64_t i) { return n->begin ? n->begin[i] : n->skew*i; }
+static inline int64_t nest_to(const Nest *n, int64_t i) { return n->begin ? n->begin[i + 1] : (n->skew + n->more)*i + n->turns; }
+
+/* The index at place k of `at` in turn j of row i. */
+static inline int64_t nest_index(const Nest *n, uint32_t k, int64_t i, int64_t j) {
+  const IrPlace *x = &n->at[k];
+  return x->first + x->by_row*(x->row_at ? x->row_at[i] : i) + x->by_turn*(x->turn_at ? x->turn_at[j] : j);
+}
 
 /* A table that the user gave for what is called `name`. */
 typedef struct {
@@ -241,6 +253,11 @@ int prog_solves(const Prog *p, int constrained);
 
 /* Room that IR_SOLVE needs, in reals. */
 uint32_t prog_work(const Prog *p);
+
+/* solve_ops.c: of a system that is solved by a loop. Where constraints are mostly independent and M is positive definite, which is what
+ * is counted, zeros outside of envelopes cost nothing. */
+OpCount solve_count(Arena *a, const Solve *k);
+OpCount invert_count(const Solve *k);
 
 OpCount prog_count(const Prog *p);
 uint64_t ops_total(OpCount c);
