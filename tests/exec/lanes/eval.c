@@ -138,6 +138,7 @@ int main(void) {
         fill(u + m->nu, s->nexact, lane, 1); /* closed forms, as observe has them */
         for (int k = 0; k < m->np; k++) put(&p[k], lane, get(&p[k], lane) * (1 + next() / 16));
       }
+      if (m->derive) m->derive(p);
       evaluate(s);
     }
   }
