@@ -101,7 +101,8 @@ static int half_of(long double exponent, Num *out) {
   return 1;
 }
 
-Expr monomial_part(const Choices *c, const long double *value, long double *number) {
+/* The product of powers of parameters that value[choice] goes with, and *number, what it is multiplied by. 0: none. */
+static Expr monomial_part(const Choices *c, const long double *value, long double *number) {
   ExprGraph *g = c->e->g;
   Num exponent;
   long double rest = value[CHOICE_FIRST], other = value[CHOICE_SECOND];

@@ -36,9 +36,6 @@ Expr power_of(const Choices *c, const long double *value, Expr rate);
 /* What ratio_of knows, times such a power of `rate`. */
 Expr ratio_with(const Choices *c, const long double *value, Expr rate);
 
-/* The product of powers of parameters that value[choice], 2 + n of them, goes with, and *number, what it is multiplied by. 0: none. */
-Expr monomial_part(const Choices *c, const long double *value, long double *number);
-
 /* value[choice], 2 + n of them. 0: no such monomial takes these values. */
 Expr monomial_of(const Choices *c, const long double *value);
 
