@@ -529,12 +529,35 @@ static void search_any(Search *s) {
   if (weak) s->out->note = "rates or couplings lie so close to one another that some may be missing";
 }
 
+/* How many solutions at a choice neither oscillate nor grow, but both. */
+static uint32_t spirals(Search *s, uint32_t choice) {
+  const SolutionSpace *space = space_at(s, choice);
+  return space->sure ? space_rates(s->scratch, space).others : 0;
+}
+
+static void take_choices(Search *s, uint32_t attempt) {
+  s->out->attempt = attempt;
+  s->choices = choices_new(s->scratch, s->e, attempt);
+  s->spaces = ARENA_ARRAY(s->scratch, SolutionSpace, choice_count(s));
+}
+
+/* Values of the parameters; others, where some oscillations have no rate that can be written, as those of a trap that does not hold what is in it. */
+static void choose(Search *s) {
+  enum { ATTEMPTS = 12 };
+  take_choices(s, 0);
+  if (s->ansatz->has_time || !s->e->n || !s->choices.n || !(spirals(s, CHOICE_FIRST) + spirals(s, CHOICE_SECOND))) return;
+  for (uint32_t attempt = 1; attempt < ATTEMPTS; attempt++) {
+    take_choices(s, attempt);
+    if (spirals(s, CHOICE_FIRST) + spirals(s, CHOICE_SECOND) == 0) return;
+  }
+  take_choices(s, 0);
+}
+
 static void search_work(Arena *scratch, void *data) {
   Search *s = data;
   s->scratch = scratch;
   s->ansatz = ansatz_new(scratch, s->e);
-  s->choices = choices_new(scratch, s->e);
-  s->spaces = ARENA_ARRAY(scratch, SolutionSpace, choice_count(s));
+  choose(s);
   if (s->ansatz->has_time || !s->e->n) search_listed(s);
   else search_any(s);
   if (s->out->searched) return;

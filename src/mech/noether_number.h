@@ -16,7 +16,8 @@ typedef struct {
 
 enum { CHOICE_FIRST, CHOICE_SECOND, CHOICE_MOVED };
 
-Choices choices_new(Arena *a, const Eqns *e);
+/* attempt 0, or other random values, the second ones near the first: where motions oscillate for some values of the parameters only. */
+Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt);
 
 /* The rational p/q that x is, to its digits, with q small against them; 0: it is none. */
 int rational_of(long double x, Num *out);

@@ -313,6 +313,17 @@ static void coupled(void **state) {
   arena_free(m.arena);
 }
 
+/* Penning's trap holds for b^2 > 2 k m only (L.S. Brown, G. Gabrielse, Rev. Mod. Phys. 58 (1986) 233, DOI 10.1103/RevModPhys.58.233): the energy, angular momentum
+ * and shifts along three motions, axial, cyclotron and magnetron, two each. Where it does not hold, two of these spiral. */
+static void trap(void **state) {
+  (void)state;
+  Model_ m = model("model p\ncoord x, y, z\nparam m = 1.3 > 0, b = 3 > 0, k = 0.4 > 0\n"
+                   "lagrangian = m/2*(x'^2 + y'^2 + z'^2) + b/2*(x*y' - y*x') - k/4*(2*z^2 - x^2 - y^2)\n");
+  assert_int_equal(m.found.all.n, 8);
+  assert_int_equal(m.found.unproved, 0);
+  arena_free(m.arena);
+}
+
 static void constrained(void **state) {
   (void)state;
   Model_ m = model("model s\ncoord x, y, z\nparam g = 9.81, l = 1 > 0\nlagrangian = (x'^2 + y'^2 + z'^2)/2 - g*z\nconstraint rod: x^2 + y^2 + z^2 = l^2\n"
@@ -522,7 +533,7 @@ int main(void) {
     cmocka_unit_test(magnetic),      cmocka_unit_test(inverse_square), cmocka_unit_test(bodies),   cmocka_unit_test(nothing_false),
     cmocka_unit_test(curved),        cmocka_unit_test(driven),        cmocka_unit_test(constrained), cmocka_unit_test(first_order),
     cmocka_unit_test(affine_change), cmocka_unit_test(affine_change_3d), cmocka_unit_test(affine_change_bodies), cmocka_unit_test(near_rates), cmocka_unit_test(scalings), cmocka_unit_test(rotations),
-    cmocka_unit_test(many), cmocka_unit_test(growing_field), cmocka_unit_test(fading_attraction), cmocka_unit_test(coupled),
+    cmocka_unit_test(many), cmocka_unit_test(growing_field), cmocka_unit_test(fading_attraction), cmocka_unit_test(coupled), cmocka_unit_test(trap),
   };
   return cmocka_run_group_tests_name("found", tests, NULL, NULL);
 }
