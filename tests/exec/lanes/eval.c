@@ -126,7 +126,7 @@ int main(void) {
     const lag_model *m = s->model;
     static const unsigned char none[ROOM];
     seed = 1;
-    if (2*(2*m->nq + m->nz) > ROOM || m->nw > ROOM) return printf("%s is too large\n", m->name), 1;
+    if (2*(2*m->nq + m->nz) > ROOM || m->nw > ROOM || m->np + m->nderived > ROOM) return printf("%s is too large\n", m->name), 1;
     for (int state = 0; state < STATES; state += LANES) {
       s->params(p, none);
       for (int lane = 0; lane < LANES; lane++) {
