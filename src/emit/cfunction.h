@@ -10,7 +10,7 @@
 void csupport_logic(const char *prefix, StrBuf *out);
 
 /* `static int lower_solve(n, M, b)`, for the blocks that are not solved in straight-line code. */
-void csupport_solver(const char *prefix, const char *lower, StrBuf *out);
+void csupport_solver(SolveKind kind, const char *prefix, const char *lower, StrBuf *out);
 
 /* `static LAG_REAL lower_spline(t, n, row)`, for the inputs that have a table. */
 void csupport_spline(const char *prefix, const char *lower, StrBuf *out);

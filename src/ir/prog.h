@@ -77,16 +77,21 @@ typedef struct {
 /* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it stands in the
  * work space. matrix is NULL where the one at that place was factored before, by another function. With m constraints A x = g on
  * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. coarse: constraints that are nearly dependent count as
- * dependent (lag_kkt.h). */
+ * dependent (lag_kkt.h). Without constraints, entries more than `band` beside the diagonal are zero, and a definite M is eliminated without
+ * pivoting, from its upper triangle. */
 typedef struct {
-  uint32_t n, m, place;
-  int coarse;
+  uint32_t n, m, place, band;
+  int coarse, definite;
   const Slot *matrix, *rhs;
 } Solve;
 
 /* Elements of matrix and rhs. */
 static inline uint32_t solve_elements(const Solve *k) { return k->matrix ? (k->n + k->m) * k->n : 0; }
 static inline uint32_t solve_unknowns(const Solve *k) { return k->n + k->m; }
+
+/* Each is solved by a function of its own. */
+typedef enum { SOLVE_PIVOTING, SOLVE_CONSTRAINED, SOLVE_DEFINITE } SolveKind;
+static inline SolveKind solve_kind(const Solve *k) { return k->m ? SOLVE_CONSTRAINED : k->definite ? SOLVE_DEFINITE : SOLVE_PIVOTING; }
 
 /* Index first + by_row*row_at[i] + by_turn*turn_at[j]; a table that is NULL has i in place i. */
 typedef struct {
@@ -235,8 +240,8 @@ void prog_dump(const Prog *p, StrBuf *out);
 /* Whether it divides by what may be 0: IR_PIVOT, IR_SOLVE. */
 int prog_has_pivots(const Prog *p);
 
-/* Whether it solves a system by a loop: with constraints, or without. p may be NULL. */
-int prog_solves(const Prog *p, int constrained);
+/* Whether it solves a system of that kind by a loop. p may be NULL. */
+int prog_solves(const Prog *p, SolveKind kind);
 
 /* Room that IR_SOLVE needs, in reals. */
 uint32_t prog_work(const Prog *p);
