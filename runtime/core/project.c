@@ -367,8 +367,11 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
   }
   lag_worst_constraint(pb, t, y, holonomic, &worst);
   memcpy(terms, w.g, (size_t)n * sizeof *terms);
-  int noise = worst > 0x1p10 && began_at_0(pb) && is_noise(pb, &w, t, y, holonomic, residual);
-  return worst <= 0x1p10 || (noise && lag_residuals(pb, t, y, w.c, w.r) == 0); /* which newton() goes on with */
+  if (worst <= 0x1p10 || !began_at_0(pb)) {
+    return worst <= 0x1p10;
+  }
+  int noise = is_noise(pb, &w, t, y, holonomic, residual);
+  return lag_residuals(pb, t, y, w.c, w.r) == 0 && noise; /* is_noise() writes over them, and newton() goes on with them either way */
 }
 
 /* Whether the residuals of y, of which w->c and w->r are left as they are, are what the last digits of their terms make. */
