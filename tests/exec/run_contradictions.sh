@@ -33,4 +33,21 @@ for method in dop853 rk45 rk4 radau verlet variational; do
   esac
   is "$method ends where one of two constraints jumps, and writes what was before" yes "$good"
 done
+
+# A circle, and a height that leaves it at 1 s: the velocity has no limit there, and trial states are far away.
+cat >"$TMP/leaves.lag" <<'END'
+model leaves
+coord x [m], y [m]
+param m = 1 [kg] > 0, l = 1 [m], v = 1 [m/s]
+kinetic = m/2*(x'^2 + y'^2)
+constraint circle: x^2 + y^2 = l^2
+constraint height: y = v*t
+scene s { start x = 1; span 2; output x, y, x^2 + y^2 - l^2 every 0.01 }
+END
+for method in dop853 rk45 rk4 radau verlet variational; do
+  status=0
+  "$LAGC" run "$TMP/leaves.lag" --method $method -o "$TMP/rows.csv" >/dev/null 2>&1 || status=$?
+  is "$method ends at the end of the circle, and writes only what is on it" '3 yes' \
+    "$status $(awk -F, 'NR > 1 { if ($4 > 1e-14 || $4 < -1e-14) bad = 1; end = $1 } END { print !bad && end >= 0.99 && end < 1.005 ? "yes" : end }' "$TMP/rows.csv")"
+done
 tap_end
