@@ -48,6 +48,6 @@ for method in dop853 rk45 rk4 radau verlet variational; do
   status=0
   "$LAGC" run "$TMP/leaves.lag" --method $method -o "$TMP/rows.csv" >/dev/null 2>&1 || status=$?
   is "$method ends at the end of the circle, and writes only what is on it" '3 yes' \
-    "$status $(awk -F, 'NR > 1 { if ($4 > 1e-14 || $4 < -1e-14) bad = 1; end = $1 } END { print !bad && end >= 0.99 && end < 1.005 ? "yes" : end }' "$TMP/rows.csv")"
+    "$status $(awk -F, 'NR > 1 { if ($4 > 1e-14 || $4 < -1e-14) bad = 1; end = $1 } END { print (!bad && end >= 0.99 && end < 1.005 ? "yes" : end) }' "$TMP/rows.csv")"
 done
 tap_end
