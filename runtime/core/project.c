@@ -336,7 +336,7 @@ static int is_noise(lag_problem *pb, const Held *w, double t, const double *y, i
     return 0;
   }
   for (int i = 0; i < nq; i++) {
-    noise &= fabs(rest[i]) <= lag_size_like(pb, w->d, i);
+    noise &= fabs(rest[i]) <= 2 * lag_size_like(pb, w->d, i); /* they may be the same but for rounding */
   }
   return noise;
 }
@@ -352,9 +352,10 @@ static int began_at_0(const lag_problem *pb)
   return zero;
 }
 
-static double largest(int n, const double *x)
+/* How far the largest of x[n] is from 0; what is less than 1e-6 tells nothing, as in lag_reach. */
+static double farthest(int n, const double *x)
 {
-  double most = 0;
+  double most = 1e-6;
 
   for (int i = 0; i < n; i++) {
     most = fmax(most, fabs(x[i]));
@@ -366,7 +367,7 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
 {
   const double rounding = 0x1p10 * DBL_EPSILON;
   Held w = layout(pb);
-  double *terms = w.terms[holonomic], worst = HUGE_VAL, far = largest(holonomic ? pb->nq : pb->n, y);
+  double *terms = w.terms[holonomic], worst = HUGE_VAL, far = farthest(holonomic ? pb->nq : pb->n, y);
   int n = holonomic ? w.of->nholonomic : w.of->n, met = far >= terms[w.of->n] / 16;
 
   for (int k = 0; k < n; k++) {
@@ -376,16 +377,14 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
     return 1;
   }
   lag_worst_constraint(pb, t, y, holonomic, &worst);
-  if (worst <= 0x1p10) {
-    memcpy(terms, w.g, (size_t)n * sizeof *terms);
-    terms[w.of->n] = far;
-    return 1;
+  memcpy(terms, w.g, (size_t)n * sizeof *terms);
+  met = worst <= 0x1p10;
+  if (!met && began_at_0(pb)) {
+    met = is_noise(pb, &w, t, y, holonomic, residual);
+    met = lag_residuals(pb, t, y, w.c, w.r) == 0 && met; /* which is_noise() has written over, and newton() goes on with */
   }
-  if (!began_at_0(pb)) {
-    return 0;
-  }
-  int noise = is_noise(pb, &w, t, y, holonomic, residual);
-  return lag_residuals(pb, t, y, w.c, w.r) == 0 && noise; /* is_noise() writes over them, and newton() goes on with them either way */
+  terms[w.of->n] = met ? far : HUGE_VAL; /* a state that does not obey them may be anywhere */
+  return met;
 }
 
 /* Whether the residuals of y, of which w->c and w->r are left as they are, are what the last digits of their terms make. */
