@@ -89,7 +89,8 @@ struct lag_sim {
   int nodes;             /* which has so many */
   int balances;          /* lag_sim_balance was called */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
-  double *method_work;
+  double *method_work;   /* [nwork], and as much behind it for a step that is tried again */
+  size_t nwork;
   double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or now where there is no step; NULL */
   int tangent_columns, tangent_at_event; /* at_event: it is what an event made of it at this time */
   int (*on_step)(void *, const lag_sim *);
@@ -139,6 +140,10 @@ int lag_events_locate(lag_sim *sim);
 int lag_events_spread(lag_sim *sim, const double *at_event, double *spread);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
+
+/* landing.c: a step of the method from `now` at *t, into y and *t; of another size where it would end badly for constraints. What the
+ * method returned; after a failure y and *t are as they were, or undefined. */
+int lag_step_of_method(lag_sim *sim, double *t, double t_stop);
 
 /* project.c. Constraints on velocities that keep a function of positions: until it is said what, positions are free; then they keep what it
  * is of y at t. Returns what the model returned. */

@@ -13,7 +13,7 @@ enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
 typedef struct Held {
   const lag_constraints *of;
   double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
-  double *terms[2];               /* [n + 1] of the rates, of the holonomic ones, where they were last met; last: how large coordinates were */
+  double *terms[2];               /* [n] of the rates, of the holonomic ones, where they were last met */
   double *d, *force, *step;       /* [nq], [nq], [nq] */
   double *other;                  /* [2 nq + nz] */
   double *M;                      /* [nmass] */
@@ -23,14 +23,14 @@ size_t lag_held_room(const lag_model *m)
 {
   const lag_constraints *of = m->constraints;
 
-  return of ? (size_t)(6 * of->n + 2 + of->njacobian + of->nmass + 5 * m->nq + m->nz + (2 * m->nq + m->nz)) : 0;
+  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz + (2 * m->nq + m->nz)) : 0;
 }
 
 static Held layout(const lag_problem *pb)
 {
   Held w = {.of = pb->model->constraints};
   double *x = pb->held, **const parts[] = {&w.c, &w.r, &w.before, &w.g, &w.terms[0], &w.terms[1], &w.A, &w.M, &w.d, &w.force, &w.step, &w.other};
-  const int n = w.of->n, sizes[] = {n, n, n, n, n + 1, n + 1, w.of->njacobian, w.of->nmass, pb->nq, pb->nq, pb->nq, 0};
+  const int n = w.of->n, sizes[] = {n, n, n, n, n, n, w.of->njacobian, w.of->nmass, pb->nq, pb->nq, pb->nq, 0};
 
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
@@ -352,23 +352,12 @@ static int began_at_0(const lag_problem *pb)
   return zero;
 }
 
-/* How far the largest of x[n] is from 0; what is less than 1e-6 tells nothing, as in lag_reach. */
-static double farthest(int n, const double *x)
-{
-  double most = 1e-6;
-
-  for (int i = 0; i < n; i++) {
-    most = fmax(most, fabs(x[i]));
-  }
-  return most;
-}
-
 int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual)
 {
   const double rounding = 0x1p10 * DBL_EPSILON;
   Held w = layout(pb);
-  double *terms = w.terms[holonomic], worst = HUGE_VAL, far = farthest(holonomic ? pb->nq : pb->n, y);
-  int n = holonomic ? w.of->nholonomic : w.of->n, met = far >= terms[w.of->n] / 16;
+  double *terms = w.terms[holonomic], worst = HUGE_VAL;
+  int n = holonomic ? w.of->nholonomic : w.of->n, met = 1;
 
   for (int k = 0; k < n; k++) {
     met &= fabs(residual[k]) <= rounding * terms[k] / 4; /* what they were will do, where it is clear */
@@ -377,13 +366,13 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
     return 1;
   }
   lag_worst_constraint(pb, t, y, holonomic, &worst);
-  memcpy(terms, w.g, (size_t)n * sizeof *terms);
   met = worst <= 0x1p10;
   if (!met && began_at_0(pb)) {
     met = is_noise(pb, &w, t, y, holonomic, residual);
     met = lag_residuals(pb, t, y, w.c, w.r) == 0 && met; /* which is_noise() has written over, and newton() goes on with */
+  } else if (met) { /* a state that does not obey them may be anywhere, and its terms as large as you like */
+    memcpy(terms, w.g, (size_t)n * sizeof *terms);
   }
-  terms[w.of->n] = met ? far : HUGE_VAL; /* a state that does not obey them may be anywhere */
   return met;
 }
 
