@@ -25,6 +25,7 @@ typedef struct Run {
   double balanced;       /* 1: the work of forces on charges is integrated */
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
   double rank, beside;   /* constraints at the start that do not follow from others; where that is singular: a hundredth beside it */
+  double apart, since_apart, unlooked; /* how independent constraints were when that was last asked, steps since then, and until then */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
 } Run;
 

@@ -7,6 +7,7 @@
  * the run: until it did, a rhomb went on with other energy.
  *
  * rk45 and dop853 choose where to land by their own estimates (methods/embedded.c). */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +15,7 @@
 #include "core/core.h"
 #include "core/rhs.h"
 
-enum { TRIES = 8, FEW = 32 };
+enum { TRIES = 8, FEW = 32, MOST_UNLOOKED = 16 };
 
 /* Of how dependent constraints may be: at the end of a step; where motions are looked at. Of how far the way of a step may be from the mean of
  * the velocities at its ends: what another size may better, and what ends the run. */
@@ -37,18 +38,35 @@ static double detour(const lag_problem *pb, double dt, const double *y0, const d
   return most;
 }
 
-/* How bad the end y of a step from y0 is: 0 good, more than 1 where another size may be better. *way: its detour, where that counts. */
-static double badness(lag_problem *pb, double t0, const double *y0, double t, const double *y, double *way)
+/* How independent constraints are at y, and how many steps may be made without asking again: a quarter of those that would lead near a
+ * dependent position, at the pace of the last ones. The answer costs as much as a step of rk4. */
+static double look(Run *r, lag_problem *pb, double t, const double *y)
 {
-  int k, few = pb->model->constraints->n <= FEW;
+  int k;
+  double s = lag_independence(pb, t, y, &k), pace = fabs(s - r->apart) / (r->since_apart + 1);
 
-  *way = detour(pb, t - t0, y0, y);
-  if (!few && *way <= doubtful) { /* independence is dear then */
+  r->unlooked = s > near_by ? fmin(MOST_UNLOOKED, floor((s - near_by) / (4 * pace + DBL_MIN))) : 0;
+  r->apart = s;
+  r->since_apart = 0;
+  return s;
+}
+
+/* How bad the end s->y of a step from s->now at t0 is: 0 good, more than 1 where another size may be better. *way: its detour, where that
+ * counts. */
+static double badness(lag_sim *s, double t0, double t, double *way)
+{
+  lag_problem *pb = &s->pb;
+  int k, dear = pb->model->constraints->n > FEW;
+
+  *way = detour(pb, t - t0, s->now, s->y);
+  if (*way <= doubtful && (dear || s->run->unlooked > 0)) {
+    s->run->unlooked -= s->run->unlooked > 0;
+    s->run->since_apart++;
     return 0;
   }
-  double s = lag_independence(pb, t, y, &k);
-  *way = s < near_by ? *way : 0;
-  double at = s < least_apart && lag_independence(pb, t0, y0, &k) >= least_apart ? least_apart / fmax(s, 1e-20) : 0;
+  double apart = look(s->run, pb, t, s->y);
+  *way = apart < near_by ? *way : 0;
+  double at = apart < least_apart && lag_independence(pb, t0, s->now, &k) >= least_apart ? least_apart / fmax(apart, 1e-20) : 0;
   return fmax(at, *way / doubtful);
 }
 
@@ -108,7 +126,7 @@ int lag_step_of_method(lag_sim *s, double *t, double t_stop)
   const size_t bytes = s->nwork * sizeof *was;
   memcpy(was, s->method_work, bytes);
   int rc = s->method->step(s->method_work, &s->pb, t, s->y, t_stop);
-  bad = rc ? may_pass(s, rc) ? HUGE_VAL : 0 : badness(&s->pb, t0, s->now, *t, s->y, &way);
+  bad = rc ? may_pass(s, rc) ? HUGE_VAL : 0 : badness(s, t0, *t, &way);
   if (!(bad > 1)) {
     return rc;
   }
@@ -116,7 +134,7 @@ int lag_step_of_method(lag_sim *s, double *t, double t_stop)
   for (int k = 0; k < TRIES && least > 1; k++) { /* 1/1.25, 1.25, 1/1.25^2, 1.25^2, ... */
     stretch = pow(1.25, k % 2 ? (k + 1) / 2 : -(k + 2) / 2) - 1;
     int failed = try_step(s, was, bytes, t, t_stop, stretch);
-    bad = failed ? HUGE_VAL : badness(&s->pb, t0, s->now, *t, s->y, &way);
+    bad = failed ? HUGE_VAL : badness(s, t0, *t, &way);
     s->pb.rejected++;
     if (bad < least) {
       least = bad;
@@ -126,7 +144,7 @@ int lag_step_of_method(lag_sim *s, double *t, double t_stop)
   if (best != stretch || least > 1) {
     rc = try_step(s, was, bytes, t, t_stop, best);
     if (rc == 0) {
-      badness(&s->pb, t0, s->now, *t, s->y, &way);
+      badness(s, t0, *t, &way);
     }
   } else {
     rc = 0;
