@@ -140,9 +140,12 @@ static int other_sizes(lag_problem *pb, const Held *w, double t, const double *y
   int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : nq;
   double *c = w->c, *r = w->r;
 
+  double reach = 0;
+  const lag_var *q = pb->model->q;
   memcpy(w->other, y, (size_t)pb->n * sizeof *y);
-  for (int i = 0; i < nq; i++) {
-    w->other[at + i] += lag_reach(pb, y, holonomic, i) * (0.5 + fmod(step * (i + 1), 1));
+  for (int i = 0; i < nq; i++) { /* members of a family have one, and there may be hundreds */
+    reach = i > 0 && strcmp(q[i].unit, q[i - 1].unit) == 0 && q[i].periodic == q[i - 1].periodic ? reach : lag_reach(pb, y, holonomic, i);
+    w->other[at + i] += reach * (0.5 + fmod(step * (i + 1), 1));
   }
   int rc = lag_residuals(pb, t, w->other, c, r);
   for (int k = 0; k < n && rc == 0; k++) {
