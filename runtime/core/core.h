@@ -119,6 +119,8 @@ int lag_between(lag_sim *sim, double t, double *y);
 /* consistent.c: now[n], the start as it was set, becomes the nearest start that obeys the constraints; asked, redundant, loose, run->rank and
  * run->beside are set. */
 int lag_consistent(lag_sim *sim);
+/* agreement.c: constraints that follow from others at the start `now` agree soon after it, too; else a failure that names one. */
+int lag_agreement(lag_sim *sim);
 /* forces.c. observe: out[nout] of the scene, in SI, of the state y at t. Multipliers and accelerations near a position where constraints
  * become dependent are those that they tend to along the last step; NaN where there is none. LAG_OK, or what failed. */
 int lag_observe(lag_sim *sim, double t, const double *y, double *out);

@@ -199,9 +199,14 @@ void lag_say_constraint(lag_problem *pb, int k, int holonomic, double residual, 
 {
   const lag_constraint *c = &pb->model->constraints->of[k];
   const char *level = c->holonomic == holonomic ? "" : holonomic ? "*s" : c->unit[0] ? "/s" : "1/s";
+  size_t length = strlen(c->unit);
   char line[32], unit[64];
 
-  snprintf(unit, sizeof unit, "%s%s%s", c->unit[0] || level[0] ? " " : "", c->unit[0] || level[0] != '*' ? c->unit : "1", level);
+  if (level[0] == '*' && length > 2 && strcmp(c->unit + length - 2, "/s") == 0) { /* m/s*s is m */
+    length -= 2;
+    level = "";
+  }
+  snprintf(unit, sizeof unit, "%s%.*s%s", c->unit[0] || level[0] ? " " : "", (int)(length ? length : 1), c->unit[0] || level[0] != '*' ? c->unit : "1", level);
   if (isnan(residual)) {
     snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, lag_line_of(c, line), words);
   } else {

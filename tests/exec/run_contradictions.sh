@@ -17,6 +17,26 @@ scene s { span 1; output x, y every 0.1 }
 END
 }
 
+# ---- at the start, and soon after it: lagc check finds it, and a run writes nothing
+# x = 0 and a rate of 1, an acceleration, and a third derivative that are not 0 at the start.
+refuses() { # STATUS COMMAND...
+  rm -f "$TMP/rows.csv"
+  "$@" >"$TMP/report" 2>&1
+  echo "$? $(grep -o "constraint .\{0,1\}[pq]" "$TMP/report" | tr -d '`' | head -n 1 | cut -c1-10) $(ls "$TMP/rows.csv" 2>/dev/null)"
+}
+model rate "x' = a/1 [s]*cos(t/1 [s])"
+model acceleration "x' = a/1 [s^2]*t"
+model third 'x = a/1 [s^3]*t^3'
+for name in rate acceleration third; do
+  is "$name: a run" '2 constraint' "$(refuses "$LAGC" run "$TMP/$name.lag" -o "$TMP/rows.csv" | sed 's/ *$//')"
+done
+for name in acceleration third; do
+  is "$name: lagc check" '1 constraint' "$(refuses "$LAGC" check "$TMP/$name.lag" | sed 's/ *$//')"
+done
+# Those that agree for good, and those that are dependent at the start alone, are no contradiction.
+model agrees 'x*(1 [m] + y) = x*a*sin(t/1 [s])'
+check "constraints that agree" "$LAGC" run "$TMP/agrees.lag" --until 0.1
+
 # ---- later
 # One that jumps at half a second: it agreed until then. From 0, where no coordinate shows how large it is.
 model jumps 'x = if(t > 0.5 [s], a, 0 [m])'
