@@ -63,11 +63,12 @@ one 'constraint c: x = l' "scene s { start exactly x = 1 [m], x' = 1 [m/s]; span
 check "exactly, velocities" refused c 'without `exactly` the nearest start is taken'
 
 # ---- what agrees at the start and not after it
-contradicts() { # WORDS: check says so, and a run ends at once, naming the same constraint
+contradicts() { # WORDS: check says so, and a run, naming the same constraint, with no rows
+  rm -f "$TMP/rows.csv"
   checks "$TMP/one.lag" && return 1
   says '`b` contradicts those before it: ' "$TMP/check" && says "$1" "$TMP/check" || return 1
   runs "$TMP/one.lag" && return 1
-  says 'b (line 6) is off by' "$TMP/run" && says 'contradicts the others' "$TMP/run"
+  says 'b (line 6) is off by' "$TMP/run" && says 'contradict each other soon after the start' "$TMP/run" && [ ! -e "$TMP/rows.csv" ]
 }
 one 'constraint a: x = 0 [m]' "constraint b: x' = v*(t/1 [s])" 'scene s { span 1 [s] }'
 check "another acceleration" contradicts 'demands another acceleration'
