@@ -70,4 +70,23 @@ for method in dop853 rk45 rk4 radau verlet variational; do
   is "$method ends at the end of the circle, and writes only what is on it" '3 yes' \
     "$status $(awk -F, 'NR > 1 { if ($4 > 1e-14 || $4 < -1e-14) bad = 1; end = $1 } END { print (!bad && end >= 0.99 && end < 1.005 ? "yes" : end) }' "$TMP/rows.csv")"
 done
+
+# ---- a corner: what a bead does there is in no equation, and a run that does not leave the place ends
+cat >"$TMP/corner.lag" <<'END'
+model corner
+coord x [m], y [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2]
+kinetic = m/2*(x'^2 + y'^2)
+potential = m*g*y
+constraint wedge: y = abs(x)
+scene s { start x = 1, y = 1; span 3; output x, y every 0.1 }
+END
+check "lagc check warns of a corner" says 0 'the constraint `wedge` has a corner here' "$LAGC" check "$TMP/corner.lag"
+ends() {
+  timeout 60 "$LAGC" run "$TMP/corner.lag" -o "$TMP/rows.csv" >"$TMP/report" 2>&1
+  [ $? = 3 ] && grep 'FAILED.*steps led on by .*a force or a constraint jumps here' "$TMP/report"
+}
+check "a run that does not leave it ends" ends
+sed 's/abs(x)/x^2\/1 [m]/' "$TMP/corner.lag" >"$TMP/round.lag"
+check "of a round one nothing is said" test -z "$("$LAGC" check "$TMP/round.lag" 2>&1 | grep corner)"
 tap_end
