@@ -67,7 +67,7 @@ struct lag_sim {
   char *room;
   size_t nsaved;
   Run *run;
-  double *p, *hold;      /* [np], [nu] */
+  double *p, *hold;      /* [np + nderived], [nu] */
   double *begin;         /* [n] at the start of the run */
   double *asked;         /* [n] the same before it was brought to the constraints */
   double *redundant;     /* [constraints] 1: at the start it follows from others */

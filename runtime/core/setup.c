@@ -16,7 +16,7 @@ enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_D
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
 {
   const lag_model *m = s->scene->model;
-  size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
+  size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)(m->np + m->nderived), nu = (size_t)m->nu;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
   size_t fixed = RUN_DOUBLES + np + nu + 5 * n + (size_t)s->pb.nq + 2 * nc + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
   size_t ncharges = (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double);

@@ -54,7 +54,7 @@ typedef struct lag_signal {
 typedef struct lag_problem {
   const lag_model *model;
   int n, nq, nz;       /* n = 2 nq + nz */
-  const double *p;     /* [np] parameters */
+  const double *p;     /* [np + nderived] parameters */
   double *u;           /* [nu] inputs, filled by lag_rhs */
   const double *hold;  /* [nu] constants that replace inputs; NaN where there is none */
   const lag_signal *signal; /* [nu] functions that replace inputs */

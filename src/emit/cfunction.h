@@ -19,6 +19,11 @@ void csupport_spline(const char *prefix, const char *lower, StrBuf *out);
  * of the rows: one factorization for several right-hand sides. */
 void csupport_factor(const char *prefix, const char *lower, StrBuf *out);
 
+/* lag_invert(n, w), which needs csupport_factor, with w as Solve in ir/prog.h says for IR_INVERT; lag_multiply(n, inverse, w), for solves with
+ * an inverse: w[2 n] = right-hand side, solution. */
+void csupport_inverter(const char *prefix, const char *lower, StrBuf *out);
+void csupport_multiplier(const char *prefix, const char *lower, StrBuf *out);
+
 /* text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
 void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out);
 

@@ -24,16 +24,29 @@ static void put_term(StrBuf *b, int64_t factor, const char *counter) {
   else sb_printf(b, "%s%lld*%s", sign, (long long)size, counter);
 }
 
-static const char *affine(const Nesting *x, int64_t first, int64_t by_row, int64_t by_turn) {
+/* The counter, or what the table has in its place. */
+static const char *counted(const Nesting *x, const uint32_t *table, uint32_t n, const char *counter) {
+  return table ? arena_printf(x->body.a, "%s[%s]", cindex_name(x->body.indices, table, n), counter) : counter;
+}
+
+static const char *index_text(const Nesting *x, IrPlace at) {
   StrBuf b = strbuf(x->body.a);
-  put_term(&b, has_rows(x->n) ? by_row : 0, x->i);
-  put_term(&b, nest_has_turns(x->n) ? by_turn : 0, x->j);
+  int64_t first = at.first;
+  put_term(&b, has_rows(x->n) ? at.by_row : 0, counted(x, at.row_at, x->n->rows, x->i));
+  put_term(&b, nest_has_turns(x->n) ? at.by_turn : 0, counted(x, at.turn_at, x->n->count, x->j));
   if (!b.n) sb_printf(&b, "%lld", (long long)first);
   else if (first) sb_printf(&b, " %c %lld", first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first));
   return sb_text(&b);
 }
 
-static const char *place(const Nesting *x, uint32_t k) { return affine(x, x->n->at[k].first, x->n->at[k].by_row, x->n->at[k].by_turn); }
+static const char *place(const Nesting *x, uint32_t k) { return index_text(x, x->n->at[k]); }
+
+/* The first turn of row i + behind. */
+static const char *turn_of_row(const Nesting *x, int behind) {
+  const Nest *n = x->n;
+  if (!n->begin) return index_text(x, (IrPlace){.first = behind ? n->turns : 0, .by_row = n->skew + (behind ? n->more : 0)});
+  return arena_printf(x->body.a, "%s[%s%s]", cindex_name(x->body.indices, n->begin, n->rows + 1), x->i, behind ? " + 1" : "");
+}
 
 static void line(Writer *w, const char *text) {
   cwriter_statement(w, text);
@@ -119,7 +132,7 @@ static void write_rows(Nesting *x, const Writer *around) {
   if (has_rows(n) && nest_has_turns(n)) open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
   write_values(x, around, 0);
   declare_partial(x);
-  if (nest_has_turns(n)) open_loop(w, x->j, affine(x, 0, n->skew, 0), affine(x, n->turns, n->skew + n->more, 0));
+  if (nest_has_turns(n)) open_loop(w, x->j, turn_of_row(x, 0), turn_of_row(x, 1));
   else open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
   write_values(x, around, 1);
   write_additions(x);
@@ -158,14 +171,12 @@ void cnest_write(Writer *w, const Ins *i) {
   w->temps = x.body.temps;
 }
 
-/* One more than the highest index at a place of the nest: in one of the corners. */
+/* One more than the highest index at a place of the nest. */
 static int64_t end_of(const Nest *n, uint32_t k) {
   int64_t end = 0;
-  for (int corner = 0; corner < 4; corner++) {
-    int64_t i = corner & 1 ? n->rows - 1 : 0, j = n->skew*i + (corner & 2 ? n->turns + n->more*i - 1 : 0);
-    int64_t index = n->at[k].first + n->at[k].by_row*i + n->at[k].by_turn*j;
-    if (index >= end) end = index + 1;
-  }
+  for (int64_t i = 0; i < n->rows; i++)
+    for (int64_t j = nest_from(n, i); j < nest_to(n, i); j++)
+      if (nest_index(n, k, i, j) >= end) end = nest_index(n, k, i, j) + 1;
   return end;
 }
 
@@ -190,6 +201,13 @@ static void copy_parameters(Writer *w) {
 
 void cnest_prepare(Writer *w) {
   if (!w->p->nests.n) return;
+  w->indices = w->style->indices;
+  if (!w->indices) {
+    CIndices *own = ARENA_NEW(w->a, CIndices);
+    own->stem = cnames_take(&w->names, "index");
+    cindex_declare(own, w->p, "  ", w->a, w->out);
+    w->indices = own;
+  }
   if (w->style->params) copy_parameters(w);
   w->cells = cnames_take(&w->names, "sum");
   w->row = cnames_take(&w->names, "i");

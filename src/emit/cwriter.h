@@ -5,6 +5,7 @@
 #ifndef LAGC_CWRITER_H
 #define LAGC_CWRITER_H
 
+#include "emit/cindex.h"
 #include "emit/cnames.h"
 #include "ir/prog.h"
 
@@ -20,9 +21,11 @@ typedef struct {
   const char *const *own;           /* names in the function's scope, NULL at the end */
   const char *const *globals;         /* names that the function must not hide, NULL at the end; or NULL */
   const char *solve, *kkt;          /* names of the functions that factor and solve; with constraints */
+  const char *invert, *multiply;    /* once, and with what that leaves: of matrices that depend on parameters alone */
   const char *factor, *substitute;  /* instead of it, where factors are kept; or NULL */
   const char *spline;               /* name of the function that evaluates tables, */
   const char *const *rows;          /* and of their arrays; NULL: they stand in the body */
+  CIndices *indices;                /* the file's tables of indices, those of the program among them; NULL: they stand in the body */
   int seldom_called;                /* shorter code is worth more here than the last nanosecond */
   const char *math;                 /* prefix of sincos, sin and cos where they come with the file; NULL: LAG_FN(sin) */
   int loads_inline;                 /* spell loads at their use instead of naming them at the top */

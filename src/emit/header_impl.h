@@ -16,6 +16,7 @@ typedef struct {
   const char **q, **z, **p, **in, **ev, **outputs; /* enumerators */
   const char *const *fields;   /* members of the struct of parameters */
   const char *const *globals;
+  CIndices *indices;           /* those that stand in the file */
 } Header;
 
 /* Macros, enums, structs and prototypes; the definitions. */

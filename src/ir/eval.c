@@ -121,12 +121,11 @@ static int run_ins(Run *r, Slot s, const Ins *i) {
     case IR_SOLVED: v[s] = r->solution[i->a][i->index]; break;
     case IR_NEST: return run_nest(r, &r->p->nests.at[i->index]);
     case IR_TABLE: v[s] = spline_at(r->p->tables.at[i->index].curve, x); break;
+    case IR_INVERT: return -1; /* of emitted code alone */
     case IR_TITLE: break;
   }
   return 0;
 }
-
-static int64_t place(const Nest *n, uint32_t k, int64_t i, int64_t j) { return n->at[k].first + n->at[k].by_row*i + n->at[k].by_turn*j; }
 
 /* One turn; a load of the body stands at other places than the same load of the program around. */
 static int run_turn(Run *body, const Run *r, const Nest *n, int64_t i, int64_t j) {
@@ -138,7 +137,7 @@ static int run_turn(Run *body, const Run *r, const Nest *n, int64_t i, int64_t j
     } else if (x->array == ARR_OUTER) {
       body->v[s] = r->v[n->outer[x->index]];
     } else {
-      body->v[s] = (x->array == ARR_CELL ? r->cells : r->in[x->array])[place(n, x->index, i, j)];
+      body->v[s] = (x->array == ARR_CELL ? r->cells : r->in[x->array])[nest_index(n, x->index, i, j)];
     }
   }
   return 0;
@@ -148,7 +147,7 @@ static int run_turn(Run *body, const Run *r, const Nest *n, int64_t i, int64_t j
 static void add_stores(const Run *r, const Run *body, const Nest *n, Real *part, int64_t i, int64_t j) {
   for (uint32_t k = 0; k < body->p->stores.n; k++) {
     const Store *st = &body->p->stores.at[k];
-    Real *to = nest_moves(n, st->index) ? &r->cells[place(n, st->index, i, j)] : &part[k];
+    Real *to = nest_moves(n, st->index) ? &r->cells[nest_index(n, st->index, i, j)] : &part[k];
     *to += st->array ? -body->v[st->slot] : body->v[st->slot];
   }
 }
@@ -156,7 +155,7 @@ static void add_stores(const Run *r, const Run *body, const Nest *n, Real *part,
 static void add_parts(const Run *r, const Nest *n, Real *part, int64_t i) {
   for (uint32_t k = 0; k < n->body->stores.n; k++) {
     const Store *st = &n->body->stores.at[k];
-    if (!nest_moves(n, st->index)) r->cells[place(n, st->index, i, 0)] += part[k];
+    if (!nest_moves(n, st->index)) r->cells[nest_index(n, st->index, i, nest_from(n, i))] += part[k];
     part[k] = 0;
   }
 }
@@ -166,7 +165,7 @@ static int run_nest(Run *r, const Nest *n) {
   Run body = {.p = p, .in = r->in, .v = ARENA_ARRAY(p->arena, Real, p->ins.n), .cells = r->cells};
   Real *part = ARENA_ARRAY(p->arena, Real, p->stores.n + 1);
   for (int64_t i = 0; i < n->rows; i++) {
-    for (int64_t j = n->skew*i; j < (n->skew + n->more)*i + n->turns; j++) {
+    for (int64_t j = nest_from(n, i); j < nest_to(n, i); j++) {
       if (run_turn(&body, r, n, i, j) != 0) return -1;
       add_stores(r, &body, n, part, i, j);
     }

@@ -300,12 +300,12 @@ Prog *lower_accel(const Eqns *e, int libm) {
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
   enum { PAGE = 200 }; /* short ones processors take in as a whole, and people read */
-  Prog *p = prog_factor(prog_tidy(l.p));
+  Prog *tidy = prog_tidy(l.p), *p = prog_factor(tidy);
   if (p->ins.n <= ROLL_FROM) {
     p = prog_in_time(prog_share(p));
     return p->ins.n > PAGE ? prog_by_deadline(p, libm) : p;
   }
-  Prog *nested = prog_nest(p, ROLL_FROM);
+  Prog *nested = prog_nest_either(p, tidy, ROLL_FROM);
   return is_diagonal(e) ? prog_by_demand(nested) : nested;
 }
 

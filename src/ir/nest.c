@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "ir/nest_impl.h"
+#include "ir/roll.h"
 
 enum { FEWEST_PIECES = 8, MOST_VALUES = 2000 };
 
@@ -90,16 +91,13 @@ static Alike *group_of(Search *s, const Tape *t) {
 
 /* --- nests --- */
 
-static void add_nest(Search *s, const Alike *x, const Fit *f, const uint32_t *order) {
+static void add_nest(Search *s, const Alike *x, const Fit *f) {
   Arena *a = s->c.a;
-  uint32_t width = x->tape.columns.n;
-  IrPlace *at = ARENA_ARRAY(a, IrPlace, width + 1);
-  for (uint32_t k = 0; k < width; k++) at[k] = (IrPlace){f->first[k], f->row[k], f->turn[k]};
-  Nest n = {.rows = f->rows, .skew = f->skew, .turns = f->turns, .more = f->more, .at = at, .n = width, .count = f->count};
+  Nest n = {.rows = f->rows, .skew = f->skew, .turns = f->turns, .more = f->more, .begin = f->begin, .at = f->at, .n = x->tape.columns.n, .count = f->count};
   n.body = nest_body(&s->c, &x->tape, f, &n.outer, &n.nouter);
   vec_push(a, &s->found, ((Found){n, x->tape.class_of.at}));
-  for (uint32_t k = f->begin; k < f->begin + f->count; k++) {
-    uint32_t piece = x->pieces.at[order[k]];
+  for (uint32_t k = 0; k < f->count; k++) {
+    uint32_t piece = x->pieces.at[f->pieces[k]];
     const Shares *gives = &s->c.pieces.at[piece - 1].gives;
     s->nested[piece] = s->found.n;
     for (uint32_t j = 0; j < gives->n; j++) {
@@ -114,8 +112,9 @@ static void find_nests(Search *s, const Alike *x) {
   uint32_t n = x->pieces.n, *order = ARENA_ARRAY(a, uint32_t, n);
   Fits fits = {0};
   for (uint32_t k = 0; k < n; k++) order[k] = k;
-  nest_fit(a, x->columns.at, x->tape.array.at, x->tape.columns.n, order, n, &fits);
-  for (uint32_t k = 0; k < fits.n; k++) add_nest(s, x, &fits.at[k], order);
+  Indices all = {a, x->columns.at, x->tape.array.at, x->tape.columns.n, x->tape.nodes.n};
+  nest_fit(&all, order, n, &fits);
+  for (uint32_t k = 0; k < fits.n; k++) add_nest(s, x, &fits.at[k]);
 }
 
 /* Pieces that may be turns of loops, from number `from` of the ready ones on. */
@@ -212,9 +211,12 @@ static void other_terms(const Rebuild *r, Slot hub, Shares *terms) {
   const Cut *c = &r->s->c;
   terms->n = 0;
   if (c->hub[hub] == HUB_SUM) nest_terms(c, hub, terms);
-  uint32_t n = 0;
-  for (uint32_t k = 0; k < terms->n; k++)
-    if (!is_nested(r, terms->at[k].value)) terms->at[n++] = terms->at[k];
+  uint32_t n = 0, leaves = 0;
+  for (uint32_t k = 0; k < terms->n; k++) {
+    Slot x = terms->at[k].value;
+    int is_leaf = c->leaves[hub] && nest_is_leaf(c, x);
+    if (is_leaf ? !r->s->nested[c->leaves[hub] + leaves++] : !is_nested(r, x)) terms->at[n++] = terms->at[k];
+  }
   terms->n = n;
 }
 
@@ -253,11 +255,15 @@ static Slot make_nest(Rebuild *r, uint32_t k) {
   return prog_ins(r->to, (Ins){.op = IR_NEST, .a = k ? r->map[r->from->ins.n + k - 1] : 0, .index = k});
 }
 
+/* As nest `nest`, from 1, leaves it. */
+static Slot load_cell(Rebuild *r, uint32_t cell, uint32_t nest, Name name) {
+  return prog_ins(r->to, (Ins){.op = IR_LOAD, .array = ARR_CELL, .a = r->map[r->from->ins.n + nest - 1], .index = cell, .name = name});
+}
+
 static Slot make_hub(Rebuild *r, Slot hub) {
   const Search *s = r->s;
   Name name = r->from->ins.at[hub].name;
-  Slot sum = prog_ins(r->to, (Ins){.op = IR_LOAD, .array = ARR_CELL, .a = r->map[r->from->ins.n + s->last[hub] - 1],
-                                   .index = r->base[s->c.class_of[hub]] + s->c.number[hub], .name = name ? name : "sum"});
+  Slot sum = load_cell(r, r->base[s->c.class_of[hub]] + s->c.number[hub], s->last[hub], name ? name : "sum");
   other_terms(r, hub, s->c.terms);
   for (uint32_t k = 0; k < s->c.terms->n; k++)
     sum = prog_op(r->to, s->c.terms->at[k].minus ? IR_SUB : IR_ADD, sum, r->map[s->c.terms->at[k].value]);
@@ -281,6 +287,26 @@ static void rebuild(Rebuild *r, uint32_t item) {
   }
 }
 
+/* By store: the cell, from 1, of a zero between a few others and what nests store, to which no nest adds: one loop stores all. */
+static const uint32_t *empty_cells(const Rebuild *r) {
+  enum { FEW = 16 };
+  const Prog *p = r->from;
+  const Cut *c = &r->s->c;
+  uint32_t *cell = ARENA_ARRAY(c->a, uint32_t, p->stores.n + 1), zeros = 0, known = 0;
+  for (uint32_t k = 0; k < p->stores.n; k++) {
+    Slot x = p->stores.at[k].slot;
+    if (!x) {
+      zeros++;
+      continue;
+    }
+    uint32_t is_cell = c->hub[x] == HUB_STORED && r->s->terms[x] && c->number[x] == k;
+    for (uint32_t j = k - zeros; j < k && known && is_cell && zeros < FEW; j++) cell[j] = r->base[c->class_of[x]] + j + 1;
+    zeros = 0;
+    known = is_cell;
+  }
+  return cell;
+}
+
 static Prog *with_nests(const Search *s) {
   const Prog *p = s->c.p;
   uint32_t items = p->ins.n + s->found.n;
@@ -293,24 +319,65 @@ static Prog *with_nests(const Search *s) {
     int gone = (piece && s->nested[piece]) || (sum && sum != x && has_cell(&r, sum)) || ir_is_leaf(p->ins.at[x].op);
     if (!gone) rebuild(&r, x);
   }
+  const uint32_t *empty = empty_cells(&r);
   for (uint32_t k = 0; k < p->stores.n; k++) {
     Store st = p->stores.at[k];
     rebuild(&r, st.slot);
-    prog_store(r.to, st.array, st.index, r.map[st.slot], st.comment);
+    Slot x = empty[k] ? load_cell(&r, empty[k] - 1, s->found.n, "sum") : r.map[st.slot];
+    prog_store(r.to, st.array, st.index, x, st.comment);
   }
   return prog_tidy(r.to);
 }
 
+/* How many numbers the tables of a nest have. Places share tables. */
+static uint32_t table_entries(const Nest *n) {
+  uint32_t entries = n->begin ? n->rows + 1 : 0;
+  for (uint32_t k = 0; k < n->n; k++) {
+    int turns = n->at[k].turn_at != NULL, rows = n->at[k].row_at != NULL;
+    for (uint32_t j = 0; j < k; j++) turns &= n->at[j].turn_at != n->at[k].turn_at, rows &= n->at[j].row_at != n->at[k].row_at;
+    entries += (turns ? n->count : 0) + (rows ? n->rows : 0);
+  }
+  return entries;
+}
+
 /* How many instructions nests take in. Loops of one level are found in straight-line code, too (ir/roll.h), and keep there what
- * they share with their surroundings: nothing is gained where there are no loops inside loops. */
-static uint32_t taken_in(const Search *s) {
+ * they share with their surroundings: nothing is gained where there are no loops inside loops, and none by tables. */
+static uint32_t taken_in(const Search *s, int *tables) {
+  const Cut *c = &s->c;
   uint32_t inside = 0;
-  int deep = 0;
-  for (uint32_t k = 0; k < s->c.pieces.n; k++)
-    if (s->nested[k + 1]) inside += s->c.pieces.at[k].n;
-  for (Slot x = 1; x < s->c.p->ins.n; x++) inside += s->c.sum[x] && s->c.celled[s->c.sum[x]] == 2;
-  for (uint32_t k = 0; k < s->found.n; k++) deep |= s->found.at[k].nest.rows > 1 && s->found.at[k].nest.count > s->found.at[k].nest.rows;
-  return deep ? inside : 0;
+  int deep = *tables = 0;
+  for (uint32_t k = 0; k < s->found.n; k++) {
+    const Nest *n = &s->found.at[k].nest;
+    *tables |= table_entries(n) > 0;
+    deep |= n->rows > 1 && n->count > n->rows;
+  }
+  for (uint32_t k = 0; k < c->pieces.n; k++)
+    if (s->nested[k + 1]) inside += c->pieces.at[k].n;
+  for (Slot x = 1; x < c->p->ins.n; x++) {
+    inside += c->sum[x] && c->celled[c->sum[x]] == 2;
+    if (*tables && c->hub[x] == HUB_SUM && c->celled[x] == 1) inside += s->terms[x] - 1;
+  }
+  return deep || *tables ? inside : 0;
+}
+
+/* Whether the store goes on where the one before it ends: with a zero, or with the next element of an array. */
+static int goes_on(const Prog *p, uint32_t k) {
+  const Store *st = &p->stores.at[k];
+  const Ins *i = &p->ins.at[st->slot], *last = k ? &p->ins.at[st[-1].slot] : NULL;
+  if (!k || st->array != st[-1].array || !st->slot != !st[-1].slot) return 0;
+  return !st->slot || (i->op == IR_LOAD && last->op == IR_LOAD && i->array == last->array && i->index == last->index + 1);
+}
+
+/* How long its text is, in instructions: a line of C has one, or eight numbers of a table. */
+static uint32_t length(const Prog *p) {
+  unsigned by_index = 0;
+  for (int k = 0; k < ARR_COUNT; k++) by_index |= ir_is_scalar((IrArray)k) ? 0 : 1u << k;
+  Rolls r = roll_find(p, by_index, 0, 1);
+  uint32_t n = r.n;
+  for (uint32_t k = 0; k < r.loops.n; k++) n -= r.loops.at[k].period * (r.loops.at[k].count - 1);
+  for (uint32_t k = 0; k < p->stores.n; k++) n += !r.stored[k] && !goes_on(p, k);
+  for (uint32_t k = 0; k < p->nests.n; k++) n += p->nests.at[k].body->ins.n + table_entries(&p->nests.at[k]) / 8;
+  return n;
 }
 
 static Search search(const Prog *p, unsigned ends) {
@@ -325,15 +392,53 @@ static Search search(const Prog *p, unsigned ends) {
   return s;
 }
 
+/* The shortest of those that take in about as much. */
+static Prog *scattered(Prog *p) {
+  static const unsigned tried[] = {0, CUT_COMMON_TERMS, CUT_STORES, CUT_COMMON_TERMS | CUT_STORES, CUT_LEAVES, CUT_LEAVES | CUT_STORES};
+  Prog *best = p;
+  uint32_t least = UINT32_MAX, most = p->ins.n / 2;
+  for (size_t k = 0; k < sizeof tried / sizeof *tried; k++) {
+    int tables;
+    if (tried[k] & CUT_LEAVES && most > p->ins.n - p->ins.n / 8) break;
+    Search s = search(p, tried[k]);
+    uint32_t inside = taken_in(&s, &tables);
+    if (inside + p->ins.n / 16 <= most) continue;
+    if (inside > most) most = inside;
+    Prog *now = with_nests(&s);
+    uint32_t n = length(now);
+    if (n >= least) continue;
+    least = n;
+    best = now;
+  }
+  return best;
+}
+
 Prog *prog_nest(Prog *p, uint32_t from) {
+  static const unsigned tried[] = {0, CUT_COMMON_TERMS, CUT_STORES, CUT_COMMON_TERMS | CUT_STORES, CUT_LEAVES};
   if (p->ins.n < from || p->solves.n || p->nests.n) return p;
   Search best = {0};
   uint32_t most = p->ins.n / 2; /* else the rest is what counts */
-  for (unsigned ends = 0; ends < CUT_KINDS && most < p->ins.n - p->ins.n / 8; ends++) {
-    Search s = search(p, ends);
-    if (taken_in(&s) <= most) continue;
-    most = taken_in(&s);
+  for (size_t k = 0; k < sizeof tried / sizeof *tried && most < p->ins.n - p->ins.n / 8; k++) {
+    int tables;
+    Search s = search(p, tried[k]);
+    uint32_t inside = taken_in(&s, &tables);
+    if (inside <= most) continue;
+    if (tables) return scattered(p);
+    most = inside;
     best = s;
   }
   return best.found.n ? with_nests(&best) : p;
+}
+
+static int has_tables(const Prog *p) {
+  for (uint32_t k = 0; k < p->nests.n; k++)
+    if (table_entries(&p->nests.at[k])) return 1;
+  return 0;
+}
+
+Prog *prog_nest_either(Prog *factored, Prog *tidy, uint32_t from) {
+  Prog *first = prog_nest(factored, from), *second = has_tables(first) ? prog_nest(tidy, from) : tidy;
+  if (second == tidy) return first;
+  second = prog_factor(second);
+  return length(second) < length(first) ? second : first;
 }

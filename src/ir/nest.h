@@ -13,4 +13,8 @@
  * program, and leaves one; sums are added up in another order. Programs with solves stay what they are. */
 Prog *prog_nest(Prog *p, uint32_t from);
 
+/* The shorter one of nests of the same program before and after prog_factor: what is factored may be a sum that some pieces have to
+ * themselves, or what makes rows alike. The factored one where there are none. */
+Prog *prog_nest_either(Prog *factored, Prog *tidy, uint32_t from);
+
 #endif

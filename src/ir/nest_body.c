@@ -30,7 +30,7 @@ typedef struct {
 
 static uint32_t id_of_pair(const Making *m, uint32_t k) { return m->t->nodes.n + k; }
 
-static int changes(const Making *m, uint32_t column) { return m->f->turn[column] ? EACH_TURN : m->f->row[column] ? EACH_ROW : ONCE; }
+static int changes(const Making *m, uint32_t column) { return m->f->at[column].by_turn ? EACH_TURN : m->f->at[column].by_row ? EACH_ROW : ONCE; }
 
 static int is_product(const Making *m, const Node *n) { return n->kind == NODE_OP && m->c->p->ins.at[n->slot].op == IR_MUL; }
 
@@ -169,8 +169,9 @@ static Slot value(Making *m, uint32_t id) {
 }
 
 static int same_place(const Making *m, uint32_t x, uint32_t y) {
-  const Fit *f = m->f;
-  return m->t->array.at[x] == m->t->array.at[y] && f->first[x] == f->first[y] && f->row[x] == f->row[y] && f->turn[x] == f->turn[y];
+  const IrPlace *a = &m->f->at[x], *b = &m->f->at[y];
+  return m->t->array.at[x] == m->t->array.at[y] && a->first == b->first && a->by_row == b->by_row && a->by_turn == b->by_turn &&
+         a->row_at == b->row_at && a->turn_at == b->turn_at;
 }
 
 /* What goes to one sum goes there together. */
@@ -208,5 +209,5 @@ const Prog *nest_body(const Cut *c, const Tape *t, const Fit *f, const Slot **ou
   store_gives(&m);
   *outer = m.outer.at;
   *nouter = m.outer.n;
-  return prog_tidy(m.body);
+  return prog_factor(prog_tidy(m.body));
 }

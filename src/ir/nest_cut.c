@@ -25,24 +25,54 @@ static void find_joined(Cut *c) {
   }
 }
 
-static void find_long_sums(Cut *c) {
+/* The first terms of two sums that are the same are one value, by chance of their order: short ones are terms of both. */
+static void join_common_beginnings(Cut *c) {
+  enum { SHORT = 4 };
   const Prog *p = c->p;
-  uint32_t *terms = ARENA_ARRAY(c->a, uint32_t, p->ins.n);
+  unsigned char *users = ARENA_ARRAY(c->a, unsigned char, p->ins.n), *terms = ARENA_ARRAY(c->a, unsigned char, p->ins.n);
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    for (int k = 0; k < 2 && nest_is_sum(i->op); k++) {
+      Slot x = operand(i, k);
+      uint32_t n = terms[s];
+      if (x) n += c->joined[x] ? terms[x] : 1;
+      terms[s] = n > SHORT ? SHORT + 1 : (unsigned char)n;
+      if (x && users[x] < 2) users[x]++;
+    }
+  }
+  for (Slot s = 1; s < p->ins.n; s++)
+    if (nest_is_sum(op_of(c, s)) && c->uses[s] == 2 && users[s] == 2 && terms[s] <= SHORT) c->joined[s] = 1;
+}
+
+int nest_is_leaf(const Cut *c, Slot term) {
+  const Ins *i = &c->p->ins.at[term];
+  return i->op == IR_LOAD && !ir_is_scalar(i->array);
+}
+
+/* leaves: sums of some elements of arrays are long, too: rows of a matrix with zeros. */
+static void find_long_sums(Cut *c, int leaves) {
+  enum { FEWEST_LEAVES = 2, SHORTEST = 3 };
+  const Prog *p = c->p;
+  uint32_t *terms = ARENA_ARRAY(c->a, uint32_t, p->ins.n), *elements = ARENA_ARRAY(c->a, uint32_t, p->ins.n);
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     if (!nest_is_sum(i->op)) continue;
-    for (int k = 0; k < 2; k++)
-      if (operand(i, k)) terms[s] += c->joined[operand(i, k)] ? terms[operand(i, k)] : 1;
-    if (!c->joined[s] && terms[s] >= FEWEST_TERMS) c->hub[s] = HUB_SUM;
+    for (int k = 0; k < 2; k++) {
+      Slot x = operand(i, k);
+      if (x) terms[s] += c->joined[x] ? terms[x] : 1;
+      if (x) elements[s] += c->joined[x] ? elements[x] : nest_is_leaf(c, x) ? 1 : 0;
+    }
+    int is_row = leaves && elements[s] >= FEWEST_LEAVES && terms[s] >= SHORTEST;
+    if (!c->joined[s] && (terms[s] >= FEWEST_TERMS || is_row)) c->hub[s] = HUB_SUM;
   }
 }
 
 /* Sums with a term that another sum has, too, as by Newton's third law: springs of a net. */
 static void find_sums_in_common(Cut *c) {
   const Prog *p = c->p;
-  uint32_t *uses = ARENA_ARRAY(c->a, uint32_t, p->ins.n);
-  for (Slot s = 1; s < p->ins.n; s++)
-    for (int k = 0; k < 2 && nest_is_sum(op_of(c, s)); k++) uses[operand(&p->ins.at[s], k)]++;
+  uint32_t *uses = ARENA_ARRAY(c->a, uint32_t, p->ins.n); /* by how many sums; of a part, in how many it is */
+  for (Slot s = p->ins.n; s-- > 1;)
+    for (int k = 0; k < 2 && nest_is_sum(op_of(c, s)); k++) uses[operand(&p->ins.at[s], k)] += c->joined[s] ? uses[s] : 1;
   for (Slot s = 1; s < p->ins.n; s++) {
     if (!nest_is_sum(op_of(c, s)) || c->joined[s]) continue;
     c->terms->n = 0;
@@ -293,7 +323,15 @@ static void wait_for(Cut *c, Slot hub, uint32_t piece, Slot sum) {
   else c->pieces.at[piece - 1].waits++;
 }
 
-static void find_shares(Cut *c) {
+/* A term that is an element of an array as a piece. */
+static void take_leaf(Cut *c, Slot hub, Share term) {
+  vec_push(c->a, &c->pieces, ((Piece){.apart = 1}));
+  vec_push(c->a, &c->pieces.at[c->pieces.n - 1].gives, term);
+  if (!c->leaves[hub]) c->leaves[hub] = c->pieces.n;
+  c->waits[hub]++;
+}
+
+static void find_shares(Cut *c, int leaves) {
   const Prog *p = c->p;
   Shares terms = {0};
   for (Slot s = 1; s < p->ins.n; s++) {
@@ -308,6 +346,7 @@ static void find_shares(Cut *c) {
       Slot x = terms.at[k].value;
       c->terms_of[s]++;
       if (!c->piece[x] && c->hub[x]) wait_for(c, x, 0, s);
+      if (leaves && nest_is_leaf(c, x)) take_leaf(c, s, terms.at[k]);
       if (!c->piece[x]) continue; /* a leaf, or another sum */
       c->waits[s]++;
       vec_push(c->a, &c->pieces.at[c->piece[x] - 1].gives, terms.at[k]);
@@ -327,7 +366,7 @@ static void list_hubs(Cut *c) {
       Slot s = open.at[--open.n];
       if (seen[s]) continue;
       seen[s] = 1;
-      if (c->hub[s]) vec_push(c->a, &c->hubs, s);
+      if (c->hub[s]) vec_push(c->a, &c->hubs, s), c->store[s] = k;
       for (int j = 3; j-- > 0;)
         if (operand(&p->ins.at[s], j)) vec_push(c->a, &open, operand(&p->ins.at[s], j));
     }
@@ -353,6 +392,22 @@ static int by_key(const void *x, const void *y) {
   return (a->rank > b->rank) - (a->rank < b->rank);
 }
 
+/* Sums that are each for a store of its own have its number, with gaps: where others read elements of the same number, one table serves
+ * both. */
+static void number_sums_by_stores(Cut *c) {
+  uint32_t n = 0, first = 0, last = 0;
+  for (uint32_t k = 0; k < c->hubs.n; k++) {
+    Slot s = c->hubs.at[k];
+    if (c->hub[s] != HUB_SUM) continue;
+    if (n && c->store[s] == last) return;
+    if (!n++) first = c->store[s];
+    last = c->store[s];
+  }
+  if (last - first >= 2*n) return;
+  for (uint32_t k = 0; k < c->hubs.n; k++)
+    if (c->hub[c->hubs.at[k]] == HUB_SUM) c->number[c->hubs.at[k]] = c->store[c->hubs.at[k]] - first;
+}
+
 /* Sums are one class, what is stored another, shared values one for each signature. What is stored has the number of its first
  * store, with gaps, so that a loop stores it. */
 static void number_hubs(Cut *c) {
@@ -368,6 +423,7 @@ static void number_hubs(Cut *c) {
     c->class_of[s] = c->classes - 1;
     c->number[s] = k - first;
   }
+  number_sums_by_stores(c);
   for (uint32_t k = c->p->stores.n; k-- > 0;)
     if (c->hub[c->p->stores.at[k].slot] == HUB_STORED) c->number[c->p->stores.at[k].slot] = k;
 }
@@ -391,7 +447,10 @@ Cut nest_cut(const Prog *p, unsigned ends) {
   c.terms_of = ARENA_ARRAY(a, uint32_t, n);
   c.last_waiting = ARENA_ARRAY(a, uint32_t, n);
   find_joined(&c);
-  find_long_sums(&c);
+  join_common_beginnings(&c);
+  c.store = ARENA_ARRAY(a, uint32_t, n);
+  c.leaves = ARENA_ARRAY(a, uint32_t, n);
+  find_long_sums(&c, (ends & CUT_LEAVES) != 0);
   if (ends & CUT_COMMON_TERMS) find_sums_in_common(&c);
   mark_parts(&c);
   for (Slot s = 1; s < n; s++) sign(&c, s);
@@ -399,7 +458,7 @@ Cut nest_cut(const Prog *p, unsigned ends) {
   if (ends & CUT_STORES) find_stored(&c);
   for (Slot s = 1; s < n; s++) order(&c, s);
   find_pieces(&c);
-  find_shares(&c);
+  find_shares(&c, (ends & CUT_LEAVES) != 0);
   list_hubs(&c);
   number_hubs(&c);
   return c;

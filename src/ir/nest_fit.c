@@ -4,12 +4,13 @@
 
 #include "ir/nest_impl.h"
 
-enum { FEWEST_TURNS = 8, MOST_SHAPES = 24, MANY = 0 };
+/* A loop with its tables is as long as a few pieces; FEWEST_SCATTERED of them make it worth reading. */
+enum { FEWEST_TURNS = 8, FEWEST_SCATTERED = 16, MOST_SHAPES = 24, MANY = 0 };
 
 typedef struct {
   Arena *a;
   const int64_t *columns;
-  uint32_t width, n;
+  uint32_t width, n, size;
   uint32_t *order;
   const unsigned char *varies; /* [width] */
 } Group;
@@ -20,6 +21,7 @@ typedef struct {
 } Row;
 
 typedef VEC(Row) Rows;
+typedef VEC(uint32_t) Pieces;
 
 static const int64_t *indices(const Group *g, uint32_t k) { return g->columns + (size_t)g->order[k] * g->width; }
 
@@ -178,17 +180,17 @@ static int64_t skew_of(const Group *g, const Growing *w) {
   return 0;
 }
 
-static Fit fit_of(const Group *g, const Growing *w, uint32_t offset, uint32_t count) {
-  int64_t *first = ARENA_ARRAY(g->a, int64_t, g->width + 1);
-  for (uint32_t k = 0; k < g->width; k++) first[k] = indices(g, w->rows->begin)[k];
-  Fit f = {.rows = w->n, .turns = w->rows->count, .first = first, .row = w->row, .turn = w->turn, .begin = offset + w->rows->begin, .count = count};
+static Fit fit_of(const Group *g, const Growing *w, uint32_t count) {
+  IrPlace *at = ARENA_ARRAY(g->a, IrPlace, g->width + 1);
+  Fit f = {.rows = w->n, .turns = w->rows->count, .at = at, .pieces = g->order + w->rows->begin, .count = count};
   if (w->n > 1) f.more = (int64_t)w->rows[1].count - w->rows[0].count;
   f.skew = skew_of(g, w);
-  for (uint32_t k = 0; k < g->width; k++) w->row[k] -= f.skew * w->turn[k];
+  for (uint32_t k = 0; k < g->width; k++)
+    at[k] = (IrPlace){.first = indices(g, w->rows->begin)[k], .by_row = w->row[k] - f.skew * w->turn[k], .by_turn = w->turn[k]};
   return f;
 }
 
-static void fit_shape(Group *g, uint32_t offset, Fits *fits) {
+static void fit_shape(Group *g, Fits *fits, Pieces *left) {
   sort(g);
   find_varying(g);
   Rows rows = find_rows(g);
@@ -201,23 +203,42 @@ static void fit_shape(Group *g, uint32_t offset, Fits *fits) {
     while (i + w.n < rows.n && takes_row(g, &w)) {}
     uint32_t count = 0;
     for (uint32_t k = 0; k < w.n; k++) count += w.rows[k].count;
-    if (count >= FEWEST_TURNS) vec_push(g->a, fits, fit_of(g, &w, offset, count));
+    if (count >= FEWEST_TURNS) vec_push(g->a, fits, fit_of(g, &w, count));
+    for (uint32_t k = 0; k < count && count < FEWEST_TURNS; k++) vec_push(g->a, left, g->order[w.rows->begin + k]);
     i += w.n;
   }
 }
 
-void nest_fit(Arena *a, const int64_t *columns, const uint32_t *array, uint32_t width, uint32_t *order, uint32_t n, Fits *fits) {
-  Group all = {.a = a, .columns = columns, .width = width, .n = n, .order = order};
+/* --- what loops leave --- */
+
+/* A table takes about a quarter of a line for each piece, a loop as much as a piece does: few pieces of a loop by steps go to the table
+ * that others need anyway. */
+static void take_short_loops(const Group *g, Fits *fits, Pieces *left) {
+  uint32_t kept = 0;
+  for (uint32_t k = 0; k < fits->n; k++) {
+    Fit f = fits->at[k];
+    if (f.count >= 4*g->size) fits->at[kept++] = f;
+    for (uint32_t j = 0; j < f.count && f.count < 4*g->size; j++) vec_push(g->a, left, f.pieces[j]);
+  }
+  fits->n = kept;
+}
+
+void nest_fit(const Indices *x, uint32_t *order, uint32_t n, Fits *fits) {
+  Group all = {.a = x->a, .columns = x->columns, .width = x->width, .size = x->size, .n = n, .order = order};
   uint32_t end[MOST_SHAPES], begin = 0;
+  Pieces left = {0};
   find_varying(&all);
-  uint32_t first = first_varying(&all), shapes = split(&all, array, first, 0, end);
-  if (shapes == MANY) shapes = split(&all, array, first, spacing(&all, array, first), end);
+  uint32_t first = first_varying(&all), shapes = split(&all, x->array, first, 0, end);
+  if (shapes == MANY) shapes = split(&all, x->array, first, spacing(&all, x->array, first), end);
   if (shapes == MANY) end[0] = n, shapes = 1;
   for (uint32_t k = 0; k < shapes; k++) {
     Group g = all;
     g.order = order + begin;
     g.n = end[k] - begin;
-    fit_shape(&g, begin, fits);
+    fit_shape(&g, fits, &left);
     begin = end[k];
   }
+  if (left.n < FEWEST_SCATTERED) return;
+  take_short_loops(&all, fits, &left);
+  vec_push(x->a, fits, nest_scatter(x, left.at, left.n));
 }

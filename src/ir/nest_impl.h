@@ -1,5 +1,5 @@
 /* Shared by nest.c (the program in its new form), nest_cut.c (hubs and pieces), nest_tape.c (which pieces compute the same),
- * nest_fit.c (indices as loops) and nest_body.c (what a turn computes). */
+ * nest_fit.c (indices as loops), nest_scatter.c (indices as tables) and nest_body.c (what a turn computes). */
 #ifndef LAGC_NEST_IMPL_H
 #define LAGC_NEST_IMPL_H
 
@@ -46,6 +46,8 @@ typedef struct {
   VEC(Slot) hubs;        /* in the order in which stores need them */
   uint32_t *class_of;    /* by slot of hubs: hubs of one class are numbered side by side, */
   uint32_t *number;      /* from 0 */
+  uint32_t *store;       /* by slot of hubs: the first store that needs it */
+  uint32_t *leaves;      /* by slot of hubs: the piece, from 1, of its first term that is a leaf, others follow; 0: they are in no pieces */
   uint32_t classes;
   uint32_t *terms_of;    /* by slot of hubs: how many terms there are, */
   uint32_t *waits;       /* and how many of pieces and hubs are still to come */
@@ -57,11 +59,14 @@ typedef struct {
 
 int nest_is_sum(IrOp op);
 
-/* Where pieces end, besides long sums and what many use: at sums with terms in common, at what is stored. */
-enum { CUT_COMMON_TERMS = 1, CUT_STORES = 2, CUT_KINDS = 4 };
+/* Where pieces end, besides long sums and what many use: at sums with terms in common, at what is stored, at sums of elements of arrays. */
+enum { CUT_COMMON_TERMS = 1, CUT_STORES = 2, CUT_LEAVES = 4 };
 
 /* Everything but celled. ends: of these bits. */
 Cut nest_cut(const Prog *p, unsigned ends);
+
+/* Whether a term of a sum is an element of an array, which may be a piece by itself. */
+int nest_is_leaf(const Cut *c, Slot term);
 
 /* The terms of a sum, through the parts that are joined to it; hub is the sum. */
 void nest_terms(const Cut *c, Slot sum, Shares *terms);
@@ -111,19 +116,32 @@ typedef struct {
 } Local;
 void nest_tape(const Cut *c, Piece *piece, Local *local, uint32_t stamp, Tape *tape);
 
-/* Loops over the pieces of a group: index k of turn j of row i is first[k] + row[k]*i + turn[k]*j. */
+/* Loops over the pieces of a group. */
 typedef struct {
   uint32_t rows;
   int64_t skew, turns, more; /* as in Nest */
-  const int64_t *first, *row, *turn;
-  uint32_t begin, count; /* which of the sorted pieces */
+  const uint32_t *begin;
+  const IrPlace *at;         /* by column */
+  const uint32_t *pieces;    /* [count] their numbers */
+  uint32_t count;
 } Fit;
 
 typedef VEC(Fit) Fits;
 
-/* `n` pieces with `width` indices each, of which number k goes into array[k]; sorts `order`, which holds the pieces' numbers, and
- * appends the loops of enough turns. */
-void nest_fit(Arena *a, const int64_t *columns, const uint32_t *array, uint32_t width, uint32_t *order, uint32_t n, Fits *fits);
+/* Indices of pieces: columns[piece*width + k] goes into array[k]. size: how many values a piece computes. */
+typedef struct {
+  Arena *a;
+  const int64_t *columns;
+  const uint32_t *array;
+  uint32_t width, size;
+} Indices;
+
+/* Sorts `order`, which holds the numbers of n pieces, and appends loops of enough turns; what they leave goes by tables where
+ * that is shorter than its text. */
+void nest_fit(const Indices *x, uint32_t *order, uint32_t n, Fits *fits);
+
+/* One loop over n pieces, or a loop over rows of them, that take their indices from tables. */
+Fit nest_scatter(const Indices *x, const uint32_t *pieces, uint32_t n);
 
 /* The program of one turn. */
 const Prog *nest_body(const Cut *c, const Tape *t, const Fit *f, const Slot **outer, uint32_t *nouter);

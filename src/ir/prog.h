@@ -38,6 +38,7 @@ typedef enum {
   IR_PIVOT,  /* fails unless a > 0 (index 1), or a != 0 (index 0) */
   IR_SOLVE,  /* solves block `index` of prog->solves, with pivoting; fails when singular */
   IR_SOLVED, /* component `index` of the solution of solve a */
+  IR_INVERT, /* the inverse of block `index` of prog->solves, with pivoting, to where that says: see Solve */
   IR_NEST,   /* runs nest `index` of prog->nests; a: the nest that has run before it, or 0 */
   IR_TABLE,  /* the curve of table `index` of prog->tables at a */
   IR_TITLE   /* text: a comment line that heads what follows */
@@ -77,23 +78,29 @@ typedef struct {
 /* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it stands in the
  * work space. matrix is NULL where the one at that place was factored before, by another function. With m constraints A x = g on
  * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. coarse: constraints that are nearly dependent count as
- * dependent (lag_kkt.h). */
+ * dependent (lag_kkt.h). inverse: where the inverse stands among the parameters, not 0: then there is no matrix, and a solution is a product. Of
+ * IR_INVERT: where that writes [matrix | n | n | inverse | 1 where there is one, and 0]; no right-hand side. */
 typedef struct {
-  uint32_t n, m, place;
+  uint32_t n, m, place, inverse;
   int coarse;
   const Slot *matrix, *rhs;
 } Solve;
 
 /* Elements of matrix and rhs. */
 static inline uint32_t solve_elements(const Solve *k) { return k->matrix ? (k->n + k->m) * k->n : 0; }
-static inline uint32_t solve_unknowns(const Solve *k) { return k->n + k->m; }
+static inline uint32_t solve_unknowns(const Solve *k) { return k->rhs ? k->n + k->m : 0; }
 
-/* Index first + by_row*i + by_turn*j. */
+/* Where, from its place on, IR_INVERT leaves the inverse, and whether there is one. */
+static inline uint32_t solve_inverse(const Solve *k) { return k->n * k->n + 2 * k->n; }
+static inline uint32_t solve_is_regular(const Solve *k) { return 2 * k->n * k->n + 2 * k->n; }
+
+/* Index first + by_row*row_at[i] + by_turn*turn_at[j]; a table that is NULL has i in place i. */
 typedef struct {
   int64_t first, by_row, by_turn;
+  const uint32_t *row_at, *turn_at;
 } IrPlace;
 
-/* for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1: what the body computes is added to sums, which are 0
+/* for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1, or in begin[i] .. begin[i + 1] - 1: what the body computes is added to sums, which are 0
  * before the first nest; what goes to one sum in all turns of the inner loop, or of the only one, is added up from 0 before it is
  * added. The body is a program without nests: its loads of arrays and sums, and its stores, have numbers of `at`
  * as index (those that are no arrays have none); its loads of ARR_OUTER have numbers of `outer`. A store to array 0 adds, to array 1
@@ -101,6 +108,7 @@ typedef struct {
 typedef struct {
   uint32_t rows, count; /* count: of all turns */
   int64_t skew, turns, more;
+  const uint32_t *begin; /* [rows + 1] of rows whose lengths follow no rule; or NULL */
   const struct Prog *body;
   const IrPlace *at;    /* [n] */
   const Slot *outer;    /* [nouter] values of the program that the nest is in */
@@ -108,10 +116,20 @@ typedef struct {
 } Nest;
 
 /* Whether there is a loop over j: one over i is the only one where each row has one turn. */
-static inline int nest_has_turns(const Nest *n) { return n->rows == 1 || n->turns != 1 || n->more != 0; }
+static inline int nest_has_turns(const Nest *n) { return n->rows == 1 || n->begin || n->turns != 1 || n->more != 0; }
 
 /* Whether place k of `at` moves from turn to turn of the inner loop, or of the only one. */
 static inline int nest_moves(const Nest *n, uint32_t k) { return (nest_has_turns(n) ? n->at[k].by_turn : n->at[k].by_row) != 0; }
+
+/* The first turn of row i, and the one behind its last. */
+static inline int64_t nest_from(const Nest *n, int64_t i) { return n->begin ? n->begin[i] : n->skew*i; }
+static inline int64_t nest_to(const Nest *n, int64_t i) { return n->begin ? n->begin[i + 1] : (n->skew + n->more)*i + n->turns; }
+
+/* The index at place k of `at` in turn j of row i. */
+static inline int64_t nest_index(const Nest *n, uint32_t k, int64_t i, int64_t j) {
+  const IrPlace *x = &n->at[k];
+  return x->first + x->by_row*(x->row_at ? x->row_at[i] : i) + x->by_turn*(x->turn_at ? x->turn_at[j] : j);
+}
 
 /* A table that the user gave for what is called `name`. */
 typedef struct {
@@ -153,6 +171,13 @@ void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *com
 void prog_name(Prog *p, Slot s, Name name);
 
 int ir_is_condition(IrOp op);
+
+/* Whether `index` is that of a Solve. */
+int ir_has_solve(IrOp op);
+
+/* sin_th1, m2_l1, th1_dot_sq, inv_M11: a name made of those of the operands, x and y (NULL: they have none that says anything), for a value
+ * without one; or NULL. of_one: its first operand is the number 1. */
+const char *ir_made_name(Arena *a, const Ins *i, int of_one, const char *x, const char *y);
 
 /* A number or a load: what takes no instruction of its own. */
 int ir_is_leaf(IrOp op);
@@ -223,11 +248,16 @@ void prog_dump(const Prog *p, StrBuf *out);
 /* Whether it divides by what may be 0: IR_PIVOT, IR_SOLVE. */
 int prog_has_pivots(const Prog *p);
 
-/* Whether it solves a system by a loop: with constraints, or without. p may be NULL. */
+/* Whether it solves a system by a loop: with constraints, or without, and with no inverse that is there. p may be NULL. */
 int prog_solves(const Prog *p, int constrained);
 
 /* Room that IR_SOLVE needs, in reals. */
 uint32_t prog_work(const Prog *p);
+
+/* solve_ops.c: of a system that is solved by a loop. Where constraints are mostly independent and M is positive definite, which is what
+ * is counted, zeros outside of envelopes cost nothing. */
+OpCount solve_count(Arena *a, const Solve *k);
+OpCount invert_count(const Solve *k);
 
 OpCount prog_count(const Prog *p);
 uint64_t ops_total(OpCount c);

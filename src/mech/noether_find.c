@@ -119,13 +119,15 @@ static int rate_by_guess(Search *s, const Guesses *all, long double rate2, Famil
   return 0;
 }
 
-static int rate_by_monomial(Search *s, long double rate2, Family *to) {
+/* Its square as a product of powers of parameters, or a sum of parameters over one of them. */
+static int rate_by_value(Search *s, long double rate2, Family *to) {
   for (uint32_t i = 0; i < choice_count(s); i++) to->rate2[i] = i == CHOICE_SECOND ? NAN : nearest_rate(s, i, rate2);
   const SolutionSpace *second = space_at(s, CHOICE_SECOND);
   Rates r = second->sure ? space_rates(s->scratch, second) : (Rates){0};
   for (uint32_t k = 0; k < r.n; k++) {
     to->rate2[CHOICE_SECOND] = r.at[k];
     Expr square = monomial_of(&s->choices, to->rate2);
+    if (!square) square = quotient_of(&s->choices, to->rate2);
     if (!square) continue;
     to->rate = expr_sqrt(s->g, rate2 < 0 ? expr_neg(s->g, square) : square);
     return 1;
@@ -317,6 +319,7 @@ static void make_generator(Search *s, const Tables *t, GeneratorRow *to) {
   const Ansatz *a = s->ansatz;
   uint32_t blocks = t->at[0].blocks;
   size_t n = (size_t)blocks * a->shown;
+  for (uint32_t m = 0; m < blocks && a->forms; m++) forms_to_coordinates(a->forms, s->g, to->c + (size_t)m * a->shown + 1);
   clear_parameters(s, to->c, n);
   clear_fractions(s, to->c, n);
   to->ansatz = a;
@@ -412,7 +415,7 @@ static void search_rates(Search *s) {
   Guesses all = guesses(s);
   for (uint32_t k = 0; k < rates.n; k++) {
     Family f = {.kind = rates.at[k] < 0 ? TIME_CIRCULAR : TIME_EXPONENTIAL, .rate2 = ARENA_ARRAY(s->scratch, long double, choice_count(s))};
-    if (rate_by_guess(s, &all, rates.at[k], &f) || rate_by_monomial(s, rates.at[k], &f)) add_family(s, &f);
+    if (rate_by_guess(s, &all, rates.at[k], &f) || rate_by_value(s, rates.at[k], &f)) add_family(s, &f);
   }
 }
 
@@ -474,6 +477,7 @@ static TimeList time_list(Search *s) {
   if (exponential.n > RATES_MOST) exponential.n = RATES_MOST;
   vec_push(s->scratch, &list, expr_int(g, 1));
   if (s->e->n) vec_push(s->scratch, &list, t);
+  if (s->e->n) vec_push(s->scratch, &list, expr_pow_num(g, t, num_int(2)));
   for (uint32_t k = 0; k < circular.n && s->e->n; k++) add_circular(s, &list, circular.at[k]);
   for (uint32_t k = 0; k < exponential.n && s->e->n; k++) add_exponential(s, &list, exponential.at[k]);
   s->ansatz->far_times = !exponential.n;
@@ -555,8 +559,7 @@ static void search_work(Arena *scratch, void *data) {
   s->out->note = "the linear equations of the search for more could not be solved reliably";
 }
 
-/* Events that set velocities or coordinates are no part of L. */
-static const char *note_on_impacts(const Model *m) {
+const char *noether_note_on_impacts(const Model *m) {
   uint32_t setting = 0;
   if (m->contacts.n) return "impacts and contacts change charges: what is said holds between them";
   for (uint32_t i = 0; i < m->events.n; i++) setting += m->events.at[i].actions.n > 0;
@@ -569,6 +572,6 @@ FoundSymmetries noether_find(Eqns *e) {
   if (candidates_only(e)) candidates_try(e, &out);
   else normal_with_scratch(e->g, search_work, &s);
   out.galilean = has_galilean_charges(&out);
-  if (!out.note) out.note = note_on_impacts(e->m);
+  if (!out.note) out.note = noether_note_on_impacts(e->m);
   return out;
 }

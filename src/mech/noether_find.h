@@ -36,6 +36,9 @@ typedef struct {
   const char *note;     /* or NULL: what else is to be said */
 } FoundSymmetries;
 
+/* What the report says of impacts, and of events that set velocities or coordinates, which are no part of L; NULL: there are none. */
+const char *noether_note_on_impacts(const Model *m);
+
 /* For all values of the parameters. Needs a Lagrangian. */
 FoundSymmetries noether_find(Eqns *e);
 

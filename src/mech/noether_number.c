@@ -156,6 +156,20 @@ Expr linear_of(const Choices *c, const long double *value) {
   return fabsl(choice_value(c, CHOICE_SECOND, sum) - value[CHOICE_SECOND]) < 1e-9L * fabsl(value[CHOICE_SECOND]) ? sum : 0;
 }
 
+Expr quotient_of(const Choices *c, const long double *value) {
+  enum { PARAMETERS_MOST = 12, VALUES_MOST = 2 + PARAMETERS_MOST };
+  long double x[VALUES_MOST];
+  if (c->n > PARAMETERS_MOST) return 0;
+  Expr sum = linear_of(c, value);
+  if (sum) return sum;
+  for (uint32_t k = 0; k < c->n; k++) {
+    for (uint32_t i = 0; i < 2 + c->n; i++) x[i] = value[i] * c->at[i][c->param[k]];
+    if (!(sum = linear_of(c, x))) continue;
+    return expr_div(c->e->g, sum, parameter(c, k, num_int(1)));
+  }
+  return 0;
+}
+
 long double choice_value(const Choices *c, uint32_t choice, Expr e) {
   long double value;
   expr_eval(c->e->g, &e, 1, c->at[choice], &value);

@@ -27,6 +27,9 @@ Expr ratio_of(const Choices *c, const long double *value);
 /* A sum of parameters times small fractions, and of such a fraction: m1 + m2. 0: none takes these values, 2 + n of them. */
 Expr linear_of(const Choices *c, const long double *value);
 
+/* The same over a parameter, or over none: (k + 2 c)/m. */
+Expr quotient_of(const Choices *c, const long double *value);
+
 /* A rational times a power of `rate`, an expression of parameters: -2, -1, 1 or 2. */
 Expr power_of(const Choices *c, const long double *value, Expr rate);
 

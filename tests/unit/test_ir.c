@@ -119,6 +119,35 @@ static void test_count_of_many(void **state) {
   arena_free(a);
 }
 
+/* lag_kkt.h by hand for M = diag(m1, m2) and one constraint: roots of M and S, each after a product that says how small a pivot may be; 2
+ * quotients each of L^-1 A^T, L^-1 f, twice L^-T, and twice 2 with S; products: S, A y, twice the forces of the constraint, what is left. */
+static void test_count_constrained(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  Prog *p = prog_new(a);
+  Slot x = load(p, 0);
+  const Slot matrix[] = {x, 0, 0, x, x, x};
+  OpCount c = solve_count(a, &(Solve){.n = 2, .m = 1, .matrix = matrix});
+  assert_true(c.sqrt == 3 && c.div == 2 + 2 + 4 + 4 && c.mul == 3 + 2 + 2 + 4 + 2 && c.add == 2 + 2 + 4 + 2 + 2);
+  arena_free(a);
+}
+
+/* Bodies on rods, each held to the next: what lag_kkt.h did when it ran with a type of numbers that counts operations (C++). */
+static void test_count_along_a_chain(void **state) {
+  (void)state;
+  static const uint32_t did[][5] = {{40, 2230, 2230, 1178, 80}, {80, 7670, 7670, 3958, 160}};
+  for (int k = 0; k < 2; k++) {
+    Arena *a = arena_new(NULL);
+    Prog *p = prog_new(a);
+    uint32_t n = did[k][0];
+    Slot x = load(p, 0), *all = ARENA_ARRAY(a, Slot, 2*n*n);
+    for (uint32_t i = 0; i < n; i++) all[i*n + i] = all[n*n + i*n + i] = all[n*n + i*n + (i ? i - 1 : 0)] = x;
+    OpCount c = solve_count(a, &(Solve){.n = n, .m = n, .matrix = all});
+    assert_true(c.add == did[k][1] && c.mul == did[k][2] && c.div == did[k][3] && c.sqrt == did[k][4]);
+    arena_free(a);
+  }
+}
+
 /* a*x - a*y and b*(a*x) + y*a share a factor; a*x + b*z none, and a product that is needed itself stays. */
 static void test_factor(void **state) {
   (void)state;
@@ -397,7 +426,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_verify), cmocka_unit_test(test_numbering),      cmocka_unit_test(test_tidy),
     cmocka_unit_test(test_pivot),  cmocka_unit_test(test_lower),          cmocka_unit_test(test_solve_definite),
-    cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor), cmocka_unit_test(test_count_of_many), cmocka_unit_test(test_in_time), cmocka_unit_test(test_share),
+    cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor), cmocka_unit_test(test_count_of_many), cmocka_unit_test(test_count_constrained), cmocka_unit_test(test_count_along_a_chain), cmocka_unit_test(test_in_time), cmocka_unit_test(test_share),
     cmocka_unit_test(test_factors_in_time), cmocka_unit_test(test_by_deadline),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

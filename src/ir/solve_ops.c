@@ -1,0 +1,94 @@
+/* Operations of the systems that are solved by loops of the runtime: those with constraints follow envelopes (lag_kkt.h), so what
+ * they do hangs on which entries there are. */
+#include "ir/prog.h"
+
+/* Lower triangles: row i begins at from[i]. */
+typedef struct {
+  uint64_t pairs, divisions, roots; /* pairs: a product and the addition that takes it in; a root comes after one product more */
+} Ops;
+
+static uint32_t later(uint32_t a, uint32_t b) { return a > b ? a : b; }
+static uint32_t span(uint32_t from, uint32_t to) { return to > from ? to - from : 0; }
+
+static void cholesky(uint32_t n, const uint32_t *from, Ops *c) {
+  for (uint32_t i = 0; i < n; i++)
+    for (uint32_t j = from[i]; j <= i; j++) {
+      c->pairs += span(later(from[i], from[j]), j);
+      *(j == i ? &c->roots : &c->divisions) += 1;
+    }
+}
+
+/* L^-1 x, x being zero before `begin`; L^-T x takes as many from 0 on. */
+static void substitution(uint32_t n, const uint32_t *from, uint32_t begin, Ops *c) {
+  for (uint32_t i = begin; i < n; i++) {
+    c->pairs += span(later(from[i], begin), i);
+    c->divisions++;
+  }
+}
+
+static uint32_t first_entry(const Slot *x, uint32_t n) {
+  uint32_t i = 0;
+  while (i < n && !x[i]) i++;
+  return i;
+}
+
+/* One more than the last element of L^-1 x that is not zero. */
+static uint32_t end_of_solution(uint32_t n, const uint32_t *from, const Slot *x) {
+  uint32_t end = 0;
+  for (uint32_t i = 0; i < n; i++)
+    if (x[i] || from[i] < end) end = i + 1;
+  return end;
+}
+
+/* lag_schur, line by line. A large system that has a band is solved within it instead (lag_banded), in about as many operations where M is diagonal,
+ * and fewer where it is not: what is counted is what Schur's complement would take. */
+static Ops by_complement(Arena *a, const Solve *k) {
+  uint32_t n = k->n, m = k->m;
+  const Slot *M = k->matrix, *A = k->matrix + (size_t)n*n;
+  uint32_t *from = ARENA_ARRAY(a, uint32_t, n), *begin = ARENA_ARRAY(a, uint32_t, m), *end = ARENA_ARRAY(a, uint32_t, m), *row = ARENA_ARRAY(a, uint32_t, m);
+  Ops c = {0};
+  for (uint32_t i = 0; i < n; i++) from[i] = first_entry(M + (size_t)i*n, i);
+  cholesky(n, from, &c);
+  for (uint32_t j = 0; j < m; j++) {
+    begin[j] = first_entry(A + (size_t)j*n, n);
+    substitution(n, from, begin[j], &c);
+    end[j] = end_of_solution(n, from, A + (size_t)j*n);
+    row[j] = j;
+    for (uint32_t i = j + 1; i-- > 0;) {
+      uint32_t both = span(later(begin[j], begin[i]), end[j] < end[i] ? end[j] : end[i]);
+      c.pairs += both;
+      if (both) row[j] = i;
+    }
+  }
+  cholesky(m, row, &c);
+  substitution(n, from, 0, &c);
+  for (uint32_t j = 0; j < m; j++) c.pairs += span(begin[j], end[j]);
+  for (int turn = 0; turn < 2; turn++) { /* with one step of refinement */
+    substitution(m, row, 0, &c);
+    substitution(m, row, 0, &c);
+    for (uint32_t j = 0; j < m; j++) c.pairs += span(begin[j], end[j]);
+    substitution(n, from, 0, &c);
+  }
+  c.pairs += (uint64_t)m*n; /* what is left of the constraints */
+  return c;
+}
+
+OpCount solve_count(Arena *a, const Solve *k) {
+  uint64_t n = k->n, m = k->m; /* their cubes pass 2^32 */
+  if (m && m <= n) {
+    Ops c = by_complement(a, k);
+    return (OpCount){.add = c.pairs + 2*m, .mul = c.pairs + c.roots, .div = c.divisions, .sqrt = c.roots};
+  }
+  if (m) { /* about what the orthogonal factorization of A^T takes */
+    uint64_t both = 2*n*n*n + 2*m*n*n + (n > m ? n - m : 0)*n*n/3;
+    return (OpCount){.add = both, .mul = both, .div = n*n/2 + m*n + 2*(n + m), .sqrt = m};
+  }
+  if (k->inverse) return (OpCount){.add = n*(n - 1), .mul = n*n};
+  uint64_t both = n*(n - 1)*(2*n + 5)/6; /* elimination with two substitutions: zeros are entries like others */
+  return (OpCount){.add = both, .mul = both, .div = n*(n + 1)/2};
+}
+
+OpCount invert_count(const Solve *k) {
+  uint64_t n = k->n, both = n*n*n/3 + n*n*n; /* a factorization, 2 n substitutions */
+  return (OpCount){.add = both, .mul = both, .div = n*n};
+}
