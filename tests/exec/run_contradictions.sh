@@ -71,6 +71,29 @@ for method in dop853 rk45 rk4 radau verlet variational; do
     "$status $(awk -F, 'NR > 1 { if ($4 > 1e-14 || $4 < -1e-14) bad = 1; end = $1 } END { print (!bad && end >= 0.99 && end < 1.005 ? "yes" : end) }' "$TMP/rows.csv")"
 done
 
+# Poles of what the time demands: x = tan(t) at pi/2, x = 1/(t - 1/2). No row comes from the other side.
+pole() { # NAME CONSTRAINT
+  cat >"$TMP/$1.lag" <<END
+model $1
+coord x [m], y [m]
+param m = 1 [kg] > 0, a = 1 [m], T = 1 [s]
+kinetic = m/2*(x'^2 + y'^2)
+constraint drive: $2
+scene s { span 3; output x, y every 0.1 }
+END
+}
+pole tangent 'x = a*tan(t/T)'
+pole quotient 'x*(t/T - 1/2) = a'
+before() { # NAME METHOD TIME: the run fails, and has written all rows before that time, and none after it
+  status=0
+  "$LAGC" run "$TMP/$1.lag" --method "$2" -o "$TMP/rows.csv" >/dev/null 2>&1 || status=$?
+  echo "$status $(tail -n 1 "$TMP/rows.csv" | awk -F, -v t="$3" '{ print ($1 < t && $1 > t - 0.11) }')"
+}
+for method in dop853 rk45 radau rk4; do
+  is "$method does not go over the pole of a tangent" '3 1' "$(before tangent $method 1.5707963)"
+  is "$method does not go over the pole of a quotient" '3 1' "$(before quotient $method 0.5)"
+done
+
 # ---- a corner: what a bead does there is in no equation, and a run that does not leave the place ends
 cat >"$TMP/corner.lag" <<'END'
 model corner
