@@ -24,17 +24,19 @@ static const char *const logic =
 
 /* Gauss elimination with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed.,
  * algorithm 3.4.1). Rows change places under a mask, so that each lane of a vector has pivots of
- * its own. */
+ * its own. In a band of b diagonals beside the main one, rows come from b places below at most, and reach 2 b to the right (4.3.3). */
 static const char *const solver =
-  "\n/* M x = b by elimination with partial pivoting: M[n*n] row-major is destroyed, b becomes x. Returns whether M is regular. */\n"
-  "static LAG_MASK lag_solve(int n, LAG_REAL *M, LAG_REAL *b) {\n"
+  "\n/* M x = b by elimination with partial pivoting: M[n*n] row-major is destroyed, b becomes x. Entries more than `band` beside the\n"
+  " * diagonal are zero. Returns whether M is regular. */\n"
+  "static LAG_MASK lag_solve(int n, int band, LAG_REAL *M, LAG_REAL *b) {\n"
   "  LAG_MASK regular = LAG_C(0.0) == LAG_C(0.0);\n"
   "  for (int k = 0; k < n; k++) {\n"
-  "    for (int i = k + 1; i < n; i++) { /* the largest of column k comes to row k */\n"
+  "    const int end = band < n - k ? k + band + 1 : n, right = band < n - end ? end + band : n;\n"
+  "    for (int i = k + 1; i < end; i++) { /* the largest of column k comes to row k */\n"
   "      const LAG_MASK larger = LAG_FN(fabs)(M[i*n + k]) > LAG_FN(fabs)(M[k*n + k]);\n"
   "      if (!LAG_ANY(larger)) continue;\n"
-  "      for (int j = k; j <= n; j++) {\n"
-  "        LAG_REAL *const upper = j < n ? &M[k*n + j] : &b[k], *const lower = j < n ? &M[i*n + j] : &b[i];\n"
+  "      for (int j = k; j <= right; j++) {\n"
+  "        LAG_REAL *const upper = j < right ? &M[k*n + j] : &b[k], *const lower = j < right ? &M[i*n + j] : &b[i];\n"
   "        const LAG_REAL was = *upper;\n"
   "        *upper = LAG_SELECT(larger, *lower, was);\n"
   "        *lower = LAG_SELECT(larger, was, *lower);\n"
@@ -42,17 +44,42 @@ static const char *const solver =
   "    }\n"
   "    regular = LAG_AND(regular, LAG_FN(fabs)(M[k*n + k]) > LAG_C(0.0));\n"
   "    if (!LAG_ANY(regular)) break;\n"
-  "    for (int i = k + 1; i < n; i++) {\n"
+  "    for (int i = k + 1; i < end; i++) {\n"
   "      const LAG_REAL factor = M[i*n + k]/M[k*n + k];\n"
-  "      for (int j = k + 1; j < n; j++) M[i*n + j] -= factor*M[k*n + j];\n"
+  "      for (int j = k + 1; j < right; j++) M[i*n + j] -= factor*M[k*n + j];\n"
   "      b[i] -= factor*b[k];\n"
   "    }\n"
   "  }\n"
   "  for (int k = n - 1; k >= 0; k--) {\n"
-  "    for (int j = k + 1; j < n; j++) b[k] -= M[k*n + j]*b[j];\n"
+  "    for (int j = k + 1; j < n && j - k <= 2*band; j++) b[k] -= M[k*n + j]*b[j];\n"
   "    b[k] /= M[k*n + k];\n"
   "  }\n"
   "  return regular;\n"
+  "}\n";
+
+/* L D L^T of a definite matrix needs no pivoting (Golub & Van Loan, 4th ed., 4.2.1 and 4.3.5): rows of the upper triangle are those of D L^T. */
+static const char *const definite_solver =
+  "\n/* M x = b without pivoting, from the upper triangle of M[n*n], which is destroyed; b becomes x. Entries more than `band` beside the\n"
+  " * diagonal are zero. Returns whether M is positive definite. */\n"
+  "static LAG_MASK lag_solve_definite(int n, int band, LAG_REAL *M, LAG_REAL *b) {\n"
+  "  LAG_MASK positive = LAG_C(0.0) == LAG_C(0.0);\n"
+  "  for (int k = 0; k < n; k++) {\n"
+  "    const int end = band < n - k ? k + band + 1 : n;\n"
+  "    positive = LAG_AND(positive, M[k*n + k] > LAG_C(0.0));\n"
+  "    if (!LAG_ANY(positive)) return positive;\n"
+  "    const LAG_REAL inverse = LAG_C(1.0)/M[k*n + k];\n"
+  "    for (int i = k + 1; i < end; i++) {\n"
+  "      const LAG_REAL factor = M[k*n + i]*inverse;\n"
+  "      for (int j = i; j < end; j++) M[i*n + j] -= factor*M[k*n + j];\n"
+  "      b[i] -= factor*b[k];\n"
+  "    }\n"
+  "    M[k*n + k] = inverse;\n"
+  "  }\n"
+  "  for (int k = n - 1; k >= 0; k--) {\n"
+  "    for (int j = k + 1; j < n && j - k <= band; j++) b[k] -= M[k*n + j]*b[j];\n"
+  "    b[k] *= M[k*n + k];\n"
+  "  }\n"
+  "  return positive;\n"
   "}\n";
 
 /* Lanes that ask for different pieces get them one after the other. */
@@ -170,9 +197,11 @@ void csupport_fill(const char *text, const char *prefix, const char *lower, StrB
 
 void csupport_logic(const char *prefix, StrBuf *out) { csupport_fill(logic, prefix, "", out); }
 void csupport_factor(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(factorizer, prefix, lower, out); }
-void csupport_solver(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(solver, prefix, lower, out); }
 void csupport_inverter(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(inverter, prefix, lower, out); }
-void csupport_multiplier(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(multiplier, prefix, lower, out); }
+void csupport_solver(SolveKind kind, const char *prefix, const char *lower, StrBuf *out) {
+  const char *const texts[] = {[SOLVE_PIVOTING] = solver, [SOLVE_DEFINITE] = definite_solver, [SOLVE_INVERSE] = multiplier};
+  csupport_fill(texts[kind], prefix, lower, out);
+}
 void csupport_spline(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(spline, prefix, lower, out); }
 
 /* Whether the program reads or writes what the parameter `name` holds. */

@@ -12,16 +12,29 @@ static void write_room(Writer *w, const char *to, uint32_t at, const Slot *value
   }
 }
 
-/* What is not zero of a system with constraints, which is mostly zeros where it is large. */
+/* What is not zero of a matrix that is mostly zeros, and of `all` reals behind it. */
+static void write_entries(Writer *w, const Solve *k, uint32_t all) {
+  sb_printf(w->out, "  for (int i = 0; i < %u; i++) w[i] = %s_C(0.0);\n", all, w->style->prefix);
+  for (uint32_t j = 0; j < solve_elements(k); j++)
+    if (k->matrix[j]) sb_printf(w->out, "  w[%u] = %s;\n", j, cwriter_operand(w, k->matrix[j]).text);
+}
+
+/* A system with constraints is mostly zeros where it is large. */
 static void write_constrained(Writer *w, const Solve *k) {
   const CStyle *st = w->style;
   uint32_t b = k->m * k->n + k->n * k->n;
-  sb_printf(w->out, "  for (int i = 0; i < %u; i++) w[i] = %s_C(0.0);\n", b + solve_unknowns(k), st->prefix);
-  for (uint32_t j = 0; j < solve_elements(k); j++)
-    if (k->matrix[j]) sb_printf(w->out, "  w[%u] = %s;\n", j, cwriter_operand(w, k->matrix[j]).text);
+  write_entries(w, k, b + solve_unknowns(k));
   for (uint32_t j = 0; j < solve_unknowns(k); j++)
     if (k->rhs[j]) sb_printf(w->out, "  w[%u] = %s;\n", b + j, cwriter_operand(w, k->rhs[j]).text);
   sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, %d, w));\n", st->prefix, st->kkt, k->n, k->m, k->coarse);
+}
+
+/* Of a definite matrix the upper triangle; of a narrow band what is not zero. */
+static void write_matrix(Writer *w, const Solve *k) {
+  uint32_t n = k->n;
+  if (k->band < n / 2 - 1) write_entries(w, k, n * n);
+  else if (!k->definite) write_room(w, "w", 0, k->matrix, n * n);
+  for (uint32_t i = 0; i < n && k->definite && k->band >= n / 2 - 1; i++) write_room(w, "w", i * n + i, k->matrix + i * n + i, n - i);
 }
 
 void csolve_write(Writer *w, const Ins *i) {
@@ -38,11 +51,12 @@ void csolve_write(Writer *w, const Ins *i) {
     sb_printf(w->out, "  %s(%u, %s + %u, w);\n", st->multiply, n, st->in[ARR_P], k->inverse);
     return;
   }
-  if (k->matrix) write_room(w, "w", M, k->matrix, n * n);
+  if (k->matrix && !st->factor) write_matrix(w, k);
+  else if (k->matrix) write_room(w, "w", M, k->matrix, n * n);
   if (st->factor && k->matrix) sb_printf(w->out, "  %s_PIVOT(%s(%u, w + %u));\n", st->prefix, st->factor, n, M);
   write_room(w, "w", b, k->rhs, n);
   if (st->factor) sb_printf(w->out, "  %s(%u, w + %u);\n", st->substitute, n, M);
-  else sb_printf(w->out, "  %s_PIVOT(%s(%u, w, w + %u));\n", st->prefix, st->solve, n, b);
+  else sb_printf(w->out, "  %s_PIVOT(%s%s(%u, %u, w, w + %u));\n", st->prefix, st->solve, k->definite ? "_definite" : "", n, k->band, b);
 }
 
 void csolve_write_inverse(Writer *w, const Ins *i) {

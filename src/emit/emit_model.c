@@ -19,7 +19,7 @@ static const char *const prelude =
 /* What lag_model.h and the head of an emitted file define. */
 static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
-  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_cubic",
+  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_solve_definite", "lag_cubic",
   "lag_spline", "lag_var", "lag_event", "lag_model", "lag_option", "lag_monitor", "lag_table", "lag_scene", "lag_program",
   "lag_entry", "lag_linear", "lag_jump", "jump_table", "LAG_NUMBER", "lag_taylor", "lag_factor", "lag_substitute", "lag_invert", "lag_multiply", "LAG_TAYLOR_ORDER",
   "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL", "TAYLOR_UNROLL_4",
@@ -325,12 +325,12 @@ static uint32_t work_size(const IrUnit *u) {
   return most;
 }
 
-/* Whether a linear system without constraints is solved by a loop. */
-static int needs_solver(const IrUnit *u) {
+/* Whether a linear system of that kind is solved by a loop. */
+static int needs_solver(const IrUnit *u, SolveKind kind) {
   const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->charge_powers};
   int some = 0;
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) some |= prog_solves(all[i], 0);
-  for (uint32_t i = 0; i < u->scenes.n; i++) some |= prog_solves(u->scenes.at[i].observe, 0);
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) some |= prog_solves(all[i], kind);
+  for (uint32_t i = 0; i < u->scenes.n; i++) some |= prog_solves(u->scenes.at[i].observe, kind);
   return some;
 }
 
@@ -503,7 +503,8 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   sb_putc(out, '\n');
   cmath_functions(u, "LAG", "lag", out);
   if (has_long_tables(u)) ctable_macros(out);
-  if (needs_solver(u)) csupport_solver("LAG", "lag", out);
+  for (SolveKind kind = SOLVE_PIVOTING; kind <= SOLVE_INVERSE; kind++)
+    if (kind != SOLVE_CONSTRAINED && needs_solver(u, kind)) csupport_solver(kind, "LAG", "lag", out);
   emit_inverses(&f);
   cmath_kkt(u, "LAG", "lag", out);
   if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);

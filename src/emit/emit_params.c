@@ -1,19 +1,11 @@
 /* Parameters: what a scene gives them, and what is derived from them once. */
 #include "emit/emit_impl.h"
 
-/* Whether the program multiplies by an inverse in a loop. */
-static int multiplies(const Prog *p) {
-  for (uint32_t k = 0; k < p->solves.n; k++)
-    if (p->solves.at[k].inverse) return 1;
-  return 0;
-}
-
 void emit_inverses(const File *f) {
   const IrUnit *u = f->u;
   int inverts = u->derived && u->derived->solves.n, taylor = u->taylor && u->taylor->room;
   if (inverts || taylor) csupport_factor("LAG", "lag", f->out);
   if (inverts) csupport_inverter("LAG", "lag", f->out);
-  if (multiplies(u->accel)) csupport_multiplier("LAG", "lag", f->out);
 }
 
 void emit_derive(const File *f) {

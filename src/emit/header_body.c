@@ -286,7 +286,9 @@ void header_implementation(const Header *h) {
   sb_putc(h->out, '\n');
   cmath_functions(h->u, h->upper, h->lower, h->out);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
-  if (prog_solves(h->u->accel, 0) || prog_solves(h->scene->observe_plain, 0)) csupport_solver(h->upper, h->lower, h->out);
+  for (SolveKind kind = SOLVE_PIVOTING; kind <= SOLVE_DEFINITE; kind++)
+    if (kind != SOLVE_CONSTRAINED && (prog_solves(h->u->accel, kind) || prog_solves(h->scene->observe_plain, kind)))
+      csupport_solver(kind, h->upper, h->lower, h->out);
   cmath_kkt(h->u, h->upper, h->lower, h->out);
   if (h->u->inputs->tables.n) csupport_spline(h->upper, h->lower, h->out);
   defaults(h);

@@ -58,6 +58,25 @@ static int solve(Real *a, Real *b, uint32_t n) {
   return 0;
 }
 
+/* Elimination of a[n*n] x = b[n] without pivoting, from the upper triangle; b becomes x. */
+static int solve_definite(Real *a, Real *b, uint32_t n) {
+  for (uint32_t k = 0; k < n; k++) {
+    if (!(a[k * n + k] > 0)) return -1;
+    Real inverse = 1 / a[k * n + k];
+    for (uint32_t i = k + 1; i < n; i++) {
+      Real f = a[k * n + i] * inverse;
+      for (uint32_t j = i; j < n; j++) a[i * n + j] -= f * a[k * n + j];
+      b[i] -= f * b[k];
+    }
+    a[k * n + k] = inverse;
+  }
+  for (uint32_t k = n; k-- > 0;) {
+    for (uint32_t j = k + 1; j < n; j++) b[k] -= a[k * n + j] * b[j];
+    b[k] *= a[k * n + k];
+  }
+  return 0;
+}
+
 /* [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations. Where constraints are redundant some multipliers are taken to be 0. */
 static const Real *solved_constrained(const Prog *p, const Solve *s, const Real *v, int *status) {
   uint32_t n = s->n, total = solve_unknowns(s);
@@ -77,7 +96,7 @@ static const Real *solved(const Prog *p, const Solve *s, const Real *v, int *sta
   Real *a = ARENA_ARRAY(p->arena, Real, s->n * s->n), *b = ARENA_ARRAY(p->arena, Real, s->n);
   for (uint32_t i = 0; i < s->n * s->n; i++) a[i] = v[s->matrix[i]];
   for (uint32_t i = 0; i < s->n; i++) b[i] = v[s->rhs[i]];
-  *status = solve(a, b, s->n);
+  *status = s->definite ? solve_definite(a, b, s->n) : solve(a, b, s->n);
   return b;
 }
 

@@ -48,12 +48,14 @@ static unsigned char *find_worthy(const Prog *p, const unsigned char *constant) 
   return worthy;
 }
 
-/* Whether the matrix of a system is constant: its inverse is derived then. */
+/* Whether the matrix of a system is constant, and multiplying by its inverse, which has no zeros, does not take more than solving anew: then the
+ * inverse is derived. */
 static int is_constant_solve(const Prog *p, const unsigned char *constant, const Ins *i) {
   const Solve *k = &p->solves.at[i->index];
   int all = i->op == IR_SOLVE && !k->m && k->matrix;
   for (uint32_t j = 0; all && j < solve_elements(k); j++) all = constant[k->matrix[j]];
-  return all;
+  Solve product = {.n = k->n, .inverse = 1};
+  return all && ops_total(solve_count(p->arena, &product)) <= ops_total(solve_count(p->arena, k));
 }
 
 /* mark[s] |= 1 where the value of s is needed in the program that is left, |= 2 where it is needed for what is derived. */
@@ -164,7 +166,8 @@ static Slot *invert(Hoist *h, const Rest *r, const Solve *k) {
   Prog *p = h->derived;
   Slot *matrix = ARENA_ARRAY(p->arena, Slot, solve_elements(k));
   Solve inverted = {.n = k->n, .place = h->first + h->n, .matrix = matrix};
-  for (uint32_t j = 0; j < solve_elements(k); j++) matrix[j] = r->once[k->matrix[j]];
+  for (uint32_t i = 0; i < k->n; i++)
+    for (uint32_t j = i; j < k->n; j++) matrix[i * k->n + j] = matrix[j * k->n + i] = r->once[k->matrix[i * k->n + j]];
   vec_push(p->arena, &p->solves, inverted);
   derive(h, (Ins){.op = IR_INVERT, .index = p->solves.n - 1});
   h->n += solve_is_regular(k) + 1;

@@ -339,9 +339,9 @@ int prog_has_pivots(const Prog *p) {
   return 0;
 }
 
-int prog_solves(const Prog *p, int constrained) {
+int prog_solves(const Prog *p, SolveKind kind) {
   for (uint32_t i = 0; p && i < p->solves.n; i++)
-    if ((p->solves.at[i].m > 0) == constrained && !p->solves.at[i].inverse) return 1;
+    if (solve_kind(&p->solves.at[i]) == kind) return 1;
   return 0;
 }
 

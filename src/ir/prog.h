@@ -78,11 +78,12 @@ typedef struct {
 /* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it stands in the
  * work space. matrix is NULL where the one at that place was factored before, by another function. With m constraints A x = g on
  * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. coarse: constraints that are nearly dependent count as
- * dependent (lag_kkt.h). inverse: where the inverse stands among the parameters, not 0: then there is no matrix, and a solution is a product. Of
- * IR_INVERT: where that writes [matrix | n | n | inverse | 1 where there is one, and 0]; no right-hand side. */
+ * dependent (lag_kkt.h). Without constraints, entries more than `band` beside the diagonal are zero, and a definite M is eliminated without
+ * pivoting, from its upper triangle. inverse: where the inverse stands among the parameters, not 0: then there is no matrix, and a solution is
+ * a product. Of IR_INVERT: where that writes [matrix | n | n | inverse | 1 where there is one, and 0]; no right-hand side. */
 typedef struct {
-  uint32_t n, m, place, inverse;
-  int coarse;
+  uint32_t n, m, place, band, inverse;
+  int coarse, definite;
   const Slot *matrix, *rhs;
 } Solve;
 
@@ -93,6 +94,12 @@ static inline uint32_t solve_unknowns(const Solve *k) { return k->rhs ? k->n + k
 /* Where, from its place on, IR_INVERT leaves the inverse, and whether there is one. */
 static inline uint32_t solve_inverse(const Solve *k) { return k->n * k->n + 2 * k->n; }
 static inline uint32_t solve_is_regular(const Solve *k) { return 2 * k->n * k->n + 2 * k->n; }
+
+/* Each is solved by a function of its own. */
+typedef enum { SOLVE_PIVOTING, SOLVE_CONSTRAINED, SOLVE_DEFINITE, SOLVE_INVERSE } SolveKind;
+static inline SolveKind solve_kind(const Solve *k) {
+  return k->inverse ? SOLVE_INVERSE : k->m ? SOLVE_CONSTRAINED : k->definite ? SOLVE_DEFINITE : SOLVE_PIVOTING;
+}
 
 /* Index first + by_row*row_at[i] + by_turn*turn_at[j]; a table that is NULL has i in place i. */
 typedef struct {
@@ -248,8 +255,8 @@ void prog_dump(const Prog *p, StrBuf *out);
 /* Whether it divides by what may be 0: IR_PIVOT, IR_SOLVE. */
 int prog_has_pivots(const Prog *p);
 
-/* Whether it solves a system by a loop: with constraints, or without, and with no inverse that is there. p may be NULL. */
-int prog_solves(const Prog *p, int constrained);
+/* Whether it solves a system of that kind by a loop. p may be NULL. */
+int prog_solves(const Prog *p, SolveKind kind);
 
 /* Room that IR_SOLVE needs, in reals. */
 uint32_t prog_work(const Prog *p);

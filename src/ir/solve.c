@@ -2,7 +2,8 @@
  *
  * A mass matrix that is proved positive definite is eliminated by eliminate.c, in straight-line code.
  * Otherwise blocks of coupled coordinates: pairs by Cramer's rule, other blocks, and large dense
- * ones, by a loop with partial pivoting. Coordinates that a constraint couples are one block, solved with their multipliers. */
+ * ones, by a loop: with partial pivoting where M may be indefinite, in an order of a narrow band. Coordinates that a constraint couples are one block, solved with their multipliers. */
+#include "ir/band.h"
 #include "ir/lower_impl.h"
 
 /* Straight-line elimination of a dense matrix takes n^3/3 lines. Measured: it is faster than a loop
@@ -137,6 +138,23 @@ static uint32_t make_blocks(Lower *l, const Sides *s, Block **blocks) {
   return y.n;
 }
 
+/* The same block with its coordinates in an order of a narrower band, where there is one. */
+static void narrow(Lower *l, Block *b) {
+  Arena *a = l->p->arena;
+  uint32_t n = b->n;
+  const uint32_t *order = band_order(a, n, b->M);
+  Block r = *b;
+  r.at = ARENA_ARRAY(a, uint32_t, n);
+  r.f = ARENA_ARRAY(a, Slot, n);
+  r.M = ARENA_ARRAY(a, Slot, (size_t)n * n);
+  for (uint32_t i = 0; i < n; i++) {
+    r.at[i] = b->at[order[i]];
+    r.f[i] = b->f[order[i]];
+    for (uint32_t j = 0; j <= i; j++) r.M[(size_t)i * n + j] = order[i] > order[j] ? b->M[(size_t)order[i] * n + order[j]] : b->M[(size_t)order[j] * n + order[i]];
+  }
+  if (band_width(n, r.M) < band_width(n, b->M)) *b = r;
+}
+
 /* --- one coordinate, two, and loops --- */
 
 static Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
@@ -172,7 +190,10 @@ static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
     for (size_t j = 0; j < n; j++) full[i * n + j] = i >= j ? b->M[i * n + j] : b->M[j * n + i];
   for (size_t k = 0; k < m * n; k++) full[n * n + k] = b->A[k];
   for (size_t i = 0; i < n + m; i++) rhs[i] = i < n ? b->f[i] : b->g[i - n];
-  vec_push(a, &l->p->solves, ((Solve){.n = b->n, .m = b->m, .coarse = coarse, .matrix = full, .rhs = rhs}));
+  int definite = !m && !l->factored && (l->e->definite_mass || l->e->definite_by_values);
+  for (size_t i = 0; definite && i < n; i++)
+    for (size_t j = 0; j < i; j++) full[i * n + j] = 0; /* is not read */
+  vec_push(a, &l->p->solves, ((Solve){.n = b->n, .m = b->m, .band = band_width(b->n, b->M), .coarse = coarse, .definite = definite, .matrix = full, .rhs = rhs}));
   Slot s = prog_ins(l->p, (Ins){.op = IR_SOLVE, .index = l->p->solves.n - 1});
   for (uint32_t i = 0; i < n + m; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
@@ -225,6 +246,7 @@ static void solve_blocks(Lower *l, const Sides *s, Slot *acc, Slot *multipliers)
   for (uint32_t k = 0; k < n; k++) {
     Block *b = &blocks[k];
     if (!b->m && is_empty(b)) continue;
+    if (b->n > 2 && !b->m) narrow(l, b);
     if (b->n > 2 || b->m) solve_loop(l, b, s->coarse, x);
     else if (b->n == 1) solve_one(l, b, x);
     else solve_two(l, b, x);

@@ -73,6 +73,29 @@ static Ops by_complement(Arena *a, const Solve *k) {
   return c;
 }
 
+/* Elimination and two substitutions in a band that exchanges of rows do not widen, which is what they do at best. */
+static OpCount of_pivoting(const Solve *k) {
+  OpCount c = {.div = k->n};
+  for (uint64_t left = k->n; left-- > 0;) {
+    uint64_t b = left < k->band ? left : k->band;
+    c.mul += b*b + 2*b;
+    c.div += b;
+  }
+  c.add = c.mul;
+  return c;
+}
+
+/* The same from the upper triangle, by reciprocals of pivots. */
+static OpCount of_definite(const Solve *k) {
+  OpCount c = {.div = k->n, .mul = k->n};
+  for (uint64_t left = k->n; left-- > 0;) {
+    uint64_t b = left < k->band ? left : k->band;
+    c.add += b*(b + 1)/2 + 2*b;
+    c.mul += b*(b + 1)/2 + 3*b;
+  }
+  return c;
+}
+
 OpCount solve_count(Arena *a, const Solve *k) {
   uint64_t n = k->n, m = k->m; /* their cubes pass 2^32 */
   if (m && m <= n) {
@@ -84,8 +107,7 @@ OpCount solve_count(Arena *a, const Solve *k) {
     return (OpCount){.add = both, .mul = both, .div = n*n/2 + m*n + 2*(n + m), .sqrt = m};
   }
   if (k->inverse) return (OpCount){.add = n*(n - 1), .mul = n*n};
-  uint64_t both = n*(n - 1)*(2*n + 5)/6; /* elimination with two substitutions: zeros are entries like others */
-  return (OpCount){.add = both, .mul = both, .div = n*(n + 1)/2};
+  return k->definite ? of_definite(k) : of_pivoting(k);
 }
 
 OpCount invert_count(const Solve *k) {

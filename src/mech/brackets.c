@@ -291,7 +291,7 @@ static int is_null(const Work *w, const Bracket *k) {
 static void work(Arena *scratch, void *data) {
   Work *w = data;
   w->scratch = scratch;
-  w->choices = choices_new(scratch, w->e);
+  w->choices = choices_new(scratch, w->e, w->of->attempt);
   lay_out(w);
   uint32_t choices = 2 + w->choices.n;
   long double **fits = ARENA_ARRAY(scratch, long double *, choices);

@@ -253,6 +253,27 @@ static int is_of_time(const Work *w, Expr x) {
   return !expr_is_zero(w->g, x) && !(expr_kinds(w->g, x) & ~(1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_PARAM | 1u << SYM_CONST));
 }
 
+/* By Cartan's formula the generator makes of theta dq + phi dt, the part of L of degree 1 and 0 in velocities, d(theta xi + phi tau), and what is left is small
+ * or 0 where these terms are a gauge, whose primitive nobody has to find then. */
+static Expr contraction(const Work *w, int with_phi) {
+  Expr *theta = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) theta[i] = at_rest(w, w->p[i]);
+  Expr F = dot(w, theta, w->xi, w->n), phi = with_phi ? at_rest(w, w->m->lagrangian) : expr_int(w->g, 0);
+  return expr_add(w->g, F, expr_mul(w->g, phi, w->tau));
+}
+
+/* An F by way of that; 0: none is proved. */
+static Expr contracted_gauge(Work *w, Expr dL) {
+  ExprGraph *g = w->g;
+  for (int with_phi = 0; with_phi < 2; with_phi++) {
+    Expr first = contraction(w, with_phi), taken = total(w, first), rest = simplify(g, expr_sub(g, dL, taken));
+    if (expr_is_zero(g, first)) continue;
+    Expr more = find_gauge(w, rest), F = readable(w, expr_add(g, first, more)), DF = total(w, F);
+    if (zero_on_constraints(w, expr_sub(g, dL, DF)) == PROVED_ZERO) return F;
+  }
+  return 0;
+}
+
 static void judge(Work *w, Noether *to) {
   ExprGraph *g = w->g;
   Expr zero = expr_int(g, 0), dL = delta_lagrangian(w);
@@ -268,6 +289,11 @@ static void judge(Work *w, Noether *to) {
   left = simplify(g, left);
   if (is_of_time(w, left)) {
     *to = (Noether){.is = INVARIANT_UP_TO_F, .F = F, .remainder = left, .over_time = left, .by_constraints = zero};
+    return;
+  }
+  Expr other = contracted_gauge(w, dL);
+  if (other) {
+    *to = (Noether){.is = INVARIANT_UP_TO_F, .F = other, .remainder = zero, .by_constraints = zero};
     return;
   }
   uint32_t distinct;

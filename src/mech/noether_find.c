@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "mech/noether_candidates.h"
-#include "mech/noether_fraction.h"
 #include "mech/noether_name.h"
 #include "mech/noether_number.h"
 #include "mech/noether_parametric.h"
@@ -268,20 +267,6 @@ static int shorter_coefficients(Search *s, Tables *t, uint32_t row, int moved, E
   return found;
 }
 
-/* Monomials of parameters times fractions of one denominator: those of a space that some other coordinates would make simple. */
-static int joint_coefficients(Search *s, const Tables *t, uint32_t row, Expr *c) {
-  uint32_t n = t->at[0].blocks * t->at[0].shown, count = choice_count(s);
-  long double *x = ARENA_ARRAY(s->scratch, long double, count), *number = ARENA_ARRAY(s->scratch, long double, n);
-  for (uint32_t k = 0; k < n; k++) {
-    for (uint32_t i = 0; i < count; i++) x[i] = t->at[i].at[(size_t)row * n + k];
-    c[k] = x[CHOICE_FIRST] == 0 && x[CHOICE_SECOND] == 0 ? expr_int(s->g, 0) : monomial_part(&s->choices, x, &number[k]);
-    if (!c[k]) return 0;
-  }
-  int64_t q = common_denominator(s->scratch, number, n);
-  for (uint32_t k = 0; k < n && q; k++) c[k] = expr_scale(s->g, num_ratio((int64_t)roundl(number[k] * (long double)q), q), c[k]);
-  return q != 0;
-}
-
 /* Sums of parameters, when the row is multiplied by `scale`. */
 static int linear_coefficients(Search *s, const Tables *t, uint32_t row, Expr scale, Expr *c) {
   uint32_t n = t->at[0].blocks * t->at[0].shown, count = choice_count(s);
@@ -311,7 +296,7 @@ static int scaled_coefficients(Search *s, const Tables *t, uint32_t row, Expr *c
 static int recognise_row(Search *s, Tables *t, uint32_t row, Expr *c) {
   if (row_coefficients(s, t, row, 0, c) || shorter_coefficients(s, t, row, 0, c)) return 1;
   if (!shapes_agree(s, t)) return 0;
-  return row_coefficients(s, t, row, 1, c) || shorter_coefficients(s, t, row, 1, c) || joint_coefficients(s, t, row, c) || scaled_coefficients(s, t, row, c);
+  return row_coefficients(s, t, row, 1, c) || shorter_coefficients(s, t, row, 1, c) || scaled_coefficients(s, t, row, c);
 }
 
 /* Generator with these coefficients, which are cleared of fractions. */
@@ -544,12 +529,35 @@ static void search_any(Search *s) {
   if (weak) s->out->note = "rates or couplings lie so close to one another that some may be missing";
 }
 
+/* How many solutions at a choice neither oscillate nor grow, but both. */
+static uint32_t spirals(Search *s, uint32_t choice) {
+  const SolutionSpace *space = space_at(s, choice);
+  return space->sure ? space_rates(s->scratch, space).others : 0;
+}
+
+static void take_choices(Search *s, uint32_t attempt) {
+  s->out->attempt = attempt;
+  s->choices = choices_new(s->scratch, s->e, attempt);
+  s->spaces = ARENA_ARRAY(s->scratch, SolutionSpace, choice_count(s));
+}
+
+/* Values of the parameters; others, where some oscillations have no rate that can be written, as those of a trap that does not hold what is in it. */
+static void choose(Search *s) {
+  enum { ATTEMPTS = 12 };
+  take_choices(s, 0);
+  if (s->ansatz->has_time || !s->e->n || !s->choices.n || !(spirals(s, CHOICE_FIRST) + spirals(s, CHOICE_SECOND))) return;
+  for (uint32_t attempt = 1; attempt < ATTEMPTS; attempt++) {
+    take_choices(s, attempt);
+    if (spirals(s, CHOICE_FIRST) + spirals(s, CHOICE_SECOND) == 0) return;
+  }
+  take_choices(s, 0);
+}
+
 static void search_work(Arena *scratch, void *data) {
   Search *s = data;
   s->scratch = scratch;
   s->ansatz = ansatz_new(scratch, s->e);
-  s->choices = choices_new(scratch, s->e);
-  s->spaces = ARENA_ARRAY(scratch, SolutionSpace, choice_count(s));
+  choose(s);
   if (s->ansatz->has_time || !s->e->n) search_listed(s);
   else search_any(s);
   if (s->out->searched) return;

@@ -251,7 +251,7 @@ static void note_forms(Arena *a, const Forms *of, LinearForms *f, int shifted) {
 
 int forms_are_needed(const Eqns *e) {
   int skew = 0;
-  if (!e->n || e->n > COORDINATES_MOST || !e->mass_known || !e->constant_mass || e->constraints.n) return 0;
+  if (!e->n || e->n > COORDINATES_MOST || !e->mass_known || !e->constant_mass) return 0;
   for (uint32_t k = 0; k < e->mass.n; k++) skew |= e->mass.at[k].row != e->mass.at[k].col;
   for (uint32_t i = 0; i < e->n; i++)
     if (expr_symbol(e->g, e->m->coords.at[i].q)->sign != SIGN_UNKNOWN) return 0;

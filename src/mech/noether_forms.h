@@ -14,8 +14,8 @@ typedef struct {
   VEC(Expr) node, is;  /* sums of the text, coordinates and velocities; and what they are in y, for which the symbols of q stand then */
 } LinearForms;
 
-/* Of the coordinates of e, in `a`. NULL: none are needed, as the mass matrix is diagonal, or none are known: it varies, or is not known; there are
- * constraints, or a coordinate has a sign; L is not written with n such sums, or not with fractions that 64 bits hold, or the mass matrix is not
+/* Of the coordinates of e, in `a`. NULL: none are needed, as the mass matrix is diagonal, or none are known: it varies, or is not known; a coordinate
+ * has a sign; L is not written with n such sums, or not with fractions that 64 bits hold, or the mass matrix is not
  * diagonal in them. */
 const LinearForms *forms_new(Arena *a, const Eqns *e);
 

@@ -5,7 +5,13 @@
 #include "sym/eval.h"
 #include "sym/prove.h"
 
-Choices choices_new(Arena *a, const Eqns *e) {
+/* Values of all symbols at a choice. */
+static void draw(const ExprGraph *g, uint32_t attempt, uint32_t choice, long double *to) {
+  prove_state(g, choice == CHOICE_SECOND && attempt == 0 ? 2 : 1 + 2 * attempt, to);
+  for (SymId s = 1; s <= expr_symbol_count(g) && choice == CHOICE_SECOND && attempt > 0; s++) to[s] *= 1 + 0.03L * prove_symbol(g, s, 2 + 2 * attempt);
+}
+
+Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt) {
   ExprGraph *g = e->g;
   VEC(SymId) params = {0};
   VEC(Expr) roots = {0};
@@ -18,7 +24,7 @@ Choices choices_new(Arena *a, const Eqns *e) {
   long double **at = ARENA_ARRAY(a, long double *, 2 + params.n);
   for (uint32_t k = 0; k < 2 + params.n; k++) {
     at[k] = ARENA_ARRAY(a, long double, count);
-    prove_state(g, k == CHOICE_SECOND ? 2 : 1, at[k]);
+    draw(g, attempt, k, at[k]);
     /* A parameter whose sign is not known is taken positive: most are, and an identity in it does not ask. */
     for (SymId s = 1; s < count; s++)
       if (expr_symbol(g, s)->sign == SIGN_UNKNOWN && expr_symbol(g, s)->kind == SYM_PARAM) at[k][s] = fabsl(at[k][s]);
@@ -101,7 +107,8 @@ static int half_of(long double exponent, Num *out) {
   return 1;
 }
 
-Expr monomial_part(const Choices *c, const long double *value, long double *number) {
+/* The product of powers of parameters that value[choice] goes with, and *number, what it is multiplied by. 0: none. */
+static Expr monomial_part(const Choices *c, const long double *value, long double *number) {
   ExprGraph *g = c->e->g;
   Num exponent;
   long double rest = value[CHOICE_FIRST], other = value[CHOICE_SECOND];

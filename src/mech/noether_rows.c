@@ -247,14 +247,16 @@ static int constraint_row(RowSource *r, uint32_t which, long double *b0) {
   if (!states_obey(r->solver, r->symbols)) return 0;
   evaluate(r);
   const long double *A = r->out + 2 + 2 * (size_t)s->n;
-  long double b = A[k->A.n + which], size = fabsl(b);
-  for (uint32_t x = 0; x < k->A.n; x++) {
-    if (k->A.at[x].row != which) continue;
-    b -= A[x] * r->rate[k->A.at[x].col + 1];
-    size += fabsl(A[x] * r->rate[k->A.at[x].col + 1]);
-    for (uint32_t j = 0; j < s->xi.n; j++)
-      if (s->xi.at[j].i == k->A.at[x].col) b0[1 + j] += A[x] * r->phi[s->xi.at[j].k];
+  long double b = A[k->A.n + which], size = fabsl(b), *row = r->part;
+  memset(row, 0, s->n * sizeof *row);
+  for (uint32_t x = 0; x < k->A.n; x++)
+    if (k->A.at[x].row == which) row[k->A.at[x].col] += A[x];
+  if (r->frame) frame_covector(r->frame, row, r->point);
+  for (uint32_t i = 0; i < s->n; i++) {
+    b -= row[i] * r->rate[i + 1];
+    size += fabsl(row[i] * r->rate[i + 1]);
   }
+  for (uint32_t j = 0; j < s->xi.n; j++) b0[1 + j] += row[s->xi.at[j].i] * r->phi[s->xi.at[j].k];
   if (s->has_tau && fabsl(b) > 1e-14L * size) b0[0] = b; /* a state obeys to rounding */
   return 1;
 }

@@ -34,7 +34,7 @@ Table table_listed(Arena *a, const Ansatz *s, const TimeList *times, const long 
 
 /* The squares of the rates with which solutions go, those that are real and not 0. */
 typedef struct {
-  uint32_t n;
+  uint32_t n, others; /* others: not real */
   long double *at;
 } Rates;
 

@@ -147,6 +147,16 @@ param m = 1 > 0, c = 0.1
 kinetic = sum(i in 1..N, m/2*x[i]'^2) + sum(i in 2..N, c*x[i]*x[i]'*x[i-1]')
 potential = sum(i in 1..N, x[i]^4/4)
 END
+# The same around a ring, numbered along it, and coupled so much that rows change places; a definite matrix without zeros that no sum makes.
+sed 's/model band/model ring/; s/c\*x/30*c*x/; s/^kinetic = .*/& + c*x[1]*x[1]'"'"'*x[N]'"'"'/' "$TMP/m/band.lag" >"$TMP/m/ring.lag"
+cat >"$TMP/m/dense.lag" <<'END'
+model dense
+const N = 22
+coord x[N]
+param m = 1 > 0, c = 0.1 > 0
+kinetic = sum(i in 1..N, m/2*x[i]'^2) + sum(i in 2..N, sum(j in 1..i-1, c*exp(x[i]*x[j])*(x[i]' - j*x[j]')^2))
+potential = sum(i in 1..N, x[i]^4/4)
+END
 # Masses and springs that are graded: in lowest terms their numbers have gaps.
 cat >"$TMP/m/graded.lag" <<'END'
 model graded
@@ -189,8 +199,20 @@ check "side rods along a chain" has_loops comb 330
 check "all pulled by the first" has_loops star 20
 check "masses and springs graded along a string" has_loops graded 45
 short() { lines=$("$LAGC" derive "$TMP/m/$1.lag" --format c | wc -l); [ "$lines" -le "$2" ] || { echo "$lines lines"; return 1; }; }
-check "a full mass matrix: a line or two a row" short full 220
+check "a full mass matrix: a line or two a row" short full 230
 check "a band: zeros take none" short band 320
+solved_by() { "$LAGC" derive "$TMP/m/$1.lag" --format c | grep -q "$2" || { "$LAGC" derive "$TMP/m/$1.lag" --format c | grep lag_solve; return 1; }; }
+check "a definite matrix: half of it, without pivoting" solved_by dense 'lag_solve_definite(22, 21, w, w + 484)'
+check "one that may be indefinite, by its band" solved_by band 'lag_solve(30, 1, w, w + 900)'
+check "a ring as a band of two" solved_by ring 'lag_solve(30, 2, w, w + 900)'
+wrong_sign() { # what looked definite with the scene's values is not with others: a status, and who finds out
+  sed 's/c = 0.1 > 0/c = 0.1/' "$TMP/m/dense.lag" >"$TMP/sign.lag"
+  "$LAGC" derive "$TMP/sign.lag" --format c | grep -q lag_solve_definite || { echo "pivoting"; return 1; }
+  "$LAGC" run "$TMP/sign.lag" --until 0.1 -o "$TMP/sign.csv" || return 1
+  "$LAGC" run "$TMP/sign.lag" c=-1 --until 0.1 -o "$TMP/sign.csv" >"$TMP/sign.err" 2>&1
+  [ $? = 3 ] && grep -q 'singular' "$TMP/sign.err" || { cat "$TMP/sign.err"; return 1; }
+}
+check "with other signs it ends with a status" wrong_sign
 in_one_loop() { "$LAGC" derive "$TMP/m/string_500.lag" --format c | grep -q '^    a\[k + [0-9]*\] = '; }
 check "a string's accelerations are stored where they are computed" in_one_loop
 small() { "$LAGC" emit models/string.lag hard -DN=10000 -o "$TMP/string.c" && [ "$(wc -c <"$TMP/string.c")" -lt 65536 ]; }

@@ -313,6 +313,17 @@ static void coupled(void **state) {
   arena_free(m.arena);
 }
 
+/* Penning's trap holds for b^2 > 2 k m only (L.S. Brown, G. Gabrielse, Rev. Mod. Phys. 58 (1986) 233, DOI 10.1103/RevModPhys.58.233): the energy, angular momentum
+ * and shifts along three motions, axial, cyclotron and magnetron, two each. Where it does not hold, two of these spiral. */
+static void trap(void **state) {
+  (void)state;
+  Model_ m = model("model p\ncoord x, y, z\nparam m = 1.3 > 0, b = 3 > 0, k = 0.4 > 0\n"
+                   "lagrangian = m/2*(x'^2 + y'^2 + z'^2) + b/2*(x*y' - y*x') - k/4*(2*z^2 - x^2 - y^2)\n");
+  assert_int_equal(m.found.all.n, 8);
+  assert_int_equal(m.found.unproved, 0);
+  arena_free(m.arena);
+}
+
 static void constrained(void **state) {
   (void)state;
   Model_ m = model("model s\ncoord x, y, z\nparam g = 9.81, l = 1 > 0\nlagrangian = (x'^2 + y'^2 + z'^2)/2 - g*z\nconstraint rod: x^2 + y^2 + z^2 = l^2\n"
@@ -472,6 +483,14 @@ static void affine_change_bodies(void **state) {
               "potential = -G*m1*m2/sqrt((9 - 5/7*u + 4*w - 8/9*p + 8/7*v + 2*w + p - 8/7)^2 + (3/8 + u + v + 4*w + 4*u + 8/3*v + 9/4*w + 4*p + 1/8)^2)\n", 7);
 }
 
+/* Constraints come along: one beside two bodies, and a rod on which a pendulum swings. */
+static void affine_change_held(void **state) {
+  (void)state;
+  counts_skew("model m\ncoord u, v, w, p, z\nparam m1 = 1 > 0, m2 = 2 > 0, G = 1 > 0\nlet x1 = u - 2*v/7 + w/3 + 1\nlet y1 = u/5 + 4*v/3 - 1/2 - p/2\nlet x2 = w - 3*u/4 + v/11\nlet y2 = p - u/2 + w\n"
+              "lagrangian = m1/2*(x1'^2 + y1'^2) + m2/2*(x2'^2 + y2'^2) + z'^2 + G*m1*m2/hypot(x1 - x2, y1 - y2)\nconstraint c: z = 1\n", 7);
+  counts_skew("model m\n" SKEW3 "param g = 9.81, m = 2 > 0, l = 1 > 0\nlagrangian = m*(x'^2 + y'^2 + z'^2)/2 - m*g*z\nconstraint rod: x^2 + y^2 + z^2 = l^2\n", 2);
+}
+
 /* Two rates that differ by a part in 1e13 to 1e6: the energy, and four shifts along solutions, whatever the linear equations can tell. */
 static void near_rates(void **state) {
   (void)state;
@@ -521,8 +540,8 @@ int main(void) {
     cmocka_unit_test(free_particle), cmocka_unit_test(uniform_field), cmocka_unit_test(kepler),    cmocka_unit_test(oscillators),
     cmocka_unit_test(magnetic),      cmocka_unit_test(inverse_square), cmocka_unit_test(bodies),   cmocka_unit_test(nothing_false),
     cmocka_unit_test(curved),        cmocka_unit_test(driven),        cmocka_unit_test(constrained), cmocka_unit_test(first_order),
-    cmocka_unit_test(affine_change), cmocka_unit_test(affine_change_3d), cmocka_unit_test(affine_change_bodies), cmocka_unit_test(near_rates), cmocka_unit_test(scalings), cmocka_unit_test(rotations),
-    cmocka_unit_test(many), cmocka_unit_test(growing_field), cmocka_unit_test(fading_attraction), cmocka_unit_test(coupled),
+    cmocka_unit_test(affine_change), cmocka_unit_test(affine_change_3d), cmocka_unit_test(affine_change_bodies), cmocka_unit_test(affine_change_held), cmocka_unit_test(near_rates), cmocka_unit_test(scalings), cmocka_unit_test(rotations),
+    cmocka_unit_test(many), cmocka_unit_test(growing_field), cmocka_unit_test(fading_attraction), cmocka_unit_test(coupled), cmocka_unit_test(trap),
   };
   return cmocka_run_group_tests_name("found", tests, NULL, NULL);
 }
