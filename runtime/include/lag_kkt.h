@@ -16,7 +16,7 @@
  * side is little more than rounding: what is 1e-16 there moves a position by 1e-16/s, where s is how independent the weakest
  * constraint still is, and that turns the directions which constraints allow by 1e-16/s^2.
  *
- * lagc copies the section below into what it emits, with LAG_ and lag_ replaced by the prefix of an emitted header. There
+ * lagc copies the sections below into what it emits, with LAG_ and lag_ replaced by the prefix of an emitted header. There
  * LAG_REAL may be a vector; LAG_LANE is the scalar that it is made of. */
 #ifndef LAG_KKT_H
 #define LAG_KKT_H

@@ -89,7 +89,7 @@ END
 lacks() { rm -f "$TMP/rows.csv"; ! checks "$TMP/ker.lag" && says 'nothing says how `z` moves' "$TMP/check" && ! runs "$TMP/ker.lag" && says 'the mass matrix is singular: nothing says how z moves' "$TMP/run" && [ ! -e "$TMP/rows.csv" ]; }
 check "a coordinate without inertia that nothing moves" lacks
 # At one place only: at z = 0 the parabola lets z move without x.
-sed 's/constraint b: .*/constraint b: x = z^2\/1 [m]/; s/start .*;/start z = 0 [m];/' "$TMP/ker.lag" >"$TMP/apex.lag"
+sed "s/lagrangian = .*/lagrangian = m\/2*x'^2/; s/constraint b: .*/constraint b: x = z^2\/1 [m]/; s/start .*;/start z = 0 [m];/" "$TMP/ker.lag" >"$TMP/apex.lag"
 mv "$TMP/ker.lag" "$TMP/kept.lag" && cp "$TMP/apex.lag" "$TMP/ker.lag"
 check "a coordinate without inertia that nothing moves at the start" lacks
 mv "$TMP/kept.lag" "$TMP/ker.lag"

@@ -34,7 +34,8 @@ static const lag_entry entries[] = {{0, 0}, {1, 0}, {1, 1}}, diagonal[] = {{0, 0
 static const lag_constraint named[] = {{"first", 0, "m/s", 3}, {"second", 0, "m/s", 4}};
 static const lag_constraints held = {.n = 2, .nholonomic = 0, .of = named, .njacobian = 3, .jacobian = entries, .nmass = 2, .mass = diagonal, .matrices = matrices, .residuals = residuals};
 static const lag_var lengths[] = {{"x", "m", 1, 0, 0, 0}, {"y", "m", 1, 0, 0, 0}};
-static const lag_model model = {.name = "m", .nq = 2, .q = lengths, .constraints = &held}, free_model = {.name = "f", .nq = 2};
+static const lag_model model = {.name = "m", .flags = LAG_SMOOTH, .nq = 2, .q = lengths, .constraints = &held}, free_model = {.name = "f", .nq = 2};
+static const lag_model jumps = {.name = "j", .nq = 2, .q = lengths, .constraints = &held};
 
 static void independence_is_what_is_left_of_a_row(void **state)
 {
@@ -61,8 +62,8 @@ static int steps_until(const lag_model *m, double t0, double h, double y1)
 
   for (int i = 1; i <= PATIENCE; i++) {
     if (lag_creeps(&pb, &c, 0, t0 + i * h, y)) {
-      assert_non_null(strstr(pb.detail, "constraint second (line 4)"));
-      assert_non_null(strstr(pb.detail, "a larger one"));
+      assert_non_null(strstr(pb.detail, y1 < 1 ? "constraint second (line 4)" : "a force or a constraint jumps here"));
+      assert_non_null(strstr(pb.detail, y1 < 1 ? "a larger one" : "smooth it"));
       assert_true(pb.bad_t == t0 + i * h);
       return i;
     }
@@ -75,6 +76,7 @@ static void steps_that_creep_end(void **state)
   (void)state;
   assert_int_equal(steps_until(&model, 1, 1e-12, 1e-4), 10001);
   assert_int_equal(steps_until(&model, -1, -1e-12, 1e-4), 10001); /* backwards */
+  assert_int_equal(steps_until(&jumps, 1, 1e-12, 1), 10001);      /* far from a singular place, of a model that is not smooth */
 }
 
 static void other_short_steps_do_not(void **state)
