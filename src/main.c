@@ -24,6 +24,7 @@
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
 #include "emit/emit_model.h"
+#include "ir/hoist.h"
 #include "help.h"
 #include "ir/lower.h"
 #include "mech/constrain.h"
@@ -204,6 +205,7 @@ static int do_emit(Compiler *c) {
   IrUnit *u = lower_scene(c, e);
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
+  unit_hoist(u);
   emit_model(u, model_id(c->arena, u->name), &out);
   return write_out(c, c->o.output, &out);
 }
@@ -279,6 +281,7 @@ static Texts program_texts(Compiler *c, const Units *units, int gsl) {
   for (uint32_t i = 0; i < units->n; i++) {
     names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units->at[i]->name), i);
     StrBuf b = strbuf(c->arena);
+    unit_hoist(units->at[i]);
     emit_model(units->at[i], names[i], &b);
     vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
   }

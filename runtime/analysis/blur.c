@@ -25,7 +25,7 @@ int lag_blur(Rest *r, lag_values *values, const double *x, size_t count, double 
   lag_problem *pb = &r->sim->pb;
   const double *given = pb->p;
   int np = pb->model->np, n = r->n, turns = np + n < MOST_TURNS ? np + n : MOST_TURNS;
-  double *out = scratch, *p = out + count, *at = p + np;
+  double *out = scratch, *p = out + count, *at = p + np + pb->model->nderived;
   int rc = values(r, x, base);
 
   memset(noise, 0, count * sizeof *noise);
@@ -33,6 +33,9 @@ int lag_blur(Rest *r, lag_values *values, const double *x, size_t count, double 
     memcpy(p, given, (size_t)np * sizeof *p);
     memcpy(at, x, (size_t)n * sizeof *at);
     move(p, np, 0, turn);
+    if (pb->model->derive) {
+      pb->model->derive(p);
+    }
     move(at, n, np, turn);
     pb->p = p;
     if (values(r, at, out) == 0 && lag_not_finite((int)count, out) < 0) {

@@ -10,7 +10,7 @@ typedef int lag_values(Rest *r, const double *x, double *out);
 
 /* noise[count] := by how much values[count] at x change when each parameter, and each unknown, changes by DBL_EPSILON times
  * itself: the sum of what each does. base[count] := the values. With 32 parameters and unknowns or fewer it is that sum; of
- * more, several are moved at once. Changes at which there are no values are passed over. scratch[count + np + n].
+ * more, several are moved at once. Changes at which there are no values are passed over. scratch[count + np + nderived + n].
  * 0, or what `values` returned at x. */
 int lag_blur(Rest *r, lag_values *values, const double *x, size_t count, double *base, double *noise, double *scratch);
 

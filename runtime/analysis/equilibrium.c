@@ -421,7 +421,7 @@ static int allocate(Rest *r)
   double **const parts[] = {&r->start, &r->y, &r->rate, &r->scale, &r->x, &r->begin, &r->from, &r->first, &r->trial, &r->near, &r->kept,
                             &r->f, &r->row, &r->dx, &r->step, &r->spread, &r->J, &r->W, &r->values, &r->noise, &r->scratch, &r->dr, &r->M,
                             &r->work};
-  const size_t sizes[] = {n, ny, ny, n, n, n, n, n, n, n, n, n, n, n, n, n, n * n, n * n, n + n * n, n + n * n, n * n + 3 * n + (size_t)m->np,
+  const size_t sizes[] = {n, ny, ny, n, n, n, n, n, n, n, n, n, n, n, n, n, n * n, n * n, n + n * n, n + n * n, n * n + 3 * n + (size_t)(m->np + m->nderived),
                           n * ny, nq * nq, lag_linear_work(m)};
 
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {

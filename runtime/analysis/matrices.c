@@ -31,7 +31,7 @@ static void add_spread(Rest *r, lag_values *values, size_t count, const double *
 /* Values at the state at rest, and what rounding makes of them: of the model's numbers, of what they make, and of the state. */
 static int with_noise(Pool *pool, Rest *r, lag_values *values, size_t count, double **base, double **noise)
 {
-  size_t more = (size_t)r->sim->pb.model->np + (size_t)r->n;
+  size_t more = (size_t)(r->sim->pb.model->np + r->sim->pb.model->nderived) + (size_t)r->n;
   double *scratch = pool_doubles(pool, count + more);
 
   *base = pool_doubles(pool, count);

@@ -65,6 +65,9 @@ static void take_start(const lag_sim *first, lag_sim *sim)
       sim->fixed[at] = 1;
     }
   }
+  if (own->derive) {
+    own->derive(sim->p);
+  }
   for (int i = 0; i < first->pb.n; i++) {
     char name[128];
     lag_sim_state_info(first, i, name, sizeof name, NULL, 0);

@@ -584,6 +584,7 @@ int lag_consistent(lag_sim *s)
       look_beside(&w);
       lag_note_redundant(s);
       rc = rc ? rc : check_inertia(&w);
+      rc = rc ? rc : lag_agreement(s);
     }
   }
   free(block);

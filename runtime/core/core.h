@@ -25,6 +25,7 @@ typedef struct Run {
   double balanced;       /* 1: the work of forces on charges is integrated */
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
   double rank, beside;   /* constraints at the start that do not follow from others; where that is singular: a hundredth beside it */
+  double apart, since_apart, unlooked; /* how independent constraints were when that was last asked, steps since then, and until then */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
 } Run;
 
@@ -66,7 +67,7 @@ struct lag_sim {
   char *room;
   size_t nsaved;
   Run *run;
-  double *p, *hold;      /* [np], [nu] */
+  double *p, *hold;      /* [np + nderived], [nu] */
   double *begin;         /* [n] at the start of the run */
   double *asked;         /* [n] the same before it was brought to the constraints */
   double *redundant;     /* [constraints] 1: at the start it follows from others */
@@ -89,7 +90,8 @@ struct lag_sim {
   int nodes;             /* which has so many */
   int balances;          /* lag_sim_balance was called */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
-  double *method_work;
+  double *method_work;   /* [nwork], and as much behind it for a step that is tried again */
+  size_t nwork;
   double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or now where there is no step; NULL */
   int tangent_columns, tangent_at_event; /* at_event: it is what an event made of it at this time */
   int (*on_step)(void *, const lag_sim *);
@@ -117,6 +119,8 @@ int lag_between(lag_sim *sim, double t, double *y);
 /* consistent.c: now[n], the start as it was set, becomes the nearest start that obeys the constraints; asked, redundant, loose, run->rank and
  * run->beside are set. */
 int lag_consistent(lag_sim *sim);
+/* agreement.c: constraints that follow from others at the start `now` agree soon after it, too; else a failure that names one. */
+int lag_agreement(lag_sim *sim);
 /* forces.c. observe: out[nout] of the scene, in SI, of the state y at t. Multipliers and accelerations near a position where constraints
  * become dependent are those that they tend to along the last step; NaN where there is none. LAG_OK, or what failed. */
 int lag_observe(lag_sim *sim, double t, const double *y, double *out);
@@ -139,6 +143,10 @@ int lag_events_locate(lag_sim *sim);
 int lag_events_spread(lag_sim *sim, const double *at_event, double *spread);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
+
+/* landing.c: a step of the method from `now` at *t, into y and *t; of another size where it would end badly for constraints. What the
+ * method returned; after a failure y and *t are as they were, or undefined. */
+int lag_step_of_method(lag_sim *sim, double *t, double t_stop);
 
 /* project.c. Constraints on velocities that keep a function of positions: until it is said what, positions are free; then they keep what it
  * is of y at t. Returns what the model returned. */

@@ -13,7 +13,7 @@ enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
 typedef struct Held {
   const lag_constraints *of;
   double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
-  double *terms[2];               /* [n] of the rates, of the holonomic ones: as they were when they were last asked for */
+  double *terms[2];               /* [n] of the rates, of the holonomic ones, where they were last met */
   double *d, *force, *step;       /* [nq], [nq], [nq] */
   double *other;                  /* [2 nq + nz] */
   double *M;                      /* [nmass] */
@@ -140,9 +140,12 @@ static int other_sizes(lag_problem *pb, const Held *w, double t, const double *y
   int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : nq;
   double *c = w->c, *r = w->r;
 
+  double reach = 0;
+  const lag_var *q = pb->model->q;
   memcpy(w->other, y, (size_t)pb->n * sizeof *y);
-  for (int i = 0; i < nq; i++) {
-    w->other[at + i] += lag_reach(pb, y, holonomic, i) * (0.5 + fmod(step * (i + 1), 1));
+  for (int i = 0; i < nq; i++) { /* members of a family have one, and there may be hundreds */
+    reach = i > 0 && strcmp(q[i].unit, q[i - 1].unit) == 0 && q[i].periodic == q[i - 1].periodic ? reach : lag_reach(pb, y, holonomic, i);
+    w->other[at + i] += reach * (0.5 + fmod(step * (i + 1), 1));
   }
   int rc = lag_residuals(pb, t, w->other, c, r);
   for (int k = 0; k < n && rc == 0; k++) {
@@ -196,9 +199,14 @@ void lag_say_constraint(lag_problem *pb, int k, int holonomic, double residual, 
 {
   const lag_constraint *c = &pb->model->constraints->of[k];
   const char *level = c->holonomic == holonomic ? "" : holonomic ? "*s" : c->unit[0] ? "/s" : "1/s";
+  size_t length = strlen(c->unit);
   char line[32], unit[64];
 
-  snprintf(unit, sizeof unit, "%s%s%s", c->unit[0] || level[0] ? " " : "", c->unit[0] || level[0] != '*' ? c->unit : "1", level);
+  if (level[0] == '*' && length > 2 && strcmp(c->unit + length - 2, "/s") == 0) { /* m/s*s is m */
+    length -= 2;
+    level = "";
+  }
+  snprintf(unit, sizeof unit, "%s%.*s%s", c->unit[0] || level[0] ? " " : "", (int)(length ? length : 1), c->unit[0] || level[0] != '*' ? c->unit : "1", level);
   if (isnan(residual)) {
     snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, lag_line_of(c, line), words);
   } else {
@@ -336,7 +344,7 @@ static int is_noise(lag_problem *pb, const Held *w, double t, const double *y, i
     return 0;
   }
   for (int i = 0; i < nq; i++) {
-    noise &= fabs(rest[i]) <= lag_size_like(pb, w->d, i);
+    noise &= fabs(rest[i]) <= 2 * lag_size_like(pb, w->d, i); /* they may be the same but for rounding */
   }
   return noise;
 }
@@ -366,9 +374,14 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
     return 1;
   }
   lag_worst_constraint(pb, t, y, holonomic, &worst);
-  memcpy(terms, w.g, (size_t)n * sizeof *terms);
-  int noise = worst > 0x1p10 && began_at_0(pb) && is_noise(pb, &w, t, y, holonomic, residual);
-  return worst <= 0x1p10 || (noise && lag_residuals(pb, t, y, w.c, w.r) == 0); /* which newton() goes on with */
+  met = worst <= 0x1p10;
+  if (!met && began_at_0(pb)) {
+    met = is_noise(pb, &w, t, y, holonomic, residual);
+    met = lag_residuals(pb, t, y, w.c, w.r) == 0 && met; /* which is_noise() has written over, and newton() goes on with */
+  } else if (met) { /* a state that does not obey them may be anywhere, and its terms as large as you like */
+    memcpy(terms, w.g, (size_t)n * sizeof *terms);
+  }
+  return met;
 }
 
 /* Whether the residuals of y, of which w->c and w->r are left as they are, are what the last digits of their terms make. */

@@ -16,14 +16,15 @@ enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_D
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
 {
   const lag_model *m = s->scene->model;
-  size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)m->np, nu = (size_t)m->nu;
+  size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)(m->np + m->nderived), nu = (size_t)m->nu;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
   size_t fixed = RUN_DOUBLES + np + nu + 5 * n + (size_t)s->pb.nq + 2 * nc + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
   size_t ncharges = (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double);
   lag_problem sized = s->pb;
   sized.opt = opt;
-  size_t before = (fixed + ncharges + LINE_DOUBLES - 1) / LINE_DOUBLES * LINE_DOUBLES, total = before + method->work_size(&sized);
-  char *room = calloc(total * sizeof(double) + LINE - 1, 1);
+  size_t before = (fixed + ncharges + LINE_DOUBLES - 1) / LINE_DOUBLES * LINE_DOUBLES, work = method->work_size(&sized), total = before + work;
+  size_t again = method->flags & LAG_METHOD_STRETCHES && m->constraints ? work : 0;
+  char *room = calloc((total + again) * sizeof(double) + LINE - 1, 1);
 
   if (!room) {
     return LAG_ENOMEM;
@@ -47,6 +48,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
     x += sizes[i];
   }
   s->method_work = b + before;
+  s->nwork = work;
   s->pb.p = s->p;
   s->pb.hold = s->hold;
   s->pb.kept = s->kept;

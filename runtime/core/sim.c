@@ -130,7 +130,7 @@ static int take(lag_sim *s, double t_stop)
   lag_copy(s->pb.n, s->now, s->y0);
   s->pb.detail = NULL;
   s->pb.bad_t = t;
-  int rc = s->method->step(s->method_work, &s->pb, &t, s->y, t_stop);
+  int rc = lag_step_of_method(s, &t, t_stop);
   if (rc) {
     return lag_explain(s, rc);
   }

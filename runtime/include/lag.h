@@ -54,7 +54,7 @@ typedef struct lag_signal {
 typedef struct lag_problem {
   const lag_model *model;
   int n, nq, nz;       /* n = 2 nq + nz */
-  const double *p;     /* [np] parameters */
+  const double *p;     /* [np + nderived] parameters */
   double *u;           /* [nu] inputs, filled by lag_rhs */
   const double *hold;  /* [nu] constants that replace inputs; NaN where there is none */
   const lag_signal *signal; /* [nu] functions that replace inputs */
@@ -66,6 +66,7 @@ typedef struct lag_problem {
   const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
+  double stretch;      /* steps of methods that stretch are longer by this part of what they would be; mostly 0 */
   double longest;      /* embedded methods and radau take no longer steps than this [s], 0: no limit */
   double span;         /* length of the scene's span, 0 when it has none. Not where this run ends */
   double rhs_calls;    /* counted by lag_rhs */
@@ -201,6 +202,7 @@ enum {
   LAG_METHOD_TAYLOR = 256,     /* needs the model's Taylor coefficients: lag_model.taylor */
   LAG_METHOD_JACOBIAN = 2048,  /* needs the model's linearisation: lag_model.linear */
   LAG_METHOD_CONSTRAINTS = 4096, /* steps end on the constraints of a model that has them */
+  LAG_METHOD_STRETCHES = 16384, /* with constraints: a step that lag_problem.stretch says is of another size */
   LAG_METHOD_FLOWS = 8192,     /* takes models of states alone (nq = 0), with the linearisation in place of derivatives of L */
   LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS where it does not split */
 };

@@ -10,7 +10,7 @@
  * coordinates Q^T x the first r components follow from g, and the others from M without constraints (the null space method: Benzi, Golub,
  * Liesen, Acta Numerica 14 (2005) 1, section 6, DOI 10.1017/S0962492904000212); l is the least solution of R l = what M x - f is there,
  * by a second factorization where r < m. Where M is positive definite and the constraints are far from dependent, as they mostly are,
- * Schur's complement is as good, and cheaper.
+ * Schur's complement is as good, and cheaper; and so is, for large systems, elimination within a band.
  *
  * Near a position where constraints become dependent, a coarse rank is the right one for corrections of a state, whose right-hand
  * side is little more than rounding: what is 1e-16 there moves a position by 1e-16/s, where s is how independent the weakest
@@ -36,12 +36,207 @@
 #define LAG_MASK int
 #endif
 
-/* ---- kkt ---- */
+/* ---- numbers ---- */
 #ifdef LAG_LANES
 #define LAG_LANE_FN(f) f
 #else
 #define LAG_LANE_FN(f) LAG_FN(f)
 #endif
+
+/* ---- band ---- */
+/* The whole system [M A^T; A 0] within a band, for systems of some size: along chains, ladders and loops of any number of links its work grows linearly,
+ * also where M is not diagonal, so that M^-1 has no zeros, or is singular. Unknowns are put in the order of Cuthill and McKee (ACM '69:
+ * Proc. 24th nat. conf., 157, DOI 10.1145/800195.805928), begun at an end; the factorization is L U with exchange of rows, which widens a
+ * band by its half at most, where the pivots of L D L^T would fill it (Golub & Van Loan, 4.3 and 4.4). All scratch is of LAG_LANE. */
+#define LAG_BAND_LEAST 62
+#define LAG_BAND_EDGES 6
+
+/* Where the unknowns stand: those beside unknown i are next[first[i]] to next[first[i + 1]]; order[place[i]] = i. */
+typedef struct lag_band {
+  int all, edges, half; /* half: the largest difference of places */
+  LAG_LANE *edge, *first, *next, *order, *place, *scale, *rows, *pivot;
+} lag_band;
+
+/* Unknowns that stand beside each other, i > j, as numbers i*all + j. Returns 0 where there are too many for a band. */
+static int lag_edges(int n, int m, const LAG_LANE *M, const LAG_LANE *A, lag_band *b) {
+  b->edges = 0;
+  for (int i = 0; i < b->all; i++) {
+    const LAG_LANE *const row = i < n ? M + i*n : A + (i - n)*n;
+    for (int j = 0; j < (i < n ? i : n); j++)
+      if (row[j] < 0 || row[j] > 0) {
+        if (b->edges == LAG_BAND_EDGES*b->all) return 0;
+        b->edge[b->edges++] = (LAG_LANE)i*(LAG_LANE)b->all + (LAG_LANE)j;
+      }
+  }
+  for (int i = 0; i <= b->all; i++) b->first[i] = 0;
+  for (int e = 0; e < b->edges; e++) {
+    const int i = (int)(b->edge[e]/(LAG_LANE)b->all), j = (int)(b->edge[e] - (LAG_LANE)i*(LAG_LANE)b->all);
+    b->first[i] += 1, b->first[j] += 1;
+  }
+  for (int i = 0; i < b->all; i++) b->first[i + 1] += b->first[i];
+  for (int e = b->edges - 1; e >= 0; e--) {
+    const int i = (int)(b->edge[e]/(LAG_LANE)b->all), j = (int)(b->edge[e] - (LAG_LANE)i*(LAG_LANE)b->all);
+    b->next[(int)(b->first[i] -= 1)] = (LAG_LANE)j;
+    b->next[(int)(b->first[j] -= 1)] = (LAG_LANE)i;
+  }
+  return m <= n;
+}
+
+/* Gives the places from `at` on to unknown i, to those beside it, and so on. Returns the first place that is free. */
+static int lag_walk(const lag_band *b, int i, int at) {
+  int end = at;
+  b->order[end] = (LAG_LANE)i, b->place[i] = (LAG_LANE)end++;
+  for (; at < end; at++) {
+    const int here = (int)b->order[at];
+    for (int e = (int)b->first[here]; e < (int)b->first[here + 1]; e++) {
+      const int beside = (int)b->next[e];
+      if (b->place[beside] < 0) b->order[end] = (LAG_LANE)beside, b->place[beside] = (LAG_LANE)end++;
+    }
+  }
+  return end;
+}
+
+/* Each connected part is walked from the last unknown of a walk from the last of another one: from one end to the other. */
+static void lag_places(lag_band *b) {
+  int at = 0;
+  for (int i = 0; i < b->all; i++) b->place[i] = -1;
+  for (int i = 0; i < b->all; i++) {
+    if (b->place[i] >= 0) continue;
+    int end = lag_walk(b, i, at);
+    for (int turn = 0; turn < 2; turn++) {
+      const int from = (int)b->order[end - 1];
+      for (int k = at; k < end; k++) b->place[(int)b->order[k]] = -1;
+      end = lag_walk(b, from, at);
+    }
+    at = end;
+  }
+  b->half = 0;
+  for (int i = 0; i < b->all; i++)
+    for (int e = (int)b->first[i]; e < (int)b->first[i + 1]; e++) {
+      const int far = (int)(b->place[i] - b->place[(int)b->next[e]]);
+      b->half = far > b->half ? far : b->half;
+    }
+}
+
+/* Element e of the matrix; its unknowns in *i and *j. */
+static LAG_LANE lag_element(int n, const lag_band *b, int e, const LAG_LANE *M, const LAG_LANE *A, int *i, int *j) {
+  *i = (int)(b->edge[e]/(LAG_LANE)b->all), *j = (int)(b->edge[e] - (LAG_LANE)*i*(LAG_LANE)b->all);
+  return *i < n ? M[*i*n + *j] : A[(*i - n)*n + *j];
+}
+
+/* The rows of the band, of 3 half + 1 elements of which the last `half` are for exchanges: scaled so that M has ones along its diagonal and
+ * each constraint a largest element of 1. Then L U. Returns 0 where a pivot is 0. */
+static int lag_band_factor(int n, const lag_band *b, const LAG_LANE *M, const LAG_LANE *A) {
+  const int h = b->half, width = 3*h + 1;
+  int i, j;
+  for (int k = 0; k < b->all; k++) b->scale[k] = k < n && M[k*n + k] > 0 ? 1/LAG_LANE_FN(sqrt)(M[k*n + k]) : k < n;
+  for (int e = 0; e < b->edges; e++) {
+    const LAG_LANE x = LAG_LANE_FN(fabs)(lag_element(n, b, e, M, A, &i, &j))*b->scale[j];
+    if (i >= n && x > b->scale[i]) b->scale[i] = x;
+  }
+  for (int k = n; k < b->all; k++) b->scale[k] = b->scale[k] > 0 ? 1/b->scale[k] : 1;
+  for (int k = 0; k < b->all*width; k++) b->rows[k] = 0;
+  for (int k = 0; k < n; k++) b->rows[(int)b->place[k]*width + h] = M[k*n + k]*b->scale[k]*b->scale[k];
+  for (int e = 0; e < b->edges; e++) {
+    const LAG_LANE x = lag_element(n, b, e, M, A, &i, &j)*b->scale[i]*b->scale[j];
+    const int r = (int)b->place[i], c = (int)b->place[j];
+    b->rows[r*width + c - r + h] = b->rows[c*width + r - c + h] = x;
+  }
+  for (int k = 0; k < b->all; k++) {
+    const int last = k + h < b->all ? k + h : b->all - 1;
+    int top = k;
+    LAG_LANE *const row = b->rows + k*width + h; /* row[c]: column k + c */
+    for (int r = k + 1; r <= last; r++)
+      if (LAG_LANE_FN(fabs)(b->rows[r*width + k - r + h]) > LAG_LANE_FN(fabs)(b->rows[top*width + k - top + h])) top = r;
+    b->pivot[k] = (LAG_LANE)top;
+    for (int c = 0; c <= 2*h && top != k; c++) {
+      LAG_LANE *const other = b->rows + top*width + k + c - top + h;
+      const LAG_LANE was = row[c];
+      row[c] = *other;
+      *other = was;
+    }
+    if (!(LAG_LANE_FN(fabs)(row[0]) > 0)) return 0;
+    for (int r = k + 1; r <= last; r++) {
+      LAG_LANE *const below = b->rows + r*width + k - r + h;
+      const LAG_LANE factor = below[0] /= row[0];
+      for (int c = 1; c <= 2*h && (factor < 0 || factor > 0); c++) below[c] -= factor*row[c];
+    }
+  }
+  return 1;
+}
+
+/* y[all] := the solution for the right-hand side y, both in the order of places, and scaled. */
+static void lag_band_solve(const lag_band *b, LAG_LANE *y) {
+  const int h = b->half, width = 3*h + 1;
+  for (int k = 0; k < b->all; k++) {
+    const int top = (int)b->pivot[k];
+    const LAG_LANE x = y[top];
+    y[top] = y[k];
+    y[k] = x;
+    for (int r = k + 1; r <= k + h && r < b->all; r++) y[r] -= b->rows[r*width + k - r + h]*x;
+  }
+  for (int k = b->all - 1; k >= 0; k--) {
+    for (int c = 1; c <= 2*h && k + c < b->all; c++) y[k] -= b->rows[k*width + h + c]*y[k + c];
+    y[k] /= b->rows[k*width + h];
+  }
+}
+
+/* An estimate of the norm of the inverse, the sum of sizes along a column (W. Hager, SIAM J. Sci. Stat. Comput. 5 (1984) 311, DOI
+ * 10.1137/0905023), of a symmetric matrix. y[all] and z[all] are scratch. */
+static LAG_LANE lag_band_inverse(const lag_band *b, LAG_LANE *y, LAG_LANE *z) {
+  LAG_LANE size = 0;
+  int at = -1;
+  for (int turn = 0; turn < 4; turn++) {
+    LAG_LANE now = 0;
+    int most = 0;
+    for (int i = 0; i < b->all; i++) y[i] = at < 0 ? 1/(LAG_LANE)b->all : i == at;
+    lag_band_solve(b, y);
+    for (int i = 0; i < b->all; i++) now += LAG_LANE_FN(fabs)(y[i]), z[i] = y[i] < 0 ? -1 : 1;
+    if (!(now > size)) return turn ? size : now;
+    size = now;
+    lag_band_solve(b, z);
+    for (int i = 1; i < b->all; i++) most = LAG_LANE_FN(fabs)(z[i]) > LAG_LANE_FN(fabs)(z[most]) ? i : most;
+    if (most == at) break;
+    at = most;
+  }
+  return size;
+}
+
+/* y := the right-hand sides f, g without what x and l make of them, in the order of places, and scaled. */
+static void lag_band_rest(int n, const lag_band *b, const LAG_LANE *M, const LAG_LANE *A, const LAG_LANE *side, const LAG_LANE *x, LAG_LANE *y) {
+  int i, j;
+  for (int k = 0; k < b->all; k++) y[(int)b->place[k]] = side[k] - (k < n ? M[k*n + k]*x[k] : 0);
+  for (int e = 0; e < b->edges; e++) {
+    const LAG_LANE a = lag_element(n, b, e, M, A, &i, &j);
+    y[(int)b->place[i]] -= a*x[j];
+    y[(int)b->place[j]] -= i < n ? a*x[i] : -a*x[i];
+  }
+  for (int k = 0; k < b->all; k++) y[(int)b->place[k]] *= b->scale[k];
+}
+
+/* The system of lag_kkt, where it has a band that fits into w[room], and is so far from singular (its condition is at most 1e8, so a part of some
+ * 1e-4 of each constraint is independent of the others) that neither a rank nor least multipliers are in question. Two solutions, the second of
+ * what the first has left. x and l hold f and g. Returns whether it has solved the system; M and A stay. */
+static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w, int room) {
+  const int all = n + m;
+  lag_band b = {all, 0, 0, w, w + LAG_BAND_EDGES*all, 0, 0, 0, 0, 0, 0};
+  b.next = b.first + all + 1, b.order = b.next + 2*LAG_BAND_EDGES*all, b.place = b.order + all, b.scale = b.place + all, b.pivot = b.scale + all;
+  LAG_LANE *const side = b.pivot + all, *const y = side + all, *const z = y + all;
+  b.rows = z + all;
+  if (b.rows - w > room || !lag_edges(n, m, M, A, &b)) return 0;
+  lag_places(&b);
+  if (3*b.half + 1 > (room - (int)(b.rows - w))/all || !lag_band_factor(n, &b, M, A) || !(lag_band_inverse(&b, y, z) <= (LAG_LANE)1e8)) return 0;
+  for (int i = 0; i < all; i++) side[i] = i < n ? x[i] : l[i - n], z[i] = 0;
+  for (int turn = 0; turn < 2; turn++) {
+    lag_band_rest(n, &b, M, A, side, z, y);
+    lag_band_solve(&b, y);
+    for (int i = 0; i < all; i++) z[i] += (i < n ? 1 : -1)*b.scale[i]*y[(int)b.place[i]]; /* the matrix is symmetric for -l */
+  }
+  for (int i = 0; i < all; i++) *(i < n ? x + i : l + i - n) = z[i];
+  return 1;
+}
+
+/* ---- kkt ---- */
 
 /* x := x - beta v (v.x): Householder's reflection by v[n]. */
 static void lag_reflect(int n, const LAG_LANE *v, LAG_LANE beta, LAG_LANE *x, int stride) {
@@ -230,6 +425,9 @@ static int lag_schur(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LAN
 /* x[n], l[m] hold f and g, and become the solution; M and A are destroyed. w[n*n + m*n + m*m + 2*n + 9*m] is scratch. Returns
  * whether M is regular on the kernel of A. */
 static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
+#ifdef LAG_BAND_LEAST
+  if (n + m >= LAG_BAND_LEAST && lag_banded(n, m, M, A, x, l, w, n*n + m*n + m*m + 2*n + 9*m)) return 1;
+#endif
   if (lag_schur(n, m, M, A, x, l, w)) return 1;
   LAG_LANE *const diag = w, *const beta = w + m, *const scale = w + 2*m, *const order = w + 3*m;
   LAG_LANE *const y = w + 4*m, *const s = w + 5*m, *const mu = w + 6*m, *const S = w + 7*m;

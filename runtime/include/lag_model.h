@@ -2,7 +2,7 @@
  *
  * A model is a const struct of names, sizes and functions, emitted by lagc. Its state is q[nq]
  * (generalised coordinates), v[nq] (their time derivatives) and z[nz] (states that are no
- * coordinate); p[np] are its parameters, u[nu] its inputs, w[nw] work space for its functions.
+ * coordinate); p[np + nderived] are its parameters, the last of them made of the others by derive; u[nu] its inputs, w[nw] work space for its functions.
  * All values are in SI units. No function allocates, keeps state, or writes past the sizes here.
  * Arrays passed to one call do not overlap.
  *
@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 5
+#define LAG_ABI 6
 
 /* The scalar that a model is compiled for: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of
  * so many doubles: many states, or sets of parameters, at once. Then a status < 0 has bit k of its negative set when lane k
@@ -238,6 +238,11 @@ typedef struct lag_model {
   const lag_var *u;  /* [nu] */
   const lag_event *ev; /* [nev] */
 
+  /* p[np ... np + nderived - 1] from p[0 ... np - 1]: what depends on parameters alone. A scene's params calls it; who changes p
+   * afterwards does. NULL where nderived is 0. */
+  int nderived;
+  void (*derive)(LAG_REAL *p);
+
   /* u[nu] at time t, where the model gives them a formula. */
   int (*inputs)(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u);
 
@@ -307,7 +312,7 @@ typedef struct lag_scene {
   const char *doc;
   const lag_model *model;
 
-  /* Parameters in order of declaration; those with fixed[i] != 0 keep what p[i] holds. */
+  /* Parameters in order of declaration, of which those with fixed[i] != 0, i < np, keep what p[i] holds; then derived ones. */
   void (*params)(LAG_REAL *p, const unsigned char *fixed);
 
   /* The state at the start of the span. */

@@ -65,20 +65,16 @@ static double lag_reduce(double x, double *lo, unsigned long long *quarter) {
 
 #ifdef LAG_LANES
 /* Sine and cosine of x - k pi/2 - lo, |x - k pi/2| <= pi/4, in quarter `quarter`, that is k modulo 4. The polynomials are minimax, by
- * tests/math/remez.py. */
+ * tests/math/remez.py; they are bracketed for a short way. */
 LAG_INLINE void lag_sincos_turned(LAG_REAL y, LAG_REAL lo, lag_word quarter, LAG_REAL *s, LAG_REAL *c) {
-  const LAG_REAL z = y*y, w = lag_mad(z, LAG_K(-0.5), LAG_K(1.0)), rest = lag_mad(z, LAG_K(-0.5), LAG_K(1.0) - w);
-  LAG_REAL p = lag_mad(z, LAG_K(-1.5895432975868974e-10), LAG_K(2.5050734385284707e-08));
-  LAG_REAL q = lag_mad(z, LAG_K(-1.1358749174703273e-11), LAG_K(2.087570539521945e-09));
-  p = lag_mad(z, p, LAG_K(-2.7557313538498488e-06));
-  q = lag_mad(z, q, LAG_K(-2.7557314217035774e-07));
-  p = lag_mad(z, p, LAG_K(0.00019841269829358509));
-  q = lag_mad(z, q, LAG_K(2.4801587289002076e-05));
-  p = lag_mad(z, p, LAG_K(-0.0083333333333218407));
-  q = lag_mad(z, q, LAG_K(-0.0013888888888873342));
-  p = lag_mad(z, p, LAG_K(0.1666666666666663));
-  q = lag_mad(z, q, LAG_K(0.041666666666666595));
-  const LAG_REAL sine = y - lag_mad(z*y, p, lo), cosine = w + (rest + lag_mad(z*z, q, y*lo));
+  const LAG_REAL z = y*y, zz = z*z, w = lag_mad(z, LAG_K(-0.5), LAG_K(1.0)), rest = lag_mad(z, LAG_K(-0.5), LAG_K(1.0) - w);
+  const LAG_REAL p = lag_mad(zz, lag_mad(zz, lag_mad(z, LAG_K(-1.5895432975868974e-10), LAG_K(2.5050734385284707e-08)),
+                                         lag_mad(z, LAG_K(-2.7557313538498488e-06), LAG_K(0.00019841269829358509))),
+                             lag_mad(z, LAG_K(-0.0083333333333218407), LAG_K(0.1666666666666663)));
+  const LAG_REAL q = lag_mad(zz, lag_mad(zz, lag_mad(z, LAG_K(-1.1358749174703273e-11), LAG_K(2.087570539521945e-09)),
+                                         lag_mad(z, LAG_K(-2.7557314217035774e-07), LAG_K(2.4801587289002076e-05))),
+                             lag_mad(z, LAG_K(-0.0013888888888873342), LAG_K(0.041666666666666595)));
+  const LAG_REAL sine = y - lag_mad(z*y, p, lo), cosine = w + lag_mad(zz, q, lag_mad(y, lo, rest));
   const lag_word a = lag_to_word(sine), b = lag_to_word(cosine), odd = quarter << 63, minus = quarter << 62 & lag_to_word(LAG_K(-0.0));
   const lag_word swap = (a ^ b) & (lag_word)((LAG_MASK)odd >> 63);
   *s = lag_to_real(a ^ swap ^ minus);

@@ -169,6 +169,20 @@ double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, l
   return !isfinite(both) ? NAN : late ? (both > 0 ? fine * (fine / both) : 0) : fine;
 }
 
+int lag_embedded_turns(Embedded *w, lag_problem *pb, double tb)
+{
+  const double *y0 = lag_embedded_array(w, pb, EMBEDDED_Y0), *y1 = lag_embedded_array(w, pb, EMBEDDED_Y1);
+  int nq = pb->nq;
+
+  for (int i = 0; i < nq && !(pb->model->flags & LAG_AUTONOMOUS); i++) {
+    double moved = y1[i] - y0[i], v0 = pb->dir * y0[nq + i], v1 = pb->dir * y1[nq + i];
+    if (((v0 > 0 && v1 > 0 && moved < 0) || (v0 < 0 && v1 < 0 && moved > 0)) && fabs(moved) > 1e-3 * lag_reach(pb, y0, 1, i)) {
+      return lag_say_leap(pb, tb, y1, i, moved);
+    }
+  }
+  return LAG_OK;
+}
+
 /* The search for a step that passes a position where constraints become dependent. A step whose stages came near one goes far across the
  * constraints; and one that ends near it hands the next a derivative that says little. What passes better may be shorter, where the
  * step ends there, or longer, where it begins there. Of the sizes that are tried the first is taken that is good, or else the least bad of

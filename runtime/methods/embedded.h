@@ -66,6 +66,10 @@ int lag_embedded_init(void *work, lag_problem *pb, const double *opt);
 void lag_embedded_reset(void *work, lag_problem *pb);
 int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y);
 
+/* > 0 where constraints contain the time, and a coordinate has gone back while its velocities at both ends, tb being the later one, lead on: it ran off to
+ * infinity, and came from the other side, as x = tan(t) does, or the step is too long for what the time makes of it. What constraints
+ * determine has no error that would tell. */
+int lag_embedded_turns(Embedded *w, lag_problem *pb, double tb);
 /* The square of the error of the step just computed, without what its projection takes back: near positions where constraints become
  * dependent that part is large, and says nothing. whole: with it. */
 double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt, double whole);

@@ -167,6 +167,9 @@ LAG_HERE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double
   double *y1 = w->x + EMBEDDED_Y1 * as.row;
   int rc = pb->model->constraints ? lag_project_step(pb, tb, w->x + EMBEDDED_Y0 * as.row, y1, w->x + EMBEDDED_COMP1 * as.row) : 0;
 
+  if (pb->model->constraints && rc == 0 && w->fixed == 0.0) {
+    rc = lag_embedded_turns(w, pb, tb);
+  }
   return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
 }
 

@@ -114,7 +114,7 @@ int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y)
   Implicit *w = work;
   Arrays a = lag_links_arrays(w, pb);
   int rc;
-  double dt = w->h * pb->dir, tc = w->tc, tb = lag_sum(*t, dt, &tc);
+  double dt = w->h * (1 + pb->stretch) * pb->dir, tc = w->tc, tb = lag_sum(*t, dt, &tc);
 
   pb->bad_index = -1;
   if (tb == *t) {

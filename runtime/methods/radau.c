@@ -522,6 +522,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int rc = prepare(w, &a, pb, *t, y), why = REJECTED;
 
   (void)t_stop;
+  w->h *= 1 + pb->stretch;
   while (rc == 0) {
     w->h = fmin(w->h, longest(w, pb, *t));
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_sum(*t, dt, &tc);
@@ -584,7 +585,7 @@ const lag_method lag_radau = {
     .order = 5,
     .dense_order = 3,
     .doc = "Radau IIA with the exact Jacobian (of constrained models a differenced one), for stiff models. DOI 10.1007/978-3-642-05221-7, IV.8",
-    .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_NEWTON | LAG_METHOD_JACOBIAN | LAG_METHOD_CONSTRAINTS,
+    .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_NEWTON | LAG_METHOD_JACOBIAN | LAG_METHOD_CONSTRAINTS | LAG_METHOD_STRETCHES,
     .noptions = EMBEDDED_NOPTIONS,
     .options = lag_embedded_options,
     .work_size = work_size,

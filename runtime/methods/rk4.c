@@ -80,7 +80,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int n = pb->n, rc;
   size_t bytes = (size_t)n * sizeof(double);
   double *y1 = w->x + Y1 * n, *comp = w->x + COMP * n, *ys = w->x + YS * n;
-  double dt = w->h * pb->dir, tc = w->tc, tb = lag_sum(*t, dt, &tc);
+  double dt = w->h * (1 + pb->stretch) * pb->dir, tc = w->tc, tb = lag_sum(*t, dt, &tc);
 
   (void)t_stop;
   pb->bad_index = -1;
@@ -149,7 +149,7 @@ const lag_method lag_rk4 = {
     .name = "rk4",
     .order = 4,
     .dense_order = 4,
-    .flags = LAG_METHOD_CONSTRAINTS,
+    .flags = LAG_METHOD_CONSTRAINTS | LAG_METHOD_STRETCHES,
     .doc = "classical Runge-Kutta, fixed step. Kutta 1901",
     .noptions = 1,
     .options = options,

@@ -277,7 +277,7 @@ static int tangent(const lag_composition *c, void *work, lag_problem *pb, double
       .dense_order = p,                                                                  \
       .doc = words,                                                                      \
       .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_NEWTON | \
-               LAG_METHOD_CONSTRAINTS | (properties), \
+               LAG_METHOD_CONSTRAINTS | LAG_METHOD_STRETCHES | (properties), \
       .noptions = 1,                                                                     \
       .options = options,                                                                \
       .work_size = size_##id,                                                            \

@@ -15,6 +15,7 @@ static const char *const logic =
   "#define LAG_MASK int\n"
   "#define LAG_PIVOTS (void)0\n"
   "#define LAG_PIVOT(c) do { if (!(c)) return LAG_ESINGULAR; } while (0)\n"
+  "#define LAG_POSITIVE(d) LAG_PIVOT((d) > LAG_C(0.0))\n"
   "#define LAG_PIVOTS_STATUS LAG_OK\n"
   "#endif\n"
   "#ifndef LAG_LANE\n"
@@ -159,6 +160,29 @@ static const char *const factorizer =
   "  }\n"
   "}\n";
 
+/* Of the unit vectors. */
+static const char *const inverter =
+  "\n/* w = [M | n | n | inverse | 1, or 0 where M is singular], from the symmetric M[n*n]. */\n"
+  "static void lag_invert(int n, LAG_REAL *w) {\n"
+  "  LAG_REAL *const b = w + n*n, *const inverse = b + 2*n;\n"
+  "  const LAG_MASK regular = lag_factor(n, w);\n"
+  "  for (int j = 0; j < n; j++) {\n"
+  "    for (int i = 0; i < n; i++) b[i] = LAG_C(0.0) + (LAG_LANE)(i == j);\n"
+  "    lag_substitute(n, w);\n"
+  "    for (int i = j; i < n; i++) inverse[i*n + j] = inverse[j*n + i] = b[i];\n"
+  "  }\n"
+  "  inverse[n*n] = LAG_SELECT(regular, LAG_C(1.0), LAG_C(0.0));\n"
+  "}\n";
+static const char *const multiplier =
+  "\n/* w[n] = M^-1 b, with b[n] before it. */\n"
+  "static void lag_multiply(int n, const LAG_REAL *inverse, LAG_REAL *w) {\n"
+  "  for (int i = 0; i < n; i++) {\n"
+  "    LAG_REAL x = LAG_C(0.0);\n"
+  "    for (int j = 0; j < n; j++) x += inverse[i*n + j]*w[j];\n"
+  "    w[n + i] = x;\n"
+  "  }\n"
+  "}\n";
+
 void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out) {
   for (const char *s = text; *s;) {
     int upper = strncmp(s, "LAG_", 4) == 0, is_lower = strncmp(s, "lag_", 4) == 0;
@@ -173,8 +197,10 @@ void csupport_fill(const char *text, const char *prefix, const char *lower, StrB
 
 void csupport_logic(const char *prefix, StrBuf *out) { csupport_fill(logic, prefix, "", out); }
 void csupport_factor(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(factorizer, prefix, lower, out); }
+void csupport_inverter(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(inverter, prefix, lower, out); }
 void csupport_solver(SolveKind kind, const char *prefix, const char *lower, StrBuf *out) {
-  csupport_fill(kind == SOLVE_DEFINITE ? definite_solver : solver, prefix, lower, out);
+  const char *const texts[] = {[SOLVE_PIVOTING] = solver, [SOLVE_DEFINITE] = definite_solver, [SOLVE_INVERSE] = multiplier};
+  csupport_fill(texts[kind], prefix, lower, out);
 }
 void csupport_spline(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(spline, prefix, lower, out); }
 

@@ -9,7 +9,8 @@
  * vectors of numbers have no ternary in C. */
 void csupport_logic(const char *prefix, StrBuf *out);
 
-/* `static int lower_solve(n, M, b)`, for the blocks that are not solved in straight-line code. */
+/* The function that solves blocks of a kind which are not solved in straight-line code: lower_solve, lower_solve_definite, lower_multiply (w[2 n] =
+ * right-hand side, solution). Not SOLVE_CONSTRAINED: that is cmath_kkt. */
 void csupport_solver(SolveKind kind, const char *prefix, const char *lower, StrBuf *out);
 
 /* `static LAG_REAL lower_spline(t, n, row)`, for the inputs that have a table. */
@@ -18,6 +19,9 @@ void csupport_spline(const char *prefix, const char *lower, StrBuf *out);
 /* The same in two functions, lag_factor(n, w) and lag_substitute(n, w), with w[n*n + 2 n] = matrix, right-hand side, order
  * of the rows: one factorization for several right-hand sides. */
 void csupport_factor(const char *prefix, const char *lower, StrBuf *out);
+
+/* lag_invert(n, w), which needs csupport_factor, with w as Solve in ir/prog.h says for IR_INVERT. */
+void csupport_inverter(const char *prefix, const char *lower, StrBuf *out);
 
 /* text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
 void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out);

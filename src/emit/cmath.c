@@ -19,7 +19,11 @@ static void section(const char *name, const char *prefix, const char *lower, Str
 }
 
 void cmath_kkt(const IrUnit *u, const char *prefix, const char *lower, StrBuf *out) {
-  if (u->constraints.of.n) section_of(lag_kkt, sizeof lag_kkt / sizeof *lag_kkt, "kkt", prefix, lower, out);
+  static const uint32_t large = 62; /* LAG_BAND_LEAST of lag_kkt.h: no smaller system asks for the band */
+  static const char *const names[] = {"numbers", "band", "kkt"};
+  int banded = u->q.n + u->constraints.of.n >= large;
+  for (size_t i = 0; u->constraints.of.n && i < sizeof names / sizeof *names; i++)
+    if (i != 1 || banded) section_of(lag_kkt, sizeof lag_kkt / sizeof *lag_kkt, names[i], prefix, lower, out);
 }
 
 static int calls(const Prog *p, const char *name) {
@@ -36,7 +40,7 @@ static int scene_calls(const IrScene *s, uint32_t params, const char *name) {
 }
 
 static int unit_calls(const IrUnit *u, const char *name) {
-  int some = calls(u->accel, name) | calls(u->energy, name) | calls(u->inputs, name) | calls(u->linear, name) | calls(u->charge_values, name) | calls(u->charge_powers, name);
+  int some = calls(u->accel, name) | calls(u->derived, name) | calls(u->energy, name) | calls(u->inputs, name) | calls(u->linear, name) | calls(u->charge_values, name) | calls(u->charge_powers, name);
   some |= calls(u->variation, name) | calls(u->second, name) | calls(u->event_values, name) | calls(u->jumps, name);
   if (u->taylor) some |= calls(u->taylor->first, name);
   for (uint32_t i = 0; i < u->events.n; i++) some |= calls(u->events.at[i].action, name);

@@ -3,7 +3,7 @@
 
 #include "emit/cwriter_impl.h"
 
-enum { MADE_NAME_MAX = 14, LINE_MAX_COLUMNS = 100, WRAP_COLUMNS = 120 };
+enum { LINE_MAX_COLUMNS = 100, WRAP_COLUMNS = 120 };
 
 /* --- constants --- */
 
@@ -151,7 +151,7 @@ static Piece choose(Writer *w, const Ins *i) {
 
 static Piece solved(Writer *w, const Ins *i) {
   const Solve *k = &w->p->solves.at[w->p->ins.at[i->a].index];
-  return (Piece){arena_printf(w->a, "w[%u]", k->place + (k->n + k->m) * k->n + i->index), C_ATOM, 0};
+  return (Piece){arena_printf(w->a, "w[%u]", k->inverse ? k->n + i->index : k->place + (k->n + k->m) * k->n + i->index), C_ATOM, 0};
 }
 
 Piece cwriter_spell(Writer *w, const Ins *i) {
@@ -177,7 +177,7 @@ Piece cwriter_spell(Writer *w, const Ins *i) {
     case IR_OR: return macro(w, "OR", i->a, i->b, 0, 2);
     case IR_SELECT: return macro(w, "SELECT", i->a, i->b, i->c, 3);
     case IR_SOLVED: return solved(w, i);
-    case IR_PIVOT: case IR_SOLVE: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
+    case IR_PIVOT: case IR_SOLVE: case IR_INVERT: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
   }
   return (Piece){"", C_ATOM, 0};
 }
@@ -219,17 +219,13 @@ static int is_identifier(const char *s) {
   return 1;
 }
 
-static int tells(const Piece *x) { return !x->counted && is_identifier(x->text); }
+/* The name of an operand that has one which says something. */
+static const char *telling(const Piece *x) { return x->text && !x->counted && is_identifier(x->text) ? x->text : NULL; }
 
-/* sin_th1, m2_l1, th1_dot_sq, inv_M11: a name made of what the value is made of; or NULL. */
 static const char *made_name(Writer *w, const Ins *i) {
   Piece x = cwriter_operand(w, i->a), y = cwriter_operand(w, i->b);
-  if (i->op == IR_FN1 && tells(&x)) return arena_printf(w->a, "%s_%s", i->text, x.text);
-  if (i->op == IR_DIV && w->p->ins.at[i->a].op == IR_CONST && num_is_one(w->p->ins.at[i->a].number) && tells(&y))
-    return arena_printf(w->a, "inv_%s", y.text);
-  if (i->op != IR_MUL || !tells(&x) || !tells(&y)) return NULL;
-  if (i->a == i->b) return arena_printf(w->a, "%s_sq", x.text);
-  return strlen(x.text) + strlen(y.text) <= MADE_NAME_MAX ? arena_printf(w->a, "%s_%s", x.text, y.text) : NULL;
+  const Ins *top = &w->p->ins.at[i->a];
+  return ir_made_name(w->a, i, top->op == IR_CONST && num_is_one(top->number), telling(&x), telling(&y));
 }
 
 Piece cwriter_name(Writer *w, const Ins *i) {
@@ -263,9 +259,10 @@ void cwriter_declare(Writer *w, Slot s, Piece name, Piece x) {
 }
 
 void cwriter_pivot(Writer *w, const Ins *i) {
-  const char *d = wrapped(w, i->a, C_CMP + 1), *m = w->style->prefix;
+  const char *m = w->style->prefix;
   cwriter_flush_title(w);
-  cwriter_statement(w, arena_printf(w->a, "%s_PIVOT(%s %s %s_C(0.0));", m, d, i->index ? ">" : "!=", m));
+  cwriter_statement(w, i->index ? arena_printf(w->a, "%s_POSITIVE(%s);", m, cwriter_operand(w, i->a).text)
+                                : arena_printf(w->a, "%s_PIVOT(%s != %s_C(0.0));", m, wrapped(w, i->a, C_CMP + 1), m));
   sb_putc(w->out, '\n');
 }
 
@@ -310,10 +307,12 @@ static Slot *loads_of(Writer *w, int array, uint32_t *n) {
   return at;
 }
 
-/* Names the loads of an array: as many on a line as fit. */
+/* Names the loads of an array, unless that is done: as many on a line as fit. */
 static void write_array(Writer *w, int array) {
   size_t column = 0;
   uint32_t n;
+  if (w->named[array]) return;
+  w->named[array] = 1;
   const Slot *at = loads_of(w, array, &n);
   for (uint32_t k = 0; k < n; k++) {
     if (!at[k]) continue;
@@ -334,6 +333,18 @@ static void write_array(Writer *w, int array) {
     w->piece[at[k]] = (Piece){name, C_ATOM, 0};
   }
   if (column) sb_puts(w->out, ";\n");
+}
+
+static void write_arrays(Writer *w) {
+  for (int array = 0; array < ARR_COUNT; array++) write_array(w, array);
+}
+
+/* Names the arrays that instruction s loads from: there, and not at the top, or what is called before has to save them. */
+static void write_arrays_of(Writer *w, Slot s) {
+  for (int which = 0; which < 3; which++) {
+    const Ins *x = &w->p->ins.at[roll_operand(&w->p->ins.at[s], which)];
+    if (x->op == IR_LOAD) write_array(w, (int)x->array);
+  }
 }
 
 static void count_uses(Writer *w) {
@@ -403,6 +414,7 @@ static int write_abreast(Writer *w, Slot s) {
   uint32_t n = find_abreast(w, s, at);
   if (n < 2) return 0;
   n = n < ABREAST ? 2 : ABREAST;
+  for (uint32_t k = 0; k < n; k++) write_arrays_of(w, at[k]);
   StrBuf names = strbuf(w->a), arguments = strbuf(w->a);
   for (uint32_t k = 0; k < n; k++) declare_pair(w, at[k], &w->p->ins.at[at[k]], &w->p->ins.at[w->pair[at[k]]], &names, &arguments);
   cwriter_flush_title(w);
@@ -419,12 +431,15 @@ void cwriter_instruction(Writer *w, Slot s) {
     w->title = i->text;
     return;
   }
+  write_arrays_of(w, s);
   if (i->op == IR_PIVOT) {
     cwriter_pivot(w, i);
     return;
   }
-  if (i->op == IR_SOLVE) {
-    csolve_write(w, i);
+  if (ir_has_solve(i->op)) {
+    write_arrays(w);
+    if (i->op == IR_SOLVE) csolve_write(w, i);
+    else csolve_write_inverse(w, i);
     return;
   }
   if (i->op == IR_TABLE) {
@@ -536,8 +551,9 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   cnest_prepare(&w);
   if (prog_has_pivots(p)) sb_printf(out, "  %s_PIVOTS;\n", style->prefix);
   cwriter_find_pairs(&w);
-  for (int array = 0; array < ARR_COUNT; array++) write_array(&w, array);
+  if (w.rolls.loops.n || p->nests.n) write_arrays(&w);
   write_code(&w);
+  write_arrays(&w);
   write_stores(&w);
 }
 

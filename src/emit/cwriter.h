@@ -21,6 +21,7 @@ typedef struct {
   const char *const *own;           /* names in the function's scope, NULL at the end */
   const char *const *globals;         /* names that the function must not hide, NULL at the end; or NULL */
   const char *solve, *kkt;          /* names of the functions that factor and solve; with constraints */
+  const char *invert, *multiply;    /* once, and with what that leaves: of matrices that depend on parameters alone */
   const char *factor, *substitute;  /* instead of it, where factors are kept; or NULL */
   const char *spline;               /* name of the function that evaluates tables, */
   const char *const *rows;          /* and of their arrays; NULL: they stand in the body */

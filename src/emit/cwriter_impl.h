@@ -29,6 +29,7 @@ typedef struct {
   size_t indent;     /* besides that of the body */
   Rolls rolls;
   const char ***kept; /* [loops][period] the arrays that hold the values of all turns; NULL where none */
+  unsigned char named[ARR_COUNT]; /* arrays whose loads have their names */
   unsigned char *named_load; /* by slot: a load that is used outside of loops, or by all turns of one */
   const char *cells, *row, *turn; /* the array of sums that nests add to, and their counters */
   const CIndices *indices; /* tables that nests take indices from */
@@ -83,6 +84,9 @@ const char *cloop_stem(Arena *a, const char *name);
 
 /* An IR_SOLVE. */
 void csolve_write(Writer *w, const Ins *i);
+
+/* An IR_INVERT. */
+void csolve_write_inverse(Writer *w, const Ins *i);
 
 /* A whole loop. */
 void cloop_write(Writer *w, uint32_t loop);

@@ -20,6 +20,14 @@ extern const char *const emit_state_args;
 /* A function with the body of p. own: the names of its parameters, written: those of its output arrays. */
 void emit_function(const File *f, const Prog *p, const char *comment, const char *head, const char *const *own, const char *const *written);
 
+/* How its function spells what is read and written. */
+CStyle emit_style(const File *f, const char *const *own, const char *const *written);
+
+/* emit_params.c: the functions that factor and invert matrices, where any are needed; the function `derive`; a scene's `params`. */
+void emit_inverses(const File *f);
+void emit_derive(const File *f);
+void emit_params(const File *f, const IrScene *s, const char *id);
+
 /* emit_charges.c: the functions and tables of charges; nothing where there are none. */
 void emit_charges(const File *f);
 

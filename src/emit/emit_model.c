@@ -21,7 +21,7 @@ static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
   "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_solve_definite", "lag_cubic",
   "lag_spline", "lag_var", "lag_event", "lag_model", "lag_option", "lag_monitor", "lag_table", "lag_scene", "lag_program",
-  "lag_entry", "lag_linear", "lag_jump", "jump_table", "LAG_NUMBER", "lag_taylor", "lag_factor", "lag_substitute", "LAG_TAYLOR_ORDER",
+  "lag_entry", "lag_linear", "lag_jump", "jump_table", "LAG_NUMBER", "lag_taylor", "lag_factor", "lag_substitute", "lag_invert", "lag_multiply", "LAG_TAYLOR_ORDER",
   "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL", "TAYLOR_UNROLL_4",
   "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
   "taylor_rest", "taylor_squares", "TAYLOR_SQUARES", "taylor_four", "TAYLOR_WIDE", "TAYLOR_INLINE", "taylor_sums_wide", "taylor_squares_wide",
@@ -29,7 +29,8 @@ static const char *const abi_names[] = {
   "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
   "curves", "LAG_EACH", "LAG_10", "LAG_100", "LAG_1000", "LAG_10000",
   "singular", "lag_sincos", "lag_sincos2", "lag_sincos4", "LAG_SINCOS_2", "LAG_SINCOS_4", "lag_sin", "lag_cos", "lag_lanes", "lag_lanes_mask", "LAG_LANES", "LAG_LIBM", "LAG_OWN", "LAG_FMA",
-  "LAG_INLINE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS", "LAG_LANE_FN", "lag_reflect", "lag_reflector", "lag_rank", "lag_multipliers", "lag_schur", "lag_cholesky", "lag_forward", "lag_backward", "lag_first", "lag_last", "lag_kkt", "lag_kkt_lane",
+  "LAG_INLINE", "LAG_PIVOT", "LAG_POSITIVE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS", "LAG_LANE_FN", "lag_reflect", "lag_reflector", "lag_rank", "lag_multipliers", "lag_schur", "lag_cholesky", "lag_forward", "lag_backward", "lag_first", "lag_last", "lag_kkt", "lag_kkt_lane",
+  "LAG_BAND_LEAST", "LAG_BAND_EDGES", "lag_band", "lag_edges", "lag_walk", "lag_places", "lag_element", "lag_band_factor", "lag_band_solve", "lag_band_inverse", "lag_band_rest", "lag_banded",
   "constraint_table", "jacobian_table", "inertia_table", "constraints", "contact_table", "charge_table", "charges", "lag_charge", "lag_charges", "LAG_CONSERVED", "LAG_BALANCED", "LAG_BY_FORMULAS", "LAG_JUMPS", "lag_contact", "lag_constraint", "lag_constraints",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
@@ -61,7 +62,7 @@ static const char *const *rows_names(const IrUnit *u) {
 }
 
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel", "energy", "linearise", "jumps", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
+  static const char *const taken[] = {"accel", "derive", "energy", "linearise", "jumps", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
                                       "outputs", "forces", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "charge_values", "charge_powers", "correct_positions", "correct_velocities"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
@@ -92,8 +93,8 @@ const char *const emit_state_args =
   "LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n"
   "    const LAG_REAL *p, const LAG_REAL *u";
 
-static CStyle style_for(const File *f, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .kkt = "lag_kkt", .spline = "lag_spline", .math = cmath_prefix(f->u, "lag"),
+CStyle emit_style(const File *f, const char *const *own, const char *const *written) {
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .invert = "lag_invert", .multiply = "lag_multiply", .kkt = "lag_kkt", .spline = "lag_spline", .math = cmath_prefix(f->u, "lag"),
                   .indices = f->indices};
 }
 
@@ -105,7 +106,7 @@ static int is_seldom_called(const IrUnit *u, const Prog *p) {
 }
 
 void emit_function(const File *f, const Prog *p, const char *comment, const char *head, const char *const *own, const char *const *written) {
-  CStyle st = style_for(f, own, written);
+  CStyle st = emit_style(f, own, written);
   st.seldom_called = is_seldom_called(f->u, p);
   CFunction c = {.comment = comment, .head = head, .returns = 1};
   cfunction(p, &st, &c, f->out);
@@ -167,7 +168,7 @@ static void emit_inputs(const File *f) {
   static const char *const own[] = {"t", "p", "u", NULL}, *const written[] = {"u"};
   const Prog *p = f->u->inputs;
   if (!f->u->u.n) return;
-  CStyle st = style_for(f, own, written);
+  CStyle st = emit_style(f, own, written);
   st.rows = rows_names(f->u);
   for (uint32_t i = 0; i < p->tables.n; i++) {
     sb_putc(f->out, '\n');
@@ -266,47 +267,9 @@ static void emit_constraints(const File *f) {
 
 /* --- a scene's functions --- */
 
-/* Parameters one by one: each may use those before it, as they are then. */
-/* Whether the parameter is a number, and the same as that of `like`. */
-static int is_number_like(const Prog *p, const Prog *like) {
-  if (p->stores.n != 1 || like->stores.n != 1) return 0;
-  const Ins *x = &p->ins.at[p->stores.at[0].slot], *y = &like->ins.at[like->stores.at[0].slot];
-  return p->stores.at[0].slot && like->stores.at[0].slot && x->op == IR_CONST && y->op == IR_CONST && num_equal(x->number, y->number);
-}
-
-/* The parameters from i on that are one number, when they are many; otherwise 1. */
-static uint32_t same_params(const IrUnit *u, const IrScene *s, uint32_t i) {
-  enum { MANY = 16 };
-  uint32_t n = 1;
-  while (i + n < u->p.n && is_number_like(s->params[i + n], s->params[i])) n++;
-  return n >= MANY ? n : 1;
-}
-
-static void emit_params(const File *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"p", "fixed", NULL}, *const written[] = {"p"};
-  sb_printf(f->out, "\nstatic void params_%s(LAG_REAL *p, const unsigned char *fixed) {\n", id);
-  if (!f->u->p.n) sb_puts(f->out, "  (void)p; (void)fixed;\n");
-  for (uint32_t i = 0, same; i < f->u->p.n; i += same) {
-    same = same_params(f->u, s, i);
-    if (same > 1) {
-      const Prog *p = s->params[i];
-      sb_printf(f->out, "  for (int k = 0; k < %u; k++) /* %s ... %s */\n    if (!fixed[k + %u]) p[k + %u] = %s;\n", same,
-                comment_text(f->a, f->u->p.at[i].name), comment_text(f->a, f->u->p.at[i + same - 1].name), i, i,
-                c_number(f->a, "LAG", p->ins.at[p->stores.at[0].slot].number));
-      continue;
-    }
-    CStyle st = style_for(f, own, written);
-    st.loads_inline = 1;
-    StrBuf body = strbuf(f->a);
-    cwrite_body(s->params[i], &st, f->a, &body);
-    cwrite_guarded(arena_printf(f->a, "if (!fixed[%u]) ", i), sb_text(&body), f->out);
-  }
-  sb_puts(f->out, "}\n");
-}
-
 static void emit_start(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"p", "q", "v", "z", NULL}, *const written[] = {"q", "v", "z"};
-  CStyle st = style_for(f, own, written);
+  CStyle st = emit_style(f, own, written);
   sb_printf(f->out, "\nstatic void start_%s(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z) {\n", id);
   sb_puts(f->out, "  (void)p; (void)q; (void)v; (void)z;\n");
   if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
@@ -329,7 +292,7 @@ static void emit_exact(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"t", "q0", "v0", "z0", "p", "u", "out", NULL}, *const written[] = {"out"};
   static const char *const from_start[ARR_COUNT] = {"t", "q0", "v0", "z0", "p", "u", "a"};
   if (!s->exact_of.n) return;
-  CStyle st = style_for(f, own, written);
+  CStyle st = emit_style(f, own, written);
   st.in = from_start;
   CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .returns = 1};
   c.head = arena_printf(f->a, "static int exact_%s(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,\n"
@@ -444,6 +407,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (u->linear) sb_puts(out, "  .linear = &linear,\n");
+  if (u->nderived) sb_printf(out, "  .nderived = %u, .derive = derive,\n", u->nderived);
   if (u->fixed[0]) sb_printf(out, "  .fixed = %s,\n", c_string(u->arena, u->fixed));
   sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n};\n");
 }
@@ -523,6 +487,7 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
   sb_printf(out, " * Emitted by lagc; effects in use: %s.\n", u->effects[0] ? u->effects : "none");
   if (u->fixed[0]) sb_printf(out, " * Parameters that are numbers here: %s.\n", u->fixed_values);
   sb_printf(out, " * Accelerations: %s.\n", ops_text(u->accel, u->arena));
+  if (u->nderived) sb_printf(out, " * Once for a set of parameters: %s.\n", ops_text(u->derived, u->arena));
   sb_printf(out, " * %s\n", cmath_text(u));
   sb_puts(out, " * This text may be used for any purpose without conditions (0BSD). */\n");
   sb_puts(out, "#include <math.h>\n\n#include \"lag_model.h\"\n\n");
@@ -538,11 +503,13 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   sb_putc(out, '\n');
   cmath_functions(u, "LAG", "lag", out);
   if (has_long_tables(u)) ctable_macros(out);
-  for (SolveKind kind = SOLVE_PIVOTING; kind <= SOLVE_DEFINITE; kind++)
+  for (SolveKind kind = SOLVE_PIVOTING; kind <= SOLVE_INVERSE; kind++)
     if (kind != SOLVE_CONSTRAINED && needs_solver(u, kind)) csupport_solver(kind, "LAG", "lag", out);
+  emit_inverses(&f);
   cmath_kkt(u, "LAG", "lag", out);
   if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
   size_t begin = out->n;
+  emit_derive(&f);
   accel(&f);
   emit_energy(&f);
   emit_events(&f);

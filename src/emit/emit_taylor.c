@@ -297,7 +297,6 @@ void emit_taylor(const Series *s, const char *const *globals, const char *math, 
   if (wide) sb_puts(out, wide_head);
   sb_putc(out, '\n');
   work(&w);
-  if (s->room) csupport_factor("LAG", "lag", out);
   first(&w);
   next(&w);
   sb_puts(out, along_rows_comment);

@@ -13,6 +13,7 @@ typedef struct {
   SparseRow *C;      /* [n + ndefs] slots */
   Slot *b, *x;       /* [n + ndefs] */
   SparseRow *factor; /* [n] the column of L below a coordinate's pivot */
+  Slot *positive;    /* [n] a value that is positive for the signs that parameters declare, on the diagonal before elimination; or 0 */
 } System;
 
 static Slot op(const System *y, IrOp o, Slot a, Slot b) { return prog_op(y->l->p, o, a, b); }
@@ -37,10 +38,12 @@ static System system_new(Lower *l) {
   y.b = ARENA_ARRAY(a, Slot, total + 1);
   y.x = ARENA_ARRAY(a, Slot, total + 1);
   y.factor = ARENA_ARRAY(a, SparseRow, s->n + 1);
+  y.positive = ARENA_ARRAY(a, Slot, s->n + 1);
   for (uint32_t k = 0; k < s->H.n; k++) {
     const MassEntry *m = &s->H.at[k];
     Slot slot = lower_slot(l, m->e);
     if (m->row < s->n) prog_name(l->p, slot, lower_numbered(l, "M", m->row, m->col));
+    if (m->row < s->n && m->row == m->col && expr_sign(l->g, m->e) == SIGN_POSITIVE) y.positive[m->row] = slot;
     sparse_set(&y.H, m->row, m->col, slot);
   }
   for (uint32_t k = 0; k < s->C.n; k++) {
@@ -61,7 +64,7 @@ static void eliminate_coordinate(System *y, uint32_t v) {
   const SparseRow *row = &y->H.rows[v];
   Slot d = sparse_get(&y->H, v, v);
   prog_name(y->l->p, d, lower_numbered(y->l, "D", v, UINT32_MAX));
-  lower_pivot(y->l, d, 1);
+  if (!d || d != y->positive[v]) lower_pivot(y->l, d, 1);
   SparseRow *below = &y->factor[v];
   for (uint32_t k = 0; k < row->n; k++) {
     SparseEntry h = row->at[k];

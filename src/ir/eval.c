@@ -140,6 +140,7 @@ static int run_ins(Run *r, Slot s, const Ins *i) {
     case IR_SOLVED: v[s] = r->solution[i->a][i->index]; break;
     case IR_NEST: return run_nest(r, &r->p->nests.at[i->index]);
     case IR_TABLE: v[s] = spline_at(r->p->tables.at[i->index].curve, x); break;
+    case IR_INVERT: return -1; /* of emitted code alone */
     case IR_TITLE: break;
   }
   return 0;

@@ -38,6 +38,7 @@ typedef enum {
   IR_PIVOT,  /* fails unless a > 0 (index 1), or a != 0 (index 0) */
   IR_SOLVE,  /* solves block `index` of prog->solves, with pivoting; fails when singular */
   IR_SOLVED, /* component `index` of the solution of solve a */
+  IR_INVERT, /* the inverse of block `index` of prog->solves, with pivoting, to where that says: see Solve */
   IR_NEST,   /* runs nest `index` of prog->nests; a: the nest that has run before it, or 0 */
   IR_TABLE,  /* the curve of table `index` of prog->tables at a */
   IR_TITLE   /* text: a comment line that heads what follows */
@@ -78,20 +79,27 @@ typedef struct {
  * work space. matrix is NULL where the one at that place was factored before, by another function. With m constraints A x = g on
  * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. coarse: constraints that are nearly dependent count as
  * dependent (lag_kkt.h). Without constraints, entries more than `band` beside the diagonal are zero, and a definite M is eliminated without
- * pivoting, from its upper triangle. */
+ * pivoting, from its upper triangle. inverse: where the inverse stands among the parameters, not 0: then there is no matrix, and a solution is
+ * a product. Of IR_INVERT: where that writes [matrix | n | n | inverse | 1 where there is one, and 0]; no right-hand side. */
 typedef struct {
-  uint32_t n, m, place, band;
+  uint32_t n, m, place, band, inverse;
   int coarse, definite;
   const Slot *matrix, *rhs;
 } Solve;
 
 /* Elements of matrix and rhs. */
 static inline uint32_t solve_elements(const Solve *k) { return k->matrix ? (k->n + k->m) * k->n : 0; }
-static inline uint32_t solve_unknowns(const Solve *k) { return k->n + k->m; }
+static inline uint32_t solve_unknowns(const Solve *k) { return k->rhs ? k->n + k->m : 0; }
+
+/* Where, from its place on, IR_INVERT leaves the inverse, and whether there is one. */
+static inline uint32_t solve_inverse(const Solve *k) { return k->n * k->n + 2 * k->n; }
+static inline uint32_t solve_is_regular(const Solve *k) { return 2 * k->n * k->n + 2 * k->n; }
 
 /* Each is solved by a function of its own. */
-typedef enum { SOLVE_PIVOTING, SOLVE_CONSTRAINED, SOLVE_DEFINITE } SolveKind;
-static inline SolveKind solve_kind(const Solve *k) { return k->m ? SOLVE_CONSTRAINED : k->definite ? SOLVE_DEFINITE : SOLVE_PIVOTING; }
+typedef enum { SOLVE_PIVOTING, SOLVE_CONSTRAINED, SOLVE_DEFINITE, SOLVE_INVERSE } SolveKind;
+static inline SolveKind solve_kind(const Solve *k) {
+  return k->inverse ? SOLVE_INVERSE : k->m ? SOLVE_CONSTRAINED : k->definite ? SOLVE_DEFINITE : SOLVE_PIVOTING;
+}
 
 /* Index first + by_row*row_at[i] + by_turn*turn_at[j]; a table that is NULL has i in place i. */
 typedef struct {
@@ -171,6 +179,13 @@ void prog_name(Prog *p, Slot s, Name name);
 
 int ir_is_condition(IrOp op);
 
+/* Whether `index` is that of a Solve. */
+int ir_has_solve(IrOp op);
+
+/* sin_th1, m2_l1, th1_dot_sq, inv_M11: a name made of those of the operands, x and y (NULL: they have none that says anything), for a value
+ * without one; or NULL. of_one: its first operand is the number 1. */
+const char *ir_made_name(Arena *a, const Ins *i, int of_one, const char *x, const char *y);
+
 /* A number or a load: what takes no instruction of its own. */
 int ir_is_leaf(IrOp op);
 
@@ -249,6 +264,7 @@ uint32_t prog_work(const Prog *p);
 /* solve_ops.c: of a system that is solved by a loop. Where constraints are mostly independent and M is positive definite, which is what
  * is counted, zeros outside of envelopes cost nothing. */
 OpCount solve_count(Arena *a, const Solve *k);
+OpCount invert_count(const Solve *k);
 
 OpCount prog_count(const Prog *p);
 uint64_t ops_total(OpCount c);

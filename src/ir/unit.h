@@ -115,6 +115,8 @@ typedef struct {
   VEC(IrVar) q, z, p, u;
   VEC(IrEvent) events;
   const Prog *accel, *energy, *event_values, *inputs;
+  const Prog *derived;          /* parameters p.n ... p.n + nderived - 1 of the programs, from the others; NULL and 0 before unit_hoist, and where there are none */
+  uint32_t nderived;
   VEC(IrCharge) charges;        /* the energy first; none where there is nothing to say of them but that it is conserved */
   const Prog *charge_values, *charge_powers; /* NULL: there is only the energy; all are conserved */
   IrConstraints constraints;

@@ -3,11 +3,11 @@
 #include <math.h>
 
 #include "base/dense.h"
+#include "mech/noether_forms.h"
 #include "mech/noether_number.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
 #include "sym/normal.h"
-#include "sym/prove.h"
 #include "sym/simplify.h"
 
 enum { CHARGES_MOST = 48, SPARE_STATES = 6 };
@@ -22,6 +22,7 @@ typedef struct {
   EvalTape *tape;       /* [r] charges, [r*n] by q, [r*n] by v, [n*n] form, [n*n] dp/dq */
   uint32_t roots;
   Choices choices;
+  const LinearForms *forms; /* or NULL */
   Algebra *out;
 } Work;
 
@@ -253,7 +254,7 @@ static void settle(const Work *w, Bracket *k, long double *const *fits, size_t p
   k->proved = is_constant(w, left);
   if (k->proved) return;
   k->constant = recognise(w, fits, place + w->r);
-  if (k->constant) k->proved = prove_zero(g, expr_sub(g, left, k->constant), NULL) == PROVED_ZERO;
+  if (k->constant) k->proved = forms_prove_zero(w->forms, g, expr_sub(g, left, k->constant)) == PROVED_ZERO;
   else k->c = NULL;
 }
 
@@ -290,7 +291,7 @@ static int is_null(const Work *w, const Bracket *k) {
 static void work(Arena *scratch, void *data) {
   Work *w = data;
   w->scratch = scratch;
-  w->choices = choices_new(scratch, w->e);
+  w->choices = choices_new(scratch, w->e, w->of->attempt);
   lay_out(w);
   uint32_t choices = 2 + w->choices.n;
   long double **fits = ARENA_ARRAY(scratch, long double *, choices);
@@ -330,6 +331,7 @@ Algebra brackets_find(Eqns *e, const FoundSymmetries *of) {
   }
   w.q = q;
   w.v = v;
+  w.forms = forms_new(e->m->arena, e);
   normal_with_scratch(e->g, work, &w);
   return out;
 }

@@ -42,6 +42,23 @@ static void warn_of_momentum(const Eqns *e, uint32_t i, const ExprJumps *said) {
   }
 }
 
+/* Constraints with a corner, as y = abs(x): what is brought back to them behind it has the velocity that an impact without rebound leaves, or, where a
+ * step ends on the corner, any other. */
+static void warn_of_corners(const Eqns *e) {
+  const Model *m = e->m;
+  const Constraints *all = &e->constraints;
+  for (uint32_t k = 0; k < all->n; k++) {
+    if (noether_is_contact(m, all->of[k])) continue;
+    ExprJumps jumps = discontinuities_of(e, all->r[k]);
+    for (uint32_t i = 0; i < jumps.n; i++) {
+      if (!expr_contains(e->g, jumps.at[i].side, is_of_motion, m)) continue;
+      Span place = expr_map_get(&m->written, jumps.at[i].node) ? place_of(m, jumps.at[i].node) : all->of[k]->span;
+      diag_warning(m->diags, place, "the constraint `%s` has a corner here, and what a motion does at it is not known", all->of[k]->name);
+      diag_help(m->diags, "round it, as sqrt(x^2 + w^2) does abs(x); or use contacts, whose impacts have a law");
+    }
+  }
+}
+
 void discontinuity_warn(const Eqns *e) {
   enum { COORDINATES_MOST = 64 };
   const Model *m = e->m;
@@ -57,4 +74,5 @@ void discontinuity_warn(const Eqns *e) {
   }
   ExprJumps known = {said.at, said.n};
   for (uint32_t i = 0; i < n && n <= COORDINATES_MOST; i++) warn_of_momentum(e, i, &known);
+  if (n <= COORDINATES_MOST) warn_of_corners(e);
 }

@@ -2,7 +2,7 @@
  *
  * The motion goes on through a jump as if there were none. That is right where L jumps at a time: a force that is switched. Where the
  * jump is one of coordinates or velocities, or momenta jump, an impulse is missing. A charge is conserved, or balanced, between jumps only,
- * where it jumps itself, or where its symmetry moves the places at which L does. */
+ * where it jumps itself, or where its symmetry moves the places at which L does. A constraint whose rate jumps has a corner: what happens there is in no equation. */
 #ifndef LAGC_DISCONTINUITY_H
 #define LAGC_DISCONTINUITY_H
 

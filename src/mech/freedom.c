@@ -160,14 +160,16 @@ static uint32_t reduced_mass(const Eqns *e, const StateValues *v, long double *s
 static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbols) {
   const Model *m = e->m;
   uint32_t n = e->n;
-  if (!e->mass_known || e->definite_mass) return 1;
+  if (!e->mass_known || (e->definite_mass && !e->singular_mass)) return 1; /* definite is what is definite where it is regular */
   long double *scale = ARENA_ARRAY(m->arena, long double, n + 1), *basis = ARENA_ARRAY(m->arena, long double, (size_t)(n + 1) * n);
   long double *a = ARENA_ARRAY(m->arena, long double, (size_t)n * n + 1), *null = ARENA_ARRAY(m->arena, long double, n + 1);
   uint32_t *column = ARENA_ARRAY(m->arena, uint32_t, n + 1);
   StateValues v = states_at(s, symbols);
   uint32_t first = reduced_mass(e, &v, scale, basis, a), free = n - first, most = 0;
-  long double largest = 0;
+  long double largest = 0, whole = 0; /* of what is allowed, and of all: a direction beside one without inertia has a little */
   for (uint32_t i = 0; i < free * free; i++) largest = fmaxl(largest, fabsl(a[i]));
+  for (uint32_t k = 0; k < e->mass.n; k++) whole = fmaxl(whole, fabsl(v.mass[k] * scale[e->mass.at[k].row] * scale[e->mass.at[k].col]));
+  if (!(largest > 1e-12L * whole)) largest = 0;
   if (free == 0 || (largest > 0 && dense_solve(free, a, NULL, 1e-12L, column, null) == free)) return 1;
   if (!(largest > 0)) null[0] = 1;
   for (uint32_t j = 0; j < n; j++) { /* the direction, in coordinates; scale[] is free now */

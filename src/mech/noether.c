@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "mech/discontinuity.h"
+#include "mech/noether_forms.h"
 #include "mech/parts.h"
 #include "mech/sizes.h"
 #include "mech/states.h"
@@ -25,6 +26,7 @@ typedef struct {
   Expr tau;
   Expr *Dxi, Dtau;  /* total time derivatives */
   int by_value;
+  const LinearForms *forms; /* or NULL: proofs have no coordinates to go to */
   Expr unreached;   /* a factor of a constraint whose zeros were not found, with which nothing is decided; 0: none */
 } Work;
 
@@ -78,6 +80,7 @@ static Work begin(const Eqns *e, const Generator *by) {
   }
   for (uint32_t i = 0; i < w.n; i++) w.Dxi[i] = total(&w, xi[i]);
   w.Dtau = total(&w, w.tau);
+  w.forms = forms_new(a, e);
   return w;
 }
 
@@ -91,6 +94,8 @@ static Expr readable(const Work *w, Expr x) {
 }
 
 /* --- delta L --- */
+
+static Verdict is_zero(const Work *w, Expr x) { return forms_prove_zero(w->forms, w->g, x); }
 
 /* What the generator makes of x, to first order. */
 static Expr moved_by(const Work *w, Expr x) {
@@ -119,7 +124,7 @@ static Expr delta_lagrangian(const Work *w) {
   for (uint32_t i = 0; i < expr_pairs(g, L, EX_SUM); i++) {
     Num c;
     Expr term = expr_pair(g, L, EX_SUM, i, &c), change = delta(w, term);
-    if (prove_zero(g, change, NULL) == PROVED_ZERO) continue;
+    if (is_zero(w, change) == PROVED_ZERO) continue;
     change = expr_scale(g, c, shorten(w, change));
     vec_push(w->m->arena, &left, change);
   }
@@ -197,7 +202,7 @@ static int is_constrained(const Work *w) { return w->e->constraints.n > w->m->co
 
 /* Whether x is zero where the constraints hold, contacts not among them. */
 static Verdict zero_on_constraints(Work *w, Expr x) {
-  Verdict v = prove_zero(w->g, x, NULL);
+  Verdict v = is_zero(w, x);
   if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x) || !vanishes_on_parts(w, x)) return v;
   w->by_value = 1;
   return PROVED_ZERO;
@@ -231,12 +236,12 @@ static Verdict is_total_derivative(const Work *w, Expr dL) {
     Expr a = expr_diff(w->g, dL, w->v[i]);
     for (uint32_t k = 0; k <= i; k++) {
       Expr twice = expr_diff(w->g, a, w->v[k]);
-      Verdict v = prove_zero(w->g, twice, NULL);
+      Verdict v = is_zero(w, twice);
       if (v == PROVED_NONZERO) return v;
       if (v == NOT_DECIDED) all = v;
     }
     Expr change = total(w, a), force = expr_diff(w->g, dL, w->q[i]), left = expr_sub(w->g, force, change);
-    Verdict v = prove_zero(w->g, left, NULL);
+    Verdict v = is_zero(w, left);
     if (v == PROVED_NONZERO) return v;
     if (v == NOT_DECIDED) all = v;
   }
@@ -246,6 +251,27 @@ static Verdict is_total_derivative(const Work *w, Expr dL) {
 /* Whether x is a function of time alone, which is the derivative of its integral, whatever that looks like. */
 static int is_of_time(const Work *w, Expr x) {
   return !expr_is_zero(w->g, x) && !(expr_kinds(w->g, x) & ~(1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_PARAM | 1u << SYM_CONST));
+}
+
+/* By Cartan's formula the generator makes of theta dq + phi dt, the part of L of degree 1 and 0 in velocities, d(theta xi + phi tau), and what is left is small
+ * or 0 where these terms are a gauge, whose primitive nobody has to find then. */
+static Expr contraction(const Work *w, int with_phi) {
+  Expr *theta = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) theta[i] = at_rest(w, w->p[i]);
+  Expr F = dot(w, theta, w->xi, w->n), phi = with_phi ? at_rest(w, w->m->lagrangian) : expr_int(w->g, 0);
+  return expr_add(w->g, F, expr_mul(w->g, phi, w->tau));
+}
+
+/* An F by way of that; 0: none is proved. */
+static Expr contracted_gauge(Work *w, Expr dL) {
+  ExprGraph *g = w->g;
+  for (int with_phi = 0; with_phi < 2; with_phi++) {
+    Expr first = contraction(w, with_phi), taken = total(w, first), rest = simplify(g, expr_sub(g, dL, taken));
+    if (expr_is_zero(g, first)) continue;
+    Expr more = find_gauge(w, rest), F = readable(w, expr_add(g, first, more)), DF = total(w, F);
+    if (zero_on_constraints(w, expr_sub(g, dL, DF)) == PROVED_ZERO) return F;
+  }
+  return 0;
 }
 
 static void judge(Work *w, Noether *to) {
@@ -263,6 +289,11 @@ static void judge(Work *w, Noether *to) {
   left = simplify(g, left);
   if (is_of_time(w, left)) {
     *to = (Noether){.is = INVARIANT_UP_TO_F, .F = F, .remainder = left, .over_time = left, .by_constraints = zero};
+    return;
+  }
+  Expr other = contracted_gauge(w, dL);
+  if (other) {
+    *to = (Noether){.is = INVARIANT_UP_TO_F, .F = other, .remainder = zero, .by_constraints = zero};
     return;
   }
   uint32_t distinct;

@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "mech/noether_candidates.h"
-#include "mech/noether_fraction.h"
 #include "mech/noether_name.h"
 #include "mech/noether_number.h"
 #include "mech/noether_parametric.h"
@@ -119,13 +118,15 @@ static int rate_by_guess(Search *s, const Guesses *all, long double rate2, Famil
   return 0;
 }
 
-static int rate_by_monomial(Search *s, long double rate2, Family *to) {
+/* Its square as a product of powers of parameters, or a sum of parameters over one of them. */
+static int rate_by_value(Search *s, long double rate2, Family *to) {
   for (uint32_t i = 0; i < choice_count(s); i++) to->rate2[i] = i == CHOICE_SECOND ? NAN : nearest_rate(s, i, rate2);
   const SolutionSpace *second = space_at(s, CHOICE_SECOND);
   Rates r = second->sure ? space_rates(s->scratch, second) : (Rates){0};
   for (uint32_t k = 0; k < r.n; k++) {
     to->rate2[CHOICE_SECOND] = r.at[k];
     Expr square = monomial_of(&s->choices, to->rate2);
+    if (!square) square = quotient_of(&s->choices, to->rate2);
     if (!square) continue;
     to->rate = expr_sqrt(s->g, rate2 < 0 ? expr_neg(s->g, square) : square);
     return 1;
@@ -266,20 +267,6 @@ static int shorter_coefficients(Search *s, Tables *t, uint32_t row, int moved, E
   return found;
 }
 
-/* Monomials of parameters times fractions of one denominator: those of a space that some other coordinates would make simple. */
-static int joint_coefficients(Search *s, const Tables *t, uint32_t row, Expr *c) {
-  uint32_t n = t->at[0].blocks * t->at[0].shown, count = choice_count(s);
-  long double *x = ARENA_ARRAY(s->scratch, long double, count), *number = ARENA_ARRAY(s->scratch, long double, n);
-  for (uint32_t k = 0; k < n; k++) {
-    for (uint32_t i = 0; i < count; i++) x[i] = t->at[i].at[(size_t)row * n + k];
-    c[k] = x[CHOICE_FIRST] == 0 && x[CHOICE_SECOND] == 0 ? expr_int(s->g, 0) : monomial_part(&s->choices, x, &number[k]);
-    if (!c[k]) return 0;
-  }
-  int64_t q = common_denominator(s->scratch, number, n);
-  for (uint32_t k = 0; k < n && q; k++) c[k] = expr_scale(s->g, num_ratio((int64_t)roundl(number[k] * (long double)q), q), c[k]);
-  return q != 0;
-}
-
 /* Sums of parameters, when the row is multiplied by `scale`. */
 static int linear_coefficients(Search *s, const Tables *t, uint32_t row, Expr scale, Expr *c) {
   uint32_t n = t->at[0].blocks * t->at[0].shown, count = choice_count(s);
@@ -309,7 +296,7 @@ static int scaled_coefficients(Search *s, const Tables *t, uint32_t row, Expr *c
 static int recognise_row(Search *s, Tables *t, uint32_t row, Expr *c) {
   if (row_coefficients(s, t, row, 0, c) || shorter_coefficients(s, t, row, 0, c)) return 1;
   if (!shapes_agree(s, t)) return 0;
-  return row_coefficients(s, t, row, 1, c) || shorter_coefficients(s, t, row, 1, c) || joint_coefficients(s, t, row, c) || scaled_coefficients(s, t, row, c);
+  return row_coefficients(s, t, row, 1, c) || shorter_coefficients(s, t, row, 1, c) || scaled_coefficients(s, t, row, c);
 }
 
 /* Generator with these coefficients, which are cleared of fractions. */
@@ -317,6 +304,7 @@ static void make_generator(Search *s, const Tables *t, GeneratorRow *to) {
   const Ansatz *a = s->ansatz;
   uint32_t blocks = t->at[0].blocks;
   size_t n = (size_t)blocks * a->shown;
+  for (uint32_t m = 0; m < blocks && a->forms; m++) forms_to_coordinates(a->forms, s->g, to->c + (size_t)m * a->shown + 1);
   clear_parameters(s, to->c, n);
   clear_fractions(s, to->c, n);
   to->ansatz = a;
@@ -412,7 +400,7 @@ static void search_rates(Search *s) {
   Guesses all = guesses(s);
   for (uint32_t k = 0; k < rates.n; k++) {
     Family f = {.kind = rates.at[k] < 0 ? TIME_CIRCULAR : TIME_EXPONENTIAL, .rate2 = ARENA_ARRAY(s->scratch, long double, choice_count(s))};
-    if (rate_by_guess(s, &all, rates.at[k], &f) || rate_by_monomial(s, rates.at[k], &f)) add_family(s, &f);
+    if (rate_by_guess(s, &all, rates.at[k], &f) || rate_by_value(s, rates.at[k], &f)) add_family(s, &f);
   }
 }
 
@@ -474,6 +462,7 @@ static TimeList time_list(Search *s) {
   if (exponential.n > RATES_MOST) exponential.n = RATES_MOST;
   vec_push(s->scratch, &list, expr_int(g, 1));
   if (s->e->n) vec_push(s->scratch, &list, t);
+  if (s->e->n) vec_push(s->scratch, &list, expr_pow_num(g, t, num_int(2)));
   for (uint32_t k = 0; k < circular.n && s->e->n; k++) add_circular(s, &list, circular.at[k]);
   for (uint32_t k = 0; k < exponential.n && s->e->n; k++) add_exponential(s, &list, exponential.at[k]);
   s->ansatz->far_times = !exponential.n;
@@ -540,12 +529,35 @@ static void search_any(Search *s) {
   if (weak) s->out->note = "rates or couplings lie so close to one another that some may be missing";
 }
 
+/* How many solutions at a choice neither oscillate nor grow, but both. */
+static uint32_t spirals(Search *s, uint32_t choice) {
+  const SolutionSpace *space = space_at(s, choice);
+  return space->sure ? space_rates(s->scratch, space).others : 0;
+}
+
+static void take_choices(Search *s, uint32_t attempt) {
+  s->out->attempt = attempt;
+  s->choices = choices_new(s->scratch, s->e, attempt);
+  s->spaces = ARENA_ARRAY(s->scratch, SolutionSpace, choice_count(s));
+}
+
+/* Values of the parameters; others, where some oscillations have no rate that can be written, as those of a trap that does not hold what is in it. */
+static void choose(Search *s) {
+  enum { ATTEMPTS = 12 };
+  take_choices(s, 0);
+  if (s->ansatz->has_time || !s->e->n || !s->choices.n || !(spirals(s, CHOICE_FIRST) + spirals(s, CHOICE_SECOND))) return;
+  for (uint32_t attempt = 1; attempt < ATTEMPTS; attempt++) {
+    take_choices(s, attempt);
+    if (spirals(s, CHOICE_FIRST) + spirals(s, CHOICE_SECOND) == 0) return;
+  }
+  take_choices(s, 0);
+}
+
 static void search_work(Arena *scratch, void *data) {
   Search *s = data;
   s->scratch = scratch;
   s->ansatz = ansatz_new(scratch, s->e);
-  s->choices = choices_new(scratch, s->e);
-  s->spaces = ARENA_ARRAY(scratch, SolutionSpace, choice_count(s));
+  choose(s);
   if (s->ansatz->has_time || !s->e->n) search_listed(s);
   else search_any(s);
   if (s->out->searched) return;
@@ -555,8 +567,7 @@ static void search_work(Arena *scratch, void *data) {
   s->out->note = "the linear equations of the search for more could not be solved reliably";
 }
 
-/* Events that set velocities or coordinates are no part of L. */
-static const char *note_on_impacts(const Model *m) {
+const char *noether_note_on_impacts(const Model *m) {
   uint32_t setting = 0;
   if (m->contacts.n) return "impacts and contacts change charges: what is said holds between them";
   for (uint32_t i = 0; i < m->events.n; i++) setting += m->events.at[i].actions.n > 0;
@@ -569,6 +580,6 @@ FoundSymmetries noether_find(Eqns *e) {
   if (candidates_only(e)) candidates_try(e, &out);
   else normal_with_scratch(e->g, search_work, &s);
   out.galilean = has_galilean_charges(&out);
-  if (!out.note) out.note = note_on_impacts(e->m);
+  if (!out.note) out.note = noether_note_on_impacts(e->m);
   return out;
 }

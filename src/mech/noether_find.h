@@ -31,10 +31,14 @@ typedef struct {
   VEC(FoundSymmetry) all;
   uint32_t unproved;    /* directions of the space of solutions that were seen, but not written in closed form or not proved */
   int searched;         /* 0: not, for the reason in `note` */
+  uint32_t attempt;     /* with which values of the parameters, see mech/noether_number.h */
   int galilean;         /* the ten charges of Galileo's group are among them */
   const char *ansatz;   /* in words */
   const char *note;     /* or NULL: what else is to be said */
 } FoundSymmetries;
+
+/* What the report says of impacts, and of events that set velocities or coordinates, which are no part of L; NULL: there are none. */
+const char *noether_note_on_impacts(const Model *m);
 
 /* For all values of the parameters. Needs a Lagrangian. */
 FoundSymmetries noether_find(Eqns *e);

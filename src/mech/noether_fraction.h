@@ -1,5 +1,5 @@
 /* Fractions, recognised together: each entry of a row in echelon form has as many digits as all of them need, but their common denominator
- * is told by all; and of several rows there are combinations that are shorter than each. */
+ * is told by all. */
 #ifndef LAGC_NOETHER_FRACTION_H
 #define LAGC_NOETHER_FRACTION_H
 
@@ -9,9 +9,5 @@
 
 /* The least q > 0 such that all q x[i] are whole numbers but for what is left of n values of about 16 digits; 0: there is none below 1e15 or so. */
 int64_t common_denominator(Arena *a, const long double *x, uint32_t n);
-
-/* Short rows of whole numbers in the space that x[rows*n] spans, which is in reduced echelon form: to[rows*n]. Returns how many were found, independent
- * of one another; none where there are very many rows. Numbers at random may pass for such rows: the caller is to prove what follows. */
-uint32_t whole_members(Arena *a, const long double *x, uint32_t rows, uint32_t n, int64_t *to);
 
 #endif

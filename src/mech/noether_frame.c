@@ -29,27 +29,33 @@ static void invert(uint32_t n, const long double *S, long double *to) {
     }
 }
 
-static int is_skew(const Ansatz *a) {
-  const Eqns *e = a->e;
-  int skew = 0;
-  if (!e->n || !e->mass_known || !e->constant_mass || e->constraints.n || ansatz_is_restricted(a)) return 0;
-  for (uint32_t k = 0; k < e->mass.n; k++) skew |= e->mass.at[k].row != e->mass.at[k].col;
-  for (uint32_t i = 0; i < a->n; i++)
-    if (expr_symbol(e->g, a->q[i])->sign != SIGN_UNKNOWN) return 0;
-  return skew;
+static NoetherFrame *frame_sized(Arena *scratch, size_t n) {
+  NoetherFrame *f = ARENA_NEW(scratch, NoetherFrame);
+  *f = (NoetherFrame){(uint32_t)n, 0, ARENA_ARRAY(scratch, long double, n * n), ARENA_ARRAY(scratch, long double, n * n), ARENA_ARRAY(scratch, long double, n + 1)};
+  return f;
+}
+
+static long double value_of(Num x) { return (long double)x.num / (long double)x.den; }
+
+static const NoetherFrame *frame_of_forms(const LinearForms *forms, Arena *scratch) {
+  size_t n = forms->n;
+  NoetherFrame *f = frame_sized(scratch, n);
+  for (size_t k = 0; k < n * n; k++) f->S[k] = value_of(forms->S[k]), f->inverse[k] = value_of(forms->inverse[k]);
+  for (size_t k = 0; k < n; k++) f->shift[k] = value_of(forms->shift[k]);
+  f->stays = 1;
+  return f;
 }
 
 const NoetherFrame *frame_new(const Ansatz *a, Arena *scratch, const long double *parameters) {
   const Eqns *e = a->e;
-  size_t n = a->n;
-  if (!is_skew(a)) return NULL;
-  NoetherFrame *f = ARENA_NEW(scratch, NoetherFrame);
+  if (a->forms) return frame_of_forms(a->forms, scratch);
+  if (!forms_are_needed(e) || ansatz_is_restricted(a)) return NULL;
+  NoetherFrame *f = frame_sized(scratch, a->n);
   Expr *entry = ARENA_ARRAY(scratch, Expr, e->mass.n);
   long double *mass = ARENA_ARRAY(scratch, long double, e->mass.n);
   for (uint32_t k = 0; k < e->mass.n; k++) entry[k] = e->mass.at[k].e;
   expr_eval(e->g, entry, e->mass.n, parameters, mass);
-  *f = (NoetherFrame){a->n, ARENA_ARRAY(scratch, long double, n * n), ARENA_ARRAY(scratch, long double, n * n)};
-  if (!factor(e, a->n, mass, f->S)) return NULL;
+  if (!factor(e, a->n, mass, f->S)) return NULL; /* S^T S is the mass matrix */
   invert(a->n, f->S, f->inverse);
   return f;
 }
@@ -59,7 +65,7 @@ static void apply(uint32_t n, const long double *m, long double *x, long double 
   memcpy(scratch, x, n * sizeof *x);
   for (uint32_t i = 0; i < n; i++) {
     x[i] = 0;
-    for (uint32_t k = i; k < n; k++) x[i] += m[i * n + k] * scratch[k];
+    for (uint32_t k = 0; k < n; k++) x[i] += m[i * n + k] * scratch[k];
   }
 }
 
@@ -68,7 +74,7 @@ static void apply_left(uint32_t n, const long double *m, long double *x, long do
   memcpy(scratch, x, n * sizeof *x);
   for (uint32_t k = 0; k < n; k++) {
     x[k] = 0;
-    for (uint32_t i = 0; i <= k; i++) x[k] += scratch[i] * m[i * n + k];
+    for (uint32_t i = 0; i < n; i++) x[k] += scratch[i] * m[i * n + k];
   }
 }
 
@@ -79,6 +85,7 @@ void frame_covector(const NoetherFrame *f, long double *x, long double *scratch)
 /* shown: tau, then xi_i of 1, then of y_1 .. y_n for each i. */
 void frame_generator_back(const NoetherFrame *f, long double *shown, long double *scratch) {
   uint32_t n = f->n;
+  if (f->stays) return;
   long double *shift = shown + 1, *linear = shift + n, *column = scratch + n;
   frame_vector_back(f, shift, scratch);
   for (uint32_t i = 0; i < n; i++) apply_left(n, f->S, linear + (size_t)i * n, scratch);

@@ -311,7 +311,7 @@ void name_symmetry(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
   to->axis = AXIS_NONE;
   to->name = "point symmetry";
   if (r->kind == TIME_LISTED && p.tau == 1 && p.shift > 1 && !p.linear) to->name = "energy in a moving frame"; /* that of the forced motion */
-  else if (r->kind != TIME_POWERS && (r->kind != TIME_LISTED || (p.tau | p.shift | p.linear) > 3)) {
+  else if (r->kind != TIME_POWERS && (r->kind != TIME_LISTED || (p.tau | p.shift | p.linear) > 7)) {
     const char *what = p.tau ? "breathing" : p.linear ? "turning" : "shift along a solution";
     to->name = r->kind == TIME_LISTED ? what : arena_printf(e->m->arena, "%s, %s", what, r->kind == TIME_CIRCULAR ? "periodic in t" : "exponential in t");
   } else if (is_energy(p)) {

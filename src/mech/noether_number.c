@@ -5,7 +5,13 @@
 #include "sym/eval.h"
 #include "sym/prove.h"
 
-Choices choices_new(Arena *a, const Eqns *e) {
+/* Values of all symbols at a choice. */
+static void draw(const ExprGraph *g, uint32_t attempt, uint32_t choice, long double *to) {
+  prove_state(g, choice == CHOICE_SECOND && attempt == 0 ? 2 : 1 + 2 * attempt, to);
+  for (SymId s = 1; s <= expr_symbol_count(g) && choice == CHOICE_SECOND && attempt > 0; s++) to[s] *= 1 + 0.03L * prove_symbol(g, s, 2 + 2 * attempt);
+}
+
+Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt) {
   ExprGraph *g = e->g;
   VEC(SymId) params = {0};
   VEC(Expr) roots = {0};
@@ -18,7 +24,7 @@ Choices choices_new(Arena *a, const Eqns *e) {
   long double **at = ARENA_ARRAY(a, long double *, 2 + params.n);
   for (uint32_t k = 0; k < 2 + params.n; k++) {
     at[k] = ARENA_ARRAY(a, long double, count);
-    prove_state(g, k == CHOICE_SECOND ? 2 : 1, at[k]);
+    draw(g, attempt, k, at[k]);
     /* A parameter whose sign is not known is taken positive: most are, and an identity in it does not ask. */
     for (SymId s = 1; s < count; s++)
       if (expr_symbol(g, s)->sign == SIGN_UNKNOWN && expr_symbol(g, s)->kind == SYM_PARAM) at[k][s] = fabsl(at[k][s]);
@@ -101,7 +107,8 @@ static int half_of(long double exponent, Num *out) {
   return 1;
 }
 
-Expr monomial_part(const Choices *c, const long double *value, long double *number) {
+/* The product of powers of parameters that value[choice] goes with, and *number, what it is multiplied by. 0: none. */
+static Expr monomial_part(const Choices *c, const long double *value, long double *number) {
   ExprGraph *g = c->e->g;
   Num exponent;
   long double rest = value[CHOICE_FIRST], other = value[CHOICE_SECOND];
@@ -154,6 +161,20 @@ Expr linear_of(const Choices *c, const long double *value) {
   if (!rational_of(rest, &number)) return 0;
   sum = expr_add(g, sum, expr_num(g, number));
   return fabsl(choice_value(c, CHOICE_SECOND, sum) - value[CHOICE_SECOND]) < 1e-9L * fabsl(value[CHOICE_SECOND]) ? sum : 0;
+}
+
+Expr quotient_of(const Choices *c, const long double *value) {
+  enum { PARAMETERS_MOST = 12, VALUES_MOST = 2 + PARAMETERS_MOST };
+  long double x[VALUES_MOST];
+  if (c->n > PARAMETERS_MOST) return 0;
+  Expr sum = linear_of(c, value);
+  if (sum) return sum;
+  for (uint32_t k = 0; k < c->n; k++) {
+    for (uint32_t i = 0; i < 2 + c->n; i++) x[i] = value[i] * c->at[i][c->param[k]];
+    if (!(sum = linear_of(c, x))) continue;
+    return expr_div(c->e->g, sum, parameter(c, k, num_int(1)));
+  }
+  return 0;
 }
 
 long double choice_value(const Choices *c, uint32_t choice, Expr e) {

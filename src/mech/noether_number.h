@@ -16,7 +16,8 @@ typedef struct {
 
 enum { CHOICE_FIRST, CHOICE_SECOND, CHOICE_MOVED };
 
-Choices choices_new(Arena *a, const Eqns *e);
+/* attempt 0, or other random values, the second ones near the first: where motions oscillate for some values of the parameters only. */
+Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt);
 
 /* The rational p/q that x is, to its digits, with q small against them; 0: it is none. */
 int rational_of(long double x, Num *out);
@@ -27,14 +28,14 @@ Expr ratio_of(const Choices *c, const long double *value);
 /* A sum of parameters times small fractions, and of such a fraction: m1 + m2. 0: none takes these values, 2 + n of them. */
 Expr linear_of(const Choices *c, const long double *value);
 
+/* The same over a parameter, or over none: (k + 2 c)/m. */
+Expr quotient_of(const Choices *c, const long double *value);
+
 /* A rational times a power of `rate`, an expression of parameters: -2, -1, 1 or 2. */
 Expr power_of(const Choices *c, const long double *value, Expr rate);
 
 /* What ratio_of knows, times such a power of `rate`. */
 Expr ratio_with(const Choices *c, const long double *value, Expr rate);
-
-/* The product of powers of parameters that value[choice], 2 + n of them, goes with, and *number, what it is multiplied by. 0: none. */
-Expr monomial_part(const Choices *c, const long double *value, long double *number);
 
 /* value[choice], 2 + n of them. 0: no such monomial takes these values. */
 Expr monomial_of(const Choices *c, const long double *value);

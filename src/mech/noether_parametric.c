@@ -86,19 +86,17 @@ static int whole_row(const Fit *f, const Real *x, int64_t *whole) {
   return q != 0;
 }
 
-/* All rows for this choice of mu: those that are whole as they are, then short ones of the space that they span. */
+/* All rows for this choice of mu. */
 static void fit(Fit *f) {
   uint32_t unknowns = f->nmu * f->ncolumns;
   if (!unknowns || unknowns > UNKNOWNS_MOST) return;
   DenseRows kernel = kernel_of(f);
   uint32_t *pivot = ARENA_ARRAY(f->arena, uint32_t, kernel.n + 1);
-  int64_t *whole = ARENA_ARRAY(f->arena, int64_t, (size_t)kernel.n * unknowns + 1);
+  int64_t *whole = ARENA_ARRAY(f->arena, int64_t, unknowns + 1);
   if (kernel.gap < 1e2L) return;
   uint32_t rows = dense_echelon(kernel.n, unknowns, kernel.at, 1e-10L, pivot);
   for (uint32_t r = 0; r < rows; r++)
     if (whole_row(f, kernel.at + (size_t)r * unknowns, whole)) add_row(f, whole);
-  rows = whole_members(f->arena, kernel.at, rows, unknowns, whole);
-  for (uint32_t r = 0; r < rows; r++) add_row(f, whole + (size_t)r * unknowns);
 }
 
 ParametricRows parametric_rows(Arena *a, const Choices *choices, const Table *at, uint32_t count) {

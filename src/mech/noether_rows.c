@@ -65,6 +65,7 @@ Ansatz *ansatz_new(Arena *a, const Eqns *e) {
   add_held(s, a);
   s->shown = 1 + s->xi.n;
   s->columns = s->shown + s->gauge.n;
+  s->forms = ansatz_is_restricted(s) ? NULL : forms_new(a, e);
   return s;
 }
 
@@ -122,10 +123,10 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
 
 const NoetherFrame *rows_frame(const RowSource *r) { return r->frame; }
 
-/* What was drawn is a vector of the frame. */
-static void take_from_frame(RowSource *r, const SymId *symbol) {
+/* What was drawn is y, or y' without a shift. */
+static void take_from_frame(RowSource *r, const SymId *symbol, const long double *shift) {
   uint32_t n = r->of->n;
-  for (uint32_t i = 0; i < n; i++) r->point[i] = r->symbols[symbol[i]];
+  for (uint32_t i = 0; i < n; i++) r->point[i] = r->symbols[symbol[i]] - (shift ? shift[i] : 0);
   frame_vector_back(r->frame, r->point, r->point + n);
   for (uint32_t i = 0; i < n; i++) r->symbols[symbol[i]] = r->point[i];
 }
@@ -140,8 +141,8 @@ static void draw(RowSource *r, long double spread) {
     long double value = next_value(r) * (x->kind == SYM_TIME ? 4 : x->kind == SYM_COORD ? spread : 1);
     r->symbols[s] = x->sign == SIGN_POSITIVE || x->sign == SIGN_NONNEGATIVE ? fabsl(value) : value;
   }
-  if (r->frame) take_from_frame(r, r->of->q);
-  if (r->frame) take_from_frame(r, r->of->v);
+  if (r->frame) take_from_frame(r, r->of->q, r->frame->shift);
+  if (r->frame) take_from_frame(r, r->of->v, NULL);
 }
 
 /* How steep L is there. */
@@ -183,6 +184,7 @@ static void evaluate(RowSource *r) {
   }
   if (!r->frame) return;
   frame_vector(r->frame, r->phi + 1, r->point);
+  for (uint32_t i = 0; i < s->n; i++) r->phi[i + 1] += r->frame->shift[i];
   frame_vector(r->frame, r->rate + 1, r->point);
   frame_covector(r->frame, r->out + 2, r->point);
   frame_covector(r->frame, r->out + 2 + s->n, r->point);
@@ -245,14 +247,16 @@ static int constraint_row(RowSource *r, uint32_t which, long double *b0) {
   if (!states_obey(r->solver, r->symbols)) return 0;
   evaluate(r);
   const long double *A = r->out + 2 + 2 * (size_t)s->n;
-  long double b = A[k->A.n + which], size = fabsl(b);
-  for (uint32_t x = 0; x < k->A.n; x++) {
-    if (k->A.at[x].row != which) continue;
-    b -= A[x] * r->rate[k->A.at[x].col + 1];
-    size += fabsl(A[x] * r->rate[k->A.at[x].col + 1]);
-    for (uint32_t j = 0; j < s->xi.n; j++)
-      if (s->xi.at[j].i == k->A.at[x].col) b0[1 + j] += A[x] * r->phi[s->xi.at[j].k];
+  long double b = A[k->A.n + which], size = fabsl(b), *row = r->part;
+  memset(row, 0, s->n * sizeof *row);
+  for (uint32_t x = 0; x < k->A.n; x++)
+    if (k->A.at[x].row == which) row[k->A.at[x].col] += A[x];
+  if (r->frame) frame_covector(r->frame, row, r->point);
+  for (uint32_t i = 0; i < s->n; i++) {
+    b -= row[i] * r->rate[i + 1];
+    size += fabsl(row[i] * r->rate[i + 1]);
   }
+  for (uint32_t j = 0; j < s->xi.n; j++) b0[1 + j] += row[s->xi.at[j].i] * r->phi[s->xi.at[j].k];
   if (s->has_tau && fabsl(b) > 1e-14L * size) b0[0] = b; /* a state obeys to rounding */
   return 1;
 }

@@ -12,6 +12,7 @@
 
 #include "base/dense.h"
 #include "mech/noether.h"
+#include "mech/noether_forms.h"
 #include "sym/eval.h"
 
 /* xi_i contains c times phi_k: k is 0 for 1, j + 1 for q_j. */
@@ -33,6 +34,7 @@ typedef struct {
   uint32_t degree;         /* of the gauge function */
   int has_tau;             /* 0: L contains what is given from outside; column 0 then stays zero */
   int has_time;            /* L contains t */
+  const LinearForms *forms; /* or NULL: phi are 1 and these, not the coordinates, and so are xi */
   int far_times;           /* every second time is four times as far out, which tells apart what oscillates with rates close to one another */
   VEC(XiColumn) xi;
   VEC(GaugeColumn) gauge;  /* the first is 1 */

@@ -179,10 +179,11 @@ Rates space_rates(Arena *a, const SolutionSpace *s) {
   complex long double root[MOST];
   SolutionSpace rest = without_polynomials(a, s);
   uint32_t m = rest.space.n ? minimal_polynomial(a, &rest, MOST, c) : 0;
-  Rates r = {0, ARENA_ARRAY(a, long double, MOST)};
+  Rates r = {.at = ARENA_ARRAY(a, long double, MOST)};
   if (m) roots_of(m, c, root);
   for (uint32_t k = 0; k < m; k++)
     if (fabsl(cimagl(root[k])) < 1e-8L * cabsl(root[k])) r.at[r.n++] = creall(root[k]);
+  r.others = m - r.n;
   return r;
 }
 

@@ -11,7 +11,7 @@ typedef enum { TIME_POWERS, TIME_CIRCULAR, TIME_EXPONENTIAL, TIME_LISTED } TimeK
 enum { TIME_BLOCKS_MOST = 6 };
 
 /* One row a generator; block m stands for t^m, or for cos wt and sin wt, or for exp st and exp -st, or for a function of a list, which
- * begins with 1 and t. Entry [m*shown + column]. */
+ * begins with 1, t and t^2. Entry [m*shown + column]. */
 typedef struct {
   uint32_t rows, blocks, shown;
   long double *at;  /* reduced echelon form */
@@ -34,7 +34,7 @@ Table table_listed(Arena *a, const Ansatz *s, const TimeList *times, const long 
 
 /* The squares of the rates with which solutions go, those that are real and not 0. */
 typedef struct {
-  uint32_t n;
+  uint32_t n, others; /* others: not real */
   long double *at;
 } Rates;
 

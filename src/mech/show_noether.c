@@ -211,6 +211,12 @@ static void other_charge(Page *p, const EffectVerdict *v, Text *of, uint32_t k) 
   if (!noether_same_charge(p->r, v, k)) text_named(of, named(p, "", k, ""), named_latex(p, k, 0), v->is[k].charge, 0);
 }
 
+/* What an effect brings that changes charges at moments, and the model has not. */
+static void impacts(Page *p, const EffectVerdict *v) {
+  const char *note = noether_note_on_impacts(v->e->m);
+  if (note && !noether_note_on_impacts(p->text.e->m)) say(p, arena_printf(v->e->m->arena, "  its %s", note));
+}
+
 static void effect(Page *p, const EffectVerdict *v) {
   Text of = {.e = v->e, .g = v->e->g, .style = p->text.style, .out = p->text.out};
   Arena *a = v->e->m->arena;
@@ -219,6 +225,7 @@ static void effect(Page *p, const EffectVerdict *v) {
   if (!broken) {
     sb_putc(p->text.out, '\n');
     say(p, arena_printf(a, "effect %s breaks none of them", v->effect));
+    impacts(p, v);
     return;
   }
   text_heading(&of, arena_printf(a, "effect %s breaks %u of %u", v->effect, broken, n));
@@ -232,6 +239,7 @@ static void effect(Page *p, const EffectVerdict *v) {
     else sb_printf(of.out, text_latex(&of) ? "  %s &\\text{ is not known}\n" : "  %s is not known\n", text_latex(&of) ? named_latex(p, k, 1) : named(p, "d", k, "/dt"));
   }
   text_end(&of);
+  impacts(p, v);
 }
 
 /* --- the page --- */

@@ -90,7 +90,8 @@ static void put_scaling(StrBuf *out, const NoetherReport *r) {
 }
 
 static void put_effect(StrBuf *out, const NoetherReport *r, const EffectVerdict *v) {
-  sb_printf(out, "{\"effect\": \"%s\", \"powers\": [", v->effect);
+  const char *note = noether_note_on_impacts(v->e->m);
+  sb_printf(out, "{\"effect\": \"%s\", \"note\": \"%s\", \"powers\": [", v->effect, note ? note : "");
   for (uint32_t k = 0; k < r->found.all.n; k++) {
     sb_puts(out, comma(k));
     put_power(out, v->e->g, &v->is[k]);

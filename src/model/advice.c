@@ -35,6 +35,20 @@ const AstStmt *declaring_effect(const Builder *b, Name name) {
   return NULL;
 }
 
+static int is_active(const Builder *b, const AstStmt *st) {
+  for (uint32_t i = 0; i < b->active.n; i++)
+    if (b->active.at[i].stmt == st) return 1;
+  return 0;
+}
+
+/* The effect that is not in use and has a symmetry of this name, which stands for its charge. */
+static const AstStmt *effect_with_charge(const Builder *b, Name name) {
+  for (const AstStmt *e = b->ast->first; e; e = e->next)
+    for (const AstStmt *x = e->kind == STMT_EFFECT ? e->body : NULL; x; x = x->next)
+      if (x->kind == STMT_SYMMETRY && x->name == name && !is_active(b, x)) return e;
+  return NULL;
+}
+
 /* ---- names of paper ---- */
 
 /* Whether something that has a rate is called so: word[n]. */
@@ -168,6 +182,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
     return;
   }
   const AstStmt *owner = declaring_effect(b, name);
+  if (!owner) owner = effect_with_charge(b, name);
   if (owner) {
     diag_help(b->diags, "the effect `%s` declares it, but is not in use here: `use %s`", owner->name, owner->name);
     return;

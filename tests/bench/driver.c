@@ -54,7 +54,7 @@ static Bench bench_new(void) {
   unsigned long long seed = 1;
   unsigned char *fixed = calloc((size_t)b.m->np + 1, 1);
   if (!fixed) exit(2);
-  b.p = room(b.m->np), b.a = room(n), b.w = room(b.m->nw);
+  b.p = room(b.m->np + b.m->nderived), b.a = room(n), b.w = room(b.m->nw);
   SCENE.params(b.p, fixed);
   free(fixed);
   for (int s = 0; s < STATES; s++) {

@@ -10,7 +10,7 @@
 extern const lag_scene bodies_drift;
 enum { N = 256 };
 
-static double q[3*N], v[3*N], p[N + 2], a[3*N], room[1024], energy[2];
+static double q[3*N], v[3*N], p[N + 8], a[3*N], room[1024], energy[2];
 
 static int check_accelerations(void) {
   for (int i = 0; i < N; i++) {
@@ -51,7 +51,7 @@ static int check_energy(void) {
 int main(void) {
   static const unsigned char none[N + 2];
   const lag_model *m = bodies_drift.model;
-  if (m->nq != 3*N || m->np != N + 2 || m->nw > 1024) return 2;
+  if (m->nq != 3*N || m->np != N + 2 || m->nderived > 6 || m->nw > 1024) return 2;
   bodies_drift.params(p, none);
   bodies_drift.start(p, q, v, NULL);
   for (int i = 0; i < N; i++) { /* masses and velocities of their own; the start by its formulas, to rounding of arguments up to 435 */
@@ -62,6 +62,7 @@ int main(void) {
     }
     p[i] = 1 + 0.5*want[0];
   }
+  if (m->derive) m->derive(p);
   if (m->accel(0, q, v, NULL, p, NULL, a, NULL, room) != 0 || m->energy(0, q, v, NULL, p, NULL, energy, room) != 0) return 4;
   return check_accelerations() | check_energy();
 }

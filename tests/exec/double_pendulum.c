@@ -27,7 +27,7 @@ static const double BOUND = 50;
 typedef __float128 quad;
 
 typedef struct {
-  double q[2], v[2], p[5]; /* p: m1 m2 l1 l2 g, as declared */
+  double q[2], v[2], p[16]; /* p: m1 m2 l1 l2 g, as declared */
 } State;
 
 static uint64_t seed = 0x9e3779b97f4a7c15u;
@@ -47,6 +47,7 @@ static State random_state(void) {
   for (int i = 0; i < 2; i++) s.v[i] = uniform(-20, 20);
   for (int i = 0; i < 4; i++) s.p[i] = exp2(uniform(i < 2 ? -2 : -1, i < 2 ? 2 : 1)); /* masses 1/4..4, lengths 1/2..2 */
   s.p[4] = uniform(0, 20);
+  if (double_pendulum.derive) double_pendulum.derive(s.p);
   return s;
 }
 
@@ -77,7 +78,7 @@ int main(int argc, char **argv) {
   long states = argc > 1 ? strtol(argv[1], NULL, 10) : 100000, failed = 0;
   double worst[2] = {0, 0}, work[64];
   State at[2] = {0};
-  if (double_pendulum.nq != 2 || double_pendulum.np != 5 || double_pendulum.nw > 64) {
+  if (double_pendulum.nq != 2 || double_pendulum.np != 5 || double_pendulum.nderived > 11 || double_pendulum.nw > 64) {
     printf("1..1\nnot ok 1 - two coordinates, five parameters\n");
     return 1;
   }

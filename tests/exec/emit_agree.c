@@ -18,6 +18,7 @@
 
 extern const lag_scene *const all_scenes[];
 
+enum { PARAMS = 8192 }; /* with derived ones */
 #ifndef MAX
 #define MAX 64
 #endif
@@ -28,7 +29,7 @@ enum { STATES = 20, GRAPH_STATES = 5 };
 
 typedef long double Real;
 typedef struct {
-  Real t, q[MAX], v[MAX], z[MAX], p[MAX], u[MAX], w[1024];
+  Real t, q[MAX], v[MAX], z[MAX], p[PARAMS], u[MAX], w[1024];
 } Point;
 
 static uint64_t seed = 7;
@@ -177,6 +178,7 @@ static int check_model(Arena *arena, const char *path, const lag_scene *scene) {
   Model *m = model_build(ast, &(ModelChoice){0});
   Eqns *e = m ? eqns_derive(m) : NULL;
   if (!e || strcmp(m->name, scene->model->name) != 0) return printf("%s is not %s\n", path, scene->model->name), 1;
+  if (scene->model->np + scene->model->nderived > PARAMS) return printf("%s has too many parameters\n", m->name), 1;
   Prog *accel = lower_accel(e, 0), *energy = lower_energy(e);
   Point s;
   scene->params(s.p, none);

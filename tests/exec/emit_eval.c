@@ -8,7 +8,7 @@
 
 extern const lag_scene *const all_scenes[];
 
-enum { MAX = 64, STATES = 8 };
+enum { MAX = 64, PARAMS = 512, STATES = 8 }; /* parameters with derived ones */
 
 static uint64_t seed;
 static double next(void) { /* in (-0.75, 0.75), a multiple of 2^-20: exact in every precision */
@@ -17,7 +17,7 @@ static double next(void) { /* in (-0.75, 0.75), a multiple of 2^-20: exact in ev
 }
 
 typedef struct {
-  LAG_REAL t, q[MAX], v[MAX], z[MAX], p[MAX], u[MAX], w[1024], out[MAX];
+  LAG_REAL t, q[MAX], v[MAX], z[MAX], p[PARAMS], u[MAX], w[1024], out[MAX];
 } Work;
 static Work k;
 
@@ -46,6 +46,7 @@ int main(void) {
   static const unsigned char none[MAX];
   for (int i = 0; all_scenes[i]; i++) {
     const lag_scene *s = all_scenes[i];
+    if (s->model->np + s->model->nderived > PARAMS) return 1;
     s->params(k.p, none);
     seed = 1;
     for (int state = 0; state < STATES; state++) {

@@ -11,11 +11,11 @@
 
 extern const lag_scene *const all_scenes[];
 
-enum { MAX = 64, STATES = 20 };
+enum { MAX = 64, PARAMS = 512, STATES = 20 }; /* parameters with derived ones */
 
 typedef LAG_REAL Real;
 typedef struct {
-  Real t, y[3 * MAX], p[MAX], u[MAX], w[8192];
+  Real t, y[3 * MAX], p[PARAMS], u[MAX], w[8192];
 } Point;
 
 static uint64_t seed = 11;
@@ -97,6 +97,7 @@ static int check_model(const lag_scene *scene) {
   int n = 2 * m->nq + m->nz, good = 0;
   if (m->constraints) return 0; /* multipliers would change, too: there is none */
   if (!m->linear) return printf("%s has no linearisation\n", m->name), 1;
+  if (m->np + m->nderived > PARAMS) return printf("%s has too many parameters\n", m->name), 1;
   scene->params(s.p, none);
   for (int trial = 0; trial < STATES; trial++) {
     s.t = next();

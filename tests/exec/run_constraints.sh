@@ -67,6 +67,10 @@ for m in rk45 dop853 "variational --step 1e-3" "variational --step 1.1e-2" "verl
   check "their energy" within "$(number energy_drift)" 0 5e-5 # of order 2 with the larger step
 done
 
+# 40 in a row, which are so many that they are solved within a band
+check "forty four-bars" ends 1e-7 "apart=0" -- tests/hard/cases/mbs_a02_fourbar_N10.lag -D N=40 --method dop853 --tol 1e-10
+check "their energy" within "$(number energy_drift)" 0 1e-8
+
 # ---- a tolerance that no step near there can keep: the run passes, or says in seconds where it creeps
 passes_or_says() { # it may pass with another rounding
   timeout 120 "$LAGC" run tests/hard/cases/mbs_a02_fourbar_N2.lag --method 'dop853(atol=1e-15)' --tol 1e-15 --no-gsl >"$TMP/out" 2>&1

@@ -28,10 +28,10 @@ int main(void) { return sinq(0.0Q) != 0; }' >"$dir/try.c" && $CC "$dir/try.c" -o
   sed -n '/^1\.\./!p' "$dir/out"
   n=2 failed=$(grep -c '^not ok' "$dir/out")
 
-  # --- 2. one mistake at a time, in the text of accel without its comments
+  # --- 2. one mistake at a time, in the text of derive and accel without its comments
   sed -e 's|/\*[^*]*\*/||g' "$dir/model.c" >"$dir/plain.c"
-  first=$(grep -n '^static int accel(' "$dir/plain.c" | cut -d: -f1)
-  last=$(sed -n "$first,\$p" "$dir/plain.c" | grep -n '^}' | head -1 | cut -d: -f1)
+  first=$(grep -n '^static void derive(' "$dir/plain.c" | cut -d: -f1)
+  last=$(sed -n "$first,\$p" "$dir/plain.c" | grep -n '^}' | sed -n 2p | cut -d: -f1)
   awk -v first="$first" -v last="$((first + last - 1))" -v dir="$dir" '
     { line[NR] = $0 }
     END {

@@ -1,6 +1,6 @@
 #!/bin/sh
 # What constraints do to accelerations, and their multipliers:
-#   1. the solver of lag_kkt.h against GSL's singular value decomposition, redundant constraints and all;
+#   1. the solver of lag_kkt.h against GSL's singular value decomposition, redundant constraints and all; large systems, within a band or not, against elimination;
 #   2. systems with a closed form, one for each kind of constraint (models/constrained.lag).
 . tests/tap.sh
 model=tests/exec/models/constrained.lag
@@ -10,6 +10,9 @@ if [ -n "$GSL" ]; then
   kkt() { $CC -std=c11 -O1 -Wall -Wextra -Werror -Wno-misleading-indentation -Iruntime/include -o "$TMP/kkt" tests/exec/constraints/kkt.c -lgsl -lgslcblas -lm && "$TMP/kkt"; }
   check "lag_kkt: solution and least multipliers to 1e-10 of an SVD" kkt
 fi
+
+band() { $CC -std=c11 -O1 -Wall -Wextra -Werror -Wno-misleading-indentation -Iruntime/include -o "$TMP/band" tests/exec/constraints/band.c -lm && "$TMP/band"; }
+check "lag_kkt within a band: chains, rings, without inertia here and there, and what is left to the other solvers" band
 
 # ---- 2. closed forms ----
 # At the start of the scene, in the order of its outputs, by the theory of each small system:

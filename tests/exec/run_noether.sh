@@ -46,6 +46,9 @@ check "no symmetry is called proved" is_silent 'proved' noether models/kapitza.l
 check "without a scene effects are off, and each is judged alone" says "effect drag breaks 8 of 8" noether models/projectile.lag
 check "a scene has its own" says "scene air, with wind_resistance" noether models/projectile.lag air
 check "and its balances" says "dQ2/dt = -wind_resistance.k\*sqrt(x'^2 + y'^2)\*x'" noether models/projectile.lag air
+printf "model m\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2\neffect bounce { event wall: x - 1 rising { x' = -x' } }\neffect floor { contact ground: y >= 0, restitution = 0.5 }\n" >"$TMP/bounce.lag"
+check "events of an effect are no part of a balance, which is said" says "^  its events change charges: what is said holds between them" noether "$TMP/bounce.lag"
+check "nor are impacts" says "^  its impacts and contacts change charges: what is said holds between them" noether "$TMP/bounce.lag"
 check "which no list of effects follows" is_silent "^effect" noether models/projectile.lag air
 cat >"$TMP/wider.lag" <<'END'
 model m "A planet; with a moon, which is a coordinate of an effect; in a field; and in one that L cannot tell"
@@ -121,9 +124,9 @@ END
 cat >"$TMP/oblique.lag" <<'END'
 model m
 coord u, v
-let x = 3*u/2 - 2*v/7 + 1/3
-let y = u/5 + 4*v/3 - 1/2
-lagrangian = (x'^2 + y'^2)/2 - 1/(x^2 + y^2)
+let X = u + 1/3
+let Y = v - 1/2
+lagrangian = 229*u'^2/200 - 17*u'*v'/105 + 410*v'^2/441 - 1/(229*X^2/200 - 17*X*Y/105 + 410*Y^2/441)
 END
 cat >"$TMP/top.lag" <<'END'
 model m
@@ -136,6 +139,15 @@ potential = g*tip.z
 END
 check "a screw is no rotation" says "^Q2: screw: a rotation and a translation at once" noether "$TMP/screw.lag"
 check "a scaling that turns is more than a scaling" says "^Q2: scaling with an affine map of the coordinates" noether "$TMP/oblique.lag"
+cat >"$TMP/skew.lag" <<'END'
+model m
+coord u, v
+let x = 3*u/2 - 2*v/7 + 1/3
+let y = u/5 + 4*v/3 - 1/2
+lagrangian = (x'^2 + y'^2)/2 - 1/(x^2 + y^2)
+END
+check "in skew coordinates a scaling is one" says "^Q2: scaling about another point" noether "$TMP/skew.lag"
+check "and brackets are proved" says "^  the others are 0: all proved" noether "$TMP/skew.lag"
 check "turns in space and of the body's own, together" says "^Q3: turns about z in space and about the body's own: the difference of the angular momenta" noether "$TMP/top.lag"
 printf "model m\ncoord x\nlagrangian = x'^4/4 + x'^2/2 - x^2/2\n" >"$TMP/quartic.lag"
 check "a mass matrix with velocities is dp/dq', not p over q'" says "^mass matrix: M = dp/dq'" derive "$TMP/quartic.lag" --hamiltonian
@@ -164,7 +176,7 @@ assert [s["name"] for s in r["symmetries"]] == ["energy", "momentum of x", "mome
 assert r["symmetries"][3]["F"] == "m*x" and r["symmetries"][3]["delta"] == {"x": "t"}, r
 assert r["cyclic"] == ["x", "th"], r
 assert r["brackets"][-1] == {"of": [2, 4], "proved": True, "constant": "m", "charges": {}}, r
-assert r["effects"] == [{"effect": "drag", "powers": ["-drag.c*x'^2", "-drag.c*x'", "0", "-drag.c*t*x'"]}], r
+assert r["effects"] == [{"effect": "drag", "note": "", "powers": ["-drag.c*x'^2", "-drag.c*x'", "0", "-drag.c*t*x'"]}], r
 END
   cat >"$TMP/json.lag" <<'END'
 model m

@@ -63,11 +63,12 @@ one 'constraint c: x = l' "scene s { start exactly x = 1 [m], x' = 1 [m/s]; span
 check "exactly, velocities" refused c 'without `exactly` the nearest start is taken'
 
 # ---- what agrees at the start and not after it
-contradicts() { # WORDS: check says so, and a run ends at once, naming the same constraint
+contradicts() { # WORDS: check says so, and a run, naming the same constraint, with no rows
+  rm -f "$TMP/rows.csv"
   checks "$TMP/one.lag" && return 1
   says '`b` contradicts those before it: ' "$TMP/check" && says "$1" "$TMP/check" || return 1
   runs "$TMP/one.lag" && return 1
-  says 'b (line 6) is off by' "$TMP/run" && says 'contradicts the others' "$TMP/run"
+  says 'b (line 6) is off by' "$TMP/run" && says 'contradict each other soon after the start' "$TMP/run" && [ ! -e "$TMP/rows.csv" ]
 }
 one 'constraint a: x = 0 [m]' "constraint b: x' = v*(t/1 [s])" 'scene s { span 1 [s] }'
 check "another acceleration" contradicts 'demands another acceleration'
@@ -87,6 +88,11 @@ scene s { start x = 1 [m], x' = 1 [m/s]; span 1 [s] }
 END
 lacks() { rm -f "$TMP/rows.csv"; ! checks "$TMP/ker.lag" && says 'nothing says how `z` moves' "$TMP/check" && ! runs "$TMP/ker.lag" && says 'the mass matrix is singular: nothing says how z moves' "$TMP/run" && [ ! -e "$TMP/rows.csv" ]; }
 check "a coordinate without inertia that nothing moves" lacks
+# At one place only: at z = 0 the parabola lets z move without x.
+sed 's/constraint b: .*/constraint b: x = z^2\/1 [m]/; s/start .*;/start z = 0 [m];/' "$TMP/ker.lag" >"$TMP/apex.lag"
+mv "$TMP/ker.lag" "$TMP/kept.lag" && cp "$TMP/apex.lag" "$TMP/ker.lag"
+check "a coordinate without inertia that nothing moves at the start" lacks
+mv "$TMP/kept.lag" "$TMP/ker.lag"
 sed -i 's/k = 0 /k = 1 /' "$TMP/ker.lag"
 free() { taken 0 1 ker && near "$(value x)" 2 1e-9 && near "$(value z)" 0 1e-12; }
 check "with inertia, a constraint that says nothing is none" free

@@ -212,10 +212,28 @@ static void first_order_forced(void **state) {
   proves(EDDY "force x = -a*x\nobserve xi_x = -y\nobserve xi_y = x\nobserve P = a*x*y\n", INVARIANT);
 }
 
+/* A free particle whose L has dG/dt besides: its charges are those of the free particle, and F = xi grad G + tau dG/dt and what that has, though G is no
+ * combination of what an integration by parts knows. With a potential the same ones are false. */
+#define GAUGED "model g\ncoord x, y\nparam k = 1\nlet G = x^2*y*exp(x*y) + log(1 + x^2 + exp(y)) + atan(x*y)*t + x^3*exp(sin(x*y))\n"
+#define FREE "lagrangian = (x'^2 + y'^2)/2 + d(G, x)*x' + d(G, y)*y' + d(G, t)\n"
+#define BOUND "lagrangian = (x'^2 + y'^2)/2 + d(G, x)*x' + d(G, y)*y' + d(G, t) - k*x^4\n"
+
+static void any_gauge(void **state) {
+  (void)state;
+  proves(GAUGED FREE "observe xi_x = 1\nobserve Q = x'\nobserve F = d(G, x)\nobserve P = 0\n", INVARIANT_UP_TO_F);
+  proves(GAUGED FREE "observe xi_x = -y\nobserve xi_y = x\nobserve Q = x*y' - y*x'\nobserve F = x*d(G, y) - y*d(G, x)\nobserve P = 0\n", INVARIANT_UP_TO_F);
+  proves(GAUGED FREE "observe xi_x = t\nobserve Q = t*x' - x\nobserve F = x + t*d(G, x)\nobserve P = 0\n", INVARIANT_UP_TO_F);
+  proves(GAUGED FREE "observe tau = -1\nobserve Q = (x'^2 + y'^2)/2\nobserve F = -atan(x*y)\nobserve P = 0\n", INVARIANT_UP_TO_F);
+  proves(GAUGED FREE "observe xi_x = x\nobserve xi_y = y\nobserve tau = 2*t\nobserve Q = x*x' + y*y' - t*(x'^2 + y'^2)\nobserve P = 0\n", INVARIANT_UP_TO_F);
+  proves(GAUGED BOUND "observe xi_x = 1\n", NOT_INVARIANT);
+  proves(GAUGED BOUND "observe xi_y = 1\nobserve Q = y'\nobserve P = 0\n", INVARIANT_UP_TO_F);
+  proves(GAUGED BOUND "observe xi_x = -y\nobserve xi_y = x\n", NOT_INVARIANT);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(kepler),  cmocka_unit_test(boosts),   cmocka_unit_test(oscillator),
                                      cmocka_unit_test(gauges), cmocka_unit_test(substitutions), cmocka_unit_test(integrals),  cmocka_unit_test(scaling),  cmocka_unit_test(balances),
                                      cmocka_unit_test(constrained), cmocka_unit_test(first_order),
-                                     cmocka_unit_test(first_order_forced), cmocka_unit_test(contacts)};
+                                     cmocka_unit_test(first_order_forced), cmocka_unit_test(contacts), cmocka_unit_test(any_gauge)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -126,7 +126,7 @@ int main(void) {
     const lag_model *m = s->model;
     static const unsigned char none[ROOM];
     seed = 1;
-    if (2*(2*m->nq + m->nz) > ROOM || m->nw > ROOM) return printf("%s is too large\n", m->name), 1;
+    if (2*(2*m->nq + m->nz) > ROOM || m->nw > ROOM || m->np + m->nderived > ROOM) return printf("%s is too large\n", m->name), 1;
     for (int state = 0; state < STATES; state += LANES) {
       s->params(p, none);
       for (int lane = 0; lane < LANES; lane++) {
@@ -138,6 +138,7 @@ int main(void) {
         fill(u + m->nu, s->nexact, lane, 1); /* closed forms, as observe has them */
         for (int k = 0; k < m->np; k++) put(&p[k], lane, get(&p[k], lane) * (1 + next() / 16));
       }
+      if (m->derive) m->derive(p);
       evaluate(s);
     }
   }

@@ -14,7 +14,7 @@ static double *room(int n) { return calloc((size_t)n + 8, sizeof(double)); }
 static void print_scene(const lag_scene *s) {
   const lag_model *m = s->model;
   const lag_taylor *ty = m->taylor;
-  double *p = room(m->np), *y = room(2 * m->nq + m->nz), *u = room(m->nu), *follows = room(m->nu);
+  double *p = room(m->np + m->nderived), *y = room(2 * m->nq + m->nz), *u = room(m->nu), *follows = room(m->nu);
   double *x = room((ty->order + 1) * ty->columns), *w = room(ty->nw), *sum = room(ty->width), *slope = room(ty->width);
   unsigned char *fixed = calloc((size_t)m->np + 1, 1);
   s->params(p, fixed);

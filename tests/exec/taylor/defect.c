@@ -26,6 +26,7 @@ static Real next(void) { /* in (-1/8, 1/8) */
 static void place(const lag_scene *s, Point *at) {
   const lag_model *m = s->model;
   static const unsigned char none[MOST];
+  if (m->np + m->nderived > MOST) exit(1);
   s->params(at->p, none);
   s->start(at->p, at->q, at->v, at->z);
   at->t = (Real)s->t0 + next();

@@ -1,0 +1,154 @@
+/* Steps of fixed size, and of radau, where constraints become dependent, as of bars that come to lie in one line. Enters: a step to make;
+ * leaves: the step, of the size that the method would take, or of another one where that ends badly.
+ *
+ * Several motions meet in such a position. Where a step ends within rounding of it, the velocities that constraints allow there are any
+ * mixture of those motions, and where one ends near it, on another branch, the velocities at its end are not those that led there: their mean is
+ * not what the coordinates have moved by, in that time. A step that is a little shorter or longer passes. What no size makes good ends
+ * the run: until it did, a rhomb went on with other energy.
+ *
+ * rk45 and dop853 choose where to land by their own estimates (methods/embedded.c). */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/core.h"
+#include "core/rhs.h"
+
+enum { TRIES = 8, FEW = 32, MOST_UNLOOKED = 16 };
+
+/* Of how dependent constraints may be: at the end of a step; where motions are looked at. Of how far the way of a step may be from the mean of
+ * the velocities at its ends: what another size may better, and what ends the run. */
+static const double least_apart = 1e-4, near_by = 0.1, doubtful = 0.02, wrong = 0.2, hopeless = 10;
+
+/* How far what the coordinates moved by is from the mean of the velocities at both ends, relative to these: of order step^2 where the motion
+ * is smooth. */
+static double detour(const lag_problem *pb, double dt, const double *y0, const double *y)
+{
+  const int nq = pb->nq;
+  double most = 0;
+
+  for (int i = 0; i < nq; i++) {
+    double off = fabs((y[i] - y0[i]) / dt - (y[nq + i] + y0[nq + i]) / 2);
+    if (off > most * fmax(fabs(y[nq + i]), fabs(y0[nq + i]))) { /* else no other of its unit makes it more */
+      double size = fmax(lag_size_like(pb, y + nq, i), lag_size_like(pb, y0 + nq, i));
+      most = size > 0 ? fmax(most, off / size) : most;
+    }
+  }
+  return most;
+}
+
+/* How independent constraints are at y, and how many steps may be made without asking again: a quarter of those that would lead near a
+ * dependent position, at the pace of the last ones. The answer costs as much as a step of rk4. */
+static double look(Run *r, lag_problem *pb, double t, const double *y)
+{
+  int k;
+  double s = lag_independence(pb, t, y, &k), pace = fabs(s - r->apart) / (r->since_apart + 1);
+
+  r->unlooked = s > near_by ? fmin(MOST_UNLOOKED, floor((s - near_by) / (4 * pace + DBL_MIN))) : 0;
+  r->apart = s;
+  r->since_apart = 0;
+  return s;
+}
+
+/* How bad the end s->y of a step from s->now at t0 is: 0 good, more than 1 where another size may be better. *way: its detour, where that
+ * counts. */
+static double badness(lag_sim *s, double t0, double t, double *way)
+{
+  lag_problem *pb = &s->pb;
+  int k, dear = pb->model->constraints->n > FEW;
+
+  *way = detour(pb, t - t0, s->now, s->y);
+  if (*way <= doubtful && (dear || s->run->unlooked > 0)) {
+    s->run->unlooked -= s->run->unlooked > 0;
+    s->run->since_apart++;
+    return 0;
+  }
+  double apart = look(s->run, pb, t, s->y);
+  *way = apart < near_by ? *way : 0;
+  double at = apart < least_apart && lag_independence(pb, t0, s->now, &k) >= least_apart ? least_apart / fmax(apart, 1e-20) : 0;
+  return fmax(at, *way / doubtful);
+}
+
+/* One step with pb->stretch as it is, from what was. */
+static int try_step(lag_sim *s, const double *was, size_t bytes, double *t, double t_stop, double stretch)
+{
+  double rejected = s->pb.rejected;
+
+  memcpy(s->method_work, was, bytes);
+  lag_copy(s->pb.n, s->now, s->y);
+  *t = s->run->t;
+  s->pb.detail = NULL;
+  s->pb.stretch = stretch;
+  int rc = s->method->step(s->method_work, &s->pb, t, s->y, t_stop);
+  s->pb.stretch = 0;
+  s->pb.rejected = rejected;
+  return rc;
+}
+
+/* The step goes to another motion, whatever its size. */
+static int say_wrong(lag_sim *s, double t)
+{
+  lag_problem *pb = &s->pb;
+  char line[32];
+  int k;
+  double apart = lag_independence(pb, t, s->y, &k);
+  const lag_constraint *weakest = k >= 0 ? &pb->model->constraints->of[k] : NULL;
+
+  if (weakest) {
+    snprintf(pb->words, sizeof pb->words, "of the motions that meet here no step finds the one that led there: constraint %s%s is within %.1g of "
+             "following from the others; rk45 and dop853 may pass",
+             weakest->name, lag_line_of(weakest, line), apart);
+    pb->detail = pb->words;
+  }
+  pb->bad_t = t;
+  lag_copy(pb->n, s->now, s->y);
+  return LAG_EMETHOD;
+}
+
+/* Whether a step from where constraints are nearly dependent has failed in a way that another size may mend. */
+static int may_pass(lag_sim *s, int rc)
+{
+  int k;
+
+  return (rc == LAG_EMETHOD || rc == LAG_ENAN || rc == LAG_EDOMAIN || rc == LAG_ESINGULAR) &&
+         lag_independence(&s->pb, s->run->t, s->now, &k) < near_by;
+}
+
+int lag_step_of_method(lag_sim *s, double *t, double t_stop)
+{
+  double way = 0, bad = 0, t0 = *t;
+
+  if (!s->pb.model->constraints || !(s->method->flags & LAG_METHOD_STRETCHES)) {
+    return s->method->step(s->method_work, &s->pb, t, s->y, t_stop);
+  }
+  double *const was = s->method_work + s->nwork;
+  const size_t bytes = s->nwork * sizeof *was;
+  memcpy(was, s->method_work, bytes);
+  int rc = s->method->step(s->method_work, &s->pb, t, s->y, t_stop);
+  bad = rc ? may_pass(s, rc) ? HUGE_VAL : 0 : badness(s, t0, *t, &way);
+  if (!(bad > 1)) {
+    return rc;
+  }
+  double best = 0, least = bad, stretch = 0;
+  for (int k = 0; k < TRIES && least > 1; k++) { /* 1/1.25, 1.25, 1/1.25^2, 1.25^2, ... */
+    stretch = pow(1.25, k % 2 ? (k + 1) / 2 : -(k + 2) / 2) - 1;
+    int failed = try_step(s, was, bytes, t, t_stop, stretch);
+    bad = failed ? HUGE_VAL : badness(s, t0, *t, &way);
+    s->pb.rejected++;
+    if (bad < least) {
+      least = bad;
+      best = stretch;
+    }
+  }
+  if (best != stretch || least > 1) {
+    rc = try_step(s, was, bytes, t, t_stop, best);
+    if (rc == 0) {
+      badness(s, t0, *t, &way);
+    }
+  } else {
+    rc = 0;
+  }
+  int lost = least > hopeless && s->method->flags & LAG_METHOD_ADAPTIVE; /* it shrinks its steps, and goes on into the position */
+  return rc == 0 && (way > wrong || lost) ? say_wrong(s, *t) : rc;
+}

@@ -1,0 +1,226 @@
+#include "ir/hoist.h"
+
+#include "ir/roll.h"
+
+enum {
+  STRAIGHT_UP_TO = 12, /* coordinates: products with larger inverses are loops */
+  FEW = 64, /* so many derived parameters cost little to carry, even where they save little; more must save */
+  A_SHARE = 8 /* one operation of so many of a call */
+};
+
+typedef struct {
+  Prog *derived;       /* stores: parameter first + k */
+  uint32_t first, n, nameless;
+  VEC(uint32_t) index; /* by slot of `derived`: k + 1, or 0 */
+  VEC(Name) called;    /* by slot of `derived`: its name, or one made of those of its operands; or NULL */
+} Hoist;
+
+/* Whether its value can be computed elsewhere. */
+static int can_move(const Ins *i) {
+  switch (i->op) {
+    case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_INVERT: case IR_NEST: case IR_TABLE: case IR_TITLE: return 0;
+    case IR_LOAD: return i->array == ARR_P;
+    default: return 1;
+  }
+}
+
+/* By slot: whether it depends on parameters alone. */
+static unsigned char *find_constant(const Prog *p) {
+  unsigned char *constant = ARENA_ARRAY(p->arena, unsigned char, p->ins.n);
+  constant[0] = 1;
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    constant[s] = can_move(i) && constant[i->a] && constant[i->b] && constant[i->c];
+  }
+  return constant;
+}
+
+/* What may be derived where something else uses it: numbers alone are left to the C compiler unless they go through a function, and a
+ * changed sign is not worth a load. */
+static unsigned char *find_worthy(const Prog *p, const unsigned char *constant) {
+  unsigned char *worthy = ARENA_ARRAY(p->arena, unsigned char, p->ins.n), *number = ARENA_ARRAY(p->arena, unsigned char, p->ins.n);
+  number[0] = 1;
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    number[s] = constant[s] && i->op != IR_LOAD && i->op != IR_FN1 && i->op != IR_FN2 && i->op != IR_SQRT && number[i->a] && number[i->b] && number[i->c];
+    worthy[s] = constant[s] && !number[s] && !ir_is_leaf(i->op) && !ir_is_condition(i->op) && i->op != IR_NEG;
+  }
+  return worthy;
+}
+
+/* Whether the matrix of a system is constant, and multiplying by its inverse, which has no zeros, does not take more than solving anew: then the
+ * inverse is derived. */
+static int is_constant_solve(const Prog *p, const unsigned char *constant, const Ins *i) {
+  const Solve *k = &p->solves.at[i->index];
+  int all = i->op == IR_SOLVE && !k->m && k->matrix;
+  for (uint32_t j = 0; all && j < solve_elements(k); j++) all = constant[k->matrix[j]];
+  Solve product = {.n = k->n, .inverse = 1};
+  return all && ops_total(solve_count(p->arena, &product)) <= ops_total(solve_count(p->arena, k));
+}
+
+/* mark[s] |= 1 where the value of s is needed in the program that is left, |= 2 where it is needed for what is derived. */
+static unsigned char *mark_needed(const Prog *p, const unsigned char *constant, const unsigned char *worthy) {
+  enum { HERE = 1, ONCE = 2 };
+  unsigned char *mark = ARENA_ARRAY(p->arena, unsigned char, p->ins.n);
+  for (uint32_t k = 0; k < p->stores.n; k++) mark[p->stores.at[k].slot] |= HERE;
+  for (Slot s = p->ins.n; s-- > 1;) {
+    const Ins *i = &p->ins.at[s];
+    if (i->op == IR_PIVOT || i->op == IR_TITLE || i->op == IR_SOLVE) mark[s] |= HERE;
+    unsigned char below = worthy[s] && mark[s] ? ONCE : mark[s];
+    mark[i->a] |= below;
+    mark[i->b] |= below;
+    mark[i->c] |= below;
+    for (uint32_t j = 0; i->op == IR_NEST && mark[s] && j < p->nests.at[i->index].nouter; j++) mark[p->nests.at[i->index].outer[j]] |= HERE;
+    if (i->op != IR_SOLVE) continue;
+    const Solve *k = &p->solves.at[i->index];
+    int once = is_constant_solve(p, constant, i);
+    for (uint32_t j = 0; j < solve_elements(k); j++) mark[k->matrix[j]] |= once ? ONCE : HERE;
+    for (uint32_t j = 0; j < solve_unknowns(k); j++) mark[k->rhs[j]] |= HERE;
+  }
+  return mark;
+}
+
+static int is_derived(const unsigned char *worthy, const unsigned char *mark, Slot s) { return worthy[s] && mark[s] & 1; }
+
+/* Whether what leaves the program is worth the derived parameters that it takes. */
+static int pays(const Prog *p, const unsigned char *constant, const unsigned char *worthy, const unsigned char *mark) {
+  Prog once = {.arena = p->arena};
+  uint64_t taken = 0;
+  vec_push(p->arena, &once.ins, ((Ins){0}));
+  for (Slot s = 1; s < p->ins.n; s++) {
+    if (is_constant_solve(p, constant, &p->ins.at[s])) return 1;
+    taken += (uint64_t)is_derived(worthy, mark, s);
+    int leaves = mark[s] == 2 || is_derived(worthy, mark, s);
+    if (leaves) vec_push(p->arena, &once.ins, ((Ins){.op = p->ins.at[s].op}));
+  }
+  return taken > 0 && (taken <= FEW || ops_total(prog_count(&once)) * A_SHARE >= ops_total(prog_count(p)));
+}
+
+/* Appends an instruction of `derived`. */
+static Slot derive(Hoist *h, Ins i) {
+  Prog *p = h->derived;
+  Slot s = prog_ins(p, i);
+  prog_name(p, s, i.name);
+  while (h->called.n <= s) {
+    const Ins *k = &p->ins.at[h->called.n], *top = &p->ins.at[k->a];
+    int of_one = top->op == IR_CONST && num_is_one(top->number);
+    Name name = h->called.n ? k->name : NULL;
+    if (h->called.n && !name) name = ir_made_name(p->arena, k, of_one, h->called.at[k->a], h->called.at[k->b]);
+    vec_push(p->arena, &h->called, name);
+    vec_push(p->arena, &h->index, 0);
+  }
+  return s;
+}
+
+/* The load of the parameter that the value of slot s of `derived` becomes: of its name, or of "k1", "k2", ... */
+static Ins load_derived(Hoist *h, Slot s) {
+  Prog *p = h->derived;
+  uint32_t *at = &h->index.at[s];
+  if (!*at) {
+    *at = ++h->n;
+    if (!h->called.at[s]) h->called.at[s] = arena_printf(p->arena, "k%u", ++h->nameless);
+    prog_store(p, 0, h->first + *at - 1, s, h->called.at[s]);
+  }
+  return (Ins){.op = IR_LOAD, .array = ARR_P, .index = h->first + *at - 1, .name = h->called.at[s]};
+}
+
+/* The program with what is left of it, and where its values are. */
+typedef struct {
+  const Prog *from;
+  Prog *left;
+  const Slot *map, *once; /* by slot of `from`: in `left`, in `derived` */
+  Slot **solved;          /* by slot of `from`: the solution, of a solve that is a product with the inverse; or NULL */
+} Rest;
+
+static Slot load_at(const Rest *r, uint32_t index, Name name) { return prog_ins(r->left, (Ins){.op = IR_LOAD, .array = ARR_P, .index = index, .name = name}); }
+
+/* x = M^-1 f, of the lower triangle of M^-1 that stands at `inverse`. */
+static Slot *multiplied(const Rest *r, const Solve *k, uint32_t inverse) {
+  Arena *a = r->left->arena;
+  Slot *x = ARENA_ARRAY(a, Slot, k->n);
+  for (uint32_t i = 0; i < k->n; i++)
+    for (uint32_t j = 0; j < k->n; j++) {
+      uint32_t row = i > j ? i : j, col = i > j ? j : i;
+      Slot f = r->map[k->rhs[j]];
+      if (!f) continue;
+      Slot entry = load_at(r, inverse + row * k->n + col, arena_printf(a, k->n > 9 ? "inv_M%u_%u" : "inv_M%u%u", row + 1, col + 1));
+      x[i] = prog_op(r->left, IR_ADD, x[i], prog_op(r->left, IR_MUL, entry, f));
+    }
+  return x;
+}
+
+static Slot *multiplied_by_loop(const Rest *r, const Solve *k, uint32_t inverse) {
+  Arena *a = r->left->arena;
+  Slot *x = ARENA_ARRAY(a, Slot, k->n), *rhs = ARENA_ARRAY(a, Slot, k->n);
+  for (uint32_t i = 0; i < k->n; i++) rhs[i] = r->map[k->rhs[i]];
+  vec_push(a, &r->left->solves, ((Solve){.n = k->n, .inverse = inverse, .rhs = rhs}));
+  Slot s = prog_ins(r->left, (Ins){.op = IR_SOLVE, .index = r->left->solves.n - 1});
+  for (uint32_t i = 0; i < k->n; i++) x[i] = prog_ins(r->left, (Ins){.op = IR_SOLVED, .a = s, .index = i});
+  return x;
+}
+
+/* A solve with a constant matrix becomes an inverse in `derived` and a product with it. The inverse is symmetric to the last bit. That a
+ * solution from it is as exact as one from factors, but for its residual: N. Higham, Accuracy and Stability of Numerical Algorithms,
+ * 2nd ed., section 14.1. */
+static Slot *invert(Hoist *h, const Rest *r, const Solve *k) {
+  Prog *p = h->derived;
+  Slot *matrix = ARENA_ARRAY(p->arena, Slot, solve_elements(k));
+  Solve inverted = {.n = k->n, .place = h->first + h->n, .matrix = matrix};
+  for (uint32_t i = 0; i < k->n; i++)
+    for (uint32_t j = i; j < k->n; j++) matrix[i * k->n + j] = matrix[j * k->n + i] = r->once[k->matrix[i * k->n + j]];
+  vec_push(p->arena, &p->solves, inverted);
+  derive(h, (Ins){.op = IR_INVERT, .index = p->solves.n - 1});
+  h->n += solve_is_regular(k) + 1;
+  Slot regular = load_at(r, inverted.place + solve_is_regular(k), "is_regular");
+  prog_ins(r->left, (Ins){.op = IR_PIVOT, .a = regular});
+  uint32_t inverse = inverted.place + solve_inverse(k);
+  return k->n <= STRAIGHT_UP_TO ? multiplied(r, k, inverse) : multiplied_by_loop(r, k, inverse);
+}
+
+static Prog *taken_from(Hoist *h, const Prog *p) {
+  unsigned char *constant = find_constant(p), *worthy = find_worthy(p, constant), *mark = mark_needed(p, constant, worthy);
+  if (!pays(p, constant, worthy, mark)) return NULL;
+  Prog *left = prog_like(p);
+  Slot *map = ARENA_ARRAY(p->arena, Slot, p->ins.n), *once = ARENA_ARRAY(p->arena, Slot, p->ins.n);
+  Rest rest = {p, left, map, once, ARENA_ARRAY(p->arena, Slot *, p->ins.n)};
+  for (Slot s = 1; s < p->ins.n; s++) {
+    const Ins *i = &p->ins.at[s];
+    if (mark[s] & 2 || is_derived(worthy, mark, s)) {
+      once[s] = derive(h, prog_moved(h->derived, p, once, *i));
+    }
+    if (is_derived(worthy, mark, s)) {
+      map[s] = once[s] ? prog_ins(left, load_derived(h, once[s])) : 0;
+    } else if (is_constant_solve(p, constant, i)) {
+      rest.solved[s] = invert(h, &rest, &p->solves.at[i->index]);
+    } else if (i->op == IR_SOLVED && rest.solved[i->a]) {
+      map[s] = rest.solved[i->a][i->index];
+      prog_name(left, map[s], i->name);
+    } else if (mark[s] & 1) {
+      map[s] = prog_ins(left, prog_moved(left, p, map, *i));
+      prog_name(left, map[s], i->name);
+    }
+  }
+  for (uint32_t k = 0; k < p->stores.n; k++) {
+    Store st = p->stores.at[k];
+    prog_store(left, st.array, st.index, map[st.slot], st.comment);
+  }
+  return left;
+}
+
+static void hoist_from(Hoist *h, const Prog **p) {
+  Prog *left = *p ? taken_from(h, *p) : NULL;
+  if (left) *p = left;
+}
+
+void unit_hoist(IrUnit *u) {
+  IrConstraints *c = &u->constraints;
+  Hoist h = {.derived = prog_new(u->arena), .first = u->p.n};
+  const Prog *same = c->position == c->velocity ? c->position : NULL;
+  const Prog **all[] = {&u->accel, &c->residuals, &c->matrices, &c->position, &c->velocity, &u->variation, &u->second, &u->linear};
+  for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+    if (!same || all[k] != &c->velocity) hoist_from(&h, all[k]);
+  if (same) c->velocity = c->position;
+  if (!h.n) return;
+  u->derived = h.derived;
+  u->nderived = h.n;
+}

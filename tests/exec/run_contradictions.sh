@@ -1,0 +1,115 @@
+#!/bin/sh
+# Constraints that contradict each other: at the start, soon after it, at some time later. No state may be written that does not obey them.
+: "${LAGC:=build/lagc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+. tests/tap.sh
+
+# model NAME SECOND: a mass whose x is 0, and is to obey SECOND, too.
+model() {
+  cat >"$TMP/$1.lag" <<END
+model $1
+coord x [m], y [m]
+param m = 1 [kg] > 0, a = 1 [m]
+kinetic = m/2*(x'^2 + y'^2)
+constraint p: x = 0 [m]
+constraint q: $2
+scene s { span 1; output x, y every 0.1 }
+END
+}
+
+# ---- at the start, and soon after it: lagc check finds it, and a run writes nothing
+# x = 0 and a rate of 1, an acceleration, and a third derivative that are not 0 at the start.
+refuses() { # STATUS COMMAND...
+  rm -f "$TMP/rows.csv"
+  "$@" >"$TMP/report" 2>&1
+  echo "$? $(grep -o "constraint .\{0,1\}[pq]" "$TMP/report" | tr -d '`' | head -n 1 | cut -c1-10) $(ls "$TMP/rows.csv" 2>/dev/null)"
+}
+model rate "x' = a/1 [s]*cos(t/1 [s])"
+model acceleration "x' = a/1 [s^2]*t"
+model third 'x = a/1 [s^3]*t^3'
+for name in rate acceleration third; do
+  is "$name: a run" '2 constraint' "$(refuses "$LAGC" run "$TMP/$name.lag" -o "$TMP/rows.csv" | sed 's/ *$//')"
+done
+for name in acceleration third; do
+  is "$name: lagc check" '1 constraint' "$(refuses "$LAGC" check "$TMP/$name.lag" | sed 's/ *$//')"
+done
+# Those that agree for good, and those that are dependent at the start alone, are no contradiction.
+model agrees 'x*(1 [m] + y) = x*a*sin(t/1 [s])'
+check "constraints that agree" "$LAGC" run "$TMP/agrees.lag" --until 0.1
+
+# ---- later
+# One that jumps at half a second: it agreed until then. From 0, where no coordinate shows how large it is.
+model jumps 'x = if(t > 0.5 [s], a, 0 [m])'
+# failed METHOD MODEL: what ended the run, and the time of the last row.
+failed() {
+  rm -f "$TMP/rows.csv"
+  "$LAGC" run "$TMP/$2.lag" --method "$1" -o "$TMP/rows.csv" >"$TMP/report" 2>&1
+  echo "$? $(grep -o 'FAILED.*constraint q (line 6)' "$TMP/report" | sed 's/: at .*(constraint/: constraint/') $(tail -n 1 "$TMP/rows.csv" | cut -c1-3)"
+}
+for method in dop853 rk45 rk4 radau verlet variational; do
+  case $(failed "$method" jumps) in
+  '3 FAILED: constraint q (line 6) 0.'[45]) good=yes ;;
+  *) good=$(failed "$method" jumps) ;;
+  esac
+  is "$method ends where one of two constraints jumps, and writes what was before" yes "$good"
+done
+
+# A circle, and a height that leaves it at 1 s: the velocity has no limit there, and trial states are far away.
+cat >"$TMP/leaves.lag" <<'END'
+model leaves
+coord x [m], y [m]
+param m = 1 [kg] > 0, l = 1 [m], v = 1 [m/s]
+kinetic = m/2*(x'^2 + y'^2)
+constraint circle: x^2 + y^2 = l^2
+constraint height: y = v*t
+scene s { start x = 1; span 2; output x, y, x^2 + y^2 - l^2 every 0.01 }
+END
+for method in dop853 rk45 rk4 radau verlet variational; do
+  status=0
+  "$LAGC" run "$TMP/leaves.lag" --method $method -o "$TMP/rows.csv" >/dev/null 2>&1 || status=$?
+  is "$method ends at the end of the circle, and writes only what is on it" '3 yes' \
+    "$status $(awk -F, 'NR > 1 { if ($4 > 1e-14 || $4 < -1e-14) bad = 1; end = $1 } END { print (!bad && end >= 0.99 && end < 1.005 ? "yes" : end) }' "$TMP/rows.csv")"
+done
+
+# Poles of what the time demands: x = tan(t) at pi/2, x = 1/(t - 1/2). No row comes from the other side.
+pole() { # NAME CONSTRAINT
+  cat >"$TMP/$1.lag" <<END
+model $1
+coord x [m], y [m]
+param m = 1 [kg] > 0, a = 1 [m], T = 1 [s]
+kinetic = m/2*(x'^2 + y'^2)
+constraint drive: $2
+scene s { span 3; output x, y every 0.1 }
+END
+}
+pole tangent 'x = a*tan(t/T)'
+pole quotient 'x*(t/T - 1/2) = a'
+before() { # NAME METHOD TIME: the run fails, and has written all rows before that time, and none after it
+  status=0
+  "$LAGC" run "$TMP/$1.lag" --method "$2" -o "$TMP/rows.csv" >/dev/null 2>&1 || status=$?
+  echo "$status $(tail -n 1 "$TMP/rows.csv" | awk -F, -v t="$3" '{ print ($1 < t && $1 > t - 0.11) }')"
+}
+for method in dop853 rk45 radau rk4; do
+  is "$method does not go over the pole of a tangent" '3 1' "$(before tangent $method 1.5707963)"
+  is "$method does not go over the pole of a quotient" '3 1' "$(before quotient $method 0.5)"
+done
+
+# ---- a corner: what a bead does there is in no equation, and a run that does not leave the place ends
+cat >"$TMP/corner.lag" <<'END'
+model corner
+coord x [m], y [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2]
+kinetic = m/2*(x'^2 + y'^2)
+potential = m*g*y
+constraint wedge: y = abs(x)
+scene s { start x = 1, y = 1; span 3; output x, y every 0.1 }
+END
+check "lagc check warns of a corner" says 0 'the constraint `wedge` has a corner here' "$LAGC" check "$TMP/corner.lag"
+ends() {
+  timeout 60 "$LAGC" run "$TMP/corner.lag" -o "$TMP/rows.csv" >"$TMP/report" 2>&1
+  [ $? = 3 ] && grep 'FAILED.*steps led on by .*a force or a constraint jumps here' "$TMP/report"
+}
+check "a run that does not leave it ends" ends
+sed 's/abs(x)/x^2\/1 [m]/' "$TMP/corner.lag" >"$TMP/round.lag"
+check "of a round one nothing is said" test -z "$("$LAGC" check "$TMP/round.lag" 2>&1 | grep corner)"
+tap_end

@@ -1,0 +1,49 @@
+#!/bin/sh
+# Derived parameters: what depends on parameters alone, a constant mass matrix among it, is computed when they change. Prints TAP.
+cd "$(dirname "$0")/../.." || exit 2
+: "${LAGC:=build/lagc}" "${CC:=cc}" "${INC:=runtime/include}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+. tests/tap.sh
+model=tests/exec/models/windings.lag elements=tests/exec/models/elements.lag
+
+# --- one pass over M, not one a call. 2: Cramer's rule; up to 12: a product in straight-line code; beyond: by loops
+emitted() { "$LAGC" emit "$model" -DN="$1" -o "$TMP/windings.c"; }
+solves() { # N OPTIONS...: the equations hold, for parameters that change from turn to turn
+  emitted "$1" || return 1
+  shift
+  # shellcheck disable=SC2086 # lists of words
+  $CC -std=gnu11 -Wall -Wextra -Wno-psabi -Werror -O1 ${SAN:-} -DSCENE=windings_ring "$@" -I"$INC" tests/exec/derived.c "$TMP/windings.c" -lm -o "$TMP/derived" && "$TMP/derived"
+}
+for n in 2 3 12 13 40; do
+  check "$n windings: M a = f, and not with what was derived from other parameters" solves $n
+  check "$n windings: so over 4 lanes" solves $n -DLAG_LANES=4
+done
+# three diagonals: factors that a loop makes once, and that loops take
+three() {
+  n=$1
+  shift
+  # shellcheck disable=SC2086 # lists of words
+  "$LAGC" emit $elements -DN=$n -o "$TMP/elements.c" &&
+    $CC -std=gnu11 -Wall -Wextra -Wno-psabi -Werror -O1 ${SAN:-} -DELEMENTS -DSCENE=elements_pluck "$@" -I"$INC" tests/exec/derived.c "$TMP/elements.c" -lm -o "$TMP/derived" && "$TMP/derived"
+}
+for n in 2 20 2000; do
+  check "$n elements: M a = f" three $n
+  check "$n elements: so over 4 lanes" three $n -DLAG_LANES=4
+done
+check "2000 elements: one division a call is left, and the text is short" eval 'grep "Accelerations: .* 1 division\." "$TMP/elements.c" && [ "$(wc -c <"$TMP/elements.c")" -lt 25000 ]'
+divides() { emitted "$1" && sed -n '/^static int accel/,/^}/p' "$TMP/windings.c" | grep -n '/[^*/]\|lag_solve'; }
+for n in 3 12 40; do empty "$n windings: no division a call, nor a factorization" "$(divides $n | grep -v '^[0-9]*: *\(/\*\|[^/]*/\*[^/]*\*/$\)')"; done
+emitted 12
+operations=$(sed -n 's/.*Accelerations: \([0-9]*\) operations.*/\1/p' "$TMP/windings.c" | head -n 1)
+check "12 windings: $operations operations, at most 2 n^2 + 2 n" test "$operations" -le 312
+
+# --- the user's values reach what is derived: by name, by text and by --fix a run is the same
+changed() { sed 's/k = 0\.4/k = 0.3/' "$model" >"$TMP/changed.lag" && "$LAGC" run "$TMP/changed.lag" -DN=5; }
+end_of() { sed -n '/^  x/p'; }
+is "k=0.3 at the command line is k = 0.3 in the text" "$(changed | end_of)" "$("$LAGC" run "$model" -DN=5 k=0.3 | end_of)"
+check "and not what k = 0.4 gives" test "$(changed | end_of)" != "$("$LAGC" run "$model" -DN=5 | end_of)"
+
+# --- eigenvalues 1 - k/2, ...: with k = 2 the matrix of three is singular
+singular() { "$LAGC" run "$model" -DN=3 k=2 >"$TMP/report"; [ $? = 3 ] && grep -qF 'the mass matrix is singular' "$TMP/report"; }
+check "a singular matrix is said" singular
+tap_end
