@@ -70,6 +70,7 @@ typedef struct {
   ExprGraph *g;
   FirstOrder first;
   uint32_t n;            /* number of coordinates with accelerations */
+  Expr summed;           /* L with long sums of velocities as definitions: what is differentiated (mech/sums.h) */
   const Expr *p;         /* [n] momenta, as differentiated */
   const Expr *dLdq;      /* [n] as differentiated */
   const Expr *momenta;   /* [n] the same, as a person would write them */

@@ -6,6 +6,7 @@
 #include "mech/definite.h"
 #include "mech/lift.h"
 #include "mech/order.h"
+#include "mech/sums.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
 #include "sym/simplify.h"
@@ -65,7 +66,7 @@ static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
 }
 
 /* L, and what makes the mass matrix regular where rotations leave a direction without inertia. */
-static Expr lagrange_regular(const Eqns *e) { return e->m->across ? expr_add(e->g, e->m->lagrangian, e->m->across) : e->m->lagrangian; }
+static Expr lagrange_regular(const Eqns *e) { return e->m->across ? expr_add(e->g, e->summed, e->m->across) : e->summed; }
 
 /* The forces as differentiated, and the momenta. */
 static Expr *differentiate(Eqns *e) {
@@ -206,6 +207,7 @@ static int is_definite(Eqns *e, const LinearSystem *s) {
 /* M and f, or M as the product that the text of L is, which needs pivots that are known to be positive. */
 void lagrange_momenta_and_forces(Eqns *e) {
   uint64_t dense_ops, lifted_ops;
+  e->summed = sums_named(e->g, e->m->lagrangian, e->n);
   const Expr *f = differentiate(e);
   LinearSystem lifted = lift_system(e);
   lifted.f = f;

@@ -22,7 +22,7 @@ typedef struct {
  * what holds no velocity. */
 static void cut_definitions(Lift *l) {
   const Eqns *e = l->e;
-  Expr lagrangian = e->m->lagrangian;
+  Expr lagrangian = e->summed;
   ExprList all = expr_topo(l->g, &lagrangian, 1);
   VEC(Expr) defs = {0};
   for (uint32_t i = 0; i < all.n; i++)
