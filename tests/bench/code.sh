@@ -106,7 +106,7 @@ if grep -q ' avx512dq ' /proc/cpuinfo 2>/dev/null; then
   lane=$(for _ in 1 2 3; do "$TMP/lanes" | sed 's/.*accelerations \([0-9.]*\).*/\1/'; done | sort -n | head -n 1)
   eighth=$(of best times | awk '{ printf "%.2f", $1/8 }')
   row "double pendulum, 8 lanes, time a lane" '<= 2.8 ns, or 1.0 of best/8' "best/8 $eighth ns" "$lane ns" "$(over "$lane" "$eighth")" \
-    "$(at_most "$lane" "$(echo "$eighth" | awk '{ print $1 > 2.8 ? $1 : 2.8 }')")"
+    "$(at_most "$lane" "$(echo "$eighth" | awk '{ print ($1 > 2.8 ? $1 : 2.8) }')")"
 else
   row "double pendulum, 8 lanes, time a lane" '<= 2.8 ns, or 1.0 of best/8' '' '-' '' 'not measured: no AVX-512'
 fi
