@@ -54,6 +54,18 @@ void arena_free(Arena *a) {
   a->config.dealloc(a->config.user, a);
 }
 
+ArenaMark arena_mark(const Arena *a) { return (ArenaMark){a->chunks, a->chunks ? a->chunks->used : 0, a->used}; }
+
+void arena_forget(Arena *a, ArenaMark since) {
+  while (a->chunks != since.chunk) {
+    Chunk *next = a->chunks->next;
+    a->config.dealloc(a->config.user, a->chunks);
+    a->chunks = next;
+  }
+  if (a->chunks) a->chunks->used = since.in_chunk;
+  a->used = since.used;
+}
+
 jmp_buf *arena_guard(Arena *a, jmp_buf *handler) {
   jmp_buf *before = a->handler;
   a->handler = handler;

@@ -27,6 +27,14 @@ typedef struct {
 Arena *arena_new(const ArenaConfig *config);
 void arena_free(Arena *a);
 
+/* A place in time: arena_forget frees what was allocated since, to which nothing may point any more. For what is tried and not kept. */
+typedef struct {
+  void *chunk;
+  size_t in_chunk, used;
+} ArenaMark;
+ArenaMark arena_mark(const Arena *a);
+void arena_forget(Arena *a, ArenaMark since);
+
 /* n zeroed bytes aligned for any type; never NULL (see above). */
 void *arena_alloc(Arena *a, size_t n);
 

@@ -400,15 +400,15 @@ static Prog *scattered(Prog *p) {
   for (size_t k = 0; k < sizeof tried / sizeof *tried; k++) {
     int tables;
     if (tried[k] & CUT_LEAVES && most > p->ins.n - p->ins.n / 8) break;
+    ArenaMark before = arena_mark(p->arena);
     Search s = search(p, tried[k]);
     uint32_t inside = taken_in(&s, &tables);
-    if (inside + p->ins.n / 16 <= most) continue;
-    if (inside > most) most = inside;
-    Prog *now = with_nests(&s);
-    uint32_t n = length(now);
-    if (n >= least) continue;
-    least = n;
-    best = now;
+    int enough = inside + p->ins.n / 16 > most;
+    if (enough && inside > most) most = inside;
+    Prog *now = enough ? with_nests(&s) : NULL;
+    uint32_t n = now ? length(now) : least;
+    if (n < least) best = now, least = n;
+    else arena_forget(p->arena, before);
   }
   return best;
 }
@@ -420,8 +420,10 @@ Prog *prog_nest(Prog *p, uint32_t from) {
   uint32_t most = p->ins.n / 2; /* else the rest is what counts */
   for (size_t k = 0; k < sizeof tried / sizeof *tried && most < p->ins.n - p->ins.n / 8; k++) {
     int tables;
+    ArenaMark before = arena_mark(p->arena);
     Search s = search(p, tried[k]);
     uint32_t inside = taken_in(&s, &tables);
+    if (inside <= most || tables) arena_forget(p->arena, before);
     if (inside <= most) continue;
     if (tables) return scattered(p);
     most = inside;

@@ -247,6 +247,30 @@ static void test_arena(void **state) {
   arena_free(NULL);
 }
 
+/* What is forgotten is given back, in chunks of its own and in one that goes on; what was there before stays, and what comes after is zero. */
+static void test_forget(void **state) {
+  (void)state;
+  ArenaConfig config = {.chunk = 64};
+  Arena *a = arena_new(&config);
+  ArenaMark none = arena_mark(a);
+  char *kept = arena_strdup(a, "kept");
+  size_t used = arena_used(a);
+  for (size_t size = 1; size < 1000; size *= 3) {
+    ArenaMark before = arena_mark(a);
+    memset(arena_alloc(a, 16), 1, 16);
+    memset(arena_alloc(a, size), 1, size);
+    arena_forget(a, before);
+    assert_int_equal(arena_used(a), used);
+    char *fresh = arena_alloc(a, 16);
+    for (int i = 0; i < 16; i++) assert_int_equal(fresh[i], 0);
+    arena_forget(a, before);
+    assert_string_equal(kept, "kept");
+  }
+  arena_forget(a, none);
+  assert_int_equal(arena_used(a), 0);
+  arena_free(a);
+}
+
 static void test_intern(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
@@ -413,7 +437,7 @@ int main(void) {
     cmocka_unit_test(test_gcd),          cmocka_unit_test(test_arena),          cmocka_unit_test(test_intern),
     cmocka_unit_test(test_strbuf),       cmocka_unit_test(test_diag_layout),    cmocka_unit_test(test_diag_utf8),
     cmocka_unit_test(test_diag_long_line), cmocka_unit_test(test_diag_edges),   cmocka_unit_test(test_diag_many),
-    cmocka_unit_test(test_num_inexact),  cmocka_unit_test(test_suggest),
+    cmocka_unit_test(test_forget),       cmocka_unit_test(test_num_inexact),  cmocka_unit_test(test_suggest),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
