@@ -48,7 +48,7 @@ static unsigned wants_of_choice(const Eqns *e, const Options *o) {
   double tol = o->tol ? strtod(o->tol, NULL) : e->m->scene.tolerance;
   int runs = command_simulates(o->command) || o->command == CMD_BUILD;
   if (!runs || e->m->scene.method || o->method || e->n + e->m->states.n > LONG) return 0;
-  return (tol > 0 && tol < below_taylor ? WANT_TAYLOR : 0u) | (e->conserves_energy ? 0u : WANT_LINEAR);
+  return (tol > 0 && tol < below_taylor ? WANT_TAYLOR : 0u) | (e->conserves_energy && !e->m->states.n ? 0u : WANT_LINEAR);
 }
 
 unsigned wants_of(const Eqns *e, const Options *o) {

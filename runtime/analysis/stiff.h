@@ -6,7 +6,7 @@
 #include "lag.h"
 
 typedef struct Stiffness {
-  int looked, limited; /* at so many steps; at so many of them h*rho was past the bound of stability */
+  int looked, limited; /* at so many steps; at so many of them h*rho was near the bound of stability, or past it */
 } Stiffness;
 
 /* Runs `trial`, of an explicit method, towards `until` for at most 600 steps, and compares each with the method's `bound` of

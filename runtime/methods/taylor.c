@@ -138,7 +138,7 @@ static int init(void *work, lag_problem *pb, const double *opt)
   Taylor *w = work;
 
   w->bits = aim(pb);
-  w->order = fmin(pb->model->taylor->order, opt[OPT_ORDER] > 0 ? ceil(opt[OPT_ORDER]) : best_order(pb));
+  w->order = fmin(pb->model->taylor->order, opt[OPT_ORDER] > 0 ? opt[OPT_ORDER] : best_order(pb));
   for (int i = 0; i < WINDOW; i++) {
     w->per_order[i] = 1 / fmax(w->order - i, 1);
   }
@@ -369,6 +369,11 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
   return lag_tangent_along(dense, work, pb, w->t0, t - w->t0, k, Y, scratch);
 }
 
+static const char *check(const double *opt)
+{
+  return opt[OPT_ORDER] != floor(opt[OPT_ORDER]) ? "order: write a whole number" : NULL;
+}
+
 const lag_method lag_taylor_method = {
     .name = "taylor",
     .order = 20,
@@ -379,6 +384,7 @@ const lag_method lag_taylor_method = {
     .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_TAYLOR,
     .noptions = NOPTIONS,
     .options = options,
+    .check = check,
     .work_size = work_size,
     .init = init,
     .step = step,

@@ -33,6 +33,28 @@ check "stiff: radau" takes radau "$vdp" --tol 1e-9
 published() { awk '$1 == "x" { x = $2 } $1 == "y" { y = $2 } END { dx = x - 1.706167732170469; dy = y + 0.8928097010248e-3
   if (dx*dx < 1e-12 && dy*dy < 1e-18) exit 0; print x, y; exit 1 }' "$TMP/out"; }
 check "with the published values at t = 2000" published
+cat >"$TMP/spring.lag" <<'EOF'
+model spring "a stiff damped spring joins two masses that swing together; rates of 501 and 399499 beside 0.7"
+coord x, y
+param k = 1e8, c = 2e5
+lagrangian = x'^2/2 + y'^2/2 - k/2*(x - y)^2 - y^2/2
+dissipation = c/2*(x' - y')^2
+scene run { start x = 1, y = 1.0001; span 10 [s] }
+EOF
+cat >"$TMP/sensor.lag" <<'EOF'
+model sensor "a pendulum, and a sensor that follows it within a microsecond; the pendulum alone conserves its energy"
+coord th
+state z
+lagrangian = th'^2/2 + cos(th)
+flow z' = -1e6*(z - sin(th))
+scene run { start th = 1, z = 0.84; span 10 [s] }
+EOF
+for tol in 1e-3 1e-5 1e-7; do
+  check "stiff at a tolerance of $tol: radau, where h*rho goes up and down about the bound of stability" takes radau "$TMP/spring.lag" --tol $tol
+  check "a stiff state beside coordinates that conserve energy, at $tol: radau" takes radau "$TMP/sensor.lag" --tol $tol
+done
+check "not stiff at rough tolerances: rk45" takes rk45 models/pendulum.lag --tol 1e-2
+check "nor with friction" takes rk45 models/damped_oscillator.lag --tol 1e-2
 check "not stiff: dop853" takes dop853 "$vdp" mu=1 --until 20
 check "a rough tolerance: rk45" takes rk45 "$vdp" mu=1 --until 20 --tol 1e-4
 check "a tolerance below 1e-9: taylor" takes taylor "$vdp" mu=1 --until 20 --tol 1e-11

@@ -148,7 +148,16 @@ failed() { # WORDS ARGS...
   run "$@"
   [ $? = 3 ] && grep -q -e "$words" "$TMP/out" "$TMP/err" || { cat "$TMP/out" "$TMP/err"; return 1; }
 }
-check "if, abs, sign, min, max are refused, and dop853 is named" refused "without if, abs, sign, min and max; dop853" tests/exec/models/motor.lag --method taylor
+printf '0,0\n1,1\n2,0\n' >"$TMP/gust.csv"
+cat >"$TMP/table.lag" <<'EOF'
+model table
+coord x
+input u = "gust.csv"
+lagrangian = x'^2/2
+force x = u
+scene run { span 2 [s] }
+EOF
+check "if, abs, sign, min, max are refused, and dop853 is named" refused "without if, abs, sign, min, max and tables; dop853" tests/exec/models/motor.lag --method taylor
 without() {
   "$LAGC" build models/pendulum.lag --method dop853 -o "$TMP/sim" && ! "$TMP/sim" --method taylor 2>"$TMP/err" && grep -q 'lagc run MODEL --method taylor' "$TMP/err" &&
     "$LAGC" build models/pendulum.lag --method taylor -o "$TMP/sim" && "$TMP/sim" --method taylor --quiet --until 1
@@ -156,6 +165,8 @@ without() {
 check "a simulator that was built without series says how to build it" without
 check "a collision ends the run: when, and why" failed 't = 1.1107.*step became too small' $here/fall.lag --method taylor
 check "an order that is too high" refused "order = 99 is outside" models/pendulum.lag --method "taylor(order=99)"
+check "an order that is no whole number" refused "order: write a whole number" models/pendulum.lag --method "taylor(order=2.5)"
+check "a table: the message says that tables are the reason" refused "and tables" "$TMP/table.lag" --method taylor
 final() { sed -n "s/^  $1  *\([^ ]*\).*/\1/p" "$TMP/out"; }
 near() { awk -v x="$1" -v y="$2" 'BEGIN { d = x - y; exit !(d < 1e-14 && d > -1e-14) }'; }
 inputs() { # x' = 3 sin(2 t), and x' = 2 where a constant takes the place of the formula
