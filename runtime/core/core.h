@@ -26,6 +26,7 @@ typedef struct Run {
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
   double rank, beside;   /* constraints at the start that do not follow from others; where that is singular: a hundredth beside it */
   double apart, since_apart, unlooked; /* how independent constraints were when that was last asked, steps since then, and until then */
+  double chatter, chatter_since; /* impacts at once after another one that left a gap open, and when these began */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
 } Run;
 

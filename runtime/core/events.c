@@ -44,13 +44,16 @@ int lag_events_arm(lag_sim *s)
   return rc ? rc : lag_contact_arm(s, s->g1);
 }
 
+/* An interval of this part of the run so far is none. */
+static const double at_once = 1e-7;
+
 /* An event that repeats faster and faster (a ball coming to rest) would never let time pass. Others may fire between. dt: since
  * it fired last; few: so many intervals, each shorter than the one before, are enough (a block that rocks loses most of its speed at once). */
 static int is_zeno(lag_sim *s, int k, double dt, int few)
 {
   s->shorter[k] = dt < s->interval[k] ? s->shorter[k] + 1 : 0;
   s->interval[k] = dt;
-  return s->shorter[k] >= few && dt <= 1e-7 * fabs(s->run->t - s->scene->t0);
+  return s->shorter[k] >= few && dt <= at_once * fabs(s->run->t - s->scene->t0);
 }
 
 static int fail_zeno(lag_sim *s, int k)
@@ -58,6 +61,28 @@ static int fail_zeno(lag_sim *s, int k)
   return lag_fail(s, LAG_EZENO,
                   "event %s repeats in ever shorter intervals: %.3g s at t = %.17g s. Let it stop the run, or make it a contact, "
                   "which comes to rest", s->scene->model->ev[k].name, s->interval[k], s->run->t);
+}
+
+/* Impacts of event k, dt since it fired last, that follow each other at once and leave contact c open, since nothing presses there. Some happen;
+ * but where a floor falls away, and the method's path, of first order, is below it at once, there is no end of them. */
+static int fail_chatter(lag_sim *s, int k, const lag_contact *c, double dt)
+{
+  const int most = 1000;
+  const double pace = 1e-5; /* of the run so far */
+  Run *r = s->run;
+
+  if (lag_contact_is_closed(s, c) || !(dt <= at_once * fabs(r->t - s->scene->t0))) {
+    return LAG_OK;
+  }
+  if (!(fabs(r->t - r->chatter_since) <= pace * fabs(r->t - s->scene->t0))) {
+    r->chatter_since = r->t;
+    r->chatter = 0;
+  }
+  if (++r->chatter < most) {
+    return LAG_OK;
+  }
+  return lag_fail(s, LAG_EZENO, "contact %s strikes at t = %.17g s again and again, and neither closes nor opens: the path of %s between its steps is too "
+                  "rough there; take verlet or dop853", s->scene->model->ev[k].name, r->t, s->method->name);
 }
 
 /* The action of event k on `now`, by way of yb. changed: the state is another one. */
@@ -103,6 +128,9 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
     char who[128];
     snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
     rc = lag_contact_settle(s, s->yb, contact ? NULL : who, contact ? k : -1, ends);
+  }
+  if (rc == 0 && contact) {
+    rc = fail_chatter(s, k, contact, since);
   }
   if (rc) {
     return rc;

@@ -138,10 +138,41 @@ static void solve(double *B, double *x, double *r, int n, double least)
   }
 }
 
+/* b->turned also has what a change of the block's end does to the coefficients of velocities there: these vanish at the origin for x*y' = y*x', and a
+ * block over that place, where they change their sign, is found by nothing less than Newton's method. */
+static int turn_rates(const Arrays *a, lag_problem *pb, double t1, double h)
+{
+  const Block *b = &a->block;
+  const lag_constraints *of = pb->model->constraints;
+  const double small = 1e-3; /* of the way of the block; what is quadratic in it cancels */
+  int nq = pb->nq, n = of->n, rc = 0;
+
+  memcpy(b->d, b->to, (size_t)nq * sizeof(double));
+  for (int k = 0; k < n; k++) {
+    const double *change = b->change + k * nq;
+    double part = HUGE_VAL;
+    for (int i = 0; i < nq; i++) {
+      double way = fabs(h) * lag_size_like(pb, b->to + nq, i);
+      part = change[i] != 0.0 && way > 0 ? fmin(part, small * way / fabs(change[i])) : part;
+    }
+    for (int side = 1; side >= -1 && part < HUGE_VAL && rc == 0; side -= 2) {
+      for (int i = 0; i < nq; i++) {
+        b->to[i] = b->d[i] + side * part * change[i];
+      }
+      rc = lag_residuals(pb, t1, b->to, b->c, b->r);
+      for (int j = of->nholonomic; j < n && rc == 0; j++) {
+        b->turned[j * n + k] += h / 2 * side * b->r[j] / (2 * part);
+      }
+    }
+  }
+  memcpy(b->to, b->d, (size_t)nq * sizeof(double));
+  return rc;
+}
+
 /* A change g of the constraints where the block begins is another one where it ends, and near a singular position, as of a linkage
  * that is stretched, even of the other sign. g := what has to be changed at the beginning for g at the end, at t1, where it is not more than
  * 1/least times that; b->change is known. */
-static int steer(const Arrays *a, lag_problem *pb, double t1, double least)
+static int steer(const Arrays *a, lag_problem *pb, double t1, double h, double least)
 {
   const Block *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
@@ -159,6 +190,7 @@ static int steer(const Arrays *a, lag_problem *pb, double t1, double least)
   for (int k = of->nholonomic; k < n; k++) {
     b->turned[k * n + k] += 0.5;
   }
+  rc = rc == 0 && of->nholonomic < n ? turn_rates(a, pb, t1, h) : rc;
   if (rc == 0) {
     memcpy(b->c, b->g, (size_t)n * sizeof(double));
     solve(b->turned, b->c, b->r, n, least);
@@ -230,7 +262,7 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
     known = 1;
     rc = off(a, pb, t + at * dt, t1, h, y);
     if (rc == 0 && steered) {
-      rc = steer(a, pb, t1, least);
+      rc = steer(a, pb, t1, h, least);
     }
     rc = rc ? rc : lag_least_change(pb, t + at * dt, b->from, holonomic, b->g, b->d, b->force);
     if (rc) {

@@ -100,4 +100,22 @@ check "what is left of its energy" near "$(awk -F, 'END { printf "%.17g", $7 }' 
 check "what is far away is not touched" near "$(awk -F, 'END { print $6 }' "$TMP/out.csv")" 1 1e-12
 on_circle() { awk -F, 'NR > 1 { d = $2^2 + $3^2 - 1; if (d > 1e-14 || -d > 1e-14) exit 1 }' "$TMP/out.csv"; }
 check "on the circle throughout" on_circle
+# A floor that shakes: once it falls faster than the ball, the path of a method of order 1 is below it at once, in each step. It went on for minutes, by
+# microseconds; it ends with the reason. Others leave the floor, at which sin(w t) = g/(A w^2).
+model shaker <<'EOF'
+model shaker "A ball on a floor that oscillates"
+coord y [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0, A = 0.2 [m], w = 8 [rad/s]
+lagrangian = m/2*y'^2 - m*g*y
+contact floor: y - A*sin(w*t) >= 0 [m], restitution = 0.5
+scene s { start y = 1; span 2 }
+EOF
+shaken() { timeout 60 "$LAGC" run "$TMP/shaker.lag" --method "$@" >"$TMP/out" 2>&1; }
+without_end() { shaken symplectic_euler --step 2e-3; [ $? = 3 ] && grep -q 'FAILED: contact floor strikes at t = 0.89[0-9]* s again and again.*take verlet or dop853' "$TMP/out"; }
+check "a contact that strikes without end ends the run" without_end
+left() { sed -n 's/^event floor opens:.*t = \([^ ]*\) s.*/\1/p' "$TMP/out"; }
+for method in dop853 verlet; do
+  check "a floor that shakes: $method" shaken $method
+  check "left where it falls faster" near "$(left)" "$(awk 'BEGIN { x = 9.81/12.8; pi = atan2(0, -1); printf "%.17g", (4*pi + atan2(x, sqrt(1 - x*x)))/8 }')" 1e-9
+done
 tap_end
