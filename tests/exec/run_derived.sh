@@ -57,4 +57,12 @@ scene s { start x = 1; span 1 }
 END
 clean() { "$LAGC" emit "$TMP/signs.lag" --fix all -o "$TMP/signs.c" && $CC -std=c99 -Wall -Wextra -Wpedantic -Werror -I"$INC" -c "$TMP/signs.c" -o "$TMP/signs.o"; }
 check "negative forces: no warning of what is not used" clean
+# --- designators in the order of lag_model.h, as C++ wants them
+if command -v "${CXX:-c++}" >/dev/null; then
+  in_order() { "$LAGC" emit "$1" --method variational --with linear $2 -o "$TMP/order.cpp" && "${CXX:-c++}" -std=c++20 -w -I"$INC" -c "$TMP/order.cpp" -o "$TMP/order.o"; }
+  check "a model with derived parameters is C++, too" in_order "$model"
+  check "so is one without, whose parameters are numbers" in_order "$TMP/signs.lag" '--fix all'
+else
+  skip "no C++ compiler"
+fi
 tap_end
