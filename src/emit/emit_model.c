@@ -396,20 +396,21 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   sb_printf(out, "  .nq = %u, .nz = %u, .np = %u, .nu = %u, .nev = %u, .nw = %u,\n", u->q.n, u->z.n, u->p.n, u->u.n, u->events.n, work_size(u));
   sb_printf(out, "  .q = %s, .z = %s, .p = %s, .u = %s, .ev = %s,\n", or_null(u->q.n, "q_table"), or_null(u->z.n, "z_table"),
             or_null(u->p.n, "p_table"), or_null(u->u.n, "u_table"), or_null(u->events.n, "ev_table"));
-  if (u->inputs->tables.n) sb_printf(out, "  .ntables = %u, .tables = curves,\n", u->inputs->tables.n);
+  if (u->nderived) sb_printf(out, "  .nderived = %u, .derive = derive,\n", u->nderived);
   sb_printf(out, "  .inputs = %s, .accel = accel, .energy = %s,\n  .events = %s, .act = %s,\n", or_null(u->u.n, "inputs"),
             u->energy ? "energy" : "NULL", or_null(u->events.n, "events"), or_null(u->events.n, "act"));
+  if (u->inputs->tables.n) sb_printf(out, "  .ntables = %u, .tables = curves,\n", u->inputs->tables.n);
+  if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
+  if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
+  if (u->charges.n) sb_puts(out, "  .charges = &charges,\n");
   if (u->variation)
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
-  if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
-  if (u->charges.n) sb_puts(out, "  .charges = &charges,\n");
-  if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (u->linear) sb_puts(out, "  .linear = &linear,\n");
-  if (u->nderived) sb_printf(out, "  .nderived = %u, .derive = derive,\n", u->nderived);
+  sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n");
   if (u->fixed[0]) sb_printf(out, "  .fixed = %s,\n", c_string(u->arena, u->fixed));
-  sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n};\n");
+  sb_puts(out, "};\n");
 }
 
 static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
@@ -475,11 +476,12 @@ static void emit_scene(const File *f, uint32_t index) {
   sb_printf(out, "  .method = %s, .noptions = %u, .options = %s,\n", s->method ? c_string(u->arena, s->method) : "NULL", s->options.n,
             list_name(u, s->options.n, "options", id));
   sb_printf(out, "  .tolerance = %s,\n", ctable_number(u->arena, s->tolerance, NULL));
-  sb_printf(out, "  .nout = %u, .outputs = %s, .every = %s, .observe = observe_%s,\n", s->outputs.n, list_name(u, s->outputs.n, "outputs", id),
-            ctable_number(u->arena, s->every, NULL), id);
+  sb_printf(out, "  .nout = %u, .outputs = %s,\n", s->outputs.n, list_name(u, s->outputs.n, "outputs", id));
   if (has_forces(s)) sb_printf(out, "  .forces = forces_%s,\n", id);
+  sb_printf(out, "  .every = %s, .observe = observe_%s,\n", ctable_number(u->arena, s->every, NULL), id);
+  sb_printf(out, "  .nmonitors = %u, .monitors = %s,\n", s->monitors.n, list_name(u, s->monitors.n, "monitors", id));
   if (s->exact_of.n) sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
-  sb_printf(out, "  .nmonitors = %u, .monitors = %s,\n};\n", s->monitors.n, list_name(u, s->monitors.n, "monitors", id));
+  sb_puts(out, "};\n");
 }
 
 static void emit_head(const IrUnit *u, StrBuf *out) {

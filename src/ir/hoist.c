@@ -209,7 +209,7 @@ static Prog *taken_from(Hoist *h, const Prog *p) {
 
 static void hoist_from(Hoist *h, const Prog **p) {
   Prog *left = *p ? taken_from(h, *p) : NULL;
-  if (left) *p = left;
+  if (left) *p = prog_tidy(left); /* without signs that went into products with an inverse */
 }
 
 void unit_hoist(IrUnit *u) {

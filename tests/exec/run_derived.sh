@@ -46,4 +46,23 @@ check "and not what k = 0.4 gives" test "$(changed | end_of)" != "$("$LAGC" run 
 # --- eigenvalues 1 - k/2, ...: with k = 2 the matrix of three is singular
 singular() { "$LAGC" run "$model" -DN=3 k=2 >"$TMP/report"; [ $? = 3 ] && grep -qF 'the mass matrix is singular' "$TMP/report"; }
 check "a singular matrix is said" singular
+# --- signs of forces go into the products with the inverse, and nothing that is not used is left of them
+cat >"$TMP/signs.lag" <<'END'
+model signs "Forces that are negative sums, a mass matrix of numbers"
+param m = 2, c = 1/2
+coord x[3]
+kinetic = m/2*(x[1]'^2 + x[2]'^2 + x[3]'^2) + c*(x[1]'*x[2]' + x[2]'*x[3]')
+potential = x[1]^2*x[2] + x[2]^2*x[3] + x[3]^2*x[1]
+scene s { start x = 1; span 1 }
+END
+clean() { "$LAGC" emit "$TMP/signs.lag" --fix all -o "$TMP/signs.c" && $CC -std=c99 -Wall -Wextra -Wpedantic -Werror -I"$INC" -c "$TMP/signs.c" -o "$TMP/signs.o"; }
+check "negative forces: no warning of what is not used" clean
+# --- designators in the order of lag_model.h, as C++ wants them
+if command -v "${CXX:-c++}" >/dev/null; then
+  in_order() { "$LAGC" emit "$1" --method variational --with linear $2 -o "$TMP/order.cpp" && "${CXX:-c++}" -std=c++20 -w -I"$INC" -c "$TMP/order.cpp" -o "$TMP/order.o"; }
+  check "a model with derived parameters is C++, too" in_order "$model"
+  check "so is one without, whose parameters are numbers" in_order "$TMP/signs.lag" '--fix all'
+else
+  skip "no C++ compiler"
+fi
 tap_end
