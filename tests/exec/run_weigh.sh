@@ -87,10 +87,10 @@ most=$(awk 'BEGIN { for (k = 1; k <= 16; k++) { t = 1.25*k; x = cos(t); v = sin(
   a = A/X; b = B/V; a = a < 0 ? -a : a; b = b < 0 ? -b : b; printf "%.15g", 5e-7*(a > b ? a : b) }')
 near "difference: c t/2" 1e-10 "$most" "$(of friction difference)"
 
-# ---- operations add up: those of each effect are those of the text without it, by `lagc derive`
+# ---- operations add up: those of each effect are those of a call of the text without it, as the head of emitted C has them
 uses() { # MODEL SCENE EFFECTS: operations of the scene when it uses these
   sed "/^scene $2 /,/^}/s/^  use .*/  use $3/" "$1" >"$dir/with.lag"
-  "$LAGC" derive "$dir/with.lag" "$2" --ops | cut -d' ' -f1
+  "$LAGC" emit "$dir/with.lag" "$2" -o - | sed -n 's/^ \* Accelerations: \([0-9]*\) operations.*/\1/p'
 }
 adds_up() { # MODEL SCENE EFFECT...
   model=$1 scene=$2
@@ -103,7 +103,7 @@ adds_up() { # MODEL SCENE EFFECT...
   for e; do
     rest=$(for x; do [ "$x" = "$e" ] || echo "$x"; done | paste -sd, -)
     direct=$(($(whole operations) - $(uses "$model" "$scene" "$rest")))
-    echo "$e: $(of "$e" operations), by derive $direct"
+    echo "$e: $(of "$e" operations), without it $direct"
     [ "$(of "$e" operations)" = "$direct" ] || return 1
     sum=$((sum + direct))
   done
