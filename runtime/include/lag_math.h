@@ -133,12 +133,12 @@ LAG_LANES_2(pow) LAG_LANES_2(atan2) LAG_LANES_2(hypot)
 #define LAG_ANY(c) lag_lanes_any(c)
 /* A lane with a singular matrix stops no other: it has no numbers, and its bit in the status, which is negative then. */
 #if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
-#define LAG_PIVOTS int singular = 0
+#define LAG_PIVOTS int singular __attribute__((unused)) = 0
 #define LAG_PIVOT(c) singular |= lag_lanes_bits(~(c))
 #define LAG_POSITIVE(d) singular |= (unsigned char)__builtin_ia32_cmppd512_mask(d, LAG_C(0.0), 26 /* not greater, or none */, (char)-1, 4)
 #define LAG_PIVOTS_STATUS -singular
 #else
-#define LAG_PIVOTS LAG_MASK singular = {0}
+#define LAG_PIVOTS LAG_MASK singular __attribute__((unused)) = {0}
 #define LAG_PIVOT(c) singular |= ~(c)
 #define LAG_POSITIVE(d) LAG_PIVOT((d) > LAG_C(0.0))
 #define LAG_PIVOTS_STATUS -lag_lanes_bits(singular)
