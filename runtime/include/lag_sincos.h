@@ -286,13 +286,25 @@ typedef unsigned long long lag_two_words_there __attribute__((vector_size(16), a
 #define LAG_TWO_K(name) (*(const lag_two_there *)table->name)
 #define LAG_TWO_WORDS(name) (*(const lag_two_words_there *)table->name)
 
+/* The upper of two. Compilers take it by movhlps where there is no better instruction, which waits for what its target held before: calls
+ * one after the other would wait for each other. */
+LAG_INLINE lag_word lag_two_upper(lag_two_words x) {
+#if defined(__SSE4_1__)
+  return x[1];
+#else
+  lag_two_words upper;
+  __asm__("pshufd $0xee, %1, %0" : "=x"(upper) : "x"(x));
+  return upper[0];
+#endif
+}
+
 /* LAG_SINCOS_FAR of either. */
 LAG_INLINE int lag_two_far(const struct lag_sincos_table *table, lag_two_words sum) {
   const lag_two_words off = sum - LAG_TWO_WORDS(off);
 #if defined(__SSE4_1__)
   return !__builtin_ia32_ptestz128((lag_two_integers)off, (lag_two_integers)LAG_TWO_WORDS(high));
 #else
-  return LAG_SINCOS_FAR(off[0] | off[1]);
+  return LAG_SINCOS_FAR(off[0] | lag_two_upper(off));
 #endif
 }
 
@@ -307,7 +319,7 @@ LAG_INLINE void lag_sincos2(double a, double *sin_a, double *cos_a, double b, do
   }
   const lag_two_words row = (lag_two_words)sum << 4 & LAG_TWO_WORDS(row); /* in bytes, as lag_sines in numbers */
   const lag_two_there *const A = (const lag_two_there *)((const char *)table + row[0]);
-  const lag_two_there *const B = (const lag_two_there *)((const char *)table + row[1]);
+  const lag_two_there *const B = (const lag_two_there *)((const char *)table + lag_two_upper(row));
   const lag_two sin_a_row = A[0], sin_b_row = B[0], cos_a_row = A[16], cos_b_row = B[16];
   const lag_two S = {sin_a_row[0], sin_b_row[0]}, S_add = {sin_a_row[1], sin_b_row[1]};
   const lag_two C = {cos_a_row[0], cos_b_row[0]}, C_add = {cos_a_row[1], cos_b_row[1]};

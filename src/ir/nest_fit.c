@@ -41,7 +41,7 @@ static void find_varying(Group *g) {
   g->varies = varies;
 }
 
-static int64_t gcd(int64_t a, int64_t b) {
+int64_t nest_gcd(int64_t a, int64_t b) {
   while (b) {
     int64_t r = a % b;
     a = b;
@@ -55,7 +55,7 @@ static int64_t spacing(const Group *g, const uint32_t *array, uint32_t first) {
   int64_t all = 0;
   for (uint32_t k = 0; k < g->n && all != 1; k++)
     for (uint32_t j = 0; j < g->width; j++)
-      if (array[j] == array[first] && g->varies[j]) all = gcd(all, indices(g, k)[j] - indices(g, k)[first]);
+      if (array[j] == array[first] && g->varies[j]) all = nest_gcd(all, indices(g, k)[j] - indices(g, k)[first]);
   return all;
 }
 

@@ -140,6 +140,9 @@ typedef struct {
  * that is shorter than its text. */
 void nest_fit(const Indices *x, uint32_t *order, uint32_t n, Fits *fits);
 
+/* The greatest common divisor; of 0 and b, |b|. */
+int64_t nest_gcd(int64_t a, int64_t b);
+
 /* One loop over n pieces, or a loop over rows of them, that take their indices from tables. */
 Fit nest_scatter(const Indices *x, const uint32_t *pieces, uint32_t n);
 

@@ -28,15 +28,6 @@ typedef struct {
 
 static int64_t at(const Table *t, uint32_t piece, uint32_t column) { return t->x->columns[(size_t)t->pieces[piece]*t->x->width + column]; }
 
-static int64_t divisor(int64_t a, int64_t b) {
-  while (b) {
-    int64_t r = a % b;
-    a = b;
-    b = r;
-  }
-  return a < 0 ? -a : a;
-}
-
 static uint32_t number_of(Table *t, uint32_t *values) {
   for (uint32_t k = 0; k < t->values.n; k++)
     if (memcmp(t->values.at[k], values, t->n * sizeof *values) == 0) return k;
@@ -48,7 +39,7 @@ static void take_column(Table *t, uint32_t k) {
   int64_t least = at(t, 0, k), step = 0;
   for (uint32_t i = 1; i < t->n; i++) {
     int64_t now = at(t, i, k);
-    step = divisor(step, now - at(t, 0, k));
+    step = nest_gcd(step, now - at(t, 0, k));
     if (now < least) least = now;
   }
   t->first[k] = least;
