@@ -25,7 +25,7 @@ static const char *const abi_names[] = {
   "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL", "TAYLOR_UNROLL_4",
   "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
   "taylor_rest", "taylor_squares", "TAYLOR_SQUARES", "taylor_four", "TAYLOR_WIDE", "TAYLOR_INLINE", "taylor_sums_wide", "taylor_squares_wide",
-  "taylor_rest_wide", "taylor_at_wide", "taylor_rest_any", "taylor_at_any",
+  "taylor_rest_wide", "taylor_at_wide", "taylor_part", "taylor_part_wide", "taylor_rest_any", "taylor_at_any",
   "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
   "curves", "LAG_EACH", "LAG_10", "LAG_100", "LAG_1000", "LAG_10000",
   "singular", "lag_sincos", "lag_sincos2", "lag_sincos4", "LAG_SINCOS_2", "LAG_SINCOS_4", "lag_sin", "lag_cos", "lag_lanes", "lag_lanes_mask", "LAG_LANES", "LAG_LIBM", "LAG_OWN", "LAG_FMA",

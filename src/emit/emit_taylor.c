@@ -7,10 +7,11 @@
 enum { LANES = 4 };    /* rows are a multiple of so many numbers */
 enum { CALL = 25 };    /* what a function costs more than another operation */
 enum { INLINE_MAX = 300 }; /* operations of an order that stand in two functions, for pairs and for fours */
+enum { NEAR_MAX = 12 };    /* sums of one kind that are kept at hand from one order to the next: see near_sums */
 enum { LOOP_FROM = 9 }; /* statements that differ in an index only: so many become a loop */
 
 static const char *const arrays[ARR_COUNT] = {
-  "t", "q", "v", "z", "p", "u", [ARR_FREE] = "follows", [ARR_COEF] = "x", [ARR_SUMS] = "s", [ARR_STEP] = "c",
+  "t", "q", "v", "z", "p", "u", [ARR_FREE] = "follows", [ARR_COEF] = "y", [ARR_SUMS] = "s", [ARR_STEP] = "c",
   [ARR_ORDER] = "order", [ARR_PER_ORDER] = "per_order", [ARR_UP] = "up",
 };
 
@@ -33,6 +34,13 @@ static const char *const head =
   "#define TAYLOR_UNROLL\n"
   "#define TAYLOR_UNROLL_4\n"
   "#endif\n";
+
+/* A pair of what stands side by side. */
+static const char *const part = "static TAYLOR_INLINE taylor_pair taylor_part(const taylor_pair *x, int g) { return x[g]; }\n";
+static const char *const wide_part =
+  "TAYLOR_WIDE static TAYLOR_INLINE taylor_pair taylor_part_wide(const taylor_four *x, int g) {\n"
+  "  return g % 2 ? (taylor_pair){x[g/2][2], x[g/2][3]} : (taylor_pair){x[g/2][0], x[g/2][1]};\n"
+  "}\n";
 
 /* Where sums are too few to fill fours, pairs are as fast everywhere. */
 static const char *const wide_head =
@@ -130,6 +138,73 @@ static const char *const squares =
   "  }\n"
   "}\n";
 
+/* The same where sums are few. What the last order has made is at hand, and stands in registers; what the one before it has made
+ * is taken in pairs, as it was stored. Neither then waits for memory, and the sum over all others is ready early. */
+static const char *const near_sums =
+  "\n@static TAYLOR_INLINE void taylor_sums$(int k, const taylor_work *w, const taylor_pair *a, const taylor_pair *b, taylor_pair *s) {\n"
+  "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = TAYLOR_PAIRED*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
+  "  const taylor_pair *const a1 = (const taylor_pair *)w->a[1], *const b1 = (const taylor_pair *)w->b[1];\n"
+  "  const taylor_pair *const a2 = (const taylor_pair *)w->a[2], *const b2 = (const taylor_pair *)w->b[2];\n"
+  "  # far[PARTS] = {0};\n"
+  "  TAYLOR_UNROLL_4\n"
+  "  for (int j = 3; j < k - 2; j++) {\n"
+  "    const # *const aj = (const # *)w->a[j], *const bj = (const # *)w->b[k - j];\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < (int)PARTS; g++) far[g] += aj[g]*bj[g];\n"
+  "  }\n"
+  "  TAYLOR_UNROLL\n"
+  "  for (int g = 0; g < (int)PAIRS; g++) s[g] = taylor_part$(far, g);\n"
+  "  if (k > 4) {\n"
+  "    const taylor_pair *const am = (const taylor_pair *)w->a[k - 2], *const bm = (const taylor_pair *)w->b[k - 2];\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += am[g]*b2[g] + a2[g]*bm[g];\n"
+  "  } else if (k == 4) {\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < (int)PAIRS; g++) s[g] = a2[g]*b2[g];\n"
+  "  }\n"
+  "  if (k > 2) {\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += a[g]*b1[g] + a1[g]*b[g];\n"
+  "  } else if (k == 2) {\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < (int)PAIRS; g++) s[g] = a[g]*b[g];\n"
+  "  }\n"
+  "}\n";
+
+static const char *const near_squares =
+  "\n@static TAYLOR_INLINE void taylor_squares$(int k, const taylor_work *w, const taylor_pair *a, taylor_pair *s) {\n"
+  "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = TAYLOR_SQUARED*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
+  "  const taylor_pair *const a1 = (const taylor_pair *)(w->a[1] + TAYLOR_SQUARES), *const a2 = (const taylor_pair *)(w->a[2] + TAYLOR_SQUARES);\n"
+  "  const LAG_REAL twice = LAG_C(2.0);\n"
+  "  const int half = k/2;\n"
+  "  # far[PARTS] = {0};\n"
+  "  TAYLOR_UNROLL_4\n"
+  "  for (int j = 3; j < k - j; j++) {\n"
+  "    const # *const aj = (const # *)(w->a[j] + TAYLOR_SQUARES), *const bj = (const # *)(w->a[k - j] + TAYLOR_SQUARES);\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < (int)PARTS; g++) far[g] += aj[g]*bj[g];\n"
+  "  }\n"
+  "  TAYLOR_UNROLL\n"
+  "  for (int g = 0; g < (int)PAIRS; g++) s[g] = twice*taylor_part$(far, g);\n"
+  "  if (half > 1 && 2*half == k) {\n"
+  "    const taylor_pair *const m = (const taylor_pair *)(w->a[half] + TAYLOR_SQUARES);\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += m[g]*m[g];\n"
+  "  }\n"
+  "  if (k > 4) {\n"
+  "    const taylor_pair *const am = (const taylor_pair *)(w->a[k - 2] + TAYLOR_SQUARES);\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += twice*(am[g]*a2[g]);\n"
+  "  }\n"
+  "  if (k > 2) {\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += twice*(a[g]*a1[g]);\n"
+  "  } else if (k == 2) {\n"
+  "    TAYLOR_UNROLL\n"
+  "    for (int g = 0; g < (int)PAIRS; g++) s[g] = a[g]*a[g];\n"
+  "  }\n"
+  "}\n";
+
 static const char *const along_rows_comment =
   "\n/* Along rows of numbers.\n"
   " *   taylor_sums      s = a[1] b[k-1] + ... + a[k-1] b[1]. What order k - 1 has just made comes last, and in pairs, as it was\n"
@@ -152,11 +227,21 @@ static CStyle style_for(const Writer *w, const char *const *own, const char *con
                   .math = w->math};
 }
 
+/* Whether sums are so few that what the last order has made stays in registers. */
+static int is_near(const Series *s) {
+  return s->first_square <= s->group && s->width - s->first_square <= s->group && s->sums <= NEAR_MAX && s->squares <= NEAR_MAX &&
+         ops_total(prog_count(s->next)) <= INLINE_MAX;
+}
+
+static uint32_t even(uint32_t n) { return (n + 1) / 2 * 2; }
+
 static void work(const Writer *w) {
   const Series *s = w->s;
   uint32_t width = (2 * s->nq + s->nz + LANES - 1) / LANES * LANES;
   sb_printf(w->out, "enum { TAYLOR_COLUMNS = %u, TAYLOR_WIDTH = %u, TAYLOR_GROUP = %u, TAYLOR_SQUARES = %u, TAYLOR_SUMS = %u, TAYLOR_CONSTANTS = %u };\n",
             s->columns, width, s->group, s->first_square, s->width, s->constants ? s->constants : 1);
+  if (is_near(s)) sb_printf(w->out, "enum { TAYLOR_STATE = %u, TAYLOR_PAIRED = %u, TAYLOR_SQUARED = %u, TAYLOR_PER_PAIR = sizeof(taylor_pair)/sizeof(LAG_REAL) };\n",
+                            even(2 * s->nq + s->nz), even(s->sums), even(s->squares));
   sb_puts(w->out, "typedef struct {\n"
     "  LAG_REAL a[LAG_TAYLOR_ORDER][TAYLOR_SUMS]; /* by order: what sums are made of  */\n"
     "  LAG_REAL b[LAG_TAYLOR_ORDER][TAYLOR_SQUARES];\n"
@@ -190,22 +275,25 @@ static void first(const Writer *w) {
 }
 
 static void next(const Writer *w) {
-  static const char *const own[] = {"x", "x1", "a", "b", "s", "c", "order", "per_order", "up", "w", NULL};
+  static const char *const own[] = {"x", "x1", "y", "a", "b", "s", "c", "order", "per_order", "up", "w", NULL};
   static const char *const written[] = {"x", "x1", "a", "b"};
   const Series *s = w->s;
   CStyle st = style_for(w, own, written);
   st.paired = 1u << 0 | 1u << 1 | 1u << 2 | 1u << 3;
-  st.padded = 1u << 2 | 1u << 3;
-  st.apart = 1; /* of x, it reads y and t, and writes the rates */
+  st.padded = 1u << 2 | 1u << 3 | (unsigned)is_near(s) << 1;
+  st.apart = 1; /* y may be x: it reads the state and t, and writes the rates */
   sb_printf(w->out, "\n/* Order k > 0, besides the sums: %s. Each name stands for coefficient k of its value. */\n", ops_text(s->next, w->a));
   sb_printf(w->out, "static %svoid taylor_next(", ops_total(prog_count(s->next)) <= INLINE_MAX ? "TAYLOR_INLINE " : "");
-  sb_puts(w->out, "LAG_REAL order, LAG_REAL per_order, LAG_REAL up, const LAG_REAL *s, const LAG_REAL *c, LAG_REAL *x,\n"
-                  "    LAG_REAL *x1, LAG_REAL *a, LAG_REAL *b");
+  sb_puts(w->out, "LAG_REAL order, LAG_REAL per_order, LAG_REAL up, const LAG_REAL *s, const LAG_REAL *c, const LAG_REAL *y,\n"
+                  "    LAG_REAL *x, LAG_REAL *x1, LAG_REAL *a, LAG_REAL *b");
   sb_puts(w->out, s->room ? ", LAG_REAL *w) {\n" : ") {\n");
   sb_puts(w->out, "  (void)order; (void)per_order; (void)up; (void)s; (void)c; (void)a; (void)b;\n");
   cwrite_body(s->next, &st, w->a, w->out);
   sb_puts(w->out, "}\n");
 }
+
+/* The column of order 0 that is the rate of column i of the state. */
+static uint32_t order_0_of(const Series *s, uint32_t i) { return i < s->nq ? s->nq + i : s->nq + s->nz + i; }
 
 /* x[to + i] of order 1 := T times x[from + i] of order 0, for i < n. */
 static void rate(const Writer *w, uint32_t to, uint32_t from, uint32_t n) {
@@ -215,7 +303,7 @@ static void rate(const Writer *w, uint32_t to, uint32_t from, uint32_t n) {
 /* What fills the last groups is zero. Up to 15 sums are stored in pairs, and the last of an odd number with a zero. */
 static void fill_groups(const Writer *w) {
   const Series *s = w->s;
-  uint32_t filled = s->sums < 16 ? (s->sums + 1) / 2 * 2 : s->sums;
+  uint32_t filled = s->sums < 16 ? even(s->sums) : s->sums;
   if (filled < s->first_square)
     sb_printf(w->out, "  for (int k = 1; k < n; k++) /* what fills the last group */\n"
                       "    for (int i = %u; i < TAYLOR_SQUARES; i++) w->a[k][i] = w->b[k][i] = LAG_C(0.0);\n", filled);
@@ -224,24 +312,75 @@ static void fill_groups(const Writer *w) {
                       "    for (int i = %u; i < TAYLOR_SUMS; i++) w->a[k][i] = LAG_C(0.0);\n", s->first_square + s->squares);
 }
 
+/* The loop over orders, where rows are read and written in memory. */
+static void far_orders(const Writer *w, const char *suffix) {
+  const Series *s = w->s;
+  sb_puts(w->out, "  for (int k = 1; k < n; k++) {\n"
+                  "    LAG_REAL *const row = x + k*TAYLOR_COLUMNS;\n"
+                  "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_LANE)(k + 1);\n");
+  if (s->sums) sb_printf(w->out, "    taylor_sums%s(k, w);\n", suffix);
+  if (s->squares) sb_printf(w->out, "    taylor_squares%s(k, w);\n", suffix);
+  sb_printf(w->out, "    taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, w->s, w->c, row, row, row + TAYLOR_COLUMNS, w->a[k], w->b[k]%s);\n",
+            s->room ? ", w->m" : "");
+}
+
+/* The same, with the state and what sums are made of at hand. It goes from one order to the next in arrays of pairs, y1, a and b, which
+ * compilers keep in registers as they are never taken number by number; y and s are copies that are. */
+static void near_orders(const Writer *w, const char *suffix) {
+  const Series *s = w->s;
+  uint32_t state = 2 * s->nq + s->nz;
+  int reads_row = s->uses_time; /* t stands behind the state, in the row */
+  sb_puts(w->out, "  enum { STATE = TAYLOR_STATE/TAYLOR_PER_PAIR, PAIRS = TAYLOR_PAIRED/TAYLOR_PER_PAIR, SQUARES = TAYLOR_SQUARES/TAYLOR_PER_PAIR,\n"
+                  "    ALL = TAYLOR_SQUARED ? SQUARES + TAYLOR_SQUARED/TAYLOR_PER_PAIR : PAIRS };\n"
+                  "  const taylor_pair zero = {0};\n"
+                  "  taylor_pair y1[STATE], a[ALL + 1], b[PAIRS + 1];\n"
+                  "  TAYLOR_UNROLL\n"
+                  "  for (int g = 0; g < (int)ALL; g++) a[g] = zero;\n"
+                  "  TAYLOR_UNROLL\n"
+                  "  for (int g = 0; g < (int)PAIRS; g++) b[g] = zero;\n");
+  for (uint32_t i = 0; i < state; i += 2) {
+    sb_printf(w->out, "  LAG_PAIR(y1, %u, T*x[%u], ", i, order_0_of(s, i));
+    if (i + 1 < state) sb_printf(w->out, "T*x[%u]);\n", order_0_of(s, i + 1));
+    else sb_puts(w->out, "LAG_C(0.0));\n");
+  }
+  sb_puts(w->out, "  TAYLOR_UNROLL\n"
+                  "  for (int g = 0; g < (int)STATE; g++) ((taylor_pair *)(x + TAYLOR_COLUMNS))[g] = y1[g];\n"
+                  "  for (int k = 1; k < n; k++) {\n"
+                  "    LAG_REAL *const row = x + k*TAYLOR_COLUMNS;\n"
+                  "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_LANE)(k + 1);\n"
+                  "    taylor_pair y[STATE], s[ALL + 1], sum[ALL + 1];\n"
+                  "    TAYLOR_UNROLL\n"
+                  "    for (int g = 0; g < (int)STATE; g++) y[g] = y1[g];\n");
+  if (s->sums) sb_printf(w->out, "    taylor_sums%s(k, w, a, b, sum);\n", suffix);
+  if (s->squares) sb_printf(w->out, "    taylor_squares%s(k, w, a + SQUARES, sum + SQUARES);\n", suffix);
+  sb_puts(w->out, "    TAYLOR_UNROLL\n"
+                  "    for (int g = 0; g < (int)ALL; g++) s[g] = sum[g];\n");
+  sb_printf(w->out, "    taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, (const LAG_REAL *)s, w->c, %s, row, (LAG_REAL *)y1, (LAG_REAL *)a, (LAG_REAL *)b%s);\n",
+            reads_row ? "row" : "(const LAG_REAL *)y", s->room ? ", w->m" : "");
+  sb_puts(w->out, "    TAYLOR_UNROLL\n"
+                  "    for (int g = 0; g < (int)STATE; g++) ((taylor_pair *)(row + TAYLOR_COLUMNS))[g] = y1[g];\n"
+                  "    TAYLOR_UNROLL\n"
+                  "    for (int g = 0; g < (int)ALL; g++) ((taylor_pair *)w->a[k])[g] = a[g];\n"
+                  "    TAYLOR_UNROLL\n"
+                  "    for (int g = 0; g < (int)PAIRS; g++) ((taylor_pair *)w->b[k])[g] = b[g];\n");
+}
+
 static void rest(const Writer *w, const char *suffix, const char *attribute) {
   const Series *s = w->s;
   uint32_t nq = s->nq, nz = s->nz, t = 3 * nq + 2 * nz;
   sb_printf(w->out, "\n%sstatic void taylor_rest%s(int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *work) {\n"
                     "  taylor_work *const w = (taylor_work *)(void *)work;\n"
                     "  LAG_REAL per_k = LAG_C(1.0);\n", attribute, suffix);
-  rate(w, 0, nq, nq);
-  rate(w, nq, 2 * nq + nz, nq + nz);
   if (s->uses_time) sb_printf(w->out, "  x[TAYLOR_COLUMNS + %u] = T;\n", t);
   fill_groups(w);
-  sb_puts(w->out, "  for (int k = 1; k < n; k++) {\n"
-                  "    LAG_REAL *const y = x + k*TAYLOR_COLUMNS, *const z = y + TAYLOR_COLUMNS;\n"
-                  "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_LANE)(k + 1);\n");
-  if (s->sums) sb_printf(w->out, "    taylor_sums%s(k, w);\n", suffix);
-  if (s->squares) sb_printf(w->out, "    taylor_squares%s(k, w);\n", suffix);
-  sb_printf(w->out, "    taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, w->s, w->c, y, z, w->a[k], w->b[k]%s);\n",
-            s->room ? ", w->m" : "");
-  if (s->uses_time) sb_printf(w->out, "    z[%u] = LAG_C(0.0);\n", t);
+  if (is_near(s)) {
+    near_orders(w, suffix);
+  } else {
+    rate(w, 0, nq, nq);
+    rate(w, nq, 2 * nq + nz, nq + nz);
+    far_orders(w, suffix);
+  }
+  if (s->uses_time) sb_printf(w->out, "    row[TAYLOR_COLUMNS + %u] = LAG_C(0.0);\n", t);
   sb_puts(w->out, "    per_k = per_next;\n  }\n}\n");
 }
 
@@ -260,8 +399,9 @@ static void fill(const Writer *w, const char *text, const char *suffix, const ch
 
 /* What goes along rows of numbers. */
 static void along_rows(const Writer *w, const char *suffix, const char *type, const char *attribute) {
-  if (w->s->sums) fill(w, sums, suffix, type, attribute);
-  if (w->s->squares) fill(w, squares, suffix, type, attribute);
+  int near = is_near(w->s);
+  if (w->s->sums) fill(w, near ? near_sums : sums, suffix, type, attribute);
+  if (w->s->squares) fill(w, near ? near_squares : squares, suffix, type, attribute);
   rest(w, suffix, attribute);
   fill(w, at, suffix, type, attribute);
 }
@@ -295,6 +435,7 @@ void emit_taylor(const Series *s, const char *const *globals, const char *math, 
   int wide = is_wide(s);
   sb_puts(out, head);
   if (wide) sb_puts(out, wide_head);
+  if (is_near(s)) sb_puts(out, part);
   sb_putc(out, '\n');
   work(&w);
   first(&w);
@@ -303,6 +444,7 @@ void emit_taylor(const Series *s, const char *const *globals, const char *math, 
   along_rows(&w, "", "taylor_pair", "");
   if (wide) {
     sb_puts(out, "\n#ifdef TAYLOR_WIDE\n/* The same four at a time. */");
+    if (is_near(s)) sb_printf(out, "\n%s", wide_part);
     along_rows(&w, "_wide", "taylor_four", "TAYLOR_WIDE ");
     sb_puts(out, "#endif\n");
     choose_width(out);
