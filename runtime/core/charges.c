@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 #include "core/gauss.h"
 
 int lag_sim_ncharges(const lag_sim *s)
@@ -41,20 +42,31 @@ unsigned lag_charge_flags(const lag_sim *s, int k)
   return flags;
 }
 
+static void no_values(lag_sim *s, int from)
+{
+  for (int i = 2 * from; i < 2 * lag_sim_ncharges(s); i++) {
+    s->charge_now[i] = NAN;
+  }
+}
+
 /* charge_now: value and scale of each, NaN where there is none. */
 static void values_at(lag_sim *s, double t, const double *y)
 {
   const lag_model *m = s->scene->model;
-  int n = lag_sim_ncharges(s), nq = m->nq, rc = n ? lag_inputs(&s->pb, t) : 1;
+  int n = lag_sim_ncharges(s), nq = m->nq;
 
-  for (int i = 0; i < 2 * n; i++) {
-    s->charge_now[i] = NAN;
+  if (n == 0) {
+    return;
   }
-  if (rc == 0 && m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now, s->work)) {
-    s->charge_now[0] = NAN;
+  if (lag_inputs_here(&s->pb, t)) {
+    no_values(s, 0);
+    return;
   }
-  if (rc == 0 && n > 1 && m->charges->values(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now + 2, s->work)) {
-    s->charge_now[2] = NAN;
+  if (m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now, s->work)) {
+    s->charge_now[0] = s->charge_now[1] = NAN;
+  }
+  if (n > 1 && m->charges->values(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now + 2, s->work)) {
+    no_values(s, 1);
   }
 }
 
@@ -179,10 +191,10 @@ void lag_charges_see(lag_sim *s, double t, const double *y)
 {
   add_work(s, t);
   values_at(s, t, y);
-  for (int k = 0; k < lag_sim_ncharges(s); k++) {
+  for (int k = 0, n = lag_sim_ncharges(s); k < n; k++) {
     Charge *c = &s->charges[k];
-    double d = s->charge_now[2 * k] - c->work - c->first;
-    c->scale = fmax(c->scale, s->charge_now[2 * k + 1]);
+    double d = s->charge_now[2 * k] - c->work - c->first, scale = s->charge_now[2 * k + 1];
+    c->scale = scale > c->scale ? scale : c->scale;
     c->peak = fabs(d) > c->peak || isnan(d) ? fabs(d) : c->peak; /* a NaN must not be forgotten */
     add_to_trend(c, t, d);
   }

@@ -113,7 +113,12 @@ int lag_second_derivatives(lag_problem *pb, double t, const double *q, const dou
 
 int lag_not_finite(int n, const double *x)
 {
+  double zero = 0;
+
   for (int i = 0; i < n; i++) {
+    zero += x[i] * 0; /* NaN where x is none, or infinite */
+  }
+  for (int i = 0; i < n && isnan(zero); i++) {
     if (!isfinite(x[i])) {
       return i;
     }

@@ -3,6 +3,8 @@
 #ifndef LAG_CORE_RHS_H
 #define LAG_CORE_RHS_H
 
+#include <math.h>
+
 #include "lag.h"
 
 #ifdef __GNUC__
@@ -28,6 +30,17 @@ LAG_HERE void lag_copy(int n, const double *from, double *to)
 
 /* What few models have: inputs, and constraints that follow from others, for which *y is replaced by the state on them. */
 int lag_rhs_prepare(lag_problem *pb, double t, const double **y);
+
+/* As lag_inputs, and as lag_next_row. */
+LAG_HERE int lag_inputs_here(lag_problem *pb, double t)
+{
+  return pb->model->nu ? lag_inputs(pb, t) : 0;
+}
+
+LAG_HERE double lag_next_row_here(const lag_problem *pb, double t, double *row)
+{
+  return pb->model->ntables ? lag_next_row(pb, t, row) : HUGE_VAL;
+}
 
 /* As lag_rhs; nq is the model's, perhaps as a number that the compiler knows. */
 LAG_HERE int lag_rhs_here(lag_problem *pb, int nq, double t, const double *y, double *dy)

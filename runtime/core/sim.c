@@ -110,7 +110,7 @@ static void pass_jump(lag_sim *s)
   Run *r = s->run;
   double row;
 
-  if (lag_next_row(&s->pb, r->t, &row) < HUGE_VAL && row == nextafter(r->t, r->dir * HUGE_VAL)) {
+  if (lag_next_row_here(&s->pb, r->t, &row) < HUGE_VAL && row == nextafter(r->t, r->dir * HUGE_VAL)) {
     r->t = row;
     s->method->reset(s->method_work, &s->pb);
   }
@@ -124,7 +124,7 @@ static int take(lag_sim *s, double t_stop)
   pass_jump(s);
   double t = r->t, row = t_stop;
 
-  if (lag_next_row(&s->pb, t, &row) < fabs(t_stop - t)) {
+  if (lag_next_row_here(&s->pb, t, &row) < fabs(t_stop - t)) {
     t_stop = row;
   }
   lag_copy(s->pb.n, s->now, s->y0);
@@ -208,7 +208,7 @@ static int go_on(lag_sim *s, double t)
 
   if (s->run->have_step != 0.0) {
     rc = pass(s);
-    int bad = rc < 0 ? rc : lag_tangent_pass(s);
+    int bad = rc < 0 || !s->tangent ? rc : lag_tangent_pass(s);
     rc = bad ? bad : rc;
   } else {
     rc = take(s, t);

@@ -109,8 +109,10 @@ int lag_watch_see(lag_sim *s, double t, const double *y)
   const lag_scene *c = s->scene;
 
   lag_charges_see(s, t, y);
-  see_constraints(s, t, y);
-  if (lag_exact_see(s, t, y)) {
+  if (c->model->constraints) {
+    see_constraints(s, t, y);
+  }
+  if (c->nexact && lag_exact_see(s, t, y)) {
     return LAG_EMODEL;
   }
   if (watches_outputs(c) && outputs_at(s, t, y)) {

@@ -18,6 +18,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/rhs.h"
 #include "lag.h"
 #include "methods/near.h"
 #include "methods/steps.h"
@@ -156,7 +157,7 @@ static int init(void *work, lag_problem *pb, const double *opt)
 /* Order 0 at t, y of series[which]. 0, or as the model says; > 0, too, where a rate is not finite: pb->bad_index >= 0. */
 static int first(Taylor *w, lag_problem *pb, double which, double t, const double *y)
 {
-  int nq = pb->nq, rc = lag_inputs(pb, t);
+  int nq = pb->nq, rc = lag_inputs_here(pb, t);
   double *x = series(w, pb, which);
 
   pb->rhs_calls++;

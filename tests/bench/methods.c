@@ -21,7 +21,7 @@ int linear_10(double t, const double *q, const double *v, const double *z, const
 int linear_20(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *a, double *zd, double *w);
 
 typedef struct {
-  const char *name;
+  const char *label;
   const lag_scene *scene;
   int by_hand;
   bench_rhs *f; /* the same by hand */
@@ -79,10 +79,14 @@ static const lag_method *find(const char *name) {
   return NULL;
 }
 
-/* The state at p->t in y; *calls: of the right-hand side. */
-static double run_liblag(const Problem *p, double tol, const char *name, double *y, double *calls) {
+/* The state at p->t in y; *calls: of the right-hand side. blind: nothing is watched. */
+static double run_liblag(const Problem *p, double tol, const char *name, int blind, double *y, double *calls) {
   const lag_option opt = {"max_step", p->t, NULL};
-  lag_sim *sim = lag_sim_new(p->scene);
+  lag_model model = *p->scene->model;
+  lag_scene scene = *p->scene;
+  if (blind) model.energy = NULL;
+  scene.model = &model;
+  lag_sim *sim = lag_sim_new(&scene);
   lag_stats stats;
   if (lag_sim_set_tolerance(sim, tol) || lag_sim_set_method(sim, find(name), &opt, 1)) exit(1);
   double t0 = bench_now();
@@ -98,6 +102,7 @@ static double run_liblag(const Problem *p, double tol, const char *name, double 
 typedef struct {
   const char *label, *method; /* method: of liblag */
   bench_peer *peer;
+  int blind;  /* with nothing watched: for the overhead alone */
   int own;    /* runs with `own`, too */
   int chains; /* only for chains */
   double time[60], error[60];
@@ -107,7 +112,7 @@ typedef struct {
 static double run(const Problem *p, const Series *s, double tol, double *error) {
   double y[BENCH_MOST], calls, took;
   if (s->method) {
-    took = run_liblag(p, tol, s->method, y, &calls);
+    took = run_liblag(p, tol, s->method, s->blind, y, &calls);
   } else {
     lag_sim *sim = lag_sim_new(p->scene);
     int n = 2*p->scene->model->nq;
@@ -166,21 +171,42 @@ static void print_row(const Problem *p, const Series *s, const Series *first, co
   putchar('\n');
 }
 
-/* Nanoseconds that a call takes where the right-hand side is next to nothing. */
+/* Calls of right-hand sides, counted. */
 static double per_call;
-static int counted(double t, const double *y, double *d, void *p) { return per_call++, by_hand_oscillators(t, y, d, p); }
+static int counted_oscillators(double t, const double *y, double *d, void *p) { return per_call++, by_hand_oscillators(t, y, d, p); }
+static int counted_pendulum(double t, const double *y, double *d, void *p) { return per_call++, by_hand_double_pendulum(t, y, d, p); }
 
-static void print_overhead(const Series *s) {
-  static const Problem problem = {"", &oscillators_go, OSCILLATORS, counted, 1000, NULL, {0}, 1e-10};
+/* Seconds that a call takes where each waits for the last, as stages do: y += 1e-9 f(y), and nothing else. */
+static double waiting_call(const Problem *p, bench_rhs *f) {
+  const lag_model *m = p->scene->model;
+  lag_sim *sim = lag_sim_new(p->scene);
+  double y[BENCH_MOST], d[BENCH_MOST], work[200], best = HUGE_VAL;
+  int n = m->nq;
+  for (int r = 0; r < 500; r++) {
+    memcpy(y, lag_sim_q(sim), 2*(size_t)n*sizeof *y);
+    double t0 = bench_now();
+    for (int k = 0; k < 1000; k++) {
+      if (f) f(0, y, d, NULL);
+      else memcpy(d, y + n, (size_t)n*sizeof *d), m->accel(0, y, y + n, y + 2*n, work, NULL, d + n, NULL, work);
+      for (int i = 0; i < 2*n; i++) y[i] += 1e-9*d[i];
+    }
+    best = fmin(best, (bench_now() - t0)/1000);
+  }
+  lag_sim_free(sim);
+  return best;
+}
+
+/* Nanoseconds that a call takes in a run, and what of it a call alone does not take. */
+static void print_overhead(const Series *s, const Problem *p, bench_rhs *f, double tol) {
   double y[BENCH_MOST], best = HUGE_VAL, error, calls = 0;
   for (int i = 0; i < 50; i++) {
     per_call = 0;
-    double t = s->method ? run_liblag(&problem, 1e-10, s->method, y, &calls) : run(&problem, s, 1e-10, &error);
+    double t = s->method ? run_liblag(p, tol, s->method, s->blind, y, &calls) : run(p, s, tol, &error);
     if (t < 0) return;
     best = fmin(best, t);
   }
   calls = s->method ? calls : per_call;
-  if (calls > 0) printf("  %-28s  %7.1f\n", s->label, 1e9*best/calls);
+  if (calls > 0) printf("  %-28s  %7.1f  %7.1f\n", s->label, 1e9*best/calls, 1e9*(best/calls - waiting_call(p, s->method ? NULL : f)));
 }
 
 int main(int argc, char **argv) {
@@ -200,6 +226,7 @@ int main(int argc, char **argv) {
     {.label = "SUNDIALS ARKODE 8", .peer = peer_arkode},
 #endif
     {.label = "lagc dop853", .method = "dop853", .own = 1},
+    {.label = "the same, nothing watched", .method = "dop853", .blind = 1, .own = 1},
     {.label = "lagc taylor", .method = "taylor", .own = 1},
   };
   enum { N_SERIES = sizeof series/sizeof *series };
@@ -208,18 +235,25 @@ int main(int argc, char **argv) {
     const Problem *p = &problems[i], *shown = p;
     const Series *first = strcmp(series[0].label, "GSL rk8pd") == 0 ? &series[0] : NULL, *second = first ? &series[1] : &series[0];
     for (int k = 0; k < N_SERIES; k++) series[k].n = 0;
-    printf("%s: milliseconds to an error of", shown->name);
+    printf("%s: milliseconds to an error of", shown->label);
     for (int e = 0; e < 3 && p->errors[e] > 0; e++) printf(" %.0e", p->errors[e]);
     printf(p->only_tol > 0 ? " any size at tolerance %.0e\n" : "\n", p->only_tol);
     for (int k = 0; k < N_SERIES; k++) {
-      if ((own && !series[k].own) || (series[k].chains && p->only_tol == 0)) continue;
+      if ((own && !series[k].own) || (series[k].chains && p->only_tol == 0) || series[k].blind) continue;
       measure(p, &series[k]);
       print_row(p, &series[k], &series[k] == first ? NULL : first, second);
       fflush(stdout);
     }
   }
-  puts("nanoseconds a call, all in all, where a right-hand side of 4 equations is 2 negations");
-  for (int k = 0; k < N_SERIES; k++)
-    if (!own || series[k].own) print_overhead(&series[k]);
+  static const Problem small[] = {
+    {"two oscillators, whose right-hand side is 2 negations", &oscillators_go, OSCILLATORS, counted_oscillators, 1000, NULL, {0}, 0},
+    {"double pendulum", &double_pendulum_swing, DOUBLE_PENDULUM, counted_pendulum, 10, NULL, {0}, 0},
+  };
+  bench_rhs *const alone[] = {by_hand_oscillators, by_hand_double_pendulum};
+  for (int i = 0; i < 2; i++) {
+    printf("%s, tolerance 1e-10: nanoseconds a call, all in all, and beyond those of a call alone that waits for the last one\n", small[i].label);
+    for (int k = 0; k < N_SERIES; k++)
+      if ((!own || series[k].own) && !(series[k].method && strcmp(series[k].method, "taylor") == 0)) print_overhead(&series[k], &small[i], alone[i], 1e-10);
+  }
   return 0;
 }
