@@ -67,10 +67,12 @@ static uint64_t bits_of(double x) {
   return bits;
 }
 
-/* The last rounding, and those of the bound itself, are added to the error of the operands. */
+/* The last rounding, and those of the bound itself, are added to the error of the operands. Where value and residue both say that it is a whole number,
+ * it is that. */
 static Num inexact(double x, double error, uint64_t residue) {
   error = error * (1 + 1e-9) + fabs(x) * DBL_EPSILON + DBL_MIN * DBL_EPSILON;
-  if (residue == 0 && fabs(x) <= error) return (Num){.num = 0, .den = 1};
+  int64_t whole = residue > PRIME / 2 ? -(int64_t)(PRIME - residue) : (int64_t)residue;
+  if (fabs(x - (double)whole) <= error && (whole == 0 || error < 0.5)) return num_int(whole);
   return (Num){.error = isnan(error) ? INFINITY : error, .den = 0, .approx = x, .residue = residue};
 }
 

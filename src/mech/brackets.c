@@ -23,6 +23,10 @@ typedef struct {
   uint32_t roots;
   Choices choices;
   const LinearForms *forms; /* or NULL */
+  int in_forms;         /* what follows is so, and stands for y: the numbers are small */
+  Expr *charge, *F;     /* [r] */
+  Expr *dLdq;           /* [n] */
+  const Expr *p;        /* [n] */
   Algebra *out;
 } Work;
 
@@ -178,26 +182,43 @@ static int fit(const Work *w, uint32_t choice, long double *c) {
 
 /* --- symbolically --- */
 
+/* Charges and what L gives, in the sums that L is written with where all generators are known in these. */
+static void take_symbols(Work *w) {
+  ExprGraph *g = w->g;
+  Expr *all = ARENA_ARRAY(w->scratch, Expr, 2 * (size_t)w->r + w->n + 1);
+  w->charge = all, w->F = all + w->r, w->dLdq = w->F + w->r;
+  w->in_forms = w->forms != NULL;
+  for (uint32_t a = 0; a < w->r; a++) {
+    w->in_forms = w->in_forms && at(w, a)->by.eta;
+    w->charge[a] = at(w, a)->is.charge;
+    w->F[a] = at(w, a)->is.F;
+  }
+  for (uint32_t i = 0; i < w->n && w->e->n; i++) w->dLdq[i] = w->in_forms ? expr_diff(g, w->forms->L, w->q[i]) : w->e->dLdq[i];
+  w->p = w->in_forms ? w->forms->p : w->e->p;
+  if (w->in_forms) expr_cut(g, w->charge, 2 * w->r, w->forms->node.at, w->forms->is.at, w->forms->node.n, w->charge);
+}
+
 /* dA/dp_i and dA/dq_i at fixed p. */
 static void slopes(const Work *w, uint32_t a, Expr *by_p, Expr *by_q) {
   ExprGraph *g = w->g;
   const Generator *by = &at(w, a)->by;
+  const Expr *xi = w->in_forms ? by->eta : by->xi;
   Expr *of_xi = ARENA_ARRAY(w->scratch, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) {
-    Expr rate = w->e->n ? node(w, w->v[i]) : w->e->first.rates[i], moved = expr_mul(g, by->tau, rate), fall = expr_diff(g, at(w, a)->is.F, w->q[i]);
-    by_p[i] = expr_sub(g, by->xi[i], moved);
-    by_q[i] = w->e->n ? expr_sub(g, expr_mul(g, by->tau, w->e->dLdq[i]), fall) : expr_int(g, 0);
+    Expr rate = w->e->n ? node(w, w->v[i]) : w->e->first.rates[i], moved = expr_mul(g, by->tau, rate), fall = expr_diff(g, w->F[a], w->q[i]);
+    by_p[i] = expr_sub(g, xi[i], moved);
+    by_q[i] = w->e->n ? expr_sub(g, expr_mul(g, by->tau, w->dLdq[i]), fall) : expr_int(g, 0);
   }
   for (uint32_t k = 0; k < w->n && w->e->n; k++) {
-    expr_gradient(g, by->xi[k], w->q, w->n, of_xi);
-    for (uint32_t i = 0; i < w->n; i++) by_q[i] = expr_add(g, by_q[i], expr_mul(g, w->e->p[k], of_xi[i]));
+    expr_gradient(g, xi[k], w->q, w->n, of_xi);
+    for (uint32_t i = 0; i < w->n; i++) by_q[i] = expr_add(g, by_q[i], expr_mul(g, w->p[k], of_xi[i]));
   }
 }
 
 static int is_energy(const Work *w, uint32_t a) { return at(w, a)->kind == SYMMETRY_ENERGY && expr_is_zero(w->g, at(w, a)->is.power); }
 
 /* The bracket with the energy of an L without t is minus the change in time that Q has by itself: that Q is conserved is proved already. */
-static Expr with_energy(const Work *w, uint32_t a) { return expr_neg(w->g, expr_diff(w->g, at(w, a)->is.charge, w->e->m->time)); }
+static Expr with_energy(const Work *w, uint32_t a) { return expr_neg(w->g, expr_diff(w->g, w->charge[a], w->e->m->time)); }
 
 static Expr symbolic(const Work *w, uint32_t a, uint32_t b) {
   ExprGraph *g = w->g;
@@ -207,7 +228,7 @@ static Expr symbolic(const Work *w, uint32_t a, uint32_t b) {
   slopes(w, a, ap, aq);
   slopes(w, b, bp, bq);
   if (!w->e->n) { /* minus what A does to B */
-    expr_gradient(g, at(w, b)->is.charge, w->q, w->n, bq);
+    expr_gradient(g, w->charge[b], w->q, w->n, bq);
     for (uint32_t i = 0; i < w->n; i++) sum = expr_sub(g, sum, expr_mul(g, bq[i], ap[i]));
     return sum;
   }
@@ -220,9 +241,16 @@ static Expr symbolic(const Work *w, uint32_t a, uint32_t b) {
 
 /* --- the brackets --- */
 
-/* A coefficient, from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges themselves.
- * 0: it is none of these. */
-static Expr recognise(const Work *w, long double *const *fits, size_t place) {
+/* The nearest whole number where there are no parameters: a guess, which a proof must follow. */
+static Expr nearest(const Work *w, const long double *x) {
+  long double whole = roundl(x[CHOICE_FIRST]);
+  if (w->choices.n || !(fabsl(x[CHOICE_FIRST] - whole) < 0.1L) || !(fabsl(whole) < 9e18L)) return 0;
+  return expr_num(w->g, num_int((int64_t)whole));
+}
+
+/* A coefficient, from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges themselves;
+ * a guess, if `bold`. 0: it is none of these. */
+static Expr recognise(const Work *w, long double *const *fits, size_t place, int bold) {
   long double *x = ARENA_ARRAY(w->scratch, long double, 2 + w->choices.n);
   int zero = 1;
   Num c;
@@ -232,6 +260,7 @@ static Expr recognise(const Work *w, long double *const *fits, size_t place) {
     if (isnan(x[k])) return 0;
   }
   if (zero) return expr_int(w->g, 0);
+  if (bold) return nearest(w, x);
   if (fabsl(x[CHOICE_FIRST] - x[CHOICE_SECOND]) < 1e-9L * fabsl(x[CHOICE_FIRST]) && rational_of(x[CHOICE_FIRST], &c)) return expr_num(w->g, c);
   Expr known = ratio_of(&w->choices, x);
   for (uint32_t a = 0; a < w->r && !known; a++)
@@ -245,16 +274,16 @@ static Expr recognise(const Work *w, long double *const *fits, size_t place) {
 static int is_constant(const Work *w, Expr x) { return (expr_kinds(w->g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
 
 /* What is left of the bracket without its combination of charges is a constant: by its short form, or as recognised and then proved. */
-static void settle(const Work *w, Bracket *k, long double *const *fits, size_t place) {
+static void settle(const Work *w, Bracket *k, long double *const *fits, size_t place, int bold) {
   ExprGraph *g = w->g;
   Expr sum = expr_int(g, 0), left;
-  for (uint32_t i = 0; i < w->r; i++) sum = expr_add(g, sum, expr_mul(g, k->c[i], at(w, i)->is.charge));
+  for (uint32_t i = 0; i < w->r; i++) sum = expr_add(g, sum, expr_mul(g, k->c[i], w->charge[i]));
   left = simplify(g, expr_sub(g, k->value, sum));
   k->constant = left;
   k->proved = is_constant(w, left);
   if (k->proved) return;
-  k->constant = recognise(w, fits, place + w->r);
-  if (k->constant) k->proved = forms_prove_zero(w->forms, g, expr_sub(g, left, k->constant)) == PROVED_ZERO;
+  k->constant = recognise(w, fits, place + w->r, bold);
+  if (k->constant) k->proved = forms_prove_zero(w->in_forms ? NULL : w->forms, g, expr_sub(g, left, k->constant)) == PROVED_ZERO;
   else k->c = NULL;
 }
 
@@ -265,19 +294,36 @@ static int is_outside(const Work *w, long double *const *fits, size_t place) {
   return 1;
 }
 
-static Bracket bracket(const Work *w, uint32_t a, uint32_t b, long double *const *fits, size_t place) {
+/* With its coefficients; c NULL: one is not recognised. */
+static Bracket combined(const Work *w, Bracket k, long double *const *fits, size_t place, int bold) {
   Expr *c = ARENA_ARRAY(w->e->m->arena, Expr, w->r + 1);
-  Bracket k = {.a = a, .b = b, .c = c, .constant = expr_int(w->g, 0), .value = symbolic(w, a, b), .is_outside = is_outside(w, fits, place)};
+  k.c = c;
   for (uint32_t i = 0; i < w->r && k.c; i++)
-    if (!(c[i] = recognise(w, fits, place + i))) k.c = NULL;
-  if (k.c) settle(w, &k, fits, place);
-  if (k.c) return k;
+    if (!(c[i] = recognise(w, fits, place + i, bold))) k.c = NULL;
+  if (k.c) settle(w, &k, fits, place, bold);
+  return k;
+}
+
+static Bracket bracket_of(const Work *w, uint32_t a, uint32_t b, long double *const *fits, size_t place) {
+  Bracket k = {.a = a, .b = b, .constant = expr_int(w->g, 0), .value = symbolic(w, a, b), .is_outside = is_outside(w, fits, place)};
+  Bracket known = combined(w, k, fits, place, 0);
+  if (known.c && known.proved) return known;
+  Bracket guess = combined(w, k, fits, place, 1);
+  if (guess.c && guess.proved) return guess;
+  if (known.c) return known;
   k.value = simplify(w->g, k.value);
   if (!expr_is_zero(w->g, k.value)) return k;
+  Expr *c = ARENA_ARRAY(w->e->m->arena, Expr, w->r + 1);
   for (uint32_t i = 0; i < w->r; i++) c[i] = k.value; /* rounding has spoilt the fit of what is 0 */
   k.c = c;
   k.constant = k.value;
   k.proved = 1;
+  return k;
+}
+
+static Bracket bracket(const Work *w, uint32_t a, uint32_t b, long double *const *fits, size_t place) {
+  Bracket k = bracket_of(w, a, b, fits, place);
+  if (w->in_forms) k.value = forms_back(w->forms, w->g, k.value);
   return k;
 }
 
@@ -293,6 +339,7 @@ static void work(Arena *scratch, void *data) {
   w->scratch = scratch;
   w->choices = choices_new(scratch, w->e, w->of->attempt);
   lay_out(w);
+  take_symbols(w);
   uint32_t choices = 2 + w->choices.n;
   long double **fits = ARENA_ARRAY(scratch, long double *, choices);
   for (uint32_t k = 0; k < choices; k++) {

@@ -21,8 +21,10 @@ typedef struct {
   ExprGraph *g;
   uint32_t n;
   SymId *q, *v;     /* [n] */
+  Expr L;
   const Expr *p;    /* [n] */
   const Expr *xi;   /* [n] */
+  const Expr *lowered; /* [n] M xi; or NULL */
   Expr tau;
   Expr *Dxi, Dtau;  /* total time derivatives */
   int by_value;
@@ -70,6 +72,7 @@ static Work begin(const Eqns *e, const Generator *by) {
   w.q = ARENA_ARRAY(a, SymId, w.n + 1);
   w.v = ARENA_ARRAY(a, SymId, w.n + 1);
   w.Dxi = ARENA_ARRAY(a, Expr, w.n + 1);
+  w.L = e->m->lagrangian;
   w.p = noether_momenta(e);
   w.xi = xi;
   w.tau = by->tau ? by->tau : zero;
@@ -80,6 +83,7 @@ static Work begin(const Eqns *e, const Generator *by) {
   }
   for (uint32_t i = 0; i < w.n; i++) w.Dxi[i] = total(&w, xi[i]);
   w.Dtau = total(&w, w.tau);
+  w.lowered = by->lowered;
   w.forms = forms_new(a, e);
   return w;
 }
@@ -115,12 +119,27 @@ static Expr delta(const Work *w, Expr term) {
   return expr_add(w->g, moved, stretched);
 }
 
+static Expr at_rest(const Work *w, Expr x) {
+  Expr *zero = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
+  return expr_replace(w->g, x, w->v, zero, w->n);
+}
+
+/* delta T + T D tau of T = q' M q'/2, by M xi. */
+static Expr delta_kinetic(const Work *w, Expr T) {
+  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) terms[i] = expr_mul(w->g, node(w, w->v[i]), total(w, w->lowered[i]));
+  terms[w->n] = expr_neg(w->g, expr_mul(w->g, T, w->Dtau));
+  return shorten(w, expr_add_n(w->g, terms, w->n + 1));
+}
+
 /* delta L without those of its terms that are invariant by themselves: the pairs of N bodies are judged one by one. What is left of
  * each is in its short form. */
 static Expr delta_lagrangian(const Work *w) {
   ExprGraph *g = w->g;
-  Expr L = w->m->lagrangian;
+  Expr L = w->lowered ? at_rest(w, w->L) : w->L;
   VEC(Expr) left = {0};
+  if (w->lowered) vec_push(w->m->arena, &left, delta_kinetic(w, expr_sub(g, w->L, L)));
   for (uint32_t i = 0; i < expr_pairs(g, L, EX_SUM); i++) {
     Num c;
     Expr term = expr_pair(g, L, EX_SUM, i, &c), change = delta(w, term);
@@ -210,12 +229,6 @@ static Verdict zero_on_constraints(Work *w, Expr x) {
 
 /* --- F --- */
 
-static Expr at_rest(const Work *w, Expr x) {
-  Expr *zero = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
-  for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
-  return expr_replace(w->g, x, w->v, zero, w->n);
-}
-
 /* An F(q, t) whose total derivative takes off what it can of dL = a.q' + b + terms of higher order in q'. */
 static Expr find_gauge(const Work *w, Expr dL) {
   Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1), b = at_rest(w, dL);
@@ -258,7 +271,7 @@ static int is_of_time(const Work *w, Expr x) {
 static Expr contraction(const Work *w, int with_phi) {
   Expr *theta = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) theta[i] = at_rest(w, w->p[i]);
-  Expr F = dot(w, theta, w->xi, w->n), phi = with_phi ? at_rest(w, w->m->lagrangian) : expr_int(w->g, 0);
+  Expr F = dot(w, theta, w->xi, w->n), phi = with_phi ? at_rest(w, w->L) : expr_int(w->g, 0);
   return expr_add(w->g, F, expr_mul(w->g, phi, w->tau));
 }
 
@@ -305,13 +318,57 @@ static void judge(Work *w, Noether *to) {
 
 /* --- the charge and its balance --- */
 
-/* p.xi - E tau - F. The potential in E stays as it was written: see mech/eqns.c. */
-static Expr charge_of(const Work *w, Expr F) {
+static Expr p_along_xi(const Work *w) {
+  Expr *v = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  if (!w->lowered) return dot(w, w->p, w->xi, w->n);
+  for (uint32_t i = 0; i < w->n; i++) v[i] = node(w, w->v[i]);
+  return dot(w, v, w->lowered, w->n);
+}
+
+/* p.xi - E tau - F. */
+static Expr charge_of(const Work *w, Expr F, Expr energy) {
   ExprGraph *g = w->g;
-  Expr px = dot(w, w->p, w->xi, w->n), minus_F = expr_neg(g, F), et = expr_mul(g, w->e->energy, w->tau), minus_et = expr_neg(g, et);
+  Expr px = p_along_xi(w), minus_F = expr_neg(g, F), et = expr_mul(g, energy, w->tau), minus_et = expr_neg(g, et);
   Expr front = expr_add(g, px, minus_F);
   front = shorten(w, front);
   return expr_add(g, front, minus_et);
+}
+
+/* --- in the sums that L is written with --- */
+
+/* In coordinates y: they go by the symbols of q. */
+static Work begin_in_forms(const Work *w, const Expr *eta) {
+  Work y = *w;
+  y.L = w->forms->L;
+  y.p = w->forms->p;
+  y.xi = eta;
+  y.Dxi = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) y.Dxi[i] = total(&y, eta[i]);
+  y.lowered = NULL;
+  y.forms = NULL;
+  return y;
+}
+
+/* The energy, its kinetic part in y', its potential as it was written: see mech/eqns.c. */
+static Expr energy_in_forms(const Work *w, const Work *y) {
+  ExprGraph *g = w->g;
+  Expr *v = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) v[i] = node(w, w->v[i]);
+  Expr potential = at_rest(y, y->L), moving = expr_sub(g, y->L, potential), pv = dot(w, y->p, v, w->n);
+  Expr kinetic = forms_back(w->forms, g, shorten(w, expr_sub(g, pv, moving)));
+  return expr_sub(g, kinetic, at_rest(w, w->L));
+}
+
+/* Verdict and charge by eta. 0: nothing is proved so. */
+static int judge_in_forms(Work *w, const Expr *eta, Noether *to) {
+  if (!eta || !w->forms || w->e->constraints.n) return 0;
+  Work y = begin_in_forms(w, eta);
+  judge(&y, to);
+  if (to->is != INVARIANT && to->is != INVARIANT_UP_TO_F) return 0;
+  Expr zero = expr_int(w->g, 0), front = charge_of(&y, to->F, zero), et = expr_mul(w->g, energy_in_forms(w, &y), w->tau);
+  to->charge = expr_sub(w->g, forms_back(w->forms, w->g, front), et);
+  to->F = forms_back(w->forms, w->g, to->F);
+  return 1;
 }
 
 /* The contact whose constraint it is, or NULL. */
@@ -448,9 +505,10 @@ int noether_moves_jumps(const Eqns *e, const Generator *by) {
 Noether noether_prove(const Eqns *e, const Generator *by) {
   Work w = begin(e, by);
   Noether out;
-  judge(&w, &out);
+  int in_forms = judge_in_forms(&w, by->eta, &out);
+  if (!in_forms) judge(&w, &out);
   put_power(&w, &out, out.remainder);
-  out.charge = charge_of(&w, out.F);
+  if (!in_forms) out.charge = charge_of(&w, out.F, e->energy);
   out.scale = scale_of(&w, out.F);
   out.jumps = discontinuities_of(e, out.charge).n > 0 || moves_jumps(&w);
   return out;

@@ -16,6 +16,9 @@
 typedef struct {
   const Expr *xi; /* [noether_coordinates] in q, t and parameters; 0: nothing */
   Expr tau;       /* 0: nothing */
+  const Expr *eta; /* [noether_coordinates] the same of the sums of mech/noether_forms.h, for which the symbols of q stand, where these have names: proofs
+                    * and charges are short then. NULL: not given */
+  const Expr *lowered; /* [noether_coordinates] M xi, where M is made of numbers and p = M q', which keeps charges short; or NULL */
 } Generator;
 
 typedef enum {

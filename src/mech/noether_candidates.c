@@ -11,6 +11,7 @@ typedef struct {
   ExprGraph *g;
   uint32_t n;
   Expr t;
+  Coordinates names;
   FoundSymmetries *out;
 } Work;
 
@@ -25,7 +26,7 @@ static Expr *nothing(const Work *w) {
 
 /* Lists it where it is proved. */
 static int try_one(Work *w, const Expr *xi, Expr tau, FoundSymmetry as) {
-  as.by = (Generator){xi, tau};
+  as.by = (Generator){.xi = xi, .tau = tau};
   as.is = noether_prove(w->e, &as.by);
   if ((as.is.is != INVARIANT && as.is.is != INVARIANT_UP_TO_F) || as.is.by_value || as.is.broken) return 0;
   vec_push(w->e->m->arena, &w->out->all, as);
@@ -34,7 +35,7 @@ static int try_one(Work *w, const Expr *xi, Expr tau, FoundSymmetry as) {
 
 /* Two coordinates are of a kind: along one axis, or members of one family. */
 static int same_kind(const Work *w, uint32_t i, uint32_t k) {
-  uint32_t a = name_axis(w->e, i), b = name_axis(w->e, k);
+  uint32_t a = name_axis(&w->names, i), b = name_axis(&w->names, k);
   Name one = name_of(w, i), other = name_of(w, k);
   size_t n = strcspn(one, "[");
   if (a != AXIS_NONE || b != AXIS_NONE) return a == b;
@@ -45,7 +46,7 @@ static int same_kind(const Work *w, uint32_t i, uint32_t k) {
 static void try_kind(Work *w, uint32_t i) {
   Arena *a = w->e->m->arena;
   Expr *shift = nothing(w), *boost = nothing(w);
-  uint32_t axis = name_axis(w->e, i);
+  uint32_t axis = name_axis(&w->names, i);
   int of_all = axis != AXIS_NONE;
   for (uint32_t k = i; k < w->n; k++)
     if (same_kind(w, i, k)) shift[k] = expr_int(w->g, 1), boost[k] = w->t;
@@ -70,8 +71,8 @@ static void try_turn(Work *w, uint32_t axis) {
   Expr *xi = nothing(w);
   uint32_t bodies = 0;
   for (uint32_t i = 0; i < w->n; i++)
-    for (uint32_t k = 0; k < w->n && name_axis(w->e, i) == (axis + 1) % 3; k++) {
-      if (name_axis(w->e, k) != (axis + 2) % 3 || !name_same_body(name_of(w, i), name_of(w, k))) continue;
+    for (uint32_t k = 0; k < w->n && name_axis(&w->names, i) == (axis + 1) % 3; k++) {
+      if (name_axis(&w->names, k) != (axis + 2) % 3 || !name_same_body(name_of(w, i), name_of(w, k))) continue;
       xi[i] = expr_neg(w->g, node(w, k));
       xi[k] = node(w, i);
       bodies++;
@@ -124,7 +125,7 @@ static int sign_of(const ExprGraph *g, Expr k) {
 }
 
 uint32_t candidates_try_shifts(Eqns *e, FoundSymmetries *out) {
-  Work w = {.e = e, .g = e->g, .n = e->n, .t = expr_symbol(e->g, e->m->time)->node, .out = out};
+  Work w = {.e = e, .g = e->g, .n = e->n, .t = expr_symbol(e->g, e->m->time)->node, .names = coordinates_of(e, NULL), .out = out};
   uint32_t found = 0;
   if (e->n && !e->mass_known) eqns_derive_mass(e);
   for (uint32_t i = 0; i < w.n; i++) {
@@ -146,7 +147,7 @@ uint32_t candidates_try_shifts(Eqns *e, FoundSymmetries *out) {
 int candidates_only(const Eqns *e) { return noether_coordinates(e) > SEARCH_MOST; }
 
 void candidates_try(Eqns *e, FoundSymmetries *out) {
-  Work w = {.e = e, .g = e->g, .n = noether_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .out = out};
+  Work w = {.e = e, .g = e->g, .n = noether_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .names = coordinates_of(e, NULL), .out = out};
   out->ansatz = "of more than a hundred coordinates the energy, momenta of cyclic ones, and translations, boosts and turns of all of a kind together";
   out->searched = w.n <= TRY_MOST;
   if (!out->searched) {

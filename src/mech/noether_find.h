@@ -7,6 +7,7 @@
 #define LAGC_NOETHER_FIND_H
 
 #include "mech/noether.h"
+#include "mech/noether_forms.h"
 
 typedef enum {
   SYMMETRY_OTHER,
@@ -23,6 +24,7 @@ typedef struct {
   int of_all;           /* it moves all coordinates of its directions alike */
   uint32_t axis;        /* momentum, boost: the component; rotation: the component that stays */
   Generator by;
+  const LinearForms *forms; /* what by.eta moves; or NULL */
   Expr rate;            /* w of sin(w t), cos(w t), s of exp(s t); 0: it goes with powers of t, or functions of a list */
   Noether is;
 } FoundSymmetry;

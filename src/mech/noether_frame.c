@@ -35,20 +35,19 @@ static NoetherFrame *frame_sized(Arena *scratch, size_t n) {
   return f;
 }
 
-static long double value_of(Num x) { return (long double)x.num / (long double)x.den; }
-
-static const NoetherFrame *frame_of_forms(const LinearForms *forms, Arena *scratch) {
-  size_t n = forms->n;
+static const NoetherFrame *frame_of_forms(const LinearForms *forms, ExprGraph *g, Arena *scratch, const long double *parameters) {
+  uint32_t n = forms->n;
   NoetherFrame *f = frame_sized(scratch, n);
-  for (size_t k = 0; k < n * n; k++) f->S[k] = value_of(forms->S[k]), f->inverse[k] = value_of(forms->inverse[k]);
-  for (size_t k = 0; k < n; k++) f->shift[k] = value_of(forms->shift[k]);
+  expr_eval(g, forms->S, n * n, parameters, f->S);
+  expr_eval(g, forms->inverse, n * n, parameters, f->inverse);
+  expr_eval(g, forms->shift, n, parameters, f->shift);
   f->stays = 1;
   return f;
 }
 
 const NoetherFrame *frame_new(const Ansatz *a, Arena *scratch, const long double *parameters) {
   const Eqns *e = a->e;
-  if (a->forms) return frame_of_forms(a->forms, scratch);
+  if (a->forms) return frame_of_forms(a->forms, e->g, scratch, parameters);
   if (!forms_are_needed(e) || ansatz_is_restricted(a)) return NULL;
   NoetherFrame *f = frame_sized(scratch, a->n);
   Expr *entry = ARENA_ARRAY(scratch, Expr, e->mass.n);

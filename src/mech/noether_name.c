@@ -4,12 +4,20 @@
 
 /* --- coordinates of bodies --- */
 
-/* r[2].x, x[2], x2 and x are components along x. */
+Coordinates coordinates_of(const Eqns *e, const LinearForms *forms) {
+  Coordinates c = {e->g, e->m->arena, noether_coordinates(e), NULL};
+  Name *name = ARENA_ARRAY(c.arena, Name, c.n + 1);
+  for (uint32_t i = 0; i < c.n; i++) name[i] = forms && forms->named ? forms->name[i] : expr_symbol(c.g, noether_coordinate(e, i))->name;
+  c.name = name;
+  return c;
+}
+
+/* r[2].x, x[2], x2, x and X are components along x. */
 static uint32_t axis_of(Name name) {
   const char *dot = strrchr(name, '.'), *letter = dot ? dot + 1 : name;
-  if (*letter < 'x' || *letter > 'z') return AXIS_NONE;
-  if (dot ? letter[1] != '\0' : isalpha((unsigned char)letter[1])) return AXIS_NONE;
-  return (uint32_t)(*letter - 'x');
+  int axis = tolower((unsigned char)*letter) - 'x';
+  if (axis < 0 || axis > 2 || (dot ? letter[1] != '\0' : isalpha((unsigned char)letter[1]))) return AXIS_NONE;
+  return (uint32_t)axis;
 }
 
 int name_same_body(Name a, Name b) {
@@ -19,27 +27,23 @@ int name_same_body(Name a, Name b) {
   return x - a == y - b && memcmp(a, b, (size_t)(x - a)) == 0;
 }
 
-static Name coord(const Eqns *e, uint32_t i);
-
 /* The component `letter` of the vector or rotation that coordinate i belongs to; UINT32_MAX: there is none. */
-static uint32_t sibling(const Eqns *e, uint32_t i, char letter) {
-  Name name = coord(e, i);
+static uint32_t sibling(const Coordinates *e, uint32_t i, char letter) {
+  Name name = e->name[i];
   const char *dot = strrchr(name, '.');
-  for (uint32_t k = 0; dot && k < noether_coordinates(e); k++) {
-    Name other = coord(e, k);
+  for (uint32_t k = 0; dot && k < e->n; k++) {
+    Name other = e->name[k];
     if (strncmp(other, name, (size_t)(dot + 1 - name)) == 0 && other[dot + 1 - name] == letter && !other[dot + 2 - name]) return k;
   }
   return UINT32_MAX;
 }
 
-static Name coord(const Eqns *e, uint32_t i) { return expr_symbol(e->g, noether_coordinate(e, i))->name; }
-
 /* Components of a rotation lie along no axis. */
-uint32_t name_axis(const Eqns *e, uint32_t i) { return sibling(e, i, 'w') == UINT32_MAX ? axis_of(coord(e, i)) : AXIS_NONE; }
+uint32_t name_axis(const Coordinates *e, uint32_t i) { return sibling(e, i, 'w') == UINT32_MAX ? axis_of(e->name[i]) : AXIS_NONE; }
 
-static uint32_t along(const Eqns *e, uint32_t axis) {
+static uint32_t along(const Coordinates *e, uint32_t axis) {
   uint32_t n = 0;
-  for (uint32_t i = 0; i < noether_coordinates(e); i++) n += name_axis(e, i) == axis;
+  for (uint32_t i = 0; i < e->n; i++) n += name_axis(e, i) == axis;
   return n;
 }
 
@@ -49,7 +53,7 @@ typedef struct {
   uint32_t tau, shift, linear; /* bits: the blocks in which they occur */
 } Parts;
 
-static Parts parts_of(const Eqns *e, const GeneratorRow *r) {
+static Parts parts_of(const Coordinates *e, const GeneratorRow *r) {
   Parts p = {0};
   for (uint32_t m = 0; m < r->blocks; m++) {
     const Expr *c = r->c + (size_t)m * r->ansatz->shown;
@@ -64,7 +68,7 @@ static Parts parts_of(const Eqns *e, const GeneratorRow *r) {
 }
 
 /* The coefficient of phi_k in xi_i, in block m. */
-static Expr entry(const Eqns *e, const GeneratorRow *r, uint32_t m, uint32_t i, uint32_t k) {
+static Expr entry(const Coordinates *e, const GeneratorRow *r, uint32_t m, uint32_t i, uint32_t k) {
   const Expr *c = r->c + (size_t)m * r->ansatz->shown + 1;
   for (uint32_t j = 0; j < r->ansatz->xi.n; j++)
     if (r->ansatz->xi.at[j].i == i && r->ansatz->xi.at[j].k == k) return c[j];
@@ -74,19 +78,19 @@ static Expr entry(const Eqns *e, const GeneratorRow *r, uint32_t m, uint32_t i, 
 static int is_energy(Parts p) { return p.tau == 1 && !p.shift && !p.linear; }
 
 /* The linear part of block 0 turns q_i against q_j. */
-static int turns(const Eqns *e, const GeneratorRow *r, uint32_t i, uint32_t j) {
+static int turns(const Coordinates *e, const GeneratorRow *r, uint32_t i, uint32_t j) {
   Expr a = entry(e, r, 0, i, j + 1), b = entry(e, r, 0, j, i + 1);
   return !expr_is_zero(e->g, a) && a == expr_neg(e->g, b);
 }
 
 /* --- signs --- */
 
-static void flip(const Eqns *e, GeneratorRow *r) {
+static void flip(const Coordinates *e, GeneratorRow *r) {
   for (size_t k = 0; k < (size_t)r->blocks * r->ansatz->shown; k++) r->c[k] = expr_neg(e->g, r->c[k]);
 }
 
 /* Whether q_i grows with q_j in the sense of rotation of books: x -> -y, y -> x; z from x falls. */
-static int wrong_turn(const Eqns *e, uint32_t i, uint32_t j, Expr c) {
+static int wrong_turn(const Coordinates *e, uint32_t i, uint32_t j, Expr c) {
   uint32_t a = name_axis(e, i), b = name_axis(e, j);
   int z_and_x = a == 0 && b == 2;
   Num number;
@@ -94,7 +98,7 @@ static int wrong_turn(const Eqns *e, uint32_t i, uint32_t j, Expr c) {
   return z_and_x ? num_sign(number) < 0 : num_sign(number) > 0;
 }
 
-void orient(const Eqns *e, GeneratorRow *r) {
+void orient(const Coordinates *e, GeneratorRow *r) {
   Parts p = parts_of(e, r);
   if (r->kind != TIME_POWERS && r->kind != TIME_LISTED) return;
   if (p.tau == 1) {
@@ -102,8 +106,8 @@ void orient(const Eqns *e, GeneratorRow *r) {
     return;
   }
   if (p.tau || p.shift || p.linear != 1) return;
-  for (uint32_t i = 0; i < noether_coordinates(e); i++)
-    for (uint32_t j = i + 1; j < noether_coordinates(e); j++) {
+  for (uint32_t i = 0; i < e->n; i++)
+    for (uint32_t j = i + 1; j < e->n; j++) {
       if (!turns(e, r, i, j)) continue;
       if (wrong_turn(e, i, j, entry(e, r, 0, i, j + 1))) flip(e, r);
       return;
@@ -113,18 +117,18 @@ void orient(const Eqns *e, GeneratorRow *r) {
 /* --- names --- */
 
 /* The only coordinate that block m shifts; UINT32_MAX: there are several. */
-static uint32_t only_shift(const Eqns *e, const GeneratorRow *r, uint32_t m) {
+static uint32_t only_shift(const Coordinates *e, const GeneratorRow *r, uint32_t m) {
   uint32_t only = UINT32_MAX, n = 0;
-  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+  for (uint32_t i = 0; i < e->n; i++)
     if (!expr_is_zero(e->g, entry(e, r, m, i, 0))) only = i, n++;
   return n == 1 ? only : UINT32_MAX;
 }
 
 /* The axis along which block m shifts all bodies alike; AXIS_NONE: it does something else. */
-static uint32_t common_shift(const Eqns *e, const GeneratorRow *r, uint32_t m) {
+static uint32_t common_shift(const Coordinates *e, const GeneratorRow *r, uint32_t m) {
   uint32_t axis = AXIS_NONE, n = 0;
   Expr one = 0;
-  for (uint32_t i = 0; i < noether_coordinates(e); i++) {
+  for (uint32_t i = 0; i < e->n; i++) {
     Expr c = entry(e, r, m, i, 0);
     if (expr_is_zero(e->g, c)) continue;
     uint32_t own = name_axis(e, i);
@@ -138,8 +142,8 @@ static uint32_t common_shift(const Eqns *e, const GeneratorRow *r, uint32_t m) {
 
 const char *axis_text(uint32_t axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
 
-static void name_shift(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
-  Arena *a = e->m->arena;
+static void name_shift(const Coordinates *e, const GeneratorRow *r, FoundSymmetry *to) {
+  Arena *a = e->arena;
   uint32_t axis = common_shift(e, r, 0), only = only_shift(e, r, 0);
   int has_F = to->is.is == INVARIANT_UP_TO_F, magnetic = has_F && (expr_kinds(e->g, to->is.F) & 1u << SYM_COORD);
   to->kind = SYMMETRY_MOMENTUM;
@@ -147,37 +151,37 @@ static void name_shift(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) 
   to->of_all = axis != AXIS_NONE;
   if (only != UINT32_MAX)
     to->name = arena_printf(a, magnetic ? "magnetic translation along %s" : has_F ? "translation along %s: momentum less the impulse of what is uniform" : "momentum of %s",
-                            coord(e, only));
+                            e->name[only]);
   else if (axis != AXIS_NONE) to->name = arena_printf(a, magnetic ? "magnetic translation of all bodies along %s" : "total momentum along %s", axis_text(axis));
   else to->name = magnetic ? "magnetic translation" : "momentum along a direction";
 }
 
-static void name_boost(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+static void name_boost(const Coordinates *e, const GeneratorRow *r, FoundSymmetry *to) {
   uint32_t axis = common_shift(e, r, 1), only = only_shift(e, r, 1);
   to->kind = SYMMETRY_BOOST;
   to->axis = axis;
   to->of_all = axis != AXIS_NONE;
-  to->name = only != UINT32_MAX  ? arena_printf(e->m->arena, "boost along %s", coord(e, only))
-             : axis != AXIS_NONE   ? arena_printf(e->m->arena, "boost along %s: the centre of mass moves uniformly", axis_text(axis))
+  to->name = only != UINT32_MAX  ? arena_printf(e->arena, "boost along %s", e->name[only])
+             : axis != AXIS_NONE   ? arena_printf(e->arena, "boost along %s: the centre of mass moves uniformly", axis_text(axis))
                                  : "boost";
 }
 
-static uint32_t terms_of(const Eqns *e, const GeneratorRow *r) {
+static uint32_t terms_of(const Coordinates *e, const GeneratorRow *r) {
   uint32_t terms = 0;
   for (uint32_t j = 0; j < r->ansatz->xi.n; j++) terms += !expr_is_zero(e->g, r->c[1 + j]);
   return terms;
 }
 
 /* Whether the linear part is a turn of some bodies about one axis by one angle; *bodies: how many. */
-static uint32_t common_turn(const Eqns *e, const GeneratorRow *r, uint32_t *bodies) {
+static uint32_t common_turn(const Coordinates *e, const GeneratorRow *r, uint32_t *bodies) {
   uint32_t axis = AXIS_NONE, terms = terms_of(e, r);
   Expr one = 0;
   *bodies = 0;
-  for (uint32_t i = 0; i < noether_coordinates(e); i++)
-    for (uint32_t j = i + 1; j < noether_coordinates(e); j++) {
+  for (uint32_t i = 0; i < e->n; i++)
+    for (uint32_t j = i + 1; j < e->n; j++) {
       uint32_t a = name_axis(e, i), b = name_axis(e, j);
       if (!turns(e, r, i, j)) continue;
-      if (a == AXIS_NONE || b == AXIS_NONE || a == b || !name_same_body(coord(e, i), coord(e, j))) return AXIS_NONE;
+      if (a == AXIS_NONE || b == AXIS_NONE || a == b || !name_same_body(e->name[i], e->name[j])) return AXIS_NONE;
       Expr c = entry(e, r, 0, i, j + 1);
       if ((b + 3 - a) % 3 == 2) c = expr_neg(e->g, c);
       if (one && (c != one || axis != 3 - a - b)) return AXIS_NONE;
@@ -188,23 +192,23 @@ static uint32_t common_turn(const Eqns *e, const GeneratorRow *r, uint32_t *bodi
   return terms == 2 * *bodies ? axis : AXIS_NONE;
 }
 
-static uint32_t bodies_with(const Eqns *e, uint32_t axis) {
+static uint32_t bodies_with(const Coordinates *e, uint32_t axis) {
   uint32_t a = (axis + 1) % 3, n = 0;
-  for (uint32_t i = 0; i < noether_coordinates(e); i++)
-    for (uint32_t j = 0; j < noether_coordinates(e); j++)
-      n += name_axis(e, i) == a && name_axis(e, j) == (axis + 2) % 3 && name_same_body(coord(e, i), coord(e, j));
+  for (uint32_t i = 0; i < e->n; i++)
+    for (uint32_t j = 0; j < e->n; j++)
+      n += name_axis(e, i) == a && name_axis(e, j) == (axis + 2) % 3 && name_same_body(e->name[i], e->name[j]);
   return n;
 }
 
 /* Whether the linear part turns two directions of bodies against one another, but not body by body: xi_x = -S y, xi_y = S x. */
-static int mixes_bodies(const Eqns *e, const GeneratorRow *r) {
+static int mixes_bodies(const Coordinates *e, const GeneratorRow *r) {
   for (uint32_t j = 0; j < r->ansatz->xi.n; j++) {
     if (expr_is_zero(e->g, r->c[1 + j])) continue;
     uint32_t i = r->ansatz->xi.at[j].i, k = r->ansatz->xi.at[j].k - 1, a = name_axis(e, i), b = name_axis(e, k), found = 0;
     if (a == AXIS_NONE || b == AXIS_NONE || a == b) return 0;
-    for (uint32_t other = 0; other < noether_coordinates(e) && !found; other++)
-      for (uint32_t last = 0; last < noether_coordinates(e) && !found; last++)
-        found = name_same_body(coord(e, i), coord(e, other)) && name_axis(e, other) == b && name_same_body(coord(e, k), coord(e, last)) &&
+    for (uint32_t other = 0; other < e->n && !found; other++)
+      for (uint32_t last = 0; last < e->n && !found; last++)
+        found = name_same_body(e->name[i], e->name[other]) && name_axis(e, other) == b && name_same_body(e->name[k], e->name[last]) &&
                 name_axis(e, last) == a && entry(e, r, 0, other, last + 1) == expr_neg(e->g, r->c[1 + j]);
     if (!found) return 0;
   }
@@ -213,7 +217,7 @@ static int mixes_bodies(const Eqns *e, const GeneratorRow *r) {
 
 /* Whether xi is a multiple of n q (in space) or q n (of the body's own), q the rotation that coordinate w begins and n its axis `x`, with y and z
  * behind it in turn. */
-static int turns_rotation(const Eqns *e, const GeneratorRow *r, uint32_t w, uint32_t axis, int own) {
+static int turns_rotation(const Coordinates *e, const GeneratorRow *r, uint32_t w, uint32_t axis, int own) {
   uint32_t x = sibling(e, w, (char)('x' + axis)), y = sibling(e, w, (char)('x' + (axis + 1) % 3)), z = sibling(e, w, (char)('x' + (axis + 2) % 3));
   if (x == UINT32_MAX || y == UINT32_MAX || z == UINT32_MAX) return 0;
   Expr c = entry(e, r, 0, x, w + 1), minus = expr_neg(e->g, c), other = own ? minus : c;
@@ -221,71 +225,70 @@ static int turns_rotation(const Eqns *e, const GeneratorRow *r, uint32_t w, uint
 }
 
 /* Whether xi turns only w against `axis` (the sum of n q and q n), or only the two other components (their difference). */
-static int name_double_turn(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
-  for (uint32_t w = 0; w < noether_coordinates(e) && terms_of(e, r) == 2; w++)
+static int name_double_turn(const Coordinates *e, const GeneratorRow *r, FoundSymmetry *to) {
+  for (uint32_t w = 0; w < e->n && terms_of(e, r) == 2; w++)
     for (uint32_t axis = 0; axis < 3 && sibling(e, w, 'w') == w; axis++) {
       uint32_t x = sibling(e, w, (char)('x' + axis)), y = sibling(e, w, (char)('x' + (axis + 1) % 3)), z = sibling(e, w, (char)('x' + (axis + 2) % 3));
       if (x == UINT32_MAX || y == UINT32_MAX || z == UINT32_MAX) continue;
       int sum = turns(e, r, w, x);
       if (!sum && !turns(e, r, y, z)) continue;
       to->kind = SYMMETRY_OTHER;
-      to->name = arena_printf(e->m->arena, "turns about %s in space and about the body's own: the %s of the angular momenta", axis_text(axis), sum ? "sum" : "difference");
+      to->name = arena_printf(e->arena, "turns about %s in space and about the body's own: the %s of the angular momenta", axis_text(axis), sum ? "sum" : "difference");
       return 1;
     }
   return 0;
 }
 
 /* 0: it is no turn of one rotation. */
-static int name_turn(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
-  for (uint32_t w = 0; w < noether_coordinates(e) && terms_of(e, r) == 4; w++)
+static int name_turn(const Coordinates *e, const GeneratorRow *r, FoundSymmetry *to) {
+  for (uint32_t w = 0; w < e->n && terms_of(e, r) == 4; w++)
     for (uint32_t k = 0; k < 6 && sibling(e, w, 'w') == w; k++) {
       if (!turns_rotation(e, r, w, k / 2, k % 2)) continue;
       to->kind = SYMMETRY_OTHER;
-      to->name = arena_printf(e->m->arena, k % 2 ? "turns about the body's own %s: twice its angular momentum" : "turns about %s in space: twice the angular momentum", axis_text(k / 2));
+      to->name = arena_printf(e->arena, k % 2 ? "turns about the body's own %s: twice its angular momentum" : "turns about %s in space: twice the angular momentum", axis_text(k / 2));
       return 1;
     }
   return 0;
 }
 
-/* Whether the linear part of block 0 is antisymmetric. */
-static int only_turns(const Eqns *e, const GeneratorRow *r) {
-  for (uint32_t i = 0; i < noether_coordinates(e); i++)
-    for (uint32_t j = 0; j < noether_coordinates(e); j++)
+int only_turns(const Coordinates *e, const GeneratorRow *r) {
+  for (uint32_t i = 0; i < e->n; i++)
+    for (uint32_t j = 0; j < e->n; j++)
       if (!expr_is_zero(e->g, entry(e, r, 0, i, j + 1)) && !turns(e, r, i < j ? i : j, i < j ? j : i)) return 0;
   return 1;
 }
 
 /* Whether any block shifts a coordinate that the linear part of block 0 leaves alone. */
-static int shifts_beside(const Eqns *e, const GeneratorRow *r) {
-  for (uint32_t i = 0; i < noether_coordinates(e); i++) {
+static int shifts_beside(const Coordinates *e, const GeneratorRow *r) {
+  for (uint32_t i = 0; i < e->n; i++) {
     int shifted = 0, alone = 1;
     for (uint32_t m = 0; m < r->blocks; m++) shifted = shifted || !expr_is_zero(e->g, entry(e, r, m, i, 0));
-    for (uint32_t j = 0; j < noether_coordinates(e) && shifted && alone; j++) alone = expr_is_zero(e->g, entry(e, r, 0, i, j + 1));
+    for (uint32_t j = 0; j < e->n && shifted && alone; j++) alone = expr_is_zero(e->g, entry(e, r, 0, i, j + 1));
     if (shifted && alone) return 1;
   }
   return 0;
 }
 
 /* A linear part in block 0 with a shift, at one time or at several. */
-static const char *affine_name(const Eqns *e, const GeneratorRow *r, Parts p) {
+static const char *affine_name(const Coordinates *e, const GeneratorRow *r, Parts p) {
   if (!only_turns(e, r)) return "affine map of the coordinates";
   if (shifts_beside(e, r)) return "screw: a rotation and a translation at once";
   return p.shift > 1 ? "rotation about a point that moves" : "rotation about another point";
 }
 
 /* Whether the linear part maps coordinates to others, not only to themselves. */
-static int mixes(const Eqns *e, const GeneratorRow *r) {
+static int mixes(const Coordinates *e, const GeneratorRow *r) {
   for (uint32_t j = 0; j < r->ansatz->xi.n; j++)
     if (r->ansatz->xi.at[j].k && r->ansatz->xi.at[j].k != r->ansatz->xi.at[j].i + 1 && !expr_is_zero(e->g, r->c[1 + j])) return 1;
   return 0;
 }
 
-static const char *scaling_name(const Eqns *e, const GeneratorRow *r, Parts p) {
+static const char *scaling_name(const Coordinates *e, const GeneratorRow *r, Parts p) {
   if (mixes(e, r)) return p.shift ? "scaling with an affine map of the coordinates" : "scaling with a linear map of the coordinates";
   return p.shift > 1 ? "scaling about a point that moves" : p.shift ? "scaling about another point" : "scaling";
 }
 
-static void name_linear(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+static void name_linear(const Coordinates *e, const GeneratorRow *r, FoundSymmetry *to) {
   if (name_turn(e, r, to) || name_double_turn(e, r, to)) return;
   uint32_t bodies, axis = common_turn(e, r, &bodies);
   int space = along(e, 2) > 0 && along(e, 0) > 0;
@@ -295,25 +298,25 @@ static void name_linear(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to)
     to->axis = axis;
     to->of_all = all;
     const char *whole = all && bodies > 1 ? "total angular momentum" : "angular momentum";
-    to->name = space || axis != 2 ? arena_printf(e->m->arena, "%s about %s", whole, axis_text(axis)) : whole;
+    to->name = space || axis != 2 ? arena_printf(e->arena, "%s about %s", whole, axis_text(axis)) : whole;
   } else if (mixes_bodies(e, r)) to->name = "angular momentum of a part of the motion";
   else to->name = only_turns(e, r) ? "rotation among coordinates" : "linear map of the coordinates";
 }
 
-static int stretches(const Eqns *e, const GeneratorRow *r) {
-  for (uint32_t i = 0; i < noether_coordinates(e); i++)
+static int stretches(const Coordinates *e, const GeneratorRow *r) {
+  for (uint32_t i = 0; i < e->n; i++)
     if (!expr_is_zero(e->g, entry(e, r, 0, i, i + 1))) return 1;
   return 0;
 }
 
-void name_symmetry(const Eqns *e, const GeneratorRow *r, FoundSymmetry *to) {
+void name_symmetry(const Coordinates *e, const GeneratorRow *r, FoundSymmetry *to) {
   Parts p = parts_of(e, r);
   to->axis = AXIS_NONE;
   to->name = "point symmetry";
   if (r->kind == TIME_LISTED && p.tau == 1 && p.shift > 1 && !p.linear) to->name = "energy in a moving frame"; /* that of the forced motion */
   else if (r->kind != TIME_POWERS && (r->kind != TIME_LISTED || (p.tau | p.shift | p.linear) > 7)) {
     const char *what = p.tau ? "breathing" : p.linear ? "turning" : "shift along a solution";
-    to->name = r->kind == TIME_LISTED ? what : arena_printf(e->m->arena, "%s, %s", what, r->kind == TIME_CIRCULAR ? "periodic in t" : "exponential in t");
+    to->name = r->kind == TIME_LISTED ? what : arena_printf(e->arena, "%s, %s", what, r->kind == TIME_CIRCULAR ? "periodic in t" : "exponential in t");
   } else if (is_energy(p)) {
     to->kind = SYMMETRY_ENERGY;
     to->name = "energy";

@@ -14,19 +14,33 @@ typedef struct {
   Generator by;
 } GeneratorRow;
 
+/* What generators move: the model's coordinates, or the sums of them that L is written with, where these have names. */
+typedef struct {
+  ExprGraph *g;
+  Arena *arena;      /* of texts */
+  uint32_t n;
+  const Name *name;  /* [n] */
+} Coordinates;
+
+/* forms NULL, or without names: the model's own. */
+Coordinates coordinates_of(const Eqns *e, const LinearForms *forms);
+
 enum { AXIS_NONE = 3 };
 
 /* 0, 1, 2 where coordinate i lies along x, y, z by its name: r[2].x, x[2], x2, x; AXIS_NONE: it does not. Components of rotations do not. */
-uint32_t name_axis(const Eqns *e, uint32_t i);
+uint32_t name_axis(const Coordinates *e, uint32_t i);
 const char *axis_text(uint32_t axis);
 
 /* Whether two components belong to one body: all but the letter agrees. */
 int name_same_body(Name a, Name b);
 
 /* Signs as in books: the energy is E, a turn goes from x to y, from y to z, from z to x. */
-void orient(const Eqns *e, GeneratorRow *row);
+void orient(const Coordinates *e, GeneratorRow *row);
 
-void name_symmetry(const Eqns *e, const GeneratorRow *row, FoundSymmetry *to);
+/* Whether the linear part of block 0 is antisymmetric. */
+int only_turns(const Coordinates *e, const GeneratorRow *row);
+
+void name_symmetry(const Coordinates *e, const GeneratorRow *row, FoundSymmetry *to);
 
 /* Energy, three momenta, three angular momenta, three boosts. */
 int has_galilean_charges(const FoundSymmetries *all);

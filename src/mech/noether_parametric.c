@@ -99,14 +99,31 @@ static void fit(Fit *f) {
     if (whole_row(f, kernel.at + (size_t)r * unknowns, whole)) add_row(f, whole);
 }
 
-ParametricRows parametric_rows(Arena *a, const Choices *choices, const Table *at, uint32_t count) {
-  ExprGraph *g = choices->e->g;
+/* For rows free of parameters. */
+static Fit begin(Arena *a, const Choices *choices, const Table *at, uint32_t count) {
   Fit f = {.arena = a, .choices = choices, .at = at, .count = count, .width = at[0].blocks * at[0].shown, .nmu = 1};
   f.column = ARENA_ARRAY(a, uint32_t, f.width + 1);
+  f.mu[0] = expr_int(choices->e->g, 1);
+  take_columns(&f);
+  return f;
+}
+
+DenseRows parametric_common(Arena *a, const Choices *choices, const Table *at, uint32_t count) {
+  Fit f = begin(a, choices, at, count);
+  DenseRows all = {.width = f.width};
+  if (!f.ncolumns || f.ncolumns > UNKNOWNS_MOST) return all;
+  DenseRows kernel = kernel_of(&f);
+  all.at = ARENA_ARRAY(a, Real, (size_t)kernel.n * f.width + 1);
+  for (all.n = 0; kernel.gap >= 1e2L && all.n < kernel.n; all.n++)
+    for (uint32_t k = 0; k < f.ncolumns; k++) all.at[(size_t)all.n * f.width + f.column[k]] = kernel.at[(size_t)all.n * f.ncolumns + k];
+  return all;
+}
+
+ParametricRows parametric_rows(Arena *a, const Choices *choices, const Table *at, uint32_t count) {
+  ExprGraph *g = choices->e->g;
+  Fit f = begin(a, choices, at, count);
   f.most = 4 * (1 + PARAMETERS_MOST) * at[0].rows;
   f.out.at = ARENA_ARRAY(a, ParametricRow, (size_t)f.most + 1);
-  f.mu[0] = expr_int(g, 1);
-  take_columns(&f);
   fit(&f);
   if (choices->n < 2 || choices->n > PARAMETERS_MOST) return f.out;
   for (f.nmu = 0; f.nmu < choices->n; f.nmu++) f.mu[f.nmu] = expr_symbol(g, choices->param[f.nmu])->node;

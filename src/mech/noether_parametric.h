@@ -21,4 +21,7 @@ typedef struct {
  * rows that are not recognised as whole numbers are left out. They need not be symmetries: that is for noether_prove to say. */
 ParametricRows parametric_rows(Arena *a, const Choices *choices, const Table *at, uint32_t count);
 
+/* The rows that are common to all these tables. */
+DenseRows parametric_common(Arena *a, const Choices *choices, const Table *at, uint32_t count);
+
 #endif

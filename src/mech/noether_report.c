@@ -56,10 +56,19 @@ NoetherReport *noether_report(Eqns *e) {
   return r;
 }
 
+/* Whether two charges are the same; those of sums of coordinates are written in another way. */
+static int same_charge(const NoetherReport *r, uint32_t k, Expr one, Expr other) {
+  ExprGraph *g = r->e->g;
+  const LinearForms *forms = r->found.all.at[k].forms;
+  return one == other || (forms && forms_prove_zero(forms, g, expr_sub(g, one, other)) == PROVED_ZERO);
+}
+
 Name noether_declared(const NoetherReport *r, uint32_t k) {
   Expr charge = r->found.all.at[k].is.charge, minus = expr_neg(r->e->g, charge);
-  for (uint32_t i = 1; i < r->e->ncharges; i++)
-    if (r->e->charges[i].proof.charge == charge || r->e->charges[i].proof.charge == minus) return r->e->charges[i].name;
+  for (uint32_t i = 1; i < r->e->ncharges; i++) {
+    Expr declared = r->e->charges[i].proof.charge;
+    if (same_charge(r, k, declared, charge) || same_charge(r, k, declared, minus)) return r->e->charges[i].name;
+  }
   return NULL;
 }
 
@@ -116,7 +125,7 @@ static int generator_in(const Eqns *to, const Eqns *from, const Generator *by, G
       if (!(xi[i] = in_graph(to, from->g, by->xi[k]))) return 0;
       placed++;
     }
-  *same = (Generator){xi, in_graph(to, from->g, by->tau)};
+  *same = (Generator){.xi = xi, .tau = in_graph(to, from->g, by->tau)};
   return same->tau && placed == noether_coordinates(from);
 }
 

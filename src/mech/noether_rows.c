@@ -65,7 +65,7 @@ Ansatz *ansatz_new(Arena *a, const Eqns *e) {
   add_held(s, a);
   s->shown = 1 + s->xi.n;
   s->columns = s->shown + s->gauge.n;
-  s->forms = ansatz_is_restricted(s) ? NULL : forms_new(a, e);
+  s->forms = ansatz_is_restricted(s) ? NULL : forms_new(e->m->arena, e); /* found symmetries keep them */
   return s;
 }
 

@@ -66,6 +66,10 @@ static Table table_new(Arena *a, uint32_t rows, uint32_t blocks, uint32_t shown)
   return (Table){rows, blocks, shown, ARENA_ARRAY(a, long double, size + 1), ARENA_ARRAY(a, uint32_t, rows + 1)};
 }
 
+int table_same_shape(const Table *a, const Table *b) {
+  return a->rows == b->rows && a->shown == b->shown && memcmp(a->pivot, b->pivot, a->rows * sizeof *a->pivot) == 0;
+}
+
 static void reduce(Table *t) {
   uint32_t width = t->blocks * t->shown;
   long double size = largest(t->at, (size_t)t->rows * width);

@@ -18,6 +18,9 @@ typedef struct {
   uint32_t *pivot;
 } Table;
 
+/* Whether rows and pivots agree. */
+int table_same_shape(const Table *a, const Table *b);
+
 Table table_powers(Arena *a, const SolutionSpace *s, uint32_t shown);
 
 /* rate2 < 0: those with frequency sqrt(-rate2); > 0: those that grow and fall with sqrt(rate2). */

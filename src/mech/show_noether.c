@@ -70,6 +70,34 @@ static void put_conditions(Page *p, uint32_t k) {
   if (all.n) say(p, sb_text(&b));
 }
 
+/* Whether x has a number that 64 bits do not hold. */
+static int is_rounded(ExprGraph *g, Expr x) {
+  ExprList all = expr_topo(g, &x, 1);
+  for (uint32_t i = 0; i < all.n; i++) {
+    if (expr_is_num(g, all.at[i]) && !num_is_exact(expr_number(g, all.at[i]))) return 1;
+    for (uint32_t k = 0; k < expr_pairs(g, all.at[i], EX_SUM); k++) {
+      Num c;
+      expr_pair(g, all.at[i], EX_SUM, k, &c);
+      if (!num_is_exact(c)) return 1;
+    }
+  }
+  return 0;
+}
+
+/* What the generator does to coordinates, or to the sums of them that L is written with. Of numbers with too many digits it is said how they follow. */
+static void deltas(Page *p, const FoundSymmetry *s) {
+  Text *t = &p->text;
+  uint32_t n = noether_coordinates(t->e);
+  int rounded = 0;
+  for (uint32_t i = 0; i < n && s->by.lowered && expr_is_zero(t->g, s->by.tau); i++) rounded = rounded || is_rounded(t->g, s->by.xi[i]);
+  if (rounded) say(p, arena_printf(t->e->m->arena, "  delta q = M^-1 d%s/dq' with the mass matrix M: its numbers have too many digits", named(p, "", (uint32_t)(s - p->r->found.all.at), "")));
+  for (uint32_t i = 0; i < n && !rounded; i++) {
+    if (s->forms) put_delta(p, s->forms->name[i], forms_back(s->forms, t->g, s->by.eta[i]));
+    else put_delta(p, expr_symbol(t->g, noether_coordinate(t->e, i))->name, s->by.xi[i]);
+  }
+  put_delta(p, "t", s->by.tau);
+}
+
 static void symmetry(Page *p, uint32_t k) {
   Text *t = &p->text;
   Arena *a = t->e->m->arena;
@@ -77,8 +105,7 @@ static void symmetry(Page *p, uint32_t k) {
   int moves = !s->is.power_unknown && !expr_is_zero(t->g, s->is.power);
   Name declared = noether_declared(p->r, k);
   text_heading(t, arena_printf(a, "%s: %s%s%s%s", named(p, "", k, ""), s->name, declared ? "; declared as " : "", declared ? declared : "", s->is.jumps ? "; between jumps of L only" : ""));
-  for (uint32_t i = 0; i < noether_coordinates(t->e); i++) put_delta(p, expr_symbol(t->g, noether_coordinate(t->e, i))->name, s->by.xi[i]);
-  put_delta(p, "t", s->by.tau);
+  deltas(p, s);
   if (!expr_is_zero(t->g, s->is.F)) text_named(t, "F", "F", s->is.F, 0);
   if (s->is.over_time) say(p, "  F has the integral over t of what stands as dQ/dt, too");
   text_named(t, named(p, "", k, ""), named_latex(p, k, 0), s->is.charge, !moves);

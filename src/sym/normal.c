@@ -7,6 +7,7 @@ Normal *normal_new(ExprGraph *g, Arena *a, NormalLimits limits) {
   n->g = g;
   n->arena = a;
   n->ring = poly_ring(a, limits.max_terms, limits.max_work);
+  n->ring->residues = limits.residues;
   n->shallow = limits.shallow;
   n->field = frac_field(n->ring);
   n->canonical = 1;
@@ -86,9 +87,11 @@ static Frac opaque(Normal *n, ExprOp op, const Frac *arg, uint32_t nargs, Expr e
   return opaque_by_key(n, key, len, (GenInfo){.kind = GEN_OPAQUE, .expr = expr, .op = op, .arg = arg[0]});
 }
 
-/* A number: exact, or a generator of its own (its node tells it from others). */
+static int is_coefficient(const Normal *n, Num v) { return n->ring->residues || num_is_exact(v); }
+
+/* A number: a coefficient, or a generator of its own (its node tells it from others). */
 static Frac number_frac(Normal *n, Num v) {
-  if (num_is_exact(v)) return frac_num(n->field, v);
+  if (is_coefficient(n, v)) return frac_num(n->field, v);
   Expr size = expr_num(n->g, num_abs(v));
   uint32_t key[2] = {EX_NUM, size};
   Frac f = opaque_by_key(n, key, 2, (GenInfo){.kind = GEN_OPAQUE, .expr = size, .op = EX_NUM});
@@ -111,7 +114,7 @@ static Frac sum_frac(Normal *n, Expr e) {
   for (uint32_t i = 0; i < count; i++) {
     Expr t = expr_pair(n->g, e, EX_SUM, i, &c[i]);
     term[i] = value_of(n, t);
-    if (num_is_exact(c[i])) continue;
+    if (is_coefficient(n, c[i])) continue;
     Frac scale = number_frac(n, c[i]);
     term[i] = frac_mul(n->field, term[i], scale);
     c[i] = num_int(1);

@@ -26,6 +26,7 @@ typedef struct {
   uint32_t max_terms; /* of one polynomial */
   uint64_t max_work;  /* products of terms */
   int shallow;        /* a definition is a generator of its own: what it stands for is not looked at */
+  int residues;       /* numbers that 64 bits do not hold are coefficients, with their residues: for proofs that something is 0 */
 } NormalLimits;
 
 typedef enum { GEN_SYMBOL, GEN_SIN, GEN_COS, GEN_POWER, GEN_ROOT, GEN_OPAQUE } GenKind;

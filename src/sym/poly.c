@@ -34,11 +34,15 @@ static int spend(PolyRing *r, uint64_t n) {
 
 /* --- coefficients --- */
 
+static void demand_exact(PolyRing *r, Num c) {
+  if (!r->residues && !num_is_exact(c)) poly_fail(r, POLY_INEXACT);
+}
+
 static Num add(PolyRing *r, Num a, Num b) {
   Num s = {.den = 1};
   if (a.den == 1 && b.den == 1 && !__builtin_add_overflow(a.num, b.num, &s.num) && s.num != INT64_MIN) return s;
   s = num_add(a, b);
-  if (!num_is_exact(s)) poly_fail(r, POLY_INEXACT);
+  demand_exact(r, s);
   return s;
 }
 
@@ -46,7 +50,7 @@ static Num mul(PolyRing *r, Num a, Num b) {
   Num p = {.den = 1};
   if (a.den == 1 && b.den == 1 && !__builtin_mul_overflow(a.num, b.num, &p.num) && p.num != INT64_MIN) return p;
   p = num_mul(a, b);
-  if (!num_is_exact(p)) poly_fail(r, POLY_INEXACT);
+  demand_exact(r, p);
   return p;
 }
 
@@ -236,7 +240,7 @@ Poly poly_zero(void) { return (Poly){0}; }
 
 Poly poly_mono(PolyRing *r, Num c, MonoId m) {
   accumulate(r, m, c);
-  if (!num_is_exact(c)) poly_fail(r, POLY_INEXACT);
+  demand_exact(r, c);
   return finish(r);
 }
 
@@ -300,7 +304,8 @@ Poly poly_pow(PolyRing *r, Poly a, uint32_t n) {
     Poly power = poly_num(r, num_int(1));
     int exact;
     Num c = num_pow(a.at[0].c, num_int(n), &exact);
-    if (!exact || n > 1u << 20) poly_fail(r, exact ? POLY_TOO_LARGE : POLY_INEXACT);
+    if (n > 1u << 20) poly_fail(r, POLY_TOO_LARGE);
+    if (!exact) demand_exact(r, c);
     if (r->status != POLY_OK) return poly_zero();
     MonoId m = mono_pow(r, a.at[0].mono, (int32_t)n);
     return poly_mul_mono(r, power, c, m);
@@ -328,7 +333,7 @@ int poly_is_one(Poly a) { return a.n == 1 && a.at[0].mono == 0 && num_is_one(a.a
 Num poly_content(PolyRing *r, Poly a) {
   Num c = num_abs(a.at[0].c);
   for (uint32_t i = 1; i < a.n && !num_is_one(c); i++) c = num_gcd(c, a.at[i].c);
-  if (!num_is_exact(c)) poly_fail(r, POLY_INEXACT);
+  demand_exact(r, c);
   return num_sign(a.at[0].c) < 0 ? num_neg(c) : c;
 }
 

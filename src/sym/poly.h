@@ -7,6 +7,8 @@
  * Must hold: coefficients are exact. One that would not fit 64 bits ends the computation with the
  * status POLY_INEXACT; more terms or work than allowed end it with POLY_TOO_LARGE. The status stays,
  * and later operations return at once with results that mean nothing: callers look at the end.
+ * In a ring with `residues` set such a coefficient is a double with its residue (base/num.h): a
+ * polynomial that vanishes is still the polynomial 0.
  *
  * Ownership: all in the ring's arena. Polynomials are values that are never changed. */
 #ifndef LAGC_POLY_H
@@ -53,6 +55,7 @@ typedef struct {
 typedef struct {
   Arena *arena;
   PolyStatus status;
+  int residues;       /* coefficients need not be exact */
   uint32_t max_terms; /* of one polynomial */
   uint64_t work;      /* products of terms that may still be formed */
   VEC(PolyGen) gens;

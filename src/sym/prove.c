@@ -32,6 +32,7 @@ typedef struct {
   ExprGraph *g;
   Expr e;
   NormalLimits limits;
+  int overflowed; /* numbers did not fit */
   Verdict verdict;
 } ZeroTask;
 
@@ -39,15 +40,21 @@ static void zero_work(Arena *scratch, void *data) {
   ZeroTask *t = data;
   Normal *n = normal_new(t->g, scratch, t->limits);
   Frac f;
-  if (normal_run(n, &t->e, 1, &f) != POLY_OK) return;
+  PolyStatus status = normal_run(n, &t->e, 1, &f);
+  t->overflowed = status == POLY_INEXACT;
+  if (status != POLY_OK) return;
   if (f.num.n == 0) t->verdict = PROVED_ZERO;
-  else if (n->canonical) t->verdict = PROVED_NONZERO;
+  else if (n->canonical && !t->limits.residues) t->verdict = PROVED_NONZERO;
 }
 
 Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits) {
   if (e == 0 || expr_is_zero(g, e)) return PROVED_ZERO;
   ZeroTask t = {.g = g, .e = e, .limits = limits ? *limits : prove_limits()};
   normal_with_scratch(g, zero_work, &t);
+  if (t.overflowed) {
+    t.limits.residues = 1;
+    normal_with_scratch(g, zero_work, &t);
+  }
   return t.verdict != NOT_DECIDED ? t.verdict : nonzero_by_value(g, e);
 }
 

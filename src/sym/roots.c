@@ -98,6 +98,10 @@ static Frac integer_root(Normal *n, int64_t m, int32_t sign, int32_t k) {
 }
 
 static Frac number_root(Normal *n, Num c, int32_t k) {
+  if (!num_is_exact(c)) {
+    poly_fail(n->ring, POLY_INEXACT);
+    return one(n);
+  }
   Frac top = integer_root(n, c.num, 1, k), bottom = integer_root(n, c.den, -1, k);
   return frac_mul(n->field, top, bottom);
 }

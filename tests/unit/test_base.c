@@ -86,6 +86,12 @@ static void test_overflow(void **state) {
     assert_true(fabsl(num_value(r) - want) <= 4 * DBL_EPSILON * fabsl(want));
   }
   assert_true(num_is_zero(num_mul(num_int(0), num_double(1e300))));
+  /* what becomes a whole number again is one; what is close to one is not */
+  Num large = num_int(1000000000000), square = num_mul(large, large), more = num_add(square, num_int(1));
+  assert_false(num_is_exact(square));
+  assert_num(num_div(square, large), 1000000000000, 1);
+  assert_num(num_div(num_neg(square), large), -1000000000000, 1);
+  assert_false(num_is_exact(num_div(more, large)));
 }
 
 static void test_parse(void **state) {

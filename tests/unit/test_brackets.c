@@ -165,7 +165,7 @@ static void oscillator(void **state) {
  * N sin(2 t) ..., have {b1, b2} = +-2 N^2 of the energy; N clears the fractions of the shifts 95/648 and 343/864: 2592. */
 static void large_numbers(void **state) {
   (void)state;
-  Charges c = charges("model o\ncoord u, v\nlet x = 3*u/2 - 2*v/7 + 1/3\nlet y = u/5 + 4*v/3 - 1/2\nlagrangian = (x'^2 + y'^2)/2 - (x^2 + y^2)/2\n");
+  Charges c = charges("model o\ncoord u, v\nlagrangian = ((3*u'/2 - 2*v'/7)^2 + (u'/5 + 4*v'/3)^2)/2 - ((3*u/2 - 2*v/7 + 1/3)^2 + (u/5 + 4*v/3 - 1/2)^2)/2\n");
   uint32_t n = c.found.all.n;
   assert_int_equal(n, 8);
   for (uint32_t k = 0; k < c.algebra.all.n; k++) assert_non_null(c.algebra.all.at[k].c);

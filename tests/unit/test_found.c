@@ -121,7 +121,7 @@ static void contains_textbook(const Model_ *m) {
     }
     if (!some) continue;
     long double *row = ARENA_ARRAY(m->arena, long double, width_of(m));
-    values_of(m, &(Generator){xi, tau}, row);
+    values_of(m, &(Generator){.xi = xi, .tau = tau}, row);
     if (!is_in(&space, row)) fail_msg("the generator %c is not found", letter);
   }
 }
@@ -483,6 +483,28 @@ static void affine_change_bodies(void **state) {
               "potential = -G*m1*m2/sqrt((9 - 5/7*u + 4*w - 8/9*p + 8/7*v + 2*w + p - 8/7)^2 + (3/8 + u + v + 4*w + 4*u + 8/3*v + 9/4*w + 4*p + 1/8)^2)\n", 7);
 }
 
+/* The same where no short numbers are left: coefficients of generators are quotients of determinants, some with more digits than 64 bits hold, and
+ * those of charges have eight. And where coefficients of the sums are parameters. */
+static void affine_change_long(void **state) {
+  (void)state;
+  static const char *const names[] = {"lets_gravity", "lets_springs", "expanded_gravity", "expanded_long", "expanded_springs", "expanded_springs2"};
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+    static char text[8192];
+    char path[80];
+    snprintf(path, sizeof path, "tests/exec/skew/%s.lag", names[k]);
+    FILE *f = fopen(path, "r");
+    assert_non_null(f);
+    text[fread(text, 1, sizeof text - 1, f)] = '\0';
+    fclose(f);
+    counts_skew(text, 7);
+  }
+  counts_skew("model p\ncoord u, v\nparam a = 2 > 0, b = 1 > 0, c = 1 > 0, d = 3 > 0\nlet x = a*u + b*v\nlet y = c*u - d*v\nlagrangian = (x'^2 + y'^2)/2 - 1/sqrt(x^2 + y^2)\n", 2);
+  counts_skew("model o\ncoord u, v\nparam a = 2, b = 1, m = 2 > 0, k = 3 > 0\nlet x = a*u + b*v - a\nlet y = u - v\nlagrangian = m/2*(x'^2 + y'^2) - k/2*(x^2 + y^2)\n", 8);
+  counts_skew("model t\ncoord u1, u2, u3, u4\nparam a = 2, b = 1, m1 = 2 > 0, m2 = 3 > 0, k = 1\nlet x1 = a*u1 + b*u2\nlet x2 = u1 - u2 + a*u3\nlet y1 = u3 + b*u4\nlet y2 = u4 - a*u1 + b\n"
+              "lagrangian = m1/2*(x1'^2 + y1'^2) + m2/2*(x2'^2 + y2'^2) - k/hypot(x1 - x2, y1 - y2)\n", 7);
+  counts_skew("model s\ncoord u, v\nparam a = 2, b = 1\nlagrangian = ((a*u' + b*v')^2 + (u' - v')^2)/2 - 1/sqrt((a*u + b*v)^2 + (u - v)^2)\n", 2);
+}
+
 /* Constraints come along: one beside two bodies, and a rod on which a pendulum swings. */
 static void affine_change_held(void **state) {
   (void)state;
@@ -540,7 +562,7 @@ int main(void) {
     cmocka_unit_test(free_particle), cmocka_unit_test(uniform_field), cmocka_unit_test(kepler),    cmocka_unit_test(oscillators),
     cmocka_unit_test(magnetic),      cmocka_unit_test(inverse_square), cmocka_unit_test(bodies),   cmocka_unit_test(nothing_false),
     cmocka_unit_test(curved),        cmocka_unit_test(driven),        cmocka_unit_test(constrained), cmocka_unit_test(first_order),
-    cmocka_unit_test(affine_change), cmocka_unit_test(affine_change_3d), cmocka_unit_test(affine_change_bodies), cmocka_unit_test(affine_change_held), cmocka_unit_test(near_rates), cmocka_unit_test(scalings), cmocka_unit_test(rotations),
+    cmocka_unit_test(affine_change), cmocka_unit_test(affine_change_3d), cmocka_unit_test(affine_change_bodies), cmocka_unit_test(affine_change_long), cmocka_unit_test(affine_change_held), cmocka_unit_test(near_rates), cmocka_unit_test(scalings), cmocka_unit_test(rotations),
     cmocka_unit_test(many), cmocka_unit_test(growing_field), cmocka_unit_test(fading_attraction), cmocka_unit_test(coupled), cmocka_unit_test(trap),
   };
   return cmocka_run_group_tests_name("found", tests, NULL, NULL);

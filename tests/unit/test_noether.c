@@ -44,7 +44,7 @@ static Proof prove_model(const char *lag) {
   uint32_t n = noether_coordinates(p.e);
   Expr *xi = ARENA_ARRAY(p.arena, Expr, n + 1);
   for (uint32_t i = 0; i < n; i++) xi[i] = observed(p.e, arena_printf(p.arena, "xi_%s", expr_symbol(p.e->g, noether_coordinate(p.e, i))->name));
-  p.n = noether_prove(p.e, &(Generator){xi, observed(p.e, "tau")});
+  p.n = noether_prove(p.e, &(Generator){.xi = xi, .tau = observed(p.e, "tau")});
   return p;
 }
 

@@ -1,0 +1,276 @@
+#include "base/exact.h"
+
+#include <string.h>
+
+enum { LIMBS = 96, BITS = 32 };
+
+/* sign * sum of at[i] 2^(32 i); n is 0 for 0, otherwise at[n - 1] is not 0. */
+typedef struct {
+  int sign;
+  uint32_t n;
+  uint32_t at[LIMBS];
+} Whole;
+
+typedef struct {
+  int overflow;
+} Work;
+
+static Whole whole_of(int64_t x) {
+  Whole w = {.sign = x < 0 ? -1 : 1};
+  uint64_t size = x < 0 ? (uint64_t)0 - (uint64_t)x : (uint64_t)x;
+  for (; size; size >>= BITS) w.at[w.n++] = (uint32_t)size;
+  return w;
+}
+
+static void copy(Whole *to, const Whole *from) {
+  to->sign = from->sign;
+  to->n = from->n;
+  memcpy(to->at, from->at, from->n * sizeof *from->at);
+}
+
+static void trim(Whole *x) {
+  while (x->n && !x->at[x->n - 1]) x->n--;
+}
+
+/* --- sizes, without signs --- */
+
+static int compare(const Whole *a, const Whole *b) {
+  if (a->n != b->n) return a->n < b->n ? -1 : 1;
+  for (uint32_t i = a->n; i-- > 0;)
+    if (a->at[i] != b->at[i]) return a->at[i] < b->at[i] ? -1 : 1;
+  return 0;
+}
+
+/* a + b */
+static void add_sizes(Work *w, Whole *a, const Whole *b) {
+  uint32_t n = a->n > b->n ? a->n : b->n;
+  uint64_t carry = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    carry += (uint64_t)(i < a->n ? a->at[i] : 0) + (i < b->n ? b->at[i] : 0);
+    a->at[i] = (uint32_t)carry;
+    carry >>= BITS;
+  }
+  a->n = n;
+  if (!carry) return;
+  if (n == LIMBS) w->overflow = 1;
+  else a->at[a->n++] = (uint32_t)carry;
+}
+
+/* to = a - b, for a not below b; `to` may be either. */
+static void subtract_sizes(Whole *to, const Whole *a, const Whole *b) {
+  int64_t borrow = 0;
+  for (uint32_t i = 0; i < a->n; i++) {
+    borrow += (int64_t)a->at[i] - (i < b->n ? b->at[i] : 0);
+    to->at[i] = (uint32_t)borrow;
+    borrow >>= BITS;
+  }
+  to->n = a->n;
+  trim(to);
+}
+
+/* --- arithmetic --- */
+
+/* a -= b */
+static void subtract(Work *w, Whole *a, const Whole *b) {
+  if (a->n == 0) {
+    copy(a, b);
+    a->sign = -a->sign;
+  } else if (b->n && a->sign != b->sign) add_sizes(w, a, b);
+  else if (compare(a, b) >= 0) subtract_sizes(a, a, b);
+  else {
+    subtract_sizes(a, b, a);
+    a->sign = -a->sign;
+  }
+}
+
+static void multiply(Work *w, const Whole *a, const Whole *b, Whole *to) {
+  *to = (Whole){.sign = a->sign * b->sign, .n = a->n && b->n ? a->n + b->n : 0};
+  if (to->n > LIMBS) {
+    w->overflow = 1;
+    to->n = 0;
+  }
+  for (uint32_t i = 0; i < a->n && to->n; i++) {
+    uint64_t carry = 0;
+    for (uint32_t k = 0; k < b->n || carry; k++) {
+      carry += to->at[i + k] + (k < b->n ? (uint64_t)a->at[i] * b->at[k] : 0);
+      to->at[i + k] = (uint32_t)carry;
+      carry >>= BITS;
+    }
+  }
+  trim(to);
+}
+
+/* a 2^shift, shift < 32 */
+static void shift_up(Whole *a, uint32_t shift) {
+  uint64_t carry = 0;
+  for (uint32_t i = 0; i < a->n; i++) {
+    carry |= (uint64_t)a->at[i] << shift;
+    a->at[i] = (uint32_t)carry;
+    carry >>= BITS;
+  }
+  if (carry) a->at[a->n++] = (uint32_t)carry;
+}
+
+static void shift_down(Whole *a, uint32_t shift) {
+  for (uint32_t i = 0; i < a->n; i++)
+    a->at[i] = (uint32_t)(((uint64_t)a->at[i] | (i + 1 < a->n ? (uint64_t)a->at[i + 1] << BITS : 0)) >> shift);
+  trim(a);
+}
+
+/* rest[j ..] less q times b; where that is negative, b is added once. Returns the digit q that was right. */
+static uint32_t take_digit(Whole *rest, uint32_t j, const Whole *b, uint64_t q) {
+  int64_t borrow = 0;
+  uint64_t carry = 0;
+  for (uint32_t i = 0; i <= b->n; i++) {
+    carry += i < b->n ? q * b->at[i] : 0;
+    borrow += (int64_t)rest->at[i + j] - (int64_t)(uint32_t)carry;
+    rest->at[i + j] = (uint32_t)borrow;
+    borrow >>= BITS;
+    carry >>= BITS;
+  }
+  if (!borrow) return (uint32_t)q;
+  carry = 0;
+  for (uint32_t i = 0; i <= b->n; i++) {
+    carry += (uint64_t)rest->at[i + j] + (i < b->n ? b->at[i] : 0);
+    rest->at[i + j] = (uint32_t)carry;
+    carry >>= BITS;
+  }
+  return (uint32_t)(q - 1);
+}
+
+/* a becomes the rest of a / b, *quotient what goes; signs as in C. Knuth, The Art of Computer Programming 2, 4.3.1, algorithm D. */
+static void divide(Work *w, Whole *a, const Whole *divisor, Whole *quotient) {
+  Whole b = *divisor;
+  uint32_t shift = 0;
+  *quotient = (Whole){.sign = a->sign * b.sign};
+  if (compare(a, &b) < 0) return;
+  if (a->n == LIMBS) {
+    w->overflow = 1;
+    return;
+  }
+  while (!(b.at[b.n - 1] << shift >> (BITS - 1))) shift++;
+  uint32_t n = a->n;
+  shift_up(&b, shift);
+  shift_up(a, shift);
+  for (uint32_t i = a->n; i <= n; i++) a->at[i] = 0;
+  uint64_t top = b.at[b.n - 1], next = b.n > 1 ? b.at[b.n - 2] : 0;
+  for (uint32_t j = n - b.n + 1; j-- > 0;) {
+    uint64_t two = (uint64_t)a->at[j + b.n] << BITS | a->at[j + b.n - 1], q = two / top, rest = two % top;
+    uint64_t below = b.n > 1 ? a->at[j + b.n - 2] : 0;
+    for (; q > UINT32_MAX || (rest <= UINT32_MAX && q * next > (rest << BITS | below)); rest += top) q--;
+    quotient->at[j] = take_digit(a, j, &b, q);
+  }
+  quotient->n = n - b.n + 1;
+  a->n = b.n;
+  trim(a);
+  shift_down(a, shift);
+  trim(quotient);
+}
+
+/* Both are destroyed; a becomes it. */
+static void divisor_of(Work *w, Whole *a, Whole *b) {
+  Whole rest, ignored;
+  while (b->n && !w->overflow) {
+    divide(w, a, b, &ignored);
+    copy(&rest, a);
+    copy(a, b);
+    copy(b, &rest);
+  }
+  a->sign = 1;
+}
+
+/* --- numbers --- */
+
+static Num num_of(const Whole *x) {
+  Num value = num_int(0), base = num_int((int64_t)1 << BITS);
+  for (uint32_t i = x->n; i-- > 0;) {
+    value = num_mul(value, base);
+    value = num_add(value, num_int(x->at[i]));
+  }
+  return x->sign < 0 ? num_neg(value) : value;
+}
+
+static Num ratio(Work *w, const Whole *top, const Whole *bottom) {
+  Whole common = *top, other = *bottom, n = *top, d = *bottom, above, below;
+  divisor_of(w, &common, &other);
+  divide(w, &n, &common, &above);
+  divide(w, &d, &common, &below);
+  Num x = num_of(&above);
+  return num_div(x, num_of(&below));
+}
+
+/* --- the system --- */
+
+/* Row by row times the common denominator of each. */
+static void take_row(Work *w, uint32_t n, const Num *from, const Whole *common, Whole *to) {
+  for (uint32_t k = 0; k < n; k++) {
+    Whole scaled, factor, number = whole_of(from[k].num), denominator = whole_of(from[k].den), all = *common;
+    divide(w, &all, &denominator, &factor);
+    multiply(w, &factor, &number, &scaled);
+    copy(&to[k], &scaled);
+  }
+}
+
+/* common becomes its least common multiple with the denominators. 0: a number is not exact. */
+static int add_denominators(Work *w, uint32_t n, const Num *from, Whole *common) {
+  for (uint32_t k = 0; k < n; k++) {
+    if (!num_is_exact(from[k])) return 0;
+    Whole shared = *common, denominator = whole_of(from[k].den), other = denominator, factor, product;
+    divisor_of(w, &shared, &other);
+    divide(w, &denominator, &shared, &factor);
+    multiply(w, common, &factor, &product);
+    copy(common, &product);
+  }
+  return 1;
+}
+
+/* A row with a pivot in column k comes to row k; 0: there is none. */
+static int exchange(Arena *a, uint32_t n, uint32_t width, Whole *m, uint32_t k) {
+  uint32_t from = k;
+  while (from < n && !m[(size_t)from * width + k].n) from++;
+  if (from == n) return 0;
+  if (from == k) return 1;
+  size_t size = width * sizeof *m;
+  Whole *kept = ARENA_ARRAY(a, Whole, width);
+  memcpy(kept, m + (size_t)k * width, size);
+  memcpy(m + (size_t)k * width, m + (size_t)from * width, size);
+  memcpy(m + (size_t)from * width, kept, size);
+  return 1;
+}
+
+/* All rows but k lose column k; what all entries are divided by is the pivot before. */
+static void eliminate(Work *w, uint32_t n, uint32_t width, Whole *m, uint32_t k, const Whole *before) {
+  const Whole *pivot = m + (size_t)k * width;
+  Whole one, other, factor;
+  for (uint32_t i = 0; i < n; i++) {
+    Whole *row = m + (size_t)i * width;
+    if (i == k) continue;
+    copy(&factor, &row[k]);
+    for (uint32_t j = 0; j < width && !w->overflow; j++) {
+      multiply(w, &pivot[k], &row[j], &one);
+      multiply(w, &factor, &pivot[j], &other);
+      subtract(w, &one, &other);
+      divide(w, &one, before, &row[j]);
+    }
+  }
+}
+
+int exact_solve(Arena *a, uint32_t n, const Num *A, uint32_t columns, const Num *B, Num *X) {
+  Work w = {0};
+  uint32_t width = n + columns;
+  Whole *m = ARENA_ARRAY(a, Whole, (size_t)n * width + 1), before = whole_of(1);
+  for (size_t i = 0; i < n; i++) {
+    Whole common = whole_of(1);
+    if (!add_denominators(&w, n, A + i * n, &common) || !add_denominators(&w, columns, B + i * columns, &common)) return 0;
+    take_row(&w, n, A + i * n, &common, m + i * width);
+    take_row(&w, columns, B + i * columns, &common, m + i * width + n);
+  }
+  for (uint32_t k = 0; k < n && !w.overflow; k++) {
+    if (!exchange(a, n, width, m, k)) return 0;
+    eliminate(&w, n, width, m, k, &before);
+    copy(&before, &m[(size_t)k * width + k]);
+  }
+  for (size_t i = 0; i < n && !w.overflow; i++)
+    for (size_t j = 0; j < columns; j++) X[i * columns + j] = ratio(&w, &m[i * width + n + j], &m[i * width + i]);
+  return !w.overflow;
+}
