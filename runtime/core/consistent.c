@@ -21,6 +21,7 @@ typedef struct Start {
   const lag_constraints *of;
   int n, nq, holonomic;      /* of the level at hand: constraints */
   int *free, nfree;          /* components of q, or of v, that may move */
+  char *kinds;               /* [nq] */
   double *y, *asked, *best;  /* [n of the state] */
   double *residual, *other;  /* [constraints] c or r, and the one that is not asked for */
   double *size;              /* [constraints] of which parts are taken in the sum that falls */
@@ -66,7 +67,8 @@ static int direction(Start *w, double pull, double *d)
     for (int k = 0; k < w->n; k++) {
       l[k] = -w->residual[k];
     }
-    regular = lag_kkt(nf, w->n, 0, w->kkt);
+    lag_kinds(pb, nf, w->free, w->kinds);
+    regular = lag_kkt(nf, w->n, 0, w->kinds, w->kkt);
     rc = regular || pass == 0 ? 0 : LAG_ESINGULAR;
   }
   memcpy(d, x, (size_t)nf * sizeof *d);
@@ -292,7 +294,7 @@ static int slopes(Start *w, double *size)
   }
   for (int e = 0; e < of->njacobian; e++) {
     int i = of->jacobian[e].col;
-    size[of->jacobian[e].row] += fabs(w->A[e]) * fmax(lag_reach(w->pb, w->y, 1, i), lag_size_like(w->pb, w->asked, i));
+    size[of->jacobian[e].row] += fabs(w->A[e]) * fmax(lag_reach(w->pb, w->y, 1, i), lag_reach(w->pb, w->asked, 1, i));
   }
   return 1;
 }
@@ -390,52 +392,20 @@ static int settle(Start *w, int holonomic)
   return rc ? rc : refuse(w, 0);
 }
 
-/* Twice, so that rounding is gone. */
-double lag_remainder_of(int n, int r, const double *Q, double *x)
-{
-  double s = 0;
-
-  for (int k = 0; k < 2 * r; k++) {
-    const double *q = Q + k % r * n;
-    double along = 0;
-    for (int i = 0; i < n; i++) {
-      along += q[i] * x[i];
-    }
-    for (int i = 0; i < n; i++) {
-      x[i] -= along * q[i];
-    }
-  }
-  for (int i = 0; i < n; i++) {
-    s += x[i] * x[i];
-  }
-  return sqrt(s);
-}
-
 /* Which constraints follow here from those before them: marks[n], and how many do not. What counts as nothing left is what counts so for
  * corrections in lag_kkt.h: a start is found at a singular place to sqrt(eps) only. */
 static int rank(Start *w, double *marks, double *held)
 {
   const double least = cbrt(DBL_EPSILON);
-  const lag_constraints *of = w->of;
-  int nq = w->nq, m = of->n, r = 0;
-  double *A = w->kkt, *Q = A;
-  const double *y = w->y;
-  int rc = of->matrices(w->sim->scene->t0, y, y + nq, y + 2 * nq, w->pb->p, w->pb->u, w->A, w->M, w->pb->work);
+  int nq = w->nq, m = w->of->n, r = 0;
+  double *Q = w->kkt, *unit = Q + m * nq;
 
-  memset(A, 0, (size_t)(m * nq) * sizeof(double));
-  for (int e = 0; e < of->njacobian && rc == 0; e++) {
-    A[of->jacobian[e].row * nq + of->jacobian[e].col] = w->A[e];
+  if (lag_constraint_rows(w->pb, w->sim->scene->t0, w->y, Q, unit)) {
+    memset(Q, 0, (size_t)(m * nq + nq) * sizeof *Q);
   }
   for (int k = 0; k < m; k++) {
-    double *row = A + k * nq, size = lag_remainder_of(nq, 0, Q, row);
-    for (int i = 0; i < nq && size > 0; i++) {
-      row[i] /= size;
-    }
-    double left = size > 0 ? lag_remainder_of(nq, r, Q, row) : 0;
-    marks[k] = size > 0 && !(left > least); /* a contact that is open demands nothing */
-    for (int i = 0; i < nq && left > least; i++) {
-      Q[r * nq + i] = row[i] / left;
-    }
+    double left = lag_own_part(nq, r, least, unit, Q, Q + k * nq);
+    marks[k] = left >= 0 && !(left > least); /* a contact that is open demands nothing */
     r += left > least;
   }
   memset(held, 0, (size_t)nq * sizeof *held);
@@ -570,8 +540,9 @@ int lag_consistent(lag_sim *s)
     return LAG_OK;
   }
   double *block = make_room(&w);
-  w.free = malloc(((size_t)w.nq + 1) * sizeof *w.free);
+  w.free = malloc(((size_t)w.nq + 1) * (sizeof *w.free + sizeof *w.kinds));
   if (block && w.free) {
+    w.kinds = (char *)(w.free + w.nq + 1);
     memcpy(w.y, s->now, bytes);
     memcpy(w.asked, s->now, bytes);
     lag_keep_nothing(s);

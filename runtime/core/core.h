@@ -125,8 +125,14 @@ int lag_agreement(lag_sim *sim);
 /* forces.c. observe: out[nout] of the scene, in SI, of the state y at t. Multipliers and accelerations near a position where constraints
  * become dependent are those that they tend to along the last step; NaN where there is none. LAG_OK, or what failed. */
 int lag_observe(lag_sim *sim, double t, const double *y, double *out);
-/* x := what is left of row x[n] beside the orthonormal rows Q[r * n]. Returns its length. */
-double lag_remainder_of(int n, int r, const double *Q, double *x);
+/* rank.c. kinds[n] := a letter a coordinate, those of one unit alike, as lag_kkt.h takes it; coordinate i of n is at[i], or i where at is NULL. */
+void lag_kinds(const lag_problem *pb, int n, const int *at, char *kinds);
+/* A[n nq] := the derivatives of all constraints by the coordinates, row-major, at y at t, and unit[nq] := in which coordinates have
+ * inertia 1 (lag_kkt.h). 0, what the model returned, or LAG_ENOMEM; then A and unit are undefined. */
+int lag_constraint_rows(lag_problem *pb, double t, const double *y, double *A, double *unit);
+/* The part of row[n] of A that is independent of the orthonormal rows Q[r n], 0 to 1; more than `least`: its direction becomes row r of Q. -1: the
+ * row is zero. row is destroyed; it may be row r of Q, or a later one. */
+double lag_own_part(int n, int r, double least, const double *unit, double *Q, double *row);
 /* weightless.c: the coordinate that moves most along a direction d with K d = 0, K[n n] being a mass matrix and a positive combination of
  * what constraints fix, or -1 where there is none. K is destroyed; x[n] and column[n] are scratch. */
 int lag_weightless(int n, double *K, double *x, int *column);

@@ -25,32 +25,20 @@ double lag_independence(lag_problem *pb, double t, const double *y, int *weakest
 {
   const lag_constraints *of = pb->model->constraints;
   const double follows = pb->redundant ? 1e-9 : 0; /* what is less follows always */
-  int nq = pb->nq, n = of->n, r = 0, rc = lag_inputs(pb, t);
-  double least = 1, *A = calloc((size_t)(n * nq + n + of->njacobian + of->nmass + 1), sizeof *A);
-  double *size = A + n * nq, *entries = size + n, *positions = size;
+  int nq = pb->nq, n = of->n, r = 0;
+  double least = 1, *A = calloc((size_t)(n * nq + nq + n), sizeof *A);
+  double *unit = A + n * nq, *size = unit + nq;
+  int rc = !A || lag_constraint_rows(pb, t, y, A, unit);
 
   *weakest = -1;
-  rc = !A || rc || of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, entries, entries + of->njacobian, pb->work);
-  for (int e = 0; e < of->njacobian && rc == 0; e++) {
-    A[of->jacobian[e].row * nq + of->jacobian[e].col] = entries[e];
-  }
-  rc = rc || (of->nholonomic > 0 && lag_constraint_terms(pb, t, y, 1, positions));
+  rc = rc || (of->nholonomic > 0 && lag_constraint_terms(pb, t, y, 1, size));
   for (int k = 0; k < n && rc == 0; k++) {
-    double *row = A + k * nq, *to = A + r * nq, part = k < of->nholonomic ? slope(pb, y, row, size[k]) : 1;
-    double length = lag_remainder_of(nq, 0, A, row);
-    for (int i = 0; i < nq && length > 0; i++) {
-      row[i] /= length;
-    }
-    double left = length > 0 ? lag_remainder_of(nq, r, A, row) : 0;
+    double *row = A + k * nq, part = k < of->nholonomic ? slope(pb, y, row, size[k]) : 1, left = fmax(lag_own_part(nq, r, follows, unit, A, row), 0);
     if (left * part > follows && left * part < least) {
       least = left * part;
       *weakest = k;
     }
-    int counts = left > follows;
-    for (int i = 0; i < nq && counts; i++) {
-      to[i] = row[i] / left;
-    }
-    r += counts;
+    r += left > follows;
   }
   free(A);
   return least;

@@ -53,7 +53,10 @@ static void name_rate(const lag_sim *s, int i, char *text, size_t size)
 static const char *reason(const lag_model *m, int status)
 {
   switch (status) {
-  case LAG_ESINGULAR: return m->flags & LAG_FIRST_ORDER ? "the two-form of L is singular" : "the mass matrix is singular, or no longer positive definite";
+  case LAG_ESINGULAR:
+    return m->flags & LAG_FIRST_ORDER ? "the two-form of L is singular"
+           : m->constraints           ? "the mass matrix is singular along motions that the constraints allow, or no longer positive definite"
+                                      : "the mass matrix is singular, or no longer positive definite";
   case LAG_ENAN: return "the model gives no finite value";
   case LAG_EDOMAIN: return "the model left its domain, and no smaller step helps";
   case LAG_ESTEP: return "the step became too small: a singularity, or the tolerance is too strict";

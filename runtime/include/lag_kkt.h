@@ -4,8 +4,9 @@
  *   A x         = g
  *
  * for any A, redundant or not, and any M that is regular on the kernel of A: x is unique then; of the multipliers l those
- * of least norm are given. A^T P = Q R is factored by Householder's reflections with exchange of columns, which are the
- * constraints, scaled to a like size so that it does not matter how each was written: what is left of a constraint beside
+ * of least norm are given, the sum of squares of l as it stands, each in the unit of its constraint. A^T P = Q R is factored by Householder's
+ * reflections with exchange of columns, which are the constraints, scaled to a like size so that it does not matter how each was written, in
+ * coordinates whose inertia is 1, so that units do not matter: what is left of a constraint beside
  * those before it decides whether it is counted (Golub & Van Loan, Matrix Computations, 4th ed. (2013), 5.4.2). In the
  * coordinates Q^T x the first r components follow from g, and the others from M without constraints (the null space method: Benzi, Golub,
  * Liesen, Acta Numerica 14 (2005) 1, section 6, DOI 10.1017/S0962492904000212); l is the least solution of R l = what M x - f is there,
@@ -238,6 +239,12 @@ static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LA
 
 /* ---- kkt ---- */
 
+/* The last digit of 1. */
+static LAG_LANE lag_rounding(void) {
+  const LAG_LANE third = (LAG_LANE)4/3 - 1;
+  return LAG_LANE_FN(fabs)(3*third - 1);
+}
+
 /* x := x - beta v (v.x): Householder's reflection by v[n]. */
 static void lag_reflect(int n, const LAG_LANE *v, LAG_LANE beta, LAG_LANE *x, int stride) {
   LAG_LANE s = 0;
@@ -259,12 +266,69 @@ static LAG_LANE lag_reflector(int n, LAG_LANE *v, LAG_LANE *beta) {
   return alpha;
 }
 
+/* The value in the middle of x[n], which are sorted; of an even number the mean of two, as powers of ten. */
+static LAG_LANE lag_median(int n, LAG_LANE *x) {
+  for (int i = 1; i < n; i++)
+    for (int j = i; j > 0 && x[j - 1] > x[j]; j--) {
+      const LAG_LANE was = x[j];
+      x[j] = x[j - 1];
+      x[j - 1] = was;
+    }
+  return LAG_LANE_FN(sqrt)(x[(n - 1)/2])*LAG_LANE_FN(sqrt)(x[n/2]);
+}
+
+/* unit[n]: in which the coordinates have inertia 1, those of a kind the one that has most: what is rounding for one of a kind is so for all. kind[n]: a letter
+ * a coordinate; NULL: all are of one kind, and unit is 1. A kind without inertia counts as much as what it is tied to, in the middle among its ties;
+ * so what is known spreads along constraints and products of velocities. size[m], tie[n + m] are scratch. */
+static void lag_units(int n, int m, const char *kind, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *unit, LAG_LANE *size, LAG_LANE *tie) {
+  for (int i = 0; i < n; i++) unit[i] = 1;
+  if (!kind) return;
+  for (int i = 0; i < n; i++) {
+    LAG_LANE inertia = 0;
+    for (int j = 0; j < n; j++)
+      if (kind[j] == kind[i] && LAG_LANE_FN(fabs)(M[j*n + j]) > inertia) inertia = LAG_LANE_FN(fabs)(M[j*n + j]);
+    unit[i] = inertia > 0 ? 1/LAG_LANE_FN(sqrt)(inertia) : 0;
+  }
+  for (int j = 0; j < m; j++) size[j] = 0;
+  for (int turn = 0, found = 1; found && turn <= n; turn++) {
+    int unknown = -1;
+    found = 0;
+    for (int j = 0; j < m; j++)
+      for (int i = 0; i < n && !(size[j] < 0); i++) { /* < 0: known since an earlier turn */
+        const LAG_LANE x = LAG_LANE_FN(fabs)(A[j*n + i])*unit[i];
+        size[j] = x > size[j] ? x : size[j];
+      }
+    for (int i = 0; i < n; i++) { /* the first of each kind; < 0: found in this turn */
+      int ties = 0, first = 0;
+      while (kind[first] != kind[i]) first++;
+      if (unit[i] > 0 || first < i) continue;
+      unknown = unknown < 0 ? i : unknown;
+      for (int j = 0; j < n + m; j++) {
+        const LAG_LANE beside = j < n ? unit[j] : LAG_LANE_FN(fabs)(size[j - n]);
+        LAG_LANE most = 0;
+        for (int k = i; k < n && beside > 0; k++) {
+          const LAG_LANE x = LAG_LANE_FN(fabs)(j < n ? M[k*n + j] : A[(j - n)*n + k]);
+          most = kind[k] == kind[i] && x > most ? x : most;
+        }
+        if (most > 0) tie[ties++] = j < n ? most*beside : most/beside;
+      }
+      if (ties > 0) unit[i] = -1/lag_median(ties, tie), found = 1;
+    }
+    if (!found && unknown >= 0) unit[unknown] = -1, found = 1; /* nothing says, nor matters */
+    for (int i = 0; i < n; i++) {
+      const LAG_LANE of_kind = unit[i];
+      for (int k = i; k < n && of_kind < 0; k++)
+        if (kind[k] == kind[i]) unit[k] = -of_kind;
+    }
+    for (int j = 0; j < m; j++) size[j] = -LAG_LANE_FN(fabs)(size[j]);
+  }
+}
+
 /* A P = R^T Q^T, row by row: row k of A[m*n] is left as [R^T | vector k], diag[k] and beta[k] beside it; order[m]: which row
  * stands where; scale[m]: what each was divided by. Returns the rank: a row of which less than eps^(2/3), or eps^(1/3) where it is
  * coarse, is independent of those before it does not count. */
 static int lag_rank(int n, int m, int coarse, LAG_LANE *A, LAG_LANE *diag, LAG_LANE *beta, LAG_LANE *scale, LAG_LANE *order) {
-  const LAG_LANE third = (LAG_LANE)4/3 - 1, eps = LAG_LANE_FN(fabs)(3*third - 1);
-  const LAG_LANE root = LAG_LANE_FN(cbrt)(eps), least = coarse ? root : root*root;
+  const LAG_LANE root = LAG_LANE_FN(cbrt)(lag_rounding()), least = coarse ? root : root*root;
   int rank = 0;
   for (int j = 0; j < m; j++) {
     LAG_LANE *const row = A + j*n, size = 0;
@@ -422,15 +486,62 @@ static int lag_schur(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LAN
   return 1;
 }
 
+/* From row r on: x := the solution for the right-hand side x and the matrix that stands in M from there, and z the same, by elimination with
+ * partial pivoting. Returns the largest element of z or of the inverses of pivots, or -1 where a pivot is 0. */
+static LAG_LANE lag_eliminate(int n, int r, LAG_LANE *M, LAG_LANE *x, LAG_LANE *z) {
+  LAG_LANE most = 0;
+  for (int k = r; k < n; k++) {
+    int top = k;
+    for (int i = k + 1; i < n; i++)
+      if (LAG_LANE_FN(fabs)(M[i*n + k]) > LAG_LANE_FN(fabs)(M[top*n + k])) top = i;
+    if (!(LAG_LANE_FN(fabs)(M[top*n + k]) > 0)) return -1;
+    for (int j = k; j < n + 2 && top != k; j++) {
+      LAG_LANE *const upper = j < n ? &M[k*n + j] : j == n ? &x[k] : &z[k], *const lower = j < n ? &M[top*n + j] : j == n ? &x[top] : &z[top];
+      const LAG_LANE was = *upper;
+      *upper = *lower;
+      *lower = was;
+    }
+    for (int i = k + 1; i < n; i++) {
+      const LAG_LANE factor = M[i*n + k]/M[k*n + k];
+      for (int j = k + 1; j < n; j++) M[i*n + j] -= factor*M[k*n + j];
+      x[i] -= factor*x[k];
+      z[i] -= factor*z[k];
+    }
+  }
+  for (int k = n - 1; k >= r; k--) {
+    for (int j = k + 1; j < n; j++) x[k] -= M[k*n + j]*x[j], z[k] -= M[k*n + j]*z[j];
+    x[k] /= M[k*n + k];
+    z[k] /= M[k*n + k];
+    const LAG_LANE here = LAG_LANE_FN(fabs)(z[k]), pivot = 1/LAG_LANE_FN(fabs)(M[k*n + k]);
+    most = here > most ? here : most;
+    most = pivot > most ? pivot : most;
+  }
+  return most;
+}
+
 /* x[n], l[m] hold f and g, and become the solution; M and A are destroyed. w[n*n + m*n + m*m + 2*n + 9*m] is scratch. Returns
- * whether M is regular on the kernel of A. */
-static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
+ * whether M is regular on the kernel of A, by more than rounding: pivots, and what becomes of any right-hand side, show how large the inverse is
+ * (J. D. Dixon, SIAM J. Numer. Anal. 20 (1983) 812, DOI 10.1137/0720053), which is to be less than a hundredth of 1 by the rounding of M. */
+static int lag_kkt_lane(int n, int m, int coarse, const char *kind, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
 #ifdef LAG_BAND_LEAST
   if (n + m >= LAG_BAND_LEAST && lag_banded(n, m, M, A, x, l, w, n*n + m*n + m*m + 2*n + 9*m)) return 1;
 #endif
   if (lag_schur(n, m, M, A, x, l, w)) return 1;
   LAG_LANE *const diag = w, *const beta = w + m, *const scale = w + 2*m, *const order = w + 3*m;
-  LAG_LANE *const y = w + 4*m, *const s = w + 5*m, *const mu = w + 6*m, *const S = w + 7*m;
+  LAG_LANE *const y = w + 4*m, *const s = w + 5*m, *const mu = w + 6*m, *const S = w + 7*m, *const unit = S + m*m + 2*m, *const z = unit + n;
+  LAG_LANE most = 0, u = 0;
+  lag_units(n, m, kind, M, A, unit, scale, z);
+  for (int i = 0; i < n; i++) {
+    for (int j = 0; j < n; j++) {
+      M[i*n + j] *= unit[i]*unit[j];
+      most = LAG_LANE_FN(fabs)(M[i*n + j]) > most ? LAG_LANE_FN(fabs)(M[i*n + j]) : most;
+    }
+    for (int j = 0; j < m; j++) A[j*n + i] *= unit[i];
+    x[i] *= unit[i];
+    u += (LAG_LANE)0.618033988749894848; /* any numbers, so that nothing cancels */
+    if (u > 1) u -= 1;
+    z[i] = i % 2 ? -u : u;
+  }
   const int r = lag_rank(n, m, coarse, A, diag, beta, scale, order);
   for (int k = 0; k < r; k++) {
     y[k] = l[(int)order[k]]/scale[k];
@@ -446,52 +557,34 @@ static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_
   for (int i = 0; i < r; i++) s[i] = -x[i];
   for (int i = 0; i < n; i++)
     for (int k = 0; k < r; k++) *(i < r ? &s[i] : &x[i]) += (i < r ? 1 : -1)*M[i*n + k]*y[k];
-  for (int k = r; k < n; k++) { /* elimination with partial pivoting of what is left of M */
-    int top = k;
-    for (int i = k + 1; i < n; i++)
-      if (LAG_LANE_FN(fabs)(M[i*n + k]) > LAG_LANE_FN(fabs)(M[top*n + k])) top = i;
-    if (!(LAG_LANE_FN(fabs)(M[top*n + k]) > 0)) return 0;
-    for (int j = k; j <= n && top != k; j++) {
-      LAG_LANE *const upper = j < n ? &M[k*n + j] : &x[k], *const lower = j < n ? &M[top*n + j] : &x[top];
-      const LAG_LANE was = *upper;
-      *upper = *lower;
-      *lower = was;
-    }
-    for (int i = k + 1; i < n; i++) {
-      const LAG_LANE factor = M[i*n + k]/M[k*n + k];
-      for (int j = k + 1; j < n; j++) M[i*n + j] -= factor*M[k*n + j];
-      x[i] -= factor*x[k];
-    }
-  }
-  for (int k = n - 1; k >= r; k--) {
-    for (int j = k + 1; j < n; j++) x[k] -= M[k*n + j]*x[j];
-    x[k] /= M[k*n + k];
-  }
+  const LAG_LANE inverse = lag_eliminate(n, r, M, x, z);
+  if (!(inverse >= 0 && inverse*most*(LAG_LANE)n*lag_rounding() < (LAG_LANE)0.01)) return 0;
   for (int i = 0; i < r; i++) {
     for (int k = r; k < n; k++) s[i] += M[i*n + k]*x[k];
     x[i] = y[i];
   }
   for (int k = r - 1; k >= 0; k--) lag_reflect(n - k, A + k*n + k, beta[k], x + k, 1);
+  for (int i = 0; i < n; i++) x[i] *= unit[i];
   lag_multipliers(n, m, r, A, diag, scale, s, mu, S);
   for (int j = 0; j < m; j++) l[(int)order[j]] = mu[j];
   return 1;
 }
 
 #ifndef LAG_LANES
-/* w = [M | A | f, becomes x | g, becomes l | scratch]. Returns whether M is regular on the kernel of A. */
-static LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w) {
+/* w = [M | A | f, becomes x | g, becomes l | scratch]; kind[n]: a letter a coordinate, those of one unit alike, or NULL. Returns whether M is regular on the kernel of A. */
+static inline LAG_MASK lag_kkt(int n, int m, int coarse, const char *kind, LAG_REAL *w) {
   LAG_REAL *const A = w + n*n, *const x = A + m*n;
-  return lag_kkt_lane(n, m, coarse, w, A, x, x + n, x + n + m);
+  return lag_kkt_lane(n, m, coarse, kind, w, A, x, x + n, x + n + m);
 }
 #else
 /* The same, lane by lane: each has pivots, and a rank, of its own. */
-static LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w) {
+static inline LAG_MASK lag_kkt(int n, int m, int coarse, const char *kind, LAG_REAL *w) {
   const int used = n*n + m*n + n + m;
   LAG_MASK regular;
   for (int k = 0; k < LAG_LANES; k++) {
     LAG_LANE *const M = (LAG_LANE *)(w + used), *const A = M + n*n, *const x = A + m*n;
     for (int i = 0; i < used; i++) M[i] = w[i][k];
-    regular[k] = lag_kkt_lane(n, m, coarse, M, A, x, x + n, x + n + m) ? -1 : 0;
+    regular[k] = lag_kkt_lane(n, m, coarse, kind, M, A, x, x + n, x + n + m) ? -1 : 0;
     for (int i = 0; i < n + m; i++) w[n*n + m*n + i][k] = x[i];
   }
   return regular;

@@ -29,7 +29,7 @@ static const char *const abi_names[] = {
   "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
   "curves", "LAG_EACH", "LAG_10", "LAG_100", "LAG_1000", "LAG_10000",
   "singular", "lag_sincos", "lag_sincos2", "lag_sincos4", "LAG_SINCOS_2", "LAG_SINCOS_4", "lag_sin", "lag_cos", "lag_lanes", "lag_lanes_mask", "LAG_LANES", "LAG_LIBM", "LAG_OWN", "LAG_FMA",
-  "LAG_INLINE", "LAG_PIVOT", "LAG_POSITIVE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS", "LAG_LANE_FN", "lag_reflect", "lag_reflector", "lag_rank", "lag_multipliers", "lag_schur", "lag_cholesky", "lag_forward", "lag_backward", "lag_first", "lag_last", "lag_kkt", "lag_kkt_lane",
+  "LAG_INLINE", "LAG_PIVOT", "LAG_POSITIVE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS", "LAG_LANE_FN", "lag_reflect", "lag_reflector", "lag_rounding", "lag_median", "lag_units", "lag_rank", "lag_eliminate", "lag_multipliers", "lag_schur", "lag_cholesky", "lag_forward", "lag_backward", "lag_first", "lag_last", "lag_kkt", "lag_kkt_lane",
   "LAG_BAND_LEAST", "LAG_BAND_EDGES", "lag_band", "lag_edges", "lag_walk", "lag_places", "lag_element", "lag_band_factor", "lag_band_solve", "lag_band_inverse", "lag_band_rest", "lag_banded",
   "constraint_table", "jacobian_table", "inertia_table", "constraints", "contact_table", "charge_table", "charges", "lag_charge", "lag_charges", "LAG_CONSERVED", "LAG_BALANCED", "LAG_BY_FORMULAS", "LAG_JUMPS", "lag_contact", "lag_constraint", "lag_constraints",
 };

@@ -78,12 +78,13 @@ typedef struct {
 /* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it stands in the
  * work space. matrix is NULL where the one at that place was factored before, by another function. With m constraints A x = g on
  * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. coarse: constraints that are nearly dependent count as
- * dependent (lag_kkt.h). Without constraints, entries more than `band` beside the diagonal are zero, and a definite M is eliminated without
+ * dependent; kinds[n]: a letter a coordinate, those of one unit alike, NULL where all are (lag_kkt.h). Without constraints, entries more than `band` beside the diagonal are zero, and a definite M is eliminated without
  * pivoting, from its upper triangle. inverse: where the inverse stands among the parameters, not 0: then there is no matrix, and a solution is
  * a product. Of IR_INVERT: where that writes [matrix | n | n | inverse | 1 where there is one, and 0]; no right-hand side. */
 typedef struct {
   uint32_t n, m, place, band, inverse;
   int coarse, definite;
+  const char *kinds;
   const Slot *matrix, *rhs;
 } Solve;
 

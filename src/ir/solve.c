@@ -3,6 +3,8 @@
  * A mass matrix that is proved positive definite is eliminated by eliminate.c, in straight-line code.
  * Otherwise blocks of coupled coordinates: pairs by Cramer's rule, other blocks, and large dense
  * ones, by a loop: with partial pivoting where M may be indefinite, in an order of a narrow band. Coordinates that a constraint couples are one block, solved with their multipliers. */
+#include <string.h>
+
 #include "ir/band.h"
 #include "ir/lower_impl.h"
 
@@ -181,6 +183,22 @@ static void solve_two(Lower *l, Block *b, Slot *x) {
   x[1] = op(l, IR_DIV, n2, det);
 }
 
+/* A letter a coordinate of the block, those of one unit alike; NULL where all are. */
+static const char *kinds_of(Lower *l, const Block *b) {
+  enum { LETTERS = 26 }; /* further units share the last */
+  const Model *m = l->e->m;
+  char *kinds = ARENA_ARRAY(l->p->arena, char, b->n + 1);
+  int last = -1;
+  for (uint32_t i = 0; i < b->n; i++) {
+    uint32_t same = 0;
+    while (strcmp(m->coords.at[b->at[same]].unit.text, m->coords.at[b->at[i]].unit.text) != 0) same++;
+    if (same == i && last < LETTERS - 1) last++;
+    kinds[i] = same < i ? kinds[same] : (char)('a' + last);
+  }
+  kinds[b->n] = '\0';
+  return last > 0 ? kinds : NULL;
+}
+
 /* x[n], and behind it the multipliers of the constraints. */
 static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   Arena *a = l->p->arena;
@@ -193,7 +211,7 @@ static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   int definite = !m && !l->factored && (l->e->definite_mass || l->e->definite_by_values);
   for (size_t i = 0; definite && i < n; i++)
     for (size_t j = 0; j < i; j++) full[i * n + j] = 0; /* is not read */
-  vec_push(a, &l->p->solves, ((Solve){.n = b->n, .m = b->m, .band = band_width(b->n, b->M), .coarse = coarse, .definite = definite, .matrix = full, .rhs = rhs}));
+  vec_push(a, &l->p->solves, ((Solve){.n = b->n, .m = b->m, .band = band_width(b->n, b->M), .coarse = coarse, .definite = definite, .kinds = m ? kinds_of(l, b) : NULL, .matrix = full, .rhs = rhs}));
   Slot s = prog_ins(l->p, (Ins){.op = IR_SOLVE, .index = l->p->solves.n - 1});
   for (uint32_t i = 0; i < n + m; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }

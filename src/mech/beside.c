@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/dense.h"
+#include "mech/alike.h"
 #include "mech/start.h"
 
 /* The rank of the constraints at the state that was looked at last, and held[n]: how much of each coordinate's direction they hold. */
@@ -12,11 +13,12 @@ static uint32_t rank_of(const Eqns *e, const StateValues *v, long double *held) 
   const long double independent = 6e-6L; /* as states_rank */
   const Entries *A = &e->constraints.A;
   uint32_t n = e->n, rank = 0, at = 0;
-  long double *rows = ARENA_ARRAY(e->m->arena, long double, (size_t)(e->constraints.n + 1) * n);
+  long double *rows = ARENA_ARRAY(e->m->arena, long double, (size_t)(e->constraints.n + 1) * n), *unit = ARENA_ARRAY(e->m->arena, long double, n + 1);
+  alike_units(e, v, unit);
   for (uint32_t k = 0; k < e->constraints.n; k++) {
     long double *row = rows + (size_t)rank * n;
     for (uint32_t j = 0; j < n; j++) row[j] = 0;
-    for (; at < A->n && A->at[at].row == k; at++) row[A->at[at].col] = v->A[at];
+    for (; at < A->n && A->at[at].row == k; at++) row[A->at[at].col] = v->A[at] * unit[A->at[at].col];
     rank += dense_reduce(n, row, rows, rank) > independent;
   }
   for (uint32_t j = 0; j < n; j++) held[j] = 0;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/dense.h"
+#include "mech/alike.h"
 #include "mech/beside.h"
 #include "mech/frobenius.h"
 #include "mech/noether.h"
@@ -83,18 +84,20 @@ static uint32_t contradicting(const Eqns *e, StateSolver *s, const long double *
   StateValues v = states_at(s, symbols);
   long double *rows = ARENA_ARRAY(arena, long double, (size_t)(k->n + 1) * w), *size = ARENA_ARRAY(arena, long double, k->n), most = 0;
   long double span = scene->has_span && scene->t1 != scene->t0 ? fabsl((long double)scene->t1 - scene->t0) : 1;
-  for (uint32_t i = 0; i < k->A.n; i++) size[k->A.at[i].row] += v.A[i] * v.A[i];
+  long double *unit = ARENA_ARRAY(arena, long double, n + 1);
+  alike_units(e, &v, unit);
+  for (uint32_t i = 0; i < k->A.n; i++) size[k->A.at[i].row] += v.A[i] * unit[k->A.at[i].col] * v.A[i] * unit[k->A.at[i].col];
   for (uint32_t i = 0; i < k->n; i++) {
     size[i] = sqrtl(size[i]);
     if (size[i] > 0) most = fmaxl(most, fabsl(v.demand[i]) / size[i]);
   }
   long double far = 0;
-  for (uint32_t i = 0; i < n; i++) far = fmaxl(far, fabsl(symbols[e->m->coords.at[i].q]));
+  for (uint32_t i = 0; i < n; i++) far = fmaxl(far, fabsl(symbols[e->m->coords.at[i].q]) / unit[i]);
   if (!(most > 1e-9L * (far > 0 ? far : 1) / (span * span))) return UINT32_MAX;
   for (uint32_t i = 0; i < k->n; i++) {
     long double *row = rows + (size_t)rank * w;
     for (uint32_t j = 0; j < w; j++) row[j] = 0;
-    for (; at < k->A.n && k->A.at[at].row == i; at++) row[k->A.at[at].col] = size[i] > 0 ? v.A[at] / size[i] : 0;
+    for (; at < k->A.n && k->A.at[at].row == i; at++) row[k->A.at[at].col] = size[i] > 0 ? v.A[at] * unit[k->A.at[at].col] / size[i] : 0;
     if (!(size[i] > 0)) continue;
     row[n] = v.demand[i] / size[i] / most;
     uint32_t more = dense_reduce(w, row, rows, rank) > 1e-5L;

@@ -252,10 +252,12 @@ static int is_contact(const Eqns *e, uint32_t k) {
 /* f->terms := what moving each coordinate as far as some of its unit are makes of a constraint, to first order. */
 static void slopes(Finder *f) {
   const Entries *A = &f->e->constraints.A;
+  Finder asked = *f;
+  asked.symbols = f->asked;
   look(f);
   for (uint32_t k = 0; k < f->rows; k++) f->terms[k] = 0;
   for (uint32_t i = 0; i < A->n; i++) {
-    long double far = fmaxl(reach_of(f, A->at[i].col), like(f, f->asked, 0, A->at[i].col));
+    long double far = fmaxl(reach_of(f, A->at[i].col), reach_of(&asked, A->at[i].col));
     if (A->at[i].row < f->rows) f->terms[A->at[i].row] += fabsl(f->at.A[i]) * far;
   }
 }

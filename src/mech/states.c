@@ -3,12 +3,14 @@
 #include <math.h>
 
 #include "base/dense.h"
+#include "mech/alike.h"
 
 struct StateSolver {
   const Eqns *e;
   EvalTape *tape; /* the entries of M, then f, the flows, the energy; of constraints A, c, r, what A q'' is */
   uint32_t first_entry; /* of A in it */
   long double *out, *a, *b; /* its results; a system of equations, its right-hand side */
+  long double *unit;        /* [n] of alike.h, at the state that was looked at last; unit[0] is 0: not known */
   uint32_t *column;
   uint32_t nflows;
 };
@@ -34,6 +36,7 @@ StateSolver *states_new(const Eqns *e) {
   s->out = ARENA_ARRAY(arena, long double, count);
   s->a = ARENA_ARRAY(arena, long double, (size_t)total * total + 1);
   s->b = ARENA_ARRAY(arena, long double, total + 1);
+  s->unit = ARENA_ARRAY(arena, long double, n + 1);
   s->column = ARENA_ARRAY(arena, uint32_t, total + 1);
   return s;
 }
@@ -41,13 +44,19 @@ StateSolver *states_new(const Eqns *e) {
 /* Values at a state: the tape's results. */
 static const long double *run(StateSolver *s, const long double *symbols) {
   eval_run(s->tape, symbols, s->out);
+  s->unit[0] = 0;
   return s->out;
 }
 
-StateValues states_at(StateSolver *s, const long double *symbols) {
+static StateValues values_of(const StateSolver *s) {
   const Constraints *k = &s->e->constraints;
-  const long double *out = run(s, symbols), *A = out + s->first_entry, *c = A + k->A.n, *r = c + k->nholonomic;
+  const long double *out = s->out, *A = out + s->first_entry, *c = A + k->A.n, *r = c + k->nholonomic;
   return (StateValues){.mass = out, .A = A, .c = c, .r = r, .demand = r + k->n};
+}
+
+StateValues states_at(StateSolver *s, const long double *symbols) {
+  run(s, symbols);
+  return values_of(s);
 }
 
 /* The system [D -A^T; A 0] into a[(n + m)^2], D = M or 1. */
@@ -108,10 +117,12 @@ uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts) {
   const Eqns *e = s->e;
   const Entries *A = &e->constraints.A;
   uint32_t n = e->n, rank = 0, at = 0;
+  StateValues v = values_of(s);
+  if (!(s->unit[0] > 0)) alike_units(e, &v, s->unit);
   for (uint32_t k = 0; k < e->constraints.n; k++) {
     long double *row = s->a + (size_t)rank * n;
     for (uint32_t j = 0; j < n; j++) row[j] = 0;
-    for (; at < A->n && A->at[at].row == k; at++) row[A->at[at].col] = s->out[s->first_entry + at];
+    for (; at < A->n && A->at[at].row == k; at++) row[A->at[at].col] = v.A[at] * s->unit[A->at[at].col];
     counts[k] = k != without && dense_reduce(n, row, s->a, rank) > independent;
     rank += counts[k];
   }

@@ -75,6 +75,30 @@ is "at a start in the line the least multiplier is 0" 0 "$(shown folded)"
 row=2 column=5
 is "a start that is nearly there has none" nan "$(shown s a=1e-9 c=1e-9)"
 
+# ---- lengths as far from angles as l from 1: a rack of mass m between two gears of radius l and inertia m l^2, turned by m l g ----
+# One degree of freedom, of 3 m l^2: a'' = -g/(3 l), and on the rack lambda(back) = m g/3, so lambda(rack) = m x'' - m g/3 = -2 m g/3
+cat >"$TMP/gears.lag" <<'EOF'
+model gears "A rack between two gears"
+coord x [m], a [rad], b [rad]
+param m = 1 [kg] > 0, g = 3 [m/s^2], l = 1 [m] > 0
+lagrangian = m/2*x'^2 + m*l^2/2*(a'^2 + b'^2) - m*l*g*a
+constraint rack: x = l*a
+constraint back: x = -l*b
+scene go {
+  start a = 0.5 [rad]
+  span 1 [s]
+  output x, a, b, lambda(rack), lambda(back)
+}
+EOF
+for l in 1 1e-9 1e9; do
+  sed "s/l = 1 /l = $l /; s/g = 3 /g = 3*$l /" "$TMP/gears.lag" >"$TMP/gears_l.lag"
+  check "l = $l: both constraints count" sh -c '"$1" check "$2" | grep -q "1 degree of freedom; 2 constraints, of rank 2 at the start"' sh "$LAGC" "$TMP/gears_l.lag"
+  check "and in a run" sh -c '"$1" run "$2" -o "$3" | grep -q "2 independent at the start"' sh "$LAGC" "$TMP/gears_l.lag" "$TMP/out.csv"
+  # at t = 1: a = 0.5 - 1/2; rounding of sums of a half
+  check "its motion and multipliers" awk -F, -v l="$l" 'END { n = split("0 0 0 " (-2*l) " " l, want, " ")
+    for (i = 1; i <= n; i++) { d = $(i + 1) - want[i]; size = i == 1 || i > 3 ? l : 1; if (!(d*d <= 1e-28*size*size)) { print i, $(i + 1), want[i]; bad = 1 } } exit bad }' "$TMP/out.csv"
+done
+
 # ---- 3. embedded headers ----
 # A million steps of RK4: without NAME_hold the circle is left by 7e-5; with it by rounding, and the energy's error is that of the method.
 cat >"$TMP/circle.lag" <<'EOF'

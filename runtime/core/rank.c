@@ -1,0 +1,97 @@
+/* How independent constraints are, in coordinates whose inertia is 1: the units of coordinates do not matter, as they do not for the solver
+ * (lag_kkt.h). Holds: rows are taken in the order of the constraints. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/core.h"
+#include "lag_kkt.h"
+
+void lag_kinds(const lag_problem *pb, int n, const int *at, char *kinds)
+{
+  enum { LETTERS = 26 }; /* further units share the last */
+  int last = -1;
+
+  for (int i = 0; i < n; i++) {
+    int same = 0;
+    while (strcmp(pb->model->q[at ? at[same] : same].unit, pb->model->q[at ? at[i] : i].unit) != 0) {
+      same++;
+    }
+    last += same == i && last < LETTERS - 1;
+    kinds[i] = same < i ? kinds[same] : (char)('a' + last);
+  }
+}
+
+int lag_constraint_rows(lag_problem *pb, double t, const double *y, double *A, double *unit)
+{
+  const lag_constraints *of = pb->model->constraints;
+  size_t n = (size_t)of->n, nq = (size_t)pb->nq;
+  double *M = calloc(nq * nq + (size_t)(of->njacobian + of->nmass) + nq + 2 * n + nq, sizeof *M);
+
+  if (!M) {
+    return LAG_ENOMEM;
+  }
+  double *entries = M + nq * nq, *masses = entries + of->njacobian, *size = masses + of->nmass;
+  char *kinds = (char *)(size + nq + 2 * n);
+  int rc = lag_inputs(pb, t);
+  rc = rc ? rc : of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, entries, masses, pb->work);
+  for (size_t i = 0; i < n * nq; i++) {
+    A[i] = 0;
+  }
+  for (int e = 0; e < of->njacobian && rc == 0; e++) {
+    A[(size_t)of->jacobian[e].row * nq + (size_t)of->jacobian[e].col] = entries[e];
+  }
+  for (int e = 0; e < of->nmass && rc == 0; e++) {
+    size_t i = (size_t)of->mass[e].row, j = (size_t)of->mass[e].col;
+    M[i * nq + j] = M[j * nq + i] = masses[e];
+  }
+  if (rc == 0) {
+    lag_kinds(pb, pb->nq, NULL, kinds);
+    lag_units(pb->nq, of->n, kinds, M, A, unit, size, size + n);
+  }
+  free(M);
+  return rc;
+}
+
+/* Twice, so that rounding is gone. */
+static double remainder_of(int n, int r, const double *Q, double *x)
+{
+  double s = 0;
+
+  for (int k = 0; k < 2 * r; k++) {
+    const double *q = Q + k % r * n;
+    double along = 0;
+    for (int i = 0; i < n; i++) {
+      along += q[i] * x[i];
+    }
+    for (int i = 0; i < n; i++) {
+      x[i] -= along * q[i];
+    }
+  }
+  for (int i = 0; i < n; i++) {
+    s += x[i] * x[i];
+  }
+  return sqrt(s);
+}
+
+double lag_own_part(int n, int r, double least, const double *unit, double *Q, double *row)
+{
+  double most = 0;
+
+  for (int i = 0; i < n; i++) {
+    row[i] *= unit[i];
+    most = fmax(most, fabs(row[i]));
+  }
+  for (int i = 0; i < n && most > 0; i++) { /* so that squares have a value */
+    row[i] /= most;
+  }
+  double length = remainder_of(n, 0, Q, row);
+  for (int i = 0; i < n && length > 0; i++) {
+    row[i] /= length;
+  }
+  double left = length > 0 ? remainder_of(n, r, Q, row) : 0;
+  for (int i = 0; i < n && left > least; i++) {
+    Q[r * n + i] = row[i] / left;
+  }
+  return length > 0 ? left : -1;
+}
