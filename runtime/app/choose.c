@@ -39,6 +39,17 @@ static int choose_scene(App *app)
   return name ? no_scene(app, name) : app_error(&app->args, "this program has no scenes");
 }
 
+int app_read_until(App *app)
+{
+  enum { SPANS = 20 }; /* exponents are means over a long time, forwards */
+  const Args *a = &app->args;
+  const lag_scene *c = app->scene;
+  double span = c->has_span ? c->t1 - c->t0 : 10;
+
+  app->until = c->t0 + (a->lyapunov ? SPANS * fabs(span) : span);
+  return !a->until || args_number(a, "--until", a->until, a->lyapunov ? "--until 1000" : "--until 20", &app->until) ? 0 : EXIT_USAGE;
+}
+
 const lag_method *app_method_at(const App *app, int i)
 {
   return i < lag_nmethods ? lag_methods[i] : i - lag_nmethods < app->extras.nmethods ? app->extras.methods[i - lag_nmethods] : NULL;
@@ -388,7 +399,7 @@ static int new_simulation(App *app)
     return app_error(&app->args, "cannot simulate scene %s: out of memory, or built for another version or number type",
                      app->scene->name);
   }
-  return 0;
+  return app_read_until(app);
 }
 
 int app_set_values(App *app)
