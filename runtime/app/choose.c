@@ -83,7 +83,7 @@ static char *trim(char *s)
   return s;
 }
 
-/* A number, or else a word. */
+/* A number, decimal as everywhere (args_number), or else a word. */
 static void add_option(Choice *c, const char *name, const char *value)
 {
   lag_option *o = &c->opt[c->n++];
@@ -91,9 +91,23 @@ static void add_option(Choice *c, const char *name, const char *value)
 
   *o = (lag_option){.name = name};
   o->value = strtod(value, &end);
-  if (*end || end == value) {
+  if (*end || strspn(value, "+-.0123456789eE") != strlen(value) || end == value) {
     o->text = value;
   }
+}
+
+/* What methods take for "not said", a step of 0, is a mistake where somebody says it. */
+static int check_steps(const App *app, const Choice *c)
+{
+  for (int i = 0; i < c->n; i++) {
+    const lag_option *o = &c->opt[i];
+    const char *wrong = lag_is_step(o->name) && !o->text ? lag_wrong_step(app->sim, o->value) : NULL;
+    if (wrong) {
+      const char *example = strcmp(o->name, "step") == 0 ? "--step 1e-3" : "max_step=1e-3";
+      return app_error(&app->args, "%s %g: %s; write for example %s, or leave it out", o->name, o->value, wrong, example);
+    }
+  }
+  return 0;
 }
 
 /* "NAME" or "NAME(option = value, ...)". */
@@ -171,17 +185,14 @@ static int choose_method(App *app)
     if (!args_number(a, "--step", a->step, "--step 1e-3", &o->value)) {
       return EXIT_USAGE;
     }
-    if (o->value <= 0) {
-      return app_error(a, "--step %s: a step must be positive, for example --step 1e-3", a->step);
-    }
-    if (o->value < 4.5 * DBL_EPSILON * (app->scene->has_span ? fabs(app->scene->t1 - app->scene->t0) : 1)) {
-      return app_error(a, "--step %s: time would not move in " LAG_PRECISION " precision; for example --step 1e-3", a->step);
-    }
   }
   for (int i = 0; i < OWN_OPTIONS; i++) {
     if (a->method_options[i]) {
       add_option(&c, args_own_options[i], a->method_options[i]);
     }
+  }
+  if ((rc = check_steps(app, &c)) != 0) {
+    return rc;
   }
   if (!m) {
     return app_choose_automatically(app, c.opt, c.n);
