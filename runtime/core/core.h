@@ -109,6 +109,8 @@ static inline double lag_declared(const lag_var *v, double si) { return (si - v-
  * nothing. */
 int lag_is_step(const char *option);
 const char *lag_wrong_step(const lag_sim *s, double x);
+/* The size of the steps of the run, where all have the same [s]; 0 where the method chooses it. */
+double lag_equal_step(const lag_sim *s);
 
 /* message := the text; returns status. */
 #if defined(__GNUC__)
