@@ -5,24 +5,36 @@
 #include "analysis/pool.h"
 #include "core/core.h"
 
-enum { MOST_STEPS = 600, LEAST_STEPS = 30, ITERATIONS = 6 };
+enum { LEAST_STEPS = 30, ITERATIONS = 6, STAGES = 12, MARGIN = 4 };
 
 /* Of the bound of stability. Steps that it limits do not stay above it: their h*rho goes up and down about it, since steps past it
  * let errors grow until one is refused (of rk45, whose bound is 3.3, between 2.2 and 4.2), so that half of them may be below. */
 static const double near_bound = 0.75;
+/* A mode that grows faster than this part of its rate is followed, by any method that is to be right: its growth, not stability,
+ * limits steps. Less may be rounding in the eigenvalue of an oscillation. */
+static const double growing = 0.1;
 
 typedef struct Look {
   Stiffness *s;
   double bound, last;   /* of stability; the time of the step before */
-  int n, every, steps;
-  double *J, *x, *y, *work;
+  int n, every, most;
+  double *J, *x, *y, *z, *work;
 } Look;
+
+static double dot(int n, const double *a, const double *b)
+{
+  double sum = 0;
+
+  for (int i = 0; i < n; i++) {
+    sum += a[i] * b[i];
+  }
+  return sum;
+}
 
 /* y := (df/dy) x; returns |y|. */
 static double apply(const lag_problem *pb, const double *J, const double *x, double *y)
 {
   size_t n = (size_t)pb->n, nq = (size_t)pb->nq;
-  double sum = 0;
 
   for (size_t i = 0; i < n; i++) {
     double value = i < nq ? x[nq + i] : 0;
@@ -30,62 +42,80 @@ static double apply(const lag_problem *pb, const double *J, const double *x, dou
       value += J[(i - nq) * n + k] * x[k];
     }
     y[i] = value;
-    sum += value * value;
   }
-  return sqrt(sum);
+  return sqrt(dot(pb->n, y, y));
 }
 
-/* The size of the largest eigenvalue, by the power method from what the last step left: the geometric mean of two
- * growths, since one alone goes up and down with a complex pair. */
-static double spectral_radius(Look *l, const lag_problem *pb)
+/* The eigenvalue of the largest size, or one of a pair: its size, 0 where there is none, and its real part. The power method goes on from what the
+ * last step left. Then x, y = J x and z = J y lie in the span of the pair's vectors, z = a y + b x, and the pair are the roots of
+ * s^2 = a s + b. Of a single one y is along x, and s = y.x/x.x. */
+static double dominant(Look *l, const lag_problem *pb, double *real)
 {
-  double before = 1, growth = 1;
+  const double alike = 1e-10; /* the square of the sine of an angle that is none */
+  int n = l->n;
 
+  *real = 0;
   for (int i = 0; i < ITERATIONS; i++) {
-    before = growth;
-    growth = apply(pb, l->J, l->x, l->y);
+    double growth = apply(pb, l->J, l->x, l->y);
     if (!(growth > 0 && isfinite(growth))) {
       return 0;
     }
-    for (int k = 0; k < l->n; k++) {
+    for (int k = 0; k < n; k++) {
       l->x[k] = l->y[k] / growth;
     }
   }
-  return sqrt(before * growth);
+  double yy = apply(pb, l->J, l->x, l->y), xy = dot(n, l->x, l->y); /* |x| = 1 */
+  apply(pb, l->J, l->y, l->z);
+  double xz = dot(n, l->x, l->z), yz = dot(n, l->y, l->z), det = (yy - xy) * (yy + xy);
+  if (!(det > alike * yy * yy)) {
+    *real = xy;
+    return fabs(xy);
+  }
+  double a = (yz - xz * xy) / det, b = (xz * yy * yy - yz * xy) / det, inside = a * a / 4 + b;
+  *real = inside < 0 ? a / 2 : a / 2 + copysign(sqrt(inside), a);
+  return inside < 0 ? sqrt(-b) : fabs(*real);
 }
 
 static int look(void *context, const lag_sim *sim)
 {
   Look *l = context;
+  Stiffness *s = l->s;
   lag_problem pb = sim->pb;
-  double t = sim->run->step_t1, h = fabs(t - l->last);
+  double t = sim->run->step_t1, h = fabs(t - l->last), real;
 
-  l->last = t;
-  if (l->steps++ % l->every == 0 && lag_jacobian(&pb, t, sim->y, l->J, l->work) == LAG_OK) {
-    l->s->looked++;
-    l->s->limited += h * spectral_radius(l, &pb) > near_bound * l->bound;
+  l->last = s->until = t;
+  s->calls = pb.rhs_calls;
+  if (s->steps == l->most / 2) { /* what a run begins with, a transient, says little of the rest */
+    s->looked = s->limited = 0;
   }
-  return l->steps >= MOST_STEPS;
+  if (s->steps++ % l->every == 0 && lag_jacobian(&pb, t, sim->y, l->J, l->work) == LAG_OK) {
+    double size = dominant(l, &pb, &real), reach = real * pb.dir > growing * size ? 0 : h * size / l->bound;
+    s->looked++;
+    s->limited += reach > near_bound;
+    s->needed += reach * l->every;
+  }
+  return s->steps >= l->most;
 }
 
-int lag_stiffness(lag_sim *trial, double until, double bound, Stiffness *s)
+int lag_stiffness(lag_sim *trial, double until, double bound, int most, Stiffness *s)
 {
   const lag_model *m = lag_sim_scene(trial)->model;
   int n = 2 * m->nq + m->nz;
   Pool pool = {0};
-  Look l = {.s = s, .bound = bound, .last = lag_sim_time(trial), .n = n, .every = n <= 40 ? 1 : 5};
+  Look l = {.s = s, .bound = bound, .last = lag_sim_time(trial), .n = n, .every = n <= 40 ? 1 : 5, .most = most};
 
   *s = (Stiffness){0};
   l.J = pool_doubles(&pool, (size_t)(m->nq + m->nz) * (size_t)n);
   l.x = pool_doubles(&pool, (size_t)n);
   l.y = pool_doubles(&pool, (size_t)n);
+  l.z = pool_doubles(&pool, (size_t)n);
   l.work = pool_doubles(&pool, lag_linear_work(m));
   if (!pool.failed) {
     for (int i = 0; i < n; i++) {
       l.x[i] = 1 + 0.1 * (i % 7); /* no eigenvector that a model is likely to have */
     }
     lag_sim_on_step(trial, look, &l);
-    lag_sim_advance(trial, until);
+    s->unfinished = lag_sim_advance(trial, until) == LAG_INTERRUPTED;
   }
   pool_free(&pool);
   return pool.failed ? LAG_ENOMEM : LAG_OK;
@@ -94,4 +124,9 @@ int lag_stiffness(lag_sim *trial, double until, double bound, Stiffness *s)
 int lag_is_stiff(const Stiffness *s)
 {
   return s->looked >= LEAST_STEPS && s->limited * 2 > s->looked;
+}
+
+int lag_strides(const Stiffness *s, int n)
+{
+  return STAGES * s->needed > MARGIN * (s->calls + (double)n * s->steps);
 }

@@ -48,10 +48,6 @@ static int choose_end(App *app)
   const Args *a = &app->args;
   double t = lag_sim_time(app->sim);
 
-  app->until = app->scene->has_span ? app->scene->t1 : app->scene->t0 + 10;
-  if (a->until && !args_number(a, "--until", a->until, "--until 20", &app->until)) {
-    return EXIT_USAGE;
-  }
   if (app->until == t) {
     return app_error(a, "nothing to compute: the run is at t = %g s and ends at %g s; write --until with a later time", t,
                      app->until);

@@ -77,6 +77,8 @@ int app_error(const Args *a, const char *format, ...);
 /* choose.c: scene, method and values; without a method. 0, or EXIT_USAGE after a message. */
 int app_choose(App *app);
 int app_choose_start(App *app);
+/* app->until := where the command line, or else the scene, lets it end; done by the two above. 0, or EXIT_USAGE after a message. */
+int app_read_until(App *app);
 /* The name=value of the command line, into app->sim. */
 int app_set_value(App *app, const char *text); /* one of them, name=value */
 int app_set_values(App *app);

@@ -8,26 +8,43 @@
 /* Where each of them is the cheapest: `lagc cost`. */
 static const double below_taylor = 1e-9, above_rk45 = 1e-6;
 
-enum { MOST_OF_TRIAL = 200 }; /* components of the state: past them the Jacobian of each step takes too long */
+enum { MOST_OF_TRIAL = 200, MOST_OF_RADAU = 40 }; /* components of the state: past them Jacobians, or decompositions, take too long */
+enum { STEPS_OF_TRIAL = 600 };
 
-/* Is it stiff? The trial's values are those of the run. */
-static int is_stiff(App *app, const lag_method *method, Stiffness *s)
+/* A trial with the values of the run: what `s` says of it. 0: there is none. */
+static int try(App *app, const lag_method *method, double bound, int most, Stiffness *s)
 {
-  const lag_scene *scene = app->scene;
-  lag_sim *run = app->sim, *trial;
-  int rc = LAG_ENOMEM;
+  lag_sim *run = app->sim, *trial = app->sim = lag_sim_new(app->scene);
+  int done = trial && app_set_values(app) == 0 && lag_sim_set_tolerance(trial, lag_sim_tolerance(run)) == 0 &&
+             lag_sim_set_method(trial, method, NULL, 0) == 0 && lag_stiffness(trial, app->until, bound, most, s) == LAG_OK;
 
-  if (!scene->model->linear || scene->model->constraints || 2 * scene->model->nq + scene->model->nz > MOST_OF_TRIAL) {
-    return 0;
-  }
-  trial = app->sim = lag_sim_new(scene);
-  if (trial && app_set_values(app) == 0 && lag_sim_set_tolerance(trial, lag_sim_tolerance(run)) == 0 &&
-      lag_sim_set_method(trial, method, NULL, 0) == 0) {
-    rc = lag_stiffness(trial, scene->has_span ? scene->t1 : scene->t0 + 10, method == &lag_rk45 ? 3.3 : 6.1, s);
-  }
   app->sim = run;
   lag_sim_free(trial);
-  return rc == LAG_OK && lag_is_stiff(s);
+  return done;
+}
+
+/* Is it stiff? Then why, for a reader. */
+static int is_stiff(App *app, const lag_method *method, char *why, size_t size)
+{
+  const lag_model *m = app->scene->model;
+  int n = 2 * m->nq + m->nz;
+  double bound = method == &lag_rk45 ? 3.3 : 6.1;
+  Stiffness s, radau;
+
+  if (!m->linear || m->constraints || n > MOST_OF_TRIAL || !try(app, method, bound, STEPS_OF_TRIAL, &s)) {
+    return 0;
+  }
+  if (lag_is_stiff(&s)) {
+    snprintf(why, size, "radau, since the model is stiff: stability, not the tolerance, would limit %.0f %% of the first steps of %s",
+             100.0 * s.limited / s.looked, method->name);
+    return 1;
+  }
+  if (!s.unfinished || n > MOST_OF_RADAU || !try(app, &lag_radau, bound, STEPS_OF_TRIAL, &radau) || !lag_strides(&radau, n)) {
+    return 0;
+  }
+  snprintf(why, size, "radau, since the model is stiff: stability alone would demand %.2g steps of %s to t = %.3g s, and radau takes %d",
+           radau.needed, method->name, radau.until, radau.steps);
+  return 1;
 }
 
 /* Whether it takes this model and these options. */
@@ -43,12 +60,11 @@ int app_choose_automatically(App *app, const lag_option *opt, int n)
   char *why = app->why;
   size_t size = sizeof app->why;
   int exponents = app->args.lyapunov; /* taylor has to take steps of dop853 for tangent vectors */
-  Stiffness s = {0};
 
-  if (is_stiff(app, plain, &s) && set(app, &lag_radau, opt, n)) {
-    snprintf(why, size, "radau, since the model is stiff: stability, not the tolerance, would limit %.0f %% of the first steps of %s",
-             100.0 * s.limited / s.looked, plain->name);
-  } else if (tol < below_taylor && !exponents && set(app, &lag_taylor_method, opt, n)) {
+  if (is_stiff(app, plain, why, size) && set(app, &lag_radau, opt, n)) {
+    return 0;
+  }
+  if (tol < below_taylor && !exponents && set(app, &lag_taylor_method, opt, n)) {
     snprintf(why, size, "taylor, since the tolerance is below %g", below_taylor);
   } else if (set(app, plain, opt, n)) {
     if (plain == &lag_rk45) {

@@ -39,6 +39,17 @@ static int choose_scene(App *app)
   return name ? no_scene(app, name) : app_error(&app->args, "this program has no scenes");
 }
 
+int app_read_until(App *app)
+{
+  enum { SPANS = 20 }; /* exponents are means over a long time, forwards */
+  const Args *a = &app->args;
+  const lag_scene *c = app->scene;
+  double span = c->has_span ? c->t1 - c->t0 : 10;
+
+  app->until = c->t0 + (a->lyapunov ? SPANS * fabs(span) : span);
+  return !a->until || args_number(a, "--until", a->until, a->lyapunov ? "--until 1000" : "--until 20", &app->until) ? 0 : EXIT_USAGE;
+}
+
 const lag_method *app_method_at(const App *app, int i)
 {
   return i < lag_nmethods ? lag_methods[i] : i - lag_nmethods < app->extras.nmethods ? app->extras.methods[i - lag_nmethods] : NULL;
@@ -72,7 +83,7 @@ static char *trim(char *s)
   return s;
 }
 
-/* A number, or else a word. */
+/* A number, decimal as everywhere (args_number), or else a word. */
 static void add_option(Choice *c, const char *name, const char *value)
 {
   lag_option *o = &c->opt[c->n++];
@@ -80,9 +91,23 @@ static void add_option(Choice *c, const char *name, const char *value)
 
   *o = (lag_option){.name = name};
   o->value = strtod(value, &end);
-  if (*end || end == value) {
+  if (*end || strspn(value, "+-.0123456789eE") != strlen(value) || end == value) {
     o->text = value;
   }
+}
+
+/* What methods take for "not said", a step of 0, is a mistake where somebody says it. */
+static int check_steps(const App *app, const Choice *c)
+{
+  for (int i = 0; i < c->n; i++) {
+    const lag_option *o = &c->opt[i];
+    const char *wrong = lag_is_step(o->name) && !o->text ? lag_wrong_step(app->sim, o->value) : NULL;
+    if (wrong) {
+      const char *example = strcmp(o->name, "step") == 0 ? "--step 1e-3" : "max_step=1e-3";
+      return app_error(&app->args, "%s %g: %s; write for example %s, or leave it out", o->name, o->value, wrong, example);
+    }
+  }
+  return 0;
 }
 
 /* "NAME" or "NAME(option = value, ...)". */
@@ -160,17 +185,14 @@ static int choose_method(App *app)
     if (!args_number(a, "--step", a->step, "--step 1e-3", &o->value)) {
       return EXIT_USAGE;
     }
-    if (o->value <= 0) {
-      return app_error(a, "--step %s: a step must be positive, for example --step 1e-3", a->step);
-    }
-    if (o->value < 4.5 * DBL_EPSILON * (app->scene->has_span ? fabs(app->scene->t1 - app->scene->t0) : 1)) {
-      return app_error(a, "--step %s: time would not move in " LAG_PRECISION " precision; for example --step 1e-3", a->step);
-    }
   }
   for (int i = 0; i < OWN_OPTIONS; i++) {
     if (a->method_options[i]) {
       add_option(&c, args_own_options[i], a->method_options[i]);
     }
+  }
+  if ((rc = check_steps(app, &c)) != 0) {
+    return rc;
   }
   if (!m) {
     return app_choose_automatically(app, c.opt, c.n);
@@ -388,7 +410,7 @@ static int new_simulation(App *app)
     return app_error(&app->args, "cannot simulate scene %s: out of memory, or built for another version or number type",
                      app->scene->name);
   }
-  return 0;
+  return app_read_until(app);
 }
 
 int app_set_values(App *app)

@@ -89,14 +89,10 @@ static int compute_reference(Bare *b, Cost *c)
 /* The times of samples, equally spaced over what is to be run. */
 static int choose_times(App *app, Cost *c)
 {
-  const Args *a = &app->args;
-  double t0 = app->scene->t0, t1 = app->scene->has_span ? app->scene->t1 : t0 + 10;
+  double t0 = app->scene->t0, t1 = app->until;
 
-  if (a->until && !args_number(a, "--until", a->until, "--until 20", &t1)) {
-    return EXIT_USAGE;
-  }
   if (t1 == t0) {
-    return app_error(a, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", t0);
+    return app_error(&app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", t0);
   }
   for (int i = 0; i < SAMPLES; i++) {
     c->reference.t[i] = t0 + (t1 - t0) * (i + 1) / SAMPLES;

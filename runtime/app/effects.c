@@ -107,7 +107,7 @@ static int make(Trial *k, int scene)
 
   app->scene = k->program->scenes[scene];
   app->sim = lag_sim_new(app->scene);
-  return app->sim ? set_values(k) : app_error(&app->args, "out of memory");
+  return !app->sim ? app_error(&app->args, "out of memory") : app_read_until(app) ? EXIT_USAGE : set_values(k);
 }
 
 /* The simulation of app becomes the variant's. */
@@ -138,16 +138,10 @@ static int prepare_first(Trial *k)
 
 static int choose_times(Trial *k)
 {
-  const Args *a = &k->app->args;
-  const lag_scene *c = k->program->scenes[0];
-
-  k->t0 = c->t0;
-  k->t1 = c->has_span ? c->t1 : c->t0 + 10;
-  if (a->until && !args_number(a, "--until", a->until, "--until 20", &k->t1)) {
-    return EXIT_USAGE;
-  }
+  k->t0 = k->app->scene->t0;
+  k->t1 = k->app->until;
   if (k->t1 == k->t0) {
-    return app_error(a, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", k->t0);
+    return app_error(&k->app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", k->t0);
   }
   printf("span %.17g\n", k->t1 - k->t0);
   return 0;

@@ -9,7 +9,7 @@
 #include "app/app.h"
 #include "core/core.h"
 
-enum { SPANS = 20, TURNING = 10, ROWS = 500 }; /* default: 20 spans of the scene, of which a tenth for vectors to turn */
+enum { TURNING = 10, ROWS = 500 }; /* default: a tenth of the time is for vectors to turn */
 
 typedef struct Job {
   App *app;
@@ -24,13 +24,8 @@ typedef struct Job {
 static int choose_times(App *app, double *from)
 {
   const Args *a = &app->args;
-  const lag_scene *c = app->scene;
-  double t0 = c->t0, span = c->has_span ? fabs(c->t1 - t0) : 10;
+  double t0 = app->scene->t0;
 
-  app->until = t0 + SPANS * span;
-  if (a->until && !args_number(a, "--until", a->until, "--until 1000", &app->until)) {
-    return EXIT_USAGE;
-  }
   if (!(app->until > t0)) {
     return app_error(a, "--until %s: exponents are means over a long time from t = %g s on; write a later one", a->until ? a->until : "", t0);
   }

@@ -105,6 +105,13 @@ struct lag_sim {
 /* A value in SI, in the declared unit of its variable. */
 static inline double lag_declared(const lag_var *v, double si) { return (si - v->offset) / v->factor; }
 
+/* setup.c: whether an option of this name is the size of a step; and what is wrong with x [s] as one of a run of this scene. NULL:
+ * nothing. */
+int lag_is_step(const char *option);
+const char *lag_wrong_step(const lag_sim *s, double x);
+/* The size of the steps of the run, where all have the same [s]; 0 where the method chooses it. */
+double lag_equal_step(const lag_sim *s);
+
 /* message := the text; returns status. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))

@@ -58,7 +58,7 @@ static const char *reason(const lag_model *m, int status)
            : m->constraints           ? "the mass matrix is singular along motions that the constraints allow, or no longer positive definite"
                                       : "the mass matrix is singular, or no longer positive definite";
   case LAG_ENAN: return "the model gives no finite value";
-  case LAG_EDOMAIN: return "the model left its domain, and no smaller step helps";
+  case LAG_EDOMAIN: return "the model left its domain";
   case LAG_ESTEP: return "the step became too small: a singularity, or the tolerance is too strict";
   case LAG_EMODEL: return "the model failed";
   case LAG_EMETHOD: return "the method failed";
@@ -70,8 +70,9 @@ int lag_explain(lag_sim *s, int status)
 {
   const lag_model *m = s->scene->model;
   const lag_problem *pb = &s->pb;
-  char text[256] = "", name[64] = "";
+  char text[256] = "", name[64] = "", advice[96] = "";
   size_t used = 0;
+  double h = lag_equal_step(s);
 
   if (status == LAG_ENAN && pb->bad_index >= 0) {
     name_rate(s, pb->bad_index, name, sizeof name);
@@ -81,9 +82,16 @@ int lag_explain(lag_sim *s, int status)
     used += (size_t)snprintf(text + used, sizeof text - used, "%s%s%s = %.6g", i ? ", " : "", v->name,
                              i >= m->nq && i < 2 * m->nq ? "'" : "", lag_sim_state_value(s, i));
   }
-  return lag_fail(s, status, "at t = %.9g s: %s%s%s%s%s%s; last good state, t = %.9g s: %s%s", pb->bad_t, reason(m, status),
+  if ((status == LAG_ENAN || status == LAG_EDOMAIN) && s->run->begun != 0.0) {
+    if (h > 0) {
+      snprintf(advice, sizeof advice, "; steps of %.3g s may be too long for it: take smaller ones, or dop853", h);
+    } else if (status == LAG_EDOMAIN) {
+      snprintf(advice, sizeof advice, ", and no smaller step helps");
+    }
+  }
+  return lag_fail(s, status, "at t = %.9g s: %s%s%s%s%s%s%s; last good state, t = %.9g s: %s%s", pb->bad_t, reason(m, status),
                   name[0] ? " for " : "", name, pb->detail ? " (" : "", pb->detail ? pb->detail : "",
-                  pb->detail ? ")" : "", s->run->t, text, pb->n > 8 ? ", ..." : "");
+                  pb->detail ? ")" : "", advice, s->run->t, text, pb->n > 8 ? ", ..." : "");
 }
 
 /* The first advance: the start of everything. At t0 itself only the state is made: no direction is known. */

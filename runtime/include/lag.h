@@ -180,6 +180,9 @@ const char *lag_line_of(const lag_constraint *c, char text[32]);
 /* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; a residual of NaN: "is not met". holonomic: of c, else of r. */
 void lag_say_constraint(lag_problem *pb, int k, int holonomic, double residual, const char *words);
 
+/* The step [s] of a method with steps of equal size: the option, or where that is 0 a 10000th of the scene's span. */
+double lag_step_size(const lag_problem *pb, double option);
+
 /* The index of the first of x[n] that is not finite, -1 when all are. */
 int lag_not_finite(int n, const double *x);
 

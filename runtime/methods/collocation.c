@@ -216,8 +216,8 @@ static int solve(const Collocation *w, Arrays *a, lag_problem *pb, const Step *s
     }
     before = now;
   }
-  snprintf(pb->words, sizeof pb->words, "Newton's method did not converge in %d corrections; take smaller steps, or radau or dop853",
-           MOST_CORRECTIONS);
+  snprintf(pb->words, sizeof pb->words, "in a step of %.3g s Newton's method did not converge in %d corrections; take smaller steps, or radau or dop853",
+           fabs(w->h), MOST_CORRECTIONS);
   pb->detail = pb->words;
   return lag_step_failed(pb, LAG_EMETHOD, s->t);
 }

@@ -179,6 +179,33 @@ static void scatter(const lag_discrete *d, const Parts *w, int i)
   }
 }
 
+/* Says what Newton's method does not do, in which step, and what is left in R. */
+static int gave_up(const lag_discrete *d, const Parts *w, const char *what)
+{
+  double worst = 0;
+
+  for (int j = 0; j < w->m; j++) {
+    worst = fmax(worst, w->R[j] == 0.0 ? 0 : fabs(w->R[j]) / w->S[j]);
+  }
+  snprintf(d->pb->words, sizeof d->pb->words,
+           "in a step of %.3g s Newton's method %s, the residual is %.1g of its terms; take smaller steps, or radau or dop853", d->size, what,
+           worst);
+  d->pb->detail = d->pb->words;
+  return lag_step_failed(d->pb, LAG_EMETHOD, d->t);
+}
+
+/* A correction has led to where the model has no values, which says nothing of the model: R is that before it. */
+static int led_astray(const lag_discrete *d, const Parts *w)
+{
+  for (int a = 0; a < w->n; a++) {
+    for (int k = 0; k < w->free; k++) {
+      d->u[k * w->n + a] -= w->du[a * w->free + k];
+    }
+  }
+  residual(d, w);
+  return gave_up(d, w, "leads to where the model has no values");
+}
+
 /* The matrix of Newton's method at the present u, factored. */
 static int matrix(const lag_discrete *d, Parts *w)
 {
@@ -192,10 +219,7 @@ static int matrix(const lag_discrete *d, Parts *w)
     scatter(d, w, i);
   }
   if (lag_band_factor(&w->J, w->du)) {
-    d->pb->detail = d->pb->model->constraints ? "the matrix of Newton's method is singular: where inertia is missing that constraints replace, dop853 can; "
-                                                 "else take another step size"
-                                               : "the matrix of Newton's method is singular; take another step size";
-    return lag_step_failed(d->pb, LAG_EMETHOD, d->t);
+    return gave_up(d, w, d->pb->model->constraints ? "has a singular matrix, as where inertia is missing that constraints replace" : "has a singular matrix");
   }
   return LAG_OK;
 }
@@ -241,30 +265,17 @@ static int is_settled(Size now, Size before, int fresh, int turn)
   return turn > 0 && now.power >= before.power / 2 && now.power <= 1e-8;
 }
 
-static int gave_up(const lag_discrete *d, const Parts *w)
-{
-  double worst = 0;
-
-  for (int j = 0; j < w->m; j++) {
-    worst = fmax(worst, w->R[j] == 0.0 ? 0 : fabs(w->R[j]) / w->S[j]);
-  }
-  snprintf(d->pb->words, sizeof d->pb->words,
-           "Newton's method did not converge in %d corrections, the residual is %.1g of its terms; take smaller steps, or radau or dop853",
-           MOST_CORRECTIONS, (double)worst);
-  d->pb->detail = d->pb->words;
-  return lag_step_failed(d->pb, LAG_EMETHOD, d->t);
-}
-
 int lag_discrete_solve(const lag_discrete *d)
 {
   Parts w = layout(d);
   Size before = {1, 1};
   int settled = 0, rc;
+  char what[48];
 
   d->pb->systems += d->counted;
   for (int turn = 0; turn <= MOST_CORRECTIONS; turn++) {
     if ((rc = residual(d, &w)) != 0 || settled) {
-      return rc;
+      return rc && turn > 0 && rc != LAG_EMODEL ? led_astray(d, &w) : rc;
     }
     int fresh = turn == 0 || before.part > 1e-3;
     if (fresh && (rc = matrix(d, &w)) != 0) {
@@ -275,7 +286,8 @@ int lag_discrete_solve(const lag_discrete *d)
     settled = is_settled(now, before, fresh, turn);
     before = now;
   }
-  return gave_up(d, &w);
+  snprintf(what, sizeof what, "did not converge in %d corrections", MOST_CORRECTIONS);
+  return gave_up(d, &w, what);
 }
 
 /* ---- The derivative of the step */

@@ -104,13 +104,13 @@ int lag_link(const Implicit *w, const Arrays *a, lag_problem *pb, double t, cons
   if (known || lag_history_guess(history, m, u)) {
     rc = lag_discrete_solve(&d);
   }
+  pb->detail = NULL; /* of the first attempt */
   if (rc != 0 && (rc = straight(w, a, pb, t, y, dt, k, at, u)) == 0) {
     rc = lag_discrete_solve(&d);
   }
   if (rc) {
     return rc;
   }
-  pb->detail = NULL;
   for (int i = 0; i < nq; i++) {
     for (int j = 0; j < (int)r->free; j++) {
       a->dq[i] += h * (r->whole[j] * u[j * nq + i]);

@@ -19,12 +19,6 @@ static inline double lag_sum(double s, double d, double *c)
 /* The option of a method with steps of equal size. */
 #define LAG_STEP_OPTION {"step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL}
 
-/* The step of a method with steps of equal size: the option, or 0 for a 10000th of the scene's span. */
-static inline double lag_step_size(const lag_problem *pb, double option)
-{
-  return option > 0 ? option : (pb->span > 0 ? pb->span : 10) / 10000;
-}
-
 /* Sets where it failed; returns status. */
 static inline int lag_step_failed(lag_problem *pb, int status, double t)
 {

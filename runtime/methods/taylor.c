@@ -50,6 +50,7 @@ typedef struct Taylor {
   double unit[2];   /* the unit of time of each series, with the sign of the direction */
   double noise;     /* the defect that was found to be rounding, in tolerances; forgotten by a tenth a step */
   double t_begin, begun;
+  double tc;        /* what t has lost to rounding, where all steps are equal */
   double x[];
 } Taylor;
 
@@ -94,6 +95,7 @@ static void reset(void *work, lag_problem *pb)
   Taylor *w = work;
 
   w->ready = 0;
+  w->tc = 0;
   memset(array(w, pb, COMP), 0, (size_t)width(pb) * sizeof(double));
 }
 
@@ -316,7 +318,8 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   h = w->fixed != 0.0 ? w->h_option : h < most ? h : most;
   h = isfinite(h) ? h : 1;
   for (;;) {
-    double tb = *t + pb->dir * h, dt = tb - *t; /* a step between two times that are numbers */
+    double tc = w->tc, tb = w->fixed != 0.0 ? lag_sum(*t, pb->dir * h, &tc) : *t + pb->dir * h;
+    double dt = tb - *t; /* a step between two times that are numbers */
     if (!(fabs(dt) > 4 * DBL_EPSILON * fabs(*t)) || h < DBL_MIN / DBL_EPSILON) {
       return cause == LAG_ESTEP || cause == LAG_ESINGULAR ? lag_step_failed(pb, cause, *t) : cause;
     }
@@ -332,6 +335,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     if (error <= 1 || error <= 2 * w->noise || (w->fixed != 0.0 && rc == 0)) {
       w->noise *= 0.9;
       accept(w, pb, t, y, dt, tb);
+      w->tc = tc;
       return LAG_OK;
     }
     cause = rc ? (pb->bad_index >= 0 ? LAG_ENAN : rc < 0 ? LAG_ESINGULAR : LAG_EDOMAIN) : LAG_ESTEP;

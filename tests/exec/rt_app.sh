@@ -149,6 +149,18 @@ ok "a directory that is not there" says 2 "cannot write" -o none/rows.csv
 ok "a picture that cannot be written is said before the run" says 2 "cannot write" fixed --until 1e6 --svg none/x.svg
 ok "too many rows are refused" says 2 "a larger --every" fixed --every 1e-300 -o x.csv
 ok "a step that does not move time" says 2 "time would not move" fixed --step 1e-320
+# Steps in parentheses are checked as --step is.
+for o in "rk4(step=0)" "rk4(step=-1)" "rk45(step=-1e-3)" "dop853(max_step=0)" "rk4(step=1e400)"; do
+  ok "$o" says 2 "a step must be a positive number; write for example" --method "$o"
+done
+ok "the same message for --step" says 2 "step 0: a step must be a positive number; write for example --step 1e-3" --step 0
+for o in "rk4(step=1e-300)" "rk45(step=1e-300)" "rk45(max_step=1e-40)" "rk45(adapt=off, step=1e-17)"; do
+  ok "$o" says 2 "time would not move" --method "$o"
+done
+for o in "rk4(step=nan)" "rk4(step=inf)" "rk4(step=0x1p3)" "rk45(atol=nan)"; do
+  ok "$o" says 2 "it is a number" --method "$o"
+done
+ok "a tolerance beyond all numbers" says 2 "must be finite" --method "rk45(atol=1e400)"
 ok "one file for two results" says 2 "written twice" fixed -o same.csv --svg same.csv
 ok "a device is no state" says 2 "cannot read" fixed --resume /dev/zero
 if [ -w /dev/full ]; then

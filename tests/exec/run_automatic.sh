@@ -40,6 +40,7 @@ param k = 1e8, c = 2e5
 lagrangian = x'^2/2 + y'^2/2 - k/2*(x - y)^2 - y^2/2
 dissipation = c/2*(x' - y')^2
 scene run { start x = 1, y = 1.0001; span 10 [s] }
+scene back { start x = 1, y = 1.0001; span -1e-4 [s] }
 EOF
 cat >"$TMP/sensor.lag" <<'EOF'
 model sensor "a pendulum, and a sensor that follows it within a microsecond; the pendulum alone conserves its energy"
@@ -49,10 +50,23 @@ lagrangian = th'^2/2 + cos(th)
 flow z' = -1e6*(z - sin(th))
 scene run { start th = 1, z = 0.84; span 10 [s] }
 EOF
-for tol in 1e-3 1e-5 1e-7; do
+for tol in 1e-3 1e-5 1e-7 1e-11 1e-13; do
   check "stiff at a tolerance of $tol: radau, where h*rho goes up and down about the bound of stability" takes radau "$TMP/spring.lag" --tol $tol
   check "a stiff state beside coordinates that conserve energy, at $tol: radau" takes radau "$TMP/sensor.lag" --tol $tol
 done
+few() { takes radau "$TMP/spring.lag" --tol 1e-11 && awk '$1 == "steps" && $2 + 0 < 1000 { fine = 1 } END { exit !fine }' "$TMP/out"; }
+check "in hundreds of steps, where stability alone would demand 650,000: 399499*10 s/6.1" few
+check "and says so, where the tolerance limits the first steps to less than stability does" grep -q 'stability alone would demand 6.*e+05 steps of dop853' "$TMP/out"
+# Backwards what decayed grows, as fast: no method may stride over that.
+check "backwards the same model is not stiff: rk45" takes rk45 "$TMP/spring.lag" --until -1e-4 --tol 1e-3
+check "at a fine tolerance: dop853" takes dop853 "$TMP/spring.lag" --until -1e-4 --tol 1e-7
+check "at a finer one: taylor" takes taylor "$TMP/spring.lag" --until -1e-4 --tol 1e-11
+check "nor where the scene goes backwards" takes rk45 "$TMP/spring.lag" back --tol 1e-3
+check "a sensor backwards: rk45" takes rk45 "$TMP/sensor.lag" --until -2e-5 --tol 1e-5
+# th is 1 there but for 2e-10, so z - sin(1) = (0.84 - sin(1)) exp(20) but for 1e-9 of it; 1e-2: growth by exp(20) in steps of tolerance 1e-5.
+grown() { awk '$1 == "z" { off = ($2 - sin(1))/((0.84 - sin(1))*exp(20)) - 1 } END { print off; exit !(off != "" && off*off < 1e-4) }' "$TMP/out"; }
+check "which grows as it must, and does not follow" grown
+check "what is stiff backwards takes radau" takes radau "$vdp" --until -2000 --tol 1e-7
 check "not stiff at rough tolerances: rk45" takes rk45 models/pendulum.lag --tol 1e-2
 check "nor with friction" takes rk45 models/damped_oscillator.lag --tol 1e-2
 check "not stiff: dop853" takes dop853 "$vdp" mu=1 --until 20

@@ -54,6 +54,20 @@ check "an unknown quadrature is refused with those there are" wrong 'it is gauss
 check "an odd order is refused" wrong "order: write 2, 4, 6 or 8" --method 'variational(order=3)'
 check "half a stage is refused" wrong "stages: write 1, 2, 3 or 4" --method 'gauss(stages=1.5)'
 check "the midpoint rule has one order" wrong "write quadrature=gauss" --method 'variational(quadrature=midpoint, order=4)'
+# Steps that are far too long are not the model's fault: what failed, in which step, and what to do.
+fails() { # fails WORDS ARGS...
+  words=$1
+  shift
+  run "$@"
+  [ $? = 3 ] && grep -q -e "$words" "$TMP/out" "$TMP/err"
+}
+check "Newton's method does not converge" fails 'in a step of 0.5 s Newton.s method did not converge in 25 corrections, the residual is .* of its terms; take smaller steps' \
+  models/double_pendulum.lag --method verlet --step 0.5
+check "it leads to where there are no numbers" fails 'in a step of 1e+100 s Newton.s method leads to where the model has no values, the residual is .* of its terms; take smaller steps' \
+  models/chain.lag --method verlet --step 1e100
+check "or the motion does, in steps that all succeed" fails "no finite value for x''; steps of 20 s may be too long for it: take smaller ones" \
+  models/foucault.lag --method verlet --step 20
+check "gauss of models with states says the step" fails "in a step of 0.5 s Newton's method did not converge" models/lorenz.lag --method gauss --step 0.5
 
 # ---- derivatives that only some methods need
 built() { # built METHOD: the simulator of the double pendulum, built for it
@@ -91,6 +105,11 @@ says "reached" tests/exec/models/gauge.lag go --method verlet4
 check "no such note on a conservative model" sh -c "! grep -q 'symplectic for' '$TMP/out'"
 check "dop853 on the double pendulum" says "energy drift: [0-9.]*e-1" models/double_pendulum.lag --method dop853 --tol 1e-12
 check "steps of equal size by an adaptive method" says "steps 100, rejected 0" models/pendulum.lag --method "rk45(step=0.1, adapt=off)" --until 10
+# 0.1 is no binary number: summed a hundred times without compensation it falls short of 10 by rounding, and another step is taken.
+for o in 'taylor(adapt=off, step=0.1)' 'taylor(order=1, adapt=off, step=0.1)' 'rk4(step=0.1)' 'rk45(adapt=off, step=0.1)' 'verlet(step=0.1)' \
+  'gauss(step=0.1)' 'radau(adapt=off, step=0.1)'; do
+  check "$o: 100 steps to 10 s, no rest of rounding's size" says "^steps 100," models/pendulum.lag --method "$o" --until 10
+done
 check "whose sines a run took" says "sin and cos: lag_math.h; -ffp-contract=off$" models/pendulum.lag --until 1
 check "or the C library's" says "sin and cos: the C library.*; -ffp-contract=off$" models/pendulum.lag --until 1 --math libm
 

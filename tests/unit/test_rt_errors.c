@@ -108,15 +108,22 @@ static void a_step_that_time_does_not_feel_is_refused(void **state)
   (void)state;
   late = osc;
   late.t0 = 1;
-  lag_sim *s = sim_with(&late, &lag_rk4, 0, 1, tiny);
-  assert_int_equal(lag_sim_advance(s, 2), LAG_ESTEP);
+  lag_sim *s = lag_sim_new(&late);
+  assert_int_equal(lag_sim_set_method(s, &lag_rk4, tiny, 1), LAG_EINVAL);
+  assert_non_null(strstr(lag_sim_message(s), "time would not move"));
+  late.has_span = 1; /* nor at its end: 1e4 is rounded to 1e-12 */
+  late.t1 = 1e4;
+  tiny->value = 1e-13;
+  assert_int_equal(lag_sim_set_method(s, &lag_rk45, tiny, 1), LAG_EINVAL);
+  tiny->value = 0; /* is what the method chooses */
+  assert_int_equal(lag_sim_set_method(s, &lag_rk45, tiny, 1), LAG_OK);
   lag_sim_free(s);
 }
 
 static void settings_are_checked(void **state)
 {
   lag_sim *s = lag_sim_new(&ball);
-  lag_option bad_name[] = {{"stepp", 0.1, NULL}}, bad_value[] = {{"step", -1, NULL}}, word[] = {{"step", 0, "large"}};
+  lag_option bad_name[] = {{"stepp", 0.1, NULL}}, bad_value[] = {{"step", -1, NULL}}, no_number[] = {{"atol", HUGE_VAL, NULL}}, word[] = {{"step", 0, "large"}};
   (void)state;
   assert_int_equal(lag_sim_set_tolerance(s, 0), LAG_EINVAL);
   assert_int_equal(lag_sim_set_tolerance(s, -1e-9), LAG_EINVAL);
@@ -126,6 +133,7 @@ static void settings_are_checked(void **state)
   assert_int_equal(lag_sim_set_method(s, &lag_rk4, bad_name, 1), LAG_EINVAL);
   assert_int_equal(lag_sim_set_method(s, &lag_rk4, bad_value, 1), LAG_EINVAL);
   assert_int_equal(lag_sim_set_method(s, &lag_rk4, word, 1), LAG_EINVAL);
+  assert_int_equal(lag_sim_set_method(s, &lag_rk45, no_number, 1), LAG_EINVAL);
   assert_ptr_equal(lag_sim_method(s), &lag_rk45); /* unchanged */
   assert_int_equal(lag_sim_set(s, "G", 1), LAG_EINVAL);
   assert_non_null(strstr(lag_sim_message(s), "did you mean"));
