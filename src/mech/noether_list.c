@@ -9,9 +9,9 @@ static Expr time_function(Search *s, const Family *f, uint32_t block) {
   Expr t = expr_symbol(g, s->e->m->time)->node;
   if (f->kind == TIME_LISTED) return f->times.f[block];
   if (f->kind == TIME_POWERS) return expr_pow_num(g, t, num_int(block));
-  Expr phase = expr_mul(g, f->rate, t);
-  if (f->kind == TIME_CIRCULAR) return expr_fn(g, block ? EX_SIN : EX_COS, phase);
-  return expr_fn(g, EX_EXP, block ? expr_neg(g, phase) : phase);
+  Expr phase = expr_mul(g, f->rate, t), power = expr_pow_num(g, t, num_int(block / 2));
+  if (f->kind == TIME_CIRCULAR) return expr_mul(g, power, expr_fn(g, block % 2 ? EX_SIN : EX_COS, phase));
+  return expr_mul(g, power, expr_fn(g, EX_EXP, block % 2 ? expr_neg(g, phase) : phase));
 }
 
 /* Numbers of a row come to whole numbers without a common factor. */
