@@ -259,7 +259,8 @@ static int block_turns(const Coordinates *e, const GeneratorRow *r, uint32_t m) 
   return 1;
 }
 
-int only_turns(const Coordinates *e, const GeneratorRow *r) { return block_turns(e, r, 0); }
+/* Whether the linear part of block 0 is antisymmetric. */
+static int only_turns(const Coordinates *e, const GeneratorRow *r) { return block_turns(e, r, 0); }
 
 /* Whether any block shifts a coordinate that the linear part of block 0 leaves alone. */
 static int shifts_beside(const Coordinates *e, const GeneratorRow *r) {
@@ -274,7 +275,7 @@ static int shifts_beside(const Coordinates *e, const GeneratorRow *r) {
 
 /* A linear part in block 0 with a shift, at one time or at several. */
 static const char *affine_name(const Coordinates *e, const GeneratorRow *r, Parts p) {
-  if (!only_turns(e, r)) return "affine map of the coordinates";
+  if (!only_turns(e, r)) return r->turns ? "rotation about another point, in the metric of the kinetic energy" : "affine map of the coordinates";
   if (shifts_beside(e, r)) return "screw: a rotation and a translation at once";
   return p.shift > 1 ? "rotation about a point that moves" : "rotation about another point";
 }
@@ -303,7 +304,7 @@ static void name_linear(const Coordinates *e, const GeneratorRow *r, FoundSymmet
     const char *whole = all && bodies > 1 ? "total angular momentum" : "angular momentum";
     to->name = space || axis != 2 ? arena_printf(e->arena, "%s about %s", whole, axis_text(axis)) : whole;
   } else if (mixes_bodies(e, r)) to->name = "angular momentum of a part of the motion";
-  else to->name = only_turns(e, r) ? "rotation among coordinates" : "linear map of the coordinates";
+  else to->name = only_turns(e, r) ? "rotation among coordinates" : r->turns ? "rotation in the metric of the kinetic energy" : "linear map of the coordinates";
 }
 
 static int stretches(const Coordinates *e, const GeneratorRow *r) {
