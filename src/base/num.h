@@ -4,7 +4,7 @@
  * What rests on equality stays sound where numbers are not exact: such a number is never "zero" or "one". Beside its value
  * stands the residue of the true one modulo a prime, which arithmetic follows without rounding; a difference is 0, exactly,
  * where both say so. Then two different numbers pass for one by a coincidence of one in 4e18 (Schwartz 1980, DOI
- * 10.1145/322217.322225), and 1 + 1e-20 is not 1. */
+ * 10.1145/322217.322225), and 1 + 1e-20 is not 1. By the same token a whole number that value and residue agree on is exact. */
 #ifndef LAGC_NUM_H
 #define LAGC_NUM_H
 

@@ -21,28 +21,31 @@ uint32_t noether_choices(const Search *s) { return 2 + s->choices.n; }
 /* A guess at a rate, whose square is a rational multiple of one that occurs. */
 typedef struct {
   Expr square, root; /* root^2 = +-square */
+  int is_double;     /* t times an oscillation with it is a solution, too */
 } Guess;
 
 typedef VEC(Guess) Guesses;
 
 static int is_constant(const ExprGraph *g, Expr x) { return (expr_kinds(g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
 
-static void add_guess(Search *s, Guesses *all, Expr root) {
+static void add_guess(Search *s, Guesses *all, Expr root, int is_double) {
   int negative = choice_value(&s->choices, CHOICE_FIRST, root) < 0;
   Expr square = expr_neg(s->g, expr_pow_num(s->g, root, num_int(2)));
-  vec_push(s->scratch, all, ((Guess){square, negative ? expr_neg(s->g, root) : root}));
+  vec_push(s->scratch, all, ((Guess){square, negative ? expr_neg(s->g, root) : root, is_double}));
 }
 
-/* With velocities coupled by b = beta m and z = x + i y, z'' = kappa z - i beta z': frequencies w with w^2 + beta w + kappa = 0. */
+/* With velocities coupled by b = beta m and z = x + i y, z'' = kappa z - i beta z': frequencies w with w^2 + beta w + kappa = 0, one double one in a frame
+ * that turns. */
 static void add_coupled(Search *s, Guesses *all, Expr beta, Expr kappa) {
   ExprGraph *g = s->g;
   Expr four = expr_scale(g, num_int(4), kappa), inside = simplify(g, expr_sub(g, expr_pow_num(g, beta, num_int(2)), four));
-  add_guess(s, all, beta);
+  add_guess(s, all, beta, 0);
+  if (expr_is_zero(g, inside)) add_guess(s, all, expr_scale(g, num_ratio(1, 2), beta), 1);
   if (expr_is_zero(g, kappa) || choice_value(&s->choices, CHOICE_FIRST, inside) <= 0) return;
   Expr root = expr_sqrt(g, inside), sum = expr_add(g, beta, root), difference = expr_sub(g, root, beta);
-  add_guess(s, all, expr_scale(g, num_ratio(1, 2), sum));
-  add_guess(s, all, expr_scale(g, num_ratio(1, 2), difference));
-  add_guess(s, all, root); /* of what breathes: the sum of both */
+  add_guess(s, all, expr_scale(g, num_ratio(1, 2), sum), 0);
+  add_guess(s, all, expr_scale(g, num_ratio(1, 2), difference), 0);
+  add_guess(s, all, root, 0); /* of what breathes: the sum of both */
 }
 
 /* Of each coordinate whose own equation is m q'' = kappa m q + ..., and of pairs with the same kappa whose velocities are coupled. */
@@ -59,7 +62,7 @@ static Guesses guesses(Search *s) {
     if (!expr_is_zero(g, k)) {
       int grows = choice_value(&s->choices, CHOICE_FIRST, kappa[i]) > 0;
       Expr root = expr_sqrt(g, grows ? kappa[i] : simplify(g, expr_neg(g, kappa[i])));
-      vec_push(s->scratch, &all, ((Guess){kappa[i], root}));
+      vec_push(s->scratch, &all, ((Guess){kappa[i], root, 0}));
     }
     for (uint32_t j = 0; j < i; j++) {
       Expr one = expr_diff(g, e->dLdq[i], s->ansatz->v[j]), other = expr_diff(g, e->dLdq[j], s->ansatz->v[i]);
@@ -170,22 +173,33 @@ static void add_circular(Search *s, Exprs *to, Expr w) {
   add_once(s, to, num_sign(sign) < 0 ? expr_neg(s->g, sine) : sine);
 }
 
+/* The same times t and t^2. */
+static void add_growing(Search *s, Exprs *to, Expr w) {
+  Exprs plain = {0};
+  Expr t = expr_symbol(s->g, s->e->m->time)->node;
+  add_circular(s, &plain, w);
+  for (int power = 1; power <= 2; power++)
+    for (uint32_t k = 0; k < plain.n; k++) add_once(s, to, expr_mul(s->g, expr_pow_num(s->g, t, num_int(power)), plain.at[k]));
+}
+
 static void add_exponential(Search *s, Exprs *to, Expr rate) {
   Expr phase = expr_mul(s->g, rate, expr_symbol(s->g, s->e->m->time)->node);
   add_once(s, to, expr_fn(s->g, EX_EXP, phase));
   add_once(s, to, expr_fn(s->g, EX_EXP, expr_neg(s->g, phase)));
 }
 
-/* 1, t and the functions of L's own rates for xi and tau; for what F has of coordinates their products, too. An L of first order gets constants only: more
+/* 1, t and the functions of L's own rates for xi and tau, those of double rates times t and t^2; for what F has of coordinates their products, too. An L of first order gets constants only: more
  * would let each charge be multiplied by functions of others. */
 static TimeList time_list(Search *s) {
   enum { RATES_MOST = 4 };
-  Exprs circular = {0}, exponential = {0}, list = {0};
+  Exprs circular = {0}, exponential = {0}, growing = {0}, list = {0};
   ExprGraph *g = s->g;
   Expr t = expr_symbol(g, s->e->m->time)->node;
   rates_in_text(s, &circular, &exponential);
   if (s->e->n) {
     Guesses own = guesses(s);
+    for (uint32_t k = 0; k < own.n; k++)
+      if (own.at[k].is_double) add_once(s, &growing, own.at[k].root);
     for (uint32_t k = 0; k < own.n && circular.n + exponential.n < RATES_MOST; k++)
       add_once(s, choice_value(&s->choices, CHOICE_FIRST, own.at[k].square) < 0 ? &circular : &exponential, own.at[k].root);
   }
@@ -195,6 +209,7 @@ static TimeList time_list(Search *s) {
   if (s->e->n) vec_push(s->scratch, &list, t);
   if (s->e->n) vec_push(s->scratch, &list, expr_pow_num(g, t, num_int(2)));
   for (uint32_t k = 0; k < circular.n && s->e->n; k++) add_circular(s, &list, circular.at[k]);
+  for (uint32_t k = 0; k < growing.n; k++) add_growing(s, &list, growing.at[k]);
   for (uint32_t k = 0; k < exponential.n && s->e->n; k++) add_exponential(s, &list, exponential.at[k]);
   s->ansatz->far_times = !exponential.n;
   uint32_t own = list.n;

@@ -3,15 +3,16 @@
 #include "mech/noether_name.h"
 #include "mech/noether_parametric.h"
 #include "mech/noether_whole.h"
+#include "sym/diff.h"
 
 static Expr time_function(Search *s, const Family *f, uint32_t block) {
   ExprGraph *g = s->g;
   Expr t = expr_symbol(g, s->e->m->time)->node;
   if (f->kind == TIME_LISTED) return f->times.f[block];
   if (f->kind == TIME_POWERS) return expr_pow_num(g, t, num_int(block));
-  Expr phase = expr_mul(g, f->rate, t);
-  if (f->kind == TIME_CIRCULAR) return expr_fn(g, block ? EX_SIN : EX_COS, phase);
-  return expr_fn(g, EX_EXP, block ? expr_neg(g, phase) : phase);
+  Expr phase = expr_mul(g, f->rate, t), power = expr_pow_num(g, t, num_int(block / 2));
+  if (f->kind == TIME_CIRCULAR) return expr_mul(g, power, expr_fn(g, block % 2 ? EX_SIN : EX_COS, phase));
+  return expr_mul(g, power, expr_fn(g, EX_EXP, block % 2 ? expr_neg(g, phase) : phase));
 }
 
 /* Numbers of a row come to whole numbers without a common factor. */
@@ -92,7 +93,7 @@ static void make_generator(Search *s, const Tables *t, const Coordinates *names,
   if (named) to->by.eta = components(s, t, to->c, &to->by.tau);
 }
 
-/* The same by coefficients of M xi, to->c, which are whole numbers. Naming goes by these where they are a turn's. */
+/* The same by coefficients of M xi, to->c, which are whole numbers. */
 static int make_lowered(Search *s, const Tables *t, const Num *M, const Coordinates *names, GeneratorRow *to) {
   size_t n = t->at[0].blocks * s->ansatz->shown;
   Expr *own = ARENA_ARRAY(s->scratch, Expr, n + 1);
@@ -104,7 +105,30 @@ static int make_lowered(Search *s, const Tables *t, const Num *M, const Coordina
   if (!whole_raise(s->scratch, s->ansatz, M, to->blocks, own)) return 0;
   to->by.lowered = components(s, t, to->c, &to->by.tau);
   to->by.xi = components(s, t, own, &to->by.tau);
-  if (!only_turns(names, to)) to->c = own;
+  to->c = own;
+  return 1;
+}
+
+/* Whether xi changes no length that the kinetic energy measures. */
+static int turns(Search *s, const Generator *by) {
+  enum { COORDINATES_MOST = 20 };
+  const Eqns *e = s->e;
+  ExprGraph *g = s->g;
+  size_t n = e->n;
+  Expr *W = ARENA_ARRAY(s->scratch, Expr, n * n + 1); /* M times the linear part */
+  if (!n || n > COORDINATES_MOST || !e->mass_known || !e->constant_mass || !expr_is_zero(g, by->tau)) return 0;
+  for (size_t k = 0; k < n * n; k++) W[k] = expr_int(g, 0);
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    const MassEntry *m = &e->mass.at[k];
+    for (size_t j = 0; j < n; j++) {
+      Expr one = expr_mul(g, m->e, expr_diff(g, by->xi[m->col], s->ansatz->q[j])), other = expr_mul(g, m->e, expr_diff(g, by->xi[m->row], s->ansatz->q[j]));
+      W[m->row * n + j] = expr_add(g, W[m->row * n + j], one);
+      if (m->row != m->col) W[m->col * n + j] = expr_add(g, W[m->col * n + j], other);
+    }
+  }
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j <= i; j++)
+      if (prove_zero(g, expr_add(g, W[i * n + j], W[j * n + i]), NULL) != PROVED_ZERO) return 0;
   return 1;
 }
 
@@ -121,6 +145,7 @@ static int add_row(Search *s, const Tables *t, const Num *M, Expr *c) {
   else if (!make_lowered(s, t, M, &names, &r)) return 0;
   FoundSymmetry found = {.is = noether_prove(s->e, &r.by), .by = r.by, .forms = r.by.eta ? s->ansatz->forms : NULL, .rate = t->family->rate};
   if (!is_proved(s, &found.is)) return 0;
+  r.turns = turns(s, &r.by);
   name_symmetry(&names, &r, &found);
   vec_push(s->e->m->arena, &s->out->all, found);
   return 1;

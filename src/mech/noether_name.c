@@ -251,12 +251,16 @@ static int name_turn(const Coordinates *e, const GeneratorRow *r, FoundSymmetry 
   return 0;
 }
 
-int only_turns(const Coordinates *e, const GeneratorRow *r) {
+/* Whether the linear part of block m is antisymmetric. */
+static int block_turns(const Coordinates *e, const GeneratorRow *r, uint32_t m) {
   for (uint32_t i = 0; i < e->n; i++)
-    for (uint32_t j = 0; j < e->n; j++)
-      if (!expr_is_zero(e->g, entry(e, r, 0, i, j + 1)) && !turns(e, r, i < j ? i : j, i < j ? j : i)) return 0;
+    for (uint32_t j = 0; j <= i; j++)
+      if (entry(e, r, m, i, j + 1) != expr_neg(e->g, entry(e, r, m, j, i + 1))) return 0;
   return 1;
 }
+
+/* Whether the linear part of block 0 is antisymmetric. */
+static int only_turns(const Coordinates *e, const GeneratorRow *r) { return block_turns(e, r, 0); }
 
 /* Whether any block shifts a coordinate that the linear part of block 0 leaves alone. */
 static int shifts_beside(const Coordinates *e, const GeneratorRow *r) {
@@ -271,7 +275,7 @@ static int shifts_beside(const Coordinates *e, const GeneratorRow *r) {
 
 /* A linear part in block 0 with a shift, at one time or at several. */
 static const char *affine_name(const Coordinates *e, const GeneratorRow *r, Parts p) {
-  if (!only_turns(e, r)) return "affine map of the coordinates";
+  if (!only_turns(e, r)) return r->turns ? "rotation about another point, in the metric of the kinetic energy" : "affine map of the coordinates";
   if (shifts_beside(e, r)) return "screw: a rotation and a translation at once";
   return p.shift > 1 ? "rotation about a point that moves" : "rotation about another point";
 }
@@ -300,7 +304,7 @@ static void name_linear(const Coordinates *e, const GeneratorRow *r, FoundSymmet
     const char *whole = all && bodies > 1 ? "total angular momentum" : "angular momentum";
     to->name = space || axis != 2 ? arena_printf(e->arena, "%s about %s", whole, axis_text(axis)) : whole;
   } else if (mixes_bodies(e, r)) to->name = "angular momentum of a part of the motion";
-  else to->name = only_turns(e, r) ? "rotation among coordinates" : "linear map of the coordinates";
+  else to->name = only_turns(e, r) ? "rotation among coordinates" : r->turns ? "rotation in the metric of the kinetic energy" : "linear map of the coordinates";
 }
 
 static int stretches(const Coordinates *e, const GeneratorRow *r) {
@@ -316,7 +320,9 @@ void name_symmetry(const Coordinates *e, const GeneratorRow *r, FoundSymmetry *t
   if (r->kind == TIME_LISTED && p.tau == 1 && p.shift > 1 && !p.linear) to->name = "energy in a moving frame"; /* that of the forced motion */
   else if (r->kind != TIME_POWERS && (r->kind != TIME_LISTED || (p.tau | p.shift | p.linear) > 7)) {
     const char *what = p.tau ? "breathing" : p.linear ? "turning" : "shift along a solution";
-    to->name = r->kind == TIME_LISTED ? what : arena_printf(e->arena, "%s, %s", what, r->kind == TIME_CIRCULAR ? "periodic in t" : "exponential in t");
+    const char *of_time = r->kind == TIME_CIRCULAR ? "periodic" : "exponential";
+    int grows = (p.tau | p.shift | p.linear) > 3;
+    to->name = r->kind == TIME_LISTED ? what : arena_printf(e->arena, grows ? "%s, t times %s" : "%s, %s in t", what, of_time);
   } else if (is_energy(p)) {
     to->kind = SYMMETRY_ENERGY;
     to->name = "energy";
@@ -327,6 +333,9 @@ void name_symmetry(const Coordinates *e, const GeneratorRow *r, FoundSymmetry *t
   else if (p.tau == 2 && p.linear == 1) {
     to->kind = SYMMETRY_SCALING;
     to->name = scaling_name(e, r, p);
+  } else if (p.tau == 2 && p.linear == 3 && block_turns(e, r, 1)) {
+    to->kind = SYMMETRY_SCALING;
+    to->name = "scaling in a frame that turns";
   } else if (p.tau & 4) to->name = "expansion";
   else if (!p.tau && p.linear == 1) to->name = affine_name(e, r, p);
 }

@@ -11,6 +11,7 @@ typedef struct {
   TimeKind kind;
   uint32_t blocks;
   Expr *c;      /* [blocks*shown], as in Table */
+  int turns;    /* xi changes no length that the kinetic energy measures: M times its linear part is antisymmetric */
   Generator by;
 } GeneratorRow;
 
@@ -36,9 +37,6 @@ int name_same_body(Name a, Name b);
 
 /* Signs as in books: the energy is E, a turn goes from x to y, from y to z, from z to x. */
 void orient(const Coordinates *e, GeneratorRow *row);
-
-/* Whether the linear part of block 0 is antisymmetric. */
-int only_turns(const Coordinates *e, const GeneratorRow *row);
 
 void name_symmetry(const Coordinates *e, const GeneratorRow *row, FoundSymmetry *to);
 

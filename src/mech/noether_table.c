@@ -36,23 +36,30 @@ static void clean(long double *m, size_t n, long double size) {
 
 static long double size_of(const SolutionSpace *s) { return fmaxl(largest(s->A, (size_t)s->space.n * s->space.n), 1e-3L) * (long double)(s->space.n + 1); }
 
-/* The x that A^k x = 0 of some k, orthonormal: the kernel of A, what A takes there, and so on. */
-static DenseRows polynomials(Arena *a, const SolutionSpace *s) {
-  uint32_t n = s->space.n, before = UINT32_MAX;
+/* The x that m^k x = 0 of some k up to `most`, orthonormal: the kernel of m[n*n], what m takes there, and so on. *depth: the k that is needed. */
+static DenseRows generalised_kernel(Arena *a, uint32_t n, const long double *m, uint32_t most, uint32_t *depth) {
   DenseRows x = {.width = n, .at = ARENA_ARRAY(a, long double, (size_t)n * n + 1)};
-  for (int turn = 0; turn < TIME_BLOCKS_MOST && x.n != before; turn++) {
-    uint32_t w = n + x.n;
-    long double *m = ARENA_ARRAY(a, long double, (size_t)n * w + 1);
-    before = x.n;
+  for (*depth = 0; *depth < most; ++*depth) {
+    uint32_t w = n + x.n, before = x.n;
+    long double *both = ARENA_ARRAY(a, long double, (size_t)n * w + 1);
     for (size_t i = 0; i < n; i++) {
-      for (size_t j = 0; j < n; j++) m[i * w + j] = s->A[i * n + j];
-      for (size_t k = 0; k < x.n; k++) m[i * w + n + k] = x.at[k * n + i];
+      for (size_t j = 0; j < n; j++) both[i * w + j] = m[i * n + j];
+      for (size_t k = 0; k < x.n; k++) both[i * w + n + k] = x.at[k * n + i];
     }
-    clean(m, (size_t)n * w, size_of(s));
-    DenseRows kernel = dense_kernel(a, n, w, m, 1e-8L);
-    x = dense_orthonormal(a, &kernel, n);
+    DenseRows kernel = dense_kernel(a, n, w, both, 1e-8L), next = dense_orthonormal(a, &kernel, n);
+    if (next.n == before) break;
+    x = next;
   }
   return x;
+}
+
+/* The x whose solutions are polynomials of time. */
+static DenseRows polynomials(Arena *a, const SolutionSpace *s) {
+  uint32_t n = s->space.n, depth;
+  long double *m = ARENA_ARRAY(a, long double, (size_t)n * n + 1);
+  memcpy(m, s->A, (size_t)n * n * sizeof *m);
+  clean(m, (size_t)n * n, size_of(s));
+  return generalised_kernel(a, n, m, TIME_BLOCKS_MOST, &depth);
 }
 
 /* Adds `factor` times the shown part of the solution x to a block of a row. */
@@ -96,27 +103,56 @@ Table table_powers(Arena *a, const SolutionSpace *s, uint32_t shown) {
   return t;
 }
 
-Table table_periodic(Arena *a, const SolutionSpace *s, uint32_t shown, long double rate2) {
+/* S and N with A = S + N, S S = rate2, where m = A A - rate2 has a power that is 0: A is the root of rate2 (1 + m/rate2), and S that of rate2. */
+typedef struct {
+  uint32_t n;
+  long double *S, *N;
+} Parts;
+
+static Parts parts_of(Arena *a, const SolutionSpace *s, const long double *m, long double rate2) {
   uint32_t n = s->space.n;
-  long double rate = sqrtl(fabsl(rate2)), *m = ARENA_ARRAY(a, long double, (size_t)n * n + 1), *next = ARENA_ARRAY(a, long double, n + 1);
+  size_t size = (size_t)n * n;
+  Parts p = {n, ARENA_ARRAY(a, long double, size + 1), ARENA_ARRAY(a, long double, size + 1)};
+  long double *square = ARENA_ARRAY(a, long double, size + 1), *factor = ARENA_ARRAY(a, long double, size + 1);
+  multiply(n, m, m, square);
+  for (size_t i = 0; i < size; i++) factor[i] = m[i] / (2 * rate2) - 3 * square[i] / (8 * rate2 * rate2);
+  multiply(n, s->A, factor, p.N);
+  clean(p.N, size, size_of(s));
+  for (size_t i = 0; i < size; i++) p.S[i] = s->A[i] - p.N[i];
+  return p;
+}
+
+/* exp(A t) x = exp(S t) (1 + N t + ..) x: the blocks of t^k exp(S t). */
+static void show_periodic(const SolutionSpace *s, const Parts *p, const long double *x, long double *next, long double rate2, uint32_t shown, long double *block) {
+  long double rate = sqrtl(fabsl(rate2)), *second = block + shown;
+  apply(p->n, p->S, x, next);
+  if (rate2 < 0) {
+    show(s, x, 1, shown, block);
+    show(s, next, 1 / rate, shown, second);
+    return;
+  }
+  show(s, x, 0.5L, shown, block);
+  show(s, next, 0.5L / rate, shown, block);
+  show(s, x, 0.5L, shown, second);
+  show(s, next, -0.5L / rate, shown, second);
+}
+
+Table table_periodic(Arena *a, const SolutionSpace *s, uint32_t shown, long double rate2) {
+  uint32_t n = s->space.n, depth;
+  long double *m = ARENA_ARRAY(a, long double, (size_t)n * n + 1), *next = ARENA_ARRAY(a, long double, n + 1), *at = ARENA_ARRAY(a, long double, n + 1);
   multiply(n, s->A, s->A, m);
   for (size_t i = 0; i < n; i++) m[i * n + i] -= rate2;
   clean(m, (size_t)n * n, size_of(s) * size_of(s));
-  DenseRows x = dense_kernel(a, n, n, m, 1e-8L);
-  Table t = table_new(a, x.n, 2, shown);
+  DenseRows x = generalised_kernel(a, n, m, TIME_BLOCKS_MOST / 2, &depth);
+  Parts p = parts_of(a, s, m, rate2);
+  Table t = table_new(a, x.n, 2 * (depth ? depth : 1), shown);
   for (uint32_t r = 0; r < x.n; r++) {
-    const long double *at = x.at + (size_t)r * n;
-    long double *first = t.at + (size_t)r * 2 * shown, *second = first + shown;
-    apply(n, s->A, at, next);
-    if (rate2 < 0) {
-      show(s, at, 1, shown, first);
-      show(s, next, 1 / rate, shown, second);
-      continue;
+    memcpy(at, x.at + (size_t)r * n, n * sizeof *at);
+    for (uint32_t k = 0; k < depth; k++) {
+      show_periodic(s, &p, at, next, rate2, shown, t.at + ((size_t)r * t.blocks + 2 * k) * shown);
+      apply(n, p.N, at, next);
+      for (uint32_t i = 0; i < n; i++) at[i] = next[i] / (k + 1);
     }
-    show(s, at, 0.5L, shown, first);
-    show(s, next, 0.5L / rate, shown, first);
-    show(s, at, 0.5L, shown, second);
-    show(s, next, -0.5L / rate, shown, second);
   }
   reduce(&t);
   return t;
@@ -177,6 +213,68 @@ static uint32_t minimal_polynomial(Arena *a, const SolutionSpace *s, uint32_t mo
   return 0;
 }
 
+/* Takes the roots that are as close to that in place k as rounding brings a double one apart behind it, and puts their mean into its place, which is known
+ * to rounding. How many they are. */
+static uint32_t join(uint32_t n, complex long double *root, uint32_t k) {
+  const long double apart = 3e-8L;
+  uint32_t count = 1;
+  complex long double sum = root[k];
+  for (uint32_t i = k + 1; i < n; i++) {
+    complex long double x = root[i];
+    if (!(cabsl(x - root[k]) < apart * cabsl(x))) continue;
+    root[i] = root[k + count];
+    root[k + count++] = x;
+    sum += x;
+  }
+  root[k] = sum / count;
+  return count;
+}
+
+/* How often each rate occurs. 0: others are left. */
+static int multiplicities(Arena *a, const SolutionSpace *s, const long double *square, const Rates *r, long double *times) {
+  uint32_t n = s->space.n, all = 0, depth;
+  long double *m = ARENA_ARRAY(a, long double, (size_t)n * n + 1);
+  for (uint32_t k = 0; k < r->n; k++) {
+    memcpy(m, square, (size_t)n * n * sizeof *m);
+    for (size_t i = 0; i < n; i++) m[i * n + i] -= r->at[k];
+    clean(m, (size_t)n * n, size_of(s) * size_of(s));
+    uint32_t found = generalised_kernel(a, n, m, TIME_BLOCKS_MOST / 2, &depth).n;
+    times[k] = found;
+    all += found;
+  }
+  return all == n;
+}
+
+/* Rates to rounding, which multiple roots are not: the traces of A^2, A^4 .. are sums of their powers, which Newton's method solves. */
+static void polish(Arena *a, const SolutionSpace *s, Rates *r) {
+  enum { TURNS = 3 };
+  uint32_t n = s->space.n, K = r->n, *column = ARENA_ARRAY(a, uint32_t, K + 1);
+  size_t size = (size_t)n * n;
+  long double *square = ARENA_ARRAY(a, long double, size + 1), *power = ARENA_ARRAY(a, long double, size + 1), *next = ARENA_ARRAY(a, long double, size + 1);
+  long double *times = ARENA_ARRAY(a, long double, K + 1), *trace = ARENA_ARRAY(a, long double, K + 1), *slope = ARENA_ARRAY(a, long double, (size_t)K * K + 1);
+  multiply(n, s->A, s->A, square);
+  if (r->others || !multiplicities(a, s, square, r, times)) return;
+  memcpy(power, square, size * sizeof *power);
+  for (uint32_t j = 0; j < K; j++) {
+    for (size_t i = 0; i < n; i++) trace[j] += power[i * n + i];
+    multiply(n, power, square, next);
+    memcpy(power, next, size * sizeof *power);
+  }
+  for (int turn = 0; turn < TURNS; turn++) {
+    long double *left = ARENA_ARRAY(a, long double, K + 1);
+    for (uint32_t j = 0; j < K; j++) {
+      left[j] = trace[j];
+      for (uint32_t k = 0; k < K; k++) {
+        long double before = times[k] * powl(r->at[k], j);
+        left[j] -= before * r->at[k];
+        slope[j * K + k] = (j + 1) * before;
+      }
+    }
+    if (dense_solve(K, slope, left, 0, column, NULL) < K) return;
+    for (uint32_t k = 0; k < K; k++) r->at[k] += left[k];
+  }
+}
+
 Rates space_rates(Arena *a, const SolutionSpace *s) {
   enum { MOST = 10 };
   long double c[MOST + 1];
@@ -185,9 +283,13 @@ Rates space_rates(Arena *a, const SolutionSpace *s) {
   uint32_t m = rest.space.n ? minimal_polynomial(a, &rest, MOST, c) : 0;
   Rates r = {.at = ARENA_ARRAY(a, long double, MOST)};
   if (m) roots_of(m, c, root);
-  for (uint32_t k = 0; k < m; k++)
+  for (uint32_t k = 0; k < m;) {
+    uint32_t count = join(m, root, k);
     if (fabsl(cimagl(root[k])) < 1e-8L * cabsl(root[k])) r.at[r.n++] = creall(root[k]);
-  r.others = m - r.n;
+    else r.others += count;
+    k += count;
+  }
+  if (r.n) polish(a, &rest, &r);
   return r;
 }
 

@@ -10,8 +10,8 @@ typedef enum { TIME_POWERS, TIME_CIRCULAR, TIME_EXPONENTIAL, TIME_LISTED } TimeK
 
 enum { TIME_BLOCKS_MOST = 6 };
 
-/* One row a generator; block m stands for t^m, or for cos wt and sin wt, or for exp st and exp -st, or for a function of a list, which
- * begins with 1, t and t^2. Entry [m*shown + column]. */
+/* One row a generator; block m stands for t^m, or for cos wt and sin wt, or for exp st and exp -st, both times t behind them, and t^2 if these occur, or for a
+ * function of a list, which begins with 1, t and t^2. Entry [m*shown + column]. */
 typedef struct {
   uint32_t rows, blocks, shown;
   long double *at;  /* reduced echelon form */

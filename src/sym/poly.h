@@ -37,7 +37,7 @@ typedef struct {
 
 typedef struct {
   MonoId mono;
-  Num c; /* exact, not 0 */
+  Num c; /* not 0; exact, unless the ring has residues */
 } Term;
 
 typedef struct {

@@ -9,7 +9,7 @@ typedef enum { NOT_DECIDED, PROVED_ZERO, PROVED_NONZERO } Verdict;
 /* What a proof may cost; about a fifth of a second at most. */
 NormalLimits prove_limits(void);
 
-/* Whether e is 0 wherever it is defined. PROVED_NONZERO: the normal form is unique and not 0, or a
+/* Whether e is 0 wherever it is defined; where numbers have more than 64 bits, by their residues (base/num.h). PROVED_NONZERO: the normal form is unique and not 0, or a
  * value at some state is larger than all its rounding errors. limits NULL: prove_limits(). */
 Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits);
 

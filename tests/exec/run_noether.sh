@@ -172,6 +172,12 @@ let y = u - v
 lagrangian = m/2*(x'^2 + y'^2) - 1/hypot(x, y)
 symmetry spin(s): u -> u + s*(b*x - y)/(a + b), v -> v - s*(y + a*x)/(a + b)
 END
+cat >"$TMP/sums.lag" <<'END'
+model m
+coord u, v
+lagrangian = ((3*u'/2 - 2*v'/7)^2 + (u'/5 + 4*v'/3)^2)/2 - 1/((3*u/2 - 2*v/7 + 1/3)^2 + (u/5 + 4*v/3 - 1/2)^2)
+END
+check "a turn is known by the kinetic energy" says "^Q3: rotation about another point, in the metric of the kinetic energy" noether "$TMP/sums.lag"
 check "coefficients may be parameters" says "^Q2: angular momentum; declared as spin" noether "$TMP/symbols.lag"
 check "turns in space and of the body's own, together" says "^Q3: turns about z in space and about the body's own: the difference of the angular momenta" noether "$TMP/top.lag"
 printf "model m\ncoord x\nlagrangian = x'^4/4 + x'^2/2 - x^2/2\n" >"$TMP/quartic.lag"

@@ -381,6 +381,26 @@ static void first_order(void **state) {
   arena_free(m.arena);
 }
 
+/* A frame that turns sees as many symmetries as one at rest: of a free particle n(n + 3)/2 + 3, of two bodies in space 13. What is constant in a frame at
+ * rest, A and D, is (cos wt, -sin wt) and (sin wt, cos wt); boosts are that times t, C is the energy there. Exponentials meet t in x'y'. */
+static void turning_frame(void **state) {
+  (void)state;
+#define TURNING "kinetic = m1/2*((x' - w*y)^2 + (y' + w*x)^2)"
+  has_only("model r\ncoord x, y\nparam m1 = 2 > 0, w = 0.7 > 0\n" TURNING "\npotential = 0\nobserve A_x = cos(w*t)\nobserve A_y = -sin(w*t)\nobserve B_x = t*cos(w*t)\nobserve B_y = -t*sin(w*t)\n"
+           "observe C_t = 1\nobserve C_x = w*y\nobserve C_y = -w*x\nobserve D_x = sin(w*t)\nobserve D_y = cos(w*t)\nobserve E_x = t*sin(w*t)\nobserve E_y = t*cos(w*t)\n", 8);
+  has_only("model r\ncoord x, y, z\nparam m1 = 2 > 0, w = 0.7\n" TURNING " + m1/2*z'^2\npotential = 0\nobserve B_x = t*cos(w*t)\nobserve B_y = -t*sin(w*t)\n"
+           "observe F_x = -z*sin(w*t)\nobserve F_y = -z*cos(w*t)\nobserve F_z = x*sin(w*t) + y*cos(w*t)\n", 12);
+  has_only("model r\ncoord x, y, z, a, b, c\nparam m1 = 2 > 0, m2 = 3 > 0, w = 0.7 > 0, G = 1 > 0\n" TURNING " + m2/2*((a' - w*b)^2 + (b' + w*a)^2) + m1/2*z'^2 + m2/2*c'^2\n"
+           "potential = -G*m1*m2/sqrt((x - a)^2 + (y - b)^2 + (z - c)^2)\nobserve B_x = t*cos(w*t)\nobserve B_y = -t*sin(w*t)\nobserve B_a = t*cos(w*t)\nobserve B_b = -t*sin(w*t)\n", 13);
+  has_only("model r\ncoord x, y\nparam s = 2 > 0\nlagrangian = x'*y' + s*(x*y' - x'*y) - s^2*x*y\n", 8);
+  /* x'' = -k x, y'' = -k y + x: y grows as t cos */
+  has_only("model r\ncoord x, y\nparam k = 2 > 0\nlagrangian = x'*y' - k*x*y + x^2/2\n", 5);
+  /* a field that stays where it is, seen from the frame: L contains t. Its expansion has t^3 cos(w t), which is not looked for */
+  Model_ m = finds("model r\ncoord x, y\nparam m1 = 2 > 0, w = 0.7 > 0, g = 1\n" TURNING "\npotential = m1*g*(x*cos(w*t) - y*sin(w*t))\n"
+                   "observe A_x = cos(w*t)\nobserve A_y = -sin(w*t)\nobserve B_x = t*cos(w*t)\nobserve B_y = -t*sin(w*t)\n", 7);
+  arena_free(m.arena);
+}
+
 /* --- other coordinates --- */
 
 /* xi of old coordinates at q = A Q + b is A times that of the new ones, which stand in the same places of the text. */
@@ -562,7 +582,7 @@ int main(void) {
     cmocka_unit_test(free_particle), cmocka_unit_test(uniform_field), cmocka_unit_test(kepler),    cmocka_unit_test(oscillators),
     cmocka_unit_test(magnetic),      cmocka_unit_test(inverse_square), cmocka_unit_test(bodies),   cmocka_unit_test(nothing_false),
     cmocka_unit_test(curved),        cmocka_unit_test(driven),        cmocka_unit_test(constrained), cmocka_unit_test(first_order),
-    cmocka_unit_test(affine_change), cmocka_unit_test(affine_change_3d), cmocka_unit_test(affine_change_bodies), cmocka_unit_test(affine_change_long), cmocka_unit_test(affine_change_held), cmocka_unit_test(near_rates), cmocka_unit_test(scalings), cmocka_unit_test(rotations),
+    cmocka_unit_test(affine_change), cmocka_unit_test(affine_change_3d), cmocka_unit_test(affine_change_bodies), cmocka_unit_test(affine_change_long), cmocka_unit_test(turning_frame), cmocka_unit_test(affine_change_held), cmocka_unit_test(near_rates), cmocka_unit_test(scalings), cmocka_unit_test(rotations),
     cmocka_unit_test(many), cmocka_unit_test(growing_field), cmocka_unit_test(fading_attraction), cmocka_unit_test(coupled), cmocka_unit_test(trap),
   };
   return cmocka_run_group_tests_name("found", tests, NULL, NULL);
