@@ -70,6 +70,15 @@ static double badness(lag_sim *s, double t0, double t, double *way)
   return fmax(at, *way / doubtful);
 }
 
+/* One step of the method, which does not lead over a pole of what the time demands. */
+static int one_step(lag_sim *s, double *t, double t_stop)
+{
+  double t0 = *t;
+  int rc = s->method->step(s->method_work, &s->pb, t, s->y, t_stop);
+
+  return rc ? rc : lag_over_pole(&s->pb, t0, s->now, *t, s->y) ? LAG_EDOMAIN : LAG_OK;
+}
+
 /* One step with pb->stretch as it is, from what was. */
 static int try_step(lag_sim *s, const double *was, size_t bytes, double *t, double t_stop, double stretch)
 {
@@ -80,7 +89,7 @@ static int try_step(lag_sim *s, const double *was, size_t bytes, double *t, doub
   *t = s->run->t;
   s->pb.detail = NULL;
   s->pb.stretch = stretch;
-  int rc = s->method->step(s->method_work, &s->pb, t, s->y, t_stop);
+  int rc = one_step(s, t, t_stop);
   s->pb.stretch = 0;
   s->pb.rejected = rejected;
   return rc;
@@ -125,7 +134,7 @@ int lag_step_of_method(lag_sim *s, double *t, double t_stop)
   double *const was = s->method_work + s->nwork;
   const size_t bytes = s->nwork * sizeof *was;
   memcpy(was, s->method_work, bytes);
-  int rc = s->method->step(s->method_work, &s->pb, t, s->y, t_stop);
+  int rc = one_step(s, t, t_stop);
   bad = rc ? may_pass(s, rc) ? HUGE_VAL : 0 : badness(s, t0, *t, &way);
   if (!(bad > 1)) {
     return rc;
