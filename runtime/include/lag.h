@@ -207,6 +207,7 @@ enum {
   LAG_METHOD_JACOBIAN = 2048,  /* needs the model's linearisation: lag_model.linear */
   LAG_METHOD_CONSTRAINTS = 4096, /* steps end on the constraints of a model that has them */
   LAG_METHOD_STRETCHES = 16384, /* with constraints: a step that lag_problem.stretch says is of another size */
+  LAG_METHOD_LANDS = 32768,    /* stretches steps of equal size alone (option `adapt`): those that it chooses land by themselves */
   LAG_METHOD_FLOWS = 8192,     /* takes models of states alone (nq = 0), with the linearisation in place of derivatives of L */
   LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS where it does not split */
 };
