@@ -57,7 +57,8 @@ static int find_doubtful(lag_problem *pb, double t, double dt, const double *y0,
     }
     for (int i = 0; i < nq; i++) {
       double size = part * fmax(fmax(fabs(y0[nq + i]), fabs(y1[nq + i])), fabs((y1[i] - y0[i]) / dt));
-      double small = rounding * (holonomic ? lag_reach(pb, y0, 1, i) : fmax(lag_size_like(pb, y0 + nq, i), lag_size_like(pb, y1 + nq, i)));
+      double reach = lag_reach(pb, y0, 1, i), lost = 64 * DBL_EPSILON * reach / fabs(dt); /* the latter of the velocity of a short chord */
+      double small = holonomic ? rounding * reach : fmax(rounding * fmax(lag_size_like(pb, y0 + nq, i), lag_size_like(pb, y1 + nq, i)), lost);
       if (fabs(d[i]) > most * size && fabs(d[i]) > small) {
         most = fabs(d[i]) / size;
         which = i;

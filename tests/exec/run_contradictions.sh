@@ -71,6 +71,28 @@ for method in dop853 rk45 rk4 radau verlet variational; do
     "$status $(awk -F, 'NR > 1 { if ($4 > 1e-14 || $4 < -1e-14) bad = 1; end = $1 } END { print (!bad && end >= 0.99 && end < 1.005 ? "yes" : end) }' "$TMP/rows.csv")"
 done
 
+# Velocities that contradict each other from t = 1 on, of a blade that goes round in a circle: each method ends there, and says what does.
+cat >"$TMP/blades.lag" <<'END'
+model blades
+coord x [m], y [m], a [rad]
+param m = 1 [kg] > 0, J = 1 [kg*m^2] > 0, T = 1 [s], k = 1 [m]
+kinetic = m/2*(x'^2 + y'^2) + J/2*a'^2
+constraint blade: x'*sin(a) = y'*cos(a)
+constraint again: x'*sin(a) - y'*cos(a) = k/T*max(t/T - 1, 0)
+scene s { start x' = 1 [m/s], a' = 1 [rad/s]; span 3; output x, y, a every 0.1 }
+END
+for method in dop853 rk45 rk4 radau verlet variational; do
+  "$LAGC" run "$TMP/blades.lag" --method $method -o "$TMP/rows.csv" >"$TMP/report" 2>&1
+  check "$method finds velocities that contradict each other" grep -E 'FAILED: at t = 1(.0[0-9]*)? s: .*constraint (blade|again) \(line [56]\) is (off|not met)' "$TMP/report"
+done
+# The same twice, by factors that differ along the way, so that a chord obeys one of both only: the motion is that of one, x = sin t, y = 1 - cos t, to
+# the order of the method, by h^2/12 and more.
+sed "s|k/T\*max(t/T - 1, 0)|0 [m/s]|; s|again: \(.*\) = 0|again: (2 + sin(a))*(\1) = 0|" "$TMP/blades.lag" >"$TMP/twice.lag"
+for method in verlet variational; do
+  "$LAGC" run "$TMP/twice.lag" --method $method --step 0.01 -o "$TMP/rows.csv" >"$TMP/report" 2>&1
+  near "$method passes a blade that is said twice" 2e-4 0 "$(tail -n 1 "$TMP/rows.csv" | awk -F, '{ a = $2 - sin(3); b = $3 - 1 + cos(3); print (a < 0 ? -a : a) + (b < 0 ? -b : b) }')"
+done
+
 # Poles of what the time demands: x = tan(t) at pi/2, x = 1/(t - 1/2). No row comes from the other side.
 pole() { # NAME CONSTRAINT
   cat >"$TMP/$1.lag" <<END
