@@ -132,6 +132,8 @@ int lag_agreement(lag_sim *sim);
 /* forces.c. observe: out[nout] of the scene, in SI, of the state y at t. Multipliers and accelerations near a position where constraints
  * become dependent are those that they tend to along the last step; NaN where there is none. LAG_OK, or what failed. */
 int lag_observe(lag_sim *sim, double t, const double *y, double *out);
+/* project.c: [2 n], how large terms of the rates and of the constraints were where these were last met. */
+double *lag_kept_terms(const lag_problem *pb);
 /* rank.c. kinds[n] := a letter a coordinate, those of one unit alike, as lag_kkt.h takes it; coordinate i of n is at[i], or i where at is NULL. */
 void lag_kinds(const lag_problem *pb, int n, const int *at, char *kinds);
 /* A[n nq] := the derivatives of all constraints by the coordinates, row-major, at y at t, and unit[nq] := in which coordinates have

@@ -6,7 +6,7 @@
  * not what the coordinates have moved by, in that time. A step that is a little shorter or longer passes. What no size makes good ends
  * the run: until it did, a rhomb went on with other energy.
  *
- * rk45 and dop853 choose where to land by their own estimates (methods/embedded.c). */
+ * rk45 and dop853 choose where to land by their own estimates (methods/embedded.c), but with adapt=off. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -39,7 +39,8 @@ static double detour(const lag_problem *pb, double dt, const double *y0, const d
 }
 
 /* How independent constraints are at y, and how many steps may be made without asking again: a quarter of those that would lead near a
- * dependent position, at the pace of the last ones. The answer costs as much as a step of rk4. */
+ * dependent position, at the pace of the last ones. The answer costs as much as a step of rk4. Of more than FEW constraints it is asked only where
+ * velocities disagree: of a long chain the weakest is mostly near_by, so that it would be asked at each step (50 four-bars by rk4: three times as long). */
 static double look(Run *r, lag_problem *pb, double t, const double *y)
 {
   int k;
@@ -51,8 +52,8 @@ static double look(Run *r, lag_problem *pb, double t, const double *y)
   return s;
 }
 
-/* How bad the end s->y of a step from s->now at t0 is: 0 good, more than 1 where another size may be better. *way: its detour, where that
- * counts. */
+/* How bad the end s->y of a step from s->now at t0 is: 0 good, more than 1 where another size may be better. *way: its detour, where an end is near
+ * a dependent position. */
 static double badness(lag_sim *s, double t0, double t, double *way)
 {
   lag_problem *pb = &s->pb;
@@ -64,10 +65,22 @@ static double badness(lag_sim *s, double t0, double t, double *way)
     s->run->since_apart++;
     return 0;
   }
-  double apart = look(s->run, pb, t, s->y);
-  *way = apart < near_by ? *way : 0;
+  double apart = look(s->run, pb, t, s->y), near = apart;
+  if (*way > doubtful && !(near < near_by)) { /* it may have begun near one, and have been thrown off */
+    near = lag_independence(pb, t0, s->now, &k);
+  }
+  *way = near < near_by ? *way : 0;
   double at = apart < least_apart && lag_independence(pb, t0, s->now, &k) >= least_apart ? least_apart / fmax(apart, 1e-20) : 0;
   return fmax(at, *way / doubtful);
+}
+
+/* One step of the method, which does not lead over a pole of what the time demands. */
+static int one_step(lag_sim *s, double *t, double t_stop)
+{
+  double t0 = *t;
+  int rc = s->method->step(s->method_work, &s->pb, t, s->y, t_stop);
+
+  return rc ? rc : lag_over_pole(&s->pb, t0, s->now, *t, s->y) ? LAG_EDOMAIN : LAG_OK;
 }
 
 /* One step with pb->stretch as it is, from what was. */
@@ -80,7 +93,7 @@ static int try_step(lag_sim *s, const double *was, size_t bytes, double *t, doub
   *t = s->run->t;
   s->pb.detail = NULL;
   s->pb.stretch = stretch;
-  int rc = s->method->step(s->method_work, &s->pb, t, s->y, t_stop);
+  int rc = one_step(s, t, t_stop);
   s->pb.stretch = 0;
   s->pb.rejected = rejected;
   return rc;
@@ -115,17 +128,32 @@ static int may_pass(lag_sim *s, int rc)
          lag_independence(&s->pb, s->run->t, s->now, &k) < near_by;
 }
 
+/* Whether steps of another size may be asked for. */
+static int stretches(const lag_sim *s)
+{
+  const lag_method *m = s->method;
+  int i = 0;
+
+  if (!s->pb.model->constraints || !(m->flags & LAG_METHOD_STRETCHES)) {
+    return 0;
+  }
+  while (m->flags & LAG_METHOD_LANDS && i < m->noptions && strcmp(m->options[i].name, "adapt") != 0) {
+    i++;
+  }
+  return !(m->flags & LAG_METHOD_LANDS) || (i < m->noptions && s->options[i] != 0.0);
+}
+
 int lag_step_of_method(lag_sim *s, double *t, double t_stop)
 {
   double way = 0, bad = 0, t0 = *t;
 
-  if (!s->pb.model->constraints || !(s->method->flags & LAG_METHOD_STRETCHES)) {
+  if (!stretches(s)) {
     return s->method->step(s->method_work, &s->pb, t, s->y, t_stop);
   }
   double *const was = s->method_work + s->nwork;
   const size_t bytes = s->nwork * sizeof *was;
   memcpy(was, s->method_work, bytes);
-  int rc = s->method->step(s->method_work, &s->pb, t, s->y, t_stop);
+  int rc = one_step(s, t, t_stop);
   bad = rc ? may_pass(s, rc) ? HUGE_VAL : 0 : badness(s, t0, *t, &way);
   if (!(bad > 1)) {
     return rc;

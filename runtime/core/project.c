@@ -9,7 +9,7 @@
 
 enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
 
-/* pb->held, laid out; behind it, a state for lag_rhs_prepare. */
+/* pb->held, laid out; behind it, what pole.c has, and a state for lag_rhs_prepare. */
 typedef struct Held {
   const lag_constraints *of;
   double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
@@ -23,7 +23,8 @@ size_t lag_held_room(const lag_model *m)
 {
   const lag_constraints *of = m->constraints;
 
-  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz + (2 * m->nq + m->nz)) : 0;
+  size_t pole = of ? (size_t)(3 * (2 * m->nq + m->nz) + 4 * of->n + 2 * m->nq) : 0; /* of pole.c */
+  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz + (2 * m->nq + m->nz)) + pole : 0;
 }
 
 static Held layout(const lag_problem *pb)
@@ -37,6 +38,11 @@ static Held layout(const lag_problem *pb)
     x += sizes[i];
   }
   return w;
+}
+
+double *lag_kept_terms(const lag_problem *pb)
+{
+  return layout(pb).terms[0];
 }
 
 int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r)

@@ -144,6 +144,10 @@ int lag_leaps(const lag_problem *pb, const double *y0, const double *y, const do
 /* Says so of coordinate i, with the constraint on positions that y breaks most at t; returns LAG_ERETRY. */
 int lag_say_leap(lag_problem *pb, double t, const double *y, int i, double moved);
 
+/* > 0: between the ends of a step from y0 at t0 to y1 at t1, both on the constraints, what these demand in time goes through infinity; pb then says
+ * which, and when. What is finite is none, however steep; nor is a pole seen that a step's ends and middle show nothing of. (core/pole.c) */
+int lag_over_pole(lag_problem *pb, double t0, const double *y0, double t1, const double *y1);
+
 /* How independent the weakest constraint is where y is at t, from 1 to 0: what is left of its derivatives beside those of the constraints
  * before it, and how large they are beside its terms. *weakest: which, or -1; what follows from others always is left out. (core/forces.c) */
 double lag_independence(lag_problem *pb, double t, const double *y, int *weakest);
@@ -206,6 +210,7 @@ enum {
   LAG_METHOD_JACOBIAN = 2048,  /* needs the model's linearisation: lag_model.linear */
   LAG_METHOD_CONSTRAINTS = 4096, /* steps end on the constraints of a model that has them */
   LAG_METHOD_STRETCHES = 16384, /* with constraints: a step that lag_problem.stretch says is of another size */
+  LAG_METHOD_LANDS = 32768,    /* stretches steps of equal size alone (option `adapt`): those that it chooses land by themselves */
   LAG_METHOD_FLOWS = 8192,     /* takes models of states alone (nq = 0), with the linearisation in place of derivatives of L */
   LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS where it does not split */
 };

@@ -80,7 +80,8 @@ int lag_embedded_tangent(const EmbeddedPair *pair, void *work, lag_problem *pb, 
 
 /* What the descriptors have in common, after their own work_size, step, dense and tangent. */
 #define EMBEDDED_DESCRIPTOR                                                                          \
-  .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_CONSTRAINTS, .noptions = EMBEDDED_NOPTIONS, .options = lag_embedded_options,      \
+  .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_CONSTRAINTS | LAG_METHOD_STRETCHES | LAG_METHOD_LANDS,                   \
+  .noptions = EMBEDDED_NOPTIONS, .options = lag_embedded_options,                                                    \
   .work_size = work_size, .init = lag_embedded_init, .step = step, .dense = dense, .reset = lag_embedded_reset,      \
   .tangent_size = tangent_size, .tangent = tangent
 

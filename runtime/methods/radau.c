@@ -458,7 +458,7 @@ static double longest(const Radau *w, const lag_problem *pb, double t)
 {
   double seen = fabs(t - w->t_begin), most = w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
 
-  return w->fixed != 0.0 ? w->h_option : pb->longest > 0 ? fmin(most, pb->longest) : most;
+  return pb->longest > 0 ? fmin(most, pb->longest) : most;
 }
 
 /* Ends an accepted step, and chooses the next. */
@@ -522,9 +522,9 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int rc = prepare(w, &a, pb, *t, y), why = REJECTED;
 
   (void)t_stop;
-  w->h *= 1 + pb->stretch;
+  w->h = (w->fixed != 0.0 ? w->h_option : w->h) * (1 + pb->stretch);
   while (rc == 0) {
-    w->h = fmin(w->h, longest(w, pb, *t));
+    w->h = w->fixed != 0.0 ? w->h : fmin(w->h, longest(w, pb, *t));
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_sum(*t, dt, &tc);
     if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) {
       return gave_up(w, pb, *t, why);

@@ -226,7 +226,9 @@ static void add_impulse(const Block *b, int nq, int nc, double h)
   }
 }
 
-/* The impulse of a block of links k to k + length - 1, and the block with it. */
+/* The impulse of a block of links k to k + length - 1, and the block with it. What is left of constraints on positions must be rounding. Of those on
+ * velocities it need not be: of two that say the same with other factors a chord obeys one, and is off the other by a part h^2; whether they
+ * contradict each other is seen at the block's end, by project(). */
 static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, double t1, const double *y, double dt, int k, int length,
                 double at)
 {
