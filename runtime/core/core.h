@@ -95,6 +95,7 @@ struct lag_sim {
   size_t nwork;
   double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or now where there is no step; NULL */
   int tangent_columns, tangent_at_event; /* at_event: it is what an event made of it at this time */
+  double tangent_log;    /* sum of log |det S| over events (tangent.c); who reads it sets it back */
   int (*on_step)(void *, const lag_sim *);
   void *on_step_context;
   lag_event_fn *on_event;
