@@ -131,17 +131,17 @@ static double fastest(Lyapunov *l)
   return rate;
 }
 
-/* Df at the end of the step: its trace into the divergence, and how long the next step may be. */
-static int look_ahead(Lyapunov *l, lag_sim *sim, double dt)
+/* Df at y at t: its trace into the divergence since the last look, where it counts, and how long the next step may be. */
+static int look(Lyapunov *l, lag_sim *sim, double t, const double *y)
 {
   lag_problem *pb = &sim->pb;
   int n = l->n, nq = pb->nq;
-  double before = l->trace;
+  double before = l->trace, dt = isnan(l->begun) ? 0 : t - l->traced;
 
   if (!pb->model->linear) {
     return LAG_OK;
   }
-  if (lag_jacobian(pb, l->t, sim->now, l->J, l->work) || lag_not_finite((n - nq) * n, l->J) >= 0) {
+  if (lag_jacobian(pb, t, y, l->J, l->work) || lag_not_finite((n - nq) * n, l->J) >= 0) {
     return LAG_EDOMAIN;
   }
   memset(l->A, 0, (size_t)(n * n) * sizeof(double));
@@ -153,21 +153,28 @@ static int look_ahead(Lyapunov *l, lag_sim *sim, double dt)
       l->A[i * n + nq + i] = 1;
     }
   }
+  l->traced = t;
   l->divergence += dt * (before + l->trace) / 2;
   double rate = fastest(l);
   pb->longest = rate > 0 ? resolution / rate : 0;
   return LAG_OK;
 }
 
+void lag_lyapunov_event(Lyapunov *l, lag_sim *sim, double t, const double *before)
+{
+  look(l, sim, t, before); /* where it fails, so does the step that ends there */
+}
+
 int lag_lyapunov_step(Lyapunov *l, lag_sim *sim)
 {
   int rc = lag_sim_tangent(sim, l->Y), counts = !isnan(l->begun);
-  double dt = counts ? lag_sim_time(sim) - l->t : 0;
 
   rc = rc ? rc : orthonormalise(l, counts);
   rc = rc ? rc : lag_sim_set_tangent(sim, l->k, l->Y);
   l->t = lag_sim_time(sim);
-  rc = rc ? rc : look_ahead(l, sim, dt);
+  l->divergence += counts ? sim->tangent_log : 0;
+  sim->tangent_log = 0;
+  rc = rc ? rc : look(l, sim, l->t, sim->now);
   if (rc) {
     return rc;
   }

@@ -19,7 +19,7 @@ typedef struct Lyapunov {
   double *block;           /* [LAG_LYAPUNOV_BLOCKS * (k + 1)] mean rates in each, and their sum */
   double half, *at_half;   /* the time when half of it was over, and [k] the estimates then */
   double *Y;               /* [n * k] the vectors */
-  double trace, divergence; /* of Df at the end of the last step; its integral since `begun` */
+  double trace, traced, divergence; /* of Df, and when, at the last look; its integral since `begun`, with log |det S| of events */
   double *J, *work, *A, *B; /* Df, scratch of lag_jacobian and of lag_lyapunov_rate: [n n] */
   double block_from, *block_sum; /* [k] of the present block: where it began, and `sum` there */
   Pool pool;
@@ -37,6 +37,10 @@ void lag_lyapunov_free(Lyapunov *l);
  * bounds within one step. */
 int lag_lyapunov_step(Lyapunov *l, lag_sim *sim);
 
+/* Before an event changes the state, at time t, from `before`[n]: from the function of lag_sim_on_event. Events enter by their saltation
+ * matrices S (core/tangent.c): vectors become S times what they were, and volumes change by its determinant. */
+void lag_lyapunov_event(Lyapunov *l, lag_sim *sim, double t, const double *before);
+
 /* At the end of the run: its last block is as complete as it gets. */
 void lag_lyapunov_end(Lyapunov *l);
 
@@ -45,8 +49,8 @@ double lag_lyapunov_exponent(const Lyapunov *l, int i);
 /* Its standard error from the means of blocks, as if these were independent; NaN where there are fewer than two. */
 double lag_lyapunov_spread(const Lyapunov *l, int i);
 
-/* The mean of the trace of Df along the motion, which the sum of all exponents is (Liouville): an estimate by other means, the
- * trapezoidal rule over steps. NaN as above. */
+/* The mean of the trace of Df along the motion, and of log |det S| at events, which the sum of all exponents is (Liouville): an estimate by
+ * other means, the trapezoidal rule over steps. NaN as above. */
 double lag_lyapunov_divergence(const Lyapunov *l);
 
 /* The dimension of the attractor by J.L. Kaplan and J.A. Yorke (1979, DOI 10.1007/BFb0064319), from all n exponents; n where

@@ -91,15 +91,13 @@ static int put_estimates(Job *job)
   return table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
 
-/* The sum of exponents would no longer be the mean divergence, which tells whether steps are short enough. */
 static void at_event(void *context, int k, double t, const double *before, const double *after)
 {
   Job *job = context;
-  const lag_model *m = job->app->scene->model;
 
+  (void)k;
   if (memcmp(before, after, (size_t)job->l.n * sizeof *before) != 0) {
-    job->rc = lag_fail(job->app->sim, LAG_EMETHOD, "event %s changes the state at t = %.17g s, which exponents do not go over; take a scene "
-                       "without it, or end the run before", m->ev[k].name, t);
+    lag_lyapunov_event(&job->l, job->app->sim, t, before);
   }
 }
 

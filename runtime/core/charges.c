@@ -187,10 +187,20 @@ void lag_charges_begin(lag_sim *s, double t, const double *y)
   }
 }
 
-void lag_charges_see(lag_sim *s, double t, const double *y)
+int lag_charges_lost(lag_sim *s, double t, const double *y)
 {
-  add_work(s, t);
+  int n = lag_sim_ncharges(s);
+
   values_at(s, t, y);
+  return n > 0 && isfinite(s->charges[0].begin) && !isfinite(s->charge_now[0]);
+}
+
+int lag_charges_see(lag_sim *s, double t, const double *y)
+{
+  if (lag_charges_lost(s, t, y)) {
+    return LAG_ENAN;
+  }
+  add_work(s, t);
   for (int k = 0, n = lag_sim_ncharges(s); k < n; k++) {
     Charge *c = &s->charges[k];
     double d = s->charge_now[2 * k] - c->work - c->first, scale = s->charge_now[2 * k + 1];
@@ -198,6 +208,7 @@ void lag_charges_see(lag_sim *s, double t, const double *y)
     c->peak = fabs(d) > c->peak || isnan(d) ? fabs(d) : c->peak; /* a NaN must not be forgotten */
     add_to_trend(c, t, d);
   }
+  return LAG_OK;
 }
 
 void lag_charges_jump(lag_sim *s, double t, const double *ya, const double *yb)

@@ -95,6 +95,7 @@ struct lag_sim {
   size_t nwork;
   double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or now where there is no step; NULL */
   int tangent_columns, tangent_at_event; /* at_event: it is what an event made of it at this time */
+  double tangent_log;    /* sum of log |det S| over events (tangent.c); who reads it sets it back */
   int (*on_step)(void *, const lag_sim *);
   void *on_step_context;
   lag_event_fn *on_event;
@@ -193,7 +194,9 @@ int lag_exact_see(lag_sim *sim, double t, const double *y);
  * charge k so far, relative to its size. flags: what is known of its rate of change, as inputs are set. */
 void lag_charges_method(lag_sim *sim, const lag_method *method);
 void lag_charges_begin(lag_sim *sim, double t, const double *y);
-void lag_charges_see(lag_sim *sim, double t, const double *y);
+int lag_charges_see(lag_sim *sim, double t, const double *y);
+/* Whether the energy, a number at first, is none at t. Then _see has added nothing, and returns LAG_ENAN. */
+int lag_charges_lost(lag_sim *sim, double t, const double *y);
 void lag_charges_jump(lag_sim *sim, double t, const double *ya, const double *yb);
 double lag_charge_drift(const lag_sim *sim, int k);
 unsigned lag_charge_flags(const lag_sim *sim, int k);

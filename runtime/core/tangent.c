@@ -55,12 +55,12 @@ static int njump(const lag_sim *s)
   return l && l->jumps ? l->njump : 0;
 }
 
-/* What a jump takes: its entries, S[n n], four vectors and a copy of Y[n k]. */
+/* What a jump takes: its entries, S[n n] and a copy, four vectors and a copy of Y[n k]. */
 static size_t jump_size(const lag_sim *s, int k)
 {
   size_t n = (size_t)s->pb.n;
 
-  return njump(s) ? (size_t)njump(s) + n * n + 4 * (n + 1) + n * (size_t)k : 0;
+  return njump(s) ? (size_t)njump(s) + 2 * n * n + 4 * (n + 1) + n * (size_t)k : 0;
 }
 
 /* Room for k columns, when there is another number of them. */
@@ -143,7 +143,7 @@ static int refuse(lag_sim *s, int k, const char *why)
 }
 
 typedef struct Jump {
-  double *d, *S, *g, *Rt, *before, *after, *Y; /* entries; S[n n]; gradient of g, and g_t; dR/dt; f and f+; a copy of the tangent */
+  double *d, *S, *g, *Rt, *before, *after, *Y, *copy; /* entries; S[n n]; gradient of g, and g_t; dR/dt; f and f+; copies of the tangent and of S */
 } Jump;
 
 static Jump parts(const lag_sim *s)
@@ -158,6 +158,7 @@ static Jump parts(const lag_sim *s)
   j.before = j.Rt + n + 1;
   j.after = j.before + n + 1;
   j.Y = j.after + n + 1;
+  j.copy = j.Y + n * s->tangent_columns;
   return j;
 }
 
@@ -199,6 +200,33 @@ static int apply(lag_sim *s, const Jump *j)
     }
   }
   return lag_not_finite(n * k, s->tangent) < 0;
+}
+
+/* log |det S|, by elimination in `a`, of which S is a copy then. */
+static double log_det(int n, const double *S, double *a)
+{
+  double log_of = 0;
+
+  memcpy(a, S, (size_t)(n * n) * sizeof *a);
+  for (int c = 0; c < n; c++) {
+    int top = c;
+    for (int i = c + 1; i < n; i++) {
+      top = fabs(a[i * n + c]) > fabs(a[top * n + c]) ? i : top;
+    }
+    for (int j = c; j < n && top != c; j++) {
+      double x = a[c * n + j];
+      a[c * n + j] = a[top * n + j];
+      a[top * n + j] = x;
+    }
+    log_of += log(fabs(a[c * n + c]));
+    for (int i = c + 1; i < n && a[c * n + c] != 0.0; i++) {
+      double x = a[i * n + c] / a[c * n + c];
+      for (int j = c; j < n; j++) {
+        a[i * n + j] -= x * a[c * n + j];
+      }
+    }
+  }
+  return log_of;
 }
 
 /* Whether event k, whose function changes at this rate, goes through zero with no slope to speak of beside its values at the ends of the
@@ -260,6 +288,7 @@ int lag_tangent_jump(lag_sim *s, int k, int more)
     }
   }
   s->tangent_at_event = 1;
+  s->tangent_log += log_det(n, j.S, j.copy);
   return apply(s, &j) && !touches ? LAG_OK : refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
 }
 

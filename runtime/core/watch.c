@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 
 static int outputs_at(lag_sim *s, double t, const double *y)
 {
@@ -94,9 +95,19 @@ static int judge(lag_sim *s, int i, double drift)
                   rough ? " tells too little between its steps: take dop853" : "");
 }
 
+/* Equations of motion may have values past the end of L's domain, as those of log(x) where x < 0, and equal steps may go over that end: the energy
+ * alone tells. */
+static int left_domain(lag_sim *s, double t)
+{
+  s->pb.bad_t = t;
+  s->pb.bad_index = -1;
+  s->pb.detail = "of its energy: the motion has left where L has values";
+  return lag_explain(s, LAG_ENAN);
+}
+
 int lag_sim_watch(lag_sim *s)
 {
-  int rc = LAG_OK;
+  int rc = s->run->begun != 0.0 && lag_charges_lost(s, s->run->t, s->now) ? left_domain(s, s->run->t) : LAG_OK;
 
   for (int i = 0; i < s->scene->nmonitors && rc == 0 && s->run->begun != 0.0; i++) {
     rc = judge(s, i, lag_sim_monitor_drift(s, i));
@@ -108,7 +119,13 @@ int lag_watch_see(lag_sim *s, double t, const double *y)
 {
   const lag_scene *c = s->scene;
 
-  lag_charges_see(s, t, y);
+  if (lag_charges_see(s, t, y)) {
+    if (s->run->from == s->run->step_t0) {
+      lag_copy(s->pb.n, s->y0, s->now);
+      s->run->t = s->run->from;
+    }
+    return left_domain(s, t);
+  }
   if (c->model->constraints) {
     see_constraints(s, t, y);
   }

@@ -243,7 +243,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
   int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
 
   while (rc == 0) {
-    double row, wanted = longest(w, pb, *t), gap = HUGE_VAL;
+    double row = *t, wanted = longest(w, pb, *t), gap = HUGE_VAL;
     if (w->fixed == 0.0) {
       wanted = lag_lesser(w->h, wanted);
       gap = lag_next_row_here(pb, *t, &row);

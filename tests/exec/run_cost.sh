@@ -73,6 +73,14 @@ check "as a table" text models/pendulum.lag --until 2 --methods rk45,verlet --ta
 says() { check "it says: $1" grep -q -e "$1" "$TMP/text"; }
 says '^reference: taylor'
 if [ -e "$BUILD/liblag_quad.a" ]; then says 'taylor, 34 digits, itself uncertain by [0-9.]*e-3'; else skip "a reference of 34 digits" "no libquadmath"; fi
+if [ -e "$BUILD/liblag_quad.a" ]; then
+  # A model with constraints has no Taylor series, and each digit of dop853 takes steps in software: as many as errors of doubles are
+  # judged by, at most 1e-19, and no more.
+  "$LAGC" cost tests/exec/models/rod.lag --until 2 --methods rk4 --longest 0.001 >"$TMP/rod"
+  check "with constraints, enough digits" awk '/uncertain by/ { x = $NF; exit } END { print x; exit !(x > 1e-24 && x < 1e-19) }' "$TMP/rod"
+else
+  skip "a reference with constraints" "no libquadmath"
+fi
 says '^an error of 1e-06 at least cost: --method '
 # What it names reaches what it says: the pendulum's own closed form judges (models/pendulum.facts has it checked).
 named() { sed -n 's/^  lagc run //p' "$TMP/text" >"$TMP/words" && read -r words <"$TMP/words" && sh -c "$LAGC run $words --until 2 --quiet -o $TMP/rows.csv" && [ -s "$TMP/rows.csv" ]; }

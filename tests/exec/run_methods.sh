@@ -65,9 +65,24 @@ check "Newton's method does not converge" fails 'in a step of 0.5 s Newton.s met
   models/double_pendulum.lag --method verlet --step 0.5
 check "it leads to where there are no numbers" fails 'in a step of 1e+100 s Newton.s method leads to where the model has no values, the residual is .* of its terms; take smaller steps' \
   models/chain.lag --method verlet --step 1e100
-check "or the motion does, in steps that all succeed" fails "no finite value for x''; steps of 20 s may be too long for it: take smaller ones" \
+check "or the motion does, in steps that all succeed" fails "no finite value (of its energy: .*); steps of 20 s may be too long for it: take smaller ones" \
   models/foucault.lag --method verlet --step 20
 check "gauss of models with states says the step" fails "in a step of 0.5 s Newton's method did not converge" models/lorenz.lag --method gauss --step 0.5
+# x reaches 0, where L ends, at t = sqrt(pi/2) e^(1/2) erfc(1/sqrt(2)) = 0.65568 (from x'^2 = 1 - 2 log x); past it the force 1/x goes on.
+cat >"$TMP/slide.lag" <<'EOF'
+model slide
+coord x [m]
+param m = 1 [kg] > 0, k = 1 [J] > 0, l = 1 [m] > 0
+lagrangian = m/2*x'^2 - k*log(x/l)
+scene fall { start x = 1, x' = -1; span 5 [s] }
+EOF
+for m in 'rk4(step=0.01)' 'symplectic_euler(step=0.01)' 'verlet(step=0.01)' 'verlet8(step=0.01)' 'rk45(step=0.01, adapt=off)' \
+  'dop853(step=0.01, adapt=off)' 'taylor(step=0.01, adapt=off)'; do
+  check "$m does not go on where L has ended" fails 'no finite value (of its energy: the motion has left where L has values); steps of 0.01 s may be too long.* last good state, t = 0.6[4-6] s: x = 0.0' \
+    "$TMP/slide.lag" --method "$m"
+done
+check "nor does the last row lie beyond" fails 'of its energy: the motion has left where L has values' "$TMP/slide.lag" --method 'rk4(step=0.5)' --until 0.9
+check "what was no number at first is not waited for" says "energy: not finite" "$TMP/slide.lag" --method 'rk4(step=0.01)' x=-1 --until 1
 
 # ---- derivatives that only some methods need
 built() { # built METHOD: the simulator of the double pendulum, built for it
