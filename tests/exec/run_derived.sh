@@ -43,6 +43,13 @@ end_of() { sed -n '/^  x/p'; }
 is "k=0.3 at the command line is k = 0.3 in the text" "$(changed | end_of)" "$("$LAGC" run "$model" -DN=5 k=0.3 | end_of)"
 check "and not what k = 0.4 gives" test "$(changed | end_of)" != "$("$LAGC" run "$model" -DN=5 | end_of)"
 
+# --- so they do where an effect is left out: that is another program, with what it derives of its own
+{ cat "$model"; printf 'effect loss { param R = 3 [ohm]; dissipation = R/2*sum(i in 1..N, x[i]'"'"'^2) }\nscene lossy { like ring; use loss }\n'; } >"$TMP/lossy.lag"
+sed 's/k = 0\.4/k = 0.3/' "$TMP/lossy.lag" >"$TMP/lossy_changed.lag"
+makes() { "$LAGC" effects --json "$@" | sed -n 's/.*"weight": \([^,]*\), "difference": \([^,]*\),.*/\1 \2/p'; }
+is "what an effect makes with k=0.3 at the command line is that with k = 0.3 in the text" "$(makes "$TMP/lossy_changed.lag" lossy)" "$(makes "$TMP/lossy.lag" lossy k=0.3)"
+check "and not that with k = 0.4" test "$(makes "$TMP/lossy_changed.lag" lossy)" != "$(makes "$TMP/lossy.lag" lossy)"
+
 # --- eigenvalues 1 - k/2, ...: with k = 2 the matrix of three is singular
 singular() { "$LAGC" run "$model" -DN=3 k=2 >"$TMP/report"; [ $? = 3 ] && grep -qF 'the mass matrix is singular' "$TMP/report"; }
 check "a singular matrix is said" singular
