@@ -48,6 +48,8 @@ check "and not what k = 0.4 gives" test "$(changed | end_of)" != "$("$LAGC" run 
 sed 's/k = 0\.4/k = 0.3/' "$TMP/lossy.lag" >"$TMP/lossy_changed.lag"
 makes() { "$LAGC" effects --json "$@" | sed -n 's/.*"weight": \([^,]*\), "difference": \([^,]*\),.*/\1 \2/p'; }
 is "what an effect makes with k=0.3 at the command line is that with k = 0.3 in the text" "$(makes "$TMP/lossy_changed.lag" lossy)" "$(makes "$TMP/lossy.lag" lossy k=0.3)"
+{ grep -v '^param\|^scene' "$TMP/lossy.lag" | sed '/^lagrangian/d'; grep '^param\|^lagrangian\|^scene' "$TMP/lossy.lag"; } | sed 's/use loss }/use loss; k = loss.R*0.1 [s] }/' >"$TMP/lossy_made.lag"
+is "so it is where the scene makes k of a parameter of the effect" "$(makes "$TMP/lossy_changed.lag" lossy)" "$(makes "$TMP/lossy_made.lag" lossy)"
 check "and not that with k = 0.4" test "$(makes "$TMP/lossy_changed.lag" lossy)" != "$(makes "$TMP/lossy.lag" lossy)"
 
 # --- eigenvalues 1 - k/2, ...: with k = 2 the matrix of three is singular
