@@ -79,6 +79,7 @@ static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, doubl
   }
   w->ready = 1;
   w->have_extra = 0;
+  w->h = w->fixed != 0.0 ? w->h_option * (1 + pb->stretch) : w->h;
   if (w->begun == 0.0) {
     w->begun = 1;
     w->t_begin = t;
@@ -94,7 +95,7 @@ static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, doubl
 static double longest(const Embedded *w, const lag_problem *pb, double t)
 {
   if (w->fixed != 0.0) {
-    return w->h_option * (1 + pb->stretch);
+    return HUGE_VAL;
   }
   double seen = fabs(t - w->t_begin), most = w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
   return pb->longest > 0 ? lag_lesser(most, pb->longest) : most;
@@ -243,11 +244,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
   int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
 
   while (rc == 0) {
-    double row = *t, wanted = longest(w, pb, *t), gap = HUGE_VAL;
-    if (w->fixed == 0.0) {
-      wanted = lag_lesser(w->h, wanted);
-      gap = lag_next_row_here(pb, *t, &row);
-    }
+    double wanted = lag_lesser(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row_here(pb, *t, &row);
     int clipped = wanted * (1 + 1e-4) >= gap; /* what is left would be too short a step */
     w->h = clipped ? gap : wanted;
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_sum(*t, dt, &tc);
