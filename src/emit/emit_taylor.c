@@ -348,9 +348,10 @@ static void near_orders(const Writer *w, const char *suffix) {
                   "  for (int k = 1; k < n; k++) {\n"
                   "    LAG_REAL *const row = x + k*TAYLOR_COLUMNS;\n"
                   "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_LANE)(k + 1);\n"
-                  "    taylor_pair y[STATE], s[ALL + 1], sum[ALL + 1];\n"
-                  "    TAYLOR_UNROLL\n"
-                  "    for (int g = 0; g < (int)STATE; g++) y[g] = y1[g];\n");
+                  "    taylor_pair s[ALL + 1], sum[ALL + 1];\n");
+  if (!reads_row) sb_puts(w->out, "    taylor_pair y[STATE];\n"
+                                  "    TAYLOR_UNROLL\n"
+                                  "    for (int g = 0; g < (int)STATE; g++) y[g] = y1[g];\n");
   if (s->sums) sb_printf(w->out, "    taylor_sums%s(k, w, a, b, sum);\n", suffix);
   if (s->squares) sb_printf(w->out, "    taylor_squares%s(k, w, a + SQUARES, sum + SQUARES);\n", suffix);
   sb_puts(w->out, "    TAYLOR_UNROLL\n"
