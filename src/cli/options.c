@@ -13,9 +13,6 @@ static const char *unknown_command(Arena *a, const char *word) {
   Name names[CMD_COUNT];
   size_t n = 0;
   for (const CommandRow *row; n < CMD_COUNT && (row = command_row(n)) != NULL && row->help; n++) names[n] = row->name;
-  static const char *const later[] = {"effects", "noether"};
-  for (size_t i = 0; i < sizeof later / sizeof *later; i++)
-    if (strcmp(word, later[i]) == 0) return arena_printf(a, "not yet: `lagc %s`", word);
   size_t len = strlen(word);
   if (len > 4 && strcmp(word + len - 4, ".lag") == 0) return arena_printf(a, "say what to do with %s: `lagc run %s`, `lagc derive %s`, `lagc check %s`", word, word, word, word);
   Name near = suggest(word, names, n);
