@@ -37,7 +37,7 @@ SAFE := $(shell d=$$(mktemp -d) && $(CC) $(CFLAGS) -x c src/cli/probe.in -o $$d/
 
 # ---- what is made of what ---------------------------------------------------------------------------
 LAGC_SRC := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
-GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c)
+GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c cli/outfile.c)
 RT_SRC   := $(filter-out runtime/gsl/%,$(wildcard runtime/*/*.c))
 GSL_SRC  := $(wildcard runtime/gsl/*.c)
 
@@ -45,7 +45,8 @@ LAGC_OBJ := $(LAGC_SRC:%.c=$(BUILD)/obj/%.o) $(GEN_SRC:$(BUILD)/gen/%.c=$(BUILD)
 RT_OBJ   := $(RT_SRC:%.c=$(BUILD)/obj/%.o)
 GSL_OBJ  := $(GSL_SRC:%.c=$(BUILD)/obj/%.o)
 
-LIBLAG  := $(BUILD)/liblag.a $(if $(GSL),$(BUILD)/liblag_gsl.a)
+RT_BUILD ?= $(BUILD)
+LIBLAG  := $(RT_BUILD)/liblag.a $(if $(GSL),$(RT_BUILD)/liblag_gsl.a)
 LIBLAG_MORE := $(PRECISIONS:%=$(BUILD)/liblag_%.a)
 
 all: $(BUILD)/lagc $(LIBLAG) $(LIBLAG_MORE)
@@ -119,6 +120,11 @@ $(BUILD)/gen/cli/probe_text.h: src/cli/probe.in
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
+# How files are written is one text in the compiler and in the runtime, of which neither includes a header of the other's.
+$(BUILD)/gen/cli/outfile.%: runtime/io/outfile.%
+	@mkdir -p $(@D)
+	sed 's|"io/outfile.h"|"cli/outfile.h"|' $< >$@.part
+	@mv $@.part $@
 # With its section in place, without that file's first line.
 $(BUILD)/gen/emit/lag_math.txt: runtime/include/lag_math.h runtime/include/lag_sincos.h
 	@mkdir -p $(@D)
@@ -142,8 +148,8 @@ $(BUILD)/gen/cli/complete_%.h: src/cli/complete.%
 # What the compiler knows of methods is what the runtime says.
 $(BUILD)/gen/base/method_rows.h: runtime/list_methods.c $(LIBLAG)
 	@mkdir -p $(@D)
-	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAN) $(if $(GSL),-DWITH_GSL) -o $(BUILD)/list_methods $< $(if $(GSL),$(BUILD)/liblag_gsl.a) \
-	  $(BUILD)/liblag.a $(GSL_LIBS) -lm
+	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAN) $(if $(GSL),-DWITH_GSL) -o $(BUILD)/list_methods $< $(if $(GSL),$(RT_BUILD)/liblag_gsl.a) \
+	  $(RT_BUILD)/liblag.a $(GSL_LIBS) -lm
 	$(BUILD)/list_methods >$@.part
 	@mv $@.part $@
 $(BUILD)/obj/src/base/methods.o: $(BUILD)/gen/base/method_rows.h
@@ -152,6 +158,11 @@ $(BUILD)/obj/src/emit/cmath.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen/emit/la
 $(BUILD)/obj/src/cli/probe.o: $(BUILD)/gen/cli/probe_text.h
 $(BUILD)/obj/src/cli/reference.o: $(BUILD)/gen/cli/language.h
 $(BUILD)/obj/src/cli/shells.o: $(SHELLS:%=$(BUILD)/gen/cli/complete_%.h)
+$(BUILD)/gen/base/visible.h: runtime/io/visible.h
+	@mkdir -p $(@D)
+	cp $< $@
+$(LAGC_SRC:%.c=$(BUILD)/obj/%.o) $(BUILD)/obj/src/main.o: | $(BUILD)/gen/base/visible.h
+$(BUILD)/obj/src/cli/files.o $(BUILD)/obj/src/cli/options.o $(BUILD)/obj/gen/cli/outfile.o: $(BUILD)/gen/cli/outfile.h
 # Generated code is not ours to warn about.
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 	@mkdir -p $(@D)
@@ -178,8 +189,9 @@ gallery: all
 	@sed -n 's|^<!-- drawn by: build/lagc \(.*\) -->$$|$(BUILD)/lagc \1 --quiet|p' models/README.md | sh -e
 
 # ---- tests: tests/run.sh says what a suite is -------------------------------------------------------
-# Three builds: as users get it, in $(BUILD)/san with the address and undefined-behaviour sanitizers, and, where
-# clang is installed, by clang. Unit tests, their helpers and fuzz targets are linked with the second.
+# Four builds: as users get it; in $(BUILD)/san with the address and undefined-behaviour sanitizers; the compiler alone in $(BUILD)/zero
+# with these and -O0, which leaves out no load; and, where clang is installed, by clang. Unit tests, their helpers and fuzz targets
+# are linked with the second, which is a third faster at -O1.
 SAN_BUILD := $(BUILD)/san
 SAN_FLAGS := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 BIN       := $(BUILD)/test/bin
@@ -192,7 +204,7 @@ TEST_BIN  := $(UNIT_SRC:tests/unit/%.c=$(BIN)/%) $(FUZZ_SRC:tests/fuzz/%.c=$(BIN
 # Where T names unit tests only, nothing else is built.
 ONLY      := $(if $(filter-out unit/%,$(T)),,$(wildcard $(T:%=tests/%*.c)))
 
-RUN_TESTS = @LAGC='$(BUILD)/lagc' LAGC_SAN='$(SAN_BUILD)/lagc' LAGC_CLANG='$(if $(CLANG),$(BUILD)/clang/lagc)' \
+RUN_TESTS = @LAGC='$(BUILD)/lagc' LAGC_SAN='$(BUILD)/zero/lagc' SAN_FLAGS='$(SAN_FLAGS)' LAGC_CLANG='$(if $(CLANG),$(BUILD)/clang/lagc)' \
             LIBLAG='$(LIBLAG)' LIBS='$(GSL_LIBS) -lm' INC='runtime/include' BIN='$(BIN)' BUILD='$(BUILD)' \
             CC='$(CC)' CLANG='$(CLANG)' CXX='$(CXX_FOUND)' GSL='$(GSL)' MAKE='$(MAKE)' sh tests/run.sh
 
@@ -227,9 +239,10 @@ ifneq ($(ONLY),)
 	$(SAN_MAKE) $(SAN_LAGC) $(SAN_RT)
 	$(QUIET) $(ONLY:tests/unit/%.c=$(BIN)/%)
 else
-	@echo 'building $(BUILD)/lagc, once more with sanitizers$(if $(CLANG), and with clang), and the tests'
+	@echo 'building $(BUILD)/lagc, twice more with sanitizers$(if $(CLANG), and with clang), and the tests'
 	$(QUIET) all
-	$(SAN_MAKE) all
+	$(SAN_MAKE) $(SAN_LAGC) $(SAN_RT)
+	$(QUIET) BUILD=$(BUILD)/zero RT_BUILD=$(SAN_BUILD) PRECISIONS= CFLAGS='-O0 -g' SAN='$(SAN_FLAGS)' $(BUILD)/zero/lagc
 	$(if $(CLANG),$(QUIET) BUILD=$(BUILD)/clang PRECISIONS= CC='$(CLANG)' all)
 	$(QUIET) $(TEST_BIN)
 endif
@@ -245,6 +258,15 @@ $(BIN)/%: tests/unit/%.c $(SAN_LAGC)
 $(BIN)/fuzz_%: tests/fuzz/fuzz_%.c $(BUILD)/test/driver.o $(SAN_LAGC)
 	@mkdir -p $(@D)
 	$(TEST_CC) -Isrc -I$(SAN_BUILD)/gen $(BUILD)/test/driver.o $(SAN_LAGC) -lm
+# fuzz_load is of the runtime, with models as lagc emits them: the method behind the colon is what they are emitted for.
+LOAD_MODELS := spring:verlet pend:variational series:taylor flow:gauss rod:variational ball:verlet
+LOAD_SRC    := $(foreach m,$(LOAD_MODELS),$(BUILD)/test/load_$(firstword $(subst :, ,$m)).c)
+$(BUILD)/test/load_%.c: tests/fuzz/load/load_%.lag $(BUILD)/lagc
+	@mkdir -p $(@D)
+	$(BUILD)/lagc emit $< --with linear --method $(patsubst $*:%,%,$(filter $*:%,$(LOAD_MODELS))) -o $@
+$(BIN)/fuzz_load: tests/fuzz/fuzz_load.c $(BUILD)/test/driver.o $(LOAD_SRC) $(SAN_RT)
+	@mkdir -p $(@D)
+	$(TEST_CC) -Iruntime/include -Iruntime -ffp-contract=off $(BUILD)/test/driver.o $(LOAD_SRC) $(SAN_RT) $(GSL_LIBS) -lm
 $(BUILD)/test/driver.o: tests/fuzz/driver.c
 	@mkdir -p $(@D)
 	$(TEST_CC) -c
@@ -257,12 +279,15 @@ fuzz:
 	$(SETUP) build
 ifneq ($(CLANG),)
 	$(QUIET) BUILD=$(BUILD)/fuzz PRECISIONS= CC='$(CLANG)' CFLAGS='-O1 -g' \
-	  SAN='$(SAN_FLAGS) -fsanitize=fuzzer-no-link' $(BUILD)/fuzz/liblagc.a
+	  SAN='$(SAN_FLAGS) -fsanitize=fuzzer-no-link' \
+	  $(BUILD)/fuzz/liblagc.a $(BUILD)/fuzz/liblag.a
+	$(QUIET) $(if $(filter fuzz_load,$(FUZZ)),$(LOAD_SRC))
 	@set -e; for f in $(FUZZ); do \
 	  corpus=tests/fuzz/corpus/$${f#fuzz_}; found=$(BUILD)/fuzz/found/$$f; mkdir -p $$found; \
-	  $(CLANG) -std=c11 $(CPPFLAGS_ALL) -O1 -g $(SAN_FLAGS) -fsanitize=fuzzer -Isrc -I$(BUILD)/fuzz/gen \
-	    -o $(BUILD)/fuzz/$$f tests/fuzz/$$f.c $(BUILD)/fuzz/liblagc.a -lm; \
-	  $(BUILD)/fuzz/$$f -max_total_time=$(SECONDS) -max_len=4096 -artifact_prefix=$(BUILD)/fuzz/ $$found $$corpus; \
+	  with="-Isrc -I$(BUILD)/fuzz/gen $(BUILD)/fuzz/liblagc.a"; \
+	  [ $$f != fuzz_load ] || with="-DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION -Iruntime/include -Iruntime $(LOAD_SRC) $(BUILD)/fuzz/liblag.a"; \
+	  $(CLANG) -std=c11 $(CPPFLAGS_ALL) -O1 -g $(SAN_FLAGS) -fsanitize=fuzzer -o $(BUILD)/fuzz/$$f tests/fuzz/$$f.c $$with -lm; \
+	  $(BUILD)/fuzz/$$f -max_total_time=$(SECONDS) -max_len=4096 -print_final_stats=1 -artifact_prefix=$(BUILD)/fuzz/ $$found $$corpus; \
 	done
 else
 	$(SAN_MAKE) $(SAN_LAGC)
@@ -270,6 +295,25 @@ else
 	@set -e; for f in $(FUZZ); do \
 	  $(BIN)/$$f --mutate $(SECONDS) $(BUILD)/fuzz-found tests/fuzz/corpus/$${f#fuzz_}; done
 endif
+
+# The share of lines of each file of the back half that the inputs of fuzz targets reach: the corpora, and what `make fuzz` has found.
+COV = $(BUILD)/cov
+fuzz-coverage:
+	$(QUIET) BUILD=$(COV) PRECISIONS= CFLAGS=-O0 SAN=--coverage $(COV)/liblagc.a
+	@find $(COV) -name '*.gcda' -delete
+	@set -e; for f in $(FUZZ); do \
+	  $(CC) -std=c11 $(CPPFLAGS_ALL) -O0 --coverage -Isrc -I$(COV)/gen -o $(COV)/$$f tests/fuzz/$$f.c tests/fuzz/driver.c $(COV)/liblagc.a -lm; \
+	  for d in tests/fuzz/corpus/$${f#fuzz_} $(BUILD)/fuzz/found/$$f; do if [ "$$(ls $$d 2>/dev/null)" ]; then $(COV)/$$f $$d >$(COV)/log; fi; done; \
+	done
+	@for f in $(patsubst src/%.c,%,$(wildcard src/emit/*.c src/ir/*.c src/mech/*.c)); do gcov -n $(COV)/obj/src/$$f.gcda 2>/dev/null; done | \
+	  awk -F "['%:]" '/^File .src\/.*\.c/ { f = $$2 } /^Lines executed/ && f { printf "%5.1f %%  %s\n", $$2, f; f = "" }'
+
+# One-token changes of the sources, one at a time: which ones does no suite see? tests/mutants/mutants.py
+N    ?= 100
+SEED ?= 1
+mutants:
+	$(SETUP) test
+	python3 tests/mutants/mutants.py --n $(N) --seed $(SEED) $(if $(ONLY_IN),--only '$(ONLY_IN)')
 
 # ---- installing -------------------------------------------------------------------------------------
 MODELS := $(wildcard models/*.lag models/*.csv)
@@ -320,6 +364,8 @@ help:
 	@echo 'make bench        instructions and times next to peers, to tests/bench/RESULTS.md; nothing fails by being slow'
 	@echo 'make bless        rewrites the expectations of golden tests: look at the diff before you commit it'
 	@echo 'make fuzz         looks for inputs that break the compiler; SECONDS=60, T=fuzz_parse'
+	@echo 'make fuzz-coverage  the share of lines of src/ir, src/mech and src/emit that its inputs reach'
+	@echo 'make mutants      plants one-token changes and prints those that no suite sees; N=100 SEED=1 ONLY_IN=src/ir/'
 	@echo 'make gallery      draws the pictures of models/README.md'
 	@echo 'make install      PREFIX=/usr/local DESTDIR='
 	@echo 'make uninstall    the same, backwards'
@@ -328,4 +374,4 @@ help:
 
 -include $(LAGC_OBJ:.o=.d) $(RT_OBJ:.o=.d) $(GSL_OBJ:.o=.d) $(BUILD)/obj/src/main.d $(TEST_BIN:=.d)
 
-.PHONY: all demo run-demo gallery test test-long bless hard bench build-tests fuzz install uninstall clean help
+.PHONY: all demo run-demo gallery test test-long bless hard bench build-tests fuzz fuzz-coverage mutants install uninstall clean help

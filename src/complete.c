@@ -37,7 +37,7 @@ static Ast *read_ast(Line *l) {
   if (l->ast || !l->file) return l->ast;
   Sources *sources = sources_new(l->arena);
   const char *why;
-  const Source *source = source_read(sources, l->file, &why);
+  const Source *source = source_read_model(sources, l->file, &why);
   if (!source) return NULL;
   l->ast = ast_new(l->arena, interner_new(l->arena), sources, diags_new(l->arena, sources));
   parse(l->ast, source);
@@ -230,4 +230,5 @@ void complete(StrBuf *out, const char *const *words, size_t n, const char *argv0
   else if (l.command == CMD_COMPLETION && n == 2) {
     for (size_t i = 0; word_at(l.arena, "bash zsh fish", i); i++) offer(&l, word_at(l.arena, "bash zsh fish", i), "");
   } else if (command_reads_model(l.command)) offer_word(&l);
+  else if (l.command == CMD_CACHE) offer_options(&l);
 }

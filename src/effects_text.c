@@ -104,7 +104,9 @@ void effects_text(const EffectStudy *s, StrBuf *out) {
 /* --- JSON --- */
 
 static void json_number(StrBuf *out, const char *name, double x) {
-  if (isfinite(x)) sb_printf(out, ", \"%s\": %.17g", name, x);
+  char text[32];
+  num_format_double(text, x);
+  if (isfinite(x)) sb_printf(out, ", \"%s\": %s", name, text);
   else sb_printf(out, ", \"%s\": null", name);
 }
 
@@ -160,7 +162,9 @@ void effects_json(const EffectStudy *s, StrBuf *out) {
   }
   sb_putc(out, ']');
   if (s->accuracy > 0) {
-    sb_printf(out, ", \"smallest\": {\"accuracy\": %.17g, \"effects\": ", s->accuracy);
+    char accuracy[32];
+    num_format_double(accuracy, s->accuracy);
+    sb_printf(out, ", \"smallest\": {\"accuracy\": %s, \"effects\": ", accuracy);
     json_names(s, s->least, out);
     json_number(out, "difference", s->least_difference);
     sb_printf(out, ", \"sets_run\": %u, \"exhaustive\": %s, \"use\": ", s->tried, s->exhaustive ? "true" : "false");

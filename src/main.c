@@ -11,8 +11,11 @@
 #include "base/diag.h"
 #include "base/methods.h"
 #include "base/suggest.h"
+#include "base/visible.h"
 #include "check.h"
+#include "cli/cache.h"
 #include "cli/files.h"
+#include "cli/last_state.h"
 #include "cli/methods.h"
 #include "cli/options.h"
 #include "cli/shells.h"
@@ -27,7 +30,10 @@
 #include "ir/hoist.h"
 #include "help.h"
 #include "ir/lower.h"
+#include "jets/no_value.h"
+#include "jets/self_check.h"
 #include "mech/constrain.h"
+#include "mech/definite.h"
 #include "mech/discontinuity.h"
 #include "mech/eqns.h"
 #include "mech/start.h"
@@ -54,16 +60,22 @@ typedef struct {
   Ast *ast;
   Picture picture; /* of run, plot and animate */
   GivenList given; /* to them */
+  StrBuf told;     /* what was compared with the text, for check --verbose */
+  const Eqns *run; /* of the scene that the command runs, */
+  IrUnit *run_by;  /* and its programs */
 } Compiler;
 
 static void print_messages(const Compiler *c) {
   StrBuf messages = strbuf(c->arena);
+  if (!c->diags->errors) model_warn_unused(c->ast); /* by now the command line's expressions are read, too */
   diags_print(c->diags, &messages);
   fputs(sb_text(&messages), stderr);
 }
 
 static int fail_usage(const char *message) {
-  fprintf(stderr, "lagc: %s\n", message);
+  fputs("lagc: ", stderr);
+  fput_visible(stderr, message, "\n\t");
+  fputc('\n', stderr);
   return STATUS_USAGE;
 }
 
@@ -95,7 +107,7 @@ static int write_out(Compiler *c, const char *path, const StrBuf *text) {
 
 static int read_model(Compiler *c) {
   const char *why = NULL;
-  const Source *source = source_read(c->sources, c->o.file, &why);
+  const Source *source = source_read_model(c->sources, c->o.file, &why);
   if (!source) return fail_usage(arena_printf(c->arena, "cannot read %s: %s", c->o.file, why));
   parse(c->ast, source);
   settings_defines(c->ast, c->o.defines.at, c->o.defines.n);
@@ -118,6 +130,7 @@ static Eqns *derive(Compiler *c, const ModelChoice *choice) {
   StrBuf listing = strbuf(c->arena);
   if (wants_dump(c, "model")) model_dump(m, &listing);
   Eqns *e = eqns_derive(m);
+  if (e && !choice->bare) mass_warn(e); /* claims are about all values */
   if (e && wants_dump(c, "eqns")) dump_equations(e, &listing);
   if (listing.n) write_out(c, NULL, &listing);
   return e;
@@ -145,8 +158,14 @@ static IrUnit *new_unit(Compiler *c, Eqns *e) {
   return unit_new(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0);
 }
 
-/* NULL, with the reason in c->diags, when the program is wrong: a bug. */
-static IrUnit *lower_scene(Compiler *c, Eqns *e) {
+/* Whether the programs of u, for one of its scenes, compute what the text says. */
+static int agrees(const Eqns *e, const IrUnit *u, uint32_t scene) {
+  SelfCheck told;
+  return self_check(e, u, scene, &told);
+}
+
+/* hoists: its derived parameters are taken out, as emitted models have them. NULL, with the reason in c->diags, when the program is wrong: a bug. */
+static IrUnit *lower_scene(Compiler *c, Eqns *e, int hoists) {
   IrUnit *u = new_unit(c, e);
   unit_want(u, e, wants_of(e, &c->o));
   unit_add_scene(u, e);
@@ -155,6 +174,8 @@ static IrUnit *lower_scene(Compiler *c, Eqns *e) {
     diag_error(c->diags, (Span){0}, "internal error: %s", wrong);
     return NULL;
   }
+  if (hoists) unit_hoist(u);
+  if (!agrees(e, u, 0)) return NULL;
   if (wants_dump(c, "prog")) {
     StrBuf b = strbuf(c->arena);
     prog_dump(u->accel, &b);
@@ -165,7 +186,18 @@ static IrUnit *lower_scene(Compiler *c, Eqns *e) {
 
 /* --- the commands --- */
 
-static Eqns *derive_for(void *compiler, const ModelChoice *choice) { return derive(compiler, choice); }
+/* Equations that are reported, compared with the text. */
+static Eqns *derive_for(void *compiler, const ModelChoice *choice) {
+  Compiler *c = compiler;
+  Eqns *e = derive(c, choice);
+  if (!e) return NULL;
+  IrUnit *u = new_unit(c, e);
+  unit_add_scene(u, e);
+  SelfCheck told;
+  if (!self_check(e, u, 0, &told)) return NULL;
+  if (c->o.verbose) self_check_print(e, &told, &c->told);
+  return e;
+}
 
 static int do_noether(Compiler *c) {
   StrBuf out = strbuf(c->arena);
@@ -188,7 +220,7 @@ static int do_derive(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   if (c->o.hamiltonian) return do_hamiltonian(c, e);
-  IrUnit *u = lower_scene(c, e);
+  IrUnit *u = lower_scene(c, e, 0);
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
   const char *format = c->o.format ? c->o.format : "text";
@@ -202,10 +234,9 @@ static int do_derive(Compiler *c) {
 static int do_emit(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
-  IrUnit *u = lower_scene(c, e);
+  IrUnit *u = lower_scene(c, e, 1);
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
-  unit_hoist(u);
   emit_model(u, model_id(c->arena, u->name), &out);
   return write_out(c, c->o.output, &out);
 }
@@ -232,7 +263,7 @@ static int do_header(Compiler *c) {
   Eqns *e = derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   constraints_keep_none(e);
-  IrUnit *u = lower_scene(c, e);
+  IrUnit *u = lower_scene(c, e, 0);
   if (!u || !bake_start(c, e, u)) return STATUS_MODEL;
   StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
   show_equations(e, "", PRINT_TEXT, &equations);
@@ -244,23 +275,44 @@ static int do_header(Compiler *c) {
  * of one scene, and only that one is built then. */
 typedef VEC(IrUnit *) Units;
 
+/* A scene of a unit, and its equations. */
+typedef struct {
+  const Eqns *e;
+  IrUnit *unit;
+  uint32_t scene;
+} Lowered;
+
+typedef VEC(Lowered) Lowereds;
+
+/* When all programs are there: derived parameters are taken out, and what is left is compared with the text. */
+static int finish_units(const Units *units, const Lowereds *of) {
+  for (uint32_t i = 0; i < units->n; i++) unit_hoist(units->at[i]);
+  for (uint32_t i = 0; i < of->n; i++)
+    if (!agrees(of->at[i].e, of->at[i].unit, of->at[i].scene)) return 0;
+  return 1;
+}
+
 static int lower_all(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast);
   if (c->picture.asked.n || c->given.n || c->picture.section.expr) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
+  Lowereds all = {0};
   for (uint32_t i = 0; i < scenes.n; i++) {
     Eqns *e = derive_asked(c, scenes.at[i]);
     if (!e) return 0;
-    if (command_simulates(c->o.command) && strcmp(c->picture.scene ? c->picture.scene : scenes.at[0], scenes.at[i]) == 0) discontinuity_warn(e);
+    int runs = command_simulates(c->o.command) && strcmp(c->picture.scene ? c->picture.scene : scenes.at[0], scenes.at[i]) == 0;
+    if (runs) discontinuity_warn(e);
     IrUnit *fresh = new_unit(c, e), *home = NULL;
     for (uint32_t k = 0; k < units->n && !home; k++)
       if (unit_shares(units->at[k], fresh)) home = units->at[k];
     if (!home) vec_push(c->arena, units, home = fresh);
     home->lines = 1;
+    if (runs) c->run = e, c->run_by = home;
     unit_want(home, e, wants_of(e, &c->o));
     unit_add_scene(home, e);
+    vec_push(c->arena, &all, ((Lowered){e, home, home->scenes.n - 1}));
     if (options_more_digits(&c->o) && i + 1 == scenes.n) rounded_warn(c->ast, e->m->g, c->o.precision);
   }
-  return 1;
+  return finish_units(units, &all);
 }
 
 typedef VEC(SourceText) Texts;
@@ -268,11 +320,11 @@ typedef VEC(SourceText) Texts;
 /* A program from these texts at `output`, or in the cache (NULL). */
 static int make_program(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path) {
   const char *error = NULL;
-  *path = output ? output : toolchain_cached(c->arena, tools, texts->at, texts->n);
-  if (!output && toolchain_is_whole(c->arena, *path)) return STATUS_OK;
-  if (!toolchain_build(c->arena, tools, texts->at, texts->n, *path, &error)) return fail_usage(error);
-  if (!output) toolchain_seal(c->arena, *path);
-  return STATUS_OK;
+  *path = output;
+  cache_remove_remains(c->arena);
+  if (!output) *path = toolchain_simulator(c->arena, tools, texts->at, texts->n, &error);
+  else if (!toolchain_build(c->arena, tools, texts->at, texts->n, output, &error)) *path = NULL;
+  return *path ? STATUS_OK : fail_usage(error);
 }
 
 static Texts program_texts(Compiler *c, const Units *units, int gsl) {
@@ -281,7 +333,6 @@ static Texts program_texts(Compiler *c, const Units *units, int gsl) {
   for (uint32_t i = 0; i < units->n; i++) {
     names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units->at[i]->name), i);
     StrBuf b = strbuf(c->arena);
-    unit_hoist(units->at[i]);
     emit_model(units->at[i], names[i], &b);
     vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
   }
@@ -315,14 +366,10 @@ static int method_is_known(Compiler *c) {
 /* A simulator in quadruple precision, in the cache; NULL where there is no such precision. */
 static const char *make_precise(Compiler *c, const Units *units) {
   Toolchain tools;
-  const char *error = NULL, *path;
+  const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, 0, &tools, &error) || !toolchain_precision(c->arena, &tools, "quad", &error)) return NULL;
   Texts texts = program_texts(c, units, 0);
-  path = toolchain_cached(c->arena, &tools, texts.at, texts.n);
-  if (toolchain_is_whole(c->arena, path)) return path;
-  if (!toolchain_build(c->arena, &tools, texts.at, texts.n, path, &error)) return NULL;
-  toolchain_seal(c->arena, path);
-  return path;
+  return toolchain_simulator(c->arena, &tools, texts.at, texts.n, &error);
 }
 
 static int do_build(Compiler *c) {
@@ -375,6 +422,15 @@ static int prepare_run(Compiler *c) {
   return STATUS_OK;
 }
 
+/* A run ended for want of a finite value: where in the text there is none. */
+static void tell_last_state(void *compiler, const double *number, uint32_t n) {
+  Compiler *c = compiler;
+  c->diags->list.n = 0; /* they have been printed */
+  if (no_value_note(c->run, c->run_by, number, n)) print_messages(c);
+}
+
+enum { LARGE = 1000 }; /* coordinates: the memory of compiling them is not kept for the run */
+
 /* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
 static int do_run(Compiler *c) {
   const char *path;
@@ -388,6 +444,7 @@ static int do_run(Compiler *c) {
   fflush(stdout);
   print_messages(c); /* warnings: the simulator does not come back */
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
+  if (c->run && c->run->n <= LARGE) last_state_wait(c->arena, tell_last_state, c);
   execv(path, c->picture.argv.at);
   return fail_usage(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
 }
@@ -400,7 +457,8 @@ static IrUnit *lower_variant(Compiler *c, EffectList effects, unsigned *wants) {
   *wants |= wants_of(e, &c->o); /* all of them are to run by the first one's method */
   unit_want(u, e, *wants);
   unit_add_scene(u, e);
-  return u;
+  unit_hoist(u);
+  return agrees(e, u, 0) ? u : NULL;
 }
 
 /* Makes a program of these variants, runs it, and reads what it measured. */
@@ -465,7 +523,9 @@ static int do_effects(Compiler *c) {
 
 static int do_check(Compiler *c) {
   StrBuf out = strbuf(c->arena);
+  c->told = strbuf(c->arena);
   if (!check_print(&(Deriver){derive_for, c}, c->ast, c->o.scene, c->o.allow_numeric, &out)) return STATUS_MODEL;
+  sb_puts(&out, sb_text(&c->told));
   int status = write_out(c, NULL, &out);
   return c->diags->errors ? STATUS_MODEL : status;
 }
@@ -505,6 +565,14 @@ static int do_completion(Compiler *c) {
   return write_out(c, NULL, &out);
 }
 
+static int do_cache(Compiler *c) {
+  StrBuf out = strbuf(c->arena);
+  cache_remove_remains(c->arena);
+  if (c->o.clear) cache_clear(c->arena, &out);
+  else cache_print(c->arena, &out);
+  return write_out(c, NULL, &out);
+}
+
 static int do_command(Compiler *c) {
   switch (c->o.command) {
     case CMD_CHECK: return do_check(c);
@@ -515,7 +583,7 @@ static int do_command(Compiler *c) {
     case CMD_BUILD: return method_is_known(c) ? do_build(c) : STATUS_USAGE;
     case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: case CMD_LYAPUNOV: case CMD_COST: return do_run(c);
     case CMD_EFFECTS: return do_effects(c);
-    case CMD_METHODS: case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
+    case CMD_METHODS: case CMD_CACHE: case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
   }
   return STATUS_USAGE;
 }
@@ -544,6 +612,7 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   if (c->o.command == CMD_HELP) return do_help(c);
   if (c->o.command == CMD_COMPLETION || c->o.command == CMD_COMPLETE) return do_completion(c);
   if (c->o.command == CMD_METHODS) return help_methods(c, NULL);
+  if (c->o.command == CMD_CACHE) return do_cache(c);
   if (c->o.command == CMD_VERSION) {
     puts("lagc " LAGC_VERSION);
     return fflush(stdout) == 0 ? STATUS_OK : fail_usage("cannot write standard output");

@@ -88,21 +88,8 @@ static const char *rate_of(Maker *k, const char *text) {
   return arena_printf(k->arena, plain ? "%s'" : "(%s)'", text);
 }
 
-/* A suffix that promises another kind of picture. */
-static int other_kind(Maker *k, const char *own, const char *writes, const char **error) {
-  static const char *const kinds[] = {"svg", "html", "png", "pdf", "jpg", "jpeg", "gif", "webp", "eps", "ps", "mp4", "webm"};
-  const char *path = k->o->output, *dot = path ? strrchr(path, '.') : NULL;
-  for (size_t i = 0; dot && i < sizeof kinds / sizeof *kinds; i++) {
-    if (strcmp(dot + 1, kinds[i]) != 0 || strcmp(dot + 1, own) == 0) continue;
-    *error = arena_printf(k->arena, "-o %s: %s; write -o %.*s.%s", path, writes, (int)(dot - path), path, own);
-    return 1;
-  }
-  return 0;
-}
-
 static int prepare_plot(Maker *k, const char **error) {
   const Options *o = k->o;
-  if (other_kind(k, "svg", "plot writes SVG, which browsers and `rsvg-convert` turn into other kinds", error)) return 0;
   const char *x = o->phase ? o->phase : o->x, *y = o->phase ? rate_of(k, o->phase) : o->y;
   if (o->phase && (o->x || o->y)) *error = "--phase EXPR draws the rate of EXPR against it; leave out --x and --y";
   else if (x && !y) *error = arena_printf(k->arena, "--x %s: against what? add --y EXPR", x);
@@ -226,7 +213,6 @@ static int is_quiet(const Options *o) {
 static int prepare_animate(Maker *k, const char **error) {
   enum { SHOWN_POINTS = 60 };
   const Options *o = k->o;
-  if (other_kind(k, "html", "animate writes HTML, a page for browsers", error)) return 0;
   Found f = {.points = o->points, .rods = 1};
   if (!f.points) {
     f = find_points(k);

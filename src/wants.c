@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/methods.h"
+#include "base/source.h"
 #include "ir/unit.h"
 
 /* Of a method; an explicit one for separable models turns into an implicit one for the others. */
@@ -25,8 +26,8 @@ static unsigned wants_of_method(const Eqns *e, const char *text) {
  * simulator's to refuse. */
 static const char *method_of_state(Arena *a, const char *path) {
   char line[256];
-  FILE *f = fopen(path, "r");
-  const char *name = NULL;
+  const char *name = NULL, *error;
+  FILE *f = source_open(path, &error);
   for (int i = 0; f && i < 8 && !name && fgets(line, sizeof line, f); i++)
     if (strncmp(line, "method ", 7) == 0) name = arena_strndup(a, line + 7, strcspn(line + 7, "\n"));
   if (f) fclose(f);

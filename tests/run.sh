@@ -16,7 +16,7 @@
 # runs into the time limit, or has not as many results as its plan says, counts one failure more.
 #
 # Scripts find in their environment (paths relative to the top; empty: there is none):
-#   LAGC, LAGC_SAN, LAGC_CLANG     the compiler; built under sanitizers; built by clang
+#   LAGC, LAGC_SAN, LAGC_CLANG     the compiler; built with -O0 under the sanitizers of SAN_FLAGS; built by clang
 #   LIBLAG, INC, LIBS              the runtime's libraries, its headers, what to link after them
 #   BIN, BUILD, TMP                built test programs; the build folder; a folder of the suite's own, empty
 #   CC, CLANG, CXX, GSL, MAKE      GSL is `yes` or empty
@@ -24,7 +24,7 @@
 # Every suite leaves its output in $BUILD/test/log. The last line is `N passed, N failed`.
 cd "$(dirname "$0")/.." || exit 2
 unset MAKEFLAGS MFLAGS MAKELEVEL
-export LAGC LAGC_SAN LAGC_CLANG LIBLAG LIBS INC BIN BUILD CC CLANG CXX GSL MAKE
+export LAGC LAGC_SAN SAN_FLAGS LAGC_CLANG LIBLAG LIBS INC BIN BUILD CC CLANG CXX GSL MAKE
 export CMOCKA_MESSAGE_OUTPUT=TAP
 export UBSAN_OPTIONS="print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}"
 : "${BUILD:=build}" "${BIN:=$BUILD/test/bin}" "${JOBS:=2}"

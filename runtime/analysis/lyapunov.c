@@ -1,5 +1,6 @@
 #include "analysis/lyapunov.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -238,16 +239,53 @@ double lag_lyapunov_divergence(const Lyapunov *l)
   return l->t > l->begun ? l->divergence / (l->t - l->begun) : NAN;
 }
 
-double lag_lyapunov_dimension(const Lyapunov *l)
+double lag_lyapunov_error(const Lyapunov *l, int i)
+{
+  double time = l->t - l->begun, half = 0, moved;
+
+  for (int a = 0; a < l->k; a++) {
+    half += a == i || i == l->k ? l->at_half[a] : 0;
+  }
+  moved = fabs(lag_lyapunov_exponent(l, i) - half);
+  return time > 0 ? fmax(fmax(moved, lag_lyapunov_spread(l, i)), fmax(1, DBL_EPSILON * (double)l->steps) / time) : NAN;
+}
+
+int lag_lyapunov_sign(const Lyapunov *l, int i)
+{
+  const double errors = 3;
+  double x = lag_lyapunov_exponent(l, i), least = errors * lag_lyapunov_error(l, i);
+
+  return (x > least) - (x < -least);
+}
+
+double lag_lyapunov_entropy(const Lyapunov *l, double *error)
 {
   double sum = 0;
 
+  *error = 0;
+  for (int i = 0; i < l->k && lag_lyapunov_sign(l, i) >= 0; i++) {
+    sum += lag_lyapunov_sign(l, i) > 0 ? lag_lyapunov_exponent(l, i) : 0;
+    *error += lag_lyapunov_error(l, i);
+  }
+  return sum;
+}
+
+double lag_lyapunov_dimension(const Lyapunov *l, double *error)
+{
+  double sum = 0, lost = 0;
+
+  *error = NAN;
+  if (l->k < l->n || lag_lyapunov_sign(l, l->k) >= 0) {
+    return NAN;
+  }
   for (int i = 0; i < l->k; i++) {
-    double x = lag_lyapunov_exponent(l, i);
-    if (isnan(x) || sum + x < 0) {
+    double x = lag_lyapunov_sign(l, i) ? lag_lyapunov_exponent(l, i) : 0, off = lag_lyapunov_error(l, i);
+    if (sum + x < 0) {
+      *error = (lost + sum / fabs(x) * off) / fabs(x);
       return i + sum / fabs(x);
     }
     sum += x;
+    lost += off;
   }
-  return l->k;
+  return NAN; /* all are 0 within their errors, their sum is not */
 }

@@ -53,8 +53,17 @@ double lag_lyapunov_spread(const Lyapunov *l, int i);
  * other means, the trapezoidal rule over steps. NaN as above. */
 double lag_lyapunov_divergence(const Lyapunov *l);
 
-/* The dimension of the attractor by J.L. Kaplan and J.A. Yorke (1979, DOI 10.1007/BFb0064319), from all n exponents; n where
- * volumes do not shrink. */
-double lag_lyapunov_dimension(const Lyapunov *l);
+/* The error of exponent i, or for i = k of their sum: the largest of its standard error, of what it has moved by since half of the time (0 is reached
+ * as log(t)/t), of a factor of e in the whole time, and of rounding. */
+double lag_lyapunov_error(const Lyapunov *l, int i);
+/* Its sign, 0 where it is within three errors of 0. */
+int lag_lyapunov_sign(const Lyapunov *l, int i);
+
+/* The sum of the positive exponents, of which k are known: Pesin's entropy. *error: that of these and of those that are 0 within theirs. */
+double lag_lyapunov_entropy(const Lyapunov *l, double *error);
+
+/* The dimension of the attractor by J.L. Kaplan and J.A. Yorke (1979, DOI 10.1007/BFb0064319), from all n exponents, of which those within three
+ * errors of 0 count as 0. NaN where not all are known, or volumes are not known to shrink. */
+double lag_lyapunov_dimension(const Lyapunov *l, double *error);
 
 #endif

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "app/app.h"
@@ -148,6 +149,20 @@ static double row_time(const App *app, const double *grid)
 
 /* ---- Running */
 
+static void note_empty(App *app, double t)
+{
+  int i = 1, n = lag_sim_noutputs(app->sim);
+
+  while (i <= n && isfinite(app->row[i])) {
+    i++;
+  }
+  app->rows_put++;
+  if (i <= n && app->empty_rows++ == 0) {
+    app->empty_column = i;
+    app->empty_t = t;
+  }
+}
+
 int app_put_row(App *app)
 {
   double t = lag_sim_time(app->sim);
@@ -158,6 +173,7 @@ int app_put_row(App *app)
   if (rc) {
     return rc;
   }
+  note_empty(app, t);
   if (app->rows.open && rows_write(&app->rows, app->row)) {
     app->bad_file = app->args.out;
     return LAG_EIO;
@@ -224,7 +240,7 @@ static int try_file(const App *app, const char *path)
 {
   Outfile o;
 
-  return path && (outfile_open(&o, path) || outfile_close(&o, 0)) ? app_io_error(app, path) : 0;
+  return path && (outfile_open(&o, path) || outfile_close(&o, OUTFILE_DROP)) ? app_io_error(app, path) : 0;
 }
 
 static int open_output(App *app)
@@ -274,6 +290,31 @@ static int save_state(const App *app)
 }
 
 /* Completes the files, says what happened. */
+/* To the process that knows the text, if lagc left one ($LAG_LAST_STATE: a pipe's number): t, q, v, z and p. It says which expression has no value, and ends. */
+static void tell_last_state(const App *app)
+{
+  const char *name = getenv("LAG_LAST_STATE");
+  const lag_model *m = app->scene->model;
+  const int n[] = {m->nq, m->nq, m->nz, m->np};
+  const double *of[] = {lag_sim_q(app->sim), lag_sim_v(app->sim), lag_sim_z(app->sim), lag_sim_p(app->sim)};
+  FILE *f = name && (app->status == LAG_ENAN || app->status == LAG_EDOMAIN) ? fdopen(atoi(name), "w") : NULL;
+
+  if (!f) {
+    return;
+  }
+  signal(SIGPIPE, SIG_IGN); /* it may have been killed; this run's status does not depend on it */
+  fprintf(f, "%.17g\n", (double)lag_sim_time(app->sim));
+  for (int k = 0; k < 4; k++) {
+    for (int i = 0; i < n[k]; i++) {
+      fprintf(f, "%.17g\n", (double)of[k][i]);
+    }
+  }
+  fclose(f);
+  while (wait(NULL) < 0 && errno == EINTR) {
+    continue;
+  }
+}
+
 static int finish(App *app)
 {
   const Args *a = &app->args;
@@ -324,16 +365,15 @@ static int finish(App *app)
   if (fflush(stdout) != 0) {
     bad = app_io_error(app, "standard output");
   }
+  tell_last_state(app);
   return bad ? bad : rc;
 }
 
-/* What asks a run to end lets it finish its step and write what it has. nohup is respected. */
-static void catch_interrupt(void)
+void app_catch_interrupt(void)
 {
   static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
   struct sigaction action = {0}, before;
 
-  interrupted = 0;
   action.sa_handler = on_interrupt;
   action.sa_flags = (int)SA_RESETHAND; /* a second Ctrl-C ends at once */
   sigemptyset(&action.sa_mask);
@@ -347,7 +387,7 @@ static void catch_interrupt(void)
 
 void app_watch(App *app)
 {
-  catch_interrupt();
+  app_catch_interrupt();
   app->progress = isatty(2) && !app->args.quiet ? 0 : -1;
   clock_gettime(CLOCK_MONOTONIC, &app->begun);
   app->shown = app->begun;
@@ -377,6 +417,7 @@ static int simulate(App *app)
     return app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",
                      lag_sim_method(app->sim)->name);
   }
+  app_catch_interrupt();
   if ((rc = open_output(app)) != 0) {
     return rc;
   }

@@ -19,7 +19,7 @@ typedef struct Args {
   const char *transient, *exponents; /* of --lyapunov */
   const char *target, *longest, *methods, *against; /* of --cost */
   const char *effects; /* --effects: which measurements of a program that lagc effects made */
-  int json, sketch, quiet, help, trace, no_rods, modes, tangent, lyapunov, cost, reference;
+  int json, sketch, quiet, verbose, help, trace, no_rods, modes, tangent, lyapunov, cost, reference;
   char **sets; /* name=value, in order */
   int nsets;
 } Args;
@@ -48,6 +48,9 @@ typedef struct App {
   Drawn drawn;
   double *row;      /* [ncols] */
   double last_row;  /* time of the last row, NaN before the first */
+  long long rows_put, empty_rows;   /* that were put out, and those of them with an output that is not finite: */
+  int empty_column;             /* the first of such, */
+  double empty_t;               /* and when that was */
   double until;
   int section;      /* the event that rows are put out at; -1: they are put out in time */
   int section_rc;   /* why its last row could not be made */
@@ -115,6 +118,8 @@ void film_free(App *app);
 int app_put_row(App *app);
 /* What a long run does: watch before it begins and unwatch at its end, for Ctrl-C and the progress line; after_step is for
  * lag_sim_on_step. interrupted: the exit status that follows from the signal. */
+/* What asks a run to end lets it finish its step and write what it has. nohup is respected. Before files are opened, which would be left. */
+void app_catch_interrupt(void);
 void app_watch(App *app);
 int app_after_step(void *app, const lag_sim *sim);
 void app_unwatch(App *app);
@@ -136,6 +141,8 @@ void report_tangent_json(App *app, FILE *f);
 /* charges.c: what the report says of the energy and of other charges; in JSON also of monitors. */
 void report_charges(const App *app, FILE *f);
 void report_charges_json(const App *app, FILE *f);
+/* Whether the energy was kept much worse than asked for, where the mass matrix is almost singular. */
+int report_lost_digits(const App *app, const lag_charge_stats *energy);
 
 /* lyapunov.c: --lyapunov. Returns the exit status. */
 int app_lyapunov(App *app);

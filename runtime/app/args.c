@@ -9,16 +9,20 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "io/visible.h"
 #include "core/core.h"
 
 int app_error(const Args *a, const char *format, ...)
 {
+  char text[4096];
   va_list args;
 
-  fprintf(stderr, "%s: ", a->self);
   va_start(args, format);
-  vfprintf(stderr, format, args);
+  vsnprintf(text, sizeof text, format, args);
   va_end(args);
+  fput_visible(stderr, a->self, "");
+  fputs(": ", stderr);
+  fput_visible(stderr, text, "\n\t");
   putc('\n', stderr);
   return EXIT_USAGE;
 }
@@ -65,6 +69,7 @@ static const Option options[] = {
     {"events", offsetof(Args, events), 0}, {"section", offsetof(Args, section), 0},
     {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
     {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
+    {"verbose", offsetof(Args, verbose), 1},
     {"tangent", offsetof(Args, tangent), 1}, {"modes", offsetof(Args, modes), 1},
     {"lyapunov", offsetof(Args, lyapunov), 1}, {"transient", offsetof(Args, transient), 0}, {"exponents", offsetof(Args, exponents), 0},
     {"effects", offsetof(Args, effects), 0}, {"help", offsetof(Args, help), 1},
@@ -195,9 +200,26 @@ static int check_npy(const Args *a)
   const char *const files[] = {a->out, a->events};
 
   for (int i = 0; i < 2 && strcmp(LAG_PRECISION, "double") != 0; i++) {
-    size_t n = files[i] ? strlen(files[i]) : 0;
-    if (n > 4 && strcmp(files[i] + n - 4, ".npy") == 0) {
+    if (files[i] && outfile_is(files[i], "npy")) {
       return app_error(a, "%s: .npy files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", files[i]);
+    }
+  }
+  return 0;
+}
+
+/* A name that says another kind of file than is written. */
+static int check_kinds(const Args *a)
+{
+  const struct {
+    const char *option, *path, *suffixes, *writes;
+  } files[] = {{"-o", a->out, "csv npy", "CSV, or NumPy where the name ends in .npy"}, {"--events", a->events, "csv npy", "CSV, or NumPy where the name ends in .npy"},
+               {"--svg", a->svg, "svg", "SVG"}, {"--html", a->html, "html htm", "HTML"}};
+
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    const char *path = files[i].path, *other = path ? outfile_other_kind(path, files[i].suffixes) : NULL;
+    if (other) {
+      return app_error(a, "%s %s: it writes %s; write %s %.*s%.*s", files[i].option, path, files[i].writes, files[i].option, (int)(other - path), path,
+                       (int)strcspn(files[i].suffixes, " "), files[i].suffixes);
     }
   }
   return 0;
@@ -234,7 +256,7 @@ static int check(const Args *a)
   if (a->section && a->every) {
     return app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
   }
-  return check_npy(a) || check_analysis(a) ? EXIT_USAGE : 0;
+  return check_kinds(a) || check_npy(a) || check_analysis(a) ? EXIT_USAGE : 0;
 }
 
 int args_parse(Args *a, int argc, char **argv)
@@ -245,6 +267,11 @@ int args_parse(Args *a, int argc, char **argv)
   a->sets = calloc((size_t)argc + 1, sizeof *a->sets);
   if (!a->sets) {
     return app_error(a, "out of memory");
+  }
+  for (int i = 1; i < argc; i++) {
+    if (strpbrk(argv[i], "\n\t")) { /* messages show a word on one line */
+      return app_error(a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i);
+    }
   }
   for (int i = 1; i < argc; i++) {
     int rc = one_argument(a, argc, argv, &i);

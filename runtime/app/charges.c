@@ -44,15 +44,17 @@ static const char *why_not(const App *app, const lag_charge_stats *c)
 
 static void put_energy(const App *app, const lag_charge_stats *c, FILE *f)
 {
-  const char *size = "relative to max(|E0|, max(|p.v| + |L|))";
+  const char *size = "relative to the larger of |E0| and the median of |p.v| + |L|", *space = c->unit[0] ? " " : "";
 
-  if (c->flags & LAG_CONSERVED) {
-    fprintf(f, "(%s)", size);
-  } else if (c->flags & LAG_BALANCED) {
-    fprintf(f, "(forces and explicit time brought %.6g; %s)", c->work, size);
-  } else {
+  if (!(c->flags & (LAG_CONSERVED | LAG_BALANCED))) {
     fprintf(f, "(%s)", why_not(app, c));
+    return;
   }
+  fprintf(f, "(%.3g%s%s; ", c->absolute, space, c->unit);
+  if (!(c->flags & LAG_CONSERVED)) {
+    fprintf(f, "forces and explicit time brought %.6g%s%s; ", c->work, space, c->unit);
+  }
+  fprintf(f, "%s)", size);
 }
 
 static void put_charge(const App *app, const lag_charge_stats *c, FILE *f)
@@ -64,6 +66,34 @@ static void put_charge(const App *app, const lag_charge_stats *c, FILE *f)
     fprintf(f, "; forces brought %.6g)", c->work);
   } else {
     fprintf(f, "; %s)", why_not(app, c));
+  }
+}
+
+int report_lost_digits(const App *app, const lag_charge_stats *energy)
+{
+  const double singular = 1e6, digits = 100;
+
+  return (lag_sim_method(app->sim)->flags & LAG_METHOD_ADAPTIVE) && energy->jolt > digits * lag_sim_tolerance(app->sim) && energy->strain > singular;
+}
+
+/* Half of the energy lost, or made, is no motion of this model, whatever the trend. */
+static void put_warning(const lag_charge_stats *c, FILE *f)
+{
+  const double half = 0.5;
+
+  if (c->flags & (LAG_CONSERVED | LAG_BALANCED) && c->drift >= half) {
+    fprintf(f, "note: the energy is off by %.2g times its size: the numbers mean nothing; take smaller steps, or a smaller tolerance\n", c->drift);
+  }
+}
+
+/* The accuracy that was reached instead of the one asked for, where inertia almost vanished on the way. */
+static void put_lost_digits(const App *app, const lag_charge_stats *c, FILE *f)
+{
+  if (report_lost_digits(app, c)) {
+    fprintf(f, "accuracy: a tolerance of %.3g was asked for, and the energy is kept to %.2g: beside t = %.9g s, where a step changed it by %.2g, the mass matrix is "
+               "almost singular (its condition is %s%.2g, by the inertia of %s) and accelerations have about %.0f digits less; a `rotation` instead of angles, or other "
+               "coordinates, has no such place (lagc help rotations)\n",
+            lag_sim_tolerance(app->sim), c->drift, c->jolt_t, c->jolt, c->strain > 1e15 ? "above " : "", fmin(c->strain, 1e15), c->strain_of, floor(log10(fmin(c->strain, 1e15))));
   }
 }
 
@@ -84,6 +114,10 @@ void report_charges(const App *app, FILE *f)
     }
     put_trend(app, &c, f);
     putc('\n', f);
+    if (k == 0) {
+      put_warning(&c, f);
+      put_lost_digits(app, &c, f);
+    }
   }
 }
 
@@ -111,6 +145,10 @@ void report_charges_json(const App *app, FILE *f)
     field(f, "final", c.now);
     field(f, "work", c.work);
     field(f, "drift", c.drift);
+    field(f, "drift_absolute", c.absolute);
+    fputs("\"unit\": ", f);
+    json_string(f, c.unit);
+    fputs(", ", f);
     field(f, "slope", c.slope);
     field(f, "slope_error", c.slope_error);
     fputs("\"trend\": ", f);

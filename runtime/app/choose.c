@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "io/visible.h"
 #include "core/core.h"
 
 static int no_scene(const App *app, const char *name)
@@ -18,7 +19,9 @@ static int no_scene(const App *app, const char *name)
   for (int i = 0; i < p->nscenes; i++) {
     fprintf(stderr, "  %s\n", p->scenes[i]->name);
   }
-  fprintf(stderr, "If %s has it, this builds and runs it: lagc run %s %s\n", p->source, p->source, name);
+  fprintf(stderr, "If %s has it, this builds and runs it: lagc run %s ", p->source, p->source);
+  fput_visible(stderr, name, "");
+  putc('\n', stderr);
   return EXIT_USAGE;
 }
 

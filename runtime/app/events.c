@@ -97,9 +97,9 @@ void report_events(const App *app, FILE *f)
       fprintf(f, "%lld time%s", n, n == 1 ? "" : "s");
     }
     if (n == 1) {
-      fprintf(f, ", t = %.17g s", first);
+      fprintf(f, ", t = %s s", lag_number_text(first, (char[64]){0}));
     } else if (n > 1) {
-      fprintf(f, ", first at t = %.17g s, last at %.17g s", first, last);
+      fprintf(f, ", first at t = %s s, last at %s s", lag_number_text(first, (char[64]){0}), lag_number_text(last, (char[64]){0}));
     }
     putc('\n', f);
   }

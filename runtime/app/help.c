@@ -33,12 +33,13 @@ static const char text[] =
     "                       --transient T, a tenth of that; --exponents K: the largest ones; -o FILE, --svg FILE: as they\n"
     "                       settle; --json (in simulators built --with linear)\n"
     "  --quiet              no report\n"
+    "  --verbose            the report says whose sines and cosines a run took, and how products and sums were rounded\n"
     "  --save-state FILE    write the complete state at the end; --resume FILE goes on from there, with the same\n"
     "                       scene, method and values, which may be said again: results are those of an uninterrupted run, bit by bit.\n"
     "                       A resumed run writes the rows after the saved time (a run that ends between two rows\n"
     "                       writes one more at its end)\n"
     "\n"
-    "Rows appear as FILE.part until they are complete. Ctrl-C, or SIGTERM, finishes the step and writes what was\n"
+    "Rows appear as FILE.part-N-M until they are complete. Ctrl-C, or SIGTERM, finishes the step and writes what was\n"
     "computed. Exit status: 0 ok, 2 wrong usage or a file that cannot be written, 3 the run failed, 130 interrupted\n"
     "(by SIGTERM 143).\n";
 

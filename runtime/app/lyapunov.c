@@ -124,10 +124,35 @@ static void caution(FILE *f, const Lyapunov *l)
 {
   double sum = lag_lyapunov_exponent(l, l->k), divergence = lag_lyapunov_divergence(l), size = fabs(lag_lyapunov_exponent(l, l->k - 1));
 
-  if (fabs(sum - divergence) > 1e-3 * fmax(size, fabs(divergence)) + 3 * lag_lyapunov_spread(l, l->k)) {
+  if (fabs(sum - divergence) > 1e-3 * fmax(size, fabs(divergence)) + 3 * lag_lyapunov_error(l, l->k)) {
     fprintf(f, "note: the sum should be the mean divergence of the flow, %.6g: the steps are too long for what decays fastest; take smaller ones, "
                "or believe the first exponents only\n", divergence);
   }
+}
+
+/* What follows from the exponents, where their errors allow it. */
+static void conclude(FILE *f, const Lyapunov *l)
+{
+  double first = lag_lyapunov_exponent(l, 0), off = lag_lyapunov_error(l, 0), error, x;
+
+  switch (lag_lyapunov_sign(l, 0)) {
+  case 1:
+    fprintf(f, "chaotic, if the motion is bounded: small errors grow by a factor of e in %.3g s (%.3g to %.3g), in the mean\n", 1 / first, 1 / (first + off),
+            1 / (first - off));
+    if (l->k == l->n) {
+      x = lag_lyapunov_entropy(l, &error);
+      fprintf(f, "sum of the positive exponents (entropy by Pesin): %.4g, error %.1g 1/s\n", x, error);
+    }
+    break;
+  case 0: fprintf(f, "not known to be chaotic: the first exponent is 0 within three errors; one below %.1g 1/s needs a longer run\n", 3 * off); break;
+  default: fputs("not chaotic: small errors decay\n", f);
+  }
+  x = lag_lyapunov_dimension(l, &error);
+  if (isfinite(x)) {
+    fprintf(f, "dimension by Kaplan and Yorke: %.4g, error %.1g\n", x, error);
+  }
+  fprintf(f, "error: the largest of the standard error from %d blocks, of the change since half the time, and of one factor of e in the whole time; zero is "
+             "reached as log(t)/t only\n", l->nblocks);
 }
 
 static void put_text(FILE *f, App *app, const Lyapunov *l)
@@ -144,30 +169,23 @@ static void put_text(FILE *f, App *app, const Lyapunov *l)
     return;
   }
   fprintf(f, "measured from t = %.6g to %.6g s, over %lld step%s\n", l->begun, l->t, l->steps, l->steps == 1 ? "" : "s");
-  fprintf(f, "  %-4s%18s%14s%22s\n", "", "exponent [1/s]", "spread", "at half the time");
+  fprintf(f, "  %-4s%18s%14s%22s\n", "", "exponent [1/s]", "error", "at half the time");
   for (int i = 0; i < l->k; i++) {
-    fprintf(f, "  %-4d%18.8g%14.2g%22.8g\n", i + 1, lag_lyapunov_exponent(l, i), lag_lyapunov_spread(l, i), l->at_half[i]);
+    fprintf(f, "  %-4d%18.8g%14.2g%22.8g\n", i + 1, lag_lyapunov_exponent(l, i), lag_lyapunov_error(l, i), l->at_half[i]);
   }
   if (l->k == l->n) {
     double sum = 0;
     for (int i = 0; i < l->k; i++) {
       sum += l->at_half[i];
     }
-    fprintf(f, "  %-4s%18.8g%14.2g%22.8g\n", "sum", lag_lyapunov_exponent(l, l->k), lag_lyapunov_spread(l, l->k), sum);
+    fprintf(f, "  %-4s%18.8g%14.2g%22.8g\n", "sum", lag_lyapunov_exponent(l, l->k), lag_lyapunov_error(l, l->k), sum);
     caution(f, l);
   }
-  double first = lag_lyapunov_exponent(l, 0);
-  if (first > 3 * lag_lyapunov_spread(l, 0) && fabs(first - l->at_half[0]) < 0.25 * first) { /* no log(t)/t */
-    fprintf(f, "small errors grow by a factor of e in %.4g s, in the mean\n", 1 / first);
-  }
-  if (l->k == l->n && lag_lyapunov_exponent(l, l->k) < -1e-6 * fabs(lag_lyapunov_exponent(l, l->k - 1))) {
-    fprintf(f, "dimension by Kaplan and Yorke: %.4g\n", lag_lyapunov_dimension(l));
-  }
   if (l->nblocks < 2) {
-    fputs("no spread: the time measured is too short\n", f);
+    fputs("no errors: the time measured is too short\n", f);
     return;
   }
-  fprintf(f, "spread: the standard error from %d blocks. An exponent that is zero comes near it as log(t)/t only\n", l->nblocks);
+  conclude(f, l);
 }
 
 static void json_list(FILE *f, const char *name, const Lyapunov *l, double (*value)(const Lyapunov *, int))
@@ -210,11 +228,19 @@ static void put_json(FILE *f, const App *app, const Lyapunov *l)
   fprintf(f, ", \"steps\": %lld, \"blocks\": %d", l->steps, l->nblocks);
   json_list(f, "exponents", l, lag_lyapunov_exponent);
   json_list(f, "spread", l, lag_lyapunov_spread);
+  json_list(f, "errors", l, lag_lyapunov_error);
   json_list(f, "at_half", l, at_half);
   json_field(f, "sum", all ? lag_lyapunov_exponent(l, l->k) : NAN);
   json_field(f, "sum_spread", all ? lag_lyapunov_spread(l, l->k) : NAN);
   json_field(f, "divergence", lag_lyapunov_divergence(l));
-  json_field(f, "dimension", all ? lag_lyapunov_dimension(l) : NAN);
+  json_field(f, "sum_error", all ? lag_lyapunov_error(l, l->k) : NAN);
+  double error, dimension = lag_lyapunov_dimension(l, &error);
+  json_field(f, "dimension", dimension);
+  json_field(f, "dimension_error", error);
+  double entropy = lag_lyapunov_entropy(l, &error);
+  json_field(f, "entropy", all && lag_lyapunov_sign(l, 0) > 0 ? entropy : NAN);
+  json_field(f, "entropy_error", all && lag_lyapunov_sign(l, 0) > 0 ? error : NAN);
+  fprintf(f, ", \"chaotic\": %s", l->nblocks < 2 || lag_lyapunov_sign(l, 0) == 0 ? "null" : lag_lyapunov_sign(l, 0) > 0 ? "true" : "false");
   fputs("}\n", f);
 }
 
@@ -278,6 +304,7 @@ static int run(App *app, Job *job)
 {
   const Args *a = &app->args;
 
+  app_catch_interrupt();
   if (a->out && rows_open(&app->rows, a->out, &app->table)) {
     return app_io_error(app, a->out);
   }

@@ -55,7 +55,8 @@ static int refuse(const App *app)
                         "lagc anew, and leave out --no-gsl");
   }
   if (m->constraints) {
-    return app_error(a, "lagc modes cannot treat constraints yet (%s): give the model coordinates that need none", m->constraints->of[0].name);
+    return app_error(a, "modes with %s are not computed yet (%s): %s", m->ncontacts ? "contacts" : "constraints", m->constraints->of[0].name,
+                     m->ncontacts ? "take a model without them" : "give the model coordinates that need none, such as angles");
   }
   if (!m->linear) {
     return app_error(a, "this simulator was built without the model's linearisation; write lagc modes %s, or build it with: lagc "
@@ -236,12 +237,12 @@ static int not_found(const App *app, const Rest *r)
     fputs("}\n", stdout);
   }
   if (r->away) {
-    app_error(&app->args, "no equilibrium found from the start of scene %s: forces only fade, far away; another start: %s=VALUE",
+    app_error(&app->args, "no equilibrium found from the start of scene %s: forces only fade, far away. Where the model has one, start near it: %s=VALUE",
               app->scene->name, v->name);
     return EXIT_RUN;
   }
-  app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s; another "
-                        "start: %s=VALUE", r->steps, app->scene->name, v->name, (r->y[i < nq ? i : nq + i] - v->offset) / v->factor,
+  app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s. A force "
+                        "that vanishes nowhere has none: add what holds it, such as a spring; where it vanishes, start near there: %s=VALUE", r->steps, app->scene->name, v->name, (r->y[i < nq ? i : nq + i] - v->offset) / v->factor,
             v->unit[0] ? " " : "", v->unit, v->name, i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
             r->pole ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
   return EXIT_RUN;

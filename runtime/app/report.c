@@ -115,12 +115,16 @@ static void constraints(const App *app, const lag_stats *st, FILE *f)
           st->constraint, st->constraint_rate);
 }
 
-/* A symplectic method on a model that is not conservative, or whose two-form varies: what its name no longer promises. */
-static void caveat(const App *app, FILE *f)
+/* A symplectic method on a model that is not conservative, or whose two-form varies: what its name no longer promises. And steps that are too long. */
+static void caveat(const App *app, const lag_stats *st, FILE *f)
 {
   const lag_method *m = lag_sim_method(app->sim);
   unsigned has = app->scene->model->flags;
 
+  if (isfinite(st->unresolved)) {
+    fprintf(f, "note: steps are longer than half a period, about %.2g s, of what swings fastest here: its motion means nothing, whatever the energy does; take "
+               "--step %.0e or less, or radau, which damps it out, or dop853, which follows it\n", st->unresolved, st->unresolved / 20);
+  }
   if (!(m->flags & LAG_METHOD_SYMPLECTIC)) {
     return;
   }
@@ -168,8 +172,8 @@ static void verdict(const App *app, FILE *f)
 
   switch (app->status) {
   case LAG_OK: fprintf(f, "reached t = %.15g s\n", t); break;
-  case LAG_STOPPED: fprintf(f, "stopped by an event at t = %.17g s\n", t); break;
-  case LAG_INTERRUPTED: fprintf(f, "interrupted at t = %.17g s\n", t); break;
+  case LAG_STOPPED: fprintf(f, "stopped by an event at t = %s s\n", lag_number_text(t, (char[64]){0})); break;
+  case LAG_INTERRUPTED: fprintf(f, "interrupted at t = %s s\n", lag_number_text(t, (char[64]){0})); break;
   default: fprintf(f, "FAILED: %s\n", lag_sim_message(app->sim));
   }
 }
@@ -215,19 +219,16 @@ static void exact_json(const App *app, FILE *f)
   fputs("}, ", f);
 }
 
-/* Where sines come from, and whether products and sums are rounded one by one: what bits depend on beside the method. */
+/* --verbose: where sines come from, and whether products and sums are rounded one by one: what bits depend on beside the method. */
 static void arithmetic(const App *app, FILE *f)
 {
   static const char flag[] = "-ffp-contract=";
   const char *math = app->scene->model->math, *build = app->program->build, *contraction = build ? strstr(build, flag) : NULL;
 
-  if (math) {
-    fprintf(f, "; %s", math);
+  if (app->args.verbose && (math || contraction)) {
+    fprintf(f, "arithmetic: %s%s%.*s\n", math ? math : "", math && contraction ? "; " : "", contraction ? (int)strcspn(contraction, " ") : 0,
+            contraction ? contraction : "");
   }
-  if (contraction) {
-    fprintf(f, "; %.*s", (int)strcspn(contraction, " "), contraction);
-  }
-  putc('\n', f);
 }
 
 void report_text(App *app, FILE *f)
@@ -244,16 +245,20 @@ void report_text(App *app, FILE *f)
   }
   verdict(app, f);
   final_state(app, f);
-  fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s", st.steps, st.rejected, st.rhs_calls, app->wall);
+  fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
   arithmetic(app, f);
   newton(app, &st, f);
   report_charges(app, f);
   constraints(app, &st, f);
-  caveat(app, f);
+  caveat(app, &st, f);
   for (int i = 0; i < c->nmonitors; i++) {
     fprintf(f, "monitor %s: drift %.3g, limit %.3g\n", c->monitors[i].name, lag_sim_monitor_drift(app->sim, i), c->monitors[i].limit);
   }
   exact(app, f);
+  if (app->empty_rows) {
+    fprintf(f, "note: the output %s has no finite value at t = %.9g s; so it is in %lld of %lld rows\n", app->table.cols[app->empty_column].name, app->empty_t,
+            app->empty_rows, app->rows_put);
+  }
   report_events(app, f);
   report_tangent(app, f);
   if (app->written && app->args.out) {
@@ -361,6 +366,22 @@ void report_json(App *app, FILE *f)
   fprintf(f, "\"newton_systems\": %lld, \"newton_iterations\": %lld, ", st.systems, st.iterations);
   fprintf(f, "\"wall_s\": %.6g, ", app->wall); /* a clock has no more digits, in no precision */
   field_number(f, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null: it is no drift */
+  lag_charge_stats energy = {.absolute = NAN};
+  if (lag_sim_ncharges(app->sim)) {
+    lag_sim_charge(app->sim, 0, &energy);
+  }
+  field_number(f, "energy_drift_absolute", m->flags & LAG_CONSERVES_ENERGY ? energy.absolute : NAN);
+  field_number(f, "unresolved_period", st.unresolved);
+  fprintf(f, "\"rows_without_value\": %lld, ", app->empty_rows);
+  if (report_lost_digits(app, &energy)) {
+    fputs("\"digits_lost\": {", f);
+    field_number(f, "t", energy.jolt_t);
+    field_number(f, "energy_step", energy.jolt);
+    field_string(f, "coordinate", energy.strain_of);
+    fputs("\"condition\": ", f);
+    json_number(f, energy.strain);
+    fputs("}, ", f);
+  }
   report_charges_json(app, f);
   report_events_json(app, f);
   exact_json(app, f);

@@ -7,6 +7,9 @@
  * cancel. Methods whose long steps have little between them, those of GSL, get no balance.
  * What an event does to a charge moves the value that it is compared with.
  *
+ * Its size is the median over the time of the run of the sum of its terms' sizes (of the energy |p.v| + |L|): the largest would grow with a motion that blows up,
+ * and hide that. The run ends where its energy is off by several times that, and by a large part of what it is at that time.
+ *
  * Whether it grows: the differences are averaged over 16 to 32 parts of the run, and a line is fitted to the averages. It grows where
  * the line explains most of what they vary by; what oscillates goes out in the averages, whatever its size. Batch means: B. Schmeiser,
  * Oper. Res. 30 (1982) 556, DOI 10.1287/opre.30.3.556. What is no more than rounding adds up to is not judged: D. Brouwer,
@@ -21,6 +24,9 @@
 
 int lag_sim_ncharges(const lag_sim *s)
 {
+  if (!s) {
+    return 0;
+  }
   const lag_model *m = s->scene->model;
 
   return !m->energy ? 0 : m->charges ? m->charges->n : 1;
@@ -79,6 +85,9 @@ static int has_powers(const lag_sim *s)
 
 int lag_sim_balance(lag_sim *s)
 {
+  if (!s) {
+    return LAG_EINVAL;
+  }
   if (s->run->begun != 0.0) {
     return lag_fail(s, LAG_EINVAL, "the run has begun: ask for balances before the first step");
   }
@@ -88,7 +97,15 @@ int lag_sim_balance(lag_sim *s)
 
 int lag_method_balances(const lag_method *m)
 {
+  if (!m) {
+    return 0;
+  }
   return m->order_most > 0 || m->order <= m->dense_order + 2;
+}
+
+int lag_charges_balance(const lag_sim *s)
+{
+  return has_powers(s) && lag_method_balances(s->method);
 }
 
 /* Whether the scene watches a charge, which is then compared with its balance. */
@@ -143,6 +160,7 @@ static void add_work(lag_sim *s, double t)
       double x = c->balanced * gain[k] - c->lost, sum = c->work + x;
       c->lost = (sum - c->work) - x;
       c->work = sum;
+      c->through += fabs(c->balanced * gain[k]);
     }
   }
   s->run->watched = t;
@@ -154,33 +172,63 @@ static void merge(Charge *c)
   for (int i = 0; i < LAG_BINS / 2; i++) {
     c->t[i] = (c->t[2 * i] + c->t[2 * i + 1]) / 2;
     c->d[i] = (c->d[2 * i] + c->d[2 * i + 1]) / 2;
+    c->m[i] = (c->m[2 * i] + c->m[2 * i + 1]) / 2;
   }
   c->bins = LAG_BINS / 2;
   c->width *= 2;
 }
 
-static void add_to_trend(Charge *c, double t, double d)
+/* The median over time of the bins' sizes that are not 0, as at rest; of few bins the largest. By time: in front of a pole there are many steps. */
+static double median_size(const Charge *c)
+{
+  enum { FEW = 8 };
+  double size[LAG_BINS], time[LAG_BINS], whole = 0, half = 0;
+  int n = 0, bins = (int)c->bins, i = 0;
+
+  for (; i < bins; i++) {
+    double lasts = fabs(c->t[i + 1 < bins ? i + 1 : i] - c->t[i > 0 ? i - 1 : 0]) * (i > 0 && i + 1 < bins ? 1 : 2);
+    int k = c->m[i] > 0 ? n++ : bins;
+    whole += k < bins ? lasts : 0;
+    for (; k < bins && k > 0 && size[k - 1] > c->m[i]; k--) {
+      size[k] = size[k - 1];
+      time[k] = time[k - 1];
+    }
+    if (k < bins) {
+      size[k] = c->m[i];
+      time[k] = lasts;
+    }
+  }
+  for (i = 0; i < n && half + time[i] < whole / 2; i++) {
+    half += time[i];
+  }
+  return n == 0 ? 0 : size[n < FEW || i == n ? n - 1 : i];
+}
+
+static void add_to_trend(Charge *c, double t, double d, double size)
 {
   const int open = LAG_BINS;
 
   c->t[open] += t;
   c->d[open] += d;
+  c->m[open] += size;
   if (++c->in_bin < c->width) {
     return;
   }
   c->t[(int)c->bins] = c->t[open] / c->width;
   c->d[(int)c->bins] = c->d[open] / c->width;
-  c->t[open] = c->d[open] = c->in_bin = 0;
+  c->m[(int)c->bins] = c->m[open] / c->width;
+  c->t[open] = c->d[open] = c->m[open] = c->in_bin = 0;
   if (++c->bins >= LAG_BINS) {
     merge(c);
   }
+  c->scale = median_size(c);
 }
 
 void lag_charges_begin(lag_sim *s, double t, const double *y)
 {
   values_at(s, t, y);
   s->run->watched = t;
-  s->run->balanced = has_powers(s) && lag_method_balances(s->method) && (s->balances || watches_charges(s->scene));
+  s->run->balanced = lag_charges_balance(s) && (s->balances || watches_charges(s->scene));
   for (int k = 0; k < lag_sim_ncharges(s); k++) {
     s->charges[k] = (Charge){.begin = s->charge_now[2 * k], .first = s->charge_now[2 * k], .scale = fmax(s->charge_now[2 * k + 1], 0), .width = 1};
     s->charges[k].balanced = (lag_charge_flags(s, k) & LAG_BALANCED) != 0;
@@ -195,20 +243,71 @@ int lag_charges_lost(lag_sim *s, double t, const double *y)
   return n > 0 && isfinite(s->charges[0].begin) && !isfinite(s->charge_now[0]);
 }
 
+/* Whether the energy, known to be conserved or balanced, is off by d, several times its size in this run, and by a large part of what has come and gone and
+ * of `size`, what it is now: of motion alone |p.v| + |L| is three times its energy. A rough tolerance loses as much as there is, and is no pole. A motion that
+ * begins at rest has no size yet, and at rest none but rounding, of terms that nobody names: of few bins, and below 1e-12 of the energy's unit, nothing is judged;
+ * nor is what constraints do that move with the time, between whose peaks steps may lie. */
+static int is_lost(const lag_model *m, const Charge *c, double d, double size)
+{
+  const double part = 0.25, times = 4, least = 1e-12, few = 8, of = fmax(fabs(c->begin), c->scale);
+
+  int driven = m->constraints && !(m->flags & LAG_AUTONOMOUS);
+
+  return c->balanced != 0.0 && !driven && c->bins >= few && fabs(d) > fmax(times * of, least) && fabs(d) > part * fmax(size, c->through);
+}
+
+static int say_lost(lag_sim *s, double t, double before, double d)
+{
+  const lag_model *m = s->scene->model;
+  const Charge *c = &s->charges[0];
+  const char *unit = m->charges ? m->charges->of[0].unit : "", *space = unit[0] ? " " : "";
+  double h = lag_equal_step(s);
+
+  return lag_fail(s, LAG_EDRIFT, "at t = %.9g s the energy is off by %.3g%s%s, %.2g times its size in this run: the numbers mean nothing from here on. The step from "
+                  "t = %.9g s, of %.3g s, brought %.3g%s%s of it: it led over a pole of a force, or is too long; %s", t, d, space, unit,
+                  fabs(d) / fmax(fabs(c->begin), c->scale), s->run->step_t0, s->run->step_t1 - s->run->step_t0, d - before, space, unit,
+                  h > 0 ? "take smaller steps, or dop853, which stops in front of a pole" : "take a smaller tolerance");
+}
+
+/* Where the energy changes most in a step: is the mass matrix almost singular there? The answer costs as much as n^2 energies and n^3 products, and is asked
+ * for only where the change has doubled. */
+static void note_jolt(lag_sim *s, double t, const double *y, double change)
+{
+  enum { MANY = 64 };
+  const lag_model *m = s->scene->model;
+  const Charge *c = &s->charges[0];
+  Run *r = s->run;
+  int which;
+
+  if (m->nq == 0 || m->nq > MANY || m->flags & (LAG_FIRST_ORDER | LAG_CONSTANT_MASS) || !(change > fmax(2 * r->jolt, 64 * DBL_EPSILON * fmax(fabs(c->begin), c->scale)))) {
+    return;
+  }
+  r->jolt = change;
+  r->jolt_t = t;
+  r->strain = lag_mass_condition(&s->pb, t, y, &which);
+  r->strain_of = which;
+}
+
 int lag_charges_see(lag_sim *s, double t, const double *y)
 {
+  int lost = 0;
+
   if (lag_charges_lost(s, t, y)) {
     return LAG_ENAN;
   }
   add_work(s, t);
   for (int k = 0, n = lag_sim_ncharges(s); k < n; k++) {
     Charge *c = &s->charges[k];
-    double d = s->charge_now[2 * k] - c->work - c->first, scale = s->charge_now[2 * k + 1];
-    c->scale = scale > c->scale ? scale : c->scale;
+    double d = s->charge_now[2 * k] - c->work - c->first, size = s->charge_now[2 * k + 1];
     c->peak = fabs(d) > c->peak || isnan(d) ? fabs(d) : c->peak; /* a NaN must not be forgotten */
-    add_to_trend(c, t, d);
+    lost = lost || (k == 0 && is_lost(s->scene->model, c, d, size) && say_lost(s, t, c->before, d));
+    add_to_trend(c, t, d, size);
+    if (k == 0 && c->balanced != 0.0 && isfinite(d)) {
+      note_jolt(s, t, y, fabs(d - c->before));
+    }
+    c->before = d;
   }
-  return LAG_OK;
+  return lost ? LAG_EDRIFT : LAG_OK;
 }
 
 void lag_charges_jump(lag_sim *s, double t, const double *ya, const double *yb)
@@ -217,7 +316,6 @@ void lag_charges_jump(lag_sim *s, double t, const double *ya, const double *yb)
     values_at(s, t, pass ? yb : ya);
     for (int k = 0; k < lag_sim_ncharges(s); k++) {
       s->charges[k].first += pass ? s->charge_now[2 * k] : -s->charge_now[2 * k];
-      s->charges[k].scale = fmax(s->charges[k].scale, s->charge_now[2 * k + 1]);
     }
   }
 }
@@ -228,12 +326,12 @@ static double relative(const Charge *c, double x)
 }
 
 /* The present state is a part of the run, too. */
-static void with_present(Charge *c, double now, double work, double scale)
+static void with_present(Charge *c, double now, double work, double size)
 {
   double d = fabs(now - work - c->first);
 
   c->peak = d > c->peak || isnan(d) ? d : c->peak;
-  c->scale = fmax(c->scale, scale);
+  c->scale = c->scale > 0 ? c->scale : size;
 }
 
 double lag_charge_drift(const lag_sim *s, int k)
@@ -272,13 +370,20 @@ static int trend_of(const Charge *c, double steps, double *slope, double *error)
 
 void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
 {
+  if (!st) {
+    return;
+  }
+  *st = (lag_charge_stats){.name = "", .unit = "", .begin = NAN, .now = NAN, .drift = NAN, .slope = NAN, .slope_error = NAN, .strain = NAN, .strain_of = ""};
+  if (!s || k < 0 || k >= lag_sim_ncharges(s)) {
+    return;
+  }
   const lag_model *m = s->scene->model;
   const Run *r = s->run;
   Charge seen = s->charges[k], *c = &seen;
   double since = 0;
 
   *st = (lag_charge_stats){.name = m->charges ? m->charges->of[k].name : "energy", .unit = m->charges ? m->charges->of[k].unit : "",
-                           .flags = lag_charge_flags(s, k), .begin = c->begin};
+                           .flags = lag_charge_flags(s, k), .begin = c->begin, .strain = NAN, .strain_of = ""};
   if (r->begun != 0.0 && r->have_step != 0.0 && r->balanced != 0.0) { /* the run's end is within a step */
     work_over(s, r->watched, r->t, s->charge_gain);
     since = c->balanced * s->charge_gain[k];
@@ -292,7 +397,14 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
     with_present(c, st->now, st->work, s->charge_now[2 * k + 1]);
   }
   st->drift = relative(c, c->peak);
+  st->absolute = c->peak;
   st->trend = trend_of(c, r->steps, &st->slope, &st->slope_error);
   st->slope = relative(c, st->slope);
   st->slope_error = relative(c, st->slope_error);
+  if (k == 0 && r->jolt > 0) {
+    st->jolt = relative(c, r->jolt);
+    st->jolt_t = r->jolt_t;
+    st->strain = r->strain;
+    st->strain_of = m->q[(int)r->strain_of].name;
+  }
 }

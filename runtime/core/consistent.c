@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/room.h"
 #include "lag_kkt.h"
 
 enum { MOST_STEPS = 100, MOST_HALVINGS = 30, TRIES = 9 };
@@ -21,7 +22,6 @@ typedef struct Start {
   const lag_constraints *of;
   int n, nq, holonomic;      /* of the level at hand: constraints */
   int *free, nfree;          /* components of q, or of v, that may move */
-  char *kinds;               /* [nq] */
   double *y, *asked, *best;  /* [n of the state] */
   double *residual, *other;  /* [constraints] c or r, and the one that is not asked for */
   double *size;              /* [constraints] of which parts are taken in the sum that falls */
@@ -67,8 +67,7 @@ static int direction(Start *w, double pull, double *d)
     for (int k = 0; k < w->n; k++) {
       l[k] = -w->residual[k];
     }
-    lag_kinds(pb, nf, w->free, w->kinds);
-    regular = lag_kkt(nf, w->n, 0, w->kinds, w->kkt);
+    regular = lag_kkt(nf, w->n, 0, w->kkt);
     rc = regular || pass == 0 ? 0 : LAG_ESINGULAR;
   }
   memcpy(d, x, (size_t)nf * sizeof *d);
@@ -400,7 +399,7 @@ static int rank(Start *w, double *marks, double *held)
   int nq = w->nq, m = w->of->n, r = 0;
   double *Q = w->kkt, *unit = Q + m * nq;
 
-  if (lag_constraint_rows(w->pb, w->sim->scene->t0, w->y, Q, unit)) {
+  if (lag_constraint_rows(w->pb, w->sim->scene->t0, w->y, Q, unit, NULL)) {
     memset(Q, 0, (size_t)(m * nq + nq) * sizeof *Q);
   }
   for (int k = 0; k < m; k++) {
@@ -464,38 +463,13 @@ void lag_note_redundant(lag_sim *s)
 static int check_inertia(Start *w)
 {
   lag_problem *pb = w->pb;
-  const lag_constraints *of = w->of;
-  int nq = w->nq;
-  double *K = w->full, *size = w->other, most = 0;
+  int which;
 
-  if (lag_rhs(pb, w->sim->scene->t0, w->y, w->best) != LAG_ESINGULAR ||
-      of->matrices(w->sim->scene->t0, w->y, w->y + nq, w->y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work)) {
+  if (lag_rhs(pb, w->sim->scene->t0, w->y, w->best) != LAG_ESINGULAR || !(lag_mass_condition(pb, w->sim->scene->t0, w->y, &which) > 1e12)) {
     return LAG_OK;
   }
-  memset(K, 0, (size_t)(nq * nq) * sizeof *K);
-  memset(size, 0, (size_t)of->n * sizeof *size);
-  for (int e = 0; e < of->nmass; e++) {
-    most = fmax(most, fabs(w->M[e]));
-  }
-  for (int e = 0; e < of->njacobian; e++) {
-    size[of->jacobian[e].row] += w->A[e] * w->A[e];
-  }
-  for (int e = 0; e < of->nmass && most > 0; e++) {
-    int i = of->mass[e].row, j = of->mass[e].col;
-    K[i * nq + j] = K[j * nq + i] = w->M[e] / most;
-  }
-  for (int e = 0; e < of->njacobian; e++) {
-    int row = of->jacobian[e].row;
-    for (int k = 0; k < of->njacobian && size[row] > 0; k++) {
-      if (of->jacobian[k].row == row) {
-        K[of->jacobian[e].col * nq + of->jacobian[k].col] += w->A[e] * w->A[k] / size[row];
-      }
-    }
-  }
-  int i = lag_weightless(nq, K, w->best, w->free);
-  return i < 0 ? LAG_OK
-               : lag_fail(w->sim, LAG_EINVAL, "the mass matrix is singular: nothing says how %s moves, which has no inertia at the start, and no "
-                          "constraint moves it; give it a mass, or a constraint that depends on it", pb->model->q[i].name);
+  return lag_fail(w->sim, LAG_EINVAL, "the mass matrix is singular: nothing says how %s moves, which has no inertia at the start, and no "
+                  "constraint moves it; give it a mass, or a constraint that depends on it", pb->model->q[which].name);
 }
 
 /* What moved by less than a last digit of what has its unit did not move. */
@@ -516,17 +490,8 @@ static double *make_room(Start *w)
   const size_t sizes[] = {n, n, 2 * n + nq, m, m, m, m, (size_t)w->of->njacobian, (size_t)w->of->nmass, nq * nq,
                           2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m};
   double **const parts[] = {&w->y, &w->asked, &w->best, &w->residual, &w->other, &w->size, &w->says, &w->A, &w->M, &w->full, &w->kkt};
-  size_t total = 0;
 
-  for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-    total += sizes[i];
-  }
-  double *block = calloc(total, sizeof *block), *x = block;
-  for (size_t i = 0; i < sizeof sizes / sizeof *sizes && block; i++) {
-    *parts[i] = x;
-    x += sizes[i];
-  }
-  return block;
+  return lag_room(sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
 int lag_consistent(lag_sim *s)
@@ -540,9 +505,8 @@ int lag_consistent(lag_sim *s)
     return LAG_OK;
   }
   double *block = make_room(&w);
-  w.free = malloc(((size_t)w.nq + 1) * (sizeof *w.free + sizeof *w.kinds));
+  w.free = malloc(((size_t)w.nq + 1) * sizeof *w.free);
   if (block && w.free) {
-    w.kinds = (char *)(w.free + w.nq + 1);
     memcpy(w.y, s->now, bytes);
     memcpy(w.asked, s->now, bytes);
     lag_keep_nothing(s);

@@ -26,6 +26,10 @@ typedef struct Run {
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
   double rank, beside;   /* constraints at the start that do not follow from others; where that is singular: a hundredth beside it */
   double apart, since_apart, unlooked; /* how independent constraints were when that was last asked, steps since then, and until then */
+  double looks, coarse, period; /* of steps of equal size: how many were looked at, and were too long for a period [s] */
+  double stall_since;    /* the time when the stall detector last looked at the pace of steps */
+  double jolt, jolt_t;   /* the largest change of the energy in a step, but for smaller than twice the one before, and when that was */
+  double strain, strain_of; /* the condition of the mass matrix there, and the coordinate of least inertia */
   double chatter, chatter_since; /* impacts at once after another one that left a gap open, and when these began */
   double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
 } Run;
@@ -36,11 +40,13 @@ typedef struct Charge {
   double begin;      /* Q at the start */
   double first;      /* the same, moved by what events have done to it */
   double peak;       /* the largest difference */
-  double scale;      /* the largest sum of the sizes of its terms */
+  double scale;      /* median over the bins of the sum of the sizes of its terms; of few bins the largest */
+  double before;     /* Q - int P dt - first at the last look */
+  double through;    /* int |P| dt, step by step */
   double work, lost; /* int P dt, and what the sum has lost to rounding */
   double balanced;   /* 1: P is known, and integrated */
   double bins, width, in_bin; /* bins that are full; looks that fill one, looks in the open one */
-  double t[LAG_BINS + 1], d[LAG_BINS + 1]; /* averages of time and difference over each bin; the last: sums over the open one */
+  double t[LAG_BINS + 1], d[LAG_BINS + 1], m[LAG_BINS + 1]; /* averages of time, difference and sizes over each bin; the last: sums over the open one */
 } Charge;
 
 /* The numbers that this library is compiled for, as `lagc run --precision` calls them, and what gives more of them. The
@@ -62,13 +68,14 @@ struct lag_sim {
   lag_signal *signal;    /* [nu] set by the caller; not part of what is saved */
   double *start;         /* [n] NaN: as the scene says */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
+  double *sides;         /* [3 nswitch] scratch of stall_detector.c */
   double *contact_room, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
   double *saved;         /* one block: Run, and the arrays below; in `room`, which is freed */
   char *room;
   size_t nsaved;
   Run *run;
-  double *p, *hold;      /* [np + nderived], [nu] */
+  double *p, *derived, *hold; /* [np + nderived]; the last of them; [nu] */
   double *begin;         /* [n] at the start of the run */
   double *asked;         /* [n] the same before it was brought to the constraints */
   double *redundant;     /* [constraints] 1: at the start it follows from others */
@@ -78,6 +85,7 @@ struct lag_sim {
   double *y0;            /* [n] at step_t0 */
   double *now;           /* [n] at t */
   double *sign;          /* [nev] of g just after `from`: -1, 1, 0 not known yet */
+  double *leaves;        /* [nev] of an event that has fired and has no sign yet: the sign of its rate then; 0 not known */
   double *noise;         /* [nev] |g| below this has no sign */
   double *root;          /* [nev] time of the next firing within the step, NaN none */
   double *sign_end;      /* [nev] sign at the end of the step */
@@ -85,7 +93,8 @@ struct lag_sim {
   double *first, *last;  /* [nev] times, where count is not 0 */
   double *interval, *shorter; /* [nev] between the last two firings, and how many were each shorter than the one before */
   double *mon_first, *mon_peak; /* [nmonitors] of outputs */
-  Charge *charges;       /* [lag_sim_ncharges] the energy first */
+  double *charge_block;
+  Charge *charges;       /* the same: [lag_sim_ncharges] the energy first */
   double *charge_now, *charge_power, *charge_gain; /* scratch: value and scale of each; P; int P dt */
   double node[LAG_NODES], weight[LAG_NODES]; /* of the quadrature over a step, */
   int nodes;             /* which has so many */
@@ -103,6 +112,28 @@ struct lag_sim {
   char message[512];
 };
 
+/* A part of the saved block behind Run, in the order in which they lie there, and what its numbers may be: saved.c refuses others. */
+enum {
+  LAG_SAVED_NUMBER, /* any */
+  LAG_SAVED_FINITE,
+  LAG_SAVED_HELD,   /* finite, or NaN: none */
+  LAG_SAVED_FLAG,   /* 0, 1 */
+  LAG_SAVED_SIGN,   /* -1, 0, 1 */
+  LAG_SAVED_COUNT   /* whole, 0 to 2^53 */
+};
+enum { LAG_PARTS = 25 };
+typedef struct lag_saved_part {
+  double **at;
+  size_t n;
+  int kind;
+} lag_saved_part;
+/* setup.c: part[LAG_PARTS] := all of them. */
+void lag_parts(lag_sim *sim, lag_saved_part *part);
+/* Whether parameters have the signs that the model declares. */
+int lag_signs_hold(const lag_sim *sim);
+/* charges.c: whether the work of forces on charges can be integrated with this model and method. */
+int lag_charges_balance(const lag_sim *sim);
+
 /* A value in SI, in the declared unit of its variable. */
 static inline double lag_declared(const lag_var *v, double si) { return (si - v->offset) / v->factor; }
 
@@ -112,6 +143,9 @@ int lag_is_step(const char *option);
 const char *lag_wrong_step(const lag_sim *s, double x);
 /* The size of the steps of the run, where all have the same [s]; 0 where the method chooses it. */
 double lag_equal_step(const lag_sim *s);
+
+/* A number in a message, as %s. */
+#define LAG_TEXT(x) lag_number_text((x), (char[64]){0})
 
 /* message := the text; returns status. */
 #if defined(__GNUC__)
@@ -135,17 +169,20 @@ int lag_agreement(lag_sim *sim);
 int lag_observe(lag_sim *sim, double t, const double *y, double *out);
 /* project.c: [2 n], how large terms of the rates and of the constraints were where these were last met. */
 double *lag_kept_terms(const lag_problem *pb);
-/* rank.c. kinds[n] := a letter a coordinate, those of one unit alike, as lag_kkt.h takes it; coordinate i of n is at[i], or i where at is NULL. */
-void lag_kinds(const lag_problem *pb, int n, const int *at, char *kinds);
-/* A[n nq] := the derivatives of all constraints by the coordinates, row-major, at y at t, and unit[nq] := in which coordinates have
- * inertia 1 (lag_kkt.h). 0, what the model returned, or LAG_ENOMEM; then A and unit are undefined. */
-int lag_constraint_rows(lag_problem *pb, double t, const double *y, double *A, double *unit);
+/* rank.c. A[n nq] := the derivatives of all constraints by the coordinates, row-major, at y at t, unit[nq] := their scales (lag_scales of
+ * lag_kkt.h), and mass[nq nq], or NULL, := M. 0, or what the model returned; then they are undefined. */
+int lag_constraint_rows(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass);
+/* Of pb->ranks what that leaves: [n nq + nq + n]. */
+double *lag_independence_room(const lag_problem *pb);
 /* The part of row[n] of A that is independent of the orthonormal rows Q[r n], 0 to 1; more than `least`: its direction becomes row r of Q. -1: the
  * row is zero. row is destroyed; it may be row r of Q, or a later one. */
 double lag_own_part(int n, int r, double least, const double *unit, double *Q, double *row);
-/* weightless.c: the coordinate that moves most along a direction d with K d = 0, K[n n] being a mass matrix and a positive combination of
- * what constraints fix, or -1 where there is none. K is destroyed; x[n] and column[n] are scratch. */
-int lag_weightless(int n, double *K, double *x, int *column);
+/* weightless.c: about the condition of the mass matrix at y at t, scaled, on the directions that constraints allow; above 1e15 only that it is; NAN where it
+ * is not known. *which: the coordinate that moves most along the direction of least inertia. */
+double lag_mass_condition(lag_problem *pb, double t, const double *y, int *which);
+/* The coordinate that moves most along the direction in which K[n n] is least, and *part: the last pivot against the first. K is destroyed; x[n] and
+ * column[n] are scratch. */
+int lag_weightless(int n, double *K, double *x, int *column, double *part);
 /* pb.redundant, of what is found there or was saved. */
 void lag_note_redundant(lag_sim *sim);
 
@@ -164,6 +201,9 @@ int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
 /* landing.c: a step of the method from `now` at *t, into y and *t; of another size where it would end badly for constraints. What the
  * method returned; after a failure y and *t are as they were, or undefined. */
 int lag_step_of_method(lag_sim *sim, double *t, double t_stop);
+
+/* stall_detector.c: whether the step from `now` to y at t leads nowhere: LAG_ESTALL or LAG_ESTEP, and pb says why; or LAG_OK. */
+int lag_stalls(lag_sim *sim, double t);
 
 /* project.c. Constraints on velocities that keep a function of positions: until it is said what, positions are free; then they keep what it
  * is of y at t. Returns what the model returned. */
@@ -191,7 +231,8 @@ int lag_exact_at(lag_sim *sim, double t);
 int lag_exact_see(lag_sim *sim, double t, const double *y);
 
 /* charges.c: as in watch.c; method: the one that steps will be made with; the others compute what a state makes of the charges. drift: of
- * charge k so far, relative to its size. flags: what is known of its rate of change, as inputs are set. */
+ * charge k so far, relative to its size. flags: what is known of its rate of change, as inputs are set. _see returns LAG_EDRIFT, with a message,
+ * where the energy has drifted past its size. */
 void lag_charges_method(lag_sim *sim, const lag_method *method);
 void lag_charges_begin(lag_sim *sim, double t, const double *y);
 int lag_charges_see(lag_sim *sim, double t, const double *y);

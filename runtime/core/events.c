@@ -18,8 +18,8 @@ int lag_events_eval(lag_sim *s, double t, const double *y, double *g)
   }
   int bad = rc ? -1 : lag_not_finite(m->nev, g);
   if (rc || bad >= 0) {
-    return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its function is not a number at t = %.17g s",
-                    bad >= 0 ? m->ev[bad].name : "", t);
+    return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its function is not a number at t = %s s",
+                    bad >= 0 ? m->ev[bad].name : "", LAG_TEXT(t));
   }
   return LAG_OK;
 }
@@ -59,8 +59,8 @@ static int is_zeno(lag_sim *s, int k, double dt, int few)
 static int fail_zeno(lag_sim *s, int k)
 {
   return lag_fail(s, LAG_EZENO,
-                  "event %s repeats in ever shorter intervals: %.3g s at t = %.17g s. Let it stop the run, or make it a contact, "
-                  "which comes to rest", s->scene->model->ev[k].name, s->interval[k], s->run->t);
+                  "event %s repeats in ever shorter intervals: %.3g s at t = %s s. Let it stop the run, or make it a contact, "
+                  "which comes to rest", s->scene->model->ev[k].name, s->interval[k], LAG_TEXT(s->run->t));
 }
 
 /* Impacts of event k, dt since it fired last, that follow each other at once and leave contact c open, since nothing presses there. Some happen;
@@ -81,8 +81,8 @@ static int fail_chatter(lag_sim *s, int k, const lag_contact *c, double dt)
   if (++r->chatter < most) {
     return LAG_OK;
   }
-  return lag_fail(s, LAG_EZENO, "contact %s strikes at t = %.17g s again and again, and neither closes nor opens: the path of %s between its steps is too "
-                  "rough there; take verlet or dop853", s->scene->model->ev[k].name, r->t, s->method->name);
+  return lag_fail(s, LAG_EZENO, "contact %s strikes at t = %s s again and again, and neither closes nor opens: the path of %s between its steps is too "
+                  "rough there; take verlet or dop853", s->scene->model->ev[k].name, LAG_TEXT(r->t), s->method->name);
 }
 
 /* The action of event k on `now`, by way of yb. changed: the state is another one. */
@@ -106,8 +106,8 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
                 s->work);
   }
   if (rc || lag_not_finite(n, s->yb) >= 0) {
-    return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its action gives no finite state at t = %.17g s", m->ev[k].name,
-                    r->t);
+    return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its action gives no finite state at t = %s s", m->ev[k].name,
+                    LAG_TEXT(r->t));
   }
   int ends = is_zeno(s, k, since, contact ? 3 : 10), moved = memcmp(s->yb, s->now, bytes) != 0;
   int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;
@@ -118,7 +118,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
     lag_keep_nothing(s);
   }
   if (moved && lag_project(&s->pb, r->t, s->yb, NULL) != 0) {
-    return lag_fail(s, LAG_EMODEL, "event %s: its action at t = %.17g s leaves the constraints: %s", m->ev[k].name, r->t,
+    return lag_fail(s, LAG_EMODEL, "event %s: its action at t = %s s leaves the constraints: %s", m->ev[k].name, LAG_TEXT(r->t),
                     s->pb.detail ? s->pb.detail : "");
   }
   if (elsewhere) {
@@ -151,8 +151,25 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   return rc ? rc : ends && !contact ? fail_zeno(s, k) : LAG_OK;
 }
 
+/* The sign that the function of an event takes soon after it has fired, by its rate; where the last step would not show it the one that it had
+ * before, if events have changed the state, or 0. Uses ya, yb. */
+static double leaves_to(lag_sim *s, int k, int changed)
+{
+  const Run *r = s->run;
+  double span = r->step_t1 - r->step_t0, dt = 1e-6 * span, *g = s->spare + 9 * s->scene->model->nev;
+
+  if (!(s->method->flags & LAG_METHOD_STEPS_TO) || fabs(span) <= 1e6 * DBL_EPSILON * fabs(r->t) || lag_contact_of(s->scene->model, k) || lag_rhs(&s->pb, r->t, s->now, s->ya)) {
+    return 0;
+  }
+  for (int i = 0; i < s->pb.n; i++) {
+    s->yb[i] = s->now[i] + dt * s->ya[i];
+  }
+  double change = lag_events_eval(s, r->t + dt, s->yb, g) ? 0 : (g[k] - s->g1[k]) / dt * fabs(span);
+  return fabs(change) > s->noise[k] ? sign_of(change * r->dir) : changed ? -s->sign_end[k] : 0;
+}
+
 /* Signs after the events at t. before: the values before the actions; spread: what is rounding in them. */
-static int rearm(lag_sim *s, const double *before, const double *spread)
+static int rearm(lag_sim *s, const double *before, const double *spread, int changed)
 {
   const lag_model *m = s->scene->model;
   int rc = lag_events_eval(s, s->run->t, s->now, s->g1);
@@ -161,9 +178,11 @@ static int rearm(lag_sim *s, const double *before, const double *spread)
     double g = s->g1[k], residue = fabs(before[k]) + 4 * spread[k];
     double same = fmax(2 * residue, 1e-12 * fabs(s->g0[k])); /* g0: a sample of this step, for the size of g */
     int fired = s->root[k] == HUGE_VAL;
+    s->leaves[k] = fired ? 0 : s->leaves[k];
     if (fired && fabs(g) <= same) {
       s->sign[k] = 0;
       s->noise[k] = fmax(2 * fabs(g), 2 * residue);
+      s->leaves[k] = leaves_to(s, k, changed);
     } else if (!fired && !isnan(s->root[k]) && fabs(g - before[k]) <= same) {
       s->sign[k] = -s->sign_end[k]; /* it is still to come */
     } else if (fired || s->sign_end[k] != 0.0 || fabs(g) > s->noise[k]) { /* else: not known yet since it fired */
@@ -199,7 +218,7 @@ int lag_events_fire(lag_sim *s)
     s->root[k] = HUGE_VAL; /* fired */
     rc = act(s, k, &stop, &changed);
   }
-  rc = rc ? rc : rearm(s, before, spread);
+  rc = rc ? rc : rearm(s, before, spread, changed);
   r->from = r->t;
   r->pending = 0;
   if (changed || r->t == r->step_t1) {

@@ -33,7 +33,7 @@ int lag_exact_see(lag_sim *s, double t, const double *y)
   const lag_scene *c = s->scene;
 
   if (c->nexact && forms_at(s, t)) {
-    return lag_fail(s, LAG_EMODEL, "the closed forms cannot be computed at t = %.17g s", t);
+    return lag_fail(s, LAG_EMODEL, "the closed forms cannot be computed at t = %s s", LAG_TEXT(t));
   }
   for (int k = 0; k < c->nexact; k++) {
     double d = fabs(difference(s, y, k));
@@ -46,6 +46,13 @@ int lag_exact_see(lag_sim *s, double t, const double *y)
 
 void lag_sim_exact(lag_sim *s, int k, double *largest, double *now)
 {
+  if (!largest || !now) {
+    return;
+  }
+  *largest = *now = NAN;
+  if (!s || k < 0 || k >= s->scene->nexact) {
+    return;
+  }
   double factor = lag_sim_state_info(s, s->scene->exact_of[k], NULL, 0, NULL, 0);
   double d = forms_at(s, s->run->t) ? NAN : difference(s, s->now, k), peak = s->exact_peak[k];
 

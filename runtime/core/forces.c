@@ -26,9 +26,8 @@ double lag_independence(lag_problem *pb, double t, const double *y, int *weakest
   const lag_constraints *of = pb->model->constraints;
   const double follows = pb->redundant ? 1e-9 : 0; /* what is less follows always */
   int nq = pb->nq, n = of->n, r = 0;
-  double least = 1, *A = calloc((size_t)(n * nq + nq + n), sizeof *A);
-  double *unit = A + n * nq, *size = unit + nq;
-  int rc = !A || lag_constraint_rows(pb, t, y, A, unit);
+  double least = 1, *A = lag_independence_room(pb), *unit = A + n * nq, *size = unit + nq;
+  int rc = lag_constraint_rows(pb, t, y, A, unit, NULL);
 
   *weakest = -1;
   rc = rc || (of->nholonomic > 0 && lag_constraint_terms(pb, t, y, 1, size));
@@ -40,7 +39,6 @@ double lag_independence(lag_problem *pb, double t, const double *y, int *weakest
     }
     r += left > follows;
   }
-  free(A);
   return least;
 }
 

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "core/complement.h"
+#include "core/room.h"
 
 static const lag_contact *contact(const Touch *w, int a)
 {
@@ -48,8 +49,8 @@ static int no_values(Touch *w, int i)
 {
   const lag_model *m = w->sim->scene->model;
 
-  return lag_fail(w->sim, LAG_EMODEL, "the contact %s has no finite values at t = %.17g s", m->constraints->of[m->contacts[i].constraint].name,
-                  w->sim->run->t);
+  return lag_fail(w->sim, LAG_EMODEL, "the contact %s has no finite values at t = %s s", m->constraints->of[m->contacts[i].constraint].name,
+                  LAG_TEXT(w->sim->run->t));
 }
 
 /* ---- what there is */
@@ -62,22 +63,14 @@ static int make_room(Touch *w)
   double **const parts[] = {&w->gap, &w->rate, &w->gap_size, &w->rate_size, &w->g, &w->c, &w->r, &w->d, &w->force, &w->test, &w->events,
                             &w->A, &w->mass};
   const size_t sizes[] = {p, p, p, p, n, n, n, nq, nq, (size_t)w->sim->pb.n, (size_t)m->nev, (size_t)of->njacobian, (size_t)of->nmass};
-  size_t total = 1;
 
-  for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-    total += sizes[i];
-  }
-  double *x = w->block = calloc(total, sizeof *x);
+  w->block = lag_room(sizeof sizes / sizeof *sizes, parts, sizes);
   w->of = calloc(p, sizeof *w->of);
   w->at = calloc(p, sizeof *w->at);
   w->part = calloc(4 * p, 1);
   w->in = w->part + p;
   w->was = w->in + p;
   w->follows = w->was + p;
-  for (size_t i = 0; i < sizeof parts / sizeof *parts && x; i++) {
-    *parts[i] = x;
-    x += sizes[i];
-  }
   return w->block && w->of && w->at && w->part ? LAG_OK : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
 }
 
@@ -187,14 +180,14 @@ double lag_touch_restitution(Touch *w, int i)
   const lag_model *m = s->scene->model;
   size_t bytes = (size_t)s->pb.n * sizeof(double);
   int nq = m->nq, stop = 0;
-  double to = response(w, i);
+  double to = response(w, i), speed = w->rate_size[i] > 0 ? w->rate_size[i] : 1;
 
   if (!(to > 0)) {
     return NAN;
   }
   memcpy(s->yc, w->y, bytes);
-  for (int j = 0; j < nq; j++) { /* so that the gap closes with 1 */
-    s->yc[nq + j] -= (1 + w->rate[i]) * w->d[j];
+  for (int j = 0; j < nq; j++) { /* so that the gap closes with what is a speed in its unit */
+    s->yc[nq + j] -= (speed + w->rate[i]) * w->d[j];
   }
   memcpy(w->test, s->yc, bytes);
   if (m->act(m->contacts[i].impact, s->run->t, s->yc, s->yc + nq, s->yc + 2 * nq, s->p, s->u, w->test, w->test + nq, w->test + 2 * nq, &stop,
@@ -204,7 +197,7 @@ double lag_touch_restitution(Touch *w, int i)
   for (int j = 0; j < nq; j++) {
     w->d[j] = w->test[nq + j] - s->yc[nq + j];
   }
-  return change_of_rate(w, i, w->d) - 1;
+  return change_of_rate(w, i, w->d) / speed - 1;
 }
 
 int lag_touch_responses(Touch *w)

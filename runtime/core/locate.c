@@ -325,46 +325,68 @@ static int integrate_to(lag_sim *s, double a, double te, double *y)
   return rc;
 }
 
-/* Replaces the step by one that ends at the event k, by false position on the interpolant between a state
- * before it and a state after it; the interpolant's error shrinks with the bracket's distance from the root. */
+/* What event k's function grows by in a second along the flow at (t, s->ya): over `dt`, a secant over the last bits of time being noise. Uses yb. */
+static int slope_at(lag_sim *s, int k, double t, double dt, double g, double *slope)
+{
+  int rc = lag_rhs(&s->pb, t, s->ya, s->yb);
+
+  if (rc) {
+    return lag_explain(s, rc);
+  }
+  for (int j = 0; j < s->pb.n; j++) {
+    s->yb[j] = s->ya[j] + dt * s->yb[j];
+  }
+  rc = lag_events_eval(s, t + dt, s->yb, s->g1);
+  *slope = (s->g1[k] - g) / dt;
+  return rc;
+}
+
+/* The step that integrate_to has made does not meet the event: it ends before it, and the next one will find it. */
+static void ends_before(lag_sim *s)
+{
+  s->run->pending = 0;
+  for (int k = 0; k < s->scene->model->nev; k++) {
+    s->sign_end[k] *= isnan(s->root[k]) ? 1 : -1;
+    s->root[k] = NAN;
+  }
+}
+
+/* Replaces the step by one that ends at the event k, by Newton's method between a time before it and one behind it. What is integrated anew may meet
+ * the event elsewhere than the step did, or not in this step: a method of many steps begins again with one of order 1. */
 static int refine(lag_sim *s, int k)
 {
+  enum { MOST = 100 };
   Run *r = s->run;
-  int n = s->pb.n, rc = 0;
-  size_t bytes = (size_t)n * sizeof(double);
-  double te = s->root[k], before = -s->sign_end[k];
+  double te = s->root[k], before = -s->sign_end[k], lo = r->step_t0, hi = r->step_t1, dt = 1e-6 * (te - lo), g = 0, slope = 1;
+  int done = 0;
 
-  for (int i = 0; i < 12; i++) {
-    memcpy(s->ya, s->y0, bytes);
-    if ((rc = integrate_to(s, r->step_t0, te, s->ya)) != 0) {
+  for (int i = 0; i < MOST && !done; i++) {
+    memcpy(s->ya, s->y0, (size_t)s->pb.n * sizeof(double));
+    int rc = integrate_to(s, r->step_t0, te, s->ya);
+    if (rc) {
       return lag_explain(s, rc);
     }
-    if ((rc = lag_events_eval(s, te, s->ya, s->g1)) != 0) {
+    rc = lag_events_eval(s, te, s->ya, s->g1);
+    g = s->g1[k];
+    rc = rc ? rc : slope_at(s, k, te, dt, g, &slope);
+    if (rc) {
       return rc;
     }
-    double g = s->g1[k];
-    /* Slope along the flow: a secant over the last bits of time would be noise. */
-    double dt = 1e-6 * fabs(te - r->step_t0) * r->dir;
-    if ((rc = lag_rhs(&s->pb, te, s->ya, s->yb)) != 0) {
-      return lag_explain(s, rc);
+    *(g * before > 0 ? &lo : &hi) = te;
+    double next = te - g / slope, least = 4 * DBL_EPSILON * fabs(te);
+    done = g == 0.0 || fabs(next - te) <= least || (fabs(hi - lo) <= least && (te == hi || hi == r->step_t1));
+    if (!done) {
+      te = (next - lo) * r->dir > 0 && (hi - next) * r->dir > 0 ? next : fabs(hi - lo) <= least ? hi : lo + (hi - lo) / 2;
     }
-    for (int j = 0; j < n; j++) {
-      s->yb[j] = s->ya[j] + dt * s->yb[j];
-    }
-    if ((rc = lag_events_eval(s, te + dt, s->yb, s->g1)) != 0) {
-      return rc;
-    }
-    double slope = (s->g1[k] - g) / dt, next = te - g / slope;
-    if (g == 0.0 || !isfinite(next) || fabs(next - te) <= 4 * DBL_EPSILON * fabs(te) || slope * r->dir * before >= 0) {
-      break;
-    }
-    if ((next - r->step_t0) * r->dir <= 0 || (next - r->step_t1) * r->dir > 0) {
-      break;
-    }
-    te = next;
   }
   s->root[k] = r->step_t1 = r->limit = te;
-  memcpy(s->y, s->ya, bytes);
+  memcpy(s->y, s->ya, (size_t)s->pb.n * sizeof(double));
+  if (g * before > 0 && fabs(g / slope) > 4 * DBL_EPSILON * fabs(te)) {
+    ends_before(s);
+  } else if (slope * r->dir * before >= 0 && fabs(te - r->step_t0) > 1e6 * DBL_EPSILON * fabs(te)) { /* else it is rounding */
+    return lag_fail(s, LAG_EMETHOD, "event %s: at t = %s s a step of %s leads through it, and the velocities at its end do not: it is met too slowly for this tolerance; "
+                    "take a smaller one, or dop853", s->scene->model->ev[k].name, LAG_TEXT(te), s->method->name);
+  }
   return LAG_OK;
 }
 
@@ -373,6 +395,21 @@ static int refine_first(lag_sim *s)
   for (int k = 0; k < s->scene->model->nev; k++) {
     if (s->root[k] == s->run->limit) {
       return refine(s, k);
+    }
+  }
+  return LAG_OK;
+}
+
+/* An event that has fired leaves 0 to one side, and the step ends on the other: it has happened again, and what the method knows between the ends of
+ * its step does not show when. */
+static int check_seen(lag_sim *s)
+{
+  const lag_model *m = s->scene->model;
+
+  for (int k = 0; k < m->nev; k++) {
+    if (s->sign[k] == 0.0 && isnan(s->root[k]) && s->sign_end[k] * s->leaves[k] < 0) {
+      return lag_fail(s, LAG_EMETHOD, "event %s: soon after t = %s s it happens again, within a step of %.3g s of %s, whose path between its ends does not show when; "
+                      "take a smaller tolerance, or dop853", m->ev[k].name, LAG_TEXT(s->run->step_t0), s->run->step_t1 - s->run->step_t0, s->method->name);
     }
   }
   return LAG_OK;
@@ -406,5 +443,5 @@ int lag_events_locate(lag_sim *s)
       rc = refine_first(s);
     }
   }
-  return rc;
+  return rc || found || !(s->method->flags & LAG_METHOD_STEPS_TO) ? rc : check_seen(s);
 }

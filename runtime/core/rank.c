@@ -1,39 +1,33 @@
-/* How independent constraints are, in coordinates whose inertia is 1: the units of coordinates do not matter, as they do not for the solver
- * (lag_kkt.h). Holds: rows are taken in the order of the constraints. */
+/* How independent constraints are, in the coordinates of the solver (lag_scales of lag_kkt.h): units of coordinates do not matter. Holds: rows are taken in the order of the constraints. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/core.h"
 #include "lag_kkt.h"
 
-void lag_kinds(const lag_problem *pb, int n, const int *at, char *kinds)
+size_t lag_ranks_room(const lag_model *m)
 {
-  enum { LETTERS = 26 }; /* further units share the last */
-  int last = -1;
+  const lag_constraints *of = m->constraints;
+  size_t nq = (size_t)m->nq, n = of ? (size_t)of->n : 0;
 
-  for (int i = 0; i < n; i++) {
-    int same = 0;
-    while (strcmp(pb->model->q[at ? at[same] : same].unit, pb->model->q[at ? at[i] : i].unit) != 0) {
-      same++;
-    }
-    last += same == i && last < LETTERS - 1;
-    kinds[i] = same < i ? kinds[same] : (char)('a' + last);
-  }
+  return of ? nq * nq + (size_t)(of->njacobian + of->nmass) + (nq + n) * (nq + 2) + (n * nq + nq + n) : 0;
 }
 
-int lag_constraint_rows(lag_problem *pb, double t, const double *y, double *A, double *unit)
+double *lag_independence_room(const lag_problem *pb)
+{
+  size_t nq = (size_t)pb->nq, n = (size_t)pb->model->constraints->n;
+
+  return pb->ranks + lag_ranks_room(pb->model) - (n * nq + nq + n);
+}
+
+int lag_constraint_rows(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass)
 {
   const lag_constraints *of = pb->model->constraints;
   size_t n = (size_t)of->n, nq = (size_t)pb->nq;
-  double *M = calloc(nq * nq + (size_t)(of->njacobian + of->nmass) + nq + 2 * n + nq, sizeof *M);
-
-  if (!M) {
-    return LAG_ENOMEM;
-  }
-  double *entries = M + nq * nq, *masses = entries + of->njacobian, *size = masses + of->nmass;
-  char *kinds = (char *)(size + nq + 2 * n);
+  double *M = pb->ranks, *entries = M + nq * nq, *masses = entries + of->njacobian, *scale = masses + of->nmass, *top = scale + n + nq;
   int rc = lag_inputs(pb, t);
+
+  memset(M, 0, nq * nq * sizeof *M);
   rc = rc ? rc : of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, entries, masses, pb->work);
   for (size_t i = 0; i < n * nq; i++) {
     A[i] = 0;
@@ -46,10 +40,12 @@ int lag_constraint_rows(lag_problem *pb, double t, const double *y, double *A, d
     M[i * nq + j] = M[j * nq + i] = masses[e];
   }
   if (rc == 0) {
-    lag_kinds(pb, pb->nq, NULL, kinds);
-    lag_units(pb->nq, of->n, kinds, M, A, unit, size, size + n);
+    lag_scales(pb->nq, of->n, M, A, scale, top, top + n + nq);
+    memcpy(unit, scale + n, nq * sizeof *unit);
+    if (mass) {
+      memcpy(mass, M, nq * nq * sizeof *M);
+    }
   }
-  free(M);
   return rc;
 }
 

@@ -8,21 +8,42 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/room.h"
 
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_DOUBLES = LINE / sizeof(double) };
+
+void lag_parts(lag_sim *s, lag_saved_part *part)
+{
+  const lag_model *m = s->scene->model;
+  size_t n = (size_t)s->pb.n, nq = (size_t)s->pb.nq, nev = (size_t)m->nev, nmon = (size_t)s->scene->nmonitors;
+  size_t nc = (size_t)(m->constraints ? m->constraints->n : 0);
+  const lag_saved_part all[LAG_PARTS] = {
+      {&s->p, (size_t)m->np, LAG_SAVED_FINITE}, {&s->derived, (size_t)m->nderived, LAG_SAVED_NUMBER}, {&s->hold, (size_t)m->nu, LAG_SAVED_HELD},
+      {&s->begin, n, LAG_SAVED_FINITE}, {&s->asked, n, LAG_SAVED_FINITE}, {&s->redundant, nc, LAG_SAVED_FLAG}, {&s->loose, nq, LAG_SAVED_FLAG},
+      {&s->kept, nc, LAG_SAVED_FINITE}, {&s->y, n, LAG_SAVED_FINITE}, {&s->y0, n, LAG_SAVED_FINITE}, {&s->now, n, LAG_SAVED_FINITE},
+      {&s->sign, nev, LAG_SAVED_SIGN}, {&s->leaves, nev, LAG_SAVED_SIGN}, {&s->noise, nev, LAG_SAVED_NUMBER}, {&s->root, nev, LAG_SAVED_NUMBER}, {&s->sign_end, nev, LAG_SAVED_SIGN},
+      {&s->count, nev, LAG_SAVED_COUNT}, {&s->first, nev, LAG_SAVED_FINITE}, {&s->last, nev, LAG_SAVED_FINITE},
+      {&s->interval, nev, LAG_SAVED_NUMBER}, {&s->shorter, nev, LAG_SAVED_COUNT}, {&s->mon_first, nmon, LAG_SAVED_NUMBER},
+      {&s->mon_peak, nmon, LAG_SAVED_NUMBER}, {&s->exact_peak, (size_t)s->scene->nexact, LAG_SAVED_NUMBER},
+      {&s->charge_block, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double), LAG_SAVED_NUMBER}};
+
+  memcpy(part, all, sizeof all);
+}
 
 /* Lays out the blocks for this method, keeping nothing but what the caller has set (p, hold). opt: the values of its options;
  * they must live on. */
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
 {
   const lag_model *m = s->scene->model;
-  size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, np = (size_t)(m->np + m->nderived), nu = (size_t)m->nu;
-  size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  size_t fixed = RUN_DOUBLES + np + nu + 5 * n + (size_t)s->pb.nq + 2 * nc + 9 * nev + 2 * nmon + (size_t)s->scene->nexact;
-  size_t ncharges = (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double);
+  size_t np = (size_t)(m->np + m->nderived), nu = (size_t)m->nu, fixed = RUN_DOUBLES;
+  lag_saved_part part[LAG_PARTS];
   lag_problem sized = s->pb;
+  lag_parts(s, part);
+  for (int i = 0; i < LAG_PARTS; i++) {
+    fixed += part[i].n;
+  }
   sized.opt = opt;
-  size_t before = (fixed + ncharges + LINE_DOUBLES - 1) / LINE_DOUBLES * LINE_DOUBLES, work = method->work_size(&sized), total = before + work;
+  size_t before = (fixed + LINE_DOUBLES - 1) / LINE_DOUBLES * LINE_DOUBLES, work = method->work_size(&sized), total = before + work;
   size_t again = method->flags & LAG_METHOD_STRETCHES && m->constraints ? work : 0;
   char *room = calloc((total + again) * sizeof(double) + LINE - 1, 1);
 
@@ -39,13 +60,9 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  double *charges, **const parts[] = {&s->p, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end,
-                            &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->mon_first, &s->mon_peak,
-                            &s->exact_peak, &charges};
-  const size_t sizes[] = {np, nu, n, n, nc, (size_t)s->pb.nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon, (size_t)s->scene->nexact, ncharges};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-    *parts[i] = x;
-    x += sizes[i];
+  for (int i = 0; i < LAG_PARTS; i++) {
+    *part[i].at = x;
+    x += part[i].n;
   }
   s->method_work = b + before;
   s->nwork = work;
@@ -54,7 +71,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->pb.kept = s->kept;
   s->pb.begin = s->begin;
   s->pb.opt = opt;
-  s->charges = (Charge *)(void *)charges;
+  s->charges = (Charge *)(void *)s->charge_block;
   s->method = method;
   lag_charges_method(s, method);
   return LAG_OK;
@@ -65,26 +82,21 @@ static int alloc_scratch(lag_sim *s)
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
   size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
-  size_t held = lag_held_room(m), sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
+  size_t held = lag_held_room(m), ranks = lag_ranks_room(m), sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
   size_t nc = (size_t)lag_sim_ncharges(s);
-  double *x = calloc(nuu + nw + 3 * n + 13 * nev + nout + 2 + held + sized + (size_t)m->ncontacts + 4 * nc + 1, sizeof *x);
+  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->pb.ranks, &s->contact_room,
+                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides};
+  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch};
 
-  s->scratch = x;
+  s->scratch = lag_room(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
   s->start = malloc((n + 1) * sizeof(double));
   s->signal = calloc(nu + 1, sizeof *s->signal);
-  if (!x || !s->fixed || !s->start || !s->signal) {
+  if (!s->scratch || !s->fixed || !s->start || !s->signal) {
     return LAG_ENOMEM;
   }
   for (size_t i = 0; i < n; i++) {
     s->start[i] = NAN;
-  }
-  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->contact_room,
-                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain};
-  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, sized, (size_t)m->ncontacts, 2 * nc, nc, nc};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-    *parts[i] = x;
-    x += sizes[i];
   }
   s->pb.u = s->u;
   s->pb.signal = s->signal;
@@ -130,6 +142,9 @@ static void place(lag_sim *s)
 
 lag_sim *lag_sim_new(const lag_scene *scene)
 {
+  if (!scene || !scene->model) {
+    return NULL;
+  }
   const lag_model *m = scene->model;
   lag_sim *s = m->abi == LAG_ABI && m->real_size == sizeof(double) ? calloc(1, sizeof *s) : NULL;
 
@@ -152,7 +167,7 @@ lag_sim *lag_sim_new(const lag_scene *scene)
   for (int i = 0; i < m->nu; i++) {
     s->hold[i] = NAN;
   }
-  if (lag_sim_set_method(s, chosen, scene->options, method ? scene->noptions : 0) == LAG_ENOMEM) {
+  if ((method || !scene->method) && lag_sim_set_method(s, chosen, scene->options, method ? scene->noptions : 0) == LAG_ENOMEM) {
     lag_sim_free(s);
     return NULL;
   }
@@ -252,11 +267,11 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
 {
   for (int k = 0; k < nopt; k++) {
     int i = 0;
-    while (i < m->noptions && strcmp(m->options[i].name, opt[k].name) != 0) {
+    while (i < m->noptions && opt[k].name && strcmp(m->options[i].name, opt[k].name) != 0) {
       i++;
     }
-    if (i == m->noptions) {
-      return lag_fail(s, LAG_EINVAL, "method %s has no option \"%s\"", m->name, opt[k].name);
+    if (i == m->noptions || !opt[k].name) {
+      return lag_fail(s, LAG_EINVAL, "method %s has no option \"%s\"", m->name, opt[k].name ? opt[k].name : "");
     }
     int rc = option_value(s, m, &m->options[i], &opt[k], &values[i]);
     if (rc) {
@@ -339,6 +354,12 @@ static int check_method(lag_sim *s, const lag_method *method)
 
 int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *opt, int nopt)
 {
+  if (!s) {
+    return LAG_EINVAL;
+  }
+  if (!method || nopt < 0 || (nopt > 0 && !opt)) {
+    return lag_fail(s, LAG_EINVAL, "no method, or options that are not there");
+  }
   int rc = begun(s);
   double *values;
 
@@ -349,14 +370,11 @@ int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *o
     return rc;
   }
   values = default_options(method);
-  if (!values) {
-    return LAG_ENOMEM;
-  }
-  rc = read_options(s, method, opt, nopt, values);
+  rc = values ? read_options(s, method, opt, nopt, values) : LAG_ENOMEM;
   rc = rc ? rc : set_blocks(s, method, values);
   if (rc) {
     free(values);
-    return rc;
+    return rc == LAG_ENOMEM ? lag_fail(s, rc, "out of memory") : rc;
   }
   lag_tangent_free(s);
   free(s->options);
@@ -367,6 +385,9 @@ int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *o
 
 int lag_sim_set_tolerance(lag_sim *s, double tol)
 {
+  if (!s) {
+    return LAG_EINVAL;
+  }
   int rc = begun(s);
 
   if (rc) {
@@ -374,6 +395,9 @@ int lag_sim_set_tolerance(lag_sim *s, double tol)
   }
   if (!(tol > 0 && isfinite(tol))) {
     return lag_fail(s, LAG_EINVAL, "a tolerance of %g: it must be positive, for example 1e-9", tol);
+  }
+  if (tol >= 1) {
+    return lag_fail(s, LAG_EINVAL, "a tolerance of %g leaves no digit: it is the relative error of a step, for example 1e-9", tol);
   }
   if (tol < 4.5 * DBL_EPSILON) {
     return lag_fail(s, LAG_EINVAL, "a tolerance of %g is below what " LAG_PRECISION " precision can give: write %.0e or more" LAG_MORE_PRECISION,
@@ -386,6 +410,17 @@ int lag_sim_set_tolerance(lag_sim *s, double tol)
 static int sign_ok(int sign, double x)
 {
   return sign == 1 ? x > 0 : sign == 2 ? x >= 0 : sign == -1 ? x < 0 : sign == -2 ? x <= 0 : 1;
+}
+
+int lag_signs_hold(const lag_sim *s)
+{
+  const lag_model *m = s->scene->model;
+  int i = 0;
+
+  while (i < m->np && sign_ok(m->p[i].sign, s->p[i])) {
+    i++;
+  }
+  return i == m->np;
 }
 
 static const char *sign_text(int sign)
@@ -494,6 +529,12 @@ static int effects_family(const lag_model *m, const char *name, char *full, size
 
 int lag_sim_set(lag_sim *s, const char *name, double value)
 {
+  if (!s) {
+    return LAG_EINVAL;
+  }
+  if (!name) {
+    return lag_fail(s, LAG_EINVAL, "a value without a name");
+  }
   const lag_model *m = s->scene->model;
   const lag_var *var = NULL;
   int i, rc = begun(s), kind = lag_find(m, name, &i, &var);
@@ -520,6 +561,12 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
 
 int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *context)
 {
+  if (!s) {
+    return LAG_EINVAL;
+  }
+  if (!name) {
+    return lag_fail(s, LAG_EINVAL, "an input without a name");
+  }
   const lag_var *var = NULL;
   int i, rc = begun(s), kind = lag_find(s->scene->model, name, &i, &var);
 

@@ -1,9 +1,11 @@
 /* A run: steps of the method, cut by events, looked at where the caller asks. Enters: a time to reach;
  * leaves: the state there. Holds: neither steps nor events depend on the times that the caller asks for
  * (but for STEPS_TO methods), so a run that is split, saved or resumed is the same run. */
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/core.h"
@@ -18,7 +20,8 @@ const char *lag_status_name(int status)
                {LAG_ERETRY, "outside the domain"}, {LAG_ESINGULAR, "singular mass matrix"}, {LAG_ENAN, "not a number"},
                {LAG_EDOMAIN, "outside the domain"}, {LAG_ESTEP, "step too small"}, {LAG_EINVAL, "invalid argument"},
                {LAG_ENOMEM, "out of memory"}, {LAG_EMONITOR, "monitor"}, {LAG_EMODEL, "model failed"},
-               {LAG_EZENO, "events accumulate"}, {LAG_EMETHOD, "method failed"}, {LAG_EIO, "input or output failed"}};
+               {LAG_EZENO, "events accumulate"}, {LAG_EMETHOD, "method failed"}, {LAG_EIO, "input or output failed"},
+               {LAG_EDRIFT, "energy lost"}, {LAG_ESTALL, "stalled"}};
 
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
     if (names[i].status == status) {
@@ -26,6 +29,17 @@ const char *lag_status_name(int status)
     }
   }
   return "failed";
+}
+
+const char *lag_number_text(double x, char text[64])
+{
+  for (int digits = DBL_DIG; digits <= DBL_DIG + 3; digits++) {
+    snprintf(text, 64, "%.*g", digits, x);
+    if (strtod(text, NULL) == x) {
+      break;
+    }
+  }
+  return text;
 }
 
 int lag_fail(lag_sim *s, int status, const char *format, ...)
@@ -60,6 +74,7 @@ static const char *reason(const lag_model *m, int status)
   case LAG_ENAN: return "the model gives no finite value";
   case LAG_EDOMAIN: return "the model left its domain";
   case LAG_ESTEP: return "the step became too small: a singularity, or the tolerance is too strict";
+  case LAG_ESTALL: return "the motion gets stuck";
   case LAG_EMODEL: return "the model failed";
   case LAG_EMETHOD: return "the method failed";
   default: return lag_status_name(status);
@@ -70,17 +85,28 @@ int lag_explain(lag_sim *s, int status)
 {
   const lag_model *m = s->scene->model;
   const lag_problem *pb = &s->pb;
-  char text[256] = "", name[64] = "", advice[96] = "";
+  char text[256] = "", name[64] = "", advice[160] = "";
   size_t used = 0;
   double h = lag_equal_step(s);
+  int which;
 
   if (status == LAG_ENAN && pb->bad_index >= 0) {
     name_rate(s, pb->bad_index, name, sizeof name);
+  }
+  if ((status == LAG_ESINGULAR || status == LAG_ESTEP) && !(m->flags & LAG_FIRST_ORDER)) {
+    double condition = lag_mass_condition(&s->pb, s->run->t, s->now, &which);
+    if (condition > (status == LAG_ESTEP ? 1e6 : 0)) {
+      snprintf(advice, sizeof advice, "; the condition of %s is %s%.2g at the last good state, by the inertia of %s", status == LAG_ESTEP ? "the mass matrix" : "that",
+               condition > 1e15 ? "above " : "", fmin(condition, 1e15), m->q[which].name);
+    }
   }
   for (int i = 0; i < pb->n && i < 8 && used < sizeof text; i++) {
     const lag_var *v = i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
     used += (size_t)snprintf(text + used, sizeof text - used, "%s%s%s = %.6g", i ? ", " : "", v->name,
                              i >= m->nq && i < 2 * m->nq ? "'" : "", lag_sim_state_value(s, i));
+  }
+  if (status == LAG_ESTEP && fabs(pb->bad_t) * DBL_EPSILON > 1e-9) {
+    snprintf(advice, sizeof advice, ", or the time too late: times are %.1g s apart here", fabs(pb->bad_t) * DBL_EPSILON);
   }
   if ((status == LAG_ENAN || status == LAG_EDOMAIN) && s->run->begun != 0.0) {
     if (h > 0) {
@@ -103,6 +129,10 @@ static int begin(lag_sim *s, double t)
   rc = rc ? rc : lag_contact_begin(s);
   if (rc || t == s->scene->t0) {
     return rc;
+  }
+  if (!s->options && s->scene->method && strcmp(s->scene->method, s->method->name) != 0) {
+    return lag_fail(s, LAG_EMETHOD, "scene %s asks for the method %s, which is not in liblag.a: set it by lag_sim_set_method, or another", s->scene->name,
+                    s->scene->method);
   }
   if (!s->options) { /* the scene's method was refused, and no other was chosen: refused again, to say why */
     return lag_sim_set_method(s, s->method, s->scene->options, s->scene->noptions);
@@ -142,6 +172,7 @@ static int take(lag_sim *s, double t_stop)
   s->pb.detail = NULL;
   s->pb.bad_t = t;
   int rc = lag_step_of_method(s, &t, t_stop);
+  rc = rc ? rc : lag_stalls(s, t);
   if (rc) {
     return lag_explain(s, rc);
   }
@@ -232,6 +263,9 @@ static int go_on(lag_sim *s, double t)
 
 int lag_sim_advance(lag_sim *s, double t)
 {
+  if (!s) {
+    return LAG_EINVAL;
+  }
   const Run *r = s->run;
   int rc = ready(s, t);
 
@@ -249,6 +283,9 @@ int lag_sim_advance(lag_sim *s, double t)
 
 int lag_sim_reach(lag_sim *s, double t, double *reach)
 {
+  if (!s || !reach) {
+    return LAG_EINVAL;
+  }
   const Run *r = s->run;
   int rc = ready(s, t);
 
@@ -261,6 +298,9 @@ int lag_sim_reach(lag_sim *s, double t, double *reach)
 
 int lag_sim_eval(lag_sim *s, double t, double *y)
 {
+  if (!s || !y || !isfinite(t)) {
+    return LAG_EINVAL;
+  }
   const Run *r = s->run;
   size_t bytes = (size_t)s->pb.n * sizeof(double);
 

@@ -84,6 +84,9 @@ static int make_room(lag_sim *s, int k)
 
 int lag_sim_set_tangent(lag_sim *s, int k, const double *Y)
 {
+  if (!s) {
+    return LAG_EINVAL;
+  }
   int n = s->pb.n, rc;
 
   if (k == 0) {
@@ -94,7 +97,7 @@ int lag_sim_set_tangent(lag_sim *s, int k, const double *Y)
     return lag_fail(s, LAG_EINVAL, "a tangent of %d columns: give them, or take all %d", k, n);
   }
   if (s->run->have_step != 0.0) {
-    return lag_fail(s, LAG_EINVAL, "a tangent begins at the end of a step, and t = %.17g lies within one", s->run->t);
+    return lag_fail(s, LAG_EINVAL, "a tangent begins at the end of a step, and t = %s lies within one", LAG_TEXT(s->run->t));
   }
   if ((rc = check(s)) != 0 || (rc = make_room(s, k)) != 0) {
     return rc;
@@ -138,8 +141,8 @@ int lag_tangent_pass(lag_sim *s)
 
 static int refuse(lag_sim *s, int k, const char *why)
 {
-  return lag_fail(s, LAG_EMETHOD, "event %s changes the state at t = %.17g s: %s; take a scene without it, or end the run before",
-                  s->scene->model->ev[k].name, s->run->t, why);
+  return lag_fail(s, LAG_EMETHOD, "event %s changes the state at t = %s s: %s; take a scene without it, or end the run before",
+                  s->scene->model->ev[k].name, LAG_TEXT(s->run->t), why);
 }
 
 typedef struct Jump {
@@ -294,6 +297,9 @@ int lag_tangent_jump(lag_sim *s, int k, int more)
 
 int lag_sim_tangent(lag_sim *s, double *Y)
 {
+  if (!s || !Y) {
+    return LAG_EINVAL;
+  }
   const Run *r = s->run;
 
   if (!s->tangent) {

@@ -67,6 +67,9 @@ static double relative(const lag_sim *s, int i, double peak)
 
 double lag_sim_monitor_drift(lag_sim *s, int i)
 {
+  if (!s || i < 0 || i >= s->scene->nmonitors) {
+    return NAN;
+  }
   int k = s->scene->monitors[i].output;
   double peak = s->mon_peak[i];
 
@@ -90,7 +93,7 @@ static int judge(lag_sim *s, int i, double drift)
     return LAG_OK;
   }
   int rough = m->output < 0 && !lag_charge_flags(s, -1 - m->output) && !lag_method_balances(s->method);
-  return lag_fail(s, LAG_EMONITOR, "monitor %s: drift %.3g is past its limit %.3g at t = %.17g s%s%s%s", m->name, drift, m->limit, s->run->t,
+  return lag_fail(s, LAG_EMONITOR, "monitor %s: drift %.3g is past its limit %.3g at t = %s s%s%s%s", m->name, drift, m->limit, LAG_TEXT(s->run->t),
                   rough ? "; what forces bring is not part of it, as " : "", rough ? s->method->name : "",
                   rough ? " tells too little between its steps: take dop853" : "");
 }
@@ -107,6 +110,9 @@ static int left_domain(lag_sim *s, double t)
 
 int lag_sim_watch(lag_sim *s)
 {
+  if (!s) {
+    return LAG_EINVAL;
+  }
   int rc = s->run->begun != 0.0 && lag_charges_lost(s, s->run->t, s->now) ? left_domain(s, s->run->t) : LAG_OK;
 
   for (int i = 0; i < s->scene->nmonitors && rc == 0 && s->run->begun != 0.0; i++) {
@@ -118,13 +124,14 @@ int lag_sim_watch(lag_sim *s)
 int lag_watch_see(lag_sim *s, double t, const double *y)
 {
   const lag_scene *c = s->scene;
+  int lost = lag_charges_see(s, t, y);
 
-  if (lag_charges_see(s, t, y)) {
+  if (lost) {
     if (s->run->from == s->run->step_t0) {
       lag_copy(s->pb.n, s->y0, s->now);
       s->run->t = s->run->from;
     }
-    return left_domain(s, t);
+    return lost == LAG_EDRIFT ? lost : left_domain(s, t);
   }
   if (c->model->constraints) {
     see_constraints(s, t, y);
@@ -133,7 +140,7 @@ int lag_watch_see(lag_sim *s, double t, const double *y)
     return LAG_EMODEL;
   }
   if (watches_outputs(c) && outputs_at(s, t, y)) {
-    return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %.17g", t);
+    return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
   }
   for (int i = 0; i < c->nmonitors; i++) {
     int k = c->monitors[i].output;
@@ -158,7 +165,7 @@ int lag_watch_jump(lag_sim *s, double t, const double *ya, const double *yb)
   if (watches_outputs(c)) {
     for (int pass = 0; pass < 2; pass++) {
       if (outputs_at(s, t, pass ? yb : ya)) {
-        return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %.17g", t);
+        return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
       }
       for (int i = 0; i < c->nmonitors; i++) {
         int k = c->monitors[i].output;
@@ -171,6 +178,9 @@ int lag_watch_jump(lag_sim *s, double t, const double *ya, const double *yb)
 
 void lag_sim_stats(lag_sim *s, lag_stats *st)
 {
+  if (!s || !st) {
+    return;
+  }
   const Run *r = s->run;
   const lag_constraints *c = s->scene->model->constraints;
   lag_charge_stats energy = {.now = NAN, .drift = NAN};
@@ -180,6 +190,7 @@ void lag_sim_stats(lag_sim *s, lag_stats *st)
   st->rejected = (long long)s->pb.rejected;
   st->rhs_calls = (long long)s->pb.rhs_calls;
   st->events = (long long)r->events;
+  st->unresolved = r->looks >= 4 && 2 * r->coarse > r->looks ? r->period : NAN;
   st->systems = (long long)s->pb.systems;
   st->iterations = (long long)s->pb.iterations;
   st->constraint = c ? r->c_peak : NAN;

@@ -10,6 +10,7 @@
 #include <gsl/gsl_odeiv2.h>
 #include <math.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "lag.h"
@@ -83,6 +84,15 @@ static int gsl_jacobian(double t, const double *y, double *dfdy, double *dfdt, v
   return rc;
 }
 
+/* Whether there is memory for more than GSL's largest stepper, bsimp, has. GSL 2.7 does not look at some of what it allocates, and writes to NULL. */
+static int has_room(size_t n)
+{
+  void *room = malloc((8 * n * n + 256 * n + 4096) * sizeof(double));
+
+  free(room);
+  return room != NULL;
+}
+
 static int init(void *work, lag_problem *pb, const double *opt, const gsl_odeiv2_step_type *type)
 {
   Gsl *w = work;
@@ -92,7 +102,7 @@ static int init(void *work, lag_problem *pb, const double *opt, const gsl_odeiv2
   w->h_option = opt[0] > 0 ? opt[0] : 1e-6 * (pb->span > 0 ? pb->span : 10);
   w->h = w->h_option;
   w->system = (gsl_odeiv2_system){gsl_rhs, gsl_jacobian, (size_t)pb->n, w};
-  w->driver = gsl_odeiv2_driver_alloc_y_new(&w->system, type, pb->dir * w->h, pb->tol, pb->tol);
+  w->driver = has_room((size_t)pb->n) ? gsl_odeiv2_driver_alloc_y_new(&w->system, type, pb->dir * w->h, pb->tol, pb->tol) : NULL;
   gsl_set_error_handler(handler);
   pb->detail = "GSL: out of memory";
   return w->driver ? LAG_OK : LAG_ENOMEM;

@@ -34,11 +34,16 @@ enum {
   LAG_EMODEL = -8,      /* the model returned another negative value */
   LAG_EZENO = -9,       /* an event repeats in ever shorter intervals */
   LAG_EMETHOD = -10,    /* the method cannot treat this model, or failed in its own way */
-  LAG_EIO = -11
+  LAG_EIO = -11,
+  LAG_EDRIFT = -12,     /* the energy has drifted further than its size: the numbers mean nothing */
+  LAG_ESTALL = -13      /* steps lead nowhere: the motion stays where a force jumps, or rounding is larger than the steps */
 };
 
 /* "ok", "stopped", ... for any of the above. */
 const char *lag_status_name(int status);
+
+/* x as a short text that reads back as x, "0.1"; in text, which it returns. */
+const char *lag_number_text(double x, char text[64]);
 
 /* ---- Methods --------------------------------------------------------------------------------- */
 
@@ -60,6 +65,7 @@ typedef struct lag_problem {
   const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
   double *held;        /* [lag_held_room] scratch of the functions for constraints below */
+  double *ranks;       /* [lag_ranks_room] the same, of those that judge how independent they are */
   const double *begin; /* [n] where the run began, so that sizes are known where all is 0; NULL: not known */
   const double *kept;  /* [nholonomic] what c is held at, NaN: at nothing yet; NULL: all at 0 */
   int redundant;       /* constraints follow from others: f is asked for on the constraints only, see lag_rhs */
@@ -119,6 +125,7 @@ int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, d
 
 /* Doubles that pb->held must have; 0 without constraints. */
 size_t lag_held_room(const lag_model *model);
+size_t lag_ranks_room(const lag_model *model);
 
 /* c[nholonomic], less what it is held at, and r[n] of the state y[n] at t. */
 int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r);
@@ -151,13 +158,6 @@ int lag_over_pole(lag_problem *pb, double t0, const double *y0, double t1, const
 /* How independent the weakest constraint is where y is at t, from 1 to 0: what is left of its derivatives beside those of the constraints
  * before it, and how large they are beside its terms. *weakest: which, or -1; what follows from others always is left out. (core/forces.c) */
 double lag_independence(lag_problem *pb, double t, const double *y, int *weakest);
-
-/* Whether steps creep towards a singular position: of a method that chooses its steps, which asks after each one, at y at t, of a run that began at
- * `begin`. c is all 0 at first. Then pb says why, and the step fails with LAG_ESTEP. Rule and reason: core/creep.c. */
-typedef struct lag_creep {
-  double steps, since; /* steps since a time */
-} lag_creep;
-int lag_creeps(lag_problem *pb, lag_creep *c, double begin, double t, const double *y);
 
 /* The largest of |x[j]| over the coordinates (or their velocities) that have the unit of coordinate i: what rounding in it is measured
  * with, where it is small itself. */
@@ -194,6 +194,12 @@ int lag_not_finite(int n, const double *x);
  * With f of order p >= 4 the result has order 4. */
 void lag_hermite(int nq, int nz, double h, double s, const double *y0, const double *f0, const double *y1,
                  const double *f1, double *y);
+
+/* For lag_method.sound: x is whole, 0 to most; 0 or 1; -1, 0 or 1; a[n] has the values of b[n]. NaN is none of it. */
+int lag_is_count(double x, double most);
+int lag_is_flag(double x);
+int lag_is_sign(double x);
+int lag_same_numbers(const double *a, const double *b, size_t n);
 
 /* Properties of a method. */
 enum {
@@ -274,6 +280,10 @@ typedef struct lag_method {
   size_t (*tangent_size)(const lag_problem *pb, int k);
   int (*tangent)(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
 
+  /* Whether work, which comes from a file, is a block that the method can go on from: flags, counts and indices in their ranges, times finite,
+   * settings as in fresh, which is what init makes with the same options. NULL: any numbers will do. */
+  int (*sound)(const void *work, const void *fresh, const lag_problem *pb);
+
   double finest; /* tolerances below it are below what the digits of its coefficients give; 0: they have all that a scalar has */
 } lag_method;
 
@@ -310,6 +320,7 @@ typedef struct lag_stats {
   double energy_drift;  /* that of charge 0 below. NaN when the model has no energy */
   double constraint, constraint_rate; /* largest |c| of a holonomic constraint and |r| of any (lag_model.h) at ends of steps [SI];
                          * NaN without constraints */
+  double unresolved;    /* a period that steps of equal size are longer than half of [s]; NaN: none was seen */
 } lag_stats;
 
 /* What a run makes of a charge: of its energy (number 0) and of those of its symmetries. */
@@ -325,19 +336,27 @@ typedef struct lag_charge_stats {
   unsigned flags;       /* LAG_CONSERVED, LAG_BALANCED (lag_model.h); neither: how it changes is not known, or not integrated (lag_sim_balance) */
   double begin, now;    /* Q */
   double work;          /* int P dt, where P = dQ/dt is known and not 0 */
-  double drift;         /* largest |Q - int P dt - Q0| over the run, relative to the larger of |Q0| and the largest sum of the sizes of the
-                         * terms of Q; what events do to it is not counted */
+  double drift;         /* largest |Q - int P dt - Q0| over the run, relative to the larger of |Q0| and the median over the run of the sum of
+                         * the sizes of the terms of Q, which a motion that blows up at last does not raise; what events do to it is not counted */
+  double absolute;      /* the same, in `unit` */
   double slope, slope_error; /* of a line fitted to Q - int P dt, relative as drift [1/s], and its standard error; NaN: too few steps */
   int trend;
+  double jolt, jolt_t;  /* of the energy: its largest change in a step, relative as drift, and when that was; 0: no more than rounding, or not asked (a mass
+                         * matrix that is constant, more than 64 coordinates) */
+  double strain;        /* the condition of the mass matrix there, about; NaN: not known */
+  const char *strain_of; /* the coordinate of least inertia there */
 } lag_charge_stats;
 
 /* How many charges the model has; 0 without a Lagrangian. And what has become of charge k so far. */
 int lag_sim_ncharges(const lag_sim *sim);
 void lag_sim_charge(lag_sim *sim, int k, lag_charge_stats *stats);
 
-/* A simulation of the scene at the start of its span, with the scene's method (when it is one of
- * liblag.a), tolerance and options. The scene must outlive it. NULL: no memory, or a model of another ABI
- * or scalar type. A method that cannot integrate the model is refused by the first advance, unless another one is set.
+/* All functions below: a NULL that is not said to be allowed, a time that is not finite, an index out of range give LAG_EINVAL and change nothing; those that return
+ * a number give NAN, or 0 where it is whole, those that return a pointer NULL. */
+
+/* A simulation of the scene at the start of its span, with the scene's method, tolerance and options. The scene must outlive it. NULL: no memory,
+ * or a model of another ABI or scalar type. A method that cannot integrate the model, or is not in liblag.a, is refused by the first advance,
+ * unless another one is set.
  * Free with lag_sim_free (NULL allowed). */
 lag_sim *lag_sim_new(const lag_scene *scene);
 void lag_sim_free(lag_sim *sim);
@@ -459,7 +478,8 @@ typedef void lag_event_fn(void *context, int k, double t, const double *before, 
 void lag_sim_on_event(lag_sim *sim, lag_event_fn *hook, void *context);
 
 /* Everything that a later run needs, as x[lag_sim_save_size()] doubles. LAG_EINVAL when the method cannot
- * be saved. load takes it into a simulation of the same scene, method and options. */
+ * be saved. load takes it into a simulation of the same scene, method and options; x may come from anywhere: numbers that cannot be such a
+ * state are refused (LAG_EINVAL), and the simulation stays as it was. */
 size_t lag_sim_save_size(const lag_sim *sim);
 int lag_sim_save(lag_sim *sim, double *x);
 int lag_sim_load(lag_sim *sim, const double *x);

@@ -5,8 +5,8 @@
  *
  * for any A, redundant or not, and any M that is regular on the kernel of A: x is unique then; of the multipliers l those
  * of least norm are given, the sum of squares of l as it stands, each in the unit of its constraint. A^T P = Q R is factored by Householder's
- * reflections with exchange of columns, which are the constraints, scaled to a like size so that it does not matter how each was written, in
- * coordinates whose inertia is 1, so that units do not matter: what is left of a constraint beside
+ * reflections with exchange of columns, which are the constraints, scaled to a like size, in coordinates in which the whole system is about 1, so that it
+ * does not matter how each was written (lag_scales): what is left of a constraint beside
  * those before it decides whether it is counted (Golub & Van Loan, Matrix Computations, 4th ed. (2013), 5.4.2). In the
  * coordinates Q^T x the first r components follow from g, and the others from M without constraints (the null space method: Benzi, Golub,
  * Liesen, Acta Numerica 14 (2005) 1, section 6, DOI 10.1017/S0962492904000212); l is the least solution of R l = what M x - f is there,
@@ -266,62 +266,61 @@ static LAG_LANE lag_reflector(int n, LAG_LANE *v, LAG_LANE *beta) {
   return alpha;
 }
 
-/* The value in the middle of x[n], which are sorted; of an even number the mean of two, as powers of ten. */
-static LAG_LANE lag_median(int n, LAG_LANE *x) {
-  for (int i = 1; i < n; i++)
-    for (int j = i; j > 0 && x[j - 1] > x[j]; j--) {
-      const LAG_LANE was = x[j];
-      x[j] = x[j - 1];
-      x[j - 1] = was;
+/* scale[m + n], powers of two, for the constraints and then for the coordinates: [M A^T; A 0], scaled by them, has elements as near to 1 as can be, by least squares
+ * of their exponents (A. R. Curtis, J. K. Reid, IMA J. Appl. Math. 10 (1972) 118, DOI 10.1093/imamat/10.1.118). So ranks depend on no
+ * unit: another one of a constraint or of a coordinate changes its scale and nothing else. An element that is rounding beside the largest of its row and
+ * of its column has no say; inertia counts 16 times, so that a constraint that comes to follow from others is seen to, and not scaled up. top[m + n] and size[(m + n) n] are scratch. */
+static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *scale, LAG_LANE *top, LAG_LANE *size) {
+  const LAG_LANE none = (LAG_LANE)1e9;
+  const int all = m + n;
+  LAG_LANE moved = 1;
+  int bits, e;
+  (void)LAG_LANE_FN(frexp)(lag_rounding(), &bits);
+  for (int k = 0; k < all; k++) scale[k] = 0, top[k] = -none;
+  for (int k = 0; k < all; k++)
+    for (int j = 0; j < n; j++) {
+      const LAG_LANE x = k < m ? A[k*n + j] : M[(k - m)*n + j];
+      (void)LAG_LANE_FN(frexp)(x, &e);
+      const LAG_LANE here = size[k*n + j] = (x < 0 || x > 0) && x - x == 0 ? (LAG_LANE)e - (LAG_LANE)0.5 : none;
+      if (here < none && here > top[k]) top[k] = here;
+      if (here < none && here > top[m + j]) top[m + j] = here;
     }
-  return LAG_LANE_FN(sqrt)(x[(n - 1)/2])*LAG_LANE_FN(sqrt)(x[n/2]);
-}
-
-/* unit[n]: in which the coordinates have inertia 1, those of a kind the one that has most: what is rounding for one of a kind is so for all. kind[n]: a letter
- * a coordinate; NULL: all are of one kind, and unit is 1. A kind without inertia counts as much as what it is tied to, in the middle among its ties;
- * so what is known spreads along constraints and products of velocities. size[m], tie[n + m] are scratch. */
-static void lag_units(int n, int m, const char *kind, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *unit, LAG_LANE *size, LAG_LANE *tie) {
-  for (int i = 0; i < n; i++) unit[i] = 1;
-  if (!kind) return;
-  for (int i = 0; i < n; i++) {
-    LAG_LANE inertia = 0;
+  LAG_LANE least = none, most = -none; /* of rows and columns of A: where they are of like size nothing is scaled, and nothing changes from call to call */
+  for (int k = 0; k < m; k++) least = top[k] > -none && top[k] < least ? top[k] : least, most = top[k] > most ? top[k] : most;
+  for (int j = 0; j < n; j++) {
+    LAG_LANE column = -none;
+    for (int k = 0; k < m; k++) column = size[k*n + j] < none && size[k*n + j] > column ? size[k*n + j] : column;
+    least = column > -none && column < least ? column : least;
+  }
+  LAG_LANE light = none, heavy = -none; /* inertia, likewise: it goes with the square of a coordinate's size, of which one without inertia says nothing */
+  for (int j = 0; j < n; j++) {
+    const LAG_LANE here = size[(m + j)*n + j] < none ? size[(m + j)*n + j] : -none;
+    light = here < light ? here : light, heavy = here > heavy ? here : heavy;
+  }
+  if (most - least <= (LAG_LANE)12 && heavy - light <= (LAG_LANE)48) {
+    for (int k = 0; k < all; k++) scale[k] = 1;
+    return;
+  }
+  for (int k = 0; k < all; k++)
     for (int j = 0; j < n; j++)
-      if (kind[j] == kind[i] && LAG_LANE_FN(fabs)(M[j*n + j]) > inertia) inertia = LAG_LANE_FN(fabs)(M[j*n + j]);
-    unit[i] = inertia > 0 ? 1/LAG_LANE_FN(sqrt)(inertia) : 0;
-  }
-  for (int j = 0; j < m; j++) size[j] = 0;
-  for (int turn = 0, found = 1; found && turn <= n; turn++) {
-    int unknown = -1;
-    found = 0;
-    for (int j = 0; j < m; j++)
-      for (int i = 0; i < n && !(size[j] < 0); i++) { /* < 0: known since an earlier turn */
-        const LAG_LANE x = LAG_LANE_FN(fabs)(A[j*n + i])*unit[i];
-        size[j] = x > size[j] ? x : size[j];
+      if (2*size[k*n + j] < top[k] + top[m + j] + (LAG_LANE)(2*bits + 6)) size[k*n + j] = none;
+  for (int turn = 0; turn < 40 && moved > (LAG_LANE)0.1; turn++) {
+    moved = 0;
+    for (int k = 0; k < all; k++) {
+      LAG_LANE sum = 0, weight = 0;
+      for (int j = 0; j < n; j++) {
+        const LAG_LANE here = size[k*n + j], twice = (LAG_LANE)(j == k - m ? 2 : 1); /* of the diagonal: its exponent and twice the scale */
+        const LAG_LANE counts = (LAG_LANE)(j == k - m ? 16 : 1);
+        if (here < none) sum += counts*twice*(here + (j == k - m ? 0 : scale[m + j])), weight += counts*twice*twice;
       }
-    for (int i = 0; i < n; i++) { /* the first of each kind; < 0: found in this turn */
-      int ties = 0, first = 0;
-      while (kind[first] != kind[i]) first++;
-      if (unit[i] > 0 || first < i) continue;
-      unknown = unknown < 0 ? i : unknown;
-      for (int j = 0; j < n + m; j++) {
-        const LAG_LANE beside = j < n ? unit[j] : LAG_LANE_FN(fabs)(size[j - n]);
-        LAG_LANE most = 0;
-        for (int k = i; k < n && beside > 0; k++) {
-          const LAG_LANE x = LAG_LANE_FN(fabs)(j < n ? M[k*n + j] : A[(j - n)*n + k]);
-          most = kind[k] == kind[i] && x > most ? x : most;
-        }
-        if (most > 0) tie[ties++] = j < n ? most*beside : most/beside;
-      }
-      if (ties > 0) unit[i] = -1/lag_median(ties, tie), found = 1;
+      for (int j = 0; j < m && k >= m; j++)
+        if (size[j*n + k - m] < none) sum += size[j*n + k - m] + scale[j], weight += 1;
+      const LAG_LANE now = weight > 0 ? -sum/weight : 0, change = LAG_LANE_FN(fabs)(now - scale[k]);
+      moved = change > moved ? change : moved;
+      scale[k] = now;
     }
-    if (!found && unknown >= 0) unit[unknown] = -1, found = 1; /* nothing says, nor matters */
-    for (int i = 0; i < n; i++) {
-      const LAG_LANE of_kind = unit[i];
-      for (int k = i; k < n && of_kind < 0; k++)
-        if (kind[k] == kind[i]) unit[k] = -of_kind;
-    }
-    for (int j = 0; j < m; j++) size[j] = -LAG_LANE_FN(fabs)(size[j]);
   }
+  for (int k = 0; k < all; k++) scale[k] = LAG_LANE_FN(ldexp)((LAG_LANE)1, (int)LAG_LANE_FN(floor)(scale[k] + (LAG_LANE)0.5));
 }
 
 /* A P = R^T Q^T, row by row: row k of A[m*n] is left as [R^T | vector k], diag[k] and beta[k] beside it; order[m]: which row
@@ -519,18 +518,22 @@ static LAG_LANE lag_eliminate(int n, int r, LAG_LANE *M, LAG_LANE *x, LAG_LANE *
   return most;
 }
 
-/* x[n], l[m] hold f and g, and become the solution; M and A are destroyed. w[n*n + m*n + m*m + 2*n + 9*m] is scratch. Returns
+/* x[n], l[m] hold f and g, and become the solution, without numbers where M or A has an element that is not finite; M and A are destroyed. w[n*n + m*n + m*m + 2*n + 9*m] is scratch. Returns
  * whether M is regular on the kernel of A, by more than rounding: pivots, and what becomes of any right-hand side, show how large the inverse is
  * (J. D. Dixon, SIAM J. Numer. Anal. 20 (1983) 812, DOI 10.1137/0720053), which is to be less than a hundredth of 1 by the rounding of M. */
-static int lag_kkt_lane(int n, int m, int coarse, const char *kind, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
+static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
 #ifdef LAG_BAND_LEAST
   if (n + m >= LAG_BAND_LEAST && lag_banded(n, m, M, A, x, l, w, n*n + m*n + m*m + 2*n + 9*m)) return 1;
 #endif
   if (lag_schur(n, m, M, A, x, l, w)) return 1;
+  LAG_LANE any = 0;
+  for (int i = 0; i < n*n + m*n; i++) any += (i < n*n ? M[i] : A[i - n*n])*0;
+  for (int i = 0; i < n + m && !(any == 0); i++) *(i < n ? x + i : l + i - n) = any; /* no number, as that is */
+  if (!(any == 0)) return 1;
   LAG_LANE *const diag = w, *const beta = w + m, *const scale = w + 2*m, *const order = w + 3*m;
-  LAG_LANE *const y = w + 4*m, *const s = w + 5*m, *const mu = w + 6*m, *const S = w + 7*m, *const unit = S + m*m + 2*m, *const z = unit + n;
+  LAG_LANE *const y = w + 4*m, *const s = w + 5*m, *const mu = w + 6*m, *const S = w + 7*m, *const z = S + m*m + m, *const unit = z + n + m;
   LAG_LANE most = 0, u = 0;
-  lag_units(n, m, kind, M, A, unit, scale, z);
+  lag_scales(n, m, M, A, unit - m, z - m, unit + n);
   for (int i = 0; i < n; i++) {
     for (int j = 0; j < n; j++) {
       M[i*n + j] *= unit[i]*unit[j];
@@ -571,20 +574,20 @@ static int lag_kkt_lane(int n, int m, int coarse, const char *kind, LAG_LANE *M,
 }
 
 #ifndef LAG_LANES
-/* w = [M | A | f, becomes x | g, becomes l | scratch]; kind[n]: a letter a coordinate, those of one unit alike, or NULL. Returns whether M is regular on the kernel of A. */
-static inline LAG_MASK lag_kkt(int n, int m, int coarse, const char *kind, LAG_REAL *w) {
+/* w = [M | A | f, becomes x | g, becomes l | scratch]. Returns whether M is regular on the kernel of A. */
+static inline LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w) {
   LAG_REAL *const A = w + n*n, *const x = A + m*n;
-  return lag_kkt_lane(n, m, coarse, kind, w, A, x, x + n, x + n + m);
+  return lag_kkt_lane(n, m, coarse, w, A, x, x + n, x + n + m);
 }
 #else
 /* The same, lane by lane: each has pivots, and a rank, of its own. */
-static inline LAG_MASK lag_kkt(int n, int m, int coarse, const char *kind, LAG_REAL *w) {
+static inline LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w) {
   const int used = n*n + m*n + n + m;
   LAG_MASK regular;
   for (int k = 0; k < LAG_LANES; k++) {
     LAG_LANE *const M = (LAG_LANE *)(w + used), *const A = M + n*n, *const x = A + m*n;
     for (int i = 0; i < used; i++) M[i] = w[i][k];
-    regular[k] = lag_kkt_lane(n, m, coarse, kind, M, A, x, x + n, x + n + m) ? -1 : 0;
+    regular[k] = lag_kkt_lane(n, m, coarse, M, A, x, x + n, x + n + m) ? -1 : 0;
     for (int i = 0; i < n + m; i++) w[n*n + m*n + i][k] = x[i];
   }
   return regular;

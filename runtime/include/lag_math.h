@@ -131,7 +131,7 @@ LAG_LANES_2(pow) LAG_LANES_2(atan2) LAG_LANES_2(hypot)
 #define LAG_AND(a, b) ((a) & (b))
 #define LAG_OR(a, b) ((a) | (b))
 #define LAG_ANY(c) lag_lanes_any(c)
-/* A lane with a singular matrix stops no other: it has no numbers, and its bit in the status, which is negative then. */
+/* A lane with a singular matrix stops no other: it has no numbers (nor has one whose matrix has none), and its bit in the status, which is negative then. */
 #if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
 #define LAG_PIVOTS int singular __attribute__((unused)) = 0
 #define LAG_PIVOT(c) singular |= lag_lanes_bits(~(c))

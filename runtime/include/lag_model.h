@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 6
+#define LAG_ABI 7
 
 /* The scalar that a model is compiled for: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of
  * so many doubles: many states, or sets of parameters, at once. Then a status < 0 has bit k of its negative set when lane k
@@ -187,6 +187,13 @@ typedef struct lag_charges {
                 const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 } lag_charges;
 
+/* Where a force jumps with the velocities, as dry friction does: a function whose value is 0 there. */
+typedef struct lag_switch {
+  const char *surface, *text; /* "x'", "sign(x')" */
+  int line;                   /* of the model's text; 0: not known */
+  int nonnegative;            /* 1: the function does not change its sign, as |v| */
+} lag_switch;
+
 /* A gap that stays at least 0. While it is closed it is a constraint: the model multiplies that by an input, which is 1 then and else
  * 0. The runtime closes it where impacts follow each other ever faster, or one leaves no speed, and opens it where its multiplier
  * becomes negative. */
@@ -288,6 +295,12 @@ typedef struct lag_model {
   const lag_taylor *taylor;
 
   const lag_linear *linear;
+
+  int nswitch;
+  const lag_switch *switches; /* [nswitch] */
+  /* out[nswitch]: the switching functions. */
+  int (*switch_values)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                       const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
   const char *math; /* whose sin and cos it calls; NULL: not known */
   const char *fixed; /* names of parameters that are numbers in this program, separated by spaces; NULL: none */

@@ -175,5 +175,5 @@ int html_write(const char *path, const Table *t, const char *title, const Animat
       fputs(page[i], o.f);
     }
   }
-  return outfile_close(&o, 1);
+  return outfile_close(&o, OUTFILE_KEEP);
 }

@@ -1,22 +1,12 @@
 /* What a simulator writes: rows, pictures, its saved state. Holds for all files: they are written as
- * FILE.part and renamed when complete, so that no half-written FILE is ever seen. */
+ * FILE.part-N-M and renamed when complete, so that no half-written FILE is ever seen (outfile.h). */
 #ifndef LAG_IO_IO_H
 #define LAG_IO_IO_H
 
 #include <stdio.h>
 
+#include "io/outfile.h"
 #include "lag.h"
-
-/* A file in the making. path "-" is standard output; what exists and is no regular file is written directly. */
-typedef struct Outfile {
-  FILE *f;
-  char path[1024], part[1032]; /* part "": direct */
-} Outfile;
-
-/* 0, or -1 with errno set. */
-int outfile_open(Outfile *o, const char *path);
-/* Completes the file (keep) or removes it. -1 with errno set: it could not be written; nothing is left. */
-int outfile_close(Outfile *o, int keep);
 
 typedef struct Column {
   char name[96], unit[64];
@@ -121,7 +111,7 @@ typedef struct Animation {
 /* The table as a page that plays it. -1 with errno set. */
 int html_write(const char *path, const Table *t, const char *title, const Animation *a);
 
-/* JSON text: a string in quotes or null; a number with 17 digits or null. */
+/* JSON text: a string in quotes or null; a number that reads back exactly, or null. */
 void json_string(FILE *f, const char *s);
 void json_number(FILE *f, double x);
 
@@ -138,6 +128,8 @@ typedef struct State {
 } State;
 
 int state_write(const char *path, const State *s);
+/* The state that is written in a whole file's text, from anywhere; NULL, or why it is none, and then there is no data. */
+const char *state_parse(char *text, State *s);
 /* 0; -1 errno; 1: not a saved state, or damaged: *why says how. */
 int state_read(const char *path, State *s, const char **why);
 

@@ -1,7 +1,8 @@
-/* JSON text (RFC 8259). Enters: a value; leaves: its text. */
+/* JSON text (RFC 8259); what does not show in a text is escaped. Enters: a value; leaves: its text. */
 #include <math.h>
 
 #include "io/io.h"
+#include "io/visible.h"
 
 void json_string(FILE *f, const char *s)
 {
@@ -10,15 +11,19 @@ void json_string(FILE *f, const char *s)
     return;
   }
   putc('"', f);
-  for (; *s; s++) {
-    unsigned char c = (unsigned char)*s;
-    if (c == '"' || c == '\\') {
-      fprintf(f, "\\%c", c);
-    } else if (c < 0x20 || c == 0x7f) {
-      fprintf(f, "\\u%04x", c);
+  for (size_t n = strlen(s), at = 0; at < n;) {
+    unsigned long code;
+    size_t len = utf8_at(s + at, n - at, &code);
+    if (code == '"' || code == '\\') {
+      fprintf(f, "\\%c", (int)code);
+    } else if (is_hidden(code)) {
+      fprintf(f, "\\u%04lx", code);
+    } else if (len == 1 && code >= 0x80) { /* no UTF-8: JSON is */
+      fputs("\\ufffd", f);
     } else {
-      putc(c, f);
+      fwrite(s + at, 1, len, f);
     }
+    at += len;
   }
   putc('"', f);
 }
@@ -26,7 +31,7 @@ void json_string(FILE *f, const char *s)
 void json_number(FILE *f, double x)
 {
   if (isfinite(x)) {
-    fprintf(f, "%.17g", x);
+    fputs(lag_number_text(x, (char[64]){0}), f);
   } else {
     fputs("null", f);
   }

@@ -1,32 +1,166 @@
 /* A file that appears only when it is complete. Enters: a path; leaves: the file, or nothing. Holds: an
  * existing file keeps its contents until the new one is complete; devices and pipes are written directly. */
-#include <errno.h>
-#include <stdio.h>
-#include <string.h>
-#include <sys/stat.h>
+#include "io/outfile.h"
 
-#include "io/io.h"
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Only whom the file belongs to holds this lock; the system drops it with the process. */
+static int lock(int fd)
+{
+  struct flock all = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+
+  return fcntl(fd, F_SETLK, &all);
+}
+
+/* What `whole` calls a file in a folder: the end of its path. */
+static const char *name_in(const char *path)
+{
+  const char *slash = strrchr(path, '/');
+
+  return slash ? slash + 1 : path;
+}
+
+static const char *suffix_of(const char *path)
+{
+  const char *name = name_in(path), *dot = *name ? strrchr(name + 1, '.') : NULL;
+
+  return dot ? dot + 1 : "";
+}
+
+int outfile_is(const char *path, const char *suffixes)
+{
+  const char *suffix = suffix_of(path);
+  const size_t length = strlen(suffix);
+
+  for (const char *s = suffixes; length && *s; s += strspn(s, " ")) {
+    size_t n = strcspn(s, " ");
+    if (n == length && strncasecmp(s, suffix, n) == 0) {
+      return 1;
+    }
+    s += n;
+  }
+  return 0;
+}
+
+const char *outfile_other_kind(const char *path, const char *suffixes)
+{
+  static const char known[] = "csv tsv npy npz json xml yaml h5 hdf5 nc mat parquet pkl xls xlsx ods svg png jpg jpeg gif webp bmp tif tiff "
+                              "pdf eps ps html htm mp4 webm avi mov c h hpp o so a py tex zip gz";
+
+  return outfile_is(path, known) && !outfile_is(path, suffixes) ? suffix_of(path) : NULL;
+}
+
+/* Removes temporary files of `path` that a killed run has left: the user's own, which nobody holds. */
+static void remove_remains(const char *path)
+{
+  const char *name = name_in(path);
+  size_t n = strlen(name);
+  char folder[sizeof((Outfile *)0)->path];
+  struct stat st;
+
+  snprintf(folder, sizeof folder, "%.*s", name > path ? (int)(name - path) : 1, name > path ? path : ".");
+  DIR *d = opendir(folder);
+  for (struct dirent *e; d && (e = readdir(d)) != NULL;) {
+    const char *rest = e->d_name + n + strlen(".part-");
+    if (strncmp(e->d_name, name, n) != 0 || strncmp(e->d_name + n, ".part-", 6) != 0 || strspn(rest, "0123456789-") != strlen(rest)) {
+      continue;
+    }
+    int fd = openat(dirfd(d), e->d_name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && st.st_uid == geteuid() && lock(fd) == 0) {
+      unlinkat(dirfd(d), e->d_name, 0);
+    }
+    if (fd >= 0) {
+      close(fd);
+    }
+  }
+  if (d) {
+    closedir(d);
+  }
+}
+
+/* Standard output and its like, by name: what follows there is part of a stream, even where that leads to a file. */
+static int is_stream(const char *path)
+{
+  return strncmp(path, "/dev/std", 8) == 0 || strncmp(path, "/dev/fd/", 8) == 0 || strncmp(path, "/proc/", 6) == 0;
+}
+
+/* o->path := where path leads. A link that another user has planted is not followed. */
+static int find_target(Outfile *o, const char *path)
+{
+  struct stat st;
+  char *target = NULL;
+
+  if (lstat(path, &st) == 0 && S_ISLNK(st.st_mode)) {
+    if (st.st_uid != geteuid() && st.st_uid != 0) {
+      errno = EACCES;
+      return -1;
+    }
+    if ((target = realpath(path, NULL)) == NULL) {
+      return -1;
+    }
+    path = target;
+  }
+  int fits = strlen(path) < sizeof o->path;
+  snprintf(o->path, sizeof o->path, "%s", path);
+  free(target);
+  errno = ENAMETOOLONG;
+  return fits ? 0 : -1;
+}
+
+/* A new file beside o->path, with the mode and owner of what stands there. */
+static int make_part(Outfile *o)
+{
+  struct stat old, st;
+  int there = stat(o->path, &old) == 0;
+
+  for (int k = 0; k < 10000; k++) {
+    snprintf(o->part, sizeof o->part, "%s.part-%ld-%d", o->path, (long)getpid(), k);
+    int fd = open(o->part, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, there ? old.st_mode & 0600 : 0666);
+    if (fd < 0 && errno != EEXIST) {
+      break;
+    }
+    if (fd < 0) {
+      continue;
+    }
+    lock(fd);
+    if (there && fstat(fd, &st) == 0 && (st.st_uid != old.st_uid || st.st_gid != old.st_gid)) {
+      there = fchown(fd, old.st_uid, old.st_gid) == 0 ? 1 : 2; /* 2: the mode is kept, the owner cannot be */
+    }
+    if (fstat(fd, &st) == 0 && st.st_nlink > 0 && (!there || fchmod(fd, old.st_mode & 0777) == 0)) {
+      return fd;
+    }
+    close(fd); /* taken for remains before it was locked: another one */
+  }
+  o->part[0] = '\0';
+  return -1;
+}
 
 int outfile_open(Outfile *o, const char *path)
 {
   struct stat st;
 
-  memset(o, 0, sizeof *o);
-  if (strlen(path) >= sizeof o->path) {
-    errno = ENAMETOOLONG;
-    return -1;
-  }
-  strcpy(o->path, path);
+  *o = (Outfile){.f = stdout};
   if (strcmp(path, "-") == 0) {
-    o->f = stdout;
     return 0;
   }
-  if (stat(path, &st) == 0 && !S_ISREG(st.st_mode)) {
-    o->f = fopen(path, "wb");
-  } else {
-    snprintf(o->part, sizeof o->part, "%s.part", path);
-    o->f = fopen(o->part, "wb");
+  int there = stat(path, &st) == 0;
+  if (is_stream(path) || (there && !S_ISREG(st.st_mode))) {
+    o->f = fopen(path, "ab");
+    return o->f ? 0 : -1;
   }
+  if (find_target(o, path) || (there && access(o->path, W_OK) != 0)) {
+    return -1;
+  }
+  remove_remains(o->path);
+  int fd = make_part(o);
+  o->f = fd >= 0 ? fdopen(fd, "wb") : NULL;
   return o->f ? 0 : -1;
 }
 
@@ -35,20 +169,24 @@ int outfile_close(Outfile *o, int keep)
   int bad = ferror(o->f) != 0, error;
 
   errno = bad ? EIO : 0;
-  if (o->f == stdout) {
-    bad |= fflush(stdout) != 0;
-    return bad ? -1 : 0;
-  }
-  bad |= fclose(o->f) != 0;
-  o->f = NULL;
-  error = errno;
-  if (o->part[0] && !bad && keep && rename(o->part, o->path) != 0) {
-    error = errno;
+  if (fflush(o->f) != 0 || (keep == OUTFILE_SYNC && o->part[0] && fsync(fileno(o->f)) != 0)) {
     bad = 1;
   }
-  if (o->part[0] && (bad || !keep)) {
-    remove(o->part);
+  error = errno;
+  if (o->f != stdout) {
+    if (o->part[0] && !bad && keep && rename(o->part, o->path) != 0) { /* while it is locked */
+      error = errno;
+      bad = 1;
+    }
+    if (o->part[0] && (bad || !keep)) {
+      remove(o->part);
+    }
+    if (fclose(o->f) != 0 && !bad) {
+      bad = 1;
+      error = errno;
+    }
   }
+  o->f = NULL;
   errno = error ? error : EIO;
   return bad ? -1 : 0;
 }

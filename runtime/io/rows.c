@@ -241,10 +241,8 @@ static int npy_head(Rows *r)
 
 int rows_open(Rows *r, const char *path, const Table *t)
 {
-  size_t n = strlen(path);
-
   *r = (Rows){.ncols = t->ncols, .cols = t->cols};
-  r->npy = n > 4 && strcmp(path + n - 4, ".npy") == 0;
+  r->npy = outfile_is(path, "npy");
   if (outfile_open(&r->out, path)) {
     return -1;
   }
@@ -296,5 +294,5 @@ int rows_close(Rows *r, int keep)
     errno = error;
     return -1;
   }
-  return outfile_close(&r->out, keep);
+  return outfile_close(&r->out, keep ? OUTFILE_SYNC : OUTFILE_DROP);
 }

@@ -11,6 +11,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "io/io.h"
 
@@ -57,7 +58,7 @@ int state_write(const char *path, const State *s)
   fwrite(text, 1, size, o.f);
   fprintf(o.f, "sum %016" PRIx64 "\n", fnv(text, size));
   free(text);
-  return outfile_close(&o, 1);
+  return outfile_close(&o, OUTFILE_SYNC);
 }
 
 /* The whole file, 0-terminated; NULL with errno set. */
@@ -118,62 +119,100 @@ static int field(char **p, const char *key, char *value, size_t size)
   return 1;
 }
 
-static int read_head(char **p, State *s)
+/* The number that `text` begins with; *text goes behind it and the blank after it. 0: there is none. */
+static int number(char **text, double *x)
 {
-  char x[1024], *q;
+  char *end;
 
-  if (!field(p, "lag-state 1", x, sizeof x) || !field(p, "program ", s->program, sizeof s->program) ||
-      !field(p, "scene ", s->scene, sizeof s->scene) || !field(p, "method ", s->method, sizeof s->method) ||
-      !field(p, "tolerance ", x, sizeof x)) {
+  *x = strtod(*text, &end);
+  if (end == *text || (*end && *end != ' ' && *end != '\n')) {
     return 0;
   }
-  s->tol = strtod(x, NULL);
-  if (!field(p, "options ", x, sizeof x)) {
-    return 0;
-  }
-  long n = strtol(x, &q, 10);
-  if (n < 0 || n > (long)(sizeof s->options / sizeof *s->options)) {
+  *text = end + (*end != '\0');
+  return 1;
+}
+
+static int read_options(State *s, char *text)
+{
+  double n = -1;
+  int i = 0;
+
+  if (!number(&text, &n) || !lag_is_count(n, (double)(sizeof s->options / sizeof *s->options))) {
     return 0;
   }
   s->noptions = (int)n;
-  for (int i = 0; i < s->noptions; i++) {
-    s->options[i] = strtod(q, &q);
+  while (i < s->noptions && number(&text, &s->options[i])) {
+    i++;
   }
-  if (!field(p, "signature ", x, sizeof x)) {
+  return i == s->noptions && !*text;
+}
+
+static int read_head(char **p, State *s)
+{
+  char x[1024], *at = x;
+
+  if (!field(p, "lag-state 1", x, sizeof x) || !field(p, "program ", s->program, sizeof s->program) ||
+      !field(p, "scene ", s->scene, sizeof s->scene) || !field(p, "method ", s->method, sizeof s->method) ||
+      !field(p, "tolerance ", x, sizeof x) || !number(&at, &s->tol) || !field(p, "options ", x, sizeof x) || !read_options(s, x) ||
+      !field(p, "signature ", x, sizeof x)) {
     return 0;
   }
   s->signature = strtoull(x, NULL, 16);
-  if (!field(p, "t ", x, sizeof x)) {
-    return 0;
-  }
-  s->t = strtod(x, NULL);
-  if (!field(p, "data ", x, sizeof x)) {
+  at = x;
+  if (!field(p, "t ", x, sizeof x) || !number(&at, &s->t) || !field(p, "data ", x, sizeof x)) {
     return 0;
   }
   s->n = (size_t)strtoull(x, NULL, 10);
   return 1;
 }
 
-int state_read(const char *path, State *s, const char **why)
+/* data[n]; the text behind it is p. */
+static int read_data(char **p, State *s)
 {
-  char *text = slurp(path), *p = text, *sum;
+  size_t i = 0;
+
+  if (s->n > strlen(*p) || (s->data = malloc((s->n + 1) * sizeof(double))) == NULL) {
+    return 0;
+  }
+  while (i < s->n && number(p, &s->data[i])) {
+    i++;
+  }
+  return i == s->n;
+}
+
+const char *state_parse(char *text, State *s)
+{
+  char *p = text, *sum = strstr(text, "\nsum ");
 
   *s = (State){0};
+  if (strncmp(text, "lag-state 1\n", 12) != 0) {
+    return "is not a state saved by --save-state";
+  }
+  if (!sum || strtoull(sum + 5, NULL, 16) != fnv(text, (size_t)(sum + 1 - text))) {
+    return "is damaged: its checksum does not match";
+  }
+  if (read_head(&p, s) && read_data(&p, s) && p == sum + 1) {
+    return NULL;
+  }
+  free(s->data);
+  s->data = NULL;
+  return "is damaged: its lines are not those of a saved state";
+}
+
+int state_read(const char *path, State *s, const char **why)
+{
+  struct stat is;
+
+  *s = (State){0};
+  if (stat(path, &is) == 0 && !S_ISREG(is.st_mode)) { /* a pipe would be waited for */
+    *why = "is no regular file";
+    return 1;
+  }
+  char *text = slurp(path);
   if (!text) {
     return -1;
   }
-  sum = strstr(text, "\nsum ");
-  *why = "is not a state saved by --save-state";
-  if (strncmp(text, "lag-state 1\n", 12) == 0) {
-    *why = "is damaged: its checksum does not match";
-    if (sum && strtoull(sum + 5, NULL, 16) == fnv(text, (size_t)(sum + 1 - text)) && read_head(&p, s) &&
-        s->n <= strlen(p) && (s->data = malloc((s->n + 1) * sizeof(double))) != NULL) {
-      for (size_t i = 0; i < s->n; i++) {
-        s->data[i] = strtod(p, &p);
-      }
-      *why = NULL;
-    }
-  }
+  *why = state_parse(text, s);
   free(text);
   return *why ? 1 : 0;
 }

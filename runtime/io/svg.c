@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "io/io.h"
+#include "io/visible.h"
 
 enum { WIDTH = 860, LEFT = 84, RIGHT = 150, TOP = 50, GAP = 26, BOTTOM = 52, MOST_PANELS = 6, MOST_LEGEND = 24, MOST_NAME = 48 };
 
@@ -38,13 +39,18 @@ double nice_step(double lo, double hi, int n)
 
 void io_markup(FILE *f, const char *s)
 {
-  for (; *s; s++) {
-    switch (*s) {
-    case '<': fputs("&lt;", f); break;
-    case '>': fputs("&gt;", f); break;
-    case '&': fputs("&amp;", f); break;
-    case '"': fputs("&quot;", f); break;
-    default: putc(*s, f);
+  char shown[VISIBLE_SIZE];
+
+  for (size_t n = strlen(s), at = 0; at < n;) {
+    at += show_visible(s + at, n - at, shown);
+    for (const char *c = shown; *c; c++) {
+      switch (*c) {
+      case '<': fputs("&lt;", f); break;
+      case '>': fputs("&gt;", f); break;
+      case '&': fputs("&amp;", f); break;
+      case '"': fputs("&quot;", f); break;
+      default: putc(*c, f);
+      }
     }
   }
 }
@@ -573,7 +579,7 @@ int svg_chart(const char *path, const char *title, const char *xlabel, const cha
     text(o.f, x + 27, y + 4, "", s[k].name);
   }
   fputs("</svg>\n", o.f);
-  return outfile_close(&o, 1);
+  return outfile_close(&o, OUTFILE_KEEP);
 }
 
 int svg_write(const char *path, const Table *t, const char *title, const Drawn *d)
@@ -589,5 +595,5 @@ int svg_write(const char *path, const Table *t, const char *title, const Drawn *
     paths(o.f, t, title, d);
   }
   fputs("</svg>\n", o.f);
-  return outfile_close(&o, 1);
+  return outfile_close(&o, OUTFILE_KEEP);
 }

@@ -98,6 +98,15 @@ void lag_collocation_init(void *work, lag_problem *pb, double h, int stages)
   lag_collocation_reset(work, pb);
 }
 
+int lag_collocation_sound(const void *work, const void *fresh, const lag_problem *pb)
+{
+  const Collocation *w = work, *f = fresh;
+  size_t settings = sizeof(lag_rule) / sizeof(double);
+
+  return w->h == f->h && lag_same_numbers(&w->rule.points, &f->rule.points, settings) && lag_is_sign(w->ends) && isfinite(w->t0) &&
+         isfinite(w->dt) && isfinite(w->tc) && lag_history_is_sound(arrays((Collocation *)w, pb).history);
+}
+
 /* ---- The equations u_i = f(t + c_i h, y0 + h sum_k a_ik u_k) */
 
 /* A step that is to be found: from y0 (which has lost comp, or NULL) at t, of length h. */

@@ -62,6 +62,16 @@ int lag_embedded_init(void *work, lag_problem *pb, const double *opt)
   return LAG_OK;
 }
 
+int lag_embedded_sound(const void *work, const void *fresh, const lag_problem *pb)
+{
+  const Embedded *w = work, *f = fresh;
+
+  (void)pb;
+  return w->h >= 0 && isfinite(w->h) && w->h_option == f->h_option && w->h_max == f->h_max && w->atol == f->atol && w->fixed == f->fixed &&
+         w->per == f->per && lag_is_count(w->ready, 2) && lag_is_sign(w->have_extra) && w->err_power >= 0 && isfinite(w->t0) &&
+         isfinite(w->dt) && isfinite(w->tc) && isfinite(w->t_begin) && lag_is_flag(w->begun);
+}
+
 /* f at the start of a step into K1, y into Y0, and a step to try. */
 static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y)
 {
@@ -271,7 +281,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
         w->h = clipped ? lag_greater(w->h, wanted) : w->h;
       }
       accept(w, pb, t, y, dt, tb, tc);
-      return w->fixed == 0.0 && lag_creeps(pb, &w->creep, w->t_begin, tb, y) ? LAG_ESTEP : LAG_OK;
+      return LAG_OK;
     }
     if (isnan(err)) {
       cause = rc ? LAG_EDOMAIN : LAG_ENAN;

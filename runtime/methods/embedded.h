@@ -36,7 +36,6 @@ struct Embedded {
   double begun;
   double per;       /* 1/n */
   double across;    /* the square of the error with what the projection takes back, where that was left out of it; or 0 */
-  lag_creep creep;
   _Alignas(LAG_WORK_ALIGN) double x[];
 };
 
@@ -64,6 +63,7 @@ size_t lag_embedded_size(const EmbeddedPair *pair, const lag_problem *pb, int mo
 /* These are as lag_method says. */
 int lag_embedded_init(void *work, lag_problem *pb, const double *opt);
 void lag_embedded_reset(void *work, lag_problem *pb);
+int lag_embedded_sound(const void *work, const void *fresh, const lag_problem *pb);
 int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y);
 
 /* > 0 where constraints contain the time, and a coordinate has gone back while its velocities at both ends, tb being the later one, lead on: it ran off to
@@ -83,6 +83,7 @@ int lag_embedded_tangent(const EmbeddedPair *pair, void *work, lag_problem *pb, 
   .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_CONSTRAINTS | LAG_METHOD_STRETCHES | LAG_METHOD_LANDS,                   \
   .noptions = EMBEDDED_NOPTIONS, .options = lag_embedded_options,                                                    \
   .work_size = work_size, .init = lag_embedded_init, .step = step, .dense = dense, .reset = lag_embedded_reset,      \
+  .sound = lag_embedded_sound,                                                                                       \
   .tangent_size = tangent_size, .tangent = tangent
 
 #endif

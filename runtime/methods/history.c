@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "lag.h"
+
 enum { DEGREE = 7 }; /* more amplifies rounding: the guess has 2^DEGREE times that of its values */
 
 /* How many differences are known, the degree to use, the differences of order 0 .. DEGREE + 1. */
@@ -38,6 +40,13 @@ int lag_history_guess(const double *history, int m, double *x)
 void lag_history_last(const double *history, int m, double *x)
 {
   memcpy(x, ((const History *)(const void *)history)->x, (size_t)m * sizeof *x);
+}
+
+int lag_history_is_sound(const double *history)
+{
+  const History *h = (const void *)history;
+
+  return lag_is_count(h->known, DEGREE + 2) && lag_is_count(h->degree, DEGREE);
 }
 
 /* The largest difference of order j, each component against its own size. */

@@ -13,6 +13,9 @@ int lag_history_guess(const double *history, int m, double *x);
 /* x := what the vector was last. */
 void lag_history_last(const double *history, int m, double *x);
 
+/* As lag_method.sound. */
+int lag_history_is_sound(const double *history);
+
 /* The vector has become x. */
 void lag_history_add(double *history, int m, const double *x);
 

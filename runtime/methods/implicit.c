@@ -55,6 +55,29 @@ void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_compo
   w->links = lag_compose_links(c, w->part);
 }
 
+/* Of the links, of velocities, and of impulses. */
+static int histories_are_sound(const Implicit *w, const lag_problem *pb)
+{
+  Arrays a = lag_links_arrays((Implicit *)w, pb);
+  int nc = pb->model->constraints ? pb->model->constraints->n : 0;
+
+  for (int k = 0; k <= (int)w->links; k++) {
+    if (!lag_history_is_sound(a.history + (size_t)k * lag_links_history(pb, w)) ||
+        (nc && k < (int)w->links && !lag_history_is_sound(a.block.history + (size_t)k * lag_history_size(nc)))) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+int lag_implicit_sound(const void *work, const void *fresh, const lag_problem *pb)
+{
+  const Implicit *w = work, *f = fresh;
+
+  return w->h == f->h && lag_same_numbers(&w->order, &f->order, (size_t)(w->x - &w->order)) && lag_is_flag(w->ready) &&
+         lag_is_count(w->have_path + 2, 3) && isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc) && histories_are_sound(w, pb);
+}
+
 /* p of the state y, with nothing known of the past. */
 static int begin(Implicit *w, const Arrays *a, lag_problem *pb, double t, const double *y)
 {

@@ -63,7 +63,6 @@ typedef struct Radau {
   double t0, dt;       /* the last step */
   double tc;           /* what t has lost to rounding */
   double t_begin, begun;
-  lag_creep creep;
   double x[];
 } Radau;
 
@@ -134,6 +133,21 @@ static int init(void *work, lag_problem *pb, const double *opt)
   w->atol = w->rtol * (atol / pb->tol);
   reset(work, pb);
   return LAG_OK;
+}
+
+static int sound(const void *work, const void *fresh, const lag_problem *pb)
+{
+  const Radau *w = work, *f = fresh;
+  Arrays a = arrays((Radau *)w, pb);
+  int most = pb->n - 1, i = 0;
+
+  while (i < pb->n && lag_is_count(a.real.pivot[i], most) && lag_is_count(a.complex.pivot[i], 2 * most + 1) &&
+         lag_is_count(a.complex.pivot[pb->n + i], 2 * most + 1)) {
+    i++;
+  }
+  return i == pb->n && w->h >= 0 && isfinite(w->h) && lag_same_numbers(&w->h_option, &f->h_option, 5) && lag_is_flag(w->ready) &&
+         lag_is_count(w->jacobian_age, 2) && isfinite(w->factored) && lag_is_flag(w->have_path) && w->h_accepted >= 0 && lag_is_flag(w->again) &&
+         isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc) && isfinite(w->t_begin) && lag_is_flag(w->begun);
 }
 
 /* ---- The linear equations */
@@ -533,7 +547,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     why = attempt(w, &a, pb, *t, tb, y, dt);
     if (why == 0) {
       accept(w, &a, pb, t, y, dt, tb, tc);
-      return w->fixed == 0.0 && lag_creeps(pb, &w->creep, w->t_begin, tb, y) ? LAG_ESTEP : LAG_OK;
+      return LAG_OK;
     }
     if (why < 0) {
       return why;
@@ -593,6 +607,7 @@ const lag_method lag_radau = {
     .step = step,
     .dense = dense,
     .reset = reset,
+    .sound = sound,
     .tangent_size = tangent_size,
     .tangent = tangent,
 };

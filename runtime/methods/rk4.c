@@ -49,6 +49,14 @@ static int init(void *work, lag_problem *pb, const double *opt)
   return LAG_OK;
 }
 
+static int sound(const void *work, const void *fresh, const lag_problem *pb)
+{
+  const Rk4 *w = work, *f = fresh;
+
+  (void)pb;
+  return w->h == f->h && lag_is_flag(w->ready) && isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc);
+}
+
 /* The four stages into K1..K4; the increment of y, not yet scaled by h, into YS. */
 static int stages(Rk4 *w, lag_problem *pb, double t, const double *y, double dt)
 {
@@ -158,6 +166,7 @@ const lag_method lag_rk4 = {
     .step = step,
     .dense = dense,
     .reset = reset,
+    .sound = sound,
     .tangent_size = tangent_size,
     .tangent = tangent,
 };

@@ -156,6 +156,16 @@ static int init(void *work, lag_problem *pb, const double *opt)
   return LAG_OK;
 }
 
+static int sound(const void *work, const void *fresh, const lag_problem *pb)
+{
+  const Taylor *w = work, *f = fresh;
+
+  return lag_same_numbers(&w->order, &f->order, (size_t)(&w->ready - &w->order)) &&
+         lag_same_numbers(follows((Taylor *)w, pb), follows((Taylor *)f, pb), (size_t)pb->model->nu) && lag_is_flag(w->ready) && lag_is_flag(w->now) &&
+         isfinite(w->t0) && isfinite(w->dt) && isfinite(w->unit[0]) && isfinite(w->unit[1]) && isfinite(w->noise) && isfinite(w->t_begin) &&
+         lag_is_flag(w->begun) && isfinite(w->tc);
+}
+
 /* Order 0 at t, y of series[which]. 0, or as the model says; > 0, too, where a rate is not finite: pb->bad_index >= 0. */
 static int first(Taylor *w, lag_problem *pb, double which, double t, const double *y)
 {
@@ -395,6 +405,7 @@ const lag_method lag_taylor_method = {
     .step = step,
     .dense = dense,
     .reset = reset,
+    .sound = sound,
     .tangent_size = tangent_size,
     .tangent = tangent,
 };

@@ -124,6 +124,11 @@ static void gauss_reset(void *work, lag_problem *pb)
   (pb->nq ? lag_implicit_reset : lag_collocation_reset)(work, pb);
 }
 
+static int gauss_sound(const void *work, const void *fresh, const lag_problem *pb)
+{
+  return (pb->nq ? lag_implicit_sound : lag_collocation_sound)(work, fresh, pb);
+}
+
 static size_t gauss_tangent_size(const lag_problem *pb, int k)
 {
   return (pb->nq ? lag_implicit_tangent_size : lag_collocation_tangent_size)(pb, k);
@@ -154,6 +159,7 @@ const lag_method lag_variational = {
     .step = step,
     .dense = lag_implicit_dense,
     .reset = lag_implicit_reset,
+    .sound = lag_implicit_sound,
     .tangent_size = lag_implicit_tangent_size,
     .tangent = lag_implicit_tangent,
 };
@@ -176,6 +182,7 @@ const lag_method lag_gauss = {
     .step = gauss_step,
     .dense = gauss_dense,
     .reset = gauss_reset,
+    .sound = gauss_sound,
     .tangent_size = gauss_tangent_size,
     .tangent = gauss_tangent,
 };

@@ -78,6 +78,16 @@ static int init(const Member *m, void *work, lag_problem *pb, const double *opt)
   return LAG_OK;
 }
 
+static int sound(const void *work, const void *fresh, const lag_problem *pb)
+{
+  const Verlet *w = work, *f = fresh;
+
+  if (!is_explicit(pb)) {
+    return lag_implicit_sound(work, fresh, pb);
+  }
+  return w->h == f->h && lag_is_flag(w->ready) && lag_is_sign(w->have_path) && isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc);
+}
+
 /* The increment of v by one kick. */
 static void kick(Verlet *w, const lag_problem *pb, double h, const double *f)
 {
@@ -285,6 +295,7 @@ static int tangent(const lag_composition *c, void *work, lag_problem *pb, double
       .step = step_##id,                                                                 \
       .dense = dense_##id,                                                               \
       .reset = reset,                                                                    \
+      .sound = sound,                                                                    \
       .tangent_size = tangent_size,                                                      \
       .tangent = tangent_##id,                                                           \
   };

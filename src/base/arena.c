@@ -6,6 +6,24 @@
 #include <stdlib.h>
 #include <string.h>
 
+#ifdef __has_feature
+#if __has_feature(address_sanitizer)
+#define __SANITIZE_ADDRESS__ 1
+#endif
+#endif
+/* Under the address sanitizer a gap that must not be touched follows each block; it counts for no limit. */
+#ifdef __SANITIZE_ADDRESS__
+void __asan_poison_memory_region(void const volatile *p, size_t n);
+void __asan_unpoison_memory_region(void const volatile *p, size_t n);
+#define POISON __asan_poison_memory_region
+#define UNPOISON __asan_unpoison_memory_region
+enum { GAP = sizeof(max_align_t) };
+#else
+#define POISON(p, n) ((void)(p), (void)(n))
+#define UNPOISON(p, n) ((void)(p), (void)(n))
+enum { GAP = 0 };
+#endif
+
 typedef struct Chunk Chunk;
 struct Chunk {
   Chunk *next;
@@ -44,25 +62,29 @@ Arena *arena_new(const ArenaConfig *config) {
   return a;
 }
 
+/* Frees the chunks that are newer than `last`. */
+static void free_chunks(Arena *a, const Chunk *last) {
+  while (a->chunks != last) {
+    Chunk *c = a->chunks;
+    a->chunks = c->next;
+    UNPOISON(c->data, c->size);
+    a->config.dealloc(a->config.user, c);
+  }
+}
+
 void arena_free(Arena *a) {
   if (!a) return;
-  for (Chunk *c = a->chunks; c;) {
-    Chunk *next = c->next;
-    a->config.dealloc(a->config.user, c);
-    c = next;
-  }
+  free_chunks(a, NULL);
   a->config.dealloc(a->config.user, a);
 }
 
 ArenaMark arena_mark(const Arena *a) { return (ArenaMark){a->chunks, a->chunks ? a->chunks->used : 0, a->used}; }
 
 void arena_forget(Arena *a, ArenaMark since) {
-  while (a->chunks != since.chunk) {
-    Chunk *next = a->chunks->next;
-    a->config.dealloc(a->config.user, a->chunks);
-    a->chunks = next;
-  }
-  if (a->chunks) a->chunks->used = since.in_chunk;
+  Chunk *c = since.chunk;
+  free_chunks(a, c);
+  if (c) POISON((char *)c->data + since.in_chunk, c->size - since.in_chunk);
+  if (c) c->used = since.in_chunk;
   a->used = since.used;
 }
 
@@ -85,23 +107,26 @@ static Chunk *chunk_new(Arena *a, size_t n) {
   c->used = 0;
   c->next = a->chunks;
   a->chunks = c;
+  POISON(c->data, c->size);
   return c;
 }
 
 void *arena_alloc(Arena *a, size_t n) {
   const size_t align = sizeof(max_align_t);
   if (n > SIZE_MAX / 4) arena_fail(a);
+  size_t asked = n;
   n = (n + align - 1) / align * align;
   if (a->config.max_bytes && a->used + n > a->config.max_bytes) {
     a->hit_limit = 1;
     arena_fail(a);
   }
   Chunk *c = a->chunks;
-  if (!c || c->size - c->used < n) c = chunk_new(a, n);
+  if (!c || c->size - c->used < n + GAP) c = chunk_new(a, n + GAP);
   void *p = (char *)c->data + c->used;
-  c->used += n;
+  c->used += n + GAP;
   a->used += n;
-  return memset(p, 0, n);
+  UNPOISON(p, asked);
+  return memset(p, 0, asked);
 }
 
 char *arena_strndup(Arena *a, const char *s, size_t n) {

@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "base/sparse_solve.h"
+
 static void exchange(long double *x, long double *y, uint32_t n, size_t stride) {
   for (size_t i = 0; i < n * stride; i += stride) {
     long double t = x[i];
@@ -12,78 +14,50 @@ static void exchange(long double *x, long double *y, uint32_t n, size_t stride) 
   }
 }
 
-/* The largest element behind row and column k comes to (k, k); 0 when it is not above `least`. */
-static int pivot(uint32_t n, uint32_t k, long double *a, long double *b, long double least, uint32_t *column) {
-  size_t w = n, row = k, col = k;
-  for (size_t i = k; i < n; i++)
-    for (size_t j = k; j < n; j++)
-      if (fabsl(a[i * w + j]) > fabsl(a[row * w + col])) row = i, col = j;
-  if (!(fabsl(a[row * w + col]) > least)) return 0;
-  exchange(a + k * w, a + row * w, n, 1);
-  exchange(a + k, a + col, n, w);
-  if (b) exchange(b + k, b + row, 1, 1);
-  uint32_t t = column[k];
-  column[k] = column[col];
-  column[col] = t;
-  return 1;
-}
-
-/* The upper triangle's first `rank` rows: x of the columns before `rank`, for the right-hand side in x. */
-static void back(uint32_t n, uint32_t rank, const long double *a, long double *x) {
-  size_t w = n;
-  for (size_t k = rank; k-- > 0;) {
-    for (size_t j = k + 1; j < rank; j++) x[k] -= a[k * w + j] * x[j];
-    x[k] /= a[k * w + k];
-  }
-}
-
-/* x[k] and y[k] belong to unknown column[k]; either may be NULL. */
-static void unscramble(uint32_t n, long double *x, long double *y, uint32_t *column) {
-  for (uint32_t k = 0; k < n; k++)
-    while (column[k] != k) {
-      uint32_t to = column[k];
-      if (x) exchange(x + k, x + to, 1, 1);
-      if (y) exchange(y + k, y + to, 1, 1);
-      column[k] = column[to];
-      column[to] = to;
-    }
-}
-
-uint32_t dense_solve(uint32_t n, long double *a, long double *b, long double rest, uint32_t *column, long double *null) {
-  size_t w = n;
-  long double largest = 0;
-  uint32_t rank = 0;
-  for (size_t i = 0; i < w * w; i++) largest = fmaxl(largest, fabsl(a[i]));
-  for (uint32_t i = 0; i < n; i++) column[i] = i;
-  for (; rank < n && pivot(n, rank, a, b, rest * largest, column); rank++)
-    for (size_t i = rank + 1; i < n; i++) {
-      long double f = a[i * w + rank] / a[rank * w + rank];
-      for (size_t j = rank; j < n; j++) a[i * w + j] -= f * a[rank * w + j];
-      if (b) b[i] -= f * b[rank];
-    }
-  for (uint32_t k = rank; b && k < n; k++) b[k] = 0;
-  if (b) back(n, rank, a, b);
-  if (null && rank < n) {
-    for (uint32_t k = 0; k < n; k++) null[k] = k < rank ? -a[k * w + rank] : k == rank;
-    back(n, rank, a, null);
-  }
-  unscramble(n, b, rank < n ? null : NULL, column);
+uint32_t dense_solve(Arena *arena, uint32_t n, const long double *a, long double *b, long double rest, long double *null) {
+  ArenaMark before = arena_mark(arena);
+  SparseElements all = {0};
+  for (uint32_t i = 0; i < n; i++)
+    for (uint32_t j = 0; j < n; j++) sparse_put(arena, &all, i, j, a[(size_t)i * n + j]);
+  uint32_t rank = sparse_solve(arena, n, &all, b, rest, null);
+  arena_forget(arena, before);
   return rank;
 }
 
-long double dense_reduce(uint32_t n, long double *row, const long double *before, uint32_t rank) {
-  long double was = 0, left = 0;
-  for (uint32_t j = 0; j < n; j++) was += row[j] * row[j];
-  for (uint32_t k = 0; k < 2 * rank; k++) {
-    const long double *q = before + (size_t)(k % rank) * n;
-    long double along = 0;
-    for (uint32_t j = 0; j < n; j++) along += q[j] * row[j];
-    for (uint32_t j = 0; j < n; j++) row[j] -= along * q[j];
+/* Orthonormal rows, and of each the columns that are not 0. */
+typedef struct {
+  const long double *at;
+  uint32_t n, width, *begin, *column; /* NULL: all columns */
+} Basis;
+
+/* Takes the row's part along row k of the basis off it. */
+static void take_off(const Basis *b, uint32_t k, long double *row) {
+  const long double *q = b->at + (size_t)k * b->width;
+  uint32_t from = b->begin ? b->begin[k] : 0, to = b->begin ? b->begin[k + 1] : b->width;
+  const uint32_t *column = b->column;
+  long double along = 0;
+  for (uint32_t x = from; x < to; x++) {
+    uint32_t j = column ? column[x] : x;
+    along += q[j] * row[j];
   }
-  for (uint32_t j = 0; j < n; j++) left += row[j] * row[j];
+  for (uint32_t x = from; x < to && along != 0; x++) {
+    uint32_t j = column ? column[x] : x;
+    row[j] -= along * q[j];
+  }
+}
+
+static long double reduce(const Basis *b, long double *row) {
+  long double was = 0, left = 0;
+  for (uint32_t j = 0; j < b->width; j++) was += row[j] * row[j];
+  for (uint32_t k = 0; k < 2 * b->n; k++) take_off(b, k % b->n, row);
+  for (uint32_t j = 0; j < b->width; j++) left += row[j] * row[j];
   left = sqrtl(left);
-  for (uint32_t j = 0; j < n && left > 0; j++) row[j] /= left;
+  for (uint32_t j = 0; j < b->width && left > 0; j++) row[j] /= left;
   return was > 0 ? left / sqrtl(was) : 0;
+}
+
+long double dense_reduce(uint32_t n, long double *row, const long double *before, uint32_t rank) {
+  return reduce(&(Basis){.at = before, .n = rank, .width = n}, row);
 }
 
 /* --- kernels --- */
@@ -150,10 +124,10 @@ static void reflect(Triangle *t, uint32_t k, long double length) {
   long double half = -alpha * m[k * w + k]; /* |u|^2/2 of the u that stands in column k */
   for (size_t j = k + 1; j < to; j++) t->along[j] = 0;
   for (size_t i = k; i < t->rows; i++)
-    for (size_t j = k + 1; j < to; j++) t->along[j] += m[i * w + k] * m[i * w + j];
+    for (size_t j = k + 1; j < to && m[i * w + k] != 0; j++) t->along[j] += m[i * w + k] * m[i * w + j];
   for (size_t j = k + 1; j < to; j++) t->along[j] /= half;
   for (size_t i = k; i < t->rows; i++)
-    for (size_t j = k + 1; j < to; j++) m[i * w + j] -= m[i * w + k] * t->along[j];
+    for (size_t j = k + 1; j < to && m[i * w + k] != 0; j++) m[i * w + j] -= m[i * w + k] * t->along[j];
   m[k * w + k] = alpha;
   for (size_t j = k + 1; j < to; j++) t->length[j] -= m[k * w + j] * m[k * w + j];
 }
@@ -209,14 +183,51 @@ uint32_t dense_echelon(uint32_t rows, uint32_t columns, long double *m, long dou
   return rank;
 }
 
+/* The row behind the basis becomes one of it. */
+static void join_basis(Basis *b) {
+  uint32_t next = b->begin[b->n];
+  for (uint32_t j = 0; j < b->width; j++)
+    if (b->at[(size_t)b->n * b->width + j] != 0) b->column[next++] = j;
+  b->begin[++b->n] = next;
+}
+
 DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns) {
-  DenseRows o = {.width = columns, .at = ARENA_ARRAY(a, long double, (size_t)from->n * columns + 1)};
+  size_t all = (size_t)from->n * columns;
+  DenseRows o = {.width = columns, .at = ARENA_ARRAY(a, long double, all + 1)};
+  Basis basis = {.at = o.at, .width = columns, .begin = ARENA_ARRAY(a, uint32_t, from->n + 1), .column = ARENA_ARRAY(a, uint32_t, all + 1)};
   for (uint32_t k = 0; k < from->n; k++) {
-    long double *row = o.at + (size_t)o.n * columns, length = 0;
+    long double *row = o.at + (size_t)basis.n * columns, length = 0;
     memcpy(row, from->at + (size_t)k * from->width, columns * sizeof *row);
     for (uint32_t j = 0; j < columns; j++) length += row[j] * row[j];
-    if (length > 0 && dense_reduce(columns, row, o.at, o.n) > 1e-9L) o.n++;
+    if (length > 0 && reduce(&basis, row) > 1e-9L) join_basis(&basis);
     else memset(row, 0, columns * sizeof *row);
   }
+  o.n = basis.n;
   return o;
+}
+
+int dense_invert(uint32_t n, long double *a, long double *inverse) {
+  for (uint32_t i = 0; i < n * n; i++) inverse[i] = i % (n + 1) == 0;
+  for (uint32_t c = 0; c < n; c++) {
+    uint32_t best = c;
+    for (uint32_t i = c; i < n; i++)
+      if (fabsl(a[i * n + c]) > fabsl(a[best * n + c])) best = i;
+    long double first = a[best * n + c];
+    if (!(fabsl(first) > 0) || !isfinite(first)) return 0;
+    for (uint32_t k = 0; k < n; k++) {
+      long double x = a[best * n + k], y = inverse[best * n + k];
+      a[best * n + k] = a[c * n + k];
+      inverse[best * n + k] = inverse[c * n + k];
+      a[c * n + k] = x / first;
+      inverse[c * n + k] = y / first;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+      long double ratio = a[i * n + c];
+      for (uint32_t k = 0; i != c && ratio != 0 && k < n; k++) {
+        a[i * n + k] -= ratio * a[c * n + k];
+        inverse[i * n + k] -= ratio * inverse[c * n + k];
+      }
+    }
+  }
+  return 1;
 }

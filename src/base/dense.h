@@ -6,11 +6,11 @@
 
 #include "base/arena.h"
 
-/* Elimination with full pivoting of a[n*n] x = b[n], a row-major and destroyed; b becomes x (NULL: only the rank is wanted). What is
- * left at the end and not above `rest` times the largest element counts as zero; unknowns that nothing determines are 0 then.
- * column[n] is scratch. Returns the rank. Below n, null[n] (or NULL) spans a direction of the kernel.
- * Golub & Van Loan, Matrix Computations, 4th ed. (2013), 3.4.8. */
-uint32_t dense_solve(uint32_t n, long double *a, long double *b, long double rest, uint32_t *column, long double *null);
+/* sparse_solve of a[n*n], row-major. */
+uint32_t dense_solve(Arena *arena, uint32_t n, const long double *a, long double *b, long double rest, long double *null);
+
+/* The inverse of a[n*n] into inverse[n*n], by Gauss-Jordan elimination with row exchange; a is destroyed. 0: it is singular. */
+int dense_invert(uint32_t n, long double *a, long double *inverse);
 
 /* row[n] less its parts along the `rank` orthonormal rows of `before`, taken off twice so that rounding does not count, and scaled to 1
  * where something is left. Returns how much of it was left, from 0 to 1. Kahan's "twice is enough", in B. Parlett, The Symmetric

@@ -1,5 +1,7 @@
 #include "base/diag.h"
 
+#include "base/visible.h"
+
 Diags *diags_new(Arena *a, const Sources *sources) {
   Diags *d = ARENA_NEW(a, Diags);
   d->arena = a;
@@ -61,6 +63,21 @@ void diag_also(Diags *d, Span span, const char *fmt, ...) {
   va_end(ap);
 }
 
+/* As many signs as the characters of the line from byte `from` to `to` take on a screen. */
+static void put_under(StrBuf *out, const Place *p, uint32_t from, uint32_t to, char sign) {
+  char shown[VISIBLE_SIZE];
+  for (uint32_t k = from; k < to; k++) {
+    unsigned char c = (unsigned char)p->line_text[k];
+    if ((c & 0xC0) == 0x80) continue;
+    if (c == '\t') {
+      sb_putc(out, sign == ' ' ? '\t' : sign);
+      continue;
+    }
+    show_visible(p->line_text + k, p->line_len - k, shown);
+    for (size_t columns = shown[0] == '<' && c != '<' ? strlen(shown) : 1; columns; columns--) sb_putc(out, sign);
+  }
+}
+
 /* The source line and, under it, a caret with tildes to the end of the span (or of the line).
  * Long lines are shown in a window around the span. */
 static void print_snippet(StrBuf *out, const Place *p, Span span) {
@@ -73,26 +90,25 @@ static void print_snippet(StrBuf *out, const Place *p, Span span) {
   }
   const char *dots = from ? "..." : "";
   const char *more = len < p->line_len ? "..." : "";
-  sb_printf(out, "%5u | %s%.*s%s\n      | %s", p->line, dots, (int)(len - from), p->line_text + from,
-            more, from ? "   " : "");
-  for (uint32_t k = from; k < p->line_byte && k < p->line_len; k++) {
-    unsigned char c = (unsigned char)p->line_text[k];
-    if (c == '\t') sb_putc(out, '\t');
-    else if ((c & 0xC0) != 0x80) sb_putc(out, ' ');
-  }
+  sb_printf(out, "%5u | %s", p->line, dots);
+  sb_visible(out, p->line_text + from, len - from, "\t");
+  sb_printf(out, "%s\n      | %s", more, from ? "   " : "");
+  put_under(out, p, from, p->line_byte < p->line_len ? p->line_byte : p->line_len, ' ');
   sb_putc(out, '^');
   uint32_t end = p->line_byte + (span.end > span.begin ? span.end - span.begin : 1);
-  for (uint32_t k = p->line_byte + 1; k < end && k < len; k++)
-    if (((unsigned char)p->line_text[k] & 0xC0) != 0x80) sb_putc(out, '~');
+  put_under(out, p, p->line_byte + 1, end < len ? end : len, '~');
   sb_putc(out, '\n');
 }
 
 static void print_one(const Diags *d, StrBuf *out, Severity severity, Span span, const char *message) {
   static const char *const words[] = {"note", "warning", "error"};
   Place p = source_place(d->sources, span.end ? span.begin : 0);
-  if (p.file) sb_printf(out, "%s:%u:%u: ", p.file->path, p.line, p.column);
+  if (p.file) sb_visible(out, p.file->path, strlen(p.file->path), "");
+  if (p.file) sb_printf(out, ":%u:%u: ", p.line, p.column);
   else sb_puts(out, "lagc: ");
-  sb_printf(out, "%s: %s\n", words[severity], message);
+  sb_printf(out, "%s: ", words[severity]);
+  sb_visible(out, message, strlen(message), "\n\t");
+  sb_putc(out, '\n');
   if (p.file) print_snippet(out, &p, span);
 }
 
@@ -112,7 +128,11 @@ void diags_print(const Diags *d, StrBuf *out) {
   for (uint32_t i = 0; i < d->list.n && i < DIAG_MAX; i++) {
     const Diag *one = &d->list.at[order[i]];
     print_one(d, out, one->severity, one->span, one->message);
-    if (one->help) sb_printf(out, "      = %s\n", one->help);
+    if (one->help) {
+      sb_puts(out, "      = ");
+      sb_visible(out, one->help, strlen(one->help), "\n\t");
+      sb_putc(out, '\n');
+    }
     if (one->note) print_one(d, out, DIAG_NOTE, one->note_span, one->note);
   }
   if (d->list.n > DIAG_MAX)

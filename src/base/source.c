@@ -1,7 +1,11 @@
 #include "base/source.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 Sources *sources_new(Arena *a) {
   Sources *s = ARENA_NEW(a, Sources);
@@ -14,6 +18,9 @@ const Source *source_add(Sources *s, const char *path, const char *text, size_t 
   if (len > SOURCE_MAX_BYTES || s->next_base > UINT32_MAX - SOURCE_MAX_BYTES - 2) return NULL;
   Source file = {.path = path, .text = text, .len = (uint32_t)len, .base = s->next_base};
   s->next_base += file.len + 1;
+  vec_push(s->arena, &file.lines, 0);
+  for (const char *end; (end = memchr(text + file.lines.at[file.lines.n - 1], '\n', len - file.lines.at[file.lines.n - 1]));)
+    vec_push(s->arena, &file.lines, (uint32_t)(end - text) + 1);
   vec_push(s->arena, &s->files, file);
   return &s->files.at[s->files.n - 1];
 }
@@ -39,12 +46,7 @@ static char *read_all(Arena *a, FILE *f, size_t max, size_t *len) {
   return text;
 }
 
-const Source *source_read(Sources *s, const char *path, const char **error) {
-  FILE *f = fopen(path, "rb");
-  if (!f) {
-    *error = strerror(errno);
-    return NULL;
-  }
+static const Source *read_file(Sources *s, FILE *f, const char *path, const char **error) {
   /* Reading may run out of memory; the file must be closed before the failure goes on. */
   jmp_buf here;
   jmp_buf *before = arena_guard(s->arena, &here);
@@ -68,17 +70,45 @@ const Source *source_read(Sources *s, const char *path, const char **error) {
   return file;
 }
 
+const Source *source_read_model(Sources *s, const char *path, const char **error) {
+  FILE *f = fopen(path, "rb");
+  if (f) return read_file(s, f, path, error);
+  *error = strerror(errno);
+  return NULL;
+}
+
+FILE *source_open(const char *path, const char **error) {
+  struct stat st;
+  int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC); /* a pipe without a writer is opened, too, and refused */
+  FILE *f = NULL;
+  if (fd < 0) *error = strerror(errno);
+  else if (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode)) *error = "it is no regular file";
+  else if (!(f = fdopen(fd, "rb"))) *error = strerror(errno);
+  if (!f && fd >= 0) close(fd);
+  return f;
+}
+
+const Source *source_read(Sources *s, const char *path, const char **error) {
+  FILE *f = source_open(path, error);
+  return f ? read_file(s, f, path, error) : NULL;
+}
+
+/* The number of the line, from 1. */
+static uint32_t line_of(const Source *f, uint32_t at) {
+  uint32_t lo = 0, hi = f->lines.n;
+  while (hi - lo > 1) {
+    uint32_t middle = lo + (hi - lo) / 2;
+    if (f->lines.at[middle] <= at) lo = middle;
+    else hi = middle;
+  }
+  return lo + 1;
+}
+
 Place source_place(const Sources *s, uint32_t offset) {
   for (uint32_t i = 0; i < s->files.n; i++) {
     const Source *f = &s->files.at[i];
     if (offset < f->base || offset > f->base + f->len) continue;
-    uint32_t at = offset - f->base, line = 1, start = 0;
-    for (uint32_t k = 0; k < at; k++)
-      if (f->text[k] == '\n') {
-        line++;
-        start = k + 1;
-      }
-    uint32_t column = 1;
+    uint32_t at = offset - f->base, line = line_of(f, at), start = f->lines.at[line - 1], column = 1;
     for (uint32_t k = start; k < at; k++)
       if (((unsigned char)f->text[k] & 0xC0) != 0x80) column++;
     const char *text = f->text + start;

@@ -7,6 +7,7 @@
 #define LAGC_SOURCE_H
 
 #include <stdint.h>
+#include <stdio.h>
 
 #include "base/vec.h"
 
@@ -25,6 +26,7 @@ typedef struct {
   const char *text; /* NUL-terminated */
   uint32_t len;
   uint32_t base; /* offset of text[0] */
+  VEC(uint32_t) lines; /* where each begins */
 } Source;
 
 typedef struct {
@@ -48,8 +50,14 @@ Sources *sources_new(Arena *a);
 /* Adds a text (not copied: it must outlive the sources). Texts over SOURCE_MAX_BYTES: NULL. */
 const Source *source_add(Sources *s, const char *path, const char *text, size_t len);
 
-/* Reads a file into the arena. On failure NULL, and *error says why (an English sentence part). */
+/* Reads a file into the arena: the model, which may come through a pipe. On failure NULL, and *error says why (an English sentence part). */
+const Source *source_read_model(Sources *s, const char *path, const char **error);
+/* The same of a file that a model names, which must be a regular one: a model may come from anywhere, and no pipe or device waits, or does
+ * anything, because of it. */
 const Source *source_read(Sources *s, const char *path, const char **error);
+
+/* Such a file, open for reading, or NULL with *error. */
+FILE *source_open(const char *path, const char **error);
 
 /* Where an offset is; file NULL for offset 0 or one past all texts. */
 Place source_place(const Sources *s, uint32_t offset);

@@ -1,5 +1,7 @@
 #include "base/strbuf.h"
 
+#include "base/visible.h" /* generated: a copy of runtime/io/visible.h */
+
 #include <stdio.h>
 #include <string.h>
 
@@ -41,3 +43,14 @@ void sb_printf(StrBuf *b, const char *fmt, ...) {
 }
 
 const char *sb_text(const StrBuf *b) { return b->at ? b->at : ""; }
+
+void sb_visible(StrBuf *b, const char *s, size_t n, const char *keep) {
+  char shown[VISIBLE_SIZE];
+  for (size_t at = 0; at < n;) {
+    if (s[at] && strchr(keep, s[at])) sb_putc(b, s[at++]);
+    else {
+      at += show_visible(s + at, n - at, shown);
+      sb_puts(b, shown);
+    }
+  }
+}

@@ -16,6 +16,9 @@ void sb_puts(StrBuf *b, const char *s);
 void sb_putn(StrBuf *b, const char *s, size_t n);
 void sb_printf(StrBuf *b, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
+/* s, with control characters and those that turn the direction of text shown as <U+202E>; characters of `keep` stay. */
+void sb_visible(StrBuf *b, const char *s, size_t n, const char *keep);
+
 /* The text; "" when nothing was put in. */
 const char *sb_text(const StrBuf *b);
 

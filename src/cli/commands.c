@@ -7,9 +7,11 @@
 /* ---- the commands ---- */
 
 static const CommandRow commands[] = {
-  {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric]", "parse, derive, prove symmetries and `expect` lines",
+  {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric] [--verbose]", "parse, derive, prove symmetries and `expect` lines",
    "Parses and derives the model for every scene (or the one named), and proves or refutes its `expect` lines. "
-   "Exit status 0 when all is well, 1 when not."},
+   "Proved is what is true for all states at which both sides have real values; what is refuted is shown to differ at one. "
+   "Exit status 0 when all is well, 1 when not.\n\n"
+   "Every command compares what it compiles with the text of the model, evaluated by Taylor arithmetic at random states; --verbose says what was compared."},
   {CMD_DERIVE, "derive", NULL, "MODEL [SCENE] [--format text|latex|c] [--ops] [--hamiltonian] [-o FILE]", "print the equations of motion",
    "Prints the equations of motion: momenta, M q'' = f, energy, and the operation count; with --hamiltonian momenta, H(q, p) and "
    "Hamilton's equations, where the mass matrix is inverted in closed form: blocks of up to three coordinates with short results."},
@@ -81,6 +83,9 @@ static const CommandRow commands[] = {
    "With -DLAG_LANES=4 or 8 its functions take vectors of so many doubles: so many states at once."},
   {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
    "Lists the methods of integration: their order, what they keep, what they need of a model, and their options."},
+  {CMD_CACHE, "cache", NULL, "[--clear]", "show or empty the cache of simulators",
+   "Shows where simulators are kept, how many, their size and its limit, beyond which those go that were used longest ago. They are run only from "
+   "a folder that is yours and that nobody else can write. LAGC_CACHE_MIB sets another limit, in MiB."},
   {CMD_HELP, "help", NULL, "[TOPIC]", NULL, "Says more on a command, a word of the language, a unit, a function or an option; alone, lists the topics."},
   {CMD_COMPLETION, "completion", NULL, "bash|zsh|fish", "print a script of completion for a shell",
    "Prints what makes a shell complete the commands and options of lagc, and the scenes, parameters, methods and names of "
@@ -104,7 +109,8 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 static const OptionRow options[] = {
   {"--allow-numeric", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(allow_numeric),
-   "an expectation that is not decided by the prover, but agrees numerically, does not fail the check"},
+   "an expectation that is not decided by the prover, but agrees numerically as far as rounding lets one see, does not fail the check"},
+  {"--verbose", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(verbose), "also say what of the compiled programs was compared with the text, and at how many states"},
   {"--format", NULL, "text|latex|c", TAKES_CHOICE, "text latex c", C(DERIVE), OWN(format),
    "as text, as LaTeX, or as the C function that computes the accelerations"},
   {"--format", NULL, "text|latex|json", TAKES_CHOICE, "text latex json", C(NOETHER), OWN(format), "as text, as LaTeX, or as one JSON object"},
@@ -125,13 +131,13 @@ static const OptionRow options[] = {
   {"--no-rods", NULL, NULL, TAKES_NOTHING, "", C(ANIMATE), OWN(no_rods), "points only"},
   {"--trace", NULL, NULL, TAKES_NOTHING, "", C(ANIMATE), PASSED, "the path of the last point, fading"},
 
-  {"--output", "-o", "FILE", TAKES_FILE, "", C(DERIVE) | C(NOETHER), OWN(output), "writes to this file"},
+  {"--output", "-o", "FILE", TAKES_FILE, "", C(DERIVE) | C(NOETHER), OWN(output), "writes to this file; .tex, .c and .json say the format, too"},
   {"--output", "-o", "SIMULATOR", TAKES_FILE, "", C(BUILD), OWN(output), "the program to make"},
   {"--output", "-o", "FILE.h", TAKES_FILE, "h hpp", C(HEADER), OWN(output), "the header to write; default: standard output"},
   {"--output", "-o", "FILE.c", TAKES_FILE, "c", C(EMIT), OWN(output), "the C file to write; default: standard output"},
   {"--output", "-o", "FILE.svg", TAKES_FILE, "svg", C(PLOT), OWN(output), "default: MODEL_SCENE.svg in this folder"},
   {"--output", "-o", "FILE.svg", TAKES_FILE, "svg", C(COST), OWN(output), "a picture: time against error, on logarithmic axes"},
-  {"--output", "-o", "FILE.html", TAKES_FILE, "html", C(ANIMATE), OWN(output), "default: MODEL_SCENE.html in this folder"},
+  {"--output", "-o", "FILE.html", TAKES_FILE, "html htm", C(ANIMATE), OWN(output), "default: MODEL_SCENE.html in this folder"},
   {"--output", "-o", "FILE", TAKES_FILE, "csv npy", C(RUN), PASSED, "rows of output: CSV, or NumPy where FILE ends in .npy; - is standard output"},
   {"--output", "-o", "FILE", TAKES_FILE, "csv npy", C(LYAPUNOV), PASSED, "the estimates as they settle: CSV, or NumPy where FILE ends in .npy"},
 
@@ -160,24 +166,26 @@ static const OptionRow options[] = {
   {"--plot-x", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "with --plot-y NAME: the picture shows one output against another"},
   {"--plot-y", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "the picture shows this output"},
   {"--sketch", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "a picture in the terminal"},
-  {"--html", NULL, "FILE.html", TAKES_FILE, "html", C(RUN) | C(PLOT), PASSED, "an animation of the points that --points names; `lagc animate` finds them itself"},
+  {"--html", NULL, "FILE.html", TAKES_FILE, "html htm", C(RUN) | C(PLOT), PASSED, "an animation of the points that --points names; `lagc animate` finds them itself"},
   {"--points", NULL, "'X,Y X,Y'", TAKES_TEXT, "", C(RUN) | C(PLOT), PASSED, "X and Y are names of outputs"},
   {"--from", NULL, "'X,Y'", TAKES_TEXT, "", C(RUN) | C(PLOT), PASSED, "where the first rod begins; default: the origin"},
   {"--no-rods", NULL, NULL, TAKES_NOTHING, "", C(RUN) | C(PLOT), PASSED, "points only"},
   {"--trace", NULL, NULL, TAKES_NOTHING, "", C(RUN) | C(PLOT), PASSED, "the path of the last point"},
   {"--json", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report as one JSON object"},
-  {"--json", NULL, NULL, TAKES_NOTHING, "", C(LYAPUNOV), PASSED, "exponents and spreads, to 17 digits, as one JSON object"},
-  {"--json", NULL, NULL, TAKES_NOTHING, "", C(COST), PASSED, "all runs, to 17 digits, as one JSON object"},
-  {"--json", NULL, NULL, TAKES_NOTHING, "", C(MODES), PASSED, "all modes, to 17 digits, as one JSON object"},
-  {"--json", NULL, NULL, TAKES_NOTHING, "", C(EFFECTS), OWN(json), "the table, to 17 digits, as one JSON object"},
-  {"--events", NULL, "FILE.csv", TAKES_FILE, "csv", SIMULATE, PASSED, "each event with its time and the state before and after it"},
+  {"--json", NULL, NULL, TAKES_NOTHING, "", C(LYAPUNOV), PASSED, "exponents and spreads as one JSON object"},
+  {"--json", NULL, NULL, TAKES_NOTHING, "", C(COST), PASSED, "all runs as one JSON object"},
+  {"--json", NULL, NULL, TAKES_NOTHING, "", C(MODES), PASSED, "all modes as one JSON object"},
+  {"--json", NULL, NULL, TAKES_NOTHING, "", C(EFFECTS), OWN(json), "the table as one JSON object"},
+  {"--events", NULL, "FILE.csv", TAKES_FILE, "csv npy", SIMULATE, PASSED, "each event with its time and the state before and after it"},
   {"--quiet", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(LYAPUNOV) | C(COST), PASSED, "no report"},
+  {"--verbose", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report also says whose sines and cosines the run took, and how products and sums were rounded"},
   {"--save-state", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED, "write the complete state at the end;"},
   {"--resume", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED,
    "go on from there, with the same scene, method and values: results are those of an uninterrupted run, bit by bit"},
 
   {"--precision", NULL, "double|long|quad", TAKES_CHOICE, "double long quad", SIMULATE | C(LYAPUNOV) | C(BUILD), OWN(precision),
    "the numbers that the simulator computes with: of 16, 19 or 34 digits; without the gsl-* methods but for double"},
+  {"--clear", NULL, NULL, TAKES_NOTHING, "", C(CACHE), OWN(clear), "removes all simulators from the cache"},
   {"--define", "-D", "CONST=VALUE", TAKES_DEFINE, "", MODELS, OWN(defines), "gives a `const` of the model another value"},
   {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", STEPS | C(MODES) | C(COST) | C(BUILD), OWN(no_gsl),
    "leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole"},
@@ -189,7 +197,7 @@ static const OptionRow options[] = {
    "makes numbers of these parameters, with the values that the scene gives them: fewer operations, and no other value at the command line; "
    "a family by its name, drag.c for one of an effect; all: all of them"},
   {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns prog", MODELS, OWN(dump), "what the stages of the compiler yield: ast, model, eqns, prog"},
-  {"--help", "-h", NULL, TAKES_NOTHING, "", MODELS | C(COMPLETION), OWN(help), "this help"},
+  {"--help", "-h", NULL, TAKES_NOTHING, "", MODELS | C(COMPLETION) | C(CACHE), OWN(help), "this help"},
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };
 

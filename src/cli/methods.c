@@ -1,9 +1,6 @@
 #include "cli/methods.h"
 
 #include <string.h>
-
-#include "cli/files.h"
-
 static const char program[] =
   "#include \"lag.h\"\n"
   "#include <stdio.h>\n\n"
@@ -23,8 +20,7 @@ const char *methods_program(Arena *a, const char *argv0, int want_gsl, const cha
   Toolchain tools;
   if (!toolchain_find(a, argv0, want_gsl, &tools, error)) return NULL;
   SourceText text = {"methods.c", arena_printf(a, program, tools.gsl ? "&lag_gsl" : "NULL")};
-  const char *path = toolchain_cached(a, &tools, &text, 1);
-  return file_runs(path) || toolchain_build(a, &tools, &text, 1, path, error) ? path : NULL;
+  return toolchain_simulator(a, &tools, &text, 1, error);
 }
 
 int methods_list(Arena *a, const char *argv0, int want_gsl, Methods *out, const char **error) {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/suggest.h"
+#include "cli/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 
 static const char *usage(Arena *a, Command c) {
   const CommandRow *row = command_find(c);
@@ -63,6 +64,43 @@ static int check_choices(Arena *a, const OptionRow *row, const char *value, cons
   return ok;
 }
 
+/* The command or option that does write files of this suffix. */
+static const char *way_to(Command c, const char *suffix) {
+  if (c == CMD_PLOT && is_choice("png pdf jpg jpeg gif webp eps ps", suffix, strlen(suffix))) return ", which browsers and `rsvg-convert` turn into other kinds";
+  if (c == CMD_RUN && strcmp(suffix, "json") == 0) return "; --json prints the report as JSON";
+  if (c == CMD_RUN && strcmp(suffix, "svg") == 0) return "; --svg FILE draws";
+  if (c != CMD_ANIMATE && is_choice("html htm", suffix, strlen(suffix))) return "; `lagc animate` writes HTML";
+  if (c != CMD_HEADER && is_choice("h hh hpp hxx", suffix, strlen(suffix))) return "; `lagc header` writes headers";
+  if (c != CMD_EMIT && strcmp(suffix, "c") == 0) return "; `lagc emit` writes C for the runtime, `lagc derive --format c` the accelerations";
+  return "";
+}
+
+/* A name that says another kind of file than the command writes. */
+static int check_kind(Arena *a, Command c, const OptionRow *row, const char *path, const char *suffixes, const char **error) {
+  const char *other = outfile_other_kind(path, suffixes), *name = row->brief ? row->brief : row->name;
+  if (!other) return 1;
+  const char *writer = row->brief ? command_find(c)->name : row->name, *way = row->brief ? way_to(c, other) : "";
+  const char *kind = !*suffixes ? (c == CMD_BUILD ? "a program" : "text") : is_choice(suffixes, "npy", 3) ? "CSV, or NumPy where the name ends in .npy"
+                   : is_choice(suffixes, "svg", 3) ? "SVG" : is_choice(suffixes, "html", 4) ? "HTML" : is_choice(suffixes, "h", 1) ? "a C header"
+                   : is_choice(suffixes, "tex", 3) ? "LaTeX" : is_choice(suffixes, "json", 4) ? "JSON" : "C";
+  int stem = (int)(other - path) - !*suffixes;
+  *error = arena_printf(a, "%s %s: %s writes %s%s; write %s %.*s%.*s", name, path, writer, kind, way, name, stem, path, (int)strcspn(suffixes, " "), suffixes);
+  return 0;
+}
+
+/* derive and noether: what they write is of the format that the name says, or that --format says. */
+static int check_format(Arena *a, Options *o, const char **error) {
+  const OptionRow *output = option_find(o->command, "-o", &(const char *){NULL}), *format = option_find(o->command, "--format", &(const char *){NULL});
+  static const char *const formats[][2] = {{"latex", "tex"}, {"json", "json"}, {"c", "c"}};
+  if (!o->output || !output || !format) return 1;
+  const char *suffixes = "";
+  for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+    if (!o->format && is_choice(format->hint, formats[i][0], strlen(formats[i][0])) && outfile_is(o->output, formats[i][1])) o->format = formats[i][0];
+    if (o->format && strcmp(o->format, formats[i][0]) == 0) suffixes = formats[i][1];
+  }
+  return check_kind(a, o->command, output, o->output, suffixes, error);
+}
+
 /* Puts the value where the row says. */
 static int set_value(Arena *a, Options *o, const OptionRow *row, const char *value, const char **error) {
   void *field = (char *)o + row->field;
@@ -112,6 +150,7 @@ static int read_option(Arena *a, int argc, char **argv, int *i, Options *o, cons
     value = argv[++*i];
     if (row->passed) vec_push(a, &o->rest, value);
   }
+  if (row->takes == TAKES_FILE && (*row->hint || o->command == CMD_BUILD) && !check_kind(a, o->command, row, value, row->hint, error)) return 0;
   if (strcmp(row->name, "--method") == 0) o->method = value; /* passed on, and looked at: what a method needs is compiled in */
   if (strcmp(row->name, "--resume") == 0) o->resume = value;
   if (strcmp(row->name, "--tol") == 0) o->tol = value;
@@ -158,7 +197,7 @@ static int read_arguments(Arena *a, int argc, char **argv, Options *o, const cha
     }
   }
   if (!o->file) *error = arena_printf(a, "a model is missing; usage: %s", usage(a, o->command));
-  return o->file != NULL;
+  return o->file && check_format(a, o, error);
 }
 
 /* Commands that read no model: at most one word after the command's. */
@@ -178,6 +217,13 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
     *error = arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command));
     return 0;
   }
+  if (o->command == CMD_CACHE && arg) {
+    const char *value;
+    const OptionRow *row = option_find(o->command, arg, &value);
+    if (row) return read_option(a, argc, argv, &(int){2}, o, row, value, error);
+    *error = unknown_option(a, o, arg);
+    return 0;
+  }
   if (o->command == CMD_COMPLETION && (!arg || !is_choice("bash zsh fish", arg, strlen(arg)))) {
     *error = "completion for which shell? `lagc completion bash`, `lagc completion zsh` or `lagc completion fish`";
     return 0;
@@ -190,6 +236,11 @@ int options_more_digits(const Options *o) { return o->precision && strcmp(o->pre
 int options_read(Arena *a, int argc, char **argv, Options *o, const char **error) {
   *o = (Options){.command = argc < 2 ? CMD_HELP : command_named(argv[1])};
   *error = NULL;
+  for (int i = 1; i < argc && o->command != CMD_COMPLETE; i++)
+    if (strpbrk(argv[i], "\n\t")) { /* messages show a word on one line */
+      *error = arena_printf(a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i);
+      return 0;
+    }
   if (!o->command) {
     *error = unknown_command(a, argv[1]);
     return 0;

@@ -18,7 +18,9 @@ typedef struct {
   const char *format;      /* derive --format */
   const char *dump;        /* --dump=ast,model,eqns,prog */
   const char *topic;       /* of help; the shell of completion */
+  int clear;               /* of cache */
   int help;                /* --help: then command is CMD_HELP */
+  int verbose;             /* check --verbose */
   int allow_numeric;       /* check --allow-numeric */
   int no_gsl, ops, hamiltonian;
   const char *precision;   /* of simulators: double, long, quad; NULL: double */

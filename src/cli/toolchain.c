@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/vec.h"
+#include "cli/cache.h"
 #include "cli/files.h"
 #include "cli/probe.h"
 
@@ -88,12 +90,73 @@ static char *read_fd(Arena *a, int fd) {
   return arena_strdup(a, sb_text(&b));
 }
 
+/* A signal handler can reach nothing else: the signal that came, 0: none; the process group of the program that runs, 0: none; and whether
+ * builds are to be interrupted in an orderly way. */
+static volatile sig_atomic_t interrupted, running, noting;
+enum { N_SIGNALS = 3 };
+static const int signals[N_SIGNALS] = {SIGINT, SIGTERM, SIGHUP};
+typedef struct {
+  struct sigaction was[N_SIGNALS];
+} Interruptions;
+
+static void on_interruption(int number) {
+  interrupted = number;
+  if (running) kill(-(pid_t)running, number);
+}
+
+/* From here on interruptions are noted, and handed on to the program that runs; those that are ignored stay so. */
+static void interruptions_note(Interruptions *before) {
+  struct sigaction note = {.sa_handler = on_interruption};
+  interrupted = 0;
+  noting = 1;
+  for (int i = 0; i < N_SIGNALS; i++) {
+    sigaction(signals[i], NULL, &before->was[i]);
+    if (before->was[i].sa_handler != SIG_IGN) sigaction(signals[i], &note, NULL);
+  }
+}
+
+/* They are what they were; one that came happens now. */
+static void interruptions_restore(const Interruptions *before) {
+  for (int i = 0; i < N_SIGNALS; i++) sigaction(signals[i], &before->was[i], NULL);
+  noting = 0;
+  if (interrupted) raise(interrupted);
+}
+
+/* A new process; where interruptions are noted it leads a group, which they reach. */
+static pid_t fork_program(void) {
+  sigset_t held, before;
+  sigemptyset(&held);
+  for (int i = 0; i < N_SIGNALS; i++) sigaddset(&held, signals[i]);
+  sigprocmask(SIG_BLOCK, &held, &before);
+  pid_t pid = fork();
+  if (noting && pid >= 0) setpgid(pid, 0); /* by both: whoever comes first */
+  if (noting && pid > 0) running = (sig_atomic_t)pid;
+  if (pid == 0 && noting)
+    for (int i = 0; i < N_SIGNALS; i++) {
+      struct sigaction now;
+      if (sigaction(signals[i], NULL, &now) == 0 && now.sa_handler == on_interruption) signal(signals[i], SIG_DFL);
+    }
+  sigprocmask(SIG_SETMASK, &before, NULL);
+  return pid;
+}
+
+/* Its exit status, -1 where it has none. */
+static int wait_for(pid_t pid) {
+  int status = 0;
+  pid_t got;
+  do got = waitpid(pid, &status, 0);
+  while (got < 0 && errno == EINTR);
+  running = 0;
+  return got == pid && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
 int toolchain_run(Arena *a, char *const *argv, char **said) { return toolchain_run_as(a, argv[0], argv, said); }
 
 int toolchain_run_as(Arena *a, const char *path, char *const *argv, char **said) {
   int pipe_fd[2];
-  if (pipe(pipe_fd) != 0) return -1;
-  pid_t pid = fork();
+  *said = arena_strdup(a, "");
+  if ((noting && interrupted) || pipe(pipe_fd) != 0) return -1;
+  pid_t pid = fork_program();
   if (pid == 0) {
     dup2(pipe_fd[1], 1);
     dup2(pipe_fd[1], 2);
@@ -103,11 +166,9 @@ int toolchain_run_as(Arena *a, const char *path, char *const *argv, char **said)
     _exit(127);
   }
   close(pipe_fd[1]);
-  *said = pid > 0 ? read_fd(a, pipe_fd[0]) : arena_strdup(a, "");
+  if (pid > 0) *said = read_fd(a, pipe_fd[0]);
   close(pipe_fd[0]);
-  int status = 0;
-  if (pid < 0 || waitpid(pid, &status, 0) < 0) return -1;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return pid < 0 ? -1 : wait_for(pid);
 }
 
 int toolchain_to_stdin(const char *path, char *const *argv) {
@@ -124,12 +185,6 @@ int toolchain_to_stdin(const char *path, char *const *argv) {
   if (status == 0 && (lseek(fileno(out), 0, SEEK_SET) != 0 || dup2(fileno(out), 0) != 0)) status = -1;
   if (out) fclose(out);
   return status;
-}
-
-static void remove_folder(Arena *a, const char *dir, const SourceText *texts, size_t n) {
-  for (size_t i = 0; i < n; i++) remove(arena_printf(a, "%s/%s", dir, texts[i].name));
-  remove(arena_printf(a, "%s/simulator", dir));
-  rmdir(dir);
 }
 
 Words toolchain_words(Arena *a, const char *cc) {
@@ -166,6 +221,8 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   char *said = NULL;
   int status = toolchain_run(a, argv.at, &said);
   if (status == 0) return 1;
+  if (interrupted) *error = "interrupted";
+  else
   if (status == 127) *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
   else if (t->needs && said && strstr(said, "quadmath"))
     *error = arena_printf(a, "quadruple precision needs libquadmath, which comes with gcc; the C compiler `%s` does not find it: set CC=gcc", t->cc);
@@ -173,33 +230,68 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   return 0;
 }
 
-int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output, const char **error) {
-  struct stat st;
-  if (stat(output, &st) == 0 && !S_ISREG(st.st_mode)) {
-    *error = arena_printf(a, "cannot write %s: it is no ordinary file", output);
+/* The C compiler's temporary files stand in the same folder, and go with it. */
+static int compile_alone(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
+  const char *was = getenv("TMPDIR"), *before = was ? arena_strdup(a, was) : NULL;
+  setenv("TMPDIR", dir, 1);
+  int ok = compile(a, t, dir, texts, n, error);
+  if (before) setenv("TMPDIR", before, 1);
+  else unsetenv("TMPDIR");
+  return ok;
+}
+
+/* Compiles in a folder of its own, which is left only where that went well: f->path/simulator. */
+static int build_in(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
+  const char *base = cache_build_folder(a);
+  if (!base) {
+    *error = "there is no folder to build in that only you can write: set TMPDIR to one";
     return 0;
   }
-  char *dir = arena_printf(a, "%s.XXXXXX", output); /* beside the output: the last step is a rename */
-  if (!mkdtemp(dir)) {
-    *error = arena_printf(a, "cannot write beside %s: %s", output, strerror(errno));
+  if (!build_folder_make(a, base, f)) {
+    *error = arena_printf(a, "cannot write in %s: %s", base, strerror(errno));
     return 0;
   }
   int ok = 1;
   for (size_t i = 0; i < n && ok; i++) {
     const char *why;
-    ok = file_write(a, arena_printf(a, "%s/%s", dir, texts[i].name), texts[i].text, strlen(texts[i].text), &why);
-    if (!ok) *error = arena_printf(a, "cannot write in %s: %s", dir, why);
+    ok = file_write(a, arena_printf(a, "%s/%s", f->path, texts[i].name), texts[i].text, strlen(texts[i].text), &why);
+    if (!ok) *error = arena_printf(a, "cannot write in %s: %s", f->path, why);
   }
-  ok = ok && compile(a, t, dir, texts, n, error);
-  if (ok && rename(arena_printf(a, "%s/simulator", dir), output) != 0) {
-    *error = arena_printf(a, "cannot write %s: %s", output, strerror(errno));
+  ok = ok && compile_alone(a, t, f->path, texts, n, error);
+  if (ok && !file_exists(arena_printf(a, "%s/simulator", f->path))) {
+    *error = arena_printf(a, "cannot write %s/simulator: the C compiler `%s` has made nothing", f->path, t->cc);
     ok = 0;
   }
-  remove_folder(a, dir, texts, n);
+  if (!ok) build_folder_remove(f, NULL);
   return ok;
 }
 
-/* --- the cache --- */
+/* The same; an interruption ends the C compiler, and this one once the folder is gone. */
+static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
+  Interruptions before;
+  interruptions_note(&before);
+  int ok = build_in(a, t, texts, n, f, error);
+  if (ok && interrupted) build_folder_remove(f, NULL);
+  interruptions_restore(&before);
+  return ok;
+}
+
+int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output, const char **error) {
+  struct stat st;
+  BuildFolder f;
+  const char *why;
+  if (stat(output, &st) == 0 && !S_ISREG(st.st_mode)) {
+    *error = arena_printf(a, "cannot write %s: it is no ordinary file", output);
+    return 0;
+  }
+  if (!build(a, t, texts, n, &f, error)) return 0;
+  int ok = file_install(output, arena_printf(a, "%s/simulator", f.path), &why);
+  if (!ok) *error = arena_printf(a, "cannot write %s: %s", output, why);
+  build_folder_remove(&f, NULL);
+  return ok;
+}
+
+/* --- simulators that are kept --- */
 
 static uint64_t hash_more(uint64_t h, const char *s, size_t n) {
   for (size_t i = 0; i < n; i++) h = (h ^ (unsigned char)s[i]) * 1099511628211u;
@@ -222,50 +314,27 @@ static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceT
   return t->gsl ? hash_library(a, h, arena_printf(a, "%s/liblag_gsl.a", t->lib)) : h;
 }
 
-/* The size of a file and a checksum of what is in it, as text; NULL when it cannot be read. */
-static const char *checksum(Arena *a, const char *path) {
-  FILE *f = fopen(path, "rb");
-  uint64_t h = 1469598103934665603u;
-  char block[16384];
-  long long size = 0;
-  if (!f) return NULL;
-  for (size_t n; (n = fread(block, 1, sizeof block, f)) > 0; size += (long long)n) h = hash_more(h, block, n);
-  int bad = ferror(f);
-  fclose(f);
-  return bad ? NULL : arena_printf(a, "%lld %016llx\n", size, (unsigned long long)h);
-}
-
-static const char *seal_of(Arena *a, const char *path) { return arena_printf(a, "%s.sum", path); }
-
-int toolchain_is_whole(Arena *a, const char *path) {
-  char sealed[64] = "";
-  FILE *f = file_runs(path) ? fopen(seal_of(a, path), "rb") : NULL;
-  if (!f) return 0;
-  size_t n = fread(sealed, 1, sizeof sealed - 1, f);
-  fclose(f);
-  sealed[n] = '\0';
-  const char *sum = checksum(a, path);
-  return sum && strcmp(sum, sealed) == 0;
-}
-
-void toolchain_seal(Arena *a, const char *path) {
-  const char *why, *sum = checksum(a, path);
-  if (sum) file_write(a, seal_of(a, path), sum, strlen(sum), &why);
-}
-
-const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
-  const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME"), *tmp = getenv("TMPDIR");
-  const char *dir = cache && cache[0] == '/' ? arena_printf(a, "%s/lagc", cache)
-                  : home && home[0] == '/' ? arena_printf(a, "%s/.cache/lagc", home) : NULL;
-  if (!dir || !dir_make(a, dir) || access(dir, W_OK) != 0) {
-    dir = arena_printf(a, "%s/lagc-%ld", tmp && tmp[0] ? tmp : "/tmp", (long)getuid());
-    struct stat st;
-    /* what lies there is run: it must be ours */
-    if ((mkdir(dir, 0700) != 0 && errno != EEXIST) || lstat(dir, &st) != 0 || !S_ISDIR(st.st_mode) || st.st_uid != getuid()) {
-      char *own = arena_printf(a, "%s.XXXXXX", dir);
-      if (mkdtemp(own)) dir = own;
-    }
-  }
+/* The name of what is made of these texts. */
+static const char *name_of(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
   uint64_t h1 = hash_all(a, 1469598103934665603u, t, texts, n), h2 = hash_all(a, 0x9e3779b97f4a7c15u, t, texts, n);
-  return arena_printf(a, "%s/%016llx%016llx", dir, (unsigned long long)h1, (unsigned long long)h2);
+  return arena_printf(a, "%016llx%016llx", (unsigned long long)h1, (unsigned long long)h2);
+}
+
+const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error) {
+  const char *cache = cache_folder(a), *path = cache ? arena_printf(a, "%s/%s", cache, name_of(a, t, texts, n)) : NULL;
+  BuildFolder f;
+  if (path && cache_is_whole(a, path)) return path;
+  if (!build(a, t, texts, n, &f, error)) return NULL;
+  const char *made = arena_printf(a, "%s/simulator", f.path);
+  if (!path) { /* it stays in its folder, which it holds while it runs; a later command removes it */
+    build_folder_remove(&f, "simulator");
+    return made;
+  }
+  int ok = chmod(made, 0700) == 0 && rename(made, path) == 0;
+  if (!ok) *error = arena_printf(a, "cannot write %s: %s", path, strerror(errno));
+  build_folder_remove(&f, NULL);
+  if (!ok) return NULL;
+  cache_seal(a, path);
+  cache_limit(a, path);
+  return path;
 }

@@ -50,12 +50,7 @@ int toolchain_run_as(Arena *a, const char *path, char *const *argv, char **said)
  * dropped. Its exit status, or -1; then the standard input is as it was. */
 int toolchain_to_stdin(const char *path, char *const *argv);
 
-/* The path of the cached simulator for these texts: named by their content and the runtime's. */
-const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n);
-
-/* Whether the simulator at path is as it was sealed: what a full disk or a crash cut short is built anew. seal notes
- * its checksum beside it; should that fail, the simulator is built anew the next time. */
-int toolchain_is_whole(Arena *a, const char *path);
-void toolchain_seal(Arena *a, const char *path);
+/* A simulator of these texts, from the cache or built; NULL, with *error. */
+const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error);
 
 #endif

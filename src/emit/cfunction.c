@@ -15,11 +15,20 @@ static const char *const logic =
   "#define LAG_MASK int\n"
   "#define LAG_PIVOTS (void)0\n"
   "#define LAG_PIVOT(c) do { if (!(c)) return LAG_ESINGULAR; } while (0)\n"
-  "#define LAG_POSITIVE(d) LAG_PIVOT((d) > LAG_C(0.0))\n"
   "#define LAG_PIVOTS_STATUS LAG_OK\n"
   "#endif\n"
   "#ifndef LAG_LANE\n"
   "#define LAG_LANE LAG_REAL\n"
+  "#endif\n";
+
+/* A pivot that is no number: a simulator finds and names what has no value; a program around a header learns it from the status. */
+static const char *const positive =
+  "#ifndef LAG_POSITIVE\n"
+  "#define LAG_POSITIVE(d) LAG_PIVOT(!((d) <= LAG_C(0.0))) /* what is no number is for who gets it to find */\n"
+  "#endif\n";
+static const char *const positive_of_header =
+  "#ifndef LAG_POSITIVE\n"
+  "#define LAG_POSITIVE(d) LAG_PIVOT((d) > LAG_C(0.0))\n"
   "#endif\n";
 
 /* Gauss elimination with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed.,
@@ -27,13 +36,15 @@ static const char *const logic =
  * its own. In a band of b diagonals beside the main one, rows come from b places below at most, and reach 2 b to the right (4.3.3). */
 static const char *const solver =
   "\n/* M x = b by elimination with partial pivoting: M[n*n] row-major is destroyed, b becomes x. Entries more than `band` beside the\n"
-  " * diagonal are zero. Returns whether M is regular. */\n"
+  " * diagonal are zero. Returns whether M is regular, or has\n"
+  " * elements that are no numbers: then x has none. */\n"
   "static LAG_MASK lag_solve(int n, int band, LAG_REAL *M, LAG_REAL *b) {\n"
   "  LAG_MASK regular = LAG_C(0.0) == LAG_C(0.0);\n"
   "  for (int k = 0; k < n; k++) {\n"
   "    const int end = band < n - k ? k + band + 1 : n, right = band < n - end ? end + band : n;\n"
   "    for (int i = k + 1; i < end; i++) { /* the largest of column k comes to row k */\n"
-  "      const LAG_MASK larger = LAG_FN(fabs)(M[i*n + k]) > LAG_FN(fabs)(M[k*n + k]);\n"
+  "      const LAG_REAL here = LAG_FN(fabs)(M[i*n + k]);\n"
+  "      const LAG_MASK larger = LAG_OR(here > LAG_FN(fabs)(M[k*n + k]), here != here);\n"
   "      if (!LAG_ANY(larger)) continue;\n"
   "      for (int j = k; j <= right; j++) {\n"
   "        LAG_REAL *const upper = j < right ? &M[k*n + j] : &b[k], *const lower = j < right ? &M[i*n + j] : &b[i];\n"
@@ -42,7 +53,7 @@ static const char *const solver =
   "        *lower = LAG_SELECT(larger, was, *lower);\n"
   "      }\n"
   "    }\n"
-  "    regular = LAG_AND(regular, LAG_FN(fabs)(M[k*n + k]) > LAG_C(0.0));\n"
+  "    regular = LAG_AND(regular, LAG_NOT(LAG_FN(fabs)(M[k*n + k]) <= LAG_C(0.0)));\n"
   "    if (!LAG_ANY(regular)) break;\n"
   "    for (int i = k + 1; i < end; i++) {\n"
   "      const LAG_REAL factor = M[i*n + k]/M[k*n + k];\n"
@@ -60,12 +71,12 @@ static const char *const solver =
 /* L D L^T of a definite matrix needs no pivoting (Golub & Van Loan, 4th ed., 4.2.1 and 4.3.5): rows of the upper triangle are those of D L^T. */
 static const char *const definite_solver =
   "\n/* M x = b without pivoting, from the upper triangle of M[n*n], which is destroyed; b becomes x. Entries more than `band` beside the\n"
-  " * diagonal are zero. Returns whether M is positive definite. */\n"
+  " * diagonal are zero. Returns whether M is positive definite, or has elements that are no numbers. */\n"
   "static LAG_MASK lag_solve_definite(int n, int band, LAG_REAL *M, LAG_REAL *b) {\n"
   "  LAG_MASK positive = LAG_C(0.0) == LAG_C(0.0);\n"
   "  for (int k = 0; k < n; k++) {\n"
   "    const int end = band < n - k ? k + band + 1 : n;\n"
-  "    positive = LAG_AND(positive, M[k*n + k] > LAG_C(0.0));\n"
+  "    positive = LAG_AND(positive, LAG_NOT(M[k*n + k] <= LAG_C(0.0)));\n"
   "    if (!LAG_ANY(positive)) return positive;\n"
   "    const LAG_REAL inverse = LAG_C(1.0)/M[k*n + k];\n"
   "    for (int i = k + 1; i < end; i++) {\n"
@@ -111,7 +122,8 @@ static const char *const spline =
 
 /* The same elimination, with the multipliers kept below the diagonal and the exchanges of rows in `rows`. */
 static const char *const factorizer =
-  "\n/* Factors M[n*n] of w = [M | b | rows] by elimination with partial pivoting. Returns whether M is regular. */\n"
+  "\n/* Factors M[n*n] of w = [M | b | rows] by elimination with partial pivoting. Returns whether M is regular, or has\n"
+  " * elements that are no numbers: then x has none. */\n"
   "static LAG_MASK lag_factor(int n, LAG_REAL *w) {\n"
   "  LAG_REAL *const M = w, *const rows = w + n*n + n;\n"
   "  LAG_MASK regular = LAG_C(0.0) == LAG_C(0.0);\n"
@@ -119,11 +131,11 @@ static const char *const factorizer =
   "    LAG_REAL most = LAG_FN(fabs)(M[k*n + k]), top = LAG_C(0.0) + (LAG_LANE)k;\n"
   "    for (int i = k + 1; i < n; i++) {\n"
   "      const LAG_REAL size = LAG_FN(fabs)(M[i*n + k]);\n"
-  "      const LAG_MASK larger = size > most;\n"
+  "      const LAG_MASK larger = LAG_OR(size > most, size != size);\n"
   "      most = LAG_SELECT(larger, size, most);\n"
   "      top = LAG_SELECT(larger, LAG_C(0.0) + (LAG_LANE)i, top);\n"
   "    }\n"
-  "    regular = LAG_AND(regular, most > LAG_C(0.0));\n"
+  "    regular = LAG_AND(regular, LAG_NOT(most <= LAG_C(0.0)));\n"
   "    if (!LAG_ANY(regular)) break;\n"
   "    rows[k] = top;\n"
   "    for (int i = k + 1; i < n; i++) {\n"
@@ -195,7 +207,10 @@ void csupport_fill(const char *text, const char *prefix, const char *lower, StrB
   }
 }
 
-void csupport_logic(const char *prefix, StrBuf *out) { csupport_fill(logic, prefix, "", out); }
+void csupport_logic(const char *prefix, StrBuf *out) {
+  csupport_fill(logic, prefix, "", out);
+  csupport_fill(strcmp(prefix, "LAG") == 0 ? positive : positive_of_header, prefix, "", out);
+}
 void csupport_factor(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(factorizer, prefix, lower, out); }
 void csupport_inverter(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(inverter, prefix, lower, out); }
 void csupport_solver(SolveKind kind, const char *prefix, const char *lower, StrBuf *out) {

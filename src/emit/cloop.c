@@ -186,8 +186,8 @@ static void name_turn_loads(Writer *w, Body *b) {
 static Piece multiple(const Writer *w, Num unit, const char *index) {
   int dyadic = (unit.den & (unit.den - 1)) == 0;
   const char *up = c_number(w->a, w->style->prefix, dyadic ? unit : num_int(unit.num));
-  if (dyadic) return (Piece){arena_printf(w->a, "%s*(%s)", up, index), C_MUL, 0};
-  return (Piece){arena_printf(w->a, "%s*(%s)/%s", up, index, c_number(w->a, w->style->prefix, num_int(unit.den))), C_MUL, 0};
+  if (dyadic) return (Piece){arena_printf(w->a, "%s*(%s_LANE)(%s)", up, w->style->prefix, index), C_MUL, 0};
+  return (Piece){arena_printf(w->a, "%s*(%s_LANE)(%s)/%s", up, w->style->prefix, index, c_number(w->a, w->style->prefix, num_int(unit.den))), C_MUL, 0};
 }
 
 static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int which, Slot x) {

@@ -40,7 +40,7 @@ static int scene_calls(const IrScene *s, uint32_t params, const char *name) {
 }
 
 static int unit_calls(const IrUnit *u, const char *name) {
-  int some = calls(u->accel, name) | calls(u->derived, name) | calls(u->energy, name) | calls(u->inputs, name) | calls(u->linear, name) | calls(u->charge_values, name) | calls(u->charge_powers, name);
+  int some = calls(u->accel, name) | calls(u->derived, name) | calls(u->energy, name) | calls(u->inputs, name) | calls(u->linear, name) | calls(u->charge_values, name) | calls(u->charge_powers, name) | calls(u->switch_values, name);
   some |= calls(u->variation, name) | calls(u->second, name) | calls(u->event_values, name) | calls(u->jumps, name);
   if (u->taylor) some |= calls(u->taylor->first, name);
   for (uint32_t i = 0; i < u->events.n; i++) some |= calls(u->events.at[i].action, name);

@@ -26,8 +26,7 @@ static void write_constrained(Writer *w, const Solve *k) {
   write_entries(w, k, b + solve_unknowns(k));
   for (uint32_t j = 0; j < solve_unknowns(k); j++)
     if (k->rhs[j]) sb_printf(w->out, "  w[%u] = %s;\n", b + j, cwriter_operand(w, k->rhs[j]).text);
-  const char *quote = k->kinds ? "\"" : "";
-  sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, %d, %s%s%s, w));\n", st->prefix, st->kkt, k->n, k->m, k->coarse, quote, k->kinds ? k->kinds : "0", quote);
+  sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, %d, w));\n", st->prefix, st->kkt, k->n, k->m, k->coarse);
 }
 
 /* Of a definite matrix the upper triangle; of a narrow band what is not zero. */

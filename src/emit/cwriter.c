@@ -99,9 +99,11 @@ static Piece constant(Writer *w, const Ins *i) {
   return (Piece){text, strchr(text, '/') ? C_MUL : text[0] == '-' ? C_UNARY : C_ATOM, 0};
 }
 
-/* -a*b is (-a)*b, and rounds like -(a*b). */
+/* -a*b is (-a)*b, and rounds like -(a*b); so -(-a*b) is a*b. */
 static Piece negative(Writer *w, const Ins *i) {
-  int product = cwriter_operand(w, i->a).prec == C_MUL;
+  Piece x = cwriter_operand(w, i->a);
+  int product = x.prec == C_MUL;
+  if (product && x.text[0] == '-') return (Piece){x.text + 1, C_MUL, 0};
   return (Piece){arena_printf(w->a, "-%s", wrapped(w, i->a, product ? C_MUL : C_ATOM)), product ? C_MUL : C_UNARY, 0};
 }
 

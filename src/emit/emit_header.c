@@ -97,6 +97,29 @@ static void comment_lines(const Header *h, const char *text) {
   if (left) sb_printf(h->out, " * ... and %u lines more: `lagc derive` shows them.\n", left);
 }
 
+/* The loop of a model with contacts: a step that would go through one is taken back, and the contact strikes; one that strikes again at once
+ * stays closed, until nothing presses. */
+static void write_contact_loop(const Header *h, const char *end, const char *step) {
+  const char *m = h->upper, *f = h->lower;
+  uint32_t n = h->u->contacts.n;
+  sb_printf(h->out, " *   %s_REAL u[%s_NU], g[%s_NEV];\n *   const int contacts[%u][3] = { // strikes, opens, is closed\n", m, m, m, n);
+  for (uint32_t k = 0; k < n; k++) {
+    const IrContact *c = &h->u->contacts.at[k];
+    sb_printf(h->out, " *     {%s, %s, %s}%s\n", h->ev[c->impact], h->ev[c->release], h->in[c->input], k + 1 < n ? "," : "};");
+  }
+  sb_printf(h->out, " *   double at[%u] = {", n);
+  for (uint32_t k = 0; k < n; k++) sb_puts(h->out, k ? ", -1" : "-1");
+  sb_printf(h->out, "}; // when it struck last\n *   int closed[%u] = {0}, stop = 0;\n *   while (s.t < %s && !stop) {\n *     const %s_state before = s;\n", n, end, f);
+  sb_printf(h->out, " *     int struck = -1;\n *     %s_inputs(s.t, &p, u);\n *     for (int k = 0; k < %u; k++) u[contacts[k][2]] = closed[k];\n", f, n);
+  sb_printf(h->out, " *     if (%s_rk4_step(&p, &s, %s, u) != %s_OK || %s_events(s.t, s.q, s.v%s, &p, u, g) != %s_OK) break;\n", f, step, m, f, h->u->z.n ? ", s.z" : "", m);
+  sb_printf(h->out, " *     for (int k = 0; k < %u && struck < 0; k++) {\n", n);
+  sb_puts(h->out, " *       if (closed[k] && g[contacts[k][1]] <= 0) closed[k] = 0; // nothing presses: it opens\n");
+  sb_puts(h->out, " *       else if (!closed[k] && g[contacts[k][0]] < 0) struck = k; // its gap would become negative\n *     }\n");
+  sb_puts(h->out, " *     if (struck >= 0) {\n *       s = before;\n *       closed[struck] = at[struck] == (double)s.t; // again at once: it stays closed\n *       at[struck] = (double)s.t;\n");
+  sb_puts(h->out, " *       u[contacts[struck][2]] = closed[struck];\n");
+  sb_printf(h->out, " *       if (closed[struck]) %s_hold(&p, &s, u);\n *       else %s_act(contacts[struck][0], &p, &s, u, &stop);\n *     }\n *   }\n", f, f);
+}
+
 static void write_usage(const Header *h) {
   const char *m = h->upper, *f = h->lower;
   const char *in = h->u->u.n ? ", NULL" : "";
@@ -105,7 +128,8 @@ static void write_usage(const Header *h) {
   sb_printf(h->out, " *   %s_params p;\n *   %s_state s;\n", f, f);
   sb_printf(h->out, " *   %s_defaults(&p); // as in scene %s\n *   %s_start(&p, &s);\n", f, h->scene->name, f);
   const char *end = double_text(h->a, h->scene->t1), *step = double_text(h->a, (h->scene->t1 - h->scene->t0) / 1e4);
-  sb_printf(h->out, " *   while (s.t < %s)\n *     if (%s_rk4_step(&p, &s, %s%s) != %s_OK) break;\n", end, f, step, in, m);
+  if (h->u->contacts.n) write_contact_loop(h, end, step);
+  else sb_printf(h->out, " *   while (s.t < %s)\n *     if (%s_rk4_step(&p, &s, %s%s) != %s_OK) break;\n", end, f, step, in, m);
   const char *first = h->u->q.n ? arena_printf(h->a, "s.q[%s]", h->q[0]) : h->u->z.n ? arena_printf(h->a, "s.z[%s]", h->z[0]) : "s.t";
   sb_printf(h->out, " *   printf(\"%%g\\n\", (double)%s);\n *\n", first);
   sb_printf(h->out,
@@ -129,6 +153,8 @@ static void write_head(const Header *h, const char *equations) {
   sb_printf(h->out, " * %s\n", cmath_text(u));
   sb_puts(h->out, " * C99 or C++, <math.h> only; allocates nothing, keeps nothing. All values are in SI units.\n");
   sb_puts(h->out, " * This text may be used for any purpose without conditions (0BSD).\n");
+  if (u->contacts.n)
+    sb_printf(h->out, " * Contacts: a step knows nothing of them. The loop below calls %s_events, %s_act and %s_hold; one without these falls through.\n", h->lower, h->lower, h->lower);
   write_usage(h);
   if (equations) comment_lines(h, equations);
   sb_puts(h->out, " */\n");

@@ -29,9 +29,9 @@ static const char *const abi_names[] = {
   "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
   "curves", "LAG_EACH", "LAG_10", "LAG_100", "LAG_1000", "LAG_10000",
   "singular", "lag_sincos", "lag_sincos2", "lag_sincos4", "LAG_SINCOS_2", "LAG_SINCOS_4", "lag_sin", "lag_cos", "lag_lanes", "lag_lanes_mask", "LAG_LANES", "LAG_LIBM", "LAG_OWN", "LAG_FMA",
-  "LAG_INLINE", "LAG_PIVOT", "LAG_POSITIVE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS", "LAG_LANE_FN", "lag_reflect", "lag_reflector", "lag_rounding", "lag_median", "lag_units", "lag_rank", "lag_eliminate", "lag_multipliers", "lag_schur", "lag_cholesky", "lag_forward", "lag_backward", "lag_first", "lag_last", "lag_kkt", "lag_kkt_lane",
+  "LAG_INLINE", "LAG_PIVOT", "LAG_POSITIVE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS", "LAG_LANE_FN", "lag_reflect", "lag_reflector", "lag_rounding", "lag_scales", "lag_rank", "lag_eliminate", "lag_multipliers", "lag_schur", "lag_cholesky", "lag_forward", "lag_backward", "lag_first", "lag_last", "lag_kkt", "lag_kkt_lane",
   "LAG_BAND_LEAST", "LAG_BAND_EDGES", "lag_band", "lag_edges", "lag_walk", "lag_places", "lag_element", "lag_band_factor", "lag_band_solve", "lag_band_inverse", "lag_band_rest", "lag_banded",
-  "constraint_table", "jacobian_table", "inertia_table", "constraints", "contact_table", "charge_table", "charges", "lag_charge", "lag_charges", "LAG_CONSERVED", "LAG_BALANCED", "LAG_BY_FORMULAS", "LAG_JUMPS", "lag_contact", "lag_constraint", "lag_constraints",
+  "constraint_table", "jacobian_table", "inertia_table", "constraints", "contact_table", "charge_table", "charges", "lag_charge", "lag_charges", "LAG_CONSERVED", "LAG_BALANCED", "LAG_BY_FORMULAS", "LAG_JUMPS", "lag_contact", "lag_constraint", "lag_constraints", "switch_table", "lag_switch",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -63,7 +63,7 @@ static const char *const *rows_names(const IrUnit *u) {
 
 const char *model_id(Arena *a, const char *name) {
   static const char *const taken[] = {"accel", "derive", "energy", "linearise", "jumps", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
-                                      "outputs", "forces", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "charge_values", "charge_powers", "correct_positions", "correct_velocities"};
+                                      "outputs", "forces", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "charge_values", "charge_powers", "switch_values", "correct_positions", "correct_velocities"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -100,7 +100,7 @@ CStyle emit_style(const File *f, const char *const *own, const char *const *writ
 
 /* Once a step, or a row of output. */
 static int is_seldom_called(const IrUnit *u, const Prog *p) {
-  int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers;
+  int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers || p == u->switch_values;
   for (uint32_t i = 0; i < u->scenes.n; i++) seldom |= p == u->scenes.at[i].observe;
   return seldom;
 }
@@ -162,6 +162,20 @@ static void emit_events(const File *f) {
   for (uint32_t i = 0; i < u->events.n; i++)
     sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, u->events.at[i].stop ? " *stop = 1;" : "", event_id(u, i));
   sb_puts(f->out, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
+}
+
+static void emit_switches(const File *f) {
+  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "out", "w", NULL}, *const written[] = {"out"};
+  const IrUnit *u = f->u;
+  if (!u->switches.n) return;
+  const char *head = arena_printf(f->a, "static int switch_values(%s, LAG_REAL *out, LAG_REAL *w)", emit_state_args);
+  emit_function(f, u->switch_values, "Forces jump where one of these is 0.", head, own, written);
+  sb_puts(f->out, "\nstatic const lag_switch switch_table[] = {\n");
+  for (uint32_t i = 0; i < u->switches.n; i++) {
+    const IrSwitch *s = &u->switches.at[i];
+    sb_printf(f->out, "  {%s, %s, %u, %d},\n", c_string(f->a, s->surface), c_string(f->a, s->text), u->lines ? s->line : 0, s->nonnegative);
+  }
+  sb_puts(f->out, "};\n");
 }
 
 static void emit_inputs(const File *f) {
@@ -315,7 +329,7 @@ static int has_long_tables(const IrUnit *u) {
 
 static uint32_t work_size(const IrUnit *u) {
   uint32_t most = 0;
-  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->jumps, u->constraints.position, u->constraints.velocity, u->charge_values, u->charge_powers};
+  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->jumps, u->constraints.position, u->constraints.velocity, u->charge_values, u->charge_powers, u->switch_values};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     if (all[i] && prog_work(all[i]) > most) most = prog_work(all[i]);
   for (uint32_t i = 0; i < u->events.n; i++)
@@ -327,7 +341,7 @@ static uint32_t work_size(const IrUnit *u) {
 
 /* Whether a linear system of that kind is solved by a loop. */
 static int needs_solver(const IrUnit *u, SolveKind kind) {
-  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->charge_powers};
+  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->charge_powers, u->switch_values};
   int some = 0;
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) some |= prog_solves(all[i], kind);
   for (uint32_t i = 0; i < u->scenes.n; i++) some |= prog_solves(u->scenes.at[i].observe, kind);
@@ -403,6 +417,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->charges.n) sb_puts(out, "  .charges = &charges,\n");
+  if (u->switches.n) sb_printf(out, "  .nswitch = %u, .switches = switch_table, .switch_values = switch_values,\n", u->switches.n);
   if (u->variation)
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
@@ -519,6 +534,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_constraints(&f);
   const char *digest = digest_text(u->arena, sb_text(out) + begin);
   emit_charges(&f);
+  emit_switches(&f);
   emit_linear(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
   if (u->taylor) emit_taylor(u->taylor, f.globals, cmath_prefix(u, "lag"), out);
   emit_variation(&f);

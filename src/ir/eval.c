@@ -1,8 +1,9 @@
 /* Runs a Prog in extended precision: an independent reading of what emitted C computes. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
-#include "base/dense.h"
+#include "base/sparse_solve.h"
 #include "ir/prog.h"
 
 typedef long double Real;
@@ -80,19 +81,34 @@ static int solve_definite(Real *a, Real *b, uint32_t n) {
 /* [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations. Where constraints are redundant some multipliers are taken to be 0. */
 static const Real *solved_constrained(const Prog *p, const Solve *s, const Real *v, int *status) {
   uint32_t n = s->n, total = solve_unknowns(s);
-  Real *system = ARENA_ARRAY(p->arena, Real, total * total), *b = ARENA_ARRAY(p->arena, Real, total);
+  Real *b = ARENA_ARRAY(p->arena, Real, total);
+  ArenaMark before = arena_mark(p->arena);
+  SparseElements system = {0};
   for (uint32_t i = 0; i < total; i++) b[i] = v[s->rhs[i]];
   for (uint32_t i = 0; i < total; i++)
-    for (uint32_t j = 0; j < n; j++) system[i * total + j] = v[s->matrix[i * n + j]];
-  for (uint32_t i = n; i < total; i++)
-    for (uint32_t j = 0; j < n; j++) system[j * total + i] = -system[i * total + j];
-  dense_solve(total, system, b, 1e-13L, ARENA_ARRAY(p->arena, uint32_t, total), NULL);
+    for (uint32_t j = 0; j < n; j++) {
+      if (!s->matrix[i * n + j]) continue;
+      Real x = v[s->matrix[i * n + j]];
+      sparse_put(p->arena, &system, i, j, x);
+      if (i >= n) sparse_put(p->arena, &system, j, i, -x);
+    }
+  sparse_solve(p->arena, total, &system, b, 1e-13L, NULL);
+  arena_forget(p->arena, before);
   *status = isfinite(b[0]) ? 0 : -1;
   return b;
 }
 
-static const Real *solved(const Prog *p, const Solve *s, const Real *v, int *status) {
+/* The product with an inverse whose lower triangle stands among the parameters. */
+static const Real *multiplied(const Prog *p, const Solve *s, const Real *v, const Real *inverse) {
+  Real *b = ARENA_ARRAY(p->arena, Real, s->n);
+  for (uint32_t i = 0; i < s->n; i++)
+    for (uint32_t j = 0; j < s->n; j++) b[i] += inverse[i > j ? i * s->n + j : j * s->n + i] * v[s->rhs[j]];
+  return b;
+}
+
+static const Real *solved(const Prog *p, const Solve *s, const Real *v, const Real *parameters, int *status) {
   if (s->m) return solved_constrained(p, s, v, status);
+  if (s->inverse) return multiplied(p, s, v, parameters + s->inverse);
   Real *a = ARENA_ARRAY(p->arena, Real, s->n * s->n), *b = ARENA_ARRAY(p->arena, Real, s->n);
   for (uint32_t i = 0; i < s->n * s->n; i++) a[i] = v[s->matrix[i]];
   for (uint32_t i = 0; i < s->n; i++) b[i] = v[s->rhs[i]];
@@ -100,9 +116,23 @@ static const Real *solved(const Prog *p, const Solve *s, const Real *v, int *sta
   return b;
 }
 
+/* The inverse, column by column, to where it stands among the parameters; and whether there is one. */
+static void invert(const Prog *p, const Solve *s, const Real *v, Real *parameters) {
+  Real *a = ARENA_ARRAY(p->arena, Real, s->n * s->n), *b = ARENA_ARRAY(p->arena, Real, s->n), *to = parameters + s->place;
+  int status = 0;
+  for (uint32_t j = 0; j < s->n && status == 0; j++) {
+    for (uint32_t i = 0; i < s->n * s->n; i++) a[i] = v[s->matrix[i]];
+    for (uint32_t i = 0; i < s->n; i++) b[i] = i == j;
+    status = solve(a, b, s->n);
+    for (uint32_t i = 0; i < s->n; i++) to[solve_inverse(s) + i * s->n + j] = b[i];
+  }
+  to[solve_is_regular(s)] = status == 0;
+}
+
 typedef struct {
   const Prog *p;
   const Real *const *in;
+  Real *const *out;
   Real *v, *cells;
   const Real **solution;
 } Run;
@@ -136,13 +166,14 @@ static int run_ins(Run *r, Slot s, const Ins *i) {
     case IR_OR: v[s] = x != 0 || y != 0; break;
     case IR_SELECT: v[s] = x != 0 ? y : v[i->c]; break;
     case IR_PIVOT: return (i->index ? x > 0 : x != 0) ? 0 : -1;
-    case IR_SOLVE: r->solution[s] = solved(r->p, &r->p->solves.at[i->index], v, &status); return status;
+    case IR_SOLVE: r->solution[s] = solved(r->p, &r->p->solves.at[i->index], v, r->in[ARR_P], &status); return status;
     case IR_SOLVED: v[s] = r->solution[i->a][i->index]; break;
     case IR_NEST: return run_nest(r, &r->p->nests.at[i->index]);
     case IR_TABLE: v[s] = spline_at(r->p->tables.at[i->index].curve, x); break;
-    case IR_INVERT: return -1; /* of emitted code alone */
+    case IR_INVERT: invert(r->p, &r->p->solves.at[i->index], v, r->out[0]); break;
     case IR_TITLE: break;
   }
+  if (fabsl(v[s]) > DBL_MAX) v[s] = copysignl(INFINITY, v[s]); /* where doubles overflow */
   return 0;
 }
 
@@ -193,11 +224,18 @@ static int run_nest(Run *r, const Nest *n) {
   return 0;
 }
 
-int prog_eval(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out) {
-  Run r = {.p = p, .in = in, .v = ARENA_ARRAY(p->arena, Real, p->ins.n), .cells = ARENA_ARRAY(p->arena, Real, p->cells + 1),
-           .solution = ARENA_ARRAY(p->arena, const Real *, p->ins.n)};
-  for (Slot s = 1; s < p->ins.n; s++)
-    if (run_ins(&r, s, &p->ins.at[s]) != 0) return -1;
-  for (uint32_t k = 0; k < p->stores.n; k++) out[p->stores.at[k].array][p->stores.at[k].index] = r.v[p->stores.at[k].slot];
+static int run_all(Run *r) {
+  for (Slot s = 1; s < r->p->ins.n; s++)
+    if (run_ins(r, s, &r->p->ins.at[s]) != 0) return -1;
   return 0;
+}
+
+int prog_eval(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out) {
+  ArenaMark before = arena_mark(p->arena);
+  Run r = {.p = p, .in = in, .out = out, .v = ARENA_ARRAY(p->arena, Real, p->ins.n), .cells = ARENA_ARRAY(p->arena, Real, p->cells + 1),
+           .solution = ARENA_ARRAY(p->arena, const Real *, p->ins.n)};
+  int status = run_all(&r);
+  for (uint32_t k = 0; k < p->stores.n && status == 0; k++) out[p->stores.at[k].array][p->stores.at[k].index] = r.v[p->stores.at[k].slot];
+  arena_forget(p->arena, before);
+  return status;
 }

@@ -24,7 +24,7 @@ typedef struct {
   const SparseRow *below;  /* [n] columns of the unit lower factor, */
   const SparseRow *C;      /* [n + ndefs] of a definition: its coefficients, */
   const SparseRow *row;    /* [n + ndefs] and its row of the quadratic form, as they are at its turn */
-  VEC(FactoredBlock) blocks;
+  VEC(FactoredBlock) blocks; /* without those that nothing accelerates */
   const Slot *inverse;     /* [n, or blocks.n] reciprocals of pivots, or of the divisors of blocks; NULL: divide by them */
 } Factored;
 

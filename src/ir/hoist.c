@@ -51,8 +51,9 @@ static unsigned char *find_worthy(const Prog *p, const unsigned char *constant) 
 /* Whether the matrix of a system is constant, and multiplying by its inverse, which has no zeros, does not take more than solving anew: then the
  * inverse is derived. */
 static int is_constant_solve(const Prog *p, const unsigned char *constant, const Ins *i) {
+  if (i->op != IR_SOLVE) return 0;
   const Solve *k = &p->solves.at[i->index];
-  int all = i->op == IR_SOLVE && !k->m && k->matrix;
+  int all = !k->m && k->matrix;
   for (uint32_t j = 0; all && j < solve_elements(k); j++) all = constant[k->matrix[j]];
   Solve product = {.n = k->n, .inverse = 1};
   return all && ops_total(solve_count(p->arena, &product)) <= ops_total(solve_count(p->arena, k));

@@ -481,6 +481,15 @@ Prog *lower_events(const Eqns *e) {
   return finished(&l, ROLL_FROM);
 }
 
+Prog *lower_switches(const Eqns *e, SwitchingSurfaces all) {
+  Lower l = lower_new(e);
+  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, all.n + 1);
+  for (uint32_t i = 0; i < all.n; i++) roots[i] = all.at[i].side;
+  lower_with_accelerations(&l, roots, all.n);
+  for (uint32_t i = 0; i < all.n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), all.at[i].text);
+  return lower_seldom(&l);
+}
+
 static uint32_t array_of_target(SymKind k) { return k == SYM_COORD ? 0 : k == SYM_VEL ? 1 : 2; }
 
 static void store_target(Lower *l, SymId target, Expr value) {

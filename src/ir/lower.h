@@ -10,6 +10,7 @@
 #include "ir/series.h"
 #include "ir/unit.h"
 #include "mech/eqns.h"
+#include "mech/switching_surfaces.h"
 #include "mech/variation.h"
 
 Prog *lower_accel(const Eqns *e, int libm); /* out 0: a[nq], out 1: zd[nz]; libm: functions are called, not in the text */
@@ -21,6 +22,7 @@ Prog *lower_powers(const Eqns *e);  /* out 0: by what each charge changes, the e
 Prog *lower_variation(const Eqns *e, const Variation *x); /* out 0, 1, 2: dL/dq[nq], dL/dq'[nq], Q[nq] */
 Prog *lower_second(const Eqns *e, const Variation *x);    /* out 0: h[number of entries] */
 Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
+Prog *lower_switches(const Eqns *e, SwitchingSurfaces all); /* out 0: one for each */
 Prog *lower_action(const Eqns *e, uint32_t event); /* out 0, 1, 2: q1, v1, z1; only what is set */
 Prog *lower_inputs(const Eqns *e);  /* out 0: u[nu] */
 Prog *lower_linear(const Eqns *e, Partials dr); /* out 0: dr, in the order of the entries, out 1: M, likewise; reads q'' */
@@ -30,6 +32,7 @@ Prog *lower_jumps(const Eqns *e, Jumps jumps); /* out 0: in the order of the ent
 Prog *lower_residuals(const Eqns *e);
 Prog *lower_matrices(const Eqns *e);
 Prog *lower_change(const Eqns *e, uint32_t nrows);
+Prog *lower_multipliers(const Eqns *e); /* out 0: lambda of each constraint, in the order of e->constraints */
 Prog *lower_impact(const Eqns *e, const Contact *c); /* out 1: v1, after the impact */
 Prog *lower_outputs(const Eqns *e); /* out 0: out[nout] */
 Prog *lower_plain_outputs(const Eqns *e); /* likewise, of those without closed forms */

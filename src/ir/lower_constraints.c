@@ -77,3 +77,11 @@ Prog *lower_impact(const Eqns *e, const Contact *contact) {
   }
   return prog_tidy(l.p);
 }
+
+Prog *lower_multipliers(const Eqns *e) {
+  Lower l = lower_new(e);
+  Slot *acc = ARENA_ARRAY(e->m->arena, Slot, e->n + 1);
+  lower_solution(&l, acc);
+  for (uint32_t k = 0; k < e->constraints.n; k++) prog_store(l.p, 0, k, l.multipliers[k], e->constraints.of[k]->name);
+  return prog_tidy(l.p);
+}

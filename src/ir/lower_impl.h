@@ -47,6 +47,9 @@ void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, Slot 
 /* The same by elimination without pivoting, for entries and forces that are lowered. */
 void lower_elimination(Lower *l, Slot *acc);
 
+/* The same for M = W^T C W: gram.c. */
+void lower_gram(Lower *l, Slot *acc);
+
 /* "M12", "f1": by the numbers of coordinates; the stem alone when there is one coordinate. */
 Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j);
 

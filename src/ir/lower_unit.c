@@ -86,10 +86,10 @@ static void add_constraints(IrUnit *u, const Eqns *e) {
   to->velocity = k->nkept == k->n ? to->position : lower_change(e, k->n);
 }
 
-/* Where the energy is the only charge, and conserved, there is nothing to add. */
+/* Where the energy is the only charge, conserved, and without a unit, there is nothing to add. */
 static void add_charges(IrUnit *u, const Eqns *e) {
   const Prog *powers = e->ncharges ? lower_powers(e) : NULL;
-  if (e->ncharges < 2 && !powers && !e->energy_jumps) return;
+  if (e->ncharges < 2 && !powers && !e->energy_jumps && !(e->ncharges && e->charges[0].unit.text[0])) return;
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
     int conserved = i ? expr_is_zero(e->g, c->proof.power) : e->conserves_energy;
@@ -98,6 +98,16 @@ static void add_charges(IrUnit *u, const Eqns *e) {
   }
   u->charge_values = e->ncharges > 1 ? lower_charges(e) : NULL;
   u->charge_powers = powers;
+}
+
+static void add_switches(IrUnit *u, const Eqns *e) {
+  SwitchingSurfaces all = switching_surfaces(e);
+  if (!all.n) return;
+  for (uint32_t i = 0; i < all.n; i++) {
+    Place place = source_place(e->m->ast->sources, all.at[i].span.begin);
+    vec_push(u->arena, &u->switches, ((IrSwitch){all.at[i].surface, all.at[i].text, place.file ? place.line : 0, all.at[i].nonnegative}));
+  }
+  u->switch_values = lower_switches(e, all);
 }
 
 static void add_variation(IrUnit *u, const Eqns *e) {
@@ -143,6 +153,7 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
   add_constraints(u, e);
   add_contacts(u, e);
   add_charges(u, e);
+  add_switches(u, e);
   return u;
 }
 

@@ -78,13 +78,12 @@ typedef struct {
 /* A dense block that is solved by a loop: matrix[n*n] row-major (0: zero) and right-hand side. place: where it stands in the
  * work space. matrix is NULL where the one at that place was factored before, by another function. With m constraints A x = g on
  * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. coarse: constraints that are nearly dependent count as
- * dependent; kinds[n]: a letter a coordinate, those of one unit alike, NULL where all are (lag_kkt.h). Without constraints, entries more than `band` beside the diagonal are zero, and a definite M is eliminated without
+ * dependent; see lag_kkt.h. Without constraints, entries more than `band` beside the diagonal are zero, and a definite M is eliminated without
  * pivoting, from its upper triangle. inverse: where the inverse stands among the parameters, not 0: then there is no matrix, and a solution is
  * a product. Of IR_INVERT: where that writes [matrix | n | n | inverse | 1 where there is one, and 0]; no right-hand side. */
 typedef struct {
   uint32_t n, m, place, band, inverse;
   int coarse, definite;
-  const char *kinds;
   const Slot *matrix, *rhs;
 } Solve;
 
@@ -273,8 +272,8 @@ uint64_t ops_total(OpCount c);
 /* As what an int holds: its largest number stands for all beyond. */
 uint32_t ops_as_int(uint64_t ops);
 
-/* Runs the program in extended precision: in[array] are the inputs, out[array][index] the stores.
- * Returns 0, or -1 when a pivot failed. */
+/* Runs the program in extended precision, with the range of doubles: in[array] are the inputs, out[array][index] the stores. Of derived
+ * parameters in[ARR_P] is out[0]. Returns 0, or -1 when a pivot failed. */
 int prog_eval(const Prog *p, const long double *const in[ARR_COUNT], long double *const *out);
 
 #endif

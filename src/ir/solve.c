@@ -3,8 +3,6 @@
  * A mass matrix that is proved positive definite is eliminated by eliminate.c, in straight-line code.
  * Otherwise blocks of coupled coordinates: pairs by Cramer's rule, other blocks, and large dense
  * ones, by a loop: with partial pivoting where M may be indefinite, in an order of a narrow band. Coordinates that a constraint couples are one block, solved with their multipliers. */
-#include <string.h>
-
 #include "ir/band.h"
 #include "ir/lower_impl.h"
 
@@ -183,22 +181,6 @@ static void solve_two(Lower *l, Block *b, Slot *x) {
   x[1] = op(l, IR_DIV, n2, det);
 }
 
-/* A letter a coordinate of the block, those of one unit alike; NULL where all are. */
-static const char *kinds_of(Lower *l, const Block *b) {
-  enum { LETTERS = 26 }; /* further units share the last */
-  const Model *m = l->e->m;
-  char *kinds = ARENA_ARRAY(l->p->arena, char, b->n + 1);
-  int last = -1;
-  for (uint32_t i = 0; i < b->n; i++) {
-    uint32_t same = 0;
-    while (strcmp(m->coords.at[b->at[same]].unit.text, m->coords.at[b->at[i]].unit.text) != 0) same++;
-    if (same == i && last < LETTERS - 1) last++;
-    kinds[i] = same < i ? kinds[same] : (char)('a' + last);
-  }
-  kinds[b->n] = '\0';
-  return last > 0 ? kinds : NULL;
-}
-
 /* x[n], and behind it the multipliers of the constraints. */
 static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   Arena *a = l->p->arena;
@@ -211,7 +193,7 @@ static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   int definite = !m && !l->factored && (l->e->definite_mass || l->e->definite_by_values);
   for (size_t i = 0; definite && i < n; i++)
     for (size_t j = 0; j < i; j++) full[i * n + j] = 0; /* is not read */
-  vec_push(a, &l->p->solves, ((Solve){.n = b->n, .m = b->m, .band = band_width(b->n, b->M), .coarse = coarse, .definite = definite, .kinds = m ? kinds_of(l, b) : NULL, .matrix = full, .rhs = rhs}));
+  vec_push(a, &l->p->solves, ((Solve){.n = b->n, .m = b->m, .band = band_width(b->n, b->M), .coarse = coarse, .definite = definite, .matrix = full, .rhs = rhs}));
   Slot s = prog_ins(l->p, (Ins){.op = IR_SOLVE, .index = l->p->solves.n - 1});
   for (uint32_t i = 0; i < n + m; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
@@ -229,8 +211,16 @@ static int has_large_block(const Eqns *e) {
  * work with any. */
 static int goes_straight(const Eqns *e) {
   const LinearSystem *s = &e->system;
+  if (e->squares.n) return 1; /* definite by its values at least */
   int definite = e->definite_mass || (e->definite_by_values && (s->ndefs || has_large_block(e)));
   return definite && !e->constraints.n && (s->ndefs || s->ops <= STRAIGHT_OPS_A_VARIABLE * (uint64_t)e->n);
+}
+
+/* Whether nothing accelerates it. */
+static int is_empty(const Block *b) {
+  for (uint32_t i = 0; i < b->n; i++)
+    if (b->f[i]) return 0;
+  return 1;
 }
 
 /* Each block that is factored by a loop gets a place of its own. */
@@ -240,6 +230,7 @@ static void keep_factors(Lower *l, const Block *blocks, uint32_t n, Slot *x) {
   *f = (Factored){.n = l->e->n};
   for (uint32_t k = 0; k < n; k++) {
     const Block *b = &blocks[k];
+    if (is_empty(b)) continue; /* its solution is 0 to all orders */
     FactoredBlock kept = {.n = b->n, .at = b->at, .M = b->M, .divisor = b->n == 2 ? b->divisor : b->M[0], .place = place};
     vec_push(l->p->arena, &f->blocks, kept);
     if (b->n < 3) continue;
@@ -247,13 +238,6 @@ static void keep_factors(Lower *l, const Block *blocks, uint32_t n, Slot *x) {
     place += factored_room(b->n);
   }
   l->x = x;
-}
-
-/* Whether nothing accelerates it. */
-static int is_empty(const Block *b) {
-  for (uint32_t i = 0; i < b->n; i++)
-    if (b->f[i]) return 0;
-  return 1;
 }
 
 /* acc[n], and the multipliers of the first nrows constraints. */
@@ -278,6 +262,13 @@ static void push_entries(Lower *l, ExprVec *roots, const Entries *from) {
   for (uint32_t k = 0; k < from->n; k++) vec_push(l->p->arena, roots, from->at[k].e);
 }
 
+static void push_forms(Lower *l, ExprVec *roots) {
+  const SquareForms *s = &l->e->squares;
+  for (uint32_t k = 0; k < s->n; k++) vec_push(l->p->arena, roots, s->weight[k]);
+  for (uint32_t k = 0; k < s->n * l->e->n; k++)
+    if (s->W[k]) vec_push(l->p->arena, roots, s->W[k]);
+}
+
 static const Slot *slots_of(Lower *l, const Expr *of, uint32_t n) {
   Slot *s = ARENA_ARRAY(l->p->arena, Slot, n + 1);
   for (uint32_t i = 0; i < n; i++) s[i] = lower_slot(l, of[i]);
@@ -290,7 +281,8 @@ void lower_solution(Lower *l, Slot *acc) {
   const Constraints *k = &e->constraints;
   if (!e->n) return;
   ExprVec roots = {0};
-  push_entries(l, &roots, &s->H);
+  push_forms(l, &roots);
+  if (!e->squares.n || l->factored) push_entries(l, &roots, &s->H); /* series go on with M */
   push_entries(l, &roots, &s->C);
   push_entries(l, &roots, &k->A);
   for (uint32_t i = 0; i < e->n; i++) vec_push(l->p->arena, &roots, s->f[i]);
@@ -300,7 +292,7 @@ void lower_solution(Lower *l, Slot *acc) {
   lower_roots(l, roots.at, roots.n);
   l->multipliers = ARENA_ARRAY(l->p->arena, Slot, k->n + 1);
   if (goes_straight(e)) {
-    lower_elimination(l, acc);
+    (e->squares.n ? lower_gram : lower_elimination)(l, acc);
   } else {
     Sides sides = {slots_of(l, s->f, e->n), slots_of(l, k->demand, k->n), k->n, l->coarse};
     prog_title(l->p, k->n ? "M q'' = f + A^T lambda" : "M q'' = f");

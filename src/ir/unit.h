@@ -100,6 +100,13 @@ typedef struct {
   uint32_t input, constraint, impact, release;
 } IrContact;
 
+/* A switching function of mech/switching_surfaces.h. */
+typedef struct {
+  const char *surface, *text;
+  uint32_t line;
+  int nonnegative;
+} IrSwitch;
+
 /* flags: 1 it is conserved, 2 its balance is known, 4 while inputs follow their formulas. */
 typedef struct {
   const char *name, *unit;
@@ -119,6 +126,8 @@ typedef struct {
   uint32_t nderived;
   VEC(IrCharge) charges;        /* the energy first; none where there is nothing to say of them but that it is conserved */
   const Prog *charge_values, *charge_powers; /* NULL: there is only the energy; all are conserved */
+  VEC(IrSwitch) switches;
+  const Prog *switch_values;    /* NULL: there are none */
   IrConstraints constraints;
   VEC(IrContact) contacts;
   unsigned wants;
@@ -131,7 +140,7 @@ typedef struct {
   VEC(IrJump) jump_at;          /* what its outputs are */
   VEC(IrScene) scenes;
   int libm;                     /* emitted code calls the C library's sin and cos */
-  int lines;                    /* constraints say in what line they stand: of simulators, which name their file */
+  int lines;                    /* constraints and switches say in what line they stand: of simulators, which name their file */
 } IrUnit;
 
 #endif

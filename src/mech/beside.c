@@ -4,26 +4,20 @@
 
 #include <math.h>
 
-#include "base/dense.h"
-#include "mech/alike.h"
 #include "mech/start.h"
 
 /* The rank of the constraints at the state that was looked at last, and held[n]: how much of each coordinate's direction they hold. */
-static uint32_t rank_of(const Eqns *e, const StateValues *v, long double *held) {
+static uint32_t rank_of(const Eqns *e, StateSolver *s, long double *held) {
   const long double independent = 6e-6L; /* as states_rank */
-  const Entries *A = &e->constraints.A;
-  uint32_t n = e->n, rank = 0, at = 0;
-  long double *rows = ARENA_ARRAY(e->m->arena, long double, (size_t)(e->constraints.n + 1) * n), *unit = ARENA_ARRAY(e->m->arena, long double, n + 1);
-  alike_units(e, v, unit);
-  for (uint32_t k = 0; k < e->constraints.n; k++) {
-    long double *row = rows + (size_t)rank * n;
-    for (uint32_t j = 0; j < n; j++) row[j] = 0;
-    for (; at < A->n && A->at[at].row == k; at++) row[A->at[at].col] = v->A[at] * unit[A->at[at].col];
-    rank += dense_reduce(n, row, rows, rank) > independent;
-  }
+  uint32_t n = e->n, at = 0;
+  RowSpan span = row_span(e->m->arena, n);
   for (uint32_t j = 0; j < n; j++) held[j] = 0;
-  for (size_t i = 0; i < (size_t)rank * n; i++) held[i % n] += rows[i] * rows[i];
-  return rank;
+  for (uint32_t k = 0; k < e->constraints.n; k++) {
+    const SparseVector *row = states_row(s, k, &at);
+    if (!(row_span_add(&span, row->at, row->n, independent) > independent)) continue;
+    for (uint32_t j = 0; j < n; j++) held[j] += span.left[j] * span.left[j];
+  }
+  return span.rank;
 }
 
 uint32_t rank_beside(const Eqns *e, StateSolver *s, const long double *symbols, unsigned char *loose) {
@@ -32,13 +26,13 @@ uint32_t rank_beside(const Eqns *e, StateSolver *s, const long double *symbols, 
   uint32_t n = e->n, all = expr_symbol_count(e->g) + 1;
   long double *held = ARENA_ARRAY(arena, long double, n + 1), *held_beside = ARENA_ARRAY(arena, long double, n + 1);
   long double *there = ARENA_ARRAY(arena, long double, all);
-  StateValues v = states_at(s, symbols);
-  uint32_t here = rank_of(e, &v, held), rank = here;
+  states_at(s, symbols);
+  uint32_t here = rank_of(e, s, held), rank = here;
   for (uint32_t i = 0; i < all; i++) there[i] = symbols[i];
   for (uint32_t i = 0; i < n; i++) there[e->m->coords.at[i].q] += 0.01L * start_reach(e, symbols, i) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
   if (n > 1 && states_obey(s, there)) {
-    v = states_at(s, there);
-    rank = rank_of(e, &v, held_beside);
+    states_at(s, there);
+    rank = rank_of(e, s, held_beside);
   }
   for (uint32_t i = 0; i < n; i++) loose[i] = rank > here && held_beside[i] - held[i] > part;
   return rank > here ? rank : here;

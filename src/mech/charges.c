@@ -28,8 +28,7 @@ static Charge charge_of(const Eqns *e, const Symmetry *y) {
 
 static Charge energy_of(const Eqns *e) {
   Expr zero = expr_int(e->g, 0);
-  Charge c = {.name = "energy", .value = e->energy_stable, .scale = e->energy_scale};
-  c.unit = (Unit){.dim = DIM_ANY, .factor = num_int(1), .offset = num_int(0), .text = ""};
+  Charge c = {.name = "energy", .unit = e->m->energy_unit, .value = e->energy_stable, .scale = e->energy_scale};
   if (e->conserves_energy) c.proof = (Noether){.charge = e->energy, .power = zero, .F = zero, .remainder = zero, .by_constraints = zero};
   else c.proof = noether_energy(e);
   return c;

@@ -146,3 +146,42 @@ int mass_is_definite_by_values(const Eqns *e, const LinearSystem *s, Expr lagran
   }
   return some && mass_is_definite(e, s, expr_substitute(g, lagrangian, with, n, ""));
 }
+
+/* The parameter of this entry that would make it positive, if its value were; UINT32_MAX: none. */
+static uint32_t find_culprit(const Eqns *e, Expr entry, long double *value) {
+  long double inertia;
+  ExprList nodes = expr_topo(e->g, &entry, 1);
+  for (uint32_t i = 0; i < nodes.n; i++) {
+    const Symbol *s = expr_op(e->g, nodes.at[i]) == EX_SYM ? expr_sym_of(e->g, nodes.at[i]) : NULL;
+    if (!s || s->kind != SYM_PARAM) continue;
+    SymId sym = e->m->params.at[s->index].sym;
+    long double was = value[sym];
+    if (!(was <= 0)) continue;
+    value[sym] = was < 0 ? -was : 1;
+    expr_eval(e->g, &entry, 1, value, &inertia);
+    value[sym] = was;
+    if (inertia > 0) return s->index;
+  }
+  return UINT32_MAX;
+}
+
+void mass_warn(const Eqns *e) {
+  const Model *m = e->m;
+  long double *value = ARENA_ARRAY(m->arena, long double, expr_symbol_count(e->g) + 1), inertia;
+  uint8_t *warned = ARENA_ARRAY(m->arena, uint8_t, m->params.n + 1);
+  value[m->pi] = 3.14159265358979323846264338327950288L;
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (m->params.at[i].value) expr_eval(e->g, &m->params.at[i].value, 1, value, &value[m->params.at[i].sym]);
+  for (uint32_t i = 0; i < e->mass.n; i++) {
+    MassEntry x = e->mass.at[i];
+    if (x.row != x.col || (expr_kinds(e->g, x.e) & ~(1u << SYM_PARAM | 1u << SYM_CONST))) continue;
+    expr_eval(e->g, &x.e, 1, value, &inertia);
+    if (!(inertia < 0) && !(inertia == 0 && !m->constraints.n)) continue;
+    uint32_t k = find_culprit(e, x.e, value);
+    if (k == UINT32_MAX || warned[k]++) continue;
+    const Param *p = &m->params.at[k];
+    diag_warning(m->diags, p->span, "`%s` is %s, and makes the inertia of `%s` %s", p->name, arena_printf(m->arena, "%.6Lg", value[p->sym]),
+                 m->coords.at[x.row].name, inertia < 0 ? "negative" : "zero");
+    diag_help(m->diags, "give it a positive value; with `> 0` behind it a run refuses others");
+  }
+}

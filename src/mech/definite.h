@@ -11,4 +11,7 @@ int mass_is_definite(const Eqns *e, const LinearSystem *s, Expr lagrangian);
 /* The same with parameters that declare no sign taken for what their values in the scene are: pivots tell where others break it. */
 int mass_is_definite_by_values(const Eqns *e, const LinearSystem *s, Expr lagrangian);
 
+/* Warns of parameters whose values in the scene are not positive and make an entry of the diagonal of M, of parameters alone, negative or zero. */
+void mass_warn(const Eqns *e);
+
 #endif

@@ -1,6 +1,7 @@
 #include "mech/discontinuity.h"
 
 #include "mech/noether.h"
+#include "mech/switching_surfaces.h"
 
 ExprJumps discontinuities_of(const Eqns *e, Expr x) {
   const Model *m = e->m;
@@ -59,11 +60,23 @@ static void warn_of_corners(const Eqns *e) {
   }
 }
 
+/* Dry friction and relays: a motion may stay where such a force jumps. */
+static void warn_of_switches(const Eqns *e) {
+  const Model *m = e->m;
+  SwitchingSurfaces all = switching_surfaces(e);
+  for (uint32_t i = 0; i < all.n; i++) {
+    diag_warning(m->diags, all.at[i].span, "a force jumps where `%s` is 0, and a motion that it holds there, as dry friction does, cannot be followed: the run ends when it gets stuck",
+                 all.at[i].surface);
+    diag_help(m->diags, "smooth it, as tanh(v/w) does sign(v) with a small velocity w, and take radau; or let an event stop the run there");
+  }
+}
+
 void discontinuity_warn(const Eqns *e) {
   enum { COORDINATES_MOST = 64 };
   const Model *m = e->m;
   uint32_t n = noether_coordinates(e);
   VEC(ExprJump) said = {0};
+  warn_of_switches(e);
   if (!m->lagrangian) return;
   ExprJumps all = discontinuities_of(e, m->lagrangian);
   for (uint32_t i = 0; i < all.n; i++) {

@@ -294,5 +294,6 @@ Eqns *eqns_derive(Model *m) {
   charges_derive(e);
   fill_outputs(e);
   if (!m->effects.n && !charges_judge(e, NULL)) return NULL; /* with effects it may be broken on purpose */
+  lagrange_squares(e);
   return check_numbers(e) && check_method(e) ? e : NULL;
 }

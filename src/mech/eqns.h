@@ -37,6 +37,13 @@ typedef struct {
   uint64_t ops;          /* of elimination and substitution, about */
 } LinearSystem;
 
+/* M = W^T C W with C = diag(weight): mech/squares.h. */
+typedef struct {
+  uint32_t n;         /* forms; 0: M is solved by its entries */
+  const Expr *weight; /* [n] */
+  const Expr *W;      /* [n * coordinates], 0 where it is zero */
+} SquareForms;
+
 /* Constraints: the holonomic ones first; then those on velocities that are the rate of a function of positions, r = dF/dt, and so keep F
  * as it is at the start; then the others. */
 typedef struct {
@@ -78,6 +85,7 @@ typedef struct {
   int mass_known;        /* 0: too many, and the system below does without; see eqns_derive_mass */
   const Expr *f;         /* [n]; with A^T lambda, made of the symbols of multipliers */
   LinearSystem system;   /* the cheapest form of M q'' = f found; without multipliers */
+  SquareForms squares;   /* where M is almost singular somewhere */
   Constraints constraints;
   const Expr *Q;         /* [n], of first order [first.n], with rates: generalised forces, inside f, or rhs and form, already */
   const Expr *flow;      /* [number of states]; free of rates */

@@ -5,9 +5,9 @@
 #include "mech/eqns.h"
 
 typedef enum {
-  EXPECT_PROVED,
-  EXPECT_REFUTED,
-  EXPECT_AGREES, /* not decided by the prover; the sides agree to some digits */
+  EXPECT_PROVED,  /* for all states at which both sides have real values */
+  EXPECT_REFUTED, /* at some state both sides have real values, and these differ */
+  EXPECT_AGREES, /* not decided by the prover; the sides agree as far as rounding lets one see */
   EXPECT_UNKNOWN /* not decided, and no state tried gives the sides values that mean something */
 } ExpectVerdict;
 
@@ -17,6 +17,7 @@ typedef struct {
   ExpectVerdict verdict;
   int digits; /* of agreement */
   int states; /* at which the sides were compared */
+  const char *difference; /* of a refuted one: both values, and a state that has them */
   int inexact; /* a number in the sides, or in the equations, is not exact: that is why it is not decided */
 } ExpectResult;
 

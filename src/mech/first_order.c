@@ -235,7 +235,6 @@ static int is_regular(const Work *w, const Block *b) {
   enum { TRIES = 8 };
   long double *symbols = ARENA_ARRAY(w->arena, long double, expr_symbol_count(w->g) + 1);
   long double *a = ARENA_ARRAY(w->arena, long double, (size_t)b->n * b->n);
-  uint32_t *column = ARENA_ARRAY(w->arena, uint32_t, b->n);
   int judged = 0;
   for (uint32_t seed = 1; seed <= TRIES; seed++) {
     prove_state(w->g, seed, symbols);
@@ -243,7 +242,7 @@ static int is_regular(const Work *w, const Block *b) {
     int finite = 1;
     for (uint32_t k = 0; k < b->n * b->n; k++) finite &= isfinite(a[k]) != 0;
     if (!finite) continue;
-    if (dense_solve(b->n, a, NULL, 1e-13L, column, NULL) == b->n) return 1;
+    if (dense_solve(w->arena, b->n, a, NULL, 1e-13L, NULL) == b->n) return 1;
     judged = 1;
   }
   return !judged;

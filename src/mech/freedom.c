@@ -3,8 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/dense.h"
-#include "mech/alike.h"
+#include "base/sparse_solve.h"
 #include "mech/beside.h"
 #include "mech/frobenius.h"
 #include "mech/noether.h"
@@ -80,29 +79,26 @@ static uint32_t contradicting(const Eqns *e, StateSolver *s, const long double *
   const Constraints *k = &e->constraints;
   const Scene *scene = &e->m->scene;
   Arena *arena = e->m->arena;
-  uint32_t n = e->n, w = n + 1, rank = 0, at = 0;
+  uint32_t n = e->n, at = 0;
   StateValues v = states_at(s, symbols);
-  long double *rows = ARENA_ARRAY(arena, long double, (size_t)(k->n + 1) * w), *size = ARENA_ARRAY(arena, long double, k->n), most = 0;
+  long double *size = ARENA_ARRAY(arena, long double, k->n + 1), most = 0;
   long double span = scene->has_span && scene->t1 != scene->t0 ? fabsl((long double)scene->t1 - scene->t0) : 1;
-  long double *unit = ARENA_ARRAY(arena, long double, n + 1);
-  alike_units(e, &v, unit);
-  for (uint32_t i = 0; i < k->A.n; i++) size[k->A.at[i].row] += v.A[i] * unit[k->A.at[i].col] * v.A[i] * unit[k->A.at[i].col];
+  const int *scale = states_scale(s);
+  for (uint32_t i = 0; i < k->A.n; i++) size[k->A.at[i].row] += ldexpl(v.A[i] * v.A[i], 2 * scale[k->A.at[i].col]);
   for (uint32_t i = 0; i < k->n; i++) {
     size[i] = sqrtl(size[i]);
     if (size[i] > 0) most = fmaxl(most, fabsl(v.demand[i]) / size[i]);
   }
   long double far = 0;
-  for (uint32_t i = 0; i < n; i++) far = fmaxl(far, fabsl(symbols[e->m->coords.at[i].q]) / unit[i]);
+  for (uint32_t i = 0; i < n; i++) far = fmaxl(far, fabsl(ldexpl(symbols[e->m->coords.at[i].q], -scale[i])));
   if (!(most > 1e-9L * (far > 0 ? far : 1) / (span * span))) return UINT32_MAX;
+  RowSpan demands = row_span(arena, n + 1); /* the rows of A, each with its demand behind it */
   for (uint32_t i = 0; i < k->n; i++) {
-    long double *row = rows + (size_t)rank * w;
-    for (uint32_t j = 0; j < w; j++) row[j] = 0;
-    for (; at < k->A.n && k->A.at[at].row == i; at++) row[k->A.at[at].col] = size[i] > 0 ? v.A[at] * unit[k->A.at[at].col] / size[i] : 0;
+    SparseVector row = *states_row(s, i, &at);
     if (!(size[i] > 0)) continue;
-    row[n] = v.demand[i] / size[i] / most;
-    uint32_t more = dense_reduce(w, row, rows, rank) > 1e-5L;
-    if (more && !counts[i]) return i;
-    rank += more;
+    for (uint32_t j = 0; j < row.n; j++) row.at[j].value /= size[i];
+    vec_push(arena, &row, ((RowElement){n, v.demand[i] / size[i] / most}));
+    if (row_span_add(&demands, row.at, row.n, 1e-5L) > 1e-5L && !counts[i]) return i;
   }
   return UINT32_MAX;
 }
@@ -129,58 +125,16 @@ static int check_agreement(const Eqns *e, StateSolver *s, const long double *sym
   return 1;
 }
 
-/* M in coordinates that scale[] makes alike, on a basis of the directions that constraints allow: a[free free]. */
-static uint32_t reduced_mass(const Eqns *e, const StateValues *v, long double *scale, long double *basis, long double *a) {
-  const Entries *A = &e->constraints.A, *M = &e->mass;
-  uint32_t n = e->n, rank = 0, at = 0;
-  for (uint32_t i = 0; i < n; i++) scale[i] = 1;
-  for (uint32_t i = 0; i < M->n; i++)
-    if (M->at[i].row == M->at[i].col && v->mass[i] > 0) scale[M->at[i].row] = 1 / sqrtl(v->mass[i]);
-  for (uint32_t k = 0; k < e->constraints.n + n; k++) { /* constraints, then unit vectors: what is left of these */
-    long double *row = basis + (size_t)rank * n;
-    for (uint32_t j = 0; j < n; j++) row[j] = k == e->constraints.n + j;
-    for (; at < A->n && A->at[at].row == k; at++) row[A->at[at].col] = v->A[at] * scale[A->at[at].col];
-    if (dense_reduce(n, row, basis, rank) > (k < e->constraints.n ? 6e-6L : 1e-9L)) rank++;
-    if (k + 1 == e->constraints.n) scale[n] = rank;
-    if (rank == n) break;
-  }
-  uint32_t first = (uint32_t)scale[n], free = n - first;
-  for (uint32_t i = 0; i < free; i++)
-    for (uint32_t j = 0; j < free; j++) {
-      const long double *x = basis + (size_t)(first + i) * n, *y = basis + (size_t)(first + j) * n;
-      long double sum = 0;
-      for (uint32_t k = 0; k < M->n; k++) {
-        uint32_t r = M->at[k].row, c = M->at[k].col;
-        long double m = v->mass[k] * scale[r] * scale[c];
-        sum += x[r] * m * y[c] + (r != c ? x[c] * m * y[r] : 0);
-      }
-      a[i * free + j] = sum;
-    }
-  return first;
-}
-
 /* Whether each direction that constraints allow has inertia at the start. */
 static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbols) {
   const Model *m = e->m;
-  uint32_t n = e->n;
+  uint32_t most = 0;
   if (!e->mass_known || (e->definite_mass && !e->singular_mass)) return 1; /* definite is what is definite where it is regular */
-  long double *scale = ARENA_ARRAY(m->arena, long double, n + 1), *basis = ARENA_ARRAY(m->arena, long double, (size_t)(n + 1) * n);
-  long double *a = ARENA_ARRAY(m->arena, long double, (size_t)n * n + 1), *null = ARENA_ARRAY(m->arena, long double, n + 1);
-  uint32_t *column = ARENA_ARRAY(m->arena, uint32_t, n + 1);
-  StateValues v = states_at(s, symbols);
-  uint32_t first = reduced_mass(e, &v, scale, basis, a), free = n - first, most = 0;
-  long double largest = 0, whole = 0; /* of what is allowed, and of all: a direction beside one without inertia has a little */
-  for (uint32_t i = 0; i < free * free; i++) largest = fmaxl(largest, fabsl(a[i]));
-  for (uint32_t k = 0; k < e->mass.n; k++) whole = fmaxl(whole, fabsl(v.mass[k] * scale[e->mass.at[k].row] * scale[e->mass.at[k].col]));
-  if (!(largest > 1e-12L * whole)) largest = 0;
-  if (free == 0 || (largest > 0 && dense_solve(free, a, NULL, 1e-12L, column, null) == free)) return 1;
-  if (!(largest > 0)) null[0] = 1;
-  for (uint32_t j = 0; j < n; j++) { /* the direction, in coordinates; scale[] is free now */
-    long double x = 0;
-    for (uint32_t i = 0; i < free; i++) x += null[i] * basis[(size_t)(first + i) * n + j];
-    scale[j] = fabsl(x);
-    if (scale[j] > scale[most] * (1 + 1e-9L)) most = j;
-  }
+  long double *null = ARENA_ARRAY(m->arena, long double, e->n + 1);
+  states_at(s, symbols);
+  if (sparse_is_regular_on_kernel(m->arena, e->n, e->constraints.n, states_system(s), null)) return 1;
+  for (uint32_t j = 0; j < e->n; j++)
+    if (fabsl(null[j]) > fabsl(null[most]) * (1 + 1e-9L)) most = j;
   diag_error(m->diags, m->coords.at[most].span, "scene %s: nothing says how `%s` moves: it has no inertia at the start, and no constraint moves it", m->scene.name,
              m->coords.at[most].name);
   diag_help(m->diags, "give it a mass, or a constraint that depends on it");
@@ -216,9 +170,27 @@ static int says_start(const Model *m) {
   return 0;
 }
 
+/* Without constraints: whether each direction has inertia at the start, as the pole of angles has not. */
+static int check_mass(const Eqns *e) {
+  const Model *m = e->m;
+  uint32_t most = 0;
+  if (!e->n || !e->mass_known || e->constant_mass) return 1;
+  long double *null = ARENA_ARRAY(m->arena, long double, e->n + 1);
+  StateSolver *s = states_new(e);
+  StateValues v = states_at(s, start_asked(e));
+  for (uint32_t k = 0; k < e->mass.n; k++)
+    if (!isfinite(v.mass[k])) return 1; /* the run says where */
+  if (sparse_is_regular_on_kernel(m->arena, e->n, 0, states_system(s), null)) return 1;
+  for (uint32_t j = 0; j < e->n; j++)
+    if (fabsl(null[j]) > fabsl(null[most]) * (1 + 1e-9L)) most = j;
+  diag_error(m->diags, m->coords.at[most].span, "scene %s: the mass matrix is singular at the start: nothing says how `%s` moves from there", m->scene.name, m->coords.at[most].name);
+  diag_help(m->diags, "start elsewhere, or take coordinates without such a place: a body's `coord R: rotation` has no pole (`lagc help rotations`)");
+  return 0;
+}
+
 int freedom_show(const Eqns *e, StrBuf *out) {
   const Constraints *all = &e->constraints;
-  if (!all->n) return 1;
+  if (!all->n) return !says_start(e->m) || check_mass(e);
   StateSolver *s = states_new(e);
   long double *symbols = start_asked(e);
   StartResult start = start_find(e, s, symbols);

@@ -2,10 +2,12 @@
 
 #include <math.h>
 
-#include "base/dense.h"
+#include "base/sparse_solve.h"
 #include "mech/definite.h"
 #include "mech/lift.h"
 #include "mech/order.h"
+#include "mech/squares.h"
+#include "mech/states.h"
 #include "mech/sums.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
@@ -227,6 +229,14 @@ void lagrange_momenta_and_forces(Eqns *e) {
   if (lifted_ops < dense_ops) e->system = lifted;
 }
 
+void lagrange_squares(Eqns *e) {
+  if (!e->n || !e->mass_known || !e->definite_by_values) return;
+  e->squares = squares_of(e);
+  if (!e->squares.n) return;
+  e->system = (LinearSystem){.n = e->n, .H = e->mass, .f = e->f};
+  order_best(e->m->arena, e->g, &e->system);
+}
+
 /* --- a mass matrix that is singular everywhere --- */
 
 enum { TRIES = 8 };
@@ -293,17 +303,16 @@ static void report_singular(const Eqns *e, const long double *null) {
   }
 }
 
-/* Adds A^T A to a[n*n]: what constraints fix needs no inertia. */
-static void add_constraints(const Eqns *e, const long double *symbols, long double *a) {
-  const Entries *A = &e->constraints.A;
-  uint32_t n = e->n;
-  Expr *entries = ARENA_ARRAY(e->m->arena, Expr, A->n + 1);
-  long double *values = ARENA_ARRAY(e->m->arena, long double, A->n + 1);
-  for (uint32_t k = 0; k < A->n; k++) entries[k] = A->at[k].e;
-  expr_eval(e->g, entries, A->n, symbols, values);
-  for (uint32_t k = 0; k < A->n; k++)
-    for (uint32_t j = 0; j < A->n; j++)
-      if (A->at[j].row == A->at[k].row && isfinite(values[k] * values[j])) a[A->at[k].col * n + A->at[j].col] += values[k] * values[j];
+/* M at a state, and [M -A^T; A 0]. 0: M has an entry that is not finite. */
+static int system_at(const Eqns *e, const Expr *entries, const long double *symbols, long double *values, SparseElements *M, SparseElements *all) {
+  int finite = 1;
+  M->n = all->n = 0;
+  expr_eval(e->g, entries, e->mass.n + e->constraints.A.n, symbols, values);
+  states_put_mass(e, values, M);
+  states_put_mass(e, values, all);
+  states_put_constraints(e, values + e->mass.n, e->constraints.n, all);
+  for (uint32_t k = 0; k < e->mass.n; k++) finite &= isfinite(values[k]) != 0;
+  return finite;
 }
 
 /* Every state tried is singular; a determinant that is not identically zero vanishes at a random
@@ -313,31 +322,21 @@ int lagrange_check_mass(Eqns *e) {
   uint32_t n = e->n;
   if (n == 0 || n > LARGEST || !e->mass_known) return 1;
   Arena *arena = e->m->arena;
-  Expr *entries = ARENA_ARRAY(arena, Expr, e->mass.n + 1);
-  for (uint32_t k = 0; k < e->mass.n; k++) entries[k] = e->mass.at[k].e;
-  long double *symbols = ARENA_ARRAY(arena, long double, expr_symbol_count(e->g) + 1);
-  long double *values = ARENA_ARRAY(arena, long double, e->mass.n + 1), *a = ARENA_ARRAY(arena, long double, n * n);
-  long double *null = ARENA_ARRAY(arena, long double, n), *unconstrained = ARENA_ARRAY(arena, long double, n * n);
-  uint32_t *perm = ARENA_ARRAY(arena, uint32_t, n);
+  const Entries *A = &e->constraints.A;
+  uint32_t m = e->constraints.n, roots = e->mass.n + A->n;
+  Expr *entries = ARENA_ARRAY(arena, Expr, roots + 1);
+  for (uint32_t k = 0; k < roots; k++) entries[k] = k < e->mass.n ? e->mass.at[k].e : A->at[k - e->mass.n].e;
+  long double *symbols = ARENA_ARRAY(arena, long double, expr_symbol_count(e->g) + 1), *values = ARENA_ARRAY(arena, long double, roots + 1);
+  long double *null = ARENA_ARRAY(arena, long double, n);
+  SparseElements M = {0}, all = {0};
   uint64_t seed = 1;
   int judged = 0;
   for (int t = 0; t < TRIES; t++) {
     random_state(e, &seed, symbols);
     for (uint32_t i = 0; i < e->m->contacts.n; i++) symbols[e->m->contacts.at[i].closed] = 0;
-    expr_eval(e->g, entries, e->mass.n, symbols, values);
-    int finite = 1;
-    for (uint32_t i = 0; i < n * n; i++) a[i] = 0;
-    for (uint32_t k = 0; k < e->mass.n; k++) {
-      a[e->mass.at[k].row * n + e->mass.at[k].col] = a[e->mass.at[k].col * n + e->mass.at[k].row] = values[k];
-      finite &= isfinite(values[k]) != 0;
-    }
-    if (!finite) continue;
-    if (e->constraints.n) {
-      for (uint32_t i = 0; i < n * n; i++) unconstrained[i] = a[i];
-      e->singular_mass = dense_solve(n, unconstrained, NULL, 1e-13L, perm, NULL) < n;
-      add_constraints(e, symbols, a);
-    }
-    if (dense_solve(n, a, NULL, 1e-13L, perm, null) == n) return 1;
+    if (!system_at(e, entries, symbols, values, &M, &all)) continue;
+    if (m) e->singular_mass = sparse_solve(arena, n, &M, NULL, 1e-13L, NULL) < n;
+    if (sparse_is_regular_on_kernel(arena, n, m, &all, null)) return 1;
     judged = 1;
   }
   if (!judged) return 1; /* the tries all lay outside the model's domain: runs will tell */

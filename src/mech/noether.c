@@ -498,6 +498,7 @@ static void put_power(Work *w, Noether *to, Expr remainder) {
 }
 
 int noether_moves_jumps(const Eqns *e, const Generator *by) {
+  if (discontinuities_of(e, e->m->lagrangian).n == 0) return 0;
   Work w = begin(e, by);
   return moves_jumps(&w);
 }

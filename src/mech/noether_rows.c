@@ -49,6 +49,7 @@ Ansatz *ansatz_new(Arena *a, const Eqns *e) {
   Ansatz *s = ARENA_NEW(a, Ansatz);
   unsigned kinds = expr_kinds(e->g, e->m->lagrangian);
   s->e = e;
+  s->symbols = expr_symbol_count(e->g) + 1;
   s->n = noether_coordinates(e);
   SymId *q = ARENA_ARRAY(a, SymId, s->n + 1), *v = ARENA_ARRAY(a, SymId, s->n + 1);
   for (uint32_t i = 0; i < s->n; i++) {
@@ -116,7 +117,7 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
   r->rate = ARENA_ARRAY(scratch, long double, s->n + 1);
   r->part = ARENA_ARRAY(scratch, long double, 2 * (size_t)s->columns);
   r->point = ARENA_ARRAY(scratch, long double, 2 * (size_t)s->n + 1);
-  memcpy(r->symbols, parameters, symbols * sizeof *parameters);
+  memcpy(r->symbols, parameters, s->symbols * sizeof *parameters);
   r->frame = frame_new(s, scratch, parameters);
   return r;
 }

@@ -40,6 +40,7 @@ typedef struct {
   VEC(GaugeColumn) gauge;  /* the first is 1 */
   uint32_t shown;          /* columns of tau and xi: 1 + xi.n */
   uint32_t columns;        /* shown + gauge.n */
+  uint32_t symbols;        /* symbols of the graph when the search begins, and 1; integrals declare more, which occur in nothing that it evaluates */
   VEC(uint32_t) held;      /* constraints that always hold: contacts do not */
 } Ansatz;
 
@@ -60,7 +61,7 @@ typedef struct NoetherFrame NoetherFrame;
 /* Rows are those of generators and gauge functions in other coordinates; NULL: in the model's own. */
 const NoetherFrame *rows_frame(const RowSource *r);
 
-/* parameters: values by symbol, those of kinds other than SYM_PARAM and SYM_CONST are not looked at. */
+/* parameters: values by symbol, at least [a->symbols], those of kinds other than SYM_PARAM and SYM_CONST are not looked at. */
 RowSource *rows_new(const Ansatz *a, Arena *scratch, const long double *parameters);
 
 /* Fills in up to `n` rows at states not yet used; those of a state with values that are not finite are left out. b0 and b1 are

@@ -248,7 +248,7 @@ static int multiplicities(Arena *a, const SolutionSpace *s, const long double *s
 /* Rates to rounding, which multiple roots are not: the traces of A^2, A^4 .. are sums of their powers, which Newton's method solves. */
 static void polish(Arena *a, const SolutionSpace *s, Rates *r) {
   enum { TURNS = 3 };
-  uint32_t n = s->space.n, K = r->n, *column = ARENA_ARRAY(a, uint32_t, K + 1);
+  uint32_t n = s->space.n, K = r->n;
   size_t size = (size_t)n * n;
   long double *square = ARENA_ARRAY(a, long double, size + 1), *power = ARENA_ARRAY(a, long double, size + 1), *next = ARENA_ARRAY(a, long double, size + 1);
   long double *times = ARENA_ARRAY(a, long double, K + 1), *trace = ARENA_ARRAY(a, long double, K + 1), *slope = ARENA_ARRAY(a, long double, (size_t)K * K + 1);
@@ -270,7 +270,7 @@ static void polish(Arena *a, const SolutionSpace *s, Rates *r) {
         slope[j * K + k] = (j + 1) * before;
       }
     }
-    if (dense_solve(K, slope, left, 0, column, NULL) < K) return;
+    if (dense_solve(a, K, slope, left, 0, NULL) < K) return;
     for (uint32_t k = 0; k < K; k++) r->at[k] += left[k];
   }
 }
@@ -306,7 +306,7 @@ Table table_listed(Arena *a, const Ansatz *s, const TimeList *times, const long 
   long double *b0 = ARENA_ARRAY(a, long double, s->columns), *b1 = ARENA_ARRAY(a, long double, s->columns);
   long double *m = ARENA_ARRAY(a, long double, (size_t)(rows + more) * width);
   for (uint32_t k = 0; k < nT; k++) roots[k] = times->f[k], roots[nT + k] = expr_diff(g, times->f[k], t);
-  memcpy(symbols, parameters, (expr_symbol_count(g) + 1) * sizeof *symbols);
+  memcpy(symbols, parameters, s->symbols * sizeof *symbols);
   RowSource *source = rows_new(s, a, parameters);
   EvalTape *tape = eval_tape(g, roots, 2 * nT);
   *sure = 0;

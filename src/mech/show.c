@@ -2,6 +2,7 @@
 
 #include "mech/charges.h"
 #include "mech/show_text.h"
+#include "mech/squares.h"
 #include "sym/simplify.h"
 
 /* What a person would write for an entry of M or f: its short form, also where the shared one costs
@@ -160,6 +161,13 @@ static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 /* A pair of coordinates is a degree of freedom; drag may couple an odd number. */
 static const char *half(const Eqns *e, uint32_t n) { return arena_printf(e->m->arena, "%u%s", n / 2, n % 2 ? " 1/2" : ""); }
 
+static const char *pole_text(const Eqns *e) {
+  static const char *const at[] = {"-pi/2", "0", "pi/2", "pi"};
+  MassPole pole;
+  if (e->singular_mass || !mass_pole(e, &pole)) return "";
+  return arena_printf(e->m->arena, "%s singular at %s = %s", e->definite_by_values ? ", but" : ",", e->m->coords.at[pole.coordinate].name, at[pole.quarters + 1]);
+}
+
 void show_facts(const Eqns *e, StrBuf *out) {
   const char *energy = e->conserves_energy ? "conserved" : e->energy_jumps ? "not conserved (L jumps, and the energy with it)" : e->constraints.n ? "not conserved (force, dissipation, input, explicit time, or a constraint that moves)"
                                            : "not conserved (force, dissipation, input or explicit time)";
@@ -167,9 +175,9 @@ void show_facts(const Eqns *e, StrBuf *out) {
     sb_printf(out, "first-order Lagrangian, %u coordinates, %s degree%s of freedom; two-form %s; energy is %s\n", e->first.n, half(e, e->first.n),
               e->first.n == 2 ? "" : "s", e->first.constant ? "constant" : "variable", energy);
   if (!e->n) return;
-  sb_printf(out, "%u coordinate%s; mass matrix %s%s; energy is %s\n", e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
+  sb_printf(out, "%u coordinate%s; mass matrix %s%s%s; energy is %s\n", e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
             e->singular_mass ? ", singular where no constraint holds" : e->definite_mass ? ", positive definite"
-            : e->definite_by_values ? ", positive definite by the signs of its parameters' values" : "", energy);
+            : e->definite_by_values ? ", positive definite by the signs of its parameters' values" : "", pole_text(e), energy);
 }
 
 static void facts(Text *t, const char *cost) {

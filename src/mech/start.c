@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/dense.h"
+#include "base/sparse_solve.h"
 
 enum { MOST_STEPS = 100, MOST_HALVINGS = 30 };
 
@@ -18,11 +18,12 @@ typedef struct {
   int velocities;                 /* the level at hand */
   uint32_t n, rows;               /* coordinates; constraints of the level */
   uint32_t *free, nfree;
+  uint32_t *place;                /* by coordinate: 1 + its place in `free`; 0: it is held */
+  SparseElements mass, system;    /* of the step at hand */
   const unsigned char *given;     /* by symbol: when it gives way */
   long double *symbols, *asked, *best, *from; /* by symbol */
-  long double *size, *terms, *a, *b, *d;
+  long double *size, *terms, *b, *d;
   unsigned char *says;            /* by constraint: it has terms */
-  uint32_t *column;
   uint32_t nsymbols;
 } Finder;
 
@@ -115,42 +116,52 @@ static long double largest(const long double *x, uint32_t n) {
   return most;
 }
 
-/* M of all coordinates into a[n n], its largest entry made `size`, or (0) as it is. Returns whether it is not 0. */
-static int full_mass(Finder *f, long double size, long double *a) {
-  const Entries *M = &f->e->mass;
-  long double most = largest(f->at.mass, M->n);
-  memset(a, 0, (size_t)f->n * f->n * sizeof *a);
-  for (uint32_t i = 0; i < M->n && most > 0; i++)
-    a[M->at[i].row * f->n + M->at[i].col] = a[M->at[i].col * f->n + M->at[i].row] = size > 0 ? f->at.mass[i] / most * size : f->at.mass[i];
-  return most > 0;
+/* f->mass := M, its largest entry made `size`, or (0) as it is; 1 where M is 0. */
+static void find_mass(Finder *f, long double size) {
+  Arena *arena = f->e->m->arena;
+  long double most = largest(f->at.mass, f->e->mass.n);
+  f->mass.n = 0;
+  if (most > 0) states_put_mass(f->e, f->at.mass, &f->mass);
+  for (uint32_t k = 0; k < f->mass.n && size > 0; k++) f->mass.at[k].value = f->mass.at[k].value / most * size;
+  for (uint32_t i = 0; i < f->n && !(most > 0); i++) sparse_put(arena, &f->mass, i, i, 1);
+}
+
+/* The system of what is free: M, and b, towards what was asked for. */
+static void put_mass(Finder *f, int pull) {
+  for (uint32_t k = 0; k < f->mass.n; k++) {
+    const SparseElement *x = &f->mass.at[k];
+    uint32_t row = f->place[x->row], col = f->place[x->col];
+    SymId at = component(f, x->col);
+    if (!row || !col) continue;
+    sparse_put(f->e->m->arena, &f->system, row - 1, col - 1, x->value);
+    if (pull) f->b[row - 1] += x->value * (f->asked[at] - f->symbols[at]);
+  }
+}
+
+static void put_constraints(Finder *f) {
+  Arena *arena = f->e->m->arena;
+  const Entries *A = &f->e->constraints.A;
+  for (uint32_t e = 0; e < A->n; e++) {
+    uint32_t row = f->nfree + A->at[e].row, col = f->place[A->at[e].col];
+    if (!col || A->at[e].row >= f->rows) continue;
+    sparse_put(arena, &f->system, row, col - 1, f->at.A[e]);
+    sparse_put(arena, &f->system, col - 1, row, -f->at.A[e]);
+  }
 }
 
 /* d[nfree]: M d - A^T l = pull M (asked - here), A d = -residual. */
 static int direction(Finder *f, int pull) {
-  const Entries *A = &f->e->constraints.A;
-  uint32_t nf = f->nfree, w = nf + f->rows, n = f->n;
-  long double *M = f->a + (size_t)w * w;
+  uint32_t nf = f->nfree;
   look(f);
-  long double size = largest(f->at.A, A->n); /* M as large as A: which changes no direction */
-  int has_mass = full_mass(f, size > 0 ? size : 1, M);
-  memset(f->a, 0, (size_t)w * w * sizeof *f->a);
-  for (uint32_t i = 0; i < nf; i++) {
-    f->b[i] = 0;
-    for (uint32_t j = 0; j < nf; j++) {
-      SymId at = component(f, f->free[j]);
-      long double m = has_mass ? M[f->free[i] * n + f->free[j]] : i == j;
-      f->a[i * w + j] = m;
-      f->b[i] += pull ? m * (f->asked[at] - f->symbols[at]) : 0;
-    }
-  }
-  for (uint32_t e = 0; e < A->n; e++)
-    for (uint32_t i = 0; i < nf && A->at[e].row < f->rows; i++) {
-      if (f->free[i] != A->at[e].col) continue;
-      f->a[(nf + A->at[e].row) * w + i] = f->at.A[e];
-      f->a[i * w + nf + A->at[e].row] = -f->at.A[e];
-    }
+  long double size = largest(f->at.A, f->e->constraints.A.n); /* M as large as A: which changes no direction */
+  find_mass(f, size > 0 ? size : 1);
+  memset(f->place, 0, f->n * sizeof *f->place);
+  for (uint32_t i = 0; i < nf; i++) f->place[f->free[i]] = i + 1, f->b[i] = 0;
+  f->system.n = 0;
+  put_mass(f, pull);
+  put_constraints(f);
   for (uint32_t k = 0; k < f->rows; k++) f->b[nf + k] = -residual(f, k);
-  dense_solve(w, f->a, f->b, 1e-13L, f->column, NULL);
+  sparse_solve(f->e->m->arena, nf + f->rows, &f->system, f->b, 1e-13L, NULL);
   for (uint32_t i = 0; i < nf; i++) {
     if (!isfinite(f->b[i])) return 0;
     f->d[i] = f->b[i];
@@ -184,15 +195,13 @@ static int descend(Finder *f) {
   return times <= 1024;
 }
 
+static long double moved(const Finder *f, uint32_t i) { return f->symbols[component(f, i)] - f->asked[component(f, i)]; }
+
 static long double distance(Finder *f) {
-  long double *M = f->a, s = 0;
+  long double s = 0;
   look(f);
-  int has_mass = full_mass(f, 0, M);
-  for (uint32_t i = 0; i < f->n; i++)
-    for (uint32_t j = 0; j < f->n; j++) {
-      long double x = f->symbols[component(f, i)] - f->asked[component(f, i)], y = f->symbols[component(f, j)] - f->asked[component(f, j)];
-      s += x * (has_mass ? M[i * f->n + j] : i == j) * y;
-    }
+  find_mass(f, 0);
+  for (uint32_t k = 0; k < f->mass.n; k++) s += moved(f, f->mass.at[k].row) * f->mass.at[k].value * moved(f, f->mass.at[k].col);
   return s;
 }
 
@@ -392,11 +401,10 @@ StartResult start_find(const Eqns *e, StateSolver *solver, long double *symbols)
   f.size = ARENA_ARRAY(a, long double, m + 1);
   f.terms = ARENA_ARRAY(a, long double, m + 1);
   f.says = ARENA_ARRAY(a, unsigned char, m + 1);
-  f.a = ARENA_ARRAY(a, long double, (size_t)w * w + (size_t)n * n + 1);
   f.b = ARENA_ARRAY(a, long double, w + 1);
   f.d = ARENA_ARRAY(a, long double, n + 1);
-  f.column = ARENA_ARRAY(a, uint32_t, w + 1);
   f.free = ARENA_ARRAY(a, uint32_t, n + 1);
+  f.place = ARENA_ARRAY(a, uint32_t, n + 1);
   StartResult r = settle(&f, 0);
   return r.kind == START_FOUND ? settle(&f, 1) : r;
 }

@@ -1,17 +1,19 @@
 #include "mech/states.h"
 
+#include <float.h>
 #include <math.h>
 
-#include "base/dense.h"
-#include "mech/alike.h"
+#include "base/row_span.h"
 
 struct StateSolver {
   const Eqns *e;
   EvalTape *tape; /* the entries of M, then f, the flows, the energy; of constraints A, c, r, what A q'' is */
   uint32_t first_entry; /* of A in it */
-  long double *out, *a, *b; /* its results; a system of equations, its right-hand side */
-  long double *unit;        /* [n] of alike.h, at the state that was looked at last; unit[0] is 0: not known */
-  uint32_t *column;
+  long double *out, *b; /* its results; a right-hand side */
+  SparseElements a;     /* a system of equations */
+  SparseVector row;     /* a constraint's derivatives */
+  int *scale;               /* [n + m] of the unknowns of that system, at the state that was looked at last */
+  int scaled;               /* scale is known */
   uint32_t nflows;
 };
 
@@ -34,17 +36,15 @@ StateSolver *states_new(const Eqns *e) {
   for (uint32_t i = 0; i < k->n; i++) roots[count++] = k->demand[i];
   s->tape = eval_tape(e->g, roots, count);
   s->out = ARENA_ARRAY(arena, long double, count);
-  s->a = ARENA_ARRAY(arena, long double, (size_t)total * total + 1);
   s->b = ARENA_ARRAY(arena, long double, total + 1);
-  s->unit = ARENA_ARRAY(arena, long double, n + 1);
-  s->column = ARENA_ARRAY(arena, uint32_t, total + 1);
+  s->scale = ARENA_ARRAY(arena, int, total + 1);
   return s;
 }
 
 /* Values at a state: the tape's results. */
 static const long double *run(StateSolver *s, const long double *symbols) {
   eval_run(s->tape, symbols, s->out);
-  s->unit[0] = 0;
+  s->scaled = 0;
   return s->out;
 }
 
@@ -59,33 +59,40 @@ StateValues states_at(StateSolver *s, const long double *symbols) {
   return values_of(s);
 }
 
-/* The system [D -A^T; A 0] into a[(n + m)^2], D = M or 1. */
-static void fill(StateSolver *s, int with_mass) {
-  const Eqns *e = s->e;
-  uint32_t n = e->n, w = n + e->constraints.n;
-  const Entries *A = &e->constraints.A;
-  const long double *values = s->out + s->first_entry;
-  for (size_t i = 0; i < (size_t)w * w; i++) s->a[i] = 0;
-  for (uint32_t i = 0; i < n && !with_mass; i++) s->a[i * w + i] = 1;
-  for (uint32_t k = 0; k < e->mass.n && with_mass; k++) {
+void states_put_mass(const Eqns *e, const long double *values, SparseElements *a) {
+  Arena *arena = e->m->arena;
+  for (uint32_t k = 0; k < e->mass.n; k++) {
     const MassEntry *x = &e->mass.at[k];
-    s->a[x->row * w + x->col] = s->a[x->col * w + x->row] = s->out[k];
+    sparse_put(arena, a, x->row, x->col, values[k]);
+    if (x->row != x->col) sparse_put(arena, a, x->col, x->row, values[k]);
   }
+}
+
+void states_put_constraints(const Eqns *e, const long double *values, uint32_t rows, SparseElements *a) {
+  const Entries *A = &e->constraints.A;
   for (uint32_t k = 0; k < A->n; k++) {
-    uint32_t row = n + A->at[k].row, col = A->at[k].col;
-    s->a[row * w + col] = values[k];
-    s->a[col * w + row] = -values[k];
+    uint32_t row = e->n + A->at[k].row, col = A->at[k].col;
+    if (A->at[k].row >= rows) continue;
+    sparse_put(e->m->arena, a, row, col, values[k]);
+    sparse_put(e->m->arena, a, col, row, -values[k]);
   }
+}
+
+/* The system [D -A^T; A 0] of the first rows of A, D = M or 1. */
+static void fill(StateSolver *s, int with_mass, uint32_t rows) {
+  const Eqns *e = s->e;
+  s->a.n = 0;
+  if (with_mass) states_put_mass(e, s->out, &s->a);
+  for (uint32_t i = 0; i < e->n && !with_mass; i++) sparse_put(e->m->arena, &s->a, i, i, 1);
+  states_put_constraints(e, s->out + s->first_entry, rows, &s->a);
 }
 
 /* The least change with A d = -g of the first rows; others are 0. 0 where there is none. */
 static int change(StateSolver *s, const long double *g, uint32_t rows) {
   uint32_t n = s->e->n, m = s->e->constraints.n, w = n + m;
-  fill(s, 0);
+  fill(s, 0, rows); /* constraints on velocities do not hold back positions */
   for (uint32_t i = 0; i < w; i++) s->b[i] = i < n || i >= n + rows ? 0 : -g[i - n];
-  for (uint32_t k = rows; k < m; k++) /* constraints on velocities do not hold back positions */
-    for (uint32_t j = 0; j < n; j++) s->a[(n + k) * w + j] = s->a[j * w + n + k] = 0;
-  dense_solve(w, s->a, s->b, 1e-13L, s->column, NULL);
+  sparse_solve(s->e->m->arena, w, &s->a, s->b, 1e-13L, NULL);
   for (uint32_t i = 0; i < n; i++)
     if (!isfinite(s->b[i])) return 0;
   return 1;
@@ -97,36 +104,80 @@ static long double largest(const long double *x, uint32_t n) {
   return most;
 }
 
-int states_obey(StateSolver *s, long double *symbols) {
-  enum { MOST = 60 };
-  const Constraints *k = &s->e->constraints;
-  const Model *m = s->e->m;
-  for (int i = 0; i < MOST; i++) {
-    const long double *c = states_at(s, symbols).c;
-    if (largest(c, k->nholonomic) < 1e-16L) break;
-    if (i + 1 == MOST || !change(s, c, k->nholonomic)) return 0;
-    for (uint32_t j = 0; j < s->e->n; j++) symbols[m->coords.at[j].q] += s->b[j];
+static SymId symbol_at(const Model *m, uint32_t j, int velocities) { return velocities ? m->coords.at[j].v : m->coords.at[j].q; }
+
+/* The largest coordinate (velocity). */
+static long double motion_size(const StateSolver *s, const long double *symbols, int velocities) {
+  long double most = 0;
+  for (uint32_t j = 0; j < s->e->n; j++) most = fmaxl(most, fabsl(symbols[symbol_at(s->e->m, j, velocities)]));
+  return most;
+}
+
+/* Whether residuals of the first rows are rounding: beside what changes of the motion by a part in 1e12 would make of them, however a
+ * constraint is scaled. */
+static int are_small(const StateSolver *s, const long double *residual, uint32_t rows, long double size) {
+  const Entries *A = &s->e->constraints.A;
+  const long double *values = s->out + s->first_entry;
+  for (uint32_t k = 0, at = 0; k < rows; k++) {
+    long double steepness = 0;
+    for (; at < A->n && A->at[at].row == k; at++) steepness += fabsl(values[at]);
+    if (!(fabsl(residual[k]) <= 1e-12L * steepness * size) && !(fabsl(residual[k]) < 1e-16L)) return 0;
   }
-  if (!change(s, states_at(s, symbols).r, k->n)) return 0;
-  for (uint32_t j = 0; j < s->e->n; j++) symbols[m->coords.at[j].v] += s->b[j];
-  return largest(states_at(s, symbols).r, k->n) < 1e-12L;
+  return 1;
+}
+
+/* Newton's method until rounding stops it. */
+static int obey(StateSolver *s, long double *symbols, int velocities) {
+  enum { MOST = 60 };
+  const long double rounding = 64 * LDBL_EPSILON;
+  const Constraints *k = &s->e->constraints;
+  uint32_t rows = velocities ? k->n : k->nholonomic;
+  long double moved = INFINITY, size = 0, least = fminl(motion_size(s, symbols, velocities), 1); /* what ends at 0 is compared with its way */
+  for (int i = 0; i < MOST && moved > rounding * size; i++) {
+    StateValues v = states_at(s, symbols);
+    if (!change(s, velocities ? v.r : v.c, rows)) return 0;
+    for (uint32_t j = 0; j < s->e->n; j++) symbols[symbol_at(s->e->m, j, velocities)] += s->b[j];
+    moved = largest(s->b, s->e->n);
+    size = fmaxl(motion_size(s, symbols, velocities), least);
+  }
+  StateValues v = states_at(s, symbols);
+  return moved <= 1e-15L * size && are_small(s, velocities ? v.r : v.c, rows, size);
+}
+
+int states_obey(StateSolver *s, long double *symbols) { return obey(s, symbols, 0) && obey(s, symbols, 1); }
+
+const SparseElements *states_system(StateSolver *s) {
+  fill(s, 1, s->e->constraints.n);
+  return &s->a;
+}
+
+const int *states_scale(StateSolver *s) {
+  if (!s->scaled) {
+    sparse_scales(s->e->m->arena, s->e->n + s->e->constraints.n, states_system(s), NULL, s->scale);
+    s->scaled = 1;
+  }
+  return s->scale;
+}
+
+const SparseVector *states_row(StateSolver *s, uint32_t k, uint32_t *at) {
+  const Entries *A = &s->e->constraints.A;
+  const int *scale = states_scale(s);
+  const long double *values = values_of(s).A;
+  s->row.n = 0;
+  for (; *at < A->n && A->at[*at].row == k; ++*at)
+    vec_push(s->e->m->arena, &s->row, ((RowElement){A->at[*at].col, ldexpl(values[*at], scale[A->at[*at].col])}));
+  return &s->row;
 }
 
 uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts) {
   const long double independent = 6e-6L; /* a double's eps^(1/3), as in runtime/core/consistent.c: singular places are found to eps^(1/2) */
-  const Eqns *e = s->e;
-  const Entries *A = &e->constraints.A;
-  uint32_t n = e->n, rank = 0, at = 0;
-  StateValues v = values_of(s);
-  if (!(s->unit[0] > 0)) alike_units(e, &v, s->unit);
-  for (uint32_t k = 0; k < e->constraints.n; k++) {
-    long double *row = s->a + (size_t)rank * n;
-    for (uint32_t j = 0; j < n; j++) row[j] = 0;
-    for (; at < A->n && A->at[at].row == k; at++) row[A->at[at].col] = v.A[at] * s->unit[A->at[at].col];
-    counts[k] = k != without && dense_reduce(n, row, s->a, rank) > independent;
-    rank += counts[k];
+  uint32_t at = 0;
+  RowSpan span = row_span(s->e->m->arena, s->e->n);
+  for (uint32_t k = 0; k < s->e->constraints.n; k++) {
+    const SparseVector *row = states_row(s, k, &at);
+    counts[k] = k != without && row_span_add(&span, row->at, row->n, independent) > independent;
   }
-  return rank;
+  return span.rank;
 }
 
 int states_complete(StateSolver *s, long double *symbols) {
@@ -141,9 +192,8 @@ int states_complete(StateSolver *s, long double *symbols) {
   }
   if (k->n && !states_obey(s, symbols)) return 0;
   const long double *demand = states_at(s, symbols).demand, *f = s->out + e->mass.n, *flow = f + n;
-  fill(s, 1);
   for (uint32_t i = 0; i < n + k->n; i++) s->b[i] = i < n ? f[i] : demand[i - n];
-  rank = dense_solve(n + k->n, s->a, s->b, k->n ? 1e-13L : 0, s->column, NULL);
+  rank = sparse_solve(m->arena, n + k->n, states_system(s), s->b, k->n ? 1e-13L : 0, NULL);
   if (rank < n + k->n && !k->n) return 0;
   for (uint32_t i = 0; i < n + k->n; i++)
     if (!isfinite(s->b[i])) return 0;

@@ -3,6 +3,8 @@
 #ifndef LAGC_STATES_H
 #define LAGC_STATES_H
 
+#include "base/row_span.h"
+#include "base/sparse_solve.h"
 #include "mech/eqns.h"
 #include "sym/eval.h"
 
@@ -22,6 +24,20 @@ int states_complete(StateSolver *s, long double *symbols);
 
 /* Moves the state to the nearest one that obeys the constraints, by Newton's method: positions, then velocities. 0: it found none. */
 int states_obey(StateSolver *s, long double *symbols);
+
+/* [M -A^T; A 0] at the state that was looked at last. It stands until the next is asked for, or another state is looked at. */
+const SparseElements *states_system(StateSolver *s);
+
+/* Elements of M, from the values of its entries, and of A and -A^T, of the first `rows` constraints, where they stand in [M -A^T; A 0]. */
+void states_put_mass(const Eqns *e, const long double *values, SparseElements *a);
+void states_put_constraints(const Eqns *e, const long double *values, uint32_t rows, SparseElements *a);
+
+/* Powers of 2, one a coordinate, by which the derivatives of constraints are to be multiplied for their rank not to depend on units, at the state that was looked at
+ * last: sparse_scales of [M -A^T; A 0]. They stand until another state is looked at. */
+const int *states_scale(StateSolver *s);
+
+/* Row k of A there, its coordinates scaled; entries from *at on, which moves behind them. It stands until the next. */
+const SparseVector *states_row(StateSolver *s, uint32_t k, uint32_t *at);
 
 /* The rank of the constraints, less one of them (UINT32_MAX: of all), at the state that was looked at last; counts[k]: constraint k is independent of
  * those before it. */

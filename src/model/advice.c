@@ -80,6 +80,14 @@ static int advise_rate(Builder *b, const char *name) {
   return 0;
 }
 
+/* p_x where it may not stand. */
+static int advise_momentum(Builder *b, const char *name) {
+  if (strncmp(name, "p_", 2) != 0 || !has_rate(b, name + 2, strlen(name + 2))) return 0;
+  diag_help(b->diags, "the momentum `%s` may stand in outputs, observables and expectations; here write it with the velocity `%s'`, which is what an event sets", name,
+            name + 2);
+  return 1;
+}
+
 /* Letters that stand for something on paper. */
 static const char *const letters[][2] = {
   {"dt", "a time derivative is written `x'`"},
@@ -138,6 +146,10 @@ static const char *const foreign[][2] = {
 };
 
 int advise_unknown_function(Builder *b, Name name) {
+  if (has_word(FOREIGN_CHOICES, name)) {
+    diag_help(b->diags, "a choice is written `if(x > 0, a, b)`: a where the condition holds, b where not; of several, `if(x > 1, a, if(x > 0, b, c))`");
+    return 1;
+  }
   for (size_t i = 0; i < sizeof foreign / sizeof *foreign; i++)
     if (strcmp(name, foreign[i][0]) == 0) {
       diag_help(b->diags, "%s", foreign[i][1]);
@@ -169,6 +181,30 @@ static void advise_names(Builder *b) {
   if (n) diag_help(b->diags, "the model has %s%s", sb_text(&list), n == MOST ? ", ..." : "");
 }
 
+static int is_among(const char *word, size_t length, const Name *names, uint32_t n) {
+  for (uint32_t i = 0; i < n; i++)
+    if (strlen(names[i]) == length && memcmp(names[i], word, length) == 0) return 1;
+  return 0;
+}
+
+/* `wt`, where w and t are known. */
+static int advise_product(Builder *b, Name name, const Name *known, uint32_t n) {
+  size_t length = strlen(name);
+  for (size_t cut = 1; cut < length; cut++)
+    if (is_among(name, cut, known, n) && is_among(name + cut, length - cut, known, n) && strncmp(name, name + cut, cut) != 0) { /* `xx` is a slip of the hand */
+      diag_help(b->diags, "a product is written with `*`: `%.*s*%s`", (int)cut, name, name + cut);
+      return 1;
+    }
+  return 0;
+}
+
+static int advise_function(Builder *b, Name name) {
+  size_t i = 0;
+  while (function_name(i) && strcmp(function_name(i), name) != 0) i++;
+  if (function_name(i)) diag_help(b->diags, "`%s` is a function, `%s(...)`; a power of it is written behind: `%s(...)^2`", name, name, name);
+  return function_name(i) != NULL;
+}
+
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare) {
   if (b->diags->list.n > DIAG_MAX) return; /* this message is not shown; to search for a near name costs as many names as there are */
   const AstStmt *later = declared_in_use(b, name, effect);
@@ -187,7 +223,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
     diag_help(b->diags, "the effect `%s` declares it, but is not in use here: `use %s`", owner->name, owner->name);
     return;
   }
-  if (advise_index(b, name, span) || advise_rate(b, name)) return;
+  if (advise_index(b, name, span) || advise_rate(b, name) || advise_momentum(b, name) || advise_function(b, name)) return;
   Name *known = ARENA_ARRAY(b->arena, Name, b->scope.all.n + 2);
   uint32_t n = 0;
   for (uint32_t i = 0; i < b->scope.all.n; i++) {
@@ -196,6 +232,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
   }
   known[n++] = "t";
   known[n++] = "pi";
+  if (advise_product(b, name, known, n)) return;
   int paper = strcmp(name, "dt") == 0 || strcmp(name, "T") == 0 || strcmp(name, "t") == 0; /* and not t */
   Name near = paper ? NULL : suggest(name, known, n);
   if (!near && advise_letter(b, name)) return;
@@ -216,7 +253,7 @@ void advise_unknown_member(Builder *b, Name effect, Name name) {
   if (!e) {
     Name near = suggest(effect, effects.at, effects.n);
     if (near) diag_help(b->diags, "did you mean `%s.%s`?", near, name);
-    else diag_help(b->diags, "the model has no effect `%s`", effect);
+    else if (!advise_momentum(b, effect)) diag_help(b->diags, "the model has no effect `%s`", effect);
     return;
   }
   VEC(Name) own = {0};

@@ -2,6 +2,7 @@
 #ifndef LAGC_BUILDER_H
 #define LAGC_BUILDER_H
 
+#include "model/file_index.h"
 #include "model/model.h"
 #include "model/scope.h"
 
@@ -32,6 +33,7 @@ typedef struct {
   int point;     /* 20 [degC]: a point on a scale whose zero is not that of the kelvin */
   const char *unit; /* of a name, or a number with a unit: as it was written; otherwise NULL */
   uint32_t n;    /* 0: a number */
+  Expr domain;   /* where the text has a real value; 0: wherever the nodes have, or not asked for (Builder.domains) */
 } Value;
 
 /* What an index stands for, inside `for`, `sum`, and definitions with an index. */
@@ -72,8 +74,10 @@ struct Instance {
 };
 
 typedef struct {
-  Name name;
+  Name name, effect;
   Value value; /* made of numbers and pi */
+  AstId given; /* by the file, or by -D; a bare number is in `unit` */
+  Unit unit;
 } Constant;
 
 /* A name without a unit of its own. */
@@ -102,6 +106,7 @@ struct Builder {
   ExprGraph *g;
   Model *m;
   Scope scope, members;
+  Scope outputs; /* of the scene: index is the place */
   Scope constraints; /* by name; the index is that of the first component */
   VEC(uint32_t) rotations; /* the first coordinate of each */
   VEC(Spin) spins; /* what the scene in hand says of their angular velocities */
@@ -134,6 +139,7 @@ struct Builder {
   SymId group_symbol;
   AstId stand_in;  /* a node that stands for `stands_for` (see model_reresolve), or 0 */
   Expr stands_for;
+  int domains;     /* values know their domains: for what is claimed of them */
 };
 
 /* The value of an expression; errors are reported and give e = 0. */
@@ -182,6 +188,9 @@ int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out);
 
 /* Families have no third index. */
 void report_many_indices(Builder *b, Span span);
+
+/* domain.c: both conditions. */
+Expr domain_and(const Builder *b, Expr p, Expr q);
 
 /* The letter of component k of n. */
 static inline char part_letter(uint32_t n, uint32_t k) { return "wxyz"[k + (n != ROTATION)]; }
@@ -245,8 +254,7 @@ void give_exact(Builder *b, SymId target, const Unit *unit, int periodic, Expr v
 const Exact *find_exact(const Builder *b, Expr e);
 Expr exact_error(Builder *b, const Exact *x);
 
-/* effect.c: the scene or the effect of that name (NULL: the first), or NULL; and what to say where there is none. */
-const AstStmt *find_named(const Ast *ast, AstStmtKind kind, const char *name);
+/* effect.c: what to say where no scene, or effect, has that name. */
 void report_unnamed(const Ast *ast, AstStmtKind kind, Span span, const char *name);
 
 /* Whether the effect is in use; a scene's `use` statements; an effect turned on together with what it requires; whether what an effect
@@ -259,7 +267,12 @@ void check_effect_needs(Builder *b, const AstStmt *effect);
 /* Whether a value speaks of an effect that is off. */
 int mentions_off(const Builder *b, AstId value);
 
-/* output.c: adds what an expression puts out to the scene's outputs. The place of the one number that
+/* output.c: adds an output to the scene, whatever others are called; its place. */
+int push_output(Builder *b, const Output *o);
+
+void drop_outputs(Builder *b);
+
+/* Adds what an expression puts out to the scene's outputs. The place of the one number that
  * it is; -1 when it is more, or after an error. */
 int add_outputs(Builder *b, AstId id);
 
@@ -333,6 +346,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
 void advise_unknown_member(Builder *b, Name effect, Name name);
 /* The same of a function that other languages, or books, have; 0 when it is none. */
 int advise_unknown_function(Builder *b, Name name);
+#define FOREIGN_CHOICES "piecewise where ifelse iif cases select cond"
 
 /* The active statement that declares the name, before or after; NULL when there is none. */
 const AstStmt *declared_in_use(const Builder *b, Name name, Name effect);
@@ -411,7 +425,7 @@ void add_symmetry(Builder *b, const AstStmt *st, Name effect);
 
 /* twice.c: names of scenes, effects, events and expectations, each declared once, and what a scene or an event says, said once;
  * reported where they are not. */
-void check_names_once(Builder *b);
+void check_names_once(Builder *b, const FileIndex *file);
 void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span);
 void check_said_once(Builder *b, const AstStmt *block);
 

@@ -138,6 +138,8 @@ void settle_units(Builder *b) {
   for (uint32_t i = 0; i < m->params.n; i++) settle(b, &m->params.at[i].unit);
   for (uint32_t i = 0; i < m->inputs.n; i++) settle(b, &m->inputs.at[i].unit);
   for (uint32_t i = 0; i < m->symmetries.n; i++) settle(b, &m->symmetries.at[i].unit);
+  m->energy_unit = unit_of_dim(b->dims, b->unitless ? DIM_ANY : b->energy);
+  m->energy_unit = unit_of_dim(b->dims, b->unitless ? DIM_ANY : b->energy);
   for (uint32_t i = 0; i < m->observes.n; i++) settle(b, &m->observes.at[i].unit);
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) settle(b, &m->scene.outputs.at[i].unit);
   for (uint32_t i = 0; i < b->undeclared.n; i++) {

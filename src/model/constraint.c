@@ -58,6 +58,7 @@ void add_constraint(Builder *b, const AstStmt *st, Name effect) {
   check_name_is_new(b, "constraint", name, effect, st->name_span);
   Value left = resolve(b, st->lhs, IN_DYNAMICS, effect), right = resolve(b, st->rhs, IN_DYNAMICS, effect);
   if (!left.e || !right.e || !sides_agree(b, st, &left, &right)) return;
+  b->m->domain = domain_and(b, b->m->domain, domain_and(b, left.domain, right.domain));
   Dim dim = is_zero(b, &left) ? right.dim : left.dim;
   scope_add(&b->constraints, (Entity){.index = b->m->constraints.n, .name = name, .effect = effect, .span = st->name_span, .parts = (uint8_t)left.n});
   for (uint32_t k = 0; k < parts_of(&left); k++) {

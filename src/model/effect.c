@@ -8,12 +8,6 @@
 
 /* --- the file's effects and scenes, by name --- */
 
-const AstStmt *find_named(const Ast *ast, AstStmtKind kind, const char *name) {
-  for (const AstStmt *s = ast->first; s; s = s->next)
-    if (s->kind == kind && s->name && (!name || strcmp(s->name, name) == 0)) return s;
-  return NULL;
-}
-
 static Name nearest(const Ast *ast, AstStmtKind kind, const char *wrong) {
   VEC(Name) names = {0};
   for (const AstStmt *s = ast->first; s; s = s->next)

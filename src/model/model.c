@@ -71,10 +71,12 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   b->m->lagrangian_span = span_join(b->m->lagrangian_span, st->span);
   if (!effect || !b->m->lagrangian_span.end) b->m->lagrangian_span = st->span;
   if (!effect && st->kind == STMT_KINETIC) b->m->kinetic_span = st->span;
+  if (st->kind == STMT_DISSIPATION) b->m->dissipation_span = st->span;
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
   if (v.e && v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, and a number is wanted here", shape_text(b, v.n));
   en->failed |= st->kind != STMT_DISSIPATION && (!v.e || v.n);
   if (!v.e || v.n) return;
+  b->m->domain = domain_and(b, b->m->domain, v.domain);
   if (st->kind == STMT_DISSIPATION) {
     if (!expr_is_num(b->g, v.e) && !(expr_kinds(b->g, v.e) & 1u << (b->m->first_order ? SYM_RATE : SYM_VEL))) {
       diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a dissipation function without velocities does nothing");
@@ -125,6 +127,7 @@ static void add_forces(Builder *b, AstId li, AstId ri, const Value *point, const
     Force one = {point->at[k], f->at[k], ast_expr(b->ast, ri)->span};
     vec_push(b->arena, &b->m->forces, one);
   }
+  b->m->domain = domain_and(b, b->m->domain, domain_and(b, point->domain, f->domain));
   check_later(b, en, ri, f, point->dim, arena_printf(b->arena, "a force along `%s`", ast_text(b, li)));
 }
 
@@ -184,6 +187,7 @@ static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   if (z->flow) diag_error(b->diags, st->span, "the flow of `%s` is given twice", z->name);
   Value v = resolve_for(b, st->rhs, effect, z->rate, &z->unit);
   if (v.e && v.n != of.n) report_shapes(b, st->span, of.n, v.n);
+  b->m->domain = domain_and(b, b->m->domain, v.domain);
   for (uint32_t k = 0; k < (of.n ? of.n : 1); k++)
     b->m->states.at[expr_sym_of(b->g, of.at[k])->index].flow = v.e && v.n == of.n ? v.at[k] : expr_int(b->g, 0); /* reported */
 }
@@ -202,6 +206,7 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
   if (st->name && !b->index.n) check_name_is_new(b, "expectation", st->name, effect, st->name_span);
   Expect x = {.name = st->name, .span = st->span, .lhs_ast = st->lhs, .rhs_ast = st->rhs, .effect = effect};
   x.elsewhere = l.n || b->index.n;
+  x.domain = domain_and(b, l.domain, r.domain);
   for (uint32_t k = 0; k < (l.n ? l.n : 1); k++) {
     x.lhs = l.at[k];
     x.rhs = r.at[k];
@@ -342,9 +347,10 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   b->arena = a;
   b->g = expr_graph(a, ast->names);
   b->dims = dims_new(a);
-  b->scope.arena = b->members.arena = b->constraints.arena = a;
+  b->scope.arena = b->members.arena = b->outputs.arena = b->constraints.arena = a;
   b->defines = choice->defines;
   b->ndefines = choice->ndefines;
+  b->domains = choice->bare; /* claims are about a bare model */
   Model *m = b->m = ARENA_NEW(a, Model);
   m->ast = ast;
   m->diags = ast->diags;

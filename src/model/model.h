@@ -53,6 +53,8 @@ typedef struct {
   Expr value;          /* of t and parameters; 0 where there is a table */
   const Spline *table; /* or NULL */
   const char *file;    /* that the table was read from, as written */
+  AstId text;          /* of the formula, which stands in `effect`; 0: there is none */
+  Name effect;
 } Input;
 
 /* A force f along the displacement of `point`: adds f * d(point)/dq_i to each Q_i. */
@@ -66,6 +68,7 @@ typedef struct {
   Span span;
   AstId lhs_ast, rhs_ast;
   Expr lhs, rhs;
+  Expr domain; /* where both sides have real values, as the text is written; 0: wherever the nodes have */
   Name effect; /* that it stands in, or NULL */
   int elsewhere; /* one of several that the text stands for: model_reresolve cannot tell which */
 } Expect;
@@ -109,6 +112,8 @@ typedef struct {
   Span span;
   Unit unit;
   Expr value; /* may contain q'', z' */
+  AstId text; /* of which it is component `component`; 0: of something else */
+  uint32_t component;
 } Output;
 
 /* What a symmetry does to a coordinate, or to t, to first order in its parameter. */
@@ -205,8 +210,10 @@ typedef struct {
   Expr across;             /* or 0: quadratic in rates that rotations never have, added to L for a regular mass matrix */
   int lends;               /* constraints lend inertia to what has none: discrete Lagrangians need it, see mech/lend.h */
   Span lagrangian_span;
+  Span dissipation_span;
   Span kinetic_span;       /* empty when L was given as a whole */
   Expr dissipation;        /* sum of Rayleigh functions, or 0 */
+  Expr domain;             /* where L, forces, flows and constraints have real values: see Expect.domain */
   VEC(Force) forces;
   VEC(Constraint) constraints;
   VEC(Contact) contacts;
@@ -218,6 +225,7 @@ typedef struct {
   VEC(FoundUnit) found;    /* names that were declared without a unit, where the equations tell it */
   ExprMap written; /* comparisons and functions that may jump, as AstId */
   SymId energy_sym; /* stands for the energy p q' - L in outputs and expects, until mech knows it */
+  Unit energy_unit;
   struct Builder *builder; /* what model_reresolve needs */
 } Model;
 
@@ -239,6 +247,9 @@ int model_has_scene(Ast *ast, const char *scene);
 
 /* The effects that no scene uses. */
 EffectList model_unused_effects(const Ast *ast);
+
+/* Warns of parameters, lets, inputs and functions of the model's own file that no expression in it mentions. */
+void model_warn_unused(Ast *ast);
 
 /* The effects that contain an expectation or a symmetry; first NULL, when one stands outside of effects. */
 EffectList model_claiming_effects(const Ast *ast);

@@ -39,14 +39,23 @@ static void show_spin(const Builder *b, const Value *v, Unit *unit) {
   if (!b->unitless && !unit->text[0] && v->unit && strcmp(v->unit, spin) == 0) unit->text = spin;
 }
 
+int push_output(Builder *b, const Output *o) {
+  vec_push(b->arena, &b->m->scene.outputs, *o);
+  if (!scope_own(&b->outputs, o->name, NULL)) scope_add(&b->outputs, (Entity){.name = o->name, .index = b->m->scene.outputs.n - 1});
+  return (int)b->m->scene.outputs.n - 1;
+}
+
+void drop_outputs(Builder *b) {
+  b->m->scene.outputs.n = 0;
+  b->outputs = (Scope){.arena = b->arena};
+}
+
 /* The place of an output; it is added when its label is not there. */
 static int add_one(Builder *b, Name label, Span span, Unit unit, Expr value) {
-  Scene *sc = &b->m->scene;
-  for (uint32_t i = 0; i < sc->outputs.n; i++)
-    if (sc->outputs.at[i].name == label) return (int)i;
+  const Entity *there = scope_own(&b->outputs, label, NULL);
+  if (there) return (int)there->index;
   Output o = {.name = label, .span = span, .unit = unit, .value = value};
-  vec_push(b->arena, &sc->outputs, o);
-  return (int)sc->outputs.n - 1;
+  return push_output(b, &o);
 }
 
 /* stem, stem', stem.x' */
@@ -119,7 +128,7 @@ static int add_closed_form(Builder *b, AstId id, Name label) {
   return v.n ? -1 : place;
 }
 
-int add_outputs(Builder *b, AstId id) {
+static int outputs_of(Builder *b, AstId id) {
   if (is_closed_form(b, ast_expr(b->ast, id))) return add_closed_form(b, id, NULL);
   Target p = read_target(b, id);
   const Entity *e = named(b, &p);
@@ -146,6 +155,18 @@ int add_outputs(Builder *b, AstId id) {
   Unit unit = output_unit(b, e, p.primes, v.dim);
   show_spin(b, &v, &unit);
   return add_one(b, intern(b->ast->names, text), span, unit, v.e);
+}
+
+int add_outputs(Builder *b, AstId id) {
+  uint32_t first = b->m->scene.outputs.n;
+  int place = outputs_of(b, id);
+  Target p = read_target(b, id);
+  const Entity *e = named(b, &p);
+  for (uint32_t i = first; i < b->m->scene.outputs.n && !(e && e->ndims && !p.indices); i++) {
+    b->m->scene.outputs.at[i].text = id;
+    b->m->scene.outputs.at[i].component = i - first;
+  }
+  return place;
 }
 
 int add_outputs_as(Builder *b, AstId id, Name label) {

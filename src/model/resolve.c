@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "base/digits.h"
+#include "base/suggest.h"
 #include "model/resolve_impl.h"
 #include "sym/eval.h"
 
@@ -115,7 +116,8 @@ int operand_fits(Eval *ev, const AstExpr *x, AstId i) {
   const Value *v = value_of(ev, i);
   int logic = x->kind == AST_NOT || x->kind == AST_AND || x->kind == AST_OR;
   int is_if = x->kind == AST_CALL && strcmp(x->name, "if") == 0;
-  if (v->condition && !logic && !(is_if && i == x->args)) {
+  int is_foreign_if = x->kind == AST_CALL && has_word(FOREIGN_CHOICES, x->name) && !own_function(ev, x); /* it is reported as such */
+  if (v->condition && !logic && !(is_if && i == x->args) && !is_foreign_if) {
     report_condition(b, i);
     return 0;
   }
@@ -203,6 +205,7 @@ static int run(Eval *ev) {
       Value v = operands_fit(ev, x) ? usable_value(ev, x, node_value(ev, i)) : FAILED;
       if (ev->waiting) return 0;
       if (b->unitless) v.dim = DIM_ANY;
+      if (b->domains && v.e) v.domain = domain_of_node(ev, i, &v);
       *value_of(ev, i) = v;
     }
     /* The end of a body: once more, or on to its sum. */

@@ -219,6 +219,12 @@ static const Entity *called_motion(const Eval *ev, const AstExpr *x) {
   return moves && list_length(ev->b, x->args) == 1 ? e : NULL;
 }
 
+/* `F(t)`, as time-dependent quantities are written on paper. */
+static int is_of_time(const Eval *ev, const AstExpr *x) {
+  const AstExpr *argument = x->args ? ast_expr(ev->b->ast, x->args) : NULL;
+  return argument && argument->kind == AST_NAME && strcmp(argument->name, "t") == 0 && list_length(ev->b, x->args) == 1;
+}
+
 static Value unknown_function(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   uint32_t n = 0;
@@ -237,6 +243,7 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
   Name near = suggest(x->name, known, n);
   if (!e && advise_unknown_function(b, x->name)) return FAILED;
   if (strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0) diag_help(b->diags, "`%s(q)` may stand in `output` and `monitor`, in a scene that says `exact q = ...`", x->name);
+  else if (e && is_of_time(ev, x)) diag_help(b->diags, "`%s` is %s: write `%s`; what depends on time does so by itself", x->name, ent_kind_text(e->kind), x->name);
   else if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
   else if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else diag_help(b->diags, "`lagc help functions` lists them; declare your own: `function %s(x) = ...`", x->name);

@@ -137,6 +137,7 @@ static Value call_instance(Eval *ev, const AstExpr *x, const Instance *in) {
   Value r = in->value;
   r.dim = dim_replace(b->dims, r.dim, in->first_unknown, in->nargs, dims);
   for (uint32_t k = 0; k < parts_of(&r); k++) r.at[k] = expr_replace(b->g, r.at[k], in->symbols.at, with, in->symbols.n);
+  if (r.domain) r.domain = expr_replace(b->g, r.domain, in->symbols.at, with, in->symbols.n);
   return r;
 }
 

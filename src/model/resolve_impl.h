@@ -138,6 +138,10 @@ Value exact_value(Eval *ev, const AstExpr *x);
 /* A name without an index. */
 Value whole_value(Eval *ev, const Entity *e, Span span);
 
+/* domain.c: where node id, of value v, has a real value; where the derivatives of a value exist besides. */
+Expr domain_of_node(const Eval *ev, AstId id, const Value *v);
+Expr domain_of_derivative(const Builder *b, const Value *of);
+
 /* resolve_time.c */
 Value time_derivative(Builder *b, Value of, Span span, Context where);
 Value unit_value(Eval *ev, const AstExpr *x);

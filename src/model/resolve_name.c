@@ -143,7 +143,7 @@ static const Entity *momentum_of(const Eval *ev, Name name) {
 static Value momentum_value(const Eval *ev, const Entity *e, const int64_t *at) {
   Builder *b = ev->b;
   uint32_t i = e->index + member_offset(e, at);
-  Value r = {.n = e->parts};
+  Value r = {.n = e->parts, .domain = domain_of_derivative(b, &(Value){.e = b->m->lagrangian})};
   for (uint32_t k = 0; k < parts_of(&r); k++) {
     SymId v = e->kind == ENT_STATE ? b->m->states.at[i + k].rate : b->m->coords.at[i + k].v;
     r.at[k] = expr_diff(b->g, b->m->lagrangian, v);
@@ -277,6 +277,7 @@ static Value component(Eval *ev, const AstExpr *x, Value v) {
   if (k < v.n) {
     Value one = a_value(v.at[k], v.dim, v.bare);
     one.unit = v.unit;
+    one.domain = v.domain;
     return one;
   }
   diag_error(b->diags, x->span, "`%s` has no component `%s`", ast_short(b, x->a), x->name);

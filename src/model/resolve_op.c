@@ -133,6 +133,20 @@ static int factor_fits(Eval *ev, uint32_t i, const Value *r) {
   return 1;
 }
 
+/* 2*pi/86164 [rad/s]: the unit belongs to the divisor, and people who divide numbers mean the quotient. `r` is what stands before it. */
+static void warn_unit_of_divisor(Eval *ev, const Operand *o, const Value *r) {
+  Builder *b = ev->b;
+  const AstExpr *u = ast_expr(b->ast, o->at), *quotient = u + 1; /* a parent follows its last child */
+  if (!o->inverted || u->kind != AST_UNIT || ast_expr(b->ast, u->a)->kind != AST_NUM || o->at + 1 >= b->ast->exprs.n) return;
+  if (quotient->kind != AST_DIV || quotient->b != o->at || !r->bare) return;
+  if (*source_text(b, (Span){quotient->op_span.end, u->span.begin}) == '(') return;
+  if (value_of(ev, o->at)->e == value_of(ev, u->a)->e && value_of(ev, o->at)->dim == DIM_NONE) return; /* [rad], [1] */
+  const char *above = source_text(b, (Span){quotient->span.begin, quotient->op_span.begin}), *number = ast_text(b, u->a), *unit = u->unit.text;
+  Dim d = dim_div(b->dims, r->dim, value_of(ev, o->at)->dim);
+  diag_warning(b->diags, u->span, "the unit [%s] belongs to the divisor `%s` alone, so that the quotient is %s", unit, number, in_dim(b, d));
+  diag_help(b->diags, "a unit of the quotient: `(%s/%s) [%s]`; of the divisor: `%s/(%s [%s])`", above, number, unit, above, number, unit);
+}
+
 static int judge_product(Eval *ev, const AstExpr *x, Value *r, Factors *f) {
   Builder *b = ev->b;
   int ok = 1;
@@ -145,6 +159,7 @@ static int judge_product(Eval *ev, const AstExpr *x, Value *r, Factors *f) {
     int fits = operand_fits(ev, x, o.at) && v->e && (v->n == ROTATION ? rotation_fits(ev, i, f) : factor_fits(ev, i, r));
     ok &= fits;
     if (!fits) continue;
+    warn_unit_of_divisor(ev, &o, r);
     if (v->n == ROTATION) turn = o.at;
     else if (v->n) f->vector = i;
     f->turns += v->n == ROTATION;
@@ -364,6 +379,7 @@ static Value loop_value(Eval *ev, const Loop *l, const AstExpr *x) {
   uint32_t n = ev->terms.n - l->base;
   Value r;
   if (!judge_terms(ev, term, n, x, &r)) return FAILED;
+  for (uint32_t i = 0; i < n; i++) r.domain = domain_and(b, r.domain, term[i].domain);
   for (uint32_t k = 0; k < parts_of(&r); k++) {
     for (uint32_t i = 0; i < n; i++) vec_push(b->arena, &b->scratch, term[i].at[k]);
     r.at[k] = x->kind == AST_SUM ? expr_add_n(b->g, b->scratch.at, n) : expr_mul_n(b->g, b->scratch.at, n);

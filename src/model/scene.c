@@ -81,10 +81,19 @@ static void take_model_name(Builder *b) {
     }
 }
 
+/* Names and effects of the whole file, until nothing is wrong with them. */
+static void check_file(Builder *b, FileIndex *file) {
+  uint32_t before = b->diags->errors;
+  if (file->is_sound) return;
+  check_names_once(b, file);
+  file->clashes = !effects_check(b->ast);
+  file->is_sound = b->diags->errors == before && !file->clashes;
+}
+
 void scene_select(Builder *b, const ModelChoice *choice) {
   take_model_name(b);
-  check_names_once(b);
-  int related = effects_check(b->ast);
+  FileIndex *file = file_index(b->ast);
+  check_file(b, file);
   const AstStmt *st = choice->bare ? NULL : pick_scene(b, choice->scene);
   b->m->scene.name = st ? st->name : intern(b->ast->names, "default");
   b->m->scene.doc = st && st->doc ? st->doc : "";
@@ -98,15 +107,16 @@ void scene_select(Builder *b, const ModelChoice *choice) {
   if (b->is_variant) b->m->effects.n = 0;
   for (uint32_t i = 0; b->is_variant && i < choice->only->n; i++) vec_push(b->arena, &b->m->effects, choice->only->at[i]);
   VEC(Name) in_order = {0};
-  for (const AstStmt *s = b->ast->first; s; s = s->next) {
+  for (uint32_t i = 0; i < file->common.n; i++) {
+    const AstStmt *s = file->common.at[i];
     if (s->kind != STMT_EFFECT) {
-      if (s->kind != STMT_SCENE) vec_push(b->arena, &b->active, ((Active){s, NULL}));
+      vec_push(b->arena, &b->active, ((Active){s, NULL}));
       continue;
     }
     vec_push(b->arena, &b->m->all_effects, s->name);
     if (!uses_effect(b, s->name)) continue;
     vec_push(b->arena, &in_order, s->name);
-    if (related) check_effect_needs(b, s);
+    if (!file->clashes) check_effect_needs(b, s);
     for (const AstStmt *x = s->body; x; x = x->next) vec_push(b->arena, &b->active, ((Active){x, s->name}));
   }
   b->m->effects.at = in_order.at;
@@ -207,7 +217,7 @@ static void set_every(Builder *b, const AstStmt *st) {
 }
 
 static void set_output(Builder *b, const AstStmt *st) {
-  b->m->scene.outputs.n = 0;
+  drop_outputs(b);
   for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) add_outputs(b, i);
   set_every(b, st);
 }
@@ -222,8 +232,11 @@ static void set_span(Builder *b, const AstStmt *st) {
 
 static void set_tolerance(Builder *b, const AstStmt *st) {
   Unit none = no_unit();
+  uint32_t before = b->diags->errors;
   b->m->scene.tolerance = resolve_number(b, st->rhs, &none, "the tolerance");
-  if (b->m->scene.tolerance <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the tolerance must be positive");
+  if (b->diags->errors > before || (b->m->scene.tolerance > 0 && b->m->scene.tolerance < 1)) return;
+  diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the tolerance must be positive and below 1");
+  diag_help(b->diags, "it is the relative error of a step: `tolerance 1e-9`");
 }
 
 static int is_monitor_none(const AstStmt *st) { return st->kind == STMT_MONITOR && !st->lhs && strcmp(st->name, "none") == 0; }
@@ -252,24 +265,23 @@ static void scene_statement(Builder *b, const AstStmt *st) {
 
 /* Without an output statement: coordinates, velocities, states, energy. */
 static void default_outputs(Builder *b) {
-  Scene *sc = &b->m->scene;
   Model *m = b->m;
   for (int velocities = 0; velocities < 2; velocities++)
     for (uint32_t i = 0; i < m->coords.n; i++) {
       const Coord *c = &m->coords.at[i];
       const Symbol *s = expr_symbol(b->g, velocities ? c->v : c->q);
       Output o = {.name = s->name, .span = c->span, .unit = velocities ? unit_per_second(b, &c->unit) : c->unit, .value = s->node};
-      vec_push(b->arena, &sc->outputs, o);
+      push_output(b, &o);
     }
   for (uint32_t i = 0; i < m->states.n; i++) {
     const State *z = &m->states.at[i];
     Output o = {.name = z->name, .span = z->span, .unit = z->unit, .value = expr_symbol(b->g, z->z)->node};
-    vec_push(b->arena, &sc->outputs, o);
+    push_output(b, &o);
   }
   if (!m->lagrangian) return;
   Output o = {.name = intern(b->ast->names, "energy"), .value = expr_symbol(b->g, m->energy_sym)->node};
   o.unit = unit_of_dim(b->dims, b->energy);
-  vec_push(b->arena, &sc->outputs, o);
+  push_output(b, &o);
 }
 
 static int gives_value(const AstStmt *st) { return st->kind == STMT_SET || st->kind == STMT_START || st->kind == STMT_EXACT; }

@@ -1,15 +1,30 @@
 #include "model/scope.h"
 
 /* Names are interned: their addresses are their hashes. */
-static uint32_t bucket(Name name) { return (uint32_t)(((uintptr_t)name >> 4) % SCOPE_BUCKETS); }
+static uint32_t *bucket(const Scope *s, Name name) { return &s->heads[(((uintptr_t)name >> 4) * 0x9e3779b97f4a7c15u >> 32) & (s->nheads - 1)]; }
 
 static const Entity *next_of(const Scope *s, uint32_t i, Name name) {
   while (i && s->all.at[i - 1].name != name) i = s->all.at[i - 1].next;
   return i ? &s->all.at[i - 1] : NULL;
 }
 
+static const Entity *newest(const Scope *s, Name name) { return s->nheads ? next_of(s, *bucket(s, name), name) : NULL; }
+
+static void link_entity(Scope *s, uint32_t i) {
+  uint32_t *head = bucket(s, s->all.at[i].name);
+  s->all.at[i].next = *head;
+  *head = i + 1;
+}
+
+/* As many buckets as entities, at least. */
+static void make_buckets(Scope *s) {
+  s->nheads = s->nheads ? 2 * s->nheads : 8;
+  s->heads = ARENA_ARRAY(s->arena, uint32_t, s->nheads);
+  for (uint32_t i = 0; i < s->all.n; i++) link_entity(s, i);
+}
+
 const Entity *scope_own(const Scope *s, Name name, Name effect) {
-  const Entity *e = next_of(s, s->heads[bucket(name)], name);
+  const Entity *e = newest(s, name);
   while (e && e->effect != effect) e = next_of(s, e->next, name);
   return e;
 }
@@ -19,16 +34,15 @@ const Entity *scope_find(const Scope *s, Name name, Name effect, int *ambiguous)
   const Entity *own = effect ? scope_own(s, name, effect) : NULL;
   if (!own) own = scope_own(s, name, NULL);
   if (own) return own;
-  const Entity *found = next_of(s, s->heads[bucket(name)], name);
+  const Entity *found = newest(s, name);
   if (found && next_of(s, found->next, name)) *ambiguous = 1;
   return found;
 }
 
 void scope_add(Scope *s, Entity e) {
-  uint32_t *head = &s->heads[bucket(e.name)];
-  e.next = *head;
+  if (s->all.n == s->nheads) make_buckets(s);
   vec_push(s->arena, &s->all, e);
-  *head = s->all.n;
+  link_entity(s, s->all.n - 1);
 }
 
 const char *ent_kind_text(EntKind kind) {

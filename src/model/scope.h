@@ -27,12 +27,10 @@ typedef struct {
   uint32_t next; /* in its bucket, from 1; 0: none */
 } Entity;
 
-enum { SCOPE_BUCKETS = 4096 };
-
 typedef struct {
   Arena *arena;
   VEC(Entity) all;
-  uint32_t heads[SCOPE_BUCKETS]; /* newest entity of a bucket, from 1 */
+  uint32_t *heads, nheads; /* newest entity of a bucket, from 1; a power of 2 of them, or none */
 } Scope;
 
 /* The entity declared as `name` in exactly that place, or NULL. */

@@ -67,16 +67,21 @@ static uint32_t field_end(const Table *t, uint32_t at, uint32_t end) {
   return at;
 }
 
-/* The number of fields of a line, and field `which`, without what stands around it. */
+/* The field at *at, without what stands around it; *at moves to the next. 0: it is the last. */
+static int next_field(const Table *t, Piece line, uint32_t *at, Piece *field) {
+  uint32_t end = field_end(t, *at, line.end);
+  *field = unquoted(t, (Piece){*at, end});
+  while (t->separator == ' ' && end + 1 < line.end && is_blank(t->file.text[end + 1])) end++;
+  *at = end + 1;
+  return end < line.end;
+}
+
+/* The number of fields of a line, and field `which`. */
 static uint32_t fields(const Table *t, Piece line, uint32_t which, Piece *field) {
+  Piece any;
   uint32_t n = 0, at = line.begin;
-  for (;;) {
-    uint32_t end = field_end(t, at, line.end);
-    if (n++ == which) *field = unquoted(t, (Piece){at, end});
-    while (t->separator == ' ' && end + 1 < line.end && is_blank(t->file.text[end + 1])) end++;
-    if (end >= line.end) return n;
-    at = end + 1;
-  }
+  for (int more = 1; more; n++) more = next_field(t, line, &at, n == which ? field : &any);
+  return n;
 }
 
 static char find_separator(const Table *t, Piece line) {
@@ -111,13 +116,14 @@ static int is_called(const Table *t, Piece field, const char *name, Piece *unit)
   return strlen(name) == stem.end - stem.begin && memcmp(s + stem.begin, name, stem.end - stem.begin) == 0;
 }
 
-/* The first column called so; otherwise `none`. */
-static uint32_t find_column(const Table *t, Piece line, const char *name, uint32_t none) {
-  Piece field, unit;
-  uint32_t n = fields(t, line, 0, &field);
-  for (uint32_t i = 0; i < n; i++) {
-    fields(t, line, i, &field);
-    if (is_called(t, field, name, &unit)) return i;
+/* The first column from `from` on that is called so, and its field; otherwise `none`. */
+static uint32_t find_column(const Table *t, Piece line, uint32_t from, const char *name, uint32_t none, Piece *field) {
+  Piece unit;
+  uint32_t at = line.begin;
+  int more = 1;
+  for (uint32_t i = 0; more; i++) {
+    more = next_field(t, line, &at, field);
+    if (i >= from && is_called(t, *field, name, &unit)) return i;
   }
   return none;
 }
@@ -157,22 +163,17 @@ static void check_unit(Table *t, Piece line, uint32_t column, const Unit *want, 
 
 /* A name that two columns have would be a guess. */
 static void check_once(Table *t, Piece line, uint32_t column, const char *name) {
-  Piece field, unit;
-  uint32_t n = fields(t, line, 0, &field);
-  for (uint32_t i = column + 1; i < n; i++) {
-    fields(t, line, i, &field);
-    if (!is_called(t, field, name, &unit)) continue;
-    mistake(t, field, arena_printf(t->b->arena, "two columns are called `%s`", name));
-    diag_help(t->b->diags, "give one of them another name");
-    return;
-  }
+  Piece field;
+  if (find_column(t, line, column + 1, name, UINT32_MAX, &field) == UINT32_MAX) return;
+  mistake(t, field, arena_printf(t->b->arena, "two columns are called `%s`", name));
+  diag_help(t->b->diags, "give one of them another name");
 }
 
 static void read_head(Table *t, Piece line) {
-  Piece field;
+  Piece field, any;
   uint32_t n = fields(t, line, 0, &field);
-  t->time = find_column(t, line, "t", find_column(t, line, "time", 0));
-  t->value = find_column(t, line, t->stem, n > 2 ? n : 1 - t->time);
+  t->time = find_column(t, line, 0, "t", find_column(t, line, 0, "time", 0, &any), &any);
+  t->value = find_column(t, line, 0, t->stem, n > 2 ? n : 1 - t->time, &any);
   const char *whose = arena_printf(t->b->arena, "`%s`", t->stem);
   if (n < 2) mistake(t, field, "a table has two columns: time and value");
   else if (t->value == n) {
@@ -219,7 +220,10 @@ static void read_row(Table *t, Piece line) {
   double before = t->before;
   int jumps = t->numbers.n && time == before;
   if (t->numbers.n && (time < before || (jumps && t->jumped))) {
-    mistake(t, at, arena_printf(t->b->arena, jumps ? "this is the third row at %.17g" : "times must increase, and %.17g does not come after %.17g", time, before));
+    char now[32], then[32];
+    num_format_double(now, time);
+    num_format_double(then, before);
+    mistake(t, at, arena_printf(t->b->arena, jumps ? "this is the third row at %s" : "times must increase, and %s does not come after %s", now, then));
     diag_help(t->b->diags, "sort the rows; a jump is two rows of one time: the value before it, and the one after it");
     return;
   }
@@ -364,8 +368,11 @@ void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect) {
   in->value = 0;
   in->table = NULL;
   in->file = "";
+  in->text = 0;
+  in->effect = effect;
   if (ast_expr(b->ast, rhs)->kind != AST_STRING) {
     in->value = resolve_in(b, rhs, IN_INPUT, effect, &in->unit);
+    in->text = rhs;
     return;
   }
   in->file = ast_expr(b->ast, rhs)->name;

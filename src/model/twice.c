@@ -1,25 +1,16 @@
 /* What may be said once: names, and settings. Where the second would silently win, it is an error. */
 #include "model/builder.h"
 
-void check_names_once(Builder *b) {
-  uint32_t n = 0, cap = 16;
-  for (const AstStmt *s = b->ast->first; s; s = s->next) n += s->kind == STMT_SCENE || s->kind == STMT_EFFECT;
-  while (cap < 2 * n) cap *= 2;
-  const AstStmt **seen = ARENA_ARRAY(b->arena, const AstStmt *, cap); /* by the address of the name */
-  for (const AstStmt *s = b->ast->first; s; s = s->next) {
-    if ((s->kind != STMT_SCENE && s->kind != STMT_EFFECT) || !s->name) continue;
-    if (s->kind == STMT_EFFECT && strcmp(s->name, "none") == 0) {
-      diag_error(b->diags, s->name_span, "an effect cannot be called `none`: `use none` turns all off");
-      diag_help(b->diags, "choose another name");
-    }
-    uint32_t i = (uint32_t)((uintptr_t)s->name >> 4) & (cap - 1);
-    while (seen[i] && (seen[i]->name != s->name || seen[i]->kind != s->kind)) i = (i + 1) & (cap - 1);
-    if (!seen[i]) {
-      seen[i] = s;
-      continue;
-    }
+void check_names_once(Builder *b, const FileIndex *file) {
+  const AstStmt *none = find_named(b->ast, STMT_EFFECT, "none");
+  if (none) {
+    diag_error(b->diags, none->name_span, "an effect cannot be called `none`: `use none` turns all off");
+    diag_help(b->diags, "choose another name");
+  }
+  for (uint32_t i = 0; i < file->repeated.n; i++) {
+    const AstStmt *s = file->repeated.at[i];
     diag_error(b->diags, s->name_span, "the %s `%s` is declared twice", s->kind == STMT_SCENE ? "scene" : "effect", s->name);
-    diag_also(b->diags, seen[i]->name_span, "first declared here");
+    diag_also(b->diags, find_named(b->ast, s->kind, s->name)->name_span, "first declared here");
   }
 }
 

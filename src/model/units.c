@@ -1,8 +1,11 @@
 /* Units. Values: SI Brochure, 9th edition (BIPM 2019), tables 4 and 8; au: IAU 2012 Resolution B2; eV and u: CODATA 2018; yr is the Julian year of 365.25 days
- * (IAU), bar, L, min, h, d as in table 8 of the brochure. */
+ * (IAU), bar, L, min, h, d as in table 8 of the brochure. ft and lb: exact by the international yard and pound agreement of 1959. ly: 299792458 m/s times yr.
+ * pc: 648000/pi au, IAU 2015 Resolution B2. Msun: the nominal 1.3271244e20 m^3/s^2 of IAU 2015 Resolution B3 over G = 6.67430e-11 m^3/(kg s^2) of
+ * CODATA 2018, which is known to 2.2e-5. */
 #include "model/units.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/suggest.h"
@@ -61,6 +64,11 @@ static const UnitRow table[] = {
   {"bar", "100000", 0, 1, {-1, 1, -2}},
   {"L", "0.001", 0, 1, {3}},
   {"t", "1000", 0, 0, {0, 1}},
+  {"ft", "0.3048", 0, 0, {1}},
+  {"lb", "0.45359237", 0, 0, {0, 1}},
+  {"ly", "9460730472580800", 0, 0, {1}},
+  {"pc", "96939420213600000", -1, 1, {1}},
+  {"Msun", "1.988409870698051e30", 0, 0, {0, 1}},
   {"degC", "1", 0, 0, {0, 0, 0, 0, 1}}, /* see offset_of() */
 };
 enum { N_UNITS = sizeof table / sizeof *table };
@@ -119,6 +127,7 @@ static const char *const spellings[][2] = {
   {"ampere", "A"}, {"amp", "A"}, {"Kelvin", "K"}, {"kelvin", "K"}, {"Ohm", "ohm"}, {"Hertz", "Hz"}, {"hertz", "Hz"},
   {"Pascal", "Pa"}, {"Coulomb", "C"}, {"Farad", "F"}, {"Henry", "H"}, {"Tesla", "T"}, {"AU", "au"}, {"ev", "eV"},
   {"us", "µs"}, {"um", "µm"}, {"liter", "L"}, {"litre", "L"}, {"l", "L"}, {"amu", "u"}, {"Da", "u"},
+  {"foot", "ft"}, {"feet", "ft"}, {"lbs", "lb"}, {"pound", "lb"}, {"pounds", "lb"}, {"parsec", "pc"}, {"lyr", "ly"}, {"M_sun", "Msun"}, {"msun", "Msun"},
 };
 enum { N_SPELLINGS = sizeof spellings / sizeof *spellings };
 
@@ -129,6 +138,22 @@ static const char *const usual[] = {
 };
 enum { N_USUAL = sizeof usual / sizeof *usual };
 
+/* A unit of the table, or kg; not one with a zero of its own. */
+static int is_plain(const char *name) { return strcmp(name, "kg") == 0 || (find_row(name) && strncmp(name, "deg", 3) != 0); }
+
+/* `Nm`: a product of two, without a sign. */
+static int report_product(const AstUnitFactor *f, Diags *diags) {
+  size_t length = strlen(f->name);
+  char first[16];
+  for (size_t cut = length < sizeof first ? length - 1 : 0; cut > 0; cut--) {
+    snprintf(first, sizeof first, "%.*s", (int)cut, f->name);
+    if (!is_plain(first) || !is_plain(f->name + cut)) continue;
+    diag_help(diags, "a product is written with `*`: `%s*%s`", first, f->name + cut);
+    return 1;
+  }
+  return 0;
+}
+
 static void report_unknown(const AstUnitFactor *f, Diags *diags) {
   diag_error(diags, f->span, "unknown unit `%s`", f->name);
   for (int i = 0; i < N_SPELLINGS; i++)
@@ -136,6 +161,7 @@ static void report_unknown(const AstUnitFactor *f, Diags *diags) {
       diag_help(diags, "write `%s`", spellings[i][1]);
       return;
     }
+  if (report_product(f, diags)) return;
   Name known[N_UNITS + N_USUAL];
   for (int i = 0; i < N_USUAL; i++) known[i] = usual[i];
   for (int i = 0; i < N_UNITS; i++) known[N_USUAL + i] = table[i].name;
@@ -257,7 +283,7 @@ const char *unit_meaning(uint32_t i, Arena *a) {
   const char *base = base_text(row, a);
   if (strcmp(base, row->name) == 0) return NULL;
   if (strcmp(row->name, "deg") == 0) return "pi/180";
-  if (row->pi_power) return arena_printf(a, "%s*pi", row->factor);
+  if (row->pi_power) return arena_printf(a, "%s%s%s%s", row->factor, row->pi_power < 0 ? "/pi" : "*pi", *base ? " " : "", base);
   if (!num_is_zero(offset_of(row))) return arena_printf(a, "%s, counted from %g %s", base, num_value(offset_of(row)), base);
   if (strcmp(row->factor, "1") == 0) return *base ? base : "1";
   return arena_printf(a, "%s%s%s", row->factor, *base ? " " : "", base);

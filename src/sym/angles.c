@@ -7,37 +7,41 @@ enum { MAX_MULTIPLE = 64 }; /* of a base angle: cos 64u has 33 terms */
 
 /* --- atoms --- */
 
-/* The atom for mono/den below the base; GEN_NONE as base_num marks an angle. There are few. */
-static uint32_t find_atom(Normal *n, PolyId base_num, DenId base_den, MonoId mono, DenId den) {
+/* The atom for part/den below the base; GEN_NONE as base_num marks an angle. There are few. */
+static uint32_t find_atom(Normal *n, PolyId base_num, DenId base_den, PolyId part, DenId den) {
   for (uint32_t i = 0; i < n->atoms.n; i++) {
     const Atom *a = &n->atoms.at[i];
-    if (a->mono == mono && a->den == den && a->base_num == base_num && a->base_den == base_den) return i;
+    if (a->part == part && a->den == den && a->base_num == base_num && a->base_den == base_den) return i;
   }
-  Atom fresh = {.base_num = base_num, .base_den = base_den, .mono = mono, .den = den, .unit = num_int(0)};
+  Atom fresh = {.base_num = base_num, .base_den = base_den, .part = part, .den = den, .unit = num_int(0)};
   vec_push(n->arena, &n->atoms, fresh);
   return n->atoms.n - 1;
 }
 
 /* Exponentials of linearly independent products of symbols are algebraically independent of each
  * other and of the symbols (Ax, On Schanuel's conjectures, 1971, DOI 10.2307/1970774). */
-static int is_plain(const Normal *n, MonoId m) {
-  const Mono *mono = mono_at(n->ring, m);
-  if (mono->n == 0) return 0;
+static int is_plain(const Normal *n, PolyId part) {
+  Poly p = poly_at(n->ring, part);
+  const Mono *mono = mono_at(n->ring, p.at[0].mono);
+  if (p.n > 1 || mono->n == 0) return 0;
   for (uint32_t i = 0; i < mono->n; i++)
     if (n->gens.at[mono->at[i].gen].kind != GEN_SYMBOL) return 0;
   return 1;
 }
 
-/* The expression unit * mono / den. */
+static PolyId mono_part(Normal *n, MonoId m) { return poly_intern(n->ring, poly_mono(n->ring, num_int(1), m)); }
+
+/* The expression unit * part / den. */
 static Expr atom_expr(Normal *n, const Atom *a) {
-  Poly mono = poly_mono(n->ring, a->unit, a->mono);
-  return normal_expr(n, (Frac){.num = mono, .den = a->den});
+  Poly part = poly_scale(n->ring, a->unit, poly_at(n->ring, a->part));
+  return normal_expr(n, (Frac){.num = part, .den = a->den});
 }
 
 static void make_angle(Normal *n, uint32_t at, Expr u) {
   Atom *a = &n->atoms.at[at];
   PolyRing *r = n->ring;
   Expr cos_u = expr_fn(n->g, EX_COS, u), sin_u = expr_fn(n->g, EX_SIN, u);
+  a->u = u;
   a->cos = poly_new_gen(r);
   Poly c = poly_gen(r, a->cos), one = poly_num(r, num_int(1));
   Poly cc = poly_mul(r, c, c);
@@ -81,7 +85,7 @@ static int32_t multiple_of(Normal *n, uint32_t at, Num c) {
     else make_power(n, at);
     a = &n->atoms.at[at];
   }
-  if (a->den || !is_plain(n, a->mono)) n->canonical = 0;
+  if (a->den || !is_plain(n, a->part)) n->canonical = 0;
   Num k = num_div(c, a->unit);
   if (num_cmp(num_abs(k), num_int(1 << 20)) > 0) poly_fail(n->ring, POLY_TOO_LARGE);
   return (int32_t)k.num;
@@ -112,7 +116,7 @@ Circular normal_multiple(Normal *n, uint32_t at, int32_t k) {
 }
 
 uint32_t normal_new_angle(Normal *n, Expr u) {
-  Atom fresh = {.base_num = GEN_NONE, .mono = GEN_NONE, .unit = num_int(1), .made = 1};
+  Atom fresh = {.base_num = GEN_NONE, .part = GEN_NONE, .unit = num_int(1), .made = 1};
   vec_push(n->arena, &n->atoms, fresh);
   make_angle(n, n->atoms.n - 1, u);
   return n->atoms.n - 1;
@@ -153,7 +157,7 @@ static Circular circular_of(Normal *n, Frac u) {
     Circular one;
     int pi = is_pi(n, t.mono, u.den);
     if (!pi || !pi_angle(n, t.c, &one)) {
-      uint32_t at = find_atom(n, GEN_NONE, 0, t.mono, u.den);
+      uint32_t at = find_atom(n, GEN_NONE, 0, mono_part(n, t.mono), u.den);
       int32_t k = multiple_of(n, at, t.c);
       if (pi) n->canonical = 0;
       one = normal_multiple(n, at, k);
@@ -184,6 +188,19 @@ static GenId find_log(const Normal *n, MonoId m) {
   return GEN_NONE;
 }
 
+static int contains_log(const Normal *n, Poly p) {
+  for (uint32_t i = 0; i < p.n; i++)
+    if (find_log(n, p.at[i].mono) != GEN_NONE) return 1;
+  return 0;
+}
+
+static Frac atom_power(Normal *n, uint32_t at, Num c) {
+  int32_t k = multiple_of(n, at, c);
+  MonoPow p = {.gen = n->atoms.at[at].cos, .exp = k};
+  MonoId m = mono_of(n->ring, &p, 1);
+  return frac_poly(poly_mono(n->ring, num_int(1), m));
+}
+
 /* b^(c*mono/den), where b is e when base_num is 0. exp(u*log(b)) is b^u. */
 static Frac power_term(Normal *n, PolyId base_num, DenId base_den, Term t, DenId den) {
   GenId log = base_num == 0 ? find_log(n, t.mono) : GEN_NONE;
@@ -197,11 +214,7 @@ static Frac power_term(Normal *n, PolyId base_num, DenId base_den, Term t, DenId
     Frac base = {.num = poly_at(n->ring, base_num), .den = base_den};
     return normal_pow_num(n, base, t.c);
   }
-  uint32_t at = find_atom(n, base_num, base_den, t.mono, den);
-  int32_t k = multiple_of(n, at, t.c);
-  MonoPow p = {.gen = n->atoms.at[at].cos, .exp = k};
-  MonoId m = mono_of(n->ring, &p, 1);
-  return frac_poly(poly_mono(n->ring, num_int(1), m));
+  return atom_power(n, find_atom(n, base_num, base_den, mono_part(n, t.mono), den), t.c);
 }
 
 static Frac power_of(Normal *n, PolyId base_num, DenId base_den, Frac u) {
@@ -213,11 +226,38 @@ static Frac power_of(Normal *n, PolyId base_num, DenId base_den, Frac u) {
   return product;
 }
 
-Frac normal_exp(Normal *n, Frac u) { return power_of(n, 0, 0, u); }
+/* b^u as one power of b^(u/k) or b^(-u/k), whichever was met first: exp(x - y) is 1 where x = y = 1000, and exp(x)*exp(-y) is not a number. */
+static Frac whole_power(Normal *n, PolyId base_num, DenId base_den, Frac u) {
+  PolyRing *r = n->ring;
+  Num content = num_abs(poly_content(r, u.num)), inverse = num_div(num_int(1), content);
+  PolyId part = poly_intern(r, poly_scale(r, inverse, u.num)), turned = poly_intern(r, poly_scale(r, num_neg(inverse), u.num));
+  int known = 0;
+  for (uint32_t i = 0; i < n->atoms.n; i++) {
+    const Atom *a = &n->atoms.at[i];
+    known |= a->part == turned && a->den == u.den && a->base_num == base_num && a->base_den == base_den;
+  }
+  uint32_t at = find_atom(n, base_num, base_den, known ? turned : part, u.den);
+  return atom_power(n, at, known ? num_neg(content) : content);
+}
+
+Frac normal_exp(Normal *n, Frac u) {
+  int whole = n->keep_range && u.num.n && !contains_log(n, u.num);
+  return whole ? whole_power(n, 0, 0, u) : power_of(n, 0, 0, u);
+}
+
+static int is_constant(Frac u) { return u.num.n == 0 || (u.num.n == 1 && u.num.at[0].mono == 0 && u.den == 0); }
 
 Frac normal_power(Normal *n, Frac base, Frac u) {
   PolyId id = poly_intern(n->ring, base.num);
   if (id == 0) poly_fail(n->ring, POLY_DIVIDED_BY_ZERO); /* 0^u depends on the sign of u */
   n->canonical = 0; /* x^u and y^u and (x*y)^u are related */
-  return power_of(n, id, base.den, u);
+  if (!n->proof) return n->keep_range && !is_constant(u) ? whole_power(n, id, base.den, u) : power_of(n, id, base.den, u);
+  PowerParts parts = normal_power_parts(n, base, u);
+  Frac product = frac_num(n->field, num_int(1));
+  for (uint32_t i = 0; i < parts.n && n->ring->status == POLY_OK; i++) {
+    PowerPart p = parts.at[i];
+    Frac one = power_of(n, p.is_e ? 0 : poly_intern(n->ring, p.base.num), p.is_e ? 0 : p.base.den, p.exponent);
+    product = frac_mul(n->field, product, one);
+  }
+  return product;
 }

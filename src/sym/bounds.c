@@ -59,27 +59,56 @@ typedef struct {
 static Real value_of(const Bounds *b, Expr e) { return b->value[expr_map_get(b->place, e) - 1]; }
 static Real bound_of(const Bounds *b, Expr e) { return b->bound[expr_map_get(b->place, e) - 1]; }
 
+/* A number of few binary digits behind the point: a sum of such is exact. */
+static int is_short(Real x) { return fabsl(x) <= 1e9L && x * 65536 == floorl(x * 65536); }
+
 static Real sum_bound(const Bounds *b, Expr e) {
   Real bound = 0, size = 0;
+  int exact = 1;
   uint32_t n = expr_pairs(b->g, e, EX_SUM);
   for (uint32_t i = 0; i < n; i++) {
     Num c;
     Expr t = expr_pair(b->g, e, EX_SUM, i, &c);
     bound += fabsl((Real)num_value(c)) * bound_of(b, t) + (num_error(c) > 0 ? (Real)num_error(c) * (fabsl(value_of(b, t)) + bound_of(b, t)) : 0);
     size += fabsl((Real)num_value(c) * value_of(b, t));
+    exact &= num_is_int(c) && is_short(value_of(b, t)) && is_short((Real)num_value(c) * value_of(b, t));
   }
+  if (exact && bound == 0 && is_short(size)) return 0;
   return bound + (Real)(n + 2) * LDBL_EPSILON * size;
 }
 
-static Real prod_bound(const Bounds *b, Expr e, Real value) {
-  Real relative = 0;
+/* Whether a product of a few small whole numbers, halves and quarters has come out exactly. */
+static int is_exact_product(const Bounds *b, Expr e, Real value) {
+  Real above = 1, below = 1;
+  int64_t factors = 0;
   for (uint32_t i = 0; i < expr_pairs(b->g, e, EX_PROD); i++) {
     Num k;
     Expr x = expr_pair(b->g, e, EX_PROD, i, &k);
-    Real size = fabsl((Real)num_value(k));
-    relative += size * bound_of(b, x) / fabsl(value_of(b, x)) + (size + 4) * LDBL_EPSILON;
-    if (num_error(k) > 0) relative += (Real)num_error(k) * fabsl(logl(fabsl(value_of(b, x))));
+    Real v = value_of(b, x);
+    if (!num_is_int(k) || bound_of(b, x) != 0 || !(fabsl(v) <= 4096) || 4 * v != floorl(4 * v)) return 0;
+    factors += k.num < 0 ? -k.num : k.num;
+    if (factors > 4) return 0;
+    for (int64_t j = 0; j < k.num; j++) above *= v;
+    for (int64_t j = 0; j < -k.num; j++) below *= v;
   }
+  return below != 0 && value * below == above && is_short(value);
+}
+
+/* A factor that is not told from 0 leaves the product between 0 and its largest size. */
+static Real prod_bound(const Bounds *b, Expr e, Real value) {
+  Real relative = 0, most = 1;
+  int vanishes = 0;
+  for (uint32_t i = 0; i < expr_pairs(b->g, e, EX_PROD); i++) {
+    Num k;
+    Expr x = expr_pair(b->g, e, EX_PROD, i, &k);
+    Real power = (Real)num_value(k), size = fabsl(power), v = fabsl(value_of(b, x)), off = bound_of(b, x);
+    vanishes |= power > 0 && !(v > off);
+    most *= power > 0 ? powl(v + off, power) : v > off ? powl(v - off, power) : INFINITY;
+    relative += size * off / v + (size + 4) * LDBL_EPSILON;
+    if (num_error(k) > 0) relative += (Real)num_error(k) * fabsl(logl(v));
+  }
+  if (is_exact_product(b, e, value)) return 0;
+  if (vanishes) return isnan(most) ? INFINITY : 2 * most;
   return isnan(relative) ? INFINITY : relative * fabsl(value);
 }
 
@@ -103,8 +132,8 @@ static Real slope(ExprOp op, Real x, Real f) {
 /* Comparisons are certain, or nothing is known; they and what is built of them have bound 0. */
 static Real compare_bound(const Bounds *b, Expr e) {
   Expr x = expr_arg(b->g, e, 0), y = expr_arg(b->g, e, 1);
-  Real gap = fabsl(value_of(b, x) - value_of(b, y));
-  return gap > bound_of(b, x) + bound_of(b, y) ? 0 : INFINITY;
+  Real gap = fabsl(value_of(b, x) - value_of(b, y)), off = bound_of(b, x) + bound_of(b, y);
+  return gap > off || off == 0 ? 0 : INFINITY;
 }
 
 static Real binary_bound(const Bounds *b, Expr e, Real f) {
@@ -114,7 +143,8 @@ static Real binary_bound(const Bounds *b, Expr e, Real f) {
   switch (expr_op(b->g, e)) {
     case EX_POW: return fabsl(f) * (fabsl(y / x) * dx + fabsl(logl(fabsl(x))) * dy) + rounding * (1 + fabsl(y));
     case EX_ATAN2: return (fabsl(y) * dx + fabsl(x) * dy) / (x * x + y * y) + rounding;
-    case EX_HYPOT: case EX_MIN: case EX_MAX: return dx + dy + rounding;
+    case EX_MIN: case EX_MAX: return fmaxl(dx, dy);
+    case EX_HYPOT: return dx + dy + rounding;
     case EX_LT: case EX_LE: case EX_EQ: return compare_bound(b, e);
     case EX_AND: case EX_OR: return dx + dy;
     case EX_SELECT: return dx > 0 ? INFINITY : x != 0 ? dy : bound_of(b, expr_arg(b->g, e, 2));
@@ -130,15 +160,17 @@ static Real unary_bound(const Bounds *b, Expr e, Real f) {
   Expr arg = expr_arg(b->g, e, 0);
   Real x = value_of(b, arg), dx = bound_of(b, arg);
   if (op == EX_NOT) return dx;
-  if (op == EX_SIGN) return fabsl(x) > dx ? 0 : INFINITY;
+  if (op == EX_SIGN) return fabsl(x) > dx || dx == 0 ? 0 : INFINITY;
   if (op == EX_DEF) return dx;
   return (dx > 0 ? slope(op, x, f) * dx : 0) + 8 * LDBL_EPSILON * fabsl(f);
 }
 
 static Real node_bound(const Bounds *b, Expr e, Real value, const Real *errors) {
   switch (expr_op(b->g, e)) {
-    case EX_NUM: return LDBL_EPSILON * fabsl(value) + (Real)num_error(expr_number(b->g, e));
-    case EX_SYM: return errors ? errors[expr_sym_id(b->g, e)] : 0;
+    case EX_NUM: return num_is_int(expr_number(b->g, e)) ? 0 : LDBL_EPSILON * fabsl(value) + (Real)num_error(expr_number(b->g, e));
+    case EX_SYM:
+      if (expr_sym_of(b->g, e)->kind == SYM_CONST) return LDBL_EPSILON * fabsl(value);
+      return errors ? errors[expr_sym_id(b->g, e)] : 0;
     case EX_SUM: return sum_bound(b, e);
     case EX_PROD: return prod_bound(b, e, value);
     case EX_POW: case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE:
@@ -151,20 +183,51 @@ static Real node_bound(const Bounds *b, Expr e, Real value, const Real *errors) 
   return INFINITY;
 }
 
-long double prove_value(ExprGraph *g, Expr e, const long double *symbols, const long double *errors,
-                        long double *bound) {
-  *bound = 0;
-  if (!e) return 0;
-  ExprList nodes = expr_topo(g, &e, 1);
+/* A function whose value is not of ordinary size has lost digits to underflow. */
+static Real underflow(const ExprGraph *g, Expr e, Real value) {
+  ExprOp op = expr_op(g, e);
+  int exact = op == EX_NUM || op == EX_SYM || op == EX_SUM || op == EX_DEF || op == EX_ABS || op == EX_SIGN || op == EX_MIN || op == EX_MAX ||
+              op == EX_SELECT || expr_is_bool(g, e);
+  return exact || fabsl(value) >= LDBL_MIN ? 0 : LDBL_MIN;
+}
+
+struct BoundTape {
+  ExprGraph *g;
+  ExprList nodes;
+  EvalTape *tape; /* of all nodes */
+  ExprMap place;  /* plus one */
+  Real *value, *bound;
+};
+
+BoundTape *bound_tape(ExprGraph *g, const Expr *roots, uint32_t n) {
   Arena *a = expr_arena(g);
-  Real *value = ARENA_ARRAY(a, Real, nodes.n + 1), *bounds = ARENA_ARRAY(a, Real, nodes.n + 1);
-  ExprMap place = expr_map(a);
-  expr_eval(g, nodes.at, nodes.n, symbols, value);
-  Bounds b = {.g = g, .value = value, .bound = bounds, .place = &place};
-  for (uint32_t i = 0; i < nodes.n; i++) {
-    expr_map_set(&place, nodes.at[i], i + 1);
-    bounds[i] = node_bound(&b, nodes.at[i], value[i], errors);
+  BoundTape *t = ARENA_NEW(a, BoundTape);
+  *t = (BoundTape){.g = g, .nodes = expr_topo(g, roots, n), .place = expr_map(a)};
+  t->tape = eval_tape(g, t->nodes.at, t->nodes.n);
+  t->value = ARENA_ARRAY(a, Real, t->nodes.n + 1);
+  t->bound = ARENA_ARRAY(a, Real, t->nodes.n + 1);
+  for (uint32_t i = 0; i < t->nodes.n; i++) expr_map_set(&t->place, t->nodes.at[i], i + 1);
+  return t;
+}
+
+void bound_run(BoundTape *t, const long double *symbols, const long double *errors) {
+  eval_run(t->tape, symbols, t->value);
+  Bounds b = {.g = t->g, .value = t->value, .bound = t->bound, .place = &t->place};
+  for (uint32_t i = 0; i < t->nodes.n; i++) {
+    Expr e = t->nodes.at[i];
+    Real bound = node_bound(&b, e, t->value[i], errors);
+    t->bound[i] = expr_op(t->g, e) == EX_PROD && bound == 0 ? 0 : bound + underflow(t->g, e, t->value[i]);
   }
-  *bound = bounds[nodes.n - 1];
-  return value[nodes.n - 1];
+}
+
+long double bound_value(const BoundTape *t, Expr root, long double *bound) {
+  uint32_t place = root ? expr_map_get(&t->place, root) : 0;
+  *bound = place ? t->bound[place - 1] : 0;
+  return place ? t->value[place - 1] : 0;
+}
+
+long double prove_value(ExprGraph *g, Expr e, const long double *symbols, const long double *errors, long double *bound) {
+  BoundTape *t = bound_tape(g, &e, 1);
+  bound_run(t, symbols, errors);
+  return bound_value(t, e, bound);
 }

@@ -5,18 +5,6 @@
 #include "sym/expr.h"
 #include "sym/expr_impl.h"
 
-/* A list of (node, number) pairs under construction: terms with coefficients, bases with exponents. */
-typedef struct {
-  Expr node;
-  Num number;
-} Pair;
-
-typedef VEC(Pair) Pairs;
-
-/* Room for the pairs of most sums and products, in the frame of the function that builds one. */
-enum { ROOM = 8 };
-#define ROOM_FOR(room) {(room), 0, ROOM}
-
 static int by_node(const void *a, const void *b) {
   Expr x = ((const Pair *)a)->node, y = ((const Pair *)b)->node;
   return (x > y) - (x < y);
@@ -71,14 +59,14 @@ static Pair *find_term(const Pairs *p, Expr term) {
   return lo < p->n && p->at[lo].node == term ? &p->at[lo] : NULL;
 }
 
-/* Is e sin u (or cos u) squared or higher, as a factor of term? Then *u and which. */
-static int squared_circular(const ExprGraph *g, Expr term, Expr *u, ExprOp *op, uint32_t from, uint32_t *at) {
+/* Is sin u, cos u, sinh u or cosh u squared or higher a factor of term? Then *u and which. */
+static int squared_function(const ExprGraph *g, Expr term, Expr *u, ExprOp *op, uint32_t from, uint32_t *at) {
   if (expr_op(g, term) != EX_PROD) return 0;
   for (uint32_t i = from; i < expr_pairs(g, term, EX_PROD); i++) {
     Num e;
     Expr base = expr_pair(g, term, EX_PROD, i, &e);
     ExprOp o = expr_op(g, base);
-    if ((o == EX_SIN || o == EX_COS) && num_cmp(e, num_int(2)) >= 0) {
+    if ((o == EX_SIN || o == EX_COS || o == EX_SINH || o == EX_COSH) && num_cmp(e, num_int(2)) >= 0) {
       *u = expr_arg(g, base, 0);
       *op = o;
       *at = i;
@@ -88,28 +76,31 @@ static int squared_circular(const ExprGraph *g, Expr term, Expr *u, ExprOp *op, 
   return 0;
 }
 
-/* One use of sin^2 + cos^2 = 1 in the collected pairs: R sin^2 + R cos^2 -> R, and
+static ExprOp cofunction(ExprOp op) { return op == EX_SIN ? EX_COS : op == EX_COS ? EX_SIN : op == EX_SINH ? EX_COSH : EX_SINH; }
+
+/* One use of sin^2 + cos^2 = 1 or cosh^2 - sinh^2 = 1 in the collected pairs: R sin^2 + R cos^2 -> R, and
  * R - R sin^2 -> R cos^2. Returns 1 when something changed. */
 static int use_pythagoras(ExprGraph *g, Pairs *p) {
   for (uint32_t i = 0; i < p->n; i++) {
     Expr u;
     ExprOp op;
     uint32_t at = 0;
-    for (uint32_t from = 0; squared_circular(g, p->at[i].node, &u, &op, from, &at); from = at + 1) {
-      Expr self = expr_fn(g, op, u), other = expr_fn(g, op == EX_SIN ? EX_COS : EX_SIN, u);
+    for (uint32_t from = 0; squared_function(g, p->at[i].node, &u, &op, from, &at); from = at + 1) {
+      Expr self = expr_fn(g, op, u), other = expr_fn(g, cofunction(op), u);
       Expr self_inv2 = expr_pow_num(g, self, num_int(-2)), other2 = expr_pow_num(g, other, num_int(2));
       Expr rest = expr_mul(g, p->at[i].node, self_inv2);
       Expr partner = expr_mul(g, rest, other2);
+      Num c = p->at[i].number, minus = num_neg(c);
       Pair *q = find_term(p, partner);
-      if (q && q != &p->at[i] && num_equal(q->number, p->at[i].number)) {
+      if (q && q != &p->at[i] && num_equal(q->number, op == EX_SINH || op == EX_COSH ? minus : c)) {
         q->number = num_int(0);
-        p->at[i].node = rest;
+        p->at[i] = (Pair){rest, op == EX_SINH ? minus : c};
         return 1;
       }
       q = find_term(p, rest);
-      if (q && num_equal(q->number, num_neg(p->at[i].number))) {
+      if (q && num_equal(q->number, op == EX_SINH ? c : minus)) {
         p->at[i].number = num_int(0);
-        q->node = partner;
+        *q = (Pair){partner, op == EX_COSH ? c : q->number};
         return 1;
       }
     }
@@ -173,12 +164,6 @@ Expr expr_sub(ExprGraph *g, Expr a, Expr b) {
 
 /* --- products --- */
 
-/* A product under construction: number times factors. */
-typedef struct {
-  Num c;
-  Pairs p;
-} Product;
-
 /* The factor that all coefficients of a sum share, with the sign of the first. */
 static Num content(const ExprGraph *g, Expr sum) {
   Num k, c;
@@ -208,8 +193,8 @@ static void push_number_power(ExprGraph *g, Product *r, Num base, Num e) {
   else push_factor(g, r, expr_num(g, base), e);
 }
 
-/* Multiplies r by base^e. (b^k)^e is b^(k e) where e is an integer or b is known to be positive. */
-static void push_power(ExprGraph *g, Product *r, Expr base, Num e) {
+/* (b^k)^e is b^(k e) where e is an integer or b is known to be positive. */
+void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e) {
   int whole = num_is_int(e);
   switch (expr_op(g, base)) {
     case EX_NUM: push_number_power(g, r, expr_number(g, base), e); return;
@@ -232,6 +217,11 @@ static void push_power(ExprGraph *g, Product *r, Expr base, Num e) {
       return;
     }
     case EX_SUM: {
+      Expr cosh = whole && num_sign(e) > 0 ? 0 : expr_cosh_of_tanh(g, base);
+      if (cosh) {
+        push_factor(g, r, cosh, num_mul(num_int(-2), e));
+        return;
+      }
       Num c = content(g, base);
       if (num_is_one(c) || (!whole && expr_pairs(g, base, EX_SUM) > 1) || (!whole && num_sign(c) < 0)) {
         push_factor(g, r, base, e);
@@ -240,12 +230,12 @@ static void push_power(ExprGraph *g, Product *r, Expr base, Num e) {
       push_number_power(g, r, c, e);
       Expr primitive = expr_scale(g, num_div(num_int(1), c), base);
       if (expr_op(g, primitive) == EX_SUM) push_factor(g, r, primitive, e);
-      else push_power(g, r, primitive, e);
+      else expr_push_power(g, r, primitive, e);
       return;
     }
     case EX_ABS:
       if (whole && num_is_int(e) && e.num % 2 == 0) { /* |x|^2 = x^2 */
-        push_power(g, r, expr_arg(g, base, 0), e);
+        expr_push_power(g, r, expr_arg(g, base, 0), e);
         return;
       }
       push_factor(g, r, base, e);
@@ -270,7 +260,7 @@ static int settle_factors(ExprGraph *g, Product *r) {
         (op == EX_ABS && num_is_int(f.number))) {
       uint32_t before = again.p.n;
       Num c = again.c;
-      push_power(g, &again, f.node, f.number);
+      expr_push_power(g, &again, f.node, f.number);
       changed |= again.p.n != before + 1 || again.p.at[before].node != f.node || !num_equal(c, again.c);
     } else push_factor(g, &again, f.node, f.number);
   }
@@ -283,11 +273,31 @@ static int settle_factors(ExprGraph *g, Product *r) {
   return changed;
 }
 
-static Expr finish_product(ExprGraph *g, Product *r) {
+/* r with its factor `at`, a sum, distributed. */
+static Expr distributed(ExprGraph *g, Product *r, uint32_t at) {
+  Expr T = r->p.at[at].node;
+  uint32_t n = expr_pairs(g, T, EX_SUM);
+  Expr *terms = ARENA_ARRAY(g->arena, Expr, n);
+  r->p.at[at].number = num_int(0);
   collect(&r->p);
-  while (settle_factors(g, r)) continue;
+  Expr rest = r->p.n == 1 && num_is_one(r->p.at[0].number) ? r->p.at[0].node : make_pairs(g, EX_PROD, &r->p);
+  for (uint32_t i = 0; i < n; i++) {
+    Num c;
+    Expr term = expr_pair(g, T, EX_SUM, i, &c), product = expr_mul(g, rest, term);
+    terms[i] = expr_scale(g, num_mul(c, r->c), product);
+  }
+  return expr_add_n(g, terms, n);
+}
+
+static Expr finish_product(ExprGraph *g, Product *r) {
+  do {
+    collect(&r->p);
+    while (settle_factors(g, r)) continue;
+  } while (expr_use_quotient(g, r));
   if (num_is_zero(r->c)) return g->zero;
   if (r->p.n == 0) return expr_num(g, r->c);
+  uint32_t mixed = expr_mixed_sum(g, r);
+  if (mixed < r->p.n) return distributed(g, r, mixed);
   Expr e = r->p.n == 1 && num_is_one(r->p.at[0].number) ? r->p.at[0].node : make_pairs(g, EX_PROD, &r->p);
   return expr_scale(g, r->c, e);
 }
@@ -304,7 +314,7 @@ Expr expr_mul_n(ExprGraph *g, const Expr *factors, uint32_t n) {
         Expr b = expr_pair(g, f, EX_PROD, k, &e);
         push_factor(g, &r, b, e);
       }
-    } else push_power(g, &r, f, num_int(1));
+    } else expr_push_power(g, &r, f, num_int(1));
   }
   return finish_product(g, &r);
 }
@@ -324,7 +334,7 @@ Expr expr_pow_num(ExprGraph *g, Expr base, Num e) {
   if (base == g->zero && num_sign(e) > 0) return g->zero;
   Pair room[ROOM];
   Product r = {.c = num_int(1), .p = ROOM_FOR(room)};
-  push_power(g, &r, base, e);
+  expr_push_power(g, &r, base, e);
   return finish_product(g, &r);
 }
 
@@ -461,7 +471,7 @@ Expr expr_rebuild(ExprGraph *g, Expr e, const Expr *args) {
       Product r = {.c = num_int(1), .p = ROOM_FOR(room)};
       for (uint32_t i = 0; i < n; i += 2) {
         if (args[i] == g->zero && num_sign(expr_number(g, args[i + 1])) > 0) return g->zero;
-        push_power(g, &r, args[i], expr_number(g, args[i + 1]));
+        expr_push_power(g, &r, args[i], expr_number(g, args[i + 1]));
       }
       return finish_product(g, &r);
     }

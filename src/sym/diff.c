@@ -55,16 +55,14 @@ static Expr partial_unary(ExprGraph *g, Expr e, Expr x) {
   return g->zero;
 }
 
-/* d(b^x)/db = x b^x / b, d(b^x)/dx = b^x log b. */
+/* d(b^x)/db = x b^(x - 1), which has a value at b = 0; d(b^x)/dx = b^x log b. */
 static Expr partial_pow(ExprGraph *g, Expr e, Expr b, Expr x, uint32_t i) {
-  Expr factor;
   if (i == 0) {
-    Expr inverse = one_over(g, b);
-    factor = expr_mul(g, x, inverse);
-  } else {
-    factor = expr_fn(g, EX_LOG, b);
+    Expr less = expr_sub(g, x, g->one), power = expr_pow(g, b, less);
+    return expr_mul(g, x, power);
   }
-  return expr_mul(g, e, factor);
+  Expr log = expr_fn(g, EX_LOG, b);
+  return expr_mul(g, e, log);
 }
 
 /* atan2(y, x): dy -> x/(x^2 + y^2), dx -> -y/(x^2 + y^2). */

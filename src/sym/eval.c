@@ -34,6 +34,7 @@ struct EvalTape {
   long double *value;
   VEC(uint32_t) arg;
   VEC(Num) number;
+  int narrow;     /* factors and their products have the range of doubles */
   uint32_t *root; /* places; UINT32_MAX for a root that is none */
   SymId changed;  /* the symbol that `follows` is about */
   uint8_t *follows;
@@ -44,6 +45,7 @@ static long double pairs_value(const EvalTape *t, const Step *o) {
   for (uint32_t i = o->first; i < o->first + o->n; i++) {
     long double x = t->value[t->arg.at[i]];
     if (o->op == EX_SUM) r += number(t->number.at[i]) * x;
+    else if (t->narrow) r = (double)(r * (double)power(x, t->number.at[i]));
     else r *= power(x, t->number.at[i]);
   }
   return r;
@@ -136,6 +138,16 @@ static void read_roots(const EvalTape *t, long double *out) {
 
 void eval_run(EvalTape *t, const long double *symbols, long double *out) {
   for (uint32_t i = 0; i < t->n; i++) t->value[i] = step_value(t, &t->step[i], symbols);
+  read_roots(t, out);
+}
+
+void eval_run_double(EvalTape *t, long double (*symbol)(SymId s, const void *data), const void *data, long double *out) {
+  t->narrow = 1;
+  for (uint32_t i = 0; i < t->n; i++) {
+    const Step *o = &t->step[i];
+    t->value[i] = (double)(o->op == EX_SYM ? symbol(o->symbol, data) : step_value(t, o, NULL));
+  }
+  t->narrow = 0;
   read_roots(t, out);
 }
 

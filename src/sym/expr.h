@@ -7,9 +7,11 @@
  *   - a product holds no number except roots of numbers: 3*x is a SUM of one pair (x, 3);
  *   - a sum raised to an integer power is primitive: its coefficients have no common factor, and
  *     the first is positive;
- *   - sin^2 u + cos^2 u with equal cofactors is 1, and 1 - sin^2 u is cos^2 u;
+ *   - sin^2 u + cos^2 u with equal cofactors is 1, and 1 - sin^2 u is cos^2 u; likewise cosh^2 - sinh^2;
+ *   - quotients of hyperbolic functions and exponentials have no infinity above and below: sinh u/cosh u is tanh u, exp(u)/exp(v)
+ *     is exp(u - v), exp(u)/(1 + exp(u)) is 1/(1 + exp(-u));
  *   - odd and even functions take arguments whose first coefficient is positive;
- *   - nothing is distributed except numbers over sums, and nothing crosses a DEF.
+ *   - nothing is distributed except numbers over sums, and sums in which such a quotient would hide; nothing crosses a DEF.
  * The order of ids is the order of creation; a caller that wants the same text everywhere names
  * intermediate results instead of nesting calls (C fixes no order of argument evaluation).
  *

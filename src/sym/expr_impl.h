@@ -45,6 +45,38 @@ struct ExprGraph {
   Expr zero, one, minus_one;
 };
 
+/* A list of (node, number) pairs under construction: terms with coefficients, bases with exponents. */
+typedef struct {
+  Expr node;
+  Num number;
+} Pair;
+
+typedef VEC(Pair) Pairs;
+
+/* Room for the pairs of most sums and products, in the frame of the function that builds one. */
+enum { ROOM = 8 };
+#define ROOM_FOR(room) {(room), 0, ROOM}
+
+/* A product under construction: number times factors. */
+typedef struct {
+  Num c;
+  Pairs p;
+} Product;
+
+/* Multiplies r by base^e. */
+void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e);
+
+/* quotient.c: one use of sinh/cosh = tanh, exp(u)/exp(v) = exp(u - v) or exp(u)/(1 + exp(u)) = 1/(1 + exp(-u)) among
+ * the factors of r. Returns 1 when something changed. */
+int expr_use_quotient(ExprGraph *g, Product *r);
+
+/* cosh(u) of the sum 1 - tanh(u)^2 = 1/cosh(u)^2, which rounds to 0 where u > 19; otherwise 0. */
+Expr expr_cosh_of_tanh(ExprGraph *g, Expr sum);
+
+/* The factor T of exp(u)*T or T/S that is to be distributed, so that each exp(u) meets the sums with exp(u) that it is divided by;
+ * r->p.n: none. */
+uint32_t expr_mixed_sum(const ExprGraph *g, const Product *r);
+
 /* The node with these parts, new or found. The caller guarantees that it is canonical. */
 Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
 

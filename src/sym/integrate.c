@@ -69,7 +69,7 @@ static int times_gen(Normal *n, const Task *t, Product *p, GenId x, int32_t exp)
     case GEN_SYMBOL: p->power += exp; return exp <= MAX_POWER && exp >= -MAX_POWER;
     case GEN_POWER: return times_power(t, p, &gen, exp);
     case GEN_SIN: case GEN_COS: {
-      Expr u = expr_arg(t->g, gen.expr, 0);
+      Expr u = n->atoms.at[gen.atom].u;
       int good = exp > 0 && is_linear(t, u);
       for (int32_t i = 0; i < exp && good; i++) good = times_circular(n, &p->harmonics, u, gen.kind == GEN_SIN);
       return good;

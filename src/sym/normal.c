@@ -9,6 +9,8 @@ Normal *normal_new(ExprGraph *g, Arena *a, NormalLimits limits) {
   n->ring = poly_ring(a, limits.max_terms, limits.max_work);
   n->ring->residues = limits.residues;
   n->shallow = limits.shallow;
+  n->proof = limits.proof;
+  n->keep_range = limits.keep_range;
   n->field = frac_field(n->ring);
   n->canonical = 1;
   n->index = expr_map(a);
@@ -165,23 +167,29 @@ static Frac circular_fn(Normal *n, Expr e, Frac u) {
   return frac_mul(n->field, cs.sin, inverse);
 }
 
-/* sqrt(a^2 + b^2); with b 0, |a|. */
-static Frac length_frac(Normal *n, Frac a, Frac b) {
-  Frac aa = frac_mul(n->field, a, a), bb = frac_mul(n->field, b, b);
-  Frac sum = frac_add(n->field, aa, bb);
-  return normal_pow_num(n, sum, num_ratio(1, 2));
+/* For proofs: min and max by (a + b -+ |a - b|)/2. */
+static Frac extreme_frac(Normal *n, ExprOp op, Frac a, Frac b) {
+  Frac sum = frac_add(n->field, a, b), gap = frac_sub(n->field, a, b), size = normal_hypot(n, gap, frac_poly(poly_zero()), 0);
+  return half_sum(n, sum, op == EX_MIN ? frac_neg(n->field, size) : size);
 }
 
-/* An odd function that is not understood: f(-u) = -f(u) by the sign of the first coefficient. */
-static Frac odd_opaque(Normal *n, Expr e, Frac u) {
+/* An odd or even function that is not understood: f(-u) = -f(u) or f(u) by the sign of the first coefficient. */
+static Frac signed_opaque(Normal *n, Expr e, Frac u, int odd) {
   ExprOp op = expr_op(n->g, e);
+  if (u.num.n == 0 && odd) return u;
   if (u.num.n == 0 || num_sign(u.num.at[0].c) > 0) return opaque(n, op, &u, 1, e);
   Frac turned = frac_neg(n->field, u);
-  Frac f = opaque(n, op, &turned, 1, expr_neg(n->g, e));
-  return frac_neg(n->field, f);
+  Frac f = opaque(n, op, &turned, 1, odd ? expr_neg(n->g, e) : e);
+  return odd ? frac_neg(n->field, f) : f;
+}
+
+Frac normal_opaque_log(Normal *n, Frac u) {
+  Expr of = normal_expr(n, u), e = expr_fn(n->g, EX_LOG, of);
+  return opaque(n, EX_LOG, &u, 1, e);
 }
 
 static Frac log_frac(Normal *n, Expr e, Frac u) {
+  if (n->proof) return normal_log(n, u);
   if (u.den == 0 && u.num.n == 1 && u.num.at[0].mono == 0 && num_is_one(u.num.at[0].c)) return frac_poly(poly_zero());
   return opaque(n, EX_LOG, &u, 1, e);
 }
@@ -207,14 +215,15 @@ static Frac convert(Normal *n, Expr e) {
     case EX_PROD: return prod_frac(n, e);
     case EX_POW: return normal_power(n, u, value_of(n, expr_arg(g, e, 1)));
     case EX_SIN: case EX_COS: case EX_TAN: return circular_fn(n, e, u);
-    case EX_SINH: case EX_COSH: case EX_TANH: return hyperbolic(n, op, u);
+    case EX_SINH: case EX_COSH: case EX_TANH: return n->keep_range ? signed_opaque(n, e, u, op != EX_COSH) : hyperbolic(n, op, u);
     case EX_EXP: return normal_exp(n, u);
     case EX_CBRT: return normal_pow_num(n, u, num_ratio(1, 3));
-    case EX_ABS: return length_frac(n, u, frac_poly(poly_zero()));
-    case EX_HYPOT: return length_frac(n, u, value_of(n, expr_arg(g, e, 1)));
-    case EX_ASIN: case EX_ATAN: case EX_SIGN: return odd_opaque(n, e, u);
+    case EX_ABS: return normal_hypot(n, u, frac_poly(poly_zero()), e);
+    case EX_HYPOT: return normal_hypot(n, u, value_of(n, expr_arg(g, e, 1)), e);
+    case EX_ASIN: case EX_ATAN: case EX_SIGN: return signed_opaque(n, e, u, 1);
     case EX_LOG: return log_frac(n, e, u);
-    case EX_ACOS: case EX_ATAN2: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ:
+    case EX_MIN: case EX_MAX: return n->proof ? extreme_frac(n, op, u, value_of(n, expr_arg(g, e, 1))) : opaque_fn(n, e);
+    case EX_ACOS: case EX_ATAN2: case EX_LT: case EX_LE: case EX_EQ:
     case EX_NOT: case EX_AND: case EX_OR: case EX_SELECT: return opaque_fn(n, e);
     case EX_COUNT: break;
   }

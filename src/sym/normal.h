@@ -11,7 +11,8 @@
  *     multiples in the problem are whole is a base angle, with the relation s^2 = 1 - c^2; whole
  *     multiples and sums follow from the addition theorems. Multiples of pi are exact where the
  *     values are square roots;
- *   - exp u, cosh u, b^u likewise, with one generator each that may have negative exponents;
+ *   - exp u, cosh u, b^u likewise, with one generator each that may have negative exponents; or, for forms that are evaluated, with
+ *     hyperbolic functions as they are and exp of a sum as one generator: quotients of exponentials overflow where tanh does not;
  *   - u^(1/k): x with x^k = u; numbers and factors known to be positive are taken out of the root.
  *     |u| is the square root of u^2, hypot(u, v) of u^2 + v^2;
  *   - everything else is one generator for equal normal forms of the arguments. So is a number that
@@ -26,6 +27,8 @@ typedef struct {
   uint32_t max_terms; /* of one polynomial */
   uint64_t max_work;  /* products of terms */
   int shallow;        /* a definition is a generator of its own: what it stands for is not looked at */
+  int proof;          /* logarithms, powers and roots of squares are taken apart as far as signs allow: what is left is not for people */
+  int keep_range;     /* hyperbolic functions and exp of sums are not taken apart: for forms that are evaluated */
   int residues;       /* numbers that 64 bits do not hold are coefficients, with their residues: for proofs that something is 0 */
 } NormalLimits;
 
@@ -39,14 +42,15 @@ typedef struct {
   Frac arg;      /* OPAQUE: the first argument */
 } GenInfo;
 
-/* A base angle, or what is exponentiated: unit * mono / den. */
+/* A base angle, or what is exponentiated: unit * part / den. */
 typedef struct {
   PolyId base_num; /* b of b^u as a fraction; both 0: exp u; base_num GEN_NONE: an angle */
   DenId base_den;
-  MonoId mono;
+  PolyId part;   /* of one term, unless keep_range is set */
   DenId den;
   Num unit;      /* the greatest common divisor of the coefficients met */
-  int made;      /* whether the generators below exist */
+  int made;      /* whether what follows exists */
+  Expr u;        /* unit * part / den, with its sign: sine and cosine nodes hold u or -u */
   GenId cos, sin; /* powers: cos only */
 } Atom;
 
@@ -60,7 +64,7 @@ typedef struct {
   PolyRing *ring;
   FracField *field;
   int canonical;
-  int shallow;
+  int shallow, keep_range, proof;
   int restart; /* a unit became finer: what was computed with the old one must be redone */
   VEC(GenInfo) gens;
   VEC(Atom) atoms;

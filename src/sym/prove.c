@@ -3,7 +3,7 @@
 #include <float.h>
 #include <math.h>
 
-NormalLimits prove_limits(void) { return (NormalLimits){.max_terms = 20000, .max_work = 2000000}; }
+NormalLimits prove_limits(void) { return (NormalLimits){.max_terms = 20000, .max_work = 2000000, .proof = 1}; }
 
 enum { STATES = 8 };
 
@@ -47,7 +47,7 @@ static void zero_work(Arena *scratch, void *data) {
   else if (n->canonical && !t->limits.residues) t->verdict = PROVED_NONZERO;
 }
 
-Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits) {
+static Verdict zero_by_form(ExprGraph *g, Expr e, const NormalLimits *limits) {
   if (e == 0 || expr_is_zero(g, e)) return PROVED_ZERO;
   ZeroTask t = {.g = g, .e = e, .limits = limits ? *limits : prove_limits()};
   normal_with_scratch(g, zero_work, &t);
@@ -55,7 +55,12 @@ Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits) {
     t.limits.residues = 1;
     normal_with_scratch(g, zero_work, &t);
   }
-  return t.verdict != NOT_DECIDED ? t.verdict : nonzero_by_value(g, e);
+  return t.verdict;
+}
+
+Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits) {
+  Verdict v = zero_by_form(g, e, limits);
+  return v != NOT_DECIDED ? v : nonzero_by_value(g, e);
 }
 
 /* --- the block of a linear system that an expression needs --- */
@@ -163,7 +168,7 @@ static Expr solved(const System *s, Expr (*quotient)(ExprGraph *g, Expr f, Expr 
 static Verdict diagonal_verdict(const System *s) {
   if (!is_diagonal(s) || !is_polynomial(s)) return NOT_DECIDED;
   if (expr_is_zero(s->g, solved(s, expr_div))) return PROVED_ZERO;
-  return prove_zero(s->g, solved(s, split_quotient), &s->limits);
+  return zero_by_form(s->g, solved(s, split_quotient), &s->limits);
 }
 
 /* --- Cramer's rule --- */
@@ -300,84 +305,12 @@ static void solves_work(Arena *scratch, void *data) {
   else if (n->canonical) s->verdict = PROVED_NONZERO;
 }
 
-/* --- the system by value --- */
-
-/* Gauss-Jordan with row exchange on A (n rows of 2n + 1: M, f, identity); 0 when singular.
- * Afterwards column n is the solution and the rest the inverse. */
-static int eliminate(uint32_t n, long double *A) {
-  uint32_t w = 2 * n + 1;
-  for (uint32_t c = 0; c < n; c++) {
-    uint32_t best = c;
-    for (uint32_t i = c; i < n; i++)
-      if (fabsl(A[i * w + c]) > fabsl(A[best * w + c])) best = i;
-    if (!(fabsl(A[best * w + c]) > 0) || !isfinite(A[best * w + c])) return 0;
-    for (uint32_t k = 0; k < w; k++) {
-      long double swap = A[best * w + k];
-      A[best * w + k] = A[c * w + k];
-      A[c * w + k] = swap;
-    }
-    for (uint32_t i = 0; i < n; i++) {
-      long double ratio = A[i * w + c] / A[c * w + c];
-      for (uint32_t k = 0; i != c && k < w; k++) A[i * w + k] -= ratio * A[c * w + k];
-    }
-    for (uint32_t k = w; k-- > 0;) A[c * w + k] /= A[c * w + c];
-  }
-  return 1;
-}
-
-/* Puts the solution at this state into symbols, with error bounds from the condition number
- * (Higham 2002, section 7.1). Returns 0 when the system is singular or badly conditioned. */
-static int solve_at(const System *s, long double *symbols, long double *errors) {
-  uint32_t n = s->n, w = 2 * n + 1;
-  Arena *a = expr_arena(s->g);
-  long double *M = ARENA_ARRAY(a, long double, n * n), *A = ARENA_ARRAY(a, long double, n * w);
-  long double entry_error = 0, size = 0, inverse = 0, bound;
-  for (uint32_t i = 0; i < n; i++) {
-    for (uint32_t k = 0; k < n; k++) {
-      M[i * n + k] = prove_value(s->g, s->M[i * n + k], symbols, NULL, &bound);
-      A[i * w + k] = M[i * n + k];
-      size += fabsl(M[i * n + k]);
-      entry_error += bound;
-    }
-    A[i * w + n] = prove_value(s->g, s->f[i], symbols, NULL, &bound);
-    entry_error += bound;
-    A[i * w + n + 1 + i] = 1;
-  }
-  if (!eliminate(n, A)) return 0;
-  long double largest = 1;
-  for (uint32_t i = 0; i < n; i++) {
-    for (uint32_t k = 0; k < n; k++) inverse += fabsl(A[i * w + n + 1 + k]);
-    if (fabsl(A[i * w + n]) > largest) largest = fabsl(A[i * w + n]);
-  }
-  long double error = 16 * inverse * (entry_error + (long double)n * LDBL_EPSILON * size) * largest;
-  for (uint32_t i = 0; i < n; i++) {
-    symbols[s->acc[i]] = A[i * w + n];
-    errors[s->acc[i]] = error;
-  }
-  return isfinite(error) && inverse * size < 1e8L;
-}
-
-static Verdict system_nonzero_by_value(const System *s) {
-  Arena *a = expr_arena(s->g);
-  uint32_t count = expr_symbol_count(s->g) + 1;
-  long double *symbols = ARENA_ARRAY(a, long double, count), *errors = ARENA_ARRAY(a, long double, count);
-  for (uint32_t seed = 1; seed <= 2 * STATES; seed++) {
-    long double bound;
-    if (seed <= STATES) prove_state(s->g, seed, symbols);
-    else prove_state_wide(s->g, seed, symbols);
-    if (!solve_at(s, symbols, errors)) continue;
-    long double value = prove_value(s->g, s->e, symbols, errors, &bound);
-    if (clearly_nonzero(value, bound)) return PROVED_NONZERO;
-  }
-  return NOT_DECIDED;
-}
-
 Verdict prove_solves(ExprGraph *g, uint32_t n, const Expr *M, const Expr *f, const SymId *acc, Expr e,
                      const NormalLimits *limits) {
   System s = take_block(g, n, M, f, acc, e);
-  if (s.n == 0) return prove_zero(g, e, limits);
+  if (s.n == 0) return zero_by_form(g, e, limits);
   s.limits = limits ? *limits : prove_limits();
   s.verdict = diagonal_verdict(&s);
   if (s.verdict == NOT_DECIDED && s.n <= MAX_BLOCK) normal_with_scratch(g, solves_work, &s);
-  return s.verdict != NOT_DECIDED ? s.verdict : system_nonzero_by_value(&s);
+  return s.verdict;
 }

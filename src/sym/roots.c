@@ -34,8 +34,7 @@ int normal_gen_positive(const Normal *n, GenId x) {
   return expr_sign(n->g, info->expr) == SIGN_POSITIVE;
 }
 
-/* All terms positive, by their coefficients, even powers and positive generators. */
-static int plainly_positive(const Normal *n, Poly p) {
+int normal_poly_positive(const Normal *n, Poly p) {
   for (uint32_t i = 0; i < p.n; i++) {
     if (num_sign(p.at[i].c) < 0) return 0;
     const Mono *m = mono_at(n->ring, p.at[i].mono);
@@ -47,13 +46,66 @@ static int plainly_positive(const Normal *n, Poly p) {
 
 /* |p| for a polynomial that may be negative: the square root of p^2. */
 static Frac size_of(Normal *n, Poly p) {
-  if (plainly_positive(n, p)) return frac_poly(p);
+  if (normal_poly_positive(n, p)) return frac_poly(p);
   Poly square = poly_mul(n->ring, p, p);
   Expr plain = normal_poly_expr(n, p);
   Expr size = expr_fn(n->g, EX_ABS, plain);
   if (n->ring->status != POLY_OK) return frac_poly(p);
   GenId x = root_gen(n, square, 2, size);
   return gen_power(n, x, 1);
+}
+
+/* --- squares --- */
+
+/* The term whose monomial is last in the lexical order of exponents, latest generators first. */
+static Term leading(const PolyRing *r, Poly p) {
+  Term best = p.at[0];
+  for (uint32_t i = 1; i < p.n; i++) {
+    const Mono *a = mono_at(r, p.at[i].mono), *b = mono_at(r, best.mono);
+    uint32_t x = a->n, y = b->n;
+    while (x && y && a->at[x - 1].gen == b->at[y - 1].gen && a->at[x - 1].exp == b->at[y - 1].exp) x--, y--;
+    GenId from_a = x ? a->at[x - 1].gen : 0, from_b = y ? b->at[y - 1].gen : 0;
+    int32_t ea = x ? a->at[x - 1].exp : 0, eb = y ? b->at[y - 1].exp : 0;
+    int above = !y ? ea > 0 : !x ? eb < 0 : from_a == from_b ? ea > eb : from_a > from_b ? ea > 0 : eb < 0;
+    if (above) best = p.at[i];
+  }
+  return best;
+}
+
+/* q with q^2 = p, term by term; 0 where there is none. */
+static int square_root(PolyRing *r, Poly p, Poly *q) {
+  enum { TERMS_MOST = 32 };
+  Term first = leading(r, p);
+  int exact;
+  Num c = num_pow(first.c, num_ratio(1, 2), &exact);
+  if (num_sign(first.c) < 0 || !exact) return 0;
+  Mono mono = *mono_at(r, first.mono);
+  MonoPow *half = ARENA_ARRAY(r->arena, MonoPow, mono.n + 1);
+  for (uint32_t i = 0; i < mono.n; i++) {
+    if (mono.at[i].exp % 2) return 0;
+    half[i] = (MonoPow){mono.at[i].gen, mono.at[i].exp / 2};
+  }
+  MonoId root = mono_of(r, half, mono.n);
+  for (uint32_t i = 0; i < mono.n; i++) half[i].exp = -half[i].exp;
+  MonoId inverse = mono_of(r, half, mono.n);
+  Num twice = num_div(num_ratio(1, 2), c);
+  *q = poly_mono(r, c, root);
+  for (int i = 0; i < TERMS_MOST && r->status == POLY_OK; i++) {
+    Poly rest = poly_sub(r, p, poly_mul(r, *q, *q));
+    if (!rest.n) return 1;
+    Term t = leading(r, rest);
+    *q = poly_add(r, *q, poly_mono(r, num_mul(t.c, twice), mono_mul(r, t.mono, inverse)));
+  }
+  return 0;
+}
+
+/* Relations between generators hide squares, but a root that is found is one. */
+int normal_positive_root(Normal *n, Poly p, Poly *q) {
+  enum { FEW = 40 };
+  if (!n->proof || p.n > FEW || !p.n) return 0;
+  for (uint32_t i = 0; i < p.n; i++)
+    if (mono_at(n->ring, p.at[i].mono)->reducible != GEN_NONE) return 0;
+  return square_root(n->ring, p, q) && normal_poly_positive(n, *q);
 }
 
 /* Floor division of e by k: e = k*q + rest with 0 <= rest < k. */
@@ -154,6 +206,8 @@ static Frac poly_root(Normal *n, Poly p, int32_t k) {
   if (negative && k % 2 == 1) f = frac_neg(n->field, f);
   rest = poly_mul_mono(r, rest, num_int(negative && k % 2 == 0 ? -1 : 1), left);
   if (poly_is_one(rest) || r->status != POLY_OK) return f;
+  Poly q;
+  if (k == 2 && normal_positive_root(n, rest, &q)) return frac_mul(n->field, f, frac_poly(q));
   GenId x = root_gen(n, rest, k, 0);
   Frac root = gen_power(n, x, 1);
   return frac_mul(n->field, f, root);
@@ -186,4 +240,11 @@ Frac normal_pow_num(Normal *n, Frac a, Num e) {
   }
   if (e.den != 1) a = frac_root(n, a, (int32_t)e.den);
   return frac_pow(n->field, a, (int32_t)e.num);
+}
+
+Frac normal_hypot(Normal *n, Frac a, Frac b, Expr e) {
+  Frac aa = frac_mul(n->field, a, a), bb = frac_mul(n->field, b, b);
+  Frac sum = frac_add(n->field, aa, bb);
+  if (!n->keep_range || sum.den || sum.num.n < 2 || n->ring->status != POLY_OK) return normal_pow_num(n, sum, num_ratio(1, 2));
+  return gen_power(n, root_gen(n, sum.num, 2, e), 1);
 }

@@ -6,8 +6,11 @@
  * parameters; then functions of the state with the same parameter factor are collected. */
 #include "sym/simplify.h"
 
+#include <math.h>
 #include <stdlib.h>
 
+#include "sym/eval.h"
+#include "sym/prove.h"
 #include "sym/trigform.h"
 
 enum { MAX_TERMS = 2000, MAX_WORK = 200000 };
@@ -295,12 +298,49 @@ typedef struct {
 
 static void work(Arena *scratch, void *data) {
   Task *t = data;
-  Normal *n = normal_new(t->g, scratch, (NormalLimits){.max_terms = MAX_TERMS, .max_work = MAX_WORK, .shallow = t->shallow});
+  Normal *n = normal_new(t->g, scratch, (NormalLimits){.max_terms = MAX_TERMS, .max_work = MAX_WORK, .shallow = t->shallow, .keep_range = 1});
   Frac f;
   if (normal_run(n, &t->e, 1, &f) != POLY_OK) return;
   Frac smaller = frac_cancel(n->field, f);
   Expr e = frac_expr(n, smaller);
   if (n->ring->status == POLY_OK) t->result = e;
+}
+
+/* --- range --- */
+
+static int can_overflow(ExprOp op) {
+  return op == EX_EXP || op == EX_SINH || op == EX_COSH || op == EX_TANH || op == EX_POW;
+}
+
+typedef struct {
+  const ExprGraph *g;
+  uint32_t seed;
+  long double scale;
+} FarState;
+
+static long double far_symbol(SymId s, const void *data) {
+  const FarState *at = data;
+  SymKind kind = expr_symbol(at->g, s)->kind;
+  int moves = kind == SYM_COORD || kind == SYM_STATE || kind == SYM_TIME || kind == SYM_VEL;
+  return prove_symbol(at->g, s, at->seed) * (moves ? at->scale : 1);
+}
+
+/* Whether `after` has a value wherever `before` has one, in the range of doubles: looked at near and far from the origin. */
+static int keeps_range(ExprGraph *g, Expr before, Expr after) {
+  static const long double scales[] = {1, 20, 60, 180, 400, 700, 2000, 20000};
+  enum { SCALES = sizeof scales / sizeof *scales, SEEDS = 3 };
+  Expr both[2] = {before, after};
+  ExprList nodes = expr_topo(g, both, 2);
+  int risky = 0;
+  for (uint32_t i = 0; i < nodes.n; i++) risky |= can_overflow(expr_op(g, nodes.at[i]));
+  EvalTape *t = risky ? eval_tape(g, both, 2) : NULL;
+  for (uint32_t k = 0; risky && k < SCALES * SEEDS; k++) {
+    FarState at = {.g = g, .seed = 1 + k, .scale = scales[k / SEEDS]};
+    long double value[2];
+    eval_run_double(t, far_symbol, &at, value);
+    if (isfinite(value[0]) && !isfinite(value[1])) return 0;
+  }
+  return 1;
 }
 
 static Expr shorter(ExprGraph *g, Expr e, int shallow) {
@@ -317,15 +357,18 @@ static int has_definitions(ExprGraph *g, Expr e) {
   return 0;
 }
 
+/* The new form where it keeps the range of the old one. */
+static Expr taken(ExprGraph *g, Expr e, Expr s) { return s == e || keeps_range(g, e, s) ? s : e; }
+
 Expr simplify(ExprGraph *g, Expr e) {
   Expr s = shorter(g, e, 0);
   uint32_t before = expr_ops(g, &e, 1), after = expr_ops(g, &s, 1);
-  if (after == before) return has_definitions(g, e) ? s : e;
-  return after < before ? s : e;
+  if (after > before || (after == before && !has_definitions(g, e))) return e;
+  return taken(g, e, s);
 }
 
 Expr simplify_shallow(ExprGraph *g, Expr e) {
   Expr s = shorter(g, e, 1);
   uint32_t before = expr_ops_shallow(g, e), after = expr_ops_shallow(g, s);
-  return after < before ? s : e;
+  return after < before ? taken(g, e, s) : e;
 }

@@ -260,8 +260,7 @@ static Expr direction_expr(Normal *n, const Spectrum *s, MonoId direction) {
   for (uint32_t i = 0; i < s->angles.n; i++) {
     int32_t k = mono_exp(n->ring, direction, s->first_z + i);
     if (!k) continue;
-    Expr cos = n->gens.at[n->atoms.at[s->angles.at[i]].cos].expr;
-    term[count++] = expr_scale(n->g, num_int(k), expr_arg(n->g, cos, 0));
+    term[count++] = expr_scale(n->g, num_int(k), n->atoms.at[s->angles.at[i]].u);
   }
   return expr_add_n(n->g, term, count);
 }

@@ -2,6 +2,7 @@
  *
  * In: a source. Out: its statements in the Ast, messages in ast->diags.
  * Must hold: the parser's stack, the only memory outside the arena, is freed on every way out. */
+#include "base/visible.h"
 #include "syntax/parse_state.h"
 
 void parse_done_file(Parse *cx, StmtList stmts) { cx->stmts = stmts; }
@@ -28,6 +29,20 @@ static void push_tokens(Parse *cx, TokKind begin) {
   } while (1);
 }
 
+/* Characters that do not show, or show others elsewhere than they stand, are mistakes wherever they are, in comments and texts, too: what a reader
+ * sees is what is compiled (N. Boucher, R. Anderson, "Trojan Source", arXiv:2111.00169). The first one, where nothing else is wrong. */
+static void report_hidden(Ast *ast, const Source *source) {
+  unsigned long code;
+  for (size_t at = 0, len; at < source->len; at += len) {
+    const char *s = source->text + at;
+    len = utf8_at(s, source->len - at, &code);
+    if (!is_hidden(code) || *s == '\t' || *s == '\n' || (*s == '\r' && (at + 1 == source->len || s[1] == '\n'))) continue;
+    uint32_t begin = source->base + (uint32_t)at;
+    diag_error(ast->diags, (Span){begin, begin + (uint32_t)len}, "a character that does not show, U+%04X, stands here; remove it", (unsigned)code);
+    return;
+  }
+}
+
 /* Parses one text. When memory runs out, the stack is freed and the failure goes on to whoever
  * guarded the arena before. */
 static void run(Parse *cx, Ast *ast, const Source *source, TokKind begin) {
@@ -42,7 +57,9 @@ static void run(Parse *cx, Ast *ast, const Source *source, TokKind begin) {
   Scan *scan = scan_new(ast->arena, ast->names, source);
   cx->filter = filter_new(scan, begin == TOK_BEGIN_EXPR);
   parse_open(cx);
+  uint32_t errors = ast->diags->errors;
   push_tokens(cx, begin);
+  if (ast->diags->errors == errors) report_hidden(ast, source);
   parse_close(cx);
   arena_guard(ast->arena, outer);
 }

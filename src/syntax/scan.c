@@ -217,7 +217,8 @@ int scan_bracket(Scan *s, Token *t, const char *text, int n) {
     return 1;
   }
   if (text[n - 1] != ']') {
-    bad(s, t, 0, 1, "the `]` of this unit is missing",
+    if (s->source->text[s->begin - s->source->base + (uint32_t)n] == '[') bad(s, t, 0, 1, "a `[` that touches no name begins a unit, and a unit contains no `[`", LIST_IS_WRITTEN);
+    else bad(s, t, 0, 1, "the `]` of this unit is missing",
         "a unit stands on one line: `[m/s^2]`; an index touches its name: `x[i]`");
     return n;
   }
@@ -235,5 +236,6 @@ int scan_strange(Scan *s, Token *t, const char *text, int n) {
                "save the file as UTF-8");
   if (c < 0x20 || c == 0x7F)
     return bad(s, t, 0, 1, arena_printf(s->arena, "a control character (0x%02X)", c), NULL);
-  return bad(s, t, 0, 1, arena_printf(s->arena, "`%c` is not a sign of this language", c), NULL);
+  return bad(s, t, 0, 1, arena_printf(s->arena, "`%c` is not a sign of this language", c),
+             c == '\\' ? "this is no LaTeX: write `x'` for \\dot{x}, `x''` for \\ddot{x}, `a/b` for \\frac{a}{b}, `theta` or `θ` for \\theta" : NULL);
 }

@@ -33,6 +33,9 @@ int scan_advice(Scan *s, Token *t, const char *text, int n, const char *write);
 void scan_open(Scan *s);
 void scan_lex(Scan *s, Token *t);
 
+/* Where brackets were meant for a list. */
+#define LIST_IS_WRITTEN "a list is written `{1, 2}`, a matrix as a list of its rows: `param K[2,2] = {{2, 0.5}, {0.5, 1}}`"
+
 /* The text of a unit, without brackets, that begins at offset `begin`. 1 on success; on failure
  * the token becomes BAD with the place and the message. (unit.c) */
 int unit_parse(Scan *s, Token *t, const char *text, uint32_t n, uint32_t begin);

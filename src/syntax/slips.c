@@ -152,7 +152,6 @@ static const char *unexpected_assign(const Parse *cx, const TokKind *set, int n)
   if (has(set, n, TOK_EQ)) return "write `==` to compare";
   if (has(set, n, TOK_IN)) return "a range is written `i in 1..N`";
   if (word == TOK_COORD || word == TOK_STATE) return "where it starts stands in a scene: `start x = …`";
-  if (word == TOK_CONSTRAINT && has(set, n, TOK_COLON)) return "this statement needs a name: `constraint NAME: a = b`";
   return NULL;
 }
 
@@ -162,11 +161,34 @@ static const char *unexpected_comparison(const Parse *cx, const TokKind *set, in
   return has(set, n, TOK_AND) ? "comparisons do not chain: write `a < b and b < c`" : NULL;
 }
 
+/* `constraint x^2 + y^2 = l^2`: the name is missing. */
+static const char *missing_name(const Parse *cx, const TokKind *set, int n) {
+  TokKind word = cx->filter->word;
+  if (cx->before.kind != word && (!has(set, n, TOK_COLON) || has(set, n, TOK_TIMES))) return NULL;
+  switch (word) {
+    case TOK_CONSTRAINT: return "a constraint has a name: `constraint NAME: x^2 + y^2 = l^2`";
+    case TOK_CONTACT: return "a contact has a name: `contact NAME: y >= 0, restitution = 0.5`";
+    case TOK_EVENT: return "an event has a name: `event NAME: x - 1 rising { … }`";
+    default: return NULL;
+  }
+}
+
+/* Behind the gap of a contact. */
+static const char *after_gap(const Parse *cx, const TokKind *set, int n) {
+  TokKind t = cx->current.kind;
+  if (cx->filter->word != TOK_CONTACT) return NULL;
+  if (has(set, n, TOK_RESTITUTION) || (t == TOK_COMMA && has(set, n, TOK_END)))
+    return "a contact has a restitution and nothing else, `contact NAME: y >= 0, restitution = 0.5`; it slides without friction: a `force` or `dissipation` can brake it";
+  return t == TOK_END && has(set, n, TOK_COMMA) ? "a contact has a restitution: `contact NAME: y >= 0, restitution = 0.5`" : NULL;
+}
+
 const char *slip_token(const Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current, *b = &cx->before;
   Arena *a = cx->ast->arena;
   const char *end = missing_end(cx), *comma = end ? end : missing_comma(cx, set, n), *title = comma ? NULL : misshapen_title(cx, set, n);
   if (comma || title) return comma ? comma : title;
+  const char *name = missing_name(cx, set, n), *gap = name ? NULL : after_gap(cx, set, n);
+  if (name || gap) return name ? name : gap;
   if (cx->filter->word == TOK_METHOD && has(set, n, TOK_LPAREN)) return after_method(cx);
   if (cx->filter->word == TOK_MONITOR && !has(set, n, TOK_TIMES) && ends_operand(b) && (token_flags(t->kind) & T_BINARY))
     return "a monitor watches a name, or what stands in parentheses: `monitor (x + y) 1e-6`";

@@ -5,6 +5,9 @@
  *   exponent = integer | "(" integer [ "/" integer ] ")", each with an optional sign
  *
  * `/` divides by the next factor only: J/kg*K is (J/kg)*K. Which names are units is not asked here. */
+#include <string.h>
+
+#include "base/strbuf.h"
 #include "syntax/scan.h"
 
 enum { UNIT_DEPTH = 16, UNIT_EXPONENT = 1000 };
@@ -115,8 +118,20 @@ static int bad_factor(Unit *u) {
   if ((unsigned char)u->text[u->at] >= 0x80)
     while (u->at + len < u->n && ((unsigned char)u->text[u->at + len] & 0xC0) == 0x80) len++;
   const char *message = arena_printf(u->scan->arena, "`%.*s` cannot stand in a unit", (int)len, u->text + u->at);
-  const char *help = u->text[u->at] == '.' ? "factors are joined by `*`: `[N*m]`" : "a unit is written `[kg*m^2/s]`; an index touches its name: `x[i]`";
+  const char *help = u->text[u->at] == '.' ? "factors are joined by `*`: `[N*m]`" : u->text[u->at] == ',' ? LIST_IS_WRITTEN : "a unit is written `[kg*m^2/s]`; an index touches its name: `x[i]`";
   return unit_bad(u, u->at, len, message, help);
+}
+
+/* [°] and [°C] are [deg] and [degC]. */
+static const char *without_degree_sign(const Unit *u, const char *text, uint32_t n) {
+  StrBuf b = strbuf(u->scan->arena);
+  for (uint32_t k = 0; k < n; k++) {
+    int sign = k + 1 < n && memcmp(text + k, "\xC2\xB0", 2) == 0;
+    if (sign) sb_puts(&b, "deg");
+    else sb_putc(&b, text[k]);
+    k += (uint32_t)sign;
+  }
+  return sb_text(&b);
 }
 
 /* A name or 1, with its exponent. */
@@ -128,7 +143,7 @@ static int parse_factor(Unit *u, int divide) {
     if (n > 1 || u->text[at] != '1')
       return unit_bad(u, at, n, "a unit holds no number but 1", "write the number before the unit: `2 [m]`; a power is `m^2`");
   }
-  AstUnitFactor f = {.name = intern_n(u->scan->names, u->text + at, n), .exponent = num_int(1),
+  AstUnitFactor f = {.name = intern(u->scan->names, without_degree_sign(u, u->text + at, n)), .exponent = num_int(1),
                      .span = {u->begin + at, u->begin + at + n}};
   u->at += n;
   vec_push(u->scan->arena, &u->factors, f);
@@ -174,6 +189,6 @@ int unit_parse(Scan *s, Token *t, const char *text, uint32_t n, uint32_t begin) 
   Unit u = {.scan = s, .token = t, .text = text, .n = n, .begin = begin};
   if (!parse_factors(&u)) return 0;
   t->unit = (AstUnit){.at = u.factors.at, .n = u.factors.n, .span = {begin - 1, begin + n + 1},
-                      .text = arena_strndup(s->arena, text, n)};
+                      .text = without_degree_sign(&u, text, n)};
   return 1;
 }

@@ -172,6 +172,25 @@ for pair in 20:0.5 1000:2; do
   row "C compiler, chain of $n" "<= $limit s" "$peer" "$s s" '' "$(at_most "$s" "$limit")"
 done
 
+# ---- growth of lagc check
+# grows WHAT KIND FEW MANY: slopes of the logarithms of CPU time and memory against that of N. Memory is less what lagc needs for N = 1.
+grows() {
+  sh $here/growth_models.sh "$2" 1 >"$TMP/grows.lag"
+  floor=$(kilobytes 1 "$LAGC" check "$TMP/grows.lag")
+  for n in "$3" "$4"; do
+    sh $here/growth_models.sh "$2" "$n" >"$TMP/grows.lag"
+    echo "$n $(seconds 2 "$LAGC" check "$TMP/grows.lag") $(kilobytes 1 "$LAGC" check "$TMP/grows.lag")"
+  done >"$TMP/grown"
+  slopes=$(awk -v floor="$floor" '{ n[NR] = log($1); s[NR] = log($2 + 1e-3); k[NR] = log($3 - floor + 1) }
+    END { d = n[2] - n[1]; printf "%.2f %.2f", (s[2] - s[1])/d, (k[2] - k[1])/d }' "$TMP/grown")
+  most=$(awk 'END { printf "%s s, %d MB", $2, $3/1024 }' "$TMP/grown")
+  row "lagc check, $1, slope of log time against log N, $3 to $4" '<= 1.15' "$most" "${slopes% *}" '' "$(at_most "${slopes% *}" 1.15)"
+  row "lagc check, $1, slope of log memory" '<= 1.15' '' "${slopes#* }" '' "$(at_most "${slopes#* }" 1.15)"
+}
+grows 'N rods' rods 100 800
+grows 'N scenes' scenes 1000 8000
+grows 'N outputs' outputs 10000 100000
+
 # ---- long models: a string, bodies
 long_model() { # WHAT SCENE MODEL PEER.c "PEERS" options...
   what=$1 scene=$2 model=$3 peer=$4 peers=$5

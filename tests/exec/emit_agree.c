@@ -107,7 +107,7 @@ static void take_away_multipliers(const Eqns *e, const Real *symbols, Real *left
   expr_eval(e->g, roots, A->n, symbols, value);
   for (uint32_t i = 0; i < n; i++) K[i * w + i] = 1, x[i] = left[i];
   for (uint32_t k = 0; k < A->n; k++) K[(n + A->at[k].row) * w + A->at[k].col] = K[A->at[k].col * w + n + A->at[k].row] = value[k];
-  dense_solve(w, K, x, 1e-15L, ARENA_ARRAY(arena, uint32_t, w), NULL);
+  dense_solve(arena, w, K, x, 1e-15L, NULL);
   for (uint32_t i = 0; i < n; i++) left[i] = x[i];
 }
 

@@ -105,7 +105,7 @@ check "two words" says 'one word too many: `b`; usage: lagc help [TOPIC]' help a
 m=models/pendulum.lag
 check "a mistyped command" says 'unknown command `rum`: did you mean `run`?' rum $m
 check "no command" says "say what to do with $m: \`lagc run $m\`, \`lagc derive $m\`, \`lagc check $m\`" $m
-check "no model" says 'a model is missing; usage: lagc check MODEL [SCENE] [--allow-numeric]' check
+check "no model" says 'a model is missing; usage: lagc check MODEL [SCENE] [--allow-numeric] [--verbose]' check
 check "an option of another command" says '`--phase` is an option of `lagc plot`; `lagc help run` lists those of `lagc run`' run $m --phase th
 check "a mistyped option of the simulator is said before one is built" says '`lagc run` has no option `--untill`: did you mean `--until`?' run $m --untill 5
 check "one dash" says '`lagc run` has no option `-tol`: did you mean `--tol`?' run $m -tol 1e-9

@@ -33,9 +33,11 @@ says() { # says EXPECTED WORDS ARGS...: and standard error holds the words
   shift 2
   status "$want" "$@" && grep -qF -e "$words" err
 }
-no_part() { ! ls ./*.part 2>/dev/null | grep -q .; }
+no_part() { ! ls ./*.part* 2>/dev/null | grep -q .; }
 
 # --- report, rows
+ok "a name that says another kind of file" says 2 "-o x.h5: it writes CSV, or NumPy where the name ends in .npy; write -o x.csv" -o x.h5
+ok "of a picture" says 2 "--svg x.png: it writes SVG; write --svg x.svg" --svg x.png
 ok "default scene" status 0
 ok "report names scene, method and energy" grep -q "scene drop, method dop853" out
 ok "a model with losses has no energy drift" grep -q "not conserved" out
@@ -96,7 +98,7 @@ ok "a resumed run logs the rest" sh -c 'sed 1d two.csv | cat one.csv - | cmp - e
 ok "and counts the whole" grep -q '"ground": {"count": 8, "first": 0.4515236409857' two.json
 if [ -w /dev/full ]; then
   ok "a log on a full disk" says 2 "cannot write /dev/full" drop --events /dev/full -o rows2.csv
-  ok "leaves no rows either" sh -c '! ls rows2.csv ./*.part 2>/dev/null'
+  ok "leaves no rows either" sh -c '! ls rows2.csv ./*.part* 2>/dev/null'
 fi
 
 # --- JSON
@@ -161,12 +163,12 @@ for o in "rk4(step=nan)" "rk4(step=inf)" "rk4(step=0x1p3)" "rk45(atol=nan)"; do
   ok "$o" says 2 "it is a number" --method "$o"
 done
 ok "a tolerance beyond all numbers" says 2 "must be finite" --method "rk45(atol=1e400)"
-ok "one file for two results" says 2 "written twice" fixed -o same.csv --svg same.csv
-ok "a device is no state" says 2 "cannot read" fixed --resume /dev/zero
+ok "one file for two results" says 2 "written twice" fixed -o same --svg same
+ok "a device is no state" says 2 "is no regular file" fixed --resume /dev/zero
 if [ -w /dev/full ]; then
   ok "a full disk" says 2 "cannot write" drop -o /dev/full
 fi
-ok "nothing is left after mistakes" sh -c '! ls x.svg none 2>/dev/null && ! ls ./*.part 2>/dev/null'
+ok "nothing is left after mistakes" sh -c '! ls x.svg none 2>/dev/null && ! ls ./*.part* 2>/dev/null'
 
 # --- failure keeps rows
 ok "a failing run exits 3" status 3 wall -o wall.csv
@@ -230,7 +232,7 @@ for signal in 'HUP 129' 'TERM 143'; do
   # shellcheck disable=SC2086 # two words
   ok "SIG$signal" interrupt $signal
   ok "it says where, after SIG$signal" grep -q "interrupted at t = " out
-  ok "leaves rows and state, and no .part" sh -c 'test -s long.csv && test -s long.state && ! ls ./*.part'
+  ok "leaves rows and state, and no .part" sh -c 'test -s long.csv && test -s long.state && ! ls ./*.part*'
 done
 ok "Ctrl-C exits 130" interrupt INT 130
 ok "it says where" grep -q "interrupted at t = " out
@@ -254,6 +256,6 @@ ok "half a point" says 2 "two names of outputs" swing --html c.html --points th
 ok "points in two units" says 2 "needs one unit" swing --html c.html --points 't,th'
 ok "html that cannot be written is said before the run" says 2 "cannot write" fixed --until 1e9 --html none/x.html --points th,th
 ok "a failing run leaves its animation up to there" sh -c './sim wall --html d.html --points y,y >/dev/null 2>&1; [ $? = 3 ] && grep -q "</html>" d.html'
-ok "nothing is left after mistakes" sh -c '! ls c.html none ./*.part 2>/dev/null'
+ok "nothing is left after mistakes" sh -c '! ls c.html none ./*.part* 2>/dev/null'
 ok "sketch" sh -c './sim swing --sketch --quiet | grep -q "t \[s\]"'
 echo "1..$n"

@@ -31,7 +31,7 @@ ends() { # ends WITHIN NAME=VALUE... -- ARGS...: a run ends there, on the constr
   done
   shift
   run "$@" --json || return 1
-  within "$(number constraint_residual)" 0 1e-14 && within "$(number constraint_rate_residual)" 0 3e-14 || return 1
+  within "$(number constraint_residual)" 0 1e-14 && within "$(number constraint_rate_residual)" 0 "${rates:-3e-14}" || return 1
   for pair in $wanted; do
     within "$(number "${pair%%=*}")" "${pair#*=}" "$tolerance" || { echo "${pair%%=*}: $(number "${pair%%=*}"), not ${pair#*=}"; return 1; }
   done
@@ -64,12 +64,15 @@ check "dop853 in long double" says 'constraint residual: [0-9.]*e-19, of rates [
 # ---- through positions where all bars lie in one line: b stays 0, the cranks are one pendulum
 for m in rk45 dop853 "variational --step 1e-3" "variational --step 1.1e-2" "verlet4 --step 1e-2"; do
   check "four bars by $m" ends 1e-9 "b\\[1\\]=0" "b\\[2\\]=0" -- $models/four_bars.lag --method $m
-  check "their energy" within "$(number energy_drift)" 0 5e-5 # of order 2 with the larger step
+  check "their energy" within "$(number energy_drift)" 0 2.2e-4 # of order 2: 121 times the 1.5e-6 of the step that is 11 times smaller is 1.8e-4
 done
 
-# 40 in a row, which are so many that they are solved within a band
+# 40 in a row, which are so many that they are solved within a band. Near 10 s all links come to lie on one line: there rates are not corrected along
+# what is left of a constraint, 6e-6 = eps^(1/3) of it, where steps err by 1e-8 (cf. the energy): 6e-14 for each link of 80 at random.
+rates=5e-13
 check "forty four-bars" ends 1e-7 "apart=0" -- tests/hard/cases/mbs_a02_fourbar_N10.lag -D N=40 --method dop853 --tol 1e-10
 check "their energy" within "$(number energy_drift)" 0 1e-8
+rates=
 
 # ---- a tolerance that no step near there can keep: the run passes, or says in seconds where it creeps
 passes_or_says() { # it may pass with another rounding
@@ -200,7 +203,7 @@ cannot() { # cannot WORDS COMMAND...
   [ $? = 2 ] && grep -qF -e "$words" "$TMP/err"
 }
 check "and Lyapunov exponents" cannot 'no tangent of a motion with constraints yet (rod)' lyapunov $models/rod.lag drop
-check "and modes" cannot 'cannot treat constraints yet (rod)' modes $models/rod.lag drop
+check "and modes" cannot 'modes with constraints are not computed yet (rod)' modes $models/rod.lag drop
 check "a step that is too long" sh -c '"$0" run "$1" drop --method variational --step 0.6 2>&1 | grep -qE "no impulse was found.*take smaller steps|the step is too long"' "$LAGC" $models/rod.lag
 check "without a method, one that can is chosen" says 'method dop853' $models/rod.lag drop --tol 1e-12
 

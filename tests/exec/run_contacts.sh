@@ -118,4 +118,35 @@ for method in dop853 verlet; do
   check "a floor that shakes: $method" shaken $method
   check "left where it falls faster" near "$(left)" "$(awk 'BEGIN { x = 9.81/12.8; pi = atan2(0, -1); printf "%.17g", (4*pi + atan2(x, sqrt(1 - x*x)))/8 }')" 1e-9
 done
+
+# ---- the loop at the top of a header, compiled as it stands
+model corner <<'EOF'
+model corner "Pressed into a corner"
+coord x [m], y [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2]
+lagrangian = m/2*(x'^2 + y'^2) - m*g*(x + y)
+contact left: x >= 0, restitution = 0.5
+contact floor: y >= 0, restitution = 0.5
+scene s { start x = 0.3 [m], y = 0.5 [m]; span 3 [s] }
+EOF
+example() { # MODEL SCENE: coordinates and velocities at the end, in $TMP/state
+  "$LAGC" header "$TMP/$1.lag" "$2" -o "$TMP/eg.h" || return 1
+  { printf '#include <stdio.h>\n#define EG_IMPLEMENTATION\n#include "eg.h"\nint main(void) {\n'
+    sed -n '/^ \*   eg_params p;/,/^ \*   printf/s/^ \* //p' "$TMP/eg.h"
+    echo 'for (int i = 0; i < EG_NQ; i++) printf("%.9f %.9f ", s.q[i], s.v[i]);'; echo 'return 0; }'; } >"$TMP/eg.c"
+  "$CC" -std=c99 -Wall -Wextra -Werror -O1 "$TMP/eg.c" -o "$TMP/eg" -lm || return 1
+  timeout 20 "$TMP/eg" | tail -n 1 >"$TMP/state"
+}
+state() { cut -d ' ' -f "$1" "$TMP/state"; }
+check "a header says that contacts are the loop's" sh -c "'$LAGC' header '$TMP/ball.lag' | grep -q 'Contacts: a step knows nothing of them. The loop below calls ball_events, ball_act and ball_hold'"
+check "its loop compiles and runs" example ball drop
+check "the ball bounces to rest" near "$(state 1)" 0 1e-8
+check "at rest" near "$(state 2)" 0 0
+check "while it slides on" near "$(state 3)" 5 1e-2
+check "a ball that is lifted" run ball plastic
+check "in the loop" example ball plastic
+check "leaves as in a run" near "$(state 1)" "$(cell 1 2)" 1e-3
+check "with its speed" near "$(state 2)" "$(cell 1 3)" 1e-2
+check "in a corner" example corner s
+check "it comes to rest, and time goes on" grep -q '^-*0.0000000.. -*0.000000000 -*0.0000000.. -*0.000000000 $' "$TMP/state"
 tap_end

@@ -110,4 +110,33 @@ check 'the model is a folder' refused 2 'cannot read' "$LAGC" check "$dir"
 check 'an unknown scene' refused 1 'unknown scene .nope' "$LAGC" emit "$model" nope -o "$dir/out/file"
 check 'an unknown constant' refused 1 '-D NOPE: the model declares no such constant' "$LAGC" emit "$model" -D NOPE=3 -o "$dir/out/file"
 check 'no -o for build' refused 2 'needs -o' "$LAGC" build "$model"
+# ---- a name that says another kind of file than the command writes ----
+while read -r words; do
+  want=${words##*: } words=${words%%: *}
+  # shellcheck disable=SC2086 # a command and its options
+  check "$words" refused 2 "$want" "$LAGC" ${words%% *} "$model" ${words#* }
+done <<'END'
+run -o x.json: run writes CSV, or NumPy where the name ends in .npy; --json prints the report as JSON; write -o x.csv
+run -o x.h5: write -o x.csv
+run --output=x.svg: --svg FILE draws
+run --svg a.png: write --svg a.svg
+run --html a.svg: write --html a.html
+run --events e.json: write --events e.csv
+plot -o x.html: `lagc animate` writes HTML
+animate -o x.mp4: write -o x.html
+cost -o x.png: write -o x.svg
+lyapunov -o x.json: write -o x.csv
+derive -o x.svg: derive writes text; write -o x
+derive --format latex -o x.c: write -o x.tex
+noether -o x.pdf: noether writes text
+header -o x.c: header writes a C header
+emit -o x.h: `lagc header` writes headers
+build -o x.c: build writes a program
+END
+check 'derive writes LaTeX to .tex' "$LAGC" derive "$model" -o "$dir/eq.tex"
+check 'as --format latex does' sh -c "'$LAGC' derive '$model' --format latex | cmp - '$dir/eq.tex'"
+check 'noether writes JSON to .json' "$LAGC" noether "$model" -o "$dir/q.json"
+check 'as --format json does' sh -c "'$LAGC' noether '$model' --format json | cmp - '$dir/q.json'"
+check 'a suffix that nobody knows' "$LAGC" run "$model" --quiet -o "$dir/rows.dat"
+check 'NumPy in capitals' sh -c "'$LAGC' run '$model' --quiet -o '$dir/rows.NPY' && head -c 6 '$dir/rows.NPY' | grep -q NUMPY"
 tap_end

@@ -106,11 +106,11 @@ near "a simulator keeps the table it was built with" 1e-12 2 \
 near "lagc run reads it again" 1e-12 4 "$(last "$dir/whole.lag" --until 2)"
 cp "$dir/parts/data/two.csv" "$dir/two.before"
 for command in emit header build; do
-  check "$command: a table is not overwritten" says 2 "would be overwritten: it is a part of the model" \
+  check "$command: a table is not overwritten" says 2 "two.csv: $command writes" \
     "$LAGC" $command "$dir/whole.lag" -o "$dir/parts/data/two.csv"
 done
 check "run: a table is not overwritten" says 2 "would be overwritten" "$LAGC" run "$dir/whole.lag" -o "$dir/parts/data/two.csv"
-check "nor by --svg=" says 2 "would be overwritten" "$LAGC" run "$dir/whole.lag" "--svg=$dir/parts/data/two.csv"
+check "nor by --svg=" says 2 "--svg writes SVG" "$LAGC" run "$dir/whole.lag" "--svg=$dir/parts/data/two.csv"
 check "it is as it was" cmp "$dir/two.before" "$dir/parts/data/two.csv"
 # What lagc writes it reads: the column of the input's name, in its unit.
 "$LAGC" run "$m" formula -o "$dir/data/back.csv" --every 0.01 --observe u --quiet

@@ -142,7 +142,7 @@ close "the sum is the divergence" "$(number divergence)" "$(number sum)" 1e-5
 
 # ---- what a person sees
 "$LAGC" lyapunov models/lorenz.lag --until 100 --tol 1e-9 -o "$TMP/rows.csv" --svg "$TMP/it.svg" >"$TMP/out"
-check "a table" grep -q '^ *exponent \[1/s\] *spread *at half the time$' "$TMP/out"
+check "a table" grep -q '^ *exponent \[1/s\] *error *at half the time$' "$TMP/out"
 check "rows of running estimates" sh -c "head -1 '$TMP/rows.csv' | grep -q '^t \[s\],exponent 1 \[1/s\],exponent 2' && [ \$(wc -l <'$TMP/rows.csv') -gt 400 ]"
 check "a picture" grep -q 'Lyapunov exponents so far' "$TMP/it.svg"
 coarse() { "$LAGC" lyapunov models/damped_oscillator.lag over --method 'rk4(step=0.2)' | grep -q 'the sum should be the mean divergence of the flow, -12: the steps are too long'; }

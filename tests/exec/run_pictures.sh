@@ -127,7 +127,7 @@ check "a value is missing" says 2 'needs a value' plot "$p" --x
 check "an effect that the scene does not use" says 1 'friction' plot "$p" wide --y 'friction.b*th' -o none.svg
 check "a folder that is not there" says 2 'cannot write' plot "$p" -o none/a.svg
 check "a value that the model does not allow" says 2 'declares l > 0' plot "$p" l=-1 -o none.svg
-check "nothing is left of all that" [ -z "$(ls none* ./*.part 2>/dev/null)" ]
+check "nothing is left of all that" [ -z "$(ls none* ./*.part* 2>/dev/null)" ]
 
 # ---- plot: what is drawn is what happens between rows, too ----
 f=$models/foucault.lag
@@ -297,7 +297,7 @@ check "three numbers" says 2 'each point is x,y' animate "$p" --points 'x,y,l' -
 check "two places to begin from" says 2 'takes one point' animate "$p" --from 'x,y x,y' -o none.html
 check "an unknown name, with its place" says 1 '--points:1:1: error: unknown name `xx`' animate "$p" --points 'xx,y' -o none.html
 check "two units" says 2 'needs one unit' animate "$p" --points 'x,th' -o none.html
-check "nothing is left of all that" [ -z "$(ls none* ./*.part 2>/dev/null)" ]
+check "nothing is left of all that" [ -z "$(ls none* ./*.part* 2>/dev/null)" ]
 
 # ---- animate: the page in a browser ----
 for name in chromium chromium-browser google-chrome; do

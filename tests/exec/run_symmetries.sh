@@ -31,7 +31,7 @@ check "gauss keeps them" kept 1e-13 $planets quiet --method 'gauss(stages=2)' --
 check "dop853 keeps them to what its steps lose" kept 2e-10 $planets quiet --tol 1e-11 --method dop853
 check "a conserved charge has no work" sh -c "grep -q '\"spin\": {\"is\": \"conserved\", \"initial\": 0.375.*\"work\": 0,' '$TMP/out'"
 check "the report has a line for each" says '^boost drift: [0-9.e-]* \(from 0.1 kg\*m\), rounding$' $planets quiet --method verlet --step 0.01
-check "and the energy's" says '^energy drift: [0-9.e-]* \(relative to .*\), oscillates \(as step\^2\)$' $planets quiet --method verlet --step 0.01
+check "and the energy's" says '^energy drift: [0-9.e-]* \(.*relative to .*\), oscillates \(as step\^2\)$' $planets quiet --method verlet --step 0.01
 
 # ---- the energy of symplectic methods: bounded, of the size h^p
 bounded() { # bounded METHOD ORDER STEP: the energy oscillates; half the step, 2^ORDER times less
@@ -67,7 +67,7 @@ check "rk4: half the step, 2^4 times less" order 4
 check "a driven, damped pendulum" run models/driven_damped_pendulum.lag chaos --tol 1e-11 --json
 check "closes to a hundred tolerances in its 200 s" below "$(of energy drift)" 1e-9
 check "by radau, too" run models/driven_damped_pendulum.lag chaos --tol 1e-8 --until 100 --method radau --json
-check "to ten tolerances: at the nodes of its stages, which are better than what lies between them" below "$(of energy drift)" 5e-8
+check "to fifteen tolerances of the median size, which is a third of the largest: at the nodes of its stages, which are better than what lies between them" below "$(of energy drift)" 1.5e-7
 check "without words nothing is integrated, but monitors see it" run $planets disturbed --quiet
 
 # ---- an input in L: what it does to the energy is known while it follows its formula. Held, the spring has a fixed end: the energy stays

@@ -27,6 +27,8 @@ check "some are listed" [ "$(listed)" -gt 2 ]
 
 allowed() { "$LAGC" check --allow-numeric tests/golden/err/expect_undecided.lag 2>&1 | grep -q 'warning: expect th'; }
 check "--allow-numeric: a warning" allowed
+refused() { ! "$LAGC" check --allow-numeric tests/golden/err/expect_rod.lag >"$TMP/rod" 2>&1 && grep -q '(million): refuted' "$TMP/rod"; }
+check "--allow-numeric: what differs by a part in a million is refuted" refused
 check "--allow-numeric: exit status 0" "$LAGC" check --allow-numeric tests/golden/err/expect_undecided.lag
 
 if [ -n "$LAGC_CLANG" ]; then

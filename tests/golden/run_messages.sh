@@ -38,7 +38,7 @@ texts() {
 
 # Of a format the longest piece between its conversions.
 longest() {
-  awk -F '\t' '{ n = split($2, piece, /%[-.*0-9]*(l*[dufsgc]|%)/); best = ""
+  awk -F '\t' '{ n = split($2, piece, /%[-.*0-9]*(l*[dufsgcX]|%)/); best = ""
     for (i = 1; i <= n; i++) if (length(piece[i]) > length(best)) best = piece[i]
     print $1 "\t" best }'
 }

@@ -15,6 +15,6 @@ awk 'FNR == NR { at[$1] = at[$1] ? at[$1] : NR; next }
   $hard/expected.txt "$TMP/rows" | sort -s -k1,1n | cut -c8-
 echo
 echo 'err/tol: the largest error, in units of what the case allows. residual: the largest error of a constraint, in positions or rates.'
-echo 'energy: the drift, relative to max(|E0|, max(|p.v| + |L|)), where forces or explicit time leave it: its change.'
+echo 'energy: the drift, relative to the larger of |E0| and the median of |p.v| + |L|, where forces or explicit time leave it: its change.'
 echo "Lagrange's points and the chain's frequencies: tests/hard/run_points.sh. Why a row does not pass, or is not here: tests/hard/README.md."
 exit $status

@@ -253,6 +253,27 @@ static void test_arena(void **state) {
   arena_free(NULL);
 }
 
+#ifdef __SANITIZE_ADDRESS__
+int __asan_address_is_poisoned(void const volatile *p);
+/* The byte behind each block is out of bounds, also behind one that comes where a block was forgotten. */
+static void test_gaps(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  ArenaMark none = arena_mark(a);
+  for (int again = 0; again < 2; again++) {
+    for (size_t n = 1; n < 100; n++) {
+      char *block = arena_alloc(a, n);
+      assert_false(__asan_address_is_poisoned(block + n - 1));
+      assert_true(__asan_address_is_poisoned(block + n));
+    }
+    char *last = arena_alloc(a, 7);
+    arena_forget(a, none);
+    assert_true(__asan_address_is_poisoned(last));
+  }
+  arena_free(a);
+}
+#endif
+
 /* What is forgotten is given back, in chunks of its own and in one that goes on; what was there before stays, and what comes after is zero. */
 static void test_forget(void **state) {
   (void)state;
@@ -440,7 +461,11 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_lowest_terms), cmocka_unit_test(test_field),          cmocka_unit_test(test_overflow),
     cmocka_unit_test(test_parse),        cmocka_unit_test(test_print),          cmocka_unit_test(test_pow),
-    cmocka_unit_test(test_gcd),          cmocka_unit_test(test_arena),          cmocka_unit_test(test_intern),
+    cmocka_unit_test(test_gcd),          cmocka_unit_test(test_arena),
+#ifdef __SANITIZE_ADDRESS__
+    cmocka_unit_test(test_gaps),
+#endif
+    cmocka_unit_test(test_intern),
     cmocka_unit_test(test_strbuf),       cmocka_unit_test(test_diag_layout),    cmocka_unit_test(test_diag_utf8),
     cmocka_unit_test(test_diag_long_line), cmocka_unit_test(test_diag_edges),   cmocka_unit_test(test_diag_many),
     cmocka_unit_test(test_forget),       cmocka_unit_test(test_num_inexact),  cmocka_unit_test(test_suggest),

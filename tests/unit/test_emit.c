@@ -85,12 +85,12 @@ static Real value_of(const Eqns *e, Expr x, const Real *value) {
 /* What is left of a residual that no multiplier can take away: its part in the kernel of A. */
 static void take_away_multipliers(const Eqns *e, const Real *value, Real *left) {
   const Entries *A = &e->constraints.A;
-  uint32_t n = e->n, w = n + e->constraints.n, *column = ARENA_ARRAY(arena, uint32_t, w);
+  uint32_t n = e->n, w = n + e->constraints.n;
   Real *K = ARENA_ARRAY(arena, Real, w * w), *x = ARENA_ARRAY(arena, Real, w);
   for (uint32_t i = 0; i < n; i++) K[i * w + i] = 1, x[i] = left[i];
   for (uint32_t k = 0; k < A->n; k++)
     K[(n + A->at[k].row) * w + A->at[k].col] = K[A->at[k].col * w + n + A->at[k].row] = value_of(e, A->at[k].e, value);
-  dense_solve(w, K, x, 1e-15L, column, NULL);
+  dense_solve(arena, w, K, x, 1e-15L, NULL);
   for (uint32_t i = 0; i < n; i++) left[i] = x[i];
 }
 
@@ -231,6 +231,9 @@ static void test_grouping(void **state) {
   p = prog_new(arena);
   Slot product = prog_op(p, IR_MUL, q(p, 0), q(p, 1));
   assert_string_equal(body(p, prog_op(p, IR_NEG, product, 0)), "\n  a[0] = -q[0]*q[1]; /* it */\n");
+  p = prog_new(arena);
+  Slot eighth = prog_num(p, num_ratio(-1, 8)), scaled = prog_op(p, IR_MUL, eighth, q(p, 0));
+  assert_null(strchr(body(p, prog_op(p, IR_NEG, scaled, 0)), '-')); /* --0.125*q[0] is no C */
 }
 
 /* sum + sin x + cos x */

@@ -151,7 +151,6 @@ static void check_coupled(uint32_t n, const char *sign, int banded) {
   assert_null(prog_verify(p));
   for (int trial = 0; trial < 10; trial++) {
     Real *v = random_point(e), got[MOST] = {0}, A[MOST * MOST] = {0}, b[MOST];
-    uint32_t column[MOST];
     char name[32];
     assert_int_equal(run_prog(e, p, v, NULL, got), 0);
     for (uint32_t i = 0; i < n; i++) {
@@ -164,7 +163,7 @@ static void check_coupled(uint32_t n, const char *sign, int banded) {
         A[j * n + i] = -A[i * n + j];
       }
     }
-    assert_int_equal(dense_solve(n, A, b, 0, column, NULL), n);
+    assert_int_equal(dense_solve(e->m->arena, n, A, b, 0, NULL), n);
     for (uint32_t i = 0; i < n; i++) /* of either solver, by conditions below 1e4 */
       if (!(fabsl(got[i] - b[i]) <= 1e-14L * (1 + fabsl(b[i])))) fail_msg("%u coordinates, rate %u: %Lg, solved %Lg", n, i, got[i], b[i]);
   }

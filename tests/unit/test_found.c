@@ -14,6 +14,7 @@
 #include "base/dense.h"
 #include "compile_text.h"
 #include "mech/noether_find.h"
+#include "mech/noether_frame.h"
 #include "mech/states.h"
 #include "sym/diff.h"
 
@@ -577,12 +578,55 @@ static void scalings(void **state) {
   arena_free(m.arena);
 }
 
+/* --- coordinates y = S q in which the kinetic energy is sum y'^2/2 --- */
+
+enum { AXES = 3 };
+static long double product(const long double *A, const long double *B, uint32_t i, uint32_t j) {
+  long double sum = 0;
+  for (uint32_t k = 0; k < AXES; k++) sum += A[i * AXES + k] * B[k * AXES + j];
+  return sum;
+}
+
+/* By definition: S^T S = M, S^-1 S = 1; a covector times a vector is a number that no frame changes; a linear map B of y is S^-1 B S of q.
+ * Entries are of size 1, and some ten roundings of 64 bits make 1e-17 at most. */
+static void frames(void **state) {
+  (void)state;
+  const long double M[] = {2, 1, 0, 1, 3, -1.0L / 3, 0, -1.0L / 3, 4}, exact = 1e-17L;
+  Arena *a = arena_new(NULL);
+  Eqns *e = equations(a, "model skew\ncoord x, y, z\nlagrangian = x'^2 + x'*y' + 3*y'^2/2 - y'*z'/3 + 2*z'^2 - x*y\n", NULL);
+  assert_non_null(e);
+  Ansatz ansatz = *ansatz_new(a, e);
+  ansatz.forms = NULL; /* nothing in L names such coordinates */
+  const NoetherFrame *f = frame_new(&ansatz, a, random_point(e));
+  assert_non_null(f);
+  long double turned[AXES * AXES], scratch[2 * AXES], x[AXES] = {0.3L, -0.7L, 1.1L}, p[AXES] = {-0.4L, 0.9L, 0.2L}, before = 0, after = 0;
+  long double B[AXES * AXES] = {0.1L, 0.5L, -0.2L, 0.7L, -0.3L, 0.4L, 0.6L, -0.8L, 0.9L}, shown[1 + AXES + AXES * AXES] = {0};
+  for (uint32_t i = 0; i < AXES; i++)
+    for (uint32_t j = 0; j < AXES; j++) turned[j * AXES + i] = f->S[i * AXES + j];
+  memcpy(shown + 1 + AXES, B, sizeof B);
+  frame_generator_back(f, shown, scratch);
+  for (uint32_t i = 0; i < AXES; i++)
+    for (uint32_t j = 0; j < AXES; j++) {
+      assert_true(fabsl(product(turned, f->S, i, j) - M[i * AXES + j]) <= exact);
+      assert_true(fabsl(product(f->inverse, f->S, i, j) - (i == j)) <= exact);
+      assert_true(fabsl(product(f->S, shown + 1 + AXES, i, j) - product(B, f->S, i, j)) <= exact);
+    }
+  for (uint32_t i = 0; i < AXES; i++) before += p[i] * x[i];
+  frame_vector(f, x, scratch);
+  frame_covector(f, p, scratch);
+  for (uint32_t i = 0; i < AXES; i++) after += p[i] * x[i];
+  assert_true(fabsl(after - before) <= exact);
+  frame_vector_back(f, x, scratch);
+  assert_true(fabsl(x[0] - 0.3L) <= exact && fabsl(x[1] + 0.7L) <= exact && fabsl(x[2] - 1.1L) <= exact);
+  arena_free(a);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(free_particle), cmocka_unit_test(uniform_field), cmocka_unit_test(kepler),    cmocka_unit_test(oscillators),
     cmocka_unit_test(magnetic),      cmocka_unit_test(inverse_square), cmocka_unit_test(bodies),   cmocka_unit_test(nothing_false),
     cmocka_unit_test(curved),        cmocka_unit_test(driven),        cmocka_unit_test(constrained), cmocka_unit_test(first_order),
-    cmocka_unit_test(affine_change), cmocka_unit_test(affine_change_3d), cmocka_unit_test(affine_change_bodies), cmocka_unit_test(affine_change_long), cmocka_unit_test(turning_frame), cmocka_unit_test(affine_change_held), cmocka_unit_test(near_rates), cmocka_unit_test(scalings), cmocka_unit_test(rotations),
+    cmocka_unit_test(affine_change), cmocka_unit_test(affine_change_3d), cmocka_unit_test(affine_change_bodies), cmocka_unit_test(affine_change_long), cmocka_unit_test(turning_frame), cmocka_unit_test(frames), cmocka_unit_test(affine_change_held), cmocka_unit_test(near_rates), cmocka_unit_test(scalings), cmocka_unit_test(rotations),
     cmocka_unit_test(many), cmocka_unit_test(growing_field), cmocka_unit_test(fading_attraction), cmocka_unit_test(coupled), cmocka_unit_test(trap),
   };
   return cmocka_run_group_tests_name("found", tests, NULL, NULL);

@@ -94,6 +94,22 @@ static void test_pairs(void **state) {
   arena_free(a);
 }
 
+/* More products in a body than are looked at for pairs in common (64), and of more factors (24): they are made one by one. */
+static void test_many_products(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  StrBuf sum = strbuf(a), product = strbuf(a);
+  for (int k = 1; k <= 40; k++) sb_printf(&sum, " + m[j]*(q[i] - q[j])^2*sin(%d/10*(q[i] - q[j]))", k);
+  for (int k = 1; k <= 28; k++) sb_printf(&product, "*cos(%d/100*(q[i] - q[j]))", k);
+  const char *terms[] = {sb_text(&sum), arena_printf(a, " + m[i]*m[j]%s", sb_text(&product))};
+  for (int k = 0; k < 2; k++) {
+    const char *lag = arena_printf(a, "model m\nconst N = 16\ncoord q[N]\nparam m[N] = 1.3 > 0\nkinetic = sum(i in 1..N, m[i]/2*q[i]'^2)\n"
+                                      "potential = sum(i in 1..N, sum(j in 1..i-1, 0%s))\n", terms[k]);
+    assert_true(check_model(lag, 16 * 40) > 0);
+  }
+  arena_free(a);
+}
+
 /* Newton's law, from a text without families, whose pairs stand in another order and are written in other ways. */
 static void test_by_hand(void **state) {
   (void)state;
@@ -301,7 +317,7 @@ static void test_verify(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_pairs), cmocka_unit_test(test_by_hand), cmocka_unit_test(test_nets), cmocka_unit_test(test_irregular), cmocka_unit_test(test_some_of_many), cmocka_unit_test(test_left_alone),
+    cmocka_unit_test(test_pairs), cmocka_unit_test(test_many_products), cmocka_unit_test(test_by_hand), cmocka_unit_test(test_nets), cmocka_unit_test(test_irregular), cmocka_unit_test(test_some_of_many), cmocka_unit_test(test_left_alone),
     cmocka_unit_test(test_random), cmocka_unit_test(test_verify),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

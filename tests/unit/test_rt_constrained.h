@@ -22,7 +22,7 @@ static inline int least(int nq, int n, int nj, const lag_entry *at, const double
     rows[at[e].row * nq + at[e].col] = A[e];
   }
   memcpy(l, g, (size_t)n * sizeof *g);
-  if (!lag_kkt(nq, n, 0, NULL, w)) {
+  if (!lag_kkt(nq, n, 0, w)) {
     return LAG_ESINGULAR;
   }
   memcpy(d, x, (size_t)nq * sizeof *d);

@@ -201,8 +201,8 @@ static void rk4_does_not_gather_rounding(void **state)
   assert_int_equal(lag_sim_advance(s, 1000), LAG_OK);
   lag_sim_stats(s, &st);
   assert_in_range(st.steps, 1000000, 1000001);
-  /* |R(ih)|^2 = 1 - h^6/72 + ...; E0 = 1/2 is judged against max(|p.v| + |L|) = 3/2. */
-  assert_close(st.energy_drift, 1e6 * 1e-18 / 72 / 3, 1e-15);
+  /* |R(ih)|^2 = 1 - h^6/72 + ...; E0 = 1/2 is judged against 1/2 + 1/pi, the mean of sin^2 + |cos 2t|/2. */
+  assert_close(st.energy_drift, 1e6 * 1e-18 / 72 / (1 + 2 / PI), 1e-15);
   lag_sim_free(s);
 }
 

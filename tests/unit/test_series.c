@@ -170,6 +170,22 @@ static void check_again(const char *lag, int straight) {
   arena_free(a);
 }
 
+/* Blocks by loops, of which nothing accelerates the first. By hand: M = (0 1 0; 1 0 1; 0 1 1) and f = (-d, 0, 0) give q'' = (-d, -d, d). */
+static void test_rests(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  const char *why;
+  Series *s = series_of(a, "model rests\ncoord a, b, c, d, e, f\nlagrangian = a'*b' + b'*c' + c'^2/2 + d'*e' + e'*f' + f'^2/2 - d^2/2\n", &why);
+  assert_non_null(s);
+  assert_int_equal(count(s->next, IR_SOLVE), 1);
+  Real q[] = {0.1L, 0.2L, 0.3L, 0.4L, 0.5L, 0.6L}, v[6] = {0}, none[1] = {0}, x[64] = {0}, c[64] = {0}, *outs[] = {x, c};
+  const Real *in[ARR_COUNT] = {none, q, v, none, none, none};
+  assert_int_equal(prog_eval(s->first, in, outs), 0);
+  for (int i = 0; i < 3; i++) assert_true(x[12 + i] == 0);
+  for (int i = 3; i < 6; i++) assert_true(fabsl(x[12 + i] - (i < 5 ? -0.4L : 0.4L)) < 1e-18L);
+  arena_free(a);
+}
+
 static void test_again(void **state) {
   (void)state;
   check_again(double_pendulum, 1);
@@ -220,7 +236,7 @@ static void test_balance(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_cost),  cmocka_unit_test(test_growth),  cmocka_unit_test(test_refusals),
-    cmocka_unit_test(test_again), cmocka_unit_test(test_balance),
+    cmocka_unit_test(test_again), cmocka_unit_test(test_rests), cmocka_unit_test(test_balance),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -75,6 +75,45 @@ static void angles_are_combined_where_it_shortens(void **state) {
   assert_simplifies("m*(cos(x)*cos(y) + sin(x)*sin(y)) + m*sin(x + y)^2", "m*(cos(x - y) + sin(x + y)^2)");
   assert_simplifies("m*sin(x)*cos(y) + m - m*cos(x)^2", "m*sin(x)*(cos(y) + sin(x))");
   assert_simplifies("sin(x)^4 + 2*sin(x)^2*cos(x)^2 + cos(x)^4 + y - 1", "y");
+  /* cos(2*x) is -1 + 2*cos(x)^2: asin of it turns its sign */
+  assert_simplifies("sin(x) + sin(y)*cos(asin(cos(2*x)/2)) + cos(y)*sin(asin(cos(2*x)/2))", "sin(x) + sin(y + asin(cos(2*x)/2))");
+}
+
+/* --- range --- */
+
+/* What is finite 800 units from the origin in a form is in it as it is built, and after simplify. */
+static void quotients_are_finite_far_away(void **state) {
+  (void)state;
+  static const char *const forms[][2] = {
+      {"sinh(x)/cosh(x)", "tanh(x)"},
+      {"sinh(x)^3/cosh(x)^2", "sinh(x)*tanh(x)^2"},
+      {"cosh(x)/sinh(x)", "1/tanh(x)"},
+      {"sinh(x)/sqrt(cosh(x))", "tanh(x)*sqrt(cosh(x))"}, /* sinh(x) may be negative */
+      {"k/(1 - tanh(x)^2)", "k*cosh(x)^2"},
+      {"(1 - tanh(x)^2)/sqrt(1 - tanh(x)^2)", "1/cosh(x)"},
+      {"(1 - tanh(x)^2)^2*cosh(x)*k", "k/cosh(x)^3"},
+      {"k*y + k*y*sinh(x)^2", "k*y*cosh(x)^2"},
+      {"k*cosh(x)^2 - k", "k*sinh(x)^2"},
+      {"k*cosh(x)^2 - k*sinh(x)^2", "k"},
+      {"exp(x)/exp(y)", "exp(x - y)"},
+      {"exp(x)^2/exp(y)^3", "exp(x - y)^2/exp(y)"},
+      {"exp(x)/(1 + exp(x))", "1/(1 + exp(-x))"},
+      {"exp(x)/(1 + exp(x))^2", "1/((1 + exp(x))*(1 + exp(-x)))"},
+      {"exp(x)^2/(k + exp(x))^2", "1/(1 + k*exp(-x))^2"},
+      {"exp(x)/sqrt(1 + exp(x))", "sqrt(exp(x))/sqrt(1 + exp(-x))"},
+      {"exp(x)*(k/(1 + exp(x)) + m)", "k/(1 + exp(-x)) + m*exp(x)"},
+      {"exp(x)*(1 + 4*exp(x))/(1 + exp(x))^2", "1/((1 + exp(x))*(1 + exp(-x))) + 4/(1 + exp(-x))^2"},
+      {"exp(-x^2)/(1 + exp(-x^2))", "exp(-x^2)/(1 + exp(-x^2))"},
+  };
+  for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+    Texts t = start();
+    assert_form(&t, text_expr(&t, forms[i][0]), forms[i][1]);
+    finish(&t);
+  }
+  assert_simplifies("k*tanh(x) + k*tanh(x)*cosh(y)", "k*(1 + cosh(y))*tanh(x)");
+  assert_simplifies("k*exp(x - y) + m*exp(x - y)", "(k + m)*exp(x - y)");
+  assert_simplifies("k*x/hypot(x, y) + m*x/hypot(x, y)", "(k + m)*x/hypot(x, y)");
+  assert_simplifies("l*(m + g)^(x + y) + M*(m + g)^(x + y)", "(l + M)*(m + g)^(x + y)");
 }
 
 static void what_is_short_stays(void **state) {
@@ -378,6 +417,7 @@ static void stable_forms_keep_digits(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(angles_are_combined_where_it_shortens),
+      cmocka_unit_test(quotients_are_finite_far_away),
       cmocka_unit_test(what_is_short_stays),
       cmocka_unit_test(parameters_are_factored),
       cmocka_unit_test(fractions_are_cancelled),

@@ -94,7 +94,8 @@ static const char *si_text(Arena *a, const Dims *d, const Unit *u) {
 /* Names that the library spells otherwise, or defines by older values of constants. */
 static const char *theirs(const char *name) {
   static const char *const other[][2] = {{"deg", "degree"}, {"rev", "turn"}, {"yr", "(365.25 day)"}, {"au", "(149597870700 m)"}, {"t", "tonne"},
-                                         {"u", "(1.66053906660e-27 kg)"}, {"Ω", "ohm"}, {"degC", "degree_Celsius"}};
+                                         {"u", "(1.66053906660e-27 kg)"}, {"Ω", "ohm"}, {"degC", "degree_Celsius"},
+                                         {"pc", "(30856775814913672.789 m)"}, {"ly", "(9460730472580800 m)"}, {"Msun", "(1.98840987069805e30 kg)"}};
   for (size_t i = 0; i < sizeof other / sizeof *other; i++)
     if (strcmp(name, other[i][0]) == 0) return other[i][1];
   return name;
@@ -147,6 +148,7 @@ static void test_prefixes(void **state) {
       if (is_whole(name)) continue;
       if (strcmp(unit, "Ω") == 0) other = arena_printf(a, "%sohm", prefix);
       if (strcmp(unit, "eV") == 0) other = arena_printf(a, "1.602176634e-19 %sJ", prefix);
+      if (strcmp(unit, "pc") == 0) other = arena_printf(a, "30856775814913672.789 %sm", prefix);
       for (size_t n = 0; n < sizeof of_2022 / sizeof *of_2022; n++)
         if (strcmp(prefix, of_2022[n].name) == 0)
           other = arena_printf(a, "%s (%s)", of_2022[n].power, strcmp(unit, "eV") == 0 ? "1.602176634e-19 J" : theirs(unit));
@@ -197,6 +199,18 @@ static void test_factors(void **state) {
   assert_float_equal(unit_factor(&root) * unit_factor(&root), pi / 180, 1e-16);
   assert_float_equal(unit_factor(&warm), 1, 0);
   assert_float_equal(num_value(warm.offset), 273.15, 0);
+  static const struct {
+    const char *name;
+    double value;
+  } others[] = {{"ft", 0.3048}, {"lb", 0.45359237}, {"ly", 299792458.0*31557600.0}, {"pc", 648000*149597870700.0/3.14159265358979323846},
+                {"Msun", 1.3271244e20/6.67430e-11}, {"\xC2\xB0", 3.14159265358979323846/180}, {"\xC2\xB0/s", 3.14159265358979323846/180}};
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    Unit u = unit_named(a, d, others[i].name);
+    assert_float_equal(unit_factor(&u)/others[i].value, 1, 4e-16);
+  }
+  Unit celsius = unit_named(a, d, "\xC2\xB0" "C");
+  assert_float_equal(num_value(celsius.offset), 273.15, 0);
+  assert_string_equal(celsius.text, "degC");
   arena_free(a);
 }
 

@@ -94,7 +94,7 @@ static int ours(double *z)
   memcpy(x, f, sizeof f), memcpy(l, g, sizeof g);
   int banded = lag_banded(N, M, m, a, x, l, w, ROOM);
   memcpy(w, m, sizeof m), memcpy(w + N * N, a, sizeof a), memcpy(w + N * N + M * N, f, sizeof f), memcpy(w + N * N + M * N + N, g, sizeof g);
-  if (!lag_kkt(N, M, 0, NULL, w)) printf("refused\n");
+  if (!lag_kkt(N, M, 0, w)) printf("refused\n");
   memcpy(z, w + N * N + M * N, ALL * sizeof *z);
   return banded;
 }

@@ -1,0 +1,264 @@
+/* Steps that lead nowhere. Enters: a step that a method has made, from s->now to s->y; leaves: whether the run is to end, and why.
+ *
+ * 1. Where a force jumps with the velocities, as dry friction does, and both sides lead back to the place, the motion stays there: Filippov's
+ *    sliding mode. Steps of any size then go back and forth, small ones for ever. Across a change of sign of a switching function the derivative is taken on
+ *    both sides of the place; of one that is nowhere negative, as |v|, at both ends of a step that leads past its zero. Steps of equal size may stay on one
+ *    side, where their stages are on both: by rk4 a body that sticks goes on for ever.
+ * 2. Near a position where constraints become dependent, as of bars that come to lie in one line, accelerations have an error of eps/s^2, s being how
+ *    independent they are, and a tolerance below that makes steps shrink in front of it, accepted one by one, for ever. So do places where a constraint or a
+ *    force jumps with the position. In MOST steps the time went on by less than a hundred-thousandth of the run so far, and at less than a hundredth of its
+ *    mean pace: what is fast for a while (a stiff spring that is struck) takes some hundred steps. And there is a reason: constraints that are
+ *    nearly dependent there, or a model that jumps.
+ * 3. Steps of equal size that are longer than half a period: an implicit method keeps the energy of what swings so fast, and nothing else of it. Along
+ *    a step that is -(change of acceleration).(change of position) over the square of the latter, the square of the frequency. It ends no run; the report says so.
+ * 4. Coordinates so large that the next number decides about the forces, as of an angle of 1e22. */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "core/core.h"
+#include "core/rhs.h"
+
+enum { MOST = 10000 };
+
+/* to[nswitch] := the switching functions. 0: they have values. */
+static int sides_at(lag_sim *s, double t, const double *y, double *to)
+{
+  const lag_model *m = s->scene->model;
+  int rc = lag_inputs(&s->pb, t);
+
+  rc = rc ? rc : m->switch_values(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, to, s->work);
+  return rc || lag_not_finite(m->nswitch, to) >= 0;
+}
+
+/* to[n] := the state at part x of the line from now at *t to y at t1; *t := its time. */
+static void on_line(const lag_sim *s, double x, double t1, double *t, double *to)
+{
+  for (int i = 0; i < s->pb.n; i++) {
+    to[i] = s->now[i] + x * (s->y[i] - s->now[i]);
+  }
+  *t = s->run->t + x * (t1 - s->run->t);
+}
+
+/* By how much switching function k grows in a second at y at t; NaN: there is no value. Uses yb, yc. */
+static double rate_of(lag_sim *s, int k, double t, double dt, const double *y)
+{
+  double *now = s->sides + 2 * s->scene->model->nswitch, before, calls = s->pb.rhs_calls;
+
+  if (lag_rhs(&s->pb, t, y, s->yb) || sides_at(s, t, y, now)) {
+    return NAN;
+  }
+  s->pb.rhs_calls = calls;
+  before = now[k];
+  for (int i = 0; i < s->pb.n; i++) {
+    s->yc[i] = y[i] + dt * s->yb[i];
+  }
+  return sides_at(s, t + dt, s->yc, now) ? NAN : (now[k] - before) / dt;
+}
+
+/* Whether a step of equal size has stayed on one side of a surface that its first derivative leads across and the one there leads back to: it has made
+ * another way than the derivatives at its ends, r0 and r1. */
+static int hovers(lag_sim *s, int k, double t, double dt)
+{
+  const double part = 0.25;
+  double first = s->sides[k], last = s->sides[k + s->scene->model->nswitch], whole = t - s->run->t, r0, r1;
+
+  if (!(lag_equal_step(s) > 0) || !(first * (r0 = rate_of(s, k, s->run->t, dt, s->now)) * whole < 0) || !(fabs(first) < fabs(r0 * whole))) {
+    return 0;
+  }
+  for (int i = 0; i < s->pb.n; i++) {
+    s->ya[i] = s->now[i] + whole * s->yb[i]; /* rate_of has left the derivative there */
+  }
+  r1 = rate_of(s, k, t, dt, s->y);
+  return fabs(last - first - whole * (r0 + r1) / 2) > part * fabs(whole * r0) && rate_of(s, k, t, dt, s->ya) * first * whole > 0;
+}
+
+/* Whether a motion that meets the surface of switching function k within the step to t stays there. */
+static int stays(lag_sim *s, int k, double t)
+{
+  const double near = 0x1p-6;
+  const double *first = s->sides, *last = first + s->scene->model->nswitch;
+  double *at = s->sides + 2 * s->scene->model->nswitch, dt = near * (t - s->run->t), a = 0, b = 1, when = 0, r0, r1;
+
+  if (s->scene->model->switches[k].nonnegative) {
+    r0 = rate_of(s, k, s->run->t, dt, s->now) * s->pb.dir;
+    r1 = rate_of(s, k, t, dt, s->y) * s->pb.dir;
+    return r0 < 0 && r1 < 0 && first[k] < -r0 * fabs(t - s->run->t) && r1 < near * r0;
+  }
+  if (!(first[k] * last[k] < 0)) {
+    return first[k] * last[k] > 0 && hovers(s, k, t, dt);
+  }
+  for (int turn = 0, on_it = 0; turn < 60 && on_it < 4; turn++) {
+    double mid = a + (b - a) * (on_it ? 0.3 + 0.1 * on_it : 0.5);
+    on_line(s, mid, t, &when, s->ya);
+    if (sides_at(s, when, s->ya, at)) {
+      return 0;
+    }
+    on_it = at[k] == 0.0 ? on_it + 1 : 0; /* both ends are beside it: sign(0) is neither */
+    if (!on_it) {
+      *(at[k] * first[k] > 0 ? &a : &b) = mid;
+    }
+  }
+  on_line(s, a, t, &when, s->ya);
+  r0 = rate_of(s, k, when, dt, s->ya) * s->pb.dir;
+  on_line(s, b, t, &when, s->ya);
+  r1 = rate_of(s, k, when, dt, s->ya) * s->pb.dir;
+  return r0 * first[k] < 0 && r1 * last[k] < 0;
+}
+
+static void say_switch(lag_sim *s, int k, double t)
+{
+  const lag_switch *c = &s->scene->model->switches[k];
+  char line[32] = "";
+
+  if (c->line) {
+    snprintf(line, sizeof line, " in line %d", c->line);
+  }
+  snprintf(s->pb.words, sizeof s->pb.words, "it stays where %s is 0: the force of `%s`%s jumps there, and on both sides leads back, as dry friction does where a "
+           "body sticks, which is not supported; smooth it, as tanh(v/w) does sign(v), or let an event stop the run", c->surface, c->text, line);
+  s->pb.detail = s->pb.words;
+  s->pb.bad_t = t;
+}
+
+/* Rule 1. */
+static int slides(lag_sim *s, double t)
+{
+  const lag_model *m = s->scene->model;
+
+  if (sides_at(s, s->run->t, s->now, s->sides) || sides_at(s, t, s->y, s->sides + m->nswitch)) {
+    return 0;
+  }
+  for (int k = 0; k < m->nswitch; k++) {
+    if (stays(s, k, t)) {
+      say_switch(s, k, t);
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* The switching function that a motion has been next to for so long: it has gone through less than it grows by in that time. -1: none. */
+static int hangs_at(lag_sim *s, double t, double led)
+{
+  int k = s->scene->model->nswitch - 1;
+
+  while (k >= 0 && (sides_at(s, t, s->y, s->sides) || !(fabs(s->sides[k]) < fabs(rate_of(s, k, t, t - s->run->t, s->y)) * led))) {
+    k--;
+  }
+  return k;
+}
+
+/* Rule 2. */
+static int creeps(lag_sim *s, double t)
+{
+  const double pace = 1e-5, mean = 1e-2, dependent = 1e-2;
+  Run *r = s->run;
+  lag_problem *pb = &s->pb;
+  double led = fabs(t - r->stall_since), gone = fabs(t - s->scene->t0);
+  int k = -1;
+  char line[32];
+
+  r->stall_since = t;
+  if (led > pace * gone || led * r->steps > mean * MOST * gone || lag_equal_step(s) > 0) {
+    return 0;
+  }
+  double apart = pb->model->constraints ? lag_independence(pb, t, s->y, &k) : 1;
+  if ((k < 0 || apart > dependent) && lag_facts(pb) & LAG_SMOOTH) {
+    return 0;
+  }
+  int at = hangs_at(s, t, led);
+  if (at >= 0) {
+    say_switch(s, at, t);
+    return LAG_ESTALL;
+  }
+  if (k < 0 || apart > dependent) {
+    snprintf(pb->words, sizeof pb->words, "the last %d steps led on by %.3g s only: a force or a constraint jumps here, and the motion does not leave the "
+             "place; smooth it, as sqrt(x^2 + w^2) does abs(x), or let a contact or an event do what happens", MOST, led);
+  } else {
+    const lag_constraint *weakest = &pb->model->constraints->of[k];
+    snprintf(pb->words, sizeof pb->words, "the last %d steps led on by %.3g s only: constraint %s%s is within %.1g of following from the others, "
+             "and no step is accurate to the tolerance; a larger one, or steps of equal size (adapt=off, rk4, variational), may pass", MOST, led,
+             weakest->name, lag_line_of(weakest, line), apart);
+  }
+  pb->detail = pb->words;
+  pb->bad_t = t;
+  return LAG_ESTEP;
+}
+
+/* Rule 3. */
+static void look_for_period(lag_sim *s, double t)
+{
+  const double half_turn = 3.141592653589793;
+  lag_problem *pb = &s->pb;
+  double h = lag_equal_step(s), calls = pb->rhs_calls, square = 0, product = 0;
+
+  if (!(h > 0) || pb->nq == 0 || lag_rhs(pb, s->run->t, s->now, s->ya) || lag_rhs(pb, t, s->y, s->yb)) {
+    pb->rhs_calls = calls;
+    return;
+  }
+  pb->rhs_calls = calls;
+  for (int i = 0; i < pb->nq; i++) {
+    double dx = s->y[i] - s->now[i];
+    product -= dx * (s->yb[pb->nq + i] - s->ya[pb->nq + i]);
+    square += dx * dx;
+  }
+  s->run->looks++;
+  double rate = square > 0 && product > 0 ? sqrt(product / square) : 0;
+  if (isfinite(rate) && rate * h > half_turn) {
+    s->run->coarse++;
+    s->run->period = 2 * half_turn / rate;
+  }
+}
+
+/* Rule 4: coordinates whose next number is a thousandth away (a small part of a turn), where it changes the derivatives by a tenth. */
+static int is_too_coarse(lag_sim *s, double t)
+{
+  const double small = 1e-3, part = 0.1;
+  lag_problem *pb = &s->pb;
+  double change = 0, size = 0, calls = pb->rhs_calls;
+  int which = -1;
+
+  for (int i = 0; i < pb->nq; i++) {
+    s->ya[i] = fabs(s->y[i]) * DBL_EPSILON > small ? s->y[i] * (1 + DBL_EPSILON) : s->y[i];
+    which = s->ya[i] != s->y[i] && (which < 0 || fabs(s->y[i]) > fabs(s->y[which])) ? i : which;
+  }
+  if (which < 0) {
+    return 0;
+  }
+  lag_copy(pb->n - pb->nq, s->y + pb->nq, s->ya + pb->nq);
+  if (lag_rhs(pb, t, s->y, s->yb) || lag_rhs(pb, t, s->ya, s->yc)) {
+    return 0;
+  }
+  pb->rhs_calls = calls;
+  for (int i = pb->nq; i < pb->n; i++) {
+    change = fmax(change, fabs(s->yb[i] - s->yc[i]));
+    size = fmax(size, fmax(fabs(s->yb[i]), fabs(s->yc[i])));
+  }
+  if (!(change > part * size)) {
+    return 0;
+  }
+  snprintf(pb->words, sizeof pb->words, "%s = %.3g is known to %.1g only in " LAG_PRECISION " precision, and that decides about the forces; start an angle within a turn, or "
+           "measure from elsewhere" LAG_MORE_PRECISION, pb->model->q[which].name, s->y[which], fabs(s->y[which]) * DBL_EPSILON);
+  pb->detail = pb->words;
+  pb->bad_t = t;
+  return 1;
+}
+
+int lag_stalls(lag_sim *s, double t)
+{
+  Run *r = s->run;
+  long long steps = (long long)r->steps + 1;
+  int rc = 0;
+
+  if (s->scene->model->nswitch && slides(s, t)) {
+    return LAG_ESTALL;
+  }
+  if (steps % MOST == 0 && (rc = creeps(s, t)) != 0) {
+    return rc;
+  }
+  if ((steps & (steps - 1)) != 0) { /* the rest is asked after 1, 2, 4, 8, ... steps */
+    return LAG_OK;
+  }
+  look_for_period(s, t);
+  return is_too_coarse(s, t) ? LAG_ESTALL : LAG_OK;
+}

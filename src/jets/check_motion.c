@@ -1,0 +1,231 @@
+/* Programs that say how something goes on along the motion, or changes with the state, against differences of the programs that the text has
+ * confirmed: charges, the linearisation, Taylor coefficients. */
+#include <math.h>
+
+#include "jets/check_impl.h"
+
+/* A state, kept while others are tried. */
+typedef struct {
+  Real t, *q, *v, *z, *zd;
+} Kept;
+
+static Real *copied(const Check *c, const Real *x, uint32_t n) {
+  Real *r = ARENA_ARRAY(c->arena, Real, n + 1);
+  for (uint32_t i = 0; i < n; i++) r[i] = x[i];
+  return r;
+}
+
+static Kept keep(const Check *c) {
+  uint32_t nz = c->m->states.n;
+  return (Kept){c->t, copied(c, c->q, c->n), copied(c, c->v, c->n), copied(c, c->z, nz), copied(c, c->zd, nz)};
+}
+
+/* The kept state plus s times (dq, dv, dz, dt). */
+static void move_to(Check *c, const Kept *k, Real s, const Real *dq, const Real *dv, const Real *dz, Real dt) {
+  for (uint32_t i = 0; i < c->n; i++) {
+    c->q[i] = k->q[i] + s * dq[i];
+    c->v[i] = k->v[i] + s * dv[i];
+  }
+  for (uint32_t i = 0; i < c->m->states.n; i++) c->z[i] = k->z[i] + s * dz[i];
+  c->t = k->t + s * dt;
+}
+
+static void put_back(Check *c, const Kept *k) {
+  for (uint32_t i = 0; i < c->m->states.n; i++) c->zd[i] = k->zd[i];
+  move_to(c, k, 0, k->q, k->v, k->z, 0);
+}
+
+/* A step that is short beside the motion. */
+static Real short_time(const Check *c) {
+  Real rate = 1;
+  for (uint32_t i = 0; i < c->n; i++) rate += fabsl(c->v[i]) + sqrtl(fabsl(c->a[i]));
+  for (uint32_t i = 0; i < c->m->states.n; i++) rate += fabsl(c->zd[i]);
+  return 1e-4L / rate;
+}
+
+/* The derivative from central differences with step h and 2 h (Richardson); its error is a part of what the two differ by, and the rounding of values:
+ * of their `size`, or what is known of it. */
+static Total derivative(const Real at[4], Real h, Real size, Real rounding) {
+  Real near = (at[1] - at[0]) / (2 * h), far = (at[3] - at[2]) / (4 * h), spread = fabsl(near - far);
+  Real error = spread / 4 + (1024 * jet_unit * size + rounding) / h;
+  return (Total){{near + (near - far) / 3, error}, size, fabsl(near) + 1};
+}
+
+/* d/dt of each charge against the power that is said to change it. */
+static Verdict check_charges(Check *c) {
+  const IrUnit *u = c->u;
+  uint32_t n = u->charges.n;
+  Real *value = ARENA_ARRAY(c->arena, Real, 2 * n + 4), *power = ARENA_ARRAY(c->arena, Real, n + 1), h = short_time(c);
+  Real(*at)[4] = arena_alloc(c->arena, (n + 1) * sizeof *at), *size = ARENA_ARRAY(c->arena, Real, n + 1);
+  Verdict v = AGREES;
+  if (n < 2 || !u->charge_values || c->m->inputs.n > 0 || (u->charge_powers && !check_run(c, u->charge_powers, (Real *const[]){power}))) return AGREES;
+  Kept kept = keep(c);
+  for (int k = 0; k < 4; k++) { /* -h, h, -2h, 2h: quadratic in q, so that the third order alone is left out */
+    Real s = (k % 2 ? h : -h) * (k < 2 ? 1 : 2);
+    move_to(c, &kept, s, kept.v, c->a, c->zd, 1);
+    for (uint32_t i = 0; i < c->n; i++) c->q[i] += s * s / 2 * c->a[i];
+    int ran = check_run(c, u->charge_values, (Real *const[]){value});
+    for (uint32_t i = 1; i < n; i++) at[i][k] = ran ? value[2 * (i - 1)] : NAN;
+    for (uint32_t i = 1; i < n; i++) size[i] = fabsl(value[2 * (i - 1) + 1]);
+  }
+  put_back(c, &kept);
+  for (uint32_t i = 1; i < n; i++) {
+    if (!(u->charges.at[i].flags & 2) || u->charges.at[i].flags & 8) continue;
+    Total t = derivative(at[i], h, size[i], 0);
+    t.sum.e /= 64; /* of an estimate, not of a rounding: see SLACK */
+    v = worse(v, check_compare(c, &t, power[i], c->m->span, "the rate of the charge", u->charges.at[i].name));
+  }
+  return v;
+}
+
+/* The text's residual along c->c at a state beside, with the accelerations of the kept one. */
+static int residual_beside(Check *c, Real *out, Real *size, Real *rounding) {
+  const TextDynamics *d = c->dynamics;
+  if (!check_run_text(c)) return 0;
+  for (uint32_t i = 0; i < c->m->states.n; i++) c->zd[i] = check_coefficient(d->tape, c->at, d->flows[i], 0, 0).v;
+  if (!check_run_text(c)) return 0;
+  Total r = check_residual(c);
+  *out = r.sum.v;
+  *size += r.size + r.around;
+  *rounding += r.sum.e;
+  return isfinite(r.sum.v);
+}
+
+/* Along random directions of residuals and of states: sum c_i dr_i/dy_j d_j against differences of residuals; sum c_i M_ij d_j likewise. */
+static Verdict check_linear(Check *c) {
+  const IrUnit *u = c->u;
+  uint32_t n = c->n, nz = c->m->states.n;
+  Real *dr = ARENA_ARRAY(c->arena, Real, u->linear_dr.n + 1), *M = ARENA_ARRAY(c->arena, Real, u->linear_mass.n + 1);
+  Real *d = ARENA_ARRAY(c->arena, Real, 2 * n + nz + 1), at[4], h = 1e-5L, said = 0, size = 0, around = 0, rounding = 0;
+  if (!n || !check_run(c, u->linear, (Real *const[]){dr, M})) return AGREES;
+  for (uint32_t i = 0; i < n; i++) c->c[i] = check_random(c, -1, 1);
+  for (uint32_t i = 0; i < 2 * n + nz; i++) {
+    Real y = i < n ? c->q[i] : i < 2 * n ? c->v[i - n] : c->z[i - 2 * n];
+    int angle = i < n && c->m->coords.at[i].periodic;
+    d[i] = check_random(c, -1, 1) * (y != 0 && !angle ? fabsl(y) : 1);
+    if (fabsl(y) * jet_unit > 1e-6L * h) return AGREES; /* no step is small beside it, and none too small for its digits */
+  }
+  for (uint32_t k = 0; k < u->linear_dr.n; k++) {
+    IrEntry e = u->linear_dr.at[k];
+    if (e.row >= n) continue;
+    said -= c->c[e.row] * dr[k] * d[e.col];
+    size += fabsl(c->c[e.row] * dr[k] * d[e.col]);
+  }
+  Kept kept = keep(c);
+  int ran = 1;
+  for (int k = 0; k < 4 && ran; k++) {
+    move_to(c, &kept, (k % 2 ? h : -h) * (k < 2 ? 1 : 2), d, d + n, d + 2 * n, 0);
+    ran = residual_beside(c, &at[k], &around, &rounding);
+  }
+  put_back(c, &kept);
+  if (!ran) return AGREES;
+  Total t = derivative(at, h, around, rounding);
+  t.size = size;
+  t.sum.e /= 64;
+  return check_compare(c, &t, said, c->m->lagrangian_span, "the linearisation", NULL);
+}
+
+/* --- Taylor coefficients --- */
+
+enum { ORDERS = 10 };
+
+/* Rows of coefficients up to ORDERS, with T = 1, as runtime and emitted code fill them: ir/series.h. */
+static int taylor_rows(Check *c, const Series *s, Real *x) {
+  uint32_t columns = s->columns, nq = s->nq, nz = s->nz, time = 3 * nq + 2 * nz, wide = s->width + s->group + 4;
+  Real *constants = ARENA_ARRAY(c->arena, Real, s->constants + 1), *sum = ARENA_ARRAY(c->arena, Real, wide), *follows = ARENA_ARRAY(c->arena, Real, c->m->inputs.n + 1);
+  Real *a = ARENA_ARRAY(c->arena, Real, (size_t)wide * (ORDERS + 1)), *b = ARENA_ARRAY(c->arena, Real, (size_t)wide * (ORDERS + 1));
+  const Real *in[ARR_COUNT] = {0};
+  in[ARR_T] = &c->t, in[ARR_Q] = c->q, in[ARR_V] = c->v, in[ARR_Z] = c->z, in[ARR_P] = c->p, in[ARR_U] = c->signal, in[ARR_FREE] = follows;
+  if (prog_eval(s->first, in, (Real *const[]){x, constants}) != 0) return 0;
+  for (uint32_t i = 0; i < nq; i++) x[i] = c->q[i], x[nq + i] = c->v[i];
+  for (uint32_t i = 0; i < nz; i++) x[2 * nq + i] = c->z[i];
+  Real *next = x + columns;
+  for (uint32_t i = 0; i < nq; i++) next[i] = x[nq + i], next[nq + i] = x[2 * nq + nz + i];
+  for (uint32_t i = 0; i < nz; i++) next[2 * nq + i] = x[3 * nq + nz + i];
+  if (s->uses_time) next[time] = 1;
+  in[ARR_SUMS] = sum;
+  in[ARR_STEP] = constants;
+  for (int k = 1; k < ORDERS; k++) {
+    Real order = k, per_order = 1 / order, up = 1 / (order + 1), *row = x + (size_t)k * columns;
+    for (uint32_t i = 0; i < wide; i++) {
+      sum[i] = 0;
+      for (int j = 1; j < k; j++) sum[i] += a[(size_t)j * wide + i] * (s->squares && i >= s->first_square ? a : b)[(size_t)(k - j) * wide + i];
+    }
+    in[ARR_COEF] = row, in[ARR_ORDER] = &order, in[ARR_PER_ORDER] = &per_order, in[ARR_UP] = &up;
+    if (prog_eval(s->next, in, (Real *const[]){row, row + columns, a + (size_t)k * wide, b + (size_t)k * wide}) != 0) return 0;
+  }
+  return 1;
+}
+
+/* Column i at s, or its derivative. */
+static Real polynomial(const Real *x, uint32_t columns, uint32_t i, Real s, int slope) {
+  Real r = 0;
+  for (int k = ORDERS; k >= slope; k--) r = r * s + x[(size_t)k * columns + i] * (slope ? k : 1);
+  return r;
+}
+
+/* Moves to the polynomials of the first `orders` coefficients at s, and runs the accelerations there. */
+static int run_at(Check *c, const Series *s, Real *x, int orders, Real h, const Kept *kept, Real *a, Real *zd) {
+  Real *top = x + (size_t)(orders + 1) * s->columns, *cut = copied(c, top, s->columns * (uint32_t)(ORDERS - orders));
+  for (uint32_t i = 0; i < s->columns * (uint32_t)(ORDERS - orders); i++) top[i] = 0;
+  for (uint32_t i = 0; i < s->nq; i++) c->q[i] = polynomial(x, s->columns, i, h, 0), c->v[i] = polynomial(x, s->columns, s->nq + i, h, 0);
+  for (uint32_t i = 0; i < s->nz; i++) c->z[i] = polynomial(x, s->columns, 2 * s->nq + i, h, 0);
+  c->t = kept->t + h;
+  int ran = check_run(c, c->u->accel, (Real *const[]){a, zd});
+  put_back(c, kept);
+  for (uint32_t i = 0; i < s->columns * (uint32_t)(ORDERS - orders); i++) top[i] = cut[i];
+  return ran;
+}
+
+/* A step in which the last coefficients make 1e-12 of a velocity, or of a state. */
+static Real taylor_step(const Series *s, const Real *x) {
+  Real h = 0.1L;
+  for (uint32_t i = 0; i < s->nq + s->nz; i++)
+    for (int k = ORDERS - 1; k <= ORDERS; k++) {
+      Real last = fabsl(x[(size_t)k * s->columns + s->nq + i]), size = fabsl(x[s->nq + i]) + fabsl(x[s->columns + s->nq + i]);
+      if (last > 0 && size > 0) h = fminl(h, powl(1e-12L * size / last, 1.0L / k));
+    }
+  return h;
+}
+
+/* How far the program's rate i at h is from the derivative of its polynomial; *t says what that is, and how much is left out: two terms less tell; off: what
+ * rounding makes of the rate. */
+static Real taylor_difference(const Series *s, const Real *x, Real h, uint32_t i, Real off, const Real *a, const Real *zd, Total *t, Real *said) {
+  const Real *at = i < s->nq ? a + i : zd + (i - s->nq), less = at[i < s->nq ? s->nq : s->nz];
+  Real slope = polynomial(x, s->columns, s->nq + i, h, 1), last = fabsl(x[(size_t)ORDERS * s->columns + s->nq + i]) * ORDERS * powl(h, ORDERS - 1);
+  Real rounding = 1e12L * jet_unit * fabsl(x[s->nq + i]) / h;
+  *t = (Total){{slope, (fabsl(*at - less) + last) / 1024 + off}, fabsl(slope) + rounding, 0};
+  *said = *at;
+  return fabsl(slope - *at);
+}
+
+/* A little later, the derivative of the velocities' polynomials is what the program of the accelerations says at the polynomials' state, but for
+ * the terms that are left out. A step that leads over a corner or a jump is no proof: what differs must differ in one 64 times shorter, too. */
+static Verdict check_taylor(Check *c) {
+  const Series *s = c->u->taylor;
+  Real *x = ARENA_ARRAY(c->arena, Real, (size_t)s->columns * (ORDERS + 2));
+  Real *a = ARENA_ARRAY(c->arena, Real, 2 * s->nq + 1), *zd = ARENA_ARRAY(c->arena, Real, 2 * s->nz + 1);
+  Kept kept = keep(c);
+  Verdict v = AGREES;
+  if (!taylor_rows(c, s, x)) return AGREES;
+  Real h = taylor_step(s, x);
+  for (int shorter = 0; shorter < 2; shorter++, h /= 64) {
+    int differs = 0;
+    if (!run_at(c, s, x, ORDERS - 2, h, &kept, a + s->nq, zd + s->nz) || !run_at(c, s, x, ORDERS, h, &kept, a, zd)) return AGREES;
+    for (uint32_t i = 0; i < s->nq + s->nz; i++) {
+      Total t;
+      Real said, difference = taylor_difference(s, x, h, i, i < s->nq ? c->a_error[i] : c->zd_error[i - s->nq], a, zd, &t, &said);
+      differs |= difference > 64 * 1024 * t.sum.e + 1e-9L * t.size;
+      if (shorter) v = worse(v, check_compare(c, &t, said, c->m->span, "what follows from Taylor coefficients of", i < s->nq ? c->m->coords.at[i].name : c->m->states.at[i - s->nq].name));
+    }
+    if (!differs) return AGREES;
+  }
+  return v;
+}
+
+Verdict check_motion(Check *c) {
+  Verdict v = c->far ? AGREES : check_charges(c);
+  if (v != DISAGREES && !c->far && c->u->linear && c->dynamics->lagrangian && !c->m->first_order) v = worse(v, check_linear(c));
+  if (v != DISAGREES && !c->far && c->u->taylor && c->e->smooth && !c->u->taylor->room && c->n <= LONG_TAPE / 100) v = worse(v, check_taylor(c));
+  return v == DISAGREES ? v : AGREES;
+}

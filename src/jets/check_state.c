@@ -1,0 +1,203 @@
+/* States for the self-check: random parameters, coordinates and inputs, on the constraints of the model. */
+#include <math.h>
+
+#include "ir/lower.h"
+#include "jets/check_impl.h"
+
+/* --- random numbers: splitmix64, the same on every machine (G. Steele, D. Lea, C. Flood, OOPSLA 2014, doi:10.1145/2660193.2660195) --- */
+
+static Real uniform(Check *c) {
+  uint64_t x = c->random += 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return (Real)((x ^ (x >> 31)) >> 11) / 9007199254740992.0L;
+}
+
+Real check_random(Check *c, Real lo, Real hi) { return lo + (hi - lo) * uniform(c); }
+
+/* --- programs --- */
+
+int check_run(const Check *c, const Prog *p, Real *const *out) {
+  const Real *in[ARR_COUNT] = {0};
+  in[ARR_T] = &c->t;
+  in[ARR_Q] = c->q;
+  in[ARR_V] = c->v;
+  in[ARR_Z] = c->z;
+  in[ARR_P] = c->p;
+  in[ARR_U] = c->signal;
+  in[ARR_A] = c->a;
+  in[ARR_G] = c->gap;
+  return prog_eval(p, in, out) == 0;
+}
+
+/* --- states --- */
+
+/* Parameters that are made of no others get other values of the same sign; 0 becomes a number where that is allowed. */
+static Real other_value(Check *c, const Param *p, Real value) {
+  Real factor = check_random(c, 0.7L, 1.4L);
+  if (value != 0) return value * factor;
+  return p->sign == SIGN_GT || p->sign == SIGN_GE ? 0.5L * factor : p->sign == SIGN_LT || p->sign == SIGN_LE ? -0.5L * factor : 0.5L - factor;
+}
+
+static int loads_parameters(const Prog *p) {
+  for (Slot s = 1; s < p->ins.n; s++)
+    if (p->ins.at[s].op == IR_LOAD && p->ins.at[s].array == ARR_P) return 1;
+  return 0;
+}
+
+static int choose_parameters(Check *c) {
+  const IrScene *scene = &c->u->scenes.at[c->scene];
+  for (uint32_t i = 0; i < c->m->params.n; i++) {
+    const Param *p = &c->m->params.at[i];
+    if (!p->fixed) {
+      const Prog *value = scene->params[p->place];
+      if (!check_run(c, value, (Real *const[]){c->p})) return 0;
+      if (!loads_parameters(value)) c->p[p->place] = other_value(c, p, c->p[p->place]);
+    }
+    c->given[i] = p->fixed ? (Real)num_value(p->number) : c->p[p->place];
+  }
+  return !c->u->derived || check_run(c, c->u->derived, (Real *const[]){c->p});
+}
+
+/* A number beside `start`: of size 1 and of its own, times the reach; far: of any size up to 1000. */
+static Real beside(Check *c, Real start) {
+  Real size = fabsl(start) > 1 ? fabsl(start) / 2 : 0.8L;
+  if (c->far) return check_random(c, -1, 1) * powl(10, check_random(c, -1, 3));
+  return start + c->reach * size * check_random(c, -1, 1);
+}
+
+/* The four numbers of a rotation get length 1, and rates that keep it. */
+static void project_rotations(Check *c) {
+  const Builder *b = c->m->builder;
+  for (uint32_t i = 0; i < b->rotations.n && !c->m->first_order; i++) {
+    Real *q = c->q + b->rotations.at[i], *v = c->v + b->rotations.at[i], square = 0, along = 0;
+    for (int k = 0; k < 4; k++) square += q[k] * q[k];
+    for (int k = 0; k < 4; k++) q[k] /= sqrtl(square);
+    for (int k = 0; k < 4; k++) along += q[k] * v[k];
+    for (int k = 0; k < 4; k++) v[k] -= along * q[k];
+  }
+}
+
+static Real largest(const Real *x, uint32_t n) {
+  Real r = 0;
+  for (uint32_t i = 0; i < n; i++) r = !(fabsl(x[i]) <= r) ? fabsl(x[i]) : r;
+  return r;
+}
+
+/* Newton's method onto the constraints, in the program's own metric. 0: it does not get there, or they contradict each other. */
+static int project(Check *c, int velocities) {
+  const IrConstraints *k = &c->u->constraints;
+  uint32_t rows = velocities ? k->of.n : k->nkept;
+  Real *position = ARENA_ARRAY(c->arena, Real, k->of.n + 1), *rate = ARENA_ARRAY(c->arena, Real, k->of.n + 1);
+  Real *change = ARENA_ARRAY(c->arena, Real, c->n + 1), *force = ARENA_ARRAY(c->arena, Real, c->n + 1), *of = velocities ? c->v : c->q;
+  Real first = 0;
+  for (int round = 0; round < 40; round++) {
+    if (!check_run(c, k->residuals, (Real *const[]){position, rate})) return 0;
+    for (uint32_t i = 0; i < rows; i++) c->gap[i] = velocities ? -rate[i] : i < k->nholonomic ? -position[i] : 0;
+    Real left = largest(c->gap, rows);
+    if (round == 0) first = left;
+    if (!check_run(c, velocities ? k->velocity : k->position, (Real *const[]){change, force})) return 0;
+    for (uint32_t i = 0; i < c->n; i++) of[i] += change[i];
+    if (largest(change, c->n) <= 1e-16L * (1 + largest(of, c->n))) return left <= 1e-9L * first + 1e-13L * (1 + largest(of, c->n));
+  }
+  return 0;
+}
+
+int check_choose_state(Check *c, int attempt) {
+  const Model *m = c->m;
+  const IrUnit *u = c->u;
+  c->far = attempt % 3 == 2 && c->reach == 1;
+  if (!choose_parameters(c)) return 0;
+  c->t = u->scenes.at[c->scene].t0 + check_random(c, -0.5L, 2);
+  for (uint32_t i = 0; i < m->coords.n; i++) c->q[i] = beside(c, c->q0[i]);
+  for (uint32_t i = 0; i < m->coords.n; i++) c->v[i] = beside(c, c->v0[i]);
+  for (uint32_t i = 0; i < m->states.n; i++) c->z[i] = beside(c, c->z0[i]);
+  for (uint32_t i = 0; i < m->states.n; i++) c->zdd[i] = check_random(c, -1, 1);
+  if (!check_run(c, u->inputs, (Real *const[]){c->signal})) return 0;
+  for (uint32_t i = 0; i < m->inputs.n; i++) c->signal[i] += check_random(c, -0.5L, 0.5L);
+  for (uint32_t i = 0; i < u->contacts.n; i++) c->signal[u->contacts.at[i].input] = uniform(c) < 0.5L;
+  project_rotations(c);
+  Real before = largest(c->q, c->n);
+  if (!u->constraints.of.n) return 1;
+  int obeys = project(c, 0) && project(c, 1) && largest(c->q, c->n) > 1e-6L * before; /* not one where all is 0 */
+  if (!obeys && !c->far) c->reach /= 16; /* long chains of constraints are reached from nearby alone */
+  return obeys;
+}
+
+static int solve(Check *c, Real *a, Real *zd, Real *lambda) {
+  if (!check_run(c, c->u->accel, (Real *const[]){a, zd})) return 0;
+  if (!c->multipliers) return 1;
+  Real *found = ARENA_ARRAY(c->arena, Real, c->e->constraints.n + 1);
+  if (!check_run(c, c->multipliers, (Real *const[]){found})) return 0;
+  for (uint32_t k = 0; k < c->e->constraints.n; k++) lambda[c->e->constraints.of[k] - c->m->constraints.at] = found[k];
+  return 1;
+}
+
+/* error[n] := the larger of it and how far x is from y; what is no number says nothing. */
+static void note_difference(Real *error, const Real *x, const Real *y, uint32_t n) {
+  for (uint32_t i = 0; i < n; i++) error[i] = fabsl(x[i] - y[i]) > error[i] ? fabsl(x[i] - y[i]) : error[i];
+}
+
+/* By states that are a few last digits off. */
+static void bound_rounding(Check *c) {
+  enum { DIGITS = 16, TRIES = 2 };
+  const Model *m = c->m;
+  uint32_t n = c->n, nz = m->states.n, all = 2 * n + nz;
+  Real *state = ARENA_ARRAY(c->arena, Real, all + 1), *a = ARENA_ARRAY(c->arena, Real, n + nz + 1), *zd = ARENA_ARRAY(c->arena, Real, nz + 1);
+  Real *lambda = ARENA_ARRAY(c->arena, Real, m->constraints.n + 1), *const part[] = {c->q, c->v, c->z};
+  const uint32_t size[] = {n, n, nz};
+  for (uint32_t i = 0; i < n; i++) c->a_error[i] = 0;
+  for (uint32_t i = 0; i < nz; i++) c->zd_error[i] = 0;
+  for (uint32_t k = 0; k < m->constraints.n; k++) c->lambda_error[k] = 0;
+  for (int turn = 0; turn < TRIES; turn++) {
+    for (uint32_t p = 0, at = 0; p < 3; p++)
+      for (uint32_t i = 0; i < size[p]; i++) {
+        state[at++] = part[p][i];
+        part[p][i] *= 1 + DIGITS * jet_unit * check_random(c, -1, 1);
+      }
+    for (uint32_t k = 0; k < m->constraints.n; k++) lambda[k] = c->lambda[k];
+    int solved = solve(c, a, zd, lambda);
+    for (uint32_t p = 0, at = 0; p < 3; p++)
+      for (uint32_t i = 0; i < size[p]; i++) part[p][i] = state[at++];
+    if (!solved) continue;
+    note_difference(c->a_error, a, c->a, n);
+    note_difference(c->zd_error, zd, c->zd, nz);
+    note_difference(c->lambda_error, lambda, c->lambda, m->constraints.n);
+  }
+}
+
+/* The accelerations, rates and multipliers that the programs compute there. */
+int check_solve_motion(Check *c) {
+  if (!solve(c, c->a, c->zd, c->lambda)) return 0;
+  c->error = 4 * jet_unit * (largest(c->a, c->n) + largest(c->zd, c->m->states.n));
+  bound_rounding(c);
+  return 1;
+}
+
+/* --- room --- */
+
+static Real *room(const Check *c, uint32_t n) { return ARENA_ARRAY(c->arena, Real, n + 1); }
+
+void check_prepare(Check *c) {
+  const Model *m = c->m;
+  uint32_t n = m->coords.n, nz = m->states.n;
+  Real **const all[] = {&c->q, &c->v, &c->a, &c->q0, &c->v0, &c->c}, **const of_states[] = {&c->z, &c->zd, &c->zdd, &c->z0};
+  for (size_t k = 0; k < sizeof all / sizeof *all; k++) *all[k] = room(c, n + nz);
+  for (size_t k = 0; k < sizeof of_states / sizeof *of_states; k++) *of_states[k] = room(c, nz);
+  c->p = room(c, m->params.n + c->u->nderived);
+  c->given = room(c, m->params.n);
+  c->signal = room(c, m->inputs.n + m->scene.exacts.n);
+  c->lambda = room(c, m->constraints.n);
+  c->lambda_error = room(c, m->constraints.n);
+  c->a_error = room(c, n + nz);
+  c->zd_error = room(c, nz);
+  c->gap = room(c, m->constraints.n);
+  c->n = n;
+  c->dynamics = text_dynamics(m, c->arena);
+  c->outputs = text_outputs(m, c->e->outputs, c->e->noutputs, c->arena);
+  c->at = ARENA_ARRAY(c->arena, Jet, c->dynamics->tape->slots + 1);
+  c->at_outputs = ARENA_ARRAY(c->arena, Jet, c->outputs->tape->slots + 1);
+  c->multipliers = c->e->constraints.n ? lower_multipliers(c->e) : NULL;
+  choose_parameters(c);
+  check_run(c, c->u->scenes.at[c->scene].start, (Real *const[]){c->q0, c->v0, c->z0});
+}

@@ -1,0 +1,95 @@
+/* Values of the text that need no displacement, against those of the programs. */
+#include <math.h>
+
+#include "jets/check_impl.h"
+
+/* --- what needs no direction: jets are those of the last one --- */
+
+static Verdict check_flows(Check *c) {
+  const TextDynamics *d = c->dynamics;
+  Verdict v = AGREES;
+  for (uint32_t i = 0; i < c->m->states.n; i++)
+    if (d->flows[i]) v = worse(v, check_value(c, check_coefficient(d->tape, c->at, d->flows[i], 0, 0), c->zd[i], c->m->states.at[i].span, "the rate of", c->m->states.at[i].name));
+  return v;
+}
+
+/* The second rate of a holonomic constraint, the first of one on velocities. */
+static Verdict check_constraints(Check *c) {
+  const Constraints *k = &c->e->constraints;
+  Verdict v = AGREES;
+  for (uint32_t i = 0; i < k->n; i++) {
+    Ref r = c->dynamics->constraints[k->of[i] - c->m->constraints.at];
+    if (!r) continue;
+    Bounded rate = check_coefficient(c->dynamics->tape, c->at, r, 0, i < k->nholonomic ? 2 : 1);
+    Total t = {rate, 0, 0};
+    for (uint32_t j = 0; j < c->n; j++) t.size += fabsl(c->a[j]) + c->v[j] * c->v[j]; /* of the size of what it is made of: accelerations, */
+    for (uint32_t j = 0; j < c->m->constraints.n; j++) t.size += fabsl(c->lambda[j]); /* which forces may have left over */
+    v = worse(v, check_compare(c, &t, 0, k->of[i]->span, "the rate of the constraint", k->of[i]->name));
+  }
+  return v;
+}
+
+/* p q' - L, by the displacement along the velocity. */
+static Verdict check_energy(Check *c) {
+  const TextDynamics *d = c->dynamics;
+  Real value[2] = {0};
+  Total t = {0};
+  if (!c->u->energy || !d->lagrangian) return AGREES;
+  for (uint32_t i = 0; i < check_components(c); i++) c->c[i] = c->m->first_order ? c->zd[i] * c->m->states.at[i].coordinate : c->v[i];
+  if (!check_run_text(c) || !check_run(c, c->u->energy, (Real *const[]){value})) return DISMISSED;
+  total_add(&t, 1, check_coefficient(d->tape, c->at, d->lagrangian, 2, 0));
+  total_add(&t, -1, check_coefficient(d->tape, c->at, d->lagrangian, 0, 0));
+  return check_compare(c, &t, value[0], c->m->lagrangian_span, "the energy", NULL);
+}
+
+static Verdict check_events(Check *c) {
+  const TextOutputs *o = c->outputs;
+  const Model *m = c->m;
+  Real *g = ARENA_ARRAY(c->arena, Real, m->events.n + 1), *set[3];
+  Verdict v = AGREES;
+  if (!m->events.n || !check_run(c, c->u->event_values, (Real *const[]){g})) return AGREES;
+  for (uint32_t i = 0; i < m->events.n; i++)
+    if (o->events[i]) v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, o->events[i], 0, 0), g[i], m->events.at[i].span, "the event", m->events.at[i].name));
+  for (int k = 0; k < 3; k++) set[k] = ARENA_ARRAY(c->arena, Real, (k < 2 ? m->coords.n : m->states.n) + 1);
+  for (uint32_t i = 0; i < o->actions.n; i++) {
+    const TextAction *a = &o->actions.at[i];
+    if (!a->value || !check_run(c, c->u->events.at[a->event].action, set)) continue;
+    v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, a->value, 0, 0), set[a->kind == SYM_COORD ? 0 : a->kind == SYM_VEL ? 1 : 2][a->index],
+                               m->events.at[a->event].span, "what is set by the event", m->events.at[a->event].name));
+  }
+  return v;
+}
+
+static Verdict check_outputs(Check *c) {
+  const TextOutputs *o = c->outputs;
+  const Eqns *e = c->e;
+  const IrScene *scene = &c->u->scenes.at[c->scene];
+  Real *value = ARENA_ARRAY(c->arena, Real, e->noutputs + 1);
+  Verdict v = AGREES;
+  if (!e->noutputs || c->m->scene.exacts.n || !check_run(c, scene->observe, (Real *const[]){value})) return AGREES;
+  for (uint32_t i = 0; i < e->noutputs; i++)
+    if (o->outputs[i]) v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, o->outputs[i], 0, 0), value[i], e->outputs[i].span, "the output", e->outputs[i].name));
+  return v;
+}
+
+static Verdict check_signals(Check *c) {
+  const TextOutputs *o = c->outputs;
+  Real *value = ARENA_ARRAY(c->arena, Real, c->m->inputs.n + 1);
+  Verdict v = AGREES;
+  if (!c->m->inputs.n || !check_run(c, c->u->inputs, (Real *const[]){value})) return AGREES;
+  for (uint32_t i = 0; i < c->m->inputs.n; i++)
+    if (o->signals[i]) v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, o->signals[i], 0, 0), value[i], c->m->inputs.at[i].span, "the input", c->m->inputs.at[i].name));
+  return v;
+}
+
+Verdict check_dynamic_values(Check *c) {
+  Verdict v = worse(check_flows(c), check_constraints(c));
+  if (v != DISAGREES) v = check_energy(c);
+  return v == DISAGREES ? v : AGREES; /* values that rounding leaves nothing of decide nothing */
+}
+
+Verdict check_other_values(Check *c) {
+  int unsure = 0;
+  tape_run(c->outputs->tape, check_input, c, c->at_outputs, &unsure);
+  return unsure ? DISMISSED : worse(worse(check_events(c), check_outputs(c)), check_signals(c));
+}

@@ -1,0 +1,62 @@
+/* Jet: a number along a motion and two virtual displacements of it, by truncated Taylor arithmetic.
+ *
+ *   x(s, e1, e2) = sum over k < JET_ORDERS of (c[0][k] + e1 c[1][k] + e2 c[2][k]) s^k,   e1^2 = e2^2 = e1 e2 = 0
+ *
+ * s is the time since the state, e1 and e2 are the sizes of the displacements. Each coefficient carries a bound on its own rounding
+ * error, to first order (running error analysis: N.J. Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 3.3,
+ * doi:10.1137/1.9780898718027). Taylor arithmetic: A. Griewank and A. Walther, Evaluating Derivatives, 2008, chapter 13,
+ * doi:10.1137/1.9780898717761. Nothing here knows the expression graph. */
+#ifndef LAGC_JET_H
+#define LAGC_JET_H
+
+typedef long double JetReal;
+
+enum { JET_ORDERS = 3, JET_PLANES = 3 };
+
+/* A value and a bound on its rounding error. */
+typedef struct {
+  JetReal v, e;
+} Bounded;
+
+typedef struct {
+  Bounded c[JET_PLANES][JET_ORDERS];
+  int moves; /* 0: a constant; coefficients but c[0][0] are 0 and not to be read */
+} Jet;
+
+/* Half the distance of two neighbouring numbers, relative. */
+extern const JetReal jet_unit;
+
+/* A constant; an exact one has no error. */
+Jet jet_exact(JetReal v);
+Jet jet_rounded(JetReal v);
+
+/* Coefficient k of plane p, 0 of constants. */
+static inline Bounded jet_at(const Jet *x, int p, int k) {
+  return x->moves || (p == 0 && k == 0) ? x->c[p][k] : (Bounded){0, 0};
+}
+
+void jet_add(Jet *out, const Jet *x, const Jet *y); /* out may be x or y, here and below */
+void jet_sub(Jet *out, const Jet *x, const Jet *y);
+void jet_neg(Jet *out, const Jet *x);
+void jet_mul(Jet *out, const Jet *x, const Jet *y);
+void jet_div(Jet *out, const Jet *x, const Jet *y);
+
+/* The rate along the motion: the highest order is lost, and 0. */
+void jet_rate(Jet *out, const Jet *x);
+
+/* x^n. Thirds of powers are real roots; other fractional powers of a negative x are NaN. */
+void jet_power(Jet *out, const Jet *x, JetReal exponent, int is_third);
+
+/* A function of the C library by its name: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, fabs. 0: unknown. */
+int jet_function(Jet *out, const char *name, const Jet *x);
+void jet_atan2(Jet *out, const Jet *y, const Jet *x);
+void jet_hypot(Jet *out, const Jet *x, const Jet *y);
+void jet_pow(Jet *out, const Jet *x, const Jet *y); /* a varying exponent: x > 0 */
+
+/* x op y of values alone, for the programs that have no motion. */
+Bounded bounded_add(Bounded x, Bounded y);
+Bounded bounded_sub(Bounded x, Bounded y);
+Bounded bounded_mul(Bounded x, Bounded y);
+Bounded bounded_div(Bounded x, Bounded y);
+
+#endif

@@ -1,0 +1,78 @@
+#include "jets/no_value.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "jets/check_impl.h"
+
+typedef struct {
+  const double *number;
+  uint32_t n;
+} Numbers;
+
+static void take(Real *to, uint32_t n, const double **from) {
+  for (uint32_t i = 0; i < n; i++) to[i] = *(*from)++;
+}
+
+/* The state that the numbers say. 0: they are not as many as this model has. */
+static int take_state(Check *c, const Numbers *of) {
+  const Model *m = c->m;
+  uint32_t variables = 1 + 2 * c->n + m->states.n, parameters = of->n - variables;
+  const double *at = of->number;
+  if (of->n < variables || parameters > m->params.n + c->u->nderived) return 0;
+  take(&c->t, 1, &at);
+  take(c->q, c->n, &at);
+  take(c->v, c->n, &at);
+  take(c->z, m->states.n, &at);
+  take(c->p, parameters, &at);
+  if (c->u->derived && !check_run(c, c->u->derived, (Real *const[]){c->p})) return 0;
+  for (uint32_t i = 0; i < m->params.n; i++) c->given[i] = m->params.at[i].fixed ? (Real)num_value(m->params.at[i].number) : c->p[m->params.at[i].place];
+  for (uint32_t i = 0; i < c->n + m->states.n; i++) c->c[i] = 1;
+  return 1;
+}
+
+/* Which expression it is, and what it was given. */
+static void say(Check *c, const Tape *t, const Jet *at, Ref r) {
+  const TapeIns *i = &t->ins.at[r];
+  const Real x = tape_value(t, at, i->a)->c[0][0].v, y = i->b ? tape_value(t, at, i->b)->c[0][0].v : 0, value = tape_value(t, at, r)->c[0][0].v;
+  const char *of = fabsl(value) <= DBL_MAX ? "its derivatives have" : "it has", *format = i->op == TAPE_DIV ? "%.6Lg divided by %.6Lg" : i->b ? "of %.6Lg and %.6Lg" : "of %.6Lg";
+  char operands[80];
+  Diags *d = c->m->diags;
+  snprintf(operands, sizeof operands, format, x, y);
+  diag_note(d, ast_expr(c->m->builder->ast, i->at)->span, "the run ends here, where %s no finite value: %s", of, operands);
+  diag_help(d, "at %s", check_state_text(c));
+}
+
+static int look(Check *c, const Tape *t, int derivatives, Jet *at) {
+  Ref r = tape_first_not_finite(t, check_input, c, derivatives, at);
+  if (!r || !t->ins.at[r].at) return 0;
+  say(c, t, at, r);
+  return 1;
+}
+
+static int find(Check *c, const void *data) {
+  check_prepare(c);
+  if (!take_state(c, data)) return 0;
+  const Check start = *c;
+  Real *q = ARENA_ARRAY(c->arena, Real, c->n + 1), *v = ARENA_ARRAY(c->arena, Real, c->n + 1), *z = ARENA_ARRAY(c->arena, Real, c->m->states.n + 1);
+  if (!check_solve_motion(c))
+    for (uint32_t i = 0; i < c->n; i++) c->a[i] = 0;
+  for (uint32_t i = 0; i < c->n; i++) q[i] = c->q[i], v[i] = c->v[i], c->a[i] = isfinite(c->a[i]) ? c->a[i] : 0;
+  for (uint32_t i = 0; i < c->m->states.n; i++) z[i] = c->z[i], c->zd[i] = isfinite(c->zd[i]) ? c->zd[i] : 0;
+  const Real shortest = 1e-14L * (1 + fabsl(start.t)), longest = 0.1L * (1 + fabsl(start.t));
+  for (int derivatives = 0; derivatives < 2; derivatives++) /* values before derivatives: these grow faster */
+    for (Real h = 0; h < longest; h = h > 0 ? 2 * h : shortest) {
+      c->t = start.t + h;
+      for (uint32_t i = 0; i < c->n; i++) c->q[i] = q[i] + h * (v[i] + h / 2 * c->a[i]), c->v[i] = v[i] + h * c->a[i];
+      for (uint32_t i = 0; i < c->m->states.n; i++) c->z[i] = z[i] + h * c->zd[i];
+      if (!check_run(c, c->u->inputs, (Real *const[]){c->signal})) continue;
+      if (look(c, c->dynamics->tape, derivatives, c->at) || look(c, c->outputs->tape, derivatives, c->at_outputs)) return 1;
+    }
+  return 0;
+}
+
+int no_value_note(const Eqns *e, const IrUnit *u, const double *number, uint32_t n) {
+  SelfCheck told;
+  return check_with(e, u, 0, &told, find, &(Numbers){number, n});
+}

@@ -1,0 +1,106 @@
+#include "jets/check_impl.h"
+
+#include <float.h>
+#include <math.h>
+
+/* A program computes in the same precision as jets, but numbers that were reckoned when compiling are rounded to doubles, 2^11 times
+ * coarser; and each of the two may be as far off as its own roundings. 2^16 times the bound of the jets leaves 16 for the program's. */
+static const Real SLACK = 65536;
+
+/* Beside the bound, a difference counts from this part of the terms it is made of: a program may cancel where the text does not. Far from the start
+ * terms are larger than what is left of them, and it takes more. */
+static const Real NEAR_PART = 1e-9L, FAR_PART = 1e-4L;
+
+enum { STATES_WANTED = 5, STATES_FEW = 3, SHORT_TAPE = 300, ATTEMPTS = 24, ENDLESS_TAPE = 600000 };
+
+void total_add(Total *t, Real factor, Bounded x) {
+  Bounded term = bounded_mul((Bounded){factor, 0}, x);
+  t->sum = bounded_add(t->sum, term);
+  t->size += fabsl(term.v);
+}
+
+/* --- comparing --- */
+
+const char *check_state_text(const Check *c) {
+  enum { MOST = 8 };
+  StrBuf s = strbuf(c->arena);
+  for (uint32_t i = 0; i < c->m->coords.n && i < MOST; i++) sb_printf(&s, "%s = %.17Lg, %s' = %.17Lg, ", c->m->coords.at[i].name, c->q[i], c->m->coords.at[i].name, c->v[i]);
+  for (uint32_t i = 0; i < c->m->states.n && i < MOST; i++) sb_printf(&s, "%s = %.17Lg, ", c->m->states.at[i].name, c->z[i]);
+  for (uint32_t i = 0; i < c->m->params.n && i < 2 * MOST; i++) sb_printf(&s, "%s = %.17Lg, ", c->m->params.at[i].name, c->given[i]);
+  sb_printf(&s, "t = %.17Lg", c->t);
+  return sb_text(&s);
+}
+
+/* The text says `t`, up to t->sum.e, and is made of terms that add up to t->size; the program says `program`. */
+Verdict check_compare(Check *c, const Total *t, Real program, Span span, const char *what, const char *name) {
+  Real difference = fabsl(t->sum.v - program), size = t->size + fabsl(program), bound = SLACK * (t->sum.e + jet_unit * t->around);
+  if (!isfinite(t->sum.v) || !isfinite(t->sum.e) || !isfinite(t->around) || t->size > DBL_MAX) return DISMISSED;
+  if (isfinite(program) && bound > 1e-3L * (size + t->around)) return DISMISSED; /* nothing is left of it */
+  c->told->values++;
+  if (difference <= bound || difference <= (c->far ? FAR_PART : NEAR_PART) * size) return AGREES;
+  diag_error(c->m->diags, span, "internal error: %s%s%s: the text gives %.12Lg, the compiled program %.12Lg", what, name ? " " : "", name ? name : "",
+             t->sum.v, program);
+  diag_help(c->m->diags, "at %s; nothing was written. This is a mistake in lagc, not in the model: please report it", check_state_text(c));
+  return DISAGREES;
+}
+
+Verdict check_value(Check *c, Bounded text, Real program, Span span, const char *what, const char *name) {
+  Total t = {text, fabsl(text.v), 0};
+  return check_compare(c, &t, program, span, what, name);
+}
+
+static int is_finite(const Real *x, uint32_t n) {
+  while (n > 0 && isfinite(x[n - 1])) n--;
+  return n == 0;
+}
+
+static Verdict check_state(Check *c, int dynamics) {
+  Verdict v = DISMISSED;
+  if (dynamics && !c->dynamics->why) v = worse(check_equations(c), AGREES);
+  if (v == AGREES) v = check_dynamic_values(c);
+  if (v != DISAGREES && check_other_values(c) == DISAGREES) v = DISAGREES;
+  return v == AGREES ? check_motion(c) : v;
+}
+
+static int check_states(Check *c, const void *data) {
+  (void)data;
+  check_prepare(c);
+  uint32_t length = c->dynamics->tape->ins.n, wanted = length > LONG_TAPE ? 1 : length > SHORT_TAPE || c->m->constraints.n ? STATES_FEW : STATES_WANTED;
+  c->told->not_known = c->dynamics->why;
+  for (int attempt = 0; attempt < ATTEMPTS && c->told->states < wanted; attempt++) {
+    if (!check_choose_state(c, attempt)) continue;
+    int solved = check_solve_motion(c) && is_finite(c->a, c->n) && is_finite(c->zd, c->m->states.n);
+    Verdict v = !solved ? check_failure(c) : check_state(c, length <= ENDLESS_TAPE);
+    if (v == DISAGREES) return 0;
+    c->told->states += v == AGREES;
+    c->told->far += v == AGREES && c->far;
+  }
+  return 1;
+}
+
+int check_with(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *told, int (*run)(Check *c, const void *data), const void *data) {
+  jmp_buf out_of_memory;
+  Arena *scratch = arena_new(NULL);
+  if (!scratch) arena_fail(e->m->arena);
+  if (setjmp(out_of_memory)) {
+    arena_free(scratch);
+    arena_fail(e->m->arena);
+  }
+  arena_guard(scratch, &out_of_memory);
+  *told = (SelfCheck){0};
+  Check c = {.e = e, .m = e->m, .u = u, .scene = scene, .arena = scratch, .random = 20261122, .reach = 1, .told = told};
+  int result = run(&c, data);
+  arena_free(scratch);
+  return result;
+}
+
+int self_check(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *told) { return check_with(e, u, scene, told, check_states, NULL); }
+
+void self_check_print(const Eqns *e, const SelfCheck *told, StrBuf *out) {
+  const Model *m = e->m;
+  sb_printf(out, "compared with the text%s%s: %u value%s at %u state%s, %u of them far from the start", m->scene.name ? ", scene " : "", m->scene.name ? m->scene.name : "",
+            told->values, told->values == 1 ? "" : "s", told->states, told->states == 1 ? "" : "s", told->far);
+  if (told->directions) sb_printf(out, "; equations of motion along %u displacement%s at each", told->directions, told->directions == 1 ? "" : "s");
+  sb_puts(out, told->states ? "\n" : ": nothing was decided\n");
+  if (told->not_known) sb_printf(out, "  not compared: the equations of motion, whose text has `%s`, which the comparison does not evaluate\n", told->not_known);
+}

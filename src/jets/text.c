@@ -1,0 +1,236 @@
+/* The nodes of an expression are contiguous and children come first: evaluation is a loop over them, which runs through the body of a sum
+ * once a term, and leaves out the branch of an `if` that is not taken. What waits for a definition or a call stays on a stack of
+ * frames, so that neither nesting nor chains of definitions use the C stack. */
+#include "jets/text.h"
+
+#include <stdlib.h>
+
+#include "jets/text_impl.h"
+
+static const Meaning NOTHING = {0};
+
+static Meaning unknown(Text *t, const char *why) {
+  if (!t->why) t->why = why;
+  return NOTHING;
+}
+
+static Meaning number_of(Text *t, Num n) { return (Meaning){.at = {tape_number(t->tape, n)}, .bare = 1}; }
+
+/* --- frames --- */
+
+/* Marks where bodies of sums and branches of `if` begin. */
+static void mark(const Text *t, Frame *f) {
+  const Ast *ast = t->b->ast;
+  for (AstId i = f->first; i <= f->root; i++) {
+    const AstExpr *x = ast_expr(ast, i);
+    if (x->kind == AST_SUM || x->kind == AST_PRODUCT) f->guard[ast_expr(ast, x->c)->first - f->first] = i;
+    if (x->kind != AST_CALL || strcmp(x->name, "if") != 0 || !x->args) continue;
+    AstId yes = ast_expr(ast, x->args)->next, no = yes ? ast_expr(ast, yes)->next : 0;
+    if (!no) continue;
+    f->guard[ast_expr(ast, yes)->first - f->first] = i;
+    f->guard[ast_expr(ast, no)->first - f->first] = i;
+  }
+}
+
+static Frame *begin(Text *t, AstId id, Name effect, Awaited what) {
+  Frame *f = t->idle.n ? t->idle.at[--t->idle.n] : ARENA_NEW(t->arena, Frame);
+  uint32_t n = id - ast_expr(t->b->ast, id)->first + 1;
+  if (n > f->cap) {
+    f->cap = n < 8 ? 8 : n;
+    f->value = ARENA_ARRAY(t->arena, Meaning, f->cap);
+    f->guard = ARENA_ARRAY(t->arena, AstId, f->cap);
+  }
+  memset(f->value, 0, n * sizeof *f->value);
+  memset(f->guard, 0, n * sizeof *f->guard);
+  f->first = f->pc = id - n + 1;
+  f->root = id;
+  f->effect = effect;
+  f->what = what;
+  f->index.n = f->loops.n = 0;
+  f->returned = f->waits = 0;
+  f->function = NULL;
+  mark(t, f);
+  return f;
+}
+
+static void push_indices(Text *t, Frame *f, const IndexVar *at, uint32_t n) {
+  for (uint32_t k = 0; k < n; k++)
+    if (at[k].name) vec_push(t->arena, &f->index, at[k]);
+}
+
+/* The frame of what `f` waits for. */
+static Frame *begin_awaited(Text *t, Frame *f) {
+  Awaited w = f->needs;
+  if (w.kind == ENT_CONST) {
+    const Constant *c = &t->b->constants.at[w.index];
+    return begin(t, c->given, c->effect, w);
+  }
+  const Definition *d = w.kind == ENT_LET ? &t->b->lets.at[w.index] : w.kind == ENT_OBSERVE ? &t->b->observes.at[w.index] : &t->b->functions.at[w.index];
+  Frame *g = begin(t, d->stmt->rhs, d->effect, w);
+  push_indices(t, g, d->index, 2);
+  push_indices(t, g, d->around, d->naround);
+  if (w.kind != ENT_FUNCTION) return g;
+  g->function = d;
+  g->nargs = 0;
+  g->args = ARENA_ARRAY(t->arena, Meaning, f->pc - f->first + 1); /* there are fewer arguments than nodes before the call */
+  for (AstId i = ast_expr(t->b->ast, f->pc)->args; i; i = ast_expr(t->b->ast, i)->next) g->args[g->nargs++] = f->value[i - f->first];
+  return g;
+}
+
+/* A finished definition takes its value; a call returns it. */
+static void finish(Text *t, Frame *f, Frame *caller) {
+  Meaning v = f->value[f->root - f->first];
+  const AstStmt *observe = f->what.kind == ENT_OBSERVE ? t->b->observes.at[f->what.index].stmt : NULL;
+  const Unit *unit = f->what.kind == ENT_CONST ? &t->b->constants.at[f->what.index].unit : NULL;
+  Unit own;
+  if (observe && observe->unit.n) {
+    own = unit_resolve(&observe->unit, t->b->dims, t->b->diags, t->m->arena);
+    unit = &own;
+  }
+  for (uint32_t k = 0; unit && v.at[0] && k < meaning_parts(&v); k++) v.at[k] = text_component(t, &v, k, unit);
+  if (f->what.kind != ENT_CONST || unit->text[0]) v.bare = 0;
+  if (f->what.kind == ENT_LET) t->lets[f->what.index] = v;
+  if (f->what.kind == ENT_OBSERVE) t->observes[f->what.index] = v;
+  if (f->what.kind == ENT_CONST) t->constants[f->what.index] = v;
+  caller->result = v;
+  caller->returned = 1;
+}
+
+/* --- sums and products --- */
+
+static int whole(const Text *t, const Meaning *v, int64_t *out) {
+  Num n;
+  if (v->n || !tape_is_number(t->tape, v->at[0], &n) || n.den != 1) return 0;
+  *out = n.num;
+  return 1;
+}
+
+/* Starts a loop; 0: its value is there already. */
+static int loop_enter(Text *t, Frame *f, AstId id) {
+  const AstExpr *x = ast_expr(t->b->ast, id);
+  int64_t lo, hi;
+  Meaning *r = &f->value[id - f->first];
+  if (!whole(t, &f->value[x->a - f->first], &lo) || !whole(t, &f->value[x->b - f->first], &hi)) {
+    *r = unknown(t, "a range");
+    return 0;
+  }
+  *r = number_of(t, num_int(x->kind == AST_PRODUCT));
+  if (lo > hi) return 0;
+  vec_push(t->arena, &f->loops, ((TextLoop){.construct = id, .at = lo, .hi = hi}));
+  vec_push(t->arena, &f->index, ((IndexVar){x->name, lo}));
+  return 1;
+}
+
+/* Takes a term in; 1: the body once more. */
+static int loop_again(Text *t, Frame *f) {
+  TextLoop *l = &f->loops.at[f->loops.n - 1];
+  const AstExpr *x = ast_expr(t->b->ast, l->construct);
+  const Meaning *term = &f->value[x->c - f->first];
+  l->sum = l->terms++ == 0 ? *term : text_pair(t, x->kind == AST_SUM ? AST_ADD : AST_MUL, &l->sum, term);
+  if (l->at < l->hi && l->sum.at[0]) {
+    f->index.at[f->index.n - 1].at = ++l->at;
+    memset(&f->value[ast_expr(t->b->ast, x->c)->first - f->first], 0, (x->c - ast_expr(t->b->ast, x->c)->first + 1) * sizeof *f->value);
+    return 1;
+  }
+  f->value[l->construct - f->first] = l->sum;
+  f->loops.n--;
+  f->index.n--;
+  return 0;
+}
+
+/* --- the loop over nodes --- */
+
+/* Where to go on when node pc begins the body of a sum or a branch; 0: at pc. */
+static AstId enter(Text *t, Frame *f, AstId construct) {
+  const Ast *ast = t->b->ast;
+  const AstExpr *x = ast_expr(ast, construct);
+  if (x->kind != AST_CALL) {
+    int inside = f->loops.n && f->loops.at[f->loops.n - 1].construct == construct;
+    return inside || loop_enter(t, f, construct) ? 0 : construct;
+  }
+  Num c;
+  if (!tape_is_number(t->tape, f->value[x->args - f->first].at[0], &c)) return 0;
+  AstId yes = ast_expr(ast, x->args)->next, no = ast_expr(ast, yes)->next;
+  int second = ast_expr(ast, no)->first == f->pc, taken = !num_is_zero(c);
+  if (second) return taken ? construct : 0;
+  return taken ? 0 : ast_expr(ast, no)->first;
+}
+
+/* 1 when the root has its value; 0 when f->needs must be evaluated first. */
+static int run(Text *t, Frame *f) {
+  const Ast *ast = t->b->ast;
+  while (f->pc <= f->root && !t->tape->too_long) {
+    AstId construct = f->guard[f->pc - f->first], to = construct && !f->returned ? enter(t, f, construct) : 0;
+    if (to) f->pc = to;
+    const AstExpr *x = ast_expr(ast, f->pc);
+    int is_loop = x->kind == AST_SUM || x->kind == AST_PRODUCT;
+    if (!is_loop) { /* its loop left its value there */
+      t->tape->node = f->pc;
+      Meaning v = text_node(t, f, f->pc);
+      if (f->waits) return 0;
+      f->value[f->pc - f->first] = v;
+    }
+    f->returned = 0;
+    if (f->loops.n && ast_expr(ast, f->loops.at[f->loops.n - 1].construct)->c == f->pc && loop_again(t, f)) {
+      f->pc = ast_expr(ast, f->pc)->first;
+      continue;
+    }
+    f->pc++;
+  }
+  return 1;
+}
+
+Meaning text_value(Text *t, AstId id, Name effect, const IndexVars *around) {
+  VEC(Frame *) stack = {0};
+  Frame *root = begin(t, id, effect, (Awaited){ENT_NONE, 0});
+  push_indices(t, root, around->at, around->n);
+  vec_push(t->arena, &stack, root);
+  for (;;) {
+    Frame *f = stack.at[stack.n - 1];
+    if (!run(t, f)) {
+      f->waits = 0;
+      t->tape->too_long |= stack.n >= FRAMES_MAX;
+      if (t->tape->too_long) return unknown(t, "an expression that is too long");
+      Frame *g = begin_awaited(t, f);
+      vec_push(t->arena, &stack, g);
+      continue;
+    }
+    if (t->tape->too_long) return unknown(t, "an expression that is too long");
+    vec_push(t->arena, &t->idle, f);
+    if (--stack.n == 0) return f->value[f->root - f->first];
+    finish(t, f, stack.at[stack.n - 1]);
+  }
+}
+
+int text_range(Text *t, AstId lo, AstId hi, Name effect, const IndexVars *around, int64_t *from, int64_t *to) {
+  Meaning a = text_value(t, lo, effect, around), b = text_value(t, hi, effect, around);
+  return whole(t, &a, from) && whole(t, &b, to);
+}
+
+/* Members of long families one after the other, as they mostly lead to those before them: a chain waits for no one then. */
+static void begin_families(Text *t) {
+  enum { LONG = 256 };
+  static const IndexVars none;
+  for (uint32_t i = 0; i < t->b->lets.n && t->b->lets.n > LONG && !t->tape->too_long; i++) {
+    const Definition *d = &t->b->lets.at[i];
+    IndexVars around = none;
+    for (int k = 0; k < 2; k++)
+      if (d->index[k].name) vec_push(t->arena, &around, d->index[k]);
+    if (t->lets[i].at[0]) continue;
+    Meaning v = text_value(t, d->stmt->rhs, d->effect, &around);
+    v.bare = 0;
+    t->lets[i] = v;
+  }
+  t->why = NULL;
+}
+
+Text *text_new(const Model *m, Arena *a) {
+  Text *t = ARENA_NEW(a, Text);
+  const Builder *b = m->builder;
+  *t = (Text){.m = m, .b = b, .arena = a, .tape = tape_new(a)};
+  t->lets = ARENA_ARRAY(a, Meaning, b->lets.n + 1);
+  t->observes = ARENA_ARRAY(a, Meaning, b->observes.n + 1);
+  t->constants = ARENA_ARRAY(a, Meaning, b->constants.n + 1);
+  begin_families(t);
+  return t;
+}

@@ -1,0 +1,371 @@
+/* One node of an expression of the text. */
+#include <stdlib.h>
+
+#include "jets/text_impl.h"
+
+static const Meaning NOTHING = {0};
+
+static Meaning unknown(Text *t, const char *why) {
+  if (!t->why) t->why = why;
+  return NOTHING;
+}
+
+static const Meaning *operand(const Frame *f, AstId id) { return &f->value[id - f->first]; }
+static Meaning scalar(Ref r, int bare) { return (Meaning){.at = {r}, .bare = bare}; }
+static Ref two(Text *t, TapeOp op, Ref a, Ref b) { return tape_op(t->tape, op, a, b, 0); }
+static Ref negative(Text *t, Ref a) { return tape_op(t->tape, TAPE_NEG, a, 0, 0); }
+
+/* --- units --- */
+
+static Ref times_unit(Text *t, Ref r, const Unit *u) {
+  Ref pi = u->pi_power ? tape_pi(t->tape) : 0;
+  if (pi) r = two(t, TAPE_MUL, r, tape_power(t->tape, pi, num_int(u->pi_power)));
+  if (!num_is_one(u->factor)) r = two(t, TAPE_MUL, r, tape_number(t->tape, u->factor));
+  return num_is_zero(u->offset) ? r : two(t, TAPE_ADD, r, tape_number(t->tape, u->offset));
+}
+
+Ref text_component(Text *t, const Meaning *v, uint32_t k, const Unit *unit) { return v->bare ? times_unit(t, v->at[k], unit) : v->at[k]; }
+
+static Meaning unit_node(Text *t, const Meaning *v, const AstExpr *x) {
+  Unit u = unit_resolve(&x->unit, t->b->dims, t->b->diags, t->m->arena);
+  Meaning r = {.n = v->n};
+  for (uint32_t k = 0; v->at[0] && k < meaning_parts(v); k++) r.at[k] = times_unit(t, v->at[k], &u);
+  return r;
+}
+
+/* --- rotations: quaternions (w, x, y, z) --- */
+
+static Ref plus(Text *t, Ref a, Ref b) { return two(t, TAPE_ADD, a, b); }
+static Ref minus(Text *t, Ref a, Ref b) { return two(t, TAPE_SUB, a, b); }
+static Ref times(Text *t, Ref a, Ref b) { return two(t, TAPE_MUL, a, b); }
+
+static void cross(Text *t, const Ref *u, const Ref *v, Ref *out) {
+  for (int k = 0; k < 3; k++) {
+    int i = (k + 1) % 3, j = (k + 2) % 3;
+    Ref a = times(t, u[i], v[j]), b = times(t, u[j], v[i]);
+    out[k] = minus(t, a, b);
+  }
+}
+
+static Ref dot(Text *t, const Ref *u, const Ref *v, uint32_t n) {
+  Ref r = times(t, u[0], v[0]);
+  for (uint32_t k = 1; k < n; k++) r = plus(t, r, times(t, u[k], v[k]));
+  return r;
+}
+
+/* (a, u)(b, v) = (ab - u.v, a v + b u + u x v) */
+static Meaning product(Text *t, const Meaning *p, const Meaning *q) {
+  Meaning r = {.n = ROTATION};
+  Ref across[3];
+  cross(t, p->at + 1, q->at + 1, across);
+  r.at[0] = minus(t, times(t, p->at[0], q->at[0]), dot(t, p->at + 1, q->at + 1, 3));
+  for (int k = 0; k < 3; k++) r.at[k + 1] = plus(t, plus(t, times(t, p->at[0], q->at[k + 1]), times(t, q->at[0], p->at[k + 1])), across[k]);
+  r.scale = p->scale && q->scale ? times(t, p->scale, q->scale) : p->scale ? p->scale : q->scale;
+  return r;
+}
+
+/* v + 2 u x (u x v + w v) */
+Meaning text_turned(Text *t, const Meaning *q, const Meaning *v) {
+  Meaning r = {.n = 3};
+  Ref inner[3], outer[3], twice = tape_number(t->tape, num_int(2));
+  cross(t, q->at + 1, v->at, inner);
+  for (int k = 0; k < 3; k++) inner[k] = plus(t, inner[k], times(t, q->at[0], v->at[k]));
+  cross(t, q->at + 1, inner, outer);
+  for (int k = 0; k < 3; k++) {
+    r.at[k] = plus(t, v->at[k], times(t, twice, outer[k]));
+    if (q->scale) r.at[k] = times(t, q->scale, r.at[k]);
+  }
+  return r;
+}
+
+static Meaning conjugate(Text *t, const Meaning *q) {
+  Meaning r = *q;
+  for (int k = 1; k < ROTATION; k++) r.at[k] = negative(t, q->at[k]);
+  return r;
+}
+
+/* The angular velocity in the body's frame: 2 (conj(q) q') without its first part. */
+static Meaning spin(Text *t, const Meaning *q) {
+  Meaning back = conjugate(t, q), rates = *q, r = {.n = 3};
+  for (int k = 0; k < ROTATION; k++) rates.at[k] = tape_op(t->tape, TAPE_RATE, q->at[k], 0, 0);
+  Meaning w = product(t, &back, &rates);
+  Ref twice = tape_number(t->tape, num_int(2));
+  for (int k = 0; k < 3; k++) r.at[k] = times(t, twice, w.at[k + 1]);
+  return r;
+}
+
+static Meaning turn(Text *t, const Meaning *axis, const Meaning *angle) {
+  Ref half = two(t, TAPE_DIV, angle->at[0], tape_number(t->tape, num_int(2)));
+  Ref length = tape_power(t->tape, dot(t, axis->at, axis->at, 3), num_ratio(1, 2));
+  Ref s = two(t, TAPE_DIV, tape_function(t->tape, "sin", half), length);
+  Meaning r = {.n = ROTATION, .at = {tape_function(t->tape, "cos", half)}};
+  for (int k = 0; k < 3; k++) r.at[k + 1] = times(t, s, axis->at[k]);
+  return r;
+}
+
+/* --- operators --- */
+
+/* A rotation and a number: scaled, to be applied to a vector later. */
+static Meaning scaled_rotation(Text *t, AstKind op, const Meaning *q, const Meaning *number) {
+  Meaning r = *q;
+  Ref one = tape_number(t->tape, num_int(1)), scale = q->scale ? q->scale : one;
+  r.scale = two(t, op == AST_DIV ? TAPE_DIV : TAPE_MUL, scale, number->at[0]);
+  return r;
+}
+
+Meaning text_pair(Text *t, AstKind op, const Meaning *x, const Meaning *y) {
+  static const TapeOp ops[] = {[AST_ADD] = TAPE_ADD, [AST_SUB] = TAPE_SUB, [AST_MUL] = TAPE_MUL, [AST_DIV] = TAPE_DIV};
+  if (!x->at[0] || !y->at[0]) return NOTHING;
+  if (op == AST_MUL && x->n == ROTATION && y->n == ROTATION) return product(t, x, y);
+  if (op == AST_MUL && x->n == ROTATION && y->n) return text_turned(t, x, y);
+  if (x->n == ROTATION) return scaled_rotation(t, op, x, y);
+  if (y->n == ROTATION) return scaled_rotation(t, op, y, x);
+  Meaning r = {.n = x->n ? x->n : y->n, .bare = x->bare && y->bare};
+  for (uint32_t k = 0; k < meaning_parts(&r); k++) r.at[k] = two(t, ops[op], x->at[x->n ? k : 0], y->at[y->n ? k : 0]);
+  return r;
+}
+
+static Meaning power(Text *t, const Meaning *x, const Meaning *y) {
+  Num n;
+  if (!x->at[0] || !y->at[0]) return NOTHING;
+  Ref r = tape_is_number(t->tape, y->at[0], &n) ? tape_power(t->tape, x->at[0], n) : two(t, TAPE_POW, x->at[0], y->at[0]);
+  return scalar(r, x->bare && y->bare);
+}
+
+static Meaning comparison(Text *t, const Frame *f, const AstExpr *x) {
+  Ref l = operand(f, x->a)->at[0], r = operand(f, x->b)->at[0];
+  int swapped = x->kind == AST_GT || x->kind == AST_GE;
+  TapeOp op = x->kind == AST_LT || x->kind == AST_GT ? TAPE_LT : x->kind == AST_LE || x->kind == AST_GE ? TAPE_LE : TAPE_EQ;
+  Ref c = two(t, op, swapped ? r : l, swapped ? l : r);
+  return scalar(x->kind == AST_NE ? tape_op(t->tape, TAPE_NOT, c, 0, 0) : c, 0);
+}
+
+static Meaning tuple(const Text *t, const Frame *f, const AstExpr *x) {
+  Meaning r = {.bare = 1};
+  for (AstId i = x->args; i && r.n < 3; i = ast_expr(t->b->ast, i)->next) {
+    if (!operand(f, i)->at[0]) return NOTHING;
+    r.bare &= operand(f, i)->bare;
+    r.at[r.n++] = operand(f, i)->at[0];
+  }
+  return r;
+}
+
+/* --- names --- */
+
+static Meaning await(Text *t, Frame *f, EntKind kind, uint32_t index, const Meaning *known) {
+  if (f->returned) return f->result.at[0] ? f->result : unknown(t, "a definition");
+  if (known && known->at[0]) return *known;
+  f->needs = (Awaited){kind, index};
+  f->waits = 1;
+  return NOTHING;
+}
+
+static Meaning entity(Text *t, Frame *f, const Entity *e, const int64_t *at) {
+  static const InputKind kinds[] = {[ENT_COORD] = INPUT_COORD, [ENT_STATE] = INPUT_STATE, [ENT_PARAM] = INPUT_PARAM, [ENT_INPUT] = INPUT_SIGNAL};
+  Meaning r = {.n = e->parts};
+  switch (e->kind) {
+    case ENT_COORD: case ENT_STATE: case ENT_PARAM: case ENT_INPUT:
+      for (uint32_t k = 0; k < meaning_parts(&r); k++) r.at[k] = tape_input(t->tape, kinds[e->kind], e->index + member_offset(e, at) + k);
+      return r;
+    case ENT_CONST: return await(t, f, e->kind, e->index, &t->constants[e->index]);
+    case ENT_LET: return await(t, f, e->kind, e->index, &t->lets[e->index]);
+    case ENT_OBSERVE: return await(t, f, e->kind, e->index, &t->observes[e->index]);
+    case ENT_NONE: case ENT_FUNCTION: case ENT_SYMMETRY: case ENT_BUILTIN: break;
+  }
+  return NOTHING;
+}
+
+static const Meaning *argument(const Text *t, const Frame *f, Name name) {
+  AstId id = f->function ? f->function->stmt->args : 0;
+  for (uint32_t i = 0; id && i < f->nargs; i++, id = ast_expr(t->b->ast, id)->next)
+    if (ast_expr(t->b->ast, id)->name == name) return &f->args[i];
+  return NULL;
+}
+
+static const IndexVar *find_index(const Frame *f, Name name) {
+  for (uint32_t i = f->index.n; i-- > 0;)
+    if (f->index.at[i].name == name) return &f->index.at[i];
+  return NULL;
+}
+
+/* A name that stands for nothing by itself (a family, an effect, a constraint) has no value, and that is no mistake here. */
+static Meaning name_node(Text *t, Frame *f, Name name) {
+  const IndexVar *index = find_index(f, name);
+  if (index) return scalar(tape_number(t->tape, num_int(index->at)), 1);
+  const Meaning *arg = argument(t, f, name);
+  if (arg) return *arg;
+  if (strcmp(name, "pi") == 0) return scalar(tape_pi(t->tape), 1);
+  if (strcmp(name, "t") == 0) return scalar(tape_input(t->tape, INPUT_TIME, 0), 0);
+  int ambiguous;
+  const Entity *e = scope_find(&t->b->scope, name, f->effect, &ambiguous);
+  return e && !e->ndims ? entity(t, f, e, NULL) : NOTHING;
+}
+
+static int whole(const Text *t, const Meaning *v, int64_t *out) {
+  Num n;
+  if (!tape_is_number(t->tape, v->at[0], &n) || n.den != 1) return 0;
+  *out = n.num;
+  return 1;
+}
+
+static Meaning index_node(Text *t, Frame *f, const AstExpr *x) {
+  const AstExpr *of = ast_expr(t->b->ast, x->a);
+  int64_t at[2] = {0};
+  uint32_t n = 0;
+  int ambiguous;
+  const Entity *e = NULL;
+  if (of->kind == AST_NAME) e = scope_find(&t->b->scope, of->name, f->effect, &ambiguous);
+  else if (of->kind == AST_MEMBER && ast_expr(t->b->ast, of->a)->kind == AST_NAME) e = scope_own(&t->b->scope, of->name, ast_expr(t->b->ast, of->a)->name);
+  for (AstId i = x->args; i && n < 2; i = ast_expr(t->b->ast, i)->next, n++)
+    if (!whole(t, operand(f, i), &at[n])) return NOTHING;
+  if (!e || e->ndims != n) return NOTHING;
+  const Entity *member = e->kind == ENT_LET || e->kind == ENT_OBSERVE ? find_member(t->b, e, at) : e;
+  return member ? entity(t, f, member, at) : NOTHING;
+}
+
+static Meaning component(const Meaning *v, Name name) {
+  for (uint32_t k = 0; v->at[0] && k < v->n; k++)
+    if (name[0] == part_letter(v->n, k) && !name[1]) return scalar(v->at[k], v->bare);
+  return NOTHING;
+}
+
+/* drag.c: a parameter of an effect; r.x: a component. */
+static Meaning member_node(Text *t, Frame *f, const AstExpr *x) {
+  const AstExpr *left = ast_expr(t->b->ast, x->a);
+  const Entity *e = left->kind == AST_NAME ? scope_own(&t->b->scope, x->name, left->name) : NULL;
+  if (e) return e->ndims ? NOTHING : entity(t, f, e, NULL);
+  Meaning v = *operand(f, x->a);
+  return component(&v, x->name);
+}
+
+/* --- calls --- */
+
+static Meaning rate(Text *t, const Meaning *v) {
+  Meaning r = {.n = v->n};
+  if (v->n == ROTATION) return NOTHING;
+  for (uint32_t k = 0; v->at[0] && k < meaning_parts(v); k++) r.at[k] = tape_op(t->tape, TAPE_RATE, v->at[k], 0, 0);
+  return r;
+}
+
+static Meaning chosen(Text *t, const Meaning *c, const Meaning *x, const Meaning *y) {
+  Num known;
+  if (tape_is_number(t->tape, c->at[0], &known)) return num_is_zero(known) ? *y : *x;
+  if (!x->at[0] || !y->at[0]) return NOTHING;
+  Meaning r = {.n = x->n};
+  for (uint32_t k = 0; k < meaning_parts(x); k++) r.at[k] = tape_op(t->tape, TAPE_SELECT, c->at[0], x->at[k], y->at[k]);
+  return r;
+}
+
+/* lambda(rod), lambda(rod[2]), lambda(drag.rod) */
+static Meaning multiplier(Text *t, const Frame *f, AstId id) {
+  const Ast *ast = t->b->ast;
+  const AstExpr *x = ast_expr(ast, id);
+  Name effect = f->effect;
+  int64_t at[2] = {0};
+  uint32_t n = 0;
+  int ambiguous;
+  if (x->kind == AST_INDEX) {
+    for (AstId i = x->args; i && n < 2; i = ast_expr(ast, i)->next, n++)
+      if (!whole(t, operand(f, i), &at[n])) return NOTHING;
+    x = ast_expr(ast, x->a);
+  }
+  if (x->kind == AST_MEMBER) effect = ast_expr(ast, x->a)->name;
+  const Entity *e = scope_find(&t->b->constraints, member_name((Builder *)t->m->builder, x->name, at, n), effect, &ambiguous);
+  Meaning r = {.n = e ? e->parts : 0};
+  for (uint32_t k = 0; e && k < meaning_parts(&r); k++) r.at[k] = tape_input(t->tape, INPUT_MULTIPLIER, e->index + k);
+  return r;
+}
+
+static Meaning call_vectors(Text *t, Name name, const Meaning *x, const Meaning *y) {
+  Meaning r = {.n = 3};
+  if (strcmp(name, "dot") == 0) return scalar(dot(t, x->at, y->at, x->n), x->bare && y->bare);
+  if (strcmp(name, "norm") == 0) return scalar(tape_power(t->tape, dot(t, x->at, x->at, x->n), num_ratio(1, 2)), x->bare);
+  if (x->n == 2) return scalar(minus(t, times(t, x->at[0], y->at[1]), times(t, x->at[1], y->at[0])), x->bare && y->bare);
+  cross(t, x->at, y->at, r.at);
+  r.bare = x->bare && y->bare;
+  return r;
+}
+
+static Meaning call_rotation(Text *t, Name name, const Meaning *x, const Meaning *y) {
+  if (strcmp(name, "omega") == 0) return spin(t, x);
+  if (strcmp(name, "transpose") == 0) return conjugate(t, x);
+  return y->at[0] ? turn(t, x, y) : NOTHING;
+}
+
+static int is_one_of(Name name, const char *const *names) {
+  while (*names && strcmp(name, *names) != 0) names++;
+  return *names != NULL;
+}
+
+static Meaning call_binary(Text *t, Name name, const Meaning *x, const Meaning *y) {
+  int bare = x->bare && y->bare;
+  if (strcmp(name, "pow") == 0) return power(t, x, y);
+  if (strcmp(name, "min") == 0) return scalar(two(t, TAPE_MIN, x->at[0], y->at[0]), bare);
+  if (strcmp(name, "max") == 0) return scalar(two(t, TAPE_MAX, x->at[0], y->at[0]), bare);
+  if (strcmp(name, "hypot") == 0) return scalar(two(t, TAPE_HYPOT, x->at[0], y->at[0]), bare);
+  return strcmp(name, "atan2") == 0 ? scalar(two(t, TAPE_ATAN2, x->at[0], y->at[0]), bare) : NOTHING;
+}
+
+static Meaning call_unary(Text *t, Name name, const Meaning *x) {
+  static const char *const functions[] = {"sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", NULL};
+  if (strcmp(name, "sqrt") == 0) return scalar(tape_power(t->tape, x->at[0], num_ratio(1, 2)), x->bare);
+  if (strcmp(name, "cbrt") == 0) return scalar(tape_power(t->tape, x->at[0], num_ratio(1, 3)), x->bare);
+  if (strcmp(name, "abs") == 0) return scalar(tape_function(t->tape, "fabs", x->at[0]), x->bare);
+  if (strcmp(name, "sign") == 0) return scalar(tape_op(t->tape, TAPE_SIGN, x->at[0], 0, 0), x->bare);
+  return is_one_of(name, functions) ? scalar(tape_function(t->tape, name, x->at[0]), x->bare) : NOTHING;
+}
+
+static Meaning call_node(Text *t, Frame *f, const AstExpr *x) {
+  static const char *const vectors[] = {"dot", "cross", "norm", NULL}, *const rotations[] = {"omega", "turn", "transpose", NULL};
+  const Ast *ast = t->b->ast;
+  int ambiguous;
+  const Entity *own = scope_find(&t->b->scope, x->name, f->effect, &ambiguous);
+  if (own && own->kind == ENT_FUNCTION) return await(t, f, ENT_FUNCTION, own->index, NULL);
+  if (own && (own->kind == ENT_COORD || own->kind == ENT_STATE || own->kind == ENT_LET)) return NOTHING; /* x(0) */
+  AstId second = x->args ? ast_expr(ast, x->args)->next : 0, third = second ? ast_expr(ast, second)->next : 0;
+  if (strcmp(x->name, "lambda") == 0) return multiplier(t, f, x->args);
+  if (!x->args || (!operand(f, x->args)->at[0])) return NOTHING;
+  const Meaning *a = operand(f, x->args), *b = second ? operand(f, second) : &NOTHING;
+  if (strcmp(x->name, "if") == 0) return third ? chosen(t, a, b, operand(f, third)) : NOTHING;
+  if (is_one_of(x->name, vectors)) return call_vectors(t, x->name, a, b);
+  if (is_one_of(x->name, rotations)) return call_rotation(t, x->name, a, b);
+  return second ? call_binary(t, x->name, a, b) : call_unary(t, x->name, a);
+}
+
+/* --- all --- */
+
+static Meaning node(Text *t, Frame *f, AstId id) {
+  const AstExpr *x = ast_expr(t->b->ast, id);
+  const Meaning *a = x->a >= f->first ? operand(f, x->a) : &NOTHING, *b = x->b >= f->first ? operand(f, x->b) : &NOTHING;
+  switch (x->kind) {
+    case AST_NUM: return scalar(tape_number(t->tape, x->number), 1);
+    case AST_NAME: return name_node(t, f, x->name);
+    case AST_INDEX: return index_node(t, f, x);
+    case AST_MEMBER: return member_node(t, f, x);
+    case AST_PRIME: return rate(t, a);
+    case AST_UNIT: return unit_node(t, a, x);
+    case AST_CALL: return call_node(t, f, x);
+    case AST_NEG: {
+      Meaning r = *a;
+      for (uint32_t k = 0; a->at[0] && k < meaning_parts(a); k++) r.at[k] = negative(t, a->at[k]);
+      return r;
+    }
+    case AST_ADD: case AST_SUB: case AST_MUL: case AST_DIV: return text_pair(t, x->kind, a, b);
+    case AST_POW: return power(t, a, b);
+    case AST_LT: case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE: return comparison(t, f, x);
+    case AST_NOT: return scalar(tape_op(t->tape, TAPE_NOT, a->at[0], 0, 0), 0);
+    case AST_AND: return scalar(two(t, TAPE_AND, a->at[0], b->at[0]), 0);
+    case AST_OR: return scalar(two(t, TAPE_OR, a->at[0], b->at[0]), 0);
+    case AST_TUPLE: return tuple(t, f, x);
+    case AST_SUM: case AST_PRODUCT: case AST_AT: case AST_STRING: case AST_LIST: case AST_BIND: case AST_ERROR: break;
+  }
+  return NOTHING;
+}
+
+/* Names that stand for nothing by themselves are parts of what surrounds them; all else without a value is told. */
+Meaning text_node(Text *t, Frame *f, AstId id) {
+  Meaning v = node(t, f, id);
+  AstKind kind = ast_expr(t->b->ast, id)->kind;
+  if (!v.at[0] && !f->waits && kind != AST_NAME && kind != AST_INDEX && kind != AST_MEMBER) return unknown(t, kind == AST_CALL ? ast_expr(t->b->ast, id)->name : "a part");
+  return v;
+}

@@ -1,0 +1,109 @@
+#include "mech/switching_surfaces.h"
+
+#include <math.h>
+
+#include "mech/discontinuity.h"
+#include "sym/eval.h"
+#include "sym/print.h"
+#include "sym/prove.h"
+
+typedef long double Real;
+typedef VEC(SwitchingSurface) SwitchList;
+
+/* Coordinates and time change smoothly, whatever jumps. */
+static const unsigned sudden = 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE;
+
+static int is_inside(ExprGraph *g, Expr whole, Expr node) {
+  ExprList l = expr_topo(g, &whole, 1);
+  uint32_t i = 0;
+  while (i < l.n && l.at[i] != node) i++;
+  return i < l.n;
+}
+
+/* All velocities and states, times `by`. */
+static void scale_rates(const Eqns *e, Real *symbols, const Real *from, Real by) {
+  for (uint32_t i = 1; i <= expr_symbol_count(e->g); i++)
+    symbols[i] = sudden & 1u << expr_symbol(e->g, i)->kind ? by * from[i] : from[i];
+}
+
+/* Whether x has another value on both sides of the place where all velocities are 0, as v/|v|, and side is 0 there. */
+static int turns_at_rest(const Eqns *e, Expr x, Expr side) {
+  const Real near[] = {1e-4L, 1e-6L}, alike = 0.02L;
+  Expr roots[] = {x, side};
+  Real jump[2], above[2], below[2], *state = ARENA_ARRAY(e->m->arena, Real, expr_symbol_count(e->g) + 1);
+  Real *symbols = ARENA_ARRAY(e->m->arena, Real, expr_symbol_count(e->g) + 1);
+  prove_state(e->g, 1, state);
+  for (int i = 0; i < 2; i++) {
+    scale_rates(e, symbols, state, near[i]);
+    expr_eval(e->g, roots, 2, symbols, above);
+    scale_rates(e, symbols, state, -near[i]);
+    expr_eval(e->g, roots, 2, symbols, below);
+    jump[i] = above[0] - below[0];
+  }
+  return isfinite(jump[1]) && fabsl(above[1]) < 1e-3L && fabsl(jump[1]) > 1e-9L * (fabsl(above[0]) + fabsl(below[0])) &&
+         fabsl(jump[1] - jump[0]) <= alike * fabsl(jump[1]);
+}
+
+/* Where the text has the node; else the statement that it was made from. */
+static Span place_of(const Eqns *e, Expr node, Expr side, int nonnegative) {
+  const Model *m = e->m;
+  AstId written = expr_map_get(&m->written, node);
+  if (written) return ast_expr(m->ast, written)->span;
+  for (uint32_t k = 0; k < m->forces.n; k++)
+    if (is_inside(e->g, m->forces.at[k].f, node) || (nonnegative && turns_at_rest(e, m->forces.at[k].f, side))) return m->forces.at[k].span;
+  return m->dissipation ? m->dissipation_span : m->lagrangian_span;
+}
+
+/* The first line of a place of the text. */
+static const char *text_at(const Eqns *e, Span span) {
+  Place p = source_place(e->m->ast->sources, span.begin);
+  if (!p.file) return "";
+  uint32_t n = p.line_len - p.line_byte, whole = span.end - span.begin;
+  return arena_printf(e->m->arena, "%.*s", (int)(whole < n ? whole : n), p.line_text + p.line_byte);
+}
+
+/* side: a function whose zero tells where it jumps; node: what is looked for in the text. */
+static void add(const Eqns *e, SwitchList *to, Expr node, Expr side, int nonnegative) {
+  if (!(expr_kinds(e->g, side) & sudden)) return;
+  for (uint32_t i = 0; i < to->n; i++)
+    if (to->at[i].side == side) return;
+  Span place = place_of(e, node, side, nonnegative);
+  StrBuf surface = strbuf(e->m->arena);
+  expr_print(e->g, side, PRINT_TEXT, &surface);
+  vec_push(e->m->arena, to, ((SwitchingSurface){side, nonnegative, place, text_at(e, place), sb_text(&surface)}));
+}
+
+/* Directions of velocities: what is divided by their size. */
+static void add_directions(const Eqns *e, Expr x, SwitchList *to) {
+  ExprGraph *g = e->g;
+  ExprList nodes = expr_topo(g, &x, 1);
+  for (uint32_t k = 0; k < nodes.n; k++) {
+    for (uint32_t i = 0; expr_op(g, nodes.at[k]) == EX_PROD && i < expr_pairs(g, nodes.at[k], EX_PROD); i++) {
+      Num power;
+      Expr base = expr_pair(g, nodes.at[k], EX_PROD, i, &power);
+      ExprSign sign = num_sign(power) < 0 && expr_kinds(g, base) & sudden ? expr_sign(g, base) : SIGN_UNKNOWN;
+      if (sign != SIGN_NONNEGATIVE && sign != SIGN_POSITIVE) continue;
+      Expr side = expr_pow(g, base, expr_num(g, num_neg(power)));
+      if (turns_at_rest(e, x, side)) add(e, to, base, side, 1);
+    }
+  }
+}
+
+static void add_from(const Eqns *e, Expr x, SwitchList *to) {
+  ExprJumps jumps = discontinuities_of(e, x);
+  for (uint32_t i = 0; i < jumps.n; i++)
+    if (expr_op(e->g, jumps.at[i].node) != EX_TAN) add(e, to, jumps.at[i].node, jumps.at[i].side, 0);
+  add_directions(e, x, to);
+}
+
+SwitchingSurfaces switching_surfaces(const Eqns *e) {
+  enum { MOST = 64 };
+  const Model *m = e->m;
+  SwitchList all = {0};
+  if (e->n + m->states.n > MOST) return (SwitchingSurfaces){0};
+  for (uint32_t i = 0; i < e->n; i++)
+    if (expr_kinds(e->g, e->f[i]) & sudden) add_from(e, e->f[i], &all);
+  for (uint32_t i = 0; i < m->states.n; i++)
+    if (expr_kinds(e->g, e->flow[i]) & sudden) add_from(e, e->flow[i], &all);
+  return (SwitchingSurfaces){all.at, all.n};
+}

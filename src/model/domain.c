@@ -1,0 +1,137 @@
+/* Domains: where an expression of the text has a real value, as a condition of the graph. Nodes of the graph forget it: sqrt(x)^2 is x there.
+ * Conditions are only kept where Builder.domains asks for them, and 0 stands for one that always holds. */
+#include "model/resolve_impl.h"
+
+Expr domain_and(const Builder *b, Expr p, Expr q) {
+  if (!p || !q || p == q) return p ? p : q;
+  return expr_fn2(b->g, EX_AND, p, q);
+}
+
+/* a implies p */
+static Expr implied(const Builder *b, Expr a, Expr p) {
+  if (!p) return 0;
+  Expr otherwise = expr_fn(b->g, EX_NOT, a);
+  return expr_fn2(b->g, EX_OR, otherwise, p);
+}
+
+/* A condition that is a number: 1 is no condition. */
+static Expr unless_true(const Builder *b, Expr p) { return p == expr_int(b->g, 1) ? 0 : p; }
+
+static Expr differ(const Builder *b, Expr x, Expr y) {
+  Expr equal = expr_fn2(b->g, EX_EQ, x, y);
+  return unless_true(b, expr_fn(b->g, EX_NOT, equal));
+}
+
+static Expr at_least(const Builder *b, Expr x, Expr y) { return unless_true(b, expr_fn2(b->g, EX_LE, y, x)); }
+static Expr not_zero(const Builder *b, Expr x) { return differ(b, x, expr_int(b->g, 0)); }
+
+/* b^e; cube roots are real. An exponent that is no number leaves it to the values. */
+static Expr power_domain(const Builder *b, Expr base, Expr exponent) {
+  if (!expr_is_num(b->g, exponent)) return 0;
+  Num e = expr_number(b->g, exponent);
+  int root = !num_is_exact(e) || (e.den != 1 && e.den != 3);
+  if (num_sign(e) < 0) return root ? unless_true(b, expr_fn2(b->g, EX_LT, expr_int(b->g, 0), base)) : not_zero(b, base);
+  return root ? at_least(b, base, expr_int(b->g, 0)) : 0;
+}
+
+Expr domain_of_derivative(const Builder *b, const Value *of) {
+  ExprList l = expr_topo(b->g, of->at, parts_of(of));
+  Expr all = 0;
+  for (uint32_t i = 0; i < l.n && b->domains; i++) {
+    Expr e = l.at[i];
+    ExprOp op = expr_op(b->g, e);
+    if (op == EX_ABS || op == EX_SIGN || op == EX_CBRT) all = domain_and(b, all, not_zero(b, expr_arg(b->g, e, 0)));
+    if (op == EX_MIN || op == EX_MAX || op == EX_LT || op == EX_LE || op == EX_EQ)
+      all = domain_and(b, all, differ(b, expr_arg(b->g, e, 0), expr_arg(b->g, e, 1)));
+    for (uint32_t k = 0; op == EX_PROD && k < expr_pairs(b->g, e, EX_PROD); k++) {
+      Num power;
+      Expr base = expr_pair(b->g, e, EX_PROD, k, &power);
+      if (!num_is_int(power)) all = domain_and(b, all, not_zero(b, base));
+    }
+  }
+  return all;
+}
+
+static Expr if_domain(const Eval *ev, const AstExpr *x, const Value *v) {
+  const Builder *b = ev->b;
+  AstId yes = ast_expr(b->ast, x->args)->next, no = ast_expr(b->ast, yes)->next;
+  const Value *c = value_of(ev, x->args);
+  if (expr_is_num(b->g, c->e)) return domain_and(b, c->domain, v->domain);
+  Expr not = expr_fn(b->g, EX_NOT, c->e);
+  Expr first = implied(b, c->e, value_of(ev, yes)->domain), second = implied(b, not, value_of(ev, no)->domain);
+  return domain_and(b, c->domain, domain_and(b, first, second));
+}
+
+/* The condition that a function of the language adds to those of its arguments. */
+static Expr function_domain(const Eval *ev, const AstExpr *x) {
+  const Builder *b = ev->b;
+  const Value *v = value_of(ev, x->args);
+  AstId second = ast_expr(b->ast, x->args)->next;
+  Expr u = v->e, zero = expr_int(b->g, 0), one = expr_int(b->g, 1);
+  if (strcmp(x->name, "log") == 0) return unless_true(b, expr_fn2(b->g, EX_LT, zero, u));
+  if (strcmp(x->name, "sqrt") == 0) return at_least(b, u, zero);
+  if (strcmp(x->name, "asin") == 0 || strcmp(x->name, "acos") == 0) {
+    Expr above = at_least(b, u, expr_int(b->g, -1)), below = at_least(b, one, u);
+    return domain_and(b, above, below);
+  }
+  if (strcmp(x->name, "pow") == 0) return power_domain(b, u, value_of(ev, second)->e);
+  if (strcmp(x->name, "d") == 0) return domain_of_derivative(b, v);
+  if (strcmp(x->name, "atan2") != 0) return 0;
+  Expr first = expr_fn2(b->g, EX_EQ, u, zero), both = expr_fn2(b->g, EX_EQ, value_of(ev, second)->e, zero);
+  both = expr_fn2(b->g, EX_AND, first, both);
+  return unless_true(b, expr_fn(b->g, EX_NOT, both));
+}
+
+static Expr call_domain(const Eval *ev, const AstExpr *x, const Value *v) {
+  const Builder *b = ev->b;
+  const Entity *own = own_function(ev, x);
+  if (!own && strcmp(x->name, "if") == 0) return if_domain(ev, x, v);
+  Expr all = own || !x->args || !value_of(ev, x->args)->e ? v->domain : function_domain(ev, x);
+  for (AstId i = x->args; i; i = ast_expr(b->ast, i)->next) all = domain_and(b, all, value_of(ev, i)->domain);
+  return all;
+}
+
+/* The operands of a sum or a product, listed by ev->operands. */
+static Expr chain_domain(const Eval *ev, int product) {
+  const Builder *b = ev->b;
+  Expr all = 0;
+  for (uint32_t i = 0; i < ev->operands.n; i++) {
+    Operand o = ev->operands.at[i];
+    const Value *v = value_of(ev, o.at);
+    all = domain_and(b, all, v->domain);
+    if (product && o.inverted) all = domain_and(b, all, not_zero(b, v->e));
+  }
+  return all;
+}
+
+Expr domain_of_node(const Eval *ev, AstId id, const Value *v) {
+  const Builder *b = ev->b;
+  const AstExpr *x = ast_expr(b->ast, id);
+  switch (x->kind) {
+    case AST_NAME: case AST_INDEX: case AST_SUM: case AST_PRODUCT: case AST_NUM: case AST_LIST: case AST_STRING: case AST_BIND:
+    case AST_ERROR: return v->domain;
+    case AST_ADD: case AST_SUB: return chain_domain(ev, 0);
+    case AST_MUL: case AST_DIV: return chain_domain(ev, 1);
+    case AST_POW: {
+      const Value *base = value_of(ev, x->a), *e = value_of(ev, x->b);
+      return domain_and(b, domain_and(b, base->domain, e->domain), power_domain(b, base->e, e->e));
+    }
+    case AST_PRIME: return domain_and(b, value_of(ev, x->a)->domain, domain_of_derivative(b, value_of(ev, x->a)));
+    case AST_MEMBER: return v->domain ? v->domain : value_of(ev, x->a)->domain;
+    case AST_NEG: case AST_NOT: case AST_UNIT: case AST_AT: return value_of(ev, x->a)->domain;
+    case AST_LT: case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE:
+      return domain_and(b, value_of(ev, x->a)->domain, value_of(ev, x->b)->domain);
+    case AST_AND: case AST_OR: { /* what comes second counts where the first does not decide */
+      const Value *first = value_of(ev, x->a);
+      Expr open = x->kind == AST_AND ? first->e : expr_fn(b->g, EX_NOT, first->e);
+      return domain_and(b, first->domain, implied(b, open, value_of(ev, x->b)->domain));
+    }
+    case AST_CALL: return call_domain(ev, x, v);
+    case AST_TUPLE: {
+      Expr all = 0;
+      for (AstId i = x->args; i; i = ast_expr(b->ast, i)->next) all = domain_and(b, all, value_of(ev, i)->domain);
+      return all;
+    }
+  }
+  return v->domain;
+}

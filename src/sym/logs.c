@@ -1,0 +1,137 @@
+/* Logarithms and powers of products: log(a*b) = log(a) + log(b) and (a*b)^u = a^u*b^u for factors that are known to be positive, for proofs. */
+#include "sym/normal_impl.h"
+
+enum { FACTORS_MOST = 200 };
+
+typedef struct {
+  Poly base;
+  int32_t e;
+} Odd;
+
+typedef struct {
+  Normal *n;
+  VEC(Odd) odd;  /* factors of unknown sign, to odd powers */
+  Frac exponent; /* of the product in hand */
+  PowerParts *out;
+  PowerParts todo;
+} Splitter;
+
+static Frac whole(Normal *n, Num c) { return frac_num(n->field, c); }
+
+static void take(Splitter *s, Frac base, Num power) {
+  Normal *n = s->n;
+  if (num_is_zero(power)) return;
+  Frac exponent = frac_mul(n->field, s->exponent, whole(n, power));
+  vec_push(n->arena, &s->todo, ((PowerPart){base, exponent, 0}));
+}
+
+/* The primes of a number, those above 1000 together. */
+static void take_number(Splitter *s, int64_t m, int sign) {
+  Normal *n = s->n;
+  for (int64_t p = 2; m > 1; p++) {
+    int64_t e = 0;
+    if (p > 1000) p = m;
+    for (; m % p == 0; m /= p) e++;
+    if (e) vec_push(n->arena, s->out, ((PowerPart){whole(n, num_int(p)), frac_mul(n->field, s->exponent, whole(n, num_int(sign * e))), 0}));
+  }
+}
+
+static void give(Splitter *s, Poly base, int32_t e) {
+  Normal *n = s->n;
+  vec_push(n->arena, s->out, ((PowerPart){frac_poly(base), frac_mul(n->field, s->exponent, whole(n, num_int(e))), 0}));
+}
+
+/* A factor of unknown sign, to the power e: even powers are those of its square. */
+static void take_unknown(Splitter *s, Poly x, int32_t e) {
+  if (e % 2 != 0) vec_push(s->n->arena, &s->odd, ((Odd){x, e}));
+  else give(s, poly_mul(s->n->ring, x, x), e / 2);
+}
+
+/* What is left is positive, or the power an integer: one odd factor has the sign of the product; of several, products and squares remain. */
+static void give_odd(Splitter *s, int sign) {
+  PolyRing *r = s->n->ring;
+  Poly rest = poly_num(r, num_int(sign));
+  for (uint32_t i = 0; i < s->odd.n; i++) rest = poly_mul(r, rest, s->odd.at[i].base);
+  if (s->odd.n == 1) give(s, rest, s->odd.at[0].e);
+  else if (s->odd.n || sign < 0) give(s, rest, 1);
+  for (uint32_t i = 0; i < s->odd.n && s->odd.n > 1; i++)
+    if (s->odd.at[i].e != 1) give(s, poly_mul(r, s->odd.at[i].base, s->odd.at[i].base), (s->odd.at[i].e - 1) / 2);
+  s->odd.n = 0;
+}
+
+/* A generator that is positive: e^u, b^u, a root, or one that is not taken apart. */
+static void take_generator(Splitter *s, GenId x, int32_t e) {
+  Normal *n = s->n;
+  GenInfo info = n->gens.at[x];
+  if (info.kind == GEN_POWER) {
+    Atom a = n->atoms.at[info.atom];
+    Frac u = {.num = poly_scale(n->ring, num_mul(a.unit, num_int(e)), poly_at(n->ring, a.part)), .den = a.den};
+    Frac exponent = frac_mul(n->field, s->exponent, u), base = {.num = poly_at(n->ring, a.base_num), .den = a.base_den};
+    vec_push(n->arena, a.base_num ? &s->todo : s->out, ((PowerPart){base, exponent, a.base_num == 0}));
+  } else if (info.kind == GEN_ROOT) {
+    PolyGen root = n->ring->gens.at[x];
+    take(s, frac_poly(root.relation), num_ratio(e, root.degree));
+  } else {
+    Frac exponent = frac_mul(n->field, s->exponent, whole(n, num_int(e)));
+    vec_push(n->arena, s->out, ((PowerPart){frac_poly(poly_gen(n->ring, x)), exponent, 0}));
+  }
+}
+
+static void split(Splitter *s, Frac u) {
+  Normal *n = s->n;
+  PolyRing *r = n->ring;
+  Num content;
+  MonoId common;
+  Poly rest = poly_primitive(r, u.num, &content, &common);
+  if (r->status != POLY_OK) return;
+  if (!num_is_exact(content)) {
+    vec_push(n->arena, s->out, ((PowerPart){u, s->exponent, 0}));
+    return;
+  }
+  take_number(s, num_abs(content).num, 1);
+  take_number(s, content.den, -1);
+  Mono mono = *mono_at(r, common);
+  for (uint32_t i = 0; i < mono.n; i++) {
+    GenId x = mono.at[i].gen;
+    if (normal_gen_positive(n, x)) take_generator(s, x, mono.at[i].exp);
+    else take_unknown(s, poly_gen(r, x), mono.at[i].exp);
+  }
+  Den d = frac_den(n->field, u.den);
+  for (uint32_t i = 0; i < d.n; i++) {
+    Poly factor = poly_at(r, d.at[i].factor);
+    if (normal_poly_positive(n, factor)) give(s, factor, -(int32_t)d.at[i].exp);
+    else take_unknown(s, factor, -(int32_t)d.at[i].exp);
+  }
+  Poly root;
+  if (poly_is_one(rest)) root = rest;
+  else if (normal_positive_root(n, rest, &root)) take(s, frac_poly(root), num_int(2));
+  else if (normal_poly_positive(n, rest)) give(s, rest, 1);
+  else take_unknown(s, rest, 1);
+  give_odd(s, num_sign(content));
+}
+
+PowerParts normal_power_parts(Normal *n, Frac base, Frac exponent) {
+  PowerParts out = {0};
+  Splitter s = {.n = n, .out = &out};
+  vec_push(n->arena, &s.todo, ((PowerPart){base, exponent, 0}));
+  while (s.todo.n && n->ring->status == POLY_OK) {
+    PowerPart one = s.todo.at[--s.todo.n];
+    s.exponent = one.exponent;
+    if (one.base.num.n == 0) poly_fail(n->ring, POLY_DIVIDED_BY_ZERO);
+    else split(&s, one.base);
+    if (out.n > FACTORS_MOST) poly_fail(n->ring, POLY_TOO_LARGE);
+  }
+  return out;
+}
+
+Frac normal_log(Normal *n, Frac u) {
+  PowerParts parts = normal_power_parts(n, u, whole(n, num_int(1)));
+  Frac sum = frac_poly(poly_zero());
+  for (uint32_t i = 0; i < parts.n && n->ring->status == POLY_OK; i++) {
+    PowerPart part = parts.at[i];
+    Frac term = part.exponent;
+    if (!part.is_e) term = frac_mul(n->field, term, normal_opaque_log(n, part.base));
+    sum = frac_add(n->field, sum, term);
+  }
+  return sum;
+}

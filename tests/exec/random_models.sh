@@ -1,0 +1,14 @@
+#!/bin/sh
+# Random models, each compared with its text as every compilation is: derivation, programs and hoisting against jets. exec/long_random has thousands.
+. tests/tap.sh
+. tests/random/lib_random.sh
+
+agree() {
+  random_check "$1" "$2" "$3"
+  status=$?
+  tail -n 40 "$TMP/random.txt"
+  return "$status"
+}
+check "models 1 to 300 of seed 1 agree with their texts" agree 1 1 300
+echo "# $(tail -n 1 "$TMP/random.txt")"
+tap_end

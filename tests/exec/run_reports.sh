@@ -1,0 +1,212 @@
+#!/bin/sh
+# Reports that claim no more than is known: energies that a blow-up cannot hide, poles that are stepped over, friction that holds, rounding larger than the
+# motion, floors that a rough method would lose, Lyapunov exponents with their errors.
+: "${LAGC:=build/lagc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+. tests/tap.sh
+
+run() { "$LAGC" run "$@" --no-gsl --json >"$TMP/json" 2>"$TMP/err"; }
+number() { sed -n "s/.*\"$1\": \([^,}]*\).*/\1/p" "$TMP/json"; }
+ends() { # STATUS WORDS ARGS...
+  status=$1 words=$2
+  shift 2
+  "$LAGC" run "$@" >"$TMP/out" 2>&1 </dev/null
+  got=$?
+  cat "$TMP/out"
+  [ "$got" = "$status" ] && grep -q -e "$words" "$TMP/out"
+}
+
+# ---- the scale of a drift. Verlet from x = 1 at rest keeps v^2 + (1 - h^2/4) x^2, so E is off by h^2/8 at most; |p.v| + |L| = sin^2 + |cos 2t|/2 is
+# 1/2 + 1/pi in the mean of many periods.
+cat >"$TMP/spring.lag" <<'X'
+model spring
+coord x [m]
+param m = 1 [kg] > 0, k = 1 [N/m] > 0
+lagrangian = m/2*x'^2 - k/2*x^2
+scene s { start x = 1; span 1000 }
+X
+run "$TMP/spring.lag" --method verlet --step 0.2
+near "absolute drift" 1e-4 0.005 "$(number energy_drift_absolute)"
+near "relative to the median" 1e-4 0.00611 "$(number energy_drift)" # bins hold not quite whole periods
+check "with its unit" ends 0 '^energy drift: 0.006[0-9]* (0.005 J; relative to the larger of |E0| and the median of |p.v| + |L|), oscillates' "$TMP/spring.lag" --method verlet --step 0.2
+cat >"$TMP/zero.lag" <<'X'
+model zero "An energy that begins at 0, at rest"
+coord y [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0
+lagrangian = m/2*y'^2 - m*g*y
+scene s { span 10 }
+X
+run "$TMP/zero.lag" --method rk4
+near "an energy of 0 at first" 1e-12 0 "$(number energy_drift)" # exact but for rounding: the motion is a parabola
+
+# ---- a fall into the pole of -1/x takes pi/(2 sqrt 2) = 1.1107 s
+cat >"$TMP/pole.lag" <<'X'
+model pole
+coord x
+lagrangian = x'^2/2 + 1/x
+scene s { start x = 1; span 10 }
+X
+for method in rk4 'rk4(step=0.01)' verlet 'verlet4(step=0.01)' variational symplectic_euler 'rk45(adapt=off,step=0.01)'; do
+  check "over a pole by $method" ends 3 'FAILED: at t = 1.1[12][0-9]* s the energy is off by [0-9.e+]*, [0-9.e+]* times its size in this run: .*a pole' "$TMP/pole.lag" --method "$method"
+done
+for method in rk45 dop853 radau; do
+  check "in front of it by $method" ends 3 'FAILED: at t = 1.11072[0-9]* s: the step became too small' "$TMP/pole.lag" --method $method
+  run "$TMP/pole.lag" --method $method
+  check "its many steps there do not hide the drift" awk -v d="$(number energy_drift)" -v a="$(number energy_drift_absolute)" 'BEGIN { exit !(d > a/4 && d < a) }'
+done
+
+# ---- steps that are too long for a stiff spring: w = 1e6
+cat >"$TMP/stiff.lag" <<'X'
+model stiff
+coord x [m]
+param m = 1 [kg] > 0, k = 1e12 [N/m] > 0, c = 0 [N*s/m] >= 0
+lagrangian = m/2*x'^2 - k/2*x^2
+dissipation = c/2*x'^2
+scene s { start x = 1; span 10 }
+X
+check "by variational: a note" ends 0 'note: steps are longer than half a period, about 6.3e-06 s' "$TMP/stiff.lag" --method variational
+run "$TMP/stiff.lag" --method variational
+near "and in JSON" 1e-9 6.2832e-6 "$(number unresolved_period)"
+check "with friction: no balance" ends 3 'the energy is off by .* the numbers mean nothing' "$TMP/stiff.lag" --method variational c=0.1
+run "$TMP/spring.lag" --method variational --step 0.5
+is "steps that resolve it: none" null "$(number unresolved_period)"
+
+# ---- dry friction: it stops after 2/(mu g) = 0.67958 s
+cat >"$TMP/slide.lag" <<'X'
+model slide
+coord x [m]
+param m = 1 [kg] > 0, mu = 0.3 [1], g = 9.81 [m/s^2] > 0
+lagrangian = m/2*x'^2
+force x = -mu*m*g*sign(x')
+scene s { start x' = 2 [m/s]; span 10 [s] }
+X
+stuck="gets stuck (it stays where x' is 0: the force of .sign(x'). in line 5 jumps there"
+for method in rk45 dop853 rk4 'rk4(step=0.1)' verlet variational radau 'rk45(adapt=off,step=0.01)'; do
+  check "a body that slides by $method" ends 3 "FAILED: at t = 0\.[67][0-9]* s: the motion $stuck" "$TMP/slide.lag" --method "$method"
+done
+check "and is warned of" says 0 '' "$LAGC" check "$TMP/slide.lag"
+check "at the place" grep -q "slide.lag:5:19: warning: a force jumps where .x'. is 0, and a motion that it holds there" "$TMP/err"
+cat >"$TMP/plane.lag" <<'X'
+model plane
+coord x [m], y [m]
+param m = 1 [kg] > 0, mu = 0.3 [1], g = 9.81 [m/s^2] > 0
+lagrangian = m/2*(x'^2 + y'^2)
+force x = -mu*m*g*x'/hypot(x', y')
+force y = -mu*m*g*y'/hypot(x', y')
+scene s { start x' = 1.2 [m/s], y' = 1.6 [m/s]; span 10 [s] }
+X
+for method in rk45 dop853 rk4 verlet radau; do
+  check "in a plane by $method" ends 3 "FAILED: at t = 0\.6[78][0-9]* s: the motion gets stuck (it stays where hypot(x', y') is 0: .* in line 5 jumps" "$TMP/plane.lag" --method $method
+done
+# x'' = -x - 0.1 sign(x') from x = 2: each half swing loses 0.2, and at its end the spring is stronger than friction
+cat >"$TMP/swings.lag" <<'X'
+model swings
+coord x
+lagrangian = x'^2/2 - x^2/2
+dissipation = 0.1*abs(x')
+scene s { start x = 2; span 3*pi }
+scene rests { start x = 2; span 100 }
+X
+for method in dop853 rk45 radau; do
+  run "$TMP/swings.lag" --method $method
+  near "it turns where friction is weaker, by $method" 1e-6 -1.4 "$(sed -n 's/.*"final": {"x": \([^,]*\).*/\1/p' "$TMP/json")"
+done
+check "and rests where it is stronger, after 10 half swings" ends 3 "FAILED: at t = 31.4159[0-9]* s: the motion gets stuck .*dissipation = .* in line 4 jumps" "$TMP/swings.lag" rests
+
+# ---- numbers that are too coarse
+cat >"$TMP/turns.lag" <<'X'
+model turns
+coord th [rad] periodic
+param g = 9.81 [m/s^2] > 0, l = 1 [m] > 0
+lagrangian = l^2*th'^2/2 + g*l*cos(th)
+scene s { start th = 1e22 [rad], th' = 1 [rad/s]; span 10 [s] }
+X
+for method in rk4 dop853 variational radau; do
+  check "an angle of 1e22 by $method" ends 3 'gets stuck (th = 1e+22 is known to 2e+06 only' "$TMP/turns.lag" --method $method
+done
+cat >"$TMP/far.lag" <<'X'
+model far
+coord x [m]
+lagrangian = x'^2/2 - if(x > 1e17 [m], (x - 1e17 [m])^2/2 [s^2], 0)
+scene s { start x' = 1 [m/s]; span 1e18 [s] }
+scene away { start x = 1e13 [m], x' = 1e-3 [m/s]; span 10 [s] }
+X
+check "a time of 1e17 s" ends 3 'or the time too late: times are 2e+01 s apart here' "$TMP/far.lag" s
+check "what is far away may move slowly" ends 0 'reached' "$TMP/far.lag" away --method rk4
+check "a tolerance of 1e300" ends 2 'a tolerance of 1e+300 leaves no digit' "$TMP/spring.lag" --tol 1e300
+sed 's/span 1000/span 1000; tolerance 1e300/' "$TMP/spring.lag" >"$TMP/loose.lag"
+check "and in the model" says 1 'the tolerance must be positive and below 1' "$LAGC" check "$TMP/loose.lag"
+
+# ---- a ball that multistep methods, which begin anew at each bounce with order 1, bring to rest
+cat >"$TMP/ball.lag" <<'X'
+model ball
+coord y [m]
+param g = 9.81 [m/s^2] > 0
+lagrangian = y'^2/2 - g*y
+event floor: y falling { y' = -y' }
+scene s { start y = 2 [m]; span 200 [s] }
+X
+not_lost() { # METHOD TOLERANCE: it ends with a reason, or above the floor
+  "$LAGC" run "$TMP/ball.lag" --method "$1" --tol "$2" --until "$3" >"$TMP/out" 2>&1
+  status=$?
+  cat "$TMP/out"
+  case $status in
+  3) grep -q 'FAILED: event floor: .*\(take a smaller\|tolerance\|comes to rest\)' "$TMP/out" ;;
+  *) awk '$1 == "y" { exit !($2 > -1e-6) }' "$TMP/out" ;;
+  esac
+}
+if [ -f "${LAGC%/*}/liblag_gsl.a" ]; then
+  check "a floor, gsl-msbdf" not_lost gsl-msbdf 1e-3 200
+  check "a floor, gsl-msbdf, smaller tolerance" not_lost gsl-msbdf 3e-4 600
+  check "a floor, gsl-msadams" not_lost gsl-msadams 1e-3 300
+  check "a floor, gsl-msadams, smaller tolerance" not_lost gsl-msadams 3e-4 700
+else
+  skip "floors" "GSL is not installed"
+fi
+
+# ---- Lyapunov exponents: 0 for an oscillator; a limit cycle has dimension 1
+"$LAGC" lyapunov "$TMP/spring.lag" --until 2000 >"$TMP/out"
+check "an oscillator is not known to be chaotic" grep -q 'not known to be chaotic: the first exponent is 0 within three errors' "$TMP/out"
+check "and errors do not grow by e in so many seconds" sh -c "! grep -q 'factor of e in [0-9.e+]* s' '$TMP/out'"
+cat >"$TMP/cycle.lag" <<'X'
+model cycle "Van der Pol's"
+coord x
+lagrangian = x'^2/2 - x^2/2
+force x = (1 - x^2)*x'
+scene s { start x = 2; span 100 }
+X
+"$LAGC" lyapunov "$TMP/cycle.lag" --until 2000 --json >"$TMP/json"
+near "a limit cycle has dimension 1" 1e-9 1 "$(number dimension)"
+near "its error" 1e-3 0 "$(number dimension_error)"
+is "it is not said to be chaotic" null "$(number chaotic)"
+"$LAGC" lyapunov models/lorenz.lag --json >"$TMP/json"
+is "Lorenz's is" true "$(number chaotic)"
+near "its entropy, the sum of the positive exponents" "$(number entropy_error)" 0.9056 "$(number entropy)"
+
+# ---- numbers are the shortest that read back: 0.1 is 0.10000000000000001 with 17 digits
+sed 's/span 1000/span 0.1/' "$TMP/spring.lag" >"$TMP/short.lag"
+run "$TMP/short.lag"
+is "JSON: 0.1" 0.1 "$(number t_end)"
+run "$TMP/short.lag" --until 0.30000000000000004
+is "JSON: all digits that count" 0.30000000000000004 "$(number t_end)"
+sed 's/^scene.*/event end: t - 0.5 [s] rising { stop }\n&/' "$TMP/spring.lag" >"$TMP/stop.lag"
+check "text: 0.5" ends 0 "^stopped by an event at t = 0.5 s" "$TMP/stop.lag" --method rk4 --step 0.1
+run "$TMP/short.lag" --precision quad
+is "JSON with 34 digits: 0.1" 0.1 "$(number t_end)"
+
+# ---- an energy that fades by the method alone: rk4 multiplies it by 1 - z^6/72 + z^8/576 = 0.886 each step, z = 1.5
+printf 'model fades\ncoord x\nlagrangian = x'"'"'^2/2 - x^2/2\nscene s { start x = 1; span 1000; method rk4(step=1.5) }\n' >"$TMP/fades.lag"
+check "an energy that the method loses" ends 0 'note: the energy is off by 1 times its size: the numbers mean nothing' "$TMP/fades.lag"
+check "and one that it keeps" sh -c "! '$LAGC' run '$TMP/fades.lag' --step 0.1 | grep 'the numbers mean nothing'"
+
+# ---- outputs without a value: cos t is below 0 from pi/2 to 3 pi/2, at 2 to 4.5 of 0, 0.5, .. 5
+cat >"$TMP/root.lag" <<'X'
+model root
+coord x
+lagrangian = x'^2/2 - x^2/2
+scene s { start x = 1; span 5; output x, sqrt(x) every 0.5 }
+X
+check "an output without a value" ends 0 'note: the output sqrt(x) has no finite value at t = 2 s; so it is in 6 of 11 rows' "$TMP/root.lag" -o "$TMP/root.csv"
+run "$TMP/root.lag" -o "$TMP/root.csv"
+is "and in JSON" 6 "$(number rows_without_value)"
+tap_end

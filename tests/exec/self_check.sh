@@ -1,0 +1,105 @@
+#!/bin/sh
+# Every compilation compares what it compiled with the text. Here wrong rewrites are planted in sym/, and wrong steps after it, one at a time:
+# the compiler that results must refuse one of tests/exec/self_check/*.lag with an internal error, and write nothing.
+. tests/tap.sh
+
+models=$(echo tests/exec/self_check/*.lag models/chain.lag models/turntable.lag models/rattleback.lag models/guiding_centre.lag tests/exec/models/euler_pole.lag)
+
+# The compiler with one file changed: its object stands before the library, so that the library's own is not taken.
+build_with() {
+  mkdir -p "$TMP/$(dirname "$1")"
+  cp "$(dirname "$1")"/*.h "$TMP/$(dirname "$1")/"
+  sed "$2" "$1" >"$TMP/$1"
+  if cmp -s "$1" "$TMP/$1"; then
+    echo "the pattern is not there: $2"
+    return 1
+  fi
+  "${CC%% *}" -std=c11 -w -O1 -D_XOPEN_SOURCE=700 -Isrc -I"$BUILD/gen" -c -o "$TMP/wrong.o" "$TMP/$1" &&
+    "${CC%% *}" -o "$TMP/lagc" "$BUILD/obj/src/main.o" "$TMP/wrong.o" "$BUILD/liblagc.a" -lm
+}
+
+# caught FILE PATTERN: a compiler with this mistake says so of one of the models.
+caught() {
+  rm -f "$TMP/lagc" "$TMP/out.c"
+  build_with "$1" "$2" || return 1
+  for m in $models; do
+    timeout 20 "$TMP/lagc" emit "$m" -o "$TMP/out.c" >"$TMP/said" 2>&1
+    if grep -q 'internal error: .*\(the text gives .*, the compiled program\|no finite accelerations\)' "$TMP/said"; then
+      [ ! -e "$TMP/out.c" ] || echo "it was written all the same"
+      [ ! -e "$TMP/out.c" ]
+      return
+    fi
+    rm -f "$TMP/out.c"
+  done
+  echo "no model shows it; the last said:"
+  head -n 5 "$TMP/said"
+  return 1
+}
+
+for m in $models; do check "agrees: $m" "$LAGC" emit "$m" -o "$TMP/right.c"; done
+
+# Almost singular mass matrices, by Cramer's rule too: the program's error is the condition's, and no mistake.
+agrees() { # agrees TEXT OPTIONS...
+  printf 'model m\ncoord x, y\n%s\n' "$1" >"$TMP/bad.lag"
+  shift
+  "$LAGC" emit "$TMP/bad.lag" "$@" -o "$TMP/right.c"
+}
+bead="param m = 0.1 > 0, g = 9.81
+let z = x^3*y + y^4
+kinetic = m/2*(x'^2 + y'^2 + z'^2)
+potential = m*g*z
+scene s { start x = 40, y = 30, x' = 0.3, y' = -0.7; span 5; output x'', y'' every 0.1 }"
+check "steep: outputs of accelerations" agrees "$bead"
+check "steep: Taylor coefficients" agrees "$bead" --method taylor
+check "steep: two catenaries" agrees "param m = 0.1, a = 1, b = 2, g = 9.81
+let z = a*cosh(x/a) + b*cosh(y/b)
+kinetic = m/2*(x'^2 + y'^2 + z'^2)
+potential = m*g*z
+scene s { start x = 0.3, y = 0.2 }"
+for form in "(y*sinh(x))'" "(y*cosh(x))'" "(cosh(x)*cos(y))'" "(y/x^9)'" "y' + 1e4*(x - y^2)'"; do
+  check "steep: $form" agrees "param m = 0.7
+lagrangian = m/2*(x'^2 + ($form)^2)
+scene s { start x = 1, y = 1 }"
+done
+
+n=0
+while IFS='|' read -r file pattern; do
+  [ -n "$file" ] || continue
+  n=$((n + 1))
+  check "$n: src/$file: $pattern" caught "src/$file" "$pattern"
+done <<'ROWS'
+sym/diff.c|s/return expr_neg(g, s); }$/return s; }/
+sym/diff.c|s/return expr_sub(g, g->one, t2)/return expr_add(g, g->one, t2)/
+sym/diff.c|s/i == 0 ? x : expr_neg(g, y)/i == 0 ? x : y/
+sym/build.c|s/one.number = num_add(one.number,/one.number = num_sub(one.number,/
+sym/build.c|s/return is_odd(op) ? expr_neg(g, f) : f/return f/
+sym/build.c|s/op == EX_SIN || op == EX_TAN/op == EX_SIN || op == EX_COS || op == EX_TAN/
+sym/stable.c|s/num_mul(num_int(2), c), product/c, product/
+sym/stable.c|s/if (f == EX_SIN) c = num_neg(c);//
+sym/stable.c|s/minus = expr_sub(g, ra, b)/minus = expr_sub(g, b, ra)/
+sym/angles.c|s/Frac cos = frac_sub(f, cc, ss)/Frac cos = frac_add(f, cc, ss)/
+sym/angles.c|s/if (k < 0) sum.sin = frac_neg(n->field, sum.sin);//
+sym/trigform.c|s/sines \/ 2 % 2 ?/0 ?/
+sym/frac.c|s/poly_scale(f->ring, num_int(-1), a.num)/a.num/
+sym/frac.c|s/poly_add(r, x, y), .den = den/poly_add(r, x, x), .den = den/
+sym/normal.c|s/if (expr_op(n->g, e) == EX_COS) return cs.cos;/if (expr_op(n->g, e) == EX_COS) return cs.sin;/
+sym/poly.c|s/\*content = num_neg(\*content);.*//
+sym/roots.c|s/num_pow(num_int(prime), num_int(whole),/num_pow(num_int(prime), num_int(whole + 1),/
+sym/simplify.c|s/inverse = expr_pow_num(g, common, num_int(-1))/inverse = expr_pow_num(g, common, num_int(1))/
+sym/quotient.c|s/num_int(k - out)/num_int(k)/
+sym/quotient.c|s/expr_neg(g, expr_arg(g, E, 0))/expr_arg(g, E, 0)/
+ir/lower.c|s/IR_ADD : IR_SUB, first, second/IR_SUB : IR_ADD, first, second/
+ir/lower.c|s/wanted > 0 || negative ? IR_ADD : IR_SUB/IR_ADD/
+model/rotation.c|s/num_int(2), turned\[k\]/num_int(1), turned[k]/
+ir/eliminate.c|s/prog_op(l->p, IR_SUB, x, ab)/prog_op(l->p, IR_ADD, x, ab)/
+ir/balance.c|s/x.minus ? prog_op(b->to, IR_SUB, y.slot, x.slot)/0 ? prog_op(b->to, IR_SUB, y.slot, x.slot)/
+model/resolve_time.c|s/seed\[m->time\] = expr_int(b->g, 1)/seed[m->time] = expr_int(b->g, 0)/
+mech/lagrange.c|s/expr_sub(g, dLdq\[i\], convective\[i\])/expr_add(g, dLdq[i], convective[i])/
+mech/lagrange.c|s/= expr_sub(g, Q\[d.at\[i\].index\]/= expr_add(g, Q[d.at[i].index]/
+mech/eqns.c|s/e->energy = expr_sub(g, moving, l0)/e->energy = expr_add(g, moving, l0)/
+mech/constrain.c|s/expr_neg(e->g, rate(e, r\[at\], "_drift"))/rate(e, r[at], "_drift")/
+mech/first_order.c|s/H = expr_neg(w->g, still)/H = still/
+ir/gram.c|s/Slot f = op(y, IR_DIV, product(y, weighted, u), d)/Slot f = op(y, IR_DIV, d, product(y, weighted, u))/
+mech/squares.c|s/take(s, expr_scale(g, p, weight), term)/take(s, weight, term)/
+ROWS
+tap_end

@@ -1,0 +1,293 @@
+"""make mutants N=100 SEED=1: plants one-token changes in src and runtime, one at a time, and says which ones no suite sees.
+
+    python3 tests/mutants/mutants.py [--n N] [--seed S] [--only PATH[:TEXT]] [--change NEW] [--suites PREFIX,PREFIX] [--longest S]
+
+All of it happens in a copy of the tree, build/mutants/tree. A change that does not compile is replaced by another; one that leaves the machine
+code as it was, or stands in equivalent.txt, is equivalent. Else the suites that reach its line run, cheapest first, up to the first red one.
+A suite that hangs is red. Which suites reach a line is measured once, with gcov, and kept in build/mutants/cov; remove it to measure anew.
+"""
+import argparse
+import hashlib
+import json
+import os
+import random
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+import plant
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+TOP = os.path.dirname(os.path.dirname(HERE))
+WORK = os.path.join(TOP, "build", "mutants")
+TREE = os.path.join(WORK, "tree")
+SAN = "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
+# Suites that would need more builds, or that judge the text of the sources.
+LEFT_OUT = {"exec/includes", "exec/install", "exec/run_sanitized", "exec/run_precision", "exec/run_quad", "exec/editor", "golden/gallery"}
+
+
+def sh(command, **kw):
+    return subprocess.run(command, shell=True, cwd=TREE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **kw)
+
+
+def copy_tree():
+    """The tracked files and the new ones, those that differ; what is gone here goes there."""
+    os.makedirs(TREE, exist_ok=True)
+    names = subprocess.run("git ls-files -co --exclude-standard", shell=True, cwd=TOP, stdout=subprocess.PIPE, check=True).stdout.decode().split("\n")
+    for name in filter(None, names):
+        a, b = os.path.join(TOP, name), os.path.join(TREE, name)
+        if not os.path.isfile(a):
+            continue
+        os.makedirs(os.path.dirname(b), exist_ok=True)
+        if not os.path.exists(b) or open(a, "rb").read() != open(b, "rb").read():
+            shutil.copyfile(a, b)
+            shutil.copymode(a, b)
+
+
+def suites():
+    """All suites of `make test`, by kind in the order of their cost."""
+    found = []
+    for folder, head, end in (("unit", "test_", ".c"), ("fuzz", "fuzz_", ".c"), ("golden", "", ".sh"), ("hard", "", ".sh"), ("math", "", ".sh"), ("exec", "", ".sh")):
+        for f in sorted(os.listdir(os.path.join(TREE, "tests", folder))):
+            name = folder + "/" + f[: -len(end)]
+            if f.startswith(head) and f.endswith(end) and not f.startswith(("lib_", "long_")) and name not in LEFT_OUT:
+                found.append(name)
+    return found
+
+
+def environment(build, cc="cc", more=None):
+    gsl = os.path.exists(os.path.join(TREE, build, "liblag_gsl.a"))
+    e = dict(os.environ, LAGC=build + "/lagc", LAGC_SAN=build + "/lagc", SAN_FLAGS=SAN, LAGC_CLANG="", BIN=build + "/test/bin", BUILD=build, CC=cc, CLANG="",
+             LIBLAG=" ".join(build + "/" + f for f in ["liblag.a"] + ["liblag_gsl.a"] * gsl), LIBS="-lgsl -lgslcblas -lm" if gsl else "-lm", INC="runtime/include",
+             CXX="c++", GSL="yes" if gsl else "", MAKE="make", CMOCKA_MESSAGE_OUTPUT="TAP")
+    for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "LAG_HOME"):
+        e.pop(name, None)
+    e.update(more or {})
+    return e
+
+
+def run_suite(suite, build, env, limit):
+    """Status of a suite, 0: green; and its seconds."""
+    logs = os.path.join(TREE, build, "test", "log")
+    home = os.path.join(TREE, build, "test", "home")
+    os.makedirs(home, exist_ok=True)
+    for name, to in (("lib", build), ("include", "runtime/include")):
+        if not os.path.islink(os.path.join(home, name)):
+            os.symlink(os.path.join(TREE, to), os.path.join(home, name))
+    begin = time.time()
+    sh("sh tests/run.sh --run-one %s %d" % (suite, limit), env=env)
+    log = open(os.path.join(logs, suite + ".log"), errors="replace").read()
+    status = int(open(os.path.join(logs, suite + ".done")).read().split()[0])
+    return status or (1 if re.search("^not ok", log, re.M) else 0), time.time() - begin
+
+
+class Map:
+    """Which suites reach a line, and how long they take."""
+
+    def __init__(self):
+        self.folder = os.path.join(WORK, "cov")
+        self.seconds = {}
+        self.lines = {}
+        kept = os.path.join(self.folder, "seconds.json")
+        if os.path.exists(kept):
+            self.seconds = json.load(open(kept))
+
+    def measure(self, all_suites):
+        missing = [s for s in all_suites if s not in self.seconds]
+        if not missing:
+            return
+        bins = " ".join("cov/test/bin/" + os.path.basename(f)[:-2] for d in ("unit", "fuzz") for f in sorted(os.listdir(TREE + "/tests/" + d)) if f.endswith(".c") and f != "driver.c")
+        made = sh("make -s -j2 BUILD=cov SAN_BUILD=cov PRECISIONS= CLANG= CFLAGS=-O0 SAN=--coverage SAN_FLAGS=--coverage all " + bins)
+        if made.returncode:
+            sys.exit("mutants: the build for gcov fails:\n" + made.stdout.decode()[-2000:])
+        wrapper = os.path.join(self.folder, "cc")
+        os.makedirs(self.folder, exist_ok=True)
+        with open(wrapper, "w") as f:
+            f.write('#!/bin/sh\nexec cc "$@" -O0 --coverage\n')
+        os.chmod(wrapper, 0o755)
+        for s in missing:
+            prefix = os.path.join(self.folder, s)
+            env = environment("cov", wrapper, {"GCOV_PREFIX": prefix, "XDG_CACHE_HOME": os.path.join(self.folder, "cache")})
+            _, took = run_suite(s, "cov", env, 600)
+            self.seconds[s] = took
+            print("reached by %s, %.0f s" % (s, took), flush=True)
+            json.dump(self.seconds, open(os.path.join(self.folder, "seconds.json"), "w"))
+
+    def of(self, suite, path):
+        """The lines of a file that a suite executes."""
+        key = suite, path
+        if key not in self.lines:
+            name = os.path.join(TREE, "cov/obj", path[:-2])
+            data = os.path.join(self.folder, suite) + name + ".gcda"
+            self.lines[key] = set()
+            if os.path.exists(data):
+                shutil.copyfile(name + ".gcno", data[:-2] + "no")
+                out = subprocess.run(["gcov", "--json-format", "--stdout", data], cwd=TREE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout.decode()
+                for f in (f for text in out.splitlines() if text for f in json.loads(text)["files"]):
+                    if f["file"].endswith(path):
+                        self.lines[key] = {k["line_number"] for k in f["lines"] if k["count"]}
+        return self.lines[key]
+
+    def reach(self, path, first, last):
+        order = {"unit": 0, "fuzz": 1, "golden": 1, "math": 2, "hard": 2, "exec": 2}
+        found = [s for s in self.seconds if any(n in self.of(s, path) for n in range(first, last + 1))]
+        return sorted(found, key=lambda s: (order[s.split("/")[0]], self.seconds[s]))
+
+
+class Builds:
+    def __init__(self):
+        # Found out once, not by each make.
+        found = sh("make -s --eval='found:;@echo GSL=$(GSL) SAFE=$(SAFE)' found").stdout.decode().split()
+        self.settings = " ".join(w for w in found if "=" in w) + " PRECISIONS= CLANG="
+        self.green = os.path.join(WORK, "green.json")  # of suites without a change
+        self.known = json.load(open(self.green)) if os.path.exists(self.green) else {}
+
+    def san(self, names):
+        """Builds unit tests and fuzz targets."""
+        bins = " ".join("build/test/bin/" + n.split("/")[1] for n in names)
+        gsl = "build/san/liblag_gsl.a" if "GSL=yes" in self.settings else ""
+        return sh("make -s -j2 %s BUILD=build/san CFLAGS='-O1 -g' SAN='%s' build/san/liblagc.a build/san/liblag.a %s && make -s -j2 %s %s" % (self.settings, SAN, gsl, self.settings, bins))
+
+    def plain(self):
+        return sh("make -s -j2 " + self.settings + " all build/test/bin/mutate build/test/bin/dump_words build/test/bin/dump_syntax build/test/bin/cut_effects")
+
+    def is_red(self, suite, limit):
+        return run_suite(suite, "build", environment("build"), limit)[0] != 0
+
+    def was_green(self, suite, restore, plant_again, limit):
+        """A suite that turns red is run without the change, once: what is red at all is left out."""
+        if suite not in self.known:
+            restore()
+            self.make_for(suite)
+            self.known[suite] = not self.is_red(suite, limit)
+            json.dump(self.known, open(self.green, "w"))
+            plant_again()
+            self.make_for(suite)
+        return self.known[suite]
+
+    def make_for(self, suite):
+        return self.san([suite]) if suite.startswith(("unit/", "fuzz/")) else self.plain()
+
+
+def code_of(path, flags):
+    """The machine code of a file, without debugging data; None where it does not compile."""
+    out = os.path.join(WORK, "code.o")
+    made = sh("cc -std=c11 -w -D_XOPEN_SOURCE=700 %s -O2 -g0 -c -o %s %s" % (flags, out, path))
+    return None if made.returncode else hashlib.sha1(open(out, "rb").read()).hexdigest()
+
+
+def flags_of(path):
+    return "-Isrc -Ibuild/gen" if path.startswith("src") else "-Iruntime/include -Iruntime -Ibuild/gen -ffp-contract=off"
+
+
+def equivalents():
+    """equivalent.txt: FILE | the line | the line with the change | why it changes nothing."""
+    rows = {}
+    for n, line in enumerate(open(os.path.join(HERE, "equivalent.txt")), 1):
+        if line.strip() and not line.startswith("#"):
+            cells = [c.strip() for c in line.split(" | ")]
+            if len(cells) != 4 or not cells[3]:
+                sys.exit("equivalent.txt:%d: FILE | line | changed line | reason" % n)
+            rows[tuple(cells[:3])] = cells[3]
+    return rows
+
+
+class Trial:
+    def __init__(self, reach, builds, longest):
+        self.map, self.builds, self.longest = reach, builds, longest
+
+    def judge(self, text, c):
+        """'invalid', 'equivalent', 'killed by SUITE' or 'survived'."""
+        place = os.path.join(TREE, c.path)
+
+        def write(t):
+            with open(place, "w") as f:
+                f.write(t)
+
+        before = code_of(c.path, flags_of(c.path))
+        write(plant.apply(text, c))
+        try:
+            after = code_of(c.path, flags_of(c.path))
+            if after is None:
+                return "invalid"
+            if after == before:
+                return "equivalent: the same machine code"
+            return self.run(text, c, write)
+        finally:
+            write(text)
+
+    def run(self, text, c, write):
+        first = text.count("\n", 0, c.begin) + 1
+        last = text.count("\n", 0, c.end) + 1
+        there = self.map.reach(c.path, first, last)
+        begin, ran, built = time.time(), 0, ""
+        for suite in there:
+            if self.longest and time.time() - begin > self.longest:
+                return "survived %d of %d suites that reach it, in %.0f s" % (ran, len(there), time.time() - begin)
+            made = self.builds.make_for(suite) if suite.startswith("unit") or built != "plain" else None
+            built = "unit" if suite.startswith(("unit", "fuzz")) else "plain"
+            if made is not None and made.returncode:
+                return "killed by the build" if b"error:" not in made.stdout else "invalid"
+            limit = max(60, 10 * self.map.seconds[suite])
+            if self.builds.is_red(suite, limit) and self.builds.was_green(suite, lambda: write(text), lambda: write(plant.apply(text, c)), limit):
+                return "killed by " + suite
+            ran += 1
+        return "survived all of %d suites that reach it" % len(there)
+
+
+def draw(only):
+    path, _, piece = (only or "").partition(":")
+    pool = []
+    for folder in ("src", "runtime"):
+        for where, _, files in sorted(os.walk(os.path.join(TREE, folder))):
+            for f in sorted(files):
+                name = os.path.relpath(os.path.join(where, f), TREE)
+                if f.endswith(".c") and name.startswith(path):
+                    text = open(os.path.join(TREE, name)).read()
+                    pool += [(c, text) for c in plant.changes(name, text) if piece in plant.line_of(text, c)[1]]
+    return pool
+
+
+def main():
+    p = argparse.ArgumentParser()
+    p.add_argument("--n", type=int, default=100)
+    p.add_argument("--seed", type=int, default=1)
+    p.add_argument("--only", help="changes in files that begin so, in lines that have this text")
+    p.add_argument("--change", help="only this new text")
+    p.add_argument("--suites", default="unit,fuzz,golden,math,hard,exec", help="suites whose names begin so")
+    p.add_argument("--longest", type=float, default=0, help="seconds for one change; 0: no limit")
+    a = p.parse_args()
+    copy_tree()
+    rows, reach, builds = equivalents(), Map(), Builds()
+    builds.san([])
+    builds.plain()
+    reach.measure([s for s in suites() if s.startswith(tuple(a.suites.split(",")))])
+    pool = draw(a.only)
+    if a.change:
+        pool = [x for x in pool if x[0].new.strip() == a.change.strip()]
+    random.Random(a.seed).shuffle(pool)
+    trial, killed, same, tried, survivors = Trial(reach, builds, a.longest), 0, 0, 0, []
+    for c, text in pool:
+        if tried == a.n:
+            break
+        line, before, after = plant.line_of(text, c)
+        why = rows.get((c.path, before, after))
+        verdict = "equivalent: " + why if why else trial.judge(text, c)
+        if verdict == "invalid":
+            continue
+        tried += 1
+        killed += verdict.startswith("killed")
+        same += verdict.startswith("equivalent")
+        print("%s:%d: %s\n    - %s\n    + %s" % (c.path, line, verdict, before, after), flush=True)
+        if verdict.startswith("survived"):
+            survivors.append((c.path, line, before, after))
+    print("\nsurvivors:" if survivors else "\nno survivors")
+    for path, line, before, after in survivors:
+        print("%s:%d\n    - %s\n    + %s" % (path, line, before, after))
+    print("killed %d of %d (%.0f %%), %d equivalent" % (killed, tried - same, 100 * killed / max(1, tried - same), same))
+
+
+if __name__ == "__main__":
+    main()
