@@ -6,7 +6,7 @@
 /* --- the text at a state --- */
 
 static void moving(Jet *out, Real x, Real rate, Real second, Real direction) {
-  *out = (Jet){.moves = 1};
+  *out = (Jet){.planes = direction != 0 ? JET_PLANES : 1};
   out->c[0][0].v = x;
   out->c[0][1].v = rate;
   out->c[0][2].v = second / 2;
@@ -35,7 +35,7 @@ void check_input(void *data, InputKind kind, uint32_t i, Jet *out) {
   }
 }
 
-Bounded check_coefficient(const Tape *tape, const Jet *at, Ref r, int plane, int k) { return r ? jet_at(tape_value(tape, at, r), plane, k) : (Bounded){0, 0}; }
+Bounded check_coefficient(const Tape *tape, const Jet *at, Ref r, int plane, int k) { return r ? tape_value(tape, at, r)->c[plane][k] : (Bounded){0, 0}; }
 
 int check_run_text(Check *c) {
   int unsure = 0;
@@ -163,7 +163,7 @@ Verdict check_equations(Check *c) {
     if (!check_run(c, c->u->variation, out)) return DISMISSED;
   }
   const Real *const *given = variation[0] ? variation : NULL;
-  uint32_t n = check_components(c), length = c->dynamics->tape->ins.n, singles = n <= FEW && length < LONG_TAPE ? n : length < LONG_TAPE ? 2 : 0;
+  uint32_t n = check_components(c), length = c->dynamics->tape->ins.n, singles = length >= LONG_TAPE ? 0 : n <= FEW ? n : 1;
   if (n > FEW || !singles) v = check_together(c, given);
   for (uint32_t i = 0; i < singles && v == AGREES; i++) v = worse(v, check_coordinate(c, n <= FEW ? i : (uint32_t)(check_random(c, 0, 1) * n), given));
   c->told->directions = singles + (n > FEW || !singles);

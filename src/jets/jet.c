@@ -30,22 +30,22 @@ static void accumulate(Bounded *sum, Bounded x, Bounded y) {
 Jet jet_exact(JetReal v) { return (Jet){.c[0][0] = {v, 0}}; }
 Jet jet_rounded(JetReal v) { return (Jet){.c[0][0] = {v, jet_unit * fabsl(v)}}; }
 
-typedef Bounded Op2(Bounded x, Bounded y);
+static int most_planes(const Jet *x, const Jet *y) { return x->planes > y->planes ? x->planes : y->planes; }
 
-static void by_coefficients(Jet *out, const Jet *x, const Jet *y, Op2 *op) {
-  Jet r = {.moves = x->moves || y->moves};
-  if (!r.moves) r.c[0][0] = op(x->c[0][0], y->c[0][0]);
-  for (int p = 0; r.moves && p < JET_PLANES; p++)
-    for (int k = 0; k < JET_ORDERS; k++) r.c[p][k] = op(jet_at(x, p, k), jet_at(y, p, k));
+/* x + sign y, sign 1 or -1. */
+static void add_signed(Jet *out, const Jet *x, const Jet *y, int sign) {
+  Jet r = {.planes = most_planes(x, y)};
+  for (int p = 0; p == 0 || p < r.planes; p++)
+    for (int k = 0; k < JET_ORDERS; k++) r.c[p][k] = rounded(x->c[p][k].v + sign * y->c[p][k].v, x->c[p][k].e + y->c[p][k].e);
   *out = r;
 }
 
-void jet_add(Jet *out, const Jet *x, const Jet *y) { by_coefficients(out, x, y, bounded_add); }
-void jet_sub(Jet *out, const Jet *x, const Jet *y) { by_coefficients(out, x, y, bounded_sub); }
+void jet_add(Jet *out, const Jet *x, const Jet *y) { add_signed(out, x, y, 1); }
+void jet_sub(Jet *out, const Jet *x, const Jet *y) { add_signed(out, x, y, -1); }
 
 void jet_neg(Jet *out, const Jet *x) {
   Jet zero = jet_exact(0);
-  by_coefficients(out, &zero, x, bounded_sub);
+  add_signed(out, &zero, x, -1);
 }
 
 /* out += x y, of series in s. */
@@ -55,22 +55,22 @@ static void add_product(Bounded out[JET_ORDERS], const Bounded x[JET_ORDERS], co
 }
 
 static void scale(Jet *out, const Jet *x, Bounded by) {
-  Jet r = {.moves = x->moves};
-  if (!r.moves) r.c[0][0] = bounded_mul(x->c[0][0], by);
-  for (int p = 0; r.moves && p < JET_PLANES; p++)
+  Jet r = {.planes = x->planes};
+  if (!r.planes) r.c[0][0] = bounded_mul(x->c[0][0], by);
+  for (int p = 0; p < r.planes; p++)
     for (int k = 0; k < JET_ORDERS; k++) accumulate(&r.c[p][k], x->c[p][k], by);
   *out = r;
 }
 
 void jet_mul(Jet *out, const Jet *x, const Jet *y) {
-  if (!y->moves) {
+  if (!y->planes) {
     scale(out, x, y->c[0][0]);
-  } else if (!x->moves) {
+  } else if (!x->planes) {
     scale(out, y, x->c[0][0]);
   } else {
-    Jet r = {.moves = 1};
+    Jet r = {.planes = most_planes(x, y)};
     add_product(r.c[0], x->c[0], y->c[0]);
-    for (int p = 1; p < JET_PLANES; p++) {
+    for (int p = 1; p < r.planes; p++) {
       add_product(r.c[p], x->c[0], y->c[p]);
       add_product(r.c[p], x->c[p], y->c[0]);
     }
@@ -79,8 +79,8 @@ void jet_mul(Jet *out, const Jet *x, const Jet *y) {
 }
 
 void jet_rate(Jet *out, const Jet *x) {
-  Jet r = {.moves = x->moves};
-  for (int p = 0; r.moves && p < JET_PLANES; p++)
+  Jet r = {.planes = x->planes};
+  for (int p = 0; p < r.planes; p++)
     for (int k = 0; k + 1 < JET_ORDERS; k++) r.c[p][k] = bounded_mul((Bounded){k + 1, 0}, x->c[p][k + 1]);
   *out = r;
 }
@@ -107,14 +107,14 @@ static void compose(Bounded out[JET_ORDERS], const JetReal d[DERIVATIVES], int f
 }
 
 static void apply(Jet *out, const Jet *x, const JetReal d[DERIVATIVES]) {
-  Jet r = {.moves = x->moves};
+  Jet r = {.planes = x->planes};
   r.c[0][0] = derivative(d, 0, x->c[0][0].e);
-  if (r.moves && !isfinite(d[1])) r.c[0][0].e = NAN; /* it has no derivative there: nothing is decided */
-  if (r.moves) {
+  if (r.planes && !isfinite(d[1])) r.c[0][0].e = NAN; /* it has no derivative there: nothing is decided */
+  if (r.planes) compose(r.c[0], d, 0, x->c[0]);
+  if (r.planes > 1) {
     Bounded slope[JET_ORDERS];
-    compose(r.c[0], d, 0, x->c[0]);
     compose(slope, d, 1, x->c[0]);
-    for (int p = 1; p < JET_PLANES; p++) add_product(r.c[p], slope, x->c[p]);
+    for (int p = 1; p < r.planes; p++) add_product(r.c[p], slope, x->c[p]);
   }
   *out = r;
 }
@@ -179,22 +179,34 @@ int jet_function(Jet *out, const char *name, const Jet *of) {
   return 1;
 }
 
+/* x^n; small whole powers by multiplication, which takes fewer instructions and no more than 7 roundings. */
+static JetReal power(JetReal x, JetReal n, int is_third) {
+  JetReal product = 1;
+  if (is_third) return powl(cbrtl(x), roundl(3 * n));
+  if (n != floorl(n)) return x < 0 ? (JetReal)NAN : powl(x, n);
+  if (fabsl(n) > 6) return powl(x, n);
+  for (int k = (int)fabsl(n); k > 0; k--) product *= x;
+  return n < 0 ? 1 / product : product;
+}
+
 void jet_power(Jet *out, const Jet *of, JetReal n, int is_third) {
+  if (n == 2) {
+    jet_mul(out, of, of);
+    return;
+  }
   JetReal x = of->c[0][0].v, d[DERIVATIVES] = {0};
   int whole = n == floorl(n);
-  JetReal value = is_third ? powl(cbrtl(x), roundl(3 * n)) : powl(x, n);
-  if (!whole && !is_third && x < 0) value = NAN;
   if (x == 0 && whole && n >= 0) { /* a polynomial at 0: only derivative n is not 0 */
     for (int k = 0; k < DERIVATIVES; k++) d[k] = n == k ? tgammal(n + 1) : 0;
   } else {
-    powers(d, value, x, n);
+    powers(d, power(x, n, is_third), x, n);
   }
   apply(out, of, d);
 }
 
 void jet_div(Jet *out, const Jet *x, const Jet *y) {
   Jet inverse;
-  if (!x->moves && !y->moves) {
+  if (!x->planes && !y->planes) {
     *out = (Jet){.c[0][0] = bounded_div(x->c[0][0], y->c[0][0])};
     return;
   }
@@ -231,7 +243,7 @@ void jet_hypot(Jet *out, const Jet *x, const Jet *y) {
 
 void jet_pow(Jet *out, const Jet *x, const Jet *y) {
   Jet log_x;
-  if (!y->moves) {
+  if (!y->planes) {
     JetReal n = y->c[0][0].v;
     Jet value;
     jet_power(&value, x, n, 0);

@@ -20,7 +20,7 @@ typedef struct {
 
 typedef struct {
   Bounded c[JET_PLANES][JET_ORDERS];
-  int moves; /* 0: a constant; coefficients but c[0][0] are 0 and not to be read */
+  int planes; /* 0: a constant; 1: it goes along the motion alone; JET_PLANES: displacements, too. The other coefficients are 0 */
 } Jet;
 
 /* Half the distance of two neighbouring numbers, relative. */
@@ -29,11 +29,6 @@ extern const JetReal jet_unit;
 /* A constant; an exact one has no error. */
 Jet jet_exact(JetReal v);
 Jet jet_rounded(JetReal v);
-
-/* Coefficient k of plane p, 0 of constants. */
-static inline Bounded jet_at(const Jet *x, int p, int k) {
-  return x->moves || (p == 0 && k == 0) ? x->c[p][k] : (Bounded){0, 0};
-}
 
 void jet_add(Jet *out, const Jet *x, const Jet *y); /* out may be x or y, here and below */
 void jet_sub(Jet *out, const Jet *x, const Jet *y);

@@ -171,7 +171,7 @@ void tape_run(const Tape *t, TapeInput *input, void *data, Jet *at, int *unsure)
 static int is_finite(const Jet *x, int derivatives) {
   int finite = fabsl(value(x)) <= DBL_MAX;
   for (int p = 0; p < JET_PLANES && derivatives; p++)
-    for (int k = 0; k < JET_ORDERS; k++) finite &= isfinite(jet_at(x, p, k).v) != 0;
+    for (int k = 0; k < JET_ORDERS; k++) finite &= isfinite(x->c[p][k].v) != 0;
   return finite;
 }
 
