@@ -64,11 +64,13 @@ struct lag_sim {
   lag_problem pb;
   double *options;       /* [method->noptions] */
   double tol;
+  int steps_equal;       /* lag_equal_step(s) > 0, for what asks at each step */
   unsigned char *fixed;  /* [np] set by the caller */
   lag_signal *signal;    /* [nu] set by the caller; not part of what is saved */
   double *start;         /* [n] NaN: as the scene says */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
   double *sides;         /* [3 nswitch] scratch of stall_detector.c */
+  double *paces;         /* [3 n] of force_pole.c: changes of the state in a second, over the last two steps, and their fading peak; NaN: not known */
   double *contact_room, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
   double *saved;         /* one block: Run, and the arrays below; in `room`, which is freed */
@@ -204,6 +206,10 @@ int lag_step_of_method(lag_sim *sim, double *t, double t_stop);
 
 /* stall_detector.c: whether the step from `now` to y at t leads nowhere: LAG_ESTALL or LAG_ESTEP, and pb says why; or LAG_OK. */
 int lag_stalls(lag_sim *sim, double t);
+
+/* force_pole.c: whether the step from `now` to y at t, of equal size, leads over a pole of a derivative: LAG_EDOMAIN, and pb says of which; or LAG_OK. */
+int lag_over_force_pole(lag_sim *sim, double t);
+void lag_forget_paces(lag_sim *sim);
 
 /* project.c. Constraints on velocities that keep a function of positions: until it is said what, positions are free; then they keep what it
  * is of y at t. Returns what the model returned. */

@@ -202,6 +202,7 @@ static void take_over(lag_sim *s)
     m->derive(s->p);
   }
   lag_note_redundant(s);
+  lag_forget_paces(s);
 }
 
 int lag_sim_load(lag_sim *s, const double *x)

@@ -85,8 +85,8 @@ static int alloc_scratch(lag_sim *s)
   size_t held = lag_held_room(m), ranks = lag_ranks_room(m), sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
   size_t nc = (size_t)lag_sim_ncharges(s);
   double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->pb.ranks, &s->contact_room,
-                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides};
-  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch};
+                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides, &s->paces};
+  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch, 3 * n};
 
   s->scratch = lag_room(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
@@ -98,6 +98,7 @@ static int alloc_scratch(lag_sim *s)
   for (size_t i = 0; i < n; i++) {
     s->start[i] = NAN;
   }
+  lag_forget_paces(s);
   s->pb.u = s->u;
   s->pb.signal = s->signal;
   s->pb.work = s->work;
@@ -379,6 +380,7 @@ int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *o
   lag_tangent_free(s);
   free(s->options);
   s->options = values;
+  s->steps_equal = lag_equal_step(s) > 0;
   place(s);
   return LAG_OK;
 }

@@ -173,6 +173,7 @@ static int take(lag_sim *s, double t_stop)
   s->pb.bad_t = t;
   int rc = lag_step_of_method(s, &t, t_stop);
   rc = rc ? rc : lag_stalls(s, t);
+  rc = rc ? rc : lag_over_force_pole(s, t);
   if (rc) {
     return lag_explain(s, rc);
   }

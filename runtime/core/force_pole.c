@@ -1,0 +1,120 @@
+/* Steps of equal size over a pole of a force or a flow, as 1/x^2 has at x = 0: what comes behind it is no motion of the model. Enters: a step that a
+ * method has made, from s->now to s->y; leaves: whether a derivative goes through infinity within it. Methods that choose their steps stop in front of a
+ * pole, as their steps become too small there.
+ *
+ * A step is looked at where a velocity or a state has not changed as in the two steps before: the second difference is a tenth of the largest
+ * change (in a resolved motion it is (w step)^2 of it), or the change is a peak, four times that of two steps before. Then the step is halved again and again, towards its end with the larger derivative. Over a pole of
+ * order p the interval's length times the smaller derivative at its ends grows by 2^(p-1) a turn; over anything that is finite, however steep, it falls by
+ * 2 from some turn on, and over the integrable end of a square root by sqrt 2. */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "core/core.h"
+#include "core/rhs.h"
+
+enum { MOST_TURNS = 40, LEAST_TURNS = 12, SHORT = 4, LONG = 8 };
+
+/* Notes by how much components nq to n of the state change in a second; which of them has changed otherwise than in the two steps before, beside its size,
+ * the most. -1: none. */
+static int find_rough(lag_sim *s, double t)
+{
+  const double rough = 0.1, rounding = 1e-9, steep = 4, fading = 0.99;
+  int nq = s->pb.nq, n = s->pb.n, which = -1;
+  double most = 0, dt = t - s->run->t, *one = s->paces, *two = one + n, *peak = two + n;
+
+  for (int i = nq; i < n; i++) {
+    double pace = (s->y[i] - s->now[i]) / dt, size = fabs(pace), bend = fabs(pace - 2 * one[i] + two[i]), faded = fading * peak[i];
+    int grows = size > steep * fabs(two[i]) && size > peak[i];
+    if (grows || !(bend <= rough * size)) { /* of the first two steps nothing is known, which is NaN */
+      double largest = fmax(size, fmax(fabs(one[i]), fabs(two[i]))), part = (isnan(bend) ? largest : bend) / fmax(fabs(s->now[i]), DBL_MIN);
+      int counts = (grows || !(bend <= rough * largest)) && largest * fabs(dt) > rounding * fabs(s->now[i]) && part > most;
+      most = counts ? part : most;
+      which = counts ? i : which;
+    }
+    two[i] = one[i];
+    one[i] = pace;
+    peak[i] = size > faded || isnan(faded) ? size : faded;
+  }
+  return which;
+}
+
+void lag_forget_paces(lag_sim *s)
+{
+  for (int i = 0; i < 3 * s->pb.n; i++) {
+    s->paces[i] = NAN;
+  }
+}
+
+/* |derivative of component i| at part x of the straight way from now to y at t, whose state goes to ya; NaN: it has no value. Uses yb. Dense output would
+ * not do: beside a pole its velocities lead anywhere. */
+static double derivative_at(lag_sim *s, double x, double t, int i)
+{
+  for (int k = 0; k < s->pb.n; k++) {
+    s->ya[k] = s->now[k] + x * (s->y[k] - s->now[k]);
+  }
+  return lag_rhs(&s->pb, s->run->t + x * (t - s->run->t), s->ya, s->yb) ? NAN : fabs(s->yb[i]);
+}
+
+/* Whether states that far apart on the way differ in more than their last digits, beside ya. */
+static int are_apart(const lag_sim *s, double dx)
+{
+  const double digits = 4096 * DBL_EPSILON;
+  double apart = 0;
+
+  for (int i = 0; i < s->pb.n; i++) {
+    apart = fmax(apart, fabs((s->y[i] - s->now[i]) * dx) / fmax(fabs(s->ya[i]), DBL_MIN));
+  }
+  return apart > digits;
+}
+
+/* Where on the way to y at t component i's derivative has a pole; NaN: it has none. */
+static double find_pole(lag_sim *s, double t, int i)
+{
+  static const double parts[] = {0.5, 0.45, 0.55};
+  double from = 0, to = 1, a = derivative_at(s, from, t, i), b = derivative_at(s, to, t, i), before[LONG] = {0};
+  int turn = 0;
+
+  for (int apart = 1; turn < MOST_TURNS && apart; turn++) {
+    double size = (to - from) * fmin(a, b), x = from, c = NAN;
+    if (!(size > 0) || (turn >= SHORT && size < 0.125 * before[(turn - SHORT) % LONG]) || (turn >= LONG && size < 0.25 * before[turn % LONG])) {
+      return NAN;
+    }
+    before[turn % LONG] = size;
+    for (size_t k = 0; k < sizeof parts / sizeof *parts && !isfinite(c); k++) {
+      x = from + parts[k] * (to - from);
+      c = derivative_at(s, x, t, i);
+    }
+    apart = isfinite(c) && are_apart(s, to - from);
+    *(a > b ? &to : &from) = x;
+    *(a > b ? &b : &a) = c;
+  }
+  return turn > LEAST_TURNS ? from : NAN;
+}
+
+int lag_over_force_pole(lag_sim *s, double t)
+{
+  lag_problem *pb = &s->pb;
+  int i = s->steps_equal && !pb->model->constraints ? find_rough(s, t) : -1;
+
+  if (i < 0) {
+    return LAG_OK;
+  }
+  const char *detail = pb->detail;
+  int index = pb->bad_index;
+  double bad_t = pb->bad_t, calls = pb->rhs_calls, pole = find_pole(s, t, i);
+
+  pb->rhs_calls = calls;
+  pb->detail = detail;
+  pb->bad_t = bad_t;
+  pb->bad_index = index;
+  if (isnan(pole)) {
+    return LAG_OK;
+  }
+  const lag_model *m = pb->model;
+  snprintf(pb->words, sizeof pb->words, "a pole of %s%s, over which no motion leads", i < 2 * pb->nq ? m->q[i - pb->nq].name : m->z[i - 2 * pb->nq].name,
+           i < 2 * pb->nq ? "''" : "'");
+  pb->detail = pb->words;
+  pb->bad_t = s->run->t + pole * (t - s->run->t);
+  return LAG_EDOMAIN;
+}
