@@ -64,13 +64,18 @@ static ExpectResult judge(const Eqns *e, const CaseSymbols *symbols, const Expec
   if (proved) return r; /* EXPECT_PROVED */
   r.inexact = !numbers_are_exact(e, x);
   int somewhere_false = v == PROVED_NONZERO && !e->constraints.n; /* constraints leave out states */
-  r.verdict = w.text ? EXPECT_REFUTED : w.states && !w.blind && !somewhere_false ? EXPECT_AGREES : EXPECT_UNKNOWN;
+  r.missing = !w.states ? NULL : somewhere_false ? "the difference that there is" : w.missing;
+  r.verdict = w.text ? EXPECT_REFUTED : w.states && !r.missing ? EXPECT_AGREES : EXPECT_UNKNOWN;
   return r;
 }
 
 static void report_unknown(const Eqns *e, const Expect *x, const ExpectResult *r) {
-  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a value that means something%s", r->label,
-             r->states ? " beyond a switch, or numbers do not show the difference that there is" : "");
+  if (r->missing) {
+    diag_error(e->m->diags, x->span, "expect %s is not decided: no proof is found, and no state that was compared shows %s", r->label, r->missing);
+    diag_help(e->m->diags, "expect it for one side alone, or write it in another form%s", r->inexact ? "; " EXACT_NUMBERS : "");
+    return;
+  }
+  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a value that means something", r->label);
   diag_help(e->m->diags, "write it where its roots and logarithms are defined, and in numbers of ordinary size%s", r->inexact ? "; " EXACT_NUMBERS : "");
 }
 

@@ -17,6 +17,7 @@ typedef struct {
   ExpectVerdict verdict;
   int digits; /* of agreement */
   int states; /* at which the sides were compared */
+  const char *missing; /* what no state that was compared showed; NULL: nothing, or none was compared */
   const char *difference; /* of a refuted one: both values, and a state that has them */
   int inexact; /* a number in the sides, or in the equations, is not exact: that is why it is not decided */
 } ExpectResult;

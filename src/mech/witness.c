@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "mech/seen_sides.h"
 #include "mech/state_errors.h"
 #include "mech/states.h"
 #include "mech/switches.h"
@@ -37,8 +38,7 @@ typedef struct {
   Real l, r, d;
   int states, digits; /* compared so far; to which all of them agree that are of ordinary size */
   int ordinary;       /* the state in hand is */
-  int seen, outside;  /* the state in hand was compared; a side has no real value there */
-  int blind;          /* a side of a switch was not seen where both sides of the claim may have values */
+  SeenSides *sides;
 } Search;
 
 /* --- one state --- */
@@ -51,11 +51,6 @@ static void put_params(Search *s, EvalTape *values, const SymId *of, uint32_t n)
 static int holds(const Search *s, Expr condition) {
   Real bound;
   return !condition || (bound_value(s->tape, condition, &bound) != 0 && bound == 0);
-}
-
-static int is_outside(const Search *s) {
-  Real bound, value = s->domain ? bound_value(s->tape, s->domain, &bound) : 1;
-  return s->domain && value == 0 && bound == 0;
 }
 
 /* The sum of the sizes of a side's terms. */
@@ -74,7 +69,6 @@ static int certain(Real value, Real bound) { return isfinite(value) && isfinite(
 /* Completes the state and compares the sides: 1 where both are defined and differ. */
 static int differs(Search *s) {
   const Real noise = 1e-9L; /* of the terms: then 6 digits and more are compared */
-  s->seen = s->outside = 0;
   put_params(s, s->given, s->followers.at, s->followers.n);
   if (!states_complete(s->solver, s->symbols)) return 0;
   if (s->inside && !state_errors_at(s->inside, s->solver, s->symbols, s->errors)) return 0;
@@ -83,14 +77,13 @@ static int differs(Search *s) {
   s->l = bound_value(s->tape, s->left, &off_l);
   s->r = bound_value(s->tape, s->right, &off_r);
   s->d = bound_value(s->tape, s->gap, &off_d);
-  s->outside = is_outside(s);
   if (!isfinite(s->l - s->r) || !isfinite(off_l + off_r) || !holds(s, s->domain)) return 0;
   if (certain(s->l - s->r, off_l + off_r) || certain(s->d, off_d)) return 1;
   Real size = size_of(s, s->left) + size_of(s, s->right);
   if (!(off_l + off_r <= noise * size)) return 0;
   int digits = s->l == s->r ? FULL_DIGITS : (int)floorl(-log10l(fabsl(s->l - s->r) / size));
   s->states++;
-  s->seen = 1;
+  seen_sides_note(s->sides, s->symbols);
   if (s->ordinary && digits < s->digits) s->digits = digits;
   return 0;
 }
@@ -160,17 +153,13 @@ static int try_place(void *data, Real *symbols, SwitchLine line, Real where, int
   static const Real distance[] = {1e-12L, 1e-9L, 1e-6L, 1e-3L, 0.1L};
   Search *s = data;
   Real unit = fabsl(where) > 0 ? fabsl(where) : 1;
-  int seen[2] = {0, 0}, open[2] = {0, 0}; /* below and above: states that were compared; that were not, and have values */
   for (int k = s->inside || !exactly ? 0 : -1; k < 10 && s->budget > 0; k++) {
     s->budget -= s->cost;
     Real t = where + (k < 0 ? 0 : (k % 2 ? -1 : 1) * distance[k / 2] * unit);
     memcpy(s->symbols, symbols, (expr_symbol_count(s->g) + 1) * sizeof *symbols);
     switch_go(line, t, s->symbols);
     if (differs(s)) return 1;
-    seen[k % 2 == 0] += k >= 0 && s->seen;
-    open[k % 2 == 0] += k >= 0 && !s->seen && !s->outside;
   }
-  s->blind |= exactly && s->budget > 0 && ((!seen[0] && open[0]) || (!seen[1] && open[1]));
   return 0;
 }
 
@@ -371,9 +360,10 @@ Witness witness_find(const Eqns *e, const Expect *x, int quick) {
   s.errors = ARENA_ARRAY(a, Real, count);
   gather_params(&s);
   gather_free(&s);
+  s.sides = seen_sides(g, roots, 2);
   double width = e->n + e->constraints.n;
   s.cost = expr_topo(g, roots, 4).n + (s.inside ? width * width * width + 1000 : 100);
   s.budget = 1e7;
   if (find(&s, quick)) return (Witness){.text = difference_text(&s)};
-  return (Witness){.states = s.states, .digits = s.digits, .blind = s.blind};
+  return (Witness){.states = s.states, .digits = s.digits, .missing = seen_sides_missing(s.sides)};
 }

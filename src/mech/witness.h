@@ -8,7 +8,7 @@ typedef struct {
   const char *text; /* "the left side is 1, the right side 2 at x = 1"; NULL: none was found, and then: */
   int states;       /* how many were compared */
   int digits;       /* to which the sides agree at those of ordinary size */
-  int blind;        /* on one side of a switch no state gave values that could be compared */
+  const char *missing; /* what no state showed: see mech/seen_sides.h; NULL: nothing */
 } Witness;
 
 /* Looks at simple states, random ones, states from 1e-6 to 1e12 in size, whole numbers, and at both sides of places where a comparison, `min`,
