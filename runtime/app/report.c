@@ -188,7 +188,11 @@ static void exact(const App *app, FILE *f)
     state_var(app, c->exact_of[k], &v);
     lag_sim_exact(app->sim, k, &largest, &now);
     const char *unit = strcmp(v.unit, "degC") == 0 ? "K" : v.unit; /* a difference */
-    fprintf(f, "exact %s: largest deviation %.3g%s%s, final %.3g\n", v.name, largest, unit[0] ? " " : "", unit, now);
+    if (isnan(largest)) {
+      fprintf(f, "exact %s: the closed form has no finite value at some states of the run, and nothing is known of the deviation\n", v.name);
+    } else {
+      fprintf(f, "exact %s: largest deviation %.3g%s%s, final %.3g\n", v.name, largest, unit[0] ? " " : "", unit, now);
+    }
   }
   if (c->nexact > MOST_LINES) {
     fprintf(f, "  (and %d more)\n", c->nexact - MOST_LINES);

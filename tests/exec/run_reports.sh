@@ -190,6 +190,11 @@ else
   skip "floors" "GSL is not installed"
 fi
 
+# ---- a closed form that ends
+echo 'model ends; coord x; lagrangian = x'"'"'^2/2; scene s { start x = 1; span 2; exact x = if(t < 1, 1, sqrt(1 - t)) }' >"$TMP/ends.lag"
+check "a closed form without a value is none" ends 0 '^exact x: the closed form has no finite value at some states of the run' "$TMP/ends.lag"
+check "before that it is one" ends 0 '^exact x: largest deviation 0, final 0$' "$TMP/ends.lag" --until 0.5
+
 # ---- Lyapunov exponents: 0 for an oscillator; a limit cycle has dimension 1
 "$LAGC" lyapunov "$TMP/spring.lag" --until 2000 >"$TMP/out"
 check "an oscillator is not known to be chaotic" grep -q 'not known to be chaotic: the first exponent is 0 within three errors' "$TMP/out"
