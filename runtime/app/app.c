@@ -289,7 +289,6 @@ static int save_state(const App *app)
   return rc;
 }
 
-/* Completes the files, says what happened. */
 /* To the process that knows the text, if lagc left one ($LAG_LAST_STATE: a pipe's number): t, q, v, z and p. It says which expression has no value, and ends. */
 static void tell_last_state(const App *app)
 {
@@ -315,6 +314,7 @@ static void tell_last_state(const App *app)
   }
 }
 
+/* Completes the files, says what happened. */
 static int finish(App *app)
 {
   const Args *a = &app->args;

@@ -76,16 +76,6 @@ int report_lost_digits(const App *app, const lag_charge_stats *energy)
   return (lag_sim_method(app->sim)->flags & LAG_METHOD_ADAPTIVE) && energy->jolt > digits * lag_sim_tolerance(app->sim) && energy->strain > singular;
 }
 
-/* Half of the energy lost, or made, is no motion of this model, whatever the trend. */
-static void put_warning(const lag_charge_stats *c, FILE *f)
-{
-  const double half = 0.5;
-
-  if (c->flags & (LAG_CONSERVED | LAG_BALANCED) && c->drift >= half) {
-    fprintf(f, "note: the energy is off by %.2g times its size: the numbers mean nothing; take smaller steps, or a smaller tolerance\n", c->drift);
-  }
-}
-
 /* The accuracy that was reached instead of the one asked for, where inertia almost vanished on the way. */
 static void put_lost_digits(const App *app, const lag_charge_stats *c, FILE *f)
 {
@@ -115,7 +105,6 @@ void report_charges(const App *app, FILE *f)
     put_trend(app, &c, f);
     putc('\n', f);
     if (k == 0) {
-      put_warning(&c, f);
       put_lost_digits(app, &c, f);
     }
   }

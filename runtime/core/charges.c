@@ -256,6 +256,23 @@ static int is_lost(const lag_model *m, const Charge *c, double d, double size)
   return c->balanced != 0.0 && !driven && c->bins >= few && fabs(d) > fmax(times * of, least) && fabs(d) > part * fmax(size, c->through);
 }
 
+int lag_charges_kept(lag_sim *s)
+{
+  const double half = 0.5, least = 1e-12;
+  const lag_model *m = s->scene->model;
+  lag_charge_stats c;
+
+  if (lag_sim_ncharges(s) == 0 || s->run->begun == 0.0 || (m->constraints && !(m->flags & LAG_AUTONOMOUS))) {
+    return LAG_OK;
+  }
+  lag_sim_charge(s, 0, &c);
+  if (!(c.flags & (LAG_CONSERVED | LAG_BALANCED)) || !(c.drift >= half) || !(c.absolute > least)) {
+    return LAG_OK;
+  }
+  return lag_fail(s, LAG_EDRIFT, "at t = %.9g s the energy is off by %.2g times its size in this run, or was: the numbers mean nothing; take %s", s->run->t, c.drift,
+                  s->steps_equal ? "smaller steps" : "a smaller tolerance");
+}
+
 static int say_lost(lag_sim *s, double t, double before, double d)
 {
   const lag_model *m = s->scene->model;

@@ -248,6 +248,9 @@ void lag_charges_jump(lag_sim *sim, double t, const double *ya, const double *yb
 double lag_charge_drift(const lag_sim *sim, int k);
 unsigned lag_charge_flags(const lag_sim *sim, int k);
 
+/* charges.c: whether half of the energy, known to be conserved or balanced, is still there: LAG_OK, or LAG_EDRIFT with a message. */
+int lag_charges_kept(lag_sim *sim);
+
 /* watch.c: charges and monitors. begin: first values. see: the state `y` at t is part of the run. jump: an
  * event changed the state from ya to yb. */
 int lag_watch_begin(lag_sim *sim);

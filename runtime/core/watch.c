@@ -118,7 +118,7 @@ int lag_sim_watch(lag_sim *s)
   for (int i = 0; i < s->scene->nmonitors && rc == 0 && s->run->begun != 0.0; i++) {
     rc = judge(s, i, lag_sim_monitor_drift(s, i));
   }
-  return rc;
+  return rc ? rc : lag_charges_kept(s);
 }
 
 int lag_watch_see(lag_sim *s, double t, const double *y)

@@ -456,8 +456,8 @@ int lag_sim_tangent(lag_sim *sim, double *Y);
 void lag_sim_stats(lag_sim *sim, lag_stats *stats);
 /* The drift of monitor i so far, as judged against its limit: at ends of steps, and at the present time. */
 double lag_sim_monitor_drift(lag_sim *sim, int i);
-/* Judges monitors at the present time, too: advancing judges them at ends of steps, whatever times are asked for. LAG_OK, or LAG_EMONITOR with
- * a message; the run can go on as if it had not been asked. */
+/* Judges monitors and the energy at the present time, too: advancing judges them at ends of steps, whatever times are asked for. LAG_OK; LAG_EMONITOR,
+ * LAG_EDRIFT where half of an energy that is conserved or balanced is lost or made, with a message; the run can go on as if it had not been asked. */
 int lag_sim_watch(lag_sim *sim);
 /* Closed form k of the scene (k < lag_sim_scene(sim)->nexact): the largest |motion - closed form| at the ends of steps so
  * far, and the difference now, both in the declared unit (of degC: K); of angles, the nearest way around. NaN: the closed form is no

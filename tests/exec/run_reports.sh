@@ -71,9 +71,10 @@ echo 'model root; coord x; lagrangian = x'"'"'^2/2 - sqrt(abs(x)); scene s { sta
 echo 'model past; coord x, y; lagrangian = (x'"'"'^2 + y'"'"'^2)/2 + 1/hypot(x, y); scene s { start x = 1, y'"'"' = 0.01; span 3 }' >"$TMP/past.lag"
 for method in 'rk4(step=0.01)' 'rk4(step=0.037)' 'rk4(step=0.1)' 'verlet(step=0.00987)' 'symplectic_euler(step=0.01)'; do
   check "no pole in a barrier, by $method" ends 0 'reached t = 3 s' "$TMP/barrier.lag" --method "$method"
-  check "nor in a root, by $method" ends 0 'reached t = 20 s' "$TMP/root.lag" --method "$method"
-  "$LAGC" run "$TMP/past.lag" --method "$method" >"$TMP/out" 2>&1
-  empty "nor beside a centre, by $method" "$(grep 'a pole of x' "$TMP/out")"
+  for model in root past; do # whose energies such steps may lose
+    "$LAGC" run "$TMP/$model.lag" --method "$method" >"$TMP/out" 2>&1
+    empty "nor in $model, by $method" "$(grep 'a pole of' "$TMP/out")"
+  done
 done
 for method in rk45 dop853 radau; do
   check "in front of it by $method" ends 3 'FAILED: at t = 1.11072[0-9]* s: the step became too small' "$TMP/pole.lag" --method $method
@@ -227,7 +228,7 @@ is "JSON with 34 digits: 0.1" 0.1 "$(number t_end)"
 
 # ---- an energy that fades by the method alone: rk4 multiplies it by 1 - z^6/72 + z^8/576 = 0.886 each step, z = 1.5
 printf 'model fades\ncoord x\nlagrangian = x'"'"'^2/2 - x^2/2\nscene s { start x = 1; span 1000; method rk4(step=1.5) }\n' >"$TMP/fades.lag"
-check "an energy that the method loses" ends 0 'note: the energy is off by 1 times its size: the numbers mean nothing' "$TMP/fades.lag"
+check "an energy that the method loses" ends 3 'FAILED: at t = 1000 s the energy is off by 1 times its size in this run, or was: the numbers mean nothing; take smaller steps' "$TMP/fades.lag"
 check "and one that it keeps" sh -c "! '$LAGC' run '$TMP/fades.lag' --step 0.1 | grep 'the numbers mean nothing'"
 
 # ---- outputs without a value: cos t is below 0 from pi/2 to 3 pi/2, at 2 to 4.5 of 0, 0.5, .. 5
