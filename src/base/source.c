@@ -113,7 +113,8 @@ Place source_place(const Sources *s, uint32_t offset) {
       if (((unsigned char)f->text[k] & 0xC0) != 0x80) column++;
     const char *text = f->text + start;
     uint32_t len = 0;
-    while (start + len < f->len && text[len] != '\n' && text[len] != '\r') len++;
+    while (start + len < f->len && text[len] != '\n') len++;
+    len -= len > 0 && text[len - 1] == '\r'; /* elsewhere it is a character of the line */
     return (Place){.file = f, .line = line, .column = column, .line_text = text, .line_len = len,
                    .line_byte = at - start};
   }

@@ -58,7 +58,7 @@ static int row_coefficients(Search *s, Tables *t, uint32_t row, int moved, Expr 
 
 /* The same for a shorter row, which takes the place of the other when it is recognised. */
 static int shorter_coefficients(Search *s, Tables *t, uint32_t row, int moved, Expr *c) {
-  uint32_t n = moved || t->moved ? noether_choices(s) : CHOICE_MOVED, width = t->at[0].blocks * t->at[0].shown;
+  uint32_t n = t->moved && noether_shapes_agree(s, t) ? noether_choices(s) : CHOICE_MOVED, width = t->at[0].blocks * t->at[0].shown;
   long double *kept = ARENA_ARRAY(s->scratch, long double, (size_t)n * width);
   TableChange changes[CHANGES_MOST];
   for (uint32_t i = 0; i < n; i++) memcpy(kept + (size_t)i * width, t->at[i].at + (size_t)row * width, width * sizeof *kept);

@@ -164,7 +164,7 @@ check "in the middle of a circle" taken 1 1 one
 one 'constraint a: x = 0 [m]' 'constraint b: 2*x = 0 [m]' 'scene s { start y = 1 [m]; span 1 [s] }'
 regular() { taken 1 2 one && ! grep singular "$TMP/check" "$TMP/run"; }
 check "what follows from others everywhere is not singular" regular
-one "constraint a: x*x' + y*y' = l*x*th'" 'scene s { span 1 [s] }'
+one "constraint a: x*x' + y*y' = l*x*th'" "scene s { start th' = 1 [rad/s]; span 1 [s] }"
 velocities() { taken 0 1 one && says "singular start: the rank is 1 beside it; the constraints do not determine x', y'" "$TMP/check" && says "singular: 1 beside it, and what the start says of x', y'" "$TMP/run"; }
 check "a constraint on velocities that is none at the start" velocities
 
