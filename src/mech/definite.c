@@ -2,6 +2,7 @@
 
 #include "sym/diff.h"
 #include "sym/eval.h"
+#include "sym/print.h"
 
 static int moves(const Eqns *e, Expr x) { return (expr_kinds(e->g, x) & 1u << SYM_VEL) != 0; }
 
@@ -165,6 +166,16 @@ static uint32_t find_culprit(const Eqns *e, Expr entry, long double *value) {
   return UINT32_MAX;
 }
 
+/* Whether its sign hangs on which positive values the parameters have, as that of a - b does; that of -m is meant. */
+static int may_be_positive(const Eqns *e, Expr entry) {
+  const Model *m = e->m;
+  uint32_t n = expr_symbol_count(e->g) + 1;
+  Expr *with = ARENA_ARRAY(m->arena, Expr, n);
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (expr_symbol(e->g, m->params.at[i].sym)->sign == SIGN_UNKNOWN) with[m->params.at[i].sym] = expr_fn(e->g, EX_EXP, expr_symbol(e->g, m->params.at[i].sym)->node);
+  return expr_sign(e->g, expr_substitute(e->g, entry, with, n, "")) == SIGN_UNKNOWN;
+}
+
 void mass_warn(const Eqns *e) {
   const Model *m = e->m;
   long double *value = ARENA_ARRAY(m->arena, long double, expr_symbol_count(e->g) + 1), inertia;
@@ -178,6 +189,12 @@ void mass_warn(const Eqns *e) {
     expr_eval(e->g, &x.e, 1, value, &inertia);
     if (!(inertia < 0) && !(inertia == 0 && !m->constraints.n)) continue;
     uint32_t k = find_culprit(e, x.e, value);
+    if (k == UINT32_MAX && may_be_positive(e, x.e)) {
+      StrBuf entry = strbuf(m->arena);
+      expr_print(e->g, x.e, PRINT_TEXT, &entry);
+      diag_warning(m->diags, m->coords.at[x.row].span, "the values of the parameters make the inertia of `%s` %s", m->coords.at[x.row].name, inertia < 0 ? "negative" : "zero");
+      diag_help(m->diags, "give them values that make %s positive", sb_text(&entry));
+    }
     if (k == UINT32_MAX || warned[k]++) continue;
     const Param *p = &m->params.at[k];
     diag_warning(m->diags, p->span, "`%s` is %s, and makes the inertia of `%s` %s", p->name, arena_printf(m->arena, "%.6Lg", value[p->sym]),
