@@ -3,9 +3,10 @@
  * pole, as their steps become too small there.
  *
  * A step is looked at where a velocity or a state has not changed as in the two steps before: the second difference is a tenth of the largest
- * change (in a resolved motion it is (w step)^2 of it), or the change is a peak, four times that of two steps before. Then the step is halved again and again, towards its end with the larger derivative. Over a pole of
- * order p the interval's length times the smaller derivative at its ends grows by 2^(p-1) a turn; over anything that is finite, however steep, it falls by
- * 2 from some turn on, and over the integrable end of a square root by sqrt 2. */
+ * change (in a resolved motion it is (w step)^2 of it), or the change is a peak, four times that of two steps before. Then the straight way between the
+ * step's ends is halved again and again, towards the end with the larger derivative. Over a pole of order p the interval's length times the smaller
+ * derivative at its ends grows by 2^(p-1) a turn; over anything that is finite, however steep, it falls by 2 from some turn on, and over the integrable
+ * end of a square root by sqrt 2. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
