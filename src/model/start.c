@@ -40,10 +40,20 @@ static void give_closed_form(Builder *b, uint32_t i, Expr value, Span span, void
   give_exact(b, start_target(b, of, i), start_unit(b, i, data), periodic, value, span);
 }
 
-/* `start q = ...`, `exact q = ...`: what a coordinate, a velocity or a state is at the start, or always. With `start exactly`
- * constraints may not move it. */
 static void give_spin(Builder *b, const AstStmt *st);
 
+/* `start th = 30` of an angle in rad: a whole number of more than a turn, as degrees are. */
+static void warn_of_degrees(Builder *b, const Coord *q, AstId value) {
+  const AstExpr *x = ast_expr(b->ast, value);
+  if (x->kind == AST_NEG) x = ast_expr(b->ast, x->a);
+  double v = x->kind == AST_NUM ? num_value(x->number) : 0;
+  if (strcmp(q->unit.text, "rad") != 0 || !(v > 6) || v > 360 || v != (double)(int)v) return;
+  diag_warning(b->diags, x->span, "`%s` is measured in rad, and %g rad are %.2g turns", q->name, v, v / 6.283185307179586);
+  diag_help(b->diags, "write %g [deg] where degrees are meant, and %g [rad] where not", v, v);
+}
+
+/* `start q = ...`, `exact q = ...`: what a coordinate, a velocity or a state is at the start, or always. With `start exactly`
+ * constraints may not move it. */
 void set_motion(Builder *b, const AstStmt *st) {
   if (ast_expr(b->ast, st->lhs)->kind == AST_CALL) {
     give_spin(b, st);
@@ -82,6 +92,7 @@ void set_motion(Builder *b, const AstStmt *st) {
     diag_help(b->diags, "`start omega(%s) = (a, b, c)` gives it, in the rotation's own frame", name->name);
     return;
   }
+  if (e->kind == ENT_COORD && !p.primes && !exact && e->parts != ROTATION) warn_of_degrees(b, &b->m->coords.at[e->index], st->rhs);
   if (st->exactly && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;
   StartOf of = {.kind = e->kind, .velocity = p.primes > 0};
   Giver giver = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of, NULL};
