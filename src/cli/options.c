@@ -119,9 +119,19 @@ static int set_value(Arena *a, Options *o, const OptionRow *row, const char *val
 
 /* ---- words ---- */
 
+/* What other programs call an option; NULL: none that is known. */
+static const char *meant_option(const char *arg) {
+  static const char *const other[][2] = {{"--dt --timestep --stepsize --h", "--step"}, {"--tolerance --rtol --atol --eps --accuracy", "--tol"},
+                                         {"--time --tmax --tend --end --t1 --span --duration", "--until"}, {"--integrator --solver", "--method"},
+                                         {"--plot --image --figure", "--svg"}, {"--sampling --interval --fps", "--every"}};
+  for (size_t i = 0; i < sizeof other / sizeof *other; i++)
+    if (has_word(other[i][0], arg)) return other[i][1];
+  return NULL;
+}
+
 /* What to do with a word that begins with `-` and is no option of this command. */
-static const char *unknown_option(Arena *a, const Options *o, const char *arg) {
-  const char *value;
+static const char *unknown_option(Arena *a, const Options *o, const char *word) {
+  const char *value, *arg = arena_printf(a, "%.*s", (int)strcspn(word, "="), word);
   const CommandRow *row = command_find(o->command);
   for (size_t i = 0; command_row(i); i++)
     if (option_find(command_row(i)->command, arg, &value))
@@ -130,7 +140,9 @@ static const char *unknown_option(Arena *a, const Options *o, const char *arg) {
   size_t n = 0;
   for (size_t i = 0; option_row(i); i++)
     if (option_row(i)->commands & 1u << o->command && n < 64) names[n++] = option_row(i)->name;
-  Name near = suggest(arg, names, n);
+  Name near = suggest(arg, names, n), meant = meant_option(arg);
+  for (size_t i = 0; i < n && meant; i++)
+    if (strcmp(names[i], meant) == 0) return arena_printf(a, "`lagc %s` has no option `%s`: `%s` is what it is called here", row->name, arg, meant);
   if (near) return arena_printf(a, "`lagc %s` has no option `%s`: did you mean `%s`?", row->name, arg, near);
   return arena_printf(a, "`lagc %s` has no option `%s`; `lagc help %s` lists them", row->name, arg, row->name);
 }

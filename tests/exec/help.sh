@@ -108,6 +108,9 @@ check "no command" says "say what to do with $m: \`lagc run $m\`, \`lagc derive 
 check "no model" says 'a model is missing; usage: lagc check MODEL [SCENE] [--allow-numeric] [--verbose]' check
 check "an option of another command" says '`--phase` is an option of `lagc plot`; `lagc help run` lists those of `lagc run`' run $m --phase th
 check "a mistyped option of the simulator is said before one is built" says '`lagc run` has no option `--untill`: did you mean `--until`?' run $m --untill 5
+check "an option by the name that it has elsewhere" says '`lagc run` has no option `--dt`: `--step` is what it is called here' run $m --dt 0.1
+check "with its value behind an equals sign" says '`lagc run` has no option `--rtol`: `--tol` is what it is called here' run $m --rtol=1e-3
+check "which a command without such an option does not have" says '`lagc check` has no option `--dt`; `lagc help check` lists them' check $m --dt 0.1
 check "one dash" says '`lagc run` has no option `-tol`: did you mean `--tol`?' run $m -tol 1e-9
 check "an option that is nowhere near" says '`lagc check` has no option `--frobnicate`; `lagc help check` lists them' check $m --frobnicate
 check "an option that is none of this command" says '`--format` is an option of `lagc derive`; `lagc help check` lists those of `lagc check`' check $m --format c
