@@ -29,6 +29,17 @@ static const char *finite_decimal(Arena *a, Num n) {
   return sb_text(&b);
 }
 
+/* The same number as 1.6e-19 where the decimal begins or ends with many zeros. */
+static const char *without_zeros(Arena *a, const char *decimal) {
+  enum { SMALL = 4, LARGE = 6 };
+  const char *point = strchr(decimal, '.'), *first = decimal + strspn(decimal, "0.");
+  size_t whole = (size_t)(point - decimal), zeros = 0;
+  if (first > point && (size_t)(first - point) > SMALL) return arena_printf(a, "%c%s%se-%d", *first, first[1] ? "." : "", first + 1, (int)(first - point));
+  while (zeros < whole && point[-1 - (int)zeros] == '0') zeros++;
+  if (strcmp(point, ".0") != 0 || zeros < LARGE || zeros == whole) return decimal;
+  return arena_printf(a, "%.*se%d", (int)(whole - zeros), decimal, (int)zeros);
+}
+
 static const char *float_text(Arena *a, double x) {
   char text[40];
   num_format_double(text, x);
@@ -41,7 +52,7 @@ const char *c_number(Arena *a, const char *prefix, Num n) {
   n = num_abs(n);
   if (!num_is_exact(n)) return arena_printf(a, "%s%s_C(%s)", minus, prefix, float_text(a, n.approx));
   const char *decimal = finite_decimal(a, n);
-  if (decimal) return arena_printf(a, "%s%s_C(%s)", minus, prefix, decimal);
+  if (decimal) return arena_printf(a, "%s%s_C(%s)", minus, prefix, without_zeros(a, decimal));
   return arena_printf(a, "%s%s_C(%lld.0)/%s_C(%lld.0)", minus, prefix, (long long)n.num, prefix, (long long)n.den);
 }
 

@@ -200,6 +200,12 @@ static void test_numbers(void **state) {
   assert_string_equal(c_number(arena, "LAG", num_ratio(-1, 8)), "-LAG_C(0.125)");
   assert_string_equal(c_number(arena, "LAG", num_ratio(1, 3)), "LAG_C(1.0)/LAG_C(3.0)");
   assert_string_equal(c_number(arena, "LAG", num_parse("9.81", 4)), "LAG_C(9.81)");
+  assert_string_equal(c_number(arena, "LAG", num_parse("1.6e-19", 7)), "LAG_C(1.6e-19)");
+  assert_string_equal(c_number(arena, "LAG", num_neg(num_parse("0.00002", 7))), "-LAG_C(2e-5)");
+  assert_string_equal(c_number(arena, "LAG", num_parse("0.0001", 6)), "LAG_C(0.0001)");
+  assert_string_equal(c_number(arena, "LAG", num_int(12000000)), "LAG_C(12e6)");
+  assert_string_equal(c_number(arena, "LAG", num_int(0)), "LAG_C(0.0)");
+  assert_string_equal(c_number(arena, "LAG", num_int(1200)), "LAG_C(1200.0)");
 }
 
 /* --- how sums and products are written --- */
