@@ -313,7 +313,7 @@ N    ?= 100
 SEED ?= 1
 mutants:
 	$(SETUP) test
-	python3 tests/mutants/mutants.py --n $(N) --seed $(SEED) $(if $(ONLY_IN),--only '$(ONLY_IN)')
+	python3 tests/mutants/mutants.py --n $(N) --seed $(SEED) $(if $(JOBS),--jobs $(JOBS)) $(if $(ONLY_IN),--only '$(ONLY_IN)')
 
 # ---- installing -------------------------------------------------------------------------------------
 MODELS := $(wildcard models/*.lag models/*.csv)
@@ -365,7 +365,7 @@ help:
 	@echo 'make bless        rewrites the expectations of golden tests: look at the diff before you commit it'
 	@echo 'make fuzz         looks for inputs that break the compiler; SECONDS=60, T=fuzz_parse'
 	@echo 'make fuzz-coverage  the share of lines of src/ir, src/mech and src/emit that its inputs reach'
-	@echo 'make mutants      plants one-token changes and prints those that no suite sees; N=100 SEED=1 ONLY_IN=src/ir/'
+	@echo 'make mutants      plants one-token changes and prints those that no suite sees; N=100 SEED=1 JOBS=2 ONLY_IN=src/ir/'
 	@echo 'make gallery      draws the pictures of models/README.md'
 	@echo 'make install      PREFIX=/usr/local DESTDIR='
 	@echo 'make uninstall    the same, backwards'

@@ -1,14 +1,16 @@
-"""make mutants N=100 SEED=1: plants one-token changes in src and runtime, one at a time, and says which ones no suite sees.
+"""make mutants N=100 SEED=1 JOBS=2: plants one-token changes in src and runtime, one at a time, and says which ones no suite sees.
 
-    python3 tests/mutants/mutants.py [--n N] [--seed S] [--only PATH[:TEXT]] [--change NEW] [--suites PREFIX,PREFIX] [--longest S]
+    python3 tests/mutants/mutants.py [--n N] [--seed S] [--only PATH[:TEXT]] [--change NEW] [--suites PREFIX,PREFIX] [--longest S] [--jobs J]
 
-All of it happens in a copy of the tree, build/mutants/tree. A change that does not compile is replaced by another; one that leaves the machine
+All of it happens in copies of the tree, build/mutants/tree, and one more for each job more. A change that does not compile is replaced by another; one that leaves the machine
 code as it was, or stands in equivalent.txt, is equivalent. Else the suites that reach its line run, cheapest first, up to the first red one.
 A suite that hangs is red. Which suites reach a line is measured once, with gcov, and kept in build/mutants/cov; remove it to measure anew.
 """
 import argparse
 import hashlib
 import json
+import multiprocessing
+import multiprocessing.pool
 import os
 import random
 import re
@@ -22,7 +24,8 @@ import plant
 HERE = os.path.dirname(os.path.abspath(__file__))
 TOP = os.path.dirname(os.path.dirname(HERE))
 WORK = os.path.join(TOP, "build", "mutants")
-TREE = os.path.join(WORK, "tree")
+MEASURED = os.path.join(WORK, "tree")  # where the lines that suites reach are measured
+TREE = MEASURED  # of this process
 SAN = "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
 # Suites that would need more builds, or that judge the text of the sources.
 LEFT_OUT = {"exec/includes", "exec/install", "exec/run_sanitized", "exec/run_precision", "exec/run_quad", "exec/editor", "golden/gallery"}
@@ -94,7 +97,7 @@ class Map:
         if os.path.exists(kept):
             self.seconds = json.load(open(kept))
 
-    def measure(self, all_suites):
+    def measure(self, all_suites, jobs):
         missing = [s for s in all_suites if s not in self.seconds]
         if not missing:
             return
@@ -107,24 +110,28 @@ class Map:
         with open(wrapper, "w") as f:
             f.write('#!/bin/sh\nexec cc "$@" -O0 --coverage\n')
         os.chmod(wrapper, 0o755)
-        for s in missing:
+
+        def one(s):
             prefix = os.path.join(self.folder, s)
-            env = environment("cov", wrapper, {"GCOV_PREFIX": prefix, "XDG_CACHE_HOME": os.path.join(self.folder, "cache")})
-            _, took = run_suite(s, "cov", env, 600)
-            self.seconds[s] = took
-            print("reached by %s, %.0f s" % (s, took), flush=True)
-            json.dump(self.seconds, open(os.path.join(self.folder, "seconds.json"), "w"))
+            env = environment("cov", wrapper, {"GCOV_PREFIX": prefix, "XDG_CACHE_HOME": os.path.join(self.folder, "cache", s)})
+            return s, run_suite(s, "cov", env, 600)[1]
+
+        with multiprocessing.pool.ThreadPool(jobs) as threads:
+            for s, took in threads.imap_unordered(one, missing):
+                self.seconds[s] = took
+                print("reached by %s, %.0f s" % (s, took), flush=True)
+                json.dump(self.seconds, open(os.path.join(self.folder, "seconds.json"), "w"))
 
     def of(self, suite, path):
         """The lines of a file that a suite executes."""
         key = suite, path
         if key not in self.lines:
-            name = os.path.join(TREE, "cov/obj", path[:-2])
+            name = os.path.join(MEASURED, "cov/obj", path[:-2])
             data = os.path.join(self.folder, suite) + name + ".gcda"
             self.lines[key] = set()
             if os.path.exists(data):
                 shutil.copyfile(name + ".gcno", data[:-2] + "no")
-                out = subprocess.run(["gcov", "--json-format", "--stdout", data], cwd=TREE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout.decode()
+                out = subprocess.run(["gcov", "--json-format", "--stdout", data], cwd=MEASURED, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout.decode()
                 for f in (f for text in out.splitlines() if text for f in json.loads(text)["files"]):
                     if f["file"].endswith(path):
                         self.lines[key] = {k["line_number"] for k in f["lines"] if k["count"]}
@@ -141,7 +148,7 @@ class Builds:
         # Found out once, not by each make.
         found = sh("make -s --eval='found:;@echo GSL=$(GSL) SAFE=$(SAFE)' found").stdout.decode().split()
         self.settings = " ".join(w for w in found if "=" in w) + " PRECISIONS= CLANG="
-        self.green = os.path.join(WORK, "green.json")  # of suites without a change
+        self.green = os.path.join(TREE, "build", "green.json")  # of suites without a change
         self.known = json.load(open(self.green)) if os.path.exists(self.green) else {}
 
     def san(self, names):
@@ -173,7 +180,7 @@ class Builds:
 
 def code_of(path, flags):
     """The machine code of a file, without debugging data; None where it does not compile."""
-    out = os.path.join(WORK, "code.o")
+    out = os.path.join(TREE, "build", "code.o")
     made = sh("cc -std=c11 -w -D_XOPEN_SOURCE=700 %s -O2 -g0 -c -o %s %s" % (flags, out, path))
     return None if made.returncode else hashlib.sha1(open(out, "rb").read()).hexdigest()
 
@@ -250,7 +257,40 @@ def draw(only):
     return pool
 
 
+class Judge:
+    """Verdicts on changes of a drawn pool, in a tree of its own."""
+
+    def __init__(self, pool, reach, longest):
+        self.pool, self.reach, self.longest, self.trial = pool, reach, longest, None
+
+    def settle(self):
+        """This process takes the next tree."""
+        global TREE
+        n = (multiprocessing.current_process()._identity or (1,))[-1] - 1
+        TREE = MEASURED + (str(n + 1) if n else "")
+        builds = Builds()
+        builds.san([])
+        builds.plain()
+        self.trial, self.rows = Trial(self.reach, builds, self.longest), equivalents()
+
+    def verdict(self, i):
+        if not self.trial:
+            self.settle()
+        c, text = self.pool[i]
+        line, before, after = plant.line_of(text, c)
+        why = self.rows.get((c.path, before, after))
+        return c.path, line, before, after, "equivalent: " + why if why else self.trial.judge(text, c)
+
+
+judge = None
+
+
+def verdict_of(i):
+    return judge.verdict(i)
+
+
 def main():
+    global judge
     p = argparse.ArgumentParser()
     p.add_argument("--n", type=int, default=100)
     p.add_argument("--seed", type=int, default=1)
@@ -258,31 +298,34 @@ def main():
     p.add_argument("--change", help="only this new text")
     p.add_argument("--suites", default="unit,fuzz,golden,math,hard,exec", help="suites whose names begin so")
     p.add_argument("--longest", type=float, default=0, help="seconds for one change; 0: no limit")
+    p.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="changes that are tried at the same time, each in a tree of its own")
     a = p.parse_args()
     copy_tree()
-    rows, reach, builds = equivalents(), Map(), Builds()
+    reach, builds = Map(), Builds()
     builds.san([])
     builds.plain()
-    reach.measure([s for s in suites() if s.startswith(tuple(a.suites.split(",")))])
+    reach.measure([s for s in suites() if s.startswith(tuple(a.suites.split(",")))], a.jobs)
     pool = draw(a.only)
     if a.change:
         pool = [x for x in pool if x[0].new.strip() == a.change.strip()]
     random.Random(a.seed).shuffle(pool)
-    trial, killed, same, tried, survivors = Trial(reach, builds, a.longest), 0, 0, 0, []
-    for c, text in pool:
-        if tried == a.n:
-            break
-        line, before, after = plant.line_of(text, c)
-        why = rows.get((c.path, before, after))
-        verdict = "equivalent: " + why if why else trial.judge(text, c)
-        if verdict == "invalid":
-            continue
-        tried += 1
-        killed += verdict.startswith("killed")
-        same += verdict.startswith("equivalent")
-        print("%s:%d: %s\n    - %s\n    + %s" % (c.path, line, verdict, before, after), flush=True)
-        if verdict.startswith("survived"):
-            survivors.append((c.path, line, before, after))
+    for n in range(2, a.jobs + 1):
+        shutil.rmtree(MEASURED + str(n), ignore_errors=True)
+        shutil.copytree(MEASURED, MEASURED + str(n), symlinks=True, ignore=lambda folder, names: {"cov", "home"} & set(names))
+    judge = Judge(pool, reach, a.longest)
+    killed, same, tried, survivors = 0, 0, 0, []
+    with multiprocessing.Pool(a.jobs) as workers:
+        for path, line, before, after, verdict in workers.imap(verdict_of, range(len(pool))):
+            if tried == a.n:
+                break
+            if verdict == "invalid":
+                continue
+            tried += 1
+            killed += verdict.startswith("killed")
+            same += verdict.startswith("equivalent")
+            print("%s:%d: %s\n    - %s\n    + %s" % (path, line, verdict, before, after), flush=True)
+            if verdict.startswith("survived"):
+                survivors.append((path, line, before, after))
     print("\nsurvivors:" if survivors else "\nno survivors")
     for path, line, before, after in survivors:
         print("%s:%d\n    - %s\n    + %s" % (path, line, before, after))
