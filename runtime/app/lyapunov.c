@@ -130,7 +130,7 @@ static void caution(FILE *f, const Lyapunov *l)
   }
 }
 
-/* What follows from the exponents, where their errors allow it. */
+/* Conclusions from the exponents, where their errors allow them. */
 static void conclude(FILE *f, const Lyapunov *l)
 {
   double first = lag_lyapunov_exponent(l, 0), off = lag_lyapunov_error(l, 0), error, x;

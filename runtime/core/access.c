@@ -1,4 +1,4 @@
-/* What a caller may see of a simulation. Enters: a simulation; leaves: its values. */
+/* Questions of a caller about a simulation. Enters: a simulation; leaves: its values. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

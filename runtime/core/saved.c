@@ -188,7 +188,7 @@ int lag_sim_save(lag_sim *s, double *x)
   return LAG_OK;
 }
 
-/* What follows from the saved block. */
+/* Values that follow from the saved block. */
 static void take_over(lag_sim *s)
 {
   const lag_model *m = s->scene->model;

@@ -19,7 +19,7 @@ static int lock(int fd)
   return fcntl(fd, F_SETLK, &all);
 }
 
-/* What `whole` calls a file in a folder: the end of its path. */
+/* The end of a path: the name of the file in its folder. */
 static const char *name_in(const char *path)
 {
   const char *slash = strrchr(path, '/');

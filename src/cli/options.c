@@ -119,7 +119,7 @@ static int set_value(Arena *a, Options *o, const OptionRow *row, const char *val
 
 /* ---- words ---- */
 
-/* What other programs call an option; NULL: none that is known. */
+/* The option that other programs call so; NULL: none that is known. */
 static const char *meant_option(const char *arg) {
   static const char *const other[][2] = {{"--dt --timestep --stepsize --h", "--step"}, {"--tolerance --rtol --atol --eps --accuracy", "--tol"},
                                          {"--time --tmax --tend --end --t1 --span --duration", "--until"}, {"--integrator --solver", "--method"},

@@ -13,7 +13,7 @@
 #include "ir/unit.h"
 #include "mech/eqns.h"
 
-/* What was compared, and what was not, for `lagc check --verbose`. */
+/* Report of what was compared, and what was not, for `lagc check --verbose`. */
 typedef struct {
   uint32_t states;      /* at which something was decided, */
   uint32_t far;         /* of them, far from the start */
