@@ -266,7 +266,7 @@ int rows_write(Rows *r, const double *row)
     if (!c->words && r->npy) {
       fwrite(&row[i], sizeof row[i], 1, f);
     } else if (!c->words) {
-      fprintf(f, "%.17g", row[i]);
+      fputs(lag_number_text(row[i], (char[64]){0}), f);
     } else if (r->npy) {
       npy_word(f, c, c->words[(int)row[i]]);
     } else {

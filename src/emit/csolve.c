@@ -34,7 +34,7 @@ static void write_matrix(Writer *w, const Solve *k) {
   uint32_t n = k->n;
   if (k->band < n / 2 - 1) write_entries(w, k, n * n);
   else if (!k->definite) write_room(w, "w", 0, k->matrix, n * n);
-  for (uint32_t i = 0; i < n && k->definite && k->band >= n / 2 - 1; i++) write_room(w, "w", i * n + i, k->matrix + i * n + i, n - i);
+  else for (uint32_t i = 0; i < n; i++) write_room(w, "w", i * n + i, k->matrix + i * n + i, n - i);
 }
 
 void csolve_write(Writer *w, const Ins *i) {

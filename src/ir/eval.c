@@ -85,13 +85,12 @@ static const Real *solved_constrained(const Prog *p, const Solve *s, const Real 
   ArenaMark before = arena_mark(p->arena);
   SparseElements system = {0};
   for (uint32_t i = 0; i < total; i++) b[i] = v[s->rhs[i]];
-  for (uint32_t i = 0; i < total; i++)
-    for (uint32_t j = 0; j < n; j++) {
-      if (!s->matrix[i * n + j]) continue;
-      Real x = v[s->matrix[i * n + j]];
-      sparse_put(p->arena, &system, i, j, x);
-      if (i >= n) sparse_put(p->arena, &system, j, i, -x);
-    }
+  for (uint32_t k = 0; k < s->nfilled; k++) {
+    uint32_t i = s->filled[k] / n, j = s->filled[k] % n;
+    Real x = v[s->matrix[s->filled[k]]];
+    sparse_put(p->arena, &system, i, j, x);
+    if (i >= n) sparse_put(p->arena, &system, j, i, -x);
+  }
   sparse_solve(p->arena, total, &system, b, 1e-13L, NULL);
   arena_forget(p->arena, before);
   *status = isfinite(b[0]) ? 0 : -1;

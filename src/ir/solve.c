@@ -181,6 +181,14 @@ static void solve_two(Lower *l, Block *b, Slot *x) {
   x[1] = op(l, IR_DIV, n2, det);
 }
 
+/* The places of elements that are not zero. */
+static void list_filled(Arena *a, Solve *k) {
+  uint32_t *filled = ARENA_ARRAY(a, uint32_t, solve_elements(k) + 1);
+  for (uint32_t j = 0; j < solve_elements(k); j++)
+    if (k->matrix[j]) filled[k->nfilled++] = j;
+  k->filled = filled;
+}
+
 /* x[n], and behind it the multipliers of the constraints. */
 static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   Arena *a = l->p->arena;
@@ -193,7 +201,9 @@ static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   int definite = !m && !l->factored && (l->e->definite_mass || l->e->definite_by_values);
   for (size_t i = 0; definite && i < n; i++)
     for (size_t j = 0; j < i; j++) full[i * n + j] = 0; /* is not read */
-  vec_push(a, &l->p->solves, ((Solve){.n = b->n, .m = b->m, .band = band_width(b->n, b->M), .coarse = coarse, .definite = definite, .matrix = full, .rhs = rhs}));
+  Solve k = {.n = b->n, .m = b->m, .band = band_width(b->n, b->M), .coarse = coarse, .definite = definite, .matrix = full, .rhs = rhs};
+  if (m) list_filled(a, &k);
+  vec_push(a, &l->p->solves, k);
   Slot s = prog_ins(l->p, (Ins){.op = IR_SOLVE, .index = l->p->solves.n - 1});
   for (uint32_t i = 0; i < n + m; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }

@@ -86,16 +86,18 @@ static Real largest(const Real *x, uint32_t n) {
 
 /* Newton's method onto the constraints, in the program's own metric. 0: it does not get there, or they contradict each other. */
 static int project(Check *c, int velocities) {
+  enum { ROUNDS = 40, HOPELESS = 6 }; /* what is as far off as at first after so many is sought nearer to the start */
   const IrConstraints *k = &c->u->constraints;
   uint32_t rows = velocities ? k->of.n : k->nkept;
   Real *position = ARENA_ARRAY(c->arena, Real, k->of.n + 1), *rate = ARENA_ARRAY(c->arena, Real, k->of.n + 1);
   Real *change = ARENA_ARRAY(c->arena, Real, c->n + 1), *force = ARENA_ARRAY(c->arena, Real, c->n + 1), *of = velocities ? c->v : c->q;
   Real first = 0;
-  for (int round = 0; round < 40; round++) {
+  for (int round = 0; round < ROUNDS; round++) {
     if (!check_run(c, k->residuals, (Real *const[]){position, rate})) return 0;
     for (uint32_t i = 0; i < rows; i++) c->gap[i] = velocities ? -rate[i] : i < k->nholonomic ? -position[i] : 0;
     Real left = largest(c->gap, rows);
     if (round == 0) first = left;
+    if (round == HOPELESS && !(left < first)) return 0;
     if (!check_run(c, velocities ? k->velocity : k->position, (Real *const[]){change, force})) return 0;
     for (uint32_t i = 0; i < c->n; i++) of[i] += change[i];
     if (largest(change, c->n) <= 1e-16L * (1 + largest(of, c->n))) return left <= 1e-9L * first + 1e-13L * (1 + largest(of, c->n));

@@ -84,6 +84,7 @@ struct RowSource {
   long double *point;    /* [2*n] scratch */
   uint64_t random;
   uint32_t turn;         /* of constraints, in rows at times */
+  uint32_t filled;       /* rows so far; constraints take turns in them */
 };
 
 /* Steele, Lea, Flood: Fast splittable pseudorandom number generators, OOPSLA 2014, DOI 10.1145/2660193.2660195. Of size 0.3 .. 1.7. */
@@ -291,7 +292,8 @@ uint32_t rows_fill(RowSource *r, RowKind kind, uint32_t n, long double *b0, long
   size_t w = r->of->columns;
   uint32_t done = 0;
   for (uint32_t tries = 0; done < n && tries < TRIES * (done + 10); tries++)
-    done += (uint32_t)try_row(r, kind, done, b0 + done * w, b1 + done * w);
+    done += (uint32_t)try_row(r, kind, r->filled + done, b0 + done * w, b1 + done * w);
+  r->filled += done;
   return done;
 }
 

@@ -53,20 +53,33 @@ static void project(const Sparse *s, uint32_t n, const long double *row, long do
   }
 }
 
-/* The kernel of (B0, B1) on pairs (x, y) of u = x*space, u' = y*space. */
-static DenseRows pairs(RowSource *r, Arena *a, RowKind kind, const DenseRows *space) {
-  uint32_t n = space->n, most = 2 * n + SPARE_ROWS;
-  long double *b0 = ARENA_ARRAY(a, long double, (size_t)most * space->width), *b1 = ARENA_ARRAY(a, long double, (size_t)most * space->width);
-  long double *m = ARENA_ARRAY(a, long double, (size_t)most * 2 * n + 1);
-  Sparse sparse = sparse_rows(a, space);
-  uint32_t rows = rows_fill(r, kind, most, b0, b1);
-  for (size_t i = 0; i < rows; i++) {
-    project(&sparse, n, b0 + i * space->width, rounding_of(space), m + i * 2 * n);
-    project(&sparse, n, b1 + i * space->width, rounding_of(space), m + i * 2 * n + n);
+/* How many columns of m have an element that is not zero. */
+static uint32_t columns_used(const long double *m, uint32_t rows, uint32_t columns) {
+  uint32_t used = 0;
+  for (size_t j = 0; j < columns; j++) {
+    size_t i = 0;
+    while (i < rows && m[i * columns + j] == 0) i++;
+    used += i < rows;
   }
-  DenseRows kernel = rows < most ? (DenseRows){0} : dense_kernel(a, rows, 2 * n, m, REST);
-  if (rows < most) kernel.width = 2 * n;
-  return kernel;
+  return used;
+}
+
+/* The kernel of (B0, B1) on pairs (x, y) of u = x*space, u' = y*space. The rank is at most the number of columns that are not zero, so that more rows
+ * than these say nothing: what is even in velocities has a third of the columns. */
+static DenseRows pairs(RowSource *r, Arena *a, RowKind kind, const DenseRows *space) {
+  uint32_t n = space->n, rows = 0, wanted = SPARE_ROWS;
+  size_t most = 2 * n + SPARE_ROWS, w = space->width;
+  long double *b0 = ARENA_ARRAY(a, long double, most * w), *b1 = ARENA_ARRAY(a, long double, most * w);
+  long double *m = ARENA_ARRAY(a, long double, most * 2 * n + 1);
+  Sparse sparse = sparse_rows(a, space);
+  for (; rows < wanted; wanted = columns_used(m, rows, 2 * n) + SPARE_ROWS) {
+    if (rows_fill(r, kind, wanted - rows, b0, b1) < wanted - rows) return (DenseRows){.width = 2 * n};
+    for (size_t i = 0; rows < wanted; rows++, i++) {
+      project(&sparse, n, b0 + i * w, rounding_of(space), m + (size_t)rows * 2 * n);
+      project(&sparse, n, b1 + i * w, rounding_of(space), m + (size_t)rows * 2 * n + n);
+    }
+  }
+  return dense_kernel(a, rows, 2 * n, m, REST);
 }
 
 /* What is left of the space by the rows of one kind. 0 where the rows could not be had. */

@@ -253,6 +253,7 @@ void advise_unknown_member(Builder *b, Name effect, Name name) {
   if (!e) {
     Name near = suggest(effect, effects.at, effects.n);
     if (near) diag_help(b->diags, "did you mean `%s.%s`?", near, name);
+    else if (has_word("csv txt dat tsv npy", name)) diag_help(b->diags, "the name of a file stands in quotes: `\"%s.%s\"`", effect, name);
     else if (!advise_momentum(b, effect)) diag_help(b->diags, "the model has no effect `%s`", effect);
     return;
   }

@@ -58,8 +58,8 @@ static const AstStmt *pick_scene(Builder *b, const char *scene) {
   return NULL;
 }
 
-static void take_model_name(Builder *b) {
-  const AstStmt *m = find_named(b->ast, STMT_MODEL, NULL);
+static void take_model_name(Builder *b, const FileIndex *file) {
+  const AstStmt *m = file->model;
   if (!m) {
     Span start = b->ast->first ? b->ast->first->span : (Span){0};
     diag_error(b->diags, start, "the file does not name its model");
@@ -74,9 +74,9 @@ static void take_model_name(Builder *b) {
   b->m->name = m->name;
   b->m->doc = m->doc ? m->doc : "";
   b->m->span = m->name_span;
-  for (const AstStmt *s = m->next; s; s = s->next)
-    if (s->kind == STMT_MODEL) {
-      diag_error(b->diags, s->name_span, "a file declares one model");
+  for (uint32_t i = 0; i < file->common.n; i++)
+    if (file->common.at[i]->kind == STMT_MODEL && file->common.at[i] != m) {
+      diag_error(b->diags, file->common.at[i]->name_span, "a file declares one model");
       diag_also(b->diags, m->name_span, "the first is here");
     }
 }
@@ -91,8 +91,8 @@ static void check_file(Builder *b, FileIndex *file) {
 }
 
 void scene_select(Builder *b, const ModelChoice *choice) {
-  take_model_name(b);
   FileIndex *file = file_index(b->ast);
+  take_model_name(b, file);
   check_file(b, file);
   const AstStmt *st = choice->bare ? NULL : pick_scene(b, choice->scene);
   b->m->scene.name = st ? st->name : intern(b->ast->names, "default");

@@ -66,7 +66,7 @@ static const struct {
     {0x2026, "a range is written with two dots: `1..N`"}, {0x2202, "write `d(expr, name)`"},
     {0x2211, "write `sum(i in 1..N, …)`"}, {0x220F, "write `product(i in 1..N, …)`"},
     {0x221A, "write `sqrt(x)`"}, {0x2206, "write the Greek letter `Δ`"}, {0x2227, "write `and`"},
-    {0x2228, "write `or`"}, {0x00AC, "write `not`"}, {0x2208, "write `in`"},
+    {0x2228, "write `or`"}, {0x00B0, "write `30 [deg]`"}, {0x00AC, "write `not`"}, {0x2208, "write `in`"},
 };
 
 static const char *lookalike(uint32_t code) {

@@ -34,7 +34,7 @@ void scan_open(Scan *s);
 void scan_lex(Scan *s, Token *t);
 
 /* Where brackets were meant for a list. */
-#define LIST_IS_WRITTEN "a list is written `{1, 2}`, a matrix as a list of its rows: `param K[2,2] = {{2, 0.5}, {0.5, 1}}`"
+#define LIST_IS_WRITTEN "a vector is written `(0, 0, 1)`, a list `{1, 2}`, a matrix as a list of its rows: `param K[2,2] = {{2, 0.5}, {0.5, 1}}`"
 
 /* The text of a unit, without brackets, that begins at offset `begin`. 1 on success; on failure
  * the token becomes BAD with the place and the message. (unit.c) */

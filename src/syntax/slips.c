@@ -15,6 +15,7 @@ static const struct {
   const char *way;
 } ways[] = {
   {"coordinate coordinates coords variable variables var vars dof", W_MODEL, "a coordinate is declared by `coord x [m]`"},
+  {"rotation rotations orientation attitude quaternion", W_MODEL, "a rotation is a coordinate, too: `coord R: rotation`"},
   {"vector vec", W_MODEL, "a vector is a coordinate, too: `coord r: vec3 [m]`"},
   {"parameter parameters params par", W_MODEL, "a parameter is declared by `param k = 1 [N/m]`"},
   {"constant constants consts", W_MODEL, "write `param g = 9.81 [m/s^2]`; `const N = 10` is a number fixed when compiling, such as the size of a family"},
@@ -182,6 +183,14 @@ static const char *after_gap(const Parse *cx, const TokKind *set, int n) {
   return t == TOK_END && has(set, n, TOK_COMMA) ? "a contact has a restitution: `contact NAME: y >= 0, restitution = 0.5`" : NULL;
 }
 
+/* `start x = 1, span 5`: a word that begins a statement stands in a list. */
+static const char *word_in_list(const Parse *cx, const TokKind *set, int n) {
+  const Token *b = &cx->before;
+  const Filter *f = cx->filter;
+  if (!has(set, n, TOK_ASSIGN) || b->kind != TOK_IDENT || token_statement(b->name, f->where[f->depth]) == TOK_IDENT) return NULL;
+  return arena_printf(cx->ast->arena, "`%s` begins a statement of its own: a new line, or a `;`, stands before it", b->name);
+}
+
 const char *slip_token(const Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current, *b = &cx->before;
   Arena *a = cx->ast->arena;
@@ -189,6 +198,8 @@ const char *slip_token(const Parse *cx, const TokKind *set, int n) {
   if (comma || title) return comma ? comma : title;
   const char *name = missing_name(cx, set, n), *gap = name ? NULL : after_gap(cx, set, n);
   if (name || gap) return name ? name : gap;
+  const char *word = word_in_list(cx, set, n);
+  if (word) return word;
   if (cx->filter->word == TOK_METHOD && has(set, n, TOK_LPAREN)) return after_method(cx);
   if (cx->filter->word == TOK_MONITOR && !has(set, n, TOK_TIMES) && ends_operand(b) && (token_flags(t->kind) & T_BINARY))
     return "a monitor watches a name, or what stands in parentheses: `monitor (x + y) 1e-6`";

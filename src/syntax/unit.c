@@ -141,7 +141,8 @@ static int parse_factor(Unit *u, int divide) {
     n = digits_length(u);
     if (!n) return bad_factor(u);
     if (n > 1 || u->text[at] != '1')
-      return unit_bad(u, at, n, "a unit holds no number but 1", "write the number before the unit: `2 [m]`; a power is `m^2`");
+      return unit_bad(u, at, n, "a unit holds no number but 1",
+                      memchr(u->text, ',', u->n) ? LIST_IS_WRITTEN : "write the number before the unit: `2 [m]`; a power is `m^2`");
   }
   AstUnitFactor f = {.name = intern(u->scan->names, without_degree_sign(u, u->text + at, n)), .exponent = num_int(1),
                      .span = {u->begin + at, u->begin + at + n}};

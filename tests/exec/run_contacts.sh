@@ -120,6 +120,19 @@ for method in dop853 verlet; do
 done
 
 # ---- the loop at the top of a header, compiled as it stands
+# Without loss, for 5000 s: it falls for sqrt(2 h/g) = 0.45152 s and strikes every 0.90305 s from then on, 5537 times. Late, the last bit of time is
+# a path as long as the gap is rounded.
+model long <<'EOF'
+model long "A ball that bounces for long"
+coord y [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2]
+lagrangian = m/2*y'^2 - m*g*y
+contact floor: y >= 0, restitution = 1
+scene s { start y = 1 [m]; span 5000 [s]; output y every 100 [s] }
+EOF
+often() { "$LAGC" run "$TMP/long.lag" s >"$TMP/out" 2>&1 && grep -q '^event floor: 5537 times' "$TMP/out"; }
+check "a ball that bounces for long strikes once each time" often
+
 model corner <<'EOF'
 model corner "Pressed into a corner"
 coord x [m], y [m]

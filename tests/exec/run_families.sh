@@ -156,6 +156,10 @@ large() { # NAME SECONDS KIBIBYTES COMMAND...
   result "$name" $?
 }
 large "a string of 10000 masses" 30 1500000 "$LAGC" derive models/string.lag -D N=10000 --ops
+"$LAGC" derive tests/bench/models/bodies.lag -D N=40 --ops >"$dir/out" 2>&1 && grep -q ', 780 square roots$' "$dir/out"
+result "40 bodies: a square root of each of 40*39/2 pairs" $?
+"$LAGC" derive models/slider_crank.lag --ops | awk '{ print; exit !($1 <= 208) }'
+result "slider_crank: the products that many share are found" $?
 # The text is 3 MB; what derives it needs some 400 MB.
 for f in text latex; do
   large "a string of 10000 masses, printed as $f" 30 1000000 "$LAGC" derive models/string.lag -D N=10000 --format $f

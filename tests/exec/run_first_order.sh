@@ -110,4 +110,11 @@ printf '#define PV_IMPLEMENTATION\n#include "pv.h"\n#include <stdio.h>\nint main
 "$LAGC" header models/point_vortices.lag -o "$TMP/pv.h"
 embedded() { cp "$TMP/pv_main.c.txt" "$TMP/pv_main.c" && "$CC" -std=c99 -Wall -Wextra -Werror -O1 -I"$TMP" "$TMP/pv_main.c" -lm -o "$TMP/pv" && test "$("$TMP/pv")" = 0.972033533; }
 check "the header steps three vortices to published digits" embedded # x1(5) = 0.97203353347; rk4 errs by 1e-12 here
+# A state alone, z' = -2 z from 3: z(1) = 3 exp(-2) = 0.4060058497
+printf 'model decay\nstate z\nflow z%s = -2*z\nscene s { start z = 3; span 1 [s] }\n' "'" >"$TMP/decay.lag"
+decays() {
+  "$LAGC" header "$TMP/decay.lag" -o "$TMP/decay.h" && sed 's/5000/1000/; s/PV_/DECAY_/g; s/pv_/decay_/g; s/pv\.h/decay.h/' "$TMP/pv_main.c.txt" >"$TMP/decay_main.c" &&
+    "$CC" -std=c99 -Wall -Wextra -Werror -O1 -I"$TMP" "$TMP/decay_main.c" -lm -o "$TMP/decay" && test "$("$TMP/decay")" = 0.406005850
+}
+check "and one state alone" decays
 tap_end

@@ -108,6 +108,13 @@ find_modes $dir/triatomic.lag held # walls that do not move it from where it is
 verdict stable
 close "the rest lengths" -1 "$(at_rest x1)"
 
+find_modes $dir/sums.lag # free where b = -2 d and a + b = c: two directions, of which the basis with most zeros is given
+for mode in "1 0 1 1 -0.5" "2 1 0 1 0"; do
+  # shellcheck disable=SC2086 # five words
+  set -- $mode
+  for i in "a $2" "b $3" "c $4" "d $5"; do close "free direction $1" "(${i#* })" "$(shape "$1" "${i% *}")"; done
+done
+
 find_modes $dir/triangle.lag # breathing: 3 k u back for u outwards; the sum of all w^2 is the trace of K/m, 6 k/m; rotation is no straight line
 verdict neutral
 because "minimum in all other directions"

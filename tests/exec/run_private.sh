@@ -75,6 +75,10 @@ check 'but not that of a run that lives' test -e "$(ls killed.csv.part-$live-*)"
 kill -TERM $live; wait $live
 check 'SIGTERM: nothing is left' sh -c '! ls killed.csv.part* 2>/dev/null'
 
+i=100
+while [ $i -lt 160 ]; do : >"many.csv.part-$i-1"; i=$((i + 1)); done
+check 'remains of more runs than files can be open' sh -c 'ulimit -n 40; ./sim --until 1 -o many.csv --quiet && ! ls many.csv.part* 2>/dev/null'
+
 # ---- simulators
 evil() { printf '#!/bin/sh\necho EVIL >"%s"\n' "$dir/evil" >"$1"; chmod 755 "$1"; }
 clean_run() { rm -f "$dir/evil"; "$LAGC" run "$model" --quiet && [ ! -e "$dir/evil" ]; }

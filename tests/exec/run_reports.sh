@@ -111,6 +111,8 @@ stuck="gets stuck (it stays where x' is 0: the force of .sign(x'). in line 5 jum
 for method in rk45 dop853 rk4 'rk4(step=0.1)' verlet variational radau 'rk45(adapt=off,step=0.01)'; do
   check "a body that slides by $method" ends 3 "FAILED: at t = 0\.[67][0-9]* s: the motion $stuck" "$TMP/slide.lag" --method "$method"
 done
+sed "s/sign(x')/sign(\\n  x')/" "$TMP/slide.lag" >"$TMP/slide2.lag"
+check "of a force over two lines the first is shown" ends 3 "the force of .sign(. in line 5 jumps there" "$TMP/slide2.lag"
 check "and is warned of" says 0 '' "$LAGC" check "$TMP/slide.lag"
 check "at the place" grep -q "slide.lag:5:19: warning: a force jumps where .x'. is 0, and a motion that it holds there" "$TMP/err"
 cat >"$TMP/plane.lag" <<'X'

@@ -300,4 +300,11 @@ check "an expression needs parentheses" says 1 'what stands in parentheses' \
 check "energy: rk45 holds it" "$LAGC" run "$dir/e.lag" --quiet
 check "energy: rk4 with long steps does not" says 3 'monitor energy: drift' "$LAGC" run "$dir/e.lag" --quiet --method 'rk4(step=0.5)'
 is "a scene with a monitor has the usual outputs" "t [s],x,x',energy" "$(sed 's/energy 1e-6/(x*x) 9/' "$dir/e.lag" >"$dir/f.lag"; "$LAGC" run "$dir/f.lag" -o - 2>/dev/null | head -1 | cut -d, -f1-4)"
+
+# A method takes the place of the one of the scene that it is like, with its options.
+printf "model me\ncoord x\nlagrangian = x'^2/2 - x^2/2\nscene a { start x = 1; span 1; method rk4(step = 0.5) }\nscene b { like a; method dop853 }\n" >"$dir/method.lag"
+is "options go with their method" "model me, scene b, method dop853(tol=1e-09)" "$("$LAGC" run "$dir/method.lag" b | head -1)"
+# Emitted C says of which coordinates there are closed forms, and of no more.
+printf "model cf\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 - (x^2 + y^2)/2\nscene s { start x = 1, y = 2; span 1; exact y = 2*cos(t) }\n" >"$dir/cf.lag"
+is "the closed form is of coordinate 1" "static const int exact_of_s[] = {1};" "$("$LAGC" emit "$dir/cf.lag" | grep '^static const int exact_of')"
 tap_end

@@ -237,4 +237,8 @@ done
 for signs in "-,-,,+" ",-,,-"; do
   refused "$signs" 'at s = 0 the symmetry `turn` maps `[xy]` to `-[xy]`'
 done
+
+# A header says which number of its array of charges is which.
+names() { "$LAGC" header models/kepler.lag | grep -q '^ \* Symmetries: 0 spin\.'; }
+check "a header numbers the charges from 0" names
 tap_end

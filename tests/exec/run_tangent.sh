@@ -57,6 +57,20 @@ for model in double_pendulum spring_pendulum kepler; do
   check "$model: verlet8 as dop853" same_flow models/$model.lag 'verlet8(step=0.002)'
 done
 
+# The tangent of a composed step depends on the time of each of its parts: a swing that is pumped.
+cat >"$TMP/pumped.lag" <<'X'
+model pumped
+coord x
+lagrangian = (1 + x^2/4)*x'^2/2 - (1 + 0.5*cos(3*t))*x^2/2
+scene s { start x = 1; span 2 }
+X
+last "$TMP/pumped.lag" --method dop853 --tol 1e-13
+cp "$TMP/last" "$TMP/sure"
+last "$TMP/pumped.lag" --method 'verlet8(step=0.01)'
+for entry in 'dx/dx' "dx/dx'" "dx'/dx" "dx'/dx'"; do
+  close "$entry" "$(cut -d, -f"$(column "$entry(0)")" "$TMP/sure")" "$(entry "$entry(0)")" 1e-11
+done
+
 # ---- across events that change the state
 # A ball from h at rest: w = sqrt(2 g h) at the first bounce, after n of them up with e^n w at T = w/g (1 + 2 e + ... + 2 e^(n-1)).
 ball="g = 9.81; e = 0.8; w = sqrt(2*g); a = g/w; for (k = 1; k < 19; k++) s += e^k; dT = (1 + 2*s)/w; T = w*w*dT/g; du = e^19*a; u = e^19*w; r = 4 - T"

@@ -174,4 +174,12 @@ inputs() { # x' = 3 sin(2 t), and x' = 2 where a constant takes the place of the
     run $here/driven.lag F=2 --method taylor --tol 1e-15 --until 1 && near "$(final x)" 2
 }
 check "an input: along its formula, and held" inputs
+# Tolerances are relative where a state is above 1: an oscillator of a million is one of 1 in other units, up to what the floor of 1 adds.
+calls() { run "$TMP/oscillator.lag" "x=$1" --method taylor && sed -n 's/.*right-hand sides \([0-9]*\).*/\1/p' "$TMP/out"; }
+other_unit() {
+  printf 'model oscillator\ncoord x\nlagrangian = (x%s^2 - x^2)/2\nscene s { start x = 1; span 20; tolerance 1e-8 }\n' "'" >"$TMP/oscillator.lag"
+  one=$(calls 1) million=$(calls 1e6)
+  [ "$million" -gt 0 ] && [ "$((2 * million))" -le "$((3 * one))" ] || { echo "$one $million"; return 1; }
+}
+check "a state of a million takes as many steps as one of 1" other_unit
 tap_end

@@ -186,4 +186,10 @@ check "an accuracy that the run does not have" says 3 'add --tol with a smaller 
 check "no such scene" says 1 'did you mean `all`?' "$LAGC" effects "$push" al
 check "no such value" says 2 'no such parameter' "$LAGC" effects "$push" all xx=3
 check "a run that fails" says 3 '' "$LAGC" effects "$push" all --method 'rk45' hand.f=1e308 F=1e308
+# A force with a pole: what cannot be measured is null, and why is said.
+printf "model pole\ncoord x\nlagrangian = x'^2/2\neffect pole { force x = 1/(0.5 - t)^3 }\nscene s { start x = 1; span 1 }\n" >"$dir/pole.lag"
+weigh "$dir/pole.lag"
+is "no difference where a run fails" null "$(of pole difference)"
+is "and no time" null "$(of pole time_s)"
+check "the reason" grep -q '"failed": "at t = 0.5 s: the step became too small' "$dir/json"
 tap_end

@@ -25,6 +25,10 @@ listed() { "$LAGC" derive tests/exec/models/chain4.lag | grep -c '^  d_'; }
 empty "derivatives of lets have names of their own" "$(twice)"
 check "some are listed" [ "$(listed)" -gt 2 ]
 
+# Of 14 coordinates and 13 lets with primes: a rate and a force of each let, and an equation of each coordinate.
+equations() { "$LAGC" derive tests/exec/models/many.lag | sed -n '/^equations of motion/,/^$/p' | grep -c ' = '; }
+check "no equation is left out" [ "$(equations)" = 40 ]
+
 allowed() { "$LAGC" check --allow-numeric tests/golden/err/expect_undecided.lag 2>&1 | grep -q 'warning: expect th'; }
 check "--allow-numeric: a warning" allowed
 refused() { ! "$LAGC" check --allow-numeric tests/golden/err/expect_rod.lag >"$TMP/rod" 2>&1 && grep -q '(million): refuted' "$TMP/rod"; }

@@ -1,9 +1,9 @@
 """make mutants N=100 SEED=1 JOBS=2: plants one-token changes in src and runtime, one at a time, and says which ones no suite sees.
 
-    python3 tests/mutants/mutants.py [--n N] [--seed S] [--only PATH[:TEXT]] [--change NEW] [--suites PREFIX,PREFIX] [--longest S] [--jobs J]
+    python3 tests/mutants/mutants.py [--n N] [--seed S] [--only PATH[:TEXT]] [--change NEW] [--suites PREFIX,PREFIX] [--longest S] [--skip K] [--jobs J]
 
 All of it happens in copies of the tree, build/mutants/tree, and one more for each job more. A change that does not compile is replaced by another; one that leaves the machine
-code as it was, or stands in equivalent.txt, is equivalent. Else the suites that reach its line run, cheapest first, up to the first red one.
+code as it was, or stands in equivalent.txt, is equivalent. Else the suites that reach its line run, up to the first red one.
 A suite that hangs is red. Which suites reach a line is measured once, with gcov, and kept in build/mutants/cov; remove it to measure anew.
 """
 import argparse
@@ -71,19 +71,35 @@ def environment(build, cc="cc", more=None):
     return e
 
 
-def run_suite(suite, build, env, limit):
-    """Status of a suite, 0: green; and its seconds."""
-    logs = os.path.join(TREE, build, "test", "log")
+def make_home(build):
+    """The folder that stands for LAG_HOME, as the Makefile makes it."""
     home = os.path.join(TREE, build, "test", "home")
     os.makedirs(home, exist_ok=True)
     for name, to in (("lib", build), ("include", "runtime/include")):
         if not os.path.islink(os.path.join(home, name)):
             os.symlink(os.path.join(TREE, to), os.path.join(home, name))
+
+
+def run_suite(suite, build, env, limit):
+    """Status of a suite, 0: green; and its seconds."""
+    logs = os.path.join(TREE, build, "test", "log")
     begin = time.time()
     sh("sh tests/run.sh --run-one %s %d" % (suite, limit), env=env)
     log = open(os.path.join(logs, suite + ".log"), errors="replace").read()
     status = int(open(os.path.join(logs, suite + ".done")).read().split()[0])
     return status or (1 if re.search("^not ok", log, re.M) else 0), time.time() - begin
+
+
+# Processes that become others, or end without exit(), count what they reached first.
+COUNTED = """void __gcov_dump(void);
+void _exit(int);
+int __gcov_execv(const char *, char *const *);
+int __gcov_execvp(const char *, char *const *);
+static inline void counted_exit(int status) { __gcov_dump(); _exit(status); }
+#define execv __gcov_execv
+#define execvp __gcov_execvp
+#define _exit counted_exit
+"""
 
 
 class Map:
@@ -102,11 +118,16 @@ class Map:
         if not missing:
             return
         bins = " ".join("cov/test/bin/" + os.path.basename(f)[:-2] for d in ("unit", "fuzz") for f in sorted(os.listdir(TREE + "/tests/" + d)) if f.endswith(".c") and f != "driver.c")
-        made = sh("make -s -j2 BUILD=cov SAN_BUILD=cov PRECISIONS= CLANG= CFLAGS=-O0 SAN=--coverage SAN_FLAGS=--coverage all " + bins)
+        os.makedirs(self.folder, exist_ok=True)
+        counted = os.path.join(self.folder, "counted.h")
+        with open(counted, "w") as f:
+            f.write(COUNTED)
+        flags = "BUILD=cov SAN_BUILD=cov PRECISIONS= CLANG= CFLAGS='-O0 -include %s' SAN=--coverage SAN_FLAGS=--coverage" % counted
+        made = sh("make -s -j2 %s all %s" % (flags, bins))
+        make_home("cov")
         if made.returncode:
             sys.exit("mutants: the build for gcov fails:\n" + made.stdout.decode()[-2000:])
         wrapper = os.path.join(self.folder, "cc")
-        os.makedirs(self.folder, exist_ok=True)
         with open(wrapper, "w") as f:
             f.write('#!/bin/sh\nexec cc "$@" -O0 --coverage\n')
         os.chmod(wrapper, 0o755)
@@ -138,15 +159,22 @@ class Map:
         return self.lines[key]
 
     def reach(self, path, first, last):
-        order = {"unit": 0, "fuzz": 1, "golden": 1, "math": 2, "hard": 2, "exec": 2}
+        """Those that show most for their time come first: quick ones, and such as reach much of the file."""
         found = [s for s in self.seconds if any(n in self.of(s, path) for n in range(first, last + 1))]
-        return sorted(found, key=lambda s: (order[s.split("/")[0]], self.seconds[s]))
+        most = max((len(self.of(s, path)) for s in found), default=0)
+
+        def cost(s):
+            link = 4 if s.startswith(("unit/", "fuzz/")) else 0
+            return (self.seconds[s] + link) * (most / len(self.of(s, path))) ** 2
+
+        return sorted(found, key=cost)
 
 
 class Builds:
     def __init__(self):
         # Found out once, not by each make.
         found = sh("make -s --eval='found:;@echo GSL=$(GSL) SAFE=$(SAFE)' found").stdout.decode().split()
+        make_home("build")
         self.settings = " ".join(w for w in found if "=" in w) + " PRECISIONS= CLANG="
         self.green = os.path.join(TREE, "build", "green.json")  # of suites without a change
         self.known = json.load(open(self.green)) if os.path.exists(self.green) else {}
@@ -190,13 +218,13 @@ def flags_of(path):
 
 
 def equivalents():
-    """equivalent.txt: FILE | the line | the line with the change | why it changes nothing."""
+    """equivalent.txt: FILE FUNCTION | the line | the line with the change | why it changes nothing."""
     rows = {}
     for n, line in enumerate(open(os.path.join(HERE, "equivalent.txt")), 1):
         if line.strip() and not line.startswith("#"):
             cells = [c.strip() for c in line.split(" | ")]
-            if len(cells) != 4 or not cells[3]:
-                sys.exit("equivalent.txt:%d: FILE | line | changed line | reason" % n)
+            if len(cells) != 4 or not cells[3] or len(cells[0].split()) != 2:
+                sys.exit("equivalent.txt:%d: FILE FUNCTION | line | changed line | reason" % n)
             rows[tuple(cells[:3])] = cells[3]
     return rows
 
@@ -278,7 +306,7 @@ class Judge:
             self.settle()
         c, text = self.pool[i]
         line, before, after = plant.line_of(text, c)
-        why = self.rows.get((c.path, before, after))
+        why = self.rows.get((c.path + " " + plant.function_of(text, c), before, after))
         return c.path, line, before, after, "equivalent: " + why if why else self.trial.judge(text, c)
 
 
@@ -297,6 +325,7 @@ def main():
     p.add_argument("--only", help="changes in files that begin so, in lines that have this text")
     p.add_argument("--change", help="only this new text")
     p.add_argument("--suites", default="unit,fuzz,golden,math,hard,exec", help="suites whose names begin so")
+    p.add_argument("--skip", type=int, default=0, help="of the changes drawn, the first that another run has judged")
     p.add_argument("--longest", type=float, default=0, help="seconds for one change; 0: no limit")
     p.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="changes that are tried at the same time, each in a tree of its own")
     a = p.parse_args()
@@ -315,7 +344,7 @@ def main():
     judge = Judge(pool, reach, a.longest)
     killed, same, tried, survivors = 0, 0, 0, []
     with multiprocessing.Pool(a.jobs) as workers:
-        for path, line, before, after, verdict in workers.imap(verdict_of, range(len(pool))):
+        for path, line, before, after, verdict in workers.imap(verdict_of, range(a.skip, len(pool))):
             if tried == a.n:
                 break
             if verdict == "invalid":

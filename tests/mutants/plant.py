@@ -161,3 +161,9 @@ def line_of(text, c):
     last = text.find("\n", c.end)
     after = text[first:c.begin] + c.new + text[c.end:last]
     return text.count("\n", 0, c.begin) + 1, " ".join(text[first:last].split()), " ".join(after.split())
+
+
+def function_of(text, c):
+    """The name of the function that a change stands in."""
+    heads = re.findall(r"^[A-Za-z][^\n=;]*?\b(\w+)\([^;{}]*\)\s*\{", text[:c.begin], re.M)
+    return heads[-1] if heads else "?"

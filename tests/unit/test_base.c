@@ -1,4 +1,4 @@
-/* Unit tests of src/base: exact numbers, memory, names, text, messages, suggestions. */
+/* Unit tests of src/base: exact numbers, memory, names, text, messages, suggestions, the list of methods. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -12,6 +12,7 @@
 
 #include "base/diag.h"
 #include "base/intern.h"
+#include "base/methods.h"
 #include "base/num.h"
 #include "base/suggest.h"
 #include "base/vec.h"
@@ -61,6 +62,7 @@ static void test_field(void **state) {
     assert_true(num_equal(num_add(num_sub(a, b), b), a));
     if (!num_is_zero(b)) assert_true(num_equal(num_mul(num_div(a, b), b), a));
     assert_int_equal(num_cmp(a, b), num_sign(num_sub(a, b)));
+    assert_int_equal(num_cmp(a, num_sub(num_add(a, b), b)), 0);
     /* cross-multiplied by hand, without the library's gcd */
     Num s = num_add(a, b);
     assert_true((Wide)s.num * a.den * b.den == ((Wide)a.num * b.den + (Wide)b.num * a.den) * s.den);
@@ -457,8 +459,28 @@ static void test_suggest(void **state) {
   assert_null(suggest("mass", NULL, 0));
 }
 
+/* ---- methods ---- */
+
+/* Each method of the list is found by its name; the list ends with NULL, and beyond stays so. */
+static void test_methods(void **state) {
+  (void)state;
+  size_t n = 0, known = 0;
+  for (const MethodInfo *m; (m = method_at(n)) != NULL; n++) {
+    assert_ptr_equal(method_find(m->name, strlen(m->name)), m);
+    known += strcmp(m->name, "rk45") == 0 || strcmp(m->name, "taylor") == 0 || strcmp(m->name, "variational") == 0;
+    for (const MethodOption *o = m->options; o->name; o++) assert_ptr_equal(method_option(m, o->name), o);
+    assert_null(method_option(m, "no_such_option"));
+  }
+  assert_int_equal(known, 3);
+  assert_null(method_at(n + 1));
+  assert_null(method_find("rk4", 2));
+  assert_true(method_is_foreign("gsl-rk9") == (method_find("gsl-rk8pd", 9) == NULL));
+  assert_false(method_is_foreign("rk45"));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_methods),
     cmocka_unit_test(test_lowest_terms), cmocka_unit_test(test_field),          cmocka_unit_test(test_overflow),
     cmocka_unit_test(test_parse),        cmocka_unit_test(test_print),          cmocka_unit_test(test_pow),
     cmocka_unit_test(test_gcd),          cmocka_unit_test(test_arena),

@@ -276,6 +276,23 @@ static void a_refused_step_loses_no_state(void **state)
   }
 }
 
+FLOW(slow, (zd[0] = 1e-12, 0));
+
+/* E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section II.4: where y' is no larger than 1e-5 of the tolerance, h0 is 1e-6,
+ * and the first step is 100 h0 if the second derivative allows it. */
+static void the_first_step_of_what_hardly_moves(void **state)
+{
+  const lag_method *const adaptive[] = {&lag_rk45, &lag_dop853};
+  (void)state;
+  for (int i = 0; i < 2; i++) {
+    lag_sim *s = sim_with(&slow, adaptive[i], 1e-6, 0, NULL);
+    lag_sim_on_step(s, once, NULL);
+    assert_int_equal(lag_sim_advance(s, 5), LAG_INTERRUPTED);
+    assert_close(lag_sim_time(s), 1e-4, 1e-18);
+    lag_sim_free(s);
+  }
+}
+
 static void rough_powers_are_near(void **state)
 {
   (void)state;
@@ -298,6 +315,7 @@ int main(void)
       cmocka_unit_test(rk45_error_follows_the_tolerance),
       cmocka_unit_test(hermite_reproduces_polynomials),
       cmocka_unit_test(rk4_does_not_gather_rounding),
+      cmocka_unit_test(the_first_step_of_what_hardly_moves),
       cmocka_unit_test(rk4_keeps_time),
       cmocka_unit_test(backwards_undoes_forwards),
       cmocka_unit_test(a_refused_step_loses_no_state),

@@ -133,6 +133,7 @@ static void what_is_short_stays(void **state) {
 
 static void parameters_are_factored(void **state) {
   (void)state;
+  assert_simplifies("k*cos(x) + m1*l1*cos(x) + m2*l1*cos(x) + m3*l1*cos(x) + m1*g*cos(x)", "(k + m1*g + (m1 + m2 + m3)*l1)*cos(x)"); /* terms that share a factor need not stand side by side */
   assert_simplifies("m1*l1^2 + m2*l1^2 + m2*l2^2 + 2*m2*l1*l2*cos(x)", "(m1 + m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*cos(x)");
   assert_simplifies("m1*g*x + m2*g*x + m3*g*x + k*y", "(m1 + m2 + m3)*g*x + k*y");
   assert_simplifies("m*x'^2/2 + m*y'^2/2", "m/2*(x'^2 + y'^2)");
