@@ -64,15 +64,15 @@ static uint32_t columns_used(const long double *m, uint32_t rows, uint32_t colum
   return used;
 }
 
-/* The kernel of (B0, B1) on pairs (x, y) of u = x*space, u' = y*space. The rank is at most the number of columns that are not zero, so that more rows
- * than these say nothing: what is even in velocities has a third of the columns. */
+/* The kernel of (B0, B1) on pairs (x, y) of u = x*space, u' = y*space. The rank is at most the number of columns that are not zero, and what is even in
+ * velocities has a third of the columns. Half as many rows again: a square matrix of random numbers is badly conditioned. */
 static DenseRows pairs(RowSource *r, Arena *a, RowKind kind, const DenseRows *space) {
   uint32_t n = space->n, rows = 0, wanted = SPARE_ROWS;
-  size_t most = 2 * n + SPARE_ROWS, w = space->width;
+  size_t most = 3 * n + SPARE_ROWS, w = space->width;
   long double *b0 = ARENA_ARRAY(a, long double, most * w), *b1 = ARENA_ARRAY(a, long double, most * w);
   long double *m = ARENA_ARRAY(a, long double, most * 2 * n + 1);
   Sparse sparse = sparse_rows(a, space);
-  for (; rows < wanted; wanted = columns_used(m, rows, 2 * n) + SPARE_ROWS) {
+  for (; rows < wanted; wanted = columns_used(m, rows, 2 * n) * 3 / 2 + SPARE_ROWS) {
     if (rows_fill(r, kind, wanted - rows, b0, b1) < wanted - rows) return (DenseRows){.width = 2 * n};
     for (size_t i = 0; rows < wanted; rows++, i++) {
       project(&sparse, n, b0 + i * w, rounding_of(space), m + (size_t)rows * 2 * n);

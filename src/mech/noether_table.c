@@ -213,21 +213,33 @@ static uint32_t minimal_polynomial(Arena *a, const SolutionSpace *s, uint32_t mo
   return 0;
 }
 
-/* Takes the roots that are as close to that in place k as rounding brings a double one apart behind it, and puts their mean into its place, which is known
- * to rounding. How many they are. */
+/* Takes the roots that are as close to that in place k as rounding brings a double one apart behind it. How many they are. */
 static uint32_t join(uint32_t n, complex long double *root, uint32_t k) {
   const long double apart = 3e-8L;
   uint32_t count = 1;
-  complex long double sum = root[k];
   for (uint32_t i = k + 1; i < n; i++) {
     complex long double x = root[i];
     if (!(cabsl(x - root[k]) < apart * cabsl(x))) continue;
     root[i] = root[k + count];
     root[k + count++] = x;
-    sum += x;
   }
-  root[k] = sum / count;
   return count;
+}
+
+/* A root that occurs `count` times, to rounding: it is a simple one of the derivative of order count - 1. */
+static complex long double multiple_root(uint32_t n, const long double *c, uint32_t count, complex long double x) {
+  enum { TURNS = 3 };
+  for (int turn = 0; turn < TURNS; turn++) {
+    complex long double value = 0, slope = 0;
+    for (uint32_t k = n + 1; k-- > count - 1;) {
+      long double factor = c[k];
+      for (uint32_t j = 0; j < count - 1; j++) factor *= k - j;
+      slope = slope * x + value;
+      value = value * x + factor;
+    }
+    if (slope != 0) x -= value / slope;
+  }
+  return x;
 }
 
 /* How often each rate occurs. 0: others are left. */
@@ -285,6 +297,7 @@ Rates space_rates(Arena *a, const SolutionSpace *s) {
   if (m) roots_of(m, c, root);
   for (uint32_t k = 0; k < m;) {
     uint32_t count = join(m, root, k);
+    root[k] = multiple_root(m, c, count, root[k]);
     if (fabsl(cimagl(root[k])) < 1e-8L * cabsl(root[k])) r.at[r.n++] = creall(root[k]);
     else r.others += count;
     k += count;
