@@ -80,7 +80,8 @@ typedef struct {
  * the solution, M x - A^T l = f: behind M stands A[m*n], behind f g; behind x l. coarse: constraints that are nearly dependent count as
  * dependent; see lag_kkt.h. Without constraints, entries more than `band` beside the diagonal are zero, and a definite M is eliminated without
  * pivoting, from its upper triangle. inverse: where the inverse stands among the parameters, not 0: then there is no matrix, and a solution is
- * a product. filled: with constraints, the elements of the matrix that are not zero. Of IR_INVERT: where that writes [matrix | n | n | inverse | 1 where there is one, and 0]; no right-hand side. */
+ * a product. filled: with constraints, the elements of the matrix that are not zero. Of IR_INVERT: where that writes [matrix | n | n | inverse |
+ * 1 where there is one, and 0]; no right-hand side. */
 typedef struct {
   uint32_t n, m, place, band, inverse;
   int coarse, definite;

@@ -119,7 +119,6 @@ for method in dop853 verlet; do
   check "left where it falls faster" near "$(left)" "$(awk 'BEGIN { x = 9.81/12.8; pi = atan2(0, -1); printf "%.17g", (4*pi + atan2(x, sqrt(1 - x*x)))/8 }')" 1e-9
 done
 
-# ---- the loop at the top of a header, compiled as it stands
 # Without loss, for 5000 s: it falls for sqrt(2 h/g) = 0.45152 s and strikes every 0.90305 s from then on, 5537 times. Late, the last bit of time is
 # a path as long as the gap is rounded.
 model long <<'EOF'
@@ -133,6 +132,7 @@ EOF
 often() { "$LAGC" run "$TMP/long.lag" s >"$TMP/out" 2>&1 && grep -q '^event floor: 5537 times' "$TMP/out"; }
 check "a ball that bounces for long strikes once each time" often
 
+# ---- the loop at the top of a header, compiled as it stands
 model corner <<'EOF'
 model corner "Pressed into a corner"
 coord x [m], y [m]

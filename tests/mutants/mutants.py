@@ -1,10 +1,11 @@
 """make mutants N=100 SEED=1 JOBS=2: plants one-token changes in src and runtime, one at a time, and says which ones no suite sees.
 
-    python3 tests/mutants/mutants.py [--n N] [--seed S] [--only PATH[:TEXT]] [--change NEW] [--suites PREFIX,PREFIX] [--longest S] [--skip K] [--jobs J]
+    python3 tests/mutants/mutants.py [--n N] [--seed S] [--only PATH[:TEXT]] [--change NEW] [--again LOG] [--suites PREFIX,PREFIX] [--longest S] [--skip K] [--jobs J]
 
-All of it happens in copies of the tree, build/mutants/tree, and one more for each job more. A change that does not compile is replaced by another; one that leaves the machine
-code as it was, or stands in equivalent.txt, is equivalent. Else the suites that reach its line run, up to the first red one.
-A suite that hangs is red. Which suites reach a line is measured once, with gcov, and kept in build/mutants/cov; remove it to measure anew.
+Which changes are drawn depends on the lines that they are made in, not on the rest of the sources. All of it happens in copies of the tree,
+build/mutants/tree, and one more for each job more. A change that does not compile is replaced by another; one that leaves the machine code as it was,
+or stands in equivalent.txt, is equivalent. Else the suites that reach its line run, up to the first red one. A suite that hangs is red. Which suites
+reach a line is measured once, with gcov, and kept in build/mutants/cov; remove it to measure anew.
 """
 import argparse
 import hashlib
@@ -12,7 +13,6 @@ import json
 import multiprocessing
 import multiprocessing.pool
 import os
-import random
 import re
 import shutil
 import subprocess
@@ -28,7 +28,9 @@ MEASURED = os.path.join(WORK, "tree")  # where the lines that suites reach are m
 TREE = MEASURED  # of this process
 SAN = "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
 # Suites that would need more builds, or that judge the text of the sources.
-LEFT_OUT = {"exec/includes", "exec/install", "exec/run_sanitized", "exec/run_precision", "exec/run_quad", "exec/editor", "golden/gallery"}
+LEFT_OUT = {"exec/includes", "exec/install", "exec/run_precision", "exec/run_quad", "exec/editor", "golden/gallery"}
+
+SANITIZED = {"exec/run_sanitized"}  # needs the compiler and the runtime under sanitizers, besides those of the other scripts
 
 
 def sh(command, **kw):
@@ -62,7 +64,7 @@ def suites():
 
 def environment(build, cc="cc", more=None):
     gsl = os.path.exists(os.path.join(TREE, build, "liblag_gsl.a"))
-    e = dict(os.environ, LAGC=build + "/lagc", LAGC_SAN=build + "/lagc", SAN_FLAGS=SAN, LAGC_CLANG="", BIN=build + "/test/bin", BUILD=build, CC=cc, CLANG="",
+    e = dict(os.environ, LAGC=build + "/lagc", LAGC_SAN=build + "/san/lagc" if build == "build" else build + "/lagc", SAN_FLAGS=SAN, LAGC_CLANG="", BIN=build + "/test/bin", BUILD=build, CC=cc, CLANG="",
              LIBLAG=" ".join(build + "/" + f for f in ["liblag.a"] + ["liblag_gsl.a"] * gsl), LIBS="-lgsl -lgslcblas -lm" if gsl else "-lm", INC="runtime/include",
              CXX="c++", GSL="yes" if gsl else "", MAKE="make", CMOCKA_MESSAGE_OUTPUT="TAP")
     for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "LAG_HOME"):
@@ -125,6 +127,8 @@ class Map:
         flags = "BUILD=cov SAN_BUILD=cov PRECISIONS= CLANG= CFLAGS='-O0 -include %s' SAN=--coverage SAN_FLAGS=--coverage" % counted
         made = sh("make -s -j2 %s all %s" % (flags, bins))
         make_home("cov")
+        if not os.path.islink(os.path.join(TREE, "cov", "san")):
+            os.symlink(".", os.path.join(TREE, "cov", "san"))
         if made.returncode:
             sys.exit("mutants: the build for gcov fails:\n" + made.stdout.decode()[-2000:])
         wrapper = os.path.join(self.folder, "cc")
@@ -183,7 +187,7 @@ class Builds:
         """Builds unit tests and fuzz targets."""
         bins = " ".join("build/test/bin/" + n.split("/")[1] for n in names)
         gsl = "build/san/liblag_gsl.a" if "GSL=yes" in self.settings else ""
-        return sh("make -s -j2 %s BUILD=build/san CFLAGS='-O1 -g' SAN='%s' build/san/liblagc.a build/san/liblag.a %s && make -s -j2 %s %s" % (self.settings, SAN, gsl, self.settings, bins))
+        return sh("make -s -j2 %s BUILD=build/san CFLAGS='-O1 -g' SAN='%s' build/san/lagc build/san/liblag.a %s && make -s -j2 %s %s" % (self.settings, SAN, gsl, self.settings, bins))
 
     def plain(self):
         return sh("make -s -j2 " + self.settings + " all build/test/bin/mutate build/test/bin/dump_words build/test/bin/dump_syntax build/test/bin/cut_effects")
@@ -203,7 +207,10 @@ class Builds:
         return self.known[suite]
 
     def make_for(self, suite):
-        return self.san([suite]) if suite.startswith(("unit/", "fuzz/")) else self.plain()
+        if suite.startswith(("unit/", "fuzz/")):
+            return self.san([suite])
+        plain = self.plain()
+        return plain if plain.returncode or suite not in SANITIZED else self.san([])
 
 
 def code_of(path, flags):
@@ -261,7 +268,7 @@ class Trial:
         for suite in there:
             if self.longest and time.time() - begin > self.longest:
                 return "survived %d of %d suites that reach it, in %.0f s" % (ran, len(there), time.time() - begin)
-            made = self.builds.make_for(suite) if suite.startswith("unit") or built != "plain" else None
+            made = self.builds.make_for(suite) if suite.startswith("unit") or suite in SANITIZED or built != "plain" else None
             built = "unit" if suite.startswith(("unit", "fuzz")) else "plain"
             if made is not None and made.returncode:
                 return "killed by the build" if b"error:" not in made.stdout else "invalid"
@@ -272,17 +279,29 @@ class Trial:
         return "survived all of %d suites that reach it" % len(there)
 
 
-def draw(only):
+def sort_key(seed, text, c, seen):
+    """Changes stand in an order of their own, which those of other lines do not disturb. seen counts lines that read the same."""
+    same = (c.path,) + plant.line_of(text, c)[1:]
+    seen[same] = seen.get(same, 0) + 1
+    return hashlib.sha1(repr((seed, same, seen[same])).encode()).digest()
+
+
+def survivors_of(log):
+    """(path, line, line with the change) of what a run said to have survived."""
+    return set(re.findall(r"^(\S+):\d+: survived.*\n    - (.*)\n    \+ (.*)$", open(log).read(), re.M))
+
+
+def draw(seed, only):
     path, _, piece = (only or "").partition(":")
-    pool = []
+    pool, seen = [], {}
     for folder in ("src", "runtime"):
         for where, _, files in sorted(os.walk(os.path.join(TREE, folder))):
             for f in sorted(files):
                 name = os.path.relpath(os.path.join(where, f), TREE)
                 if f.endswith(".c") and name.startswith(path):
                     text = open(os.path.join(TREE, name)).read()
-                    pool += [(c, text) for c in plant.changes(name, text) if piece in plant.line_of(text, c)[1]]
-    return pool
+                    pool += [(sort_key(seed, text, c, seen), c, text) for c in plant.changes(name, text) if piece in plant.line_of(text, c)[1]]
+    return [x[1:] for x in sorted(pool, key=lambda x: x[0])]
 
 
 class Judge:
@@ -324,6 +343,7 @@ def main():
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--only", help="changes in files that begin so, in lines that have this text")
     p.add_argument("--change", help="only this new text")
+    p.add_argument("--again", metavar="LOG", help="only changes of which LOG, the output of another run, says that they survived")
     p.add_argument("--suites", default="unit,fuzz,golden,math,hard,exec", help="suites whose names begin so")
     p.add_argument("--skip", type=int, default=0, help="of the changes drawn, the first that another run has judged")
     p.add_argument("--longest", type=float, default=0, help="seconds for one change; 0: no limit")
@@ -334,10 +354,12 @@ def main():
     builds.san([])
     builds.plain()
     reach.measure([s for s in suites() if s.startswith(tuple(a.suites.split(",")))], a.jobs)
-    pool = draw(a.only)
+    pool = draw(a.seed, a.only)
     if a.change:
         pool = [x for x in pool if x[0].new.strip() == a.change.strip()]
-    random.Random(a.seed).shuffle(pool)
+    if a.again:
+        again = survivors_of(a.again)
+        pool = [x for x in pool if (x[0].path,) + plant.line_of(x[1], x[0])[1:] in again]
     for n in range(2, a.jobs + 1):
         shutil.rmtree(MEASURED + str(n), ignore_errors=True)
         shutil.copytree(MEASURED, MEASURED + str(n), symlinks=True, ignore=lambda folder, names: {"cov", "home"} & set(names))

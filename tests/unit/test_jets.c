@@ -44,7 +44,7 @@ static Jet composed(const Case *c, JetReal error) {
   x.c[0][0] = (Bounded){c->x, error};
   x.c[0][1].v = x.c[1][0].v = 1;
   if (c->name) assert_true(jet_function(&y, c->name, &x));
-  else jet_power(&y, &x, c->exponent == 1 / 3.0L ? 1 / 3.0L : c->exponent, c->exponent == 1 / 3.0L);
+  else jet_power(&y, &x, c->exponent, c->exponent == 1 / 3.0L);
   return y;
 }
 

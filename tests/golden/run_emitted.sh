@@ -1,0 +1,41 @@
+#!/bin/sh
+# What the compiler writes for each model of the gallery is what it wrote before: emitted.txt has a line each,
+#   CODE TEXT MODEL COMMAND      checksums of the C without comments and of the whole; of what is not C, the second only
+# Whether a change was meant, the texts tell:
+#   KEEP=FOLDER sh tests/golden/run_emitted.sh      keeps them, so that those of two versions can be laid side by side (diff -r)
+#   BLESS=1 sh tests/golden/run_emitted.sh          writes emitted.txt anew, on purpose
+. tests/tap.sh
+: "${LAGC:=build/lagc}" "${CC:=cc}"
+KEEP=${KEEP:-$TMP/kept}
+mkdir -p "$KEEP"
+
+sum() { cksum | cut -d ' ' -f 1; }
+code() { "$CC" -fpreprocessed -dD -E -P -x c - 2>/dev/null; } # without comments
+write() { # MODEL KIND COMMAND...: a line of emitted.txt
+  model=$1 kind=$2
+  shift 2
+  text=$KEEP/$(basename "$model" .lag).$(echo "$*" | tr -d ' -')
+  "$LAGC" "$@" "$model" >"$text" 2>&1
+  case $kind in
+  c) code=$(code <"$text" | sum) ;;
+  text) code=- ;;
+  esac
+  echo "$code $(sum <"$text") $model $*"
+}
+for m in models/*.lag; do
+  for words in emit "emit --method taylor" "emit --method radau" "emit --method variational --with linear" "emit --fix all" header "derive --format c"; do
+    # shellcheck disable=SC2086 # some words
+    write "$m" c $words
+  done
+  for words in derive "derive --format latex" "derive --hamiltonian"; do
+    # shellcheck disable=SC2086
+    write "$m" text $words
+  done
+done >"$TMP/emitted"
+if [ -n "${BLESS:-}" ]; then cp "$TMP/emitted" tests/golden/emitted.txt; fi
+for m in models/*.lag; do
+  grep -F " $m " tests/golden/emitted.txt >"$TMP/want"
+  grep -F " $m " "$TMP/emitted" >"$TMP/got"
+  empty "$m" "$(diff "$TMP/want" "$TMP/got" | grep '^[<>]')"
+done
+tap_end
