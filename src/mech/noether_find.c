@@ -287,16 +287,17 @@ static void take_choices(Search *s, uint32_t attempt) {
   s->spaces = ARENA_ARRAY(s->scratch, SolutionSpace, noether_choices(s));
 }
 
+enum { ATTEMPTS = 12 };
+
 /* Values of the parameters; others, where some oscillations have no rate that can be written, as those of a trap that does not hold what is in it. */
 static void choose(Search *s) {
-  enum { ATTEMPTS = 12 };
-  take_choices(s, 0);
+  take_choices(s, s->first);
   if (s->ansatz->has_time || !s->e->n || !s->choices.n || !(spirals(s, CHOICE_FIRST) + spirals(s, CHOICE_SECOND))) return;
   for (uint32_t attempt = 1; attempt < ATTEMPTS; attempt++) {
-    take_choices(s, attempt);
+    take_choices(s, s->first + attempt);
     if (spirals(s, CHOICE_FIRST) + spirals(s, CHOICE_SECOND) == 0) return;
   }
-  take_choices(s, 0);
+  take_choices(s, s->first);
 }
 
 static void search_work(Arena *scratch, void *data) {
@@ -320,11 +321,25 @@ const char *noether_note_on_impacts(const Model *m) {
   return setting ? "events change charges: what is said holds between them" : NULL;
 }
 
+static FoundSymmetries search_from(Eqns *e, uint32_t first) {
+  FoundSymmetries out = {0};
+  Search s = {.e = e, .g = e->g, .first = first, .out = &out};
+  normal_with_scratch(e->g, search_work, &s);
+  return out;
+}
+
+/* Equations at random states may be badly conditioned: what one search sees and cannot write, one with other values of the parameters may. */
+static FoundSymmetries search_twice(Eqns *e) {
+  FoundSymmetries out = search_from(e, 0);
+  if (!out.unproved) return out;
+  FoundSymmetries again = search_from(e, ATTEMPTS);
+  return again.all.n > out.all.n ? again : out;
+}
+
 FoundSymmetries noether_find(Eqns *e) {
   FoundSymmetries out = {0};
-  Search s = {.e = e, .g = e->g, .out = &out};
   if (candidates_only(e)) candidates_try(e, &out);
-  else normal_with_scratch(e->g, search_work, &s);
+  else out = search_twice(e);
   out.galilean = has_galilean_charges(&out);
   if (!out.note) out.note = noether_note_on_impacts(e->m);
   return out;

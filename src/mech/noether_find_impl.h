@@ -19,6 +19,7 @@ typedef struct {
   ExprGraph *g;
   Arena *scratch;
   Ansatz *ansatz;
+  uint32_t first; /* of its choices of parameters' values, see mech/noether_number.h */
   Choices choices;
   SolutionSpace *spaces; /* [choice]; width 0: not asked for yet */
   FoundSymmetries *out;
