@@ -233,7 +233,7 @@ int lag_cost_measure(CostMethod *m, const CostScene *scene, const Samples *refer
       break;
     }
     if (done == LAG_OK && run.error < rough) {
-      idle = run.steps == steps ? idle : run.error > 0.7 * least ? idle + 1 : 0;
+      idle = run.steps == steps ? idle : run.error >= 0.7 * least ? idle + 1 : 0;
       least = fmin(least, run.error);
       steps = run.steps;
       m->run[m->nruns++] = run;

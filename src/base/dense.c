@@ -199,8 +199,7 @@ DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns) {
     long double *row = o.at + (size_t)basis.n * columns, length = 0;
     memcpy(row, from->at + (size_t)k * from->width, columns * sizeof *row);
     for (uint32_t j = 0; j < columns; j++) length += row[j] * row[j];
-    if (length > 0 && reduce(&basis, row) > 1e-9L) join_basis(&basis);
-    else memset(row, 0, columns * sizeof *row);
+    if (length > 0 && reduce(&basis, row) > 1e-9L) join_basis(&basis); /* else the next one takes its place */
   }
   o.n = basis.n;
   return o;

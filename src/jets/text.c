@@ -129,7 +129,6 @@ static int loop_again(Text *t, Frame *f) {
   l->sum = l->terms++ == 0 ? *term : text_pair(t, x->kind == AST_SUM ? AST_ADD : AST_MUL, &l->sum, term);
   if (l->at < l->hi && l->sum.at[0]) {
     f->index.at[f->index.n - 1].at = ++l->at;
-    memset(&f->value[ast_expr(t->b->ast, x->c)->first - f->first], 0, (x->c - ast_expr(t->b->ast, x->c)->first + 1) * sizeof *f->value);
     return 1;
   }
   f->value[l->construct - f->first] = l->sum;

@@ -85,4 +85,14 @@ built() { "$LAGC" build "$vdp" -o "$TMP/vdp" && "$TMP/vdp" --until 1 >"$TMP/out"
 check "a simulator that was built chooses, too" built
 resumed() { "$LAGC" run "$vdp" --until 100 --save-state "$TMP/state" --quiet && "$LAGC" run "$vdp" --resume "$TMP/state" --until 200 >"$TMP/out" && grep -q 'method radau' "$TMP/out"; }
 check "a run goes on with what it began with" resumed
+# The series that taylor needs are compiled in where it may be chosen, below a tolerance of 1e-9, and nowhere else.
+can_take_taylor() { # TOLERANCE: or none
+  printf 'model free\ncoord x\nlagrangian = x'"'"'^2/2 - x^4/4\nscene run { start x = 1; span 2 [s]%s }\n' "${1:+; tolerance $1}" >"$TMP/free.lag"
+  "$LAGC" build "$TMP/free.lag" -o "$TMP/free" && "$TMP/free" --method taylor --quiet 2>"$TMP/err"
+}
+cannot_take_taylor() { ! can_take_taylor "$@" && grep -q "built without" "$TMP/err"; }
+check "series for a tolerance of 1e-12" can_take_taylor 1e-12
+for tolerance in '' 1e-9 1e-6; do
+  check "none for ${tolerance:-no tolerance}" cannot_take_taylor $tolerance
+done
 tap_end

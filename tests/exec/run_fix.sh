@@ -115,4 +115,12 @@ is "taylor: the series" taylor "$(has models/double_pendulum.lag --method taylor
 is "variational: second derivatives" variationsecond "$(has models/double_pendulum.lag --method variational)"
 is "accelerations do not pay for them" "$("$LAGC" emit models/double_pendulum.lag | grep -c 'Accelerations: 38 operations')" \
   "$("$LAGC" emit models/double_pendulum.lag --method radau | grep -c 'Accelerations: 38 operations')"
+# Numbers that are no fractions stay functions: the compiled program computes them, and the text agrees (every compilation compares).
+cat >"$dir/numbers.lag" <<'END'
+model numbers
+coord x
+param k = 2 > 0
+lagrangian = x'^2/2 - (atan2(1, 2) + 2*hypot(1, 2) + 3*min(pi, 3) + 4*max(pi, 3) + 5*2^pi + atan2(k, 2) + hypot(k, 3) + max(k, 3) + if(k > 2, 1, 3))*x^2
+END
+check "functions of two numbers" "$LAGC" emit "$dir/numbers.lag" --fix all -o "$dir/numbers.c"
 tap_end

@@ -96,6 +96,25 @@ check "a constant" says 2 'write -D n=5' "$LAGC" run "$m" n=5
 near "a parameter that follows another" 1e-12 "$(calc '(1 + 4 + 9)/2 + 5*4/2 + 9*2/2')" "$(final energy "$m" vacuum mr=4)"
 near "and is given" 1e-12 "$(calc '(1 + 4 + 9)/2 + 5*4/2 + 9/2')" "$(final energy "$m" vacuum mr=4 half=1)"
 
+cat >"$dir/signs.lag" <<'END'
+model signs
+coord x [1]
+param a = 1 > 0, b = 1 >= 0, c = -1 < 0, d = -1 <= 0
+lagrangian = x'^2/2 + (a + b + c + d)*x
+scene s { start x = 0 [1]; span 1 [s] }
+END
+# Each at -1/2, 0 and 1/2
+for row in "a > no no yes" "b >= no yes yes" "c < yes no no" "d <= yes yes no"; do
+  set -- $row
+  name=$1 sign=$2
+  shift 2
+  for value in -0.5 0 0.5; do
+    if [ "$1" = yes ]; then check "$name = $value, declared $sign 0" "$LAGC" run "$dir/signs.lag" $name=$value
+    else check "$name = $value, declared $sign 0, is refused" says 2 "the model declares $name $sign 0" "$LAGC" run "$dir/signs.lag" $name=$value; fi
+    shift
+  done
+done
+
 # ---- names of effects
 cat >"$dir/e.lag" <<'END'
 model e "effects with names of their own"

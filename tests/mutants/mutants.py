@@ -30,9 +30,6 @@ SAN = "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-po
 # Suites that would need more builds, or that judge the text of the sources.
 LEFT_OUT = {"exec/includes", "exec/install", "exec/run_precision", "exec/run_quad", "exec/editor", "golden/gallery"}
 
-SANITIZED = {"exec/run_sanitized"}  # needs the compiler and the runtime under sanitizers, besides those of the other scripts
-
-
 def sh(command, **kw):
     return subprocess.run(command, shell=True, cwd=TREE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **kw)
 
@@ -174,6 +171,12 @@ class Map:
         return sorted(found, key=cost)
 
 
+def needs_sanitized(suite):
+    """Whether a script runs helpers of unit tests, or the compiler under sanitizers."""
+    name = os.path.join(TREE, "tests", suite + ".sh")
+    return os.path.exists(name) and re.search(r"\bBIN\b|LAGC_SAN|_sanitized\.sh", open(name).read()) is not None
+
+
 class Builds:
     def __init__(self):
         # Found out once, not by each make.
@@ -209,8 +212,8 @@ class Builds:
     def make_for(self, suite):
         if suite.startswith(("unit/", "fuzz/")):
             return self.san([suite])
-        plain = self.plain()
-        return plain if plain.returncode or suite not in SANITIZED else self.san([])
+        sanitized = self.san([]) if needs_sanitized(suite) else None
+        return sanitized if sanitized and sanitized.returncode else self.plain()
 
 
 def code_of(path, flags):
@@ -268,8 +271,9 @@ class Trial:
         for suite in there:
             if self.longest and time.time() - begin > self.longest:
                 return "survived %d of %d suites that reach it, in %.0f s" % (ran, len(there), time.time() - begin)
-            made = self.builds.make_for(suite) if suite.startswith("unit") or suite in SANITIZED or built != "plain" else None
-            built = "unit" if suite.startswith(("unit", "fuzz")) else "plain"
+            kind = suite if suite.startswith(("unit/", "fuzz/")) else "sanitized" if needs_sanitized(suite) else "plain"
+            made = self.builds.make_for(suite) if kind != built else None
+            built = kind
             if made is not None and made.returncode:
                 return "killed by the build" if b"error:" not in made.stdout else "invalid"
             limit = max(60, 10 * self.map.seconds[suite])

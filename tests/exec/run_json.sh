@@ -1,0 +1,20 @@
+#!/bin/sh
+# The fields of each command's --json, which other programs read: none goes, and none comes without a line here. Of a list, those of its first element.
+. tests/tap.sh
+fields() { # COMMAND MODEL ARGS...: names, with [ or { where a list or an object begins
+  "$LAGC" "$@" --json 2>"$TMP/err" | grep -o '"[^"]*": [[{]\{0,1\}' | sed 's/^"//; s/": *//' | awk '!seen[$0]++' | tr '\n' ' ' | sed 's/ $//'
+}
+head="model scene method chosen status message t_end steps rejected rhs_calls form newton_systems newton_iterations wall_s energy_drift energy_drift_absolute"
+charge="is initial final work drift drift_absolute unit slope slope_error trend"
+is "run" "$head unresolved_period rows_without_value charges{ energy{ $charge monitors{ events{ floor{ count first last tangent{ y{ y y' y'{ math build \
+constraint_residual constraint_rate_residual final{ energy" "$(fields run models/bouncing_ball.lag --until 2 --tangent)"
+is "run with constraints" "$head unresolved_period rows_without_value charges{ energy{ $charge monitors{ events{ math build constraint_residual \
+constraint_rate_residual constraints rank redundant[ rank_beside start_moved{ final{ q x p q' x' p' push lambda(across)" "$(fields run models/slider_crank.lag --until 0.5)"
+is "lyapunov" "model scene method chosen status from until steps blocks exponents[ spread[ errors[ at_half[ sum sum_spread divergence sum_error dimension \
+dimension_error entropy entropy_error chaotic" "$(fields lyapunov models/lorenz.lag --until 20)"
+is "modes" "model scene status verdict reason note steps start{ x y equilibrium{ pairs modes[ re im free repeats shape{ x[ y[" "$(fields modes models/spring_pendulum.lag)"
+is "cost" "model scene until reference uncertainty target methods[ method order refused runs[ step error seconds spread steps calls front cheapest" \
+  "$(fields cost models/pendulum.lag --until 0.2 --longest 0.001 --methods rk4)"
+is "effects" "model scene method span_s integration_error limit operations base shared time_s base_time_s effects[ name on verdict weight difference together_with[" \
+  "$(fields effects models/projectile_world.lag --until 0.5)"
+tap_end
