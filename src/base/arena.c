@@ -6,23 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef __has_feature
-#if __has_feature(address_sanitizer)
-#define __SANITIZE_ADDRESS__ 1
-#endif
-#endif
-/* Under the address sanitizer a gap that must not be touched follows each block; it counts for no limit. */
-#ifdef __SANITIZE_ADDRESS__
-void __asan_poison_memory_region(void const volatile *p, size_t n);
-void __asan_unpoison_memory_region(void const volatile *p, size_t n);
-#define POISON __asan_poison_memory_region
-#define UNPOISON __asan_unpoison_memory_region
-enum { GAP = sizeof(max_align_t) };
-#else
-#define POISON(p, n) ((void)(p), (void)(n))
-#define UNPOISON(p, n) ((void)(p), (void)(n))
-enum { GAP = 0 };
-#endif
+#include "base/poison.h"
 
 typedef struct Chunk Chunk;
 struct Chunk {
@@ -121,9 +105,9 @@ void *arena_alloc(Arena *a, size_t n) {
     arena_fail(a);
   }
   Chunk *c = a->chunks;
-  if (!c || c->size - c->used < n + GAP) c = chunk_new(a, n + GAP);
+  if (!c || c->size - c->used < n + POISON_GAP) c = chunk_new(a, n + POISON_GAP);
   void *p = (char *)c->data + c->used;
-  c->used += n + GAP;
+  c->used += n + POISON_GAP;
   a->used += n;
   UNPOISON(p, asked);
   return memset(p, 0, asked);

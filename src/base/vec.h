@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/arena.h"
+#include "base/poison.h"
 
 #define VEC(T)       \
   struct {           \
@@ -16,13 +17,17 @@
 
 /* Room for one more element of `size` bytes; returns the (possibly new) block. */
 static inline void *vec_grow(Arena *a, void *at, uint32_t n, uint32_t *cap, size_t size) {
-  if (n < *cap) return at;
-  if (*cap > UINT32_MAX / 2) arena_fail(a);
-  uint32_t bigger = *cap ? *cap * 2 : 8;
-  void *block = arena_alloc(a, (size_t)bigger * size);
-  if (n) memcpy(block, at, (size_t)n * size);
-  *cap = bigger;
-  return block;
+  if (n == *cap) {
+    if (*cap > UINT32_MAX / 2) arena_fail(a);
+    uint32_t bigger = *cap ? *cap * 2 : 8;
+    void *block = arena_alloc(a, (size_t)bigger * size);
+    if (n) memcpy(block, at, (size_t)n * size);
+    POISON((char *)block + (size_t)n * size, (bigger - n) * size);
+    *cap = bigger;
+    at = block;
+  }
+  UNPOISON((char *)at + (size_t)n * size, size);
+  return at;
 }
 
 #define vec_push(a, v, x)                                                            \

@@ -176,7 +176,10 @@ Expr expr_def_fresh(ExprGraph *g, Name name, Expr body) {
 
 ExprOp expr_op(const ExprGraph *g, Expr e) { return (ExprOp)g->nodes.at[e].op; }
 uint32_t expr_nargs(const ExprGraph *g, Expr e) { return g->nodes.at[e].nargs; }
-Expr expr_arg(const ExprGraph *g, Expr e, uint32_t i) { return g->args.at[g->nodes.at[e].payload + i]; }
+Expr expr_arg(const ExprGraph *g, Expr e, uint32_t i) {
+  MUST_BE_BELOW(i, expr_nargs(g, e));
+  return g->args.at[g->nodes.at[e].payload + i];
+}
 Num expr_number(const ExprGraph *g, Expr e) { return g->numbers.at[g->nodes.at[e].payload]; }
 SymId expr_sym_id(const ExprGraph *g, Expr e) { return g->nodes.at[e].payload; }
 const Symbol *expr_sym_of(const ExprGraph *g, Expr e) { return &g->symbols.at[g->nodes.at[e].payload]; }
@@ -197,6 +200,7 @@ uint32_t expr_pairs(const ExprGraph *g, Expr e, ExprOp op) {
 }
 
 Expr expr_pair(const ExprGraph *g, Expr e, ExprOp op, uint32_t i, Num *number) {
+  MUST_BE_BELOW(i, expr_pairs(g, e, op));
   if (expr_op(g, e) == op) {
     *number = expr_number(g, expr_arg(g, e, 2 * i + 1));
     return expr_arg(g, e, 2 * i);

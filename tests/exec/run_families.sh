@@ -179,5 +179,19 @@ for f in chain string; do
   "$LAGC" emit models/$f.lag -o "$dir/$f.c" >"$dir/out" 2>&1 && grep -q "$([ $f = chain ] && echo th_3 || echo u_8)" "$dir/$f.c"
   result "the members of $f have names in C" $?
 done
+# The attraction of 66 pairs in loops, where two outputs show one pair each: that pair is computed once.
+cat >"$dir/pairs.lag" <<'LAG'
+model pairs
+const N = 12
+coord r[N]: vec2 [m]
+param k = 1 [J*m]
+lagrangian = sum(i in 1..N, dot(r[i]', r[i]')/2*1 [kg]) - sum(i in 2..N, sum(j in 1..i - 1, k/norm(r[i] - r[j])))
+observe U [J] = sum(i in 2..N, sum(j in 1..i - 1, k/norm(r[i] - r[j])))
+observe d [J] = k/norm(r[2] - r[1])
+observe e [J] = k/norm(r[5] - r[3])
+scene s { start r[i in 1..N] = (cos(6.28*i/N), sin(6.28*i/N)); span 1 [s]; output U, d, e }
+LAG
+"$LAGC" emit "$dir/pairs.lag" -o "$dir/pairs.c" >"$dir/out" 2>&1 && [ "$(grep -cE '^  out\[[12]\] = w[0-9]+; /\* [de] \*/$' "$dir/pairs.c")" = 2 ]
+result "what loops add and outputs show is computed once" $?
 echo "1..$n"
 [ "$failed" = 0 ]

@@ -36,6 +36,10 @@ done
 check "dissipation is a force that depends on velocities" says "implicit steps" models/spring.lag damped --method verlet
 check "and ends what symplectic means" says "symplectic for conservative models" models/spring.lag damped --method verlet
 check "without it the same model is separable" says "explicit steps" models/spring.lag free --method verlet
+# The impulse of a constraint is guessed from those of the steps before: 3.1 systems a step; 5.3 without.
+printf "model rod\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 - 9.81*y\nconstraint rod: x^2 + y^2 = 1\nscene s { start x = 1; span 10 [s] }\n" >"$TMP/rod.lag"
+systems() { "$LAGC" run "$@" | sed -n 's/.*corrections a system, \([0-9.]*\) systems a step.*/\1/p'; }
+near "systems a step on a rod" 0.7 3.1 "$(systems "$TMP/rod.lag" --method 'variational(step=0.01)')"
 for m in variational gauss 'variational(quadrature=trapezoid)' 'variational(quadrature=lobatto, order=8)' 'gauss(stages=4)'; do
   check "$m on the double pendulum" says "corrections a system, 1 systems a step" models/double_pendulum.lag --method "$m" --until 1
   check "$m with forces" says "energy balance" models/spring.lag damped --method "$m" --until 1

@@ -29,6 +29,9 @@
   "model m\ncoord x1, y1, x2, y2\nparam l1 = 1 > 0, l2 = 2 > 0, g = 9.81 > 0\n"              \
   "lagrangian = (x1'^2 + y1'^2)/2 + (x2'^2 + y2'^2)/2 - g*y1 - g*y2\n"                         \
   "constraint a: x1^2 + y1^2 = l1^2\nconstraint b: (x2 - x1)^2 + (y2 - y1)^2 = l2^2\n"
+#define COUPLED                                                                   \
+  "model m\ncoord x, y\nparam a = 2 > 0, b = 1 > 0, c = 0.3, k = 1 > 0\n"         \
+  "lagrangian = x'^2/(2*(a + b)) + c*x'*y' + y'^2/2 - k*x^2/2\n"
 #define HALF_LINE "model m\ncoord x\nlagrangian = x'^2/2 + log(x)\n"
 
 typedef struct {
@@ -108,6 +111,8 @@ static const Claim is_true[] = {
   {ROD, "l = sqrt(x^2 + y^2)", "l > 0 declared"},
   {ROD, "l^2*(x'^2 + y'^2) = (x*y' - y*x')^2", "velocities are along the circle"},
   {ROD, "m*l^2*(x'^2 + y'^2) = m*g*l^2*y + 2*l^4*lambda(rod)*(-1)", "the force that holds the bob: with c = x^2 + y^2 - l^2"},
+  {COUPLED, "x'' = -k*x/(1/(a + b) - c^2)", "Cramer's rule, where a row has a denominator"},
+  {COUPLED, "y'' = c*k*x/(1/(a + b) - c^2)", "the same"},
   {SCALED_ROD, "x^2 + y^2 = l^2", "the factor of a constraint says nothing"},
   {SCALED_ROD, "x*x'' + y*y'' = -(x'^2 + y'^2)", "the same"},
   {LINKS, "(x2 - x1)*(x2' - x1') + (y2 - y1)*(y2' - y1') = 0", "the rate of one of two constraints"},

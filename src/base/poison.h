@@ -1,0 +1,29 @@
+/* What must not be touched, where the address sanitizer looks: the gap behind a block of an arena, the room of a vector that is not taken. No gap counts for
+ * a limit. Elsewhere nothing. */
+#ifndef LAGC_POISON_H
+#define LAGC_POISON_H
+
+#include <stddef.h>
+#include <stdlib.h>
+
+#ifdef __has_feature
+#if __has_feature(address_sanitizer)
+#define __SANITIZE_ADDRESS__ 1
+#endif
+#endif
+
+#ifdef __SANITIZE_ADDRESS__
+void __asan_poison_memory_region(void const volatile *p, size_t n);
+void __asan_unpoison_memory_region(void const volatile *p, size_t n);
+#define POISON __asan_poison_memory_region
+#define UNPOISON __asan_unpoison_memory_region
+#define MUST_BE_BELOW(i, n) ((i) < (n) ? (void)0 : abort())
+enum { POISON_GAP = sizeof(max_align_t) };
+#else
+#define POISON(p, n) ((void)(p), (void)(n))
+#define UNPOISON(p, n) ((void)(p), (void)(n))
+#define MUST_BE_BELOW(i, n) ((void)(i), (void)(n))
+enum { POISON_GAP = 0 };
+#endif
+
+#endif
