@@ -132,6 +132,9 @@ EOF
 often() { "$LAGC" run "$TMP/long.lag" s >"$TMP/out" 2>&1 && grep -q '^event floor: 5537 times' "$TMP/out"; }
 check "a ball that bounces for long strikes once each time" often
 
+"$LAGC" run "$TMP/long.lag" s --until 2 >"$TMP/out"
+is "the report has no empty line where contacts are the only constraints" "1 0" "$(grep -c '^constraint residual' "$TMP/out") $(grep -c '^$' "$TMP/out")"
+
 # ---- the loop at the top of a header, compiled as it stands
 model corner <<'EOF'
 model corner "Pressed into a corner"

@@ -146,4 +146,9 @@ check "lagc methods is what --method help says" cmp "$TMP/table" "$TMP/help"
 check "with order, what is kept and what is needed" grep -q '^  gauss  *2-8  *2-8  *fixed  *both  *yes  *yes  *alone  *yes  *no$' "$TMP/table"
 "$LAGC" methods models/pendulum.lag 2>"$TMP/err"
 is "lagc methods takes no model" 2 $?
+# What rests where no force acts stays there, to the last bit.
+printf "model rest\ncoord x\nlagrangian = x'^2/2 - x^2/2\nscene s { start x = 0; span 1 [s] }\n" >"$TMP/rest.lag"
+for m in $(sed -n 's/^  \([a-z][a-z0-9_-]*\)  *[0-9][-0-9]*  *[0-9].*/\1/p' "$TMP/table"); do
+  is "$m leaves a body at rest" "1,0,0" "$("$LAGC" run "$TMP/rest.lag" --method "$m" -o - --quiet 2>"$TMP/err" | tail -n 1 | cut -d, -f1-3)"
+done
 tap_end

@@ -167,6 +167,17 @@ scene s { start u = 1 [m]; span 3 [h]; output u, angular_momentum_of_the_body ev
 END
 check "twenty lines" runs plot names.lag --until 9 -o many.svg
 is "are twenty different ones" 20 "$(grep '^<path d=.*h20' many.svg | sed 's/.*h20" //' | sort -u | head -n 20 | wc -l)"
+cat >panels.lag <<'END'
+model panels
+const N = 20
+coord u[N] [m]
+lagrangian = sum(i in 1..N, (1 [kg])*u[i]'^2/2 - (1 [N/m])*i/2*u[i]^2)
+scene s { start u = 1 [m]; span 9 [s]; output u, u' every 1 [s] }
+END
+check "twenty lines in each of two panels" runs plot panels.lag -o panels.svg
+# Each is 230 pixels high, and a line of its legend 18: eleven are named, and nine are counted.
+is "a legend names those that fit beside its panel, and counts the others" "22, 9 9" \
+  "$(grep -c '^<path d=.*h20' panels.svg), $(sed -n 's/.*>and \([0-9]*\) more<.*/\1/p' panels.svg | tr '\n' ' ' | sed 's/ $//')"
 # legend_fits FILE: no text of it ends right of the picture, at 7.5 pixels a character
 legend_fits() {
   awk '/^<svg/ { match($0, "width=\"[0-9]*"); w = substr($0, RSTART + 7, RLENGTH - 7) }
