@@ -82,4 +82,12 @@ check '40 sums inside each other' limit sums 1 'sums inside sums run through mor
 check '20,000 unknown names' limit unknown 1 'unknown name'
 echo "lagrangian = x'^2/2 - sum(i in 1..1000000, i)*x" | model longest
 check 'the longest range there may be' timeout 60 "$LAGC" check "$dir/longest.lag"
+table() { # ROWS: a model with an input of so many
+  awk -v n="$1" 'BEGIN { print "t [s],u"; for (i = 1; i <= n; i++) print i "," i % 2 }' >"$dir/table.csv"
+  { echo "lagrangian = x'^2/2 + u*x"; echo "input u = \"table.csv\""; } | model table
+}
+table 100000
+check 'the longest table' timeout 60 "$LAGC" check "$dir/table.lag"
+table 100001
+check 'a longer one' limit table 1 'a table has at most 100000 rows'
 tap_end
