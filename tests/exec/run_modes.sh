@@ -154,6 +154,11 @@ verdict stable
 close "in the middle of the trap" -0.05 "$(at_rest x)" 1e-6
 close "in the middle of the trap" 0.05 "$(at_rest y)" 1e-6
 close "together" "sqrt(1e-6/2e-26)" "$(of_mode 1 im)" 1e-6
+title="the rim of a circle, where equilibria go on along one coordinate"
+for scene in top side; do
+  find_modes "$dir/rim.lag" $scene
+  is "$title: free, $scene" true "$(of_mode 1 free)"
+done
 for k in 1e5 1e6 1e7 1e10; do # a rod, almost; the floor of its valley is a circle
   find_modes models/spring_pendulum.lag x=0.6 y=-0.7 k=$k
   verdict stable
