@@ -232,10 +232,10 @@ static void want_operands(Rebuild *r, uint32_t item) {
     for (uint32_t k = s->c.terms->n; k-- > 0;) want(r, s->c.terms->at[k].value);
     want(r, n + s->last[item] - 1);
   } else {
-    for (int k = 3; k-- > 0;) {
-      const Ins *i = &r->from->ins.at[item];
-      want(r, k == 0 ? i->a : k == 1 ? i->b : i->c);
-    }
+    const Ins *i = &r->from->ins.at[item];
+    want(r, i->c);
+    want(r, i->b);
+    want(r, i->a);
   }
 }
 

@@ -57,10 +57,6 @@ static void add_param(const Declared *d, Name name, Value v, Span span) {
   Param p = {.name = name, .stem = d->stem, .span = d->st->name_span, .sign = sign, .unit = d->unit};
   p.value = value_in(b, v, span, &p.unit);
   p.sym = declare_symbol(b, SYM_PARAM, b->m->params.n, name, sign_of(sign), d->unit.dim);
-  if (p.value && expr_is_num(b->g, p.value)) {
-    p.constant = expr_number(b->g, p.value);
-    p.has_constant = 1;
-  }
   check_sign(b, &p, span);
   vec_push(b->arena, &b->m->params, p);
 }

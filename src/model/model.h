@@ -37,8 +37,6 @@ typedef struct {
   AstSign sign;
   SymId sym;
   Expr value;  /* of pi and earlier parameters */
-  Num constant; /* the value, where it is a number at once (has_constant) */
-  int has_constant;
   Name stem;   /* of a member of a family: drag.w */
   int fixed;   /* ModelChoice.fix: a number in programs, with the value that the scene gives it, */
   Num number;  /* this one */
