@@ -191,6 +191,12 @@ grows 'N rods' rods 100 800
 grows 'N scenes' scenes 1000 8000
 grows 'N outputs' outputs 10000 100000
 
+# ---- growth of lagc noether: xi of N bodies in space has 9 N^2 + 3 N coefficients; bodies of one kind together have ten
+for n in 8 16; do echo "$n $(seconds 2 "$LAGC" noether tests/bench/models/bodies.lag -DN="$n")"; done >"$TMP/grown"
+row "lagc noether, N bodies in space, slope of log time against log N, 8 to 16" '' "$(awk 'END { print $2 " s" }' "$TMP/grown")" \
+  "$(awk '{ n[NR] = log($1); s[NR] = log($2) } END { printf "%.2f", (s[2] - s[1])/(n[2] - n[1]) }' "$TMP/grown")" '' ''
+row 'lagc noether, the five outer planets' '' '' "$(seconds 2 "$LAGC" noether models/outer_planets.lag) s" '' ''
+
 # ---- long models: a string, bodies
 long_model() { # WHAT SCENE MODEL PEER.c "PEERS" options...
   what=$1 scene=$2 model=$3 peer=$4 peers=$5
