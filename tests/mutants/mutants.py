@@ -8,6 +8,7 @@ or stands in equivalent.txt, is equivalent. Else the suites that reach its line 
 reach a line is measured once, with gcov, and kept in build/mutants/cov; remove it to measure anew.
 """
 import argparse
+import collections
 import hashlib
 import json
 import multiprocessing
@@ -160,7 +161,7 @@ class Map:
         return self.lines[key]
 
     def reach(self, path, first, last):
-        """Those that show most for their time come first: quick ones, and such as reach much of the file."""
+        """Those that reach some of these lines, each with what it costs to ask it: quick ones, and such as reach much of the file, cost little."""
         found = [s for s in self.seconds if any(n in self.of(s, path) for n in range(first, last + 1))]
         most = max((len(self.of(s, path)) for s in found), default=0)
 
@@ -168,7 +169,7 @@ class Map:
             link = 4 if s.startswith(("unit/", "fuzz/")) else 0
             return (self.seconds[s] + link) * (most / len(self.of(s, path))) ** 2
 
-        return sorted(found, key=cost)
+        return {s: cost(s) for s in found}
 
 
 def needs_sanitized(suite):
@@ -242,6 +243,7 @@ def equivalents():
 class Trial:
     def __init__(self, reach, builds, longest):
         self.map, self.builds, self.longest = reach, builds, longest
+        self.asked, self.red = collections.Counter(), collections.Counter()  # how often a suite was, and turned red
 
     def judge(self, text, c):
         """'invalid', 'equivalent', 'killed by SUITE' or 'survived'."""
@@ -266,7 +268,8 @@ class Trial:
     def run(self, text, c, write):
         first = text.count("\n", 0, c.begin) + 1
         last = text.count("\n", 0, c.end) + 1
-        there = self.map.reach(c.path, first, last)
+        costs = self.map.reach(c.path, first, last)
+        there = sorted(costs, key=lambda s: costs[s] * (self.asked[s] + 2) / (self.red[s] + 1))
         begin, ran, built = time.time(), 0, ""
         for suite in there:
             if self.longest and time.time() - begin > self.longest:
@@ -277,7 +280,9 @@ class Trial:
             if made is not None and made.returncode:
                 return "killed by the build" if b"error:" not in made.stdout else "invalid"
             limit = max(60, 10 * self.map.seconds[suite])
+            self.asked[suite] += 1
             if self.builds.is_red(suite, limit) and self.builds.was_green(suite, lambda: write(text), lambda: write(plant.apply(text, c)), limit):
+                self.red[suite] += 1
                 return "killed by " + suite
             ran += 1
         return "survived all of %d suites that reach it" % len(there)
