@@ -282,6 +282,39 @@ static void watching_does_not_disturb(void **state)
   lag_sim_free(c);
 }
 
+/* Events that come, one at a time, and one that never does: seen from nine values a step and those that find the instant; nothing is halved. */
+static int looks;
+static int counted_events(ARGS, double *g, UNUSED double *w)
+{
+  looks++;
+  g[0] = q[0] - 0.3;
+  g[1] = q[0] - 10;
+  return 0;
+}
+
+static void what_is_clear_is_not_looked_at_closely(void **state)
+{
+  static const lag_event ev[] = {{"level", 0}, {"far", 0}};
+  static const lag_method *const methods[] = {&lag_rk45, &lag_dop853};
+  lag_model model = osc_model;
+  lag_scene scene = osc;
+  (void)state;
+  model.nev = 2;
+  model.ev = ev;
+  model.events = counted_events;
+  scene.model = &model;
+  for (int i = 0; i < 2; i++) {
+    lag_stats st;
+    lag_sim *s = sim_with(&scene, methods[i], 1e-10, 0, NULL);
+    looks = 0;
+    assert_int_equal(lag_sim_advance(s, 10), LAG_OK);
+    assert_int_equal(lag_sim_event_count(s, 0), 3);
+    lag_sim_stats(s, &st);
+    assert_true(looks < 11 * st.steps + 3 * 20);
+    lag_sim_free(s);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -294,6 +327,7 @@ int main(void)
       cmocka_unit_test(a_ball_coming_to_rest_is_reported),
       cmocka_unit_test(two_crossings_within_a_step_are_found),
       cmocka_unit_test(watching_does_not_disturb),
+      cmocka_unit_test(what_is_clear_is_not_looked_at_closely),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
