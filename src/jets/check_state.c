@@ -89,8 +89,8 @@ static int project(Check *c, int velocities) {
   enum { ROUNDS = 40, HOPELESS = 6 }; /* what is as far off as at first after so many is sought nearer to the start */
   const IrConstraints *k = &c->u->constraints;
   uint32_t rows = velocities ? k->of.n : k->nkept;
-  Real *position = ARENA_ARRAY(c->arena, Real, k->of.n + 1), *rate = ARENA_ARRAY(c->arena, Real, k->of.n + 1);
-  Real *change = ARENA_ARRAY(c->arena, Real, c->n + 1), *force = ARENA_ARRAY(c->arena, Real, c->n + 1), *of = velocities ? c->v : c->q;
+  Real *position = ARENA_ARRAY(c->arena, Real, k->of.n), *rate = ARENA_ARRAY(c->arena, Real, k->of.n);
+  Real *change = ARENA_ARRAY(c->arena, Real, c->n), *force = ARENA_ARRAY(c->arena, Real, c->n), *of = velocities ? c->v : c->q;
   Real first = 0;
   for (int round = 0; round < ROUNDS; round++) {
     if (!check_run(c, k->residuals, (Real *const[]){position, rate})) return 0;

@@ -70,7 +70,7 @@ static void show(const SolutionSpace *s, const long double *x, long double facto
 
 static Table table_new(Arena *a, uint32_t rows, uint32_t blocks, uint32_t shown) {
   size_t size = (size_t)rows * blocks * shown;
-  return (Table){rows, blocks, shown, ARENA_ARRAY(a, long double, size + 1), ARENA_ARRAY(a, uint32_t, rows + 1)};
+  return (Table){rows, blocks, shown, ARENA_ARRAY(a, long double, size), ARENA_ARRAY(a, uint32_t, rows)};
 }
 
 int table_same_shape(const Table *a, const Table *b) {
