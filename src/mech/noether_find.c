@@ -328,8 +328,8 @@ static FoundSymmetries search_from(Eqns *e, uint32_t first) {
   return out;
 }
 
-/* Equations at random states may be badly conditioned: what one search sees and cannot write, one with other values of the parameters may. A few of many
- * are not for that reason beyond it. */
+/* A second search, with other values of the parameters, where the first saw much that it could not write: its equations, taken at random states, were
+ * badly conditioned then. A few such among many have other reasons. */
 static FoundSymmetries search_twice(Eqns *e) {
   FoundSymmetries out = search_from(e, 0);
   if (4 * out.unproved <= out.all.n) return out;
