@@ -78,6 +78,8 @@ typedef struct {
   int sure;          /* 0: ranks could not be told, or L has symmetries that are functions of time at will */
 } SolutionSpace;
 
-SolutionSpace solution_space(const Ansatz *a, Arena *scratch, const long double *parameters);
+/* The space at values of the parameters. Where `like`, the space at other values in general position, is not NULL, and no frame depends on them, only
+ * the coefficients that it has are looked at. */
+SolutionSpace solution_space(const Ansatz *a, Arena *scratch, const long double *parameters, const SolutionSpace *like);
 
 #endif

@@ -94,9 +94,18 @@ static int cut(RowSource *r, Arena *a, RowKind kind, DenseRows *space, int *sure
   return 1;
 }
 
-static DenseRows everything(const Ansatz *s, Arena *a) {
+/* Whether a space, of rows of length 1, has more than rounding in a column. */
+static int reaches(const DenseRows *space, uint32_t column) {
+  for (size_t k = 0; k < space->n; k++)
+    if (fabsl(space->at[k * space->width + column]) > REST) return 1;
+  return 0;
+}
+
+/* What is searched: all coefficients, or those that another space has. */
+static DenseRows everything(const Ansatz *s, Arena *a, const DenseRows *within) {
   DenseRows all = {.width = s->columns, .at = ARENA_ARRAY(a, long double, (size_t)s->columns * s->columns)};
-  for (uint32_t j = s->has_tau ? 0 : 1; j < s->columns; j++) all.at[(size_t)all.n++ * s->columns + j] = 1;
+  for (uint32_t j = s->has_tau ? 0 : 1; j < s->columns; j++)
+    if (!within || reaches(within, j)) all.at[(size_t)all.n++ * s->columns + j] = 1;
   return all;
 }
 
@@ -117,9 +126,9 @@ static long double *rates(RowSource *r, Arena *a, const DenseRows *space, int *s
   return A;
 }
 
-SolutionSpace solution_space(const Ansatz *s, Arena *a, const long double *parameters) {
+SolutionSpace solution_space(const Ansatz *s, Arena *a, const long double *parameters, const SolutionSpace *like) {
   RowSource *r = rows_new(s, a, parameters);
-  SolutionSpace found = {.space = everything(s, a), .sure = 1};
+  SolutionSpace found = {.space = everything(s, a, like && !rows_frame(r) ? &like->space : NULL), .sure = 1};
   DenseRows *space = &found.space;
   if (!cut(r, a, ROWS_EVEN, space, &found.sure) || !cut(r, a, ROWS_AT_REST, space, &found.sure)) return (SolutionSpace){0};
   for (uint32_t before = UINT32_MAX; before != space->n;) {

@@ -87,14 +87,14 @@ Table table_powers(Arena *a, const SolutionSpace *s, uint32_t shown) {
   uint32_t n = s->space.n, width = TIME_BLOCKS_MOST * shown;
   DenseRows x = polynomials(a, s);
   Table t = table_new(a, x.n, TIME_BLOCKS_MOST, shown);
-  long double *at = ARENA_ARRAY(a, long double, n + 1), *next = ARENA_ARRAY(a, long double, n + 1);
+  long double *at = ARENA_ARRAY(a, long double, n + 1), *next = ARENA_ARRAY(a, long double, n + 1), size = size_of(s);
   for (uint32_t r = 0; r < x.n; r++) {
     long double factor = 1;
     memcpy(at, x.at + (size_t)r * n, n * sizeof *at);
     for (uint32_t m = 0; m < TIME_BLOCKS_MOST; m++) {
       show(s, at, factor, shown, t.at + (size_t)r * width + (size_t)m * shown);
       apply(n, s->A, at, next);
-      clean(next, n, largest(at, n) * size_of(s));
+      clean(next, n, largest(at, n) * size);
       memcpy(at, next, n * sizeof *at);
       factor /= m + 1;
     }
