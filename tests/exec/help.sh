@@ -34,6 +34,7 @@ is "a unit with a prefix" 'unit:
 is "an option" 'option of run, plot, animate, lyapunov, effects:
   --tol X               tolerance, absolute and relative' "$(chapter tol)"
 is "an option with its dashes" "$(chapter tol)" "$(chapter --tol)"
+check "a value of an option" sh -c '"$0" help latex | grep -q "^  --format text|latex|c$" && "$0" help long | grep -q -- "--precision"' "$LAGC"
 is "a word of paper" "losses are a Rayleigh function, \`dissipation = c/2*x'^2\`, or a \`force\`" "$(chapter friction)"
 check "a word that is a function and a unit" sh -c '"$0" help min | grep -q "smaller" && "$0" help min | grep -q "60 s"' "$LAGC"
 check "embedding is what header does" sh -c '"$0" help embedding | cmp - "$1"' "$LAGC" /dev/stdin <<END
