@@ -43,6 +43,7 @@ typedef struct {
   uint32_t slots;   /* that are needed at once */
   int too_long;     /* nothing is appended any more */
   uint32_t node;    /* of the Ast, whose value is being appended: the caller sets it */
+  struct Partial *partial; /* of tape_partial */
 } Tape;
 
 /* limit: TAPE_LIMIT instructions. Past it tape_op returns 0. */
@@ -55,6 +56,9 @@ Ref tape_input(Tape *t, InputKind kind, uint32_t index);
 Ref tape_op(Tape *t, TapeOp op, Ref a, Ref b, Ref c); /* 0 where an operand is 0 */
 Ref tape_function(Tape *t, const char *name, Ref a);
 Ref tape_power(Tape *t, Ref a, Num exponent);
+
+/* The partial derivative of a value by an input or a rate of one, by = x, x', x''. 0: `by` is none of these, or the tape is too long. */
+Ref tape_partial(Tape *t, Ref of, Ref by);
 
 /* Whether it is an exact number, and which one. */
 int tape_is_number(const Tape *t, Ref a, Num *n);

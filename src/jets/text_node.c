@@ -292,6 +292,16 @@ static Meaning call_rotation(Text *t, Name name, const Meaning *x, const Meaning
   return y->at[0] ? turn(t, x, y) : NOTHING;
 }
 
+/* d(expr, name). By an argument of a function it has no value here: what was handed over may be a number, or occur beside it. */
+static Meaning partial(const Text *t, const Frame *f, const Meaning *of, AstId by) {
+  const AstExpr *x = ast_expr(t->b->ast, by);
+  while (x->kind == AST_PRIME || x->kind == AST_MEMBER) x = ast_expr(t->b->ast, x->a);
+  if (x->kind == AST_NAME && argument(t, f, x->name)) return NOTHING;
+  Meaning r = {.n = of->n};
+  for (uint32_t k = 0; k < meaning_parts(of); k++) r.at[k] = tape_partial(t->tape, of->at[k], operand(f, by)->at[0]);
+  return r;
+}
+
 static int is_one_of(Name name, const char *const *names) {
   while (*names && strcmp(name, *names) != 0) names++;
   return *names != NULL;
@@ -326,6 +336,7 @@ static Meaning call_node(Text *t, Frame *f, const AstExpr *x) {
   if (strcmp(x->name, "lambda") == 0) return multiplier(t, f, x->args);
   if (!x->args || (!operand(f, x->args)->at[0])) return NOTHING;
   const Meaning *a = operand(f, x->args), *b = second ? operand(f, second) : &NOTHING;
+  if (strcmp(x->name, "d") == 0) return second ? partial(t, f, a, second) : NOTHING;
   if (strcmp(x->name, "if") == 0) return third ? chosen(t, a, b, operand(f, third)) : NOTHING;
   if (is_one_of(x->name, vectors)) return call_vectors(t, x->name, a, b);
   if (is_one_of(x->name, rotations)) return call_rotation(t, x->name, a, b);

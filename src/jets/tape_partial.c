@@ -1,0 +1,144 @@
+/* Partial derivatives on a tape: instructions whose value is d(expr, name) of the text. The rules of calculus, node by node, once more beside
+ * those of sym/diff.c, so that one can be compared with the other. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "jets/tape.h"
+
+enum { LEVELS = 3 }; /* by x, by x', by x'' */
+
+/* Of an instruction that the value is made of; 0: the derivative is 0. */
+typedef struct {
+  Ref by[LEVELS];
+} Derivatives;
+
+struct Partial {
+  Tape *t;
+  InputKind kind; /* by this input, or a rate of it: */
+  uint32_t index;
+  VEC(Ref) made_of;    /* the instructions that the value is made of, in their order */
+  VEC(Derivatives) of; /* theirs */
+  VEC(uint32_t) place; /* of an instruction of the tape among them, counted from 1; between calls all are 0 */
+};
+typedef struct Partial Partial;
+
+/* --- arithmetic in which the Ref 0 is the number 0 --- */
+
+static Ref sum(Tape *t, Ref a, Ref b) { return a && b ? tape_op(t, TAPE_ADD, a, b, 0) : a ? a : b; }
+static Ref negative(Tape *t, Ref a) { return a ? tape_op(t, TAPE_NEG, a, 0, 0) : 0; }
+static Ref product(Tape *t, Ref a, Ref b) { return a && b ? tape_op(t, TAPE_MUL, a, b, 0) : 0; }
+static Ref quotient(Tape *t, Ref a, Ref b) { return a ? tape_op(t, TAPE_DIV, a, b, 0) : 0; }
+static Ref integer(Tape *t, int64_t n) { return tape_number(t, num_int(n)); }
+static Ref square(Tape *t, Ref a) { return tape_power(t, a, num_int(2)); }
+static Ref zero(Tape *t, Ref a) { return a ? a : integer(t, 0); }
+
+/* --- rules --- */
+
+/* da times the derivative of a function of the C library at a; self is its value. */
+static Ref through_function(Tape *t, const char *name, Ref self, Ref a, Ref da) {
+  if (strcmp(name, "sin") == 0) return product(t, tape_function(t, "cos", a), da);
+  if (strcmp(name, "cos") == 0) return negative(t, product(t, tape_function(t, "sin", a), da));
+  if (strcmp(name, "tan") == 0) return quotient(t, da, square(t, tape_function(t, "cos", a)));
+  if (strcmp(name, "sinh") == 0) return product(t, tape_function(t, "cosh", a), da);
+  if (strcmp(name, "cosh") == 0) return product(t, tape_function(t, "sinh", a), da);
+  if (strcmp(name, "tanh") == 0) return quotient(t, da, square(t, tape_function(t, "cosh", a)));
+  if (strcmp(name, "exp") == 0) return product(t, self, da);
+  if (strcmp(name, "log") == 0) return quotient(t, da, a);
+  if (strcmp(name, "fabs") == 0) return product(t, tape_op(t, TAPE_SIGN, a, 0, 0), da);
+  Ref one = integer(t, 1);
+  if (strcmp(name, "atan") == 0) return quotient(t, da, tape_op(t, TAPE_ADD, one, square(t, a), 0));
+  Ref rest = product(t, tape_op(t, TAPE_SUB, one, a, 0), tape_op(t, TAPE_ADD, one, a, 0)); /* 1 - a^2, of asin and acos */
+  Ref r = quotient(t, da, tape_power(t, rest, num_ratio(1, 2)));
+  return strcmp(name, "asin") == 0 ? r : negative(t, r);
+}
+
+/* a^b (b'*log(a) + b*a'/a), where a varying exponent needs log(a), and a negative a may have a constant one. */
+static Ref through_pow(Tape *t, Ref self, Ref a, Ref b, Ref da, Ref db) {
+  Ref less = tape_op(t, TAPE_SUB, b, integer(t, 1), 0);
+  Ref base = product(t, product(t, b, tape_op(t, TAPE_POW, a, less, 0)), da);
+  return db ? sum(t, base, product(t, product(t, self, tape_function(t, "log", a)), db)) : base;
+}
+
+static Ref chosen(Tape *t, Ref condition, Ref da, Ref db) {
+  return da || db ? tape_op(t, TAPE_SELECT, condition, zero(t, da), zero(t, db)) : 0;
+}
+
+static Ref known(const Partial *p, Ref r, uint32_t level) { return r ? p->of.at[p->place.at[r] - 1].by[level] : 0; }
+
+static Ref derivative(const Partial *p, Ref r, uint32_t level) {
+  Tape *t = p->t;
+  TapeIns i = t->ins.at[r]; /* a copy: the tape grows */
+  Ref da = known(p, i.a, level), db = known(p, i.b, level), dc = known(p, i.c, level);
+  if (i.op == TAPE_INPUT) return i.input == p->kind && i.index == p->index && level == 0 ? integer(t, 1) : 0;
+  /* d(a')/dx' = (da/dx')' + da/dx, where a' is the rate along the motion. */
+  if (i.op == TAPE_RATE) return sum(t, da ? tape_op(t, TAPE_RATE, da, 0, 0) : 0, level ? known(p, i.a, level - 1) : 0);
+  if (!da && !db && !dc) return 0;
+  switch (i.op) {
+    case TAPE_ADD: return sum(t, da, db);
+    case TAPE_SUB: return sum(t, da, negative(t, db));
+    case TAPE_NEG: return negative(t, da);
+    case TAPE_MUL: return sum(t, product(t, da, i.b), product(t, i.a, db));
+    case TAPE_DIV: return quotient(t, sum(t, da, negative(t, product(t, r, db))), i.b);
+    case TAPE_POWER: return product(t, product(t, tape_number(t, i.number), tape_power(t, i.a, num_sub(i.number, num_int(1)))), da);
+    case TAPE_POW: return through_pow(t, r, i.a, i.b, da, db);
+    case TAPE_FUNCTION: return through_function(t, i.text, r, i.a, da);
+    case TAPE_ATAN2: /* (x y' - y x')/(x^2 + y^2) of y = a, x = b */
+      return quotient(t, sum(t, product(t, i.b, da), negative(t, product(t, i.a, db))), sum(t, square(t, i.a), square(t, i.b)));
+    case TAPE_HYPOT: return quotient(t, sum(t, product(t, i.a, da), product(t, i.b, db)), r);
+    case TAPE_MIN: return chosen(t, tape_op(t, TAPE_LT, i.a, i.b, 0), da, db);
+    case TAPE_MAX: return chosen(t, tape_op(t, TAPE_LT, i.b, i.a, 0), da, db);
+    case TAPE_SELECT: return chosen(t, i.a, db, dc);
+    case TAPE_NUMBER: case TAPE_PI: case TAPE_INPUT: case TAPE_RATE: case TAPE_SIGN: case TAPE_LT: case TAPE_LE: case TAPE_EQ: case TAPE_NOT:
+    case TAPE_AND: case TAPE_OR: break; /* steps: their derivative is 0 where they have one */
+  }
+  return 0;
+}
+
+/* --- all --- */
+
+static void mark(Partial *p, Ref r) {
+  if (!r || p->place.at[r]) return;
+  p->place.at[r] = 1;
+  vec_push(p->t->arena, &p->made_of, r);
+}
+
+static int by_place(const void *a, const void *b) {
+  Ref x = *(const Ref *)a, y = *(const Ref *)b;
+  return (x > y) - (x < y);
+}
+
+/* What `of` is made of. */
+static void collect(Partial *p, Ref of) {
+  const Tape *t = p->t;
+  while (p->place.n <= of) vec_push(t->arena, &p->place, 0);
+  p->made_of.n = p->of.n = 0;
+  mark(p, of);
+  for (uint32_t k = 0; k < p->made_of.n; k++) {
+    const TapeIns *i = &t->ins.at[p->made_of.at[k]];
+    mark(p, i->a);
+    mark(p, i->b);
+    mark(p, i->c);
+  }
+  qsort(p->made_of.at, p->made_of.n, sizeof *p->made_of.at, by_place);
+}
+
+Ref tape_partial(Tape *t, Ref of, Ref by) {
+  uint32_t level = 0;
+  for (; by && t->ins.at[by].op == TAPE_RATE; by = t->ins.at[by].a) level++;
+  if (!of || !by || t->ins.at[by].op != TAPE_INPUT || level >= LEVELS) return 0;
+  if (!t->partial) t->partial = ARENA_NEW(t->arena, Partial);
+  Partial *p = t->partial;
+  p->t = t;
+  p->kind = t->ins.at[by].input;
+  p->index = t->ins.at[by].index;
+  collect(p, of);
+  for (uint32_t k = 0; k < p->made_of.n; k++) {
+    Derivatives d = {{0}};
+    p->place.at[p->made_of.at[k]] = k + 1;
+    vec_push(t->arena, &p->of, d);
+    for (uint32_t l = 0; l <= level; l++) p->of.at[k].by[l] = derivative(p, p->made_of.at[k], l);
+  }
+  Ref r = zero(t, known(p, of, level));
+  for (uint32_t k = 0; k < p->made_of.n; k++) p->place.at[p->made_of.at[k]] = 0;
+  return t->too_long ? 0 : r;
+}
