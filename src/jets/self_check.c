@@ -62,11 +62,26 @@ static Verdict check_state(Check *c, int dynamics) {
   return v == AGREES ? check_motion(c) : v;
 }
 
+/* Outputs of the text that the comparison does not know: of charges and closed forms. */
+static const char *outputs_left_out(const Check *c) {
+  enum { MOST = 8 };
+  const Eqns *e = c->e;
+  StrBuf s = strbuf(c->m->arena);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < e->noutputs; i++) {
+    if (c->outputs->outputs[i] || !e->outputs[i].text) continue;
+    if (n++ < MOST) sb_printf(&s, "%s%s", n > 1 ? ", " : "", e->outputs[i].name);
+  }
+  if (n > MOST) sb_printf(&s, " and %u more", n - MOST);
+  return n ? sb_text(&s) : NULL;
+}
+
 static int check_states(Check *c, const void *data) {
   (void)data;
   check_prepare(c);
   uint32_t length = c->dynamics->tape->ins.n, wanted = length > LONG_TAPE ? 1 : length > SHORT_TAPE || c->m->constraints.n ? STATES_FEW : STATES_WANTED;
   c->told->not_known = c->dynamics->why;
+  c->told->outputs = outputs_left_out(c);
   for (int attempt = 0; attempt < ATTEMPTS && c->told->states < wanted; attempt++) {
     if (!check_choose_state(c, attempt)) continue;
     int solved = check_solve_motion(c) && is_finite(c->a, c->n) && is_finite(c->zd, c->m->states.n);
@@ -103,4 +118,5 @@ void self_check_print(const Eqns *e, const SelfCheck *told, StrBuf *out) {
   if (told->directions) sb_printf(out, "; equations of motion along %u displacement%s at each", told->directions, told->directions == 1 ? "" : "s");
   sb_puts(out, told->states ? "\n" : ": nothing was decided\n");
   if (told->not_known) sb_printf(out, "  not compared: the equations of motion, whose text has `%s`, which the comparison does not evaluate\n", told->not_known);
+  if (told->outputs) sb_printf(out, "  not compared: the outputs %s\n", told->outputs);
 }

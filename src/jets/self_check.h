@@ -20,6 +20,7 @@ typedef struct {
   uint32_t directions;  /* virtual displacements at each */
   uint32_t values;      /* compared in all */
   const char *not_known; /* what the text has that is not evaluated here; NULL: nothing */
+  const char *outputs;   /* those that are not compared, with commas; NULL: all are */
 } SelfCheck;
 
 /* Compares the programs of u, hoisted or not, and those of one of its scenes, whose equations are e, with the text. 1: they agree; 0: an internal error in e->m->diags tells the first that

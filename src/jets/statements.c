@@ -211,6 +211,23 @@ static Ref output_value(Walk *w, const Output *o) {
   return o->component < meaning_parts(&v) ? v.at[o->component] : 0;
 }
 
+static void read_energies(Walk *w, const AstStmt *st, Name effect) {
+  Text *t = w->text;
+  int plus = st->kind == STMT_LAGRANGIAN || st->kind == STMT_KINETIC;
+  if (!plus && st->kind != STMT_POTENTIAL) return;
+  Ref term = value(w, st->rhs, effect).at[0];
+  t->lagrangian = added(w, t->lagrangian, plus ? TAPE_ADD : TAPE_SUB, term);
+  if (st->kind == STMT_KINETIC) t->kinetic = added(w, t->kinetic, TAPE_ADD, term);
+  if (st->kind == STMT_POTENTIAL) t->potential = added(w, t->potential, TAPE_ADD, term);
+}
+
+/* What outputs call `lagrangian`, `T`, `V`, `energy`, `p_x`; they have no value where a part of L has none. */
+static void give_energies(Walk *w) {
+  w->why = NULL;
+  walk(w, read_energies);
+  if (w->why) w->text->lagrangian = w->text->kinetic = w->text->potential = 0;
+}
+
 TextOutputs *text_outputs(const Model *m, const Output *outputs, uint32_t noutputs, Arena *a) {
   TextOutputs *o = ARENA_NEW(a, TextOutputs);
   o->events = ARENA_ARRAY(a, Ref, m->events.n + 1);
@@ -219,6 +236,9 @@ TextOutputs *text_outputs(const Model *m, const Output *outputs, uint32_t noutpu
   Walk w = {.text = text_new(m, a), .outputs = o};
   walk(&w, read_output_statement);
   for (uint32_t i = 0; i < noutputs; i++) o->outputs[i] = output_value(&w, &outputs[i]);
+  if (w.text->asks) give_energies(&w);
+  for (uint32_t i = 0; w.text->asks && i < noutputs; i++)
+    if (!o->outputs[i]) o->outputs[i] = output_value(&w, &outputs[i]);
   for (uint32_t i = 0; i < m->inputs.n; i++) o->signals[i] = signal_value(&w, &m->inputs.at[i]);
   o->tape = w.text->tape;
   VEC(Ref) roots = {0};

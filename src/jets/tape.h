@@ -60,6 +60,9 @@ Ref tape_power(Tape *t, Ref a, Num exponent);
 /* The partial derivative of a value by an input or a rate of one, by = x, x', x''. 0: `by` is none of these, or the tape is too long. */
 Ref tape_partial(Tape *t, Ref of, Ref by);
 
+/* p q' - L of a Lagrangian whose coordinates are the inputs of one kind. */
+Ref tape_energy(Tape *t, Ref lagrangian, InputKind kind);
+
 /* Whether it is an exact number, and which one. */
 int tape_is_number(const Tape *t, Ref a, Num *n);
 

@@ -6,6 +6,7 @@
 #include "jets/tape.h"
 
 enum { LEVELS = 3 }; /* by x, by x', by x'' */
+static const uint32_t ALL = UINT32_MAX;
 
 /* Of an instruction that the value is made of; 0: the derivative is 0. */
 typedef struct {
@@ -15,7 +16,7 @@ typedef struct {
 struct Partial {
   Tape *t;
   InputKind kind; /* by this input, or a rate of it: */
-  uint32_t index;
+  uint32_t index; /* ALL: by all inputs of the kind, along their rates */
   VEC(Ref) made_of;    /* the instructions that the value is made of, in their order */
   VEC(Derivatives) of; /* theirs */
   VEC(uint32_t) place; /* of an instruction of the tape among them, counted from 1; between calls all are 0 */
@@ -69,7 +70,8 @@ static Ref derivative(const Partial *p, Ref r, uint32_t level) {
   Tape *t = p->t;
   TapeIns i = t->ins.at[r]; /* a copy: the tape grows */
   Ref da = known(p, i.a, level), db = known(p, i.b, level), dc = known(p, i.c, level);
-  if (i.op == TAPE_INPUT) return i.input == p->kind && i.index == p->index && level == 0 ? integer(t, 1) : 0;
+  if (i.op == TAPE_INPUT && (level || i.input != p->kind)) return 0;
+  if (i.op == TAPE_INPUT) return p->index == ALL ? tape_op(t, TAPE_RATE, r, 0, 0) : i.index == p->index ? integer(t, 1) : 0;
   /* d(a')/dx' = (da/dx')' + da/dx, where a' is the rate along the motion. */
   if (i.op == TAPE_RATE) return sum(t, da ? tape_op(t, TAPE_RATE, da, 0, 0) : 0, level ? known(p, i.a, level - 1) : 0);
   if (!da && !db && !dc) return 0;
@@ -122,15 +124,12 @@ static void collect(Partial *p, Ref of) {
   qsort(p->made_of.at, p->made_of.n, sizeof *p->made_of.at, by_place);
 }
 
-Ref tape_partial(Tape *t, Ref of, Ref by) {
-  uint32_t level = 0;
-  for (; by && t->ins.at[by].op == TAPE_RATE; by = t->ins.at[by].a) level++;
-  if (!of || !by || t->ins.at[by].op != TAPE_INPUT || level >= LEVELS) return 0;
+static Ref by_level(Tape *t, Ref of, InputKind kind, uint32_t index, uint32_t level) {
   if (!t->partial) t->partial = ARENA_NEW(t->arena, Partial);
   Partial *p = t->partial;
   p->t = t;
-  p->kind = t->ins.at[by].input;
-  p->index = t->ins.at[by].index;
+  p->kind = kind;
+  p->index = index;
   collect(p, of);
   for (uint32_t k = 0; k < p->made_of.n; k++) {
     Derivatives d = {{0}};
@@ -141,4 +140,18 @@ Ref tape_partial(Tape *t, Ref of, Ref by) {
   Ref r = zero(t, known(p, of, level));
   for (uint32_t k = 0; k < p->made_of.n; k++) p->place.at[p->made_of.at[k]] = 0;
   return t->too_long ? 0 : r;
+}
+
+Ref tape_partial(Tape *t, Ref of, Ref by) {
+  uint32_t level = 0;
+  for (; by && t->ins.at[by].op == TAPE_RATE; by = t->ins.at[by].a) level++;
+  if (!of || !by || t->ins.at[by].op != TAPE_INPUT || level >= LEVELS) return 0;
+  return by_level(t, of, t->ins.at[by].input, t->ins.at[by].index, level);
+}
+
+/* Along q' at level 0, f(q, t) has the derivative sum of q' df/dq; so has f', by q' along q'. */
+Ref tape_energy(Tape *t, Ref lagrangian, InputKind kind) {
+  if (!lagrangian) return 0;
+  Ref pv = by_level(t, lagrangian, kind, ALL, 1);
+  return pv ? tape_op(t, TAPE_SUB, pv, lagrangian, 0) : 0;
 }

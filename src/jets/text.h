@@ -25,6 +25,8 @@ struct Text {
   Tape *tape;
   Meaning *lets, *observes, *constants; /* by their places in the builder; at[0] = 0: not evaluated yet */
   const char *why;                      /* the first thing that has no meaning here, since the caller set it to NULL */
+  Ref lagrangian, kinetic, potential;   /* of `lagrangian`, `T`, `V`, `energy`, `p_x` in outputs: the caller gives them, where `asks` */
+  int asks;                             /* one of these names was met before they were given */
   VEC(struct Frame *) idle;             /* evaluations to use again */
 };
 

@@ -152,6 +152,11 @@ static Meaning tuple(const Text *t, const Frame *f, const AstExpr *x) {
 
 /* --- names --- */
 
+static int is_one_of(Name name, const char *const *names) {
+  while (*names && strcmp(name, *names) != 0) names++;
+  return *names != NULL;
+}
+
 static Meaning await(Text *t, Frame *f, EntKind kind, uint32_t index, const Meaning *known) {
   if (f->returned) return f->result.at[0] ? f->result : unknown(t, "a definition");
   if (known && known->at[0]) return *known;
@@ -188,8 +193,36 @@ static const IndexVar *find_index(const Frame *f, Name name) {
   return NULL;
 }
 
+/* The energies, as outputs name them: 0 until they are given. No Lagrangian contains the rate of a state that is no coordinate. */
+static Ref energy_called(Text *t, Name name) {
+  if (strcmp(name, "lagrangian") == 0) return t->lagrangian;
+  if (strcmp(name, "T") == 0) return t->kinetic;
+  if (strcmp(name, "V") == 0) return t->potential;
+  return tape_energy(t->tape, t->lagrangian, t->m->first_order ? INPUT_STATE : INPUT_COORD);
+}
+
+/* Of what `p_x` is the momentum; NULL: it is none. */
+static const Entity *momentum_of(const Text *t, const Frame *f, Name name) {
+  int ambiguous;
+  if (strncmp(name, "p_", 2) != 0 || scope_find(&t->b->scope, name, f->effect, &ambiguous)) return NULL;
+  const Entity *e = scope_find(&t->b->scope, intern(t->b->ast->names, name + 2), f->effect, &ambiguous);
+  return e && (e->kind == ENT_COORD || e->kind == ENT_STATE) ? e : NULL;
+}
+
+/* dL/dq' of it. */
+static Meaning momentum(Text *t, const Entity *e, const int64_t *at) {
+  Meaning r = {.n = e->parts};
+  t->asks |= !t->lagrangian;
+  for (uint32_t k = 0; t->lagrangian && k < meaning_parts(&r); k++) {
+    Ref q = tape_input(t->tape, e->kind == ENT_COORD ? INPUT_COORD : INPUT_STATE, e->index + member_offset(e, at) + k);
+    r.at[k] = tape_partial(t->tape, t->lagrangian, tape_op(t->tape, TAPE_RATE, q, 0, 0));
+  }
+  return r;
+}
+
 /* A name that stands for nothing by itself (a family, an effect, a constraint) has no value, and that is no mistake here. */
 static Meaning name_node(Text *t, Frame *f, Name name) {
+  static const char *const energies[] = {"lagrangian", "T", "V", "energy", NULL};
   const IndexVar *index = find_index(f, name);
   if (index) return scalar(tape_number(t->tape, num_int(index->at)), 1);
   const Meaning *arg = argument(t, f, name);
@@ -197,8 +230,12 @@ static Meaning name_node(Text *t, Frame *f, Name name) {
   if (strcmp(name, "pi") == 0) return scalar(tape_pi(t->tape), 1);
   if (strcmp(name, "t") == 0) return scalar(tape_input(t->tape, INPUT_TIME, 0), 0);
   int ambiguous;
-  const Entity *e = scope_find(&t->b->scope, name, f->effect, &ambiguous);
-  return e && !e->ndims ? entity(t, f, e, NULL) : NOTHING;
+  const Entity *e = scope_find(&t->b->scope, name, f->effect, &ambiguous), *q = momentum_of(t, f, name);
+  if (e) return e->ndims ? NOTHING : entity(t, f, e, NULL);
+  if (q) return q->ndims ? NOTHING : momentum(t, q, NULL);
+  if (!is_one_of(name, energies)) return NOTHING;
+  t->asks |= !t->lagrangian;
+  return t->lagrangian ? scalar(energy_called(t, name), 0) : NOTHING;
 }
 
 static int whole(const Text *t, const Meaning *v, int64_t *out) {
@@ -218,6 +255,8 @@ static Meaning index_node(Text *t, Frame *f, const AstExpr *x) {
   else if (of->kind == AST_MEMBER && ast_expr(t->b->ast, of->a)->kind == AST_NAME) e = scope_own(&t->b->scope, of->name, ast_expr(t->b->ast, of->a)->name);
   for (AstId i = x->args; i && n < 2; i = ast_expr(t->b->ast, i)->next, n++)
     if (!whole(t, operand(f, i), &at[n])) return NOTHING;
+  const Entity *q = !e && of->kind == AST_NAME ? momentum_of(t, f, of->name) : NULL;
+  if (q && q->ndims == n) return momentum(t, q, at);
   if (!e || e->ndims != n) return NOTHING;
   const Entity *member = e->kind == ENT_LET || e->kind == ENT_OBSERVE ? find_member(t->b, e, at) : e;
   return member ? entity(t, f, member, at) : NOTHING;
@@ -300,11 +339,6 @@ static Meaning partial(const Text *t, const Frame *f, const Meaning *of, AstId b
   Meaning r = {.n = of->n};
   for (uint32_t k = 0; k < meaning_parts(of); k++) r.at[k] = tape_partial(t->tape, of->at[k], operand(f, by)->at[0]);
   return r;
-}
-
-static int is_one_of(Name name, const char *const *names) {
-  while (*names && strcmp(name, *names) != 0) names++;
-  return *names != NULL;
 }
 
 static Meaning call_binary(Text *t, Name name, const Meaning *x, const Meaning *y) {
