@@ -5,6 +5,7 @@
 set -eu
 : "${LAGC:=build/lagc}" "${CC:=cc}" "${INC:=runtime/include}" "${TMP:=$(mktemp -d)}"
 here=tests/bench
+. $here/lib_rows.sh
 PYTHON=
 for p in python3 /usr/bin/python3; do "$p" -c 'import sympy' 2>/dev/null && PYTHON=$p && break; done
 command -v valgrind >/dev/null && VALGRIND=yes || VALGRIND=
@@ -12,21 +13,8 @@ command -v valgrind >/dev/null && VALGRIND=yes || VALGRIND=
 flags='-O2 -std=gnu11 -ffp-contract=fast'
 echo 'int main(void) { return 0; }' >"$TMP/probe.c"
 if "$CC" -march=x86-64-v3 "$TMP/probe.c" -o "$TMP/probe" 2>/dev/null && grep -q avx2 /proc/cpuinfo; then flags="$flags -march=x86-64-v3"; fi
-"$CC" -O2 $here/rusage.c -o "$TMP/rusage"
 
 # ---- measuring
-
-# seconds TIMES COMMAND...: the least CPU seconds; kilobytes TIMES COMMAND...: the most memory.
-least() { # COLUMN TIMES COMMAND...
-  column=$1 times=$2
-  shift 2
-  while [ "$times" -gt 0 ]; do
-    "$TMP/rusage" "$@" 2>&1 >/dev/null | awk -v c="$column" '/^rusage / { print $c }'
-    times=$((times - 1))
-  done | sort -n | head -n 1
-}
-seconds() { least 2 "$@"; }
-kilobytes() { least 3 "$@"; }
 
 # driver SCENE MODEL.c PEER.c... -- "names of peers" options...: builds $TMP/driver and checks that all agree
 driver() {
@@ -61,14 +49,11 @@ sympy() { [ -n "$PYTHON" ] && "$PYTHON" $here/sympy_peer.py "$@" >"$TMP/sympy"; 
 
 # ---- the table
 
-at_most() { awk -v a="$1" -v b="$2" 'BEGIN { print a == "-" ? "not measured" : a <= b ? "met" : "not met" }'; }
 over() { awk -v a="$1" -v b="$2" 'BEGIN { if (a + 0 <= 0 || b + 0 <= 0) print "-"; else printf "%.2f", a/b }'; }
-row() { printf '| %s | %s | %s | %s | %s | %s |\n' "$@"; }
 
 echo "Compiled with \`$flags\`."
 echo
-row 'what' 'to reach' 'peers' 'ours' 'ours/peer' ''
-row --- --- --- --- --- ---
+table
 
 # Instructions are counted with the C library's sine; times are those of what lagc emits when nobody asks for another.
 math=
@@ -171,31 +156,6 @@ for pair in 20:0.5 1000:2; do
   [ "$n" != 20 ] || peer=${sympy_compile:+sympy $sympy_compile s}
   row "C compiler, chain of $n" "<= $limit s" "$peer" "$s s" '' "$(at_most "$s" "$limit")"
 done
-
-# ---- growth of lagc check
-# grows WHAT KIND FEW MANY: slopes of the logarithms of CPU time and memory against that of N. Memory is less what lagc needs for N = 1.
-grows() {
-  sh $here/growth_models.sh "$2" 1 >"$TMP/grows.lag"
-  floor=$(kilobytes 1 "$LAGC" check "$TMP/grows.lag")
-  for n in "$3" "$4"; do
-    sh $here/growth_models.sh "$2" "$n" >"$TMP/grows.lag"
-    echo "$n $(seconds 2 "$LAGC" check "$TMP/grows.lag") $(kilobytes 1 "$LAGC" check "$TMP/grows.lag")"
-  done >"$TMP/grown"
-  slopes=$(awk -v floor="$floor" '{ n[NR] = log($1); s[NR] = log($2 + 1e-3); k[NR] = log($3 - floor + 1) }
-    END { d = n[2] - n[1]; printf "%.2f %.2f", (s[2] - s[1])/d, (k[2] - k[1])/d }' "$TMP/grown")
-  most=$(awk 'END { printf "%s s, %d MB", $2, $3/1024 }' "$TMP/grown")
-  row "lagc check, $1, slope of log time against log N, $3 to $4" '<= 1.15' "$most" "${slopes% *}" '' "$(at_most "${slopes% *}" 1.15)"
-  row "lagc check, $1, slope of log memory" '<= 1.15' '' "${slopes#* }" '' "$(at_most "${slopes#* }" 1.15)"
-}
-grows 'N rods' rods 100 800
-grows 'N scenes' scenes 1000 8000
-grows 'N outputs' outputs 10000 100000
-
-# ---- growth of lagc noether: xi of N bodies in space has 9 N^2 + 3 N coefficients; bodies of one kind together have ten
-for n in 8 16; do echo "$n $(seconds 2 "$LAGC" noether tests/bench/models/bodies.lag -DN="$n")"; done >"$TMP/grown"
-row "lagc noether, N bodies in space, slope of log time against log N, 8 to 16" '' "$(awk 'END { print $2 " s" }' "$TMP/grown")" \
-  "$(awk '{ n[NR] = log($1); s[NR] = log($2) } END { printf "%.2f", (s[2] - s[1])/(n[2] - n[1]) }' "$TMP/grown")" '' ''
-row 'lagc noether, the five outer planets' '' '' "$(seconds 2 "$LAGC" noether models/outer_planets.lag) s" '' ''
 
 # ---- long models: a string, bodies
 long_model() { # WHAT SCENE MODEL PEER.c "PEERS" options...

@@ -39,7 +39,7 @@ section() { # NAME: as it was
         echo
         echo "On $(machine); $(versions | paste -s -d ';' | sed 's/;/; /g')."
         echo
-        if [ "$name" = code ]; then cat "$logs/bench/$name.log"; else sed 's/^/    /' "$logs/bench/$name.log"; fi ;;
+        if grep -q '^| --- ' "$logs/bench/$name.log"; then cat "$logs/bench/$name.log"; else sed 's/^/    /' "$logs/bench/$name.log"; fi ;;
       *) section "$name" ;;
     esac
   done

@@ -34,6 +34,10 @@ check "a Hamiltonian without a Lagrangian" refuses 1 "no Hamiltonian: the model 
 check "a Hamiltonian as C" refuses 2 "text or latex" derive models/kepler.lag --hamiltonian --format c
 check "a Hamiltonian's operations" refuses 2 "text or latex" derive models/kepler.lag --hamiltonian --ops
 
+# ---- names ----
+printf 'model m\ncoord x, y\nlagrangian = x'"'"'^2/2 + y'"'"'^2/(2*y^2)\n' >"$TMP/stretched.lag"
+check "what stretches the last coordinate turns no parts of the motion" says "^Q3: linear map of the coordinates" noether "$TMP/stretched.lag"
+
 # ---- where it goes ----
 "$LAGC" noether models/kepler.lag >"$TMP/kepler" 2>&1
 check "to a file" sh -c '"$0" noether models/kepler.lag -o "$1" && cmp "$1" "$2"' "$LAGC" "$TMP/file" "$TMP/kepler"

@@ -1,0 +1,77 @@
+#!/bin/sh
+# How the time and the memory of lagc grow with a model: slopes of their logarithms against that of N, between two sizes. 1 is linear.
+set -eu
+: "${LAGC:=build/lagc}" "${CC:=cc}" "${TMP:=$(mktemp -d)}"
+. tests/bench/lib_rows.sh
+
+# grown_model KIND N: a model that grows with N.
+grown_model() {
+  kind=$1 n=$2
+  case $kind in
+  rods) cat <<MODEL ;;
+model rods "N masses on N rods, in Cartesian coordinates"
+const N = $n
+coord x[N] [m], y[N] [m]
+param m = 1 [kg] > 0, l = 1 [m] > 0, g = 9.81 [m/s^2] > 0
+kinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2))
+potential = sum(i in 1..N, m*g*y[i])
+let u[0] = 0 [m], v[0] = 0 [m]
+let u[i in 1..N] = x[i], v[i in 1..N] = y[i]
+for i in 1..N { constraint rod[i]: (u[i] - u[i-1])^2 + (v[i] - v[i-1])^2 = l^2 }
+scene swing {
+  start x[i in 1..N] = i*l, y = 0 [m]
+  span 1 [s]
+}
+MODEL
+  scenes)
+    cat <<MODEL
+model scenes "an oscillator, started in N ways"
+coord x [m]
+param m = 1 [kg] > 0, k = 1 [N/m] > 0
+kinetic = m*x'^2/2
+potential = k*x^2/2
+MODEL
+    awk -v n="$n" 'BEGIN { for (i = 1; i <= n; i++) printf "scene s%d { start x = %d [m]\n span 1 [s] }\n", i, i }' ;;
+  outputs) cat <<MODEL ;;
+model outputs "an oscillator with N outputs"
+const N = $n
+coord x [m]
+param m = 1 [kg] > 0, k = 1 [N/m] > 0
+kinetic = m*x'^2/2
+potential = k*x^2/2
+for i in 1..N { observe z[i] = i*x }
+scene s {
+  start x = 1 [m]
+  span 1 [s]
+  output z every 0.1 [s]
+}
+MODEL
+  esac
+}
+
+table
+# ---- lagc check
+# grows WHAT KIND FEW MANY: slopes of the logarithms of CPU time and memory against that of N. Memory is less what lagc needs for N = 1.
+grows() {
+  grown_model "$2" 1 >"$TMP/grows.lag"
+  floor=$(kilobytes 1 "$LAGC" check "$TMP/grows.lag")
+  for n in "$3" "$4"; do
+    grown_model "$2" "$n" >"$TMP/grows.lag"
+    echo "$n $(seconds 2 "$LAGC" check "$TMP/grows.lag") $(kilobytes 1 "$LAGC" check "$TMP/grows.lag")"
+  done >"$TMP/grown"
+  slopes=$(awk -v floor="$floor" '{ n[NR] = log($1); s[NR] = log($2 + 1e-3); k[NR] = log($3 - floor + 1) }
+    END { d = n[2] - n[1]; printf "%.2f %.2f", (s[2] - s[1])/d, (k[2] - k[1])/d }' "$TMP/grown")
+  most=$(awk 'END { printf "%s s, %d MB", $2, $3/1024 }' "$TMP/grown")
+  row "lagc check, $1, slope of log time against log N, $3 to $4" '<= 1.15' "$most" "${slopes% *}" '' "$(at_most "${slopes% *}" 1.15)"
+  row "lagc check, $1, slope of log memory" '<= 1.15' '' "${slopes#* }" '' "$(at_most "${slopes#* }" 1.15)"
+}
+grows 'N rods' rods 100 800
+grows 'N scenes' scenes 1000 8000
+grows 'N outputs' outputs 10000 100000
+
+# ---- lagc noether: xi of N bodies in space has 9 N^2 + 3 N coefficients; bodies of one kind together have ten
+for n in 8 16; do echo "$n $(seconds 2 "$LAGC" noether tests/bench/models/bodies.lag -DN="$n")"; done >"$TMP/grown"
+row "lagc noether, N bodies in space, slope of log time against log N, 8 to 16" '' "$(awk 'END { print $2 " s" }' "$TMP/grown")" \
+  "$(awk '{ n[NR] = log($1); s[NR] = log($2) } END { printf "%.2f", (s[2] - s[1])/(n[2] - n[1]) }' "$TMP/grown")" '' ''
+row 'lagc noether, the five outer planets' '' '' "$(seconds 2 "$LAGC" noether models/outer_planets.lag) s" '' ''
+row 'lagc noether, 17 coordinates that move freely, 153 symmetries' '' '' "$(seconds 1 "$LAGC" noether tests/fuzz/corpus/compile/seed_families.lag) s" '' ''
