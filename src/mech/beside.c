@@ -25,11 +25,12 @@ uint32_t rank_beside(const Eqns *e, StateSolver *s, const long double *symbols, 
   Arena *arena = e->m->arena;
   uint32_t n = e->n, all = expr_symbol_count(e->g) + 1;
   long double *held = ARENA_ARRAY(arena, long double, n + 1), *held_beside = ARENA_ARRAY(arena, long double, n + 1);
-  long double *there = ARENA_ARRAY(arena, long double, all);
+  long double *there = ARENA_ARRAY(arena, long double, all), *step = ARENA_ARRAY(arena, long double, n);
   states_at(s, symbols);
   uint32_t here = rank_of(e, s, held), rank = here;
   for (uint32_t i = 0; i < all; i++) there[i] = symbols[i];
-  for (uint32_t i = 0; i < n; i++) there[e->m->coords.at[i].q] += 0.01L * start_reach(e, symbols, i) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
+  start_steps_beside(e, there, 0.01L, step);
+  for (uint32_t i = 0; i < n; i++) there[e->m->coords.at[i].q] += step[i];
   if (n > 1 && states_obey(s, there)) {
     states_at(s, there);
     rank = rank_of(e, s, held_beside);

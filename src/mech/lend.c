@@ -32,11 +32,12 @@ static Num size_of(const Eqns *e, uint32_t k) {
   const Entries *A = &e->constraints.A;
   const Model *m = e->m;
   uint32_t all = expr_symbol_count(e->g) + 1, n = 0;
-  long double *there = ARENA_ARRAY(m->arena, long double, all), *asked = start_asked(e), sum = 0;
+  long double *there = ARENA_ARRAY(m->arena, long double, all), *asked = start_asked(e), *step = ARENA_ARRAY(m->arena, long double, e->n), sum = 0;
   Expr *row = ARENA_ARRAY(m->arena, Expr, A->n + 1);
   long double *value = ARENA_ARRAY(m->arena, long double, A->n + 1);
   for (uint32_t i = 0; i < all; i++) there[i] = asked[i];
-  for (uint32_t i = 0; i < e->n; i++) there[m->coords.at[i].q] += 0.1L * start_reach(e, asked, i) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
+  start_steps_beside(e, asked, 0.1L, step);
+  for (uint32_t i = 0; i < e->n; i++) there[m->coords.at[i].q] += step[i];
   for (uint32_t i = 0; i < A->n; i++)
     if (A->at[i].row == k) row[n++] = A->at[i].e;
   expr_eval(e->g, row, n, there, value);

@@ -44,30 +44,43 @@ static void copy(const Finder *f, long double *to, const long double *from) { me
 
 /* --- what is large --- */
 
-/* The largest of what has the unit of coordinate i. */
-static long double like(const Finder *f, const long double *symbols, int velocities, uint32_t i) {
+static int is_alike(const Model *m, uint32_t i, uint32_t j) { return strcmp(m->coords.at[i].unit.text, m->coords.at[j].unit.text) == 0; }
+
+/* most[i] := the largest of what has the unit of coordinate i. Units are few: most find theirs at the first member of a family. */
+static void largest_alike(const Finder *f, const long double *symbols, int velocities, long double *most) {
   const Model *m = f->e->m;
-  long double most = 0;
-  for (uint32_t j = 0; j < f->n; j++)
-    if (strcmp(m->coords.at[i].unit.text, m->coords.at[j].unit.text) == 0)
-      most = fmaxl(most, fabsl(symbols[velocities ? m->coords.at[j].v : m->coords.at[j].q]));
-  return most;
+  for (uint32_t i = 0; i < f->n; i++) {
+    uint32_t first = 0;
+    while (!is_alike(m, first, i)) first++;
+    most[i] = first < i ? most[first] : 0;
+    for (uint32_t j = i; first == i && j < f->n; j++)
+      if (is_alike(m, i, j)) most[i] = fmaxl(most[i], fabsl(symbols[velocities ? m->coords.at[j].v : m->coords.at[j].q]));
+  }
 }
 
-static long double reach_of(const Finder *f, uint32_t i) {
+/* reach[i] := how far coordinate i, or its velocity, may be from 0: as far as one of its unit is; an angle, 1. */
+static void reaches(const Finder *f, long double *reach) {
   const Model *m = f->e->m;
-  const Coord *q = &m->coords.at[i];
   double span = m->scene.has_span ? fabs(m->scene.t1 - m->scene.t0) : 0;
-  long double most = like(f, f->symbols, f->velocities, i);
-  if (f->velocities) most = fmaxl(most, like(f, f->symbols, 0, i) / (span > 0 ? span : 1));
-  int is_angle = q->periodic || !*q->unit.text || strcmp(q->unit.text, "rad") == 0 || strcmp(q->unit.text, "deg") == 0;
-  return most <= 0 || (most < 1 && is_angle) ? 1 : most;
+  long double *places = ARENA_ARRAY(m->arena, long double, f->n);
+  largest_alike(f, f->symbols, f->velocities, reach);
+  if (f->velocities) largest_alike(f, f->symbols, 0, places);
+  for (uint32_t i = 0; i < f->n; i++) {
+    const Coord *q = &m->coords.at[i];
+    int is_angle = q->periodic || !*q->unit.text || strcmp(q->unit.text, "rad") == 0 || strcmp(q->unit.text, "deg") == 0;
+    if (f->velocities) reach[i] = fmaxl(reach[i], places[i] / (span > 0 ? span : 1));
+    if (reach[i] <= 0 || (reach[i] < 1 && is_angle)) reach[i] = 1;
+  }
 }
 
-long double start_reach(const Eqns *e, const long double *symbols, uint32_t i) {
-  long double *values = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
-  memcpy(values, symbols, (expr_symbol_count(e->g) + 1) * sizeof *values);
-  return reach_of(&(Finder){.e = e, .n = e->n, .symbols = values}, i);
+/* step[i] := where to look beside: `part` of how far coordinate i reaches, and each a little further or less than others. */
+static void steps_beside(const Finder *f, long double part, long double *step) {
+  reaches(f, step);
+  for (uint32_t i = 0; i < f->n; i++) step[i] = part * step[i] * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
+}
+
+void start_steps_beside(const Eqns *e, long double *symbols, long double part, long double *step) {
+  steps_beside(&(Finder){.e = e, .n = e->n, .symbols = symbols}, part, step);
 }
 
 /* size[k] := how large the terms are of which constraint k is the sum. */
@@ -79,7 +92,7 @@ static void find_terms(Finder *f, long double *size) {
     if (A->at[i].row < f->rows) size[A->at[i].row] += fabsl(f->at.A[i] * f->symbols[component(f, A->at[i].col)]);
   long double *was = f->from;
   copy(f, was, f->symbols);
-  for (uint32_t i = 0; i < f->n; i++) f->d[i] = reach_of(f, i) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
+  steps_beside(f, 1, f->d);
   for (uint32_t i = 0; i < f->n; i++) f->symbols[component(f, i)] += f->d[i];
   look(f);
   for (uint32_t k = 0; k < f->rows; k++) size[k] = fmaxl(size[k], fabsl(residual(f, k)));
@@ -263,10 +276,13 @@ static void slopes(Finder *f) {
   const Entries *A = &f->e->constraints.A;
   Finder asked = *f;
   asked.symbols = f->asked;
+  long double *reach = ARENA_ARRAY(f->e->m->arena, long double, f->n), *reach_asked = ARENA_ARRAY(f->e->m->arena, long double, f->n);
+  reaches(f, reach);
+  reaches(&asked, reach_asked);
   look(f);
   for (uint32_t k = 0; k < f->rows; k++) f->terms[k] = 0;
   for (uint32_t i = 0; i < A->n; i++) {
-    long double far = fmaxl(reach_of(f, A->at[i].col), reach_of(&asked, A->at[i].col));
+    long double far = fmaxl(reach[A->at[i].col], reach_asked[A->at[i].col]);
     if (A->at[i].row < f->rows) f->terms[A->at[i].row] += fabsl(f->at.A[i]) * far;
   }
 }
@@ -277,7 +293,7 @@ static int is_flat(const Finder *f, uint32_t k) { return f->says[k] && f->terms[
 static int is_flat_beside(Finder *f, uint32_t k) {
   copy(f, f->best, f->symbols);
   choose_free(f, ALL);
-  for (uint32_t i = 0; i < f->n; i++) f->d[i] = 0.01L * reach_of(f, i) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
+  steps_beside(f, 0.01L, f->d);
   for (uint32_t i = 0; i < f->n; i++)
     if (is_held(f, i)) f->symbols[component(f, i)] += f->d[i];
   int flat = !descend(f);

@@ -32,8 +32,9 @@ StartResult start_find(const Eqns *e, StateSolver *solver, long double *symbols)
  * rounding. Reported in the model's diagnostics when there is none and the scene gives a start; 0 then. */
 int start_moves(const Eqns *e, long double *found, unsigned char *moved);
 
-/* How far coordinate i may be from 0: as far as one of its unit is; an angle, 1. */
-long double start_reach(const Eqns *e, const long double *symbols, uint32_t i);
+/* step[n] := where to look beside a state: `part` of how far each coordinate may be from 0 (as far as one of its unit is; an angle, 1), times 0.5 to
+ * 1.5, so that none moves as another does. */
+void start_steps_beside(const Eqns *e, long double *symbols, long double part, long double *step);
 
 /* Says why there is none. */
 void start_report(const Eqns *e, const StartResult *result);
