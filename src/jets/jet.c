@@ -19,9 +19,11 @@ Bounded bounded_div(Bounded x, Bounded y) {
   return rounded(q, (x.e + fabsl(q) * y.e) / fabsl(y.v));
 }
 
-/* sum += x y */
+static int is_zero(Bounded x) { return x.v == 0 && x.e == 0; }
+
+/* sum += x y. Most products are of an exact 0, which is left out beside what has a value. */
 static void accumulate(Bounded *sum, Bounded x, Bounded y) {
-  if ((x.v == 0 && x.e == 0) || (y.v == 0 && y.e == 0)) return;
+  if ((is_zero(x) && isfinite(y.v)) || (is_zero(y) && isfinite(x.v))) return;
   *sum = bounded_add(*sum, bounded_mul(x, y));
 }
 
@@ -87,33 +89,34 @@ void jet_rate(Jet *out, const Jet *x) {
 
 /* --- functions: by their derivatives at the state --- */
 
+enum { ROUNDINGS = 8 };
 enum { DERIVATIVES = JET_ORDERS + 2 }; /* of a function, 0 to JET_ORDERS + 1: the last bounds the error of the one before */
 
-/* f at x: the error of a derivative is what the error of x makes of it, to second order (x^2 at 0), and some roundings. */
-static Bounded derivative(const JetReal d[DERIVATIVES], int k, JetReal error) {
-  enum { ROUNDINGS = 8 };
+/* f at x: the error of a derivative is what the error of x makes of it, to second order (x^2 at 0), and some roundings. lost: what f', f'', ... lose
+ * where they are computed from f, as 1 - tanh^2 is: that much, however small they are. */
+static Bounded derivative(const JetReal d[DERIVATIVES], int k, JetReal error, JetReal lost) {
   JetReal second = k + 2 < DERIVATIVES && error > 0 ? fabsl(d[k + 2]) * error * error / 2 : 0;
-  return (Bounded){d[k], fabsl(d[k + 1]) * error + second + ROUNDINGS * jet_unit * fabsl(d[k])};
+  return (Bounded){d[k], fabsl(d[k + 1]) * error + second + ROUNDINGS * jet_unit * fabsl(d[k]) + (k > 0 ? lost : 0)};
 }
 
 /* The first JET_ORDERS coefficients of f(x(s)) from derivatives first, first + 1, ... of f. */
-static void compose(Bounded out[JET_ORDERS], const JetReal d[DERIVATIVES], int first, const Bounded x[JET_ORDERS]) {
-  Bounded d0 = derivative(d, first, x[0].e), d1 = derivative(d, first + 1, x[0].e);
-  out[0] = d0;
+static void compose(Bounded out[JET_ORDERS], const JetReal d[DERIVATIVES], int first, const Bounded x[JET_ORDERS], JetReal lost) {
+  Bounded d1 = derivative(d, first + 1, x[0].e, lost);
+  out[0] = derivative(d, first, x[0].e, lost);
   out[1] = bounded_mul(d1, x[1]);
   out[2] = bounded_mul(d1, x[2]);
-  Bounded half = bounded_mul(derivative(d, first + 2, x[0].e), (Bounded){0.5L, 0});
+  Bounded half = bounded_mul(derivative(d, first + 2, x[0].e, lost), (Bounded){0.5L, 0});
   accumulate(&out[2], half, bounded_mul(x[1], x[1]));
 }
 
-static void apply(Jet *out, const Jet *x, const JetReal d[DERIVATIVES]) {
+static void apply(Jet *out, const Jet *x, const JetReal d[DERIVATIVES], JetReal lost) {
   Jet r = {.planes = x->planes};
-  r.c[0][0] = derivative(d, 0, x->c[0][0].e);
+  r.c[0][0] = derivative(d, 0, x->c[0][0].e, lost);
   if (r.planes && !isfinite(d[1])) r.c[0][0].e = NAN; /* it has no derivative there: nothing is decided */
-  if (r.planes) compose(r.c[0], d, 0, x->c[0]);
+  if (r.planes) compose(r.c[0], d, 0, x->c[0], lost);
   if (r.planes > 1) {
     Bounded slope[JET_ORDERS];
-    compose(slope, d, 1, x->c[0]);
+    compose(slope, d, 1, x->c[0], lost);
     for (int p = 1; p < r.planes; p++) add_product(r.c[p], slope, x->c[p]);
   }
   *out = r;
@@ -175,7 +178,7 @@ int jet_function(Jet *out, const char *name, const Jet *of) {
   else if (strcmp(name, "exp") == 0) for (int k = 0; k < DERIVATIVES; k++) d[k] = expl(x);
   else if (strcmp(name, "log") == 0) logarithm(d, x);
   else return 0;
-  apply(out, of, d);
+  apply(out, of, d, strcmp(name, "tanh") == 0 ? ROUNDINGS * jet_unit : 0);
   return 1;
 }
 
@@ -201,7 +204,7 @@ void jet_power(Jet *out, const Jet *of, JetReal n, int is_third) {
   } else {
     powers(d, power(x, n, is_third), x, n);
   }
-  apply(out, of, d);
+  apply(out, of, d, 0);
 }
 
 void jet_div(Jet *out, const Jet *x, const Jet *y) {

@@ -69,7 +69,7 @@ static const char *outputs_left_out(const Check *c) {
   StrBuf s = strbuf(c->m->arena);
   uint32_t n = 0;
   for (uint32_t i = 0; i < e->noutputs; i++) {
-    if (c->outputs->outputs[i] || !e->outputs[i].text) continue;
+    if (c->outputs->outputs[i] || !e->outputs[i].from.id) continue;
     if (n++ < MOST) sb_printf(&s, "%s%s", n > 1 ? ", " : "", e->outputs[i].name);
   }
   if (n > MOST) sb_printf(&s, " and %u more", n - MOST);

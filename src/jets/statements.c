@@ -205,9 +205,11 @@ static Ref signal_value(Walk *w, const Input *in) {
   return v.at[0] ? text_component(w->text, &v, 0, &in->unit) : 0;
 }
 
-static Ref output_value(Walk *w, const Output *o) {
-  if (!o->text) return 0;
-  Meaning v = value(w, o->text, NULL);
+static Ref output_value(Walk *w, const OutputText *o) {
+  if (!o->id) return 0;
+  w->text->member = o->is_member ? o->member : NULL;
+  Meaning v = value(w, o->id, NULL);
+  w->text->member = NULL;
   return o->component < meaning_parts(&v) ? v.at[o->component] : 0;
 }
 
@@ -225,7 +227,10 @@ static void read_energies(Walk *w, const AstStmt *st, Name effect) {
 static void give_energies(Walk *w) {
   w->why = NULL;
   walk(w, read_energies);
-  if (w->why) w->text->lagrangian = w->text->kinetic = w->text->potential = 0;
+  Text *t = w->text;
+  if (t->kinetic && !t->potential) t->potential = tape_number(t->tape, num_int(0));
+  if (t->potential && !t->kinetic) t->kinetic = tape_number(t->tape, num_int(0));
+  if (w->why) t->lagrangian = t->kinetic = t->potential = 0;
 }
 
 TextOutputs *text_outputs(const Model *m, const Output *outputs, uint32_t noutputs, Arena *a) {
@@ -235,11 +240,11 @@ TextOutputs *text_outputs(const Model *m, const Output *outputs, uint32_t noutpu
   o->signals = ARENA_ARRAY(a, Ref, m->inputs.n + 1);
   Walk w = {.text = text_new(m, a), .outputs = o};
   walk(&w, read_output_statement);
-  for (uint32_t i = 0; i < noutputs; i++) o->outputs[i] = output_value(&w, &outputs[i]);
+  for (uint32_t i = 0; i < m->inputs.n; i++) o->signals[i] = signal_value(&w, &m->inputs.at[i]);
+  for (uint32_t i = 0; i < noutputs; i++) o->outputs[i] = output_value(&w, &outputs[i].from);
   if (w.text->asks) give_energies(&w);
   for (uint32_t i = 0; w.text->asks && i < noutputs; i++)
-    if (!o->outputs[i]) o->outputs[i] = output_value(&w, &outputs[i]);
-  for (uint32_t i = 0; i < m->inputs.n; i++) o->signals[i] = signal_value(&w, &m->inputs.at[i]);
+    if (!o->outputs[i]) o->outputs[i] = output_value(&w, &outputs[i].from);
   o->tape = w.text->tape;
   VEC(Ref) roots = {0};
   for (uint32_t i = 0; i < m->events.n; i++) vec_push(a, &roots, o->events[i]);

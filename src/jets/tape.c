@@ -107,6 +107,14 @@ static Jet number_jet(Num n) {
 }
 
 static Jet truth(int yes) { return jet_exact(yes != 0); }
+
+/* What rounding decides, or what no double holds, and all that is made of it, has no bound on its error. */
+static void decide(Jet *out, int near, int *unsure) {
+  if (!near) return;
+  out->c[0][0].e = INFINITY;
+  *unsure = 1;
+}
+
 static JetReal value(const Jet *x) { return x->c[0][0].v; }
 
 /* Whether x and y are so near that rounding decides which is larger (equal numbers without error are equal), or one is no number. */
@@ -117,6 +125,8 @@ static int is_near(const Jet *x, const Jet *y) {
 }
 
 static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, Jet *out, int *unsure) {
+  const Jet zero = jet_exact(0);
+  int near = 0;
   switch (i->op) {
     case TAPE_ADD: jet_add(out, x, y); return;
     case TAPE_SUB: jet_sub(out, x, y); return;
@@ -134,22 +144,19 @@ static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, 
     case TAPE_FUNCTION: if (!jet_function(out, i->text, x)) *out = jet_exact(NAN); return;
     case TAPE_ATAN2: jet_atan2(out, x, y); return;
     case TAPE_HYPOT: jet_hypot(out, x, y); return;
-    case TAPE_SELECT: *out = value(x) != 0 ? *y : *z; return;
-    case TAPE_NOT: *out = truth(value(x) == 0); return;
-    case TAPE_AND: *out = truth(value(x) != 0 && value(y) != 0); return;
-    case TAPE_OR: *out = truth(value(x) != 0 || value(y) != 0); return;
-    case TAPE_SIGN: {
-      Jet zero = jet_exact(0);
-      *unsure |= is_near(x, &zero);
-      *out = jet_exact((value(x) > 0) - (value(x) < 0));
-      return;
-    }
-    case TAPE_MIN: case TAPE_MAX: case TAPE_LT: case TAPE_LE: case TAPE_EQ: *unsure |= is_near(x, y); break;
+    case TAPE_SELECT: near = isinf(x->c[0][0].e); *out = value(x) != 0 ? *y : *z; break;
+    case TAPE_NOT: near = isinf(x->c[0][0].e); *out = truth(value(x) == 0); break;
+    case TAPE_AND: near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e); *out = truth(value(x) != 0 && value(y) != 0); break;
+    case TAPE_OR: near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e); *out = truth(value(x) != 0 || value(y) != 0); break;
+    case TAPE_SIGN: near = is_near(x, &zero); *out = jet_exact((value(x) > 0) - (value(x) < 0)); break;
+    case TAPE_MIN: near = is_near(x, y); *out = value(x) < value(y) ? *x : *y; break;
+    case TAPE_MAX: near = is_near(x, y); *out = value(x) > value(y) ? *x : *y; break;
+    case TAPE_LT: near = is_near(x, y); *out = truth(value(x) < value(y)); break;
+    case TAPE_LE: near = is_near(x, y); *out = truth(value(x) <= value(y)); break;
+    case TAPE_EQ: near = is_near(x, y); *out = truth(value(x) == value(y)); break;
     case TAPE_NUMBER: case TAPE_PI: case TAPE_INPUT: return; /* by the caller */
   }
-  if (i->op == TAPE_MIN) *out = value(x) < value(y) ? *x : *y;
-  else if (i->op == TAPE_MAX) *out = value(x) > value(y) ? *x : *y;
-  else *out = truth(i->op == TAPE_LT ? value(x) < value(y) : i->op == TAPE_LE ? value(x) <= value(y) : value(x) == value(y));
+  decide(out, near, unsure);
 }
 
 static void run_any(const Tape *t, Ref r, TapeInput *input, void *data, Jet *at, int *unsure) {
@@ -164,7 +171,7 @@ static void run_any(const Tape *t, Ref r, TapeInput *input, void *data, Jet *at,
 void tape_run(const Tape *t, TapeInput *input, void *data, Jet *at, int *unsure) {
   for (Ref r = 1; r < t->ins.n; r++) {
     run_any(t, r, input, data, at, unsure);
-    *unsure |= fabsl(value(tape_value(t, at, r))) > DBL_MAX;
+    decide(&at[t->ins.at[r].slot], fabsl(value(tape_value(t, at, r))) > DBL_MAX, unsure);
   }
 }
 

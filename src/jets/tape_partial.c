@@ -1,6 +1,5 @@
 /* Partial derivatives on a tape: instructions whose value is d(expr, name) of the text. The rules of calculus, node by node, once more beside
  * those of sym/diff.c, so that one can be compared with the other. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "jets/tape.h"
@@ -19,7 +18,8 @@ struct Partial {
   uint32_t index; /* ALL: by all inputs of the kind, along their rates */
   VEC(Ref) made_of;    /* the instructions that the value is made of, in their order */
   VEC(Derivatives) of; /* theirs */
-  VEC(uint32_t) place; /* of an instruction of the tape among them, counted from 1; between calls all are 0 */
+  VEC(uint32_t) place; /* of an instruction of the tape among them, counted from 1; of others 0 */
+  Ref value, lowest;   /* which value that is; the first instruction that it is made of */
 };
 typedef struct Partial Partial;
 
@@ -42,7 +42,7 @@ static Ref through_function(Tape *t, const char *name, Ref self, Ref a, Ref da) 
   if (strcmp(name, "tan") == 0) return quotient(t, da, square(t, tape_function(t, "cos", a)));
   if (strcmp(name, "sinh") == 0) return product(t, tape_function(t, "cosh", a), da);
   if (strcmp(name, "cosh") == 0) return product(t, tape_function(t, "sinh", a), da);
-  if (strcmp(name, "tanh") == 0) return quotient(t, da, square(t, tape_function(t, "cosh", a)));
+  if (strcmp(name, "tanh") == 0) return product(t, tape_op(t, TAPE_SUB, integer(t, 1), square(t, self), 0), da); /* which shows what it loses */
   if (strcmp(name, "exp") == 0) return product(t, self, da);
   if (strcmp(name, "log") == 0) return quotient(t, da, a);
   if (strcmp(name, "fabs") == 0) return product(t, tape_op(t, TAPE_SIGN, a, 0, 0), da);
@@ -99,29 +99,31 @@ static Ref derivative(const Partial *p, Ref r, uint32_t level) {
 /* --- all --- */
 
 static void mark(Partial *p, Ref r) {
-  if (!r || p->place.at[r]) return;
-  p->place.at[r] = 1;
-  vec_push(p->t->arena, &p->made_of, r);
+  if (r && r < p->lowest) p->lowest = r;
+  p->place.at[r] = r != 0;
 }
 
-static int by_place(const void *a, const void *b) {
-  Ref x = *(const Ref *)a, y = *(const Ref *)b;
-  return (x > y) - (x < y);
-}
-
-/* What `of` is made of. */
+/* What `of` is made of, in order: operands stand before what is made of them. */
 static void collect(Partial *p, Ref of) {
   const Tape *t = p->t;
+  if (p->value == of) return;
+  for (uint32_t k = 0; k < p->made_of.n; k++) p->place.at[p->made_of.at[k]] = 0;
   while (p->place.n <= of) vec_push(t->arena, &p->place, 0);
-  p->made_of.n = p->of.n = 0;
+  p->made_of.n = 0;
+  p->value = p->lowest = of;
   mark(p, of);
-  for (uint32_t k = 0; k < p->made_of.n; k++) {
-    const TapeIns *i = &t->ins.at[p->made_of.at[k]];
+  for (Ref r = of; r >= p->lowest; r--) {
+    const TapeIns *i = &t->ins.at[r];
+    if (!p->place.at[r]) continue;
     mark(p, i->a);
     mark(p, i->b);
     mark(p, i->c);
   }
-  qsort(p->made_of.at, p->made_of.n, sizeof *p->made_of.at, by_place);
+  for (Ref r = p->lowest; r <= of; r++) {
+    if (!p->place.at[r]) continue;
+    vec_push(t->arena, &p->made_of, r);
+    p->place.at[r] = p->made_of.n;
+  }
 }
 
 static Ref by_level(Tape *t, Ref of, InputKind kind, uint32_t index, uint32_t level) {
@@ -131,14 +133,13 @@ static Ref by_level(Tape *t, Ref of, InputKind kind, uint32_t index, uint32_t le
   p->kind = kind;
   p->index = index;
   collect(p, of);
+  p->of.n = 0;
   for (uint32_t k = 0; k < p->made_of.n; k++) {
     Derivatives d = {{0}};
-    p->place.at[p->made_of.at[k]] = k + 1;
     vec_push(t->arena, &p->of, d);
     for (uint32_t l = 0; l <= level; l++) p->of.at[k].by[l] = derivative(p, p->made_of.at[k], l);
   }
   Ref r = zero(t, known(p, of, level));
-  for (uint32_t k = 0; k < p->made_of.n; k++) p->place.at[p->made_of.at[k]] = 0;
   return t->too_long ? 0 : r;
 }
 

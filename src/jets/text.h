@@ -26,6 +26,7 @@ struct Text {
   Meaning *lets, *observes, *constants; /* by their places in the builder; at[0] = 0: not evaluated yet */
   const char *why;                      /* the first thing that has no meaning here, since the caller set it to NULL */
   Ref lagrangian, kinetic, potential;   /* of `lagrangian`, `T`, `V`, `energy`, `p_x` in outputs: the caller gives them, where `asks` */
+  const int64_t *member;                /* of the family that an output names without index; NULL: a family has no value */
   int asks;                             /* one of these names was met before they were given */
   VEC(struct Frame *) idle;             /* evaluations to use again */
 };

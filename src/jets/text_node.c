@@ -180,6 +180,14 @@ static Meaning entity(Text *t, Frame *f, const Entity *e, const int64_t *at) {
   return NOTHING;
 }
 
+/* A name with the indices `at`; a family without any is the member that is asked for. */
+static Meaning named(Text *t, Frame *f, const Entity *e, const int64_t *at) {
+  const int64_t *which = e->ndims ? at ? at : t->member : NULL;
+  if (e->ndims && !which) return NOTHING;
+  const Entity *member = e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE) ? find_member(t->b, e, which) : e;
+  return member ? entity(t, f, member, which) : NOTHING;
+}
+
 static const Meaning *argument(const Text *t, const Frame *f, Name name) {
   AstId id = f->function ? f->function->stmt->args : 0;
   for (uint32_t i = 0; id && i < f->nargs; i++, id = ast_expr(t->b->ast, id)->next)
@@ -231,7 +239,7 @@ static Meaning name_node(Text *t, Frame *f, Name name) {
   if (strcmp(name, "t") == 0) return scalar(tape_input(t->tape, INPUT_TIME, 0), 0);
   int ambiguous;
   const Entity *e = scope_find(&t->b->scope, name, f->effect, &ambiguous), *q = momentum_of(t, f, name);
-  if (e) return e->ndims ? NOTHING : entity(t, f, e, NULL);
+  if (e) return named(t, f, e, NULL);
   if (q) return q->ndims ? NOTHING : momentum(t, q, NULL);
   if (!is_one_of(name, energies)) return NOTHING;
   t->asks |= !t->lagrangian;
@@ -258,8 +266,7 @@ static Meaning index_node(Text *t, Frame *f, const AstExpr *x) {
   const Entity *q = !e && of->kind == AST_NAME ? momentum_of(t, f, of->name) : NULL;
   if (q && q->ndims == n) return momentum(t, q, at);
   if (!e || e->ndims != n) return NOTHING;
-  const Entity *member = e->kind == ENT_LET || e->kind == ENT_OBSERVE ? find_member(t->b, e, at) : e;
-  return member ? entity(t, f, member, at) : NOTHING;
+  return named(t, f, e, at);
 }
 
 static Meaning component(const Meaning *v, Name name) {
@@ -272,7 +279,7 @@ static Meaning component(const Meaning *v, Name name) {
 static Meaning member_node(Text *t, Frame *f, const AstExpr *x) {
   const AstExpr *left = ast_expr(t->b->ast, x->a);
   const Entity *e = left->kind == AST_NAME ? scope_own(&t->b->scope, x->name, left->name) : NULL;
-  if (e) return e->ndims ? NOTHING : entity(t, f, e, NULL);
+  if (e) return named(t, f, e, NULL);
   Meaning v = *operand(f, x->a);
   return component(&v, x->name);
 }
@@ -365,7 +372,6 @@ static Meaning call_node(Text *t, Frame *f, const AstExpr *x) {
   int ambiguous;
   const Entity *own = scope_find(&t->b->scope, x->name, f->effect, &ambiguous);
   if (own && own->kind == ENT_FUNCTION) return await(t, f, ENT_FUNCTION, own->index, NULL);
-  if (own && (own->kind == ENT_COORD || own->kind == ENT_STATE || own->kind == ENT_LET)) return NOTHING; /* x(0) */
   AstId second = x->args ? ast_expr(ast, x->args)->next : 0, third = second ? ast_expr(ast, second)->next : 0;
   if (strcmp(x->name, "lambda") == 0) return multiplier(t, f, x->args);
   if (!x->args || (!operand(f, x->args)->at[0])) return NOTHING;

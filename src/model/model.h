@@ -104,14 +104,21 @@ typedef struct {
   uint32_t impact, release;      /* in events */
 } Contact;
 
+/* What an output is in the text: a component of the value of `id`, or of its member `member`, where that names a family. id: 0: of something else. */
+typedef struct {
+  AstId id;
+  uint32_t component;
+  int is_member;
+  int64_t member[2];
+} OutputText;
+
 /* A named quantity: what a scene puts out, or an observe statement. */
 typedef struct {
   Name name;
   Span span;
   Unit unit;
   Expr value; /* may contain q'', z' */
-  AstId text; /* of which it is component `component`; 0: of something else */
-  uint32_t component;
+  OutputText from;
 } Output;
 
 /* What a symmetry does to a coordinate, or to t, to first order in its parameter. */

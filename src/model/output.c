@@ -50,11 +50,11 @@ void drop_outputs(Builder *b) {
   b->outputs = (Scope){.arena = b->arena};
 }
 
-/* The place of an output; it is added when its label is not there. */
-static int add_one(Builder *b, Name label, Span span, Unit unit, Expr value) {
+/* The place of an output; it is added when its label is not there. from: what it is in the text. */
+static int add_one(Builder *b, Name label, Span span, Unit unit, Expr value, const OutputText *from) {
   const Entity *there = scope_own(&b->outputs, label, NULL);
   if (there) return (int)there->index;
-  Output o = {.name = label, .span = span, .unit = unit, .value = value};
+  Output o = {.name = label, .span = span, .unit = unit, .value = value, .from = *from};
   return push_output(b, &o);
 }
 
@@ -68,13 +68,14 @@ static Name label_of(Builder *b, const char *stem, int part, uint32_t primes) {
 }
 
 /* A number, or each component; the place of the first, -1 where there are more. */
-static int add_value(Builder *b, const char *stem, uint32_t primes, const Entity *e, Span span, const Value *v) {
+static int add_value(Builder *b, const char *stem, uint32_t primes, const Entity *e, Span span, const Value *v, OutputText from) {
   Unit unit = output_unit(b, e, primes, v->dim);
   show_spin(b, v, &unit);
-  if (!v->n) return add_one(b, label_of(b, stem, -1, primes), span, unit, v->e);
+  if (!v->n) return add_one(b, label_of(b, stem, -1, primes), span, unit, v->e, &from);
   for (uint32_t k = 0; k < v->n; k++) {
     int part = v->n == ROTATION ? ((int)k + 3) % ROTATION : (int)k;
-    add_one(b, label_of(b, stem, part, primes), span, unit, v->at[k]);
+    from.component = k;
+    add_one(b, label_of(b, stem, part, primes), span, unit, v->at[k], &from);
   }
   return -1;
 }
@@ -93,13 +94,13 @@ static void add_family(Builder *b, AstId id, const Target *p, const Entity *e) {
     if (place >= 0) v = (Value){.e = v.at[place], .dim = v.dim};
     Name name = member_name(b, stem, at, e->ndims);
     if (p->part >= 0) name = label_of(b, name, p->part, 0);
-    add_value(b, name, p->primes, member, span, &v);
+    add_value(b, name, p->primes, member, span, &v, (OutputText){.id = id, .member = {at[0], at[1]}, .is_member = 1});
   } while (next_member(e, at));
 }
 
 int add_error(Builder *b, const Exact *x, Span span) {
   Expr e = exact_error(b, x);
-  return add_one(b, intern_printf(b, "error(%s)", x->name), span, unit_of_difference(&x->unit), e);
+  return add_one(b, intern_printf(b, "error(%s)", x->name), span, unit_of_difference(&x->unit), e, &(OutputText){0});
 }
 
 /* exact(q), error(q): in the unit of q, vectors by components, which are called as they would be by themselves. */
@@ -123,16 +124,17 @@ static int add_closed_form(Builder *b, AstId id, Name label) {
     const Exact *form = find_exact(b, of.at[k]);
     Name own = intern_printf(b, "%s(%s)", call, form->name);
     Unit unit = strcmp(call, "error") == 0 ? unit_of_difference(&form->unit) : form->unit;
-    place = add_one(b, label && !v.n ? label : own, span, unit, v.at[k]);
+    place = add_one(b, label && !v.n ? label : own, span, unit, v.at[k], &(OutputText){.id = id, .component = k});
   }
   return v.n ? -1 : place;
 }
 
-static int outputs_of(Builder *b, AstId id) {
+int add_outputs(Builder *b, AstId id) {
   if (is_closed_form(b, ast_expr(b->ast, id))) return add_closed_form(b, id, NULL);
   Target p = read_target(b, id);
   const Entity *e = named(b, &p);
   Span span = ast_expr(b->ast, id)->span;
+  const OutputText from = {.id = id};
   if (e && e->ndims && !p.indices && e->kind != ENT_NONE) {
     add_family(b, id, &p, e);
     return -1;
@@ -146,27 +148,15 @@ static int outputs_of(Builder *b, AstId id) {
     if (e->kind == ENT_LET || e->kind == ENT_OBSERVE) shown = find_member(b, e, r.lo);
     Name name = member_name(b, ast_text(b, p.stem), r.lo, r.n);
     if (p.part >= 0) name = label_of(b, name, p.part, 0);
-    return add_value(b, name, p.primes, shown, span, &v);
+    return add_value(b, name, p.primes, shown, span, &v, from);
   }
-  if (e && v.n) return add_value(b, ast_text(b, p.stem), p.primes, e, span, &v);
+  if (e && v.n) return add_value(b, ast_text(b, p.stem), p.primes, e, span, &v, from);
   const char *text = ast_text(b, id);
   int call = ast_expr(b->ast, id)->kind == AST_CALL;
-  if (v.n) return add_value(b, arena_printf(b->arena, call ? "%s" : "(%s)", text), 0, NULL, span, &v);
+  if (v.n) return add_value(b, arena_printf(b->arena, call ? "%s" : "(%s)", text), 0, NULL, span, &v, from);
   Unit unit = output_unit(b, e, p.primes, v.dim);
   show_spin(b, &v, &unit);
-  return add_one(b, intern(b->ast->names, text), span, unit, v.e);
-}
-
-int add_outputs(Builder *b, AstId id) {
-  uint32_t first = b->m->scene.outputs.n;
-  int place = outputs_of(b, id);
-  Target p = read_target(b, id);
-  const Entity *e = named(b, &p);
-  for (uint32_t i = first; i < b->m->scene.outputs.n && !(e && e->ndims && !p.indices); i++) {
-    b->m->scene.outputs.at[i].text = id;
-    b->m->scene.outputs.at[i].component = i - first;
-  }
-  return place;
+  return add_one(b, intern(b->ast->names, text), span, unit, v.e, &from);
 }
 
 int add_outputs_as(Builder *b, AstId id, Name label) {
@@ -177,6 +167,6 @@ int add_outputs_as(Builder *b, AstId id, Name label) {
   Value v = resolve(b, id, IN_OUTPUT, NULL);
   Span span = ast_expr(b->ast, id)->span;
   if (!v.e) return -1;
-  if (v.n) return add_value(b, label, 0, NULL, span, &v);
-  return add_one(b, label, span, output_unit(b, e, p.primes, v.dim), v.e);
+  if (v.n) return add_value(b, label, 0, NULL, span, &v, (OutputText){.id = id});
+  return add_one(b, label, span, output_unit(b, e, p.primes, v.dim), v.e, &(OutputText){.id = id});
 }
