@@ -98,8 +98,8 @@ static const char *const letters[][2] = {
   {"g", "gravity is a parameter, too: `param g = 9.81 [m/s^2]`"},
   {"energy", "the energy may stand in outputs, monitors, observables and expectations; here write it with coordinates and velocities"},
   {"lagrangian", "the Lagrangian may stand in outputs, observables and expectations; here write it with coordinates and velocities"},
-  {"T", "of a model that gives `kinetic`, the kinetic energy is `T`, in outputs, observables and expectations"},
-  {"V", "of a model that gives `potential`, the potential energy is `V`, in outputs, observables and expectations"},
+  {"T", "where L is `kinetic` less `potential` (no effect in use adds a `lagrangian`), the kinetic energy is `T`, in outputs, observables and expectations"},
+  {"V", "where L is `kinetic` less `potential` (no effect in use adds a `lagrangian`), the potential energy is `V`, in outputs, observables and expectations"},
   {"t", "`t` is the time, which a run gives its value: `span 20 [s]` says how long it is"},
   {"e", "the number is `exp(1)`; a parameter is declared: `param e = 0.9`"},
 };
