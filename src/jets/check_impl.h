@@ -9,6 +9,13 @@ typedef JetReal Real;
 
 enum { FEW = 6, LONG_TAPE = 30000 }; /* coordinates that are looked at one by one; instructions of a text at which one state must do */
 
+/* A sum of terms, each with its error, and the sum of their sizes. */
+typedef struct {
+  Bounded sum;
+  Real size;
+  Real around; /* the size of what the terms themselves are made of, as far as it is known */
+} Total;
+
 typedef struct {
   const Eqns *e;
   const Model *m;
@@ -27,15 +34,10 @@ typedef struct {
   uint32_t n, scene;
   int far;
   Real reach; /* of states beside the start: 1, or less once none was found on the constraints */
+  Total energy;     /* of the text, at the state at hand, where */
+  int has_energy;
   SelfCheck *told;
 } Check;
-
-/* A sum of terms, each with its error, and the sum of their sizes. */
-typedef struct {
-  Bounded sum;
-  Real size;
-  Real around; /* the size of what the terms themselves are made of, as far as it is known */
-} Total;
 
 typedef enum { AGREES, DISMISSED, DISAGREES } Verdict;
 

@@ -39,6 +39,8 @@ static Verdict check_energy(Check *c) {
   if (!check_run_text(c) || !check_run(c, c->u->energy, (Real *const[]){value})) return DISMISSED;
   total_add(&t, 1, check_coefficient(d->tape, c->at, d->lagrangian, 2, 0));
   total_add(&t, -1, check_coefficient(d->tape, c->at, d->lagrangian, 0, 0));
+  c->energy = t;
+  c->has_energy = 1;
   return check_compare(c, &t, value[0], c->m->lagrangian_span, "the energy", NULL);
 }
 
@@ -67,8 +69,10 @@ static Verdict check_outputs(Check *c) {
   Real *value = ARENA_ARRAY(c->arena, Real, e->noutputs + 1);
   Verdict v = AGREES;
   if (!e->noutputs || !check_run(c, scene->observe, (Real *const[]){value})) return AGREES;
-  for (uint32_t i = 0; i < e->noutputs; i++)
+  for (uint32_t i = 0; i < e->noutputs; i++) {
     if (o->outputs[i]) v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, o->outputs[i], 0, 0), value[i], e->outputs[i].span, "the output", e->outputs[i].name));
+    if (o->is_energy[i] && c->has_energy) v = worse(v, check_compare(c, &c->energy, value[i], e->outputs[i].span, "the output", e->outputs[i].name));
+  }
   return v;
 }
 

@@ -54,11 +54,15 @@ static int is_finite(const Real *x, uint32_t n) {
   return n == 0;
 }
 
+/* Long formulas are compared at the first state and far out. */
+static int asks_outputs(const Check *c) { return c->outputs->tape->ins.n <= SHORT_TAPE || c->told->states == 0 || c->far; }
+
 static Verdict check_state(Check *c, int dynamics) {
   Verdict v = DISMISSED;
+  c->has_energy = 0;
   if (dynamics && !c->dynamics->why) v = worse(check_equations(c), AGREES);
   if (v == AGREES) v = check_dynamic_values(c);
-  if (v != DISAGREES && check_other_values(c) == DISAGREES) v = DISAGREES;
+  if (v != DISAGREES && asks_outputs(c) && check_other_values(c) == DISAGREES) v = DISAGREES;
   return v == AGREES ? check_motion(c) : v;
 }
 
@@ -69,7 +73,7 @@ static const char *outputs_left_out(const Check *c) {
   StrBuf s = strbuf(c->m->arena);
   uint32_t n = 0;
   for (uint32_t i = 0; i < e->noutputs; i++) {
-    if (c->outputs->outputs[i] || !e->outputs[i].from.id) continue;
+    if (c->outputs->outputs[i] || !e->outputs[i].from.id || (c->outputs->is_energy[i] && !c->dynamics->why)) continue;
     if (n++ < MOST) sb_printf(&s, "%s%s", n > 1 ? ", " : "", e->outputs[i].name);
   }
   if (n > MOST) sb_printf(&s, " and %u more", n - MOST);

@@ -213,6 +213,13 @@ static Ref output_value(Walk *w, const OutputText *o) {
   return o->component < meaning_parts(&v) ? v.at[o->component] : 0;
 }
 
+/* `energy` alone, of the model's own making. */
+static int is_energy(const Text *t, const OutputText *o) {
+  int ambiguous;
+  const AstExpr *x = o->id ? ast_expr(t->b->ast, o->id) : NULL;
+  return x && x->kind == AST_NAME && strcmp(x->name, "energy") == 0 && !scope_find(&t->b->scope, x->name, NULL, &ambiguous);
+}
+
 static void read_energies(Walk *w, const AstStmt *st, Name effect) {
   Text *t = w->text;
   int plus = st->kind == STMT_LAGRANGIAN || st->kind == STMT_KINETIC;
@@ -237,14 +244,18 @@ TextOutputs *text_outputs(const Model *m, const Output *outputs, uint32_t noutpu
   TextOutputs *o = ARENA_NEW(a, TextOutputs);
   o->events = ARENA_ARRAY(a, Ref, m->events.n + 1);
   o->outputs = ARENA_ARRAY(a, Ref, noutputs + 1);
+  o->is_energy = ARENA_ARRAY(a, unsigned char, noutputs + 1);
   o->signals = ARENA_ARRAY(a, Ref, m->inputs.n + 1);
   Walk w = {.text = text_new(m, a), .outputs = o};
   walk(&w, read_output_statement);
   for (uint32_t i = 0; i < m->inputs.n; i++) o->signals[i] = signal_value(&w, &m->inputs.at[i]);
-  for (uint32_t i = 0; i < noutputs; i++) o->outputs[i] = output_value(&w, &outputs[i].from);
+  for (uint32_t i = 0; i < noutputs; i++) {
+    o->is_energy[i] = is_energy(w.text, &outputs[i].from) != 0;
+    if (!o->is_energy[i]) o->outputs[i] = output_value(&w, &outputs[i].from);
+  }
   if (w.text->asks) give_energies(&w);
   for (uint32_t i = 0; w.text->asks && i < noutputs; i++)
-    if (!o->outputs[i]) o->outputs[i] = output_value(&w, &outputs[i].from);
+    if (!o->outputs[i] && !o->is_energy[i]) o->outputs[i] = output_value(&w, &outputs[i].from);
   o->tape = w.text->tape;
   VEC(Ref) roots = {0};
   for (uint32_t i = 0; i < m->events.n; i++) vec_push(a, &roots, o->events[i]);

@@ -31,6 +31,7 @@ typedef struct {
   Ref *events;  /* [events of the model] */
   VEC(TextAction) actions;
   Ref *outputs; /* [outputs of the scene] */
+  unsigned char *is_energy; /* [outputs of the scene] just `energy`: no formula, as the energy itself is compared */
   Ref *signals; /* [inputs of the model]: their formulas */
 } TextOutputs;
 

@@ -125,7 +125,7 @@ static int is_near(const Jet *x, const Jet *y) {
 }
 
 static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, Jet *out, int *unsure) {
-  const Jet zero = jet_exact(0);
+  static const Jet zero = {.planes = 0};
   int near = 0;
   switch (i->op) {
     case TAPE_ADD: jet_add(out, x, y); return;
