@@ -116,6 +116,11 @@ jets/tape_partial.c|s/return chosen(t, i.a, db, dc)/return chosen(t, i.a, dc, db
 jets/tape_partial.c|s/negative(t, product(t, i.a, db))), sum/product(t, i.a, db)), sum/
 ROWS
 
+# What only `modes` and `lyapunov` ask for.
+linearisation() { build_with "$1" "$2" && ! "$TMP/lagc" modes models/double_pendulum.lag >"$TMP/said" 2>&1 && grep 'internal error: the linearisation: the text gives' "$TMP/said"; }
+check "the linearisation" linearisation src/mech/linear.c 's/expr_sub(e->g, e->f\[i\], inertia\[i\])/expr_add(e->g, e->f[i], inertia[i])/'
+check "the columns of its entries" linearisation src/ir/lower_unit.c 's/((IrEntry){dr.at\[k\].row, dr.at\[k\].col})/((IrEntry){dr.at[k].row, dr.at[k ? k - 1 : 0].col})/'
+
 # By the argument of a function it says that it does not compare.
 printf 'model m\ncoord x\nfunction f(s) = d(s^3, s)\nlagrangian = x'"'"'^2/2 - f(x)\n' >"$TMP/argument.lag"
 check "what is not compared is said" sh -c "'$LAGC' check --verbose '$TMP/argument.lag' | grep -q 'not compared: the equations of motion, whose text has \`d\`'"
@@ -148,6 +153,9 @@ done
 check "0 times nothing, in a force" right "$free
 force x = if(abs(y) < 1, 1, 0)*sqrt(1 - y^2)
 scene s { start x = 0.3; output x every 0.1 }"
+check "functions of one's own" right "$free
+function cube(s) = s^3
+scene s { start x = 1; output cube(cube(x) + y)*cube(x) every 0.1 }"
 check "a let that is called as a function is" right "$free
 let sin = x^2
 scene s { start x = 0.3; output sin(x)*sin every 0.1 }"
