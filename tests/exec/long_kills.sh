@@ -8,7 +8,8 @@ dir=$(mktemp -d /tmp/long_kills.XXXXXX) || exit 2 # where another user can go, t
 chmod 755 "$dir"
 mkdir "$dir/cache" "$dir/tmp"
 XDG_CACHE_HOME=$dir/cache TMPDIR=$dir/tmp
-export XDG_CACHE_HOME TMPDIR
+CCACHE_DISABLE=1 # it would keep files of its own in that cache
+export XDG_CACHE_HOME TMPDIR CCACHE_DISABLE
 mounted=
 trap '[ -z "$mounted" ] || umount "$mounted"; rm -rf "$dir"' EXIT
 cp models/spring.lag models/kepler.lag "$dir"
