@@ -4,6 +4,7 @@
 
 #include "base/suggest.h"
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "cli/page.h"
 #include "cli/reference.h"
 #include "model/model.h"
@@ -53,21 +54,13 @@ static const char *commands_text(Arena *a, unsigned commands) {
   return sb_text(&b);
 }
 
-/* Whether word is one of the values "text|latex|c". */
-static int is_one_of(const char *values, const char *word) {
-  size_t n = strlen(word);
-  for (const char *s = values; s && n; s = strchr(s, '|') ? strchr(s, '|') + 1 : NULL)
-    if (strncmp(s, word, n) == 0 && (s[n] == '|' || (s[n] == '\0' && s != values))) return 1;
-  return 0;
-}
-
 /* Options whose name without its dashes, or one of whose values, is the topic. */
 static int put_named_options(StrBuf *out, const char *topic, int before) {
   int found = 0;
   topic += strspn(topic, "-");
   for (size_t i = 0; option_row(i); i++) {
     const OptionRow *o = option_row(i);
-    if (strcmp(o->name + 2, topic) != 0 && (!o->brief || strcmp(o->brief + 1, topic) != 0) && !is_one_of(o->value, topic)) continue;
+    if (strcmp(o->name + 2, topic) != 0 && (!o->brief || strcmp(o->brief + 1, topic) != 0) && !(o->takes == TAKES_CHOICE && is_choice(o->hint, topic, strlen(topic)))) continue;
     if (before && !found) sb_putc(out, '\n');
     const char *head = arena_printf(out->arena, "%s of %s:", found ? "and" : "option", commands_text(out->arena, o->commands));
     page_words(out, head, strlen(head), 0, 0);

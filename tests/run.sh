@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs suites of tests; `make test` calls it with what it built (see RUN_TESTS in the Makefile).
-#   sh tests/run.sh [--long | --bless | --bench] [PREFIX...]     only suites whose names begin with a PREFIX
+#   sh tests/run.sh [--long | --bless | --bench] [PREFIX...]     only suites whose names, with or without their folder, begin with a PREFIX
 #
 # A suite is a file. Nobody lists it: it is found.
 #   tests/unit/test_NAME.c         built into $BIN/test_NAME (cmocka)            suite unit/test_NAME
@@ -88,7 +88,7 @@ found() {
     fi
     [ $# = 0 ] && echo "$name"
     for prefix; do
-      case $name in "$prefix"*)
+      case $name in "$prefix"* | */"$prefix"*)
         echo "$name"
         break
         ;;

@@ -34,7 +34,7 @@ static int add_define(Arena *a, Options *o, const char *text, const char **error
   return 1;
 }
 
-static int is_choice(const char *choices, const char *word, size_t n) {
+int is_choice(const char *choices, const char *word, size_t n) {
   for (const char *s = choices; *s; s += strspn(s, " ")) {
     size_t len = strcspn(s, " ");
     if (len == n && strncmp(s, word, n) == 0) return 1;

@@ -44,4 +44,7 @@ int options_more_digits(const Options *o);
 /* Reads argv. 0, with *error saying what is wrong and what to write, on a mistake. */
 int options_read(Arena *a, int argc, char **argv, Options *o, const char **error);
 
+/* Whether a word of n bytes is one of the choices, which stand with spaces between them. */
+int is_choice(const char *choices, const char *word, size_t n);
+
 #endif

@@ -230,7 +230,7 @@ static void read_energies(Walk *w, const AstStmt *st, Name effect) {
   if (st->kind == STMT_POTENTIAL) t->potential = added(w, t->potential, TAPE_ADD, term);
 }
 
-/* What outputs call `lagrangian`, `T`, `V`, `energy`, `p_x`; they have no value where a part of L has none. */
+/* Energies that outputs name (`lagrangian`, `T`, `V`), and of which `energy` and `p_x` are made. They have no value where a part of L has none. */
 static void give_energies(Walk *w) {
   w->why = NULL;
   walk(w, read_energies);

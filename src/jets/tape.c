@@ -108,7 +108,7 @@ static Jet number_jet(Num n) {
 
 static Jet truth(int yes) { return jet_exact(yes != 0); }
 
-/* What rounding decides, or what no double holds, and all that is made of it, has no bound on its error. */
+/* A value that rounding decides, or that no double holds, and all that is made of it, has no bound on its error. */
 static void decide(Jet *out, int near, int *unsure) {
   if (!near) return;
   out->c[0][0].e = INFINITY;

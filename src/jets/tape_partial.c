@@ -103,7 +103,7 @@ static void mark(Partial *p, Ref r) {
   p->place.at[r] = r != 0;
 }
 
-/* What `of` is made of, in order: operands stand before what is made of them. */
+/* Instructions that `of` is made of, in order: operands stand before what is made of them. */
 static void collect(Partial *p, Ref of) {
   const Tape *t = p->t;
   if (p->value == of) return;

@@ -209,7 +209,7 @@ static Ref energy_called(Text *t, Name name) {
   return tape_energy(t->tape, t->lagrangian, t->m->first_order ? INPUT_STATE : INPUT_COORD);
 }
 
-/* Of what `p_x` is the momentum; NULL: it is none. */
+/* The coordinate that `p_x` is the momentum of; NULL: it is none. */
 static const Entity *momentum_of(const Text *t, const Frame *f, Name name) {
   int ambiguous;
   if (strncmp(name, "p_", 2) != 0 || scope_find(&t->b->scope, name, f->effect, &ambiguous)) return NULL;

@@ -10,7 +10,10 @@
 #include "sym/simplify.h"
 
 const SolutionSpace *noether_space_at(Search *s, uint32_t choice) {
-  if (s->spaces[choice].space.width == 0) s->spaces[choice] = solution_space(s->ansatz, s->scratch, s->choices.at[choice], choice > CHOICE_SECOND ? noether_space_at(s, CHOICE_FIRST) : NULL);
+  if (s->spaces[choice].space.width == 0) {
+    const SolutionSpace *like = choice > CHOICE_SECOND ? noether_space_at(s, CHOICE_FIRST) : NULL;
+    s->spaces[choice] = solution_space(s->ansatz, s->scratch, s->choices.at[choice], like);
+  }
   return &s->spaces[choice];
 }
 

@@ -101,7 +101,7 @@ static int reaches(const DenseRows *space, uint32_t column) {
   return 0;
 }
 
-/* What is searched: all coefficients, or those that another space has. */
+/* Coefficients to search: all, or those that another space has. */
 static DenseRows everything(const Ansatz *s, Arena *a, const DenseRows *within) {
   DenseRows all = {.width = s->columns, .at = ARENA_ARRAY(a, long double, (size_t)s->columns * s->columns)};
   for (uint32_t j = s->has_tau ? 0 : 1; j < s->columns; j++)

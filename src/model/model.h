@@ -104,7 +104,7 @@ typedef struct {
   uint32_t impact, release;      /* in events */
 } Contact;
 
-/* What an output is in the text: a component of the value of `id`, or of its member `member`, where that names a family. id: 0: of something else. */
+/* The place of an output in the text: a component of the value of `id`, or of its member `member`, where that names a family. id: 0: of something else. */
 typedef struct {
   AstId id;
   uint32_t component;
