@@ -1,7 +1,7 @@
-/* The grammar. What enters are the filter's tokens (src/syntax/token.h): every statement is closed
- * by one END, statement words are tokens of their own, and which word may stand in which block is
- * already decided, so that one rule `stmt` serves files, effects, scenes and events.
- * What leaves is an Ast; each action is one call of a builder (src/syntax/ast_build.h).
+/* The grammar. In: the filter's tokens (src/syntax/token.h): every statement is closed by one END,
+ * statement words are tokens of their own, and the filter has decided which word may stand in which
+ * block, so that one rule `stmt` serves files, effects, scenes and events.
+ * Out: an Ast; each action is one call of a builder (src/syntax/ast_build.h).
  *
  * A push parser: src/syntax/parse.c owns its stack, so that nothing leaks when memory runs out in
  * an action. Recovery is at the ends of statements only. */
@@ -22,14 +22,14 @@
 }
 
 %code {
-/* The place of a rule is that of all its parts; an empty part has no place. */
+/* The span of a rule joins the spans of its parts; an empty part has none. */
 #define YYLLOC_DEFAULT(Current, Rhs, N)                                                     \
   do {                                                                                      \
     (Current) = (Span){0, 0};                                                               \
     for (int part = 1; part <= (N); part++) (Current) = span_join((Current), YYRHSLOC(Rhs, part)); \
   } while (0)
 
-/* What deep nesting may cost: PARSE_STACK entries of about 80 bytes. */
+/* Limit of nesting: PARSE_STACK entries of about 80 bytes. */
 #define YYMAXDEPTH PARSE_STACK
 
 #define NONE_LIST ((AstList){0, 0})
@@ -196,7 +196,7 @@ excludes: excluded[x]                 { $$ = stmts_one($x); }
         ;
 excluded: IDENT[n] { $$ = stmt_name(ast, STMT_EXCLUDES, @$, $n); };
 
-/* ---- symmetries: a map after `for …:` belongs to it, up to the next `for` ---- */
+/* ---- symmetries: maps after `for ...:` belong to it, up to the next `for` ---- */
 
 maps: map_item[x]             { $$ = stmts_one($x); }
     | maps[l] "," map_item[x] { $$ = maps_add($l, $x); }
@@ -281,13 +281,13 @@ every: %empty          { $$ = 0; }
      | "every" arith[e] { $$ = $e; }
      ;
 
-/* What a statement sets: a name, a member of a family, all of them, a component, a derivative. */
+/* The left side of a setting: a name, a member of a family or all of them, a component, a derivative. */
 place: IDENT[n]                          { $$ = ast_name(ast, $n); }
      | place[a] "[" places_bound[l] "]"  { $$ = ast_index(ast, @$, $a, $l); }
      | place[a] "." IDENT[m]             { $$ = ast_member(ast, @$, $a, $m); }
      | place[a] "'"[op]                  { $$ = ast_prime(ast, @$, @op, $a); }
      ;
-/* And the angular velocity of a rotation: omega(R). */
+/* A place, or the angular velocity of a rotation: omega(R). */
 moved: place[p]                       { $$ = $p; }
      | IDENT[n] "(" place[p] ")"       { $$ = ast_call(ast, @$, $n, ast_list($p)); }
      ;
@@ -346,7 +346,7 @@ primary: NUMBER[n]                          { $$ = ast_number(ast, @n, $n); }
        | reach[a] "(" expr[b] ")"           { $$ = ast_at(ast, @$, $a, $b); }
        | primary[a] UNIT[u]                 { $$ = ast_unit(ast, @$, $a, $u); }
        ;
-/* What may have a value at a time, besides a name, which is written like the call of a function. */
+/* Operands that may be taken at a time, th'(0); a name at a time, x(0), parses as a call. */
 reach: primary[a] "[" indices[l] "]"        { $$ = ast_index(ast, @$, $a, $l); }
      | primary[a] "." IDENT[m]              { $$ = ast_member(ast, @$, $a, $m); }
      | primary[a] "'"[op]                   { $$ = ast_prime(ast, @$, @op, $a); }
@@ -379,7 +379,7 @@ static TokKind kind_of(yysymbol_kind_t symbol) {
   }
 }
 
-/* A token that cannot stand where it was found: hands what could to errors.c. */
+/* On an unexpected token: passes the set of expected ones to errors.c. */
 static int yyreport_syntax_error(const yypcontext_t *yyctx, Parse *cx, Ast *ast) {
   yysymbol_kind_t symbols[YYNTOKENS];
   TokKind kinds[YYNTOKENS];
@@ -391,7 +391,7 @@ static int yyreport_syntax_error(const yypcontext_t *yyctx, Parse *cx, Ast *ast)
   return 0;
 }
 
-/* Called only when the stack cannot grow: at its limit, or for want of memory. */
+/* Called only when the stack cannot grow: at its limit, or out of memory. */
 static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message) {
   (void)message;
   if (cx->stack->yystacksize < YYMAXDEPTH) arena_fail(ast->arena);

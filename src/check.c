@@ -1,3 +1,4 @@
+/* `lagc check`: derives every scene and every unused effect, then judges symmetries and expectations. */
 #include "check.h"
 
 #include <string.h>
@@ -9,8 +10,8 @@
 #include "mech/noether_report.h"
 #include "mech/show.h"
 
-/* An expectation, or a symmetry, is about the model without effects, or, inside an effect, with that effect and what
- * it requires: scenes have no part in it. */
+/* Judges symmetries and expectations for the model without effects, and those inside an effect with that effect and its requirements; no scene is
+ * needed. */
 static void check_claims(const Deriver *d, const Ast *ast, int allow_numeric, ExpectResults *results, StrBuf *out) {
   EffectList where = model_claiming_effects(ast);
   Eqns **e = ARENA_ARRAY(ast->arena, Eqns *, where.n + 1);
@@ -32,7 +33,7 @@ static const char *with_effects(const Model *m) {
 
 typedef VEC(FoundUnit) FoundUnits;
 
-/* The units that a scene's model found, those that are new. */
+/* Adds the units that a scene's model inferred and that are not listed yet. */
 static void collect_units(const Model *m, FoundUnits *all) {
   for (uint32_t i = 0; i < m->found.n; i++) {
     FoundUnit u = m->found.at[i];
@@ -47,7 +48,7 @@ static void list_units(const FoundUnits *all, StrBuf *out) {
   if (all->n) sb_putc(out, '\n');
 }
 
-/* Whether there are inputs whose formulas a scene gives: those of contacts are not. */
+/* Whether the model declares inputs; each contact adds one more, which does not count. */
 static int has_inputs(const Model *m) { return m->inputs.n > m->contacts.n; }
 
 int check_print(const Deriver *d, Ast *ast, const char *scene, int allow_numeric, StrBuf *out) {
@@ -68,7 +69,7 @@ int check_print(const Deriver *d, Ast *ast, const char *scene, int allow_numeric
     sb_printf(out, "scene %s: ok%s\n", scenes.at[i], with_effects(e->m));
     if (e->m->effects.n || has_inputs(e->m) || e->energy_jumps) charges_show_broken(e, out);
   }
-  if (scene && !out->n) d->derive(d->data, &(ModelChoice){.scene = scene}); /* says that there is no such scene */
+  if (scene && !out->n) d->derive(d->data, &(ModelChoice){.scene = scene}); /* reports the unknown scene */
   EffectList unused = model_unused_effects(ast);
   for (uint32_t i = 0; i < unused.n && !scene; i++) {
     Eqns *e = d->derive(d->data, &(ModelChoice){.bare = 1, .also = unused.at[i]});

@@ -1,11 +1,11 @@
-/* What `lagc check` says. */
+/* The report of `lagc check`. */
 #ifndef LAGC_CHECK_H
 #define LAGC_CHECK_H
 
 #include "deriver.h"
 
-/* Facts, every scene (or the one named), effects that no scene uses, units that were found, symmetries, expectations. 0: the model is wrong, and
- * nothing is worth printing; the reasons, and false claims, are in the diags of the text. */
+/* Appends facts, every scene (or the one named), effects that no scene uses, inferred units, symmetries and expectations. Returns 0, with nothing
+ * to print, when the model is wrong; the reasons, and refuted claims, are in the diags of the text. */
 int check_print(const Deriver *d, Ast *ast, const char *scene, int allow_numeric, StrBuf *out);
 
 #endif

@@ -1,3 +1,4 @@
+/* Completion: parses the words before the cursor, then offers commands, options, scenes, settings and names from the tables and the model. */
 #include "complete.h"
 
 #include <ctype.h>
@@ -11,18 +12,18 @@
 #include "settings.h"
 #include "syntax/parse.h"
 
-/* The line so far: what the words before the last one said. */
+/* The command line before the cursor, parsed. */
 typedef struct {
   Arena *arena;
   StrBuf *out;
   const char *argv0;
   const char *word; /* the last one */
-  const char *head; /* what every candidate begins with: "--method=", "th + ", or "" */
+  const char *head; /* prefix of every candidate: "--method=", "th + ", or "" */
   Command command;
   const char *file, *scene;
   const OptionRow *open; /* an option that waits for its value, or NULL */
   VEC(Define) defines;
-  Ast *ast; /* of the file; NULL until somebody asked, and where it cannot be read */
+  Ast *ast; /* the file's; NULL until it is needed, or where it cannot be read */
 } Line;
 
 static void offer(Line *l, const char *candidate, const char *description) {
@@ -63,7 +64,7 @@ static void offer_setting(Line *l, const char *name, const char *what, const Uni
   offer(l, arena_printf(l->arena, "%s=", name), arena_printf(l->arena, "%s%s", what, in));
 }
 
-/* What may be set on the command line. */
+/* Names that `name=value` sets: parameters, starts, states, inputs. */
 static void offer_settings(Line *l) {
   Model *m = read_model(l);
   if (!m) return;
@@ -99,7 +100,7 @@ static void offer_names(Line *l, const AstStmt *list) {
   }
 }
 
-/* The name at the end of an expression; what stands before it stays. */
+/* Offers names for the identifier at the end of an expression; the text before it is kept. */
 static void offer_expression(Line *l) {
   size_t n = strlen(l->word), head = strlen(l->head);
   while (n > head && (isalnum((unsigned char)l->word[n - 1]) || strchr("_.", l->word[n - 1]) || (unsigned char)l->word[n - 1] >= 0x80)) n--;
@@ -183,7 +184,7 @@ static void offer_topics(Line *l) {
   for (size_t i = 0; function_name(i); i++) offer(l, function_name(i), "function");
 }
 
-/* A word before the last one. */
+/* Records a word before the last one: an option, its value, the file or the scene. */
 static void take_word(Line *l, const char *word) {
   const char *value = NULL;
   if (l->open) {

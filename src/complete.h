@@ -1,16 +1,15 @@
-/* `lagc complete WORD...`: what a shell may offer for the last WORD of a command line. The scripts of completion
- * (src/cli/complete.bash and its kin) ask it, so that all shells know what the parser knows, and nothing twice.
+/* `lagc complete WORD...`: candidates for the last WORD of a command line, asked for by the shells' completion scripts
+ * (complete.bash, .zsh and .fish), so that every shell knows what the parser knows.
  *
- * WORDs are those after `lagc`, the last one as far as the cursor, perhaps empty. Each line of the answer is a candidate for
- * the whole word, a tab, and a description; after a candidate that ends in `=` or `(` the user goes on without a space. The
- * line `:files SUFFIX...` stands for the names of files with one of these suffixes, or, without any, of all files; where
- * a file's name is only the last part of the word, it begins after the `=`. */
+ * WORDs are the words after `lagc`; the last one ends at the cursor and may be empty. Each line of the answer is a candidate for
+ * the whole word, a tab, and a description; no space follows a candidate that ends in `=` or `(`. The line `:files SUFFIX...`
+ * stands for the names of files with one of these suffixes (without any: of all files), after the `=` in words like --output=FILE. */
 #ifndef LAGC_COMPLETE_H
 #define LAGC_COMPLETE_H
 
 #include "base/strbuf.h"
 
-/* Appends the answer for words[n]. argv0 is what lagc was called as. What is wrong with the model is no matter here. */
+/* Appends the candidates for words[n]. argv0: the name that lagc was called by. Mistakes in the model are ignored. */
 void complete(StrBuf *out, const char *const *words, size_t n, const char *argv0);
 
 #endif

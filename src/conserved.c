@@ -1,3 +1,4 @@
+/* Prints symmetries with their charges (`lagc noether`), and Hamilton's equations (`lagc derive --hamiltonian`). */
 #include "conserved.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* How commands that look at several models of one text get them: scenes, effects one by one. */
+/* Deriver: the callback by which a command derives several models of one text: its scenes, its effects one by one. */
 #ifndef LAGC_DERIVER_H
 #define LAGC_DERIVER_H
 

@@ -1,3 +1,4 @@
+/* `lagc effects`: plans variants, reads their measurements, searches the smallest sufficient set. A set of effects is a bit mask. */
 #include "effects.h"
 
 #include <math.h>
@@ -14,7 +15,7 @@ static uint32_t count(EffectSet set) {
   return n;
 }
 
-/* The effect and what it requires (up: what requires it), however indirectly. */
+/* The effect and all effects that it requires, directly or not (up: all that require it). */
 static EffectSet reach(const EffectStudy *s, uint32_t effect, int up) {
   uint8_t *in = ARENA_ARRAY(s->arena, uint8_t, s->graph.n);
   EffectSet set = 0;
@@ -30,7 +31,7 @@ EffectList effects_of(const EffectStudy *s, EffectSet set) {
   return (EffectList){names.at, names.n};
 }
 
-/* Holds each of these effects what it requires? */
+/* Whether the set contains the requirements of each of its effects. */
 static int is_whole(const EffectStudy *s, EffectSet set) {
   for (uint32_t i = 0; i < s->graph.n; i++)
     for (uint32_t k = 0; set & one(i) && k < s->graph.at[i].requires.n; k++)
@@ -38,7 +39,7 @@ static int is_whole(const EffectStudy *s, EffectSet set) {
   return 1;
 }
 
-/* Two of the set that exclude each other: the one in `scene` of them; NULL: there are none. */
+/* Finds two effects of the set that exclude each other, and returns the one that the scene uses; NULL: no conflict. */
 static Name clash(const EffectStudy *s, EffectSet set) {
   for (uint32_t i = 0; i < s->graph.n; i++)
     for (uint32_t k = 0; set & one(i) && k < s->graph.at[i].excludes.n; k++) {
@@ -48,7 +49,7 @@ static Name clash(const EffectStudy *s, EffectSet set) {
   return NULL;
 }
 
-/* --- what is compared --- */
+/* --- variants --- */
 
 static uint32_t variant(EffectStudy *s, EffectSet set) {
   for (uint32_t i = 0; i < s->variants.n; i++)
@@ -95,9 +96,9 @@ EffectStudy *effects_plan(const Model *scene) {
   return s;
 }
 
-/* --- what was measured --- */
+/* --- measurements --- */
 
-/* `word` at the beginning of the line: what stands behind it; NULL: it does not. */
+/* The text after `word` and a space at the beginning of the line; NULL: the line begins otherwise. */
 static char *behind(char *line, const char *word) {
   size_t n = strlen(word);
   return strncmp(line, word, n) == 0 && line[n] == ' ' ? line + n + 1 : NULL;
@@ -136,7 +137,7 @@ Measured *effects_read(EffectStudy *s, char *said, uint32_t n, const char **rest
   return found == n ? m : NULL;
 }
 
-/* What a difference is compared with: that of two runs has the error of each. */
+/* A difference of two runs carries the error of each: hence twice. */
 double effects_limit(const EffectStudy *s) { return s->accuracy > 0 ? s->accuracy : 2 * s->error; }
 
 const char *effects_verdict(const EffectStudy *s, const EffectRow *row) {
@@ -149,7 +150,7 @@ const char *effects_verdict(const EffectStudy *s, const EffectRow *row) {
 
 /* --- the smallest set --- */
 
-/* Whether a variant will do; of two that do, the one with fewer operations is better. */
+/* Takes the set for the least so far if it meets the accuracy with fewer operations than the best one. */
 static void consider(EffectStudy *s, EffectSet set, const Measured *m, int *best_ops) {
   if (m->why || !(m->difference <= s->accuracy) || m->ops >= *best_ops) return;
   *best_ops = m->ops;
@@ -157,7 +158,7 @@ static void consider(EffectStudy *s, EffectSet set, const Measured *m, int *best
   s->least_difference = m->difference;
 }
 
-/* All whole subsets of the scene's with k effects, but the scene's own. */
+/* Adds all proper subsets of the scene's set that have k effects and contain their requirements. */
 static void add_subsets(const EffectStudy *s, uint32_t k, EffectSets *sets) {
   for (EffectSet set = s->used; set; ) {
     set = (set - 1) & s->used; /* the next smaller subset */
@@ -165,7 +166,7 @@ static void add_subsets(const EffectStudy *s, uint32_t k, EffectSets *sets) {
   }
 }
 
-/* The effect of `set` that was the least alone, with those that require it. 0: all were tried. */
+/* The untried effect of `set` with the least difference, with the effects that require it. 0: all were tried. */
 static EffectSet least_alone(const EffectStudy *s, EffectSet set, EffectSet tried) {
   const EffectRow *least = NULL;
   for (uint32_t i = 0; i < s->rows.n; i++) {
@@ -211,9 +212,9 @@ EffectSets effects_try(EffectStudy *s, const EffectSets *before, const Measured 
   return sets;
 }
 
-/* --- to paste --- */
+/* --- the `use` statement --- */
 
-/* The `use` statement of the effect in the scene or the nearest that it is like; NULL: there is none. */
+/* The `use` statement of the effect in the scene, or in the nearest scene along its chain of `like`; NULL: none. */
 static const AstStmt *use_of(const EffectStudy *s, Name effect) {
   Name scene = s->scene->scene.name;
   for (uint32_t guard = 0; scene && guard < 1000; guard++) {
@@ -228,7 +229,7 @@ static const AstStmt *use_of(const EffectStudy *s, Name effect) {
   return NULL;
 }
 
-/* What stands in the parentheses of `use drag(c = 2)`. */
+/* Appends the settings of a `use` statement as they were written: `(c = 2)` of `use drag(c = 2)`. */
 static void add_values(const EffectStudy *s, const AstStmt *use, StrBuf *out) {
   if (!use || !use->body) return;
   const AstStmt *last = use->body;

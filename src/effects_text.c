@@ -1,4 +1,4 @@
-/* What `lagc effects` prints. */
+/* The report of `lagc effects`, as text and as JSON. */
 #include <math.h>
 #include <string.h>
 
@@ -8,14 +8,14 @@ static Name name_of(const EffectStudy *s, const EffectRow *row) { return s->grap
 
 static int ops_of(const EffectStudy *s, const EffectRow *row) { return s->measured[row->upper].ops - s->measured[row->lower].ops; }
 
-/* As a share of the scene's right-hand side. */
+/* Operations as a fraction of the scene's right-hand side. */
 static double share(const EffectStudy *s, double part) { return part / s->measured[0].ops; }
 
 static double time_share(const EffectStudy *s, const EffectRow *row) {
   return (s->measured[row->upper].time - s->measured[row->lower].time) / s->measured[0].time;
 }
 
-/* What several effects need, and none alone. */
+/* Operations that several effects share: the scene's, less the base's and each effect's own. */
 static int shared_ops(const EffectStudy *s) {
   int ops = s->measured[0].ops - s->measured[s->base].ops;
   for (uint32_t i = 0; i < s->rows.n; i++)

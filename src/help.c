@@ -1,3 +1,4 @@
+/* Help pages, put together from the tables of commands and options, the chapters of the reference, and the table of units. */
 #include "help.h"
 
 #include <string.h>
@@ -10,7 +11,7 @@
 #include "model/model.h"
 #include "syntax/parse.h"
 
-enum { TERMS = 24 }; /* where meanings begin in lists */
+enum { TERMS = 24 }; /* column of the meanings in lists */
 
 /* ---- commands and options ---- */
 
@@ -21,7 +22,7 @@ static void put_option(StrBuf *out, const OptionRow *o) {
   page_term(out, term, o->does, TERMS);
 }
 
-/* Of plot and animate only what is not an option of run, too. */
+/* Lists a command's options; options of the simulator that run has, too, are listed under run alone. */
 static void put_options(StrBuf *out, Command c) {
   for (size_t i = 0; option_row(i); i++) {
     const OptionRow *o = option_row(i);
@@ -39,7 +40,7 @@ static int put_command(StrBuf *out, const char *topic) {
     sb_putc(out, '\n');
     page_paragraphs(out, row->help);
     if (!command_reads_model(row->command)) return 1;
-    if (!strstr(row->help, "  name=value ")) sb_putc(out, '\n'); /* what looks like an option heads them */
+    if (!strstr(row->help, "  name=value ")) sb_putc(out, '\n'); /* a line on name=value heads the options */
     put_options(out, row->command);
     return 1;
   }
@@ -54,7 +55,7 @@ static const char *commands_text(Arena *a, unsigned commands) {
   return sb_text(&b);
 }
 
-/* Options whose name without its dashes, or one of whose values, is the topic. */
+/* Prints the options whose name (without dashes) or one of whose choices is the topic. */
 static int put_named_options(StrBuf *out, const char *topic, int before) {
   int found = 0;
   topic += strspn(topic, "-");
@@ -96,7 +97,7 @@ static int put_unit(StrBuf *out, const char *name, int before) {
   return 1;
 }
 
-/* The table, in columns that are read downwards. */
+/* Prints the table of units in columns that are read downwards. */
 static void put_units(StrBuf *out) {
   enum { COLUMNS = 2, WIDE = 38 };
   VEC(const char *) cells = {0};

@@ -1,4 +1,4 @@
-/* What `lagc help` says: of a command, a chapter or a word of the reference, a function, a unit, an option.
+/* `lagc help`: pages on a command, a chapter or a word of the reference, a function, a unit, an option.
  *
  * Nothing is written twice: commands and options come from their tables (cli/commands.h), the language from its
  * reference (grammar/LANGUAGE.md), units from the compiler's own table. */
@@ -11,11 +11,11 @@
 
 typedef VEC(Name) Topics;
 
-/* All topics, each once; functions, units and options, on which there is help too, are left out. */
+/* All topics, each once, except functions, units and options. */
 void help_topics(Arena *a, Topics *out);
 
-/* Appends help on a topic; NULL: what there is help on. 0 when there is none on this topic: then *near is the
- * nearest topic, or NULL. */
+/* Appends help on a topic (NULL: the list of topics). Returns 0 for an unknown topic; then *near is the nearest
+ * known one, or NULL. */
 int help_print(StrBuf *out, const char *topic, Name *near);
 
 #endif

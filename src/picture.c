@@ -1,3 +1,4 @@
+/* Parses the expressions of --observe, --section, plot and animate, finds the points of an animation, and writes the simulator's argv. */
 #include "picture.h"
 
 #include <string.h>
@@ -12,7 +13,7 @@ typedef struct {
   Arena *arena;
 } Maker;
 
-/* Names of columns stay below what a simulator keeps of them. */
+/* The name of a column, cut to the length that a simulator keeps. */
 static const char *column_name(Maker *k, const char *text) {
   enum { LONGEST = 90, SHOWN = 76 };
   size_t n = strlen(text), cut = SHOWN;
@@ -21,7 +22,7 @@ static const char *column_name(Maker *k, const char *text) {
   return arena_printf(k->arena, "%.*s...#%u", (int)cut, text, k->p->asked.n + 1);
 }
 
-/* Asks for an expression; the name of its column, NULL after a mistake. `from` is the option that it stands in. */
+/* Adds an expression to the outputs and returns the name of its column; NULL after a mistake. from: the option that holds the expression. */
 static const char *ask(Maker *k, const char *from, const char *text) {
   text = text_trimmed(k->arena, text, strlen(text));
   if (strcmp(text, "t") == 0) return text; /* every table begins with the time */
@@ -37,7 +38,7 @@ static void argument(Maker *k, const char *option, const char *value) {
   if (value) vec_push(k->arena, &k->p->argv, arena_strdup(k->arena, value));
 }
 
-/* MODEL_SCENE.suffix, or what -o says. */
+/* The file of -o, or MODEL_SCENE.suffix. */
 static const char *file_name(Maker *k, const char *suffix) {
   if (k->o->output) return k->o->output;
   const char *model = "model";
@@ -48,7 +49,7 @@ static const char *file_name(Maker *k, const char *suffix) {
 
 /* --- sections --- */
 
-/* The direction that the last word says; *n is the length of what stands before it. -1: it says none. */
+/* The direction that the last word names; *n: length of the text before that word. -1: no direction. */
 static int section_direction(const char *text, size_t *n) {
   static const char *const words[] = {[CROSS_BOTH] = "crossing", [CROSS_RISING] = "rising", [CROSS_FALLING] = "falling"};
   const char *space = strrchr(text, ' ');
@@ -60,7 +61,7 @@ static int section_direction(const char *text, size_t *n) {
   return -1;
 }
 
-/* 'EXPR rising' becomes an event of the model, after which the simulator is told to put out rows. */
+/* --section 'EXPR rising' becomes an event of the model, at which the simulator writes rows. */
 static int prepare_section(Maker *k, const char **error) {
   const char *text = k->o->section;
   size_t n = 0;
@@ -80,7 +81,7 @@ static int prepare_section(Maker *k, const char **error) {
 
 /* --- plot --- */
 
-/* A name takes a prime as it is; anything else in parentheses. */
+/* The text of the time derivative: name', or (expression)'. */
 static const char *rate_of(Maker *k, const char *text) {
   int plain = 1;
   for (const char *c = text; *c; c++)
@@ -104,7 +105,7 @@ static int prepare_plot(Maker *k, const char **error) {
 
 /* --- animate --- */
 
-/* The statement outside of effects that makes `name` a number or a family of them; NULL when there is none. */
+/* The statement outside effects that declares `name` as a number or a family of numbers; NULL: none. */
 static const AstStmt *find_quantity(const Ast *ast, const char *name) {
   for (const AstStmt *s = ast->first; s; s = s->next) {
     int counts = s->kind == STMT_COORD || s->kind == STMT_STATE || s->kind == STMT_LET || s->kind == STMT_OBSERVE;
@@ -113,10 +114,10 @@ static const AstStmt *find_quantity(const Ast *ast, const char *name) {
   return NULL;
 }
 
-/* The model's own points, found by the names of their quantities. */
+/* Points of the model, found by the names of its quantities. */
 typedef struct {
   const char *points, *from;
-  int rods; /* they hang on each other: their places follow from other coordinates */
+  int rods; /* joined by rods: their positions are lets of other coordinates */
 } Found;
 
 static int find_pair(Maker *k, const char *x, const char *y, StrBuf *points, int *rods) {
@@ -127,7 +128,7 @@ static int find_pair(Maker *k, const char *x, const char *y, StrBuf *points, int
   return 1;
 }
 
-/* A model with one coordinate: an angle is drawn as a rod of length one that hangs down. */
+/* The point of a model with one coordinate; a periodic one is drawn as a hanging rod of length 1. */
 static void find_only(Maker *k, Found *f) {
   const AstStmt *only = NULL;
   uint32_t n = 0;
@@ -141,7 +142,7 @@ static void find_only(Maker *k, Found *f) {
   f->points = arena_printf(k->arena, only->periodic ? "sin(%s),-cos(%s)" : "%s,0", only->name, only->name);
 }
 
-/* Of a family of numbers, u[1] u[2] ...: each at the place of its number. */
+/* Points of a family u[1] u[2] ...: abscissa the index, ordinate the value. */
 static void find_row(const Model *m, StrBuf *points) {
   enum { MOST = 1000 };
   CoordList coords = model_coordinates(m);
@@ -155,8 +156,8 @@ static void find_row(const Model *m, StrBuf *points) {
   }
 }
 
-/* The vectors among the coordinates, members of families too: r.x,r.y or b[1].x,b[1].y b[2].x,b[2].y. Only the model knows
- * how many there are. 0 when the model has mistakes. */
+/* Points from vectors among the coordinates, families included: r.x,r.y or b[1].x,b[1].y b[2].x,b[2].y; else from a family of
+ * numbers. Builds the model, which knows their number; returns 0 when it has mistakes. */
 static int find_vectors(Maker *k, Found *f) {
   enum { MOST = 1000 };
   ModelChoice choice = {.scene = k->p->scene, .defines = k->o->defines.at, .ndefines = k->o->defines.n};
@@ -186,7 +187,7 @@ static Found find_points(Maker *k) {
   return f;
 }
 
-/* "x1,y1 x2,y2" with each part an output of the scene; NULL after a mistake. */
+/* Makes each part of "x1,y1 x2,y2" an output of the scene and returns the names of the columns, written likewise; NULL after a mistake. */
 static const char *ask_points(Maker *k, const char *from, const char *text, uint32_t most, const char **error) {
   PointTexts points = {0};
   const char *why = NULL;
@@ -244,7 +245,7 @@ int picture_prepare(Picture *p, Ast *ast, const Options *o, const char **error) 
   const char *self = o->command == CMD_PLOT ? "lagc plot" : o->command == CMD_ANIMATE ? "lagc animate"
                    : o->command == CMD_MODES ? "lagc modes" : o->command == CMD_LYAPUNOV ? "lagc lyapunov" : o->command == CMD_COST ? "lagc cost"
                    : o->command == CMD_EFFECTS ? "lagc effects" : "lagc run";
-  argument(&k, self, NULL); /* what its messages begin with */
+  argument(&k, self, NULL); /* head of the simulator's messages */
   if (o->command == CMD_EFFECTS) argument(&k, "--effects", "report");
   for (uint32_t i = 0; i < o->observe.n; i++) ok &= ask(&k, "--observe", o->observe.at[i]) != NULL;
   ok = ok && prepare_section(&k, error);

@@ -1,9 +1,10 @@
+/* Finds the first number that was rounded to a double and shows it: in the text with a caret, in the graph by its value. */
 #include "rounded.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* Numbers of a model that are no fraction of 64 bits were rounded to a double. Those with few digits came to no harm. */
+/* Literals that are no 64-bit fraction were rounded to a double; those of up to SAFE characters lost nothing. */
 static int warn_literal(const Ast *ast, const char *precision) {
   enum { SAFE = 17 };
   for (AstId i = 1; i < ast->exprs.n; i++) {

@@ -1,3 +1,4 @@
+/* Values on the command line: parses -D, compiles in inputs and starts of rotations, converts units and formulas to plain numbers. */
 #include "settings.h"
 
 #include <string.h>
@@ -9,7 +10,7 @@
 
 /* --- inputs with a formula or a table --- */
 
-/* The declaration of `name`, or of `effect.name`, of that kind; NULL: there is none. */
+/* The declaration of `name`, or of `effect.name`, with this kind; NULL: none. */
 static const AstStmt *find_declared(const Ast *ast, AstStmtKind kind, const char *name) {
   const char *dot = strchr(name, '.'), *stem = dot ? dot + 1 : name;
   for (const AstStmt *s = ast->first; s; s = s->next) {
@@ -23,13 +24,13 @@ static const AstStmt *find_declared(const Ast *ast, AstStmtKind kind, const char
 
 static int is_number(const char *text) { return *text && strspn(text, "+-.0123456789eE") == strlen(text); }
 
-/* The expression `text`, which stands behind `name=`; 0 after a mistake. */
+/* Parses the expression after `name=`; 0 after a mistake. */
 static AstId parse_setting(Ast *ast, const char *name, const char *text) {
   const Source *source = source_add(ast->sources, name, text, strlen(text));
   return source ? parse_expression(ast, source) : 0;
 }
 
-/* A shell takes quotes away: `u=gust.csv` is the file. */
+/* Puts back the quotes around a file's name, which the shell removed: `u=gust.csv` names a file. */
 static const char *quoted_file(Arena *a, const char *text) {
   size_t n = strlen(text);
   int named = n > 4 && strcmp(text + n - 4, ".csv") == 0;
@@ -49,13 +50,13 @@ int settings_defines(Ast *ast, Define *defines, uint32_t n) {
 static int take(Ast *ast, const char *setting, GivenList *given) {
   const char *eq = strchr(setting, '=');
   const char *name = arena_strndup(ast->arena, setting, (size_t)(eq - setting));
-  const char *place = arena_strndup(ast->arena, setting, (size_t)(eq - setting) + 1); /* what messages point to: `u=` */
+  const char *place = arena_strndup(ast->arena, setting, (size_t)(eq - setting) + 1); /* shown in messages: `u=` */
   Given one = {parse_setting(ast, place, name), parse_setting(ast, place, quoted_file(ast->arena, eq + 1))};
   vec_push(ast->arena, given, one);
   return one.what && one.value;
 }
 
-/* Whether a setting, up to its `=`, says how a rotation starts: R, R[2], R.w, omega(R). */
+/* Whether the name of a setting is a start of a rotation: R, R[2], R.w, omega(R). */
 static int starts_rotation(const Ast *ast, const char *name) {
   const char *inner = strncmp(name, "omega(", 6) == 0 ? name + 6 : name;
   while (*inner == ' ') inner++;
@@ -88,17 +89,17 @@ typedef struct {
   const Options *o;
   Ast *ast;
   Arena *arena;
-  Model *model; /* made for the first value that needs it */
+  Model *model; /* built for the first value that needs it */
 } Converter;
 
-/* A plain number is the simulator's business, and so is whatever else it may read, such as a file. */
+/* Whether the value has a unit or is a formula of numbers; all else goes to the simulator as it stands. */
 static int needs_conversion(const char *value) {
   size_t n = strlen(value);
   if (is_number(value)) return 0;
   return strchr(value, '[') || strspn(value, "+-*/^.0123456789eE() pi") == n;
 }
 
-/* The value as a simulator takes it; NULL after a mistake. `name` is NULL for a time. */
+/* The value as a plain number in the declared unit of `name` (NULL: a time [s]); NULL after a mistake. */
 static const char *converted(Converter *c, const char *name, const char *value) {
   enum { ROOM = 32 };
   if (!c->model) {
@@ -121,7 +122,7 @@ static const char *converted(Converter *c, const char *name, const char *value) 
   return text;
 }
 
-/* name=value: without spaces around either. */
+/* Converts name=value, with spaces around both removed. */
 static int convert_setting(Converter *c, const char **arg) {
   const char *eq = strchr(*arg, '=');
   const char *name = text_trimmed(c->arena, *arg, (size_t)(eq - *arg)), *value = text_trimmed(c->arena, eq + 1, strlen(eq + 1));
@@ -130,7 +131,7 @@ static int convert_setting(Converter *c, const char **arg) {
   return 1;
 }
 
-/* --until 2[min], --until=2[min]. */
+/* Converts the value of an option that is a time: --until 2[min], --until=2[min]. */
 static int convert_time(Converter *c, uint32_t *i) {
   static const char *const options[] = {"--until", "--every", "--step", "--transient"};
   const char **at = c->o->rest.at;

@@ -1,3 +1,4 @@
+/* Required derivatives: maps the methods of a scene and of the command line to flags WANT_... */
 #include "wants.h"
 
 #include <stdio.h>
@@ -8,7 +9,7 @@
 #include "base/source.h"
 #include "ir/unit.h"
 
-/* Of a method; an explicit one for separable models turns into an implicit one for the others. */
+/* Flags of a method; one that splits T and V of separable models is implicit for others, and then needs derivatives of L. */
 static unsigned wants_of_info(const Eqns *e, const MethodInfo *m) {
   int splits = (m->flags & METHOD_SPLITS) && e->separable;
   if ((m->flags & METHOD_FLOWS) && !e->n) return WANT_LINEAR;
@@ -16,14 +17,13 @@ static unsigned wants_of_info(const Eqns *e, const MethodInfo *m) {
          (m->flags & METHOD_TAYLOR ? WANT_TAYLOR : 0u);
 }
 
-/* Of NAME or NAME(option=value, ...). */
+/* Flags of a method written NAME or NAME(option=value, ...). */
 static unsigned wants_of_method(const Eqns *e, const char *text) {
   const MethodInfo *m = text ? method_find(text, strcspn(text, " (")) : NULL;
   return m ? wants_of_info(e, m) : 0;
 }
 
-/* The method that a saved state goes on with stands near its head, on a line of its own. A file that is none is the
- * simulator's to refuse. */
+/* The method of a saved state, from the line `method NAME` near its head; NULL: none, and the simulator refuses the file. */
 static const char *method_of_state(Arena *a, const char *path) {
   char line[256];
   const char *name = NULL, *error;
@@ -34,15 +34,15 @@ static const char *method_of_state(Arena *a, const char *path) {
   return name;
 }
 
-/* What all methods need. */
+/* Flags that all methods together need. */
 static unsigned wants_of_all(const Eqns *e) {
   unsigned wants = 0;
   for (size_t i = 0; method_at(i); i++) wants |= wants_of_info(e, method_at(i));
   return wants;
 }
 
-/* What the simulator may choose where nobody names a method: taylor for small tolerances, radau where friction or flows may be
- * stiff. Not for long models, whose series and Jacobians take long to compile. */
+/* Flags of the methods that the simulator may choose when none is named: taylor for small tolerances, radau where friction or flows may be
+ * stiff. None for long models, whose series and Jacobians take long to compile. */
 static unsigned wants_of_choice(const Eqns *e, const Options *o) {
   enum { LONG = 40 };
   const double below_taylor = 1e-9; /* as in runtime/app/automatic.c */

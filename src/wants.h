@@ -1,13 +1,13 @@
-/* What a program must hold for the methods of integration that it is asked for: derivatives that most methods do without
- * are emitted only for those that need them. */
+/* Required derivatives: those that the requested methods of integration need. Most methods need none, so that programs
+ * leave them out otherwise. */
 #ifndef LAGC_WANTS_H
 #define LAGC_WANTS_H
 
 #include "cli/options.h"
 #include "mech/eqns.h"
 
-/* WANT_... of ir/unit.h for the scene that e was derived for: by its own method and by the one that the command line
- * names, with --method or in the state that --resume goes on from; and what --with says. */
+/* Flags WANT_... (ir/unit.h) for the scene of e: by its own method, by the method of --method or of the state of
+ * --resume, and by --with. */
 unsigned wants_of(const Eqns *e, const Options *o);
 
 #endif

@@ -27,7 +27,7 @@ typedef struct {
 Arena *arena_new(const ArenaConfig *config);
 void arena_free(Arena *a);
 
-/* A place in time: arena_forget frees what was allocated since, to which nothing may point any more. For what is tried and not kept. */
+/* Mark: arena_forget frees all that was allocated since, to which nothing may point any more. For trials that are not kept. */
 typedef struct {
   void *chunk;
   size_t in_chunk, used;

@@ -6,7 +6,7 @@
 
 typedef struct {
   const char *name, *value;
-  uint32_t expr; /* AstId of the value; 0: not parsed yet, or wrong */
+  uint32_t expr; /* AstId of the value; 0: not parsed yet, or a mistake */
 } Define;
 
 #endif

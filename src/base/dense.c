@@ -1,3 +1,4 @@
+/* Dense linear algebra in long double, all matrices row-major: inverse, Gram-Schmidt, kernel by pivoted QR, row echelon form. */
 #include "base/dense.h"
 
 #include <math.h>
@@ -24,13 +25,13 @@ uint32_t dense_solve(Arena *arena, uint32_t n, const long double *a, long double
   return rank;
 }
 
-/* Orthonormal rows, and of each the columns that are not 0. */
+/* Orthonormal rows; row k has its nonzeros in column[begin[k]] .. column[begin[k + 1] - 1]. */
 typedef struct {
   const long double *at;
   uint32_t n, width, *begin, *column; /* NULL: all columns */
 } Basis;
 
-/* Takes the row's part along row k of the basis off it. */
+/* Subtracts from the row its projection onto row k of the basis. */
 static void take_off(const Basis *b, uint32_t k, long double *row) {
   const long double *q = b->at + (size_t)k * b->width;
   uint32_t from = b->begin ? b->begin[k] : 0, to = b->begin ? b->begin[k + 1] : b->width;
@@ -63,13 +64,13 @@ long double dense_reduce(uint32_t n, long double *row, const long double *before
 /* --- kernels --- */
 
 typedef struct {
-  uint32_t rows, columns, active; /* columns from `active` on are zero */
+  uint32_t rows, columns, active; /* columns from `active` on are 0 */
   long double *m;
   long double *along;  /* [columns] scratch */
-  long double *scale;  /* [columns] 1 / length of the column, by its first place */
-  long double *length; /* [columns] squared, of what is below the triangle; */
-  long double *sure;   /* [columns] and when it was last computed as a whole */
-  uint32_t *from;      /* [columns] first place of the column that is now here */
+  long double *scale;  /* [columns] 1 / length of the column, by its original index */
+  long double *length; /* [columns] squared length below the triangle, updated; */
+  long double *sure;   /* [columns] its value when last computed afresh */
+  uint32_t *from;      /* [columns] original index of the column now here */
 } Triangle;
 
 static long double squared_below(const Triangle *t, uint32_t row, uint32_t column) {
@@ -105,7 +106,7 @@ static Triangle triangle_new(Arena *a, uint32_t rows, uint32_t columns, long dou
   return t;
 }
 
-/* The column of which most is left comes to k; how much that is. */
+/* Exchanges the longest remaining column into place k and returns its length below row k. */
 static long double bring_longest(Triangle *t, uint32_t k) {
   uint32_t best = k;
   for (uint32_t j = k; j < t->active; j++) {
@@ -116,12 +117,12 @@ static long double bring_longest(Triangle *t, uint32_t k) {
   return sqrtl(squared_below(t, k, k));
 }
 
-/* Reflects rows k.. so that column k has one element there, -+length; the columns behind it go along. */
+/* Householder reflection of rows k..: column k keeps one element -+length there; applied to the columns after it. */
 static void reflect(Triangle *t, uint32_t k, long double length) {
   size_t w = t->columns, to = t->active;
   long double *m = t->m, alpha = m[k * w + k] > 0 ? -length : length;
   m[k * w + k] -= alpha;
-  long double half = -alpha * m[k * w + k]; /* |u|^2/2 of the u that stands in column k */
+  long double half = -alpha * m[k * w + k]; /* |u|^2/2 of the reflector u, which stands in column k */
   for (size_t j = k + 1; j < to; j++) t->along[j] = 0;
   for (size_t i = k; i < t->rows; i++)
     for (size_t j = k + 1; j < to && m[i * w + k] != 0; j++) t->along[j] += m[i * w + k] * m[i * w + j];
@@ -183,7 +184,7 @@ uint32_t dense_echelon(uint32_t rows, uint32_t columns, long double *m, long dou
   return rank;
 }
 
-/* The row behind the basis becomes one of it. */
+/* Appends the row behind the basis to it: records its nonzeros. */
 static void join_basis(Basis *b) {
   uint32_t next = b->begin[b->n];
   for (uint32_t j = 0; j < b->width; j++)
@@ -199,7 +200,7 @@ DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns) {
     long double *row = o.at + (size_t)basis.n * columns, length = 0;
     memcpy(row, from->at + (size_t)k * from->width, columns * sizeof *row);
     for (uint32_t j = 0; j < columns; j++) length += row[j] * row[j];
-    if (length > 0 && reduce(&basis, row) > 1e-9L) join_basis(&basis); /* else the next one takes its place */
+    if (length > 0 && reduce(&basis, row) > 1e-9L) join_basis(&basis); /* else the next row takes its place */
   }
   o.n = basis.n;
   return o;

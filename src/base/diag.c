@@ -1,3 +1,4 @@
+/* Diagnostics: records messages once each, and prints them by place, with the source line and a caret under the span. */
 #include "base/diag.h"
 
 #include "base/visible.h"
@@ -9,8 +10,7 @@ Diags *diags_new(Arena *a, const Sources *sources) {
   return d;
 }
 
-/* A text that is compiled several times (once a scene) makes the same mistake each time: one
- * message is enough. */
+/* The recorded message equal to this one, or NULL: a text compiled once a scene repeats its mistakes. */
 static Diag *find(const Diags *d, const Diag *one) {
   for (uint32_t i = 0; i < d->list.n; i++) {
     Diag *other = &d->list.at[i];
@@ -63,7 +63,7 @@ void diag_also(Diags *d, Span span, const char *fmt, ...) {
   va_end(ap);
 }
 
-/* As many signs as the characters of the line from byte `from` to `to` take on a screen. */
+/* Puts the sign under each screen column that bytes from..to of the line take. */
 static void put_under(StrBuf *out, const Place *p, uint32_t from, uint32_t to, char sign) {
   char shown[VISIBLE_SIZE];
   for (uint32_t k = from; k < to; k++) {
@@ -112,7 +112,7 @@ static void print_one(const Diags *d, StrBuf *out, Severity severity, Span span,
   if (p.file) print_snippet(out, &p, span);
 }
 
-/* Insertion order is kept among messages about one place. */
+/* Stable insertion sort of message indices by place. */
 static void sort_by_place(const Diags *d, uint32_t *order) {
   for (uint32_t i = 0; i < d->list.n && i < DIAG_MAX; i++) {
     uint32_t k = i;

@@ -32,11 +32,11 @@ typedef struct {
   uint32_t unshown; /* messages past the first DIAG_MAX + 1 */
 } Diags;
 
-enum { DIAG_MAX = 100 }; /* messages shown; the rest is counted, and said so */
+enum { DIAG_MAX = 100 }; /* messages shown; the rest are counted in one line */
 
 Diags *diags_new(Arena *a, const Sources *sources);
 
-/* Records a message about span (once: a repetition of a known one is dropped) and returns it. */
+/* Records a message about a span and returns it; a repetition of a recorded message is dropped. */
 Diag *diag_error(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 Diag *diag_warning(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 

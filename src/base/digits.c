@@ -1,10 +1,11 @@
+/* Decimal literals by long multiplication and long division, digit by digit, from 1, pi or 1/pi. */
 #include "base/digits.h"
 
 #include <string.h>
 
 enum { KEPT = 40, ROOM = 160 };
 
-/* 0.at[0] at[1] ... times 10^point, one decimal digit each. */
+/* The number 0.d0 d1 ... * 10^point, with at[i] the decimal digit di. */
 typedef struct {
   unsigned char at[ROOM];
   int n, point;
@@ -19,7 +20,7 @@ static void trim(Decimal *d) {
   while (d->n > 0 && d->at[d->n - 1] == 0) d->n--;
 }
 
-/* The digits of a constant, with its point. */
+/* A constant from the text of its digits, the point after `point` of them. */
 static Decimal decimal_of(const char *digits, int point) {
   Decimal d = {.n = (int)strlen(digits), .point = point};
   for (int i = 0; i < d.n; i++) d.at[i] = (unsigned char)(digits[i] - '0');
@@ -45,7 +46,7 @@ static void multiply(Decimal *d, uint64_t by) {
   d->point += places;
 }
 
-/* by <= 10^18: ten remainders fit. */
+/* by <= 10^18, so that ten remainders fit into 64 bits. */
 static void divide(Decimal *d, uint64_t by) {
   Decimal q = {.point = d->point};
   uint64_t rest = 0;

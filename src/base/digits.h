@@ -1,11 +1,11 @@
-/* Numbers as decimals of more digits than a double has, for programs that compute with more. */
+/* Decimal literals with more digits than a double has, for programs in long double or quadruple precision. */
 #ifndef LAGC_DIGITS_H
 #define LAGC_DIGITS_H
 
 #include "base/arena.h"
 #include "base/num.h"
 
-/* x*pi^pi_power as a decimal literal: exactly where it ends within 40 digits, else cut after 40. NULL where x is no exact
+/* x*pi^pi_power as a decimal literal, exact where it has at most 40 digits, else cut after 40. NULL where x is no exact
  * rational, its denominator is above 10^18, or pi_power is not -1, 0 or 1. */
 const char *digits_text(Arena *a, Num x, int pi_power);
 

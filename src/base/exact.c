@@ -1,3 +1,4 @@
+/* Exact linear systems: integers of up to 96 limbs of 32 bits, and Bareiss's fraction-free elimination on integer rows. */
 #include "base/exact.h"
 
 #include <string.h>
@@ -32,7 +33,7 @@ static void trim(Whole *x) {
   while (x->n && !x->at[x->n - 1]) x->n--;
 }
 
-/* --- sizes, without signs --- */
+/* --- magnitudes, without signs --- */
 
 static int compare(const Whole *a, const Whole *b) {
   if (a->n != b->n) return a->n < b->n ? -1 : 1;
@@ -41,7 +42,7 @@ static int compare(const Whole *a, const Whole *b) {
   return 0;
 }
 
-/* a + b */
+/* a += b */
 static void add_sizes(Work *w, Whole *a, const Whole *b) {
   uint32_t n = a->n > b->n ? a->n : b->n;
   uint64_t carry = 0;
@@ -56,7 +57,7 @@ static void add_sizes(Work *w, Whole *a, const Whole *b) {
   else a->at[a->n++] = (uint32_t)carry;
 }
 
-/* to = a - b, for a not below b; `to` may be either. */
+/* to = a - b, for a >= b; `to` may be a or b. */
 static void subtract_sizes(Whole *to, const Whole *a, const Whole *b) {
   int64_t borrow = 0;
   for (uint32_t i = 0; i < a->n; i++) {
@@ -117,7 +118,7 @@ static void shift_down(Whole *a, uint32_t shift) {
   trim(a);
 }
 
-/* rest[j ..] less q times b; where that is negative, b is added once. Returns the digit q that was right. */
+/* Subtracts q*b from rest[j ..]; where that is negative, adds b back once. Returns the correct quotient digit, q or q - 1. */
 static uint32_t take_digit(Whole *rest, uint32_t j, const Whole *b, uint64_t q) {
   int64_t borrow = 0;
   uint64_t carry = 0;
@@ -138,7 +139,7 @@ static uint32_t take_digit(Whole *rest, uint32_t j, const Whole *b, uint64_t q) 
   return (uint32_t)(q - 1);
 }
 
-/* a becomes the rest of a / b, *quotient what goes; signs as in C. Knuth, The Art of Computer Programming 2, 4.3.1, algorithm D. */
+/* a becomes the remainder of a / divisor, *quotient the quotient; signs as in C. Knuth, The Art of Computer Programming 2, 4.3.1, algorithm D. */
 static void divide(Work *w, Whole *a, const Whole *divisor, Whole *quotient) {
   Whole b = *divisor;
   uint32_t shift = 0;
@@ -167,7 +168,7 @@ static void divide(Work *w, Whole *a, const Whole *divisor, Whole *quotient) {
   trim(quotient);
 }
 
-/* Both are destroyed; a becomes it. */
+/* a becomes the greatest common divisor of a and b; b is destroyed. */
 static void divisor_of(Work *w, Whole *a, Whole *b) {
   Whole rest, ignored;
   while (b->n && !w->overflow) {
@@ -201,7 +202,7 @@ static Num ratio(Work *w, const Whole *top, const Whole *bottom) {
 
 /* --- the system --- */
 
-/* Row by row times the common denominator of each. */
+/* Multiplies a row by the common denominator of its entries: integers. */
 static void take_row(Work *w, uint32_t n, const Num *from, const Whole *common, Whole *to) {
   for (uint32_t k = 0; k < n; k++) {
     Whole scaled, factor, number = whole_of(from[k].num), denominator = whole_of(from[k].den), all = *common;
@@ -211,7 +212,7 @@ static void take_row(Work *w, uint32_t n, const Num *from, const Whole *common, 
   }
 }
 
-/* common becomes its least common multiple with the denominators. 0: a number is not exact. */
+/* common becomes its least common multiple with the denominators of from[n]. Returns 0 where a number is not exact. */
 static int add_denominators(Work *w, uint32_t n, const Num *from, Whole *common) {
   for (uint32_t k = 0; k < n; k++) {
     if (!num_is_exact(from[k])) return 0;
@@ -224,7 +225,7 @@ static int add_denominators(Work *w, uint32_t n, const Num *from, Whole *common)
   return 1;
 }
 
-/* A row with a pivot in column k comes to row k; 0: there is none. */
+/* Exchanges a row with a pivot in column k into row k. Returns 0 where there is none. */
 static int exchange(Arena *a, uint32_t n, uint32_t width, Whole *m, uint32_t k) {
   uint32_t from = k;
   while (from < n && !m[(size_t)from * width + k].n) from++;
@@ -238,7 +239,7 @@ static int exchange(Arena *a, uint32_t n, uint32_t width, Whole *m, uint32_t k) 
   return 1;
 }
 
-/* All rows but k lose column k; what all entries are divided by is the pivot before. */
+/* Eliminates column k from all rows but row k; every entry is divided, exactly, by the previous pivot. */
 static void eliminate(Work *w, uint32_t n, uint32_t width, Whole *m, uint32_t k, const Whole *before) {
   const Whole *pivot = m + (size_t)k * width;
   Whole one, other, factor;

@@ -1,3 +1,4 @@
+/* Look-ups in the generated table of methods (base/method_rows.h). */
 #include "base/methods.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* The methods of integration, for those who check a model or emit code for one: what they are called, their options and what they need.
- * The table is made from the runtime's own when lagc is built (runtime/list_methods.c). */
+/* Table of the methods of integration: their names, options and requirements, for the checks of models and the emission of C.
+ * It is generated from the runtime's descriptors when lagc is built (runtime/list_methods.c). */
 #ifndef LAGC_BASE_METHODS_H
 #define LAGC_BASE_METHODS_H
 
@@ -33,10 +33,10 @@ const MethodInfo *method_at(size_t i);
 /* The method whose name is the n bytes at `name`, or NULL. */
 const MethodInfo *method_find(const char *name, size_t n);
 
-/* Whether the name may be that of a method of a library that lagc was built without. */
+/* Whether the name may belong to a library that lagc was built without: gsl-... */
 int method_is_foreign(const char *name);
 
-/* The known name nearest to a wrong one, or NULL. */
+/* The known name nearest to an unknown one, or NULL. */
 const char *method_suggest(Arena *a, const char *wrong);
 
 /* The option of that name, or NULL. */

@@ -1,3 +1,4 @@
+/* Arithmetic on Num: exact in 128-bit intermediates; on overflow doubles with error bounds, and residues modulo a prime below 2^62. */
 #include "base/num.h"
 
 #include <float.h>
@@ -47,7 +48,7 @@ static uint64_t scramble(uint64_t x) {
   return x ^ x >> 31;
 }
 
-/* A residue for what has none of its own. */
+/* A residue for a value that has none, such as an irrational power: a hash. */
 static uint64_t mod_drawn(uint64_t a, uint64_t b) { return scramble(scramble(a + 0x9e3779b97f4a7c15u) ^ b) % PRIME; }
 
 static uint64_t mod_div(uint64_t a, uint64_t b) { return b == 1 ? a : b ? mod_mul(a, mod_pow(b, PRIME - 2)) : mod_drawn(a, b); }
@@ -67,8 +68,8 @@ static uint64_t bits_of(double x) {
   return bits;
 }
 
-/* The last rounding, and those of the bound itself, are added to the error of the operands. Where value and residue both say that it is a whole number,
- * it is that. */
+/* An inexact number: the last rounding, and those of the bound itself, are added to the error. Where value and residue agree on an integer, that
+ * integer is the result. */
 static Num inexact(double x, double error, uint64_t residue) {
   error = error * (1 + 1e-9) + fabs(x) * DBL_EPSILON + DBL_MIN * DBL_EPSILON;
   int64_t whole = residue > PRIME / 2 ? -(int64_t)(PRIME - residue) : (int64_t)residue;
@@ -76,7 +77,7 @@ static Num inexact(double x, double error, uint64_t residue) {
   return (Num){.error = isnan(error) ? INFINITY : error, .den = 0, .approx = x, .residue = residue};
 }
 
-/* How far num_value(a) may be off: also where a is exact, and its quotient is not a double. */
+/* Bound of the error of num_value(a), also for an exact a whose quotient is rounded. */
 static double value_error(Num a) {
   if (!a.den) return a.error;
   return a.den == 1 && llabs(a.num) <= 1ll << 53 ? 0 : 4 * DBL_EPSILON * fabs(num_value(a));
@@ -84,7 +85,7 @@ static double value_error(Num a) {
 
 static int is_negative(Num a) { return a.den ? a.num < 0 : signbit(a.approx) != 0; }
 
-/* n/d in lowest terms; a double when it does not fit. */
+/* n/d in lowest terms; a double where 64 bits do not hold it. */
 static Num reduce(Wide n, Wide d) {
   if (d < 0) {
     n = -n;
@@ -125,7 +126,7 @@ Num num_rounded(Num a) { return a.den ? a : (Num){.error = 0, .den = 0, .approx 
 int num_sign(Num a) {
   if (a.den) return (a.num > 0) - (a.num < 0);
   if (num_is_zero(a)) return 0;
-  return is_negative(a) && !isnan(a.approx) ? -1 : 1; /* the negative of what is no number is itself */
+  return is_negative(a) && !isnan(a.approx) ? -1 : 1; /* -NaN has the sign of NaN */
 }
 
 int num_sign_is_sure(Num a) { return a.den || fabs(a.approx) > a.error; }
@@ -193,14 +194,14 @@ static uint64_t residue_of_power(Num a, Num b) {
   return b.num < 0 ? mod_div(1, r) : r;
 }
 
-/* a^b where it is not exact. |ln r| is off by |b| times what ln |a| is, and by |ln |a|| times what b is. */
+/* a^b, inexact. The error of ln |r| is |b| times that of ln |a|, plus |ln |a|| times that of b. */
 static Num pow_inexact(Num a, Num b) {
   double x = num_value(a), y = num_value(b), r = pow(x, y), ea = value_error(a), eb = value_error(b), least = fabs(x) - ea;
   double relative = least > 0 ? fabs(y) * ea / least + fabs(log(fabs(x))) * eb + 4 * DBL_EPSILON : INFINITY;
   return inexact(r, relative < 0.1 ? 2 * relative * fabs(r) : INFINITY, residue_of_power(a, b));
 }
 
-/* a^n for n >= 0 by squaring; sets *exact 0 once it overflows. */
+/* a^n for n >= 0 by squaring; sets *exact to 0 on overflow. */
 static Num pow_int(Num a, int64_t n, int *exact) {
   Num r = num_int(1);
   while (n > 0 && *exact) {
@@ -258,7 +259,7 @@ Num num_gcd(Num a, Num b) {
   return num_abs(reduce(n, (Wide)a.den * b.den));
 }
 
-/* Of a literal, whose last digit counts 10^exponent. */
+/* Residue of a decimal literal whose last digit has the weight 10^exponent. */
 static uint64_t literal_residue(const char *s, size_t n, int64_t exponent) {
   uint64_t r = 0;
   for (size_t i = 0; i < n && s[i] != 'e' && s[i] != 'E'; i++)
@@ -290,7 +291,7 @@ Num num_parse(const char *s, size_t n) {
   exponent -= scale;
   int64_t whole = exponent;
   Wide num = digits, den = 1;
-  /* Trailing zeros of "1.5000e-30" should not cost exactness. */
+  /* "1.5000e-30": trailing zeros must not cost exactness. */
   while (exponent < 0 && num && num % 10 == 0) {
     num /= 10;
     exponent++;

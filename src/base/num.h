@@ -1,10 +1,10 @@
 /* Num: an exact rational, or a double with a bound of its error where a rational would overflow 64 bits.
  * Always in lowest terms with den > 0; den == 0 marks the double. Pure values: no memory.
  *
- * What rests on equality stays sound where numbers are not exact: such a number is never "zero" or "one". Beside its value
- * stands the residue of the true one modulo a prime, which arithmetic follows without rounding; a difference is 0, exactly,
- * where both say so. Then two different numbers pass for one by a coincidence of one in 4e18 (Schwartz 1980, DOI
- * 10.1145/322217.322225), and 1 + 1e-20 is not 1. By the same token a whole number that value and residue agree on is exact. */
+ * Equality stays sound for inexact numbers: such a number is never "zero" or "one". Beside the double stands the residue of
+ * the true value modulo a prime, which arithmetic carries without rounding; a difference is exactly 0 where value and residue
+ * both are. Different numbers pass for equal with probability 1 in 4e18 (Schwartz 1980, DOI 10.1145/322217.322225), and
+ * 1 + 1e-20 is not 1. In the same way an integer on which value and residue agree is exact. */
 #ifndef LAGC_NUM_H
 #define LAGC_NUM_H
 
@@ -15,16 +15,16 @@
 typedef struct {
   union {
     int64_t num;
-    double error; /* when den == 0: the true value is at most so far from approx */
+    double error; /* when den == 0: bound of |true value - approx| */
   };
   int64_t den;
   double approx;    /* the value when den == 0; otherwise 0 */
-  uint64_t residue; /* of the true value when den == 0; what is irrational has one drawn from its computation. Otherwise 0 */
+  uint64_t residue; /* when den == 0: residue of the true value, drawn by hash for irrational ones. Otherwise 0 */
 } Num;
 
 Num num_int(int64_t n);
 Num num_ratio(int64_t n, int64_t d); /* d != 0 */
-Num num_double(double x);            /* exact where x is a small integer ratio of a power of two */
+Num num_double(double x);            /* exact where x is an integer over a small power of two */
 
 /* The exact value of a decimal literal (digits, optional fraction and exponent), given as n bytes. */
 Num num_parse(const char *s, size_t n);
@@ -33,14 +33,14 @@ int num_is_exact(Num a);
 int num_is_int(Num a);
 int num_is_zero(Num a); /* certainly */
 int num_is_one(Num a);  /* certainly */
-int num_sign(Num a);    /* -1, 0, 1; 0 is that of the exact 0 alone */
+int num_sign(Num a);    /* -1, 0, 1; 0 for the exact 0 alone */
 int num_sign_is_sure(Num a);
 int num_equal(Num a, Num b); /* certainly */
-int num_cmp(Num a, Num b);   /* of the values; sure where num_sign_is_sure(num_sub(a, b)) */
+int num_cmp(Num a, Num b);   /* compares values; sure where num_sign_is_sure(num_sub(a, b)) */
 double num_value(Num a);
-double num_error(Num a); /* a bound of what num_value, as a long double, is off; 0 where a is exact */
-int num_is_lost(Num a);  /* less than six digits of it are known */
-Num num_rounded(Num a);  /* without what is known of its error: equal where the values are */
+double num_error(Num a); /* bound of the error of the value, as a long double; 0 where a is exact */
+int num_is_lost(Num a);  /* fewer than six digits of the value are known */
+Num num_rounded(Num a);  /* drops error bound and residue: equal where the values are */
 
 Num num_add(Num a, Num b);
 Num num_sub(Num a, Num b);

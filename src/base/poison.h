@@ -1,5 +1,5 @@
-/* Poisoned memory, which the address sanitizer reports when it is touched: the gap behind a block of an arena, the room of a vector that is not
- * taken. Without the sanitizer these do nothing, and there is no gap; it counts for no limit. */
+/* Poisoned memory, whose use the address sanitizer reports: the gap after each block of an arena, the unused room of a vector. Without the
+ * sanitizer these macros do nothing and there is no gap; a gap does not count towards the arena's limit. */
 #ifndef LAGC_POISON_H
 #define LAGC_POISON_H
 

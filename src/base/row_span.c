@@ -1,3 +1,4 @@
+/* Projections onto the span of sparse rows A by the triangle R of A^T = Q R alone. */
 #include "base/row_span.h"
 
 #include <math.h>
@@ -27,7 +28,7 @@ static long double length_of(const long double *x, uint32_t n) {
   return sqrtl(sum);
 }
 
-/* y := R^-T A x: the parts of x along the rows of Q^T. */
+/* y := R^-T A x = Q^T x: the coordinates of x along the columns of Q. */
 static void along(RowSpan *s, const long double *x) {
   for (uint32_t k = 0; k < s->rank; k++) {
     const SparseVector *row = &s->rows[k], *above = &s->triangle[k];
@@ -38,7 +39,7 @@ static void along(RowSpan *s, const long double *x) {
   }
 }
 
-/* x -= A^T R^-1 y. */
+/* x -= A^T R^-1 y = Q y; y is destroyed. */
 static void take_off(RowSpan *s, long double *x) {
   for (uint32_t k = s->rank; k-- > 0;) {
     const SparseVector *row = &s->rows[k], *above = &s->triangle[k];

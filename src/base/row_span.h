@@ -1,4 +1,4 @@
-/* The span of sparse rows that come one by one: which of them are independent of those before. */
+/* Independence of sparse rows that arrive one by one: each is projected onto the span of the rows before it. */
 #ifndef LAGC_ROW_SPAN_H
 #define LAGC_ROW_SPAN_H
 
@@ -14,17 +14,17 @@ typedef VEC(RowElement) SparseVector;
 typedef struct {
   Arena *arena;
   uint32_t width, rank, room;
-  SparseVector *rows;     /* [rank] the rows that were taken, */
-  SparseVector *triangle; /* [rank] R of A^T = Q R by columns, above its diagonal, */
-  long double *diagonal;  /* [rank] and this */
-  long double *left;      /* [width] the row at hand less its projection; of length 1 where anything is left */
+  SparseVector *rows;     /* [rank] independent rows A */
+  SparseVector *triangle; /* [rank] R of A^T = Q R by columns, above the diagonal */
+  long double *diagonal;  /* [rank] diagonal of R */
+  long double *left;      /* [width] the last row minus its projection, normalised unless 0 */
   long double *y;         /* [rank] scratch */
 } RowSpan;
 
 RowSpan row_span(Arena *arena, uint32_t width);
 
-/* How much of a row its projection onto the span leaves, from 0 to 1; above `independent`, the row joins the span. Neither Q nor a product with Q is kept: the
- * corrected semi-normal equations, Å. Björck, Linear Algebra Appl. 88/89 (1987) 31, DOI 10.1016/0024-3795(87)90101-7. */
+/* Relative length, from 0 to 1, of the row minus its projection onto the span; above `independent` the row joins the span. Q is not stored:
+ * corrected semi-normal equations, A. Bjorck, Linear Algebra Appl. 88/89 (1987) 31, DOI 10.1016/0024-3795(87)90101-7. */
 long double row_span_add(RowSpan *s, const RowElement *row, uint32_t n, long double independent);
 
 #endif

@@ -1,3 +1,4 @@
+/* Texts of a compilation: reads files, finds lines and columns of offsets, and joins paths. */
 #include "base/source.h"
 
 #include <errno.h>
@@ -64,7 +65,7 @@ static const Source *read_file(Sources *s, FILE *f, const char *path, const char
     *error = "it cannot be read (is it a directory?)";
     return NULL;
   }
-  size_t mark = len >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* some editors begin UTF-8 with a mark */
+  size_t mark = len >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* byte order mark of some editors */
   const Source *file = source_add(s, arena_strdup(s->arena, path), text + mark, len - mark);
   if (!file) *error = "it is larger than 64 MiB";
   return file;
@@ -79,7 +80,7 @@ const Source *source_read_model(Sources *s, const char *path, const char **error
 
 FILE *source_open(const char *path, const char **error) {
   struct stat st;
-  int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC); /* a pipe without a writer is opened, too, and refused */
+  int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC); /* a pipe without a writer must not block */
   FILE *f = NULL;
   if (fd < 0) *error = strerror(errno);
   else if (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode)) *error = "it is no regular file";
@@ -114,7 +115,7 @@ Place source_place(const Sources *s, uint32_t offset) {
     const char *text = f->text + start;
     uint32_t len = 0;
     while (start + len < f->len && text[len] != '\n') len++;
-    len -= len > 0 && text[len - 1] == '\r'; /* elsewhere it is a character of the line */
+    len -= len > 0 && text[len - 1] == '\r'; /* elsewhere a \r is part of the line */
     return (Place){.file = f, .line = line, .column = column, .line_text = text, .line_len = len,
                    .line_byte = at - start};
   }

@@ -26,7 +26,7 @@ typedef struct {
   const char *text; /* NUL-terminated */
   uint32_t len;
   uint32_t base; /* offset of text[0] */
-  VEC(uint32_t) lines; /* where each begins */
+  VEC(uint32_t) lines; /* offset of each line in text */
 } Source;
 
 typedef struct {
@@ -50,16 +50,16 @@ Sources *sources_new(Arena *a);
 /* Adds a text (not copied: it must outlive the sources). Texts over SOURCE_MAX_BYTES: NULL. */
 const Source *source_add(Sources *s, const char *path, const char *text, size_t len);
 
-/* Reads a file into the arena: the model, which may come through a pipe. On failure NULL, and *error says why (an English sentence part). */
+/* Reads the model, a file or a pipe, into the arena. On failure NULL, with the reason in *error (part of an English sentence). */
 const Source *source_read_model(Sources *s, const char *path, const char **error);
-/* The same of a file that a model names, which must be a regular one: a model may come from anywhere, and no pipe or device waits, or does
- * anything, because of it. */
+/* Reads a file that a model names. It must be a regular file: models come from anywhere, and must not make lagc wait for a pipe or touch a
+ * device. */
 const Source *source_read(Sources *s, const char *path, const char **error);
 
-/* Such a file, open for reading, or NULL with *error. */
+/* Opens a regular file for reading, or NULL with *error. */
 FILE *source_open(const char *path, const char **error);
 
-/* Where an offset is; file NULL for offset 0 or one past all texts. */
+/* The place of an offset; file NULL for offset 0 and offsets past all texts. */
 Place source_place(const Sources *s, uint32_t offset);
 
 /* `path` as written in the file `from`: relative to its folder, in one spelling for each file. */

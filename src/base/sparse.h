@@ -1,7 +1,7 @@
-/* A symmetric sparse matrix under elimination: what an entry holds is the caller's (a mark, a slot).
+/* Pattern of a symmetric sparse matrix under elimination; the caller gives entries their meaning (a mark, a slot).
  *
- * Each row keeps its entries, the diagonal among them, in the order in which they came; rows are
- * short where elimination makes sense, so looking an entry up walks along its row. */
+ * A row keeps its entries, the diagonal included, in the order of insertion; rows are short
+ * where elimination makes sense, so a look-up is a linear search. */
 #ifndef LAGC_SPARSE_H
 #define LAGC_SPARSE_H
 
@@ -54,7 +54,7 @@ static inline void sparse_drop_half(Sparse *s, uint32_t i, uint32_t j) {
     }
 }
 
-/* Takes variable i out of all rows but its own. */
+/* Removes variable i from all rows but its own. */
 static inline void sparse_eliminate(Sparse *s, uint32_t i) {
   const SparseRow *r = &s->rows[i];
   for (uint32_t k = 0; k < r->n; k++)

@@ -1,3 +1,4 @@
+/* Sparse Gaussian elimination with equilibration and threshold pivoting, rank-revealing; and regularity of M on the kernel of A. */
 #include "base/sparse_solve.h"
 
 #include <float.h>
@@ -6,13 +7,13 @@
 
 /* --- matrices by rows --- */
 
-/* Elements of row i: at[from[i]] to at[from[i + 1]], by ascending columns. */
+/* Compressed rows: elements of row i are at[from[i]] .. at[from[i + 1] - 1], by ascending columns. */
 typedef struct {
   uint32_t n, *from;
   SparseElement *at;
 } Matrix;
 
-/* One pass of a radix sort: `from` to `to` by row or column, those of one line in the order in which they were; start[n + 1]: where lines begin. */
+/* Counting sort of `from` into `to` by row or column, stable; start[n + 1]: index of the first element of each line. */
 static void sort_by(uint32_t n, const SparseElement *from, size_t count, SparseElement *to, uint32_t *start, int by_row) {
   for (uint32_t i = 0; i <= n; i++) start[i] = 0;
   for (size_t k = 0; k < count; k++) start[by_row ? from[k].row : from[k].col]++;
@@ -45,7 +46,8 @@ static Matrix matrix_of(Arena *arena, uint32_t n, const SparseElements *a) {
 
 /* --- scales --- */
 
-/* Exponents with a say: from[line] to from[line + 1] are those of a row, or behind the n rows of a column, and `other` the line across. */
+/* Exponents of the elements that count. Line i < n is row i, line n + j column j; its entries are from[line] .. from[line + 1] - 1, and `other`
+ * is the line that crosses there. */
 typedef struct {
   uint32_t *from, *other;
   long double *size;
@@ -66,7 +68,7 @@ static Exponents exponents_of(Arena *arena, const Matrix *m) {
     if (size[k] > top[x->row]) top[x->row] = size[k];
     if (size[k] > top[n + x->col]) top[n + x->col] = size[k];
   }
-  uint32_t *next = e.from + 1; /* where the line's next one goes; in the end, where the line after it begins */
+  uint32_t *next = e.from + 1; /* index of the line's next entry; in the end, of the first entry of the next line */
   for (int fill = 0; fill < 2; fill++) {
     for (uint32_t k = 0; k < count; k++) {
       uint32_t row = m->at[k].row, column = n + m->at[k].col;
@@ -126,14 +128,14 @@ typedef VEC(uint32_t) Lines;
 typedef struct {
   Arena *arena;
   uint32_t n, rank;
-  Row *rows;       /* of a row that was taken, the pivot is the first */
-  Lines *columns;  /* rows with an element in the column, and of those taken */
-  uint32_t *count; /* [n] elements of the column in rows that are left */
-  uint32_t *taken; /* [rank] rows, in their order */
+  Row *rows;       /* an eliminated row begins with its pivot */
+  Lines *columns;  /* rows with an element in the column, eliminated rows included */
+  uint32_t *count; /* [n] elements of the column in remaining rows */
+  uint32_t *taken; /* [rank] eliminated rows, in order */
   unsigned char *is_taken;
-  uint32_t *first, *next, *before; /* rows that are left, in a list for each length: 1 + the number of a row, 0: none */
-  long double *most;  /* [2 n] a tournament: the largest element of row i at n + i, of rows 2 k and 2 k + 1 at k */
-  uint32_t *place;    /* [n] scratch: 1 + the place in the row at hand */
+  uint32_t *first, *next, *before; /* remaining rows in doubly linked lists, one for each length: 1 + row, 0: none */
+  long double *most;  /* [2 n] tournament tree: largest element of row i at n + i, of nodes 2 k and 2 k + 1 at k */
+  uint32_t *place;    /* [n] scratch: 1 + index of the column in the current row */
 } Elimination;
 
 static void set_most(Elimination *x, uint32_t i, const Row *r) {
@@ -188,7 +190,7 @@ static uint32_t shortest_row(const Elimination *x, long double least) {
       if (x->most[x->n + (size_t)i - 1] >= least) return i - 1;
 }
 
-/* The row's element of at least `least` in the shortest column comes to its front. */
+/* Moves the pivot to the front of the row: of its elements of at least `least`, the one in the shortest column. */
 static void bring_pivot(const Elimination *x, Row *r, long double least) {
   uint32_t at = UINT32_MAX;
   for (uint32_t k = 0; k < r->n; k++)
@@ -198,7 +200,7 @@ static void bring_pivot(const Elimination *x, Row *r, long double least) {
   r->at[0] = pivot;
 }
 
-/* Takes the next row and its pivot, of at least a tenth of the largest element. 0: no element is above `least`. */
+/* Chooses the next pivot row, with a pivot of at least a tenth of the largest element. Returns 0 where no element is above `least`. */
 static int take_row(Elimination *x, long double least, uint32_t *row) {
   static const Row none;
   long double largest = x->n ? x->most[1] : 0;
@@ -213,7 +215,7 @@ static int take_row(Elimination *x, long double least, uint32_t *row) {
   return 1;
 }
 
-/* Takes a multiple of the pivot's row off row i, and the element of the pivot's column out of it. Returns the multiple. */
+/* Subtracts the multiple of the pivot row that eliminates the pivot's column from row i, and returns the multiple. */
 static long double take_off(Elimination *x, const Row *pivot, uint32_t i) {
   Row *r = &x->rows[i];
   unlist_row(x, i);
@@ -250,7 +252,7 @@ static void eliminate(Elimination *x, long double *b, long double least) {
   }
 }
 
-/* Unknowns x of the pivots, from right-hand sides b (NULL: 0) and the other unknowns, which stand in x. */
+/* Back substitution: unknowns of the pivots from right-hand sides b (NULL: 0) and the free unknowns, which stand in x. */
 static void substitute_back(const Elimination *e, const long double *b, long double *x) {
   for (uint32_t k = e->rank; k-- > 0;) {
     const Row *r = &e->rows[e->taken[k]];
@@ -290,7 +292,7 @@ uint32_t sparse_solve(Arena *arena, uint32_t n, const SparseElements *a, long do
   return e.rank;
 }
 
-/* By K = M + A^T W A, W any positive diagonal: x of the kernel of A with M x = 0 is what K and all constraints leave. */
+/* M is singular on the kernel of A where K = M + A^T W A is singular, for a generic positive diagonal W, after equilibration. */
 int sparse_is_regular_on_kernel(Arena *arena, uint32_t n, uint32_t m, const SparseElements *a, long double *null) {
   ArenaMark before = arena_mark(arena);
   uint32_t w = n + m;
@@ -303,7 +305,7 @@ int sparse_is_regular_on_kernel(Arena *arena, uint32_t n, uint32_t m, const Spar
   for (uint32_t k = 0; k < x.from[w]; k++) x.at[k].value = ldexpl(x.at[k].value, row[x.at[k].row] + column[x.at[k].col]);
   for (uint32_t k = 0; k < x.from[n]; k++)
     if (x.at[k].col < n) sparse_put(arena, &K, x.at[k].row, x.at[k].col, x.at[k].value);
-  for (uint32_t c = n; c < w; c++) { /* the column -A^T of a constraint, scaled, is found by its row A */
+  for (uint32_t c = n; c < w; c++) { /* row A of a constraint, rescaled, gives its column -A^T */
     long double weight = 0.5L + fmodl(0.618033988749894848L * (c - n + 1), 1);
     for (uint32_t i = x.from[c]; i < x.from[c + 1]; i++)
       for (uint32_t j = x.from[c]; j < x.from[c + 1]; j++) {

@@ -1,16 +1,17 @@
+/* Not-a-knot cubic splines in long double: a tridiagonal system for the second derivatives. */
 #include "base/spline.h"
 
 #include <math.h>
 
 typedef long double Real;
 
-/* Gap i, and the slope of the chord over it. */
+/* Length of interval i, and the slope of its chord. */
 static Real gap(double (*row)[3], uint32_t i) { return (Real)row[i + 1][0] - row[i][0]; }
 static Real chord(double (*row)[3], uint32_t i) { return ((Real)row[i + 1][1] - row[i][1]) / gap(row, i); }
 
-/* Row i of the equations for the second derivatives m[1] .. m[n-2]: below, on and above the diagonal, and the right
- * side. The first and the last have m[0] and m[n-1] put in, by the condition that the third derivative does not jump
- * at row 1 and at row n - 2. Diagonally dominant: no pivoting is needed. */
+/* Row i of the tridiagonal system for the second derivatives m[1] .. m[n-2]: below, on and above the diagonal, and the right
+ * side. From the first and last rows m[0] and m[n-1] are eliminated by the continuity of the third derivative at rows 1 and
+ * n - 2. Diagonally dominant: no pivoting is needed. */
 static void equation(double (*row)[3], uint32_t n, uint32_t i, Real e[4]) {
   Real h = gap(row, i - 1), k = gap(row, i);
   e[0] = h;
@@ -29,7 +30,7 @@ static void equation(double (*row)[3], uint32_t n, uint32_t i, Real e[4]) {
   }
 }
 
-/* Elimination down the band (Thomas); m[1] .. m[n-2]. */
+/* Thomas's algorithm for m[1] .. m[n-2], then m[0] and m[n-1]. */
 static void solve(Arena *a, double (*row)[3], uint32_t n, Real *m) {
   Real *above = ARENA_ARRAY(a, Real, n), e[4];
   for (uint32_t i = 1; i < n - 1; i++) {

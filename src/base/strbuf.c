@@ -1,3 +1,4 @@
+/* Growing text: doubles its block in the arena when it is full. */
 #include "base/strbuf.h"
 
 #include "base/visible.h" /* generated: a copy of runtime/io/visible.h */

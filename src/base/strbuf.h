@@ -1,4 +1,4 @@
-/* StrBuf: text that grows, in an arena; always NUL-terminated once something was put in. */
+/* StrBuf: growing text in an arena; NUL-terminated once it is not empty. */
 #ifndef LAGC_STRBUF_H
 #define LAGC_STRBUF_H
 
@@ -16,10 +16,10 @@ void sb_puts(StrBuf *b, const char *s);
 void sb_putn(StrBuf *b, const char *s, size_t n);
 void sb_printf(StrBuf *b, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
-/* s, with control characters and those that turn the direction of text shown as <U+202E>; characters of `keep` stay. */
+/* Appends s[n] with control characters and characters that reverse the direction of text shown as <U+202E>, except those of `keep`. */
 void sb_visible(StrBuf *b, const char *s, size_t n, const char *keep);
 
-/* The text; "" when nothing was put in. */
+/* The text; "" when it is empty. */
 const char *sb_text(const StrBuf *b);
 
 #endif

@@ -1,4 +1,4 @@
-/* Known words: the nearest one, for "did you mean"; lists of them. */
+/* The known word nearest to a mistyped one, for "did you mean"; membership in a list of words. */
 #ifndef LAGC_SUGGEST_H
 #define LAGC_SUGGEST_H
 

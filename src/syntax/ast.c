@@ -55,10 +55,10 @@ AstId ast_declared(Ast *ast, Ident name) {
 }
 
 /* A unit belongs to the whole literal before it: -5 [degC] is minus five degrees, 1/2 [m] half a
- * metre, -1/2 [m] minus half a metre. The unit was attached to the last number; here it changes places with its new operand. */
+ * metre. The parser attached the unit to the last number; here it becomes the parent of the literal. */
 static AstId lift_unit(Ast *ast, AstExpr outer, AstId unit_id) {
   AstExpr unit = *at(ast, unit_id);
-  AstId id = append(ast, unit); /* the same unit, now around what is put into its old place */
+  AstId id = append(ast, unit); /* the unit, now the parent of the node at its old id */
   AstId number = unit.a;
   if (outer.a == unit_id) outer.a = number;
   if (outer.b == unit_id) outer.b = number;
@@ -83,7 +83,7 @@ AstId ast_unary(Ast *ast, AstKind kind, Span span, Span op, AstId a) {
   return append(ast, e);
 }
 
-/* 1, -1: what may stand above the line of a fraction that has a unit. */
+/* 1 or -1: numerator of a fraction with a unit. */
 static int is_signed_number(const Ast *ast, AstId id) {
   while (ast_expr(ast, id)->kind == AST_NEG) id = ast_expr(ast, id)->a;
   return ast_expr(ast, id)->kind == AST_NUM;
@@ -96,7 +96,7 @@ AstId ast_binary(Ast *ast, AstKind kind, Span span, Span op, AstId a, AstId b) {
   return append(ast, e);
 }
 
-/* What may be indexed. `(1, 2)[m]` and `x'[i]` are slips of the pen with a known cure. */
+/* Reports an index on anything but a name, a member or an index: `(1, 2)[m]`, `x'[i]`. */
 static void check_indexed(Ast *ast, Span span, AstId a) {
   AstKind kind = ast_expr(ast, a)->kind;
   if (kind == AST_PRIME) {
@@ -149,7 +149,7 @@ AstId ast_tuple(Ast *ast, Span span, AstId head, AstList rest) {
   return ast_collect(ast, AST_TUPLE, span, (AstList){head, rest.last});
 }
 
-/* g >= 0 is kept as g, and a >= b as a - b. */
+/* The gap of a contact: g >= 0 is kept as g, a >= b as a - b. */
 AstId ast_gap(Ast *ast, Span span, Span op, AstId gap, AstId least) {
   const AstExpr *e = ast_expr(ast, least);
   int zero = e->kind == AST_NUM && num_is_zero(e->number);

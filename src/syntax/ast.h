@@ -18,7 +18,7 @@ typedef uint32_t AstId;
   X(AST_NUM, NULL)      /* 1.5              number                                           */ \
   X(AST_STRING, NULL)   /* "file.csv"       name = the text without quotes                   */ \
   X(AST_NAME, NULL)     /* th               name                                             */ \
-  X(AST_INDEX, NULL)    /* x[i, j]          a = what is indexed, args = indices              */ \
+  X(AST_INDEX, NULL)    /* x[i, j]          a = x, args = indices                            */ \
   X(AST_MEMBER, NULL)   /* r.x              a, name = "x"                                    */ \
   X(AST_PRIME, NULL)    /* th'              a; one node a prime                              */ \
   X(AST_UNIT, NULL)     /* 90 [deg]         a, unit                                          */ \
@@ -44,7 +44,7 @@ typedef uint32_t AstId;
   X(AST_TUPLE, NULL)    /* (a, b, c)        args; two or more                                */ \
   X(AST_LIST, NULL)     /* {a, b, c}        args                                             */ \
   X(AST_BIND, NULL)     /* i in 1..N        inside an index of let or start: name, a, b      */ \
-  X(AST_ERROR, NULL)    /* stands where the parser reported an error                         */
+  X(AST_ERROR, NULL)    /* placeholder where the parser reported an error                    */
 
 #define AST_ENUM_(kind, text) kind,
 typedef enum { AST_EXPR_KINDS(AST_ENUM_) } AstKind;
@@ -69,9 +69,9 @@ typedef struct {
   Span span;     /* the whole expression, without surrounding parentheses */
   Span op_span;  /* the operator, or the name of a call */
   AstId a, b, c;
-  AstId next;    /* the next element of the list that this node is in (args), 0 at its end */
+  AstId next;    /* next element of the list (args) that holds this node; 0: the last */
   AstId args;    /* first of a list of arguments */
-  AstId first;   /* lowest id of this expression's nodes: they are first..own id */
+  AstId first;   /* lowest id of this expression: its nodes are first..own id */
   Name name;
   Num number;
   AstUnit unit;
@@ -114,8 +114,8 @@ typedef enum {
   STMT_SPAN,        /* rhs */
   STMT_METHOD,      /* name, body of STMT_SET */
   STMT_TOLERANCE,   /* rhs */
-  STMT_OUTPUT,      /* args = what, rhs = every (0: absent) */
-  STMT_MONITOR,     /* lhs = what, rhs = limit */
+  STMT_OUTPUT,      /* args = expressions, rhs = every (0: absent) */
+  STMT_MONITOR,     /* lhs = quantity, rhs = limit */
   STMT_LIKE,        /* name */
   /* inside an event */
   STMT_STOP
@@ -149,7 +149,7 @@ typedef struct {
   Diags *diags;
   VEC(AstExpr) exprs;        /* exprs.at[0] is unused */
   AstStmt *first, *last;     /* the file's statements, includes already spliced in */
-  struct FileIndex *index;   /* of them, by name: model/file_index.h; NULL: not yet made */
+  struct FileIndex *index;   /* statements by name: model/file_index.h; NULL: not yet made */
 } Ast;
 
 Ast *ast_new(Arena *a, Interner *names, Sources *sources, Diags *diags);

@@ -1,5 +1,5 @@
-/* What the grammar's actions call: one function a rule. Builders never fail: what they object to
- * is reported, and something that later passes can walk over is returned. */
+/* Builders of the Ast, called by the grammar's actions, one function a rule. Builders never fail: a
+ * mistake is reported, and a node that later passes can walk over is returned. */
 #ifndef LAGC_AST_BUILD_H
 #define LAGC_AST_BUILD_H
 
@@ -27,7 +27,7 @@ typedef struct {
 AstId ast_number(Ast *ast, Span span, Num number);
 AstId ast_string(Ast *ast, AstText text);
 AstId ast_name(Ast *ast, Ident name);
-AstId ast_declared(Ast *ast, Ident name); /* an AST_NAME that is given a meaning here */
+AstId ast_declared(Ast *ast, Ident name); /* an AST_NAME that is declared here */
 AstId ast_unary(Ast *ast, AstKind kind, Span span, Span op, AstId a);
 AstId ast_binary(Ast *ast, AstKind kind, Span span, Span op, AstId a, AstId b);
 AstId ast_index(Ast *ast, Span span, AstId a, AstList indices);
@@ -41,9 +41,9 @@ AstId ast_collect(Ast *ast, AstKind kind, Span span, AstList items); /* AST_LIST
 AstId ast_bind(Ast *ast, Span span, Ident index, AstId lo, AstId hi);
 
 AstId ast_tuple(Ast *ast, Span span, AstId head, AstList rest);
-AstId ast_gap(Ast *ast, Span span, Span op, AstId gap, AstId least); /* of a contact: gap >= least */
+AstId ast_gap(Ast *ast, Span span, Span op, AstId gap, AstId least); /* contact: gap >= least */
 
-/* Objects to `t` and `pi` where a name is given a meaning. */
+/* Reports a declaration of `t` or `pi`. */
 void check_declared(Ast *ast, Ident name);
 
 AstList ast_list(AstId item);
@@ -54,7 +54,7 @@ StmtList stmts_one(AstStmt *s);
 StmtList stmts_add(StmtList list, AstStmt *s);
 StmtList stmts_join(StmtList a, StmtList b);
 
-/* What differs between a list of settings and the statement it stands in. */
+/* Gives the statements of a list the kind of the statement that holds the list, and its `exactly`. */
 StmtList stmts_retag(Ast *ast, StmtList list, AstStmtKind kind, int exactly);
 
 AstStmt *stmt_plain(Ast *ast, AstStmtKind kind, Span span);
@@ -76,13 +76,13 @@ AstStmt *stmt_for_map(Ast *ast, Span span, Ident index, AstId lo, AstId hi, AstS
 AstStmt *stmt_options(Ast *ast, AstStmtKind kind, Span span, Ident name, StmtList options);
 AstStmt *stmt_output(Ast *ast, Span span, AstList what, AstId every);
 
-/* One more item of a symmetry: a map after `for …:` belongs to that `for`. */
+/* Adds an item to a symmetry; a map after `for ...:` belongs to that `for`. */
 StmtList maps_add(StmtList maps, AstStmt *item);
 
 /* `a-b`, the name of a method. */
 Ident ident_dashed(Ast *ast, Span span, Ident a, Ident b);
 
-/* `> 0` and the like: only zero says a sign. */
+/* The sign declared by `> 0`, `>= 0`, ...; a bound other than 0 is reported. */
 AstSign sign_of(Ast *ast, Span span, AstSign sign, Num number);
 
 #endif

@@ -1,5 +1,5 @@
-/* Ast -> a listing, one node a line, children two columns further in. Read by people and by the
- * golden tests; it says everything that later passes can see, but no places.
+/* Ast -> a listing, one node a line, children indented by two columns, for people and golden tests.
+ * It shows everything that later passes can see, except spans.
  *
  * Must hold: no recursion; past DUMP_DEEP levels the indentation stops and the level is printed. */
 #include "syntax/parse.h"
@@ -9,7 +9,7 @@ enum { DUMP_DEEP = 24 };
 typedef struct {
   AstId id;
   uint32_t level;
-  const char *role; /* what the node is to its parent, or "" */
+  const char *role; /* relation to the parent, or "" */
 } Pending;
 
 typedef struct {

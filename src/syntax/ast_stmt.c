@@ -17,7 +17,7 @@ StmtList stmts_join(StmtList a, StmtList b) {
 
 StmtList stmts_add(StmtList list, AstStmt *s) { return stmts_join(list, stmts_one(s)); }
 
-/* A family cannot be bound where every member has its own equation: that is what `for` is for. */
+/* Reports `i in 1..N` in an index on the left of a statement with one equation a member: `for` says that. */
 static void refuse_bind(Ast *ast, const AstStmt *s) {
   for (AstId id = ast_expr(ast, s->lhs)->first; id && id <= s->lhs; id++) {
     const AstExpr *e = ast_expr(ast, id);
@@ -51,7 +51,7 @@ AstStmt *stmt_name(Ast *ast, AstStmtKind kind, Span span, Ident name) {
   return s;
 }
 
-/* A statement that gives a name a meaning. */
+/* A statement that declares a name. */
 static AstStmt *declare(Ast *ast, AstStmtKind kind, Span span, Ident name) {
   check_declared(ast, name);
   return stmt_name(ast, kind, span, name);
@@ -103,7 +103,7 @@ AstStmt *stmt_define(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList 
   return s;
 }
 
-/* `param k = 1 [N/m]`: the unit of the value is the name's, unless it had one of its own. */
+/* `param k = 1 [N/m]`: the name without a unit of its own takes the value's. */
 AstStmt *stmt_valued(Ast *ast, AstStmtKind kind, Span span, Ident name, AstUnit unit, AstId value) {
   if (!unit.n && ast_expr(ast, value)->kind == AST_UNIT) unit = ast_expr(ast, value)->unit;
   return stmt_define(ast, kind, span, name, (AstList){0, 0}, unit, value);

@@ -1,14 +1,14 @@
 /* Syntax errors in the user's words.
  *
- * In: the token that cannot stand where it was found, and the tokens that could. Out: one message,
- * with a caret under the culprit and, for the slips that are known, a way out. Token names never
- * appear: tokens are grouped into what a physicist would say. */
+ * In: the unexpected token and the set of expected tokens. Out: one message, with a caret under the
+ * unexpected token and, for a known mistake, advice. Names of tokens never appear: expected tokens
+ * are grouped into words for a physicist, such as `an expression`. */
 #include <string.h>
 
 #include "base/suggest.h"
 #include "syntax/slips.h"
 
-/* ---- what was found, what was expected ---- */
+/* ---- found and expected tokens ---- */
 
 static const char *source_text(const Parse *cx, Span span, int *len) {
   const Source *source = cx->filter->scan->source;
@@ -36,7 +36,7 @@ static int has(const TokKind *set, int n, TokKind kind) {
   return 0;
 }
 
-/* What "an operator" stands for where `set` is expected: a comparison only where all are. */
+/* Whether "an operator" covers k where `set` is expected; a comparison only where comparisons are. */
 static int is_operator(const TokKind *set, int n, TokKind k) {
   if (k >= TOK_LT && k <= TOK_GE) return has(set, n, TOK_LT);
   return k >= TOK_PLUS && k <= TOK_OR;
@@ -77,7 +77,7 @@ static Words expected_words(const Parse *cx, const TokKind *set, int n) {
   for (int i = 0; i < n; i++) {
     TokKind k = set[i];
     if (in_a_group(set, n, k) || k == TOK_FINISH || k == TOK_END || k == TOK_COUNT) continue;
-    /* an index, a type or a unit could follow many a name: they say nothing */
+    /* an index, a type or a unit may follow most names: not worth listing */
     if (k == TOK_INDEX || ((k == TOK_UNIT || k == TOK_COLON) && has(set, n, TOK_UNIT) && n > 1)) continue;
     const char *word = token_word(k);
     int phrase = k == TOK_STRING || k == TOK_UNIT;
@@ -95,7 +95,7 @@ static const char *join(const Parse *cx, const Words *w) {
   return sb_text(&b);
 }
 
-/* " after `=`": where something was left out; nothing where the place says enough. */
+/* " after `=`": names the token before; "" where the place is clear without it. */
 static const char *after(const Parse *cx) {
   const Token *t = &cx->before;
   if (t->kind == TOK_END || t->kind == TOK_BEGIN_FILE || t->kind == TOK_BEGIN_EXPR || t->kind == TOK_LBRACE) return "";
@@ -123,7 +123,7 @@ static Name nearest_word(const Parse *cx, Name wrong, unsigned where) {
   return suggest(wrong, words, n);
 }
 
-/* A statement that begins with a name that is no word of its place. */
+/* Reports a statement that begins with an unknown or misplaced word. */
 static void report_word(Parse *cx, const Token *t) {
   Diags *d = cx->ast->diags;
   unsigned where = cx->filter->where[t->depth];
@@ -148,7 +148,7 @@ static void report_word(Parse *cx, const Token *t) {
   else diag_help(d, "`lagc help language` shows a model, `lagc help` lists the statements");
 }
 
-/* Something is still open where the statement ends. */
+/* Reports a bracket that is still open at the end of a statement. */
 static int report_open_bracket(Parse *cx, const TokKind *set, int n) {
   const OpenBracket *open = &cx->open;
   const Token *t = &cx->current;

@@ -14,9 +14,9 @@
  * Which names are words of the language: the place of a statement is the file, an effect, a `for`,
  * a scene or an event (the block that it stands in).
  *   - In a file, effect or for, every statement begins with a word.
- *   - In a scene or event, a first name followed by = . ' or a touching [ is what is being set;
+ *   - In a scene or event, a first name followed by = . ' or a touching [ is a name being set;
  *     otherwise it is a word.
- *   - The first name that should be a word, and is none of its place, is a BADWORD.
+ *   - A first name that should be a word, but is no word of its place, is a BADWORD.
  *   - `periodic`, `rising`, `falling`, `crossing` and `every` are words where an operand has just
  *     ended, in the statement that has the slot; `restitution` after the `,` of a contact, `exactly`
  *     after `start` when a name follows; `for` after the `:` or `,` of a symmetry when a name
@@ -116,7 +116,7 @@ static int sets_a_name(TokKind next) {
   return next == TOK_ASSIGN || next == TOK_DOT || next == TOK_PRIME || next == TOK_INDEX;
 }
 
-/* The first name of a statement: a word, a name that is set, or a mistake. */
+/* Classifies the first name of a statement: a statement word, a name being set, or BADWORD. */
 static Token first_name(Filter *f, Token t) {
   unsigned where = f->where[f->depth];
   TokKind next = peek(f)->kind;
@@ -134,7 +134,7 @@ static Token first_name(Filter *f, Token t) {
   return t;
 }
 
-/* A name inside a statement: a word when it stands in a slot. */
+/* Classifies a name inside a statement: a keyword in its slot, otherwise IDENT. */
 static TokKind slot_word(Filter *f, const Token *t) {
   static const struct {
     TokKind statement, word;
@@ -170,7 +170,7 @@ static void open_bracket(Filter *f, const Token *t) {
 
 static void close_bracket(Filter *f, const Token *t) {
   if (!f->brackets.n) return;
-  if (t->kind == TOK_RBRACE) /* whatever was left open inside this list is closed with it */
+  if (t->kind == TOK_RBRACE) /* closes brackets left open inside the list, too */
     while (f->lists && filter_bracket(f)->kind != TOK_LBRACE) f->brackets.n--;
   f->brackets.n--;
   const OpenBracket *b = &f->brackets.at[f->brackets.n];
@@ -201,8 +201,8 @@ static Token open_block(Filter *f, Token t) {
   return brace;
 }
 
-/* A `}` that closes no list: ends the statement before it, then the block, then what the block was
- * part of. */
+/* A `}` that closes no list ends the statement before it, then the block, then the statement that
+ * holds the block. */
 static Token close_block(Filter *f) {
   if (f->inside) return end_statement(f, peek(f)->span, TOK_RBRACE);
   Token t = take(f);
@@ -212,7 +212,7 @@ static Token close_block(Filter *f) {
   return out(f, t);
 }
 
-/* The end of the text: closes what is open, and says which block was never closed. */
+/* End of the text: ends the statement, reports each block that was never closed, and closes it. */
 static Token finish(Filter *f) {
   Span here = peek(f)->span;
   if (f->inside) return end_statement(f, here, TOK_FINISH);
@@ -220,7 +220,7 @@ static Token finish(Filter *f) {
   Span opened = f->open[f->depth - 1].span;
   Token brace = {.kind = TOK_RBRACE, .span = here};
   f->end_due = 1;
-  if (f->where[f->depth]) { /* first the message, once */
+  if (f->where[f->depth]) { /* the message comes first, once */
     f->where[f->depth] = 0;
     return bad(f, opened, "this `{` is never closed", "put a `}` at the end of the block");
   }

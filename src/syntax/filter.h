@@ -1,4 +1,4 @@
-/* Raw tokens -> the tokens of the grammar: statement words, statement ends, primes of dotted names. */
+/* Token filter: raw tokens -> tokens of the grammar, with statement words, statement ends, and primes of dotted names. */
 #ifndef LAGC_FILTER_H
 #define LAGC_FILTER_H
 
@@ -13,26 +13,26 @@ enum {
 typedef struct {
   TokKind kind; /* LPAREN, INDEX, or LBRACE of a list */
   Span span;
-  uint32_t dots; /* INDEX: primes that its name owes, due after the `]` */
+  uint32_t dots; /* INDEX: primes of the name before it, emitted after the `]` */
 } OpenBracket;
 
 typedef struct {
   Scan *scan;
   Token ahead[2];  /* raw tokens already taken from the scanner */
   uint32_t n_ahead;
-  int end_due;     /* an END goes out before anything else: a block was closed */
-  TokKind prev;    /* the last token that went out */
-  Token primes;    /* and, below, how many PRIMEs follow it */
-  uint32_t owed;
+  int end_due;     /* a block was closed: the next token is an END */
+  TokKind prev;    /* the last token emitted */
+  Token primes;    /* the name whose dots become PRIMEs */
+  uint32_t owed;   /* number of PRIMEs still to be emitted */
   int single;      /* the text is one expression: no statement words, no blocks */
   int inside;      /* a statement has begun */
-  TokKind word;    /* its word, or IDENT */
+  TokKind word;    /* its statement word, or IDENT */
   int assigned;    /* an `=` was seen since its last `,` outside brackets */
   int has_block;   /* its next `{` outside brackets opens a block */
   VEC(OpenBracket) brackets;
   uint32_t lists;  /* how many of them are LBRACE */
   Token open[FILTER_BLOCKS]; /* the `{` of each block around the statement */
-  unsigned where[FILTER_BLOCKS + 1]; /* W_FILE, then the place that each block is */
+  unsigned where[FILTER_BLOCKS + 1]; /* kind of each open block, W_FILE first */
   uint32_t depth;
 } Filter;
 

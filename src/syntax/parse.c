@@ -1,15 +1,15 @@
 /* text -> Ast: drives scanner, filter and parser, and follows includes.
  *
  * In: a source. Out: its statements in the Ast, messages in ast->diags.
- * Must hold: the parser's stack, the only memory outside the arena, is freed on every way out. */
+ * Must hold: the parser's stack, the only memory outside the arena, is freed on every exit. */
 #include "base/visible.h"
 #include "syntax/parse_state.h"
 
 void parse_done_file(Parse *cx, StmtList stmts) { cx->stmts = stmts; }
 void parse_done_value(Parse *cx, AstId value) { cx->value = value; }
 
-/* Pushes tokens until the parser has enough. After a mistake, what is left of the statement is
- * passed over: the parser discards up to the END, and blocks inside it are not even shown to it. */
+/* Pushes tokens until the parser accepts or gives up. After a mistake the parser discards tokens up
+ * to the END; blocks inside the rest of the statement are skipped here. */
 static void push_tokens(Parse *cx, TokKind begin) {
   Token t = {.kind = begin};
   int skipping = 0;
@@ -29,8 +29,8 @@ static void push_tokens(Parse *cx, TokKind begin) {
   } while (1);
 }
 
-/* Characters that do not show, or show others elsewhere than they stand, are mistakes wherever they are, in comments and texts, too: what a reader
- * sees is what is compiled (N. Boucher, R. Anderson, "Trojan Source", arXiv:2111.00169). The first one, where nothing else is wrong. */
+/* Reports the first invisible or direction-changing character, in comments and texts too: what a reader sees must be what is compiled
+ * (N. Boucher, R. Anderson, "Trojan Source", arXiv:2111.00169). */
 static void report_hidden(Ast *ast, const Source *source) {
   unsigned long code;
   for (size_t at = 0, len; at < source->len; at += len) {
@@ -43,8 +43,8 @@ static void report_hidden(Ast *ast, const Source *source) {
   }
 }
 
-/* Parses one text. When memory runs out, the stack is freed and the failure goes on to whoever
- * guarded the arena before. */
+/* Parses one text. When memory runs out, the stack is freed and the failure passed to the previous
+ * guard of the arena. */
 static void run(Parse *cx, Ast *ast, const Source *source, TokKind begin) {
   *cx = (Parse){.ast = ast};
   jmp_buf here;
@@ -66,7 +66,7 @@ static void run(Parse *cx, Ast *ast, const Source *source, TokKind begin) {
 
 /* ---- include ---- */
 
-/* A text that was taken in, and the statement that asked for it (zero: the user did). */
+/* A parsed file and the statement that included it (NULL: the user's file). */
 typedef struct {
   const char *path;
   uint32_t base, end;
@@ -89,7 +89,7 @@ static void add_file(Includes *in, const Source *source, const char *path, AstSt
   vec_push(in->ast->arena, &in->files, f);
 }
 
-/* `a.lag` includes `b.lag` includes `a.lag`: from the file that closes the cycle backwards. */
+/* Reports a cycle, `a.lag` includes `b.lag` includes `a.lag`, walking back from the file that closes it. */
 static void report_cycle(const Includes *in, const AstStmt *s, uint32_t from, uint32_t to) {
   StrBuf chain = strbuf(in->ast->arena);
   sb_printf(&chain, "`%s`", in->files.at[to].path);
@@ -100,7 +100,7 @@ static void report_cycle(const Includes *in, const AstStmt *s, uint32_t from, ui
   diag_help(in->ast->diags, "%s", sb_text(&chain));
 }
 
-/* Whether `path` was taken in before; a cycle is reported. */
+/* Whether `path` was included before; a cycle is reported. */
 static int seen_before(const Includes *in, const AstStmt *s, const char *path) {
   uint32_t known = 0;
   while (known < in->files.n && strcmp(in->files.at[known].path, path) != 0) known++;
@@ -112,7 +112,7 @@ static int seen_before(const Includes *in, const AstStmt *s, const char *path) {
   }
 }
 
-/* The statements of the file that s asks for; none when it was there already or cannot be read. */
+/* The statements of the file that s includes; none when it was included before or cannot be read. */
 static StmtList included(Includes *in, AstStmt *s) {
   Ast *ast = in->ast;
   const char *path = path_beside(ast->arena, in->files.at[file_of(in, s->span.begin)].path, s->doc);
@@ -147,7 +147,7 @@ static StmtList follow_includes(Includes *in, StmtList list) {
   return done;
 }
 
-/* ---- what parse.h offers ---- */
+/* ---- entry points ---- */
 
 int parse(Ast *ast, const Source *source) {
   uint32_t errors = ast->diags->errors;

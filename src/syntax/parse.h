@@ -1,18 +1,18 @@
-/* text -> Ast. The only user of the generated scanner and parser. */
+/* text -> Ast: the interface of the scanner, the token filter and the generated parser. */
 #ifndef LAGC_PARSE_H
 #define LAGC_PARSE_H
 
 #include "syntax/ast.h"
 
-/* Parses a source and appends its statements to ast; `include` is followed (relative to the file
- * that names it; a file taken in twice counts once, a cycle is an error). Errors go to ast->diags,
- * all of them: after one the parser goes on at the next statement. Returns 1 when there were none. */
+/* Parses a source and appends its statements to ast, those of included files too (paths relative to
+ * the including file; a repeated include counts once, a cycle is an error). All errors go to
+ * ast->diags: after one the parser goes on at the next statement. Returns 1 when there were none. */
 int parse(Ast *ast, const Source *source);
 
-/* Parses one expression (a value on the command line); 0 when it is none. */
+/* Parses one expression, such as a value on the command line; 0 after an error. */
 AstId parse_expression(Ast *ast, const Source *source);
 
-/* What to write for a word that begins no statement here, but in other languages or on paper ("friction"); or NULL. */
+/* Advice for a word that begins statements in other languages or on paper ("friction"), but not here; or NULL. */
 const char *parse_advice(const char *word);
 
 /* Appends a listing of the whole Ast, one node a line, for `--dump=ast` and golden tests. */

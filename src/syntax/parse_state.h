@@ -1,4 +1,4 @@
-/* What one parse of one text holds: shared by parse.c, errors.c and the generated parser. */
+/* State of one parse of one text, shared by parse.c, errors.c and the generated parser. */
 #ifndef LAGC_PARSE_STATE_H
 #define LAGC_PARSE_STATE_H
 
@@ -6,7 +6,7 @@
 #include "syntax/filter.h"
 #include "syntax/parse.h"
 
-enum { PARSE_STACK = 4 * 1000 * 1000 }; /* entries of the parser's stack: how deep nesting may go */
+enum { PARSE_STACK = 4 * 1000 * 1000 }; /* entries of the parser's stack: limit of nesting */
 
 struct lag_pstate;
 
@@ -14,19 +14,19 @@ typedef struct {
   Ast *ast;
   Filter *filter;
   struct lag_pstate *stack; /* the parser's own memory: malloc, freed by parse_close */
-  Token current, before;    /* the token in hand, and the one before it */
+  Token current, before;    /* current and previous token */
   OpenBracket open;         /* the innermost bracket still open before the current token */
   int reported;             /* a mistake was reported at the current token */
   StmtList stmts;           /* the result: statements of a file, */
   AstId value;              /* or one expression */
 } Parse;
 
-/* The generated parser (lag.y). parse_push returns 1 while it wants more tokens. */
+/* The generated parser (lag.y). parse_push returns 1 while it needs more tokens. */
 void parse_open(Parse *cx);
 int parse_push(Parse *cx, const Token *t);
 void parse_close(Parse *cx);
 
-/* What it calls: results (parse.c), and mistakes (errors.c). */
+/* Its callbacks: results (parse.c) and errors (errors.c). */
 void parse_done_file(Parse *cx, StmtList stmts);
 void parse_done_value(Parse *cx, AstId value);
 void parse_report(Parse *cx, const TokKind *expected, int n);

@@ -1,7 +1,7 @@
-/* What the patterns of lag.l call: names with dots, numbers, brackets, and mistakes.
+/* Actions of the scanner's patterns (lag.l): names with dots, numbers, brackets, and mistakes.
  *
- * In: the bytes that a pattern matched. Out: a token, or a BAD token with a message and a way out.
- * Must hold: a token's span lies in the source, and at least one byte is taken a call. */
+ * In: the bytes that a pattern matched. Out: a token, or a BAD token with a message and advice.
+ * Must hold: a token's span lies in the source, and every call consumes at least one byte. */
 #include "syntax/scan.h"
 
 Scan *scan_new(Arena *a, Interner *names, const Source *source) {
@@ -50,7 +50,7 @@ uint32_t utf8_decode(const char *text, uint32_t *len) {
   return *len = 4, (c[0] & 0x07u) << 18 | (c[1] & 0x3Fu) << 12 | (c[2] & 0x3Fu) << 6 | (c[3] & 0x3Fu);
 }
 
-/* Signs that look like mathematics but are not of this language, and what to write. */
+/* Mathematical signs outside the language, and their spelling in it. */
 static const struct {
   uint32_t code;
   const char *write;
@@ -110,7 +110,7 @@ static const struct {
     {0x1E8F, 'y', 1}, {0x017B, 'Z', 1}, {0x017C, 'z', 1}, {0x1E8C, 'X', 2}, {0x1E8D, 'x', 2},
 };
 
-/* The dots that a code point puts above a letter, and the letter under them (0: it combines). */
+/* Number of dots that a code point puts above a letter; *letter: the letter under them, 0 for a combining dot. */
 static uint32_t dots_of(uint32_t code, char *letter) {
   *letter = 0;
   if (code == 0x0307) return 1;
@@ -122,7 +122,7 @@ static uint32_t dots_of(uint32_t code, char *letter) {
 
 /* ---- names ---- */
 
-/* A name begins with a code point that cannot stand in one: a space, or a mistake. */
+/* Handles a first code point that no name may contain: skips a space, reports all others. */
 static int scan_refused(Scan *s, Token *t, const char *text, uint32_t code, uint32_t len) {
   if (is_space(code)) return (int)len;
   const char *write = lookalike(code);

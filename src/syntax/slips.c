@@ -1,3 +1,4 @@
+/* Advice for known mistakes: a table of words from other languages, and one function for each kind of unexpected token. */
 #include "syntax/slips.h"
 
 #include <string.h>
@@ -8,7 +9,7 @@
 
 enum { W_MODEL = W_FILE | W_EFFECT | W_FOR };
 
-/* Words that the language does not have, with spaces between them; where somebody may write them; what to write. */
+/* Words outside the language, separated by spaces; the places where people write them; the advice. */
 static const struct {
   const char *words;
   unsigned where;
@@ -64,12 +65,12 @@ static int has(const TokKind *set, int n, TokKind kind) {
 
 static int ends_operand(const Token *t) { return (token_flags(t->kind) & T_OPERAND) != 0; }
 
-/* What people write without parentheses on paper. */
+/* Functions that people write without parentheses on paper. */
 static int is_function(const char *name) {
   return name && has_word("sin cos tan exp log ln sqrt asin acos atan sinh cosh tanh abs", name);
 }
 
-/* Whether an `=` follows the token in hand (after primes): it begins another member of a list. */
+/* Whether an `=` follows the current token (after primes): then it begins another member of a list. */
 static int sets_next(const Parse *cx) {
   const Source *source = cx->filter->scan->source;
   const char *s = source->text + (cx->current.span.end - source->base);
@@ -77,7 +78,7 @@ static int sets_next(const Parse *cx) {
   return s[0] == '=' && s[1] != '=';
 }
 
-/* A block is due, and not a list or another expression. */
+/* Whether a block is expected, and not a list or another expression. */
 static int wants_block(const TokKind *set, int n) { return has(set, n, TOK_LBRACE) && !has(set, n, TOK_NUMBER); }
 
 /* Two statements on one line. */
@@ -89,7 +90,7 @@ static const char *missing_end(const Parse *cx) {
   return arena_printf(cx->ast->arena, "put a `;` before `%s`, or a new line: a statement ends there", t->name);
 }
 
-/* Two names without anything between them, where a list is due. */
+/* Two adjacent names where a list is expected. */
 static const char *missing_comma(const Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current;
   if (t->kind != TOK_IDENT || !has(set, n, TOK_COMMA) || cx->open.span.end) return NULL;
@@ -104,7 +105,7 @@ static const char *missing_comma(const Parse *cx, const TokKind *set, int n) {
   }
 }
 
-/* After an operand where an operator is due. */
+/* Advice after an operand, where an operator is expected. */
 static const char *missing_operator(const Parse *cx) {
   const Token *t = &cx->current, *b = &cx->before;
   if ((t->name && has_word("if then else when where", t->name)) || (b->name && has_word("if then else", b->name)))
@@ -116,7 +117,7 @@ static const char *missing_operator(const Parse *cx) {
   return "a product is written with `*`";
 }
 
-/* `name(` where a value is due. */
+/* `name(` where a value is expected. */
 static const char *unexpected_call(const Parse *cx) {
   const char *name = cx->before.name ? cx->before.name : "f";
   switch (cx->filter->word) {
@@ -174,7 +175,7 @@ static const char *missing_name(const Parse *cx, const TokKind *set, int n) {
   }
 }
 
-/* Behind the gap of a contact. */
+/* Advice after the gap of a contact. */
 static const char *after_gap(const Parse *cx, const TokKind *set, int n) {
   TokKind t = cx->current.kind;
   if (cx->filter->word != TOK_CONTACT) return NULL;

@@ -1,4 +1,4 @@
-/* The table of token.h, as lookups. */
+/* Look-ups in the table of tokens (token.h). */
 #include "syntax/token.h"
 
 typedef struct {

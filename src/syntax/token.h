@@ -1,6 +1,6 @@
-/* Tokens: what the scanner yields, the filter completes and the parser consumes.
+/* Tokens, from the scanner through the filter to the parser.
  *
- * One table names them all: lag.y declares the same names (parse.c maps one to the other, and a
+ * One table names them all: lag.y declares the same names (its epilogue maps one to the other, and a
  * token missing there does not compile), the filter reads the flags, messages use the words. */
 #ifndef LAGC_TOKEN_H
 #define LAGC_TOKEN_H
@@ -22,11 +22,11 @@ enum {
   W_ANY = W_FILE | W_EFFECT | W_FOR | W_SCENE | W_EVENT
 };
 
-#define T_SIGN (T_BINARY | T_OPENS) /* what stands between two operands */
+#define T_SIGN (T_BINARY | T_OPENS) /* a sign between two operands */
 #define W_DECL (W_FILE | W_EFFECT)
-#define W_EACH (W_FILE | W_EFFECT | W_FOR) /* what a family may have one of for each member */
+#define W_EACH (W_FILE | W_EFFECT | W_FOR) /* statements that a `for` may repeat for each member of a family */
 
-/* X(name, how messages call it, flags). For statement words and slots the word is the spelling. */
+/* X(name, word in messages, flags). For statement words and slots the word is the spelling. */
 #define TOKENS(X)                                  \
   X(FINISH, "end of file", 0)                      \
   X(BEGIN_FILE, "", 0)                             \
@@ -34,7 +34,7 @@ enum {
   X(END, "the end of the statement", 0)            \
   X(NEWLINE, "end of line", 0)                     \
   X(SEMICOLON, ";", 0)                             \
-  X(BAD, "", 0)     /* a mistake that the scanner saw: text, help */ \
+  X(BAD, "", 0)     /* a mistake that the scanner found: text, help */ \
   X(BADWORD, "", 0) /* a name where only a statement word can stand */ \
   X(IDENT, "a name", T_OPERAND | T_START)          \
   X(NUMBER, "a number", T_OPERAND | T_START)       \
@@ -130,7 +130,7 @@ typedef struct {
   Num number;       /* NUMBER */
   AstUnit unit;     /* UNIT */
   const char *text; /* STRING: without quotes; BAD: the message */
-  const char *help; /* BAD: a way out, or NULL */
+  const char *help; /* BAD: advice, or NULL */
 } Token;
 
 const char *token_word(TokKind kind);

@@ -1,10 +1,10 @@
 /* The text of a unit -> its factors.
  *
- *   unit   = factor { [ "*" | "·" | "/" ] factor }        a space multiplies
+ *   unit   = factor { [ "*" | middle dot | "/" ] factor } a space multiplies
  *   factor = ( name | "1" | "(" unit ")" ) [ "^" exponent ]
  *   exponent = integer | "(" integer [ "/" integer ] ")", each with an optional sign
  *
- * `/` divides by the next factor only: J/kg*K is (J/kg)*K. Which names are units is not asked here. */
+ * `/` divides by the next factor only: J/kg*K is (J/kg)*K. Names of units are checked later (model/). */
 #include <string.h>
 
 #include "base/strbuf.h"
@@ -25,7 +25,7 @@ typedef struct {
   uint32_t depth;
 } Unit;
 
-/* 0, and the token becomes BAD. */
+/* Makes the token BAD with this message; returns 0. */
 static int unit_bad(Unit *u, uint32_t from, uint32_t n, const char *message, const char *help) {
   *u->token = (Token){.kind = TOK_BAD, .span = {u->begin + from, u->begin + from + n}, .text = message,
                       .help = help};
@@ -98,7 +98,7 @@ static int parse_exponent(Unit *u, Num *out) {
   return 1;
 }
 
-/* Multiplies the exponents of the factors from `first` on. */
+/* Parses an exponent and multiplies those of the factors from `first` on by it (by its negative: divide). */
 static int raise(Unit *u, uint32_t first, int divide) {
   Num power;
   if (!parse_exponent(u, &power)) return 0;
@@ -122,7 +122,7 @@ static int bad_factor(Unit *u) {
   return unit_bad(u, u->at, len, message, help);
 }
 
-/* [°] and [°C] are [deg] and [degC]. */
+/* Spells the degree sign `deg`: [deg], [degC]. */
 static const char *without_degree_sign(const Unit *u, const char *text, uint32_t n) {
   StrBuf b = strbuf(u->scan->arena);
   for (uint32_t k = 0; k < n; k++) {
