@@ -1,3 +1,4 @@
+/* The cache of simulators: finds a safe folder, seals entries with checksums, removes the least recently used. */
 #include "cli/cache.h"
 
 #include <dirent.h>
@@ -15,9 +16,9 @@
 
 enum { LIMIT_MIB = 1024, NAME = 32 }; /* NAME: digits of an entry's name */
 
-/* --- where --- */
+/* --- folders --- */
 
-/* The folder at path, if nobody else can write there; what a generous umask has left open is closed. */
+/* The folder at path, made if need be, with write permission of others removed; NULL if others can write there. */
 static const char *own_folder(Arena *a, const char *path) {
   struct stat st;
   if (!dir_make(a, path)) return NULL;
@@ -38,7 +39,7 @@ const char *cache_folder(Arena *a) {
   return dir ? dir : own_folder(a, arena_printf(a, "/tmp/%s", own));
 }
 
-/* A folder for temporary files where a new folder of the user's stays the user's. */
+/* A temporary folder in which nobody else can replace a new folder of the user's. */
 static const char *temporary(Arena *a) {
   const char *const places[] = {getenv("TMPDIR"), "/tmp", "/var/tmp", "."};
   for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
@@ -68,7 +69,7 @@ static uint64_t hash_more(uint64_t h, const char *s, size_t n) {
   return h;
 }
 
-/* The size of a file and a checksum of what is in it, as text; NULL when it cannot be read. */
+/* Size and FNV-1a checksum of a file, as text; NULL when it cannot be read. */
 static const char *checksum(Arena *a, const char *path) {
   FILE *f = fopen(path, "rb");
   uint64_t h = 1469598103934665603u;
@@ -116,7 +117,7 @@ static int by_age(const void *x, const void *y) {
   return a->tv_sec != b->tv_sec ? (a->tv_sec > b->tv_sec) - (a->tv_sec < b->tv_sec) : (a->tv_nsec > b->tv_nsec) - (a->tv_nsec < b->tv_nsec);
 }
 
-/* All of them, those used longest ago first; *total: their size. */
+/* All entries, the least recently used first; *total: their size [bytes]. */
 static Entries entries(Arena *a, const char *dir, long long *total) {
   Entries all = {0};
   struct stat st, seal;
@@ -139,7 +140,7 @@ static void remove_entry(Arena *a, const Entry *e) {
   unlink(seal_of(a, e->path));
 }
 
-/* In bytes; LAGC_CACHE_MIB says another. */
+/* The cache's limit [bytes]: LIMIT_MIB, or LAGC_CACHE_MIB. */
 static long long limit(void) {
   const char *text = getenv("LAGC_CACHE_MIB");
   char *end = NULL;

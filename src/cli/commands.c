@@ -1,3 +1,4 @@
+/* The tables of commands and options, with the texts of help, and look-ups in them. */
 #include "cli/commands.h"
 
 #include <string.h>
@@ -201,7 +202,7 @@ static const OptionRow options[] = {
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };
 
-/* ---- looking them up ---- */
+/* ---- look-ups ---- */
 
 const CommandRow *command_row(size_t i) { return i < N_COMMANDS ? &commands[i] : NULL; }
 const OptionRow *option_row(size_t i) { return i < N_OPTIONS ? &options[i] : NULL; }

@@ -1,5 +1,5 @@
-/* The commands of lagc and their options, as tables: the parser, `lagc help` and completion read them, and a test
- * holds the man page and the simulator's own options against them. */
+/* Tables of lagc's commands and options, read by the parser, `lagc help` and completion; a test compares the man page
+ * and the simulator's own options with them. */
 #ifndef LAGC_COMMANDS_H
 #define LAGC_COMMANDS_H
 
@@ -13,36 +13,36 @@ typedef enum {
 typedef struct {
   Command command;
   const char *name;
-  const char *topic;     /* another word for it, for `lagc help`; or NULL */
-  const char *arguments; /* after the name, in a line of usage */
-  const char *does;      /* in a few words; NULL: not listed */
-  const char *help;      /* paragraphs; a line that begins with white space stands as it is */
+  const char *topic;     /* synonym for `lagc help`, or NULL */
+  const char *arguments; /* its arguments in the usage line */
+  const char *does;      /* summary in a few words; NULL: not listed */
+  const char *help;      /* paragraphs; lines that begin with white space are preformatted */
 } CommandRow;
 
-/* What an option takes: how it is parsed, and what completion offers. */
+/* Kind of an option's value: decides how it is parsed and completed. */
 typedef enum {
   TAKES_NOTHING,
   TAKES_TEXT,
   TAKES_NUMBER,
-  TAKES_FILE,    /* hint: the suffixes that it may have, with spaces between them; "" for any */
-  TAKES_CHOICE,  /* hint: the choices */
-  TAKES_CHOICES, /* the same, with commas between several */
+  TAKES_FILE,    /* hint: allowed suffixes, separated by spaces; "" for any */
+  TAKES_CHOICE,  /* hint: the choices, separated by spaces */
+  TAKES_CHOICES, /* one or more choices, separated by commas */
   TAKES_METHOD,
-  TAKES_PARAMS,  /* names of parameters, with commas between several, or the hint */
-  TAKES_EXPR,    /* of the model */
-  TAKES_EXPRS,   /* the same; may be given several times: a list */
+  TAKES_PARAMS,  /* names of parameters, separated by commas, or the hint */
+  TAKES_EXPR,    /* an expression of the model */
+  TAKES_EXPRS,   /* an expression; repeated options make a list */
   TAKES_DEFINE   /* CONST=VALUE */
 } OptionTakes;
 
 typedef struct {
   const char *name;  /* "--output" */
   const char *brief; /* "-o", or NULL */
-  const char *value; /* how help calls what it takes; NULL: nothing */
+  const char *value; /* the value in help; NULL: takes none */
   OptionTakes takes;
   const char *hint;
-  unsigned commands; /* 1u << command for each that has it */
-  int passed;        /* belongs to the simulator */
-  size_t field;      /* otherwise: where in Options it goes; int, const char *, or a list */
+  unsigned commands; /* 1u << command for each command that has it */
+  int passed;        /* passed on to the simulator */
+  size_t field;      /* otherwise: offset in Options of an int, const char * or list */
   const char *does;
 } OptionRow;
 
@@ -50,19 +50,19 @@ typedef struct {
 const CommandRow *command_row(size_t i);
 const OptionRow *option_row(size_t i);
 
-/* The command that a first word names ("run", "--help"); CMD_NONE for none. */
+/* The command named by the first word ("run", "--help"), or CMD_NONE. */
 Command command_named(const char *word);
 
 /* The row of a command; NULL for CMD_NONE. */
 const CommandRow *command_find(Command c);
 
-/* The option that `arg` writes ("--until", "--until=3", "-o", "-DN=3"), among those of c; NULL for none. *value is what
- * stands in the same word after it, or NULL. */
+/* The option of command c written as `arg` ("--until", "--until=3", "-o", "-DN=3"), or NULL. *value: the value in the
+ * same word, or NULL. */
 const OptionRow *option_find(Command c, const char *arg, const char **value);
-/* Whether the word is an option whose value is the next one: in `--method rk4(step=0.01)` that is no setting. */
+/* Whether the word is an option whose value is the next word: in `--method rk4(step=0.01)` the second word is no setting. */
 int option_takes_next(Command c, const char *word);
 
-/* Whether the command runs a simulator: then name=value is a setting; whether it reads a model at all. */
+/* Whether the command runs a simulator, so that name=value is a setting; whether it reads a model. */
 int command_simulates(Command c);
 int command_reads_model(Command c);
 

@@ -1,4 +1,4 @@
-# Completion of lagc for bash. `lagc complete` knows what fits; here words are put together and quoted.
+# Completion of lagc for bash. `lagc complete` finds the candidates; this script joins and quotes words.
 _lagc() {
   local word raw=${COMP_WORDS[COMP_CWORD]} quote= full= split= n=0 i suffix
   local -a words=() found=()
@@ -28,7 +28,7 @@ _lagc() {
     words[i]=$word
   done
   full=${words[n - 1]}
-  # what stands before the part that bash will replace
+  # the part of the word before the part that bash replaces
   local head=
   [[ $split && -z $quote ]] && head=${full%="${full##*=}"}=
   COMPREPLY=()

@@ -1,4 +1,4 @@
-# Completion of lagc for fish. `lagc complete` knows what fits.
+# Completion of lagc for fish. `lagc complete` finds the candidates.
 function __lagc_complete
     set -l words (commandline -opc)
     set -l current (commandline -ct | string unescape)

@@ -1,5 +1,5 @@
 #compdef lagc
-# Completion of lagc for zsh. `lagc complete` knows what fits.
+# Completion of lagc for zsh. `lagc complete` finds the candidates.
 _lagc() {
   local line name
   local -a open open_shown whole whole_shown

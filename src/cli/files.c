@@ -1,3 +1,4 @@
+/* Writes files atomically, judges permissions of folders, and makes locked folders for builds. */
 #include "cli/files.h"
 
 #include <dirent.h>
@@ -14,7 +15,7 @@
 
 /* --- files --- */
 
-/* Completes the file. An interruption waits until then: it would leave the temporary file. */
+/* Closes the file, and keeps or drops it. Interruptions are held until then: they would leave the temporary file. */
 static int complete(Outfile *o, int ok, const char **error) {
   int why = errno;
   if (outfile_close(o, ok ? OUTFILE_KEEP : OUTFILE_DROP) != 0 && ok) {
@@ -74,7 +75,7 @@ int file_install(const char *path, const char *from, const char **error) {
   if (!f || outfile_open(&o, path) != 0) *error = strerror(errno);
   else {
     ok = copy(f, o.f) && fstat(fileno(o.f), &st) == 0;
-    ok = complete(&o, ok && fchmod(fileno(o.f), (st.st_mode | (st.st_mode & 0444) >> 2) & 0777) == 0, error); /* who may read it may run it */
+    ok = complete(&o, ok && fchmod(fileno(o.f), (st.st_mode | (st.st_mode & 0444) >> 2) & 0777) == 0, error); /* readers may execute it */
   }
   if (f) fclose(f);
   sigprocmask(SIG_SETMASK, &before, NULL);
@@ -106,7 +107,7 @@ int dir_make(Arena *a, const char *path) {
   return mkdir(p, 0700) == 0 || errno == EEXIST;
 }
 
-/* Of a folder above: where many may write, as in /tmp, none may rename what belongs to another. */
+/* Whether a parent folder is safe: of the user or root, and sticky where others may write, as /tmp. */
 static int is_safe_above(const struct stat *st) {
   return (st->st_uid == 0 || st->st_uid == geteuid()) && (!(st->st_mode & 022) || st->st_mode & S_ISVTX);
 }
@@ -125,14 +126,14 @@ int dir_is_safe(const char *path) {
 
 /* --- folders of builds --- */
 
-/* 0 also where another process has removed the file meanwhile. */
+/* Locks the file; 0 also where another process has removed it meanwhile. */
 static int take_lock(int fd) {
   struct flock all = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
   struct stat st;
   return fcntl(fd, F_SETLK, &all) == 0 && fstat(fd, &st) == 0 && st.st_nlink > 0;
 }
 
-/* The files in the folder, but for `keep`. */
+/* Removes the files in the folder, except `keep` and then the lock. */
 static void empty(const char *path, const char *keep) {
   int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   DIR *d = fd >= 0 ? fdopendir(fd) : NULL;
@@ -163,12 +164,12 @@ static int try_folder(Arena *a, const char *base, BuildFolder *f) {
 
 int build_folder_make(Arena *a, const char *base, BuildFolder *f) {
   int made = 0;
-  for (int i = 0; i < 10 && !made; i++) made = try_folder(a, base, f); /* again where another process took it for remains */
+  for (int i = 0; i < 10 && !made; i++) made = try_folder(a, base, f); /* again where another process removed it as left over */
   return made;
 }
 
-/* Removes the folder if its lock can be taken. Where a kill came before the lock, it is made here: a process that is just making the folder then finds
- * that the lock is not its own, and makes another folder. */
+/* Removes the folder if its lock can be taken. A missing lock (its process was killed, or is about to make it) is made here: a process that is
+ * still making the folder then fails to get its lock, and makes another folder. */
 static void remove_left(Arena *a, const char *path) {
   struct stat st;
   if (lstat(path, &st) != 0 || !S_ISDIR(st.st_mode) || st.st_uid != geteuid()) return;

@@ -6,38 +6,38 @@
 
 #include "base/arena.h"
 
-/* Writes text to path ("-": standard output) through a temporary file beside it (runtime/io/outfile.h). On failure
- * returns 0 with *error set (an English sentence part), and path is as it was. */
+/* Writes text[n] to path ("-": standard output) through a temporary file beside it (runtime/io/outfile.h). On failure
+ * returns 0 with the reason in *error (part of an English sentence), and path is unchanged. */
 int file_write(Arena *a, const char *path, const char *text, size_t n, const char **error);
 
-/* Likewise the bytes of the file `from`, which become a program. */
+/* Copies the file `from` to path in the same way, as an executable. */
 int file_install(const char *path, const char *from, const char **error);
 
-/* Makes a directory and those above it, for the user alone. */
+/* Makes a directory, for the user alone, and the directories above it. */
 int dir_make(Arena *a, const char *path);
 
-/* Whether nobody but the user (and root) can put anything into the folder, or another folder in its place. */
+/* Whether only the user and root can write into the folder, or put another folder in its place. */
 int dir_is_safe(const char *path);
 
 /* Whether both paths lead to one regular file. */
 int file_same(const char *a, const char *b);
 
-/* Whether it is the user's own regular file, no link, not empty, which others cannot write. */
+/* Whether path is a regular file of the user's, no link, not empty, not writable by others. */
 int file_is_own(const char *path);
 
 int file_exists(const char *path);
 
-/* A folder for one build, with a lock in it that its process holds to its end, programs that it becomes by exec included. */
+/* A folder for one build, with a lock that its process holds until it ends, across exec. */
 typedef struct {
   const char *path;
   int lock;
 } BuildFolder;
 
-/* Makes one in the folder `base`. 0, with errno. */
+/* Makes a build folder in the folder `base`. Returns 0, with errno, on failure. */
 int build_folder_make(Arena *a, const char *base, BuildFolder *f);
-/* Removes the files in it, and the folder. keep: all but this file, for a program that is run from there. */
+/* Removes the folder and its files; keep: leaves the folder with this file, a program to be run from there. */
 void build_folder_remove(BuildFolder *f, const char *keep);
-/* Removes those in `base` whose processes are gone. */
+/* Removes the build folders in `base` whose processes are gone. */
 void build_folder_remains(Arena *a, const char *base);
 
 #endif

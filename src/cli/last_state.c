@@ -1,3 +1,4 @@
+/* Forks a listener that reads the last state of a run from a pipe. */
 #include "cli/last_state.h"
 
 #include <signal.h>

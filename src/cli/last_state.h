@@ -1,4 +1,5 @@
-/* A process beside the simulator that lagc becomes: it has what lagc knew, and waits for the state at which a run ended for want of a finite value. */
+/* Listener process beside the simulator that lagc becomes by exec: it keeps the compiled model, and waits for the state at which a run ended for
+ * want of a finite value. */
 #ifndef LAGC_LAST_STATE_H
 #define LAGC_LAST_STATE_H
 
@@ -6,8 +7,8 @@
 
 #include "base/arena.h"
 
-/* Returns in the process that goes on to be the simulator, which finds the pipe's number in $LAG_LAST_STATE. In the other one tell(data, number, n) is called when n numbers
- * came, and it ends with the simulator. Without room for a process nothing happens. */
+/* Forks. Returns in the process that becomes the simulator, which finds the pipe's descriptor in $LAG_LAST_STATE. The listener calls
+ * tell(data, number, n) when n numbers have arrived, and ends with the simulator. If fork or pipe fails, there is no listener. */
 void last_state_wait(Arena *a, void (*tell)(void *data, const double *number, uint32_t n), void *data);
 
 #endif

@@ -1,3 +1,4 @@
+/* Builds and runs a small program that prints the runtime's descriptors of methods. */
 #include "cli/methods.h"
 
 #include <string.h>

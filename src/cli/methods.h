@@ -1,7 +1,7 @@
-/* The methods of integration, as the runtime that simulators are linked with has them.
+/* The methods of integration of the runtime that simulators are linked with.
  *
- * The compiler knows none of the runtime's headers: it makes a program that reads its descriptors, once for each runtime,
- * as a simulator without a model is made and cached. */
+ * The compiler includes no header of the runtime: it builds, and caches like a simulator, a program that prints the
+ * descriptors, once for each runtime. */
 #ifndef LAGC_METHODS_H
 #define LAGC_METHODS_H
 
@@ -9,16 +9,16 @@
 #include "cli/toolchain.h"
 
 typedef struct {
-  const char *name, *does; /* the first line of its description */
+  const char *name, *does; /* does: first line of the description */
 } MethodRow;
 
 typedef VEC(MethodRow) Methods;
 
-/* The path of the program: called with `--method help` it prints the table. NULL, with *error, when there is no runtime or
- * no C compiler. argv0 is what lagc was called as. */
+/* The path of that program; with `--method help` it prints the table. NULL, with *error, when there is no runtime or no C
+ * compiler. argv0: the name that lagc was called by. */
 const char *methods_program(Arena *a, const char *argv0, int want_gsl, const char **error);
 
-/* Asks it for all methods. 0, with *error. */
+/* Runs the program and lists all methods. Returns 0, with *error, on failure. */
 int methods_list(Arena *a, const char *argv0, int want_gsl, Methods *out, const char **error);
 
 #endif

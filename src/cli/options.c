@@ -1,3 +1,4 @@
+/* Parses the command line by the tables of commands.c; mistakes are answered with the nearest word or the right command. */
 #include "cli/options.h"
 
 #include <string.h>
@@ -64,7 +65,7 @@ static int check_choices(Arena *a, const OptionRow *row, const char *value, cons
   return ok;
 }
 
-/* The command or option that does write files of this suffix. */
+/* Advice: the command or option that writes files of this suffix. */
 static const char *way_to(Command c, const char *suffix) {
   if (c == CMD_PLOT && is_choice("png pdf jpg jpeg gif webp eps ps", suffix, strlen(suffix))) return ", which browsers and `rsvg-convert` turn into other kinds";
   if (c == CMD_RUN && strcmp(suffix, "json") == 0) return "; --json prints the report as JSON";
@@ -75,7 +76,7 @@ static const char *way_to(Command c, const char *suffix) {
   return "";
 }
 
-/* A name that says another kind of file than the command writes. */
+/* Reports a file name whose suffix is of another kind than the command writes. */
 static int check_kind(Arena *a, Command c, const OptionRow *row, const char *path, const char *suffixes, const char **error) {
   const char *other = outfile_other_kind(path, suffixes), *name = row->brief ? row->brief : row->name;
   if (!other) return 1;
@@ -88,7 +89,7 @@ static int check_kind(Arena *a, Command c, const OptionRow *row, const char *pat
   return 0;
 }
 
-/* derive and noether: what they write is of the format that the name says, or that --format says. */
+/* derive and noether: takes the format from the name of the output file, or compares it with --format. */
 static int check_format(Arena *a, Options *o, const char **error) {
   const OptionRow *output = option_find(o->command, "-o", &(const char *){NULL}), *format = option_find(o->command, "--format", &(const char *){NULL});
   static const char *const formats[][2] = {{"latex", "tex"}, {"json", "json"}, {"c", "c"}};
@@ -101,7 +102,7 @@ static int check_format(Arena *a, Options *o, const char **error) {
   return check_kind(a, o->command, output, o->output, suffixes, error);
 }
 
-/* Puts the value where the row says. */
+/* Stores the value in the field that the row names. */
 static int set_value(Arena *a, Options *o, const OptionRow *row, const char *value, const char **error) {
   void *field = (char *)o + row->field;
   switch (row->takes) {
@@ -119,7 +120,7 @@ static int set_value(Arena *a, Options *o, const OptionRow *row, const char *val
 
 /* ---- words ---- */
 
-/* The option that other programs call so; NULL: none that is known. */
+/* The option that other programs write as `arg`; NULL: unknown. */
 static const char *meant_option(const char *arg) {
   static const char *const other[][2] = {{"--dt --timestep --stepsize --h", "--step"}, {"--tolerance --rtol --atol --eps --accuracy", "--tol"},
                                          {"--time --tmax --tend --end --t1 --span --duration", "--until"}, {"--integrator --solver", "--method"},
@@ -129,7 +130,7 @@ static const char *meant_option(const char *arg) {
   return NULL;
 }
 
-/* What to do with a word that begins with `-` and is no option of this command. */
+/* The message for a word that begins with `-` but is no option of this command. */
 static const char *unknown_option(Arena *a, const Options *o, const char *word) {
   const char *value, *arg = arena_printf(a, "%.*s", (int)strcspn(word, "="), word);
   const CommandRow *row = command_find(o->command);
@@ -163,7 +164,7 @@ static int read_option(Arena *a, int argc, char **argv, int *i, Options *o, cons
     if (row->passed) vec_push(a, &o->rest, value);
   }
   if (row->takes == TAKES_FILE && (*row->hint || o->command == CMD_BUILD) && !check_kind(a, o->command, row, value, row->hint, error)) return 0;
-  if (strcmp(row->name, "--method") == 0) o->method = value; /* passed on, and looked at: what a method needs is compiled in */
+  if (strcmp(row->name, "--method") == 0) o->method = value; /* passed on, and recorded: its derivatives are compiled in */
   if (strcmp(row->name, "--resume") == 0) o->resume = value;
   if (strcmp(row->name, "--tol") == 0) o->tol = value;
   if (strcmp(row->name, "--tangent") == 0) o->with = "linear";
@@ -212,7 +213,7 @@ static int read_arguments(Arena *a, int argc, char **argv, Options *o, const cha
   return o->file && check_format(a, o, error);
 }
 
-/* Commands that read no model: at most one word after the command's. */
+/* Commands that read no model take at most one word. */
 static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char **error) {
   const char *arg = argc > 2 ? argv[2] : NULL;
   if (argc > 3) {

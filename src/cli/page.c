@@ -1,3 +1,4 @@
+/* Fills paragraphs and renders the Markdown subset of grammar/LANGUAGE.md; columns are counted in UTF-8 characters. */
 #include "cli/page.h"
 
 #include <string.h>
@@ -17,7 +18,7 @@ static void put_spaces(StrBuf *out, size_t n) {
 
 static int is_space(char c) { return c == ' ' || c == '\n' || c == '\t'; }
 
-/* Between backticks? And is what stands there one word, because it is short? */
+/* State between backticks: inside code; code short enough to stay on one line. */
 typedef struct {
   int inside, whole;
 } Code;
@@ -35,7 +36,7 @@ static size_t word_end(const char *text, size_t n, size_t i, Code *code) {
 }
 
 void page_words(StrBuf *out, const char *text, size_t n, size_t column, size_t indent) {
-  int fresh = 1; /* nothing was put in this line */
+  int fresh = 1; /* the line is still empty */
   Code code = {0};
   for (size_t i = 0; i < n;) {
     if (is_space(text[i])) {
@@ -100,7 +101,7 @@ static LineKind line_kind(const char *s) {
   return LINE_TEXT;
 }
 
-/* text[n] without marks: [text](link) is text, *word* is word, \| is |; code stays as it is, in its backticks. */
+/* Appends text[n] without markup: [text](link) as text, *word* as word, \| as |; code keeps its backticks. */
 static void put_plain(StrBuf *out, const char *text, size_t n) {
   int code = 0;
   for (size_t i = 0; i < n; i++) {
@@ -118,14 +119,14 @@ static void put_plain(StrBuf *out, const char *text, size_t n) {
   }
 }
 
-/* The end of a cell: a | that no \ stands before. */
+/* The end of a cell: a | without \ before it. */
 static const char *cell_end(const char *s) {
   for (; *s && *s != '\n'; s++)
     if (*s == '|' && s[-1] != '\\') return s;
   return s;
 }
 
-/* Cell k of a row, plain. */
+/* Cell k of a row, without markup. */
 static StrBuf cell(Arena *a, const char *line, int k) {
   const char *begin = line + 1;
   for (; k; k--) begin = cell_end(begin) + (*cell_end(begin) == '|');
@@ -137,7 +138,7 @@ static StrBuf cell(Arena *a, const char *line, int k) {
   return b;
 }
 
-/* column 0: the meaning stands below its term. */
+/* Prints a row as a term and its meaning; column 0: the meaning below the term. */
 static void put_row(StrBuf *out, const char *line, size_t column) {
   StrBuf term = cell(out->arena, line, 0), meaning = cell(out->arena, line, 1);
   if (column) {
@@ -152,7 +153,7 @@ static void put_row(StrBuf *out, const char *line, size_t column) {
 
 void page_row(StrBuf *out, const char *line) { put_row(out, line, 0); }
 
-/* A heading of a table says nothing that its rows do not: it and the rule below it are left out. */
+/* Prints the rows of a table without its heading and rule, and returns their number. */
 static size_t put_table(StrBuf *out, const char *const *lines, size_t n) {
   enum { NARROW = 32 };
   size_t rows = 0, widest = 0;
@@ -171,7 +172,7 @@ static size_t put_code(StrBuf *out, const char *const *lines, size_t n) {
   return i + 1;
 }
 
-/* A paragraph, or an item of a list: its line, and those after it that begin nothing else. */
+/* A paragraph or an item of a list: its first line and the text lines that follow. */
 static size_t put_text(StrBuf *out, const char *const *lines, size_t n) {
   StrBuf text = strbuf(out->arena);
   size_t i = 0, indent = line_kind(lines[0]) == LINE_ITEM ? 2 : 0;

@@ -1,3 +1,4 @@
+/* Splits a list of points at commas, semicolons, and spaces between two expressions, outside brackets. */
 #include "cli/points.h"
 
 #include <string.h>
@@ -15,7 +16,7 @@ const char *text_trimmed(Arena *a, const char *text, size_t n) {
   return out;
 }
 
-/* Whether the white space at s, before which the character `before` stands, is between two expressions. */
+/* Whether the white space at s, after the character `before`, separates two expressions. */
 static int separates(char before, const char *s) {
   s += strspn(s, " \t\r\n");
   if (*s == '\0' || *s == ';' || strchr("+-*/^(,<>=", before)) return 0;

@@ -1,4 +1,4 @@
-/* What plot and animate draw: pieces of text that are expressions. */
+/* Lists of points in the options of plot and animate, split into the texts of their expressions. */
 #ifndef LAGC_POINTS_H
 #define LAGC_POINTS_H
 
@@ -10,8 +10,8 @@ typedef struct {
 
 typedef VEC(PointText) PointTexts;
 
-/* "x1,y1 x2,y2" or "x1, y1; x2, y2" -> the texts of each point. After its comma a point ends at a space that
- * no operator touches (a sign may follow it). 0, with *error, where a point has not two parts. */
+/* Splits "x1,y1 x2,y2" or "x1, y1; x2, y2" into the texts of each point. After its comma a point ends at a space that no
+ * operator touches (a sign may follow it). Returns 0, with *error, where a point has not two parts. */
 int points_split(Arena *a, const char *text, PointTexts *points, const char **error);
 
 /* A text on one line, without white space at its ends and with single spaces inside. */

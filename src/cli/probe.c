@@ -1,3 +1,4 @@
+/* Compiles and runs the program of probe.in with the flags of simulators, and with further flags until it passes. */
 #include "cli/probe.h"
 
 #include <stdio.h>
@@ -10,7 +11,7 @@
 
 enum { N_LINES = sizeof probe_text / sizeof *probe_text, WRONG = 1 };
 
-/* Runs the compiler with these words after its own and `optimise`; its exit status. */
+/* Runs the compiler with the words `more` after those of cc; returns its exit status. */
 static int run_compiler(Arena *a, const char *cc, const char *const *more, char **said) {
   Words argv = toolchain_words(a, cc);
   for (; *more; more++)
@@ -19,7 +20,7 @@ static int run_compiler(Arena *a, const char *cc, const char *const *more, char 
   return toolchain_run(a, argv.at, said);
 }
 
-/* Only GCC with AVX-512 is known to fail: for all others preprocessing tells so, in a hundredth of a second. */
+/* Whether the compiler is GCC with AVX-512, the only one known to fail; its predefined macros tell, in 10 ms. */
 static int is_suspect(Arena *a, const char *cc, const char *source) {
   const char *const more[] = {"-dM", "-E", source, NULL};
   char *said = NULL;
@@ -29,7 +30,7 @@ static int is_suspect(Arena *a, const char *cc, const char *source) {
 static int fails_with(Arena *a, const char *cc, const char *optimise, const char *flag, const char *source, const char *program) {
   const char *const more[] = {optimise, TOOLCHAIN_SCALAR, flag, "-o", program, source, NULL};
   char *said = NULL, *argv[] = {arena_strdup(a, program), NULL};
-  if (run_compiler(a, cc, more, &said) != 0) return 0; /* what is wrong then, the build itself will say */
+  if (run_compiler(a, cc, more, &said) != 0) return 0; /* the build itself will report that */
   return toolchain_run(a, argv, &said) == WRONG;
 }
 

@@ -1,3 +1,4 @@
+/* Cuts the built-in reference into chapters and finds the rows, items and chapters about a word. */
 #include "cli/reference.h"
 
 #include <ctype.h>
@@ -46,7 +47,7 @@ const char *word_at(Arena *a, const char *words, size_t i) {
   return *words ? arena_strndup(a, words, strcspn(words, " ")) : NULL;
 }
 
-/* Whether some code that begins with the word stands before `end` (a | or a colon) in the line. */
+/* Whether the line has, before `end` (a | or a colon), code in backticks that begins with the word. */
 static int says_first(const char *line, char end, const char *word) {
   size_t n = strlen(word);
   int code = 0;
@@ -58,8 +59,8 @@ static int says_first(const char *line, char end, const char *word) {
   return 0;
 }
 
-/* The row of a table that is about the word, or, in a chapter that names the word, the item of a list: it begins at
- * line i; 1 when it was printed. */
+/* Prints line i if it is a row of a table about the word, or, in a chapter that lists the word, an item of a list about
+ * it. Returns 1 when it did. */
 static int print_entry(StrBuf *out, const Chapter *c, size_t i, const char *word) {
   const char *line = c->lines[i];
   if (line[0] == '|' && says_first(line + 1, '|', word)) {

@@ -1,7 +1,7 @@
-/* The reference of the language, grammar/LANGUAGE.md, as it was when lagc was built: chapters for `lagc help`.
+/* Chapters of the language reference, grammar/LANGUAGE.md, built into lagc for `lagc help`.
  *
- * A chapter is what stands from a heading (## or ###) to the next. Below its heading a comment names the words that it
- * explains, the first of which names the chapter: <!-- help: scenes scene start span --> */
+ * A chapter runs from a heading (## or ###) to the next. A comment below the heading lists the words that it explains;
+ * the first one names the chapter: <!-- help: scenes scene start span --> */
 #ifndef LAGC_REFERENCE_H
 #define LAGC_REFERENCE_H
 
@@ -18,14 +18,14 @@ typedef VEC(Chapter) Chapters;
 
 void reference_chapters(Arena *a, Chapters *out);
 
-/* The text of its heading. */
+/* The text of the chapter's heading. */
 const char *chapter_title(Arena *a, const Chapter *c);
 
-/* Word i of a text of words, or NULL. */
+/* Word i of words separated by spaces, or NULL. */
 const char *word_at(Arena *a, const char *words, size_t i);
 
-/* What a chapter says of a word: the rows of its tables that begin with it; of its own words also items of lists that
- * do, or, where there are none, all of it. 0 when it says nothing. */
+/* Appends the chapter's text on a word: rows of tables that begin with it; for one of the chapter's own words also items of
+ * lists that do, or, without any, the whole chapter. Returns 0 when there is nothing. */
 int chapter_print(StrBuf *out, const Chapter *c, const char *word);
 
 #endif

@@ -1,3 +1,4 @@
+/* `lagc completion SHELL`: prints a built-in script. */
 #include "cli/shells.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* The scripts of completion, src/cli/complete.bash, .zsh and .fish, as they were when lagc was built. */
+/* The shells' completion scripts, complete.bash, .zsh and .fish, built into lagc. */
 #ifndef LAGC_SHELLS_H
 #define LAGC_SHELLS_H
 

@@ -1,3 +1,4 @@
+/* Finds the runtime, runs the C compiler in a folder of its own, and keeps simulators in the cache under a hash of their texts. */
 #include "cli/toolchain.h"
 
 #include <errno.h>
@@ -90,8 +91,8 @@ static char *read_fd(Arena *a, int fd) {
   return arena_strdup(a, sb_text(&b));
 }
 
-/* A signal handler can reach nothing else: the signal that came, 0: none; the process group of the program that runs, 0: none; and whether
- * builds are to be interrupted in an orderly way. */
+/* State for the signal handler: signal that came (0: none), process group of the running program (0: none), and whether signals are noted so that
+ * builds end in order. */
 static volatile sig_atomic_t interrupted, running, noting;
 enum { N_SIGNALS = 3 };
 static const int signals[N_SIGNALS] = {SIGINT, SIGTERM, SIGHUP};
@@ -104,7 +105,7 @@ static void on_interruption(int number) {
   if (running) kill(-(pid_t)running, number);
 }
 
-/* From here on interruptions are noted, and handed on to the program that runs; those that are ignored stay so. */
+/* From here on signals are noted, and forwarded to the running program; ignored signals stay ignored. */
 static void interruptions_note(Interruptions *before) {
   struct sigaction note = {.sa_handler = on_interruption};
   interrupted = 0;
@@ -115,21 +116,21 @@ static void interruptions_note(Interruptions *before) {
   }
 }
 
-/* They are what they were; one that came happens now. */
+/* Restores the handlers and raises a signal that was noted. */
 static void interruptions_restore(const Interruptions *before) {
   for (int i = 0; i < N_SIGNALS; i++) sigaction(signals[i], &before->was[i], NULL);
   noting = 0;
   if (interrupted) raise(interrupted);
 }
 
-/* A new process; where interruptions are noted it leads a group, which they reach. */
+/* Forks; where signals are noted the child leads a process group, to which they are forwarded. */
 static pid_t fork_program(void) {
   sigset_t held, before;
   sigemptyset(&held);
   for (int i = 0; i < N_SIGNALS; i++) sigaddset(&held, signals[i]);
   sigprocmask(SIG_BLOCK, &held, &before);
   pid_t pid = fork();
-  if (noting && pid >= 0) setpgid(pid, 0); /* by both: whoever comes first */
+  if (noting && pid >= 0) setpgid(pid, 0); /* in both processes, whichever runs first */
   if (noting && pid > 0) running = (sig_atomic_t)pid;
   if (pid == 0 && noting)
     for (int i = 0; i < N_SIGNALS; i++) {
@@ -140,7 +141,7 @@ static pid_t fork_program(void) {
   return pid;
 }
 
-/* Its exit status, -1 where it has none. */
+/* Waits for the process; its exit status, or -1 when it ended by a signal. */
 static int wait_for(pid_t pid) {
   int status = 0;
   pid_t got;
@@ -194,8 +195,8 @@ Words toolchain_words(Arena *a, const char *cc) {
   return words;
 }
 
-/* With the flags that the simulator reports as LAG_BUILD: bits that do not depend on whether a processor multiplies and adds in
- * one instruction, numbers stored one by one, and what the compiler needs not to go wrong. */
+/* Compiles and links with the flags that the simulator reports as LAG_BUILD: no contraction (same bits with and without fused multiply-add),
+ * no vector stores, and the flag of the probe. */
 static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
   Words argv = toolchain_words(a, t->cc);
   const char *safe = probe_flag(a, t->cc, t->optimise, dir, error);
@@ -230,7 +231,7 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   return 0;
 }
 
-/* The C compiler's temporary files stand in the same folder, and go with it. */
+/* Compiles with TMPDIR set to the build folder, so that the compiler's temporary files are removed with it. */
 static int compile_alone(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
   const char *was = getenv("TMPDIR"), *before = was ? arena_strdup(a, was) : NULL;
   setenv("TMPDIR", dir, 1);
@@ -240,7 +241,7 @@ static int compile_alone(Arena *a, const Toolchain *t, const char *dir, const So
   return ok;
 }
 
-/* Compiles in a folder of its own, which is left only where that went well: f->path/simulator. */
+/* Compiles in a new build folder, which stays only on success: f->path/simulator. */
 static int build_in(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
   const char *base = cache_build_folder(a);
   if (!base) {
@@ -266,7 +267,7 @@ static int build_in(Arena *a, const Toolchain *t, const SourceText *texts, size_
   return ok;
 }
 
-/* The same; an interruption ends the C compiler, and this one once the folder is gone. */
+/* Builds likewise; a signal ends the C compiler, and lagc once the folder is removed. */
 static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
   Interruptions before;
   interruptions_note(&before);
@@ -291,14 +292,14 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
   return ok;
 }
 
-/* --- simulators that are kept --- */
+/* --- simulators in the cache --- */
 
 static uint64_t hash_more(uint64_t h, const char *s, size_t n) {
   for (size_t i = 0; i < n; i++) h = (h ^ (unsigned char)s[i]) * 1099511628211u;
   return h;
 }
 
-/* A library is known by its size and time. */
+/* A library is identified by path, size and modification time. */
 static uint64_t hash_library(Arena *a, uint64_t h, const char *path) {
   struct stat st;
   if (stat(path, &st) != 0) return h;
@@ -314,7 +315,7 @@ static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceT
   return t->gsl ? hash_library(a, h, arena_printf(a, "%s/liblag_gsl.a", t->lib)) : h;
 }
 
-/* The name of what is made of these texts. */
+/* The cache entry's name: a 128-bit hash of texts, compiler and libraries. */
 static const char *name_of(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
   uint64_t h1 = hash_all(a, 1469598103934665603u, t, texts, n), h2 = hash_all(a, 0x9e3779b97f4a7c15u, t, texts, n);
   return arena_printf(a, "%016llx%016llx", (unsigned long long)h1, (unsigned long long)h2);
@@ -326,7 +327,7 @@ const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *
   if (path && cache_is_whole(a, path)) return path;
   if (!build(a, t, texts, n, &f, error)) return NULL;
   const char *made = arena_printf(a, "%s/simulator", f.path);
-  if (!path) { /* it stays in its folder, which it holds while it runs; a later command removes it */
+  if (!path) { /* the simulator stays in its build folder, locked while it runs; a later command removes both */
     build_folder_remove(&f, "simulator");
     return made;
   }
