@@ -15,7 +15,7 @@ static double time_share(const EffectStudy *s, const EffectRow *row) {
   return (s->measured[row->upper].time - s->measured[row->lower].time) / s->measured[0].time;
 }
 
-/* Operations that several effects share: the scene's, less the base's and each effect's own. */
+/* Operations common to several effects: the scene's, less the base's and each effect's own. */
 static int shared_ops(const EffectStudy *s) {
   int ops = s->measured[0].ops - s->measured[s->base].ops;
   for (uint32_t i = 0; i < s->rows.n; i++)

@@ -12,9 +12,9 @@ uint32_t dense_solve(Arena *arena, uint32_t n, const long double *a, long double
 /* Inverts a[n*n] into inverse[n*n] by Gauss-Jordan elimination with partial pivoting; a is destroyed. Returns 0 where a is singular. */
 int dense_invert(uint32_t n, long double *a, long double *inverse);
 
-/* Gram-Schmidt step: projects row[n] off the `rank` orthonormal rows of `before`, twice because of rounding, and normalises the rest. Returns
- * the length of the rest relative to the row, from 0 to 1. Kahan's "twice is enough", in B. Parlett, The Symmetric Eigenvalue Problem
- * (1980), 6.9, DOI 10.1137/1.9781611971163. */
+/* Gram-Schmidt step: subtracts from row[n] its projection onto the `rank` orthonormal rows of `before`, twice because of rounding, and
+ * normalises the remainder. Returns the remainder's length relative to the row, from 0 to 1. Kahan's "twice is enough", in B. Parlett, The
+ * Symmetric Eigenvalue Problem (1980), 6.9, DOI 10.1137/1.9781611971163. */
 long double dense_reduce(uint32_t n, long double *row, const long double *before, uint32_t rank);
 
 /* A basis, one vector a row, such as of the kernel of a matrix. */
