@@ -1,4 +1,4 @@
-/* Look-ups in the generated table of methods (base/method_rows.h). */
+/* Look-ups in the table of methods. */
 #include "base/methods.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Table of the methods of integration: their names, options and requirements, for the checks of models and the emission of C.
- * It is generated from the runtime's descriptors when lagc is built (runtime/list_methods.c). */
+ * Its rows are printed from the runtime's descriptors by list_methods.c. */
 #ifndef LAGC_BASE_METHODS_H
 #define LAGC_BASE_METHODS_H
 
