@@ -27,7 +27,7 @@ static Diag *add(Diags *d, Severity severity, Span span, const char *fmt, va_lis
   Diag *known = span.end ? find(d, &one) : NULL;
   d->latest = known ? (uint32_t)(known - d->list.at) : d->list.n > DIAG_MAX ? DIAG_MAX : d->list.n;
   if (known) return known;
-  if (d->list.n > DIAG_MAX) { /* the last slot takes what is no longer shown */
+  if (d->list.n > DIAG_MAX) { /* messages that are not shown share the last slot */
     d->unshown++;
     d->list.at[DIAG_MAX] = one;
   } else {

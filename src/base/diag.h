@@ -1,4 +1,4 @@
-/* Diagnostics: what the compiler tells its user. They accumulate, and are printed together:
+/* Diagnostics: messages of the compiler to its user. They accumulate, and are printed together:
  *
  *   pend.lag:3:27: error: unknown name `thh`
  *      3 | lagrangian = m*l^2/2*thh'^2

@@ -98,7 +98,7 @@ static int parse_exponent(Unit *u, Num *out) {
   return 1;
 }
 
-/* Parses an exponent and multiplies those of the factors from `first` on by it (by its negative: divide). */
+/* Parses an exponent and raises the factors from `first` on to that power (divide: to its negative). */
 static int raise(Unit *u, uint32_t first, int divide) {
   Num power;
   if (!parse_exponent(u, &power)) return 0;
