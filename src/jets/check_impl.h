@@ -1,4 +1,4 @@
-/* State and parts of the self-check, shared by check_*.c, no_value.c and self_check.c. */
+/* State and parts of the self-check, shared by check_*.c, nonfinite.c and self_check.c. */
 #ifndef LAGC_CHECK_IMPL_H
 #define LAGC_CHECK_IMPL_H
 

@@ -20,7 +20,7 @@ static Kept keep(const Check *c) {
   return (Kept){c->t, copied(c, c->q, c->n), copied(c, c->v, c->n), copied(c, c->z, nz), copied(c, c->zd, nz)};
 }
 
-/* The kept state plus s times (dq, dv, dz, dt). */
+/* Sets the state to the saved one plus s times (dq, dv, dz, dt). */
 static void move_to(Check *c, const Kept *k, Real s, const Real *dq, const Real *dv, const Real *dz, Real dt) {
   for (uint32_t i = 0; i < c->n; i++) {
     c->q[i] = k->q[i] + s * dq[i];

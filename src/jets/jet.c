@@ -184,7 +184,7 @@ int jet_function(Jet *out, const char *name, const Jet *of) {
   return 1;
 }
 
-/* x^n; integer powers up to 6 by multiplication, with at most 7 roundings. */
+/* x^n; integer exponents up to 6 by multiplication, with at most 7 roundings. */
 static JetReal power(JetReal x, JetReal n, int is_third) {
   JetReal product = 1;
   if (is_third) return powl(cbrtl(x), roundl(3 * n));

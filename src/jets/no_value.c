@@ -1,5 +1,5 @@
 /* Extrapolates the motion from a run's last good state, q + h v + h^2/2 a with h doubling, and evaluates the text's tapes along it until
- * an instruction with finite operands is not finite. Contract: no_value.h. */
+ * an instruction with finite operands is not finite. Contract: nonfinite.h. */
 #include "jets/no_value.h"
 
 #include <float.h>

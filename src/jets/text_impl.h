@@ -1,4 +1,4 @@
-/* State of an evaluation of an expression of the text, shared by text.c and text_node.c. */
+/* State of an evaluation of an expression of the text, shared by text_eval.c and text_eval_node.c. */
 #ifndef LAGC_TEXT_IMPL_H
 #define LAGC_TEXT_IMPL_H
 
@@ -36,7 +36,7 @@ typedef struct Frame {
   AstId *guard;   /* [i] the sum, product or `if` whose body or branch begins at node first + i, or 0 */
 } Frame;
 
-/* text_node.c: value of node `id` from its operands' values; sets f->waits and f->needs where a definition is needed first. */
+/* text_eval_node.c: value of node `id` from its operands' values; sets f->waits and f->needs where a definition is needed first. */
 Meaning text_node(Text *t, Frame *f, AstId id);
 
 /* x op y: AST_ADD, AST_SUB, AST_MUL or AST_DIV of numbers, vectors, rotations. */

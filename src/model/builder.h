@@ -285,7 +285,7 @@ int add_outputs_as(Builder *b, AstId id, Name label);
 /* monitor.c: `monitor q limit`. */
 void set_monitor(Builder *b, const AstStmt *st);
 
-/* table.c: sets the formula or, where rhs is a file name, the table of input `index`; stem: its name without the effect. */
+/* input_table.c: sets the formula or, where rhs is a file name, the table of input `index`; stem: its name without the effect. */
 void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
 
 /* declare.c: enters the names that a statement declares into scope and model; a StatementFn. */
@@ -302,7 +302,7 @@ int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts);
 /* Name of component k of member `at`: "th", "th[2]", "r.x", "r[2].x". */
 Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k);
 
-/* fix.c: replaces the parameters listed in `words` (NULL: none) by their values, and numbers the remaining ones (Param.place).
+/* fixed_params.c: replaces the parameters listed in `words` (NULL: none) by their values, and numbers the remaining ones (Param.place).
  * Mistakes are reported. */
 void fix_params(Builder *b, const char *words);
 
@@ -341,7 +341,7 @@ void check_sign(Builder *b, const Param *p, Span span);
 /* Warns of parameters whose value, computed from others, contradicts their declared sign: a run refuses them. */
 void warn_signs(Builder *b);
 
-/* advice.c: adds a hint to the message about an unknown name, or an unknown `effect.name`. */
+/* name_hints.c: adds a hint to the message about an unknown name, or an unknown `effect.name`. */
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare);
 void advise_unknown_member(Builder *b, Name effect, Name name);
 /* Adds the equivalent of a function known from other languages or books; 0: the name is not known. */
@@ -421,7 +421,7 @@ void add_contact(Builder *b, const AstStmt *st, Name effect);
 void declare_symmetry(Builder *b, const AstStmt *st, Name effect);
 void add_symmetry(Builder *b, const AstStmt *st, Name effect);
 
-/* twice.c: reports repeated names of scenes, effects, events, constraints and expectations, and settings that a scene or
+/* redeclarations.c: reports repeated names of scenes, effects, events, constraints and expectations, and settings that a scene or
  * event gives twice. */
 void check_names_once(Builder *b, const FileIndex *file);
 void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span);
@@ -434,13 +434,13 @@ void add_section(Builder *b, const Section *s);
 Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit);
 void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right);
 
-/* start.c: reads `start q = ...`, `exact q = ...`; completes the starts of rotations after all statements of the scene
+/* start_values.c: reads `start q = ...`, `exact q = ...`; completes the starts of rotations after all statements of the scene
  * (default: the identity); rad/s. */
 void set_motion(Builder *b, const AstStmt *st);
 void settle_rotations(Builder *b);
 Unit spin_unit(const Builder *b);
 
-/* advice.c: reports an unknown `effect.name`. */
+/* name_hints.c: reports an unknown `effect.name`. */
 void report_no_member(Builder *b, Span span, Name effect, Name name);
 
 /* scene.c: selects the active statements (Builder.active); then reads the scene's statements into Model.scene. */

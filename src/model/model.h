@@ -232,7 +232,7 @@ typedef struct {
   ExprMap written; /* nodes that may jump (comparisons, sign, tan, atan2) -> AstId where the text writes them */
   SymId energy_sym; /* placeholder for the energy p q' - L in outputs and expects, which mech replaces */
   Unit energy_unit;
-  struct Builder *builder; /* what model_reresolve needs */
+  struct Builder *builder; /* state for model_reresolve and the self-check */
 } Model;
 
 /* Name of built-in function i; NULL past the end. */

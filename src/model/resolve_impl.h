@@ -1,4 +1,4 @@
-/* One evaluation of an expression, shared by the files resolve*.c only. */
+/* State of an evaluation of an expression (Eval), and the functions that evaluate its nodes; included by this folder only. */
 #ifndef LAGC_RESOLVE_IMPL_H
 #define LAGC_RESOLVE_IMPL_H
 
