@@ -37,7 +37,7 @@ typedef struct {
   Real reach; /* relative distance of near states from the start: 1, reduced when projection on the constraints fails */
   Total energy;     /* energy of the text at this state, if has_energy */
   int has_energy;
-  SelfCheck *told;  /* statistics */
+  SelfCheck *told;  /* counts of what was compared */
 } Check;
 
 typedef enum { AGREES, DISMISSED, DISAGREES } Verdict;
