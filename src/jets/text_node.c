@@ -53,7 +53,7 @@ static Ref dot(Text *t, const Ref *u, const Ref *v, uint32_t n) {
   return r;
 }
 
-/* (a, u)(b, v) = (ab - u.v, a v + b u + u x v) */
+/* Product of quaternions, (a, u)(b, v) = (ab - u.v, a v + b u + u x v). */
 static Meaning product(Text *t, const Meaning *p, const Meaning *q) {
   Meaning r = {.n = ROTATION};
   Ref across[3];
@@ -64,7 +64,7 @@ static Meaning product(Text *t, const Meaning *p, const Meaning *q) {
   return r;
 }
 
-/* v + 2 u x (u x v + w v) */
+/* Rotated vector v + 2 u x (u x v + w v) for q = (w, u). */
 Meaning text_turned(Text *t, const Meaning *q, const Meaning *v) {
   Meaning r = {.n = 3};
   Ref inner[3], outer[3], twice = tape_number(t->tape, num_int(2));

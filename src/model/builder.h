@@ -91,9 +91,9 @@ typedef struct {
   Name effect;
 } Active;
 
-/* `start omega(R) = (a, b, c)` */
+/* Start value of an angular velocity, `start omega(R) = (a, b, c)`. */
 typedef struct {
-  uint32_t coord; /* R.w */
+  uint32_t coord; /* first coordinate of the rotation, R.w */
   Expr at[3];
   Span span;
 } Spin;
@@ -142,7 +142,7 @@ struct Builder {
   int domains;     /* compute Value.domain, for claims */
 };
 
-/* The value of an expression; errors are reported and give e = 0. */
+/* Evaluates an expression of the text; after an error, reported, the value has e = 0. */
 Value resolve(Builder *b, AstId id, Context where, Name effect);
 
 /* Value assigned to a name with a unit: a bare number is multiplied by the unit, any other value must have its
@@ -159,10 +159,10 @@ int index_in_range(Builder *b, const Entity *e, const int64_t *at, Span span);
 /* Offset of a member from the family's first scalar, in the model's array. */
 uint32_t member_offset(const Entity *e, const int64_t *at);
 
-/* The next member, row by row; 0 after the last. */
+/* Advances at[] to the next member, row by row; 0 after the last. */
 int next_member(const Entity *e, int64_t *at);
 
-/* "th[2]", "u[2,1]" */
+/* Name of a family member: "th[2]", "u[2,1]". */
 Name member_name(Builder *b, Name name, const int64_t *at, uint32_t ndims);
 
 /* Entity of member `at` of a family of lets or observables, or NULL. */
@@ -195,7 +195,7 @@ Expr domain_and(const Builder *b, Expr p, Expr q);
 /* Letter of component k of a value of n components: xyz, or wxyz for a rotation. */
 static inline char part_letter(uint32_t n, uint32_t k) { return "wxyz"[k + (n != ROTATION)]; }
 
-/* "a number", "a vector of 3 components", "a rotation" */
+/* Shape for messages: "a number", "a vector of 3 components", "a rotation". */
 const char *shape_text(const Builder *b, uint32_t n);
 
 /* Calls fn for a statement, or, where st is a `for`, for its body once per index value, with b->index set. */
@@ -282,7 +282,7 @@ int add_error(Builder *b, const Exact *x, Span span);
 /* add_outputs, with `label` as the column's name. */
 int add_outputs_as(Builder *b, AstId id, Name label);
 
-/* monitor.c: `monitor q limit`. */
+/* monitor.c: reads `monitor q limit`. */
 void set_monitor(Builder *b, const AstStmt *st);
 
 /* input_table.c: sets the formula or, where rhs is a file name, the table of input `index`; stem: its name without the effect. */

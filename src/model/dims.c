@@ -101,7 +101,7 @@ static void put(Dims *d, uint32_t key, Num e) {
   if (!num_is_zero(e)) vec_push(d->arena, &d->scratch, ((Part){key, e}));
 }
 
-/* a * b^e */
+/* Interned a * b^e. */
 static Dim combine(Dims *d, Dim a, Dim b, Num e) {
   if (a == DIM_ANY || b == DIM_ANY) return DIM_ANY;
   const Form *f = &d->forms.at[a], *g = &d->forms.at[b];

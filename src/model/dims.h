@@ -7,7 +7,7 @@
  * "Dimension types", ESOP 1994, doi:10.1007/3-540-57880-3_23, has exponents that are integers; here they are
  * rationals, so that a field's linear algebra is enough).
  *
- * Dims are numbers of entries in a table, equal where the vectors are equal. All memory is the arena's. */
+ * A Dim is an index into a table without duplicates: equal dimensions have equal indices. All memory is the arena's. */
 #ifndef LAGC_DIMS_H
 #define LAGC_DIMS_H
 

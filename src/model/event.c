@@ -46,7 +46,7 @@ static void keep_spin(Builder *b, Event *ev, uint32_t coord) {
   push_spin(b, ev, coord, w);
 }
 
-/* `omega(R) = ...` in an event. */
+/* Adds the action `omega(R) = ...`. */
 static void add_spin_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
   int coord = spin_target(b, st->lhs, effect);
   Unit unit = spin_unit(b);

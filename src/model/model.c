@@ -132,7 +132,7 @@ static void add_forces(Builder *b, AstId li, AstId ri, const Value *point, const
   check_later(b, en, ri, f, point->dim, arena_printf(b->arena, "a force along `%s`", ast_text(b, li)));
 }
 
-/* force (px, py) = (Fx, Fy): element by element, each with a unit of its own. */
+/* force (px, py) = (Fx, Fy): elements are separate forces, each with a unit of its own. */
 static void add_force_elements(Builder *b, const AstStmt *st, Name effect, Energies *en) {
   AstId li = ast_expr(b->ast, st->lhs)->args, ri = ast_expr(b->ast, st->rhs)->args;
   while (li && ri) {

@@ -186,7 +186,7 @@ typedef struct {
   Name method; /* or NULL */
   Span method_span;
   VEC(Option) options;
-  double tolerance; /* 0: not given */
+  double tolerance; /* relative error of a step; 0: not given */
   VEC(Output) outputs;
   double every;
   VEC(Monitor) monitors;
@@ -254,13 +254,13 @@ int model_has_scene(Ast *ast, const char *scene);
 /* Names of the effects that no scene uses. */
 EffectList model_unused_effects(const Ast *ast);
 
-/* Warns of parameters, lets, inputs and functions of the model's own file that no expression in it mentions. */
+/* Warns of parameters, lets, inputs and functions of the model's main file that no expression uses. */
 void model_warn_unused(Ast *ast);
 
 /* Names of the effects that contain an expectation or a symmetry; the first is NULL if the model itself contains one. */
 EffectList model_claiming_effects(const Ast *ast);
 
-/* An output that the command line asks for, and the name of its column. */
+/* An additional output from the command line, and the name of its column. */
 typedef struct {
   AstId expr;
   Name name;

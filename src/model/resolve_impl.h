@@ -152,7 +152,7 @@ int call_takes_vectors(const Eval *ev, const AstExpr *x);
 /* 1 if a call has `want` arguments; 0, reported, if not. */
 int arity_is(Eval *ev, const AstExpr *x, uint32_t want);
 
-/* The value of an AST_CALL. */
+/* Value of a function call. */
 Value call_value(Eval *ev, const AstExpr *x);
 
 #endif

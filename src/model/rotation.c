@@ -74,7 +74,7 @@ void rotation_spin(Builder *b, const Value *q, const Value *rates, Expr *w) {
   for (int k = 0; k < 3; k++) w[k] = expr_scale(b->g, num_int(2), product.at[k + 1]);
 }
 
-/* q (0, w). */
+/* Product q (0, w) with a pure quaternion. */
 static Value times_vector(Builder *b, const Value *q, const Expr *w) {
   Value pure = {.n = ROTATION, .at = {expr_int(b->g, 0), w[0], w[1], w[2]}};
   return rotation_product(b, q, &pure);

@@ -193,7 +193,7 @@ static void give_target(Builder *b, uint32_t scalar, Expr value, Span span, void
   add_move(p, p->kind == ENT_STATE ? b->m->states.at[scalar].z : b->m->coords.at[scalar].q, value, span);
 }
 
-/* t -> ... */
+/* Adds the map of time, `t -> ...`. */
 static void map_time(Mapping *p, AstId rhs, Name effect) {
   Builder *b = p->b;
   Unit s = {.dim = b->dim_of.at[b->m->time], .factor = num_int(1), .offset = num_int(0), .text = "s"};
