@@ -1,9 +1,9 @@
-/* The equations of motion of the text, by virtual displacements, against the accelerations of the program. */
+/* Residuals of the text's equations of motion along virtual displacements, with the accelerations of the program. Formula: self_check.h. */
 #include <math.h>
 
 #include "jets/check_impl.h"
 
-/* --- the text at a state --- */
+/* --- evaluation of the text at a state --- */
 
 static void moving(Jet *out, Real x, Real rate, Real second, Real direction) {
   *out = (Jet){.planes = direction != 0 ? JET_PLANES : 1};
@@ -43,7 +43,7 @@ int check_run_text(Check *c) {
   return !unsure;
 }
 
-/* 2 tau.(conj(q) dq), the work of a torque: dq is the displacement. */
+/* Work of a torque along the displacement dq: 2 tau.(conj(q) dq). */
 static Bounded torque_work(const Check *c, const TextForce *f) {
   const Tape *t = c->dynamics->tape;
   Bounded q[4], d[4], work = {0, 0};
@@ -60,7 +60,7 @@ static Bounded torque_work(const Check *c, const TextForce *f) {
   return work;
 }
 
-/* Q.c: forces and dissipation. */
+/* r += sign Q.c, forces and dissipation. */
 static void add_forces(const Check *c, Real sign, Total *r) {
   const TextDynamics *d = c->dynamics;
   for (uint32_t i = 0; i < d->forces.n; i++) {
@@ -75,7 +75,7 @@ static void add_multipliers(const Check *c, Total *r) {
   const Constraints *k = &c->e->constraints;
   for (uint32_t i = 0; i < k->n; i++) {
     uint32_t place = (uint32_t)(k->of[i] - c->m->constraints.at);
-    if (k->of[i]->inside) continue; /* directions keep the length of rotations */
+    if (k->of[i]->inside) continue; /* displacements satisfy it: keep_rotations */
     total_add(r, -1, bounded_mul((Bounded){c->lambda[place], c->lambda_error[place]}, check_coefficient(c->dynamics->tape, c->at, c->dynamics->constraints[place], i < k->nholonomic ? 1 : 2, 0)));
   }
 }
@@ -88,12 +88,12 @@ Total check_residual(const Check *c) {
   add_forces(c, -1, &r);
   add_multipliers(c, &r);
   Bounded L = check_coefficient(d->tape, c->at, d->lagrangian, 0, 0);
-  r.around = isfinite(L.e) ? fabsl(L.v) : NAN; /* without a derivative there L decides nothing */
+  r.around = isfinite(L.e) ? fabsl(L.v) : NAN; /* NAN where L has no derivative: no comparison */
   r.around += fabsl(check_coefficient(d->tape, c->at, d->lagrangian, 2, 0).v);
   return r;
 }
 
-/* Along the direction c->c: the residual of the equations of motion; what else depends on a direction. */
+/* Along c->c: compares the residual with 0, and, with `variation`, dL/dq, momentum and force with the program's. */
 static Verdict check_direction(Check *c, const char *name, Span span, const Real *const *variation) {
   const TextDynamics *d = c->dynamics;
   Total momentum = {0}, slope = {0}, force = {0};
@@ -107,7 +107,7 @@ static Verdict check_direction(Check *c, const char *name, Span span, const Real
   total_add(&slope, 1, check_coefficient(d->tape, c->at, d->lagrangian, 1, 0));
   total_add(&momentum, 1, check_coefficient(d->tape, c->at, d->lagrangian, 2, 0));
   add_forces(c, 1, &force);
-  for (int k = 0; k < 3; k++) { /* terms may cancel */
+  for (int k = 0; k < 3; k++) { /* terms of each may cancel in it */
     Total *t = k == 0 ? &slope : k == 1 ? &momentum : &force;
     t->around += residual.size + residual.around;
   }
@@ -116,7 +116,7 @@ static Verdict check_direction(Check *c, const char *name, Span span, const Real
   return worse(v, check_compare(c, &force, of[2], span, "the force on", name));
 }
 
-/* Displacements leave the length of rotations as it is. */
+/* Projects displacements of rotations orthogonal to q, so that |q| stays 1. */
 static void keep_rotations(Check *c) {
   const Builder *b = c->m->builder;
   for (uint32_t i = 0; i < b->rotations.n; i++) {
@@ -136,7 +136,7 @@ static Verdict check_coordinate(Check *c, uint32_t i, const Real *const *variati
   return check_direction(c, m->first_order ? m->states.at[i].name : m->coords.at[i].name, m->lagrangian_span, variation);
 }
 
-/* All coordinates at once, weighed at random; where that disagrees, each by itself to tell which. */
+/* Checks one random combination of all coordinates; on disagreement, each coordinate, to name the wrong one. */
 static Verdict check_together(Check *c, const Real *const *variation) {
   for (uint32_t k = 0; k < check_components(c); k++) c->c[k] = check_random(c, 0.3L, 1) * (check_random(c, 0, 1) < 0.5L ? -1 : 1);
   if (c->m->first_order)
@@ -144,7 +144,7 @@ static Verdict check_together(Check *c, const Real *const *variation) {
   else keep_rotations(c);
   uint32_t errors = c->m->diags->errors;
   Diags *heard = c->m->diags;
-  Model *m = (Model *)c->m; /* its messages alone: nobody hears the first one */
+  Model *m = (Model *)c->m; /* only its diags: the combination's message is dropped */
   m->diags = diags_new(c->arena, c->m->ast->sources);
   Verdict v = check_direction(c, "all coordinates", m->lagrangian_span, variation);
   m->diags = heard;
@@ -170,9 +170,9 @@ Verdict check_equations(Check *c) {
   return v;
 }
 
-/* --- where the program has no accelerations --- */
+/* --- states at which the program fails --- */
 
-/* Entry (i, j) of the text's mass matrix: what the momentum along i gains with velocity j. */
+/* Entry (i, j) of the text's mass matrix, dp_i/dv_j by a central difference. */
 static Real text_inertia(Check *c, uint32_t i, uint32_t j, int *known) {
   Real v = c->v[j], h = 1e-4L * (1 + fabsl(v)), p[2];
   for (uint32_t k = 0; k < c->n; k++) c->c[k] = k == i;
@@ -186,7 +186,7 @@ static Real text_inertia(Check *c, uint32_t i, uint32_t j, int *known) {
   return (p[1] - p[0]) / (2 * h);
 }
 
-/* Whether it is positive definite, with no pivot below 1e-8 of its diagonal: Cholesky's test. */
+/* 1 if the text's mass matrix is positive definite by Cholesky's test, each pivot above 1e-8 of its diagonal entry. */
 static int text_is_definite(Check *c) {
   Real M[FEW][FEW];
   int known = 1;
@@ -202,7 +202,7 @@ static int text_is_definite(Check *c) {
   return known;
 }
 
-/* Whether everything that the text says of the forces is finite there. */
+/* 1 if the text's forces, flows and dissipation are finite at this state. */
 static int text_is_finite(Check *c) {
   const TextDynamics *d = c->dynamics;
   for (uint32_t k = 0; k < c->n; k++) c->c[k] = 1;
@@ -212,7 +212,7 @@ static int text_is_finite(Check *c) {
   return sure && isfinite(r.sum.v) && isfinite(r.around) && isfinite(check_coefficient(d->tape, c->at, d->dissipation, 0, 0).v) && r.size < 1e150L;
 }
 
-/* The program fails, or has no finite accelerations, where the text has regular equations: it overflows, or divides by 0, where the text does not. */
+/* The program has no finite accelerations: an error if the text's equations are finite with a positive definite mass matrix. */
 Verdict check_failure(Check *c) {
   if (!c->n || c->n > FEW || c->dynamics->why || c->dynamics->tape->ins.n > LONG_TAPE || c->m->constraints.n) return DISMISSED;
   c->error = 0;

@@ -1,10 +1,10 @@
-/* Programs that say how something goes on along the motion, or changes with the state, against differences of the programs that the text has
- * confirmed: charges, the linearisation, Taylor coefficients. */
+/* Programs of derivatives (rates of charges, linearisation, Taylor coefficients), against finite differences of values that were compared
+ * with the text before. */
 #include <math.h>
 
 #include "jets/check_impl.h"
 
-/* A state, kept while others are tried. */
+/* A saved state. */
 typedef struct {
   Real t, *q, *v, *z, *zd;
 } Kept;
@@ -20,7 +20,7 @@ static Kept keep(const Check *c) {
   return (Kept){c->t, copied(c, c->q, c->n), copied(c, c->v, c->n), copied(c, c->z, nz), copied(c, c->zd, nz)};
 }
 
-/* The kept state plus s times (dq, dv, dz, dt). */
+/* Sets the state to the saved one plus s times (dq, dv, dz, dt). */
 static void move_to(Check *c, const Kept *k, Real s, const Real *dq, const Real *dv, const Real *dz, Real dt) {
   for (uint32_t i = 0; i < c->n; i++) {
     c->q[i] = k->q[i] + s * dq[i];
@@ -35,7 +35,7 @@ static void put_back(Check *c, const Kept *k) {
   move_to(c, k, 0, k->q, k->v, k->z, 0);
 }
 
-/* A step that is short beside the motion. */
+/* Step of time that is short compared with the motion's rates. */
 static Real short_time(const Check *c) {
   Real rate = 1;
   for (uint32_t i = 0; i < c->n; i++) rate += fabsl(c->v[i]) + sqrtl(fabsl(c->a[i]));
@@ -43,15 +43,15 @@ static Real short_time(const Check *c) {
   return 1e-4L / rate;
 }
 
-/* The derivative from central differences with step h and 2 h (Richardson); its error is a part of what the two differ by, and the rounding of values:
- * of their `size`, or what is known of it. */
+/* Derivative by Richardson extrapolation of central differences, at = f(-h), f(h), f(-2h), f(2h). Error: a quarter of their
+ * difference, plus rounding of values of magnitude `size` and the known error `rounding`, over h. */
 static Total derivative(const Real at[4], Real h, Real size, Real rounding) {
   Real near = (at[1] - at[0]) / (2 * h), far = (at[3] - at[2]) / (4 * h), spread = fabsl(near - far);
   Real error = spread / 4 + (1024 * jet_unit * size + rounding) / h;
   return (Total){{near + (near - far) / 3, error}, size, fabsl(near) + 1};
 }
 
-/* d/dt of each charge against the power that is said to change it. */
+/* d/dt of each charge against the program of its power. */
 static Verdict check_charges(Check *c) {
   const IrUnit *u = c->u;
   uint32_t n = u->charges.n;
@@ -60,7 +60,7 @@ static Verdict check_charges(Check *c) {
   Verdict v = AGREES;
   if (n < 2 || !u->charge_values || c->m->inputs.n > 0 || (u->charge_powers && !check_run(c, u->charge_powers, (Real *const[]){power}))) return AGREES;
   Kept kept = keep(c);
-  for (int k = 0; k < 4; k++) { /* -h, h, -2h, 2h: quadratic in q, so that the third order alone is left out */
+  for (int k = 0; k < 4; k++) { /* -h, h, -2h, 2h; q to second order in s */
     Real s = (k % 2 ? h : -h) * (k < 2 ? 1 : 2);
     move_to(c, &kept, s, kept.v, c->a, c->zd, 1);
     for (uint32_t i = 0; i < c->n; i++) c->q[i] += s * s / 2 * c->a[i];
@@ -72,13 +72,13 @@ static Verdict check_charges(Check *c) {
   for (uint32_t i = 1; i < n; i++) {
     if (!(u->charges.at[i].flags & 2) || u->charges.at[i].flags & 8) continue;
     Total t = derivative(at[i], h, size[i], 0);
-    t.sum.e /= 64; /* of an estimate, not of a rounding: see SLACK */
+    t.sum.e /= 64; /* an estimate, not a rounding bound: offsets SLACK */
     v = worse(v, check_compare(c, &t, power[i], c->m->span, "the rate of the charge", u->charges.at[i].name));
   }
   return v;
 }
 
-/* The text's residual along c->c at a state beside, with the accelerations of the kept one. */
+/* The text's residual along c->c at a perturbed state, with the unperturbed accelerations; 0: not finite or unsure. */
 static int residual_beside(Check *c, Real *out, Real *size, Real *rounding) {
   const TextDynamics *d = c->dynamics;
   if (!check_run_text(c)) return 0;
@@ -91,7 +91,7 @@ static int residual_beside(Check *c, Real *out, Real *size, Real *rounding) {
   return isfinite(r.sum.v);
 }
 
-/* Along random directions of residuals and of states: sum c_i dr_i/dy_j d_j against differences of residuals; sum c_i M_ij d_j likewise. */
+/* Linearisation: sum c_i dr_i/dy_j d_j for random c, d, against finite differences of the text's residual c.r along d. */
 static Verdict check_linear(Check *c) {
   const IrUnit *u = c->u;
   uint32_t n = c->n, nz = c->m->states.n;
@@ -103,7 +103,7 @@ static Verdict check_linear(Check *c) {
     Real y = i < n ? c->q[i] : i < 2 * n ? c->v[i - n] : c->z[i - 2 * n];
     int angle = i < n && c->m->coords.at[i].periodic;
     d[i] = check_random(c, -1, 1) * (y != 0 && !angle ? fabsl(y) : 1);
-    if (fabsl(y) * jet_unit > 1e-6L * h) return AGREES; /* no step is small beside it, and none too small for its digits */
+    if (fabsl(y) * jet_unit > 1e-6L * h) return AGREES; /* rounding of y would swamp the difference */
   }
   for (uint32_t k = 0; k < u->linear_dr.n; k++) {
     IrEntry e = u->linear_dr.at[k];
@@ -129,7 +129,7 @@ static Verdict check_linear(Check *c) {
 
 enum { ORDERS = 10 };
 
-/* Rows of coefficients up to ORDERS, with T = 1, as runtime and emitted code fill them: ir/series.h. */
+/* Taylor coefficients up to ORDERS in x[order][column], by the recurrences of ir/series.h as emitted code runs them, with T = 1. */
 static int taylor_rows(Check *c, const Series *s, Real *x) {
   uint32_t columns = s->columns, nq = s->nq, nz = s->nz, time = 3 * nq + 2 * nz, wide = s->width + s->group + 4;
   Real *constants = ARENA_ARRAY(c->arena, Real, s->constants + 1), *sum = ARENA_ARRAY(c->arena, Real, wide), *follows = ARENA_ARRAY(c->arena, Real, c->m->inputs.n + 1);
@@ -157,14 +157,14 @@ static int taylor_rows(Check *c, const Series *s, Real *x) {
   return 1;
 }
 
-/* Column i at s, or its derivative. */
+/* Value (slope 0) or derivative (slope 1) of column i's polynomial at s. */
 static Real polynomial(const Real *x, uint32_t columns, uint32_t i, Real s, int slope) {
   Real r = 0;
   for (int k = ORDERS; k >= slope; k--) r = r * s + x[(size_t)k * columns + i] * (slope ? k : 1);
   return r;
 }
 
-/* Moves to the polynomials of the first `orders` coefficients at s, and runs the accelerations there. */
+/* Runs the accelerations at the state of the polynomials of degree `orders` at h. */
 static int run_at(Check *c, const Series *s, Real *x, int orders, Real h, const Kept *kept, Real *a, Real *zd) {
   Real *top = x + (size_t)(orders + 1) * s->columns, *cut = copied(c, top, s->columns * (uint32_t)(ORDERS - orders));
   for (uint32_t i = 0; i < s->columns * (uint32_t)(ORDERS - orders); i++) top[i] = 0;
@@ -177,7 +177,7 @@ static int run_at(Check *c, const Series *s, Real *x, int orders, Real h, const 
   return ran;
 }
 
-/* A step in which the last coefficients make 1e-12 of a velocity, or of a state. */
+/* Step at which the last two terms are 1e-12 of each velocity or state. */
 static Real taylor_step(const Series *s, const Real *x) {
   Real h = 0.1L;
   for (uint32_t i = 0; i < s->nq + s->nz; i++)
@@ -188,8 +188,8 @@ static Real taylor_step(const Series *s, const Real *x) {
   return h;
 }
 
-/* How far the program's rate i at h is from the derivative of its polynomial; *t says what that is, and how much is left out: two terms less tell; off: what
- * rounding makes of the rate. */
+/* |rate i of the program at h - derivative of polynomial i|. *t: that derivative with its truncation error, from a run with two terms
+ * fewer; off: rounding error of the rate; *said: the program's rate. */
 static Real taylor_difference(const Series *s, const Real *x, Real h, uint32_t i, Real off, const Real *a, const Real *zd, Total *t, Real *said) {
   const Real *at = i < s->nq ? a + i : zd + (i - s->nq), less = at[i < s->nq ? s->nq : s->nz];
   Real slope = polynomial(x, s->columns, s->nq + i, h, 1), last = fabsl(x[(size_t)ORDERS * s->columns + s->nq + i]) * ORDERS * powl(h, ORDERS - 1);
@@ -199,8 +199,8 @@ static Real taylor_difference(const Series *s, const Real *x, Real h, uint32_t i
   return fabsl(slope - *at);
 }
 
-/* A little later, the derivative of the velocities' polynomials is what the program of the accelerations says at the polynomials' state, but for
- * the terms that are left out. A step that leads over a corner or a jump is no proof: what differs must differ in one 64 times shorter, too. */
+/* At time h, the derivative of the velocities' Taylor polynomials must be the program's acceleration at the polynomials' state, up to
+ * truncation. As a step may cross a corner or a jump, a difference counts only if a step 64 times shorter shows it, too. */
 static Verdict check_taylor(Check *c) {
   const Series *s = c->u->taylor;
   Real *x = ARENA_ARRAY(c->arena, Real, (size_t)s->columns * (ORDERS + 2));

@@ -1,4 +1,5 @@
-/* States for the self-check: random parameters, coordinates and inputs, on the constraints of the model. */
+/* States for the self-check: random parameters, coordinates and inputs, projected on the model's constraints by Newton's method; the
+ * programs' accelerations and multipliers there, with their sensitivity to rounding. */
 #include <math.h>
 
 #include "ir/lower.h"
@@ -32,7 +33,7 @@ int check_run(const Check *c, const Prog *p, Real *const *out) {
 
 /* --- states --- */
 
-/* Parameters that are made of no others get other values of the same sign; 0 becomes a number where that is allowed. */
+/* Random value for an independent parameter: the same sign, 0.7 to 1.4 times as large; 0 becomes 0.2 to 0.9 in size. */
 static Real other_value(Check *c, const Param *p, Real value) {
   Real factor = check_random(c, 0.7L, 1.4L);
   if (value != 0) return value * factor;
@@ -59,14 +60,14 @@ static int choose_parameters(Check *c) {
   return !c->u->derived || check_run(c, c->u->derived, (Real *const[]){c->p});
 }
 
-/* A number beside `start`: of size 1 and of its own, times the reach; far: of any size up to 1000. */
+/* Random value within reach * 0.8 of `start` (reach * |start|/2 where |start| > 1); far: of any magnitude up to 1000. */
 static Real beside(Check *c, Real start) {
   Real size = fabsl(start) > 1 ? fabsl(start) / 2 : 0.8L;
   if (c->far) return check_random(c, -1, 1) * powl(10, check_random(c, -1, 3));
   return start + c->reach * size * check_random(c, -1, 1);
 }
 
-/* The four numbers of a rotation get length 1, and rates that keep it. */
+/* Normalises quaternions, and makes their rates orthogonal to them. */
 static void project_rotations(Check *c) {
   const Builder *b = c->m->builder;
   for (uint32_t i = 0; i < b->rotations.n && !c->m->first_order; i++) {
@@ -84,9 +85,9 @@ static Real largest(const Real *x, uint32_t n) {
   return r;
 }
 
-/* Newton's method onto the constraints, in the program's own metric. 0: it does not get there, or they contradict each other. */
+/* Newton's method onto the constraints, by the program's own projection. 0: no convergence, or contradictory constraints. */
 static int project(Check *c, int velocities) {
-  enum { ROUNDS = 40, HOPELESS = 6 }; /* what is as far off as at first after so many is sought nearer to the start */
+  enum { ROUNDS = 40, HOPELESS = 6 }; /* no progress after HOPELESS rounds: give up, the next state is nearer to the start */
   const IrConstraints *k = &c->u->constraints;
   uint32_t rows = velocities ? k->of.n : k->nkept;
   Real *position = ARENA_ARRAY(c->arena, Real, k->of.n), *rate = ARENA_ARRAY(c->arena, Real, k->of.n);
@@ -121,8 +122,8 @@ int check_choose_state(Check *c, int attempt) {
   project_rotations(c);
   Real before = largest(c->q, c->n);
   if (!u->constraints.of.n) return 1;
-  int obeys = project(c, 0) && project(c, 1) && largest(c->q, c->n) > 1e-6L * before; /* not one where all is 0 */
-  if (!obeys && !c->far) c->reach /= 16; /* long chains of constraints are reached from nearby alone */
+  int obeys = project(c, 0) && project(c, 1) && largest(c->q, c->n) > 1e-6L * before; /* refuses collapse to 0 */
+  if (!obeys && !c->far) c->reach /= 16; /* long chains of constraints converge from nearby only */
   return obeys;
 }
 
@@ -135,12 +136,12 @@ static int solve(Check *c, Real *a, Real *zd, Real *lambda) {
   return 1;
 }
 
-/* error[n] := the larger of it and how far x is from y; what is no number says nothing. */
+/* error[i] := max(error[i], |x[i] - y[i]|), NaN ignored. */
 static void note_difference(Real *error, const Real *x, const Real *y, uint32_t n) {
   for (uint32_t i = 0; i < n; i++) error[i] = fabsl(x[i] - y[i]) > error[i] ? fabsl(x[i] - y[i]) : error[i];
 }
 
-/* By states that are a few last digits off. */
+/* Sets a_error, zd_error, lambda_error by solving again at states perturbed by a few units in the last place. */
 static void bound_rounding(Check *c) {
   enum { DIGITS = 16, TRIES = 2 };
   const Model *m = c->m;
@@ -168,7 +169,6 @@ static void bound_rounding(Check *c) {
   }
 }
 
-/* The accelerations, rates and multipliers that the programs compute there. */
 int check_solve_motion(Check *c) {
   if (!solve(c, c->a, c->zd, c->lambda)) return 0;
   c->error = 4 * jet_unit * (largest(c->a, c->n) + largest(c->zd, c->m->states.n));
@@ -176,7 +176,7 @@ int check_solve_motion(Check *c) {
   return 1;
 }
 
-/* --- room --- */
+/* --- allocation --- */
 
 static Real *room(const Check *c, uint32_t n) { return ARENA_ARRAY(c->arena, Real, n + 1); }
 

@@ -1,9 +1,9 @@
-/* Values of the text that need no displacement, against those of the programs. */
+/* Values of the text against those of the programs: flows, constraints, energy; events, outputs, inputs. */
 #include <math.h>
 
 #include "jets/check_impl.h"
 
-/* --- what needs no direction: jets are those of the last one --- */
+/* --- dynamics: values from the last check_run_text, whatever its direction --- */
 
 static Verdict check_flows(Check *c) {
   const TextDynamics *d = c->dynamics;
@@ -13,7 +13,7 @@ static Verdict check_flows(Check *c) {
   return v;
 }
 
-/* The second rate of a holonomic constraint, the first of one on velocities. */
+/* c'' of holonomic constraints and c' of velocity constraints must be 0. */
 static Verdict check_constraints(Check *c) {
   const Constraints *k = &c->e->constraints;
   Verdict v = AGREES;
@@ -22,14 +22,14 @@ static Verdict check_constraints(Check *c) {
     if (!r) continue;
     Bounded rate = check_coefficient(c->dynamics->tape, c->at, r, 0, i < k->nholonomic ? 2 : 1);
     Total t = {rate, 0, 0};
-    for (uint32_t j = 0; j < c->n; j++) t.size += fabsl(c->a[j]) + c->v[j] * c->v[j]; /* of the size of what it is made of: accelerations, */
-    for (uint32_t j = 0; j < c->m->constraints.n; j++) t.size += fabsl(c->lambda[j]); /* which forces may have left over */
+    for (uint32_t j = 0; j < c->n; j++) t.size += fabsl(c->a[j]) + c->v[j] * c->v[j]; /* magnitude of the terms: accelerations, */
+    for (uint32_t j = 0; j < c->m->constraints.n; j++) t.size += fabsl(c->lambda[j]); /* and the multipliers' forces in them */
     v = worse(v, check_compare(c, &t, 0, k->of[i]->span, "the rate of the constraint", k->of[i]->name));
   }
   return v;
 }
 
-/* p q' - L, by the displacement along the velocity. */
+/* Energy p q' - L; p q' is the change of L under the displacement along the velocity. */
 static Verdict check_energy(Check *c) {
   const TextDynamics *d = c->dynamics;
   Real value[2] = {0};
@@ -89,12 +89,12 @@ static Verdict check_signals(Check *c) {
 Verdict check_dynamic_values(Check *c) {
   Verdict v = worse(check_flows(c), check_constraints(c));
   if (v != DISAGREES) v = check_energy(c);
-  return v == DISAGREES ? v : AGREES; /* values that rounding leaves nothing of decide nothing */
+  return v == DISAGREES ? v : AGREES; /* DISMISSED values decide nothing */
 }
 
 Verdict check_other_values(Check *c) {
   int unsure = 0;
   for (uint32_t i = 0; i < check_components(c); i++) c->c[i] = 0; /* no displacement */
   tape_run(c->outputs->tape, check_input, c, c->at_outputs, &unsure);
-  return worse(worse(check_events(c), check_outputs(c)), check_signals(c)); /* what is unsure has no bound on its error */
+  return worse(worse(check_events(c), check_outputs(c)), check_signals(c)); /* unsure values have infinite error bounds, and are dismissed */
 }

@@ -1,3 +1,5 @@
+/* Arithmetic and elementary functions of jets, each with a first-order bound on rounding. Functions f(x(s, e1, e2)) are composed from
+ * the derivatives f .. f'''' at the state (Faa di Bruno, truncated). Contract and sources: jet.h. */
 #include "jets/jet.h"
 
 #include <float.h>
@@ -21,7 +23,7 @@ Bounded bounded_div(Bounded x, Bounded y) {
 
 static int is_zero(Bounded x) { return x.v == 0 && x.e == 0; }
 
-/* sum += x y. Most products are of an exact 0, which is left out beside what has a value. */
+/* sum += x y, skipping products of an exact 0 and a finite value, which are most. */
 static void accumulate(Bounded *sum, Bounded x, Bounded y) {
   if ((is_zero(x) && isfinite(y.v)) || (is_zero(y) && isfinite(x.v))) return;
   *sum = bounded_add(*sum, bounded_mul(x, y));
@@ -34,7 +36,7 @@ Jet jet_rounded(JetReal v) { return (Jet){.c[0][0] = {v, jet_unit * fabsl(v)}}; 
 
 static int most_planes(const Jet *x, const Jet *y) { return x->planes > y->planes ? x->planes : y->planes; }
 
-/* x + sign y, sign 1 or -1. */
+/* out = x + sign y, sign 1 or -1. */
 static void add_signed(Jet *out, const Jet *x, const Jet *y, int sign) {
   Jet r = {.planes = most_planes(x, y)};
   for (int p = 0; p == 0 || p < r.planes; p++)
@@ -50,7 +52,7 @@ void jet_neg(Jet *out, const Jet *x) {
   add_signed(out, &zero, x, -1);
 }
 
-/* out += x y, of series in s. */
+/* out += x y, truncated product of series in s. */
 static void add_product(Bounded out[JET_ORDERS], const Bounded x[JET_ORDERS], const Bounded y[JET_ORDERS]) {
   for (int k = 0; k < JET_ORDERS; k++)
     for (int j = 0; j <= k; j++) accumulate(&out[k], x[j], y[k - j]);
@@ -87,19 +89,19 @@ void jet_rate(Jet *out, const Jet *x) {
   *out = r;
 }
 
-/* --- functions: by their derivatives at the state --- */
+/* --- composition with functions, from their derivatives at the state --- */
 
 enum { ROUNDINGS = 8 };
-enum { DERIVATIVES = JET_ORDERS + 2 }; /* of a function, 0 to JET_ORDERS + 1: the last bounds the error of the one before */
+enum { DERIVATIVES = JET_ORDERS + 2 }; /* orders 0 .. JET_ORDERS + 1 of a function: the last bounds the error of the one before */
 
-/* f at x: the error of a derivative is what the error of x makes of it, to second order (x^2 at 0), and some roundings. lost: what f', f'', ... lose
- * where they are computed from f, as 1 - tanh^2 is: that much, however small they are. */
+/* Derivative k of f with its error: the error of x propagated to second order (for x^2 at 0), plus ROUNDINGS. lost: absolute error of
+ * f', f'', ... from cancellation where they are computed from f, as 1 - tanh^2 is. */
 static Bounded derivative(const JetReal d[DERIVATIVES], int k, JetReal error, JetReal lost) {
   JetReal second = k + 2 < DERIVATIVES && error > 0 ? fabsl(d[k + 2]) * error * error / 2 : 0;
   return (Bounded){d[k], fabsl(d[k + 1]) * error + second + ROUNDINGS * jet_unit * fabsl(d[k]) + (k > 0 ? lost : 0)};
 }
 
-/* The first JET_ORDERS coefficients of f(x(s)) from derivatives first, first + 1, ... of f. */
+/* Taylor coefficients of g(x(s)), where g is derivative `first` of f. */
 static void compose(Bounded out[JET_ORDERS], const JetReal d[DERIVATIVES], int first, const Bounded x[JET_ORDERS], JetReal lost) {
   Bounded d1 = derivative(d, first + 1, x[0].e, lost);
   out[0] = derivative(d, first, x[0].e, lost);
@@ -112,7 +114,7 @@ static void compose(Bounded out[JET_ORDERS], const JetReal d[DERIVATIVES], int f
 static void apply(Jet *out, const Jet *x, const JetReal d[DERIVATIVES], JetReal lost) {
   Jet r = {.planes = x->planes};
   r.c[0][0] = derivative(d, 0, x->c[0][0].e, lost);
-  if (r.planes && !isfinite(d[1])) r.c[0][0].e = NAN; /* it has no derivative there: nothing is decided */
+  if (r.planes && !isfinite(d[1])) r.c[0][0].e = NAN; /* no derivative here: no comparison */
   if (r.planes) compose(r.c[0], d, 0, x->c[0], lost);
   if (r.planes > 1) {
     Bounded slope[JET_ORDERS];
@@ -122,20 +124,20 @@ static void apply(Jet *out, const Jet *x, const JetReal d[DERIVATIVES], JetReal 
   *out = r;
 }
 
-/* --- the functions of the language --- */
+/* --- derivatives of elementary functions --- */
 
 static void circular(JetReal d[DERIVATIVES], JetReal f, JetReal df) {
   JetReal cycle[DERIVATIVES] = {f, df, -f, -df, f};
   memcpy(d, cycle, sizeof cycle);
 }
 
-/* tan (sign 1) and tanh (sign -1): f' = 1 + sign f^2 = slope, given as it has most digits. */
+/* tan (sign 1) and tanh (sign -1): f' = 1 + sign f^2 = slope, which the caller computes without cancellation. */
 static void tangent(JetReal d[DERIVATIVES], JetReal f, JetReal slope, int sign) {
   JetReal cycle[DERIVATIVES] = {f, slope, 2 * sign * f * slope, slope * (2 * sign + 6 * f * f), slope * f * (16 + 24 * sign * f * f)};
   memcpy(d, cycle, sizeof cycle);
 }
 
-/* The derivatives of x^n at x, from the value f there. */
+/* Derivatives of x^n at x, from its value f. */
 static void powers(JetReal d[DERIVATIVES], JetReal f, JetReal x, JetReal n) {
   d[0] = f;
   for (int k = 1; k < DERIVATIVES; k++) d[k] = n - (k - 1) == 0 ? 0 : d[k - 1] * (n - (k - 1)) / x;
@@ -182,7 +184,7 @@ int jet_function(Jet *out, const char *name, const Jet *of) {
   return 1;
 }
 
-/* x^n; small whole powers by multiplication, which takes fewer instructions and no more than 7 roundings. */
+/* x^n; integer exponents up to 6 by multiplication, with at most 7 roundings. */
 static JetReal power(JetReal x, JetReal n, int is_third) {
   JetReal product = 1;
   if (is_third) return powl(cbrtl(x), roundl(3 * n));
@@ -217,7 +219,7 @@ void jet_div(Jet *out, const Jet *x, const Jet *y) {
   jet_mul(out, x, &inverse);
 }
 
-/* atan2(y0, x0) + atan of the angle from (x0, y0) to (x, y), which is 0 at the state. */
+/* atan2(y0, x0) plus the angle from (x0, y0) to (x, y), which is 0 at the state, by atan. */
 void jet_atan2(Jet *out, const Jet *y, const Jet *x) {
   Jet across, along, a, b, turned;
   Bounded y0 = y->c[0][0], x0 = x->c[0][0];
@@ -250,7 +252,7 @@ void jet_pow(Jet *out, const Jet *x, const Jet *y) {
     JetReal n = y->c[0][0].v;
     Jet value;
     jet_power(&value, x, n, 0);
-    JetReal spread = y->c[0][0].e * fabsl(logl(fabsl(x->c[0][0].v))); /* of an exponent that is rounded */
+    JetReal spread = y->c[0][0].e * fabsl(logl(fabsl(x->c[0][0].v))); /* error of the exponent */
     for (int p = 0; spread > 0 && p < JET_PLANES; p++)
       for (int k = 0; k < JET_ORDERS; k++) value.c[p][k].e += spread * fabsl(value.c[p][k].v) * 4;
     *out = value;

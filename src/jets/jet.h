@@ -1,4 +1,4 @@
-/* Jet: a number along a motion and two virtual displacements of it, by truncated Taylor arithmetic.
+/* Jet: truncated Taylor series of a number along a motion, and its change under two virtual displacements.
  *
  *   x(s, e1, e2) = sum over k < JET_ORDERS of (c[0][k] + e1 c[1][k] + e2 c[2][k]) s^k,   e1^2 = e2^2 = e1 e2 = 0
  *
@@ -13,20 +13,20 @@ typedef long double JetReal;
 
 enum { JET_ORDERS = 3, JET_PLANES = 3 };
 
-/* A value and a bound on its rounding error. */
+/* Value and bound on its rounding error. */
 typedef struct {
   JetReal v, e;
 } Bounded;
 
 typedef struct {
   Bounded c[JET_PLANES][JET_ORDERS];
-  int planes; /* 0: a constant; 1: it goes along the motion alone; JET_PLANES: displacements, too. The other coefficients are 0 */
+  int planes; /* 0: constant; 1: varies along the motion only; JET_PLANES: displacements, too. All other coefficients are 0 */
 } Jet;
 
-/* Half the distance of two neighbouring numbers, relative. */
+/* Unit roundoff of JetReal. */
 extern const JetReal jet_unit;
 
-/* A constant; an exact one has no error. */
+/* Constants: exact, or with the error of one rounding. */
 Jet jet_exact(JetReal v);
 Jet jet_rounded(JetReal v);
 
@@ -36,10 +36,10 @@ void jet_neg(Jet *out, const Jet *x);
 void jet_mul(Jet *out, const Jet *x, const Jet *y);
 void jet_div(Jet *out, const Jet *x, const Jet *y);
 
-/* The rate along the motion: the highest order is lost, and 0. */
+/* Time derivative along the motion; its highest order is unknown and set to 0. */
 void jet_rate(Jet *out, const Jet *x);
 
-/* x^n. Thirds of powers are real roots; other fractional powers of a negative x are NaN. */
+/* x^exponent. is_third: a multiple of 1/3, a real root for negative x; other fractional powers of negative x are NaN. */
 void jet_power(Jet *out, const Jet *x, JetReal exponent, int is_third);
 
 /* A function of the C library by its name: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, fabs. 0: unknown. */
@@ -48,7 +48,7 @@ void jet_atan2(Jet *out, const Jet *y, const Jet *x);
 void jet_hypot(Jet *out, const Jet *x, const Jet *y);
 void jet_pow(Jet *out, const Jet *x, const Jet *y); /* a varying exponent: x > 0 */
 
-/* x op y of values alone, for the programs that have no motion. */
+/* x op y with propagated error bounds. */
 Bounded bounded_add(Bounded x, Bounded y);
 Bounded bounded_sub(Bounded x, Bounded y);
 Bounded bounded_mul(Bounded x, Bounded y);

@@ -1,3 +1,5 @@
+/* Extrapolates the motion from a run's last good state, q + h v + h^2/2 a with h doubling, and evaluates the text's tapes along it until
+ * an instruction with finite operands is not finite. Contract: nonfinite.h. */
 #include "jets/no_value.h"
 
 #include <float.h>
@@ -15,7 +17,7 @@ static void take(Real *to, uint32_t n, const double **from) {
   for (uint32_t i = 0; i < n; i++) to[i] = *(*from)++;
 }
 
-/* The state that the numbers say. 0: they are not as many as this model has. */
+/* Sets the state from the numbers; 0: their count does not fit the model. */
 static int take_state(Check *c, const Numbers *of) {
   const Model *m = c->m;
   uint32_t variables = 1 + 2 * c->n + m->states.n, parameters = of->n - variables;
@@ -32,7 +34,7 @@ static int take_state(Check *c, const Numbers *of) {
   return 1;
 }
 
-/* Which expression it is, and what it was given. */
+/* Notes the expression, its operands, and the state. */
 static void say(Check *c, const Tape *t, const Jet *at, Ref r) {
   const TapeIns *i = &t->ins.at[r];
   const Real x = tape_value(t, at, i->a)->c[0][0].v, y = i->b ? tape_value(t, at, i->b)->c[0][0].v : 0, value = tape_value(t, at, r)->c[0][0].v;
@@ -61,7 +63,7 @@ static int find(Check *c, const void *data) {
   for (uint32_t i = 0; i < c->n; i++) q[i] = c->q[i], v[i] = c->v[i], c->a[i] = isfinite(c->a[i]) ? c->a[i] : 0;
   for (uint32_t i = 0; i < c->m->states.n; i++) z[i] = c->z[i], c->zd[i] = isfinite(c->zd[i]) ? c->zd[i] : 0;
   const Real shortest = 1e-14L * (1 + fabsl(start.t)), longest = 0.1L * (1 + fabsl(start.t));
-  for (int derivatives = 0; derivatives < 2; derivatives++) /* values before derivatives: these grow faster */
+  for (int derivatives = 0; derivatives < 2; derivatives++) /* values before derivatives, which overflow earlier */
     for (Real h = 0; h < longest; h = h > 0 ? 2 * h : shortest) {
       c->t = start.t + h;
       for (uint32_t i = 0; i < c->n; i++) c->q[i] = q[i] + h * (v[i] + h / 2 * c->a[i]), c->v[i] = v[i] + h * c->a[i];

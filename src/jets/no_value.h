@@ -1,12 +1,13 @@
-/* Where a run ended for want of a finite value: which expression of the text has none. */
+/* Finds the expression of the text without a finite value that ended a run. */
 #ifndef LAGC_NO_VALUE_H
 #define LAGC_NO_VALUE_H
 
 #include "ir/unit.h"
 #include "mech/eqns.h"
 
-/* number[n] is t, q, v, z, p of the last good state, as the scene's simulator has them. Looks there and along the motion from there, up to a tenth of t and of 1 s,
- * for the first expression without a finite value, or with derivatives that have none; says so in a note of the model's diags. 0: there is none, or n is another. */
+/* number[n] is t, q, v, z, p of the last good state, in the order of the scene's simulator. Searches from there along the motion, for
+ * 0.1 (1 + |t|) seconds, for the first expression whose value or derivatives are not finite, and adds a note to the model's diags.
+ * 0: none was found, or n does not fit the model. */
 int no_value_note(const Eqns *e, const IrUnit *u, const double *number, uint32_t n);
 
 #endif

@@ -1,14 +1,16 @@
+/* Self-check: choice of states, comparison of two values, report. A value agrees if the difference is within SLACK times the text's error
+ * bound, or within a fixed part of the terms' size. Contract: self_check.h. */
 #include "jets/check_impl.h"
 
 #include <float.h>
 #include <math.h>
 
-/* A program computes in the same precision as jets, but numbers that were reckoned when compiling are rounded to doubles, 2^11 times
- * coarser; and each of the two may be as far off as its own roundings. 2^16 times the bound of the jets leaves 16 for the program's. */
+/* Programs are evaluated in the precision of jets, but constants folded at compile time are doubles, 2^11 times coarser. A factor of 2^16
+ * on the jets' bound leaves 16 for the program's own roundings. */
 static const Real SLACK = 65536;
 
-/* Beside the bound, a difference counts from this part of the terms it is made of: a program may cancel where the text does not. Far from the start
- * terms are larger than what is left of them, and it takes more. */
+/* Relative tolerance, as a part of the terms' size: a program may cancel where the text does not. Far from the start
+ * cancellation is worse. */
 static const Real NEAR_PART = 1e-9L, FAR_PART = 1e-4L;
 
 enum { STATES_WANTED = 5, STATES_FEW = 3, SHORT_TAPE = 300, ATTEMPTS = 24, ENDLESS_TAPE = 600000 };
@@ -31,11 +33,11 @@ const char *check_state_text(const Check *c) {
   return sb_text(&s);
 }
 
-/* The text says `t`, up to t->sum.e, and is made of terms that add up to t->size; the program says `program`. */
+/* Text: t->sum.v with error t->sum.e, a sum of terms of total size t->size; program: `program`. */
 Verdict check_compare(Check *c, const Total *t, Real program, Span span, const char *what, const char *name) {
   Real difference = fabsl(t->sum.v - program), size = t->size + fabsl(program), bound = SLACK * (t->sum.e + jet_unit * t->around);
   if (!isfinite(t->sum.v) || !isfinite(t->sum.e) || !isfinite(t->around) || t->size > DBL_MAX) return DISMISSED;
-  if (isfinite(program) && bound > 1e-3L * (size + t->around)) return DISMISSED; /* nothing is left of it */
+  if (isfinite(program) && bound > 1e-3L * (size + t->around)) return DISMISSED; /* rounding left no digits */
   c->told->values++;
   if (difference <= bound || difference <= (c->far ? FAR_PART : NEAR_PART) * size) return AGREES;
   diag_error(c->m->diags, span, "internal error: %s%s%s: the text gives %.12Lg, the compiled program %.12Lg", what, name ? " " : "", name ? name : "",
@@ -54,7 +56,7 @@ static int is_finite(const Real *x, uint32_t n) {
   return n == 0;
 }
 
-/* Long formulas are compared at the first state and far out. */
+/* Long output formulas are compared at the first state and at far states only. */
 static int asks_outputs(const Check *c) { return c->outputs->tape->ins.n <= SHORT_TAPE || c->told->states == 0 || c->far; }
 
 static Verdict check_state(Check *c, int dynamics) {
@@ -66,7 +68,7 @@ static Verdict check_state(Check *c, int dynamics) {
   return v == AGREES ? check_motion(c) : v;
 }
 
-/* Outputs of the text that the comparison does not know: of charges and closed forms. */
+/* Names of outputs that are not compared (charges, closed forms), or NULL. */
 static const char *outputs_left_out(const Check *c) {
   enum { MOST = 8 };
   const Eqns *e = c->e;

@@ -1,12 +1,13 @@
+/* Reads the active statements of a model onto tapes, in the order in which model/ numbers constraints and events. Contract: statements.h. */
 #include "jets/statements.h"
 
-/* A walk over the statements in use, with the indices of `for` around them. */
+/* Traversal of the active statements, with the indices of enclosing `for` loops. */
 typedef struct {
   Text *text;
   IndexVars around;
   TextDynamics *dynamics;
   TextOutputs *outputs;
-  uint32_t constraint, event; /* the next one's place in the model */
+  uint32_t constraint, event; /* index in the model of the next one */
   const char *why;
 } Walk;
 
@@ -24,7 +25,7 @@ static void visit(Walk *w, const AstStmt *st, Name effect, Visit *fn) {
   }
   for (int64_t i = from; i <= to; i++) {
     vec_push(w->text->arena, &w->around, ((IndexVar){st->name, i}));
-    for (const AstStmt *s = st->body; s; s = s->next) visit(w, s, effect, fn); /* blocks nest as deep as the parser lets them */
+    for (const AstStmt *s = st->body; s; s = s->next) visit(w, s, effect, fn); /* recursion bounded by the parser */
     w->around.n--;
   }
 }
@@ -34,7 +35,7 @@ static void walk(Walk *w, Visit *fn) {
   for (uint32_t i = 0; i < b->active.n; i++) visit(w, b->active.at[i].stmt, b->active.at[i].effect, fn);
 }
 
-/* The value of an expression; where it has none, `why` says so. */
+/* Value of an expression; without one, w->why has the reason. */
 static Meaning value(Walk *w, AstId id, Name effect) {
   w->text->why = NULL;
   Meaning v = text_value(w->text, id, effect, &w->around);
@@ -76,14 +77,14 @@ static void read_force(Walk *w, const AstStmt *st, Name effect) {
 
 static const Unit PER_SECOND_OF_SI = {.factor = {.num = 1, .den = 1}, .offset = {.num = 0, .den = 1}, .text = ""};
 
-/* The unit of a rate of what is in `u`: its zero is zero. */
+/* Unit of a rate: that of u without offset; times are in s. */
 static Unit rate_unit(const Unit *u) {
   Unit r = u ? *u : PER_SECOND_OF_SI;
   r.offset = num_int(0);
   return r;
 }
 
-/* The state, or coordinate, that a place stands for: its input on the tape. */
+/* Input instruction of a target (a coordinate or state), or NULL. */
 static const TapeIns *place(const Walk *w, Ref r) {
   const TapeIns *i = &w->text->tape->ins.at[r];
   return i->op == TAPE_INPUT ? i : NULL;
@@ -102,7 +103,7 @@ static void read_flow(Walk *w, const AstStmt *st, Name effect) {
   }
 }
 
-/* The next constraint of the model that somebody wrote. */
+/* Stores c as the model's next written constraint, skipping those that the compiler made for rotations. */
 static void push_constraint(Walk *w, Ref c) {
   const Model *m = w->text->m;
   while (w->constraint < m->constraints.n && m->constraints.at[w->constraint].inside) w->constraint++;
@@ -116,7 +117,7 @@ static void read_constraint(Walk *w, const AstStmt *st, Name effect) {
   for (uint32_t k = 0; k < (n ? n : 1); k++) push_constraint(w, tape_op(t, TAPE_SUB, l.at[k], r.at[k], 0));
 }
 
-/* The gap times the input that says whether it is closed. */
+/* A contact as a constraint: its input `closed` times the gap. */
 static void read_contact(Walk *w, const AstStmt *st, Name effect) {
   const Model *m = w->text->m;
   Meaning gap = value(w, st->lhs, effect);
@@ -196,7 +197,7 @@ static void read_event(Walk *w, const AstStmt *st, Name effect) {
 
 static void read_output_statement(Walk *w, const AstStmt *st, Name effect) {
   if (st->kind == STMT_EVENT) read_event(w, st, effect);
-  else if (st->kind == STMT_CONTACT) w->event += 2; /* impact and release: of the model's own making */
+  else if (st->kind == STMT_CONTACT) w->event += 2; /* impact and release, added by model/constraint.c */
 }
 
 static Ref signal_value(Walk *w, const Input *in) {
@@ -213,7 +214,7 @@ static Ref output_value(Walk *w, const OutputText *o) {
   return o->component < meaning_parts(&v) ? v.at[o->component] : 0;
 }
 
-/* `energy` alone, of the model's own making. */
+/* 1 for the output `energy`, unless the model declares that name. */
 static int is_energy(const Text *t, const OutputText *o) {
   int ambiguous;
   const AstExpr *x = o->id ? ast_expr(t->b->ast, o->id) : NULL;
@@ -230,7 +231,7 @@ static void read_energies(Walk *w, const AstStmt *st, Name effect) {
   if (st->kind == STMT_POTENTIAL) t->potential = added(w, t->potential, TAPE_ADD, term);
 }
 
-/* Energies that outputs name (`lagrangian`, `T`, `V`), and of which `energy` and `p_x` are made. They have no value where a part of L has none. */
+/* Puts L, T and V on the tape, for outputs with `lagrangian`, `T`, `V`, `energy`, `p_x`. No value where a part of L has none. */
 static void give_energies(Walk *w) {
   w->why = NULL;
   walk(w, read_energies);

@@ -1,29 +1,29 @@
-/* Statements of the text on a tape: what the energies, forces, flows, constraints, events and outputs of a model are, as they stand there. */
+/* Statements of the text on tapes: energies, forces, flows and constraints (TextDynamics); events, outputs and inputs (TextOutputs). */
 #ifndef LAGC_STATEMENTS_H
 #define LAGC_STATEMENTS_H
 
 #include "jets/text.h"
 
-/* A force f along the displacement of `point`; or a torque (three components) on a rotation (four). */
+/* Force f along the displacement of `point`; or a torque (f: 3 components) on a rotation (point: 4). */
 typedef struct {
   Ref point[4], f[3];
   int torque;
 } TextForce;
 
 typedef struct {
-  SymKind kind; /* of what it sets: SYM_COORD, SYM_VEL, SYM_STATE */
+  SymKind kind; /* kind of the target: SYM_COORD, SYM_VEL, SYM_STATE */
   uint32_t index, event;
   Ref value;
 } TextAction;
 
-/* 0 in place of a Ref: the text has no such statement, or it says what tapes do not know (`why` names it). */
+/* Ref 0: the text has no such statement, or it contains a construct that tapes cannot evaluate (`why`). Memory is the arena's. */
 typedef struct {
   Tape *tape;
   Ref lagrangian, dissipation;
   VEC(TextForce) forces;
   Ref *flows;       /* [states] */
-  Ref *constraints; /* [constraints of the model]: left side less right side; of contacts: the gap while closed */
-  const char *why;  /* NULL: all of it is known */
+  Ref *constraints; /* [constraints of the model] left side minus right side; contacts: closed*gap */
+  const char *why;  /* construct that was not evaluated; NULL: none */
 } TextDynamics;
 
 typedef struct {
@@ -31,8 +31,8 @@ typedef struct {
   Ref *events;  /* [events of the model] */
   VEC(TextAction) actions;
   Ref *outputs; /* [outputs of the scene] */
-  unsigned char *is_energy; /* [outputs of the scene] just `energy`: no formula, as the energy itself is compared */
-  Ref *signals; /* [inputs of the model]: their formulas */
+  unsigned char *is_energy; /* [outputs of the scene] 1: the name `energy` alone, compared with the energy instead of a formula */
+  Ref *signals; /* [inputs of the model] their formulas */
 } TextOutputs;
 
 TextDynamics *text_dynamics(const Model *m, Arena *a);

@@ -1,3 +1,4 @@
+/* Tape: appending with constant folding, slots by liveness, evaluation. Contract: tape.h. */
 #include "jets/tape.h"
 
 #include <float.h>
@@ -31,7 +32,7 @@ int tape_is_number(const Tape *t, Ref a, Num *n) {
   return num_is_exact(*n);
 }
 
-/* What exact numbers come to; 0: not to one. */
+/* Folds an operation on exact numbers; 0: the result is not an exact number. */
 static int reckon(TapeOp op, Num x, Num y, Num *r) {
   switch (op) {
     case TAPE_ADD: *r = num_add(x, y); break;
@@ -89,7 +90,7 @@ void tape_finish(Tape *t, const Ref *roots, uint32_t n) {
   for (uint32_t k = 0; k < n; k++) last[roots[k]] = UINT32_MAX;
   for (uint32_t i = 1; i < t->ins.n; i++) {
     TapeIns *x = &t->ins.at[i];
-    x->slot = nidle ? idle[--nidle] : t->slots++; /* before its operands give theirs back: results may not overwrite them early */
+    x->slot = nidle ? idle[--nidle] : t->slots++; /* allocated before operands are freed: a result never overwrites an operand */
     Ref used[4] = {x->a, x->b, x->c, i};
     for (int k = 0; k < 4; k++) {
       int again = 0;
@@ -108,7 +109,7 @@ static Jet number_jet(Num n) {
 
 static Jet truth(int yes) { return jet_exact(yes != 0); }
 
-/* A value that rounding decides, or that no double holds, and all that is made of it, has no bound on its error. */
+/* Gives a value an infinite error bound (near: decided by rounding, or out of range); results computed from it inherit it. */
 static void decide(Jet *out, int near, int *unsure) {
   if (!near) return;
   out->c[0][0].e = INFINITY;
@@ -117,7 +118,7 @@ static void decide(Jet *out, int near, int *unsure) {
 
 static JetReal value(const Jet *x) { return x->c[0][0].v; }
 
-/* Whether x and y are so near that rounding decides which is larger (equal numbers without error are equal), or one is no number. */
+/* 1 if rounding decides which of x and y is larger, or one is NaN. Equal exact numbers are not near. */
 static int is_near(const Jet *x, const Jet *y) {
   JetReal error = x->c[0][0].e + y->c[0][0].e;
   if (isnan(value(x)) || isnan(value(y))) return 1;
@@ -154,7 +155,7 @@ static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, 
     case TAPE_LT: near = is_near(x, y); *out = truth(value(x) < value(y)); break;
     case TAPE_LE: near = is_near(x, y); *out = truth(value(x) <= value(y)); break;
     case TAPE_EQ: near = is_near(x, y); *out = truth(value(x) == value(y)); break;
-    case TAPE_NUMBER: case TAPE_PI: case TAPE_INPUT: return; /* by the caller */
+    case TAPE_NUMBER: case TAPE_PI: case TAPE_INPUT: return; /* handled by run_any */
   }
   decide(out, near, unsure);
 }

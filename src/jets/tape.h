@@ -1,5 +1,5 @@
-/* Tape: operations on jets in the order in which they are done, as the text writes them. Nothing is simplified: only arithmetic of
- * exact numbers is done at once, as indices and conditions of families need it. */
+/* Tape: straight-line program of operations on jets, in the order of the text. Nothing is simplified, except that arithmetic of
+ * exact numbers is folded, as indices and conditions of families need it. */
 #ifndef LAGC_TAPE_H
 #define LAGC_TAPE_H
 
@@ -8,7 +8,7 @@
 #include "base/vec.h"
 #include "jets/jet.h"
 
-typedef uint32_t Ref; /* a value on the tape; 0: none */
+typedef uint32_t Ref; /* index of an instruction, and so its value; 0: none */
 
 typedef enum {
   TAPE_NUMBER,   /* number */
@@ -29,24 +29,24 @@ typedef enum { INPUT_TIME, INPUT_COORD, INPUT_STATE, INPUT_PARAM, INPUT_SIGNAL, 
 typedef struct {
   TapeOp op;
   Ref a, b, c;
-  uint32_t slot; /* where its value stands, until its last use: tape_finish */
+  uint32_t slot; /* place of the value in at[] until its last use: set by tape_finish */
   Num number;
   InputKind input;
   uint32_t index;
   const char *text;
-  uint32_t at;   /* the node of the Ast that it was made for */
+  uint32_t at;   /* AstId of the node it was made for */
 } TapeIns;
 
 typedef struct {
   Arena *arena;
   VEC(TapeIns) ins; /* [0] unused */
-  uint32_t slots;   /* that are needed at once */
-  int too_long;     /* nothing is appended any more */
-  uint32_t node;    /* of the Ast, whose value is being appended: the caller sets it */
-  struct Partial *partial; /* of tape_partial */
+  uint32_t slots;   /* number of slots: most values alive at once */
+  int too_long;     /* TAPE_LIMIT was reached: nothing more is appended */
+  uint32_t node;    /* AstId of the node being evaluated: set by the caller */
+  struct Partial *partial; /* working memory of tape_partial */
 } Tape;
 
-/* limit: TAPE_LIMIT instructions. Past it tape_op returns 0. */
+/* Most instructions of a tape; past it the functions below return 0. */
 enum { TAPE_LIMIT = 700000 };
 
 Tape *tape_new(Arena *a);
@@ -57,26 +57,26 @@ Ref tape_op(Tape *t, TapeOp op, Ref a, Ref b, Ref c); /* 0 where an operand is 0
 Ref tape_function(Tape *t, const char *name, Ref a);
 Ref tape_power(Tape *t, Ref a, Num exponent);
 
-/* The partial derivative of a value by an input or a rate of one, by = x, x', x''. 0: `by` is none of these, or the tape is too long. */
+/* Partial derivative of a value by an input or its rates, by = x, x', x''. 0: `by` is none of these, or the tape is too long. */
 Ref tape_partial(Tape *t, Ref of, Ref by);
 
-/* p q' - L of a Lagrangian whose coordinates are the inputs of one kind. */
+/* Energy p q' - L of a Lagrangian whose coordinates are the inputs of one kind. */
 Ref tape_energy(Tape *t, Ref lagrangian, InputKind kind);
 
-/* Whether it is an exact number, and which one. */
+/* 1 if a value is an exact number; *n is that number. */
 int tape_is_number(const Tape *t, Ref a, Num *n);
 
-/* Gives each value a slot; the roots keep theirs. Nothing may be appended after. */
+/* Assigns slots by liveness; the roots keep theirs to the end. Nothing may be appended afterwards. */
 void tape_finish(Tape *t, const Ref *roots, uint32_t n);
 
-/* The value of an input, as a jet. */
+/* Callback: the jet of an input. */
 typedef void TapeInput(void *data, InputKind kind, uint32_t index, Jet *out);
 
-/* Runs it; at[slots]. A comparison that rounding could turn, and a value that no double holds, set *unsure. */
+/* Evaluates the tape into at[slots]. *unsure is set by comparisons within rounding error, and by values beyond the range of doubles. */
 void tape_run(const Tape *t, TapeInput *input, void *data, Jet *at, int *unsure);
 
-/* The first instruction whose value no double holds (or one of whose derivatives is not finite) while doubles hold what it is made of; 0: there is none. Values stand in
- * at[slots], of those that it is made of too. */
+/* First instruction with finite operands whose value exceeds the range of doubles (derivatives: or whose jet is not finite);
+ * 0: none. Its value and its operands are in at[slots]. */
 Ref tape_first_not_finite(const Tape *t, TapeInput *input, void *data, int derivatives, Jet *at);
 
 static inline const Jet *tape_value(const Tape *t, const Jet *at, Ref a) { return &at[t->ins.at[a].slot]; }

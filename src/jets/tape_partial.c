@@ -1,29 +1,29 @@
-/* Partial derivatives on a tape: instructions whose value is d(expr, name) of the text. The rules of calculus, node by node, once more beside
- * those of sym/diff.c, so that one can be compared with the other. */
+/* Partial derivatives on a tape, d(expr, name) of the text, by forward differentiation, instruction by instruction. Deliberately
+ * independent of sym/diff.c, which it checks. */
 #include <string.h>
 
 #include "jets/tape.h"
 
-enum { LEVELS = 3 }; /* by x, by x', by x'' */
+enum { LEVELS = 3 }; /* level 0, 1, 2: derivative by x, x', x'' */
 static const uint32_t ALL = UINT32_MAX;
 
-/* Of an instruction that the value is made of; 0: the derivative is 0. */
+/* Derivatives of an instruction at each level; 0: the derivative is zero. */
 typedef struct {
   Ref by[LEVELS];
 } Derivatives;
 
 struct Partial {
   Tape *t;
-  InputKind kind; /* by this input, or a rate of it: */
-  uint32_t index; /* ALL: by all inputs of the kind, along their rates */
-  VEC(Ref) made_of;    /* the instructions that the value is made of, in their order */
-  VEC(Derivatives) of; /* theirs */
-  VEC(uint32_t) place; /* of an instruction of the tape among them, counted from 1; of others 0 */
-  Ref value, lowest;   /* which value that is; the first instruction that it is made of */
+  InputKind kind; /* independent variable: input `index` of this kind, or a rate of it */
+  uint32_t index; /* ALL: all inputs of the kind, in the direction of their rates */
+  VEC(Ref) made_of;    /* instructions that `value` depends on, in order */
+  VEC(Derivatives) of; /* derivatives of made_of */
+  VEC(uint32_t) place; /* [Ref] index in made_of + 1; 0: not in it */
+  Ref value, lowest;   /* the differentiated value; first instruction of made_of */
 };
 typedef struct Partial Partial;
 
-/* --- arithmetic in which the Ref 0 is the number 0 --- */
+/* --- arithmetic in which Ref 0 means the number 0 --- */
 
 static Ref sum(Tape *t, Ref a, Ref b) { return a && b ? tape_op(t, TAPE_ADD, a, b, 0) : a ? a : b; }
 static Ref negative(Tape *t, Ref a) { return a ? tape_op(t, TAPE_NEG, a, 0, 0) : 0; }
@@ -35,25 +35,25 @@ static Ref zero(Tape *t, Ref a) { return a ? a : integer(t, 0); }
 
 /* --- rules --- */
 
-/* da times the derivative of a function of the C library at a; self is its value. */
+/* Chain rule: f'(a) da for a function of the C library; self is f(a). */
 static Ref through_function(Tape *t, const char *name, Ref self, Ref a, Ref da) {
   if (strcmp(name, "sin") == 0) return product(t, tape_function(t, "cos", a), da);
   if (strcmp(name, "cos") == 0) return negative(t, product(t, tape_function(t, "sin", a), da));
   if (strcmp(name, "tan") == 0) return quotient(t, da, square(t, tape_function(t, "cos", a)));
   if (strcmp(name, "sinh") == 0) return product(t, tape_function(t, "cosh", a), da);
   if (strcmp(name, "cosh") == 0) return product(t, tape_function(t, "sinh", a), da);
-  if (strcmp(name, "tanh") == 0) return product(t, tape_op(t, TAPE_SUB, integer(t, 1), square(t, self), 0), da); /* which shows what it loses */
+  if (strcmp(name, "tanh") == 0) return product(t, tape_op(t, TAPE_SUB, integer(t, 1), square(t, self), 0), da); /* bound sees cancellation */
   if (strcmp(name, "exp") == 0) return product(t, self, da);
   if (strcmp(name, "log") == 0) return quotient(t, da, a);
   if (strcmp(name, "fabs") == 0) return product(t, tape_op(t, TAPE_SIGN, a, 0, 0), da);
   Ref one = integer(t, 1);
   if (strcmp(name, "atan") == 0) return quotient(t, da, tape_op(t, TAPE_ADD, one, square(t, a), 0));
-  Ref rest = product(t, tape_op(t, TAPE_SUB, one, a, 0), tape_op(t, TAPE_ADD, one, a, 0)); /* 1 - a^2, of asin and acos */
+  Ref rest = product(t, tape_op(t, TAPE_SUB, one, a, 0), tape_op(t, TAPE_ADD, one, a, 0)); /* 1 - a^2, for asin and acos */
   Ref r = quotient(t, da, tape_power(t, rest, num_ratio(1, 2)));
   return strcmp(name, "asin") == 0 ? r : negative(t, r);
 }
 
-/* a^b (b'*log(a) + b*a'/a), where a varying exponent needs log(a), and a negative a may have a constant one. */
+/* a^b (b' log(a) + b a'/a); the term with log(a) only for a varying exponent, as a may be negative otherwise. */
 static Ref through_pow(Tape *t, Ref self, Ref a, Ref b, Ref da, Ref db) {
   Ref less = tape_op(t, TAPE_SUB, b, integer(t, 1), 0);
   Ref base = product(t, product(t, b, tape_op(t, TAPE_POW, a, less, 0)), da);
@@ -91,19 +91,19 @@ static Ref derivative(const Partial *p, Ref r, uint32_t level) {
     case TAPE_MAX: return chosen(t, tape_op(t, TAPE_LT, i.b, i.a, 0), da, db);
     case TAPE_SELECT: return chosen(t, i.a, db, dc);
     case TAPE_NUMBER: case TAPE_PI: case TAPE_INPUT: case TAPE_RATE: case TAPE_SIGN: case TAPE_LT: case TAPE_LE: case TAPE_EQ: case TAPE_NOT:
-    case TAPE_AND: case TAPE_OR: break; /* steps: their derivative is 0 where they have one */
+    case TAPE_AND: case TAPE_OR: break; /* piecewise constant */
   }
   return 0;
 }
 
-/* --- all --- */
+/* --- whole values --- */
 
 static void mark(Partial *p, Ref r) {
   if (r && r < p->lowest) p->lowest = r;
   p->place.at[r] = r != 0;
 }
 
-/* Instructions that `of` is made of, in order: operands stand before what is made of them. */
+/* Sets made_of and place to the instructions that `of` depends on, operands first. */
 static void collect(Partial *p, Ref of) {
   const Tape *t = p->t;
   if (p->value == of) return;
@@ -150,7 +150,7 @@ Ref tape_partial(Tape *t, Ref of, Ref by) {
   return by_level(t, of, t->ins.at[by].input, t->ins.at[by].index, level);
 }
 
-/* Along q' at level 0, f(q, t) has the derivative sum of q' df/dq; so has f', by q' along q'. */
+/* With index ALL, level 1 is the derivative by q' in the direction q': sum of q' dL/dq' = p q'. */
 Ref tape_energy(Tape *t, Ref lagrangian, InputKind kind) {
   if (!lagrangian) return 0;
   Ref pv = by_level(t, lagrangian, kind, ALL, 1);

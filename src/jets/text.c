@@ -1,6 +1,6 @@
-/* The nodes of an expression are contiguous and children come first: evaluation is a loop over them, which runs through the body of a sum
- * once a term, and leaves out the branch of an `if` that is not taken. What waits for a definition or a call stays on a stack of
- * frames, so that neither nesting nor chains of definitions use the C stack. */
+/* Evaluation of expressions of the text. Ast nodes of an expression are contiguous, children first, so evaluation is one loop over them;
+ * the body of a sum is repeated per term, the branch of an `if` that is not taken is skipped. An evaluation that needs a definition or
+ * a call waits on an explicit stack of frames: neither nesting nor chains of definitions use the C stack. */
 #include "jets/text.h"
 
 #include <stdlib.h>
@@ -18,7 +18,7 @@ static Meaning number_of(Text *t, Num n) { return (Meaning){.at = {tape_number(t
 
 /* --- frames --- */
 
-/* Marks where bodies of sums and branches of `if` begin. */
+/* Marks the first nodes of sums' bodies and of branches of `if`. */
 static void mark(const Text *t, Frame *f) {
   const Ast *ast = t->b->ast;
   for (AstId i = f->first; i <= f->root; i++) {
@@ -58,7 +58,7 @@ static void push_indices(Text *t, Frame *f, const IndexVar *at, uint32_t n) {
     if (at[k].name) vec_push(t->arena, &f->index, at[k]);
 }
 
-/* The frame of what `f` waits for. */
+/* Frame for the definition that f waits for. */
 static Frame *begin_awaited(Text *t, Frame *f) {
   Awaited w = f->needs;
   if (w.kind == ENT_CONST) {
@@ -77,7 +77,7 @@ static Frame *begin_awaited(Text *t, Frame *f) {
   return g;
 }
 
-/* A finished definition takes its value; a call returns it. */
+/* Stores the value of a finished definition, and passes it to the waiting frame. */
 static void finish(Text *t, Frame *f, Frame *caller) {
   Meaning v = f->value[f->root - f->first];
   const AstStmt *observe = f->what.kind == ENT_OBSERVE ? t->b->observes.at[f->what.index].stmt : NULL;
@@ -105,7 +105,7 @@ static int whole(const Text *t, const Meaning *v, int64_t *out) {
   return 1;
 }
 
-/* Starts a loop; 0: its value is there already. */
+/* Starts a loop; 0: empty or unknown range, the value is set. */
 static int loop_enter(Text *t, Frame *f, AstId id) {
   const AstExpr *x = ast_expr(t->b->ast, id);
   int64_t lo, hi;
@@ -121,7 +121,7 @@ static int loop_enter(Text *t, Frame *f, AstId id) {
   return 1;
 }
 
-/* Takes a term in; 1: the body once more. */
+/* Adds the body's value as a term; 1: next index; 0: end, the value is set. */
 static int loop_again(Text *t, Frame *f) {
   TextLoop *l = &f->loops.at[f->loops.n - 1];
   const AstExpr *x = ast_expr(t->b->ast, l->construct);
@@ -139,7 +139,7 @@ static int loop_again(Text *t, Frame *f) {
 
 /* --- the loop over nodes --- */
 
-/* Where to go on when node pc begins the body of a sum or a branch; 0: at pc. */
+/* Called at the first node of a sum's body or of a branch: the node to jump to; 0: continue at pc. */
 static AstId enter(Text *t, Frame *f, AstId construct) {
   const Ast *ast = t->b->ast;
   const AstExpr *x = ast_expr(ast, construct);
@@ -155,7 +155,7 @@ static AstId enter(Text *t, Frame *f, AstId construct) {
   return taken ? 0 : ast_expr(ast, no)->first;
 }
 
-/* 1 when the root has its value; 0 when f->needs must be evaluated first. */
+/* Evaluates from pc on. 1: the root has its value; 0: f->needs must be evaluated first. */
 static int run(Text *t, Frame *f) {
   const Ast *ast = t->b->ast;
   while (f->pc <= f->root && !t->tape->too_long) {
@@ -163,7 +163,7 @@ static int run(Text *t, Frame *f) {
     if (to) f->pc = to;
     const AstExpr *x = ast_expr(ast, f->pc);
     int is_loop = x->kind == AST_SUM || x->kind == AST_PRODUCT;
-    if (!is_loop) { /* its loop left its value there */
+    if (!is_loop) { /* a loop's value was set by loop_enter or loop_again */
       t->tape->node = f->pc;
       Meaning v = text_node(t, f, f->pc);
       if (f->waits) return 0;
@@ -206,7 +206,7 @@ int text_range(Text *t, AstId lo, AstId hi, Name effect, const IndexVars *around
   return whole(t, &a, from) && whole(t, &b, to);
 }
 
-/* Members of long families one after the other, as they mostly lead to those before them: a chain waits for no one then. */
+/* Evaluates lets of large models in order of declaration: members of a chain then find their predecessors evaluated. */
 static void begin_families(Text *t) {
   enum { LONG = 256 };
   static const IndexVars none;

@@ -1,42 +1,42 @@
-/* One evaluation of an expression of the text, shared by text*.c. */
+/* State of an evaluation of an expression of the text, shared by text_eval.c and text_eval_node.c. */
 #ifndef LAGC_TEXT_IMPL_H
 #define LAGC_TEXT_IMPL_H
 
 #include "jets/text.h"
 
-/* A sum or a product whose body is being evaluated, once for each value of its index. */
+/* A `sum` or `product` in progress: its body is evaluated once per index value. */
 typedef struct {
   AstId construct;
   int64_t at, hi;
-  Meaning sum; /* of so many terms so far */
+  Meaning sum; /* sum or product of the first `terms` terms */
   uint64_t terms;
 } TextLoop;
 
-/* A definition, by its place in the builder; ENT_NONE: nobody's. */
+/* A definition: kind, and index in the builder; ENT_NONE: an expression that is no definition. */
 typedef struct {
   EntKind kind;
   uint32_t index;
 } Awaited;
 
-enum { FRAMES_MAX = 50000 }; /* definitions that wait for each other */
+enum { FRAMES_MAX = 50000 }; /* depth of definitions that wait for each other */
 
 typedef struct Frame {
   AstId first, root, pc;
   Name effect;
-  Awaited what, needs;        /* is being defined; must be evaluated before node pc */
-  int waits, returned;        /* for `needs`; its value is in `result` */
+  Awaited what, needs;        /* definition being evaluated; definition needed before node pc */
+  int waits, returned;        /* suspended until `needs` has a value; `result` holds that value */
   Meaning result;
-  const Definition *function; /* whose arguments are in scope, or NULL */
+  const Definition *function; /* function whose arguments are in scope, or NULL */
   Meaning *args;
   uint32_t nargs;
   IndexVars index;
   VEC(TextLoop) loops;
   uint32_t cap;
-  Meaning *value; /* of node first + i */
-  AstId *guard;   /* the sum, product or `if` whose body or branch begins at node first + i, or 0 */
+  Meaning *value; /* [i] value of node first + i */
+  AstId *guard;   /* [i] the sum, product or `if` whose body or branch begins at node first + i, or 0 */
 } Frame;
 
-/* text_node.c: the value of node `id`, whose operands have theirs; sets f->waits and f->needs where a definition is needed first. */
+/* text_eval_node.c: value of node `id` from its operands' values; sets f->waits and f->needs where a definition is needed first. */
 Meaning text_node(Text *t, Frame *f, AstId id);
 
 /* x op y: AST_ADD, AST_SUB, AST_MUL or AST_DIV of numbers, vectors, rotations. */

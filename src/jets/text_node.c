@@ -1,4 +1,4 @@
-/* One node of an expression of the text. */
+/* Values of single Ast nodes on the tape: operators, names, functions, rotations. Independent of model/resolve*.c, which it checks. */
 #include <stdlib.h>
 
 #include "jets/text_impl.h"
@@ -53,7 +53,7 @@ static Ref dot(Text *t, const Ref *u, const Ref *v, uint32_t n) {
   return r;
 }
 
-/* (a, u)(b, v) = (ab - u.v, a v + b u + u x v) */
+/* Product of quaternions, (a, u)(b, v) = (ab - u.v, a v + b u + u x v). */
 static Meaning product(Text *t, const Meaning *p, const Meaning *q) {
   Meaning r = {.n = ROTATION};
   Ref across[3];
@@ -64,7 +64,7 @@ static Meaning product(Text *t, const Meaning *p, const Meaning *q) {
   return r;
 }
 
-/* v + 2 u x (u x v + w v) */
+/* Rotated vector v + 2 u x (u x v + w v) for q = (w, u). */
 Meaning text_turned(Text *t, const Meaning *q, const Meaning *v) {
   Meaning r = {.n = 3};
   Ref inner[3], outer[3], twice = tape_number(t->tape, num_int(2));
@@ -84,7 +84,7 @@ static Meaning conjugate(Text *t, const Meaning *q) {
   return r;
 }
 
-/* The angular velocity in the body's frame: 2 (conj(q) q') without its first part. */
+/* Angular velocity in the body frame: vector part of 2 conj(q) q'. */
 static Meaning spin(Text *t, const Meaning *q) {
   Meaning back = conjugate(t, q), rates = *q, r = {.n = 3};
   for (int k = 0; k < ROTATION; k++) rates.at[k] = tape_op(t->tape, TAPE_RATE, q->at[k], 0, 0);
@@ -105,7 +105,7 @@ static Meaning turn(Text *t, const Meaning *axis, const Meaning *angle) {
 
 /* --- operators --- */
 
-/* A rotation and a number: scaled, to be applied to a vector later. */
+/* Rotation times or over a number: the factor is kept in `scale` until a vector is turned. */
 static Meaning scaled_rotation(Text *t, AstKind op, const Meaning *q, const Meaning *number) {
   Meaning r = *q;
   Ref one = tape_number(t->tape, num_int(1)), scale = q->scale ? q->scale : one;
@@ -180,7 +180,7 @@ static Meaning entity(Text *t, Frame *f, const Entity *e, const int64_t *at) {
   return NOTHING;
 }
 
-/* A name with the indices `at`; a family without any is the member that is asked for. */
+/* Value of a name with indices `at`; of a family without indices, member t->member. */
 static Meaning named(Text *t, Frame *f, const Entity *e, const int64_t *at) {
   const int64_t *which = e->ndims ? at ? at : t->member : NULL;
   if (e->ndims && !which) return NOTHING;
@@ -201,7 +201,7 @@ static const IndexVar *find_index(const Frame *f, Name name) {
   return NULL;
 }
 
-/* The energies, as outputs name them: 0 until they are given. No Lagrangian contains the rate of a state that is no coordinate. */
+/* `lagrangian`, `T`, `V` or `energy`; 0 until they are set. For first-order L all states count as coordinates: L has no rates of others. */
 static Ref energy_called(Text *t, Name name) {
   if (strcmp(name, "lagrangian") == 0) return t->lagrangian;
   if (strcmp(name, "T") == 0) return t->kinetic;
@@ -209,7 +209,7 @@ static Ref energy_called(Text *t, Name name) {
   return tape_energy(t->tape, t->lagrangian, t->m->first_order ? INPUT_STATE : INPUT_COORD);
 }
 
-/* The coordinate that `p_x` is the momentum of; NULL: it is none. */
+/* The coordinate x of a momentum name `p_x`, or NULL. */
 static const Entity *momentum_of(const Text *t, const Frame *f, Name name) {
   int ambiguous;
   if (strncmp(name, "p_", 2) != 0 || scope_find(&t->b->scope, name, f->effect, &ambiguous)) return NULL;
@@ -217,7 +217,7 @@ static const Entity *momentum_of(const Text *t, const Frame *f, Name name) {
   return e && (e->kind == ENT_COORD || e->kind == ENT_STATE) ? e : NULL;
 }
 
-/* dL/dq' of it. */
+/* Momentum dL/dq' of a coordinate. */
 static Meaning momentum(Text *t, const Entity *e, const int64_t *at) {
   Meaning r = {.n = e->parts};
   t->asks |= !t->lagrangian;
@@ -228,7 +228,7 @@ static Meaning momentum(Text *t, const Entity *e, const int64_t *at) {
   return r;
 }
 
-/* A name that stands for nothing by itself (a family, an effect, a constraint) has no value, and that is no mistake here. */
+/* Value of a name; names of families, effects and constraints have none, which is no error here. */
 static Meaning name_node(Text *t, Frame *f, Name name) {
   static const char *const energies[] = {"lagrangian", "T", "V", "energy", NULL};
   const IndexVar *index = find_index(f, name);
@@ -275,7 +275,7 @@ static Meaning component(const Meaning *v, Name name) {
   return NOTHING;
 }
 
-/* drag.c: a parameter of an effect; r.x: a component. */
+/* drag.c, a name of an effect, or r.x, a component. */
 static Meaning member_node(Text *t, Frame *f, const AstExpr *x) {
   const AstExpr *left = ast_expr(t->b->ast, x->a);
   const Entity *e = left->kind == AST_NAME ? scope_own(&t->b->scope, x->name, left->name) : NULL;
@@ -302,7 +302,7 @@ static Meaning chosen(Text *t, const Meaning *c, const Meaning *x, const Meaning
   return r;
 }
 
-/* lambda(rod), lambda(rod[2]), lambda(drag.rod) */
+/* Multiplier of a constraint: lambda(rod), lambda(rod[2]), lambda(drag.rod). */
 static Meaning multiplier(Text *t, const Frame *f, AstId id) {
   const Ast *ast = t->b->ast;
   const AstExpr *x = ast_expr(ast, id);
@@ -338,7 +338,7 @@ static Meaning call_rotation(Text *t, Name name, const Meaning *x, const Meaning
   return y->at[0] ? turn(t, x, y) : NOTHING;
 }
 
-/* d(expr, name). By an argument of a function it has no value here: what was handed over may be a number, or occur beside it. */
+/* d(expr, name). Not evaluated by an argument of a function: its value may be a number, or occur elsewhere in the body. */
 static Meaning partial(const Text *t, const Frame *f, const Meaning *of, AstId by) {
   const AstExpr *x = ast_expr(t->b->ast, by);
   while (x->kind == AST_PRIME || x->kind == AST_MEMBER) x = ast_expr(t->b->ast, x->a);
@@ -383,7 +383,7 @@ static Meaning call_node(Text *t, Frame *f, const AstExpr *x) {
   return second ? call_binary(t, x->name, a, b) : call_unary(t, x->name, a);
 }
 
-/* --- all --- */
+/* --- dispatch --- */
 
 static Meaning node(Text *t, Frame *f, AstId id) {
   const AstExpr *x = ast_expr(t->b->ast, id);
@@ -413,7 +413,7 @@ static Meaning node(Text *t, Frame *f, AstId id) {
   return NOTHING;
 }
 
-/* Names that stand for nothing by themselves are parts of what surrounds them; all else without a value is told. */
+/* Names without a value may be parts of their parent node; any other node without a value is noted in Text.why. */
 Meaning text_node(Text *t, Frame *f, AstId id) {
   Meaning v = node(t, f, id);
   AstKind kind = ast_expr(t->b->ast, id)->kind;

@@ -1,4 +1,4 @@
-/* Ways out of mistakes: what a name that is not known here could have meant. */
+/* Hints for unknown names: declarations out of reach, habits from paper (xdot, p_x, wt), functions of other languages, nearest names. */
 #include "base/suggest.h"
 #include "model/builder.h"
 
@@ -41,7 +41,7 @@ static int is_active(const Builder *b, const AstStmt *st) {
   return 0;
 }
 
-/* The effect that is not in use and has a symmetry of this name, which stands for its charge. */
+/* An effect that is off and declares a symmetry (a charge) of this name, or NULL. */
 static const AstStmt *effect_with_charge(const Builder *b, Name name) {
   for (const AstStmt *e = b->ast->first; e; e = e->next)
     for (const AstStmt *x = e->kind == STMT_EFFECT ? e->body : NULL; x; x = x->next)
@@ -49,9 +49,9 @@ static const AstStmt *effect_with_charge(const Builder *b, Name name) {
   return NULL;
 }
 
-/* ---- names of paper ---- */
+/* --- notation of paper --- */
 
-/* Whether something that has a rate is called so: word[n]. */
+/* 1 if word[0..n) names a coordinate, a state or a let. */
 static int has_rate(const Builder *b, const char *word, size_t n) {
   for (uint32_t i = 0; n && i < b->scope.all.n; i++) {
     const Entity *e = &b->scope.all.at[i];
@@ -61,7 +61,7 @@ static int has_rate(const Builder *b, const char *word, size_t n) {
   return 0;
 }
 
-/* xdot, x_dot, dx, vx, xddot, ddx: the rate of something; 0 when it is none. */
+/* Recognises xdot, x_dot, dx, vx, xddot, ddx, ... of a name x; 0: no match. */
 static int advise_rate(Builder *b, const char *name) {
   static const struct {
     const char *before, *behind, *primes;
@@ -80,7 +80,7 @@ static int advise_rate(Builder *b, const char *name) {
   return 0;
 }
 
-/* p_x where it may not stand. */
+/* Recognises a momentum p_x where none is allowed. */
 static int advise_momentum(Builder *b, const char *name) {
   if (strncmp(name, "p_", 2) != 0 || !has_rate(b, name + 2, strlen(name + 2))) return 0;
   diag_help(b->diags, "the momentum `%s` may stand in outputs, observables and expectations; here write it with the velocity `%s'`, which is what an event sets", name,
@@ -88,7 +88,7 @@ static int advise_momentum(Builder *b, const char *name) {
   return 1;
 }
 
-/* Letters that stand for something on paper. */
+/* Names with a meaning on paper, and what to write instead. */
 static const char *const letters[][2] = {
   {"dt", "a time derivative is written `x'`"},
   {"π", "did you mean `pi`?"},
@@ -113,7 +113,7 @@ static int advise_letter(Builder *b, const char *name) {
   return 0;
 }
 
-/* `let a[i] = ...`: an index that has no range. */
+/* Recognises the index of `let a[i] = ...`, which lacks a range. */
 static int advise_index(Builder *b, Name name, Span span) {
   for (uint32_t i = 0; i < b->active.n; i++) {
     const AstStmt *st = b->active.at[i].stmt;
@@ -127,7 +127,7 @@ static int advise_index(Builder *b, Name name, Span span) {
   return 0;
 }
 
-/* Functions of other languages and books. */
+/* Functions of other languages and books, and what to write instead. */
 static const char *const foreign[][2] = {
   {"ln", "did you mean `log`?"},
   {"log10", "write `log(x)/log(10)`"},
@@ -158,13 +158,13 @@ int advise_unknown_function(Builder *b, Name name) {
   return 0;
 }
 
-/* Of an expression of the command line, where nothing can be declared. */
+/* 1 for an expression of the command line, where nothing can be declared. */
 static int is_asked(const Builder *b, Span span) {
   const Source *file = source_place(b->ast->sources, span.begin).file;
   return file && strncmp(file->path, "--", 2) == 0;
 }
 
-/* What an expression can contain: quantities, of the model and of effects in use. */
+/* Lists names that an expression can contain, of the model and of effects in use. */
 static void advise_names(Builder *b) {
   enum { MOST = 24 };
   const Entity *shown[MOST];
@@ -187,11 +187,12 @@ static int is_among(const char *word, size_t length, const Name *names, uint32_t
   return 0;
 }
 
-/* `wt`, where w and t are known. */
+/* Recognises `wt` as w*t, where w and t are known. */
 static int advise_product(Builder *b, Name name, const Name *known, uint32_t n) {
   size_t length = strlen(name);
   for (size_t cut = 1; cut < length; cut++)
-    if (is_among(name, cut, known, n) && is_among(name + cut, length - cut, known, n) && strncmp(name, name + cut, cut) != 0) { /* `xx` is a slip of the hand */
+    /* `xx` is a typing error, not x*x */
+    if (is_among(name, cut, known, n) && is_among(name + cut, length - cut, known, n) && strncmp(name, name + cut, cut) != 0) {
       diag_help(b->diags, "a product is written with `*`: `%.*s*%s`", (int)cut, name, name + cut);
       return 1;
     }
@@ -206,7 +207,7 @@ static int advise_function(Builder *b, Name name) {
 }
 
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare) {
-  if (b->diags->list.n > DIAG_MAX) return; /* this message is not shown; to search for a near name costs as many names as there are */
+  if (b->diags->list.n > DIAG_MAX) return; /* the message will not be shown, and the search is linear in the number of names */
   const AstStmt *later = declared_in_use(b, name, effect);
   if (later && span.begin >= later->span.begin && span.end <= later->span.end) {
     diag_help(b->diags, "its own value cannot contain it");
@@ -233,7 +234,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
   known[n++] = "t";
   known[n++] = "pi";
   if (advise_product(b, name, known, n)) return;
-  int paper = strcmp(name, "dt") == 0 || strcmp(name, "T") == 0 || strcmp(name, "t") == 0; /* and not t */
+  int paper = strcmp(name, "dt") == 0 || strcmp(name, "T") == 0 || strcmp(name, "t") == 0; /* no nearest name, which could be t */
   Name near = paper ? NULL : suggest(name, known, n);
   if (!near && advise_letter(b, name)) return;
   if (near) diag_help(b->diags, "did you mean `%s`?", near);

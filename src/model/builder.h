@@ -1,4 +1,4 @@
-/* The inside of model_build, shared by model.c, resolve.c and scene.c only. */
+/* State of model_build, shared by the files of this folder; jets/ reads its scopes and declarations. */
 #ifndef LAGC_BUILDER_H
 #define LAGC_BUILDER_H
 
@@ -8,35 +8,35 @@
 
 typedef enum { TODO, DOING, DONE } Progress;
 
-/* Where an expression stands decides what may be in it. */
+/* Position of an expression in the text; each allows all names of those before it, and more. */
 typedef enum {
-  IN_CONST,    /* numbers and earlier constants */
-  IN_PARAM,    /* and earlier parameters */
-  IN_START,    /* and all parameters */
-  IN_INPUT,    /* and t */
-  IN_DYNAMICS, /* everything but q'' and z' */
-  IN_EXACT,    /* the same, and values at the start */
-  IN_OBSERVE,  /* everything */
-  IN_OUTPUT    /* and closed forms */
+  IN_CONST,    /* numbers, constants declared before */
+  IN_PARAM,    /* + parameters declared before */
+  IN_START,    /* + all parameters */
+  IN_INPUT,    /* + t */
+  IN_DYNAMICS, /* + q, q', z, inputs, lets, functions */
+  IN_EXACT,    /* + start values x(0) */
+  IN_OBSERVE,  /* + q'', z', multipliers, energy, charges */
+  IN_OUTPUT    /* + closed forms exact(q), error(q) */
 } Context;
 
-/* A number, a vector of n = 2 or 3 components with one dimension, or a rotation: the n = ROTATION numbers w, x, y, z of a unit quaternion. */
+/* Value of an expression: a number, a vector of 2 or 3 components of one dimension, or a rotation (unit quaternion w, x, y, z). */
 enum { ROTATION = 4 };
 typedef struct {
   union {
-    Expr e; /* 0 after an error: reported already */
+    Expr e; /* the number, or component 0; 0: error, already reported */
     Expr at[4];
   };
   Dim dim;
-  int bare;      /* made of numbers alone: takes on the unit of what it is given to */
-  int condition; /* true or false, no number */
-  int point;     /* 20 [degC]: a point on a scale whose zero is not that of the kelvin */
-  const char *unit; /* of a name, or a number with a unit: as it was written; otherwise NULL */
-  uint32_t n;    /* 0: a number */
-  Expr domain;   /* where the text has a real value; 0: wherever the nodes have, or not asked for (Builder.domains) */
+  int bare;      /* made of plain numbers: takes the unit of the name it is given to */
+  int condition; /* a truth value, not a number */
+  int point;     /* temperature on a scale with an offset, 20 [degC]: cannot be scaled */
+  const char *unit; /* unit as written, of a name or of a number with a unit; otherwise NULL */
+  uint32_t n;    /* shape: 0 number, 2 or 3 vector, ROTATION */
+  Expr domain;   /* condition under which the text has a real value; 0: wherever the nodes have, or unknown (Builder.domains) */
 } Value;
 
-/* What an index stands for, inside `for`, `sum`, and definitions with an index. */
+/* Current value of an index variable of `for`, `sum`, or a definition with an index. */
 typedef struct {
   Name name;
   int64_t at;
@@ -44,43 +44,43 @@ typedef struct {
 
 typedef VEC(IndexVar) IndexVars;
 
-/* A let, an observable, or a member of a family of them, evaluated when first needed; or a function. */
+/* A let, an observable (or one member of a family of them), evaluated when first needed; or a function. */
 typedef struct {
   const AstStmt *stmt;
   Name name, effect;
   Progress progress;
   Value value; /* e is 0 after an error */
-  struct Instance *instances; /* of a function: where it has been called */
-  IndexVar index[2]; /* of a member: its indices, by name where the let binds one */
-  const IndexVar *around; /* of an observable: the indices of the `for` around it */
+  struct Instance *instances; /* functions only: list of instances */
+  IndexVar index[2]; /* indices of a family member; name NULL: a number in the text */
+  const IndexVar *around; /* observables only: indices of the enclosing `for` */
   uint32_t naround;
 } Definition;
 
-/* A function's body, evaluated for arguments of certain shapes: numbers, or vectors of 2 or 3 components. Their
- * dimensions may stay open, so that each call has its own. */
+/* Instance of a user function for given argument shapes. Its body is evaluated once, with symbols as arguments and unknown
+ * dimensions; each call substitutes its own. */
 typedef struct Instance Instance;
 struct Instance {
   uint32_t function;
   Value *args;            /* made of LOCAL symbols */
   uint32_t nargs;
-  VEC(SymId) symbols;     /* of all arguments, in order; where a prime is taken of one, then all rates, then */
-  uint32_t nplain;        /* all second rates; there are nplain of each */
-  uint32_t first_unknown; /* the dimension of argument i is unknown first_unknown + i */
+  VEC(SymId) symbols;     /* all arguments' components; if the body takes a rate, followed by their rates and second rates */
+  uint32_t nplain;        /* number of arguments' components, and so of rates and of second rates */
+  uint32_t first_unknown; /* argument i has dimension dim_of_unknown(first_unknown + i) */
   int done;
   Value value;
-  Span call;              /* the first */
-  uint32_t errors;        /* there were before it was evaluated */
-  Instance *next;         /* of the same function */
+  Span call;              /* the first call */
+  uint32_t errors;        /* error count before the evaluation */
+  Instance *next;         /* next instance of the same function */
 };
 
 typedef struct {
   Name name, effect;
   Value value; /* made of numbers and pi */
-  AstId given; /* by the file, or by -D; a bare number is in `unit` */
+  AstId given; /* expression of the file, or of -D; a bare number is in `unit` */
   Unit unit;
 } Constant;
 
-/* A name without a unit of its own. */
+/* A name declared without a unit, and the unknown that stands for its dimension. */
 typedef struct {
   Name name;
   Dim dim;
@@ -91,9 +91,9 @@ typedef struct {
   Name effect;
 } Active;
 
-/* `start omega(R) = (a, b, c)` */
+/* Start value of an angular velocity, `start omega(R) = (a, b, c)`. */
 typedef struct {
-  uint32_t coord; /* R.w */
+  uint32_t coord; /* first coordinate of the rotation, R.w */
   Expr at[3];
   Span span;
 } Spin;
@@ -106,79 +106,79 @@ struct Builder {
   ExprGraph *g;
   Model *m;
   Scope scope, members;
-  Scope outputs; /* of the scene: index is the place */
-  Scope constraints; /* by name; the index is that of the first component */
-  VEC(uint32_t) rotations; /* the first coordinate of each */
-  VEC(Spin) spins; /* what the scene in hand says of their angular velocities */
-  Scope *named; /* events and expectations; NULL: none yet */
-  IndexVars index; /* of the `for` around the statement in hand */
-  VEC(struct Eval *) idle; /* evaluations to use again */
+  Scope outputs; /* the scene's outputs by label; index into Scene.outputs */
+  Scope constraints; /* constraints by name; index of the first component in Model.constraints */
+  VEC(uint32_t) rotations; /* index of each rotation's first coordinate, w */
+  VEC(Spin) spins; /* start values of angular velocities */
+  Scope *named; /* names of events, constraints and expectations; NULL: none yet */
+  IndexVars index; /* indices of the `for` around the current statement */
+  VEC(struct Eval *) idle; /* free list of evaluations */
   VEC(Expr) scratch;
-  uint32_t *start_of; /* place in the scene's starts, from 1, by SymId */
-  Expr *at_start, *from_start; /* for closed forms: see resolve_exact.c */
+  uint32_t *start_of; /* [SymId] index into Scene.starts + 1; 0: no start value */
+  Expr *at_start, *from_start; /* [nbefore], [nstart]: substitution q -> q(0), and back (resolve_exact.c) */
   uint32_t nbefore, nstart;
-  Expr *seeds; /* what each symbol becomes under d/dt, for nseeds symbols; 0: a number */
+  Expr *seeds; /* [nseeds] time derivative of each symbol; 0: constant */
   uint32_t nseeds;
-  ExprMap rates; /* the time derivatives of definitions */
-  EntKind needed_kind; /* the definition that an evaluation waits for */
+  ExprMap rates; /* time derivatives of definition nodes, memoised */
+  EntKind needed_kind; /* kind and index of the definition that an evaluation waits for */
   uint32_t needed;
-  VEC(Active) active; /* the statements that this scene uses */
-  VEC(Definition) lets, functions, observes; /* observes: one for each in the model */
+  VEC(Active) active; /* statements that the scene uses */
+  VEC(Definition) lets, functions, observes; /* observes[i] belongs to Model.observes[i] */
   VEC(Instance *) instances;
   VEC(Constant) constants;
   Dims *dims;
-  VEC(Dim) dim_of; /* by SymId */
-  Dim energy;      /* of L */
+  VEC(Dim) dim_of; /* [SymId] */
+  Dim energy;      /* dimension of L */
   VEC(Undeclared) undeclared;
   const Define *defines;
   uint32_t ndefines;
-  const AstStmt **chain; /* the scene and those it is like, oldest first; NULL-terminated */
-  int is_variant;  /* effects in use are ModelChoice.only */
-  int unitless;    /* nothing is measured in a unit: nothing is checked */
-  Name group;      /* the parameter of the symmetry in hand, or NULL; */
+  const AstStmt **chain; /* the scene after its `like` ancestors, oldest first; NULL-terminated */
+  int is_variant;  /* ModelChoice.only is given */
+  int unitless;    /* no name of the model has a unit: dimensions are not checked */
+  Name group;      /* group parameter of the symmetry being read, or NULL */
   SymId group_symbol;
-  AstId stand_in;  /* a node that stands for `stands_for` (see model_reresolve), or 0 */
+  AstId stand_in;  /* node replaced by `stands_for` (model_reresolve); 0: none */
   Expr stands_for;
-  int domains;     /* values know their domains: for what is claimed of them */
+  int domains;     /* compute Value.domain, for claims */
 };
 
-/* The value of an expression; errors are reported and give e = 0. */
+/* Evaluates an expression of the text; after an error, reported, the value has e = 0. */
 Value resolve(Builder *b, AstId id, Context where, Name effect);
 
-/* A value given to something with a unit: a bare number is multiplied by that unit, anything else
- * must have its dimension. 0 after an error. resolve_in resolves it first. */
+/* Value assigned to a name with a unit: a bare number is multiplied by the unit, any other value must have its
+ * dimension. 0 after an error. value_in refuses vectors; resolve_in resolves the expression first. */
 Value values_in(Builder *b, Value v, Span span, const Unit *unit);
 Expr value_in(Builder *b, Value v, Span span, const Unit *unit);
 Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *unit);
 
-/* The value of member `at` of a family (of all its components where it is a family of vectors); primes
- * are taken of it. Indices must be in range: see index_in_range, which reports where they are not. */
+/* Value of member `at` of a family (a vector where members are vectors), differentiated `primes` times by t.
+ * Indices must be in range: index_in_range reports where they are not. */
 Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t primes, Span span, Context where);
 int index_in_range(Builder *b, const Entity *e, const int64_t *at, Span span);
 
-/* Position of a member, in its model's array, behind the family's first. */
+/* Offset of a member from the family's first scalar, in the model's array. */
 uint32_t member_offset(const Entity *e, const int64_t *at);
 
-/* The next member, row by row; 0 after the last. */
+/* Advances at[] to the next member, row by row; 0 after the last. */
 int next_member(const Entity *e, int64_t *at);
 
-/* "th[2]", "u[2,1]" */
+/* Name of a family member: "th[2]", "u[2,1]". */
 Name member_name(Builder *b, Name name, const int64_t *at, uint32_t ndims);
 
-/* The entity of member `at` where members are declared one by one, or NULL. */
+/* Entity of member `at` of a family of lets or observables, or NULL. */
 const Entity *find_member(const Builder *b, const Entity *e, const int64_t *at);
 
-/* A whole number known when compiling: an index, or the end of a range. 0, reported, when it is none. */
+/* Evaluates an index or the end of a range to an integer; 0, reported, when the value is not an integer constant. */
 int resolve_whole(Builder *b, AstId id, Name effect, int64_t *out);
 
-/* Whether a range is short enough to be written out; reported where it is not. */
+/* 1 if a range has at most RANGE_MAX members; 0, reported, if not. */
 int range_fits(Builder *b, int64_t from, int64_t to, Span span);
 
-/* The ends of a range; at most RANGE_MAX members. */
+/* Evaluates the ends of a range of at most RANGE_MAX members; 0, reported, on error. */
 enum { RANGE_MAX = 1000000 };
 int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *from, int64_t *to);
 
-/* The indices of a place, `[2]` or `[i in 1..N]`, as ranges (from == to where it is one number). */
+/* Index list, `[2]` or `[i in 1..N, 3]`, as ranges; lo == hi for a single number. */
 typedef struct {
   uint32_t n;
   Name name[2]; /* NULL: a number */
@@ -186,42 +186,42 @@ typedef struct {
 } IndexRange;
 int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out);
 
-/* Families have no third index. */
+/* Reports a third index: families have one or two. */
 void report_many_indices(Builder *b, Span span);
 
-/* domain.c: both conditions. */
+/* domain.c: conjunction of two conditions, each 0 where it always holds. */
 Expr domain_and(const Builder *b, Expr p, Expr q);
 
-/* The letter of component k of n. */
+/* Letter of component k of a value of n components: xyz, or wxyz for a rotation. */
 static inline char part_letter(uint32_t n, uint32_t k) { return "wxyz"[k + (n != ROTATION)]; }
 
-/* "a number", "a vector of 3 components", "a rotation" */
+/* Shape for messages: "a number", "a vector of 3 components", "a rotation". */
 const char *shape_text(const Builder *b, uint32_t n);
 
-/* Calls fn for each statement that `for` around it makes of st, with b->index set. */
+/* Calls fn for a statement, or, where st is a `for`, for its body once per index value, with b->index set. */
 typedef void StatementFn(Builder *b, const AstStmt *st, Name effect, void *data);
 void each_statement(Builder *b, const AstStmt *st, Name effect, StatementFn *fn, void *data);
 
-/* What a statement names: `drag.c`, `m[i in 1..N]`, `r[2].x'`. */
+/* Left side of a statement, taken apart: `drag.c`, `m[i in 1..N]`, `r[2].x'`. */
 typedef struct {
-  AstId stem;      /* the name, or effect.name */
+  AstId stem;      /* name, or effect.name */
   uint32_t primes;
-  int part;        /* the component: 0, 1, 2, 3 for x, y, z, w, 4 where there is none of that name; -1: all there are */
+  int part;        /* component: 0, 1, 2, 3 for x, y, z, w; 4 for any other letter; -1: all components */
   AstId indices;   /* 0: the whole family */
-  int wrong;       /* it is not of this form */
+  int wrong;       /* the expression does not have this form */
 } Target;
 Target read_target(const Builder *b, AstId id);
 
-/* The place of component `part` of a target among n; -1: there is none. */
+/* Index of Target.part among the n components of a value; -1: no such component. */
 static inline int part_place(uint32_t n, int part) {
   int place = n == ROTATION ? (part + 1) % ROTATION : part;
   return part < 0 || part > 3 || place >= (int)n ? -1 : place;
 }
 
-/* The list that gives a family its values, and the unit behind it: `{1, 3} [kg]`. NULL: it is no list. */
+/* The list in `{1, 3} [kg]`, and its unit or NULL. Returns NULL where the expression is not a list. */
 const AstExpr *list_behind(const Builder *b, AstId id, const AstUnit **unit);
 
-/* An element of a list, and the unit behind that list, or NULL. */
+/* Element of a list, and the unit written after the list, or NULL. */
 typedef struct {
   AstId id;
   const AstUnit *behind;
@@ -229,81 +229,81 @@ typedef struct {
 
 typedef VEC(Element) Elements;
 
-/* The elements of a list for the members in r, of the family `name`, row by row; a list for two indices may
- * be a list of its rows. 0, reported, when there are not as many as members. */
+/* Elements of a list for the members r of family `name`, row by row; for two indices the list may be a list of rows.
+ * 0, reported, when the number of elements differs from that of members. */
 int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out);
 Value element_value(Builder *b, const Element *x, Context where, Name effect);
 
-/* All members. */
+/* Index range of a whole family. */
 IndexRange entity_range(const Entity *e);
 
-/* Gives what the place names, of entity e, its values: `give` is called for each scalar, with its place
- * in the model's array. `unit` tells in what unit a scalar takes bare numbers. */
+/* Assigns values to the members and components of entity e that p names: calls `give` for each scalar, with its index in
+ * the model's array. `unit` returns the unit in which a scalar takes bare numbers. */
 typedef struct {
-  Context where; /* of what is given */
+  Context where; /* names allowed in the value */
   const Unit *(*unit)(Builder *b, uint32_t scalar, void *data);
   void (*give)(Builder *b, uint32_t scalar, Expr value, Span span, void *data);
   void *data;
-  Name effect;   /* that the statement stands in, or NULL */
+  Name effect;   /* the effect around the statement, or NULL */
 } Giver;
 void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstId rhs, const Giver *giver);
 
-/* resolve_exact.c: gives a coordinate, a velocity or a state its closed form; that of the symbol e, NULL where it has
- * none; and how far the motion is from it, for an angle between -pi and pi. */
+/* resolve_exact.c: sets the closed form of a coordinate, velocity or state; finds the closed form of symbol e, or NULL;
+ * the deviation of the motion from it (for an angle within -pi..pi). */
 void give_exact(Builder *b, SymId target, const Unit *unit, int periodic, Expr value, Span span);
 const Exact *find_exact(const Builder *b, Expr e);
 Expr exact_error(Builder *b, const Exact *x);
 
-/* effect.c: what to say where no scene, or effect, has that name. */
+/* effect.c: reports an unknown scene or effect, with the nearest name. */
 void report_unnamed(const Ast *ast, AstStmtKind kind, Span span, const char *name);
 
-/* Whether the effect is in use; a scene's `use` statements; an effect turned on together with what it requires; whether what an effect
- * in use requires and excludes is so. */
+/* Effects in use: tests for one; adds those of a scene's `use` statements; adds one with all effects it requires; reports
+ * unmet `requires` and violated `excludes` of one. */
 int uses_effect(const Builder *b, Name effect);
 int is_use_none(const AstStmt *st);
 void collect_uses(Builder *b, const AstStmt *scene);
 void use_with_needs(Builder *b, Name effect);
 void check_effect_needs(Builder *b, const AstStmt *effect);
-/* Whether a value speaks of an effect that is off. */
+/* 1 if an expression contains a name of an effect that is off. */
 int mentions_off(const Builder *b, AstId value);
 
-/* output.c: adds an output to the scene, whatever others are called; its place. */
+/* output.c: appends an output to the scene, even if its label exists; its index in Scene.outputs. */
 int push_output(Builder *b, const Output *o);
 
 void drop_outputs(Builder *b);
 
-/* Adds what an expression puts out to the scene's outputs. The place of the one number that
- * it is; -1 when it is more, or after an error. */
+/* Adds an expression to the scene's outputs (all components and members). Index of the output if the expression is one
+ * number; -1 for more, or after an error. */
 int add_outputs(Builder *b, AstId id);
 
-/* Adds error(q) for what has the closed form x; its place. */
+/* Adds the output error(q) for closed form x; its index. */
 int add_error(Builder *b, const Exact *x, Span span);
 
-/* The same as add_outputs under a name of the caller's choice. */
+/* add_outputs, with `label` as the column's name. */
 int add_outputs_as(Builder *b, AstId id, Name label);
 
-/* monitor.c: `monitor q limit`. */
+/* monitor.c: reads `monitor q limit`. */
 void set_monitor(Builder *b, const AstStmt *st);
 
-/* table.c: gives input `index` its formula, or the table whose file is named; stem: its name without its effect. */
+/* input_table.c: sets the formula or, where rhs is a file name, the table of input `index`; stem: its name without the effect. */
 void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
 
-/* declare.c: the declarations of a statement. */
+/* declare.c: enters the names that a statement declares into scope and model; a StatementFn. */
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data);
 
 /* Declares a name; 0, with a message, when it is taken. */
 int declare_entity(Builder *b, const AstStmt *st, Entity e);
 
-/* The entity of a family, a vector, or a plain name, not declared yet; 0 after an error. `index` is where
- * its first scalar will stand. read_type gives `parts`. */
+/* Fills in the entity for a plain name, a vector or a family, without declaring it; 0 after an error. `index` is that of
+ * its first scalar; `parts` comes from read_type. */
 int read_family(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index, uint8_t parts, Entity *e);
 int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts);
 
-/* "th", "th[2]", "r.x", "r[2].x": component k of member `at`. */
+/* Name of component k of member `at`: "th", "th[2]", "r.x", "r[2].x". */
 Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k);
 
-/* fix.c: fixes the parameters that the words name, with the values that the model has for them, and places the others. Mistakes are
- * reported. words NULL: none is fixed. */
+/* fixed_params.c: replaces the parameters listed in `words` (NULL: none) by their values, and numbers the remaining ones (Param.place).
+ * Mistakes are reported. */
 void fix_params(Builder *b, const char *words);
 
 /* declare_param.c */
@@ -311,145 +311,143 @@ void declare_param(Builder *b, const AstStmt *st, Name effect);
 void declare_const(Builder *b, const AstStmt *st, Name effect);
 SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSign sign, Dim dim);
 
-/* A number known now (spans, steps, tolerances); NAN after an error. */
+/* Value of a constant expression (span, step, tolerance) in `unit`; NAN after an error. `what` names it in messages. */
 double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what);
-/* The same, and *digits: all that base/digits.h has of it, or NULL. */
+/* resolve_number, with *digits as in base/digits.h, or NULL. */
 double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits);
-/* The digits of an expression that is a number times a power of pi; NULL of others. */
+/* Decimal digits of a number times pi^-1, pi^0 or pi^1; NULL for other expressions. */
 const char *expression_digits(Builder *b, Expr e);
 
-/* Evaluates a let, or an observable, that nothing has needed so far. */
+/* Evaluates a let or an observable, unless it has a value already. */
 void resolve_let(Builder *b, uint32_t index);
 void resolve_observe(Builder *b, uint32_t index);
 
-/* model.c: puts the value of an observable into the model, checks its unit. */
+/* model.c: stores the value of an observable in the model, and checks its unit. */
 void finish_observe(Builder *b, uint32_t index, Value v);
 
-/* Checks a function that nothing calls: there must be shapes of arguments that make sense of its body. */
+/* Checks a function that is never called: some choice of argument shapes must make its body valid. */
 void check_uncalled(Builder *b, uint32_t function);
 
-/* The entity a name stands for; unknown and ambiguous names are reported. `declare` is the statement
- * that would declare what is wanted ("state"), or NULL where it may be anything. */
+/* Entity of a name; unknown and ambiguous names are reported. `declare` is the kind of declaration to suggest ("state"),
+ * or NULL for any. */
 const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const char *declare);
 
 /* Warns when a unit is also the name of a constant: `th [N]` is th in newtons. */
 void warn_unit_is_constant(Builder *b, const AstUnit *u);
 
-/* Reports a value that is not of the sign that its parameter is declared to have. */
+/* Reports a value that contradicts its parameter's declared sign. */
 void check_sign(Builder *b, const Param *p, Span span);
 
-/* Warns of parameters whose value, made of others, is not of the sign that they are declared to have: a run refuses them. */
+/* Warns of parameters whose value, computed from others, contradicts their declared sign: a run refuses them. */
 void warn_signs(Builder *b);
 
-/* advice.c: adds a way out to the message about an unknown name, or an unknown `effect.name`. */
+/* name_hints.c: adds a hint to the message about an unknown name, or an unknown `effect.name`. */
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare);
 void advise_unknown_member(Builder *b, Name effect, Name name);
-/* The same of a function that other languages, or books, have; 0 when it is none. */
+/* Adds the equivalent of a function known from other languages or books; 0: the name is not known. */
 int advise_unknown_function(Builder *b, Name name);
 #define FOREIGN_CHOICES "piecewise where ifelse iif cases select cond"
 
-/* The active statement that declares the name, before or after; NULL when there is none. */
+/* The active statement that declares a name, anywhere in the file; or NULL. */
 const AstStmt *declared_in_use(const Builder *b, Name name, Name effect);
 
-/* An effect that declares the name, in use or not; and whether this one does (NULL: no). */
+/* The first effect that declares a name, in use or not, or NULL; whether a given effect (NULL: no) declares it. */
 const AstStmt *declaring_effect(const Builder *b, Name name);
 int effect_declares(const AstStmt *effect, Name name);
 
-/* "not yet: what" */
+/* Reports "not yet: what". */
 void not_yet(Builder *b, Span span, const char *what);
 
-/* The source text of an expression on one line, without comments; and the same with its middle left
- * out where it is long. */
+/* Source text of an expression (of a span) on one line, without comments; ast_short leaves out the middle of a long one. */
 const char *ast_text(const Builder *b, AstId id);
 const char *source_text(const Builder *b, Span s);
 const char *ast_short(const Builder *b, AstId id);
 Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
-/* The unit that a statement gives its name. Without one its dimension is unknown, and found from the
- * equations where they tell; that is once for all members of a family. */
+/* Unit of a declaration. Without one the dimension is a new unknown, shared by all members of a family and inferred from
+ * the equations. */
 Unit declared_unit(Builder *b, const AstStmt *st, Name effect);
 
-/* output.c: the unit of what an entity declares, or NULL. */
+/* output.c: declared unit of an entity, or NULL. */
 const Unit *entity_unit(const Builder *b, const Entity *e);
 
 /* check_units.c */
 
-/* The unit of a rate: per second. Its zero is zero. */
+/* Unit of a rate, u/s, and of a difference; both without offset. */
 Unit unit_per_second(const Builder *b, const Unit *u);
 Unit unit_of_difference(const Unit *u);
 
 int is_zero(const Builder *b, const Value *v);
 
-/* Whether two values can be added: they have one dimension, or can be given it; zero is zero in every unit. */
+/* 1 if two values can be added: equal dimensions, or unknowns chosen so; zero fits every dimension. */
 int dims_agree(Builder *b, const Value *x, const Value *y, Span why);
 
-/* For messages: the unit of a value as it was written, or that of its dimension; "in [m]", "a pure number". */
+/* For messages: unit of a value, as written or from its dimension; "in [m]" or "a pure number". */
 const char *shown_unit(const Builder *b, const Value *v);
 const char *in_unit(const Builder *b, const char *unit);
 const char *in_dim(const Builder *b, Dim d);
 
-/* Adds to a message about two dimensions (DIM_ANY: about one) where a name without a unit in them has its own
- * from, or that it does not matter which one it has. */
+/* Adds to a message about dimensions x and y (y DIM_ANY: x alone) where the dimension of a name without unit was inferred,
+ * or that no choice of unit would help. */
 void explain_dims(Builder *b, Dim x, Dim y);
 
-/* Puts the units that were found into the model. */
+/* Replaces missing units in the model by the inferred ones. */
 void settle_units(Builder *b);
 
 /* rotation.c */
 
-/* c = 0 for the unit quaternion whose first coordinate is given. */
+/* Adds the constraint q.q = 1 for the quaternion whose first coordinate is `coord`. */
 void hold_rotation(Builder *b, Name name, uint32_t coord, Span span);
 
-/* What L gains: a term in the rates that no motion has, so that the mass matrix is regular in all directions. */
+/* Sets Model.across: a kinetic term in the rate of |q|, which no motion has, so that the mass matrix is regular. */
 void add_rotation_inertia(Builder *b);
 
-/* The rates of a rotation q that turns at w, in its own frame; and back. */
+/* Rates q' = q (0, w)/2 from the angular velocity w in the body frame; and w from the rates. */
 Value rotation_rates(Builder *b, const Value *q, const Expr *w);
 void rotation_spin(Builder *b, const Value *q, const Value *rates, Expr *w);
 
-/* The coordinate of a rotation, R.w, whose angular velocity a place speaks of, `omega(R)`; -1: it speaks of none. Wrong ones are reported, -2. */
+/* First coordinate (R.w) of the rotation in a target `omega(R)`; -1: the target is not a call; -2: error, reported. */
 int spin_target(Builder *b, AstId place, Name effect);
 
 
-/* The force on a rotation is a torque in its own frame: what it is along the four components. */
+/* Generalised force along the four quaternion coordinates of a torque in the body frame. */
 Value torque_force(Builder *b, const Value *q, const Value *torque);
 
-/* constraint.c: adds what a constraint says to the model; the multiplier of the constraint that an argument names, FAILED (reported)
- * where there is none. */
+/* constraint.c: adds a constraint statement, or a contact statement, to the model. */
 void add_constraint(Builder *b, const AstStmt *st, Name effect);
 void add_contact(Builder *b, const AstStmt *st, Name effect);
 
-/* symmetry.c: declares a symmetry, and its charge; reads what it does, after L is known. */
+/* symmetry.c: declares a symmetry and its charge; reads its maps, once L is known. */
 void declare_symmetry(Builder *b, const AstStmt *st, Name effect);
 void add_symmetry(Builder *b, const AstStmt *st, Name effect);
 
-/* twice.c: names of scenes, effects, events and expectations, each declared once, and what a scene or an event says, said once;
- * reported where they are not. */
+/* redeclarations.c: reports repeated names of scenes, effects, events, constraints and expectations, and settings that a scene or
+ * event gives twice. */
 void check_names_once(Builder *b, const FileIndex *file);
 void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span);
 void check_said_once(Builder *b, const AstStmt *block);
 
-/* event.c: an event, and a section, of the model; a value given to a symbol: a coordinate, a state, or the rate of one, declared in `unit`;
- * reports shapes that differ. */
+/* event.c: adds an event, or a section; resolves a value assigned to a coordinate, a state, or the rate of one, whose name is
+ * declared in `unit`; reports different shapes. */
 void add_event(Builder *b, const AstStmt *st, Name effect);
 void add_section(Builder *b, const Section *s);
 Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit);
 void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right);
 
-/* start.c: `start q = ...`, `exact q = ...`; what the scene says of rotations, when all of it is said (those that it does not set are no
- * turn at all); the unit of angular velocities. */
+/* start_values.c: reads `start q = ...`, `exact q = ...`; completes the starts of rotations after all statements of the scene
+ * (default: the identity); rad/s. */
 void set_motion(Builder *b, const AstStmt *st);
 void settle_rotations(Builder *b);
 Unit spin_unit(const Builder *b);
 
-/* advice.c: there is no `effect.name`. */
+/* name_hints.c: reports an unknown `effect.name`. */
 void report_no_member(Builder *b, Span span, Name effect, Name name);
 
-/* scene.c: which statements are active (those of the effect `also` too), and the scene's contents. */
+/* scene.c: selects the active statements (Builder.active); then reads the scene's statements into Model.scene. */
 void scene_select(Builder *b, const ModelChoice *choice);
 void scene_build(Builder *b, const ModelChoice *choice);
 
-/* method.c: the scene's method. */
+/* method.c: reads a `method` statement. */
 void scene_method(Builder *b, const AstStmt *st);
 
 #endif

@@ -1,4 +1,4 @@
-/* Dimensions of values: what may be added, and what the messages say where it may not; units that were found. */
+/* Dimension checks of operands, their messages, offsets of degC, and inferred units. Zero fits every dimension. */
 #include <string.h>
 
 #include "model/resolve_impl.h"
@@ -29,7 +29,7 @@ void explain_dims(Builder *b, Dim x, Dim y) {
   diag_also(b->diags, c.why, "here `%s`, which is declared without a unit, is %s", c.name, in_dim(b, c.is));
 }
 
-/* A bare number gets the unit to write. */
+/* Reports operands of different dimensions; for a bare number, the unit to write. */
 static void report_mismatch(Eval *ev, Span span, AstId x, AstId y) {
   Builder *b = ev->b;
   AstId bare = value_of(ev, x)->bare ? x : value_of(ev, y)->bare ? y : 0, other = bare == x ? y : x;
@@ -45,7 +45,7 @@ static void report_mismatch(Eval *ev, Span span, AstId x, AstId y) {
   explain_dims(b, v->dim, w->dim);
 }
 
-/* th - 90, with th in degrees: both are pure numbers, but what is meant is hardly 90 rad. */
+/* Warns of th - 90 with th in degrees: the dimensions agree, but 90 would be radians. */
 static void warn_angle(Eval *ev, AstId angle, AstId number) {
   Builder *b = ev->b;
   const Value *v = value_of(ev, angle), *w = value_of(ev, number);
@@ -114,7 +114,7 @@ Unit unit_per_second(const Builder *b, const Unit *u) {
   rate.offset = num_int(0);
   if (!u->text[0]) return rate;
   size_t n = strlen(u->text);
-  const char *stem = num_is_zero(u->offset) ? u->text : "K"; /* a degree is as large as a kelvin */
+  const char *stem = num_is_zero(u->offset) ? u->text : "K"; /* 1 degC of difference is 1 K */
   const char *power = n > 2 ? strstr(stem, "/s") : NULL;
   rate.text = power && !power[2] ? arena_printf(b->arena, "%s^2", stem) : arena_printf(b->arena, "%s/s", stem);
   return rate;

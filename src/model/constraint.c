@@ -1,14 +1,15 @@
-/* Constraints and contacts: what they demand becomes c = 0 in the model, each with a multiplier that outputs can name. */
+/* Constraints and contacts: each becomes c = 0 in the model, left side minus right side, with a multiplier that outputs can name.
+ * A contact is closed*gap = 0 plus two events: impact (the gap falls to 0) and release (the multiplier does). */
 #include "base/suggest.h"
 #include "model/resolve_impl.h"
 
-/* The dimension of lambda: lambda c is an energy, or lambda r a power. */
+/* Dimension of lambda: lambda c is an energy; for velocity constraints a power. */
 static Dim multiplier_dim(Builder *b, Dim dim, int holonomic) {
   Dim energy = holonomic ? b->energy : dim_per_second(b->dims, b->energy);
   return dim_div(b->dims, energy, dim);
 }
 
-/* What an equation of motion cannot follow. */
+/* Reports constraints that contain states or inputs; 1 if refused. */
 static int is_refused(Builder *b, Expr c, const char *what, Name name, Span span) {
   unsigned kinds = expr_kinds(b->g, c);
   if (kinds & 1u << SYM_STATE) {
@@ -33,7 +34,7 @@ void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span) {
   vec_push(b->arena, &m->constraints, one);
 }
 
-/* A bare number takes the dimension of the other side. */
+/* Shapes and dimensions of both sides; 0, reported, if they differ. The hint gives a bare number its unit. */
 static int sides_agree(Builder *b, const AstStmt *st, const Value *l, const Value *r) {
   if (l->n != r->n) {
     diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, l->n), shape_text(b, r->n));
@@ -72,7 +73,7 @@ void add_constraint(Builder *b, const AstStmt *st, Name effect) {
 
 static Expr symbol_node(const Builder *b, SymId s) { return expr_symbol(b->g, s)->node; }
 
-/* The input that says whether the gap is closed. Only the runtime sets it. */
+/* Adds the input "NAME.closed", which only the runtime sets. */
 static SymId add_switch(Builder *b, Name name, Span span) {
   Model *m = b->m;
   Input in = {.name = intern_printf(b, "%s.closed", name), .span = span, .value = expr_int(b->g, 0)};
@@ -82,7 +83,7 @@ static SymId add_switch(Builder *b, Name name, Span span) {
   return in.sym;
 }
 
-/* An event where `value` falls through zero while the switch is on (or off), and nothing otherwise. */
+/* Adds an event: `value` falls through zero while the contact is closed (on = 1) or open (on = 0). */
 static uint32_t add_switched_event(Builder *b, const Contact *c, const char *suffix, int on, Expr value, Span span) {
   ExprGraph *g = b->g;
   Expr closed = expr_fn2(g, EX_LT, expr_num(g, num_ratio(1, 2)), symbol_node(b, c->closed)), one = expr_int(g, 1);
@@ -133,7 +134,7 @@ void add_contact(Builder *b, const AstStmt *st, Name effect) {
 
 /* --- lambda(NAME) --- */
 
-/* The name of a constraint as an argument says it: rod, rod[2], drag.rod. NULL: it is none, or an index has no value. */
+/* Name of a constraint in an argument: rod, rod[2], drag.rod. NULL: not a name, or an index without value. */
 static Name named_constraint(Eval *ev, AstId id, Name *effect) {
   Builder *b = ev->b;
   const AstExpr *x = ast_expr(b->ast, id);

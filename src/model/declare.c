@@ -1,4 +1,5 @@
-/* Declarations: names, and what they stand for in the arrays of a Model, in file order. */
+/* Declarations: each name enters the scope, and coordinates, states, inputs, observables their arrays of the Model, in file order.
+ * Lets and functions are only recorded: resolve.c evaluates them when needed. Parameters and constants: declare_param.c. */
 #include <stdlib.h>
 
 #include "model/builder.h"
@@ -27,13 +28,13 @@ static int declare_name(Builder *b, const AstStmt *st, Name effect, EntKind kind
   return declare_entity(b, st, (Entity){.kind = kind, .index = index, .name = st->name, .effect = effect, .span = st->name_span});
 }
 
-/* Declares a name so that its uses are not unknown, when the declaration itself is refused. */
+/* Declares the name of a refused declaration, so that its uses are not reported as unknown. */
 static void declare_refused(Builder *b, const AstStmt *st, Name effect) {
   if (!scope_own(&b->scope, st->name, effect))
     scope_add(&b->scope, (Entity){.kind = ENT_NONE, .name = st->name, .effect = effect, .span = st->name_span});
 }
 
-/* `coord q[m]`: the index is made of units, and no constant is among them. */
+/* 1 for `coord q[m]`: the index contains names of units, and no constant. */
 static int dims_are_units(Builder *b, const AstStmt *st) {
   const AstExpr *x = ast_expr(b->ast, st->dims);
   uint32_t names = 0;
@@ -48,7 +49,7 @@ static int dims_are_units(Builder *b, const AstStmt *st) {
   return names > 0 && !x->next;
 }
 
-/* White space before the bracket would have made it a unit. 0, reported, when that was meant. */
+/* Brackets after a space are a unit, else a size: 0, reported, where a unit was written without the space. */
 static int check_brackets(Builder *b, const AstStmt *st, Name effect) {
   if (!st->dims) {
     if (st->unit.n && !(st->kind == STMT_PARAM && st->unit.span.begin > ast_expr(b->ast, st->rhs)->span.begin))
@@ -63,7 +64,7 @@ static int check_brackets(Builder *b, const AstStmt *st, Name effect) {
   return 0;
 }
 
-/* The sizes of a family, 1..N each, into e. */
+/* Reads the sizes of a family into e, as index ranges 1..N. */
 static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
   uint64_t all = e->parts ? e->parts : 1;
   for (AstId i = st->dims; i; i = ast_expr(b->ast, i)->next) {
@@ -126,7 +127,7 @@ static void report_rotation(Builder *b, const AstStmt *st) {
   }
 }
 
-/* 0, reported, when the statement asks for a type of which its kind has no values. */
+/* Number of components of a declared type (vec2, vec3, rotation); 0, reported, where the kind of statement cannot have it. */
 int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts) {
   int two = st->type && strcmp(st->type, "vec2") == 0, three = st->type && strcmp(st->type, "vec3") == 0;
   *parts = two ? 2 : three ? 3 : 0;
@@ -140,7 +141,7 @@ int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts) {
 
 static int declares_motion(const AstStmt *st) { return st->kind == STMT_COORD || st->kind == STMT_STATE; }
 
-/* Coordinates and states are called by their name alone, unless the model, or another effect in use, has such a name too. */
+/* Name of a coordinate or state in outputs: "EFFECT.NAME" if the model or another effect in use declares NAME as well. */
 static Name plain_name(Builder *b, const AstStmt *st, Name effect) {
   if (!effect) return st->name;
   for (uint32_t i = 0; i < b->active.n; i++) {
@@ -171,14 +172,14 @@ static void add_coord(Builder *b, const AstStmt *st, Name name, Unit unit) {
   vec_push(b->arena, &m->coords, c);
 }
 
-/* What is periodic is so by 2 pi. */
+/* Periodic coordinates have period 2 pi: they must be angles. */
 static void check_angle(Builder *b, const AstStmt *st, const Unit *unit) {
   if (dim_equate(b->dims, unit->dim, DIM_NONE, st->name_span)) return;
   diag_error(b->diags, st->name_span, "`%s` is periodic, and in [%s]: no angle", st->name, unit->text);
   diag_help(b->diags, "angles are in [rad], [deg] or [rev]; of other coordinates leave `periodic` out");
 }
 
-/* Coordinates and states. Where L is linear in all velocities a coordinate is a state. */
+/* Declares coordinates and states. Where L is linear in all velocities, coordinates are stored as states. */
 static void declare_motion(Builder *b, const AstStmt *st, Name effect) {
   Entity e;
   uint8_t parts;
@@ -209,7 +210,7 @@ static void declare_input(Builder *b, const AstStmt *st, Name effect) {
 
 /* --- families whose members are declared one by one --- */
 
-/* The family's own entity, made when its first member is declared; 0, reported, when the name is taken. */
+/* Index + 1 of the family's entity, made when its first member is declared; 0, reported, when the name is taken. */
 static uint32_t family_of(Builder *b, const AstStmt *st, Name effect, EntKind kind, const IndexRange *r) {
   const Entity *old = scope_own(&b->scope, st->name, effect);
   if (old && old->kind == ENT_NONE) return 0;
@@ -227,7 +228,7 @@ static uint32_t family_of(Builder *b, const AstStmt *st, Name effect, EntKind ki
   return declare_entity(b, st, e) ? b->scope.all.n : 0;
 }
 
-/* Declares members of kind and index; the entity of the family widens to contain it. */
+/* Declares one member of a family and widens the family's index range to contain it. */
 static int declare_member(Builder *b, const AstStmt *st, uint32_t family, const int64_t *at, uint32_t index, Name *name) {
   Entity *f = &b->scope.all.at[family - 1];
   *name = member_name(b, f->name, at, f->ndims);
@@ -281,7 +282,7 @@ static void declare_let(Builder *b, const AstStmt *st, Name effect) {
   vec_push(b->arena, &b->lets, ((Definition){.stmt = st, .name = st->name, .effect = effect}));
 }
 
-/* A name that the language has a meaning for would have two, and arguments of one name one. */
+/* Reports functions called like built-in ones, and arguments of equal names. */
 static void check_function(Builder *b, const AstStmt *st) {
   for (size_t i = 0; function_name(i); i++)
     if (strcmp(function_name(i), st->name) == 0) {

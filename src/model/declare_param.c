@@ -1,4 +1,4 @@
-/* Parameters and constants: declarations that have a value at once. */
+/* Declarations of parameters and constants, whose values are evaluated at once; declared signs; -D definitions. */
 #include "model/resolve_impl.h"
 #include "sym/eval.h"
 
@@ -33,7 +33,7 @@ void warn_signs(Builder *b) {
   }
 }
 
-/* The value must be of the sign that the declaration states, or the simplifier would be misled. */
+/* The value must have the declared sign: the simplifier relies on it. */
 void check_sign(Builder *b, const Param *p, Span span) {
   if (p->sign == SIGN_ANY || !p->value) return;
   ExprSign s = expr_sign(b->g, p->value);
@@ -42,13 +42,13 @@ void check_sign(Builder *b, const Param *p, Span span) {
   if (wrong) diag_error(b->diags, span, "`%s` is declared %s, and this value is not", p->name, sign_texts[p->sign]);
 }
 
-/* A parameter that is being declared. */
+/* The parameter declaration in progress. */
 typedef struct {
   Builder *b;
   const AstStmt *st;
   Entity e;
   Unit unit;
-  Name stem; /* drag.c */
+  Name stem; /* name with its effect: drag.c */
 } Declared;
 
 static void add_param(const Declared *d, Name name, Value v, Span span) {
@@ -61,7 +61,7 @@ static void add_param(const Declared *d, Name name, Value v, Span span) {
   vec_push(b->arena, &b->m->params, p);
 }
 
-/* One member, with the value v: all its components. v.e = 0: an error, reported. */
+/* Adds all components of one member. v.e = 0: error, already reported. */
 static void add_member(const Declared *d, const int64_t *at, Value v, Span span) {
   Builder *b = d->b;
   if (v.e && v.n != d->e.parts) {
@@ -77,13 +77,13 @@ static void add_member(const Declared *d, const int64_t *at, Value v, Span span)
   }
 }
 
-/* The values of a parameter's members, row by row; one for all where it is no list. */
+/* Values of a parameter's members, row by row; a single one is for all members. */
 typedef struct {
   VEC(Value) at;
   VEC(Span) spans;
 } ParamValues;
 
-/* 0, reported, when a list does not fit. */
+/* Evaluates the right side; 0, reported, when a list does not fit the family. */
 static int read_values(Declared *d, Name effect, ParamValues *values) {
   Builder *b = d->b;
   const AstUnit *behind;
@@ -100,14 +100,14 @@ static int read_values(Declared *d, Name effect, ParamValues *values) {
   return 1;
 }
 
-/* Without a unit of its own a parameter takes its value's; a bare number tells nothing. */
+/* A parameter without a unit takes that of its value; a bare number leaves it to inference. */
 static Unit param_unit(Builder *b, const AstStmt *st, Name effect, const ParamValues *values) {
   const Value *v = values->at.n ? &values->at.at[0] : NULL;
   if (!st->unit.n && v && v->e && !v->bare && v->dim != DIM_ANY) return unit_of_dim(b->dims, v->dim);
   return declared_unit(b, st, effect);
 }
 
-/* Its own name is not in scope in its value. */
+/* The name is declared after its value is evaluated, so the value cannot contain it. */
 void declare_param(Builder *b, const AstStmt *st, Name effect) {
   Declared d = {.b = b, .st = st, .stem = effect ? intern_printf(b, "%s.%s", effect, st->name) : st->name};
   ParamValues values = {0};
@@ -129,7 +129,7 @@ void declare_param(Builder *b, const AstStmt *st, Name effect) {
   } while (next_member(&d.e, at));
 }
 
-/* -D N=50, the last one; or NULL. */
+/* The last -D for a constant, or NULL. */
 static const Define *defined(const Builder *b, Name name) {
   const Define *d = NULL;
   for (uint32_t i = 0; i < b->ndefines; i++)
@@ -137,7 +137,7 @@ static const Define *defined(const Builder *b, Name name) {
   return d;
 }
 
-/* What the command line gives a constant whose value in the file is v. */
+/* Value of -D for a constant, which must have the shape of the file's value v. */
 static Value defined_value(Builder *b, const Define *d, const Value *v, Name effect) {
   Value given = resolve(b, d->expr, IN_CONST, effect);
   if (!given.e || !v->e || given.n == v->n) return given;
@@ -145,7 +145,7 @@ static Value defined_value(Builder *b, const Define *d, const Value *v, Name eff
   return (Value){0};
 }
 
-/* Made of numbers and pi. A bare number on the command line is in the unit of the constant's value. */
+/* A bare number of -D is in the unit of the constant's value in the file. */
 void declare_const(Builder *b, const AstStmt *st, Name effect) {
   Value v = resolve(b, st->rhs, IN_CONST, effect);
   Entity e = {.kind = ENT_CONST, .index = b->constants.n, .name = st->name, .effect = effect, .span = st->name_span};

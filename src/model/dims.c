@@ -1,11 +1,11 @@
-/* Sparse vectors of rational exponents in a table without duplicates, and Gaussian elimination on them. */
+/* Dimensions as interned sparse vectors of rational exponents; unknowns by Gaussian elimination. Contract and source: dims.h. */
 #include "model/dims.h"
 
 #include <string.h>
 
 #include "base/vec.h"
 
-/* key < DIM_BASES: a base unit; otherwise unknown key - DIM_BASES. */
+/* Power in a product. key < DIM_BASES: a base unit; otherwise unknown key - DIM_BASES. */
 typedef struct {
   uint32_t key;
   Num e; /* never 0 */
@@ -14,14 +14,14 @@ typedef struct {
 typedef struct {
   const Part *part; /* by increasing key */
   uint32_t n, hash;
-  uint32_t next;         /* in its bucket; 0: none */
-  Dim found;             /* dim_found of it, at that time */
+  uint32_t next;         /* hash chain; 0: end */
+  Dim found;             /* memo of dim_found, valid while Dims.time is found_when; 0: none */
   uint32_t found_when;
 } Form;
 
 typedef struct {
   Name name;
-  Dim is; /* 0: not known */
+  Dim is; /* its solution, in older unknowns; 0: unsolved */
   Span why;
 } Unknown;
 
@@ -38,8 +38,8 @@ struct Dims {
   VEC(Unknown) unknowns;
   VEC(Part) scratch;
   VEC(Spelling) spellings;
-  VEC(uint32_t) solved; /* unknowns whose dimension is known, in the order in which it was found */
-  uint32_t time;        /* grows when one is solved, or forgotten */
+  VEC(uint32_t) solved; /* solved unknowns, in order of solution */
+  uint32_t time;        /* incremented when an unknown is solved or a solution undone */
   uint32_t heads[BUCKETS];
   struct {
     Dim a, b, product;
@@ -62,7 +62,7 @@ static int same_parts(const Form *f, const Part *p, uint32_t n) {
   return 1;
 }
 
-/* The table's entry for d->scratch, which is emptied. */
+/* Interns the vector in d->scratch, and empties it. */
 static Dim intern_scratch(Dims *d) {
   uint32_t n = d->scratch.n, hash = hash_parts(d->scratch.at, n), *head = &d->heads[hash % BUCKETS];
   d->scratch.n = 0;
@@ -101,7 +101,7 @@ static void put(Dims *d, uint32_t key, Num e) {
   if (!num_is_zero(e)) vec_push(d->arena, &d->scratch, ((Part){key, e}));
 }
 
-/* a * b^e */
+/* Interned a * b^e. */
 static Dim combine(Dims *d, Dim a, Dim b, Num e) {
   if (a == DIM_ANY || b == DIM_ANY) return DIM_ANY;
   const Form *f = &d->forms.at[a], *g = &d->forms.at[b];
@@ -136,7 +136,7 @@ Dim dim_per_second(Dims *d, Dim a) { return dim_div(d, a, dim_base(d, DIM_TIME))
 
 /* --- unknowns --- */
 
-/* The last part that is an unknown whose dimension is known, or NULL. */
+/* Last power of a solved unknown, or NULL. */
 static const Part *solved_part(const Dims *d, Dim a) {
   const Form *f = &d->forms.at[a];
   for (uint32_t i = f->n; i-- > 0 && f->part[i].key >= DIM_BASES;)
@@ -144,7 +144,7 @@ static const Part *solved_part(const Dims *d, Dim a) {
   return NULL;
 }
 
-/* Each round puts in what was found later than what it replaces was: it ends. */
+/* Terminates: the solution of an unknown contains older unknowns only (the pivot is the newest one). */
 Dim dim_found(Dims *d, Dim a) {
   if (d->forms.at[a].found && d->forms.at[a].found_when == d->time) return d->forms.at[a].found;
   Dim r = a;
@@ -195,7 +195,7 @@ void dims_undo(Dims *d, uint32_t mark) {
   d->time++;
 }
 
-/* A part of unknown first .. first + n - 1, or NULL. */
+/* A power of unknown first .. first + n - 1, or NULL. */
 static const Part *part_between(const Dims *d, Dim a, uint32_t first, uint32_t n) {
   const Form *f = &d->forms.at[a];
   for (uint32_t i = 0; i < f->n; i++)
@@ -203,7 +203,7 @@ static const Part *part_between(const Dims *d, Dim a, uint32_t first, uint32_t n
   return NULL;
 }
 
-/* What was found of such an unknown is put in first: it contains older ones only. */
+/* Solved unknowns are replaced by their solutions first. Terminates, as those contain older unknowns only. */
 Dim dim_replace(Dims *d, Dim a, uint32_t first, uint32_t n, const Dim *with) {
   Dim r = a;
   for (const Part *p = part_between(d, r, first, n); p; p = part_between(d, r, first, n)) {
@@ -242,7 +242,7 @@ void dim_spell(Dims *d, Dim a, const char *text) {
   vec_push(d->arena, &d->spellings, ((Spelling){a, text}));
 }
 
-/* Derived units with a name of their own, in m, kg, s, A: what people expect to read. */
+/* Name of a derived SI unit with this dimension (exponents of m, kg, s, A), or NULL. */
 static const char *derived_name(const Dims *d, Dim a) {
   static const struct {
     const char *name;
@@ -264,7 +264,7 @@ static void put_power(StrBuf *b, const char *name, Num e) {
   if (!num_is_int(e)) sb_putc(b, ')');
 }
 
-/* Place i in the order in which people write: kg before m. */
+/* Power i in writing order: kg before m. */
 static Part part_in_order(const Form *f, uint32_t i) {
   if (i < 2 && f->n > 1 && f->part[0].key == DIM_LENGTH && f->part[1].key == DIM_MASS) return f->part[1 - i];
   return f->part[i];

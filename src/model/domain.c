@@ -1,5 +1,5 @@
-/* Domains: where an expression of the text has a real value, as a condition of the graph. Nodes of the graph forget it: sqrt(x)^2 is x there.
- * Conditions are only kept where Builder.domains asks for them, and 0 stands for one that always holds. */
+/* Domains: the condition under which an expression, as written, has a real value. Graph nodes lose it: sqrt(x)^2 is the node x.
+ * Conditions are graph nodes, made only if Builder.domains is set; 0 stands for a condition that always holds. */
 #include "model/resolve_impl.h"
 
 Expr domain_and(const Builder *b, Expr p, Expr q) {
@@ -7,14 +7,14 @@ Expr domain_and(const Builder *b, Expr p, Expr q) {
   return expr_fn2(b->g, EX_AND, p, q);
 }
 
-/* a implies p */
+/* not a or p */
 static Expr implied(const Builder *b, Expr a, Expr p) {
   if (!p) return 0;
   Expr otherwise = expr_fn(b->g, EX_NOT, a);
   return expr_fn2(b->g, EX_OR, otherwise, p);
 }
 
-/* A condition that is a number: 1 is no condition. */
+/* The condition, or 0 if it is the number 1. */
 static Expr unless_true(const Builder *b, Expr p) { return p == expr_int(b->g, 1) ? 0 : p; }
 
 static Expr differ(const Builder *b, Expr x, Expr y) {
@@ -25,7 +25,7 @@ static Expr differ(const Builder *b, Expr x, Expr y) {
 static Expr at_least(const Builder *b, Expr x, Expr y) { return unless_true(b, expr_fn2(b->g, EX_LE, y, x)); }
 static Expr not_zero(const Builder *b, Expr x) { return differ(b, x, expr_int(b->g, 0)); }
 
-/* b^e; cube roots are real. An exponent that is no number leaves it to the values. */
+/* Domain of base^exponent; cube roots are real. 0 for a variable exponent: the values at a state decide. */
 static Expr power_domain(const Builder *b, Expr base, Expr exponent) {
   if (!expr_is_num(b->g, exponent)) return 0;
   Num e = expr_number(b->g, exponent);
@@ -62,7 +62,7 @@ static Expr if_domain(const Eval *ev, const AstExpr *x, const Value *v) {
   return domain_and(b, c->domain, domain_and(b, first, second));
 }
 
-/* The condition that a function of the language adds to those of its arguments. */
+/* Domain of a built-in function, without the domains of its arguments. */
 static Expr function_domain(const Eval *ev, const AstExpr *x) {
   const Builder *b = ev->b;
   const Value *v = value_of(ev, x->args);
@@ -91,7 +91,7 @@ static Expr call_domain(const Eval *ev, const AstExpr *x, const Value *v) {
   return all;
 }
 
-/* The operands of a sum or a product, listed by ev->operands. */
+/* Domain of the sum or product of ev->operands: divisors are not 0. */
 static Expr chain_domain(const Eval *ev, int product) {
   const Builder *b = ev->b;
   Expr all = 0;
@@ -121,7 +121,7 @@ Expr domain_of_node(const Eval *ev, AstId id, const Value *v) {
     case AST_NEG: case AST_NOT: case AST_UNIT: case AST_AT: return value_of(ev, x->a)->domain;
     case AST_LT: case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE:
       return domain_and(b, value_of(ev, x->a)->domain, value_of(ev, x->b)->domain);
-    case AST_AND: case AST_OR: { /* what comes second counts where the first does not decide */
+    case AST_AND: case AST_OR: { /* short circuit: the second operand needs a value only where the first does not decide */
       const Value *first = value_of(ev, x->a);
       Expr open = x->kind == AST_AND ? first->e : expr_fn(b->g, EX_NOT, first->e);
       return domain_and(b, first->domain, implied(b, open, value_of(ev, x->b)->domain));

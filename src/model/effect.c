@@ -1,4 +1,4 @@
-/* Effects: which are in use, and whether they go together. */
+/* Effects: lists for commands, the graph of `requires` and `excludes` with its checks, and the set in use. Contract: effect.h. */
 #include "model/effect.h"
 
 #include "base/suggest.h"
@@ -6,7 +6,7 @@
 
 #define NONE UINT32_MAX
 
-/* --- the file's effects and scenes, by name --- */
+/* --- effects and scenes by name --- */
 
 static Name nearest(const Ast *ast, AstStmtKind kind, const char *wrong) {
   VEC(Name) names = {0};
@@ -45,7 +45,7 @@ EffectList model_unused_effects(const Ast *ast) {
   return (EffectList){unused.at, unused.n};
 }
 
-/* Blocks nest at most as deep as the parser lets them. */
+/* Recursion is bounded by the parser's limit on nested blocks. */
 static int contains_claim(const AstStmt *list) {
   for (const AstStmt *s = list; s; s = s->next)
     if (s->kind == STMT_EXPECT || s->kind == STMT_SYMMETRY || (s->kind == STMT_FOR && contains_claim(s->body))) return 1;
@@ -60,7 +60,7 @@ EffectList model_claiming_effects(const Ast *ast) {
   return (EffectList){names.at, names.n};
 }
 
-/* --- what requires and excludes what --- */
+/* --- graph of requirements and exclusions --- */
 
 static uint32_t place_of(const EffectGraph *g, Name name) {
   for (uint32_t i = 0; i < g->n; i++)
@@ -108,7 +108,7 @@ static const AstStmt *statement_of(const EffectGraph *g, uint32_t i, AstStmtKind
   return x;
 }
 
-/* The shortest way along requirements from i back to i over effects that are not before it: way[0..length), i first. 0: there is none. */
+/* Shortest cycle of requirements through i over effects not before i, by breadth-first search: way[0..length), i first. 0: none. */
 static uint32_t find_circle(const Ast *ast, const EffectGraph *g, uint32_t i, uint32_t **way) {
   uint32_t *from = ARENA_ARRAY(ast->arena, uint32_t, g->n), *queue = ARENA_ARRAY(ast->arena, uint32_t, g->n + 1), n = 0, last = NONE;
   for (uint32_t k = 0; k < g->n; k++) from[k] = NONE;
@@ -134,7 +134,7 @@ static uint32_t find_circle(const Ast *ast, const EffectGraph *g, uint32_t i, ui
   return length;
 }
 
-/* Each circle where its first effect stands. 0 when there is one. */
+/* Reports each cycle once, at its first effect. 0 if there is one. */
 static int check_circles(const Ast *ast, const EffectGraph *g) {
   int fine = 1;
   for (uint32_t i = 0; i < g->n; i++) {
@@ -157,7 +157,7 @@ static int check_circles(const Ast *ast, const EffectGraph *g) {
   return fine;
 }
 
-/* The effect i excludes another; both are required by `user`, or are it. */
+/* Reports that effect i excludes `other`, while `user` requires both (or is one of them). */
 static void report_clash(const Ast *ast, const EffectGraph *g, uint32_t user, uint32_t i, uint32_t other) {
   const AstStmt *st = statement_of(g, i, STMT_EXCLUDES, other);
   Name one = g->at[i].stmt->name, two = g->at[other].stmt->name, by = g->at[user].stmt->name;
@@ -180,7 +180,7 @@ static void report_clash(const Ast *ast, const EffectGraph *g, uint32_t user, ui
   }
 }
 
-/* Each pair is told of the first effect that cannot do without it. 0 when there is one. */
+/* Reports each excluded pair once, with the first effect that requires both. 0 if there is one. */
 static int check_clashes(const Ast *ast, const EffectGraph *g) {
   int fine = 1;
   uint8_t *in = ARENA_ARRAY(ast->arena, uint8_t, g->n + 1), **told = ARENA_ARRAY(ast->arena, uint8_t *, g->n + 1);
@@ -201,7 +201,7 @@ static int check_clashes(const Ast *ast, const EffectGraph *g) {
   return fine;
 }
 
-/* What effects require and exclude exists, also what no scene uses. */
+/* Reports unknown names in `requires` and `excludes`, also of effects that no scene uses. */
 static void check_names(const Ast *ast, const EffectGraph *g) {
   for (uint32_t i = 0; i < g->n; i++)
     for (const AstStmt *x = g->at[i].stmt->body; x; x = x->next)
@@ -226,7 +226,7 @@ int uses_effect(const Builder *b, Name effect) {
 
 int is_use_none(const AstStmt *st) { return st->kind == STMT_USE && strcmp(st->name, "none") == 0; }
 
-/* The statement of this scene that turns the effect of `x` on before it, or NULL. */
+/* Earlier `use` of the same effect in this scene, or NULL. */
 static const AstStmt *used_before(const AstStmt *scene, const AstStmt *x) {
   const AstStmt *found = NULL;
   for (const AstStmt *s = scene->body; s != x; s = s->next) {
@@ -263,7 +263,7 @@ void use_with_needs(Builder *b, Name effect) {
   }
 }
 
-/* Where the scene, or one that it is like, turns the effect on; NULL: it does not. */
+/* The `use` of an effect in the scene or its `like` ancestors, or NULL. */
 static const AstStmt *use_of(const Builder *b, Name effect) {
   const AstStmt *found = NULL;
   for (const AstStmt **s = b->chain; *s; s++)
@@ -272,7 +272,7 @@ static const AstStmt *use_of(const Builder *b, Name effect) {
   return found;
 }
 
-/* Whether the effect `name` excludes `other`. */
+/* 1 if effect `name` excludes `other`. */
 static int excludes(const Builder *b, Name name, Name other) {
   const AstStmt *e = find_named(b->ast, STMT_EFFECT, name);
   for (const AstStmt *x = e ? e->body : NULL; x; x = x->next)
@@ -280,7 +280,7 @@ static int excludes(const Builder *b, Name name, Name other) {
   return 0;
 }
 
-/* Two that exclude each other are one mistake: that of the first. */
+/* Reports an exclusion that the scene violates; a mutual one once, at the first effect. */
 static void report_excluded(Builder *b, const AstStmt *effect, const AstStmt *x) {
   if (excludes(b, x->name, effect->name))
     for (const AstStmt *s = b->ast->first; s != effect; s = s->next)

@@ -1,4 +1,4 @@
-/* Effects of a file: what they require and exclude. */
+/* Graph of the file's effects: edges `requires` and `excludes`, reachability, contradictions. */
 #ifndef LAGC_EFFECT_H
 #define LAGC_EFFECT_H
 
@@ -6,7 +6,7 @@
 
 typedef struct {
   const AstStmt *stmt;
-  VEC(uint32_t) requires, excludes, required_by; /* places in the list, in order of text; names that are no effect are left out */
+  VEC(uint32_t) requires, excludes, required_by; /* indices of EffectGraph.at, in order of text; unknown names are left out */
 } EffectNode;
 
 /* All effects, in order of text. */
@@ -17,12 +17,12 @@ typedef struct {
 
 EffectGraph effect_graph(const Ast *ast);
 
-/* in[n] := 1 for the effect and, however indirectly, what it requires (for those that require it, with up set); others are left
- * as they are. */
+/* Breadth-first search: sets in[] to 1 for an effect and all it requires, directly or not (up: all that require it). Entries
+ * that are 1 already stop the search. */
 void effect_reach(const Ast *ast, const EffectGraph *g, uint32_t effect, int up, uint8_t *in);
 
-/* Reports effects that require themselves, however indirectly, and those that no scene could use, as what they require excludes
- * each other. 0 when there are such. */
+/* Reports unknown names, cycles of `requires`, and effects that no scene can use because two effects they require exclude
+ * each other. 0 if there is a cycle or such an effect. */
 int effects_check(const Ast *ast);
 
 #endif

@@ -1,4 +1,4 @@
-/* Events: where an expression crosses zero, and what it sets then; sections, which set nothing. */
+/* Events: a switching function, a direction of crossing, and actions (new values); and sections, which have no actions. */
 #include "model/resolve_impl.h"
 
 Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit) {
@@ -15,14 +15,14 @@ static void push_action(Builder *b, Event *ev, SymId target, Expr value) {
   vec_push(b->arena, &ev->actions, ((Action){target, value}));
 }
 
-/* What the event sets `target` to; its node where it sets nothing. */
+/* Value of `target` after the event: that of its action, or the symbol itself. */
 static Expr set_value(const Builder *b, const Event *ev, SymId target) {
   for (uint32_t i = 0; i < ev->actions.n; i++)
     if (ev->actions.at[i].target == target) return ev->actions.at[i].value;
   return expr_symbol(b->g, target)->node;
 }
 
-/* The rates of a rotation that turns at w where the event has put it. */
+/* Adds actions for quaternion rates such that the rotation, as the event leaves it, has angular velocity w. */
 static void push_spin(Builder *b, Event *ev, uint32_t coord, const Expr *w) {
   Value q = rotation_coordinate(b, coord);
   for (uint32_t k = 0; k < ROTATION; k++) q.at[k] = set_value(b, ev, b->m->coords.at[coord + k].q);
@@ -30,14 +30,14 @@ static void push_spin(Builder *b, Event *ev, uint32_t coord, const Expr *w) {
   for (uint32_t k = 0; k < ROTATION; k++) push_action(b, ev, b->m->coords.at[coord + k].v, rates.at[k]);
 }
 
-/* Whether a statement of the event sets omega(R). */
+/* 1 if a statement of the event sets omega(R). */
 static int sets_spin(Builder *b, const AstStmt *event, uint32_t coord, Name effect) {
   for (const AstStmt *s = event->body; s; s = s->next)
     if (s->kind == STMT_SET && ast_expr(b->ast, s->lhs)->kind == AST_CALL && spin_target(b, s->lhs, effect) == (int)coord) return 1;
   return 0;
 }
 
-/* Where an event turns a body, the body goes on turning as it did, in its own frame. */
+/* An event that sets a rotation but not its omega keeps the angular velocity in the body frame. */
 static void keep_spin(Builder *b, Event *ev, uint32_t coord) {
   Value q = rotation_coordinate(b, coord), rates = q;
   Expr w[3];
@@ -46,7 +46,7 @@ static void keep_spin(Builder *b, Event *ev, uint32_t coord) {
   push_spin(b, ev, coord, w);
 }
 
-/* `omega(R) = ...` in an event. */
+/* Adds the action `omega(R) = ...`. */
 static void add_spin_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
   int coord = spin_target(b, st->lhs, effect);
   Unit unit = spin_unit(b);
@@ -81,7 +81,7 @@ static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
   }
 }
 
-/* Angular velocities last: their rates are those of rotations as the event leaves them. */
+/* Angular velocities are set last, as their rates depend on the rotations after the event. */
 static void add_actions(Builder *b, const AstStmt *event, Name effect, Event *ev) {
   for (const AstStmt *s = event->body; s; s = s->next) {
     if (s->kind == STMT_STOP) ev->stop = 1;
@@ -110,7 +110,7 @@ void add_event(Builder *b, const AstStmt *st, Name effect) {
   if (g.e) vec_push(b->arena, &b->m->events, ev);
 }
 
-/* A surface of the state alone: what it contains is known before accelerations are. */
+/* A section must be a function of state and time: no accelerations, rates of states, energy. */
 void add_section(Builder *b, const Section *s) {
   if (!s->expr) return;
   Span span = ast_expr(b->ast, s->expr)->span;

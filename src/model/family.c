@@ -1,4 +1,4 @@
-/* Families: indices, ranges, names of members, and `for`. */
+/* Families (indexed declarations): index ranges, offsets and names of members, and `for` loops over statements. */
 #include <stdio.h>
 
 #include "model/builder.h"
@@ -82,7 +82,7 @@ static void each_in_for(Builder *b, const AstStmt *st, Name effect, StatementFn 
   b->index.n = place;
 }
 
-/* Blocks nest at most as deep as the parser lets them. */
+/* Recursion is bounded by the parser's limit on nested blocks. */
 void each_statement(Builder *b, const AstStmt *st, Name effect, StatementFn *fn, void *data) {
   if (st->kind == STMT_FOR) each_in_for(b, st, effect, fn, data);
   else fn(b, st, effect, data);

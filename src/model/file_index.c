@@ -1,8 +1,9 @@
+/* Open-addressing hash table of a file's scenes and effects. Contract: file_index.h. */
 #include "model/file_index.h"
 
 #include "base/intern.h"
 
-/* The slot of a name, an address, or the empty one where it would stand. */
+/* Slot of a name (interned: hashed by address), or the empty slot where it belongs. */
 static const AstStmt **slot_of(const FileIndex *x, AstStmtKind kind, Name name) {
   uint32_t i = (uint32_t)(((uintptr_t)name >> 4) + kind) & (x->nslots - 1);
   while (x->slots[i] && (x->slots[i]->name != name || x->slots[i]->kind != kind)) i = (i + 1) & (x->nslots - 1);

@@ -1,4 +1,4 @@
-/* The statements of a file by name, made once: a file may have thousands of scenes, each of which is compiled. */
+/* Index of a file's statements by name, made once: a file may have thousands of scenes, each compiled by itself. */
 #ifndef LAGC_FILE_INDEX_H
 #define LAGC_FILE_INDEX_H
 
@@ -6,16 +6,16 @@
 
 typedef struct FileIndex {
   uint32_t nslots;
-  const AstStmt **slots;                   /* scenes and effects by kind and name, the first of each; a power of 2 */
-  const AstStmt *model, *scene, *effect;   /* the first that has a name, or NULL */
-  VEC(const AstStmt *) common;             /* all but scenes, in the file's order */
-  VEC(const AstStmt *) repeated;           /* scenes and effects whose name another has */
-  int is_sound, clashes;                   /* nothing was wrong with names and effects; effects do not go together (effects_check) */
+  const AstStmt **slots;                   /* [nslots, a power of 2] hash table of scenes and effects, the first of each name */
+  const AstStmt *model, *scene, *effect;   /* the first named statement of each kind, or NULL */
+  VEC(const AstStmt *) common;             /* all statements but scenes, in the file's order */
+  VEC(const AstStmt *) repeated;           /* scenes and effects whose name was declared before */
+  int is_sound, clashes;                   /* names and effects were checked and are right; effects_check found an error */
 } FileIndex;
 
 FileIndex *file_index(Ast *ast);
 
-/* The model's name, the scene or the effect of that name (NULL: the first), or NULL. */
+/* The statement of a scene or effect by name (NULL: the first); the model statement; or NULL. */
 const AstStmt *find_named(Ast *ast, AstStmtKind kind, const char *name);
 
 #endif

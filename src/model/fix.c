@@ -1,11 +1,11 @@
-/* Parameters that become numbers in programs: which ones, and with what values. */
+/* --fix: parameters that are compiled in as numbers. Marks them, evaluates them with the scene's values, numbers the others. */
 #include "model/builder.h"
 #include "base/suggest.h"
 #include "sym/eval.h"
 
-/* --- which --- */
+/* --- which parameters --- */
 
-/* The entity that `g` or `drag.c` names; NULL, reported, when there is none here. *off: an effect that is not in use has it. */
+/* Parameter called `g` or `drag.c`; NULL, reported, when there is none. *off: only an effect that is off declares it (a note). */
 static const Entity *find_param(Builder *b, const char *word, int *off) {
   const char *dot = strchr(word, '.');
   Name effect = dot ? intern(b->ast->names, arena_strndup(b->arena, word, (size_t)(dot - word))) : NULL;
@@ -44,7 +44,7 @@ static int names_param(const Builder *b, const char *word) {
   return e && e->kind == ENT_PARAM;
 }
 
-/* Marks what the words name; those of effects that are off have no part in it. 0 on a mistake, reported. */
+/* Sets Param.fixed for a comma-separated list; parameters of effects that are off are skipped. 0 on a mistake, reported. */
 static int mark(Builder *b, const char *words) {
   uint32_t errors = b->diags->errors;
   for (const char *s = words; *s;) {
@@ -61,11 +61,11 @@ static int mark(Builder *b, const char *words) {
   return b->diags->errors == errors;
 }
 
-/* --- with what values --- */
+/* --- their values --- */
 
 static int is_free_param(const Symbol *s, const void *data) { return s->kind == SYM_PARAM && !((const Model *)data)->params.at[s->index].fixed; }
 
-/* Exact where it is a fraction; where other parameters or pi are in it, a double. */
+/* Sets Param.number of fixed parameters: exact if the value is rational, a double if it contains pi or other parameters. */
 static void evaluate(Builder *b) {
   Model *m = b->m;
   long double *x = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1);

@@ -1,5 +1,5 @@
-/* `method NAME(option = value, ...)` of a scene. Enters: the statement; leaves: the scene's method and its options, names and values
- * as the runtime knows them. */
+/* `method NAME(option = value, ...)` of a scene: checked against the table of base/methods.h and against the model (states,
+ * constraints), and stored in the scene with names and values as the runtime expects them. */
 #include <string.h>
 
 #include "base/methods.h"
@@ -18,7 +18,7 @@ static const char *list_choices(const Builder *b, const MethodOption *o) {
   return sb_text(&list);
 }
 
-/* NULL, reported, when there is none; NULL too when it is one that only the runtime knows. */
+/* The method's entry in the table; NULL for one that only the runtime knows (gsl-*), and, reported, for an unknown one. */
 static const MethodInfo *known_method(Builder *b, const AstStmt *st) {
   const MethodInfo *m = method_find(st->name, strlen(st->name));
   if (m || method_is_foreign(st->name)) return m;

@@ -1,4 +1,5 @@
-/* Declarations: the statements that a scene uses become the arrays of a Model, in file order. */
+/* model_build: the active statements, in file order, become a Model. Declarations first (declare.c), then energies, forces, flows,
+ * constraints and events, then what may contain accelerations (expect, observe), then the scene. Contract: model.h. */
 #include "model/model.h"
 
 #include <math.h>
@@ -6,9 +7,9 @@
 
 #include "model/builder.h"
 
-/* --- statements with meaning --- */
+/* --- energies, forces, flows, expectations --- */
 
-/* A force or a dissipation: times `by`, it has the dimension of L. */
+/* Deferred check of a force or dissipation function: dim * by must be the dimension of L. */
 typedef struct {
   AstId id;
   Dim dim, by;
@@ -18,13 +19,13 @@ typedef struct {
 
 typedef struct {
   VEC(Expr) lagrangian, kinetic, potential, dissipation;
-  Span base[3]; /* where the model itself gave L, T, V */
-  Span first;   /* the first of them that is not zero */
-  int failed;   /* one has no value: what unit L has is not known */
+  Span base[3]; /* the model's own statements of L, T, V */
+  Span first;   /* the first nonzero energy */
+  int failed;   /* an energy has no value: the dimension of L is unknown */
   VEC(UnitCheck) later;
 } Energies;
 
-/* All parts of L have one dimension. It need not be that of an energy. */
+/* All parts of L must have one dimension, not necessarily that of an energy. */
 static void check_energy_unit(Builder *b, const AstStmt *st, const Value *v, Energies *en) {
   if (expr_is_zero(b->g, v->e)) return;
   Span span = ast_expr(b->ast, st->rhs)->span;
@@ -35,7 +36,7 @@ static void check_energy_unit(Builder *b, const AstStmt *st, const Value *v, Ene
   explain_dims(b, v->dim, DIM_ANY);
 }
 
-/* Remembers that v times `by` has the dimension of L, which later statements may decide. */
+/* Defers the check that v times `by` has the dimension of L, which a later statement may decide. */
 static void check_later(Builder *b, Energies *en, AstId id, const Value *v, Dim by, const char *what) {
   if (expr_is_zero(b->g, v->e)) return;
   vec_push(b->arena, &en->later, ((UnitCheck){id, v->dim, by, v->bare, what}));
@@ -53,7 +54,7 @@ static void check_units_of_forces(Builder *b, const Energies *en) {
   }
 }
 
-/* The model itself gives L once: as a whole, or as kinetic and potential energy. (Effects add.) */
+/* Outside of effects, L is given once: as a whole, or as kinetic and potential energy. (Effects add terms.) */
 static int is_first_energy(Builder *b, const AstStmt *st, Energies *en) {
   Span *whole = &en->base[0], *own = &en->base[st->kind == STMT_LAGRANGIAN ? 0 : st->kind == STMT_KINETIC ? 1 : 2];
   Span before = own->end ? *own : st->kind != STMT_LAGRANGIAN ? *whole : en->base[1].end ? en->base[1] : en->base[2];
@@ -131,7 +132,7 @@ static void add_forces(Builder *b, AstId li, AstId ri, const Value *point, const
   check_later(b, en, ri, f, point->dim, arena_printf(b->arena, "a force along `%s`", ast_text(b, li)));
 }
 
-/* force (px, py) = (Fx, Fy): element by element, each with a unit of its own. */
+/* force (px, py) = (Fx, Fy): elements are separate forces, each with a unit of its own. */
 static void add_force_elements(Builder *b, const AstStmt *st, Name effect, Energies *en) {
   AstId li = ast_expr(b->ast, st->lhs)->args, ri = ast_expr(b->ast, st->rhs)->args;
   while (li && ri) {
@@ -163,7 +164,7 @@ static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) 
   else add_forces(b, st->lhs, st->rhs, &point, &f, en);
 }
 
-/* The value on the left of a flow says which state is meant: its rate. */
+/* flow z' = ...: the left side must be the rate of a state. */
 static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   const AstExpr *l = ast_expr(b->ast, st->lhs);
   const AstExpr *stem = l->kind == AST_PRIME ? ast_expr(b->ast, l->a) : l;
@@ -219,7 +220,7 @@ static void fill_input(Builder *b, const AstStmt *st, Name effect) {
   if (e && e->kind == ENT_INPUT) give_input(b, e->index, st->name, st->rhs, effect);
 }
 
-/* Without a declared unit it is shown in that of its expression. A vector has an output a component. */
+/* An observable without a declared unit takes its expression's; a vector becomes one output per component. */
 void finish_observe(Builder *b, uint32_t index, Value v) {
   const AstStmt *st = b->observes.at[index].stmt;
   Span span = ast_expr(b->ast, st->rhs)->span;
@@ -252,7 +253,7 @@ static void apply(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_EVENT: add_event(b, st, effect); return;
     case STMT_CONSTRAINT: add_constraint(b, st, effect); return;
     case STMT_CONTACT: add_contact(b, st, effect); return;
-    case STMT_LET: case STMT_FUNCTION: case STMT_EXPECT: case STMT_OBSERVE: /* after L is known */
+    case STMT_LET: case STMT_FUNCTION: case STMT_EXPECT: case STMT_OBSERVE: /* once L is known: build() */
     case STMT_COORD: case STMT_STATE: case STMT_PARAM: case STMT_CONST:
     case STMT_SYMMETRY: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE:
     case STMT_MAP: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
@@ -261,7 +262,7 @@ static void apply(Builder *b, const AstStmt *st, Name effect, void *data) {
   }
 }
 
-/* Lets that nothing uses are still checked; of a family that has an error, no more than one member. */
+/* Evaluates unused lets and functions, to report their errors: one per family. */
 static void apply_unused_lets(Builder *b) {
   const AstStmt *wrong = NULL;
   for (uint32_t i = 0; i < b->lets.n; i++) {
@@ -272,7 +273,7 @@ static void apply_unused_lets(Builder *b) {
   for (uint32_t i = 0; i < b->functions.n; i++) check_uncalled(b, i);
 }
 
-/* What may contain accelerations: after L is known. */
+/* Statement callbacks for the passes after L is known. */
 static void expect(Builder *b, const AstStmt *st, Name effect, void *data) {
   (void)data;
   if (st->kind == STMT_EXPECT) add_expect(b, st, effect);
@@ -289,7 +290,7 @@ static void each_active(Builder *b, StatementFn *fn, void *data) {
 
 /* --- checks on the whole --- */
 
-/* Reports the coordinates of which L knows nothing. */
+/* Reports coordinates that occur neither in L nor in a constraint. */
 static void check_contained(Builder *b) {
   Model *m = b->m;
   uint8_t *found = ARENA_ARRAY(b->arena, uint8_t, m->coords.n + 1);
@@ -311,7 +312,7 @@ static void check_contained(Builder *b) {
 
 static void check_whole(Builder *b) {
   Model *m = b->m;
-  if (b->diags->errors) return; /* what is missing may be what was refused */
+  if (b->diags->errors) return; /* a missing part may be one that was refused */
   if (!m->coords.n && !m->states.n) {
     diag_error(b->diags, m->span, "the model has no coordinates and no states");
     diag_help(b->diags, "declare what moves: `coord x [m]`");
@@ -350,7 +351,7 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   b->scope.arena = b->members.arena = b->outputs.arena = b->constraints.arena = a;
   b->defines = choice->defines;
   b->ndefines = choice->ndefines;
-  b->domains = choice->bare; /* claims are about a bare model */
+  b->domains = choice->bare; /* claims are judged on models without a scene */
   Model *m = b->m = ARENA_NEW(a, Model);
   m->ast = ast;
   m->diags = ast->diags;
@@ -365,7 +366,7 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   return b;
 }
 
-/* Blocks nest at most as deep as the parser lets them. */
+/* 1 if a statement mentions a unit with a dimension. Recursion is bounded by the parser's limit on nested blocks. */
 static int measures(const AstStmt *st) {
   if (st->kind != STMT_FOR) return unit_measures(&st->unit);
   for (const AstStmt *s = st->body; s; s = s->next)
@@ -373,7 +374,7 @@ static int measures(const AstStmt *st) {
   return 0;
 }
 
-/* A model in which no name is measured in a unit is not checked, and time then has none either. */
+/* A model without any unit is not checked for dimensions, and time then has none either. */
 static void find_units(Builder *b) {
   Model *m = b->m;
   b->unitless = 1;
@@ -390,7 +391,7 @@ CoordList model_coordinates(const Model *m) {
   return (CoordList){names.at, names.n};
 }
 
-/* The degree in velocities of a node of L whose arguments have the degrees given; 2 stands for all that is not linear. */
+/* Degree in velocities of a node, from the degrees of its arguments: 0, 1, or 2 for anything nonlinear. */
 static uint8_t degree_of(const ExprGraph *g, Expr x, const ExprMap *degrees) {
   uint32_t degree = 0;
   ExprOp op = expr_op(g, x);
@@ -410,7 +411,7 @@ static uint8_t degree_of(const ExprGraph *g, Expr x, const ExprMap *degrees) {
   return degree > 2 ? 2 : (uint8_t)degree;
 }
 
-/* Whether L is linear in the velocities as it is written, and contains some. Makes no node: the order of nodes is that of text. */
+/* 1 if L contains velocities and is linear in them as written. Creates no node, as nodes are numbered in text order. */
 static int is_first_order(const Model *m) {
   if (!m->coords.n || !m->lagrangian || !(expr_kinds(m->g, m->lagrangian) & 1u << SYM_VEL)) return 0;
   ExprMap degrees = expr_map(m->arena);
@@ -423,7 +424,7 @@ static int is_first_order(const Model *m) {
   return expr_map_get(&degrees, m->lagrangian) == 1;
 }
 
-/* The model up to its scene. */
+/* Builds everything but the scene. first_order: coordinates become states. */
 static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   Builder *b = builder_new(ast, choice);
   b->m->first_order = first_order;
@@ -436,7 +437,7 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   finish_energies(b, &en);
   add_rotation_inertia(b);
   apply_unused_lets(b);
-  each_active(b, symmetry, NULL); /* before its charge is used: its unit follows from it */
+  each_active(b, symmetry, NULL); /* before outputs use charges: fixes their units */
   for (uint32_t i = 0; i < b->observes.n; i++) resolve_observe(b, i);
   each_active(b, expect, NULL);
   check_whole(b);

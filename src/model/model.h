@@ -1,8 +1,8 @@
 /* Ast -> Model: names resolved, units converted, one scene and its effects applied.
  *
- * Needs a parsed Ast. What the scene does not use is not looked at beyond the names it declares, and
- * makes no graph node: a model with an effect off is the model with the effect's text deleted.
- * Everything in a Model is in SI. */
+ * Needs a parsed Ast. Statements that the scene does not use are read for the names they declare only, and
+ * make no graph node: a model with an effect off is the model with the effect's text deleted.
+ * All values of a Model are in SI units. */
 #ifndef LAGC_MODEL_H
 #define LAGC_MODEL_H
 
@@ -25,8 +25,8 @@ typedef struct {
   Span span;
   Unit unit;
   SymId z, rate;
-  Expr flow;      /* 0 until a flow statement gives it; of a coordinate always */
-  int coordinate; /* the text declares it as one: see Model.first_order */
+  Expr flow;      /* right-hand side of z' = ...; 0: none yet, and always 0 for a coordinate */
+  int coordinate; /* declared by `coord`: see Model.first_order */
   int periodic;
 } State;
 
@@ -37,10 +37,10 @@ typedef struct {
   AstSign sign;
   SymId sym;
   Expr value;  /* of pi and earlier parameters */
-  Name stem;   /* of a member of a family: drag.w */
-  int fixed;   /* ModelChoice.fix: a number in programs, with the value that the scene gives it, */
-  Num number;  /* this one */
-  uint32_t place; /* in programs, among those that are not fixed */
+  Name stem;   /* name without index and component: drag.w for drag.w[2] */
+  int fixed;   /* compiled in as a number (ModelChoice.fix) */
+  Num number;  /* the value of a fixed parameter, from the scene */
+  uint32_t place; /* index into the programs' parameter array: counts parameters that are not fixed */
 } Param;
 
 typedef struct {
@@ -50,9 +50,9 @@ typedef struct {
   SymId sym;
   Expr value;          /* of t and parameters; 0 where there is a table */
   const Spline *table; /* or NULL */
-  const char *file;    /* that the table was read from, as written */
-  AstId text;          /* of the formula, which stands in `effect`; 0: there is none */
-  Name effect;
+  const char *file;    /* path of the table as the text writes it */
+  AstId text;          /* the formula; 0: a table */
+  Name effect;         /* scope of the formula's names */
 } Input;
 
 /* A force f along the displacement of `point`: adds f * d(point)/dq_i to each Q_i. */
@@ -66,9 +66,9 @@ typedef struct {
   Span span;
   AstId lhs_ast, rhs_ast;
   Expr lhs, rhs;
-  Expr domain; /* where both sides have real values, as the text is written; 0: wherever the nodes have */
-  Name effect; /* that it stands in, or NULL */
-  int elsewhere; /* one of several that the text stands for: model_reresolve cannot tell which */
+  Expr domain; /* condition under which both sides, as written, have real values; 0: wherever the nodes have */
+  Name effect; /* the effect around the statement, or NULL */
+  int elsewhere; /* one of several instances of its statement (family, vector): model_reresolve refuses it */
 } Expect;
 
 typedef struct {
@@ -85,26 +85,27 @@ typedef struct {
   int stop;
 } Event;
 
-/* c = 0, made of coordinates and t, or of velocities, too. A constraint of vectors is one for each component. */
+/* Constraint c(q, t) = 0 (holonomic) or c(q, q', t) = 0 (velocities). A vector constraint is one Constraint per component. */
 typedef struct {
   Name name; /* "rod", "rod[2]", "grip.x" */
   Span span;
   Expr c;
   Dim dim;
   SymId multiplier;
-  int inside; /* it belongs to a rotation: nobody wrote it */
+  int inside; /* made by the compiler: unit length of a rotation */
 } Constraint;
 
-/* A gap that cannot become negative. While it is closed it is a constraint: c = closed*gap. */
+/* Unilateral contact, gap >= 0. While the gap is closed it is the constraint c = closed*gap. */
 typedef struct {
   Name name;
   Expr gap, restitution;
-  SymId closed;                  /* an input of the model's own: 1 while the gap is closed, else 0 */
-  uint32_t constraint;           /* in constraints, */
-  uint32_t impact, release;      /* in events */
+  SymId closed;                  /* input set by the runtime: 1 while the gap is closed, else 0 */
+  uint32_t constraint;           /* index into Model.constraints */
+  uint32_t impact, release;      /* indices into Model.events */
 } Contact;
 
-/* The place of an output in the text: a component of the value of `id`, or of its member `member`, where that names a family. id: 0: of something else. */
+/* Origin of an output in the text: component `component` of the value of `id`; where `id` names a family, of its
+ * member `member`. id 0: no expression of the text. */
 typedef struct {
   AstId id;
   uint32_t component;
@@ -112,7 +113,7 @@ typedef struct {
   int64_t member[2];
 } OutputText;
 
-/* A named quantity: what a scene puts out, or an observe statement. */
+/* A named quantity: an output column of a scene, or an observe statement. */
 typedef struct {
   Name name;
   Span span;
@@ -121,7 +122,7 @@ typedef struct {
   OutputText from;
 } Output;
 
-/* What a symmetry does to a coordinate, or to t, to first order in its parameter. */
+/* Component of a symmetry's generator: first derivative of the transformed coordinate (or t) by the group parameter, at 0. */
 typedef struct {
   SymId target; /* of kind SYM_COORD, SYM_STATE (a coordinate) or SYM_TIME */
   Expr rate;    /* in coordinates, t and parameters */
@@ -130,32 +131,32 @@ typedef struct {
 
 typedef struct {
   Name name;       /* wind.gust for the symmetry gust of effect wind */
-  Name effect;     /* that it stands in, or NULL */
+  Name effect;     /* the effect around the statement, or NULL */
   const char *doc; /* or NULL */
   Span span;
   const AstStmt *stmt;
-  SymId parameter, charge; /* its charge stands so in outputs, until mech knows it */
+  SymId parameter, charge; /* group parameter; placeholder for the charge in outputs, which mech replaces */
   Unit unit;               /* of the charge */
-  VEC(Move) moves;         /* coordinates that it does not name stay */
+  VEC(Move) moves;         /* coordinates without an entry are left unchanged */
 } Symmetry;
 
 typedef struct {
   SymId target;
   Expr value; /* of parameters */
-  int implied; /* nobody said it: constraints may move it */
+  int implied; /* default value: constraints may move it */
 } Start;
 
-/* What a coordinate, a velocity or a state should be. */
+/* Closed form (`exact q = ...`) of a coordinate, a velocity or a state. */
 typedef struct {
   Name name;
   SymId target;
   Unit unit;
   int periodic;
-  Expr value; /* of t, parameters and inputs; a coordinate in it is that at the start */
-  SymId sym;  /* stands for it in outputs: of kind SYM_INPUT, behind the model's inputs */
+  Expr value; /* of t, parameters and inputs; a coordinate in it means its start value */
+  SymId sym;  /* placeholder in outputs: kind SYM_INPUT, numbered after the model's inputs */
 } Exact;
 
-/* A name that was declared without a unit, and the one that it has. */
+/* A name that was declared without a unit, and the unit inferred for it. */
 typedef struct {
   Name name;
   const char *unit;
@@ -164,28 +165,28 @@ typedef struct {
 typedef struct {
   Name name;
   double value;
-  Name text; /* of an option like quadrature = trapezoid, or NULL */
+  Name text; /* value of an option like quadrature = trapezoid; NULL: the number `value` */
 } Option;
 
 typedef struct {
   Name name;
   int output; /* index into outputs; -1: the energy; -2 - k: the charge of symmetry k */
   double limit;
-  int absolute; /* the limit is one of size, not of change */
+  int absolute; /* 1: limit on the size of the output; 0: on its change */
 } Monitor;
 
 typedef struct {
   Name name;
   const char *doc;
   VEC(Start) starts;
-  Span exactly; /* of the first `start exactly` */
+  Span exactly; /* the first `start exactly`; empty: none */
   double t0, t1;
-  const char *t1_digits; /* more than a double has, or NULL */
+  const char *t1_digits; /* t1 as decimal digits beyond double precision (base/digits.h), or NULL */
   int has_span;
   Name method; /* or NULL */
   Span method_span;
   VEC(Option) options;
-  double tolerance; /* 0: not given */
+  double tolerance; /* relative error of a step; 0: not given */
   VEC(Output) outputs;
   double every;
   VEC(Monitor) monitors;
@@ -206,14 +207,14 @@ typedef struct {
   SymId time, pi;
   VEC(Coord) coords;
   VEC(State) states;
-  int first_order;         /* L is linear in all velocities: there are no coords, coordinates are states, velocities their rates */
+  int first_order;         /* L is linear in all velocities: coordinates are held in `states`, velocities are their rates */
   VEC(Param) params;
-  uint32_t nfixed;         /* how many of them are numbers */
+  uint32_t nfixed;         /* number of parameters with `fixed` set */
   VEC(Input) inputs;
   Expr kinetic, potential; /* 0 when L was given as a whole */
   Expr lagrangian;         /* 0 when the text declares no coordinates */
-  Expr across;             /* or 0: quadratic in rates that rotations never have, added to L for a regular mass matrix */
-  int lends;               /* constraints lend inertia to what has none: discrete Lagrangians need it, see mech/lend.h */
+  Expr across;             /* kinetic term in q.q' of each rotation, 0 on its constraint, which makes M regular; 0: none */
+  int lends;               /* add inertia along constraints to massless directions, for discrete Lagrangians: mech/lend.h */
   Span lagrangian_span;
   Span dissipation_span;
   Span kinetic_span;       /* empty when L was given as a whole */
@@ -227,88 +228,87 @@ typedef struct {
   VEC(Event) events;
   VEC(Output) observes;
   Scene scene;
-  VEC(FoundUnit) found;    /* names that were declared without a unit, where the equations tell it */
-  ExprMap written; /* comparisons and functions that may jump, as AstId */
-  SymId energy_sym; /* stands for the energy p q' - L in outputs and expects, until mech knows it */
+  VEC(FoundUnit) found;    /* inferred units of names declared without one */
+  ExprMap written; /* nodes that may jump (comparisons, sign, tan, atan2) -> AstId where the text writes them */
+  SymId energy_sym; /* placeholder for the energy p q' - L in outputs and expects, which mech replaces */
   Unit energy_unit;
-  struct Builder *builder; /* what model_reresolve needs */
+  struct Builder *builder; /* state for model_reresolve and the self-check */
 } Model;
 
-/* Built-in function i; NULL past the end. */
+/* Name of built-in function i; NULL past the end. */
 const char *function_name(size_t i);
 
 /* Appends a listing, for --dump=model. */
 void model_dump(const Model *m, StrBuf *out);
 
-/* The names of the scenes in the file, in order; one named "default" when there is none. */
+/* Names of the file's scenes, in order; "default" alone when there is none. */
 typedef struct {
   const Name *at;
   uint32_t n;
 } SceneList, EffectList, CoordList;
 SceneList model_scenes(const Ast *ast);
 
-/* Whether the file has this scene; if not, a message in its diags names the nearest. */
+/* 1 if the file has this scene; 0, reported with the nearest name, if not. */
 int model_has_scene(Ast *ast, const char *scene);
 
-/* The effects that no scene uses. */
+/* Names of the effects that no scene uses. */
 EffectList model_unused_effects(const Ast *ast);
 
-/* Warns of parameters, lets, inputs and functions of the model's own file that no expression in it mentions. */
+/* Warns of parameters, lets, inputs and functions of the model's main file that no expression uses. */
 void model_warn_unused(Ast *ast);
 
-/* The effects that contain an expectation or a symmetry; first NULL, when one stands outside of effects. */
+/* Names of the effects that contain an expectation or a symmetry; the first is NULL if the model itself contains one. */
 EffectList model_claiming_effects(const Ast *ast);
 
-/* An output that the command line asks for, and the name of its column. */
+/* An additional output from the command line, and the name of its column. */
 typedef struct {
   AstId expr;
   Name name;
 } Asked;
 
-/* What the command line gives an input: its name, and a formula or a text that names a table; or a rotation, omega(R), at the start. */
+/* An input, or the start of a rotation R or of omega(R), and its value from the command line: a formula, or the name of a table. */
 typedef struct {
   AstId what, value;
 } Given;
 
-/* A surface that the motion crosses, for a Poincare section: an event that changes nothing. */
+/* The surface of a Poincare section: an event without actions. */
 typedef struct {
-  AstId expr; /* 0: none is asked for */
+  AstId expr; /* its zero set; 0: no section */
   AstDirection direction;
   Name name;
 } Section;
 
-/* What to build a model for. */
+/* Arguments of model_build: scene, effects, and definitions from the command line. */
 typedef struct {
   const char *scene; /* NULL: the first */
-  Name also;         /* an effect to turn on besides the scene's own, with what it requires; or NULL */
-  int bare;          /* no scene at all: no effect but `also` is on */
-  const EffectList *only; /* these effects are in use, whatever the scene says; what it says of others, or by them, its outputs, monitors and
-                           * closed forms have no part in it. NULL: those of the scene */
+  Name also;         /* an effect to turn on besides the scene's, with its required effects; or NULL */
+  int bare;          /* build without a scene: no effect but `also` (and its requirements) is on */
+  const EffectList *only; /* the set of effects in use, instead of the scene's (a variant): values for other effects, outputs,
+                           * monitors and closed forms of the scene are dropped. NULL: the scene's effects */
   const Define *defines;
   uint32_t ndefines;
   const Asked *asked; /* outputs besides the scene's own */
   uint32_t nasked;
-  const Given *given; /* values that win over the scene's */
+  const Given *given; /* values that override the scene's */
   uint32_t ngiven;
   Section section;
-  const char *fix; /* parameters that become numbers, with the values that the scene gives them: "g,drag.c", "all"; NULL: none */
+  const char *fix; /* parameters to compile in as numbers, with the scene's values: "g,drag.c", "all"; NULL: none */
   int lends;       /* Model.lends */
-  int unfixed;     /* none, whatever the command line says */
+  int unfixed;     /* set by callers that ignore the command line's --fix */
 } ModelChoice;
 
-/* The names that `coord` declares, in order, whatever the order of L. */
+/* Names of all coordinates, in order of declaration, whether L is of first order or not. */
 CoordList model_coordinates(const Model *m);
 
-/* Builds the model. NULL when there were errors; they are in ast->diags, all of them. */
+/* Builds the model; NULL after errors, all of which are in ast->diags. Memory is ast->arena's. */
 Model *model_build(Ast *ast, const ModelChoice *choice);
 
-/* The expression `root` of the expectation x (or one inside it) once more, with its node `node`
- * standing for `with`; node 0: as it is written. 0 where that has no meaning (a stand-in under a
- * prime, say); nothing is reported. */
+/* Resolves the expression `root` of expectation x (or a part of it) again with its node `node` replaced by
+ * `with`; node 0: unchanged. 0 where the result has no meaning (a replacement under a prime, say); nothing is reported. */
 Expr model_reresolve(const Model *m, const Expect *x, AstId root, AstId node, Expr with);
 
-/* What the command line gives to `target` (0: to a time), as a number in its declared unit. 0, reported, when
- * the target is nothing that a run sets, or the value does not fit it. */
+/* Converts a value from the command line for `target` (0: a time) into a number in the target's declared unit, *digits as
+ * in base/digits.h or NULL. 0, reported, when a run cannot set the target, or the value does not fit it. */
 int model_setting(const Model *m, AstId target, AstId value, double *out, const char **digits);
 
 #endif

@@ -36,7 +36,7 @@ static void event(const Dump *d, const Event *ev) {
   if (ev->stop) sb_puts(d->out, "  stop\n");
 }
 
-/* A map a line, to first order. */
+/* One line per map: the coordinate and its first-order rate. */
 static void symmetry(const Dump *d, const Symmetry *y) {
   sb_printf(d->out, "symmetry %s(%s)\n", y->name, expr_symbol(d->m->g, y->parameter)->name);
   for (uint32_t i = 0; i < y->moves.n; i++) line(d, "  rate of", expr_symbol(d->m->g, y->moves.at[i].target)->name, NULL, y->moves.at[i].rate);

@@ -1,7 +1,7 @@
-/* What a scene wants watched: limits of drifts, of the energy and the charges of symmetries, which the runtime knows, and of outputs. */
+/* `monitor` statements: limits on the drift of the energy, of symmetries' charges, and of outputs. */
 #include "model/builder.h"
 
-/* A limit for what has one already takes its place. */
+/* Adds a monitor; a second limit for the same quantity replaces the first. */
 static void add_monitor(Builder *b, Monitor mon) {
   Scene *sc = &b->m->scene;
   for (uint32_t i = 0; i < sc->monitors.n; i++)
@@ -12,7 +12,7 @@ static void add_monitor(Builder *b, Monitor mon) {
   vec_push(b->arena, &sc->monitors, mon);
 }
 
-/* `monitor exact 1e-6`: all that have a closed form. */
+/* `monitor exact 1e-6`: monitors the error of every closed form. */
 static void monitor_exact(Builder *b, Monitor mon, Span span) {
   Scene *sc = &b->m->scene;
   mon.absolute = 1;
@@ -26,7 +26,7 @@ static void monitor_exact(Builder *b, Monitor mon, Span span) {
   diag_help(b->diags, "`exact q = ...` gives one");
 }
 
-/* The charge that is named: 0 the energy, k + 1 that of symmetry k; -1: none. */
+/* Charge named by x: 0 the energy, k + 1 the charge of symmetry k; -1: none. */
 static int charge_named(Builder *b, const AstExpr *x) {
   const Entity *e = NULL;
   int ambiguous;

@@ -1,7 +1,7 @@
-/* What a scene puts out: numbers, all components of vectors, all members of families. */
+/* Outputs of a scene: one column per number, per component of a vector, per member of a family. Names and units of columns. */
 #include "model/builder.h"
 
-/* The entity that an output names, without its indices, components and primes; or NULL. */
+/* Entity at the stem of an output, ignoring indices, component and primes; or NULL. */
 static const Entity *named(Builder *b, const Target *p) {
   const AstExpr *x = ast_expr(b->ast, p->stem);
   int ambiguous;
@@ -24,7 +24,7 @@ const Unit *entity_unit(const Builder *b, const Entity *e) {
   return NULL;
 }
 
-/* The unit that an output is shown in: a name's own, otherwise that of its dimension, which is settled last. */
+/* Unit of an output: the name's declared unit, otherwise none yet: settle_units derives it from the dimension. */
 static Unit output_unit(Builder *b, const Entity *e, uint32_t primes, Dim dim) {
   const Unit *own = e ? entity_unit(b, e) : NULL;
   Unit u = own && own->text[0] ? *own : (Unit){.factor = num_int(1), .offset = num_int(0), .text = ""};
@@ -50,7 +50,7 @@ void drop_outputs(Builder *b) {
   b->outputs = (Scope){.arena = b->arena};
 }
 
-/* The place of an output; it is added when its label is not there. from: what it is in the text. */
+/* Index of the output with this label; adds it if there is none. from: its expression in the text. */
 static int add_one(Builder *b, Name label, Span span, Unit unit, Expr value, const OutputText *from) {
   const Entity *there = scope_own(&b->outputs, label, NULL);
   if (there) return (int)there->index;
@@ -58,7 +58,7 @@ static int add_one(Builder *b, Name label, Span span, Unit unit, Expr value, con
   return push_output(b, &o);
 }
 
-/* stem, stem', stem.x' */
+/* "stem", "stem'", "stem.x'" */
 static Name label_of(Builder *b, const char *stem, int part, uint32_t primes) {
   StrBuf s = strbuf(b->arena);
   sb_puts(&s, stem);
@@ -67,7 +67,7 @@ static Name label_of(Builder *b, const char *stem, int part, uint32_t primes) {
   return intern(b->ast->names, sb_text(&s));
 }
 
-/* A number, or each component; the place of the first, -1 where there are more. */
+/* Adds a number, or each component of a vector. Index of the number's output; -1 for a vector. */
 static int add_value(Builder *b, const char *stem, uint32_t primes, const Entity *e, Span span, const Value *v, OutputText from) {
   Unit unit = output_unit(b, e, primes, v->dim);
   show_spin(b, v, &unit);
@@ -80,7 +80,7 @@ static int add_value(Builder *b, const char *stem, uint32_t primes, const Entity
   return -1;
 }
 
-/* All members of a family that is named without index. */
+/* Adds all members of a family that is named without index. */
 static void add_family(Builder *b, AstId id, const Target *p, const Entity *e) {
   Span span = ast_expr(b->ast, id)->span;
   int64_t at[2] = {e->lo[0], e->lo[1]};
@@ -103,7 +103,7 @@ int add_error(Builder *b, const Exact *x, Span span) {
   return add_one(b, intern_printf(b, "error(%s)", x->name), span, unit_of_difference(&x->unit), e, &(OutputText){0});
 }
 
-/* exact(q), error(q): in the unit of q, vectors by components, which are called as they would be by themselves. */
+/* 1 for exact(q) or error(q), unless the model declares a function of that name. */
 static int is_closed_form(Builder *b, const AstExpr *x) {
   int ambiguous;
   if (x->kind != AST_CALL || !x->args || (strcmp(x->name, "exact") != 0 && strcmp(x->name, "error") != 0)) return 0;
@@ -111,6 +111,7 @@ static int is_closed_form(Builder *b, const AstExpr *x) {
   return !e || e->kind != ENT_FUNCTION;
 }
 
+/* Adds exact(q) or error(q) in the unit of q; components of a vector get the names that they have by themselves. */
 static int add_closed_form(Builder *b, AstId id, Name label) {
   const AstExpr *x = ast_expr(b->ast, id);
   AstId arg = x->args;
@@ -142,7 +143,7 @@ int add_outputs(Builder *b, AstId id) {
   Value v = resolve(b, id, IN_OUTPUT, NULL);
   if (!v.e) return -1;
   const Entity *shown = e;
-  if (e && p.indices) { /* by the member's name, whatever its index was written like */
+  if (e && p.indices) { /* label from the index's value, not from how it is written */
     IndexRange r;
     if (!resolve_indices(b, p.indices, NULL, &r)) return -1;
     if (e->kind == ENT_LET || e->kind == ENT_OBSERVE) shown = find_member(b, e, r.lo);

@@ -1,6 +1,7 @@
+/* Resolves an expression of an expectation again with one node replaced: the trial edits of corrections. Contract: model.h. */
 #include "model/builder.h"
 
-/* What a node turned into something else would have the user told is of no interest. */
+/* Messages about the edited expression are dropped. */
 Expr model_reresolve(const Model *m, const Expect *x, AstId root, AstId node, Expr with) {
   Builder *b = m->builder;
   if (x->elsewhere) return 0;

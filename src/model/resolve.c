@@ -1,10 +1,9 @@
-/* Expressions: Ast -> graph, with shapes and dimensions checked on the way.
+/* Expressions: Ast -> expression graph, with checks of shapes and dimensions.
  *
- * The nodes of an expression are contiguous and children come first, so evaluation is one loop from
- * the first to the last. The body of a sum is run through once for each value of its index; a branch
- * of an `if` whose condition is known is skipped. All that is kept of this stands in an Eval, so an
- * evaluation that comes to a definition without a value waits on a stack until it has one: neither
- * nesting nor chains of definitions use the C stack. */
+ * Ast nodes of an expression are contiguous, children first, so evaluation is one loop over them. The body of a sum is
+ * repeated for each value of its index; a branch of an `if` with a known condition is skipped. The whole state is an Eval:
+ * an evaluation that needs an unevaluated definition is suspended on an explicit stack, so neither nesting nor chains of
+ * definitions use the C stack. */
 #include <math.h>
 
 #include "base/digits.h"
@@ -12,10 +11,10 @@
 #include "model/resolve_impl.h"
 #include "sym/eval.h"
 
-/* --- what is not evaluated node by node --- */
+/* --- nodes that their parents evaluate --- */
 
-/* Marks the left operands that continue a chain of the same kind of operator: it is built as one sum
- * (or product), so that a sum of a million terms costs one sort. */
+/* Marks a left operand with the same kind of operator: a chain becomes one n-ary sum (or product), so a sum of a
+ * million terms costs one sort. */
 static void mark_chain(Eval *ev, const AstExpr *x) {
   if (x->a == ev->b->stand_in) return;
   AstKind left = ast_expr(ev->b->ast, x->a)->kind;
@@ -36,14 +35,14 @@ static void mark_branches(Eval *ev, AstId id, const AstExpr *x) {
   guard(ev, id, no);
 }
 
-/* The names before an index or a dot stand for nothing by themselves: th[2], drag.c, drag.c[2]. */
+/* Marks names before an index or a dot, which have no value by themselves: th[2], drag.c, drag.c[2]. */
 static void mark_name(Eval *ev, const AstExpr *x) {
   const AstExpr *of = ast_expr(ev->b->ast, x->a);
   int effects = x->kind == AST_INDEX && of->kind == AST_MEMBER && ast_expr(ev->b->ast, of->a)->kind == AST_NAME;
   if (of->kind == AST_NAME || effects) ev->open[x->a - ev->first] = 1;
 }
 
-/* The name of a constraint stands for nothing but itself: lambda(rod), lambda(rod[2]), lambda(drag.rod). */
+/* Marks names of constraints, which have no value: lambda(rod), lambda(rod[2]), lambda(drag.rod). */
 static void mark_constraint(Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "lambda") != 0 || !x->args || own_function(ev, x)) return;
   for (AstId i = x->args; i; i = ast_expr(ev->b->ast, i)->next) {
@@ -85,7 +84,7 @@ static Value node_value(Eval *ev, AstId id) {
     case AST_UNIT: return unit_value(ev, x);
     case AST_CALL: return call_value(ev, x);
     case AST_AT: return start_value(ev, *value_of(ev, x->a), x->span, value_of(ev, x->b));
-    case AST_SUM: case AST_PRODUCT: return *value_of(ev, id); /* its loop left it there */
+    case AST_SUM: case AST_PRODUCT: return *value_of(ev, id); /* set by loop_begin or loop_next */
     case AST_NUM: case AST_NEG: case AST_ADD: case AST_SUB: case AST_MUL: case AST_DIV: case AST_POW: case AST_LT:
     case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE: case AST_NOT: case AST_AND: case AST_OR:
     case AST_TUPLE: return operator_value(ev, id);
@@ -107,7 +106,7 @@ static int takes_vectors(const Eval *ev, const AstExpr *x) {
     case AST_NEG: case AST_ADD: case AST_SUB: case AST_MUL: case AST_DIV: case AST_PRIME: case AST_UNIT:
     case AST_MEMBER: case AST_SUM: case AST_AT: return 1;
     case AST_CALL: return call_takes_vectors(ev, x);
-    default: return 0; /* everything else is of numbers */
+    default: return 0; /* all other nodes take numbers */
   }
 }
 
@@ -116,7 +115,7 @@ int operand_fits(Eval *ev, const AstExpr *x, AstId i) {
   const Value *v = value_of(ev, i);
   int logic = x->kind == AST_NOT || x->kind == AST_AND || x->kind == AST_OR;
   int is_if = x->kind == AST_CALL && strcmp(x->name, "if") == 0;
-  int is_foreign_if = x->kind == AST_CALL && has_word(FOREIGN_CHOICES, x->name) && !own_function(ev, x); /* it is reported as such */
+  int is_foreign_if = x->kind == AST_CALL && has_word(FOREIGN_CHOICES, x->name) && !own_function(ev, x); /* call_value reports the function */
   if (v->condition && !logic && !(is_if && i == x->args) && !is_foreign_if) {
     report_condition(b, i);
     return 0;
@@ -136,14 +135,14 @@ int operand_fits(Eval *ev, const AstExpr *x, AstId i) {
 
 static int operands_fit(Eval *ev, const AstExpr *x) {
   AstId at[3] = {x->a, x->b, x->args};
-  if (x->kind == AST_ADD || x->kind == AST_SUB || x->kind == AST_MUL || x->kind == AST_DIV) return 1; /* by their chain */
+  if (x->kind == AST_ADD || x->kind == AST_SUB || x->kind == AST_MUL || x->kind == AST_DIV) return 1; /* checked by judge_sum, judge_product */
   for (int k = 0; k < 3; k++)
     for (AstId i = at[k]; i; i = k == 2 ? ast_expr(ev->b->ast, i)->next : 0)
       if (!operand_fits(ev, x, i)) return 0;
   return 1;
 }
 
-/* Whether `bad` is true of a number of the node itself. */
+/* 1 if `bad` holds for a numeric node, or for a number among the direct arguments of a sum or product. */
 static int has_number(const ExprGraph *g, Expr e, int (*bad)(Num n)) {
   ExprOp op = expr_op(g, e);
   if (op == EX_NUM) return bad(expr_number(g, e));
@@ -157,7 +156,7 @@ static int has_number(const ExprGraph *g, Expr e, int (*bad)(Num n)) {
 
 static int is_infinite(Num n) { return !isfinite(num_value(n)); }
 
-/* Numbers beyond the range of a double, and those of which rounding leaves nothing, are refused where they arise. */
+/* Refuses values that contain a number beyond the range of doubles, or one that rounding has destroyed. */
 static Value usable_value(Eval *ev, const AstExpr *x, Value v) {
   for (uint32_t k = 0; v.e && k < parts_of(&v); k++) {
     if (has_number(ev->b->g, v.at[k], is_infinite)) {
@@ -176,7 +175,7 @@ static Value usable_value(Eval *ev, const AstExpr *x, Value v) {
 
 /* --- the loop --- */
 
-/* Node pc begins the body of a sum, or a branch: where to go on. 0: the body's nodes are next. */
+/* Called at the first node of a sum's body or of a branch: the node to jump to; 0: continue at pc. */
 static AstId enter(Eval *ev, AstId construct) {
   const Ast *ast = ev->b->ast;
   const AstExpr *x = ast_expr(ast, construct);
@@ -192,7 +191,7 @@ static AstId enter(Eval *ev, AstId construct) {
   return taken ? 0 : ast_expr(ast, no)->first;
 }
 
-/* 1 when the root has its value; 0 when a definition is needed first. */
+/* Evaluates from pc on. 1: the root has its value; 0: suspended, a definition is needed first. */
 static int run(Eval *ev) {
   Builder *b = ev->b;
   while (ev->pc <= ev->root) {
@@ -208,7 +207,7 @@ static int run(Eval *ev) {
       if (b->domains && v.e) v.domain = domain_of_node(ev, i, &v);
       *value_of(ev, i) = v;
     }
-    /* The end of a body: once more, or on to its sum. */
+    /* End of a sum's body: next index value, or on to the sum. */
     if (ev->loops.n && ast_expr(b->ast, ev->loops.at[ev->loops.n - 1].construct)->c == i && loop_next(ev)) {
       ev->pc = ast_expr(b->ast, i)->first;
       continue;
@@ -251,7 +250,7 @@ static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
   return ev;
 }
 
-/* The let, the observable, or the function that an instance is of. */
+/* Definition of a let, an observable, or the function of an instance. */
 static Definition *definition(Builder *b, EntKind kind, uint32_t index) {
   if (kind == ENT_FUNCTION) return &b->functions.at[b->instances.at[index]->function];
   return kind == ENT_LET ? &b->lets.at[index] : &b->observes.at[index];
@@ -274,7 +273,7 @@ static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
   return ev;
 }
 
-/* The value of a let is a definition, or one for each component: `r.x`. */
+/* Wraps the value of a let in a definition node, one per component: `r.x`. */
 static void finish_let(Builder *b, Definition *d, Value v) {
   for (uint32_t k = 0; v.e && k < parts_of(&v); k++) {
     Name name = v.n ? intern_printf(b, "%s.%c", d->name, part_letter(v.n, k)) : d->name;
@@ -283,7 +282,7 @@ static void finish_let(Builder *b, Definition *d, Value v) {
   d->value = v;
 }
 
-/* A bug; but nothing a user wrote is left out in silence. */
+/* Internal error: an expression failed without a message. */
 static void report_silence(Builder *b, AstId id) {
   if (!b->diags->errors)
     diag_error(b->diags, ast_expr(b->ast, id)->span, "internal error: `%s` has no value, and no reason is known", ast_short(b, id));
@@ -352,7 +351,7 @@ static Value evaluate(Builder *b, AstId id, Context where, Name effect) {
   Eval *ev = begin(b, id, where, effect);
   vec_push(b->arena, &stack, ev);
   run_all(b, &stack);
-  return *value_of(ev, id); /* nothing was begun since */
+  return *value_of(ev, id); /* valid: ev is on the free list, but not reused yet */
 }
 
 Value resolve(Builder *b, AstId id, Context where, Name effect) {
@@ -364,9 +363,9 @@ Value resolve(Builder *b, AstId id, Context where, Name effect) {
   return FAILED;
 }
 
-/* --- values for something with a unit --- */
+/* --- values assigned to names with units --- */
 
-/* pi/2 given to a name in degrees: it takes their unit, as 90 does, and is hardly meant so. */
+/* Warns of pi/2 assigned to a name in degrees: a bare number takes the unit, here pi/2 degrees. */
 static void warn_degrees(Builder *b, const Value *v, Span span, const Unit *unit) {
   if (v->n || expr_is_num(b->g, v->e) || !unit->text[0] || dim_found(b->dims, unit->dim) != DIM_NONE) return;
   if (num_is_one(unit->factor) && !unit->pi_power) return;

@@ -1,4 +1,5 @@
-/* Function calls: the built-in functions, if, d(expr, name), and the user's own. */
+/* Function calls: built-in functions of numbers and vectors, if, d(expr, name); others are dispatched to resolve_function.c
+ * (user functions), rotation.c, constraint.c (lambda) and resolve_exact.c. */
 #include "base/suggest.h"
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
@@ -72,7 +73,7 @@ static Value call_binary(Eval *ev, const AstExpr *x, ExprOp op) {
   return a_value(note_written(ev, x, expr_fn2(b->g, op, v->e, w->e)), op == EX_ATAN2 ? DIM_NONE : dim, v->bare && w->bare);
 }
 
-/* A branch that is not taken was not looked at. */
+/* With a constant condition the other branch was not evaluated (see enter in resolve.c). */
 static Value call_if(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   if (!arity_is(ev, x, 3)) return FAILED;
@@ -94,7 +95,7 @@ static Value call_if(Eval *ev, const AstExpr *x) {
 
 /* --- vectors --- */
 
-/* The two arguments of dot and cross; 0, reported, when they are no vectors of one shape. */
+/* The arguments of dot and cross; 0, reported, unless they are two vectors of one shape. */
 static int two_vectors(Eval *ev, const AstExpr *x, const Value **v, const Value **w) {
   Builder *b = ev->b;
   if (!arity_is(ev, x, 2)) return 0;
@@ -123,13 +124,13 @@ static Value call_dot(Eval *ev, const AstExpr *x) {
   return a_value(dot(ev->b->g, v, w), dim_mul(ev->b->dims, v->dim, w->dim), v->bare && w->bare);
 }
 
-/* Component k of v x w, in the plane of the other two. */
+/* v_i w_j - v_j w_i */
 static Expr cross_part(ExprGraph *g, const Value *v, const Value *w, int i, int j) {
   Expr a = expr_mul(g, v->at[i], w->at[j]), c = expr_mul(g, v->at[j], w->at[i]);
   return expr_sub(g, a, c);
 }
 
-/* Of vectors in a plane the cross product is a number. */
+/* Cross product; a number for plane vectors. */
 static Value call_cross(Eval *ev, const AstExpr *x) {
   ExprGraph *g = ev->b->g;
   const Value *v, *w;
@@ -164,7 +165,7 @@ static int is_local(const Symbol *s, const void *data) {
   return s->kind == SYM_LOCAL;
 }
 
-/* d(x, t) is 0, where somebody may have meant x'. */
+/* Warns of d(x, t) = 0, where x' may have been meant. */
 static void warn_no_rate(Eval *ev, const AstExpr *x, const Value *derivative) {
   Builder *b = ev->b;
   const AstExpr *of = ast_expr(b->ast, x->args), *by = ast_expr(b->ast, of->next);
@@ -211,7 +212,7 @@ static Value call_sqrt(Eval *ev, const AstExpr *x) {
   return a_value(expr_sqrt(ev->b->g, v->e), dim_pow(ev->b->dims, v->dim, num_ratio(1, 2)), v->bare);
 }
 
-/* What moves in `th(0)`, which is written like a call; NULL: it is none. */
+/* The coordinate, state or let in `th(0)`, which the parser takes for a call; or NULL. */
 static const Entity *called_motion(const Eval *ev, const AstExpr *x) {
   int ambiguous;
   const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, &ambiguous);
@@ -219,7 +220,7 @@ static const Entity *called_motion(const Eval *ev, const AstExpr *x) {
   return moves && list_length(ev->b, x->args) == 1 ? e : NULL;
 }
 
-/* `F(t)`, as time-dependent quantities are written on paper. */
+/* 1 for `F(t)`, the notation of paper for time-dependent quantities. */
 static int is_of_time(const Eval *ev, const AstExpr *x) {
   const AstExpr *argument = x->args ? ast_expr(ev->b->ast, x->args) : NULL;
   return argument && argument->kind == AST_NAME && strcmp(argument->name, "t") == 0 && list_length(ev->b, x->args) == 1;

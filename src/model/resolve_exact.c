@@ -1,14 +1,14 @@
-/* Closed forms to compare with: `exact th = th(0)*cos(w*t)`, and what outputs say of them: `exact(th)`, `error(th)`.
+/* Closed forms, `exact th = th(0)*cos(w*t)`, and their outputs `exact(th)`, `error(th)`.
  *
- * A closed form is made of t, parameters, inputs and values at the start. While it is resolved, a value at the start is
- * a symbol of its own, so that a coordinate that stands for itself is found and refused; once that is done, the
- * coordinates in a closed form are those at the start. In outputs, exact(th) is a symbol of the kind of inputs, which
- * stands behind those of the model: the runtime evaluates it as it does them. */
+ * A closed form contains t, parameters, inputs and start values. While it is resolved, each start value th(0) is a local
+ * symbol, so that th itself can be refused; then the locals are replaced by coordinates, which in a finished closed form
+ * mean start values. In outputs, exact(th) is a symbol of kind SYM_INPUT numbered after the model's inputs: the runtime
+ * evaluates closed forms like inputs. */
 #include "model/resolve_impl.h"
 
 /* --- values at the start --- */
 
-/* What each symbol is at the start; and back, what stands for the start's values. */
+/* Declares the local symbols th(0), and the substitutions at_start (th -> th(0)) and from_start (back). */
 static void start_symbols(Builder *b) {
   const Model *m = b->m;
   if (b->at_start) return;
@@ -90,7 +90,7 @@ const Exact *find_exact(const Builder *b, Expr e) {
   return NULL;
 }
 
-/* A difference of angles, between -pi and pi. */
+/* Angle e reduced to -pi..pi. */
 static Expr wrapped(ExprGraph *g, Expr e) {
   Expr s = expr_fn(g, EX_SIN, e), c = expr_fn(g, EX_COS, e);
   return expr_fn2(g, EX_ATAN2, s, c);

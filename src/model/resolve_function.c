@@ -1,6 +1,5 @@
-/* Calls of the model's own functions. A body is evaluated once for each choice of shapes of its arguments, with
- * symbols in their place and with dimensions that are unknown; a call puts its arguments in, and what the body
- * has told of the unknowns judges their units. */
+/* Calls of user functions. A body is evaluated once per choice of argument shapes, with local symbols and unknown dimensions
+ * as arguments (an Instance); a call substitutes its arguments, and checks their dimensions against those inferred from the body. */
 #include "model/resolve_impl.h"
 
 const Value *function_argument(const Builder *b, const Instance *function, Name name) {
@@ -17,7 +16,7 @@ static uint32_t count_args(const Builder *b, const Definition *f) {
   return n;
 }
 
-/* Symbols for an argument: one, or one a component. */
+/* Declares the symbols of an argument, one per component. */
 static Value new_argument(Builder *b, Instance *in, Name name, uint32_t shape) {
   Value v = {.n = shape, .dim = b->unitless ? DIM_ANY : dim_unknown(b->dims, name)};
   for (uint32_t k = 0; k < parts_of(&v); k++) {
@@ -53,7 +52,7 @@ Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes) {
   return in;
 }
 
-/* The place of the instance for these shapes, made where there is none. */
+/* Index of the instance for these shapes; appends one if there is none. */
 static uint32_t find_instance(Builder *b, uint32_t function, uint32_t nargs, const uint32_t *shapes, Span call) {
   for (uint32_t k = 0; k < b->instances.n; k++) {
     const Instance *in = b->instances.at[k];
@@ -85,7 +84,7 @@ static void report_argument(Eval *ev, const AstExpr *x, const Instance *in, uint
   if (dim_cause(b->dims, in->args[i].dim, &c)) diag_also(b->diags, c.why, "because of this");
 }
 
-/* Puts the dimensions of the arguments in place of the unknowns; 0, reported, when the body contradicts. */
+/* with[i] := dimension of argument i; 0, reported, where the body requires another one. */
 static int bind_dims(Eval *ev, const AstExpr *x, const Instance *in, Dim *with) {
   Builder *b = ev->b;
   AstId arg = x->args;
@@ -94,7 +93,7 @@ static int bind_dims(Eval *ev, const AstExpr *x, const Instance *in, Dim *with) 
   arg = x->args;
   for (uint32_t i = 0; i < in->nargs && !b->unitless; i++, arg = ast_expr(b->ast, arg)->next) {
     Dim own = in->args[i].dim, found = dim_found(b->dims, own);
-    if (found == own) continue; /* the body tells nothing of it */
+    if (found == own) continue; /* the body does not determine it */
     Dim want = dim_replace(b->dims, found, in->first_unknown, in->nargs, with);
     if (dim_equate(b->dims, with[i], want, ast_expr(b->ast, arg)->span)) continue;
     report_argument(ev, x, in, i, arg, want);
@@ -103,7 +102,7 @@ static int bind_dims(Eval *ev, const AstExpr *x, const Instance *in, Dim *with) 
   return 1;
 }
 
-/* How often the body differentiates the symbols first .. n - 1 of an argument: 0, 1 or 2 times. */
+/* Highest time derivative in which the body contains symbols first .. n - 1: 0, 1 or 2. */
 static uint32_t order_of(const Builder *b, const Instance *in, uint32_t first, uint32_t n) {
   uint32_t order = 0;
   for (uint32_t i = in->nplain; i < in->symbols.n; i++)
@@ -112,7 +111,7 @@ static uint32_t order_of(const Builder *b, const Instance *in, uint32_t first, u
   return order;
 }
 
-/* What stands for the symbols of an instance: the arguments, and their rates where the body has them.
+/* with[] := values for the symbols of an instance: arguments, and their rates where the body contains them.
  * 0, reported, when an argument has no rate. */
 static int bind_symbols(Eval *ev, const AstExpr *x, const Instance *in, Expr *with) {
   uint32_t n = 0;
@@ -162,13 +161,13 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
 
 /* --- functions that nothing calls --- */
 
-/* Shapes number k of n arguments: 0 0, 2 0, 3 0, 0 2, ... */
+/* Choice k of n argument shapes, counted in base 3: 0 0, 2 0, 3 0, 0 2, ... */
 static void take_shapes(uint32_t k, uint32_t n, uint32_t *shapes) {
   static const uint32_t kinds[] = {0, 2, 3};
   for (uint32_t i = 0; i < n; i++, k /= 3) shapes[i] = kinds[k % 3];
 }
 
-/* What a try in vain has left: instances that failed, and whose messages were not heard. */
+/* Removes the instances of a failed trial. */
 static void forget_instances(Builder *b, uint32_t n) {
   while (b->instances.n > n) {
     const Instance *in = b->instances.at[--b->instances.n];

@@ -1,20 +1,20 @@
-/* One evaluation of an expression, shared by the files resolve*.c only. */
+/* State of an evaluation of an expression (Eval), and the functions that evaluate its nodes; included by this folder only. */
 #ifndef LAGC_RESOLVE_IMPL_H
 #define LAGC_RESOLVE_IMPL_H
 
 #include "model/builder.h"
 
-/* A sum or a product whose body is being evaluated, once for each value of its index. */
+/* A `sum` or `product` in progress: its body is evaluated once per index value. */
 typedef struct {
   AstId construct;
   int64_t at, hi;
-  uint32_t base; /* its first term in Eval.terms */
+  uint32_t base; /* index of its first term in Eval.terms */
 } Loop;
 
-/* An operand of a chain of + and -, or of * and /. */
+/* Operand of a chain of + and -, or of * and /. */
 typedef struct {
   AstId at;
-  int inverted; /* subtracted, or divided by */
+  int inverted; /* a subtrahend, or a divisor */
 } Operand;
 
 typedef struct Eval Eval;
@@ -22,26 +22,26 @@ struct Eval {
   Builder *b;
   Context where;
   Name effect;
-  const Instance *function;   /* whose arguments are in scope, or NULL */
-  EntKind kind;               /* what is being defined: ENT_LET, ENT_FUNCTION; ENT_NONE: nothing */
-  uint32_t definition;        /* its place in b->lets, or in b->instances */
-  IndexVars index;            /* of the sums around, and of the definition */
+  const Instance *function;   /* the instance whose arguments are in scope, or NULL */
+  EntKind kind;               /* definition being evaluated: ENT_LET, ENT_OBSERVE, ENT_FUNCTION; ENT_NONE: none */
+  uint32_t definition;        /* its index in b->lets, b->observes or b->instances */
+  IndexVars index;            /* indices of the definition and of enclosing sums */
   int in_statement;           /* the indices of b->index are in scope too */
-  int waiting;                /* for b->needed */
+  int waiting;                /* suspended until b->needed has a value */
   AstId first, root, pc;
   uint32_t cap;
-  Value *value;        /* of node first + i */
-  unsigned char *open; /* node first + i is gathered by its parent, or nobody's business */
-  AstId *guarded;      /* the sum, product or `if` whose body or branch begins at node first + i, or 0 */
+  Value *value;        /* [i] value of node first + i */
+  unsigned char *open; /* [i] node first + i is skipped: its parent reads it (chain operand, name before an index) */
+  AstId *guarded;      /* [i] the sum, product or `if` whose body or branch begins at node first + i, or 0 */
   VEC(Loop) loops;
-  VEC(Value) terms;    /* of all open loops */
-  uint32_t rounds;     /* of all loops so far */
+  VEC(Value) terms;    /* terms of all loops in progress */
+  uint32_t rounds;     /* body evaluations so far, all loops together */
   VEC(Operand) operands;
 };
 
 static const Value FAILED = {0};
 
-/* The value of something that is a number, not a condition. */
+/* A scalar value that is not a condition. */
 static inline Value a_value(Expr e, Dim dim, int bare) { return (Value){.e = e, .dim = dim, .bare = bare}; }
 
 /* Number of components. */
@@ -49,24 +49,23 @@ static inline uint32_t parts_of(const Value *v) { return v->n ? v->n : 1; }
 
 static inline Value *value_of(const Eval *ev, AstId id) { return &ev->value[id - ev->first]; }
 
-/* check_units.c: whether two values may be added, reported where they may not; a demand for a pure number
- * (an angle is one), `what` asks for it; whether what the node makes of temperatures in degC has a meaning. */
+/* check_units.c, each 0 and reported on failure: two values may be added; a value is a pure number (angles are), as `what`
+ * requires; node x may have a temperature in degC as operand. refuse_point reports such an operand; 0. */
 int operands_agree(Eval *ev, Span span, AstId x, AstId y);
 int need_pure(Eval *ev, AstId arg, const char *what);
 int point_fits(Eval *ev, const AstExpr *x, AstId operand);
 int refuse_point(Eval *ev, AstId operand, const char *why);
 
-/* Whether the value of an operand can stand in x: a condition in a condition, and first in `if`; a vector
- * where vectors are taken; reported where it cannot. */
+/* 1 if the value's type suits node x: conditions in logic and first in `if`, vectors where x takes vectors; 0, reported. */
 int operand_fits(Eval *ev, const AstExpr *x, AstId operand);
 
-/* Whether two values have the same shape; reported where they have not. */
+/* 1 if two values have the same shape; 0, reported, if not. */
 int same_shape(Eval *ev, Span span, AstId x, AstId y);
 
-/* e, which x stands for: noted in Model.written, where it may jump and is new there. */
+/* Returns e, the value of x, and records x in Model.written the first time a node that may jump appears. */
 Expr note_written(Eval *ev, const AstExpr *x, Expr e);
 
-/* The value of a number, an operator, or a tuple. */
+/* Value of a number, an operator, or a tuple. */
 Value operator_value(Eval *ev, AstId id);
 Value power_value(Eval *ev, const AstExpr *x, AstId base_id, AstId exp_id);
 void report_condition(Builder *b, AstId id);
@@ -76,69 +75,69 @@ Value name_value(Eval *ev, const AstExpr *x);
 Value index_value(Eval *ev, const AstExpr *x);
 Value member_value(Eval *ev, const AstExpr *x);
 
-/* The argument called `name`, when a function's body is evaluated; otherwise NULL. */
+/* Argument `name` of the function whose body is being evaluated, or NULL. */
 const Value *function_argument(const Builder *b, const Instance *function, Name name);
 
-/* Lets the evaluation wait for a let, or an instance of a function, which is begun when it returns. When that
- * is already being evaluated it is defined by itself, which is reported. */
+/* Suspends the evaluation until a let, an observable or a function instance has a value. If that one is in progress, the
+ * definition is circular: reported. */
 void wait_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span);
 
-/* resolve_function.c: an instance of a function, at the end of b->instances, for arguments of these shapes (0: a
- * number, 2, 3), not evaluated yet; resolve_instance evaluates it. */
+/* resolve_function.c: appends an instance of a function for argument shapes 0 (number), 2, 3 to b->instances, without
+ * evaluating it; resolve_instance evaluates it, too. */
 Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes);
 const Instance *resolve_instance(Builder *b, uint32_t function, const uint32_t *shapes);
 
-/* Its body has the value v; an error in it is said to be one of the call. */
+/* Stores the value of an instance's body; an error in the body is attributed to the call. */
 void finish_instance(Builder *b, Instance *in, Value v);
 
-/* Gives the arguments of an instance symbols for their rates. */
+/* Declares symbols for first and second rates of an instance's arguments. */
 void need_rates(Builder *b, Instance *in);
-/* A call of a function of the model's own. */
+/* Value of a call of a user function. */
 Value call_function(Eval *ev, const AstExpr *x, const Entity *e);
 
-/* The function of the model's own that x calls, or NULL. */
+/* The user function that x calls, or NULL. */
 const Entity *own_function(const Eval *ev, const AstExpr *x);
 
-/* rotation.c: turns by q, then by p; the vector that q makes of v of three components; R as a value, from its first coordinate. */
+/* rotation.c: product p q (rotation by q, then by p); vector v rotated by q; rotation coordinate as a value. */
 Value rotation_product(Builder *b, const Value *p, const Value *q);
 Value rotation_turn(Builder *b, const Value *q, const Value *v);
 Value rotation_coordinate(const Builder *b, uint32_t coord);
 
-/* omega(R), turn(axis, angle), transpose(R); their names, NULL past the end. */
+/* Value of omega(R), turn(axis, angle), transpose(R); their names, NULL past the end. */
 Value rotation_function(Eval *ev, const AstExpr *x);
 int call_is_of_rotation(Name name);
 const char *rotation_function_name(size_t i);
 
-/* Reports a rotation, written `text`, where it has no meaning; FAILED. */
+/* Reports the misuse of a rotation, written `text`; returns FAILED. */
 typedef enum {
   TURN_SUM, TURN_NEGATION, TURN_DIVISOR, TURN_SCALED, TURN_BEHIND, TURN_PLANE, TURN_PRIME, TURN_UNIT, TURN_EQUATION, TURN_VALUE, TURN_NUMBER
 } TurnMistake;
 Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why);
 
-/* constraint.c: c = 0, of dimension dim. */
+/* constraint.c: appends the constraint c = 0 of dimension dim, with its multiplier. */
 void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span);
 
-/* constraint.c: lambda(NAME), the multiplier of a constraint; of a constraint of vectors a vector. */
+/* constraint.c: value of lambda(NAME), the constraint's multiplier; a vector for a vector constraint. */
 Value multiplier_value(Eval *ev, const AstExpr *x);
 
-/* The number an index expression stands for, or 0, reported. */
+/* Converts the value of an index expression to an integer; 0, reported, if it is none. */
 int whole_number(Builder *b, const Value *v, AstId id, int64_t *out);
 
-/* Sums and products: starts one whose range is known (0: nothing to do, its value is there), takes
- * the value of its body in (1: the body once more), and gives its value. */
+/* `sum` and `product`: loop_begin evaluates the range and starts a loop (0: empty or wrong range, the value is set);
+ * loop_next appends the body's value as a term (1: next index; 0: end, the value is set). */
 int loop_begin(Eval *ev, AstId id);
 int loop_next(Eval *ev);
 
-/* resolve_exact.c: v at the time `when`, which is the start; exact(q) and error(q), where they have a meaning. */
+/* resolve_exact.c: v at the start (`when` must be 0); exact(q) and error(q) in outputs. */
 Value start_value(Eval *ev, Value v, Span span, const Value *when);
-void report_start(Builder *b, Span span); /* where it has none */
+void report_start(Builder *b, Span span); /* a start value outside of `exact` */
 int call_is_exact(const Eval *ev, Name name);
 Value exact_value(Eval *ev, const AstExpr *x);
 
-/* A name without an index. */
+/* Value of a name without index; a family is reported. */
 Value whole_value(Eval *ev, const Entity *e, Span span);
 
-/* domain.c: where node id, of value v, has a real value; where the derivatives of a value exist besides. */
+/* domain.c: condition under which node id, of value v, is real; condition under which a value is differentiable. */
 Expr domain_of_node(const Eval *ev, AstId id, const Value *v);
 Expr domain_of_derivative(const Builder *b, const Value *of);
 
@@ -147,13 +146,13 @@ Value time_derivative(Builder *b, Value of, Span span, Context where);
 Value unit_value(Eval *ev, const AstExpr *x);
 Expr times_unit(Builder *b, Expr e, const Unit *u);
 
-/* Whether a function takes vectors. */
+/* 1 if a function accepts vectors or rotations. */
 int call_takes_vectors(const Eval *ev, const AstExpr *x);
 
-/* Whether a call has so many arguments; reported when it has not. */
+/* 1 if a call has `want` arguments; 0, reported, if not. */
 int arity_is(Eval *ev, const AstExpr *x, uint32_t want);
 
-/* The value of an AST_CALL. */
+/* Value of a function call. */
 Value call_value(Eval *ev, const AstExpr *x);
 
 #endif

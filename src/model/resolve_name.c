@@ -1,4 +1,4 @@
-/* Names in expressions: what they stand for, members of families, components, parts of effects. */
+/* Names in expressions: indices, arguments, built-in quantities (energy, T, V, p_x), declared names, members of families, components. */
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
 
@@ -40,7 +40,7 @@ static Value defined_value(Eval *ev, const Entity *e, Span span) {
   return FAILED;
 }
 
-/* --- what a name stands for --- */
+/* --- values of names --- */
 
 static const char *place_text(Context where) {
   switch (where) {
@@ -71,7 +71,7 @@ static SymId symbol_of(const Model *m, EntKind kind, uint32_t index) {
   return m->inputs.at[index].sym;
 }
 
-/* The value of a name, or of member `at` of a family. */
+/* Value of a plain name, or of member `at` of a family. */
 static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span span) {
   Builder *b = ev->b;
   if (e->kind == ENT_NONE) return FAILED;
@@ -114,7 +114,7 @@ Value whole_value(Eval *ev, const Entity *e, Span span) {
   return FAILED;
 }
 
-/* lagrangian, energy, T, V: what the model itself defines, unless it declares the name otherwise. */
+/* lagrangian, energy, T, V in outputs and claims, unless the model declares the name; 0: not one of them. */
 static int builtin_quantity(Eval *ev, Name name, Value *out) {
   Builder *b = ev->b;
   Model *m = b->m;
@@ -129,7 +129,7 @@ static int builtin_quantity(Eval *ev, Name name, Value *out) {
   return 1;
 }
 
-/* The coordinate that `p_x` is the momentum of; NULL: it is none, or something is called so. */
+/* The coordinate x of a momentum name `p_x`; NULL if there is none, or a declaration takes the name. */
 static const Entity *momentum_of(const Eval *ev, Name name) {
   int ambiguous;
   Builder *b = ev->b;
@@ -152,7 +152,7 @@ static Value momentum_value(const Eval *ev, const Entity *e, const int64_t *at) 
   return r;
 }
 
-/* The innermost index of that name, or NULL. */
+/* Innermost index variable of that name, or NULL. */
 static const IndexVar *find_index(const Eval *ev, Name name) {
   for (uint32_t i = ev->index.n; i-- > 0;)
     if (ev->index.at[i].name == name) return &ev->index.at[i];
@@ -187,7 +187,7 @@ Value name_value(Eval *ev, const AstExpr *x) {
 
 /* --- members of families --- */
 
-/* " (i = 1, j = 3)": the values of the indices around. */
+/* " where i = 1, j = 3": values of the enclosing indices. */
 static const char *indices_text(Eval *ev) {
   StrBuf s = strbuf(ev->b->arena);
   const IndexVars *sets[2] = {&ev->b->index, &ev->index};
@@ -203,7 +203,7 @@ static int in_range(const Entity *e, const int64_t *at) {
   return 1;
 }
 
-/* "`th[0]` does not exist: th has the members 1..3" */
+/* Reports an index out of range, with the range. */
 static void report_range(Builder *b, const Entity *e, const int64_t *at, Span span, const char *where) {
   StrBuf s = strbuf(b->arena);
   for (int k = 0; k < e->ndims; k++) sb_printf(&s, "%s%lld..%lld", k ? ", " : "", (long long)e->lo[k], (long long)e->hi[k]);
@@ -286,7 +286,7 @@ static Value component(Eval *ev, const AstExpr *x, Value v) {
   return FAILED;
 }
 
-/* drag.c: a parameter of an effect; r.x: a component. */
+/* drag.c, a name of an effect, or r.x, a component. */
 Value member_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const AstExpr *left = ast_expr(b->ast, x->a);

@@ -1,4 +1,4 @@
-/* Operators: numbers, sums, products, powers, conditions, tuples; and sum(...), product(...). */
+/* Operators: sums, products, powers, comparisons, logic, tuples; and sum(...), product(...) over an index. */
 #include "model/resolve_impl.h"
 
 /* --- shapes --- */
@@ -19,7 +19,7 @@ int same_shape(Eval *ev, Span span, AstId x, AstId y) {
 
 /* --- chains of two operators --- */
 
-/* The operands of a left-leaning chain (+ and -, or * and /), left to right, in ev->operands. */
+/* Collects the operands of a left-leaning chain (+ and -, or * and /) into ev->operands, left to right. */
 static void chain(Eval *ev, AstId id, AstKind inverse) {
   Builder *b = ev->b;
   AstId at = id;
@@ -39,14 +39,14 @@ static void chain(Eval *ev, AstId id, AstKind inverse) {
   }
 }
 
-/* The sum of b->scratch, which is emptied. */
+/* Sum of b->scratch, which is emptied. */
 static Expr add_scratch(Builder *b) {
   Expr e = expr_add_n(b->g, b->scratch.at, b->scratch.n);
   b->scratch.n = 0;
   return e;
 }
 
-/* 20 [degC] + 5 [K], T - 20 [degC]: first in a sum, or subtracted once. */
+/* 1 if operand i, in degC, is first in the sum, 20 [degC] + 5 [K], or the one subtracted, T - 20 [degC]; 0, reported. */
 static int point_in_sum(Eval *ev, uint32_t i) {
   uint32_t subtracted = 0;
   for (uint32_t k = 0; k <= i; k++) subtracted += ev->operands.at[k].inverted && value_of(ev, ev->operands.at[k].at)->point;
@@ -54,10 +54,10 @@ static int point_in_sum(Eval *ev, uint32_t i) {
   return refuse_point(ev, ev->operands.at[i].at, "cannot be added to a temperature");
 }
 
-/* Shape, dimension and bareness of a sum; 0, reported, when its operands do not go together. */
+/* Shape and dimension of a sum, and whether it is bare; 0, reported, when operands differ. */
 static int judge_sum(Eval *ev, const AstExpr *x, Value *r) {
   Builder *b = ev->b;
-  AstId measure = 0; /* the operand that settles the dimension */
+  AstId measure = 0; /* the operand that determines the dimension */
   *r = (Value){.dim = DIM_ANY, .bare = 1};
   for (uint32_t i = 0; i < ev->operands.n; i++)
     if (!operand_fits(ev, x, ev->operands.at[i].at) || !value_of(ev, ev->operands.at[i].at)->e) return 0;
@@ -99,13 +99,13 @@ static Value sum_value(Eval *ev, AstId id) {
   return r;
 }
 
-/* What the factors of a product are. */
+/* Kinds of a product's factors. */
 typedef struct {
-  uint32_t vector;         /* the place of the one that is a vector, or UINT32_MAX */
-  uint32_t turns, numbers; /* how many are rotations, and numbers */
+  uint32_t vector;         /* index of the vector factor, or UINT32_MAX */
+  uint32_t turns, numbers; /* number of rotations, and of numbers */
 } Factors;
 
-/* Rotations stand before the vector that they turn, and are multiplied by nothing else. */
+/* A rotation must stand before the vector it turns, and never in a divisor. */
 static int rotation_fits(Eval *ev, uint32_t i, const Factors *f) {
   Builder *b = ev->b;
   Operand o = ev->operands.at[i];
@@ -114,7 +114,7 @@ static int rotation_fits(Eval *ev, uint32_t i, const Factors *f) {
   return 0;
 }
 
-/* One factor may be a vector; nothing is divided by one. */
+/* A product has at most one vector, and no divisor is a vector or zero. */
 static int factor_fits(Eval *ev, uint32_t i, const Value *r) {
   Builder *b = ev->b;
   Operand o = ev->operands.at[i];
@@ -133,7 +133,7 @@ static int factor_fits(Eval *ev, uint32_t i, const Value *r) {
   return 1;
 }
 
-/* 2*pi/86164 [rad/s]: the unit belongs to the divisor, and people who divide numbers mean the quotient. `r` is what stands before it. */
+/* Warns of 2*pi/86164 [rad/s]: the unit binds to the divisor, but the quotient's was probably meant. r: the product so far. */
 static void warn_unit_of_divisor(Eval *ev, const Operand *o, const Value *r) {
   Builder *b = ev->b;
   const AstExpr *u = ast_expr(b->ast, o->at), *quotient = u + 1; /* a parent follows its last child */
@@ -174,7 +174,7 @@ static int judge_product(Eval *ev, const AstExpr *x, Value *r, Factors *f) {
   return 0;
 }
 
-/* What the rotations among the factors make of the vector, or, where there is none, together. */
+/* The vector factor turned by the product of the rotations, or that product itself if there is no vector. */
 static Value turned_value(Eval *ev, const Factors *f) {
   Builder *b = ev->b;
   Value q = {0};
@@ -342,7 +342,7 @@ int loop_begin(Eval *ev, AstId id) {
   return 1;
 }
 
-/* The terms of the innermost loop go together: shape, dimension, bareness of the whole. */
+/* Shape and dimension of sum(...) or product(...) from its terms, and whether it is bare; 0, reported, when terms differ. */
 static int judge_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr *x, Value *r) {
   Builder *b = ev->b;
   int product = x->kind == AST_PRODUCT;

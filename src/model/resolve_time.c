@@ -1,8 +1,8 @@
-/* Time derivatives, and units written behind a value. */
+/* Time derivatives (primes), and units written after a value. */
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
 
-/* Those of the arguments of functions: each becomes its rate. */
+/* Seeds for arguments of functions: each symbol's rate. */
 static void local_seeds(const Builder *b, Expr *seed) {
   for (uint32_t i = 0; i < b->instances.n; i++) {
     const Instance *in = b->instances.at[i];
@@ -11,7 +11,7 @@ static void local_seeds(const Builder *b, Expr *seed) {
   }
 }
 
-/* What each symbol becomes under d/dt. All symbols that move are declared before anything is derived. */
+/* Time derivative of each symbol (0: constant), cached until symbols are added. */
 static const Expr *time_seeds(Builder *b) {
   if (b->seeds && b->nseeds == expr_symbol_count(b->g)) return b->seeds;
   b->nseeds = expr_symbol_count(b->g);
@@ -30,7 +30,7 @@ static const Expr *time_seeds(Builder *b) {
   return seed;
 }
 
-/* Whether it has symbols whose rates are not known: the energy, charges, second rates of arguments. */
+/* 1 if v contains a symbol without a known rate: the energy, a charge, a second rate of an argument. */
 static int has_no_rate(Builder *b, const Value *v) {
   const Expr *seed = time_seeds(b);
   ExprList l = expr_topo(b->g, v->at, parts_of(v));
@@ -39,7 +39,7 @@ static int has_no_rate(Builder *b, const Value *v) {
   return 0;
 }
 
-/* What kinds of symbols an expression contains, as bits 1 << SymKind. */
+/* Kinds of symbols in a value, as bits 1 << SymKind. */
 static unsigned kinds_in(Builder *b, const Value *v) {
   unsigned kinds = 0;
   for (uint32_t i = 0; i < parts_of(v); i++) kinds |= expr_kinds(b->g, v->at[i]);
@@ -76,7 +76,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
   Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};
   const Expr *seed = time_seeds(b);
   expr_tangent(b->g, of.at, parts_of(&of), seed, b->nseeds + 1, "'", &b->rates, r.at);
-  if (b->m->first_order) return r; /* rates are velocities; what has those of states was refused before L was known */
+  if (b->m->first_order) return r; /* rates are velocities; rates of true states were refused in the first build */
   if (where < IN_OBSERVE && kinds_in(b, &r) & second && !(kinds_in(b, &r) & 1u << SYM_ACC)) {
     diag_error(b->diags, span, "the rate of a state may stand only in `expect`, `observe` and `output`");
     diag_help(b->diags, "write what its flow says: a `let` may stand for both");

@@ -1,6 +1,6 @@
-/* Rotations: a coordinate that is a unit quaternion q = (w, x, y, z), which turns vectors of a body's frame into space. What is made of
- * coordinates, `turn(axis, angle)`, products and `transpose` has length 1 where the constraint holds that belongs to the coordinate;
- * formulas are those of unit quaternions, polynomials that have no pole, and are never divided by the length.
+/* Rotations: a coordinate is a unit quaternion q = (w, x, y, z), which turns vectors of the body frame into space. Coordinates,
+ * `turn(axis, angle)`, products and `transpose` have length 1 on the constraint q.q = 1; the formulas assume it: polynomials without
+ * poles, never divided by the length.
  *
  * Sources: W.R. Hamilton (1843); the rotation of a vector, v + 2 u x (u x v + w v) with q = (w, u), O. Rodrigues, J. Math. Pures Appl. 5 (1840) 380;
  * the rates of q and the angular velocity in the body's frame, A. Cayley, Camb. Math. J. 3 (1843) 224: q' = q (0, omega)/2. */
@@ -10,7 +10,7 @@
 
 /* --- quaternions --- */
 
-/* a1 b1 + s (a2 b2 + a3 b3 + a4 b4), of products written in pairs. */
+/* a1 b1 + s (a2 b2 + a3 b3 + a4 b4) for pairs = (a1, b1, ..., a4, b4). */
 static Expr four(ExprGraph *g, const Expr *pairs, int s) {
   Expr term[4];
   for (int k = 0; k < 4; k++) {
@@ -40,7 +40,7 @@ Value rotation_product(Builder *b, const Value *p, const Value *q) {
   return r;
 }
 
-/* u x v of two vectors of three components. */
+/* out = u x v */
 static void cross3(ExprGraph *g, const Expr *u, const Expr *v, Expr *out) {
   for (int k = 0; k < 3; k++) {
     int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -68,13 +68,13 @@ Value rotation_turn(Builder *b, const Value *q, const Value *v) {
   return r;
 }
 
-/* 2 (p conj) r, without its first part: of a unit quaternion and its rates the angular velocity. */
+/* Angular velocity in the body frame: vector part of 2 conj(q) q'. */
 void rotation_spin(Builder *b, const Value *q, const Value *rates, Expr *w) {
   Value back = conjugate(b, q), product = rotation_product(b, &back, rates);
   for (int k = 0; k < 3; k++) w[k] = expr_scale(b->g, num_int(2), product.at[k + 1]);
 }
 
-/* q (0, w). */
+/* Product q (0, w) with a pure quaternion. */
 static Value times_vector(Builder *b, const Value *q, const Expr *w) {
   Value pure = {.n = ROTATION, .at = {expr_int(b->g, 0), w[0], w[1], w[2]}};
   return rotation_product(b, q, &pure);
@@ -86,7 +86,7 @@ Value rotation_rates(Builder *b, const Value *q, const Expr *w) {
   return r;
 }
 
-/* The work of a torque, torque.omega = 2 torque.(conj(q) q'), is this times q'. */
+/* Generalised force 2 q (0, torque): its product with q' is the power torque.omega. */
 Value torque_force(Builder *b, const Value *q, const Value *torque) {
   Value r = times_vector(b, q, torque->at);
   for (int k = 0; k < ROTATION; k++) r.at[k] = expr_scale(b->g, num_int(2), r.at[k]);
@@ -96,7 +96,7 @@ Value torque_force(Builder *b, const Value *q, const Value *torque) {
 
 /* --- functions of the language --- */
 
-/* An argument that must be a rotation; NULL, reported, where it is none. */
+/* The only argument, which must be a rotation; NULL, reported, if not. */
 static const Value *rotation_argument(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   if (!arity_is(ev, x, 1)) return NULL;
@@ -126,7 +126,7 @@ static Value transpose_value(Eval *ev, const AstExpr *x) {
   return q ? conjugate(ev->b, q) : FAILED;
 }
 
-/* turn(axis, angle): (cos a/2, sin a/2 n). The axis need not have length 1. */
+/* turn(n, a) = (cos a/2, sin a/2 n/|n|) */
 static Value turn_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   ExprGraph *g = b->g;
@@ -179,7 +179,7 @@ Value rotation_function(Eval *ev, const AstExpr *x) {
   return FAILED;
 }
 
-/* --- what has no meaning --- */
+/* --- misuse of rotations --- */
 
 static const char *const out_of[] = {
   [TURN_SUM] = "products of rotations are rotations, sums are none: `R*S` turns by S, then by R",
@@ -246,8 +246,8 @@ void hold_rotation(Builder *b, Name name, uint32_t coord, Span span) {
   b->m->constraints.at[b->m->constraints.n - 1].inside = 1;
 }
 
-/* The inertia of L in the rates of a rotation, summed over the four, where the rotation is none and all else is at rest at 0: four times the
- * trace of the inertia tensor. 0 where it is not a constant that is known to be positive. */
+/* Trace of the 4x4 mass matrix of a rotation's rates at the identity, all else 0: four times the trace of the inertia
+ * tensor. 0 unless it is a constant known to be positive. */
 static Expr traced_inertia(Builder *b, uint32_t coord) {
   const Model *m = b->m;
   ExprGraph *g = b->g;
@@ -264,7 +264,7 @@ static Expr traced_inertia(Builder *b, uint32_t coord) {
   return expr_kinds(g, trace) & ~fixed || expr_sign(g, trace) != SIGN_POSITIVE ? 0 : trace;
 }
 
-/* A third of the trace: what a spherical top has in all directions. */
+/* Adds (trace/6) (q.q')^2 per rotation: the inertia trace/3 of a spherical top in the direction of q. */
 void add_rotation_inertia(Builder *b) {
   Model *m = b->m;
   ExprGraph *g = b->g;

@@ -1,4 +1,5 @@
-/* Scenes: which statements are active, and what a scene says of a run. */
+/* Scenes: selection of the active statements, inheritance by `like`, and the settings of a run: values, start, span, tolerance,
+ * outputs, monitors. Later statements override earlier ones, except monitors, which accumulate. */
 #include <math.h>
 
 #include "model/builder.h"
@@ -22,7 +23,7 @@ int model_has_scene(Ast *ast, const char *scene) {
   return 0;
 }
 
-/* The scene and those it is like, the farthest ancestor first; NULL-terminated. */
+/* The scene and its `like` ancestors, the farthest ancestor first; NULL-terminated. A cycle is reported. */
 static const AstStmt **scene_chain(Builder *b, const AstStmt *scene) {
   VEC(const AstStmt *) chain = {0};
   for (const AstStmt *s = scene; s;) {
@@ -81,7 +82,7 @@ static void take_model_name(Builder *b, const FileIndex *file) {
     }
 }
 
-/* Names and effects of the whole file, until nothing is wrong with them. */
+/* Checks names and effects of the whole file; skipped once they were found right. */
 static void check_file(Builder *b, FileIndex *file) {
   uint32_t before = b->diags->errors;
   if (file->is_sound) return;
@@ -125,8 +126,8 @@ void scene_select(Builder *b, const ModelChoice *choice) {
 
 /* --- the scene's contents --- */
 
-/* The parameter or input that `c` or `drag.c` names; in `use drag(c = 1)`, effect is drag, and only its
- * own count. Reported when it is none; NULL then. */
+/* Parameter or input called `c` or `drag.c`; in `use drag(c = 1)`, effect is drag, and only its own are searched.
+ * NULL, reported, if there is none. */
 static const Entity *find_settable(Builder *b, AstId id, Name effect) {
   const AstExpr *x = ast_expr(b->ast, id);
   const Entity *e = NULL;
@@ -151,7 +152,7 @@ static const Entity *find_settable(Builder *b, AstId id, Name effect) {
   return NULL;
 }
 
-/* `span = 20` sets a parameter of that name; where there is none, the statement was meant. */
+/* Reports `span = 20` where no parameter is called span: the statement `span 20` was meant. */
 static int advise_statement(Builder *b, const AstStmt *st) {
   static const char *const words[] = {"span", "tolerance", "method", "use", "like"};
   const AstExpr *l = ast_expr(b->ast, st->lhs);
@@ -263,7 +264,7 @@ static void scene_statement(Builder *b, const AstStmt *st) {
   }
 }
 
-/* Without an output statement: coordinates, velocities, states, energy. */
+/* Outputs of a scene without an output statement: coordinates, velocities, states, energy. */
 static void default_outputs(Builder *b) {
   Model *m = b->m;
   for (int velocities = 0; velocities < 2; velocities++)
@@ -286,7 +287,7 @@ static void default_outputs(Builder *b) {
 
 static int gives_value(const AstStmt *st) { return st->kind == STMT_SET || st->kind == STMT_START || st->kind == STMT_EXACT; }
 
-/* The effect whose own a statement gives a value to, in use or not; NULL: it is the model's. */
+/* The effect, in use or not, that declares the target of an assignment; NULL: the model itself. */
 static Name effect_given(Builder *b, const AstStmt *st) {
   int ambiguous;
   Target p = read_target(b, st->lhs);
@@ -302,7 +303,7 @@ static Name effect_given(Builder *b, const AstStmt *st) {
   return effect ? effect->name : NULL;
 }
 
-/* Statement st of scene *s of the chain. A mistake that it makes only in a scene that is like this one names both. */
+/* Applies statement st of scene *s of the chain. An error in an inherited statement also names the scene that inherits it. */
 static void apply_in_chain(Builder *b, const AstStmt *const *s, const AstStmt *st, void (*apply)(Builder *b, const AstStmt *st)) {
   uint32_t errors = b->diags->errors;
   apply(b, st);
@@ -311,7 +312,7 @@ static void apply_in_chain(Builder *b, const AstStmt *const *s, const AstStmt *s
   diag_also(b->diags, (*s)->name_span, "in the scene `%s`, which takes this over by `like`", (*s)->name);
 }
 
-/* Whether one of these scenes of the chain has columns of its own: they take the place of those before them. */
+/* 1 if one of the scenes from *s on has an output statement: its columns replace inherited ones. */
 static int shows_others(const AstStmt *const *s) {
   for (; *s; s++)
     for (const AstStmt *x = (*s)->body; x; x = x->next)
@@ -321,9 +322,8 @@ static int shows_others(const AstStmt *const *s) {
 
 static int is_shown(const AstStmt *st) { return st->kind == STMT_OUTPUT || st->kind == STMT_EXACT; }
 
-/* Whether what a statement says has no part in the run: it stands before a `use none`, or it is about an effect that is turned off, and
- * comes from a scene that uses it and that this one is like. A variant shows nothing; what
- * values of effects that are off would say is for the runtime to take from the scene itself. */
+/* 1 if a statement has no effect on the run: it precedes a `use none`, or it is inherited and sets a value of an effect that is
+ * off. A variant (ModelChoice.only) also drops outputs, closed forms and values with names of effects that are off. */
 static int is_dropped(Builder *b, const AstStmt *st, int before_none, int inherited) {
   if (st->kind == STMT_USE) return before_none;
   if (b->is_variant && is_shown(st)) return 1;
@@ -333,7 +333,7 @@ static int is_dropped(Builder *b, const AstStmt *st, int before_none, int inheri
   return effect && (before_none || ((inherited || b->is_variant) && !uses_effect(b, effect)));
 }
 
-/* The last such statement of the scene and those that it is like; NULL: there is none. */
+/* Last statement of the chain for which is() holds, or NULL. */
 static const AstStmt *last_of(const Builder *b, int (*is)(const AstStmt *st)) {
   const AstStmt *last = NULL;
   for (const AstStmt **s = b->chain; *s; s++)
@@ -342,7 +342,7 @@ static const AstStmt *last_of(const Builder *b, int (*is)(const AstStmt *st)) {
   return last;
 }
 
-/* Calls `apply` for the statements that have a part in the run. */
+/* Calls `apply` for all statements of the chain that are not dropped. */
 static void each_said(Builder *b, void (*apply)(Builder *b, const AstStmt *st)) {
   const AstStmt *none = last_of(b, is_use_none);
   int before = none != NULL;
@@ -355,7 +355,7 @@ static void each_said(Builder *b, void (*apply)(Builder *b, const AstStmt *st)) 
     }
 }
 
-/* Monitors of outputs add to these; `monitor none` drops those that were said before it. */
+/* Monitors accumulate along the chain, and add outputs; `monitor none` drops earlier ones. */
 static void set_monitors(Builder *b) {
   const AstStmt *none = last_of(b, is_monitor_none);
   int before = none != NULL;
@@ -366,7 +366,7 @@ static void set_monitors(Builder *b) {
     }
 }
 
-/* What the command line gives: a rotation at the start, or an input. */
+/* Applies a value from the command line: the start of a rotation or of its omega, or an input. */
 static void give(Builder *b, const Given *x) {
   int ambiguous;
   AstStmt st = {.lhs = x->what, .rhs = x->value, .span = ast_expr(b->ast, x->value)->span};
@@ -381,7 +381,7 @@ static void give(Builder *b, const Given *x) {
 void scene_build(Builder *b, const ModelChoice *choice) {
   Scene *sc = &b->m->scene;
   sc->t1 = 10;
-  each_said(b, exact_statement); /* outputs speak of closed forms, */
+  each_said(b, exact_statement); /* first, as outputs refer to closed forms */
   each_said(b, scene_statement);
   for (const AstStmt **s = b->chain; *s; s++)
     if ((*s)->doc) sc->doc = (*s)->doc;

@@ -1,6 +1,7 @@
+/* Symbol table: a chained hash table over interned names, newest entity first. Contract: scope.h. */
 #include "model/scope.h"
 
-/* Names are interned: their addresses are their hashes. */
+/* Names are interned, so the address is hashed. */
 static uint32_t *bucket(const Scope *s, Name name) { return &s->heads[(((uintptr_t)name >> 4) * 0x9e3779b97f4a7c15u >> 32) & (s->nheads - 1)]; }
 
 static const Entity *next_of(const Scope *s, uint32_t i, Name name) {
@@ -16,7 +17,7 @@ static void link_entity(Scope *s, uint32_t i) {
   *head = i + 1;
 }
 
-/* As many buckets as entities, at least. */
+/* Doubles the table, so that buckets are at least as many as entities. */
 static void make_buckets(Scope *s) {
   s->nheads = s->nheads ? 2 * s->nheads : 8;
   s->heads = ARENA_ARRAY(s->arena, uint32_t, s->nheads);

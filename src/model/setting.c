@@ -1,10 +1,10 @@
-/* Values from the command line: `th=90[deg]` in the unit that the simulator takes, th's own. */
+/* Values from the command line, `th=90[deg]`, converted to the unit that the simulator takes: the declared one. */
 #include <math.h>
 
 #include "model/builder.h"
 #include "sym/eval.h"
 
-/* The unit of the one number that x is: a coordinate, a velocity, a state, a parameter or an input. */
+/* Unit of the symbol x, a coordinate, velocity, state, parameter or input; 0: x is something else. */
 static int setting_unit(Builder *b, Expr x, Unit *unit) {
   const Model *m = b->m;
   const Symbol *s = x && expr_op(b->g, x) == EX_SYM ? expr_sym_of(b->g, x) : NULL;
@@ -20,7 +20,7 @@ static int setting_unit(Builder *b, Expr x, Unit *unit) {
   return 0;
 }
 
-/* x in SI, in a unit; what cancels does so exactly. */
+/* Converts x from SI to unit u, exactly in rationals up to the final rounding: 90 deg gives 90. */
 static double in_declared(Builder *b, Expr x, const Unit *u, const char **digits) {
   ExprGraph *g = b->g;
   Expr pi = expr_symbol(g, b->m->pi)->node;

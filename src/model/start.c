@@ -1,5 +1,5 @@
-/* Where a run starts: `start q = ...`, and the closed forms that a scene gives, `exact q = ...`. Rotations start by their four numbers;
- * how fast they turn, `start omega(R) = ...`, follows when the scene has said all. */
+/* Start values, `start q = ...`, and closed forms, `exact q = ...`. A rotation starts with its four quaternion components;
+ * `start omega(R) = ...` is converted to their rates after all statements of the scene, as it depends on the start of R. */
 #include "model/resolve_impl.h"
 
 typedef struct {
@@ -13,7 +13,7 @@ static SymId start_target(const Builder *b, const StartOf *of, uint32_t i) {
   return of->velocity ? b->m->coords.at[i].v : b->m->coords.at[i].q;
 }
 
-/* That of the name; of a velocity, per second: the same factor. */
+/* Unit of bare numbers: the coordinate's, per second for a velocity. */
 static const Unit *start_unit(Builder *b, uint32_t i, void *data) {
   StartOf *of = data;
   of->unit = of->kind == ENT_STATE ? b->m->states.at[i].unit : b->m->coords.at[i].unit;
@@ -42,7 +42,7 @@ static void give_closed_form(Builder *b, uint32_t i, Expr value, Span span, void
 
 static void give_spin(Builder *b, const AstStmt *st);
 
-/* `start th = 30` of an angle in rad: a whole number of more than a turn, as degrees are. */
+/* Warns of `start th = 30` for an angle in rad: an integer from 7 to 360 was probably meant in degrees. */
 static void warn_of_degrees(Builder *b, const Coord *q, AstId value) {
   const AstExpr *x = ast_expr(b->ast, value);
   if (x->kind == AST_NEG) x = ast_expr(b->ast, x->a);
@@ -52,8 +52,7 @@ static void warn_of_degrees(Builder *b, const Coord *q, AstId value) {
   diag_help(b->diags, "write %g [deg] where degrees are meant, and %g [rad] where not", v, v);
 }
 
-/* `start q = ...`, `exact q = ...`: what a coordinate, a velocity or a state is at the start, or always. With `start exactly`
- * constraints may not move it. */
+/* Reads `start q = ...` or `exact q = ...` for a coordinate, velocity or state. `start exactly`: constraints may not move it. */
 void set_motion(Builder *b, const AstStmt *st) {
   if (ast_expr(b->ast, st->lhs)->kind == AST_CALL) {
     give_spin(b, st);
@@ -134,9 +133,9 @@ Unit spin_unit(const Builder *b) {
   return (Unit){.dim = dim_per_second(b->dims, DIM_NONE), .factor = num_int(1), .offset = num_int(0), .text = "rad/s"};
 }
 
-/* Where values for angular velocities go: members are three numbers apart, as vectors are, and rotations four. */
+/* Target of values for omega(R): assign_values numbers them as vectors of 3 components, rotations have 4. */
 typedef struct {
-  uint32_t index; /* of the family's first rotation */
+  uint32_t index; /* first coordinate of the family's first rotation */
   Unit unit;
 } SpinOf;
 
@@ -178,7 +177,7 @@ static void give_spin(Builder *b, const AstStmt *st) {
 
 static int starts(const Builder *b, SymId s) { return b->start_of && b->start_of[s]; }
 
-/* What the scene says of a rotation's start, 1 where it says nothing of w; of length 1. */
+/* Start of a rotation as a unit quaternion: normalised start values, by default the identity. */
 static Value start_of_rotation(Builder *b, uint32_t coord) {
   Value q = {.n = ROTATION};
   Expr square[ROTATION];

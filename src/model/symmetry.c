@@ -1,6 +1,6 @@
-/* Symmetries: `symmetry spin(s): x -> x*cos(s) - y*sin(s), y -> x*sin(s) + y*cos(s)`, one transformation of coordinates and time
- * that is the identity at s = 0. What the model keeps is what it does to first order in s, its generator; the rest of it has no
- * part in the theorem. Its name stands for its charge in outputs. */
+/* Symmetries: `symmetry spin(s): x -> x*cos(s) - y*sin(s), y -> x*sin(s) + y*cos(s)`, a transformation of coordinates and time that is
+ * the identity at s = 0. The model keeps its generator only, the first-order part in s, which is all that Noether's theorem needs.
+ * In outputs, the symmetry's name means its charge. */
 #include <float.h>
 #include <math.h>
 
@@ -10,10 +10,10 @@
 #include "sym/prove.h"
 #include "sym/simplify.h"
 
-/* "wind.gust" */
+/* Name with its effect: "wind.gust". */
 static Name full_name(Builder *b, Name name, Name effect) { return effect ? intern_printf(b, "%s.%s", effect, name) : name; }
 
-/* The group parameter's name: one, and nothing else's. NULL, reported, where it is not. */
+/* Name of the group parameter; NULL, reported, if there are two, or the model declares the name. */
 static Name parameter_name(Builder *b, const AstStmt *st, Name effect) {
   const AstExpr *s = ast_expr(b->ast, st->args);
   int ambiguous;
@@ -29,7 +29,7 @@ static Name parameter_name(Builder *b, const AstStmt *st, Name effect) {
   return NULL;
 }
 
-/* Whether its charge would stand for something that each model has already. */
+/* 1, reported, for the reserved names `energy` and `exact`. */
 static int is_taken(Builder *b, const AstStmt *st) {
   int energy = strcmp(st->name, "energy") == 0;
   if (!energy && strcmp(st->name, "exact") != 0) return 0;
@@ -59,11 +59,11 @@ typedef struct {
   Builder *b;
   Symmetry *of;
   const AstStmt *map;
-  Span target; /* what the map names */
+  Span target; /* left side of the map */
   EntKind kind;
 } Mapping;
 
-/* What a transformation of points may be made of. */
+/* 1 if the transformed coordinate depends on coordinates, t and parameters only (a point transformation); 0, reported. */
 static int is_of_points(const Mapping *p, Expr to, Span span) {
   Builder *b = p->b;
   const Model *m = b->m;
@@ -80,7 +80,7 @@ static int is_of_points(const Mapping *p, Expr to, Span span) {
   return 0;
 }
 
-/* The name of the rotation that has the coordinate; NULL: it is none's. Of its four numbers one speaks for all. */
+/* Name of the rotation that a coordinate belongs to, or NULL. */
 static Name rotation_of(const Builder *b, SymId target) {
   const Model *m = b->m;
   for (uint32_t i = 0; i < b->rotations.n; i++)
@@ -91,7 +91,7 @@ static Name rotation_of(const Builder *b, SymId target) {
   return NULL;
 }
 
-/* Whether the map is the identity at s = 0. */
+/* 1 if the map is proved to be the identity at s = 0; 0, reported. */
 static int begins_at_identity(const Mapping *p, SymId target, Expr to, Span span) {
   Builder *b = p->b;
   Expr zero = expr_int(b->g, 0), start = expr_replace(b->g, to, &p->of->parameter, &zero, 1), own = expr_symbol(b->g, target)->node;
@@ -114,7 +114,7 @@ static int begins_at_identity(const Mapping *p, SymId target, Expr to, Span span
   return 0;
 }
 
-/* (to(h) - to(0))/h at a state; NaN where it has no value. */
+/* Difference quotient (to(h) - to(0))/h at a state; NaN where `to` has no value. */
 static long double quotient(const Mapping *p, Expr to, long double h, long double at_zero, long double *symbols) {
   SymId s = p->of->parameter;
   long double bound;
@@ -124,11 +124,11 @@ static long double quotient(const Mapping *p, Expr to, long double h, long doubl
   return (value - at_zero) / h;
 }
 
-/* Whether the difference quotients go to the rate from both sides; seen at random states. Of |s| they stay away by the same, of
- * s^(3/2) there are none below 0, and of sqrt(s) the rate is not finite. */
+/* 1 if difference quotients at random states converge to the rate from both sides, so that the map is differentiable at s = 0.
+ * Fails for |s| (no convergence), s^(3/2) (no value below 0) and sqrt(s) (infinite rate). */
 static int has_rate(const Mapping *p, Expr to, Expr rate) {
-  enum { STATES = 6, TRIES = 64 }; /* of some maps, as x + s*sqrt(k), random parameters make nothing */
-  volatile long double one = 1; /* valgrind reckons long doubles as doubles */
+  enum { STATES = 6, TRIES = 64 }; /* some maps, like x + s*sqrt(k), have no value at many random states */
+  volatile long double one = 1; /* valgrind computes long doubles as doubles */
   const long double epsilon = one + LDBL_EPSILON > one ? LDBL_EPSILON : DBL_EPSILON;
   const long double coarse = 1e-3L, fine = sqrtl(epsilon), rounding = 100 * epsilon / fine;
   ExprGraph *g = p->b->g;
@@ -138,7 +138,7 @@ static int has_rate(const Mapping *p, Expr to, Expr rate) {
     prove_state(g, seed, symbols);
     symbols[p->of->parameter] = 0;
     long double at_zero = prove_value(g, to, symbols, NULL, &bound), slope = prove_value(g, rate, symbols, NULL, &bound);
-    if (!isfinite(at_zero)) continue; /* the map has no value at that place at all */
+    if (!isfinite(at_zero)) continue; /* the map has no value at this state */
     if (!isfinite(slope)) return 0;
     seen++;
     for (int side = -1; side <= 1; side += 2) {
@@ -193,7 +193,7 @@ static void give_target(Builder *b, uint32_t scalar, Expr value, Span span, void
   add_move(p, p->kind == ENT_STATE ? b->m->states.at[scalar].z : b->m->coords.at[scalar].q, value, span);
 }
 
-/* t -> ... */
+/* Adds the map of time, `t -> ...`. */
 static void map_time(Mapping *p, AstId rhs, Name effect) {
   Builder *b = p->b;
   Unit s = {.dim = b->dim_of.at[b->m->time], .factor = num_int(1), .offset = num_int(0), .text = "s"};
@@ -239,7 +239,7 @@ static void add_map(Builder *b, const AstStmt *st, Name effect, void *data) {
   assign_values(b, &target, e, st->lhs, st->rhs, &giver);
 }
 
-/* What moves nothing to first order in s has no charge. */
+/* Reports a generator that is zero: its charge would be 0. */
 static void check_moves(Builder *b, const Symmetry *y) {
   int good = 1, some = 0;
   for (uint32_t i = 0; i < y->moves.n; i++) {
@@ -255,7 +255,7 @@ void add_symmetry(Builder *b, const AstStmt *st, Name effect) {
   Symmetry *y = NULL;
   for (uint32_t i = 0; i < b->m->symmetries.n; i++)
     if (b->m->symmetries.at[i].stmt == st && b->m->symmetries.at[i].effect == effect) y = &b->m->symmetries.at[i];
-  if (!y) return; /* its name is another's: reported */
+  if (!y) return; /* its name was taken: reported */
   if (!b->m->lagrangian) {
     diag_error(b->diags, st->span, "a symmetry is one of the Lagrangian, and the model has none");
     return;

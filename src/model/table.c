@@ -1,10 +1,10 @@
-/* Tables: the file behind `input u = "file.csv"` becomes a spline.
+/* Tables: the file of `input u = "file.csv"` becomes a cubic spline (base/spline.h).
  *
- * A table has lines of numbers: time in s, value in the input's unit; blank lines and lines that begin with # do not
- * count. Between the numbers stand commas, semicolons, tabs or, where a table has none of these, blanks. A first line
- * whose first field is no number is a head: the column called `t` (or `time`) is the time, otherwise the first; the
- * one called like the input is the value, or, where there are only two, the other one. Two rows of one time are a jump. A head may state units, as lagc's
- * own output does: `t [s],u [N]`; they must be those of the input. Without a head the first two columns count. */
+ * A row has time in s, and value in the input's unit, separated by commas, semicolons, tabs or, in a table without these, blanks.
+ * Blank lines and lines that begin with # are skipped. A first line whose first field is not a number is a head: the time is the column
+ * `t` (or `time`), else the first; the value is the column named like the input, or, of two columns, the other one. A head may state
+ * units, as lagc's own output does: `t [s],u [N]`; they must be the input's. Without a head, columns 1 and 2 are read. Two rows with
+ * the same time are a jump. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,20 +17,20 @@ enum { TABLE_ROWS_MAX = 100000, TABLE_MISTAKES_MAX = 5 };
 typedef struct {
   Builder *b;
   Source file;
-  AstId id;          /* the text in the model that names the file */
+  AstId id;          /* the string in the model that names the file */
   const Input *in;
   Name stem;         /* the input's name without its effect */
   char separator;    /* ' ': any number of blanks */
   uint32_t time, value; /* columns, from 0 */
-  int begun;         /* the head, or the first row, is behind us */
-  int wrong_head;    /* every row would be wrong */
+  int begun;         /* the head or the first row was read */
+  int wrong_head;    /* error in the head: rows are not read */
   int mistakes;
-  double before;     /* the time of the row before, */
-  int jumped;        /* which is the second of its time */
-  VEC(double) numbers; /* time and value, row by row */
+  double before;     /* time of the previous row */
+  int jumped;        /* the previous row was the second one with its time */
+  VEC(double) numbers; /* time, value in SI, row by row */
 } Table;
 
-/* A piece of the file: offsets into its text. */
+/* Part of the file: offsets into its text. */
 typedef struct {
   uint32_t begin, end;
 } Piece;
@@ -48,7 +48,7 @@ static Piece trimmed(const Table *t, Piece p) {
   return p;
 }
 
-/* The quotes of a quoted field (RFC 4180) do not belong to it. */
+/* Removes blanks and the quotes of a quoted field (RFC 4180). */
 static Piece unquoted(const Table *t, Piece p) {
   const char *s = t->file.text;
   p = trimmed(t, p);
@@ -56,7 +56,7 @@ static Piece unquoted(const Table *t, Piece p) {
   return p;
 }
 
-/* The end of the field that begins at `at`. */
+/* End of the field that begins at `at`. */
 static uint32_t field_end(const Table *t, uint32_t at, uint32_t end) {
   int quoted = 0;
   for (; at < end; at++) {
@@ -67,7 +67,7 @@ static uint32_t field_end(const Table *t, uint32_t at, uint32_t end) {
   return at;
 }
 
-/* The field at *at, without what stands around it; *at moves to the next. 0: it is the last. */
+/* Field at *at, without blanks and quotes; advances *at to the next field. 0: it was the last. */
 static int next_field(const Table *t, Piece line, uint32_t *at, Piece *field) {
   uint32_t end = field_end(t, *at, line.end);
   *field = unquoted(t, (Piece){*at, end});
@@ -76,7 +76,7 @@ static int next_field(const Table *t, Piece line, uint32_t *at, Piece *field) {
   return end < line.end;
 }
 
-/* The number of fields of a line, and field `which`. */
+/* Number of fields of a line; *field is field `which`. */
 static uint32_t fields(const Table *t, Piece line, uint32_t which, Piece *field) {
   Piece any;
   uint32_t n = 0, at = line.begin;
@@ -91,7 +91,7 @@ static char find_separator(const Table *t, Piece line) {
   return ' ';
 }
 
-/* Decimal numbers only: what strtod takes beside them (inf, nan, 0x1p3) is a mistake here. */
+/* Parses a finite decimal number; other input of strtod (inf, nan, 0x1p3) is refused. */
 static int number(const Table *t, Piece p, double *x) {
   const char *text = text_of(t, p);
   char *end;
@@ -106,7 +106,7 @@ static void mistake(Table *t, Piece p, const char *what) {
 
 /* --- the head --- */
 
-/* Whether the head's field is called `name`; *unit is what stands in brackets behind it. */
+/* 1 if a field of the head is `name`, without unit; *unit is the text in brackets after it. */
 static int is_called(const Table *t, Piece field, const char *name, Piece *unit) {
   const char *s = t->file.text, *open = memchr(s + field.begin, '[', field.end - field.begin);
   Piece stem = {field.begin, open ? (uint32_t)(open - s) : field.end};
@@ -116,7 +116,7 @@ static int is_called(const Table *t, Piece field, const char *name, Piece *unit)
   return strlen(name) == stem.end - stem.begin && memcmp(s + stem.begin, name, stem.end - stem.begin) == 0;
 }
 
-/* The first column from `from` on that is called so, and its field; otherwise `none`. */
+/* First column called `name`, from column `from` on, and its field; `none` if there is none. */
 static uint32_t find_column(const Table *t, Piece line, uint32_t from, const char *name, uint32_t none, Piece *field) {
   Piece unit;
   uint32_t at = line.begin;
@@ -128,7 +128,7 @@ static uint32_t find_column(const Table *t, Piece line, uint32_t from, const cha
   return none;
 }
 
-/* What [text] means; reported, and of any dimension, when it is no unit. */
+/* Parses a unit of the head; reported, with DIM_ANY, when it is none. */
 static Unit unit_written(const Table *t, const char *text) {
   Builder *b = t->b;
   const char *whole = arena_printf(b->arena, "1 [%s]", text);
@@ -143,7 +143,7 @@ static int same_unit(const Table *t, const Unit *x, const Unit *y, Span why) {
   return dim_equate(t->b->dims, x->dim, y->dim, why) && num_equal(x->factor, y->factor) && x->pi_power == y->pi_power && num_equal(x->offset, y->offset);
 }
 
-/* A unit that the head states is the one that the model has for it, however it is written. want: NULL for a time. */
+/* Reports a unit in the head other than the input's (want), or seconds (want NULL); spelling does not matter. */
 static void check_unit(Table *t, Piece line, uint32_t column, const Unit *want, const char *whose) {
   Piece field, unit;
   fields(t, line, column, &field);
@@ -161,7 +161,7 @@ static void check_unit(Table *t, Piece line, uint32_t column, const Unit *want, 
   }
 }
 
-/* A name that two columns have would be a guess. */
+/* Reports a second column of the same name. */
 static void check_once(Table *t, Piece line, uint32_t column, const char *name) {
   Piece field;
   if (find_column(t, line, column + 1, name, UINT32_MAX, &field) == UINT32_MAX) return;
@@ -229,7 +229,7 @@ static void read_row(Table *t, Piece line) {
   }
   t->before = time;
   t->jumped = jumps;
-  if (jumps) time = nextafter(time, HUGE_VAL); /* the runtime goes over such a gap in no step */
+  if (jumps) time = nextafter(time, HUGE_VAL); /* no step of the runtime crosses such a gap */
   vec_push(t->b->arena, &t->numbers, time);
   vec_push(t->b->arena, &t->numbers, value * unit_factor(&t->in->unit) + num_value(t->in->unit.offset));
 }
@@ -266,7 +266,7 @@ static void read_lines(Table *t) {
 
 /* --- the file --- */
 
-/* The file, read once for all scenes. */
+/* Reads the file, once for all scenes. */
 static int open_table(Table *t, const char *path) {
   Builder *b = t->b;
   if (!*path) path = ".";
@@ -287,8 +287,8 @@ static int open_table(Table *t, const char *path) {
   return 0;
 }
 
-/* The lowest and the highest value of the curve between rows a and b, into lo and hi: where its slope is zero. With
- * x in [0, 1] the slope is chord + (h^2/6)((1 - 3(1-x)^2) m0 + (3x^2 - 1) m1), a parabola. */
+/* Widens *lo, *hi to the extrema of the cubic between rows a and b (time, value, second derivative), at the zeros of its
+ * slope. With x in [0, 1] the slope is chord + (h^2/6)((1 - 3(1-x)^2) m0 + (3x^2 - 1) m1), a parabola. */
 static void extremes(const double *a, const double *b, double *lo, double *hi) {
   double h = b[0] - a[0], m0 = a[2] * h * h / 6, m1 = b[2] * h * h / 6, chord = b[1] - a[1];
   double p = 3 * (m1 - m0), q = 6 * m0, r = chord - 2 * m0 - m1, root = sqrt(fmax(q * q - 4 * p * r, 0));
@@ -302,8 +302,8 @@ static void extremes(const double *a, const double *b, double *lo, double *hi) {
   }
 }
 
-/* Where rows lie far apart beside a jump, a cubic swings far beyond all values: hardly what was measured. (At a jump
- * between even rows it swings by an eighth of it.) */
+/* Warns of overshoot by more than half the range of values: a cubic overshoots where rows are sparse near a steep rise.
+ * (A step between equidistant rows overshoots by an eighth.) */
 static void warn_of_swings(const Table *t, const Spline *s) {
   double lo = s->row[0][1], hi = lo, low = lo, high = lo;
   for (uint32_t i = 0; i < s->n; i++) {
@@ -318,7 +318,7 @@ static void warn_of_swings(const Table *t, const Spline *s) {
   diag_help(t->b->diags, "a cubic swings where rows lie far apart beside a steep rise: add rows there, or make it a jump, two rows of one time");
 }
 
-/* A spline for each piece between two jumps. */
+/* Fits a spline to each piece between two jumps. */
 static int fit_pieces(Arena *a, double (*row)[3], uint32_t n) {
   for (uint32_t from = 0, to = 1; to <= n; to++) {
     if (to < n && row[to][0] != nextafter(row[to - 1][0], HUGE_VAL)) continue;
@@ -328,7 +328,7 @@ static int fit_pieces(Arena *a, double (*row)[3], uint32_t n) {
   return 1;
 }
 
-/* The rows with their second derivatives; NULL after an error. */
+/* The spline through all rows; NULL, reported, for fewer than two rows or an infinite curve. */
 static const Spline *fit(Table *t) {
   Builder *b = t->b;
   uint32_t n = t->numbers.n / 2;

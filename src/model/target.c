@@ -1,4 +1,4 @@
-/* Targets: what a scene gives values to. One statement may give them to a whole family. */
+/* Targets of assignments (`start`, `exact`, `param`, maps of symmetries): left sides, lists, and values for whole families. */
 #include "model/builder.h"
 
 Target read_target(const Builder *b, AstId id) {
@@ -64,7 +64,7 @@ static int report_count(Builder *b, const AstExpr *list, const char *what, const
   return 0;
 }
 
-/* A list of rows, each a list with a unit behind it or not. */
+/* Elements of a list of rows; each row is a list, with or without a unit of its own. */
 static int row_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out) {
   uint64_t rows = count_along(r, 0), columns = count_along(r, 1);
   if (count_list(b, list) != rows)
@@ -109,17 +109,17 @@ Value element_value(Builder *b, const Element *x, Context where, Name effect) {
   return v;
 }
 
-/* --- giving values --- */
+/* --- assignment --- */
 
 typedef struct {
   Builder *b;
   const Target *p;
   const Entity *e;
   const Giver *giver;
-  uint32_t parts;       /* of what is given: 0 is a number */
+  uint32_t parts;       /* components of the required value; 0: a number */
 } Assign;
 
-/* One value for member `at`. */
+/* Assigns a value to member `at`; 0 after an error. */
 static int give_member(const Assign *s, const int64_t *at, AstId id, Value v) {
   Builder *b = s->b;
   Span span = ast_expr(b->ast, id)->span;
@@ -144,7 +144,7 @@ IndexRange entity_range(const Entity *e) {
   return r;
 }
 
-/* The ranges that the indices give, inside those of the entity. 0, reported, when they do not fit. */
+/* Ranges of the target's indices (none: the whole family); 0, reported, when they do not fit the entity. */
 static int read_ranges(Builder *b, const Target *p, const Entity *e, AstId lhs, IndexRange *r) {
   Span span = ast_expr(b->ast, lhs)->span;
   *r = entity_range(e);
@@ -164,7 +164,7 @@ static int read_ranges(Builder *b, const Target *p, const Entity *e, AstId lhs, 
   return empty || (index_in_range(b, e, r->lo, span) && index_in_range(b, e, r->hi, span));
 }
 
-/* The next member of the ranges, row by row; 0 after the last. */
+/* Next member of the ranges, row by row; 0 after the last. */
 static int next_in(const IndexRange *r, int64_t *at) {
   for (uint32_t k = r->n; k-- > 0;) {
     if (++at[k] <= r->hi[k]) return 1;
@@ -173,7 +173,7 @@ static int next_in(const IndexRange *r, int64_t *at) {
   return 0;
 }
 
-/* Element by element, one for each member. */
+/* Assigns the elements of a list, one to each member. */
 static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list, const AstUnit *behind) {
   Elements elements = {0};
   if (!list_elements(s->b, list, behind, r, s->e->name, &elements)) return;
@@ -184,7 +184,7 @@ static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list,
   }
 }
 
-/* The value once more for each member, with its indices in scope; once for all where there are none. */
+/* Assigns a formula: evaluated for each member with its indices in scope, or once if no index is named. */
 static void give_formula(const Assign *s, const IndexRange *r, AstId rhs) {
   Builder *b = s->b;
   uint32_t outer = b->index.n;

@@ -1,4 +1,4 @@
-/* Pieces of the user's text, and names made while compiling. */
+/* Source text of expressions for messages, and interned names made by the compiler. */
 #include <stdarg.h>
 
 #include "model/builder.h"

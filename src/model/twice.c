@@ -1,4 +1,4 @@
-/* What may be said once: names, and settings. Where the second would silently win, it is an error. */
+/* Duplicate declarations: names, and settings of a scene or event. A second one, which would silently win, is an error. */
 #include "model/builder.h"
 
 void check_names_once(Builder *b, const FileIndex *file) {
@@ -32,7 +32,7 @@ void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Spa
   diag_also(b->diags, old->span, "first declared here");
 }
 
-/* What a statement says, as a text that is the same for what would take its place; NULL: it may be said often. */
+/* Key of a setting: equal for two statements of which the second would override the first; NULL: repetition is allowed. */
 static Name said_key(Builder *b, const AstStmt *st, const char *owner) {
   switch (st->kind) {
     case STMT_SPAN: return intern_printf(b, "span");
@@ -65,7 +65,7 @@ void check_said_once(Builder *b, const AstStmt *block) {
       check_said(b, said, x, "");
       continue;
     }
-    if (x->kind == STMT_USE && strcmp(x->name, "none") == 0) said = new_scope(b); /* what stands before has no part in the run */
+    if (x->kind == STMT_USE && strcmp(x->name, "none") == 0) said = new_scope(b); /* statements before `use none` have no effect */
     if (x->kind == STMT_METHOD) check_said(b, said, x, "");
     Scope *values = x->kind == STMT_METHOD ? new_scope(b) : said;
     const char *owner = x->kind == STMT_USE ? arena_printf(b->arena, "%s.", x->name) : "";

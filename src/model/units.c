@@ -1,7 +1,9 @@
-/* Units. Values: SI Brochure, 9th edition (BIPM 2019), tables 4 and 8; au: IAU 2012 Resolution B2; eV and u: CODATA 2018; yr is the Julian year of 365.25 days
- * (IAU), bar, L, min, h, d as in table 8 of the brochure. ft and lb: exact by the international yard and pound agreement of 1959. ly: 299792458 m/s times yr.
- * pc: 648000/pi au, IAU 2015 Resolution B2. Msun: the nominal 1.3271244e20 m^3/s^2 of IAU 2015 Resolution B3 over G = 6.67430e-11 m^3/(kg s^2) of
- * CODATA 2018, which is known to 2.2e-5. */
+/* Table of units, and conversion of written units. Contract: units.h.
+ *
+ * Values: SI Brochure, 9th edition (BIPM 2019), tables 4 and 8; au: IAU 2012 Resolution B2; eV and u: CODATA 2018; yr: the Julian year
+ * of 365.25 days (IAU); bar, L, min, h, d: table 8 of the brochure; ft and lb: exact by the international yard and pound agreement of
+ * 1959; ly: 299792458 m/s times yr; pc: 648000/pi au, IAU 2015 Resolution B2; Msun: the nominal 1.3271244e20 m^3/s^2 of IAU 2015
+ * Resolution B3 over G = 6.67430e-11 m^3/(kg s^2) of CODATA 2018, which is known to 2.2e-5. */
 #include "model/units.h"
 
 #include <math.h>
@@ -14,7 +16,7 @@
 
 typedef struct {
   const char *name;
-  const char *factor; /* decimal, SI value of one */
+  const char *factor; /* SI value of one unit, decimal, without the power of pi */
   int pi_power;
   int prefixes;       /* 1: takes SI prefixes */
   int8_t e[DIM_BASES]; /* m kg s A K mol cd */
@@ -88,7 +90,7 @@ static const UnitRow *find_row(const char *name) {
   return NULL;
 }
 
-/* "km": the row of m and 3. */
+/* Row and power of ten of a unit with or without prefix: "km" is m and 3. NULL: unknown. */
 static const UnitRow *find_prefixed(const char *name, int *power) {
   *power = 0;
   const UnitRow *row = find_row(name);
@@ -116,7 +118,7 @@ static Num power_of_ten(int n) {
   return num_pow(ten, e, &exact);
 }
 
-/* What people write for a unit that has another spelling here. */
+/* Common other spellings of units, for messages. */
 static const char *const spellings[][2] = {
   {"meter", "m"}, {"metre", "m"}, {"meters", "m"}, {"metres", "m"}, {"gram", "g"}, {"grams", "g"}, {"kilogram", "kg"},
   {"kilograms", "kg"}, {"kgs", "kg"}, {"Kg", "kg"}, {"KG", "kg"}, {"kilo", "kg"}, {"sec", "s"}, {"secs", "s"},
@@ -131,17 +133,17 @@ static const char *const spellings[][2] = {
 };
 enum { N_SPELLINGS = sizeof spellings / sizeof *spellings };
 
-/* Prefixed units that people use, for suggestions. */
+/* Common prefixed units, candidates for suggestions. */
 static const char *const usual[] = {
   "kg", "mg", "km", "cm", "mm", "µm", "nm", "ms", "µs", "ns", "kN", "MN", "mN", "kPa", "MPa", "GPa", "kJ", "MJ", "mJ",
   "kW", "MW", "mW", "mA", "kA", "mV", "kV", "kHz", "MHz", "GHz", "mrad", "keV", "MeV", "GeV", "mL", "kmol", "mmol",
 };
 enum { N_USUAL = sizeof usual / sizeof *usual };
 
-/* A unit of the table, or kg; not one with a zero of its own. */
+/* 1 for kg and units of the table, except deg and degC. */
 static int is_plain(const char *name) { return strcmp(name, "kg") == 0 || (find_row(name) && strncmp(name, "deg", 3) != 0); }
 
-/* `Nm`: a product of two, without a sign. */
+/* Recognises `Nm` as N*m; 0: not a product of two units. */
 static int report_product(const AstUnitFactor *f, Diags *diags) {
   size_t length = strlen(f->name);
   char first[16];
@@ -170,7 +172,7 @@ static void report_unknown(const AstUnitFactor *f, Diags *diags) {
   else diag_help(diags, "`lagc help units` lists them");
 }
 
-/* The SI value of a unit's zero. */
+/* SI value of the unit's zero point. */
 static Num offset_of(const UnitRow *row) { return strcmp(row->name, "degC") == 0 ? num_ratio(27315, 100) : num_int(0); }
 
 static Dim row_dim(Dims *dims, const UnitRow *row) {
@@ -190,7 +192,7 @@ static void multiply(Unit *u, Dims *dims, const UnitRow *row, int power, Num exp
   u->dim = dim_mul(dims, u->dim, dim_pow(dims, row_dim(dims, row), exponent));
 }
 
-/* A scale with a zero of its own measures temperatures, and nothing else. */
+/* Reports degC in a product or power: a unit with an offset stands alone. */
 static void report_offset(const AstUnit *u, const AstUnitFactor *f, Diags *diags, Arena *a) {
   StrBuf in_kelvin = strbuf(a);
   size_t at = 0;
@@ -203,7 +205,7 @@ static void report_offset(const AstUnit *u, const AstUnitFactor *f, Diags *diags
   diag_help(diags, "a difference of temperatures is the same in kelvin: `[%s]`", sb_text(&in_kelvin));
 }
 
-/* 0, reported, when the factor has no meaning in this unit. */
+/* Multiplies u by one factor of the written unit; 0, reported, if the factor is unknown or has an offset. */
 static int take_factor(Unit *u, const AstUnit *ast, const AstUnitFactor *f, Dims *dims, Diags *diags, Arena *a) {
   int power;
   const UnitRow *row = find_prefixed(f->name, &power);
@@ -245,7 +247,7 @@ int unit_measures(const AstUnit *u) {
   for (uint32_t i = 0; i < u->n; i++) {
     int power;
     const UnitRow *row = find_prefixed(u->at[i].name, &power);
-    if (!row) return 1; /* what was meant is not known */
+    if (!row) return 1; /* unknown unit, reported elsewhere */
     for (int k = 0; k < DIM_BASES; k++)
       if (row->e[k]) return 1;
   }
@@ -260,7 +262,7 @@ const char *unit_name(uint32_t i, int *takes_prefixes) {
 
 const char *unit_prefix(uint32_t i) { return i < sizeof prefixes / sizeof *prefixes ? prefixes[i].name : NULL; }
 
-/* "kg*m/s^2"; "" for a pure number. */
+/* Product of SI base units, "kg*m/s^2"; "" for a pure number. */
 static const char *base_text(const UnitRow *row, Arena *a) {
   static const struct {
     const char *name;

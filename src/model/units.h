@@ -1,4 +1,4 @@
-/* Units: what [kg*m/s^2] means in SI. */
+/* Units as written, [kg*m/s^2]: dimension and conversion to SI. Table and sources: units.c. */
 #ifndef LAGC_UNITS_H
 #define LAGC_UNITS_H
 
@@ -6,31 +6,31 @@
 #include "syntax/ast.h"
 
 typedef struct {
-  Dim dim;     /* DIM_ANY: none was written */
+  Dim dim;     /* DIM_ANY: no unit was written */
   Num factor;  /* x units are x*factor*pi^pi_power + offset in SI */
   int pi_power;
   Num offset;  /* 273.15 of degC; otherwise 0 */
   const char *text; /* as written; "" for none */
 } Unit;
 
-/* The meaning of a unit as written; unknown names are reported, with the nearest known one.
+/* Converts a unit of the text; unknown names are reported, with the nearest known one.
  * No unit written: DIM_ANY, factor 1. */
 Unit unit_resolve(const AstUnit *u, Dims *dims, Diags *diags, Arena *a);
 
-/* The unit of a dimension in SI: the factor is 1, the text is "" where the dimension is not known or none. */
+/* SI unit of a dimension: factor 1; text "" for unknown dimensions and pure numbers. */
 Unit unit_of_dim(Dims *dims, Dim d);
 
-/* Whether a unit is given in which something is measured: not the absence of one, no angle, no number. */
+/* 1 for a unit with a dimension: not an absent one, an angle, or [1]. */
 int unit_measures(const AstUnit *u);
 
-/* Whether it is the name of a unit, with or without a prefix. */
+/* 1 if `name` is a unit, with or without an SI prefix. */
 int unit_exists(const char *name);
 
-/* The table: name i, and whether it takes prefixes; NULL past the end. Likewise the prefixes. */
+/* Table of units: name i, and whether SI prefixes are allowed; NULL past the end. Table of prefixes. */
 const char *unit_name(uint32_t i, int *takes_prefixes);
 const char *unit_prefix(uint32_t i);
 
-/* What one of unit i is in SI base units, for people: "kg*m/s^2", "60 s", "pi/180"; NULL for a base unit. */
+/* Value of unit i in SI base units, for readers: "kg*m/s^2", "60 s", "pi/180"; NULL for a base unit. */
 const char *unit_meaning(uint32_t i, Arena *a);
 
 /* factor * pi^pi_power */

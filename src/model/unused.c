@@ -1,13 +1,13 @@
-/* Parameters, lets, inputs and functions of the model's own file that nothing in the text uses.
+/* Warnings about parameters, lets, inputs and functions of the model's main file that no expression uses.
  *
- * In: a parsed Ast without errors, and the expressions of the command line in it. Names are not resolved: a name counts as used where any
- * expression says it, whatever is in use; a value that a scene gives is no use of the parameter that takes it. */
+ * In: a parsed Ast without errors, with the expressions of the command line. Names are not resolved: any occurrence in an
+ * expression, active or not, counts as a use; the left side of a scene's assignment does not. */
 #include <string.h>
 
 #include "model/model.h"
 #include "model/scope.h"
 
-/* The parameter that a scene or a `use` sets, with its members and indices, is not read there. */
+/* Marks left sides of a scene's assignments: `m[2] = 1` is not a use of m. */
 static void skip_settings(const Ast *ast, const AstStmt *list, uint8_t *skip) {
   for (const AstStmt *s = list; s; s = s->next) {
     if (s->kind == STMT_USE) skip_settings(ast, s->body, skip);
