@@ -274,7 +274,7 @@ static int settle_factors(ExprGraph *g, Product *r) {
   return changed;
 }
 
-/* The product r distributed over its factor `at`, a sum. */
+/* The product r multiplied out over its factor `at`, a sum. */
 static Expr distributed(ExprGraph *g, Product *r, uint32_t at) {
   Expr T = r->p.at[at].node;
   uint32_t n = expr_pairs(g, T, EX_SUM);

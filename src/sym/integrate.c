@@ -80,7 +80,7 @@ static int times_gen(Normal *n, const Task *t, Product *p, GenId x, int32_t exp)
   return 0;
 }
 
-/* One term of the integrand, times divisor, as a Product; returns 0 if it is not of that form. */
+/* One term of the integrand, times divisor, in that product form; returns 0 if it does not fit. */
 static int product_of(Normal *n, const Task *t, Term term, Expr divisor, Product *p) {
   ExprGraph *g = t->g;
   Mono mono = *mono_at(n->ring, term.mono);
@@ -144,7 +144,7 @@ static Pair harmonic_integrals(const Task *t, int32_t k, Expr u, Expr w) {
   return done;
 }
 
-/* Integral of a Product; 0 for a negative power of x times a function of x. */
+/* Integral of p; 0 for a negative power of x times a function of x. */
 static Expr product_integral(const Task *t, const Product *p) {
   ExprGraph *g = t->g;
   Expr sum = expr_int(g, 0);

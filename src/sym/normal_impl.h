@@ -1,4 +1,4 @@
-/* Internals of the normal form, shared by normal.c, angles.c, roots.c and logs.c only. */
+/* Internals of the normal form, for the .c files that build it. */
 #ifndef LAGC_NORMAL_IMPL_H
 #define LAGC_NORMAL_IMPL_H
 
