@@ -171,7 +171,7 @@ void cnest_write(Writer *w, const Ins *i) {
   w->temps = x.body.temps;
 }
 
-/* One more than the highest index that place k of the nest takes. */
+/* Highest index that place k of the nest takes, plus 1. */
 static int64_t end_of(const Nest *n, uint32_t k) {
   int64_t end = 0;
   for (int64_t i = 0; i < n->rows; i++)

@@ -20,8 +20,8 @@ static long double number(Num n) {
   return num_is_exact(n) ? (long double)n.num / (long double)n.den : n.approx;
 }
 
-/* One node: its arguments are t->arg[first ..], indices of earlier steps; coefficients or exponents of a sum or product
- * are t->number[first ..]. */
+/* Step of a tape, for one node: its arguments are t->arg[first ..], indices of earlier steps; coefficients or exponents
+ * of a sum or product are t->number[first ..]. */
 typedef struct {
   ExprOp op;
   uint32_t first, n;

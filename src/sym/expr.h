@@ -43,7 +43,7 @@ typedef enum {
   SYM_PARAM,
   SYM_INPUT,
   SYM_CONST,  /* pi */
-  SYM_MULTIPLIER, /* of a constraint */
+  SYM_MULTIPLIER, /* Lagrange multiplier of a constraint */
   SYM_LOCAL  /* the group parameter of a symmetry; scratch symbols of a pass */
 } SymKind;
 
@@ -54,7 +54,7 @@ typedef uint32_t SymId;
 
 typedef struct {
   SymKind kind;
-  uint32_t index; /* within its kind */
+  uint32_t index; /* index within its kind */
   Name name;      /* as the user writes it: th, th', th'' */
   ExprSign sign;
   Expr node;

@@ -12,7 +12,7 @@ typedef struct {
 typedef struct {
   Normal *n;
   VEC(Odd) odd;  /* factors of unknown sign, to odd powers */
-  Frac exponent; /* of the product in hand */
+  Frac exponent; /* exponent of the product being split */
   PowerParts *out;
   PowerParts todo;
 } Splitter;
@@ -42,7 +42,7 @@ static void give(Splitter *s, Poly base, int32_t e) {
   vec_push(n->arena, s->out, ((PowerPart){frac_poly(base), frac_mul(n->field, s->exponent, whole(n, num_int(e))), 0}));
 }
 
-/* A factor x of unknown sign to the power e: for even e a power of x^2, which is positive; odd ones wait for give_odd. */
+/* A factor x of unknown sign to the power e: for even e a power of x^2, which is positive; odd powers are collected in s->odd. */
 static void take_unknown(Splitter *s, Poly x, int32_t e) {
   if (e % 2 != 0) vec_push(s->n->arena, &s->odd, ((Odd){x, e}));
   else give(s, poly_mul(s->n->ring, x, x), e / 2);

@@ -199,7 +199,7 @@ static Poly drain(PolyRing *r) {
   return (Poly){.at = at, .n = n};
 }
 
-/* One step of x^k -> R on a term whose monomial is reducible. */
+/* Applies x^k -> R once to a term whose monomial is reducible. */
 static void reduce_term(PolyRing *r, Term t) {
   GenId x = mono_at(r, t.mono)->reducible;
   PolyGen gen = r->gens.at[x];

@@ -61,7 +61,7 @@ typedef struct {
   VEC(PolyGen) gens;
   VEC(Mono) monos;
   IdTable mono_table;
-  VEC(Poly) polys; /* the interned ones */
+  VEC(Poly) polys; /* interned polynomials */
   IdTable poly_table;
   uint32_t *slot; /* accumulator: index + 1 in sum, by monomial */
   uint32_t slot_cap;
