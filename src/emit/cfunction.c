@@ -1,10 +1,11 @@
+/* C text of the support functions, and the frame of a function around the body of a Prog. */
 #include "emit/cfunction.h"
 
 #include <string.h>
 
 #include "base/num.h"
 
-/* LAG_ and lag_ stand for the prefix in upper and lower case. */
+/* In all texts below LAG_ and lag_ stand for the prefix in upper and lower case. */
 static const char *const logic =
   "#ifndef LAG_SELECT\n"
   "#define LAG_SELECT(c, a, b) ((c) ? (a) : (b))\n"
@@ -21,7 +22,8 @@ static const char *const logic =
   "#define LAG_LANE LAG_REAL\n"
   "#endif\n";
 
-/* A pivot that is no number: a simulator finds and names what has no value; a program around a header learns it from the status. */
+/* Test of a positive pivot. NaN passes in a simulator, which finds and names the expression without a value; a program around a
+ * header gets a status for it. */
 static const char *const positive =
   "#ifndef LAG_POSITIVE\n"
   "#define LAG_POSITIVE(d) LAG_PIVOT(!((d) <= LAG_C(0.0))) /* what is no number is for who gets it to find */\n"
@@ -32,8 +34,8 @@ static const char *const positive_of_header =
   "#endif\n";
 
 /* Gauss elimination with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed.,
- * algorithm 3.4.1). Rows change places under a mask, so that each lane of a vector has pivots of
- * its own. In a band of b diagonals beside the main one, rows come from b places below at most, and reach 2 b to the right (4.3.3). */
+ * algorithm 3.4.1). Rows are exchanged under a mask, so that each lane of a vector has its own pivots.
+ * With half-bandwidth b, pivot rows come from at most b rows below, and fill reaches 2 b to the right (4.3.3). */
 static const char *const solver =
   "\n/* M x = b by elimination with partial pivoting: M[n*n] row-major is destroyed, b becomes x. Entries more than `band` beside the\n"
   " * diagonal are zero. Returns whether M is regular, or has\n"
@@ -68,7 +70,7 @@ static const char *const solver =
   "  return regular;\n"
   "}\n";
 
-/* L D L^T of a definite matrix needs no pivoting (Golub & Van Loan, 4th ed., 4.2.1 and 4.3.5): rows of the upper triangle are those of D L^T. */
+/* L D L^T of a definite matrix, without pivoting (Golub & Van Loan, 4th ed., 4.2.1 and 4.3.5); the upper triangle becomes D L^T. */
 static const char *const definite_solver =
   "\n/* M x = b without pivoting, from the upper triangle of M[n*n], which is destroyed; b becomes x. Entries more than `band` beside the\n"
   " * diagonal are zero. Returns whether M is positive definite, or has elements that are no numbers. */\n"
@@ -93,7 +95,7 @@ static const char *const definite_solver =
   "  return positive;\n"
   "}\n";
 
-/* Lanes that ask for different pieces get them one after the other. */
+/* Cubic spline. Lanes in different intervals are evaluated one interval after the other. */
 static const char *const spline =
   "\n/* The cubic between two rows of time, value and second derivative; outside of them the nearest value. */\n"
   "static LAG_REAL lag_cubic(LAG_REAL t, const double *a, const double *b) {\n"
@@ -120,7 +122,7 @@ static const char *const spline =
   "  return y;\n"
   "}\n";
 
-/* The same elimination, with the multipliers kept below the diagonal and the exchanges of rows in `rows`. */
+/* L U factorization by the elimination of `solver`: multipliers stay below the diagonal, row exchanges in `rows`. */
 static const char *const factorizer =
   "\n/* Factors M[n*n] of w = [M | b | rows] by elimination with partial pivoting. Returns whether M is regular, or has\n"
   " * elements that are no numbers: then x has none. */\n"
@@ -172,7 +174,7 @@ static const char *const factorizer =
   "  }\n"
   "}\n";
 
-/* Of the unit vectors. */
+/* Inverse of a symmetric matrix, column by column from the unit vectors; and the product with it. */
 static const char *const inverter =
   "\n/* w = [M | n | n | inverse | 1, or 0 where M is singular], from the symmetric M[n*n]. */\n"
   "static void lag_invert(int n, LAG_REAL *w) {\n"
@@ -219,7 +221,7 @@ void csupport_solver(SolveKind kind, const char *prefix, const char *lower, StrB
 }
 void csupport_spline(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(spline, prefix, lower, out); }
 
-/* Whether the program reads or writes what the parameter `name` holds. */
+/* Whether the program uses the parameter `name`: reads, writes, or needs it as workspace. */
 static int is_used(const Prog *p, const CStyle *st, const char *name) {
   if (strcmp(name, "w") == 0) return p->solves.n > 0;
   for (int k = 0; k < ARR_COUNT; k++)

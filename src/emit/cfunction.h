@@ -1,48 +1,47 @@
-/* What all emitted files share: the macros of the scalar, the solver, a C function around a Prog,
- * text that may stand in a comment. */
+/* Parts common to all emitted files: macros of the scalar type, support functions (linear solvers, splines), and the C
+ * function around the body of a Prog. */
 #ifndef LAGC_CFUNCTION_H
 #define LAGC_CFUNCTION_H
 
 #include "emit/cwriter.h"
 
-/* Choices and logic as macros (PREFIX_SELECT, PREFIX_MASK, ...), unless they are defined already:
- * vectors of numbers have no ternary in C. */
+/* Macros for selection and logic (PREFIX_SELECT, PREFIX_MASK, ...), each under #ifndef: vector types have no ternary in C. */
 void csupport_logic(const char *prefix, StrBuf *out);
 
-/* The function that solves blocks of a kind which are not solved in straight-line code: lower_solve, lower_solve_definite, lower_multiply (w[2 n] =
- * right-hand side, solution). Not SOLVE_CONSTRAINED: that is cmath_kkt. */
+/* Function that solves linear systems of one kind in a loop: lower_solve, lower_solve_definite, or lower_multiply (w[2 n] =
+ * right-hand side, solution). SOLVE_CONSTRAINED is not one of them: see cmath_kkt. */
 void csupport_solver(SolveKind kind, const char *prefix, const char *lower, StrBuf *out);
 
-/* `static LAG_REAL lower_spline(t, n, row)`, for the inputs that have a table. */
+/* `static LAG_REAL lower_spline(t, n, row)`, for inputs given by a table. */
 void csupport_spline(const char *prefix, const char *lower, StrBuf *out);
 
-/* The same in two functions, lag_factor(n, w) and lag_substitute(n, w), with w[n*n + 2 n] = matrix, right-hand side, order
- * of the rows: one factorization for several right-hand sides. */
+/* Factorization for several right-hand sides: lag_factor(n, w) and lag_substitute(n, w), with w[n*n + 2 n] = matrix,
+ * right-hand side, row exchanges. */
 void csupport_factor(const char *prefix, const char *lower, StrBuf *out);
 
-/* lag_invert(n, w), which needs csupport_factor, with w as Solve in ir/prog.h says for IR_INVERT. */
+/* lag_invert(n, w), which calls the functions of csupport_factor; the layout of w stands at Solve in ir/prog.h (IR_INVERT). */
 void csupport_inverter(const char *prefix, const char *lower, StrBuf *out);
 
-/* text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
+/* Appends text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
 void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out);
 
 typedef struct {
-  const char *comment; /* without the marks of a comment; or NULL */
-  const char *head;    /* up to the brace */
-  int returns;         /* a status: OK, or whether all pivots were what they had to be */
-  int own_work;        /* work space is a local array, not a parameter */
+  const char *comment; /* text of the comment, or NULL */
+  const char *head;    /* declaration up to the brace */
+  int returns;         /* 1: returns a status, see cfunction_status */
+  int own_work;        /* 1: the workspace w is a local array, not a parameter */
 } CFunction;
 
-/* What a function with the body of p returns at its end: PREFIX_OK, or what its pivots came to. */
+/* Status that a function with the body of p returns: PREFIX_OK, or PREFIX_PIVOTS_STATUS if p checks pivots. */
 const char *cfunction_status(const Prog *p, const CStyle *style);
 
-/* The comment, the head, `(void)` for parameters that p does not need, the body. */
+/* Appends the function: comment, head, `(void)` for unused parameters, body, return. */
 void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *out);
 
-/* A body after `condition` (may be ""): on its line when it is one statement, or in braces. */
+/* Appends a body after `condition` (may be ""): a single statement on the same line, more in braces. */
 void cwrite_guarded(const char *condition, const char *body, StrBuf *out);
 
-/* The shortest text that reads back as x. */
+/* Shortest text that reads back as x; integers below 1e9 without exponent. */
 const char *double_text(Arena *a, double x);
 
 #endif

@@ -1,3 +1,4 @@
+/* Index tables as C arrays; equal tables are found by comparing their values. */
 #include "emit/cindex.h"
 
 #include <string.h>
@@ -10,7 +11,7 @@ static const CIndex *find(const CIndices *t, const uint32_t *values, uint32_t n)
   return NULL;
 }
 
-/* The shortest type of C that holds all values, and counts as int does where it is used. */
+/* Smallest C type that holds all values and is promoted to int. */
 static const char *type_of(const uint32_t *values, uint32_t n) {
   uint32_t most = 0;
   for (uint32_t k = 0; k < n; k++)

@@ -1,7 +1,7 @@
-/* Loops of a program as loops in C.
+/* Rolled loops of a program as loops in C.
  *
- * Inside, a value is a `const` of its turn. What other turns, other loops or the code behind need is kept
- * in a local array, one element a turn, with room in front for what the first turns take from before. */
+ * Inside, a value is a `const` of its turn. A value that other turns, other loops or later code need is kept
+ * in a local array, one element a turn, preceded by the values that the first turns take from the code before. */
 #include <string.h>
 
 #include "emit/cwriter_impl.h"
@@ -38,14 +38,14 @@ const char *cloop_stem(Arena *a, const char *name) {
   return arena_strndup(a, sb_text(&b), n);
 }
 
-/* first + step*k */
+/* Text of the index first + step*k. */
 static const char *index_text(const Writer *w, int64_t first, int64_t step) {
   const char *k = step == 1 || step == -1 ? "k" : arena_printf(w->a, "%lld*k", (long long)(step < 0 ? -step : step));
   if (step < 0) return arena_printf(w->a, "%lld - %s", (long long)first, k);
   return first ? arena_printf(w->a, "%s %c %lld", k, first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first)) : k;
 }
 
-/* The value at `place` of a loop, and step turns further with each k; step 0: that one. */
+/* Element of the kept array for the value at `place` of a loop, step turns further with each k; step 0: that element alone. */
 static Piece kept_value(const Writer *w, uint32_t place, int64_t step) {
   uint32_t in = w->rolls.loop[place] - 1, offset, turn;
   const Loop *l = loop_at(w, in);
@@ -93,7 +93,7 @@ void cloop_prepare(Writer *w) {
 
 /* --- a loop --- */
 
-/* Loads that change from turn to turn, each named once. */
+/* Load whose index changes from turn to turn, named once a turn. */
 typedef struct {
   Slot first;
   int64_t step;
@@ -103,7 +103,7 @@ typedef struct {
 typedef struct {
   const Loop *l;
   uint32_t number;
-  uint32_t *own_uses; /* [period] in the same turn */
+  uint32_t *own_uses; /* [period] uses of a value in its own turn */
   VEC(TurnLoad) loads;
 } Body;
 
@@ -127,13 +127,13 @@ static const char *kept_name(const Writer *w, const Ins *i) {
   return i->op == IR_FN1 && x->op == IR_LOAD ? arena_printf(w->a, "%s_%s", i->text, cloop_stem(w->a, x->name)) : "kept";
 }
 
-/* x[3]' -> last_x'. */
+/* Name of a value carried to the next turn: x[3]' -> last_x'. */
 static const char *carried_name(const Writer *w, const Ins *i) {
   const char *name = kept_name(w, i);
   return i->name ? arena_printf(w->a, "last_%s", name) : "last";
 }
 
-/* Conditions and numbers have arrays of their own; what goes to the next turn only, a variable. */
+/* Declares the kept arrays of numbers, or of conditions; a value that only the next turn needs is a variable. */
 static void declare_kept(Writer *w, const Body *b, int conditions) {
   const Loop *l = b->l;
   const char **names = w->kept[b->number];
@@ -150,7 +150,7 @@ static void declare_kept(Writer *w, const Body *b, int conditions) {
   sb_putc(w->out, '\n');
 }
 
-/* What the first turns take from the code before. */
+/* Copies the values that the first turns take from the code before the loop into the kept arrays. */
 static void write_first_values(Writer *w, const Body *b) {
   const Loop *l = b->l;
   for (uint32_t k = 0; k < l->period; k++)
@@ -182,7 +182,7 @@ static void name_turn_loads(Writer *w, Body *b) {
     }
 }
 
-/* unit*index; a denominator that is no power of two divides last, which rounds once. */
+/* unit*index; a denominator that is not a power of two divides last, so that the result is rounded once. */
 static Piece multiple(const Writer *w, Num unit, const char *index) {
   int dyadic = (unit.den & (unit.den - 1)) == 0;
   const char *up = c_number(w->a, w->style->prefix, dyadic ? unit : num_int(unit.num));
@@ -192,7 +192,7 @@ static Piece multiple(const Writer *w, Num unit, const char *index) {
 
 static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int which, Slot x) {
   Step s = roll_step(&w->rolls, b->l, offset, which);
-  uint32_t place = w->rolls.place[x] - 1; /* of values that are no loads */
+  uint32_t place = w->rolls.place[x] - 1; /* meaningless for loads and constants, where it is not used */
   switch (s.kind) {
     case STEP_SAME: case STEP_OWN: return w->piece[x];
     case STEP_NUMBER: {
@@ -204,7 +204,7 @@ static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int w
     }
     case STEP_LOAD: return (Piece){turn_load(b, x, s.step)->name, C_ATOM, 0};
     case STEP_BEFORE: {
-      uint32_t at = place + s.back * b->l->period - b->l->begin; /* offset of what it becomes */
+      uint32_t at = place + s.back * b->l->period - b->l->begin; /* offset of the same value inside the loop */
       if (b->l->carried[at]) return (Piece){w->kept[b->number][at], C_ATOM, 1};
       const char *index = index_text(w, (int64_t)(b->l->kept[at] - 1) - s.back, 1);
       return (Piece){arena_printf(w->a, "%s[%s]", w->kept[b->number][at], index), C_ATOM, 1};
@@ -259,7 +259,7 @@ static void write_turn(Writer *w, const Body *b) {
   }
 }
 
-/* What the turn leaves: outputs, and the values that the next one takes. */
+/* End of a turn: stores, and the values carried to the next turn. */
 static void write_turn_end(Writer *w, const Body *b) {
   const Loop *l = b->l;
   for (uint32_t k = 0; k < l->stores.n; k++) {
@@ -302,13 +302,13 @@ void cloop_write(Writer *w, uint32_t loop) {
 
 /* --- stores --- */
 
-/* The place of s in its loop's code; -1 when it is in none. */
+/* Position of s in the rolled code; -1 if s is in no loop. */
 static int64_t loop_place(const Writer *w, Slot s) {
   uint32_t place = s ? w->rolls.place[s] : 0;
   return place && w->rolls.loop[place - 1] ? (int64_t)place - 1 : -1;
 }
 
-/* What stores n later than `first` would take, if all go on as first and second begin: x[0] + n*(x[1] - x[0]). */
+/* Whether store n after `first` continues the progression of the first two: index + n, and value x[0] + n*(x[1] - x[0]). */
 static int follows(const Writer *w, const Store *first, uint32_t n) {
   Slot x = first[0].slot, y = first[1].slot, z = first[n].slot;
   if (first[n].array != first->array || first[n].index != first->index + n) return 0;
@@ -335,7 +335,7 @@ static const char *stored_value(const Writer *w, const Store *first) {
 uint32_t cloop_stores(const Writer *w, uint32_t k) {
   const Prog *p = w->p;
   const Store *first = &p->stores.at[k];
-  uint32_t fewest = p->nests.n ? 8 : 16; /* nests leave rows of nets */
+  uint32_t fewest = p->nests.n ? 8 : 16; /* networks, which have nests, leave shorter runs of stores */
   if (k + fewest > p->stores.n || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0)) return 0;
   if (w->style->params && p->ins.at[first->slot].op == IR_LOAD && p->ins.at[first->slot].array == ARR_P) return 0;
   uint32_t n = 1;

@@ -1,3 +1,4 @@
+/* Embedding of lag_math.h and lag_kkt.h: the sections that a unit needs, with its prefix. */
 #include "emit/cmath.h"
 
 #include <string.h>
@@ -6,7 +7,7 @@
 #include "emit/lag_kkt.h"  /* static const char *const lag_kkt[]: generated from runtime/include/lag_kkt.h */
 #include "emit/lag_math.h" /* static const char *const lag_math[]: generated from runtime/include/lag_math.h */
 
-/* The lines between the marker `---- NAME ----` and the next. */
+/* Appends the section NAME: the lines between its marker `---- NAME ----` and the next marker. */
 static void section_of(const char *const *line, size_t lines, const char *name, const char *prefix, const char *lower, StrBuf *out) {
   static const char mark[] = "/* ---- ";
   size_t n = strlen(name), i = 0;
@@ -19,7 +20,7 @@ static void section(const char *name, const char *prefix, const char *lower, Str
 }
 
 void cmath_kkt(const IrUnit *u, const char *prefix, const char *lower, StrBuf *out) {
-  static const uint32_t large = 62; /* LAG_BAND_LEAST of lag_kkt.h: no smaller system asks for the band */
+  static const uint32_t large = 62; /* LAG_BAND_LEAST of lag_kkt.h: smaller systems have no band solver */
   static const char *const names[] = {"numbers", "band", "kkt"};
   int banded = u->q.n + u->constraints.of.n >= large;
   for (size_t i = 0; u->constraints.of.n && i < sizeof names / sizeof *names; i++)

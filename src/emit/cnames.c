@@ -1,9 +1,10 @@
+/* Spelling of names as C identifiers, and scopes as hash tables of taken names. */
 #include "emit/cnames.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* Words that mean something else in C, C++ or in emitted text. */
+/* Reserved words: keywords and names of C and C++, and names that emitted text uses. */
 static const char *const reserved[] = {
   "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
   "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof",
@@ -21,8 +22,8 @@ static const char *const reserved[] = {
   "M_SQRT2", "M_SQRT1_2", "math_errhandling", "near", "far", "unix", "linux",
 };
 
-/* Functions of the C library that a compiler or <math.h> declares: locals may be called so, files
- * may not have an object of the name. */
+/* Functions of the C library that a compiler or <math.h> declares: allowed as names of locals, not of objects with
+ * external linkage. */
 static const char *const library[] = {
   "abort", "abs", "acosh", "alloca", "asinh", "atanh", "bcmp", "bcopy", "bzero", "calloc", "ceil", "clog", "conj",
   "copysign", "cexp", "cpow", "drem", "erf", "erfc", "exit", "exp2", "exp10", "expm1", "fdim", "ffs", "floor", "fma",
@@ -32,7 +33,7 @@ static const char *const library[] = {
   "scalbn", "signbit", "significand", "sincos", "strlen", "tgamma", "trunc", "y0", "y1", "yn",
 };
 
-/* U+0391..U+03C9: the Greek letters' names, by position from alpha. */
+/* Names of the Greek letters U+0391..U+03C9, by position from alpha. */
 static const char *const greek[] = {
   "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu", "xi",
   "omicron", "pi", "rho", "sigma_final", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega",
@@ -80,7 +81,7 @@ const char *cname_spelled(Arena *a, const char *name) {
 const char *cname(Arena *a, const char *name) {
   const char *text = cname_spelled(a, name);
   if (text[0] >= '0' && text[0] <= '9') text = arena_printf(a, "n%s", text);
-  if (text[0] == '_') text = arena_printf(a, "x%s", text); /* a leading underscore is the C library's */
+  if (text[0] == '_') text = arena_printf(a, "x%s", text); /* leading underscores are reserved for the C library */
   for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++)
     if (strcmp(text, reserved[i]) == 0) return arena_printf(a, "%s_", text);
   return text;
@@ -97,7 +98,7 @@ CNames cnames_new(Arena *a) {
   return (CNames){.arena = a, .table = ARENA_ARRAY(a, CName, CAP), .cap = CAP};
 }
 
-/* The place of a name, or the empty one where it belongs. */
+/* Slot of a name, or the empty slot for it (FNV-1a, open addressing). */
 static CName *place(const CNames *c, const char *name) {
   uint32_t h = 2166136261u;
   for (const char *s = name; *s; s++) h = (h ^ (unsigned char)*s) * 16777619u;

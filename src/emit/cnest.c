@@ -1,6 +1,6 @@
-/* Nests of a program as loops inside loops.
+/* Nests of a program as nested loops in C.
  *
- * Their sums are elements of one local array. What is added to the same element in all turns of a loop is added up in a variable. */
+ * Sums are elements of one local array; a sum whose element is the same in all turns of a row is accumulated in a variable. */
 #include <string.h>
 
 #include "emit/cwriter_impl.h"
@@ -9,13 +9,13 @@ typedef struct {
   const Nest *n;
   Writer body;             /* writes the turn, with names of the function */
   const char *i, *j;       /* the counters */
-  unsigned char *each;     /* by slot of the body: 1: it changes from turn to turn */
-  const char **partial;    /* by store of the body: the variable that adds it up; NULL: the sum itself */
+  unsigned char *each;     /* by slot of the body: 1 if its value changes from turn to turn */
+  const char **partial;    /* by store of the body: the variable that accumulates it; NULL: the element itself */
 } Nesting;
 
 static int has_rows(const Nest *n) { return n->rows > 1; }
 
-/* " + 3*i" */
+/* Appends a term such as " + 3*i". */
 static void put_term(StrBuf *b, int64_t factor, const char *counter) {
   if (!factor) return;
   const char *sign = factor < 0 ? b->n ? " - " : "-" : b->n ? " + " : "";
@@ -24,7 +24,7 @@ static void put_term(StrBuf *b, int64_t factor, const char *counter) {
   else sb_printf(b, "%s%lld*%s", sign, (long long)size, counter);
 }
 
-/* The counter, or what the table has in its place. */
+/* The counter, or the table's element at the counter. */
 static const char *counted(const Nesting *x, const uint32_t *table, uint32_t n, const char *counter) {
   return table ? arena_printf(x->body.a, "%s[%s]", cindex_name(x->body.indices, table, n), counter) : counter;
 }
@@ -41,7 +41,7 @@ static const char *index_text(const Nesting *x, IrPlace at) {
 
 static const char *place(const Nesting *x, uint32_t k) { return index_text(x, x->n->at[k]); }
 
-/* The first turn of row i + behind. */
+/* First turn of row i + behind. */
 static const char *turn_of_row(const Nesting *x, int behind) {
   const Nest *n = x->n;
   if (!n->begin) return index_text(x, (IrPlace){.first = behind ? n->turns : 0, .by_row = n->skew + (behind ? n->more : 0)});
@@ -79,7 +79,7 @@ static void write_load(Nesting *x, const Writer *around, Slot s) {
   }
 }
 
-/* What changes from turn to turn, or what does not. */
+/* Writes the values that change from turn to turn (each = 1), or those that do not (each = 0). */
 static void write_values(Nesting *x, const Writer *around, int each) {
   Writer *w = &x->body;
   for (Slot s = 1; s < w->p->ins.n; s++)
@@ -141,7 +141,7 @@ static void write_rows(Nesting *x, const Writer *around) {
   if (has_rows(n) && nest_has_turns(n)) close_loop(w);
 }
 
-/* The body with what the names of its values have in common in all turns. */
+/* Copy of the body in which values have the name common to all turns (cloop_stem). */
 static const Prog *named_by_stems(const Writer *w, const Prog *p) {
   Prog *r = ARENA_NEW(w->a, Prog);
   *r = *p;
@@ -171,7 +171,7 @@ void cnest_write(Writer *w, const Ins *i) {
   w->temps = x.body.temps;
 }
 
-/* One more than the highest index at a place of the nest. */
+/* Highest index that place k of the nest takes, plus 1. */
 static int64_t end_of(const Nest *n, uint32_t k) {
   int64_t end = 0;
   for (int64_t i = 0; i < n->rows; i++)
@@ -180,7 +180,7 @@ static int64_t end_of(const Nest *n, uint32_t k) {
   return end;
 }
 
-/* Members of a struct have no index: those that nests read are copied. */
+/* Copies the parameters that nests read into an array: struct members cannot be indexed. */
 static void copy_parameters(Writer *w) {
   int64_t end = 0;
   for (uint32_t k = 0; k < w->p->nests.n; k++) {

@@ -1,7 +1,7 @@
-/* Linear systems that a loop solves: their entries go to the workspace w, and a function that stands before the model takes over. */
+/* Linear systems that are solved in a loop: their entries are written to the workspace w, and a support function solves them. */
 #include "emit/cwriter_impl.h"
 
-/* to[at], ... = the values; what many neighbours have, as zeros of a sparse matrix, by a loop. */
+/* to[at], ... = the values; eight or more equal neighbours, such as zeros of a sparse matrix, by a loop. */
 static void write_room(Writer *w, const char *to, uint32_t at, const Slot *values, uint32_t n) {
   enum { MANY = 8 };
   for (uint32_t j = 0, end; j < n; j = end) {
@@ -12,14 +12,14 @@ static void write_room(Writer *w, const char *to, uint32_t at, const Slot *value
   }
 }
 
-/* What is not zero of a matrix that is mostly zeros, and of `all` reals behind it. */
+/* Clears the first `all` reals of w and writes the nonzero entries of a sparse matrix. */
 static void write_entries(Writer *w, const Solve *k, uint32_t all) {
   sb_printf(w->out, "  for (int i = 0; i < %u; i++) w[i] = %s_C(0.0);\n", all, w->style->prefix);
   for (uint32_t j = 0; j < solve_elements(k); j++)
     if (k->matrix[j]) sb_printf(w->out, "  w[%u] = %s;\n", j, cwriter_operand(w, k->matrix[j]).text);
 }
 
-/* A system with constraints is mostly zeros where it is large. */
+/* A system with constraints; its matrix is cleared first, as large ones are mostly zeros. */
 static void write_constrained(Writer *w, const Solve *k) {
   const CStyle *st = w->style;
   uint32_t b = k->m * k->n + k->n * k->n;
@@ -29,7 +29,7 @@ static void write_constrained(Writer *w, const Solve *k) {
   sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, %d, w));\n", st->prefix, st->kkt, k->n, k->m, k->coarse);
 }
 
-/* Of a definite matrix the upper triangle; of a narrow band what is not zero. */
+/* Writes the matrix: nonzero entries of a narrow band, the upper triangle of a definite matrix, or all entries. */
 static void write_matrix(Writer *w, const Solve *k) {
   uint32_t n = k->n;
   if (k->band < n / 2 - 1) write_entries(w, k, n * n);

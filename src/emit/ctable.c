@@ -1,3 +1,4 @@
+/* Tables of variables: entry by entry, or as runs of groups that differ in one number that counts up. */
 #include "emit/ctable.h"
 
 #include <string.h>
@@ -22,7 +23,7 @@ void ctable_macros(StrBuf *out) {
   }
 }
 
-/* A number in a name: where its digits begin and end. */
+/* A number in a name, with the begin and end of its digits. */
 typedef struct {
   size_t begin, end;
   uint32_t value;
@@ -30,7 +31,7 @@ typedef struct {
 
 static int is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/* The number at the first difference of two names, when it is the only one and grows by 1. */
+/* Whether two names differ in one number only, which grows by 1; *n: that number in x. */
 static int counts_up(const char *x, const char *y, Number *n) {
   size_t i = 0;
   while (x[i] && x[i] == y[i]) i++;
@@ -50,7 +51,7 @@ static int same_but_name(const IrVar *x, const IrVar *y) {
          !(x->offset > y->offset) && x->periodic == y->periodic && x->sign == y->sign;
 }
 
-/* How many groups of `size` entries from the first on differ only in one number that counts up; 1 when none do. */
+/* Number of successive groups of `size` entries that differ only in one number that counts up; 1 if the second differs otherwise. */
 static uint32_t groups_at(const IrVar *v, uint32_t n, uint32_t size) {
   uint32_t groups = 1;
   for (Number first, now; (groups + 1) * size <= n; groups++)
@@ -64,7 +65,7 @@ static uint32_t groups_at(const IrVar *v, uint32_t n, uint32_t size) {
   return groups;
 }
 
-/* The size of the groups that a run of the first entries is made of, and their number; 0 for none. */
+/* Size of the groups in a run that begins at the first entry, and their number *groups; 0 if there is no run. */
 static uint32_t run_at(const IrVar *v, uint32_t n, uint32_t *groups) {
   for (uint32_t size = 1; size <= MOST_IN_GROUP && size * FEWEST_GROUPS <= n; size++)
     if ((*groups = groups_at(v, n, size)) >= FEWEST_GROUPS) return size;
@@ -90,7 +91,7 @@ static const char *rest_of_entry(const IrVar *v, Arena *a) {
   return arena_printf(a, "%s, %s, %d, %d, %s},", unit, factor, v->periodic, v->sign, offset);
 }
 
-/* The entry with i in place of its number. */
+/* Text of an entry with the macro parameter i in place of its number. */
 static const char *entry_of_i(const IrVar *v, const IrVar *next, Arena *a) {
   Number n;
   counts_up(v->name, next->name, &n);

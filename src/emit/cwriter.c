@@ -1,3 +1,5 @@
+/* Function bodies in C: spelling of values as expressions with minimal parentheses, statements in the order of the program,
+ * stores at the end. Rounding is that of the program: expressions are grouped as computed. */
 #include <stdio.h>
 #include <string.h>
 
@@ -7,7 +9,7 @@ enum { LINE_MAX_COLUMNS = 100, WRAP_COLUMNS = 120 };
 
 /* --- constants --- */
 
-/* num/den as a decimal when it ends; NULL otherwise. */
+/* num/den as a finite decimal; NULL if there is none. */
 static const char *finite_decimal(Arena *a, Num n) {
   int64_t den = n.den;
   int digits = 0;
@@ -29,7 +31,7 @@ static const char *finite_decimal(Arena *a, Num n) {
   return sb_text(&b);
 }
 
-/* The same number as 1.6e-19 where the decimal begins or ends with many zeros. */
+/* The decimal with an exponent (1.6e-19) if it begins or ends with many zeros. */
 static const char *without_zeros(Arena *a, const char *decimal) {
   enum { SMALL = 4, LARGE = 6 };
   const char *point = strchr(decimal, '.'), *first = decimal + strspn(decimal, "0.");
@@ -91,7 +93,7 @@ static const char *wrapped(Writer *w, Slot s, int prec) {
   return x.prec < prec ? arena_printf(w->a, "(%s)", x.text) : x.text;
 }
 
-/* Scaling by a power of two rounds nothing: 2*(a*b) may be written 2*a*b. */
+/* Whether i is a power of two: scaling by it is exact, so 2*(a*b) may be written 2*a*b. */
 static int is_power_of_two(const Ins *i) {
   int64_t n = i->number.num, d = i->number.den;
   return i->op == IR_CONST && num_is_exact(i->number) && n > 0 && (n & (n - 1)) == 0 && (d & (d - 1)) == 0;
@@ -110,7 +112,7 @@ static Piece constant(Writer *w, const Ins *i) {
   return (Piece){text, strchr(text, '/') ? C_MUL : text[0] == '-' ? C_UNARY : C_ATOM, 0};
 }
 
-/* -a*b is (-a)*b, and rounds like -(a*b); so -(-a*b) is a*b. */
+/* Negation: -a*b is (-a)*b, which rounds like -(a*b); and -(-a*b) is a*b. */
 static Piece negative(Writer *w, const Ins *i) {
   Piece x = cwriter_operand(w, i->a);
   int product = x.prec == C_MUL;
@@ -125,7 +127,7 @@ static Piece macro(Writer *w, const char *name, Slot a, Slot b, Slot c, int n) {
   return (Piece){t, C_ATOM, 0};
 }
 
-/* Whether the file brings the function along. */
+/* Whether the function is embedded in the file. */
 static int is_own(const Writer *w, const char *fn) { return w->style->math && (strcmp(fn, "sin") == 0 || strcmp(fn, "cos") == 0); }
 
 static Piece call1(Writer *w, const char *fn, Slot a) {
@@ -134,7 +136,7 @@ static Piece call1(Writer *w, const char *fn, Slot a) {
 }
 
 static Piece call2(Writer *w, const char *fn, Slot a, Slot b) {
-  const char *x = cwriter_operand(w, a).text, *y = cwriter_operand(w, b).text; /* 0 is a number here */
+  const char *x = cwriter_operand(w, a).text, *y = cwriter_operand(w, b).text; /* slot 0 is the number 0 */
   return (Piece){arena_printf(w->a, "%s_FN(%s)(%s, %s)", w->style->prefix, fn, x, y), C_ATOM, 0};
 }
 
@@ -152,7 +154,7 @@ static Piece load(const Writer *w, const Ins *i) {
   return (Piece){ir_is_scalar(i->array) ? array : element(w, array, i->index), C_ATOM, 0};
 }
 
-/* sign(x) and the choice of the smaller or larger, through SELECT: vectors have no ternary. */
+/* sign, min and max through SELECT: vectors have no ternary. */
 static Piece choose(Writer *w, const Ins *i) {
   const char *m = w->style->prefix, *a = wrapped(w, i->a, C_CMP + 1);
   if (i->op == IR_SIGN)
@@ -212,7 +214,7 @@ void cwriter_statement(Writer *w, const char *text) {
   }
 }
 
-/* The length of a text as a reader sees it: a long prefix counts as a short one. */
+/* Whether the text is short enough to stand inside another expression; a long prefix counts as three letters. */
 int cwriter_is_short(const Writer *w, Piece x) {
   enum { INLINE_MAX = 64 };
   size_t n = strlen(x.text), prefix = strlen(w->style->prefix);
@@ -232,7 +234,7 @@ static int is_identifier(const char *s) {
   return 1;
 }
 
-/* The name of an operand that has one which says something. */
+/* Name of an operand if it is an identifier with a meaning (not w1); else NULL. */
 static const char *telling(const Piece *x) { return x->text && !x->counted && is_identifier(x->text) ? x->text : NULL; }
 
 static const char *made_name(Writer *w, const Ins *i) {
@@ -248,8 +250,7 @@ Piece cwriter_name(Writer *w, const Ins *i) {
   return (Piece){cnames_take(&w->names, arena_printf(w->a, "%s%u", stem, ++w->temps)), C_ATOM, 1};
 }
 
-/* What a name means that no C identifier can spell: x1', and the derivatives that d_x1' and
- * x1'_drift stand for. */
+/* Comment for a name that C cannot spell: x1', and the derivatives d_x1' and x1'_drift. */
 static const char *meaning(Writer *w, const char *name) {
   static const char drift[] = "_drift";
   size_t n = strlen(name), end = sizeof drift - 1;
@@ -265,7 +266,7 @@ void cwriter_declare(Writer *w, Slot s, Piece name, Piece x) {
   cwriter_flush_title(w);
   const char *type = ir_is_condition(i->op) ? "MASK" : "REAL";
   cwriter_statement(w, arena_printf(w->a, "const %s_%s %s = %s;", w->style->prefix, type, name.text, x.text));
-  const char *said = i->name && w->indent ? cloop_stem(w->a, i->name) : i->name; /* in loops, of all turns */
+  const char *said = i->name && w->indent ? cloop_stem(w->a, i->name) : i->name; /* in a loop, the name common to all turns */
   if (said && strcmp(said, name.text) != 0) sb_printf(w->out, " /* %s */", comment_text(w->a, meaning(w, said)));
   sb_putc(w->out, '\n');
   w->piece[s] = name;
@@ -279,7 +280,7 @@ void cwriter_pivot(Writer *w, const Ins *i) {
   sb_putc(w->out, '\n');
 }
 
-/* As many rows on a line as fit. */
+/* Rows of a table, as many on a line as fit. */
 void cwrite_rows(const IrTable *table, const char *name, const char *indent, Arena *a, StrBuf *out) {
   const Spline *c = table->curve;
   sb_printf(out, "%s/* %s: time, value, second derivative. */\n", indent, comment_text(a, table->file));
@@ -308,7 +309,7 @@ static void write_table(Writer *w, Slot s, const Ins *i) {
   w->piece[s] = (Piece){arena_printf(w->a, "%s(%s, %u, %s)", w->style->spline, cwriter_operand(w, i->a).text, table->curve->n, name), C_ATOM, 0};
 }
 
-/* The loads of one array that are used, by index; 0 where there is none. */
+/* Used loads of one array, by index; 0: none. */
 static Slot *loads_of(Writer *w, int array, uint32_t *n) {
   const Prog *p = w->p;
   *n = 0;
@@ -320,7 +321,7 @@ static Slot *loads_of(Writer *w, int array, uint32_t *n) {
   return at;
 }
 
-/* Names the loads of an array, unless that is done: as many on a line as fit. */
+/* Declares the named loads of an array once, as many on a line as fit. */
 static void write_array(Writer *w, int array) {
   size_t column = 0;
   uint32_t n;
@@ -352,7 +353,7 @@ static void write_arrays(Writer *w) {
   for (int array = 0; array < ARR_COUNT; array++) write_array(w, array);
 }
 
-/* Names the arrays that instruction s loads from: there, and not at the top, or what is called before has to save them. */
+/* Declares the loads of the arrays that instruction s reads: here and not at the top, where calls in between would have to save them. */
 static void write_arrays_of(Writer *w, Slot s) {
   for (int which = 0; which < 3; which++) {
     const Ins *x = &w->p->ins.at[roll_operand(&w->p->ins.at[s], which)];
@@ -372,7 +373,7 @@ static void count_uses(Writer *w) {
   for (uint32_t k = 0; k < p->stores.n; k++) w->stored[p->stores.at[k].slot] = p->stores.at[k].comment;
 }
 
-/* Where both sine and cosine of a value are wanted, they are pairs: one call makes both. */
+/* Pairs the sine and cosine of the same value: one sincos call computes both. */
 void cwriter_find_pairs(Writer *w) {
   const Prog *p = w->p;
   Slot *sine = ARENA_ARRAY(w->a, Slot, p->ins.n);
@@ -386,7 +387,7 @@ void cwriter_find_pairs(Writer *w) {
     }
 }
 
-/* "LAG_REAL sin_x, cos_x;" and "x, &sin_x, &cos_x", each after what stands there. */
+/* Appends "sin_x, cos_x" to names and "x, &sin_x, &cos_x" to arguments. */
 static void declare_pair(Writer *w, Slot s, const Ins *first, const Ins *second, StrBuf *names, StrBuf *arguments) {
   const char *x = cwriter_operand(w, first->a).text;
   Piece a = cwriter_name(w, first), b = cwriter_name(w, second);
@@ -410,7 +411,7 @@ int cwriter_pair(Writer *w, Slot s, const Ins *first, const Ins *second) {
 
 static int is_there(const Writer *w, Slot x, Slot s) { return x < s || w->p->ins.at[x].op == IR_LOAD; }
 
-/* From s on, the first values with pairs whose operands are there when s is computed: so many, at most ABREAST. */
+/* Collects, from s on, up to ABREAST sines or cosines with a pair whose angles are known when s is computed; returns their number. */
 static uint32_t find_abreast(const Writer *w, Slot s, Slot *at) {
   enum { NEAR = 400 };
   uint32_t n = 0;
@@ -419,8 +420,8 @@ static uint32_t find_abreast(const Writer *w, Slot s, Slot *at) {
   return n;
 }
 
-/* Sines and cosines that stand outside of loops, two or four angles a call: processors compute them abreast. 0 where s is none,
- * or too few are left. */
+/* Computes sines and cosines outside of loops by calls for two or four angles, which processors overlap. Returns 0 if s has no
+ * pair, or fewer than two angles are left. */
 static int write_abreast(Writer *w, Slot s) {
   if (!w->pair[s] || w->piece[s].text) return w->pair[s] != 0;
   Slot at[ABREAST];
@@ -465,7 +466,7 @@ void cwriter_instruction(Writer *w, Slot s) {
   }
   if (ir_is_leaf(i->op) || write_abreast(w, s) || cwriter_pair(w, s, i, &w->p->ins.at[w->pair[s]])) return;
   Piece x = cwriter_spell(w, i);
-  int told = !i->name || (w->stored[s] && strcmp(i->name, w->stored[s]) == 0); /* by the store's comment */
+  int told = !i->name || (w->stored[s] && strcmp(i->name, w->stored[s]) == 0); /* the store's comment says the name */
   int part = w->uses[s] <= 1 && told && cwriter_is_short(w, x) && i->op != IR_SOLVED;
   if (part) w->piece[s] = x;
   else cwriter_declare(w, s, cwriter_name(w, i), x);
@@ -480,13 +481,13 @@ static void write_store(Writer *w, const Store *st) {
   sb_putc(w->out, '\n');
 }
 
-/* Store k + 1 where it stands beside k in its array, and no loop has it; else NULL. */
+/* Store k + 1 if its element follows that of store k in the same array; else NULL. */
 static const Store *beside(const Writer *w, uint32_t k) {
   const Store *st = &w->p->stores.at[k];
   return k + 1 < w->p->stores.n && st[1].array == st->array && st[1].index == st->index + 1 ? st + 1 : NULL;
 }
 
-/* Whether store k, at an even place, is one of two that go together. */
+/* Whether store k, at an even index, is written together with its neighbour. */
 static int is_paired(const Writer *w, uint32_t k) {
   const Store *st = &w->p->stores.at[k], *other = beside(w, k);
   if (!(w->style->paired >> st->array & 1) || st->index % 2 != 0) return 0;
@@ -516,12 +517,12 @@ static void write_stores(Writer *w) {
   }
 }
 
-/* Arrays that can be indexed by a variable: t is none, nor are members of a struct. */
+/* Bit set of the arrays that can be indexed by a variable: not scalars such as t, nor struct members. */
 static unsigned arrays_by_index(const CStyle *style) {
   return style->params ? 1u << ARR_Q | 1u << ARR_V | 1u << ARR_Z | 1u << ARR_U | 1u << ARR_CELL : ~(1u << ARR_T | 1u << ARR_ORDER | 1u << ARR_PER_ORDER | 1u << ARR_UP);
 }
 
-/* Whether nothing that is written is read, too. */
+/* Whether no array is both read and written. */
 static int stores_apart(const Prog *p, const CStyle *style) {
   if (style->apart) return 1;
   for (int k = 0; k < ARR_COUNT; k++) {
@@ -551,14 +552,14 @@ static void write_code(Writer *w) {
 
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
-  uint32_t from = p->nests.n ? 0 : style->seldom_called ? ROLL_SELDOM_FROM : ROLL_FROM; /* what has nests is long */
+  uint32_t from = p->nests.n ? 0 : style->seldom_called ? ROLL_SELDOM_FROM : ROLL_FROM; /* programs with nests are long */
   w.rolls = roll_find(p, arrays_by_index(style), from, stores_apart(p, style));
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
   cwriter_new_pieces(&w);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
   for (const char *const *g = style->globals; g && *g; g++) cnames_reserve(&w.names, *g);
   for (uint32_t k = 0; style->indices && k < style->indices->all.n; k++) cnames_reserve(&w.names, style->indices->all.at[k].name);
-  if (p->solves.n) cnames_reserve(&w.names, "w"), cnames_reserve(&w.names, "i"); /* csolve_write counts with it */
+  if (p->solves.n) cnames_reserve(&w.names, "w"), cnames_reserve(&w.names, "i"); /* i: counter in csolve_write */
   count_uses(&w);
   cloop_prepare(&w);
   cnest_prepare(&w);

@@ -1,17 +1,17 @@
-/* The inside of the writer of function bodies: cwriter.c writes statements, csolve.c linear systems, cloop.c loops, cnest.c loops inside loops. */
+/* Internals of the writer of function bodies: cwriter.c writes statements, csolve.c linear systems, cloop.c loops, cnest.c nests of loops. */
 #ifndef LAGC_CWRITER_IMPL_H
 #define LAGC_CWRITER_IMPL_H
 
 #include "emit/cwriter.h"
 #include "ir/roll.h"
 
-enum { ABREAST = 4 }; /* sines and cosines of so many angles by one call, at most */
+enum { ABREAST = 4 }; /* largest number of angles whose sines and cosines one call computes */
 enum { C_SELECT = 1, C_OR, C_AND, C_CMP, C_ADD, C_MUL, C_UNARY, C_ATOM };
 
 typedef struct {
   const char *text;
   int prec;
-  int counted; /* a name w1, w2, ... that says nothing */
+  int counted; /* 1: a generated name such as w1, without meaning */
 } Piece;
 
 typedef struct {
@@ -20,82 +20,82 @@ typedef struct {
   Arena *a;
   CNames names;
   uint32_t *uses;
-  const char **stored; /* by slot: the comment of the store that uses it */
-  Piece *piece; /* by slot: how its value is spelled where it is used */
-  Slot *pair;   /* by slot: the cosine of a sine's operand, and the other way round, where one call makes both; or 0 */
+  const char **stored; /* by slot: comment of the store of its value */
+  Piece *piece; /* by slot: C text of its value */
+  Slot *pair;   /* by slot of a sine: the cosine of the same angle, and vice versa, where one call computes both; or 0 */
   StrBuf *out;
   uint32_t temps;
   const char *title; /* pending: printed before the next statement */
-  size_t indent;     /* besides that of the body */
+  size_t indent;     /* added to the two columns of the body */
   Rolls rolls;
-  const char ***kept; /* [loops][period] the arrays that hold the values of all turns; NULL where none */
-  unsigned char named[ARR_COUNT]; /* arrays whose loads have their names */
-  unsigned char *named_load; /* by slot: a load that is used outside of loops, or by all turns of one */
-  const char *cells, *row, *turn; /* the array of sums that nests add to, and their counters */
-  const CIndices *indices; /* tables that nests take indices from */
-  const char *parameters; /* an array with the parameters that nests read, where they are members of a struct; or NULL */
+  const char ***kept; /* [loops][period] arrays that hold a value of all turns; NULL if none does */
+  unsigned char named[ARR_COUNT]; /* arrays whose loads have been declared */
+  unsigned char *named_load; /* by slot: a load used outside of loops, or by all turns of one */
+  const char *cells, *row, *turn; /* array of sums to which nests add, and the nests' counters */
+  const CIndices *indices; /* index tables of the nests */
+  const char *parameters; /* array copy of the parameters that nests read, if parameters are struct members; or NULL */
 } Writer;
 
 Piece cwriter_operand(const Writer *w, Slot s);
 Piece cwriter_spell(Writer *w, const Ins *i);
 int cwriter_is_short(const Writer *w, Piece x);
 
-/* A statement, broken at spaces where it is long; without the end of the line. */
+/* Appends a statement, broken at spaces where it is long, without a line end. */
 void cwriter_statement(Writer *w, const char *text);
 void cwriter_pivot(Writer *w, const Ins *i);
 void cwriter_flush_title(Writer *w);
 
-/* What an array that is read is called. */
+/* Name of an array that is read. */
 const char *cwriter_array(const Writer *w, IrArray array);
 
-/* Before a program is written. Numbers need no statement, and are spelled now: in a loop they may stand in a later turn than their use. */
+/* Clears the texts of all values and spells the constants, which need no statement and may be used in an earlier turn of a loop. */
 void cwriter_new_pieces(Writer *w);
 
-/* An instruction that is in no loop of cloop.c. */
+/* Writes an instruction outside the loops of cloop.c. */
 void cwriter_instruction(Writer *w, Slot s);
 
-/* Finds sines and cosines that one call makes. */
+/* Finds the pairs sin x, cos x that one sincos call computes. */
 void cwriter_find_pairs(Writer *w);
 
-/* A name for the value: the user's, one made of what it is made of, or w1, w2, ... */
+/* Takes a name for a value: the user's, one derived from its operands, or w1, w2, ... */
 Piece cwriter_name(Writer *w, const Ins *i);
 
-/* `const LAG_REAL name = x;`, and spells slot s by that name from now on. */
+/* Writes `const LAG_REAL name = x;`; slot s is spelled by that name from now on. */
 void cwriter_declare(Writer *w, Slot s, Piece name, Piece x);
 
-/* Declares a value and its pair, with the names that their instructions have, by one call, unless the pair came first. 0 where
- * it has no pair. */
+/* Declares a sine and its cosine by one sincos call, named after their instructions, unless done already. Returns 0 if slot s
+ * has no pair. */
 int cwriter_pair(Writer *w, Slot s, const Ins *first, const Ins *second);
 
-/* Whether two functions of one operand stand side by side: both in no loop, or in the same turn of one in all turns. */
+/* Whether sin and cos of one operand can share a call: both outside of loops, or in the same turn of one loop in all turns. */
 int cloop_together(const Writer *w, Slot a, Slot b);
 
-/* Whether a loop computes it. */
+/* Whether slot s is computed in a loop. */
 int cloop_holds(const Writer *w, Slot s);
 
-/* Before anything is written. */
+/* Finds the loads that need a name; to be called before any text is written. */
 void cloop_prepare(Writer *w);
 
 /* Whether a load gets a name at the top of the function. */
 int cloop_names_load(const Writer *w, Slot s);
 
-/* x[3]' -> x', D12 -> D, L2_11 -> L: what the turns' names have in common. */
+/* Name without indices, common to all turns of a loop: x[3]' -> x', D12 -> D, L2_11 -> L. */
 const char *cloop_stem(Arena *a, const char *name);
 
-/* An IR_SOLVE. */
+/* Writes an IR_SOLVE. */
 void csolve_write(Writer *w, const Ins *i);
 
-/* An IR_INVERT. */
+/* Writes an IR_INVERT. */
 void csolve_write_inverse(Writer *w, const Ins *i);
 
-/* A whole loop. */
+/* Writes a whole loop. */
 void cloop_write(Writer *w, uint32_t loop);
 
-/* Before anything is written; a nest. */
+/* Declares index tables, counters and the array of sums; writes one nest. */
 void cnest_prepare(Writer *w);
 void cnest_write(Writer *w, const Ins *i);
 
-/* How many stores from number k on can be written as a loop; 0 for none. And that loop. */
+/* Number of stores from store k on that can be written as one loop (0: none); and that loop. */
 uint32_t cloop_stores(const Writer *w, uint32_t k);
 void cloop_write_stores(Writer *w, uint32_t k, uint32_t n);
 

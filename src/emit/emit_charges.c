@@ -1,4 +1,4 @@
-/* Charges in an emitted model: their values, what they change by, and what the runtime is to know of them. */
+/* Charges of symmetries in an emitted model: their values, their rates of change, and the table lag_charge. */
 #include "emit/emit_impl.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* Emitted header: names with the header's prefix, the head comment with an example of use, and the frame of the file. */
 #include "emit/emit_header.h"
 
 #include <string.h>
@@ -20,7 +21,7 @@ static const char *const header_names[] = {"REAL", "API", "STATIC", "IMPLEMENTAT
                                            "LANES", "LIBM", "OWN",
                                            "FMA", "INLINE", "PIVOTS", "PIVOTS_STATUS", "OK", "ESINGULAR", "NQ", "NZ", "NP", "NU", "NEV", "NOUT"};
 
-/* PREFIX_NAME for each variable: an enumerator that nothing else in the header is called. */
+/* Enumerators PREFIX_NAME of the variables, unique in the header. */
 static const char **enumerators(Header *h, CNames *taken, const char *stem, const IrVar *v, uint32_t n) {
   const char **names = ARENA_ARRAY(h->a, const char *, n + 1);
   for (uint32_t i = 0; i < n; i++) {
@@ -37,7 +38,7 @@ static const char **event_enumerators(Header *h, CNames *taken) {
   return enumerators(h, taken, "EV_", v, n);
 }
 
-/* What a function's own names must not hide. */
+/* Global names of the header, which names inside functions must not hide. */
 static const char *const *globals_of(Header *h) {
   const char **all = ARENA_ARRAY(h->a, const char *, h->taken.taken.n + 20);
   uint32_t n = 0;
@@ -82,7 +83,7 @@ static Header header_new(const IrUnit *u, const char *name, StrBuf *out) {
 
 /* --- the head --- */
 
-/* The equations; what stands above them, and the operation count, are in the head already. */
+/* Appends the equations from text; the paragraph above them and the operation count stand in the head already. */
 static void comment_lines(const Header *h, const char *text) {
   enum { MOST_LINES = 80, MOST_COLUMNS = 300 };
   const char *body = strstr(text, "\n\n"), *safe = comment_text(h->a, body ? body + 1 : text);
@@ -97,8 +98,8 @@ static void comment_lines(const Header *h, const char *text) {
   if (left) sb_printf(h->out, " * ... and %u lines more: `lagc derive` shows them.\n", left);
 }
 
-/* The loop of a model with contacts: a step that would go through one is taken back, and the contact strikes; one that strikes again at once
- * stays closed, until nothing presses. */
+/* Example loop for a model with contacts: a step that would penetrate is undone and the impact applied; a contact that strikes again at once
+ * stays closed until its force vanishes. */
 static void write_contact_loop(const Header *h, const char *end, const char *step) {
   const char *m = h->upper, *f = h->lower;
   uint32_t n = h->u->contacts.n;

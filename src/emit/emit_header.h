@@ -5,8 +5,8 @@
 #include "base/strbuf.h"
 #include "ir/unit.h"
 
-/* The header of the unit's first scene. All its names begin with `name`, made an identifier, in upper
- * or lower case. equations: text for the comment at its head, or NULL. */
+/* Appends the header of the unit's first scene. Its names begin with `name`, turned into an identifier, in upper
+ * or lower case. equations: text for the head comment, or NULL. */
 void emit_header(const IrUnit *u, const char *name, const char *equations, StrBuf *out);
 
 #endif

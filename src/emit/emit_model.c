@@ -1,3 +1,4 @@
+/* The emitted model file: functions in the order of their use, then tables, then scenes; and the main file of a simulator. */
 #include "emit/emit_model.h"
 
 #include <string.h>
@@ -16,7 +17,7 @@ static const char *const prelude =
   "#ifndef LAG_FN\n#define LAG_FN(f) f\n#endif\n"
   "#ifndef LAG_C\n#define LAG_C(x) ((LAG_REAL)x)\n#endif\n";
 
-/* What lag_model.h and the head of an emitted file define. */
+/* Names defined by lag_model.h and by emitted files. */
 static const char *const abi_names[] = {
   "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
   "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_solve_definite", "lag_cubic",
@@ -37,7 +38,7 @@ enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
 /* --- identifiers --- */
 
-/* The identifier of scene, or event, i: different for names that C spells alike. */
+/* Unique identifier of scene, or event, i: names that C spells alike get suffixes. */
 static const char *scene_id(const IrUnit *u, uint32_t i) {
   CNames ids = cnames_new(u->arena);
   const char *id = "";
@@ -52,7 +53,7 @@ static const char *event_id(const IrUnit *u, uint32_t i) {
   return id;
 }
 
-/* The arrays of the inputs' tables. */
+/* Names of the arrays of the inputs' tables. */
 static const char *const *rows_names(const IrUnit *u) {
   CNames ids = cnames_new(u->arena);
   const char **names = ARENA_ARRAY(u->arena, const char *, u->inputs->tables.n + 1);
@@ -98,7 +99,7 @@ CStyle emit_style(const File *f, const char *const *own, const char *const *writ
                   .indices = f->indices};
 }
 
-/* Once a step, or a row of output. */
+/* Whether the function is called once a step, or once a row of output. */
 static int is_seldom_called(const IrUnit *u, const Prog *p) {
   int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers || p == u->switch_values;
   for (uint32_t i = 0; i < u->scenes.n; i++) seldom |= p == u->scenes.at[i].observe;
@@ -301,7 +302,7 @@ static void emit_observe(const File *f, const IrScene *s, const char *id) {
   emit_function(f, s->observe, comment, head, own, written);
 }
 
-/* The closed forms; q0, v0, z0 are the start. */
+/* Function of the closed forms; its arguments q0, v0, z0 are the state at the start. */
 static void emit_exact(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"t", "q0", "v0", "z0", "p", "u", "out", NULL}, *const written[] = {"out"};
   static const char *const from_start[ARR_COUNT] = {"t", "q0", "v0", "z0", "p", "u", "a"};
@@ -359,14 +360,14 @@ static void flag_text(unsigned flags, StrBuf *out) {
 
 static const char *or_null(uint32_t n, const char *name) { return n ? name : "NULL"; }
 
-/* What the functions compute, in 16 digits (FNV-1a, 64 bits): a saved state belongs to these equations. */
+/* Digest of the equations' C text (FNV-1a, 64 bits, in hexadecimal), by which a saved state is tied to its equations. */
 static const char *digest_text(Arena *a, const char *text) {
   uint64_t h = 14695981039346656037u;
   for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u;
   return arena_printf(a, "%016llx", (unsigned long long)h);
 }
 
-/* Which input has which table. */
+/* Table `curves`: input, number of rows and array of each input that is a table. */
 static void emit_curves(const IrUnit *u, StrBuf *out) {
   const Prog *p = u->inputs;
   if (!p->tables.n) return;
@@ -454,7 +455,7 @@ static void emit_flags(const char *stem, const char *id, const unsigned char *fl
   sb_puts(out, "};\n");
 }
 
-/* Which components of the state the start sets. */
+/* Table `given` for models with constraints: 1 for components of the state that the start sets, 2 for implied ones. */
 static void emit_given(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
   uint32_t n = u->q.n, total = 2 * n + u->z.n, after[] = {0, n, 2 * n};
   if (!u->constraints.of.n) return;
@@ -464,7 +465,7 @@ static void emit_given(const IrUnit *u, const IrScene *s, const char *id, StrBuf
   emit_flags("given", id, given, total, out);
 }
 
-/* Outputs with forces in them; whether there are any. */
+/* Whether an output of the scene contains forces. */
 static int has_forces(const IrScene *s) { return s->forces.n && memchr(s->forces.at, 1, s->forces.n); }
 
 static const char *list_name(const IrUnit *u, uint32_t n, const char *stem, const char *id) {
@@ -535,7 +536,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   const char *digest = digest_text(u->arena, sb_text(out) + begin);
   emit_charges(&f);
   emit_switches(&f);
-  emit_linear(&f); /* after the digest: a state belongs to the equations, not to what methods make of them */
+  emit_linear(&f); /* after the digest: a saved state depends on the equations, not on the methods' derivatives of them */
   if (u->taylor) emit_taylor(u->taylor, f.globals, cmath_prefix(u, "lag"), out);
   emit_variation(&f);
   emit_tables(u, name, digest, out);

@@ -1,4 +1,4 @@
-/* Parameters: what a scene gives them, and what is derived from them once. */
+/* Parameters in an emitted model: the values of a scene, and the derived parameters computed once. */
 #include "emit/emit_impl.h"
 
 void emit_inverses(const File *f) {
@@ -18,14 +18,14 @@ void emit_derive(const File *f) {
   cfunction(f->u->derived, &st, &c, f->out);
 }
 
-/* Whether the parameter is a number, and the same as that of `like`. */
+/* Whether the parameter of p is a constant equal to that of `like`. */
 static int is_number_like(const Prog *p, const Prog *like) {
   if (p->stores.n != 1 || like->stores.n != 1) return 0;
   const Ins *x = &p->ins.at[p->stores.at[0].slot], *y = &like->ins.at[like->stores.at[0].slot];
   return p->stores.at[0].slot && like->stores.at[0].slot && x->op == IR_CONST && y->op == IR_CONST && num_equal(x->number, y->number);
 }
 
-/* The parameters from i on that are one number, when they are many; otherwise 1. */
+/* Number of parameters from i on with one constant value if at least 16; otherwise 1. */
 static uint32_t same_params(const IrUnit *u, const IrScene *s, uint32_t i) {
   enum { MANY = 16 };
   uint32_t n = 1;
@@ -33,7 +33,7 @@ static uint32_t same_params(const IrUnit *u, const IrScene *s, uint32_t i) {
   return n >= MANY ? n : 1;
 }
 
-/* Parameters one by one: each may use those before it, as they are then. */
+/* Function params_ID: parameters in order, as each formula may use the parameters before it. */
 void emit_params(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"p", "fixed", NULL}, *const written[] = {"p"};
   sb_printf(f->out, "\nstatic void params_%s(LAG_REAL *p, const unsigned char *fixed) {\n", id);

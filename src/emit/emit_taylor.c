@@ -1,14 +1,16 @@
+/* C of the Taylor recurrences: order 0, the step from order k to k + 1, the convolution sums over rows of coefficients,
+ * and the evaluation of the series; each row operation also with vectors of four doubles (AVX2). */
 #include "emit/emit_taylor.h"
 
 #include <string.h>
 
 #include "emit/cfunction.h"
 
-enum { LANES = 4 };    /* rows are a multiple of so many numbers */
-enum { CALL = 25 };    /* what a function costs more than another operation */
-enum { INLINE_MAX = 300 }; /* operations of an order that stand in two functions, for pairs and for fours */
-enum { NEAR_MAX = 12 };    /* sums of one kind that are kept at hand from one order to the next: see near_sums */
-enum { LOOP_FROM = 9 }; /* statements that differ in an index only: so many become a loop */
+enum { LANES = 4 };    /* row lengths are multiples of this */
+enum { CALL = 25 };    /* extra cost of a function call, in operations */
+enum { INLINE_MAX = 300 }; /* most operations of taylor_next that are inlined twice, for pairs and for fours */
+enum { NEAR_MAX = 12 };    /* most sums of one kind that stay in registers from one order to the next: see near_sums */
+enum { LOOP_FROM = 9 }; /* statements that differ in an index only become a loop from this number on */
 
 static const char *const arrays[ARR_COUNT] = {
   "t", "q", "v", "z", "p", "u", [ARR_FREE] = "follows", [ARR_COEF] = "y", [ARR_SUMS] = "s", [ARR_STEP] = "c",
@@ -35,14 +37,14 @@ static const char *const head =
   "#define TAYLOR_UNROLL_4\n"
   "#endif\n";
 
-/* A pair of what stands side by side. */
+/* Pair g of a row held in pairs, or in fours. */
 static const char *const part = "static TAYLOR_INLINE taylor_pair taylor_part(const taylor_pair *x, int g) { return x[g]; }\n";
 static const char *const wide_part =
   "TAYLOR_WIDE static TAYLOR_INLINE taylor_pair taylor_part_wide(const taylor_four *x, int g) {\n"
   "  return g % 2 ? (taylor_pair){x[g/2][2], x[g/2][3]} : (taylor_pair){x[g/2][0], x[g/2][1]};\n"
   "}\n";
 
-/* Where sums are too few to fill fours, pairs are as fast everywhere. */
+/* Vectors of four, for models whose rows are long enough: shorter rows gain nothing over pairs. */
 static const char *const wide_head =
   "/* Fours on processors with AVX2: whatever the file was compiled for, this is asked as it runs. The bits are the same. */\n"
   "#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE) && defined(__x86_64__)\n"
@@ -50,7 +52,7 @@ static const char *const wide_head =
   "typedef double taylor_four __attribute__((vector_size(32), aligned(8), may_alias));\n"
   "#endif\n";
 
-/* $: nothing, or _wide; # the type of numbers side by side; @: an attribute; %: where the loop over orders is unrolled. */
+/* Templates, see fill(): $ is the suffix (none or _wide), # the vector type, @ an attribute, % the place of an unroll pragma. */
 static const char *const at =
   "\n@static void taylor_at$(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
   "  enum { PARTS = 4*sizeof(LAG_REAL)/sizeof(#) };\n"
@@ -138,8 +140,8 @@ static const char *const squares =
   "  }\n"
   "}\n";
 
-/* The same where sums are few. What the last order has made is at hand, and stands in registers; what the one before it has made
- * is taken in pairs, as it was stored. Neither then waits for memory, and the sum over all others is ready early. */
+/* Convolution sums for few sums. Coefficients of order k - 1 come from registers, those of order k - 2 are loaded in pairs, as they
+ * were stored: neither load waits for a store, and the sum over the other orders is ready early. */
 static const char *const near_sums =
   "\n@static TAYLOR_INLINE void taylor_sums$(int k, const taylor_work *w, const taylor_pair *a, const taylor_pair *b, taylor_pair *s) {\n"
   "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = TAYLOR_PAIRED*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
@@ -227,7 +229,7 @@ static CStyle style_for(const Writer *w, const char *const *own, const char *con
                   .math = w->math};
 }
 
-/* Whether sums are so few that what the last order has made stays in registers. */
+/* Whether the sums are few enough that the coefficients of the last order stay in registers. */
 static int is_near(const Series *s) {
   return s->first_square <= s->group && s->width - s->first_square <= s->group && s->sums <= NEAR_MAX && s->squares <= NEAR_MAX &&
          ops_total(prog_count(s->next)) <= INLINE_MAX;
@@ -292,15 +294,15 @@ static void next(const Writer *w) {
   sb_puts(w->out, "}\n");
 }
 
-/* The column of order 0 that is the rate of column i of the state. */
+/* Column of order 0 that holds the rate of column i of the state. */
 static uint32_t order_0_of(const Series *s, uint32_t i) { return i < s->nq ? s->nq + i : s->nq + s->nz + i; }
 
-/* x[to + i] of order 1 := T times x[from + i] of order 0, for i < n. */
+/* Writes x[to + i] of order 1 = T times x[from + i] of order 0, for i < n. */
 static void rate(const Writer *w, uint32_t to, uint32_t from, uint32_t n) {
   if (n) sb_printf(w->out, "  for (int i = %u; i < %u; i++) x[TAYLOR_COLUMNS + i] = T*x[i + %u];\n", to, to + n, from - to);
 }
 
-/* What fills the last groups is zero. Up to 15 sums are stored in pairs, and the last of an odd number with a zero. */
+/* Clears the padding of the last groups. Up to 15 sums are stored in pairs, an odd last one together with a zero. */
 static void fill_groups(const Writer *w) {
   const Series *s = w->s;
   uint32_t filled = s->sums < 16 ? even(s->sums) : s->sums;
@@ -312,7 +314,7 @@ static void fill_groups(const Writer *w) {
                       "    for (int i = %u; i < TAYLOR_SUMS; i++) w->a[k][i] = LAG_C(0.0);\n", s->first_square + s->squares);
 }
 
-/* The loop over orders, where rows are read and written in memory. */
+/* Loop over orders with rows in memory. */
 static void far_orders(const Writer *w, const char *suffix) {
   const Series *s = w->s;
   sb_puts(w->out, "  for (int k = 1; k < n; k++) {\n"
@@ -324,8 +326,8 @@ static void far_orders(const Writer *w, const char *suffix) {
             s->room ? ", w->m" : "");
 }
 
-/* The same, with the state and what sums are made of at hand. It goes from one order to the next in arrays of pairs, y1, a and b, which
- * compilers keep in registers as they are never taken number by number; y and s are copies that are. */
+/* Loop over orders with the state and the factors of sums in registers: the arrays of pairs y1, a and b, which compilers keep in
+ * registers because no single element is addressed; y and s are copies whose elements are. */
 static void near_orders(const Writer *w, const char *suffix) {
   const Series *s = w->s;
   uint32_t state = 2 * s->nq + s->nz;
@@ -385,7 +387,7 @@ static void rest(const Writer *w, const char *suffix, const char *attribute) {
   sb_puts(w->out, "    per_k = per_next;\n  }\n}\n");
 }
 
-/* text with its marks filled in: see above. The loop over orders is short work where there is one group of sums only. */
+/* Appends a template with its marks filled in. The loop over orders is unrolled where there is a single group of sums. */
 static void fill(const Writer *w, const char *text, const char *suffix, const char *type, const char *attribute) {
   StrBuf *out = w->out;
   for (; *text; text++) {
@@ -398,7 +400,7 @@ static void fill(const Writer *w, const char *text, const char *suffix, const ch
   }
 }
 
-/* What goes along rows of numbers. */
+/* Writes the row operations: sums, squares, all orders, evaluation of the series. */
 static void along_rows(const Writer *w, const char *suffix, const char *type, const char *attribute) {
   int near = is_near(w->s);
   if (w->s->sums) fill(w, near ? near_sums : sums, suffix, type, attribute);

@@ -1,11 +1,12 @@
-/* Series -> the C functions of a model's Taylor coefficients, as lag_taylor in lag_model.h wants them. */
+/* Series -> the C functions that compute a model's Taylor coefficients (lag_taylor of lag_model.h). */
 #ifndef LAGC_EMIT_TAYLOR_H
 #define LAGC_EMIT_TAYLOR_H
 
 #include "base/strbuf.h"
 #include "ir/series.h"
 
-/* Functions and the const lag_taylor called `taylor`. globals: names that functions must not hide, NULL at the end. */
+/* Appends the functions and the const lag_taylor called `taylor`. globals: names that functions must not hide, NULL at the end;
+ * math: as in CStyle. */
 void emit_taylor(const Series *s, const char *const *globals, const char *math, StrBuf *out);
 
 #endif

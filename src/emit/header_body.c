@@ -1,4 +1,4 @@
-/* The definitions of an emitted header. */
+/* Definitions of an emitted header: support functions, functions around programs, constraints, Runge-Kutta step. */
 #include <string.h>
 
 #include "emit/cmath.h"
@@ -21,7 +21,7 @@ static const char *const macros =
   "#define LAG_C(x) (sizeof(LAG_REAL) > sizeof(double) ? (LAG_REAL)x##L : (LAG_REAL)x)\n"
   "#endif\n";
 
-/* Kutta (1901). A line that begins with q, z, u or c is for models that have those; c: constraints. */
+/* Classical Runge-Kutta method (Kutta 1901). Lines marked q, z, u or c are for models with coordinates, states, inputs or constraints. */
 static const char *const rk4_body =
   " |  const LAG_REAL weight[4] = {h/LAG_C(6.0), h/LAG_C(3.0), h/LAG_C(3.0), h/LAG_C(6.0)};\n"
   " |  const LAG_REAL next[4] = {LAG_C(0.5)*h, LAG_C(0.5)*h, h, h}; /* from *s to the stage after this */\n"
@@ -53,7 +53,7 @@ static const char *const rk4_body =
   " |  return LAG_OK;\n"
   "}";
 
-/* Newton's method, until nothing is halved any more: positions, then velocities. */
+/* Newton's method onto the constraints, positions first, then velocities; stops when the residual no longer halves. */
 static const char *const hold_body =
   " {\n"
   "  for (int level = LAG_FIRST; level < 2; level++) {\n"
@@ -80,7 +80,7 @@ static const char *const hold_body =
 
 /* --- functions around programs --- */
 
-/* The parameters of a function of the state; extra: what it writes. */
+/* Parameter names of a function of the state; extra: its further parameters. */
 static const char *const *own_names(const Header *h, const char *const *extra) {
   const char **own = ARENA_ARRAY(h->a, const char *, ARR_COUNT + 4);
   uint32_t n = 0;
@@ -117,7 +117,7 @@ static void accel(const Header *h) {
 
 /* --- parameters and the start --- */
 
-/* One by one: each may use those before it. */
+/* Function _defaults: parameters in order, as each formula may use the parameters before it. */
 static void defaults(const Header *h) {
   static const char *const own[] = {"p", NULL}, *const out[] = {"p"};
   sb_printf(h->out, "\n%s {\n", api(h, FN_DEFAULTS));
@@ -210,7 +210,7 @@ static void act(const Header *h) {
 
 /* --- constraints --- */
 
-/* `static int lower_NAME(state, extra...)` */
+/* Internal function `static int lower_NAME(state, extra...)` around p. */
 static void inner(const Header *h, const Prog *p, const char *name, const char *params, const char *const *extra, const char *const *out) {
   const char *head = arena_printf(h->a, "static int %s_%s(%s, %s)", h->lower, name, header_state_args(h, 1, ""), params);
   CStyle st = style_for(h, own_names(h, extra), out);
@@ -249,7 +249,7 @@ static void hold(const Header *h) {
 
 /* --- a step --- */
 
-/* With inputs, one function that both kinds of step share: u held, or as they are at each time. */
+/* Runge-Kutta step. With inputs, one internal function serves both kinds of step: u held, or evaluated at each stage. */
 static void rk4_step(const Header *h) {
   StrBuf text = strbuf(h->a), call = strbuf(h->a);
   const IrUnit *u = h->u;

@@ -1,4 +1,4 @@
-/* What a user of an emitted header sees: options, indices, structs, prototypes. */
+/* Declarations of an emitted header: options, indices, structs, prototypes. */
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@ static const char *const options =
 
 /* --- indices --- */
 
-/* "[deg], 1 deg is 0.01745 SI" */
+/* Unit of a variable for a comment: " [deg]: 1 deg is 0.01745 in SI". */
 static const char *unit_text(const Header *h, const IrVar *v) {
   if (!v->unit[0]) return "";
   if (v->offset != 0) return arena_printf(h->a, " [%s]: 0 %s is %s in SI", v->unit, v->unit, double_text(h->a, v->offset));
@@ -61,7 +61,7 @@ static void event_indices(const Header *h) {
 
 /* --- structs --- */
 
-/* The values of the parameters in the scene. */
+/* Values of the parameters in the scene; NaN where a formula has none. */
 static long double *param_values(const Header *h) {
   uint32_t n = h->u->p.n;
   long double *p = ARENA_ARRAY(h->a, long double, n + 1), zero = 0;
@@ -192,7 +192,7 @@ static const char *const docs[FN_COUNT] = {
   [FN_RK4_STEP_WITH] = "The same with inputs that change during the step: input(context, t, u) finds the model's own in u.",
 };
 
-/* "0 spin, 1 momentum" */
+/* Numbered names of the symmetries: "0 spin, 1 momentum"; charge 0, the energy, is left out. */
 static const char *charge_names(const Header *h) {
   StrBuf b = strbuf(h->a);
   for (uint32_t i = 1; i < h->u->charges.n; i++) sb_printf(&b, "%s%u %s", i > 1 ? ", " : "", i - 1, h->u->charges.at[i].name);

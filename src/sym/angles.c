@@ -1,13 +1,14 @@
-/* Sines, cosines and exponentials of sums: the addition theorems over base angles. */
+/* Sines, cosines, exponentials and powers of sums in normal form: the addition theorems over base angles.
+ * Enters: an argument as a fraction. Leaves: a fraction in the generators sin, cos and exp of base angles. */
 #include <stdlib.h>
 
 #include "sym/normal_impl.h"
 
-enum { MAX_MULTIPLE = 64 }; /* of a base angle: cos 64u has 33 terms */
+enum { MAX_MULTIPLE = 64 }; /* largest multiple of a base angle: cos 64u has 33 terms */
 
 /* --- atoms --- */
 
-/* The atom for part/den below the base; GEN_NONE as base_num marks an angle. There are few. */
+/* The atom of base^(part/den), made if absent; GEN_NONE as base_num marks an angle. Atoms are few: linear search. */
 static uint32_t find_atom(Normal *n, PolyId base_num, DenId base_den, PolyId part, DenId den) {
   for (uint32_t i = 0; i < n->atoms.n; i++) {
     const Atom *a = &n->atoms.at[i];
@@ -18,8 +19,8 @@ static uint32_t find_atom(Normal *n, PolyId base_num, DenId base_den, PolyId par
   return n->atoms.n - 1;
 }
 
-/* Exponentials of linearly independent products of symbols are algebraically independent of each
- * other and of the symbols (Ax, On Schanuel's conjectures, 1971, DOI 10.2307/1970774). */
+/* Whether part is a product of symbols. Exponentials of linearly independent products of symbols are algebraically
+ * independent of each other and of the symbols (Ax, On Schanuel's conjectures, 1971, DOI 10.2307/1970774). */
 static int is_plain(const Normal *n, PolyId part) {
   Poly p = poly_at(n->ring, part);
   const Mono *mono = mono_at(n->ring, p.at[0].mono);
@@ -65,8 +66,8 @@ static void make_power(Normal *n, uint32_t at) {
   normal_name_gen(n, a->cos, (GenInfo){.kind = GEN_POWER, .expr = e, .atom = at});
 }
 
-/* How many units of its atom c is. A finer unit than before makes new generators, and the whole
- * problem is computed again with them. */
+/* c as a multiple of its atom's unit. A coefficient that needs a finer unit makes new generators and restarts the
+ * normal form. */
 static int32_t multiple_of(Normal *n, uint32_t at, Num c) {
   Atom *a = &n->atoms.at[at];
   Num unit = num_gcd(a->unit, c);
@@ -129,7 +130,7 @@ static int is_pi(const Normal *n, MonoId m, DenId den) {
   return info.kind == GEN_SYMBOL && strcmp(expr_sym_of(n->g, info.expr)->name, "pi") == 0;
 }
 
-/* cos(j pi/12) for j = 0, 2, 3, 4, 6 (the others are 0 here: not needed), as sqrt(number)/2. */
+/* cos(j pi/12) = +-sqrt(m)/2, m = 0 .. 4, for j = 0, 2, 3, 4, 6 and their reflections; other j do not occur. */
 static Frac cos_twelfths(Normal *n, int64_t j) {
   j = ((j % 24) + 24) % 24;
   if (j > 12) j = 24 - j;
@@ -141,7 +142,7 @@ static Frac cos_twelfths(Normal *n, int64_t j) {
   return negative ? frac_neg(n->field, c) : c;
 }
 
-/* Whether c*pi has a cosine and a sine that are square roots of rationals; then those. */
+/* cos and sin of c*pi as square roots of rationals; returns 0 where they are not. */
 static int pi_angle(Normal *n, Num c, Circular *cs) {
   if (c.den > 6 || c.den == 5) return 0;
   int64_t twelfths = c.num % (2 * c.den) * (12 / c.den);
@@ -226,7 +227,7 @@ static Frac power_of(Normal *n, PolyId base_num, DenId base_den, Frac u) {
   return product;
 }
 
-/* b^u as one power of b^(u/k) or b^(-u/k), whichever was met first: exp(x - y) is 1 where x = y = 1000, and exp(x)*exp(-y) is not a number. */
+/* b^u as one power of b^(u/k) or b^(-u/k), whichever atom exists: exp(x - y) is 1 at x = y = 1000, where exp(x)*exp(-y) is NaN. */
 static Frac whole_power(Normal *n, PolyId base_num, DenId base_den, Frac u) {
   PolyRing *r = n->ring;
   Num content = num_abs(poly_content(r, u.num)), inverse = num_div(num_int(1), content);

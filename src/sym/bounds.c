@@ -1,4 +1,4 @@
-/* Values with a bound of their rounding error: the running error analysis of Wilkinson (Higham,
+/* Random sample states, and values with a bound of their rounding error: the running error analysis of Wilkinson (Higham,
  * Accuracy and Stability of Numerical Algorithms, 2002, section 3.3), with first-order bounds for
  * the functions. */
 #include <float.h>
@@ -11,7 +11,7 @@ typedef long double Real;
 
 /* --- states --- */
 
-/* SplitMix64 (Steele, Lea, Flood 2014, DOI 10.1145/2714064.2660195), as a fraction of 1. */
+/* Uniform number in [0, 1) by SplitMix64 (Steele, Lea, Flood 2014, DOI 10.1145/2714064.2660195). */
 static Real fraction(uint64_t x) {
   x += 0x9e3779b97f4a7c15u;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -48,18 +48,18 @@ void prove_state_wide(const ExprGraph *g, uint32_t seed, long double *symbols) {
 
 /* --- bounds --- */
 
-/* Values and bounds of the nodes in question, by place in their list. */
+/* Values and bounds of the nodes of a tape, by position in its list. */
 typedef struct {
   ExprGraph *g;
   const Real *value;
   Real *bound;
-  const ExprMap *place; /* plus one */
+  const ExprMap *place; /* node -> position + 1 */
 } Bounds;
 
 static Real value_of(const Bounds *b, Expr e) { return b->value[expr_map_get(b->place, e) - 1]; }
 static Real bound_of(const Bounds *b, Expr e) { return b->bound[expr_map_get(b->place, e) - 1]; }
 
-/* A number of few binary digits behind the point: a sum of such is exact. */
+/* Whether x is a multiple of 2^-16 of magnitude <= 1e9: sums of such numbers are exact. */
 static int is_short(Real x) { return fabsl(x) <= 1e9L && x * 65536 == floorl(x * 65536); }
 
 static Real sum_bound(const Bounds *b, Expr e) {
@@ -77,7 +77,7 @@ static Real sum_bound(const Bounds *b, Expr e) {
   return bound + (Real)(n + 2) * LDBL_EPSILON * size;
 }
 
-/* Whether a product of a few small whole numbers, halves and quarters has come out exactly. */
+/* Whether the value of a product of at most four small multiples of 1/4, or their inverses, is exact. */
 static int is_exact_product(const Bounds *b, Expr e, Real value) {
   Real above = 1, below = 1;
   int64_t factors = 0;
@@ -94,7 +94,7 @@ static int is_exact_product(const Bounds *b, Expr e, Real value) {
   return below != 0 && value * below == above && is_short(value);
 }
 
-/* A factor that is not told from 0 leaves the product between 0 and its largest size. */
+/* Error bound of a product; a factor that may be 0 within its bound leaves twice the largest magnitude of the product. */
 static Real prod_bound(const Bounds *b, Expr e, Real value) {
   Real relative = 0, most = 1;
   int vanishes = 0;
@@ -112,7 +112,7 @@ static Real prod_bound(const Bounds *b, Expr e, Real value) {
   return isnan(relative) ? INFINITY : relative * fabsl(value);
 }
 
-/* |f'(x)| for functions of one argument. */
+/* |f'(x)|, or a bound of it, for functions of one argument. */
 static Real slope(ExprOp op, Real x, Real f) {
   switch (op) {
     case EX_SIN: case EX_COS: case EX_ATAN: case EX_ABS: case EX_TANH: case EX_DEF: return 1;
@@ -129,7 +129,7 @@ static Real slope(ExprOp op, Real x, Real f) {
   return INFINITY;
 }
 
-/* Comparisons are certain, or nothing is known; they and what is built of them have bound 0. */
+/* Bound of a comparison: 0 if the error bounds leave it certain, infinite otherwise. */
 static Real compare_bound(const Bounds *b, Expr e) {
   Expr x = expr_arg(b->g, e, 0), y = expr_arg(b->g, e, 1);
   Real gap = fabsl(value_of(b, x) - value_of(b, y)), off = bound_of(b, x) + bound_of(b, y);
@@ -183,7 +183,7 @@ static Real node_bound(const Bounds *b, Expr e, Real value, const Real *errors) 
   return INFINITY;
 }
 
-/* A function whose value is not of ordinary size has lost digits to underflow. */
+/* Underflow error: LDBL_MIN for an inexact operation whose value is subnormal, else 0. */
 static Real underflow(const ExprGraph *g, Expr e, Real value) {
   ExprOp op = expr_op(g, e);
   int exact = op == EX_NUM || op == EX_SYM || op == EX_SUM || op == EX_DEF || op == EX_ABS || op == EX_SIGN || op == EX_MIN || op == EX_MAX ||
@@ -194,8 +194,8 @@ static Real underflow(const ExprGraph *g, Expr e, Real value) {
 struct BoundTape {
   ExprGraph *g;
   ExprList nodes;
-  EvalTape *tape; /* of all nodes */
-  ExprMap place;  /* plus one */
+  EvalTape *tape; /* its roots are all nodes */
+  ExprMap place;  /* node -> position + 1 */
   Real *value, *bound;
 };
 

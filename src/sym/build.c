@@ -1,4 +1,5 @@
-/* Canonical construction. What it guarantees is listed in expr.h. */
+/* Canonical construction of sums, products, powers and functions; the guarantees are listed in expr.h.
+ * Sums and products are collected in arrays of pairs, sorted by node, then hash-consed. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -48,7 +49,7 @@ static void push_terms(ExprGraph *g, Pairs *p, Expr e, Num c) {
   }
 }
 
-/* The pair of a term, by binary search; NULL when it is not there. */
+/* The pair of a term, by binary search; NULL if absent. */
 static Pair *find_term(const Pairs *p, Expr term) {
   uint32_t lo = 0, hi = p->n;
   while (lo < hi) {
@@ -59,7 +60,7 @@ static Pair *find_term(const Pairs *p, Expr term) {
   return lo < p->n && p->at[lo].node == term ? &p->at[lo] : NULL;
 }
 
-/* Is sin u, cos u, sinh u or cosh u squared or higher a factor of term? Then *u and which. */
+/* Finds a factor sin u, cos u, sinh u or cosh u to a power >= 2 in term, from pair `from` on: its function *op, argument *u, pair *at. */
 static int squared_function(const ExprGraph *g, Expr term, Expr *u, ExprOp *op, uint32_t from, uint32_t *at) {
   if (expr_op(g, term) != EX_PROD) return 0;
   for (uint32_t i = from; i < expr_pairs(g, term, EX_PROD); i++) {
@@ -78,8 +79,8 @@ static int squared_function(const ExprGraph *g, Expr term, Expr *u, ExprOp *op, 
 
 static ExprOp cofunction(ExprOp op) { return op == EX_SIN ? EX_COS : op == EX_COS ? EX_SIN : op == EX_SINH ? EX_COSH : EX_SINH; }
 
-/* One use of sin^2 + cos^2 = 1 or cosh^2 - sinh^2 = 1 in the collected pairs: R sin^2 + R cos^2 -> R, and
- * R - R sin^2 -> R cos^2. Returns 1 when something changed. */
+/* Applies sin^2 + cos^2 = 1 or cosh^2 - sinh^2 = 1 once to the collected pairs: R sin^2 + R cos^2 -> R, and
+ * R - R sin^2 -> R cos^2. Returns 1 when a pair changed. */
 static int use_pythagoras(ExprGraph *g, Pairs *p) {
   for (uint32_t i = 0; i < p->n; i++) {
     Expr u;
@@ -108,7 +109,7 @@ static int use_pythagoras(ExprGraph *g, Pairs *p) {
   return 0;
 }
 
-/* A rewritten pair may hold a number, or a sum of one pair, as its node: normalise. */
+/* Splits and collects the pairs again: a rewritten pair may have a number, or a sum of one pair, as its node. */
 static void renormalise(ExprGraph *g, Pairs *p) {
   Pair room[ROOM];
   Pairs fresh = ROOM_FOR(room);
@@ -164,7 +165,7 @@ Expr expr_sub(ExprGraph *g, Expr a, Expr b) {
 
 /* --- products --- */
 
-/* The factor that all coefficients of a sum share, with the sign of the first. */
+/* Content of a sum: the gcd of its coefficients with the sign of the first; +-1 if one is inexact. */
 static Num content(const ExprGraph *g, Expr sum) {
   Num k, c;
   expr_pair(g, sum, EX_SUM, 0, &c);
@@ -188,7 +189,7 @@ static void push_factor(ExprGraph *g, Product *r, Expr base, Num e) {
 static void push_number_power(ExprGraph *g, Product *r, Num base, Num e) {
   int exact;
   Num v = num_pow(base, e, &exact);
-  int whole = num_is_exact(base) && num_is_int(e); /* an overflow: 10^30 is a double */
+  int whole = num_is_exact(base) && num_is_int(e); /* folded although it overflows 64 bits: 10^30 is a double */
   if (exact || whole || !num_is_exact(base) || !num_is_exact(e)) r->c = num_mul(r->c, v);
   else push_factor(g, r, expr_num(g, base), e);
 }
@@ -248,7 +249,7 @@ void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e) {
   push_factor(g, r, base, e);
 }
 
-/* Collected exponents may have made a power that simplifies further (2^(1/2) squared). */
+/* Pushes again the factors whose collected exponent allows a simplification (2^(1/2) squared). Returns 1 when r changed. */
 static int settle_factors(ExprGraph *g, Product *r) {
   Pair room[ROOM];
   Product again = {.c = r->c, .p = ROOM_FOR(room)};
@@ -273,7 +274,7 @@ static int settle_factors(ExprGraph *g, Product *r) {
   return changed;
 }
 
-/* r with its factor `at`, a sum, distributed. */
+/* The product r multiplied out over its factor `at`, a sum. */
 static Expr distributed(ExprGraph *g, Product *r, uint32_t at) {
   Expr T = r->p.at[at].node;
   uint32_t n = expr_pairs(g, T, EX_SUM);
@@ -354,7 +355,7 @@ Expr expr_pow(ExprGraph *g, Expr base, Expr exponent) {
 
 /* --- functions --- */
 
-/* Whether the first coefficient of an argument is negative: then odd and even functions turn it. */
+/* Whether the first coefficient of an argument is negative; odd and even functions then take -a. */
 static int leads_negative(const ExprGraph *g, Expr a) {
   if (expr_is_num(g, a)) return num_sign(expr_number(g, a)) < 0;
   Num c;
@@ -369,7 +370,7 @@ static int is_odd(ExprOp op) {
 
 static int is_even(ExprOp op) { return op == EX_COS || op == EX_COSH || op == EX_ABS; }
 
-/* f(0), f(1) and the like where they are exact; 0 when there is nothing to fold. */
+/* Exact value of f(a), such as f(0), |a| of known sign, log(exp u); 0 if there is none. */
 static Expr fold_fn(ExprGraph *g, ExprOp op, Expr a) {
   if (a == g->zero) {
     if (is_odd(op)) return g->zero;

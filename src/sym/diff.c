@@ -1,3 +1,4 @@
+/* Derivatives of graph nodes: partial derivatives by argument, a forward sweep (tangents) and a reverse sweep (adjoints). */
 #include "sym/diff.h"
 
 #include <stdio.h>
@@ -96,7 +97,7 @@ static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
   return g->zero;
 }
 
-/* Number of arguments that carry a derivative, and the i-th of them with its partial derivative. */
+/* Number of arguments of e that are nodes to differentiate; coefficients and exponents do not count. */
 static uint32_t inputs(ExprGraph *g, Expr e) {
   ExprOp op = expr_op(g, e);
   return op == EX_SUM || op == EX_PROD ? expr_pairs(g, e, op) : expr_nargs(g, e);
@@ -113,8 +114,8 @@ static Expr partial(ExprGraph *g, Expr e, uint32_t i) {
   return expr_nargs(g, e) == 1 ? partial_unary(g, e, expr_arg(g, e, 0)) : partial_binary(g, e, i);
 }
 
-/* A sum, or a long product, is worth a name of its own when the definition it belongs to has one:
- * a chain of lets keeps its length. */
+/* Makes a sum or a long product a definition named after the definition it belongs to, so that the derivative of a
+ * chain of lets stays as long as the chain. */
 static Expr name_sum(ExprGraph *g, const char *before, Name name, const char *after, Expr body) {
   enum { LONG_PRODUCT = 8 };
   Num c;
@@ -136,7 +137,7 @@ static Expr add_terms(ExprGraph *g, const Terms *t) { return t->n ? expr_add_n(g
 void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
                   const char *suffix, ExprMap *known, Expr *out) {
   ExprList l = expr_topo_until(g, roots, n, known);
-  ExprMap *dot = &g->work; /* absent: zero */
+  ExprMap *dot = &g->work; /* node -> its tangent; absent: zero */
   expr_map_clear(dot);
   Terms terms = {0};
   for (uint32_t k = 0; k < l.n; k++) {
@@ -193,7 +194,7 @@ Expr expr_diff(ExprGraph *g, Expr e, SymId sym) {
 
 typedef struct {
   ExprGraph *g;
-  ExprMap *head; /* node -> its newest contribution in g->pool, of which [0] is unused */
+  ExprMap *head; /* node -> its newest contribution in g->pool; pool[0] is unused */
   Terms terms; /* scratch */
 } Adjoints;
 
@@ -211,7 +212,7 @@ static Expr adjoint_of(Adjoints *a, Expr node) {
   return add_terms(a->g, &a->terms);
 }
 
-/* Whether a node contains a symbol by which a derivative is wanted: nothing else gets an adjoint. */
+/* Symbols of differentiation: the set `targets`, or if NULL those of a kind with index < below. */
 typedef struct {
   const ExprMap *targets;
   SymKind kind;
@@ -224,7 +225,7 @@ static int is_wanted(const Symbol *s, const void *data) {
   return s->kind == w->kind && s->index < w->below;
 }
 
-/* The adjoints of all nodes of e that contain a wanted symbol; l: the nodes of e. */
+/* Reverse sweep: adjoints of all nodes of e that contain a wanted symbol; *l: the nodes of e. */
 static Adjoints sweep(ExprGraph *g, Expr e, const Wanted *w, ExprList *l) {
   *l = expr_topo(g, &e, 1);
   ExprMap *live = &g->live;

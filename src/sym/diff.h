@@ -9,14 +9,14 @@
 /* de/dsym. */
 Expr expr_diff(ExprGraph *g, Expr e, SymId sym);
 
-/* out[i] = de/d(syms[i]) for all i in one reverse sweep. Adjoints of definitions that are sums
- * become definitions themselves, so that a chain of lets keeps its length. */
+/* out[i] = de/d(syms[i]) for all i in one reverse sweep. Adjoints of definitions that are sums or long products
+ * become definitions themselves, so that the derivative of a chain of lets stays as long as the chain. */
 void expr_gradient(ExprGraph *g, Expr e, const SymId *syms, uint32_t n, Expr *out);
 
-/* The derivatives that are not zero, by the symbols of one kind whose index is below `below`, in the
- * order of the index. The work is that of e's own graph, however many symbols the model has. */
+/* Nonzero derivatives of e by the symbols of one kind with index < below, in ascending index. Work grows with the
+ * nodes of e, not with the symbols of the model. */
 typedef struct {
-  uint32_t index; /* of the symbol, within its kind */
+  uint32_t index; /* index of the symbol within its kind */
   Expr e;
 } ExprPartial;
 
@@ -29,8 +29,8 @@ ExprPartials expr_gradient_sparse(ExprGraph *g, Expr e, SymKind kind, uint32_t b
 
 /* Directional derivatives out[i] = sum over s of d(roots[i])/ds * seed[s]. seed has nseed entries,
  * 0 meaning zero. The derivative of a definition `a` becomes the definition `a` + suffix
- * ("'" for the total time derivative). known: the derivatives of definitions from calls with the
- * same seed, which grows; or NULL. */
+ * ("'" for the total time derivative). known: derivatives of definitions from earlier calls with the same seed,
+ * read and extended; or NULL. */
 void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
                   const char *suffix, ExprMap *known, Expr *out);
 

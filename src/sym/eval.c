@@ -1,3 +1,4 @@
+/* Evaluation tapes: the nodes below the roots as a list of steps in ascending order, run in long double. */
 #include "sym/eval.h"
 
 #include <math.h>
@@ -10,7 +11,7 @@ static long double power(long double base, Num e) {
       if (n & 1) r *= b;
     return e.num < 0 ? 1 / r : r;
   }
-  if (e.den == 3) return power(cbrtl(base), num_int(e.num)); /* the real root, also of what is negative */
+  if (e.den == 3) return power(cbrtl(base), num_int(e.num)); /* the real root, negative for a negative base */
   if (e.den == 2) return power(sqrtl(base), num_int(e.num));
   return powl(base, (long double)e.num / (long double)e.den);
 }
@@ -19,8 +20,8 @@ static long double number(Num n) {
   return num_is_exact(n) ? (long double)n.num / (long double)n.den : n.approx;
 }
 
-/* One node: its arguments are t->arg[first ..], places of earlier nodes; pairs of a sum or product
- * have their numbers in t->number[first ..]. */
+/* Step of a tape, for one node: its arguments are t->arg[first ..], indices of earlier steps; coefficients or exponents
+ * of a sum or product are t->number[first ..]. */
 typedef struct {
   ExprOp op;
   uint32_t first, n;
@@ -34,10 +35,10 @@ struct EvalTape {
   long double *value;
   VEC(uint32_t) arg;
   VEC(Num) number;
-  int narrow;     /* factors and their products have the range of doubles */
-  uint32_t *root; /* places; UINT32_MAX for a root that is none */
-  SymId changed;  /* the symbol that `follows` is about */
-  uint8_t *follows;
+  int narrow;     /* factors and partial products are rounded to double */
+  uint32_t *root; /* step of each root; UINT32_MAX for root 0 */
+  SymId changed;  /* the symbol for which follows[] was computed */
+  uint8_t *follows; /* whether a step depends on that symbol */
 };
 
 static long double pairs_value(const EvalTape *t, const Step *o) {
@@ -118,7 +119,7 @@ EvalTape *eval_tape(ExprGraph *g, const Expr *roots, uint32_t n) {
   EvalTape *t = ARENA_NEW(a, EvalTape);
   t->n = l.n;
   t->nroots = n;
-  vec_push(a, &t->arg, 0); /* so that there is an array even where nothing has arguments */
+  vec_push(a, &t->arg, 0); /* keeps the arrays non-NULL where no step has arguments */
   vec_push(a, &t->number, num_int(0));
   t->step = ARENA_ARRAY(a, Step, l.n + 1);
   t->value = ARENA_ARRAY(a, long double, l.n + 1);

@@ -1,4 +1,4 @@
-/* Storage of the graph: nodes, hash-consing, leaves, inspection, and what is known of signs. */
+/* Storage of the expression graph: nodes, hash-consing, leaves, inspection and sign inference. */
 #include "sym/expr.h"
 
 #include <string.h>
@@ -47,7 +47,7 @@ static uint32_t hash_parts(ExprOp op, const Expr *args, uint32_t n, Name name) {
 
 static uint32_t mix_64(uint32_t h, uint64_t x) { return mix(mix(h, (uint32_t)x), (uint32_t)(x >> 32)); }
 
-/* Of what num_equal compares: not of the error of a number that is not exact. */
+/* Hash of the fields that num_equal compares; the error of an inexact number is not among them. */
 static uint32_t hash_num(Num n) {
   uint64_t bits = 0;
   memcpy(&bits, &n.approx, sizeof bits);
@@ -67,7 +67,7 @@ static void insert(ExprGraph *g, Expr e, uint32_t hash) {
   g->table[i] = e;
 }
 
-/* Symbols are not looked up by content: each declaration is its own node. */
+/* Appends a node and enters it into the hash table, which may grow. Symbols stay out: each declaration is its own node. */
 static Expr add_node(ExprGraph *g, Node n, uint32_t hash) {
   if (g->nodes.n >= UINT32_MAX / 2) arena_fail(g->arena);
   vec_push(g->arena, &g->nodes, n);
@@ -139,7 +139,7 @@ Expr expr_def(ExprGraph *g, Name name, Expr body) {
   return make_named(g, EX_DEF, &body, 1, name);
 }
 
-/* The entry of (name, body), new when it is not there. */
+/* The table entry of (name, body), made if absent. */
 static Named *named_entry(ExprGraph *g, Name name, Expr body) {
   if (2 * g->named.n >= g->named_cap) {
     g->named_cap = g->named_cap ? 2 * g->named_cap : 64;
@@ -241,7 +241,7 @@ static ExprSign sum_sign(const ExprGraph *g, const Expr *args, uint32_t n) {
   return SIGN_UNKNOWN;
 }
 
-/* A factor's sign: even powers are at least 0, fractional powers are of values that are at least 0. */
+/* Sign of base^e: even powers are nonnegative; a power with an even denominator has a nonnegative base. */
 static ExprSign factor_sign(ExprSign base, Num e) {
   if (base == SIGN_POSITIVE) return SIGN_POSITIVE;
   if (num_is_exact(e) && e.den % 2 == 1) {

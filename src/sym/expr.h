@@ -1,10 +1,10 @@
 /* The expression graph: hash-consed, canonical at construction.
  *
- * A node is a number (Expr); arguments have lower numbers than their node, so every pass is a loop
- * over ids, and equal expressions are equal numbers. What construction guarantees:
+ * A node is an id (Expr); arguments have lower ids than their node, so every pass is a loop over ids, and equal
+ * expressions have equal ids. Guaranteed by construction:
  *   - sums and products are flat; terms and factors are sorted by id, distinct, with collected
  *     rational coefficients and exponents: x - x is 0, x*x is x^2, x/x is 1;
- *   - a product holds no number except roots of numbers: 3*x is a SUM of one pair (x, 3);
+ *   - a product holds no number except roots such as 2^(1/2): 3*x is a SUM of one pair (x, 3);
  *   - a sum raised to an integer power is primitive: its coefficients have no common factor, and
  *     the first is positive;
  *   - sin^2 u + cos^2 u with equal cofactors is 1, and 1 - sin^2 u is cos^2 u; likewise cosh^2 - sinh^2;
@@ -43,18 +43,18 @@ typedef enum {
   SYM_PARAM,
   SYM_INPUT,
   SYM_CONST,  /* pi */
-  SYM_MULTIPLIER, /* of a constraint */
+  SYM_MULTIPLIER, /* Lagrange multiplier of a constraint */
   SYM_LOCAL  /* the group parameter of a symmetry; scratch symbols of a pass */
 } SymKind;
 
-/* What is known of a value's sign. */
+/* Sign of a value, as declared or inferred. */
 typedef enum { SIGN_UNKNOWN, SIGN_POSITIVE, SIGN_NONNEGATIVE, SIGN_NEGATIVE, SIGN_NONPOSITIVE } ExprSign;
 
 typedef uint32_t SymId;
 
 typedef struct {
   SymKind kind;
-  uint32_t index; /* within its kind */
+  uint32_t index; /* index within its kind */
   Name name;      /* as the user writes it: th, th', th'' */
   ExprSign sign;
   Expr node;
@@ -73,9 +73,9 @@ Expr expr_int(ExprGraph *g, int64_t n);
 SymId expr_declare(ExprGraph *g, SymKind kind, uint32_t index, Name name, ExprSign sign);
 uint32_t expr_symbol_count(const ExprGraph *g);
 const Symbol *expr_symbol(const ExprGraph *g, SymId id);
-/* The same under a name that no other definition has: name, name_2, name_3 ... in order of asking. */
+/* Definition with a unique name: name, name_2, name_3 ... in order of request; equal (name, body) give one definition. */
 Expr expr_def_fresh(ExprGraph *g, Name name, Expr body);
-/* The definition `name = body`. Leaves are not worth a name: they are returned as they are. */
+/* Definition `name = body`; leaves (numbers, symbols, definitions) are returned unchanged. */
 Expr expr_def(ExprGraph *g, Name name, Expr body);
 
 /* --- construction; all return canonical nodes --- */
@@ -94,7 +94,7 @@ Expr expr_fn(ExprGraph *g, ExprOp op, Expr a);           /* SIN .. SIGN, NOT */
 Expr expr_fn2(ExprGraph *g, ExprOp op, Expr a, Expr b);  /* ATAN2 .. OR */
 Expr expr_select(ExprGraph *g, Expr condition, Expr a, Expr b);
 
-/* The node of the same operation with other arguments: for passes that rewrite bottom-up.
+/* Node with e's operation and new arguments, for passes that rewrite bottom-up.
  * args has expr_nargs(g, e) elements in the order of expr_arg. */
 Expr expr_rebuild(ExprGraph *g, Expr e, const Expr *args);
 
@@ -108,12 +108,12 @@ SymId expr_sym_id(const ExprGraph *g, Expr e);         /* of a SYM */
 Name expr_def_name(const ExprGraph *g, Expr e);        /* of a DEF; its body is argument 0 */
 ExprSign expr_sign(const ExprGraph *g, Expr e);
 int expr_is_num(const ExprGraph *g, Expr e);
-unsigned expr_kinds(const ExprGraph *g, Expr e); /* of the symbols that it contains, as bits 1 << SymKind */
+unsigned expr_kinds(const ExprGraph *g, Expr e); /* kinds of the symbols in e, as bits 1 << SymKind */
 int expr_is_zero(const ExprGraph *g, Expr e);
 int expr_is_bool(const ExprGraph *g, Expr e); /* a comparison or logical operation */
 const char *expr_op_text(ExprOp op);
 
-/* Pairs of a SUM, and any other node as the single pair (node, 1); likewise a PROD. */
+/* Pairs (term, coefficient) of a SUM, or (base, exponent) of a PROD; any other node counts as the single pair (node, 1). */
 uint32_t expr_pairs(const ExprGraph *g, Expr e, ExprOp op);
 Expr expr_pair(const ExprGraph *g, Expr e, ExprOp op, uint32_t i, Num *number);
 
@@ -123,18 +123,18 @@ typedef struct {
   uint32_t n;
 } ExprList;
 
-/* All nodes that the roots need, ascending: arguments before their nodes. Zero roots are skipped. */
+/* All nodes reachable from the roots, ascending: arguments before their nodes. Zero roots are skipped. */
 ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n);
 
-/* The same without what stands behind definitions. */
+/* expr_topo that stops at definitions: their bodies are left out. */
 ExprList expr_topo_shallow(ExprGraph *g, const Expr *roots, uint32_t n);
 
-/* Whether e contains a symbol for which want() is true (definitions are looked through). */
+/* Whether e contains a symbol for which want() is true; bodies of definitions count. */
 int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data);
 int expr_contains_sym(ExprGraph *g, Expr e, SymId sym);
 
-/* Scratch map from node to number, emptied in O(1) by expr_map_clear. It takes memory for what is in
- * it, not for the graph: a model may make one for each of its thousands of equations. */
+/* Hash map from node to number, emptied in O(1) by expr_map_clear. Its memory grows with its entries, not with the
+ * graph: a model may make one for each of its thousands of equations. */
 typedef struct {
   Expr key;
   uint32_t value, stamp;
@@ -150,26 +150,26 @@ void expr_map_clear(ExprMap *m);
 void expr_map_set(ExprMap *m, Expr e, uint32_t value);
 uint32_t expr_map_get(const ExprMap *m, Expr e); /* 0 when not set */
 
-/* e with symbols replaced: with[s] stands for symbol s where it is not 0 (n entries).
+/* e with symbols replaced: symbol s becomes with[s] where that is not 0 (n entries).
  * Definitions whose body changes are rebuilt under their name followed by suffix (may be ""). */
 Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const char *suffix);
 
 /* e with n symbols replaced: syms[i] becomes with[i]. */
 Expr expr_replace(ExprGraph *g, Expr e, const SymId *syms, const Expr *with, uint32_t n);
 
-/* out[i] = roots[i] with the nodes nodes[] replaced by with[], all roots in one pass. */
+/* out[i] = roots[i] with each nodes[k] replaced by with[k], all roots in one pass. */
 void expr_cut(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *nodes, const Expr *with, uint32_t nnodes, Expr *out);
 
 /* e with every definition replaced by its body. */
 Expr expr_expand_defs(ExprGraph *g, Expr e);
 
-/* Number of nodes of e written out as a tree, definitions by name; *distinct: of its graph. */
+/* Number of nodes of e written out as a tree, definitions by name; *distinct: its number of distinct nodes. */
 double expr_written_size(ExprGraph *g, Expr e, uint32_t *distinct);
 
-/* Number of operations that evaluating the roots takes when every node is computed once. */
+/* Operation count of the roots, every node computed once; a transcendental function counts 20. */
 uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n);
 
-/* The same for one root, definitions given. */
+/* Operation count of one root, its definitions already computed. */
 uint32_t expr_ops_shallow(ExprGraph *g, Expr e);
 
 #endif

@@ -1,3 +1,4 @@
+/* Arithmetic of fractions with factored denominators; numerators are cancelled by exact division on request (frac_cancel). */
 #include "sym/frac.h"
 
 #include <stdlib.h>
@@ -152,7 +153,7 @@ Frac frac_sum(FracField *f, const Frac *a, const Num *c, uint32_t n) {
   return sum;
 }
 
-/* One factor whose polynomial is the numerator up to a number: a quotient of equal sums. */
+/* Cancels a denominator factor that equals the numerator up to a number. Returns 1 if one did. */
 static int cancel_equal(FracField *f, Frac *a) {
   PolyRing *r = f->ring;
   Den d = frac_den(f, a->den);
@@ -191,7 +192,7 @@ Frac frac_mul(FracField *f, Frac a, Frac b) {
   return normal_zero((Frac){.num = num, .den = den});
 }
 
-/* Splits a monomial into a part that may be inverted in place and factors of a denominator. */
+/* Splits a monomial for inversion: generators without a relation are returned, roots become denominator factors. */
 static MonoId split_roots(FracField *f, MonoId m, DenFactor *list, uint32_t *n) {
   PolyRing *r = f->ring;
   MonoId units = m;
@@ -206,7 +207,7 @@ static MonoId split_roots(FracField *f, MonoId m, DenFactor *list, uint32_t *n) 
   return units;
 }
 
-/* A primitive polynomial as a factor; where it is R of a relation x^k = R, the factor x^k. */
+/* A primitive polynomial as a denominator factor; the R of a relation x^k = R becomes the factor x^k. */
 static DenFactor as_factor(FracField *f, Poly p) {
   PolyRing *r = f->ring;
   PolyId id = poly_intern(r, p);
@@ -248,8 +249,8 @@ Frac frac_pow(FracField *f, Frac a, int32_t n) {
 
 /* --- cancelling --- */
 
-/* What to divide the numerator by to lower factor i's exponent, and by how much: the factor, or
- * for a generator x with x^k = R that occurs k times, R. */
+/* Divisor of the numerator that lowers the exponent of factor d by *step: the factor itself, or R for a generator x with
+ * x^k = R that occurs k times (step k). */
 static Poly divisor_of(FracField *f, DenFactor d, uint32_t *step) {
   PolyRing *r = f->ring;
   Poly p = poly_at(r, d.factor);
@@ -261,7 +262,7 @@ static Poly divisor_of(FracField *f, DenFactor d, uint32_t *step) {
   return d.exp >= *step ? gen.relation : poly_zero();
 }
 
-/* Divides a power of a generator that all terms of the numerator have out of factor *d. */
+/* Cancels the power of a generator common to all terms of the numerator against factor *d. */
 static Poly cancel_common(FracField *f, Poly num, DenFactor *d) {
   PolyRing *r = f->ring;
   Poly p = poly_at(r, d->factor);

@@ -1,9 +1,9 @@
-/* Fractions of polynomials. The denominator stays factored, as a list of (polynomial, exponent):
+/* Rational functions: fractions of polynomials. The denominator stays factored, as a list of (polynomial, exponent):
  * sums over equal denominators stay small, and no greatest common divisor is needed.
  *
  * Must hold: factors are interned polynomials, primitive (integer coefficients without a common
  * factor, the first positive) and without a monomial of generators that may have negative
- * exponents: those stand in the numerator. A power of a generator with a relation x^k = R is the
+ * exponents, which the numerator carries. A power of a generator with a relation x^k = R is the
  * factor x, never the expanded power; a factor equal to such an R becomes x^k.
  * Failures are those of the ring (poly.h); dividing by 0 adds POLY_DIVIDED_BY_ZERO. */
 #ifndef LAGC_FRAC_H
@@ -32,12 +32,12 @@ typedef struct {
   PolyRing *ring;
   VEC(Den) dens;
   IdTable den_table;
-  VEC(GenId) root_of; /* generator + 1 whose relation is the interned polynomial, by PolyId */
+  VEC(GenId) root_of; /* by PolyId: 1 + the generator x whose relation x^k = R has this polynomial as R; 0: none */
 } FracField;
 
 FracField *frac_field(PolyRing *r);
 
-/* Tells the field that x^degree = relation, so that it recognises the relation below a fraction. */
+/* Registers the relation x^k = R of x, so that a denominator equal to R becomes x^k. */
 void frac_know_root(FracField *f, GenId x);
 
 static inline Den frac_den(const FracField *f, DenId id) { return f->dens.at[id]; }
@@ -54,14 +54,14 @@ Frac frac_pow(FracField *f, Frac a, int32_t n);
 /* The sum of c[i]*a[i]; fractions over equal denominators are added in one pass. */
 Frac frac_sum(FracField *f, const Frac *a, const Num *c, uint32_t n);
 
-/* The least common multiple of two denominators; the polynomial that takes `from` to `to`. */
+/* Least common multiple of two denominators; the cofactor to/from as a polynomial. */
 DenId frac_lcm(FracField *f, DenId a, DenId b);
 Poly frac_cofactor(FracField *f, DenId from, DenId to);
 
 /* The product of a denominator's factors. */
 Poly frac_den_poly(FracField *f, DenId den);
 
-/* The denominator made of these factors in any order; equal ones are merged, exponents 0 dropped. */
+/* The denominator with these factors, given in any order; equal factors are merged, exponents 0 dropped. */
 DenId frac_den_of(FracField *f, const DenFactor *at, uint32_t n);
 
 /* a with factors of its denominator divided out of its numerator where that is exact. */

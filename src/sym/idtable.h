@@ -1,4 +1,4 @@
-/* IdTable: finds the id of something that its owner keeps in an array, by the hash of its content.
+/* IdTable: hash table from content to the id of an entry in the owner's array.
  * Open addressing; the owner compares contents:
  *
  *   uint32_t at = idtable_start(&t, hash), id;
@@ -32,7 +32,7 @@ static inline uint32_t idtable_start(const IdTable *t, uint32_t hash) {
   return t->cap ? hash & (t->cap - 1) : 0;
 }
 
-/* The next id with this hash, from slot *at on; 0 when there is none left. */
+/* Finds the next id with this hash from slot *at on; returns 0 at the end. */
 static inline int idtable_next(const IdTable *t, uint32_t hash, uint32_t *at, uint32_t *id) {
   if (!t->cap) return 0;
   while (t->slots[*at].id1) {

@@ -1,3 +1,4 @@
+/* Antiderivatives term by term, from the normal form of the integrand; potentials from their gradients. */
 #include "sym/integrate.h"
 
 #include "sym/diff.h"
@@ -15,7 +16,7 @@ typedef struct {
 
 typedef VEC(Harmonic) Harmonics;
 
-/* factor * x^power * exp(growth) * the sum of harmonics */
+/* factor * x^power * exp(growth) * (sum of harmonics) */
 typedef struct {
   Expr factor, growth;
   int32_t power;
@@ -34,7 +35,7 @@ static int has_x(const Task *t, Expr e) { return expr_contains_sym(t->g, e, t->x
 
 /* --- a term into a product --- */
 
-/* times sin(u) or cos(u): products to sums. */
+/* Multiplies the sum of harmonics by sin(u) or cos(u), products to sums; returns 0 if there are too many. */
 static int times_circular(Normal *n, Harmonics *h, Expr u, int is_sin) {
   Harmonics out = {0};
   for (uint32_t i = 0; i < h->n; i++) {
@@ -49,7 +50,7 @@ static int times_circular(Normal *n, Harmonics *h, Expr u, int is_sin) {
   return out.n <= MAX_HARMONICS;
 }
 
-/* Whether du/dx is free of x, and u of what no term may contain. */
+/* Whether du/dx is free of x and of the excluded kinds of symbols. */
 static int is_linear(const Task *t, Expr u) {
   Expr slope = expr_diff(t->g, u, t->x);
   return !has_x(t, slope) && !(expr_kinds(t->g, slope) & t->without);
@@ -62,7 +63,7 @@ static int times_power(const Task *t, Product *p, const GenInfo *gen, int32_t ex
   return is_linear(t, u);
 }
 
-/* A power of a generator that contains x. 0: not of the form. */
+/* Multiplies p by a power of a generator that contains x; returns 0 if the form has no place for it. */
 static int times_gen(Normal *n, const Task *t, Product *p, GenId x, int32_t exp) {
   const GenInfo gen = n->gens.at[x];
   switch (gen.kind) {
@@ -79,7 +80,7 @@ static int times_gen(Normal *n, const Task *t, Product *p, GenId x, int32_t exp)
   return 0;
 }
 
-/* 0: the term is not of the form. */
+/* One term of the integrand, times divisor, in that product form; returns 0 if it does not fit. */
 static int product_of(Normal *n, const Task *t, Term term, Expr divisor, Product *p) {
   ExprGraph *g = t->g;
   Mono mono = *mono_at(n->ring, term.mono);
@@ -105,7 +106,7 @@ typedef struct {
   Expr sin, cos;
 } Pair;
 
-/* x^k/(k + 1), or its logarithm */
+/* Integral of x^k: x^(k + 1)/(k + 1), or log|x| for k = -1. */
 static Expr power_integral(const Task *t, int32_t k) {
   ExprGraph *g = t->g;
   Expr x = expr_symbol(g, t->x)->node;
@@ -123,7 +124,7 @@ static Expr combine(ExprGraph *g, Expr a, Expr x, Expr b, Expr y) {
 }
 
 /* The integrals of x^k exp(u) sin(w) and x^k exp(u) cos(w), u' = a, w' = b, by parts from k = 0 on:
- *   int x^k exp(u) sin(w) = (x^k exp(u) (a sin w - b cos w) - k (a S - b C))/(a^2 + b^2), S and C those of k - 1. */
+ *   int x^k exp(u) sin(w) = (x^k exp(u) (a sin w - b cos w) - k (a S - b C))/(a^2 + b^2), S and C the integrals for k - 1. */
 static Pair harmonic_integrals(const Task *t, int32_t k, Expr u, Expr w) {
   ExprGraph *g = t->g;
   Expr a = expr_diff(g, u, t->x), b = expr_diff(g, w, t->x), minus_b = expr_neg(g, b), x = expr_symbol(g, t->x)->node;
@@ -143,7 +144,7 @@ static Pair harmonic_integrals(const Task *t, int32_t k, Expr u, Expr w) {
   return done;
 }
 
-/* 0 where a harmonic is not of the form. */
+/* Integral of p; 0 for a negative power of x times a function of x. */
 static Expr product_integral(const Task *t, const Product *p) {
   ExprGraph *g = t->g;
   Expr sum = expr_int(g, 0);
@@ -199,7 +200,7 @@ Expr expr_integrate(ExprGraph *g, Expr e, SymId x, unsigned without) {
 
 /* --- the chain rule read backwards --- */
 
-/* An antiderivative of f by u, or 0. */
+/* Antiderivative by u of the power u^power, u = f, or of a function f = f(u); 0 if f is not in the list. */
 static Expr outer_integral(ExprGraph *g, Expr f, Num power) {
   Expr u = f, next;
   if (!num_is_one(power)) {
@@ -219,7 +220,7 @@ static Expr outer_integral(ExprGraph *g, Expr f, Num power) {
   }
 }
 
-/* A term f(u) u' c, with c free of x and f a power or one of some functions; 0: it is none. */
+/* Integral of a term f(u) u' c, with c free of x and f a power or a listed function; 0 for other terms. */
 static Expr substituted(ExprGraph *g, Expr term, SymId x) {
   for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++) {
     Num power;
@@ -234,7 +235,7 @@ static Expr substituted(ExprGraph *g, Expr term, SymId x) {
   return 0;
 }
 
-/* The sum over those terms of e that are of that form. */
+/* Integral of the terms of e that have the form f(u) u' c. */
 static Expr by_substitution(ExprGraph *g, Expr e, SymId x) {
   Expr sum = expr_int(g, 0);
   for (uint32_t i = 0; i < expr_pairs(g, e, EX_SUM); i++) {
@@ -247,7 +248,7 @@ static Expr by_substitution(ExprGraph *g, Expr e, SymId x) {
 
 /* --- potentials --- */
 
-/* Coordinate by coordinate: what is left of a_i when the F so far is taken off, integrated by q_i. */
+/* Potential coordinate by coordinate: adds to F the integral of a_i - dF/dq_i by q_i. */
 static Expr by_coordinates(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n) {
   Expr F = expr_int(g, 0);
   for (uint32_t i = 0; i < n; i++) {
@@ -277,7 +278,7 @@ static void homotopy_work(Arena *scratch, void *data) {
   t->result = sum;
 }
 
-/* int_0^1 q.a(s q) ds, where q.a(s q) is a sum of powers of s. */
+/* int_0^1 q.a(s q) ds, where q.a(s q) is a sum of powers of s; 0 if it is not. */
 static Expr by_homotopy(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n) {
   Arena *arena = expr_arena(g);
   SymId s = expr_declare(g, SYM_LOCAL, 0, "s", SIGN_POSITIVE);

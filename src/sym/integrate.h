@@ -1,4 +1,4 @@
-/* Antiderivatives of what generators of symmetries make of Lagrangians: sums of terms
+/* Antiderivatives for Noether charges: sums of terms
  * c * x^k * exp(a x + ..) * products of sines and cosines of b x + .., with c, a, b free of x.
  * Each term becomes, by addition theorems, a sum of terms x^k exp(u) sin(w) and x^k exp(u) cos(w); these are integrated by parts
  * (I. S. Gradshteyn, I. M. Ryzhik, Table of Integrals, Series, and Products, 7th ed. (2007), 2.66). */
@@ -7,14 +7,14 @@
 
 #include "sym/expr.h"
 
-/* An antiderivative by x of those terms of e that are of this form, and free of the symbols of kinds in `without`
- * (bits 1 << SymKind; x itself does not count); 0 where there is none. Where a frequency or a rate of growth is a sum of parameters, it
- * is taken not to be 0. The result is no proof: callers differentiate it. Definitions are looked through. */
+/* Antiderivative by x of the terms of e that have this form and are free of symbols of the kinds in `without`
+ * (bits 1 << SymKind; x itself is allowed); 0 if there are none. A frequency or growth rate that is a sum of parameters
+ * is assumed nonzero. Callers verify the result by differentiating it. Definitions are expanded. */
 Expr expr_integrate(ExprGraph *g, Expr e, SymId x, unsigned without);
 
-/* F with dF/dq_i = a_i for all i, where it finds one: coordinate by coordinate with expr_integrate, and terms f(u) du/dq_i by substitution, or, where q.a is a sum of terms
- * homogeneous in all q together, none of degree 0, by the homotopy formula F = int_0^1 q.a(s q) ds. Otherwise an F that
- * takes off some of the terms, to be judged by what it leaves. */
+/* Potential F with dF/dq_i = a_i for all i: integrated coordinate by coordinate with expr_integrate, terms f(u) du/dq_i by
+ * substitution; or by the homotopy formula F = int_0^1 q.a(s q) ds where q.a is a sum of terms homogeneous in q, none of degree 0.
+ * If neither succeeds, F covers some of the terms: the caller judges the remainder a_i - dF/dq_i. */
 Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n);
 
 #endif

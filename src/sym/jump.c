@@ -1,3 +1,5 @@
+/* Search for jumps: candidates from the graph, sign changes of their switching functions on straight lines through random
+ * states, then the one-sided values of the expression at shrinking distances. */
 #include "sym/jump.h"
 
 #include <math.h>
@@ -8,9 +10,9 @@
 typedef long double Real;
 
 enum {
-  MOST = 200,   /* nodes that are looked at: those of many bodies are alike */
-  LINES = 64,   /* through random states */
-  PLACES = 12   /* found on them, of which one suffices */
+  MOST = 200,   /* candidates examined: models of many bodies repeat the same few */
+  LINES = 64,   /* lines through random states */
+  PLACES = 12   /* sign changes tried for each candidate; one jump suffices */
 };
 
 static const unsigned varied = 1u << SYM_TIME | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE;
@@ -19,27 +21,28 @@ typedef struct {
   ExprGraph *g;
   Arena *arena;
   uint32_t nsymbols;
-  VEC(SymId) symbols; /* those that the source at hand and its terms are made of */
-  uint32_t nterms;    /* of x, those that jump where the source does; */
-  EvalTape *tape;     /* their values, into term[] */
-  Real *term;
-  Real *base, *way;   /* a line: base + s way, */
-  int from_origin;    /* with coordinates, velocities and time 0 at its base */
-  Real *at;           /* a state on it */
+  VEC(SymId) symbols; /* symbols of the current source and its terms */
+  uint32_t nterms;    /* number of terms of x that may jump with the source */
+  EvalTape *tape;     /* tape of these terms */
+  Real *term;         /* their values */
+  Real *base, *way;   /* current line base + s*way */
+  int from_origin;    /* whether coordinates, velocities and time are 0 at its base */
+  Real *at;           /* a state on the line */
   VEC(ExprJump) found;
 } Search;
 
-/* --- what can jump --- */
+/* --- candidates --- */
 
+/* Candidate: a node that may jump where `side` is 0. */
 typedef struct {
   Expr node, side;
-  int angle;     /* not where side is 0, but where its cosine is */
-  uint64_t made; /* of these symbols: two that jump at one place are made of the same */
+  int angle;     /* jumps where cos(side) is 0 instead: tan */
+  uint64_t made; /* hash of the symbols in side: sources that jump at one place have equal hashes */
 } Source;
 
 typedef VEC(Source) Sources;
 
-/* FNV-1a of its symbols, which come in the order of the graph. */
+/* FNV-1a hash of the symbols in side, in graph order. */
 static uint64_t made_of(const Search *s, Expr side) {
   uint64_t hash = 0xcbf29ce484222325u;
   ExprList l = expr_topo(s->g, &side, 1);
@@ -53,7 +56,7 @@ static void add(const Search *s, Sources *to, Expr node, Expr side, int angle) {
   vec_push(s->arena, to, ((Source){node, side, angle, made_of(s, side)}));
 }
 
-/* Whether something that is finite can be made of what is not: atan(1/x), x/abs(x). */
+/* Whether op can turn a pole into a finite jump: atan(1/x), x/abs(x). */
 static int tames_poles(ExprOp op) { return op == EX_ATAN || op == EX_ATAN2 || op == EX_TANH || op == EX_EXP || op == EX_ABS; }
 
 static void add_divisors(const Search *s, Sources *to, Expr product) {
@@ -89,7 +92,7 @@ static Sources sources_of(const Search *s, Expr x) {
   return all;
 }
 
-/* A term of x, and what its sources are made of. */
+/* A term of x, and the symbol hashes of its sources. */
 typedef struct {
   Expr term;
   VEC(uint64_t) made;
@@ -97,7 +100,7 @@ typedef struct {
 
 typedef VEC(Part) Parts;
 
-/* The terms of x that contain sources: others only add rounding. */
+/* Terms of x that contain sources; other terms would only add rounding. */
 static Parts parts_of(const Search *s, const Sources *all, Expr x) {
   ExprGraph *g = s->g;
   ExprMap nodes = expr_map(s->arena);
@@ -118,7 +121,7 @@ static Parts parts_of(const Search *s, const Sources *all, Expr x) {
   return parts;
 }
 
-/* Those that jump where the source does, and the symbols that they are made of. */
+/* Selects the terms that may jump with the source, and their symbols. */
 static void take_terms(Search *s, const Parts *parts, const Source *from) {
   ExprGraph *g = s->g;
   VEC(Expr) roots = {0};
@@ -140,7 +143,8 @@ static void take_terms(Search *s, const Parts *parts, const Source *from) {
 
 /* --- lines --- */
 
-/* Every second one goes through the origin, where all lengths and times are met: the radius of an atom, and of an orbit. */
+/* Random line. Every second line starts at the origin, so that powers of 10 along it meet every length and time scale: the radius of an
+ * atom, and of an orbit. */
 static void draw_line(Search *s, uint32_t seed) {
   const Real wide = 4; /* past half a turn */
   s->from_origin = seed % 2 == 0;
@@ -152,7 +156,7 @@ static void draw_line(Search *s, uint32_t seed) {
   }
 }
 
-/* The state at s.base + where*s.way; 0: a symbol has not its sign there. */
+/* Sets the state to base + where*way; returns 0 if a symbol violates its declared sign. */
 static int go_to(Search *s, Real where) {
   for (uint32_t i = 0; i < s->symbols.n; i++) {
     SymId k = s->symbols.at[i];
@@ -163,7 +167,7 @@ static int go_to(Search *s, Real where) {
   return 1;
 }
 
-/* What tells the sides apart, less the value that it goes through. */
+/* Switching function minus its threshold, at a place of the line; NaN where a declared sign is violated. */
 static Real side_at(Search *s, EvalTape *side, Real level, Real where) {
   Real value;
   if (!go_to(s, where)) return NAN;
@@ -171,7 +175,7 @@ static Real side_at(Search *s, EvalTape *side, Real level, Real where) {
   return value - level;
 }
 
-/* The value that the side goes through next to where the line begins: of an angle an odd number of quarter turns. */
+/* Threshold of the switching function: 0, or for an angle an odd multiple of a quarter turn near the base of the line. */
 static Real level_of(Search *s, EvalTape *side, int angle, uint32_t seed) {
   const Real half_turn = acosl(-1);
   if (!angle) return 0;
@@ -179,14 +183,14 @@ static Real level_of(Search *s, EvalTape *side, int angle, uint32_t seed) {
   return (floorl(u / half_turn) + 0.5L - (seed % 4 == 0) + (seed % 4 == 1)) * half_turn;
 }
 
-/* Where the line is looked at: at 0 and, to both sides, at powers of 10 or, beside the origin, of 2. */
+/* Sampling point i of the line: 0, and on both sides powers of 10 for lines from the origin, of 2 for others. */
 static Real mark(const Search *s, int i) {
   int power = (i < 0 ? -i : i) - 1;
   Real size = i == 0 ? 0 : s->from_origin ? powl(10, power - 9) : ldexpl(1, power - 2);
   return i < 0 ? -size : size;
 }
 
-/* The change of sign on the line that is nearest to its base, to the last bit; 0: none was met. */
+/* Sign change of the switching function nearest to the base of the line, bisected to the last bit; returns 0 if there is none. */
 static int find_change(Search *s, EvalTape *side, Real level, Real *where) {
   enum { REACH = 24, HALVINGS = 200 };
   Real lo = 0, hi = 0, first = side_at(s, side, level, 0), left = first, right = first;
@@ -209,7 +213,7 @@ static int find_change(Search *s, EvalTape *side, Real level, Real *where) {
 
 /* --- both sides --- */
 
-/* The value of x at a place of the line, and the size of its terms. */
+/* Sum of the selected terms at a place of the line; *size: the sum of their magnitudes. */
 static Real value_at(Search *s, Real where, Real *size) {
   Real value = 0;
   *size = 0;
@@ -222,15 +226,15 @@ static Real value_at(Search *s, Real where, Real *size) {
   return value;
 }
 
-/* What is a small part of this is near. */
+/* Length scale for steps along the line at `where`. */
 static Real unit_at(const Search *s, Real where) { return s->from_origin ? fabsl(where) : fmaxl(1, fabsl(where)); }
 
-/* How far x jumps at `where`; 0: it does not. The difference of both sides stays what it is as they come closer: that of a continuous x falls,
- * to half for each step even where it is an eighth root; that of one with a pole, or of log, grows. */
+/* Height of the jump of x at `where`, 0 if there is none. Across a jump the difference of both sides stays constant as the distance shrinks;
+ * for a continuous x it falls, to about half per step even for an eighth root; at a pole, or for log, it grows. */
 static Real jump_at(Search *s, Real where) {
   static const Real distance[] = {1e-5L, 1e-7L, 1e-9L, 1e-11L};
   enum { DISTANCES = sizeof distance / sizeof *distance };
-  const Real alike = 0.02L, least = 1e-9L; /* of the terms at the first distance; places are known to 1e-11 of that, also where long doubles are doubles */
+  const Real alike = 0.02L, least = 1e-9L; /* relative to the jump; to its terms. Places are known to 1e-11 even where long double is double */
   Real far = unit_at(s, where), jump[DISTANCES], size, other, most = 0;
   for (int i = 0; i < DISTANCES; i++) {
     Real h = distance[i] * far, above = value_at(s, where + h, &size), below = value_at(s, where - h, &other);
@@ -259,7 +263,7 @@ static void try_source(Search *s, const Parts *parts, const Source *from) {
     if (by == 0) continue;
     Real h = 1e-6L * unit_at(s, where), slope = (side_at(s, side, level, where + h) - side_at(s, side, level, where - h)) / (2 * h);
     Real *symbols = ARENA_ARRAY(s->arena, Real, s->nsymbols + 1);
-    prove_state(s->g, seed, symbols); /* those that have no part in it */
+    prove_state(s->g, seed, symbols); /* symbols without influence on the jump */
     go_to(s, where);
     for (uint32_t i = 0; i < s->symbols.n; i++) symbols[s->symbols.at[i]] = s->at[s->symbols.at[i]];
     vec_push(s->arena, &s->found, ((ExprJump){from->node, from->side, symbols, by, slope}));

@@ -1,4 +1,5 @@
-/* Logarithms and powers of products: log(a*b) = log(a) + log(b) and (a*b)^u = a^u*b^u for factors that are known to be positive, for proofs. */
+/* Expansion of logarithms and powers of products, for proofs: log(a*b) = log(a) + log(b) and (a*b)^u = a^u*b^u for factors
+ * that are known to be positive. */
 #include "sym/normal_impl.h"
 
 enum { FACTORS_MOST = 200 };
@@ -11,7 +12,7 @@ typedef struct {
 typedef struct {
   Normal *n;
   VEC(Odd) odd;  /* factors of unknown sign, to odd powers */
-  Frac exponent; /* of the product in hand */
+  Frac exponent; /* exponent of the product being split */
   PowerParts *out;
   PowerParts todo;
 } Splitter;
@@ -25,7 +26,7 @@ static void take(Splitter *s, Frac base, Num power) {
   vec_push(n->arena, &s->todo, ((PowerPart){base, exponent, 0}));
 }
 
-/* The primes of a number, those above 1000 together. */
+/* Splits m^sign into primes by trial division up to 1000; the cofactor counts as a prime. */
 static void take_number(Splitter *s, int64_t m, int sign) {
   Normal *n = s->n;
   for (int64_t p = 2; m > 1; p++) {
@@ -41,13 +42,14 @@ static void give(Splitter *s, Poly base, int32_t e) {
   vec_push(n->arena, s->out, ((PowerPart){frac_poly(base), frac_mul(n->field, s->exponent, whole(n, num_int(e))), 0}));
 }
 
-/* A factor of unknown sign, to the power e: even powers are those of its square. */
+/* A factor x of unknown sign to the power e: for even e a power of x^2, which is positive; odd powers are collected in s->odd. */
 static void take_unknown(Splitter *s, Poly x, int32_t e) {
   if (e % 2 != 0) vec_push(s->n->arena, &s->odd, ((Odd){x, e}));
   else give(s, poly_mul(s->n->ring, x, x), e / 2);
 }
 
-/* What is left is positive, or the power an integer: one odd factor has the sign of the product; of several, products and squares remain. */
+/* Adds the odd powers. Their product has the sign `sign`, or the exponent is an integer: a single factor thus has a known sign; of several,
+ * the product and the squares of the factors are parts. */
 static void give_odd(Splitter *s, int sign) {
   PolyRing *r = s->n->ring;
   Poly rest = poly_num(r, num_int(sign));
@@ -59,7 +61,7 @@ static void give_odd(Splitter *s, int sign) {
   s->odd.n = 0;
 }
 
-/* A generator that is positive: e^u, b^u, a root, or one that is not taken apart. */
+/* Splits a positive generator: e^u, b^u, a root; any other generator is a part itself. */
 static void take_generator(Splitter *s, GenId x, int32_t e) {
   Normal *n = s->n;
   GenInfo info = n->gens.at[x];

@@ -1,3 +1,5 @@
+/* Conversion of expressions to the normal form and back: one pass over the nodes in ascending order, repeated when the
+ * unit of a base angle became finer. */
 #include "sym/normal.h"
 
 #include "sym/normal_impl.h"
@@ -79,7 +81,7 @@ static Frac opaque_by_key(Normal *n, const uint32_t *key, uint32_t len, GenInfo 
   return gen_frac(n, x);
 }
 
-/* The generator of an operation that is not understood, on arguments in normal form. */
+/* Generator of an opaque operation on arguments in normal form. */
 static Frac opaque(Normal *n, ExprOp op, const Frac *arg, uint32_t nargs, Expr expr) {
   uint32_t key[1 + 2 * MAX_ARGS] = {(uint32_t)op}, len = 1;
   for (uint32_t i = 0; i < nargs; i++) {
@@ -91,7 +93,7 @@ static Frac opaque(Normal *n, ExprOp op, const Frac *arg, uint32_t nargs, Expr e
 
 static int is_coefficient(const Normal *n, Num v) { return n->ring->residues || num_is_exact(v); }
 
-/* A number: a coefficient, or a generator of its own (its node tells it from others). */
+/* A number as a coefficient, or, if inexact, as a generator identified by its node. */
 static Frac number_frac(Normal *n, Num v) {
   if (is_coefficient(n, v)) return frac_num(n->field, v);
   Expr size = expr_num(n->g, num_abs(v));
@@ -173,7 +175,7 @@ static Frac extreme_frac(Normal *n, ExprOp op, Frac a, Frac b) {
   return half_sum(n, sum, op == EX_MIN ? frac_neg(n->field, size) : size);
 }
 
-/* An odd or even function that is not understood: f(-u) = -f(u) or f(u) by the sign of the first coefficient. */
+/* Opaque odd or even function: f(-u) = -f(u) or f(u), chosen so that the first coefficient of the argument is positive. */
 static Frac signed_opaque(Normal *n, Expr e, Frac u, int odd) {
   ExprOp op = expr_op(n->g, e);
   if (u.num.n == 0 && odd) return u;

@@ -1,14 +1,14 @@
-/* The inside of the normal form, shared by normal.c, angles.c and roots.c only. */
+/* Internals of the normal form, for the .c files that build it. */
 #ifndef LAGC_NORMAL_IMPL_H
 #define LAGC_NORMAL_IMPL_H
 
 #include "sym/normal.h"
 
-/* The generator with this key, or GEN_NONE; and remembering one. len words. */
+/* Look-up of the generator with a key of len words (GEN_NONE: absent), and its entry into the table. */
 GenId normal_find_key(const Normal *n, const IdTable *t, const uint32_t *key, uint32_t len);
 void normal_add_key(Normal *n, IdTable *t, const uint32_t *key, uint32_t len, GenId x);
 
-/* angles.c: sin and cos of u, exp(u), b^u. arg is the argument's node. */
+/* angles.c: sin and cos of u (arg: the node of u), exp(u), base^u. */
 Circular normal_circular(Normal *n, Expr arg, Frac u);
 Frac normal_exp(Normal *n, Frac u);
 Frac normal_power(Normal *n, Frac base, Frac u);
@@ -16,11 +16,11 @@ Frac normal_power(Normal *n, Frac base, Frac u);
 /* roots.c: a^e for exact rational e. */
 Frac normal_pow_num(Normal *n, Frac a, Num e);
 
-/* sqrt(a^2 + b^2), written as e where the squares might overflow; with b 0, |a|. */
+/* sqrt(a^2 + b^2), or |a| for b = 0; printed as e where squaring might overflow. */
 Frac normal_hypot(Normal *n, Frac a, Frac b, Expr e);
 
-/* logs.c: a product of powers, base^exponent or e^exponent, that base^exponent is: numbers, known signs and squares are taken apart. For proofs:
- * expressions would grow. The logarithm of u that way. */
+/* logs.c, for proofs: base^exponent as a product of powers b^u or e^u, split at numbers, factors of known sign and squares;
+ * log(u) as the sum over the powers of u. */
 typedef struct {
   Frac base, exponent;
   int is_e;
@@ -32,10 +32,10 @@ Frac normal_log(Normal *n, Frac u);
 /* normal.c: log(u) as a generator. */
 Frac normal_opaque_log(Normal *n, Frac u);
 
-/* roots.c: all terms positive, by their coefficients, even powers and positive generators. */
+/* roots.c: whether all terms of p are positive by coefficients, even powers and positive generators. */
 int normal_poly_positive(const Normal *n, Poly p);
 
-/* For proofs: q that is plainly positive, with q^2 = p; 0 where none is found. */
+/* For proofs: square root q of p, q > 0 by normal_poly_positive; returns 0 if none is found. */
 int normal_positive_root(Normal *n, Poly p, Poly *q);
 
 /* Whether generator x is known to be positive wherever the expression is defined. */

@@ -1,6 +1,6 @@
-/* Sums and products go through an accumulator indexed by monomial: interned monomials are small
- * numbers, so a term costs one array access. Relations are applied to the accumulated sum, one step
- * for every term at a time, so that equal terms merge before they are rewritten further. */
+/* Polynomial arithmetic. Sums and products go through an accumulator indexed by monomial id, so a term costs one
+ * array access. Relations are applied to the accumulated sum, one step for every term at a time, so that equal terms
+ * merge before they are rewritten further. */
 #include "sym/poly.h"
 
 #include <stdlib.h>
@@ -21,7 +21,7 @@ void poly_fail(PolyRing *r, PolyStatus why) {
   if (r->status == POLY_OK) r->status = why;
 }
 
-/* Takes n units of work; 0 when there is no more, or something failed before. */
+/* Takes n units from the work budget; returns 0 if it is used up or the ring has failed. */
 static int spend(PolyRing *r, uint64_t n) {
   if (r->status != POLY_OK) return 0;
   if (r->work < n) {
@@ -199,7 +199,7 @@ static Poly drain(PolyRing *r) {
   return (Poly){.at = at, .n = n};
 }
 
-/* One step of x^k -> R on a term whose monomial is reducible. */
+/* Applies x^k -> R once to a term whose monomial is reducible. */
 static void reduce_term(PolyRing *r, Term t) {
   GenId x = mono_at(r, t.mono)->reducible;
   PolyGen gen = r->gens.at[x];
@@ -337,7 +337,7 @@ Num poly_content(PolyRing *r, Poly a) {
   return num_sign(a.at[0].c) < 0 ? num_neg(c) : c;
 }
 
-/* Both lists ascend; a generator missing from one has exponent 0 there. */
+/* Monomial with the smaller exponent of each generator; a generator absent from one has exponent 0 there. */
 static MonoId mono_min(PolyRing *r, MonoId a, MonoId b) {
   const Mono *x = mono_at(r, a), *y = mono_at(r, b);
   uint32_t i = 0, k = 0;
@@ -429,7 +429,7 @@ int poly_div_exact(PolyRing *r, Poly a, Poly b, Poly *q) {
   Num ca, cb;
   MonoId ma, mb;
   Poly rest = poly_primitive(r, a, &ca, &ma), divisor = poly_primitive(r, b, &cb, &mb);
-  if (r->status != POLY_OK) return 0; /* they are empty then */
+  if (r->status != POLY_OK) return 0; /* rest and divisor are empty */
   Poly quotient = poly_zero();
   Term lead = leading(r, divisor);
   while (rest.n && r->status == POLY_OK) {

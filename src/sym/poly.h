@@ -1,12 +1,12 @@
 /* Sparse multivariate polynomials over Q, modulo relations x^k = R.
  *
- * Enters: generators, and for some of them a relation x^k = R, where R is made of generators that
- * were there before. Leaves: polynomials in normal form, that is as the unique combination of
+ * Enters: generators, and for some of them a relation x^k = R, where R contains older generators only.
+ * Leaves: polynomials in normal form, that is the unique combination of
  * monomials in which the exponent of such an x is 0 .. k-1. Generators without a relation may have
- * negative exponents (Laurent polynomials); those with one may not.
- * Must hold: coefficients are exact. One that would not fit 64 bits ends the computation with the
+ * negative exponents (Laurent polynomials); generators with a relation may not.
+ * Must hold: coefficients are exact. A coefficient beyond 64 bits ends the computation with the
  * status POLY_INEXACT; more terms or work than allowed end it with POLY_TOO_LARGE. The status stays,
- * and later operations return at once with results that mean nothing: callers look at the end.
+ * and later operations return at once with meaningless results: callers check the status at the end.
  * In a ring with `residues` set such a coefficient is a double with its residue (base/num.h): a
  * polynomial that vanishes is still the polynomial 0.
  *
@@ -20,7 +20,7 @@
 
 typedef uint32_t GenId;
 typedef uint32_t MonoId; /* monomials are interned; 0 is the monomial 1 */
-typedef uint32_t PolyId; /* polynomials are, on request; 0 is the polynomial 0 */
+typedef uint32_t PolyId; /* polynomials are interned on request; 0 is the polynomial 0 */
 
 enum { GEN_NONE = 0x7fffffff };
 
@@ -32,7 +32,7 @@ typedef struct {
 typedef struct {
   const MonoPow *at; /* by ascending generator, no exponent is 0 */
   uint32_t n, hash;
-  GenId reducible; /* the last generator whose exponent a relation lowers, or GEN_NONE */
+  GenId reducible; /* the last generator whose exponent its relation lowers, or GEN_NONE */
 } Mono;
 
 typedef struct {
@@ -56,12 +56,12 @@ typedef struct {
   Arena *arena;
   PolyStatus status;
   int residues;       /* coefficients need not be exact */
-  uint32_t max_terms; /* of one polynomial */
-  uint64_t work;      /* products of terms that may still be formed */
+  uint32_t max_terms; /* limit for one polynomial */
+  uint64_t work;      /* remaining budget of term products */
   VEC(PolyGen) gens;
   VEC(Mono) monos;
   IdTable mono_table;
-  VEC(Poly) polys; /* the interned ones */
+  VEC(Poly) polys; /* interned polynomials */
   IdTable poly_table;
   uint32_t *slot; /* accumulator: index + 1 in sum, by monomial */
   uint32_t slot_cap;
@@ -102,24 +102,24 @@ Poly poly_sum(PolyRing *r, const Poly *p, const Num *c, uint32_t n);
 int poly_equal(Poly a, Poly b);
 int poly_is_one(Poly a);
 
-/* The common factor of the coefficients with the sign of the first one; a must not be 0. */
+/* Content: the gcd of the coefficients with the sign of the first; a must not be 0. */
 Num poly_content(PolyRing *r, Poly a);
 
-/* The monomial with each generator's lowest exponent in a (0 counts); a must not be 0. */
+/* Common monomial: each generator's lowest exponent in the terms of a, 0 where it is absent; a must not be 0. */
 MonoId poly_common(PolyRing *r, Poly a);
 
 /* a = content * common * primitive, and the primitive part's first coefficient is positive. */
 Poly poly_primitive(PolyRing *r, Poly a, Num *content, MonoId *common);
 
-/* Whether b divides a, and then *q with a = q*b. Refuses (0) divisors in which a generator with a
- * relation occurs, for the ring modulo such a relation has no unique factors. */
+/* Exact division: returns 1 and *q with a = q*b if b divides a. Returns 0 for divisors that contain a generator with
+ * a relation: factorization modulo such a relation is not unique. */
 int poly_div_exact(PolyRing *r, Poly a, Poly b, Poly *q);
 
-/* Ids: equal polynomials have equal ids. */
+/* Interning: equal polynomials have equal ids. */
 PolyId poly_intern(PolyRing *r, Poly a);
 static inline Poly poly_at(const PolyRing *r, PolyId id) { return r->polys.at[id]; }
 
-/* The terms of a collected by hand: terms in any order, equal monomials allowed. */
+/* Polynomial from terms in any order; equal monomials are added. */
 Poly poly_collect(PolyRing *r, const Term *terms, uint32_t n);
 
 #endif

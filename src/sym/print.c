@@ -1,4 +1,4 @@
-/* Printing works off a stack of pending items (text or node), so that depth costs no recursion. */
+/* Printer of expressions. Pending items (text or node) wait on a stack, so that depth costs no recursion. */
 #include "sym/print.h"
 
 #include <string.h>
@@ -8,15 +8,15 @@
 typedef enum { PREC_OR, PREC_AND, PREC_NOT, PREC_CMP, PREC_SUM, PREC_PROD, PREC_POW, PREC_ATOM } Prec;
 
 typedef struct {
-  const char *text; /* or NULL: a node */
+  const char *text; /* NULL: the item is a node */
   Expr node;
-  Prec prec; /* of the place: a weaker node gets parentheses */
+  Prec prec; /* precedence of the place: a weaker node gets parentheses */
 } Item;
 
 typedef struct {
   ExprGraph *g;
   PrintStyle style;
-  VEC(Item) stack; /* what is still to be printed, the next one last */
+  VEC(Item) stack; /* items still to be printed, the next one last */
   VEC(Item) part;  /* the expansion of one node, in order */
 } Printer;
 
@@ -43,11 +43,11 @@ typedef struct {
   int rank;
 } Factor;
 
-/* Whether more than parameters and constants is in it. */
+/* Whether e contains symbols other than parameters and constants. */
 static int varies(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) != 0; }
 
-/* Numbers, sums of parameters, parameters, then coordinates and what is made of them, velocities
- * last: (m1 + m2)*g*l*sin(th)*th'. */
+/* Position of a factor in a product: numbers and sums of parameters, parameters, coordinates, functions, velocities:
+ * (m1 + m2)*g*l*sin(th)*th'. */
 static int rank_of(ExprGraph *g, Expr e) {
   switch (expr_op(g, e)) {
     case EX_NUM: return 0;
@@ -62,7 +62,7 @@ static int rank_of(ExprGraph *g, Expr e) {
       return 4;
     case EX_SUM: return varies(g, e) ? 3 : 0;
     case EX_DEF: return 5;
-    default: return 6; /* functions, and powers that are bases */
+    default: return 6; /* functions, and powers as bases */
   }
 }
 
@@ -75,7 +75,7 @@ static void sort_factors(Factor *f, uint32_t n) {
     }
 }
 
-/* \sin^2 u: the exponent belongs between the function and its argument. */
+/* Functions whose exponent stands before the argument: \sin^2 u. */
 static int is_circular(ExprOp op) { return op >= EX_SIN && op <= EX_TAN; }
 
 static void arguments(Printer *p, Expr e);
@@ -116,7 +116,7 @@ static void factors(Printer *p, const char *number, const Factor *f, uint32_t n)
   if (!n && !number) text(p, "1");
 }
 
-/* |c| * e, with e a product or anything else. */
+/* Prints |c| * e as a fraction where c or e has a denominator. */
 static void term(Printer *p, Expr e, Num c) {
   ExprGraph *g = p->g;
   c = num_abs(c);
@@ -172,7 +172,7 @@ static void sum(Printer *p, Expr e) {
 
 /* --- other nodes --- */
 
-/* An argument that stands on one line: a sum of plain names. It needs no growing parentheses. */
+/* Whether an argument is a sum of plain names, which needs no \left( \right). */
 static int is_flat(const ExprGraph *g, Expr e) {
   for (uint32_t i = 0; i < expr_pairs(g, e, EX_SUM); i++) {
     Num c;
@@ -309,7 +309,7 @@ void expr_print(ExprGraph *g, Expr e, PrintStyle style, StrBuf *out) {
 
 /* --- names --- */
 
-/* Letters that people spell out; "th" and "ph" are what they type for theta and phi. */
+/* LaTeX names of Greek letters with their other spellings; "th" and "ph" abbreviate theta and phi. */
 static const char *const greek[][2] = {
   {"alpha", "α"}, {"beta", "β"}, {"gamma", "γ"}, {"delta", "δ"}, {"epsilon", "ε"}, {"zeta", "ζ"},
   {"eta", "η"}, {"theta", "θ"}, {"iota", "ι"}, {"kappa", "κ"}, {"lambda", "λ"}, {"mu", "μ"}, {"nu", "ν"},
@@ -353,7 +353,7 @@ static void latex_plain(Name name, StrBuf *out) {
   }
 }
 
-/* x₁ as x1: LaTeX does not know the small digits. */
+/* The name with Unicode subscript digits as plain digits: LaTeX has no subscript digits. */
 static Name with_plain_digits(Arena *a, Name name) {
   if (!strstr(name, "\xe2\x82")) return name;
   StrBuf b = strbuf(a);
@@ -365,7 +365,7 @@ static Name with_plain_digits(Arena *a, Name name) {
   return sb_text(&b);
 }
 
-/* p_th1, the momentum of th1, has all of that name below it. */
+/* LaTeX form of a name; the momentum p_th1 has the whole name th1 as subscript. */
 static void latex_name(Name name, StrBuf *out) {
   int momentum = strncmp(name, "p_", 2) == 0 && name[2];
   name = with_plain_digits(out->arena, name);

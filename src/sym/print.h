@@ -1,4 +1,4 @@
-/* Expressions as a physicist writes them: as text and as LaTeX, in the user's names. */
+/* Printing of expressions in textbook notation, as text or LaTeX, with the user's names. */
 #ifndef LAGC_PRINT_H
 #define LAGC_PRINT_H
 

@@ -1,3 +1,4 @@
+/* Proofs by normal form, by value at random states, and by Cramer's rule for linear systems. */
 #include "sym/prove.h"
 
 #include <float.h>
@@ -9,7 +10,7 @@ enum { STATES = 8 };
 
 /* --- by value --- */
 
-/* Whether the value is certainly not 0; an unusable one (outside the domain) decides nothing. */
+/* Whether the value is certainly not 0; a value that is not finite (outside the domain) decides nothing. */
 static int clearly_nonzero(long double value, long double bound) {
   return isfinite(value) && isfinite(bound) && fabsl(value) > 1000 * bound + LDBL_MIN;
 }
@@ -32,7 +33,7 @@ typedef struct {
   ExprGraph *g;
   Expr e;
   NormalLimits limits;
-  int overflowed; /* numbers did not fit */
+  int overflowed; /* numbers did not fit 64 bits */
   Verdict verdict;
 } ZeroTask;
 
@@ -67,7 +68,7 @@ Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits) {
 
 typedef struct {
   ExprGraph *g;
-  uint32_t n;        /* of the block */
+  uint32_t n;        /* size of the block */
   uint32_t *index;   /* row of the whole system, by row of the block */
   const Expr *M, *f; /* the block, row by row */
   const SymId *acc;
@@ -76,7 +77,7 @@ typedef struct {
   Verdict verdict;
 } System;
 
-/* Marks the unknowns of e, then those that share an equation or a column with a marked one. */
+/* Marks the unknowns of e, then every unknown coupled to a marked one by an entry of M; returns their number. */
 static uint32_t mark_block(ExprGraph *g, uint32_t n, const Expr *M, const SymId *acc, Expr e, uint8_t *in) {
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
@@ -126,7 +127,7 @@ static int is_diagonal(const System *s) {
 
 static int has_unknown(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0; }
 
-/* Sums and products only, none of them in a denominator: then nothing is lost by putting values in the place of unknowns. */
+/* Whether e is a polynomial in the unknowns, so that substituting their values is valid for all states. */
 static int is_polynomial(const System *s) {
   ExprGraph *g = s->g;
   ExprList all = expr_topo(g, &s->e, 1);
@@ -144,7 +145,7 @@ static int is_polynomial(const System *s) {
   return 1;
 }
 
-/* f/M term by term. */
+/* f/M as a sum of quotients, term by term of f. */
 static Expr split_quotient(ExprGraph *g, Expr f, Expr M) {
   uint32_t n = expr_pairs(g, f, EX_SUM);
   Expr *part = ARENA_ARRAY(expr_arena(g), Expr, n + 1);
@@ -156,15 +157,15 @@ static Expr split_quotient(ExprGraph *g, Expr f, Expr M) {
   return expr_add_n(g, part, n);
 }
 
-/* e with a quotient in the place of each unknown. */
+/* e with each unknown replaced by quotient(f_i, M_ii). */
 static Expr solved(const System *s, Expr (*quotient)(ExprGraph *g, Expr f, Expr M)) {
   Expr *with = ARENA_ARRAY(expr_arena(s->g), Expr, s->n + 1);
   for (uint32_t i = 0; i < s->n; i++) with[i] = quotient(s->g, s->f[i], s->M[i * (s->n + 1)]);
   return expr_replace(s->g, s->e, s->acc, with, s->n);
 }
 
-/* The block may have any size, and needs no normal form as a whole. Long sums of fractions may cancel term by term
- * where a common denominator would be too large: against m*x'' = ... or against x'' = .... */
+/* Verdict for a diagonal block of any size, without the normal form of the block. Long sums of fractions may cancel term
+ * by term where a common denominator would be too large: hence both f/M whole and f/M term by term are tried. */
 static Verdict diagonal_verdict(const System *s) {
   if (!is_diagonal(s) || !is_polynomial(s)) return NOT_DECIDED;
   if (expr_is_zero(s->g, solved(s, expr_div))) return PROVED_ZERO;
@@ -175,7 +176,7 @@ static Verdict diagonal_verdict(const System *s) {
 
 enum { MAX_BLOCK = 8 };
 
-/* The block with f as its last column, as polynomials: every row times its common denominator. */
+/* Augmented block [M f] as polynomials: every row is multiplied by its common denominator. */
 static void clear_denominators(Normal *n, uint32_t size, const Frac *M, const Frac *f, Poly *rows) {
   for (uint32_t i = 0; i < size; i++) {
     DenId den = f[i].den;
@@ -188,7 +189,7 @@ static void clear_denominators(Normal *n, uint32_t size, const Frac *M, const Fr
   }
 }
 
-/* The minor of the first rows over the columns of a set, by expansion along its last row.
+/* Minor of the first rows over the columns in the bit set `set`, by expansion along its last row.
  * Expansion by minors, each computed once, beats elimination on sparse polynomials (Gentleman and
  * Johnson 1976, DOI 10.1145/355694.355696), and needs no division modulo relations. */
 static Poly minor_of(PolyRing *r, uint32_t columns, const Poly *rows, uint32_t set, const Poly *minors) {
@@ -206,7 +207,7 @@ static Poly minor_of(PolyRing *r, uint32_t columns, const Poly *rows, uint32_t s
   return poly_sum(r, parts, signs, n);
 }
 
-/* det is det M; solution[k] the determinant with column k replaced by f. */
+/* Cramer's rule: returns det M; solution[k] is the determinant of M with column k replaced by f. */
 static Poly cramer(Normal *n, uint32_t size, const Poly *rows, Poly *solution) {
   uint32_t columns = size + 1, all = (1u << columns) - 1;
   Poly *minors = ARENA_ARRAY(n->arena, Poly, all + 1);
@@ -220,7 +221,7 @@ static Poly cramer(Normal *n, uint32_t size, const Poly *rows, Poly *solution) {
   return minors[all & ~(1u << size)];
 }
 
-/* The generator of each unknown; 0 when one hides inside a function, out of substitution's reach. */
+/* Generator of each unknown; returns 0 if an unknown occurs inside another generator, where it cannot be substituted. */
 static int unknown_gens(Normal *n, const System *s, GenId *gen) {
   for (uint32_t k = 0; k < s->n; k++) {
     gen[k] = GEN_NONE;
@@ -232,8 +233,8 @@ static int unknown_gens(Normal *n, const System *s, GenId *gen) {
   return 1;
 }
 
-/* One monomial: its coefficient times the product of solution[k]^e and det^-(sum of e), where the
- * total degree was raised to be at least 0 by det^degree. */
+/* Term t with unknown k replaced by solution[k]/det, times det^degree; degree is at least the term's degree in the
+ * unknowns. */
 static Poly substitute_term(Normal *n, const System *s, const GenId *gen, Term t, int32_t degree, Poly det,
                             const Poly *solution) {
   PolyRing *r = n->ring;
@@ -252,8 +253,8 @@ static Poly substitute_term(Normal *n, const System *s, const GenId *gen, Term t
   return poly_mul_mono(r, p, t.c, rest);
 }
 
-/* p times a power of det, with the solution put in for the unknowns. Fails on negative powers of
- * an unknown (a division by it). */
+/* p with the solution substituted for the unknowns, times a power of det. Returns 0 on a negative power of an
+ * unknown. */
 static int substitute(Normal *n, const System *s, const GenId *gen, Poly p, Poly det, const Poly *solution,
                       Poly *result) {
   int32_t degree = 0;
@@ -272,7 +273,7 @@ static int substitute(Normal *n, const System *s, const GenId *gen, Poly p, Poly
   return n->ring->status == POLY_OK;
 }
 
-/* Whether no factor of the denominator vanishes on the solution. */
+/* Whether all factors of the denominator are nonzero on the solution. */
 static int den_survives(Normal *n, const System *s, const GenId *gen, DenId den, Poly det, const Poly *solution) {
   Den d = frac_den(n->field, den);
   for (uint32_t i = 0; i < d.n; i++) {

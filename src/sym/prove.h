@@ -1,4 +1,4 @@
-/* Proofs that expressions vanish. */
+/* Proofs that expressions vanish, sample states, and values with rounding bounds. */
 #ifndef LAGC_PROVE_H
 #define LAGC_PROVE_H
 
@@ -6,37 +6,39 @@
 
 typedef enum { NOT_DECIDED, PROVED_ZERO, PROVED_NONZERO } Verdict;
 
-/* What a proof may cost; about a fifth of a second at most. */
+/* Default limits on the cost of a proof: about 0.2 s at most. */
 NormalLimits prove_limits(void);
 
-/* Whether e is 0 wherever it is defined; where numbers have more than 64 bits, by their residues (base/num.h). PROVED_NONZERO: the normal form is unique and not 0, or a
- * value at some state is larger than all its rounding errors. limits NULL: prove_limits(). */
+/* Decides whether e is 0 wherever it is defined; numbers beyond 64 bits are compared by their residues (base/num.h).
+ * PROVED_NONZERO: the normal form is unique and not 0, or the value at some state exceeds its rounding bound.
+ * limits NULL: prove_limits(). */
 Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits);
 
-/* Whether e vanishes when the symbols acc[0..n-1] solve M acc = f (M is n*n, row by row; the entries
- * do not contain acc). Proved by Cramer's rule on normal forms; only the block of M that e needs is
- * looked at. A singular M is not decided. PROVED_NONZERO: not for all states, by a normal form that is unique. */
+/* Decides whether e vanishes when the symbols acc[0..n-1] solve M acc = f (M is n*n, row by row; its entries
+ * do not contain acc). Proved by Cramer's rule on normal forms of the block of M that e needs.
+ * A singular M gives NOT_DECIDED. PROVED_NONZERO: the normal form is unique and not 0, so e fails at some states. */
 Verdict prove_solves(ExprGraph *g, uint32_t n, const Expr *M, const Expr *f, const SymId *acc, Expr e,
                      const NormalLimits *limits);
 
-/* A state for comparing values: symbols[s] for s in 1 .. expr_symbol_count, different for each seed,
- * within 0.3 .. 2 in size and of the sign that is known. pi is pi. */
+/* Random sample state: symbols[s] for s in 1 .. expr_symbol_count, of magnitude 0.3 .. 2 and of the declared sign,
+ * determined by seed. pi keeps its value. */
 void prove_state(const ExprGraph *g, uint32_t seed, long double *symbols);
 
-/* The value of one of them there. */
+/* Value of symbol s in the sample state of that seed. */
 long double prove_symbol(const ExprGraph *g, SymId s, uint32_t seed);
 
-/* The same with coordinates, states and time of 1.2 .. 8 in size: angles past half a turn, where branches end. */
+/* prove_state with coordinates, states and time of magnitude 1.2 .. 8: angles beyond half a turn, across branch cuts. */
 void prove_state_wide(const ExprGraph *g, uint32_t seed, long double *symbols);
 
-/* Values of all nodes of the roots with bounds of their rounding errors, state by state; of one of the nodes, after a run. */
+/* Tape that evaluates all nodes of the roots with rounding bounds at a state (bound_run); bound_value reads one node after a run.
+ * errors[s]: error of symbol s, or NULL for exact symbols. */
 typedef struct BoundTape BoundTape;
 BoundTape *bound_tape(ExprGraph *g, const Expr *roots, uint32_t n);
 void bound_run(BoundTape *t, const long double *symbols, const long double *errors);
 long double bound_value(const BoundTape *t, Expr node, long double *bound);
 
-/* The value of e, and a bound of its rounding error when the symbols have the errors given
- * (NULL: none). The bound is infinite where none is known. */
+/* Value of e and a bound of its error, given the errors of the symbols (NULL: none).
+ * The bound is infinite where none is known. */
 long double prove_value(ExprGraph *g, Expr e, const long double *symbols, const long double *errors,
                         long double *bound);
 

@@ -1,4 +1,5 @@
-/* Quotients that are infinity over infinity far from the origin, in a form that is not. */
+/* Rewrites products that are infinity/infinity or 0*infinity far from the origin into forms that stay finite there:
+ * sinh/cosh, exp/exp, exp/(sum with exp), (1 - tanh^2)*cosh^2. */
 #include "sym/expr_impl.h"
 
 Expr expr_cosh_of_tanh(ExprGraph *g, Expr sum) {
@@ -9,7 +10,7 @@ Expr expr_cosh_of_tanh(ExprGraph *g, Expr sum) {
   return fits ? expr_fn(g, EX_COSH, expr_arg(g, tanh, 0)) : 0;
 }
 
-/* (1 - tanh(u)^2)^k cosh(u)^m: 0 times infinity. Returns 1 when something changed. */
+/* (1 - tanh(u)^2)^k cosh(u)^m -> cosh(u)^(m - 2k), which is not 0 times infinity. Returns 1 when r changed. */
 static int use_tanh_square(ExprGraph *g, Product *r) {
   for (uint32_t i = 0; i < r->p.n; i++) {
     if (expr_op(g, r->p.at[i].node) != EX_COSH || num_sign(r->p.at[i].number) < 0) continue;
@@ -22,7 +23,7 @@ static int use_tanh_square(ExprGraph *g, Product *r) {
   return 0;
 }
 
-/* tanh(u) of sinh(u)/cosh(u), exp(u - v) of exp(u)/exp(v): finite where these are not; otherwise 0. */
+/* sinh(u)/cosh(u) as tanh(u), exp(u)/exp(v) as exp(u - v); 0 for other quotients. */
 static Expr quotient_of(ExprGraph *g, Expr above, Expr below) {
   ExprOp a = expr_op(g, above), b = expr_op(g, below);
   Expr u = a == EX_SINH || a == EX_EXP ? expr_arg(g, above, 0) : 0;
@@ -30,7 +31,7 @@ static Expr quotient_of(ExprGraph *g, Expr above, Expr below) {
   return a == EX_EXP && b == EX_EXP ? expr_fn(g, EX_EXP, expr_sub(g, u, expr_arg(g, below, 0))) : 0;
 }
 
-/* One such quotient in its place. Returns 1 when something changed. */
+/* Applies quotient_of to one pair of factors. Returns 1 when r changed. */
 static int use_pair_quotient(ExprGraph *g, Product *r) {
   for (uint32_t i = 0; i < r->p.n; i++) {
     Pair *x = &r->p.at[i];
@@ -40,7 +41,7 @@ static int use_pair_quotient(ExprGraph *g, Product *r) {
       Expr quotient = num_sign(x->number) == -num_sign(y->number) ? quotient_of(g, x->node, y->node) : 0;
       if (!quotient) continue;
       int all = num_cmp(num_abs(x->number), num_abs(y->number)) < 0 || (op == EX_SINH && !(num_is_int(x->number) && num_is_int(y->number)));
-      Num shared = all ? x->number : num_neg(y->number); /* sinh(u) may be negative: no part of it is below a root */
+      Num shared = all ? x->number : num_neg(y->number); /* sinh(u) may be negative: a fractional power of it is moved whole */
       x->number = num_sub(x->number, shared);
       y->number = num_add(y->number, shared);
       expr_push_power(g, r, quotient, shared);
@@ -50,7 +51,7 @@ static int use_pair_quotient(ExprGraph *g, Product *r) {
   return 0;
 }
 
-/* The exponent of E in a term of a sum. */
+/* Exponent of E in a term of a sum. */
 static Num exponent_of(const ExprGraph *g, Expr term, Expr E) {
   Num e = num_int(0), k;
   for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++)
@@ -58,13 +59,13 @@ static Num exponent_of(const ExprGraph *g, Expr term, Expr E) {
   return e;
 }
 
-/* Whether e is an exponential that may be large: not exp(-x^2). */
+/* Whether e is an exponential not known to be <= 1: exp(-x^2) is not large. */
 static int is_large_exp(const ExprGraph *g, Expr e) {
   ExprSign s = expr_op(g, e) == EX_EXP ? expr_sign(g, expr_arg(g, e, 0)) : SIGN_NEGATIVE;
   return s != SIGN_NEGATIVE && s != SIGN_NONPOSITIVE;
 }
 
-/* The highest power of E = exp(u) in the terms of a sum, where the lowest is 0; otherwise 0. */
+/* Highest power of E = exp(u) in the terms of a sum whose lowest power of E is 0; 0 for other sums. */
 static int64_t top_exponent(const ExprGraph *g, Expr sum, Expr E) {
   int64_t top = 0, bottom = INT64_MAX;
   for (uint32_t i = 0; i < expr_pairs(g, sum, EX_SUM); i++) {
@@ -76,7 +77,7 @@ static int64_t top_exponent(const ExprGraph *g, Expr sum, Expr E) {
   return bottom == 0 ? top : 0;
 }
 
-/* sum/E^k for E = exp(u), term by term, with exp(-u) for what has fewer factors E. */
+/* sum/E^k for E = exp(u), term by term; terms with fewer than k factors E get powers of exp(-u). */
 static Expr divide_by_exp(ExprGraph *g, Expr sum, Expr E, int64_t k) {
   Expr minus_u = expr_neg(g, expr_arg(g, E, 0)), inverse = expr_fn(g, EX_EXP, minus_u);
   uint32_t n = expr_pairs(g, sum, EX_SUM);
@@ -92,8 +93,8 @@ static Expr divide_by_exp(ExprGraph *g, Expr sum, Expr E, int64_t k) {
   return expr_add_n(g, terms, n);
 }
 
-/* E^j S^-m for E = exp(u) and a sum S with powers of E: E goes below the fraction line, exp(u)/(1 + exp(u)) -> 1/(exp(-u) + 1), so that
- * no infinity is divided by another. Returns 1 when something changed. */
+/* E^j S^-m for E = exp(u) and a sum S with powers of E: S is divided by E, exp(u)/(1 + exp(u)) -> 1/(exp(-u) + 1).
+ * Returns 1 when r changed. */
 static int use_exp_quotient(ExprGraph *g, Product *r) {
   for (uint32_t i = 0; i < r->p.n; i++) {
     Expr E = r->p.at[i].node;
@@ -131,7 +132,7 @@ static int meets_exp(const ExprGraph *g, Expr T, Expr E, int below) {
   return 0;
 }
 
-/* The first factor of r that is such a sum; r->p.n: none. */
+/* Index of the first factor of r that is a sum for which meets_exp holds; r->p.n if there is none. */
 static uint32_t find_mixed_sum(const ExprGraph *g, const Product *r, Expr E, int below) {
   uint32_t i = 0;
   while (i < r->p.n && !(expr_op(g, r->p.at[i].node) == EX_SUM && num_is_one(r->p.at[i].number) && meets_exp(g, r->p.at[i].node, E, below))) i++;

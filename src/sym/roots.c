@@ -1,11 +1,12 @@
-/* Rational powers: x with x^k = u, taken apart so that equal roots become equal generators. */
+/* Rational powers in normal form: generators x with x^k = u, where u is split into primes, generators and primitive
+ * polynomials so that equal roots become equal generators. */
 #include "sym/normal_impl.h"
 
 enum { MAX_DEGREE = 64, MAX_POWER = 4096 };
 
 static Frac one(Normal *n) { return frac_num(n->field, num_int(1)); }
 
-/* x with x^k = base; expr is what it stands for, or 0: the root of base. */
+/* Generator x with x^k = base, made if absent; expr: its expression (0: base^(1/k)). */
 static GenId root_gen(Normal *n, Poly base, int32_t k, Expr expr) {
   uint32_t key[2] = {(uint32_t)k, poly_intern(n->ring, base)};
   GenId x = normal_find_key(n, &n->root_table, key, 2);
@@ -44,7 +45,7 @@ int normal_poly_positive(const Normal *n, Poly p) {
   return 1;
 }
 
-/* |p| for a polynomial that may be negative: the square root of p^2. */
+/* |p|: p itself if known to be positive, else the square root of p^2. */
 static Frac size_of(Normal *n, Poly p) {
   if (normal_poly_positive(n, p)) return frac_poly(p);
   Poly square = poly_mul(n->ring, p, p);
@@ -57,7 +58,7 @@ static Frac size_of(Normal *n, Poly p) {
 
 /* --- squares --- */
 
-/* The term whose monomial is last in the lexical order of exponents, latest generators first. */
+/* Leading term in the lexicographic order of exponents, newest generator first. */
 static Term leading(const PolyRing *r, Poly p) {
   Term best = p.at[0];
   for (uint32_t i = 1; i < p.n; i++) {
@@ -72,7 +73,7 @@ static Term leading(const PolyRing *r, Poly p) {
   return best;
 }
 
-/* q with q^2 = p, term by term; 0 where there is none. */
+/* Square root of a polynomial, term by term: q with q^2 = p; returns 0 if there is none. */
 static int square_root(PolyRing *r, Poly p, Poly *q) {
   enum { TERMS_MOST = 32 };
   Term first = leading(r, p);
@@ -99,7 +100,7 @@ static int square_root(PolyRing *r, Poly p, Poly *q) {
   return 0;
 }
 
-/* Relations between generators hide squares, but a root that is found is one. */
+/* Relations between generators may hide a square, but a root that is found is valid: its square is compared with p. */
 int normal_positive_root(Normal *n, Poly p, Poly *q) {
   enum { FEW = 40 };
   if (!n->proof || p.n > FEW || !p.n) return 0;
@@ -135,7 +136,7 @@ static Frac prime_root(Normal *n, int64_t prime, int32_t e, int32_t k) {
   return frac_mul(n->field, f, root);
 }
 
-/* m^(sign/k) by trial division; what is left over above 2^16 counts as a prime. */
+/* m^(sign/k) by trial division up to 2^16; the cofactor counts as a prime. */
 static Frac integer_root(Normal *n, int64_t m, int32_t sign, int32_t k) {
   Frac f = one(n);
   for (int64_t p = 2; m > 1 && n->ring->status == POLY_OK; p++) {
@@ -160,7 +161,7 @@ static Frac number_root(Normal *n, Num c, int32_t k) {
 
 /* --- monomials --- */
 
-/* The k-th root of x^e as far as it is known; *left is the power of x that stays below the root. */
+/* Factor of the k-th root of x^e that leaves the radical; *left is the exponent of x that stays below it. */
 static Frac gen_root(Normal *n, GenId x, int32_t e, int32_t k, int32_t *left) {
   int32_t whole = floor_div(e, k, left);
   Frac base = frac_poly(poly_gen(n->ring, x));
@@ -177,7 +178,7 @@ static Frac gen_root(Normal *n, GenId x, int32_t e, int32_t k, int32_t *left) {
   return frac_pow(n->field, size, whole);
 }
 
-/* The part of the monomial's root that comes out; *left is what stays below. */
+/* Factor of the k-th root of a monomial that leaves the radical; *left is the monomial that stays below it. */
 static Frac mono_root(Normal *n, MonoId m, int32_t k, MonoId *left) {
   Frac f = one(n);
   Mono mono = *mono_at(n->ring, m);

@@ -1,4 +1,4 @@
-/* simplify: normal form, then the shortest way to write it.
+/* simplify: the normal form of an expression, written as briefly as possible.
  *
  * A numerator is a sum of terms number * parameters * dynamic part * circular functions. For each
  * monomial of the first three, the polynomial in circular functions takes its shortest form; then
@@ -44,7 +44,7 @@ static int gen_is_circular(const Normal *n, GenId x) {
   return n->gens.at[x].kind == GEN_SIN || n->gens.at[x].kind == GEN_COS;
 }
 
-/* The part of a monomial whose generators satisfy the predicate. */
+/* Part of a monomial whose generators are circular functions, or (circular 0) parameters or not. */
 static MonoId mono_part(Normal *n, MonoId m, int circular, int param) {
   Mono mono = *mono_at(n->ring, m);
   MonoPow *part = ARENA_ARRAY(n->arena, MonoPow, mono.n + 1);
@@ -72,7 +72,7 @@ static int by_cofactor(const void *a, const void *b) {
   return (x->term > y->term) - (x->term < y->term);
 }
 
-/* The terms that share the most frequent cofactor (not 1), as a run of splits; 0 when no two do. */
+/* Size of the largest group of terms with a common cofactor (not 1), a run of splits from *from; 0 if no two terms share one. */
 static uint32_t largest_group(Normal *n, const Term *t, uint32_t count, Split *splits, uint32_t *from) {
   uint32_t total = 0, best = 1;
   for (uint32_t i = 0; i < count; i++) {
@@ -92,7 +92,7 @@ static uint32_t largest_group(Normal *n, const Term *t, uint32_t count, Split *s
   return best > 1 ? best : 0;
 }
 
-/* m1*l1^2 + m2*l1^2 + m2*l2^2 as (m1 + m2)*l1^2 + m2*l2^2. */
+/* Factored form of a polynomial of parameters: m1*l1^2 + m2*l1^2 + m2*l2^2 becomes (m1 + m2)*l1^2 + m2*l2^2. */
 static Expr params_expr(Normal *n, Poly p) {
   enum { MAX_FACTORED = 64 };
   ExprGraph *g = n->g;
@@ -123,7 +123,7 @@ static Expr params_expr(Normal *n, Poly p) {
 
 /* --- numerators into pieces --- */
 
-/* c times a product that may carry a number of its own. */
+/* Appends the piece c * params * e; a number in e is moved into c. */
 static void push_piece(Normal *n, Pieces *out, Num c, MonoId params, Expr e) {
   if (expr_is_num(n->g, e)) {
     c = num_mul(c, expr_number(n->g, e));
@@ -138,7 +138,7 @@ static void push_piece(Normal *n, Pieces *out, Num c, MonoId params, Expr e) {
 }
 
 typedef struct {
-  MonoId rest; /* without circular functions */
+  MonoId rest; /* the monomial without circular functions */
   Term circular;
 } Sorted;
 
@@ -180,7 +180,7 @@ static Pieces pieces_of(Normal *n, Poly p) {
 
 /* --- collecting --- */
 
-/* content * mono * prim * e: all pieces with the function e together. */
+/* content * mono * prim * e: the sum of all pieces with the function e. */
 typedef struct {
   PolyId prim;
   MonoId mono;
@@ -221,7 +221,7 @@ static Group *groups_of(Normal *n, Pieces pieces, uint32_t *count) {
   return groups;
 }
 
-/* The factor's exponent in the product e; 0 when it does not occur. */
+/* Exponent of base in the product e; 0 if absent. */
 static Num exponent_in(const ExprGraph *g, Expr e, Expr base) {
   for (uint32_t i = 0; i < expr_pairs(g, e, EX_PROD); i++) {
     Num k;
@@ -230,7 +230,7 @@ static Num exponent_in(const ExprGraph *g, Expr e, Expr base) {
   return num_int(0);
 }
 
-/* What all functions of the state in the groups share: each base with the exponent nearest to 0. */
+/* Common factor of the groups' functions of the state: each base with the exponent nearest to 0. */
 static Expr common_factor(ExprGraph *g, const Group *at, uint32_t count) {
   Expr common = expr_int(g, 1);
   for (uint32_t i = 0; i < expr_pairs(g, at[0].e, EX_PROD); i++) {
@@ -248,7 +248,7 @@ static Expr common_factor(ExprGraph *g, const Group *at, uint32_t count) {
   return common;
 }
 
-/* The groups with one parameter factor: factor * common * (sum of what is left). */
+/* Sum of the groups with one parameter factor: factor * common * (sum of the remaining functions). */
 static Expr run_expr(Normal *n, const Group *at, uint32_t count) {
   ExprGraph *g = n->g;
   Expr mono = normal_mono_expr(n, at->mono), prim = params_expr(n, poly_at(n->ring, at->prim));
@@ -325,7 +325,7 @@ static long double far_symbol(SymId s, const void *data) {
   return prove_symbol(at->g, s, at->seed) * (moves ? at->scale : 1);
 }
 
-/* Whether `after` has a value wherever `before` has one, in the range of doubles: looked at near and far from the origin. */
+/* Whether `after` is finite wherever `before` is, in doubles; tested at random states near and far from the origin. */
 static int keeps_range(ExprGraph *g, Expr before, Expr after) {
   static const long double scales[] = {1, 20, 60, 180, 400, 700, 2000, 20000};
   enum { SCALES = sizeof scales / sizeof *scales, SEEDS = 3 };
@@ -357,7 +357,7 @@ static int has_definitions(ExprGraph *g, Expr e) {
   return 0;
 }
 
-/* The new form where it keeps the range of the old one. */
+/* The new form s if it keeps the range of e, else e. */
 static Expr taken(ExprGraph *g, Expr e, Expr s) { return s == e || keeps_range(g, e, s) ? s : e; }
 
 Expr simplify(ExprGraph *g, Expr e) {

@@ -1,4 +1,4 @@
-/* simplify_stable: half-angle forms and differences of squares, bottom-up, one sum at a time. */
+/* simplify_stable: half-angle forms and differences of squares against cancellation, bottom-up, one sum at a time. */
 #include "sym/simplify.h"
 
 typedef struct {
@@ -29,7 +29,7 @@ static Expr sum_of(const Terms *t) {
 
 /* --- half angles --- */
 
-/* Factor i of a term when it is cos u or cosh u to the first power; 0 otherwise. */
+/* Factor i of a term if it is cos u or cosh u to the first power; 0 otherwise. */
 static Expr cosine_at(const ExprGraph *g, Expr term, uint32_t i) {
   Num k;
   Expr base = expr_pair(g, term, EX_PROD, i, &k);
@@ -42,7 +42,7 @@ static Term *find(const Terms *t, Expr e) {
   return NULL;
 }
 
-/* Whether every term of c*R is there; then they are taken out. */
+/* Removes the terms of c*R from the sum; returns 0 and changes nothing if one is missing. */
 static int take(Terms *t, Expr R, Num c) {
   uint32_t n = expr_is_num(t->g, R) ? 1 : expr_pairs(t->g, R, EX_SUM);
   for (int remove = 0; remove < 2; remove++)
@@ -65,8 +65,7 @@ static Expr half_angle(ExprGraph *g, Num c, Expr R, ExprOp f, Expr u) {
   return expr_scale(g, num_mul(num_int(2), c), product);
 }
 
-/* c*R*cos u + d*R for term i and its factor cosine: for d = -c the sine's form, for d = c the
- * cosine's. */
+/* Rewrites c*R*cos u + d*R, term i with its factor `cosine`: for d = -c into the form with sin(u/2)^2, for d = c with cos(u/2)^2. */
 static int use_half_angle(Terms *t, uint32_t i, Expr cosine) {
   ExprGraph *g = t->g;
   Num c = t->at[i].c;
@@ -94,7 +93,7 @@ static int use_half_angles(Terms *t, uint32_t i) {
 
 /* --- differences of squares --- */
 
-/* z of z^2, where z is a symbol or definition; 1 of 1; 0 otherwise. */
+/* Square root of e: z for z^2 where z is a symbol or definition, 1 for 1; 0 otherwise. */
 static Expr square_root(ExprGraph *g, Expr e) {
   if (expr_is_num(g, e)) return e;
   if (expr_op(g, e) != EX_PROD || expr_pairs(g, e, EX_PROD) != 1) return 0;
@@ -104,7 +103,7 @@ static Expr square_root(ExprGraph *g, Expr e) {
   return num_equal(k, num_int(2)) && (op == EX_SYM || op == EX_DEF) ? base : 0;
 }
 
-/* c*((r*a)^2 - b^2) as c*(r*a - b)*(r*a + b); 0 when the sum is not of this form. */
+/* c*((r*a)^2 - b^2) as c*(r*a - b)*(r*a + b); 0 if the sum is not of this form. */
 static Expr difference_of_squares(const Terms *t) {
   ExprGraph *g = t->g;
   if (t->n != 2 || num_sign(t->at[0].c) * num_sign(t->at[1].c) >= 0) return 0;

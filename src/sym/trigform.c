@@ -1,3 +1,5 @@
+/* Candidate forms of a trigonometric polynomial: powers of sines and cosines, or its Fourier spectrum by directions; the
+ * shortest wins. */
 #include "sym/trigform.h"
 
 #include <stdlib.h>
@@ -24,7 +26,7 @@ static Angles angles_of(Normal *n, Poly p) {
 
 /* --- powers of sines and cosines --- */
 
-/* p = A + s*B for the sine s of an angle. */
+/* Splits p = A + s*B by the sine s of an angle. */
 static void split_sine(Normal *n, Poly p, GenId s, Poly *A, Poly *B) {
   Term *even = ARENA_ARRAY(n->arena, Term, p.n + 1), *odd = ARENA_ARRAY(n->arena, Term, p.n + 1);
   uint32_t evens = 0, odds = 0;
@@ -41,7 +43,7 @@ static void split_sine(Normal *n, Poly p, GenId s, Poly *A, Poly *B) {
   *B = poly_collect(n->ring, odd, odds);
 }
 
-/* p/s where s = sin u divides p: A must be a multiple of s^2 = 1 - c^2. */
+/* Exact quotient *q = p/s for s = sin u; returns 0 unless A of p = A + s*B is a multiple of s^2 = 1 - c^2. */
 static int divide_by_sine(Normal *n, Poly p, uint32_t angle, Poly *q) {
   PolyRing *r = n->ring;
   GenId s = n->atoms.at[angle].sin;
@@ -73,7 +75,7 @@ static Expr take_common(Normal *n, Poly *p) {
   return factor;
 }
 
-/* The same angle with cos^2 eliminated instead of sin^2: generators that stand for the same. */
+/* Second pair of generators for the sine and cosine of an angle, with cos^2 eliminated instead of sin^2. */
 typedef struct {
   GenId cos, sin;
 } Swapped;
@@ -91,7 +93,7 @@ static Swapped swap_angle(Normal *n, uint32_t angle) {
   return w;
 }
 
-/* p with one angle's generators replaced by its swapped ones. Powers of the cosine are >= 0. */
+/* p with the generators of one angle replaced by its swapped pair. Powers of the cosine are >= 0. */
 static Poly with_swapped(Normal *n, Poly p, uint32_t angle, Swapped w) {
   PolyRing *r = n->ring;
   Atom a = n->atoms.at[angle];
@@ -107,7 +109,7 @@ static Poly with_swapped(Normal *n, Poly p, uint32_t angle, Swapped w) {
   return poly_sum(r, part, NULL, p.n);
 }
 
-/* Angle by angle, the elimination that leaves fewer terms. */
+/* p with sin^2 or cos^2 eliminated angle by angle, whichever leaves fewer terms. */
 static Poly shortest_powers(Normal *n, Poly p) {
   Angles angles = angles_of(n, p);
   for (uint32_t i = 0; i < angles.n && p.n > 1; i++) {
@@ -136,8 +138,8 @@ static TrigForm powers_form(Normal *n, Poly p) {
 
 /* --- sums of combined angles --- */
 
-/* c*cos(k*direction) or c*sin(..): one line of the spectrum. direction is a monomial in the
- * generators z of the angles, primitive, its first exponent positive. */
+/* One line of the spectrum: c*cos(k*direction) or c*sin(k*direction). direction is a primitive monomial in the
+ * generators z of the angles, its first exponent positive. */
 typedef struct {
   MonoId direction;
   int32_t k;
@@ -168,7 +170,7 @@ static int has_spectrum(Normal *n, Poly p) {
   return 1;
 }
 
-/* (z + sign/z)/2 */
+/* Euler's formula (z + sign/z)/2: the cosine, or i times the sine, for z = exp(iu). */
 static Poly euler(PolyRing *r, GenId z, int sign) {
   MonoPow up = {.gen = z, .exp = 1}, down = {.gen = z, .exp = -1};
   Term t[2];
@@ -177,8 +179,7 @@ static Poly euler(PolyRing *r, GenId z, int sign) {
   return poly_collect(r, t, 2);
 }
 
-/* One term in exponentials, without the power of i: i^-(number of sines) is i^-parity times the
- * sign that is included. */
+/* One term in exponentials times i^parity; the sign in i^-(number of sines) = +-i^-parity is included. */
 static Poly term_in_exponentials(Normal *n, const Spectrum *s, Term t, int *parity) {
   PolyRing *r = n->ring;
   Poly p = poly_num(r, t.c);
@@ -196,7 +197,7 @@ static Poly term_in_exponentials(Normal *n, const Spectrum *s, Term t, int *pari
   return sines / 2 % 2 ? poly_scale(r, num_int(-1), p) : p;
 }
 
-/* Splits a frequency into k times a primitive direction. */
+/* Spectral line of a term: its frequency is split into k times a primitive direction. */
 static Line line_of(PolyRing *r, Term t, int is_sine) {
   Mono m = *mono_at(r, t.mono);
   int32_t k = 0;
@@ -208,11 +209,11 @@ static Line line_of(PolyRing *r, Term t, int is_sine) {
     }
   for (uint32_t i = 0; i < m.n; i++) direction[i] = (MonoPow){m.at[i].gen, m.at[i].exp / k};
   Line line = {.direction = mono_of(r, direction, m.n), .k = k, .is_sine = is_sine};
-  line.c = num_mul(num_int(2), t.c); /* with its conjugate */
+  line.c = num_mul(num_int(2), t.c); /* the term and its conjugate */
   return line;
 }
 
-/* Adds the lines of a polynomial in exponentials: pairs of conjugates, one of which is kept. */
+/* Adds the lines of a polynomial in exponentials; of each pair of conjugates the one with positive first exponent counts. */
 static void push_lines(Normal *n, Spectrum *s, Poly p, int is_sine) {
   for (uint32_t i = 0; i < p.n; i++) {
     const Mono *m = mono_at(n->ring, p.at[i].mono);
@@ -239,7 +240,7 @@ static Spectrum spectrum_of(Normal *n, Poly p) {
   for (uint32_t i = 0; i < p.n; i++) {
     int parity;
     Poly one = term_in_exponentials(n, &s, p.at[i], &parity);
-    part[2 * i + (uint32_t)parity] = one; /* the other stays 0 */
+    part[2 * i + (uint32_t)parity] = one; /* the part of the other parity stays 0 */
   }
   Poly *even = ARENA_ARRAY(n->arena, Poly, p.n + 1), *odd = ARENA_ARRAY(n->arena, Poly, p.n + 1);
   for (uint32_t i = 0; i < p.n; i++) {

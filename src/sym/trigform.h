@@ -1,4 +1,4 @@
-/* The shortest way to write a polynomial in sines and cosines. */
+/* Shortest form of a polynomial in sines and cosines. */
 #ifndef LAGC_TRIGFORM_H
 #define LAGC_TRIGFORM_H
 
@@ -10,17 +10,17 @@ typedef struct {
 } TrigTerm;
 
 typedef struct {
-  TrigTerm *at; /* their sum */
+  TrigTerm *at; /* the form is the sum of c*e */
   uint32_t n;
 } TrigForm;
 
-/* The form of p (generators of kind GEN_SIN and GEN_COS only) with the fewest terms among
+/* Form of p (generators of kind GEN_SIN and GEN_COS only, p not 0) with the fewest terms among
  *   - powers of sines and cosines of the base angles, with sin^2 u or cos^2 u eliminated angle by
  *     angle, after common factors sin u and cos u are taken out;
  *   - sums of sines and cosines of combined angles (products to sums), where the multiples of one
  *     combined angle may be written as powers of its sine and cosine: cos u cos v + sin u sin v is
  *     cos(u - v), and 1/2 - cos(2u - 2v)/2 is sin(u - v)^2.
- * On a tie the first wins. p is not 0. */
+ * On a tie the first wins. */
 TrigForm trig_shortest(Normal *n, Poly p);
 
 #endif

@@ -1,4 +1,4 @@
-/* Sets of nodes, maps over them, substitution, counting. */
+/* Traversals of the expression graph: maps over nodes, reachable nodes, substitution, operation counts. */
 #include <stdlib.h>
 
 #include "base/strbuf.h"
@@ -14,7 +14,7 @@ void expr_map_clear(ExprMap *m) {
   m->n = 0;
 }
 
-/* The place of e, or the free one where it belongs (open addressing; Knuth's multiplicative hash). */
+/* Slot of e, or the free slot for it (open addressing; Knuth's multiplicative hash). */
 static uint32_t map_place(const ExprMap *m, Expr e) {
   uint32_t i = (e * 2654435769u) >> m->shift;
   while (m->at[i].stamp == m->epoch && m->at[i].key != e) i = (i + 1) & (m->cap - 1);
@@ -50,7 +50,7 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Sorts n numbers below 2^33: by comparison where they are few, otherwise by digits of eleven bits. */
+/* Sorts n node ids: by comparison below 512, otherwise a radix sort with digits of eleven bits. */
 static void sort_ids(ExprGraph *g, Expr *at, uint32_t n) {
   enum { FEW = 512, BITS = 11, DIGITS = 1 << BITS };
   if (n < 2) return;
@@ -75,7 +75,7 @@ static void sort_ids(ExprGraph *g, Expr *at, uint32_t n) {
   }
 }
 
-/* leaves: nodes not to look below; shallow: nor below definitions. */
+/* Nodes reachable from the roots, ascending; not below nodes of `leaves` (or NULL) nor, if shallow, below definitions. */
 static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, int shallow) {
   VEC(Expr) found = {g->found, 0, g->found_cap};
   expr_map_clear(&g->seen);
@@ -132,8 +132,7 @@ void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s,
 
 /* --- rewriting bottom-up --- */
 
-/* The arguments of e as the map has them (numbers and untouched nodes stand for themselves).
- * Returns 1 when any differs. */
+/* Arguments of e mapped through m; an argument not in m stays. Returns 1 when one changed. */
 static int mapped_args(const ExprGraph *g, const ExprMap *m, Expr e, Expr *args) {
   int changed = 0;
   for (uint32_t k = 0; k < expr_nargs(g, e); k++) {
@@ -144,7 +143,7 @@ static int mapped_args(const ExprGraph *g, const ExprMap *m, Expr e, Expr *args)
   return changed;
 }
 
-/* Rewrites the roots with the nodes that are in the map replaced; the map grows by what changed. */
+/* out[i] = roots[i] with the nodes in the map replaced; rewritten nodes are added to the map. */
 static void rewrite(ExprGraph *g, const Expr *roots, uint32_t n, ExprMap *m, const char *suffix, Expr *out) {
   ExprList l = expr_topo(g, roots, n);
   for (uint32_t i = 0; i < l.n; i++) {
@@ -246,7 +245,7 @@ double expr_written_size(ExprGraph *g, Expr e, uint32_t *distinct) {
   return size[found.n - 1];
 }
 
-/* Multiplications of b^e: by squaring for integers, one square root for halves. */
+/* Operations of b^e: repeated squaring for integers, one square root for halves, 20 for other powers. */
 static uint32_t power_ops(Num e) {
   if (!num_is_exact(e)) return 20;
   int64_t n = e.num < 0 ? -e.num : e.num;
