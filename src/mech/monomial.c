@@ -34,7 +34,7 @@ static void project_out(const Features *f, uint32_t n, long double *v, long doub
     }
 }
 
-/* Adds a column, unless the ones before determine it. */
+/* Adds a column, unless it depends on those before. */
 static void add_column(Features *f, Expr feature, const long double *values) {
   long double v[FEATURE_STATES], c[COLUMNS] = {0};
   uint32_t n = f->n;
@@ -84,7 +84,7 @@ int small_rational(long double x, Num *out) {
   return 0;
 }
 
-/* Integer exponents of the columns after the first; 0 when they are not integers. */
+/* Integer exponents of the columns after the first; 0: they are no integers. */
 static int exponents(const Features *f, const long double *values, int *e) {
   long double v[FEATURE_STATES], c[COLUMNS] = {0};
   for (int i = 0; i < FEATURE_STATES; i++) {

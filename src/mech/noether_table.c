@@ -106,7 +106,7 @@ Table table_powers(Arena *a, const SolutionSpace *s, uint32_t shown) {
   return t;
 }
 
-/* A = S + N, S^2 = rate2, where m = A^2 - rate2 is nilpotent: A = sqrt(rate2) (1 + m/rate2)^(1/2), S the first term of its series, N the next two. */
+/* A = S + N with S^2 = rate2, where m = A^2 - rate2 has m^3 = 0: S = A (1 + m/rate2)^(-1/2), by its series. */
 typedef struct {
   uint32_t n;
   long double *S, *N;
