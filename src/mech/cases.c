@@ -28,7 +28,7 @@ typedef struct {
 static int is_nonneg(ExprSign s) { return s == SIGN_POSITIVE || s == SIGN_NONNEGATIVE; }
 static int is_nonpos(ExprSign s) { return s == SIGN_NEGATIVE || s == SIGN_NONPOSITIVE; }
 
-/* Value of a comparison, min or max of a and b from the sign of b - a; 0: not decided. */
+/* Value of a comparison, min or max of a and b from the sign of b - a; 0: undecided. */
 static Expr decided(ExprGraph *g, ExprOp op, Expr a, Expr b) {
   Expr gap = expr_sub(g, b, a), yes = expr_int(g, 1), no = expr_int(g, 0);
   ExprSign s = expr_sign(g, gap);

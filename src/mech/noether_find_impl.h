@@ -25,7 +25,7 @@ typedef struct {
   FoundSymmetries *out;
 } Search;
 
-/* Tables of a family, one a choice of parameter values; those at CHOICE_MOVED and above are made when needed (moved). changes: how rows were
+/* The tables of a family, one a choice of parameter values; those at CHOICE_MOVED and above are made when needed (moved). changes: how rows were
  * shortened. */
 typedef struct {
   const Family *family;

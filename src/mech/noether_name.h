@@ -15,7 +15,7 @@ typedef struct {
   Generator by;
 } GeneratorRow;
 
-/* Coordinates that generators move: the model's, or the sums of them that L is written with, where these have names. */
+/* The coordinates that generators move: the model's, or the sums of them that L is written with, where these have names. */
 typedef struct {
   ExprGraph *g;
   Arena *arena;      /* for texts */

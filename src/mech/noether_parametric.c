@@ -102,7 +102,7 @@ static void fit(Fit *f) {
     if (whole_row(f, kernel.at + (size_t)r * unknowns, whole)) add_row(f, whole);
 }
 
-/* A fit for rows free of parameters: mu = 1. */
+/* Begins with mu = 1, for rows free of parameters. */
 static Fit begin(Arena *a, const Choices *choices, const Table *at, uint32_t count) {
   Fit f = {.arena = a, .choices = choices, .at = at, .count = count, .width = at[0].blocks * at[0].shown, .nmu = 1};
   f.column = ARENA_ARRAY(a, uint32_t, f.width + 1);

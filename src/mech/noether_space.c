@@ -1,4 +1,4 @@
-/* Solution space of B0 u + B1 u' = 0: the space of all coefficients, cut down by equations at random states until it contains u' with u. */
+/* Solution space of B0 u + B1 u' = 0: the space of all coefficients, restricted by equations at random states until it contains u' with u. */
 #include <math.h>
 
 #include "mech/noether_frame.h"
@@ -119,7 +119,7 @@ static long double *rates(RowSource *r, Arena *a, const DenseRows *space, int *s
   }
   dense_echelon(n, 2 * n, kernel.at, 1e-12L, pivot);
   for (uint32_t k = 0; k < n; k++) {
-    if (pivot[k] != k) *sure = 0; /* an x without a derivative: the space was not cut down far enough */
+    if (pivot[k] != k) *sure = 0; /* an x without a derivative: the space was not restricted far enough */
     for (uint32_t i = 0; i < n; i++) A[(size_t)i * n + k] = kernel.at[(size_t)k * 2 * n + n + i];
   }
   return A;
