@@ -27,6 +27,7 @@ typedef struct {
   const char *why_not;  /* reason for giving no brackets; or NULL */
 } Algebra;
 
+/* All brackets of the charges found; up to 48 charges. */
 Algebra brackets_find(Eqns *e, const FoundSymmetries *of);
 
 #endif

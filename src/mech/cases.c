@@ -288,6 +288,7 @@ static Expr without_number(ExprGraph *g, Expr u) {
   return expr_pairs(g, u, EX_SUM) == 1 ? expr_pair(g, u, EX_SUM, 0, &k) : u;
 }
 
+/* Cases of the first switch for which a symbol can be replaced; -1: there is none. */
 static int use_switches(Prover *p, const Claim *c) {
   ExprGraph *g = p->g;
   VEC(Expr) roots = {0};

@@ -158,7 +158,7 @@ int charges_judge(const Eqns *e, Name effect) {
   return good;
 }
 
-/* "; d(spin)/dt = ..." where it is not conserved. */
+/* Appends "; not conserved: d(spin)/dt = ...", if the charge is not conserved. */
 static void put_balance(const Eqns *e, const Charge *c, StrBuf *out) {
   if (c->proof.power_unknown) sb_puts(out, "; not conserved: L depends on an input whose rate of change is not known");
   else if (!expr_is_zero(e->g, c->proof.power)) sb_printf(out, "; %s: d(%s)/dt = %s", c->proof.over_time ? "without that integral" : "not conserved", c->name, text_of(e, c->proof.power));

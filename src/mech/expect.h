@@ -15,9 +15,9 @@ typedef struct {
   const char *label; /* "th1'' (form_a)" */
   Span span;
   ExpectVerdict verdict;
-  int digits; /* of agreement */
+  int digits; /* digits to which the sides agree */
   int states; /* number of states at which the sides were compared */
-  const char *missing; /* a side of a switch that no compared state was on; NULL: none, or no state was compared */
+  const char *missing; /* a side of a switch, or a proved difference, that no compared state showed; NULL: none, or no state was compared */
   const char *difference; /* if refuted: both values, and a state that has them */
   int inexact; /* a number in the sides or in the equations is not exact, which may be why it is not decided */
 } ExpectResult;
@@ -29,7 +29,7 @@ typedef VEC(ExpectResult) ExpectResults;
  * numbers and allow_numeric is set, a warning. */
 void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults *out);
 
-/* Appends a line for each, and a summary; nothing when there are none. */
+/* Appends a line for each expectation and a summary; nothing when there are none. */
 void expects_print(const ExpectResults *r, const Sources *sources, StrBuf *out);
 
 #endif

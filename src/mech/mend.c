@@ -92,6 +92,7 @@ int mend_holds(Mender *md, Spot *p, const long double *values) {
 
 /* --- spots --- */
 
+/* Site s with its value as written and its tape. */
 static void prepare_spot(Mender *md, Spot *p, const Site *s) {
   *p = (Spot){.site = s, .ast = ast_expr(md->m->ast, s->node), .at = -1};
   if (s->role == SITE_PART) return;

@@ -52,12 +52,14 @@ long double mend_residual(Mender *md, Spot *p, uint32_t state, long double value
 /* Whether the equation holds at the first FEW states with these values at the site. */
 int mend_holds(Mender *md, Spot *p, const long double *values);
 
+/* Records a guess: expression `with` at the site of p, with its cost and text. */
 void mend_guess(Mender *md, const Spot *p, Expr with, double cost, Span caret, const char *edit);
 
 /* Small differences in cost where the same factor fits in several places: a product goes before a name in it, a term or numerator before the whole
  * side. */
 double mend_product_cost(const Mender *md, const Spot *p);
 
+/* Texts of an expression, and of a site as written. */
 const char *mend_expr_text(const Mender *md, Expr e);
 const char *mend_spot_text(const Mender *md, const Spot *p);
 

@@ -113,12 +113,14 @@ static int is_motion(const Symbol *s, const void *data) {
   return s->kind == SYM_VEL || s->kind == SYM_ACC || s->kind == SYM_RATE;
 }
 
+/* Whether feature k may stand in a denominator. */
 static int may_divide(const Features *f, uint32_t k) {
   ExprOp op = expr_op(f->g, f->feature[k]);
   int velocity = op == EX_SYM && expr_sym_of(f->g, f->feature[k])->kind == SYM_VEL;
   return velocity || !expr_contains(f->g, f->feature[k], is_motion, NULL);
 }
 
+/* The monomial of these exponents; e = 0 where a feature may not stand in the denominator. */
 static Monomial build(const Features *f, const int *e, Num number) {
   Expr product[COLUMNS];
   Monomial m = {.size = num_is_one(num_abs(number)) ? 0 : 1};

@@ -289,6 +289,7 @@ static Expr contracted_gauge(Work *w, Expr dL) {
   return 0;
 }
 
+/* Verdict, F and remainder: delta L = 0, else an F from its coefficients, else from Cartan's formula. */
 static void judge(Work *w, Noether *to) {
   ExprGraph *g = w->g;
   Expr zero = expr_int(g, 0), dL = delta_lagrangian(w);

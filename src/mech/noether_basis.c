@@ -50,6 +50,7 @@ static uint32_t places(uint32_t n, const long double *x, const long double *y, u
   return count;
 }
 
+/* The change of a row that leaves the fewest distinct magnitudes; 0: none leaves fewer. */
 static int best_change(Arena *a, const Table *t, uint32_t row, TableChange *best) {
   uint32_t n = width_of(t), *at = ARENA_ARRAY(a, uint32_t, n + 1);
   long double *to = ARENA_ARRAY(a, long double, n + 1), *seen = ARENA_ARRAY(a, long double, n + 1), factor;

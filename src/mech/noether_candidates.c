@@ -68,6 +68,7 @@ static void try_kinds(Work *w) {
   }
 }
 
+/* A rotation of all bodies about an axis. */
 static void try_turn(Work *w, uint32_t axis) {
   Expr *xi = nothing(w);
   uint32_t bodies = 0;

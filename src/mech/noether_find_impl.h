@@ -46,6 +46,7 @@ int noether_recognise(Search *s, Tables *t, uint32_t row, Expr *c);
 /* Whether the tables at all choices, made here where missing, have one shape. */
 int noether_shapes_agree(Search *s, Tables *t);
 
+/* The table of a family at a choice of parameter values; no rows where the equations could not be solved reliably. */
 Table noether_table_at(Search *s, const Family *f, uint32_t choice);
 
 /* Lists the proved generators of a family, and counts the others. */

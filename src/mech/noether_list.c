@@ -5,6 +5,7 @@
 #include "mech/noether_whole.h"
 #include "sym/diff.h"
 
+/* The function of time that a block of a family stands for. */
 static Expr time_function(Search *s, const Family *f, uint32_t block) {
   ExprGraph *g = s->g;
   Expr t = expr_symbol(g, s->e->m->time)->node;

@@ -54,6 +54,7 @@ typedef struct {
   uint32_t tau, shift, linear; /* bit m: occurs in block m */
 } Parts;
 
+/* Time blocks in which tau, shifts and linear terms of a row occur. */
 static Parts parts_of(const Coordinates *e, const GeneratorRow *r) {
   Parts p = {0};
   for (uint32_t m = 0; m < r->blocks; m++) {

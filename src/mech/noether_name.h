@@ -38,6 +38,7 @@ int name_same_body(Name a, Name b);
 /* Gives a row the sign of textbooks: the energy is E, a turn goes from x to y, from y to z, from z to x. */
 void orient(const Coordinates *e, GeneratorRow *row);
 
+/* Sets kind, name, axis and of_all of a found symmetry from its row. */
 void name_symmetry(const Coordinates *e, const GeneratorRow *row, FoundSymmetry *to);
 
 /* Whether energy, three momenta, three angular momenta and three boosts are among them. */

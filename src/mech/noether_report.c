@@ -29,6 +29,7 @@ Indices noether_cyclic(const Eqns *e) {
   return all;
 }
 
+/* Whether a force or a constraint acts on coordinate i. */
 static int is_pushed(const Eqns *e, uint32_t i) {
   for (uint32_t k = 0; k < e->constraints.A.n; k++)
     if (e->constraints.A.at[k].col == i) return 1;

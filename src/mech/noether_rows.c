@@ -176,6 +176,7 @@ static void set_velocities(RowSource *r, const long double *v, long double facto
   for (uint32_t i = 0; i < r->of->n; i++) r->symbols[r->of->v[i]] = factor * v[i];
 }
 
+/* Evaluates the tape at the state in symbols; phi, rates, dL/dq and p refer to the frame. */
 static void evaluate(RowSource *r) {
   const Ansatz *s = r->of;
   eval_run(r->tape, r->symbols, r->out);

@@ -20,6 +20,7 @@ typedef struct {
 /* Whether numbers of rows and pivots agree. */
 int table_same_shape(const Table *a, const Table *b);
 
+/* Generators that are polynomials of t. */
 Table table_powers(Arena *a, const SolutionSpace *s, uint32_t shown);
 
 /* rate2 < 0: generators with frequency sqrt(-rate2); > 0: those that grow and fall with sqrt(rate2). */

@@ -26,6 +26,7 @@ struct SeenSides {
   uint32_t missing;
 };
 
+/* Whether e depends on any symbol but constants. */
 static int varies(ExprGraph *g, Expr e) {
   const unsigned fixed = 1u << SYM_CONST;
   return (expr_kinds(g, e) & ~fixed) != 0;

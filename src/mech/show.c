@@ -161,6 +161,7 @@ static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 /* Degrees of freedom of n first-order coordinates, two of which make one; drag may couple an odd number. */
 static const char *half(const Eqns *e, uint32_t n) { return arena_printf(e->m->arena, "%u%s", n / 2, n % 2 ? " 1/2" : ""); }
 
+/* ", singular at theta = 0", or nothing. */
 static const char *pole_text(const Eqns *e) {
   static const char *const at[] = {"-pi/2", "0", "pi/2", "pi"};
   MassPole pole;

@@ -18,6 +18,7 @@ void text_put(Text *t, const char *text, const char *in_latex);
 /* Model, scene and effects, on the first lines. */
 void text_title(Text *t);
 
+/* The block of momenta. */
 void text_momenta(Text *t);
 
 /* For each declared symmetry: F if there is one, the charge, and its balance if it is not conserved. */

@@ -6,6 +6,7 @@
 #include "mech/states.h"
 
 typedef struct StateErrors StateErrors;
+/* Compiles the equations with bounds on rounding; lives in the model's arena. */
 StateErrors *state_errors_new(const Eqns *e);
 
 /* Bounds errors[s] of all symbols at a state that states_complete accepted; infinite where the equations do not determine the symbol, or too many

@@ -318,6 +318,7 @@ static void gather_params(Search *s) {
 
 static int is_in_sides(const Search *s, SymId sym) { return expr_contains_sym(s->g, s->left, sym) || expr_contains_sym(s->g, s->right, sym); }
 
+/* Lists the symbols that states give values: coordinates, velocities, states, time, inputs, free parameters. */
 static void gather_free(Search *s) {
   enum { FEW_COORDINATES = 4 };
   const Model *m = s->m;

@@ -12,8 +12,8 @@ typedef struct {
 } Witness;
 
 /* Tries simple states, random ones, states from 1e-6 to 1e12 in size, whole numbers, and both sides of places where a comparison, `min`, `max`,
- * `abs` or `sign` switches. The sides differ if they do by 16 times the bound of all rounding, the state's included. quick: a few simple and
- * random states only. */
+ * `abs` or `sign` switches. The sides differ where the difference exceeds 16 times the bound of all rounding, the state's included. quick: a few
+ * simple and random states only. */
 Witness witness_find(const Eqns *e, const Expect *x, int quick);
 
 #endif
