@@ -1,3 +1,5 @@
+/* Fits each bracket to the charges at random states for every choice of parameter values, recognises the coefficients as expressions, and proves
+ * the combination against the symbolic bracket. */
 #include "mech/brackets.h"
 
 #include <math.h>
@@ -17,13 +19,13 @@ typedef struct {
   ExprGraph *g;
   Arena *scratch;
   const FoundSymmetries *of;
-  uint32_t n, r, pairs; /* coordinates, charges, pairs of charges */
+  uint32_t n, r, pairs; /* numbers of coordinates, charges, pairs of charges */
   const SymId *q, *v;   /* [n] */
-  EvalTape *tape;       /* [r] charges, [r*n] by q, [r*n] by v, [n*n] form, [n*n] dp/dq */
+  EvalTape *tape;       /* [r] charges, [r*n] dQ/dq, [r*n] dQ/dv, [n*n] M or omega, [n*n] dp/dq */
   uint32_t roots;
   Choices choices;
   const LinearForms *forms; /* or NULL */
-  int in_forms;         /* what follows is so, and stands for y: the numbers are small */
+  int in_forms;         /* charge, F, dLdq and p are written in y, in which numbers are small */
   Expr *charge, *F;     /* [r] */
   Expr *dLdq;           /* [n] */
   const Expr *p;        /* [n] */
@@ -35,7 +37,7 @@ static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
 
 /* --- in numbers --- */
 
-/* M, or omega of an L of first order, into a square; zero nodes elsewhere. */
+/* M, or omega of a first-order L, as a full square matrix of nodes. */
 static void form_roots(const Work *w, Expr *to) {
   const Entries *form = w->e->n ? &w->e->mass : &w->e->first.form;
   for (size_t k = 0; k < (size_t)w->n * w->n; k++) to[k] = expr_int(w->g, 0);
@@ -59,7 +61,7 @@ static void lay_out(Work *w) {
   w->tape = eval_tape(w->g, roots, w->roots);
 }
 
-/* x of m x = b for rows b of `rows`, [count*n], which become the x; m[n*n]. 0: m has no inverse. */
+/* Solves m x = b for each row b of `rows`, [count*n], in place; m[n*n]. 0: m has no inverse. */
 static int solve(Arena *a, uint32_t n, const long double *m, uint32_t count, long double *rows) {
   size_t w = (size_t)n + count;
   long double *both = ARENA_ARRAY(a, long double, n * w + 1), largest = 0;
@@ -76,7 +78,7 @@ static int solve(Arena *a, uint32_t n, const long double *m, uint32_t count, lon
   return 1;
 }
 
-/* The derivatives in phase space in place of those by q and v. */
+/* Replaces the derivatives by q and v with those in phase space. 0: M (or omega) has no inverse. */
 static int to_phase_space(const Work *w, long double *out) {
   size_t n = w->n, r = w->r;
   long double *by_q = out + r, *by_v = by_q + r * n, *form = by_v + r * n, *slope = form + n * n;
@@ -94,8 +96,8 @@ static long double largest(const long double *x, size_t n) {
   return most;
 }
 
-/* Brackets of a state, [pairs], from its derivatives in phase space, and in size[pairs] the largest products of derivatives so far, which
- * rounding is a part of. */
+/* Brackets [pairs] at a state from derivatives in phase space; size[pairs] keeps the largest products of derivatives so far, the measure for
+ * rounding. */
 static void all_brackets(const Work *w, const long double *out, long double *to, long double *size) {
   size_t n = w->n;
   const long double *by_q = out + w->r, *by_p = by_q + w->r * n;
@@ -110,9 +112,9 @@ static void all_brackets(const Work *w, const long double *out, long double *to,
 
 typedef struct {
   uint32_t states;
-  long double *charges;  /* [states*(r + 1)] at random states, with a 1 behind them; divided by scale */
+  long double *charges;  /* [states*(r + 1)] charges and a 1 behind them, divided by scale */
   long double *brackets; /* [states*pairs] */
-  long double *scale;    /* [r + 1] the largest size of each charge */
+  long double *scale;    /* [r + 1] largest magnitude of each charge */
   long double *size;     /* [pairs] see all_brackets */
 } Sample;
 
@@ -122,7 +124,7 @@ static Sample sample_new(const Work *w, uint32_t states) {
                   ARENA_ARRAY(w->scratch, long double, m), ARENA_ARRAY(w->scratch, long double, w->pairs + 1)};
 }
 
-/* Charges that whole numbers have made large, and others that are small, count alike. */
+/* Scales each charge to largest magnitude 1. */
 static void scale_charges(const Work *w, Sample *x) {
   size_t m = w->r + 1;
   for (size_t k = 0; k < m; k++) {
@@ -132,7 +134,7 @@ static void scale_charges(const Work *w, Sample *x) {
   }
 }
 
-/* 0: there are not so many states. */
+/* Evaluates charges and brackets at random states. 0: too few states have finite values. */
 static int take_sample(const Work *w, uint32_t choice, Sample *x) {
   uint32_t count = expr_symbol_count(w->g) + 1, done = 0;
   long double *symbols = ARENA_ARRAY(w->scratch, long double, count), *out = ARENA_ARRAY(w->scratch, long double, w->roots + 1);
@@ -152,8 +154,7 @@ static int take_sample(const Work *w, uint32_t choice, Sample *x) {
   return done == x->states;
 }
 
-/* Coefficients c[r + 1] of one bracket, as the first states gave them, are looked at with the others. They become NAN where it is no
- * combination. */
+/* Checks coefficients c[r + 1] of one bracket, which the first states gave, at the others. NAN: the bracket is no combination of charges. */
 static void judge(const Work *w, const Sample *x, size_t pair, long double *c) {
   uint32_t m = w->r + 1;
   long double worst = 0;
@@ -168,7 +169,7 @@ static void judge(const Work *w, const Sample *x, size_t pair, long double *c) {
   }
 }
 
-/* Coefficients of all brackets, [pairs*(r + 1)]; those of a bracket that is no combination are NAN. 0: they cannot be had. */
+/* Coefficients of all brackets, [pairs*(r + 1)]; NAN where a bracket is no combination. 0: they cannot be had. */
 static int fit(const Work *w, uint32_t choice, long double *c) {
   uint32_t m = w->r + 1;
   Sample x = sample_new(w, m + SPARE_STATES);
@@ -182,7 +183,7 @@ static int fit(const Work *w, uint32_t choice, long double *c) {
 
 /* --- symbolically --- */
 
-/* Charges and what L gives, in the sums that L is written with where all generators are known in these. */
+/* Charges, F, dL/dq and p for symbolic brackets; in y where all generators are known in y. */
 static void take_symbols(Work *w) {
   ExprGraph *g = w->g;
   Expr *all = ARENA_ARRAY(w->scratch, Expr, 2 * (size_t)w->r + w->n + 1);
@@ -198,7 +199,7 @@ static void take_symbols(Work *w) {
   if (w->in_forms) expr_cut(g, w->charge, 2 * w->r, w->forms->node.at, w->forms->is.at, w->forms->node.n, w->charge);
 }
 
-/* dA/dp_i and dA/dq_i at fixed p. */
+/* dA/dp_i and dA/dq_i at fixed p, A the charge number a. */
 static void slopes(const Work *w, uint32_t a, Expr *by_p, Expr *by_q) {
   ExprGraph *g = w->g;
   const Generator *by = &at(w, a)->by;
@@ -217,7 +218,7 @@ static void slopes(const Work *w, uint32_t a, Expr *by_p, Expr *by_q) {
 
 static int is_energy(const Work *w, uint32_t a) { return at(w, a)->kind == SYMMETRY_ENERGY && expr_is_zero(w->g, at(w, a)->is.power); }
 
-/* The bracket with the energy of an L without t is minus the change in time that Q has by itself: that Q is conserved is proved already. */
+/* {Q, E} of a conserved E is minus the explicit time derivative of Q, as Q is already proved conserved. */
 static Expr with_energy(const Work *w, uint32_t a) { return expr_neg(w->g, expr_diff(w->g, w->charge[a], w->e->m->time)); }
 
 static Expr symbolic(const Work *w, uint32_t a, uint32_t b) {
@@ -227,7 +228,7 @@ static Expr symbolic(const Work *w, uint32_t a, uint32_t b) {
   if (is_energy(w, a) && expr_is_zero(g, at(w, b)->is.power)) return expr_neg(g, with_energy(w, b));
   slopes(w, a, ap, aq);
   slopes(w, b, bp, bq);
-  if (!w->e->n) { /* minus what A does to B */
+  if (!w->e->n) { /* minus the change of B under A */
     expr_gradient(g, w->charge[b], w->q, w->n, bq);
     for (uint32_t i = 0; i < w->n; i++) sum = expr_sub(g, sum, expr_mul(g, bq[i], ap[i]));
     return sum;
@@ -241,15 +242,15 @@ static Expr symbolic(const Work *w, uint32_t a, uint32_t b) {
 
 /* --- the brackets --- */
 
-/* The nearest whole number where there are no parameters: a guess, which a proof must follow. */
+/* The nearest whole number, where there are no parameters: a guess that needs a proof. */
 static Expr nearest(const Work *w, const long double *x) {
   long double whole = roundl(x[CHOICE_FIRST]);
   if (w->choices.n || !(fabsl(x[CHOICE_FIRST] - whole) < 0.1L) || !(fabsl(whole) < 9e18L)) return 0;
   return expr_num(w->g, num_int((int64_t)whole));
 }
 
-/* A coefficient, from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges themselves;
- * a guess, if `bold`. 0: it is none of these. */
+/* A coefficient from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges; if `bold`, a guess.
+ * 0: not recognised. */
 static Expr recognise(const Work *w, long double *const *fits, size_t place, int bold) {
   long double *x = ARENA_ARRAY(w->scratch, long double, 2 + w->choices.n);
   int zero = 1;
@@ -273,7 +274,7 @@ static Expr recognise(const Work *w, long double *const *fits, size_t place, int
 
 static int is_constant(const Work *w, Expr x) { return (expr_kinds(w->g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
 
-/* What is left of the bracket without its combination of charges is a constant: by its short form, or as recognised and then proved. */
+/* The constant of a bracket, its difference from the combination of charges: by simplification, or recognised and then proved. */
 static void settle(const Work *w, Bracket *k, long double *const *fits, size_t place, int bold) {
   ExprGraph *g = w->g;
   Expr sum = expr_int(g, 0), left;
@@ -287,14 +288,14 @@ static void settle(const Work *w, Bracket *k, long double *const *fits, size_t p
   else k->c = NULL;
 }
 
-/* Whether the fit has failed at every choice: one that rounding has spoilt proves nothing. */
+/* Whether the fit has failed at every choice; failures at some are rounding and prove nothing. */
 static int is_outside(const Work *w, long double *const *fits, size_t place) {
   for (uint32_t k = 0; k < 2 + w->choices.n; k++)
     if (!isnan(fits[k][place])) return 0;
   return 1;
 }
 
-/* With its coefficients; c NULL: one is not recognised. */
+/* The bracket with its coefficients; c NULL: one is not recognised. */
 static Bracket combined(const Work *w, Bracket k, long double *const *fits, size_t place, int bold) {
   Expr *c = ARENA_ARRAY(w->e->m->arena, Expr, w->r + 1);
   k.c = c;
@@ -314,7 +315,7 @@ static Bracket bracket_of(const Work *w, uint32_t a, uint32_t b, long double *co
   k.value = simplify(w->g, k.value);
   if (!expr_is_zero(w->g, k.value)) return k;
   Expr *c = ARENA_ARRAY(w->e->m->arena, Expr, w->r + 1);
-  for (uint32_t i = 0; i < w->r; i++) c[i] = k.value; /* rounding has spoilt the fit of what is 0 */
+  for (uint32_t i = 0; i < w->r; i++) c[i] = k.value; /* all 0: rounding spoilt the fit */
   k.c = c;
   k.constant = k.value;
   k.proved = 1;
@@ -327,7 +328,7 @@ static Bracket bracket(const Work *w, uint32_t a, uint32_t b, long double *const
   return k;
 }
 
-/* A bracket that is 0. */
+/* Whether a bracket is 0. */
 static int is_null(const Work *w, const Bracket *k) {
   for (uint32_t i = 0; k->c && i < w->r; i++)
     if (!expr_is_zero(w->g, k->c[i])) return 0;

@@ -1,3 +1,5 @@
+/* Each case is a substitution in the claim and in the equations of motion, judged by the one prover (mend_verdict). Depth is at most CASES_DEEP,
+ * the number of proofs PROOFS_MOST. */
 #include "mech/cases.h"
 
 #include "mech/mend.h"
@@ -11,22 +13,22 @@ typedef struct {
   const Model *m;
   ExprGraph *g;
   const CaseSymbols *symbols;
-  int proofs; /* left */
+  int proofs; /* number still allowed */
 } Prover;
 
 typedef struct {
   const Eqns *e;
-  Expr gap, domain; /* left less right; 0: everywhere */
+  Expr gap, domain; /* left minus right; domain 0: everywhere */
   uint32_t depth;
-  int solved; /* the sides know of what the equations of motion give */
+  int solved; /* the sides contain accelerations or multipliers */
 } Claim;
 
-/* --- what is known of signs --- */
+/* --- signs --- */
 
 static int is_nonneg(ExprSign s) { return s == SIGN_POSITIVE || s == SIGN_NONNEGATIVE; }
 static int is_nonpos(ExprSign s) { return s == SIGN_NEGATIVE || s == SIGN_NONPOSITIVE; }
 
-/* A comparison or a choice between a and b by the sign of b - a; 0 where that does not decide. */
+/* Value of a comparison, min or max of a and b from the sign of b - a; 0: undecided. */
 static Expr decided(ExprGraph *g, ExprOp op, Expr a, Expr b) {
   Expr gap = expr_sub(g, b, a), yes = expr_int(g, 1), no = expr_int(g, 0);
   ExprSign s = expr_sign(g, gap);
@@ -42,7 +44,7 @@ static Expr decided(ExprGraph *g, ExprOp op, Expr a, Expr b) {
   }
 }
 
-/* e with all that the signs of its symbols decide put in. */
+/* e with comparisons, min and max replaced where the signs of symbols decide them. */
 static Expr fold(ExprGraph *g, Expr e) {
   if (!e) return 0;
   ExprMap is = expr_map(expr_arena(g));
@@ -110,11 +112,11 @@ CaseSymbols cases_symbols(const Model *m) {
   return s;
 }
 
-/* --- one case more --- */
+/* --- one more case --- */
 
 static int prove(Prover *p, const Claim *c);
 
-/* The claim where symbol s is `is`. */
+/* Whether the claim holds with `is` in place of symbol s. */
 static int holds_with(Prover *p, const Claim *c, SymId s, Expr is) {
   ExprGraph *g = p->g;
   Expr *with = ARENA_ARRAY(p->m->arena, Expr, expr_symbol_count(g) + 1);
@@ -136,7 +138,7 @@ static int is_free(const Symbol *s) {
   return s->kind != SYM_ACC && s->kind != SYM_MULTIPLIER && s->kind != SYM_RATE && s->kind != SYM_LOCAL && s->kind != SYM_CONST;
 }
 
-/* Whether u = A s + B, that is du/ds is free of s and u has no steps by s, whose derivative is 0. */
+/* Whether u = A s + B: du/ds is free of s, and u has no steps in s, whose derivative is 0. */
 static int linear_in(ExprGraph *g, Expr u, SymId s, Linear *out) {
   Expr zero = expr_int(g, 0);
   ExprList l = expr_topo(g, &u, 1);
@@ -155,13 +157,14 @@ static int has_sign(const ExprGraph *g, Expr A) {
   return sign == SIGN_POSITIVE || sign == SIGN_NEGATIVE || (expr_is_num(g, A) && !expr_is_zero(g, A));
 }
 
-/* The symbol where u is `value`. */
+/* The value of the symbol where u is `value`. */
 static Expr solution(ExprGraph *g, const Linear *l, Expr value) {
   Expr rest = expr_sub(g, value, l->B);
   return expr_div(g, rest, l->A);
 }
 
-/* A symbol in which u is linear, and what it is where u is `value`: one of unknown sign, or one whose sign the value still shows, or any. */
+/* A symbol in which u is linear, and its value where u is `value`. Preferred: a symbol of unknown sign, then one whose sign the value shows. 0:
+ * there is none. */
 static int solve(ExprGraph *g, Expr u, Expr value, SymId *s, Expr *is) {
   ExprList l = expr_topo(g, &u, 1);
   int best = 0;
@@ -179,7 +182,7 @@ static int solve(ExprGraph *g, Expr u, Expr value, SymId *s, Expr *is) {
   return best > 0;
 }
 
-/* The claim where u is a positive number, turned by `sign`, or 0; -1: no symbol gives u that value. */
+/* Whether the claim holds where u is `sign` times a positive number, or 0 for sign 0; -1: no symbol gives u that value. */
 static int holds_where(Prover *p, const Claim *c, Expr u, int sign) {
   ExprGraph *g = p->g;
   Expr value = expr_scale(g, num_int(sign), expr_symbol(g, p->symbols->positive[c->depth])->node), is;
@@ -189,7 +192,7 @@ static int holds_where(Prover *p, const Claim *c, Expr u, int sign) {
 
 /* --- facts of the domain --- */
 
-/* Takes one fact of the domain's conjunction, u > 0 or u >= 0; -1: there is none. */
+/* Uses one fact of the domain's conjunction, u > 0 or u >= 0; -1: there is none. */
 static int use_domain(Prover *p, const Claim *c) {
   ExprGraph *g = p->g;
   VEC(Expr) list = {0};
@@ -209,7 +212,7 @@ static int use_domain(Prover *p, const Claim *c) {
 
 /* --- constraints --- */
 
-/* c = A s^2 + B: both roots, or that of the declared sign; 1 or 0 as the claim holds with them, -1: there is no such s. */
+/* Solves c = A s^2 + B = 0 for s, both roots or that of the declared sign; 1 or 0 as the claim holds with them, -1: there is no such s. */
 static int use_square(Prover *p, const Claim *c, Expr constraint) {
   ExprGraph *g = p->g;
   ExprList l = expr_topo(g, &constraint, 1);
@@ -228,11 +231,11 @@ static int use_square(Prover *p, const Claim *c, Expr constraint) {
   return -1;
 }
 
-/* Positions obey the constraints: c = 0 gives one of its symbols. */
+/* Uses a constraint c = 0 on positions to replace one of its symbols; -1: none is left. */
 static int use_positions(Prover *p, const Claim *c) {
   const Constraints *k = &c->e->constraints;
   for (uint32_t i = 0; i < k->nholonomic; i++) {
-    if (prove_zero(p->g, k->c[i], NULL) == PROVED_ZERO) continue; /* a case before has seen to it */
+    if (prove_zero(p->g, k->c[i], NULL) == PROVED_ZERO) continue; /* used by a case before */
     int is = holds_where(p, c, k->c[i], 0);
     if (is < 0) is = use_square(p, c, k->c[i]);
     if (is >= 0) return is;
@@ -240,8 +243,8 @@ static int use_positions(Prover *p, const Claim *c) {
   return -1;
 }
 
-/* So do velocities: r = 0 gives each of its velocities where its factor is not 0. The claim must hold with each, for then it holds wherever one
- * factor is not 0. */
+/* Uses a constraint r = 0 on velocities, solved for each velocity whose factor is not 0. The claim must hold with each of them: then it holds
+ * wherever one factor is not 0. -1: none is left. */
 static int use_velocities(Prover *p, const Claim *c) {
   ExprGraph *g = p->g;
   const Constraints *k = &c->e->constraints;
@@ -265,7 +268,7 @@ static int use_velocities(Prover *p, const Claim *c) {
 
 /* --- switches --- */
 
-/* Both sides of u = 0 and the place itself, or of a factor of u. */
+/* Cases u > 0, u < 0 and u = 0, or those of a factor of u; -1: no symbol can be replaced. */
 static int use_sides(Prover *p, const Claim *c, Expr u) {
   ExprGraph *g = p->g;
   int above = expr_sign(g, u) == SIGN_UNKNOWN ? holds_where(p, c, u, 1) : -1;
@@ -279,12 +282,13 @@ static int use_sides(Prover *p, const Claim *c, Expr u) {
   return -1;
 }
 
-/* A product in a sum of one term: -2*x*y. */
+/* u without its number, where it is one term: x*y of -2*x*y. */
 static Expr without_number(ExprGraph *g, Expr u) {
   Num k;
   return expr_pairs(g, u, EX_SUM) == 1 ? expr_pair(g, u, EX_SUM, 0, &k) : u;
 }
 
+/* Cases of the first switch for which a symbol can be replaced; -1: there is none. */
 static int use_switches(Prover *p, const Claim *c) {
   ExprGraph *g = p->g;
   VEC(Expr) roots = {0};

@@ -1,8 +1,9 @@
+/* Generators of declared symmetries, their charges, and messages about symmetries that do not hold. */
 #include "mech/charges.h"
 
 #include "sym/simplify.h"
 
-/* --- what they are --- */
+/* --- generators and charges --- */
 
 static Generator generator_of(const Eqns *e, const Symmetry *y) {
   uint32_t n = noether_coordinates(e);
@@ -58,7 +59,7 @@ Expr charges_fill(const Eqns *e, Expr x) {
 
 /* --- verdicts --- */
 
-/* x without definitions that the user has not made: derivatives of lets, which have names only where all definitions are printed. */
+/* x with definitions expanded that are not the user's: derivatives of lets, whose names mean something only where all definitions are printed. */
 static Expr in_own_names(const Eqns *e, Expr x) {
   enum { DEEPEST = 64 };
   Arena *a = e->m->arena;
@@ -95,8 +96,7 @@ static const char *text_of(const Eqns *e, Expr x) {
 
 static int holds(const Charge *c) { return (c->proof.is == INVARIANT || c->proof.is == INVARIANT_UP_TO_F) && !c->proof.broken; }
 
-/* "`x` or `y`": the maps each of which would make the symmetry hold if it did the opposite; *one is one of them, NULL where there is
- * none, and *n their number. */
+/* "`x` or `y`": maps of which one with the opposite sign would make the symmetry hold; *one: one of them, or NULL; *n: their number. */
 static const char *wrong_signs(const Eqns *e, const Symmetry *y, const Move **one, uint32_t *n) {
   enum { MOST = 12 };
   Symmetry other = *y;
@@ -158,13 +158,13 @@ int charges_judge(const Eqns *e, Name effect) {
   return good;
 }
 
-/* "; d(spin)/dt = ..." where it is not conserved. */
+/* Appends "; not conserved: d(spin)/dt = ...", if the charge is not conserved. */
 static void put_balance(const Eqns *e, const Charge *c, StrBuf *out) {
   if (c->proof.power_unknown) sb_puts(out, "; not conserved: L depends on an input whose rate of change is not known");
   else if (!expr_is_zero(e->g, c->proof.power)) sb_printf(out, "; %s: d(%s)/dt = %s", c->proof.over_time ? "without that integral" : "not conserved", c->name, text_of(e, c->proof.power));
 }
 
-/* F, with the integral that the charge is printed without. */
+/* F, with the integral that the printed charge omits. */
 static const char *gauge_text(const Eqns *e, const Noether *is) {
   const char *F = text_of(e, is->F);
   if (!is->over_time) return F;

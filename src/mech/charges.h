@@ -1,4 +1,4 @@
-/* The charges of a model: its energy, and what its declared symmetries conserve; each with its balance. */
+/* The charges of a model: its energy and those of its declared symmetries, each with its balance. */
 #ifndef LAGC_CHARGES_H
 #define LAGC_CHARGES_H
 
@@ -6,22 +6,21 @@
 #include "sym/print.h"
 
 struct Charge {
-  const Symmetry *of; /* NULL: the energy, of translations of time */
+  const Symmetry *of; /* NULL: the energy, the charge of translations of time */
   Name name;
   Unit unit;
   Noether proof;
-  Expr value, scale; /* as they are computed */
+  Expr value, scale; /* in the form that programs compute */
 };
 
-/* Fills e->charges: the energy first, then the symmetries in order. Nothing where there is no Lagrangian. */
+/* Fills e->charges: the energy first, then those of declared symmetries in order. None without a Lagrangian. */
 void charges_derive(Eqns *e);
 
-/* x with the symbols of charges of symmetries replaced by what they are. */
+/* x with the symbols of declared charges replaced by their expressions. */
 Expr charges_fill(const Eqns *e, Expr x);
 
-/* Whether the symmetries that stand in `effect` (NULL: in none) hold; those that do not are reported in the model's diagnostics, with
- * what they leave of delta L and, where the sign of one map is wrong, that. To be called for the model without effects, or with that
- * effect and what it requires. */
+/* Whether the symmetries declared in `effect` (NULL: outside effects) hold. Others are reported in the model's diagnostics, with the remainder of
+ * delta L and, where one map has the wrong sign, that map. e: the model without effects, or with that effect and what it requires. */
 int charges_judge(const Eqns *e, Name effect);
 
 /* Appends a line for each symmetry of `effect` to what `lagc check` prints. */

@@ -1,9 +1,10 @@
+/* One pass over the nodes of x, arguments first, with a map of degrees. */
 #include "mech/degree.h"
 
-/* Degrees as they are kept: one more, so that what is not in the map has none yet. */
+/* Degree of x from the map, which keeps degree + 1: 0 is no entry. */
 static uint8_t kept(const ExprMap *degrees, Expr x) { return (uint8_t)(expr_map_get(degrees, x) - 1); }
 
-/* That of a sum whose terms have it. */
+/* Degree of a sum; NO_DEGREE if its terms differ. */
 static uint8_t of_sum(const ExprGraph *g, Expr x, const ExprMap *degrees) {
   Num k;
   uint8_t first = kept(degrees, expr_pair(g, x, EX_SUM, 0, &k));

@@ -1,5 +1,5 @@
 /* The degree of a formula in all velocities together, seen through lets: A/2*w.x^2 is of degree 2 where w.x is linear. By Euler's theorem a part
- * of degree d of the Lagrangian is (d - 1) times itself in the energy, so that the energy keeps the names of what L is written with. */
+ * of L of degree d adds (d - 1) times itself to the energy, which so keeps the names that L is written with. */
 #ifndef LAGC_DEGREE_H
 #define LAGC_DEGREE_H
 
@@ -7,7 +7,7 @@
 
 enum { NO_DEGREE = 255 };
 
-/* 0 to 254, or NO_DEGREE: its terms have different degrees, or it is no sum of products and whole powers of what has one. Makes no node. */
+/* 0 to 254; NO_DEGREE: terms of different degrees, or velocities outside sums, products and whole powers. Creates no node. */
 uint8_t velocity_degree(ExprGraph *g, Arena *arena, Expr x);
 
 #endif

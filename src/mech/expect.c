@@ -1,3 +1,5 @@
+/* Verdict on an expectation: a state at which the sides differ, else a proof for all states, else a proof by cases. With contacts, the equations
+ * are judged with all contacts open, and with each closed alone. */
 #include "mech/expect.h"
 
 #include "mech/cases.h"
@@ -21,7 +23,7 @@ static void report_refuted(const Eqns *e, const Expect *x, const char *label, co
   diag_help(m->diags, "%s", difference);
 }
 
-/* Whether all numbers are exact: otherwise what differs need not be different. */
+/* Whether all numbers are exact: otherwise a nonzero difference may be rounding. */
 static int numbers_are_exact(const Eqns *e, const Expect *x) {
   VEC(Expr) roots = {0};
   vec_push(e->m->arena, &roots, x->lhs);
@@ -49,7 +51,7 @@ static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r,
   diag_help(d, "%s", r->inexact ? arena_printf(e->m->arena, EXACT_NUMBERS "; %s", cure) : cure);
 }
 
-/* False is what differs at a state, whatever a proof says; without one, a proof decides. */
+/* A state at which the sides differ refutes, whatever a proof says; without one, a proof decides. */
 static ExpectResult judge(const Eqns *e, const CaseSymbols *symbols, const Expect *x) {
   enum { FEW_UNKNOWNS = 12 };
   ExpectResult r = {.label = label_of(e->m, x), .span = x->span};
@@ -63,7 +65,7 @@ static ExpectResult judge(const Eqns *e, const CaseSymbols *symbols, const Expec
   proved = !w.text && (proved || (w.states && cases_prove(e, symbols, x->lhs, x->rhs, x->domain)));
   if (proved) return r; /* EXPECT_PROVED */
   r.inexact = !numbers_are_exact(e, x);
-  int somewhere_false = v == PROVED_NONZERO && !e->constraints.n; /* constraints leave out states */
+  int somewhere_false = v == PROVED_NONZERO && !e->constraints.n; /* constraints exclude states */
   r.missing = !w.states ? NULL : somewhere_false ? "the difference that there is" : w.missing;
   r.verdict = w.text ? EXPECT_REFUTED : w.states && !r.missing ? EXPECT_AGREES : EXPECT_UNKNOWN;
   return r;
@@ -79,17 +81,17 @@ static void report_unknown(const Eqns *e, const Expect *x, const ExpectResult *r
   diag_help(e->m->diags, "write it where its roots and logarithms are defined, and in numbers of ordinary size%s", r->inexact ? "; " EXACT_NUMBERS : "");
 }
 
-/* --- parameters that follow from others --- */
+/* --- parameters that follow from others, and contacts --- */
 
 static int is_param(const Symbol *s, const void *data) {
   (void)data;
   return s->kind == SYM_PARAM;
 }
 
-/* What parameters stand for that are given by others: param I = m*l^2 follows m and l. Contacts are open, which leaves them no force, but
- * number `closed` (-1: none). NULL when there are none. */
+/* Substitutions for parameters that are given by others (param I = m*l^2 follows m and l), and for contacts: open and without force, but for
+ * number `closed` (-1: none). NULL: there are none. */
 static const Expr *definitions(const Model *m, int closed) {
-  Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 2 + m->expects.n); /* each expectation may declare one more */
+  Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 2 + m->expects.n); /* each expectation may declare one more symbol */
   int some = 0;
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Param *p = &m->params.at[i];
@@ -121,7 +123,7 @@ static Case *cases_of(const Eqns *e) {
   return cases;
 }
 
-/* The first case in which it is not proved, or the last. */
+/* Verdict in the first case in which the expectation is not proved, or in the last. */
 static ExpectResult judge_cases(const Case *cases, const CaseSymbols *symbols, const Expect *x, Expect *shown, const Eqns **e) {
   const Model *m = cases[0].e->m;
   ExpectResult r = {0};
@@ -142,7 +144,7 @@ static ExpectResult judge_cases(const Case *cases, const CaseSymbols *symbols, c
   return r;
 }
 
-/* Accelerations, multipliers, rates and the energy have real values where the equations of motion have. */
+/* Domain of an expectation: that of its text and, if it uses accelerations, multipliers, rates or the energy, that of the equations of motion. */
 static Expr domain_of(const Eqns *e, const Expect *x) {
   const unsigned solved = 1u << SYM_ACC | 1u << SYM_MULTIPLIER | 1u << SYM_RATE | 1u << SYM_LOCAL;
   Expr domain = x->domain ? charges_fill(e, x->domain) : 0, motion = e->m->domain;

@@ -1,5 +1,4 @@
-/* Guesses are made from numbers at a few states, and the cheapest that is proved exactly is the
- * edit reported. */
+/* Guesses at edits come from numbers at a few states; the cheapest guess that is proved exactly is the correction. */
 #include "mech/mend_impl.h"
 
 #include <math.h>
@@ -13,8 +12,8 @@ static Expr with_definitions(const Eqns *e, Expr x) {
   return e->definitions ? expr_substitute(e->g, x, e->definitions, expr_symbol_count(e->g) + 1, "") : x;
 }
 
-/* With constraints the unknowns are accelerations and multipliers, of M q'' - A^T lambda = f, A q'' = what that must be. Redundant constraints
- * leave that undecided, and so do contacts, whose rows are zero while they are open: these are left out. */
+/* Proves that the difference is 0 by solving M q'' - A^T lambda = f, A q'' = demand for accelerations and multipliers. Redundant constraints leave
+ * that undecided; so would contacts, whose rows are zero while they are open and are left out. */
 static Verdict proof(const Eqns *e, Expr difference) {
   const Model *m = e->m;
   const Constraints *c = &e->constraints;
@@ -93,6 +92,7 @@ int mend_holds(Mender *md, Spot *p, const long double *values) {
 
 /* --- spots --- */
 
+/* Site s with its value as written and its tape. */
 static void prepare_spot(Mender *md, Spot *p, const Site *s) {
   *p = (Spot){.site = s, .ast = ast_expr(md->m->ast, s->node), .at = -1};
   if (s->role == SITE_PART) return;
@@ -105,7 +105,7 @@ static void prepare_spot(Mender *md, Spot *p, const Site *s) {
   p->tape = eval_tape(md->g, sides, 2);
 }
 
-/* Where every place has its tape, the work grows with the square of the formula. */
+/* Whether the formula is too long: with a tape for every place, the work grows with its square. */
 static int is_too_large(const Mender *md) {
   enum { PLACES_MAX = 2000, STEPS_MAX = 1000000 };
   const Ast *ast = md->m->ast;
@@ -135,7 +135,7 @@ static void prepare_spots(Mender *md) {
 /* --- guesses --- */
 
 void mend_guess(Mender *md, const Spot *p, Expr with, double cost, Span caret, const char *edit) {
-  /* The right side is where formulas are; what is written on the left is usually what was meant. */
+  /* Mistakes are likelier on the right side, where formulas stand. */
   Guess one = {p, with, cost + (p->site->left ? 0.05L : 0), caret, edit};
   vec_push(md->arena, &md->guesses, one);
 }
@@ -171,7 +171,7 @@ static int guess_is_proved(Mender *md, const Guess *guess) {
   return mend_verdict(md->e, lhs, rhs) == PROVED_ZERO;
 }
 
-/* The cheapest guess that is proved; the list is empty afterwards. */
+/* The cheapest guess that is proved, or NULL; the list is empty afterwards. */
 static const Guess *best_guess(Mender *md) {
   enum { PROOFS = 12 };
   Guess *at = md->guesses.at;

@@ -1,4 +1,4 @@
-/* Mending a false expectation: the single edit that makes it provable, and where it is. */
+/* Correction of a false expectation: the single edit that makes it provable, and its place in the text. */
 #ifndef LAGC_MEND_H
 #define LAGC_MEND_H
 
@@ -7,15 +7,13 @@
 
 typedef struct {
   Span caret;
-  const char *edit; /* "`sin(th1)` should be `cos(th1)`"; NULL when no single edit was found: the caret is
-                       then where the least would have to change */
+  const char *edit; /* "`sin(th1)` should be `cos(th1)`"; NULL: no single edit was found, and the caret is at the likeliest place */
 } Mend;
 
-/* Needs an expectation that does not hold. The edit was proved to mend it. */
+/* Needs an expectation that does not hold. An edit that it returns is proved to correct it. */
 Mend mend_find(const Eqns *e, const Expect *x);
 
-/* Whether two sides are equal by the equations of motion (accelerations solved for, rates and the
- * energy put in). */
+/* Whether two sides are equal by the equations of motion: accelerations and multipliers solved for, rates and the energy substituted. */
 Verdict mend_verdict(const Eqns *e, Expr lhs, Expr rhs);
 
 #endif

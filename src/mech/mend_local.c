@@ -1,13 +1,13 @@
-/* Edits that change what is written at one place. Each is tried by its value at a few states. */
+/* Edits of what is written at one place; each is tried by its value at a few states. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "mech/mend_impl.h"
 
-/* What an edit costs: slips of the pen first, then what changes more. */
+/* Costs of edits: slips of the pen first, then larger changes. */
 #define COST_SLIP 1.0
 #define COST_POWER 1.2
-#define COST_EXTRA 1.5  /* something that should not be there */
+#define COST_EXTRA 1.5  /* a superfluous term, factor or divisor */
 #define COST_INVERSE 1.6
 #define COST_FUNCTION 1.7
 #define COST_NAME 1.8
@@ -44,8 +44,8 @@ static void try_sign(Mender *md, Spot *p) {
   const char *how = !second ? "should have the opposite sign" : up->kind == AST_SUB ? "should be added, not subtracted" : "should be subtracted, not added";
   Expr with = expr_neg(md->g, p->value);
   double cost = COST_SLIP;
-  if (!second) cost += begins_with_minus(md, s) ? -0.05 : 0.1; /* a sign that is written is wrong sooner than one that is not */
-  if (s->role == SITE_ARGUMENT && cost > COST_SLIP) cost += 0.2; /* -sin(x) sooner than sin(-x) */
+  if (!second) cost += begins_with_minus(md, s) ? -0.05 : 0.1; /* a written sign is the likelier mistake */
+  if (s->role == SITE_ARGUMENT && cost > COST_SLIP) cost += 0.2; /* -sin(x) before sin(-x) */
   if (site_is_sum(md->m, s) && s->role != SITE_TERM) cost += 0.6;
   mend_guess(md, p, with, cost, s->with_op, arena_printf(md->arena, "`%s` %s", mend_spot_text(md, p), how));
 }
@@ -147,7 +147,7 @@ static const struct {
   const char *name;
   ExprOp op;
   Function *value;
-  int family; /* those that are taken for one another */
+  int family; /* functions often taken for one another */
 } functions[] = {
   {"sin", EX_SIN, sinl, 1}, {"cos", EX_COS, cosl, 1}, {"tan", EX_TAN, tanl, 1},
   {"sinh", EX_SINH, sinhl, 1}, {"cosh", EX_COSH, coshl, 1}, {"tanh", EX_TANH, tanhl, 1},
@@ -201,7 +201,7 @@ static void try_small_angle(Mender *md, Spot *p) {
 
 /* --- arguments of sines and cosines --- */
 
-/* Where one term of the argument can make up the difference, it is the one to change. */
+/* Guesses at a single term of the argument, where changing it makes up the difference. */
 static void guess_term_of(Mender *md, const Spot *argument, Expr with, double cost) {
   Expr lacking = expr_sub(md->g, with, argument->value);
   for (uint32_t i = 0; i < md->nspots; i++) {
@@ -234,7 +234,7 @@ static void try_combination(Mender *md, Spot *p, SymId q, SymId r, int a, int b)
   try_argument(md, p, with, v, COST_ARGUMENT + 0.02 * (abs(a) + abs(b)));
 }
 
-/* The coordinates of the expectation, the first few. */
+/* The coordinates in the expectation, at most `most`. Returns their number. */
 static uint32_t coordinates_used(const Mender *md, SymId *out, uint32_t most) {
   uint32_t n = 0;
   Expr both = expr_sub(md->g, md->x->lhs, md->x->rhs);
@@ -262,7 +262,7 @@ static void try_arguments(Mender *md, Spot *p) {
     }
 }
 
-/* --- what should not be there --- */
+/* --- superfluous terms and factors --- */
 
 static void try_extra_term(Mender *md, Spot *p) {
   static const long double zero[FEW] = {0};
@@ -293,7 +293,7 @@ static void try_inverse(Mender *md, Spot *p) {
 
 /* --- names --- */
 
-/* A symbol that may have been meant: of the same kind, or the same coordinate with more or fewer primes. */
+/* Whether s may have been meant: it is of the same kind, or the same coordinate with more or fewer primes. */
 static int may_be_meant(const Symbol *was, const Symbol *s) {
   if (s == was) return 0;
   int was_motion = was->kind == SYM_COORD || was->kind == SYM_VEL || was->kind == SYM_ACC;

@@ -1,4 +1,5 @@
-/* Edits found from the value that a place needs for the equation to hold. */
+/* Edits from the value that a place needs for the equation to hold: its difference from, or ratio to, the written value, recognised as a monomial,
+ * is the missing term or factor. */
 #include <math.h>
 
 #include "mech/mend_impl.h"
@@ -17,7 +18,7 @@ static long double next_guess(const long double *x, const long double *f) {
   return x[2] - f[2] * y0 * y1 * (f[0] - f[1]) / det;
 }
 
-/* NAN when the iteration does not settle. */
+/* The value at the place for which the equation holds at a state; NAN: the iteration does not converge. */
 static long double needed_value(Mender *md, Spot *p, uint32_t state, long double written) {
   enum { STEPS = 12 };
   long double step = 0.1L * fabsl(written) + 0.01L;
@@ -45,7 +46,7 @@ static int find_need(Mender *md, Spot *p, EvalTape *value, Need *need) {
     if (!isfinite(need->needed[i])) return 0;
     need->difference[i] = need->needed[i] - need->written[i];
     need->ratio[i] = need->needed[i] / need->written[i];
-    /* A difference that is rounding is none. */
+    /* the difference is rounding */
     if (fabsl(need->difference[i]) < 1e-12L * fabsl(need->written[i])) return 0;
   }
   return 1;
@@ -70,7 +71,7 @@ static int is_quantity(const Symbol *s) {
          s->kind == SYM_INPUT || s->kind == SYM_ACC || s->kind == SYM_RATE;
 }
 
-/* What stands alone on one side may not mend the other: any x'' = formula could become x'' = x''. */
+/* Whether e is a whole side: it may not correct the other, or any x'' = formula could become x'' = x''. */
 static int is_a_side(const Mender *md, Expr e) { return e == md->x->lhs || e == md->x->rhs; }
 
 static int contains_a_side(Mender *md, Expr e) {
@@ -101,7 +102,7 @@ static void pool_angles(Pool *pool, Mender *md, ExprList nodes) {
   }
 }
 
-/* Functions and sums of the model's expectations: a missing factor often stands elsewhere too. */
+/* Functions and sums in the model's expectations: a missing factor often stands elsewhere, too. */
 static void pool_compounds(Pool *pool, Mender *md, ExprList nodes) {
   for (uint32_t i = 0; i < nodes.n; i++) {
     ExprOp op = expr_op(md->g, nodes.at[i]);
@@ -110,7 +111,7 @@ static void pool_compounds(Pool *pool, Mender *md, ExprList nodes) {
   }
 }
 
-/* What a missing term or factor may be made of; simple things first. */
+/* Quantities that a missing term or factor may be made of; simple ones first. */
 static Features *gather_features(Mender *md) {
   const Model *m = md->m;
   VEC(Expr) own = {0}, all = {0};
@@ -142,12 +143,12 @@ static Features *gather_features(Mender *md) {
 
 /* --- guesses --- */
 
-/* A place that lacks a term: a whole sum, or something that stands alone. */
+/* Whether a place may lack a term: it is a whole sum, or no term of one. */
 static int may_lack_term(const Mender *md, const Site *s) {
   return s->role != SITE_PART && (site_is_sum(md->m, s) || s->role != SITE_TERM);
 }
 
-/* In x'' = formula it is the formula that lacks something. */
+/* Whether a place may lack a factor: in x'' = formula the formula does, not x''. */
 static int may_lack_factor(const Mender *md, const Spot *p) {
   SiteRole role = p->site->role;
   int alone = role == SITE_ROOT && p->site->left && expr_op(md->g, p->value) == EX_SYM;
@@ -161,7 +162,7 @@ static void guess_term(Mender *md, const Spot *p, Monomial missing) {
   mend_guess(md, p, with, cost, p->ast->span, edit);
 }
 
-/* A factor that takes away much of what is written, and puts other things there, is no edit. */
+/* Guesses a missing factor, unless it is long: one that cancels much of the text and puts other things there is no edit. */
 static void guess_factor(Mender *md, const Spot *p, Monomial missing) {
   enum { MOST = 12, MOST_MIXED = 5 };
   if (missing.size > (missing.mixed ? MOST_MIXED : MOST)) return;
@@ -203,13 +204,12 @@ void mend_guess_by_value(Mender *md) {
 
 /* --- the likeliest place --- */
 
-/* How many quantities a place's correction depends on: of its difference, its ratio and its needed
- * value, the one that depends on the fewest. */
+/* States at which one quantity in turn is changed, to count those that the correction of a place depends on. */
 typedef struct {
   SymId symbol[64];
   uint32_t nsymbols;
-  long double *base;       /* a state */
-  long double *moved[64];  /* the same with one symbol changed */
+  long double *base;       /* the state to start from */
+  long double *moved[64];  /* base with one symbol changed */
 } Probe;
 
 static int changes(long double a, long double b) { return fabsl(a - b) > 1e-9L * (fabsl(a) + fabsl(b)); }
@@ -237,7 +237,7 @@ static int prepare_probe(Mender *md, Probe *probe) {
   return 1;
 }
 
-/* The needed and the written value at a state that is put in the place of the mender's first. */
+/* Needed and written value at a state, which takes the place of the first one. */
 static int need_at(Mender *md, Spot *p, EvalTape *value, long double *state, long double *needed, long double *written) {
   md->state[0] = state;
   p->at = -1;

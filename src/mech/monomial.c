@@ -34,7 +34,7 @@ static void project_out(const Features *f, uint32_t n, long double *v, long doub
     }
 }
 
-/* Adds a column, unless the ones before determine it. */
+/* Adds a column, unless it depends on those before. */
 static void add_column(Features *f, Expr feature, const long double *values) {
   long double v[FEATURE_STATES], c[COLUMNS] = {0};
   uint32_t n = f->n;
@@ -84,7 +84,7 @@ int small_rational(long double x, Num *out) {
   return 0;
 }
 
-/* Integer exponents of the columns after the first; 0 when they are not integers. */
+/* Integer exponents of the columns after the first; 0: they are no integers. */
 static int exponents(const Features *f, const long double *values, int *e) {
   long double v[FEATURE_STATES], c[COLUMNS] = {0};
   for (int i = 0; i < FEATURE_STATES; i++) {
@@ -113,12 +113,14 @@ static int is_motion(const Symbol *s, const void *data) {
   return s->kind == SYM_VEL || s->kind == SYM_ACC || s->kind == SYM_RATE;
 }
 
+/* Whether feature k may stand in a denominator. */
 static int may_divide(const Features *f, uint32_t k) {
   ExprOp op = expr_op(f->g, f->feature[k]);
   int velocity = op == EX_SYM && expr_sym_of(f->g, f->feature[k])->kind == SYM_VEL;
   return velocity || !expr_contains(f->g, f->feature[k], is_motion, NULL);
 }
 
+/* The monomial of these exponents; e = 0 where a feature may not stand in the denominator. */
 static Monomial build(const Features *f, const int *e, Num number) {
   Expr product[COLUMNS];
   Monomial m = {.size = num_is_one(num_abs(number)) ? 0 : 1};

@@ -1,3 +1,5 @@
+/* Verdict on one generator: delta L term by term, a gauge function F for the rest, then the charge and its balance.
+ * Zero is proved where possible; with constraints it may be seen at random states on every factor of them. */
 #include "mech/noether.h"
 
 #include <math.h>
@@ -12,7 +14,7 @@
 #include "sym/prove.h"
 #include "sym/simplify.h"
 
-/* Past this many coordinates charges stay as they come, like the energy (mech/eqns.c). */
+/* Past this number of coordinates charges are not simplified, like the energy (mech/eqns.c). */
 enum { SHORTEN_MAX = 64 };
 
 typedef struct {
@@ -28,8 +30,8 @@ typedef struct {
   Expr tau;
   Expr *Dxi, Dtau;  /* total time derivatives */
   int by_value;
-  const LinearForms *forms; /* or NULL: proofs have no coordinates to go to */
-  Expr unreached;   /* a factor of a constraint whose zeros were not found, with which nothing is decided; 0: none */
+  const LinearForms *forms; /* or NULL: proofs use the model's own coordinates */
+  Expr unreached;   /* a factor of a constraint whose zeros no state reached: nothing is decided; 0: none */
 } Work;
 
 uint32_t noether_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
@@ -44,7 +46,7 @@ static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
 
 static Expr *no_seed(const Work *w) { return ARENA_ARRAY(w->m->arena, Expr, expr_symbol_count(w->g) + 1); }
 
-/* What the sum of a_i b_i is; a b that is 0 counts as zero. */
+/* Sum of a_i b_i. */
 static Expr dot(const Work *w, const Expr *a, const Expr *b, uint32_t n) {
   Expr *terms = ARENA_ARRAY(w->m->arena, Expr, n + 1);
   for (uint32_t i = 0; i < n; i++) terms[i] = expr_mul(w->g, a[i], b[i]);
@@ -101,7 +103,7 @@ static Expr readable(const Work *w, Expr x) {
 
 static Verdict is_zero(const Work *w, Expr x) { return forms_prove_zero(w->forms, w->g, x); }
 
-/* What the generator makes of x, to first order. */
+/* Change of x under the generator, to first order. */
 static Expr moved_by(const Work *w, Expr x) {
   Expr *seed = no_seed(w);
   for (uint32_t i = 0; i < w->n; i++) {
@@ -125,7 +127,7 @@ static Expr at_rest(const Work *w, Expr x) {
   return expr_replace(w->g, x, w->v, zero, w->n);
 }
 
-/* delta T + T D tau of T = q' M q'/2, by M xi. */
+/* delta T = sum_i q_i' D(M xi)_i - T D tau of T = q' M q'/2. */
 static Expr delta_kinetic(const Work *w, Expr T) {
   Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) terms[i] = expr_mul(w->g, node(w, w->v[i]), total(w, w->lowered[i]));
@@ -133,8 +135,8 @@ static Expr delta_kinetic(const Work *w, Expr T) {
   return shorten(w, expr_add_n(w->g, terms, w->n + 1));
 }
 
-/* delta L without those of its terms that are invariant by themselves: the pairs of N bodies are judged one by one. What is left of
- * each is in its short form. */
+/* delta L without the terms of L that are invariant by themselves: the pairs of N bodies are judged one by one. Each remainder is in its short
+ * form. */
 static Expr delta_lagrangian(const Work *w) {
   ExprGraph *g = w->g;
   Expr L = w->lowered ? at_rest(w, w->L) : w->L;
@@ -152,9 +154,9 @@ static Expr delta_lagrangian(const Work *w) {
 
 /* --- zero on the constraints --- */
 
-/* Whether x is not more than rounding at a state that obeys the constraints; -1: it has no value there. */
+/* 1: x is rounding at a state that obeys the constraints; 0: it is more; -1: it has no value there. */
 static int is_small(const Work *w, Expr x, const long double *symbols) {
-  const long double tiny = 1e-14L; /* states obey to 1e-16; what x is made of is of the size of 1 */
+  const long double tiny = 1e-14L; /* states obey to 1e-16; terms of x have size 1 */
   long double bound, value = prove_value(w->g, x, symbols, NULL, &bound), size = 0;
   if (!isfinite(value)) return -1;
   for (uint32_t i = 0; i < expr_pairs(w->g, x, EX_SUM); i++) {
@@ -165,8 +167,8 @@ static int is_small(const Work *w, Expr x, const long double *symbols) {
   return fabsl(value) <= tiny * fmaxl(size, 1);
 }
 
-/* Coordinates times a power of two, with signs by the bits of the seed where none is known: where constraints hold in several parts, their
- * nearest states lie on several. */
+/* Scales coordinates by powers of two and flips unknown signs by the bits of the seed: where constraints have several branches, the nearest states
+ * then lie on several of them. */
 static void spread(const Work *w, uint32_t seed, long double *symbols) {
   static const int powers[] = {0, 2, -3, 4, 1, 7, -6, 3};
   for (uint32_t i = 0; i < w->n; i++) {
@@ -176,8 +178,8 @@ static void spread(const Work *w, uint32_t seed, long double *symbols) {
   }
 }
 
-/* Whether x is zero at random states that obey the constraints: near ones first, then from starts that are far apart. What is large
- * at a far one is judged by its own size. */
+/* Whether x is zero at random states that obey the constraints: near ones first, then from starts that are far apart. A large x at a far state is
+ * judged by the size of its terms. */
 static int vanishes_by_value(const Work *w, Expr x) {
   enum { STATES = 12, NEAR = 4 * STATES, ALL = NEAR + 64 };
   long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
@@ -195,7 +197,7 @@ static int vanishes_by_value(const Work *w, Expr x) {
   return seen >= STATES;
 }
 
-/* The same on each part of constraints that are products; one that no state was found on leaves it open. */
+/* The same on each factor of constraints that are products; a factor on which no state is found leaves the verdict open. */
 static int vanishes_on_parts(Work *w, Expr x) {
   enum { STATES = 6, SEEDS = 64 };
   long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
@@ -216,10 +218,10 @@ static int vanishes_on_parts(Work *w, Expr x) {
   return 1;
 }
 
-/* Whether a constraint holds all the time. */
+/* Whether some constraint always holds, which those of contacts do not. */
 static int is_constrained(const Work *w) { return w->e->constraints.n > w->m->contacts.n; }
 
-/* Whether x is zero where the constraints hold, contacts not among them. */
+/* Whether x is zero where the constraints hold, those of contacts excepted. */
 static Verdict zero_on_constraints(Work *w, Expr x) {
   Verdict v = is_zero(w, x);
   if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x) || !vanishes_on_parts(w, x)) return v;
@@ -229,7 +231,7 @@ static Verdict zero_on_constraints(Work *w, Expr x) {
 
 /* --- F --- */
 
-/* An F(q, t) whose total derivative takes off what it can of dL = a.q' + b + terms of higher order in q'. */
+/* An F(q, t) whose total derivative removes what it can from dL = a.q' + b + terms of higher order in q'. */
 static Expr find_gauge(const Work *w, Expr dL) {
   Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1), b = at_rest(w, dL);
   for (uint32_t i = 0; i < w->n; i++) {
@@ -242,7 +244,7 @@ static Expr find_gauge(const Work *w, Expr dL) {
   return expr_add(w->g, F, rest);
 }
 
-/* The conditions for dL to be a total derivative are those that its Euler-Lagrange expressions vanish. PROVED_NONZERO: one does not. */
+/* Whether dL is a total derivative: its Euler-Lagrange expressions vanish. PROVED_NONZERO: one does not. */
 static Verdict is_total_derivative(const Work *w, Expr dL) {
   Verdict all = PROVED_ZERO;
   for (uint32_t i = 0; i < w->n; i++) {
@@ -261,13 +263,13 @@ static Verdict is_total_derivative(const Work *w, Expr dL) {
   return all;
 }
 
-/* Whether x is a function of time alone, which is the derivative of its integral, whatever that looks like. */
+/* Whether x depends on time alone: then it is the derivative of its integral, which need not have a closed form. */
 static int is_of_time(const Work *w, Expr x) {
   return !expr_is_zero(w->g, x) && !(expr_kinds(w->g, x) & ~(1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_PARAM | 1u << SYM_CONST));
 }
 
-/* By Cartan's formula the generator makes of theta dq + phi dt, the part of L of degree 1 and 0 in velocities, d(theta xi + phi tau), and what is left is small
- * or 0 where these terms are a gauge, whose primitive nobody has to find then. */
+/* A first F by Cartan's formula: theta.xi + phi tau, where theta dq + phi dt is the part of L of degree 1 and 0 in velocities. Where these terms
+ * are a gauge, the rest of delta L is small or 0, and their primitive need not be found. */
 static Expr contraction(const Work *w, int with_phi) {
   Expr *theta = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) theta[i] = at_rest(w, w->p[i]);
@@ -275,7 +277,7 @@ static Expr contraction(const Work *w, int with_phi) {
   return expr_add(w->g, F, expr_mul(w->g, phi, w->tau));
 }
 
-/* An F by way of that; 0: none is proved. */
+/* An F that begins with contraction(); 0: none is proved. */
 static Expr contracted_gauge(Work *w, Expr dL) {
   ExprGraph *g = w->g;
   for (int with_phi = 0; with_phi < 2; with_phi++) {
@@ -287,6 +289,7 @@ static Expr contracted_gauge(Work *w, Expr dL) {
   return 0;
 }
 
+/* Verdict, F and remainder: delta L = 0, else an F from its coefficients, else from Cartan's formula. */
 static void judge(Work *w, Noether *to) {
   ExprGraph *g = w->g;
   Expr zero = expr_int(g, 0), dL = delta_lagrangian(w);
@@ -334,9 +337,9 @@ static Expr charge_of(const Work *w, Expr F, Expr energy) {
   return expr_add(g, front, minus_et);
 }
 
-/* --- in the sums that L is written with --- */
+/* --- in the coordinates y of mech/noether_forms.h --- */
 
-/* In coordinates y: they go by the symbols of q. */
+/* The work in coordinates y, written with the symbols of q. */
 static Work begin_in_forms(const Work *w, const Expr *eta) {
   Work y = *w;
   y.L = w->forms->L;
@@ -349,7 +352,7 @@ static Work begin_in_forms(const Work *w, const Expr *eta) {
   return y;
 }
 
-/* The energy, its kinetic part in y', its potential as it was written: see mech/eqns.c. */
+/* The energy: kinetic part from y', potential as it was written (see mech/eqns.c). */
 static Expr energy_in_forms(const Work *w, const Work *y) {
   ExprGraph *g = w->g;
   Expr *v = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
@@ -359,7 +362,7 @@ static Expr energy_in_forms(const Work *w, const Work *y) {
   return expr_sub(g, kinetic, at_rest(w, w->L));
 }
 
-/* Verdict and charge by eta. 0: nothing is proved so. */
+/* Verdict and charge from eta, in y. 0: not proved in this way. */
 static int judge_in_forms(Work *w, const Expr *eta, Noether *to) {
   if (!eta || !w->forms || w->e->constraints.n) return 0;
   Work y = begin_in_forms(w, eta);
@@ -371,7 +374,7 @@ static int judge_in_forms(Work *w, const Expr *eta, Noether *to) {
   return 1;
 }
 
-/* The contact whose constraint it is, or NULL. */
+/* The contact that has this constraint, or NULL. */
 static const Contact *contact_of(const Model *m, const Constraint *k) {
   for (uint32_t i = 0; i < m->contacts.n; i++)
     if (&m->constraints.at[m->contacts.at[i].constraint] == k) return &m->contacts.at[i];
@@ -380,7 +383,7 @@ static const Contact *contact_of(const Model *m, const Constraint *k) {
 
 int noether_is_contact(const Model *m, const Constraint *k) { return contact_of(m, k) != NULL; }
 
-/* x of a contact's constraint as it is while that is closed; other x stay. */
+/* x with contact c closed; unchanged where c is NULL. */
 static Expr while_closed(const Work *w, const Contact *c, Expr x) {
   Expr one = expr_int(w->g, 1);
   return c ? expr_replace(w->g, x, &c->closed, &one, 1) : x;
@@ -399,8 +402,8 @@ static Expr scale_of(const Work *w, Expr F) {
   return expr_add_n(g, terms, w->n + 2);
 }
 
-/* lambda^T (A xi + b tau), of contacts while they are closed: of a holonomic constraint what the generator makes of c, of one on velocities r = A q' + b what it
- * makes of r when displacements stand for velocities. */
+/* lambda^T (A xi + b tau), contacts closed. For a holonomic constraint: the change of c under the generator; for r = A q' + b: r with
+ * displacements in place of velocities. */
 static Expr power_of_constraints(Work *w, Noether *to) {
   ExprGraph *g = w->g;
   const Constraints *k = &w->e->constraints;
@@ -433,14 +436,14 @@ static Expr power_of_constraints(Work *w, Noether *to) {
 
 static int is_other_state(const Eqns *e, uint32_t i) { return !e->m->states.at[i].coordinate; }
 
-/* Whether it is not the user's, but says whether a contact is closed. */
+/* Whether an input is no user's input, but the switch of a contact (open or closed). */
 static int is_switch(const Model *m, const Input *in) {
   for (uint32_t i = 0; i < m->contacts.n; i++)
     if (m->contacts.at[i].closed == in->sym) return 1;
   return 0;
 }
 
-/* tau dL/dt of what changes in L beside q and t: states with their flow, inputs with that of their formula. */
+/* tau dL/dt from everything in L besides q and t: states with their flow, inputs with the derivative of their formula. */
 static Expr power_of_change(const Work *w, Noether *to) {
   ExprGraph *g = w->g;
   const Model *m = w->m;
@@ -471,9 +474,9 @@ static Expr power_of_forces(const Work *w) {
   return dot(w, w->e->Q, along, w->n);
 }
 
-/* Whether the places where L jumps do not stay where they are. */
+/* Whether the generator moves the surfaces where L jumps. */
 static int moves_jumps(const Work *w) {
-  const long double still = 1e-7L; /* states are on such a place to 1e-19 of their size, slopes are known to 1e-6 */
+  const long double still = 1e-7L; /* states lie on a jump to 1e-19 of their size, slopes are known to 1e-6 */
   ExprJumps all = discontinuities_of(w->e, w->m->lagrangian);
   for (uint32_t i = 0; i < all.n; i++) {
     const ExprJump *jump = &all.at[i];
@@ -484,7 +487,7 @@ static int moves_jumps(const Work *w) {
   return 0;
 }
 
-/* The balance of the charge, and what constraints have to do with it. */
+/* Balance of the charge, and the part of the constraints in it. */
 static void put_power(Work *w, Noether *to, Expr remainder) {
   ExprGraph *g = w->g;
   to->by_constraints = power_of_constraints(w, to);

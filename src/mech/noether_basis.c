@@ -1,5 +1,5 @@
-/* Shorter members of a space of generators than the reduced echelon form has: the turn of the centre of mass, xi_i = sum m_j J r_j,
- * less a multiple of the turn of all bodies contains differences of masses. */
+/* Shortens rows of a table of generators: adds a multiple of another row where fewer distinct magnitudes remain. In reduced echelon form the turn
+ * of the centre of mass, xi_i = sum m_j J r_j, less a multiple of the turn of all bodies, contains differences of masses. */
 #include <math.h>
 
 #include "mech/noether_table.h"
@@ -9,7 +9,7 @@ static long double *row_of(const Table *t, uint32_t row) { return t->at + (size_
 
 static int same_size(long double a, long double b) { return fabsl(fabsl(a) - fabsl(b)) <= 1e-9L * fabsl(a); }
 
-/* Different sizes among the entries that are not 0; entries with the same size in both rows are looked at once. */
+/* Number of distinct magnitudes among the nonzero entries, listed in seen[]. */
 static uint32_t sizes(uint32_t n, const long double *x, long double *seen) {
   uint32_t count = 0;
   for (uint32_t j = 0; j < n; j++) {
@@ -21,7 +21,7 @@ static uint32_t sizes(uint32_t n, const long double *x, long double *seen) {
   return count;
 }
 
-/* 0: there is no such factor. */
+/* The factor of a change; 0: there is none. */
 static int factor_of(const Table *t, TableChange c, long double *factor) {
   const long double *x = row_of(t, c.row), *y = row_of(t, c.other);
   long double slope = y[c.one] - c.sign * y[c.two];
@@ -38,7 +38,7 @@ static void changed(const Table *t, uint32_t row, uint32_t other, long double fa
   }
 }
 
-/* The first place of each value in a row. */
+/* One column for each distinct pair of entries (x, y) of two rows; pairs (0, 0) are skipped. */
 static uint32_t places(uint32_t n, const long double *x, const long double *y, uint32_t *at) {
   uint32_t count = 0;
   for (uint32_t j = 0; j < n; j++) {
@@ -50,6 +50,7 @@ static uint32_t places(uint32_t n, const long double *x, const long double *y, u
   return count;
 }
 
+/* The change of a row that leaves the fewest distinct magnitudes; 0: none leaves fewer. */
 static int best_change(Arena *a, const Table *t, uint32_t row, TableChange *best) {
   uint32_t n = width_of(t), *at = ARENA_ARRAY(a, uint32_t, n + 1);
   long double *to = ARENA_ARRAY(a, long double, n + 1), *seen = ARENA_ARRAY(a, long double, n + 1), factor;

@@ -1,3 +1,4 @@
+/* Builds usual generators, proves each by noether_prove, and lists the proved ones. */
 #include "mech/noether_candidates.h"
 
 #include "mech/noether_name.h"
@@ -24,7 +25,7 @@ static Expr *nothing(const Work *w) {
   return xi;
 }
 
-/* Lists it where it is proved. */
+/* Lists the generator if it is proved. */
 static int try_one(Work *w, const Expr *xi, Expr tau, FoundSymmetry as) {
   as.by = (Generator){.xi = xi, .tau = tau};
   as.is = noether_prove(w->e, &as.by);
@@ -33,7 +34,7 @@ static int try_one(Work *w, const Expr *xi, Expr tau, FoundSymmetry as) {
   return 1;
 }
 
-/* Two coordinates are of a kind: along one axis, or members of one family. */
+/* Whether two coordinates are of a kind: along one axis, or members of one family. */
 static int same_kind(const Work *w, uint32_t i, uint32_t k) {
   uint32_t a = name_axis(&w->names, i), b = name_axis(&w->names, k);
   Name one = name_of(w, i), other = name_of(w, k);
@@ -67,6 +68,7 @@ static void try_kinds(Work *w) {
   }
 }
 
+/* A rotation of all bodies about an axis. */
 static void try_turn(Work *w, uint32_t axis) {
   Expr *xi = nothing(w);
   uint32_t bodies = 0;
@@ -94,7 +96,7 @@ static void try_cyclic(Work *w) {
 
 static int is_constant(const ExprGraph *g, Expr x) { return (expr_kinds(g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
 
-/* kappa of q'' = kappa q + constant, where coordinate i moves so on its own; 0: it does not. */
+/* kappa of q'' = kappa q + ..., coordinate i's own equation; 0: mass or stiffness is zero or not constant. */
 static Expr own_rate(const Work *w, uint32_t i) {
   Expr m = simplify(w->g, eqns_mass(w->e, i, i)), k = simplify(w->g, expr_diff(w->g, w->e->dLdq[i], noether_coordinate(w->e, i)));
   if (expr_is_zero(w->g, m) || expr_is_zero(w->g, k) || !is_constant(w->g, m) || !is_constant(w->g, k)) return 0;
@@ -114,7 +116,7 @@ static uint32_t try_shift(Work *w, uint32_t i, Expr of_time, Expr rate, const ch
   return (uint32_t)try_one(w, xi, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_OTHER, .name = name, .axis = AXIS_NONE, .rate = rate});
 }
 
-/* The sign of k that the text shows: of a number, or a monomial of parameters with signs; 0: not known. */
+/* Sign of k, a number or a monomial of parameters with signs: 1 or -1; 0: not known. */
 static int sign_of(const ExprGraph *g, Expr k) {
   switch (expr_sign(g, k)) {
     case SIGN_POSITIVE: return 1;

@@ -1,3 +1,5 @@
+/* Drives the search: chooses parameter values, computes solution spaces, writes the rates of exp(A t) in closed form (or, where L contains t or is
+ * of first order, lists functions of time), and adds each family of generators that share them. */
 #include "mech/noether_find_impl.h"
 
 #include <math.h>
@@ -21,10 +23,10 @@ uint32_t noether_choices(const Search *s) { return 2 + s->choices.n; }
 
 /* --- rates, as expressions --- */
 
-/* A guess at a rate, whose square is a rational multiple of one that occurs. */
+/* A candidate for rates: squares of actual rates are rational multiples of its square. */
 typedef struct {
   Expr square, root; /* root^2 = +-square */
-  int is_double;     /* t times an oscillation with it is a solution, too */
+  int is_double;     /* a double root: t times the oscillation is a solution, too */
 } Guess;
 
 typedef VEC(Guess) Guesses;
@@ -37,8 +39,8 @@ static void add_guess(Search *s, Guesses *all, Expr root, int is_double) {
   vec_push(s->scratch, all, ((Guess){square, negative ? expr_neg(s->g, root) : root, is_double}));
 }
 
-/* With velocities coupled by b = beta m and z = x + i y, z'' = kappa z - i beta z': frequencies w with w^2 + beta w + kappa = 0, one double one in a frame
- * that turns. */
+/* Rates of two coordinates coupled by b = beta m through velocities: with z = x + i y, z'' = kappa z - i beta z', w^2 + beta w + kappa = 0; a
+ * double root in a frame that turns. */
 static void add_coupled(Search *s, Guesses *all, Expr beta, Expr kappa) {
   ExprGraph *g = s->g;
   Expr four = expr_scale(g, num_int(4), kappa), inside = simplify(g, expr_sub(g, expr_pow_num(g, beta, num_int(2)), four));
@@ -48,10 +50,10 @@ static void add_coupled(Search *s, Guesses *all, Expr beta, Expr kappa) {
   Expr root = expr_sqrt(g, inside), sum = expr_add(g, beta, root), difference = expr_sub(g, root, beta);
   add_guess(s, all, expr_scale(g, num_ratio(1, 2), sum), 0);
   add_guess(s, all, expr_scale(g, num_ratio(1, 2), difference), 0);
-  add_guess(s, all, root, 0); /* of what breathes: the sum of both */
+  add_guess(s, all, root, 0); /* of breathing modes: the sum of both */
 }
 
-/* Of each coordinate whose own equation is m q'' = kappa m q + ..., and of pairs with the same kappa whose velocities are coupled. */
+/* Candidates from each coordinate with its own equation m q'' = kappa m q + ..., and from pairs with equal kappa and coupled velocities. */
 static Guesses guesses(Search *s) {
   Eqns *e = s->e;
   ExprGraph *g = s->g;
@@ -76,7 +78,7 @@ static Guesses guesses(Search *s) {
   return all;
 }
 
-/* The rate at another choice that lies nearest to x; NAN where that has none. */
+/* The squared rate nearest to x at another choice; NAN: there is none. */
 static long double nearest_rate(Search *s, uint32_t choice, long double x) {
   const SolutionSpace *space = noether_space_at(s, choice);
   Rates r = space->sure ? space_rates(s->scratch, space) : (Rates){0};
@@ -88,7 +90,7 @@ static long double nearest_rate(Search *s, uint32_t choice, long double x) {
 
 static int close_to(long double a, long double b) { return fabsl(a - b) < 1e-8L * fabsl(b); }
 
-/* Finds what is c times a guess, c rational, at both choices. */
+/* Writes the rate as sqrt(c) times a candidate, c rational, and checks it at the second choice. 0: none fits. */
 static int rate_by_guess(Search *s, const Guesses *all, long double rate2, Family *to) {
   for (uint32_t k = 0; k < all->n; k++) {
     Num c;
@@ -103,7 +105,7 @@ static int rate_by_guess(Search *s, const Guesses *all, long double rate2, Famil
   return 0;
 }
 
-/* Its square as a product of powers of parameters, or a sum of parameters over one of them. */
+/* Writes the squared rate as a product of powers of parameters, or a sum of parameters over one of them. 0: it is neither. */
 static int rate_by_value(Search *s, long double rate2, Family *to) {
   for (uint32_t i = 0; i < noether_choices(s); i++) to->rate2[i] = i == CHOICE_SECOND ? NAN : nearest_rate(s, i, rate2);
   const SolutionSpace *second = noether_space_at(s, CHOICE_SECOND);
@@ -151,7 +153,7 @@ static void add_once(Search *s, Exprs *list, Expr x) {
   vec_push(s->scratch, list, x);
 }
 
-/* w of the sin(w t + ...) and cos(w t + ...) in L, s of its exp(s t + ...). */
+/* Rates w of sin(w t + ...) and cos(w t + ...) in L, and s of exp(s t + ...). */
 static void rates_in_text(Search *s, Exprs *circular, Exprs *exponential) {
   ExprGraph *g = s->g;
   Expr L = s->e->m->lagrangian;
@@ -176,7 +178,7 @@ static void add_circular(Search *s, Exprs *to, Expr w) {
   add_once(s, to, num_sign(sign) < 0 ? expr_neg(s->g, sine) : sine);
 }
 
-/* The same times t and t^2. */
+/* cos(w t) and sin(w t) times t and t^2. */
 static void add_growing(Search *s, Exprs *to, Expr w) {
   Exprs plain = {0};
   Expr t = expr_symbol(s->g, s->e->m->time)->node;
@@ -191,8 +193,8 @@ static void add_exponential(Search *s, Exprs *to, Expr rate) {
   add_once(s, to, expr_fn(s->g, EX_EXP, expr_neg(s->g, phase)));
 }
 
-/* 1, t and the functions of L's own rates for xi and tau, those of double rates times t and t^2; for what F has of coordinates their products, too. An L of first order gets constants only: more
- * would let each charge be multiplied by functions of others. */
+/* Functions of time for the ansatz. For xi and tau: 1, t, t^2 and those of L's own rates, double rates times t and t^2; for F their products, too.
+ * A first-order L gets constants only for xi and tau: more would let each charge be multiplied by functions of others. */
 static TimeList time_list(Search *s) {
   enum { RATES_MOST = 4 };
   Exprs circular = {0}, exponential = {0}, growing = {0}, list = {0};
@@ -259,7 +261,7 @@ static const char *ansatz_text(const Search *s) {
                       ansatz_is_restricted(a) ? " (turns and stretches of one vector only)" : "", a->degree);
 }
 
-static const long double GAP_WEAK = 1e10L; /* what tells solutions from rounding; models have 1e13 and more */
+static const long double GAP_WEAK = 1e10L; /* least ratio of pivots to rounding that is trusted; models have 1e13 and more */
 
 static void search_any(Search *s) {
   const SolutionSpace *space = noether_space_at(s, CHOICE_FIRST);
@@ -278,7 +280,7 @@ static void search_any(Search *s) {
   if (weak) s->out->note = "rates or couplings lie so close to one another that some may be missing";
 }
 
-/* How many solutions at a choice neither oscillate nor grow, but both. */
+/* Number of solutions at a choice whose rate is complex: they oscillate and grow at once. */
 static uint32_t spirals(Search *s, uint32_t choice) {
   const SolutionSpace *space = noether_space_at(s, choice);
   return space->sure ? space_rates(s->scratch, space).others : 0;
@@ -292,7 +294,7 @@ static void take_choices(Search *s, uint32_t attempt) {
 
 enum { ATTEMPTS = 12 };
 
-/* Values of the parameters; others, where some oscillations have no rate that can be written, as those of a trap that does not hold what is in it. */
+/* Chooses values of the parameters, and others where some rate is complex and has no closed form: a trap that does not confine. */
 static void choose(Search *s) {
   take_choices(s, s->first);
   if (s->ansatz->has_time || !s->e->n || !s->choices.n || !(spirals(s, CHOICE_FIRST) + spirals(s, CHOICE_SECOND))) return;
@@ -331,8 +333,8 @@ static FoundSymmetries search_from(Eqns *e, uint32_t first) {
   return out;
 }
 
-/* A second search, with other values of the parameters, where the first saw much that it could not write: its equations, taken at random states, were
- * badly conditioned then. A few such among many have other reasons. */
+/* Searches again with other values of the parameters if more than a fifth of the generators are unproved: the equations at random states were
+ * badly conditioned. Fewer have other reasons. */
 static FoundSymmetries search_twice(Eqns *e) {
   FoundSymmetries out = search_from(e, 0);
   if (4 * out.unproved <= out.all.n) return out;

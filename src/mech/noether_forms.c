@@ -1,3 +1,5 @@
+/* Reads affine forms off the graph of L, takes n independent ones of velocities as the rows of S, inverts S (exactly, or with parameters), and
+ * rewrites L, momenta and mass in y. */
 #include "mech/noether_forms.h"
 
 #include <math.h>
@@ -11,7 +13,7 @@
 
 enum { NODES_MOST = 20000, COORDINATES_MOST = 20, SYMBOLIC_MOST = 8 };
 
-/* c[0] x_0 + ... + c[n-1] x_(n-1) + c[n] with constants c. */
+/* Affine form c[0] x_0 + ... + c[n-1] x_(n-1) + c[n] with constants c. */
 typedef struct {
   Expr node;
   Expr *c;
@@ -20,10 +22,10 @@ typedef struct {
 typedef struct {
   Arena *arena;
   ExprGraph *g;
-  const SymId *symbol; /* x */
+  const SymId *symbol; /* [n] x */
   uint32_t n;
-  ExprMap place;       /* of a node in all, from 1 */
-  VEC(Form) all;       /* affine nodes that are no constant */
+  ExprMap place;       /* position of a node in all, from 1 */
+  VEC(Form) all;       /* affine nodes that are not constant */
 } Forms;
 
 static int is_constant(const ExprGraph *g, Expr x) { return (expr_kinds(g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
@@ -34,9 +36,9 @@ static Expr *zeros(Arena *a, ExprGraph *g, size_t n) {
   return x;
 }
 
-/* --- what L is written with --- */
+/* --- affine forms in L --- */
 
-/* The place in n symbols; n: it is none of them. */
+/* Index of s among the n symbols; n: it is none of them. */
 static uint32_t index_of(const Forms *f, SymId s) {
   uint32_t i = 0;
   while (i < f->n && f->symbol[i] != s) i++;
@@ -48,7 +50,7 @@ static const Expr *form_of(const Forms *f, Expr x) {
   return at ? f->all.at[at - 1].c : NULL;
 }
 
-/* to += factor * x, a constant or a form; 0: it is neither. */
+/* to += factor * x for a constant or a form x; 0: x is neither. */
 static int add_scaled(const Forms *f, Expr factor, Expr x, Expr *to) {
   const Expr *c = form_of(f, x);
   if (!c && !is_constant(f->g, x)) return 0;
@@ -66,7 +68,7 @@ static int read_sum(const Forms *f, Expr x, Expr *to) {
   return 1;
 }
 
-/* Constants times one form. */
+/* Coefficients of a product of constants and one form. */
 static int read_product(const Forms *f, Expr x, Expr *to) {
   Expr factor = expr_int(f->g, 1), form = 0;
   for (uint32_t i = 0; i < expr_pairs(f->g, x, EX_PROD); i++) {
@@ -79,7 +81,7 @@ static int read_product(const Forms *f, Expr x, Expr *to) {
   return form && add_scaled(f, factor, form, to);
 }
 
-/* What x is made of, if it is affine. */
+/* Coefficients of x; 0: it is not affine. */
 static int read_form(const Forms *f, Expr x, Expr *to) {
   ExprOp op = expr_op(f->g, x);
   if (op == EX_SYM) {
@@ -111,7 +113,7 @@ static Forms forms_in(Arena *a, ExprGraph *g, ExprList nodes, const SymId *symbo
   return f;
 }
 
-/* Those that something which is no form is made of: of x' + y' in its square, not x'. */
+/* Forms that are arguments of a node that is no form: x' + y' where its square stands, not x'. */
 static ExprMap used_forms(Arena *a, const Forms *f, ExprList nodes) {
   ExprMap used = expr_map(a);
   for (uint32_t k = 0; k < nodes.n; k++) {
@@ -152,7 +154,7 @@ static Num coefficient_of(ExprGraph *g, Expr x, Expr term) {
 
 typedef VEC(Expr) Terms;
 
-/* The different terms of all x, without their coefficients. */
+/* The distinct terms of all x, without their coefficients. */
 static Terms terms_of(Arena *a, ExprGraph *g, const Expr *x, size_t n) {
   ExprMap seen = expr_map(a);
   Terms all = {0};
@@ -191,14 +193,14 @@ static Expr combination(ExprGraph *g, Arena *a, uint32_t n, const Expr *k, size_
   return expr_add_n(g, terms, n);
 }
 
-/* Values of constants where parameters are random. */
+/* Values of constants at random values of the parameters. */
 static void values_of(Arena *a, ExprGraph *g, const Expr *x, uint32_t n, long double *to) {
   long double *symbols = ARENA_ARRAY(a, long double, expr_symbol_count(g) + 1);
   prove_state(g, 1, symbols);
   expr_eval(g, x, n, symbols, to);
 }
 
-/* The row of column k, k or below, that is shortest to divide by; n: all are zero. */
+/* Row, k or below, with the shortest entry in column k; n: all are zero. */
 static size_t pivot_row(ExprGraph *g, size_t n, const Expr *m, size_t k) {
   size_t best = n;
   uint32_t least = UINT32_MAX, distinct;
@@ -211,7 +213,7 @@ static size_t pivot_row(ExprGraph *g, size_t n, const Expr *m, size_t k) {
   return best;
 }
 
-/* Gauss and Jordan on expressions, S beside the identity. 0: a pivot is missing. */
+/* Gauss-Jordan elimination of [S | 1] on expressions. 0: a pivot is missing. */
 static int invert_symbols(Arena *a, ExprGraph *g, size_t n, const Expr *S, Expr *to) {
   Expr *m = zeros(a, g, 2 * n * n), *kept = ARENA_ARRAY(a, Expr, 2 * n + 1);
   for (size_t i = 0; i < n; i++) {
@@ -245,7 +247,7 @@ static int invert(Arena *a, ExprGraph *g, LinearForms *to) {
   return forms_solve(a, g, to->n, to->exact, to->n, to->inverse);
 }
 
-/* S from the velocities' forms: the first ones that are independent, whatever parameters are. */
+/* S and its inverse: the first n forms of velocities that are independent at generic parameters. 0: there are fewer. */
 static int take_rows(Arena *a, const Forms *f, ExprList nodes, LinearForms *to) {
   ExprMap used = used_forms(a, f, nodes);
   size_t n = f->n;
@@ -266,7 +268,7 @@ static int take_rows(Arena *a, const Forms *f, ExprList nodes, LinearForms *to) 
 
 /* --- names --- */
 
-/* X of the definition X', x of the velocity x'; NULL: the sum has no name. */
+/* Name X of the definition X', x of the velocity x'; NULL: the sum has no name. */
 static Name name_of_rate(Arena *a, const ExprGraph *g, Expr rate) {
   ExprOp op = expr_op(g, rate);
   Name name = op == EX_DEF ? expr_def_name(g, rate) : op == EX_SYM ? expr_sym_of(g, rate)->name : "";
@@ -274,7 +276,7 @@ static Name name_of_rate(Arena *a, const ExprGraph *g, Expr rate) {
   return n > 1 && name[n - 1] == '\'' && name[n - 2] != '\'' ? arena_strndup(a, name, n - 1) : NULL;
 }
 
-/* The definition of that name, or the coordinate; 0: there is none. */
+/* The coordinate or definition of that name; 0: there is none. */
 static Expr named_node(const Forms *of, Name name) {
   ExprGraph *g = of->g;
   for (uint32_t i = 0; i < of->n; i++)
@@ -290,7 +292,7 @@ static int same_constants(ExprGraph *g, const Expr *one, const Expr *other, uint
   return 1;
 }
 
-/* What row i of S is called, with the coordinates' form of that name, whose constant is the shift. */
+/* Names row i of S after the form of coordinates with that rate, whose constant is the shift. 0: it has no name. */
 static int take_name(Arena *a, const Forms *of, LinearForms *to, uint32_t i) {
   ExprGraph *g = of->g;
   Name name = name_of_rate(a, g, to->rate[i]);
@@ -306,7 +308,7 @@ static int take_name(Arena *a, const Forms *of, LinearForms *to, uint32_t i) {
   return 1;
 }
 
-/* times row, for a row of S, is c. */
+/* Whether c is `times` a row of S. */
 static int is_multiple(ExprGraph *g, uint32_t n, Expr times, const Expr *row, const Expr *c) {
   for (uint32_t k = 0; k < n; k++) {
     Expr left = expr_sub(g, c[k], expr_mul(g, times, row[k]));
@@ -315,7 +317,7 @@ static int is_multiple(ExprGraph *g, uint32_t n, Expr times, const Expr *row, co
   return 1;
 }
 
-/* The row of S that c is a multiple of, and *times; n: there is none. */
+/* The row of S that c is a multiple of, and the factor *times; n: there is none. */
 static uint32_t row_of(ExprGraph *g, const LinearForms *f, const Expr *c, Expr *times) {
   for (uint32_t i = 0; i < f->n; i++) {
     const Expr *row = f->S + (size_t)i * f->n;
@@ -328,19 +330,19 @@ static uint32_t row_of(ExprGraph *g, const LinearForms *f, const Expr *c, Expr *
   return f->n;
 }
 
-/* The place of the first entry that is not 0; n: all are. */
+/* Index of the first nonzero entry; n: all are zero. */
 static uint32_t leading(const Num *row, uint32_t n) {
   uint32_t k = 0;
   while (k < n && num_is_zero(row[k])) k++;
   return k;
 }
 
-/* row less so many times the other. */
+/* row -= times * other */
 static void subtract(uint32_t n, Num *row, Num times, const Num *other) {
   for (uint32_t k = 0; k < n && !num_is_zero(times); k++) row[k] = num_sub(row[k], num_mul(times, other[k]));
 }
 
-/* Adds a row to `rows` rows in reduced echelon form, as long as its first n entries are no combination of theirs. Returns how many there are. */
+/* Adds a row to `rows` rows in reduced echelon form if its first n entries are independent of theirs. Returns the new number of rows. */
 static uint32_t echelon_add(uint32_t n, uint32_t rows, Num *at, Num *row) {
   uint32_t width = n + 1;
   for (uint32_t r = 0; r < rows; r++) subtract(width, row, row[leading(at + (size_t)r * width, n)], at + (size_t)r * width);
@@ -353,7 +355,7 @@ static uint32_t echelon_add(uint32_t n, uint32_t rows, Num *at, Num *row) {
   return rows + 1;
 }
 
-/* Shifts with which sums in q have no constant left when they are written in y: all of them, or the first ones. S is made of numbers. */
+/* Shifts that absorb the constants of sums in q when they are written in y: of all sums, or of the first independent ones. S is made of numbers. */
 static void take_shifts(Arena *a, const Forms *of, LinearForms *to) {
   ExprGraph *g = of->g;
   size_t n = of->n;
@@ -372,7 +374,7 @@ static void take_shifts(Arena *a, const Forms *of, LinearForms *to) {
   }
 }
 
-/* Forms without names are sums. */
+/* y without names, written as sums. */
 static void take_sums(Arena *a, const Forms *of, LinearForms *to) {
   ExprGraph *g = of->g;
   Expr *x = ARENA_ARRAY(a, Expr, of->n + 1);
@@ -392,7 +394,7 @@ static void take_names(Arena *a, const Forms *of, LinearForms *to) {
 
 /* --- L in y --- */
 
-/* Notes what forms are that are multiples of y less the shift, or of y', and of their symbols. */
+/* Records forms that are multiples of y (or of y') up to a constant, and the symbols of q, with their expressions in y. */
 static void note_forms(Arena *a, const Forms *of, LinearForms *f, int shifted) {
   ExprGraph *g = of->g;
   Expr *y = ARENA_ARRAY(a, Expr, f->n + 1), times;
@@ -414,7 +416,7 @@ static void note_forms(Arena *a, const Forms *of, LinearForms *f, int shifted) {
   }
 }
 
-/* Momenta, and the kinetic energy's coefficients, which must be constant. 0: it is no sum of squares. */
+/* L, momenta and the coefficients of the kinetic energy in y. 0: it is no sum of squares with constant coefficients. */
 static int take_mass(const Eqns *e, LinearForms *f) {
   ExprGraph *g = e->g;
   expr_cut(g, &e->m->lagrangian, 1, f->node.at, f->is.at, f->node.n, &f->L);
@@ -486,7 +488,7 @@ Verdict forms_prove_zero(const LinearForms *f, ExprGraph *g, Expr x) {
 void forms_to_coordinates(const LinearForms *f, ExprGraph *g, Expr *c) {
   size_t n = f->n, width = n + 1;
   Arena *a = expr_arena(g);
-  Expr *x = ARENA_ARRAY(a, Expr, n * width + 1); /* xi of y as affine in q: [i][q_0 .., 1] */
+  Expr *x = ARENA_ARRAY(a, Expr, n * width + 1); /* xi of y as affine functions of q: [i][q_0 .., 1] */
   for (size_t i = 0; i < n; i++) {
     const Expr *linear = c + n + i * n;
     for (size_t k = 0; k < n; k++) x[i * width + k] = combination(g, a, f->n, f->S + k, n, linear, 1);

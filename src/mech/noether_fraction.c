@@ -1,6 +1,6 @@
-/* Simultaneous approximation by a reduced lattice basis: A.K. Lenstra, H.W. Lenstra, L. Lovasz, Math. Ann. 261 (1982) 515,
- * DOI 10.1007/BF01457454, section 1.39. The lattice of all (e q, q x - p), with a whole number q and whole numbers p, has
- * short vectors where all of q x is nearly whole. So it is with several q and rows x: (e q_1, e q_2, .., q_1 x_1 + q_2 x_2 + .. - p). */
+/* Simultaneous approximation by a reduced lattice basis: A.K. Lenstra, H.W. Lenstra, L. Lovasz, Math. Ann. 261 (1982) 515, DOI 10.1007/BF01457454,
+ * section 1.39. The lattice of all (e q, q x - p), with a whole number q and whole numbers p, has short vectors where all of q x is nearly whole.
+ * For several rows x_r with factors q_r: (e q_1, e q_2, .., q_1 x_1 + q_2 x_2 + .. - p). */
 #include "mech/noether_fraction.h"
 
 #include <math.h>
@@ -13,13 +13,13 @@ enum { VALUES = 40, ROWS = 8, DIM = VALUES + ROWS, TURNS = 20000 };
 static const Real weight = 1e-16L; /* e */
 
 typedef struct {
-  uint32_t rows, values, n;    /* n: rows + values */
+  uint32_t rows, values, n;    /* n: rows + values, the dimension */
   Real x[ROWS][VALUES];
   Real whole[DIM][DIM];        /* [vector] q, then p; whole numbers */
-  Real star[DIM][DIM], square[DIM], mu[DIM][DIM]; /* of Gram and Schmidt */
+  Real star[DIM][DIM], square[DIM], mu[DIM][DIM]; /* Gram-Schmidt vectors, their squares, coefficients */
 } Lattice;
 
-/* A vector from its whole numbers, which are exact: nothing piles up. */
+/* Vector k from its whole numbers, which are exact: rounding does not accumulate. */
 static void vector_of(const Lattice *l, uint32_t k, Real *to) {
   for (uint32_t r = 0; r < l->rows; r++) to[r] = weight * l->whole[k][r];
   for (uint32_t i = 0; i < l->values; i++) {
@@ -34,7 +34,7 @@ static Real product(uint32_t n, const Real *a, const Real *b) {
   return sum;
 }
 
-/* Of vector k, those before it being done. */
+/* Gram-Schmidt step for vector k; star[0..k-1] are orthogonal. */
 static void orthogonalise(Lattice *l, uint32_t k) {
   Real b[DIM];
   vector_of(l, k, b);
@@ -53,7 +53,7 @@ static void swap(Lattice *l, uint32_t k) {
   memcpy(l->whole[k - 1], kept, sizeof kept);
 }
 
-/* Less whole multiples of the vectors before it. */
+/* Size reduction: subtracts whole multiples of vectors 0..k-1 from vector k. */
 static void shorten(Lattice *l, uint32_t k) {
   for (uint32_t j = k; j-- > 0;) {
     Real times = roundl(l->mu[k][j]);
@@ -65,7 +65,7 @@ static void shorten(Lattice *l, uint32_t k) {
   orthogonalise(l, k);
 }
 
-/* The basis becomes a reduced one, its first vectors short ones. */
+/* LLL reduction of the basis; its first vectors are short. */
 static void reduce(Lattice *l) {
   uint32_t k = 1;
   orthogonalise(l, 0);
@@ -88,13 +88,13 @@ static void start(Lattice *l) {
   reduce(l);
 }
 
-/* Whether sums of q times rows that are so far from whole numbers at most are whole: those of numbers at random come as near as
- * q^(-rows/values) (Dirichlet). */
+/* Largest distance from a whole number at which a sum of q times rows counts as whole: random numbers come as near as q^(-rows/values)
+ * (Dirichlet). */
 static Real near_enough(const Lattice *l, Real q) { return fminl(0.02L * powl(fmaxl(1, fabsl(q)), -(Real)l->rows / l->values), 0.01L); }
 
 /* --- one row --- */
 
-/* Those that are not whole, each once. */
+/* The values of x that are not whole, each magnitude once. */
 static void take_values(Lattice *l, const Real *x, uint32_t n) {
   const Real rounding = 1e-12L;
   for (uint32_t i = 0; i < n && l->values < VALUES; i++) {
@@ -106,7 +106,7 @@ static void take_values(Lattice *l, const Real *x, uint32_t n) {
 
 static const Real LONGEST = 1e15L;
 
-/* Whether q times each of x is within `near` of a whole number, and not a long one. */
+/* Whether all q x[i] are within `near` of whole numbers below LONGEST, and not all 0. */
 static int is_common(Real q, const Real *x, uint32_t n, Real near) {
   int some = 0;
   for (uint32_t i = 0; i < n; i++) {
@@ -129,7 +129,7 @@ int64_t common_denominator(Arena *a, const long double *x, uint32_t n) {
 
 /* --- several rows --- */
 
-/* Rows in reduced echelon form whose pivots are the largest elements; pivot[rows] are their columns. Returns how many there are. */
+/* Reduced echelon form with complete pivoting; pivot[rows] are the columns. Returns the number of rows. */
 static uint32_t largest_pivots(DenseRows *m, uint32_t *pivot) {
   const Real rest = 1e-9L;
   size_t w = m->width;
@@ -154,7 +154,7 @@ static uint32_t largest_pivots(DenseRows *m, uint32_t *pivot) {
   return m->n;
 }
 
-/* Numbers the parts of the space that share no columns: part[row]. */
+/* Numbers the blocks of rows that share no columns: part[row]. */
 static void separate(const DenseRows *m, uint32_t rows, uint32_t *part) {
   const Real rest = 1e-9L;
   for (uint32_t r = 0; r < rows; r++) part[r] = r;
@@ -169,7 +169,7 @@ static void separate(const DenseRows *m, uint32_t rows, uint32_t *part) {
     }
 }
 
-/* Whether two columns are the same in all these rows but for their sign. */
+/* Whether x equals column k of the lattice in all rows, up to one sign. */
 static int same_column(const Lattice *l, const Real *x, uint32_t k) {
   const Real rounding = 1e-12L;
   int plus = 1, minus = 1;
@@ -180,7 +180,7 @@ static int same_column(const Lattice *l, const Real *x, uint32_t k) {
   return plus || minus;
 }
 
-/* The columns of some rows, each once, without pivots. 0: there are too many. */
+/* Distinct columns of the given rows that are not whole, as pivots are. 0: there are too many. */
 static int take_columns(Lattice *l, const DenseRows *m, const uint32_t *row) {
   const Real rounding = 1e-12L;
   for (size_t j = 0; j < m->width; j++) {
@@ -199,7 +199,7 @@ static int take_columns(Lattice *l, const DenseRows *m, const uint32_t *row) {
   return 1;
 }
 
-/* Vector k of the reduced basis as whole numbers. 0: its sums are not whole. */
+/* The combination of rows that vector k of the reduced basis gives, as whole numbers. 0: it is not whole. */
 static int write_row(const Lattice *l, uint32_t k, const DenseRows *m, const uint32_t *row, int64_t *to) {
   Real most = 1;
   for (uint32_t r = 0; r < l->rows; r++) most = fmaxl(most, fabsl(l->whole[k][r]));

@@ -1,9 +1,10 @@
+/* S is the matrix of the forms that L is written with, or the Cholesky factor of the mass matrix. */
 #include "mech/noether_frame.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Cholesky's factor of the lower triangle in `mass`; 0: it is not definite. */
+/* Upper Cholesky factor, S^T S = M, from the values of the entries of M; 0: M is not positive definite. */
 static int factor(const Eqns *e, uint32_t n, const long double *mass, long double *S) {
   for (uint32_t k = 0; k < e->mass.n; k++) {
     const MassEntry *x = &e->mass.at[k];
@@ -59,7 +60,7 @@ const NoetherFrame *frame_new(const Ansatz *a, Arena *scratch, const long double
   return f;
 }
 
-/* x becomes m x. */
+/* x = m x */
 static void apply(uint32_t n, const long double *m, long double *x, long double *scratch) {
   memcpy(scratch, x, n * sizeof *x);
   for (uint32_t i = 0; i < n; i++) {
@@ -68,7 +69,7 @@ static void apply(uint32_t n, const long double *m, long double *x, long double 
   }
 }
 
-/* x becomes x m. */
+/* x = x m */
 static void apply_left(uint32_t n, const long double *m, long double *x, long double *scratch) {
   memcpy(scratch, x, n * sizeof *x);
   for (uint32_t k = 0; k < n; k++) {
@@ -81,7 +82,7 @@ void frame_vector(const NoetherFrame *f, long double *x, long double *scratch) {
 void frame_vector_back(const NoetherFrame *f, long double *x, long double *scratch) { apply(f->n, f->inverse, x, scratch); }
 void frame_covector(const NoetherFrame *f, long double *x, long double *scratch) { apply_left(f->n, f->inverse, x, scratch); }
 
-/* shown: tau, then xi_i of 1, then of y_1 .. y_n for each i. */
+/* Columns of shown: tau, the constants of all xi_i, then the coefficients of y_1 .. y_n for each xi_i. */
 void frame_generator_back(const NoetherFrame *f, long double *shown, long double *scratch) {
   uint32_t n = f->n;
   if (f->stays) return;

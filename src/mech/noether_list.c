@@ -1,10 +1,11 @@
-/* Rows of tables as generators, proved and named. */
+/* Turns rows of tables into generators, proves and names them, and lists those that are proved. */
 #include "mech/noether_find_impl.h"
 #include "mech/noether_name.h"
 #include "mech/noether_parametric.h"
 #include "mech/noether_whole.h"
 #include "sym/diff.h"
 
+/* The function of time that a block of a family stands for. */
 static Expr time_function(Search *s, const Family *f, uint32_t block) {
   ExprGraph *g = s->g;
   Expr t = expr_symbol(g, s->e->m->time)->node;
@@ -15,7 +16,7 @@ static Expr time_function(Search *s, const Family *f, uint32_t block) {
   return expr_mul(g, power, expr_fn(g, EX_EXP, block % 2 ? expr_neg(g, phase) : phase));
 }
 
-/* Numbers of a row come to whole numbers without a common factor. */
+/* Scales a row so that its numbers are whole, without a common factor. */
 static void clear_fractions(Search *s, Expr *c, size_t n) {
   Num common = num_int(0);
   for (size_t k = 0; k < n; k++) {
@@ -29,7 +30,7 @@ static void clear_fractions(Search *s, Expr *c, size_t n) {
   for (size_t k = 0; k < n; k++) c[k] = expr_scale(s->g, num_div(num_int(1), common), c[k]);
 }
 
-/* The lowest whole power of x in the monomials c, where it is negative. */
+/* Lowest whole exponent of x in the monomials c; 0: none is negative. */
 static int32_t lowest_power(const ExprGraph *g, const Expr *c, size_t n, Expr x) {
   int32_t lowest = 0;
   for (size_t k = 0; k < n; k++) {
@@ -41,7 +42,7 @@ static int32_t lowest_power(const ExprGraph *g, const Expr *c, size_t n, Expr x)
   return lowest;
 }
 
-/* Parameters below fractions come away: m1/m2*x1 + x2 becomes m1*x1 + m2*x2. */
+/* Clears parameters from denominators: m1/m2*x1 + x2 becomes m1*x1 + m2*x2. */
 static void clear_parameters(Search *s, Expr *c, size_t n) {
   ExprGraph *g = s->g;
   for (uint32_t p = 0; p < s->choices.n; p++) {
@@ -55,7 +56,7 @@ static void clear_parameters(Search *s, Expr *c, size_t n) {
 
 static Expr phi(Search *s, uint32_t k) { return k ? expr_symbol(s->g, s->ansatz->q[k - 1])->node : expr_int(s->g, 1); }
 
-/* xi of coefficients c, and *tau. */
+/* xi and *tau from the coefficients c. */
 static Expr *components(Search *s, const Tables *t, const Expr *c, Expr *tau) {
   const Ansatz *a = s->ansatz;
   Expr *xi = ARENA_ARRAY(s->e->m->arena, Expr, a->n + 1);
@@ -74,7 +75,7 @@ static Expr *components(Search *s, const Tables *t, const Expr *c, Expr *tau) {
   return xi;
 }
 
-/* Generator with these coefficients, which are cleared of fractions: those of forms where they have names. */
+/* Generator from coefficients to->c, cleared of fractions; in y where the forms have names. */
 static void make_generator(Search *s, const Tables *t, const Coordinates *names, GeneratorRow *to) {
   const LinearForms *forms = s->ansatz->forms;
   size_t shown = s->ansatz->shown, n = t->at[0].blocks * shown;
@@ -93,7 +94,7 @@ static void make_generator(Search *s, const Tables *t, const Coordinates *names,
   if (named) to->by.eta = components(s, t, to->c, &to->by.tau);
 }
 
-/* The same by coefficients of M xi, to->c, which are whole numbers. */
+/* Generator from coefficients to->c of M xi, which are whole numbers. 0: those of xi are too long. */
 static int make_lowered(Search *s, const Tables *t, const Num *M, const Coordinates *names, GeneratorRow *to) {
   size_t n = t->at[0].blocks * s->ansatz->shown;
   Expr *own = ARENA_ARRAY(s->scratch, Expr, n + 1);
@@ -109,7 +110,7 @@ static int make_lowered(Search *s, const Tables *t, const Num *M, const Coordina
   return 1;
 }
 
-/* Whether xi changes no length that the kinetic energy measures. */
+/* Whether xi preserves lengths in the metric of the kinetic energy: M times its linear part is antisymmetric. */
 static int turns(Search *s, const Generator *by) {
   enum { COORDINATES_MOST = 20 };
   const Eqns *e = s->e;
@@ -132,12 +133,12 @@ static int turns(Search *s, const Generator *by) {
   return 1;
 }
 
-/* The constraints of contacts, which are open in states at random, say nothing. */
+/* Whether the verdict counts as proved. Contacts are open at random states, so that their constraints do not matter. */
 static int is_proved(const Search *s, const Noether *is) {
   return (is->is == INVARIANT || is->is == INVARIANT_UP_TO_F) && !is->broken && (!is->by_value || s->ansatz->held.n == 0);
 }
 
-/* Lists a row whose coefficients are recognised, if it is proved; those of M xi where M is given. */
+/* Lists a row with recognised coefficients (of M xi where M is given), if it is proved. */
 static int add_row(Search *s, const Tables *t, const Num *M, Expr *c) {
   GeneratorRow r = {.c = c};
   Coordinates names = coordinates_of(s->e, s->ansatz->forms);
@@ -151,7 +152,7 @@ static int add_row(Search *s, const Tables *t, const Num *M, Expr *c) {
   return 1;
 }
 
-/* Notes a row as listed; 0: it depends on others. */
+/* Adds a row to the listed ones; 0: it depends on them linearly. */
 static int take_up(DenseRows *listed, const long double *row) {
   long double *kept = listed->at + (size_t)listed->n * listed->width;
   memcpy(kept, row, listed->width * sizeof *kept);
@@ -160,7 +161,7 @@ static int take_up(DenseRows *listed, const long double *row) {
   return 1;
 }
 
-/* Rows whose M xi are short whole numbers. */
+/* Lists rows whose M xi are short whole numbers. */
 static void add_whole(Search *s, Tables *t, DenseRows *listed) {
   Arena *a = s->scratch;
   const Num *M = whole_mass(a, s->ansatz);
@@ -173,7 +174,7 @@ static void add_whole(Search *s, Tables *t, DenseRows *listed) {
     if (take_up(listed, value[k]) && !add_row(s, t, M, c[k])) listed->n--;
 }
 
-/* Rows by their dependence on parameters, as far as those listed do not contain them. */
+/* Lists rows that are polynomials of parameters and independent of the listed ones. */
 static void add_parametric(Search *s, Tables *t, DenseRows *listed) {
   if (t->family->kind == TIME_LISTED || !noether_shapes_agree(s, t)) return;
   ParametricRows rows = parametric_rows(s->scratch, &s->choices, t->at, noether_choices(s));

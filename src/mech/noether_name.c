@@ -1,3 +1,4 @@
+/* Names a generator by the time blocks in which tau, shifts and linear terms occur, and by the coordinates that these couple. */
 #include "mech/noether_name.h"
 
 #include <ctype.h>
@@ -12,7 +13,7 @@ Coordinates coordinates_of(const Eqns *e, const LinearForms *forms) {
   return c;
 }
 
-/* r[2].x, x[2], x2, x and X are components along x. */
+/* Axis of a component by its name alone: r[2].x, x[2], x2, x and X lie along x. */
 static uint32_t axis_of(Name name) {
   const char *dot = strrchr(name, '.'), *letter = dot ? dot + 1 : name;
   int axis = tolower((unsigned char)*letter) - 'x';
@@ -27,7 +28,7 @@ int name_same_body(Name a, Name b) {
   return x - a == y - b && memcmp(a, b, (size_t)(x - a)) == 0;
 }
 
-/* The component `letter` of the vector or rotation that coordinate i belongs to; UINT32_MAX: there is none. */
+/* Component `letter` of the vector or rotation that coordinate i belongs to; UINT32_MAX: there is none. */
 static uint32_t sibling(const Coordinates *e, uint32_t i, char letter) {
   Name name = e->name[i];
   const char *dot = strrchr(name, '.');
@@ -47,12 +48,13 @@ static uint32_t along(const Coordinates *e, uint32_t axis) {
   return n;
 }
 
-/* --- what a row is made of --- */
+/* --- the parts of a row --- */
 
 typedef struct {
-  uint32_t tau, shift, linear; /* bits: the blocks in which they occur */
+  uint32_t tau, shift, linear; /* bit m: occurs in block m */
 } Parts;
 
+/* Time blocks in which tau, shifts and linear terms of a row occur. */
 static Parts parts_of(const Coordinates *e, const GeneratorRow *r) {
   Parts p = {0};
   for (uint32_t m = 0; m < r->blocks; m++) {
@@ -77,7 +79,7 @@ static Expr entry(const Coordinates *e, const GeneratorRow *r, uint32_t m, uint3
 
 static int is_energy(Parts p) { return p.tau == 1 && !p.shift && !p.linear; }
 
-/* The linear part of block 0 turns q_i against q_j. */
+/* Whether the linear part of block 0 turns q_i against q_j. */
 static int turns(const Coordinates *e, const GeneratorRow *r, uint32_t i, uint32_t j) {
   Expr a = entry(e, r, 0, i, j + 1), b = entry(e, r, 0, j, i + 1);
   return !expr_is_zero(e->g, a) && a == expr_neg(e->g, b);
@@ -89,7 +91,7 @@ static void flip(const Coordinates *e, GeneratorRow *r) {
   for (size_t k = 0; k < (size_t)r->blocks * r->ansatz->shown; k++) r->c[k] = expr_neg(e->g, r->c[k]);
 }
 
-/* Whether q_i grows with q_j in the sense of rotation of books: x -> -y, y -> x; z from x falls. */
+/* Whether the coefficient c of q_j in xi_i has the wrong sign for a turn as in books, x to y to z to x. */
 static int wrong_turn(const Coordinates *e, uint32_t i, uint32_t j, Expr c) {
   uint32_t a = name_axis(e, i), b = name_axis(e, j);
   int z_and_x = a == 0 && b == 2;
@@ -116,7 +118,7 @@ void orient(const Coordinates *e, GeneratorRow *r) {
 
 /* --- names --- */
 
-/* The only coordinate that block m shifts; UINT32_MAX: there are several. */
+/* The only coordinate that block m shifts; UINT32_MAX: none, or several. */
 static uint32_t only_shift(const Coordinates *e, const GeneratorRow *r, uint32_t m) {
   uint32_t only = UINT32_MAX, n = 0;
   for (uint32_t i = 0; i < e->n; i++)
@@ -124,7 +126,7 @@ static uint32_t only_shift(const Coordinates *e, const GeneratorRow *r, uint32_t
   return n == 1 ? only : UINT32_MAX;
 }
 
-/* The axis along which block m shifts all bodies alike; AXIS_NONE: it does something else. */
+/* The axis along which block m shifts all bodies alike; AXIS_NONE: there is none. */
 static uint32_t common_shift(const Coordinates *e, const GeneratorRow *r, uint32_t m) {
   uint32_t axis = AXIS_NONE, n = 0;
   Expr one = 0;
@@ -172,7 +174,7 @@ static uint32_t terms_of(const Coordinates *e, const GeneratorRow *r) {
   return terms;
 }
 
-/* Whether the linear part is a turn of some bodies about one axis by one angle; *bodies: how many. */
+/* Axis about which the linear part turns some bodies by one angle, and their number *bodies; AXIS_NONE: it is no such turn. */
 static uint32_t common_turn(const Coordinates *e, const GeneratorRow *r, uint32_t *bodies) {
   uint32_t axis = AXIS_NONE, terms = terms_of(e, r);
   Expr one = 0;
@@ -200,7 +202,7 @@ static uint32_t bodies_with(const Coordinates *e, uint32_t axis) {
   return n;
 }
 
-/* Whether the linear part turns two directions of bodies against one another, but not body by body: xi_x = -S y, xi_y = S x. */
+/* Whether the linear part turns two directions, mixing the bodies: xi_x = -S y, xi_y = S x. */
 static int mixes_bodies(const Coordinates *e, const GeneratorRow *r) {
   for (uint32_t j = 0; j < r->ansatz->xi.n; j++) {
     if (expr_is_zero(e->g, r->c[1 + j])) continue;
@@ -215,8 +217,8 @@ static int mixes_bodies(const Coordinates *e, const GeneratorRow *r) {
   return 1;
 }
 
-/* Whether xi is a multiple of n q (in space) or q n (of the body's own), q the rotation that coordinate w begins and n its axis `x`, with y and z
- * behind it in turn. */
+/* Whether xi is a multiple of n q (a turn in space) or q n (about the body's own axis): q the quaternion that begins at coordinate w, n its unit
+ * vector `axis`. */
 static int turns_rotation(const Coordinates *e, const GeneratorRow *r, uint32_t w, uint32_t axis, int own) {
   uint32_t x = sibling(e, w, (char)('x' + axis)), y = sibling(e, w, (char)('x' + (axis + 1) % 3)), z = sibling(e, w, (char)('x' + (axis + 2) % 3));
   if (x == UINT32_MAX || y == UINT32_MAX || z == UINT32_MAX) return 0;
@@ -224,7 +226,7 @@ static int turns_rotation(const Coordinates *e, const GeneratorRow *r, uint32_t 
   return !expr_is_zero(e->g, c) && entry(e, r, 0, w, x + 1) == minus && entry(e, r, 0, z, y + 1) == other && entry(e, r, 0, y, z + 1) == expr_neg(e->g, other);
 }
 
-/* Whether xi turns only w against `axis` (the sum of n q and q n), or only the two other components (their difference). */
+/* Names a xi that turns only w against `axis` (the sum of n q and q n) or only the two other components (their difference). 0: neither. */
 static int name_double_turn(const Coordinates *e, const GeneratorRow *r, FoundSymmetry *to) {
   for (uint32_t w = 0; w < e->n && terms_of(e, r) == 2; w++)
     for (uint32_t axis = 0; axis < 3 && sibling(e, w, 'w') == w; axis++) {
@@ -239,7 +241,7 @@ static int name_double_turn(const Coordinates *e, const GeneratorRow *r, FoundSy
   return 0;
 }
 
-/* 0: it is no turn of one rotation. */
+/* Names the turn of one rotation, in space or about a body's own axis. 0: xi is none. */
 static int name_turn(const Coordinates *e, const GeneratorRow *r, FoundSymmetry *to) {
   for (uint32_t w = 0; w < e->n && terms_of(e, r) == 4; w++)
     for (uint32_t k = 0; k < 6 && sibling(e, w, 'w') == w; k++) {
@@ -262,7 +264,7 @@ static int block_turns(const Coordinates *e, const GeneratorRow *r, uint32_t m) 
 /* Whether the linear part of block 0 is antisymmetric. */
 static int only_turns(const Coordinates *e, const GeneratorRow *r) { return block_turns(e, r, 0); }
 
-/* Whether any block shifts a coordinate that the linear part of block 0 leaves alone. */
+/* Whether any block shifts a coordinate that the linear part of block 0 leaves fixed. */
 static int shifts_beside(const Coordinates *e, const GeneratorRow *r) {
   for (uint32_t i = 0; i < e->n; i++) {
     int shifted = 0, alone = 1;
@@ -273,14 +275,14 @@ static int shifts_beside(const Coordinates *e, const GeneratorRow *r) {
   return 0;
 }
 
-/* A linear part in block 0 with a shift, at one time or at several. */
+/* Name of a linear part in block 0 with shifts in one block or several. */
 static const char *affine_name(const Coordinates *e, const GeneratorRow *r, Parts p) {
   if (!only_turns(e, r)) return r->turns ? "rotation about another point, in the metric of the kinetic energy" : "affine map of the coordinates";
   if (shifts_beside(e, r)) return "screw: a rotation and a translation at once";
   return p.shift > 1 ? "rotation about a point that moves" : "rotation about another point";
 }
 
-/* Whether the linear part maps coordinates to others, not only to themselves. */
+/* Whether the linear part has entries off the diagonal. */
 static int mixes(const Coordinates *e, const GeneratorRow *r) {
   for (uint32_t j = 0; j < r->ansatz->xi.n; j++)
     if (r->ansatz->xi.at[j].k && r->ansatz->xi.at[j].k != r->ansatz->xi.at[j].i + 1 && !expr_is_zero(e->g, r->c[1 + j])) return 1;
@@ -317,7 +319,7 @@ void name_symmetry(const Coordinates *e, const GeneratorRow *r, FoundSymmetry *t
   Parts p = parts_of(e, r);
   to->axis = AXIS_NONE;
   to->name = "point symmetry";
-  if (r->kind == TIME_LISTED && p.tau == 1 && p.shift > 1 && !p.linear) to->name = "energy in a moving frame"; /* that of the forced motion */
+  if (r->kind == TIME_LISTED && p.tau == 1 && p.shift > 1 && !p.linear) to->name = "energy in a moving frame"; /* the frame of the forced motion */
   else if (r->kind != TIME_POWERS && (r->kind != TIME_LISTED || (p.tau | p.shift | p.linear) > 7)) {
     const char *what = p.tau ? "breathing" : p.linear ? "turning" : "shift along a solution";
     const char *of_time = r->kind == TIME_CIRCULAR ? "periodic" : "exponential";

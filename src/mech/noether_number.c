@@ -1,3 +1,4 @@
+/* Recognition by continued fractions, by quotients at two choices, and by logarithmic differences where one parameter is moved. */
 #include "mech/noether_number.h"
 
 #include <math.h>
@@ -25,7 +26,7 @@ Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt) {
   for (uint32_t k = 0; k < 2 + params.n; k++) {
     at[k] = ARENA_ARRAY(a, long double, count);
     draw(g, attempt, k, at[k]);
-    /* A parameter whose sign is not known is taken positive: most are, and an identity in it does not ask. */
+    /* A parameter of unknown sign is taken positive: most are, and identities do not depend on it. */
     for (SymId s = 1; s < count; s++)
       if (expr_symbol(g, s)->sign == SIGN_UNKNOWN && expr_symbol(g, s)->kind == SYM_PARAM) at[k][s] = fabsl(at[k][s]);
     if (k >= CHOICE_MOVED) at[k][params.at[k - CHOICE_MOVED]] *= 1.01L;
@@ -33,7 +34,7 @@ Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt) {
   return (Choices){e, params.n, params.at, at};
 }
 
-/* p/q within `error` of x, with p*q up to `most`: a number at random is so close to one once in |x|/(error*most) times. */
+/* Continued fraction p/q within `error` of x, p*q up to `most`: of random numbers, one in |x|/(error*most) is that close to one. */
 static int fraction_of(long double x, long double error, long double most, Num *out) {
   long double rest = x, p0 = 1, q0 = 0, p1 = floorl(x), q1 = 1;
   while (fabsl(x - p1 / q1) > error) {
@@ -50,7 +51,7 @@ static int fraction_of(long double x, long double error, long double most, Num *
   return 1;
 }
 
-/* Larger ones want more digits, which a value that rounding has not spoilt has. */
+/* Longer fractions need more digits of x, which only values without accumulated rounding have. */
 int rational_of(long double x, Num *out) {
   if (!(fabsl(x) < 1e14L)) return 0;
   return fraction_of(x, 1e-12L * fmaxl(fabsl(x), 1), 1e10L, out) || fraction_of(x, 1e-17L * fabsl(x), 1e14L, out);
@@ -107,7 +108,7 @@ static int half_of(long double exponent, Num *out) {
   return 1;
 }
 
-/* The product of powers of parameters that value[choice] goes with, and *number, what it is multiplied by. 0: none. */
+/* Product of powers of parameters that value[choice] is proportional to, and the factor *number. 0: none. */
 static Expr monomial_part(const Choices *c, const long double *value, long double *number) {
   ExprGraph *g = c->e->g;
   Num exponent;
@@ -138,7 +139,7 @@ Expr monomial_of(const Choices *c, const long double *value) {
   return rest < 0 ? expr_neg(g, root) : root;
 }
 
-/* The multiple of 1/12 that x is, as a difference shows it; 0: it is none. */
+/* x, known from a difference, as a multiple of 1/12; 0: it is none. */
 static int twelfth_of(long double x, Num *out) {
   long double whole = roundl(12 * x);
   if (!(fabsl(12 * x - whole) < 1e-6L) || fabsl(whole) > 1e6L) return 0;

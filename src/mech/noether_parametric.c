@@ -1,3 +1,5 @@
+/* Fits rows sum of mu_j A_j with known factors mu (1, or the parameters) and unknown numbers A_j: the row lies in the space of every table, which
+ * is a linear system; its kernel, times common denominators, gives the A_j. */
 #include "mech/noether_parametric.h"
 
 #include <math.h>
@@ -13,23 +15,23 @@ typedef struct {
   const Choices *choices;
   const Table *at;
   uint32_t count, width;
-  uint32_t ncolumns, *column;  /* those in use */
-  Expr mu[PARAMETERS_MOST + 1]; /* what rows of numbers are multiplied by */
+  uint32_t ncolumns, *column;  /* columns in use */
+  Expr mu[PARAMETERS_MOST + 1]; /* factors of the rows of numbers */
   uint32_t nmu;
   ParametricRows out;
-  uint32_t most;                /* for out */
+  uint32_t most;                /* capacity of out */
 } Fit;
 
 static Real entry(const Fit *f, uint32_t choice, uint32_t row, uint32_t column) { return f->at[choice].at[(size_t)row * f->width + column]; }
 
-/* The row of the pivot; UINT32_MAX: the column has none. */
+/* Row whose pivot stands in a column; UINT32_MAX: there is none. */
 static uint32_t row_of_pivot(const Fit *f, uint32_t column) {
   for (uint32_t r = 0; r < f->at[0].rows; r++)
     if (f->at[0].pivot[r] == column) return r;
   return UINT32_MAX;
 }
 
-/* Columns that are not zero at all choices. */
+/* Lists the columns that are nonzero at some choice. */
 static void take_columns(Fit *f) {
   f->ncolumns = 0;
   for (uint32_t k = 0; k < f->width; k++) {
@@ -40,7 +42,8 @@ static void take_columns(Fit *f) {
   }
 }
 
-/* sum of mu_j A_j lies in the space of each table: its entry in a column without a pivot is what its entries at pivots make there. */
+/* Adds the condition that sum of mu_j A_j lies in a table's space: its entry in a column without a pivot is the combination of rows that its
+ * entries at the pivots give. */
 static void put_equation(const Fit *f, uint32_t choice, uint32_t column, Real *row) {
   for (uint32_t j = 0; j < f->nmu; j++) {
     Real mu = choice_value(f->choices, choice, f->mu[j]), *at = row + (size_t)j * f->ncolumns;
@@ -61,7 +64,7 @@ static DenseRows kernel_of(Fit *f) {
   return dense_kernel(f->arena, rows, unknowns, m, 1e-9L);
 }
 
-/* A row of whole numbers as coefficients. */
+/* Adds a row of whole numbers to the results, as coefficients and values. */
 static void add_row(Fit *f, const int64_t *x) {
   ExprGraph *g = f->choices->e->g;
   if (f->out.n == f->most) return;
@@ -86,7 +89,7 @@ static int whole_row(const Fit *f, const Real *x, int64_t *whole) {
   return q != 0;
 }
 
-/* All rows for this choice of mu. */
+/* Adds all rows for these factors mu. */
 static void fit(Fit *f) {
   uint32_t unknowns = f->nmu * f->ncolumns;
   if (!unknowns || unknowns > UNKNOWNS_MOST) return;
@@ -99,7 +102,7 @@ static void fit(Fit *f) {
     if (whole_row(f, kernel.at + (size_t)r * unknowns, whole)) add_row(f, whole);
 }
 
-/* For rows free of parameters. */
+/* Begins with mu = 1, for rows free of parameters. */
 static Fit begin(Arena *a, const Choices *choices, const Table *at, uint32_t count) {
   Fit f = {.arena = a, .choices = choices, .at = at, .count = count, .width = at[0].blocks * at[0].shown, .nmu = 1};
   f.column = ARENA_ARRAY(a, uint32_t, f.width + 1);

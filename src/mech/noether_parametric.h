@@ -1,6 +1,6 @@
-/* Generators whose coefficients are polynomials of parameters, from tables at several choices of these: what does not depend on parameters
- * is common to all tables, and what is linear in them is a combination of few rows of numbers that fits them all. Where the rows of a
- * table in echelon form are quotients of such polynomials, which nobody would recognise. */
+/* Generators whose coefficients are polynomials of parameters, from tables at several choices of these: rows free of parameters are common to all
+ * tables; rows linear in parameters combine a few rows of numbers that fit all tables. For tables whose echelon form has quotients of such
+ * polynomials, which entry by entry nobody would recognise. */
 #ifndef LAGC_NOETHER_PARAMETRIC_H
 #define LAGC_NOETHER_PARAMETRIC_H
 
@@ -9,7 +9,7 @@
 
 typedef struct {
   Expr *c;             /* [blocks*shown] */
-  long double *value;  /* the same at the first choice */
+  long double *value;  /* c at the first choice */
 } ParametricRow;
 
 typedef struct {
@@ -17,8 +17,8 @@ typedef struct {
   ParametricRow *at;
 } ParametricRows;
 
-/* at[count]: tables of one shape at the first `count` choices. Rows free of parameters come first, those that are linear in all of them behind;
- * rows that are not recognised as whole numbers are left out. They need not be symmetries: that is for noether_prove to say. */
+/* at[count]: tables of one shape at the first `count` choices. Rows free of parameters come first, then those linear in all of them; rows that are
+ * not whole numbers are left out. The rows are candidates: noether_prove decides whether they are symmetries. */
 ParametricRows parametric_rows(Arena *a, const Choices *choices, const Table *at, uint32_t count);
 
 /* The rows that are common to all these tables. */

@@ -1,4 +1,4 @@
-/* Rows of tables as generators' coefficients: numbers at several choices of parameters, recognised as expressions of these. */
+/* Recognises generators' coefficients: the numbers that an entry of a table has at several choices of parameters become an expression of these. */
 #include <math.h>
 
 #include "mech/noether_find_impl.h"
@@ -15,12 +15,11 @@ Table noether_table_at(Search *s, const Family *f, uint32_t choice) {
   return f->kind == TIME_POWERS ? table_powers(s->scratch, space, shown) : table_periodic(s->scratch, space, shown, f->rate2[choice]);
 }
 
-/* x is the rational c at both choices. */
+/* Whether x is the same rational *c at both choices. */
 static int is_same(const long double *x, Num *c) {
   return fabsl(x[CHOICE_FIRST] - x[CHOICE_SECOND]) < 1e-9L * fabsl(x[CHOICE_FIRST]) && rational_of(x[CHOICE_FIRST], c);
 }
 
-/* Whether the tables at all choices have one shape. */
 int noether_shapes_agree(Search *s, Tables *t) {
   int agree = 1;
   for (uint32_t i = CHOICE_MOVED; i < noether_choices(s) && !t->moved; i++) {
@@ -32,7 +31,7 @@ int noether_shapes_agree(Search *s, Tables *t) {
   return agree;
 }
 
-/* The coefficient in `row` and `place`; 0: not recognised. */
+/* Expression of the entry at `row` and `place`, with the moved choices if `moved`; 0: not recognised. */
 static Expr coefficient(Search *s, Tables *t, uint32_t row, size_t place, int moved) {
   size_t at = (size_t)row * t->at[0].blocks * t->at[0].shown + place;
   long double *x = ARENA_ARRAY(s->scratch, long double, noether_choices(s));
@@ -49,14 +48,14 @@ static Expr coefficient(Search *s, Tables *t, uint32_t row, size_t place, int mo
   return monomial_of(&s->choices, x);
 }
 
-/* All coefficients of a row; 0 where one is not recognised. */
+/* Expressions of all entries of a row; 0: one is not recognised. */
 static int row_coefficients(Search *s, Tables *t, uint32_t row, int moved, Expr *c) {
   for (size_t k = 0; k < (size_t)t->at[0].blocks * t->at[0].shown; k++)
     if (!(c[k] = coefficient(s, t, row, k, moved))) return 0;
   return 1;
 }
 
-/* The same for a shorter row, which takes the place of the other when it is recognised. */
+/* Expressions of the row after shortening, which replaces it if they are recognised. */
 static int shorter_coefficients(Search *s, Tables *t, uint32_t row, int moved, Expr *c) {
   uint32_t n = t->moved && noether_shapes_agree(s, t) ? noether_choices(s) : CHOICE_MOVED, width = t->at[0].blocks * t->at[0].shown;
   long double *kept = ARENA_ARRAY(s->scratch, long double, (size_t)n * width);
@@ -72,7 +71,7 @@ static int shorter_coefficients(Search *s, Tables *t, uint32_t row, int moved, E
   return found;
 }
 
-/* Sums of parameters, when the row is multiplied by `scale`. */
+/* Expressions of the row times `scale` as sums of parameters; 0: one is none. */
 static int linear_coefficients(Search *s, const Tables *t, uint32_t row, Expr scale, Expr *c) {
   uint32_t n = t->at[0].blocks * t->at[0].shown, count = noether_choices(s);
   long double *x = ARENA_ARRAY(s->scratch, long double, count);
@@ -84,7 +83,7 @@ static int linear_coefficients(Search *s, const Tables *t, uint32_t row, Expr sc
   return 1;
 }
 
-/* The same with each parameter, and each sum of two, as the scale: of two bodies m1/(m1 + m2). */
+/* The same with each parameter, and each sum of two, as the scale, which m1/(m1 + m2) of two bodies needs. */
 static int scaled_coefficients(Search *s, const Tables *t, uint32_t row, Expr *c) {
   enum { PARAMETERS_MOST = 12 };
   ExprGraph *g = s->g;
@@ -97,7 +96,7 @@ static int scaled_coefficients(Search *s, const Tables *t, uint32_t row, Expr *c
   return 0;
 }
 
-/* The cheap ways first: what takes tables at all choices comes last. */
+/* Cheap ways first: tables at all choices are made last. */
 int noether_recognise(Search *s, Tables *t, uint32_t row, Expr *c) {
   if (row_coefficients(s, t, row, 0, c) || shorter_coefficients(s, t, row, 0, c)) return 1;
   if (!noether_shapes_agree(s, t)) return 0;

@@ -1,3 +1,4 @@
+/* Assembles the report, and carries generators over to the graph of the model with an effect, by names of symbols. */
 #include "mech/noether_report.h"
 
 #include <math.h>
@@ -18,7 +19,7 @@ static const Generator *shift(const Eqns *e, uint32_t i) {
 }
 
 Indices noether_cyclic(const Eqns *e) {
-  enum { PROVE_MOST = 20 }; /* past them, only those that do not stand in the text of L */
+  enum { PROVE_MOST = 20 }; /* beyond, only those absent from the text of L */
   Indices all = {0};
   for (uint32_t i = 0; i < e->n; i++) {
     int absent = expr_is_zero(e->g, e->dLdq[i]);
@@ -28,6 +29,7 @@ Indices noether_cyclic(const Eqns *e) {
   return all;
 }
 
+/* Whether a force or a constraint acts on coordinate i. */
 static int is_pushed(const Eqns *e, uint32_t i) {
   for (uint32_t k = 0; k < e->constraints.A.n; k++)
     if (e->constraints.A.at[k].col == i) return 1;
@@ -56,7 +58,7 @@ NoetherReport *noether_report(Eqns *e) {
   return r;
 }
 
-/* Whether two charges are the same; those of sums of coordinates are written in another way. */
+/* Whether two charges are equal; in sums of coordinates they may be written differently. */
 static int same_charge(const NoetherReport *r, uint32_t k, Expr one, Expr other) {
   ExprGraph *g = r->e->g;
   const LinearForms *forms = r->found.all.at[k].forms;
@@ -74,7 +76,7 @@ Name noether_declared(const NoetherReport *r, uint32_t k) {
 
 /* --- generators in the graph of another model --- */
 
-/* The same symbol by name; 0: there is none. */
+/* The symbol of that name in another model; 0: there is none. */
 static Expr symbol_in(const Eqns *to, const Symbol *s) {
   for (SymId k = 1; k <= expr_symbol_count(to->g); k++) {
     const Symbol *x = expr_symbol(to->g, k);
@@ -83,7 +85,8 @@ static Expr symbol_in(const Eqns *to, const Symbol *s) {
   return 0;
 }
 
-/* Generators are made of symbols, numbers, powers and functions of one argument; 0: not so, or a symbol is missing. */
+/* Node x in the graph of another model, arguments by `map`: a symbol, number, sum, product or function of one argument. 0: it is another node, or
+ * a symbol is missing. */
 static Expr node_in(const Eqns *to, const ExprGraph *g, Expr x, const ExprMap *map) {
   ExprGraph *other = to->g;
   ExprOp op = expr_op(g, x);
@@ -114,7 +117,7 @@ static Expr in_graph(const Eqns *to, ExprGraph *g, Expr x) {
   return expr_map_get(&map, x);
 }
 
-/* Coordinates that only the other model has stay as they are. 0: a name is missing there. */
+/* The same generator for another model, whose further coordinates stay fixed. 0: a name is missing there. */
 static int generator_in(const Eqns *to, const Eqns *from, const Generator *by, Generator *same) {
   uint32_t n = noether_coordinates(to), placed = 0;
   Expr *xi = ARENA_ARRAY(to->m->arena, Expr, n + 1);
@@ -140,7 +143,7 @@ void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with) {
 
 int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t k) {
   enum { STATES = 3 };
-  const long double near = 1e-12L; /* long doubles, of values of the size of 1 */
+  const long double near = 1e-12L; /* rounding of long doubles of size 1 */
   const Eqns *with = v->e, *e = r->e;
   long double *there = ARENA_ARRAY(with->m->arena, long double, expr_symbol_count(with->g) + 1), *here = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
   for (uint32_t seed = 1; seed <= STATES; seed++) {

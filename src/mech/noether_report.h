@@ -1,4 +1,4 @@
-/* What `lagc noether` says of a model: symmetries, charges, their algebra, and what effects break. */
+/* Contents of `lagc noether`: symmetries, charges, their algebra, and the symmetries that effects break. */
 #ifndef LAGC_NOETHER_REPORT_H
 #define LAGC_NOETHER_REPORT_H
 
@@ -7,10 +7,10 @@
 
 typedef VEC(uint32_t) Indices;
 
-/* What a symmetry of the model becomes once an effect is on. */
+/* Verdicts on the model's symmetries once an effect is on. */
 typedef struct {
   Name effect;
-  const Eqns *e;       /* of the model with that effect, and what it requires */
+  const Eqns *e;       /* the model with that effect, and what it requires */
   const Noether *is;   /* [found.all.n]; charge 0: the model with the effect lacks a name of the generator */
 } EffectVerdict;
 
@@ -18,26 +18,26 @@ typedef struct {
   Eqns *e;
   FoundSymmetries found;
   Algebra algebra;
-  int scales;          /* the next one holds */
+  int scales;          /* there is a scaling */
   Scaling scaling;
   Indices cyclic;      /* coordinates that L does not contain */
   VEC(EffectVerdict) effects;
 } NoetherReport;
 
-/* Needs a Lagrangian. */
+/* Finds symmetries, brackets, scaling and cyclic coordinates. Needs a Lagrangian. */
 NoetherReport *noether_report(Eqns *e);
 
-/* The symmetry of the model's text with the same charge as found symmetry k, or its opposite; NULL: none is declared. */
+/* Name of the declared symmetry with the charge of found symmetry k, or its opposite; NULL: there is none. */
 Name noether_declared(const NoetherReport *r, uint32_t k);
 
-/* Adds a verdict on the model with one more effect. */
+/* Adds the verdicts on the model `with` one more effect. */
 void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with);
 
-/* What must be positive for the roots in found symmetry k to have values: constants whose signs the model does not tell. */
+/* Constants of unknown sign that must be positive for the roots in found symmetry k to have values. */
 typedef VEC(Expr) Conditions;
 Conditions noether_conditions(const NoetherReport *r, uint32_t k);
 
-/* Whether found symmetry k has the same charge with the effect on: at random states, whose symbols are known by their names. */
+/* Whether found symmetry k has the same charge with the effect on; compared at random states, symbols matched by name. */
 int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t k);
 
 /* Coordinates that L does not contain. */

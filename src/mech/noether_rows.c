@@ -1,4 +1,4 @@
-/* The ansatz of the search for symmetries, and its linear equations at random states. */
+/* The ansatz of the search for symmetries, and its linear equations at random states: one row of B0 and B1 a state, scaled to size 1. */
 #include <math.h>
 
 #include "mech/noether_frame.h"
@@ -9,7 +9,7 @@ enum { WHOLE_MOST = 20, CUBIC_MOST = 4 };
 
 /* --- the ansatz --- */
 
-/* Length of what names the vector of a coordinate: r[2] of r[2].x; 0: it is no component. */
+/* Length of the vector's name in a component's: r[2] of r[2].x; 0: it is no component. */
 static size_t vector_part(Name name) {
   const char *dot = strrchr(name, '.');
   return dot ? (size_t)(dot - name) : 0;
@@ -75,7 +75,7 @@ Ansatz *ansatz_new(Arena *a, const Eqns *e) {
 struct RowSource {
   const Ansatz *of;
   Arena *scratch;
-  EvalTape *tape;        /* L, dL/dt, dL/dq, p; then of constraints A and r */
+  EvalTape *tape;        /* L, dL/dt, dL/dq, p; then A and r of the constraints */
   StateSolver *solver;   /* or NULL */
   const NoetherFrame *frame; /* or NULL */
   long double *symbols, *kept, *out;
@@ -83,11 +83,12 @@ struct RowSource {
   long double *part;     /* [2*columns] scratch */
   long double *point;    /* [2*n] scratch */
   uint64_t random;
-  uint32_t turn;         /* of constraints, in rows at times */
+  uint32_t turn;         /* number of rows at times so far; constraints take turns in them */
   uint32_t filled;       /* rows so far; constraints take turns in them */
 };
 
-/* Steele, Lea, Flood: Fast splittable pseudorandom number generators, OOPSLA 2014, DOI 10.1145/2660193.2660195. Of size 0.3 .. 1.7. */
+/* Random number, 0.3 .. 1.7 with random sign. Steele, Lea, Flood: Fast splittable pseudorandom number generators, OOPSLA 2014, DOI
+ * 10.1145/2660193.2660195. */
 static long double next_value(RowSource *r) {
   uint64_t z = r->random += 0x9e3779b97f4a7c15u;
   z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
@@ -125,7 +126,7 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
 
 const NoetherFrame *rows_frame(const RowSource *r) { return r->frame; }
 
-/* What was drawn is y, or y' without a shift. */
+/* Converts drawn values, which are y (or y', without shift), to the model's coordinates. */
 static void take_from_frame(RowSource *r, const SymId *symbol, const long double *shift) {
   uint32_t n = r->of->n;
   for (uint32_t i = 0; i < n; i++) r->point[i] = r->symbols[symbol[i]] - (shift ? shift[i] : 0);
@@ -133,8 +134,8 @@ static void take_from_frame(RowSource *r, const SymId *symbol, const long double
   for (uint32_t i = 0; i < n; i++) r->symbols[symbol[i]] = r->point[i];
 }
 
-/* Everything but parameters gets a new value, coordinates `spread` times as far out. Times are further apart, so that functions of time
- * are told from each other. */
+/* Draws new values of all symbols but parameters, coordinates `spread` times as large. Times are further apart, so that functions of time are told
+ * from each other. */
 static void draw(RowSource *r, long double spread) {
   const ExprGraph *g = r->of->e->g;
   for (SymId s = 1; s <= expr_symbol_count(g); s++) {
@@ -147,7 +148,7 @@ static void draw(RowSource *r, long double spread) {
   if (r->frame) take_from_frame(r, r->of->v, NULL);
 }
 
-/* How steep L is there. */
+/* Sum of |dL/dq_i| at the state. */
 static long double steepness(RowSource *r) {
   long double sum = 0;
   eval_run(r->tape, r->symbols, r->out);
@@ -155,8 +156,8 @@ static long double steepness(RowSource *r) {
   return sum;
 }
 
-/* The gentlest of some states: where two of several bodies nearly touch, their force drowns all others, and with 1/(x - y)^2 rounding of the
- * potential drowns the kinetic energy. Of many bodies every second state is wide. */
+/* Draws some states and keeps that with the weakest forces: where two of several bodies nearly touch, their force drowns all others, and with 1/(x
+ * - y)^2 rounding of the potential drowns the kinetic energy. With many bodies every second state is wide. */
 static void draw_gentle(RowSource *r) {
   enum { MANY = 6, DRAWS = 24 };
   size_t size = (expr_symbol_count(r->of->e->g) + 1) * sizeof *r->symbols;
@@ -175,6 +176,7 @@ static void set_velocities(RowSource *r, const long double *v, long double facto
   for (uint32_t i = 0; i < r->of->n; i++) r->symbols[r->of->v[i]] = factor * v[i];
 }
 
+/* Evaluates the tape at the state in symbols; phi, rates, dL/dq and p refer to the frame. */
 static void evaluate(RowSource *r) {
   const Ansatz *s = r->of;
   eval_run(r->tape, r->symbols, r->out);
@@ -215,7 +217,7 @@ static void add_lagrangian_row(RowSource *r, long double weight, long double *b0
   }
 }
 
-/* From the state in symbols, and another one. */
+/* The row of the state in symbols less that of another state at the same time. */
 static void difference_row(RowSource *r, long double *b0, long double *b1) {
   SymId time = r->of->e->m->time;
   long double t = r->symbols[time] *= r->of->far_times && r->turn % 2 ? 4 : 1;
@@ -227,7 +229,7 @@ static void difference_row(RowSource *r, long double *b0, long double *b1) {
   add_lagrangian_row(r, -1, b0, b1);
 }
 
-/* The velocities stand in symbols. */
+/* A row of the given kind from the state in symbols, with its velocities times 1, -1 and 0. */
 static void lagrangian_rows(RowSource *r, RowKind kind, long double *b0, long double *b1) {
   static const long double factors[3] = {1, -1, 0};
   static const long double even[3] = {1, 1, -2}, rest[3] = {0, 0, 1}, all[3] = {1, 0, 0};
@@ -242,7 +244,7 @@ static void lagrangian_rows(RowSource *r, RowKind kind, long double *b0, long do
   }
 }
 
-/* A xi + b tau, where the constraints r = A q' + b hold. */
+/* The row A xi + b tau of a constraint r = A q' + b, at a state moved onto the constraints. 0: it cannot be moved there. */
 static int constraint_row(RowSource *r, uint32_t which, long double *b0) {
   const Ansatz *s = r->of;
   const Constraints *k = &s->e->constraints;
@@ -263,7 +265,7 @@ static int constraint_row(RowSource *r, uint32_t which, long double *b0) {
   return 1;
 }
 
-/* Each state counts as much as any other: bodies that nearly touch would drown them. 0: a value is not finite. */
+/* Scales a row to largest element 1: states where bodies nearly touch would drown the others. 0: a value is not finite. */
 static int normalise(long double *b0, long double *b1, uint32_t n) {
   long double most = 0;
   for (uint32_t i = 0; i < n; i++) {
@@ -274,7 +276,7 @@ static int normalise(long double *b0, long double *b1, uint32_t n) {
   return 1;
 }
 
-/* A row at a new state; 0: a value is not finite. */
+/* A row at a new state; 0: a value is not finite, or the constraints cannot be met. */
 static int try_row(RowSource *r, RowKind kind, uint32_t which, long double *b0, long double *b1) {
   uint32_t w = r->of->columns;
   memset(b0, 0, w * sizeof *b0);

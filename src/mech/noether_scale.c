@@ -1,3 +1,5 @@
+/* Scalings that multiply the action: exponents from the kernel of linear equations at random states, the same rationals at two choices of
+ * parameters, then proved term by term. */
 #include <math.h>
 
 #include "base/dense.h"
@@ -20,7 +22,7 @@ static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
 static SymId q_of(const Work *w, uint32_t i) { return w->e->m->coords.at[i].q; }
 static SymId v_of(const Work *w, uint32_t i) { return w->e->m->coords.at[i].v; }
 
-/* The exponents, up to a factor, as the kernel of the equations that random states give: alpha, beta, kappa. 0: there is not exactly one. */
+/* Exponents alpha, beta, kappa up to a factor: the kernel of the equations at random states. NULL: it is not one-dimensional. */
 static const long double *exponents(Work *w, const long double *parameters, uint32_t turn) {
   enum { SPARE_ROWS = 8 };
   ExprGraph *g = w->g;
@@ -52,7 +54,7 @@ static const long double *exponents(Work *w, const long double *parameters, uint
   return kernel.n == 1 && kernel.gap > 1e4L ? kernel.at : NULL;
 }
 
-/* delta L - kappa L is 0, term by term: each has the same dimension. */
+/* Whether delta L = kappa L, term by term: each has the same dimension. */
 static int is_proved(Work *w) {
   ExprGraph *g = w->g;
   Expr L = w->e->m->lagrangian;
@@ -75,7 +77,7 @@ static int is_proved(Work *w) {
   return 1;
 }
 
-/* Whole numbers without a common factor, of which the last is positive. */
+/* Divides x by the greatest common divisor of its elements. */
 static void make_whole(Num *x, uint32_t n) {
   Num common = num_int(0);
   for (uint32_t i = 0; i < n; i++)
@@ -90,7 +92,7 @@ static void scaling_work(Arena *scratch, void *data) {
   const long double *x = exponents(w, choices.at[CHOICE_FIRST], 1), *y = x ? exponents(w, choices.at[CHOICE_SECOND], 2) : NULL;
   Num *whole = ARENA_ARRAY(w->e->m->arena, Num, w->n + 2), other;
   uint32_t last = w->n + 1;
-  if (!y || fabsl(x[last]) < 1e-9L || fabsl(y[last]) < 1e-9L) return; /* kappa is 0: Noether's own */
+  if (!y || fabsl(x[last]) < 1e-9L || fabsl(y[last]) < 1e-9L) return; /* kappa is 0: a symmetry in Noether's sense */
   for (uint32_t i = 0; i <= last; i++)
     if (!rational_of(x[i] / x[last], &whole[i]) || !rational_of(y[i] / y[last], &other) || !num_equal(whole[i], other)) return;
   make_whole(whole, w->n + 2);

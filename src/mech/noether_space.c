@@ -1,12 +1,12 @@
-/* The space of solutions of B0 u + B1 u' = 0: cut down until its derivatives lie in it. */
+/* Solution space of B0 u + B1 u' = 0: the space of all coefficients, restricted by equations at random states until it contains u' with u. */
 #include <math.h>
 
 #include "mech/noether_frame.h"
 
 enum { SPARE_ROWS = 12 };
-static const long double REST = 1e-11L; /* of a column of length 1: rounding is 1e-18, random pivots were never seen below 1e-6 */
+static const long double REST = 1e-11L; /* least pivot of a column of length 1: rounding is 1e-18, random pivots were never seen below 1e-6 */
 
-/* x * space: rows of coordinates become rows of u. */
+/* x * space: coordinates in the space become coefficients u. */
 static DenseRows combine(Arena *a, const DenseRows *x, const DenseRows *space) {
   DenseRows u = {x->n, space->width, ARENA_ARRAY(a, long double, (size_t)x->n * space->width + 1), x->gap};
   for (size_t k = 0; k < x->n; k++)
@@ -16,7 +16,7 @@ static DenseRows combine(Arena *a, const DenseRows *x, const DenseRows *space) {
   return u;
 }
 
-/* The elements of the space's rows that are not zero: row k has those from begin[k] on. At first a row has one. */
+/* Nonzero elements of the space's rows, those of row k from begin[k] on; at first one a row. */
 typedef struct {
   uint32_t *begin, *column;
   long double *value;
@@ -39,12 +39,11 @@ static Sparse sparse_rows(Arena *a, const DenseRows *space) {
   return s;
 }
 
-/* What is rounding in products with the rows of a space: these are known to eps over the smallest pivot that they were solved with, and what was left
- * beside that is some eps. */
+/* Rounding in products with the rows of a space: eps over the smallest pivot that they were solved with, about 1/gap. */
 static long double rounding_of(const DenseRows *space) { return space->gap > 0 ? fmaxl(1e-15L, 30 / space->gap) : 1e-15L; }
 
-/* to[n] = the products of a row with the rows of the space. Both are of length 1 or so, and what is left of a product far below that is
- * rounding: it must be 0, for a kernel scales columns. */
+/* to[n] = products of a row with the rows of the space, all of length about 1. A product far below 1 is rounding and becomes 0, as a kernel scales
+ * columns. */
 static void project(const Sparse *s, uint32_t n, const long double *row, long double rounding, long double *to) {
   for (uint32_t k = 0; k < n; k++) {
     to[k] = 0;
@@ -53,7 +52,7 @@ static void project(const Sparse *s, uint32_t n, const long double *row, long do
   }
 }
 
-/* How many columns of m have an element that is not zero. */
+/* Number of columns of m with a nonzero element. */
 static uint32_t columns_used(const long double *m, uint32_t rows, uint32_t columns) {
   uint32_t used = 0;
   for (size_t j = 0; j < columns; j++) {
@@ -64,8 +63,8 @@ static uint32_t columns_used(const long double *m, uint32_t rows, uint32_t colum
   return used;
 }
 
-/* The kernel of (B0, B1) on pairs (x, y) of u = x*space, u' = y*space. The rank is at most the number of columns that are not zero, and what is even in
- * velocities has a third of the columns. Half as many rows again: a square matrix of random numbers is badly conditioned. */
+/* Kernel of (B0, B1) on vectors (x, y), u = x*space, u' = y*space. Its rank is at most the number of nonzero columns, a third of all for
+ * ROWS_EVEN. It takes half as many rows again, because square random matrices are badly conditioned. */
 static DenseRows pairs(RowSource *r, Arena *a, RowKind kind, const DenseRows *space) {
   uint32_t n = space->n, rows = 0, wanted = SPARE_ROWS;
   size_t most = 3 * n + SPARE_ROWS, w = space->width;
@@ -82,7 +81,7 @@ static DenseRows pairs(RowSource *r, Arena *a, RowKind kind, const DenseRows *sp
   return dense_kernel(a, rows, 2 * n, m, REST);
 }
 
-/* What is left of the space by the rows of one kind. 0 where the rows could not be had. */
+/* Intersects the space with the solutions of rows of one kind. 0: such rows could not be had. */
 static int cut(RowSource *r, Arena *a, RowKind kind, DenseRows *space, int *sure) {
   DenseRows kernel = pairs(r, a, kind, space);
   if (kernel.at == NULL) return 0;
@@ -94,14 +93,14 @@ static int cut(RowSource *r, Arena *a, RowKind kind, DenseRows *space, int *sure
   return 1;
 }
 
-/* Whether a space, of rows of length 1, has more than rounding in a column. */
+/* Whether a column of a space, of rows of length 1, is more than rounding. */
 static int reaches(const DenseRows *space, uint32_t column) {
   for (size_t k = 0; k < space->n; k++)
     if (fabsl(space->at[k * space->width + column]) > REST) return 1;
   return 0;
 }
 
-/* Coefficients to search: all, or those that another space has. */
+/* The space to start from: all coefficients, or those that occur in another space. */
 static DenseRows everything(const Ansatz *s, Arena *a, const DenseRows *within) {
   DenseRows all = {.width = s->columns, .at = ARENA_ARRAY(a, long double, (size_t)s->columns * s->columns)};
   for (uint32_t j = s->has_tau ? 0 : 1; j < s->columns; j++)
@@ -109,7 +108,7 @@ static DenseRows everything(const Ansatz *s, Arena *a, const DenseRows *within) 
   return all;
 }
 
-/* A of x' = A x: the kernel spans pairs (x, A x), and each x stands in one of them. */
+/* A of x' = A x: the kernel spans (x, A x), with one row for each x. */
 static long double *rates(RowSource *r, Arena *a, const DenseRows *space, int *sure) {
   uint32_t n = space->n, *pivot = ARENA_ARRAY(a, uint32_t, 2 * n + 1);
   long double *A = ARENA_ARRAY(a, long double, (size_t)n * n + 1);
@@ -120,7 +119,7 @@ static long double *rates(RowSource *r, Arena *a, const DenseRows *space, int *s
   }
   dense_echelon(n, 2 * n, kernel.at, 1e-12L, pivot);
   for (uint32_t k = 0; k < n; k++) {
-    if (pivot[k] != k) *sure = 0; /* an x without a derivative: the space was not cut down far enough */
+    if (pivot[k] != k) *sure = 0; /* an x without a derivative: the space was not restricted far enough */
     for (uint32_t i = 0; i < n; i++) A[(size_t)i * n + k] = kernel.at[(size_t)k * 2 * n + n + i];
   }
   return A;

@@ -1,3 +1,5 @@
+/* Generators as functions of time from x' = A x: polynomials of t from the generalised kernel of A, oscillations and exponentials from that of A^2
+ * - rate2, rates from the minimal polynomial of A^2; where L contains t, a fit to listed functions. */
 #include "mech/noether_table.h"
 
 #include <complex.h>
@@ -20,7 +22,7 @@ static void multiply(uint32_t n, const long double *a, const long double *b, lon
       for (size_t j = 0; a[i * n + k] != 0 && j < n; j++) to[i * n + j] += a[i * n + k] * b[k * n + j];
 }
 
-/* A x. */
+/* to = A x */
 static void apply(uint32_t n, const long double *A, const long double *x, long double *to) {
   for (size_t i = 0; i < n; i++) {
     to[i] = 0;
@@ -28,7 +30,7 @@ static void apply(uint32_t n, const long double *A, const long double *x, long d
   }
 }
 
-/* What rounding has left in the place of zeros of a matrix whose elements come from numbers of this size. */
+/* Sets to 0 the elements that are rounding, for a matrix made from numbers of this size. */
 static void clean(long double *m, size_t n, long double size) {
   for (size_t i = 0; i < n; i++)
     if (fabsl(m[i]) < 1e-12L * size) m[i] = 0;
@@ -36,7 +38,8 @@ static void clean(long double *m, size_t n, long double size) {
 
 static long double size_of(const SolutionSpace *s) { return fmaxl(largest(s->A, (size_t)s->space.n * s->space.n), 1e-3L) * (long double)(s->space.n + 1); }
 
-/* The x that m^k x = 0 of some k up to `most`, orthonormal: the kernel of m[n*n], what m takes there, and so on. *depth: the k that is needed. */
+/* Orthonormal basis of the x with m^k x = 0 for some k up to `most`: the kernel of m[n*n], then the x that m maps into it, and so on. *depth: the
+ * k needed. */
 static DenseRows generalised_kernel(Arena *a, uint32_t n, const long double *m, uint32_t most, uint32_t *depth) {
   DenseRows x = {.width = n, .at = ARENA_ARRAY(a, long double, (size_t)n * n + 1)};
   for (*depth = 0; *depth < most; ++*depth) {
@@ -62,7 +65,7 @@ static DenseRows polynomials(Arena *a, const SolutionSpace *s) {
   return generalised_kernel(a, n, m, TIME_BLOCKS_MOST, &depth);
 }
 
-/* Adds `factor` times the shown part of the solution x to a block of a row. */
+/* Adds `factor` times the part of solution x in tau and xi to a block of a row. */
 static void show(const SolutionSpace *s, const long double *x, long double factor, uint32_t shown, long double *block) {
   for (size_t k = 0; k < s->space.n; k++)
     for (size_t j = 0; x[k] != 0 && j < shown; j++) block[j] += factor * x[k] * s->space.at[k * s->space.width + j];
@@ -103,7 +106,7 @@ Table table_powers(Arena *a, const SolutionSpace *s, uint32_t shown) {
   return t;
 }
 
-/* S and N with A = S + N, S S = rate2, where m = A A - rate2 has a power that is 0: A is the root of rate2 (1 + m/rate2), and S that of rate2. */
+/* A = S + N with S^2 = rate2, where m = A^2 - rate2 has m^3 = 0: S = A (1 + m/rate2)^(-1/2), by its series. */
 typedef struct {
   uint32_t n;
   long double *S, *N;
@@ -122,7 +125,7 @@ static Parts parts_of(Arena *a, const SolutionSpace *s, const long double *m, lo
   return p;
 }
 
-/* exp(A t) x = exp(S t) (1 + N t + ..) x: the blocks of t^k exp(S t). */
+/* The blocks of t^k exp(S t) in exp(A t) x = exp(S t) (1 + N t + ..) x. */
 static void show_periodic(const SolutionSpace *s, const Parts *p, const long double *x, long double *next, long double rate2, uint32_t shown, long double *block) {
   long double rate = sqrtl(fabsl(rate2)), *second = block + shown;
   apply(p->n, p->S, x, next);
@@ -175,7 +178,7 @@ static void roots_of(uint32_t n, const long double *c, complex long double *root
     }
 }
 
-/* A on the space modulo its polynomials, where it has no kernel: C A C^T with C orthonormal and orthogonal to them. */
+/* A on the space modulo polynomial solutions, where it is regular: C A C^T, C orthonormal and orthogonal to them. */
 static SolutionSpace without_polynomials(Arena *a, const SolutionSpace *s) {
   uint32_t n = s->space.n;
   DenseRows x = polynomials(a, s), all = {x.n + n, n, ARENA_ARRAY(a, long double, (size_t)(x.n + n) * n + 1), 0};
@@ -193,7 +196,7 @@ static SolutionSpace without_polynomials(Arena *a, const SolutionSpace *s) {
   return rest;
 }
 
-/* The minimal polynomial of A^2, from its powers on one vector; A. N. Krylov 1931. 0: of too high a degree. */
+/* Minimal polynomial of A^2 from its powers on one vector; A. N. Krylov 1931. 0: its degree exceeds `most`. */
 static uint32_t minimal_polynomial(Arena *a, const SolutionSpace *s, uint32_t most, long double *c) {
   uint32_t n = s->space.n, count = n < most ? n : most;
   long double *x = ARENA_ARRAY(a, long double, n + 1), *y = ARENA_ARRAY(a, long double, n + 1);
@@ -213,7 +216,7 @@ static uint32_t minimal_polynomial(Arena *a, const SolutionSpace *s, uint32_t mo
   return 0;
 }
 
-/* Takes the roots that are as close to that in place k as rounding brings a double one apart behind it. How many they are. */
+/* Moves the roots that equal root k up to the rounding of a double root to the places behind it. Returns their number, with root k. */
 static uint32_t join(uint32_t n, complex long double *root, uint32_t k) {
   const long double apart = 3e-8L;
   uint32_t count = 1;
@@ -226,7 +229,7 @@ static uint32_t join(uint32_t n, complex long double *root, uint32_t k) {
   return count;
 }
 
-/* A root that occurs `count` times, to rounding: it is a simple one of the derivative of order count - 1. */
+/* Refines a root of multiplicity `count`, a simple root of the derivative of order count - 1, by Newton's method. */
 static complex long double multiple_root(uint32_t n, const long double *c, uint32_t count, complex long double x) {
   enum { TURNS = 3 };
   for (int turn = 0; turn < TURNS; turn++) {
@@ -242,7 +245,7 @@ static complex long double multiple_root(uint32_t n, const long double *c, uint3
   return x;
 }
 
-/* How often each rate occurs. 0: others are left. */
+/* Multiplicity of each rate. 0: they do not add up to n. */
 static int multiplicities(Arena *a, const SolutionSpace *s, const long double *square, const Rates *r, long double *times) {
   uint32_t n = s->space.n, all = 0, depth;
   long double *m = ARENA_ARRAY(a, long double, (size_t)n * n + 1);
@@ -257,7 +260,7 @@ static int multiplicities(Arena *a, const SolutionSpace *s, const long double *s
   return all == n;
 }
 
-/* Rates to rounding, which multiple roots are not: the traces of A^2, A^4 .. are sums of their powers, which Newton's method solves. */
+/* Refines rates, as multiple roots are inaccurate: the traces of A^2, A^4 .. are sums of their powers, solved by Newton's method. */
 static void polish(Arena *a, const SolutionSpace *s, Rates *r) {
   enum { TURNS = 3 };
   uint32_t n = s->space.n, K = r->n;

@@ -1,3 +1,4 @@
+/* Multiplies rows xi by M, finds short integer combinations of them, and solves exactly for xi. */
 #include "mech/noether_whole.h"
 
 #include <math.h>
@@ -28,12 +29,12 @@ const Num *whole_mass(Arena *a, const Ansatz *s) {
   return M;
 }
 
-/* Where the coefficient of phi_k in xi_i stands in a block. */
+/* Index in a block of the coefficient of phi_k in xi_i. */
 static size_t place(size_t n, size_t i, size_t k) { return 1 + (k ? n + i * n + k - 1 : i); }
 
 static long double value_of(Num x) { return num_is_exact(x) ? (long double)x.num / (long double)x.den : num_value(x); }
 
-/* M xi of xi, by value. */
+/* M xi from xi, by value. */
 static void lower(const Ansatz *s, const Num *M, uint32_t blocks, const long double *xi, long double *to) {
   size_t n = s->n;
   for (uint32_t m = 0; m < blocks; m++, xi += s->shown, to += s->shown) {
@@ -60,7 +61,7 @@ int whole_raise(Arena *a, const Ansatz *s, const Num *M, uint32_t blocks, Expr *
   return 1;
 }
 
-/* What rounding has left beside the largest of a row. */
+/* Sets to 0 the elements that are rounding beside the largest of a row. */
 static void clean(long double *row, size_t width) {
   long double most = 0;
   for (size_t k = 0; k < width; k++) most = fmaxl(most, fabsl(row[k]));
@@ -74,7 +75,7 @@ static uint32_t leading(const int64_t *row, size_t width) {
   return k;
 }
 
-/* Rows by their first entries: the energy, what does not depend on time, the rest. */
+/* Sorts rows by their first nonzero entry: the energy, generators independent of time, the rest. */
 static void sort(Arena *a, int64_t *rows, uint32_t count, size_t width) {
   int64_t *kept = ARENA_ARRAY(a, int64_t, width + 1);
   for (size_t i = 1; i < count; i++)

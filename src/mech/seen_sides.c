@@ -1,3 +1,4 @@
+/* One entry for each condition, switch and function in the roots, with two flags that compared states set. */
 #include "mech/seen_sides.h"
 
 #include <math.h>
@@ -13,7 +14,7 @@ typedef enum { TRUTH, SIGN, VALUE } SideKind;
 typedef struct {
   Expr e;
   SideKind kind;
-  int one, other; /* true and false; positive and negative; a value, and another */
+  int one, other; /* seen: true and false; positive and negative; a value, and another */
   Real value;
 } Sides;
 
@@ -25,6 +26,7 @@ struct SeenSides {
   uint32_t missing;
 };
 
+/* Whether e depends on any symbol but constants. */
 static int varies(ExprGraph *g, Expr e) {
   const unsigned fixed = 1u << SYM_CONST;
   return (expr_kinds(g, e) & ~fixed) != 0;

@@ -1,4 +1,4 @@
-/* Which sides of an expression a search by states has seen: agreement says nothing of a side that no state was on. */
+/* Coverage of switches by the states of a search: agreement says nothing of a side that no state was on. */
 #ifndef LAGC_SEEN_SIDES_H
 #define LAGC_SEEN_SIDES_H
 
@@ -6,14 +6,14 @@
 
 typedef struct SeenSides SeenSides;
 
-/* The sides of the roots: of conditions, true and false; of `min`, `max`, `abs` and `sign`, both signs where both are possible; of functions of one number
- * that vary, two values (tanh(x^2 + 30) is 1 in all digits there are). */
+/* The sides in the roots: true and false of conditions; both signs of the arguments of `min`, `max`, `abs` and `sign` where both are possible; two
+ * values of functions of one number that vary (tanh(x^2 + 30) is 1 in all digits there are). */
 SeenSides *seen_sides(ExprGraph *g, const Expr *roots, uint32_t n);
 
-/* A state that was compared. */
+/* Records a state that was compared. */
 void seen_sides_note(SeenSides *s, const long double *symbols);
 
-/* What no state showed, as "`x > 1000` true"; NULL: all was seen. */
+/* The first side that no state was on, as "`x > 1000` true"; NULL: all were seen. */
 const char *seen_sides_missing(const SeenSides *s);
 
 #endif

@@ -1,3 +1,4 @@
+/* The listing of the equations of motion, the one-line facts, and --dump=eqns. */
 #include "mech/show.h"
 
 #include "mech/charges.h"
@@ -5,8 +6,7 @@
 #include "mech/squares.h"
 #include "sym/simplify.h"
 
-/* What a person would write for an entry of M or f: its short form, also where the shared one costs
- * less to compute. Long chains keep their lets. */
+/* Short form of an entry of M or f, as a person writes it, even where the shared form costs less to compute. Long chains keep their lets. */
 static Expr shown(const Text *t, Expr x) {
   enum { SHORT_MAX_COORDS = 16 };
   return t->e->n + t->e->first.n <= SHORT_MAX_COORDS ? simplify(t->g, x) : x;
@@ -22,7 +22,7 @@ static const Expr *mass_rows(Text *t) {
     next[x->row]++;
     next[x->col] += x->row != x->col;
   }
-  for (uint32_t i = 0; i < n; i++) { /* from how many there are to where they begin */
+  for (uint32_t i = 0; i < n; i++) { /* counts become offsets */
     uint32_t count = next[i];
     next[i] = begin;
     begin += count;
@@ -38,8 +38,8 @@ static const Expr *mass_rows(Text *t) {
   return rows;
 }
 
-/* The unknowns of the system with definitions: accelerations, and per definition w the part of w' that
- * contains them, and the force that w passes on to what it contains. */
+/* Unknowns of the augmented system: accelerations; per definition w, the part of w' that contains them, and the force that w passes on to its
+ * arguments. */
 typedef struct {
   const Expr *rate, *force;
 } Unknowns;
@@ -65,7 +65,7 @@ static void add_product(Text *t, Expr *sum, Expr a, Expr b) {
   *sum = expr_add(t->g, *sum, ab);
 }
 
-/* Rows of H and C^T for coordinates, those of H, C^T and -1 for definitions, and those of C: see mech/lift.h. */
+/* Rows of the augmented system: H and C^T for coordinates; H, C^T and -1 for definitions; and C: see mech/lift.h. */
 static void lifted_motion(Text *t) {
   const Eqns *e = t->e;
   const LinearSystem *s = &e->system;
@@ -89,7 +89,7 @@ static void lifted_motion(Text *t) {
   for (uint32_t i = 0; i < s->n; i++) text_equation(t, row[i], s->f[i], i + 1 == s->n && !e->m->states.n);
 }
 
-/* Whether the coordinate is coupled to no more than one other: then its rate says more than its row of the two-form. */
+/* Whether the coordinate is coupled to at most one other: then its rate says more than its row of the two-form. */
 static int is_in_pair(const FirstOrder *x, uint32_t i) {
   uint32_t n = 0;
   for (uint32_t k = 0; k < x->n; k++) n += x->block[k] == x->block[i];
@@ -130,7 +130,7 @@ static void motion(Text *t) {
   text_end(t);
 }
 
-/* What the constraints say, and what they demand of accelerations. */
+/* The constraints, and the conditions that they put on accelerations. */
 static void constraints(Text *t) {
   const Eqns *e = t->e;
   const Constraints *k = &e->constraints;
@@ -158,9 +158,10 @@ static void energy(Text *t, const Charge *c) {
 
 static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 
-/* A pair of coordinates is a degree of freedom; drag may couple an odd number. */
+/* Degrees of freedom of n first-order coordinates, two of which make one; drag may couple an odd number. */
 static const char *half(const Eqns *e, uint32_t n) { return arena_printf(e->m->arena, "%u%s", n / 2, n % 2 ? " 1/2" : ""); }
 
+/* ", singular at theta = 0", or nothing. */
 static const char *pole_text(const Eqns *e) {
   static const char *const at[] = {"-pi/2", "0", "pi/2", "pi"};
   MassPole pole;

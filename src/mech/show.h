@@ -5,11 +5,11 @@
 #include "mech/eqns.h"
 #include "sym/print.h"
 
-/* Appends L, momenta, M q'' = f row by row, energy, the definitions that these use, what is known of
- * the model, and `cost`, a line on what the accelerations cost. */
+/* Appends L, momenta, M q'' = f row by row, energy, the definitions used, facts about the model, and `cost`, a line on the cost of the
+ * accelerations. */
 void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *out);
 
-/* Appends the Hamiltonian side: momenta, H, Hamilton's equations; where M is not inverted in closed form, what takes their place. */
+/* Appends the Hamiltonian side: momenta, H, Hamilton's equations; M and the energy where M is not inverted in closed form. */
 void show_hamiltonian(Eqns *e, PrintStyle style, StrBuf *out);
 
 /* Appends M, f, Q and the energy as they are computed, one entry a line, for --dump=eqns. */

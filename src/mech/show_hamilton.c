@@ -12,7 +12,7 @@ static Expr rate_symbol(Text *t, uint32_t i) { return expr_symbol(t->g, t->e->m-
 
 static const char *latex_rate(Text *t, SymId p) { return arena_printf(t->e->m->arena, "\\dot{%s}", text_latex_name(t, expr_symbol(t->g, p)->name)); }
 
-/* q' = dH/dp and p' = -dH/dq + Q, and flows of states, in which velocities stand for what they are. */
+/* q' = dH/dp, p' = -dH/dq + Q, and flows of states with velocities replaced by dH/dp. */
 static void motion(Text *t, const Hamilton *h, Exprs *roots) {
   const Model *m = t->e->m;
   uint32_t n = t->e->n;
@@ -48,7 +48,7 @@ static void constraints(Text *t, Exprs *roots) {
   text_end(t);
 }
 
-/* Momenta are M q' + a only while M has no velocities. */
+/* The heading of M; momenta are M q' + a only while M contains no velocities. */
 static const char *mass_heading(const Eqns *e) {
   for (uint32_t k = 0; k < e->mass.n; k++)
     if (expr_kinds(e->g, e->mass.at[k].e) & 1u << SYM_VEL) return "mass matrix: M = dp/dq'";

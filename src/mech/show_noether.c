@@ -5,10 +5,10 @@
 typedef struct {
   Text text;
   const NoetherReport *r;
-  const char *Q; /* what charges are called: Q1, Q2, ..; another letter where the model has such names */
+  const char *Q; /* letter of the charges Q1, Q2, ..; another where the model has such names */
 } Page;
 
-/* Whether x is `letter` and digits. */
+/* Whether x is `letter` followed by digits. */
 static int is_numbered(const char *x, const char *letter) {
   size_t n = strlen(letter);
   return strncmp(x, letter, n) == 0 && x[n] && x[n + strspn(x + n, "0123456789")] == '\0';
@@ -25,7 +25,7 @@ static int takes_names(const Eqns *e, const char *letter) {
   return 0;
 }
 
-/* The first letters that the model has no names of. */
+/* The first letter without such names in the model. */
 static const char *free_letter(const Eqns *e) {
   static const char *const letters[] = {"Q", "C", "J", "charge"};
   enum { N = sizeof letters / sizeof *letters };
@@ -70,7 +70,7 @@ static void put_conditions(Page *p, uint32_t k) {
   if (all.n) say(p, sb_text(&b));
 }
 
-/* Whether x has a number that 64 bits do not hold. */
+/* Whether x contains a number that 64 bits do not hold. */
 static int is_rounded(ExprGraph *g, Expr x) {
   ExprList all = expr_topo(g, &x, 1);
   for (uint32_t i = 0; i < all.n; i++) {
@@ -84,7 +84,7 @@ static int is_rounded(ExprGraph *g, Expr x) {
   return 0;
 }
 
-/* What the generator does to coordinates, or to the sums of them that L is written with. Of numbers with too many digits it is said how they follow. */
+/* Changes of the coordinates, or of the sums of them that L is written with; a formula for them where numbers have too many digits. */
 static void deltas(Page *p, const FoundSymmetry *s) {
   Text *t = &p->text;
   uint32_t n = noether_coordinates(t->e);
@@ -233,12 +233,12 @@ static int is_broken(const EffectVerdict *v, const Noether *is, const Noether *b
   return is->power_unknown || (is->jumps && !before->jumps) || !expr_is_zero(v->e->g, is->power) || (is->is != INVARIANT && is->is != INVARIANT_UP_TO_F);
 }
 
-/* The charge that dQ/dt is of, where the effect's L or F makes it another one than the model's. */
+/* The charge whose rate follows, where L or F of the effect changes it. */
 static void other_charge(Page *p, const EffectVerdict *v, Text *of, uint32_t k) {
   if (!noether_same_charge(p->r, v, k)) text_named(of, named(p, "", k, ""), named_latex(p, k, 0), v->is[k].charge, 0);
 }
 
-/* What an effect brings that changes charges at moments, and the model has not. */
+/* Remark on impacts or events that the effect adds to the model. */
 static void impacts(Page *p, const EffectVerdict *v) {
   const char *note = noether_note_on_impacts(v->e->m);
   if (note && !noether_note_on_impacts(p->text.e->m)) say(p, arena_printf(v->e->m->arena, "  its %s", note));

@@ -9,7 +9,7 @@ static void put_expr(StrBuf *out, ExprGraph *g, Expr x) {
   sb_putc(out, '"');
 }
 
-/* null where the power is not known, or there is no charge. */
+/* The power; null where it is not known, or there is no charge. */
 static void put_power(StrBuf *out, ExprGraph *g, const Noether *is) {
   if (!is->charge || is->power_unknown) sb_puts(out, "null");
   else put_expr(out, g, is->power);
@@ -49,7 +49,7 @@ static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
   sb_putc(out, '}');
 }
 
-/* Coefficients that are not 0 by the number of their charge; "1" is the constant's. */
+/* Nonzero coefficients by the number of their charge, from 1; the constant stands apart. */
 static void put_bracket(StrBuf *out, const NoetherReport *r, const Bracket *k) {
   ExprGraph *g = r->e->g;
   uint32_t shown = 0;

@@ -1,3 +1,4 @@
+/* Headings, equations, names and definitions of listings; each line has a form for text and one for LaTeX. */
 #include "mech/show_text.h"
 
 #include "mech/charges.h"

@@ -1,4 +1,4 @@
-/* What listings of equations are written with, as text and as LaTeX. */
+/* Writer of listings of equations, as text and as LaTeX. */
 #ifndef LAGC_SHOW_TEXT_H
 #define LAGC_SHOW_TEXT_H
 
@@ -18,20 +18,20 @@ void text_put(Text *t, const char *text, const char *in_latex);
 /* Model, scene and effects, on the first lines. */
 void text_title(Text *t);
 
+/* The block of momenta. */
 void text_momenta(Text *t);
 
-/* Of each declared symmetry F where there is one, the charge, and its balance where it is not conserved. */
+/* For each declared symmetry: F if there is one, the charge, and its balance if it is not conserved. */
 void text_charges(Text *t);
 
 /* A block of equations, from its heading to its end. */
 void text_heading(Text *t, const char *title);
 void text_end(Text *t);
 
-/* An expression that shares its parts can be far longer written out than it is to compute: past a
- * limit its length is said instead. */
+/* Appends an expression; past a limit its length instead, as an expression that shares its parts can be far longer in writing than to compute. */
 void text_expr(Text *t, Expr e);
 
-/* "  left = right", with LaTeX's alignment; last: of its block. */
+/* Appends "  left = right", aligned in LaTeX; last: the block's last line. */
 void text_equation(Text *t, Expr left, Expr right, int last);
 void text_named(Text *t, const char *text, const char *in_latex, Expr right, int last);
 

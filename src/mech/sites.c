@@ -1,10 +1,11 @@
+/* Walks each side from its root down, by descending node numbers, and gives every operand its role. */
 #include "mech/sites.h"
 
 typedef struct {
   const Model *m;
   AstId first;
-  Site *of;       /* by node - first */
-  uint8_t *known; /* the node is a site */
+  Site *of;       /* [node - first] */
+  uint8_t *known; /* [node - first] the node is a site */
 } Walk;
 
 static int is_sum(AstKind k) { return k == AST_ADD || k == AST_SUB; }
@@ -14,7 +15,7 @@ int site_is_sum(const Model *m, const Site *s) { return is_sum(ast_expr(m->ast, 
 
 static int blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/* A span does not contain the parentheses around it; this does (one pair, and not a call's). */
+/* The span s with the parentheses around it, if any (one pair, and not a call's). */
 static Span with_parentheses(const Model *m, Span s) {
   Place p = source_place(m->ast->sources, s.begin);
   if (!p.file) return s;
@@ -53,7 +54,7 @@ static void put_operands(Walk *w, const AstExpr *x, const Site *s) {
   b->with_op = span_join(x->op_span, b->span);
 }
 
-/* The arguments of a call, unless it is one that wants more than values. */
+/* The arguments of a call that are values: none of d(), all but the condition of if(). */
 static void put_arguments(Walk *w, const AstExpr *x, const Site *s) {
   if (strcmp(x->name, "d") == 0) return;
   AstId arg = x->args;

@@ -1,5 +1,4 @@
-/* Sites: the places of an expectation where an edit may be made, and what each place is in the
- * formula around it. */
+/* Sites: the places of an expectation where an edit may be made, and the role of each in the formula around it. */
 #ifndef LAGC_SITES_H
 #define LAGC_SITES_H
 
@@ -9,11 +8,11 @@ typedef enum {
   SITE_ROOT,      /* a whole side */
   SITE_TERM,      /* of a sum */
   SITE_FACTOR,    /* of a product */
-  SITE_NUMERATOR, /* what a / divides, or a unary minus negates */
+  SITE_NUMERATOR, /* dividend of a /, or operand of a unary minus */
   SITE_DIVISOR,
   SITE_BASE,      /* of a power */
   SITE_ARGUMENT,  /* of a function */
-  SITE_PART       /* the left part of a longer chain of + and -, or of * and /: no place of its own */
+  SITE_PART       /* left part of a longer chain of + and -, or of * and /: no place of its own */
 } SiteRole;
 
 typedef struct {
@@ -21,8 +20,8 @@ typedef struct {
   AstId up;     /* the node above; 0 for a whole side */
   int left;     /* on the left side of the equation */
   SiteRole role;
-  Span span;    /* with the parentheses around it */
-  Span with_op; /* and with the operator before it */
+  Span span;    /* with the parentheses around the node */
+  Span with_op; /* span, and the operator before it */
 } Site;
 
 typedef struct {
@@ -30,13 +29,12 @@ typedef struct {
   uint32_t n;
 } SiteList;
 
-/* The sites of both sides, outer ones first, left side first. What stands under a prime, in an
- * exponent, in a condition or in an index is no site. */
+/* The sites of both sides, outer ones first, left side first. Operands of primes, exponents, conditions and indices are no sites. */
 SiteList sites_of(const Model *m, const Expect *x);
 
 int site_is_sum(const Model *m, const Site *s);
 
-/* The text of a span on one line, its middle left out where it is long. */
+/* The text of a span on one line, without comments, its middle left out where it is long. */
 const char *span_text(const Model *m, Span span);
 
 #endif

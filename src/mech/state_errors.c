@@ -1,3 +1,5 @@
+/* Bounds from residuals, block by block: |K^-1| times the residual and its rounding, with K = [D -A^T; A 0], D = 1 for coordinates and velocities,
+ * D = M for accelerations and multipliers. */
 #include "mech/state_errors.h"
 
 #include <float.h>
@@ -12,14 +14,14 @@ enum { COUPLED_MOST = 160 }; /* unknowns in one block: an inverse costs their cu
 
 struct StateErrors {
   const Eqns *e;
-  BoundTape *tape;       /* M, f, A, c, r, demand */
+  BoundTape *tape;       /* roots: M, f, A, c, r, demand */
   uint32_t width;        /* n + constraints */
-  uint32_t *block;       /* [width] unknowns of different blocks are not coupled */
-  uint32_t *in;          /* [width] the unknowns of the block in hand */
-  unsigned char *counts; /* constraint k is independent of those before it */
-  Real *symbols;         /* with multipliers that are 0: f is without them */
-  Real *K, *dK;          /* [width^2] the system in hand and bounds of its entries' errors */
-  Real *part, *inverse;  /* the same of a block */
+  uint32_t *block;       /* [width] block of each unknown; different blocks are not coupled */
+  uint32_t *in;          /* [width] the unknowns of the current block */
+  unsigned char *counts; /* counts[k]: constraint k is independent of those before it */
+  Real *symbols;         /* with multipliers 0, as f is without them */
+  Real *K, *dK;          /* [width^2] the current system, and bounds of its entries' errors */
+  Real *part, *inverse;  /* a block of K, and its inverse */
 };
 
 static void join(uint32_t *block, uint32_t n, uint32_t a, uint32_t b) {
@@ -58,7 +60,7 @@ StateErrors *state_errors_new(const Eqns *e) {
 
 static Real value_of(const StateErrors *w, Expr x, Real *bound) { return bound_value(w->tape, x, bound); }
 
-/* K = [D -A^T; A 0] with D = M or 1; rows of constraints that depend on others are those of the unit matrix. */
+/* K = [D -A^T; A 0] with D = M or 1; the row of a constraint that depends on others is that of the unit matrix. */
 static void fill(StateErrors *w, int with_mass) {
   const Eqns *e = w->e;
   uint32_t n = e->n, width = w->width;
@@ -82,8 +84,8 @@ static void fill(StateErrors *w, int with_mass) {
     if (!w->counts[k]) w->K[(n + k) * width + n + k] = 1;
 }
 
-/* out = 2 |K^-1| off, block by block: what a residual of size `off` means for the unknowns. Entries are known to 2 dK at worst, which half of
- * the bound allows for while |K^-1| dK is small. */
+/* Bounds out = 2 |K^-1| off of the unknowns for residuals of size off, block by block. The factor 2 covers errors dK of the entries while |K^-1|
+ * dK is small. 0: it is not. */
 static int spread(StateErrors *w, const Real *off, Real *out) {
   uint32_t width = w->width;
   for (uint32_t b = 0; b < width; b++) {
@@ -110,7 +112,7 @@ static int spread(StateErrors *w, const Real *off, Real *out) {
   return 1;
 }
 
-/* Coordinates (velocities) are as far from obeying as the constraints' residuals, and what rounding hides of them, say. */
+/* Bounds of coordinates (velocities) from the residuals of the constraints and the rounding in these. */
 static int of_motion(StateErrors *w, int velocities, Real *errors) {
   const Eqns *e = w->e;
   const Constraints *k = &e->constraints;
@@ -129,7 +131,7 @@ static int of_motion(StateErrors *w, int velocities, Real *errors) {
 
 static SymId unknown(const Eqns *e, uint32_t i) { return i < e->n ? e->m->coords.at[i].a : e->constraints.of[i - e->n]->multiplier; }
 
-/* Accelerations and multipliers are as far off as the residuals of the equations of motion say. */
+/* Bounds of accelerations and multipliers from the residuals of the equations of motion; multipliers are free if constraints are redundant. */
 static int of_solution(StateErrors *w, const Real *symbols, int free, Real *errors) {
   const Eqns *e = w->e;
   uint32_t n = e->n, width = w->width;
@@ -152,7 +154,7 @@ static int of_solution(StateErrors *w, const Real *symbols, int free, Real *erro
   return 1;
 }
 
-/* The number of constraints that depend on others and are none of contacts that are open. */
+/* Whether some constraint depends on others and is not that of an open contact. */
 static int dependent(const StateErrors *w) {
   const Entries *A = &w->e->constraints.A;
   Real bound;

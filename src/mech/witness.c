@@ -1,3 +1,5 @@
+/* Draws states, completes them by constraints and M q'' = f, compares both sides with running bounds on rounding, and writes the first difference
+ * with as few digits as still show it. */
 #include "mech/witness.h"
 
 #include <float.h>
@@ -15,7 +17,7 @@ typedef long double Real;
 
 enum { FULL_DIGITS = 18 };
 
-/* A symbol that a state gives a value, and how it is written. */
+/* A symbol that states give a value, and how it is printed. */
 typedef struct {
   SymId sym;
   const Unit *unit;
@@ -26,18 +28,18 @@ typedef struct {
   const Eqns *e;
   const Model *m;
   ExprGraph *g;
-  Expr left, right, gap, domain; /* gap: left less right, with what cancels cancelled; domain 0: everywhere */
+  Expr left, right, gap, domain; /* gap: left minus right, simplified; domain 0: everywhere */
   BoundTape *tape;
   StateSolver *solver;
-  StateErrors *inside; /* NULL: the state is what was drawn, and the sides know of nothing that follows from it */
+  StateErrors *inside; /* bounds for what is solved for; NULL: the sides contain nothing of it */
   VEC(Free) free;
-  EvalTape *defaults, *given; /* values of parameters; those that follow from others */
+  EvalTape *defaults, *given; /* values of parameters; of those that follow from others */
   VEC(SymId) with_default, followers;
   Real *symbols, *errors, *kept, *out;
   double cost, budget; /* of a comparison; left for places of switches */
   Real l, r, d;
-  int states, digits; /* compared so far; to which all of them agree that are of ordinary size */
-  int ordinary;       /* the state in hand is */
+  int states, digits; /* states compared so far; digits to which the sides agree at ordinary ones */
+  int ordinary;       /* the current state is of ordinary size */
   SeenSides *sides;
 } Search;
 
@@ -53,7 +55,7 @@ static int holds(const Search *s, Expr condition) {
   return !condition || (bound_value(s->tape, condition, &bound) != 0 && bound == 0);
 }
 
-/* The sum of the sizes of a side's terms. */
+/* Sum of the magnitudes of a side's terms. */
 static Real size_of(const Search *s, Expr side) {
   Real size = 0, bound;
   for (uint32_t i = 0; i < expr_pairs(s->g, side, EX_SUM); i++) {
@@ -66,9 +68,9 @@ static Real size_of(const Search *s, Expr side) {
 
 static int certain(Real value, Real bound) { return isfinite(value) && isfinite(bound) && fabsl(value) > 16 * bound + LDBL_MIN; }
 
-/* Completes the state and compares the sides: 1 where both are defined and differ. */
+/* Completes the state and compares the sides; 1: both are defined and differ. */
 static int differs(Search *s) {
-  const Real noise = 1e-9L; /* of the terms: then 6 digits and more are compared */
+  const Real noise = 1e-9L; /* relative to the terms: 6 digits and more are compared */
   put_params(s, s->given, s->followers.at, s->followers.n);
   if (!states_complete(s->solver, s->symbols)) return 0;
   if (s->inside && !state_errors_at(s->inside, s->solver, s->symbols, s->errors)) return 0;
@@ -99,7 +101,7 @@ static void other_params(Search *s) {
   }
 }
 
-/* The k-th simple state: at rest or moving; a few angles; last with other parameters. */
+/* The k-th simple state: at rest or moving, at a few angles; the last ones with other parameters. */
 static void simple_state(Search *s, int k) {
   const Model *m = s->m;
   const Real at[] = {1, 0.5L, -0.5L, 2}, moving[] = {1, 2, -1, 0.5L};
@@ -123,7 +125,7 @@ static void random_state(Search *s, uint32_t seed) {
 
 static int is_negative(const Symbol *sym) { return sym->sign == SIGN_NEGATIVE || sym->sign == SIGN_NONPOSITIVE; }
 
-/* Sizes from 1e-6 to 1e12, for every symbol or, in every second state, for about a third of them. */
+/* A state with sizes from 1e-6 to 1e12 of every symbol or, in every second state, of about a third of them. */
 static void far_state(Search *s, uint32_t seed) {
   prove_state(s->g, seed, s->symbols);
   for (uint32_t i = 0; i < s->free.n; i++) {
@@ -134,7 +136,7 @@ static void far_state(Search *s, uint32_t seed) {
   }
 }
 
-/* Whole numbers from -3 to 3, in every second state halves too, of the declared signs. */
+/* A state of whole numbers from -3 to 3, in every second state halves too, of the declared signs. */
 static void whole_state(Search *s, uint32_t seed) {
   prove_state(s->g, seed, s->symbols);
   for (uint32_t i = 0; i < s->free.n; i++) {
@@ -148,7 +150,7 @@ static void whole_state(Search *s, uint32_t seed) {
 
 /* --- switches --- */
 
-/* The places of the switch that switches.h finds, and its neighbourhood. The place itself says nothing of derivatives. */
+/* Compares at both sides of a switch that switches.h finds, at several distances; at the switch itself only where no derivatives enter. */
 static int try_place(void *data, Real *symbols, SwitchLine line, Real where, int exactly) {
   static const Real distance[] = {1e-12L, 1e-9L, 1e-6L, 1e-3L, 0.1L};
   Search *s = data;
@@ -188,7 +190,7 @@ static int try_switches(Search *s) {
 
 /* --- the search --- */
 
-/* A simple state at which a person sees the difference first. */
+/* Tries states in order: simple ones, which show a difference best, then random, whole and far ones, then switches. */
 static int find(Search *s, int quick) {
   enum { SIMPLE = 12, QUICK = 10, RANDOM = 60, FAR = 120, WHOLE = 120 };
   for (int k = 0; k < SIMPLE; k++) {
@@ -215,14 +217,14 @@ static int find(Search *s, int quick) {
   return try_switches(s);
 }
 
-/* --- its text --- */
+/* --- the text of a difference --- */
 
 static Real shown_value(const Search *s, const Free *f) {
   Real offset = f->rate ? 0 : (Real)num_value(f->unit->offset);
   return (s->symbols[f->sym] - offset) / (Real)unit_factor(f->unit);
 }
 
-/* The state with values of so many digits, as they are printed, if it still shows the difference. */
+/* Whether the state still shows the difference with values of so many digits, as they are printed. */
 static int shows_with(Search *s, int digits) {
   for (uint32_t i = 0; i < s->free.n; i++) {
     const Free *f = &s->free.at[i];
@@ -246,7 +248,7 @@ static int fewest_digits(Search *s) {
   return 21;
 }
 
-/* "th1 = 1, th1' = 0, m1 = 1": the coordinates and what else the sides contain. */
+/* "th1 = 1, th1' = 0, m1 = 1": the coordinates, and other symbols in the sides. */
 static const char *state_text(const Search *s, int digits) {
   StrBuf b = strbuf(s->m->arena);
   for (uint32_t i = 0; i < s->free.n; i++) {
@@ -271,7 +273,7 @@ static const char *difference_text(Search *s) {
   return arena_printf(a, "the left side is %.6Lg, the right side differs from it by %.6Lg at %s", s->l, -s->d, state);
 }
 
-/* --- what a state is made of --- */
+/* --- the symbols of a state --- */
 
 static int is_solved_for(const Symbol *s, const void *data) {
   (void)data;
@@ -293,7 +295,7 @@ static int is_switch(const Model *m, SymId sym) {
   return 0;
 }
 
-/* Values of parameters, from those before them, and what follows from others at every state. */
+/* Tapes for the values of parameters, and for parameters that follow from others at every state. */
 static void gather_params(Search *s) {
   const Model *m = s->m;
   Arena *a = m->arena;
@@ -316,6 +318,7 @@ static void gather_params(Search *s) {
 
 static int is_in_sides(const Search *s, SymId sym) { return expr_contains_sym(s->g, s->left, sym) || expr_contains_sym(s->g, s->right, sym); }
 
+/* Lists the symbols that states give values: coordinates, velocities, states, time, inputs, free parameters. */
 static void gather_free(Search *s) {
   enum { FEW_COORDINATES = 4 };
   const Model *m = s->m;
@@ -333,7 +336,7 @@ static void gather_free(Search *s) {
   vec_push(a, &s->free, ((Free){m->time, si, 0, is_in_sides(s, m->time)}));
   for (uint32_t i = 0; i < m->inputs.n; i++)
     if (!is_switch(m, m->inputs.at[i].sym)) vec_push(a, &s->free, ((Free){m->inputs.at[i].sym, &m->inputs.at[i].unit, 0, 1}));
-  int moves = expr_contains(s->g, s->left, is_solved_for, NULL) || expr_contains(s->g, s->right, is_solved_for, NULL); /* then all of M and f is in it */
+  int moves = expr_contains(s->g, s->left, is_solved_for, NULL) || expr_contains(s->g, s->right, is_solved_for, NULL); /* then M and f matter */
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Param *p = &m->params.at[i];
     if (s->e->definitions && s->e->definitions[p->sym]) continue;
