@@ -36,7 +36,8 @@ void states_put_constraints(const Eqns *e, const long double *values, uint32_t r
  * at the state evaluated last. Valid until another state is evaluated. */
 const int *states_scale(StateSolver *s);
 
-/* Row k of A at the state evaluated last, columns scaled; valid until the next call. *at: index in A of the row's first entry, moved to the next row. */
+/* Row k of A at the state evaluated last, columns scaled; valid until the next call. *at: index in A of the row's first entry; becomes
+ * that of the next row. */
 const SparseVector *states_row(StateSolver *s, uint32_t k, uint32_t *at);
 
 /* Rank of the constraints at the state evaluated last, leaving out constraint `without` (UINT32_MAX: none). counts[k]: constraint k is
