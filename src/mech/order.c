@@ -17,7 +17,7 @@ typedef struct {
   Sparse H;
   SparseRow *C;          /* [total] rows of definitions: the variables that they contain */
   uint32_t *nusers;      /* [total] number of remaining definitions that contain the variable */
-  uint32_t *depth;       /* [total] longest chain of definitions below this one; 0 for coordinates */
+  uint32_t *depth;       /* [total] longest chain of nested definitions down from this one; 0 for coordinates */
   unsigned char *gone;   /* [total] eliminated */
   OrderRule rule;
   uint64_t ops;          /* operations so far */
