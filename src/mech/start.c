@@ -59,7 +59,8 @@ static void largest_alike(const Finder *f, const long double *symbols, int veloc
   }
 }
 
-/* reach[i] := scale of coordinate i or its velocity: the largest of its unit; 1 if that is 0, and at least 1 for an angle. */
+/* reach[i] := scale of coordinate i or its velocity: the largest of its unit (velocities: at least that over the scene's duration); 1 if that is 0,
+ * and at least 1 for an angle. */
 static void reaches(const Finder *f, long double *reach) {
   const Model *m = f->e->m;
   double span = m->scene.has_span ? fabs(m->scene.t1 - m->scene.t0) : 0;
@@ -232,6 +233,7 @@ static void approach(Finder *f) {
   }
 }
 
+/* Whether component i occurs in a constraint of the level. */
 static int is_held(const Finder *f, uint32_t i) {
   const Entries *A = &f->e->constraints.A;
   uint32_t k = 0;
@@ -239,6 +241,7 @@ static int is_held(const Finder *f, uint32_t i) {
   return k < A->n;
 }
 
+/* Descends from the start asked for, then from displaced starts; positions continue to the nearest state. 0: none of them ends on the constraints. */
 static int reach(Finder *f) {
   static const long double beside[] = {0, 1e-3L, -1e-3L, 0.03L, -0.03L, 0.3L, -0.3L, 1, -1};
   long double typical = 0;
@@ -317,6 +320,7 @@ static StartResult check_slopes(Finder *f, int reached) {
   return (StartResult){.kind = START_FOUND};
 }
 
+/* Brings one level, positions or velocities, onto its constraints, stage by stage; checks their derivatives there. */
 static StartResult settle(Finder *f, int velocities) {
   const Constraints *k = &f->e->constraints;
   f->velocities = velocities;
