@@ -88,7 +88,7 @@ static int mass_at(const Eqns *e, const long double *symbols, long double *M) {
   return isfinite(sum);
 }
 
-/* Number of coordinates that take part in the kernel of M at a state, scaled by size[n], roots of the inertia elsewhere. 0: M is regular. */
+/* Number of coordinates involved in the kernel of M at a state, scaled by size[n], roots of the inertia elsewhere. 0: M is regular. */
 static uint32_t singular_along(const Eqns *e, const long double *symbols, const long double *size) {
   long double M[COORDINATES_MOST * COORDINATES_MOST], null[COORDINATES_MOST], most = 0;
   uint32_t along = 0;
