@@ -1,4 +1,4 @@
-/* Legendre transformation: M is inverted by cofactors, block by block; Hamilton's equations are differentiated from H. */
+/* Legendre transformation: M is inverted by cofactors, block by block; q' = M^-1 (p - a), and p' by differentiating H. */
 #include "mech/hamilton.h"
 
 #include "sym/diff.h"
