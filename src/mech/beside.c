@@ -1,12 +1,12 @@
-/* Singular starts: constraints that are dependent there, and not a hundredth beside it, as of bars in one line. The same is found by
- * runtime/core/consistent.c, for the report of a run. */
+/* Singular starts: constraints that are dependent at a state but not a hundredth away, as for bars in one line. Ranks by orthogonalising
+ * the scaled rows of A. runtime/core/consistent.c does the same for the report of a run. */
 #include "mech/beside.h"
 
 #include <math.h>
 
 #include "mech/start.h"
 
-/* The rank of the constraints at the state that was looked at last, and held[n]: how much of each coordinate's direction they hold. */
+/* Rank of the constraints at the state evaluated last. held[n]: squared length of each coordinate direction's projection on the rows of A. */
 static uint32_t rank_of(const Eqns *e, StateSolver *s, long double *held) {
   const long double independent = 6e-6L; /* as states_rank */
   uint32_t n = e->n, at = 0;
@@ -21,7 +21,7 @@ static uint32_t rank_of(const Eqns *e, StateSolver *s, long double *held) {
 }
 
 uint32_t rank_beside(const Eqns *e, StateSolver *s, const long double *symbols, unsigned char *loose) {
-  const long double part = 0.05L; /* of a coordinate's direction: twice what a hundredth beside turns it */
+  const long double part = 0.05L; /* least change of held: twice what moving by a hundredth turns a direction */
   Arena *arena = e->m->arena;
   uint32_t n = e->n, all = expr_symbol_count(e->g) + 1;
   long double *held = ARENA_ARRAY(arena, long double, n + 1), *held_beside = ARENA_ARRAY(arena, long double, n + 1);

@@ -1,10 +1,11 @@
+/* Rank of the constraints at a state and near it, to recognise singular starts. */
 #ifndef LAGC_BESIDE_H
 #define LAGC_BESIDE_H
 
 #include "mech/states.h"
 
-/* The rank of the constraints a hundredth beside a state that obeys them, or there, whichever is more. loose[n]: beside it the velocity of
- * this coordinate is determined, and at the state, which has a smaller rank, it is not. symbols: values by symbol. */
+/* The larger rank of the constraints: at a state that obeys them, or at one that is a hundredth away and obeys them, too. loose[n]: the
+ * constraints determine this coordinate's velocity near the state but not at it, where the rank is smaller. symbols: values by symbol. */
 uint32_t rank_beside(const Eqns *e, StateSolver *solver, const long double *symbols, unsigned char *loose);
 
 #endif

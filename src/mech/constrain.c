@@ -1,7 +1,7 @@
 /* Holonomic constraints by index reduction: c = 0 is kept as c, c' and c'' (E. Hairer, G. Wanner, Solving Ordinary Differential Equations
  * II, 2nd ed. (1996), VII.1, DOI 10.1007/978-3-642-05221-7); constraints on velocities by Lagrange-d'Alembert's principle:
- * their forces do no work on virtual displacements, A dq = 0. (Vakonomic mechanics, where lambda c stands in the action, gives other
- * motions, and is not meant.) */
+ * their forces do no work on virtual displacements, A dq = 0. (Not vakonomic mechanics, which puts lambda c into the action and has other
+ * motions.) */
 #include "mech/constrain.h"
 
 #include "mech/frobenius.h"
@@ -10,7 +10,7 @@
 
 static int is_holonomic(const Eqns *e, const Constraint *k) { return !(expr_kinds(e->g, k->c) & 1u << SYM_VEL); }
 
-/* c without velocities, and r of a constraint on velocities. */
+/* x at q' = 0. */
 static Expr at_rest(const Eqns *e, Expr x) {
   ExprGraph *g = e->g;
   Expr *rest = ARENA_ARRAY(e->m->arena, Expr, expr_symbol_count(g) + 1);
@@ -18,7 +18,7 @@ static Expr at_rest(const Eqns *e, Expr x) {
   return simplify(g, expr_substitute(g, x, rest, expr_symbol_count(g) + 1, "_at_rest"));
 }
 
-/* The part of d/dt without q''. */
+/* dx/dt without the part with q''. */
 static Expr rate(const Eqns *e, Expr x, const char *suffix) {
   const Model *m = e->m;
   Expr out, *seed = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(e->g) + 1);
@@ -74,7 +74,7 @@ static int is_contact(const Model *m, uint32_t i) {
   return 0;
 }
 
-/* Contacts are not all closed at once. */
+/* At most as many constraints as coordinates; contacts do not count, since they are not all closed at once. */
 static int check_count(const Eqns *e) {
   const Model *m = e->m;
   uint32_t held = 0, i = 0;
@@ -87,10 +87,10 @@ static int check_count(const Eqns *e) {
   return 0;
 }
 
-/* Comparing all pairs is for the lists that people write by hand. */
+/* Past this many constraints pairs are not compared: nobody wrote them by hand. */
 enum { COMPARE_MAX = 64 };
 
-/* c of a holonomic one; F of one on velocities that keeps F; 0. */
+/* The row of A, and the function of positions that keeps its value: c if holonomic, F if r = dF/dt, else 0. */
 typedef struct {
   ExprPartials row;
   Expr kept;

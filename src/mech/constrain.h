@@ -1,17 +1,17 @@
-/* Constraints: Model -> the equations that they add. */
+/* Constraints: the equations and forces that they add to a model's equations of motion. */
 #ifndef LAGC_CONSTRAIN_H
 #define LAGC_CONSTRAIN_H
 
 #include "mech/eqns.h"
 
 /* Fills e->constraints and adds A^T lambda to e->f. 0, reported, when a constraint is not linear in velocities, contains no
- * coordinate, contradicts another, or when there are more than coordinates. */
+ * coordinate or contradicts another, or when there are more constraints than coordinates. */
 int constrain(Eqns *e);
 
-/* Whether their forces do no work on any motion that obeys them: q'.A^T lambda = -lambda.b is zero, b = 0. */
+/* Whether constraint forces do no work on admissible motions: q'.A^T lambda = -lambda.b, so whether b = 0. */
 int constraints_do_no_work(const Eqns *e);
 
-/* For programs that have no place for what constraints on velocities keep, as emitted headers: these are then held as what they say. */
+/* Treats all constraints on velocities as r = 0, for emitted headers, which cannot store the values of F at the start. */
 void constraints_keep_none(Eqns *e);
 
 #endif

@@ -1,3 +1,4 @@
+/* Positive definiteness from L = sum of terms: signs of the terms first, then squares against products of velocities (Gershgorin). */
 #include "mech/definite.h"
 
 #include "sym/diff.h"
@@ -6,7 +7,7 @@
 
 static int moves(const Eqns *e, Expr x) { return (expr_kinds(e->g, x) & 1u << SYM_VEL) != 0; }
 
-/* Linear in q', as Coriolis and magnetic terms are: such a term has no part in the mass matrix. */
+/* Linear in q', as Coriolis and magnetic terms are: no part of the mass matrix. */
 static int is_linear(const Eqns *e, Expr term) {
   ExprPartials d = expr_gradient_sparse(e->g, term, SYM_VEL, e->n);
   for (uint32_t i = 0; i < d.n; i++)
@@ -19,7 +20,7 @@ static int is_nonnegative(const Eqns *e, Expr x) {
   return sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE;
 }
 
-/* Each term of L by itself. */
+/* Each moving term of L by itself is nonnegative or linear in velocities. */
 static int terms_are_nonnegative(const Eqns *e, Expr l) {
   for (uint32_t i = 0; i < expr_pairs(e->g, l, EX_SUM); i++) {
     Num c;
@@ -38,13 +39,13 @@ typedef struct {
   Expr factor, form;
 } Part;
 
-/* L, multiplied out into c*factor*u*v. A square with the same factor pays for products: |u*v| is at most (u^2 + v^2)/2, so what
- * is left of all squares must not be negative (Gershgorin's circles, one for each factor). */
+/* L multiplied out into c*factor*u*v. Since |u*v| <= (u^2 + v^2)/2, each product is subtracted from the coefficients of the squares with the
+ * same factor; these must stay nonnegative (Gershgorin's circles, one set for each factor). */
 typedef struct {
   const Eqns *e;
-  VEC(Part) open;
-  ExprMap place; /* of factor*u^2 in left, from 1 */
-  VEC(Num) left;
+  VEC(Part) open; /* parts to be multiplied out */
+  ExprMap place;  /* factor*u^2 -> its index in left, from 1 */
+  VEC(Num) left;  /* remaining coefficients of the squares */
 } Squares;
 
 static void add_square(Squares *q, Expr factor, Expr u, Num c) {
@@ -58,7 +59,7 @@ static void add_square(Squares *q, Expr factor, Expr u, Num c) {
   q->left.at[at - 1] = num_add(q->left.at[at - 1], c);
 }
 
-/* A term of the form's sum that is no more than quadratic. 0 where it may be negative. */
+/* Adds c*factor*term, at most quadratic in velocities. 0: the term may be negative, or has another form. */
 static int take_quadratic(Squares *q, Expr factor, Num c, Expr term) {
   const Eqns *e = q->e;
   ExprGraph *g = e->g;
@@ -102,7 +103,7 @@ static int take_term(Squares *q, Expr factor, Num c, Expr term) {
 }
 
 static int squares_pay(const Eqns *e, Expr l) {
-  enum { MOST_PARTS = 100000 }; /* lets that contain each other twice would be multiplied out for ever */
+  enum { MOST_PARTS = 100000 }; /* nested lets that each occur twice would multiply out exponentially */
   Squares q = {.e = e, .place = expr_map(e->m->arena)};
   Expr one = expr_int(e->g, 1);
   vec_push(e->m->arena, &q.open, ((Part){num_int(1), one, l}));
@@ -121,8 +122,7 @@ static int squares_pay(const Eqns *e, Expr l) {
 }
 
 int mass_is_definite(const Eqns *e, const LinearSystem *s, Expr lagrangian) {
-  /* A form that is at least 0 and quadratic in q' has a Hessian that is at least 0; quadratic means that the Hessian of the
-   * whole is free of velocities. */
+  /* A nonnegative form that is quadratic in q' has a positive semidefinite Hessian; quadratic: the entries of H and C contain no velocities. */
   for (uint32_t i = 0; i < s->H.n; i++)
     if (moves(e, s->H.at[i].e)) return 0;
   for (uint32_t i = 0; i < s->C.n; i++)
@@ -148,7 +148,7 @@ int mass_is_definite_by_values(const Eqns *e, const LinearSystem *s, Expr lagran
   return some && mass_is_definite(e, s, expr_substitute(g, lagrangian, with, n, ""));
 }
 
-/* The parameter of this entry that would make it positive, if its value were; UINT32_MAX: none. */
+/* The parameter that makes this entry nonpositive: with a positive value the entry is positive. UINT32_MAX: none. */
 static uint32_t find_culprit(const Eqns *e, Expr entry, long double *value) {
   long double inertia;
   ExprList nodes = expr_topo(e->g, &entry, 1);
@@ -166,7 +166,7 @@ static uint32_t find_culprit(const Eqns *e, Expr entry, long double *value) {
   return UINT32_MAX;
 }
 
-/* Whether its sign hangs on which positive values the parameters have, as that of a - b does; that of -m is meant. */
+/* Whether the entry's sign is open for positive parameters, as that of a - b; an entry -m is meant to be negative. */
 static int may_be_positive(const Eqns *e, Expr entry) {
   const Model *m = e->m;
   uint32_t n = expr_symbol_count(e->g) + 1;

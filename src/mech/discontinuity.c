@@ -1,3 +1,4 @@
+/* Jumps of L, of momenta, constraints and forces, each as a warning at its place in the text. */
 #include "mech/discontinuity.h"
 
 #include "mech/noether.h"
@@ -14,13 +15,13 @@ ExprJumps discontinuities_of(const Eqns *e, Expr x) {
   return expr_jumps(g, x);
 }
 
-/* Coordinates of first order are states. */
+/* Symbols of the motion: coordinates, velocities, rates, and states that are coordinates of a model of first order. */
 static int is_of_motion(const Symbol *s, const void *model) {
   const Model *m = model;
   return s->kind == SYM_COORD || s->kind == SYM_VEL || s->kind == SYM_RATE || (s->kind == SYM_STATE && m->states.at[s->index].coordinate);
 }
 
-/* Where the text has it; without a place of its own, where L is. */
+/* Span of the node in the text; if the text does not contain it, that of L. */
 static Span place_of(const Model *m, Expr node) {
   AstId written = expr_map_get(&m->written, node);
   return written ? ast_expr(m->ast, written)->span : m->lagrangian_span;
@@ -43,8 +44,8 @@ static void warn_of_momentum(const Eqns *e, uint32_t i, const ExprJumps *said) {
   }
 }
 
-/* Constraints with a corner, as y = abs(x): what is brought back to them behind it has the velocity that an impact without rebound leaves, or, where a
- * step ends on the corner, any other. */
+/* Constraints with a corner, as y = abs(x). A projection behind the corner gives the velocity after an impact without rebound, or, if a step
+ * ends on the corner, an arbitrary one. */
 static void warn_of_corners(const Eqns *e) {
   const Model *m = e->m;
   const Constraints *all = &e->constraints;
@@ -60,7 +61,7 @@ static void warn_of_corners(const Eqns *e) {
   }
 }
 
-/* Dry friction and relays: a motion may stay where such a force jumps. */
+/* Dry friction and relays: a motion may stick where such a force jumps. */
 static void warn_of_switches(const Eqns *e) {
   const Model *m = e->m;
   SwitchingSurfaces all = switching_surfaces(e);

@@ -1,3 +1,5 @@
+/* Derives Eqns: calls lagrange, constrain and first_order, adds energy, charges and outputs, and reads facts for every state (conserved,
+ * smooth, separable, ...) off the graph. */
 #include "mech/eqns.h"
 
 #include <math.h>
@@ -32,16 +34,16 @@ Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
   return found ? e->mass.at[lo].e : expr_int(e->g, 0);
 }
 
-/* Chains of lets longer than this stay as they are: expanded, they would grow with the square. */
+/* Past this many coordinates the energy's lets are not expanded: along a chain they would grow with the square of its length. */
 enum { EXPAND_MAX_COORDS = 32 };
 
-/* Past this many coordinates the energy and the momenta stay as they were differentiated: nobody reads
- * them, and short forms of sums over all coordinates cost more than their derivation. */
+/* Past this many coordinates energy and momenta stay as differentiated: nobody reads them, and short forms of sums over
+ * all coordinates cost more than the derivation. */
 enum { SHORTEN_MAX_COORDS = 64 };
 
 static Expr shorten(const Eqns *e, Expr x) { return e->mass_known && e->n <= SHORTEN_MAX_COORDS ? simplify(e->g, x) : x; }
 
-/* The momenta of L as it was written. */
+/* Momenta of L as written, without the regularising terms of Model.across. */
 static const Expr *plain_momenta(const Eqns *e) {
   const Model *m = e->m;
   if (!m->across) return e->p;
@@ -52,7 +54,7 @@ static const Expr *plain_momenta(const Eqns *e) {
   return p;
 }
 
-/* p q' - x of a part x of L, by the degrees of its terms (mech/degree.h); 0 where one has none. */
+/* p q' - x for a part x of L, by Euler's theorem from the velocity degrees of its terms; 0 if a term is not homogeneous. */
 static Expr moving_energy(const Eqns *e, Expr x) {
   ExprGraph *g = e->g;
   VEC(Expr) terms = {0};
@@ -68,8 +70,8 @@ static Expr moving_energy(const Eqns *e, Expr x) {
   return expr_add_n(g, terms.at, terms.n);
 }
 
-/* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as it
- * was written: k/2*(r - l)^2 has more right digits than what it expands to. */
+/* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as written: k/2*(r - l)^2 has more
+ * correct digits than its expansion. */
 static void derive_energy(Eqns *e) {
   ExprGraph *g = e->g;
   Arena *arena = e->m->arena;
@@ -91,14 +93,14 @@ static void derive_energy(Eqns *e) {
   }
   Expr l0 = expr_add_n(g, still.at, still.n);
   Expr l_moving = expr_sub(g, l, l0);
-  /* Of rotations p q' is long, and omega says the same. */
+  /* With rotations p q' is long in the quaternions; degrees keep omega. */
   Expr moving = e->m->across ? moving_energy(e, l_moving) : 0;
   if (!moving) {
     Expr whole = expr_sub(g, pv, l_moving);
     moving = shorten(e, whole);
   }
   e->energy = expr_sub(g, moving, l0);
-  /* l + y with y = -l*cos(th) hides a difference of nearly equal numbers in a let. */
+  /* Lets are expanded: l + y with y = -l*cos(th) hides a cancellation. */
   Expr open = e->n <= EXPAND_MAX_COORDS ? expr_expand_defs(g, e->energy) : e->energy;
   e->energy_stable = e->n <= SHORTEN_MAX_COORDS ? simplify_stable(g, open) : open;
   Expr simple_pv = shorten(e, pv);
@@ -106,7 +108,7 @@ static void derive_energy(Eqns *e) {
   e->energy_scale = expr_add(g, size_pv, size_l);
 }
 
-/* Outputs that name the energy get what it is. */
+/* e->outputs: the scene's outputs with formulas in the place of energy and charges, in stable forms. */
 static void fill_outputs(Eqns *e) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
@@ -140,8 +142,8 @@ static int check_momenta(const Eqns *e) {
   return 1;
 }
 
-/* What the inputs in the equations are made of is part of them. A table depends on time, and the third derivative of
- * its spline jumps at each row. */
+/* Adds the formulas of the inputs that occur to the roots. A table depends on time, and the third derivative of its spline
+ * jumps at each row: not autonomous, not smooth. */
 static void follow_inputs(Eqns *e, ExprVec *roots) {
   const Model *m = e->m;
   ExprList l = expr_topo(e->g, roots->at, roots->n);
@@ -155,8 +157,8 @@ static void follow_inputs(Eqns *e, ExprVec *roots) {
   }
 }
 
-/* Whether the dissipation takes energy for every velocity: a sum of terms that are never negative, quadratic, and 0 at rest,
- * so that the power q' dR/dq' = 2 R is not negative. Not (q' - c)^2: a belt drives. */
+/* Whether the dissipation takes energy at every velocity: nonnegative terms, quadratic, 0 at rest, so that the power
+ * q' dR/dq' = 2 R is nonnegative. Not so (q' - c)^2, a belt that drives. */
 static int only_brakes(const Eqns *e) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
@@ -179,7 +181,7 @@ static int only_brakes(const Eqns *e) {
   return !(expr_kinds(g, R) & (bit(SYM_TIME) | bit(SYM_STATE)));
 }
 
-/* Whether the energy, less the work of forces, can only fall while inputs stay as they are. */
+/* Whether energy less the work of constant forces cannot rise while inputs stay as they are. */
 static int loses_energy(const Eqns *e, unsigned lagrangian) {
   const Model *m = e->m;
   unsigned forces = 0;
@@ -190,14 +192,14 @@ static int loses_energy(const Eqns *e, unsigned lagrangian) {
 
 static int is_no_coordinate(const Symbol *s, const void *states) { return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate; }
 
-/* What L contains; coordinates are no states here, whatever the model's order. */
+/* Kinds of symbols in L; coordinates of a model of first order do not count as states. */
 static unsigned kinds_of_lagrangian(const Eqns *e) {
   const Model *m = e->m;
   unsigned kinds = kinds_in(e, &m->lagrangian, 1);
   return e->first.n && !expr_contains(e->g, m->lagrangian, is_no_coordinate, m->states.at) ? kinds & ~bit(SYM_STATE) : kinds;
 }
 
-/* Facts that hold for every state, read off the graph. */
+/* Facts that hold at every state, read off the graph. */
 static void classify(Eqns *e) {
   const Model *m = e->m;
   ExprVec entries = {0}, roots = {0};
@@ -227,7 +229,7 @@ static void classify(Eqns *e) {
   e->loses_energy = !e->energy_jumps && loses_energy(e, lagrangian);
 }
 
-/* Derivatives may multiply numbers past the range of a double, and terms of different statements cancel. */
+/* Refuses numbers in the equations that overflow a double or lost their digits, by differentiation or cancellation. */
 static int check_numbers(const Eqns *e) {
   const Model *m = e->m;
   VEC(Expr) roots = {0};
@@ -257,7 +259,7 @@ static int check_numbers(const Eqns *e) {
   return 1;
 }
 
-/* What model/method.c could not see yet. */
+/* Taylor methods need smooth equations, which model/method.c could not know yet. */
 static int check_method(const Eqns *e) {
   const Scene *sc = &e->m->scene;
   const MethodInfo *method = sc->method ? method_find(sc->method, strlen(sc->method)) : NULL;
@@ -267,7 +269,7 @@ static int check_method(const Eqns *e) {
   return 0;
 }
 
-/* The same model, with a term in L that is 0 on the constraints. */
+/* Adds a term to Model.across that vanishes on the constraints and makes M regular (mech/lend.h). */
 static Model *lends_inertia(const Eqns *e, Model *m) {
   Expr lent = lend_inertia(e);
   m->across = m->across ? expr_add(e->g, m->across, lent) : lent;

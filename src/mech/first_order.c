@@ -1,3 +1,5 @@
+/* Two-form and right-hand side by differentiation, split into blocks of coupled coordinates; each block solved on the graph by
+ * mech/skew.h, as a doubled antisymmetric system where forces make it unsymmetric. */
 #include "mech/first_order.h"
 
 #include <math.h>
@@ -17,7 +19,7 @@ typedef struct {
   Expr e;
 } Part;
 
-/* What the derivation has in hand. */
+/* State of the derivation. */
 typedef struct {
   Eqns *e;
   const Model *m;
@@ -25,8 +27,8 @@ typedef struct {
   Arena *arena;
   FirstOrder *to;
   uint32_t n;
-  uint32_t *place; /* [states] of a coordinate its number plus 1, of other states 0 */
-  Expr *still;     /* by symbol: rates are 0 */
+  uint32_t *place; /* [states] number of the coordinate plus 1; 0 for other states */
+  Expr *still;     /* by symbol: substitution of 0 for all rates */
   Expr *rhs;
   VEC(Expr) divisors;
   VEC(Part) parts;
@@ -53,7 +55,7 @@ static void find_coordinates(Work *w) {
 
 /* --- the parts of L --- */
 
-/* theta, and the parts of dL/dq_i - dtheta_i/dt without velocities, with the sign that they have on the right. */
+/* theta, H, and the right-hand side dH/dq_i + dtheta_i/dt, still without forces. */
 static int differentiate(Work *w) {
   SymId *rates = ARENA_ARRAY(w->arena, SymId, w->n), *q = ARENA_ARRAY(w->arena, SymId, w->n);
   Expr *theta = ARENA_ARRAY(w->arena, Expr, w->n), *dH = ARENA_ARRAY(w->arena, Expr, w->n);
@@ -124,7 +126,7 @@ static Expr *forces(const Work *w) {
   return Q;
 }
 
-/* The form gains dQ/dq', the right-hand side loses what of Q is free of velocities. */
+/* Adds dQ/dq' to the form, and subtracts Q at q' = 0 from the right-hand side. */
 static int add_forces(Work *w) {
   Expr *Q = forces(w);
   w->e->Q = Q;
@@ -153,7 +155,7 @@ static int by_place(const void *a, const void *b) {
   return (x->order > y->order) - (x->order < y->order);
 }
 
-/* The entries that are not zero, in their short forms. */
+/* Sums the parts of each entry of the form; nonzero entries, in short forms. */
 static void collect(Work *w) {
   unsigned kinds = 0;
   if (w->parts.n) qsort(w->parts.at, w->parts.n, sizeof *w->parts.at, by_place);
@@ -175,7 +177,7 @@ static uint32_t root(uint32_t *up, uint32_t i) {
   return i;
 }
 
-/* Numbers the sets of coordinates that the form couples, in order of their first; their number. */
+/* Numbers the connected components of the form by their first coordinates (union-find). Returns their number. */
 static uint32_t find_blocks(Work *w) {
   uint32_t *up = ARENA_ARRAY(w->arena, uint32_t, w->n), *block = ARENA_ARRAY(w->arena, uint32_t, w->n), count = 0;
   for (uint32_t i = 0; i < w->n; i++) up[i] = i;
@@ -189,7 +191,7 @@ static uint32_t find_blocks(Work *w) {
   return count;
 }
 
-/* One block: its coordinates, its part of the form and of the right-hand side. */
+/* One block: its coordinates at[n], and A q' = b with A[n * n] from the form, b[n] from the right-hand side. */
 typedef struct {
   uint32_t n, *at;
   Expr *A, *b;
@@ -230,7 +232,7 @@ static const char *names_of(const Work *w, const Block *b, const uint32_t *which
   return sb_text(&names);
 }
 
-/* A determinant that is not identically zero vanishes at a random state with probability zero. 1: regular somewhere, or nowhere defined. */
+/* A determinant that is not identically zero vanishes at a random state with probability zero. 1: regular, or defined at no state tried. */
 static int is_regular(const Work *w, const Block *b) {
   enum { TRIES = 8 };
   long double *symbols = ARENA_ARRAY(w->arena, long double, expr_symbol_count(w->g) + 1);
@@ -265,7 +267,7 @@ static void report_singular(const Work *w, const Block *b) {
 
 /* --- rates --- */
 
-/* [0 A; -A^T 0] is antisymmetric whatever A is: (y, x) with A x = b, A^T y = 0. */
+/* Replaces A by the antisymmetric [0 A; -A^T 0], with the solution (y, x): A x = b, A^T y = 0. */
 static void double_block(const Work *w, Block *b) {
   uint32_t n = b->n, m = 2 * n;
   Expr *A = ARENA_ARRAY(w->arena, Expr, (size_t)m * m), *rhs = ARENA_ARRAY(w->arena, Expr, m);
@@ -284,7 +286,7 @@ static void double_block(const Work *w, Block *b) {
 
 enum { BLOCK_MOST = 200 };
 
-/* Rates of the block's coordinates, into rate[n]. */
+/* Writes the rates of the block's coordinates into rate[]. 0, reported: the block couples too many coordinates. */
 static int solve(Work *w, Block *b, Expr *rate) {
   Expr *x = ARENA_ARRAY(w->arena, Expr, 2 * (size_t)b->n), divisor = 0;
   uint32_t *left = ARENA_ARRAY(w->arena, uint32_t, 2 * (size_t)b->n), nleft = 0, m = w->to->closed ? b->n : 2 * b->n;
@@ -303,7 +305,7 @@ static int solve(Work *w, Block *b, Expr *rate) {
   return 1;
 }
 
-/* The rates in the form that takes the fewest operations, as flows; what contained rates of coordinates contains them. */
+/* Flows := the rates in the form with the fewest operations; substituted for rates in other flows, in events and their actions. */
 static void put_flows(Work *w, Model *m, const Expr *rate) {
   uint32_t nsymbols = expr_symbol_count(w->g) + 1;
   const Expr *best = lagrange_short_forms(w->e, rate, w->n);
@@ -319,7 +321,7 @@ static void put_flows(Work *w, Model *m, const Expr *rate) {
   w->e->flow = flow;
 }
 
-/* E = theta q' - L = H, and what a drift of it is compared with. */
+/* Energy E = theta q' - L = H, and its scale |theta q'| + |L|. */
 static void put_energy(Work *w) {
   enum { SHORTEN_MAX = 64 };
   ExprGraph *g = w->g;

@@ -1,19 +1,19 @@
 /* Lagrangians that are linear in all velocities: guiding centres, point vortices, populations.
  *
- * Of L = theta(q, t) q' - H(q, t), with forces Q(q, q', t), the Euler-Lagrange equations d/dt theta_i = dL/dq_i + Q_i are
+ * For L = theta(q, t) q' - H(q, t) and forces Q(q, q', t), the Euler-Lagrange equations d/dt theta_i = dL/dq_i + Q_i read
  *
  *   sum_j omega_ij q_j' = dH/dq_i + dtheta_i/dt - Q_i,   omega_ij = dtheta_j/dq_i - dtheta_i/dq_j
  *
  * (G. D. Birkhoff, Dynamical Systems (1927), II.10; L. Faddeev, R. Jackiw, Phys. Rev. Lett. 60 (1988) 1692, DOI
- * 10.1103/PhysRevLett.60.1692). There is no mass matrix; velocities follow from coordinates where omega, which is antisymmetric, is
- * regular. Forces may be linear in velocities, Q = Q0 + B q': then omega + B takes the place of omega, and Q0 that of Q. */
+ * 10.1103/PhysRevLett.60.1692). There is no mass matrix; the coordinates determine the velocities where the antisymmetric matrix omega is
+ * regular. Forces may be linear in velocities, Q = Q0 + B q': then omega + B replaces omega, and Q0 replaces Q. */
 #ifndef LAGC_FIRST_ORDER_H
 #define LAGC_FIRST_ORDER_H
 
 #include "mech/eqns.h"
 
-/* Fills e->first, the flows of coordinates and the energy of a model of first order; flows of other states, events and their actions
- * lose their rates. 0, reported, when omega is singular for every state, or a force is not linear in velocities. */
+/* Fills e->first, e->flow and the energy of a model of first order; in other flows, events and their actions rates are replaced by
+ * the flows. 0, reported, when omega is singular at every state or too large, or when a force is not linear in velocities. */
 int first_order_derive(Eqns *e, Model *m);
 
 #endif

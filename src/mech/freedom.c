@@ -1,3 +1,4 @@
+/* Mobility report of `lagc check`, by ranks of the scaled constraint matrix at the start; and the checks that a motion is possible there. */
 #include "mech/freedom.h"
 
 #include <math.h>
@@ -10,7 +11,7 @@
 #include "mech/start.h"
 #include "sym/print.h"
 
-/* Whether the rank stays as it is without constraint k: then its reaction is not unique. */
+/* Whether the rank is the same without constraint k: its multiplier is then not unique. */
 static int is_dispensable(StateSolver *s, const Eqns *e, uint32_t k, uint32_t rank) {
   unsigned char *without = ARENA_ARRAY(e->m->arena, unsigned char, e->constraints.n);
   return states_rank(s, k, without) == rank;
@@ -45,7 +46,7 @@ static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, 
   sb_putc(out, '\n');
 }
 
-/* That the rank is another one beside the start. */
+/* A line if the start is singular: the rank is larger near it. */
 static void show_singular(const Eqns *e, StateSolver *s, const long double *symbols, uint32_t rank, StrBuf *out) {
   unsigned char *loose = ARENA_ARRAY(e->m->arena, unsigned char, e->n + 1);
   uint32_t beside = rank_beside(e, s, symbols, loose), shown = 0;
@@ -71,10 +72,10 @@ static void show_integrability(const Eqns *e, StateSolver *s, StrBuf *out) {
   }
 }
 
-/* --- starts from which there is no motion --- */
+/* --- starts from which no motion is possible --- */
 
-/* The first constraint that follows from those before it, and demands an acceleration that they exclude; UINT32_MAX: none. symbols: on the
- * constraints. Demands below what moves by a billionth of its size in the time of the scene are rounding. */
+/* The first constraint that depends on earlier ones but demands an acceleration that they exclude; UINT32_MAX: none. symbols: a state on the
+ * constraints. Accelerations that move less than a billionth of the model's size during the scene count as rounding. */
 static uint32_t contradicting(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts) {
   const Constraints *k = &e->constraints;
   const Scene *scene = &e->m->scene;
@@ -92,7 +93,7 @@ static uint32_t contradicting(const Eqns *e, StateSolver *s, const long double *
   long double far = 0;
   for (uint32_t i = 0; i < n; i++) far = fmaxl(far, fabsl(ldexpl(symbols[e->m->coords.at[i].q], -scale[i])));
   if (!(most > 1e-9L * (far > 0 ? far : 1) / (span * span))) return UINT32_MAX;
-  RowSpan demands = row_span(arena, n + 1); /* the rows of A, each with its demand behind it */
+  RowSpan demands = row_span(arena, n + 1); /* rows [A_k, demand_k] */
   for (uint32_t i = 0; i < k->n; i++) {
     SparseVector row = *states_row(s, i, &at);
     if (!(size[i] > 0)) continue;
@@ -111,7 +112,7 @@ static int report_contradiction(const Eqns *e, uint32_t k, const char *why) {
   return 0;
 }
 
-/* Whether constraints that follow from each other at the start go on to agree: in what they demand there, and a little later. */
+/* Whether redundant constraints agree: in their accelerations at the start, and in the states that they allow a little later. */
 static int check_agreement(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts) {
   const Model *m = e->m;
   uint32_t n = expr_symbol_count(e->g) + 1, k = contradicting(e, s, symbols, counts);
@@ -125,11 +126,11 @@ static int check_agreement(const Eqns *e, StateSolver *s, const long double *sym
   return 1;
 }
 
-/* Whether each direction that constraints allow has inertia at the start. */
+/* Whether M is regular on the kernel of the constraints at the start. */
 static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbols) {
   const Model *m = e->m;
   uint32_t most = 0;
-  if (!e->mass_known || (e->definite_mass && !e->singular_mass)) return 1; /* definite is what is definite where it is regular */
+  if (!e->mass_known || (e->definite_mass && !e->singular_mass)) return 1; /* definite_mass does not exclude a singular M */
   long double *null = ARENA_ARRAY(m->arena, long double, e->n + 1);
   states_at(s, symbols);
   if (sparse_is_regular_on_kernel(m->arena, e->n, e->constraints.n, states_system(s), null)) return 1;
@@ -141,7 +142,7 @@ static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbo
   return 0;
 }
 
-/* Whether no contact is beyond closed at the start, and restitutions are between 0 and 1. */
+/* Whether all gaps of contacts are nonnegative at the start, and restitutions between 0 and 1. */
 static int check_contacts(const Eqns *e, const long double *symbols) {
   const Model *m = e->m;
   uint32_t n = m->contacts.n;
@@ -170,7 +171,7 @@ static int says_start(const Model *m) {
   return 0;
 }
 
-/* Without constraints: whether each direction has inertia at the start, as the pole of angles has not. */
+/* Without constraints: whether M is regular at the start, as it is not at the pole of angles. */
 static int check_mass(const Eqns *e) {
   const Model *m = e->m;
   uint32_t most = 0;

@@ -1,3 +1,5 @@
+/* Integrability by Frobenius' theorem: first in numbers, on the kernel of all forms at random states; then proved, coefficient by
+ * coefficient of the wedge product. Potentials of single exact forms by integration. */
 #include "mech/frobenius.h"
 
 #include <math.h>
@@ -10,7 +12,8 @@
 
 enum { MOST_COORDINATES = 64, MOST_FORMS = 3, MOST_DIMENSIONS = 8 };
 
-/* All forms, in the coordinates q and t: form[m * w], and the antisymmetric d[m * w * w], w = n + 1. 0: zero. */
+/* The one-forms in coordinates (q, t), w = n + 1: coefficients form[m * w] and exterior derivatives d[m * w * w], antisymmetric. A zero
+ * coefficient is the null Expr. */
 typedef struct {
   const Eqns *e;
   ExprGraph *g;
@@ -24,7 +27,7 @@ static Expr at_rest(const Eqns *e, Expr x) {
   return simplify(e->g, expr_substitute(e->g, x, rest, expr_symbol_count(e->g) + 1, "_at_rest"));
 }
 
-/* d omega_jk = d_j omega_k - d_k omega_j, for what coefficient k adds to it. */
+/* Adds x = d_j omega_k, the share of coefficient k in d omega_jk = d_j omega_k - d_k omega_j. */
 static void add_derivative(Forms *f, uint32_t i, uint32_t j, uint32_t k, Expr x) {
   Expr *d = f->d + (size_t)i * f->w * f->w, *jk = &d[j * f->w + k], *kj = &d[k * f->w + j];
   if (j == k) return;
@@ -71,7 +74,7 @@ static void values(const Forms *f, const Expr *from, size_t n, const long double
   }
 }
 
-/* Directions that all forms allow, orthonormal, behind the forms themselves: basis[w * w]. Returns where they begin. */
+/* Orthonormal basis[w * w]: first the span of the forms, then the directions that all forms allow. Returns the first row of the latter. */
 static uint32_t allowed(const Forms *f, const long double *form, long double *basis) {
   const long double independent = 1e-9L;
   uint32_t n = 0, first;
@@ -107,7 +110,7 @@ static int vanishes(const Forms *f, uint32_t i, const long double *symbols, cons
   return 1;
 }
 
-/* -1: no state was found at which to look. */
+/* Whether d omega_i vanishes on the allowed directions at a few random states; -1: no state on the constraints was found. */
 static int looks_integrable(const Forms *f, StateSolver *solver) {
   enum { TRIES = 12, ENOUGH = 4 };
   Arena *arena = f->e->m->arena;
@@ -128,7 +131,7 @@ static int looks_integrable(const Forms *f, StateSolver *solver) {
 
 /* --- proved --- */
 
-/* The determinant of the forms at columns at[m], m <= 3. */
+/* Determinant of the forms in the columns at[m], m <= 3. */
 static Expr determinant(const Forms *f, const uint32_t *at) {
   static const uint8_t order[6][4] = {{0, 1, 2, 0}, {1, 2, 0, 0}, {2, 0, 1, 0}, {0, 2, 1, 1}, {2, 1, 0, 1}, {1, 0, 2, 1}};
   static const uint8_t order2[2][4] = {{0, 1, 0, 0}, {1, 0, 0, 1}};
@@ -147,7 +150,7 @@ static Expr determinant(const Forms *f, const uint32_t *at) {
   return sum;
 }
 
-/* The coefficient of d omega_i ^ omega_1 ^ ... ^ omega_m at the columns at[m + 2], ascending. */
+/* Coefficient of d omega_i ^ omega_1 ^ ... ^ omega_m at the columns at[m + 2], ascending. */
 static Expr coefficient(const Forms *f, uint32_t i, const uint32_t *at) {
   ExprGraph *g = f->g;
   Expr sum = expr_int(g, 0);

@@ -1,3 +1,4 @@
+/* Legendre transformation: M is inverted by cofactors, block by block; q' = M^-1 (p - a), and p' by differentiating H. */
 #include "mech/hamilton.h"
 
 #include "sym/diff.h"
@@ -19,7 +20,7 @@ static Expr mul3(const Work *w, Expr a, Expr b, Expr c) { return expr_mul(w->g, 
 
 /* --- the inverse of M --- */
 
-/* block[i]: the least coordinate that i is coupled to. */
+/* block[i] := the least coordinate in the connected component of i in M. */
 static void find_blocks(const Work *w, uint32_t *block) {
   for (uint32_t i = 0; i < w->n; i++) block[i] = i;
   for (int changed = 1; changed;) {
@@ -37,14 +38,14 @@ static Expr minor2(const Work *w, const Expr *m, uint32_t n, uint32_t r1, uint32
   return simplify(w->g, expr_sub(w->g, a, b));
 }
 
-/* The cofactor of an element of m[n*n], n up to 3. */
+/* Cofactor of element (i, j) of m[n*n], n up to 3. */
 static Expr cofactor(const Work *w, const Expr *m, uint32_t n, uint32_t i, uint32_t j) {
   if (n == 1) return expr_int(w->g, 1);
   if (n == 2) return (i + j) % 2 ? expr_neg(w->g, m[(1 - i) * 2 + (1 - j)]) : m[(1 - i) * 2 + (1 - j)];
   return minor2(w, m, 3, (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3); /* cyclic: the sign is in it */
 }
 
-/* 0: a result is long. */
+/* Inverse of the block of the n coordinates in at. 0: the block is singular, or an entry takes more than OPS_MOST operations. */
 static int invert_block(Work *w, const uint32_t *at, uint32_t n) {
   ExprGraph *g = w->g;
   Expr m[BLOCK_MOST * BLOCK_MOST], det = expr_int(g, 0);
@@ -82,7 +83,7 @@ static const char *invert(Work *w) {
 
 /* --- H --- */
 
-/* x without velocities. A definition that contains some is replaced by what it stands for. */
+/* x at q' = 0; definitions with velocities are expanded. */
 static Expr at_rest(const Work *w, Expr x) {
   Expr *zero = ARENA_ARRAY(w->arena, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
@@ -90,7 +91,7 @@ static Expr at_rest(const Work *w, Expr x) {
   return expr_replace(w->g, expr_expand_defs(w->g, x), w->v, zero, w->n);
 }
 
-/* -L at rest, term by term: those without velocities stay as they were written. */
+/* V = -L at rest, term by term; terms without velocities stay as written. */
 static Expr potential(const Work *w) {
   ExprGraph *g = w->g;
   Expr L = w->e->m->lagrangian, V = expr_int(g, 0);

@@ -1,4 +1,4 @@
-/* Eqns -> the derivatives of events: of their functions, and of what their actions make of the state. */
+/* Eqns -> derivatives of event functions and of the values that actions assign, for saltation matrices at events (runtime/core/tangent.c). */
 #include "mech/eqns.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
@@ -10,7 +10,7 @@ static void add(const Eqns *e, JumpList *to, uint32_t event, int row, uint32_t c
   if (!expr_is_zero(e->g, value) || row == (int)col) vec_push(e->m->arena, to, ((Jump){event, row, col, value}));
 }
 
-/* The derivatives of one value, columns ascending, then that by the time. */
+/* Derivatives of one value by the state, columns ascending, then by the time. */
 static void differentiate(const Eqns *e, Expr value, uint32_t event, int row, JumpList *to) {
   const Model *m = e->m;
   const struct {

@@ -1,3 +1,5 @@
+/* Momenta, forces and mass matrix by differentiation on the graph; the cheapest form of M q'' = f, dense or with definitions as
+ * unknowns (mech/lift.h); the error message for a mass matrix that is singular everywhere. */
 #include "mech/lagrange.h"
 
 #include <math.h>
@@ -21,8 +23,7 @@ static SymId *coordinate_symbols(const Model *m, int velocities) {
   return s;
 }
 
-/* The direction (q', z', 1) in which the explicit part of d/dt is taken: q'' is left out, since
- * M q'' stands on the other side. */
+/* Direction (q', z', 1) of the part of d/dt without q'': M q'' stands on the left-hand side. */
 static Expr *explicit_direction(const Eqns *e) {
   const Model *m = e->m;
   Expr *seed = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(e->g) + 1);
@@ -51,8 +52,8 @@ static const Expr *generalised_forces(const Eqns *e) {
   return Q;
 }
 
-/* out[i] = dp[i]/dt without q''. A definition without velocities has no q'' to leave out: what it becomes is its
- * time derivative, and is called so (I', not I_drift). */
+/* out[i] = dp[i]/dt without q''. The derivative of a definition without velocities is its full time derivative and named so: I', not
+ * I_drift. */
 static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
   ExprGraph *g = e->g;
   const Expr *seed = explicit_direction(e);
@@ -67,10 +68,10 @@ static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
   expr_tangent(g, p, e->n, seed, nseed, "_drift", &rates, out);
 }
 
-/* L, and what makes the mass matrix regular where rotations leave a direction without inertia. */
+/* L plus the regularising terms of Model.across, for rotations and constraints. */
 static Expr lagrange_regular(const Eqns *e) { return e->m->across ? expr_add(e->g, e->summed, e->m->across) : e->summed; }
 
-/* The forces as differentiated, and the momenta. */
+/* Fills p, dLdq and Q; returns the forces f as differentiated. */
 static Expr *differentiate(Eqns *e) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
@@ -109,10 +110,10 @@ void eqns_derive_mass(Eqns *e) {
 
 /* --- the form that is solved --- */
 
-/* Above this many entries, what lets share is worth more than what a short form saves. */
+/* Above this many entries, sharing by lets saves more than short forms do. */
 enum { SIMPLIFY_MAX_ENTRIES = 300 };
 
-/* rule(raw[k]) for all k when that takes fewer operations than *best, or as many. */
+/* *best := rule(raw[k]) for all k if these take no more operations than *best. */
 static void try_short(const Eqns *e, const Expr *raw, uint32_t n, Expr (*rule)(ExprGraph *, Expr), const Expr **best) {
   Expr *after = ARENA_ARRAY(e->m->arena, Expr, n + 1);
   for (uint32_t k = 0; k < n; k++) after[k] = rule(e->g, raw[k]);
@@ -126,7 +127,7 @@ const Expr *lagrange_short_forms(const Eqns *e, const Expr *raw, uint32_t n) {
   return best;
 }
 
-/* Operations of a system: its entries, evaluated together, and its solution. */
+/* Operations of a system: evaluation of its entries together, and solution. */
 static uint64_t system_ops(Eqns *e, LinearSystem *s) {
   VEC(Expr) roots = {0};
   for (uint32_t k = 0; k < s->H.n; k++) vec_push(e->m->arena, &roots, s->H.at[k].e);
@@ -146,8 +147,8 @@ static Entries rewritten(const Eqns *e, const Entries *from, Expr (*rule)(ExprGr
   return to;
 }
 
-/* Whether the rule changes forces. Of many, a few tell: the sum over all other bodies takes long to bring to another form, and
- * is alike for all. */
+/* Whether the rule changes a force. Of more than 64 forces a sample is tried: sums over all other bodies are slow to rewrite and
+ * look alike. */
 static int changes_forces(const Eqns *e, const LinearSystem *s, Expr (*rule)(ExprGraph *, Expr)) {
   enum { MANY = 64, SAMPLE = 16 };
   uint32_t step = e->n > MANY ? e->n / SAMPLE : 1;
@@ -156,8 +157,8 @@ static int changes_forces(const Eqns *e, const LinearSystem *s, Expr (*rule)(Exp
   return 0;
 }
 
-/* Replaces *best when s with all its entries rewritten costs no more: entry by entry they may be
- * shorter and still lose what they share, so they are weighed together. */
+/* Replaces *best if s with all entries rewritten takes no more operations. All together, since entries that are shorter one by one may
+ * share less. */
 static void try_form(Eqns *e, const LinearSystem *s, Expr (*rule)(ExprGraph *, Expr), LinearSystem *best, uint64_t *ops) {
   LinearSystem t = {.n = s->n, .ndefs = s->ndefs, .defs = s->defs, .H = rewritten(e, &s->H, rule), .C = rewritten(e, &s->C, rule)};
   Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n);
@@ -177,7 +178,7 @@ static Expr as_differentiated(ExprGraph *g, Expr x) {
 
 enum { LOOK_THROUGH = 1 };
 
-/* The cheapest form of s; its operations in *ops. Forms that look through lets grow with the square of a chain's length. */
+/* Cheapest form of s, its operations in *ops. how: LOOK_THROUGH or 0; looking through lets grows with the square of a chain's length. */
 static LinearSystem best_form(Eqns *e, const LinearSystem *s, int how, uint64_t *ops) {
   LinearSystem best = *s;
   *ops = UINT64_MAX;
@@ -187,8 +188,7 @@ static LinearSystem best_form(Eqns *e, const LinearSystem *s, int how, uint64_t 
   return best;
 }
 
-/* Whether the mass matrix, entries and solution, takes many times what the system without it takes:
- * then it is not derived at all. */
+/* Whether solving with the dense mass matrix takes more than MANY_TIMES the operations of the lifted system; M is then not derived. */
 static int mass_is_hopeless(Eqns *e, LinearSystem *lifted) {
   enum { FEW_COORDINATES = 12, MANY_TIMES = 3 };
   if (e->n <= FEW_COORDINATES || !lifted->ndefs || e->m->expects.n) return 0;
@@ -206,7 +206,7 @@ static int is_definite(Eqns *e, const LinearSystem *s) {
   return e->definite_by_values;
 }
 
-/* M and f, or M as the product that the text of L is, which needs pivots that are known to be positive. */
+/* The lifted system is used only where its pivots are known to be positive. */
 void lagrange_momenta_and_forces(Eqns *e) {
   uint64_t dense_ops, lifted_ops;
   e->summed = sums_named(e->g, e->m->lagrangian, e->n);
@@ -257,7 +257,7 @@ static void random_state(const Eqns *e, uint64_t *state, long double *values) {
   }
 }
 
-/* The coordinates that no entry of the mass matrix speaks of, in a list, where L contains the velocity of one; else NULL. */
+/* Names of the coordinates whose rows of the mass matrix are zero, if L contains the velocity of one of them; else NULL. */
 static const char *without_inertia(const Eqns *e) {
   const Model *m = e->m;
   StrBuf names = strbuf(m->arena);
@@ -303,7 +303,7 @@ static void report_singular(const Eqns *e, const long double *null) {
   }
 }
 
-/* M at a state, and [M -A^T; A 0]. 0: M has an entry that is not finite. */
+/* M and all = [M -A^T; A 0] at a state. 0: an entry of M is not finite. */
 static int system_at(const Eqns *e, const Expr *entries, const long double *symbols, long double *values, SparseElements *M, SparseElements *all) {
   int finite = 1;
   M->n = all->n = 0;
@@ -315,8 +315,8 @@ static int system_at(const Eqns *e, const Expr *entries, const long double *symb
   return finite;
 }
 
-/* Every state tried is singular; a determinant that is not identically zero vanishes at a random
- * point with probability zero. Large matrices are judged by their factorization when running. */
+/* A determinant that is not identically zero vanishes at a random state with probability zero. Large matrices are judged in the run,
+ * by their factorization. */
 int lagrange_check_mass(Eqns *e) {
   enum { LARGEST = 200 };
   uint32_t n = e->n;
@@ -339,7 +339,7 @@ int lagrange_check_mass(Eqns *e) {
     if (sparse_is_regular_on_kernel(arena, n, m, &all, null)) return 1;
     judged = 1;
   }
-  if (!judged) return 1; /* the tries all lay outside the model's domain: runs will tell */
+  if (!judged) return 1; /* all tries lay outside the model's domain: left to the run */
   report_singular(e, null);
   return 0;
 }

@@ -4,17 +4,16 @@
 
 #include "mech/eqns.h"
 
-/* Fills e's momenta, forces, mass matrix and the system that is solved. */
+/* Fills e's momenta, forces, mass matrix and linear system. */
 void lagrange_momenta_and_forces(Eqns *e);
 
-/* Fills e->squares; after all that is printed, as the order of terms is that in which they were made. */
+/* Fills e->squares. Call last: nodes made here must not change the order of terms in what is printed. */
 void lagrange_squares(Eqns *e);
 
-/* The short forms of raw[n] when they cost no more operations together, or raw itself: entry by entry they may be shorter
- * and still lose what they share. */
+/* Short forms of raw[n] if they take no more operations together, else raw: entries that are shorter one by one may share less. */
 const Expr *lagrange_short_forms(const Eqns *e, const Expr *raw, uint32_t n);
 
-/* Says why the mass matrix cannot be solved with, in m->diags, and returns 0; 1 when it can. */
+/* 0: the mass matrix is singular on the kernel of the constraints at every state tried, and m->diags says why. Sets e->singular_mass. */
 int lagrange_check_mass(Eqns *e);
 
 #endif

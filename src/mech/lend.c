@@ -1,5 +1,5 @@
-/* What has no inertia of its own borrows some of the constraints that move it. The weights choose nothing but the size of rounding, and of the
- * error of a step that constraints between its ends are off by: they are of the size of what the constraint moves. */
+/* Weights of the regularising term: of the size of the inertia that the constraint moves. They affect only the rounding, and the
+ * constraint error in the middle of a step. */
 #include "mech/lend.h"
 
 #include <math.h>
@@ -10,14 +10,14 @@
 
 static int is_fixed(const Eqns *e, Expr x) { return !(expr_kinds(e->g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) && !expr_is_zero(e->g, x); }
 
-/* The diagonal entry of M for coordinate j, where it is a constant; or 0. */
+/* Diagonal entry j of M if constant, else 0. */
 static Expr inertia_of(const Eqns *e, uint32_t j) {
   for (uint32_t i = 0; i < e->mass.n; i++)
     if (e->mass.at[i].row == j && e->mass.at[i].col == j && is_fixed(e, e->mass.at[i].e)) return e->mass.at[i].e;
   return 0;
 }
 
-/* An inertia to compare with: of a coordinate in constraint k, else of any, else 1. */
+/* A constant inertia: of a coordinate in constraint k, else of any coordinate, else 1. */
 static Expr typical_inertia(const Eqns *e, uint32_t k) {
   const Entries *A = &e->constraints.A;
   for (uint32_t i = 0; i < A->n; i++)
@@ -47,7 +47,7 @@ static Num size_of(const Eqns *e, uint32_t k) {
   return power >= 0 ? num_int(INT64_C(1) << power) : num_ratio(1, INT64_C(1) << -power);
 }
 
-/* M_jj/A_kj^2 where both are constants, which has the right dimension and follows parameters; else near enough at the start. */
+/* M_jj/A_kj^2 where both are constants: the right dimension, and it follows parameters. Else an estimate near the start. */
 static Expr weight(const Eqns *e, uint32_t k) {
   const Entries *A = &e->constraints.A;
   for (uint32_t i = 0; i < A->n; i++) {

@@ -1,3 +1,4 @@
+/* H and C by differentiating L and each definition with symbols in the place of definitions; adjoints lambda by a backward sweep. */
 #include "mech/lift.h"
 
 #include <stdlib.h>
@@ -8,18 +9,17 @@ typedef struct {
   const Eqns *e;
   ExprGraph *g;
   Arena *arena;
-  uint32_t n;              /* definitions */
+  uint32_t n;              /* number of definitions */
   Expr *def;               /* [n] w_k, arguments before their users */
-  Expr *stand_in;          /* [n] the symbols that stand for them */
+  Expr *stand_in;          /* [n] symbols in the place of the definitions */
   uint32_t first;          /* index of the first stand-in among the local symbols */
   Expr *cut;               /* [n + 1] W_k, and L last, with stand-ins */
-  const Expr *back;        /* by symbol: the definition that it stands for */
+  const Expr *back;        /* by symbol: the definition behind a stand-in */
   uint32_t nback;
-  ExprPartials *gradient;  /* [n + 1] of cut, by u */
+  ExprPartials *gradient;  /* [n + 1] derivatives of cut by u */
 } Lift;
 
-/* The definitions that contain velocities, and L itself, each a function of q', of stand-ins and of
- * what holds no velocity. */
+/* Finds the definitions that contain velocities; writes them and L in q', stand-ins and expressions without velocities. */
 static void cut_definitions(Lift *l) {
   const Eqns *e = l->e;
   Expr lagrangian = e->summed;
@@ -47,7 +47,7 @@ static void cut_definitions(Lift *l) {
   expr_cut(l->g, body, l->n + 1, l->def, l->stand_in, l->n, l->cut);
 }
 
-/* The derivatives of x by u: velocities first, then stand-ins, each by its place in u. */
+/* Derivatives of x by u = (q', w), indices in u, ascending. */
 static ExprPartials by_u(Lift *l, Expr x) {
   VEC(ExprPartial) all = {0};
   ExprPartials v = expr_gradient_sparse(l->g, x, SYM_VEL, l->e->n), w = expr_gradient_sparse(l->g, x, SYM_LOCAL, l->first + l->n);
@@ -59,7 +59,7 @@ static ExprPartials by_u(Lift *l, Expr x) {
 
 static Expr without_stand_ins(Lift *l, Expr x) { return expr_substitute(l->g, x, l->back, l->nback, ""); }
 
-/* lambda_k = dL/dw_k + sum over later definitions of lambda_m dW_m/dw_k. */
+/* Adjoints lambda_k = dL/dw_k + sum over later definitions m of lambda_m dW_m/dw_k. */
 static Expr *multipliers(Lift *l) {
   Expr *lambda = ARENA_ARRAY(l->arena, Expr, l->n);
   for (uint32_t k = 0; k < l->n; k++) lambda[k] = expr_int(l->g, 0);
@@ -82,7 +82,7 @@ static int by_place(const void *a, const void *b) {
   return (x->col > y->col) - (x->col < y->col);
 }
 
-/* Entries at one place become their sum; zeros go. */
+/* Sorts entries, sums those at one place, and drops zeros. */
 static void merge(Lift *l, Entries *t) {
   if (t->n) qsort(t->at, t->n, sizeof *t->at, by_place);
   uint32_t kept = 0;
@@ -94,8 +94,7 @@ static void merge(Lift *l, Entries *t) {
   t->n = kept;
 }
 
-/* H = d2L/du2 + sum lambda_m d2W_m/du2, its lower triangle. Definitions are mostly linear in u; then
- * their multipliers are not needed. */
+/* Lower triangle of H = d2L/du2 + sum lambda_m d2W_m/du2. Definitions linear in u, the usual case, need no lambda. */
 static void second_derivatives(Lift *l, Entries *H) {
   Expr *lambda = NULL;
   for (uint32_t m = 0; m <= l->n; m++)

@@ -1,5 +1,5 @@
-/* Eqns -> the partial derivatives of the equations of motion: a row of residuals at a time, each in reverse
- * over its own graph, so that the work follows what is not zero. */
+/* Eqns -> partial derivatives of the equations of motion: reverse mode over the graph of each residual, so that the work
+ * follows the nonzero entries. M q'' in two forms, entries in three; the fewest operations win. */
 #include "mech/eqns.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
@@ -8,7 +8,7 @@ typedef VEC(Partial) PartialList;
 
 /* --- the residuals f - M q'' --- */
 
-/* M q'' by the entries of M. */
+/* M q'' from the entries of M. */
 static Expr *inertia_of_mass(const Eqns *e) {
   const Model *m = e->m;
   Arena *arena = m->arena;
@@ -28,7 +28,7 @@ static Expr *inertia_of_mass(const Eqns *e) {
   return inertia;
 }
 
-/* M q'' as what the momenta gain when q' becomes q' + q'': as long as the text of L, even where M is full. */
+/* M q'' as the directional derivative of p along q' += q'': as long as the text of L, even where M is full. */
 static Expr *inertia_of_momenta(const Eqns *e) {
   const Model *m = e->m;
   Expr *seed = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(e->g) + 1), *inertia = ARENA_ARRAY(m->arena, Expr, e->n + 1);
@@ -56,7 +56,7 @@ static PartialList differentiate(const Eqns *e, const Expr *inertia) {
   return found;
 }
 
-/* Replaces *best by the list with its entries rewritten (NULL: as they are) when that costs fewer operations in all. */
+/* Replaces *best by the list with its entries rewritten (rule NULL: as they are) if M and list together take fewer operations. */
 static void try_form(const Eqns *e, const PartialList *from, Expr (*rule)(ExprGraph *, Expr), PartialList *best, uint64_t *ops) {
   PartialList to = {0};
   VEC(Expr) roots = {0};
@@ -67,7 +67,7 @@ static void try_form(const Eqns *e, const PartialList *from, Expr (*rule)(ExprGr
     vec_push(e->m->arena, &to, x);
     vec_push(e->m->arena, &roots, x.e);
   }
-  for (uint32_t k = 0; k < e->mass.n; k++) vec_push(e->m->arena, &roots, e->mass.at[k].e); /* M is wanted, too */
+  for (uint32_t k = 0; k < e->mass.n; k++) vec_push(e->m->arena, &roots, e->mass.at[k].e); /* M is evaluated, too */
   uint64_t mine = expr_ops(e->g, roots.at, roots.n);
   if (mine >= *ops) return;
   *best = to;

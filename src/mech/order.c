@@ -1,8 +1,9 @@
+/* Symbolic elimination on the sparsity pattern, counting operations. Candidates wait in a heap by the rule's key; stale entries are skipped. */
 #include "mech/order.h"
 
 #include "base/sparse.h"
 
-/* What a pattern knows of an entry. */
+/* Kinds of entries in a pattern; products by +-1 cost nothing. */
 enum { NONZERO = 1, ONE = 2 };
 
 typedef struct {
@@ -14,12 +15,12 @@ typedef struct {
   Arena *arena;
   uint32_t n, total;
   Sparse H;
-  SparseRow *C;          /* [total] of definitions: what they contain */
-  uint32_t *nusers;      /* [total] the definitions left that contain a variable */
-  uint32_t *depth;       /* [total] how many definitions stand upon each other below one */
-  unsigned char *gone;
+  SparseRow *C;          /* [total] rows of definitions: the variables that they contain */
+  uint32_t *nusers;      /* [total] number of remaining definitions that contain the variable */
+  uint32_t *depth;       /* [total] longest chain of nested definitions down from this one; 0 for coordinates */
+  unsigned char *gone;   /* [total] eliminated */
   OrderRule rule;
-  uint64_t ops;          /* so far */
+  uint64_t ops;          /* operations so far */
   VEC(Candidate) heap;   /* binary, the smallest key on top; a candidate whose key has changed is stale */
 } Elimination;
 
@@ -41,9 +42,9 @@ static Elimination elimination_new(Arena *a, ExprGraph *g, const LinearSystem *s
   return e;
 }
 
-/* --- what comes next --- */
+/* --- keys of the rules --- */
 
-/* Operations of eliminating a variable, about: none of the products is by 1, no sum is with 0. */
+/* Estimated operations of eliminating a variable: as if no factor were 1 and no sum had a 0. */
 static uint64_t cost_of(const Elimination *e, uint32_t v) {
   int pivot = sparse_get(&e->H, v, v) != 0;
   uint64_t others = e->H.rows[v].n - (uint64_t)pivot;
@@ -98,7 +99,7 @@ static Candidate pop(Elimination *e) {
 
 /* --- steps --- */
 
-/* Adds a product to entry (i, j). */
+/* Counts adding a product to entry (i, j), and records the fill-in. by_one: the product is by +-1. */
 static void fill(Elimination *e, uint32_t i, uint32_t j, int by_one) {
   uint32_t *at = sparse_find(&e->H, i, j);
   e->ops += (at != NULL) + (uint64_t)!by_one;
@@ -110,7 +111,7 @@ static void eliminate_coordinate(Elimination *e, uint32_t v) {
   e->ops++;
   for (uint32_t i = 0; i < row->n; i++) {
     if (row->at[i].col == v) continue;
-    e->ops += 5; /* the factor, and two in each substitution */
+    e->ops += 5; /* the factor; two operations in each substitution */
     for (uint32_t k = 0; k <= i; k++)
       if (row->at[k].col != v) fill(e, row->at[i].col, row->at[k].col, 0);
   }
@@ -121,7 +122,7 @@ static void eliminate_definition(Elimination *e, uint32_t v) {
   int pivot = sparse_get(&e->H, v, v) != 0;
   for (uint32_t i = 0; i < c->n; i++) {
     int one = c->at[i].value == ONE;
-    e->ops += one ? 2 : 4; /* the substitutions */
+    e->ops += one ? 2 : 4; /* forward and back substitution */
     for (uint32_t k = 0; k < row->n; k++)
       if (row->at[k].col != v) fill(e, row->at[k].col, c->at[i].col, one);
     e->ops += pivot && !one;
@@ -137,7 +138,7 @@ static void eliminate(Elimination *e, uint32_t v) {
   for (uint32_t k = 0; k < e->C[v].n; k++) e->nusers[e->C[v].at[k].col]--;
 }
 
-/* The variables whose key the elimination of v may have changed. */
+/* Pushes the variables whose key may have changed by the elimination of v. */
 static void reconsider(Elimination *e, uint32_t v) {
   for (uint32_t k = 0; k < e->H.rows[v].n; k++) push(e, e->H.rows[v].at[k].col);
   for (uint32_t k = 0; k < e->C[v].n; k++) push(e, e->C[v].at[k].col);
@@ -154,13 +155,13 @@ void order_elimination(Arena *a, ExprGraph *g, LinearSystem *s, OrderRule rule, 
     eliminate(&e, c.var);
     reconsider(&e, c.var);
   }
-  for (uint32_t v = 0; v < e.n && e.ops <= enough; v++) /* no pivot: singular, which the run will say */
+  for (uint32_t v = 0; v < e.n && e.ops <= enough; v++) /* no pivot: singular; the run reports it */
     if (!e.gone[v]) order[n++] = v;
   s->order = order;
   s->ops = e.ops;
 }
 
-/* s by another rule where that takes fewer operations; as many: where equal says so. */
+/* Takes the order of another rule if it has fewer operations, or as many and `equal` is set. */
 static void try_rule(Arena *a, ExprGraph *g, LinearSystem *s, OrderRule rule, int equal) {
   LinearSystem other = *s;
   order_elimination(a, g, &other, rule, s->ops);

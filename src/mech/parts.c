@@ -1,3 +1,5 @@
+/* A tape for each factor and its gradient; Newton's method on the factor alone, since from a state far from all factors' zeros the
+ * product leads to the nearest. */
 #include "mech/parts.h"
 
 #include <math.h>
@@ -26,7 +28,7 @@ static void add_part(ConstraintParts *p, Expr factor) {
   vec_push(e->m->arena, &p->parts, ((Part){factor, eval_tape(e->g, roots, 1 + e->n)}));
 }
 
-/* Whether it is a factor that may be 0. */
+/* Whether base^power is a factor that contains coordinates and may be 0. */
 static int may_vanish(const Eqns *e, Expr base, Num power) {
   ExprSign sign = expr_sign(e->g, base);
   return num_sign(power) > 0 && sign != SIGN_POSITIVE && sign != SIGN_NEGATIVE && (expr_kinds(e->g, base) & 1u << SYM_COORD);
@@ -56,13 +58,12 @@ ConstraintParts *parts_new(const Eqns *e) {
 uint32_t parts_count(const ConstraintParts *p) { return p->parts.n; }
 Expr parts_factor(const ConstraintParts *p, uint32_t part) { return p->parts.at[part].factor; }
 
-/* The factor; its gradient stands in value[1 ..]. */
+/* Value of the factor; its gradient in value[1 ..]. */
 static long double factor_at(ConstraintParts *p, uint32_t part, const long double *symbols) {
   eval_run(p->parts.at[part].tape, symbols, p->value);
   return p->value[0];
 }
 
-/* Newton's steps along the gradient. */
 int parts_go(ConstraintParts *p, uint32_t part, long double *symbols) {
   enum { MOST = 60 };
   for (int turn = 0; turn < MOST; turn++) {

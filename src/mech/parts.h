@@ -1,4 +1,4 @@
-/* Constraints that are products: where they hold, one factor is 0, and each has a part of the states that obey. */
+/* Factors of constraints that are products: where c = f1 f2 .. = 0 holds, a factor is 0, and each factor has its own set of states. */
 #ifndef LAGC_PARTS_H
 #define LAGC_PARTS_H
 
@@ -6,17 +6,16 @@
 
 typedef struct ConstraintParts ConstraintParts;
 
-/* Of the holonomic constraints that always hold, c = f1 f2 .. with two or more factors made of coordinates: all such factors, but those whose sign is
- * known. */
+/* The factors of the holonomic constraints, contacts left out, in which two or more factors contain coordinates and may be 0. */
 ConstraintParts *parts_new(const Eqns *e);
 
 uint32_t parts_count(const ConstraintParts *p);
 Expr parts_factor(const ConstraintParts *p, uint32_t part);
 
-/* Moves coordinates until the factor is 0. 0: that does not succeed from this state. */
+/* Moves coordinates to a zero of the factor, by Newton's method along its gradient. 0: no convergence from this state. */
 int parts_go(ConstraintParts *p, uint32_t part, long double *symbols);
 
-/* Whether the factor is 0 there, but for rounding. */
+/* Whether the factor is 0 at the state, up to rounding. */
 int parts_is_on(ConstraintParts *p, uint32_t part, const long double *symbols);
 
 #endif

@@ -1,3 +1,4 @@
+/* Magnitudes bottom up over the graph: sums and products of the magnitudes of their parts, |e| for all else. */
 #include "mech/sizes.h"
 
 static Expr size_of_sum(ExprGraph *g, const Expr *size, Expr x) {

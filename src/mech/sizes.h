@@ -1,11 +1,11 @@
-/* How large the terms are that make up an expression: what its rounding is compared with. */
+/* Magnitude of an expression's terms, the scale of its rounding. */
 #ifndef LAGC_SIZES_H
 #define LAGC_SIZES_H
 
 #include "sym/expr.h"
 
-/* The sum of the sizes of the terms of x, as if products of sums were multiplied out: of a*(x - z) it is |a|*(|x| + |z|). What stands in a
- * denominator, in a root or in a function counts as one; definitions are looked into. */
+/* Sum of the absolute values of the terms of x, as if products of sums were multiplied out: |a|*(|x| + |z|) for a*(x - z). Denominators,
+ * roots and functions count as single terms; definitions are expanded. */
 Expr sizes_of_terms(ExprGraph *g, Expr x);
 
 #endif

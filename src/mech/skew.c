@@ -1,3 +1,4 @@
+/* Elimination by 2x2 pivots with Markowitz's count (Bunch 1982); the rest by Pfaffians of all subsets of its rows (Knuth 1996), 2^m of them. */
 #include "mech/skew.h"
 
 #include "sym/simplify.h"
@@ -8,7 +9,7 @@ typedef struct {
   uint32_t n;
   Expr *A, *b;
   uint8_t *gone;
-  uint32_t *degree; /* entries in the rows that are left */
+  uint32_t *degree; /* nonzero entries of each row, among the remaining columns */
 } Skew;
 
 static Expr *entry(const Skew *s, uint32_t i, uint32_t j) { return &s->A[(size_t)i * s->n + j]; }
@@ -27,7 +28,7 @@ static int has_sign(const Skew *s, Expr e) {
   return (expr_is_num(s->g, e) && !expr_is_zero(s->g, e)) || sign == SIGN_POSITIVE || sign == SIGN_NEGATIVE;
 }
 
-/* Whether it is other than zero wherever it has a value: 1/(x*y), too. */
+/* Whether e is nonzero wherever it has a value, as 1/(x*y). */
 static int is_safe(const Skew *s, Expr e) {
   Num k;
   if (expr_pairs(s->g, e, EX_SUM) == 1 && !expr_is_num(s->g, e)) e = expr_pair(s->g, e, EX_SUM, 0, &k);
@@ -46,7 +47,7 @@ static void count(Skew *s) {
   }
 }
 
-/* The safe pair with the least fill-in (Markowitz's count); 0 when there is none. */
+/* The pair with a nonzero entry for certain and the least fill-in (Markowitz's count). 0: there is none. */
 static int find_pair(Skew *s, uint32_t *at, uint32_t *with) {
   uint64_t best = UINT64_MAX;
   count(s);
@@ -87,7 +88,7 @@ static void eliminate(Skew *s, uint32_t i, uint32_t j) {
   }
 }
 
-/* x over a pivot, term by term where the pivot is a product: what they share cancels. */
+/* x/pivot, term by term if the pivot is a product, so that common factors cancel. */
 static Expr divide(const Skew *s, Expr x, Expr pivot) {
   ExprGraph *g = s->g;
   uint32_t n = expr_pairs(g, x, EX_SUM);
@@ -101,7 +102,7 @@ static Expr divide(const Skew *s, Expr x, Expr pivot) {
   return expr_add_n(g, terms, n);
 }
 
-/* Of the rows i, j of a pair, once those eliminated after it are known (x is 0 for the others). */
+/* Back substitution for the pair (i, j); x[k] is the null Expr for unknowns eliminated before it. */
 static void substitute(const Skew *s, uint32_t i, uint32_t j, Expr *x) {
   ExprGraph *g = s->g;
   Expr a = *entry(s, i, j), at_i = s->b[i], at_j = expr_neg(g, s->b[j]);
@@ -123,7 +124,7 @@ static int bits(uint32_t set) {
   return n;
 }
 
-/* pf[set] = the Pfaffian of the rows and columns at[k] for the bits k of set, expanded by the first of them. */
+/* pf[set] = Pfaffian of the rows and columns at[k] for the bits k of set, expanded along its first row. */
 static Expr *pfaffians(const Skew *s, const uint32_t *at, uint32_t m) {
   ExprGraph *g = s->g;
   Expr *pf = ARENA_ARRAY(s->arena, Expr, (size_t)1 << m);
@@ -145,7 +146,7 @@ static Expr *pfaffians(const Skew *s, const uint32_t *at, uint32_t m) {
   return pf;
 }
 
-/* The inverse has the entries (-1)^(i + j) Pf(without i, j)/Pf above the diagonal, counted from 1. */
+/* Above the diagonal, A^-1 has the entries (-1)^(i + j) Pf(without i, j)/Pf, counted from 1. */
 static void solve_left(const Skew *s, const uint32_t *at, uint32_t m, Name name, Expr *x, Expr *divisor) {
   enum { NAMED = 4 };
   ExprGraph *g = s->g;

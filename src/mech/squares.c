@@ -1,3 +1,4 @@
+/* Reads the squares off L with lets expanded; then looks for a coordinate singularity of M, in numbers, at multiples of a quarter turn. */
 #include "mech/squares.h"
 
 #include <math.h>
@@ -17,7 +18,7 @@ typedef struct {
   Expr *W, *weight;
 } Squares;
 
-/* weight*base^2/2. 0: base is not linear in velocities. */
+/* Adds the form weight*base^2/2. 0: base is not linear in velocities, or there are too many forms. */
 static int add_form(Squares *s, Expr weight, Expr base) {
   const Eqns *e = s->e;
   if (s->of.n == FORMS_MOST) return 0;
@@ -31,7 +32,7 @@ static int add_form(Squares *s, Expr weight, Expr base) {
   return 1;
 }
 
-/* Such a term has no part in M. */
+/* Linear in velocities: no part of M. */
 static int is_linear(const Eqns *e, Expr x) {
   ExprPartials d = expr_gradient_sparse(e->g, x, SYM_VEL, e->n);
   for (uint32_t i = 0; i < d.n; i++)
@@ -39,7 +40,7 @@ static int is_linear(const Eqns *e, Expr x) {
   return 1;
 }
 
-/* weight*x/2, a part of L. 0: it has a part in M, and is no sum of squares. */
+/* Adds the squares of weight*x/2, a part of L. 0: x contributes to M and is no sum of squares. */
 static int take(Squares *s, Expr weight, Expr x) {
   const Eqns *e = s->e;
   ExprGraph *g = e->g;
@@ -72,7 +73,7 @@ static int take(Squares *s, Expr weight, Expr x) {
 
 /* --- where M is singular --- */
 
-/* 0: not finite. */
+/* M[n*n] := the mass matrix at a state. 0: its entries are not finite. */
 static int mass_at(const Eqns *e, const long double *symbols, long double *M) {
   Expr *roots = ARENA_ARRAY(e->m->arena, Expr, e->mass.n + 1);
   long double *value = ARENA_ARRAY(e->m->arena, long double, e->mass.n + 1), sum = 0;
@@ -87,7 +88,7 @@ static int mass_at(const Eqns *e, const long double *symbols, long double *M) {
   return isfinite(sum);
 }
 
-/* Along how many coordinates M is singular at a state, each in its unit: size[n] are roots of inertia elsewhere. 0: it is regular. */
+/* Number of coordinates involved in the kernel of M at a state, scaled by size[n], roots of the inertia elsewhere. 0: M is regular. */
 static uint32_t singular_along(const Eqns *e, const long double *symbols, const long double *size) {
   long double M[COORDINATES_MOST * COORDINATES_MOST], null[COORDINATES_MOST], most = 0;
   uint32_t along = 0;
@@ -97,8 +98,8 @@ static uint32_t singular_along(const Eqns *e, const long double *symbols, const 
   return along;
 }
 
-/* Each coordinate in turn at 0 and at quarters of a turn, where angles meet their poles; all else at random. Of a pole along fewer coordinates than
- * that it is looked on. */
+/* Tries each coordinate in turn at 0 and at quarters of a turn, where angles have their poles; all other symbols are random. A singularity
+ * along fewer than `least` coordinates does not count. */
 static int find_pole(const Eqns *e, uint32_t least, MassPole *pole) {
   long double *symbols = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
   long double M[COORDINATES_MOST * COORDINATES_MOST], size[COORDINATES_MOST];

@@ -1,6 +1,6 @@
-/* Positions: Gauss-Newton steps, damped until the residual falls (P. Deuflhard, Newton Methods for Nonlinear Problems (2004), 4.3, DOI
- * 10.1007/978-3-642-23899-4), from where the scene starts or from places beside; then Newton-like steps along the constraints. Velocities:
- * one linear problem. Two programs, this and runtime/core/consistent.c, since compiler and runtime share no code; tests compare them. */
+/* Consistent starts. Positions: Gauss-Newton steps, damped until the residual falls (P. Deuflhard, Newton Methods for Nonlinear Problems (2004),
+ * 4.3, DOI 10.1007/978-3-642-23899-4), from the scene's start or from states near it; then Newton-like steps along the constraints to the nearest
+ * state. Velocities: one linear problem. runtime/core/consistent.c does the same in a run with emitted functions; tests compare the two. */
 #include "mech/start.h"
 
 #include <float.h>
@@ -14,27 +14,27 @@ enum { MOST_STEPS = 100, MOST_HALVINGS = 30 };
 typedef struct {
   const Eqns *e;
   StateSolver *solver;
-  StateValues at;                 /* at symbols */
-  int velocities;                 /* the level at hand */
-  uint32_t n, rows;               /* coordinates; constraints of the level */
-  uint32_t *free, nfree;
-  uint32_t *place;                /* by coordinate: 1 + its place in `free`; 0: it is held */
-  SparseElements mass, system;    /* of the step at hand */
-  const unsigned char *given;     /* by symbol: when it gives way */
+  StateValues at;                 /* values at `symbols` */
+  int velocities;                 /* current level: velocities, else positions */
+  uint32_t n, rows;               /* number of coordinates; number of constraints of the level */
+  uint32_t *free, nfree;          /* coordinates that may move */
+  uint32_t *place;                /* by coordinate: 1 + its index in `free`; 0: it may not move */
+  SparseElements mass, system;    /* of the current step */
+  const unsigned char *given;     /* by symbol: the stage from which it may move */
   long double *symbols, *asked, *best, *from; /* by symbol */
   long double *size, *terms, *b, *d;
-  unsigned char *says;            /* by constraint: it has terms */
+  unsigned char *says;            /* by constraint: it has terms of finite size */
   uint32_t nsymbols;
 } Finder;
 
-/* What gives way to constraints, in this order: components that nobody set, rotations of which nothing is said, all. */
+/* Stages: components that may move are those that nobody set, then also rotations that nobody set, then all. */
 enum { UNSET, ROTATIONS, ALL };
 
 static SymId component(const Finder *f, uint32_t i) { return f->velocities ? f->e->m->coords.at[i].v : f->e->m->coords.at[i].q; }
 
 static void look(Finder *f) { f->at = states_at(f->solver, f->symbols); }
 
-/* As a double has it. */
+/* Residual of constraint k; infinite where a double would overflow. */
 static long double residual(const Finder *f, uint32_t k) {
   long double x = f->velocities ? f->at.r[k] : f->at.c[k];
   return fabsl(x) > DBL_MAX ? INFINITY : x;
@@ -42,11 +42,12 @@ static long double residual(const Finder *f, uint32_t k) {
 
 static void copy(const Finder *f, long double *to, const long double *from) { memcpy(to, from, f->nsymbols * sizeof *to); }
 
-/* --- what is large --- */
+/* --- scales --- */
 
 static int is_alike(const Model *m, uint32_t i, uint32_t j) { return strcmp(m->coords.at[i].unit.text, m->coords.at[j].unit.text) == 0; }
 
-/* most[i] := the largest of what has the unit of coordinate i. Units are few: most find theirs at the first member of a family. */
+/* most[i] := largest absolute value among coordinates (velocities) with the unit of coordinate i. The first coordinate of each unit searches
+ * for all of that unit. */
 static void largest_alike(const Finder *f, const long double *symbols, int velocities, long double *most) {
   const Model *m = f->e->m;
   for (uint32_t i = 0; i < f->n; i++) {
@@ -58,7 +59,8 @@ static void largest_alike(const Finder *f, const long double *symbols, int veloc
   }
 }
 
-/* reach[i] := how far coordinate i, or its velocity, may be from 0: as far as one of its unit is; an angle, 1. */
+/* reach[i] := scale of coordinate i or its velocity: the largest of its unit (velocities: at least that over the scene's duration); 1 if that is 0,
+ * and at least 1 for an angle. */
 static void reaches(const Finder *f, long double *reach) {
   const Model *m = f->e->m;
   double span = m->scene.has_span ? fabs(m->scene.t1 - m->scene.t0) : 0;
@@ -73,7 +75,7 @@ static void reaches(const Finder *f, long double *reach) {
   }
 }
 
-/* step[i] := where to look beside: `part` of how far coordinate i reaches, and each a little further or less than others. */
+/* step[i] := `part` times the scale of coordinate i, times a factor from 0.5 to 1.5 (golden ratio sequence), different for each i. */
 static void steps_beside(const Finder *f, long double part, long double *step) {
   reaches(f, step);
   for (uint32_t i = 0; i < f->n; i++) step[i] = part * step[i] * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
@@ -83,7 +85,7 @@ void start_steps_beside(const Eqns *e, long double *symbols, long double part, l
   steps_beside(&(Finder){.e = e, .n = e->n, .symbols = symbols}, part, step);
 }
 
-/* size[k] := how large the terms are of which constraint k is the sum. */
+/* size[k] := magnitude of the terms of constraint k: to first order, and as its change over a displacement of the size of the model. */
 static void find_terms(Finder *f, long double *size) {
   const Entries *A = &f->e->constraints.A;
   look(f);
@@ -100,7 +102,7 @@ static void find_terms(Finder *f, long double *size) {
   look(f);
 }
 
-/* The constraint that is off by most of its terms' rounding, and by how many times that. */
+/* The constraint with the largest residual in units of its terms' rounding; *times: that number of units. */
 static uint32_t worst(Finder *f, long double *times) {
   uint32_t which = 0;
   *times = -1;
@@ -113,7 +115,7 @@ static uint32_t worst(Finder *f, long double *times) {
   return which;
 }
 
-/* What falls; infinite where there is no value. */
+/* Merit function: sum of squares of the scaled residuals; infinite where they have no value. */
 static long double merit(Finder *f) {
   long double s = 0;
   look(f);
@@ -129,7 +131,7 @@ static long double largest(const long double *x, uint32_t n) {
   return most;
 }
 
-/* f->mass := M, its largest entry made `size`, or (0) as it is; 1 where M is 0. */
+/* f->mass := M scaled to a largest entry of `size` (0: not scaled); the unit matrix if M is 0. */
 static void find_mass(Finder *f, long double size) {
   Arena *arena = f->e->m->arena;
   long double most = largest(f->at.mass, f->e->mass.n);
@@ -139,7 +141,7 @@ static void find_mass(Finder *f, long double size) {
   for (uint32_t i = 0; i < f->n && !(most > 0); i++) sparse_put(arena, &f->mass, i, i, 1);
 }
 
-/* The system of what is free: M, and b, towards what was asked for. */
+/* Puts M of the free components into the system; pull: b += M (asked - here). */
 static void put_mass(Finder *f, int pull) {
   for (uint32_t k = 0; k < f->mass.n; k++) {
     const SparseElement *x = &f->mass.at[k];
@@ -162,11 +164,11 @@ static void put_constraints(Finder *f) {
   }
 }
 
-/* d[nfree]: M d - A^T l = pull M (asked - here), A d = -residual. */
+/* Solves M d - A^T l = pull M (asked - here), A d = -residual for d[nfree]. 0: not finite. */
 static int direction(Finder *f, int pull) {
   uint32_t nf = f->nfree;
   look(f);
-  long double size = largest(f->at.A, f->e->constraints.A.n); /* M as large as A: which changes no direction */
+  long double size = largest(f->at.A, f->e->constraints.A.n); /* M as large as A, which changes no direction */
   find_mass(f, size > 0 ? size : 1);
   memset(f->place, 0, f->n * sizeof *f->place);
   for (uint32_t i = 0; i < nf; i++) f->place[f->free[i]] = i + 1, f->b[i] = 0;
@@ -189,7 +191,7 @@ static void move(Finder *f, const long double *from, long double part) {
   }
 }
 
-/* Whether damped steps lead to the constraints. */
+/* Damped Gauss-Newton steps. Returns whether they end on the constraints, up to 1024 units of rounding. */
 static int descend(Finder *f) {
   long double before = merit(f), times;
   for (int step = 0; step < MOST_STEPS && before > 0 && f->nfree > 0; step++) {
@@ -218,7 +220,7 @@ static long double distance(Finder *f) {
   return s;
 }
 
-/* To the nearest place on the constraints, by steps that are taken as long as they lead nearer. */
+/* Moves to the nearest state on the constraints, by steps as long as the distance falls. */
 static void approach(Finder *f) {
   for (int step = 0; step < MOST_STEPS; step++) {
     copy(f, f->best, f->symbols);
@@ -231,6 +233,7 @@ static void approach(Finder *f) {
   }
 }
 
+/* Whether component i occurs in a constraint of the level. */
 static int is_held(const Finder *f, uint32_t i) {
   const Entries *A = &f->e->constraints.A;
   uint32_t k = 0;
@@ -238,6 +241,7 @@ static int is_held(const Finder *f, uint32_t i) {
   return k < A->n;
 }
 
+/* Descends from the start asked for, then from displaced starts; positions continue to the nearest state. 0: none of them ends on the constraints. */
 static int reach(Finder *f) {
   static const long double beside[] = {0, 1e-3L, -1e-3L, 0.03L, -0.03L, 0.3L, -0.3L, 1, -1};
   long double typical = 0;
@@ -254,14 +258,14 @@ static int reach(Finder *f) {
   return 0;
 }
 
-/* The free components: those that give way at this stage. */
+/* Lists the components that may move at this stage. */
 static void choose_free(Finder *f, int stage) {
   f->nfree = 0;
   for (uint32_t i = 0; i < f->n; i++)
     if (f->given[component(f, i)] <= stage) f->free[f->nfree++] = i;
 }
 
-/* --- what is refused --- */
+/* --- refused starts --- */
 
 static StartResult fault(const Finder *f, StartKind kind, uint32_t k) { return (StartResult){kind, k, f->velocities, residual(f, k)}; }
 
@@ -271,7 +275,7 @@ static int is_contact(const Eqns *e, uint32_t k) {
   return 0;
 }
 
-/* f->terms := what moving each coordinate as far as some of its unit are makes of a constraint, to first order. */
+/* f->terms[k] := change of constraint k, to first order, when each coordinate moves by its scale, here or as asked for. */
 static void slopes(Finder *f) {
   const Entries *A = &f->e->constraints.A;
   Finder asked = *f;
@@ -289,7 +293,7 @@ static void slopes(Finder *f) {
 
 static int is_flat(const Finder *f, uint32_t k) { return f->says[k] && f->terms[k] < 1e-6L * f->size[k]; }
 
-/* Whether a constraint that is flat here is so beside, too, where all hold: not a linkage at its dead centre. */
+/* Whether a constraint with vanishing derivatives here has them at a nearby state on the constraints, too; a linkage at its dead centre has not. */
 static int is_flat_beside(Finder *f, uint32_t k) {
   copy(f, f->best, f->symbols);
   choose_free(f, ALL);
@@ -310,12 +314,13 @@ static StartResult check_slopes(Finder *f, int reached) {
     if (is_contact(f->e, k)) continue;
     if (!isfinite(f->terms[k]) && reached) return fault(f, START_STEEP, k);
     if (!is_flat(f, k)) continue;
-    if (!reached && fabsl(residual(f, k)) > 1e-6L * f->size[k]) return fault(f, START_NONE, k); /* it does not hold where it is flat */
+    if (!reached && fabsl(residual(f, k)) > 1e-6L * f->size[k]) return fault(f, START_NONE, k); /* violated where it is flat */
     if (!reached || is_flat_beside(f, k)) return fault(f, START_FLAT, k);
   }
   return (StartResult){.kind = START_FOUND};
 }
 
+/* Brings one level, positions or velocities, onto its constraints, stage by stage; checks their derivatives there. */
 static StartResult settle(Finder *f, int velocities) {
   const Constraints *k = &f->e->constraints;
   f->velocities = velocities;
@@ -339,7 +344,7 @@ static StartResult settle(Finder *f, int velocities) {
     }
     if (!found) {
       copy(f, f->symbols, f->asked);
-      descend(f); /* as near as that goes from where it was asked for */
+      descend(f); /* the least residual from the start asked for, to report it */
       StartResult flat = velocities ? (StartResult){.kind = START_FOUND} : check_slopes(f, 0);
       which = worst(f, &off);
       return flat.kind != START_FOUND ? flat : fault(f, START_NONE, which);
@@ -348,9 +353,9 @@ static StartResult settle(Finder *f, int velocities) {
   return velocities ? (StartResult){.kind = START_FOUND} : check_slopes(f, 1);
 }
 
-/* --- all of it --- */
+/* --- entry points --- */
 
-/* Whether component i of [q|v] is another number, beside the largest of its unit. */
+/* Whether component i of [q|v] moved by more than rounding of the largest of its unit. */
 static int is_moved(const Eqns *e, const long double *asked, const long double *found, uint32_t i) {
   const Model *m = e->m;
   const Coord *q = &m->coords.at[i % e->n];
@@ -399,7 +404,7 @@ static const unsigned char *given_by(const Eqns *e) {
   unsigned char *given = ARENA_ARRAY(m->arena, unsigned char, expr_symbol_count(e->g) + 1);
   for (uint32_t i = 0; i < m->scene.starts.n; i++)
     if (!m->scene.starts.at[i].implied) given[m->scene.starts.at[i].target] = ALL;
-  for (uint32_t i = 0; i < m->scene.starts.n; i++) { /* of the first of a rotation's four */
+  for (uint32_t i = 0; i < m->scene.starts.n; i++) { /* implied: target is the first of a rotation's four components */
     uint32_t first = expr_symbol(m->g, m->scene.starts.at[i].target)->index;
     for (uint32_t k = first; m->scene.starts.at[i].implied && k < first + 4; k++)
       if (!given[m->coords.at[k].q]) given[m->coords.at[k].q] = ROTATIONS;

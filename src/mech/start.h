@@ -1,4 +1,4 @@
-/* The start that a run takes: what the scene gives, brought to the constraints. */
+/* Consistent start of a run: the scene's start values, moved onto the constraints. */
 #ifndef LAGC_START_H
 #define LAGC_START_H
 
@@ -7,39 +7,39 @@
 typedef enum {
   START_FOUND,
   START_NO_VALUE, /* the constraint has no value where the scene starts */
-  START_BROKEN,   /* it is not met by what is given `exactly` */
+  START_BROKEN,   /* values given `exactly` violate the constraint */
   START_FLAT,     /* its derivatives vanish where it holds */
-  START_STEEP,    /* they have no value there */
-  START_NONE      /* no state near that obeys it was found */
+  START_STEEP,    /* its derivatives have no value where it holds */
+  START_NONE      /* no state near the start was found that obeys it */
 } StartKind;
 
 typedef struct {
   StartKind kind;
-  uint32_t constraint;   /* the one to blame, of Eqns.constraints */
-  int velocities;        /* in its rate */
+  uint32_t constraint;   /* index of the violated constraint in Eqns.constraints */
+  int velocities;        /* its rate is violated, not its position */
   long double residual;
 } StartResult;
 
-/* Values by symbol: parameters, and what the scene gives; 0 for what it does not. Closed contacts are open. */
+/* Values by symbol: parameters and the scene's start values; 0 for all other symbols, so that all contacts are open. */
 long double *start_asked(const Eqns *e);
 
-/* Brings them to the constraints as runtime/core/consistent.c does, by the same rules: what the scene does not give moves first, the rest
- * where that does not suffice; then to the nearest place, in the metric of the mass matrix; then velocities. What obeys the constraints
- * to a double's rounding stays. Otherwise symbols are left at the last place that was tried. */
+/* Moves symbols (from start_asked) onto the constraints by the rules of runtime/core/consistent.c: positions that the scene does not give
+ * move first, the others if that does not suffice; then to the nearest state in the metric of the mass matrix; then velocities. A state that
+ * obeys the constraints to a double's rounding stays. On failure symbols hold the last state that was tried. */
 StartResult start_find(const Eqns *e, StateSolver *solver, long double *symbols);
 
-/* The same from what the scene gives, where there are constraints: found[2 n] of [q|v], and whether each was moved by more than a double's
- * rounding. Reported in the model's diagnostics when there is none and the scene gives a start; 0 then. */
+/* The consistent start for the scene: found[2 n] = [q|v], and moved[2 n], set where a value moved by more than a double's rounding. Without
+ * constraints, or if none was found, the scene's own values; 0, reported in the diagnostics, if none was found and the scene gives a start. */
 int start_moves(const Eqns *e, long double *found, unsigned char *moved);
 
-/* step[n] := where to look beside a state: `part` of how far each coordinate may be from 0 (as far as one of its unit is; an angle, 1), times 0.5 to
- * 1.5, so that none moves as another does. */
+/* step[n] := displacements to a nearby state: `part` times the size of each coordinate (the largest of its unit; at least 1 for an angle) times
+ * a factor from 0.5 to 1.5, different for each coordinate. */
 void start_steps_beside(const Eqns *e, long double *symbols, long double part, long double *step);
 
-/* Says why there is none. */
+/* Reports in the model's diagnostics why there is no consistent start. */
 void start_report(const Eqns *e, const StartResult *result);
 
-/* What is said of how far a constraint is off: "; it is off by 0.1 [m]". */
+/* Text of a constraint's residual: "; it is off by 0.1 [m]"; "" if not finite. */
 const char *start_off_by(const Eqns *e, const StartResult *result);
 
 #endif

@@ -1,4 +1,4 @@
-/* Starts that are refused, in words. */
+/* Messages for starts that are refused. */
 #include <math.h>
 
 #include "mech/start.h"

@@ -1,3 +1,4 @@
+/* One tape evaluates M, f, flows, energy and constraints at a state; sparse elimination solves [M -A^T; A 0] and the projections. */
 #include "mech/states.h"
 
 #include <float.h>
@@ -7,13 +8,13 @@
 
 struct StateSolver {
   const Eqns *e;
-  EvalTape *tape; /* the entries of M, then f, the flows, the energy; of constraints A, c, r, what A q'' is */
-  uint32_t first_entry; /* of A in it */
-  long double *out, *b; /* its results; a right-hand side */
-  SparseElements a;     /* a system of equations */
-  SparseVector row;     /* a constraint's derivatives */
-  int *scale;               /* [n + m] of the unknowns of that system, at the state that was looked at last */
-  int scaled;               /* scale is known */
+  EvalTape *tape; /* entries of M, f, flows, energy; entries of A, c, r, demand */
+  uint32_t first_entry; /* index of A's first entry in the tape's results */
+  long double *out, *b; /* the tape's results; right-hand side and solution */
+  SparseElements a;     /* matrix of the linear system */
+  SparseVector row;     /* a scaled row of A */
+  int *scale;               /* [n + m] exponents of states_scale for the system's unknowns, at the state evaluated last */
+  int scaled;               /* scale is known for that state */
   uint32_t nflows;
 };
 
@@ -41,7 +42,7 @@ StateSolver *states_new(const Eqns *e) {
   return s;
 }
 
-/* Values at a state: the tape's results. */
+/* Evaluates the tape at a state. */
 static const long double *run(StateSolver *s, const long double *symbols) {
   eval_run(s->tape, symbols, s->out);
   s->scaled = 0;
@@ -78,7 +79,7 @@ void states_put_constraints(const Eqns *e, const long double *values, uint32_t r
   }
 }
 
-/* The system [D -A^T; A 0] of the first rows of A, D = M or 1. */
+/* s->a := [D -A^T; A 0] with the first rows of A; D = M or the unit matrix. */
 static void fill(StateSolver *s, int with_mass, uint32_t rows) {
   const Eqns *e = s->e;
   s->a.n = 0;
@@ -87,10 +88,10 @@ static void fill(StateSolver *s, int with_mass, uint32_t rows) {
   states_put_constraints(e, s->out + s->first_entry, rows, &s->a);
 }
 
-/* The least change with A d = -g of the first rows; others are 0. 0 where there is none. */
+/* s->b[n] := the least d with A d = -g for the first rows. 0: not finite. */
 static int change(StateSolver *s, const long double *g, uint32_t rows) {
   uint32_t n = s->e->n, m = s->e->constraints.n, w = n + m;
-  fill(s, 0, rows); /* constraints on velocities do not hold back positions */
+  fill(s, 0, rows); /* positions: holonomic rows only, since constraints on velocities do not restrict positions */
   for (uint32_t i = 0; i < w; i++) s->b[i] = i < n || i >= n + rows ? 0 : -g[i - n];
   sparse_solve(s->e->m->arena, w, &s->a, s->b, 1e-13L, NULL);
   for (uint32_t i = 0; i < n; i++)
@@ -106,15 +107,15 @@ static long double largest(const long double *x, uint32_t n) {
 
 static SymId symbol_at(const Model *m, uint32_t j, int velocities) { return velocities ? m->coords.at[j].v : m->coords.at[j].q; }
 
-/* The largest coordinate (velocity). */
+/* Largest absolute value of the coordinates, or of the velocities. */
 static long double motion_size(const StateSolver *s, const long double *symbols, int velocities) {
   long double most = 0;
   for (uint32_t j = 0; j < s->e->n; j++) most = fmaxl(most, fabsl(symbols[symbol_at(s->e->m, j, velocities)]));
   return most;
 }
 
-/* Whether residuals of the first rows are rounding: beside what changes of the motion by a part in 1e12 would make of them, however a
- * constraint is scaled. */
+/* Whether the residuals of the first rows are rounding: smaller than relative changes of 1e-12 in the motion would cause, whatever the scale
+ * of a constraint. */
 static int are_small(const StateSolver *s, const long double *residual, uint32_t rows, long double size) {
   const Entries *A = &s->e->constraints.A;
   const long double *values = s->out + s->first_entry;
@@ -126,13 +127,13 @@ static int are_small(const StateSolver *s, const long double *residual, uint32_t
   return 1;
 }
 
-/* Newton's method until rounding stops it. */
+/* Newton's method for positions or velocities, until the corrections are rounding. 0: no convergence. */
 static int obey(StateSolver *s, long double *symbols, int velocities) {
   enum { MOST = 60 };
   const long double rounding = 64 * LDBL_EPSILON;
   const Constraints *k = &s->e->constraints;
   uint32_t rows = velocities ? k->n : k->nholonomic;
-  long double moved = INFINITY, size = 0, least = fminl(motion_size(s, symbols, velocities), 1); /* what ends at 0 is compared with its way */
+  long double moved = INFINITY, size = 0, least = fminl(motion_size(s, symbols, velocities), 1); /* scale for a motion that ends at 0 */
   for (int i = 0; i < MOST && moved > rounding * size; i++) {
     StateValues v = states_at(s, symbols);
     if (!change(s, velocities ? v.r : v.c, rows)) return 0;

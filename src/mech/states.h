@@ -1,5 +1,5 @@
-/* States at which expressions are compared: every symbol has a value, and accelerations, rates and
- * the energy have those that follow from the others by the equations of motion. */
+/* Numerical states of a model: projection onto the constraints; accelerations, multipliers, rates and energy from the equations of motion;
+ * rank of the constraints. A state is an array of values by symbol. */
 #ifndef LAGC_STATES_H
 #define LAGC_STATES_H
 
@@ -12,38 +12,39 @@ typedef struct StateSolver StateSolver;
 
 StateSolver *states_new(const Eqns *e);
 
-/* Values at a state: the entries of M and A as Eqns lists them; c, r, and what A q'' must be. They stand until another state is looked at. */
+/* Entries of M and A in the order of Eqns, c, r and the right-hand side of A q'' = demand. Valid until the solver evaluates another state. */
 typedef struct {
   const long double *mass, *A, *c, *r, *demand;
 } StateValues;
 StateValues states_at(StateSolver *s, const long double *symbols);
 
-/* Fills in q'', z', the energy and multipliers; with constraints it first moves the state to the nearest one that obeys them. 0 where M
- * is singular, there is no such state, or a value is not finite. */
+/* Projects the state onto the constraints, then fills in q'', z', multipliers and energy. 0: M is singular, the projection failed, or a
+ * value is not finite. */
 int states_complete(StateSolver *s, long double *symbols);
 
-/* Moves the state to the nearest one that obeys the constraints, by Newton's method: positions, then velocities. 0: it found none. */
+/* Projects positions, then velocities onto the constraints by Newton's method with least changes. 0: no convergence. */
 int states_obey(StateSolver *s, long double *symbols);
 
-/* [M -A^T; A 0] at the state that was looked at last. It stands until the next is asked for, or another state is looked at. */
+/* [M -A^T; A 0] at the state evaluated last. Valid until the next call of a function of this solver. */
 const SparseElements *states_system(StateSolver *s);
 
-/* Elements of M, from the values of its entries, and of A and -A^T, of the first `rows` constraints, where they stand in [M -A^T; A 0]. */
+/* Adds M, and A and -A^T of the first `rows` constraints, at their places in [M -A^T; A 0]. values: of the entries, in the order of Eqns. */
 void states_put_mass(const Eqns *e, const long double *values, SparseElements *a);
 void states_put_constraints(const Eqns *e, const long double *values, uint32_t rows, SparseElements *a);
 
-/* Powers of 2, one a coordinate, by which the derivatives of constraints are to be multiplied for their rank not to depend on units, at the state that was looked at
- * last: sparse_scales of [M -A^T; A 0]. They stand until another state is looked at. */
+/* Exponents of 2, one a coordinate, that scale the columns of A so that its rank does not depend on units: sparse_scales of [M -A^T; A 0]
+ * at the state evaluated last. Valid until another state is evaluated. */
 const int *states_scale(StateSolver *s);
 
-/* Row k of A there, its coordinates scaled; entries from *at on, which moves behind them. It stands until the next. */
+/* Row k of A at the state evaluated last, columns scaled; valid until the next call. *at: index in A of the row's first entry; becomes
+ * that of the next row. */
 const SparseVector *states_row(StateSolver *s, uint32_t k, uint32_t *at);
 
-/* The rank of the constraints, less one of them (UINT32_MAX: of all), at the state that was looked at last; counts[k]: constraint k is independent of
- * those before it. */
+/* Rank of the constraints at the state evaluated last, leaving out constraint `without` (UINT32_MAX: none). counts[k]: constraint k is
+ * independent of those before it. */
 uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts);
 
-/* e with z' and the energy replaced by what they are; q'' stays. */
+/* x with flows and the energy's formula put in for z' and the energy symbol; q'' stays. */
 Expr states_substitute(const Eqns *e, Expr x);
 
 #endif

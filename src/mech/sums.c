@@ -1,23 +1,25 @@
+/* Finds long sums of velocities in nonlinear products, sorts them by length, and defines each as partial sums on top of the longest known sum
+ * that it contains. */
 #include "mech/sums.h"
 
 #include <stdlib.h>
 
 #include "sym/diff.h"
 
-/* Shorter ones are not worth it: dense systems of so many coordinates take no more. */
+/* Least number of moving terms of a sum: up to 12 coordinates a dense system takes no more operations. */
 enum { FEWEST = 13 };
 
 typedef struct {
   Expr e, def;
-  uint32_t pairs, base; /* base: the sum that it is built on, from 1 */
+  uint32_t pairs, base; /* number of terms; index from 1 of the sum that this one is built on, or 0 */
 } Sum;
 
 typedef struct {
   ExprGraph *g;
   Arena *a;
   VEC(Sum) sums;
-  ExprMap owner;  /* by term: the last sum that has it, from 1 */
-  ExprMap number; /* by term of the sum in hand: 1 + which pair of it */
+  ExprMap owner;  /* by term: index from 1 of the last sum that contains it */
+  ExprMap number; /* by term of the current sum: its index from 1 */
 } Sums;
 
 static int moves(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & 1u << SYM_VEL) != 0; }
@@ -38,7 +40,7 @@ static int is_linear(ExprGraph *g, Expr e, uint32_t n) {
   return 1;
 }
 
-/* The sums among the factors of products that are of higher order in velocities. */
+/* Adds the long linear sums among the factors of a product that is nonlinear in velocities. */
 static void find_in_product(Sums *s, Expr product, uint32_t n, ExprMap *seen) {
   uint32_t pairs = expr_pairs(s->g, product, EX_PROD), moving = 0;
   for (uint32_t k = 0; k < pairs; k++) {
@@ -61,7 +63,7 @@ static int by_length(const void *a, const void *b) {
   return (x->e > y->e) - (x->e < y->e);
 }
 
-/* Whether all terms of x are terms of the sum in hand, with the same numbers. */
+/* Whether all terms of x are terms of the current sum `in`, with the same coefficients. */
 static int is_contained(const Sums *s, const Sum *x, Expr in) {
   for (uint32_t k = 0; k < x->pairs; k++) {
     Num a, b;
@@ -73,7 +75,7 @@ static int is_contained(const Sums *s, const Sum *x, Expr in) {
   return 1;
 }
 
-/* The longest known sum that is a part of sum k: the last one with a term of it, or what that is built on. */
+/* Index from 1 of the longest known sum contained in x, among the last sums with a term of x and their bases; 0: none. */
 static uint32_t find_base(const Sums *s, const Sum *x) {
   enum { TRIED = 4 };
   uint32_t best = 0;
@@ -87,9 +89,8 @@ static uint32_t find_base(const Sums *s, const Sum *x) {
   return best;
 }
 
-/* x as the base and, term by term, what the base does not have: each partial sum is a definition, so that coordinates and definitions
- * can be eliminated by turns. As one definition, sum of all x[i]', it would have to go before any of its coordinates, and leave all coupled
- * with all. */
+/* x as the base plus its other terms, one by one: each partial sum is a definition, so that coordinates and definitions can be
+ * eliminated by turns. A single definition of the whole sum would be eliminated before all its coordinates, and couple them all. */
 static Expr built_on(Sums *s, const Sum *x, const Sum *base) {
   expr_map_clear(&s->number);
   for (uint32_t k = 0; base && k < base->pairs; k++) {

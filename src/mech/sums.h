@@ -1,12 +1,12 @@
-/* Long sums of velocities as definitions, as if the user had written lets for them. */
+/* Long sums of velocities become definitions, as if the user had written lets for them. */
 #ifndef LAGC_SUMS_H
 #define LAGC_SUMS_H
 
 #include "sym/expr.h"
 
-/* L with each long sum that is linear in the velocities, and is squared or multiplied with others, as a definition: by its rate it enters the
- * system that is solved (mech/lift.h), where (sum of all x[i]')^2 would be a full matrix. Sums that contain another one are built on it,
- * so a chain that was written without lets has them again. n: coordinates. L itself where there are none. */
+/* L with a definition for each long sum that is linear in the velocities and is squared or multiplied by others; L itself where there is none.
+ * The linear system then has the sum's rate as an unknown (mech/lift.h) instead of the full matrix of (sum of all x[i]')^2. A sum that contains
+ * another one is built on it, so that a chain written without lets gets them back. n: number of coordinates. */
 Expr sums_named(ExprGraph *g, Expr L, uint32_t n);
 
 #endif

@@ -1,3 +1,4 @@
+/* Scan of a logarithmic grid along axes and random lines, then bisection for sign changes, golden section for minima of |u|. */
 #include "mech/switches.h"
 
 #include <math.h>
@@ -34,7 +35,7 @@ void switch_go(SwitchLine line, long double t, long double *symbols) {
 
 typedef struct {
   EvalTape *u;
-  Real *symbols; /* to evaluate at */
+  Real *symbols; /* values on the line */
   Real *base;
   SwitchLine line;
 } Scan;
@@ -46,7 +47,7 @@ static Real value_at(Scan *s, Real t) {
   return u;
 }
 
-/* Halves [below, above], between which the sign changes, until no number is left between them; the end at which u has lost the sign below. */
+/* Bisects [below, above] down to neighbouring numbers; u < 0 (negative) or u > 0 at `below`. Returns the end where u no longer has that sign. */
 static Real bisect(Scan *s, Real below, Real above, int negative) {
   for (int i = 0; i < 300; i++) {
     Real middle = below + (above - below) / 2;
@@ -58,7 +59,7 @@ static Real bisect(Scan *s, Real below, Real above, int negative) {
   return above;
 }
 
-/* Where |u| is least between two places, by the golden section. */
+/* Minimum of |u| in [from, to], by golden section. */
 static Real nearest(Scan *s, Real from, Real to) {
   const Real ratio = 0.61803398874989484820L;
   for (int i = 0; i < 90; i++) {
@@ -69,7 +70,7 @@ static Real nearest(Scan *s, Real from, Real to) {
   return from + (to - from) / 2;
 }
 
-/* Number i of the grid: -1e12 ... -1e-12, 0, 1e-12 ... 1e12. */
+/* Grid point i: -1e12 ... -1e-12, 0, 1e-12 ... 1e12. */
 static Real grid(int i) { return i == SIDE ? 0 : i < SIDE ? -grid(2 * SIDE - i) : powl(10, (Real)(i - SIDE - 1) / PER_DECADE - 12); }
 
 static int scan(Scan *s, int from, int to, SwitchTry *try, void *data) {
@@ -95,7 +96,7 @@ int switches_search(ExprGraph *g, const Switches *all, const SymId *free, uint32
   Arena *a = expr_arena(g);
   uint32_t count = expr_symbol_count(g) + 1;
   Real *symbols = ARENA_ARRAY(a, Real, count), *slope = ARENA_ARRAY(a, Real, count);
-  double steps = 0; /* of evaluations so far */
+  double steps = 0; /* evaluated nodes so far */
   for (uint32_t k = 0; k < all->n && steps < STEPS_MOST; k++) {
     Scan s = {.u = eval_tape(g, &all->at[k], 1), .symbols = symbols, .base = base};
     uint32_t axes = 0;

@@ -1,17 +1,17 @@
-/* Places where an expression switches: comparisons, `min`, `max`, `abs` and `sign` change sides there. */
+/* Switching functions of expressions: comparisons, `min`, `max`, `abs` and `sign` switch where such a function is 0. */
 #ifndef LAGC_SWITCHES_H
 #define LAGC_SWITCHES_H
 
 #include "sym/expr.h"
 
-/* The functions that are 0 at such places, each once. */
+/* The switching functions in the roots, each once, at most 24. */
 typedef struct {
   const Expr *at;
   uint32_t n;
 } Switches;
 Switches switches_of(ExprGraph *g, const Expr *roots, uint32_t n);
 
-/* A line through the states: symbol `axis` is t; or, with axis 0, symbol s is base[s] + t*slope[s]. */
+/* A line in the space of states: symbol `axis` is t; or, with axis 0, symbol s is base[s] + t*slope[s]. */
 typedef struct {
   SymId axis;
   const long double *base, *slope;
@@ -19,8 +19,9 @@ typedef struct {
 } SwitchLine;
 void switch_go(SwitchLine line, long double t, long double *symbols);
 
-/* Looks for places along lines through `base`, with t from 1e-12 to 1e12 in size: where a switching function changes its sign, to the last digit, or
- * comes nearest to 0. Each is shown to `try`, until that returns 1: then 1. exactly: `where` is the place itself. */
+/* Searches lines through `base`, |t| from 1e-12 to 1e12, for sign changes of the switching functions, to the last digit (exactly = 1), and for
+ * minima of their absolute values (exactly = 0). Calls `try` for each, with t = where; returns 1 as soon as `try` does, else 0. free[nfree]:
+ * the symbols that may vary. */
 typedef int SwitchTry(void *data, long double *base, SwitchLine line, long double where, int exactly);
 int switches_search(ExprGraph *g, const Switches *all, const SymId *free, uint32_t nfree, long double *base, uint32_t seed, SwitchTry *try, void *data);
 

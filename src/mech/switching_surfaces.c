@@ -1,3 +1,4 @@
+/* Surfaces from the jumps of forces and flows (sym/jump.h), and from divisions by a nonnegative speed that give a direction v/|v|. */
 #include "mech/switching_surfaces.h"
 
 #include <math.h>
@@ -10,7 +11,7 @@
 typedef long double Real;
 typedef VEC(SwitchingSurface) SwitchList;
 
-/* Coordinates and time change smoothly, whatever jumps. */
+/* Kinds of symbols whose rates jump with a force. Rates of coordinates and time do not jump: a motion crosses a surface of these. */
 static const unsigned sudden = 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE;
 
 static int is_inside(ExprGraph *g, Expr whole, Expr node) {
@@ -20,13 +21,13 @@ static int is_inside(ExprGraph *g, Expr whole, Expr node) {
   return i < l.n;
 }
 
-/* All velocities and states, times `by`. */
+/* symbols := from, with velocities, states and rates multiplied by `by`. */
 static void scale_rates(const Eqns *e, Real *symbols, const Real *from, Real by) {
   for (uint32_t i = 1; i <= expr_symbol_count(e->g); i++)
     symbols[i] = sudden & 1u << expr_symbol(e->g, i)->kind ? by * from[i] : from[i];
 }
 
-/* Whether x has another value on both sides of the place where all velocities are 0, as v/|v|, and side is 0 there. */
+/* Whether x jumps, as v/|v|, between velocities +dv and -dv as dv goes to 0, and side goes to 0. */
 static int turns_at_rest(const Eqns *e, Expr x, Expr side) {
   const Real near[] = {1e-4L, 1e-6L}, alike = 0.02L;
   Expr roots[] = {x, side};
@@ -44,7 +45,7 @@ static int turns_at_rest(const Eqns *e, Expr x, Expr side) {
          fabsl(jump[1] - jump[0]) <= alike * fabsl(jump[1]);
 }
 
-/* Where the text has the node; else the statement that it was made from. */
+/* Span of the node in the text; else that of the statement with it. */
 static Span place_of(const Eqns *e, Expr node, Expr side, int nonnegative) {
   const Model *m = e->m;
   AstId written = expr_map_get(&m->written, node);
@@ -54,7 +55,7 @@ static Span place_of(const Eqns *e, Expr node, Expr side, int nonnegative) {
   return m->dissipation ? m->dissipation_span : m->lagrangian_span;
 }
 
-/* The first line of a place of the text. */
+/* Text of a span, its first line only. */
 static const char *text_at(const Eqns *e, Span span) {
   Place p = source_place(e->m->ast->sources, span.begin);
   if (!p.file) return "";
@@ -62,7 +63,7 @@ static const char *text_at(const Eqns *e, Span span) {
   return arena_printf(e->m->arena, "%.*s", (int)(whole < n ? whole : n), p.line_text + p.line_byte);
 }
 
-/* side: a function whose zero tells where it jumps; node: what is looked for in the text. */
+/* Adds a surface, once. side: switching function; node: the expression to be found in the text. */
 static void add(const Eqns *e, SwitchList *to, Expr node, Expr side, int nonnegative) {
   if (!(expr_kinds(e->g, side) & sudden)) return;
   for (uint32_t i = 0; i < to->n; i++)
@@ -73,7 +74,7 @@ static void add(const Eqns *e, SwitchList *to, Expr node, Expr side, int nonnega
   vec_push(e->m->arena, to, ((SwitchingSurface){side, nonnegative, place, text_at(e, place), sb_text(&surface)}));
 }
 
-/* Directions of velocities: what is divided by their size. */
+/* Adds surfaces where a direction v/|v| jumps: factors that divide by a nonnegative function of velocities. */
 static void add_directions(const Eqns *e, Expr x, SwitchList *to) {
   ExprGraph *g = e->g;
   ExprList nodes = expr_topo(g, &x, 1);

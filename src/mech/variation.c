@@ -1,3 +1,4 @@
+/* Sparse gradients of dL/dq, p and Q, in short forms; entries ordered so that long families roll into loops. */
 #include "mech/variation.h"
 
 #include <stdlib.h>
@@ -5,7 +6,7 @@
 #include "mech/lagrange.h"
 #include "sym/diff.h"
 
-/* The derivatives of of[i] by all symbols of a kind, or by those up to i, as entries of a part. */
+/* Adds the derivatives of of[i] by the symbols of a kind, up to symbol i for a lower triangle. */
 static void add_rows(const Eqns *e, Variation *x, SecondPart part, const Expr *of, SymKind kind) {
   int triangle = part == SECOND_QQ || part == SECOND_VV;
   for (uint32_t i = 0; i < e->n; i++) {
@@ -14,8 +15,8 @@ static void add_rows(const Eqns *e, Variation *x, SecondPart part, const Expr *o
   }
 }
 
-/* Up to so many entries a coordinate stand diagonal by diagonal: along one, the entries of a family are alike, and are written
- * as a loop. Full matrices roll better row by row. */
+/* With up to this many entries a coordinate, entries are ordered by diagonals: along one, the entries of a family are alike and become
+ * a loop. Full matrices roll better row by row. */
 enum { FEW_A_ROW = 8 };
 
 static int by_diagonal(const void *a, const void *b) {
@@ -26,7 +27,7 @@ static int by_diagonal(const void *a, const void *b) {
   return (x->row > y->row) - (x->row < y->row);
 }
 
-/* The short forms of the entries; those that turn out to be zero go. */
+/* Entries in short forms; zeros are dropped. */
 static void shorten(const Eqns *e, Variation *x) {
   uint32_t n = x->second.n, kept = 0;
   Expr *raw = ARENA_ARRAY(e->m->arena, Expr, n + 1);

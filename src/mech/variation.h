@@ -1,12 +1,12 @@
-/* What discrete mechanics needs of L beside M q'' = f: its first derivatives, the forces that are in no L, and the second
- * derivatives of all of them. Derived when a method of integration calls for it. */
+/* Derivatives for variational integrators (discrete mechanics): first derivatives of L, generalised forces, and the second
+ * derivatives of L and first derivatives of the forces. Derived when a method of integration needs them. */
 #ifndef LAGC_VARIATION_H
 #define LAGC_VARIATION_H
 
 #include "mech/eqns.h"
 
-/* Which second derivative: of L by two of q and q', of the generalised force Q by one of them. Of QQ and VV the lower
- * triangle; the row of VQ is that of the velocity. */
+/* Kinds of entries: d2L/dq dq, d2L/dq' dq, d2L/dq' dq', dQ/dq, dQ/dq'. QQ and VV are lower triangles; a row of VQ belongs to
+ * a velocity. */
 typedef enum { SECOND_QQ, SECOND_VQ, SECOND_VV, SECOND_FQ, SECOND_FV, SECOND_PARTS } SecondPart;
 
 typedef struct {
@@ -18,8 +18,8 @@ typedef struct {
 typedef struct {
   const Expr *dLdq;        /* [n] */
   const Expr *momenta;     /* [n] dL/dq' */
-  const Expr *forces;      /* [n] Q: of force and dissipation statements */
-  VEC(SecondEntry) second; /* what is not zero, part by part; in a sparse model diagonal by diagonal, else row by row */
+  const Expr *forces;      /* [n] Q of force and dissipation statements */
+  VEC(SecondEntry) second; /* nonzero entries, part by part; in a sparse model diagonal by diagonal, else row by row */
 } Variation;
 
 /* Needs coordinates. */
