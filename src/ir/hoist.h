@@ -1,5 +1,5 @@
 /* Derived parameters: values that depend on parameters alone are computed when parameters change, not at each call. A constant mass
- * matrix is inverted then, too. */
+ * matrix is factored or inverted then, too. */
 #ifndef LAGC_IR_HOIST_H
 #define LAGC_IR_HOIST_H
 

@@ -18,7 +18,7 @@ typedef struct {
 /* `count` iterations of `period` instructions, from place `begin` of the code on. */
 typedef struct {
   uint32_t begin, period, count;
-  uint32_t *kept;         /* [period] 1 + number of iterations for which a value is needed after its own, or after the loop; 0: none */
+  uint32_t *kept;         /* [period] 0: value used in its own iteration only; 1: behind the loop, too; 1 + b: b iterations later, too */
   unsigned char *carried; /* [period] 1: only the next iteration needs the value and, behind the loop, at most the last one is needed */
   VEC(LoopStore) stores;
 } Loop;
@@ -49,7 +49,7 @@ typedef struct {
   unsigned char *stored; /* by store of p: 1 when a loop has it in its `stores` */
 } Rolls;
 
-/* Programs of fewer instructions get no loops, since straight-line code is faster and reads better: called at each stage, seldom. */
+/* Programs of fewer instructions get no loops: straight-line code is faster and reads better. SELDOM: called once a step or a row. */
 enum { ROLL_FROM = 1500, ROLL_SELDOM_FROM = 500 };
 
 /* by_index: bits 1 << IrArray of arrays that may be indexed by a variable. from: fewest instructions of a program with
