@@ -1,6 +1,6 @@
 /* series_instruction: a recurrence for each operation. u, v, ... are the operands, y the result; S(a, b) is the convolution sum of
- * a and b over 0 < j < k, theta u = t du/dt has the coefficients k u[k]. Each recurrence is the differential equation of the function with the terms of
- * order 0 and k taken out of the sums: theta e = e theta u for e = exp u gives k e[k] = e[0] k u[k] + S(theta u, e). */
+ * a and b over 0 < j < k, theta u = t du/dt has the coefficients k u[k]. Each recurrence is the function's differential equation with
+ * the terms of order 0 and k taken out of the sums: theta e = e theta u for e = exp u gives k e[k] = e[0] k u[k] + S(theta u, e). */
 #include <string.h>
 
 #include "ir/series_impl.h"
