@@ -107,7 +107,7 @@ typedef struct {
   int nonnegative;
 } IrSwitch;
 
-/* flags: 1 conserved, 2 its balance is known, 4 only while inputs follow their formulas, 8 it jumps at events. */
+/* flags: 1 conserved, 2 its balance is known, 4 only while inputs follow their formulas; or 8 it jumps where L does. */
 typedef struct {
   const char *name, *unit;
   unsigned flags;
