@@ -2,25 +2,25 @@
 # Runs suites of tests; `make test` calls it with what it built (see RUN_TESTS in the Makefile).
 #   sh tests/run.sh [--long | --bless | --bench] [PREFIX...]     only suites whose names, with or without their folder, begin with a PREFIX
 #
-# A suite is a file. Nobody lists it: it is found.
+# A suite is a file, found by its name; there is no list.
 #   tests/unit/test_NAME.c         built into $BIN/test_NAME (cmocka)            suite unit/test_NAME
 #   tests/fuzz/fuzz_NAME.c         replays tests/fuzz/corpus/NAME                suite fuzz/fuzz_NAME
 #   tests/FOLDER/NAME.sh           run from the top of the source tree by sh     suite FOLDER/NAME
 #   tests/FOLDER/long_NAME.sh      the same, in `make test-long`
-#   tests/bench/NAME.sh            run by `make bench`; what it prints is shown, and written to tests/bench/RESULTS.md
-#   tests/FOLDER/lib_NAME.sh       is none: scripts share it
+#   tests/bench/NAME.sh            run by `make bench`; its output is shown, and written to tests/bench/RESULTS.md
+#   tests/FOLDER/lib_NAME.sh       no suite: functions that scripts share
 # --bless runs the scripts that know BLESS with BLESS=1: they rewrite their expectations.
 #
 # Suites speak TAP: a plan `1..N`; `ok 1 - name`, `not ok 2 - name`, `ok 3 - name # SKIP why`; `# details`.
 # `1..0 # SKIP why` skips a whole suite. A suite that crashes, exits with a status other than 0 and has no `not ok`,
-# runs into the time limit, or has not as many results as its plan says, counts one failure more.
+# runs into the time limit, or has fewer or more results than its plan says, counts one failure more.
 #
-# Scripts find in their environment (paths relative to the top; empty: there is none):
+# Environment of scripts (paths relative to the top; empty: not available):
 #   LAGC, LAGC_SAN, LAGC_CLANG     the compiler; built with -O0 under the sanitizers of SAN_FLAGS; built by clang
-#   LIBLAG, INC, LIBS              the runtime's libraries, its headers, what to link after them
+#   LIBLAG, INC, LIBS              the runtime's libraries, its headers, libraries to link after them
 #   BIN, BUILD, TMP                built test programs; the build folder; a folder of the suite's own, empty
 #   CC, CLANG, CXX, GSL, MAKE      GSL is `yes` or empty
-#   LAG_TREE                       what LAG_HOME must be for LAGC_SAN and LAGC_CLANG to find the runtime
+#   LAG_TREE                       value of LAG_HOME with which LAGC_SAN and LAGC_CLANG find the runtime
 # Every suite leaves its output in $BUILD/test/log. The last line is `N passed, N failed`.
 cd "$(dirname "$0")/.." || exit 2
 unset MAKEFLAGS MFLAGS MAKELEVEL
@@ -68,7 +68,7 @@ if [ "$kind" = one ]; then
   exit 0
 fi
 
-# ---- which ----
+# ---- selection of suites ----
 found() {
   for f in tests/unit/test_*.c tests/fuzz/fuzz_*.c tests/*/*.sh; do
     [ -f "$f" ] || continue

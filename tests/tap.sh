@@ -3,7 +3,7 @@
 tap_n=0
 tap_bad=0
 
-# check NAME COMMAND...: ok when the command succeeds; what it prints is shown when it does not.
+# check NAME COMMAND...: ok when the command succeeds; its output is shown when it fails.
 check() {
   tap_n=$((tap_n + 1))
   tap_name=$1
@@ -30,7 +30,7 @@ tap_same() {
   }
 }
 
-# empty NAME TEXT: ok when the text is empty, a list of what is wrong otherwise.
+# empty NAME TEXT: ok when the text, a list of faults, is empty.
 empty() {
   tap_expected=
   tap_got=$2
@@ -38,14 +38,14 @@ empty() {
 }
 tap_empty() { [ -z "$tap_got" ] || { printf '%s\n' "$tap_got"; return 1; }; }
 
-# near NAME TOLERANCE EXPECTED GOT: ok when the numbers differ by no more.
+# near NAME TOLERANCE EXPECTED GOT: ok when the numbers differ by at most the tolerance.
 near() { check "$1" tap_near "$2" "$3" "$4"; }
 tap_near() {
   echo "got $3, expected $2 within $1"
   awk -v t="$1" -v e="$2" -v g="$3" 'BEGIN { d = g - e; exit !(g != "" && d <= t && -d <= t) }'
 }
 
-# says STATUS WORDS COMMAND...: the command ends with the status and says these very words: on standard error if the status is not 0.
+# says STATUS WORDS COMMAND...: the command ends with this status and prints these words, on standard error if the status is not 0.
 says() {
   tap_status=$1 tap_words=$2
   shift 2

@@ -1,11 +1,13 @@
+/* Reassociation of sums and products by the times at which their operands are ready (prog_balance, prog_in_time). A sum, or product, whose
+ * parts have no other use is gathered into a list of terms, or factors, and built again in the new order. */
 #include <stdlib.h>
 
 #include "ir/product.h"
 
 typedef struct {
   Slot slot;
-  int minus, product; /* product: of one use, that an addition may take in */
-  uint32_t ready, rank; /* rank: place among the terms, where two are ready at once; of a product: its factors */
+  int minus, product; /* product: has one use, so that a fused multiply-add may take it in */
+  uint32_t ready, rank; /* ready: of a product, when its factors are; rank: breaks ties in the order of the terms */
 } Term;
 
 typedef struct {
@@ -13,9 +15,9 @@ typedef struct {
   Prog *to;
   Slot *map;
   const uint32_t *uses;
-  unsigned char *inside;  /* of a larger sum, or product */
-  const uint32_t *loads;  /* when loads are ready; NULL: all at once */
-  int fused;              /* products are added as they are made; sums with names stay whole */
+  unsigned char *inside;  /* by slot: a part of a larger sum or product */
+  const uint32_t *loads;  /* by slot: when loads are ready; NULL: at 0 */
+  int fused;              /* for fused multiply-add; named sums stay whole */
   VEC(uint32_t) ready;    /* by slot of `to` */
   VEC(Term) terms, sums, open;
 } Balance;
@@ -26,7 +28,7 @@ static uint32_t ready(const Balance *b, Slot s) { return s < b->ready.n ? b->rea
 
 static uint32_t latest(uint32_t x, uint32_t y) { return x > y ? x : y; }
 
-/* Notes when the value of a slot is there; was: the slot of a load in the program that it comes from. */
+/* Records when slot s is ready; was: its slot in the old program, for loads. */
 static Slot timed(Balance *b, Slot s, Slot was) {
   while (b->ready.n <= s) vec_push(b->to->arena, &b->ready, 0);
   const Ins *i = &b->to->ins.at[s];
@@ -39,7 +41,7 @@ static Slot timed(Balance *b, Slot s, Slot was) {
   return s;
 }
 
-/* Which sums are single parts of larger ones. */
+/* Marks sums whose only use is in a larger sum. */
 static void mark_inside(Balance *b) {
   const Prog *p = b->from;
   for (Slot s = 1; s < p->ins.n; s++) {
@@ -60,7 +62,7 @@ static Term term(const Balance *b, Slot s, int minus, int once) {
   return t;
 }
 
-/* The terms of the sum s. */
+/* Lists the terms of the sum s, through the parts inside it. */
 static void gather(Balance *b, Slot s) {
   Arena *a = b->to->arena;
   b->terms.n = 0;
@@ -93,8 +95,8 @@ static Term add(Balance *b, Term x, Term y) {
   return (Term){.slot = s, .minus = x.minus && y.minus, .ready = ready(b, s)};
 }
 
-/* The term to begin with, of those in order: a product that comes first takes a multiplication of its own, so better what is none,
- * unless that is late. */
+/* The term to begin with: a product in first place takes a multiplication of its own, so the first term that is none, if it is ready
+ * within a multiplication's time. */
 static uint32_t first_of(const Balance *b) {
   const Term *t = b->terms.at;
   for (uint32_t k = 0; k < b->terms.n; k++)
@@ -102,7 +104,7 @@ static uint32_t first_of(const Balance *b) {
   return 0;
 }
 
-/* One after the other, as fused multiply-adds do. */
+/* The sum as a chain, earliest term first: each product is one fused multiply-add. */
 static Slot add_in_a_row(Balance *b) {
   Term *t = b->terms.at;
   qsort(t, b->terms.n, sizeof *t, by_time);
@@ -114,8 +116,8 @@ static Slot add_in_a_row(Balance *b) {
   return sum.minus ? timed(b, prog_op(b->to, IR_NEG, sum.slot, 0), 0) : sum.slot;
 }
 
-/* The two earliest, again and again: terms and partial sums are queues in order of time (Huffman's tree by two queues; J. van
- * Leeuwen, ICALP 1976, p. 382). */
+/* The sum as a tree: adds the two earliest of terms and partial sums, again and again. Both are queues in order of time (Huffman's tree
+ * by two queues; J. van Leeuwen, ICALP 1976, p. 382). */
 static Slot add_up(Balance *b) {
   uint32_t t = 0, u = 0;
   b->sums.n = 0;
@@ -143,7 +145,7 @@ static void mark_factors(Balance *b) {
   }
 }
 
-/* The two earliest factors, again and again. */
+/* The product as a tree: multiplies the two earliest factors, again and again. */
 static Slot multiply(Balance *b, Slot s) {
   Product of = product_of(b->from, b->uses, s);
   Term t[MOST_FACTORS];

@@ -1,3 +1,4 @@
+/* Band width, and the order of Cuthill and McKee, of a symmetric pattern. */
 #include "ir/band.h"
 
 #include <string.h>
@@ -20,7 +21,7 @@ static uint32_t *find_degrees(Arena *a, uint32_t n, const Slot *M) {
   return degree;
 }
 
-/* Breadth first from `start`; neighbours of one by their degrees. */
+/* Breadth-first order from `start`; neighbours of a node by increasing degree. */
 static void by_levels(Arena *a, uint32_t n, const Slot *M, const uint32_t *degree, uint32_t start, uint32_t *order) {
   unsigned char *seen = ARENA_ARRAY(a, unsigned char, n);
   uint32_t known = 0;
@@ -39,7 +40,7 @@ static void by_levels(Arena *a, uint32_t n, const Slot *M, const uint32_t *degre
 }
 
 const uint32_t *band_order(Arena *a, uint32_t n, const Slot *M) {
-  enum { TURNS = 3 }; /* the last of one turn is an end to begin the next from */
+  enum { TURNS = 3 }; /* each begins at the last node of the one before, an end of the graph */
   const uint32_t *degree = find_degrees(a, n, M);
   uint32_t *order = ARENA_ARRAY(a, uint32_t, n), start = 0;
   for (uint32_t i = 1; i < n; i++)

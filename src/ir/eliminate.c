@@ -1,4 +1,4 @@
-/* M q'' = f by elimination in the order that mech/order.h found, in straight-line code.
+/* M q'' = f by elimination without pivoting in straight-line code, in the order of mech/order.h.
  *
  * A coordinate's step is that of L D L^T without pivoting (Golub & Van Loan, Matrix Computations, 4th
  * ed., algorithm 4.1.2); its pivot is checked. A definition's step puts w' = C u' into the quadratic
@@ -9,11 +9,11 @@
 typedef struct {
   Lower *l;
   const LinearSystem *s;
-  Sparse H;          /* slots; the row of an eliminated variable keeps what it was then */
+  Sparse H;          /* slots; the row of an eliminated variable stays as it was at its step */
   SparseRow *C;      /* [n + ndefs] slots */
   Slot *b, *x;       /* [n + ndefs] */
   SparseRow *factor; /* [n] the column of L below a coordinate's pivot */
-  Slot *positive;    /* [n] a value that is positive for the signs that parameters declare, on the diagonal before elimination; or 0 */
+  Slot *positive;    /* [n] diagonal entry before elimination, if proved positive by the declared signs; else 0 */
 } System;
 
 static Slot op(const System *y, IrOp o, Slot a, Slot b) { return prog_op(y->l->p, o, a, b); }
@@ -71,7 +71,7 @@ static void eliminate_coordinate(System *y, uint32_t v) {
     if (h.col == v) continue;
     Slot f = op(y, IR_DIV, h.value, d);
     if (h.col < y->s->n) prog_name(y->l->p, f, lower_numbered(y->l, "L", v, h.col));
-    for (uint32_t j = 0; j < below->n; j++) { /* those before k */
+    for (uint32_t j = 0; j < below->n; j++) { /* earlier entries of the column */
       SparseEntry g = below->at[j];
       sparse_set(&y->H, h.col, g.col, lower_minus_product(y->l, sparse_get(&y->H, h.col, g.col), h.value, g.value));
     }
@@ -81,7 +81,7 @@ static void eliminate_coordinate(System *y, uint32_t v) {
   }
 }
 
-/* One variable of a definition's step: c its coefficient in C_v, r its entry in row v of H, and r + h*c. */
+/* A variable in the step of definition v: c its coefficient in C_v, r its entry in row v of H, y = r + h*c. */
 typedef struct {
   uint32_t col;
   Slot c, r, y;
@@ -105,21 +105,21 @@ static void add_product(System *y, const Share *s, const Share *t, Slot a, Slot 
   sparse_set(&y->H, s->col, t->col, op(y, IR_ADD, sparse_get(&y->H, s->col, t->col), ab));
 }
 
-/* The quadratic form with w_v' = C_v u' put in: H += c r^T + r c^T + h c c^T = c y^T + r c^T with
- * y = r + h c, which entries of a row share; b += c b_v. */
+/* Substitutes w_v' = C_v u' into the quadratic form: H += c r^T + r c^T + h c c^T = c y^T + r c^T with
+ * y = r + h c, computed once a variable; b += c b_v. */
 static void eliminate_definition(System *y, uint32_t v) {
   const SparseRow *row = &y->H.rows[v], *c = &y->C[v];
   uint32_t n;
   Share *at = ARENA_ARRAY(y->l->p->arena, Share, row->n + c->n + 1);
   share(y, row, c, sparse_get(&y->H, v, v), v, &n, at);
-  for (uint32_t i = 0; i < c->n; i++) { /* the others have no c */
+  for (uint32_t i = 0; i < c->n; i++) { /* variables behind c->n have c = 0 */
     const Share *s = &at[i];
     Slot twice = op(y, IR_ADD, s->y, s->r);
     add_product(y, s, s, s->c, twice);
     for (uint32_t k = 0; k < n; k++) {
       const Share *t = &at[k];
-      if (k <= i && k < c->n) continue; /* each pair once */
-      int turned = s->r == 0; /* then c_s y_t is all */
+      if (k <= i && k < c->n) continue; /* each pair of variables once */
+      int turned = s->r == 0; /* then the entry is c_s y_t alone */
       add_product(y, s, t, turned ? s->c : t->c, turned ? t->y : s->y);
       if (!turned) add_product(y, s, t, s->c, t->r);
     }
@@ -143,7 +143,7 @@ static void substitute(System *y, uint32_t v) {
   }
 }
 
-/* An eliminated variable's row is what it was then. */
+/* Records the factors for factored_solve. */
 static void keep_factors(const System *y) {
   Lower *l = y->l;
   Slot *pivot = ARENA_ARRAY(l->p->arena, Slot, y->s->n + 1);

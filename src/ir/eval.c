@@ -1,4 +1,4 @@
-/* Runs a Prog in extended precision: an independent reading of what emitted C computes. */
+/* prog_eval: an interpreter of Prog in extended precision, independent of the emitted C. Adds in the same order as emitted code. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -78,7 +78,8 @@ static int solve_definite(Real *a, Real *b, uint32_t n) {
   return 0;
 }
 
-/* [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations. Where constraints are redundant some multipliers are taken to be 0. */
+/* [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations. Redundant constraints get
+ * multipliers 0. */
 static const Real *solved_constrained(const Prog *p, const Solve *s, const Real *v, int *status) {
   uint32_t n = s->n, total = solve_unknowns(s);
   Real *b = ARENA_ARRAY(p->arena, Real, total);
@@ -97,7 +98,7 @@ static const Real *solved_constrained(const Prog *p, const Solve *s, const Real 
   return b;
 }
 
-/* The product with an inverse whose lower triangle stands among the parameters. */
+/* The product of rhs with an inverse whose lower triangle stands among the parameters. */
 static const Real *multiplied(const Prog *p, const Solve *s, const Real *v, const Real *inverse) {
   Real *b = ARENA_ARRAY(p->arena, Real, s->n);
   for (uint32_t i = 0; i < s->n; i++)
@@ -115,7 +116,7 @@ static const Real *solved(const Prog *p, const Solve *s, const Real *v, const Re
   return b;
 }
 
-/* The inverse, column by column, to where it stands among the parameters; and whether there is one. */
+/* Writes the inverse, column by column, and its flag among the parameters. */
 static void invert(const Prog *p, const Solve *s, const Real *v, Real *parameters) {
   Real *a = ARENA_ARRAY(p->arena, Real, s->n * s->n), *b = ARENA_ARRAY(p->arena, Real, s->n), *to = parameters + s->place;
   int status = 0;
@@ -172,11 +173,11 @@ static int run_ins(Run *r, Slot s, const Ins *i) {
     case IR_INVERT: invert(r->p, &r->p->solves.at[i->index], v, r->out[0]); break;
     case IR_TITLE: break;
   }
-  if (fabsl(v[s]) > DBL_MAX) v[s] = copysignl(INFINITY, v[s]); /* where doubles overflow */
+  if (fabsl(v[s]) > DBL_MAX) v[s] = copysignl(INFINITY, v[s]); /* doubles overflow here */
   return 0;
 }
 
-/* One turn; a load of the body stands at other places than the same load of the program around. */
+/* Computes the body in turn j of row i. The nest gives its loads their indices; run_ins would take those of a program. */
 static int run_turn(Run *body, const Run *r, const Nest *n, int64_t i, int64_t j) {
   const Prog *p = n->body;
   for (Slot s = 1; s < p->ins.n; s++) {
@@ -192,7 +193,7 @@ static int run_turn(Run *body, const Run *r, const Nest *n, int64_t i, int64_t j
   return 0;
 }
 
-/* Adds what the turn stores: to the sums, or to what the loop adds up. */
+/* Adds the stores of a turn to their sums or, where the sum stays the same in all turns, to the loop's partial sums. */
 static void add_stores(const Run *r, const Run *body, const Nest *n, Real *part, int64_t i, int64_t j) {
   for (uint32_t k = 0; k < body->p->stores.n; k++) {
     const Store *st = &body->p->stores.at[k];

@@ -1,3 +1,4 @@
+/* Common factors of sums of two products, see prog_factor: passes over the program, repeated while they save operations. */
 #include "ir/product.h"
 
 enum { NONE = MOST_FACTORS };
@@ -9,8 +10,8 @@ typedef struct {
   const uint32_t *uses;
 } Factor;
 
-/* The first factor of x that is one of y, too: its place there in *other; or NONE. Numbers are no factors to take out:
- * 2*a + 2*b would be as long. */
+/* Position in x of the first factor that y has, too, and in *other its position in y; or NONE. Numbers do not count:
+ * lower.c takes out common coefficients. */
 static uint32_t common_factor(const Factor *f, const Product *x, const Product *y, uint32_t *other) {
   for (uint32_t i = 0; i < x->n; i++)
     for (*other = 0; *other < y->n; ++*other)
@@ -18,7 +19,7 @@ static uint32_t common_factor(const Factor *f, const Product *x, const Product *
   return NONE;
 }
 
-/* The product without factor `out`, in the new program. */
+/* The product without its factor number `out`, in the new program. */
 static Slot product_without(Factor *f, const Product *p, uint32_t out) {
   Slot r = 0;
   for (uint32_t k = 0; k < p->n; k++) {
@@ -29,7 +30,7 @@ static Slot product_without(Factor *f, const Product *p, uint32_t out) {
   return r;
 }
 
-/* a*x + a*y as a*(x + y); 0 where it cannot be written so. */
+/* a*x + a*y as a*(x + y); 0 where there is no common factor. */
 static Slot factored_sum(Factor *f, const Ins *i) {
   if (!product_is_part(f->from, f->uses, i->a) || !product_is_part(f->from, f->uses, i->b)) return 0;
   Product x = product_of(f->from, f->uses, i->a), y = product_of(f->from, f->uses, i->b);

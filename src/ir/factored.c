@@ -1,3 +1,4 @@
+/* Forward and backward substitution with recorded factors, as instructions. The order of operations is that of eliminate.c and solve.c. */
 #include "ir/factored.h"
 
 static Slot op(Prog *p, IrOp o, Slot a, Slot b) { return prog_op(p, o, a, b); }
@@ -18,7 +19,7 @@ static Slot divided(Prog *p, const Factored *f, uint32_t i, Slot x, Slot divisor
 
 /* --- straight-line --- */
 
-/* b without variable v. With w' = C u' + s put into u'^T H u'/2 - b^T u', b += C (b_v - h s) - r s. */
+/* Eliminates variable v from b. A definition: with w' = C u' + s in u'^T H u'/2 - b^T u', b += C (b_v - h s) - r s. */
 static void forward(Prog *p, const Factored *f, uint32_t v, Slot *b, const Slot *s) {
   if (v < f->n) {
     for (uint32_t k = 0; k < f->below[v].n; k++) {
@@ -59,7 +60,7 @@ static void solve_pair(Prog *p, const Factored *f, uint32_t k, const Slot *b, Sl
   x[j] = divided(p, f, k, n2, m->divisor);
 }
 
-/* By the matrix that stands factored at its place. */
+/* By the matrix that another function left factored at its place. */
 static void solve_loop(Prog *p, const FactoredBlock *m, const Slot *b, Slot *x) {
   Slot *rhs = ARENA_ARRAY(p->arena, Slot, m->n);
   for (uint32_t i = 0; i < m->n; i++) rhs[i] = b[m->at[i]];

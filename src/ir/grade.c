@@ -1,10 +1,10 @@
-/* Coefficients that are graded along a family, i/N or 0.1*i, in lowest terms have gaps: 1/6, 1/3, 1/2, 2/3. Over one denominator
- * their numerators count up, and the members are turns of one loop. */
+/* A common denominator for coefficients that are graded along a family, i/N or 0.1*i. In lowest terms (1/6, 1/3, 1/2, 2/3) the members
+ * differ; over one denominator their numerators count up, and the members are turns of one loop. */
 #include "ir/lower_impl.h"
 
 enum { FEWEST = 32, OFTEN = 8, LARGEST = 1 << 20 };
 
-/* A coefficient that many terms have is no member's own. */
+/* Whether few terms have the coefficient, as one member's own. */
 static int is_own(Lower *l, Num c) {
   Expr x = expr_num(l->g, c);
   return expr_map_get(&l->often, x) < OFTEN;
@@ -12,7 +12,7 @@ static int is_own(Lower *l, Num c) {
 
 typedef struct {
   Lower *l;
-  VEC(Num) own; /* those that do not end in binary; each once */
+  VEC(Num) own; /* distinct coefficients whose denominators are no powers of 2 */
 } Grade;
 
 static void count(Grade *d, Expr sum) {

@@ -1,20 +1,20 @@
-/* M q'' = f where M = W^T C W is almost singular somewhere (mech/squares.h), in straight-line code: the columns of W, made orthogonal in the metric C
- * one after the other (modified Gram-Schmidt: A. Bjorck, BIT 7 (1967) 1, DOI 10.1007/BF01934122), give the factors of M = L D L^T from W itself, with the condition
- * of W in their errors where elimination of M has its square. */
+/* M q'' = f in straight-line code where M = W^T C W is almost singular somewhere (mech/squares.h). Modified Gram-Schmidt in the metric C
+ * (A. Bjorck, BIT 7 (1967) 1, DOI 10.1007/BF01934122) gives the factors of M = L D L^T from W itself: their errors grow with the condition
+ * of W, in elimination of M with its square. */
 #include "ir/lower_impl.h"
 
 typedef struct {
   Lower *l;
   const SquareForms *s;
   uint32_t n;
-  Slot *w;           /* [s->n * n] columns, orthogonal to those before */
+  Slot *w;           /* [s->n * n] the columns of W, orthogonal once they are reached */
   Slot *b, *pivot;   /* [n] */
-  SparseRow *below;  /* [n] columns of L */
+  SparseRow *below;  /* [n] the columns of L below the diagonal */
 } Gram;
 
 static Slot op(const Gram *y, IrOp o, Slot a, Slot b) { return prog_op(y->l->p, o, a, b); }
 
-/* sum of weighted[k] w_ku */
+/* Inner product sum over k of weighted[k] W[k][u]. */
 static Slot product(const Gram *y, const Slot *weighted, uint32_t u) {
   Slot sum = 0;
   for (uint32_t k = 0; k < y->s->n; k++) {
@@ -24,7 +24,7 @@ static Slot product(const Gram *y, const Slot *weighted, uint32_t u) {
   return sum;
 }
 
-/* The columns in `later`, and b, without their parts along column v. */
+/* Gram-Schmidt step for column v: subtracts from the columns in `later`, and from b, their parts along v. */
 static void take_column(Gram *y, uint32_t v, const uint32_t *later, uint32_t nlater) {
   Slot *weighted = ARENA_ARRAY(y->l->p->arena, Slot, y->s->n);
   for (uint32_t k = 0; k < y->s->n; k++) weighted[k] = op(y, IR_MUL, lower_slot(y->l, y->s->weight[k]), y->w[k * y->n + v]);

@@ -1,21 +1,23 @@
+/* unit_hoist. For each program: slots that depend on parameters alone are marked, and which of them the rest needs; if moving them saves enough
+ * operations, they move to the program `derived`, and the rest loads them as parameters. */
 #include "ir/hoist.h"
 
 #include "ir/roll.h"
 
 enum {
-  STRAIGHT_UP_TO = 12, /* coordinates: products with larger inverses are loops */
-  FEW = 64, /* so many derived parameters cost little to carry, even where they save little; more must save */
-  A_SHARE = 8 /* one operation of so many of a call */
+  STRAIGHT_UP_TO = 12, /* coordinates; products with larger inverses are loops */
+  FEW = 64, /* derived parameters: up to so many are always worth their place, more must save operations */
+  A_SHARE = 8 /* of a call's operations must be saved: 1/A_SHARE */
 };
 
 typedef struct {
-  Prog *derived;       /* stores: parameter first + k */
+  Prog *derived;       /* store k is parameter first + k */
   uint32_t first, n, nameless;
   VEC(uint32_t) index; /* by slot of `derived`: k + 1, or 0 */
-  VEC(Name) called;    /* by slot of `derived`: its name, or one made of those of its operands; or NULL */
+  VEC(Name) called;    /* by slot of `derived`: its name, or one made from names of its operands; or NULL */
 } Hoist;
 
-/* Whether its value can be computed elsewhere. */
+/* Whether the instruction can move to `derived`: loads of parameters, and operations without effects. */
 static int can_move(const Ins *i) {
   switch (i->op) {
     case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_INVERT: case IR_NEST: case IR_TABLE: case IR_TITLE: return 0;
@@ -24,7 +26,7 @@ static int can_move(const Ins *i) {
   }
 }
 
-/* By slot: whether it depends on parameters alone. */
+/* By slot: whether its value depends on parameters alone. */
 static unsigned char *find_constant(const Prog *p) {
   unsigned char *constant = ARENA_ARRAY(p->arena, unsigned char, p->ins.n);
   constant[0] = 1;
@@ -35,8 +37,8 @@ static unsigned char *find_constant(const Prog *p) {
   return constant;
 }
 
-/* What may be derived where something else uses it: numbers alone are left to the C compiler unless they go through a function, and a
- * changed sign is not worth a load. */
+/* By slot: whether its value may become a derived parameter. Not numbers, which the C compiler folds unless a function takes them, nor
+ * a changed sign, which is not worth a load. */
 static unsigned char *find_worthy(const Prog *p, const unsigned char *constant) {
   unsigned char *worthy = ARENA_ARRAY(p->arena, unsigned char, p->ins.n), *number = ARENA_ARRAY(p->arena, unsigned char, p->ins.n);
   number[0] = 1;
@@ -48,8 +50,8 @@ static unsigned char *find_worthy(const Prog *p, const unsigned char *constant) 
   return worthy;
 }
 
-/* Whether the matrix of a system is constant, and multiplying by its inverse, which has no zeros, does not take more than solving anew: then the
- * inverse is derived. */
+/* Whether a solve becomes a product with a derived inverse: its matrix is constant, and the product with the inverse, which has no zeros,
+ * takes no more operations than the solve. */
 static int is_constant_solve(const Prog *p, const unsigned char *constant, const Ins *i) {
   if (i->op != IR_SOLVE) return 0;
   const Solve *k = &p->solves.at[i->index];
@@ -59,7 +61,7 @@ static int is_constant_solve(const Prog *p, const unsigned char *constant, const
   return all && ops_total(solve_count(p->arena, &product)) <= ops_total(solve_count(p->arena, k));
 }
 
-/* mark[s] |= 1 where the value of s is needed in the program that is left, |= 2 where it is needed for what is derived. */
+/* mark[s]: HERE where the remaining program needs slot s, ONCE where derived parameters do. */
 static unsigned char *mark_needed(const Prog *p, const unsigned char *constant, const unsigned char *worthy) {
   enum { HERE = 1, ONCE = 2 };
   unsigned char *mark = ARENA_ARRAY(p->arena, unsigned char, p->ins.n);
@@ -83,7 +85,7 @@ static unsigned char *mark_needed(const Prog *p, const unsigned char *constant, 
 
 static int is_derived(const unsigned char *worthy, const unsigned char *mark, Slot s) { return worthy[s] && mark[s] & 1; }
 
-/* Whether what leaves the program is worth the derived parameters that it takes. */
+/* Whether the operations saved are worth the derived parameters that they take. */
 static int pays(const Prog *p, const unsigned char *constant, const unsigned char *worthy, const unsigned char *mark) {
   Prog once = {.arena = p->arena};
   uint64_t taken = 0;
@@ -113,7 +115,7 @@ static Slot derive(Hoist *h, Ins i) {
   return s;
 }
 
-/* The load of the parameter that the value of slot s of `derived` becomes: of its name, or of "k1", "k2", ... */
+/* Load of the parameter that slot s of `derived` becomes; unnamed ones are called k1, k2, ... */
 static Ins load_derived(Hoist *h, Slot s) {
   Prog *p = h->derived;
   uint32_t *at = &h->index.at[s];
@@ -125,17 +127,17 @@ static Ins load_derived(Hoist *h, Slot s) {
   return (Ins){.op = IR_LOAD, .array = ARR_P, .index = h->first + *at - 1, .name = h->called.at[s]};
 }
 
-/* The program with what is left of it, and where its values are. */
+/* A program, the remaining program, and the slots of its values in both. */
 typedef struct {
   const Prog *from;
   Prog *left;
-  const Slot *map, *once; /* by slot of `from`: in `left`, in `derived` */
-  Slot **solved;          /* by slot of `from`: the solution, of a solve that is a product with the inverse; or NULL */
+  const Slot *map, *once; /* by slot of `from`: slot of `left`, slot of `derived` */
+  Slot **solved;          /* by slot of `from`: solution of a solve that became a product with an inverse; or NULL */
 } Rest;
 
 static Slot load_at(const Rest *r, uint32_t index, Name name) { return prog_ins(r->left, (Ins){.op = IR_LOAD, .array = ARR_P, .index = index, .name = name}); }
 
-/* x = M^-1 f, of the lower triangle of M^-1 that stands at `inverse`. */
+/* x = M^-1 f in straight-line code, from the lower triangle of M^-1 at parameter `inverse`. */
 static Slot *multiplied(const Rest *r, const Solve *k, uint32_t inverse) {
   Arena *a = r->left->arena;
   Slot *x = ARENA_ARRAY(a, Slot, k->n);
@@ -160,9 +162,8 @@ static Slot *multiplied_by_loop(const Rest *r, const Solve *k, uint32_t inverse)
   return x;
 }
 
-/* A solve with a constant matrix becomes an inverse in `derived` and a product with it. The inverse is symmetric to the last bit. That a
- * solution from it is as exact as one from factors, but for its residual: N. Higham, Accuracy and Stability of Numerical Algorithms,
- * 2nd ed., section 14.1. */
+/* Turns a solve with a constant matrix into an inverse in `derived`, symmetric to the last bit, and a product with it. The forward error
+ * is as small as with factors, the residual is not: N. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 14.1. */
 static Slot *invert(Hoist *h, const Rest *r, const Solve *k) {
   Prog *p = h->derived;
   Slot *matrix = ARENA_ARRAY(p->arena, Slot, solve_elements(k));
@@ -210,7 +211,7 @@ static Prog *taken_from(Hoist *h, const Prog *p) {
 
 static void hoist_from(Hoist *h, const Prog **p) {
   Prog *left = *p ? taken_from(h, *p) : NULL;
-  if (left) *p = prog_tidy(left); /* without signs that went into products with an inverse */
+  if (left) *p = prog_tidy(left); /* removes sign changes that products with an inverse took in */
 }
 
 void unit_hoist(IrUnit *u) {

@@ -1,13 +1,13 @@
-/* Derived parameters: what depends on parameters alone is computed when those change, not at each call. A constant mass matrix is factored
- * so, too. */
+/* Derived parameters: values that depend on parameters alone are computed when parameters change, not at each call. A constant mass
+ * matrix is factored or inverted then, too. */
 #ifndef LAGC_IR_HOIST_H
 #define LAGC_IR_HOIST_H
 
 #include "ir/unit.h"
 
-/* Moves such values out of the programs that a step calls, into u->derived, and leaves loads of the parameters u->p.n, u->p.n + 1, ...
- * in their place. For emitted models, whose callers know of derived parameters; once, when all programs are there. Checks of pivots stay
- * where they are. */
+/* Moves such values from the programs that a step calls to u->derived, and leaves loads of parameters u->p.n, u->p.n + 1, ... in their
+ * place. Only for emitted models, whose callers compute derived parameters; call once, after all programs are made. Checks of pivots
+ * stay where they are. */
 void unit_hoist(IrUnit *u);
 
 #endif

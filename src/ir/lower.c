@@ -1,3 +1,7 @@
+/* Expressions of the graph as instructions, and the programs that are not about charges or constraints.
+ *
+ * Nodes come after their arguments, so that lowering is one loop over them. Rewrites here save operations and keep the
+ * rounding of the text: products of parameters first, one factor for coefficients of equal size, the addition theorem. */
 #include "ir/lower.h"
 
 #include <stdlib.h>
@@ -31,7 +35,7 @@ static Slot power(Lower *l, Slot x, Num e) {
     Slot whole = power_int(l, x, e.num / 2);
     return op(l, IR_MUL, whole, root);
   }
-  if (num_is_exact(e) && e.den == 3) { /* the real root, also of what is negative */
+  if (num_is_exact(e) && e.den == 3) { /* the real root, also of negative numbers */
     Slot root = prog_ins(l->p, (Ins){.op = IR_FN1, .a = x, .text = "cbrt"});
     return power_int(l, root, e.num);
   }
@@ -47,7 +51,7 @@ typedef struct {
   int rank;
 } Factor;
 
-/* Parameters first: products of parameters recur, and are then found again. */
+/* Order of factors. Parameters come first: their products recur, and value numbering finds them again. */
 static int rank_of(const ExprGraph *g, Expr e) {
   switch (expr_op(g, e)) {
     case EX_NUM: return 0;
@@ -98,7 +102,7 @@ static Slot lower_prod(Lower *l, Expr e) {
 
 /* --- sums --- */
 
-/* |c| * t; a coefficient p/q with q no power of two divides, which rounds once. p/(q*x) when t is 1/x. */
+/* |c| * t. A coefficient p/q with q no power of two is p*t/q, so that q is exact; p/(q*x) when t is 1/x. */
 static Slot scaled(Lower *l, Slot t, Num c) {
   c = num_abs(c);
   if (num_is_one(c)) return t;
@@ -115,7 +119,7 @@ static Slot scaled(Lower *l, Slot t, Num c) {
   return down ? op(l, IR_DIV, product, down) : product;
 }
 
-/* The factor that all coefficients share in size, when it is not 1: k*(a - b) costs one
+/* The common absolute value of all coefficients of a sum, else 1: k*(a - b) costs one
  * multiplication less than k*a - k*b. */
 static Num shared_size(const ExprGraph *g, Expr e) {
   Num c, k;
@@ -129,7 +133,7 @@ static Num shared_size(const ExprGraph *g, Expr e) {
   return c;
 }
 
-/* Term i of the sum e without its sign, over the factor that is taken out. */
+/* Term i of the sum e without its sign; inner: 1 over the factor in front of the sum. */
 static Slot term(Lower *l, Expr e, uint32_t i, Num inner) {
   Num c;
   Expr t = expr_pair(l->g, e, EX_SUM, i, &c);
@@ -137,12 +141,12 @@ static Slot term(Lower *l, Expr e, uint32_t i, Num inner) {
   return scaled(l, lower_slot(l, t), num_mul(c, inner));
 }
 
-/* What is added comes first, then what is subtracted; -(a + b) when nothing is added. */
+/* Positive terms first, then negative ones; -(a + b) when all are negative. */
 static Slot lower_sum(Lower *l, Expr e) {
   uint32_t n = expr_pairs(l->g, e, EX_SUM);
   Num outer = shared_size(l->g, e), inner = num_div(num_int(1), outer);
   Slot sum = 0;
-  int negative = 0; /* the whole */
+  int negative = 0; /* of the whole sum */
   for (int wanted = 1; wanted >= -1; wanted -= 2) {
     if (wanted < 0) negative = !sum;
     for (uint32_t i = 0; i < n; i++) {
@@ -210,7 +214,7 @@ static Slot lower_symbol(Lower *l, Expr e) {
     case SYM_PARAM: return load_param(l, s);
     case SYM_INPUT: return load(l, ARR_U, s);
     case SYM_CONST: return l->p->reckons ? prog_num(l->p, num_double(3.14159265358979323846)) : prog_ins(l->p, (Ins){.op = IR_PI});
-    case SYM_ACC: case SYM_RATE: case SYM_MULTIPLIER: case SYM_LOCAL: break; /* set before: see lower_with_accelerations */
+    case SYM_ACC: case SYM_RATE: case SYM_MULTIPLIER: case SYM_LOCAL: break; /* slots are set before: see lower_with_accelerations */
   }
   return 0;
 }
@@ -276,12 +280,12 @@ Lower lower_new(const Eqns *e) {
   return (Lower){.e = e, .g = e->g, .p = p, .slots = expr_map(a), .circular = expr_map(a)};
 }
 
-/* Sums over pairs as loops, in programs of as many instructions as get loops. */
+/* The tidy program, with sums over pairs as nests when it has `from` instructions. */
 static Prog *finished(const Lower *l, uint32_t from) { return prog_nest(prog_tidy(l->p), from); }
 
 static const char *text_of_symbol(const Lower *l, SymId s) { return expr_symbol(l->g, s)->name; }
 
-/* Whether each coordinate has its acceleration to itself: nothing is solved for several at once. */
+/* Whether M is diagonal and there are neither definitions nor constraints: accelerations are not coupled. */
 static int is_diagonal(const Eqns *e) {
   uint32_t off = e->system.ndefs + e->constraints.n;
   for (uint32_t k = 0; k < e->system.H.n; k++) off += e->system.H.at[k].row != e->system.H.at[k].col;
@@ -299,7 +303,7 @@ Prog *lower_accel(const Eqns *e, int libm) {
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
-  enum { PAGE = 200 }; /* short ones processors take in as a whole, and people read */
+  enum { PAGE = 200 }; /* instructions; shorter programs fit a processor's window in any order, and keep the readable one */
   Prog *tidy = prog_tidy(l.p), *p = prog_factor(tidy);
   if (p->ins.n <= ROLL_FROM) {
     p = prog_in_time(prog_share(p));
@@ -309,7 +313,7 @@ Prog *lower_accel(const Eqns *e, int libm) {
   return is_diagonal(e) ? prog_by_demand(nested) : nested;
 }
 
-/* Where a constant may stand instead of the formula of an input, `free` says which holds. */
+/* Selects, by the flag ARR_FREE of each input, its formula or the constant at which it is held. */
 static void lower_inputs_along(Lower *l) {
   const Model *m = l->e->m;
   for (uint32_t i = 0; i < m->inputs.n; i++) {
@@ -381,7 +385,7 @@ void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
 
 Prog *lower_seldom(const Lower *l) { return finished(l, ROLL_SELDOM_FROM); }
 
-/* q'' is an argument here. */
+/* q'' is an argument of the function: its symbols become loads. */
 static void load_accelerations(Lower *l) {
   const Model *m = l->e->m;
   for (uint32_t i = 0; i < l->e->n; i++) {
@@ -391,7 +395,7 @@ static void load_accelerations(Lower *l) {
   }
 }
 
-/* Component i of y = (q, q', z). */
+/* Name of component i of y = (q, q', z). */
 static const char *component(const Lower *l, uint32_t i) {
   const Model *m = l->e->m;
   uint32_t n = l->e->n;
@@ -435,7 +439,7 @@ Prog *lower_energy(const Eqns *e) {
   Lower l = lower_new(e);
   if (!e->energy) return l.p;
   Expr roots[2] = {e->energy_stable, e->energy_scale};
-  lower_with_accelerations(&l, roots, 2); /* of first order velocities are rates */
+  lower_with_accelerations(&l, roots, 2); /* in first-order models velocities are rates */
   prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), "energy p q' - L");
   prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
   return lower_seldom(&l);
@@ -452,7 +456,7 @@ Prog *lower_variation(const Eqns *e, const Variation *x) {
   return finished(&l, ROLL_FROM);
 }
 
-/* d2L/dx' dx, or dQ_x/dx'. */
+/* Comment of an entry of the second derivatives: d2L/dx' dx, or dQ_x/dx'. */
 static const char *second_text(const Lower *l, const SecondEntry *s) {
   const Model *m = l->e->m;
   int force = s->part == SECOND_FQ || s->part == SECOND_FV;
@@ -524,7 +528,7 @@ Prog *lower_inputs(const Eqns *e) {
   return prog_tidy(l.p);
 }
 
-/* A closed form is an input behind those of the model. */
+/* Closed forms are input symbols numbered behind the model's inputs. */
 static int is_closed_form(const Symbol *s, const void *data) { return s->kind == SYM_INPUT && s->index >= *(const uint32_t *)data; }
 
 int output_is_plain(const Eqns *e, uint32_t i) {

@@ -1,4 +1,4 @@
-/* Charges and their balances, as functions of the state. */
+/* Programs of charges and of their time derivatives, as functions of the state. */
 #include "ir/lower_impl.h"
 #include "mech/charges.h"
 
@@ -20,7 +20,7 @@ Prog *lower_charges(const Eqns *e) {
   return lower_seldom(&l);
 }
 
-/* What has no balance stays where it is. */
+/* dQ/dt of charge i; 0 where it is not known. */
 static Expr power_of(const Eqns *e, uint32_t i) {
   const Noether *n = &e->charges[i].proof;
   return n->power_unknown ? expr_int(e->g, 0) : n->power;

@@ -1,4 +1,4 @@
-/* What a model with constraints has besides its accelerations. */
+/* Programs of models with constraints: residuals, matrices A and M, projections, impacts, multipliers. */
 #include "ir/lower_impl.h"
 
 Prog *lower_residuals(const Eqns *e) {
@@ -42,8 +42,8 @@ Prog *lower_change(const Eqns *e, uint32_t nrows) {
   return prog_tidy(l.p);
 }
 
-/* Newton's law of restitution for the contact, J v1 + g_t = -e (J v + g_t), by the impulse that all constraints and closed gaps agree
- * with: the least change of the velocities, M (v1 - v) = A^T Lambda, where the contact is one of the constraints. */
+/* Newton's law of restitution for the contact, J v1 + g_t = -e (J v + g_t), with the impulse M (v1 - v) = A^T Lambda that keeps all other
+ * constraints and closed contacts; the contact's own row of A is made active by setting its input `closed` to 1. */
 Prog *lower_impact(const Eqns *e, const Contact *contact) {
   const Model *m = e->m;
   const Constraints *k = &e->constraints;

@@ -1,4 +1,4 @@
-/* Eqns -> IrUnit: all programs of a model, and what its tables say. */
+/* Eqns -> IrUnit: all programs of a model, and the tables of names, units, flags and positions that describe them. */
 #include "ir/unit.h"
 
 #include <string.h>
@@ -86,7 +86,7 @@ static void add_constraints(IrUnit *u, const Eqns *e) {
   to->velocity = k->nkept == k->n ? to->position : lower_change(e, k->n);
 }
 
-/* Where the energy is the only charge, conserved, and without a unit, there is nothing to add. */
+/* Adds nothing where the energy is the only charge, conserved, and without a unit. */
 static void add_charges(IrUnit *u, const Eqns *e) {
   const Prog *powers = e->ncharges ? lower_powers(e) : NULL;
   if (e->ncharges < 2 && !powers && !e->energy_jumps && !(e->ncharges && e->charges[0].unit.text[0])) return;
@@ -120,7 +120,7 @@ static void add_variation(IrUnit *u, const Eqns *e) {
   }
 }
 
-/* A table is no analytic function: a model with one has no series. Nor has one with constraints, so far. */
+/* No series with tables, which are not analytic, nor, so far, with constraints. */
 static void add_taylor(IrUnit *u, const Eqns *e) {
   const char *why;
   if (e->constraints.n) return;
@@ -161,7 +161,7 @@ int unit_shares(const IrUnit *a, const IrUnit *b) {
   return a->flags == b->flags && strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
 }
 
-/* The four numbers of rotations that start where nobody said, less those that the scene gives. */
+/* Quaternion coordinates of rotations with an implied start, except those to which the scene gives a value. */
 static void add_implied(IrScene *s, const Model *m) {
   unsigned char *said = ARENA_ARRAY(m->arena, unsigned char, m->coords.n + 1);
   for (uint32_t i = 0; i < m->scene.starts.n; i++) {

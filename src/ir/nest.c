@@ -1,3 +1,7 @@
+/* The search for nests, and the program with the nests found (nest.h).
+ *
+ * Pieces are searched in waves: first those that need no hub, then those whose hubs are complete. Each wave sorts its pieces into groups by their
+ * canonical form; groups become nests. Several ways to partition the program are tried; the one that covers most of it, or is shortest, wins. */
 #include "ir/nest.h"
 
 #include <stdlib.h>
@@ -7,32 +11,32 @@
 
 enum { FEWEST_PIECES = 8, MOST_VALUES = 2000 };
 
-/* Pieces that compute the same. */
+/* A group: pieces with one canonical form. */
 typedef struct {
   Tape tape;
   uint64_t hash;
-  VEC(int64_t) columns; /* of all pieces, one after the other */
+  VEC(int64_t) columns; /* indices of all pieces, one after the other */
   VEC(uint32_t) pieces;
 } Alike;
 
 typedef struct {
   Nest nest;
-  const uint32_t *class_of; /* by place of nest.at: of cells, from 1 */
+  const uint32_t *class_of; /* by position in nest.at: class of the hub, from 1; 0: an array */
 } Found;
 
 typedef struct {
   Cut c;
   Local *local;
   Tape tape;
-  VEC(Alike) alike;     /* of one wave */
-  uint32_t *table;      /* of `alike`, from 1; open addressing */
+  VEC(Alike) alike;     /* groups of one wave */
+  uint32_t *table;      /* hash table of `alike`, from 1; open addressing */
   uint32_t table_cap;
-  VEC(uint32_t) ready;  /* pieces, from 1, that have all that they need */
-  VEC(Slot) complete;   /* hubs that have just got all their terms */
+  VEC(uint32_t) ready;  /* pieces, from 1, whose hubs are complete */
+  VEC(Slot) complete;   /* hubs whose terms are all known, to be processed */
   VEC(Found) found;
   uint32_t *nested;     /* by piece: its nest, from 1 */
-  uint32_t *terms;      /* by slot of hubs: how many of its terms nests give, */
-  uint32_t *last;       /* and the last of these nests, from 1 */
+  uint32_t *terms;      /* by slot of hubs: number of terms that nests add, */
+  uint32_t *last;       /* and the last nest that adds one, from 1 */
 } Search;
 
 /* --- groups --- */
@@ -117,7 +121,7 @@ static void find_nests(Search *s, const Alike *x) {
   for (uint32_t k = 0; k < fits.n; k++) add_nest(s, x, &fits.at[k]);
 }
 
-/* Pieces that may be turns of loops, from number `from` of the ready ones on. */
+/* Finds the nests of one wave: the pieces ready.at[from] ... */
 static void search_wave(Search *s, uint32_t from) {
   s->alike.n = 0;
   memset(s->table, 0, s->table_cap * sizeof *s->table);
@@ -133,7 +137,7 @@ static void search_wave(Search *s, uint32_t from) {
     if (s->alike.at[k].pieces.n >= FEWEST_PIECES) find_nests(s, &s->alike.at[k]);
 }
 
-/* --- waves: what has all that it needs, then what that makes ready --- */
+/* --- waves: pieces that are ready, then pieces that those make ready --- */
 
 static void complete_hubs(Search *s) {
   Cut *c = &s->c;
@@ -173,8 +177,8 @@ typedef struct {
   const Search *s;
   const Prog *from;
   Prog *to;
-  uint32_t *base;      /* by class of hubs: its first cell */
-  Slot *map;           /* by item: a slot of `from`, or past them a nest */
+  uint32_t *base;      /* by class of hubs: first cell */
+  Slot *map;           /* by item: a slot of `from` or, from ins.n on, a nest */
   unsigned char *done;
   VEC(uint32_t) open;
 } Rebuild;
@@ -196,7 +200,7 @@ static void number_cells(Rebuild *r) {
 
 static int has_cell(const Rebuild *r, Slot x) { return r->s->c.hub[x] && r->s->terms[x]; }
 
-/* Whether nests add the term to its hubs. */
+/* Whether a nest computes the term. */
 static int is_nested(const Rebuild *r, Slot term) {
   uint32_t piece = r->s->c.piece[term];
   return piece && r->s->nested[piece];
@@ -206,7 +210,7 @@ static void want(Rebuild *r, uint32_t item) {
   if (item && !r->done[item]) vec_push(r->to->arena, &r->open, item);
 }
 
-/* The terms that nests do not give. */
+/* The terms of a hub that no nest adds. */
 static void other_terms(const Rebuild *r, Slot hub, Shares *terms) {
   const Cut *c = &r->s->c;
   terms->n = 0;
@@ -255,7 +259,7 @@ static Slot make_nest(Rebuild *r, uint32_t k) {
   return prog_ins(r->to, (Ins){.op = IR_NEST, .a = k ? r->map[r->from->ins.n + k - 1] : 0, .index = k});
 }
 
-/* As nest `nest`, from 1, leaves it. */
+/* The value of a cell after nest number `nest`, from 1. */
 static Slot load_cell(Rebuild *r, uint32_t cell, uint32_t nest, Name name) {
   return prog_ins(r->to, (Ins){.op = IR_LOAD, .array = ARR_CELL, .a = r->map[r->from->ins.n + nest - 1], .index = cell, .name = name});
 }
@@ -270,7 +274,7 @@ static Slot make_hub(Rebuild *r, Slot hub) {
   return sum;
 }
 
-/* What the item needs first, then itself. */
+/* Appends the item after its operands. */
 static void rebuild(Rebuild *r, uint32_t item) {
   uint32_t n = r->from->ins.n;
   want(r, item);
@@ -287,7 +291,7 @@ static void rebuild(Rebuild *r, uint32_t item) {
   }
 }
 
-/* By store: the cell, from 1, of a zero between a few others and what nests store, to which no nest adds: one loop stores all. */
+/* By store: cell, from 1, for a zero between stored sums. No nest adds to it, and one loop stores all; 0: no cell. */
 static const uint32_t *empty_cells(const Rebuild *r) {
   enum { FEW = 16 };
   const Prog *p = r->from;
@@ -329,7 +333,7 @@ static Prog *with_nests(const Search *s) {
   return prog_tidy(r.to);
 }
 
-/* How many numbers the tables of a nest have. Places share tables. */
+/* Number of entries in the tables of a nest; indices share tables. */
 static uint32_t table_entries(const Nest *n) {
   uint32_t entries = n->begin ? n->rows + 1 : 0;
   for (uint32_t k = 0; k < n->n; k++) {
@@ -340,8 +344,8 @@ static uint32_t table_entries(const Nest *n) {
   return entries;
 }
 
-/* How many instructions nests take in. Loops of one level are found in straight-line code, too (ir/roll.h), and keep there what
- * they share with their surroundings: nothing is gained where there are no loops inside loops, and none by tables. */
+/* Number of instructions that nests replace; 0 where all nests are single loops without tables, which are left to ir/roll.h: there they
+ * share values with the code around. */
 static uint32_t taken_in(const Search *s, int *tables) {
   const Cut *c = &s->c;
   uint32_t inside = 0;
@@ -360,7 +364,7 @@ static uint32_t taken_in(const Search *s, int *tables) {
   return deep || *tables ? inside : 0;
 }
 
-/* Whether the store goes on where the one before it ends: with a zero, or with the next element of an array. */
+/* Whether store k continues a run: of zeros, or of consecutive elements of an array. */
 static int goes_on(const Prog *p, uint32_t k) {
   const Store *st = &p->stores.at[k];
   const Ins *i = &p->ins.at[st->slot], *last = k ? &p->ins.at[st[-1].slot] : NULL;
@@ -368,7 +372,7 @@ static int goes_on(const Prog *p, uint32_t k) {
   return !st->slot || (i->op == IR_LOAD && last->op == IR_LOAD && i->array == last->array && i->index == last->index + 1);
 }
 
-/* How long its text is, in instructions: a line of C has one, or eight numbers of a table. */
+/* Length of the emitted text, in lines of C: one an instruction or store outside of loops, one for eight entries of a table. */
 static uint32_t length(const Prog *p) {
   unsigned by_index = 0;
   for (int k = 0; k < ARR_COUNT; k++) by_index |= ir_is_scalar((IrArray)k) ? 0 : 1u << k;
@@ -392,7 +396,7 @@ static Search search(const Prog *p, unsigned ends) {
   return s;
 }
 
-/* The shortest of those that take in about as much. */
+/* With tables: the program of the shortest text, of partitions that replace about as many instructions. */
 static Prog *scattered(Prog *p) {
   static const unsigned tried[] = {0, CUT_COMMON_TERMS, CUT_STORES, CUT_COMMON_TERMS | CUT_STORES, CUT_LEAVES, CUT_LEAVES | CUT_STORES};
   Prog *best = p;
@@ -417,7 +421,7 @@ Prog *prog_nest(Prog *p, uint32_t from) {
   static const unsigned tried[] = {0, CUT_COMMON_TERMS, CUT_STORES, CUT_COMMON_TERMS | CUT_STORES, CUT_LEAVES};
   if (p->ins.n < from || p->solves.n || p->nests.n) return p;
   Search best = {0};
-  uint32_t most = p->ins.n / 2; /* else the rest is what counts */
+  uint32_t most = p->ins.n / 2; /* nests of less than half of the program are not worth it */
   for (size_t k = 0; k < sizeof tried / sizeof *tried && most < p->ins.n - p->ins.n / 8; k++) {
     int tables;
     ArenaMark before = arena_mark(p->arena);

@@ -1,20 +1,20 @@
-/* Sums over pairs, sites, bodies: what many turns of one computation add to long sums becomes loops inside loops.
+/* Nests of loops for sums over pairs, sites or bodies.
  *
- * The search is one for components of a graph, in the program and nowhere else: bodies that a user wrote out by hand are found as
- * a family is. Sums of many terms, and values that many use, are hubs: without them the program falls into pieces, one for each
- * pair of bodies. Pieces that compute the same but for the elements of arrays that they read and the sums that they add to are a
- * group; where these indices are affine in two counters, a group is a Nest (ir/prog.h), and its size that of one piece. */
+ * The search is one for connected components of a program's graph, so that bodies written out by hand are found as a family is. Hubs are
+ * sums of many terms, and values with many users; without hubs the graph falls into pieces, one for each pair of bodies. Pieces that
+ * differ only in the array elements that they read and the sums that they add to are a group. Where these indices are affine in two
+ * counters, or go by tables, a group becomes a Nest (ir/prog.h) of the size of one piece. */
 #ifndef LAGC_NEST_H
 #define LAGC_NEST_H
 
 #include "ir/prog.h"
 
-/* The same program with its nests, or p itself where there are none, or it has fewer than `from` instructions. Needs a tidy
- * program, and leaves one; sums are added up in another order. Programs with solves stay what they are. */
+/* The program with nests; p itself where there are none, p has fewer than `from` instructions, or it has solves. Needs a tidy
+ * program and leaves one; adds sums in another order. */
 Prog *prog_nest(Prog *p, uint32_t from);
 
-/* The shorter one of nests of the same program before and after prog_factor: what is factored may be a sum that some pieces have to
- * themselves, or what makes rows alike. The factored one where there are none. */
+/* The shorter of the nests of a program before and after prog_factor, which may make rows alike, or break up sums of single pieces.
+ * `factored` itself where neither has nests. */
 Prog *prog_nest_either(Prog *factored, Prog *tidy, uint32_t from);
 
 #endif

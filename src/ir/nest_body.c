@@ -1,15 +1,15 @@
-/* The program of one turn. Here the order of sums and products is free: what the whole row has in common comes first, and what
- * several products have in common is computed once. */
+/* The body of a nest from a canonical form. The order of sums and products is free here: terms and factors that stay the same in a row
+ * come first, and pairs of factors that several products share are computed once. */
 #include <stdlib.h>
 
 #include "ir/nest_impl.h"
 
 enum { MOST_PRODUCTS = 64, MOST_FACTORS = 24 };
 
-/* How often a value is computed. */
+/* How often a value changes. */
 enum { ONCE, EACH_ROW, EACH_TURN };
 
-/* Two factors: ids of nodes, and past them of pairs. */
+/* Two factors, by id: of nodes and, from their number on, of pairs. */
 typedef struct {
   uint32_t a, b;
 } Pair;
@@ -23,7 +23,7 @@ typedef struct {
   unsigned char *often;  /* by id */
   uint32_t **factors;    /* by id: of products, or NULL */
   uint32_t *nfactors;
-  VEC(uint32_t) products; /* their ids */
+  VEC(uint32_t) products; /* ids of products with factors */
   VEC(Pair) pairs;
   VEC(Slot) outer;
 } Making;
@@ -73,7 +73,7 @@ static void replace_pair(Making *m, uint32_t id, Pair p, uint32_t by) {
   f[m->nfactors[id]++] = by;
 }
 
-/* The pair that most products have; the one that is computed least often where two are as frequent. 0 when none is in two. */
+/* The pair in most products; ties go to the one that changes least often. 0 when no pair is in two products. */
 static int best_pair(const Making *m, Pair *best) {
   uint32_t most = 1;
   int rare = 0;
@@ -118,7 +118,7 @@ static Slot leaf(Making *m, const Node *n) {
   return prog_ins(m->body, (Ins){.op = IR_LOAD, .array = ARR_OUTER, .index = m->outer.n - 1, .name = i.name});
 }
 
-/* Terms or factors that are computed less often come first; each frequency in its order. */
+/* Adds or multiplies: operands that change less often come first, otherwise in their order. */
 static Slot fold(Making *m, IrOp op, Slot sum, const uint32_t *ids, uint32_t n) {
   for (int often = ONCE; often <= EACH_TURN; often++)
     for (uint32_t k = 0; k < n; k++)
@@ -137,7 +137,7 @@ static Slot sum_of(Making *m, const Node *n) {
   return fold(m, IR_SUB, sum, ids + up, down);
 }
 
-/* A pair is of nodes, and of pairs before it. */
+/* Computes the pairs whose factors are known, nodes up to `done`. */
 static void make_pairs(Making *m, uint32_t done) {
   for (uint32_t k = 0; k < m->pairs.n; k++) {
     uint32_t id = id_of_pair(m, k);
@@ -174,7 +174,7 @@ static int same_place(const Making *m, uint32_t x, uint32_t y) {
          a->row_at == b->row_at && a->turn_at == b->turn_at;
 }
 
-/* What goes to one sum goes there together. */
+/* Stores the shares; shares of one sum are added first. */
 static void store_gives(Making *m) {
   uint32_t n = m->t->gives.n, first = m->t->columns.n - n;
   unsigned char *done = ARENA_ARRAY(m->c->a, unsigned char, n + 1);

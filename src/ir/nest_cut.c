@@ -1,10 +1,10 @@
-/* Hubs, and the pieces that are left without them. */
+/* Partition of a program into hubs and pieces: the components of its graph without hubs. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "ir/nest_impl.h"
 
-/* FEWEST_TERMS make a sum long; what more than FEW use is shared. */
+/* A sum of FEWEST_TERMS is long; a value with more than FEW users is shared. */
 enum { FEWEST_TERMS = 8, FEW = 8 };
 
 int nest_is_sum(IrOp op) { return op == IR_ADD || op == IR_SUB || op == IR_NEG; }
@@ -25,7 +25,7 @@ static void find_joined(Cut *c) {
   }
 }
 
-/* The first terms of two sums that are the same are one value, by chance of their order: short ones are terms of both. */
+/* Sums that begin with the same few terms share that partial sum by chance of their order: it is joined to both. */
 static void join_common_beginnings(Cut *c) {
   enum { SHORT = 4 };
   const Prog *p = c->p;
@@ -49,7 +49,7 @@ int nest_is_leaf(const Cut *c, Slot term) {
   return i->op == IR_LOAD && !ir_is_scalar(i->array);
 }
 
-/* leaves: sums of some elements of arrays are long, too: rows of a matrix with zeros. */
+/* leaves: sums with several array elements count as long, too: rows of a sparse matrix. */
 static void find_long_sums(Cut *c, int leaves) {
   enum { FEWEST_LEAVES = 2, SHORTEST = 3 };
   const Prog *p = c->p;
@@ -67,10 +67,10 @@ static void find_long_sums(Cut *c, int leaves) {
   }
 }
 
-/* Sums with a term that another sum has, too, as by Newton's third law: springs of a net. */
+/* Sums that share a term with another sum, as forces of springs do by Newton's third law. */
 static void find_sums_in_common(Cut *c) {
   const Prog *p = c->p;
-  uint32_t *uses = ARENA_ARRAY(c->a, uint32_t, p->ins.n); /* by how many sums; of a part, in how many it is */
+  uint32_t *uses = ARENA_ARRAY(c->a, uint32_t, p->ins.n); /* number of sums with the term; of a partial sum, number of sums that contain it */
   for (Slot s = p->ins.n; s-- > 1;)
     for (int k = 0; k < 2 && nest_is_sum(op_of(c, s)); k++) uses[operand(&p->ins.at[s], k)] += c->joined[s] ? uses[s] : 1;
   for (Slot s = 1; s < p->ins.n; s++) {
@@ -82,7 +82,7 @@ static void find_sums_in_common(Cut *c) {
   }
 }
 
-/* Which sum each part belongs to. */
+/* Records the hub of each partial sum. */
 static void mark_parts(Cut *c) {
   for (Slot s = c->p->ins.n; s-- > 1;) {
     const Ins *i = &c->p->ins.at[s];
@@ -129,7 +129,7 @@ static uint64_t leaf_signature(const Ins *i) {
   return num_is_exact(i->number) ? with(with(h, (uint64_t)i->number.num), (uint64_t)i->number.den) : with(h, bits);
 }
 
-/* Operand x as a part of a sum, or of its negative. */
+/* Signature of operand x as a term of a sum, or (minus) of its negative. */
 static uint64_t part_of_sum(const Cut *c, Slot x, int minus) {
   if (!x) return 0;
   if (c->joined[x] && nest_is_sum(op_of(c, x))) return minus ? c->flip[x] : c->sig[x];
@@ -162,7 +162,7 @@ static void sign(Cut *c, Slot s) {
   }
 }
 
-/* A long sum reads what all others read: only how much tells them apart. */
+/* Sort keys `low` and `mass`. Long sums read the same elements, so that only `mass` tells them apart. */
 static void order(Cut *c, Slot s) {
   const Ins *i = &c->p->ins.at[s];
   c->low[s] = UINT64_MAX;
@@ -191,7 +191,7 @@ static int by_value(const void *x, const void *y) {
   return (a > b) - (a < b);
 }
 
-/* What many use, and what is computed alike: the last of a family of bodies has few users. */
+/* Values with many users, and all values of the same signature: the last bodies of a family have few users. */
 static void find_shared(Cut *c) {
   VEC(uint64_t) often = {0};
   for (Slot s = 1; s < c->p->ins.n; s++)
@@ -202,7 +202,7 @@ static void find_shared(Cut *c) {
     if (can_share(c, s) && bsearch(&c->sig[s], often.at, often.n, sizeof *often.at, by_value)) c->hub[s] = HUB_SHARED;
 }
 
-/* What is stored, so that pieces may end there. */
+/* Stored values as hubs. */
 static void find_stored(Cut *c) {
   for (uint32_t k = 0; k < c->p->stores.n; k++) {
     Slot s = c->p->stores.at[k].slot;
@@ -234,7 +234,7 @@ static const Slot MIXED = UINT32_MAX;
 
 static Slot same_or_mixed(Slot known, Slot x) { return !known || known == x ? x : MIXED; }
 
-/* By hub that may be taken back: the piece of all its users; MIXED where they are of several. */
+/* By hub: the piece of all its users; MIXED where there are several. */
 static Slot *find_users(const Cut *c, Slot *parent) {
   Slot *user = ARENA_ARRAY(c->a, Slot, c->p->ins.n);
   for (Slot s = 1; s < c->p->ins.n; s++)
@@ -246,7 +246,7 @@ static Slot *find_users(const Cut *c, Slot *parent) {
   return user;
 }
 
-/* Whether all terms that pieces give to a sum are of the piece of its users. */
+/* Whether all terms of a sum are leaves, or of the piece of its users. */
 static int is_of_one_piece(Cut *c, Slot *parent, Slot sum, Slot user) {
   c->terms->n = 0;
   nest_terms(c, sum, c->terms);
@@ -257,8 +257,8 @@ static int is_of_one_piece(Cut *c, Slot *parent, Slot sum, Slot user) {
   return 1;
 }
 
-/* A shared value whose users are all of one piece is a value of that piece, and so is a sum whose terms are of it, too. Returns
- * whether there was one. */
+/* Returns hubs to pieces: a shared value whose users are all in one piece, and a sum whose terms and users are. Returns whether there
+ * was one. */
 static int take_back(Cut *c, Slot *parent) {
   int some = 0;
   const Slot *user = find_users(c, parent);
@@ -272,7 +272,7 @@ static int take_back(Cut *c, Slot *parent) {
   for (Slot s = 1; s < c->p->ins.n; s++) {
     Slot sum = c->sum[s];
     if (!sum || c->hub[sum]) continue;
-    c->sum[s] = 0; /* roots come after their parts */
+    c->sum[s] = 0; /* sums come after their partial sums */
     join(parent, s, sum);
   }
   return some;
@@ -310,7 +310,7 @@ static void find_pieces(Cut *c) {
   }
 }
 
-/* --- what goes between pieces and hubs --- */
+/* --- shares and uses between pieces and hubs --- */
 
 static void not_apart(Cut *c, Slot s) {
   if (c->piece[s] && !c->hub[s]) c->pieces.at[c->piece[s] - 1].apart = 0;
@@ -323,7 +323,7 @@ static void wait_for(Cut *c, Slot hub, uint32_t piece, Slot sum) {
   else c->pieces.at[piece - 1].waits++;
 }
 
-/* A term that is an element of an array as a piece. */
+/* Makes a piece of a term that is an array element. */
 static void take_leaf(Cut *c, Slot hub, Share term) {
   vec_push(c->a, &c->pieces, ((Piece){.apart = 1}));
   vec_push(c->a, &c->pieces.at[c->pieces.n - 1].gives, term);
@@ -347,7 +347,7 @@ static void find_shares(Cut *c, int leaves) {
       c->terms_of[s]++;
       if (!c->piece[x] && c->hub[x]) wait_for(c, x, 0, s);
       if (leaves && nest_is_leaf(c, x)) take_leaf(c, s, terms.at[k]);
-      if (!c->piece[x]) continue; /* a leaf, or another sum */
+      if (!c->piece[x]) continue; /* a leaf, or a hub */
       c->waits[s]++;
       vec_push(c->a, &c->pieces.at[c->piece[x] - 1].gives, terms.at[k]);
     }
@@ -375,10 +375,10 @@ static void list_hubs(Cut *c) {
 
 typedef struct {
   uint64_t sig, low, mass;
-  uint32_t rank; /* place among the hubs */
+  uint32_t rank; /* position among the hubs */
 } HubKey;
 
-/* Shared values are in the order of the elements that they are computed from, others in that of stores. */
+/* Sort key: shared values by the array elements that they read, other hubs in the order of stores. */
 static HubKey key_of(const Cut *c, uint32_t rank) {
   Slot s = c->hubs.at[rank];
   return c->hub[s] == HUB_SHARED ? (HubKey){c->sig[s], c->low[s], c->mass[s], rank} : (HubKey){.sig = c->hub[s], .rank = rank};
@@ -392,8 +392,8 @@ static int by_key(const void *x, const void *y) {
   return (a->rank > b->rank) - (a->rank < b->rank);
 }
 
-/* Sums that are each for a store of its own have its number, with gaps: where others read elements of the same number, one table serves
- * both. */
+/* Where each sum has a store of its own, numbers sums like their stores, with gaps: tables of indices then serve sums and array elements
+ * alike. */
 static void number_sums_by_stores(Cut *c) {
   uint32_t n = 0, first = 0, last = 0;
   for (uint32_t k = 0; k < c->hubs.n; k++) {
@@ -408,8 +408,8 @@ static void number_sums_by_stores(Cut *c) {
     if (c->hub[c->hubs.at[k]] == HUB_SUM) c->number[c->hubs.at[k]] = c->store[c->hubs.at[k]] - first;
 }
 
-/* Sums are one class, what is stored another, shared values one for each signature. What is stored has the number of its first
- * store, with gaps, so that a loop stores it. */
+/* Classes and numbers of hubs. Sums are one class, stored values another, shared values one for each signature. Stored values have the
+ * number of their first store, with gaps, so that a loop stores them. */
 static void number_hubs(Cut *c) {
   HubKey *keys = ARENA_ARRAY(c->a, HubKey, c->hubs.n + 1);
   for (uint32_t k = 0; k < c->hubs.n; k++) keys[k] = key_of(c, k);

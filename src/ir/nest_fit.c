@@ -1,10 +1,10 @@
-/* Indices as loops. Where pieces have few shapes (a spring to the right, a spring downwards), each shape is for itself. Sorted pieces
- * are rows of equal steps, and rows whose first indices and lengths go by equal steps are a nest. */
+/* Pieces of a group as nests whose indices are affine in two counters. Pieces are split by shape where shapes are few (a spring to the
+ * right, a spring downwards), and sorted; runs of equal steps are rows, and rows whose first indices and lengths go by equal steps a nest. */
 #include <string.h>
 
 #include "ir/nest_impl.h"
 
-/* A loop with its tables is as long as a few pieces; FEWEST_SCATTERED of them make it worth reading. */
+/* A nest with tables is as long as a few pieces; from FEWEST_SCATTERED pieces on it is shorter to read. */
 enum { FEWEST_TURNS = 8, FEWEST_SCATTERED = 16, MOST_SHAPES = 24, MANY = 0 };
 
 typedef struct {
@@ -12,10 +12,10 @@ typedef struct {
   const int64_t *columns;
   uint32_t width, n, size;
   uint32_t *order;
-  const unsigned char *varies; /* [width] */
+  const unsigned char *varies; /* [width] by column: differs between pieces */
 } Group;
 
-/* A row: `count` pieces of the order from `begin` on, each by the same step from the one before. */
+/* A row: `count` pieces of the order from `begin` on, at equal steps of all indices. */
 typedef struct {
   uint32_t begin, count;
 } Row;
@@ -27,7 +27,7 @@ static const int64_t *indices(const Group *g, uint32_t k) { return g->columns + 
 
 /* --- shapes --- */
 
-/* The first index that varies. */
+/* The first column that varies. */
 static uint32_t first_varying(const Group *g) {
   uint32_t k = 0;
   while (k + 1 < g->width && !g->varies[k]) k++;
@@ -50,7 +50,7 @@ int64_t nest_gcd(int64_t a, int64_t b) {
   return a < 0 ? -a : a;
 }
 
-/* What all distances of a piece's indices in one array are multiples of: 2, where x and y are for themselves. 0 where there are none. */
+/* Greatest common divisor of the distances between a piece's indices in one array: 2 where x and y do not mix. 0: no distances. */
 static int64_t spacing(const Group *g, const uint32_t *array, uint32_t first) {
   int64_t all = 0;
   for (uint32_t k = 0; k < g->n && all != 1; k++)
@@ -59,7 +59,7 @@ static int64_t spacing(const Group *g, const uint32_t *array, uint32_t first) {
   return all;
 }
 
-/* The first index that varies modulo the spacing; where that is 0, the other indices into its array less that one. */
+/* Key of a shape: the first varying index modulo the spacing; for modulo 0, a hash of the other indices in its array relative to it. */
 static uint64_t shape_of(const Group *g, const uint32_t *array, uint32_t first, uint32_t k, int64_t modulo) {
   const int64_t *at = indices(g, k);
   uint64_t h = modulo ? (uint64_t)(at[first] % modulo) : 0;
@@ -68,8 +68,8 @@ static uint64_t shape_of(const Group *g, const uint32_t *array, uint32_t first, 
   return h;
 }
 
-/* Puts pieces of one shape side by side, in their order; returns the number of shapes, or MANY: of all pairs of n bodies there
- * are n - 1. */
+/* Sorts pieces by shape, stably; end[]: end of each shape. Returns the number of shapes, or MANY: all pairs of n bodies have
+ * n - 1. */
 static uint32_t split(Group *g, const uint32_t *array, uint32_t first, int64_t modulo, uint32_t *end) {
   uint64_t known[MOST_SHAPES];
   uint32_t n = 0, *shape = ARENA_ARRAY(g->a, uint32_t, g->n), *to = ARENA_ARRAY(g->a, uint32_t, g->n), put = 0;
@@ -114,7 +114,7 @@ static void sort(Group *g) {
 
 /* --- rows --- */
 
-/* Whether index vectors x, y and z of the order are at equal distances. */
+/* Whether index vectors x, y and z of the order are equally spaced. */
 static int even(const Group *g, uint32_t x, uint32_t y, uint32_t z) {
   const int64_t *a = indices(g, x), *b = indices(g, y), *c = indices(g, z);
   for (uint32_t k = 0; k < g->width; k++)
@@ -122,7 +122,7 @@ static int even(const Group *g, uint32_t x, uint32_t y, uint32_t z) {
   return 1;
 }
 
-/* Rows of pieces with an index in common, where there are such, else of whatever goes on evenly. */
+/* Rows of pieces with equal steps and, where that is common, one index the same in each row. */
 static Rows find_rows(const Group *g) {
   uint32_t common = first_varying(g), pairs = 0;
   Rows rows = {0};
@@ -139,11 +139,11 @@ static Rows find_rows(const Group *g) {
 
 /* --- nests --- */
 
-/* Rows `from` and on as a nest that grows. */
+/* A nest that grows row by row. */
 typedef struct {
   const Row *rows;
   uint32_t n;
-  int64_t *row, *turn; /* [width] steps, once there are two rows, or a row of two */
+  int64_t *row, *turn; /* [width] steps from row to row, known from 2 rows on; from turn to turn */
   int steps;           /* turn is known */
 } Growing;
 
@@ -173,7 +173,7 @@ static int takes_row(const Group *g, Growing *w) {
   return 1;
 }
 
-/* Counters so that an index that changes from turn to turn does not change from row to row, where that can be. */
+/* The skew for which the first index that changes from turn to turn stays the same from row to row; 0: none. */
 static int64_t skew_of(const Group *g, const Growing *w) {
   for (uint32_t k = 0; k < g->width; k++)
     if (w->turn[k]) return w->row[k] % w->turn[k] == 0 ? w->row[k] / w->turn[k] : 0;
@@ -209,10 +209,10 @@ static void fit_shape(Group *g, Fits *fits, Pieces *left) {
   }
 }
 
-/* --- what loops leave --- */
+/* --- remaining pieces --- */
 
-/* A table takes about a quarter of a line for each piece, a loop as much as a piece does: few pieces of a loop by steps go to the table
- * that others need anyway. */
+/* Moves the pieces of short affine nests to `left`: in a table that others need anyway a piece takes about a quarter of a line, a nest
+ * as many lines as a piece has nodes. */
 static void take_short_loops(const Group *g, Fits *fits, Pieces *left) {
   uint32_t kept = 0;
   for (uint32_t k = 0; k < fits->n; k++) {

@@ -1,11 +1,11 @@
-/* Shared by nest.c (the program in its new form), nest_cut.c (hubs and pieces), nest_tape.c (which pieces compute the same),
- * nest_fit.c (indices as loops), nest_scatter.c (indices as tables) and nest_body.c (what a turn computes). */
+/* Shared by nest.c (search, and the program with nests), nest_cut.c (hubs and pieces), nest_tape.c (canonical form of a piece),
+ * nest_fit.c (indices affine in two counters), nest_scatter.c (indices from tables) and nest_body.c (the body of a nest). */
 #ifndef LAGC_NEST_IMPL_H
 #define LAGC_NEST_IMPL_H
 
 #include "ir/nest.h"
 
-/* A value that a piece adds to a hub, or takes from it. */
+/* A value that a piece adds to a hub or (minus) subtracts from it. */
 typedef struct {
   Slot value, hub;
   int minus;
@@ -13,18 +13,18 @@ typedef struct {
 
 typedef VEC(Share) Shares;
 
-/* HUB_COMMON: a sum with terms in common with others, while pieces are found; a HUB_SUM then. */
+/* HUB_COMMON: a sum that shares terms with another; becomes HUB_SUM, or no hub, when pieces are known. */
 typedef enum { HUB_NO, HUB_SUM, HUB_SHARED, HUB_STORED, HUB_COMMON } HubKind;
 
 typedef struct {
   Slot *slots;  /* in order */
   uint32_t n;
-  int apart;    /* may be a turn of a loop: computes what a loop can, and is used by hubs alone */
-  uint32_t waits; /* for so many shares of hubs to be there */
+  int apart;    /* may be a turn of a loop: has only operations that loops allow, and only hubs use it */
+  uint32_t waits; /* number of uses of hubs that are not complete yet */
   Shares gives;
 } Piece;
 
-/* A piece, from 1, or a sum that needs a hub; the one before in the hub's list, from 1. */
+/* A user of a hub: a piece, from 1, or a sum; before: the previous entry in the hub's list, from 1. */
 typedef struct {
   uint32_t piece;
   Slot sum;
@@ -36,42 +36,42 @@ typedef struct {
   const Prog *p;
   Arena *a;
   const uint32_t *uses;
-  unsigned char *joined; /* by slot: a part of the sum or product that is its only user */
+  unsigned char *joined; /* by slot: a sum inside its only user, a sum; likewise products */
   unsigned char *hub;    /* by slot: HubKind */
-  Slot *sum;             /* by slot: the long sum that it is, or is joined to; or 0 */
-  uint64_t *sig, *flip;  /* by slot: what it computes, but for elements of arrays; of a part of a sum, the terms, and their negatives */
-  uint64_t *low, *mass;  /* by slot: the lowest of the elements that it reads, and all of them added up: to order what is alike */
-  uint32_t *piece;       /* by slot: from 1; 0: in none */
+  Slot *sum;             /* by slot: the hub that it is a partial sum of, or is; or 0 */
+  uint64_t *sig, *flip;  /* by slot: signature of its computation, without array indices; of a partial sum, of its terms and of their negatives */
+  uint64_t *low, *mass;  /* by slot: lowest array element read, and sum of all indices read: order of equal signatures */
+  uint32_t *piece;       /* by slot: number of its piece, from 1; 0: none */
   VEC(Piece) pieces;
   VEC(Slot) hubs;        /* in the order in which stores need them */
-  uint32_t *class_of;    /* by slot of hubs: hubs of one class are numbered side by side, */
-  uint32_t *number;      /* from 0 */
+  uint32_t *class_of;    /* by slot of hubs: sums of one class are neighbours in ARR_CELL, */
+  uint32_t *number;      /* with numbers from 0 */
   uint32_t *store;       /* by slot of hubs: the first store that needs it */
-  uint32_t *leaves;      /* by slot of hubs: the piece, from 1, of its first term that is a leaf, others follow; 0: they are in no pieces */
+  uint32_t *leaves;      /* by slot of hubs: piece, from 1, of its first term that is an array element, others follow; 0: none */
   uint32_t classes;
-  uint32_t *terms_of;    /* by slot of hubs: how many terms there are, */
-  uint32_t *waits;       /* and how many of pieces and hubs are still to come */
-  VEC(Waiting) waiting;  /* lists, */
-  uint32_t *last_waiting; /* by slot of hubs */
-  unsigned char *celled; /* by slot of hubs: 1: nests add to it; 2: and nothing else */
+  uint32_t *terms_of;    /* by slot of hubs: number of terms, */
+  uint32_t *waits;       /* and number of terms not known yet */
+  VEC(Waiting) waiting;  /* lists of users of hubs */
+  uint32_t *last_waiting; /* by slot of hubs: last entry of its list, from 1 */
+  unsigned char *celled; /* by slot of hubs: 1: nests add some of its terms; 2: all */
   Shares *open, *terms;  /* scratch */
 } Cut;
 
 int nest_is_sum(IrOp op);
 
-/* Where pieces end, besides long sums and what many use: at sums with terms in common, at what is stored, at sums of elements of arrays. */
+/* Additional hubs: sums that share terms, stored values, sums of array elements. */
 enum { CUT_COMMON_TERMS = 1, CUT_STORES = 2, CUT_LEAVES = 4 };
 
-/* Everything but celled. ends: of these bits. */
+/* Partitions the program into hubs and pieces; `celled` is left 0. ends: CUT_... bits. */
 Cut nest_cut(const Prog *p, unsigned ends);
 
-/* Whether a term of a sum is an element of an array, which may be a piece by itself. */
+/* Whether a term of a sum is an array element, which may be a piece by itself. */
 int nest_is_leaf(const Cut *c, Slot term);
 
-/* The terms of a sum, through the parts that are joined to it; hub is the sum. */
+/* Appends the terms of a sum, through joined partial sums; hub is the sum. */
 void nest_terms(const Cut *c, Slot sum, Shares *terms);
 
-/* A child of a node, in the order that is the same in all pieces of a group. */
+/* An operand of a node with its sort keys, whose order is the same in all pieces of a group. */
 typedef struct {
   Slot slot;
   int minus;
@@ -80,7 +80,7 @@ typedef struct {
 
 typedef VEC(Child) Children;
 
-/* What a node is computed from: terms of a sum, factors of a product (in canonical order), or operands. */
+/* Operands of a node: terms of a sum or factors of a product in canonical order, else the instruction's operands. */
 void nest_children(const Cut *c, Slot s, Children *children);
 
 typedef enum { NODE_LOAD, NODE_CELL, NODE_OUTER, NODE_CONST, NODE_OP } NodeKind;
@@ -93,30 +93,31 @@ typedef struct {
 typedef struct {
   NodeKind kind;
   Slot slot;        /* in the first piece of the group */
-  uint32_t column;  /* of loads and cells: which index */
-  uint32_t first, n; /* of the links: what it is computed from */
+  uint32_t column;  /* of loads and cells: position in Tape.columns */
+  uint32_t first, n; /* its operands: links first ... first + n - 1 */
 } Node;
 
-/* What the pieces of a group compute: nodes after what they are computed from, and what is given to hubs. */
+/* The canonical form of a piece, the same for all pieces of a group except for the indices: nodes after their operands, then the shares. */
 typedef struct {
   VEC(Node) nodes;
   VEC(Link) links;
-  VEC(Link) gives;           /* by give: the node; its column is `columns` less their number, plus its place */
-  VEC(uint32_t) words;       /* all this, for comparison */
-  VEC(int64_t) columns;      /* indices of one piece */
-  VEC(uint32_t) class_of;    /* by column: of cells, from 1; 0: of an array */
-  VEC(uint32_t) array;       /* by column: the array, or past them the class */
+  VEC(Link) gives;           /* shares for hubs: their nodes; their indices are the last entries of `columns` */
+  VEC(uint32_t) words;       /* serialised form, for comparison */
+  VEC(int64_t) columns;      /* array indices of one piece */
+  VEC(uint32_t) class_of;    /* by column: class of the hub, from 1; 0: an array */
+  VEC(uint32_t) array;       /* by column: the array, or ARR_COUNT + class of the hub */
   Children children, given;  /* scratch */
   VEC(Slot) open;
 } Tape;
 
-/* Fills `tape`, which may have been used before. local: by slot, zeroed once, of which `stamp` was not used yet. */
+/* Node number of a slot in the piece `stamp`. */
 typedef struct {
   uint32_t stamp, id;
 } Local;
+/* Writes the piece to `tape`, which is reused. stamp: number of the piece, from 1; local: by slot, zeroed before the first piece. */
 void nest_tape(const Cut *c, Piece *piece, Local *local, uint32_t stamp, Tape *tape);
 
-/* Loops over the pieces of a group. */
+/* A nest of loops over pieces of a group. */
 typedef struct {
   uint32_t rows;
   int64_t skew, turns, more; /* as in Nest */
@@ -128,7 +129,7 @@ typedef struct {
 
 typedef VEC(Fit) Fits;
 
-/* Indices of pieces: columns[piece*width + k] goes into array[k]. size: how many values a piece computes. */
+/* Indices of the pieces of a group: columns[piece*width + k] is an index into array[k]. size: number of nodes of a piece. */
 typedef struct {
   Arena *a;
   const int64_t *columns;
@@ -136,17 +137,17 @@ typedef struct {
   uint32_t width, size;
 } Indices;
 
-/* Sorts `order`, which holds the numbers of n pieces, and appends loops of enough turns; what they leave goes by tables where
- * that is shorter than its text. */
+/* Sorts `order`, the numbers of n pieces, and appends nests with affine indices; remaining pieces become a nest with tables where
+ * that is shorter than their text. */
 void nest_fit(const Indices *x, uint32_t *order, uint32_t n, Fits *fits);
 
-/* The greatest common divisor; of 0 and b, |b|. */
+/* Greatest common divisor; gcd(0, b) = |b|. */
 int64_t nest_gcd(int64_t a, int64_t b);
 
-/* One loop over n pieces, or a loop over rows of them, that take their indices from tables. */
+/* One loop over n pieces, or two over rows of them, with indices from tables. */
 Fit nest_scatter(const Indices *x, const uint32_t *pieces, uint32_t n);
 
-/* The program of one turn. */
+/* The body of a nest; outer[nouter]: slots of the program around it that the body reads. */
 const Prog *nest_body(const Cut *c, const Tape *t, const Fit *f, const Slot **outer, uint32_t *nouter);
 
 #endif

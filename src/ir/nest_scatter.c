@@ -1,28 +1,28 @@
-/* Indices as tables, where no steps fit them: springs of a net without order, sums over some of many bodies. Columns that are the same but
- * for a factor and an offset share a table. The order of turns is free, and decides how many tables there are: sorted by one body, its
- * indices are those of rows. */
+/* A nest with indices from tables, for pieces without affine order: springs of an irregular net, sums over some of many bodies. Columns
+ * that differ by a factor and an offset share a table. The order of turns is free; sorted by one body, that body's indices are the same
+ * in each row, and tables get shorter. */
 #include <string.h>
 
 #include "ir/nest_impl.h"
 
 enum { MOST_KEYS = 8 };
 
-/* Columns as first + step*value, their values numbered without repetition. */
+/* Columns as first + step*value, with equal sequences of values stored once. */
 typedef struct {
   const Indices *x;
   const uint32_t *pieces;
   uint32_t n;
-  int64_t *first, *step; /* [width]; step 0: one index for all */
-  uint32_t *of;          /* [width] the values */
-  VEC(uint32_t *) values; /* each [n], from 0, without common divisor */
+  int64_t *first, *step; /* [width]; step 0: the index is the same for all pieces */
+  uint32_t *of;          /* [width] position in `values` */
+  VEC(uint32_t *) values; /* each [n], least value 0, greatest common divisor 1 */
 } Table;
 
-/* An order of the pieces, as rows where begin is there, and what its tables take. */
+/* An order of the pieces, in rows if begin is not NULL, and the number of table entries that it needs. */
 typedef struct {
-  uint32_t *order; /* [n] places in Table.pieces */
+  uint32_t *order; /* [n] positions in Table.pieces */
   uint32_t *begin, rows;
-  const uint32_t *key; /* what rows are sorted by, */
-  int by_value;        /* where it is the number of the row: some may be empty */
+  const uint32_t *key; /* the values by which rows are sorted; */
+  int by_value;        /* the key is the number of the row: some rows may be empty */
   uint64_t entries;
 } Layout;
 
@@ -52,7 +52,7 @@ static void take_column(Table *t, uint32_t k) {
 
 /* --- orders --- */
 
-/* By the key, then by all others. */
+/* Order by the key, then by all other values. */
 static int before(const Table *t, uint32_t key, uint32_t x, uint32_t y) {
   if (t->values.at[key][x] != t->values.at[key][y]) return t->values.at[key][x] < t->values.at[key][y];
   for (uint32_t k = 0; k < t->values.n; k++)
@@ -75,14 +75,14 @@ static uint32_t *sorted(const Table *t, uint32_t key) {
   return from;
 }
 
-/* The value of row k, or of turn k. An empty row takes any. */
+/* The value in row k, or in turn k. An empty row may have any. */
 static uint32_t value_at(const Layout *l, const uint32_t *values, int of_rows, uint32_t k) {
   if (!of_rows) return values[l->order[k]];
   if (l->begin[k] < l->begin[k + 1]) return values[l->order[l->begin[k]]];
   return values == l->key ? k : 0;
 }
 
-/* Whether the n values go by equal steps. */
+/* Whether the n values are equally spaced. */
 static int is_even(const Layout *l, const uint32_t *values, int of_rows, uint32_t n) {
   for (uint32_t k = 2; k < n; k++) {
     uint32_t x = value_at(l, values, of_rows, k - 2), y = value_at(l, values, of_rows, k - 1), z = value_at(l, values, of_rows, k);
@@ -108,7 +108,7 @@ static uint64_t entries_of(const Table *t, const Layout *l) {
   return entries;
 }
 
-/* Rows of equal keys, two turns in each on the average; without begin where there are more. Where few keys are left out, the key is the
+/* Rows of equal keys, if they have two turns on the average; else one row, without begin. Where few keys are missing, the key is the
  * row's number. */
 static Layout in_rows(const Table *t, uint32_t key, uint32_t *order) {
   const uint32_t *v = t->values.at[key];
@@ -140,7 +140,7 @@ static Layout shortest(const Table *t) {
 
 /* --- places --- */
 
-/* Values of all rows, or of all turns, in their order; NULL and the step where they are even. */
+/* Table of the values of all rows, or of all turns, in order; NULL, first and step where they are equally spaced. */
 static const uint32_t *tabulated(const Table *t, const Layout *l, const uint32_t *values, int of_rows, int64_t *step, int64_t *first) {
   uint32_t n = of_rows ? l->rows : t->n, *r = ARENA_ARRAY(t->x->a, uint32_t, n);
   for (uint32_t k = 0; k < n; k++) r[k] = value_at(l, values, of_rows, k);
@@ -159,7 +159,7 @@ Fit nest_scatter(const Indices *x, const uint32_t *pieces, uint32_t n) {
   t.step = ARENA_ARRAY(a, int64_t, x->width + 1);
   t.of = ARENA_ARRAY(a, uint32_t, x->width + 1);
   for (uint32_t k = 0; k < x->width; k++) take_column(&t, k);
-  if (!t.values.n) vec_push(a, &t.values, ARENA_ARRAY(a, uint32_t, n)); /* all go to one place */
+  if (!t.values.n) vec_push(a, &t.values, ARENA_ARRAY(a, uint32_t, n)); /* all indices are constant */
   Layout l = shortest(&t);
   uint32_t *in_order = ARENA_ARRAY(a, uint32_t, n);
   for (uint32_t k = 0; k < n; k++) in_order[k] = pieces[l.order[k]];

@@ -1,9 +1,9 @@
-/* A piece written down so that pieces which compute the same are written the same. */
+/* The canonical form of a piece: pieces that compute the same, except for array indices, have equal `words`. */
 #include <stdlib.h>
 
 #include "ir/nest_impl.h"
 
-/* What adds up in any order stands in that of what it computes; of what is alike, by the elements that it reads. */
+/* Order of commutative operands: by signature; ties by the array elements that they read. */
 static int by_signature(const void *x, const void *y) {
   const Child *a = x, *b = y;
   if (a->sig != b->sig) return a->sig < b->sig ? -1 : 1;
@@ -58,7 +58,7 @@ static void word(Writing *w, uint64_t x) {
   vec_push(w->c->a, &w->t->words, (uint32_t)(x >> 32));
 }
 
-/* array: the array, or past them the class of hubs. */
+/* Appends an index. array: the array, or ARR_COUNT + class of the hub. */
 static uint32_t column(Writing *w, int64_t index, uint32_t array) {
   vec_push(w->c->a, &w->t->columns, index);
   vec_push(w->c->a, &w->t->array, array);
@@ -66,7 +66,7 @@ static uint32_t column(Writing *w, int64_t index, uint32_t array) {
   return w->t->columns.n - 1;
 }
 
-/* A hub that nests make alone is an element of an array, any other one a value of the program around. */
+/* A node for slot s. A hub whose terms all come from nests is a cell, any other one a value of the program around. */
 static Node node_of(Writing *w, Slot s) {
   const Cut *c = w->c;
   const Ins *i = &c->p->ins.at[s];
@@ -97,7 +97,7 @@ static Node node_of(Writing *w, Slot s) {
 
 static int is_known(const Writing *w, Slot s) { return w->local[s].stamp == w->stamp; }
 
-/* Appends the node, whose children are known. */
+/* Appends the node of s, whose operands have nodes. */
 static void append(Writing *w, Slot s) {
   Node n = node_of(w, s);
   for (uint32_t k = 0; k < n.n; k++) {

@@ -1,3 +1,4 @@
+/* Products in a Prog as lists of factors. */
 #include "ir/product.h"
 
 int product_is_part(const Prog *p, const uint32_t *uses, Slot s) {

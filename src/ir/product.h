@@ -1,4 +1,4 @@
-/* Products in a Prog, taken apart. */
+/* Products in a Prog as lists of factors. */
 #ifndef LAGC_PRODUCT_H
 #define LAGC_PRODUCT_H
 
@@ -11,13 +11,13 @@ typedef struct {
   uint32_t n;
 } Product;
 
-/* Whether the value is a product of one use and without a name: it goes when what uses it is written otherwise. */
+/* Whether the value is an unnamed product with one use, which may be dissolved in its user. uses: see prog_uses. */
 int product_is_part(const Prog *p, const uint32_t *uses, Slot s);
 
-/* Its factors, in the order in which they are multiplied, products that are parts taken apart as far as there is room. */
+/* The factors of product s in order; parts are replaced by their factors, up to MOST_FACTORS. */
 Product product_of(const Prog *p, const uint32_t *uses, Slot s);
 
-/* Marks the parts that were taken apart. */
+/* Marks the parts of s that product_of replaced by their factors. */
 void product_mark_inside(const Prog *p, const uint32_t *uses, Slot s, const Product *of, unsigned char *inside);
 
 #endif

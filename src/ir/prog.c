@@ -1,3 +1,4 @@
+/* Prog: construction with value numbering, copies, dead code, verification, operation counts and the listing of --dump=prog. */
 #include "ir/prog.h"
 
 #include <string.h>
@@ -27,7 +28,7 @@ Prog *prog_like(const Prog *p) {
 
 /* --- value numbering --- */
 
-/* Done once is done: a pivot that was checked need not be checked again. */
+/* Whether equal instructions may be merged; a pivot need not be checked twice. */
 static int is_pure(IrOp op) { return op != IR_SOLVE && op != IR_INVERT && op != IR_NEST && op != IR_TITLE; }
 
 static uint32_t hash_ins(const Ins *i) {
@@ -70,7 +71,7 @@ static int is_num(const Prog *p, Slot s, int64_t value) {
   return s && i->op == IR_CONST && num_equal(i->number, num_int(value));
 }
 
-/* x + 0, x - 0, 1*x, 0*x, x/1, 0/x, x + (-y), x - (-y), with slot 0 a structural zero. */
+/* Identities x + 0, x - 0, 1*x, 0*x, x/1, 0/x, x + (-y), x - (-y); slot 0 is the structural zero. NOT_A_SLOT: none applies. */
 static Slot fold(Prog *p, const Ins *i) {
   switch (i->op) {
     case IR_ADD:
@@ -249,7 +250,7 @@ Prog *prog_tidy(const Prog *p) {
   return r;
 }
 
-/* What the nest at slot s takes. */
+/* Checks the nest at slot s: its operands, the indices of its body, and the body. */
 static const char *verify_nest(const Prog *p, Slot s) {
   const Nest *n = &p->nests.at[p->ins.at[s].index];
   for (uint32_t k = 0; k < n->nouter; k++)
@@ -301,7 +302,7 @@ static OpCount ops_sum(OpCount a, OpCount b) {
   return (OpCount){a.add + b.add, a.mul + b.mul, a.div + b.div, a.sqrt + b.sqrt, a.fn + b.fn, a.other + b.other};
 }
 
-/* Of all turns of a nest. */
+/* Operations of all turns of a nest. */
 static OpCount count_nest(const Nest *n) {
   OpCount c = prog_count(n->body);
   uint64_t t = n->count;
@@ -350,7 +351,7 @@ uint32_t prog_work(const Prog *p) {
   for (uint32_t i = 0; i < p->solves.n; i++) {
     const Solve *k = &p->solves.at[i];
     uint32_t n = k->n, m = k->m, system = n * n + m * n + n + m, scratch = n * n + m * n + m * m + 2 * n + 9 * m;
-    uint32_t lane = (system + scratch + 3) / 4; /* over lanes each is solved by itself, in a fourth of the room at most */
+    uint32_t lane = (system + scratch + 3) / 4; /* where reals are vectors, each lane is solved by itself in doubles: at most a quarter of the room */
     if (k->inverse) system = 2 * n;
     uint32_t need = system + (!m ? 0 : scratch > lane ? scratch : lane);
     if (need > most) most = need;

@@ -1,11 +1,11 @@
-/* Arithmetic of numbers in programs in which parameters are numbers. */
+/* Constant folding in programs in which fixed parameters are numbers. */
 #include <math.h>
 
 #include "ir/prog.h"
 
 int prog_is_number(const Prog *p, Slot s) { return s && p->ins.at[s].op == IR_CONST; }
 
-/* sqrt(2), sin(0.7), as a double; what is no finite number is left to be computed. */
+/* sqrt(2), sin(0.7) as a double; left to the program where it is not finite. */
 static Slot reckon_function(Prog *p, const Ins *i) {
   if (!prog_is_number(p, i->a)) return NOT_A_SLOT;
   Num x = p->ins.at[i->a].number;
@@ -14,7 +14,7 @@ static Slot reckon_function(Prog *p, const Ins *i) {
   return isfinite(y) ? prog_num(p, num_double((double)y)) : NOT_A_SLOT;
 }
 
-/* The same slot without its sign; *minus changes where it had one. */
+/* The slot without its sign; toggles *minus where it had one. */
 static Slot without_sign(Prog *p, Slot s, int *minus) {
   const Ins *i = &p->ins.at[s];
   int negative = i->op == IR_NEG || (i->op == IR_CONST && num_sign(i->number) < 0);
@@ -23,8 +23,8 @@ static Slot without_sign(Prog *p, Slot s, int *minus) {
   return i->op == IR_NEG ? i->a : prog_num(p, num_neg(i->number));
 }
 
-/* Exactly where they are fractions: a + b, a - b, a*b, a/b; x/b as x*(1/b), and c*(b*x) as (c*b)*x. Signs go in front of
- * products, where sums take them. */
+/* For numbers a, b, c: a + b, a - b, a*b, a/b, exact for fractions; x/b becomes x*(1/b), c*(b*x) becomes (c*b)*x. Signs move in front of
+ * products, where a sum absorbs them. */
 Slot prog_reckon(Prog *p, const Ins *i) {
   if (i->op == IR_SQRT || i->op == IR_FN1) return reckon_function(p, i);
   if ((i->op != IR_ADD && i->op != IR_SUB && i->op != IR_MUL && i->op != IR_DIV) || !i->a || !i->b) return NOT_A_SLOT;

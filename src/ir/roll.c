@@ -1,3 +1,5 @@
+/* The search for loops in straight-line code, from the first instruction on: at each place the period and number of turns that take in most
+ * of the code; then the stores that loops take over, and the values that later turns or later code need. */
 #include "ir/roll.h"
 
 #include <string.h>
@@ -6,13 +8,14 @@ enum { LONGEST_PERIOD = 400, FEWEST_TURNS = 8, MOST_BACK = 2 };
 
 Slot roll_operand(const Ins *i, int which) { return which == 0 ? i->a : which == 1 ? i->b : i->c; }
 
-/* Instructions of one class differ in their operands only. Solves, tables and titles are alike to none. */
+/* Class by operation and kinds of operands: instructions of one class may be turns of one loop. Solves, nests, tables and titles have
+ * classes of their own. */
 static uint32_t class_of(const Prog *p, Slot s) {
   const Ins *i = &p->ins.at[s];
   if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_INVERT || i->op == IR_NEST || i->op == IR_TITLE || i->op == IR_TABLE) return UINT32_MAX - s;
   uint32_t h = (uint32_t)i->op * 31 + i->index;
   for (const char *c = i->text; c && *c; c++) h = (h ^ (unsigned char)*c) * 16777619u;
-  for (int k = 0; k < 3; k++) { /* structural zeros and leaves stay what they are */
+  for (int k = 0; k < 3; k++) { /* a zero, an array, a number, a value: each counts as itself */
     Slot x = roll_operand(i, k);
     h = h * 5 + (!x ? 0 : !ir_is_leaf(p->ins.at[x].op) ? 1 : p->ins.at[x].op == IR_LOAD ? 2 + 8 * (uint32_t)p->ins.at[x].array : 3);
   }
@@ -23,13 +26,13 @@ typedef struct {
   Rolls *r;
   const uint32_t *cls; /* by place */
   unsigned by_index;
-  uint32_t *alike_to;  /* by period: classes a period apart are equal up to there, from where it was asked last */
-  uint32_t *failed;    /* by period: the place, from 1, whose instruction does not go on: groups with it fail, too */
+  uint32_t *alike_to;  /* by period: end of the run of classes that are equal a period later, as last computed by alike */
+  uint32_t *failed;    /* by period: place, from 1, of an instruction that ended a group: all groups with it fail */
 } Search;
 
 static const Ins *code_at(const Rolls *r, uint32_t place) { return &r->p->ins.at[r->code[place]]; }
 
-/* Where x stands in the code; only for values that are no leaves. */
+/* Place of x in the code; only for values that are no leaves. */
 static uint32_t place_of(const Rolls *r, Slot x) { return r->place[x] - 1; }
 
 int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first) {
@@ -65,7 +68,7 @@ Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which) {
   return s;
 }
 
-/* For how many turns (at most `most`) the operand follows the step from its first to its second value. */
+/* Number of turns, at most `most`, in which the operand follows the step from its first to its second value. */
 static uint32_t turns_of(const Search *f, uint32_t begin, uint32_t period, uint32_t offset, int which, uint32_t most) {
   const Rolls *r = f->r;
   Slot x = roll_operand(code_at(r, begin + offset), which), y = roll_operand(code_at(r, begin + period + offset), which);
@@ -74,7 +77,7 @@ static uint32_t turns_of(const Search *f, uint32_t begin, uint32_t period, uint3
   uint32_t last = most;
   Num unit = {0};
   int64_t multiple = 0;
-  if (s.kind == STEP_SAME && r->place[x] && place_of(r, x) >= begin) return 1; /* in the first turn it would be that turn's own */
+  if (s.kind == STEP_SAME && r->place[x] && place_of(r, x) >= begin) return 1; /* a value of the loop's first turn, which later turns cannot share */
   if (s.kind == STEP_NUMBER && !roll_number(first, &r->p->ins.at[y], &unit, &multiple)) return 1;
   if (s.kind == STEP_LOAD && (first->op != IR_LOAD || !(f->by_index >> first->array & 1))) return 1;
   if (s.kind == STEP_OWN && s.step != period) return 1;
@@ -104,14 +107,14 @@ static uint32_t turns_of(const Search *f, uint32_t begin, uint32_t period, uint3
   return last;
 }
 
-/* Two operands that are one value in the first turn must be one in all. */
+/* Whether operands that are one value in the first turn are one value in the second. */
 static int same_sharing(const Rolls *r, uint32_t begin, uint32_t period, uint32_t offset) {
   const Ins *x = code_at(r, begin + offset), *y = code_at(r, begin + period + offset);
   return (x->a == x->b) == (y->a == y->b) && (x->a == x->c) == (y->a == y->c) && (x->b == x->c) == (y->b == y->c);
 }
 
-/* How many instructions from `begin` on are of the classes of those a period later. The search goes forth, and each
- * period is compared once. */
+/* Number of instructions from `begin` on whose classes equal those a period later. The search only moves forward, so that each period
+ * is compared once. */
 static uint32_t alike(const Search *f, uint32_t begin, uint32_t period) {
   uint32_t *to = &f->alike_to[period];
   if (*to <= begin)
@@ -119,7 +122,7 @@ static uint32_t alike(const Search *f, uint32_t begin, uint32_t period) {
   return *to - begin;
 }
 
-/* The same, from the first instruction of the group on, for at most `most` turns. */
+/* Number of turns, at most `most`, in which all instructions of the group go on; records failures. */
 static uint32_t turns_within(const Search *f, uint32_t begin, uint32_t period, uint32_t most) {
   const Rolls *r = f->r;
   uint32_t turns = alike(f, begin, period) / period + 1;
@@ -142,13 +145,13 @@ static int may_begin(const Search *f, uint32_t begin, uint32_t period) {
   return 1;
 }
 
-/* For how many turns the group goes on; 1 when for fewer than the fewest. */
+/* Number of turns of the group; 1 when there are fewer than FEWEST_TURNS. */
 static uint32_t turns_at(const Search *f, uint32_t begin, uint32_t period) {
   if (begin < f->failed[period] || !may_begin(f, begin, period) || turns_within(f, begin, period, FEWEST_TURNS) < FEWEST_TURNS) return 1;
   return turns_within(f, begin, period, f->r->n / period + 1);
 }
 
-/* How many operands a loop takes from the turn before. */
+/* Number of operands that a loop takes from earlier turns. */
 static uint32_t carried(const Rolls *r, const Loop *l) {
   uint32_t n = 0;
   for (uint32_t k = 0; k < l->period; k++)
@@ -159,7 +162,7 @@ static uint32_t carried(const Rolls *r, const Loop *l) {
   return n;
 }
 
-/* The same loop with its turns cut where least goes from one to the next, which may cost one of them. */
+/* The loop rotated so that the fewest values pass between turns, which may cost one turn. */
 static Loop well_cut(const Search *f, Loop l) {
   Loop best = l;
   uint32_t least = carried(f->r, &l);
@@ -173,7 +176,7 @@ static Loop well_cut(const Search *f, Loop l) {
   return best;
 }
 
-/* The loop at `begin` that takes in most of the code; the shorter period where two take in as much. */
+/* The loop at `begin` that covers most code; of about equal ones the shorter period. */
 static Loop longest_at(const Search *f, uint32_t begin) {
   Loop best = {.begin = begin, .period = 1};
   for (uint32_t period = 1; period <= LONGEST_PERIOD && begin + period < f->r->n; period++) {
@@ -183,16 +186,16 @@ static Loop longest_at(const Search *f, uint32_t begin) {
   return best;
 }
 
-/* --- what is stored, kept and carried --- */
+/* --- values that loops store, keep and carry --- */
 
-/* The turn of its loop in which a value is computed. */
+/* Turn of the loop, and offset in the period, of a place in the code. */
 static uint32_t turn_of(const Loop *l, uint32_t place) { return (place - l->begin) / l->period; }
 static uint32_t offset_of(const Loop *l, uint32_t place) { return (place - l->begin) % l->period; }
 
-/* Stores of one value of a loop, in the order of turns: 1 + the number of the store; 0: none. */
+/* Stores of one value of a loop. by_turn: 1 + the number of the store; 0: none. */
 typedef struct {
   uint32_t *by_turn;
-  int twice; /* a turn stores it at two places */
+  int twice; /* a turn stores the value at two places */
 } Stored;
 
 static int is_even(const Rolls *r, const Loop *l, const uint32_t *by_turn) {
@@ -208,7 +211,7 @@ static int is_even(const Rolls *r, const Loop *l, const uint32_t *by_turn) {
   return 1;
 }
 
-/* A value that each turn stores once, at places by equal steps, is stored in the loop. */
+/* Moves into the loop the stores of values that each turn stores once, at equally spaced indices. */
 static void find_stores(Rolls *r) {
   Arena *a = r->p->arena;
   Stored **of = ARENA_ARRAY(a, Stored *, r->loops.n + 1);
@@ -244,7 +247,7 @@ static void keep(Rolls *r, uint32_t place, uint32_t back) {
   if (*kept < back + 1) *kept = back + 1;
 }
 
-/* A value of a loop that is needed outside of it. */
+/* Keeps a value of a loop that an instruction or store outside of the loop needs. */
 static void keep_from(Rolls *r, Slot x, uint32_t user) {
   if (!x || !r->place[x]) return;
   uint32_t at = place_of(r, x), in = r->loop[at];
@@ -254,7 +257,7 @@ static void keep_from(Rolls *r, Slot x, uint32_t user) {
   if (turn_of(l, at) + 1 < l->count) l->carried[offset_of(l, at)] = 0;
 }
 
-/* What turns take from turns before. */
+/* Keeps the values that turns take from earlier turns. */
 static void keep_carried(Rolls *r) {
   for (uint32_t k = 0; k < r->loops.n; k++) {
     const Loop *l = &r->loops.at[k];
@@ -314,7 +317,7 @@ Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early) {
     vec_push(a, &r.loops, l);
     for (uint32_t k = 0; k < l.period * l.count; k++) loop[i + k] = r.loops.n;
     i += l.period * l.count;
-    memset(f.failed, 0, (LONGEST_PERIOD + 1) * sizeof *f.failed); /* what lies in a loop can be taken by its turns */
+    memset(f.failed, 0, (LONGEST_PERIOD + 1) * sizeof *f.failed); /* operands in the new loop may now follow its turns */
   }
   r.stored = ARENA_ARRAY(a, unsigned char, p->stores.n + 1);
   if (early) find_stores(&r);

@@ -1,3 +1,4 @@
+/* Orders of instructions: store by store (prog_by_demand), and by critical path (prog_by_deadline). */
 #include <stdlib.h>
 
 #include "ir/prog.h"
@@ -23,7 +24,7 @@ typedef struct {
   VEC(Slot) open;
 } Schedule;
 
-/* Operands first, a before b before c; by a list, since sums may have any number of terms. */
+/* Appends s after its operands, a before b before c; with a list instead of recursion, since sums have any number of terms. */
 static void compute(Schedule *d, Slot s) {
   vec_push(d->to->arena, &d->open, s);
   while (d->open.n) {
@@ -59,7 +60,7 @@ Prog *prog_by_demand(const Prog *p) {
   return d.to;
 }
 
-/* --- in the order of deadlines --- */
+/* --- by critical path --- */
 
 typedef struct {
   Slot slot;
@@ -88,7 +89,7 @@ static void need_before(const Timing *t, uint32_t *left, Slot operand, uint32_t 
   if (left[operand] < own) left[operand] = own;
 }
 
-/* How long before the end each value must begin, so that nothing waits for it. A pivot is asked for as soon as it is there. */
+/* Slots sorted by the length of the path from their start to the end of the program. A pivot is checked as soon as it is known. */
 static Deadline *deadlines(const Timing *t) {
   const Prog *p = t->p;
   Deadline *d = ARENA_ARRAY(p->arena, Deadline, p->ins.n);

@@ -1,3 +1,5 @@
+/* series_new: the program of order 0 is a copy of the model's program; the program of order k gets a recurrence for each instruction that the
+ * motion depends on, and the linear system with the factors of order 0. */
 #include "ir/series.h"
 
 #include "ir/series_impl.h"
@@ -52,7 +54,7 @@ Slot series_over(Maker *m, Slot x, Slot divisor) {
 
 /* --- sums over the orders below --- */
 
-/* The pair (a, b) or (b, a), found again or new. */
+/* Index of the pair (a, b) or (b, a), appended if new. */
 static uint32_t find_pair(Maker *m, Val a, Val b) {
   if (a > b) {
     Val t = a;
@@ -65,7 +67,7 @@ static uint32_t find_pair(Maker *m, Val a, Val b) {
   return (m->values.at[a].pairs = m->pairs.n) - 1;
 }
 
-/* What the value is a multiple of; *factor gathers the multiples, in `first` (0: one). */
+/* The base of a multiple; *factor, a slot of `first` (0: one), is multiplied by the value's factor. */
 static Val base_of(Maker *m, Val v, Slot *factor) {
   const Value *x = &m->values.at[v];
   if (!x->factor) return v;
@@ -112,7 +114,7 @@ Val series_theta(Maker *m, Val v) {
 
 /* --- the model --- */
 
-/* An entry of the linear system, as seen from its row or its column. */
+/* An entry of the linear system in the list of its row or column; other: its column or row. */
 typedef struct {
   uint32_t other;
   Val value;
@@ -123,10 +125,10 @@ typedef struct {
   Maker m;
   const IrSystem *sys;
   Series *out;
-  unsigned char *need; /* by slot of the program: its coefficients are needed */
-  Slot *zero;          /* by slot of the program: its slot in `first` */
+  unsigned char *need; /* by slot of the program: whether its coefficients are needed */
+  Slot *zero;          /* by slot of the program: slot in `first` */
   Val *value;          /* by slot of the program */
-  EntryList *H, *row, *column; /* [nq + ndefs] of H, and of C */
+  EntryList *H, *row, *column; /* [nq + ndefs] rows of H, rows and columns of C */
   Val *u, *lambda;     /* [nq + ndefs] the rates u', and the adjoints of definitions */
 } Model;
 
@@ -142,7 +144,7 @@ static void mark_roots(Model *w) {
   }
 }
 
-/* Column of x; -1 for what is no part of the motion. */
+/* Column of x that a load reads; -1 for parameters and other constants. */
 static int64_t column_of(Model *w, const Ins *i) {
   const IrSystem *sys = w->sys;
   switch (i->array) {
@@ -162,7 +164,7 @@ static Val load_value(Model *w, const Ins *i, Slot zero) {
   return series_value(&w->m, zero, load(&w->m, ARR_COEF, (uint32_t)column, i->name));
 }
 
-/* The program in order 0, and what is to be solved value by value in order k. */
+/* Copies the program to `first`, and appends the recurrences of its instructions to `next`. */
 static void copy_program(Model *w) {
   const Prog *p = w->sys->p;
   for (Slot s = 1; s < p->ins.n && !w->m.why; s++) {
@@ -199,7 +201,7 @@ static void list_entries(Model *w) {
   }
 }
 
-/* The rates, and in `first` the adjoints: lambda = H u' + C^T lambda, from the last definition on. */
+/* Opens the values of rates and adjoints, the latter computed in `first`: lambda = H u' + C^T lambda, from the last definition on. */
 static void open_unknowns(Model *w) {
   Maker *m = &w->m;
   const IrSystem *sys = w->sys;
@@ -221,7 +223,7 @@ static void open_unknowns(Model *w) {
   }
 }
 
-/* Coefficient k of sum E x without the terms E[0] x[k]. */
+/* Coefficient k of sum E x without its terms E[0] x[k]. */
 static Slot lower_terms(Model *w, const EntryList *list, const Val *x) {
   Maker *m = &w->m;
   Slot sum = 0;
@@ -235,7 +237,7 @@ static Slot lower_terms(Model *w, const EntryList *list, const Val *x) {
   return sum;
 }
 
-/* Those terms. */
+/* The terms E[0] x[k]. */
 static Slot top_terms(Model *w, const EntryList *list, const Val *x) {
   Maker *m = &w->m;
   Slot sum = 0;
@@ -246,13 +248,13 @@ static Slot top_terms(Model *w, const EntryList *list, const Val *x) {
   return sum;
 }
 
-/* What the lower orders leave of row v: H u' + C^T lambda. */
+/* Coefficient k of row v, H u' + C^T lambda, without the unknown terms of order k. */
 static Slot row_below(Model *w, uint32_t v) {
   Slot quadratic = lower_terms(w, &w->H[v], w->u), adjoint = lower_terms(w, &w->column[v], w->lambda);
   return series_op(&w->m, IR_ADD, quadratic, adjoint);
 }
 
-/* lambda = H u' + C^T lambda, from the last definition on. */
+/* Coefficients k of the adjoints lambda = H u' + C^T lambda, from the last definition on. */
 static void set_adjoints(Model *w) {
   Maker *m = &w->m;
   for (uint32_t v = w->sys->nq + w->sys->ndefs; v-- > w->sys->nq;) {
@@ -307,8 +309,8 @@ static Factored seen_from_next(Model *w) {
   return seen;
 }
 
-/* Small systems are solved by the inverse: where M is full it costs as many operations as its factors do, and they depend less
- * on each other. It is as accurate: a definite matrix loses no digits by bad scales. */
+/* Solves small systems by the inverse: for a full M it takes as many operations as factors do, with shorter chains of dependence. It is
+ * as accurate, since a definite matrix loses no digits by bad scales. */
 static void solve_by_inverse(Model *w, const Slot *b, Slot *x) {
   Maker *m = &w->m;
   Factored f = *w->sys->factored;
@@ -360,7 +362,7 @@ static void solve(Model *w) {
   set_adjoints(w);
 }
 
-/* --- what leaves --- */
+/* --- stores --- */
 
 static void store_rate(Model *w, uint32_t i, Slot zero, Slot coef) {
   Name name = w->sys->rates[i];
@@ -388,8 +390,8 @@ static void store_all(Model *w) {
   for (uint32_t i = 0; i < nz; i++) store_state(w, 2 * nq + i, m->values.at[w->value[sys->flow[i]]].coef);
 }
 
-/* When the loads of `next` are there, in cycles of a processor: the rates of the order before, v and z, which are made of them,
- * and the sums in which they stand come last; all else was there one order before. */
+/* By slot: cycles until the loads of `next` are ready. Rates of the previous order, and v and z computed from them, come last, with the
+ * sums that contain them; everything else was ready one order before. */
 static const uint32_t *when_ready(const Model *w, const Prog *next) {
   enum { ORDER = 30, PRODUCT = 4 };
   uint32_t *ready = ARENA_ARRAY(next->arena, uint32_t, next->ins.n), total = w->sys->nq + w->sys->ndefs;

@@ -1,13 +1,13 @@
-/* Long families: sums and constants that a loop of `next` reads stand side by side, in the order of its turns.
+/* series_arrange: renumbers sums and constants of long families so that those that one loop of `next` reads are neighbours.
  *
- * They are numbered as they are made, member by member: the loops read them at equal distances, and what writes them in order
- * finds values of several loops in turn, which no loop can store. Here each run of equal distances becomes one of neighbours. */
+ * Before, they are numbered member by member: loops read them at equal distances, and in the order of numbers values of several
+ * loops alternate, so that no loop can store them. Each run at equal distances becomes a run of neighbours. */
 #include <stdlib.h>
 
 #include "ir/roll.h"
 #include "ir/series_impl.h"
 
-/* The indices first, first + step, ... that a loop reads. */
+/* A run: the indices first, first + step, ... that a loop reads. */
 typedef struct {
   uint32_t first, step, count;
 } Run;
@@ -15,12 +15,12 @@ typedef VEC(Run) RunList;
 
 typedef struct {
   uint32_t n;
-  uint32_t *place; /* by old index: the new one + 1; 0: not placed yet */
-  unsigned char *read; /* by old index: 1 where a run has it */
+  uint32_t *place; /* by old index: new index + 1; 0: not placed yet */
+  unsigned char *read; /* by old index: 1 if it is in a run */
   uint32_t placed;
 } Layout;
 
-/* The loads from `array` that change from turn to turn. */
+/* Runs of loads from `array` that change from turn to turn. */
 static RunList runs_of(const Rolls *r, IrArray array) {
   RunList runs = {0};
   for (uint32_t k = 0; k < r->loops.n; k++) {
@@ -51,7 +51,7 @@ static void place(Layout *y, uint32_t index) {
   y->place[index] = ++y->placed;
 }
 
-/* The run with what goes on at its ends and is in no other: members outside of the loop that are like those inside. */
+/* Places a run, extended at both ends by indices that are in no other: members of the family outside of the loop. */
 static void place_run(Layout *y, Run r) {
   while (r.first >= r.step && !y->read[r.first - r.step] && !y->place[r.first - r.step]) r.first -= r.step, r.count++;
   for (uint32_t end = r.first + r.step * r.count; end < y->n && !y->read[end] && !y->place[end]; end += r.step) r.count++;
@@ -60,7 +60,7 @@ static void place_run(Layout *y, Run r) {
 
 static int is_inside(Run r, uint32_t from, uint32_t n) { return r.first >= from && r.first + r.step * (r.count - 1) < from + n; }
 
-/* Where indices from..from + n - 1 go: [n], relative to `from`. The longest runs come first. */
+/* New places of the indices from ... from + n - 1, relative to `from`. The longest runs come first. */
 static Layout layout_of(Arena *a, const RunList *runs, uint32_t from, uint32_t n) {
   Layout y = {.n = n, .place = ARENA_ARRAY(a, uint32_t, n + 1), .read = ARENA_ARRAY(a, unsigned char, n + 1)};
   for (uint32_t k = 0; k < runs->n; k++)

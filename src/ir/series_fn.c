@@ -1,6 +1,6 @@
-/* A recurrence for each operation. u, v, ... are the operands, y the result; S(a, b) is the sum over the pair, theta u
- * has the coefficients k u[k]. Each line is the differential equation of the function with its terms of order 0 and k
- * taken out of the sums: theta e = e theta u for e = exp u gives k e[k] = e[0] k u[k] + S(theta u, e). */
+/* series_instruction: a recurrence for each operation. u, v, ... are the operands, y the result; S(a, b) is the convolution sum of
+ * a and b over 0 < j < k, theta u = t du/dt has the coefficients k u[k]. Each recurrence is the function's differential equation with
+ * the terms of order 0 and k taken out of the sums: theta e = e theta u for e = exp u gives k e[k] = e[0] k u[k] + S(theta u, e). */
 #include <string.h>
 
 #include "ir/series_impl.h"
@@ -18,7 +18,7 @@ static Slot sub(Maker *m, Slot a, Slot b) { return series_op(m, IR_SUB, a, b); }
 static Slot mul(Maker *m, Slot a, Slot b) { return series_op(m, IR_MUL, a, b); }
 static Slot neg(Maker *m, Slot a) { return series_op(m, IR_NEG, a, 0); }
 
-/* a[0] u[k], and that with x added to it. C fixes no order of arguments: a call has at most one that makes instructions. */
+/* a[0] u[k], and a[0] u[k] + x. C fixes no order of arguments: a call has at most one that makes instructions. */
 static Slot lead(Maker *m, Val a, Val u) { return mul(m, series_zero(m, a), coef(m, u)); }
 static Slot lead_plus(Maker *m, Val a, Val u, Slot x) { return add(m, lead(m, a, u), x); }
 /* S(a, b) / k. */
@@ -76,14 +76,14 @@ static Val cubic_root(Maker *m, Slot at_zero, Val u) {
 
 /* --- exponentials, logarithms, powers --- */
 
-/* y = exp u, whatever way y[0] was computed: theta y = y theta u. */
+/* y = exp u, with y[0] given: theta y = y theta u. */
 static Val exponential(Maker *m, Slot at_zero, Val u) {
   Val y = series_open(m, at_zero);
   series_set(m, y, lead_plus(m, y, u, mean(m, series_theta(m, u), y)));
   return y;
 }
 
-/* u theta y = theta u; theta y has coefficients of its own before y has. */
+/* y = log u: u theta y = theta u; theta y is a value of its own, whose sums give y[k]. */
 static Val logarithm(Maker *m, Slot at_zero, Val u) {
   Val y = series_open(m, at_zero), slope = series_open(m, 0);
   m->values.at[y].theta = slope;
@@ -112,7 +112,7 @@ static Val power(Maker *m, Slot at_zero, Val u, Val v) {
 
 /* --- circular and hyperbolic functions --- */
 
-/* theta s = c theta u, theta c = -s theta u (circular) or s theta u. Both are made, whichever is wanted. */
+/* theta s = c theta u, theta c = -s theta u (circular) or s theta u. Each recurrence needs the other, so both are made. */
 static void sine_and_cosine(Maker *m, Val u, int circular, Val *sine, Val *cosine) {
   Val s = series_open(m, first_call(m, circular ? "sin" : "sinh", zero(m, u)));
   Val c = series_open(m, first_call(m, circular ? "cos" : "cosh", zero(m, u))), slope = series_theta(m, u);
@@ -151,7 +151,7 @@ static Val tangent(Maker *m, Slot at_zero, Val u, int circular) {
   return y;
 }
 
-/* y with d theta y = theta u, or -theta u: the inverse functions, whose derivative is 1/d. */
+/* Inverse functions, with derivative 1/d or -1/d: d theta y = theta u or -theta u. */
 static Val inverse(Maker *m, Slot at_zero, Val u, Val d, int negative) {
   Val y = series_open(m, at_zero), slope = series_open(m, 0);
   m->values.at[y].theta = slope;
@@ -161,7 +161,7 @@ static Val inverse(Maker *m, Slot at_zero, Val u, Val d, int negative) {
   return y;
 }
 
-/* d = sqrt(1 - u u), with (1 - u)(1 + u) at order 0. */
+/* asin, acos: d = sqrt(1 - u u), computed as (1 - u)(1 + u) at order 0. */
 static Val arc_sine(Maker *m, Slot at_zero, Val u, int cosine) {
   Slot one = first_number(m, 1), u0 = zero(m, u), minus = first_op(m, IR_SUB, one, u0), plus = first_op(m, IR_ADD, one, u0);
   Slot inside = first_op(m, IR_MUL, minus, plus);
@@ -174,7 +174,7 @@ static Val arc_tangent(Maker *m, Slot at_zero, Val u) {
   return inverse(m, at_zero, u, d, 0);
 }
 
-/* The sum of two squares. */
+/* u u + v v. */
 static Val norm_square(Maker *m, Val u, Val v) {
   Val uu = square(m, u), vv = square(m, v);
   Slot both = first_op(m, IR_ADD, zero(m, uu), zero(m, vv));
@@ -193,7 +193,7 @@ static Val angle(Maker *m, Slot at_zero, Val v, Val u) {
   return y;
 }
 
-/* --- all of them --- */
+/* --- dispatch --- */
 
 static Val refuse(Maker *m, const char *what) {
   if (!m->why) m->why = what;
@@ -223,7 +223,7 @@ static Val function2(Maker *m, const char *name, Slot at_zero, Val u, Val v) {
   return refuse(m, name);
 }
 
-/* A choice that does not depend on time. */
+/* A selection whose condition is constant in time. */
 static Val choice(Maker *m, Slot at_zero, Slot condition, Val u, Val v) {
   Slot one = first_number(m, 1), flag = prog_ins(m->first, (Ins){.op = IR_SELECT, .a = condition, .b = one});
   Slot holds = series_op(m, IR_LT, 0, series_constant(m, flag));

@@ -1,4 +1,5 @@
-/* Shared by series.c (the programs, the linear system) and series_fn.c (a recurrence for each operation). */
+/* Shared by series.c (the two programs, the linear system), series_fn.c (a recurrence for each operation), series_place.c (columns of sums
+ * and constants) and series_arrange.c (their order for loops). */
 #ifndef LAGC_SERIES_IMPL_H
 #define LAGC_SERIES_IMPL_H
 
@@ -10,18 +11,18 @@ typedef uint32_t Val; /* index of a value; 0: the structural zero */
 typedef struct {
   Slot zero;      /* coefficient 0, in `first` */
   Slot coef;      /* coefficient k, in `next`; 0 while it is not known */
-  int varies;     /* with time: else all coefficients but the first are 0 */
-  Slot factor;    /* != 0: this is factor * base, the factor (in `first`) constant in time; */
-  Val base;       /* so that products with it are products with the base */
-  Val theta;      /* t d/dt of it: coefficients k x[k]; 0: not made yet */
-  Val sine, cosine, sinh, cosh; /* of it; 0: not made yet */
-  uint32_t pairs; /* the last of its sums + 1: see Pair */
+  int varies;     /* 0: constant in time, all coefficients but the first are 0 */
+  Slot factor;    /* != 0: the value is factor * base, the factor (in `first`) constant in time, */
+  Val base;       /* so that its sums are multiples of sums over the base */
+  Val theta;      /* its t d/dt, with coefficients k x[k]; 0: not made yet */
+  Val sine, cosine, sinh, cosh; /* its functions; 0: not made yet */
+  uint32_t pairs; /* head of its list of pairs, + 1 */
 } Value;
 
-/* s[i] = sum of a[j] b[k-j], 0 < j < k; the pairs with one a are a list. */
+/* The convolution sum of a[j] b[k-j], 0 < j < k; pairs with the same a are a list. */
 typedef struct {
   Val a, b;
-  uint32_t before; /* index + 1 */
+  uint32_t before; /* previous pair of the list, + 1 */
 } Pair;
 
 typedef struct {
@@ -31,17 +32,17 @@ typedef struct {
   VEC(Pair) pairs;
   VEC(Slot) constants;       /* c: slots in `first` */
   VEC(uint32_t) constant_at; /* by slot of `first`: index in c + 1 */
-  VEC(uint32_t) columns;     /* the pair whose sum stands in each column; UINT32_MAX: none. See series_place */
-  const char *why;           /* the first thing that is not analytic */
+  VEC(uint32_t) columns;     /* by column: the pair whose sum it holds; UINT32_MAX: padding. See series_place */
+  const char *why;           /* the first function or word that is not analytic; NULL: none */
 } Maker;
 
 /* A value with coefficients 0 and k; coef == 0: constant in time. */
 Val series_value(Maker *m, Slot zero, Slot coef);
-/* The same with its coefficient k still to come, which may need sums over the coefficients before: see series_set. */
+/* A value whose coefficient k is set later, by series_set, since it needs sums over the value's own lower coefficients. */
 Val series_open(Maker *m, Slot zero);
 void series_set(Maker *m, Val v, Slot coef);
 
-/* A slot of `first` as seen from `next`, where it is constant. */
+/* Slot of `next` for a slot of `first`: a number, or a load of c. */
 Slot series_constant(Maker *m, Slot s);
 
 /* In `next`: coefficient 0 of a; the sum over the pair (a, b); coefficient k of the product a b. */
@@ -56,17 +57,17 @@ Slot series_per_order(Maker *m, Slot x);
 Slot series_over(Maker *m, Slot x, Slot divisor);
 Slot series_order(Maker *m);
 
-/* t d/dt of it. */
+/* The value t d/dt v. */
 Val series_theta(Maker *m, Val v);
 
-/* The value of an instruction of the program; v, w, x are those of its operands, zero its slot in `first`.
- * 0 when it is not analytic: m->why says what. */
+/* The value of an instruction of the program, by its recurrence; v, w, x: values of its operands, zero: its slot in `first`.
+ * 0 when it is not analytic, with m->why set. */
 Val series_instruction(Maker *m, const Ins *i, Slot zero, Val v, Val w, Val x);
 
-/* Gives the sums and constants that the stores of `next` need their places, and stores what they are made of. */
+/* Assigns columns to the sums, and places to the constants, that the stores of `next` need; stores the factors a[k], b[k] and the constants. */
 void series_place(Maker *m, Series *s);
 
-/* Gives sums and constants of long families an order in which loops read and write neighbours. */
+/* Reorders sums and constants of long programs so that loops read and write neighbours. */
 void series_arrange(const Series *s, Prog *first, Prog *next);
 
 #endif

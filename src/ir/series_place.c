@@ -1,13 +1,13 @@
-/* Where sums and constants stand. Those that nothing needs get no place: the linear system asks for more than it uses. */
+/* series_place: columns of sums and places of constants. Unused ones get none: the linear system makes more than it uses. */
 #include "ir/series_impl.h"
 
-/* Sums are made side by side, in groups that a processor keeps in registers: of up to 16 numbers, in vectors of 2 or 4. */
+/* Sums are accumulated in groups that stay in registers: up to 16 numbers, in vectors of 2 or 4. */
 enum { LANES = 4, LEAST_GROUP = 8, MOST_GROUP = 16 };
-enum { LEAST_SQUARES = 8 }; /* so many squares are worth a loop of their own */
+enum { LEAST_SQUARES = 8 }; /* from so many squares on they get a loop of their own */
 
 typedef struct {
   Maker *m;
-  unsigned char *slot, *pair; /* needed */
+  unsigned char *slot, *pair; /* by slot of `next`, by pair: whether needed */
   VEC(Slot) open;
 } Need;
 
@@ -17,7 +17,7 @@ static void need(Need *n, Slot s) {
   vec_push(n->m->arena, &n->open, s);
 }
 
-/* From the stores on: what a sum needs is both of its values. */
+/* Marks slots and pairs that stores and solves need, backwards; a sum needs coefficient k of both of its values. */
 static Need find_needed(Maker *m) {
   const Prog *p = m->next;
   Need n = {.m = m, .slot = ARENA_ARRAY(m->arena, unsigned char, p->ins.n), .pair = ARENA_ARRAY(m->arena, unsigned char, m->pairs.n + 1)};
@@ -40,7 +40,7 @@ static Need find_needed(Maker *m) {
 static int is_square(const Maker *m, uint32_t pair) { return m->pairs.at[pair].a == m->pairs.at[pair].b; }
 static uint32_t rounded(uint32_t n, uint32_t group) { return (n + group - 1) / group * group; }
 
-/* The size of groups that leaves the fewest columns empty; of those the largest. */
+/* The size of groups with the fewest columns of padding; of equal ones the largest. */
 static void choose_group(Series *s, uint32_t sums, uint32_t squares) {
   uint32_t n = sums + squares, least = UINT32_MAX;
   s->sums = sums;
@@ -54,7 +54,7 @@ static void choose_group(Series *s, uint32_t sums, uint32_t squares) {
   }
 }
 
-/* Gives each pair that is needed its column, squares behind the others where they are many. */
+/* Assigns a column to each pair that is needed; squares come last where they are many. */
 static void place_sums(Maker *m, const Need *n, Series *s, uint32_t *column) {
   uint32_t pairs = 0, squares = 0;
   for (uint32_t i = 0; i < m->pairs.n; i++) {
@@ -73,7 +73,7 @@ static void place_sums(Maker *m, const Need *n, Series *s, uint32_t *column) {
   }
 }
 
-/* Tells the loads of sums and constants their places, and leaves the constants that are needed. */
+/* Renumbers the loads of sums and constants, and drops constants that are not needed. */
 static void tell_loads(Maker *m, const Need *n, const uint32_t *column, Series *out) {
   uint32_t *place = ARENA_ARRAY(m->arena, uint32_t, m->constants.n + 1), left = 0;
   for (Slot s = 1; s < m->next->ins.n; s++) {

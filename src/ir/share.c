@@ -1,11 +1,13 @@
+/* Common subproducts, see prog_share. Products become lists of factors; the pair of factors in most lists is replaced by a new factor until
+ * no pair is in two; then the program is built again with the pairs. */
 #include "ir/product.h"
 
-/* A factor: a slot of the program or, from its length on, a pair. */
+/* A factor: a slot of the program or, from ins.n on, ins.n + the number of a pair. */
 typedef uint32_t Factor;
 
 typedef struct {
   Factor a, b;
-  Slot last; /* of the program: what comes after it can use the pair */
+  Slot last; /* of the program: the pair is available after this slot */
 } Pair;
 
 typedef struct {
@@ -15,7 +17,7 @@ typedef struct {
 
 typedef struct {
   Factor a, b;
-  uint32_t count, seen; /* in so many products; the last of them */
+  uint32_t count, seen; /* number of products with the pair; the last of them */
 } Tally;
 
 typedef struct {
@@ -26,8 +28,8 @@ typedef struct {
   VEC(Pair) pairs;
   Tally *table;           /* hashed, empty where count is 0 */
   uint32_t room;
-  unsigned char *inside;  /* by slot: part of a product */
-  uint32_t *product;      /* by slot: number of the product, from 1 */
+  unsigned char *inside;  /* by slot: part of a larger product */
+  uint32_t *product;      /* by slot: number of the product, from 1; 0: none */
   Slot *map, *made;       /* slots of `to`: by slot, by pair */
 } Share;
 
@@ -43,7 +45,7 @@ static void find_products(Share *s) {
   }
 }
 
-/* --- the pair that most products contain --- */
+/* --- the most frequent pair --- */
 
 static Tally *tally(Share *s, Factor a, Factor b) {
   uint32_t k = (a * 0x9e3779b9u ^ b * 0x85ebca6bu) & (s->room - 1);
@@ -56,7 +58,7 @@ static int is_better(const Tally *x, const Tally *y) {
   return x->a != y->a ? x->a < y->a : x->b < y->b;
 }
 
-/* Each pair counts once in a product. Among equals the one that is there first. */
+/* The pair in most products, each of which counts once; ties go to earlier factors. */
 static Tally most_frequent(Share *s) {
   Tally best = {0};
   for (uint32_t k = 0; k < s->room; k++) s->table[k] = (Tally){0};
@@ -74,11 +76,11 @@ static Tally most_frequent(Share *s) {
   return best;
 }
 
-/* --- taking it out --- */
+/* --- replacing it --- */
 
 static Slot last_of(const Share *s, Factor f) { return f < s->from->ins.n ? f : s->pairs.at[f - s->from->ins.n].last; }
 
-/* The product with factor `pair` for a and b, at the place of the later. */
+/* Replaces factors a and b by `pair`, at the position of the later one. */
 static void take_out(Product *p, Factor a, Factor b, Factor pair) {
   uint32_t i = 0, j = p->n;
   while (i < p->n && p->at[i] != a) i++;
@@ -97,7 +99,7 @@ static void take_out_everywhere(Share *s, const Tally *t) {
   for (uint32_t w = 0; w < s->products.n; w++) take_out(&s->products.at[w].of, t->a, t->b, pair);
 }
 
-/* --- the program with them --- */
+/* --- the program with pairs --- */
 
 static Slot slot_of(const Share *s, Factor f) { return f < s->from->ins.n ? s->map[f] : s->made[f - s->from->ins.n]; }
 
@@ -107,7 +109,7 @@ static Slot multiply(Share *s, const Product *p) {
   return r;
 }
 
-/* Pairs by the slot after which they come: lists, in the order in which they were found. */
+/* By slot: list of the pairs that are computed after it, in the order in which they were found. */
 static uint32_t *lists_of_pairs(const Share *s, uint32_t *next) {
   uint32_t *first = ARENA_ARRAY(s->from->arena, uint32_t, s->from->ins.n);
   for (uint32_t k = s->pairs.n; k-- > 0;) {

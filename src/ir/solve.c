@@ -1,8 +1,8 @@
-/* M q'' = f as a program.
+/* M q'' = f, and its solution, as instructions.
  *
- * A mass matrix that is proved positive definite is eliminated by eliminate.c, in straight-line code.
- * Otherwise blocks of coupled coordinates: pairs by Cramer's rule, other blocks, and large dense
- * ones, by a loop: with partial pivoting where M may be indefinite, in an order of a narrow band. Coordinates that a constraint couples are one block, solved with their multipliers. */
+ * A positive definite mass matrix is eliminated in straight-line code (eliminate.c, gram.c) unless that would be long. Otherwise M falls into
+ * blocks of coupled coordinates: one by division, two by Cramer's rule, more by a loop, in an order of narrow band, with partial
+ * pivoting where M may be indefinite. Coordinates that a constraint couples are one block, solved with their multipliers. */
 #include "ir/band.h"
 #include "ir/lower_impl.h"
 
@@ -12,12 +12,12 @@ enum { STRAIGHT_OPS_A_VARIABLE = 100 };
 
 typedef struct {
   uint32_t n;
-  uint32_t *at; /* the coordinates of the block */
+  uint32_t *at; /* [n] its coordinates */
   Slot *M;      /* [n*n], lower triangle filled */
   Slot *f;
-  Slot divisor; /* of two: the determinant */
-  uint32_t m;   /* constraints on them, */
-  uint32_t *rows;
+  Slot divisor; /* n == 2: the determinant */
+  uint32_t m;   /* constraints on these coordinates, */
+  uint32_t *rows; /* [m] their numbers */
   Slot *A, *g;  /* [m*n], [m] */
 } Block;
 
@@ -43,7 +43,7 @@ static void join(uint32_t *parent, uint32_t i, uint32_t j) {
   else parent[a] = b;
 }
 
-/* label[i]: the first coordinate of the block that i belongs to. */
+/* label[i]: the first coordinate of the block of coordinate i. */
 static uint32_t *label_blocks(const Eqns *e, uint32_t nrows) {
   uint32_t *parent = ARENA_ARRAY(e->m->arena, uint32_t, e->n + 1);
   const Entries *H = &e->system.H, *A = &e->constraints.A;
@@ -62,7 +62,7 @@ Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j) {
   return arena_printf(a, l->e->n > 9 ? "%s%u_%u" : "%s%u%u", stem, j + 1, i + 1);
 }
 
-/* Coordinate i, or constraint k, has place[] in block[] of blocks. */
+/* Coordinate i is number place[i] of blocks[block[i]]; constraint k number row_place[k] of blocks[row_block[k]]. */
 typedef struct {
   Block *blocks;
   uint32_t n, *block, *place, *row_block, *row_place;
@@ -82,7 +82,7 @@ static void place_rows(Lower *l, const Sides *s, Layout *y) {
   }
 }
 
-/* The blocks in the order of their first coordinates, sized in one pass over coordinates and constraints. */
+/* Empty blocks in the order of their first coordinates. */
 static Layout make_layout(Lower *l, const Sides *s) {
   const Eqns *e = l->e;
   Arena *a = l->p->arena;
@@ -138,7 +138,7 @@ static uint32_t make_blocks(Lower *l, const Sides *s, Block **blocks) {
   return y.n;
 }
 
-/* The same block with its coordinates in an order of a narrower band, where there is one. */
+/* Reorders the coordinates of the block for a narrower band, where there is one. */
 static void narrow(Lower *l, Block *b) {
   Arena *a = l->p->arena;
   uint32_t n = b->n;
@@ -165,9 +165,9 @@ static void solve_one(Lower *l, const Block *b, Slot *x) {
   x[0] = op(l, IR_DIV, b->f[0], b->M[0]);
 }
 
-/* Two coordinates whose mass matrix may be indefinite (L = x'*y'): Cramer's rule. It needs no pivoting,
- * and for 2 x 2 its error is that of the matrix's condition (Higham, Accuracy and Stability of Numerical
- * Algorithms, 2nd ed., section 1.10.1). */
+/* Cramer's rule for two coordinates whose mass matrix may be indefinite (L = x'*y'). It needs no pivoting,
+ * and for 2 x 2 is forward stable (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed.,
+ * section 1.10.1). */
 static void solve_two(Lower *l, Block *b, Slot *x) {
   Slot m11 = b->M[0], m12 = b->M[2], m22 = b->M[3];
   Slot square = op(l, IR_MUL, m11, m22);
@@ -181,7 +181,7 @@ static void solve_two(Lower *l, Block *b, Slot *x) {
   x[1] = op(l, IR_DIV, n2, det);
 }
 
-/* The places of elements that are not zero. */
+/* Lists the nonzero elements of the matrix. */
 static void list_filled(Arena *a, Solve *k) {
   uint32_t *filled = ARENA_ARRAY(a, uint32_t, solve_elements(k) + 1);
   for (uint32_t j = 0; j < solve_elements(k); j++)
@@ -189,7 +189,7 @@ static void list_filled(Arena *a, Solve *k) {
   k->filled = filled;
 }
 
-/* x[n], and behind it the multipliers of the constraints. */
+/* Solves the block by a loop of the runtime: x[n], then the m multipliers. */
 static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   Arena *a = l->p->arena;
   size_t n = b->n, m = b->m;
@@ -200,7 +200,7 @@ static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   for (size_t i = 0; i < n + m; i++) rhs[i] = i < n ? b->f[i] : b->g[i - n];
   int definite = !m && !l->factored && (l->e->definite_mass || l->e->definite_by_values);
   for (size_t i = 0; definite && i < n; i++)
-    for (size_t j = 0; j < i; j++) full[i * n + j] = 0; /* is not read */
+    for (size_t j = 0; j < i; j++) full[i * n + j] = 0; /* the loop reads the upper triangle only */
   Solve k = {.n = b->n, .m = b->m, .band = band_width(b->n, b->M), .coarse = coarse, .definite = definite, .matrix = full, .rhs = rhs};
   if (m) list_filled(a, &k);
   vec_push(a, &l->p->solves, k);
@@ -208,7 +208,7 @@ static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   for (uint32_t i = 0; i < n + m; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
 
-/* Whether more than two coordinates are coupled. */
+/* Whether M has a block of more than two coordinates. */
 static int has_large_block(const Eqns *e) {
   const uint32_t *label = label_blocks(e, 0);
   uint32_t *size = ARENA_ARRAY(e->m->arena, uint32_t, e->n + 1);
@@ -217,30 +217,30 @@ static int has_large_block(const Eqns *e) {
   return 0;
 }
 
-/* Without pivoting, where M is definite. Where that hangs on values of parameters, small blocks are as cheap by the rules below, which
- * work with any. */
+/* Whether to eliminate in straight-line code without pivoting. Where M is definite only for the values of parameters, small blocks go by
+ * the rules below instead: they cost the same, and work for any M. */
 static int goes_straight(const Eqns *e) {
   const LinearSystem *s = &e->system;
-  if (e->squares.n) return 1; /* definite by its values at least */
+  if (e->squares.n) return 1; /* squares_of needs M definite, by values of parameters at least */
   int definite = e->definite_mass || (e->definite_by_values && (s->ndefs || has_large_block(e)));
   return definite && !e->constraints.n && (s->ndefs || s->ops <= STRAIGHT_OPS_A_VARIABLE * (uint64_t)e->n);
 }
 
-/* Whether nothing accelerates it. */
+/* Whether all forces of the block are structural zeros. */
 static int is_empty(const Block *b) {
   for (uint32_t i = 0; i < b->n; i++)
     if (b->f[i]) return 0;
   return 1;
 }
 
-/* Each block that is factored by a loop gets a place of its own. */
+/* Records blocks for factored_solve; those factored by a loop get a place each, so that their factors survive. */
 static void keep_factors(Lower *l, const Block *blocks, uint32_t n, Slot *x) {
   Factored *f = l->factored;
   uint32_t place = 0, loop = 0;
   *f = (Factored){.n = l->e->n};
   for (uint32_t k = 0; k < n; k++) {
     const Block *b = &blocks[k];
-    if (is_empty(b)) continue; /* its solution is 0 to all orders */
+    if (is_empty(b)) continue; /* the solution of an empty block is 0 to all orders */
     FactoredBlock kept = {.n = b->n, .at = b->at, .M = b->M, .divisor = b->n == 2 ? b->divisor : b->M[0], .place = place};
     vec_push(l->p->arena, &f->blocks, kept);
     if (b->n < 3) continue;
@@ -250,7 +250,7 @@ static void keep_factors(Lower *l, const Block *blocks, uint32_t n, Slot *x) {
   l->x = x;
 }
 
-/* acc[n], and the multipliers of the first nrows constraints. */
+/* Solves all blocks: acc[n], and the multipliers of the first nrows constraints. */
 static void solve_blocks(Lower *l, const Sides *s, Slot *acc, Slot *multipliers) {
   Block *blocks;
   uint32_t n = make_blocks(l, s, &blocks), nrows = s->nrows;
@@ -292,7 +292,7 @@ void lower_solution(Lower *l, Slot *acc) {
   if (!e->n) return;
   ExprVec roots = {0};
   push_forms(l, &roots);
-  if (!e->squares.n || l->factored) push_entries(l, &roots, &s->H); /* series go on with M */
+  if (!e->squares.n || l->factored) push_entries(l, &roots, &s->H); /* series need the entries of M */
   push_entries(l, &roots, &s->C);
   push_entries(l, &roots, &k->A);
   for (uint32_t i = 0; i < e->n; i++) vec_push(l->p->arena, &roots, s->f[i]);

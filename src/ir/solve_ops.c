@@ -1,10 +1,10 @@
-/* Operations of the systems that are solved by loops of the runtime: those with constraints follow envelopes (lag_kkt.h), so what
- * they do hangs on which entries there are. */
+/* Operation counts of the linear systems that loops of the runtime solve. With constraints the loops follow envelopes (lag_kkt.h), so
+ * the count depends on the pattern of M and A. */
 #include "ir/prog.h"
 
-/* Lower triangles: row i begins at from[i]. */
+/* Operations on lower triangles, whose row i begins at column from[i]. */
 typedef struct {
-  uint64_t pairs, divisions, roots; /* pairs: a product and the addition that takes it in; a root comes after one product more */
+  uint64_t pairs, divisions, roots; /* pairs: multiply-adds; with each root goes one product more */
 } Ops;
 
 static uint32_t later(uint32_t a, uint32_t b) { return a > b ? a : b; }
@@ -18,7 +18,7 @@ static void cholesky(uint32_t n, const uint32_t *from, Ops *c) {
     }
 }
 
-/* L^-1 x, x being zero before `begin`; L^-T x takes as many from 0 on. */
+/* L^-1 x, where x is zero before `begin`; with begin 0 also L^-T x. */
 static void substitution(uint32_t n, const uint32_t *from, uint32_t begin, Ops *c) {
   for (uint32_t i = begin; i < n; i++) {
     c->pairs += span(later(from[i], begin), i);
@@ -32,7 +32,7 @@ static uint32_t first_entry(const Slot *x, uint32_t n) {
   return i;
 }
 
-/* One more than the last element of L^-1 x that is not zero. */
+/* One past the last nonzero element of L^-1 x. */
 static uint32_t end_of_solution(uint32_t n, const uint32_t *from, const Slot *x) {
   uint32_t end = 0;
   for (uint32_t i = 0; i < n; i++)
@@ -40,8 +40,8 @@ static uint32_t end_of_solution(uint32_t n, const uint32_t *from, const Slot *x)
   return end;
 }
 
-/* lag_schur, line by line. A large system that has a band is solved within it instead (lag_banded), in about as many operations where M is diagonal,
- * and fewer where it is not: what is counted is what Schur's complement would take. */
+/* Schur's complement, as in lag_schur, line by line. Large banded systems go by lag_banded instead; they are counted here too, though it
+ * takes about as many operations where M is diagonal, and fewer where it is not. */
 static Ops by_complement(Arena *a, const Solve *k) {
   uint32_t n = k->n, m = k->m;
   const Slot *M = k->matrix, *A = k->matrix + (size_t)n*n;
@@ -69,11 +69,11 @@ static Ops by_complement(Arena *a, const Solve *k) {
     for (uint32_t j = 0; j < m; j++) c.pairs += span(begin[j], end[j]);
     substitution(n, from, 0, &c);
   }
-  c.pairs += (uint64_t)m*n; /* what is left of the constraints */
+  c.pairs += (uint64_t)m*n; /* residuals of the constraints */
   return c;
 }
 
-/* Elimination and two substitutions in a band that exchanges of rows do not widen, which is what they do at best. */
+/* Elimination and two substitutions within the band, a lower bound: exchanges of rows may widen it. */
 static OpCount of_pivoting(const Solve *k) {
   OpCount c = {.div = k->n};
   for (uint64_t left = k->n; left-- > 0;) {
@@ -85,7 +85,7 @@ static OpCount of_pivoting(const Solve *k) {
   return c;
 }
 
-/* The same from the upper triangle, by reciprocals of pivots. */
+/* Elimination and two substitutions from the upper triangle, by reciprocals of pivots. */
 static OpCount of_definite(const Solve *k) {
   OpCount c = {.div = k->n, .mul = k->n};
   for (uint64_t left = k->n; left-- > 0;) {
@@ -102,7 +102,7 @@ OpCount solve_count(Arena *a, const Solve *k) {
     Ops c = by_complement(a, k);
     return (OpCount){.add = c.pairs + 2*m, .mul = c.pairs + c.roots, .div = c.divisions, .sqrt = c.roots};
   }
-  if (m) { /* about what the orthogonal factorization of A^T takes */
+  if (m) { /* dominated by the orthogonal factorization of A^T */
     uint64_t both = 2*n*n*n + 2*m*n*n + (n > m ? n - m : 0)*n*n/3;
     return (OpCount){.add = both, .mul = both, .div = n*n/2 + m*n + 2*(n + m), .sqrt = m};
   }
@@ -111,6 +111,6 @@ OpCount solve_count(Arena *a, const Solve *k) {
 }
 
 OpCount invert_count(const Solve *k) {
-  uint64_t n = k->n, both = n*n*n/3 + n*n*n; /* a factorization, 2 n substitutions */
+  uint64_t n = k->n, both = n*n*n/3 + n*n*n; /* a factorization and 2 n substitutions */
   return (OpCount){.add = both, .mul = both, .div = n*n};
 }

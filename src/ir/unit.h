@@ -1,4 +1,4 @@
-/* IrUnit: what is emitted together: the programs of one set of effects, and the scenes that share
+/* IrUnit: a unit of emission: the programs of one set of effects, and the scenes that share
  * them. It carries its own names and units: emit never meets a Model. */
 #ifndef LAGC_IR_UNIT_H
 #define LAGC_IR_UNIT_H
@@ -10,7 +10,7 @@ typedef struct {
   double factor;
   int periodic, sign;
   double offset;
-  Num ratio;    /* the factor exactly, where ratio is: ratio*pi^pi_power */
+  Num ratio;    /* the factor is ratio*pi^pi_power, exact where ratio is exact */
   int pi_power;
 } IrVar;
 
@@ -33,7 +33,7 @@ typedef struct {
   int absolute;
 } IrMonitor;
 
-/* A component of [q|v] that constraints move at the start, and where to. */
+/* A component of [q|v] that constraints move at the start, and its new value. */
 typedef struct {
   uint32_t component;
   double value;
@@ -43,40 +43,40 @@ typedef struct {
   const char *name, *doc;
   const Prog *const *params; /* [np] */
   const Prog *start, *observe;
-  VEC(IrMove) moves;  /* found with the scene's parameters; for programs that do not look for themselves */
+  VEC(IrMove) moves;  /* found with the scene's parameters; for emitted programs that do no such search */
   double t0, t1;
-  const char *t1_digits; /* more than a double has, or NULL */
+  const char *t1_digits; /* decimal text where a double has too few digits, or NULL */
   int has_span;
-  int exactly;        /* constraints may not move what the start gives */
-  VEC(uint32_t) implied; /* coordinates of rotations of which the start says nothing */
+  int exactly;        /* constraints may not move the given start values */
+  VEC(uint32_t) implied; /* quaternion coordinates without a given start value */
   const char *method; /* or NULL */
   VEC(IrOption) options;
   double tolerance, every;
   VEC(IrVar) outputs;
-  VEC(unsigned char) forces;    /* by output, of models with constraints: whether it contains multipliers or accelerations */
-  const Prog *observe_plain; /* the same without closed forms, for programs that know of no start; */
-  VEC(IrVar) plain;          /* and what that leaves */
+  VEC(unsigned char) forces;    /* by output, in models with constraints: whether it contains multipliers or accelerations */
+  const Prog *observe_plain; /* outputs without closed forms, for programs that know no start, */
+  VEC(IrVar) plain;          /* and their descriptions */
   const Prog *exact;
-  VEC(uint32_t) exact_of;    /* component of [q|v|z] */
+  VEC(uint32_t) exact_of;    /* component of [q|v|z] that each closed form describes */
   VEC(IrMonitor) monitors;
 } IrScene;
 
-/* Place of an entry of a sparse matrix. */
+/* Position of an entry of a sparse matrix. */
 typedef struct {
   uint32_t row, col;
 } IrEntry;
 
-/* An entry of the derivatives of events: as in mech/eqns.h. */
+/* Position of an entry of the derivatives of events: see Jump in mech/eqns.h. */
 typedef struct {
   uint32_t event;
   int row;
   uint32_t col;
 } IrJump;
 
-/* What only some methods of integration need, and is not made for the others. */
+/* Programs that only some methods of integration need; made on request. */
 enum { WANT_VARIATION = 1, WANT_TAYLOR = 2, WANT_LINEAR = 4 };
 
-/* An entry of the second derivatives: part as in mech/variation.h. */
+/* Position of a second derivative of L or of a force; part: SECOND_... of mech/variation.h. */
 typedef struct {
   int part;
   uint32_t row, col;
@@ -87,7 +87,7 @@ typedef struct {
   uint32_t line;
 } IrConstraint;
 
-/* The holonomic ones first, then those that keep a function of positions; the programs are those of lower.h. */
+/* Holonomic constraints first; the first nkept keep a function of positions (residuals c and r, see lower.h). */
 typedef struct {
   VEC(IrConstraint) of;
   uint32_t nholonomic, nkept;
@@ -95,7 +95,7 @@ typedef struct {
   const Prog *residuals, *matrices, *position, *velocity;
 } IrConstraints;
 
-/* Places: of the input that says whether it is closed, in the constraints, of its events. */
+/* Indices: of the input that says whether the contact is closed, of its constraint, of its two events. */
 typedef struct {
   uint32_t input, constraint, impact, release;
 } IrContact;
@@ -107,7 +107,7 @@ typedef struct {
   int nonnegative;
 } IrSwitch;
 
-/* flags: 1 it is conserved, 2 its balance is known, 4 while inputs follow their formulas. */
+/* flags: 1 conserved, 2 its balance is known, 4 only while inputs follow their formulas; or 8 it jumps where L does. */
 typedef struct {
   const char *name, *unit;
   unsigned flags;
@@ -116,31 +116,31 @@ typedef struct {
 typedef struct {
   Arena *arena;
   const char *name, *doc, *source, *effects, *all_effects;
-  const char *fixed;        /* names of parameters that are numbers here, with spaces between them; "": none */
+  const char *fixed;        /* names of parameters that are numbers here, separated by spaces; "": none */
   const char *fixed_values; /* "g = 9.81, drag.c = 0.2", in SI */
   unsigned flags;
   VEC(IrVar) q, z, p, u;
   VEC(IrEvent) events;
   const Prog *accel, *energy, *event_values, *inputs;
-  const Prog *derived;          /* parameters p.n ... p.n + nderived - 1 of the programs, from the others; NULL and 0 before unit_hoist, and where there are none */
+  const Prog *derived;          /* computes parameters p.n ... p.n + nderived - 1 from the others; NULL, 0: none, or before unit_hoist */
   uint32_t nderived;
-  VEC(IrCharge) charges;        /* the energy first; none where there is nothing to say of them but that it is conserved */
-  const Prog *charge_values, *charge_powers; /* NULL: there is only the energy; all are conserved */
+  VEC(IrCharge) charges;        /* the energy first; empty where the energy is the only one, conserved, without unit */
+  const Prog *charge_values, *charge_powers; /* NULL: the energy is the only charge; all charges are conserved */
   VEC(IrSwitch) switches;
-  const Prog *switch_values;    /* NULL: there are none */
+  const Prog *switch_values;    /* NULL: no switches */
   IrConstraints constraints;
   VEC(IrContact) contacts;
   unsigned wants;
   const Prog *variation, *second; /* NULL unless WANT_VARIATION */
-  VEC(IrSecond) second_at;        /* what the values of `second` are */
-  const Series *taylor;         /* NULL unless WANT_TAYLOR, and where a value is not analytic */
-  const Prog *linear;           /* NULL: not asked for */
-  VEC(IrEntry) linear_dr, linear_mass; /* what its outputs 0 and 1 are */
-  const Prog *jumps;            /* NULL: not asked for, or no event changes the state */
-  VEC(IrJump) jump_at;          /* what its outputs are */
+  VEC(IrSecond) second_at;        /* positions of the outputs of `second` */
+  const Series *taylor;         /* NULL unless WANT_TAYLOR, and where the model has no series: not analytic, constraints, tables */
+  const Prog *linear;           /* NULL: not requested */
+  VEC(IrEntry) linear_dr, linear_mass; /* positions of its outputs 0 and 1 */
+  const Prog *jumps;            /* NULL: not requested, or no event changes the state */
+  VEC(IrJump) jump_at;          /* positions of its outputs */
   VEC(IrScene) scenes;
   int libm;                     /* emitted code calls the C library's sin and cos */
-  int lines;                    /* constraints and switches say in what line they stand: of simulators, which name their file */
+  int lines;                    /* messages on constraints and switches give their source lines: simulators name their file */
 } IrUnit;
 
 #endif

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Completion: what `lagc complete` offers for the last word of a command line, and what the scripts for bash, zsh and fish
-# make of it, each run by its shell without a terminal (where there is this shell). Every command and every option that
+# Completion: candidates of `lagc complete` for the last word of a command line, and of the scripts for bash, zsh and fish,
+# each run by its shell, if installed, without a terminal. Every command and every option that
 # the parser knows (dump_words) is offered.
 . tests/tap.sh
 case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
@@ -19,13 +19,13 @@ cd "$TMP/here" || exit 1
 
 # offers WORD...: the candidates for the last word, on one line
 offers() { "$LAGC" complete "$@" | cut -f 1 | tr '\n' ' ' | sed 's/ $//'; }
-offered() { # offered CANDIDATE WORD...: it is among them
+offered() { # offered CANDIDATE WORD...: the candidate is offered
   want=$1
   shift
   "$LAGC" complete "$@" | cut -f 1 | grep -q -x -F -e "$want"
 }
 
-# ---- what is offered ----
+# ---- candidates ----
 is "commands" "$(sed -n 's/^command //p' "$TMP/words")" "$("$LAGC" complete '' | cut -f 1)"
 is "a command" 'run' "$(offers ru)"
 is "with what it does" "run	simulate" "$("$LAGC" complete ru)"
@@ -117,7 +117,7 @@ fi
 if command -v zsh >/dev/null; then
   "$LAGC" completion zsh >"$TMP/lagc.zsh"
   cat >"$TMP/call.zsh" <<'END'
-# call.zsh SCRIPT WORD...: what is handed to the shell
+# call.zsh SCRIPT WORD...: candidates handed to the shell
 script=$1
 shift
 compdef() { :; }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# grammar/lag.tmLanguage.json, which colours .lag files in editors: it is whole (JSON, its regular expressions compile), and
+# grammar/lag.tmLanguage.json, which colours .lag files in editors: valid JSON whose regular expressions compile, and
 # knows every statement, word, function and unit of the compiler's own tables (dump_words). textmate.js reads it as
 # editors do.
 . tests/tap.sh

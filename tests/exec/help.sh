@@ -1,6 +1,6 @@
 #!/bin/sh
 # lagc help: each command, statement, function, unit and option that the compiler knows (its tables, by dump_words) has
-# help; the overview leads to help; a slip is answered with the nearest topic; what help shows works.
+# help; the overview leads to help; a slip is answered with the nearest topic; commands that help shows work.
 . tests/tap.sh
 case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
 "$BIN/dump_words" >"$TMP/words"
@@ -15,7 +15,7 @@ without_help() {
 }
 empty "every word of the language, function, unit, command and option" "$(without_help)"
 
-# Each says so in its own place: a statement by a row or a chapter, a function in its table, a unit in its list.
+# Places of help: a statement has a row or a chapter, a function a row of its table, a unit a place in its list.
 chapter() { "$LAGC" help "$1"; }
 is "a statement" "  \`span 20 [s]\`
       from 0 to 20 s; negative runs backwards; without it 10 s
@@ -41,7 +41,7 @@ check "embedding is what header does" sh -c '"$0" help embedding | cmp - "$1"' "
 $(chapter header)
 END
 
-# The reference is written by hand: its lists are whole.
+# Lists of the reference, which is written by hand, are complete.
 not_listed() {
   chapter functions >"$TMP/functions"
   chapter sum >>"$TMP/functions"
@@ -54,13 +54,13 @@ not_listed() {
 }
 empty "functions and units of the reference" "$(not_listed)"
 
-# What lagc hands to a simulator is what a simulator takes: two tables in two programs that share no header.
+# Options that lagc passes on are options of simulators: two tables in two programs that share no header.
 taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/".*//' | grep -v -x -e --help -e --effects -e --modes -e --lyapunov -e --cost -e --reference -e --against -e --section | sort; } # --modes, --cost, --lyapunov: what lagc modes, lagc cost, lagc effects say, --section an event that lagc makes
 handed() { { words 'passed run'; words 'passed animate'; words 'passed cost'; words 'passed lyapunov'; } | grep -e -- | sort -u; }
 check "a simulator has options" [ "$(taken | wc -l)" -gt 10 ]
 is "options of a simulator" "$(taken)" "$(handed)"
 
-# Under sanitizers it says the same.
+# The compiler under sanitizers prints the same.
 differs() {
   { words statement; words function; words command | grep -v methods; echo; echo units; } | while read -r t; do
     "$LAGC_SAN" help ${t:+"$t"} >"$TMP/san" 2>&1 && "$LAGC" help ${t:+"$t"} | cmp -s - "$TMP/san" || echo "$t: $(head -n 3 "$TMP/san")"
@@ -124,7 +124,7 @@ check "completion for no shell" says 'completion for which shell? `lagc completi
 check "-DN=3, -D N=3, --define N=3" sh -c '
   for d in "-DN=3" "-D N=3" "--define=N=3" "--define N=3"; do "$0" derive models/string.lag $d --ops; done | sort -u | awk "END { exit NR != 1 }"' "$LAGC"
 
-# ---- what help shows works ----
+# ---- commands that help shows ----
 embeds() {
   mkdir -p "$TMP/embed" && chapter header | sed -n 's/^  \(lagc header .*\)/\1/p' | sed "s|^lagc|$LAGC|; s|-o |-o $TMP/embed/|" | sh -e &&
     { chapter header | sed -n 's/^  #/#/p'; echo 'int main(void) { return !PEND_IMPLEMENTATION_IS_THERE; }'; } |

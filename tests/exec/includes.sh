@@ -24,7 +24,7 @@ runtime/io        io/ lag.h lag_model.h
 runtime/app       app/ core/ io/ analysis/ lag.h lag_model.h
 runtime/gsl       gsl/ lag.h lag_model.h
 '
-# FILE: what it may include besides. The equations enter the IR at one place.
+# FILE: further headers that it may include. The equations enter the IR at one place.
 besides='
 src/ir/lower.c    mech/eqns.h
 src/ir/lower.h    mech/eqns.h mech/switching_surfaces.h mech/variation.h
@@ -47,7 +47,7 @@ src/help.c        help.h
 src/complete.c    complete.h help.h settings.h
 src/settings.c    settings.h
 '
-# The inside of a folder, shared by its own files only.
+# Private headers of a folder, shared by its own files only.
 private='syntax/ast_build.h syntax/parse_state.h syntax/filter.h syntax/scan.h syntax/token.h syntax/slips.h model/builder.h
   model/scope.h sym/expr_impl.h sym/ops.def ir/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h methods/tableau.h methods/embedded.h methods/embedded_trial.h
   methods/steps.h methods/composition.h methods/path.h methods/rule.h methods/discrete.h methods/implicit.h
@@ -60,7 +60,7 @@ find src grammar runtime -name '*.[chly]' | LC_ALL=C sort | while read -r f; do
     sed "s|^|$f |"
 done >"$list"
 
-# What lag.y and lag.l turn into is included by src/syntax, and by nobody else.
+# The parser and scanner generated from lag.y and lag.l are included by src/syntax only.
 empty "generated parser headers: src/syntax only" \
   "$(awk '$2 ~ /lag\.(tab|lex)\.[ch]>?$/ && $1 !~ /^src\/syntax\// { print $1 " includes " $2 }' "$list")"
 
@@ -86,7 +86,7 @@ empty "folders include only what lies before them" "$(awk -v allowed="$allowed" 
     print $1 " includes " $2 (known[folder] || folder ~ /include$/ ? "" : " (a folder without a rule)")
   }' "$list")"
 
-# jets/ reads what a name means from the scopes of the model that it compares.
+# jets/ reads meanings of names from the scopes of the model that it compares.
 empty "the inside of a folder stays inside" "$(awk -v private="$private" '
   BEGIN { n = split(private, w); for (i = 1; i <= n; i++) inside[w[i]] = 1 }
   inside[$2] && $1 !~ /^grammar\// {
@@ -95,7 +95,7 @@ empty "the inside of a folder stays inside" "$(awk -v private="$private" '
     if (folder != home && !(folder == "jets" && home == "model")) print $1 " includes " $2
   }' "$list")"
 
-# The equations enter the IR by ir/lower.h: who includes that sees mech, and only lowering, main and the self-check may.
+# ir/lower.h includes mech: only lowering, main and the self-check may include it.
 empty "equations: ir/lower, jets and main only" "$(awk '
   $2 == "ir/lower.h" && $1 !~ /^src\/(main\.c|jets\/check_state\.c|ir\/lower[^\/]*\.[ch])$/ { print $1 " includes " $2 ", and so mech/eqns.h" }' "$list")"
 
@@ -104,7 +104,7 @@ empty "GSL: runtime/gsl only" "$(awk '$2 ~ /gsl/ && $1 !~ /^runtime\/gsl\// { pr
 empty "lag_model.h includes only <stddef.h>" \
   "$(awk '$1 == "runtime/include/lag_model.h" && $2 != "<stddef.h>" { print $1 " includes " $2 }' "$list")"
 
-# ISO C11 everywhere; POSIX where a program meets its system.
+# ISO C11 everywhere; POSIX only where a program meets its system.
 c11='assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic
   stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype'
 posix='src/main\.c src/base/source\.c src/cli/.*\.c runtime/app/.*\.c runtime/io/.*\.c'

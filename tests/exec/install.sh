@@ -1,6 +1,6 @@
 #!/bin/sh
-# make install: what is put where, a program of a user's own through pkg-config, and lagc at work outside the source
-# tree. make uninstall: nothing is left.
+# make install: installed files, a user's program through pkg-config, and lagc outside the source tree.
+# make uninstall: nothing is left.
 . tests/tap.sh
 
 prefix=$TMP/usr
@@ -82,7 +82,7 @@ precise() { lagc_away run "$prefix/share/lagc/models/kepler.lag" --until 0.1 --p
 check "long doubles" precise long
 if [ -f "$BUILD/liblag_quad.a" ]; then check "quadruple precision" precise quad; else skip "quadruple precision" "no libquadmath"; fi
 
-# The same from a tree that was moved, and by LAG_HOME from another.
+# lagc from a tree that was moved, and with LAG_HOME of another tree.
 moved() { mv "$prefix" "$TMP/moved" && (cd "$away" && "$TMP/moved/bin/lagc" run "$TMP/moved/share/lagc/models/double_pendulum.lag" --until 0.1); }
 check "a tree that was moved works where it is" moved
 by_home() { (cd "$away" && cp "$TMP/moved/bin/lagc" . && LAG_HOME=$TMP/moved ./lagc run "$TMP/moved/share/lagc/models/double_pendulum.lag" --until 0.2); }

@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# What the JSON report, in $TMP/out, says of charges.
+# Fields of charges in the JSON report $TMP/out.
 
 # of CHARGE FIELD
 of() { sed -n "s/.*\"$1\": {\([^}]*\)}.*/\1, /p" "$TMP/out" | sed -n "s/.*\"$2\": \"\{0,1\}\([^,\"]*\)\"\{0,1\}, .*/\1/p"; }

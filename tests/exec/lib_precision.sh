@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# For tests of --precision: what models and C of tests are compiled with. Tests that need it skip where it is not there.
+# For tests of --precision: compilers and options for models and tests. Tests skip where a precision is not available.
 has_precision() { [ -f "$BUILD/liblag_$1.a" ]; }
 
 # compile_precise long|quad PROGRAM FILE.c... : C as lagc emits it, and C of tests that was through `precise`.
@@ -15,5 +15,5 @@ compile_precise() {
   "$CC" -w -O1 -ffp-contract=off -DLAG_TAYLOR_ORDER=64 "$@" -I"$BUILD/lag-$precise_kind" "$BUILD/liblag_$precise_kind.a" $precise_lib -lm -o "$precise_out"
 }
 
-# precise long|quad FILE.c: the same test with other numbers.
+# precise long|quad FILE.c: the test with its doubles replaced by long doubles or __float128.
 precise() { awk -v kind="$1" -v digits=36 -f runtime/precision.awk "$2"; }

@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# A compiler built with -O0 under sanitizers, and simulators under sanitizers: whatever it is asked, no report.
+# A compiler built with -O0 under sanitizers, and simulators under sanitizers: no command draws a report.
 . tests/tap.sh
 [ -n "$LAGC_SAN" ] || skip_all "no compiler under sanitizers"
 case $LAGC_SAN in /*) san=$LAGC_SAN ;; *) san=$(pwd)/$LAGC_SAN ;; esac
@@ -12,7 +12,7 @@ if [ ! -d "$TMP/tree" ]; then
   chmod +x "$TMP/cc"
 fi
 
-# clean WORD...: what the compiler says of these words: no report of a sanitizer, no crash, no leak. A refusal is an answer.
+# clean WORD...: lagc with these arguments draws no report of a sanitizer, no crash, no leak. A refusal is allowed.
 clean() {
   LAG_HOME=$TMP/tree CC=$TMP/cc ASAN_OPTIONS=exitcode=99 UBSAN_OPTIONS=exitcode=99 timeout 300 "$san" "$@" >"$said.out" 2>"$said.err" </dev/null
   code=$?
@@ -21,7 +21,7 @@ clean() {
   head -n 20 "$said.err"
 }
 
-# The end of a run of the first scene of emitted C: a part of its span.
+# End of a short run of the first scene of emitted C: a part of its span.
 a_part_of_the_span() {
   awk -v part="$2" '
     function number(s) { gsub(/LAG_NUMBER\(|\)|,/, "", s); return s + 0 }
@@ -29,7 +29,7 @@ a_part_of_the_span() {
     END { printf "%.6g", t0 + (t1 > t0 ? (t1 - t0)/part : 1) }' "$1"
 }
 
-# every_command MODEL: prints what is wrong
+# every_command MODEL: prints faults
 every_command() {
   m=$1
   said=$TMP/$(basename "$m" .lag)

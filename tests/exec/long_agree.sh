@@ -5,7 +5,7 @@
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 
-models=$(ls models/*.lag tests/exec/models/*.lag | grep -v /mutants_) # those have the names of others
+models=$(ls models/*.lag tests/exec/models/*.lag | grep -v /mutants_) # mutants share names with other models
 mkdir -p "$TMP/c"
 name_of() { sed -n 's/^model \([^ ]*\).*/\1/p' "$1" | tr '[:upper:]' '[:lower:]'; }
 emit_all() {
@@ -36,8 +36,8 @@ sanitized() {
 }
 check "emitted C computes what its program says, under both sanitizers" sanitized
 if command -v valgrind >/dev/null; then
-  # Valgrind computes long doubles with 53 bits, on both sides, but constants are read in full by the compiler: inputs that differ in
-  # the last bit. 1e-15 is 2e4 of the units that 64 bits have; as many of those that 53 bits have are 2e-12.
+  # Valgrind computes long doubles with 53 bits on both sides, but the compiler reads constants in full, so inputs differ in the last
+  # bit. The tolerance 1e-15 is 2e4 units of 64 bits; as many units of 53 bits are 2e-12.
   under_valgrind() { build "$TMP/plain" "$BUILD/liblagc.a" -O1 -g -DLOOSE=2e-12L && valgrind -q --error-exitcode=9 "$TMP/plain" $models; }
   check "the same under valgrind" under_valgrind
   check "programs against graphs under valgrind: no error of memory in the compiler" \

@@ -4,7 +4,7 @@
 . tests/tap.sh
 . tests/exec/lib_charges.sh
 
-# million NAME CHARGES ARGS...: a run whose charges are kept
+# million NAME CHARGES ARGS...: a run that keeps these charges
 million() {
   what=$1 charges=$2
   shift 2
@@ -15,7 +15,7 @@ million() {
     check "$what: $charge to 1e-12" below "$(of "$charge" drift)" 1e-12
   done
   is "$what: the energy oscillates" oscillates "$(of energy trend)"
-  # what the line gains in all that time is within the oscillation
+  # the trend over the whole run is within the oscillation
   check "and has no trend" below "$(awk -v s="$(of energy slope)" -v d="$(of energy drift)" 'BEGIN { x = s*10000/d; print x < 0 ? -x : x }')" 0.5
 }
 sed '/monitor/d' models/kepler.lag >"$TMP/kepler.lag"

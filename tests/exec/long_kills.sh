@@ -4,11 +4,11 @@
 . tests/tap.sh
 case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
 here=$(pwd)
-dir=$(mktemp -d /tmp/long_kills.XXXXXX) || exit 2 # where another user can go, too
+dir=$(mktemp -d /tmp/long_kills.XXXXXX) || exit 2 # a folder that another user can enter, too
 chmod 755 "$dir"
 mkdir "$dir/cache" "$dir/tmp"
 XDG_CACHE_HOME=$dir/cache TMPDIR=$dir/tmp
-CCACHE_DISABLE=1 # it would keep files of its own in that cache
+CCACHE_DISABLE=1 # ccache would keep files of its own in that cache
 export XDG_CACHE_HOME TMPDIR CCACHE_DISABLE
 mounted=
 trap '[ -z "$mounted" ] || umount "$mounted"; rm -rf "$dir"' EXIT
@@ -16,13 +16,13 @@ cp models/spring.lag models/kepler.lag "$dir"
 cd "$dir" || exit 2
 "$LAGC" build spring.lag -o sim || exit 2
 
-# ---- two users: neither runs, spoils or is stopped by what the other one has put where both can write
+# ---- two users: neither runs, spoils or is stopped by files of the other in shared folders
 shared=$dir/shared
 if [ "$(id -u)" = 0 ] && command -v setpriv >/dev/null && setpriv --reuid 65534 --regid 65534 --clear-groups test -x "$LAGC"; then
   mkdir "$shared"
   chmod 1777 "$shared"
   other() { setpriv --reuid 65534 --regid 65534 --clear-groups env HOME=/nonexistent "$@"; }
-  # The other user has been everywhere first: the folder that this one would take, with a simulator in it, and links at outputs' names.
+  # The other user was there first: with the cache folder that this user would take, a simulator in it, and links at names of outputs.
   other mkdir "$shared/lagc" "$shared/lagc-0"
   "$LAGC" run spring.lag --quiet
   for e in cache/lagc/*; do
@@ -68,7 +68,7 @@ never_mixed() {
 }
 check "two commands with one output do not mix" never_mixed
 
-# ---- a full disk: old files stay as they are, nothing new is left, and what is said is why
+# ---- a full disk: old files stay as they are, nothing new is left, and the message gives the reason
 if [ "$(id -u)" = 0 ] && mkdir full && mount -t tmpfs -o size=512k tmpfs full 2>/dev/null; then
   mounted=$dir/full
   echo old >full/out.csv
@@ -94,7 +94,7 @@ fi
 # ---- 50 kills at random moments of builds and runs, a third of them SIGKILL, SIGTERM and SIGINT each
 rm -rf cache/lagc tmp/*
 random() { awk -v seed="$1" 'BEGIN { srand(seed); printf "%.3f", 0.01 + rand() * rand() * 2 }'; }
-after_kill() { # SIGNAL: what must hold once the command is gone
+after_kill() { # SIGNAL: checks after the command has ended
   [ ! -e out.csv ] || tail -n 1 out.csv | grep -q '^[0-9.e+-]*,' || { echo 'rows in part'; return 1; }
   [ ! -e made ] || ./made --help >/dev/null || { echo 'a simulator in part'; return 1; }
   for f in cache/lagc/????????????????????????????????; do

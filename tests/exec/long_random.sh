@@ -18,7 +18,7 @@ while [ "$i" -lt 10 ]; do
   i=$((i + 1))
 done
 
-# As once: the angle was read back from its cosine, whose argument has the sign that a cosine does not see.
+# A former mistake: the angle was read back from its cosine, which loses the sign.
 sign_is_lost() {
   sed 's/, n->atoms\.at\[s->angles\.at\[i\]\]\.u)/, expr_arg(n->g, n->gens.at[n->atoms.at[s->angles.at[i]].cos].expr, 0))/' src/sym/trigform.c >"$TMP/trigform.c"
   if cmp -s src/sym/trigform.c "$TMP/trigform.c"; then

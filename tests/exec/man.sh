@@ -1,6 +1,6 @@
 #!/bin/sh
 # The man page src/lagc.1: every command and every option that the parser knows (dump_words), every variable of the
-# environment that is read, every exit status; and what groff and mandoc find fault with.
+# environment that is read, every exit status; and warnings of groff and mandoc.
 . tests/tap.sh
 page=src/lagc.1
 "$BIN/dump_words" >"$TMP/words"
@@ -17,7 +17,7 @@ undocumented() {
 }
 empty "every command and option" "$(undocumented)"
 
-# An option that a command has stands in what is said of the command, or in the lists for all.
+# Options of a command stand in its section, or in the lists for all commands.
 awk '/^\.It Cm / { item = $3 } /^\.Pp|^\.El/ { item = "" } /^\.Ss|^All commands/ { item = "all" } { print item, $0 }' "$page" >"$TMP/items"
 elsewhere() {
   sed -n 's/^option \([a-z]*\) -/\1 /p' "$TMP/words" | while read -r c o; do

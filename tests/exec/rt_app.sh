@@ -185,10 +185,10 @@ two_parts() { # two_parts CUT ARGS...
     ./sim "$@" --until "$cut" --every $every -o one.csv --quiet --save-state state &&
     ./sim --resume state --until 4 -o two.csv --json >two.json 2>/dev/null &&
     sed 1d two.csv | cat one.csv - >both.csv && cmp whole.csv both.csv &&
-    took='s/"wall_s": [^,]*,//; s/"chosen": [^"n]*\("[^"]*"\|null\), //' && # the second part had no choice
+    took='s/"wall_s": [^,]*,//; s/"chosen": [^"n]*\("[^"]*"\|null\), //' && # the second part chooses no method
     sed "$took" whole.json >w.json && sed "$took" two.json >t.json && cmp w.json t.json
 }
-every=1.1 # 3 times that is 3.3000000000000003: a row is there, and nowhere beside
+every=1.1 # 3 times 1.1 is 3.3000000000000003: one row there, and none beside it
 ok "cut where a row is but for rounding" two_parts 3.3 swing
 every=0.125
 for cut in 0.125 1.5 2 3.875; do

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Which method a run takes when nobody names one, and what it says of that.
+# The method of a run that names none, and its report of the choice.
 : "${LAGC:=build/lagc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 export TMP
@@ -20,7 +20,7 @@ lagrangian = x'^2/2 - if(x > 0, x^2, 3*x^2)
 scene run { start x = 1; span 2 [s] }
 EOF
 
-# takes METHOD MODEL ARGS...: it is chosen, and the report says so
+# takes METHOD MODEL ARGS...: the method is chosen, and the report says so
 takes() {
   method=$1
   shift
@@ -57,7 +57,7 @@ done
 few() { takes radau "$TMP/spring.lag" --tol 1e-11 && awk '$1 == "steps" && $2 + 0 < 1000 { fine = 1 } END { exit !fine }' "$TMP/out"; }
 check "in hundreds of steps, where stability alone would demand 650,000: 399499*10 s/6.1" few
 check "and says so, where the tolerance limits the first steps to less than stability does" grep -q 'stability alone would demand 6.*e+05 steps of dop853' "$TMP/out"
-# Backwards what decayed grows, as fast: no method may stride over that.
+# Backwards in time decaying parts grow: no method may take long steps over them.
 check "backwards the same model is not stiff: rk45" takes rk45 "$TMP/spring.lag" --until -1e-4 --tol 1e-3
 check "at a fine tolerance: dop853" takes dop853 "$TMP/spring.lag" --until -1e-4 --tol 1e-7
 check "at a finer one: taylor" takes taylor "$TMP/spring.lag" --until -1e-4 --tol 1e-11
@@ -86,7 +86,7 @@ check "a simulator that was built chooses, too" built
 resumed() { "$LAGC" run "$vdp" --until 100 --save-state "$TMP/state" --quiet && "$LAGC" run "$vdp" --resume "$TMP/state" --until 200 >"$TMP/out" && grep -q 'method radau' "$TMP/out"; }
 check "a run goes on with what it began with" resumed
 # The series that taylor needs are compiled in where it may be chosen, below a tolerance of 1e-9, and nowhere else.
-can_take_taylor() { # TOLERANCE: or none
+can_take_taylor() { # TOLERANCE, or nothing
   printf 'model free\ncoord x\nlagrangian = x'"'"'^2/2 - x^4/4\nscene run { start x = 1; span 2 [s]%s }\n' "${1:+; tolerance $1}" >"$TMP/free.lag"
   "$LAGC" build "$TMP/free.lag" -o "$TMP/free" && "$TMP/free" --method taylor --quiet 2>"$TMP/err"
 }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Models with constraints, from the .lag file to the run: steps, outputs and what events leave lie on the constraints; starts are moved to
-# them, and the report says so; what cannot be done is refused. Expected values: closed forms, the same system in coordinates without
+# Models with constraints, from the .lag file to the run: steps, outputs and states after events obey the constraints; starts are moved to
+# them, and the report says so; impossible requests are refused. Expected values: closed forms, the same system in coordinates without
 # constraints, published rules.
 . tests/tap.sh
 models=tests/exec/models
@@ -18,10 +18,10 @@ refused() { # refused WORDS ARGS...: with exit status 2, and no file is left
   run "$@" -o "$TMP/rows.csv"
   [ $? = 2 ] && grep -qF -e "$words" "$TMP/err" && [ ! -e "$TMP/rows.csv" ]
 }
-# number NAME: its value in the JSON report; within A B D: |A - B| <= D
+# number NAME: value in the JSON report; within A B D: |A - B| <= D
 number() { sed -n "s/.*\"$1\": \\([-+0-9.e]*\\)[,}].*/\\1/p" "$TMP/out"; }
 within() { awk -v a="$1" -v b="$2" -v d="$3" 'BEGIN { x = a - b; exit !(a != "" && x*x <= d*d) }'; }
-ends() { # ends WITHIN NAME=VALUE... -- ARGS...: a run ends there, on the constraints to a few last digits
+ends() { # ends WITHIN NAME=VALUE... -- ARGS...: a run ends at these values, on the constraints up to rounding
   tolerance=$1
   shift
   wanted=
@@ -42,7 +42,7 @@ ends() { # ends WITHIN NAME=VALUE... -- ARGS...: a run ends there, on the constr
 x=$(awk -v a="$(number th1)" 'BEGIN { printf "%.15g", sin(a) }')
 y=$(awk -v a="$(number th1)" -v b="$(number th2)" 'BEGIN { printf "%.15g", -cos(a) - cos(b) }')
 for scene in swing thrice; do
-  # tolerance times what such a motion makes of it; the last by its order
+  # tolerance times the growth of errors along this motion; the last one by its order
   check "$scene by rk45" ends 1e-6 "r\\[1\\].x=$x" "r\\[2\\].y=$y" -- $models/two_rods.lag $scene --method rk45
   check "$scene by dop853" ends 1e-9 "r\\[1\\].x=$x" "r\\[2\\].y=$y" -- $models/two_rods.lag $scene --method dop853 --tol 1e-12
   check "$scene by rk4" ends 1e-8 "r\\[1\\].x=$x" "r\\[2\\].y=$y" -- $models/two_rods.lag $scene --method rk4 --step 1e-3
@@ -67,15 +67,15 @@ for m in rk45 dop853 "variational --step 1e-3" "variational --step 1.1e-2" "verl
   check "their energy" within "$(number energy_drift)" 0 2.2e-4 # of order 2: 121 times the 1.5e-6 of the step that is 11 times smaller is 1.8e-4
 done
 
-# 40 in a row, which are so many that they are solved within a band. Near 10 s all links come to lie on one line: there rates are not corrected along
-# what is left of a constraint, 6e-6 = eps^(1/3) of it, where steps err by 1e-8 (cf. the energy): 6e-14 for each link of 80 at random.
+# 40 in a row, so many that a band solver is used. Near 10 s all links come to lie on one line: there rates are not corrected along
+# the remaining 6e-6 = eps^(1/3) of a constraint, where steps err by 1e-8 (cf. the energy): 6e-14 for each link of 80 at random.
 rates=5e-13
 check "forty four-bars" ends 1e-7 "apart=0" -- tests/hard/cases/mbs_a02_fourbar_N10.lag -D N=40 --method dop853 --tol 1e-10
 check "their energy" within "$(number energy_drift)" 0 1e-8
 rates=
 
 # ---- a tolerance that no step near there can keep: the run passes, or says in seconds where it creeps
-passes_or_says() { # it may pass with another rounding
+passes_or_says() { # with another rounding the run may pass
   timeout 120 "$LAGC" run tests/hard/cases/mbs_a02_fourbar_N2.lag --method 'dop853(atol=1e-15)' --tol 1e-15 --no-gsl >"$TMP/out" 2>&1
   case $? in
     0) return 0 ;;
@@ -85,7 +85,7 @@ passes_or_says() { # it may pass with another rounding
 }
 check "steps that creep end" passes_or_says
 
-# ---- held at rest where all coordinates are 0: nothing shows a length there, and impulses are found all the same
+# ---- held at rest where all coordinates are 0, so that no coordinate gives a scale: impulses are found all the same
 cat >"$TMP/at_rest.lag" <<'EOF'
 model at_rest "Held at 0 on all sides, where nothing shows a length: by forms in x, y, z, and by distances whose terms are constants"
 coord x [m], y [m], z [m], a [rad]
@@ -177,13 +177,13 @@ check "variational" kept cut variational "--step 1e-2" 1e-10 # Newton's method e
 keeps() { "$LAGC" check $models/kept.lag go >"$TMP/out" && grep -qF 'constraint rod keeps x^2/2 + y^2/2 as it is' "$TMP/out" && grep -qF 'constraint roll keeps u - r*th - V*sin(w*t)/w as' "$TMP/out" && ! grep -q 'blade keeps' "$TMP/out"; }
 check "lagc check says what they keep" keeps
 
-# ---- rows between steps, and what events leave
+# ---- rows between steps, and states after events
 worst() { awk -F, 'NR > 1 { c = $2*$2 + $3*$3 - 1; r = $2*$4 + $3*$5; c = c < 0 ? -c : c; r = r < 0 ? -r : r; m = c > m ? c : m; m = r > m ? r : m } END { exit !(m < 4e-15) }' "$TMP/rows.csv"; }
 for m in rk4 rk45 dop853 variational verlet; do
   check "rows of $m" run $models/rod.lag drop --method $m --every 0.003 -o "$TMP/rows.csv"
   check "lie on the constraint" worst
 done
-# At y = -1/2 it has v^2 = g l; half of x' and nothing of y' are v/4, of which the rod leaves v/8 along it, and v/16 of x'.
+# At y = -1/2, v^2 = g l; the event halves x' and stops y', which leaves v/4; the rod keeps the part along the circle, v/8, so x' = v/16.
 check "an event that moves velocities off the constraint" ends 10 x=0 -- $models/rod.lag hit --events "$TMP/events.csv"
 check "leaves the part that is along it" sh -c 'tail -1 "$1" | awk -F, "{ d = \$9 + sqrt(9.81)/16; exit !(d*d < 1e-16) }"' - "$TMP/events.csv"
 

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Contacts against closed forms: impacts and the time at which they end, forces of what lies, the moment at which it leaves, impulses that
-# agree with constraints.
+# Contacts against closed forms: impacts and the time at which they end, forces on resting bodies, the moment at which they leave, impulses
+# that agree with constraints.
 . tests/tap.sh
 
 model() { cat >"$TMP/$1.lag"; }
@@ -25,7 +25,7 @@ check "a ball comes to rest" run ball drop
 # t_1 = sqrt(2/g), then flights of 2 e^k t_1; after k impacts t_k = t_1 (1 + 2 e (1 - e^(k-1))/(1 - e)); the end is at 9 t_1.
 impacts() { "$LAGC" run "$TMP/ball.lag" drop | sed -n 's/^event floor: .*first at t = \([^ ]*\) s, last at \([^ ]*\) s/\1 \2/p'; }
 set -- $(impacts)
-# the event's time is that of the method's path, whose error is the tolerance
+# the event's time is read off the method's path, whose error is the tolerance
 check "the first impact, sqrt(2/g)" near "$1" 0.451523640985730904450811124338 1e-11
 # flights shorter than 1e-7 of the time so far are not flown: 4 of those are left
 check "the end of impacts, 9 sqrt(2/g)" near "$2" 4.06371276887157814005730011904 2e-6
@@ -100,8 +100,8 @@ check "what is left of its energy" near "$(awk -F, 'END { printf "%.17g", $7 }' 
 check "what is far away is not touched" near "$(awk -F, 'END { print $6 }' "$TMP/out.csv")" 1 1e-12
 on_circle() { awk -F, 'NR > 1 { d = $2^2 + $3^2 - 1; if (d > 1e-14 || -d > 1e-14) exit 1 }' "$TMP/out.csv"; }
 check "on the circle throughout" on_circle
-# A floor that shakes: once it falls faster than the ball, the path of a method of order 1 is below it at once, in each step. It went on for minutes, by
-# microseconds; it ends with the reason. Others leave the floor, at which sin(w t) = g/(A w^2).
+# A floor that shakes: once it falls faster than the ball, the path of a method of order 1 is below it at once, in each step. Once it went on for
+# minutes by microseconds; now it ends with the reason. Others leave the floor, at which sin(w t) = g/(A w^2).
 model shaker <<'EOF'
 model shaker "A ball on a floor that oscillates"
 coord y [m]

@@ -4,7 +4,7 @@
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 
-# model NAME SECOND: a mass whose x is 0, and is to obey SECOND, too.
+# model NAME SECOND: a mass with x = 0 and the constraint SECOND.
 model() {
   cat >"$TMP/$1.lag" <<END
 model $1
@@ -33,14 +33,14 @@ done
 for name in acceleration third; do
   is "$name: lagc check" '1 constraint' "$(refuses "$LAGC" check "$TMP/$name.lag" | sed 's/ *$//')"
 done
-# Those that agree for good, and those that are dependent at the start alone, are no contradiction.
+# Constraints that agree always, or are dependent at the start only, do not contradict each other.
 model agrees 'x*(1 [m] + y) = x*a*sin(t/1 [s])'
 check "constraints that agree" "$LAGC" run "$TMP/agrees.lag" --until 0.1
 
 # ---- later
-# One that jumps at half a second: it agreed until then. From 0, where no coordinate shows how large it is.
+# A constraint that jumps at 0.5 s and agreed until then; from 0, where no coordinate gives a scale.
 model jumps 'x = if(t > 0.5 [s], a, 0 [m])'
-# failed METHOD MODEL: what ended the run, and the time of the last row.
+# failed METHOD MODEL: the reason for the end of the run, and the time of the last row.
 failed() {
   rm -f "$TMP/rows.csv"
   "$LAGC" run "$TMP/$2.lag" --method "$1" -o "$TMP/rows.csv" >"$TMP/report" 2>&1
@@ -71,7 +71,7 @@ for method in dop853 rk45 rk4 radau verlet variational; do
     "$status $(awk -F, 'NR > 1 { if ($4 > 1e-14 || $4 < -1e-14) bad = 1; end = $1 } END { print (!bad && end >= 0.99 && end < 1.005 ? "yes" : end) }' "$TMP/rows.csv")"
 done
 
-# Velocities that contradict each other from t = 1 on, of a blade that goes round in a circle: each method ends there, and says what does.
+# Velocities that contradict each other from t = 1 on, of a blade that goes round in a circle: each method ends there and names them.
 cat >"$TMP/blades.lag" <<'END'
 model blades
 coord x [m], y [m], a [rad]
@@ -93,7 +93,7 @@ for method in verlet variational; do
   near "$method passes a blade that is said twice" 2e-4 0 "$(tail -n 1 "$TMP/rows.csv" | awk -F, '{ a = $2 - sin(3); b = $3 - 1 + cos(3); print (a < 0 ? -a : a) + (b < 0 ? -b : b) }')"
 done
 
-# Poles of what the time demands: x = tan(t) at pi/2, x = 1/(t - 1/2). No row comes from the other side.
+# Poles of prescribed motions: x = tan(t) at pi/2, x = 1/(t - 1/2). No row comes from the other side.
 pole() { # NAME CONSTRAINT
   cat >"$TMP/$1.lag" <<END
 model $1
@@ -111,7 +111,7 @@ before() { # NAME METHOD TIME: the run fails, and has written all rows before th
   "$LAGC" run "$TMP/$1.lag" --method "$2" -o "$TMP/rows.csv" >/dev/null 2>&1 || status=$?
   echo "$status $(tail -n 1 "$TMP/rows.csv" | awk -F, -v t="$3" '{ print ($1 < t && $1 > t - 0.11) }')"
 }
-# Of even order, where velocities turn round as on any way there and back, at times at which no step ends; and of velocities alone
+# Poles of even order, where velocities reverse as in any ordinary turn, at times at which no step ends; and poles of velocities alone
 pole second 'x = a/(t/T - 1.3237)^2'
 pole implicit "x*(t/T - 2.0001)^2 = a"
 pole fourth 'x = a/(t/T - 1.2345678)^4'
@@ -127,7 +127,7 @@ done
 "$LAGC" run "$TMP/second.lag" --method verlet -o "$TMP/rows.csv" >"$TMP/report" 2>&1
 check "the run says which constraint, of which coordinate, and when" grep 'FAILED.*at t = 1.3237 s what constraint drive (line 5) demands of x has a pole' "$TMP/report"
 
-# What is steep, or under-resolved, and finite is passed: the end is where the time has it.
+# Steep or under-resolved finite motions are passed: the end is the prescribed one.
 passes() { # CONSTRAINT METHOD END: the end to 1e-9 of it
   pole steep "x = $1"
   "$LAGC" run "$TMP/steep.lag" --method "$2" -o "$TMP/rows.csv" >/dev/null 2>&1 &&
@@ -139,7 +139,7 @@ for method in dop853 'verlet(step=0.1)' 'rk45(adapt=off, step=0.1)' rk4; do
   check "$method passes a vibration that its steps do not show" passes 'a*sin(100*t/T)' "$method" "$(awk 'BEGIN { printf "%.17g", sin(300) }')"
 done
 
-# ---- a corner: what a bead does there is in no equation, and a run that does not leave the place ends
+# ---- a corner: no equation tells the motion of a bead there, and a run that does not leave the place ends
 cat >"$TMP/corner.lag" <<'END'
 model corner
 coord x [m], y [m]

@@ -1,6 +1,6 @@
 #!/bin/sh
-# lagc cost: errors against what they must be by hand, measured orders, the Pareto front and the target recomputed from the JSON
-# object, what is left out and why, bad input. Nothing here depends on how long anything takes.
+# lagc cost: errors against errors worked out by hand, measured orders, the Pareto front and the target recomputed from the JSON
+# object, omitted methods with reasons, bad input. Nothing here depends on how long anything takes.
 : "${LAGC:=build/lagc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 export TMP
@@ -37,7 +37,7 @@ rk4_by_hand() {
 }
 check "its errors are those of the recursion" rk4_by_hand
 
-# 0.15: what is left of higher terms where rounding does not show yet
+# 0.15: contribution of higher terms where rounding does not show yet
 check "a pendulum by methods of fixed steps" cost models/pendulum.lag --until 4 --methods rk4,symplectic_euler,verlet,verlet4,variational,gauss --longest 0.05
 order() { awk -v m="$1" '$1 == m { print $7; exit }' "$TMP/runs"; }
 has_order() { check "$1 has order $2" awk -v got="$(order "$1")" -v want="$2" 'BEGIN { exit !(got != "" && got != "null" && (got - want)^2 < 0.15^2) }'; }
@@ -82,7 +82,7 @@ else
   skip "a reference with constraints" "no libquadmath"
 fi
 says '^an error of 1e-06 at least cost: --method '
-# What it names reaches what it says: the pendulum's own closed form judges (models/pendulum.facts has it checked).
+# The method that it names reaches the stated error, by the pendulum's closed form (checked in models/pendulum.facts).
 named() { sed -n 's/^  lagc run //p' "$TMP/text" >"$TMP/words" && read -r words <"$TMP/words" && sh -c "$LAGC run $words --until 2 --quiet -o $TMP/rows.csv" && [ -s "$TMP/rows.csv" ]; }
 check "the command that it names runs" named
 without_quad() { LAG_HOME=$TMP/home "$LAGC" cost models/pendulum.lag --until 1 --methods rk4 --longest 0.01 >"$TMP/text" && grep -q '^reference: taylor, 15 digits' "$TMP/text"; }
@@ -118,7 +118,7 @@ echo garbage >"$TMP/garbage"
 "$LAGC" build models/pendulum.lag --method taylor -o "$TMP/sim" >"$TMP/out" 2>&1
 bad_reference() { "$TMP/sim" --cost --against "$TMP/garbage" 2>"$TMP/err"; [ $? = 2 ] && grep -q 'holds no reference' "$TMP/err"; }
 check "what is no reference is refused" bad_reference
-# Where there is quadruple precision, lagc has it compute the reference, from the values and up to the time that are given.
+# With quadruple precision lagc computes the reference in it, from the given values and up to the given time.
 precise_reference() {
   "$LAGC" cost models/pendulum.lag th='30[deg]' --until 2 --methods rk4 --longest 0.002 >"$TMP/out" || return 1
   "$LAGC" build models/pendulum.lag --precision quad --method taylor -o "$TMP/precise" && "$TMP/precise" --reference th=0.52359877559829882 --until 2 >"$TMP/reference"

@@ -1,12 +1,12 @@
 #!/bin/sh
-# Derived parameters: what depends on parameters alone, a constant mass matrix among it, is computed when they change. Prints TAP.
+# Derived parameters: values that depend on parameters alone, also a constant mass matrix, are computed when parameters change. Prints TAP.
 cd "$(dirname "$0")/../.." || exit 2
 : "${LAGC:=build/lagc}" "${CC:=cc}" "${INC:=runtime/include}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 model=tests/exec/models/windings.lag elements=tests/exec/models/elements.lag
 
-# --- one pass over M, not one a call. 2: Cramer's rule; up to 12: a product in straight-line code; beyond: by loops
+# --- M is inverted once, not at each call. 2 coordinates: Cramer's rule; up to 12: a product in straight-line code; beyond: by loops
 emitted() { "$LAGC" emit "$model" -DN="$1" -o "$TMP/windings.c"; }
 solves() { # N OPTIONS...: the equations hold, for parameters that change from turn to turn
   emitted "$1" || return 1
@@ -18,7 +18,7 @@ for n in 2 3 12 13 40; do
   check "$n windings: M a = f, and not with what was derived from other parameters" solves $n
   check "$n windings: so over 4 lanes" solves $n -DLAG_LANES=4
 done
-# three diagonals: factors that a loop makes once, and that loops take
+# three diagonals: factors made once by a loop, and read by loops
 three() {
   n=$1
   shift
@@ -37,13 +37,13 @@ emitted 12
 operations=$(sed -n 's/.*Accelerations: \([0-9]*\) operations.*/\1/p' "$TMP/windings.c" | head -n 1)
 check "12 windings: $operations operations, at most 2 n^2 + 2 n" test "$operations" -le 312
 
-# --- the user's values reach what is derived: by name, by text and by --fix a run is the same
+# --- the user's values reach derived parameters: by name, by text and by --fix a run is the same
 changed() { sed 's/k = 0\.4/k = 0.3/' "$model" >"$TMP/changed.lag" && "$LAGC" run "$TMP/changed.lag" -DN=5; }
 end_of() { sed -n '/^  x/p'; }
 is "k=0.3 at the command line is k = 0.3 in the text" "$(changed | end_of)" "$("$LAGC" run "$model" -DN=5 k=0.3 | end_of)"
 check "and not what k = 0.4 gives" test "$(changed | end_of)" != "$("$LAGC" run "$model" -DN=5 | end_of)"
 
-# --- so they do where an effect is left out: that is another program, with what it derives of its own
+# --- so they do where an effect is left out: another program, with derived parameters of its own
 { cat "$model"; printf 'effect loss { param R = 3 [ohm]; dissipation = R/2*sum(i in 1..N, x[i]'"'"'^2) }\nscene lossy { like ring; use loss }\n'; } >"$TMP/lossy.lag"
 sed 's/k = 0\.4/k = 0.3/' "$TMP/lossy.lag" >"$TMP/lossy_changed.lag"
 makes() { "$LAGC" effects --json "$@" | sed -n 's/.*"weight": \([^,]*\), "difference": \([^,]*\),.*/\1 \2/p'; }
@@ -55,7 +55,7 @@ check "and not that with k = 0.4" test "$(makes "$TMP/lossy_changed.lag" lossy)"
 # --- eigenvalues 1 - k/2, ...: with k = 2 the matrix of three is singular
 singular() { "$LAGC" run "$model" -DN=3 k=2 >"$TMP/report"; [ $? = 3 ] && grep -qF 'the mass matrix is singular' "$TMP/report"; }
 check "a singular matrix is said" singular
-# --- signs of forces go into the products with the inverse, and nothing that is not used is left of them
+# --- signs of forces go into the products with the inverse, and no unused instruction is left
 cat >"$TMP/signs.lag" <<'END'
 model signs "Forces that are negative sums, a mass matrix of numbers"
 param m = 2, c = 1/2

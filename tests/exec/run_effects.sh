@@ -1,5 +1,5 @@
 #!/bin/sh
-# What a scene does not call for is not in its program. With an effect off, the emitted C and the header are, to the byte, those of the
+# Unused parts of a model are not in a scene's program. With an effect off, the emitted C and the header are, to the byte, those of the
 # model with the effect's text deleted, by the parser's own spans: for every effect and scene in models/ and in tests' own.
 cd "$(dirname "$0")/../.." || exit 2
 : "${LAGC:=build/lagc}" "${BIN:=build/test/bin}"
@@ -11,7 +11,7 @@ root=$PWD
 dir=$TMP/effects
 mkdir -p "$dir/cut"
 
-# What is emitted for a scene of a file, called by its own name: OUT FOLDER MODEL SCENE. Headers of scenes that no run could begin are refused.
+# OUT FOLDER MODEL SCENE: emitted C and header of a scene. Headers of scenes with impossible starts are refused.
 emitted() {
   (cd "$2" && "$LAGC" emit "$3" "$4" && { "$LAGC" header "$3" "$4" || echo "no header"; } && "$LAGC" emit "$3" "$4" --method radau &&
     "$LAGC" emit "$3" "$4" --method variational) >"$1" 2>"$1.err" || { cat "$1.err"; return 1; }
@@ -52,7 +52,7 @@ for f in models/*.lag tests/exec/models/*.lag tests/golden/ok/*.lag tests/exec/m
   "$BIN/cut_effects" "$f" >"$dir/effects" 2>/dev/null && [ -s "$dir/effects" ] || continue
   check "$f: off is as if deleted" identical "$root/$f"
 done
-# Of the gallery alone there are more effects than that.
+# The gallery alone has more effects than that.
 check "it was compared" sh -c '[ "$(wc -l <"$1")" -gt 60 ]' - "$dir/done"
 
 # ---- each kind of statement acts from inside an effect: closed forms, with m = 1

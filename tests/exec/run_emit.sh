@@ -1,6 +1,6 @@
 #!/bin/sh
-# What lagc emits: C that compiles clean everywhere, means the same in every precision, comes out the same byte for
-# byte; and headers that embed. On models/ and on the strange ones in tests/exec/models/.
+# Emitted C compiles without warnings everywhere, computes the same in every precision, and is the same byte for byte from every
+# compiler; headers can be embedded. For models/ and the unusual models of tests/exec/models/.
 : "${LAGC:=build/lagc}" "${BUILD:=build}" "${INC:=runtime/include}" "${CC:=cc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 export TMP
@@ -31,7 +31,7 @@ emit_all() { # emit_all LAGC FOLDER
 }
 check "lagc emit and lagc header, all models" emit_all "$LAGC" "$TMP/c"
 mv "$TMP"/c/*.h "$TMP/h"
-# With the derivatives that some methods need.
+# With derivatives that only some methods need.
 emit_more() {
   mkdir -p "$TMP/more"
   for m in $models; do "$LAGC" emit "$m" --method gauss -o "$TMP/more/$(name_of "$m").c" || return 1; done
@@ -120,7 +120,7 @@ fi
   for m in $models; do sed -n 's/^const lag_scene \(.*\) = {/  \&\1,/p' "$TMP/c/$(name_of "$m").c"; done
   echo '  0};'
 } >"$TMP/c/scenes.c"
-evaluate() { # NAME COMPILER OPTIONS...: what the models compute, to NAME.txt
+evaluate() { # NAME COMPILER OPTIONS...: values of the models' functions, to NAME.txt
   n=$1 c=$2
   shift 2
   "$c" -std=gnu11 -O0 -ffp-contract=off -Wno-psabi -I"$INC" "$@" "$TMP"/c/*.c $here/emit_eval.c -lquadmath -lm -o "$TMP/eval" 2>"$TMP/eval.err" ||
@@ -179,7 +179,7 @@ if [ -n "${LAGC_CLANG:-}" ] && [ -x "$LAGC_CLANG" ]; then check "lagc built by c
 else skip "lagc built by clang emits the same bytes" "there is no clang"; fi
 empty "no dates and no paths in what is emitted" "$(grep -nE "20[0-9][0-9]-|$(pwd)|\.lag" "$TMP"/c/*.c "$TMP"/h/*.h)"
 
-# ---- an effect that is off is not there
+# ---- effects that are off leave no trace
 # Prints a model without its effects and the scenes that use one, or are like such a scene.
 without_effects() {
   awk '
@@ -195,7 +195,7 @@ off_is_absent() { # MODEL
   ! grep -q '^effect' "$TMP/off.lag" && grep -q '^scene' "$TMP/off.lag" || return 1
   for s in $(sed -n 's/^scene \([^ ]*\).*/\1/p' "$TMP/off.lag"); do
     "$LAGC" emit "$1" "$s" -o "$TMP/with.c" && "$LAGC" emit "$TMP/off.lag" "$s" -o "$TMP/off.c" && cmp "$TMP/with.c" "$TMP/off.c" || return 1
-    "$LAGC" check "$1" "$s" >"$TMP/out" 2>&1 || continue # it has no start
+    "$LAGC" check "$1" "$s" >"$TMP/out" 2>&1 || continue # the scene has no start
     "$LAGC" header "$1" "$s" >"$TMP/with.h" && "$LAGC" header "$TMP/off.lag" "$s" >"$TMP/off.h" && cmp "$TMP/with.h" "$TMP/off.h" || return 1
   done
 }

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Events that turn many times within one step of an adaptive method: a clock sin(w t) strikes
-# floor(10 w / (2 pi)) times in 10 s, whatever the method makes of its steps. And events that pile up: the bounces of a ball
+# floor(10 w / (2 pi)) times in 10 s, whatever the method's steps are. And events that accumulate: the bounces of a ball
 # with restitution e end at sqrt(2 h/g)*(1 + e)/(1 - e), 4.0637 s; no run hangs there.
 . tests/tap.sh
 strikes() { # METHOD W

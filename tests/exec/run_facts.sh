@@ -1,7 +1,7 @@
 #!/bin/sh
-# What is known of each model (models/NAME.facts) against the C that lagc emits for its scenes and liblag. Prints TAP.
+# Known results of each model (models/NAME.facts) against emitted C of its scenes and liblag. Prints TAP.
 #   sh tests/exec/run_facts.sh [NAME...]
-# The format of the facts is told in tests/exec/facts.c. The last tests are of this test: wrong facts must fail.
+# tests/exec/facts.c describes the format of facts. The last checks test this suite: wrong facts must fail.
 cd "$(dirname "$0")/../.." || exit 2
 : "${LAGC:=build/lagc}" "${CC:=cc}" "${BUILD:=build}" "${INC:=runtime/include}"
 dir=$(mktemp -d) || exit 2

@@ -160,7 +160,7 @@ large "a string of 10000 masses" 30 1500000 "$LAGC" derive models/string.lag -D 
 result "40 bodies: a square root of each of 40*39/2 pairs" $?
 "$LAGC" derive models/slider_crank.lag --ops | awk '{ print; exit !($1 <= 208) }'
 result "slider_crank: the products that many share are found" $?
-# The text is 3 MB; what derives it needs some 400 MB.
+# The text has 3 MB; its derivation needs some 400 MB.
 for f in text latex; do
   large "a string of 10000 masses, printed as $f" 30 1000000 "$LAGC" derive models/string.lag -D N=10000 --format $f
 done

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Files that cannot be written, compilers and libraries that are not there, as TAP: a message on stderr that says what and
-# why, exit status 2, and nothing left behind, whole or in part. A device or a pipe is never replaced by a file.
+# Files that cannot be written, missing compilers and libraries, as TAP: a message on stderr with the file and the reason,
+# exit status 2, and no file left, whole or in part. A device or a pipe is never replaced by a file.
 cd "$(dirname "$0")/../.." || exit 2
 : "${LAGC:=build/lagc}" "${TMP:=${TMPDIR:-/tmp}}"
 . tests/tap.sh
@@ -50,7 +50,7 @@ check 'run: the disk is full' refused 2 'cannot write' full_disk "$LAGC" run "$m
 check 'run: the cache is empty after that' sh -c '[ -z "$(ls -A "$0")" ]' "$dir/cache/lagc"
 
 
-# What is in the cache is known by its checksum: an entry that was cut short, or spoilt, is built anew.
+# Cache entries have checksums: an entry that was cut short, or spoilt, is built anew.
 spoil() { for f in "$dir"/cache/lagc/*; do case $f in *.sum) ;; *) "$@" "$f" ;; esac; done; }
 cut_short() { head -c 1000 "$1" >"$1.short" && cat "$1.short" >"$1" && rm "$1.short"; }
 overwrite() { printf 'no program' | dd of="$1" bs=1 seek=4096 conv=notrunc 2>/dev/null; }
@@ -110,7 +110,7 @@ check 'the model is a folder' refused 2 'cannot read' "$LAGC" check "$dir"
 check 'an unknown scene' refused 1 'unknown scene .nope' "$LAGC" emit "$model" nope -o "$dir/out/file"
 check 'an unknown constant' refused 1 '-D NOPE: the model declares no such constant' "$LAGC" emit "$model" -D NOPE=3 -o "$dir/out/file"
 check 'no -o for build' refused 2 'needs -o' "$LAGC" build "$model"
-# ---- a name that says another kind of file than the command writes ----
+# ---- a file name with the ending of another kind of file ----
 while read -r words; do
   want=${words##*: } words=${words%%: *}
   # shellcheck disable=SC2086 # a command and its options

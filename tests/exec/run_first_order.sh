@@ -1,6 +1,6 @@
 #!/bin/sh
-# Lagrangians that are linear in the velocities, in the commands: what gauss keeps (first_order.c), published digits by it, and what the
-# report, the header and other commands make of coordinates without accelerations.
+# Lagrangians that are linear in the velocities, in the commands: invariants that gauss keeps (first_order.c), published digits, and
+# coordinates without accelerations in the report, the header and other commands.
 . tests/tap.sh
 . tests/hard/lib_cases.sh
 
@@ -16,7 +16,7 @@ emit models/guiding_centre.lag banana
 check "the scenes compile" "$CC" -std=c11 -O2 -ffp-contract=off -I"$INC" "$TMP"/*.c tests/exec/first_order.c "$BUILD/liblag.a" -lm -o "$TMP/first_order"
 tap_of "$TMP/first_order"
 
-# final MODEL STEP: by gauss with 4 stages, the largest error of what stands last in expected.txt over what is allowed there
+# final MODEL STEP: by gauss with 4 stages, the largest error of the last numbers of expected.txt, over their tolerances
 final() {
   "$LAGC" run $cases/"$1".lag --method "gauss(stages=4)" --step "$2" --json >"$TMP/$1.json" || return 1
   awk -v m="$1" '{ id = $1; gsub(/[-.]/, "_", id) } id == m { t = $3; v[$4] = $5; tol[$4] = $6; at[$4] = $3 } END { for (k in v) if (at[k] == t && k != "c_H") print substr(k, 3), v[k], tol[k] }' $digits >"$TMP/$1.want"
@@ -66,7 +66,7 @@ note() { "$LAGC" run "$1" --method gauss --step "$2" --until "$3" | grep -qF "$4
 check "the report says where gauss is not symplectic" note models/lotka_volterra.lag 0.1 1 "here it varies, and the method is symmetric"
 check "and says nothing where it is" test -z "$("$LAGC" run $cases/vortex_pair.lag --method gauss --step 0.1 --until 1 | grep note)"
 
-# ---- a two-form that vanishes on the way: omega = x, which no change of coordinates mends
+# ---- a two-form that vanishes on the way: omega = x, which vanishes in any coordinates
 cat >"$TMP/fold.lag" <<'LAG'
 model fold "the two-form vanishes at x = 0"
 coord x, y

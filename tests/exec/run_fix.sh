@@ -1,6 +1,6 @@
 #!/bin/sh
-# --fix makes numbers of parameters, and what nobody asks for is not in emitted C. Operations are counted by the compiler and, for a few
-# small models, by hand; trajectories are compared with those of programs in which parameters are parameters.
+# --fix turns parameters into numbers, and unrequested functions are not in emitted C. Operations are counted by the compiler and, for a few
+# small models, by hand; trajectories are compared with those of programs without --fix.
 cd "$(dirname "$0")/../.." || exit 2
 : "${LAGC:=build/lagc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
@@ -66,7 +66,7 @@ check "emit: no parameter is left" sh -c '! grep -qF "p_table[]" "$1" && ! grep 
 header() { "$LAGC" header "$two" driven --fix all -o "$dir/two.h" && printf '#define TWO_IMPLEMENTATION\n#include "two.h"\nint main(void) { return 0; }\n' >"$dir/h.c" && ${CC:-cc} -std=c99 -Wall -Werror -I"$dir" "$dir/h.c" -o "$dir/h" -lm; }
 check "header: all" header
 
-# ---- what is fixed cannot be set
+# ---- fixed parameters cannot be set
 "$LAGC" build "$two" --fix m,k,drive.a -o "$dir/sim" || echo "no simulator"
 check "a fixed parameter" says 2 "m is a number in this program (--fix); this builds one that takes it: lagc build $two -o SIMULATOR --fix k,drive.a" "$dir/sim" driven m=3
 check "a member" says 2 'k[2] is a number' "$dir/sim" driven 'k[2]=3'
@@ -92,7 +92,7 @@ check "together with them" "$LAGC" emit "$two" --fix c,d
 check "more digits" says 2 'leave it out where --precision has more digits' "$LAGC" run "$two" --fix m --precision quad
 check "completion" sh -c '"$0" complete emit "$1" --fix c,dr | grep -q "^c,drive.F"' "$LAGC" "$two"
 
-# ---- what nobody asks for is not there
+# ---- unrequested functions are not emitted
 cat >"$dir/asks.lag" <<'END'
 model asks "Observables, multipliers, a closed form"
 coord x [m], y [m]
@@ -115,7 +115,7 @@ is "taylor: the series" taylor "$(has models/double_pendulum.lag --method taylor
 is "variational: second derivatives" variationsecond "$(has models/double_pendulum.lag --method variational)"
 is "accelerations do not pay for them" "$("$LAGC" emit models/double_pendulum.lag | grep -c 'Accelerations: 38 operations')" \
   "$("$LAGC" emit models/double_pendulum.lag --method radau | grep -c 'Accelerations: 38 operations')"
-# Numbers that are no fractions stay functions: the compiled program computes them, and the text agrees (every compilation compares).
+# Functions of numbers that are no fractions stay calls: the compiled program computes them, and the text agrees (every compilation compares).
 cat >"$dir/numbers.lag" <<'END'
 model numbers
 coord x

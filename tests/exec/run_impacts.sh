@@ -1,5 +1,5 @@
 #!/bin/sh
-# Impacts that several contacts take part in, and what stays closed after them, against closed forms: no impulse and no force pulls.
+# Impacts of several contacts, and contacts that stay closed after them, against closed forms: no impulse and no force pulls.
 . tests/tap.sh
 
 model() { cat >"$TMP/$1.lag"; }
@@ -38,8 +38,8 @@ scene s { start b = 1 [m]; span 0.5 [s]; output y, th, b, lambda(left), lambda(r
 END
 for m in 1 10; do
   check "a ball of $m kg falls on a plank" run seesaw s m=$m
-  # Momentum about the right support, which alone pushes: (I + M a^2 + 4 m a^2) th' = -2 a m v. The solution is exact to rounding; the time of
-  # the impact is the tolerance's, 1e-9.
+  # Momentum about the right support, which alone pushes: (I + M a^2 + 4 m a^2) th' = -2 a m v. The solution is exact to rounding, the time of
+  # the impact to the tolerance, 1e-9.
   check "it turns about the right support" near "$(after ball 1)" "$(calc "-2*$m*sqrt(2*9.81)/(3 + 4*$m)")" 1e-8
   check "the left one does not hold it" near "$(count 'left opens')" 1 0
   check "nor later" near "$(cell 0.5 5)" 0 0
@@ -114,7 +114,7 @@ check "the upper one with the lower" near "$(after hit 0)" "$(calc "1.5*2*$v/6")
 check "and the one below falls" near "$(after hit 2)" "$(calc "$v - 1.5*4*$v/6")" 1e-10
 check "the shelf lets go" near "$(count 'shelf opens')" 1 0
 
-# ---- a load moves along a plank on three supports: what presses is carried by two where three would have to pull
+# ---- a load moves along a plank on three supports: two supports carry it where one of three would have to pull
 model plank <<'END'
 model plank "A load walks along a plank, and over its edge"
 coord y [m], th [rad]
@@ -153,7 +153,7 @@ END
 check "an event's force lifts what lies" run jump s
 check "at once" near "$(cell 1 2)" "$(calc '(20 - 9.81)*0.25/2')" 1e-10
 
-# ---- several contacts at one place, and what is high above zero
+# ---- several contacts at one place, and contacts high above zero
 model corner <<'END'
 model corner "A ball falls into a corner, of which one side is there twice"
 coord x [m], y [m]
@@ -167,7 +167,7 @@ scene s { start y = 1 [m]; span 2 [s]; method dop853; output x, y, lambda(a), la
 END
 check "four contacts are struck at once" run corner s
 check "and lie still at 3 sqrt(2/g)" near "$(after floor 0)" 0 1e-12
-# impacts end when a flight is 1e-7 of the time: what is left then is of that size
+# impacts end when a flight is 1e-7 of the time: remaining speeds are of that size
 check "after a geometric series of flights" near "$(awk -F, '{ t = $1 } END { print t }' "$TMP/ev.csv")" "$(calc '3*sqrt(2/9.81)')" 1e-6
 # m g = l_a + l_b + 2 l_t + l_f, l_a = l_b + 2 l_t, least: (1, 1, 1)/... by hand: rows (-1,1), (1,1), (2,2), (0,1); l = A mu, A^T l = (0, m g)
 # where A^T A mu = (0, m g), A^T A = [6 4; 4 7]: mu = (-4, 6) m g/26
@@ -182,7 +182,7 @@ for case in "h=10 y=11 e=0.1" "h=100 y=101 e=0.1" "h=1e6 y=1000001 e=0.9" "h=0.3
   check "is not passed" near "$(awk -F, 'END { print $3 }' "$TMP/out.csv")" "${h#h=}" "$(calc "${h#h=}*1e-14")"
 done
 
-# ---- a beam falls flat on three supports in a line, its mass between the middle and the right one: any two would do
+# ---- a beam falls flat on three supports in a line, its mass between the middle and the right one: any two of them could carry it
 model beam <<'END'
 model beam "A beam on three supports"
 coord y [m], th [rad]
@@ -206,7 +206,7 @@ check "as a ball does" near "$(cell 0.20000000000000001 2)" "$(calc "0.5*sqrt(0.
 check "and does not turn" near "$(cell 0.20000000000000001 3)" 0 1e-15
 check "which contacts are closed is not for others to say" fails 2 "l.closed: no such parameter" beam drop l.closed=1
 
-# ---- what contradicts itself, and what has no past
+# ---- contradictory contacts, and states without a past
 model squeeze <<'END'
 model squeeze "A ball between a wall and one that moves toward it"
 coord x [m]

@@ -92,7 +92,7 @@ for h in 0.1 0.05 0.001; do last "$dir/wave.lag" table --until 3 --method "rk4(s
 order() { awk '{ p = log(($1 - $3)/($2 - $3))/log(2); print p; exit !(p > 3.7 && p < 4.4) }' "$dir/orders"; }
 check "RK4 is of order 4 across rows" order
 
-# ---- files: relative to the model, taken in when it is compiled
+# ---- files: relative to the model, read when it is compiled
 near "from another folder" 1e-9 -0.0875 "$(cd / && last "$m" table)"
 mkdir -p "$dir/parts/data"
 sed -n '/^model/,/^lagrangian/!d; /^input/d; p' "$m" >"$dir/whole.lag"
@@ -112,7 +112,7 @@ done
 check "run: a table is not overwritten" says 2 "would be overwritten" "$LAGC" run "$dir/whole.lag" -o "$dir/parts/data/two.csv"
 check "nor by --svg=" says 2 "--svg writes SVG" "$LAGC" run "$dir/whole.lag" "--svg=$dir/parts/data/two.csv"
 check "it is as it was" cmp "$dir/two.before" "$dir/parts/data/two.csv"
-# What lagc writes it reads: the column of the input's name, in its unit.
+# lagc reads its own output: the column of the input's name, in its unit.
 "$LAGC" run "$m" formula -o "$dir/data/back.csv" --every 0.01 --observe u --quiet
 sed '/^scene/s|data/cubic.csv|data/back.csv|' "$m" >"$dir/back.lag"
 near "a table that lagc wrote" 1e-8 "$(last "$m" formula)" "$(last "$dir/back.lag" table --until 2)"

@@ -1,5 +1,6 @@
 #!/bin/sh
-# The fields of each command's --json, which other programs read: none goes, and none comes without a line here. Of a list, those of its first element.
+# The fields of each command's --json, which other programs read: none disappears or appears without a line here. A list has the fields of its
+# first element.
 . tests/tap.sh
 fields() { # COMMAND MODEL ARGS...: names, with [ or { where a list or an object begins
   "$LAGC" "$@" --json 2>"$TMP/err" | grep -o '"[^"]*": [[{]\{0,1\}' | sed 's/^"//; s/": *//' | awk '!seen[$0]++' | tr '\n' ' ' | sed 's/ $//'

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Lagrangians that jump: what is warned of, and what is said of charges. A step of the potential, a force that is switched, a mass that
-# changes: which of their charges hold across the jump follows from mechanics by hand.
+# Lagrangians that jump: warnings, and statements on charges. A step of the potential, a force that is switched, a mass that
+# changes: the charges that hold across the jump are derived by hand.
 . tests/tap.sh
 . tests/exec/lib_charges.sh
 
@@ -18,7 +18,7 @@ scene s { start x = 0, y = 0; start x' = 1, y' = 0.5; span 3 }
 END
 }
 lagc() { "$LAGC" "$@" >"$TMP/out" 2>"$TMP/err"; }
-# claims TERM WARNINGS SYMMETRIES...: so many warnings, and these symmetries hold between jumps, the others without ifs
+# claims TERM WARNINGS SYMMETRIES...: number of warnings; these symmetries hold between jumps only, the others always
 claims() {
   model "$1"
   warnings=$2

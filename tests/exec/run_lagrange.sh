@@ -6,7 +6,7 @@
 
 modes() { "$LAGC" modes models/cr3bp.lag departure "mu=$1" "x=$2" "y=$3" --json >"$TMP/out.json" 2>"$TMP/err"; }
 equilibrium() { sed -n 's/.*"equilibrium": {"x": \([^,]*\), "y": \([^}]*\)}.*/\1 \2/p' "$TMP/out.json"; }
-squares() { # of the exponents, a line each: re^2 - im^2
+squares() { # squares of the exponents, a line each: re^2 - im^2
   grep -o '"re": [^,]*, "im": [^,]*' "$TMP/out.json" | awk '{ gsub(/,/, ""); print $2^2 - $4^2 }' OFMT=%.17g
 }
 near() { # GOT EXPECTED TOLERANCE: lists of numbers
@@ -33,5 +33,5 @@ point L4 0.012277471 0.487722529 $s3 -0.9100543143725620243215 -0.08994568562743
 point L1 0.3 0.2861297820506890144595634 0 -8.021048888232375392286 13.72917929462400842456
 point L2 0.3 1.256734695811981861691367 0
 point L3 0.3 -1.123205595880868176165536 0
-point L4 0.3 0.2 $s3 -0.5                # of -0.5 +- 1.08 i: one mode that grows and swings
+point L4 0.3 0.2 $s3 -0.5                # squares -0.5 +- 1.08 i: one mode that grows and swings
 tap_end

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Steps that would end in, or next to, a position where constraints are dependent, and motions meet: they end elsewhere, on the motion that led there.
+# Steps that would end at, or next to, a singular position, where constraints are dependent and motions meet: they are resized to end elsewhere,
+# on the same motion.
 : "${LAGC:=build/lagc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
@@ -23,7 +24,7 @@ END
 loop rhomb 1
 loop parallelogram 2
 
-# ends MODEL ARGUMENT...: what a, and b, are off by at the end; or how the run failed.
+# ends MODEL ARGUMENT...: errors of a and b at the end; or how the run failed.
 ends() {
   model=$1
   shift
@@ -41,12 +42,12 @@ for model in rhomb parallelogram; do
   for method in rk45 dop853; do
     near "$model, $method" 1e-7 0 "$(ends $model --method $method --tol 1e-9)"
   done
-  for method in rk45 dop853; do # with equal steps: a stage of rk45 falls on the place after 0.998 + 0.01/5, and threw it off; where stages fall decides: 1e-10 to 1e-6 by other steps
+  for method in rk45 dop853; do # a stage of rk45 hits 0.998 + 0.01/5, which once threw the run off; errors 1e-10 to 1e-6
     for step in 1e-2 0.05; do
       near "$model, $method, adapt=off, $step" 1e-6 0 "$(ends $model --method "$method(adapt=off, step=$step)")"
     done
   done
-  # radau's steps shrink into such a position. It may pass; where it does not it says so, and goes on with no other motion.
+  # radau's steps shrink into such a position. It may pass; otherwise it says so, and does not continue on another motion.
   for tol in 1e-6 1e-7 1e-8 1e-9 1e-10; do
     got=$(ends $model --method radau --tol $tol)
     case $got in

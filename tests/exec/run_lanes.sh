@@ -1,6 +1,6 @@
 #!/bin/sh
-# Emitted C over lanes: every function of every model, compiled for vectors of 4 and of 8 doubles, gives in each lane what it gives
-# for a double, to a few units in the last place; lanes that part in an `if`, and lanes that are singular, among them.
+# Emitted C over lanes: every function of every model, compiled for vectors of 4 and of 8 doubles, gives in each lane the
+# value for a double, to a few units in the last place; also where lanes part in an `if`, or are singular.
 # Here a choice of models by one compiler; long_lanes.sh has all of them, and clang.
 : "${LAGC:=build/lagc}" "${INC:=runtime/include}" "${CC:=cc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
@@ -11,7 +11,7 @@ if ! $CC -w -c "$TMP/probe.c" -o "$TMP/probe.o" 2>/dev/null; then skip_all "the 
 clang=${CLANG:-$(command -v clang)}
 
 if [ -n "${ALL_MODELS:-}" ]; then
-  # Models with thousands of coordinates say nothing that smaller ones do not.
+  # Models with thousands of coordinates test nothing that smaller ones do not.
   models=$(ls models/*.lag tests/exec/models/*.lag tests/exec/lanes/*.lag | grep -v 'models/string\.lag')
 else # Branches, powers, tables; blocks, a sparse matrix, loops; constraints, of velocities too; a rotation; states of effects.
   models='tests/exec/lanes/branches.lag models/double_pendulum.lag models/chain.lag models/lagrange_top.lag models/kapitza.lag'
@@ -65,7 +65,7 @@ agree() { # FILE FILE
 # Lanes print function by function, doubles state by state: each model and function keeps its order.
 sort_states() { LC_ALL=C sort -s -k 1,2 "$TMP/$1.txt" >"$TMP/$1.sorted"; }
 
-# With what the processor has: without, a compiler takes vectors apart, and takes long over it.
+# For the processor's own vectors: otherwise the compiler splits vectors, which takes long.
 four= eight=
 grep -q ' fma .* avx2 ' /proc/cpuinfo 2>/dev/null && four=-march=x86-64-v3
 eight=$four

@@ -30,7 +30,7 @@ limit() {
   [ "$code" = "$2" ] && grep -q -e "$3" "$dir/err"
 }
 
-# starved NAME: with 400 MB, of the 2 GB that lagc allows itself, `check` says that there are no more
+# starved NAME: with 400 MB, of the 2 GB that lagc allows itself, `check` reports the end of memory
 starved() {
   (ulimit -v 400000 && limit "$1" 2 'out of memory')
 }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The exact linearisation that `--with linear` adds to a model: clean C, right derivatives for every model, and nothing
-# of it where it was not asked for.
+# The exact linearisation that `--with linear` adds to a model: C without warnings, correct derivatives for every model, and no
+# trace of it without the option.
 : "${LAGC:=build/lagc}" "${INC:=runtime/include}" "${CC:=cc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 export TMP

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Long models: their C has loops, is short, compiles soon, and computes what straight-line code computes, to the last bit.
+# Long models: their C has loops, is short, compiles fast, and agrees with straight-line code to the last bit.
 : "${LAGC:=build/lagc}" "${BUILD:=build}" "${INC:=runtime/include}" "${CC:=cc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
@@ -108,7 +108,7 @@ kinetic = sum(i in 1..N, x[i]'^2/2)
 potential = sum(i in 1..N, k*sqrt(1 + x[i]^2)) + sum(i in 3..N, if(x[i] > x[i-2], (x[i] - x[i-2])^2, 0))
 for i in 2..N { force x[i] = -c[i]*max(x[i]', 0.1)*sign(x[i-1]) }
 END
-# A number that only later turns' places know; a value of the first turn that all turns take.
+# Edge cases of loops: a number known only from later turns; a value of the first turn that all turns read.
 cat >"$TMP/m/comb.lag" <<'END'
 model comb
 const N = 40
@@ -147,7 +147,7 @@ param m = 1 > 0, c = 0.1
 kinetic = sum(i in 1..N, m/2*x[i]'^2) + sum(i in 2..N, c*x[i]*x[i]'*x[i-1]')
 potential = sum(i in 1..N, x[i]^4/4)
 END
-# The same around a ring, numbered along it, and coupled so much that rows change places; a definite matrix without zeros that no sum makes.
+# Masses around a ring, numbered along it, coupled so strongly that rows are exchanged; a full definite matrix that no sum makes.
 sed 's/model band/model ring/; s/c\*x/30*c*x/; s/^kinetic = .*/& + c*x[1]*x[1]'"'"'*x[N]'"'"'/' "$TMP/m/band.lag" >"$TMP/m/ring.lag"
 cat >"$TMP/m/dense.lag" <<'END'
 model dense
@@ -168,7 +168,7 @@ potential = sum(i in 2..N, k*(1 - i/(2*N))/2*(u[i] - u[i-1])^2) + k/2*u[1]^2
 END
 models=$(ls "$TMP"/m/*.lag)
 
-# ---- what is emitted
+# ---- emitted C
 emit_all() {
   n=10 # of two digits, as files are sorted
   for m in $models; do
@@ -205,7 +205,7 @@ solved_by() { "$LAGC" derive "$TMP/m/$1.lag" --format c | grep -q "$2" || { "$LA
 check "a definite matrix: half of it, without pivoting" solved_by dense 'lag_solve_definite(22, 21, w, w + 484)'
 check "one that may be indefinite, by its band" solved_by band 'lag_solve(30, 1, w, w + 900)'
 check "a ring as a band of two" solved_by ring 'lag_solve(30, 2, w, w + 900)'
-wrong_sign() { # what looked definite with the scene's values is not with others: a status, and who finds out
+wrong_sign() { # M is definite for the scene's values only: with others a run ends with a status
   sed 's/c = 0.1 > 0/c = 0.1/' "$TMP/m/dense.lag" >"$TMP/sign.lag"
   "$LAGC" derive "$TMP/sign.lag" --format c | grep -q lag_solve_definite || { echo "pivoting"; return 1; }
   "$LAGC" run "$TMP/sign.lag" --until 0.1 -o "$TMP/sign.csv" || return 1
@@ -266,7 +266,7 @@ header() {
 }
 check "a header of a long chain" header
 
-# ---- what it computes
+# ---- values
 ids=
 for f in "$TMP"/c/*.c; do ids="$ids $(sed -n 's/^const lag_scene \([a-z0-9_]*\) = .*/\1/p' "$f" | head -1)"; done
 {
@@ -283,7 +283,7 @@ agrees() {
 }
 check "loops compute what the program says, to the last bit" agrees
 
-# ---- and how soon
+# ---- time of compilation
 grows() {
   "$LAGC" emit models/chain.lag -DN=1000 -o "$TMP/long.c" && awk '/^static int accel/,/^}/' "$TMP/long.c" | wc -l >"$TMP/lines" && [ "$(cat "$TMP/lines")" -le 250 ] || return 1
   timeout 60 "$CC" -O2 -std=c11 -I"$INC" -c "$TMP/long.c" -o "$TMP/long.o"

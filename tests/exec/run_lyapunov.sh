@@ -13,7 +13,7 @@ find_them() {
 }
 list() { sed -n "s/.*\"$1\": \[\([^]]*\)\].*/\1/p" "$TMP/json" | cut -d, -f"$2"; }
 number() { sed -n "s/.*\"$1\": \([^,}]*\).*/\1/p" "$TMP/json"; }
-close() { # WHAT EXPRESSION GOT TOLERANCE
+close() { # NAME EXPRESSION GOT TOLERANCE
   check "$title: $1" awk -v got="$3" -v tolerance="$4" "
     BEGIN { want = $2; d = got - want
       if (got != \"\" && d <= tolerance && -d <= tolerance) exit 0
@@ -26,7 +26,7 @@ model saddle "Uphill on both sides"
 coord x
 lagrangian = x'^2/2 + 2*x^2
 X
-find_them "$TMP/saddle.lag" --transient 10 --until 40 # vectors point where they should to exp(-40); x rests at 0
+find_them "$TMP/saddle.lag" --transient 10 --until 40 # directions of vectors are right to exp(-40); x rests at 0
 close "it grows as exp(2t)" 2 "$(list exponents 1)" 1e-7
 close "and decays as exp(-2t)" -2 "$(list exponents 2)" 1e-7
 cat >"$TMP/stairs.lag" <<'X'
@@ -39,7 +39,7 @@ scene s { start a = 1, b = 2, c = 0
   span 10
   method dop853 }
 X
-find_them "$TMP/stairs.lag" # what is left of other directions after 20 s, exp(-1.5 20)
+find_them "$TMP/stairs.lag" # other directions have decayed by exp(-1.5 20) after 20 s
 close "first" 0.5 "$(list exponents 1)" 1e-9
 close "second" -1 "$(list exponents 2)" 1e-9
 close "third" -4 "$(list exponents 3)" 1e-9
@@ -50,7 +50,7 @@ find_them models/damped_oscillator.lag over # -w (z -+ sqrt(z^2 - 1)) with w = 2
 close "slow" "-2*(3 - sqrt(8))" "$(list exponents 1)" 1e-7
 close "fast" "-2*(3 + sqrt(8))" "$(list exponents 2)" 1e-7
 close "sum" -12 "$(number sum)" 1e-7
-find_them models/damped_oscillator.lag over --method radau # it could take steps that do not follow what decays fast
+find_them models/damped_oscillator.lag over --method radau # its steps could be too long to follow the fast decay
 close "slow" "-2*(3 - sqrt(8))" "$(list exponents 1)" 1e-7
 close "fast" "-2*(3 + sqrt(8))" "$(list exponents 2)" 1e-7
 find_them models/damped_oscillator.lag under # both c/(2m) = 0.2, but for the swing of the ellipse, log(w) at most, over 360 s
@@ -83,7 +83,7 @@ pairs() { # METHOD TOLERANCE
   close "sum" 0 "$(number sum)" "$2"
   check "$title: chaos" awk -v x="$(list exponents 1)" 'BEGIN { exit !(x > 0.02 && x < 0.08) }'
 }
-pairs 'verlet8(step=0.1)' 1e-8 # what is left of the vectors' first directions, a number of order 1 in logarithms, over the time
+pairs 'verlet8(step=0.1)' 1e-8 # the vectors' first directions leave a number of order 1 in logarithms, over the time
 pairs 'gauss(stages=3, step=0.1)' 1e-8
 pairs dop853 1e-8
 pairs taylor 1e-8
@@ -126,7 +126,7 @@ lagrangian = y'^2/2 - y
 event bounce: y falling { y' = 1 + 3*(-y' - 1) - if(-y' - 1 < 1/3, 0, if(-y' - 1 < 2/3, 1, 2)) }
 scene chaos { start y = 0.1, y' = 1.2345; span 100 }
 X
-find_them "$TMP/tripling.lag" --until 3000 # log(3) a flight of 3 s in the mean; of 900 flights, correlated as 3^-k, that is known to 0.9 %
+find_them "$TMP/tripling.lag" --until 3000 # log(3) a flight of 3 s in the mean; over 900 flights, correlated as 3^-k, the mean is known to 0.9 %
 close "chaos" "log(3)/3" "$(list exponents 1)" 0.01
 close "along the motion" 0 "$(list exponents 2)" 1e-3
 cat >"$TMP/rough.lag" <<'X'
@@ -140,7 +140,7 @@ X
 find_them "$TMP/rough.lag" --until 200 --method 'rk4(step=0.01)' # the trapezoidal rule over steps: 0.01^2/12 of the second derivative of 0.03 v^2
 close "the sum is the divergence" "$(number divergence)" "$(number sum)" 1e-5
 
-# ---- what a person sees
+# ---- printed report
 "$LAGC" lyapunov models/lorenz.lag --until 100 --tol 1e-9 -o "$TMP/rows.csv" --svg "$TMP/it.svg" >"$TMP/out"
 check "a table" grep -q '^ *exponent \[1/s\] *error *at half the time$' "$TMP/out"
 check "rows of running estimates" sh -c "head -1 '$TMP/rows.csv' | grep -q '^t \[s\],exponent 1 \[1/s\],exponent 2' && [ \$(wc -l <'$TMP/rows.csv') -gt 400 ]"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Memory runs out, once at each allocation of a simulator: of liblag, of its gsl methods and of the analysis of a start. Either the run says so and ends with a
-# status of its own, or what it computes does not depend on that memory and is the same.
+# Memory runs out, once at each allocation of a simulator: in liblag, in gsl methods and in the analysis of a start. Either the run says so and ends
+# with its own status, or the results do not depend on that memory and stay the same.
 . tests/tap.sh
 [ -n "$GSL" ] || skip_all "no GSL"
 cat >"$TMP/fail.c" <<'EOF'

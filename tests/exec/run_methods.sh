@@ -1,9 +1,9 @@
 #!/bin/sh
-# Which method a model allows, from the .lag file to the run: the compiler finds out what is separable, the runtime refuses
-# what does not fit, and names what does.
+# Methods that a model allows, from the .lag file to the run: the compiler finds out which models are separable, the runtime refuses
+# unsuitable methods and names suitable ones.
 . tests/tap.sh
 
-flags() { # flags MODEL: those of its first variant
+flags() { # flags MODEL: flags of its first variant
   "$LAGC" emit "$1" -o "$TMP/model.c" && sed -n 's/.*\.flags = \([^,]*\),.*/\1/p' "$TMP/model.c" | head -n 1
 }
 separable() { flags "$1" | grep -q LAG_SEPARABLE; }
@@ -58,7 +58,7 @@ check "an unknown quadrature is refused with those there are" wrong 'it is gauss
 check "an odd order is refused" wrong "order: write 2, 4, 6 or 8" --method 'variational(order=3)'
 check "half a stage is refused" wrong "stages: write 1, 2, 3 or 4" --method 'gauss(stages=1.5)'
 check "the midpoint rule has one order" wrong "write quadrature=gauss" --method 'variational(quadrature=midpoint, order=4)'
-# Steps that are far too long are not the model's fault: what failed, in which step, and what to do.
+# Failures of steps that are far too long: the message names the failure, the step, and a remedy.
 fails() { # fails WORDS ARGS...
   words=$1
   shift
@@ -112,7 +112,7 @@ for command in emit build; do
   is "$command --method: one that there is not ends with status 2" 2 $?
   check "and is told from one that there is" grep -q 'unknown method verlte; did you mean verlet?' "$TMP/err"
 done
-# Every method that is listed finds in a program what it needs.
+# Every listed method finds the functions that it needs in a program.
 run models/double_pendulum.lag --method help
 for m in $(sed -n 's/^  \([a-z][a-z0-9_-]*\) .* \(adaptive\|fixed\) .*/\1/p' "$TMP/out"); do
   check "$m has what it needs" run models/double_pendulum.lag --method "$m" --until 0.01
@@ -146,7 +146,7 @@ check "lagc methods is what --method help says" cmp "$TMP/table" "$TMP/help"
 check "with order, what is kept and what is needed" grep -q '^  gauss  *2-8  *2-8  *fixed  *both  *yes  *yes  *alone  *yes  *no$' "$TMP/table"
 "$LAGC" methods models/pendulum.lag 2>"$TMP/err"
 is "lagc methods takes no model" 2 $?
-# What rests where no force acts stays there, to the last bit.
+# A body at rest without forces stays at rest, to the last bit.
 printf "model rest\ncoord x\nlagrangian = x'^2/2 - x^2/2\nscene s { start x = 0; span 1 [s] }\n" >"$TMP/rest.lag"
 for m in $(sed -n 's/^  \([a-z][a-z0-9_-]*\)  *[0-9][-0-9]*  *[0-9].*/\1/p' "$TMP/table"); do
   is "$m leaves a body at rest" "1,0,0" "$("$LAGC" run "$TMP/rest.lag" --method "$m" -o - --quiet 2>"$TMP/err" | tail -n 1 | cut -d, -f1-3)"

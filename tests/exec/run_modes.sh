@@ -1,6 +1,6 @@
 #!/bin/sh
 # lagc modes: equilibria, frequencies, shapes and verdicts against closed forms, each from a textbook or two lines of algebra
-# beside it; what is refused; and what a person sees.
+# beside it; refusals; the printed report.
 : "${LAGC:=build/lagc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 export TMP
@@ -14,16 +14,16 @@ find_modes() {
   "$LAGC" modes "$@" --json >"$TMP/json" 2>"$TMP/err" || cat "$TMP/err" >&2
   sed 's/{"re"/\n&/g' "$TMP/json" >"$TMP/modes"
 }
-# What the object says: head KEY, mode K KEY, shape K NAME (1: real part, 2: imaginary part)
+# Fields of the object: head KEY, mode K KEY, shape K NAME (1: real part, 2: imaginary part)
 head_text() { sed -n "1s/.*\"$1\": \"\([^\"]*\)\".*/\1/p" "$TMP/modes"; }
 at_rest() { sed -n "1s/.*\"equilibrium\": {[^}]*\"$1\": \([^,}]*\).*/\1/p" "$TMP/modes"; }
 of_mode() { sed -n "$(($1 + 1))s/.*\"$2\": \([^,}]*\).*/\1/p" "$TMP/modes"; }
 shape() { sed -n "$(($1 + 1))s/.*\"shape\": {.*\"$2\": \[\([^]]*\)\].*/\1/p" "$TMP/modes" | cut -d ',' -f "${3:-1}"; }
 count() { grep -c '^{"re"' "$TMP/modes"; }
-calc() { awk "BEGIN { printf \"%.17g\", $1 }"; } # values in it stand in parentheses: -2^2 is -4
+calc() { awk "BEGIN { printf \"%.17g\", $1 }"; } # put values in parentheses: -2^2 is -4
 
-# close WHAT EXPRESSION GOT [TOLERANCE]: relative, or absolute below 1. 1e-12 is rounding of matrices of some ten rows and
-# of what closed forms lose; what needs more says why.
+# close WHAT EXPRESSION GOT [TOLERANCE]: relative, or absolute below 1. 1e-12: rounding in matrices of some ten
+# rows and in closed forms; larger tolerances have a reason beside them.
 close() {
   check "$title: $1" awk -v got="$3" -v tolerance="${4:-1e-12}" "
     BEGIN { pi = atan2(0, -1); want = $2; d = got - want; size = want < 0 ? -want : want; if (size < 1) size = 1
@@ -59,7 +59,7 @@ string() { # N TOLERANCE: w_k = 2 sqrt(k/m) sin(k pi/(2 (N + 1))), u_i ~ sin(i k
     /^\{"re"/ { k++; split($0, w, /"im": /); split(w[2], im, ","); want = 2*sin(k*atan2(0, -1)/(2*(N + 1))); d = im[1] - want
       if (d > tolerance || -d > tolerance) { print "mode", k, im[1], "not", want; bad = 1 } }
     END { exit bad || k != N }' "$TMP/modes"
-  close "the slowest shape" "sin(3*pi/($1 + 1))/sin(pi/($1 + 1))" "$(calc "$(shape 1 'u\[3\]')/$(shape 1 'u\[1\]')")" 1e-11 # of a vector: the change of w^2 over the distance to the next
+  close "the slowest shape" "sin(3*pi/($1 + 1))/sin(pi/($1 + 1))" "$(calc "$(shape 1 'u\[3\]')/$(shape 1 'u\[1\]')")" 1e-11 # error of w^2 over the distance to the next
 }
 string 10 1e-12
 string 200 1e-11 # the error of w^2 is rounding times its largest, 4: 1e-13 at 2w = 0.03
@@ -104,11 +104,11 @@ close "translation is not damped" 0 "$(of_mode 1 re)" 0
 close "decay" "-0.2/3*3/2" "$(of_mode 2 re)"
 close "frequency" "sqrt(3 - 0.1^2)" "$(of_mode 2 im)"
 close "decay" "-0.2/3*6/2" "$(of_mode 3 re)"
-find_modes $dir/triatomic.lag held # walls that do not move it from where it is
+find_modes $dir/triatomic.lag held # walls that leave the equilibrium where it is
 verdict stable
 close "the rest lengths" -1 "$(at_rest x1)"
 
-find_modes $dir/sums.lag # free where b = -2 d and a + b = c: two directions, of which the basis with most zeros is given
+find_modes $dir/sums.lag # free where b = -2 d and a + b = c: two directions, reported by the basis with most zeros
 for mode in "1 0 1 1 -0.5" "2 1 0 1 0"; do
   # shellcheck disable=SC2086 # five words
   set -- $mode
@@ -142,7 +142,7 @@ find_modes $dir/vectors.lag # w^2 = kx, ky times the number of the mass, which c
 close "components of vectors" "sqrt(3*4)" "$(of_mode 6 im)"
 close "and their names" 1 "$(shape 6 'r\[3\].y')"
 
-# ---- soft forces beside stiff ones: what is at rest, and how slow it is
+# ---- soft forces beside stiff ones: rest, and slow modes
 find_modes $dir/sag.lag # k x = 2 m g, K (y - x) = m g
 close "it sags" "2*$g/100" "$(at_rest x)" 1e-7 # the rounding of K (y - x), 4e-6 N, over k
 close "a slow mode" "sqrt(100/2)" "$(of_mode 1 im)" 1e-6 # rounding of K over k: 1e-7
@@ -187,7 +187,7 @@ close "it stops" 0 "$(at_rest w3)" 0
 close "as it stood" 0.8 "$(at_rest a)" 0
 close "as it stood" 0.6 "$(at_rest b)" 0
 
-# ---- what rounding leaves of a stiffness that is 0
+# ---- zero stiffness up to rounding
 for of in "go m=0.7 l=0.2" "go m=0.1 l=0.7" "go m=0.7 l=1.3" "damped m=0.7 l=0.2" "damped m=0.1 l=0.7" "damped m=0.7 l=1.3"; do
   find_modes $dir/buckle.lag $of # m g l - k l^2 = 0; it falls
   verdict undecided
@@ -196,7 +196,7 @@ done
 find_modes models/bead_on_hoop.lag critical # the bifurcation of th = 0
 verdict undecided
 close "at the bottom" 0 "$(at_rest th)" 0
-find_modes models/lorenz.lag rho=1 # and that of 0, which the search reaches slowly
+find_modes models/lorenz.lag rho=1 # the bifurcation of 0, which the search reaches slowly
 verdict undecided
 because "a zero mode"
 close "at 0" 0 "$(at_rest x)" 0
@@ -218,7 +218,7 @@ find_modes $dir/oscillator.lag over # -d +- sqrt(d^2 - w^2), d = 5
 is "$title: two modes" 2 "$(count)"
 close "slow" "-5 + sqrt(21)" "$(of_mode 1 re)"
 close "fast" "-5 - sqrt(21)" "$(of_mode 2 re)"
-find_modes $dir/oscillator.lag loose # no spring: it comes to rest anywhere
+find_modes $dir/oscillator.lag loose # no spring: every position is an equilibrium
 verdict neutral
 close "where it is" 3 "$(at_rest x)"
 close "anywhere" 0 "$(of_mode 1 re)" 0
@@ -324,7 +324,7 @@ close "a scale with a zero of its own" 20 "$(at_rest T)"
 close "a change has none" 1 "$(shape 1 T)"
 close "decay" -0.2 "$(of_mode 1 re)"
 
-# ---- what the linearisation does not decide, and starts that help little
+# ---- cases that the linearisation does not decide, and poor starts
 find_modes $dir/quartic.lag bowl
 verdict undecided
 because "a zero mode"
@@ -354,7 +354,7 @@ find_modes $dir/root.lag one
 verdict stable
 close "frequency" 1 "$(of_mode 1 im)"
 
-# ---- what is refused, and how
+# ---- refusals
 refuses() { # STATUS WORDS ARGS...
   want=$1 words=$2
   shift 2
@@ -368,7 +368,7 @@ check "holding another does not help" refuses 2 "hold it: F=0" $dir/driven.lag G
 find_modes $dir/driven.lag F=1
 close "an input that is held" 2 "$(at_rest x)" # (1 + 3)/k
 check "no equilibrium: what is left" refuses 3 "x'' is still -1 m/s^2. A force that vanishes nowhere has none: add what holds it, such as a spring; where it vanishes, start near there: x=VALUE" $dir/quartic.lag incline
-# the advice, as it stands
+# the advice works as printed
 sed "s/potential = F\*x }/potential = F*x + 1 [N\/m]*x^2 }/" $dir/quartic.lag >"$TMP/held.lag"
 check "held by a spring" sh -c "'$LAGC' modes '$TMP/held.lag' incline | grep -q '^equilibrium: '"
 check "contacts" refuses 2 "modes with contacts are not computed yet (floor): take a model without them" models/room.lag
@@ -387,7 +387,7 @@ check "a simulator without linearisation says what to write" plain
 "$LAGC" build models/pendulum.lag --with linear -o "$TMP/full"
 check "a simulator with it takes --modes" sh -c "'$TMP/full' --modes th=3 | grep -q 'grows 0.3192754'"
 
-# ---- what a person sees
+# ---- printed report
 text() { "$LAGC" modes "$@" 2>&1; }
 is "velocities of the start do not matter" "equilibrium: 0" "$(text models/pendulum.lag th=0 "th'=1" | sed -n 's/: the start itself, at rest/: 0/p')"
 check "how far from the start" sh -c "'$LAGC' modes models/pendulum.lag th=3 | grep -q 'from the start th moved by 0.141593 rad'"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What constraints do to accelerations, and their multipliers:
+# Accelerations under constraints, and multipliers:
 #   1. the solver of lag_kkt.h against GSL's singular value decomposition, redundant constraints and all; large systems, within a band or not, against elimination;
 #   2. systems with a closed form, one for each kind of constraint (models/constrained.lag).
 . tests/tap.sh
@@ -57,7 +57,7 @@ is "what follows from others" again "$(redundant)"
 loose() { "$LAGC" check $model | grep -c 'not unique'; }
 is "multipliers that are not unique" 3 "$(loose)"
 
-# ---- where constraints become dependent on the way: four bars come to lie in a line at t = 1 and 1 + pi, ...; there a multiplier is what it tends to
+# ---- constraints that become dependent on the way: four bars come to lie in a line at t = 1 and 1 + pi, ...; there a multiplier has its limit
 # b = 0, a = c = 1 - t: mass 2 goes round with a' = -1, so lambda(cy) = m y2'' = -m l sin a, and without inertia c has lambda(cx) sin c = lambda(cy) cos c
 tends() { # EVERY ARGS...
   every=$1
@@ -65,7 +65,7 @@ tends() { # EVERY ARGS...
   "$LAGC" run tests/exec/models/rhomb.lag s --every "$every" -o "$TMP/out.csv" --quiet "$@" || return 1
   awk -F, 'NR > 1 { d = $5 + cos($2); d = d < 0 ? -d : d; if (!(d <= 1e-3)) { print; bad = 1 } if (!($6*$6 <= 1e-6)) { print; bad = 1 } } END { exit bad || NR < 5 }' "$TMP/out.csv"
 }
-for every in 1 0.01; do # 1e-3: what 1e-8 between the ends of a step is worth near the line; without it 2e21
+for every in 1 0.01; do # 1e-3: effect of 1e-8 between the ends of a step near the line; without the limit 2e21
   check "through a line: dop853, rows every $every" tends $every --until 5 --tol 1e-12
   check "rk45" tends $every --until 5 --method rk45 --tol 1e-12
 done
@@ -99,7 +99,7 @@ for l in 1 1e-9 1e9; do
     for (i = 1; i <= n; i++) { d = $(i + 1) - want[i]; size = i == 1 || i > 3 ? l : 1; if (!(d*d <= 1e-28*size*size)) { print i, $(i + 1), want[i]; bad = 1 } } exit bad }' "$TMP/out.csv"
 done
 
-# The same where one is said twice, which the null space method solves: the compiler hands it the units. x'' = F/(3 m), th = x/l
+# The rack with one constraint given twice, solved by the null space method with the units from the compiler. x'' = F/(3 m), th = x/l
 cat >"$TMP/twice.lag" <<'EOF'
 model twice "Two gears on a rack, and one of the constraints twice"
 coord x [m], th [rad], ph [rad]

@@ -3,7 +3,7 @@
 # proved where it happens to be equivalent, and the caret of the message lies on the edit in at least nine of ten.
 . tests/tap.sh
 
-# mutants MODEL TOTAL EQUIVALENT: numbers that change only with the model, or with the kinds of edits.
+# mutants MODEL TOTAL EQUIVALENT: counts, which change only with the model or the kinds of edits.
 mutants() {
   model=tests/exec/models/mutants_$1.lag
   "$BIN/mutate" "$model" >"$TMP/$1" 2>&1

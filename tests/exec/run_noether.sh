@@ -1,6 +1,6 @@
 #!/bin/sh
-# lagc noether and lagc derive --hamiltonian as commands: what they refuse, where they write, effects, JSON. What they find is tested by
-# unit/test_found, test_brackets and test_hamilton, and how it looks by golden/run_eqns.
+# lagc noether and lagc derive --hamiltonian as commands: refusals, output files, effects, JSON. Their results are tested by
+# unit/test_found, test_brackets and test_hamilton, their printed form by golden/run_eqns.
 . tests/tap.sh
 
 # refuses STATUS PATTERN COMMAND...: nothing on standard output, the pattern in the messages.
@@ -17,7 +17,7 @@ refuses() {
 says() { pattern=$1; shift; "$LAGC" "$@" >"$TMP/out" 2>&1 || return 1; grep -q -e "$pattern" "$TMP/out" || { cat "$TMP/out"; return 1; }; }
 is_silent() { pattern=$1; shift; "$LAGC" "$@" >"$TMP/out" 2>&1 || return 1; ! grep -e "$pattern" "$TMP/out"; }
 
-# ---- what is refused ----
+# ---- refusals ----
 check "a model without a Lagrangian" refuses 1 "no symmetries to look for: the model has no Lagrangian" noether models/lorenz.lag
 check "a scene that is not there" refuses 1 "scene" noether models/kepler.lag nowhere
 check "a format that it does not have" refuses 2 "json" noether models/kepler.lag --format c
@@ -38,7 +38,7 @@ check "a Hamiltonian's operations" refuses 2 "text or latex" derive models/keple
 printf 'model m\ncoord x, y\nlagrangian = x'"'"'^2/2 + y'"'"'^2/(2*y^2)\n' >"$TMP/stretched.lag"
 check "what stretches the last coordinate turns no parts of the motion" says "^Q3: linear map of the coordinates" noether "$TMP/stretched.lag"
 
-# ---- where it goes ----
+# ---- output files ----
 "$LAGC" noether models/kepler.lag >"$TMP/kepler" 2>&1
 check "to a file" sh -c '"$0" noether models/kepler.lag -o "$1" && cmp "$1" "$2"' "$LAGC" "$TMP/file" "$TMP/kepler"
 
@@ -73,7 +73,7 @@ is "an effect with what it requires" "effect again breaks 1 of 2
   dQ2/dt = field.g*y - again.h*x" "$(verdict again)"
 is "a total derivative breaks nothing" "effect gauge breaks none of them" "$(verdict gauge)"
 
-# ---- an effect with a term of L makes another charge, of which dQ/dt is said ----
+# ---- an effect with a term of L makes another charge, reported with dQ/dt ----
 cat >"$TMP/breathing.lag" <<'END'
 model breathing
 coord x
@@ -92,7 +92,7 @@ check "what holds for some values of a parameter" says "^  for k > 0$" noether "
 is "says so, once for each" 2 "$(grep -c '^  for k > 0$' "$TMP/out")"
 check "in JSON" says '"positive": \["k"\]' noether "$TMP/roots.lag" --format json
 
-# ---- charges have names that the model has not ----
+# ---- names of charges do not collide with names of the model ----
 printf "model m\ncoord Q1, y\nlagrangian = (Q1'^2 + y'^2)/2 - (Q1^2 + y^2)^2\n" >"$TMP/names.lag"
 check "a coordinate called Q1" says "^  C2 = Q1\*y' - y\*Q1'" noether "$TMP/names.lag"
 check "in the head, too" says "; C = p.delta q - E delta t - F" noether "$TMP/names.lag"

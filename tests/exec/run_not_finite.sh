@@ -1,6 +1,6 @@
 #!/bin/sh
-# A value that is not finite is said to be that, with the equation, the time and the state, and is no singular mass matrix; one that is singular is said to be so
-# with its condition. Each model ends where the comment says.
+# A value that is not finite is reported as such, with equation, time and state, and not as a singular mass matrix; a singular mass matrix is
+# reported with its condition. Each model ends where its comment says.
 . tests/tap.sh
 
 model() { # model NAME KINETIC START [MORE]
@@ -26,7 +26,7 @@ for name in definite pivoting redundant; do
   check "no number, and not singular: $name" ends $name rk4 "gives no finite value for x'" "last good state, t = "
 done
 
-# Which expression of the text it is: the line and the place, what it was given, and the state.
+# The expression of the text: its line and column, its arguments, and the state.
 places() { # places METHOD LINE:COLUMN WHAT STATE <MODEL
   cat >"$TMP/place.lag"
   "$LAGC" run "$TMP/place.lag" --method $1 >"$TMP/out" 2>"$TMP/err"

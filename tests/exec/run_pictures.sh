@@ -1,5 +1,5 @@
 #!/bin/sh
-# lagc plot, lagc animate and run --observe: what is drawn is what the rows of the same run say. The SVG is measured; the
+# lagc plot, lagc animate and run --observe: curves agree with the rows of the same run. The SVG is measured; the
 # page of the animation is opened in Chromium where there is one, and its own test of the controls (#test) is run.
 . tests/tap.sh
 
@@ -129,7 +129,7 @@ check "a folder that is not there" says 2 'cannot write' plot "$p" -o none/a.svg
 check "a value that the model does not allow" says 2 'declares l > 0' plot "$p" l=-1 -o none.svg
 check "nothing is left of all that" [ -z "$(ls none* ./*.part* 2>/dev/null)" ]
 
-# ---- plot: what is drawn is what happens between rows, too ----
+# ---- plot: curves follow the motion between rows, too ----
 f=$models/foucault.lag
 # turns FILE: how often its last curve turns round in y
 turns() {
@@ -175,7 +175,7 @@ lagrangian = sum(i in 1..N, (1 [kg])*u[i]'^2/2 - (1 [N/m])*i/2*u[i]^2)
 scene s { start u = 1 [m]; span 9 [s]; output u, u' every 1 [s] }
 END
 check "twenty lines in each of two panels" runs plot panels.lag -o panels.svg
-# Each is 230 pixels high, and a line of its legend 18: eleven are named, and nine are counted.
+# A panel is 230 pixels high, a line of its legend 18: eleven curves are named, and nine are counted.
 is "a legend names those that fit beside its panel, and counts the others" "22, 9 9" \
   "$(grep -c '^<path d=.*h20' panels.svg), $(sed -n 's/.*>and \([0-9]*\) more<.*/\1/p' panels.svg | tr '\n' ' ' | sed 's/ $//')"
 # legend_fits FILE: no text of it ends right of the picture, at 7.5 pixels a character
@@ -319,7 +319,7 @@ if [ -z "$browser" ]; then
   tap_end
   exit
 fi
-# visit URL: its page after its scripts ran goes to dom, what it says on the console to console
+# visit URL: writes the page after its scripts ran to dom, its console to console
 visit() {
   HOME=$TMP timeout 90 "$browser" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
     --disable-component-update --disable-sync --disable-dev-shm-usage --user-data-dir="$TMP/profile" --enable-logging=stderr \
@@ -348,7 +348,7 @@ tried() {
     [ "$(grep -c 'ok - ' dom)" -ge 12 ] && quiet_console
 }
 check "its controls do what they say" tried double.html
-# Where the pendulum is after 3600 s and a bit, by a run that ends there; the period is 16.4 s.
+# Position of the pendulum after 3600 s and a bit, by a run that ends there; the period is 16.4 s.
 "$LAGC" run "$f" --until 3602.4 -o rows.csv --quiet
 check "in a day of swings every place is one that occurs" near "$(places 'day.html#t=3602.4')" "$(row '$' rows.csv | awk '{ print $2, $3 }')" 0.006
 check "it plays no faster than one can follow" [ "$(sed -n 's/.*"speed": \([0-9.]*\),.*/\1/p' day.html)" -lt 100 ]

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The tool that plants one-token changes (tests/mutants/plant.py): which ones it makes of a function, and that it leaves comments, text, declarations
-# and tables alone.
+# The tool that plants one-token changes (tests/mutants/plant.py): the changes that it makes to a function; comments, text, declarations and
+# tables stay as they are.
 . tests/tap.sh
 command -v python3 >/dev/null || skip_all "no python3"
 cat >"$TMP/a.c" <<'END'

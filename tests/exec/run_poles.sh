@@ -1,5 +1,5 @@
 #!/bin/sh
-# A body in Euler's angles that turns past the pole, where its mass matrix is almost singular (theta to 9e-4): what is reached, and what is said of it.
+# A body in Euler's angles that turns past the pole, where its mass matrix is almost singular (theta to 9e-4): accuracy reached, and the report.
 # Reference: theta at 20 s, by the same model and by a rotation, both in --precision quad at 1e-22, which agree in 21 digits.
 . tests/tap.sh
 reference=0.150472840499319940839
@@ -9,7 +9,7 @@ number() { sed -n "s/.*\"$1\": \([^,}]*\).*/\1/p" "$TMP/json"; }
 near() { awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; exit !(d <= t && -d <= t) }' || { echo "$1, not $2 within $3"; return 1; }; }
 run() { "$LAGC" run "$@" --json >"$TMP/json" 2>"$TMP/err" || { cat "$TMP/err"; return 1; }; }
 
-# By W the errors of accelerations are 1e-16/9e-4 of them at the pole, and not 1e-16/9e-4^2: 1e-9 is between what the two give at 20 s, 4e-11 and 2e-8.
+# With factors of W relative errors of accelerations are 1e-16/9e-4 at the pole, not 1e-16/9e-4^2; 1e-9 is between the errors at 20 s, 4e-11, 2e-8.
 # Noise in them costs steps: 30,595 by M's entries, 1913 by W.
 reaches() { # reaches WITHIN STEPS ARGS...
   within=$1 most=$2
@@ -31,7 +31,7 @@ for form in "x'^2/2 + x^2*y'^2/2" "(x'^2 + (x'*cos(y) + y'*sin(y) + y')^2)/2 + y
   check "by the entries of M: $form" sh -c "! '$LAGC' emit '$TMP/m.lag' -o - | grep -q 'orthogonal columns'"
 done
 
-# The report: what was reached, when and why, and the way out. M, in units of the start, is singular as sin(theta)^2 there.
+# The report: accuracy, time, reason, and a remedy. M, in units of the start, is singular as sin(theta)^2 there.
 run $model
 lost() { sed -n 's/.*"digits_lost": {\(.*\)}, "charges.*/\1/p' "$TMP/json"; }
 t=$(lost | sed 's/"t": \([^,]*\),.*/\1/') condition=$(lost | sed 's/.*"condition": //')

@@ -1,6 +1,6 @@
 #!/bin/sh
 # --precision: simulators that compute with long doubles and in quadruple precision give as many digits, from the command line to
-# the table, and refuse what has fewer. Expected digits: closed forms, by mpmath with 50 digits.
+# the table, and refuse numbers with fewer. Expected digits: closed forms, by mpmath with 50 digits.
 . tests/tap.sh
 . tests/exec/lib_precision.sh
 
@@ -78,7 +78,7 @@ check "a third" begins 0.33333333333333333333333333333333 "$(start "$TMP/osc.lag
 start_of=th
 check "a radian in degrees" begins 57.295779513082320876798154814105 "$(start "$TMP/pend.lag" 'th=1[rad]')"
 check "a time" begins 31.41592653589793238462643383279 "$(quad "$TMP/osc.lag" --until '10*pi' | sed -n 's/^reached t = //p')"
-# What has fewer digits.
+# Refused: numbers with fewer digits.
 check "a formula whose digits lagc does not know" refuses 2 "write others as decimals" "$TMP/osc.lag" --precision quad 'x=2^0.5'
 check "the coefficients of dop853" refuses 2 "have digits for a tolerance of 1e-27" "$TMP/osc.lag" --precision quad --method dop853 --tol 1e-30
 check "past what quad gives" refuses 2 "write 9e-34 or more" "$TMP/osc.lag" --precision quad --tol 1e-35

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Files that come from elsewhere, and where files go: outputs are made exclusively, simulators run only from folders that are the user's own,
-# interrupted commands leave nothing, includes and tables are regular files, and what does not show is shown.
+# Safety of files: outputs are made exclusively, simulators run only from folders that are the user's own, interrupted commands leave nothing,
+# includes and tables are regular files, and invisible characters are shown.
 cd "$(dirname "$0")/../.." || exit 2
 : "${LAGC:=build/lagc}" "${TMP:=${TMPDIR:-/tmp}}"
 . tests/tap.sh
@@ -131,7 +131,7 @@ start() { # in the background, as a user's shell would
   for _ in $(seq 100); do [ -s "$PID_FILE" ] && break; sleep 0.1; done
 }
 leftovers() { find "$cache" "$dir/tmp" -mindepth 1 -name 'lagc-build*'; find "$dir" -maxdepth 1 -name 'made*'; find "$dir/tmp" -name of_the_compiler; }
-for signal in TERM HUP; do # INT is ignored by what a script starts in the background
+for signal in TERM HUP; do # background commands of a script ignore INT
   start build "$model" -o made
   kill -$signal $command; wait $command; got=$?
   is "build, SIG$signal: the status says so" "$((128 + $(kill -l $signal 2>/dev/null | grep -x '[0-9]*' || { [ $signal = TERM ] && echo 15 || echo 1; })))" "$got"
@@ -150,7 +150,7 @@ mkdir "$cache/lagc-build-abcdef" "$cache/lagc-build-abcdeg"; : >"$cache/lagc-bui
 "$LAGC" cache >log
 empty 'and what a kill left before the lock was made' "$(leftovers)"
 
-# ---- its limit
+# ---- limit of the cache
 "$LAGC" run "$model" --quiet; "$LAGC" run "$here/models/kepler.lag" --quiet
 is 'cache: two simulators' 2 "$("$LAGC" cache | sed -n 's/^simulators *//p')"
 check 'cache: its folder, size and limit' sh -c '"$0" cache >log && grep -q "^folder  *$1\$" log && grep -q "^size  *[1-9]" log && grep -q "^limit  *1024 MiB" log' "$LAGC" "$cache"
@@ -172,7 +172,7 @@ for what in pipe /dev/zero "$dir/tmp"; do
   check "table $what" refuses tab.lag
 done
 
-# ---- what does not show
+# ---- invisible characters
 rlo=$(printf '\342\200\256')
 esc=$(printf '\033')
 clean() { ! grep -q "$rlo\|$esc\|$(printf '\302\233')\|$(printf '\177')" "$1"; }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The probe for compilers that store wrong numbers (src/cli/probe.in): what it says of this one, and what lagc and make do when it fails.
+# The probe for compilers that store wrong numbers (src/cli/probe.in): its verdict on this compiler, and lagc and make after a failure.
 : "${LAGC:=build/lagc}" "${CC:=cc}" "${MAKE:=make}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
@@ -10,7 +10,7 @@ probe() {
   "$@" -x c src/cli/probe.in -o "$TMP/probe" && "$TMP/probe"
 }
 check "as the build compiles, nothing is wrong" probe $CC -O2
-gcc_native() { # what is wrong with -march=native is mended by the flag
+gcc_native() { # the flag cures faults of -march=native
   probe $CC -O2 -march=native -fno-tree-slp-vectorize
 }
 probe $CC -O2 -march=native >/dev/null 2>&1
@@ -52,7 +52,7 @@ plain() { "$LAGC" build models/pendulum.lag -o "$TMP/sim" && "$TMP/sim" --help |
 check "lagc: no other flag where nothing is wrong" plain
 empty "the folder of the build is removed" "$(ls -d "$TMP"/sim.* "$TMP"/none.* 2>/dev/null)"
 
-makes() { # CC: how often the flag stands in what make would do
+makes() { # CC: number of times the flag stands in the commands of make -n
   MEND=-fno-tree-slp-vectorize $MAKE -n BUILD="$TMP/b" CC="$1" all 2>/dev/null | grep -c -e '-O2 -g -fno-tree-slp-vectorize .*-c -o'
 }
 several() { [ "$(makes "$TMP/bin/wrong")" -gt 100 ]; }

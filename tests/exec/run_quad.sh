@@ -5,7 +5,7 @@
 has_precision quad || { echo '1..0 # SKIP there is no gcc with libquadmath'; exit 0; }
 for m in models/pendulum models/double_pendulum models/kepler tests/exec/models/magnet tests/exec/models/shaken; do
   sed '/^scene .*{/a\
-  method gauss' $m.lag >"$TMP/model.lag" # which needs other derivatives than those that are asked for here
+  method gauss' $m.lag >"$TMP/model.lag" # gauss needs other derivatives than those requested here
   "$LAGC" emit "$TMP/model.lag" --method taylor --with linear -o "$TMP/$(basename $m).c" || exit 1
 done
 precise quad tests/exec/quad_methods.c >"$TMP/methods.c"

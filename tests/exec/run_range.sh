@@ -1,5 +1,5 @@
 #!/bin/sh
-# Emitted accelerations far from the origin: what is finite there in the text is finite in C. tests/exec/range/forms.txt has the models and closed forms.
+# Emitted accelerations far from the origin: finite values of the text are finite in C. tests/exec/range/forms.txt has the models and closed forms.
 : "${LAGC:=build/lagc}" "${INC:=runtime/include}" "${CC:=cc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 export TMP

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Reports that claim no more than is known: energies that a blow-up cannot hide, poles that are stepped over, friction that holds, rounding larger than the
-# motion, floors that a rough method would lose, Lyapunov exponents with their errors.
+# Reports that claim no more than is known: lost energy in a blow-up, poles that are stepped over, friction that holds, rounding larger than
+# the motion, floors that a coarse method would miss, Lyapunov exponents with their errors.
 : "${LAGC:=build/lagc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
@@ -53,8 +53,8 @@ for method in rk4 'rk4(step=0.01)' verlet 'verlet4(step=0.01)' symplectic_euler 
   over pole "$method"
 done
 check "by variational: Newton's method, or the energy" ends 3 'FAILED: at t = 1.1[12][0-9]* s' "$TMP/pole.lag" --method variational
-# No energy tells where L jumps, an input acts, or there is only a flow; nor is it lost where the steps before and behind the pole mirror each other. The
-# poles of forces are of second and first order.
+# The energy does not reveal a pole where L jumps, an input acts, or there is only a flow; nor where the steps before and behind the pole mirror each
+# other. Poles of forces are of second and first order.
 echo 'model jumps; coord x; lagrangian = x'"'"'^2/2 + 0.1/(x - 0.5) - if(x > 100, 1, 0); scene s { start x = 2, x'"'"' = -1; span 20 }' >"$TMP/jumps.lag"
 echo 'model signal; coord x; input F = 0.01; lagrangian = x'"'"'^2/2 + 0.1/(x - 0.5) + F*x; scene s { start x = 2, x'"'"' = -1; span 20 }' >"$TMP/signal.lag"
 echo 'model flow; state z; flow z'"'"' = -1/z^3; scene s { start z = 1; span 2 }' >"$TMP/flow.lag"
@@ -65,13 +65,13 @@ done
 for method in verlet 'verlet(step=0.01)' 'verlet(step=0.1)' 'verlet6(step=0.01)' 'symplectic_euler(step=0.01)'; do
   for model in jumps signal log; do over $model "$method"; done
 done
-# What is finite, or ends in the corner of a root, is no pole: a barrier that a step leads over, a fall past a centre, a force of 1/sqrt(x).
+# Finite forces, and a corner of a root, are no poles: a barrier that a step leads over, a fall past a centre, a force of 1/sqrt(x).
 echo 'model barrier; coord x; lagrangian = x'"'"'^2/2 - 0.1*exp(-(x/1e-5)^2); scene s { start x = 1, x'"'"' = -1; span 3 }' >"$TMP/barrier.lag"
 echo 'model root; coord x; lagrangian = x'"'"'^2/2 - sqrt(abs(x)); scene s { start x = 1; span 20 }' >"$TMP/root.lag"
 echo 'model past; coord x, y; lagrangian = (x'"'"'^2 + y'"'"'^2)/2 + 1/hypot(x, y); scene s { start x = 1, y'"'"' = 0.01; span 3 }' >"$TMP/past.lag"
 for method in 'rk4(step=0.01)' 'rk4(step=0.037)' 'rk4(step=0.1)' 'verlet(step=0.00987)' 'symplectic_euler(step=0.01)'; do
   check "no pole in a barrier, by $method" ends 0 'reached t = 3 s' "$TMP/barrier.lag" --method "$method"
-  for model in root past; do # whose energies such steps may lose
+  for model in root past; do # such steps may lose the energy of these models
     "$LAGC" run "$TMP/$model.lag" --method "$method" >"$TMP/out" 2>&1
     empty "nor in $model, by $method" "$(grep "a pole of [xy]'" "$TMP/out")"
   done
@@ -175,7 +175,7 @@ lagrangian = y'^2/2 - g*y
 event floor: y falling { y' = -y' }
 scene s { start y = 2 [m]; span 200 [s] }
 X
-not_lost() { # METHOD TOLERANCE: it ends with a reason, or above the floor
+not_lost() { # METHOD TOLERANCE: the run ends with a reason, or above the floor
   "$LAGC" run "$TMP/ball.lag" --method "$1" --tol "$2" --until "$3" >"$TMP/out" 2>&1
   status=$?
   cat "$TMP/out"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Rotations: what R*v, products, omega, torques, starts and events mean, by systems with closed forms (models/turns.lag, models/spun.lag); the command
-# line says the same as a scene; embedded headers, C and C++; 10^5 steps; `lagc check`.
+# Rotations: meaning of R*v, products, omega, torques, starts and events, by systems with closed forms (models/turns.lag, models/spun.lag); the
+# command line gives the same result as a scene; embedded headers, C and C++; 10^5 steps; `lagc check`.
 . tests/tap.sh
 turns=tests/exec/models/turns.lag spun=tests/exec/models/spun.lag
 
@@ -54,18 +54,18 @@ check "and flies on" near "$out" "y'.z" 1 "-$u + $p - 2*(1 - ($u - 1)/2)" 5e-11
 # ---- starts and events ----
 out=$TMP/spun.csv
 check "events run" sh -c '"$1" run "$2" -o "$3" >"$3.txt"' sh "$LAGC" $spun "$out"
-# Equations without a sense of time: what turned for 2 s turns back in 2 s.
+# Equations symmetric in time: a turn of 2 s is undone in 2 s.
 for c in w x y z; do check "omega = -omega: back at the start, $c" near "$out" "R[1].$c" 4 "$(value "$out" "R[1].$c" 0)" 1e-11; done
 check "a start of each member" near "$out" 'w[2].z' 0 0.4 1e-15
 # (1, 2, 2)/3 by 0.3; a product of turns, by Hamilton's rule
 check "start: turn(axis, angle)" near "$out" 'R[2].y' 0 "2/3*sin(0.15)" 1e-15
 check "start: a product of turns" near "$out" S.y 0 "sin(0.25)*sin(0.125)" 1e-15
-# Turned by 90 degrees in space: Sz = cos z' + sin w' of what it would be, and its angular velocity in its own frame goes on.
+# Turned by 90 degrees in space: Sz = cos z' + sin w' of the unturned body; the angular velocity in its own frame is unchanged.
 sed '/^event turned/d' $spun >"$TMP/free.lag"
 check "the same without the event" sh -c '"$1" run "$2" -o "$3" >"$3.txt"' sh "$LAGC" "$TMP/free.lag" "$TMP/free.csv"
 check "R = turn*R in an event turns it in space" near "$out" S.z 4 "sqrt(0.5)*($(value "$TMP/free.csv" S.z 4) + $(value "$TMP/free.csv" S.w 4))" 1e-11
 for c in x y z; do check "and keeps omega, $c" near "$out" v.$c 4 "$(value "$TMP/free.csv" v.$c 4)" 1e-11; done
-# The command line says the same.
+# The command line gives the same result.
 sed '/^  start/d' $spun >"$TMP/bare.lag"
 bare() {
   "$LAGC" run "$TMP/bare.lag" 'R=turn((1, 2, 2), 0.3)' 'omega(R[1])=(0.1, 1, 0.2)' 'omega(R[2])=(0.1, 1, 0.4)' \
@@ -80,18 +80,18 @@ sed 's/(B - C)/(C - B)/' $spun >"$TMP/false.lag"
 check "a false one is refuted" sh -c '"$1" check "$2" --allow-numeric 2>&1 | grep -q "is false"' sh "$LAGC" "$TMP/false.lag"
 
 # ---- contacts ----
-# A box falls on its four corners and comes to rest: what carries it is three numbers, of four forces the least are a quarter of the weight each.
+# A box falls on its four corners and comes to rest: three equations for four forces, of which the least are a quarter of the weight each.
 for scene in flat tilted; do
   out=$TMP/$scene.csv
   check "a box falls, $scene" "$LAGC" run tests/exec/models/box.lag $scene -o "$out"
   for k in a b c d; do check "$scene: corner $k carries a quarter" near "$out" "lambda($k)" 5 "9.81/4" 1e-12; done
   check "$scene: it lies" near "$out" r.z 5 0.2 1e-14
 done
-# No friction: it slides on, and turns on; 30 steps at 1e-9.
+# No friction: the box goes on sliding and turning; 30 steps at 1e-9.
 check "it slides on" near "$TMP/flat.csv" r.x 5 5 1e-12
 check "and turns on" near "$TMP/flat.csv" R.z 5 "sin(2.5)" 1e-8
 
-# ---- what is derived ----
+# ---- derivations ----
 energy_of() { "$LAGC" derive "models/$1.lag" | sed -n '/^energy/{n;s/^ *E = //p;}'; }
 is "the energy is told by omega" 'A*w.x^2/2 + B*w.y^2/2 + C*w.z^2/2' "$(energy_of free_body)"
 is "and by what else L is written with" "A*(w.x^2 + w.y^2)/2 + C*w.z^2/2 + m*g*h*axis.z" "$(energy_of lagrange_top)"

@@ -4,7 +4,7 @@
 for name in double_pendulum slider_crank bouncing_ball free_body fput; do
   empty "$name" "$(every_command "models/$name.lag")"
 done
-# What these do not come to: dry friction that sticks, and the tangent of a flow across events.
+# Further code: dry friction that sticks, and the tangent of a flow across events.
 cat >"$TMP/slide.lag" <<'X'
 model slide
 coord x [m]

@@ -3,7 +3,7 @@
 # as it stands, to the run's tolerance.
 . tests/tap.sh
 
-# The report of `lagc check` on constraints, and of the run its status, rank and what is redundant; where it ends in "$TMP/end".
+# The report of `lagc check` on constraints, and of the run its status, rank and redundant constraints; the final state goes to "$TMP/end".
 look() { # look MODEL SCENE
   "$LAGC" check --allow-numeric "$1" "$2" >"$TMP/out" 2>"$TMP/err" || { cat "$TMP/err"; return 1; }
   sed -n '/degree. of freedom\|degrees of freedom\|^  constraint\|^  contact\|^  singular/s/ (line [0-9]*)//p' "$TMP/out"
@@ -40,16 +40,16 @@ scaled() {
   done
 }
 
-# Tolerances 1e-12 and 1e-13 of the scenes, times what such a motion makes of them in the time.
+# Tolerances 1e-12 and 1e-13 of the scenes, times the growth of errors along the motion.
 until=3
 for c in touch roll_x roll_y; do check "rattleback, $c" scaled rattleback stubborn 1e-9 $c; done
 for c in along across; do check "slider_crank, $c" scaled slider_crank spun 1e-10 $c; done
 for c in roll_x roll_y; do check "turntable, $c" scaled turntable circle 1e-10 $c; done
 for c in floor left right; do check "room, $c" scaled room bounce 1e-9 $c; done
 
-# Hand-written models, in which a constraint has the factor F and a coordinate is S of what it was.
+# Hand-written models, in which a constraint has the factor F and a coordinate the factor S.
 until=2
-written() { # written NAME WITHIN TEXT: TEXT with F and S in it, whose outputs are the same for any
+written() { # written NAME WITHIN TEXT: TEXT contains F and S, and has the same outputs for any values of these
   printf '%s\n' "$3" >"$TMP/text"
   for pair in '1 1' '1e-12 1' '3e6 1' '1e12 1' '1 1e-12' '1 1e-6' '1 1e6' '1 1e12' '1e12 1e-12' '1e-12 1e12' '1e12 1e12'; do
     f=${pair% *} s=${pair#* }

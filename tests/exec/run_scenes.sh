@@ -1,6 +1,6 @@
 #!/bin/sh
-# Scenes and effects, and the command line that says the same and wins; closed forms; monitors. Expected values are
-# closed forms; what a scene means is what another way of saying it gives.
+# Scenes and effects; the command line, which says the same and takes precedence; closed forms; monitors. Expected values:
+# closed forms, and equivalent scenes written in another way.
 cd "$(dirname "$0")/../.." || exit 2
 : "${LAGC:=build/lagc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
@@ -92,7 +92,7 @@ check "a member too many" says 2 'did you mean x[1]?' "$LAGC" run "$m" 'x[4]=1'
 check "an effect as a whole" says 2 'air has parts: set air.c' "$LAGC" run "$m" drag air=1
 check "an effect that is off" says 2 'effect storm is not in scene drag' "$LAGC" run "$m" drag storm.w=1
 check "a constant" says 2 'write -D n=5' "$LAGC" run "$m" n=5
-# Energy at the end: half follows mr, unless it is set itself.
+# Energy at the end: `half` follows mr unless it is set.
 near "a parameter that follows another" 1e-12 "$(calc '(1 + 4 + 9)/2 + 5*4/2 + 9*2/2')" "$(final energy "$m" vacuum mr=4)"
 near "and is given" 1e-12 "$(calc '(1 + 4 + 9)/2 + 5*4/2 + 9/2')" "$(final energy "$m" vacuum mr=4 half=1)"
 
@@ -206,7 +206,7 @@ near "a negative fraction has the unit" 1e-12 -0.5 "$(final th "$c" minus)"
 near "with two signs" 1e-12 0.5 "$(final th "$c" minuses)"
 near "with a plus" 1e-12 0.5 "$(final th "$c" plus)"
 
-# ---- include: relative to the file that says it
+# ---- include: relative to the including file
 printf 'model whole "in parts"\ninclude "parts/body.lag"\nscene s { span 2 [s] }\n' >"$dir/whole.lag"
 printf 'include "../coords.lag"\nlagrangian = 1 [kg]/2*x%s^2 - 1 [N/m]/2*x^2\n' "'" >"$dir/parts/body.lag"
 printf 'coord x [m]\ninclude "parts/body.lag"\n' >"$dir/coords.lag"
@@ -320,15 +320,15 @@ check "energy: rk45 holds it" "$LAGC" run "$dir/e.lag" --quiet
 check "energy: rk4 with long steps does not" says 3 'monitor energy: drift' "$LAGC" run "$dir/e.lag" --quiet --method 'rk4(step=0.5)'
 is "a scene with a monitor has the usual outputs" "t [s],x,x',energy" "$(sed 's/energy 1e-6/(x*x) 9/' "$dir/e.lag" >"$dir/f.lag"; "$LAGC" run "$dir/f.lag" -o - 2>/dev/null | head -1 | cut -d, -f1-4)"
 
-# What forces bring is no part of the energy's drift; of an output nothing of the kind is said.
+# The work of forces is no part of the energy's drift; outputs have no such balance.
 printf "model fade\ncoord x\nlagrangian = x'^2/2 - x^2/2\nforce x = -0.1*x'\nscene s { start x = 1; span 10; output x; monitor x 1e-3 }\n" >"$dir/fade.lag"
 of_an_output() { says 3 "monitor x: drift" "$LAGC" run "$dir/fade.lag" --quiet --method gsl-rk8pd && ! grep -q "forces bring" "$TMP/err"; }
 if [ -n "${GSL:-}" ]; then check "a monitor of the first output says nothing of forces" of_an_output; else skip "no GSL"; fi
 
-# A method takes the place of the one of the scene that it is like, with its options.
+# A method on the command line replaces the same method of the scene, with its options.
 printf "model me\ncoord x\nlagrangian = x'^2/2 - x^2/2\nscene a { start x = 1; span 1; method rk4(step = 0.5) }\nscene b { like a; method dop853 }\n" >"$dir/method.lag"
 is "options go with their method" "model me, scene b, method dop853(tol=1e-09)" "$("$LAGC" run "$dir/method.lag" b | head -1)"
-# Emitted C says of which coordinates there are closed forms, and of no more.
+# Emitted C lists the coordinates with closed forms, and no others.
 printf "model cf\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 - (x^2 + y^2)/2\nscene s { start x = 1, y = 2; span 1; exact y = 2*cos(t) }\n" >"$dir/cf.lag"
 is "the closed form is of coordinate 1" "static const int exact_of_s[] = {1};" "$("$LAGC" emit "$dir/cf.lag" | grep '^static const int exact_of')"
 tap_end

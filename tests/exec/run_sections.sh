@@ -1,7 +1,7 @@
 #!/bin/sh
 # Poincare sections: crossings of an oscillator at the times and values of its closed form; of Henon and Heiles' star on the
 # surface and of the right energy, as many as the motion has; the same points in pictures, in two halves of a run, and by an
-# event's name in a simulator; what is refused.
+# event's name in a simulator; refusals.
 : "${LAGC:=build/lagc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
@@ -35,13 +35,13 @@ check "a surface that moves: where the phase of a drive is zero" sh -c "
   $LAGC run models/spring.lag driven drive.w=2 --section 'sin(2 [rad/s]*t) rising' --observe t --until 20 --quiet -o - |
   awk -F, 'NR > 1 { d = \$1 - (NR - 1)*atan2(0, -1); if (d > 1e-12 || -d > 1e-12) bad = 1 } END { exit bad || NR != 7 }'"
 
-# ---- Henon and Heiles: x = 0, x' > 0 and E = 1/8. What is known of t by its last digit, 2e-13 at 1000, moves x by as much.
+# ---- Henon and Heiles: x = 0, x' > 0 and E = 1/8. The last digit of t, 2e-13 at 1000, moves x by as much.
 section "$TMP/star" models/henon_heiles.lag chaos --section 'x rising'
 on_surface() {
   awk -F, '{ if ($2 > 2e-12 || -$2 > 2e-12 || $4 <= 0 || $7 - 1/8 > 1e-11 || 1/8 - $7 > 1e-11) { print; bad = 1 } } END { exit bad || NR < 100 }' "$TMP/star"
 }
 check "the star: on the surface, to the right, of its energy" on_surface
-crossings() { # as rows in time show them
+crossings() { # crossings as seen in rows in time
   "$LAGC" run models/henon_heiles.lag chaos --every 0.01 --quiet -o - | awk -F, 'NR > 2 && $2 > 0 && before <= 0 && NR > 3 { n++ } NR > 1 { before = $2 } END { print n }'
 }
 is "as many as rows in time show" "$(crossings)" "$(wc -l <"$TMP/star" | tr -d ' ')"

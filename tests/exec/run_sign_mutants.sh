@@ -1,6 +1,6 @@
 #!/bin/sh
 # A sign in a force: each sign of the forces in emitted accelerations is flipped in turn, those of single terms too. The charges of L then no longer fit the
-# motion, and a monitor ends the run: of the energy, or of the symmetry that breaks. Their balances do where friction and wind act.
+# motion, and a monitor ends the run: of the energy, or of the symmetry that breaks. With friction and wind their balances do not fit.
 . tests/tap.sh
 
 cat >"$TMP/main.c" <<'END'
@@ -37,7 +37,7 @@ flip() {
     END { if (!k) print n }'
 }
 
-# moves SCENE FILE: status of a run of what FILE.c computes
+# moves SCENE FILE: status of a run of the simulator from FILE.c
 moves() {
   sed "s/^#include \"lag.h\"/&\nextern const lag_scene $1;/" "$TMP/main.c" >"$TMP/with.c"
   # shellcheck disable=SC2086 # a list
@@ -45,7 +45,7 @@ moves() {
   "$TMP/$2" >"$TMP/out"
 }
 
-# mutants MODEL SCENE SIGNS: each is seen, and what is emitted passes
+# mutants MODEL SCENE SIGNS: each mutant is caught, and the emitted program passes
 mutants() {
   what=$1_$2
   "$LAGC" emit "$TMP/$1.lag" "$2" -o "$TMP/right.c" >/dev/null

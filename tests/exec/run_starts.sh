@@ -1,10 +1,10 @@
 #!/bin/sh
-# Starts of models with constraints: `lagc check` and `lagc run` say the same of them, since each finds the start for itself. What cannot
-# hold is refused by both, and the constraint to blame is named; what is taken has the same rank.
+# Starts of models with constraints: `lagc check` and `lagc run`, which find the start by separate code, agree on them. Impossible starts
+# are refused by both with the name of the constraint at fault; accepted ones have the same rank.
 . tests/tap.sh
 
 model() { cat >"$TMP/$1.lag"; }
-# one LINE...: a particle in the plane with a turning body, and what LINEs say
+# one LINE...: a particle in the plane with a turning body, and the statements LINE
 one() {
   {
     echo 'model one "A particle that something holds"'
@@ -34,7 +34,7 @@ taken() {
 value() { sed -n "s/^  $1  *\\([-+0-9.e]*\\) .*/\\1/p" "$TMP/run"; }
 near() { awk -v got="$1" -v want="$2" -v tol="$3" 'BEGIN { d = got - want; print got, want; exit !(got != "" && d <= tol && -d <= tol) }'; }
 
-# ---- what cannot be held
+# ---- constraints that cannot be held
 one 'constraint c: x^2 = 0 [m^2]' 'scene s { start x = 1 [m]; span 2 [s] }'
 check "a square, from afar" refused c 'derivatives of the constraint'
 one 'constraint c: (x^2 + y^2 - l^2)^2 = 0 [m^4]' "scene s { start x = 1 [m], x' = 1 [m/s]; span 2 [s] }"
@@ -62,7 +62,7 @@ check "exactly" refused c 'without `exactly` the nearest start is taken'
 one 'constraint c: x = l' "scene s { start exactly x = 1 [m], x' = 1 [m/s]; span 1 [s] }"
 check "exactly, velocities" refused c 'without `exactly` the nearest start is taken'
 
-# ---- what agrees at the start and not after it
+# ---- constraints that agree at the start only
 contradicts() { # WORDS: check says so, and a run, naming the same constraint, with no rows
   rm -f "$TMP/rows.csv"
   checks "$TMP/one.lag" && return 1
@@ -77,7 +77,7 @@ check "the same acceleration, and another speed" contradicts 'no state obeys the
 one 'constraint a: x = 0 [m]' 'constraint b: 2*x = 0 [m]' "constraint c: x' + th'*0 [m] = 0 [m/s]" "scene s { start y = 1 [m], y' = 1 [m/s]; span 1 [s] }"
 check "those that say the same do not contradict" taken 1 3 one
 
-# ---- what lacks inertia
+# ---- directions without inertia
 model ker <<'END'
 model ker "A coordinate that a factor of 0 leaves alone"
 coord x [m], z [m]
@@ -108,7 +108,7 @@ scene one { start s = 1 [m]; span 1 [s]; output lambda(b) every 0.5 [s] }
 scene kept { like one; method variational(step = 1e-3) }
 END
 check "by dop853 it moves" runs "$TMP/rail.lag" one
-# Methods that find velocities from momenta: constraints lend what they move some inertia. Against dop853, whose M is as it was written, of order 2 and 4;
+# Methods that find velocities from momenta: constraints add inertia to their directions. Against dop853, whose M is as written, of order 2 and 4;
 # the factor by which half the step shrinks the error
 x_of() { runs "$TMP/rail.lag" one "$@" >/dev/null && value x; }
 exact=$(x_of --method dop853 --tol 1e-14)
@@ -184,7 +184,7 @@ more() { ! checks "$TMP/floor.lag" && says '`ground` has a restitution of 1.5' "
 check "a restitution of more than 1" more
 
 # ---- headers start where runs do
-# same TOLERANCE TIME MODEL [SCENE]: the header's start, and where its steps of 1e-3 lead, are those of the run; MAIN: what else its program does
+# same TOLERANCE TIME MODEL [SCENE]: the header's start, and its state after steps of 1e-3, are those of the run; MAIN: more of its program
 same() {
   tolerance=$1
   until=$2

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Symmetries from the .lag file to the report: charges keep still, or balance what disturbs them, to what the method can do; monitors
-# see to it; what is false is refused. Expected values: orders of methods, rounding, and that nothing else is left.
+# Symmetries from the .lag file to the report: charges are conserved, or balance the forces that break them, to the accuracy of the method; monitors
+# watch them; false claims are refused. Expected values: orders of methods, rounding, and no other error.
 . tests/tap.sh
 . tests/exec/lib_charges.sh
 planets=tests/exec/models/planets.lag
@@ -26,7 +26,7 @@ for m in verlet verlet4 variational; do
   check "$m keeps them to rounding" kept 1e-13 $planets quiet --method $m --step 0.01
   is "of the spin, the report says so" rounding "$(of spin trend)"
 done
-# Gauss's methods keep what is quadratic, to the last bit that Newton's method gives
+# Gauss's methods conserve quadratic invariants, to the last bit of Newton's method
 check "gauss keeps them" kept 1e-13 $planets quiet --method 'gauss(stages=2)' --step 0.01
 check "dop853 keeps them to what its steps lose" kept 2e-10 $planets quiet --tol 1e-11 --method dop853
 check "a conserved charge has no work" sh -c "grep -q '\"spin\": {\"is\": \"conserved\", \"initial\": 0.375.*\"work\": 0,' '$TMP/out'"
@@ -58,7 +58,7 @@ for setting in "dop853 --tol 1e-11" "rk45 --tol 1e-11" "taylor --tol 1e-11" "rk4
   check "of the energy, too" below "$(of energy drift)" 1e-9
   is "they are called that" "balanced balanced" "$(of energy is) $(of momentum is)"
 done
-# what is gone is by far more than what is not accounted for
+# the loss is by far larger than the part that is not accounted for
 check "there is work to account for" between "$(of spin work)" -20 -1
 check "the report says what forces did" says '^spin balance: [0-9.e-]* \(from 0.375 kg\*m\^2/s; forces brought -[0-9.]*\)' $planets disturbed
 run $planets disturbed --method rk4 --step 0.01 --json && coarse=$(of spin drift)
@@ -70,7 +70,7 @@ check "by radau, too" run models/driven_damped_pendulum.lag chaos --tol 1e-8 --u
 check "to fifteen tolerances of the median size, which is a third of the largest: at the nodes of its stages, which are better than what lies between them" below "$(of energy drift)" 1.5e-7
 check "without words nothing is integrated, but monitors see it" run $planets disturbed --quiet
 
-# ---- an input in L: what it does to the energy is known while it follows its formula. Held, the spring has a fixed end: the energy stays
+# ---- an input in L: its power is known while it follows its formula. Held, the spring has a fixed end: the energy stays
 spring=tests/exec/models/pulled_spring.lag
 check "the formula's rate has a part in the balance" run $spring --json
 is "which is known" balanced "$(of energy is)"
@@ -87,7 +87,7 @@ END
 sed 's|= 0.1 \[m\]\*sin(w\*t)|= "pull.csv"|' $spring >"$TMP/table.lag"
 check "of a table the rate is not known, and the report says so" says '^energy change: [0-9.e-]* \(not conserved, or not known to be\)' "$TMP/table.lag"
 
-# ---- the input of a scene: check says what it brings. With u = 1 + t/5 in L = ... - u (x^2 + y^2)/2: u' (x^2 + y^2)/2
+# ---- the input of a scene: check reports its power. With u = 1 + t/5 in L = ... - u (x^2 + y^2)/2: u' (x^2 + y^2)/2
 cat >"$TMP/stiffer.lag" <<'END'
 model stiffer
 coord x, y
@@ -117,7 +117,7 @@ for drag in "force x = -a*x'" "force x = -a*x" "dissipation = a*x'^2/2"; do
 done
 check "check shows them" sh -c "'$LAGC' check '$TMP/eddy.lag' | grep -q 'd(energy)/dt = '"
 
-# ---- contacts: what rests is pushed, m g = 19.62 N for 5 s; what strikes jumps
+# ---- contacts: a resting body is pushed, m g = 19.62 N for 5 s; a body that strikes jumps
 cat >"$TMP/ball.lag" <<'END'
 model ball
 coord x [m], y [m]
@@ -141,7 +141,7 @@ check "one that slides down a slope" run "$TMP/ball.lag" slides --json
 is "along which its momentum is a charge" conserved "$(of along is)"
 is "while neither component is" "balanced balanced" "$(of lift is) $(of level is)"
 
-# ---- the size of a charge is that of its terms: what cancels to rounding has not drifted
+# ---- the scale of a charge is the size of its terms: rounding of terms that cancel is no drift
 cat >"$TMP/pair.lag" <<'END'
 model pair
 coord a, b
@@ -175,7 +175,7 @@ check "and is named" grep -q "monitor spin: drift .* is past its limit 1e-06" "$
 sed 's/monitor spin 1e-6, /monitor energy 1e-9, spin 1e-9, /' $planets >"$TMP/planets.lag"
 check "balances are watched, not charges" run "$TMP/planets.lag" disturbed --tol 1e-11
 
-# ---- headers: charges and what they change by, at the start, worked out by hand
+# ---- headers: charges and their rates at the start, worked out by hand
 "$LAGC" header $planets disturbed -o "$TMP/p.h" >/dev/null
 cat >"$TMP/h.c" <<'END'
 #define P_IMPLEMENTATION
@@ -221,7 +221,7 @@ rotated() { # rotated XX XY YX YY: signs of the four terms
 }
 check "as in the book it is proved" rotated '' - '' +
 check "and its inverse" rotated '' + - +
-# signs XX,XY,YX,YY, and what is said of them
+# signs XX,XY,YX,YY, and the verdict on them
 refused() {
   old=$IFS IFS=,
   # shellcheck disable=SC2086 # a list
@@ -238,7 +238,7 @@ for signs in "-,-,,+" ",-,,-"; do
   refused "$signs" 'at s = 0 the symmetry `turn` maps `[xy]` to `-[xy]`'
 done
 
-# A header says which number of its array of charges is which.
+# A header names the numbers in its array of charges.
 names() { "$LAGC" header models/kepler.lag | grep -q '^ \* Symmetries: 0 spin\.'; }
 check "a header numbers the charges from 0" names
 tap_end

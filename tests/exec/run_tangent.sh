@@ -1,6 +1,6 @@
 #!/bin/sh
 # lagc run --tangent: dx/dy(0) of emitted models against closed forms; methods that use different derivatives of the model
-# against each other; columns, units, JSON; what is refused. tests/unit/test_rt_tangent.c has the properties of methods.
+# against each other; columns, units, JSON; refusals. tests/unit/test_rt_tangent.c has the properties of methods.
 : "${LAGC:=build/lagc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 export TMP
@@ -15,7 +15,7 @@ column() { # NAME [UNIT]
   tr ',' '\n' <"$TMP/head" | grep -n -x -F -e "$1" -e "$1 [${2:-}]" | cut -d: -f1
 }
 entry() { cut -d, -f"$(column "$@")" "$TMP/last"; }
-close() { # WHAT EXPRESSION GOT TOLERANCE: relative, absolute below 1
+close() { # NAME EXPRESSION GOT TOLERANCE: relative, absolute below 1
   check "$title: $1" awk -v got="$3" -v tolerance="$4" "
     BEGIN { want = $2; d = got - want; size = want < 0 ? -want : want; if (size < 1) size = 1
       if (got != \"\" && d <= tolerance*size && -d <= tolerance*size) exit 0
@@ -96,8 +96,8 @@ for method in dop853 taylor 'verlet8(step=0.05)' 'gauss(stages=4, step=0.05)'; d
   close "dx'/dx'" "$(after 1 'dp*c - dx*s + (x*c + p*s)*dT')" "$(entry "dx'/dx'(0)")" 1e-9
 done
 
-# Everything by everything, two hits: differences of order 4 over starts 1e-3 apart; what they leave is 1e-12 times a fifth derivative,
-# and 1e-13 of the runs over 1e-3.
+# Everything by everything, two hits: differences of order 4 over starts 1e-3 apart; their error is 1e-12 times a fifth derivative,
+# and 1e-13, the error of the runs, over 1e-3.
 differences() {
   "$LAGC" build tests/exec/models/jumps.lag --method taylor --with linear -o "$TMP/jumps" && "$TMP/jumps" --tangent --tol 1e-14 --json >"$TMP/json" &&
     awk -v sim="$TMP/jumps" 'function end(name, x, i, line, out, n) {
@@ -115,7 +115,7 @@ differences() {
 }
 check "two events that depend on everything, against differences" differences
 
-# ---- what a person sees
+# ---- printed report
 "$LAGC" run models/spring.lag free --tangent --until 1 >"$TMP/out"
 check "the report has the matrix" sh -c "grep -q \"x(0) *x'(0)\" '$TMP/out' && grep -q '^  x  *-0.416146' '$TMP/out'"
 json() { "$LAGC" run models/spring.lag free --tangent --until 1 --json | grep -q "\"tangent\": {\"x\": {\"x\": -0.41614[0-9]*, \"x'\": 0.454[0-9]*}, \"x'\": {\"x\": -1.81[0-9]*, \"x'\": -0.416[0-9]*}}, "; }

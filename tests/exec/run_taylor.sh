@@ -1,10 +1,10 @@
 #!/bin/sh
 # Taylor coefficients in emitted code: every function against digits of mpmath, every model against its own accelerations, in
-# several precisions; and the method `taylor` that lives on them.
+# several precisions; and the method `taylor`, which uses them.
 . tests/tap.sh
 
 here=tests/exec/taylor
-models=$(ls models/*.lag tests/exec/models/*.lag | grep -v mutants) # those have the names of others
+models=$(ls models/*.lag tests/exec/models/*.lag | grep -v mutants) # mutants share names with other models
 longer() { # MODEL N: a long family, whose recurrences are loops
   sed "s/^const N = .*/const N = $2/; s/^model $1/model $1_$2/; s/ b = 0 / b = 0.3 /" "models/$1.lag" >"$TMP/$1_$2.lag"
   models="$models $TMP/$1_$2.lag"
@@ -62,7 +62,7 @@ defects() { # PRECISION
 p=${quad:+quad}
 check "every model: its polynomials solve its equations, to their order" defects "${p:-long}"
 mkdir -p "$TMP/wrong"
-wrong_defect() { # a sign in one of the recurrences of the double pendulum
+wrong_defect() { # a wrong sign in one recurrence of the double pendulum must show
   sed '/^static .*taylor_next(/,/^}/s/ - c\[/ + c[/' "$TMP/c/double_pendulum.c" >"$TMP/wrong/model.c" && ! cmp "$TMP/c/double_pendulum.c" "$TMP/wrong/model.c" &&
     echo '#include "lag_model.h"
       extern const lag_scene double_pendulum_swing, *const all_scenes[];
@@ -70,7 +70,7 @@ wrong_defect() { # a sign in one of the recurrences of the double pendulum
     build "${p:-long}" "$TMP/wrong/model.c" "$TMP/wrong/scenes.c" $here/defect.c -o "$TMP/defect_wrong" && ! "$TMP/defect_wrong"
 }
 check "this test sees a wrong sign" wrong_defect
-wrong_place() { # a loop that reads its neighbours' constants
+wrong_place() { # a loop that reads its neighbours' constants must show
   sed '/^static .*taylor_next(/,/^}/s/ = c\[k + 1\];/ = c[k + 2];/' "$TMP/c/string_400.c" >"$TMP/wrong/model.c" && ! cmp "$TMP/c/string_400.c" "$TMP/wrong/model.c" &&
     echo '#include "lag_model.h"
       extern const lag_scene string_400_mode, *const all_scenes[];
@@ -169,7 +169,7 @@ check "an order that is no whole number" refused "order: write a whole number" m
 check "a table: the message says that tables are the reason" refused "and tables" "$TMP/table.lag" --method taylor
 final() { sed -n "s/^  $1  *\([^ ]*\).*/\1/p" "$TMP/out"; }
 near() { awk -v x="$1" -v y="$2" 'BEGIN { d = x - y; exit !(d < 1e-14 && d > -1e-14) }'; }
-inputs() { # x' = 3 sin(2 t), and x' = 2 where a constant takes the place of the formula
+inputs() { # x' = 3 sin(2 t), and x' = 2 where a constant replaces the formula
   run $here/driven.lag --method taylor --tol 1e-15 --until 1 && near "$(final x)" 2.1242202548207136 &&
     run $here/driven.lag F=2 --method taylor --tol 1e-15 --until 1 && near "$(final x)" 2
 }

@@ -1,13 +1,12 @@
 #!/bin/sh
-# Units in use, as TAP: those that nobody wrote and that were found, degrees Celsius, values with units at the command
-# line. Expected numbers are closed forms, by awk.
+# Units in use, as TAP: inferred units, degrees Celsius, values with units on the command line. Expected numbers are closed forms, by awk.
 cd "$(dirname "$0")/../.." || exit 2
 : "${LAGC:=build/lagc}" "${TMP:=${TMPDIR:-/tmp}}"
 . tests/tap.sh
 case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
 cd "$TMP" || exit 2
 
-# ---- units that were found ----
+# ---- inferred units ----
 cat >found.lag <<'EOF'
 model found "one unit is enough"
 coord x [m], y
@@ -41,11 +40,11 @@ is "and so has --help" "parameters: m = 1 [kg], k = 3 [kg/s^2], c = 0.1 [kg/s], 
 sed 's/^param m \[kg\]/param m/; s/coord x \[m\]/coord x/; s/2 \[m\]/2/' found.lag >bare.lag
 is "a model in which nothing has a unit finds none" "" "$("$LAGC" check bare.lag | grep '^units found')"
 
-# The way in which a model's author writes a unit is kept.
+# Units are printed as the model's author writes them.
 sed 's/^param m/param stiff = 1 [N\/m], m/' found.lag >spelled.lag
 check "found units are spelled as in the model" sh -c '"$0" check spelled.lag | grep -q "k \[N/m\]"' "$LAGC"
 
-# What is found changes nothing but texts.
+# Inferred units change texts only.
 sed 's/, k = 3/, k = 3 [kg\/s^2]/; s/, c = 0.1/, c = 0.1 [kg\/s]/; s/coord x \[m\], y/coord x [m], y [m]/' found.lag >written.lag
 programs() { "$LAGC" derive "$1" --format c; }
 is "the same program as with written units" "$(programs written.lag)" "$(programs found.lag)"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# lagc effects: what each effect costs, weighs and changes. Operations are compared with `lagc derive --ops` of texts from which effects
+# lagc effects: cost, weight and consequence of each effect. Operations are compared with `lagc derive --ops` of texts from which effects
 # are deleted; weights and differences with closed forms.
 cd "$(dirname "$0")/../.." || exit 2
 : "${LAGC:=build/lagc}" "${BIN:=build/test/bin}"
@@ -8,7 +8,7 @@ cd "$(dirname "$0")/../.." || exit 2
 dir=$TMP/weigh
 mkdir -p "$dir"
 weigh() { "$LAGC" effects "$@" --json >"$dir/json" 2>"$dir/err" || cat "$dir/err"; }
-# of FIELD: of the whole; of EFFECT FIELD: of one effect
+# of FIELD: a field of the whole; of EFFECT FIELD: of one effect
 of() {
   case $# in
     1) sed -n "s/.*\"$1\": \(\"[^\"]*\"\|\[[^]]*\]\|[^,}]*\).*/\1/p" "$dir/json" ;;
@@ -87,7 +87,7 @@ most=$(awk 'BEGIN { for (k = 1; k <= 16; k++) { t = 1.25*k; x = cos(t); v = sin(
   a = A/X; b = B/V; a = a < 0 ? -a : a; b = b < 0 ? -b : b; printf "%.15g", 5e-7*(a > b ? a : b) }')
 near "difference: c t/2" 1e-10 "$most" "$(of friction difference)"
 
-# ---- operations add up: those of each effect are those of a call of the text without it, as the head of emitted C has them
+# ---- operations add up: the cost of an effect is the difference to a call of the text without it, by the head of emitted C
 uses() { # MODEL SCENE EFFECTS: operations of the scene when it uses these
   sed "/^scene $2 /,/^}/s/^  use .*/  use $3/" "$1" >"$dir/with.lag"
   "$LAGC" emit "$dir/with.lag" "$2" -o - | sed -n 's/^ \* Accelerations: \([0-9]*\) operations.*/\1/p'
@@ -112,7 +112,7 @@ adds_up() { # MODEL SCENE EFFECT...
 }
 check "satellite: operations add up" adds_up models/satellite.lag low oblate drag moon sunlight relativity
 check "foucault_lab: with a coordinate more" adds_up models/foucault_lab.lag lab rotation amplitude air support
-# wind requires drag: what drag takes is what it takes without wind
+# wind requires drag: the cost of drag is counted without wind
 weigh models/projectile_world.lag stadium
 is "what requires another is counted apart from it" \
   "$(($(uses models/projectile_world.lag stadium 'drag, magnus, coriolis, falloff') - $(uses models/projectile_world.lag stadium 'magnus, coriolis, falloff')))" "$(of drag operations)"
@@ -129,13 +129,13 @@ smallest() { "$LAGC" effects "$@" 2>&1 | sed -n 's/^  use/use/p'; }
 is "nothing but what is needed" "use hand" "$(smallest "$push" all --accuracy 0.01)"
 is "none" "use none" "$(smallest "$push" all --accuracy 0.5)"
 check "all" says 0 'no effect of the scene can be left out' "$LAGC" effects "$push" all --accuracy 1e-5
-# each of them alone makes a quarter; both together make nothing, which no estimate tells
+# each alone makes a quarter; both together make nothing, which no estimate shows
 is "two that cancel: runs say that both can go" "use none" "$(smallest "$push" cancel --accuracy 1e-6)"
 is "with its values" "use hand(f = 2e-9)" "$(smallest "$push" cancel --accuracy 1e-10)"
 is "what one requires stays" "use hand" "$(smallest "$push" nested --accuracy 0.1)"
 weigh models/satellite.lag low --accuracy 1e-4
 is "satellite: two of five" "[oblate, drag]" "$(of effects | sed 's/", "/, /g' | tail -1)" 2>/dev/null
-pasted() { # the use line, put into the scene, gives a result so near
+pasted() { # the proposed `use` line, put into the scene, gives a result of that accuracy
   use=$(smallest models/satellite.lag low --accuracy 1e-4)
   sed "/^scene low /,/^}/s/^  use .*/  $use/" models/satellite.lag >"$dir/pasted.lag"
   for f in models/satellite.lag "$dir/pasted.lag"; do "$LAGC" run "$f" low -o - --quiet 2>/dev/null | tail -1 | tr , '\n' | sed -n 2,4p; done >"$dir/ends"
@@ -163,7 +163,7 @@ check "and says how" says 0 'found by leaving out one after the other' "$LAGC" e
 } >"$dir/pairs.lag"
 check "claims no more than it has tried" says 0 'leaving out one effect after the other, none can go' "$LAGC" effects "$dir/pairs.lag" s --accuracy 1e-8
 
-# A force that is 0 all the time: what the two runs differ by is rounding of steps of other sizes.
+# A force that is always 0: the two runs differ by rounding in steps of other sizes.
 cat >"$dir/nothing.lag" <<'END'
 model nothing "An effect that does nothing"
 coord x [m], y [m]
@@ -186,7 +186,7 @@ check "an accuracy that the run does not have" says 3 'add --tol with a smaller 
 check "no such scene" says 1 'did you mean `all`?' "$LAGC" effects "$push" al
 check "no such value" says 2 'no such parameter' "$LAGC" effects "$push" all xx=3
 check "a run that fails" says 3 '' "$LAGC" effects "$push" all --method 'rk45' hand.f=1e308 F=1e308
-# A force with a pole: what cannot be measured is null, and why is said.
+# A force with a pole: fields that cannot be measured are null, with a reason.
 printf "model pole\ncoord x\nlagrangian = x'^2/2\neffect pole { force x = 1/(0.5 - t)^3 }\nscene s { start x = 1; span 1 }\n" >"$dir/pole.lag"
 weigh "$dir/pole.lag"
 is "no difference where a run fails" null "$(of pole difference)"

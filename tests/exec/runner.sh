@@ -1,5 +1,5 @@
 #!/bin/sh
-# tests/run.sh itself: what it finds, counts and says. A runner that calls failures passes is worse than none.
+# tests/run.sh itself: suites found, counts, messages. A runner that reports failures as passes is worse than none.
 . tests/tap.sh
 
 # A tree with a copy of the runner, and suites made for it.

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Every compilation compares what it compiled with the text. Here wrong rewrites are planted in sym/, and wrong steps after it, one at a time:
+# Every compilation compares its programs with the text. Here wrong rewrites are planted in sym/, and wrong steps after it, one at a time:
 # the compiler that results must refuse one of tests/exec/self_check/*.lag with an internal error, and write nothing.
 . tests/tap.sh
 
@@ -18,7 +18,7 @@ build_with() {
     "${CC%% *}" -o "$TMP/lagc" "$BUILD/obj/src/main.o" "$TMP/wrong.o" "$BUILD/liblagc.a" -lm
 }
 
-# caught FILE PATTERN: a compiler with this mistake says so of one of the models.
+# caught FILE PATTERN: a compiler with this mistake refuses one of the models.
 caught() {
   rm -f "$TMP/lagc" "$TMP/out.c"
   build_with "$1" "$2" || return 1
@@ -38,7 +38,7 @@ caught() {
 
 for m in $models; do check "agrees: $m" "$LAGC" emit "$m" -o "$TMP/right.c"; done
 
-# Almost singular mass matrices, by Cramer's rule too: the program's error is the condition's, and no mistake.
+# Almost singular mass matrices, by Cramer's rule too: the program's error is due to the condition, and no mistake.
 agrees() { # agrees TEXT OPTIONS...
   printf 'model m\ncoord x, y\n%s\n' "$1" >"$TMP/bad.lag"
   shift
@@ -62,7 +62,7 @@ lagrangian = m/2*(x'^2 + ($form)^2)
 scene s { start x = 1, y = 1 }"
 done
 
-# Those of jets/ are mistakes in what judges: of its partial derivatives, too, each rule is looked at.
+# Mistakes in jets/ are mistakes of the judge: each rule of its partial derivatives is tested, too.
 n=0
 while IFS='|' read -r file pattern; do
   [ -n "$file" ] || continue
@@ -116,20 +116,20 @@ jets/tape_partial.c|s/return chosen(t, i.a, db, dc)/return chosen(t, i.a, dc, db
 jets/tape_partial.c|s/negative(t, product(t, i.a, db))), sum/product(t, i.a, db)), sum/
 ROWS
 
-# What only `modes` and `lyapunov` ask for.
+# Programs that only `modes` and `lyapunov` need.
 linearisation() { build_with "$1" "$2" && ! "$TMP/lagc" modes models/double_pendulum.lag >"$TMP/said" 2>&1 && grep 'internal error: the linearisation: the text gives' "$TMP/said"; }
 check "the linearisation" linearisation src/mech/linear.c 's/expr_sub(e->g, e->f\[i\], inertia\[i\])/expr_add(e->g, e->f[i], inertia[i])/'
 check "the columns of its entries" linearisation src/ir/lower_unit.c 's/((IrEntry){dr.at\[k\].row, dr.at\[k\].col})/((IrEntry){dr.at[k].row, dr.at[k ? k - 1 : 0].col})/'
 
-# By the argument of a function it says that it does not compare.
+# Derivatives by the argument of a function are reported as not compared.
 printf 'model m\ncoord x\nfunction f(s) = d(s^3, s)\nlagrangian = x'"'"'^2/2 - f(x)\n' >"$TMP/argument.lag"
 check "what is not compared is said" sh -c "'$LAGC' check --verbose '$TMP/argument.lag' | grep -q 'not compared: the equations of motion, whose text has \`d\`'"
 printf 'model m\ncoord x\nlagrangian = x'"'"'^2/2 - x^2\nscene s { start x = 1; span 1; exact x = cos(sqrt(2)*t); output x, 2*energy, error(x), p_x }\n' >"$TMP/exact.lag"
 check "outputs that are not" sh -c "'$LAGC' check --verbose '$TMP/exact.lag' | grep -q '^  not compared: the outputs error(x)\$'"
 
-# What is right, and was taken for a mistake: columns beside one of their own components; 1 - tanh(x)^2 far out, of which rounding leaves nothing;
-# 0 times what has no value.
-right() { # TEXT: agrees, and what it puts out is compared
+# Correct programs that were once refused: columns beside one of their own components; 1 - tanh(x)^2 far out, which rounding makes 0;
+# 0 times an undefined value.
+right() { # TEXT: agrees, and its outputs are compared
   printf '%s\n' "$1" >"$TMP/right.lag"
   "$LAGC" check --verbose "$TMP/right.lag" >"$TMP/said" 2>&1 && grep '^compared' "$TMP/said" && ! grep 'not compared\|nothing was decided' "$TMP/said"
 }

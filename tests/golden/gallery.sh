@@ -1,8 +1,7 @@
 #!/bin/sh
-# The pictures of models/README.md are what the commands above them draw (`make gallery` draws them anew). Numbers may differ by
-# half a pixel: another C library, or another processor, rounds other digits; for that reason curves may have other points,
-# if no point is farther than that from the other curve. Text may not differ.
-# The commands that the page tells its readers to type work.
+# The pictures of models/README.md agree with the commands above them (`make gallery` draws them anew). Numbers may differ by
+# half a pixel, since C libraries and processors round differently; curves may have other points, if none is farther than that
+# from the other curve. Text may not differ. The commands on the page work.
 . tests/tap.sh
 
 # A picture without its curves as a list: each number, and each text between numbers, on a line of its own.

@@ -1,8 +1,8 @@
 #!/bin/sh
-# README.md and models/README.md show what commands print: a block after `<!-- printed by: COMMAND -->` is that command's
+# README.md and models/README.md show output of commands: a block after `<!-- printed by: COMMAND -->` is that command's
 # output, to the byte. README's tutorial is followed in a folder of its own: a block after `<!-- file: NAME -->` is such a
-# file, one after `<!-- added to: NAME -->` goes to its end, and one after `<!-- session -->` has commands after `$ ` and what
-# they print; numbers may differ in the last digits there, and times at will. BLESS=1 writes what differs. Their links, and those of
+# file, one after `<!-- added to: NAME -->` goes to its end, and one after `<!-- session -->` has commands after `$ ` and their
+# output, where numbers may differ in the last digits, and times at will. BLESS=1 rewrites blocks. Their links, and those of
 # src/README.md and grammar/LANGUAGE.md, lead to files.
 . tests/tap.sh
 
@@ -58,7 +58,7 @@ awk -v dir="$TMP/steps/" '
   }
   out { print >out }' README.md
 
-session() { # a session's block on standard input -> the same with what the commands print now
+session() { # a session's block on standard input -> the block with the present output
   while IFS= read -r line; do
     case $line in
       '$ '*)
@@ -68,7 +68,7 @@ session() { # a session's block on standard input -> the same with what the comm
     esac
   done
 }
-# Line by line, word by word; numbers within 1e-6, what stands behind "right-hand sides N," at will.
+# Line by line, word by word; numbers within 1e-6, text behind "right-hand sides N," at will.
 same_session() {
   sed 's/\(right-hand sides [0-9]*\), .*/\1/' "$1" >"$TMP/a"
   sed 's/\(right-hand sides [0-9]*\), .*/\1/' "$2" >"$TMP/b"

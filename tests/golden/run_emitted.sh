@@ -1,8 +1,8 @@
 #!/bin/sh
-# What the compiler writes for each model of the gallery is what it wrote before: emitted.txt has a line each,
-#   CODE TEXT MODEL COMMAND      checksums of the C without comments and of the whole; of what is not C, the second only
-# Whether a change was meant, the texts tell:
-#   KEEP=FOLDER sh tests/golden/run_emitted.sh      keeps them, so that those of two versions can be laid side by side (diff -r)
+# Emitted files of each model of the gallery have not changed: emitted.txt has a line each,
+#   CODE TEXT MODEL COMMAND      checksums of the C without comments, and of the whole file; of other files the second only
+# To see whether a change was meant:
+#   KEEP=FOLDER sh tests/golden/run_emitted.sh      keeps the files, to compare two versions (diff -r)
 #   BLESS=1 sh tests/golden/run_emitted.sh          writes emitted.txt anew, on purpose
 . tests/tap.sh
 : "${LAGC:=build/lagc}" "${CC:=cc}"

@@ -1,9 +1,9 @@
 #!/bin/sh
-# Golden tests of what `lagc check` says, as TAP:
+# Golden tests of the messages of `lagc check`, as TAP:
 #   tests/golden/err/sem_NAME.lag + .expected    a bad model: exit status 1, the messages exactly, nothing on stdout
 #   tests/golden/err/warn_NAME.lag + .expected   a good one that draws warnings: exit status 0, the messages exactly
 #   tests/golden/ok/NAME.lag                     a good one, the near miss of an error: exit status 0, no messages
-# rows.txt is the list of what is refused, with the file of each row and its near miss.
+# rows.txt lists refused constructs, each with its file and its near miss.
 # Every bad model is also given to the commands that write files: none may be left, whole or in part.
 # LAGC names the compiler; BLESS=1 rewrites the expectations, on purpose.
 cd "$(dirname "$0")/../.." || exit 2
@@ -69,7 +69,7 @@ for lag in tests/golden/err/sem_*.lag; do
   for command in emit build derive header; do
     XDG_CACHE_HOME=$tmp/cache "$lagc" $command "$lag" -o "$tmp/out/file" >"$tmp/stdout" 2>"$tmp/stderr"
     code=$?
-    # `derive`, `emit` look at one scene: a mistake in another is none of theirs
+    # `derive` and `emit` read one scene, and do not report mistakes in others
     if [ "$code" = 0 ] && [ "$command" != build ]; then
       rm -f "$tmp/out/file"
       continue

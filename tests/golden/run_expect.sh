@@ -1,5 +1,5 @@
 #!/bin/sh
-# Golden tests of false expectations, and of what else only `lagc check` refuses, as TAP: of tests/golden/err/expect_NAME.lag and
+# Golden tests of false expectations, and of other models that only `lagc check` refuses, as TAP: for tests/golden/err/expect_NAME.lag and
 # check_NAME.lag it fails with status 1 and prints NAME.expected, exactly. A new test is these two files; BLESS=1 rewrites the expectations, on purpose.
 . tests/tap.sh
 
@@ -19,13 +19,13 @@ for lag in tests/golden/err/expect_*.lag tests/golden/err/check_*.lag; do
   check "$lag" golden "$lag"
 done
 
-# A name in a listing means one thing.
+# Names in a listing are unique.
 twice() { "$LAGC" derive tests/exec/models/chain4.lag | sed -n '/^where/,/^$/s/^  \([^ ]*\) = .*/\1/p' | sort | uniq -d; }
 listed() { "$LAGC" derive tests/exec/models/chain4.lag | grep -c '^  d_'; }
 empty "derivatives of lets have names of their own" "$(twice)"
 check "some are listed" [ "$(listed)" -gt 2 ]
 
-# Of 14 coordinates and 13 lets with primes: a rate and a force of each let, and an equation of each coordinate.
+# With 14 coordinates and 13 lets with primes: a rate and a force for each let, and an equation for each coordinate.
 equations() { "$LAGC" derive tests/exec/models/many.lag | sed -n '/^equations of motion/,/^$/p' | grep -c ' = '; }
 check "no equation is left out" [ "$(equations)" = 40 ]
 

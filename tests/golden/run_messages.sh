@@ -1,9 +1,9 @@
 #!/bin/sh
-# Every error and warning that the compiler has about a model stands in a golden expectation: no message is written that
-# nobody has looked at. What is missing: drop a model that draws it into tests/golden/err (run_errors.sh says how).
+# Every error and warning that the compiler has about a model stands in a golden expectation, so that somebody has
+# read it. For a missing one add a model that draws it to tests/golden/err (see run_errors.sh).
 . tests/tap.sh
 
-# Messages that are shown by other suites, by a part of their text.
+# Messages that other suites show, by a part of their text.
 elsewhere='internal error
 -D %s
 --fix
@@ -15,7 +15,7 @@ a section is a surface in the space of states
 this is not a finite number
 this is nested too deep'
 
-# The texts in the calls that report, one a line, as FILE:LINE<tab>TEXT; texts that are no sentence are left out.
+# The texts in the calls that report, one a line, as FILE:LINE<tab>TEXT; texts that are no sentences are left out.
 texts() {
   awk -v calls='(diag_error|diag_warning|not_yet|unit_bad|report_count|refuse_point)[(]' '
     function literals(call,   text, in_text, c, i) {
@@ -36,7 +36,7 @@ texts() {
     pending != "" || $0 ~ "^" calls { pending = pending " " $0; if ($0 ~ /;[ }]*$/) flush() }' src/*/*.c
 }
 
-# Of a format the longest piece between its conversions.
+# The longest piece of a format between its conversions.
 longest() {
   awk -F '\t' '{ n = split($2, piece, /%[-.*0-9]*(l*[dufsgcX]|%)/); best = ""
     for (i = 1; i <= n; i++) if (length(piece[i]) > length(best)) best = piece[i]

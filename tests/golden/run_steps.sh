@@ -1,7 +1,7 @@
 #!/bin/sh
-# How many steps each method takes, and what they cost: steps.txt has a line each,
-#   STEPS REJECTED RIGHT-HAND-SIDES SYSTEMS CORRECTIONS MODEL METHOD         of a refusal: five dashes
-# These are counts, the same on every machine, and not times. More of them may be right, but on purpose:
+# Steps of each method and their costs: steps.txt has a line each,
+#   STEPS REJECTED RIGHT-HAND-SIDES SYSTEMS CORRECTIONS MODEL METHOD         five dashes: refused
+# Counts, which are the same on every machine, not times. To accept other counts, on purpose:
 #   BLESS=1 sh tests/golden/run_steps.sh      writes steps.txt anew
 . tests/tap.sh
 : "${LAGC:=build/lagc}"

@@ -3,7 +3,7 @@
 hard=tests/hard
 models=$hard/cases # their folder
 
-# emit_one NAME SCENE SUFFIX OPTIONS...: of several programs of a model, each needs names of its own.
+# emit_one NAME SCENE SUFFIX OPTIONS...: several programs of one model need different names.
 emit_one() {
   emit_name=$1 emit_scene=$2 emit_suffix=$3
   shift 3
@@ -34,7 +34,7 @@ emit_cases() {
   mv "$TMP/scenes.txt" "$TMP/scenes.c"
 }
 
-# compile_cases PROGRAM: of what emit_cases left, two files at a time.
+# compile_cases PROGRAM: compiles the output of emit_cases, two files at a time.
 compile_cases() {
   for f in "$TMP"/*.c; do echo "$f"; done |
     xargs -P 2 -I FILE "$CC" -std=c11 -O1 -ffp-contract=off -w -I"$INC" -c FILE -o FILE.o || return 1
@@ -42,7 +42,7 @@ compile_cases() {
   "$CC" -std=c11 -O1 -ffp-contract=off -Wall -Wextra -I"$INC" ${GSL:+-DWITH_GSL} $hard/hard.c "$TMP"/*.c.o ${GSL:+"$BUILD/liblag_gsl.a"} "$BUILD/liblag.a" $LIBS -o "$1"
 }
 
-# The tap of the command, as part of this one.
+# The TAP results of the command, as part of this suite's.
 tap_of() {
   "$@" >"$TMP/out"
   while read -r line; do

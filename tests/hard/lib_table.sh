@@ -1,5 +1,5 @@
 #!/bin/sh
-# `make hard`: a row a case, by the method that its accuracy is reached by fastest (of runs.txt, the first that does not refuse the model).
+# `make hard`: a row a case, by the method that reaches its accuracy fastest (the first in runs.txt that does not refuse the model).
 # Environment: as tests/run.sh says.
 set -e
 TMP=$(mktemp -d)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The published problems by every method that integrates them: what runs.txt says of each, with the limits that it knows.
+# The published problems by every method that integrates them, to the limits in runs.txt.
 . tests/tap.sh
 . tests/hard/lib_cases.sh
 

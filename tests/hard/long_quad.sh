@@ -1,7 +1,7 @@
 #!/bin/sh
-# The published problems in quadruple precision: taylor reaches the last digit of what is published, or what the problem's condition leaves of
-# 34 digits: 1e-18 of the tolerance that is stated for 16. In double precision no problem does, but for tops that precess steadily:
-# there a double can hold what an expected number is rounded to. Times that doubles do not reach are reached here.
+# The published problems in quadruple precision: taylor reaches the last published digit, or the digits that the problem's condition leaves of
+# 34: 1e-18 of the tolerance stated for 16. In double precision no problem does, except tops in steady precession, whose expected
+# numbers a double holds. Times beyond the reach of doubles are reached here.
 . tests/tap.sh
 . tests/hard/lib_cases.sh
 . tests/exec/lib_precision.sh

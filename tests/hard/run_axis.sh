@@ -1,6 +1,6 @@
 #!/bin/sh
-# A constraint with time in it: the axis of a car on a road that moves. Two methods of their own kind agree with each other, and with what is
-# published, as far as those digits go.
+# A constraint with time in it: the axis of a car on a road that moves. Two methods of different kind agree with each other, and with the
+# published digits as far as these are right.
 . tests/tap.sh
 model=tests/hard/cases/car_axis.lag
 

@@ -23,7 +23,7 @@ row() { awk -F, -v t="$2" -v n="${3:-10}" '$1 == t { for (i = 2; i <= n; i++) pr
 value() { sed -n "s/.*\"$2\": \([-+0-9.e]*\).*/\1/p" "$TMP/$1.json"; }
 below() { awk -v x="$1" -v most="$2" 'BEGIN { print x; exit !(x <= most && -x <= most) }'; }
 
-# ---- what is redundant ----
+# ---- redundant constraints ----
 "$LAGC" check $bodies >"$TMP/bodies.txt"
 "$LAGC" check $points >"$TMP/points.txt"
 check "bodies: one degree of freedom" grep -q '^scene go: 1 degree of freedom; 35 constraints, of rank 34 at the start$' "$TMP/bodies.txt"
@@ -55,13 +55,13 @@ for k in wide points; do
   # The start's potential energy is 29.43 J; 200 steps at 1e-12 allow for 2e-10.
   check "$k: energy" below "$(value $k energy_drift)" 1e-12
   check "$k: on the constraints" within "$(value $k constraint_residual) $(value $k constraint_rate_residual)" "0 0" 1e-14
-  # Beside the constraints redundant ones contradict each other: accelerations that are asked for there made 1e4 steps of it, a third rejected.
+  # Off the constraints, redundant ones contradict each other: accelerations evaluated there cost 1e4 steps, a third of them rejected.
   check "$k: steps as long as the motion allows" below "$(value $k steps)" 300
   check "$k: none is rejected" below "$(value $k rejected)" 10
 done
 
 # ---- another method ----
-# Of order 2: an error of 1.5e-5 at 0.02 s becomes a quarter at 0.01 s, and what both say of no step at all is of order 4.
+# Of order 2: an error of 1.5e-5 at 0.02 s becomes a quarter at 0.01 s, and their extrapolation to step 0 is of order 4.
 check "variational, 0.02 s" run coarse $bodies --method variational --step 0.02 --until 1
 check "variational, 0.01 s" run fine $bodies --method variational --step 0.01 --until 1
 limit() { echo "$(row fine 1) $(row coarse 1)" | awk '{ for (i = 1; i <= 9; i++) printf "%.17g ", (4*$i - $(i + 9))/3 }'; }
@@ -83,7 +83,7 @@ observed=$(for i in 1 2 3 4 5; do for k in rod first last twist; do printf -- '-
 check "points: with multipliers" run least $points $observed --until 0.5
 check "points: the least multipliers" within "$(awk -F, '$1 == "0" { for (i = 12; i <= 31; i++) printf "%s ", $i }' "$TMP/least.csv")" "$least" 1e-12
 
-# The same constraints in another order, and as other multiples of themselves
+# The constraints in another order, and multiplied by other factors
 sed 's/dot(n\[i-1\], n\[i\]) = 0/1000*dot(n[i-1], n[i]) = 0/; s/dot(n\[i\], n\[i\]) = 1 }/0.01*dot(n[i], n[i]) = 0.01 }/
   /constraint rod/{h;d;}; /constraint twist/{G;}' $points >"$TMP/other.lag"
 check "constraints rewritten" grep -q '1000\*dot' "$TMP/other.lag"

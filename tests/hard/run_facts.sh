@@ -1,5 +1,5 @@
 #!/bin/sh
-# What tests/hard compares with is what cases.json says: every value, every tolerance, and nothing is left out without a reason.
+# Expected values and tolerances of tests/hard are those of cases.json, and none is left out without a reason.
 . tests/tap.sh
 hard=tests/hard
 facts() { awk -f $hard/lib_facts.awk $hard/cases.json $hard/unused.txt "$1" 2>&1; }
