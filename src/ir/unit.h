@@ -3,7 +3,7 @@
 #ifndef LAGC_IR_UNIT_H
 #define LAGC_IR_UNIT_H
 
-#include "ir/series.h"
+#include "series/series.h"
 
 typedef struct {
   const char *name, *unit; /* as the user wrote them */

@@ -2,7 +2,7 @@
  * programs' accelerations and multipliers there, with their sensitivity to rounding. */
 #include <math.h>
 
-#include "ir/lower.h"
+#include "lower/lower.h"
 #include "jets/check_impl.h"
 
 /* --- random numbers: splitmix64, the same on every machine (G. Steele, D. Lea, C. Flood, OOPSLA 2014, doi:10.1145/2660193.2660195) --- */

@@ -1,7 +1,7 @@
 /* Jumps of L, of momenta, constraints and forces, each as a warning at its place in the text. */
 #include "mech/discontinuity.h"
 
-#include "mech/noether.h"
+#include "symmetry/noether.h"
 #include "mech/switching_surfaces.h"
 
 ExprJumps discontinuities_of(const Eqns *e, Expr x) {

@@ -6,13 +6,13 @@
 #include <string.h>
 
 #include "base/methods.h"
-#include "mech/charges.h"
+#include "symmetry/charges.h"
 #include "mech/constrain.h"
 #include "mech/degree.h"
 #include "mech/discontinuity.h"
 #include "mech/first_order.h"
 #include "mech/lagrange.h"
-#include "mech/lend.h"
+#include "mech/constraint_regularise.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
 

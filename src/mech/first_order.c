@@ -7,7 +7,7 @@
 
 #include "base/dense.h"
 #include "mech/lagrange.h"
-#include "mech/skew.h"
+#include "mech/antisymmetric_solve.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
 #include "sym/prove.h"

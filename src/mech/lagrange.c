@@ -6,7 +6,7 @@
 
 #include "base/sparse_solve.h"
 #include "mech/definite.h"
-#include "mech/lift.h"
+#include "mech/augmented_system.h"
 #include "mech/order.h"
 #include "mech/squares.h"
 #include "mech/states.h"

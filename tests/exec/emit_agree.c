@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "base/dense.h"
-#include "ir/lower.h"
+#include "lower/lower.h"
 #include "lag_model.h"
 #include "mech/eqns.h"
 #include "model/model.h"

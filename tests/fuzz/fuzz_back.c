@@ -8,16 +8,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "check.h"
-#include "conserved.h"
+#include "commands/check.h"
+#include "commands/noether.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
 #include "emit/emit_model.h"
 #include "ir/hoist.h"
-#include "ir/lower.h"
+#include "lower/lower.h"
 #include "mech/eqns.h"
-#include "mech/show.h"
+#include "report/show.h"
 #include "mech/start.h"
 #include "model/model.h"
 #include "syntax/parse.h"

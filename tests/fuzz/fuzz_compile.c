@@ -14,10 +14,10 @@
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
 #include "emit/emit_model.h"
-#include "mech/show.h"
-#include "ir/lower.h"
+#include "report/show.h"
+#include "lower/lower.h"
 #include "mech/eqns.h"
-#include "mech/expect.h"
+#include "claims/expect.h"
 #include "model/model.h"
 #include "syntax/parse.h"
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "ir/hoist.h"
-#include "ir/lower.h"
+#include "lower/lower.h"
 #include "jets/self_check.h"
 #include "model.h"
 #include "syntax/parse.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ir/lower.h"
+#include "lower/lower.h"
 #include "mech/eqns.h"
 #include "sym/eval.h"
 #include "syntax/parse.h"

@@ -3,7 +3,7 @@
  * completion and the editors' grammar are held against them. */
 #include <stdio.h>
 
-#include "cli/commands.h"
+#include "commands/command_table.h"
 #include "model/model.h"
 #include "syntax/token.h"
 

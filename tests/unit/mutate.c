@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mech/expect.h"
+#include "claims/expect.h"
 #include "syntax/parse.h"
 
 /* Bytes from..to of the text become `with`; in the mutant the edit is seen at begin..end, and a caret may lie anywhere

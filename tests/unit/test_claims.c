@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "mech/expect.h"
+#include "claims/expect.h"
 #include "syntax/parse.h"
 
 #define FREE                                                                         \

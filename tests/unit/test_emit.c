@@ -13,7 +13,7 @@
 
 #include "base/dense.h"
 #include "emit/cwriter.h"
-#include "ir/lower.h"
+#include "lower/lower.h"
 #include "mech/eqns.h"
 #include "sym/eval.h"
 #include "syntax/parse.h"

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "mech/expect.h"
+#include "claims/expect.h"
 #include "syntax/parse.h"
 
 typedef struct {

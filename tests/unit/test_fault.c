@@ -13,8 +13,8 @@
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
 #include "emit/emit_model.h"
-#include "ir/lower.h"
-#include "mech/show.h"
+#include "lower/lower.h"
+#include "report/show.h"
 #include "syntax/parse.h"
 
 typedef struct {

@@ -10,7 +10,7 @@
 
 #include "base/dense.h"
 #include "compile_text.h"
-#include "mech/skew.h"
+#include "mech/antisymmetric_solve.h"
 
 typedef long double Real;
 

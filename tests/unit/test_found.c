@@ -13,8 +13,8 @@
 
 #include "base/dense.h"
 #include "compile_text.h"
-#include "mech/noether_find.h"
-#include "mech/noether_frame.h"
+#include "symmetry/noether_find.h"
+#include "symmetry/noether_frame.h"
 #include "mech/states.h"
 #include "sym/diff.h"
 

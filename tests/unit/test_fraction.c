@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "mech/noether_fraction.h"
+#include "symmetry/noether_fraction.h"
 
 static void test_found(void **state) {
   (void)state;

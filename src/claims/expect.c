@@ -1,0 +1,193 @@
+/* Verdict on an expectation: a state at which the sides differ, else a proof for all states, else a proof by cases. With contacts, the equations
+ * are judged with all contacts open, and with each closed alone. */
+#include "claims/expect.h"
+
+#include "claims/cases.h"
+#include "symmetry/charges.h"
+#include "claims/suggest_correction.h"
+#include "claims/edit_sites.h"
+#include "claims/witness.h"
+
+/* --- verdicts --- */
+
+static const char *label_of(const Model *m, const Expect *x) {
+  const char *left = span_text(m, ast_expr(m->ast, x->lhs_ast)->span);
+  return x->name ? arena_printf(m->arena, "%s (%s)", left, x->name) : left;
+}
+
+static void report_refuted(const Eqns *e, const Expect *x, const char *label, const char *difference) {
+  const Model *m = e->m;
+  Mend mend = mend_find(e, x);
+  if (mend.edit) diag_error(m->diags, mend.caret, "expect %s is false: %s", label, mend.edit);
+  else diag_error(m->diags, mend.caret, "expect %s is false, and no single edit found makes it true; the fault seems to be here", label);
+  diag_help(m->diags, "%s", difference);
+}
+
+/* Whether all numbers are exact: otherwise a nonzero difference may be rounding. */
+static int numbers_are_exact(const Eqns *e, const Expect *x) {
+  VEC(Expr) roots = {0};
+  vec_push(e->m->arena, &roots, x->lhs);
+  vec_push(e->m->arena, &roots, x->rhs);
+  for (uint32_t i = 0; i < e->n; i++) vec_push(e->m->arena, &roots, e->f[i]);
+  for (uint32_t i = 0; i < e->mass.n; i++) vec_push(e->m->arena, &roots, e->mass.at[i].e);
+  for (uint32_t i = 0; i < e->m->states.n; i++) vec_push(e->m->arena, &roots, e->flow[i]);
+  ExprList l = expr_topo(e->g, roots.at, roots.n);
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_is_num(e->g, l.at[i]) && !num_is_exact(expr_number(e->g, l.at[i]))) return 0;
+  return 1;
+}
+
+#define EXACT_NUMBERS "numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits"
+
+static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r, int allow_numeric) {
+  Diags *d = e->m->diags;
+  const char *text = arena_printf(e->m->arena, "expect %s is not decided: no proof is found, and at all states tried the sides agree to %d digits", r->label, r->digits);
+  if (allow_numeric) {
+    diag_warning(d, x->span, "%s", text);
+    return;
+  }
+  diag_error(d, x->span, "%s", text);
+  const char *cure = "write it in another form, or take agreement in numbers for enough: `lagc check --allow-numeric`";
+  diag_help(d, "%s", r->inexact ? arena_printf(e->m->arena, EXACT_NUMBERS "; %s", cure) : cure);
+}
+
+/* A state at which the sides differ refutes, whatever a proof says; without one, a proof decides. */
+static ExpectResult judge(const Eqns *e, const CaseSymbols *symbols, const Expect *x) {
+  enum { FEW_UNKNOWNS = 12 };
+  ExpectResult r = {.label = label_of(e->m, x), .span = x->span};
+  Verdict v = mend_verdict(e, x->lhs, x->rhs);
+  Witness w = {0};
+  int proved = v == PROVED_ZERO;
+  if (!proved || e->n + e->constraints.n <= FEW_UNKNOWNS) w = witness_find(e, x, proved);
+  r.difference = w.text;
+  r.digits = w.digits;
+  r.states = w.states;
+  proved = !w.text && (proved || (w.states && cases_prove(e, symbols, x->lhs, x->rhs, x->domain)));
+  if (proved) return r; /* EXPECT_PROVED */
+  r.inexact = !numbers_are_exact(e, x);
+  int somewhere_false = v == PROVED_NONZERO && !e->constraints.n; /* constraints exclude states */
+  r.missing = !w.states ? NULL : somewhere_false ? "the difference that there is" : w.missing;
+  r.verdict = w.text ? EXPECT_REFUTED : w.states && !r.missing ? EXPECT_AGREES : EXPECT_UNKNOWN;
+  return r;
+}
+
+static void report_unknown(const Eqns *e, const Expect *x, const ExpectResult *r) {
+  if (r->missing) {
+    diag_error(e->m->diags, x->span, "expect %s is not decided: no proof is found, and no state that was compared shows %s", r->label, r->missing);
+    diag_help(e->m->diags, "expect it for one side alone, or write it in another form%s", r->inexact ? "; " EXACT_NUMBERS : "");
+    return;
+  }
+  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a value that means something", r->label);
+  diag_help(e->m->diags, "write it where its roots and logarithms are defined, and in numbers of ordinary size%s", r->inexact ? "; " EXACT_NUMBERS : "");
+}
+
+/* --- parameters that follow from others, and contacts --- */
+
+static int is_param(const Symbol *s, const void *data) {
+  (void)data;
+  return s->kind == SYM_PARAM;
+}
+
+/* Substitutions for parameters that are given by others (param I = m*l^2 follows m and l), and for contacts: open and without force, but for
+ * number `closed` (-1: none). NULL: there are none. */
+static const Expr *definitions(const Model *m, int closed) {
+  Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 2 + m->expects.n); /* each expectation may declare one more symbol */
+  int some = 0;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
+    if (!p->value || !expr_contains(m->g, p->value, is_param, NULL)) continue;
+    with[p->sym] = expr_substitute(m->g, p->value, with, expr_symbol_count(m->g) + 1, "");
+    some = 1;
+  }
+  for (uint32_t i = 0; i < m->contacts.n; i++) {
+    const Contact *c = &m->contacts.at[i];
+    with[c->closed] = expr_int(m->g, (int)i == closed);
+    if ((int)i != closed) with[m->constraints.at[c->constraint].multiplier] = expr_int(m->g, 0);
+  }
+  return some || m->contacts.n ? with : NULL;
+}
+
+/* The equations of motion with all contacts open, and with each closed alone. */
+typedef struct {
+  const Expr *with;
+  const Eqns *e;
+} Case;
+
+static Case *cases_of(const Eqns *e) {
+  uint32_t n = e->m->contacts.n;
+  Case *cases = ARENA_ARRAY(e->m->arena, Case, (size_t)n + 1);
+  for (uint32_t i = 0; i <= n; i++) {
+    cases[i].with = definitions(e->m, (int)i - 1);
+    cases[i].e = cases_with(e, cases[i].with);
+  }
+  return cases;
+}
+
+/* Verdict in the first case in which the expectation is not proved, or in the last. */
+static ExpectResult judge_cases(const Case *cases, const CaseSymbols *symbols, const Expect *x, Expect *shown, const Eqns **e) {
+  const Model *m = cases[0].e->m;
+  ExpectResult r = {0};
+  for (uint32_t i = 0; i <= m->contacts.n; i++) {
+    const Expr *with = cases[i].with;
+    uint32_t n = expr_symbol_count(m->g) + 1;
+    *shown = *x;
+    *e = cases[i].e;
+    if (with) shown->lhs = expr_substitute(m->g, x->lhs, with, n, "");
+    if (with) shown->rhs = expr_substitute(m->g, x->rhs, with, n, "");
+    if (with && x->domain) shown->domain = expr_substitute(m->g, x->domain, with, n, "");
+    r = judge(*e, symbols, shown);
+    if (r.verdict == EXPECT_PROVED) continue;
+    if (m->contacts.n) r.label = i ? arena_printf(m->arena, "%s, while `%s` is closed,", r.label, m->contacts.at[i - 1].name)
+                                   : arena_printf(m->arena, "%s, while all contacts are open,", r.label);
+    break;
+  }
+  return r;
+}
+
+/* Domain of an expectation: that of its text and, if it uses accelerations, multipliers, rates or the energy, that of the equations of motion. */
+static Expr domain_of(const Eqns *e, const Expect *x) {
+  const unsigned solved = 1u << SYM_ACC | 1u << SYM_MULTIPLIER | 1u << SYM_RATE | 1u << SYM_LOCAL;
+  Expr domain = x->domain ? charges_fill(e, x->domain) : 0, motion = e->m->domain;
+  int uses = ((expr_kinds(e->g, x->lhs) | expr_kinds(e->g, x->rhs)) & solved) != 0;
+  return !uses || !motion ? domain : domain ? expr_fn2(e->g, EX_AND, domain, motion) : motion;
+}
+
+void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults *out) {
+  const Model *m = e->m;
+  const CaseSymbols symbols = cases_symbols(m);
+  const Case *cases = cases_of(e);
+  for (uint32_t i = 0; i < m->expects.n; i++) {
+    Expect x = m->expects.at[i], shown;
+    const Eqns *at;
+    if (x.effect != effect) continue;
+    x.lhs = charges_fill(e, x.lhs);
+    x.rhs = charges_fill(e, x.rhs);
+    x.domain = domain_of(e, &x);
+    ExpectResult r = judge_cases(cases, &symbols, &x, &shown, &at);
+    if (r.verdict == EXPECT_REFUTED) report_refuted(at, &shown, r.label, r.difference);
+    if (r.verdict == EXPECT_AGREES) report_agrees(at, &shown, &r, allow_numeric);
+    if (r.verdict == EXPECT_UNKNOWN) report_unknown(at, &shown, &r);
+    r.label = label_of(m, &x);
+    vec_push(m->arena, out, r);
+  }
+}
+
+static void print_one(const ExpectResult *r, const Sources *sources, StrBuf *out) {
+  Place p = source_place(sources, r->span.begin);
+  sb_printf(out, "%s:%u: expect %s: ", p.file ? p.file->path : "", p.line, r->label);
+  switch (r->verdict) {
+    case EXPECT_PROVED: sb_puts(out, "proved\n"); return;
+    case EXPECT_REFUTED: sb_puts(out, "refuted\n"); return;
+    case EXPECT_AGREES: sb_printf(out, "not proved, agrees to %d digits\n", r->digits); return;
+    case EXPECT_UNKNOWN: sb_puts(out, "not decided\n"); return;
+  }
+}
+
+void expects_print(const ExpectResults *r, const Sources *sources, StrBuf *out) {
+  uint32_t proved = 0;
+  for (uint32_t i = 0; i < r->n; i++) {
+    print_one(&r->at[i], sources, out);
+    proved += r->at[i].verdict == EXPECT_PROVED;
+  }
+  if (r->n) sb_printf(out, "%u of %u expectation%s proved%s\n", proved, r->n, r->n == 1 ? "" : "s", proved ? ": for all states at which both sides have real values" : "");
+}

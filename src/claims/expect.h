@@ -1,0 +1,35 @@
+/* Expectations: equations that the user wrote, proved or refuted by the equations of motion M q'' = f. */
+#ifndef LAGC_CLAIMS_EXPECT_H
+#define LAGC_CLAIMS_EXPECT_H
+
+#include "mech/eqns.h"
+
+typedef enum {
+  EXPECT_PROVED,  /* for all states at which both sides have real values */
+  EXPECT_REFUTED, /* at some state both sides have real values, and these differ */
+  EXPECT_AGREES, /* not decided by the prover; the sides agree to the digits that rounding leaves */
+  EXPECT_UNKNOWN /* not decided: no state gives the sides meaningful values, or `missing` was never seen */
+} ExpectVerdict;
+
+typedef struct {
+  const char *label; /* "th1'' (form_a)" */
+  Span span;
+  ExpectVerdict verdict;
+  int digits; /* digits to which the sides agree */
+  int states; /* number of states at which the sides were compared */
+  const char *missing; /* a side of a switch, or a proved difference, that no compared state showed; NULL: none, or no state was compared */
+  const char *difference; /* if refuted: both values, and a state that has them */
+  int inexact; /* a number in the sides or in the equations is not exact, which may be why it is not decided */
+} ExpectResult;
+
+typedef VEC(ExpectResult) ExpectResults;
+
+/* Judges the expectations declared in `effect` (NULL: outside effects) and appends the verdicts. A refuted one is an error in the model's
+ * diagnostics, with the single edit that corrects it if there is one; one that is not decided is an error too, or, where the sides agree in
+ * numbers and allow_numeric is set, a warning. */
+void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults *out);
+
+/* Appends a line for each expectation and a summary; nothing when there are none. */
+void expects_print(const ExpectResults *r, const Sources *sources, StrBuf *out);
+
+#endif

@@ -1,0 +1,218 @@
+/* Mobility report of `lagc check`, by ranks of the scaled constraint matrix at the start; and the checks that a motion is possible there. */
+#include "claims/mobility.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/sparse_solve.h"
+#include "claims/nearby_rank.h"
+#include "mech/frobenius.h"
+#include "symmetry/noether.h"
+#include "mech/start.h"
+#include "sym/print.h"
+
+/* Whether the rank is the same without constraint k: its multiplier is then not unique. */
+static int is_dispensable(StateSolver *s, const Eqns *e, uint32_t k, uint32_t rank) {
+  unsigned char *without = ARENA_ARRAY(e->m->arena, unsigned char, e->constraints.n);
+  return states_rank(s, k, without) == rank;
+}
+
+static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
+
+static const char *kind_of(const Eqns *e, uint32_t k) {
+  const Constraints *all = &e->constraints;
+  if (k >= all->nholonomic) return "on velocities";
+  return expr_kinds(e->g, all->c[k]) & 1u << SYM_TIME ? "holonomic, with explicit time" : "holonomic";
+}
+
+static int has_slope(const Eqns *e, StateSolver *s, const long double *symbols, uint32_t k) {
+  const Entries *A = &e->constraints.A;
+  StateValues v = states_at(s, symbols);
+  for (uint32_t i = 0; i < A->n; i++)
+    if (A->at[i].row == k && fabsl(v.A[i]) > 0) return 1;
+  return 0;
+}
+
+static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts, uint32_t k, uint32_t rank, StrBuf *out) {
+  const Constraint *c = e->constraints.of[k];
+  Place place = source_place(e->m->ast->sources, c->span.begin);
+  if (noether_is_contact(e->m, c)) {
+    sb_printf(out, "  contact %s (line %u): a constraint while it is closed\n", c->name, place.line);
+    return;
+  }
+  sb_printf(out, "  constraint %s (line %u): %s%s", c->name, place.line, kind_of(e, k), c->inside ? ", the unit length of a rotation" : "");
+  if (!counts[k]) sb_puts(out, has_slope(e, s, symbols, k) ? "; follows from those before it" : "; its derivatives vanish at the start");
+  if (rank < e->constraints.n - e->m->contacts.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the least one is taken");
+  sb_putc(out, '\n');
+}
+
+/* A line if the start is singular: the rank is larger near it. */
+static void show_singular(const Eqns *e, StateSolver *s, const long double *symbols, uint32_t rank, StrBuf *out) {
+  unsigned char *loose = ARENA_ARRAY(e->m->arena, unsigned char, e->n + 1);
+  uint32_t beside = rank_beside(e, s, symbols, loose), shown = 0;
+  if (beside <= rank) return;
+  sb_printf(out, "  singular start: the rank is %u beside it", beside);
+  for (uint32_t i = 0; i < e->n; i++)
+    if (loose[i]) sb_printf(out, "%s%s'", shown++ ? ", " : "; the constraints do not determine ", e->m->coords.at[i].name);
+  sb_printf(out, "%s\n", shown ? " here, and what the start says of them decides which way it goes" : "");
+  states_at(s, symbols);
+}
+
+static void show_integrability(const Eqns *e, StateSolver *s, StrBuf *out) {
+  static const char *const words[] = {[INTEGRABLE_NO] = "are not integrable: the system is nonholonomic",
+                                      [INTEGRABLE_PROVED] = "are integrable: they could be stated for positions",
+                                      [INTEGRABLE_UNDECIDED] = "look integrable; that is not decided"};
+  const Constraints *all = &e->constraints;
+  if (all->nholonomic == all->n) return;
+  sb_printf(out, "  constraints on velocities %s\n", words[frobenius(e, s)]);
+  for (uint32_t i = all->nholonomic; i < all->nkept; i++) {
+    sb_printf(out, "  constraint %s keeps ", all->of[i]->name);
+    expr_print(e->g, all->c[i], PRINT_TEXT, out);
+    sb_puts(out, " as it is at the start\n");
+  }
+}
+
+/* --- starts from which no motion is possible --- */
+
+/* The first constraint that depends on earlier ones but demands an acceleration that they exclude; UINT32_MAX: none. symbols: a state on the
+ * constraints. Accelerations that move less than a billionth of the model's size during the scene count as rounding. */
+static uint32_t contradicting(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts) {
+  const Constraints *k = &e->constraints;
+  const Scene *scene = &e->m->scene;
+  Arena *arena = e->m->arena;
+  uint32_t n = e->n, at = 0;
+  StateValues v = states_at(s, symbols);
+  long double *size = ARENA_ARRAY(arena, long double, k->n + 1), most = 0;
+  long double span = scene->has_span && scene->t1 != scene->t0 ? fabsl((long double)scene->t1 - scene->t0) : 1;
+  const int *scale = states_scale(s);
+  for (uint32_t i = 0; i < k->A.n; i++) size[k->A.at[i].row] += ldexpl(v.A[i] * v.A[i], 2 * scale[k->A.at[i].col]);
+  for (uint32_t i = 0; i < k->n; i++) {
+    size[i] = sqrtl(size[i]);
+    if (size[i] > 0) most = fmaxl(most, fabsl(v.demand[i]) / size[i]);
+  }
+  long double far = 0;
+  for (uint32_t i = 0; i < n; i++) far = fmaxl(far, fabsl(ldexpl(symbols[e->m->coords.at[i].q], -scale[i])));
+  if (!(most > 1e-9L * (far > 0 ? far : 1) / (span * span))) return UINT32_MAX;
+  RowSpan demands = row_span(arena, n + 1); /* rows [A_k, demand_k] */
+  for (uint32_t i = 0; i < k->n; i++) {
+    SparseVector row = *states_row(s, i, &at);
+    if (!(size[i] > 0)) continue;
+    for (uint32_t j = 0; j < row.n; j++) row.at[j].value /= size[i];
+    vec_push(arena, &row, ((RowElement){n, v.demand[i] / size[i] / most}));
+    if (row_span_add(&demands, row.at, row.n, 1e-5L) > 1e-5L && !counts[i]) return i;
+  }
+  return UINT32_MAX;
+}
+
+static int report_contradiction(const Eqns *e, uint32_t k, const char *why) {
+  const Model *m = e->m;
+  diag_error(m->diags, e->constraints.of[k]->span, "scene %s: the constraint `%s` contradicts those before it: %s", m->scene.name,
+             e->constraints.of[k]->name, why);
+  diag_help(m->diags, "leave one of them out, or make them agree");
+  return 0;
+}
+
+/* Whether redundant constraints agree: in their accelerations at the start, and in the states that they allow a little later. */
+static int check_agreement(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts) {
+  const Model *m = e->m;
+  uint32_t n = expr_symbol_count(e->g) + 1, k = contradicting(e, s, symbols, counts);
+  if (k != UINT32_MAX) return report_contradiction(e, k, "at the start it follows from them, and demands another acceleration");
+  long double *later = ARENA_ARRAY(m->arena, long double, n);
+  for (uint32_t i = 0; i < n; i++) later[i] = symbols[i];
+  later[m->time] += (m->scene.has_span ? (long double)m->scene.t1 - m->scene.t0 : 1) / 1024;
+  StartResult r = start_find(e, s, later);
+  if (r.kind == START_NONE || r.kind == START_BROKEN)
+    return report_contradiction(e, r.constraint, arena_printf(m->arena, "at t = %.3Lg s no state obeys them%s", later[m->time], start_off_by(e, &r)));
+  return 1;
+}
+
+/* Whether M is regular on the kernel of the constraints at the start. */
+static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbols) {
+  const Model *m = e->m;
+  uint32_t most = 0;
+  if (!e->mass_known || (e->definite_mass && !e->singular_mass)) return 1; /* definite_mass does not exclude a singular M */
+  long double *null = ARENA_ARRAY(m->arena, long double, e->n + 1);
+  states_at(s, symbols);
+  if (sparse_is_regular_on_kernel(m->arena, e->n, e->constraints.n, states_system(s), null)) return 1;
+  for (uint32_t j = 0; j < e->n; j++)
+    if (fabsl(null[j]) > fabsl(null[most]) * (1 + 1e-9L)) most = j;
+  diag_error(m->diags, m->coords.at[most].span, "scene %s: nothing says how `%s` moves: it has no inertia at the start, and no constraint moves it", m->scene.name,
+             m->coords.at[most].name);
+  diag_help(m->diags, "give it a mass, or a constraint that depends on it");
+  return 0;
+}
+
+/* Whether all gaps of contacts are nonnegative at the start, and restitutions between 0 and 1. */
+static int check_contacts(const Eqns *e, const long double *symbols) {
+  const Model *m = e->m;
+  uint32_t n = m->contacts.n;
+  Expr *roots = ARENA_ARRAY(m->arena, Expr, 2 * (size_t)n + 1);
+  long double *value = ARENA_ARRAY(m->arena, long double, 2 * (size_t)n + 1), far = 0;
+  for (uint32_t i = 0; i < n; i++) roots[2 * i] = m->contacts.at[i].gap, roots[2 * i + 1] = m->contacts.at[i].restitution;
+  expr_eval(e->g, roots, 2 * n, symbols, value);
+  for (uint32_t i = 0; i < e->n; i++) far = fmaxl(far, fabsl(symbols[m->coords.at[i].q]));
+  for (uint32_t i = 0; i < n; i++) {
+    const Constraint *k = &m->constraints.at[m->contacts.at[i].constraint];
+    long double gap = value[2 * i], back = value[2 * i + 1];
+    const char *wrong = gap < -1e-12L * (far > 1 ? far : 1) ? arena_printf(m->arena, "the start is inside the contact `%s`: its gap is %.3Lg", k->name, gap)
+                        : isnan(gap) ? arena_printf(m->arena, "the contact `%s` has no value at the start", k->name)
+                        : !(back >= 0 && back <= 1) ? arena_printf(m->arena, "the contact `%s` has a restitution of %.3Lg: it is between 0 and 1", k->name, back)
+                                                    : NULL;
+    if (!wrong) continue;
+    diag_error(m->diags, k->span, "scene %s: %s", m->scene.name, wrong);
+    return 0;
+  }
+  return 1;
+}
+
+static int says_start(const Model *m) {
+  for (uint32_t i = 0; i < m->scene.starts.n; i++)
+    if (!m->scene.starts.at[i].implied) return 1;
+  return 0;
+}
+
+/* Without constraints: whether M is regular at the start, as it is not at the pole of angles. */
+static int check_mass(const Eqns *e) {
+  const Model *m = e->m;
+  uint32_t most = 0;
+  if (!e->n || !e->mass_known || e->constant_mass) return 1;
+  long double *null = ARENA_ARRAY(m->arena, long double, e->n + 1);
+  StateSolver *s = states_new(e);
+  StateValues v = states_at(s, start_asked(e));
+  for (uint32_t k = 0; k < e->mass.n; k++)
+    if (!isfinite(v.mass[k])) return 1; /* the run says where */
+  if (sparse_is_regular_on_kernel(m->arena, e->n, 0, states_system(s), null)) return 1;
+  for (uint32_t j = 0; j < e->n; j++)
+    if (fabsl(null[j]) > fabsl(null[most]) * (1 + 1e-9L)) most = j;
+  diag_error(m->diags, m->coords.at[most].span, "scene %s: the mass matrix is singular at the start: nothing says how `%s` moves from there", m->scene.name, m->coords.at[most].name);
+  diag_help(m->diags, "start elsewhere, or take coordinates without such a place: a body's `coord R: rotation` has no pole (`lagc help rotations`)");
+  return 0;
+}
+
+int freedom_show(const Eqns *e, StrBuf *out) {
+  const Constraints *all = &e->constraints;
+  if (!all->n) return !says_start(e->m) || check_mass(e);
+  StateSolver *s = states_new(e);
+  long double *symbols = start_asked(e);
+  StartResult start = start_find(e, s, symbols);
+  if (start.kind != START_FOUND) {
+    if (says_start(e->m)) start_report(e, &start);
+    else sb_printf(out, "scene %s: %u constraint%s; it gives no start, and from 0 none is found that obeys `%s`%s\n", e->m->scene.name, all->n,
+                   plural(all->n), all->of[start.constraint]->name, start_off_by(e, &start));
+    return !says_start(e->m);
+  }
+  states_at(s, symbols);
+  unsigned char *counts = ARENA_ARRAY(e->m->arena, unsigned char, all->n);
+  uint32_t rank = states_rank(s, UINT32_MAX, counts), free = e->n - rank;
+  uint32_t held = all->n - e->m->contacts.n;
+  if (rank < held && !check_agreement(e, s, symbols, counts)) return 0;
+  if (!check_inertia(e, s, symbols) || (e->m->scene.starts.n && !check_contacts(e, symbols))) return 0;
+  states_at(s, symbols);
+  sb_printf(out, "scene %s: %u degree%s of freedom", e->m->scene.name, free, plural(free));
+  if (held) sb_printf(out, "; %u constraint%s, of rank %u at the start", held, plural(held), rank);
+  sb_putc(out, '\n');
+  if (rank < held) show_singular(e, s, symbols, rank, out);
+  for (uint32_t k = 0; k < all->n; k++) show_one(e, s, symbols, counts, k, rank, out);
+  show_integrability(e, s, out);
+  return 1;
+}

@@ -1,0 +1,19 @@
+/* Correction of a false expectation: the single edit that makes it provable, and its place in the text. */
+#ifndef LAGC_CLAIMS_SUGGEST_CORRECTION_H
+#define LAGC_CLAIMS_SUGGEST_CORRECTION_H
+
+#include "mech/eqns.h"
+#include "sym/prove.h"
+
+typedef struct {
+  Span caret;
+  const char *edit; /* "`sin(th1)` should be `cos(th1)`"; NULL: no single edit was found, and the caret is at the likeliest place */
+} Mend;
+
+/* Needs an expectation that does not hold. An edit that it returns is proved to correct it. */
+Mend mend_find(const Eqns *e, const Expect *x);
+
+/* Whether two sides are equal by the equations of motion: accelerations and multipliers solved for, rates and the energy substituted. */
+Verdict mend_verdict(const Eqns *e, Expr lhs, Expr rhs);
+
+#endif

@@ -1,0 +1,86 @@
+/* `lagc check`: derives every scene and every unused effect, then judges symmetries and expectations. */
+#include "commands/check.h"
+
+#include <string.h>
+
+#include "symmetry/charges.h"
+#include "mech/discontinuity.h"
+#include "claims/expect.h"
+#include "claims/mobility.h"
+#include "symmetry/noether_report.h"
+#include "report/show.h"
+
+/* Judges symmetries and expectations for the model without effects, and those inside an effect with that effect and its requirements; no scene is
+ * needed. */
+static void check_claims(const Deriver *d, const Ast *ast, int allow_numeric, ExpectResults *results, StrBuf *out) {
+  EffectList where = model_claiming_effects(ast);
+  Eqns **e = ARENA_ARRAY(ast->arena, Eqns *, where.n + 1);
+  for (uint32_t i = 0; i < where.n; i++) e[i] = d->derive(d->data, &(ModelChoice){.bare = 1, .also = where.at[i]});
+  for (uint32_t i = 0; i < where.n; i++) {
+    if (!e[i]) continue;
+    charges_judge(e[i], where.at[i]);
+    charges_print(e[i], where.at[i], out);
+  }
+  for (uint32_t i = 0; i < where.n; i++)
+    if (e[i]) expects_check(e[i], where.at[i], allow_numeric, results);
+}
+
+static const char *with_effects(const Model *m) {
+  StrBuf b = strbuf(m->arena);
+  for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(&b, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
+  return sb_text(&b);
+}
+
+typedef VEC(FoundUnit) FoundUnits;
+
+/* Adds the units that a scene's model inferred and that are not listed yet. */
+static void collect_units(const Model *m, FoundUnits *all) {
+  for (uint32_t i = 0; i < m->found.n; i++) {
+    FoundUnit u = m->found.at[i];
+    uint32_t k = 0;
+    while (k < all->n && (all->at[k].name != u.name || strcmp(all->at[k].unit, u.unit) != 0)) k++;
+    if (k == all->n) vec_push(m->arena, all, u);
+  }
+}
+
+static void list_units(const FoundUnits *all, StrBuf *out) {
+  for (uint32_t i = 0; i < all->n; i++) sb_printf(out, "%s%s [%s]", i ? ", " : "units found: ", all->at[i].name, all->at[i].unit);
+  if (all->n) sb_putc(out, '\n');
+}
+
+/* Whether the model declares inputs; each contact adds one more, which does not count. */
+static int has_inputs(const Model *m) { return m->inputs.n > m->contacts.n; }
+
+int check_print(const Deriver *d, Ast *ast, const char *scene, int allow_numeric, StrBuf *out) {
+  SceneList scenes = model_scenes(ast);
+  FoundUnits found = {0};
+  ExpectResults results = {0};
+  for (uint32_t i = 0; i < scenes.n; i++) {
+    if (scene && strcmp(scene, scenes.at[i]) != 0) continue;
+    Eqns *e = d->derive(d->data, &(ModelChoice){.scene = scenes.at[i]});
+    if (!e) continue;
+    if (!out->n) {
+      show_facts(e, out);
+      show_cyclic(e, out);
+    }
+    collect_units(e->m, &found);
+    discontinuity_warn(e);
+    if (!freedom_show(e, out)) continue;
+    sb_printf(out, "scene %s: ok%s\n", scenes.at[i], with_effects(e->m));
+    if (e->m->effects.n || has_inputs(e->m) || e->energy_jumps) charges_show_broken(e, out);
+  }
+  if (scene && !out->n) d->derive(d->data, &(ModelChoice){.scene = scene}); /* reports the unknown scene */
+  EffectList unused = model_unused_effects(ast);
+  for (uint32_t i = 0; i < unused.n && !scene; i++) {
+    Eqns *e = d->derive(d->data, &(ModelChoice){.bare = 1, .also = unused.at[i]});
+    if (!e) continue;
+    discontinuity_warn(e);
+    collect_units(e->m, &found);
+    sb_printf(out, "effect %s (in no scene): ok\n", unused.at[i]);
+  }
+  list_units(&found, out);
+  if (ast->diags->errors) return 0; /* expectations of a wrong model say nothing */
+  check_claims(d, ast, allow_numeric, &results, out);
+  expects_print(&results, ast->sources, out);
+  return 1;
+}

@@ -1,0 +1,235 @@
+/* Completion: parses the words before the cursor, then offers commands, options, scenes, settings and names from the tables and the model. */
+#include "commands/completion.h"
+
+#include <ctype.h>
+#include <string.h>
+
+#include "toolchain/runtime_methods.h"
+#include "commands/options.h"
+#include "commands/reference.h"
+#include "commands/help.h"
+#include "model/model.h"
+#include "commands/settings.h"
+#include "syntax/parse.h"
+
+/* The command line before the cursor, parsed. */
+typedef struct {
+  Arena *arena;
+  StrBuf *out;
+  const char *argv0;
+  const char *word; /* the last one */
+  const char *head; /* prefix of every candidate: "--method=", "th + ", or "" */
+  Command command;
+  const char *file, *scene;
+  const OptionRow *open; /* an option that waits for its value, or NULL */
+  VEC(Define) defines;
+  Ast *ast; /* the file's; NULL until it is needed, or where it cannot be read */
+} Line;
+
+static void offer(Line *l, const char *candidate, const char *description) {
+  const char *whole = arena_printf(l->arena, "%s%s", l->head, candidate);
+  if (strncmp(whole, l->word, strlen(l->word)) != 0) return;
+  sb_printf(l->out, "%s\t%.*s\n", whole, (int)strcspn(description, "\n\t"), description);
+}
+
+/* ---- the model ---- */
+
+static Ast *read_ast(Line *l) {
+  if (l->ast || !l->file) return l->ast;
+  Sources *sources = sources_new(l->arena);
+  const char *why;
+  const Source *source = source_read_model(sources, l->file, &why);
+  if (!source) return NULL;
+  l->ast = ast_new(l->arena, interner_new(l->arena), sources, diags_new(l->arena, sources));
+  parse(l->ast, source);
+  return l->ast;
+}
+
+static Model *read_model(Line *l) {
+  Ast *ast = read_ast(l);
+  if (!ast) return NULL;
+  if (!settings_defines(ast, l->defines.at, l->defines.n)) return NULL;
+  ModelChoice choice = {.scene = l->scene, .defines = l->defines.at, .ndefines = l->defines.n};
+  return model_build(ast, &choice);
+}
+
+static void offer_scenes(Line *l) {
+  Ast *ast = read_ast(l);
+  for (const AstStmt *s = ast ? ast->first : NULL; s; s = s->next)
+    if (s->kind == STMT_SCENE && s->name) offer(l, s->name, s->doc ? s->doc : "scene");
+}
+
+static void offer_setting(Line *l, const char *name, const char *what, const Unit *unit) {
+  const char *in = unit && unit->text[0] ? arena_printf(l->arena, ", [%s]", unit->text) : "";
+  offer(l, arena_printf(l->arena, "%s=", name), arena_printf(l->arena, "%s%s", what, in));
+}
+
+/* Names that `name=value` sets: parameters, starts, states, inputs. */
+static void offer_settings(Line *l) {
+  Model *m = read_model(l);
+  if (!m) return;
+  for (uint32_t i = 0; i < m->params.n; i++) offer_setting(l, m->params.at[i].name, "parameter", &m->params.at[i].unit);
+  for (uint32_t i = 0; i < m->coords.n; i++) {
+    const Coord *c = &m->coords.at[i];
+    offer_setting(l, c->name, "start of the coordinate", &c->unit);
+    offer_setting(l, arena_printf(l->arena, "%s'", c->name), "start of its velocity", NULL);
+  }
+  for (uint32_t i = 0; i < m->states.n; i++)
+    offer_setting(l, m->states.at[i].name, m->states.at[i].coordinate ? "start of the coordinate" : "start of the state", &m->states.at[i].unit);
+  for (uint32_t i = 0; i < m->inputs.n; i++) offer_setting(l, m->inputs.at[i].name, "input, held constant", &m->inputs.at[i].unit);
+}
+
+static const char *quantity(AstStmtKind kind) {
+  switch (kind) {
+    case STMT_COORD: return "coordinate";
+    case STMT_PARAM: return "parameter";
+    case STMT_CONST: return "constant";
+    case STMT_INPUT: return "input";
+    case STMT_STATE: return "state";
+    case STMT_LET: return "let";
+    case STMT_OBSERVE: return "observable";
+    default: return NULL;
+  }
+}
+
+static void offer_names(Line *l, const AstStmt *list) {
+  for (const AstStmt *s = list; s; s = s->next) {
+    const char *what = quantity(s->kind);
+    if (s->name && what) offer(l, s->dims ? arena_printf(l->arena, "%s[", s->name) : s->name, what);
+    if (s->name && s->kind == STMT_FUNCTION) offer(l, arena_printf(l->arena, "%s(", s->name), "function of the model");
+  }
+}
+
+/* Offers names for the identifier at the end of an expression; the text before it is kept. */
+static void offer_expression(Line *l) {
+  size_t n = strlen(l->word), head = strlen(l->head);
+  while (n > head && (isalnum((unsigned char)l->word[n - 1]) || strchr("_.", l->word[n - 1]) || (unsigned char)l->word[n - 1] >= 0x80)) n--;
+  if (isdigit((unsigned char)l->word[n])) return;
+  l->head = arena_strndup(l->arena, l->word, n);
+  Ast *ast = read_ast(l);
+  offer_names(l, ast ? ast->first : NULL);
+  static const char *const known[] = {"t", "pi", "energy", "lagrangian"};
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++) offer(l, known[i], "of every model");
+  for (size_t i = 0; function_name(i); i++) offer(l, arena_printf(l->arena, "%s(", function_name(i)), "function");
+}
+
+/* ---- values of options ---- */
+
+static void offer_methods(Line *l) {
+  Methods methods = {0};
+  const char *error;
+  offer(l, "help", "list them, with their options");
+  if (!methods_list(l->arena, l->argv0, 1, &methods, &error)) return;
+  for (uint32_t i = 0; i < methods.n; i++) offer(l, methods.at[i].name, methods.at[i].does);
+}
+
+static void offer_choices(Line *l, const OptionRow *o) {
+  const char *comma = o->takes == TAKES_CHOICES ? strrchr(l->word, ',') : NULL;
+  if (comma) l->head = arena_strndup(l->arena, l->word, (size_t)(comma - l->word) + 1);
+  for (size_t i = 0; word_at(l->arena, o->hint, i); i++) offer(l, word_at(l->arena, o->hint, i), "");
+}
+
+static void offer_params(Line *l, const OptionRow *o) {
+  const char *comma = strrchr(l->word, ',');
+  if (comma) l->head = arena_strndup(l->arena, l->word, (size_t)(comma - l->word) + 1);
+  offer(l, o->hint, "all parameters");
+  Ast *ast = read_ast(l);
+  for (const AstStmt *s = ast ? ast->first : NULL; s; s = s->next) {
+    if (s->kind == STMT_PARAM && s->name) offer(l, s->name, "parameter");
+    for (const AstStmt *x = s->kind == STMT_EFFECT ? s->body : NULL; x; x = x->next)
+      if (x->kind == STMT_PARAM && x->name) offer(l, arena_printf(l->arena, "%s.%s", s->name, x->name), "parameter");
+  }
+}
+
+static void offer_constants(Line *l) {
+  Ast *ast = read_ast(l);
+  for (const AstStmt *s = ast ? ast->first : NULL; s; s = s->next)
+    if (s->kind == STMT_CONST && s->name) offer(l, arena_printf(l->arena, "%s=", s->name), "constant");
+}
+
+static void offer_value(Line *l, const OptionRow *o) {
+  switch (o->takes) {
+    case TAKES_FILE: sb_printf(l->out, ":files%s%s\n", o->hint[0] ? " " : "", o->hint); break;
+    case TAKES_METHOD: offer_methods(l); break;
+    case TAKES_CHOICE: case TAKES_CHOICES: offer_choices(l, o); break;
+    case TAKES_EXPR: case TAKES_EXPRS: case TAKES_TEXT: offer_expression(l); break;
+    case TAKES_PARAMS: offer_params(l, o); break;
+    case TAKES_DEFINE: offer_constants(l); break;
+    case TAKES_NUMBER: case TAKES_NOTHING: break;
+  }
+}
+
+/* ---- words ---- */
+
+static void offer_commands(Line *l) {
+  for (size_t i = 0; command_row(i); i++) {
+    const CommandRow *row = command_row(i);
+    if (row->help) offer(l, row->name, row->does ? row->does : row->help);
+  }
+}
+
+static void offer_options(Line *l) {
+  for (size_t i = 0; option_row(i); i++) {
+    const OptionRow *o = option_row(i);
+    if (!(o->commands & 1u << l->command)) continue;
+    offer(l, o->name, o->does);
+    if (o->brief) offer(l, o->brief, o->does);
+  }
+}
+
+static void offer_topics(Line *l) {
+  Topics topics = {0};
+  help_topics(l->arena, &topics);
+  for (uint32_t i = 0; i < topics.n; i++) offer(l, topics.at[i], "");
+  for (size_t i = 0; function_name(i); i++) offer(l, function_name(i), "function");
+}
+
+/* Records a word before the last one: an option, its value, the file or the scene. */
+static void take_word(Line *l, const char *word) {
+  const char *value = NULL;
+  if (l->open) {
+    const char *eq = strchr(word, '=');
+    if (l->open->takes == TAKES_DEFINE && eq) vec_push(l->arena, &l->defines, ((Define){.name = arena_strndup(l->arena, word, (size_t)(eq - word)), .value = eq + 1}));
+    l->open = NULL;
+    return;
+  }
+  const OptionRow *o = word[0] == '-' ? option_find(l->command, word, &value) : NULL;
+  if (o && o->takes != TAKES_NOTHING) {
+    l->open = o;
+    if (value) take_word(l, value);
+  } else if (word[0] != '-' && !strchr(word, '=')) {
+    if (!l->file) l->file = word;
+    else if (!l->scene) l->scene = word;
+  }
+}
+
+static void offer_word(Line *l) {
+  const char *value;
+  const OptionRow *o = l->word[0] == '-' ? option_find(l->command, l->word, &value) : NULL;
+  if (l->open) offer_value(l, l->open);
+  else if (o && value) {
+    l->head = arena_strndup(l->arena, l->word, (size_t)(value - l->word));
+    offer_value(l, o);
+  } else if (l->word[0] == '-') offer_options(l);
+  else if (!l->file) sb_puts(l->out, ":files lag\n");
+  else {
+    if (!l->scene) offer_scenes(l);
+    if (command_simulates(l->command)) offer_settings(l);
+  }
+}
+
+void complete(StrBuf *out, const char *const *words, size_t n, const char *argv0) {
+  if (!n) return;
+  Line l = {.arena = out->arena, .out = out, .argv0 = argv0, .word = words[n - 1], .head = ""};
+  if (n == 1) {
+    offer_commands(&l);
+    return;
+  }
+  l.command = command_named(words[0]);
+  for (size_t i = 1; i + 1 < n && l.command; i++) take_word(&l, words[i]);
+  if (l.command == CMD_HELP && n == 2) offer_topics(&l);
+  else if (l.command == CMD_COMPLETION && n == 2) {
+    for (size_t i = 0; word_at(l.arena, "bash zsh fish", i); i++) offer(&l, word_at(l.arena, "bash zsh fish", i), "");
+  } else if (command_reads_model(l.command)) offer_word(&l);
+  else if (l.command == CMD_CACHE) offer_options(&l);
+}

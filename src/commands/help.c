@@ -1,0 +1,203 @@
+/* Help pages, put together from the tables of commands and options, the chapters of the reference, and the table of units. */
+#include "commands/help.h"
+
+#include <string.h>
+
+#include "base/suggest.h"
+#include "commands/command_table.h"
+#include "commands/options.h"
+#include "commands/terminal_page.h"
+#include "commands/reference.h"
+#include "model/model.h"
+#include "syntax/parse.h"
+
+enum { TERMS = 24 }; /* column of the meanings in lists */
+
+/* ---- commands and options ---- */
+
+static void put_option(StrBuf *out, const OptionRow *o) {
+  Arena *a = out->arena;
+  const char *term = o->brief ? arena_printf(a, "%s, %s", o->brief, o->name) : o->name;
+  if (o->value) term = arena_printf(a, "%s %s", term, o->value);
+  page_term(out, term, o->does, TERMS);
+}
+
+/* Lists a command's options; options of the simulator that run has, too, are listed under run alone. */
+static void put_options(StrBuf *out, Command c) {
+  for (size_t i = 0; option_row(i); i++) {
+    const OptionRow *o = option_row(i);
+    if (!(o->commands & 1u << c) || (c != CMD_RUN && o->passed && o->commands & 1u << CMD_RUN)) continue;
+    put_option(out, o);
+  }
+}
+
+static int put_command(StrBuf *out, const char *topic) {
+  for (size_t i = 0; command_row(i); i++) {
+    const CommandRow *row = command_row(i);
+    if (!row->help || (strcmp(row->name, topic) != 0 && (!row->topic || strcmp(row->topic, topic) != 0))) continue;
+    const char *usage = arena_printf(out->arena, "usage: lagc %s %s", row->name, row->arguments);
+    page_words(out, usage, strlen(usage), 0, 9);
+    sb_putc(out, '\n');
+    page_paragraphs(out, row->help);
+    if (!command_reads_model(row->command)) return 1;
+    if (!strstr(row->help, "  name=value ")) sb_putc(out, '\n'); /* a line on name=value heads the options */
+    put_options(out, row->command);
+    return 1;
+  }
+  return 0;
+}
+
+/* "run, plot, animate" */
+static const char *commands_text(Arena *a, unsigned commands) {
+  StrBuf b = strbuf(a);
+  for (size_t i = 0; command_row(i); i++)
+    if (commands & 1u << command_row(i)->command) sb_printf(&b, "%s%s", b.n ? ", " : "", command_row(i)->name);
+  return sb_text(&b);
+}
+
+/* Prints the options whose name (without dashes) or one of whose choices is the topic. */
+static int put_named_options(StrBuf *out, const char *topic, int before) {
+  int found = 0;
+  topic += strspn(topic, "-");
+  for (size_t i = 0; option_row(i); i++) {
+    const OptionRow *o = option_row(i);
+    if (strcmp(o->name + 2, topic) != 0 && (!o->brief || strcmp(o->brief + 1, topic) != 0) && !(o->takes == TAKES_CHOICE && is_choice(o->hint, topic, strlen(topic)))) continue;
+    if (before && !found) sb_putc(out, '\n');
+    const char *head = arena_printf(out->arena, "%s of %s:", found ? "and" : "option", commands_text(out->arena, o->commands));
+    page_words(out, head, strlen(head), 0, 0);
+    put_option(out, o);
+    found = 1;
+  }
+  return found;
+}
+
+/* ---- units ---- */
+
+static const char *name_of_unit(uint32_t i) {
+  int prefixes;
+  return unit_name(i, &prefixes);
+}
+
+static int takes_prefixes(uint32_t i) {
+  int prefixes = 0;
+  unit_name(i, &prefixes);
+  return prefixes;
+}
+
+static int put_unit(StrBuf *out, const char *name, int before) {
+  for (uint32_t i = 0; name_of_unit(i); i++) {
+    if (strcmp(name_of_unit(i), name) != 0) continue;
+    const char *is = unit_meaning(i, out->arena);
+    sb_printf(out, "%sunit:\n  [%s]%s%s%s\n", before ? "\n" : "", name, is ? " = " : "", is ? is : " of the SI, a base unit",
+              takes_prefixes(i) ? "; takes the SI prefixes" : "");
+    return 1;
+  }
+  if (!unit_exists(name)) return 0;
+  sb_printf(out, "%sunit:\n  [%s], with an SI prefix; `lagc help units` has the table\n", before ? "\n" : "", name);
+  return 1;
+}
+
+/* Prints the table of units in columns that are read downwards. */
+static void put_units(StrBuf *out) {
+  enum { COLUMNS = 2, WIDE = 38 };
+  VEC(const char *) cells = {0};
+  int plain = 0;
+  for (uint32_t i = 1; name_of_unit(i); i++) { /* the first is 1 */
+    const char *is = unit_meaning(i, out->arena), *mark = takes_prefixes(i) ? "" : "*";
+    plain |= *mark;
+    vec_push(out->arena, &cells, arena_printf(out->arena, "%s%s%s%s", name_of_unit(i), mark, is ? " = " : "", is ? is : ""));
+  }
+  uint32_t rows = (cells.n + COLUMNS - 1) / COLUMNS;
+  sb_puts(out, "\nThe table\n---------\n");
+  for (uint32_t r = 0; r < rows; r++) {
+    const char *left = cells.at[r], *right = r + rows < cells.n ? cells.at[r + rows] : NULL;
+    sb_printf(out, "    %s", left);
+    for (size_t w = page_columns(left); right && w < WIDE; w++) sb_putc(out, ' ');
+    sb_printf(out, "%s\n", right ? right : "");
+  }
+  if (plain) sb_puts(out, "    (* takes no SI prefix)\n");
+}
+
+/* ---- topics ---- */
+
+static void add_topic(Arena *a, Topics *out, const char *word) {
+  for (uint32_t i = 0; i < out->n; i++)
+    if (strcmp(out->at[i], word) == 0) return;
+  vec_push(a, out, word);
+}
+
+void help_topics(Arena *a, Topics *out) {
+  Chapters chapters = {0};
+  reference_chapters(a, &chapters);
+  for (size_t i = 0; command_row(i); i++)
+    if (command_row(i)->help) add_topic(a, out, command_row(i)->name);
+  for (uint32_t i = 0; i < chapters.n; i++)
+    for (size_t k = 0; word_at(a, chapters.at[i].words, k); k++) add_topic(a, out, word_at(a, chapters.at[i].words, k));
+  add_topic(a, out, "methods");
+}
+
+static const char *all_functions(Arena *a) {
+  StrBuf b = strbuf(a);
+  for (size_t i = 0; function_name(i); i++) sb_printf(&b, "%s ", function_name(i));
+  return sb_text(&b);
+}
+
+static void put_overview(StrBuf *out) {
+  Arena *a = out->arena;
+  Chapters chapters = {0};
+  Topics shown = {0};
+  reference_chapters(a, &chapters);
+  sb_puts(out, "lagc compiles a Lagrangian written as text into C, and runs it.\n\n"
+               "usage: lagc COMMAND MODEL [SCENE] [options]\n\n");
+  for (size_t i = 0; command_row(i); i++)
+    if (command_row(i)->does) page_term(out, command_row(i)->name, command_row(i)->does, TERMS);
+  sb_puts(out, "\nlagc help TOPIC says more on a command, on each function, unit and option, and on\n\n");
+  for (uint32_t i = 0; i < chapters.n; i++) {
+    const char *words = chapters.at[i].words, *first = word_at(a, words, 0);
+    uint32_t before = shown.n;
+    if (first) add_topic(a, &shown, first);
+    if (shown.n == before) continue;
+    words += strlen(first);
+    const char *more = *words ? words + 1 : strcmp(first, "functions") == 0 ? all_functions(a) : chapter_title(a, &chapters.at[i]);
+    page_term(out, first, more, TERMS);
+  }
+  page_term(out, "methods", "of integration, with their options", TERMS);
+  sb_putc(out, '\n');
+  page_paragraphs(out, "MODEL is a .lag file; without a SCENE its first one counts. Exit status: 0 ok, 1 bad model, 2 usage or files, "
+                       "3 the run failed.");
+}
+
+static Name nearest(Arena *a, const char *topic) {
+  Topics known = {0};
+  help_topics(a, &known);
+  for (size_t i = 0; function_name(i); i++) add_topic(a, &known, function_name(i));
+  for (size_t i = 0; option_row(i); i++) add_topic(a, &known, option_row(i)->name);
+  return suggest(topic, known.at, known.n);
+}
+
+int help_print(StrBuf *out, const char *topic, Name *near) {
+  *near = NULL;
+  if (!topic) {
+    put_overview(out);
+    return 1;
+  }
+  Chapters chapters = {0};
+  reference_chapters(out->arena, &chapters);
+  int found = put_command(out, topic);
+  for (uint32_t i = 0; i < chapters.n; i++) {
+    StrBuf says = strbuf(out->arena);
+    if (!chapter_print(&says, &chapters.at[i], topic)) continue;
+    while (says.n > 1 && says.at[says.n - 2] == '\n') says.at[--says.n] = '\0';
+    sb_printf(out, "%s%s", found ? "\n" : "", sb_text(&says));
+    found = 1;
+  }
+  found |= put_named_options(out, topic, found);
+  if (strcmp(topic, "units") == 0) put_units(out);
+  else found |= put_unit(out, topic, found);
+  if (!found && parse_advice(topic)) {
+    page_words(out, parse_advice(topic), strlen(parse_advice(topic)), 0, 0);
+    found = 1;
+  }
+  if (!found) *near = nearest(out->arena, topic);
+  return found;
+}

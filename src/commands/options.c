@@ -1,0 +1,268 @@
+/* Parses the command line by the tables of commands.c; mistakes are answered with the nearest word or the right command. */
+#include "commands/options.h"
+
+#include <string.h>
+
+#include "base/suggest.h"
+#include "cli/outfile.h" /* generated: a copy of runtime/io/outfile.h */
+
+static const char *usage(Arena *a, Command c) {
+  const CommandRow *row = command_find(c);
+  return arena_printf(a, "lagc %s %s", row->name, row->arguments);
+}
+
+static const char *unknown_command(Arena *a, const char *word) {
+  Name names[CMD_COUNT];
+  size_t n = 0;
+  for (const CommandRow *row; n < CMD_COUNT && (row = command_row(n)) != NULL && row->help; n++) names[n] = row->name;
+  size_t len = strlen(word);
+  if (len > 4 && strcmp(word + len - 4, ".lag") == 0) return arena_printf(a, "say what to do with %s: `lagc run %s`, `lagc derive %s`, `lagc check %s`", word, word, word, word);
+  Name near = suggest(word, names, n);
+  if (near) return arena_printf(a, "unknown command `%s`: did you mean `%s`?", word, near);
+  return arena_printf(a, "unknown command `%s`; `lagc help` lists them", word);
+}
+
+/* ---- values of options ---- */
+
+static int add_define(Arena *a, Options *o, const char *text, const char **error) {
+  const char *eq = strchr(text, '=');
+  if (!eq || eq == text || !eq[1]) {
+    *error = "-D takes CONST=VALUE, for example -D N=50";
+    return 0;
+  }
+  Define d = {.name = arena_strndup(a, text, (size_t)(eq - text)), .value = eq + 1};
+  vec_push(a, &o->defines, d);
+  return 1;
+}
+
+int is_choice(const char *choices, const char *word, size_t n) {
+  for (const char *s = choices; *s; s += strspn(s, " ")) {
+    size_t len = strcspn(s, " ");
+    if (len == n && strncmp(s, word, n) == 0) return 1;
+    s += len;
+  }
+  return 0;
+}
+
+/* "text latex c" -> "text, latex, c" */
+static const char *listed(Arena *a, const char *choices) {
+  char *text = arena_alloc(a, 2 * strlen(choices) + 1), *to = text;
+  for (const char *s = choices; *s; s++) {
+    if (*s == ' ') *to++ = ',';
+    *to++ = *s;
+  }
+  return text;
+}
+
+static int check_choices(Arena *a, const OptionRow *row, const char *value, const char **error) {
+  int several = row->takes == TAKES_CHOICES, ok = value[0] != '\0';
+  for (const char *s = value; ok && *s;) {
+    size_t n = several ? strcspn(s, ",") : strlen(s);
+    ok = is_choice(row->hint, s, n);
+    s += n + (s[n] == ',');
+  }
+  if (!ok) *error = arena_printf(a, "%s takes %s%s, not `%s`", row->name, listed(a, row->hint), several ? ", with commas between several" : "", value);
+  return ok;
+}
+
+/* Advice: the command or option that writes files of this suffix. */
+static const char *way_to(Command c, const char *suffix) {
+  if (c == CMD_PLOT && is_choice("png pdf jpg jpeg gif webp eps ps", suffix, strlen(suffix))) return ", which browsers and `rsvg-convert` turn into other kinds";
+  if (c == CMD_RUN && strcmp(suffix, "json") == 0) return "; --json prints the report as JSON";
+  if (c == CMD_RUN && strcmp(suffix, "svg") == 0) return "; --svg FILE draws";
+  if (c != CMD_ANIMATE && is_choice("html htm", suffix, strlen(suffix))) return "; `lagc animate` writes HTML";
+  if (c != CMD_HEADER && is_choice("h hh hpp hxx", suffix, strlen(suffix))) return "; `lagc header` writes headers";
+  if (c != CMD_EMIT && strcmp(suffix, "c") == 0) return "; `lagc emit` writes C for the runtime, `lagc derive --format c` the accelerations";
+  return "";
+}
+
+/* Reports a file name whose suffix is of another kind than the command writes. */
+static int check_kind(Arena *a, Command c, const OptionRow *row, const char *path, const char *suffixes, const char **error) {
+  const char *other = outfile_other_kind(path, suffixes), *name = row->brief ? row->brief : row->name;
+  if (!other) return 1;
+  const char *writer = row->brief ? command_find(c)->name : row->name, *way = row->brief ? way_to(c, other) : "";
+  const char *kind = !*suffixes ? (c == CMD_BUILD ? "a program" : "text") : is_choice(suffixes, "npy", 3) ? "CSV, or NumPy where the name ends in .npy"
+                   : is_choice(suffixes, "svg", 3) ? "SVG" : is_choice(suffixes, "html", 4) ? "HTML" : is_choice(suffixes, "h", 1) ? "a C header"
+                   : is_choice(suffixes, "tex", 3) ? "LaTeX" : is_choice(suffixes, "json", 4) ? "JSON" : "C";
+  int stem = (int)(other - path) - !*suffixes;
+  *error = arena_printf(a, "%s %s: %s writes %s%s; write %s %.*s%.*s", name, path, writer, kind, way, name, stem, path, (int)strcspn(suffixes, " "), suffixes);
+  return 0;
+}
+
+/* derive and noether: takes the format from the name of the output file, or compares it with --format. */
+static int check_format(Arena *a, Options *o, const char **error) {
+  const OptionRow *output = option_find(o->command, "-o", &(const char *){NULL}), *format = option_find(o->command, "--format", &(const char *){NULL});
+  static const char *const formats[][2] = {{"latex", "tex"}, {"json", "json"}, {"c", "c"}};
+  if (!o->output || !output || !format) return 1;
+  const char *suffixes = "";
+  for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+    if (!o->format && is_choice(format->hint, formats[i][0], strlen(formats[i][0])) && outfile_is(o->output, formats[i][1])) o->format = formats[i][0];
+    if (o->format && strcmp(o->format, formats[i][0]) == 0) suffixes = formats[i][1];
+  }
+  return check_kind(a, o->command, output, o->output, suffixes, error);
+}
+
+/* Stores the value in the field that the row names. */
+static int set_value(Arena *a, Options *o, const OptionRow *row, const char *value, const char **error) {
+  void *field = (char *)o + row->field;
+  switch (row->takes) {
+    case TAKES_NOTHING: *(int *)field = 1; return 1;
+    case TAKES_DEFINE: return add_define(a, o, value, error);
+    case TAKES_CHOICE: case TAKES_CHOICES:
+      if (!check_choices(a, row, value, error)) return 0;
+      break;
+    case TAKES_EXPRS: vec_push(a, (OptionTexts *)field, value); return 1;
+    case TAKES_TEXT: case TAKES_NUMBER: case TAKES_FILE: case TAKES_METHOD: case TAKES_PARAMS: case TAKES_EXPR: break;
+  }
+  *(const char **)field = value;
+  return 1;
+}
+
+/* ---- words ---- */
+
+/* The option that other programs write as `arg`; NULL: unknown. */
+static const char *meant_option(const char *arg) {
+  static const char *const other[][2] = {{"--dt --timestep --stepsize --h", "--step"}, {"--tolerance --rtol --atol --eps --accuracy", "--tol"},
+                                         {"--time --tmax --tend --end --t1 --span --duration", "--until"}, {"--integrator --solver", "--method"},
+                                         {"--plot --image --figure", "--svg"}, {"--sampling --interval --fps", "--every"}};
+  for (size_t i = 0; i < sizeof other / sizeof *other; i++)
+    if (has_word(other[i][0], arg)) return other[i][1];
+  return NULL;
+}
+
+/* The message for a word that begins with `-` but is no option of this command. */
+static const char *unknown_option(Arena *a, const Options *o, const char *word) {
+  const char *value, *arg = arena_printf(a, "%.*s", (int)strcspn(word, "="), word);
+  const CommandRow *row = command_find(o->command);
+  for (size_t i = 0; command_row(i); i++)
+    if (option_find(command_row(i)->command, arg, &value))
+      return arena_printf(a, "`%s` is an option of `lagc %s`; `lagc help %s` lists those of `lagc %s`", arg, command_row(i)->name, row->name, row->name);
+  Name names[64];
+  size_t n = 0;
+  for (size_t i = 0; option_row(i); i++)
+    if (option_row(i)->commands & 1u << o->command && n < 64) names[n++] = option_row(i)->name;
+  Name near = suggest(arg, names, n), meant = meant_option(arg);
+  for (size_t i = 0; i < n && meant; i++)
+    if (strcmp(names[i], meant) == 0) return arena_printf(a, "`lagc %s` has no option `%s`: `%s` is what it is called here", row->name, arg, meant);
+  if (near) return arena_printf(a, "`lagc %s` has no option `%s`: did you mean `%s`?", row->name, arg, near);
+  return arena_printf(a, "`lagc %s` has no option `%s`; `lagc help %s` lists them", row->name, arg, row->name);
+}
+
+static int read_option(Arena *a, int argc, char **argv, int *i, Options *o, const OptionRow *row, const char *value, const char **error) {
+  const char *arg = argv[*i];
+  if (row->takes == TAKES_NOTHING && value) {
+    *error = arena_printf(a, "%s takes no value", row->name);
+    return 0;
+  }
+  if (row->passed) vec_push(a, &o->rest, arg);
+  if (row->takes != TAKES_NOTHING && !value) {
+    if (*i + 1 >= argc) {
+      *error = arena_printf(a, "%s needs a value: %s %s", arg, arg, row->value);
+      return 0;
+    }
+    value = argv[++*i];
+    if (row->passed) vec_push(a, &o->rest, value);
+  }
+  if (row->takes == TAKES_FILE && (*row->hint || o->command == CMD_BUILD) && !check_kind(a, o->command, row, value, row->hint, error)) return 0;
+  if (strcmp(row->name, "--method") == 0) o->method = value; /* passed on, and recorded: its derivatives are compiled in */
+  if (strcmp(row->name, "--resume") == 0) o->resume = value;
+  if (strcmp(row->name, "--tol") == 0) o->tol = value;
+  if (strcmp(row->name, "--tangent") == 0) o->with = "linear";
+  return row->passed || set_value(a, o, row, value, error);
+}
+
+/* A word that is no option: the model, a scene, a value. */
+static int read_word(Arena *a, const char *arg, Options *o, const char **error) {
+  int sets = command_simulates(o->command) && strchr(arg, '=');
+  if (!o->file && !sets) {
+    o->file = arg;
+    return 1;
+  }
+  if (command_simulates(o->command)) {
+    if (!sets && !o->scene) o->scene = arg;
+    vec_push(a, &o->rest, arg);
+    return 1;
+  }
+  if (o->scene) {
+    *error = arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command));
+    return 0;
+  }
+  o->scene = arg;
+  return 1;
+}
+
+static int read_arguments(Arena *a, int argc, char **argv, Options *o, const char **error) {
+  for (int i = 2; i < argc; i++) {
+    const char *arg = argv[i], *value;
+    int ok, dash = arg[0] == '-' && arg[1];
+    const OptionRow *row = dash ? option_find(o->command, arg, &value) : NULL;
+    if (row) ok = read_option(a, argc, argv, &i, o, row, value, error);
+    else if (!dash) ok = read_word(a, arg, o, error);
+    else {
+      *error = unknown_option(a, o, arg);
+      ok = 0;
+    }
+    if (!ok) return 0;
+    if (o->help) {
+      o->command = CMD_HELP;
+      o->topic = argv[1];
+      return 1;
+    }
+  }
+  if (!o->file) *error = arena_printf(a, "a model is missing; usage: %s", usage(a, o->command));
+  return o->file && check_format(a, o, error);
+}
+
+/* Commands that read no model take at most one word. */
+static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char **error) {
+  const char *arg = argc > 2 ? argv[2] : NULL;
+  if (argc > 3) {
+    *error = arena_printf(a, "one word too many: `%s`; usage: %s", argv[3], usage(a, o->command));
+    return 0;
+  }
+  o->topic = arg;
+  if (arg && (strcmp(arg, "--help") == 0 || strcmp(arg, "-h") == 0)) {
+    o->topic = o->command == CMD_HELP ? NULL : command_find(o->command)->name;
+    o->command = CMD_HELP;
+    return 1;
+  }
+  if (o->command == CMD_METHODS && arg) {
+    *error = arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command));
+    return 0;
+  }
+  if (o->command == CMD_CACHE && arg) {
+    const char *value;
+    const OptionRow *row = option_find(o->command, arg, &value);
+    if (row) return read_option(a, argc, argv, &(int){2}, o, row, value, error);
+    *error = unknown_option(a, o, arg);
+    return 0;
+  }
+  if (o->command == CMD_COMPLETION && (!arg || !is_choice("bash zsh fish", arg, strlen(arg)))) {
+    *error = "completion for which shell? `lagc completion bash`, `lagc completion zsh` or `lagc completion fish`";
+    return 0;
+  }
+  return 1;
+}
+
+int options_more_digits(const Options *o) { return o->precision && strcmp(o->precision, "double") != 0; }
+
+int options_read(Arena *a, int argc, char **argv, Options *o, const char **error) {
+  *o = (Options){.command = argc < 2 ? CMD_HELP : command_named(argv[1])};
+  *error = NULL;
+  for (int i = 1; i < argc && o->command != CMD_COMPLETE; i++)
+    if (strpbrk(argv[i], "\n\t")) { /* messages show a word on one line */
+      *error = arena_printf(a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i);
+      return 0;
+    }
+  if (!o->command) {
+    *error = unknown_command(a, argv[1]);
+    return 0;
+  }
+  if (o->command == CMD_COMPLETE) {
+    for (int i = 2; i < argc; i++) vec_push(a, &o->rest, argv[i]);
+    return 1;
+  }
+  if (o->command == CMD_MODES || o->command == CMD_LYAPUNOV) o->with = "linear";
+  if (command_reads_model(o->command)) return read_arguments(a, argc, argv, o, error);
+  return read_one_word(a, argc, argv, o, error);
+}

@@ -1,0 +1,165 @@
+/* Values on the command line: parses -D, compiles in inputs and starts of rotations, converts units and formulas to plain numbers. */
+#include "commands/settings.h"
+
+#include <string.h>
+
+#include "commands/command_table.h"
+#include "toolchain/files.h"
+#include "commands/points.h"
+#include "syntax/parse.h"
+
+/* --- inputs with a formula or a table --- */
+
+/* The declaration of `name`, or of `effect.name`, with this kind; NULL: none. */
+static const AstStmt *find_declared(const Ast *ast, AstStmtKind kind, const char *name) {
+  const char *dot = strchr(name, '.'), *stem = dot ? dot + 1 : name;
+  for (const AstStmt *s = ast->first; s; s = s->next) {
+    if (s->kind == kind && !dot && strcmp(s->name, name) == 0) return s;
+    if (s->kind != STMT_EFFECT || (dot && (strlen(s->name) != (size_t)(dot - name) || strncmp(s->name, name, strlen(s->name)) != 0))) continue;
+    for (const AstStmt *x = s->body; x; x = x->next)
+      if (x->kind == kind && strcmp(x->name, stem) == 0) return x;
+  }
+  return NULL;
+}
+
+static int is_number(const char *text) { return *text && strspn(text, "+-.0123456789eE") == strlen(text); }
+
+/* Parses the expression after `name=`; 0 after a mistake. */
+static AstId parse_setting(Ast *ast, const char *name, const char *text) {
+  const Source *source = source_add(ast->sources, name, text, strlen(text));
+  return source ? parse_expression(ast, source) : 0;
+}
+
+/* Puts back the quotes around a file's name, which the shell removed: `u=gust.csv` names a file. */
+static const char *quoted_file(Arena *a, const char *text) {
+  size_t n = strlen(text);
+  int named = n > 4 && strcmp(text + n - 4, ".csv") == 0;
+  return text[0] != '"' && (named || file_exists(text)) ? arena_printf(a, "\"%s\"", text) : text;
+}
+
+int settings_defines(Ast *ast, Define *defines, uint32_t n) {
+  int ok = 1;
+  for (uint32_t i = 0; i < n; i++) {
+    Define *d = &defines[i];
+    if (!d->expr) d->expr = parse_setting(ast, arena_printf(ast->arena, "-D %s", d->name), d->value);
+    ok &= d->expr != 0;
+  }
+  return ok;
+}
+
+static int take(Ast *ast, const char *setting, GivenList *given) {
+  const char *eq = strchr(setting, '=');
+  const char *name = arena_strndup(ast->arena, setting, (size_t)(eq - setting));
+  const char *place = arena_strndup(ast->arena, setting, (size_t)(eq - setting) + 1); /* shown in messages: `u=` */
+  Given one = {parse_setting(ast, place, name), parse_setting(ast, place, quoted_file(ast->arena, eq + 1))};
+  vec_push(ast->arena, given, one);
+  return one.what && one.value;
+}
+
+/* Whether the name of a setting is a start of a rotation: R, R[2], R.w, omega(R). */
+static int starts_rotation(const Ast *ast, const char *name) {
+  const char *inner = strncmp(name, "omega(", 6) == 0 ? name + 6 : name;
+  while (*inner == ' ') inner++;
+  size_t n = strcspn(inner, "[.') ");
+  const AstStmt *st = find_declared(ast, STMT_COORD, arena_strndup(ast->arena, inner, n));
+  return st && st->type && strcmp(st->type, "rotation") == 0 && !strchr(inner, '\'');
+}
+
+int settings_compiled(Ast *ast, Options *o, GivenList *given, const char **error) {
+  uint32_t kept = 0;
+  int ok = 1;
+  for (uint32_t i = 0; i < o->rest.n; i++) {
+    const char *arg = o->rest.at[i], *eq = arg[0] != '-' ? strchr(arg, '=') : NULL;
+    const char *name = eq ? arena_strndup(ast->arena, arg, (size_t)(eq - arg)) : "";
+    if (eq && find_declared(ast, STMT_CONST, name) && !find_declared(ast, STMT_PARAM, name)) {
+      *error = arena_printf(ast->arena, "%s: `%s` is a constant, fixed when compiling: write -D %s", arg, name, arg);
+      return 0;
+    }
+    int formula = eq && eq[1] && !is_number(eq + 1) && find_declared(ast, STMT_INPUT, name);
+    if (formula || (eq && eq[1] && starts_rotation(ast, name))) ok &= take(ast, arg, given);
+    else o->rest.at[kept++] = arg;
+  }
+  o->rest.n = kept;
+  return ok;
+}
+
+/* --- values with units --- */
+
+typedef struct {
+  const Options *o;
+  Ast *ast;
+  Arena *arena;
+  Model *model; /* built for the first value that needs it */
+} Converter;
+
+/* Whether the value has a unit or is a formula of numbers; all else goes to the simulator as it stands. */
+static int needs_conversion(const char *value) {
+  size_t n = strlen(value);
+  if (is_number(value)) return 0;
+  return strchr(value, '[') || strspn(value, "+-*/^.0123456789eE() pi") == n;
+}
+
+/* The value as a plain number in the declared unit of `name` (NULL: a time [s]); NULL after a mistake. */
+static const char *converted(Converter *c, const char *name, const char *value) {
+  enum { ROOM = 32 };
+  if (!c->model) {
+    ModelChoice choice = {.scene = c->o->scene, .defines = c->o->defines.at, .ndefines = c->o->defines.n};
+    c->model = model_build(c->ast, &choice);
+  }
+  if (!c->model) return NULL;
+  AstId target = name ? parse_setting(c->ast, "command line", name) : 0, id = parse_setting(c->ast, "command line", value);
+  double x;
+  const char *digits;
+  if ((name && !target) || !id || !model_setting(c->model, target, id, &x, &digits)) return NULL;
+  if (options_more_digits(c->o) && digits) return digits;
+  if (options_more_digits(c->o)) {
+    diag_error(c->ast->diags, ast_expr(c->ast, id)->span, "--precision %s needs more digits of this than lagc computes", c->o->precision);
+    diag_help(c->ast->diags, "it knows those of fractions, and of multiples of pi: write others as decimals");
+    return NULL;
+  }
+  char *text = arena_alloc(c->arena, ROOM);
+  num_format_double(text, x);
+  return text;
+}
+
+/* Converts name=value, with spaces around both removed. */
+static int convert_setting(Converter *c, const char **arg) {
+  const char *eq = strchr(*arg, '=');
+  const char *name = text_trimmed(c->arena, *arg, (size_t)(eq - *arg)), *value = text_trimmed(c->arena, eq + 1, strlen(eq + 1));
+  if (needs_conversion(value) && !(value = converted(c, name, value))) return 0;
+  *arg = arena_printf(c->arena, "%s=%s", name, value);
+  return 1;
+}
+
+/* Converts the value of an option that is a time: --until 2[min], --until=2[min]. */
+static int convert_time(Converter *c, uint32_t *i) {
+  static const char *const options[] = {"--until", "--every", "--step", "--transient"};
+  const char **at = c->o->rest.at;
+  for (size_t k = 0; k < sizeof options / sizeof *options; k++) {
+    size_t n = strlen(options[k]);
+    if (strncmp(at[*i], options[k], n) != 0 || (at[*i][n] != '=' && at[*i][n])) continue;
+    int joined = at[*i][n] == '=';
+    if (!joined && *i + 1 == c->o->rest.n) return 1;
+    const char *value = joined ? at[*i] + n + 1 : at[++*i];
+    if (!needs_conversion(value)) return 1;
+    if (!(value = converted(c, NULL, value))) return 0;
+    at[*i] = joined ? arena_printf(c->arena, "%s=%s", options[k], value) : value;
+  }
+  return 1;
+}
+
+int settings_units(Ast *ast, const Options *o) {
+  Converter c = {.o = o, .ast = ast, .arena = ast->arena};
+  int ok = 1;
+  for (uint32_t i = 0; i < o->rest.n; i++) {
+    const char *word = o->rest.at[i];
+    uint32_t at = i;
+    if (word[0] != '-') {
+      if (strchr(word, '=')) ok &= convert_setting(&c, &o->rest.at[i]);
+      continue;
+    }
+    ok &= convert_time(&c, &i);
+    if (i == at && option_takes_next(o->command, word)) i++;
+  }
+  return ok;
+}

@@ -1,0 +1,62 @@
+/* Shared by the files that lower Eqns: lower*.c (expressions, one program each), solve.c, eliminate.c, gram.c (the linear system), grade.c. */
+#ifndef LAGC_LOWER_LOWER_IMPL_H
+#define LAGC_LOWER_LOWER_IMPL_H
+
+#include "ir/factorization_record.h"
+#include "lower/lower.h"
+
+typedef struct {
+  const Eqns *e;
+  ExprGraph *g;
+  Prog *p;
+  ExprMap slots;   /* node -> slot + 1 */
+  ExprMap circular; /* u -> 1 where sin u or cos u occurs among the roots */
+  int64_t denominator; /* common denominator of graded coefficients; 0: none. See lower_grade */
+  ExprMap often;   /* coefficient, as a node -> number of terms with it */
+  int direct;       /* no addition theorem for sin(a - b): a series of its own is cheaper */
+  Factored *factored; /* receives the factors of the linear system, and x its solution [n + ndefs]; NULL: not recorded */
+  Slot *x;
+  int coarse;         /* as in Solve: for outputs, which shall stay finite where constraints become dependent */
+  Slot *multipliers; /* [number of constraints], set by lower_solution */
+} Lower;
+
+Lower lower_new(const Eqns *e);
+
+/* grade.c. Finds the common denominator of coefficients that are graded along a family, as masses m*(1 + i/N) are. Before lower_roots. */
+void lower_grade(Lower *l, const Expr *roots, uint32_t n);
+
+/* Factor that brings a coefficient to the common denominator; 1 where it is not graded. */
+int64_t lower_grade_of(Lower *l, Num c);
+
+/* Lowers the roots and all nodes below them; lower_slot then gives their slots. */
+void lower_roots(Lower *l, const Expr *roots, uint32_t n);
+Slot lower_slot(const Lower *l, Expr e);
+
+/* lower_roots for expressions that may contain q'', z' and multipliers, which are computed first. */
+void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n);
+
+/* The finished program of a function that is called once a step, or once a row of output. */
+Prog *lower_seldom(const Lower *l);
+
+/* Lowers M q'' = f and its solution; acc[n] receives the slots of q''. */
+void lower_solution(Lower *l, Slot *acc);
+
+/* The change d[n] with A d = g for the first nrows constraints that is least in the metric M, and A^T mu = M d. coarse: as in Solve. */
+void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, Slot *d, Slot *force);
+
+/* eliminate.c: q'' by elimination without pivoting; entries of H and C and forces must be lowered. */
+void lower_elimination(Lower *l, Slot *acc);
+
+/* gram.c: q'' where M = W^T C W; weights, W and forces must be lowered. */
+void lower_gram(Lower *l, Slot *acc);
+
+/* Names "M12", "f1" by numbers of coordinates, from 1 (j UINT32_MAX: i alone); the stem alone when there is one coordinate. */
+Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j);
+
+/* x - a*b, with structural zeros skipped. */
+Slot lower_minus_product(Lower *l, Slot x, Slot a, Slot b);
+
+/* Check that d is positive, or (positive 0) not zero; none where d is a number that passes. */
+void lower_pivot(Lower *l, Slot d, int positive);
+
+#endif

@@ -1,0 +1,243 @@
+/* Eqns -> IrUnit: all programs of a model, and the tables of names, units, flags and positions that describe them. */
+#include "ir/unit.h"
+
+#include <string.h>
+
+#include "lower/lower.h"
+#include "symmetry/charges.h"
+
+static IrVar var_of(Name name, const Unit *u, int periodic, AstSign sign) {
+  static const int signs[] = {[SIGN_ANY] = 0, [SIGN_GT] = 1, [SIGN_GE] = 2, [SIGN_LT] = -1, [SIGN_LE] = -2};
+  return (IrVar){name, u->text, unit_factor(u), periodic, signs[sign], num_value(u->offset), u->factor, u->pi_power};
+}
+
+static const char *joined(Arena *a, const Name *names, uint32_t n) {
+  StrBuf b = strbuf(a);
+  for (uint32_t i = 0; i < n; i++) sb_printf(&b, "%s%s", i ? " " : "", names[i]);
+  return sb_text(&b);
+}
+
+static unsigned flags_of(const Eqns *e) {
+  return (e->conserves_energy ? 1u : 0) | (e->constant_mass ? 2u : 0) | (e->autonomous ? 4u : 0) | (e->smooth ? 8u : 0) |
+         (e->separable ? 16u : 0) | (e->timeless ? 32u : 0) | (e->loses_energy ? 64u : 0) |
+         (e->first.n ? 128u : 0) | (e->first.n && e->first.constant && e->first.closed ? 256u : 0) | (e->singular_mass ? 512u : 0);
+}
+
+static void add_fixed(IrUnit *u, const Model *m) {
+  StrBuf names = strbuf(m->arena), values = strbuf(m->arena);
+  Name last = NULL;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
+    char text[32];
+    if (!p->fixed) continue;
+    num_format_double(text, num_value(p->number));
+    sb_printf(&values, "%s%s = %s", last ? ", " : "", p->name, text);
+    if (p->stem != last) sb_printf(&names, "%s%s", last ? " " : "", p->stem);
+    last = p->stem;
+  }
+  u->fixed = sb_text(&names);
+  u->fixed_values = sb_text(&values);
+}
+
+/* The contact whose impact is event i, or NULL. */
+static const Contact *impact_of(const Eqns *e, uint32_t i) {
+  for (uint32_t k = 0; k < e->m->contacts.n; k++)
+    if (e->m->contacts.at[k].impact == i) return &e->m->contacts.at[k];
+  return NULL;
+}
+
+static void add_contacts(IrUnit *u, const Eqns *e) {
+  const Model *m = e->m;
+  for (uint32_t k = 0; k < m->contacts.n; k++) {
+    const Contact *c = &m->contacts.at[k];
+    IrContact one = {expr_symbol(e->g, c->closed)->index, 0, c->impact, c->release};
+    while (e->constraints.of[one.constraint] != &m->constraints.at[c->constraint]) one.constraint++;
+    vec_push(u->arena, &u->contacts, one);
+  }
+}
+
+static void add_events(IrUnit *u, const Eqns *e) {
+  static const int directions[] = {[CROSS_BOTH] = 0, [CROSS_RISING] = 1, [CROSS_FALLING] = -1};
+  for (uint32_t i = 0; i < e->m->events.n; i++) {
+    const Event *ev = &e->m->events.at[i];
+    const Contact *contact = impact_of(e, i);
+    IrEvent one = {ev->name, directions[ev->direction], contact ? lower_impact(e, contact) : lower_action(e, i), ev->stop};
+    vec_push(u->arena, &u->events, one);
+  }
+  u->event_values = lower_events(e);
+}
+
+static void add_constraints(IrUnit *u, const Eqns *e) {
+  const Constraints *k = &e->constraints;
+  IrConstraints *to = &u->constraints;
+  if (!k->n) return;
+  for (uint32_t i = 0; i < k->n; i++) {
+    const char *unit = dim_text(e->m->dims, k->of[i]->dim);
+    Place place = source_place(e->m->ast->sources, k->of[i]->span.begin);
+    vec_push(u->arena, &to->of, ((IrConstraint){k->of[i]->name, strcmp(unit, "1") == 0 ? "" : unit, place.file ? place.line : 0}));
+  }
+  for (uint32_t i = 0; i < k->A.n; i++) vec_push(u->arena, &to->jacobian, ((IrEntry){k->A.at[i].row, k->A.at[i].col}));
+  for (uint32_t i = 0; i < e->mass.n; i++) vec_push(u->arena, &to->mass, ((IrEntry){e->mass.at[i].row, e->mass.at[i].col}));
+  to->nholonomic = k->nholonomic;
+  to->nkept = k->nkept;
+  to->residuals = lower_residuals(e);
+  to->matrices = lower_matrices(e);
+  to->position = lower_change(e, k->nkept);
+  to->velocity = k->nkept == k->n ? to->position : lower_change(e, k->n);
+}
+
+/* Adds nothing where the energy is the only charge, conserved, and without a unit. */
+static void add_charges(IrUnit *u, const Eqns *e) {
+  const Prog *powers = e->ncharges ? lower_powers(e) : NULL;
+  if (e->ncharges < 2 && !powers && !e->energy_jumps && !(e->ncharges && e->charges[0].unit.text[0])) return;
+  for (uint32_t i = 0; i < e->ncharges; i++) {
+    const Charge *c = &e->charges[i];
+    int conserved = i ? expr_is_zero(e->g, c->proof.power) : e->conserves_energy;
+    unsigned flags = c->proof.jumps ? 8u : c->proof.power_unknown ? 0 : (conserved ? 1u : 0) | 2u | (c->proof.by_formulas ? 4u : 0);
+    vec_push(u->arena, &u->charges, ((IrCharge){c->name, c->unit.text, flags}));
+  }
+  u->charge_values = e->ncharges > 1 ? lower_charges(e) : NULL;
+  u->charge_powers = powers;
+}
+
+static void add_switches(IrUnit *u, const Eqns *e) {
+  SwitchingSurfaces all = switching_surfaces(e);
+  if (!all.n) return;
+  for (uint32_t i = 0; i < all.n; i++) {
+    Place place = source_place(e->m->ast->sources, all.at[i].span.begin);
+    vec_push(u->arena, &u->switches, ((IrSwitch){all.at[i].surface, all.at[i].text, place.file ? place.line : 0, all.at[i].nonnegative}));
+  }
+  u->switch_values = lower_switches(e, all);
+}
+
+static void add_variation(IrUnit *u, const Eqns *e) {
+  Variation *x = variation_derive(e);
+  u->variation = lower_variation(e, x);
+  u->second = lower_second(e, x);
+  for (uint32_t k = 0; k < x->second.n; k++) {
+    const SecondEntry *s = &x->second.at[k];
+    vec_push(u->arena, &u->second_at, ((IrSecond){(int)s->part, s->row, s->col}));
+  }
+}
+
+/* No series with tables, which are not analytic, nor, so far, with constraints. */
+static void add_taylor(IrUnit *u, const Eqns *e) {
+  const char *why;
+  if (e->constraints.n) return;
+  for (uint32_t i = 0; i < e->m->inputs.n; i++)
+    if (e->m->inputs.at[i].table) return;
+  IrSystem system = lower_system(e);
+  u->taylor = series_new(&system, &why);
+}
+
+IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
+  const Model *m = e->m;
+  IrUnit *u = ARENA_NEW(m->arena, IrUnit);
+  *u = (IrUnit){.arena = m->arena, .name = m->name, .doc = m->doc ? m->doc : "", .source = source, .flags = flags_of(e),
+                .libm = libm};
+  u->effects = joined(m->arena, m->effects.at, m->effects.n);
+  u->all_effects = joined(m->arena, m->all_effects.at, m->all_effects.n);
+  add_fixed(u, m);
+  for (uint32_t i = 0; i < m->coords.n; i++)
+    vec_push(m->arena, &u->q, var_of(m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
+  for (uint32_t i = 0; i < m->states.n; i++)
+    vec_push(m->arena, &u->z, var_of(m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (!m->params.at[i].fixed) vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
+  for (uint32_t i = 0; i < m->inputs.n; i++)
+    vec_push(m->arena, &u->u, var_of(m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
+  u->accel = lower_accel(e, libm);
+  u->energy = e->energy ? lower_energy(e) : NULL;
+  u->inputs = lower_inputs(e);
+  add_events(u, e);
+  add_constraints(u, e);
+  add_contacts(u, e);
+  add_charges(u, e);
+  add_switches(u, e);
+  return u;
+}
+
+int unit_shares(const IrUnit *a, const IrUnit *b) {
+  return a->flags == b->flags && strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
+}
+
+/* Quaternion coordinates of rotations with an implied start, except those to which the scene gives a value. */
+static void add_implied(IrScene *s, const Model *m) {
+  unsigned char *said = ARENA_ARRAY(m->arena, unsigned char, m->coords.n + 1);
+  for (uint32_t i = 0; i < m->scene.starts.n; i++) {
+    const Symbol *of = expr_symbol(m->g, m->scene.starts.at[i].target);
+    if (of->kind == SYM_COORD && !m->scene.starts.at[i].implied) said[of->index] = 1;
+  }
+  for (uint32_t i = 0; i < m->scene.starts.n; i++) {
+    uint32_t first = expr_symbol(m->g, m->scene.starts.at[i].target)->index;
+    for (uint32_t k = first; m->scene.starts.at[i].implied && k < first + 4; k++)
+      if (!said[k]) vec_push(m->arena, &s->implied, k);
+  }
+}
+
+static void add_exact(IrScene *s, const Eqns *e) {
+  const Model *m = e->m;
+  const Scene *sc = &m->scene;
+  s->observe_plain = s->plain.n < s->outputs.n ? lower_plain_outputs(e) : s->observe;
+  s->exact = lower_exact(e);
+  for (uint32_t i = 0; i < sc->exacts.n; i++) {
+    const Symbol *of = expr_symbol(m->g, sc->exacts.at[i].target);
+    uint32_t before = of->kind == SYM_COORD ? 0 : of->kind == SYM_VEL ? m->coords.n : 2 * m->coords.n;
+    vec_push(m->arena, &s->exact_of, before + of->index);
+  }
+}
+
+static void add_linear(IrUnit *u, Eqns *e) {
+  Partials dr = eqns_linearise(e);
+  u->linear = lower_linear(e, dr);
+  for (uint32_t k = 0; k < dr.n; k++) vec_push(u->arena, &u->linear_dr, ((IrEntry){dr.at[k].row, dr.at[k].col}));
+  for (uint32_t k = 0; k < e->mass.n; k++) vec_push(u->arena, &u->linear_mass, ((IrEntry){e->mass.at[k].row, e->mass.at[k].col}));
+}
+
+static void add_jumps(IrUnit *u, const Eqns *e) {
+  Jumps jumps = eqns_jumps(e);
+  if (!jumps.n) return;
+  u->jumps = lower_jumps(e, jumps);
+  for (uint32_t k = 0; k < jumps.n; k++) vec_push(u->arena, &u->jump_at, ((IrJump){jumps.at[k].event, jumps.at[k].row, jumps.at[k].col}));
+}
+
+void unit_want(IrUnit *u, Eqns *e, unsigned wants) {
+  unsigned fresh = wants & ~u->wants;
+  u->wants |= wants;
+  if (fresh & WANT_VARIATION && e->n) add_variation(u, e);
+  if (fresh & WANT_TAYLOR) add_taylor(u, e);
+  if (fresh & WANT_LINEAR && !e->constraints.n) { /* multipliers would change, too */
+    add_linear(u, e);
+    add_jumps(u, e);
+  }
+}
+
+void unit_add_scene(IrUnit *u, const Eqns *e) {
+  const Model *m = e->m;
+  const Scene *sc = &m->scene;
+  IrScene s = {.exactly = sc->exactly.end != 0, .name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .t1_digits = sc->t1_digits, .has_span = sc->has_span, .method = sc->method,
+               .tolerance = sc->tolerance, .every = sc->every};
+  const Prog **params = ARENA_ARRAY(m->arena, const Prog *, m->params.n + 1);
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (!m->params.at[i].fixed) params[m->params.at[i].place] = lower_param(e, i);
+  s.params = params;
+  s.start = lower_start(e);
+  add_implied(&s, m);
+  s.observe = lower_outputs(e);
+  for (uint32_t i = 0; i < sc->options.n; i++) {
+    IrOption o = {sc->options.at[i].name, sc->options.at[i].text, sc->options.at[i].value};
+    vec_push(m->arena, &s.options, o);
+  }
+  for (uint32_t i = 0; i < e->noutputs; i++) {
+    IrVar v = var_of(e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
+    vec_push(m->arena, &s.outputs, v);
+    if (e->constraints.n) vec_push(m->arena, &s.forces, (expr_kinds(e->g, e->outputs[i].value) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0);
+    if (output_is_plain(e, i)) vec_push(m->arena, &s.plain, v);
+  }
+  add_exact(&s, e);
+  for (uint32_t i = 0; i < sc->monitors.n; i++) {
+    IrMonitor mon = {sc->monitors.at[i].name, sc->monitors.at[i].output, sc->monitors.at[i].limit, sc->monitors.at[i].absolute};
+    vec_push(m->arena, &s.monitors, mon);
+  }
+  vec_push(m->arena, &u->scenes, s);
+}

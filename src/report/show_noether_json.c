@@ -1,0 +1,128 @@
+/* `lagc noether` as one JSON object: names and formulas are text of the language, in which no character needs an escape. */
+#include "symmetry/noether_report.h"
+
+static const char *comma(uint32_t k) { return k ? ", " : ""; }
+
+static void put_expr(StrBuf *out, ExprGraph *g, Expr x) {
+  sb_putc(out, '"');
+  expr_print(g, x, PRINT_TEXT, out);
+  sb_putc(out, '"');
+}
+
+/* The power; null where it is not known, or there is no charge. */
+static void put_power(StrBuf *out, ExprGraph *g, const Noether *is) {
+  if (!is->charge || is->power_unknown) sb_puts(out, "null");
+  else put_expr(out, g, is->power);
+}
+
+static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
+  const Eqns *e = r->e;
+  const FoundSymmetry *s = &r->found.all.at[k];
+  Name declared = noether_declared(r, k);
+  uint32_t shown = 0;
+  sb_printf(out, "{\"name\": \"%s\", \"delta\": {", s->name);
+  for (uint32_t i = 0; i < noether_coordinates(e); i++) {
+    if (expr_is_zero(e->g, s->by.xi[i])) continue;
+    sb_printf(out, "%s\"%s\": ", comma(shown++), expr_symbol(e->g, noether_coordinate(e, i))->name);
+    put_expr(out, e->g, s->by.xi[i]);
+  }
+  sb_puts(out, "}, \"delta_t\": ");
+  put_expr(out, e->g, s->by.tau);
+  sb_puts(out, ", \"F\": ");
+  put_expr(out, e->g, s->is.F);
+  sb_puts(out, ", \"charge\": ");
+  put_expr(out, e->g, s->is.charge);
+  sb_puts(out, ", \"power\": ");
+  put_power(out, e->g, &s->is);
+  Conditions positive = noether_conditions(r, k);
+  for (uint32_t i = 0; i < positive.n; i++) {
+    sb_puts(out, i ? ", " : ", \"positive\": [");
+    put_expr(out, e->g, positive.at[i]);
+  }
+  if (positive.n) sb_putc(out, ']');
+  if (s->is.over_time) {
+    sb_puts(out, ", \"F_integral_of\": ");
+    put_expr(out, e->g, s->is.over_time);
+  }
+  if (s->is.jumps) sb_puts(out, ", \"between_jumps\": true");
+  if (declared) sb_printf(out, ", \"declared\": \"%s\"", declared);
+  sb_putc(out, '}');
+}
+
+/* Nonzero coefficients by the number of their charge, from 1; the constant stands apart. */
+static void put_bracket(StrBuf *out, const NoetherReport *r, const Bracket *k) {
+  ExprGraph *g = r->e->g;
+  uint32_t shown = 0;
+  sb_printf(out, "{\"of\": [%u, %u], \"proved\": %s, ", k->a + 1, k->b + 1, k->proved ? "true" : "false");
+  if (!k->c) {
+    sb_printf(out, "\"is_combination\": %s, \"value\": ", k->is_outside ? "false" : "true");
+    put_expr(out, g, k->value);
+    sb_putc(out, '}');
+    return;
+  }
+  sb_puts(out, "\"constant\": ");
+  put_expr(out, g, k->constant);
+  sb_puts(out, ", \"charges\": {");
+  for (uint32_t i = 0; i < r->algebra.n; i++) {
+    if (expr_is_zero(g, k->c[i])) continue;
+    sb_printf(out, "%s\"%u\": ", comma(shown++), i + 1);
+    put_expr(out, g, k->c[i]);
+  }
+  sb_puts(out, "}}");
+}
+
+static void put_scaling(StrBuf *out, const NoetherReport *r) {
+  if (!r->scales) {
+    sb_puts(out, "null");
+    return;
+  }
+  sb_puts(out, "{\"powers\": {");
+  for (uint32_t i = 0; i < r->e->n; i++) {
+    sb_printf(out, "%s\"%s\": \"", comma(i), r->e->m->coords.at[i].name);
+    num_print(out, r->scaling.alpha[i]);
+    sb_putc(out, '"');
+  }
+  sb_puts(out, "}, \"t\": \"");
+  num_print(out, r->scaling.beta);
+  sb_puts(out, "\", \"action\": \"");
+  num_print(out, r->scaling.kappa);
+  sb_puts(out, "\"}");
+}
+
+static void put_effect(StrBuf *out, const NoetherReport *r, const EffectVerdict *v) {
+  const char *note = noether_note_on_impacts(v->e->m);
+  sb_printf(out, "{\"effect\": \"%s\", \"note\": \"%s\", \"powers\": [", v->effect, note ? note : "");
+  for (uint32_t k = 0; k < r->found.all.n; k++) {
+    sb_puts(out, comma(k));
+    put_power(out, v->e->g, &v->is[k]);
+  }
+  sb_puts(out, "]}");
+}
+
+void show_noether_json(const NoetherReport *r, StrBuf *out) {
+  const Model *m = r->e->m;
+  const FoundSymmetries *f = &r->found;
+  sb_printf(out, "{\"model\": \"%s\", \"effects_on\": [", m->name);
+  for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(out, "%s\"%s\"", comma(i), m->effects.at[i]);
+  sb_puts(out, "], \"cyclic\": [");
+  for (uint32_t i = 0; i < r->cyclic.n; i++) sb_printf(out, "%s\"%s\"", comma(i), m->coords.at[r->cyclic.at[i]].name);
+  sb_printf(out, "],\n \"note\": \"%s\", \"ansatz\": \"%s\", \"searched\": %s, \"not_proved\": %u, \"galilean\": %s,\n \"symmetries\": [", f->note ? f->note : "", f->ansatz, f->searched ? "true" : "false", f->unproved,
+            f->galilean ? "true" : "false");
+  for (uint32_t k = 0; k < f->all.n; k++) {
+    sb_puts(out, k ? ",\n  " : "\n  ");
+    put_symmetry(out, r, k);
+  }
+  sb_puts(out, "],\n \"scaling\": ");
+  put_scaling(out, r);
+  sb_printf(out, ",\n \"brackets_known\": %s, \"brackets\": [", r->algebra.why_not ? "false" : "true");
+  for (uint32_t k = 0; k < r->algebra.all.n; k++) {
+    sb_puts(out, k ? ",\n  " : "\n  ");
+    put_bracket(out, r, &r->algebra.all.at[k]);
+  }
+  sb_puts(out, "],\n \"effects\": [");
+  for (uint32_t k = 0; k < r->effects.n; k++) {
+    sb_puts(out, k ? ",\n  " : "\n  ");
+    put_effect(out, r, &r->effects.at[k]);
+  }
+  sb_puts(out, "]}\n");
+}

@@ -1,0 +1,201 @@
+/* Generators of declared symmetries, their charges, and messages about symmetries that do not hold. */
+#include "symmetry/charges.h"
+
+#include "sym/simplify.h"
+
+/* --- generators and charges --- */
+
+static Generator generator_of(const Eqns *e, const Symmetry *y) {
+  uint32_t n = noether_coordinates(e);
+  Expr *xi = ARENA_ARRAY(e->m->arena, Expr, n + 1);
+  Generator by = {.xi = xi};
+  for (uint32_t k = 0; k < y->moves.n; k++) {
+    const Move *move = &y->moves.at[k];
+    if (move->target == e->m->time) by.tau = move->rate;
+    for (uint32_t i = 0; i < n; i++)
+      if (noether_coordinate(e, i) == move->target) xi[i] = move->rate;
+  }
+  return by;
+}
+
+static Charge charge_of(const Eqns *e, const Symmetry *y) {
+  ExprGraph *g = e->g;
+  Generator by = generator_of(e, y);
+  Charge c = {.of = y, .name = y->name, .unit = y->unit, .proof = noether_prove(e, &by)};
+  c.value = c.proof.charge == e->energy ? e->energy_stable : simplify_stable(g, c.proof.charge);
+  c.scale = simplify_stable(g, c.proof.scale);
+  return c;
+}
+
+static Charge energy_of(const Eqns *e) {
+  Expr zero = expr_int(e->g, 0);
+  Charge c = {.name = "energy", .unit = e->m->energy_unit, .value = e->energy_stable, .scale = e->energy_scale};
+  if (e->conserves_energy) c.proof = (Noether){.charge = e->energy, .power = zero, .F = zero, .remainder = zero, .by_constraints = zero};
+  else c.proof = noether_energy(e);
+  return c;
+}
+
+void charges_derive(Eqns *e) {
+  const Model *m = e->m;
+  Charge *all = ARENA_ARRAY(m->arena, Charge, m->symmetries.n + 1);
+  if (!e->energy) return;
+  all[0] = energy_of(e);
+  for (uint32_t i = 0; i < m->symmetries.n; i++) all[i + 1] = charge_of(e, &m->symmetries.at[i]);
+  e->charges = all;
+  e->ncharges = m->symmetries.n + 1;
+}
+
+Expr charges_fill(const Eqns *e, Expr x) {
+  const Model *m = e->m;
+  if (!m->symmetries.n || !(expr_kinds(e->g, x) & 1u << SYM_LOCAL)) return x;
+  SymId *syms = ARENA_ARRAY(m->arena, SymId, m->symmetries.n);
+  Expr *with = ARENA_ARRAY(m->arena, Expr, m->symmetries.n);
+  for (uint32_t i = 0; i < m->symmetries.n; i++) {
+    syms[i] = m->symmetries.at[i].charge;
+    with[i] = e->charges[i + 1].value;
+  }
+  return expr_replace(e->g, x, syms, with, m->symmetries.n);
+}
+
+/* --- verdicts --- */
+
+/* x with definitions expanded that are not the user's: derivatives of lets, whose names mean something only where all definitions are printed. */
+static Expr in_own_names(const Eqns *e, Expr x) {
+  enum { DEEPEST = 64 };
+  Arena *a = e->m->arena;
+  ExprMap own = expr_map(a);
+  VEC(Expr) said = {0};
+  vec_push(a, &said, e->m->lagrangian);
+  for (uint32_t i = 0; e->Q && i < noether_coordinates(e); i++) vec_push(a, &said, e->Q[i]);
+  for (uint32_t i = 0; i < e->constraints.n; i++) vec_push(a, &said, e->constraints.r[i]);
+  ExprList known = expr_topo(e->g, said.at, said.n);
+  for (uint32_t i = 0; i < known.n; i++) expr_map_set(&own, known.at[i], 1);
+  for (uint32_t turn = 0; turn < DEEPEST; turn++) {
+    VEC(Expr) defs = {0}, bodies = {0};
+    ExprList nodes = expr_topo_shallow(e->g, &x, 1);
+    for (uint32_t i = 0; i < nodes.n; i++) {
+      if (expr_op(e->g, nodes.at[i]) != EX_DEF || expr_map_get(&own, nodes.at[i])) continue;
+      vec_push(a, &defs, nodes.at[i]);
+      vec_push(a, &bodies, expr_arg(e->g, nodes.at[i], 0));
+    }
+    if (!defs.n) break;
+    expr_cut(e->g, &x, 1, defs.at, bodies.at, defs.n, &x);
+  }
+  return x;
+}
+
+static const char *text_of(const Eqns *e, Expr x) {
+  enum { LONGEST = 4000 };
+  uint32_t distinct;
+  StrBuf b = strbuf(e->m->arena);
+  x = in_own_names(e, x);
+  if (expr_written_size(e->g, x, &distinct) > LONGEST) return "(too long to print)";
+  expr_print(e->g, x, PRINT_TEXT, &b);
+  return sb_text(&b);
+}
+
+static int holds(const Charge *c) { return (c->proof.is == INVARIANT || c->proof.is == INVARIANT_UP_TO_F) && !c->proof.broken; }
+
+/* "`x` or `y`": maps of which one with the opposite sign would make the symmetry hold; *one: one of them, or NULL; *n: their number. */
+static const char *wrong_signs(const Eqns *e, const Symmetry *y, const Move **one, uint32_t *n) {
+  enum { MOST = 12 };
+  Symmetry other = *y;
+  StrBuf names = strbuf(e->m->arena);
+  *n = 0;
+  for (uint32_t i = 0; i < y->moves.n && y->moves.n > 1 && y->moves.n <= MOST; i++) {
+    Move *moves = ARENA_ARRAY(e->m->arena, Move, y->moves.n);
+    memcpy(moves, y->moves.at, y->moves.n * sizeof *moves);
+    moves[i].rate = expr_neg(e->g, moves[i].rate);
+    other.moves.at = moves;
+    Generator by = generator_of(e, &other);
+    Charge c = {.proof = noether_prove(e, &by)};
+    if (!holds(&c)) continue;
+    sb_printf(&names, "%s`%s`", (*n)++ ? " or " : "", expr_symbol(e->g, moves[i].target)->name);
+    *one = &y->moves.at[i];
+  }
+  return sb_text(&names);
+}
+
+static void report_broken(const Eqns *e, const Charge *c) {
+  const Constraint *k = e->constraints.of[c->proof.broken - 1];
+  Diags *d = e->m->diags;
+  diag_error(d, c->of->span, "the symmetry `%s` does not keep to the constraint `%s`", c->name, k->name);
+  diag_also(d, k->span, "to first order in its parameter, it changes what is zero here by %s", text_of(e, c->proof.breaks));
+}
+
+static void report_false(const Eqns *e, const Charge *c) {
+  Diags *d = e->m->diags;
+  const Noether *n = &c->proof;
+  const Move *wrong = NULL;
+  uint32_t signs;
+  const char *names = wrong_signs(e, c->of, &wrong, &signs), *left = text_of(e, n->remainder);
+  const char *what = expr_is_zero(e->g, n->F) ? "delta L" : arena_printf(e->m->arena, "delta L - dF/dt, with F = %s,", text_of(e, n->F));
+  diag_error(d, signs == 1 ? wrong->span : c->of->span, "the symmetry `%s` is false: it changes L by more than a total derivative", c->name);
+  if (signs) diag_help(d, "what is left of %s is %s; it would be 0 if what it does to %s had the other sign", what, left, names);
+  else diag_help(d, "what is left of %s is %s", what, left);
+}
+
+static void report_undecided(const Eqns *e, const Charge *c) {
+  Diags *d = e->m->diags;
+  diag_error(d, c->of->span, "the symmetry `%s` is not decided", c->name);
+  if (c->proof.unreached) {
+    diag_help(d, "it holds where states were found, but none were on a part of the constraints, %s = 0; leave that part out, if it is not meant", text_of(e, c->proof.unreached));
+    return;
+  }
+  diag_help(d, "neither an F(q, t) with dF/dt = %s was found, nor that there is none", text_of(e, c->proof.remainder));
+}
+
+int charges_judge(const Eqns *e, Name effect) {
+  int good = 1;
+  for (uint32_t i = 1; i < e->ncharges; i++) {
+    const Charge *c = &e->charges[i];
+    if (c->of->effect != effect || holds(c)) continue;
+    if (c->proof.is == NOT_INVARIANT) report_false(e, c);
+    else if (c->proof.is == INVARIANCE_NOT_DECIDED) report_undecided(e, c);
+    else report_broken(e, c);
+    good = 0;
+  }
+  return good;
+}
+
+/* Appends "; not conserved: d(spin)/dt = ...", if the charge is not conserved. */
+static void put_balance(const Eqns *e, const Charge *c, StrBuf *out) {
+  if (c->proof.power_unknown) sb_puts(out, "; not conserved: L depends on an input whose rate of change is not known");
+  else if (!expr_is_zero(e->g, c->proof.power)) sb_printf(out, "; %s: d(%s)/dt = %s", c->proof.over_time ? "without that integral" : "not conserved", c->name, text_of(e, c->proof.power));
+}
+
+/* F, with the integral that the printed charge omits. */
+static const char *gauge_text(const Eqns *e, const Noether *is) {
+  const char *F = text_of(e, is->F);
+  if (!is->over_time) return F;
+  return arena_printf(e->m->arena, "%s%sintegral of %s over t", expr_is_zero(e->g, is->F) ? "" : F, expr_is_zero(e->g, is->F) ? "" : " + the ", text_of(e, is->over_time));
+}
+
+static const char *place_text(const Eqns *e, const Symmetry *y) {
+  Place p = source_place(e->m->ast->sources, y->span.begin);
+  return arena_printf(e->m->arena, "%s:%u", p.file ? p.file->path : "", p.line);
+}
+
+void charges_print(const Eqns *e, Name effect, StrBuf *out) {
+  for (uint32_t i = 1; i < e->ncharges; i++) {
+    const Charge *c = &e->charges[i];
+    const char *how = c->proof.by_value ? "holds on the constraints, in numbers" : "proved";
+    const char *proved = c->proof.jumps ? arena_printf(e->m->arena, "%s%s between jumps", how, c->proof.by_value ? "," : "") : how;
+    if (c->of->effect != effect) continue;
+    sb_printf(out, "%s: symmetry %s: ", place_text(e, c->of), c->name);
+    if (!holds(c)) sb_puts(out, c->proof.is == INVARIANCE_NOT_DECIDED ? "not decided" : "false");
+    else if (c->proof.is == INVARIANT) sb_printf(out, "%s; charge %s", proved, text_of(e, c->proof.charge));
+    else sb_printf(out, "%s up to dF/dt, F = %s; charge %s", proved, gauge_text(e, &c->proof), text_of(e, c->proof.charge));
+    if (holds(c)) put_balance(e, c, out);
+    sb_putc(out, '\n');
+  }
+}
+
+void charges_show_broken(const Eqns *e, StrBuf *out) {
+  for (uint32_t i = 0; i < e->ncharges; i++) {
+    const Charge *c = &e->charges[i];
+    if ((!c->proof.power_unknown && !c->proof.jumps && expr_is_zero(e->g, c->proof.power)) || (!c->of && e->m->symmetries.n == 0)) continue;
+    if (c->proof.power_unknown) sb_printf(out, "  d(%s)/dt: L depends on an input whose rate of change is not known\n", c->name);
+    else sb_printf(out, "  d(%s)/dt = %s%s\n", c->name, text_of(e, c->proof.power), c->proof.jumps ? " between jumps of L" : "");
+  }
+}

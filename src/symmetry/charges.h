@@ -1,0 +1,32 @@
+/* The charges of a model: its energy and those of its declared symmetries, each with its balance. */
+#ifndef LAGC_SYMMETRY_CHARGES_H
+#define LAGC_SYMMETRY_CHARGES_H
+
+#include "symmetry/noether.h"
+#include "sym/print.h"
+
+struct Charge {
+  const Symmetry *of; /* NULL: the energy, the charge of translations of time */
+  Name name;
+  Unit unit;
+  Noether proof;
+  Expr value, scale; /* in the form that programs compute */
+};
+
+/* Fills e->charges: the energy first, then those of declared symmetries in order. None without a Lagrangian. */
+void charges_derive(Eqns *e);
+
+/* x with the symbols of declared charges replaced by their expressions. */
+Expr charges_fill(const Eqns *e, Expr x);
+
+/* Whether the symmetries declared in `effect` (NULL: outside effects) hold. Others are reported in the model's diagnostics, with the remainder of
+ * delta L and, where one map has the wrong sign, that map. e: the model without effects, or with that effect and what it requires. */
+int charges_judge(const Eqns *e, Name effect);
+
+/* Appends a line for each symmetry of `effect` to what `lagc check` prints. */
+void charges_print(const Eqns *e, Name effect, StrBuf *out);
+
+/* Appends a line for each charge, of the energy too, that is not conserved with the effects and inputs of the scene. */
+void charges_show_broken(const Eqns *e, StrBuf *out);
+
+#endif

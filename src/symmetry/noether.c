@@ -1,0 +1,528 @@
+/* Verdict on one generator: delta L term by term, a gauge function F for the rest, then the charge and its balance.
+ * Zero is proved where possible; with constraints it may be seen at random states on every factor of them. */
+#include "symmetry/noether.h"
+
+#include <math.h>
+
+#include "mech/discontinuity.h"
+#include "symmetry/noether_forms.h"
+#include "symmetry/constraint_factors.h"
+#include "symmetry/term_magnitude.h"
+#include "mech/states.h"
+#include "sym/diff.h"
+#include "sym/integrate.h"
+#include "sym/prove.h"
+#include "sym/simplify.h"
+
+/* Past this number of coordinates charges are not simplified, like the energy (mech/eqns.c). */
+enum { SHORTEN_MAX = 64 };
+
+typedef struct {
+  const Eqns *e;
+  const Model *m;
+  ExprGraph *g;
+  uint32_t n;
+  SymId *q, *v;     /* [n] */
+  Expr L;
+  const Expr *p;    /* [n] */
+  const Expr *xi;   /* [n] */
+  const Expr *lowered; /* [n] M xi; or NULL */
+  Expr tau;
+  Expr *Dxi, Dtau;  /* total time derivatives */
+  int by_value;
+  const LinearForms *forms; /* or NULL: proofs use the model's own coordinates */
+  Expr unreached;   /* a factor of a constraint whose zeros no state reached: nothing is decided; 0: none */
+} Work;
+
+uint32_t noether_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
+
+SymId noether_coordinate(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].q : e->m->states.at[e->first.at[i]].z; }
+
+const Expr *noether_momenta(const Eqns *e) { return e->first.n ? e->first.theta : e->m->across ? e->momenta : e->p; }
+
+static SymId velocity(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate; }
+
+static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
+
+static Expr *no_seed(const Work *w) { return ARENA_ARRAY(w->m->arena, Expr, expr_symbol_count(w->g) + 1); }
+
+/* Sum of a_i b_i. */
+static Expr dot(const Work *w, const Expr *a, const Expr *b, uint32_t n) {
+  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, n + 1);
+  for (uint32_t i = 0; i < n; i++) terms[i] = expr_mul(w->g, a[i], b[i]);
+  return expr_add_n(w->g, terms, n);
+}
+
+static Expr tangent(const Work *w, Expr x, const Expr *seed, const char *suffix) {
+  Expr out;
+  expr_tangent(w->g, &x, 1, seed, expr_symbol_count(w->g) + 1, suffix, NULL, &out);
+  return out;
+}
+
+/* d/dt along q'. */
+static Expr total(const Work *w, Expr x) {
+  Expr *seed = no_seed(w);
+  seed[w->m->time] = expr_int(w->g, 1);
+  for (uint32_t i = 0; i < w->n; i++) seed[w->q[i]] = node(w, w->v[i]);
+  return tangent(w, x, seed, "'");
+}
+
+static Work begin(const Eqns *e, const Generator *by) {
+  Arena *a = e->m->arena;
+  Work w = {.e = e, .m = e->m, .g = e->g, .n = noether_coordinates(e)};
+  Expr zero = expr_int(w.g, 0), *xi = ARENA_ARRAY(a, Expr, w.n + 1);
+  w.q = ARENA_ARRAY(a, SymId, w.n + 1);
+  w.v = ARENA_ARRAY(a, SymId, w.n + 1);
+  w.Dxi = ARENA_ARRAY(a, Expr, w.n + 1);
+  w.L = e->m->lagrangian;
+  w.p = noether_momenta(e);
+  w.xi = xi;
+  w.tau = by->tau ? by->tau : zero;
+  for (uint32_t i = 0; i < w.n; i++) {
+    w.q[i] = noether_coordinate(e, i);
+    w.v[i] = velocity(e, i);
+    xi[i] = by->xi && by->xi[i] ? by->xi[i] : zero;
+  }
+  for (uint32_t i = 0; i < w.n; i++) w.Dxi[i] = total(&w, xi[i]);
+  w.Dtau = total(&w, w.tau);
+  w.lowered = by->lowered;
+  w.forms = forms_new(a, e);
+  return w;
+}
+
+static Expr shorten(const Work *w, Expr x) { return w->n <= SHORTEN_MAX ? simplify(w->g, x) : x; }
+
+/* x or its short form, whichever is shorter to read. */
+static Expr readable(const Work *w, Expr x) {
+  uint32_t distinct;
+  Expr other = shorten(w, x);
+  return expr_written_size(w->g, other, &distinct) < expr_written_size(w->g, x, &distinct) ? other : x;
+}
+
+/* --- delta L --- */
+
+static Verdict is_zero(const Work *w, Expr x) { return forms_prove_zero(w->forms, w->g, x); }
+
+/* Change of x under the generator, to first order. */
+static Expr moved_by(const Work *w, Expr x) {
+  Expr *seed = no_seed(w);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr slower = expr_mul(w->g, node(w, w->v[i]), w->Dtau);
+    seed[w->q[i]] = w->xi[i];
+    seed[w->v[i]] = expr_sub(w->g, w->Dxi[i], slower);
+  }
+  seed[w->m->time] = w->tau;
+  return tangent(w, x, seed, "_delta");
+}
+
+/* delta of a term of L. */
+static Expr delta(const Work *w, Expr term) {
+  Expr moved = moved_by(w, term), stretched = expr_mul(w->g, term, w->Dtau);
+  return expr_add(w->g, moved, stretched);
+}
+
+static Expr at_rest(const Work *w, Expr x) {
+  Expr *zero = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
+  return expr_replace(w->g, x, w->v, zero, w->n);
+}
+
+/* delta T = sum_i q_i' D(M xi)_i - T D tau of T = q' M q'/2. */
+static Expr delta_kinetic(const Work *w, Expr T) {
+  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) terms[i] = expr_mul(w->g, node(w, w->v[i]), total(w, w->lowered[i]));
+  terms[w->n] = expr_neg(w->g, expr_mul(w->g, T, w->Dtau));
+  return shorten(w, expr_add_n(w->g, terms, w->n + 1));
+}
+
+/* delta L without the terms of L that are invariant by themselves: the pairs of N bodies are judged one by one. Each remainder is in its short
+ * form. */
+static Expr delta_lagrangian(const Work *w) {
+  ExprGraph *g = w->g;
+  Expr L = w->lowered ? at_rest(w, w->L) : w->L;
+  VEC(Expr) left = {0};
+  if (w->lowered) vec_push(w->m->arena, &left, delta_kinetic(w, expr_sub(g, w->L, L)));
+  for (uint32_t i = 0; i < expr_pairs(g, L, EX_SUM); i++) {
+    Num c;
+    Expr term = expr_pair(g, L, EX_SUM, i, &c), change = delta(w, term);
+    if (is_zero(w, change) == PROVED_ZERO) continue;
+    change = expr_scale(g, c, shorten(w, change));
+    vec_push(w->m->arena, &left, change);
+  }
+  return expr_add_n(g, left.at, left.n);
+}
+
+/* --- zero on the constraints --- */
+
+/* 1: x is rounding at a state that obeys the constraints; 0: it is more; -1: it has no value there. */
+static int is_small(const Work *w, Expr x, const long double *symbols) {
+  const long double tiny = 1e-14L; /* states obey to 1e-16; terms of x have size 1 */
+  long double bound, value = prove_value(w->g, x, symbols, NULL, &bound), size = 0;
+  if (!isfinite(value)) return -1;
+  for (uint32_t i = 0; i < expr_pairs(w->g, x, EX_SUM); i++) {
+    Num c;
+    Expr term = expr_pair(w->g, x, EX_SUM, i, &c);
+    size += fabsl((long double)num_value(c) * prove_value(w->g, term, symbols, NULL, &bound));
+  }
+  return fabsl(value) <= tiny * fmaxl(size, 1);
+}
+
+/* Scales coordinates by powers of two and flips unknown signs by the bits of the seed: where constraints have several branches, the nearest states
+ * then lie on several of them. */
+static void spread(const Work *w, uint32_t seed, long double *symbols) {
+  static const int powers[] = {0, 2, -3, 4, 1, 7, -6, 3};
+  for (uint32_t i = 0; i < w->n; i++) {
+    const Symbol *q = expr_symbol(w->g, w->q[i]);
+    symbols[w->q[i]] = ldexpl(symbols[w->q[i]], powers[seed % 8]);
+    if (q->sign == SIGN_UNKNOWN && (seed / 8 * 5 + seed) >> (i + seed) % 8 & 1) symbols[w->q[i]] *= -1;
+  }
+}
+
+/* Whether x is zero at random states that obey the constraints: near ones first, then from starts that are far apart. A large x at a far state is
+ * judged by the size of its terms. */
+static int vanishes_by_value(const Work *w, Expr x) {
+  enum { STATES = 12, NEAR = 4 * STATES, ALL = NEAR + 64 };
+  long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
+  StateSolver *solver = states_new(w->e);
+  uint32_t seen = 0;
+  for (uint32_t seed = 1; seed <= ALL; seed++) {
+    if (seed <= NEAR && seen == STATES) continue;
+    prove_state(w->g, seed, symbols);
+    if (seed > NEAR) spread(w, seed - NEAR - 1, symbols);
+    if (!states_complete(solver, symbols)) continue;
+    int small = is_small(w, x, symbols);
+    if (!small) return 0;
+    seen += small > 0;
+  }
+  return seen >= STATES;
+}
+
+/* The same on each factor of constraints that are products; a factor on which no state is found leaves the verdict open. */
+static int vanishes_on_parts(Work *w, Expr x) {
+  enum { STATES = 6, SEEDS = 64 };
+  long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
+  ConstraintParts *parts = parts_new(w->e);
+  StateSolver *solver = states_new(w->e);
+  for (uint32_t k = 0; k < parts_count(parts); k++) {
+    uint32_t seen = 0;
+    for (uint32_t seed = 1; seed <= SEEDS && seen < STATES; seed++) {
+      prove_state(w->g, seed, symbols);
+      spread(w, seed, symbols);
+      if (!parts_go(parts, k, symbols) || !states_complete(solver, symbols) || !parts_is_on(parts, k, symbols)) continue;
+      int small = is_small(w, x, symbols);
+      if (!small) return 0;
+      seen += small > 0;
+    }
+    if (seen < STATES) w->unreached = parts_factor(parts, k);
+  }
+  return 1;
+}
+
+/* Whether some constraint always holds, which those of contacts do not. */
+static int is_constrained(const Work *w) { return w->e->constraints.n > w->m->contacts.n; }
+
+/* Whether x is zero where the constraints hold, those of contacts excepted. */
+static Verdict zero_on_constraints(Work *w, Expr x) {
+  Verdict v = is_zero(w, x);
+  if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x) || !vanishes_on_parts(w, x)) return v;
+  w->by_value = 1;
+  return PROVED_ZERO;
+}
+
+/* --- F --- */
+
+/* An F(q, t) whose total derivative removes what it can from dL = a.q' + b + terms of higher order in q'. */
+static Expr find_gauge(const Work *w, Expr dL) {
+  Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1), b = at_rest(w, dL);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr slope = expr_diff(w->g, dL, w->v[i]);
+    a[i] = at_rest(w, slope);
+  }
+  Expr F = expr_potential(w->g, a, w->q, w->n), drift = expr_diff(w->g, F, w->m->time), left = expr_sub(w->g, b, drift);
+  left = simplify(w->g, left);
+  Expr rest = expr_integrate(w->g, left, w->m->time, 1u << SYM_COORD | 1u << SYM_STATE | 1u << SYM_INPUT);
+  return expr_add(w->g, F, rest);
+}
+
+/* Whether dL is a total derivative: its Euler-Lagrange expressions vanish. PROVED_NONZERO: one does not. */
+static Verdict is_total_derivative(const Work *w, Expr dL) {
+  Verdict all = PROVED_ZERO;
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr a = expr_diff(w->g, dL, w->v[i]);
+    for (uint32_t k = 0; k <= i; k++) {
+      Expr twice = expr_diff(w->g, a, w->v[k]);
+      Verdict v = is_zero(w, twice);
+      if (v == PROVED_NONZERO) return v;
+      if (v == NOT_DECIDED) all = v;
+    }
+    Expr change = total(w, a), force = expr_diff(w->g, dL, w->q[i]), left = expr_sub(w->g, force, change);
+    Verdict v = is_zero(w, left);
+    if (v == PROVED_NONZERO) return v;
+    if (v == NOT_DECIDED) all = v;
+  }
+  return all;
+}
+
+/* Whether x depends on time alone: then it is the derivative of its integral, which need not have a closed form. */
+static int is_of_time(const Work *w, Expr x) {
+  return !expr_is_zero(w->g, x) && !(expr_kinds(w->g, x) & ~(1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_PARAM | 1u << SYM_CONST));
+}
+
+/* A first F by Cartan's formula: theta.xi + phi tau, where theta dq + phi dt is the part of L of degree 1 and 0 in velocities. Where these terms
+ * are a gauge, the rest of delta L is small or 0, and their primitive need not be found. */
+static Expr contraction(const Work *w, int with_phi) {
+  Expr *theta = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) theta[i] = at_rest(w, w->p[i]);
+  Expr F = dot(w, theta, w->xi, w->n), phi = with_phi ? at_rest(w, w->L) : expr_int(w->g, 0);
+  return expr_add(w->g, F, expr_mul(w->g, phi, w->tau));
+}
+
+/* An F that begins with contraction(); 0: none is proved. */
+static Expr contracted_gauge(Work *w, Expr dL) {
+  ExprGraph *g = w->g;
+  for (int with_phi = 0; with_phi < 2; with_phi++) {
+    Expr first = contraction(w, with_phi), taken = total(w, first), rest = simplify(g, expr_sub(g, dL, taken));
+    if (expr_is_zero(g, first)) continue;
+    Expr more = find_gauge(w, rest), F = readable(w, expr_add(g, first, more)), DF = total(w, F);
+    if (zero_on_constraints(w, expr_sub(g, dL, DF)) == PROVED_ZERO) return F;
+  }
+  return 0;
+}
+
+/* Verdict, F and remainder: delta L = 0, else an F from its coefficients, else from Cartan's formula. */
+static void judge(Work *w, Noether *to) {
+  ExprGraph *g = w->g;
+  Expr zero = expr_int(g, 0), dL = delta_lagrangian(w);
+  *to = (Noether){.F = zero, .remainder = zero, .by_constraints = zero};
+  if (zero_on_constraints(w, dL) == PROVED_ZERO) return;
+  dL = readable(w, dL);
+  Expr F = simplify(g, find_gauge(w, dL)), DF = total(w, F), left = expr_sub(g, dL, DF);
+  if (!expr_is_zero(g, F) && zero_on_constraints(w, left) == PROVED_ZERO) {
+    to->is = INVARIANT_UP_TO_F;
+    to->F = F;
+    return;
+  }
+  left = simplify(g, left);
+  if (is_of_time(w, left)) {
+    *to = (Noether){.is = INVARIANT_UP_TO_F, .F = F, .remainder = left, .over_time = left, .by_constraints = zero};
+    return;
+  }
+  Expr other = contracted_gauge(w, dL);
+  if (other) {
+    *to = (Noether){.is = INVARIANT_UP_TO_F, .F = other, .remainder = zero, .by_constraints = zero};
+    return;
+  }
+  uint32_t distinct;
+  int better = expr_written_size(g, left, &distinct) < expr_written_size(g, dL, &distinct);
+  to->F = better ? F : zero;
+  to->remainder = better ? left : dL;
+  to->is = is_total_derivative(w, dL) == PROVED_NONZERO ? NOT_INVARIANT : INVARIANCE_NOT_DECIDED;
+}
+
+/* --- the charge and its balance --- */
+
+static Expr p_along_xi(const Work *w) {
+  Expr *v = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  if (!w->lowered) return dot(w, w->p, w->xi, w->n);
+  for (uint32_t i = 0; i < w->n; i++) v[i] = node(w, w->v[i]);
+  return dot(w, v, w->lowered, w->n);
+}
+
+/* p.xi - E tau - F. */
+static Expr charge_of(const Work *w, Expr F, Expr energy) {
+  ExprGraph *g = w->g;
+  Expr px = p_along_xi(w), minus_F = expr_neg(g, F), et = expr_mul(g, energy, w->tau), minus_et = expr_neg(g, et);
+  Expr front = expr_add(g, px, minus_F);
+  front = shorten(w, front);
+  return expr_add(g, front, minus_et);
+}
+
+/* --- in the coordinates y of mech/noether_forms.h --- */
+
+/* The work in coordinates y, written with the symbols of q. */
+static Work begin_in_forms(const Work *w, const Expr *eta) {
+  Work y = *w;
+  y.L = w->forms->L;
+  y.p = w->forms->p;
+  y.xi = eta;
+  y.Dxi = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) y.Dxi[i] = total(&y, eta[i]);
+  y.lowered = NULL;
+  y.forms = NULL;
+  return y;
+}
+
+/* The energy: kinetic part from y', potential as it was written (see mech/eqns.c). */
+static Expr energy_in_forms(const Work *w, const Work *y) {
+  ExprGraph *g = w->g;
+  Expr *v = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) v[i] = node(w, w->v[i]);
+  Expr potential = at_rest(y, y->L), moving = expr_sub(g, y->L, potential), pv = dot(w, y->p, v, w->n);
+  Expr kinetic = forms_back(w->forms, g, shorten(w, expr_sub(g, pv, moving)));
+  return expr_sub(g, kinetic, at_rest(w, w->L));
+}
+
+/* Verdict and charge from eta, in y. 0: not proved in this way. */
+static int judge_in_forms(Work *w, const Expr *eta, Noether *to) {
+  if (!eta || !w->forms || w->e->constraints.n) return 0;
+  Work y = begin_in_forms(w, eta);
+  judge(&y, to);
+  if (to->is != INVARIANT && to->is != INVARIANT_UP_TO_F) return 0;
+  Expr zero = expr_int(w->g, 0), front = charge_of(&y, to->F, zero), et = expr_mul(w->g, energy_in_forms(w, &y), w->tau);
+  to->charge = expr_sub(w->g, forms_back(w->forms, w->g, front), et);
+  to->F = forms_back(w->forms, w->g, to->F);
+  return 1;
+}
+
+/* The contact that has this constraint, or NULL. */
+static const Contact *contact_of(const Model *m, const Constraint *k) {
+  for (uint32_t i = 0; i < m->contacts.n; i++)
+    if (&m->constraints.at[m->contacts.at[i].constraint] == k) return &m->contacts.at[i];
+  return NULL;
+}
+
+int noether_is_contact(const Model *m, const Constraint *k) { return contact_of(m, k) != NULL; }
+
+/* x with contact c closed; unchanged where c is NULL. */
+static Expr while_closed(const Work *w, const Contact *c, Expr x) {
+  Expr one = expr_int(w->g, 1);
+  return c ? expr_replace(w->g, x, &c->closed, &one, 1) : x;
+}
+
+static Expr scale_of(const Work *w, Expr F) {
+  ExprGraph *g = w->g;
+  const Expr *p = w->e->n ? w->e->momenta : w->p;
+  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 2), size_tau = sizes_of_terms(g, w->tau);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr size_p = sizes_of_terms(g, p[i]), size_xi = sizes_of_terms(g, w->xi[i]);
+    terms[i] = expr_mul(g, size_p, size_xi);
+  }
+  terms[w->n] = expr_mul(g, w->e->energy_scale, size_tau);
+  terms[w->n + 1] = sizes_of_terms(g, F);
+  return expr_add_n(g, terms, w->n + 2);
+}
+
+/* lambda^T (A xi + b tau), contacts closed. For a holonomic constraint: the change of c under the generator; for r = A q' + b: r with
+ * displacements in place of velocities. */
+static Expr power_of_constraints(Work *w, Noether *to) {
+  ExprGraph *g = w->g;
+  const Constraints *k = &w->e->constraints;
+  Expr sum = expr_int(g, 0);
+  for (uint32_t i = 0; i < k->n; i++) {
+    Expr *seed = no_seed(w), moved;
+    const Contact *contact = contact_of(w->m, k->of[i]);
+    if (i < k->nholonomic) {
+      for (uint32_t j = 0; j < w->n; j++) seed[w->q[j]] = w->xi[j];
+      seed[w->m->time] = w->tau;
+      moved = tangent(w, while_closed(w, contact, k->c[i]), seed, "_delta");
+    } else {
+      Expr b = at_rest(w, k->r[i]), part = expr_mul(g, b, w->tau);
+      for (uint32_t j = 0; j < w->n; j++) seed[w->v[j]] = w->xi[j];
+      Expr slide = tangent(w, k->r[i], seed, "_delta");
+      moved = expr_add(g, slide, part);
+    }
+    if (zero_on_constraints(w, moved) == PROVED_ZERO) continue;
+    moved = shorten(w, moved);
+    if (i < k->nholonomic && !to->broken && !contact) {
+      to->broken = i + 1;
+      to->breaks = moved;
+    }
+    Expr force = expr_mul(g, node(w, k->of[i]->multiplier), moved);
+    if (contact) force = expr_mul(g, node(w, contact->closed), force);
+    sum = expr_add(g, sum, force);
+  }
+  return sum;
+}
+
+static int is_other_state(const Eqns *e, uint32_t i) { return !e->m->states.at[i].coordinate; }
+
+/* Whether an input is no user's input, but the switch of a contact (open or closed). */
+static int is_switch(const Model *m, const Input *in) {
+  for (uint32_t i = 0; i < m->contacts.n; i++)
+    if (m->contacts.at[i].closed == in->sym) return 1;
+  return 0;
+}
+
+/* tau dL/dt from everything in L besides q and t: states with their flow, inputs with the derivative of their formula. */
+static Expr power_of_change(const Work *w, Noether *to) {
+  ExprGraph *g = w->g;
+  const Model *m = w->m;
+  Expr *seed = no_seed(w);
+  if (expr_is_zero(g, w->tau)) return expr_int(g, 0);
+  for (uint32_t i = 0; i < m->states.n; i++)
+    if (is_other_state(w->e, i)) seed[m->states.at[i].z] = w->e->flow[i];
+  for (uint32_t i = 0; i < m->inputs.n; i++) {
+    const Input *in = &m->inputs.at[i];
+    if (!(expr_kinds(g, m->lagrangian) & 1u << SYM_INPUT) || !expr_contains_sym(g, m->lagrangian, in->sym) || is_switch(m, in)) continue;
+    if (in->value) seed[in->sym] = expr_diff(g, in->value, m->time);
+    to->by_formulas |= in->value != 0;
+    to->power_unknown |= !in->value;
+  }
+  Expr rate = tangent(w, m->lagrangian, seed, "_drift");
+  return expr_mul(g, w->tau, rate);
+}
+
+/* sum Q_i (xi_i - q_i' tau) */
+static Expr power_of_forces(const Work *w) {
+  ExprGraph *g = w->g;
+  Expr *along = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  if (!w->e->Q) return expr_int(g, 0);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr carried = expr_mul(g, node(w, w->v[i]), w->tau);
+    along[i] = expr_sub(g, w->xi[i], carried);
+  }
+  return dot(w, w->e->Q, along, w->n);
+}
+
+/* Whether the generator moves the surfaces where L jumps. */
+static int moves_jumps(const Work *w) {
+  const long double still = 1e-7L; /* states lie on a jump to 1e-19 of their size, slopes are known to 1e-6 */
+  ExprJumps all = discontinuities_of(w->e, w->m->lagrangian);
+  for (uint32_t i = 0; i < all.n; i++) {
+    const ExprJump *jump = &all.at[i];
+    Expr change = moved_by(w, jump->side);
+    long double bound, value = prove_value(w->g, change, jump->symbols, NULL, &bound);
+    if (!(fabsl(value) <= still * fabsl(jump->slope))) return 1;
+  }
+  return 0;
+}
+
+/* Balance of the charge, and the part of the constraints in it. */
+static void put_power(Work *w, Noether *to, Expr remainder) {
+  ExprGraph *g = w->g;
+  to->by_constraints = power_of_constraints(w, to);
+  Expr forces = power_of_forces(w), change = power_of_change(w, to);
+  Expr parts[3] = {forces, change, remainder}, rest = expr_add_n(g, parts, 3);
+  rest = states_substitute(w->e, shorten(w, rest));
+  to->power = expr_add(g, rest, to->by_constraints);
+  to->by_value = w->by_value;
+  to->unreached = w->unreached;
+  if (w->unreached && (to->is == INVARIANT || to->is == INVARIANT_UP_TO_F)) to->is = INVARIANCE_NOT_DECIDED;
+}
+
+int noether_moves_jumps(const Eqns *e, const Generator *by) {
+  if (discontinuities_of(e, e->m->lagrangian).n == 0) return 0;
+  Work w = begin(e, by);
+  return moves_jumps(&w);
+}
+
+Noether noether_prove(const Eqns *e, const Generator *by) {
+  Work w = begin(e, by);
+  Noether out;
+  int in_forms = judge_in_forms(&w, by->eta, &out);
+  if (!in_forms) judge(&w, &out);
+  put_power(&w, &out, out.remainder);
+  if (!in_forms) out.charge = charge_of(&w, out.F, e->energy);
+  out.scale = scale_of(&w, out.F);
+  out.jumps = discontinuities_of(e, out.charge).n > 0 || moves_jumps(&w);
+  return out;
+}
+
+Noether noether_energy(const Eqns *e) {
+  Work w = begin(e, &(Generator){.tau = expr_int(e->g, -1)});
+  Expr zero = expr_int(w.g, 0), drift = expr_diff(w.g, w.m->lagrangian, w.m->time);
+  Noether out = {.is = INVARIANT, .F = zero, .remainder = zero, .charge = e->energy, .scale = e->energy_scale};
+  put_power(&w, &out, expr_neg(w.g, drift));
+  out.jumps = e->energy_jumps;
+  return out;
+}

@@ -1,0 +1,70 @@
+/* Noether's theorem: the change of L under a transformation of coordinates and time, and the charge that it conserves.
+ *
+ * Enters: the generator of q_i -> q_i + s xi_i(q, t), t -> t + s tau(q, t). With D = d/dt along q',
+ *   delta L = sum_i (dL/dq_i xi_i + dL/dq_i' (D xi_i - q_i' D tau)) + dL/dt tau + L D tau
+ * is 0, or DF/dt of some F(q, t), or neither. Leaves: that verdict; the charge and its balance,
+ *   Q = sum_i p_i xi_i - E tau - F,
+ *   dQ/dt = sum_i Q_i (xi_i - q_i' tau) + lambda^T (A xi + b tau) + tau dL/dz z' + (delta L - DF).
+ * Must hold: a verdict rests on a proof of sym/prove.h or, where by_value says so, on random states; F is checked by differentiation.
+ * E. Noether, Nachr. Ges. Wiss. Goettingen (1918) 235, DOI 10.1080/00411457108231446 (translation); gauge terms: E. Bessel-Hagen,
+ * Math. Ann. 84 (1921) 258, DOI 10.1007/BF01459410. */
+#ifndef LAGC_SYMMETRY_NOETHER_H
+#define LAGC_SYMMETRY_NOETHER_H
+
+#include "mech/eqns.h"
+
+typedef struct {
+  const Expr *xi; /* [noether_coordinates] functions of q, t and parameters; 0: the coordinate stays */
+  Expr tau;       /* 0: t stays */
+  const Expr *eta; /* [noether_coordinates] xi in the coordinates y of mech/noether_forms.h, written with the symbols of q, where all y have names:
+                    * proofs and charges are shorter. NULL: not given */
+  const Expr *lowered; /* [noether_coordinates] M xi, where M is made of numbers and p = M q', which keeps charges short; or NULL */
+} Generator;
+
+typedef enum {
+  INVARIANT,
+  INVARIANT_UP_TO_F,
+  NOT_INVARIANT,
+  INVARIANCE_NOT_DECIDED
+} Invariance;
+
+typedef struct {
+  Invariance is;
+  int by_value;      /* zero on the constraints is seen at random states that obey them, and not proved */
+  Expr unreached;    /* or 0: a factor of a constraint on whose zeros no state was found; then nothing is decided */
+  Expr F;            /* gauge function; the number 0 where none is needed; where L is not invariant, an F that shortens the remainder */
+  Expr over_time;    /* or 0: delta L - DF where it depends on t alone; F then needs its integral, which is not formed: the charge omits it, the
+                      * power contains this term */
+  Expr remainder;    /* delta L - DF, in a short form; where L is invariant: over_time, or the number 0 */
+  Expr charge;       /* in q, q', z, t */
+  Expr scale;        /* sum |p_i xi_i| + |tau| (|p q'| + |L|) + |F|, the measure for a drift of the charge */
+  Expr power;        /* dQ/dt, in q, q', z, t, inputs and multipliers; the number 0: Q is conserved */
+  Expr by_constraints; /* power of the constraint forces, lambda^T (A xi + b tau); the number 0: none */
+  uint32_t broken; /* first holonomic constraint, counted from 1 and no contact, that the generator does not preserve; 0: none */
+  Expr breaks;     /* change of that constraint, A xi + c_t tau */
+  int jumps;       /* the verdict holds between jumps of L only: the charge jumps, too, or L is not invariant where it jumps */
+  int by_formulas; /* the power holds only while inputs follow their formulas */
+  int power_unknown; /* the generator moves t, and L contains an input of unknown rate: power is not dQ/dt */
+} Noether;
+
+/* Number of components of a generator: the coordinates, also those of a first-order Lagrangian; and the symbol of component i. */
+uint32_t noether_coordinates(const Eqns *e);
+SymId noether_coordinate(const Eqns *e, uint32_t i);
+
+/* dL/dq' of L as written, without the inertia that makes the mass matrix of rotations regular. */
+const Expr *noether_momenta(const Eqns *e);
+
+/* Whether the constraint is a contact's, and so holds only while that is closed. */
+int noether_is_contact(const Model *m, const Constraint *k);
+
+/* Verdict, charge and balance of a generator. Needs a Lagrangian. */
+Noether noether_prove(const Eqns *e, const Generator *by);
+
+/* Whether the generator moves the surfaces where L jumps: delta L then has contributions that derivatives of its branches miss. */
+int noether_moves_jumps(const Eqns *e, const Generator *by);
+
+/* The energy as the charge of t -> t - s, F = 0: charge e->energy, power of forces, moving constraints and explicit time. Whether it is conserved:
+ * e->conserves_energy. */
+Noether noether_energy(const Eqns *e);
+
+#endif

@@ -1,0 +1,188 @@
+/* Assembles the report, and carries generators over to the graph of the model with an effect, by names of symbols. */
+#include "symmetry/noether_report.h"
+
+#include <math.h>
+
+#include "symmetry/charges.h"
+#include "mech/discontinuity.h"
+#include "sym/prove.h"
+
+/* --- cyclic coordinates --- */
+
+/* x_i -> x_i + s */
+static const Generator *shift(const Eqns *e, uint32_t i) {
+  Expr *xi = ARENA_ARRAY(e->m->arena, Expr, e->n);
+  Generator *by = ARENA_NEW(e->m->arena, Generator);
+  xi[i] = expr_int(e->g, 1);
+  by->xi = xi;
+  return by;
+}
+
+Indices noether_cyclic(const Eqns *e) {
+  enum { PROVE_MOST = 20 }; /* beyond, only those absent from the text of L */
+  Indices all = {0};
+  for (uint32_t i = 0; i < e->n; i++) {
+    int absent = expr_is_zero(e->g, e->dLdq[i]);
+    if (!absent && e->n <= PROVE_MOST) absent = prove_zero(e->g, e->dLdq[i], NULL) == PROVED_ZERO;
+    if (absent && !noether_moves_jumps(e, shift(e, i))) vec_push(e->m->arena, &all, i);
+  }
+  return all;
+}
+
+/* Whether a force or a constraint acts on coordinate i. */
+static int is_pushed(const Eqns *e, uint32_t i) {
+  for (uint32_t k = 0; k < e->constraints.A.n; k++)
+    if (e->constraints.A.at[k].col == i) return 1;
+  return !expr_is_zero(e->g, e->Q[i]);
+}
+
+void show_cyclic(const Eqns *e, StrBuf *out) {
+  Indices all = noether_cyclic(e);
+  for (uint32_t k = 0; k < all.n; k++) {
+    Name x = e->m->coords.at[all.at[k]].name;
+    int pushed = is_pushed(e, all.at[k]), jumps = discontinuities_of(e, noether_momenta(e)[all.at[k]]).n > 0;
+    sb_printf(out, "cyclic coordinate: %s; L does not contain it, and p_%s is %s%s\n", x, x, pushed ? "changed by forces and constraints alone" : "conserved",
+              jumps ? " between jumps" : "");
+  }
+}
+
+/* --- the report --- */
+
+NoetherReport *noether_report(Eqns *e) {
+  NoetherReport *r = ARENA_NEW(e->m->arena, NoetherReport);
+  r->e = e;
+  r->cyclic = noether_cyclic(e);
+  r->found = noether_find(e);
+  r->algebra = brackets_find(e, &r->found);
+  r->scales = noether_scaling(e, &r->scaling);
+  return r;
+}
+
+/* Whether two charges are equal; in sums of coordinates they may be written differently. */
+static int same_charge(const NoetherReport *r, uint32_t k, Expr one, Expr other) {
+  ExprGraph *g = r->e->g;
+  const LinearForms *forms = r->found.all.at[k].forms;
+  return one == other || (forms && forms_prove_zero(forms, g, expr_sub(g, one, other)) == PROVED_ZERO);
+}
+
+Name noether_declared(const NoetherReport *r, uint32_t k) {
+  Expr charge = r->found.all.at[k].is.charge, minus = expr_neg(r->e->g, charge);
+  for (uint32_t i = 1; i < r->e->ncharges; i++) {
+    Expr declared = r->e->charges[i].proof.charge;
+    if (same_charge(r, k, declared, charge) || same_charge(r, k, declared, minus)) return r->e->charges[i].name;
+  }
+  return NULL;
+}
+
+/* --- generators in the graph of another model --- */
+
+/* The symbol of that name in another model; 0: there is none. */
+static Expr symbol_in(const Eqns *to, const Symbol *s) {
+  for (SymId k = 1; k <= expr_symbol_count(to->g); k++) {
+    const Symbol *x = expr_symbol(to->g, k);
+    if (strcmp(x->name, s->name) == 0 && x->kind != SYM_LOCAL) return x->node;
+  }
+  return 0;
+}
+
+/* Node x in the graph of another model, arguments by `map`: a symbol, number, sum, product or function of one argument. 0: it is another node, or
+ * a symbol is missing. */
+static Expr node_in(const Eqns *to, const ExprGraph *g, Expr x, const ExprMap *map) {
+  ExprGraph *other = to->g;
+  ExprOp op = expr_op(g, x);
+  if (op == EX_NUM) return expr_num(other, expr_number(g, x));
+  if (op == EX_SYM) return symbol_in(to, expr_sym_of(g, x));
+  if (op == EX_SUM || op == EX_PROD) {
+    Expr all = expr_int(other, op == EX_PROD);
+    for (uint32_t i = 0; i < expr_pairs(g, x, op); i++) {
+      Num c;
+      Expr part = expr_map_get(map, expr_pair(g, x, op, i, &c));
+      if (!part) return 0;
+      part = op == EX_SUM ? expr_scale(other, c, part) : expr_pow_num(other, part, c);
+      all = op == EX_SUM ? expr_add(other, all, part) : expr_mul(other, all, part);
+    }
+    return all;
+  }
+  Expr argument = expr_nargs(g, x) == 1 ? expr_map_get(map, expr_arg(g, x, 0)) : 0;
+  return !argument ? 0 : op == EX_DEF ? argument : expr_fn(other, op, argument);
+}
+
+static Expr in_graph(const Eqns *to, ExprGraph *g, Expr x) {
+  ExprMap map = expr_map(to->m->arena);
+  ExprList all = expr_topo(g, &x, 1);
+  for (uint32_t i = 0; i < all.n; i++) {
+    Expr same = node_in(to, g, all.at[i], &map);
+    if (same) expr_map_set(&map, all.at[i], same);
+  }
+  return expr_map_get(&map, x);
+}
+
+/* The same generator for another model, whose further coordinates stay fixed. 0: a name is missing there. */
+static int generator_in(const Eqns *to, const Eqns *from, const Generator *by, Generator *same) {
+  uint32_t n = noether_coordinates(to), placed = 0;
+  Expr *xi = ARENA_ARRAY(to->m->arena, Expr, n + 1);
+  for (uint32_t i = 0; i < n; i++)
+    for (uint32_t k = 0; k < noether_coordinates(from); k++) {
+      Name here = expr_symbol(to->g, noether_coordinate(to, i))->name, there = expr_symbol(from->g, noether_coordinate(from, k))->name;
+      if (strcmp(here, there) != 0) continue;
+      if (!(xi[i] = in_graph(to, from->g, by->xi[k]))) return 0;
+      placed++;
+    }
+  *same = (Generator){.xi = xi, .tau = in_graph(to, from->g, by->tau)};
+  return same->tau && placed == noether_coordinates(from);
+}
+
+void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with) {
+  Noether *is = ARENA_ARRAY(r->e->m->arena, Noether, r->found.all.n + 1);
+  for (uint32_t k = 0; k < r->found.all.n; k++) {
+    Generator same;
+    if (generator_in(with, r->e, &r->found.all.at[k].by, &same)) is[k] = noether_prove(with, &same);
+  }
+  vec_push(r->e->m->arena, &r->effects, ((EffectVerdict){effect, with, is}));
+}
+
+int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t k) {
+  enum { STATES = 3 };
+  const long double near = 1e-12L; /* rounding of long doubles of size 1 */
+  const Eqns *with = v->e, *e = r->e;
+  long double *there = ARENA_ARRAY(with->m->arena, long double, expr_symbol_count(with->g) + 1), *here = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
+  for (uint32_t seed = 1; seed <= STATES; seed++) {
+    long double bound, one, other;
+    prove_state(with->g, seed, there);
+    for (SymId s = 1; s <= expr_symbol_count(e->g); s++) {
+      Expr same = symbol_in(with, expr_symbol(e->g, s));
+      if (same) here[s] = there[expr_sym_id(with->g, same)];
+    }
+    one = prove_value(e->g, r->found.all.at[k].is.charge, here, NULL, &bound);
+    other = prove_value(with->g, v->is[k].charge, there, NULL, &bound);
+    if (fabsl(one - other) > near * (1 + fabsl(one))) return 0;
+  }
+  return 1;
+}
+
+static void add_condition(const Eqns *e, Conditions *to, Expr base) {
+  ExprSign sign = expr_sign(e->g, base);
+  int constant = !(expr_kinds(e->g, base) & ~(1u << SYM_PARAM | 1u << SYM_CONST));
+  if (!constant || sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE) return;
+  for (uint32_t i = 0; i < to->n; i++)
+    if (to->at[i] == base) return;
+  vec_push(e->m->arena, to, base);
+}
+
+Conditions noether_conditions(const NoetherReport *r, uint32_t k) {
+  const Eqns *e = r->e;
+  const FoundSymmetry *s = &r->found.all.at[k];
+  uint32_t n = noether_coordinates(e);
+  Conditions all = {0};
+  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, n + 3);
+  for (uint32_t i = 0; i < n; i++) roots[i] = s->by.xi[i];
+  roots[n] = s->by.tau, roots[n + 1] = s->is.charge, roots[n + 2] = s->is.F;
+  ExprList nodes = expr_topo(e->g, roots, n + 3);
+  for (uint32_t i = 0; i < nodes.n; i++)
+    for (uint32_t j = 0; expr_op(e->g, nodes.at[i]) == EX_PROD && j < expr_pairs(e->g, nodes.at[i], EX_PROD); j++) {
+      Num power;
+      Expr base = expr_pair(e->g, nodes.at[i], EX_PROD, j, &power);
+      if (power.den % 2 == 0) add_condition(e, &all, base);
+    }
+  return all;
+}

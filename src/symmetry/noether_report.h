@@ -1,0 +1,53 @@
+/* Contents of `lagc noether`: symmetries, charges, their algebra, and the symmetries that effects break. */
+#ifndef LAGC_SYMMETRY_NOETHER_REPORT_H
+#define LAGC_SYMMETRY_NOETHER_REPORT_H
+
+#include "symmetry/brackets.h"
+#include "sym/print.h"
+
+typedef VEC(uint32_t) Indices;
+
+/* Verdicts on the model's symmetries once an effect is on. */
+typedef struct {
+  Name effect;
+  const Eqns *e;       /* the model with that effect, and what it requires */
+  const Noether *is;   /* [found.all.n]; charge 0: the model with the effect lacks a name of the generator */
+} EffectVerdict;
+
+typedef struct {
+  Eqns *e;
+  FoundSymmetries found;
+  Algebra algebra;
+  int scales;          /* there is a scaling */
+  Scaling scaling;
+  Indices cyclic;      /* coordinates that L does not contain */
+  VEC(EffectVerdict) effects;
+} NoetherReport;
+
+/* Finds symmetries, brackets, scaling and cyclic coordinates. Needs a Lagrangian. */
+NoetherReport *noether_report(Eqns *e);
+
+/* Name of the declared symmetry with the charge of found symmetry k, or its opposite; NULL: there is none. */
+Name noether_declared(const NoetherReport *r, uint32_t k);
+
+/* Adds the verdicts on the model `with` one more effect. */
+void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with);
+
+/* Constants of unknown sign that must be positive for the roots in found symmetry k to have values. */
+typedef VEC(Expr) Conditions;
+Conditions noether_conditions(const NoetherReport *r, uint32_t k);
+
+/* Whether found symmetry k has the same charge with the effect on; compared at random states, symbols matched by name. */
+int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t k);
+
+/* Coordinates that L does not contain. */
+Indices noether_cyclic(const Eqns *e);
+
+/* Appends "cyclic coordinate: x; L does not contain it, and p_x is conserved", if there is one. */
+void show_cyclic(const Eqns *e, StrBuf *out);
+
+/* The report as text or LaTeX, and as one JSON object in which formulas are text. */
+void show_noether(const NoetherReport *r, PrintStyle style, StrBuf *out);
+void show_noether_json(const NoetherReport *r, StrBuf *out);
+
+#endif

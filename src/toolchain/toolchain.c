@@ -1,0 +1,341 @@
+/* Finds the runtime, runs the C compiler in a folder of its own, and keeps simulators in the cache under a hash of their texts. */
+#include "toolchain/toolchain.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/vec.h"
+#include "toolchain/cache.h"
+#include "toolchain/files.h"
+#include "toolchain/compiler_probe.h"
+
+/* --- finding the runtime --- */
+
+/* The folder of the running executable. */
+static const char *own_folder(Arena *a, const char *argv0) {
+  char path[PATH_MAX];
+  ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
+  if (n > 0) path[n] = '\0';
+  else if (!realpath(argv0, path)) return ".";
+  char *slash = strrchr(path, '/');
+  if (slash) *slash = '\0';
+  return arena_strdup(a, path);
+}
+
+static int try_place(Arena *a, const char *lib, const char *include, Toolchain *t) {
+  if (!file_exists(arena_printf(a, "%s/liblag.a", lib)) || !file_exists(arena_printf(a, "%s/lag.h", include))) return 0;
+  t->lib = lib;
+  t->include = include;
+  return 1;
+}
+
+int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error) {
+  const char *cc = getenv("CC"), *home = getenv("LAG_HOME"), *own = own_folder(a, argv0);
+  static const char *const none[] = {NULL};
+  *t = (Toolchain){.cc = cc && cc[0] ? cc : "cc", .optimise = "-O2", .library = "lag", .flags = none};
+  int found = 0;
+  if (home && home[0]) {
+    found = try_place(a, arena_printf(a, "%s/lib", home), arena_printf(a, "%s/include", home), t);
+    if (!found) {
+      *error = arena_printf(a, "LAG_HOME is %s, where lib/liblag.a and include/lag.h are not found", home);
+      return 0;
+    }
+  }
+  found = found || try_place(a, own, arena_printf(a, "%s/../runtime/include", own), t);
+  found = found || try_place(a, arena_printf(a, "%s/../lib", own), arena_printf(a, "%s/../include", own), t);
+  if (!found) {
+    *error = arena_printf(a, "the runtime (liblag.a and lag.h) is not found beside %s; run `make`, or set LAG_HOME", own);
+    return 0;
+  }
+  t->gsl = want_gsl && file_exists(arena_printf(a, "%s/liblag_gsl.a", t->lib));
+  return 1;
+}
+
+int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const char **error) {
+  static const char *const of_long[] = {"-DLAG_REAL=long double", "-DLAG_FN(x)=x##l", "-DLAG_C(x)=x##L", "-DLAG_NUMBER(x)=x##L",
+                                        "-DLAG_TAYLOR_ORDER=48", NULL};
+  static const char *const of_quad[] = {"-std=gnu11", "-include", "quadmath.h", "-DLAG_REAL=__float128", "-DLAG_FN(x)=x##q", "-DLAG_C(x)=x##Q",
+                                        "-DLAG_NUMBER(x)=x##Q", "-DLAG_TAYLOR_ORDER=64", NULL};
+  int quad = strcmp(precision, "quad") == 0;
+  if (strcmp(precision, "double") == 0) return 1;
+  t->library = arena_printf(a, "lag_%s", precision);
+  t->flags = quad ? of_quad : of_long;
+  t->needs = quad ? "-lquadmath" : NULL;
+  t->gsl = 0;
+  t->include = arena_printf(a, "%s/lag-%s", t->lib, precision);
+  if (file_exists(arena_printf(a, "%s/lib%s.a", t->lib, t->library))) return 1;
+  *error = arena_printf(a, "--precision %s: %s/lib%s.a is not there: this lagc was built without it%s", precision, t->lib, t->library,
+                        quad ? ", as where the C compiler has no libquadmath" : "");
+  return 0;
+}
+
+/* --- running the compiler --- */
+
+static char *read_fd(Arena *a, int fd) {
+  StrBuf b = strbuf(a);
+  char buffer[4096];
+  for (ssize_t n; (n = read(fd, buffer, sizeof buffer)) != 0;) {
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) break;
+    sb_putn(&b, buffer, (size_t)n);
+  }
+  return arena_strdup(a, sb_text(&b));
+}
+
+/* State for the signal handler: signal that came (0: none), process group of the running program (0: none), and whether signals are noted so that
+ * builds end in order. */
+static volatile sig_atomic_t interrupted, running, noting;
+enum { N_SIGNALS = 3 };
+static const int signals[N_SIGNALS] = {SIGINT, SIGTERM, SIGHUP};
+typedef struct {
+  struct sigaction was[N_SIGNALS];
+} Interruptions;
+
+static void on_interruption(int number) {
+  interrupted = number;
+  if (running) kill(-(pid_t)running, number);
+}
+
+/* From here on signals are noted, and forwarded to the running program; ignored signals stay ignored. */
+static void interruptions_note(Interruptions *before) {
+  struct sigaction note = {.sa_handler = on_interruption};
+  interrupted = 0;
+  noting = 1;
+  for (int i = 0; i < N_SIGNALS; i++) {
+    sigaction(signals[i], NULL, &before->was[i]);
+    if (before->was[i].sa_handler != SIG_IGN) sigaction(signals[i], &note, NULL);
+  }
+}
+
+/* Restores the handlers and raises a signal that was noted. */
+static void interruptions_restore(const Interruptions *before) {
+  for (int i = 0; i < N_SIGNALS; i++) sigaction(signals[i], &before->was[i], NULL);
+  noting = 0;
+  if (interrupted) raise(interrupted);
+}
+
+/* Forks; where signals are noted the child leads a process group, to which they are forwarded. */
+static pid_t fork_program(void) {
+  sigset_t held, before;
+  sigemptyset(&held);
+  for (int i = 0; i < N_SIGNALS; i++) sigaddset(&held, signals[i]);
+  sigprocmask(SIG_BLOCK, &held, &before);
+  pid_t pid = fork();
+  if (noting && pid >= 0) setpgid(pid, 0); /* in both processes, whichever runs first */
+  if (noting && pid > 0) running = (sig_atomic_t)pid;
+  if (pid == 0 && noting)
+    for (int i = 0; i < N_SIGNALS; i++) {
+      struct sigaction now;
+      if (sigaction(signals[i], NULL, &now) == 0 && now.sa_handler == on_interruption) signal(signals[i], SIG_DFL);
+    }
+  sigprocmask(SIG_SETMASK, &before, NULL);
+  return pid;
+}
+
+/* Waits for the process; its exit status, or -1 when it ended by a signal. */
+static int wait_for(pid_t pid) {
+  int status = 0;
+  pid_t got;
+  do got = waitpid(pid, &status, 0);
+  while (got < 0 && errno == EINTR);
+  running = 0;
+  return got == pid && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+int toolchain_run(Arena *a, char *const *argv, char **said) { return toolchain_run_as(a, argv[0], argv, said); }
+
+int toolchain_run_as(Arena *a, const char *path, char *const *argv, char **said) {
+  int pipe_fd[2];
+  *said = arena_strdup(a, "");
+  if ((noting && interrupted) || pipe(pipe_fd) != 0) return -1;
+  pid_t pid = fork_program();
+  if (pid == 0) {
+    dup2(pipe_fd[1], 1);
+    dup2(pipe_fd[1], 2);
+    close(pipe_fd[0]);
+    close(pipe_fd[1]);
+    execvp(path, argv);
+    _exit(127);
+  }
+  close(pipe_fd[1]);
+  if (pid > 0) *said = read_fd(a, pipe_fd[0]);
+  close(pipe_fd[0]);
+  return pid < 0 ? -1 : wait_for(pid);
+}
+
+int toolchain_to_stdin(const char *path, char *const *argv) {
+  FILE *out = tmpfile();
+  pid_t pid = out ? fork() : -1;
+  if (pid == 0) {
+    dup2(fileno(out), 1);
+    if (!freopen("/dev/null", "w", stderr)) _exit(127);
+    execv(path, argv);
+    _exit(127);
+  }
+  int status = -1;
+  if (pid > 0 && waitpid(pid, &status, 0) == pid) status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (status == 0 && (lseek(fileno(out), 0, SEEK_SET) != 0 || dup2(fileno(out), 0) != 0)) status = -1;
+  if (out) fclose(out);
+  return status;
+}
+
+Words toolchain_words(Arena *a, const char *cc) {
+  Words words = {0};
+  char *text = arena_strdup(a, cc);
+  for (char *w = strtok(text, " "); w; w = strtok(NULL, " ")) vec_push(a, &words, w);
+  return words;
+}
+
+/* Compiles and links with the flags that the simulator reports as LAG_BUILD: no contraction (same bits with and without fused multiply-add),
+ * no vector stores, and the flag of the probe. */
+static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
+  Words argv = toolchain_words(a, t->cc);
+  const char *safe = probe_flag(a, t->cc, t->optimise, dir, error);
+  if (!safe) return 0;
+  char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc, t->optimise, *safe ? " " : "", safe);
+  for (char *c = build + strlen("-DLAG_BUILD=\""); c[1]; c++)
+    if (*c == '"' || *c == '\\') *c = ' ';
+  const char *fixed[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, build, "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
+  for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) vec_push(a, &argv, arena_strdup(a, fixed[i]));
+  for (const char *const *f = t->flags; *f; f++) vec_push(a, &argv, arena_strdup(a, *f));
+  if (*safe) vec_push(a, &argv, arena_strdup(a, safe));
+  for (size_t i = 0; i < n; i++) vec_push(a, &argv, arena_printf(a, "%s/%s", dir, texts[i].name));
+  vec_push(a, &argv, arena_printf(a, "-L%s", t->lib));
+  if (t->gsl) vec_push(a, &argv, arena_strdup(a, "-llag_gsl"));
+  vec_push(a, &argv, arena_printf(a, "-l%s", t->library));
+  if (t->gsl) {
+    vec_push(a, &argv, arena_strdup(a, "-lgsl"));
+    vec_push(a, &argv, arena_strdup(a, "-lgslcblas"));
+  }
+  if (t->needs) vec_push(a, &argv, arena_strdup(a, t->needs));
+  vec_push(a, &argv, arena_strdup(a, "-lm"));
+  vec_push(a, &argv, NULL);
+  char *said = NULL;
+  int status = toolchain_run(a, argv.at, &said);
+  if (status == 0) return 1;
+  if (interrupted) *error = "interrupted";
+  else
+  if (status == 127) *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
+  else if (t->needs && said && strstr(said, "quadmath"))
+    *error = arena_printf(a, "quadruple precision needs libquadmath, which comes with gcc; the C compiler `%s` does not find it: set CC=gcc", t->cc);
+  else *error = arena_printf(a, "the C compiler `%s` failed:\n%s", t->cc, said ? said : "");
+  return 0;
+}
+
+/* Compiles with TMPDIR set to the build folder, so that the compiler's temporary files are removed with it. */
+static int compile_alone(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
+  const char *was = getenv("TMPDIR"), *before = was ? arena_strdup(a, was) : NULL;
+  setenv("TMPDIR", dir, 1);
+  int ok = compile(a, t, dir, texts, n, error);
+  if (before) setenv("TMPDIR", before, 1);
+  else unsetenv("TMPDIR");
+  return ok;
+}
+
+/* Compiles in a new build folder, which stays only on success: f->path/simulator. */
+static int build_in(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
+  const char *base = cache_build_folder(a);
+  if (!base) {
+    *error = "there is no folder to build in that only you can write: set TMPDIR to one";
+    return 0;
+  }
+  if (!build_folder_make(a, base, f)) {
+    *error = arena_printf(a, "cannot write in %s: %s", base, strerror(errno));
+    return 0;
+  }
+  int ok = 1;
+  for (size_t i = 0; i < n && ok; i++) {
+    const char *why;
+    ok = file_write(a, arena_printf(a, "%s/%s", f->path, texts[i].name), texts[i].text, strlen(texts[i].text), &why);
+    if (!ok) *error = arena_printf(a, "cannot write in %s: %s", f->path, why);
+  }
+  ok = ok && compile_alone(a, t, f->path, texts, n, error);
+  if (ok && !file_exists(arena_printf(a, "%s/simulator", f->path))) {
+    *error = arena_printf(a, "cannot write %s/simulator: the C compiler `%s` has made nothing", f->path, t->cc);
+    ok = 0;
+  }
+  if (!ok) build_folder_remove(f, NULL);
+  return ok;
+}
+
+/* Builds likewise; a signal ends the C compiler, and lagc once the folder is removed. */
+static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
+  Interruptions before;
+  interruptions_note(&before);
+  int ok = build_in(a, t, texts, n, f, error);
+  if (ok && interrupted) build_folder_remove(f, NULL);
+  interruptions_restore(&before);
+  return ok;
+}
+
+int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output, const char **error) {
+  struct stat st;
+  BuildFolder f;
+  const char *why;
+  if (stat(output, &st) == 0 && !S_ISREG(st.st_mode)) {
+    *error = arena_printf(a, "cannot write %s: it is no ordinary file", output);
+    return 0;
+  }
+  if (!build(a, t, texts, n, &f, error)) return 0;
+  int ok = file_install(output, arena_printf(a, "%s/simulator", f.path), &why);
+  if (!ok) *error = arena_printf(a, "cannot write %s: %s", output, why);
+  build_folder_remove(&f, NULL);
+  return ok;
+}
+
+/* --- simulators in the cache --- */
+
+static uint64_t hash_more(uint64_t h, const char *s, size_t n) {
+  for (size_t i = 0; i < n; i++) h = (h ^ (unsigned char)s[i]) * 1099511628211u;
+  return h;
+}
+
+/* A library is identified by path, size and modification time. */
+static uint64_t hash_library(Arena *a, uint64_t h, const char *path) {
+  struct stat st;
+  if (stat(path, &st) != 0) return h;
+  const char *text = arena_printf(a, "%s %lld %lld.%09ld", path, (long long)st.st_size, (long long)st.st_mtim.tv_sec, st.st_mtim.tv_nsec);
+  return hash_more(h, text, strlen(text));
+}
+
+static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceText *texts, size_t n) {
+  for (size_t i = 0; i < n; i++) h = hash_more(h, texts[i].text, strlen(texts[i].text) + 1);
+  h = hash_more(h, t->cc, strlen(t->cc) + 1);
+  h = hash_more(h, t->optimise, strlen(t->optimise) + 1);
+  h = hash_library(a, h, arena_printf(a, "%s/lib%s.a", t->lib, t->library));
+  return t->gsl ? hash_library(a, h, arena_printf(a, "%s/liblag_gsl.a", t->lib)) : h;
+}
+
+/* The cache entry's name: a 128-bit hash of texts, compiler and libraries. */
+static const char *name_of(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
+  uint64_t h1 = hash_all(a, 1469598103934665603u, t, texts, n), h2 = hash_all(a, 0x9e3779b97f4a7c15u, t, texts, n);
+  return arena_printf(a, "%016llx%016llx", (unsigned long long)h1, (unsigned long long)h2);
+}
+
+const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error) {
+  const char *cache = cache_folder(a), *path = cache ? arena_printf(a, "%s/%s", cache, name_of(a, t, texts, n)) : NULL;
+  BuildFolder f;
+  if (path && cache_is_whole(a, path)) return path;
+  if (!build(a, t, texts, n, &f, error)) return NULL;
+  const char *made = arena_printf(a, "%s/simulator", f.path);
+  if (!path) { /* the simulator stays in its build folder, locked while it runs; a later command removes both */
+    build_folder_remove(&f, "simulator");
+    return made;
+  }
+  int ok = chmod(made, 0700) == 0 && rename(made, path) == 0;
+  if (!ok) *error = arena_printf(a, "cannot write %s: %s", path, strerror(errno));
+  build_folder_remove(&f, NULL);
+  if (!ok) return NULL;
+  cache_seal(a, path);
+  cache_limit(a, path);
+  return path;
+}
