@@ -31,13 +31,13 @@ QUAD_FOUND = $(shell mkdir -p $(BUILD) && printf '$(QUAD_PROBE)' | $(CC) -std=gn
 PRECISIONS ?= long $(QUAD_FOUND)
 PRECISIONS := $(PRECISIONS)
 
-# A flag that keeps the compiler from storing wrong numbers, where it does with these flags: src/cli/probe.in.
-SAFE := $(shell d=$$(mktemp -d) && $(CC) $(CFLAGS) -x c src/cli/probe.in -o $$d/probe 2>/dev/null && \
+# A flag that keeps the compiler from storing wrong numbers, where it does with these flags: src/toolchain/compiler_probe.in.
+SAFE := $(shell d=$$(mktemp -d) && $(CC) $(CFLAGS) -x c src/toolchain/compiler_probe.in -o $$d/probe 2>/dev/null && \
           { $$d/probe; [ $$? != 1 ] || echo -fno-tree-slp-vectorize; }; rm -rf "$$d")
 
 # ---- what is made of what ---------------------------------------------------------------------------
 LAGC_SRC := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
-GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c cli/outfile.c)
+GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c toolchain/outfile.c)
 RT_SRC   := $(filter-out runtime/gsl/%,$(wildcard runtime/*/*.c))
 GSL_SRC  := $(wildcard runtime/gsl/*.c)
 
@@ -83,7 +83,7 @@ $(BUILD)/obj/runtime/%.o: runtime/%.c
 	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
 
 # Of one text, by runtime/precision.awk, in $(BUILD)/gen/long and $(BUILD)/gen/quad; lagc finds the headers in $(BUILD)/lag-long
-# and $(BUILD)/lag-quad. src/cli/toolchain.c compiles models with the same LAG_REAL.
+# and $(BUILD)/lag-quad. src/toolchain/toolchain.c compiles models with the same LAG_REAL.
 REAL_long := -std=c11 '-DLAG_REAL=long double' '-DLAG_PRECISION="long"'
 REAL_quad := -std=gnu11 -include quadmath.h -DLAG_REAL=__float128 '-DLAG_PRECISION="quad"'
 DIGITS_long := $(if $(filter long,$(PRECISIONS)),$(shell echo __LDBL_DECIMAL_DIG__ | $(CC) -E -P -x c -))
@@ -116,14 +116,14 @@ $(BUILD)/gen/io/page.h: runtime/io/page.html
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
-$(BUILD)/gen/cli/probe_text.h: src/cli/probe.in
+$(BUILD)/gen/toolchain/probe_text.h: src/toolchain/compiler_probe.in
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
 # How files are written is one text in the compiler and in the runtime, of which neither includes a header of the other's.
-$(BUILD)/gen/cli/outfile.%: runtime/io/outfile.%
+$(BUILD)/gen/toolchain/outfile.%: runtime/io/outfile.%
 	@mkdir -p $(@D)
-	sed 's|"io/outfile.h"|"cli/outfile.h"|' $< >$@.part
+	sed 's|"io/outfile.h"|"toolchain/outfile.h"|' $< >$@.part
 	@mv $@.part $@
 # With its section in place, without that file's first line.
 $(BUILD)/gen/emit/lag_math.txt: runtime/include/lag_math.h runtime/include/lag_sincos.h
@@ -137,32 +137,25 @@ $(BUILD)/gen/emit/lag_kkt.h: runtime/include/lag_kkt.h
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
-$(BUILD)/gen/cli/language.h: grammar/LANGUAGE.md
+$(BUILD)/gen/commands/language.h: grammar/LANGUAGE.md
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
-$(BUILD)/gen/cli/complete_%.h: src/cli/complete.%
+$(BUILD)/gen/commands/complete_%.h: src/commands/complete.%
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
-# What the compiler knows of methods is what the runtime says.
-$(BUILD)/gen/base/method_rows.h: runtime/list_methods.c $(LIBLAG)
-	@mkdir -p $(@D)
-	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAN) $(if $(GSL),-DWITH_GSL) -o $(BUILD)/list_methods $< $(if $(GSL),$(RT_BUILD)/liblag_gsl.a) \
-	  $(RT_BUILD)/liblag.a $(GSL_LIBS) -lm
-	$(BUILD)/list_methods >$@.part
-	@mv $@.part $@
-$(BUILD)/obj/src/base/methods.o: $(BUILD)/gen/base/method_rows.h
+$(BUILD)/obj/src/base/methods.o: SRC_FLAGS += $(if $(GSL),-DLAGC_WITH_GSL)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
 $(BUILD)/obj/src/emit/cmath.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen/emit/lag_kkt.h
-$(BUILD)/obj/src/cli/probe.o: $(BUILD)/gen/cli/probe_text.h
-$(BUILD)/obj/src/cli/reference.o: $(BUILD)/gen/cli/language.h
-$(BUILD)/obj/src/cli/shells.o: $(SHELLS:%=$(BUILD)/gen/cli/complete_%.h)
+$(BUILD)/obj/src/toolchain/compiler_probe.o: $(BUILD)/gen/toolchain/probe_text.h
+$(BUILD)/obj/src/commands/reference.o: $(BUILD)/gen/commands/language.h
+$(BUILD)/obj/src/commands/shells.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
 $(BUILD)/gen/base/visible.h: runtime/io/visible.h
 	@mkdir -p $(@D)
 	cp $< $@
 $(LAGC_SRC:%.c=$(BUILD)/obj/%.o) $(BUILD)/obj/src/main.o: | $(BUILD)/gen/base/visible.h
-$(BUILD)/obj/src/cli/files.o $(BUILD)/obj/src/cli/options.o $(BUILD)/obj/gen/cli/outfile.o: $(BUILD)/gen/cli/outfile.h
+$(BUILD)/obj/src/toolchain/files.o $(BUILD)/obj/src/commands/options.o $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
 # Generated code is not ours to warn about.
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 	@mkdir -p $(@D)
@@ -339,9 +332,9 @@ endif
 	install -m 644 $(MODELS) '$(DESTDIR)$(PREFIX)/share/lagc/models'
 	install -m 644 grammar/lag.tmLanguage.json '$(DESTDIR)$(PREFIX)/share/lagc'
 	install -m 644 src/lagc.1 '$(DESTDIR)$(PREFIX)/share/man/man1'
-	install -m 644 src/cli/complete.bash '$(DESTDIR)$(PREFIX)/share/bash-completion/completions/lagc'
-	install -m 644 src/cli/complete.zsh '$(DESTDIR)$(PREFIX)/share/zsh/site-functions/_lagc'
-	install -m 644 src/cli/complete.fish '$(DESTDIR)$(PREFIX)/share/fish/vendor_completions.d/lagc.fish'
+	install -m 644 src/commands/complete.bash '$(DESTDIR)$(PREFIX)/share/bash-completion/completions/lagc'
+	install -m 644 src/commands/complete.zsh '$(DESTDIR)$(PREFIX)/share/zsh/site-functions/_lagc'
+	install -m 644 src/commands/complete.fish '$(DESTDIR)$(PREFIX)/share/fish/vendor_completions.d/lagc.fish'
 	install -m 644 LICENSE README.md '$(DESTDIR)$(PREFIX)/share/doc/lagc'
 
 # Removes what install puts there, and the folders that are lagc's own.

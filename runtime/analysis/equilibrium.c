@@ -4,9 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "analysis/blur.h"
+#include "analysis/perturbation_noise.h"
 #include "analysis/pivot.h"
-#include "analysis/place.h"
+#include "analysis/regularity.h"
 
 enum { MOST_STEPS = 200, MOST_DESCENT = 200 };
 
@@ -37,38 +37,6 @@ static void choose_scales(Rest *r)
     }
     r->scale[i] = is_angle(v) ? 1 : largest > 0 ? largest : v->factor;
   }
-}
-
-void lag_rest_place(Rest *r, const double *x)
-{
-  int nq = r->sim->pb.nq;
-
-  for (int i = 0; i < r->n; i++) {
-    r->y[i < nq ? i : nq + i] = x[i] * r->scale[i];
-  }
-}
-
-int lag_rest_equations(void *context, const double *x, double *f, double *J)
-{
-  Rest *r = context;
-  lag_problem *pb = &r->sim->pb;
-  int nq = pb->nq, n = r->n;
-  double t = r->sim->run->t;
-
-  lag_rest_place(r, x);
-  int rc = lag_rhs(pb, t, r->y, r->rate);
-  rc = rc ? rc : lag_linearise(pb, t, r->y, NULL, r->dr, r->M, r->work);
-  for (int i = 0; i < n && rc == 0; i++) {
-    double weight = (i < nq ? r->scale[i] : 1 / r->scale[i]) * r->row[i], sum = 0;
-    for (int j = 0; j < nq && i < nq; j++) {
-      sum += r->M[i * nq + j] * r->rate[nq + j];
-    }
-    f[i] = weight * (i < nq ? sum : r->rate[nq + i]);
-    for (int j = 0; j < n && J; j++) {
-      J[i * n + j] = weight * r->dr[i * pb->n + (j < nq ? j : nq + j)] * r->scale[j];
-    }
-  }
-  return rc;
 }
 
 /* Forces as a whole, and rates as a whole, get the size 1: what they are made of may differ by any factor. */

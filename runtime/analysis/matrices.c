@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "analysis/blocks.h"
-#include "analysis/blur.h"
+#include "analysis/perturbation_noise.h"
 
 /* ---- Entries */
 

@@ -8,7 +8,7 @@
 #include "base/vec.h"
 
 static const MethodInfo methods[] = {
-#include "base/method_rows.h"
+#include "base/method_rows.def"
 };
 
 enum { METHODS = sizeof methods / sizeof *methods };

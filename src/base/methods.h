@@ -1,5 +1,5 @@
 /* Table of the methods of integration: their names, options and requirements, for the checks of models and the emission of C.
- * Its rows are printed from the runtime's descriptors by list_methods.c. */
+ * base/method_rows.def is a copy of the runtime's own table, with which tests/golden/run_method_rows.sh compares it: lagc builds without liblag. */
 #ifndef LAGC_BASE_METHODS_H
 #define LAGC_BASE_METHODS_H
 

@@ -7,6 +7,7 @@
 #include "base/sparse_solve.h"
 #include "claims/nearby_rank.h"
 #include "mech/frobenius.h"
+#include "mech/constrain.h"
 #include "symmetry/noether.h"
 #include "mech/start.h"
 #include "sym/print.h"
@@ -36,7 +37,7 @@ static int has_slope(const Eqns *e, StateSolver *s, const long double *symbols, 
 static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts, uint32_t k, uint32_t rank, StrBuf *out) {
   const Constraint *c = e->constraints.of[k];
   Place place = source_place(e->m->ast->sources, c->span.begin);
-  if (noether_is_contact(e->m, c)) {
+  if (contact_of_constraint(e->m, c)) {
     sb_printf(out, "  contact %s (line %u): a constraint while it is closed\n", c->name, place.line);
     return;
   }

@@ -1,5 +1,5 @@
 /* Guesses at edits come from numbers at a few states; the cheapest guess that is proved exactly is the correction. */
-#include "claims/suggest_impl.h"
+#include "claims/suggest_correction_impl.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "claims/suggest_impl.h"
+#include "claims/suggest_correction_impl.h"
 
 /* Costs of edits: slips of the pen first, then larger changes. */
 #define COST_SLIP 1.0

@@ -2,7 +2,7 @@
  * is the missing term or factor. */
 #include <math.h>
 
-#include "claims/suggest_impl.h"
+#include "claims/suggest_correction_impl.h"
 
 #define COST_VALUE 3.0
 #define COST_FACTOR 0.25 /* each factor of the missing monomial */

@@ -1,10 +1,10 @@
 /* `lagc check`: derives every scene and every unused effect, then judges symmetries and expectations. */
-#include "commands/check.h"
+#include "commands/commands.h"
 
 #include <string.h>
 
 #include "symmetry/charges.h"
-#include "mech/discontinuity.h"
+#include "mech/discontinuity_warning.h"
 #include "claims/expect.h"
 #include "claims/mobility.h"
 #include "symmetry/noether_report.h"
@@ -12,10 +12,10 @@
 
 /* Judges symmetries and expectations for the model without effects, and those inside an effect with that effect and its requirements; no scene is
  * needed. */
-static void check_claims(const Deriver *d, const Ast *ast, int allow_numeric, ExpectResults *results, StrBuf *out) {
+static void check_claims(Compiler *c, const Ast *ast, int allow_numeric, ExpectResults *results, StrBuf *out) {
   EffectList where = model_claiming_effects(ast);
   Eqns **e = ARENA_ARRAY(ast->arena, Eqns *, where.n + 1);
-  for (uint32_t i = 0; i < where.n; i++) e[i] = d->derive(d->data, &(ModelChoice){.bare = 1, .also = where.at[i]});
+  for (uint32_t i = 0; i < where.n; i++) e[i] = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
   for (uint32_t i = 0; i < where.n; i++) {
     if (!e[i]) continue;
     charges_judge(e[i], where.at[i]);
@@ -51,13 +51,13 @@ static void list_units(const FoundUnits *all, StrBuf *out) {
 /* Whether the model declares inputs; each contact adds one more, which does not count. */
 static int has_inputs(const Model *m) { return m->inputs.n > m->contacts.n; }
 
-int check_print(const Deriver *d, Ast *ast, const char *scene, int allow_numeric, StrBuf *out) {
+static int check_print(Compiler *c, Ast *ast, const char *scene, int allow_numeric, StrBuf *out) {
   SceneList scenes = model_scenes(ast);
   FoundUnits found = {0};
   ExpectResults results = {0};
   for (uint32_t i = 0; i < scenes.n; i++) {
     if (scene && strcmp(scene, scenes.at[i]) != 0) continue;
-    Eqns *e = d->derive(d->data, &(ModelChoice){.scene = scenes.at[i]});
+    Eqns *e = compiler_derive_compared(c, &(ModelChoice){.scene = scenes.at[i]});
     if (!e) continue;
     if (!out->n) {
       show_facts(e, out);
@@ -69,10 +69,10 @@ int check_print(const Deriver *d, Ast *ast, const char *scene, int allow_numeric
     sb_printf(out, "scene %s: ok%s\n", scenes.at[i], with_effects(e->m));
     if (e->m->effects.n || has_inputs(e->m) || e->energy_jumps) charges_show_broken(e, out);
   }
-  if (scene && !out->n) d->derive(d->data, &(ModelChoice){.scene = scene}); /* reports the unknown scene */
+  if (scene && !out->n) compiler_derive_compared(c, &(ModelChoice){.scene = scene}); /* reports the unknown scene */
   EffectList unused = model_unused_effects(ast);
   for (uint32_t i = 0; i < unused.n && !scene; i++) {
-    Eqns *e = d->derive(d->data, &(ModelChoice){.bare = 1, .also = unused.at[i]});
+    Eqns *e = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = unused.at[i]});
     if (!e) continue;
     discontinuity_warn(e);
     collect_units(e->m, &found);
@@ -80,7 +80,16 @@ int check_print(const Deriver *d, Ast *ast, const char *scene, int allow_numeric
   }
   list_units(&found, out);
   if (ast->diags->errors) return 0; /* expectations of a wrong model say nothing */
-  check_claims(d, ast, allow_numeric, &results, out);
+  check_claims(c, ast, allow_numeric, &results, out);
   expects_print(&results, ast->sources, out);
   return 1;
+}
+
+int command_check(Compiler *c) {
+  StrBuf out = strbuf(c->arena);
+  c->told = strbuf(c->arena);
+  if (!check_print(c, c->ast, c->o.scene, c->o.allow_numeric, &out)) return STATUS_MODEL;
+  sb_puts(&out, sb_text(&c->told));
+  int status = compiler_write(c, NULL, &out);
+  return c->diags->errors ? STATUS_MODEL : status;
 }

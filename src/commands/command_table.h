@@ -5,10 +5,7 @@
 
 #include <stddef.h>
 
-typedef enum {
-  CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_NOETHER, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES, CMD_LYAPUNOV, CMD_COST, CMD_EFFECTS, CMD_METHODS, CMD_CACHE, CMD_BUILD, CMD_HEADER, CMD_EMIT,
-  CMD_HELP, CMD_COMPLETION, CMD_VERSION, CMD_COMPLETE, CMD_COUNT
-} Command;
+#include "commands/option_values.h"
 
 typedef struct {
   Command command;
@@ -65,5 +62,8 @@ int option_takes_next(Command c, const char *word);
 /* Whether the command runs a simulator, so that name=value is a setting; whether it reads a model. */
 int command_simulates(Command c);
 int command_reads_model(Command c);
+
+/* Whether a word of n bytes is one of the choices, which are separated by spaces. */
+int is_choice(const char *choices, const char *word, size_t n);
 
 #endif

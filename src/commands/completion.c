@@ -1,11 +1,17 @@
-/* Completion: parses the words before the cursor, then offers commands, options, scenes, settings and names from the tables and the model. */
-#include "commands/completion.h"
-
+/* `lagc complete WORD...`: what a shell may offer for the last WORD of a command line. The scripts of completion
+ * (src/commands/complete.bash and its kin) ask it, so that all shells know what the parser knows, and nothing twice.
+ *
+ * WORDs are those after `lagc`, the last one as far as the cursor, perhaps empty. Each line of the answer is a candidate for
+ * the whole word, a tab, and a description; after a candidate that ends in `=` or `(` the user goes on without a space. The
+ * line `:files SUFFIX...` stands for the names of files with one of these suffixes, or, without any, of all files; where
+ * a file's name is only the last part of the word, it begins after the `=`. */
 #include <ctype.h>
 #include <string.h>
 
 #include "toolchain/runtime_methods.h"
 #include "commands/options.h"
+#include "commands/commands.h"
+#include "commands/shells.h"
 #include "commands/reference.h"
 #include "commands/help.h"
 #include "model/model.h"
@@ -218,7 +224,7 @@ static void offer_word(Line *l) {
   }
 }
 
-void complete(StrBuf *out, const char *const *words, size_t n, const char *argv0) {
+static void complete(StrBuf *out, const char *const *words, size_t n, const char *argv0) {
   if (!n) return;
   Line l = {.arena = out->arena, .out = out, .argv0 = argv0, .word = words[n - 1], .head = ""};
   if (n == 1) {
@@ -232,4 +238,11 @@ void complete(StrBuf *out, const char *const *words, size_t n, const char *argv0
     for (size_t i = 0; word_at(l.arena, "bash zsh fish", i); i++) offer(&l, word_at(l.arena, "bash zsh fish", i), "");
   } else if (command_reads_model(l.command)) offer_word(&l);
   else if (l.command == CMD_CACHE) offer_options(&l);
+}
+
+int command_completion(Compiler *c) {
+  StrBuf out = strbuf(c->arena);
+  if (c->o.command == CMD_COMPLETE) complete(&out, c->o.rest.at, c->o.rest.n, c->argv0);
+  else completion_script(&out, c->o.topic);
+  return compiler_write(c, NULL, &out);
 }

@@ -1,6 +1,11 @@
 /* Help pages, put together from the tables of commands and options, the chapters of the reference, and the table of units. */
 #include "commands/help.h"
 
+#include <unistd.h>
+
+#include "base/suggest.h"
+#include "commands/commands.h"
+#include "toolchain/runtime_methods.h"
 #include <string.h>
 
 #include "base/suggest.h"
@@ -201,3 +206,35 @@ int help_print(StrBuf *out, const char *topic, Name *near) {
   if (!found) *near = nearest(out->arena, topic);
   return found;
 }
+
+/* --- the command --- */
+
+/* The runtime has them: asked with `--method help` it prints its table, with `--method "help NAME"` one of them. */
+static int help_methods(Compiler *c, const char *name) {
+  const char *error = NULL, *path = methods_program(c->arena, c->argv0, !c->o.no_gsl, &error);
+  char *argv[] = {"lagc", "--method", name ? arena_printf(c->arena, "help %s", name) : "help", NULL};
+  if (!path) return usage_error(error);
+  execv(path, argv);
+  return usage_error(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
+}
+
+int command_help(Compiler *c) {
+  StrBuf out = strbuf(c->arena);
+  const char *topic = c->o.topic, *error;
+  Name near;
+  Methods methods = {0};
+  if (topic && strcmp(topic, "methods") == 0) return help_methods(c, NULL);
+  if (help_print(&out, topic, &near)) return compiler_write(c, NULL, &out);
+  methods_list(c->arena, c->argv0, 1, &methods, &error); /* without a C compiler there are none */
+  VEC(Name) names = {0};
+  for (uint32_t i = 0; i < methods.n; i++) {
+    if (strcmp(methods.at[i].name, topic) == 0) return help_methods(c, topic);
+    vec_push(c->arena, &names, methods.at[i].name);
+  }
+  Name method = suggest(topic, names.at, names.n);
+  near = near ? near : method;
+  return usage_error(near ? arena_printf(c->arena, "no help on `%s`: did you mean `%s`?", topic, near)
+                         : arena_printf(c->arena, "no help on `%s`; `lagc help` lists the topics", topic));
+}
+
+int command_methods(Compiler *c) { return help_methods(c, NULL); }

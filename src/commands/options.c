@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/suggest.h"
-#include "cli/outfile.h" /* generated: a copy of runtime/io/outfile.h */
+#include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 
 static const char *usage(Arena *a, Command c) {
   const CommandRow *row = command_find(c);
@@ -33,15 +33,6 @@ static int add_define(Arena *a, Options *o, const char *text, const char **error
   Define d = {.name = arena_strndup(a, text, (size_t)(eq - text)), .value = eq + 1};
   vec_push(a, &o->defines, d);
   return 1;
-}
-
-int is_choice(const char *choices, const char *word, size_t n) {
-  for (const char *s = choices; *s; s += strspn(s, " ")) {
-    size_t len = strcspn(s, " ");
-    if (len == n && strncmp(s, word, n) == 0) return 1;
-    s += len;
-  }
-  return 0;
 }
 
 /* "text latex c" -> "text, latex, c" */

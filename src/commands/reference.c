@@ -7,7 +7,7 @@
 #include "base/suggest.h"
 #include "commands/terminal_page.h"
 
-#include "cli/language.h" /* static const char *const language[]: generated from grammar/LANGUAGE.md */
+#include "commands/language.h" /* static const char *const language[]: generated from grammar/LANGUAGE.md */
 
 enum { N_LINES = sizeof language / sizeof *language };
 

@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-#include "cli/complete_bash.h"
-#include "cli/complete_fish.h"
-#include "cli/complete_zsh.h"
+#include "commands/complete_bash.h"
+#include "commands/complete_fish.h"
+#include "commands/complete_zsh.h"
 
 void completion_script(StrBuf *out, const char *shell) {
   static const struct {

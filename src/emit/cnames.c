@@ -81,7 +81,8 @@ const char *cname_spelled(Arena *a, const char *name) {
 const char *cname(Arena *a, const char *name) {
   const char *text = cname_spelled(a, name);
   if (text[0] >= '0' && text[0] <= '9') text = arena_printf(a, "n%s", text);
-  if (text[0] == '_') text = arena_printf(a, "x%s", text); /* leading underscores are reserved for the C library */
+  int taken = text[0] == '_' || strncmp(text, "lag_", 4) == 0 || strncmp(text, "LAG_", 4) == 0; /* the C library's, the runtime's */
+  if (taken) text = arena_printf(a, "x%s", text);
   for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++)
     if (strcmp(text, reserved[i]) == 0) return arena_printf(a, "%s_", text);
   return text;

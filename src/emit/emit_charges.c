@@ -4,13 +4,17 @@
 #include <string.h>
 
 static void table(const File *f) {
-  static const char *const flags[] = {"LAG_CONSERVED", "LAG_BALANCED", "LAG_BY_FORMULAS", "LAG_JUMPS"};
+  static const char *const flags[CHARGE_FLAGS] = {
+#define CHARGE_FLAG(name) "LAG_" #name,
+#include "ir/flags.def"
+#undef CHARGE_FLAG
+  };
   sb_puts(f->out, "\nstatic const lag_charge charge_table[] = {\n");
   for (uint32_t i = 0; i < f->u->charges.n; i++) {
     const IrCharge *c = &f->u->charges.at[i];
     sb_printf(f->out, "  {%s, %s, ", c_string(f->a, c->name), c_string(f->a, c->unit));
     int some = 0;
-    for (uint32_t k = 0; k < sizeof flags / sizeof *flags; k++)
+    for (uint32_t k = 0; k < CHARGE_FLAGS; k++)
       if (c->flags >> k & 1) sb_printf(f->out, "%s%s", some++ ? " | " : "", flags[k]);
     sb_printf(f->out, "%s},\n", some ? "" : "0");
   }

@@ -17,22 +17,14 @@ static const char *const prelude =
   "#ifndef LAG_FN\n#define LAG_FN(f) f\n#endif\n"
   "#ifndef LAG_C\n#define LAG_C(x) ((LAG_REAL)x)\n#endif\n";
 
-/* Names defined by lag_model.h and by emitted files. */
+/* Names that the head of an emitted file defines, besides lag_... and LAG_..., which no name of a model becomes (emit/cnames.c). */
 static const char *const abi_names[] = {
-  "LAG_REAL", "LAG_ABI", "LAG_OK", "LAG_ERETRY", "LAG_ESINGULAR", "LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS",
-  "LAG_AUTONOMOUS", "LAG_SMOOTH", "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_MASK", "LAG_LANE", "lag_solve", "lag_solve_definite", "lag_cubic",
-  "lag_spline", "lag_var", "lag_event", "lag_model", "lag_option", "lag_monitor", "lag_table", "lag_scene", "lag_program",
-  "lag_entry", "lag_linear", "lag_jump", "jump_table", "LAG_NUMBER", "lag_taylor", "lag_factor", "lag_substitute", "lag_invert", "lag_multiply", "LAG_TAYLOR_ORDER",
-  "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL", "TAYLOR_UNROLL_4",
-  "LAG_PAIR", "LAG_REAL_IS_DOUBLE", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums",
-  "taylor_rest", "taylor_squares", "TAYLOR_SQUARES", "taylor_four", "TAYLOR_WIDE", "TAYLOR_INLINE", "taylor_sums_wide", "taylor_squares_wide",
-  "taylor_rest_wide", "taylor_at_wide", "taylor_part", "taylor_part_wide", "taylor_rest_any", "taylor_at_any",
-  "lag_second", "LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV", "q_table", "z_table", "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear",
-  "curves", "LAG_EACH", "LAG_10", "LAG_100", "LAG_1000", "LAG_10000",
-  "singular", "lag_sincos", "lag_sincos2", "lag_sincos4", "LAG_SINCOS_2", "LAG_SINCOS_4", "lag_sin", "lag_cos", "lag_lanes", "lag_lanes_mask", "LAG_LANES", "LAG_LIBM", "LAG_OWN", "LAG_FMA",
-  "LAG_INLINE", "LAG_PIVOT", "LAG_POSITIVE", "LAG_PIVOTS", "LAG_PIVOTS_STATUS", "LAG_LANE_FN", "lag_reflect", "lag_reflector", "lag_rounding", "lag_scales", "lag_rank", "lag_eliminate", "lag_multipliers", "lag_schur", "lag_cholesky", "lag_forward", "lag_backward", "lag_first", "lag_last", "lag_kkt", "lag_kkt_lane",
-  "LAG_BAND_LEAST", "LAG_BAND_EDGES", "lag_band", "lag_edges", "lag_walk", "lag_places", "lag_element", "lag_band_factor", "lag_band_solve", "lag_band_inverse", "lag_band_rest", "lag_banded",
-  "constraint_table", "jacobian_table", "inertia_table", "constraints", "contact_table", "charge_table", "charges", "lag_charge", "lag_charges", "LAG_CONSERVED", "LAG_BALANCED", "LAG_BY_FORMULAS", "LAG_JUMPS", "lag_contact", "lag_constraint", "lag_constraints", "switch_table", "lag_switch",
+  "jump_table", "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL",
+  "TAYLOR_UNROLL_4", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums", "taylor_rest",
+  "taylor_squares", "TAYLOR_SQUARES", "taylor_four", "TAYLOR_WIDE", "TAYLOR_INLINE", "taylor_sums_wide", "taylor_squares_wide",
+  "taylor_rest_wide", "taylor_at_wide", "taylor_part", "taylor_part_wide", "taylor_rest_any", "taylor_at_any", "q_table", "z_table",
+  "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear", "curves", "singular", "constraint_table",
+  "jacobian_table", "inertia_table", "constraints", "contact_table", "charge_table", "charges", "switch_table",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -350,10 +342,13 @@ static int needs_solver(const IrUnit *u, SolveKind kind) {
 }
 
 static void flag_text(unsigned flags, StrBuf *out) {
-  static const char *const names[] = {"LAG_CONSERVES_ENERGY", "LAG_CONSTANT_MASS", "LAG_AUTONOMOUS", "LAG_SMOOTH",
-                                       "LAG_SEPARABLE", "LAG_TIMELESS", "LAG_LOSES_ENERGY", "LAG_FIRST_ORDER", "LAG_CONSTANT_FORM", "LAG_MASSLESS"};
+  static const char *const names[UNIT_FLAGS] = {
+#define MODEL_FLAG(name) "LAG_" #name,
+#include "ir/flags.def"
+#undef MODEL_FLAG
+  };
   int some = 0;
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+  for (size_t i = 0; i < UNIT_FLAGS; i++)
     if (flags >> i & 1) sb_printf(out, "%s%s", some++ ? " | " : "", names[i]);
   if (!some) sb_putc(out, '0');
 }

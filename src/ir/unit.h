@@ -3,7 +3,23 @@
 #ifndef LAGC_IR_UNIT_H
 #define LAGC_IR_UNIT_H
 
-#include "series/series.h"
+#include "ir/prog.h"
+
+typedef struct Series Series; /* series/series.h */
+
+/* Bit numbers of flags: UNIT_CONSERVES_ENERGY, ..., CHARGE_CONSERVED, ... */
+enum {
+#define MODEL_FLAG(name) UNIT_##name,
+#include "ir/flags.def"
+#undef MODEL_FLAG
+  UNIT_FLAGS
+};
+enum {
+#define CHARGE_FLAG(name) CHARGE_##name,
+#include "ir/flags.def"
+#undef CHARGE_FLAG
+  CHARGE_FLAGS
+};
 
 typedef struct {
   const char *name, *unit; /* as the user wrote them */
@@ -107,7 +123,7 @@ typedef struct {
   int nonnegative;
 } IrSwitch;
 
-/* flags: 1 conserved, 2 its balance is known, 4 only while inputs follow their formulas; or 8 it jumps where L does. */
+/* flags: bits CHARGE_CONSERVED, CHARGE_BALANCED (its balance is known), CHARGE_BY_FORMULAS (only while inputs follow their formulas), CHARGE_JUMPS. */
 typedef struct {
   const char *name, *unit;
   unsigned flags;

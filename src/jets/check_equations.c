@@ -1,7 +1,7 @@
 /* Residuals of the text's equations of motion along virtual displacements, with the accelerations of the program. Formula: self_check.h. */
 #include <math.h>
 
-#include "jets/check_impl.h"
+#include "jets/self_check_impl.h"
 
 /* --- evaluation of the text at a state --- */
 

@@ -2,7 +2,8 @@
  * with the text before. */
 #include <math.h>
 
-#include "jets/check_impl.h"
+#include "jets/self_check_impl.h"
+#include "series/series.h"
 
 /* A saved state. */
 typedef struct {

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "lower/lower.h"
-#include "jets/check_impl.h"
+#include "jets/self_check_impl.h"
 
 /* --- random numbers: splitmix64, the same on every machine (G. Steele, D. Lea, C. Flood, OOPSLA 2014, doi:10.1145/2660193.2660195) --- */
 

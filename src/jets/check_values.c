@@ -1,7 +1,7 @@
 /* Values of the text against those of the programs: flows, constraints, energy; events, outputs, inputs. */
 #include <math.h>
 
-#include "jets/check_impl.h"
+#include "jets/self_check_impl.h"
 
 /* --- dynamics: values from the last check_run_text, whatever its direction --- */
 

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "jets/check_impl.h"
+#include "jets/self_check_impl.h"
 
 typedef struct {
   const double *number;

@@ -1,6 +1,6 @@
 /* Self-check: choice of states, comparison of two values, report. A value agrees if the difference is within SLACK times the text's error
  * bound, or within a fixed part of the terms' size. Contract: self_check.h. */
-#include "jets/check_impl.h"
+#include "jets/self_check_impl.h"
 
 #include <float.h>
 #include <math.h>

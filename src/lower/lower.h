@@ -6,6 +6,8 @@
 #define LAGC_LOWER_LOWER_H
 
 #include "ir/prog.h"
+#include "mech/event_jumps.h"
+#include "mech/linearise.h"
 #include "series/series.h"
 #include "series/series.h"
 #include "ir/unit.h"

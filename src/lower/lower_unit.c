@@ -18,9 +18,15 @@ static const char *joined(Arena *a, const Name *names, uint32_t n) {
 }
 
 static unsigned flags_of(const Eqns *e) {
-  return (e->conserves_energy ? 1u : 0) | (e->constant_mass ? 2u : 0) | (e->autonomous ? 4u : 0) | (e->smooth ? 8u : 0) |
-         (e->separable ? 16u : 0) | (e->timeless ? 32u : 0) | (e->loses_energy ? 64u : 0) |
-         (e->first.n ? 128u : 0) | (e->first.n && e->first.constant && e->first.closed ? 256u : 0) | (e->singular_mass ? 512u : 0);
+  const int set[UNIT_FLAGS] = {
+    [UNIT_CONSERVES_ENERGY] = e->conserves_energy, [UNIT_CONSTANT_MASS] = e->constant_mass, [UNIT_AUTONOMOUS] = e->autonomous,
+    [UNIT_SMOOTH] = e->smooth, [UNIT_SEPARABLE] = e->separable, [UNIT_TIMELESS] = e->timeless, [UNIT_LOSES_ENERGY] = e->loses_energy,
+    [UNIT_FIRST_ORDER] = e->first.n != 0, [UNIT_CONSTANT_FORM] = e->first.n && e->first.constant && e->first.closed,
+    [UNIT_MASSLESS] = e->singular_mass,
+  };
+  unsigned flags = 0;
+  for (unsigned i = 0; i < UNIT_FLAGS; i++) flags |= set[i] ? 1u << i : 0;
+  return flags;
 }
 
 static void add_fixed(IrUnit *u, const Model *m) {
@@ -93,7 +99,8 @@ static void add_charges(IrUnit *u, const Eqns *e) {
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
     int conserved = i ? expr_is_zero(e->g, c->proof.power) : e->conserves_energy;
-    unsigned flags = c->proof.jumps ? 8u : c->proof.power_unknown ? 0 : (conserved ? 1u : 0) | 2u | (c->proof.by_formulas ? 4u : 0);
+    unsigned known = 1u << CHARGE_BALANCED | (conserved ? 1u << CHARGE_CONSERVED : 0) | (c->proof.by_formulas ? 1u << CHARGE_BY_FORMULAS : 0);
+    unsigned flags = c->proof.jumps ? 1u << CHARGE_JUMPS : c->proof.power_unknown ? 0 : known;
     vec_push(u->arena, &u->charges, ((IrCharge){c->name, c->unit.text, flags}));
   }
   u->charge_values = e->ncharges > 1 ? lower_charges(e) : NULL;

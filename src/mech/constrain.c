@@ -165,3 +165,9 @@ int constraints_do_no_work(const Eqns *e) {
 }
 
 void constraints_keep_none(Eqns *e) { e->constraints.nkept = e->constraints.nholonomic; }
+
+const Contact *contact_of_constraint(const Model *m, const Constraint *k) {
+  for (uint32_t i = 0; i < m->contacts.n; i++)
+    if (&m->constraints.at[m->contacts.at[i].constraint] == k) return &m->contacts.at[i];
+  return NULL;
+}

@@ -8,6 +8,9 @@
  * coordinate or contradicts another, or when there are more constraints than coordinates. */
 int constrain(Eqns *e);
 
+/* The contact that stands for this constraint, which holds while the contact is closed; NULL: none. */
+const Contact *contact_of_constraint(const Model *m, const Constraint *k);
+
 /* Whether constraint forces do no work on admissible motions: q'.A^T lambda = -lambda.b, so whether b = 0. */
 int constraints_do_no_work(const Eqns *e);
 

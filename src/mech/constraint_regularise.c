@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "symmetry/noether.h"
+#include "mech/constrain.h"
 #include "mech/start.h"
 #include "sym/eval.h"
 
@@ -65,7 +65,7 @@ Expr lend_inertia(const Eqns *e) {
   Expr *terms = ARENA_ARRAY(e->m->arena, Expr, all->n + 1);
   uint32_t n = 0;
   for (uint32_t k = 0; k < all->n; k++) {
-    if (noether_is_contact(e->m, all->of[k])) continue;
+    if (contact_of_constraint(e->m, all->of[k])) continue;
     Expr square = expr_pow_num(e->g, all->r[k], num_int(2)), w = weight(e, k);
     Expr term = expr_mul(e->g, w, square);
     terms[n++] = expr_scale(e->g, num_ratio(1, 2), term);

@@ -103,45 +103,12 @@ typedef struct {
   int separable;         /* constant mass, no velocity in f, no states: a splitting method can integrate it */
 } Eqns;
 
-/* Derives the equations. NULL, with the reason in m->diags, for example when the mass matrix is singular in every state or the
- * momenta depend on an input (its derivative would be needed). May add to m->across, set m->lends to 0 and change m's events. */
-Eqns *eqns_derive(Model *m);
+/* Coordinates, those of a Lagrangian of first order included: how many, and their symbols. */
+uint32_t eqns_coordinates(const Eqns *e);
+SymId eqns_coordinate(const Eqns *e, uint32_t i);
 
-/* A partial derivative of residual `row` by component `col` of y = (q, q', z). */
-typedef struct {
-  uint32_t row, col;
-  Expr e;
-} Partial;
-
-typedef struct {
-  const Partial *at;
-  uint32_t n;
-} Partials;
-
-/* The exact linearisation: nonzero derivatives of the residuals
- *   r_i = f_i - sum_j M_ij q_j''   (i < n),   r_(n + k) = flow_k
- * at fixed q'', row by row, columns ascending. The Jacobian of the accelerations is dq''/dy = M^-1 dr/dy. Entries contain the symbols q''. */
-Partials eqns_linearise(Eqns *e);
-
-/* Derivative of an event: of its function g (row < 0) or of the value that an action assigns to component `row` of [q|v|z], by component
- * `col` of the state or by the time (col = 2 n + states). Nonzero derivatives, and for each assigned row its diagonal even if 0.
- * Events that depend on inputs have none, since the compiler does not know the inputs' values. */
-typedef struct {
-  uint32_t event;
-  int row;
-  uint32_t col;
-  Expr e;
-} Jump;
-
-typedef struct {
-  const Jump *at;
-  uint32_t n;
-} Jumps;
-
-Jumps eqns_jumps(const Eqns *e);
-
-/* Derives the entries of e->mass if they are not known yet. */
-void eqns_derive_mass(Eqns *e);
+/* Momenta of L as the user wrote it: without the term that makes the mass matrix of rotations regular. */
+const Expr *eqns_momenta(const Eqns *e);
 
 /* M[i][j]; the zero node where the entry is zero. */
 Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j);

@@ -306,18 +306,28 @@ static int solve(Work *w, Block *b, Expr *rate) {
 }
 
 /* Flows := the rates in the form with the fewest operations; substituted for rates in other flows, in events and their actions. */
-static void put_flows(Work *w, Model *m, const Expr *rate) {
+static void put_flows(Work *w, const Model *m, const Expr *rate) {
   uint32_t nsymbols = expr_symbol_count(w->g) + 1;
   const Expr *best = lagrange_short_forms(w->e, rate, w->n);
   Expr *with = ARENA_ARRAY(w->arena, Expr, nsymbols), *flow = ARENA_ARRAY(w->arena, Expr, m->states.n + 1);
   for (uint32_t i = 0; i < w->n; i++) with[state_of(w, i)->rate] = flow[w->to->at[i]] = best[i];
   for (uint32_t i = 0; i < m->states.n; i++)
     if (!w->place[i]) flow[i] = with[m->states.at[i].rate] = expr_substitute(w->g, m->states.at[i].flow, with, nsymbols, "");
+  Model *own = ARENA_NEW(w->arena, Model);
+  *own = *m;
+  own->events.at = ARENA_ARRAY(w->arena, Event, m->events.n + 1);
   for (uint32_t i = 0; i < m->events.n; i++) {
-    Event *ev = &m->events.at[i];
+    Event *ev = &own->events.at[i];
+    *ev = m->events.at[i];
     ev->g = expr_substitute(w->g, ev->g, with, nsymbols, "");
-    for (uint32_t k = 0; k < ev->actions.n; k++) ev->actions.at[k].value = expr_substitute(w->g, ev->actions.at[k].value, with, nsymbols, "");
+    Action *actions = ARENA_ARRAY(w->arena, Action, ev->actions.n + 1);
+    for (uint32_t k = 0; k < ev->actions.n; k++) {
+      actions[k] = ev->actions.at[k];
+      actions[k].value = expr_substitute(w->g, actions[k].value, with, nsymbols, "");
+    }
+    ev->actions.at = actions;
   }
+  w->e->m = own;
   w->e->flow = flow;
 }
 
@@ -332,7 +342,7 @@ static void put_energy(Work *w) {
   w->e->energy_scale = expr_add(g, size_pv, size_l);
 }
 
-int first_order_derive(Eqns *e, Model *m) {
+int first_order_derive(Eqns *e, const Model *m) {
   Work w = {.e = e, .m = m, .g = m->g, .arena = m->arena, .to = &e->first};
   w.to->closed = 1;
   find_coordinates(&w);

@@ -14,6 +14,6 @@
 
 /* Fills e->first, e->flow and the energy of a model of first order; in other flows, events and their actions rates are replaced by
  * the flows. 0, reported, when omega is singular at every state or too large, or when a force is not linear in velocities. */
-int first_order_derive(Eqns *e, Model *m);
+int first_order_derive(Eqns *e, const Model *m);
 
 #endif

@@ -1,6 +1,7 @@
 /* Legendre transformation: M is inverted by cofactors, block by block; q' = M^-1 (p - a), and p' by differentiating H. */
 #include "mech/hamilton.h"
 
+#include "mech/lagrange.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
 

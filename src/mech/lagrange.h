@@ -16,4 +16,7 @@ const Expr *lagrange_short_forms(const Eqns *e, const Expr *raw, uint32_t n);
 /* 0: the mass matrix is singular on the kernel of the constraints at every state tried, and m->diags says why. Sets e->singular_mass. */
 int lagrange_check_mass(Eqns *e);
 
+/* Fills e->mass where the program does without it. */
+void eqns_derive_mass(Eqns *e);
+
 #endif

@@ -214,7 +214,6 @@ typedef struct {
   Expr kinetic, potential; /* 0 when L was given as a whole */
   Expr lagrangian;         /* 0 when the text declares no coordinates */
   Expr across;             /* kinetic term in q.q' of each rotation, 0 on its constraint, which makes M regular; 0: none */
-  int lends;               /* add inertia along constraints to massless directions, for discrete Lagrangians: mech/lend.h */
   Span lagrangian_span;
   Span dissipation_span;
   Span kinetic_span;       /* empty when L was given as a whole */
@@ -293,7 +292,6 @@ typedef struct {
   uint32_t ngiven;
   Section section;
   const char *fix; /* parameters to compile in as numbers, with the scene's values: "g,drag.c", "all"; NULL: none */
-  int lends;       /* Model.lends */
   int unfixed;     /* set by callers that ignore the command line's --fix */
 } ModelChoice;
 

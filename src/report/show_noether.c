@@ -87,13 +87,13 @@ static int is_rounded(ExprGraph *g, Expr x) {
 /* Changes of the coordinates, or of the sums of them that L is written with; a formula for them where numbers have too many digits. */
 static void deltas(Page *p, const FoundSymmetry *s) {
   Text *t = &p->text;
-  uint32_t n = noether_coordinates(t->e);
+  uint32_t n = eqns_coordinates(t->e);
   int rounded = 0;
   for (uint32_t i = 0; i < n && s->by.lowered && expr_is_zero(t->g, s->by.tau); i++) rounded = rounded || is_rounded(t->g, s->by.xi[i]);
   if (rounded) say(p, arena_printf(t->e->m->arena, "  delta q = M^-1 d%s/dq' with the mass matrix M: its numbers have too many digits", named(p, "", (uint32_t)(s - p->r->found.all.at), "")));
   for (uint32_t i = 0; i < n && !rounded; i++) {
     if (s->forms) put_delta(p, s->forms->name[i], forms_back(s->forms, t->g, s->by.eta[i]));
-    else put_delta(p, expr_symbol(t->g, noether_coordinate(t->e, i))->name, s->by.xi[i]);
+    else put_delta(p, expr_symbol(t->g, eqns_coordinate(t->e, i))->name, s->by.xi[i]);
   }
   put_delta(p, "t", s->by.tau);
 }

@@ -21,9 +21,9 @@ static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
   Name declared = noether_declared(r, k);
   uint32_t shown = 0;
   sb_printf(out, "{\"name\": \"%s\", \"delta\": {", s->name);
-  for (uint32_t i = 0; i < noether_coordinates(e); i++) {
+  for (uint32_t i = 0; i < eqns_coordinates(e); i++) {
     if (expr_is_zero(e->g, s->by.xi[i])) continue;
-    sb_printf(out, "%s\"%s\": ", comma(shown++), expr_symbol(e->g, noether_coordinate(e, i))->name);
+    sb_printf(out, "%s\"%s\": ", comma(shown++), expr_symbol(e->g, eqns_coordinate(e, i))->name);
     put_expr(out, e->g, s->by.xi[i]);
   }
   sb_puts(out, "}, \"delta_t\": ");

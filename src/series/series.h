@@ -21,6 +21,7 @@
 #define LAGC_SERIES_SERIES_H
 
 #include "ir/factorization_record.h"
+#include "ir/unit.h"
 
 typedef struct {
   uint32_t row, col;
@@ -42,7 +43,7 @@ typedef struct {
 } IrSystem;
 
 /* Columns of the coefficients x[k][...]: q, v, z, then q'' and z', then t. */
-typedef struct {
+struct Series {
   const Prog *first;     /* order 0. out 0: x[0], its q'' and z'; out 1: c, the constants that `next` reads */
   const Prog *next;      /* order k. Reads x[k] of q, v, z, t, the sums s, and c. out 0: x[k], its q'' and z'; out 1: x[k+1], its
                             q, v and z; out 2, 3: a[k], b[k] (no b[k] of squares) */
@@ -55,7 +56,7 @@ typedef struct {
   uint32_t constants;    /* length of c */
   uint32_t room;         /* work space of blocks that a loop factors, in reals */
   int uses_time;
-} Series;
+};
 
 /* NULL where the program is not analytic; *why is then the function or word ("abs", "if") that is not. */
 Series *series_new(const IrSystem *system, const char **why);

@@ -1,19 +1,21 @@
 /* Generators of declared symmetries, their charges, and messages about symmetries that do not hold. */
 #include "symmetry/charges.h"
 
+#include "mech/derive.h"
+#include "mech/lagrange.h"
 #include "sym/simplify.h"
 
 /* --- generators and charges --- */
 
 static Generator generator_of(const Eqns *e, const Symmetry *y) {
-  uint32_t n = noether_coordinates(e);
+  uint32_t n = eqns_coordinates(e);
   Expr *xi = ARENA_ARRAY(e->m->arena, Expr, n + 1);
   Generator by = {.xi = xi};
   for (uint32_t k = 0; k < y->moves.n; k++) {
     const Move *move = &y->moves.at[k];
     if (move->target == e->m->time) by.tau = move->rate;
     for (uint32_t i = 0; i < n; i++)
-      if (noether_coordinate(e, i) == move->target) xi[i] = move->rate;
+      if (eqns_coordinate(e, i) == move->target) xi[i] = move->rate;
   }
   return by;
 }
@@ -57,6 +59,23 @@ Expr charges_fill(const Eqns *e, Expr x) {
   return expr_replace(e->g, x, syms, with, m->symmetries.n);
 }
 
+/* The scene's outputs, with the energy and charges that they name filled in. */
+static void fill_outputs(Eqns *e) {
+  const Model *m = e->m;
+  ExprGraph *g = e->g;
+  Output *out = ARENA_ARRAY(m->arena, Output, m->scene.outputs.n + 1);
+  Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(g) + 1);
+  with[m->energy_sym] = e->energy_stable;
+  for (uint32_t i = 0; i < m->scene.outputs.n; i++) {
+    out[i] = m->scene.outputs.at[i];
+    out[i].value = charges_fill(e, out[i].value);
+    if (e->energy) out[i].value = expr_substitute(g, out[i].value, with, m->energy_sym + 1, "");
+    out[i].value = simplify_stable(g, out[i].value);
+  }
+  e->outputs = out;
+  e->noutputs = m->scene.outputs.n;
+}
+
 /* --- verdicts --- */
 
 /* x with definitions expanded that are not the user's: derivatives of lets, whose names mean something only where all definitions are printed. */
@@ -66,7 +85,7 @@ static Expr in_own_names(const Eqns *e, Expr x) {
   ExprMap own = expr_map(a);
   VEC(Expr) said = {0};
   vec_push(a, &said, e->m->lagrangian);
-  for (uint32_t i = 0; e->Q && i < noether_coordinates(e); i++) vec_push(a, &said, e->Q[i]);
+  for (uint32_t i = 0; e->Q && i < eqns_coordinates(e); i++) vec_push(a, &said, e->Q[i]);
   for (uint32_t i = 0; i < e->constraints.n; i++) vec_push(a, &said, e->constraints.r[i]);
   ExprList known = expr_topo(e->g, said.at, said.n);
   for (uint32_t i = 0; i < known.n; i++) expr_map_set(&own, known.at[i], 1);
@@ -199,3 +218,16 @@ void charges_show_broken(const Eqns *e, StrBuf *out) {
     else sb_printf(out, "  d(%s)/dt = %s%s\n", c->name, text_of(e, c->proof.power), c->proof.jumps ? " between jumps of L" : "");
   }
 }
+
+static Eqns *complete(Eqns *e) {
+  if (!e) return NULL;
+  charges_derive(e);
+  fill_outputs(e);
+  if (!e->m->effects.n && !charges_judge(e, NULL)) return NULL; /* with effects it may be broken on purpose */
+  lagrange_squares(e);
+  return eqns_check_numbers(e) ? e : NULL;
+}
+
+Eqns *equations_of(const Model *m) { return complete(eqns_derive(m)); }
+
+Eqns *equations_regularised(const Eqns *singular) { return complete(eqns_derive_regularised(singular)); }

@@ -16,6 +16,13 @@ struct Charge {
 /* Fills e->charges: the energy first, then those of declared symmetries in order. None without a Lagrangian. */
 void charges_derive(Eqns *e);
 
+/* Model -> Eqns, complete: the equations of motion, their charges, and outputs that name the energy or a charge. NULL, with the reason in the
+ * model's diagnostics, as eqns_derive, or when a declared symmetry does not hold. */
+Eqns *equations_of(const Model *m);
+
+/* The complete equations of the same model with a regular mass matrix (eqns_derive_regularised). */
+Eqns *equations_regularised(const Eqns *singular);
+
 /* x with the symbols of declared charges replaced by their expressions. */
 Expr charges_fill(const Eqns *e, Expr x);
 

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "symmetry/noether.h"
+#include "mech/constrain.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
 
@@ -45,7 +45,7 @@ ConstraintParts *parts_new(const Eqns *e) {
     Num c, power;
     Expr product = expr_pair(e->g, k->c[i], EX_SUM, 0, &c);
     uint32_t count = 0;
-    if (noether_is_contact(e->m, k->of[i]) || expr_pairs(e->g, k->c[i], EX_SUM) > 1) continue;
+    if (contact_of_constraint(e->m, k->of[i]) || expr_pairs(e->g, k->c[i], EX_SUM) > 1) continue;
     for (uint32_t f = 0; f < expr_pairs(e->g, product, EX_PROD); f++) count += (uint32_t)may_vanish(e, expr_pair(e->g, product, EX_PROD, f, &power), power);
     for (uint32_t f = 0; f < expr_pairs(e->g, product, EX_PROD) && count > 1; f++) {
       Expr base = expr_pair(e->g, product, EX_PROD, f, &power);

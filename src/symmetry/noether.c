@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "mech/constrain.h"
 #include "mech/discontinuity.h"
 #include "symmetry/noether_forms.h"
 #include "symmetry/constraint_factors.h"
@@ -34,12 +35,6 @@ typedef struct {
   Expr unreached;   /* a factor of a constraint whose zeros no state reached: nothing is decided; 0: none */
 } Work;
 
-uint32_t noether_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
-
-SymId noether_coordinate(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].q : e->m->states.at[e->first.at[i]].z; }
-
-const Expr *noether_momenta(const Eqns *e) { return e->first.n ? e->first.theta : e->m->across ? e->momenta : e->p; }
-
 static SymId velocity(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate; }
 
 static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
@@ -69,17 +64,17 @@ static Expr total(const Work *w, Expr x) {
 
 static Work begin(const Eqns *e, const Generator *by) {
   Arena *a = e->m->arena;
-  Work w = {.e = e, .m = e->m, .g = e->g, .n = noether_coordinates(e)};
+  Work w = {.e = e, .m = e->m, .g = e->g, .n = eqns_coordinates(e)};
   Expr zero = expr_int(w.g, 0), *xi = ARENA_ARRAY(a, Expr, w.n + 1);
   w.q = ARENA_ARRAY(a, SymId, w.n + 1);
   w.v = ARENA_ARRAY(a, SymId, w.n + 1);
   w.Dxi = ARENA_ARRAY(a, Expr, w.n + 1);
   w.L = e->m->lagrangian;
-  w.p = noether_momenta(e);
+  w.p = eqns_momenta(e);
   w.xi = xi;
   w.tau = by->tau ? by->tau : zero;
   for (uint32_t i = 0; i < w.n; i++) {
-    w.q[i] = noether_coordinate(e, i);
+    w.q[i] = eqns_coordinate(e, i);
     w.v[i] = velocity(e, i);
     xi[i] = by->xi && by->xi[i] ? by->xi[i] : zero;
   }
@@ -374,15 +369,6 @@ static int judge_in_forms(Work *w, const Expr *eta, Noether *to) {
   return 1;
 }
 
-/* The contact that has this constraint, or NULL. */
-static const Contact *contact_of(const Model *m, const Constraint *k) {
-  for (uint32_t i = 0; i < m->contacts.n; i++)
-    if (&m->constraints.at[m->contacts.at[i].constraint] == k) return &m->contacts.at[i];
-  return NULL;
-}
-
-int noether_is_contact(const Model *m, const Constraint *k) { return contact_of(m, k) != NULL; }
-
 /* x with contact c closed; unchanged where c is NULL. */
 static Expr while_closed(const Work *w, const Contact *c, Expr x) {
   Expr one = expr_int(w->g, 1);
@@ -410,7 +396,7 @@ static Expr power_of_constraints(Work *w, Noether *to) {
   Expr sum = expr_int(g, 0);
   for (uint32_t i = 0; i < k->n; i++) {
     Expr *seed = no_seed(w), moved;
-    const Contact *contact = contact_of(w->m, k->of[i]);
+    const Contact *contact = contact_of_constraint(w->m, k->of[i]);
     if (i < k->nholonomic) {
       for (uint32_t j = 0; j < w->n; j++) seed[w->q[j]] = w->xi[j];
       seed[w->m->time] = w->tau;

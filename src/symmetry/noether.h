@@ -14,11 +14,11 @@
 #include "mech/eqns.h"
 
 typedef struct {
-  const Expr *xi; /* [noether_coordinates] functions of q, t and parameters; 0: the coordinate stays */
+  const Expr *xi; /* [eqns_coordinates] in q, t and parameters; 0: nothing */
   Expr tau;       /* 0: t stays */
-  const Expr *eta; /* [noether_coordinates] xi in the coordinates y of mech/noether_forms.h, written with the symbols of q, where all y have names:
-                    * proofs and charges are shorter. NULL: not given */
-  const Expr *lowered; /* [noether_coordinates] M xi, where M is made of numbers and p = M q', which keeps charges short; or NULL */
+  const Expr *eta; /* [eqns_coordinates] the same of the sums of mech/noether_forms.h, for which the symbols of q stand, where these have names: proofs
+                    * and charges are short then. NULL: not given */
+  const Expr *lowered; /* [eqns_coordinates] M xi, where M is made of numbers and p = M q', which keeps charges short; or NULL */
 } Generator;
 
 typedef enum {
@@ -47,15 +47,8 @@ typedef struct {
   int power_unknown; /* the generator moves t, and L contains an input of unknown rate: power is not dQ/dt */
 } Noether;
 
-/* Number of components of a generator: the coordinates, also those of a first-order Lagrangian; and the symbol of component i. */
-uint32_t noether_coordinates(const Eqns *e);
-SymId noether_coordinate(const Eqns *e, uint32_t i);
 
-/* dL/dq' of L as written, without the inertia that makes the mass matrix of rotations regular. */
-const Expr *noether_momenta(const Eqns *e);
 
-/* Whether the constraint is a contact's, and so holds only while that is closed. */
-int noether_is_contact(const Model *m, const Constraint *k);
 
 /* Verdict, charge and balance of a generator. Needs a Lagrangian. */
 Noether noether_prove(const Eqns *e, const Generator *by);

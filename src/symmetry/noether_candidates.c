@@ -1,6 +1,7 @@
 /* Builds usual generators, proves each by noether_prove, and lists the proved ones. */
 #include "symmetry/noether_candidates.h"
 
+#include "mech/lagrange.h"
 #include "symmetry/noether_name.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
@@ -16,8 +17,8 @@ typedef struct {
   FoundSymmetries *out;
 } Work;
 
-static Name name_of(const Work *w, uint32_t i) { return expr_symbol(w->g, noether_coordinate(w->e, i))->name; }
-static Expr node(const Work *w, uint32_t i) { return expr_symbol(w->g, noether_coordinate(w->e, i))->node; }
+static Name name_of(const Work *w, uint32_t i) { return expr_symbol(w->g, eqns_coordinate(w->e, i))->name; }
+static Expr node(const Work *w, uint32_t i) { return expr_symbol(w->g, eqns_coordinate(w->e, i))->node; }
 
 static Expr *nothing(const Work *w) {
   Expr *xi = ARENA_ARRAY(w->e->m->arena, Expr, w->n + 1);
@@ -98,7 +99,7 @@ static int is_constant(const ExprGraph *g, Expr x) { return (expr_kinds(g, x) & 
 
 /* kappa of q'' = kappa q + ..., coordinate i's own equation; 0: mass or stiffness is zero or not constant. */
 static Expr own_rate(const Work *w, uint32_t i) {
-  Expr m = simplify(w->g, eqns_mass(w->e, i, i)), k = simplify(w->g, expr_diff(w->g, w->e->dLdq[i], noether_coordinate(w->e, i)));
+  Expr m = simplify(w->g, eqns_mass(w->e, i, i)), k = simplify(w->g, expr_diff(w->g, w->e->dLdq[i], eqns_coordinate(w->e, i)));
   if (expr_is_zero(w->g, m) || expr_is_zero(w->g, k) || !is_constant(w->g, m) || !is_constant(w->g, k)) return 0;
   return simplify(w->g, expr_div(w->g, k, m));
 }
@@ -144,12 +145,12 @@ uint32_t candidates_try_shifts(Eqns *e, FoundSymmetries *out) {
   return found;
 }
 
-/* --- all of them --- */
+/* --- dispatch --- */
 
-int candidates_only(const Eqns *e) { return noether_coordinates(e) > SEARCH_MOST; }
+int candidates_only(const Eqns *e) { return eqns_coordinates(e) > SEARCH_MOST; }
 
 void candidates_try(Eqns *e, FoundSymmetries *out) {
-  Work w = {.e = e, .g = e->g, .n = noether_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .names = coordinates_of(e, NULL), .out = out};
+  Work w = {.e = e, .g = e->g, .n = eqns_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .names = coordinates_of(e, NULL), .out = out};
   out->ansatz = "of more than a hundred coordinates the energy, momenta of cyclic ones, and translations, boosts and turns of all of a kind together";
   out->searched = w.n <= TRY_MOST;
   if (!out->searched) {

@@ -2,7 +2,7 @@
 #ifndef LAGC_SYMMETRY_NOETHER_CANDIDATES_H
 #define LAGC_SYMMETRY_NOETHER_CANDIDATES_H
 
-#include "symmetry/noether_find.h"
+#include "symmetry/found_symmetry.h"
 
 /* Whether the model is too large for the full search. */
 int candidates_only(const Eqns *e);

@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "mech/lagrange.h"
 #include "symmetry/noether_candidates.h"
 #include "symmetry/noether_name.h"
 #include "sym/diff.h"

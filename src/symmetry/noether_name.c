@@ -6,9 +6,9 @@
 /* --- coordinates of bodies --- */
 
 Coordinates coordinates_of(const Eqns *e, const LinearForms *forms) {
-  Coordinates c = {e->g, e->m->arena, noether_coordinates(e), NULL};
+  Coordinates c = {e->g, e->m->arena, eqns_coordinates(e), NULL};
   Name *name = ARENA_ARRAY(c.arena, Name, c.n + 1);
-  for (uint32_t i = 0; i < c.n; i++) name[i] = forms && forms->named ? forms->name[i] : expr_symbol(c.g, noether_coordinate(e, i))->name;
+  for (uint32_t i = 0; i < c.n; i++) name[i] = forms && forms->named ? forms->name[i] : expr_symbol(c.g, eqns_coordinate(e, i))->name;
   c.name = name;
   return c;
 }

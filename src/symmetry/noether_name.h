@@ -2,7 +2,7 @@
 #ifndef LAGC_SYMMETRY_NOETHER_NAME_H
 #define LAGC_SYMMETRY_NOETHER_NAME_H
 
-#include "symmetry/noether_find.h"
+#include "symmetry/found_symmetry.h"
 #include "symmetry/noether_table.h"
 
 /* A row of a table with recognised coefficients: those of the generator by = (xi, tau). */

@@ -40,7 +40,7 @@ void show_cyclic(const Eqns *e, StrBuf *out) {
   Indices all = noether_cyclic(e);
   for (uint32_t k = 0; k < all.n; k++) {
     Name x = e->m->coords.at[all.at[k]].name;
-    int pushed = is_pushed(e, all.at[k]), jumps = discontinuities_of(e, noether_momenta(e)[all.at[k]]).n > 0;
+    int pushed = is_pushed(e, all.at[k]), jumps = discontinuities_of(e, eqns_momenta(e)[all.at[k]]).n > 0;
     sb_printf(out, "cyclic coordinate: %s; L does not contain it, and p_%s is %s%s\n", x, x, pushed ? "changed by forces and constraints alone" : "conserved",
               jumps ? " between jumps" : "");
   }
@@ -119,17 +119,17 @@ static Expr in_graph(const Eqns *to, ExprGraph *g, Expr x) {
 
 /* The same generator for another model, whose further coordinates stay fixed. 0: a name is missing there. */
 static int generator_in(const Eqns *to, const Eqns *from, const Generator *by, Generator *same) {
-  uint32_t n = noether_coordinates(to), placed = 0;
+  uint32_t n = eqns_coordinates(to), placed = 0;
   Expr *xi = ARENA_ARRAY(to->m->arena, Expr, n + 1);
   for (uint32_t i = 0; i < n; i++)
-    for (uint32_t k = 0; k < noether_coordinates(from); k++) {
-      Name here = expr_symbol(to->g, noether_coordinate(to, i))->name, there = expr_symbol(from->g, noether_coordinate(from, k))->name;
+    for (uint32_t k = 0; k < eqns_coordinates(from); k++) {
+      Name here = expr_symbol(to->g, eqns_coordinate(to, i))->name, there = expr_symbol(from->g, eqns_coordinate(from, k))->name;
       if (strcmp(here, there) != 0) continue;
       if (!(xi[i] = in_graph(to, from->g, by->xi[k]))) return 0;
       placed++;
     }
   *same = (Generator){.xi = xi, .tau = in_graph(to, from->g, by->tau)};
-  return same->tau && placed == noether_coordinates(from);
+  return same->tau && placed == eqns_coordinates(from);
 }
 
 void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with) {
@@ -172,7 +172,7 @@ static void add_condition(const Eqns *e, Conditions *to, Expr base) {
 Conditions noether_conditions(const NoetherReport *r, uint32_t k) {
   const Eqns *e = r->e;
   const FoundSymmetry *s = &r->found.all.at[k];
-  uint32_t n = noether_coordinates(e);
+  uint32_t n = eqns_coordinates(e);
   Conditions all = {0};
   Expr *roots = ARENA_ARRAY(e->m->arena, Expr, n + 3);
   for (uint32_t i = 0; i < n; i++) roots[i] = s->by.xi[i];

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "symmetry/noether_frame.h"
+#include "mech/constrain.h"
 #include "mech/states.h"
 #include "sym/diff.h"
 
@@ -42,7 +43,7 @@ static void add_gauge(Ansatz *s, Arena *a) {
 static void add_held(Ansatz *s, Arena *a) {
   const Constraints *k = &s->e->constraints;
   for (uint32_t i = 0; i < k->n; i++)
-    if (!noether_is_contact(s->e->m, k->of[i])) vec_push(a, &s->held, i);
+    if (!contact_of_constraint(s->e->m, k->of[i])) vec_push(a, &s->held, i);
 }
 
 Ansatz *ansatz_new(Arena *a, const Eqns *e) {
@@ -50,10 +51,10 @@ Ansatz *ansatz_new(Arena *a, const Eqns *e) {
   unsigned kinds = expr_kinds(e->g, e->m->lagrangian);
   s->e = e;
   s->symbols = expr_symbol_count(e->g) + 1;
-  s->n = noether_coordinates(e);
+  s->n = eqns_coordinates(e);
   SymId *q = ARENA_ARRAY(a, SymId, s->n + 1), *v = ARENA_ARRAY(a, SymId, s->n + 1);
   for (uint32_t i = 0; i < s->n; i++) {
-    q[i] = noether_coordinate(e, i);
+    q[i] = eqns_coordinate(e, i);
     v[i] = e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate;
   }
   s->q = q;
@@ -108,7 +109,7 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
   roots[count++] = expr_diff(e->g, L, e->m->time);
   expr_gradient(e->g, L, s->q, s->n, roots + count);
   count += s->n;
-  for (uint32_t i = 0; i < s->n; i++) roots[count++] = noether_momenta(e)[i];
+  for (uint32_t i = 0; i < s->n; i++) roots[count++] = eqns_momenta(e)[i];
   for (uint32_t i = 0; i < k->A.n; i++) roots[count++] = k->A.at[i].e;
   for (uint32_t i = 0; i < k->n; i++) roots[count++] = k->r[i];
   *r = (RowSource){.of = s, .scratch = scratch, .tape = eval_tape(e->g, roots, count), .solver = k->n ? states_new(e) : NULL, .random = 7};

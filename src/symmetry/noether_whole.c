@@ -11,7 +11,7 @@ static int momenta_are_linear(Arena *a, const Ansatz *s) {
   ExprGraph *g = s->e->g;
   for (uint32_t i = 0; i < s->n; i++) zero[i] = expr_int(g, 0);
   for (uint32_t i = 0; i < s->n; i++)
-    if (!expr_is_zero(g, simplify(g, expr_replace(g, noether_momenta(s->e)[i], s->v, zero, s->n)))) return 0;
+    if (!expr_is_zero(g, simplify(g, expr_replace(g, eqns_momenta(s->e)[i], s->v, zero, s->n)))) return 0;
   return 1;
 }
 

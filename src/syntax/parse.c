@@ -3,6 +3,7 @@
  * In: a source. Out: its statements in the Ast, messages in ast->diags.
  * Must hold: the parser's stack, the only memory outside the arena, is freed on every exit. */
 #include "base/visible.h"
+#include "syntax/parse.h"
 #include "syntax/parse_state.h"
 
 void parse_done_file(Parse *cx, StmtList stmts) { cx->stmts = stmts; }

@@ -4,7 +4,6 @@
 
 #include "syntax/ast_build.h"
 #include "syntax/filter.h"
-#include "syntax/parse.h"
 
 enum { PARSE_STACK = 4 * 1000 * 1000 }; /* entries of the parser's stack: limit of nesting */
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/suggest.h"
+#include "syntax/parse.h"
 
 /* ---- words ---- */
 

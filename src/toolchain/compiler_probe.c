@@ -6,18 +6,18 @@
 
 #include "base/strbuf.h"
 #include "toolchain/files.h"
-#include "cli/probe_text.h" /* static const char *const probe_text[]: generated from probe.in */
-#include "toolchain/toolchain.h"
+#include "toolchain/probe_text.h" /* static const char *const probe_text[]: generated from probe.in */
+#include "toolchain/process.h"
 
 enum { N_LINES = sizeof probe_text / sizeof *probe_text, WRONG = 1 };
 
 /* Runs the compiler with the words `more` after those of cc; returns its exit status. */
 static int run_compiler(Arena *a, const char *cc, const char *const *more, char **said) {
-  Words argv = toolchain_words(a, cc);
+  Words argv = process_words(a, cc);
   for (; *more; more++)
     if (**more) vec_push(a, &argv, arena_strdup(a, *more));
   vec_push(a, &argv, NULL);
-  return toolchain_run(a, argv.at, said);
+  return process_run(a, argv.at, said);
 }
 
 /* Whether the compiler is GCC with AVX-512, the only one known to fail; its predefined macros tell, in 10 ms. */
@@ -31,7 +31,7 @@ static int fails_with(Arena *a, const char *cc, const char *optimise, const char
   const char *const more[] = {optimise, TOOLCHAIN_SCALAR, flag, "-o", program, source, NULL};
   char *said = NULL, *argv[] = {arena_strdup(a, program), NULL};
   if (run_compiler(a, cc, more, &said) != 0) return 0; /* the build itself will report that */
-  return toolchain_run(a, argv, &said) == WRONG;
+  return process_run(a, argv, &said) == WRONG;
 }
 
 const char *probe_flag(Arena *a, const char *cc, const char *optimise, const char *dir, const char **error) {

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cli/outfile.h" /* generated: a copy of runtime/io/outfile.h */
+#include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 
 /* --- files --- */
 

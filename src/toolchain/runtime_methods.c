@@ -1,5 +1,6 @@
 /* Builds and runs a small program that prints the runtime's descriptors of methods. */
 #include "toolchain/runtime_methods.h"
+#include "toolchain/process.h"
 
 #include <string.h>
 static const char program[] =
@@ -28,7 +29,7 @@ int methods_list(Arena *a, const char *argv0, int want_gsl, Methods *out, const 
   const char *path = methods_program(a, argv0, want_gsl, error);
   if (!path) return 0;
   char *argv[] = {arena_strdup(a, path), NULL}, *said = NULL;
-  if (toolchain_run(a, argv, &said) != 0) {
+  if (process_run(a, argv, &said) != 0) {
     *error = arena_printf(a, "cannot run %s; delete it, and it is built anew", path);
     return 0;
   }

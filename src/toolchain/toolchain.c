@@ -16,6 +16,7 @@
 #include "base/vec.h"
 #include "toolchain/cache.h"
 #include "toolchain/files.h"
+#include "toolchain/process.h"
 #include "toolchain/compiler_probe.h"
 
 /* --- finding the runtime --- */
@@ -80,125 +81,10 @@ int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const cha
 
 /* --- running the compiler --- */
 
-static char *read_fd(Arena *a, int fd) {
-  StrBuf b = strbuf(a);
-  char buffer[4096];
-  for (ssize_t n; (n = read(fd, buffer, sizeof buffer)) != 0;) {
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) break;
-    sb_putn(&b, buffer, (size_t)n);
-  }
-  return arena_strdup(a, sb_text(&b));
-}
-
-/* State for the signal handler: signal that came (0: none), process group of the running program (0: none), and whether signals are noted so that
- * builds end in order. */
-static volatile sig_atomic_t interrupted, running, noting;
-enum { N_SIGNALS = 3 };
-static const int signals[N_SIGNALS] = {SIGINT, SIGTERM, SIGHUP};
-typedef struct {
-  struct sigaction was[N_SIGNALS];
-} Interruptions;
-
-static void on_interruption(int number) {
-  interrupted = number;
-  if (running) kill(-(pid_t)running, number);
-}
-
-/* From here on signals are noted, and forwarded to the running program; ignored signals stay ignored. */
-static void interruptions_note(Interruptions *before) {
-  struct sigaction note = {.sa_handler = on_interruption};
-  interrupted = 0;
-  noting = 1;
-  for (int i = 0; i < N_SIGNALS; i++) {
-    sigaction(signals[i], NULL, &before->was[i]);
-    if (before->was[i].sa_handler != SIG_IGN) sigaction(signals[i], &note, NULL);
-  }
-}
-
-/* Restores the handlers and raises a signal that was noted. */
-static void interruptions_restore(const Interruptions *before) {
-  for (int i = 0; i < N_SIGNALS; i++) sigaction(signals[i], &before->was[i], NULL);
-  noting = 0;
-  if (interrupted) raise(interrupted);
-}
-
-/* Forks; where signals are noted the child leads a process group, to which they are forwarded. */
-static pid_t fork_program(void) {
-  sigset_t held, before;
-  sigemptyset(&held);
-  for (int i = 0; i < N_SIGNALS; i++) sigaddset(&held, signals[i]);
-  sigprocmask(SIG_BLOCK, &held, &before);
-  pid_t pid = fork();
-  if (noting && pid >= 0) setpgid(pid, 0); /* in both processes, whichever runs first */
-  if (noting && pid > 0) running = (sig_atomic_t)pid;
-  if (pid == 0 && noting)
-    for (int i = 0; i < N_SIGNALS; i++) {
-      struct sigaction now;
-      if (sigaction(signals[i], NULL, &now) == 0 && now.sa_handler == on_interruption) signal(signals[i], SIG_DFL);
-    }
-  sigprocmask(SIG_SETMASK, &before, NULL);
-  return pid;
-}
-
-/* Waits for the process; its exit status, or -1 when it ended by a signal. */
-static int wait_for(pid_t pid) {
-  int status = 0;
-  pid_t got;
-  do got = waitpid(pid, &status, 0);
-  while (got < 0 && errno == EINTR);
-  running = 0;
-  return got == pid && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-int toolchain_run(Arena *a, char *const *argv, char **said) { return toolchain_run_as(a, argv[0], argv, said); }
-
-int toolchain_run_as(Arena *a, const char *path, char *const *argv, char **said) {
-  int pipe_fd[2];
-  *said = arena_strdup(a, "");
-  if ((noting && interrupted) || pipe(pipe_fd) != 0) return -1;
-  pid_t pid = fork_program();
-  if (pid == 0) {
-    dup2(pipe_fd[1], 1);
-    dup2(pipe_fd[1], 2);
-    close(pipe_fd[0]);
-    close(pipe_fd[1]);
-    execvp(path, argv);
-    _exit(127);
-  }
-  close(pipe_fd[1]);
-  if (pid > 0) *said = read_fd(a, pipe_fd[0]);
-  close(pipe_fd[0]);
-  return pid < 0 ? -1 : wait_for(pid);
-}
-
-int toolchain_to_stdin(const char *path, char *const *argv) {
-  FILE *out = tmpfile();
-  pid_t pid = out ? fork() : -1;
-  if (pid == 0) {
-    dup2(fileno(out), 1);
-    if (!freopen("/dev/null", "w", stderr)) _exit(127);
-    execv(path, argv);
-    _exit(127);
-  }
-  int status = -1;
-  if (pid > 0 && waitpid(pid, &status, 0) == pid) status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  if (status == 0 && (lseek(fileno(out), 0, SEEK_SET) != 0 || dup2(fileno(out), 0) != 0)) status = -1;
-  if (out) fclose(out);
-  return status;
-}
-
-Words toolchain_words(Arena *a, const char *cc) {
-  Words words = {0};
-  char *text = arena_strdup(a, cc);
-  for (char *w = strtok(text, " "); w; w = strtok(NULL, " ")) vec_push(a, &words, w);
-  return words;
-}
-
 /* Compiles and links with the flags that the simulator reports as LAG_BUILD: no contraction (same bits with and without fused multiply-add),
  * no vector stores, and the flag of the probe. */
 static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
-  Words argv = toolchain_words(a, t->cc);
+  Words argv = process_words(a, t->cc);
   const char *safe = probe_flag(a, t->cc, t->optimise, dir, error);
   if (!safe) return 0;
   char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc, t->optimise, *safe ? " " : "", safe);
@@ -220,9 +106,9 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   vec_push(a, &argv, arena_strdup(a, "-lm"));
   vec_push(a, &argv, NULL);
   char *said = NULL;
-  int status = toolchain_run(a, argv.at, &said);
+  int status = process_run(a, argv.at, &said);
   if (status == 0) return 1;
-  if (interrupted) *error = "interrupted";
+  if (interruption_came()) *error = "interrupted";
   else
   if (status == 127) *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
   else if (t->needs && said && strstr(said, "quadmath"))
@@ -272,7 +158,7 @@ static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n
   Interruptions before;
   interruptions_note(&before);
   int ok = build_in(a, t, texts, n, f, error);
-  if (ok && interrupted) build_folder_remove(f, NULL);
+  if (ok && interruption_came()) build_folder_remove(f, NULL);
   interruptions_restore(&before);
   return ok;
 }

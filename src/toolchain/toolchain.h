@@ -5,11 +5,6 @@
 #include "base/strbuf.h"
 #include "base/vec.h"
 
-/* No vector stores in emitted C: the stages of an integrator read results number by number, and store forwarding needs loads of the
- * size of the store; vector stores cost 5 to 7 ns of latency a stage (make bench T=bench/methods). They are also what triggers the
- * compiler fault of probe.in. */
-#define TOOLCHAIN_SCALAR "-fno-tree-slp-vectorize"
-
 typedef struct {
   const char *cc;        /* $CC or cc */
   const char *include;   /* folder of lag.h */
@@ -36,19 +31,6 @@ int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const cha
 /* Compiles and links the texts into the executable `output`, which appears only on success.
  * Returns 0 on failure, with *error (it may contain the compiler's own messages). */
 int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output, const char **error);
-
-/* Splits $CC into words; like make's, it may contain options. */
-typedef VEC(char *) Words;
-Words toolchain_words(Arena *a, const char *cc);
-
-/* Runs a program; *said gets its standard output and error. Returns its exit status, or -1. */
-int toolchain_run(Arena *a, char *const *argv, char **said);
-/* Runs the program at `path` in the same way, with any argv[0]. */
-int toolchain_run_as(Arena *a, const char *path, char *const *argv, char **said);
-
-/* Runs the program at path; its standard output becomes the standard input of this process, its messages are dropped.
- * Returns its exit status, or -1; unless that is 0 the standard input is unchanged. */
-int toolchain_to_stdin(const char *path, char *const *argv);
 
 /* The path of a simulator of these texts, from the cache or built; NULL, with *error. */
 const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error);

@@ -11,7 +11,7 @@
 #include "base/dense.h"
 #include "lower/lower.h"
 #include "lag_model.h"
-#include "mech/eqns.h"
+#include "symmetry/charges.h"
 #include "model/model.h"
 #include "sym/eval.h"
 #include "syntax/parse.h"
@@ -176,7 +176,7 @@ static int check_model(Arena *arena, const char *path, const lag_scene *scene) {
   const Source *source = source_read(sources, path, &error);
   if (!source || !parse(ast, source)) return printf("%s does not parse\n", path), 1;
   Model *m = model_build(ast, &(ModelChoice){0});
-  Eqns *e = m ? eqns_derive(m) : NULL;
+  Eqns *e = m ? equations_of(m) : NULL;
   if (!e || strcmp(m->name, scene->model->name) != 0) return printf("%s is not %s\n", path, scene->model->name), 1;
   if (scene->model->np + scene->model->nderived > PARAMS) return printf("%s has too many parameters\n", m->name), 1;
   Prog *accel = lower_accel(e, 0), *energy = lower_energy(e);

@@ -10,13 +10,18 @@ src/sym       sym/ base/
 src/syntax    syntax/ base/
 src/model     model/ syntax/ sym/ base/
 src/mech      mech/ model/ sym/ base/
-src/ir        ir/ sym/ base/
-src/emit      emit/ ir/ base/
-src/jets      jets/ mech/ model/ syntax/ ir/ base/
-src/cli       cli/ base/
-src           base/ syntax/ sym/ model/ mech/ ir/ jets/ emit/ cli/
+src/symmetry  symmetry/ mech/ model/ sym/ base/
+src/claims    claims/ symmetry/ mech/ model/ sym/ base/
+src/report    report/ symmetry/ mech/ model/ sym/ base/
+src/ir        ir/ base/
+src/series    series/ ir/ base/
+src/lower     lower/ series/ ir/ symmetry/charges.h mech/ model/ sym/ base/
+src/jets      jets/ lower/lower.h series/series.h ir/ mech/ model/ syntax/ base/
+src/emit      emit/ series/ ir/ base/
+src/toolchain toolchain/ base/
+src/commands  commands/ toolchain/ emit/ jets/ lower/ ir/ report/ claims/ symmetry/ mech/ model/ sym/ syntax/ base/
+src           commands/ syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
-runtime           lag.h
 runtime/core      core/ lag.h lag_model.h lag_kkt.h
 runtime/methods   methods/ core/rhs.h core/gauss.h lag.h lag_model.h
 runtime/analysis  analysis/ core/ lag.h lag_model.h
@@ -24,32 +29,15 @@ runtime/io        io/ lag.h lag_model.h
 runtime/app       app/ core/ io/ analysis/ lag.h lag_model.h
 runtime/gsl       gsl/ lag.h lag_model.h
 '
-# FILE: further headers that it may include. The equations enter the IR at one place.
+# FILE: further headers that it may include.
 besides='
-src/ir/lower.c    mech/eqns.h
-src/ir/lower.h    mech/eqns.h mech/switching_surfaces.h mech/variation.h
-src/ir/lower_unit.c mech/charges.h
 src/jets/text.h model/builder.h
-src/ir/lower_charges.c mech/charges.h
 runtime/include/lag.h  lag_model.h
 runtime/include/lag_math.h  lag_sincos.h
-src/main.c        picture.h help.h complete.h check.h conserved.h settings.h wants.h effects.h rounded.h
-src/check.h       deriver.h
-src/check.c       check.h
-src/conserved.h   deriver.h
-src/conserved.c   conserved.h
-src/effects.c     effects.h
-src/effects_text.c effects.h
-src/rounded.c     rounded.h
-src/wants.c       wants.h
-src/picture.c     picture.h
-src/help.c        help.h
-src/complete.c    complete.h help.h settings.h
-src/settings.c    settings.h
 '
-# Private headers of a folder, shared by its own files only.
+# The inside of a folder, shared by its own files only.
 private='syntax/ast_build.h syntax/parse_state.h syntax/filter.h syntax/scan.h syntax/token.h syntax/slips.h model/builder.h
-  model/scope.h sym/expr_impl.h sym/ops.def ir/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h methods/tableau.h methods/embedded.h methods/embedded_trial.h
+  model/scope.h sym/expr_impl.h sym/ops.def lower/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h methods/tableau.h methods/embedded.h methods/embedded_trial.h
   methods/steps.h methods/composition.h methods/path.h methods/rule.h methods/discrete.h methods/implicit.h
   methods/history.h methods/band.h methods/control.h methods/links.h'
 
@@ -60,7 +48,7 @@ find src grammar runtime -name '*.[chly]' | LC_ALL=C sort | while read -r f; do
     sed "s|^|$f |"
 done >"$list"
 
-# The parser and scanner generated from lag.y and lag.l are included by src/syntax only.
+# What lag.y and lag.l turn into is included by src/syntax, and by nobody else.
 empty "generated parser headers: src/syntax only" \
   "$(awk '$2 ~ /lag\.(tab|lex)\.[ch]>?$/ && $1 !~ /^src\/syntax\// { print $1 " includes " $2 }' "$list")"
 
@@ -86,7 +74,7 @@ empty "folders include only what lies before them" "$(awk -v allowed="$allowed" 
     print $1 " includes " $2 (known[folder] || folder ~ /include$/ ? "" : " (a folder without a rule)")
   }' "$list")"
 
-# jets/ reads meanings of names from the scopes of the model that it compares.
+# jets/ reads what a name means from the scopes of the model that it compares.
 empty "the inside of a folder stays inside" "$(awk -v private="$private" '
   BEGIN { n = split(private, w); for (i = 1; i <= n; i++) inside[w[i]] = 1 }
   inside[$2] && $1 !~ /^grammar\// {
@@ -95,20 +83,25 @@ empty "the inside of a folder stays inside" "$(awk -v private="$private" '
     if (folder != home && !(folder == "jets" && home == "model")) print $1 " includes " $2
   }' "$list")"
 
-# ir/lower.h includes mech: only lowering, main and the self-check may include it.
-empty "equations: ir/lower, jets and main only" "$(awk '
-  $2 == "ir/lower.h" && $1 !~ /^src\/(main\.c|jets\/check_state\.c|ir\/lower[^\/]*\.[ch])$/ { print $1 " includes " $2 ", and so mech/eqns.h" }' "$list")"
+# Circles: an edge from each module to each that it includes, where X.c, X.h and X_impl.h are one module; tsort names the circles that it finds.
+empty "no circles between files, but for a header and its implementation" "$(awk '
+  $2 ~ /^[<]/ { next }
+  {
+    from = $1; sub(/^(src|runtime\/include|runtime|grammar)\//, "", from); sub(/(_impl)?\.[a-z]+$/, "", from)
+    to = $2; sub(/(_impl)?\.[a-z]+$/, "", to)
+    if (from != to) print from, to
+  }' "$list" | tsort 2>&1 >/dev/null)"
 
 empty "GSL: runtime/gsl only" "$(awk '$2 ~ /gsl/ && $1 !~ /^runtime\/gsl\// { print $1 " includes " $2 }' "$list")"
 
 empty "lag_model.h includes only <stddef.h>" \
   "$(awk '$1 == "runtime/include/lag_model.h" && $2 != "<stddef.h>" { print $1 " includes " $2 }' "$list")"
 
-# ISO C11 everywhere; POSIX only where a program meets its system.
+# ISO C11 everywhere; POSIX where a program meets its system.
 c11='assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic
   stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype'
-posix='src/main\.c src/base/source\.c src/cli/.*\.c runtime/app/.*\.c runtime/io/.*\.c'
-empty "system headers: ISO C11; POSIX in main, base/source, cli, runtime/app and runtime/io" "$(awk -v c11="$c11" -v posix="$posix" '
+posix='src/base/source\.c src/commands/(help|run)\.c src/toolchain/.*\.c runtime/app/.*\.c runtime/io/.*\.c'
+empty "system headers: ISO C11; POSIX in base/source, commands/help and run, toolchain, runtime/app and runtime/io" "$(awk -v c11="$c11" -v posix="$posix" '
   BEGIN {
     n = split(c11, w); for (i = 1; i <= n; i++) standard["<" w[i] ".h>"] = 1
     m = split(posix, where)

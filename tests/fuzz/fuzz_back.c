@@ -16,7 +16,7 @@
 #include "emit/emit_model.h"
 #include "ir/hoist.h"
 #include "lower/lower.h"
-#include "mech/eqns.h"
+#include "symmetry/charges.h"
 #include "report/show.h"
 #include "mech/start.h"
 #include "model/model.h"
@@ -143,7 +143,7 @@ static const char *model_text(Arena *a, const uint8_t *data, size_t size) {
 
 static Eqns *derive(void *ast, const ModelChoice *choice) {
   Model *m = model_build(ast, choice);
-  Eqns *e = m ? eqns_derive(m) : NULL;
+  Eqns *e = m ? equations_of(m) : NULL;
   if (!e && !((Ast *)ast)->diags->errors) abort();
   return e;
 }

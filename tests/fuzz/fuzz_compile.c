@@ -16,7 +16,7 @@
 #include "emit/emit_model.h"
 #include "report/show.h"
 #include "lower/lower.h"
-#include "mech/eqns.h"
+#include "symmetry/charges.h"
 #include "claims/expect.h"
 #include "model/model.h"
 #include "syntax/parse.h"
@@ -47,7 +47,7 @@ static void compile(Ast *ast, const char *scene, Name also) {
   Model *m = model_build(ast, &choice);
   if (!m && !ast->diags->errors) abort();
   if (!m) return;
-  Eqns *e = eqns_derive(m);
+  Eqns *e = equations_of(m);
   if (!e && !ast->diags->errors) abort();
   if (e) write_everything(ast->arena, e);
 }
@@ -57,7 +57,7 @@ static void judge(Ast *ast, Name effect) {
   ModelChoice choice = {.bare = 1, .also = effect};
   ExpectResults results = {0};
   Model *m = model_build(ast, &choice);
-  Eqns *e = m ? eqns_derive(m) : NULL;
+  Eqns *e = m ? equations_of(m) : NULL;
   if (!e) return;
   expects_check(e, effect, 0, &results);
   StrBuf out = strbuf(ast->arena);

@@ -18,7 +18,7 @@ static Verdict judge(Arena *a, Diags *diags, Sources *sources, const char *text)
   Ast *ast = ast_new(a, interner_new(a), sources, diags);
   if (!parse(ast, source_add(sources, "random.lag", text, strlen(text)))) return REFUSED;
   Model *m = model_build(ast, &(ModelChoice){0});
-  Eqns *e = m ? eqns_derive(m) : NULL;
+  Eqns *e = m ? equations_of(m) : NULL;
   if (!e) return REFUSED;
   IrUnit *u = unit_new(e, "random.lag", 0);
   unit_want(u, e, WANT_TAYLOR | (e->singular_mass ? 0 : WANT_VARIATION | WANT_LINEAR));

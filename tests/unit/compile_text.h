@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "lower/lower.h"
-#include "mech/eqns.h"
+#include "symmetry/charges.h"
 #include "sym/eval.h"
 #include "syntax/parse.h"
 
@@ -27,7 +27,7 @@ static inline Eqns *equations(Arena *a, const char *lag, const char *scene) {
   parse(ast, source_add(sources, "test.lag", lag, strlen(lag)));
   ModelChoice choice = {.scene = scene};
   Model *m = ast->diags->errors ? NULL : model_build(ast, &choice);
-  Eqns *e = m ? eqns_derive(m) : NULL;
+  Eqns *e = m ? equations_of(m) : NULL;
   if (e) return e;
   StrBuf out = strbuf(a);
   diags_print(ast->diags, &out);

@@ -236,7 +236,7 @@ static void judge(Counts *c, const Edit *e, const char *text, Reading *r) {
     c->units++;
     return;
   }
-  Eqns *eqns = eqns_derive(m);
+  Eqns *eqns = equations_of(m);
   if (!eqns) {
     c->broken++;
     show(c, "not a model", e, text, r);

@@ -221,7 +221,7 @@ static ExpectVerdict judge(const Claim *claim, char *state, size_t size) {
   const char *text = arena_printf(arena, "%sexpect %s\n", claim->model, claim->claim);
   ExpectResults results = {0};
   Model *m = parse(ast, source_add(sources, "m.lag", text, strlen(text))) ? model_build(ast, &(ModelChoice){.bare = 1}) : NULL;
-  Eqns *e = m ? eqns_derive(m) : NULL;
+  Eqns *e = m ? equations_of(m) : NULL;
   if (!e) {
     StrBuf b = strbuf(arena);
     diags_print(diags, &b);

@@ -14,7 +14,7 @@
 #include "base/dense.h"
 #include "emit/cwriter.h"
 #include "lower/lower.h"
-#include "mech/eqns.h"
+#include "symmetry/charges.h"
 #include "sym/eval.h"
 #include "syntax/parse.h"
 
@@ -138,7 +138,7 @@ static void check_state(const Eqns *e, const Prog *accel, const char *where, con
 static void check_scene(Ast *ast, const char *path, const char *scene) {
   const char *where = arena_printf(arena, "%s, scene %s", path, scene);
   Model *m = model_build(ast, &(ModelChoice){.scene = scene});
-  Eqns *e = m ? eqns_derive(m) : NULL;
+  Eqns *e = m ? equations_of(m) : NULL;
   if (!e) fail_msg("%s has no equations", where);
   Prog *accel = lower_accel(e, 0);
   eqns_derive_mass(e); /* where the solution did without */

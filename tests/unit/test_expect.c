@@ -34,7 +34,7 @@ static Judged judge_with(const char *text, const char *effect, int allow_numeric
     diags_print(j.diags, &b);
     fail_msg("%s", sb_text(&b));
   }
-  Eqns *e = eqns_derive(m);
+  Eqns *e = equations_of(m);
   assert_non_null(e);
   expects_check(e, choice.also, allow_numeric, &j.results);
   return j;

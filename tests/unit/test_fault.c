@@ -77,7 +77,7 @@ static void compile_all(Arena *a, const char *lag, int errors) {
   for (uint32_t i = 0; i < scenes.n; i++) {
     ModelChoice choice = {.scene = scenes.at[i]};
     Model *m = model_build(ast, &choice);
-    Eqns *e = m ? eqns_derive(m) : NULL;
+    Eqns *e = m ? equations_of(m) : NULL;
     assert_int_equal(e == NULL, errors);
     if (e) emit_all(a, e);
   }

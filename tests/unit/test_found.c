@@ -76,11 +76,11 @@ enum { POINTS = 24 };
 
 /* (xi, tau) of a generator at random points (q, t); map: what q and xi become. Rows of one model are taken at the same points. */
 static void values_of(const Model_ *m, const Generator *by, long double *to) {
-  uint32_t n = noether_coordinates(m->e);
+  uint32_t n = eqns_coordinates(m->e);
   test_rng = 17;
   for (uint32_t p = 0; p < POINTS; p++) {
     long double *symbols = random_point(m->e);
-    for (uint32_t i = 0; i < n; i++) symbols[noether_coordinate(m->e, i)] = uniform(-1, 1);
+    for (uint32_t i = 0; i < n; i++) symbols[eqns_coordinate(m->e, i)] = uniform(-1, 1);
     symbols[m->e->m->time] = uniform(0, 3);
     for (uint32_t i = 0; i < n; i++) {
       long double *at = to + (size_t)p * (n + 1) + i;
@@ -92,7 +92,7 @@ static void values_of(const Model_ *m, const Generator *by, long double *to) {
   }
 }
 
-static uint32_t width_of(const Model_ *m) { return POINTS * (noether_coordinates(m->e) + 1); }
+static uint32_t width_of(const Model_ *m) { return POINTS * (eqns_coordinates(m->e) + 1); }
 
 static DenseRows space_of(const Model_ *m) {
   uint32_t w = width_of(m);
@@ -112,12 +112,12 @@ static Expr observed(const Eqns *e, const char *name) {
 /* Generators of textbooks are observables of the model: A_x and so on for xi of the coordinate x, A_t for tau; A, B, ... */
 static void contains_textbook(const Model_ *m) {
   DenseRows space = space_of(m);
-  uint32_t n = noether_coordinates(m->e);
+  uint32_t n = eqns_coordinates(m->e);
   for (char letter = 'A'; letter <= 'Z'; letter++) {
     Expr *xi = ARENA_ARRAY(m->arena, Expr, n + 1), tau = observed(m->e, arena_printf(m->arena, "%c_t", letter));
     int some = tau != 0;
     for (uint32_t i = 0; i < n; i++) {
-      xi[i] = observed(m->e, arena_printf(m->arena, "%c_%s", letter, expr_symbol(m->e->g, noether_coordinate(m->e, i))->name));
+      xi[i] = observed(m->e, arena_printf(m->arena, "%c_%s", letter, expr_symbol(m->e->g, eqns_coordinate(m->e, i))->name));
       some = some || xi[i];
     }
     if (!some) continue;

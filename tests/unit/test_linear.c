@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "compile_text.h"
+#include "mech/linearise.h"
 
 typedef long double Real;
 enum { MOST = 8 };

@@ -41,9 +41,9 @@ static Proof prove_model(const char *lag) {
   arena_guard(p.arena, &failed);
   p.e = equations(p.arena, lag, NULL);
   assert_non_null(p.e);
-  uint32_t n = noether_coordinates(p.e);
+  uint32_t n = eqns_coordinates(p.e);
   Expr *xi = ARENA_ARRAY(p.arena, Expr, n + 1);
-  for (uint32_t i = 0; i < n; i++) xi[i] = observed(p.e, arena_printf(p.arena, "xi_%s", expr_symbol(p.e->g, noether_coordinate(p.e, i))->name));
+  for (uint32_t i = 0; i < n; i++) xi[i] = observed(p.e, arena_printf(p.arena, "xi_%s", expr_symbol(p.e->g, eqns_coordinate(p.e, i))->name));
   p.n = noether_prove(p.e, &(Generator){.xi = xi, .tau = observed(p.e, "tau")});
   return p;
 }

@@ -143,7 +143,7 @@ static Real *state_of(const Eqns *e) {
 static void check_scene(Ast *ast, const char *path, const char *scene) {
   Arena *arena = ast->arena;
   Model *m = model_build(ast, &(ModelChoice){.scene = scene});
-  Eqns *e = m ? eqns_derive(m) : NULL;
+  Eqns *e = m ? equations_of(m) : NULL;
   assert_non_null(e);
   if (!e->n || !e->smooth) return;
   if (e->n > MOST) return;

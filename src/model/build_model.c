@@ -455,6 +455,5 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   settle_units(b);
   if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
-  b->m->lends = choice->lends;
   return ast->diags->errors ? NULL : b->m;
 }

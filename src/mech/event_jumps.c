@@ -1,5 +1,6 @@
 /* Eqns -> derivatives of event functions and of the values that actions assign, for saltation matrices at events (runtime/core/tangent.c). */
-#include "mech/eqns.h"
+#include "mech/event_jumps.h"
+
 #include "sym/diff.h"
 #include "sym/simplify.h"
 

@@ -1,5 +1,4 @@
-/* Prints the methods of the runtime as rows of the table in src/base/methods.c. Runs once, when lagc is built: the compiler includes
- * no header of the runtime, and has no second list of what methods are called, take and need. */
+/* Prints the methods of the runtime as src/base/method_rows.def has them: names, options and needs. */
 #include <math.h>
 #include <stdio.h>
 
@@ -39,10 +38,13 @@ static void list(const lag_method *const *methods, int n)
 
 int main(void)
 {
-  printf("/* Made by runtime/list_methods.c. */\n");
+  printf("/* The runtime's methods, as liblag describes them: `BLESS=1 make test T=golden/run_method_rows` writes this file.\n"
+         " * {name, flags, options} */\n");
   list(lag_methods, lag_nmethods);
 #ifdef WITH_GSL
+  printf("#ifdef LAGC_WITH_GSL\n");
   list(lag_gsl_methods, lag_gsl_nmethods);
+  printf("#endif\n");
 #endif
   return 0;
 }

@@ -1,4 +1,4 @@
-#include "analysis/place.h"
+#include "analysis/regularity.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/blur.h"
+#include "analysis/perturbation_noise.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,9 +1,9 @@
 /* What rounding may change of a model's values: parameters and unknowns are numbers of 53 bits, and what they make can be
  * known no better than that. */
-#ifndef LAG_ANALYSIS_BLUR_H
-#define LAG_ANALYSIS_BLUR_H
+#ifndef LAG_ANALYSIS_PERTURBATION_NOISE_H
+#define LAG_ANALYSIS_PERTURBATION_NOISE_H
 
-#include "analysis/equilibrium.h"
+#include "analysis/rest.h"
 
 /* Values out[] at the unknowns x[n], of the parameters in r->sim->pb.p. Not 0: there are none. */
 typedef int lag_values(Rest *r, const double *x, double *out);

@@ -1,6 +1,8 @@
 /* Eqns -> partial derivatives of the equations of motion: reverse mode over the graph of each residual, so that the work
  * follows the nonzero entries. M q'' in two forms, entries in three; the fewest operations win. */
-#include "mech/eqns.h"
+#include "mech/linearise.h"
+
+#include "mech/lagrange.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
 

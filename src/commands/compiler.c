@@ -1,0 +1,152 @@
+/* The stages of a compilation, and what all commands do with files and messages. */
+#include "commands/compiler.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/diag.h"
+#include "base/methods.h"
+#include "base/visible.h"
+#include "commands/required_derivatives.h"
+#include "commands/settings.h"
+#include "ir/hoist.h"
+#include "jets/self_check.h"
+#include "lower/lower.h"
+#include "mech/definite.h"
+#include "model/model.h"
+#include "report/show.h"
+#include "symmetry/charges.h"
+#include "syntax/parse.h"
+#include "toolchain/files.h"
+
+void compiler_print_messages(const Compiler *c) {
+  StrBuf messages = strbuf(c->arena);
+  if (!c->diags->errors) model_warn_unused(c->ast); /* by now the command line's expressions are read, too */
+  diags_print(c->diags, &messages);
+  fputs(sb_text(&messages), stderr);
+}
+
+int usage_error(const char *message) {
+  fputs("lagc: ", stderr);
+  fput_visible(stderr, message, "\n\t");
+  fputc('\n', stderr);
+  return STATUS_USAGE;
+}
+
+static int wants_dump(const Compiler *c, const char *stage) {
+  const char *at = c->o.dump ? strstr(c->o.dump, stage) : NULL;
+  size_t n = strlen(stage);
+  return at && (at == c->o.dump || at[-1] == ',') && (at[n] == ',' || at[n] == '\0');
+}
+
+/* A mistyped output must not cost the model, nor a file that it is made of: includes, tables. */
+int compiler_is_source(Compiler *c, const char *path) {
+  for (uint32_t i = 0; i < c->sources->files.n; i++) {
+    if (!file_same(path, c->sources->files.at[i].path)) continue;
+    const char *what = i == 0 ? "the model" : "a part of the model";
+    usage_error(arena_printf(c->arena, "%s would be overwritten: it is %s; write to another file", path, what));
+    return 1;
+  }
+  return 0;
+}
+
+int compiler_write(Compiler *c, const char *path, const StrBuf *text) {
+  const char *why;
+  if (path && c->sources && compiler_is_source(c, path)) return STATUS_USAGE;
+  if (file_write(c->arena, path ? path : "-", sb_text(text), text->n, &why)) return STATUS_OK;
+  return usage_error(arena_printf(c->arena, "cannot write %s: %s", path ? path : "standard output", why));
+}
+
+/* --- the stages --- */
+
+int compiler_read(Compiler *c) {
+  const char *why = NULL;
+  const Source *source = source_read_model(c->sources, c->o.file, &why);
+  if (!source) return usage_error(arena_printf(c->arena, "cannot read %s: %s", c->o.file, why));
+  parse(c->ast, source);
+  settings_defines(c->ast, c->o.defines.at, c->o.defines.n);
+  if (wants_dump(c, "ast")) {
+    StrBuf b = strbuf(c->arena);
+    ast_dump(c->ast, &b);
+    compiler_write(c, NULL, &b);
+  }
+  return c->diags->errors ? STATUS_MODEL : STATUS_OK;
+}
+
+/* The equations of what was chosen; NULL with the reasons in c->diags. */
+Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {
+  ModelChoice with_defines = *choice;
+  with_defines.defines = c->o.defines.at;
+  with_defines.ndefines = c->o.defines.n;
+  if (!choice->bare && !choice->unfixed) with_defines.fix = c->o.fix;
+  Model *m = model_build(c->ast, &with_defines);
+  if (!m) return NULL;
+  StrBuf listing = strbuf(c->arena);
+  if (wants_dump(c, "model")) model_dump(m, &listing);
+  Eqns *e = equations_of(m);
+  if (e && !choice->bare) mass_warn(e); /* claims are about all values */
+  if (e && wants_dump(c, "eqns")) dump_equations(e, &listing);
+  if (listing.n) compiler_write(c, NULL, &listing);
+  return e;
+}
+
+/* Of one scene (NULL: the first). */
+Eqns *compiler_derive_scene(Compiler *c, const char *scene) { return compiler_derive(c, &(ModelChoice){.scene = scene}); }
+
+/* For a method that finds velocities from momenta, what has no inertia of its own gets some. */
+Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice) {
+  Eqns *e = compiler_derive(c, choice);
+  return e && e->singular_mass && (wants_of(e, &c->o) & WANT_VARIATION) ? equations_regularised(e) : e;
+}
+
+IrUnit *compiler_new_unit(Compiler *c, Eqns *e) {
+  return unit_new(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0);
+}
+
+/* Whether the programs of u, for one of its scenes, compute what the text says. */
+int compiler_agrees(const Eqns *e, const IrUnit *u, uint32_t scene) {
+  SelfCheck told;
+  return self_check(e, u, scene, &told);
+}
+
+/* hoists: its derived parameters are taken out, as emitted models have them. NULL, with the reason in c->diags, when the program is wrong: a bug. */
+IrUnit *compiler_lower_scene(Compiler *c, Eqns *e, int hoists) {
+  IrUnit *u = compiler_new_unit(c, e);
+  unit_want(u, e, wants_of(e, &c->o));
+  unit_add_scene(u, e);
+  const char *wrong = prog_verify(u->accel);
+  if (wrong) {
+    diag_error(c->diags, (Span){0}, "internal error: %s", wrong);
+    return NULL;
+  }
+  if (hoists) unit_hoist(u);
+  if (!compiler_agrees(e, u, 0)) return NULL;
+  if (wants_dump(c, "prog")) {
+    StrBuf b = strbuf(c->arena);
+    prog_dump(u->accel, &b);
+    compiler_write(c, NULL, &b);
+  }
+  return u;
+}
+
+/* Equations that are reported, compared with the text. */
+Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice) {
+  Eqns *e = compiler_derive(c, choice);
+  if (!e) return NULL;
+  IrUnit *u = compiler_new_unit(c, e);
+  unit_add_scene(u, e);
+  SelfCheck told;
+  if (!self_check(e, u, 0, &told)) return NULL;
+  if (c->o.verbose) self_check_print(e, &told, &c->told);
+  return e;
+}
+
+/* Of `emit` and `build`, which emit what it needs. That of a run is the simulator's to judge. */
+int compiler_knows_method(Compiler *c) {
+  size_t n = c->o.method ? strcspn(c->o.method, " (") : 0;
+  if (!n || method_find(c->o.method, n) || method_is_foreign(c->o.method)) return 1;
+  const char *name = arena_strndup(c->arena, c->o.method, n), *near = method_suggest(c->arena, name);
+  const char *help = near ? arena_printf(c->arena, "did you mean %s? ", near) : "";
+  usage_error(arena_printf(c->arena, "unknown method %s; %s`lagc methods` lists them", name, help));
+  return 0;
+}

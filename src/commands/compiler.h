@@ -1,0 +1,66 @@
+/* One compilation, and the stages that commands share: text -> Ast -> Model -> Eqns -> IrUnit.
+ *
+ * Functions that can fail say why: in c->diags, printed by main at the end, or on standard error by usage_error. */
+#ifndef LAGC_COMMANDS_COMPILER_H
+#define LAGC_COMMANDS_COMPILER_H
+
+#include "commands/options.h"
+#include "commands/picture.h"
+#include "commands/settings.h"
+#include "ir/unit.h"
+#include "mech/eqns.h"
+
+/* Exit status: 0 ok, 1 bad model, 2 usage or files, 3 the run failed (a simulator's status). */
+enum { STATUS_OK, STATUS_MODEL, STATUS_USAGE, STATUS_RUN };
+
+typedef struct {
+  Arena *arena;
+  Options o;
+  const char *argv0;
+  Sources *sources;
+  Diags *diags;
+  Ast *ast;
+  Picture picture; /* of run, plot and animate */
+  GivenList given; /* values that the command line gives to names, for run, plot and animate */
+  StrBuf told;     /* comparisons with the text, for check --verbose */
+  const Eqns *run; /* equations of the scene that the command runs, */
+  IrUnit *run_by;  /* and its programs */
+} Compiler;
+
+/* Prints the messages so far; warnings about unused names too, if there is no error. */
+void compiler_print_messages(const Compiler *c);
+
+/* "lagc: MESSAGE" on standard error. Returns STATUS_USAGE. */
+int usage_error(const char *message);
+
+/* Whether `path` is the model or a part of it, which an output would overwrite; reported. */
+int compiler_is_source(Compiler *c, const char *path);
+
+/* Writes the text to a file (NULL, "-": standard output), whole or not at all. Returns a STATUS. */
+int compiler_write(Compiler *c, const char *path, const StrBuf *text);
+
+/* Reads c->o.file into c->ast. Returns a STATUS. */
+int compiler_read(Compiler *c);
+
+/* Equations of a choice of scene and effects; NULL with the reasons in c->diags. */
+Eqns *compiler_derive(Compiler *c, const ModelChoice *choice);
+/* The same of one scene (NULL: the first). */
+Eqns *compiler_derive_scene(Compiler *c, const char *scene);
+/* The same, regularised where the method that the command line or scene names needs an invertible mass matrix. */
+Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice);
+/* The same, for a report: their programs agree with the text. */
+Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice);
+
+IrUnit *compiler_new_unit(Compiler *c, Eqns *e);
+
+/* Whether the programs of u, for one of its scenes, compute what the text says. */
+int compiler_agrees(const Eqns *e, const IrUnit *u, uint32_t scene);
+
+/* Programs of one scene, compared with the text. hoists: derived parameters are taken out, as emitted models have them. NULL with the reason
+ * in c->diags when a program is wrong: an internal error. */
+IrUnit *compiler_lower_scene(Compiler *c, Eqns *e, int hoists);
+
+/* Whether --method of emit and build is a method; reported if not. For a run the simulator judges. */
+int compiler_knows_method(Compiler *c);
+
+#endif

@@ -1,0 +1,16 @@
+/* `lagc emit`: the model as C for the runtime. */
+#include "commands/commands.h"
+
+#include "emit/cnames.h"
+#include "emit/emit_model.h"
+
+int command_emit(Compiler *c) {
+  if (!compiler_knows_method(c)) return STATUS_USAGE;
+  Eqns *e = compiler_derive_scene(c, c->o.scene);
+  if (!e) return STATUS_MODEL;
+  IrUnit *u = compiler_lower_scene(c, e, 1);
+  if (!u) return STATUS_MODEL;
+  StrBuf out = strbuf(c->arena);
+  emit_model(u, model_id(c->arena, u->name), &out);
+  return compiler_write(c, c->o.output, &out);
+}

@@ -1,0 +1,46 @@
+/* `lagc run`, `plot`, `animate`, `modes`, `lyapunov`, `cost`: the simulator in the cache, started with what the command line says. */
+#include "commands/commands.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "commands/cost.h"
+#include "jets/no_value.h"
+#include "toolchain/last_state.h"
+
+enum { LARGE = 1000 }; /* coordinates: the memory of compiling them is not kept for the run */
+
+/* Whether a file that the simulator would write is one that the model is made of. */
+static int writes_source(Compiler *c) {
+  for (char *const *a = c->picture.argv.at; *a; a++) {
+    const char *eq = strncmp(*a, "--", 2) == 0 ? strchr(*a, '=') : NULL;
+    if (compiler_is_source(c, eq ? eq + 1 : *a)) return 1;
+  }
+  return 0;
+}
+
+/* A run ended for want of a finite value: where in the text there is none. */
+static void tell_last_state(void *compiler, const double *number, uint32_t n) {
+  Compiler *c = compiler;
+  c->diags->list.n = 0; /* they have been printed */
+  if (no_value_note(c->run, c->run_by, number, n)) compiler_print_messages(c);
+}
+
+/* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
+int command_run(Compiler *c) {
+  const char *path;
+  int status = simulator_prepare(c);
+  if (status != STATUS_OK) return status;
+  Units units = {0};
+  status = simulator_lower(c, &units) ? simulator_of_units(c, &units, NULL, &path) : STATUS_MODEL;
+  if (status != STATUS_OK) return status;
+  if (writes_source(c)) return STATUS_USAGE;
+  if (c->o.command == CMD_COST) cost_give_reference(c, &units);
+  fflush(stdout);
+  compiler_print_messages(c); /* warnings: the simulator does not come back */
+  if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
+  if (c->run && c->run->n <= LARGE) last_state_wait(c->arena, tell_last_state, c);
+  execv(path, c->picture.argv.at);
+  return usage_error(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
+}

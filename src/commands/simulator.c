@@ -1,0 +1,116 @@
+/* Simulators of all scenes: Eqns -> IrUnits -> C texts -> program. */
+#include "commands/simulator.h"
+
+#include <string.h>
+
+#include "commands/precision_warning.h"
+#include "commands/required_derivatives.h"
+#include "commands/settings.h"
+#include "emit/cnames.h"
+#include "emit/emit_model.h"
+#include "ir/hoist.h"
+#include "lower/lower.h"
+#include "mech/discontinuity_warning.h"
+#include "model/model.h"
+#include "toolchain/cache.h"
+
+/* With what the command line asks for besides the scene's outputs. */
+static Eqns *derive_asked(Compiler *c, const char *scene) {
+  return compiler_derive_wanted(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nasked = c->picture.asked.n,
+                                  .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
+}
+
+/* A scene of a unit, and its equations. */
+typedef struct {
+  const Eqns *e;
+  IrUnit *unit;
+  uint32_t scene;
+} Lowered;
+
+typedef VEC(Lowered) Lowereds;
+
+/* When all programs are there: derived parameters are taken out, and what is left is compared with the text. */
+static int finish_units(const Units *units, const Lowereds *of) {
+  for (uint32_t i = 0; i < units->n; i++) unit_hoist(units->at[i]);
+  for (uint32_t i = 0; i < of->n; i++)
+    if (!compiler_agrees(of->at[i].e, of->at[i].unit, of->at[i].scene)) return 0;
+  return 1;
+}
+
+int simulator_lower(Compiler *c, Units *units) {
+  SceneList scenes = model_scenes(c->ast);
+  if (c->picture.asked.n || c->given.n || c->picture.section.expr) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
+  Lowereds all = {0};
+  for (uint32_t i = 0; i < scenes.n; i++) {
+    Eqns *e = derive_asked(c, scenes.at[i]);
+    if (!e) return 0;
+    int runs = command_simulates(c->o.command) && strcmp(c->picture.scene ? c->picture.scene : scenes.at[0], scenes.at[i]) == 0;
+    if (runs) discontinuity_warn(e);
+    IrUnit *fresh = compiler_new_unit(c, e), *home = NULL;
+    for (uint32_t k = 0; k < units->n && !home; k++)
+      if (unit_shares(units->at[k], fresh)) home = units->at[k];
+    if (!home) vec_push(c->arena, units, home = fresh);
+    home->lines = 1;
+    if (runs) c->run = e, c->run_by = home;
+    unit_want(home, e, wants_of(e, &c->o));
+    unit_add_scene(home, e);
+    vec_push(c->arena, &all, ((Lowered){e, home, home->scenes.n - 1}));
+    if (options_more_digits(&c->o) && i + 1 == scenes.n) rounded_warn(c->ast, e->m->g, c->o.precision);
+  }
+  return finish_units(units, &all);
+}
+
+/* A program from these texts at `output`, or in the cache (NULL). */
+int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path) {
+  const char *error = NULL;
+  *path = output;
+  cache_remove_remains(c->arena);
+  if (!output) *path = toolchain_simulator(c->arena, tools, texts->at, texts->n, &error);
+  else if (!toolchain_build(c->arena, tools, texts->at, texts->n, output, &error)) *path = NULL;
+  return *path ? STATUS_OK : usage_error(error);
+}
+
+Texts simulator_texts(Compiler *c, const Units *units, int gsl) {
+  Texts texts = {0};
+  const char **names = ARENA_ARRAY(c->arena, const char *, units->n);
+  for (uint32_t i = 0; i < units->n; i++) {
+    names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units->at[i]->name), i);
+    StrBuf b = strbuf(c->arena);
+    emit_model(units->at[i], names[i], &b);
+    vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
+  }
+  StrBuf b = strbuf(c->arena);
+  emit_program((const IrUnit *const *)units->at, names, units->n, gsl, &b);
+  vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
+  return texts;
+}
+
+int simulator_of_units(Compiler *c, const Units *units, const char *output, const char **path) {
+  if (output && compiler_is_source(c, output)) return STATUS_USAGE;
+  Toolchain tools;
+  const char *error = NULL;
+  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return usage_error(error);
+  if (c->o.precision && !toolchain_precision(c->arena, &tools, c->o.precision, &error)) return usage_error(error);
+  if (c->o.command == CMD_MODES) tools.optimise = "-O0";
+  Texts texts = simulator_texts(c, units, tools.gsl);
+  return simulator_make(c, &tools, &texts, output, path);
+}
+
+/* A simulator in quadruple precision, in the cache; NULL where there is no such precision. */
+const char *simulator_precise(Compiler *c, const Units *units) {
+  Toolchain tools;
+  const char *error = NULL;
+  if (!toolchain_find(c->arena, c->argv0, 0, &tools, &error) || !toolchain_precision(c->arena, &tools, "quad", &error)) return NULL;
+  Texts texts = simulator_texts(c, units, 0);
+  return toolchain_simulator(c->arena, &tools, texts.at, texts.n, &error);
+}
+
+/* What a simulator is told, and the names that it gives values to. */
+int simulator_prepare(Compiler *c) {
+  const char *error = NULL;
+  if (c->o.scene && !model_has_scene(c->ast, c->o.scene)) return STATUS_MODEL;
+  if (!settings_compiled(c->ast, &c->o, &c->given, &error)) return error ? usage_error(error) : STATUS_MODEL;
+  if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
+  if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? usage_error(error) : STATUS_MODEL;
+  return STATUS_OK;
+}

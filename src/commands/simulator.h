@@ -1,0 +1,30 @@
+/* Simulators: programs of all scenes of a model, as C texts, compiled and linked with the runtime. */
+#ifndef LAGC_COMMANDS_SIMULATOR_H
+#define LAGC_COMMANDS_SIMULATOR_H
+
+#include "commands/compiler.h"
+#include "toolchain/toolchain.h"
+
+/* The scenes of a file as units: scenes with the same effects and inputs share one. */
+typedef VEC(IrUnit *) Units;
+typedef VEC(SourceText) Texts;
+
+/* Reads what the command line gives to a simulator: values of names, expressions to draw. Returns a STATUS. */
+int simulator_prepare(Compiler *c);
+
+/* Lowers the scenes to `units`: all, or the one that the command line asks something of. 0 with the reasons in c->diags. */
+int simulator_lower(Compiler *c, Units *units);
+
+/* The C texts of a program of these units. */
+Texts simulator_texts(Compiler *c, const Units *units, int gsl);
+
+/* Makes a program from the texts at `output`, or in the cache (NULL), and gives its path. Returns a STATUS. */
+int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path);
+
+/* The same from units, with the precision and the libraries that the command line asks for. */
+int simulator_of_units(Compiler *c, const Units *units, const char *output, const char **path);
+
+/* A simulator in quadruple precision, in the cache; NULL where this machine has no such precision. */
+const char *simulator_precise(Compiler *c, const Units *units);
+
+#endif
