@@ -1,4 +1,4 @@
-/* Shared by cost.c and cost_text.c (--cost): the measurements. */
+/* Shared by the files of --cost: the measurements. */
 #ifndef LAG_APP_COST_H
 #define LAG_APP_COST_H
 

@@ -1,4 +1,4 @@
-/* Shared by modes.c and modes_text.c (--modes). x[nq + nz]: coordinates, then states, in SI. */
+/* Shared by the files of --modes. x[nq + nz]: coordinates, then states, in SI. */
 #ifndef LAG_APP_MODES_H
 #define LAG_APP_MODES_H
 

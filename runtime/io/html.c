@@ -51,8 +51,8 @@ static void choose_grain(const Table *t, const Animation *a, double *zero, doubl
   *scale = grain;
 }
 
-/* Playback speed, in seconds of the model per second of watching: 1 for runs of 1 to 90 s; else a round number, in the unit the page
- * counts in, that makes the run last about twenty seconds. */
+/* Playback speed, in seconds of the model per second of watching: 1 for runs of 1 to 90 s; else a round number, in years, days, hours or
+ * seconds, that makes the run last about twenty seconds. */
 static double choose_speed(double span)
 {
   static const double units[] = {31557600, 86400, 3600};

@@ -291,7 +291,7 @@ static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, i
   fputs("\"/>\n", f);
 }
 
-/* s[n] := `from`, cut to at most `most` characters with "..." at the end. */
+/* s[n] := `from`, shortened to at most `most` characters with "..." at the end. */
 static void cut(const char *from, int most, char *s, size_t n)
 {
   int chars = 0;
@@ -309,7 +309,7 @@ static void cut(const char *from, int most, char *s, size_t n)
   s[i] = '\0';
 }
 
-/* s[n] := "name [unit]" for `room` pixels; a long name is cut, the unit is not. */
+/* s[n] := "name [unit]" for `room` pixels; a long name is shortened, the unit is not. */
 static void label_of(const char *name, const char *unit, double room, char *s, size_t n)
 {
   const double width_of_character = 8;
