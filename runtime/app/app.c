@@ -1,6 +1,5 @@
-/* A simulator's main. Enters: the command line; leaves: rows, pictures, a report and an exit status. Holds: rows
- * stand at t0 + k every whatever the steps are, and at the end; what was computed is kept even when the run
- * fails or is interrupted. */
+/* Main program of a simulator. Enters: the command line; leaves: rows, pictures, a report and an exit status. Holds: rows
+ * are at t0 + k*every, whatever the steps, and at the end; results up to a failure or an interrupt are written. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +11,7 @@
 #include "app/app.h"
 #include "core/core.h"
 
-/* The only mutable global: a signal handler can reach nothing else. The number of the signal, 0: none. */
+/* Signal received, 0: none. The only mutable global, since a signal handler can reach nothing else. */
 static volatile sig_atomic_t interrupted;
 
 static void on_interrupt(int signal_number)
@@ -28,7 +27,7 @@ static double seconds_since(const struct timespec *t)
   return (double)(now.tv_sec - t->tv_sec) + 1e-9 * (double)(now.tv_nsec - t->tv_nsec);
 }
 
-/* After each step: Ctrl-C, and the progress line (a terminal, after 1 s, at most 5 times a second). */
+/* After each step: tests for signals, updates the progress line (on a terminal, after 1 s, at most 5 times a second). */
 int app_after_step(void *context, const lag_sim *sim)
 {
   App *app = context;
@@ -42,7 +41,7 @@ int app_after_step(void *context, const lag_sim *sim)
   return interrupted != 0 || app->bad_file || app->section_rc;
 }
 
-/* ---- What to compute */
+/* ---- Settings of the run */
 
 static int choose_end(App *app)
 {
@@ -59,7 +58,7 @@ static int choose_end(App *app)
   return 0;
 }
 
-/* A table that ends before the run does goes on as it ended, which should not come as a surprise. */
+/* Notes input tables that do not cover the run: outside, their first and last values hold. */
 static void note_tables(const App *app)
 {
   const lag_model *m = app->scene->model;
@@ -75,7 +74,7 @@ static void note_tables(const App *app)
   }
 }
 
-/* Whether two paths lead to one file that is there. */
+/* Whether two paths lead to the same existing regular file. */
 static int same_file(const char *a, const char *b)
 {
   struct stat x, y;
@@ -83,7 +82,6 @@ static int same_file(const char *a, const char *b)
   return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino && S_ISREG(x.st_mode);
 }
 
-/* A mistyped name must not cost the model, the simulator or another result. */
 int app_check_outputs(const App *app)
 {
   const Args *a = &app->args;
@@ -106,7 +104,7 @@ int app_check_outputs(const App *app)
   return 0;
 }
 
-/* The grid of rows: origin, every, index of the next; kept with the run. every 0: no rows. */
+/* Sets the grid of rows, saved with the run: grid[0] origin, [1] spacing, [2] index of the next row. */
 static int choose_grid(App *app)
 {
   const Args *a = &app->args;
@@ -136,7 +134,7 @@ static int choose_grid(App *app)
   return 0;
 }
 
-/* Row k: where 1/every is a whole number, k/(1/every) is what a person would write (0.3, not 0.1*3). */
+/* Time of the next row k: k/(1/every) where 1/every is whole, so that times are 0.3, not 0.1*3. */
 static double row_time(const App *app, const double *grid)
 {
   double dir = app->until < app->scene->t0 ? -1 : 1, whole = 1 / grid[1], n = nearbyint(whole);
@@ -147,8 +145,9 @@ static double row_time(const App *app, const double *grid)
   return grid[0] + dir * (grid[2] * grid[1]);
 }
 
-/* ---- Running */
+/* ---- The run */
 
+/* Counts a row, and records its first output that is not finite. */
 static void note_empty(App *app, double t)
 {
   int i = 1, n = lag_sim_noutputs(app->sim);
@@ -178,11 +177,11 @@ int app_put_row(App *app)
     app->bad_file = app->args.out;
     return LAG_EIO;
   }
-  int drawn = app->args.every || !app->film.on; /* else film.c chooses the rows of pictures */
+  int drawn = app->args.every || !app->film.on; /* otherwise film.c chooses the rows of pictures */
   return drawn && table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
 
-/* Rows on the grid as far as `until`. */
+/* Advances along the grid and writes a row at each time up to app->until. */
 static int run_rows(App *app)
 {
   double *grid = lag_sim_rows(app->sim), dir = app->until < app->scene->t0 ? -1 : 1;
@@ -194,7 +193,7 @@ static int run_rows(App *app)
       return LAG_OK;
     }
     if (fabs(rest) <= 1e-9 * grid[1]) {
-      app->until = t; /* the same time but for rounding */
+      app->until = t; /* same time up to rounding */
     }
     rc = interrupted ? LAG_INTERRUPTED : film_advance(app, t);
     rc = rc ? rc : app_put_row(app);
@@ -235,7 +234,7 @@ int app_io_error(const App *app, const char *path)
   return app_error(&app->args, "cannot write %s: %s", path, strerror(errno));
 }
 
-/* Can this file be written? Better asked before a long run than after it. */
+/* Tests before a long run whether a file can be written. */
 static int try_file(const App *app, const char *path)
 {
   Outfile o;
@@ -289,7 +288,8 @@ static int save_state(const App *app)
   return rc;
 }
 
-/* To the process that knows the text, if lagc left one ($LAG_LAST_STATE: a pipe's number): t, q, v, z and p. It says which expression has no value, and ends. */
+/* After a NaN: sends t, q, v, z and p through the pipe $LAG_LAST_STATE (a descriptor) to the waiting lagc process, if there is one, which
+ * names the expression that has no value. Waits for its end. */
 static void tell_last_state(const App *app)
 {
   const char *name = getenv("LAG_LAST_STATE");
@@ -301,7 +301,7 @@ static void tell_last_state(const App *app)
   if (!f) {
     return;
   }
-  signal(SIGPIPE, SIG_IGN); /* it may have been killed; this run's status does not depend on it */
+  signal(SIGPIPE, SIG_IGN); /* lagc may have been killed; the status of this run does not depend on it */
   fprintf(f, "%.17g\n", (double)lag_sim_time(app->sim));
   for (int k = 0; k < 4; k++) {
     for (int i = 0; i < n[k]; i++) {
@@ -314,7 +314,7 @@ static void tell_last_state(const App *app)
   }
 }
 
-/* Completes the files, says what happened. */
+/* Completes the files and prints the report. Returns the exit status. */
 static int finish(App *app)
 {
   const Args *a = &app->args;
@@ -422,7 +422,7 @@ static int simulate(App *app)
     return rc;
   }
   if (!app->args.quiet || app->args.json || app->args.save) {
-    lag_sim_balance(app->sim); /* of a resumed run it is settled */
+    lag_sim_balance(app->sim); /* no effect on a resumed run, which keeps its setting */
   }
   note_tables(app);
   lag_sim_on_step(app->sim, app_after_step, app);

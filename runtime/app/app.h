@@ -1,4 +1,5 @@
-/* What the files of app/ share: the command line, and a run under way. */
+/* Shared by the files of app/, the main program of a simulator: the command line, and the state of a run. Functions that return 0 or
+ * EXIT_USAGE have printed a message in the second case. */
 #ifndef LAG_APP_APP_H
 #define LAG_APP_APP_H
 
@@ -9,28 +10,28 @@
 
 enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_SIGNAL = 128 };
 enum { MOST_OPTIONS = 16 };
-enum { OWN_OPTIONS = 3 }; /* options of methods that are options of the command line, too */
+enum { OWN_OPTIONS = 3 }; /* method options that are also options of the command line */
 extern const char *const args_own_options[OWN_OPTIONS];
 
-/* The command line as written; numbers are still text. */
+/* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
   const char *method_options[OWN_OPTIONS]; /* values of --quadrature, --order, --stages */
   const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section;
-  const char *transient, *exponents; /* of --lyapunov */
-  const char *target, *longest, *methods, *against; /* of --cost */
-  const char *effects; /* --effects: which measurements of a program that lagc effects made */
+  const char *transient, *exponents; /* for --lyapunov */
+  const char *target, *longest, *methods, *against; /* for --cost */
+  const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
   int json, sketch, quiet, verbose, help, trace, no_rods, modes, tangent, lyapunov, cost, reference;
   char **sets; /* name=value, in order */
   int nsets;
 } Args;
 
-/* What pictures show of the run: see film.c. */
+/* The rows that pictures show, chosen while the run goes on (film.c). */
 typedef struct Film {
-  int on, places;   /* places of the last step that were looked at */
+  int on, places;   /* 1: rows are chosen here; number of samples in the last step */
   Thin rows;
-  double soonest;   /* steps that end sooner after the last are not looked at */
-  double seen_to, length; /* length: how long a step may be of which a few places show what happens */
-  double *y, *seen; /* [n]; rows [MOST_PLACES + 1][ncols] */
+  double soonest;   /* steps that end within this time after the last sampled one are not sampled [s] */
+  double seen_to, length; /* end of the last sampled step; for STEPS_TO methods the longest step that few samples resolve */
+  double *y, *seen; /* [n] scratch; samples of a step, [MOST_PLACES + 1][ncols] */
 } Film;
 
 typedef struct App {
@@ -39,8 +40,8 @@ typedef struct App {
   Args args;
   const lag_scene *scene;
   lag_sim *sim;
-  State state;      /* that was resumed */
-  int resumed;
+  State state;      /* the saved state of --resume */
+  int resumed;      /* 1: the run continues from `state` */
   Table table;
   Film film;
   Rows rows;
@@ -48,100 +49,102 @@ typedef struct App {
   Drawn drawn;
   double *row;      /* [ncols] */
   double last_row;  /* time of the last row, NaN before the first */
-  long long rows_put, empty_rows;   /* that were put out, and those of them with an output that is not finite: */
-  int empty_column;             /* the first of such, */
-  double empty_t;               /* and when that was */
+  long long rows_put, empty_rows; /* rows written; rows with an output that is not finite */
+  int empty_column;             /* column of the first such output */
+  double empty_t;               /* and its time */
   double until;
-  int section;      /* the event that rows are put out at; -1: they are put out in time */
-  int section_rc;   /* why its last row could not be made */
-  char why[200];    /* this method, where nobody named one; "" where somebody did */
+  int section;      /* --section: event at which rows are written; -1: rows at times */
+  int section_rc;   /* failure of its last row */
+  char why[200];    /* reason of the automatic choice of the method; "" where one was named */
   int status;       /* LAG_... of the run */
-  int written;      /* rows were completed */
-  struct timespec begun, shown;
-  double wall;
-  int progress;     /* a progress line stands on the terminal */
-  Table log;        /* of events: its columns, */
+  int written;      /* 1: the file of rows is complete */
+  struct timespec begun, shown; /* start of the run; last update of the progress line */
+  double wall;      /* wall-clock time of the run [s] */
+  int progress;     /* progress line: 1 shown, 0 not yet, -1 never (no terminal, or --quiet) */
+  Table log;        /* event log: its columns, */
   Rows log_rows;    /* its file, */
-  double *log_row;
-  const char **log_names; /* [nev] and the words in it */
-  const char *bad_file; /* that could not be written */
+  double *log_row;  /* the row being written, */
+  const char **log_names; /* [nev] and the names of events */
+  const char *bad_file; /* file that could not be written; NULL: none */
 } App;
 
-/* args.c. 0, or EXIT_USAGE after a message. */
+/* args.c: parses and checks the command line. 0, or EXIT_USAGE after a message. */
 int args_parse(Args *a, int argc, char **argv);
-/* A number, the whole text; after a message 0. what names it, example is what could stand there. */
+/* *x := the number that is the whole text; returns 1. Else a message with the name `what` and an example; returns 0. */
 int args_number(const Args *a, const char *what, const char *text, const char *example, double *x);
-/* An error on standard error, with the program's name; returns EXIT_USAGE. */
+/* Prints an error to standard error after the program's name; returns EXIT_USAGE. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
 #endif
 int app_error(const Args *a, const char *format, ...);
 
-/* choose.c: scene, method and values; without a method. 0, or EXIT_USAGE after a message. */
+/* choose.c: app->scene and app->sim with values and method; app_choose_start: without the method. 0, or EXIT_USAGE after a message. */
 int app_choose(App *app);
 int app_choose_start(App *app);
-/* app->until := where the command line, or else the scene, lets it end; done by the two above. 0, or EXIT_USAGE after a message. */
+/* app->until := end of the run, from --until or the scene; called by both above. 0, or EXIT_USAGE after a message. */
 int app_read_until(App *app);
-/* The name=value of the command line, into app->sim. */
-int app_set_value(App *app, const char *text); /* one of them, name=value */
+/* Sets one name=value, or all of the command line, in app->sim. */
+int app_set_value(App *app, const char *text);
 int app_set_values(App *app);
-/* Tolerance and method, for a simulation that has none of its own yet. 0, or EXIT_USAGE after a message. */
+/* Sets tolerance and method of a new app->sim. 0, or EXIT_USAGE after a message. */
 int app_choose_method(App *app);
 /* Method i of this program; NULL past the last. */
 const lag_method *app_method_at(const App *app, int i);
 const lag_method *app_find_method(const App *app, const char *name);
-/* The message that there is no such method; returns EXIT_USAGE. */
+/* Prints that there is no such method; returns EXIT_USAGE. */
 int app_unknown_method(const App *app, const char *name);
 
-/* automatic.c: a method for app->sim, whose values are set, with these options; fills app->why. 0, or EXIT_USAGE after a message. */
+/* automatic.c: chooses a method with these options for app->sim, whose values are set; app->why := the reason. 0, or EXIT_USAGE after a
+ * message. */
 int app_choose_automatically(App *app, const lag_option *opt, int n);
 
-/* methods.c */
+/* methods.c: the table of all methods; */
 void app_list_methods(const App *app, FILE *f);
-/* Of one method; 0 when there is none of this name. */
+/* the description of one. 0: there is no method of this name. */
 int app_explain_method(const App *app, const char *name, FILE *f);
 
-/* columns.c. What pictures draw: --plot-x and --plot-y, or everything. 0, or EXIT_USAGE after a message. */
+/* columns.c: app->drawn := columns of --plot-x and --plot-y, or all. 0, or EXIT_USAGE after a message. */
 int app_choose_drawn(App *app);
-/* Fills app->show from --points and --from. 0, or EXIT_USAGE after a message. */
+/* app->show := points of --points and --from. 0, or EXIT_USAGE after a message. */
 int app_choose_points(App *app);
 
-/* film.c: rows of pictures. film_open: after app_choose_drawn and app_choose_points. film_advance: lag_sim_advance, looking at
- * the motion on the way. film_warn: what should be said of the picture, "" when nothing; also said on standard error. */
+/* film.c: rows of pictures. film_open comes after app_choose_drawn and app_choose_points. film_advance is lag_sim_advance that samples the
+ * motion on the way. film_close thins the rows at the end. film_warn: note := a warning about the picture, or ""; also printed. */
 int film_open(App *app);
 int film_advance(App *app, double until);
 int film_close(App *app);
 void film_warn(App *app, char *note, size_t size);
 void film_free(App *app);
 
-/* app.c: a row of the present state. LAG_OK, or why there is none. */
+/* app.c: writes a row of the present state. LAG_OK, or a failure. */
 int app_put_row(App *app);
-/* What a long run does: watch before it begins and unwatch at its end, for Ctrl-C and the progress line; after_step is for
- * lag_sim_on_step. interrupted: the exit status that follows from the signal. */
-/* What asks a run to end lets it finish its step and write what it has. nohup is respected. Before files are opened, which would be left. */
+/* Signals that end a run (Ctrl-C, SIGTERM, SIGHUP) let it finish its step and write its files; nohup is respected. Called before files are
+ * opened, so that none is left over. */
 void app_catch_interrupt(void);
+/* Clock and progress line: app_watch before a run, app_unwatch at its end, app_after_step as the function of lag_sim_on_step.
+ * app_interrupted: the exit status after a signal. */
 void app_watch(App *app);
 int app_after_step(void *app, const lag_sim *sim);
 void app_unwatch(App *app);
 int app_interrupted(void);
-/* Whether files that are written would overwrite what is needed. 0, or EXIT_USAGE after a message. */
+/* Refuses outputs that would overwrite the model, this program, the resumed state or each other. 0, or EXIT_USAGE after a message. */
 int app_check_outputs(const App *app);
 
-/* section.c: --section. 0, or EXIT_USAGE after a message; note: event k happens. */
+/* section.c: --section. 0, or EXIT_USAGE after a message. section_note: event k has happened. */
 int section_choose(App *app);
 void section_note(App *app, int k);
 
-/* tangent.c: --tangent. open: columns behind those of the table; 0, or EXIT_USAGE after a
- * message. row: their values; LAG_OK, or why there are none. */
+/* tangent.c: --tangent. tangent_open adds its columns to the table; 0, or EXIT_USAGE after a message. tangent_row: their values in
+ * app->row; LAG_OK, or a failure. */
 int tangent_open(App *app);
 int tangent_row(App *app);
 void report_tangent(App *app, FILE *f);
 void report_tangent_json(App *app, FILE *f);
 
-/* charges.c: what the report says of the energy and of other charges; in JSON also of monitors. */
+/* charges.c: the report on energy and other charges; in JSON also on monitors. */
 void report_charges(const App *app, FILE *f);
 void report_charges_json(const App *app, FILE *f);
-/* Whether the energy was kept much worse than asked for, where the mass matrix is almost singular. */
+/* Whether the energy error exceeds the tolerance by far because the mass matrix was almost singular. */
 int report_lost_digits(const App *app, const lag_charge_stats *energy);
 
 /* lyapunov.c: --lyapunov. Returns the exit status. */
@@ -159,10 +162,10 @@ int app_cost(App *app);
 /* help.c */
 void app_help(const App *app, FILE *f);
 
-/* The message that a file cannot be written, with errno; returns EXIT_USAGE. */
+/* Prints that a file cannot be written, with errno; returns EXIT_USAGE. */
 int app_io_error(const App *app, const char *path);
 
-/* events.c. 0, or EXIT_USAGE after a message. note: what lag_sim_on_event calls. */
+/* events.c: the log of --events. 0, or EXIT_USAGE after a message. events_note: as the function of lag_sim_on_event. */
 int events_open(App *app);
 void events_note(void *app, int k, double t, const double *before, const double *after);
 void events_free(App *app);
@@ -172,7 +175,7 @@ void report_events_json(const App *app, FILE *f);
 /* report.c */
 void report_text(App *app, FILE *f);
 void report_json(App *app, FILE *f);
-/* method(step = 0.1, ...) */
+/* s[n] := method with the options that differ from their defaults, "rk45(tol=1e-09)". */
 void report_method(const App *app, char *s, size_t n);
 
 #endif

@@ -1,5 +1,5 @@
-/* The command line of a simulator. Enters: argv; leaves: Args. Holds: nothing is guessed; what is not
- * understood is named, with what could be written instead. */
+/* Command line of a simulator. Enters: argv; leaves: Args. Holds: nothing is guessed; a message quotes the wrong word and
+ * says what to write instead. */
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -27,7 +27,7 @@ int app_error(const Args *a, const char *format, ...)
   return EXIT_USAGE;
 }
 
-/* Decimal numbers only: what strtod takes beside them (inf, nan, 0x1p3) is a mistake here. */
+/* Decimal numbers only; other forms that strtod takes (inf, nan, 0x1p3) are refused. */
 int args_number(const Args *a, const char *what, const char *text, const char *example, double *x)
 {
   char *end;
@@ -109,7 +109,7 @@ static int unknown_option(const Args *a, const char *text, size_t n)
               : app_error(a, "unknown option --%s; see --help", name);
 }
 
-/* A long option at argv[*i]; its value stands after "=" or in the next argument. */
+/* Parses the long option at argv[*i]; its value follows "=" or is the next argument. */
 static int long_option(Args *a, int argc, char **argv, int *i)
 {
   const char *name = argv[*i] + 2, *eq = strchr(name, '=');
@@ -160,7 +160,7 @@ static int one_argument(Args *a, int argc, char **argv, int *i)
   return 0;
 }
 
-/* What takes the place of a run has no use for most of its options. */
+/* Refuses options of a run that an analysis (--modes, --cost, --lyapunov, --effects) does not use. */
 static int check_analysis(const Args *a)
 {
   enum { MODES = 1, COST = 2, LYAPUNOV = 4, EFFECTS = 8 };
@@ -168,7 +168,7 @@ static int check_analysis(const Args *a)
   const struct {
     const char *name;
     int given;
-    int takes; /* what it has a meaning for */
+    int takes; /* analyses that use the option */
   } others[] = {{"--method", a->method != NULL, LYAPUNOV | EFFECTS}, {"--tol", a->tol != NULL, LYAPUNOV | EFFECTS},
                 {"--step", a->step != NULL, LYAPUNOV | EFFECTS},
                 {"--until", a->until != NULL, COST | LYAPUNOV | EFFECTS}, {"--every", a->every != NULL, 0}, {"-o", a->out != NULL, LYAPUNOV},
@@ -194,7 +194,7 @@ static int check_analysis(const Args *a)
   return 0;
 }
 
-/* NumPy has no numbers of 34 digits, and those of 19 depend on the machine. */
+/* Refuses .npy files in other precisions: NumPy has no type of 34 digits, and those of 19 depend on the machine. */
 static int check_npy(const Args *a)
 {
   const char *const files[] = {a->out, a->events};
@@ -207,7 +207,7 @@ static int check_npy(const Args *a)
   return 0;
 }
 
-/* A name that says another kind of file than is written. */
+/* Refuses an output whose suffix is of another file type than is written. */
 static int check_kinds(const Args *a)
 {
   const struct {
@@ -269,7 +269,7 @@ int args_parse(Args *a, int argc, char **argv)
     return app_error(a, "out of memory");
   }
   for (int i = 1; i < argc; i++) {
-    if (strpbrk(argv[i], "\n\t")) { /* messages show a word on one line */
+    if (strpbrk(argv[i], "\n\t")) { /* messages show each argument on one line */
       return app_error(a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i);
     }
   }

@@ -1,17 +1,17 @@
-/* The method of a run for which nobody named one. Enters: a simulation with its values and tolerance; leaves: its method, and
- * why it is that one. Holds: the choice depends on the model, the values and the tolerance, never on how long anything takes. */
+/* Automatic choice of the method where none is named. Enters: a simulation with its values and tolerance; leaves: its method, and
+ * the reason. Holds: the choice depends on the model, the values and the tolerance, never on measured times. */
 #include <math.h>
 
 #include "analysis/stiff.h"
 #include "app/app.h"
 
-/* Where each of them is the cheapest: `lagc cost`. */
+/* Tolerances that bound the range where dop853 is cheapest, as measured with `lagc cost`. */
 static const double below_taylor = 1e-9, above_rk45 = 1e-6;
 
-enum { MOST_OF_TRIAL = 200, MOST_OF_RADAU = 40 }; /* components of the state: past them Jacobians, or decompositions, take too long */
+enum { MOST_OF_TRIAL = 200, MOST_OF_RADAU = 40 }; /* limits on the size of the state: beyond, Jacobians or factorizations take too long */
 enum { STEPS_OF_TRIAL = 600 };
 
-/* A trial with the values of the run: what `s` says of it. 0: there is none. */
+/* Trial run with the values of app->sim for the statistics *s. 0: no trial is possible. */
 static int try(App *app, const lag_method *method, double bound, int most, Stiffness *s)
 {
   lag_sim *run = app->sim, *trial = app->sim = lag_sim_new(app->scene);
@@ -23,7 +23,7 @@ static int try(App *app, const lag_method *method, double bound, int most, Stiff
   return done;
 }
 
-/* Is it stiff? Then why, for a reader. */
+/* Whether the model is stiff, by a trial of `method`, and if needed of radau; why[size] := the reason. */
 static int is_stiff(App *app, const lag_method *method, char *why, size_t size)
 {
   const lag_model *m = app->scene->model;
@@ -47,7 +47,7 @@ static int is_stiff(App *app, const lag_method *method, char *why, size_t size)
   return 1;
 }
 
-/* Whether it takes this model and these options. */
+/* Sets the method; 0 if it refuses this model or these options. */
 static int set(App *app, const lag_method *method, const lag_option *opt, int n)
 {
   return lag_sim_set_method(app->sim, method, opt, n) == 0;
@@ -59,7 +59,7 @@ int app_choose_automatically(App *app, const lag_option *opt, int n)
   const lag_method *plain = tol > above_rk45 ? &lag_rk45 : &lag_dop853;
   char *why = app->why;
   size_t size = sizeof app->why;
-  int exponents = app->args.lyapunov; /* taylor has to take steps of dop853 for tangent vectors */
+  int exponents = app->args.lyapunov; /* taylor needs steps of dop853 for tangent vectors */
 
   if (is_stiff(app, plain, why, size) && set(app, &lag_radau, opt, n)) {
     return 0;

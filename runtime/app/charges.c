@@ -1,10 +1,10 @@
-/* What a run's report says of its energy, and of the charges of symmetries: how far each has drifted, or its balance, and whether that
- * grows. */
+/* Report on the energy and the charges of symmetries. Enters: a finished run; leaves, as text or JSON: drift or balance of each,
+ * and whether it grows. */
 #include <math.h>
 
 #include "app/app.h"
 
-/* "energy drift", "spin balance" */
+/* The word after the name: "energy drift", "spin balance". */
 static const char *what_of(const lag_charge_stats *c)
 {
   return c->flags & LAG_CONSERVED ? "drift" : c->flags & LAG_BALANCED ? "balance" : "change";
@@ -33,7 +33,7 @@ static void put_trend(const App *app, const lag_charge_stats *c, FILE *f)
   }
 }
 
-/* Why there is no balance. */
+/* Reason why there is no balance. */
 static const char *why_not(const App *app, const lag_charge_stats *c)
 {
   if (c->flags & LAG_JUMPS) {
@@ -76,7 +76,7 @@ int report_lost_digits(const App *app, const lag_charge_stats *energy)
   return (lag_sim_method(app->sim)->flags & LAG_METHOD_ADAPTIVE) && energy->jolt > digits * lag_sim_tolerance(app->sim) && energy->strain > singular;
 }
 
-/* The accuracy that was reached instead of the one asked for, where inertia almost vanished on the way. */
+/* Warns that the tolerance was missed because the mass matrix was almost singular on the way. */
 static void put_lost_digits(const App *app, const lag_charge_stats *c, FILE *f)
 {
   if (report_lost_digits(app, c)) {

@@ -1,6 +1,6 @@
-/* From the command line to a simulation ready to run: scene, method, tolerance, values. Enters: Args; leaves:
- * app->scene and app->sim. Holds: the command line wins over the scene; what this build does not hold is refused
- * with the command that builds it. */
+/* Sets up the simulation: scene, method, tolerance, values. Enters: Args; leaves: app->scene and app->sim. Holds: the
+ * command line overrides the scene; scenes, methods and effects missing in this build are refused with the command that
+ * builds them. */
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -44,7 +44,7 @@ static int choose_scene(App *app)
 
 int app_read_until(App *app)
 {
-  enum { SPANS = 20 }; /* exponents are means over a long time, forwards */
+  enum { SPANS = 20 }; /* Lyapunov exponents are means over a long time, forwards */
   const Args *a = &app->args;
   const lag_scene *c = app->scene;
   double span = c->has_span ? c->t1 - c->t0 : 10;
@@ -68,11 +68,11 @@ const lag_method *app_find_method(const App *app, const char *name)
   return m;
 }
 
-/* A method's options as they are being collected; names and texts point into `text`. */
+/* A method's name and options while they are collected; strings point into `text`. */
 typedef struct Choice {
   char text[512];
   const char *name;
-  lag_option opt[MOST_OPTIONS + 1 + OWN_OPTIONS]; /* in parentheses or of the scene; --step; others */
+  lag_option opt[MOST_OPTIONS + 1 + OWN_OPTIONS]; /* from the parentheses or the scene; --step; args_own_options */
   int n;
 } Choice;
 
@@ -86,7 +86,7 @@ static char *trim(char *s)
   return s;
 }
 
-/* A number, decimal as everywhere (args_number), or else a word. */
+/* Adds an option: its value is a decimal number, as in args_number, or else a word. */
 static void add_option(Choice *c, const char *name, const char *value)
 {
   lag_option *o = &c->opt[c->n++];
@@ -99,7 +99,7 @@ static void add_option(Choice *c, const char *name, const char *value)
   }
 }
 
-/* What methods take for "not said", a step of 0, is a mistake where somebody says it. */
+/* Refuses wrong step sizes; 0, a method's value for "not given", is wrong where it is given. */
 static int check_steps(const App *app, const Choice *c)
 {
   for (int i = 0; i < c->n; i++) {
@@ -113,7 +113,7 @@ static int check_steps(const App *app, const Choice *c)
   return 0;
 }
 
-/* "NAME" or "NAME(option = value, ...)". */
+/* Parses --method: "NAME" or "NAME(option = value, ...)". */
 static int parse_method(const Args *a, Choice *c)
 {
   char *open, *close, *save = NULL;
@@ -140,7 +140,7 @@ static int parse_method(const Args *a, Choice *c)
   return 0;
 }
 
-/* The one that was meant, or all. */
+/* Suggests the nearest name, or lists all methods. */
 int app_unknown_method(const App *app, const char *name)
 {
   const lag_method *near = NULL, *m;
@@ -221,7 +221,7 @@ static int set_tolerance(App *app)
   return lag_sim_set_tolerance(app->sim, x) ? app_error(a, "--tol: %s", lag_sim_message(app->sim)) : 0;
 }
 
-/* Is word among words that are separated by spaces? */
+/* Whether word[n] is one of the words in a list with spaces. */
 static int has_word(const char *words, const char *word, size_t n)
 {
   for (const char *s = words; s && *s; s += strspn(s, " ")) {
@@ -234,7 +234,7 @@ static int has_word(const char *words, const char *word, size_t n)
   return 0;
 }
 
-/* Does `name` say a parameter `word[n]`, a member or a component of it, or the last part of `drag.c`? */
+/* Whether `name` is the parameter word[n], a member or component of it, or its last part (c of drag.c). */
 static int names_it(const char *name, const char *word, size_t n)
 {
   for (size_t k = 1; name[k - 1]; k++) {
@@ -246,7 +246,7 @@ static int names_it(const char *name, const char *word, size_t n)
   return 0;
 }
 
-/* A parameter that was made a number: exit status after a message with the command that makes a program that takes it. 0: it is none. */
+/* EXIT_USAGE if `name` is a parameter fixed by --fix; the message has the command that builds a program that takes it. Else 0. */
 static int refuse_fixed(const App *app, const char *name)
 {
   const char *fixed = app->scene->model->fixed;
@@ -294,7 +294,7 @@ int app_set_value(App *app, const char *text)
   return lag_sim_set(app->sim, name, x) ? app_error(a, "%s", lag_sim_message(app->sim)) : 0;
 }
 
-/* The method that the state was saved with, with its options and tolerance. */
+/* Sets the method, options and tolerance that the state was saved with. */
 static int restore_method(App *app)
 {
   const Args *a = &app->args;
@@ -317,7 +317,7 @@ static int restore_method(App *app)
   return 0;
 }
 
-/* What the command line says of method and tolerance, once more, must be what the run was saved with. */
+/* Refuses --method, --step and --tol of a resumed run that differ from those it was saved with. */
 static int same_method(App *app)
 {
   const Args *a = &app->args;
@@ -340,7 +340,7 @@ static int same_method(App *app)
                               a->method ? "--method" : "--step");
 }
 
-/* So must each value: it is set in a fresh simulation, and compared with that of the run. */
+/* Refuses name=value of a resumed run that differs: each is set in a new simulation and compared with the run. */
 static int same_values(App *app)
 {
   const Args *a = &app->args;
@@ -370,7 +370,7 @@ static int same_values(App *app)
   return rc;
 }
 
-/* A resumed run keeps what it began with; the command line may say it once more. */
+/* Continues a saved run with its own settings; the command line may repeat them. */
 static int resume(App *app)
 {
   int rc = same_method(app);

@@ -1,11 +1,11 @@
-/* Names of outputs on the command line. Enters: the names, and the table's columns; leaves: which columns they are. */
+/* Finds the columns that --plot-x, --plot-y, --points and --from name. Enters: the names and the table; leaves: column indices. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
 #include "core/core.h"
 
-/* Whether a column is a member or a component of `name`: th[2]' of th', r[1].x of r or of r.x. */
+/* Whether a column is a member or component of `name`: th[2]' of th', r[1].x of r or of r.x. */
 static int is_part(const char *column, const char *name)
 {
   size_t primes = 0, n = strlen(name);
@@ -33,7 +33,7 @@ static int is_part(const char *column, const char *name)
   return strlen(column) == primes && strspn(column, "'") == primes;
 }
 
-/* -1 after a message that there is no such column. */
+/* Prints that there is no such column; returns -1. */
 static int no_column(const App *app, const char *name)
 {
   const char *best = NULL;
@@ -50,7 +50,7 @@ static int no_column(const App *app, const char *name)
   return -1;
 }
 
-/* Like strcmp, with numbers by their values: x[2] before x[10]. */
+/* strcmp that orders numbers by value: x[2] before x[10]. */
 static int compare(const char *a, const char *b)
 {
   for (;;) {
@@ -65,7 +65,7 @@ static int compare(const char *a, const char *b)
   }
 }
 
-/* The columns that a name stands for: its own, or all its parts, by their indices. Their number; -1 after a message. */
+/* cols := the column of this name, or all its members and components in order. Returns their number; -1 after a message. */
 static int columns_of(const App *app, const char *name, int *cols)
 {
   const Column *c = app->table.cols;
@@ -115,8 +115,8 @@ int app_choose_drawn(App *app)
   return 0;
 }
 
-/* The columns whose name stands at *s, the longest name that there is (names may hold spaces and commas themselves), or all parts
- * of what is named. *s is moved behind it. Their number; -1 after a message. */
+/* cols := the column with the longest name at *s (names may contain spaces and commas), or all parts of the name there. Moves *s past
+ * the name. Returns their number; -1 after a message. */
 static int columns_at(const App *app, const char **s, int *cols)
 {
   size_t longest = 0;
@@ -124,7 +124,7 @@ static int columns_at(const App *app, const char **s, int *cols)
   for (int i = 0; i < app->table.ncols; i++) {
     const char *name = app->table.cols[i].name;
     size_t n = strlen(name);
-    if (n > longest && strncmp(*s, name, n) == 0 && strchr(" ,;", (*s)[n])) { /* or the end: strchr finds it too */
+    if (n > longest && strncmp(*s, name, n) == 0 && strchr(" ,;", (*s)[n])) { /* or the end: strchr also finds '\0' */
       longest = n;
       cols[0] = i;
     }
@@ -140,7 +140,7 @@ static int columns_at(const App *app, const char **s, int *cols)
   return columns_of(app, word, cols);
 }
 
-/* Where a family of points begins with number 0, the rods hang from it. */
+/* If the points are a family that begins with index 0, its first point is the suspension of the rods. */
 static void hang_from_zero(App *app, int x)
 {
   const char *name = app->table.cols[x].name, *at = strstr(name, "[0]");
@@ -150,7 +150,7 @@ static void hang_from_zero(App *app, int x)
   }
 }
 
-/* Appends the points of "X,Y X,Y ..." to the animation's; x and y have room for all columns. */
+/* Appends the points "X,Y X,Y ..." to app->show; x and y are scratch for the indices of all columns. */
 static int add_points(App *app, const char *option, const char *text, int *x, int *y)
 {
   Animation *show = &app->show;
@@ -189,7 +189,7 @@ static int add_points(App *app, const char *option, const char *text, int *x, in
   return show->npoints ? 0 : app_error(&app->args, "%s \"%s\": each point is X,Y, two names of outputs", option, text);
 }
 
-/* One unit for all: where it is empty, anything goes. */
+/* show->unit := the common unit of all points; columns without a unit fit any. */
 static int choose_unit(App *app)
 {
   Animation *show = &app->show;

@@ -1,6 +1,6 @@
-/* --cost: every method at many settings, against a reference. --reference N: that reference, for a simulator that computes
- * with fewer digits. Enters: the command line; leaves: a table, JSON, a picture; or samples as text. Holds: times are of one
- * process, on its processor's clock. */
+/* --cost: error and time of every method at many settings, against a reference. --reference: writes that reference, for a
+ * simulator of lower precision. Enters: the command line; leaves: a table, JSON, a picture; or samples as text. Holds: times are
+ * processor time of this process. */
 #include "app/cost.h"
 
 #include <errno.h>
@@ -14,12 +14,13 @@
 
 enum { SAMPLES = 16 };
 
-/* The same scene without what would end a rough run early, or cost time beside the method. */
+/* The scene without monitors and closed forms, which would end a rough run early or cost time besides the method. */
 typedef struct Bare {
   App *app;
   lag_scene scene;
 } Bare;
 
+/* A new simulation of the bare scene with the values of the command line; NULL: no memory, or a message. */
 static lag_sim *fresh(void *context)
 {
   Bare *b = context;
@@ -37,7 +38,7 @@ static lag_sim *fresh(void *context)
 
 /* ---- The reference */
 
-/* Runs `method` at a tolerance into s. 0, or an exit status after a message. */
+/* s := samples of a run by `method` at a tolerance. 0, or an exit status after a message. */
 static int take(Bare *b, const lag_method *method, double tol, Samples *s)
 {
   const Args *a = &b->app->args;
@@ -56,14 +57,14 @@ static int take(Bare *b, const lag_method *method, double tol, Samples *s)
   return rc ? EXIT_RUN : 0;
 }
 
-/* By taylor, or by dop853 where the model has no Taylor series; at two tolerances, whose difference is the uncertainty. */
+/* Reference by taylor, or by dop853 where the model has no Taylor series, at two tolerances; their difference is its uncertainty. */
 static int compute_reference(Bare *b, Cost *c)
 {
   App *app = b->app;
   const lag_model *m = b->scene.model;
   int series = m->taylor && !m->constraints, n = c->reference.n;
   const lag_method *method = series ? &lag_taylor_method : &lag_dop853;
-  /* For a simulator with fewer digits, 19 at most, as many and three more will do: dop853 takes 2.6 times as many steps for 1e-26. */
+  /* --reference serves at most 19 digits, so 22 suffice: for 1e-26 dop853 takes 2.6 times as many steps. */
   double rough_enough = app->args.reference ? 1e-22 : 0;
   double tol = series ? 9 * DBL_EPSILON : fmax(pow(DBL_EPSILON, 0.75), rough_enough), *scale = calloc((size_t)n + 1, sizeof *scale);
   Samples rough;
@@ -88,7 +89,7 @@ static int compute_reference(Bare *b, Cost *c)
   return rc;
 }
 
-/* The times of samples, equally spaced over what is to be run. */
+/* Sample times, equally spaced over the run. */
 static int choose_times(App *app, Cost *c)
 {
   double t0 = app->scene->t0, t1 = app->until;
@@ -116,7 +117,7 @@ static void write_reference(FILE *f, const Cost *c)
   }
 }
 
-/* A number that stands next in the file. */
+/* *x := next number in the file. 0: there is none. */
 static int read_number(FILE *f, double *x)
 {
   char word[128], *end;
@@ -154,15 +155,15 @@ static int read_reference(App *app, Cost *c)
                               strcmp(a->against, "-") == 0 ? "standard input" : a->against);
 }
 
-/* ---- What is measured */
+/* ---- Measurements */
 
-/* Methods whose order is an option: each value is measured as a method of its own. */
+/* Methods whose order is an option; each value is measured as a separate method. */
 static const struct {
   const char *method, *option;
   int from, to, by;
 } families[] = {{"variational", "order", 2, 8, 2}, {"gauss", "stages", 1, 4, 1}};
 
-/* Is the method among those that --methods names, or is there no --methods? */
+/* Whether --methods names the method, or is not given. */
 static int wanted(const Args *a, const lag_method *m)
 {
   size_t n = strlen(m->name);
@@ -210,7 +211,7 @@ static int list_methods(App *app, Cost *c)
   return bad ? app_error(&app->args, "out of memory") : 0;
 }
 
-/* Names that are no methods are mistakes. */
+/* Refuses unknown names in --methods. */
 static int check_methods(App *app)
 {
   const Args *a = &app->args;

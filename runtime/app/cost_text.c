@@ -1,4 +1,4 @@
-/* What --cost prints: the table of all runs, what each accuracy costs, JSON, and the picture. */
+/* Output of --cost: the table of all runs, the time for each accuracy, JSON, and the picture. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@ static int adaptive(const CostMethod *m)
   return (m->method->flags & LAG_METHOD_ADAPTIVE) != 0;
 }
 
-/* variational(order=4) */
+/* text[n] := the method with its option, "variational(order=4)". */
 static void name_of(const CostMethod *m, char *text, size_t n)
 {
   if (m->option.name) {
@@ -66,7 +66,7 @@ static void table(FILE *f, const Cost *c)
         "the times spans. order: the slope of log error against log steps, last where rounding does not show\n", f);
 }
 
-/* The fastest run of one method with this error; NULL: there is none. */
+/* The fastest run of a method with at most this error; NULL: none. */
 static const CostRun *fastest(const CostMethod *m, double error)
 {
   const CostRun *best = NULL;
@@ -74,7 +74,7 @@ static const CostRun *fastest(const CostMethod *m, double error)
   return lag_cost_cheapest(m, 1, error, &best) ? best : NULL;
 }
 
-/* A line for each method: what errors of 1e-2, 1e-4, ... cost. */
+/* A line for each method: its time for errors of 1e-2, 1e-4, ... */
 static void digest(FILE *f, const Cost *c)
 {
   enum { COLUMNS = 7 };

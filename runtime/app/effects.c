@@ -1,6 +1,6 @@
-/* --effects: of a program that lagc effects made, whose first scene is the user's, and whose others are that scene with other effects in
- * use. Enters: the command line; leaves: lines for lagc to read, `variant NUMBER OPERATIONS SECONDS DIFFERENCE WEIGHT` and what comes
- * before them. `--effects runs`: differences only. */
+/* --effects: measures the variants in a program made by `lagc effects`, whose first scene is the user's and whose others are that scene
+ * with other effects. Enters: the command line; leaves: lines for lagc, `method`, `span`, `error`, then `variant NUMBER OPERATIONS
+ * SECONDS DIFFERENCE WEIGHT` for each. `--effects runs`: differences only. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,16 +13,16 @@ typedef struct Trial {
   App *app;
   const lag_program *program;
   Variant *v;  /* [program->nscenes] */
-  Variant finer; /* the first one once more, with smaller errors */
+  Variant finer; /* the first scene with smaller errors */
   double t0, t1;
-  const lag_method *method; /* the user's, or what was chosen for the first scene */
+  const lag_method *method; /* named by the user, or chosen for the first scene */
   lag_option options[MOST_OPTIONS];
   double tol;
 } Trial;
 
 /* ---- Simulations */
 
-/* Whether the model of a scene has what `name=value` sets. */
+/* Whether the model of a scene has the name in `name=value`. */
 static int knows(const lag_scene *scene, const char *text)
 {
   char name[128], part[160];
@@ -33,7 +33,7 @@ static int knows(const lag_scene *scene, const char *text)
   return lag_find(scene->model, name, &index, &var) != LAG_IS_NOTHING || lag_part(scene->model, name, 0, part, sizeof part);
 }
 
-/* Values of effects that are off here, and on in another variant, have no part in this one. */
+/* Sets the values of the command line; those of effects that are off in this variant and on in another are left out. */
 static int set_values(Trial *k)
 {
   App *app = k->app;
@@ -51,8 +51,8 @@ static int set_values(Trial *k)
   return 0;
 }
 
-/* The variant has the values and the start of the first scene, as far as it has their names: where those are made of what is off here,
- * the text of this variant does without. */
+/* Gives a variant the parameter values and the start of the first scene, for all names that it has, since its own text may compute them
+ * without the effects that are off. */
 static void take_start(const lag_sim *first, lag_sim *sim)
 {
   const lag_model *m = first->scene->model, *own = sim->scene->model;
@@ -78,7 +78,7 @@ static void take_start(const lag_sim *first, lag_sim *sim)
   }
 }
 
-/* The options of the first scene's method, steps of one size shorter by this factor. */
+/* k->options := the method options of the first scene, with the step multiplied by `shorter`. */
 static void take_options(Trial *k, double shorter)
 {
   const double *value = lag_sim_options(k->v[0].sim);
@@ -91,7 +91,7 @@ static void take_options(Trial *k, double shorter)
   }
 }
 
-/* The method of the first scene, or, where this variant cannot have it, what is chosen for it. */
+/* Sets the method of the first scene, or an automatic one where the variant refuses that. */
 static int set_method(Trial *k, lag_sim *sim, double tol)
 {
   if (lag_sim_set_method(sim, k->method, k->options, k->method->noptions) == LAG_OK && lag_sim_set_tolerance(sim, tol) == LAG_OK) {
@@ -100,7 +100,7 @@ static int set_method(Trial *k, lag_sim *sim, double tol)
   return app_choose_method(k->app);
 }
 
-/* app->sim := a simulation of the scene with the user's values. */
+/* app->sim := a simulation of scene number `scene` with the values of the command line. */
 static int make(Trial *k, int scene)
 {
   App *app = k->app;
@@ -110,7 +110,7 @@ static int make(Trial *k, int scene)
   return !app->sim ? app_error(&app->args, "out of memory") : app_read_until(app) ? EXIT_USAGE : set_values(k);
 }
 
-/* The simulation of app becomes the variant's. */
+/* Moves app->sim into a variant. */
 static int take(Trial *k, Variant *v)
 {
   int rc = lag_variant_init(v, k->app->sim);
@@ -165,8 +165,8 @@ static int prepare_others(Trial *k)
 
 /* ---- Measurements */
 
-/* How far the scene is from itself with errors that are 100 times smaller, or steps of half the size. Where there is no smaller tolerance: from
- * itself with errors that are 10 times larger. */
+/* Numerical error of the first scene: its difference from a run with tolerance/100 or half the step; at the smallest tolerance from a run
+ * with 10 times the tolerance. */
 static int measure_error(Trial *k)
 {
   App *app = k->app;
@@ -186,7 +186,7 @@ static int measure_error(Trial *k)
   return rc;
 }
 
-/* Is each of these words among those? */
+/* Whether each of `words` is among `those`, two lists with spaces. */
 static int all_among(const char *words, const char *those)
 {
   for (const char *s = words; *s; s += strspn(s, " ")) {
@@ -218,7 +218,7 @@ static int has_all_coordinates(const lag_model *m, const lag_model *other)
   return all;
 }
 
-/* What the effects that the variant has less, or more, do to the accelerations. */
+/* v->weight := the change of the accelerations by the effects in which the variant differs. */
 static int weigh(Variant *scene, Variant *v)
 {
   const lag_model *m = scene->sim->scene->model, *other = v->sim->scene->model;

@@ -1,6 +1,6 @@
-/* The log of events: a row for each one that happens, to a file, and what the report says of them. Enters: events as the
- * run meets them, with the state before and after; leaves: rows of time, name, state before, state after, in declared
- * units and with all digits. Holds: a run that is saved and resumed logs each event once, in the part that met it. */
+/* Event log (--events) and the report on events. Enters: events during the run, with the state before and after; leaves:
+ * rows of time, name, state before, state after, in declared units with all digits. Holds: a run that is saved and resumed
+ * logs each event once, in the part where it happens. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 
 enum { MOST_EVENTS = 24 };
 
-/* t, event, the state before, the state after. */
+/* Columns of the log: t, event, the state before, the state after. -1: no memory. */
 static int make_columns(App *app)
 {
   const lag_model *m = app->scene->model;

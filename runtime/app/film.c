@@ -1,6 +1,6 @@
-/* The rows of pictures. Enters: a run under way; leaves: in its table, as many rows as the motion needs, whatever the
- * steps of the method are: each step is looked at in ever more places until straight lines follow it. Holds: what
- * is looked at changes nothing in the run (STEPS_TO methods apart, whose steps end where they are asked to). */
+/* Adaptive sampling of a run for pictures. Enters: a run under way; leaves: in its table, as many rows as the motion needs,
+ * whatever the steps of the method: the samples of a step are doubled until straight lines follow it. Holds: sampling does
+ * not change the run (except for STEPS_TO methods, whose steps end at the times asked for). */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -9,10 +9,11 @@
 #include "app/app.h"
 #include "core/core.h"
 
-enum { MOST_PLACES = 64 };          /* in a step */
-enum { MOST_VALUES = 1 << 24 };     /* in memory */
-static const double PART = 1. / 3000; /* of the picture: a third of a pixel */
+enum { MOST_PLACES = 64 };          /* samples of a step */
+enum { MOST_VALUES = 1 << 24 };     /* numbers in memory */
+static const double PART = 1. / 3000; /* deviation allowed, as a part of the picture: a third of a pixel */
 
+/* Selects the columns that pictures draw. */
 static void choose_columns(App *app)
 {
   Thin *w = &app->film.rows;
@@ -35,7 +36,7 @@ int film_open(App *app)
   double span = fabs(app->until - lag_sim_time(app->sim));
   size_t ncols = (size_t)app->table.ncols;
 
-  if (!app->table.keep || app->section >= 0 || app->args.tangent) { /* a tangent is known where rows are, only */
+  if (!app->table.keep || app->section >= 0 || app->args.tangent) { /* a tangent is known at rows only */
     return 0;
   }
   f->on = 1;
@@ -57,7 +58,7 @@ void film_free(App *app)
   free(app->film.seen);
 }
 
-/* The row at time t, which the present step knows, as place k of those seen. Where outputs have no value there is a gap. */
+/* Sample k := the row at time t within the present step; NaN where outputs have no value, a gap in the curve. */
 static void look(App *app, int k, double t)
 {
   Film *f = &app->film;
@@ -72,7 +73,7 @@ static void look(App *app, int k, double t)
   thin_see(&f->rows, row);
 }
 
-/* Whether the odd ones of n + 1 places lie on lines between their neighbours. */
+/* Whether the odd ones of n + 1 samples lie on lines between their neighbours. */
 static int followed(const App *app, int n)
 {
   const Film *f = &app->film;
@@ -87,7 +88,7 @@ static int followed(const App *app, int n)
   return 1;
 }
 
-/* What happens between times a and b of the present step; place k of n stands at MOST_PLACES/n k. */
+/* Samples the present step from time a to b and thins the rows. Sample k of n is stored at index MOST_PLACES/n k. */
 static int film_step(App *app, double a, double b)
 {
   Film *f = &app->film;
@@ -112,7 +113,7 @@ static int film_step(App *app, double a, double b)
   return rc ? LAG_ENOMEM : LAG_OK;
 }
 
-/* A method that must step to each time of output is given steps of which a few places show what happens. */
+/* End of the next step: for STEPS_TO methods near enough that few samples resolve it; else `until`. */
 static double film_stop(const App *app, double t, double until)
 {
   const Film *f = &app->film;
@@ -125,7 +126,7 @@ int film_advance(App *app, double until)
 {
   Film *f = &app->film;
   double reach;
-  int rc = f->on ? lag_sim_advance(app->sim, lag_sim_time(app->sim)) : LAG_OK; /* the run begins */
+  int rc = f->on ? lag_sim_advance(app->sim, lag_sim_time(app->sim)) : LAG_OK; /* starts the run */
 
   while (rc == 0 && f->on && lag_sim_time(app->sim) != until) {
     rc = lag_sim_reach(app->sim, film_stop(app, lag_sim_time(app->sim), until), &reach);
@@ -144,7 +145,7 @@ int film_advance(App *app, double until)
   return rc ? rc : lag_sim_advance(app->sim, until);
 }
 
-/* What is left to do before pictures are drawn: pages hold so many numbers. */
+/* Keeps the last row, and thins the rows to the size of an HTML page. -1: no memory. */
 int film_close(App *app)
 {
   enum { MOST_NUMBERS = 2000000 }; /* 12 MB */
@@ -154,7 +155,7 @@ int film_close(App *app)
   return f->on && thin_again(&f->rows, most) ? -1 : 0;
 }
 
-/* A round time between rows that shows the motion. */
+/* A round --every that resolves the motion. */
 static double fine_enough(const App *app)
 {
   const Table *t = &app->table;
@@ -165,7 +166,7 @@ static double fine_enough(const App *app)
 
 void film_warn(App *app, char *note, size_t size)
 {
-  enum { FINER = 2 }; /* equal times need more rows than chosen ones */
+  enum { FINER = 2 }; /* rows at equal times must be more than chosen ones */
   const Film *f = &app->film;
 
   note[0] = '\0';

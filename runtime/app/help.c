@@ -1,4 +1,4 @@
-/* --help. */
+/* --help of a simulator: its scenes, names and options. */
 #include "app/app.h"
 
 static const char text[] =
@@ -43,6 +43,7 @@ static const char text[] =
     "computed. Exit status: 0 ok, 2 wrong usage or a file that cannot be written, 3 the run failed, 130 interrupted\n"
     "(by SIGTERM 143).\n";
 
+/* A line of variables with units and, unless NULL, values in declared units. */
 static void list(FILE *f, const char *head, int n, const lag_var *vars, const double *values)
 {
   for (int i = 0; i < n; i++) {

@@ -1,5 +1,5 @@
-/* --lyapunov: the Lyapunov exponents of a scene's motion. Enters: the command line; leaves: a table, JSON, rows and a picture of
- * the running estimates. Holds: what was computed before an interruption is reported. */
+/* --lyapunov: Lyapunov exponents of a scene's motion. Enters: the command line; leaves: a table, JSON, rows and a picture of
+ * the running estimates. Holds: an interrupted run reports the estimates so far. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,18 +9,19 @@
 #include "app/app.h"
 #include "core/core.h"
 
-enum { TURNING = 10, ROWS = 500 }; /* default: a tenth of the time is for vectors to turn */
+enum { TURNING = 10, ROWS = 500 }; /* default transient: a tenth of the time, in which tangent vectors align; rows of estimates */
 
 typedef struct Job {
   App *app;
   Lyapunov l;
-  lag_scene bare;  /* the scene without what would end the run, or cost time beside it */
-  int rc;          /* why it cannot go on */
-  double next_row;
+  lag_scene bare;  /* the scene without monitors and closed forms */
+  int rc;          /* failure within a step; 0: none */
+  double next_row; /* time of the next row of estimates */
 } Job;
 
-/* ---- What to compute */
+/* ---- Settings */
 
+/* app->until and *from: the end of the run, and of the transient. */
 static int choose_times(App *app, double *from)
 {
   const Args *a = &app->args;
@@ -57,7 +58,7 @@ static int choose_number(const App *app, int *k)
   return 0;
 }
 
-/* t and the running estimates, in place of the scene's outputs. */
+/* Table of t and the running estimates, in place of the scene's outputs. */
 static int make_table(App *app, int k)
 {
   Table *t = &app->table;
@@ -119,7 +120,7 @@ static int after_step(void *context, const lag_sim *sim)
 
 /* ---- The report */
 
-/* The sum is the mean of the divergence; where they differ, steps do not resolve how fast something decays. */
+/* Note where the sum of the exponents is not the mean divergence (Liouville): steps are too long for the fastest decay. */
 static void caution(FILE *f, const Lyapunov *l)
 {
   double sum = lag_lyapunov_exponent(l, l->k), divergence = lag_lyapunov_divergence(l), size = fabs(lag_lyapunov_exponent(l, l->k - 1));
@@ -130,7 +131,7 @@ static void caution(FILE *f, const Lyapunov *l)
   }
 }
 
-/* Conclusions from the exponents, where their errors allow them. */
+/* Conclusions from the exponents that their errors allow: chaos, entropy, dimension. */
 static void conclude(FILE *f, const Lyapunov *l)
 {
   double first = lag_lyapunov_exponent(l, 0), off = lag_lyapunov_error(l, 0), error, x;
@@ -244,9 +245,9 @@ static void put_json(FILE *f, const App *app, const Lyapunov *l)
   fputs("}\n", f);
 }
 
-/* ---- All of it */
+/* ---- The command */
 
-/* Why there is no result; otherwise 0. */
+/* Exit status and message where there is no result; else 0. */
 static int failed(App *app, const Job *job)
 {
   const Args *a = &app->args;
@@ -316,7 +317,7 @@ static int run(App *app, Job *job)
   return finish(app, job);
 }
 
-/* The scene bare of monitors and closed forms, with the values and the method that the command line says. */
+/* app->sim := the scene without monitors and closed forms, with values and method of the command line. */
 static int choose(App *app, Job *job)
 {
   int rc = app_choose_start(app);

@@ -1,5 +1,5 @@
-/* `lagc methods` and --method help: what the descriptors of methods say, as a table and in words; `--method "help NAME"`: what
- * one says. Holds: lines have at most 80 columns. */
+/* `lagc methods` and --method help: the descriptors of all methods as a table and in words; `--method "help NAME"`: one of
+ * them. Holds: lines have at most 80 columns. */
 #include <string.h>
 
 #include "app/app.h"
@@ -7,7 +7,7 @@
 enum { WIDTH = 80 };
 #define ROW "  %-16s %-5s %-5s %-5s %-10s %-6s %-6s %-6s %-5s %s\n"
 
-/* Words in lines that begin with `indent` spaces, the first with `first`. */
+/* Prints text wrapped to WIDTH columns; the first line is indented by `first`, the others by `indent`. */
 static void wrapped(FILE *f, const char *text, int first, int indent)
 {
   int column = fprintf(f, "%*s", first, "");
@@ -30,7 +30,7 @@ static const lag_method *method(const App *app, int i)
   return i < lag_nmethods ? lag_methods[i] : app->extras.methods[i - lag_nmethods];
 }
 
-/* 5, or 2-8 where options choose. */
+/* text := the order, "5", or "2-8" where options choose it. */
 static const char *order_text(const lag_method *m, int order, char *text, size_t size)
 {
   if (m->order_most > 0) {

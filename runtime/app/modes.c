@@ -1,5 +1,5 @@
-/* --modes: the equilibrium next to the start, its stability, and small motion about it. Enters: a simulation at its
- * start; leaves: a table for people, or one JSON object. */
+/* --modes: the equilibrium near the start, its stability, and its normal modes. Enters: a simulation at its start;
+ * leaves: a table, or one JSON object. */
 #include "app/modes.h"
 
 #include <math.h>
@@ -20,9 +20,9 @@ void modes_unknowns(const Rest *r, double *x)
   }
 }
 
-/* ---- What cannot be treated */
+/* ---- Refusals */
 
-/* The first input whose value changes in time; NULL when none does. */
+/* Name of the first input that changes in time; NULL: none. */
 static const char *changing_input(const App *app)
 {
   lag_problem *pb = &app->sim->pb;
@@ -44,6 +44,7 @@ static const char *changing_input(const App *app)
   return NULL;
 }
 
+/* EXIT_USAGE after a message where this simulator or model has no modes; else 0. */
 static int refuse(const App *app)
 {
   const lag_model *m = app->scene->model;
@@ -78,7 +79,7 @@ static int refuse(const App *app)
                : 0;
 }
 
-/* ---- What is to be said of a result */
+/* ---- Caution and reason of a result */
 
 const char *modes_caution(const App *app, const Rest *r)
 {
@@ -159,7 +160,7 @@ void modes_reason(const Modes *s, char *text, size_t n)
 
 /* ---- JSON */
 
-/* A state, or with im a change of one. */
+/* A JSON object of a state in declared units; with im a mode shape, entries [re, im]. */
 static void json_vector(FILE *f, const lag_model *m, const double *re, const double *im)
 {
   putc('{', f);
@@ -220,7 +221,7 @@ static void json_modes(FILE *f, const App *app, const Rest *r, const Modes *s, d
   fputs("]}\n", f);
 }
 
-/* ---- All of it */
+/* ---- The command */
 
 static int not_found(const App *app, const Rest *r)
 {
@@ -248,7 +249,7 @@ static int not_found(const App *app, const Rest *r)
   return EXIT_RUN;
 }
 
-/* What stopped it. */
+/* Message for a failure of the analysis; returns the exit status. */
 static int failed(const App *app, int rc, const char *where)
 {
   const Args *a = &app->args;

@@ -1,23 +1,23 @@
-/* What the files of --modes share. Everywhere x[nq + nz] are coordinates, then states, in SI. */
+/* Shared by the files of --modes. x[nq + nz]: coordinates, then states, in SI. */
 #ifndef LAG_APP_MODES_H
 #define LAG_APP_MODES_H
 
 #include "analysis/modes.h"
 #include "app/app.h"
 
-/* Coordinate, or state, i. */
+/* Description of coordinate or state i of x. */
 const lag_var *modes_variable(const lag_model *m, int i);
 
-/* x[nq + nz]: the state at rest without its velocities. */
+/* x := the coordinates and states at the equilibrium. */
 void modes_unknowns(const Rest *r, double *x);
 
-/* What makes the result less than it seems; NULL: nothing does. */
+/* A caution about the result; NULL: none. */
 const char *modes_caution(const App *app, const Rest *r);
 
-/* Why the verdict is what it is. */
+/* text[n] := the reason of the verdict on stability. */
 void modes_reason(const Modes *s, char *text, size_t n);
 
-/* The table for people. x[nq + nz] is scratch. */
+/* Prints the table of modes. x[nq + nz] is scratch. */
 void modes_text(FILE *f, const App *app, const Rest *r, const Modes *s, double *x);
 
 #endif

@@ -1,4 +1,4 @@
-/* The table of --modes: where the equilibrium is, what is known of it, and a line a mode. Enters: what analysis/ found;
+/* Table of --modes: the equilibrium, its stability, and a line for each mode. Enters: the results of analysis/modes.h;
  * leaves: text of 118 columns. */
 #include "app/modes.h"
 
@@ -9,13 +9,13 @@ enum { WIDE = 118, LISTED = 12, ALL_SHOWN = 6, MOST_MODES = 40, NUMBER = 13 };
 
 /* ---- Families */
 
-/* Members first, first + 1, ... of one family; or a single variable. */
+/* Consecutive members of one family, or a single variable. */
 typedef struct Group {
   int first, count;
   char label[96];
 } Group;
 
-/* Whether b follows a in its family: alike but for the numbers in brackets. */
+/* Whether a and b are members of one family: equal but for the index in brackets. */
 static int same_family(const char *a, const char *b)
 {
   const char *x = strchr(a, '['), *y = strchr(b, '['), *ax = x ? strchr(x, ']') : NULL, *by = y ? strchr(y, ']') : NULL;
@@ -23,7 +23,7 @@ static int same_family(const char *a, const char *b)
   return ax && by && x - a == y - b && memcmp(a, b, (size_t)(x - a)) == 0 && strcmp(ax, by) == 0;
 }
 
-/* The group that begins at `first`, of n variables. */
+/* The group that begins at variable `first` of n. */
 static Group group_at(const lag_model *m, int first, int n)
 {
   Group g = {.first = first, .count = 1};
@@ -44,7 +44,7 @@ static Group group_at(const lag_model *m, int first, int n)
 
 /* ---- Text */
 
-/* Words at the end of a line that is not too long. */
+/* A line of words that is wrapped at WIDE columns. */
 typedef struct Line {
   FILE *f;
   int column, indent;
@@ -61,7 +61,7 @@ static void put_word(Line *l, const char *word)
   l->column += fprintf(l->f, " %s", word);
 }
 
-/* "1.5"; "1.5@-90": 90 degrees behind. What is below 1e-9 of `most` is 0. */
+/* text := a component, "1.5", or "1.5@-90": 90 degrees behind. Values below 1e-9 of `most` are shown as 0. */
 static void value_text(double re, double im, double most, char *text, size_t n)
 {
   double size = hypot(re, im), phase = atan2(im, re) * 180 / acos(-1);
@@ -75,13 +75,13 @@ static void value_text(double re, double im, double most, char *text, size_t n)
   }
 }
 
-/* The values x[n] in SI of a vector to show; im may be NULL. */
+/* A vector to show: values in SI; im may be NULL. */
 typedef struct Vector {
   const lag_model *m;
   const double *re, *im;
-  int state; /* a state, not a change of one: with its units, and where they have their zero */
-  int all;   /* what is 0, too */
-  double most;
+  int state; /* 1: a state, shown with units and their offsets; 0: a change of state */
+  int all;   /* 1: zero components are shown, too */
+  double most; /* largest component */
 } Vector;
 
 static int units_differ(const lag_model *m)
@@ -94,6 +94,7 @@ static int units_differ(const lag_model *m)
   return 0;
 }
 
+/* Component i in its declared unit. */
 static double part(const double *x, const Vector *v, int i)
 {
   const lag_var *var = modes_variable(v->m, i);
@@ -111,7 +112,7 @@ static int is_zero(const Vector *v, const Group *g)
   return 1;
 }
 
-/* "u[1..8]: 0.34 0.64 ...", every so many of a large family. */
+/* Prints a group, "u[1..8]: 0.34 0.64 ..."; of a large family every k-th member. */
 static void put_group(Line *l, const Vector *v, const Group *g)
 {
   int every = g->count > LISTED ? (g->count + LISTED - 2) / (LISTED - 1) : 1;
@@ -148,7 +149,7 @@ static void put_vector(Line *l, Vector v)
   }
 }
 
-/* The coordinate that is farthest from its start, by scale; -1: none moved. */
+/* Index of the variable farthest from its start, relative to its scale; -1: none moved. */
 static int farthest(const Rest *r, const double *x)
 {
   int best = -1;
@@ -222,7 +223,7 @@ static void put_mode(FILE *f, const lag_model *model, const Mode *m, int k, int 
   putc('\n', f);
 }
 
-/* Does one of the modes listed stand for a growing motion and for the one that decays as fast? */
+/* Whether a listed mode stands for a pair, one that grows and one that decays as fast. */
 static int has_twins(const Modes *s)
 {
   int twins = 0;
@@ -233,7 +234,7 @@ static int has_twins(const Modes *s)
   return twins;
 }
 
-/* Is any component out of phase with the one that is 1? */
+/* Whether a component of a listed shape is out of phase with the component that is 1. */
 static int has_phases(const lag_model *m, const Modes *s)
 {
   for (int k = 0; k < s->n && k < MOST_MODES; k++) {

@@ -1,4 +1,4 @@
-/* What a run says of itself at its end. Enters: a finished run; leaves: text for people, or one JSON object. */
+/* The report of a run. Enters: a finished run; leaves: text, or one JSON object. */
 #include <math.h>
 #include <string.h>
 
@@ -6,7 +6,7 @@
 
 enum { MOST_LINES = 24 };
 
-/* Variable i of q, v, z: name, unit, value in the declared unit. */
+/* Variable i of [q, v, z]: *c := its name and unit; returns its value in that unit. */
 static double state_var(const App *app, int i, Column *c)
 {
   lag_sim_state_info(app->sim, i, c->name, sizeof c->name, c->unit, sizeof c->unit);
@@ -51,7 +51,7 @@ static void final_state(const App *app, FILE *f)
   }
 }
 
-/* A contact is no constraint as long as it is open. */
+/* Whether constraint k is redundant at the start; contacts do not count. */
 static int is_redundant(const App *app, int k)
 {
   const lag_model *m = app->scene->model;
@@ -64,7 +64,7 @@ static int is_redundant(const App *app, int k)
   return lag_sim_is_redundant(app->sim, k);
 }
 
-/* Of a start where constraints are dependent that are not so beside it. */
+/* Describes a singular start, where constraints are dependent that are independent nearby. */
 static void singular(const App *app, FILE *f)
 {
   int n = 0;
@@ -78,7 +78,7 @@ static void singular(const App *app, FILE *f)
   fprintf(f, "%s%s", n > MOST_LINES ? ", ..." : "", n ? " decides which way it goes" : "");
 }
 
-/* What the constraints did to the start, and how well they were kept. */
+/* Constraints: changes of the start, rank, redundant ones, largest residuals. */
 static void constraints(const App *app, const lag_stats *st, FILE *f)
 {
   const lag_model *m = app->scene->model;
@@ -115,7 +115,7 @@ static void constraints(const App *app, const lag_stats *st, FILE *f)
           st->constraint, st->constraint_rate);
 }
 
-/* A symplectic method on a model that is not conservative, or whose two-form varies: what its name no longer promises. And steps that are too long. */
+/* Notes: steps too long for the fastest oscillation; a symplectic method on a model for which it is not symplectic. */
 static void caveat(const App *app, const lag_stats *st, FILE *f)
 {
   const lag_method *m = lag_sim_method(app->sim);
@@ -137,7 +137,7 @@ static void caveat(const App *app, const lag_stats *st, FILE *f)
   }
 }
 
-/* "explicit" or "implicit" for a method that has both forms, and why; NULL for others. */
+/* "explicit" or "implicit", and *why, for a method that has both forms; NULL for others. */
 static const char *form(const App *app, const char **why)
 {
   unsigned has = app->scene->model->flags;
@@ -223,7 +223,7 @@ static void exact_json(const App *app, FILE *f)
   fputs("}, ", f);
 }
 
-/* --verbose: where sines come from, and whether products and sums are rounded one by one: what bits depend on beside the method. */
+/* --verbose: source of sines and cosines, and contraction of products and sums; results depend on both bit by bit. */
 static void arithmetic(const App *app, FILE *f)
 {
   static const char flag[] = "-ffp-contract=";
@@ -276,7 +276,7 @@ void report_text(App *app, FILE *f)
   }
 }
 
-/* Outputs that are no coordinate, velocity or state, so that no name stands twice. */
+/* JSON fields of outputs at the end, except coordinates, velocities and states, so that no name appears twice. */
 static void final_outputs(App *app, FILE *f)
 {
   int n = app->scene->model->nq * 2 + app->scene->model->nz, nout = lag_sim_noutputs(app->sim);
@@ -368,8 +368,8 @@ void report_json(App *app, FILE *f)
   fprintf(f, "\"steps\": %lld, \"rejected\": %lld, \"rhs_calls\": %lld, ", st.steps, st.rejected, st.rhs_calls);
   field_string(f, "form", form(app, &why));
   fprintf(f, "\"newton_systems\": %lld, \"newton_iterations\": %lld, ", st.systems, st.iterations);
-  fprintf(f, "\"wall_s\": %.6g, ", app->wall); /* a clock has no more digits, in no precision */
-  field_number(f, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null: it is no drift */
+  fprintf(f, "\"wall_s\": %.6g, ", app->wall); /* 6 digits in any precision */
+  field_number(f, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null where energy is not conserved */
   lag_charge_stats energy = {.absolute = NAN};
   if (lag_sim_ncharges(app->sim)) {
     lag_sim_charge(app->sim, 0, &energy);
@@ -392,7 +392,7 @@ void report_json(App *app, FILE *f)
   report_tangent_json(app, f);
   field_string(f, "math", m->math);
   field_string(f, "build", app->program->build);
-  field_number(f, "constraint_residual", st.constraint); /* null: none */
+  field_number(f, "constraint_residual", st.constraint); /* null without constraints */
   field_number(f, "constraint_rate_residual", st.constraint_rate);
   constraints_json(app, f);
   fputs("\"final\": {", f);

@@ -1,6 +1,6 @@
-/* A Poincare section: rows at the crossings of a surface, which is an event of the model that changes nothing. Enters: the
- * event's name, and events as the run meets them; leaves: a row for each. Holds: a row stands on the surface as closely as
- * events are located; where the run starts on it there is no crossing. */
+/* Poincare section (--section): rows at the crossings of a surface, given as an event of the model that changes nothing.
+ * Enters: the event's name, and events during the run; leaves: a row for each crossing. Holds: a row is on the surface as
+ * precisely as events are located; a start on the surface is no crossing. */
 #include <string.h>
 
 #include "app/app.h"

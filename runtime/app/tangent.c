@@ -1,11 +1,11 @@
-/* --tangent: how the state follows the state at the start, beside what a run puts out. Enters: a run with a tangent; leaves:
- * columns dx/dy(0), row by row of the matrix, in declared units, and the matrix at the end for the report. */
+/* --tangent: derivative of the state by the state at the start. Enters: a run with a tangent; leaves: additional columns
+ * dx/dy(0), row-major, in declared units, and the matrix at the end for the report. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
 
-/* Components shown as a matrix in the report, and as columns. */
+/* Most components of the state for the matrix in the report, and for columns. */
 enum { SHOWN = 8, MOST_COMPONENTS = 64 };
 
 static int components(const App *app)
@@ -15,7 +15,7 @@ static int components(const App *app)
   return 2 * m->nq + m->nz;
 }
 
-/* A unit as it stands in a fraction. */
+/* s[n] := unit as numerator or denominator of a fraction, in parentheses if compound. */
 static void put_in_fraction(char *s, size_t n, const char *unit)
 {
   int several = strpbrk(unit, "/*") != NULL;
@@ -23,7 +23,7 @@ static void put_in_fraction(char *s, size_t n, const char *unit)
   snprintf(s, n, "%s%s%s", several ? "(" : "", unit[0] ? unit : "1", several ? ")" : "");
 }
 
-/* dx/dy(0) and its unit, of components i and j. */
+/* *c := name and unit of dx/dy(0) for components i and j. */
 static void describe(const App *app, int i, int j, Column *c)
 {
   char name[2][96], unit[2][64];
@@ -130,7 +130,7 @@ void report_tangent_json(App *app, FILE *f)
   const double *J = app->row + app->table.ncols - n * n;
   fputs("\"tangent\": {", f);
   for (int i = 0; i < n; i++) {
-    for (int j = 0; j <= n; j++) { /* after its head each of a row's n entries */
+    for (int j = 0; j <= n; j++) { /* j = 0: the name of the row; then its n entries */
       lag_sim_state_info(app->sim, j ? j - 1 : i, name, sizeof name, NULL, 0);
       fputs(j == 0 ? (i ? ", " : "") : j > 1 ? ", " : "", f);
       json_string(f, name);

@@ -1,6 +1,6 @@
-/* An animation. Enters: a table of rows, and which of its columns are the points; leaves: one HTML file that needs
- * nothing else (its page is page.html, turned into C by the Makefile). Holds: a row is a frame; coordinates are written as
- * whole numbers, a hundred thousandth of the largest extent each: finer than any screen. */
+/* Animation page. Enters: a table and the columns of its points; leaves: one self-contained HTML file (template page.html,
+ * turned into C by the Makefile). Holds: a row is a frame; coordinates are integers in units of 1/100000 of the largest
+ * extent, finer than any screen. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>
@@ -15,7 +15,7 @@ static double cell(const Table *t, size_t row, int col)
   return t->data[row * (size_t)t->ncols + (size_t)col];
 }
 
-/* A string inside of a script: nothing in it may look like a tag. */
+/* Writes a JavaScript string; no character in it can start or end a tag. */
 static void script_string(FILE *f, const char *s)
 {
   putc('"', f);
@@ -30,7 +30,7 @@ static void script_string(FILE *f, const char *s)
   putc('"', f);
 }
 
-/* The middle of all coordinates, and what one grain of them is. */
+/* Offset and unit of the integers that coordinates are written as: the middle of all, and extent/GRAINS. */
 static void choose_grain(const Table *t, const Animation *a, double *zero, double *scale)
 {
   double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
@@ -47,12 +47,12 @@ static void choose_grain(const Table *t, const Animation *a, double *zero, doubl
   double least = fmin(lo[0], lo[1]), most = fmax(hi[0], hi[1]), extent = fmax(hi[0] - lo[0], hi[1] - lo[1]);
   *zero = least <= most ? least / 2 + most / 2 : 0;
   double grain = extent > 0 && isfinite(extent) ? extent / GRAINS : fmax(fabs(*zero), 1) / GRAINS;
-  *zero = nearbyint(*zero / grain) * grain; /* so that 0 stays 0 */
+  *zero = nearbyint(*zero / grain) * grain; /* coordinate 0 stays exact */
   *scale = grain;
 }
 
-/* How many seconds of the model one second of watching shows: one, unless the run would be over in a blink or last for
- * minutes; then a round number of what the page counts in that makes it some twenty seconds. */
+/* Playback speed, in seconds of the model per second of watching: 1 for runs of 1 to 90 s; else a round number, in years, days, hours or
+ * seconds, that makes the run last about twenty seconds. */
 static double choose_speed(double span)
 {
   static const double units[] = {31557600, 86400, 3600};
@@ -68,8 +68,8 @@ static double choose_speed(double span)
   return nice_step(0, span, 20);
 }
 
-/* How fast it can be followed: frames are as near to each other as the motion needs, some seventy in a swing, and about
- * four swings a second can be told apart. */
+/* choose_speed, limited to 280 frames a second: frames are as dense as the motion needs, some seventy a swing, and the eye follows
+ * about four swings a second. */
 static double watchable(const Table *t, double span)
 {
   enum { FRAMES_A_SECOND = 280 };
@@ -78,7 +78,7 @@ static double watchable(const Table *t, double span)
   return most > 0 && speed > most ? nice_step(0, most / 1.6, 1) : speed;
 }
 
-/* Whether what goes across is no place: numbers without unit that stand still, as those of the masses of a string are. */
+/* Whether x is an index, not a length: numbers without a unit, constant and not all equal, as of the masses of a string. */
 static int counts(const Table *t, const Animation *a)
 {
   int differ = 0;
@@ -98,7 +98,7 @@ static int counts(const Table *t, const Animation *a)
   return differ;
 }
 
-/* Times between frames, in ticks. */
+/* Writes the times between frames, in ticks. */
 static void put_times(FILE *f, const Table *t, double t0, double tick)
 {
   double before = 0;

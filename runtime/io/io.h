@@ -1,5 +1,5 @@
-/* What a simulator writes: rows, pictures, its saved state. Holds for all files: they are written as
- * FILE.part-N-M and renamed when complete, so that no half-written FILE is ever seen (outfile.h). */
+/* Output files of a simulator: tables of rows, pictures, saved states. Holds for all: a file is written as FILE.part-N-M and
+ * renamed when complete, so that no half-written FILE is ever seen (outfile.h). Names here are internal to the simulator. */
 #ifndef LAG_IO_IO_H
 #define LAG_IO_IO_H
 
@@ -10,112 +10,114 @@
 
 typedef struct Column {
   char name[96], unit[64];
-  const char *const *words; /* [nwords] of a column that holds words: a value is the number of its word. NULL: numbers */
+  const char *const *words; /* [nwords] text column: a value is the index of its word. NULL: a column of numbers */
   int nwords;
 } Column;
 
-/* Column 0 is the time. data[nrows * ncols], row by row; kept only when keep is set. */
+/* A table of output; column 0 is the time. data[nrows * ncols], row-major. */
 typedef struct Table {
   int ncols;
   Column *cols;
-  int keep;
-  int points; /* rows are points by themselves, not of a curve */
+  int keep;   /* 0: rows are not stored, data stays NULL */
+  int points; /* 1: rows are separate points, not joined to a curve */
   double *data;
   size_t nrows, capacity;
 } Table;
 
+/* Columns from the outputs of the simulation. -1: no memory, as of table_add. */
 int table_init(Table *t, const lag_sim *sim, int keep);
 void table_free(Table *t);
 int table_add(Table *t, const double *row);
-/* The time in years, days or hours where the rows span two of them or more, for pictures; as it is where nothing has a unit. */
+/* For pictures: converts the time to years, days or hours where the rows span two or more of these; not where no column has a unit. */
 void table_long_time(Table *t);
 
-/* Rows to a file: .npy by its suffix, else CSV, whose header waits for the first row or the end: what fails before writes nothing. */
+/* A file of rows: .npy by its suffix, else CSV. The CSV header is written with the first row, so a run that fails before writes nothing. */
 typedef struct Rows {
   Outfile out;
   int open, npy;
   size_t nrows;
   int ncols;
-  size_t npy_header; /* bytes */
+  size_t npy_header; /* unused */
   const Column *cols;
 } Rows;
 
+/* -1 with errno set. rows_close: keep 0 removes the file. */
 int rows_open(Rows *r, const char *path, const Table *t);
 int rows_write(Rows *r, const double *row);
 int rows_close(Rows *r, int keep);
 
-/* The rows that a picture needs, of those that are added: straight lines between them miss no row by more than a part
- * of the range of each column that is drawn. */
+/* Selects the rows that a picture needs: straight lines between kept rows miss no row by more than a part of the range of each
+ * drawn column. */
 typedef struct Thin {
-  Table *table;    /* where they go; with store 0 they are only counted */
-  int store;
-  double part;     /* of the range that is not seen */
-  double longest;  /* time between two of them */
-  int common;      /* the columns share one scale, the widest range's */
+  Table *table;    /* receives the kept rows */
+  int store;       /* 0: kept rows are counted, not stored */
+  double part;     /* deviation allowed, as a part of the range */
+  double longest;  /* longest time between kept rows */
+  int common;      /* 1: drawn columns share one scale, of the widest range */
   size_t kept;
-  int ndrawn, *drawn;   /* [ncols], the columns */
+  int ndrawn, *drawn;   /* [ncols] indices of the drawn columns */
   double *memory, *low, *high, *least, *most, *from, *last, *width; /* [ncols] each */
   int have_last;
 } Thin;
 
-/* -1: no memory. Free it with thin_free in any case. */
+/* -1: no memory. thin_free must be called in any case. */
 int thin_init(Thin *w, Table *t, int store, double part, double longest);
 void thin_free(Thin *w);
-/* The column is drawn. */
+/* Adds a column to the drawn ones. */
 void thin_draw(Thin *w, int col);
-/* Widens the ranges by a row. A row must be seen before it is added. */
+/* Widens the ranges by a row; called before thin_add of the row. */
 void thin_see(Thin *w, const double *row);
-/* Whether the row `between` two others lies on the line that joins them, as far as one can see. */
+/* Whether the row `between` lies on the line from a to b, within the allowed deviation. */
 int thin_straight(const Thin *w, const double *a, const double *b, const double *between);
-/* Rows in the order of time; the last is kept by thin_end, after which more may follow. -1: no memory. */
+/* Adds a row; rows come in order of time. thin_end keeps the last row; more may follow. -1: no memory. */
 int thin_add(Thin *w, const double *row);
 int thin_end(Thin *w);
-/* Keeps fewer rows: doubles the part until at most `most` are left, or it is 1/2. -1: no memory. */
+/* Thins the kept rows: doubles `part` until at most `most` rows are left or part is 1/2. -1: no memory. */
 int thin_again(Thin *w, size_t most);
 
-/* Ticks: a round step (1, 2, 5 times a power of ten) of which about n fit between lo and hi. */
+/* Step of axis ticks: 1, 2 or 5 times a power of ten, about n of them from lo to hi. */
 double nice_step(double lo, double hi, int n);
 
-/* What a picture draws: column y[i] against column x[i]. Column 0 is the time. */
+/* The curves of a picture: column y[i] against column x[i]; column 0 is the time. */
 typedef struct Drawn {
   int n, *x, *y;
-  const char *xname, *yname; /* of what has several columns; NULL: everything against the time */
+  const char *xname, *yname; /* axis labels where several columns are drawn; NULL: all columns against time */
 } Drawn;
 
-/* As SVG. -1 with errno set. */
+/* Writes the picture as SVG. -1 with errno set. */
 int svg_write(const char *path, const Table *t, const char *title, const Drawn *d);
 
-/* Points (x, y), all positive, joined in their order. */
+/* A curve through points (x, y), all positive. */
 typedef struct Series {
   char name[96];
   int n;
   const double *x, *y;
 } Series;
 
-/* Curves of points on two logarithmic axes, each with its name beside it. -1 with errno set. */
+/* Writes n named curves on two logarithmic axes as SVG. -1 with errno set. */
 int svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n);
 
-/* The same as text, the first few of them. */
+/* Prints the first few curves as text (braille dots). */
 void sketch(FILE *f, const Table *t, const Drawn *d);
 
-/* What an animation shows: points whose x and y are columns, in one unit. */
+/* An animation: points whose x and y are columns of the table, all in one unit. */
 typedef struct Animation {
   int npoints;
   int *cols;        /* x, y of each point: [2 * npoints] */
-  int from;         /* the first point is where the first rod begins, and no body */
-  int rods, trace;
+  int from;         /* 1: point 0 is the start of the first rod, not a body */
+  int rods, trace;  /* 1: draw rods between the points; draw the path of the last point */
   const char *unit;
-  const char *note; /* for those who watch, or "" */
+  const char *note; /* text below the animation, or "" */
 } Animation;
 
-/* The table as a page that plays it. -1 with errno set. */
+/* Writes an HTML page that plays the table. -1 with errno set. */
 int html_write(const char *path, const Table *t, const char *title, const Animation *a);
 
-/* JSON text: a string in quotes or null; a number that reads back exactly, or null. */
+/* JSON: s in quotes, or null for NULL; x with the digits to read back exactly, or null where it is not finite. */
 void json_string(FILE *f, const char *s);
 void json_number(FILE *f, double x);
 
-/* What stands at the head of a saved state, and the state. data is malloced by read. */
+/* A saved state: its head and the n doubles of lag_sim_save. state_parse and state_read allocate data; the caller frees it. */
 typedef struct State {
   char program[128], scene[128], method[64];
   double tol;
@@ -127,13 +129,14 @@ typedef struct State {
   double *data;
 } State;
 
+/* -1 with errno set. */
 int state_write(const char *path, const State *s);
-/* The state that is written in a whole file's text, from anywhere; NULL, or why it is none, and then there is no data. */
+/* Parses the text of a state file, which may be any bytes. NULL, or the reason why it is no saved state; data is then NULL. */
 const char *state_parse(char *text, State *s);
-/* 0; -1 errno; 1: not a saved state, or damaged: *why says how. */
+/* 0; -1 with errno set; 1: not a saved state, or damaged, with the reason in *why. */
 int state_read(const char *path, State *s, const char **why);
 
-/* Writes a text with & < > " as XML and HTML spell them. */
+/* Writes s with & < > " escaped for XML and HTML, and hidden characters made visible. */
 void io_markup(FILE *f, const char *s);
 
 #endif

@@ -1,4 +1,4 @@
-/* JSON text (RFC 8259); what does not show in a text is escaped. Enters: a value; leaves: its text. */
+/* JSON writer (RFC 8259). Enters: a string or a number; leaves: its text, with hidden characters escaped. */
 #include <math.h>
 
 #include "io/io.h"
@@ -18,7 +18,7 @@ void json_string(FILE *f, const char *s)
       fprintf(f, "\\%c", (int)code);
     } else if (is_hidden(code)) {
       fprintf(f, "\\u%04lx", code);
-    } else if (len == 1 && code >= 0x80) { /* no UTF-8: JSON is */
+    } else if (len == 1 && code >= 0x80) { /* a byte that is not UTF-8: U+FFFD, since JSON must be UTF-8 */
       fputs("\\ufffd", f);
     } else {
       fwrite(s + at, 1, len, f);

@@ -1,5 +1,5 @@
-/* A file that appears only when it is complete. Enters: a path; leaves: the file, or nothing. Holds: an
- * existing file keeps its contents until the new one is complete; devices and pipes are written directly. */
+/* Output files that appear only when complete, by a locked temporary file and rename. Holds: an existing file keeps its
+ * contents until the new one is complete. */
 #include "io/outfile.h"
 
 #include <dirent.h>
@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Only whom the file belongs to holds this lock; the system drops it with the process. */
+/* Locks a temporary file; the system releases the lock when the process ends. 0, or -1: another process holds it. */
 static int lock(int fd)
 {
   struct flock all = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
@@ -19,7 +19,7 @@ static int lock(int fd)
   return fcntl(fd, F_SETLK, &all);
 }
 
-/* The end of a path: the name of the file in its folder. */
+/* File name part of a path. */
 static const char *name_in(const char *path)
 {
   const char *slash = strrchr(path, '/');
@@ -57,7 +57,7 @@ const char *outfile_other_kind(const char *path, const char *suffixes)
   return outfile_is(path, known) && !outfile_is(path, suffixes) ? suffix_of(path) : NULL;
 }
 
-/* Removes temporary files of `path` that a killed run has left: the user's own, which nobody holds. */
+/* Removes temporary files of `path` left from killed runs: regular files of the user that no process has locked. */
 static void remove_remains(const char *path)
 {
   const char *name = name_in(path);
@@ -85,13 +85,13 @@ static void remove_remains(const char *path)
   }
 }
 
-/* Standard output and its like, by name: what follows there is part of a stream, even where that leads to a file. */
+/* Whether path names standard output or another open stream; writing appends there, even if the stream is a file. */
 static int is_stream(const char *path)
 {
   return strncmp(path, "/dev/std", 8) == 0 || strncmp(path, "/dev/fd/", 8) == 0 || strncmp(path, "/proc/", 6) == 0;
 }
 
-/* o->path := where path leads. A link that another user has planted is not followed. */
+/* o->path := path with links resolved. A link owned by another user (except root) is refused with EACCES. */
 static int find_target(Outfile *o, const char *path)
 {
   struct stat st;
@@ -114,7 +114,7 @@ static int find_target(Outfile *o, const char *path)
   return fits ? 0 : -1;
 }
 
-/* A new file beside o->path, with the mode and owner of what stands there. */
+/* Creates o->part beside o->path, with mode and owner of an existing file there. Returns its descriptor, or -1. */
 static int make_part(Outfile *o)
 {
   struct stat old, st;
@@ -131,12 +131,12 @@ static int make_part(Outfile *o)
     }
     lock(fd);
     if (there && fstat(fd, &st) == 0 && (st.st_uid != old.st_uid || st.st_gid != old.st_gid)) {
-      there = fchown(fd, old.st_uid, old.st_gid) == 0 ? 1 : 2; /* 2: the mode is kept, the owner cannot be */
+      there = fchown(fd, old.st_uid, old.st_gid) == 0 ? 1 : 2; /* 2: the mode is kept, the owner cannot be changed */
     }
     if (fstat(fd, &st) == 0 && st.st_nlink > 0 && (!there || fchmod(fd, old.st_mode & 0777) == 0)) {
       return fd;
     }
-    close(fd); /* taken for remains before it was locked: another one */
+    close(fd); /* another run removed the file before it was locked: try another name */
   }
   o->part[0] = '\0';
   return -1;
@@ -174,7 +174,7 @@ int outfile_close(Outfile *o, int keep)
   }
   error = errno;
   if (o->f != stdout) {
-    if (o->part[0] && !bad && keep && rename(o->part, o->path) != 0) { /* while it is locked */
+    if (o->part[0] && !bad && keep && rename(o->part, o->path) != 0) { /* before the lock is released */
       error = errno;
       bad = 1;
     }

@@ -1,8 +1,8 @@
-/* Rows of output. Enters: the columns of a simulation, then one row at a time; leaves: a CSV file (RFC 4180;
- * a head with names and units, values with 17 digits: they read back exactly), or a NumPy .npy file.
+/* Tables and files of rows. Enters: the columns of a simulation, then one row at a time; leaves: a CSV file (RFC 4180;
+ * a header with names and units, numbers with the digits to read back exactly), or a NumPy .npy file.
  *
- * The .npy file is a one-dimensional array of records, a field of 8 bytes a column (words: as many characters as the
- * longest has); the field's title is "name [unit]": a = numpy.load("f.npy"); a["th"], a["th [deg]"], a.dtype.fields. Format: NumPy
+ * The .npy file is a one-dimensional array of records with one 8-byte field a column (text columns: the length of the longest
+ * word); the field's title is "name [unit]": a = numpy.load("f.npy"); a["th"], a["th [deg]"], a.dtype.fields. Format: NumPy
  * Enhancement Proposal 1; version 1.0, and 3.0 where a name is not ASCII. */
 #include <errno.h>
 #include <math.h>
@@ -77,7 +77,7 @@ void table_long_time(Table *t)
   }
 }
 
-/* RFC 4180: quoted when it holds a comma, a quote or a line break; a quote is doubled. */
+/* Writes a CSV field (RFC 4180): in quotes if it holds a comma, a quote or a line break; quotes are doubled. */
 static void csv_text(FILE *f, const char *s)
 {
   if (!strpbrk(s, ",\"\r\n")) {
@@ -108,7 +108,7 @@ static void csv_head(Rows *r)
   putc('\n', r->out.f);
 }
 
-/* The next character of UTF-8 text; what is no UTF-8 byte by byte. */
+/* Decodes the next UTF-8 character; bytes that are not UTF-8 one by one. */
 static uint32_t next_char(const unsigned char **s)
 {
   uint32_t c = *(*s)++;
@@ -121,7 +121,7 @@ static uint32_t next_char(const unsigned char **s)
   return c;
 }
 
-/* The characters of the longest word of a column, at least 1. */
+/* Length of the longest word of a text column in characters, at least 1. */
 static size_t word_width(const Column *c)
 {
   size_t most = 1;
@@ -164,7 +164,7 @@ static int is_ascii(const Rows *r)
   return 1;
 }
 
-/* A string as Python writes it. */
+/* Writes a Python string literal. */
 static void python_text(FILE *f, const char *s)
 {
   putc('"', f);
@@ -177,7 +177,7 @@ static void python_text(FILE *f, const char *s)
   putc('"', f);
 }
 
-/* The dictionary of the header, open at its end: only the shape varies. */
+/* Writes the dictionary of the .npy header up to the shape, whose number of rows is not known yet. */
 static void npy_dict(Rows *r, FILE *f)
 {
   const union {
@@ -208,7 +208,7 @@ static void npy_dict(Rows *r, FILE *f)
   fputs("], 'fortran_order': False, 'shape': (", f);
 }
 
-/* The whole header, in a length that does not depend on the number of rows. */
+/* Writes the .npy header; its length does not depend on the number of rows, so it can be rewritten at the end. */
 static int npy_head(Rows *r)
 {
   char *dict = NULL;

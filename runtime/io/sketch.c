@@ -1,5 +1,5 @@
-/* A run in a terminal. Enters: a table of rows; leaves: charts of braille dots (2 by 4 a letter): each of the first
- * columns against time, or one column against another. Holds: between two rows of a curve the line is drawn, so that steep curves have no holes. */
+/* Plots in a terminal. Enters: a table; leaves: charts of braille dots (2 by 4 a character): the first columns against
+ * time, or one column against another. Holds: rows of a curve are joined by lines, so that steep curves have no gaps. */
 #include <math.h>
 #include <string.h>
 
@@ -46,7 +46,7 @@ static void line(Chart *c, int xa, int ya, int xb, int yb)
   }
 }
 
-/* The range of a column; one that is narrower than `least` times its values is drawn flat, in its middle. */
+/* Range of a column. A range narrower than `least` times the values is widened, so that the curve is flat in the middle. */
 static void range(const Table *t, int col, double least, double *lo, double *hi)
 {
   *lo = HUGE_VAL;
@@ -81,7 +81,7 @@ static void draw(Chart *c, const Table *t, int col_x, int col)
   }
 }
 
-/* "th [rad]" */
+/* s[n] := name and unit, "th [rad]". */
 static void label(char *s, size_t n, const Column *c)
 {
   snprintf(s, n, c->unit[0] ? "%s [%s]" : "%s", c->name, c->unit);
@@ -118,8 +118,7 @@ static void print_chart(FILE *f, const Chart *c, const Column *name)
   }
 }
 
-/* Where both axes have the same unit, a circle should look like one: the narrower range is widened. A dot is
- * taken to be as wide as high. */
+/* Equal scales for two axes of one unit, so that a circle looks round: widens the narrower range. Dots are taken as square. */
 static void same_scale(Chart *c)
 {
   double wide = (c->x1 - c->x0) / (2 * COLS), high = (c->y1 - c->y0) / (4 * c->rows);

@@ -1,6 +1,6 @@
-/* A run on disk, so that it can go on later as if it had never stopped. Enters: the block of doubles of a
- * simulation; leaves: a text file. Holds: doubles are hexadecimal, so they read back bit by bit; the last line
- * is a checksum of all before it. NaN keeps its meaning, not its bits.
+/* Saved states, from which a run continues as if never stopped. Enters: the block of doubles of a simulation; leaves: a
+ * text file, or the reverse. Holds: doubles are hexadecimal and read back bit by bit (NaN as some NaN); the last line is a
+ * checksum of all lines before it.
  *
  *   lag-state 1
  *   program NAME / scene NAME / method NAME / tolerance X / options N X... / signature H / t X
@@ -17,6 +17,7 @@
 
 enum { MOST_BYTES = 256 * 1024 * 1024 };
 
+/* FNV-1a hash, 64 bits. */
 static uint64_t fnv(const char *s, size_t n)
 {
   uint64_t h = UINT64_C(0xcbf29ce484222325);
@@ -61,7 +62,7 @@ int state_write(const char *path, const State *s)
   return outfile_close(&o, OUTFILE_SYNC);
 }
 
-/* The whole file, 0-terminated; NULL with errno set. */
+/* Contents of a file, 0-terminated, malloced; NULL with errno set. */
 static char *slurp(const char *path)
 {
   FILE *f = fopen(path, "rb");
@@ -81,7 +82,7 @@ static char *slurp(const char *path)
       }
       text = more;
     }
-    if (n > MOST_BYTES) { /* no state is that large: a device, or another file */
+    if (n > MOST_BYTES) { /* larger than any state: a device, or another file */
       free(text);
       text = NULL;
       errno = EFBIG;
@@ -104,7 +105,7 @@ static char *slurp(const char *path)
   return text;
 }
 
-/* The rest of the line that begins with key, and the next line into *p. 0: another line. */
+/* value := rest of the line at *p, which must begin with key; *p moves to the next line. 0: no such line. */
 static int field(char **p, const char *key, char *value, size_t size)
 {
   size_t n = strlen(key);
@@ -119,7 +120,7 @@ static int field(char **p, const char *key, char *value, size_t size)
   return 1;
 }
 
-/* The number that `text` begins with; *text goes behind it and the blank after it. 0: there is none. */
+/* *x := number at the start of *text; *text moves past it and one blank. 0: no number. */
 static int number(char **text, double *x)
 {
   char *end;
@@ -166,7 +167,7 @@ static int read_head(char **p, State *s)
   return 1;
 }
 
-/* data[n]; the text behind it is p. */
+/* s->data[s->n] := the numbers at *p, which moves past them. 0: fewer numbers, or no memory. */
 static int read_data(char **p, State *s)
 {
   size_t i = 0;
@@ -204,7 +205,7 @@ int state_read(const char *path, State *s, const char **why)
   struct stat is;
 
   *s = (State){0};
-  if (stat(path, &is) == 0 && !S_ISREG(is.st_mode)) { /* a pipe would be waited for */
+  if (stat(path, &is) == 0 && !S_ISREG(is.st_mode)) { /* reading a pipe would block */
     *why = "is no regular file";
     return 1;
   }

@@ -1,7 +1,6 @@
-/* A picture of a run. Enters: a table of rows; leaves: an SVG file: one panel for each unit against a common
- * time axis, or one panel with one column against another. Holds: a curve of more points than the panel is wide is
- * thinned to the least and largest value of each pixel column, so that no peak is lost; a path to the corners between which
- * straight lines stray by less than a quarter of a pixel. */
+/* SVG plots. Enters: a table; leaves: an SVG file with one panel for each unit over a common time axis, or one panel with
+ * columns against others. Holds: a curve with more points than pixels is reduced to minimum and maximum of each pixel column,
+ * so that no peak is lost; a path to corners between which straight lines are off by less than a quarter of a pixel. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,10 +11,10 @@
 
 enum { WIDTH = 860, LEFT = 84, RIGHT = 150, TOP = 50, GAP = 26, BOTTOM = 52, MOST_PANELS = 6, MOST_LEGEND = 24, MOST_NAME = 48 };
 
-/* Eight colours that differ for all kinds of colour vision (Okabe and Ito), yellow darkened. */
+/* Eight colours distinct for all kinds of colour vision (Okabe and Ito), yellow darkened. */
 static const char *const colour[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7f00", "#444444"};
 
-/* Series k: its colour; the second eight are dashed, the third dotted. */
+/* text[n] := stroke attributes of series k: the second eight series are dashed, the third dotted. */
 static void stroke_of(int k, char *text, size_t n)
 {
   static const char *const dashes[] = {"", " stroke-dasharray=\"5 3\"", " stroke-dasharray=\"1.5 2.5\""};
@@ -24,10 +23,10 @@ static void stroke_of(int k, char *text, size_t n)
 }
 
 typedef struct Panel {
-  double x, y, w, h;         /* on paper */
-  double x0, x1, y0, y1;     /* in the data */
+  double x, y, w, h;         /* rectangle in pixels */
+  double x0, x1, y0, y1;     /* ranges of the data */
   const char *xlabel;
-  int powers;                /* data are exponents of ten, and labels say so */
+  int powers;                /* 1: data are exponents of ten, labelled 1e.. */
 } Panel;
 
 double nice_step(double lo, double hi, int n)
@@ -79,7 +78,7 @@ static void range_of(const Table *t, int col, double *lo, double *hi)
   }
 }
 
-/* An interval that can be drawn: not empty, with a margin. */
+/* Makes [lo, hi] a drawable interval: not empty, with a margin relative to its length. */
 static void widen(double *lo, double *hi, double margin)
 {
   if (!(*lo <= *hi)) {
@@ -117,14 +116,14 @@ static double tick_step(const Panel *p, double lo, double hi, int n)
   return p->powers ? fmax(step, 1) : step;
 }
 
-/* What labels of y leave out: a value that nearly stands still would have the same label at each tick. */
+/* Offset subtracted from y labels where y varies so little that labels of all ticks would be equal; else 0. */
 static double base_of(const Panel *p, double dy)
 {
   double size = fmax(fabs(p->y0), fabs(p->y1));
   return size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0;
 }
 
-/* Every how many ticks of x there is room for a label: long ones (-3.086e+07) would run into each other. */
+/* Number of x ticks per label, so that long labels (-3.086e+07) do not overlap. */
 static double label_stride(const Panel *p, double dx)
 {
   enum { WIDTH_OF_CHARACTER = 7, ROOM = 10 };
@@ -171,7 +170,7 @@ static void axes(FILE *f, const Panel *p, const char *ylabel, int last)
   fputs("</text>\n", f);
 }
 
-/* Points as they come: "M" begins a piece, a value that is not finite ends it. */
+/* Adds a point to an SVG path: "M" at the start of a piece, "L" within; a value that is not finite ends the piece. */
 static void point(FILE *f, const Panel *p, double x, double y, int *pen)
 {
   if (!isfinite(x) || !isfinite(y)) {
@@ -182,7 +181,7 @@ static void point(FILE *f, const Panel *p, double x, double y, int *pen)
   *pen = 1;
 }
 
-/* Dots as strokes of no length with round ends: one element for all. The more there are, the smaller. */
+/* Dots, as zero-length strokes with round ends in one element; smaller where there are many. */
 static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, const char *stroke)
 {
   double width = t->nrows > 2000 ? 2 : t->nrows > 300 ? 2.6 : 4;
@@ -197,7 +196,7 @@ static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, co
   fputs("\"/>\n", f);
 }
 
-/* Against time: each pixel column's least and largest value. */
+/* A curve against time: minimum and maximum of each pixel column. */
 static void graph(FILE *f, const Panel *p, const Table *t, int ycol)
 {
   size_t per = t->nrows / (size_t)(2 * p->w);
@@ -217,12 +216,12 @@ static void graph(FILE *f, const Panel *p, const Table *t, int ycol)
   }
 }
 
-/* The directions from a corner on paper whose line passes all points since, and how far it has gone. */
+/* The sector of directions from a corner (in pixels) whose lines pass near all points since; farthest: of these from the corner. */
 typedef struct Sight {
   double x, y, first, low, high, farthest;
 } Sight;
 
-/* Whether the line from the corner can go on to a point; if so, it must pass near it from now on. */
+/* Whether a line from the corner to (x, y) passes near all points since; if so, narrows the sector to lines near (x, y). */
 static int in_sight(Sight *s, double x, double y)
 {
   const double near = 0.25, turn = 2 * acos(-1);
@@ -246,7 +245,7 @@ static int in_sight(Sight *s, double x, double y)
   return 1;
 }
 
-/* One column against another, or few rows: the corners. */
+/* One column against another, or few rows: a path through the corners only. */
 static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol)
 {
   Sight s = {0};
@@ -292,7 +291,7 @@ static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, i
   fputs("\"/>\n", f);
 }
 
-/* A text of at most `most` characters: a long one is cut. */
+/* s[n] := `from`, shortened to at most `most` characters with "..." at the end. */
 static void cut(const char *from, int most, char *s, size_t n)
 {
   int chars = 0;
@@ -310,7 +309,7 @@ static void cut(const char *from, int most, char *s, size_t n)
   s[i] = '\0';
 }
 
-/* Name and unit in `room` pixels: a long name is cut, the unit stays. */
+/* s[n] := "name [unit]" for `room` pixels; a long name is shortened, the unit is not. */
 static void label_of(const char *name, const char *unit, double room, char *s, size_t n)
 {
   const double width_of_character = 8;
@@ -320,7 +319,7 @@ static void label_of(const char *name, const char *unit, double room, char *s, s
   snprintf(s, n, unit[0] ? "%s [%s]" : "%s", short_name, unit);
 }
 
-/* Line i of a legend of `total` series, of which `room` lines have place. */
+/* Line i of a legend for `total` series, with room for `room` lines; the last may say "and N more". */
 static void legend(FILE *f, const Panel *p, int i, int total, int room, int k, const char *name)
 {
   char stroke[64], s[160];
@@ -342,7 +341,7 @@ static int legend_room(const Panel *p)
   return (int)(p->h / 18) < MOST_LEGEND ? (int)(p->h / 18) : MOST_LEGEND;
 }
 
-/* All series of one unit. */
+/* The panel of one unit, with all its series and their legend. */
 static void unit_panel(FILE *f, const Table *t, const Drawn *d, Panel *p, const char *unit, int last)
 {
   char s[176];
@@ -368,7 +367,7 @@ static void unit_panel(FILE *f, const Table *t, const Drawn *d, Panel *p, const 
   }
 }
 
-/* How much room the longest name of the legend takes, on the right of the panels. */
+/* Width of the legend right of the panels, in pixels. */
 static int legend_width(const Table *t, const Drawn *d)
 {
   enum { KEY = 41, CHARACTER = 8 };
@@ -396,7 +395,7 @@ static void head(FILE *f, int width, int height, const char *title)
   text(f, LEFT, 26, "font-size=\"15\" font-weight=\"bold\"", title);
 }
 
-/* The distinct units, in order of first use, at most MOST_PANELS. */
+/* units := distinct units of the drawn columns, in order of first use, at most MOST_PANELS. Returns their number. */
 static int units_of(const Table *t, const Drawn *d, const char *units[MOST_PANELS])
 {
   int n = 0;
@@ -432,7 +431,7 @@ static void against_time(FILE *f, const Table *t, const char *title, const Drawn
   }
 }
 
-/* A path: one metre is as long across as it is up; the panel is as high as that needs, within reason. */
+/* Equal scales for both axes: sets the height of the panel, within limits, and widens the ranges. */
 static void same_scale(Panel *p)
 {
   double flat = (p->y1 - p->y0) / (p->x1 - p->x0) * p->w;
@@ -445,7 +444,7 @@ static void same_scale(Panel *p)
   p->y1 = my + scale * p->h / 2;
 }
 
-/* Whether one column is the rate of another: its name with a prime, or in parentheses with a prime. */
+/* Whether a column is the rate of another: its name is x' or (x)' for x. */
 static int is_rate(const char *rate, const char *of)
 {
   size_t n = strlen(of);
@@ -454,8 +453,8 @@ static int is_rate(const char *rate, const char *of)
   return strncmp(rate, of, n) == 0 && (strcmp(rate + n, "'") == 0 || strcmp(rate + n, ")'") == 0);
 }
 
-/* Whether a step to the right is to be as long as the same step up: both are in one unit. Without units, where they are alike in
- * size, and none is the rate of the other. */
+/* Whether both axes get the same scale: columns of one unit, neither the rate of the other; without units only if their ranges are of
+ * similar size. */
 static int shares_scale(const Table *t, int x, int y, const Panel *p)
 {
   const Column *a = &t->cols[x], *b = &t->cols[y];
@@ -474,7 +473,7 @@ static void mark(FILE *f, double x, double y, const char *fill)
   }
 }
 
-/* Which end of a path is which: a curve against time needs no such help. */
+/* Marks start and end of a path; only for one column against another. */
 static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y)
 {
   static const char *const name[] = {"start", "end"}, *const fill[] = {"#009e73", "#d55e00"};
@@ -487,7 +486,7 @@ static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y)
   }
 }
 
-/* The label of an axis: the column's, or what several have in common. */
+/* Label of an axis: name of its column, or `name` for several, with the first unit among them. */
 static void axis_label(const Table *t, int n, const int *cols, const char *name, double room, char *s, size_t size)
 {
   const char *unit = "";

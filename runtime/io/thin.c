@@ -1,5 +1,5 @@
-/* Which rows a picture needs. Enters: rows in the order of time; leaves: those of them between which straight lines miss no
- * row by more than a part of what is drawn (the "swinging door": E. H. Bristol, Swinging door trending, ISA Transactions 1990). Holds:
+/* Thinning of rows for pictures by the "swinging door" (E. H. Bristol, Swinging door trending, ISA Transactions 1990). Enters:
+ * rows in order of time; leaves: a subset whose straight lines miss no row by more than a part of the drawn range. Holds:
  * both sides of a jump are kept, and the first and the last row. */
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 #include "io/io.h"
 
-/* Rounding: what is smaller than this beside its values is no motion. */
+/* Changes below this part of the values count as rounding, not as motion. */
 static const double ROUNDING = 1e-11;
 
 int thin_init(Thin *w, Table *t, int store, double part, double longest)
@@ -74,13 +74,14 @@ int thin_straight(const Thin *w, const double *a, const double *b, const double 
 
   for (int i = 0; i < w->ndrawn; i++) {
     int c = w->drawn[i];
-    if (fabs(between[c] - (a[c] + f * (b[c] - a[c]))) > w->width[c]) { /* NaN: nothing to follow */
+    if (fabs(between[c] - (a[c] + f * (b[c] - a[c]))) > w->width[c]) { /* false for NaN: such a row needs no line */
       return 0;
     }
   }
   return 1;
 }
 
+/* Keeps a row: the door opens anew from here. -1: no memory. */
 static int keep(Thin *w, const double *row)
 {
   size_t bytes = (size_t)w->table->ncols * sizeof(double);
@@ -91,7 +92,7 @@ static int keep(Thin *w, const double *row)
   return w->store ? table_add(w->table, row) : 0;
 }
 
-/* Whether no line from the row kept last passes all rows since and this one, too; narrows the door where one does. */
+/* 1: no line from the row kept last passes near this row and all between. 0: one does; narrows the door (slopes low to high) to such lines. */
 static int shuts(Thin *w, const double *row)
 {
   double dt = fabs(row[0] - w->from[0]);
@@ -126,7 +127,7 @@ int thin_add(Thin *w, const double *row)
   if (memcmp(before, row, bytes) == 0) {
     return 0;
   }
-  if (row[0] == before[0]) { /* a jump */
+  if (row[0] == before[0]) { /* a jump: two rows at one time */
     int rc = thin_end(w);
     return rc ? rc : keep(w, row);
   }
@@ -135,7 +136,7 @@ int thin_add(Thin *w, const double *row)
     if (rc) {
       return rc;
     }
-    if (shuts(w, row)) { /* between a number and none */
+    if (shuts(w, row)) { /* a change between finite and not finite */
       return keep(w, row);
     }
   }
@@ -162,7 +163,7 @@ int thin_again(Thin *w, size_t most)
     size_t n = t->nrows;
     w->part *= 2;
     t->nrows = w->kept = 0;
-    for (size_t i = 0; i < n; i++) { /* what is kept goes where it has been read */
+    for (size_t i = 0; i < n; i++) { /* kept rows overwrite rows already read */
       memcpy(row, t->data + i * (size_t)t->ncols, (size_t)t->ncols * sizeof *row);
       thin_see(w, row);
       thin_add(w, row);

@@ -1,6 +1,6 @@
-/* Characters that a reader does not see, or that change what he sees: C0 and C1 controls, DEL, and those that turn the direction of text
- * (Unicode TR36, "bidirectional text spoofing"). No message and no title has them: they are shown as <U+202E>, a byte that is no UTF-8 as <9B>. The
- * compiler is built with a copy of this file (Makefile). */
+/* Makes hidden characters visible in messages and titles: C0 and C1 controls, DEL, and characters that change the direction of text (Unicode
+ * TR36, "bidirectional text spoofing") are shown as <U+202E>, a byte that is not UTF-8 as <9B>. The compiler is built with a copy of this
+ * file (Makefile). */
 #ifndef LAG_IO_VISIBLE_H
 #define LAG_IO_VISIBLE_H
 
@@ -15,7 +15,7 @@ static inline int is_hidden(unsigned long code)
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
 }
 
-/* The bytes of the UTF-8 character at s, of n > 0, and its code; 1 and a code of 0xDC00 more than the byte where it is none. */
+/* Decodes the UTF-8 character at s of n > 0 bytes: returns its length and *code. Invalid: length 1, *code = 0xDC00 + the byte. */
 static inline size_t utf8_at(const char *s, size_t n, unsigned long *code)
 {
   static const unsigned long least[] = {0, 0, 0x80, 0x800, 0x10000};
@@ -33,7 +33,7 @@ static inline size_t utf8_at(const char *s, size_t n, unsigned long *code)
   return len;
 }
 
-/* out[VISIBLE_SIZE] := how the character at s, of n > 0 bytes, is shown. Returns its bytes. */
+/* out[VISIBLE_SIZE] := visible form of the character at s of n > 0 bytes. Returns the length of the character in bytes. */
 static inline size_t show_visible(const char *s, size_t n, char *out)
 {
   unsigned long code;
@@ -49,7 +49,7 @@ static inline size_t show_visible(const char *s, size_t n, char *out)
   return len;
 }
 
-/* s, with what is hidden shown; the characters of `keep` stay. */
+/* Writes s with hidden characters made visible, except those in `keep`. */
 static inline void fput_visible(FILE *f, const char *s, const char *keep)
 {
   char shown[VISIBLE_SIZE];

@@ -1,5 +1,5 @@
 /* Elimination within a band: G.H. Golub, C.F. Van Loan, Matrix Computations, 4th ed. (2013), algorithms 3.4.1 and 4.3.1.
- * Multipliers stay where they were when they were made: a solution repeats the exchanges one by one. */
+ * Multipliers are not exchanged with later rows: lag_band_solve repeats the exchanges one by one. */
 #include "methods/band.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@ static int least(int a, int b)
   return a < b ? a : b;
 }
 
-/* The largest entry of each row as it was given. */
+/* scale[n] := largest entry of each row. -1: a row is zero or not finite. */
 static int row_scales(const lag_band *m, double *scale)
 {
   for (int i = 0; i < m->n; i++) {

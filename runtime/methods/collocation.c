@@ -1,19 +1,19 @@
-/* Gauss collocation of first-order systems. Enters: t, y; leaves: t + h, y one step later. Holds: the stages solve their equations to
- * rounding, so that what the exact method conserves is conserved to rounding, for any step:
+/* Gauss collocation of first-order systems. Enters: t, y; leaves: t + h, y one step later. Holds: the stage equations are solved to
+ * rounding, so that the invariants of the exact method are conserved to rounding, for any step:
  *
  *   every quadratic invariant of the flow (G.J. Cooper, IMA J. Numer. Anal. 7 (1987) 1, DOI 10.1093/imanum/7.1.1), as the impulse and
  *     the angular impulse of point vortices;
- *   a two-form with constant coefficients that the flow conserves, because that is a quadratic invariant of the variational equation
+ *   a two-form with constant coefficients that the flow conserves, because it is a quadratic invariant of the variational equation
  *     (P.B. Bochev, C. Scovel, BIT 34 (1994) 337, DOI 10.1007/BF01935643): L = theta q' - H where the two-form dtheta is constant. There
  *     the method is symplectic, and the energy stays within a band.
  *
- * Where the two-form varies it is symmetric: the energy has no trend for motions that are reversible, and no such bound is known for
- * others. Why not a discrete Lagrangian of midpoints, of order 2 for any L: where L is linear in the velocities its equations are those
- * of a method of two steps, whose second root, -1, is on the unit circle: neighbouring points fall apart into two families (C.L. Ellison
- * et al., Phys. Plasmas 25 (2018) 052502, DOI 10.1063/1.5022277; M. Kraus, arXiv:1708.07356). Collocation has one step, and no such
- * mode; for a constant two-form and a linear theta it is the variational integrator whose momenta are theta(q) at every step.
+ * Where the two-form varies the method is symmetric: the energy of reversible motions has no trend; for others no bound is known. Why not
+ * the discrete Lagrangian of midpoints, of order 2 for any L: where L is linear in the velocities its equations are those of a two-step
+ * method, whose second root, -1, lies on the unit circle: neighbouring points separate into two families (C.L. Ellison et al., Phys.
+ * Plasmas 25 (2018) 052502, DOI 10.1063/1.5022277; M. Kraus, arXiv:1708.07356). Collocation is a one-step method and has no such mode; for
+ * a constant two-form and a linear theta it is the variational integrator whose momenta are theta(q) at every step.
  *
- * Between steps of at most two stages y is the cubic through both ends, of more a shorter step. */
+ * Dense output: the cubic through both ends for at most two stages, a shorter step for more. */
 #include "methods/collocation.h"
 
 #include <float.h>
@@ -29,21 +29,21 @@
 
 enum { MOST_CORRECTIONS = 25, STAGES_WITH_CUBIC = 2 };
 
-/* One block of doubles; the arrays of x are in Arrays. */
+/* Saved state of the method, doubles only; Arrays has pointers into x. */
 typedef struct Collocation {
   double h;      /* the step, > 0 */
   double t0, dt; /* the last step */
-  double tc;     /* what t has lost to rounding */
-  double ends;   /* f0, f1 belong to the last step */
+  double tc;     /* compensation of t: rounding lost so far */
+  double ends;   /* 1: f0, f1 belong to the last step; -1: the model has no value there; 0: not computed */
   lag_rule rule;
   double x[];
 } Collocation;
 
 typedef struct Arrays {
-  double *comp, *y0, *y1, *f0, *f1, *Y; /* [n] what y has lost; both ends of the last step; a stage */
-  double *u, *other;                    /* [stages n] slopes at the stages of the last step, of a shorter one */
+  double *comp, *y0, *y1, *f0, *f1, *Y; /* [n] compensation of y; y and f at both ends of the last step; a stage */
+  double *u, *other;                    /* [stages n] slopes at the stages of the last step, and of a shorter one */
   double *R, *scale;                    /* [stages n] residuals, then corrections; scratch */
-  double *jacobian, *linear;            /* [n n], scratch of lag_jacobian */
+  double *jacobian, *linear;            /* [n n]; scratch of lag_jacobian */
   double *history;
   lag_band J;
 } Arrays;
@@ -109,15 +109,15 @@ int lag_collocation_sound(const void *work, const void *fresh, const lag_problem
 
 /* ---- The equations u_i = f(t + c_i h, y0 + h sum_k a_ik u_k) */
 
-/* A step that is to be found: from y0 (which has lost comp, or NULL) at t, of length h. */
+/* A step to be solved: from y0 at t, of length h; comp[n] is the compensation of y0, or NULL. */
 typedef struct Step {
   double t, h;
   const double *y0, *comp;
   double *u;
-  int counted; /* its corrections count as iterations of the method */
+  int counted; /* 1: its corrections count as iterations of the method */
 } Step;
 
-/* Y := stage i. */
+/* Y[n] := y at stage i. */
 static void stage(const Collocation *w, const Step *s, int n, int i, double *Y)
 {
   for (int j = 0; j < n; j++) {
@@ -134,7 +134,7 @@ static double time_of(const Collocation *w, const Step *s, int i)
   return s->t + w->rule.c[i] * s->h;
 }
 
-/* R := f - u at all stages. */
+/* R := f - u at all stages. LAG_OK, or a failure. */
 static int residual(const Collocation *w, const Arrays *a, lag_problem *pb, const Step *s)
 {
   int n = pb->n;
@@ -152,7 +152,7 @@ static int residual(const Collocation *w, const Arrays *a, lag_problem *pb, cons
   return LAG_OK;
 }
 
-/* The matrix 1 - h a_ik J_i at the present stages, factored. */
+/* Factors Newton's matrix 1 - h a_ik J_i at the present stages. */
 static int matrix(const Collocation *w, Arrays *a, lag_problem *pb, const Step *s)
 {
   int n = pb->n, stages = (int)w->rule.free;
@@ -179,7 +179,7 @@ static int matrix(const Collocation *w, Arrays *a, lag_problem *pb, const Step *
   return LAG_OK;
 }
 
-/* Corrects u; the largest correction of a component, relative to what the step does to it. */
+/* One Newton correction of u. Returns its largest component, relative to the change of that component over the step. */
 static double correct(const Collocation *w, const Arrays *a, int n, const Step *s)
 {
   int m = n * (int)w->rule.free;
@@ -195,7 +195,7 @@ static double correct(const Collocation *w, const Arrays *a, int n, const Step *
   return part;
 }
 
-/* Whether the next correction would be lost in rounding, or this one was rounding itself: as in discrete.c. */
+/* Whether the next correction would be below rounding, or this one is rounding itself; the rule of discrete.c. */
 static int is_settled(double now, double before, int fresh, int turn)
 {
   double next = fresh ? 1000 * now * now : now * (now / before);
@@ -206,7 +206,7 @@ static int is_settled(double now, double before, int fresh, int turn)
   return turn > 0 && now >= before / 2 && now <= 1e-8;
 }
 
-/* u from a guess. */
+/* Newton's method for u, from the guess in u. */
 static int solve(const Collocation *w, Arrays *a, lag_problem *pb, const Step *s)
 {
   double before = 1;
@@ -231,7 +231,7 @@ static int solve(const Collocation *w, Arrays *a, lag_problem *pb, const Step *s
   return lag_step_failed(pb, LAG_EMETHOD, s->t);
 }
 
-/* u := the slope at the beginning. */
+/* Initial guess: u := the slope at the start of the step, for all stages. */
 static int straight(const Collocation *w, const Arrays *a, lag_problem *pb, const Step *s)
 {
   int n = pb->n, rc = lag_step_rhs(pb, s->t, s->y0, a->Y);
@@ -284,7 +284,7 @@ int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y)
 
 /* ---- Between steps */
 
-/* The slopes of a step from the beginning of the last one, of length dt, into a->other; their stages lie within the last one. */
+/* Solves a step of length dt from the start of the last one; slopes into a->other. */
 static int shorter(const Collocation *w, Arrays *a, lag_problem *pb, double dt)
 {
   Step s = {.t = w->t0, .h = dt, .y0 = a->y0, .u = a->other};
@@ -293,7 +293,7 @@ static int shorter(const Collocation *w, Arrays *a, lag_problem *pb, double dt)
   return rc ? rc : solve(w, a, pb, &s);
 }
 
-/* The cubic; where the model has no value at an end, the straight line. */
+/* y at s in [0, 1] of the last step: Hermite cubic, or linear where the model has no value at an end. */
 static void cubic(Collocation *w, const Arrays *a, lag_problem *pb, double s, double *y)
 {
   int n = pb->n;
@@ -331,7 +331,7 @@ void lag_collocation_dense(void *work, lag_problem *pb, double t, double *y)
   }
 }
 
-/* ---- The derivative of a step */
+/* ---- Derivative of a step */
 
 enum { WITH_END = LAG_RULE_FREE + 1 };
 
@@ -340,7 +340,7 @@ size_t lag_collocation_tangent_size(const lag_problem *pb, int k)
   return lag_tangent_implicit_size(pb, WITH_END, k) + (size_t)(WITH_END * pb->n);
 }
 
-/* The end of the step is one more stage, which no other depends on. */
+/* The end of the step is an additional last stage, on which no other stage depends. */
 int lag_collocation_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
 {
   Collocation *w = work;

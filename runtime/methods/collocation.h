@@ -1,14 +1,14 @@
-/* Gauss collocation of y' = f(t, y) for models of states alone: flows, and Lagrangians that are linear in all velocities. */
+/* Gauss collocation of y' = f(t, y) for models with states only (nq = 0): flows, and Lagrangians linear in all velocities. */
 #ifndef LAG_METHODS_COLLOCATION_H
 #define LAG_METHODS_COLLOCATION_H
 
 #include "lag.h"
 
-/* Steps of size h with 1 .. LAG_RULE_FREE stages, of twice that order. Needs the linearisation, and nq = 0. */
+/* Fixed steps of size h with 1 .. LAG_RULE_FREE stages; the order is twice the number of stages. Needs the linearisation, and nq = 0. */
 size_t lag_collocation_size(const lag_problem *pb, int stages);
 void lag_collocation_init(void *work, lag_problem *pb, double h, int stages);
 
-/* As lag_method says. */
+/* Members of lag_method of the same names. */
 int lag_collocation_sound(const void *work, const void *fresh, const lag_problem *pb);
 void lag_collocation_reset(void *work, lag_problem *pb);
 int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y);

@@ -1,14 +1,13 @@
 /* The kicks and drifts of the Verlet family. Facts: sum drift = sum kick = 1; all but symplectic Euler are symmetric.
  *
- * Of the published tables those for separable models have the smallest error for a number of evaluations, as the test of them measures
- * against the compositions of Verlet steps by Suzuki, Yoshida, McLachlan, Kahan and Li: they solve the order conditions
- * of q'' = f(t, q), where [B, [B, [B, A]]] = 0 (A drift, B kick), which are fewer than those of any two flows, and spend
- * the freedom on the error. They need constant M for that, which is what separable means here. Of those for any two flows
- * these have the smallest error for a number of links on the double pendulum: a fifth of that of Suzuki's composition of
- * order 4, a fortieth of that of Kahan and Li's of order 6.
+ * Choice of the tables for separable models: the smallest error at equal number of evaluations, measured by their test against the
+ * compositions of Verlet steps by Suzuki, Yoshida, McLachlan, Kahan and Li. They solve the order conditions of q'' = f(t, q), where
+ * [B, [B, [B, A]]] = 0 (A drift, B kick): fewer than for any two flows, which leaves parameters to reduce the error. They need
+ * constant M: separable here means that. Choice of the tables for any two flows: the smallest error at equal number of links on the
+ * double pendulum, a fifth of Suzuki's composition of order 4, a fortieth of Kahan and Li's of order 6.
  *
- * The digits behind the 15 to 30 that are published solve the order conditions (as words in A and B up to the order, and
- * without [B, [B, [B, A]]] where that is 0) by Newton's method from there with the least change: less than 2e-15 in all. */
+ * Digits beyond the 15 to 30 published solve the order conditions (words in A and B up to the order, without [B, [B, [B, A]]]
+ * where it is 0) by Newton's method from the published values, with the least change: less than 2e-15 in all. */
 #include "methods/composition.h"
 
 /* Kick, then drift. R. de Vogelaere (1956); E. Hairer, C. Lubich, G. Wanner, Acta Numerica 12 (2003) 399,

@@ -1,3 +1,4 @@
+/* Error norm and first step of adaptive methods (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.4). */
 #include "methods/control.h"
 
 #include <math.h>

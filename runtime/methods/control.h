@@ -1,4 +1,4 @@
-/* What methods that choose their steps share: the size of an error, and the first step. */
+/* Step size control of adaptive methods: the norm of an error estimate, the first step, and a fast power. */
 #ifndef LAG_METHODS_CONTROL_H
 #define LAG_METHODS_CONTROL_H
 
@@ -12,18 +12,17 @@ typedef struct lag_tolerance {
   double absolute, relative;
 } lag_tolerance;
 
-/* The lesser and the greater of two numbers; the second where the first is none. */
+/* Minimum and maximum of two numbers; b where a is NaN. */
 static inline double lag_lesser(double a, double b) { return a < b ? a : b; }
 static inline double lag_greater(double a, double b) { return a > b ? a : b; }
 
-/* x^p for a normal x > 0 and |p| <= 1/8, to 2e-4 of it: all that the size of a step asks for. The next step waits for it, and for pow it
- * would wait for a tenth of a short step's time. log2(x) by its exponent and a cubic in what is left of it, 2^y likewise, both least at
- * Chebyshev's points: errors 7e-4 of a binary order, and 8e-5. */
+/* x^p for a normal x > 0 and |p| <= 1/8, with relative error 2e-4, enough for a step size; pow would take a tenth of a short step's time.
+ * log2(x) and 2^y are the exponent and a cubic in the fraction, fitted at Chebyshev points: errors 7e-4 binary orders and 8e-5. */
 static inline double lag_rough_power(double x, double p)
 {
 #ifdef LAG_REAL_IS_DOUBLE
-  const uint64_t root = 0x3fe6a09e667f3bcd; /* the bits of sqrt(1/2): 1 + u is between that and sqrt(2) */
-  const double whole = 6755399441055744.0;  /* 1.5 2^52: what is added to it becomes an integer */
+  const uint64_t root = 0x3fe6a09e667f3bcd; /* the bits of sqrt(1/2): sqrt(1/2) <= 1 + u < sqrt(2) */
+  const double whole = 6755399441055744.0;  /* 1.5 2^52: adding and subtracting this number rounds y to an integer */
   uint64_t bits;
   double u, two;
 
@@ -42,10 +41,10 @@ static inline double lag_rough_power(double x, double p)
 #endif
 }
 
-/* Root mean square of x[n] against absolute + relative |y|. */
+/* Weighted root mean square of x[n], with weights 1/(absolute + relative |y_i|). */
 double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const double *x, const double *y);
 
-/* The first step to try from y, where f0 = f(t, y), by a method of this order; at most h_max, 0: no limit. y1[n] and
+/* The first step to try from y, where f0 = f(t, y), for a method of this order; at most h_max (0: no limit). y1[n] and
  * f1[n] are scratch. E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), II.4
  * "starting step size": one Euler step measures the second derivative. */
 double lag_first_step(lag_problem *pb, const lag_tolerance *tol, int order, double h_max, double t, const double *y,

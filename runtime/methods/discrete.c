@@ -1,5 +1,5 @@
-/* Newton's method for a step of discrete mechanics. Enters: q, p and a guess; leaves: the velocities inside the step, and the
- * forces at its points. Holds: derivatives are those that the compiler took of L; none is differenced. */
+/* Newton's method for a step of a discrete Lagrangian. Enters: q, p and a guess; leaves: the velocities inside the step, and the
+ * forces at its points. Holds: all derivatives are exact, emitted by the compiler; no finite differences. */
 #include "methods/discrete.h"
 
 #include <float.h>
@@ -13,16 +13,16 @@
 
 enum { MOST_CORRECTIONS = 25 };
 
-/* The work space, laid out. */
+/* Pointers into lag_discrete.work. */
 typedef struct Parts {
   int n, m, free, points;
   double *Q, *V, *Lq, *Lv, *F; /* [n] at one point */
-  double *R, *S, *du;          /* [m] residual, the size of its terms, correction */
+  double *R, *S, *du;          /* [m] residual, size of its terms, correction */
   double *h;                   /* [nsecond] */
   lag_band J;
 } Parts;
 
-/* How far from the diagonal second derivatives stand, as coordinates were declared. */
+/* Half-bandwidth of the second derivatives, in the order in which coordinates are declared. */
 static int half_band(const lag_model *m)
 {
   int band = 0;
@@ -87,7 +87,7 @@ static double time_of(const lag_discrete *d, int i)
   return d->t + d->rule->c[i] * d->h;
 }
 
-/* The residual R, in each component the size S of its terms, and the forces. */
+/* R := residual, S := size of its terms by component, d->force := forces at the points. LAG_OK, or a failure. */
 static int residual(const lag_discrete *d, const Parts *w)
 {
   const lag_rule *r = d->rule;
@@ -124,8 +124,8 @@ static int residual(const lag_discrete *d, const Parts *w)
   return LAG_OK;
 }
 
-/* How strongly a derivative at a point enters, by the equation k and the free velocity l: of p and of the forces, by
- * velocities and by coordinates. */
+/* Coefficients of the derivatives at one point in equation k, column of free velocity l: p (p) and forces (f) by velocities (v) and
+ * by coordinates (q). */
 typedef struct Weights {
   double pv[LAG_RULE_FREE][LAG_RULE_FREE], pq[LAG_RULE_FREE][LAG_RULE_FREE];
   double fv[LAG_RULE_FREE][LAG_RULE_FREE], fq[LAG_RULE_FREE][LAG_RULE_FREE];
@@ -149,8 +149,8 @@ static Weights weights(const lag_discrete *d, const Parts *w, int i)
   return c;
 }
 
-/* Adds c x to the block of coordinates (row, col). Unknown u_k of coordinate a is number a free + k, so that the matrix of a
- * chain has a band. */
+/* Adds c x to the block (row, col) of the matrix. Unknown u_k of coordinate a has index a free + k, so that the matrix of a
+ * chain is banded. */
 static void add_block(const Parts *w, int row, int col, double (*c)[LAG_RULE_FREE], double x)
 {
   for (int k = 0; k < w->free; k++) {
@@ -161,7 +161,7 @@ static void add_block(const Parts *w, int row, int col, double (*c)[LAG_RULE_FRE
   }
 }
 
-/* Adds what the second derivatives at point i put into the matrix. */
+/* Adds the second derivatives at point i to the matrix. */
 static void scatter(const lag_discrete *d, const Parts *w, int i)
 {
   const lag_model *m = d->pb->model;
@@ -179,7 +179,7 @@ static void scatter(const lag_discrete *d, const Parts *w, int i)
   }
 }
 
-/* Says what Newton's method does not do, in which step, and what is left in R. */
+/* LAG_EMETHOD: pb->detail says that Newton's method `what`, in which step, and how large the residual R is. */
 static int gave_up(const lag_discrete *d, const Parts *w, const char *what)
 {
   double worst = 0;
@@ -194,7 +194,7 @@ static int gave_up(const lag_discrete *d, const Parts *w, const char *what)
   return lag_step_failed(d->pb, LAG_EMETHOD, d->t);
 }
 
-/* A correction has led to where the model has no values, which says nothing of the model: R is that before it. */
+/* Failure after a correction that led outside the model's domain: undoes it and reports the residual before it. */
 static int led_astray(const lag_discrete *d, const Parts *w)
 {
   for (int a = 0; a < w->n; a++) {
@@ -206,7 +206,7 @@ static int led_astray(const lag_discrete *d, const Parts *w)
   return gave_up(d, w, "leads to where the model has no values");
 }
 
-/* The matrix of Newton's method at the present u, factored. */
+/* Factors Newton's matrix at the present u. LAG_OK, or a failure. */
 static int matrix(const lag_discrete *d, Parts *w)
 {
   memset(w->J.a, 0, (size_t)lag_band_size(w->m, w->J.band) * sizeof(double));
@@ -224,12 +224,13 @@ static int matrix(const lag_discrete *d, Parts *w)
   return LAG_OK;
 }
 
-/* How large a correction is: `part`, the largest of a component relative to what the step does to q; `power`, the root of
- * du.R over the sum of |u| times the terms of R, which no choice of units changes. */
+/* Size of a correction. part: its largest component relative to the motion of q over the step. power: sqrt(sum |du R| / sum |u| S),
+ * which does not depend on units. */
 typedef struct Size {
   double part, power;
 } Size;
 
+/* One Newton correction of u; returns its size. */
 static Size correct(const lag_discrete *d, const Parts *w)
 {
   double part = 0, work = 0, whole = 0;
@@ -253,8 +254,8 @@ static Size correct(const lag_discrete *d, const Parts *w)
   return (Size){part, work > 0 ? sqrt(work / whole) : 0};
 }
 
-/* Whether the next correction would be lost in rounding: a fresh matrix squares errors, an old one shrinks them as before.
- * Or whether corrections have stopped to shrink, being rounding themselves. */
+/* Whether the next correction would be below rounding (a fresh matrix squares errors, an old one contracts them at the same rate),
+ * or corrections have stopped shrinking because they are rounding. */
 static int is_settled(Size now, Size before, int fresh, int turn)
 {
   double next = fresh ? 1000 * now.part * now.part : now.part * (now.part / before.part);
@@ -290,7 +291,7 @@ int lag_discrete_solve(const lag_discrete *d)
   return gave_up(d, &w, what);
 }
 
-/* ---- The derivative of the step */
+/* ---- Derivative of the step */
 
 void lag_second_times(const lag_problem *pb, const double *h, int k, const double *dQ, const double *dV, double *dP, double *dF)
 {
@@ -312,13 +313,13 @@ void lag_second_times(const lag_problem *pb, const double *h, int k, const doubl
   }
 }
 
-/* Changes of momenta and forces at a point, of coordinates and velocities there, of velocities of one column. */
+/* Scratch: dP, dF, dQ, dV at one point [nq k] each, and one column of du [nq free]. */
 size_t lag_discrete_tangent_size(const lag_problem *pb, int free, int k)
 {
   return (size_t)(pb->nq * (4 * k + free));
 }
 
-/* -dR/d(q, p) (dq, dp) into du, at fixed u. */
+/* du := -dR/d(q, p) (dq, dp) at fixed u, the right-hand side of the derivative. */
 static int pushed(const lag_discrete *d, const Parts *w, int k, const double *dq, const double *dp, double *du, double *dP, double *dF)
 {
   const lag_rule *r = d->rule;
@@ -344,7 +345,7 @@ static int pushed(const lag_discrete *d, const Parts *w, int k, const double *dq
   return LAG_OK;
 }
 
-/* du := (dR/du)^-1 du, a column at a time. */
+/* du := (dR/du)^-1 du, column by column. */
 static void solve_columns(const Parts *w, int k, double *du, double *column)
 {
   for (int c = 0; c < k; c++) {

@@ -86,8 +86,8 @@ const lag_tableau lag_dop853_tableau = {
 
 EMBEDDED_TRIAL(lag_dop853_tableau, 1)
 
-/* HNW II.4 has beta = 0.04, a power of 0.117 for the error, and safety 0.9. Measured at equal error on the double pendulum, Henon-Heiles' and Kepler's problem, a
- * smaller step that is not rejected costs 3 to 20 % less. */
+/* HNW II.4 has beta = 0.04, exponent 0.117 of the error, and safety 0.9. These constants give smaller steps, fewer of them rejected: 3 to 20 %
+ * fewer calls at equal error on the double pendulum, Henon-Heiles and Kepler's problem. */
 static const EmbeddedPair pair = {&lag_dop853_tableau, 1, 0.0375, 3, 0.82, 1.0 / 3, 6, trial};
 
 enum { LAST = 12, EXTRA = 3, NSTAGES = 16, HIGH = EMBEDDED_K1 + NSTAGES }; /* arrays HIGH..HIGH+3: the highest terms of dense output */
@@ -103,8 +103,8 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return lag_embedded_step(&pair, work, pb, t, y);
 }
 
-/* The three stages that only dense output needs, and what follows from them. Their points lie inside an accepted step;
- * should the model fail there all the same, have_extra becomes -1. */
+/* The three extra stages of dense output, and its four highest terms. have_extra := -1 where the model fails at a stage, though
+ * the stages lie inside an accepted step. */
 static void extend(Embedded *w, lag_problem *pb)
 {
   EmbeddedShape as = embedded_shape(pb);
@@ -122,7 +122,7 @@ static void extend(Embedded *w, lag_problem *pb)
   }
 }
 
-/* HNW II.6, code dop853, function contd8. Without the extra stages: Hermite interpolation, of order 4. */
+/* HNW II.6, code dop853, function contd8. Where the extra stages failed: Hermite interpolation, of order 4. */
 static void dense(void *work, lag_problem *pb, double t, double *y)
 {
   Embedded *w = work;
@@ -156,7 +156,7 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
 }
 
 const lag_method lag_dop853 = {
-    .finest = 1e-27, /* 30 digits, those of dense output up to 390 in size */
+    .finest = 1e-27, /* coefficients have 30 digits; those of dense output are as large as 390 */
     .name = "dop853",
     .order = 8,
     .dense_order = 7,

@@ -1,6 +1,6 @@
 /* Embedded explicit Runge-Kutta methods with adaptive steps. Enters: t, y; leaves: the next accepted t, y.
- * Holds: a rejected step leaves t, y as they were; the last stage of a step is the first of the next; t and y are
- * summed with compensation (steps.h).
+ * Holds: a rejected step leaves t and y unchanged; the last stage of a step is the first of the next; sums over steps
+ * are compensated (steps.h).
  *
  * Source: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), DOI
  * 10.1007/978-3-540-78862-1: II.4 (error norm, PI controller, first step), II.10 (the estimate of order 5 with a
@@ -72,7 +72,7 @@ int lag_embedded_sound(const void *work, const void *fresh, const lag_problem *p
          isfinite(w->dt) && isfinite(w->tc) && isfinite(w->t_begin) && lag_is_flag(w->begun);
 }
 
-/* f at the start of a step into K1, y into Y0, and a step to try. */
+/* Before a step: K1 := f(t, y), Y0 := y, w->h := the step to try. */
 static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y)
 {
   int row = lag_embedded_row(pb);
@@ -101,7 +101,7 @@ static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, doubl
   return LAG_OK;
 }
 
-/* The limit on steps: the option, or else what has been seen of the motion so far; and what the problem says. */
+/* Largest step: the option, or else the time covered so far; and at most pb->longest. */
 static double longest(const Embedded *w, const lag_problem *pb, double t)
 {
   if (w->fixed != 0.0) {
@@ -111,10 +111,10 @@ static double longest(const Embedded *w, const lag_problem *pb, double t)
   return pb->longest > 0 ? lag_lesser(most, pb->longest) : most;
 }
 
-/* The size of the next step; err2: the square of the error. One power, for the error and for its memory. */
+/* PI controller: the size of the next step from err2, the squared error. One power serves the error and its memory. */
 static void next_size(const EmbeddedPair *pair, Embedded *w, double err2, int retried)
 {
-  const double least = 1e-8; /* what is remembered, squared; and where nothing is */
+  const double least = 1e-8; /* floor of the remembered squared error, and its value where none is known */
   double power = lag_rough_power(lag_greater(err2, 1e-24), -pair->beta / 2), f = pair->safety;
   double memory = err2 > least ? power : lag_rough_power(least, -pair->beta / 2);
 
@@ -126,7 +126,7 @@ static void next_size(const EmbeddedPair *pair, Embedded *w, double err2, int re
   w->err_power = memory;
 }
 
-/* Takes the step just computed. */
+/* Makes the step just computed the last accepted one. */
 static void accept(Embedded *w, lag_problem *pb, double *t, double *y, double dt, double tb, double tc)
 {
   lag_copy(pb->n, lag_embedded_array(w, pb, EMBEDDED_Y1), y);
@@ -138,7 +138,7 @@ static void accept(Embedded *w, lag_problem *pb, double *t, double *y, double dt
   *t = tb;
 }
 
-/* Why a step could not be made small enough. */
+/* Status of a step that would have to be shorter than rounding of t allows. */
 static int too_small(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, int cause)
 {
   pb->bad_index = -1;
@@ -148,7 +148,7 @@ static int too_small(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, dou
   return cause == LAG_ENAN || cause == LAG_EDOMAIN ? cause : lag_step_failed(pb, cause, t);
 }
 
-/* The square of |sum coef_j K_j| along the constraints. */
+/* Squared norm of the part of sum coef_j K_j along the constraints; NaN where that is not known. */
 static double square_along(Embedded *w, lag_problem *pb, double tb, int count, const double *coef)
 {
   int row = lag_embedded_row(pb), n = pb->n;
@@ -194,24 +194,23 @@ int lag_embedded_turns(Embedded *w, lag_problem *pb, double tb)
   return LAG_OK;
 }
 
-/* The search for a step that passes a position where constraints become dependent. A step whose stages came near one goes far across the
- * constraints; and one that ends near it hands the next a derivative that says little. What passes better may be shorter, where the
- * step ends there, or longer, where it begins there. Of the sizes that are tried the first is taken that is good, or else the least bad of
- * those whose error is small along the constraints: steps that shrink until all is good would never pass. */
+/* Search for a step size that passes a singular position, where constraints become dependent. Near one a step leaves the constraints far,
+ * and its end gives the next step a poor derivative. Where the step ends there a shorter one passes better, where it begins there a longer
+ * one. The first good size is taken, or else the least bad of those with a small error along the constraints: shrinking alone never passes. */
 typedef struct Landing {
-  double base, base_err; /* the size that was to be, and its error, squared */
-  double best, least;    /* of those with a small error, the least bad, and how bad it is */
+  double base, base_err; /* size before the search, and its squared error */
+  double best, least;    /* size of least badness among those with a small error, and that badness */
   int tries;
 } Landing;
 
 enum { LANDING_TRIES = 8 };
 
-/* How bad a step is for the constraints, which is more than 1 for one that should be of another size; w->across is not 0 where it came
- * near a position where they become dependent. */
+/* Badness of a step with respect to singular positions; above 1 another size should be tried. 0 where the step came near none
+ * (w->across = 0). */
 static double badness(const Embedded *w, lag_problem *pb, double tb)
 {
-  const double factor = 100;  /* estimates of what goes across are too small there, by a factor of some ten, squared */
-  const double weight = 1e-2; /* of the derivative at the end in the next step; its error is that of rounding over s^2 */
+  const double factor = 100;  /* estimates across the constraints are some ten times too small there; squared */
+  const double weight = 1e-2; /* weight of the derivative at the end, whose error is rounding/s^2 */
   int weakest;
 
   if (w->across == 0.0) {
@@ -221,8 +220,8 @@ static double badness(const Embedded *w, lag_problem *pb, double tb)
   return lag_greater(across, weight * DBL_EPSILON / (pb->tol * s * s));
 }
 
-/* Whether to try a step of another size, in w->h, than the one to tb, whose error is *err, squared, or NaN. After all tries in vain *err is
- * that of the first one, and w->h its size. */
+/* 1: try again with the step w->h; *err is the squared error of the step to tb, or NaN. 0: keep the step. After the last try without success
+ * w->h and *err are those of the first. */
 static int land_elsewhere(Landing *l, Embedded *w, lag_problem *pb, double tb, double *err)
 {
   double bad = l->tries <= LANDING_TRIES ? badness(w, pb, tb) : 0;
@@ -255,7 +254,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
 
   while (rc == 0) {
     double wanted = lag_lesser(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row_here(pb, *t, &row);
-    int clipped = wanted * (1 + 1e-4) >= gap; /* what is left would be too short a step */
+    int clipped = wanted * (1 + 1e-4) >= gap; /* the rest after this step would be too short */
     w->h = clipped ? gap : wanted;
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_sum(*t, dt, &tc);
     if (clipped) {

@@ -1,6 +1,6 @@
-/* The stages and the error of a step, for a tableau that the compiler knows: dop853.c and rk45.c include this text and say
- * EMBEDDED_TRIAL. Each sum over stages then is a straight line without columns of zeros.
- * Holds: whatever n is, a component is summed in one order, so states do not depend on what stands beside them. */
+/* Stages and error of one trial step, inlined for a constant tableau: dop853.c and rk45.c include this file and expand
+ * EMBEDDED_TRIAL. Sums over stages are then unrolled, without zero coefficients.
+ * Holds: each component is summed in the same order for every n, so its value does not depend on the other components. */
 #ifndef LAG_METHODS_EMBEDDED_TRIAL_H
 #define LAG_METHODS_EMBEDDED_TRIAL_H
 
@@ -9,7 +9,7 @@
 #include "core/rhs.h"
 #include "methods/embedded.h"
 
-/* The sizes of a problem; row: of an array. */
+/* Dimensions of a problem; row: length of an array in Embedded.x. */
 typedef struct EmbeddedShape {
   int nq, n, row;
 } EmbeddedShape;
@@ -21,8 +21,8 @@ LAG_HERE EmbeddedShape embedded_shape(const lag_problem *pb)
   return as;
 }
 
-/* Numbers side by side, where the compiler has such types; elsewhere one by one. Not fours: they would hold rates beside coordinates, and
- * the coordinates of a stage, whose sines are most of its work, would wait for the newest rates. */
+/* A vector of two doubles where the compiler has such types, else one double. Not four: a vector of four would mix rates with coordinates,
+ * and the coordinates of a stage, whose sines take most of its time, would wait for the newest rates. */
 #if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE)
 #define EMBEDDED_VECTORS 1
 typedef double embedded_part __attribute__((vector_size(16), aligned(8), may_alias));
@@ -42,8 +42,8 @@ LAG_HERE void embedded_set(double *x, embedded_part s)
   *(embedded_part *)(void *)x = s;
 }
 
-/* What a model has just stored, number by number: processors hand on what was just stored only to loads of the same size, so it is loaded
- * so, too. */
+/* Loads two numbers that the model has just stored one by one. They are loaded one by one, too: processors forward a store only to a load
+ * of the same size. */
 LAG_HERE embedded_part embedded_newest(const volatile double *k)
 {
 #if EMBEDDED_VECTORS
@@ -58,7 +58,7 @@ LAG_HERE embedded_part embedded_newest(const volatile double *k)
     s += coef[j] * embedded_at(k + (j) * row);    \
   }
 
-/* sum_j coef[j] k_j over j < count of the components of a part; coef[0] is not 0. */
+/* sum_j coef[j] k_j over j < count, for the components of one part; coef[0] is not 0. */
 LAG_HERE embedded_part embedded_sum(const double *coef, int count, const double *k, int row)
 {
   embedded_part s = coef[0] * embedded_at(k);
@@ -69,7 +69,7 @@ LAG_HERE embedded_part embedded_sum(const double *coef, int count, const double 
   return s;
 }
 
-/* The same into a row. */
+/* out[row] := sum_j coef[j] k_j over j < count. */
 LAG_HERE void embedded_combine(const double *coef, int count, EmbeddedShape as, const double *k, double *out)
 {
   for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
@@ -77,7 +77,7 @@ LAG_HERE void embedded_combine(const double *coef, int count, EmbeddedShape as, 
   }
 }
 
-/* f(t, y) into k. > 0: a smaller step may help. */
+/* k := f(t, y). > 0: a smaller step may help. */
 LAG_HERE int embedded_call(lag_problem *pb, int nq, double t, const double *y, double *k)
 {
   int rc = lag_rhs_here(pb, nq, t, y, k);
@@ -88,7 +88,7 @@ LAG_HERE int embedded_call(lag_problem *pb, int nq, double t, const double *y, d
   return rc < -1 ? LAG_EMODEL : rc;
 }
 
-/* K_s = f(t0 + c_s dt, y0 + dt sum a_sj K_j). What is newest comes last: the rest need not wait for it. */
+/* K_s := f(t0 + c_s dt, y0 + dt sum a_sj K_j). The newest stage is added last, so that other terms need not wait for it. */
 LAG_HERE int embedded_stage(const lag_tableau *tab, lag_problem *pb, EmbeddedShape as, int s, double t0, double dt, const double *y0, double *k,
                                    double *ys)
 {
@@ -105,7 +105,7 @@ LAG_HERE int embedded_stage(const lag_tableau *tab, lag_problem *pb, EmbeddedSha
   return embedded_call(pb, as.nq, t0 + tab->c[s] * dt, ys, k + s * row);
 }
 
-/* The result in Y1, and what it lost in COMP1. */
+/* Y1 := the result of the step, COMP1 := its compensation. */
 LAG_HERE void embedded_result(const lag_tableau *tab, Embedded *w, EmbeddedShape as, double dt)
 {
   int row = as.row, last = tab->stages - 1;
@@ -121,7 +121,7 @@ LAG_HERE void embedded_result(const lag_tableau *tab, Embedded *w, EmbeddedShape
   }
 }
 
-/* What an error is divided by. */
+/* Scale of the error of a component: atol + tol max(|y0|, |y1|). */
 LAG_HERE double embedded_scale(const Embedded *w, const lag_problem *pb, double y0, double y1)
 {
   double a = fabs(y0), b = fabs(y1);
@@ -129,7 +129,7 @@ LAG_HERE double embedded_scale(const Embedded *w, const lag_problem *pb, double 
   return w->atol + pb->tol * (a > b ? a : b);
 }
 
-/* The sum of the squares of the components. */
+/* Sum of the squares of the components. */
 LAG_HERE double embedded_square(embedded_part x)
 {
 #if EMBEDDED_VECTORS
@@ -139,7 +139,7 @@ LAG_HERE double embedded_square(embedded_part x)
 #endif
 }
 
-/* The square of the norm of the error of the step just computed. */
+/* Squared norm of the error of the step just computed; NaN where it is not finite. */
 LAG_HERE double embedded_error(const lag_tableau *tab, int late, Embedded *w, const lag_problem *pb, EmbeddedShape as, double dt)
 {
   int row = as.row;
@@ -161,7 +161,7 @@ LAG_HERE double embedded_error(const lag_tableau *tab, int late, Embedded *w, co
   return !isfinite(both) ? NAN : late ? (both > 0 ? fine * (fine / both) : 0) : fine;
 }
 
-/* The last stage: f at the end of the step, which is brought back to the constraints first. */
+/* The last stage: projects the end of the step to the constraints, then k := f there. > 0: a smaller step may help. */
 LAG_HERE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double tb, double dt, double *k)
 {
   double *y1 = w->x + EMBEDDED_Y1 * as.row;
@@ -205,7 +205,7 @@ LAG_HERE double embedded_trial(const lag_tableau *tab, int late, Embedded *w, la
   return err;
 }
 
-/* EmbeddedPair.trial for a tableau of this file, with at most 13 stages: for one, two and three coordinates, and for any number. */
+/* Defines EmbeddedPair.trial for a tableau of at most 13 stages, specialised for one, two and three coordinates. */
 #define EMBEDDED_TRIAL(tableau, late)                                                                     \
   static double trial(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc)              \
   {                                                                                                       \

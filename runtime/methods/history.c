@@ -1,5 +1,5 @@
-/* The difference of order j + 1 is what a polynomial of degree j missed: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary
- * Differential Equations I, 2nd ed. (1993), III.1; as start values for implicit methods: Hairer, Lubich, Wanner, Geometric
+/* Predictor by backward differences. The difference of order j + 1 is the error of a polynomial of degree j: E. Hairer, S.P. Norsett, G. Wanner,
+ * Solving Ordinary Differential Equations I, 2nd ed. (1993), III.1; as start values for implicit methods: Hairer, Lubich, Wanner, Geometric
  * Numerical Integration, 2nd ed. (2006), VIII.6.1. */
 #include "methods/history.h"
 
@@ -8,9 +8,9 @@
 
 #include "lag.h"
 
-enum { DEGREE = 7 }; /* more amplifies rounding: the guess has 2^DEGREE times that of its values */
+enum { DEGREE = 7 }; /* the guess has up to 2^DEGREE times the rounding of the values */
 
-/* How many differences are known, the degree to use, the differences of order 0 .. DEGREE + 1. */
+/* Number of known differences, degree to use, x[m] differences of each order 0 .. DEGREE + 1. */
 typedef struct History {
   double known, degree;
   double x[];
@@ -49,7 +49,7 @@ int lag_history_is_sound(const double *history)
   return lag_is_count(h->known, DEGREE + 2) && lag_is_count(h->degree, DEGREE);
 }
 
-/* The largest difference of order j, each component against its own size. */
+/* The largest difference of order j, relative to the size of each component. */
 static double missed(const History *h, int m, int j)
 {
   double size = 0;

@@ -1,22 +1,22 @@
-/* Start values by extrapolation: the values of a vector at equal distances in time, as their backward differences. */
+/* Predictor: extrapolates a vector from its values at equally spaced times, stored as backward differences. */
 #ifndef LAG_METHODS_HISTORY_H
 #define LAG_METHODS_HISTORY_H
 
 #include <stddef.h>
 
-/* Doubles for vectors of m elements. All of them zero: nothing is known. */
+/* Doubles of the history of a vector of m elements. All zeros: an empty history. */
 size_t lag_history_size(int m);
 
-/* x := what the vector will be next, by the degree that would have been best the last time. 0: nothing is known. */
+/* x := the extrapolated next value, by the degree that would have been best last time. 0: the history is empty. */
 int lag_history_guess(const double *history, int m, double *x);
 
-/* x := what the vector was last. */
+/* x := the last value. */
 void lag_history_last(const double *history, int m, double *x);
 
-/* As lag_method.sound. */
+/* Whether a history read from a file has counts in range, as lag_method.sound. */
 int lag_history_is_sound(const double *history);
 
-/* The vector has become x. */
+/* Appends the value x. */
 void lag_history_add(double *history, int m, const double *x);
 
 #endif

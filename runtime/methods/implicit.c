@@ -1,6 +1,6 @@
-/* Symplectic steps in q and p for any L. Enters: t, y = [q|v]; leaves: t + h, y one step later. Holds: p is kept from step to
- * step and v is found from it, dL/dv(q, v) = p; q, p and t are sums of many small terms, and are summed with compensation
- * (steps.h). Between steps y is a path through both ends (path.h): accurate to the order of the method, and not symplectic. */
+/* Symplectic steps in q and p for any L. Enters: t, y = [q|v]; leaves: t + h, y one step later. Holds: p is carried from step to
+ * step, and v is solved from dL/dv(q, v) = p; sums over steps of q, p and t are compensated (steps.h). Dense output is a
+ * polynomial through both ends (path.h): accurate to the order of the method, not symplectic. */
 #include "methods/implicit.h"
 
 #include <math.h>
@@ -55,7 +55,7 @@ void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_compo
   w->links = lag_compose_links(c, w->part);
 }
 
-/* Of the links, of velocities, and of impulses. */
+/* Whether the histories of links, velocities and impulses, read from a file, are valid. */
 static int histories_are_sound(const Implicit *w, const lag_problem *pb)
 {
   Arrays a = lag_links_arrays((Implicit *)w, pb);
@@ -78,7 +78,7 @@ int lag_implicit_sound(const void *work, const void *fresh, const lag_problem *p
          lag_is_count(w->have_path + 2, 3) && isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc) && histories_are_sound(w, pb);
 }
 
-/* p of the state y, with nothing known of the past. */
+/* First step from y: p := dL/dv, compensations and histories := 0. */
 static int begin(Implicit *w, const Arrays *a, lag_problem *pb, double t, const double *y)
 {
   int nq = pb->nq;
@@ -102,7 +102,7 @@ static int begin(Implicit *w, const Arrays *a, lag_problem *pb, double t, const 
   return LAG_OK;
 }
 
-/* All links, without constraints. */
+/* All links of a step, without constraints; then v at its end. */
 static int chain(const Implicit *w, const Arrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)
 {
   double at = 0;
@@ -117,7 +117,7 @@ static int chain(const Implicit *w, const Arrays *a, lag_problem *pb, double t, 
   return rc ? rc : lag_links_velocity(w, a, pb, tb, y, 0);
 }
 
-/* Takes the step that the increments make. */
+/* Adds the increments to q and p: the step is accepted. */
 static void accept(Implicit *w, const Arrays *a, lag_problem *pb, double *y)
 {
   int nq = pb->nq;
@@ -160,8 +160,8 @@ int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y)
   return LAG_OK;
 }
 
-/* The path through the last step: its accelerations are those of the model, which depend on velocities here, so that each
- * level takes two passes. */
+/* Builds dense output of the last step: 1 done, -1 only the Hermite form, -2 not even that. Each level takes two passes, because the
+ * accelerations depend on velocities. */
 static int make_path(const Implicit *w, const Arrays *a, lag_problem *pb, const StepEnds *e, int level)
 {
   if (lag_rhs(pb, w->t0, a->y0, a->f0) || lag_rhs(pb, w->t0 + w->dt, a->y1, a->f1) || lag_not_finite(pb->n, a->f0) >= 0 ||
@@ -189,9 +189,9 @@ void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y)
   }
 }
 
-/* ---- The derivative of a step */
+/* ---- Derivative of a step */
 
-/* q and p so far are sums as in lag_discrete; u, force, h: of one link; du, rest: scratch of its derivative. */
+/* Scratch of the derivative. q, p at a link: y0 + ql, p + pl, as in lag_discrete; u, force: of one link; du, rest: of its derivative. */
 typedef struct Changes {
   double *p, *ql, *pl, *v;    /* [nq] */
   double *u, *force, *second; /* [free nq], [points nq], [nsecond] */
@@ -225,7 +225,7 @@ static Changes changes(const lag_problem *pb, int k, double *x)
   return c;
 }
 
-/* Y = (dq, dv) becomes (dq, dp) at the beginning of the last step, and p is known there. */
+/* Start of the last step: Y = (dq, dv) becomes (dq, dp), and c->p := p. */
 static int to_momenta(const Implicit *w, const Arrays *a, lag_problem *pb, const Changes *c, int k, double *Y)
 {
   int nq = pb->nq, m = nq * k, rc = lag_variation(pb, w->t0, a->y0, a->y0 + nq, c->v, c->p, c->force);
@@ -240,7 +240,7 @@ static int to_momenta(const Implicit *w, const Arrays *a, lag_problem *pb, const
   return LAG_OK;
 }
 
-/* Over link j, which begins at `at` of the step of length dt; whole: this is the step that was taken, whose velocities are known. */
+/* Y over link j, which begins at t0 + at dt. whole: the step that was taken, whose velocities are known; else they are solved for. */
 static int over_link(const Implicit *w, const Arrays *a, lag_problem *pb, const Changes *c, int j, double at, double dt, int whole, int k,
                      double *Y)
 {
@@ -262,7 +262,7 @@ static int over_link(const Implicit *w, const Arrays *a, lag_problem *pb, const 
   return rc;
 }
 
-/* Y = (dq, dp) becomes (dq, dv) at the end, t. */
+/* End of the step, t: Y = (dq, dp) becomes (dq, dv). */
 static int to_velocities(const Implicit *w, const Arrays *a, lag_problem *pb, const Changes *c, double t, int whole, int k, double *Y)
 {
   int nq = pb->nq, m = nq * k, rc = 0;

@@ -1,5 +1,5 @@
-/* The links of a step in q and p. Enters: where the step is; leaves: what a link adds to q and p. Holds: q and p of a step are what they
- * were at its beginning and increments, so that sums lose nothing. */
+/* The links of a step in q and p. Enters: the present q and p; leaves: the increments of a link. Holds: within a step q and p are kept as
+ * values at its start plus increments, so that sums lose nothing to rounding. */
 #include "methods/links.h"
 
 #include <string.h>
@@ -69,7 +69,7 @@ size_t lag_links_size(const lag_problem *pb, int free, int links)
          lag_discrete_size(pb, free);
 }
 
-/* u := velocities on a straight line through the present one, at the nodes of link k, which begins at `at` of the step. */
+/* Initial guess: u := velocities at the nodes of link k, extrapolated linearly from y at t. */
 static int straight(const Implicit *w, const Arrays *a, lag_problem *pb, double t, const double *y, double dt, int k, double at, double *u)
 {
   const lag_rule *r = &w->rule[k % 2];
@@ -104,7 +104,7 @@ int lag_link(const Implicit *w, const Arrays *a, lag_problem *pb, double t, cons
   if (known || lag_history_guess(history, m, u)) {
     rc = lag_discrete_solve(&d);
   }
-  pb->detail = NULL; /* of the first attempt */
+  pb->detail = NULL; /* forget the message of the first attempt */
   if (rc != 0 && (rc = straight(w, a, pb, t, y, dt, k, at, u)) == 0) {
     rc = lag_discrete_solve(&d);
   }

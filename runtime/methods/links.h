@@ -1,5 +1,5 @@
-/* What the files of implicit steps share: implicit.c (steps, and their derivatives), links.c (one discrete Lagrangian after another) and
- * rattle.c (constraints). A step is a chain of links. */
+/* Shared by the files of implicit steps: implicit.c (steps and their derivatives), links.c (one link) and rattle.c (constraints). A step is
+ * a chain of links; a link is the step of one discrete Lagrangian. */
 #ifndef LAG_METHODS_LINKS_H
 #define LAG_METHODS_LINKS_H
 
@@ -9,60 +9,60 @@
 #include "methods/composition.h"
 #include "methods/rule.h"
 
-/* One block of doubles; the arrays of x are in Arrays. */
+/* Saved state of the method, doubles only; Arrays has pointers into x. */
 typedef struct Implicit {
   double h;         /* the step, > 0 */
-  double ready;     /* p belongs to the present q and v */
-  double have_path; /* 1 made, -1 cannot be made, 0 not asked for yet */
+  double ready;     /* 1: p belongs to the present q and v */
+  double have_path; /* dense output: 1 built, -1 Hermite only, -2 cubic only, 0 not built */
   double t0, dt;    /* the last step began at t0 and was dt long */
-  double tc;        /* what t has lost to rounding */
-  double order, links;
-  double part[2 * LAG_MAX_DRIFTS];
-  lag_rule rule[2], momentum;
+  double tc;        /* compensation of t: rounding lost so far */
+  double order, links;            /* order of the method, links a step */
+  double part[2 * LAG_MAX_DRIFTS]; /* lengths of the links, parts of h */
+  lag_rule rule[2], momentum;     /* rules of even and odd links; rule of v from p */
   double x[];
 } Implicit;
 
-/* A model with constraints: where a block begins, [q|v], its increments of q and p there, the impulse that leads to the constraints at
- * its end, and what is solved for it. Blocks are links that end on the constraints together. */
+/* A block: links that end on the constraints together. Only for models with constraints. The impulse at its start brings its end to the
+ * constraints. */
 typedef struct Block {
-  double *from, *to;                   /* [n] */
-  double *dq, *dp, *impulse, *d, *force; /* [nq] */
-  double *c, *r, *g, *sum;             /* [constraints]; the sum of all g, from which the impulse follows */
-  double *A, *M;                       /* entries, as in lag_constraints */
-  double *change, *turned;             /* [constraints nq], [constraints constraints]: see rattle.c */
-  double *history;                     /* of the sum in each block */
+  double *from, *to;                   /* [n] start and end, [q|v] */
+  double *dq, *dp, *impulse, *d, *force; /* [nq] increments of the step up to the block; impulse; a least change and its force */
+  double *c, *r, *g, *sum;             /* [constraints] residuals; a requested change g, and the sum of all g, which determines the impulse */
+  double *A, *M;                       /* nonzero entries of the constraint Jacobian and of M, as in lag_constraints */
+  double *change, *turned;             /* [constraints nq], [constraints constraints]; see rattle.c */
+  double *history;                     /* history of `sum` in each block, for the first guess */
 } Block;
 
-/* q and p have lost qc and pc to rounding; dq, dp are the increments of this step, ql and pl both together. */
+/* qc, pc: compensations of q and p; dq, dp: increments of this step; ql = qc + dq, pl = pc + dp. */
 typedef struct Arrays {
   double *p, *qc, *pc, *dq, *dp, *ql, *pl, *v; /* [nq] */
-  double *y0, *y1, *f0, *f1;                   /* [n] both ends of the last step, f when it is asked for */
-  double *u, *force;                           /* [2 free nq] of the links of a block, [points nq] */
-  double *history;                             /* of u in each link, then of v */
-  double *path, *discrete;
+  double *y0, *y1, *f0, *f1;                   /* [n] y at both ends of the last step, and f there for dense output */
+  double *u, *force;                           /* [2 free nq] velocities of the links of a block; [points nq] forces */
+  double *history;                             /* histories of u in each link, then of v */
+  double *path, *discrete;                     /* scratch of path.h and discrete.h */
   Block block;
 } Arrays;
 
-/* The layout of a block of lag_links_size doubles, for rules with as many free velocities. */
+/* Doubles of the state, for rules with this number of free velocities; and pointers into it. */
 size_t lag_links_size(const lag_problem *pb, int free, int links);
 Arrays lag_links_arrays(Implicit *w, const lag_problem *pb);
 /* Doubles of the history of one link. */
 size_t lag_links_history(const lag_problem *pb, const Implicit *w);
 
-/* ql, pl: what is to be added to q and p where the step is now. */
+/* ql := qc + dq, pl := pc + dp: the present q and p less those at the start of the step. */
 void lag_links_gather(const Arrays *a, int nq);
 
-/* Link k, which begins at `at` of the step that leads on from y at t by dt: its velocities u and forces, and what they add to q and p. known:
- * u is a guess. LAG_OK, or a failure with its place and reason in pb. */
+/* Solves link k, which begins at t + at dt of the step from y at t: velocities u and forces; adds its increments to dq and dp. known: u holds
+ * a guess. LAG_OK, or a failure with time and reason in pb. */
 int lag_link(const Implicit *w, const Arrays *a, lag_problem *pb, double t, const double *y, double dt, int k, double at, double *u,
              int known);
-/* Link k is done with the velocities u. */
+/* Appends the velocities u of link k to its history. */
 void lag_link_note(const Implicit *w, const Arrays *a, const lag_problem *pb, int k, const double *u);
 
-/* a->v where the step is now, dL/dv(q, v) = p. known: it is a guess. */
+/* Solves dL/dv(q, v) = p for a->v at the present q and p. known: a->v holds a guess. */
 int lag_links_velocity(const Implicit *w, const Arrays *a, lag_problem *pb, double tb, const double *y, int known);
 
-/* All links, of a model with constraints, and a->v at their end, tb. */
+/* All links of a step of a model with constraints, and a->v at its end, tb. */
 int lag_rattle(const Implicit *w, const Arrays *a, lag_problem *pb, double t, double tb, const double *y, double dt);
 
 #endif

@@ -1,4 +1,4 @@
-/* The methods that liblag.a offers, the default first. */
+/* The list of methods that liblag.a offers, the default first. A new method is entered here and declared in lag.h. */
 #include "lag.h"
 
 const lag_method *const lag_methods[] = {&lag_rk45, &lag_dop853, &lag_rk4, &lag_symplectic_euler, &lag_verlet,

@@ -1,4 +1,4 @@
-/* Logarithms and powers that are near enough for the size of a step, and cost a few operations. */
+/* Approximate log2 and exp2 in a few operations, for step sizes. */
 #ifndef LAG_METHODS_NEAR_H
 #define LAG_METHODS_NEAR_H
 
@@ -7,11 +7,11 @@
 #include <stdint.h>
 #include <string.h>
 
-#if FLT_RADIX == 2 && DBL_MANT_DIG == 53 && DBL_MAX_EXP == 1024 /* IEEE 754: exponent and fraction are read off the bits */
+#if FLT_RADIX == 2 && DBL_MANT_DIG == 53 && DBL_MAX_EXP == 1024 /* IEEE 754: exponent and fraction are bit fields */
 
 enum { LAG_FRACTION_BITS = 52, LAG_BIAS = 1023 };
 
-/* log2 x to 0.01, x > 0 and finite; of a subnormal x some number below -1022. */
+/* log2 x with error 0.01, for finite x > 0; some number below -1022 where x is subnormal. */
 static inline double lag_log2_near(double x)
 {
   uint64_t bits;
@@ -24,7 +24,7 @@ static inline double lag_log2_near(double x)
   return e + m * (2 - m / 3) - 5.0 / 3;
 }
 
-/* The power of 2 next to |x| towards 0; of subnormal numbers 0. */
+/* The largest power of 2 that is <= |x|; 0 where x is subnormal. */
 static inline double lag_binade(double x)
 {
   uint64_t bits;
@@ -36,7 +36,7 @@ static inline double lag_binade(double x)
   return power;
 }
 
-/* 2^x to 0.3 %, within the range of normal numbers. */
+/* 2^x with relative error 0.3 %; x is clamped to the exponents of normal numbers. */
 static inline double lag_exp2_near(double x)
 {
   double inside = x < -1022 ? -1022 : x > 1023 ? 1023 : x, scale;

@@ -1,9 +1,9 @@
-/* A path through a step of q'' = f(t, q, q'). Enters: states and accelerations at both ends; leaves: polynomials of q and v.
- * Holds: v has error O(h^(m+4)) and q O(h^(m+6)) with m accelerations inside the step, when those are as good as that. Where f
- * depends on velocities the accelerations are as good as v, one order less, and a second pass makes up for it.
+/* Interpolant within a step of q'' = f(t, q, q'). Enters: states and accelerations at both ends; leaves: polynomials of q and v.
+ * Holds: v has error O(h^(m+4)) and q O(h^(m+6)) with m accelerations inside the step, if these are as accurate. Where f depends
+ * on velocities the accelerations have the error of v, one order less, and a second pass recovers it.
  *
- * How: a(x) interpolates the accelerations at equal distances, x = 0..M, M = m + 1; with W = x (x-1) ... (x-M), which
- * vanishes there, v = v0 + int (a + alpha W) meets v1, and q = q0 + v0 t + iint (a + alpha W + beta (x - M/2) W) meets q1.
+ * Construction: a(x) interpolates the accelerations at equal distances, x = 0..M, M = m + 1; with W = x (x-1) ... (x-M), zero
+ * at these x, v = v0 + int (a + alpha W) meets v1, and q = q0 + v0 t + iint (a + alpha W + beta (x - M/2) W) meets q1.
  * For m = 0 this is lag_hermite, of order 4. Its q gives the accelerations inside for m = 2 (order 6), that path those for
  * m = 4 (order 8): "bootstrapping", W.H. Enright, K.R. Jackson, S.P. Norsett, P.G. Thomsen, ACM Trans. Math. Softw. 12
  * (1986) 193, DOI 10.1145/7921.7923. As in lag_hermite beta stays out of v: it would magnify errors of q by 1/h. */
@@ -18,13 +18,13 @@ static int intervals(int level)
   return 2 * level + 1;
 }
 
-/* Doubles of a path: accelerations at x = 0..MOST, coefficients of v's and of q's acceleration, a stage and its f. */
+/* A path: accelerations at x = 0..MOST, coefficients of the accelerations of v and of q, a stage and its f. */
 size_t lag_path_size(int nq)
 {
   return (size_t)nq * (MOST + 1 + NV + NQ + 4);
 }
 
-/* p := p (x - r), of degree n before and n + 1 after. */
+/* p := p (x - r); the degree rises from n to n + 1. */
 static void times_root(double *p, int n, double r)
 {
   p[n + 1] = p[n];
@@ -76,7 +76,7 @@ static void interpolate(const double *a, int stride, int m, double *p)
   }
 }
 
-/* From the accelerations in path to the coefficients of both polynomials. */
+/* Computes the coefficients of both polynomials from the accelerations in path. */
 static void fit(double *path, int nq, const StepEnds *e, int m)
 {
   double w[NV + 1] = {1}, w2[NQ + 1], g = e->h / m;
@@ -119,7 +119,7 @@ void lag_path_at(const double *path, const lag_problem *pb, const StepEnds *e, i
   }
 }
 
-/* Fills the accelerations of level l from the path of level `from`, and fits. */
+/* Evaluates the accelerations of level l along the interpolant of level `from`, and fits the polynomials. */
 static int refine(double *path, lag_problem *pb, const StepEnds *e, int l, int from)
 {
   int nq = pb->nq, m = intervals(l);

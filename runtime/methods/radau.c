@@ -1,13 +1,13 @@
 /* radau: Radau IIA of order 5, implicit and L-stable, with adaptive steps and the exact Jacobian that the compiler emits: for
- * stiff models. Enters: t, y; leaves: the next accepted t, y. Holds: a rejected step leaves t, y as they were; f at the end of
- * a step is that of the next one's beginning; the Jacobian and its factors are kept while Newton's method contracts well. Constraints: of
- * index 1 within a step, whose end is projected; the Jacobian is differenced then.
+ * stiff models. Enters: t, y; leaves: the next accepted t, y. Holds: a rejected step leaves t and y unchanged; f at the end of
+ * a step serves as f at the start of the next; the Jacobian and its factors are kept while Newton's method converges fast.
+ * Constraints: the index-1 form within a step, projection at its end, and a Jacobian by differences.
  *
  * Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), DOI 10.1007/978-3-642-05221-7,
- * IV.8 and code RADAU5: simplified Newton iteration in coordinates in which the Butcher matrix is one real and one complex
- * number, when it stops, start values from the last collocation polynomial, error estimate with a second try after a rejected
- * step, predictive step control (K. Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496, DOI 10.1145/198429.198437). The
- * tolerances are transformed as there, 0.1 tol^(2/3): the estimate has order 3. Dense output: the collocation polynomial. */
+ * IV.8 and code RADAU5: simplified Newton iteration in coordinates in which the inverse Butcher matrix is block diagonal (one real
+ * and one complex eigenvalue), its stopping rule, start values from the last collocation polynomial, error estimate with a second,
+ * filtered one after a rejected step, predictive step control (K. Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496, DOI 10.1145/198429.198437). The
+ * tolerances are transformed as in RADAU5, 0.1 tol^(2/3), because the estimate has order 3. Dense output: the collocation polynomial. */
 #include "lag.h"
 
 #include <float.h>
@@ -22,14 +22,14 @@
 
 enum { MOST_CORRECTIONS = 7, MOST_WHEN_FIXED = 30, STAGES = 3 };
 
-/* Why a step cannot be accepted, beside LAG_ERETRY: the model left its domain. */
+/* Results of an attempt besides LAG_ERETRY (the model left its domain): the error was too large; Newton's method diverged. */
 enum { REJECTED = LAG_ERETRY + 1, DIVERGED };
 
 static const double safety = 0.9, shrink_most = 0.2, grow_most = 8;
-static const double contracts_well = 1e-3; /* Newton's method: the Jacobian is kept */
-static const double keep_least = 1, keep_most = 1.2; /* a step that would grow by so little stays, with its factors */
+static const double contracts_well = 1e-3; /* contraction rate below which the Jacobian is kept */
+static const double keep_least = 1, keep_most = 1.2; /* growth of h within these factors is ignored, to keep the LU factors */
 
-/* The method: nodes, its matrix (table IV.5.6), the eigenvalues of its inverse, and its eigenvectors T. */
+/* The method: nodes, Butcher matrix (table IV.5.6), the eigenvalues of its inverse, and the eigenvectors T. */
 static const double node[STAGES] = {0.155051025721682190180271592529410861, 0.644948974278317809819728407470589139, 1};
 static const double butcher[STAGES][STAGES] = {
     {0.19681547722366042586838614299182989, -0.0655354258501983881085227825696086918, 0.023770974348220152420408232107189663},
@@ -45,34 +45,34 @@ static const double inverse_T[STAGES][STAGES] = {
     {4.32557989006315535102689011541746916, 0.339199251815809869543024087704992642, 0.541770539935874871186841058693939352},
     {-4.17871859155190472734646265851205623, -0.327682820761062387082533272429616234, 0.476623554500550451960069084091012498},
     {-0.502872634945786875951247343139544293, 2.57192694985560542918678535360167505, -0.596039204828224924968821911099302403}};
-/* The error: these of z over h, and f, through the real factor. (-13 -+ 7 sqrt 6)/3, -1/3. */
+/* Weights of z/h in the error estimate, (-13 -+ 7 sqrt 6)/3 and -1/3. */
 static const double error_weight[STAGES] = {-10.0488093998274155624603295076470799, 1.38214273316074889579366284098041325, -1.0 / 3};
 
-/* One block of doubles; the arrays of x are in Arrays. */
+/* Saved state of the method, doubles only; Arrays has pointers into x. */
 typedef struct Radau {
   double h;            /* the next step to try, > 0; 0: not chosen yet */
   double h_option, h_max, rtol, atol;
   double fixed;        /* 1: every step has the size h */
-  double ready;        /* F0 = f(t, y) is known */
-  double jacobian_age; /* 0 none, 1 of this y, 2 of an earlier one */
-  double factored;     /* the h, with its sign, that the factors are of; 0: none */
-  double have_path;    /* the collocation polynomial of the last step is there to start from */
-  double rate, unsettled; /* of the last Newton iteration: its contraction, and that over what it lacks to 1 */
-  double h_accepted, err_accepted; /* of the last accepted step; 0: none */
-  double again;        /* the last try was rejected */
+  double ready;        /* 1: f0 = f(t, y) is known */
+  double jacobian_age; /* 0: no Jacobian, 1: at this y, 2: at an earlier y */
+  double factored;     /* signed h of the LU factors; 0: none */
+  double have_path;    /* 1: the collocation polynomial of the last step is known, for start values */
+  double rate, unsettled; /* last Newton iteration: contraction rate theta, and eta = theta/(1 - theta) */
+  double h_accepted, err_accepted; /* size and error of the last accepted step; 0: none */
+  double again;        /* 1: the last attempt was rejected */
   double t0, dt;       /* the last step */
-  double tc;           /* what t has lost to rounding */
-  double t_begin, begun;
+  double tc;           /* compensation of t: rounding lost so far */
+  double t_begin, begun; /* start of the first step; 1: it is set */
   double x[];
 } Radau;
 
 typedef struct Arrays {
   double *f0, *y0, *y1, *comp, *comp1, *scale, *ys, *fs, *err; /* [n] */
-  double *z, *w, *dw, *path;     /* [3 n] stages minus y, the same by T, its correction, the collocation polynomial */
+  double *z, *w, *dw, *path;     /* [3 n] z = stages - y; w = T^-1 z; its correction; differences of the collocation polynomial */
   double *jacobian;              /* [(nq + nz) n] */
   double *row;                   /* [2 n] scratch */
   double *linear;                /* scratch of lag_jacobian */
-  lag_band real, complex;        /* (gamma/h - J), (alpha/h - J, -beta/h; beta/h, alpha/h - J) */
+  lag_band real, complex;        /* gamma/h - J, and the real form [alpha/h - J, -beta/h; beta/h, alpha/h - J] of the complex one */
 } Arrays;
 
 static Arrays arrays(Radau *w, const lag_problem *pb)
@@ -150,9 +150,9 @@ static int sound(const void *work, const void *fresh, const lag_problem *pb)
          isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc) && isfinite(w->t_begin) && lag_is_flag(w->begun);
 }
 
-/* ---- The linear equations */
+/* ---- Linear systems */
 
-/* df/dy at (t, y), as gamma - J goes into both matrices. */
+/* a->jacobian := df/dy at (t, y); the LU factors become invalid. */
 static int take_jacobian(Radau *w, const Arrays *a, lag_problem *pb, double t, const double *y)
 {
   int rc = lag_jacobian(pb, t, y, a->jacobian, a->linear);
@@ -165,7 +165,7 @@ static int take_jacobian(Radau *w, const Arrays *a, lag_problem *pb, double t, c
   return LAG_OK;
 }
 
-/* m := diag(c) - J in rows and columns from `at` on. */
+/* m := c 1 - J in the block of rows and columns from `at` on. */
 static void put_minus_jacobian(const Arrays *a, const lag_problem *pb, const lag_band *m, int at, double c)
 {
   int n = pb->n, nq = pb->nq;
@@ -179,7 +179,7 @@ static void put_minus_jacobian(const Arrays *a, const lag_problem *pb, const lag
   }
 }
 
-/* Both matrices for steps of h, factored. -1: singular. */
+/* Builds and factors both matrices for steps of signed size h. -1: singular. */
 static int factor(Radau *w, Arrays *a, const lag_problem *pb, double h)
 {
   int n = pb->n;
@@ -200,7 +200,7 @@ static int factor(Radau *w, Arrays *a, const lag_problem *pb, double h)
   return 0;
 }
 
-/* out := M in, by stages. */
+/* out := (m (x) 1) in, for three stages of n components. */
 static void mix(const double (*m)[STAGES], int n, const double *in, double *out)
 {
   for (int i = 0; i < n; i++) {
@@ -212,7 +212,7 @@ static void mix(const double (*m)[STAGES], int n, const double *in, double *out)
 
 /* ---- Newton's method */
 
-/* z: the last collocation polynomial, continued; or no motion. */
+/* Start values: z, w := the last collocation polynomial, extrapolated; zero where there is none. */
 static void guess(const Radau *w, const Arrays *a, int n, double dt)
 {
   memset(a->z, 0, (size_t)(STAGES * n) * sizeof(double));
@@ -225,7 +225,7 @@ static void guess(const Radau *w, const Arrays *a, int n, double dt)
   mix(inverse_T, n, a->z, a->w);
 }
 
-/* f at the stages into dw. > 0: a smaller step may help. */
+/* dw := f at the stages. > 0: a smaller step may help. */
 static int stages(const Arrays *a, lag_problem *pb, double t, const double *y, double dt)
 {
   int n = pb->n;
@@ -247,7 +247,7 @@ static int stages(const Arrays *a, lag_problem *pb, double t, const double *y, d
   return LAG_OK;
 }
 
-/* One correction: dw, added to w; z follows. Returns its size against the tolerance. */
+/* One Newton correction dw of w; z := T w. Returns its norm relative to the tolerance. */
 static double correct(const Arrays *a, int n, double h)
 {
   double g = real_eigenvalue / h, re = eigenvalue[0] / h, im = eigenvalue[1] / h, sum = 0;
@@ -272,9 +272,9 @@ static double correct(const Arrays *a, int n, double h)
   return sqrt(sum / (STAGES * n));
 }
 
-/* What became of an iteration. */
+/* Result of a Newton iteration. */
 typedef struct Outcome {
-  int rc;          /* LAG_ERETRY, DIVERGED: a step smaller by `shrink` may converge; < 0: it failed for good */
+  int rc;          /* LAG_OK; LAG_ERETRY, DIVERGED: a step smaller by `shrink` may converge; < 0: failure */
   double shrink;
   int corrections;
 } Outcome;
@@ -302,7 +302,7 @@ static Outcome newton(Radau *w, const Arrays *a, lag_problem *pb, double t, cons
       w->rate = o.corrections == 2 ? rate : sqrt(rate * last_rate);
       last_rate = rate;
       if (w->rate >= 0.99) {
-        if (size <= goal) { /* it is rounding that does not shrink */
+        if (size <= goal) { /* corrections are rounding and do not shrink */
           w->rate = contracts_well;
           return o;
         }
@@ -310,7 +310,7 @@ static Outcome newton(Radau *w, const Arrays *a, lag_problem *pb, double t, cons
       }
       w->unsettled = w->rate / (1 - w->rate);
       int left = MOST_CORRECTIONS - 1 - o.corrections;
-      double end = w->unsettled * size * pow(w->rate, left) / goal; /* what the last correction would leave */
+      double end = w->unsettled * size * pow(w->rate, left) / goal; /* predicted error after the last correction allowed */
       if (end >= 1 && w->fixed == 0.0) {
         o.shrink = 0.8 * pow(fmax(1e-4, fmin(20, end)), -1.0 / (4 + left));
         break;
@@ -325,9 +325,9 @@ static Outcome newton(Radau *w, const Arrays *a, lag_problem *pb, double t, cons
   return o;
 }
 
-/* ---- The error, and the step size that follows from it */
+/* ---- Error estimate and step size */
 
-/* err := (gamma/h - J)^-1 (f + the weights of z over h), its norm. */
+/* a->err := (gamma/h - J)^-1 (f + sum error_weight_k z_k/h). Returns its norm, at least 1e-10. */
 static double estimate(const Arrays *a, const lag_problem *pb, const double *f, double dt)
 {
   int n = pb->n;
@@ -347,7 +347,7 @@ static double estimate(const Arrays *a, const lag_problem *pb, const double *f, 
   return fmax(sqrt(s / n), 1e-10);
 }
 
-/* The estimate, and where it is large because the past was not smooth a second one, which is damped where f is stiff. */
+/* The error estimate; where it is large in the first step or after a rejected one, a second estimate, filtered for stiff f. */
 static double error_of(const Radau *w, const Arrays *a, lag_problem *pb, double t, const double *y, double dt)
 {
   double err = estimate(a, pb, a->f0, dt);
@@ -364,7 +364,7 @@ static double error_of(const Radau *w, const Arrays *a, lag_problem *pb, double 
   return estimate(a, pb, a->fs, dt);
 }
 
-/* By how much the step should shrink for this error, found with so many corrections. */
+/* Factor by which h is divided for this error and this number of corrections. */
 static double quotient(const Radau *w, double err, int corrections, int accepted)
 {
   double slow = fmin(safety, safety * (1 + 2 * MOST_CORRECTIONS) / (corrections + 2 * MOST_CORRECTIONS));
@@ -377,7 +377,7 @@ static double quotient(const Radau *w, double err, int corrections, int accepted
   return quot;
 }
 
-/* The next step after an accepted one; keeps h where that saves factors. */
+/* Size of the step after an accepted one; h is kept where the LU factors then can be. */
 static void next_size(Radau *w, double quot, double err)
 {
   double h = w->h / quot;
@@ -395,9 +395,9 @@ static void next_size(Radau *w, double quot, double err)
   }
 }
 
-/* ---- A step */
+/* ---- Step */
 
-/* The collocation polynomial by its divided differences from the end of the step: code RADAU5, CONT. */
+/* a->path := divided differences of the collocation polynomial from the end of the step (code RADAU5, CONT). */
 static void remember(const Arrays *a, int n)
 {
   double c1 = node[0], c2 = node[1];
@@ -426,7 +426,7 @@ static void accept(Radau *w, const Arrays *a, lag_problem *pb, double *t, double
   *t = tb;
 }
 
-/* y1, on the constraints, and f there into fs. > 0: a smaller step may help. */
+/* y1 := end of the step, projected to the constraints; fs := f there. > 0: a smaller step may help. */
 static int finish(const Arrays *a, lag_problem *pb, double tb, const double *y)
 {
   int n = pb->n, rc;
@@ -444,7 +444,7 @@ static int finish(const Arrays *a, lag_problem *pb, double tb, const double *y)
   return LAG_OK;
 }
 
-/* f at the beginning, what errors are compared with, and a step to try. */
+/* Before a step: f0, scale of errors, and w->h, the step to try. */
 static int prepare(Radau *w, const Arrays *a, lag_problem *pb, double t, const double *y)
 {
   lag_tolerance tol = {w->atol, w->rtol};
@@ -467,7 +467,7 @@ static int prepare(Radau *w, const Arrays *a, lag_problem *pb, double t, const d
   return LAG_OK;
 }
 
-/* The limit on steps: the option, or else what has been seen of the motion so far; and what the problem says. */
+/* Largest step: the option, or else the time covered so far; and at most pb->longest. */
 static double longest(const Radau *w, const lag_problem *pb, double t)
 {
   double seen = fabs(t - w->t_begin), most = w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
@@ -475,7 +475,7 @@ static double longest(const Radau *w, const lag_problem *pb, double t)
   return pb->longest > 0 ? fmin(most, pb->longest) : most;
 }
 
-/* Ends an accepted step, and chooses the next. */
+/* Computes the end of an accepted step and the size of the next. > 0: a smaller step may help. */
 static int conclude(Radau *w, const Arrays *a, lag_problem *pb, double tb, const double *y, double err, int corrections)
 {
   int rc = finish(a, pb, tb, y);
@@ -490,7 +490,7 @@ static int conclude(Radau *w, const Arrays *a, lag_problem *pb, double tb, const
   return rc;
 }
 
-/* One try of a step of dt. 0: it can be accepted. > 0: not, and w->h is what to try next. */
+/* One attempt at a step of dt. 0: it can be accepted. > 0: rejected, and w->h is the next size to try. */
 static int attempt(Radau *w, Arrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)
 {
   int rc = w->jacobian_age == 0.0 ? take_jacobian(w, a, pb, t, y) : 0;
@@ -516,7 +516,7 @@ static int attempt(Radau *w, Arrays *a, lag_problem *pb, double t, double tb, co
   return REJECTED;
 }
 
-/* Why no step was small enough, or the one step size did not do. */
+/* Status after the last attempt failed for `why`: h is at its minimum, or steps are of fixed size. */
 static int gave_up(const Radau *w, lag_problem *pb, double t, int why)
 {
   if (why == LAG_ERETRY) {
@@ -574,14 +574,14 @@ static void dense(void *work, lag_problem *pb, double t, double *y)
   }
 }
 
-/* ---- The derivative of a step */
+/* ---- Derivative of a step */
 
 static size_t tangent_size(const lag_problem *pb, int k)
 {
   return lag_tangent_implicit_size(pb, STAGES, k) + (size_t)(STAGES * pb->n);
 }
 
-/* At the points of the collocation polynomial, which are the stages. */
+/* The stages are values of the collocation polynomial. */
 static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
 {
   Radau *w = work;

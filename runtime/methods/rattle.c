@@ -1,11 +1,10 @@
-/* Steps under constraints, by the discrete Lagrange-d'Alembert principle. Enters: where a step begins, on the constraints; leaves: its
- * end, on the constraints. Holds: an impulse at the beginning of a block, of the kind that the constraints
- * there can exert, leads it to c = 0 at its end, and the momentum at the end is projected to r = 0: RATTLE where L is separable.
+/* Steps with constraints, by the discrete Lagrange-d'Alembert principle. Enters: the start of a step, on the constraints; leaves: its
+ * end, on the constraints. Algorithm: a constraint impulse at the start of a block brings its end to c = 0, and the momentum at
+ * the end is projected to r = 0: RATTLE where L is separable.
  *
- * Sources: H.C.
- * Andersen, J. Comput. Phys. 52 (1983) 24, DOI 10.1016/0021-9991(83)90014-1; J.E. Marsden, M. West (rule.h), section 3.5; Hairer,
- * Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VII.1. A constraint of velocities alone holds for the chord of the
- * block, in the mean of its two ends, a rule that is its own reverse: J. Cortes, S. Martinez, Nonlinearity 14 (2001) 1365, DOI
+ * Sources: H.C. Andersen, J. Comput. Phys. 52 (1983) 24, DOI 10.1016/0021-9991(83)90014-1; J.E. Marsden, M. West (rule.h), section 3.5;
+ * Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VII.1. A constraint on velocities holds for the chord of the
+ * block, in the mean of its two ends, a symmetric rule: J. Cortes, S. Martinez, Nonlinearity 14 (2001) 1365, DOI
  * 10.1088/0951-7715/14/5/322; R. McLachlan, M. Perlmutter, J. Nonlinear Sci. 16 (2006) 283, DOI 10.1007/s00332-005-0698-1. */
 #include <float.h>
 #include <math.h>
@@ -18,7 +17,7 @@
 enum { MOST_IMPULSES = 60, MOST_PROJECTIONS = 8 };
 #define LEAST 1e-6
 
-/* Links that end on the constraints together: both halves of a Verlet step, where the composition is one of Verlet steps. */
+/* Links in a block: 2, the halves of a Verlet step, where the composition is one of Verlet steps; else 1. */
 static int block_length(const Implicit *w)
 {
   int whole = (int)w->links % 2 == 0;
@@ -29,7 +28,8 @@ static int block_length(const Implicit *w)
   return whole ? 2 : 1;
 }
 
-/* b->to := [q|v of the chord] where the step is now, at t1, h after the block began at t0; g := how far that is off the constraints. */
+/* b->to := [q|v], the present q and the velocity of the chord, at t1 = t0 + h, where t0 is the start of the block. b->g := minus the
+ * constraint defect there. Returns the model's status. */
 static int off(const Arrays *a, lag_problem *pb, double t0, double t1, double h, const double *y)
 {
   const Block *b = &a->block;
@@ -59,7 +59,7 @@ static int off(const Arrays *a, lag_problem *pb, double t0, double t1, double h,
   return rc;
 }
 
-/* The largest correction d[nq] against what x or y is, of the same unit. */
+/* The largest |d_i| of d[nq] relative to the largest |x| or |y| of the same unit. */
 static double part_of(const lag_problem *pb, const double *d, const double *x, const double *y)
 {
   double most = 0;
@@ -70,8 +70,8 @@ static double part_of(const lag_problem *pb, const double *d, const double *x, c
   return most;
 }
 
-/* The same of the correction b->d of a block's end, h long; or its impulse against the whole one, if that is less: what is held at 0 has no
- * size, but the force that holds it there has one. */
+/* Relative size of the correction b->d of the end of a block of length h; or of its impulse relative to the whole impulse, if smaller:
+ * coordinates held at 0 have no size, but the force that holds them has one. */
 static double part_of_block(const lag_problem *pb, const Block *b, double h)
 {
   double most = 0;
@@ -87,7 +87,7 @@ static double part_of_block(const lag_problem *pb, const Block *b, double h)
   return most;
 }
 
-/* b->change := the least changes where the block begins that each change one constraint by 1. */
+/* b->change := for each constraint, the least change at the start of the block that changes it by 1. */
 static int find_changes(const Arrays *a, lag_problem *pb, double t0)
 {
   const Block *b = &a->block;
@@ -102,12 +102,12 @@ static int find_changes(const Arrays *a, lag_problem *pb, double t0)
   return rc;
 }
 
-/* x[n] := B^-1 x by Gauss-Jordan elimination of B[n * n], of which no pivot is smaller than `least`: what such an equation asks for is left
- * alone. r[n] is scratch. */
+/* x[n] := B^-1 x by Gauss-Jordan elimination of B[n * n] with full pivoting, for pivots above `least`; x of the remaining equations holds
+ * their residuals. r[n] := column of the pivot of each row, -1: none. */
 static void solve(double *B, double *x, double *r, int n, double least)
 {
   for (int i = 0; i < n; i++) {
-    r[i] = -1; /* which unknown equation i has given */
+    r[i] = -1; /* column of the pivot of row i */
   }
   for (int turn = 0; turn < n; turn++) {
     int row = -1, col = -1;
@@ -133,18 +133,18 @@ static void solve(double *B, double *x, double *r, int n, double least)
       x[i] -= factor * x[row];
     }
   }
-  for (int i = 0; i < n; i++) { /* each equation is left with its unknown, and with those that are 0 */
+  for (int i = 0; i < n; i++) { /* each row has its pivot left, and columns without pivot, whose unknowns are 0 */
     x[i] = r[i] < 0 ? x[i] : x[i] / B[i * n + (int)r[i]];
   }
 }
 
-/* b->turned also has what a change of the block's end does to the coefficients of velocities there: these vanish at the origin for x*y' = y*x', and a
- * block over that place, where they change their sign, is found by nothing less than Newton's method. */
+/* Adds to b->turned the derivatives of the coefficients of velocity constraints by the end of the block. These coefficients vanish at the
+ * origin for x*y' = y*x'; a block over that place, where they change sign, is found only by the full Newton matrix. */
 static int turn_rates(const Arrays *a, lag_problem *pb, double t1, double h)
 {
   const Block *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
-  const double small = 1e-3; /* of the way of the block; what is quadratic in it cancels */
+  const double small = 1e-3; /* of the length of the block's motion; quadratic terms cancel in the central difference */
   int nq = pb->nq, n = of->n, rc = 0;
 
   memcpy(b->d, b->to, (size_t)nq * sizeof(double));
@@ -169,9 +169,8 @@ static int turn_rates(const Arrays *a, lag_problem *pb, double t1, double h)
   return rc;
 }
 
-/* A change g of the constraints where the block begins is another one where it ends, and near a singular position, as of a linkage
- * that is stretched, even of the other sign. g := what has to be changed at the beginning for g at the end, at t1, where it is not more than
- * 1/least times that; b->change is known. */
+/* b->g: from the change of constraints wanted at the end of a block, t1, to the change at its start that causes it; pivots below `least` are
+ * left out. The two differ near a singular position, even in sign, as of a stretched linkage. Needs b->change. */
 static int steer(const Arrays *a, lag_problem *pb, double t1, double h, double least)
 {
   const Block *b = &a->block;
@@ -204,7 +203,7 @@ static int steer(const Arrays *a, lag_problem *pb, double t1, double h, double l
   return rc;
 }
 
-/* No change meets all constraints: some contradict each other. */
+/* LAG_EMETHOD: no small change meets all constraints; pb->detail names the worst. */
 static int unmet(lag_problem *pb, double t, const double *y, int holonomic)
 {
   int k = lag_worst_constraint(pb, t, y, holonomic, NULL);
@@ -215,7 +214,7 @@ static int unmet(lag_problem *pb, double t, const double *y, int holonomic)
   return lag_step_failed(pb, LAG_EMETHOD, t);
 }
 
-/* A change of the end of a block, h long, takes this impulse at its beginning. */
+/* Adds the impulse at the start of a block of length h for the change b->d of its end, and g to its sum. */
 static void add_impulse(const Block *b, int nq, int nc, double h)
 {
   for (int i = 0; i < nq; i++) {
@@ -226,9 +225,9 @@ static void add_impulse(const Block *b, int nq, int nc, double h)
   }
 }
 
-/* The impulse of a block of links k to k + length - 1, and the block with it. What is left of constraints on positions must be rounding. Of those on
- * velocities it need not be: of two that say the same with other factors a chord obeys one, and is off the other by a part h^2; whether they
- * contradict each other is seen at the block's end, by project(). */
+/* Solves the block of links k to k + length - 1 for its impulse. The defects of constraints on positions must end as rounding. Those on
+ * velocities need not: of two equivalent ones with different factors the chord meets one, and misses the other by O(h^2); project() finds
+ * contradictions at the end of the block. */
 static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, double t1, const double *y, double dt, int k, int length,
                 double at)
 {
@@ -246,7 +245,7 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
   memset(b->impulse, 0, bytes);
   memset(b->sum, 0, (size_t)of->n * sizeof(double));
   if (lag_history_guess(history, of->n, b->g) && lag_least_change(pb, t + at * dt, b->from, holonomic, b->g, b->d, b->force) == 0 &&
-      part_of(pb, b->d, b->from + nq, b->from + nq) <= fabs(h)) { /* not where a singular position magnifies what the guess misses */
+      part_of(pb, b->d, b->from + nq, b->from + nq) <= fabs(h)) { /* no guess where a singular position magnifies its error */
     add_impulse(b, nq, of->n, h);
   }
   for (int turn = 0; turn < MOST_IMPULSES; turn++) {
@@ -274,10 +273,10 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
       break;
     }
     double part = part_of_block(pb, b, h);
-    double rounding = DBL_EPSILON * (steered ? 0x1p12 : 4); /* near a singular position it is magnified */
+    double rounding = DBL_EPSILON * (steered ? 0x1p12 : 4); /* rounding is magnified near a singular position */
     int settled = part <= DBL_EPSILON / 4 || (part <= rounding && part >= before / 2);
     if (!settled && steered && part >= before / 2 && lag_residuals(pb, t1, b->to, b->c, b->r) == 0) {
-      settled = lag_is_met(pb, t1, b->to, 1, b->c); /* rounding of terms that no coordinate shows, as of one at 0 */
+      settled = lag_is_met(pb, t1, b->to, 1, b->c); /* rounding of terms that no coordinate has the size of, as at 0 */
     }
     if (settled) {
       if (steered && least > LEAST) {
@@ -289,7 +288,7 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
       rc = lag_residuals(pb, t1, b->to, b->c, b->r);
       return rc ? lag_step_refused(pb, rc, t1) : lag_is_met(pb, t1, b->to, 1, b->c) ? LAG_OK : unmet(pb, t1, b->to, 1);
     }
-    if (!steered && turn > 0 && part > before / 16) { /* too slow */
+    if (!steered && turn > 0 && part > before / 16) { /* converges too slowly: use the changes at the end */
       steered = 1;
       known = 0;
       memset(b->impulse, 0, bytes);
@@ -306,7 +305,7 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
   return lag_step_failed(pb, LAG_EMETHOD, t);
 }
 
-/* The momentum at the end of a block, tb: r = 0. v is that of it. */
+/* Projects the momentum at the end of a block, tb, to r = 0; a->v := its velocity. */
 static int project(const Implicit *w, const Arrays *a, lag_problem *pb, double tb, const double *y, int last)
 {
   const Block *b = &a->block;
@@ -336,7 +335,7 @@ static int project(const Implicit *w, const Arrays *a, lag_problem *pb, double t
   return rc ? lag_step_refused(pb, rc, tb) : lag_is_met(pb, tb, b->to, 0, b->r) ? LAG_OK : unmet(pb, tb, b->to, 0);
 }
 
-/* Whether a block, h long, has moved coordinates no farther than the velocities at its ends account for: elsewhere a constraint jumps. */
+/* A failure where a block of length h moved a coordinate farther than the velocities at its ends explain: a constraint jumps there. */
 static int check_leap(const Arrays *a, lag_problem *pb, double t1, double h)
 {
   const Block *b = &a->block;
@@ -344,7 +343,7 @@ static int check_leap(const Arrays *a, lag_problem *pb, double t1, double h)
 
   for (int i = 0; i < nq; i++) {
     b->d[i] = b->to[i] - b->from[i];
-    b->force[i] = 2 * h * fmax(fabs(b->from[nq + i]), fabs(a->v[i])); /* in between it may be faster */
+    b->force[i] = 2 * h * fmax(fabs(b->from[nq + i]), fabs(a->v[i])); /* factor 2: it may be faster in between */
   }
   int i = lag_leaps(pb, b->from, b->to, b->d, b->force);
   return i < 0 ? LAG_OK : lag_step_unmet(pb, lag_say_leap(pb, t1, b->from, i, b->d[i]), t1);

@@ -1,5 +1,5 @@
 /* rk4: the classical Runge-Kutta method with a fixed step. Enters: t, y; leaves: t + h, y one step later.
- * Holds: y and t are sums of many small terms, so both are summed with compensation (steps.h).
+ * Holds: sums over steps of y and t are compensated (steps.h).
  *
  * Source: W. Kutta, Z. Math. Phys. 46 (1901) 435. f at the end of a step is the first stage of the next,
  * so dense output (lag_hermite) costs nothing. */
@@ -10,12 +10,12 @@
 #include "methods/steps.h"
 #include "methods/tangent.h"
 
-/* One block of doubles; x holds the arrays of n named below. */
+/* Saved state of the method, doubles only; x holds the arrays of n named below. */
 typedef struct Rk4 {
   double h;       /* the step, >= 0 */
-  double ready;   /* K1 = f(t, y) is known */
+  double ready;   /* 1: K1 = f(t, y) is known */
   double t0, dt;  /* the last step began at t0 and was dt long */
-  double tc;      /* what t has lost to rounding */
+  double tc;      /* compensation of t: rounding lost so far */
   double x[];
 } Rk4;
 
@@ -57,7 +57,7 @@ static int sound(const void *work, const void *fresh, const lag_problem *pb)
   return w->h == f->h && lag_is_flag(w->ready) && isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc);
 }
 
-/* The four stages into K1..K4; the increment of y, not yet scaled by h, into YS. */
+/* K1..K4 := the four stages, YS := their weighted sum, the increment of y divided by h. */
 static int stages(Rk4 *w, lag_problem *pb, double t, const double *y, double dt)
 {
   int n = pb->n;
@@ -98,7 +98,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   if ((rc = stages(w, pb, *t, y, dt)) != 0) {
     return rc;
   }
-  /* A failure must leave y and its compensation as they were: look before touching them. */
+  /* A failure must leave y and its compensation unchanged: test before the sums. */
   if ((pb->bad_index = lag_not_finite(n, ys)) >= 0) {
     return lag_step_failed(pb, LAG_ENAN, *t);
   }

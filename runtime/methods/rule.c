@@ -1,5 +1,5 @@
-/* Lobatto's nodes and weights from Legendre's polynomials, by Newton's method: P. Davis, P. Rabinowitz, Methods of Numerical
- * Integration, 2nd ed. (1984), 2.7; M. Abramowitz, I. Stegun, 25.4.32. */
+/* Tables of discrete Lagrangians. Lobatto nodes and weights come from Legendre polynomials by Newton's method: P. Davis, P. Rabinowitz,
+ * Methods of Numerical Integration, 2nd ed. (1984), 2.7; M. Abramowitz, I. Stegun, 25.4.32. */
 #include "methods/rule.h"
 
 #include <math.h>
@@ -7,7 +7,8 @@
 
 #include "core/gauss.h"
 
-/* Ends, and the zeros of P'_(n-1): (1 - x^2) P'_m = m (P_(m-1) - x P_m), (1 - x^2) P''_m = 2 x P'_m - m (m + 1) P_m. */
+/* c[n], b[n] := Lobatto nodes and weights on [0, 1]: both ends and the zeros of P'_(n-1), where (1 - x^2) P'_m = m (P_(m-1) - x P_m)
+ * and (1 - x^2) P''_m = 2 x P'_m - m (m + 1) P_m. */
 static void lobatto(int n, double *c, double *b)
 {
   int m = n - 1;
@@ -27,7 +28,7 @@ static void lobatto(int n, double *c, double *b)
   }
 }
 
-/* p(x) and the integral of p from 0 to x, where p of degree n has coefficients a. */
+/* Returns p(x); *integral := the integral of p from 0 to x. p has degree n and coefficients a. */
 static double polynomial(const double *a, int n, double x, double *integral)
 {
   double p = 0, s = 0;
@@ -40,7 +41,7 @@ static double polynomial(const double *a, int n, double x, double *integral)
   return p;
 }
 
-/* The polynomials that are 1 at one node and 0 at the others, taken at the points. */
+/* Fills value, integral and whole: the Lagrange basis of the nodes and its integrals, at the points. */
 static void fill(lag_rule *r)
 {
   int n = (int)r->free, points = (int)r->points;

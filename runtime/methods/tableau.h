@@ -1,18 +1,18 @@
-/* The coefficients of an embedded explicit Runge-Kutta method as data, so that a test can check them. */
+/* Butcher tableau of an explicit Runge-Kutta method with an embedded error estimate, as data that a test can check. */
 #ifndef LAG_METHODS_TABLEAU_H
 #define LAG_METHODS_TABLEAU_H
 
 enum { LAG_MAX_STAGES = 16, LAG_MAX_DENSE = 4 };
 
 typedef struct lag_tableau {
-  int stages; /* with the last one, f at the end of the step, which the next step begins with */
-  int extra;  /* stages that only the dense output needs */
+  int stages; /* including the last: f at the end of the step, the first stage of the next step */
+  int extra;  /* further stages, for dense output only */
   int order, order_embedded;
   double c[LAG_MAX_STAGES];
-  double a[LAG_MAX_STAGES][LAG_MAX_STAGES]; /* a[i][j], j < i; the row of the last stage is the result's */
-  double e[LAG_MAX_STAGES];                 /* the result minus that of the embedded method: the error */
-  double e3[LAG_MAX_STAGES];                /* a second, coarser estimate, or zeros */
-  double d[LAG_MAX_DENSE][LAG_MAX_STAGES];  /* of the highest terms of the dense output */
+  double a[LAG_MAX_STAGES][LAG_MAX_STAGES]; /* a[i][j], j < i; row stages - 1 holds the weights of the result */
+  double e[LAG_MAX_STAGES];                 /* error weights: those of the result minus those of the embedded method */
+  double e3[LAG_MAX_STAGES];                /* weights of a second, coarser error estimate, or zeros */
+  double d[LAG_MAX_DENSE][LAG_MAX_STAGES];  /* weights of the highest terms of dense output */
 } lag_tableau;
 
 extern const lag_tableau lag_dopri5_tableau, lag_dop853_tableau;

@@ -1,6 +1,6 @@
-/* The variational equations Y' = Df Y by the method that integrates y: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary
- * Differential Equations I, 2nd ed. (1993), I.14. Applied to both together an explicit Runge-Kutta method yields exactly the
- * derivative of its own step. */
+/* The variational equations Y' = Df Y, solved by the method that integrates y: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary
+ * Differential Equations I, 2nd ed. (1993), I.14. Applied to (y, Y) an explicit Runge-Kutta method yields exactly the derivative of
+ * its own step. */
 #include "methods/tangent.h"
 
 #include <string.h>
@@ -16,8 +16,8 @@ lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double *
   return w;
 }
 
-/* Jacobian, scratch of the linearisation, y of a stage and f there, Y of a stage, Y of the result; each stage's f and its
- * derivative. */
+/* Scratch: Jacobian, scratch of the linearisation, y and f of a stage, Y of a stage and of the result; f and its derivative for
+ * each stage. */
 size_t lag_tangent_size(const lag_problem *pb, int stages, int k)
 {
   size_t n = (size_t)pb->n, block = n * (size_t)k;
@@ -63,7 +63,7 @@ int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, dou
   int n = pb->n, m = n * k, last = tab->stages - 1;
   double *rest;
   lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
-  double *ys = rest, *Ys = ys + n, *f = Ys + m, *F = f + last * n; /* f and F: of the stages */
+  double *ys = rest, *Ys = ys + n, *f = Ys + m, *F = f + last * n; /* f[n], F[n k] of each stage */
 
   for (int s = 0; s <= last; s++) {
     memcpy(ys, y0, (size_t)n * sizeof *ys);
@@ -88,7 +88,7 @@ int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, dou
   return LAG_OK;
 }
 
-/* A stage's matrices and right-hand sides, column, pivots, scale; the matrix of all stages. */
+/* Scratch: Jacobian of a stage; right-hand sides, a column, pivots, row scales and the matrix of all stages together. */
 size_t lag_tangent_implicit_size(const lag_problem *pb, int stages, int k)
 {
   size_t big = (size_t)(stages * pb->n);
@@ -96,7 +96,7 @@ size_t lag_tangent_implicit_size(const lag_problem *pb, int stages, int k)
   return lag_tangent_size(pb, 0, k) + big * ((size_t)k + 3 + big);
 }
 
-/* The rows of stage s of m = 1 - dt A x J. */
+/* Sets the rows of stage s of m = 1 - dt A (x) J; a[stages]: row s of A. */
 static void put_stage(const lag_tangent *w, const lag_band *m, int stages, int s, double dt, const double *a)
 {
   int n = w->pb->n, nq = w->pb->nq;
@@ -112,7 +112,7 @@ static void put_stage(const lag_tangent *w, const lag_band *m, int stages, int s
   }
 }
 
-/* The stages' derivatives K solve K_s = J_s (Y + dt sum_q a_sq K_q). */
+/* The derivatives K_s of the stages solve K_s = J_s (Y + dt sum_q a_sq K_q). */
 int lag_tangent_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt, const double *ys, int k,
                          double *Y, double *scratch)
 {
@@ -145,7 +145,7 @@ int lag_tangent_implicit(int stages, const double *A, const double *c, lag_probl
   return LAG_OK;
 }
 
-/* A vector and two matrices stand before those of the stages. */
+/* Scratch: y of a stage, two matrices, and one matrix per stage; f of the stages is not needed. */
 size_t lag_tangent_along_size(const lag_problem *pb, int k)
 {
   return lag_tangent_size(pb, lag_dop853_tableau.stages, k);
@@ -162,7 +162,7 @@ static void combine(int m, int count, const double *coef, const double *F, doubl
   }
 }
 
-/* sum (e_i / s_i)^2 of an estimate, s_i = |Y_i| and what it would gain in dt, the mean of |dt F_i| over the stages. */
+/* sum (e_i / s_i)^2 of an error estimate, s_i = |Y_i| + |dt| mean |F_i| over the stages. */
 static double square(int m, int stages, const double *e, const double *Y, const double *F, double dt)
 {
   double sum = 0;

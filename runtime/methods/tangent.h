@@ -1,5 +1,5 @@
-/* Derivatives of steps: what a step does to small changes of the state it begins from, exactly, by the derivatives that the
- * compiler emits. Changes are the columns of a matrix Y[n * k], stored row by row; row i belongs to component i of y. */
+/* Exact derivatives of steps by their start, from the derivatives that the compiler emits: a step maps k small changes of the state, the
+ * columns of Y[n * k] (row-major; row i belongs to component i of y). */
 #ifndef LAG_METHODS_TANGENT_H
 #define LAG_METHODS_TANGENT_H
 
@@ -9,27 +9,27 @@
 #include "lag.h"
 #include "methods/tableau.h"
 
-/* Doubles of scratch for lag_tangent_explicit; with 0 stages, for what lag_tangent_layout takes, two vectors and two matrices. */
+/* Doubles of scratch of lag_tangent_explicit; with 0 stages: for lag_tangent_layout, two vectors [n] and two matrices [n k]. */
 size_t lag_tangent_size(const lag_problem *pb, int stages, int k);
 
 /* Y := dy1/dy0 Y for the step of an explicit method from (t0, y0), of length dt: the method applied to y' = f, Y' = Df Y.
- * LAG_OK, or a failure with its place in pb; Y is then spoilt. */
+ * LAG_OK, or a failure with its time in pb; Y is then undefined. */
 int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, int k, double *Y,
                          double *scratch);
 
-/* The same for an implicit method whose last stage is the result, with the matrix A[stages * stages], its nodes c, and its stages
- * ys[stages * n] as they were found, by the implicit function theorem. */
+/* The same for an implicit Runge-Kutta method whose last stage is the result, by the implicit function theorem: matrix A[stages * stages],
+ * nodes c, solved stages ys[stages * n]. */
 size_t lag_tangent_implicit_size(const lag_problem *pb, int stages, int k);
 int lag_tangent_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt, const double *ys, int k,
                          double *Y, double *scratch);
 
-/* The same along a path that is known to the tolerance, whatever made it: Y' = Df(t, path(t)) Y by dop853, in steps of its own
- * whose error is below the tolerance pb->tol in each entry of Y, relative to it or to what it gains in dt, or below 1e-14. */
+/* The same along a given motion path(t), from any method: Y' = Df(t, path(t)) Y by dop853 with its own steps. The error of each entry of Y,
+ * relative to the entry and its change over dt, is below max(pb->tol, 1e-14). */
 typedef void lag_tangent_path(void *work, lag_problem *pb, double t, double *y);
 size_t lag_tangent_along_size(const lag_problem *pb, int k);
 int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, double t0, double dt, int k, double *Y, double *scratch);
 
-/* What a stage needs: df/dy at (t, y) from here on. f[n], unless NULL: f(t, y), too. */
+/* The Jacobian at a stage. */
 typedef struct lag_tangent {
   lag_problem *pb;
   int k;
@@ -37,14 +37,15 @@ typedef struct lag_tangent {
   double *linear;   /* scratch of lag_jacobian */
 } lag_tangent;
 
-/* Lays the parts out in scratch; *rest is what is left of it. */
+/* A lag_tangent in scratch; *rest := the unused remainder of scratch. */
 lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double **rest);
+/* w->jacobian := df/dy at (t, y), and f[n], unless NULL, := f(t, y). LAG_OK, or a failure. */
 int lag_tangent_at(const lag_tangent *w, double t, const double *y, double *f);
 
 /* out[n k] := df/dy Y. */
 void lag_tangent_times(const lag_tangent *w, const double *Y, double *out);
 
-/* How long the step from t0 to t is: dt, where t is the end of the step of that length but for rounding. */
+/* Length of the step from t0 to t: exactly dt where t is the end of the last step, up to rounding. */
 static inline double lag_tangent_span(double t0, double t, double dt)
 {
   double span = t - t0, rounding = 4 * DBL_EPSILON * (fabs(t0) + fabs(t));

@@ -1,19 +1,19 @@
-/* taylor: the Taylor series of the motion, in steps and of an order that follow from the tolerance. Enters: t, y; leaves:
- * the next accepted t, y. Holds: what a step needs of the model is its series at the start of the step and one evaluation at
- * the end, which is order 0 of the next series; M is factored once a step.
+/* taylor: Taylor series of the motion, with steps and an order chosen from the tolerance. Enters: t, y; leaves: the next
+ * accepted t, y. Holds: a step takes the series at its start and one evaluation at its end, which is order 0 of the next
+ * series; M is factored once a step.
  *
- * Source of the recurrences: ir/series.h of the compiler. Of the step: A. Jorba, M. Zou, Experimental Mathematics 14
- * (2005) 99, DOI 10.1080/10586458.2005.10128904, section 3, made robust. With x_k the coefficient of order k, T about the
- * last step, and |x| = max |x_i| / (|y_i| + |T y_i'| + atol/rtol), so that a component may pass through zero, theirs is h = c min(|x_(p-1)|^(-1/(p-1)), |x_p|^(-1/p)): the root test of the radius of
- * convergence. Motions with symmetries have series with gaps: a pendulum that starts from rest at a right angle has only the
- * coefficients 2, 6, 10, ... of its angle. So here
- *  1. the root test is made with the last WINDOW coefficients, r = max_k |x_k|^(1/k), and the step is such that a series
- *     with |x_k| = r^k leaves out a fraction of the tolerance: (r h)^(p+1) = rtol/4, and less near rounding;
- *  2. the defect at the end of the step, y'(h) of the polynomial against the model's f(y(h)), sees all coefficients that
- *     are left out. What it says of the error must be below the tolerance, or the step is made smaller. A defect that
- *     does not shrink with the step as h^p is rounding, and is accepted.
- * The order p is the one that covers the most time for its operations: h = rtol^(1/(p+1))/r, and order k costs an
- * evaluation and k - 1 terms of each sum. */
+ * Source of the recurrences: the compiler's ir/series.h. Source of the step size: A. Jorba, M. Zou, Experimental Mathematics
+ * 14 (2005) 99, DOI 10.1080/10586458.2005.10128904, section 3: with x_k the coefficient of order k the root test of the
+ * radius of convergence gives h = c min(|x_(p-1)|^(-1/(p-1)), |x_p|^(-1/p)). Here |x| = max |x_i| / (|y_i| + |T y_i'| +
+ * atol/rtol), T about the last step, so that a component may pass through zero. Motions with symmetries have series with
+ * gaps: a pendulum released at a right angle has only the coefficients 2, 6, 10, ... of its angle. So here
+ *  1. the root test uses the last WINDOW coefficients, r = max_k |x_k|^(1/k), and h is such that a series with |x_k| = r^k
+ *     omits a fraction of the tolerance: (r h)^(p+1) = rtol/4, and less near rounding;
+ *  2. the defect at the end of the step, y'(h) of the polynomial minus the model's f(y(h)), depends on all omitted
+ *     coefficients. The error it implies must be below the tolerance, or the step is made smaller. A defect that does not
+ *     shrink with the step as h^p is rounding, and is accepted.
+ * The order p is the one with the most time covered per operation: h = rtol^(1/(p+1))/r, and order k costs an evaluation
+ * and k - 1 terms of each sum. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -38,23 +38,23 @@ static const lag_method_option options[NOPTIONS] = {
     {"order", "order of the series; 0: chosen from the tolerance and what an order costs", 0, 0, LAG_TAYLOR_ORDER, NULL},
 };
 
-/* One block of doubles; behind it the arrays below. */
+/* Saved state of the method, doubles only; x holds the arrays named below. */
 typedef struct Taylor {
-  double order, bits; /* bits: what aim says */
-  double per_order[WINDOW]; /* 1/k of the orders that `allowed` looks at, from the highest down */
+  double order, bits; /* bits: -log2 of the relative error of a step, from aim() */
+  double per_order[WINDOW]; /* 1/k of the orders in the root test, from the highest down */
   double h_option, h_max, fixed;
-  double floor;     /* absolute over relative tolerance: a state below it is judged like one of this size */
-  double ready;     /* 1: series[now] is that at t, y */
-  double now;       /* 0 or 1: which series the next step goes along; the other one is that of the last step */
+  double floor;     /* absolute/relative tolerance, the least size of a component in error norms */
+  double ready;     /* 1: series[now] is expanded at t, y */
+  double now;       /* 0 or 1: series of the next step; the other one is of the last step */
   double t0, dt;    /* the last step */
-  double unit[2];   /* the unit of time of each series, with the sign of the direction */
-  double noise;     /* the defect that was found to be rounding, in tolerances; forgotten by a tenth a step */
-  double t_begin, begun;
-  double tc;        /* what t has lost to rounding, where all steps are equal */
+  double unit[2];   /* signed unit of time of each series */
+  double noise;     /* defect found to be rounding, in tolerances; decays by a tenth a step */
+  double t_begin, begun; /* start of the first step; 1: it is set */
+  double tc;        /* fixed steps: compensation of t */
   double x[];
 } Taylor;
 
-enum { COMP, COMP1, Y1, SUM, SLOPE, SCALE, ARRAYS }; /* of `width` doubles each; behind them the series */
+enum { COMP, COMP1, Y1, SUM, SLOPE, SCALE, ARRAYS }; /* arrays of `width` doubles; the two series follow */
 
 static int width(const lag_problem *pb)
 {
@@ -66,7 +66,7 @@ static double *array(Taylor *w, const lag_problem *pb, int which)
   return w->x + which * width(pb);
 }
 
-/* Series 0 or 1. */
+/* Series 0 or 1: (order + 1) rows of `columns` doubles. */
 static double *series(Taylor *w, const lag_problem *pb, double which)
 {
   const lag_taylor *ty = pb->model->taylor;
@@ -74,7 +74,7 @@ static double *series(Taylor *w, const lag_problem *pb, double which)
   return w->x + ARRAYS * ty->width + (which > 0 ? (ty->order + 1) * ty->columns : 0);
 }
 
-/* [nu] 1 where the input follows its formula. */
+/* [nu] 1 where the input is given by its formula, not held constant. */
 static double *follows(Taylor *w, const lag_problem *pb)
 {
   const lag_taylor *ty = pb->model->taylor;
@@ -99,26 +99,25 @@ static void reset(void *work, lag_problem *pb)
   memset(array(w, pb, COMP), 0, (size_t)width(pb) * sizeof(double));
 }
 
-/* The error that the step aims at, as -log2 of a relative one: a fraction of the tolerance, and far below what rounding leaves
- * where the tolerance comes near to that: an error of each step in one direction would add up as the number of steps, rounding
- * as its root. */
+/* The relative error aimed at in a step, as -log2: a fraction of the tolerance, and far below rounding where the tolerance is near
+ * rounding. Errors of one sign add up as the number of steps, rounding as its root. */
 static double aim(const lag_problem *pb)
 {
-  double left = 1.5 * (9 - lag_log2_near(pb->tol / DBL_EPSILON)); /* 10 at 1e-15, 0 at 1e-13 */
+  double left = 1.5 * (9 - lag_log2_near(pb->tol / DBL_EPSILON)); /* extra bits: 10 at 1e-15, 0 at 1e-13 */
 
   return AIM - lag_log2_near(pb->tol) + (left < 0 ? 0 : left > 10 ? 10 : left);
 }
 
-/* What a step costs besides its series, what a term costs that every order sums over the orders below it, and what each sum of
- * it costs, in operations of `next`: measured where numbers are doubles, of which two or four are summed at a time. */
+/* Costs in operations of `next`: of a step besides its series, of an operation of order 0, of a term in the sums over lower orders, and of
+ * each product in such a term. Measured for doubles, of which two or four are summed at a time. */
 #if DBL_MANT_DIG == 53
 static const double per_step = 400, per_first = 0.5, per_term = 1, per_product = 0.2;
 #else
 static const double per_step = 100, per_first = 1, per_term = 1, per_product = 2;
 #endif
 
-/* The order that covers the most time for its operations. What a step adds is rounded in proportion to its length: where nothing
- * but rounding is left, products count fully, which makes orders lower and steps shorter. */
+/* The order with the most time covered per operation. The rounding of an increment is proportional to the step: where only rounding is
+ * left, products count fully, which gives lower orders and shorter steps. */
 static double best_order(const lag_problem *pb)
 {
   enum { ROUNDING = 16 };
@@ -166,7 +165,7 @@ static int sound(const void *work, const void *fresh, const lag_problem *pb)
          lag_is_flag(w->begun) && isfinite(w->tc);
 }
 
-/* Order 0 at t, y of series[which]. 0, or as the model says; > 0, too, where a rate is not finite: pb->bad_index >= 0. */
+/* Order 0 of series[which] at t, y. Returns 0 or the model's status; > 0 with pb->bad_index >= 0 where a rate is not finite. */
 static int first(Taylor *w, lag_problem *pb, double which, double t, const double *y)
 {
   int nq = pb->nq, rc = lag_inputs_here(pb, t);
@@ -183,7 +182,7 @@ static int first(Taylor *w, lag_problem *pb, double which, double t, const doubl
   return rc;
 }
 
-/* The time in which the state changes, as a power of 2: the unit of the first series. Of the others it is about the step. */
+/* Unit of time of the first series: the time scale of the state, as a power of 2. Later series use about the last step. */
 static double guess_unit(Taylor *w, const lag_problem *pb, const double *y)
 {
   double fastest = 0;
@@ -195,7 +194,7 @@ static double guess_unit(Taylor *w, const lag_problem *pb, const double *y)
   return fastest > 0 && isfinite(fastest) ? ldexp(1, -ilogb(fastest)) : 1;
 }
 
-/* All orders of series[which] from its order 0; unit: of time. 0 when they are not finite. */
+/* Expands series[which] from its order 0, with the given unit of time. 0: coefficients are not finite. */
 static int expand(Taylor *w, lag_problem *pb, double which, double unit)
 {
   const lag_taylor *ty = pb->model->taylor;
@@ -212,7 +211,7 @@ static int expand(Taylor *w, lag_problem *pb, double which, double unit)
   return 0;
 }
 
-/* The series at t, y, where there is none yet: at the start, and after an event. */
+/* Expands the series at t, y where none is known: at the start, and after an event. */
 static int prepare(Taylor *w, lag_problem *pb, double t, const double *y)
 {
   if (w->begun == 0.0) {
@@ -234,7 +233,7 @@ static int prepare(Taylor *w, lag_problem *pb, double t, const double *y)
   return LAG_OK;
 }
 
-/* The step that the series allows: item 1 above. HUGE_VAL for a polynomial. */
+/* Step size by the root test, item 1 above. HUGE_VAL where the last coefficients are zero. */
 static double allowed(Taylor *w, lag_problem *pb, const double *y)
 {
   int n = pb->n, order = (int)w->order, columns = pb->model->taylor->columns;
@@ -260,8 +259,8 @@ static double allowed(Taylor *w, lag_problem *pb, const double *y)
   return fabs(w->unit[w->now > 0]) * lag_exp2_near(-w->bits / (order + 1) - root);
 }
 
-/* The error of a step of dt that ends at Y1, in tolerances: item 2 above. The polynomial leaves out c t^(p+1) and what
- * follows; its defect at the end is (p + 1) c h^p, and that of q is by one order smaller. */
+/* Error of a step of dt that ends at Y1, in tolerances: item 2 above. If the polynomial omits c t^(p+1) + ..., its defect at the
+ * end is (p + 1) c h^p; the error of q is one order smaller. */
 static double error_of(Taylor *w, lag_problem *pb, double dt)
 {
   int nq = pb->nq, m = nq + pb->nz, order = (int)w->order;
@@ -277,7 +276,7 @@ static double error_of(Taylor *w, lag_problem *pb, double dt)
   return worst / pb->tol;
 }
 
-/* The limit on steps: the option, or else what has been seen of the motion so far. */
+/* Largest step: the option, or else the time covered so far. */
 static double longest(const Taylor *w, double t)
 {
   double seen = fabs(t - w->t_begin);
@@ -285,7 +284,7 @@ static double longest(const Taylor *w, double t)
   return w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
 }
 
-/* Y1, COMP1 := the state at t + dt. */
+/* Y1, COMP1 := the state at t + dt and its compensation. */
 static void advance(Taylor *w, lag_problem *pb, const double *y, double dt)
 {
   const double *comp = array(w, pb, COMP);
@@ -298,7 +297,7 @@ static void advance(Taylor *w, lag_problem *pb, const double *y, double dt)
   }
 }
 
-/* Takes the step; what order 0 at its end leads to is the next series. */
+/* Accepts the step, and expands the next series from order 0 at its end. */
 static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, double tb)
 {
   const double *y1 = array(w, pb, Y1), *comp1 = array(w, pb, COMP1);
@@ -329,7 +328,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   h = isfinite(h) ? h : 1;
   for (;;) {
     double tc = w->tc, tb = w->fixed != 0.0 ? lag_sum(*t, pb->dir * h, &tc) : *t + pb->dir * h;
-    double dt = tb - *t; /* a step between two times that are numbers */
+    double dt = tb - *t; /* the step between two times as rounded */
     if (!(fabs(dt) > 4 * DBL_EPSILON * fabs(*t)) || h < DBL_MIN / DBL_EPSILON) {
       return cause == LAG_ESTEP || cause == LAG_ESINGULAR ? lag_step_failed(pb, cause, *t) : cause;
     }
@@ -339,7 +338,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
       return lag_step_refused(pb, rc, tb);
     }
     double error = rc ? NAN : error_of(w, pb, dt);
-    if (error > last / 2) { /* a shorter step, and the same defect: it is rounding */
+    if (error > last / 2) { /* the defect did not shrink with the step: rounding */
       w->noise = error;
     }
     if (error <= 1 || error <= 2 * w->noise || (w->fixed != 0.0 && rc == 0)) {
@@ -376,7 +375,7 @@ static size_t tangent_size(const lag_problem *pb, int k)
   return lag_tangent_along_size(pb, k);
 }
 
-/* The series is the motion, to the tolerance; so is its derivative that of the flow. */
+/* The series is the motion to the tolerance, so its derivative is that of the flow. */
 static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
 {
   const Taylor *w = work;

@@ -1,12 +1,11 @@
-/* symplectic_euler, verlet, verlet4, verlet6, verlet8: kicks and drifts (composition.c). For models whose accelerations depend
- * on t and q only they are explicit, and done here; for the others symplectic Euler and its adjoint in q and p, by Newton's
- * method (implicit.c), of which two halves are the generalised Stoermer-Verlet method, the Lobatto IIIA-IIIB pair: Hairer,
- * Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VI.3 and II.2.2. Enters: t, y; leaves: t + h, y one step later. Holds: q, v and t are sums of many small terms,
- * and are summed with compensation (steps.h); the acceleration at the end of a step is the first of the next.
+/* symplectic_euler, verlet, verlet4, verlet6, verlet8: kicks and drifts (composition.c). Explicit, in this file, for models whose
+ * accelerations depend on t and q only. For other models a composition of symplectic Euler and its adjoint in q and p, by Newton's
+ * method (implicit.c); two halves make the generalised Stoermer-Verlet method, the Lobatto IIIA-IIIB pair: Hairer, Lubich, Wanner,
+ * Geometric Numerical Integration, 2nd ed. (2006), VI.3 and II.2.2. Enters: t, y; leaves: t + h, y one step later. Holds: sums over
+ * steps of q, v and t are compensated (steps.h); the acceleration at the end of a step is the first of the next.
  *
- * A drift moves t as it moves q, so a force with explicit time is taken at the right time and keeps the order. Symplectic
- * is the map only where the forces have a potential. Dense output is accurate to the order that the descriptor says, and
- * is not symplectic. */
+ * A drift advances t with q, so a force with explicit time is evaluated at the right time and keeps the order. The map is
+ * symplectic only where the forces have a potential. Dense output has the order of the descriptor, and is not symplectic. */
 #include "lag.h"
 
 #include <math.h>
@@ -18,22 +17,22 @@
 #include "methods/steps.h"
 #include "methods/tangent.h"
 
-/* One block of doubles; x holds the arrays of n named below, then the path of path.h. */
+/* Saved state of the explicit methods, doubles only; x holds the arrays of n named below, then the path of path.h. */
 typedef struct Verlet {
   double h;         /* the step, > 0 */
-  double ready;     /* F1 = f(t, y) is known */
-  double have_path; /* 1 made, -1 cannot be made, 0 not asked for yet */
+  double ready;     /* 1: F1 = f(t, y) is known */
+  double have_path; /* dense output: 1 built, -1 failed, 0 not built */
   double t0, dt;    /* the last step began at t0 and was dt long */
-  double tc;        /* what t has lost to rounding */
+  double tc;        /* compensation of t: rounding lost so far */
   double x[];
 } Verlet;
 
-/* f = [v|a] at both ends and at a stage, y at both ends and at a stage, its increments, what y lost to rounding. */
+/* f = [v|a] at both ends and at a stage; y at both ends and at a stage; increments of y; compensation of y before and after. */
 enum { F0, F1, FS, Y0, Y1, YS, DY, COMP, COMP1, NARRAYS };
 
 static const lag_method_option options[] = {LAG_STEP_OPTION};
 
-/* A member of the family: its table for separable models, and for the others. */
+/* A method of the family: its table for separable models, and the one for others. */
 typedef struct Member {
   const lag_composition *separable, *any;
 } Member;
@@ -88,7 +87,7 @@ static int sound(const void *work, const void *fresh, const lag_problem *pb)
   return w->h == f->h && lag_is_flag(w->ready) && lag_is_sign(w->have_path) && isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc);
 }
 
-/* The increment of v by one kick. */
+/* Adds one kick to the increment of v. */
 static void kick(Verlet *w, const lag_problem *pb, double h, const double *f)
 {
   double *dv = w->x + DY * pb->n + pb->nq;
@@ -98,7 +97,7 @@ static void kick(Verlet *w, const lag_problem *pb, double h, const double *f)
   }
 }
 
-/* The increment of q by one drift, and where that leads. */
+/* Adds one drift to the increment of q; YS := the state after it. */
 static void drift(Verlet *w, const lag_problem *pb, double h, const double *y)
 {
   int nq = pb->nq, n = pb->n;
@@ -112,7 +111,7 @@ static void drift(Verlet *w, const lag_problem *pb, double h, const double *y)
   }
 }
 
-/* Adds what has been gathered to y: the result into Y1 and COMP1, from component i0 on. */
+/* Y1, COMP1 := y + increments with compensation, for nq components from i0 on. */
 static void add(Verlet *w, const lag_problem *pb, const double *y, int i0)
 {
   int n = pb->n;
@@ -125,7 +124,7 @@ static void add(Verlet *w, const lag_problem *pb, const double *y, int i0)
   }
 }
 
-/* All kicks and drifts from F0 at (t, y) to F1 at (tb, Y1). */
+/* All kicks and drifts of a step, from F0 = f(t, y) to Y1 and F1 = f(tb, Y1). */
 static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double t, double tb, const double *y, double dt)
 {
   int n = pb->n, nq = pb->nq, last = c->stages - 1, rc;
@@ -143,7 +142,7 @@ static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double 
       }
     }
   }
-  /* Accelerations do not depend on velocities: those of the last stage will do until the last kick. */
+  /* Accelerations do not depend on velocities: those of the last stage serve until the last kick. */
   memcpy(y1 + nq, w->x + YS * n + nq, (size_t)nq * sizeof(double));
   add(w, pb, y, 0);
   if ((rc = lag_step_rhs(pb, tb, y1, w->x + F1 * n)) != 0) {
@@ -171,7 +170,7 @@ static int step(const lag_composition *c, void *work, lag_problem *pb, double *t
     return rc;
   }
   memcpy(w->x + F0 * n, w->x + F1 * n, bytes);
-  w->ready = w->have_path = 0; /* until this step has gone well */
+  w->ready = w->have_path = 0; /* until this step succeeds */
   if ((rc = compose(c, w, pb, *t, tb, y, dt)) != 0) {
     return rc;
   }
@@ -208,15 +207,15 @@ static size_t tangent_size(const lag_problem *pb, int k)
   return is_explicit(pb) ? lag_tangent_size(pb, 0, k) : lag_implicit_tangent_size(pb, k);
 }
 
-/* One kick of y by f, and of Y by its derivative F. */
+/* One kick of y by f, and of Y by the derivative F of f. */
 static void kick_both(int nq, int k, double h, const double *f, const double *F, double *y, double *Y)
 {
   lag_tangent_add(nq, h, f + nq, y + nq);
   lag_tangent_add(nq * k, h, F + nq * k, Y + nq * k);
 }
 
-/* The kicks and drifts of compose once more, with what they do to Y: a kick adds to dv the derivative of the force, a drift
- * adds dv to dq. */
+/* Repeats the kicks and drifts of compose with their derivatives: a kick adds the derivative of the force to dv, a drift adds
+ * dv to dq. */
 static int tangent(const lag_composition *c, void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
 {
   Verlet *w = work;
@@ -241,7 +240,7 @@ static int tangent(const lag_composition *c, void *work, lag_problem *pb, double
   return LAG_OK;
 }
 
-/* name, tables, order, flags, words */
+/* name, table for separable models, table for others, order, flags, line for help */
 #define METHODS(X)                                                                                                       \
   X(symplectic_euler, euler, euler, 1, 0, "kick, drift; one force a step. DOI 10.1017/S0962492902000144")                \
   X(verlet, verlet, verlet, 2, LAG_METHOD_SYMMETRIC,                                                                     \
