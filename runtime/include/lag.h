@@ -77,7 +77,7 @@ typedef struct lag_problem {
   double span;         /* length of the scene's span, 0 when it has none; not the end of this run */
   double rhs_calls;    /* counted by lag_rhs */
   double rejected;     /* counted by the method */
-  double systems;      /* of nonlinear equations solved, */
+  double systems;      /* nonlinear systems solved, */
   double iterations;   /* and Newton corrections made: counted by the method */
   double bad_t;        /* set before a failure: time, */
   int bad_index;       /* component of y' (-1: unknown), */
