@@ -1,14 +1,14 @@
-/* What makes a place unfit for small motion. Both look at the state at rest and beside it, and leave rest's values undefined. */
+/* Regularity of a place: the reasons why small motion about it means nothing. Both tests evaluate the state at rest and nearby, and leave rest's
+ * values undefined. */
 #ifndef LAG_ANALYSIS_PLACE_H
 #define LAG_ANALYSIS_PLACE_H
 
 #include "analysis/equilibrium.h"
 
-/* Is the mass matrix nearly singular, as it is not beside that place? A coordinate loses its meaning there, as a longitude does
- * at a pole. */
+/* Whether the mass matrix is nearly singular here and not nearby: a coordinate loses its meaning, as longitude does at a pole. */
 int lag_place_is_pole(Rest *rest);
 
-/* Do derivatives of forces jump there, or have no limit? */
+/* Whether derivatives of forces jump here, or have no limit. */
 int lag_place_is_rough(Rest *rest);
 
 #endif

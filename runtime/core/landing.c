@@ -3,7 +3,7 @@
  *
  * Several motions meet in a singular position. Where a step ends within rounding of it, the velocities that constraints allow there are any
  * mixture of those motions; where a step ends near it on another branch, the mean of the velocities at its ends is not the displacement over the
- * time. A slightly shorter or longer step passes. Where no size helps the run ends: before 2026-11-22 a rhomb went on with another energy.
+ * time. A slightly shorter or longer step passes. Where no size helps the run ends; without that a rhomb went on with another energy.
  *
  * rk45 and dop853 choose their end points by their own estimates (methods/embedded.c), except with adapt=off. */
 #include <float.h>
@@ -16,8 +16,8 @@
 
 enum { TRIES = 8, FEW = 32, MOST_UNLOOKED = 16 };
 
-/* Thresholds of independence: at the end of a step; for examining a step. Thresholds of the detour: another size is tried; the run ends; an
- * adaptive method ends, too. */
+/* Limits of independence: at the end of a step; for examining a step. Limits of the detour: another size is tried; the run ends. hopeless: the
+ * badness at which the run of an adaptive method ends. */
 static const double least_apart = 1e-4, near_by = 0.1, doubtful = 0.02, wrong = 0.2, hopeless = 10;
 
 /* Detour of a step: |displacement/dt - mean of the velocities at its ends|, relative to these velocities; of order step^2 where the motion is
