@@ -14,9 +14,9 @@ typedef struct Touch {
   double *W;                    /* [n n] */
   double *pull;                 /* [n] acceleration of each gap while all are open */
   double *push;                 /* [n] impulses, or forces */
-  double *M, *scale;            /* [n n], [n] matrix and scales of the complementarity problem */
+  double *M, *scale;            /* [n n], [n] matrix and scales of the complementarity problem, whose row k is contact at[k] */
   int *at;
-  unsigned char *part, *in;     /* at[n]: contact of each row of that problem; [n] part: takes part; in: pushes */
+  unsigned char *part, *in;     /* [n] takes part; pushes */
   unsigned char *was;           /* [contacts] closed before */
   unsigned char *follows;       /* [n] its gap is held by the contacts that push */
   double *g, *c, *r, *d, *force, *test, *events; /* scratch: [constraints], [constraints], [constraints], [nq], [nq], [n of the state], [nev] */
