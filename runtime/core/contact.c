@@ -48,7 +48,7 @@ static const lag_constraint *constraint_of(const lag_sim *s, int i)
  * be followed, relative to the terms of the gap. */
 static const double no_speed = 1e-9, no_gap = 0x1p12 * DBL_EPSILON, no_flight = 0x1p6 * DBL_EPSILON;
 
-/* ---- which touch */
+/* ---- contacts that take part */
 
 /* of[n] := contacts that take part: closed before, of this event, or without a gap. Refuses a state set by `who` (if not NULL) with a negative
  * gap. */
@@ -83,7 +83,7 @@ static int check_restitution(lag_sim *s, int i, double e)
   return LAG_OK;
 }
 
-/* ---- what strikes */
+/* ---- impacts */
 
 /* Marks event k as due now, unless it has fired already. */
 static void happens(lag_sim *s, int k)
@@ -116,7 +116,7 @@ static int strike(Touch *w, int event, int ends, double *before, double *e, unsi
   return any ? lag_touch_impact(w, e, struck) : LAG_OK;
 }
 
-/* ---- what rests */
+/* ---- resting contacts */
 
 /* Finds the contacts that rest, and among them those that are pressed and stay closed. */
 static int rest(Touch *w, int event, int ends, const double *before, double *acceleration)

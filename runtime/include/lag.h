@@ -324,7 +324,7 @@ typedef struct lag_stats {
 /* Trend of a charge along a run: of its energy (number 0), or of the charge of a symmetry. */
 enum {
   LAG_TREND_UNKNOWN,    /* too few steps */
-  LAG_TREND_ROUNDING,   /* the drift is no more than what rounding adds up to in so many steps */
+  LAG_TREND_ROUNDING,   /* the drift is within the rounding that so many steps accumulate */
   LAG_TREND_OSCILLATES, /* a line does not explain the variation of its averages over parts of the run */
   LAG_TREND_GROWS       /* a line explains the variation */
 };
