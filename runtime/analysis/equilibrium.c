@@ -357,7 +357,7 @@ static int ran_away(Rest *r)
   return distance(r, r->x, r->begin) > 1e4 * start || largest_force(r, r->x) < 1e-6 * largest_force(r, r->begin);
 }
 
-/* x := the root to which Newton's method leads from there[n], if it is a root and within `farthest`; else x stays. */
+/* x := the root to which Newton's method leads from there[n], if it is a root and within `farthest`; else x is unchanged. */
 static int polish(Rest *r, const double *there, double farthest)
 {
   size_t bytes = (size_t)r->n * sizeof(double);

@@ -133,7 +133,7 @@ static double fastest(Lyapunov *l)
   return rate;
 }
 
-/* Df at y, t: adds its trace to the divergence since the last look, once that counts, and sets the longest next step. */
+/* Df at y, t: adds its trace to the divergence since the last call, once that counts, and sets the longest next step. */
 static int look(Lyapunov *l, lag_sim *sim, double t, const double *y)
 {
   lag_problem *pb = &sim->pb;

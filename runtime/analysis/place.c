@@ -40,7 +40,7 @@ int lag_place_is_pole(Rest *r)
   return here < 1e-9 * beside;
 }
 
-/* to[n * n] := derivatives of the forces with each unknown moved by +-c. */
+/* to[n * n] := derivatives of the forces with each unknown displaced by +-c. */
 static int moved(Rest *r, int pattern, double c, double *to)
 {
   for (int i = 0; i < r->n; i++) {

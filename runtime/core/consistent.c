@@ -112,7 +112,7 @@ static double worst(Start *w)
   return size;
 }
 
-/* Damped Gauss-Newton steps from y; returns whether they reach the constraints. */
+/* Damped Gauss-Newton steps from y; returns whether they arrive at the constraints. */
 static int descend(Start *w)
 {
   double *d = w->best + w->pb->n, *from = d + w->nq, before = merit(w);

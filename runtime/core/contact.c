@@ -240,7 +240,7 @@ int lag_contact_arm(lag_sim *s, const double *g)
     s->hold[c->input] = s->contact_was[i];
     int k = lag_contact_is_closed(s, c) ? c->release : c->impact;
     double noise = k == c->release ? 1e-12 * most : no_flight * size[c->constraint];
-    if (g[k] <= noise) { /* no sign yet; below -noise the event happens */
+    if (g[k] <= noise) { /* no sign yet; below -noise the event fires */
       s->sign[k] = 0;
       s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* with a larger factor it would grow at each impact */
     }

@@ -17,7 +17,7 @@ enum {
   PROBES = 5
 };
 
-/* After an event g may leave zero and return within a small part of the step: look there first. */
+/* After an event g may leave zero and return within a small part of the step: probe there first. */
 static const double probe_at[PROBES] = {0x1p-40, 0x1p-32, 0x1p-24, 0x1p-16, 0x1p-8};
 
 /* cos(pi m/8). */
