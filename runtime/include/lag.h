@@ -107,8 +107,9 @@ int lag_variation(lag_problem *pb, double t, const double *q, const double *v, d
 int lag_second_derivatives(lag_problem *pb, double t, const double *q, const double *v, double *h);
 
 /* Derivatives of f, for models emitted with their linearisation (model->linear; lagc --with linear). All matrices are dense and row-major;
- * work[lag_linear_work()] is scratch, 0 doubles for a model with neither linearisation nor constraints. Both return the model's status, or LAG_EMETHOD (and
- * pb->detail) without linearisation; LAG_ESINGULAR when M is singular. Neither looks for NaN; after an error the matrices are undefined. */
+ * work[lag_linear_work()] is scratch, 0 doubles for a model with neither linearisation nor constraints. Both return the model's status, or
+ * LAG_EMETHOD (and pb->detail) without linearisation; LAG_ESINGULAR when M is singular. Neither looks for NaN; after an error the matrices are
+ * undefined. */
 size_t lag_linear_work(const lag_model *model);
 
 /* J[(nq + nz) * n]: derivatives by y of the accelerations and of the rates of states, that is the rows of df/dy below the first nq; with the nq
