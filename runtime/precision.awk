@@ -1,10 +1,10 @@
-# A C source of the runtime -> the same for another scalar: `double` becomes LAG_REAL, and with it go
+# Translates a C source of the runtime to another scalar: `double` becomes LAG_REAL, and with it change
 #   numbers           0.1 is 0.1L or 0.1Q, so that coefficients keep all the digits that they are written with
 #   functions         sqrt is sqrtl or sqrtq, strtod strtold or strtoflt128
 #   limits            DBL_EPSILON is LDBL_EPSILON or FLT128_EPSILON
-#   formats           %g is %Lg or %Qg (a modifier that libquadmath teaches printf), %.17g has all digits, %.15g all that mean something
+#   formats           %g is %Lg or %Qg (a modifier that libquadmath teaches printf), %.17g has all digits, %.15g all significant ones
 # Comments stay, and so does a line that says `(as it stands)`. Use:
-# awk -v kind=long|quad -v digits=N -f runtime/precision.awk FILE, N for a number to be read back as it was.
+# awk -v kind=long|quad -v digits=N -f runtime/precision.awk FILE, N the digits with which a number reads back unchanged.
 BEGIN {
   suffix = kind == "quad" ? "Q" : "L"
   limits = kind == "quad" ? "FLT128_" : "LDBL_"

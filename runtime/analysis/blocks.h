@@ -1,11 +1,11 @@
-/* Parts of a system that have nothing to do with each other: each is judged by its own size. */
+/* Decoupled blocks of a matrix: unknowns that no entry links, so that each block is judged by its own size. */
 #ifndef LAG_ANALYSIS_BLOCKS_H
 #define LAG_ANALYSIS_BLOCKS_H
 
 #include <stddef.h>
 
-/* block[n] := for each of n unknowns the first one that it is linked with, itself or by others: A[n * n] or B[n * n] (NULL: none) has
- * an entry there, or across, that is not 0. */
+/* block[n] := for each of n unknowns the first unknown of its block: those linked, directly or through others, by non-zero entries of A[n * n]
+ * or B[n * n] (NULL: none), in either direction. */
 static inline void lag_blocks(int n, const double *A, const double *B, int *block)
 {
   for (int i = 0; i < n; i++) {
@@ -24,7 +24,7 @@ static inline void lag_blocks(int n, const double *A, const double *B, int *bloc
   }
 }
 
-/* The members of block `first` into at[]. Returns their number. */
+/* at[] := the members of block `first`. Returns their number. */
 static inline int lag_block_members(int n, const int *block, int first, int *at)
 {
   int m = 0;

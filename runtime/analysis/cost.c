@@ -1,5 +1,5 @@
-/* Work-precision diagrams: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993),
- * DOI 10.1007/978-3-540-78862-1, II.10. */
+/* Work-precision diagrams; the method and its source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), DOI
+ * 10.1007/978-3-540-78862-1, II.10. */
 #include "analysis/cost.h"
 
 #include <float.h>
@@ -46,7 +46,7 @@ int lag_samples_take(Samples *s, lag_sim *sim)
   return LAG_OK;
 }
 
-/* Coordinates are of kind 0, velocities 1, states 2. */
+/* Kind of component i: 0 coordinate, 1 velocity, 2 state. */
 static int kind_of(const lag_model *m, int i)
 {
   return i < m->nq ? 0 : i < 2 * m->nq ? 1 : 2;
@@ -141,8 +141,8 @@ static lag_sim *prepare(CostMethod *m, const CostScene *scene, double knob, int 
 
 enum { LEAST_REPEATS = 5, MOST_REPEATS = 41 };
 
-/* Runs it once, and again for its time as long as that takes little. LAG_OK: *run has its result; LAG_STOPPED: it ended
- * before the reference did; < 0: it failed. */
+/* Runs one setting, and repeats it for its time while that is short. LAG_OK: *run has its result; LAG_STOPPED: it ended before the reference
+ * did; < 0: it failed. */
 static int run_setting(CostMethod *m, const CostScene *scene, const Samples *reference, const double *scale, double longest,
                        Samples *own, CostRun *run)
 {
@@ -184,7 +184,7 @@ static int run_setting(CostMethod *m, const CostScene *scene, const Samples *ref
 
 /* ---- One method */
 
-/* The median of the last three slopes from one run to the next that neither rounding nor the reference's error touches. */
+/* Observed order: the median of the last three slopes between runs that neither rounding nor the reference's error affects. */
 static double order_of(const CostMethod *m, double uncertainty)
 {
   enum { SLOPES = 3 };

@@ -1,12 +1,11 @@
-/* What accuracy costs: a scene run by many settings of many methods, its errors against a reference beside the
- * processor time. Enters: how to make the simulation, and what it should come to; leaves: errors, times, orders. */
+/* Work-precision measurement: a scene run with many settings of many methods. Enters: a function that makes the simulation, and a reference
+ * motion; leaves: errors, processor times, observed orders. */
 #ifndef LAG_ANALYSIS_COST_H
 #define LAG_ANALYSIS_COST_H
 
 #include "lag.h"
 
-/* The motion at some times: y[rows * n] is q, v, z in SI. uncertainty: how far it may itself be off, as errors below are
- * measured. */
+/* The motion at `rows` times: y[rows * n] is q, v, z in SI. uncertainty: its own error, measured as the errors below. */
 typedef struct Samples {
   int rows, n;
   double *t, *y;
@@ -21,21 +20,20 @@ void lag_samples_free(Samples *s);
 typedef struct CostScene {
   lag_sim *(*fresh)(void *context);
   void *context;
-  double t0; /* where it begins */
+  double t0; /* start of the run */
 } CostScene;
 
-/* Runs `sim` to each of the times s->t and fills s->y. Fewer rows remain where an event ends the run. < 0: it failed, see
- * lag_sim_message. */
+/* Runs `sim` to each of the times s->t and fills s->y. Fewer rows remain where an event ends the run. < 0: failure, see lag_sim_message. */
 int lag_samples_take(Samples *s, lag_sim *sim);
 
-/* By what errors of component i are divided: scale[n], the largest reference value among components of the same kind
- * (coordinate, velocity or state) and unit; 1 where all of them are 0. */
+/* scale[n] := divisor of the error of component i: the largest reference value among components of the same kind (coordinate, velocity or state)
+ * and unit; 1 where all of them are 0. */
 void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale);
 
-/* The largest |a - b| / scale over times and components; HUGE_VAL when one is no number. */
+/* The largest |a - b| / scale over times and components; HUGE_VAL when one is not finite. */
 double lag_cost_error(const Samples *a, const Samples *b, const double *scale);
 
-/* One setting: a tolerance, or a step where the method's steps are of one size. */
+/* One run: knob is its tolerance, or its step where steps are of equal size. */
 typedef struct CostRun {
   double knob;
   double error;
@@ -52,8 +50,8 @@ typedef struct CostMethod {
   lag_option option;
   CostRun run[LAG_COST_MOST_RUNS]; /* [nruns], from the least accurate on */
   int nruns;
-  double order;   /* the slope of log error against log of the number of steps; NaN: no window to see it */
-  char why[512];  /* of no runs: why the last one tried has no result; "": it was too far off */
+  double order;   /* observed order, the slope of log error against log of the number of steps; NaN: not visible */
+  char why[512];  /* without runs: why the last one tried has no result; "": its error was too large */
 } CostMethod;
 
 /* Runs the settings of one method, from coarse to fine, until its error stops falling, or a run takes longer than `longest` [s of
@@ -63,7 +61,7 @@ int lag_cost_measure(CostMethod *m, const CostScene *scene, const Samples *refer
 /* Marks the Pareto front of all runs. */
 void lag_cost_front(CostMethod *m, int n);
 
-/* The fastest run with an error of at most `target`: its method, and *run; NULL: there is none. */
+/* The method of the fastest run with an error of at most `target`, and *run; NULL: there is none. */
 const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, const CostRun **run);
 
 #endif

@@ -1,3 +1,5 @@
+/* Search for an equilibrium: trust region, Newton's method and overdamped motion (equilibrium.h), with a test for roots that accounts for
+ * rounding of the model's numbers. */
 #include "analysis/equilibrium.h"
 
 #include <float.h>
@@ -10,9 +12,9 @@
 
 enum { MOST_STEPS = 200, MOST_DESCENT = 200 };
 
-/* A root counts as reached when Newton's method would move by no more than this, relative to the state and its scale. */
+/* A root is reached when a Newton step is no longer than this, relative to the state and its scale. */
 static const double NEAR = 1e-9;
-/* How many times what rounding of the model's numbers does to a force the force may be: it has a few operations more. */
+/* A force up to this many times its perturbation noise counts as 0: it takes a few more operations. */
 static const double CERTAIN = 8;
 
 static const lag_var *unknown(const Rest *r, int i)
@@ -66,14 +68,14 @@ static int choose_rows(Rest *r)
   return LAG_OK;
 }
 
-/* ---- What is a root */
+/* ---- Test for a root */
 
 static int forces(Rest *r, const double *x, double *out)
 {
   return lag_rest_equations(r, x, out, out + r->n);
 }
 
-/* r->f, r->J and what rounding makes of them, r->noise[n | n * n], at x[n]. */
+/* r->f, r->J and their noise, r->noise[n | n * n], at x[n]. */
 static int forces_and_noise(Rest *r, const double *x)
 {
   size_t n = (size_t)r->n;
@@ -84,7 +86,7 @@ static int forces_and_noise(Rest *r, const double *x)
   }
   memcpy(r->f, r->values, n * sizeof(double));
   memcpy(r->J, r->values + n, n * n * sizeof(double));
-  for (size_t i = 0; i < n; i++) { /* M a is a sum that no parameter shows */
+  for (size_t i = 0; i < n; i++) { /* rounding of the sum M a, which no perturbation of parameters shows */
     double sum = 0;
     size_t nq = (size_t)r->sim->pb.nq;
     for (size_t j = 0; j < nq && i < nq; j++) {
@@ -95,7 +97,8 @@ static int forces_and_noise(Rest *r, const double *x)
   return lag_rest_equations(r, x, r->f, NULL); /* r->rate at x */
 }
 
-/* J dx = -b, b[n] of the size of noise; all but dx is destroyed. `noise` may be NULL: J is what it seems. Returns the rank. */
+/* Solves J dx = -b, where b[n] has the given noise; destroys all but dx. noise NULL: J is taken as exact. Returns the rank; b[i] for i >= rank
+ * is the unbalanced force, 0 if it is noise. */
 static int solve(Rest *r, double *b, const double *noise)
 {
   int n = r->n;
@@ -115,7 +118,7 @@ static int solve(Rest *r, double *b, const double *noise)
   return rank;
 }
 
-/* How far dx goes, relative to the state and its scale. */
+/* Length of dx, relative to the state and its scale. */
 static double reach(const Rest *r, const double *x, const double *dx)
 {
   double most = 0;
@@ -126,7 +129,7 @@ static double reach(const Rest *r, const double *x, const double *dx)
   return most;
 }
 
-/* Would Newton's method stay, and does nothing pull where it cannot go? */
+/* Whether Newton's method would stay at x, and no force pulls along directions that it cannot move. */
 static int stays(Rest *r, const double *x)
 {
   int n = r->n;
@@ -141,7 +144,7 @@ static int stays(Rest *r, const double *x)
   return reach(r, x, r->dx) <= NEAR;
 }
 
-/* Are the forces that were computed last what rounding makes of 0? Sets the worst. */
+/* Whether the forces computed last are noise. Sets the worst. */
 static int none_pulls(Rest *r)
 {
   double most = 0;
@@ -156,20 +159,20 @@ static int none_pulls(Rest *r)
   return most == 0.0;
 }
 
-/* Do all forces vanish at x[n]? */
+/* Whether all forces vanish at x[n]. */
 static int vanish(Rest *r, const double *x)
 {
   return forces_and_noise(r, x) == 0 && none_pulls(r);
 }
 
-/* Is x[n] a root: do all forces vanish there, or next to it? The size of a force says little, as stiff ones stand
- * beside soft ones. */
+/* Whether x[n] is a root: all forces vanish there, or within a Newton step of rounding size. The size of a force alone says little, as stiff
+ * ones stand beside soft ones. */
 static int holds(Rest *r, const double *x)
 {
   return forces_and_noise(r, x) == 0 && (none_pulls(r) || stays(r, x));
 }
 
-/* 1e-9 is 0 where 0 is as good. */
+/* Rounds small components of x to 0 where forces vanish there, too. */
 static void clean(Rest *r)
 {
   static const double small[] = {1e-4, 1e-8, 1e-12};
@@ -188,7 +191,7 @@ static void clean(Rest *r)
   }
 }
 
-/* What nothing pulls at stays where it began. */
+/* Moves undetermined unknowns back to the start where forces vanish there, too. */
 static void restore(Rest *r)
 {
   size_t bytes = (size_t)r->n * sizeof(double);
@@ -207,8 +210,8 @@ static void restore(Rest *r)
 
 /* ---- Newton's method */
 
-/* Newton's method, unbridled: along the floor of a steep valley it makes large steps where one that must reduce forces at each creeps.
- * 1: x[n] moves no more. */
+/* Newton's method without step control: along the floor of a steep valley its steps are large where a method that must reduce forces at each
+ * step is slow. 1: x[n] has converged. */
 static int newton(Rest *r, lag_equations *zero, double *x, int most)
 {
   double last = HUGE_VAL;
@@ -233,7 +236,7 @@ static int newton(Rest *r, lag_equations *zero, double *x, int most)
 
 /* ---- Downhill */
 
-/* How far x is from y, in scales. */
+/* Largest component of x - y, in scales. */
 static double distance(const Rest *r, const double *x, const double *y)
 {
   double most = 0;
@@ -244,7 +247,7 @@ static double distance(const Rest *r, const double *x, const double *y)
   return most;
 }
 
-/* An implicit step of the motion with all inertia replaced by friction, M q' = f: f(x) - W (x - from)/delta. */
+/* Equations of an implicit Euler step of length delta of the overdamped motion M q' = f: f(x) - W (x - from)/delta. */
 static int friction(void *context, const double *x, double *f, double *J)
 {
   Rest *r = context;
@@ -261,7 +264,7 @@ static int friction(void *context, const double *x, double *f, double *J)
   return rc;
 }
 
-/* The mass matrix in the units of the equations, and the identity for rates; the first step goes 0.3 of a scale. */
+/* W := the mass matrix in the units of the equations, and the identity for rates; delta: a first step of 0.3 of a scale. */
 static void prepare_friction(Rest *r)
 {
   int n = r->n, nq = r->sim->pb.nq;
@@ -278,7 +281,7 @@ static void prepare_friction(Rest *r)
   r->delta = fastest > 0 && isfinite(fastest) ? 0.3 / fastest : 1;
 }
 
-/* Follows friction from x[n] until hardly anything moves. */
+/* Follows the overdamped motion from x[n] until hardly anything moves. */
 static void descend(Rest *r)
 {
   size_t bytes = (size_t)r->n * sizeof(double);
@@ -311,7 +314,7 @@ static double largest_force(Rest *r, const double *x)
   return most;
 }
 
-/* Has x left everything behind, or nearly all of the force at the start? Forces that fade have no root there. */
+/* Whether x has run away, or left nearly all of the force at the start: forces that fade have no root there. */
 static int ran_away(Rest *r)
 {
   double start = 1;
@@ -322,7 +325,7 @@ static int ran_away(Rest *r)
   return distance(r, r->x, r->begin) > 1e4 * start || largest_force(r, r->x) < 1e-6 * largest_force(r, r->begin);
 }
 
-/* x := the root to which Newton's method leads from there[n], if it is one and not too far; else x stays. */
+/* x := the root to which Newton's method leads from there[n], if it is a root and within `farthest`; else x is unchanged. */
 static int polish(Rest *r, const double *there, double farthest)
 {
   size_t bytes = (size_t)r->n * sizeof(double);
@@ -339,7 +342,7 @@ static int polish(Rest *r, const double *there, double farthest)
   return 0;
 }
 
-/* A root from x on: where a trust region leads; or, if that is stuck, Newton's method alone. */
+/* Finds a root from x: by a trust region; if that gets stuck, by Newton's method. */
 static int find_root(Rest *r, const lag_algebra *algebra)
 {
   size_t bytes = (size_t)r->n * sizeof(double);
@@ -359,7 +362,7 @@ static int find_root(Rest *r, const lag_algebra *algebra)
   return polish(r, r->near, 0.1) || holds(r, r->x) || polish(r, r->from, 10) || holds(r, r->x);
 }
 
-/* A root near the start, stable or not; else one downhill; else any. */
+/* Searches a root near the start, stable or not; else one downhill; else any. */
 static int search(Rest *r, const lag_algebra *algebra)
 {
   size_t bytes = (size_t)r->n * sizeof(double);
@@ -398,8 +401,8 @@ static int allocate(Rest *r)
   return r->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
 
-/* How far from x the root may be: what rounding of forces, with two patterns of signs, moves Newton's method by, and what it
- * would still do. Leaves all values at x. */
+/* spread := uncertainty of the root: Newton steps for noise of the forces with two patterns of signs, and for the rest of the forces. Leaves all
+ * values at x. */
 static int settle(Rest *r)
 {
   int n = r->n, rc = 0;

@@ -1,3 +1,5 @@
+/* Lyapunov exponents by repeated Gram-Schmidt orthonormalisation of the tangent (lyapunov.h), with their errors, and the dimension and entropy
+ * that follow. */
 #include "analysis/lyapunov.h"
 
 #include <float.h>
@@ -7,7 +9,7 @@
 
 #include "core/core.h"
 
-/* Longest step times fastest rate: a step of order 5 is then wrong by some 1e-9 of each vector. */
+/* Largest step times spectral radius: a step of order 5 is then wrong by some 1e-9 of each vector. */
 static const double resolution = 0.1;
 
 void lag_lyapunov_free(Lyapunov *l)
@@ -25,8 +27,8 @@ static double dot(const Lyapunov *l, int a, int b)
   return s;
 }
 
-/* Y := Q of Y = Q R, by Gram and Schmidt, modified: after one step vectors are still nearly orthogonal. What they have grown by, the
- * diagonal of R, goes into `sum` where `counts`. */
+/* Y := Q of Y = Q R by modified Gram-Schmidt, enough as vectors are still nearly orthogonal after one step. Adds the logarithms of the diagonal
+ * of R to `sum` where `counts`. */
 static int orthonormalise(Lyapunov *l, int counts)
 {
   for (int a = 0; a < l->k; a++) {
@@ -48,8 +50,8 @@ static int orthonormalise(Lyapunov *l, int counts)
   return LAG_OK;
 }
 
-/* Vectors in no special direction, the same in every run: the axes of a model may be directions that its flow never leaves. The
- * generator: D.E. Knuth, MMIX; the upper bits of its states. */
+/* Pseudo-random vectors, the same in every run: axes of a model may be directions that its flow never leaves. Generator: D.E. Knuth, MMIX; the
+ * upper bits of its states. */
 static void scatter(Lyapunov *l)
 {
   uint64_t x = 1;
@@ -83,7 +85,7 @@ int lag_lyapunov_begin(Lyapunov *l, lag_sim *sim, int k, double from, double unt
   return lag_sim_set_tangent(sim, k, l->Y);
 }
 
-/* The present block ends here. */
+/* Closes the present block: its mean rates. */
 static void close_block(Lyapunov *l)
 {
   double *rate = l->block + l->nblocks * (l->k + 1), length = l->t - l->block_from;
@@ -98,8 +100,7 @@ static void close_block(Lyapunov *l)
   l->nblocks++;
 }
 
-/* How fast the fastest change is, the spectral radius of A = Df, from above: |A^16|^(1/16), in which units hardly count. A is
- * destroyed. */
+/* Upper bound of the spectral radius of A = Df: |A^16|^(1/16), in which units hardly count. A is destroyed. */
 static double fastest(Lyapunov *l)
 {
   double rate = 1, root = 1;
@@ -132,7 +133,7 @@ static double fastest(Lyapunov *l)
   return rate;
 }
 
-/* Df at y at t: its trace into the divergence since the last look, where it counts, and how long the next step may be. */
+/* Df at y, t: adds its trace to the divergence since the last call, once that counts, and sets the longest next step. */
 static int look(Lyapunov *l, lag_sim *sim, double t, const double *y)
 {
   lag_problem *pb = &sim->pb;
@@ -163,7 +164,7 @@ static int look(Lyapunov *l, lag_sim *sim, double t, const double *y)
 
 void lag_lyapunov_event(Lyapunov *l, lag_sim *sim, double t, const double *before)
 {
-  look(l, sim, t, before); /* where it fails, so does the step that ends there */
+  look(l, sim, t, before); /* a failure shows at the end of this step, too */
 }
 
 int lag_lyapunov_step(Lyapunov *l, lag_sim *sim)
@@ -287,5 +288,5 @@ double lag_lyapunov_dimension(const Lyapunov *l, double *error)
     sum += x;
     lost += off;
   }
-  return NAN; /* all are 0 within their errors, their sum is not */
+  return NAN; /* all are 0 within their errors, and their sum is not */
 }

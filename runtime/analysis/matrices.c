@@ -1,3 +1,4 @@
+/* Mass, damping and stiffness matrices at a state of rest, the noise of each entry, and the signature of the energy. */
 #include "analysis/matrices.h"
 
 #include <float.h>
@@ -9,7 +10,7 @@
 
 /* ---- Entries */
 
-/* noise[count] += what changes when the root lies elsewhere within its spread: on four corners of it. */
+/* noise[count] := at least the changes of values when the root moves to four corners of its uncertainty. */
 static void add_spread(Rest *r, lag_values *values, size_t count, const double *base, double *noise, double *scratch)
 {
   double *at = scratch + count;
@@ -28,7 +29,7 @@ static void add_spread(Rest *r, lag_values *values, size_t count, const double *
   }
 }
 
-/* Values at the state at rest, and what rounding makes of them: of the model's numbers, of what they make, and of the state. */
+/* Values at the state at rest and their noise: of the model's numbers, of the values themselves, and of the state. */
 static int with_noise(Pool *pool, Rest *r, lag_values *values, size_t count, double **base, double **noise)
 {
   size_t more = (size_t)(r->sim->pb.model->np + r->sim->pb.model->nderived) + (size_t)r->n;
@@ -51,7 +52,7 @@ static int with_noise(Pool *pool, Rest *r, lag_values *values, size_t count, dou
   return LAG_OK;
 }
 
-/* dr, then M. */
+/* out := dr, then M. */
 static int linearisation(Rest *r, const double *x, double *out)
 {
   size_t rows = (size_t)r->n * (size_t)r->sim->pb.n;
@@ -89,7 +90,7 @@ static double row_size(const double *row, int n)
   return most;
 }
 
-/* K, C, M := entries over weights. */
+/* K, C, M := entries divided by the weights of row and column. */
 static void weigh(Matrices *m, int ny, const double *dr, double *K, double *C, double *M)
 {
   int nq = m->nq;
@@ -105,7 +106,7 @@ static void weigh(Matrices *m, int ny, const double *dr, double *K, double *C, d
   }
 }
 
-/* Is K symmetric, and C zero, to rounding? */
+/* Whether K is symmetric, and C zero, to rounding. */
 static void look_at(Matrices *m)
 {
   int nq = m->nq;
@@ -150,7 +151,7 @@ static int entries(Matrices *m, Pool *pool, Rest *r)
 
 /* ---- Signature */
 
-/* The value of x by Rayleigh's quotient, which has the error of x squared; and how much of it rounding may have made. */
+/* Eigenvalue k by Rayleigh's quotient, whose error is the square of the vector's; zero[k]: its noise. */
 static void settle_value(Matrices *m, int k)
 {
   int nq = m->nq;
@@ -171,7 +172,7 @@ static void settle_value(Matrices *m, int k)
   m->zero[k] = 2 * (of_K + fabs(m->values[k]) * of_M) / bottom;
 }
 
-/* Values and vectors of the block of the coordinates at[count], from column `done` on. */
+/* Eigenvalues and vectors of the block of the coordinates at[count], as columns from `done` on. */
 static int solve_block(Matrices *m, Pool *pool, const lag_algebra *algebra, int count, const int *at, int done)
 {
   size_t c = (size_t)count;
@@ -200,7 +201,7 @@ static void swap(double *a, double *b)
   *b = x;
 }
 
-/* Ascending values; vectors without weights. */
+/* Sorts values ascending; divides vectors by the weights; counts directions of falling and of constant energy. */
 static void sort_values(Matrices *m)
 {
   int nq = m->nq;

@@ -1,8 +1,7 @@
-/* M x'' + C x' + K x = 0, with K = -dr/dq and C = -dr/dv at rest. Without C, and with K = K', it is a
- * symmetric eigenvalue problem (J.W. Strutt, Lord Rayleigh, The Theory of Sound, 1877, chapter IV), which is solved
- * as one; the rest, with states, as y' = A y. Stability: by the first approximation where real parts decide (A.M.
- * Lyapunov, 1892), by the energy where it has a strict minimum (Lagrange; G. Lejeune Dirichlet, J. reine angew. Math.
- * 32 (1846) 85, DOI 10.1515/crll.1846.32.85). */
+/* Modes of M x'' + C x' + K x = 0, with K = -dr/dq and C = -dr/dv at rest. Without C, and with K = K', as a symmetric eigenvalue problem (J.W.
+ * Strutt, Lord Rayleigh, The Theory of Sound, 1877, chapter IV); else, and with states, as y' = A y. Stability: by the first approximation where
+ * real parts decide (A.M. Lyapunov, 1892), by the energy where it has a strict minimum (Lagrange; G. Lejeune Dirichlet, J. reine angew. Math. 32
+ * (1846) 85, DOI 10.1515/crll.1846.32.85). */
 #include "analysis/modes.h"
 
 #include <math.h>
@@ -18,7 +17,7 @@ typedef struct Work {
   lag_problem *pb;
   int nq, n, ny;        /* n = nq + nz, ny = 2 nq + nz */
   Matrices m;
-  int loses;            /* the model has no states, and nothing raises its energy, less the work of constant forces */
+  int loses;            /* the model has no states, and its energy, less the work of constant forces, never grows */
   int conserves;        /* the model has a conserved energy, and no states beside it */
   double *kernel;       /* [n * nkernel] zero modes in SI, columns */
   int nkernel;
@@ -26,13 +25,14 @@ typedef struct Work {
 
 /* ---- Shapes */
 
-/* Coordinate i of x where the first nq are coordinates and the rest states: how far it goes, in scales. */
+/* Amplitude of component i of a shape (coordinates, then states), in scales. */
 static double extent(const Work *w, int i, double re, double im)
 {
   return hypot(re, im) / w->rest->scale[i];
 }
 
-/* The component that becomes 1: of coordinates, that with the largest kinetic energy; of states, that which goes farthest. */
+/* The component to be normalised to 1: the coordinate with the largest kinetic energy; if only states move, the state with the largest
+ * amplitude. */
 static int reference(const Work *w, const double *re, const double *im)
 {
   int best = 0, state = w->nq;
@@ -43,7 +43,7 @@ static int reference(const Work *w, const double *re, const double *im)
     if (i < w->nq) {
       double kinetic = hypot(re[i], im[i]) * w->m.weight[i];
       far = fmax(far, e);
-      if (kinetic > most * (1 + 1e-9)) { /* of equal ones the first, whatever rounding says */
+      if (kinetic > most * (1 + 1e-9)) { /* the first of equal ones, whatever rounding says */
         most = kinetic;
         best = i;
       }
@@ -91,8 +91,7 @@ static void swap(double *a, double *b)
   *b = x;
 }
 
-/* Any basis of the kernel is as right as another; this one has as many zeros as can be: Gauss-Jordan
- * elimination of its vectors, measured in scales. */
+/* A basis of the kernel with as many zeros as possible: Gauss-Jordan elimination of its vectors, measured in scales. */
 static void reduce_kernel(Work *w)
 {
   int k = w->nkernel, n = w->n;
@@ -128,8 +127,7 @@ static void reduce_kernel(Work *w)
   }
 }
 
-/* Do all forces stay 0 along x[n], or along a curve that begins so (a rotation)? Looked at near and as far as `most` scales, on both
- * sides. */
+/* Whether all forces stay 0 along x[n], or along a curve that begins so (a rotation): tested near and as far as `most` scales, on both sides. */
 static int is_free(Work *w, const double *x, double most)
 {
   const double steps[] = {-most / 3, most / 3, -most, most};
@@ -147,8 +145,8 @@ static int is_free(Work *w, const double *x, double most)
   return far > 0;
 }
 
-/* Is what is free along each of the zero modes free along sums of them, too? x^2 y^2 is 0 along x and along y. A few are
- * tried, with coefficients in no simple ratio. */
+/* Whether zero modes that are free one by one are free together, which x^2 y^2 is not along x and y: a few sums are tried, with coefficients in
+ * no simple ratio. */
 static int free_together(Work *w, double *x)
 {
   int k = w->nkernel;
@@ -179,7 +177,7 @@ static int add_zero_modes(Work *w)
   for (int k = 0; k < w->nkernel && rc == LAG_OK; k++) {
     for (int i = 0; i < w->n; i++) {
       x[i] = w->kernel[i * w->nkernel + k];
-      x[i] = extent(w, i, x[i], 0) < 1e-12 ? 0 : x[i]; /* reduced: the largest is 1 or so */
+      x[i] = extent(w, i, x[i], 0) < 1e-12 ? 0 : x[i]; /* after reduction the largest is about 1 */
     }
     Mode mode = {.repeats = 1};
     mode.free = is_free(w, x, 0.3);
@@ -190,9 +188,9 @@ static int add_zero_modes(Work *w)
   return rc;
 }
 
-/* ---- The two ways to the modes */
+/* ---- Two ways to the modes */
 
-/* Values w^2 of the symmetric problem: a negative one is a pair +-s. */
+/* Modes from the eigenvalues w^2 of the symmetric problem: a negative one is a pair +-s. */
 static int modes_of_values(Work *w)
 {
   const Matrices *m = &w->m;
@@ -220,13 +218,13 @@ static int modes_of_values(Work *w)
   return rc ? rc : add_zero_modes(w);
 }
 
-/* Is the eigenvalue the other half of one that is listed? */
+/* Whether the eigenvalue is the conjugate, or the negative, of one that is listed. */
 static int is_second_half(const Work *w, const Spectrum *s, int k)
 {
   return s->im[k] < 0 || (w->out->pairs && s->re[k] < 0);
 }
 
-/* Several defective eigenvalues are one mode: is k the first of them? */
+/* Whether k is the first of equal defective eigenvalues, which are listed as one mode. */
 static int is_first(const Spectrum *s, int k)
 {
   for (int i = 0; i < k && s->repeats[k] > 1; i++) {
@@ -249,7 +247,7 @@ static int modes_of_matrix(Work *w)
   if (rc) {
     return rc;
   }
-  int minimum = w->conserves && w->m.lowering == 0 && w->m.flat == 0; /* then a real part is rounding */
+  int minimum = w->conserves && w->m.lowering == 0 && w->m.flat == 0; /* then real parts are rounding */
   w->nkernel = s.nkernel;
   w->out->drifts = s.zeros > s.nkernel;
   w->kernel = pool_doubles(pool, n * (size_t)s.nkernel);

@@ -1,5 +1,5 @@
-/* Small motion about an equilibrium: frequencies, shapes, damping, and what they say about stability. Enters: a state
- * of rest; leaves: its modes. */
+/* Modes of small motion about an equilibrium: frequencies, shapes, damping, and the stability that follows. Enters: a state of rest; leaves: its
+ * modes and a verdict. */
 #ifndef LAG_ANALYSIS_MODES_H
 #define LAG_ANALYSIS_MODES_H
 
@@ -8,12 +8,12 @@
 /* A motion exp((re + i im) t) shape, im >= 0. */
 typedef struct Mode {
   double re, im;      /* [1/s]; both 0: a zero mode */
-  int repeats;        /* > 1: of so many equal eigenvalues that have fewer shapes than that: defective */
-  int free;           /* of a zero mode: all forces stay 0 far along it */
+  int repeats;        /* > 1: multiplicity of a defective eigenvalue, which has fewer shapes */
+  int free;           /* zero mode: all forces stay 0 far along it */
   const double *shape_re, *shape_im; /* [nq + nz] in SI; its largest component, by kinetic energy, is 1 declared unit */
 } Mode;
 
-/* What is known of the equilibrium. */
+/* Verdict on the stability of an equilibrium. */
 typedef enum Verdict {
   LAG_UNSTABLE,    /* a mode grows */
   LAG_DECAYS,      /* all modes decay: asymptotically stable */
@@ -35,9 +35,9 @@ typedef struct Modes {
   int n;
   Verdict verdict;
   int pairs;     /* each mode stands for both +-(re + i im) */
-  int drifts;    /* along a zero mode a push goes on for ever */
-  int together;  /* zero modes that are free are so in any combination */
-  int lowering;  /* directions in which the energy falls; -1: not known */
+  int drifts;    /* 1: a push along a zero mode drifts for ever */
+  int together;  /* 1: free zero modes are free in any combination */
+  int lowering;  /* number of directions in which the energy falls; -1: not known */
 } Modes;
 
 /* The modes about the state at rest. LAG_OK, LAG_ENOMEM, LAG_ESINGULAR, LAG_EMETHOD: eigenvalues did not

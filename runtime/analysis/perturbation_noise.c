@@ -1,3 +1,4 @@
+/* Perturbation noise: how rounding of parameters and unknowns changes values of a model. */
 #include "analysis/perturbation_noise.h"
 
 #include <float.h>
@@ -6,10 +7,10 @@
 
 enum { MOST_TURNS = 32 };
 
-/* So far a parameter is moved, relative to itself: what changes is then exact to half of its digits. */
+/* Relative perturbation: differences are then exact to half of their digits. */
 static const double MOVE = 1.0 / (1 << 26);
 
-/* Every MOST_TURNS-th of z[n], where the whole list of which it is the part from `first` on has its turn. */
+/* Perturbs every MOST_TURNS-th element, of those whose turn it is, of z[n], the part from `first` on of one list. */
 static void move(double *z, int n, int first, int turn)
 {
   for (int i = 0; i < n; i++) {

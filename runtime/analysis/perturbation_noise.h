@@ -5,13 +5,12 @@
 
 #include "analysis/rest.h"
 
-/* Values out[] at the unknowns x[n], of the parameters in r->sim->pb.p. Not 0: there are none. */
+/* out[] := values at the unknowns x[n] with the parameters of r->sim->pb.p. Not 0: no values. */
 typedef int lag_values(Rest *r, const double *x, double *out);
 
-/* noise[count] := by how much values[count] at x change when each parameter, and each unknown, changes by DBL_EPSILON times
- * itself: the sum of what each does. base[count] := the values. With 32 parameters and unknowns or fewer it is that sum; of
- * more, several are moved at once. Changes at which there are no values are passed over. scratch[count + np + nderived + n].
- * 0, or what `values` returned at x. */
+/* noise[count] := sum over all parameters and unknowns of |change of values[count] at x| when one of them changes by DBL_EPSILON of itself;
+ * base[count] := the values. With more than 32 parameters and unknowns several are perturbed at once. Perturbations without values are skipped.
+ * scratch[count + np + nderived + n]. 0, or the status of `values` at x. */
 int lag_blur(Rest *r, lag_values *values, const double *x, size_t count, double *base, double *noise, double *scratch);
 
 #endif

@@ -1,9 +1,10 @@
+/* Gaussian elimination with complete pivoting, with an error estimate of each right-hand side. */
 #include "analysis/pivot.h"
 
 #include <float.h>
 #include <math.h>
 
-/* What the largest size in row i must be multiplied by to become 1. */
+/* Reciprocal of the largest size in row i. */
 static double factor_of(int n, const double *size, int i)
 {
   double most = 0;
@@ -21,7 +22,7 @@ static void swap(double *a, double *b)
   *b = x;
 }
 
-/* The largest element of the rest of A after k steps comes to k, k. Returns its size. */
+/* Brings the largest element of the remaining A to (k, k), by swaps. Returns its size. */
 static double bring_pivot(int n, int k, double *A, double *b, double *noise, double *column)
 {
   int row = k, col = k;
@@ -46,7 +47,7 @@ static double bring_pivot(int n, int k, double *A, double *b, double *noise, dou
   return fabs(A[k * n + k]);
 }
 
-/* Takes row k off those below. Errors add up as if they were independent. */
+/* Eliminates column k below row k. Errors add as if independent. */
 static void eliminate(int n, int k, double *A, double *b, double *noise)
 {
   for (int i = k + 1; i < n; i++) {

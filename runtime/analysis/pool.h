@@ -1,4 +1,4 @@
-/* Memory of one analysis, freed at once: what it takes is asked for first, and looked at once. */
+/* Memory pool of one analysis: blocks are allocated one by one, failure is checked once, all are freed at once. */
 #ifndef LAG_ANALYSIS_POOL_H
 #define LAG_ANALYSIS_POOL_H
 
@@ -6,10 +6,10 @@
 
 typedef struct Pool {
   void *last;  /* the newest block; each begins with a pointer to the one before it */
-  int failed;  /* some block was not to be had */
+  int failed;  /* 1: an allocation failed */
 } Pool;
 
-/* n zeros; NULL, and failed set, without memory. */
+/* n zeros; NULL without memory, and failed is set. */
 static inline double *pool_doubles(Pool *p, size_t n)
 {
   void **block = calloc(1, sizeof(double) * (n + 2));

@@ -1,9 +1,9 @@
+/* Regularity of a place: tests at a state of rest for a singular mass matrix and for forces without a derivative. */
 #include "analysis/regularity.h"
 
 #include <math.h>
 
-/* How near M[n * n] is to a singular one, where size[n] are its diagonal's usual ones: the least pivot of Cholesky's
- * method. M is destroyed. */
+/* Distance of M[n * n] from a singular matrix: the least pivot of symmetric elimination relative to size[n], the usual diagonal. M is destroyed. */
 static double least_pivot(int n, double *M, const double *size)
 {
   double least = HUGE_VAL;
@@ -40,7 +40,7 @@ int lag_place_is_pole(Rest *r)
   return here < 1e-9 * beside;
 }
 
-/* to[n * n] := derivatives of forces with each unknown moved by +-c. */
+/* to[n * n] := derivatives of the forces with each unknown displaced by +-c. */
 static int moved(Rest *r, int pattern, double c, double *to)
 {
   for (int i = 0; i < r->n; i++) {
@@ -50,7 +50,7 @@ static int moved(Rest *r, int pattern, double c, double *to)
   return lag_rest_equations(r, r->trial, r->f, to);
 }
 
-/* Do they change within a billionth of a scale as much as within a thousandth? Smooth ones change a million times less. */
+/* Whether derivatives change within 1e-9 of a scale as much as within 1e-3; smooth ones change a million times less. */
 static int changes_at_once(int n, const double *here, const double *near, const double *far)
 {
   for (int i = 0; i < n; i++) {

@@ -4,11 +4,10 @@
 
 #include "analysis/rest.h"
 
-/* Is the mass matrix nearly singular, as it is not beside that place? A coordinate loses its meaning there, as a longitude does
- * at a pole. */
+/* Whether the mass matrix is nearly singular here and not nearby: a coordinate loses its meaning, as longitude does at a pole. */
 int lag_place_is_pole(Rest *rest);
 
-/* Do derivatives of forces jump there, or have no limit? */
+/* Whether derivatives of forces jump here, or have no limit. */
 int lag_place_is_rough(Rest *rest);
 
 #endif

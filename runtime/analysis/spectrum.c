@@ -1,9 +1,8 @@
-/* Zeros are taken off first: an orthogonal Q with A Q = [B | 0] makes Q'A Q block triangular, and what is left may have
- * zeros again where 0 is defective (the staircase of V.N. Kublanovskaya, USSR Comput. Math. Math. Phys. 6 (1966) 1,
- * DOI 10.1016/0041-5553(66)90031-1; G. Golub, J. Wilkinson, SIAM Rev. 18 (1976) 578, DOI 10.1137/1018113). Of
- * the rest, eigenvalues that lie within each other's uncertainty (J. Wilkinson, The Algebraic Eigenvalue
- * Problem, 1965, chapter 2: error times sensitivity) are replaced by their mean, which is well determined
- * where they are not. Parts that are not linked are matrices of their own. */
+/* Eigenvalues by deflation of zeros and clusters. Zeros are deflated first: an orthogonal Q with A Q = [B | 0] makes Q'A Q block triangular, and
+ * the rest may have zeros again where 0 is defective (the staircase of V.N. Kublanovskaya, USSR Comput. Math. Math. Phys. 6 (1966) 1, DOI
+ * 10.1016/0041-5553(66)90031-1; G. Golub, J. Wilkinson, SIAM Rev. 18 (1976) 578, DOI 10.1137/1018113). Other eigenvalues that lie within each
+ * other's uncertainty (J. Wilkinson, The Algebraic Eigenvalue Problem, 1965, chapter 2: error times sensitivity) are replaced by their mean,
+ * which is well determined where they are not. Decoupled blocks are matrices of their own. */
 #include "analysis/spectrum.h"
 
 #include <float.h>
@@ -14,7 +13,7 @@
 
 enum { MOST_STAGES = 8 };
 
-/* A matrix of m rows becomes its upper left block of `rank` rows; C[(m - rank) * rank] is what stands below. */
+/* One deflation: of a matrix of m rows the upper left block of `rank` rows is left; C[(m - rank) * rank] stands below it. */
 typedef struct Stage {
   int m, rank;
   double *Q, *C;
@@ -24,10 +23,10 @@ typedef struct Work {
   Spectrum *s;
   Pool *pool;
   const lag_algebra *algebra;
-  double *A;    /* [m * m], what is left */
-  double *scale; /* [n] of balancing */
-  double size;  /* of the balanced matrix */
-  double noise; /* of its rounding */
+  double *A;    /* [m * m], the matrix after deflation */
+  double *scale; /* [n] scales of balancing */
+  double size;  /* norm of the balanced matrix */
+  double noise; /* norm of its noise */
   int m;
   Stage stage[MOST_STAGES];
   int nstages;
@@ -71,7 +70,7 @@ static int rotate(Work *w, const double *Q, double *B)
   return LAG_OK;
 }
 
-/* Takes the kernel off; *more = 0 when there is none. */
+/* Deflates the kernel; *more = 0 when there is none. */
 static int deflate(Work *w, int *more)
 {
   int m = w->m, rank = m;
@@ -121,7 +120,7 @@ static int take_zeros(Work *w)
 
 /* ---- Multiple eigenvalues */
 
-/* Eigenvalues of the cluster that k begins have cluster[i] = k. Close ones are joined until nothing changes. */
+/* cluster[i] := the first eigenvalue of the cluster of eigenvalue i. Close ones are joined until nothing changes. */
 static void find_clusters(int m, const double *re, const double *im, const double *uncertain, double *cluster)
 {
   int changed = 1;
@@ -143,7 +142,7 @@ static void find_clusters(int m, const double *re, const double *im, const doubl
   }
 }
 
-/* The number of eigenvectors of the eigenvalue re + i im: the kernel of A - re - i im as a real matrix of 2m rows. */
+/* *count := number of eigenvectors of the eigenvalue re + i im: the kernel of A - re - i im as a real matrix of 2m rows. */
 static int eigenvectors(Work *w, double re, double im, int *count)
 {
   int m = w->m, m2 = 2 * m, rank = m2;
@@ -165,7 +164,7 @@ static int eigenvectors(Work *w, double re, double im, int *count)
   return rc;
 }
 
-/* The members of a cluster get its mean, and the number of members where eigenvectors are missing. */
+/* Replaces the members of a cluster by their mean; repeats := their number where eigenvectors are missing. */
 static int settle_cluster(Work *w, int first, const double *cluster, double *uncertain)
 {
   Spectrum *s = w->s;
@@ -190,7 +189,7 @@ static int settle_cluster(Work *w, int first, const double *cluster, double *unc
       s->re[i] = re;
       s->im[i] = im;
       s->repeats[i] = found < members ? members : 1;
-      uncertain[i] = fmax(1e-11 * w->size, w->noise); /* of a mean: far above rounding, far below what parts the members */
+      uncertain[i] = fmax(1e-11 * w->size, w->noise); /* error of a mean: far above rounding, far below the distances of the members */
     }
   }
   return rc;
@@ -226,7 +225,7 @@ static int solve(Work *w)
   return rc;
 }
 
-/* x[m] := Q [x; C x/lambda], in place, of column k: the eigenvector of the stage's matrix. */
+/* Eigenvector k of the stage's matrix from that of its block: x[m] := Q [x; C x/lambda], in place. */
 static int lift(Work *w, const Stage *st, int k)
 {
   Spectrum *s = w->s;
@@ -247,7 +246,7 @@ static int lift(Work *w, const Stage *st, int k)
       re += st->C[(i - st->rank) * st->rank + j] * x[2 * j];
       im += st->C[(i - st->rank) * st->rank + j] * x[2 * j + 1];
     }
-    x[2 * i] = l2 > 0 ? (re * s->re[k] + im * s->im[k]) / l2 : 0; /* 0: to rounding, and then nothing is known */
+    x[2 * i] = l2 > 0 ? (re * s->re[k] + im * s->im[k]) / l2 : 0; /* eigenvalue 0, to rounding: the vector is not determined */
     x[2 * i + 1] = l2 > 0 ? (im * s->re[k] - re * s->im[k]) / l2 : 0;
   }
   for (int i = 0; i < st->m; i++) {
@@ -261,7 +260,7 @@ static int lift(Work *w, const Stage *st, int k)
   return LAG_OK;
 }
 
-/* Eigenvectors of what was left become those of the whole. */
+/* Extends eigenvectors of the deflated matrix to those of the whole, and undoes balancing. */
 static int lift_all(Work *w)
 {
   Spectrum *s = w->s;
@@ -279,7 +278,7 @@ static int lift_all(Work *w)
   return rc;
 }
 
-/* For count eigenvalues of a matrix of n rows. */
+/* Allocates room for count eigenvalues of a matrix of n rows. */
 static int allocate(Spectrum *s, Pool *pool, int n, int count)
 {
   size_t c = (size_t)count, size = (size_t)n * c;
@@ -293,7 +292,7 @@ static int allocate(Spectrum *s, Pool *pool, int n, int count)
   return pool->failed ? LAG_ENOMEM : LAG_OK;
 }
 
-/* A := D^-1 A D, and noise, by the D that balances the terms that entries are made of. */
+/* A := D^-1 A D, and noise likewise, with the D that balances the terms of the entries. */
 static int balance(Work *w, int n, double *A, double *noise)
 {
   double *terms = pool_doubles(w->pool, (size_t)n * (size_t)n);
@@ -310,7 +309,7 @@ static int balance(Work *w, int n, double *A, double *noise)
   return rc;
 }
 
-/* Of one block of a matrix, A[n * n], which is destroyed, as is noise. */
+/* Spectrum of one block A[n * n], which is destroyed, as is noise. */
 static int solve_block(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A, double *noise)
 {
   Work w = {.s = s, .pool = pool, .algebra = algebra, .A = A, .m = n};
@@ -331,7 +330,7 @@ static int solve_block(Spectrum *s, Pool *pool, const lag_algebra *algebra, int 
   return rc ? rc : lift_all(&w);
 }
 
-/* Columns of a block, over its n rows at[], become columns of the whole from `to` on. */
+/* Copies the columns of a block, over its n rows at[], to columns of the whole from `to` on. */
 static void put_columns(int n, const int *at, int from, const double *part, int columns, double *whole, int to)
 {
   for (int i = 0; i < n; i++) {
@@ -341,7 +340,7 @@ static void put_columns(int n, const int *at, int from, const double *part, int 
   }
 }
 
-/* The blocks' spectra side by side. member[i], of n, are the rows of one block after the other. */
+/* Joins the spectra of the blocks. member[i], of n: the rows of one block after the other. */
 static int join(Spectrum *s, Pool *pool, int nparts, const Spectrum *part, const int *member)
 {
   int count = 0, nkernel = 0;

@@ -1,3 +1,4 @@
+/* Stiffness: the dominant eigenvalue of the Jacobian by the power method, compared with a method's bound of stability at steps of a trial run. */
 #include "analysis/stiff.h"
 
 #include <math.h>
@@ -7,16 +8,16 @@
 
 enum { LEAST_STEPS = 30, ITERATIONS = 6, STAGES = 12, MARGIN = 4 };
 
-/* Of the bound of stability. Steps that it limits do not stay above it: their h*rho goes up and down about it, since steps past it
- * let errors grow until one is refused (of rk45, whose bound is 3.3, between 2.2 and 4.2), so that half of them may be below. */
+/* Fraction of the stability bound above which a step counts as limited. Steps limited by stability vary about the bound, since steps past it let
+ * errors grow until one is refused (h*rho of rk45, whose bound is 3.3, lies between 2.2 and 4.2), so half of them may be below it. */
 static const double near_bound = 0.75;
-/* A mode that grows faster than this part of its rate is followed, by any method that is to be right: its growth, not stability,
- * limits steps. Less may be rounding in the eigenvalue of an oscillation. */
+/* A mode whose real part is more than this fraction of its eigenvalue grows: accuracy, not stability, limits steps. Less may be rounding in the
+ * eigenvalue of an oscillation. */
 static const double growing = 0.1;
 
 typedef struct Look {
   Stiffness *s;
-  double bound, last;   /* of stability; the time of the step before */
+  double bound, last;   /* stability bound; time of the step before */
   int n, every, most;
   double *J, *x, *y, *z, *work;
 } Look;
@@ -46,12 +47,12 @@ static double apply(const lag_problem *pb, const double *J, const double *x, dou
   return sqrt(dot(pb->n, y, y));
 }
 
-/* The eigenvalue of the largest size, or one of a pair: its size, 0 where there is none, and its real part. The power method goes on from what the
- * last step left. Then x, y = J x and z = J y lie in the span of the pair's vectors, z = a y + b x, and the pair are the roots of
- * s^2 = a s + b. Of a single one y is along x, and s = y.x/x.x. */
+/* The dominant eigenvalue, or pair: returns its modulus, 0 where there is none, and its real part. Power method, continued from the vector of
+ * the last step. Then x, y = J x and z = J y lie in the span of the pair's vectors, z = a y + b x, and the pair are the roots of s^2 = a s + b.
+ * For a single eigenvalue y is along x, and s = y.x/x.x. */
 static double dominant(Look *l, const lag_problem *pb, double *real)
 {
-  const double alike = 1e-10; /* the square of the sine of an angle that is none */
+  const double alike = 1e-10; /* squared sine of an angle that counts as 0 */
   int n = l->n;
 
   *real = 0;
@@ -85,7 +86,7 @@ static int look(void *context, const lag_sim *sim)
 
   l->last = s->until = t;
   s->calls = pb.rhs_calls;
-  if (s->steps == l->most / 2) { /* what a run begins with, a transient, says little of the rest */
+  if (s->steps == l->most / 2) { /* the first half of the trial is forgotten: a transient says little of the rest */
     s->looked = s->limited = 0;
   }
   if (s->steps++ % l->every == 0 && lag_jacobian(&pb, t, sim->y, l->J, l->work) == LAG_OK) {
@@ -112,7 +113,7 @@ int lag_stiffness(lag_sim *trial, double until, double bound, int most, Stiffnes
   l.work = pool_doubles(&pool, lag_linear_work(m));
   if (!pool.failed) {
     for (int i = 0; i < n; i++) {
-      l.x[i] = 1 + 0.1 * (i % 7); /* no eigenvector that a model is likely to have */
+      l.x[i] = 1 + 0.1 * (i % 7); /* unlikely to be an eigenvector of a model */
     }
     lag_sim_on_step(trial, look, &l);
     s->unfinished = lag_sim_advance(trial, until) == LAG_INTERRUPTED;

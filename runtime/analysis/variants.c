@@ -1,3 +1,4 @@
+/* Comparison of variants of a scene: runs, differences of motions, weights of effects, times of right-hand sides. */
 #include "analysis/variants.h"
 
 #include <math.h>
@@ -26,7 +27,7 @@ void lag_variant_free(Variant *v)
   free(v->y);
 }
 
-/* Every stride-th step is kept; where there is no room left, every second one goes. */
+/* Keeps every stride-th step; when full, drops every second one and doubles the stride. */
 typedef struct Recorder {
   Variant *v;
   long long step, stride;
@@ -81,9 +82,9 @@ int lag_variant_run(Variant *v, double t0, double t1)
   return LAG_OK;
 }
 
-/* ---- What belongs to what */
+/* ---- Matching components */
 
-/* Component i of [q|v|z] is of this kind; index: in its part. */
+/* Kind of component i of [q|v|z]: 0, 1, 2; *index: its place within that kind. */
 static int part_of(const lag_model *m, int i, int *index)
 {
   int part = i < m->nq ? 0 : i < 2 * m->nq ? 1 : 2;
@@ -99,7 +100,7 @@ static const lag_var *var_of(const lag_model *m, int i)
   return part < 2 ? &m->q[index] : &m->z[index];
 }
 
-/* The component of b that is called as component i of a, of the same kind; -1: there is none. */
+/* The component of b with the name and kind of component i of a; -1: there is none. */
 static int same_component(const lag_model *a, int i, const lag_model *b)
 {
   int index, part = part_of(a, i, &index), n = part < 2 ? b->nq : b->nz;
@@ -122,7 +123,7 @@ static const lag_model *model_of(const Variant *v)
   return v->sim->scene->model;
 }
 
-/* at[a->n]: where the components of a stand in b. NULL: no memory. */
+/* at[a->n] := places of the components of a in b. NULL: no memory. */
 static int *places(const Variant *a, const Variant *b)
 {
   int *at = calloc((size_t)a->n + 1, sizeof *at);
@@ -170,8 +171,7 @@ int lag_variant_difference(const Variant *scene, const Variant *other, double *d
 
 /* ---- Weights */
 
-/* Accelerations and rates of a unit count together: group[n] of component i, -1 for velocities as rates of coordinates. Returns how
- * many groups there are. */
+/* Groups of accelerations and rates of states with one unit: group[n] of component i, -1 for rates of coordinates. Returns the number of groups. */
 static int group_rates(const lag_model *m, int n, int *group)
 {
   int count = 0, index, other;
@@ -191,7 +191,7 @@ static int group_rates(const lag_model *m, int n, int *group)
   return count;
 }
 
-/* dy of v at a state of `along`, whose components stand at[] in v's. */
+/* dy := rates of v at a state of `along`, whose components stand at[] in v's. Not 0: no values. */
 static int rates(const Variant *v, const Variant *along, int state, const int *at, double *y, double *dy)
 {
   const double *from = along->y + (size_t)state * (size_t)along->n;
@@ -215,7 +215,7 @@ typedef struct Weighing {
   double *size, *differs;     /* [LAG_VARIANT_STATES * ngroups] |a_with|^2, |a_with - a_without|^2 */
 } Weighing;
 
-/* Sums of squares over groups at one state; 0 where there are no values. */
+/* Sums of squares over groups at one state; 0: no values. */
 static int weigh_state(const Weighing *w, int state, double *size, double *differs)
 {
   if (rates(w->with, w->along, state, w->at_with, w->y, w->one) || rates(w->without, w->along, state, w->at_without, w->y, w->two)) {
@@ -284,7 +284,7 @@ static double processor_seconds(void)
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Of one call, the mean over `loops` times all states of its run. */
+/* Mean time of one call over `loops` passes through all states of the run. */
 static double time_calls(Variant *v, int loops, double *dy)
 {
   double begun = processor_seconds();
@@ -300,7 +300,7 @@ static double time_calls(Variant *v, int loops, double *dy)
 int lag_variants_time(Variant *v, int n)
 {
   enum { ROUNDS = 60 };
-  const double turn = 2e-4; /* [s], long beside what reading the clock takes */
+  const double turn = 2e-4; /* [s], long beside reading the clock */
   size_t most = 1;
 
   for (int i = 0; i < n; i++) {

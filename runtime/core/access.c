@@ -1,4 +1,4 @@
-/* Questions of a caller about a simulation. Enters: a simulation; leaves: its values. */
+/* Accessors of the public interface: read values, names and units from a simulation; set its hooks. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -105,8 +105,8 @@ int lag_sim_noutputs(const lag_sim *s)
   return s ? s->scene->nout > 0 ? s->scene->nout : s->pb.n : 0;
 }
 
-/* Copies a variable's name and unit, with what a time derivative adds to them. A quantity without a
- * unit has a rate without one: a model in which nothing has units stays so. */
+/* Copies a variable's name and unit, of a velocity with ' and /s. A quantity without a unit has a rate without one: a model in which nothing has
+ * units stays so. */
 static double put_info(const lag_var *v, int velocity, char *name, size_t nname, char *unit, size_t nunit)
 {
   if (name) {

@@ -1,6 +1,6 @@
-/* Whether constraints that follow from each other at the start go on to agree. Enters: a start on the constraints; leaves: LAG_OK, or the constraint
- * that contradicts the others soon after. x = 0 and x' = a t agree at t = 0, and nowhere else: without this a run wrote its first row, and ended
- * after 1e-13 s. lagc check (mech/freedom.c) looks at the same time. */
+/* Compatibility of constraints that are dependent at the start. Enters: a start on the constraints; leaves: LAG_OK, or the constraint that
+ * contradicts the others soon after. x = 0 and x' = a t agree at t = 0 and nowhere else: without this check such a run would write its first row
+ * and end after 1e-13 s. lagc check (mech/freedom.c) tests at the same time. */
 #include <math.h>
 #include <string.h>
 

@@ -1,19 +1,17 @@
-/* What a run should keep: its energy, and the charges of its symmetries; of those that forces change, the charge less what they
- * brought, Q - int P dt. Enters: states that are part of the run, in order; leaves: for each charge the largest difference from the
- * start, and whether it grows.
+/* Monitors of charges: the energy and the charges of symmetries; where forces change a charge, its balance Q - int P dt. Enters: states of the
+ * run, in order; leaves: for each charge the largest difference from the start, and whether it grows.
  *
  * int P dt, where it is asked for, is a sum of quadratures on the dense output, of the order of the method: one over each part of a step between
- * events. Where the ends of steps are better than what lies between them the nodes are Radau's: those of `radau` are its stages, whose errors
- * cancel. Methods whose long steps have little between them, those of GSL, get no balance.
- * What an event does to a charge moves the value that it is compared with.
+ * events. Where the ends of steps are more accurate than the dense output the nodes are Radau's: those of `radau` are its stages, whose errors
+ * cancel. Methods with long steps and rough dense output, those of GSL, get no balance. The jump of a charge at an event moves the value that it
+ * is compared with.
  *
- * Its size is the median over the time of the run of the sum of its terms' sizes (of the energy |p.v| + |L|): the largest would grow with a motion that blows up,
- * and hide that. The run ends where its energy is off by several times that, and by a large part of what it is at that time.
+ * The size of a charge is the median over the time of the run of the sum of its terms' sizes (of the energy |p.v| + |L|): the largest would grow
+ * with a blow-up, and hide it. The run ends where its energy is off by several times that size, and by a large part of its present size.
  *
- * Whether it grows: the differences are averaged over 16 to 32 parts of the run, and a line is fitted to the averages. It grows where
- * the line explains most of what they vary by; what oscillates goes out in the averages, whatever its size. Batch means: B. Schmeiser,
- * Oper. Res. 30 (1982) 556, DOI 10.1287/opre.30.3.556. What is no more than rounding adds up to is not judged: D. Brouwer,
- * Astron. J. 46 (1937) 149, DOI 10.1086/105423. */
+ * Growth: the differences are averaged over 16 to 32 parts of the run, and a line is fitted to the averages. A drift grows where the line
+ * explains most of their variation; an oscillation of any size cancels in the averages. Batch means: B. Schmeiser, Oper. Res. 30 (1982) 556, DOI
+ * 10.1287/opre.30.3.556. Differences below the accumulated rounding are not judged: D. Brouwer, Astron. J. 46 (1937) 149, DOI 10.1086/105423. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -55,7 +53,7 @@ static void no_values(lag_sim *s, int from)
   }
 }
 
-/* charge_now: value and scale of each, NaN where there is none. */
+/* charge_now[2 k], charge_now[2 k + 1] := value and scale of charge k; NaN where there is none. */
 static void values_at(lag_sim *s, double t, const double *y)
 {
   const lag_model *m = s->scene->model;
@@ -108,7 +106,7 @@ int lag_charges_balance(const lag_sim *s)
   return has_powers(s) && lag_method_balances(s->method);
 }
 
-/* Whether the scene watches a charge, which is then compared with its balance. */
+/* Whether a monitor of the scene is on a charge: its balance is then integrated. */
 static int watches_charges(const lag_scene *c)
 {
   for (int i = 0; i < c->nmonitors; i++) {
@@ -129,7 +127,7 @@ void lag_charges_method(lag_sim *s, const lag_method *method)
   (ends ? lag_radau_points : lag_gauss_points)(s->nodes, s->node, s->weight);
 }
 
-/* gain[n] := int P dt over [a, b], part of the last step; NaN where there is no value. */
+/* gain[n] := int P dt over [a, b], within the last step; NaN where P has no value. */
 static void work_over(lag_sim *s, double a, double b, double *gain)
 {
   const lag_model *m = s->scene->model;
@@ -148,14 +146,14 @@ static void work_over(lag_sim *s, double a, double b, double *gain)
   }
 }
 
-/* The work up to t: the last part of the step, which the method still knows. */
+/* Adds the work from the last look to t, within the step that the method still knows. */
 static void add_work(lag_sim *s, double t)
 {
   double *gain = s->charge_gain;
 
   if (s->run->balanced != 0.0) {
     work_over(s, s->run->watched, t, gain);
-    for (int k = 0; k < lag_sim_ncharges(s); k++) { /* compensated: W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723 */
+    for (int k = 0; k < lag_sim_ncharges(s); k++) { /* compensated sum: W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723 */
       Charge *c = &s->charges[k];
       double x = c->balanced * gain[k] - c->lost, sum = c->work + x;
       c->lost = (sum - c->work) - x;
@@ -166,7 +164,7 @@ static void add_work(lag_sim *s, double t)
   s->run->watched = t;
 }
 
-/* Two bins each become one. */
+/* Merges neighbouring bins in pairs. */
 static void merge(Charge *c)
 {
   for (int i = 0; i < LAG_BINS / 2; i++) {
@@ -178,7 +176,7 @@ static void merge(Charge *c)
   c->width *= 2;
 }
 
-/* The median over time of the bins' sizes that are not 0, as at rest; of few bins the largest. By time: in front of a pole there are many steps. */
+/* Median of the bins' sizes, weighted by time, as there are many steps in front of a pole; without zeros, as at rest; of few bins the largest. */
 static double median_size(const Charge *c)
 {
   enum { FEW = 8 };
@@ -243,10 +241,10 @@ int lag_charges_lost(lag_sim *s, double t, const double *y)
   return n > 0 && isfinite(s->charges[0].begin) && !isfinite(s->charge_now[0]);
 }
 
-/* Whether the energy, known to be conserved or balanced, is off by d, several times its size in this run, and by a large part of what has come and gone and
- * of `size`, what it is now: of motion alone |p.v| + |L| is three times its energy. A rough tolerance loses as much as there is, and is no pole. A motion that
- * begins at rest has no size yet, and at rest none but rounding, of terms that nobody names: of few bins, and below 1e-12 of the energy's unit, nothing is judged;
- * nor is what constraints do that move with the time, between whose peaks steps may lie. */
+/* Whether the energy, known to be conserved or balanced, is off by d: by several times its size in this run, and by a large part of the work
+ * done so far and of `size`, its present one (in free motion |p.v| + |L| is three times the energy). The second condition spares rough
+ * tolerances, which lose as much as there is without a pole. Not judged: few bins, since a motion from rest has no size yet; errors below 1e-12
+ * of the unit, rounding of unknown terms; constraints that move with time, whose peaks may lie between steps. */
 static int is_lost(const lag_model *m, const Charge *c, double d, double size)
 {
   const double part = 0.25, times = 4, least = 1e-12, few = 8, of = fmax(fabs(c->begin), c->scale);
@@ -266,7 +264,7 @@ int lag_charges_kept(lag_sim *s)
     return LAG_OK;
   }
   lag_sim_charge(s, 0, &c);
-  double large = fmax(fabs(c.now), s->charges[0].through); /* as where forces bring much more than there was */
+  double large = fmax(fabs(c.now), s->charges[0].through); /* where forces do more work than the energy that there was */
   if (!(c.flags & (LAG_CONSERVED | LAG_BALANCED)) || !(c.drift >= half) || !(c.absolute > fmax(least, half * large))) {
     return LAG_OK;
   }
@@ -287,8 +285,8 @@ static int say_lost(lag_sim *s, double t, double before, double d)
                   h > 0 ? "take smaller steps, or dop853, which stops in front of a pole" : "take a smaller tolerance");
 }
 
-/* Where the energy changes most in a step: is the mass matrix almost singular there? The answer costs as much as n^2 energies and n^3 products, and is asked
- * for only where the change has doubled. */
+/* At the largest energy change in a step, notes the condition of the mass matrix. The answer costs n^2 energies and n^3 products, so it is
+ * computed only where the change has doubled. */
 static void note_jolt(lag_sim *s, double t, const double *y, double change)
 {
   enum { MANY = 64 };
@@ -343,7 +341,7 @@ static double relative(const Charge *c, double x)
   return x == 0.0 ? 0 : x / fmax(fabs(c->begin), c->scale);
 }
 
-/* The present state is a part of the run, too. */
+/* Includes the present state in the peak. */
 static void with_present(Charge *c, double now, double work, double size)
 {
   double d = fabs(now - work - c->first);
@@ -357,11 +355,11 @@ double lag_charge_drift(const lag_sim *s, int k)
   return relative(&s->charges[k], s->charges[k].peak);
 }
 
-/* The line through the bins, and how far it is to be trusted. */
+/* Fits a line to the bins: *slope and *error; returns the trend. */
 static int trend_of(const Charge *c, double steps, double *slope, double *error)
 {
   const int fewest = 16;
-  const double explained = 0.8; /* of a sine whose period is the run, the most that a line can seem to explain, it is 6/pi^2 = 0.61 */
+  const double explained = 0.8; /* a line explains at most 6/pi^2 = 0.61 of a sine whose period is the run */
   int n = (int)c->bins;
   double t = 0, d = 0, tt = 0, td = 0, dd = 0;
 

@@ -1,14 +1,14 @@
-/* The criss-cross method. Holds: basic = q + T nonbasic, where row i is of w_i, or of z_i where in[i]; pivots are principal, so pairs stay
- * together. */
+/* Linear complementarity by the criss-cross method (complement.h). Holds: basic = q + T nonbasic, where basic variable i is z_i where in[i],
+ * else w_i; pivots are principal or in pairs, so that each pair (w_i, z_i) keeps its row. */
 #include "core/complement.h"
 
 #include <math.h>
 
-/* Parts of what is there that are rounding: of a pivot, whose row is then one that follows from others, and of a right-hand side. */
+/* Relative sizes that count as rounding: of a pivot, whose row then depends on others, and of a right-hand side. */
 const double lag_no_pivot = 1e-10;
 static const double no_value = 1e-13;
 
-/* Row i becomes that of the other one of its pair. */
+/* Exchanges basic variable r with nonbasic variable s. */
 static void pivot(int n, double *T, double *q, int r, int s)
 {
   double at = T[r * n + s];
@@ -34,7 +34,7 @@ static void swap(double *a, double *b)
   *b = was;
 }
 
-/* Rows and columns r and s, after pivots that have brought each to the other's place. */
+/* Swaps rows and columns r and s, after two pivots that have moved each pair to the other's place. */
 static void exchange(int n, double *T, double *q, int r, int s)
 {
   swap(&q[r], &q[s]);
@@ -46,7 +46,7 @@ static void exchange(int n, double *T, double *q, int r, int s)
   }
 }
 
-/* Units in which all contacts are alike. */
+/* Scales M to a diagonal of ones, and q with it. */
 static void balance(int n, double *M, double *q, double *scale)
 {
   for (int i = 0; i < n; i++) {

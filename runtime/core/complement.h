@@ -1,15 +1,15 @@
-/* Linear complementarity: w = q + M z, w >= 0, z >= 0, and of each pair (w_i, z_i) one is 0. */
+/* The linear complementarity problem: w = q + M z, w >= 0, z >= 0, w_i z_i = 0. */
 #ifndef LAG_CORE_COMPLEMENT_H
 #define LAG_CORE_COMPLEMENT_H
 
 /* For M[n * n] symmetric and positive semidefinite, as J M^-1 J^T of contacts is. On return in[i] is 1 where z_i may be positive (w_i is 0
- * then), and q[i] is the other one, z_i where in[i] and else w_i; both are not negative. M is scaled to a diagonal of ones, where it is not 0, and left
- * as those with in[i] make it: a row whose element on the diagonal is no more than lag_no_pivot follows from them. scale[n] is scratch. Returns 1; 0
- * where no z makes all w >= 0, and *row is one that cannot be met, or -1 where rounding lets the search go in circles.
+ * then); q[i] is z_i where in[i], else w_i; both are >= 0. M is scaled to a diagonal of ones, where it is not 0, and left as pivoted on those
+ * with in[i]: a row whose diagonal element is at most lag_no_pivot depends on them. scale[n] is scratch. Returns 1; 0 where no z makes all w >=
+ * 0: *row cannot be met, or -1 where rounding makes the search cycle.
  *
- * The criss-cross method with the rule of the least index, finite for such M whether or not solutions are unique: D. den Hertog, C. Roos,
- * T. Terlaky, Linear Algebra Appl. 187 (1993) 1, DOI 10.1016/0024-3795(93)90124-7. It has no start-up phase and needs no perturbation where
- * contacts depend on each other; the number of its steps has no good bound, but contacts that touch at once are few. */
+ * The criss-cross method with the least-index rule, finite for such M whether or not solutions are unique: D. den Hertog, C. Roos, T. Terlaky,
+ * Linear Algebra Appl. 187 (1993) 1, DOI 10.1016/0024-3795(93)90124-7. It has no start-up phase and needs no perturbation where contacts are
+ * dependent; the number of its steps has no good bound, but contacts that touch at once are few. */
 extern const double lag_no_pivot;
 int lag_complement(int n, double *M, double *q, double *scale, unsigned char *in, int *row);
 

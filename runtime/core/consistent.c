@@ -1,10 +1,10 @@
-/* A start that obeys the constraints. Enters: the start as scene and caller set it, and which components they set; leaves: the nearest
- * start on the constraints. Holds: what nobody set gives way first, what somebody set only where that does not suffice; a start
- * that obeys the constraints to rounding is not touched.
+/* Consistent start. Enters: the start as scene and caller set it, and which components they set; leaves: the nearest start on the constraints.
+ * Holds: components that nobody set move first, the others only where that does not suffice; a start that obeys the constraints to rounding is
+ * not touched.
  *
  * Positions: Gauss-Newton steps, damped until the residual falls (P. Deuflhard, Newton Methods for Nonlinear Problems (2004), 4.3, DOI
- * 10.1007/978-3-642-23899-4), then Newton-like steps along the constraints to the nearest place in the mass metric. Velocities: one
- * linear problem, repeated for its rounding. */
+ * 10.1007/978-3-642-23899-4), then Newton-like steps along the constraints to the nearest place in the mass metric. Velocities: one linear
+ * problem, repeated for its rounding. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -20,17 +20,17 @@ typedef struct Start {
   lag_sim *sim;
   lag_problem *pb;
   const lag_constraints *of;
-  int n, nq, holonomic;      /* of the level at hand: constraints */
-  int *free, nfree;          /* components of q, or of v, that may move */
-  double *y, *asked, *best;  /* [n of the state] */
-  double *residual, *other;  /* [constraints] c or r, and the one that is not asked for */
-  double *size;              /* [constraints] of which parts are taken in the sum that falls */
-  double *says;              /* [constraints] whether it has such parts at all */
-  double *A, *M;             /* entries */
+  int n, nq, holonomic;      /* level at hand, positions (holonomic) or velocities, and its number of constraints */
+  int *free, nfree;          /* [nfree] components of q, or of v, that may move */
+  double *y, *asked, *best;  /* [pb->n] */
+  double *residual, *other;  /* [constraints] residual of the level at hand, c or r, and of the other level */
+  double *size;              /* [constraints] size of terms, by which residuals are divided in the merit function */
+  double *says;              /* [constraints] 1: the constraint has terms of finite size */
+  double *A, *M;             /* sparse entries */
   double *full, *kkt;        /* [nq nq], work of lag_kkt */
 } Start;
 
-/* M, A as dense matrices of the free components, and d = the solution of M d - A^T l = pull M (asked - y), A d = -residual. */
+/* Solves for the step d of the free components: M d - A^T l = pull M (asked - y), A d = -residual. */
 static int direction(Start *w, double pull, double *d)
 {
   lag_problem *pb = w->pb;
@@ -46,7 +46,7 @@ static int direction(Start *w, double pull, double *d)
       int i = of->mass[e].row, j = of->mass[e].col;
       w->full[i * nq + j] = w->full[j * nq + i] = w->M[e];
     }
-    for (int i = 0; i < nq && pass == 1; i++) { /* no mass that says what is near: all coordinates count alike */
+    for (int i = 0; i < nq && pass == 1; i++) { /* M is singular: the identity takes its place */
       memset(w->full + i * nq, 0, (size_t)nq * sizeof(double));
       w->full[i * nq + i] = 1;
     }
@@ -79,7 +79,7 @@ static int residuals(Start *w)
   return lag_residuals(w->pb, w->sim->scene->t0, w->y, w->holonomic ? w->residual : w->other, w->holonomic ? w->other : w->residual);
 }
 
-/* What falls: the residuals against their terms at the start. NaN, or infinite: no step leads there. */
+/* Merit function: sum of squared residuals relative to their terms at the start. Infinite where it has no value, so that no step leads there. */
 static double merit(Start *w)
 {
   double s = 0;
@@ -103,7 +103,7 @@ static void move(Start *w, const double *from, double part, const double *d)
   }
 }
 
-/* How many times the rounding of its terms the worst constraint is off. */
+/* The residual of the worst constraint in units of the rounding of its terms. */
 static double worst(Start *w)
 {
   double size = HUGE_VAL;
@@ -112,7 +112,7 @@ static double worst(Start *w)
   return size;
 }
 
-/* Whether damped Gauss-Newton steps lead from y to the constraints, y then being there. */
+/* Damped Gauss-Newton steps from y; returns whether they arrive at the constraints. */
 static int descend(Start *w)
 {
   double *d = w->best + w->pb->n, *from = d + w->nq, before = merit(w);
@@ -138,7 +138,7 @@ static int descend(Start *w)
   return worst(w) <= 0x1p10;
 }
 
-/* |y - asked|^2 in the mass metric at y; w->full is M. */
+/* |y - asked|^2 in the mass metric at y; w->full holds M. */
 static double distance(const Start *w)
 {
   double s = 0;
@@ -152,7 +152,7 @@ static double distance(const Start *w)
   return s;
 }
 
-/* From a place on the constraints to the nearest one: steps that are taken as long as they lead nearer. */
+/* Moves y along the constraints towards `asked`, as long as steps lead nearer. */
 static void approach(Start *w)
 {
   double *d = w->best + w->pb->n;
@@ -172,7 +172,7 @@ static void approach(Start *w)
   }
 }
 
-/* Of the constraints on positions, those that do not just keep what the start is. */
+/* Number of constraints stated on positions: without rates held at their start value. */
 static int count_stated(const lag_constraints *of)
 {
   int n = 0;
@@ -194,8 +194,8 @@ static int is_held(const Start *w, int i)
   return 0;
 }
 
-/* Onto the constraints by moving what is free. Where no step helps, as in the middle between two ways out, it tries from places
- * beside: first above, ever further. */
+/* Reaches the constraints by moving free components. Where no step helps, as half-way between two solutions, it tries displaced starts: above
+ * first, then ever further. */
 static int reach(Start *w)
 {
   static const double beside[TRIES] = {0, 1e-3, -1e-3, 0.03, -0.03, 0.3, -0.3, 1, -1};
@@ -220,7 +220,7 @@ static int reach(Start *w)
   return 0;
 }
 
-/* What gives way to constraints, in this order: components that nobody set, rotations of which nothing is said, all. */
+/* Stages, in the order in which components may move: those that nobody set, rotations that nobody set, all. */
 enum { UNSET, ROTATIONS, ALL };
 
 static int yields_at(const Start *w, int i)
@@ -233,7 +233,7 @@ static int yields_at(const Start *w, int i)
   return c->given && c->given[i] ? ROTATIONS : UNSET;
 }
 
-/* The free components: those that give way at this stage. */
+/* w->free := the components that may move at this stage. */
 static void choose_free(Start *w, int stage)
 {
   int at = w->holonomic ? 0 : w->nq;
@@ -248,7 +248,7 @@ static void choose_free(Start *w, int stage)
 
 /* ---- starts that are refused */
 
-/* The error that constraint k cannot be met, or is not met. */
+/* Reports the worst constraint, which cannot be met, or (exactly) is not met by the start. */
 static int refuse(Start *w, int exactly)
 {
   int k = lag_worst_constraint(w->pb, w->sim->scene->t0, w->y, w->holonomic, NULL);
@@ -281,7 +281,7 @@ static int is_contact(const Start *w, int k)
   return i < m->ncontacts;
 }
 
-/* size[n] := what moving each coordinate as far as some of its unit are makes of a constraint, to first order. */
+/* size[n] := first-order change of each constraint when every coordinate moves by its typical magnitude. */
 static int slopes(Start *w, double *size)
 {
   const lag_constraints *of = w->of;
@@ -303,7 +303,8 @@ static int is_flat(const Start *w, int k, const double *size)
   return w->says[k] != 0.0 && size[k] < 1e-6 * w->size[k];
 }
 
-/* Whether a constraint that is flat here is so beside, too, where all hold: not a linkage at its dead centre. y stays. */
+/* Whether constraint k, whose derivatives vanish at y, has vanishing derivatives at a displaced solution, too; not so for a linkage at its dead
+ * centre. y stays. */
 static int is_flat_beside(Start *w, int k)
 {
   double *size = w->other, *here = w->best;
@@ -320,8 +321,8 @@ static int is_flat_beside(Start *w, int k)
   return flat;
 }
 
-/* A constraint whose derivatives vanish where it holds, as those of x^2 = 0, holds nothing there; one that says nothing anywhere, as with a
- * factor that is 0, is not meant. reached: it holds here. */
+/* Refuses a constraint whose derivatives vanish where it holds, as those of x^2 = 0: no force can hold it. A constraint without terms, as with a
+ * factor that is 0, is left alone. reached: y obeys the constraints. */
 static int check_derivatives(Start *w, int reached)
 {
   double *size = w->other;
@@ -348,7 +349,7 @@ static int check_derivatives(Start *w, int reached)
   return LAG_OK;
 }
 
-/* w->size: terms of constraints at the start; w->says: there are such. */
+/* w->size := sizes of terms at the start, 1 where there are none; w->says: whether there are. */
 static void look_at_terms(Start *w)
 {
   int rc = lag_constraint_terms(w->pb, w->sim->scene->t0, w->y, w->holonomic, w->size);
@@ -359,7 +360,7 @@ static void look_at_terms(Start *w)
   }
 }
 
-/* Positions, or velocities. */
+/* Brings positions (holonomic) or velocities to the constraints, stage by stage. */
 static int settle(Start *w, int holonomic)
 {
   w->holonomic = holonomic;
@@ -386,13 +387,13 @@ static int settle(Start *w, int holonomic)
     }
   }
   memcpy(w->y + (holonomic ? 0 : w->nq), w->asked + (holonomic ? 0 : w->nq), (size_t)w->nq * sizeof(double));
-  descend(w); /* as near as that goes from where it was asked for */
+  descend(w); /* as near as possible, for the message */
   int rc = holonomic ? check_derivatives(w, 0) : LAG_OK;
   return rc ? rc : refuse(w, 0);
 }
 
-/* Which constraints follow here from those before them: marks[n], and how many do not. What counts as nothing left is what counts so for
- * corrections in lag_kkt.h: a start is found at a singular place to sqrt(eps) only. */
+/* Rank of the constraints at y; marks[k] := 1 where constraint k depends on those before it; held[i] := squared projection of coordinate i on
+ * their row space. The threshold is the coarse one of lag_kkt.h: at a singular place a start is found to sqrt(eps) only. */
 static int rank(Start *w, double *marks, double *held)
 {
   const double least = cbrt(DBL_EPSILON);
@@ -404,7 +405,7 @@ static int rank(Start *w, double *marks, double *held)
   }
   for (int k = 0; k < m; k++) {
     double left = lag_own_part(nq, r, least, unit, Q, Q + k * nq);
-    marks[k] = left >= 0 && !(left > least); /* a contact that is open demands nothing */
+    marks[k] = left >= 0 && !(left > least); /* an open contact is a row of zeros, and not marked */
     r += left > least;
   }
   memset(held, 0, (size_t)nq * sizeof *held);
@@ -414,7 +415,7 @@ static int rank(Start *w, double *marks, double *held)
   return r;
 }
 
-/* y := a place a hundredth beside here[n of the state], where all hold; whether there is one. */
+/* Moves y to a solution about a hundredth away from here[pb->n]; returns whether there is one. */
 static int go_beside(Start *w, const double *here)
 {
   choose_free(w, ALL);
@@ -424,11 +425,11 @@ static int go_beside(Start *w, const double *here)
   return descend(w);
 }
 
-/* Where constraints follow from others at the start: whether beside it, too. */
+/* Rank at the start and, where constraints are redundant, at a displaced solution: a larger rank there is a singular start; sets loose. */
 static void look_beside(Start *w)
 {
   lag_sim *s = w->sim;
-  const double part = 0.05; /* of a coordinate's direction: twice what a hundredth beside turns it */
+  const double part = 0.05; /* change of a squared projection: twice the effect of turning a direction by a hundredth */
   double *here = w->best, *held = s->loose, *held_beside = w->full, *marks = w->other; /* full is scratch of go_beside */
 
   s->run->rank = s->run->beside = rank(w, s->redundant, held);
@@ -459,7 +460,7 @@ void lag_note_redundant(lag_sim *s)
   }
 }
 
-/* From a start where the model has no accelerations there is no motion: which coordinate has no inertia, and no constraint that moves it. */
+/* Refuses a start where accelerations do not exist because a coordinate has neither inertia nor a constraint that moves it. */
 static int check_inertia(Start *w)
 {
   lag_problem *pb = w->pb;
@@ -472,7 +473,7 @@ static int check_inertia(Start *w)
                   "constraint moves it; give it a mass, or a constraint that depends on it", pb->model->q[which].name);
 }
 
-/* What moved by less than a last digit of what has its unit did not move. */
+/* Undoes moves below the last digit of the largest component of the same unit. */
 static void keep_rounding_out(const Start *w)
 {
   for (int i = 0; i < 2 * w->nq; i++) {
@@ -483,7 +484,7 @@ static void keep_rounding_out(const Start *w)
   }
 }
 
-/* The work space: one block. */
+/* Allocates the work space, one block. */
 static double *make_room(Start *w)
 {
   size_t n = (size_t)w->pb->n, nq = (size_t)w->nq, m = (size_t)w->of->n;

@@ -1,10 +1,10 @@
-/* Contacts: gaps that stay at least 0. Enters: a state that events, or whoever set it, have led to; leaves: the state after what strikes
- * has struck, with those gaps closed that are pressed. Holds: a closed gap is one whose input in `hold` is 1, a constraint of the model; none
- * is closed that would have to pull; an open one that touches is armed anew, so that it is seen to close again.
+/* Contacts: gaps that stay at least 0. Enters: a state set by an event or a user; leaves: the state after all impacts, with the gaps closed that
+ * are pressed. Holds: a closed gap is a constraint of the model, switched on by its input in `hold` (1); no closed gap pulls; an open gap that
+ * touches is armed anew, so that its next closing is seen.
  *
- * Impacts that follow each other ever faster come to an end in finite time (a ball that loses a fifth of its speed at each bounce). The
- * gap is closed when what is left of that time is too short to matter, or the next flight stays within rounding; Brogliato, Nonsmooth
- * Mechanics, 3rd ed. (2016), 1.4 and 8.1, DOI 10.1007/978-3-319-28664-8. */
+ * Impacts that follow each other ever faster come to an end in finite time (a ball that loses a fifth of its speed at each bounce). The gap is
+ * closed when the rest of that time is too short to matter, or the next flight stays within rounding; Brogliato, Nonsmooth Mechanics, 3rd ed.
+ * (2016), 1.4 and 8.1, DOI 10.1007/978-3-319-28664-8. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -44,13 +44,14 @@ static const lag_constraint *constraint_of(const lag_sim *s, int i)
   return &m->constraints->of[m->contacts[i].constraint];
 }
 
-/* Of what an impact leaves of the speed, this is none; of the terms of a gap, or of its rate, this is rounding; and a flight that stays below
- * this part of them is not flown. */
+/* Relative tolerances: a speed after an impact that counts as 0; rounding of a gap or of its rate, relative to their terms; a flight too low to
+ * be followed, relative to the terms of the gap. */
 static const double no_speed = 1e-9, no_gap = 0x1p12 * DBL_EPSILON, no_flight = 0x1p6 * DBL_EPSILON;
 
-/* ---- which touch */
+/* ---- contacts that take part */
 
-/* of[n]: what is closed, what the event is of, and what has no gap. who, if it is not NULL, may set no state with one inside. */
+/* of[n] := contacts that take part: closed before, of this event, or without a gap. Refuses a state set by `who` (if not NULL) with a negative
+ * gap. */
 static int gather(Touch *w, const char *who, int event)
 {
   lag_sim *s = w->sim;
@@ -82,15 +83,15 @@ static int check_restitution(lag_sim *s, int i, double e)
   return LAG_OK;
 }
 
-/* ---- what strikes */
+/* ---- impacts */
 
-/* Event k belongs to what happens now, unless it has led here. */
+/* Marks event k as due now, unless it has fired already. */
 static void happens(lag_sim *s, int k)
 {
   s->root[k] = s->root[k] == HUGE_VAL ? HUGE_VAL : s->run->limit;
 }
 
-/* Impacts where gaps close. before[n]: the rates before it. */
+/* Impacts of the gaps that close; before[n] := their rates before it. */
 static int strike(Touch *w, int event, int ends, double *before, double *e, unsigned char *struck)
 {
   lag_sim *s = w->sim;
@@ -115,9 +116,9 @@ static int strike(Touch *w, int event, int ends, double *before, double *e, unsi
   return any ? lag_touch_impact(w, e, struck) : LAG_OK;
 }
 
-/* ---- what rests */
+/* ---- resting contacts */
 
-/* Which rest, and of those which are pressed: closed. */
+/* Finds the contacts that rest, and among them those that are pressed and stay closed. */
 static int rest(Touch *w, int event, int ends, const double *before, double *acceleration)
 {
   const lag_model *m = w->sim->scene->model;
@@ -129,7 +130,7 @@ static int rest(Touch *w, int event, int ends, const double *before, double *acc
     w->part[a] = after <= no_gap * w->rate_size[w->of[a]] || after <= no_speed * fabs(before[a]) || (ends && c->impact == event);
   }
   int rc = lag_touch_rest(w, acceleration), more = 0;
-  for (int a = 0; a < w->n && rc == 0; a++) { /* one that is back before it has left */
+  for (int a = 0; a < w->n && rc == 0; a++) { /* its flight would stay within rounding */
     double after = w->rate[w->of[a]], back = -2 * acceleration[a] * no_flight * w->gap_size[w->of[a]];
     if (!w->part[a] && after * after <= back) {
       w->part[a] = 1;
@@ -139,7 +140,7 @@ static int rest(Touch *w, int event, int ends, const double *before, double *acc
   return rc == 0 && more ? lag_touch_rest(w, acceleration) : rc;
 }
 
-/* Closes what rests and is pressed, and takes what speed and gap are left there. */
+/* Closes the contacts that are pressed, and projects away the speed and gap that remain. */
 static int close_gaps(Touch *w)
 {
   lag_sim *s = w->sim;
@@ -189,7 +190,7 @@ int lag_contact_settle(lag_sim *s, double *y, const char *who, int event, int en
   return rc;
 }
 
-/* Every coefficient of restitution is between 0 and 1. */
+/* Checks that every coefficient of restitution is between 0 and 1. */
 static int check_all(lag_sim *s)
 {
   Touch w;
@@ -239,9 +240,9 @@ int lag_contact_arm(lag_sim *s, const double *g)
     s->hold[c->input] = s->contact_was[i];
     int k = lag_contact_is_closed(s, c) ? c->release : c->impact;
     double noise = k == c->release ? 1e-12 * most : no_flight * size[c->constraint];
-    if (g[k] <= noise) { /* it has no sign yet: below -noise it happens */
+    if (g[k] <= noise) { /* no sign yet; below -noise the event fires */
       s->sign[k] = 0;
-      s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* no more: at each impact it would grow */
+      s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* with a larger factor it would grow at each impact */
     }
   }
   return rc;

@@ -1,9 +1,8 @@
-/* What the files of core/ share: the simulation object, and the step of its life that each file does.
- * Holds: everything that a later run needs is in one block of doubles, `saved`, with no pointers in it;
- * so saving a run is writing that block.
+/* The simulation object, and the functions that the files of core/ offer one another, grouped by file.
+ * Holds: the state of a run is one block of doubles, `saved`, with no pointers in it; saving a run is writing that block.
  *
- * A run is a chain of steps [step_t0, step_t1] of the method. Within one, the run moves from `t` to
- * `limit`: the next event, or the end of the step. Where the caller stops does not enter. */
+ * A run is a chain of method steps [step_t0, step_t1]. Within a step the run moves from `t` to `limit`: the next event, or the end of the step.
+ * The times that the caller asks for do not change the steps. */
 #ifndef LAG_CORE_CORE_H
 #define LAG_CORE_CORE_H
 
@@ -13,44 +12,45 @@
 
 /* Scalars of a run that are saved. Counts are doubles, exact to 2^53. */
 typedef struct Run {
-  double begun;          /* the first advance was made */
+  double begun;          /* 1: the first advance was made */
   double dir;
-  double t;              /* now */
-  double have_step;      /* [step_t0, step_t1] is a step, not yet used up */
+  double t;              /* present time [s] */
+  double have_step;      /* 1: [step_t0, step_t1] is a step that is not used up yet */
   double step_t0, step_t1;
-  double from;           /* events are located from here on */
+  double from;           /* start of the search for events within the step */
   double limit, pending; /* pending: events fire at limit */
   double steps, rejected, rhs_calls, systems, iterations, events;
-  double watched;        /* up to here charges have been looked at */
-  double balanced;       /* 1: the work of forces on charges is integrated */
+  double watched;        /* charges and their work are known up to this time */
+  double balanced;       /* 1: the work of forces on charges is integrated along the run */
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
-  double rank, beside;   /* constraints at the start that do not follow from others; where that is singular: a hundredth beside it */
-  double apart, since_apart, unlooked; /* how independent constraints were when that was last asked, steps since then, and until then */
-  double looks, coarse, period; /* of steps of equal size: how many were looked at, and were too long for a period [s] */
-  double stall_since;    /* the time when the stall detector last looked at the pace of steps */
-  double jolt, jolt_t;   /* the largest change of the energy in a step, but for smaller than twice the one before, and when that was */
-  double strain, strain_of; /* the condition of the mass matrix there, and the coordinate of least inertia */
-  double chatter, chatter_since; /* impacts at once after another one that left a gap open, and when these began */
-  double row_origin, row_every, row_next;  /* of the rows of output; kept here for app/ */
+  double rank, beside;   /* rank of the constraints at the start; and, at a singular start, their rank a hundredth away from it */
+  double apart, since_apart, unlooked; /* independence of the weakest constraint when last computed; steps since then; steps until the next time */
+  double looks, coarse, period; /* steps of equal size: period estimates made; estimates shorter than two steps; the last such period [s] */
+  double stall_since;    /* time when the stall detector last judged the pace of steps */
+  double jolt, jolt_t;   /* largest energy change in one step, and its time; replaced only by a change more than twice as large */
+  double strain, strain_of; /* condition of the mass matrix at jolt_t, and the coordinate of least inertia */
+  double chatter, chatter_since; /* impacts that follow another at once and leave the gap open, and the time of the first of them */
+  double row_origin, row_every, row_next;  /* output grid, kept here for app/ */
 } Run;
 
-/* A charge along a run; only doubles, it is saved. Differences are those of Q - int P dt from `first`. */
+/* The monitor of one charge along a run; only doubles, since it is saved. A difference is Q - int P dt - first. */
 enum { LAG_BINS = 32, LAG_NODES = 8 };
 typedef struct Charge {
   double begin;      /* Q at the start */
-  double first;      /* the same, moved by what events have done to it */
-  double peak;       /* the largest difference */
-  double scale;      /* median over the bins of the sum of the sizes of its terms; of few bins the largest */
-  double before;     /* Q - int P dt - first at the last look */
+  double first;      /* Q at the start, plus the jumps of Q at events */
+  double peak;       /* largest |difference| */
+  double scale;      /* median over the bins of the sum of |terms of Q|; with few bins the largest */
+  double before;     /* difference at the last look */
   double through;    /* int |P| dt, step by step */
-  double work, lost; /* int P dt, and what the sum has lost to rounding */
-  double balanced;   /* 1: P is known, and integrated */
-  double bins, width, in_bin; /* bins that are full; looks that fill one, looks in the open one */
-  double t[LAG_BINS + 1], d[LAG_BINS + 1], m[LAG_BINS + 1]; /* averages of time, difference and sizes over each bin; the last: sums over the open one */
+  double work, lost; /* int P dt, and the rounding error of that sum (Kahan) */
+  double balanced;   /* 1: P is known and integrated */
+  double bins, width, in_bin; /* full bins; samples that fill a bin; samples in the open bin */
+  double t[LAG_BINS + 1], d[LAG_BINS + 1], m[LAG_BINS + 1]; /* means of time, difference and size over each bin; element LAG_BINS: sums over the
+                                                             * open bin */
 } Charge;
 
-/* The numbers that this library is compiled for, as `lagc run --precision` calls them, and what gives more of them. The
- * Makefile says so for others than doubles; see precision.awk. */
+/* The scalar type of this library by its name in `lagc run --precision`, and advice for more digits. The Makefile defines it for other types
+ * than double; see precision.awk. */
 #ifndef LAG_PRECISION
 #define LAG_PRECISION "double"
 #define LAG_MORE_PRECISION "; --precision quad has 34 digits"
@@ -64,49 +64,49 @@ struct lag_sim {
   lag_problem pb;
   double *options;       /* [method->noptions] */
   double tol;
-  int steps_equal;       /* lag_equal_step(s) > 0, for what asks at each step */
-  unsigned char *fixed;  /* [np] set by the caller */
-  lag_signal *signal;    /* [nu] set by the caller; not part of what is saved */
-  double *start;         /* [n] NaN: as the scene says */
+  int steps_equal;       /* lag_equal_step(s) > 0, cached for checks made at each step */
+  unsigned char *fixed;  /* [np] 1: set by the caller */
+  lag_signal *signal;    /* [nu] set by the caller; not saved */
+  double *start;         /* [n] start values set by the caller; NaN: the scene's */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
-  double *sides;         /* [3 nswitch] scratch of stall_detector.c */
-  double *paces;         /* [3 n] of force_pole.c: changes of the state in a second, over the last two steps, and their fading peak; NaN: not known */
+  double *sides;         /* [3 nswitch] switching functions, scratch of stall_detector.c */
+  double *paces;         /* [3 n] force_pole.c: rate of change of the state over the last two steps, and its fading peak; NaN: not known */
   double *contact_room, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
-  double *saved;         /* one block: Run, and the arrays below; in `room`, which is freed */
+  double *saved;         /* one block: Run and the arrays below; it lies in `room`, which is freed */
   char *room;
   size_t nsaved;
   Run *run;
-  double *p, *derived, *hold; /* [np + nderived]; the last of them; [nu] */
+  double *p, *derived, *hold; /* [np + nderived]; its last nderived; [nu] input constants, NaN: none */
   double *begin;         /* [n] at the start of the run */
-  double *asked;         /* [n] the same before it was brought to the constraints */
-  double *redundant;     /* [constraints] 1: at the start it follows from others */
-  double *loose;         /* [nq] 1: beside a singular start its velocity is determined, and at it not */
-  double *kept;          /* [constraints] what those on positions are held at */
+  double *asked;         /* [n] start as requested, before projection onto the constraints */
+  double *redundant;     /* [constraints] 1: it follows from the others at the start */
+  double *loose;         /* [nq] 1: at a singular start the velocity is free, but the constraints nearby determine it */
+  double *kept;          /* [constraints] values at which constraints on positions are held */
   double *y;             /* [n] at step_t1 */
   double *y0;            /* [n] at step_t0 */
   double *now;           /* [n] at t */
-  double *sign;          /* [nev] of g just after `from`: -1, 1, 0 not known yet */
-  double *leaves;        /* [nev] of an event that has fired and has no sign yet: the sign of its rate then; 0 not known */
-  double *noise;         /* [nev] |g| below this has no sign */
+  double *sign;          /* [nev] sign of g just after `from`: -1, 1; 0 not known yet */
+  double *leaves;        /* [nev] after an event has fired, until it has a sign: the sign of its rate then; 0 not known */
+  double *noise;         /* [nev] |g| up to this counts as 0 */
   double *root;          /* [nev] time of the next firing within the step, NaN none */
-  double *sign_end;      /* [nev] sign at the end of the step */
+  double *sign_end;      /* [nev] sign of g at the end of the step */
   double *count;         /* [nev] */
-  double *first, *last;  /* [nev] times, where count is not 0 */
-  double *interval, *shorter; /* [nev] between the last two firings, and how many were each shorter than the one before */
-  double *mon_first, *mon_peak; /* [nmonitors] of outputs */
+  double *first, *last;  /* [nev] times of firing, where count is not 0 */
+  double *interval, *shorter; /* [nev] interval between the last two firings; number of intervals in a row, each shorter than the one before */
+  double *mon_first, *mon_peak; /* [nmonitors] first value and largest deviation of a monitored output */
   double *charge_block;
-  Charge *charges;       /* the same: [lag_sim_ncharges] the energy first */
-  double *charge_now, *charge_power, *charge_gain; /* scratch: value and scale of each; P; int P dt */
-  double node[LAG_NODES], weight[LAG_NODES]; /* of the quadrature over a step, */
-  int nodes;             /* which has so many */
+  Charge *charges;       /* charge_block as [lag_sim_ncharges]; the energy first */
+  double *charge_now, *charge_power, *charge_gain; /* scratch: value and scale of each charge; P; int P dt */
+  double node[LAG_NODES], weight[LAG_NODES]; /* quadrature nodes and weights over a step, */
+  int nodes;             /* and their number */
   int balances;          /* lag_sim_balance was called */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
-  double *method_work;   /* [nwork], and as much behind it for a step that is tried again */
+  double *method_work;   /* [nwork]; behind it as much again for a step that is tried again */
   size_t nwork;
-  double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or now where there is no step; NULL */
-  int tangent_columns, tangent_at_event; /* at_event: it is what an event made of it at this time */
-  double tangent_log;    /* sum of log |det S| over events (tangent.c); who reads it sets it back */
+  double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
+  int tangent_columns, tangent_at_event; /* tangent_at_event: the event at this time is already applied to it */
+  double tangent_log;    /* sum of log |det S| over events (tangent.c); its reader sets it back to 0 */
   int (*on_step)(void *, const lag_sim *);
   void *on_step_context;
   lag_event_fn *on_event;
@@ -114,14 +114,14 @@ struct lag_sim {
   char message[512];
 };
 
-/* A part of the saved block behind Run, in the order in which they lie there, and what its numbers may be: saved.c refuses others. */
+/* One array of the saved block behind Run, in the order in which they lie there, and the numbers that it may hold: saved.c refuses others. */
 enum {
   LAG_SAVED_NUMBER, /* any */
   LAG_SAVED_FINITE,
-  LAG_SAVED_HELD,   /* finite, or NaN: none */
+  LAG_SAVED_HELD,   /* finite, or NaN for none */
   LAG_SAVED_FLAG,   /* 0, 1 */
   LAG_SAVED_SIGN,   /* -1, 0, 1 */
-  LAG_SAVED_COUNT   /* whole, 0 to 2^53 */
+  LAG_SAVED_COUNT   /* integer, 0 to 2^53 */
 };
 enum { LAG_PARTS = 25 };
 typedef struct lag_saved_part {
@@ -129,24 +129,23 @@ typedef struct lag_saved_part {
   size_t n;
   int kind;
 } lag_saved_part;
-/* setup.c: part[LAG_PARTS] := all of them. */
+/* setup.c: part[LAG_PARTS] := the arrays of the saved block. */
 void lag_parts(lag_sim *sim, lag_saved_part *part);
-/* Whether parameters have the signs that the model declares. */
+/* Whether all parameters have the signs that the model declares. */
 int lag_signs_hold(const lag_sim *sim);
 /* charges.c: whether the work of forces on charges can be integrated with this model and method. */
 int lag_charges_balance(const lag_sim *sim);
 
-/* A value in SI, in the declared unit of its variable. */
+/* An SI value converted to the declared unit of its variable. */
 static inline double lag_declared(const lag_var *v, double si) { return (si - v->offset) / v->factor; }
 
-/* setup.c: whether an option of this name is the size of a step; and what is wrong with x [s] as one of a run of this scene. NULL:
- * nothing. */
+/* setup.c: whether the option is a step size; why x [s] cannot be the step size of this scene, NULL: it can. */
 int lag_is_step(const char *option);
 const char *lag_wrong_step(const lag_sim *s, double x);
-/* The size of the steps of the run, where all have the same [s]; 0 where the method chooses it. */
+/* The common size of the steps [s]; 0 where the method adapts it. */
 double lag_equal_step(const lag_sim *s);
 
-/* A number in a message, as %s. */
+/* A number for %s in a message. */
 #define LAG_TEXT(x) lag_number_text((x), (char[64]){0})
 
 /* message := the text; returns status. */
@@ -155,71 +154,74 @@ __attribute__((format(printf, 3, 4)))
 #endif
 int lag_fail(lag_sim *sim, int status, const char *format, ...);
 
-/* Why a step failed, with when and where. Returns status. */
+/* Writes into message why, when and where a step failed. Returns status. */
 int lag_explain(lag_sim *sim, int status);
 
-/* sim.c: y[n] at t within the last step, on the constraints. LAG_OK, or a failure that is explained. */
+/* sim.c: y[n] := the dense output at t in the last step, projected onto the constraints. LAG_OK, or a failure with its message. */
 int lag_between(lag_sim *sim, double t, double *y);
 
-/* consistent.c: now[n], the start as it was set, becomes the nearest start that obeys the constraints; asked, redundant, loose, run->rank and
- * run->beside are set. */
+/* consistent.c: now[n], the requested start, becomes the nearest start on the constraints; sets asked, redundant, loose, run->rank and
+ * run->beside. */
 int lag_consistent(lag_sim *sim);
-/* agreement.c: constraints that follow from others at the start `now` agree soon after it, too; else a failure that names one. */
+/* agreement.c: whether constraints that are dependent at the start `now` are compatible soon after it, too; else a failure that names one. */
 int lag_agreement(lag_sim *sim);
-/* forces.c. observe: out[nout] of the scene, in SI, of the state y at t. Multipliers and accelerations near a position where constraints
- * become dependent are those that they tend to along the last step; NaN where there is none. LAG_OK, or what failed. */
+/* forces.c: out[nout] := outputs of the scene [SI] at y, t. Near a singular position of the constraints, multipliers and accelerations are
+ * extrapolated along the last step; NaN where there is no step. LAG_OK, or the status of the failed function. */
 int lag_observe(lag_sim *sim, double t, const double *y, double *out);
-/* project.c: [2 n], how large terms of the rates and of the constraints were where these were last met. */
+/* project.c: [2 n], sizes of the terms of rates and of constraints where these were last met. */
 double *lag_kept_terms(const lag_problem *pb);
-/* rank.c. A[n nq] := the derivatives of all constraints by the coordinates, row-major, at y at t, unit[nq] := their scales (lag_scales of
- * lag_kkt.h), and mass[nq nq], or NULL, := M. 0, or what the model returned; then they are undefined. */
+/* rank.c: A[n nq] := Jacobian of all constraints by the coordinates at y, t, row-major; unit[nq] := coordinate scales (lag_scales of lag_kkt.h);
+ * mass[nq nq] := M unless NULL. 0, or the model's status; then they are undefined. */
 int lag_constraint_rows(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass);
-/* Of pb->ranks what that leaves: [n nq + nq + n]. */
+/* The part of pb->ranks that lag_constraint_rows does not use: [n nq + nq + n]. */
 double *lag_independence_room(const lag_problem *pb);
-/* The part of row[n] of A that is independent of the orthonormal rows Q[r n], 0 to 1; more than `least`: its direction becomes row r of Q. -1: the
- * row is zero. row is destroyed; it may be row r of Q, or a later one. */
+/* The fraction of row[n] of A that is independent of the orthonormal rows Q[r n], 0 to 1. If more than `least`, its direction becomes row r of
+ * Q. -1: the row is zero. Destroys row, which may be row r of Q, or a later one. */
 double lag_own_part(int n, int r, double least, const double *unit, double *Q, double *row);
-/* weightless.c: about the condition of the mass matrix at y at t, scaled, on the directions that constraints allow; above 1e15 only that it is; NAN where it
- * is not known. *which: the coordinate that moves most along the direction of least inertia. */
+/* weightless.c: estimate of the condition of the scaled mass matrix at y, t, on the directions that constraints allow; NAN: not known; a value
+ * above 1e15 means above 1e15. *which: the coordinate with the largest part in the direction of least inertia. */
 double lag_mass_condition(lag_problem *pb, double t, const double *y, int *which);
-/* The coordinate that moves most along the direction in which K[n n] is least, and *part: the last pivot against the first. K is destroyed; x[n] and
- * column[n] are scratch. */
+/* Gaussian elimination of K[n n] with complete pivoting: returns the coordinate that moves most along the direction of least inertia; *part:
+ * last pivot over the first. Destroys K; x[n] and column[n] are scratch. */
 int lag_weightless(int n, double *K, double *x, int *column, double *part);
-/* pb.redundant, of what is found there or was saved. */
+/* pb.redundant := whether any constraint is marked redundant (just found, or loaded). */
 void lag_note_redundant(lag_sim *sim);
 
-/* setup.c: the state at the start, of a run that has not begun. */
+/* setup.c: sets the state at the start of a run. */
 int lag_setup_start(lag_sim *sim);
 
-/* events.c. arm: signs at the start of a step chain. locate (locate.c): the first event in (run->from, step_t1],
- * sets limit and pending. spread (locate.c): how much g[nev] differs from its values at limit within the last digits of the time,
- * which is what a step's dense output leaves open. fire: applies the events at limit. */
+/* events.c and locate.c. arm: signs of g at the start of a chain of steps. locate: the first event in (run->from, step_t1]; sets limit and
+ * pending. spread: variation of g[nev] about limit within the last digits of the time, which the dense output cannot resolve. fire: applies the
+ * events at limit. eval: g[nev] at y, t. */
 int lag_events_arm(lag_sim *sim);
 int lag_events_locate(lag_sim *sim);
 int lag_events_spread(lag_sim *sim, const double *at_event, double *spread);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
 
-/* landing.c: a step of the method from `now` at *t, into y and *t; of another size where it would end badly for constraints. What the
- * method returned; after a failure y and *t are as they were, or undefined. */
+/* landing.c: one step of the method from `now` at *t, into y and *t, resized where it would end at a singular position of the constraints.
+ * Returns the method's status; after a failure y and *t are unchanged or undefined. */
 int lag_step_of_method(lag_sim *sim, double *t, double t_stop);
 
-/* stall_detector.c: whether the step from `now` to y at t leads nowhere: LAG_ESTALL or LAG_ESTEP, and pb says why; or LAG_OK. */
+/* stall_detector.c: judges the step from `now` to y at t. LAG_OK; LAG_ESTALL or LAG_ESTEP where the motion makes no progress, with the reason in
+ * pb. */
 int lag_stalls(lag_sim *sim, double t);
 
-/* force_pole.c: whether the step from `now` to y at t, of equal size, leads over a pole of a derivative: LAG_EDOMAIN, and pb says of which; or LAG_OK. */
+/* force_pole.c: whether the step of equal size from `now` to y at t crosses a pole of a derivative. LAG_OK, or LAG_EDOMAIN with the derivative
+ * in pb. */
 int lag_over_force_pole(lag_sim *sim, double t);
 void lag_forget_paces(lag_sim *sim);
 
-/* project.c. Constraints on velocities that keep a function of positions: until it is said what, positions are free; then they keep what it
- * is of y at t. Returns what the model returned. */
+/* project.c: constraints on velocities that are the rate of a function of positions. keep_nothing: their positions are free. keep: holds the
+ * functions at their values at y, t. Returns the model's status. */
 void lag_keep_nothing(lag_sim *sim);
 int lag_keep(lag_sim *sim, double t, const double *y);
 
-/* contact.c. of: the contact that the event is one of, or NULL. open: all of them, since the state will be another. settle: y, which a motion
- * or `who` has made, after what strikes has struck and what rests is closed; event: the one of a contact that has led there, or -1; ends: its
- * impacts have come to their end; who: it may set no state inside a contact, or NULL. begin: the start. arm: the signs of events of
- * contacts in `now`, where they are g[nev]: those that touch have none. Failures are reported. */
+/* contact.c. of: the contact to which the event belongs, or NULL. open: opens all contacts, before the state is replaced.
+ * settle: applies impacts to y and closes the contacts that rest. event: the contact event that led there, or -1; ends: its series of impacts
+ * has ended; who: name of the event that set y, which must not lie inside a contact, or NULL.
+ * begin: contacts at the start. arm: signs of contact events in `now`, where their functions are g[nev]; those that touch have none.
+ * Failures have their message. */
 const lag_contact *lag_contact_of(const lag_model *m, int event);
 int lag_contact_is_closed(const lag_sim *sim, const lag_contact *contact);
 void lag_contact_open(lag_sim *sim);
@@ -227,61 +229,60 @@ int lag_contact_settle(lag_sim *sim, double *y, const char *who, int event, int 
 int lag_contact_begin(lag_sim *sim);
 int lag_contact_arm(lag_sim *sim, const double *g);
 
-/* tangent.c. pass: the step has been used up. jump: event k changes the state from `now` to yb; more: another one has at this time. */
+/* tangent.c. pass: carries the tangent over a step that is used up. jump: carries it over event k, which changes the state from `now` to yb;
+ * more: another event has changed the state at this time. */
 int lag_tangent_pass(lag_sim *sim);
 int lag_tangent_jump(lag_sim *sim, int k, int more);
 void lag_tangent_free(lag_sim *sim);
 
-/* exact.c. at: the closed forms at t, behind the inputs in s->u; lag_inputs comes first. see: as in watch.c. */
+/* exact.c. at: the closed forms at t, stored behind the inputs in s->u; call lag_inputs first. see: as in watch.c. */
 int lag_exact_at(lag_sim *sim, double t);
 int lag_exact_see(lag_sim *sim, double t, const double *y);
 
-/* charges.c: as in watch.c; method: the one that steps will be made with; the others compute what a state makes of the charges. drift: of
- * charge k so far, relative to its size. flags: what is known of its rate of change, as inputs are set. _see returns LAG_EDRIFT, with a message,
- * where the energy has drifted past its size. */
+/* charges.c: begin, see and jump as in watch.c. method: chooses quadrature nodes for the method of the steps. drift: of charge k so far,
+ * relative to its size. flags: what is known of its rate, given the inputs that are set. _see returns LAG_EDRIFT, with a message, where the
+ * energy has drifted past its size. */
 void lag_charges_method(lag_sim *sim, const lag_method *method);
 void lag_charges_begin(lag_sim *sim, double t, const double *y);
 int lag_charges_see(lag_sim *sim, double t, const double *y);
-/* Whether the energy, a number at first, is none at t. Then _see has added nothing, and returns LAG_ENAN. */
+/* Whether the energy, finite at the start, is not finite at t. _see then adds nothing and returns LAG_ENAN. */
 int lag_charges_lost(lag_sim *sim, double t, const double *y);
 void lag_charges_jump(lag_sim *sim, double t, const double *ya, const double *yb);
 double lag_charge_drift(const lag_sim *sim, int k);
 unsigned lag_charge_flags(const lag_sim *sim, int k);
 
-/* charges.c: whether half of the energy, known to be conserved or balanced, is still there: LAG_OK, or LAG_EDRIFT with a message. */
+/* charges.c: LAG_EDRIFT with a message where half of an energy that is known to be conserved or balanced is lost; else LAG_OK. */
 int lag_charges_kept(lag_sim *sim);
 
-/* watch.c: charges and monitors. begin: first values. see: the state `y` at t is part of the run. jump: an
- * event changed the state from ya to yb. */
+/* watch.c: charges and monitors. begin: first values. see: records the state `y` at t of the run. jump: an event changed the state from ya to
+ * yb. */
 int lag_watch_begin(lag_sim *sim);
 int lag_watch_see(lag_sim *sim, double t, const double *y);
 int lag_watch_jump(lag_sim *sim, double t, const double *ya, const double *yb);
 
-/* The root of f in [a, b] (a > b allowed), where f(a) and f(b) differ in sign: the end of the last bracket
- * on b's side, so that the sign has changed there. ITP method: I.F.D. Oliveira, R.H.C. Takahashi, ACM Trans.
- * Math. Softw. 47 (2020) 5, DOI 10.1145/3423597. */
+/* The root of f in [a, b] (a > b allowed), where f(a) and f(b) differ in sign. Returns the end of the last bracket on b's side, so the sign has
+ * changed there. ITP method: I.F.D. Oliveira, R.H.C. Takahashi, ACM Trans. Math. Softw. 47 (2020) 5, DOI 10.1145/3423597. */
 double lag_root(double (*f)(void *context, double x), void *context, double a, double fa, double b, double fb);
 
-/* A name in the scene: what it is and where. */
+/* Kinds of names in a scene. */
 enum { LAG_IS_NOTHING, LAG_IS_P, LAG_IS_Q, LAG_IS_V, LAG_IS_Z, LAG_IS_U };
-/* Finds name; *var is its description. LAG_IS_NOTHING: unknown. */
+/* Finds name; returns its kind, *index within that kind and *var, its description. LAG_IS_NOTHING: unknown. */
 int lag_find(const lag_model *model, const char *name, int *index, const lag_var **var);
-/* Whether var is the name of a member of the family called so: th[2] of th, r[1].x of r.x. */
-/* What an effect calls its own: c of drag.c, v.x of wind.v.x; NULL where there is no dot. */
+/* The name inside its effect: c of drag.c, v.x of wind.v.x; NULL where there is no dot. */
 const char *lag_own_name(const char *var);
+/* Whether var is a member of the family: th[2] of th, r[1].x of r.x; length is strlen(family). */
 int lag_is_member(const char *var, const char *family, size_t length);
-/* The known name nearest to `name` into best; 0 when none is near. */
+/* best := the known name nearest to `name`; 0 when none is near. */
 int lag_nearest(const lag_model *model, const char *name, char *best, size_t nbest);
-/* Member or component k of what is called `name` ("th": "th[1]", "th'": "th[1]'", "r": "r.x"), into part; 0 past the last. */
+/* part := member or component k of the family `name` ("th": "th[1]", "th'": "th[1]'", "r": "r.x"); 0 past the last. */
 int lag_part(const lag_model *model, const char *name, int k, char *part, size_t npart);
-/* Edits (insert, delete, replace, swap) between two words. */
+/* Edit distance (insert, delete, replace, swap) of two words. */
 int lag_distance(const char *a, const char *b);
-/* The same where they may be a slip of the finger; LAG_FAR where there are so many, or one letter stands for another, that
- * it is another name. */
+/* Edit distance where `name` may be a typing error for `known`; LAG_FAR where it is another name: too many edits, or a single letter replaced. */
 enum { LAG_FAR = 1000 };
 int lag_near(const char *name, const char *known);
 
-/* For app/: the output grid that is saved with the run. */
+/* For app/: the output grid that is saved with the run: row_origin, row_every, row_next. */
 double *lag_sim_rows(lag_sim *sim);
 
 #endif

@@ -1,6 +1,6 @@
-/* Events: what happens where g changes its sign (locate.c finds the time). Enters: the time; leaves: the state after it.
- * Holds: sign[k] is the sign of g_k just after `from`; an event that has just fired has sign 0 ("not known
- * yet") until g has clearly left zero, so it never fires twice for one crossing. */
+/* Firing of events, where g changes its sign (locate.c finds the time). Enters: the time; leaves: the state after the actions. Holds: sign[k] is
+ * the sign of g_k just after `from`; an event that has just fired has sign 0 ("not known yet") until g has clearly left zero, so it never fires
+ * twice for one crossing. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -44,11 +44,11 @@ int lag_events_arm(lag_sim *s)
   return rc ? rc : lag_contact_arm(s, s->g1);
 }
 
-/* An interval of this part of the run so far is none. */
+/* Intervals below this part of the run so far count as 0. */
 static const double at_once = 1e-7;
 
-/* An event that repeats faster and faster (a ball coming to rest) would never let time pass. Others may fire between. dt: since
- * it fired last; few: so many intervals, each shorter than the one before, are enough (a block that rocks loses most of its speed at once). */
+/* Whether event k accumulates: `few` intervals in a row, each shorter than the one before, the last of them, dt, next to nothing (a ball coming
+ * to rest would never let time pass; a block that rocks loses most of its speed at once). Others may fire between. */
 static int is_zeno(lag_sim *s, int k, double dt, int few)
 {
   s->shorter[k] = dt < s->interval[k] ? s->shorter[k] + 1 : 0;
@@ -63,8 +63,8 @@ static int fail_zeno(lag_sim *s, int k)
                   "which comes to rest", s->scene->model->ev[k].name, s->interval[k], LAG_TEXT(s->run->t));
 }
 
-/* Impacts of event k, dt since it fired last, that follow each other at once and leave contact c open, since nothing presses there. Some happen;
- * but where a floor falls away, and the method's path, of first order, is below it at once, there is no end of them. */
+/* Fails after 1000 impacts of event k in a row that follow at once (dt since the last) and leave contact c open, since nothing presses there.
+ * Some happen; without end where a floor falls away and the first-order path of a method lies below it at once. */
 static int fail_chatter(lag_sim *s, int k, const lag_contact *c, double dt)
 {
   const int most = 1000;
@@ -85,7 +85,7 @@ static int fail_chatter(lag_sim *s, int k, const lag_contact *c, double dt)
                   "rough there; take verlet or dop853", s->scene->model->ev[k].name, LAG_TEXT(r->t), s->method->name);
 }
 
-/* The action of event k on `now`, by way of yb. changed: the state is another one. */
+/* Applies the action of event k to `now`, by way of yb. *changed: the state has been replaced. */
 static int act(lag_sim *s, int k, int *stop, int *changed)
 {
   const lag_model *m = s->scene->model;
@@ -112,7 +112,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   int ends = is_zeno(s, k, since, contact ? 3 : 10), moved = memcmp(s->yb, s->now, bytes) != 0;
   int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;
   if (moved) {
-    lag_contact_open(s); /* what lay may have been lifted, or thrown */
+    lag_contact_open(s); /* bodies at rest may have been lifted or thrown */
   }
   if (elsewhere) {
     lag_keep_nothing(s);
@@ -136,7 +136,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
     return rc;
   }
   int more = *changed;
-  *changed |= contact != NULL; /* another model moves on */
+  *changed |= contact != NULL; /* the set of closed contacts may be another */
   if (s->on_event) {
     s->on_event(s->on_event_context, k, r->t, s->now, s->yb);
   }
@@ -151,8 +151,8 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   return rc ? rc : ends && !contact ? fail_zeno(s, k) : LAG_OK;
 }
 
-/* The sign that the function of an event takes soon after it has fired, by its rate; where the last step would not show it the one that it had
- * before, if events have changed the state, or 0. Uses ya, yb. */
+/* The sign of g_k soon after event k has fired, from its rate; where the last step would not resolve it, minus sign_end if events have changed
+ * the state, else 0. Uses ya, yb. */
 static double leaves_to(lag_sim *s, int k, int changed)
 {
   const Run *r = s->run;
@@ -168,7 +168,7 @@ static double leaves_to(lag_sim *s, int k, int changed)
   return fabs(change) > s->noise[k] ? sign_of(change * r->dir) : changed ? -s->sign_end[k] : 0;
 }
 
-/* Signs after the events at t. before: the values before the actions; spread: what is rounding in them. */
+/* Signs after the events at t. before: g before the actions; spread: rounding of g. */
 static int rearm(lag_sim *s, const double *before, const double *spread, int changed)
 {
   const lag_model *m = s->scene->model;
@@ -176,7 +176,7 @@ static int rearm(lag_sim *s, const double *before, const double *spread, int cha
 
   for (int k = 0; k < m->nev && rc == 0; k++) {
     double g = s->g1[k], residue = fabs(before[k]) + 4 * spread[k];
-    double same = fmax(2 * residue, 1e-12 * fabs(s->g0[k])); /* g0: a sample of this step, for the size of g */
+    double same = fmax(2 * residue, 1e-12 * fabs(s->g0[k])); /* g0: a sample of g in this step, for its size */
     int fired = s->root[k] == HUGE_VAL;
     s->leaves[k] = fired ? 0 : s->leaves[k];
     if (fired && fabs(g) <= same) {
@@ -184,8 +184,8 @@ static int rearm(lag_sim *s, const double *before, const double *spread, int cha
       s->noise[k] = fmax(2 * fabs(g), 2 * residue);
       s->leaves[k] = leaves_to(s, k, changed);
     } else if (!fired && !isnan(s->root[k]) && fabs(g - before[k]) <= same) {
-      s->sign[k] = -s->sign_end[k]; /* it is still to come */
-    } else if (fired || s->sign_end[k] != 0.0 || fabs(g) > s->noise[k]) { /* else: not known yet since it fired */
+      s->sign[k] = -s->sign_end[k]; /* this event is still to come */
+    } else if (fired || s->sign_end[k] != 0.0 || fabs(g) > s->noise[k]) { /* else: sign not known yet since it fired */
       s->sign[k] = sign_of(g);
       s->noise[k] = 0;
     }
@@ -193,7 +193,7 @@ static int rearm(lag_sim *s, const double *before, const double *spread, int cha
   return rc ? rc : lag_contact_arm(s, s->g1);
 }
 
-/* An event that happens now and has not acted yet, in the order in which they are declared; -1: none. */
+/* Index of the first event, in order of declaration, that is due now and has not fired; -1: none. */
 static int next_due(const lag_sim *s)
 {
   const Run *r = s->run;

@@ -1,5 +1,5 @@
-/* Closed forms to compare a run with. Enters: states that are part of the run; leaves: the largest differences, and the
- * closed forms where outputs look for them. */
+/* Comparison of a run with closed forms. Enters: states of the run; leaves: the largest differences, and the closed forms behind the inputs in
+ * s->u, where outputs read them. */
 #include <math.h>
 
 #include "core/core.h"
@@ -12,7 +12,7 @@ int lag_exact_at(lag_sim *s, double t)
   return c->nexact ? c->exact(t, s->begin, s->begin + nq, s->begin + 2 * nq, s->p, s->u, s->u + c->model->nu) : 0;
 }
 
-/* Motion minus closed form k, which lag_exact_at has left. */
+/* Motion minus closed form k, which lag_exact_at has computed; of angles the nearest way around. */
 static double difference(const lag_sim *s, const double *y, int k)
 {
   const lag_model *m = s->scene->model;

@@ -1,12 +1,12 @@
-/* Steps of equal size over a pole of a force or a flow, as 1/x^2 has at x = 0: what comes behind it is no motion of the model. Enters: a step that a
- * method has made, from s->now to s->y; leaves: whether a derivative goes through infinity within it. Methods that choose their steps stop in front of a
- * pole, as their steps become too small there.
+/* Detects steps of equal size across a pole of a force or a flow, as 1/x^2 has at x = 0: the motion behind it is not one of the model. Enters: a
+ * step that a method has made, from s->now to s->y; leaves: whether a derivative goes through infinity within it. Adaptive methods stop in front
+ * of a pole by themselves, as their steps become too small.
  *
- * A step is looked at where a velocity or a state has not changed as in the two steps before: the second difference is a tenth of the largest
- * change (in a resolved motion it is (w step)^2 of it), or the change is a peak, four times that of two steps before. Then the straight way between the
- * step's ends is halved again and again, towards the end with the larger derivative. Over a pole of order p the interval's length times the smaller
- * derivative at its ends grows by 2^(p-1) a turn; over anything that is finite, however steep, it falls by 2 from some turn on, and over the integrable
- * end of a square root by sqrt 2. */
+ * A step is examined where the rate of change of a velocity or a state is unlike that of the two steps before: the second difference is a tenth
+ * of the largest change (in a resolved motion it is (w step)^2 of it), or the change is a peak, four times that of two steps before. Then the
+ * straight line between the step's ends is bisected towards the end with the larger derivative. Over a pole of order p the interval's length
+ * times the smaller derivative at its ends grows by 2^(p-1) a turn; over anything finite, however steep, it falls by 2 from some turn on, and
+ * over the integrable end of a square root by sqrt 2. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -16,8 +16,8 @@
 
 enum { MOST_TURNS = 40, LEAST_TURNS = 12, SHORT = 4, LONG = 8 };
 
-/* Notes by how much components nq to n of the state change in a second; which of them has changed otherwise than in the two steps before, beside its size,
- * the most. -1: none. */
+/* Updates the rates of change of components nq to n; returns the component whose rate is rough (see above) and largest relative to its size; -1:
+ * none. */
 static int find_rough(lag_sim *s, double t)
 {
   const double rough = 0.1, rounding = 1e-9, steep = 4, fading = 0.99;
@@ -27,7 +27,7 @@ static int find_rough(lag_sim *s, double t)
   for (int i = nq; i < n; i++) {
     double pace = (s->y[i] - s->now[i]) / dt, size = fabs(pace), bend = fabs(pace - 2 * one[i] + two[i]), faded = fading * peak[i];
     int grows = size > steep * fabs(two[i]) && size > peak[i];
-    if (grows || !(bend <= rough * size)) { /* of the first two steps nothing is known, which is NaN */
+    if (grows || !(bend <= rough * size)) { /* NaN after the first two steps: rates not known yet */
       double largest = fmax(size, fmax(fabs(one[i]), fabs(two[i]))), part = (isnan(bend) ? largest : bend) / fmax(fabs(s->now[i]), DBL_MIN);
       int counts = (grows || !(bend <= rough * largest)) && largest * fabs(dt) > rounding * fabs(s->now[i]) && part > most;
       most = counts ? part : most;
@@ -47,8 +47,8 @@ void lag_forget_paces(lag_sim *s)
   }
 }
 
-/* |derivative of component i| at part x of the straight way from now to y at t, whose state goes to ya; NaN: it has no value. Uses yb. Dense output would
- * not do: beside a pole its velocities lead anywhere. */
+/* |derivative of component i| at fraction x of the straight line from now to y at t; NaN: no value. Leaves the state in ya; uses yb. Dense
+ * output would not do: its velocities are wild beside a pole. */
 static double derivative_at(lag_sim *s, double x, double t, int i)
 {
   for (int k = 0; k < s->pb.n; k++) {
@@ -57,7 +57,7 @@ static double derivative_at(lag_sim *s, double x, double t, int i)
   return lag_rhs(&s->pb, s->run->t + x * (t - s->run->t), s->ya, s->yb) ? NAN : fabs(s->yb[i]);
 }
 
-/* Whether states that far apart on the way differ in more than their last digits, beside ya. */
+/* Whether states a fraction dx of the step apart, near ya, differ by more than rounding. */
 static int are_apart(const lag_sim *s, double dx)
 {
   const double digits = 4096 * DBL_EPSILON;
@@ -69,7 +69,7 @@ static int are_apart(const lag_sim *s, double dx)
   return apart > digits;
 }
 
-/* Where on the way to y at t component i's derivative has a pole; NaN: it has none. */
+/* The fraction of the step at which the derivative of component i has a pole; NaN: it has none. */
 static double find_pole(lag_sim *s, double t, int i)
 {
   static const double parts[] = {0.5, 0.45, 0.55};

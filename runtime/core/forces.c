@@ -1,6 +1,6 @@
-/* Outputs of a state: what a scene observes. Near a position where constraints become dependent, s being how independent they still are,
- * multipliers and accelerations of the state there have an error of at least eps/s^2, and of what the state is off by over s^2 (measured:
- * 1e-8 at s = 0.01, 2e21 at 1e-11): where s < 1e-3 their values are those that they tend to along the motion.
+/* Outputs of a state, and the independence of constraints that decides how. Near a position where constraints become dependent, with
+ * independence s, multipliers and accelerations have an error of at least eps/s^2, and of the state's error over s^2 (measured: 1e-8 at s =
+ * 0.01, 2e21 at 1e-11): where s < 1e-3 they are extrapolated along the motion.
  *
  * Holds: outputs that contain no force are those of the state, everywhere. */
 #include <float.h>
@@ -10,7 +10,7 @@
 
 #include "core/core.h"
 
-/* How much of the terms of constraint k, size, its derivatives make when each coordinate moves as far as some of its unit are: at most 1. */
+/* Ratio of the first-order change of constraint k, when each coordinate moves by its typical magnitude, to the size of its terms; at most 1. */
 static double slope(const lag_problem *pb, const double *y, const double *row, double size)
 {
   double s = 0;
@@ -24,7 +24,7 @@ static double slope(const lag_problem *pb, const double *y, const double *row, d
 double lag_independence(lag_problem *pb, double t, const double *y, int *weakest)
 {
   const lag_constraints *of = pb->model->constraints;
-  const double follows = pb->redundant ? 1e-9 : 0; /* what is less follows always */
+  const double follows = pb->redundant ? 1e-9 : 0; /* below: always redundant */
   int nq = pb->nq, n = of->n, r = 0;
   double least = 1, *A = lag_independence_room(pb), *unit = A + n * nq, *size = unit + nq;
   int rc = lag_constraint_rows(pb, t, y, A, unit, NULL);
@@ -51,11 +51,11 @@ static int observe(lag_sim *s, double t, const double *y, double *out)
   return rc ? rc : c->observe(t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
 }
 
-/* How far apart in time, and on which side of t, to look at four places within the step that are far from the singular one; 0: there is no step,
- * or it has no such places. y[n] is scratch. */
+/* Spacing in time, with its sign, of four places within the step that are far from the singular one; 0: no step, or no such places. y[n] is
+ * scratch. */
 static double find_side(lag_sim *s, double t, double *y)
 {
-  const double good = 5e-2, enough = 1e-4; /* the latter where a step is no longer */
+  const double good = 5e-2, enough = 1e-4; /* `enough` for the longest spacing */
   const Run *r = s->run;
   double back = r->have_step != 0.0 ? r->step_t0 - t : 0, on = r->have_step != 0.0 ? r->limit - t : 0, room = (fabs(back) > fabs(on) ? back : on) / 4;
   int weakest;
@@ -70,7 +70,7 @@ static double find_side(lag_sim *s, double t, double *y)
   return 0;
 }
 
-/* Forces among out[nout] := what they tend to along the motion, by a cubic through four places, or NaN where that is not known. */
+/* Replaces outputs with forces among out[nout] by cubic extrapolation from four places of the step; NaN where there are none. */
 static int replace_forces(lag_sim *s, double t, double *out)
 {
   static const double weight[] = {4, -6, 4, -1};

@@ -1,5 +1,6 @@
-/* Nodes and weights from Legendre's polynomials, by Newton's method: P. Davis, P. Rabinowitz, Methods of Numerical
- * Integration, 2nd ed. (1984), 2.7; M. Abramowitz, I. Stegun, 25.4.29 and 25.4.31. No digits to mistype, and as many as the scalar has. */
+/* Gauss and Radau quadrature: nodes and weights from Legendre's polynomials, by Newton's method: P. Davis, P. Rabinowitz, Methods of Numerical
+ * Integration, 2nd ed. (1984), 2.7; M. Abramowitz, I. Stegun, 25.4.29 and 25.4.31. Computed, so no digits to mistype, and as many as the scalar
+ * has. */
 #include "core/gauss.h"
 
 #include <math.h>
@@ -17,7 +18,7 @@ double lag_legendre(int n, double x, double *below)
   return p;
 }
 
-/* The first half of the zeros is found, the others are their images: what is symmetric stays so to the last bit. */
+/* Half of the zeros is computed and mirrored, so that the rule is symmetric to the last bit. */
 void lag_gauss_points(int n, double *c, double *b)
 {
   for (int i = 0; i < (n + 1) / 2; i++) {
@@ -36,7 +37,7 @@ void lag_gauss_points(int n, double *c, double *b)
   }
 }
 
-/* The zeros of P_n - P_(n-1), whose derivative is n (P_n + P_(n-1))/(1 + x); from those of Chebyshev's polynomials. */
+/* The zeros of P_n - P_(n-1), whose derivative is n (P_n + P_(n-1))/(1 + x), from zeros of Chebyshev's polynomials. */
 void lag_radau_points(int n, double *c, double *b)
 {
   for (int i = 1; i < n; i++) {

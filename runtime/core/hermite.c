@@ -1,15 +1,14 @@
-/* The state between two states, from what is known at both ends. Enters: y and f = y' at both; leaves:
- * y between. For q three derivatives are known at each end (q, v, a): quintic Hermite interpolation. For v and z
- * two: cubic (E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I, II.6, eq. 6.7).
- * v is not taken as the derivative of q's quintic: that would magnify errors of q by 1/h. */
+/* Hermite interpolation of a state. Enters: y and f = y' at both ends; leaves: y between. For q three derivatives are known at each end (q, v,
+ * a): quintic. For v and z two: cubic (E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I, II.6, eq. 6.7). v is not the
+ * derivative of q's quintic: that would magnify errors of q by 1/h. */
 #include "lag.h"
 
 static double quintic(double h, double s, double q0, double v0, double a0, double q1, double v1, double a1)
 {
   double h2 = h * h;
-  double d = q1 - q0 - h * v0 - 0.5 * h2 * a0; /* position that q0, v0, a0 leave to explain */
-  double e = h * (v1 - v0) - h2 * a0;          /* velocity, times h */
-  double f = h2 * (a1 - a0);                   /* acceleration, times h^2 */
+  double d = q1 - q0 - h * v0 - 0.5 * h2 * a0; /* change of position beyond q0, v0, a0 */
+  double e = h * (v1 - v0) - h2 * a0;          /* change of velocity beyond a0, times h */
+  double f = h2 * (a1 - a0);                   /* change of acceleration, times h^2 */
   double c3 = 10 * d - 4 * e + 0.5 * f, c4 = -15 * d + 7 * e - f, c5 = 6 * d - 3 * e + 0.5 * f;
 
   return q0 + s * (h * v0 + s * (0.5 * h2 * a0 + s * (c3 + s * (c4 + s * c5))));

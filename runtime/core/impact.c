@@ -1,12 +1,12 @@
-/* Impulses and forces of contacts that touch at once. Enters: gaps, their rates, which of them take part; leaves: the least impulses, none of
- * which pulls, and which contacts stay closed. Holds: constraints are obeyed throughout.
+/* Impulses and forces of contacts that touch at once. Enters: gaps, their rates, and which contacts take part; leaves: the least impulses, all
+ * >= 0, and the contacts that stay closed. Holds: constraints are obeyed throughout.
  *
- * An impact is that of Newton's law for all gaps at once, each with its coefficient of restitution, as a linear complementarity problem:
- * rate after + e rate before >= 0 where a gap was closing, rate after >= 0 where it rests, an impulse >= 0, and of the two one is 0. Its
- * rates are unique, as the nearest ones in the metric of the mass matrix; impulses are where no contact follows from others.
- * J.J. Moreau, in: Nonsmooth Mechanics and Applications (1988), 1, DOI 10.1007/978-3-7091-2624-0_1; B. Brogliato, Nonsmooth Mechanics, 3rd ed.
- * (2016), ch. 5, DOI 10.1007/978-3-319-28664-8; Ch. Glocker, Set-Valued Force Laws (2001), DOI 10.1007/978-3-540-44479-4. Forces: the same
- * with accelerations in place of rates, P. Loetstedt, SIAM J. Appl. Math. 42 (1982) 281, DOI 10.1137/0142022. */
+ * An impact is Newton's law for all gaps at once, each with its coefficient of restitution, as a linear complementarity problem: rate after + e
+ * rate before >= 0 where a gap was closing, rate after >= 0 where it rests, an impulse >= 0, and of the two one is 0. Rates are unique, as the
+ * nearest ones in the metric of the mass matrix; impulses are unique where no contact depends on others. J.J. Moreau, in: Nonsmooth Mechanics
+ * and Applications (1988), 1, DOI 10.1007/978-3-7091-2624-0_1; B. Brogliato, Nonsmooth Mechanics, 3rd ed. (2016), ch. 5, DOI
+ * 10.1007/978-3-319-28664-8; Ch. Glocker, Set-Valued Force Laws (2001), DOI 10.1007/978-3-540-44479-4. Forces: the same problem with
+ * accelerations in place of rates, P. Loetstedt, SIAM J. Appl. Math. 42 (1982) 281, DOI 10.1137/0142022. */
 #include "core/impact.h"
 
 #include <float.h>
@@ -27,7 +27,7 @@ static const char *name(const Touch *w, int a)
   return w->sim->scene->model->constraints->of[contact(w, a)->constraint].name;
 }
 
-/* All contacts, or one alone, or none (which = -1): closed. */
+/* Closes all contacts, or contact `which` alone, or none (which = -1). */
 static void close_only(const Touch *w, int all, int which)
 {
   const lag_model *m = w->sim->scene->model;
@@ -53,7 +53,7 @@ static int no_values(Touch *w, int i)
                   LAG_TEXT(w->sim->run->t));
 }
 
-/* ---- what there is */
+/* ---- gaps and rates */
 
 static int make_room(Touch *w)
 {
@@ -83,7 +83,7 @@ void lag_touch_free(Touch *w)
   free(w->W);
 }
 
-/* The rates at the state y, of all contacts; all are closed for it. */
+/* rate[i] := rate of each gap at the state y; leaves all contacts closed. */
 static int find_rates(Touch *w, const double *y, double *rate)
 {
   const lag_model *m = w->sim->scene->model;
@@ -142,7 +142,7 @@ int lag_touch_look(lag_sim *s, double *y, Touch *w)
   return rc ? no_values(w, 0) : LAG_OK;
 }
 
-/* What a change d of velocities does to the rate of contact i. */
+/* Change of the rate of contact i by a change d of velocities. */
 static double change_of_rate(const Touch *w, int i, const double *d)
 {
   const lag_constraints *of = w->sim->scene->model->constraints;
@@ -154,8 +154,8 @@ static double change_of_rate(const Touch *w, int i, const double *d)
   return s;
 }
 
-/* w->d := the least change of velocities that changes the rate of contact i by 1, others being open. Returns what the unit impulse changes
- * it by; 0 where none does; NaN: no finite values. */
+/* w->d := the least change of velocities that changes the rate of contact i by 1, the others open. Returns the rate's change by a unit impulse;
+ * 0 where no impulse moves it; NaN: no finite values. */
 static double response(Touch *w, int i)
 {
   lag_problem *pb = &w->sim->pb;
@@ -186,7 +186,7 @@ double lag_touch_restitution(Touch *w, int i)
     return NAN;
   }
   memcpy(s->yc, w->y, bytes);
-  for (int j = 0; j < nq; j++) { /* so that the gap closes with what is a speed in its unit */
+  for (int j = 0; j < nq; j++) { /* test velocity: the gap closes with a typical speed */
     s->yc[nq + j] -= (speed + w->rate[i]) * w->d[j];
   }
   memcpy(w->test, s->yc, bytes);
@@ -227,7 +227,7 @@ int lag_touch_responses(Touch *w)
 
 /* ---- complementarity */
 
-/* No impulse, or force, keeps contact a from closing. */
+/* Reports that no impulse, or force, keeps contact a from closing. */
 static int squeezed(Touch *w, int a)
 {
   int against = -1;
@@ -246,7 +246,7 @@ static int squeezed(Touch *w, int a)
   return lag_fail(w->sim, LAG_EMODEL, "at t = %.9g s nothing can keep the contact %s from closing further", w->sim->run->t, name(w, a < 0 ? 0 : a));
 }
 
-/* The problem of those that take part: in[n], and push[n], impulses where in[n]. */
+/* Solves the complementarity problem of the contacts that take part: in[n]; push[n] := impulses where in[n]. */
 static int complement(Touch *w, const double *q)
 {
   int m = 0, n = w->n, row = -1;
@@ -264,7 +264,7 @@ static int complement(Touch *w, const double *q)
   for (int k = n - 1; k >= m; k--) {
     w->in[k] = w->follows[k] = 0;
   }
-  for (int k = m - 1; k >= 0; k--) { /* to their places, which are no lower */
+  for (int k = m - 1; k >= 0; k--) { /* back to their places, which are not lower */
     double push = w->push[k];
     unsigned char in = w->in[k], follows = !in && w->M[k * m + k] <= lag_no_pivot;
     w->push[k] = w->in[k] = w->follows[k] = 0;
@@ -303,7 +303,7 @@ int lag_touch_impact(Touch *w, const double *e, const unsigned char *struck)
 
 /* ---- forces */
 
-/* pull[n]: a gap that alone is closed is pressed by as much as it would accelerate were it open. */
+/* pull[n] := acceleration of each gap while open: minus the force that it needs when closed alone, times its response. */
 static int find_pulls(Touch *w)
 {
   for (int a = 0; a < w->n; a++) {
@@ -317,7 +317,7 @@ static int find_pulls(Touch *w)
   return LAG_OK;
 }
 
-/* Whether no contact pulls where these are closed. */
+/* Whether these closed contacts all press. */
 static int none_pulls(Touch *w, const unsigned char *closed)
 {
   double least = 0, most = 0;

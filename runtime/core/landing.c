@@ -1,12 +1,11 @@
-/* Steps of fixed size, and of radau, where constraints become dependent, as of bars that come to lie in one line. Enters: a step to make;
- * leaves: the step, of the size that the method would take, or of another one where that ends badly.
+/* Step-size search of equal steps, and of radau, at positions where constraints become dependent, as of bars that come to lie in one line.
+ * Enters: a step to make; leaves: that step, of the method's own size, or of another where that ends badly.
  *
- * Several motions meet in such a position. Where a step ends within rounding of it, the velocities that constraints allow there are any
- * mixture of those motions, and where one ends near it, on another branch, the velocities at its end are not those that led there: their mean is
- * not what the coordinates have moved by, in that time. A step that is a little shorter or longer passes. What no size makes good ends
- * the run: until it did, a rhomb went on with other energy.
+ * Several motions meet in a singular position. Where a step ends within rounding of it, the velocities that constraints allow there are any
+ * mixture of those motions; where a step ends near it on another branch, the mean of the velocities at its ends is not the displacement over the
+ * time. A slightly shorter or longer step passes. Where no size helps the run ends; without that a rhomb went on with another energy.
  *
- * rk45 and dop853 choose where to land by their own estimates (methods/embedded.c), but with adapt=off. */
+ * rk45 and dop853 choose their end points by their own estimates (methods/embedded.c), except with adapt=off. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,12 +16,12 @@
 
 enum { TRIES = 8, FEW = 32, MOST_UNLOOKED = 16 };
 
-/* Of how dependent constraints may be: at the end of a step; where motions are looked at. Of how far the way of a step may be from the mean of
- * the velocities at its ends: what another size may better, and what ends the run. */
+/* Limits of independence: at the end of a step; for examining a step. Limits of the detour: another size is tried; the run ends. hopeless: the
+ * badness at which the run of an adaptive method ends. */
 static const double least_apart = 1e-4, near_by = 0.1, doubtful = 0.02, wrong = 0.2, hopeless = 10;
 
-/* How far what the coordinates moved by is from the mean of the velocities at both ends, relative to these: of order step^2 where the motion
- * is smooth. */
+/* Detour of a step: |displacement/dt - mean of the velocities at its ends|, relative to these velocities; of order step^2 where the motion is
+ * smooth. */
 static double detour(const lag_problem *pb, double dt, const double *y0, const double *y)
 {
   const int nq = pb->nq;
@@ -30,7 +29,7 @@ static double detour(const lag_problem *pb, double dt, const double *y0, const d
 
   for (int i = 0; i < nq; i++) {
     double off = fabs((y[i] - y0[i]) / dt - (y[nq + i] + y0[nq + i]) / 2);
-    if (off > most * fmax(fabs(y[nq + i]), fabs(y0[nq + i]))) { /* else no other of its unit makes it more */
+    if (off > most * fmax(fabs(y[nq + i]), fabs(y0[nq + i]))) { /* else velocities of the same unit cannot make it larger */
       double size = fmax(lag_size_like(pb, y + nq, i), lag_size_like(pb, y0 + nq, i));
       most = size > 0 ? fmax(most, off / size) : most;
     }
@@ -38,9 +37,9 @@ static double detour(const lag_problem *pb, double dt, const double *y0, const d
   return most;
 }
 
-/* How independent constraints are at y, and how many steps may be made without asking again: a quarter of those that would lead near a
- * dependent position, at the pace of the last ones. The answer costs as much as a step of rk4. Of more than FEW constraints it is asked only where
- * velocities disagree: of a long chain the weakest is mostly near_by, so that it would be asked at each step (50 four-bars by rk4: three times as long). */
+/* Independence at y; sets the number of steps until the next look: a quarter of those that would lead near a dependent position, at the pace of
+ * the last ones, since a look costs as much as a step of rk4. With more than FEW constraints only steps whose velocities disagree are looked at:
+ * in a long chain the weakest constraint is mostly below near_by (50 four-bars by rk4: three times as long). */
 static double look(Run *r, lag_problem *pb, double t, const double *y)
 {
   int k;
@@ -52,8 +51,8 @@ static double look(Run *r, lag_problem *pb, double t, const double *y)
   return s;
 }
 
-/* How bad the end s->y of a step from s->now at t0 is: 0 good, more than 1 where another size may be better. *way: its detour, where an end is near
- * a dependent position. */
+/* Badness of the end s->y of a step from s->now at t0: 0 good, more than 1 where another size may be better. *way: its detour, where an end is
+ * near a dependent position. */
 static double badness(lag_sim *s, double t0, double t, double *way)
 {
   lag_problem *pb = &s->pb;
@@ -66,7 +65,7 @@ static double badness(lag_sim *s, double t0, double t, double *way)
     return 0;
   }
   double apart = look(s->run, pb, t, s->y), near = apart;
-  if (*way > doubtful && !(near < near_by)) { /* it may have begun near one, and have been thrown off */
+  if (*way > doubtful && !(near < near_by)) { /* it may have begun near one and been thrown off */
     near = lag_independence(pb, t0, s->now, &k);
   }
   *way = near < near_by ? *way : 0;
@@ -74,7 +73,7 @@ static double badness(lag_sim *s, double t0, double t, double *way)
   return fmax(at, *way / doubtful);
 }
 
-/* One step of the method, which does not lead over a pole of what the time demands. */
+/* One step of the method; LAG_EDOMAIN where it crosses a pole of the constraints. */
 static int one_step(lag_sim *s, double *t, double t_stop)
 {
   double t0 = *t;
@@ -83,7 +82,7 @@ static int one_step(lag_sim *s, double *t, double t_stop)
   return rc ? rc : lag_over_pole(&s->pb, t0, s->now, *t, s->y) ? LAG_EDOMAIN : LAG_OK;
 }
 
-/* One step with pb->stretch as it is, from what was. */
+/* One step of another size, stretched by `stretch`, from the state before the step. */
 static int try_step(lag_sim *s, const double *was, size_t bytes, double *t, double t_stop, double stretch)
 {
   double rejected = s->pb.rejected;
@@ -99,7 +98,7 @@ static int try_step(lag_sim *s, const double *was, size_t bytes, double *t, doub
   return rc;
 }
 
-/* The step goes to another motion, whatever its size. */
+/* Reports that the step continues another motion, whatever its size. */
 static int say_wrong(lag_sim *s, double t)
 {
   lag_problem *pb = &s->pb;
@@ -119,7 +118,7 @@ static int say_wrong(lag_sim *s, double t)
   return LAG_EMETHOD;
 }
 
-/* Whether a step from where constraints are nearly dependent has failed in a way that another size may mend. */
+/* Whether a step that failed near a dependent position may succeed with another size. */
 static int may_pass(lag_sim *s, int rc)
 {
   int k;
@@ -128,7 +127,7 @@ static int may_pass(lag_sim *s, int rc)
          lag_independence(&s->pb, s->run->t, s->now, &k) < near_by;
 }
 
-/* Whether steps of another size may be asked for. */
+/* Whether the method makes steps of another size on request. */
 static int stretches(const lag_sim *s)
 {
   const lag_method *m = s->method;
@@ -177,6 +176,6 @@ int lag_step_of_method(lag_sim *s, double *t, double t_stop)
   } else {
     rc = 0;
   }
-  int lost = least > hopeless && s->method->flags & LAG_METHOD_ADAPTIVE; /* it shrinks its steps, and goes on into the position */
+  int lost = least > hopeless && s->method->flags & LAG_METHOD_ADAPTIVE; /* an adaptive method would shrink its steps into the position */
   return rc == 0 && (way > wrong || lost) ? say_wrong(s, *t) : rc;
 }

@@ -1,6 +1,6 @@
-/* The linearisation of a model as dense matrices. Enters: a state; leaves: the derivatives of its residuals, or of
- * its right-hand side. Holds: both are exact, made of emitted derivatives; but with constraints those of the right-hand side are differenced,
- * to half of the digits, which is enough for a simplified Newton's method and for nothing else. */
+/* The linearisation of a model as dense matrices. Enters: a state; leaves: derivatives of its residuals, or of its right-hand side. Holds:
+ * without constraints both are exact, from emitted derivatives; with constraints those of the right-hand side are finite differences, to half of
+ * the digits, which is enough for a simplified Newton's method only. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -73,8 +73,8 @@ static void swap_rows(double *a, double *b, size_t n)
   }
 }
 
-/* B[n * k] := M^-1 B, M[n * n] is destroyed: elimination with partial pivoting (Golub & Van Loan, Matrix
- * Computations, 4th ed., section 3.4), all columns of B at once. LAG_ESINGULAR: no pivot. */
+/* B[n * k] := M^-1 B by Gaussian elimination with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed., section 3.4); M[n * n] is
+ * destroyed. LAG_ESINGULAR: no pivot. */
 static int solve(size_t n, size_t k, double *M, double *B)
 {
   for (size_t c = 0; c < n; c++) {
@@ -113,7 +113,7 @@ static int solve(size_t n, size_t k, double *M, double *B)
   return LAG_OK;
 }
 
-/* Column by column, by steps forwards; backwards where the model has no value there. */
+/* J by forward differences, column by column; backward where the model has no value ahead. */
 static int difference(lag_problem *pb, double t, const double *y, double *J, double *work)
 {
   int n = pb->n, nq = pb->nq, rc = lag_rhs(pb, t, y, work);

@@ -1,9 +1,9 @@
-/* Where g changes its sign along the dense output of a step. Enters: a step, and the signs of g just after run->from;
- * leaves: the time of its first event.
- * A part of the step is taken as seen when the polynomial of degree 8 through nine values of g shows that it has no
- * zero there, or that it is monotonic; otherwise it is halved. So crossings come one by one, however short the time between
- * them. Chebyshev coefficients tell how far the polynomial can be trusted: J.P. Boyd, Chebyshev and Fourier Spectral Methods,
- * 2nd ed. (2001), ch. 2.12; the subdivision is J.P. Boyd, J. Eng. Math. 56 (2006) 203, DOI 10.1007/s10665-006-9087-5. */
+/* Event location: where g changes its sign along the dense output of a step. Enters: a step, and the signs of g just after run->from; leaves:
+ * the time of its first event.
+ * A part of the step is resolved when the polynomial of degree 8 through nine values of g has no zero there, or is monotonic; otherwise it is
+ * halved. So crossings are found one by one, however short the time between them. Chebyshev coefficients bound the error of the polynomial: J.P.
+ * Boyd, Chebyshev and Fourier Spectral Methods, 2nd ed. (2001), ch. 2.12; the subdivision is J.P. Boyd, J. Eng. Math. 56 (2006) 203, DOI
+ * 10.1007/s10665-006-9087-5. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -12,12 +12,12 @@
 
 enum {
   N = 8,            /* degree */
-  MOST_ROUGH = 12,  /* halvings where g is no polynomial yet: a step is 4096 parts, of nine values each */
-  MOST_HALVINGS = 30, /* where it is one, and touches zero */
+  MOST_ROUGH = 12,  /* halvings where g is not resolved: 4096 parts a step, of nine values each */
+  MOST_HALVINGS = 30, /* halvings where g is resolved, and touches zero */
   PROBES = 5
 };
 
-/* After an event g may leave zero and return within a small part of the step: look there first. */
+/* After an event g may leave zero and return within a small part of the step: probe there first. */
 static const double probe_at[PROBES] = {0x1p-40, 0x1p-32, 0x1p-24, 0x1p-16, 0x1p-8};
 
 /* cos(pi m/8). */
@@ -78,7 +78,7 @@ int lag_events_spread(lag_sim *s, const double *at_event, double *spread)
 typedef struct Crossing {
   lag_sim *sim;
   int k, rc;
-  double lift; /* of g */
+  double lift; /* shift of g */
 } Crossing;
 
 static double g_of(void *context, double t)
@@ -90,7 +90,7 @@ static double g_of(void *context, double t)
   return c->sim->g1[c->k] + c->lift;
 }
 
-/* root[k]: where g + lift is zero. */
+/* root[k] := the zero of g + lift. */
 static int cross(lag_sim *s, int k, double lift, double ta, double ga, double tb, double gb)
 {
   Crossing c = {s, k, 0, lift};
@@ -99,7 +99,7 @@ static int cross(lag_sim *s, int k, double lift, double ta, double ga, double tb
   return c.rc;
 }
 
-/* What happens to the events between two values of g. Sets root[] of those that fire. */
+/* Compares two successive values of g: updates sign_end, and root[] of the events that fire between them. */
 static int compare(lag_sim *s, double ta, const double *ga, double tb, const double *gb, int *found)
 {
   const lag_model *m = s->scene->model;
@@ -109,7 +109,7 @@ static int compare(lag_sim *s, double ta, const double *ga, double tb, const dou
     double now = sign_of(gb[k]), was = s->sign_end[k];
     if (was == 0.0) {
       s->sign_end[k] = fabs(gb[k]) > s->noise[k] ? now : 0;
-      if (s->sign_end[k] < 0 && lag_contact_of(m, k)) { /* it may have been above: a gap that is closing, a force that pulls */
+      if (s->sign_end[k] < 0 && lag_contact_of(m, k)) { /* it may have been positive: a closing gap, a force that pulls */
         rc = cross(s, k, s->noise[k], ta, ga[k], tb, gb[k]);
         *found = 1;
       }
@@ -127,7 +127,7 @@ static int compare(lag_sim *s, double ta, const double *ga, double tb, const dou
 
 /* ---- parts of the step */
 
-/* Value j of the N + 1 in a part of the step, and its time: at the extrema of the polynomial of degree N, both ends among them. */
+/* Sample j of the N + 1 in a part of the step, and its time: at the Chebyshev extrema, both ends included. */
 static double *value(lag_sim *s, int j)
 {
   return s->spare + j * s->scene->model->nev;
@@ -138,7 +138,7 @@ static double time_at(double ta, double tb, int j)
   return j == 0 ? ta : j == N ? tb : ta + (tb - ta) * (0.5 - 0.5 * cosine[j]);
 }
 
-/* How much of the events' functions is rounding: what they make of a state that is another in its last digits. */
+/* Rounding of the event functions: their change when the state changes in its last digits. */
 static int find_rounding(lag_sim *s, double t, double *rounding)
 {
   const double last = 4 * DBL_EPSILON;
@@ -155,7 +155,7 @@ static int find_rounding(lag_sim *s, double t, double *rounding)
   return rc;
 }
 
-/* Chebyshev coefficients of the polynomial of degree N through N + 1 values (of its mirror image, if one minds). */
+/* Chebyshev coefficients of the polynomial of degree N through N + 1 values (mirrored in time, which matters nowhere). */
 static void coefficients(const double *value, int stride, double *c)
 {
   double even[N / 2 + 1], odd[N / 2];
@@ -189,7 +189,7 @@ static int is_monotonic(const double *c, double error)
   return fabs(d[0] / 2) > others + 2 * N * error;
 }
 
-/* How often a part may be halved for the sake of one event: 0, it is seen as it is. */
+/* Halvings allowed to resolve one event in a part; 0: it is resolved. */
 static int halvings(const double *value, int stride, double rounding)
 {
   const double rough = 1e-3; /* of the range of g, in the last three coefficients */
@@ -209,7 +209,7 @@ static int halvings(const double *value, int stride, double rounding)
   return fabs(c[0]) > range + error || is_monotonic(c, error) ? 0 : MOST_HALVINGS;
 }
 
-/* Fills values 1 to N of a part and says how often it may be halved. *known: rounding is. */
+/* Samples 1 to N of a part; *most := halvings allowed. *known: rounding is known. */
 static int look(lag_sim *s, double ta, double tb, int *known, int *most)
 {
   int nev = s->scene->model->nev, rc = 0;
@@ -233,7 +233,7 @@ static int look(lag_sim *s, double ta, double tb, int *known, int *most)
   return rc;
 }
 
-/* A part that is seen: its values in turn, until an event is found. Value 0 becomes that at its end, which is *ta then. */
+/* Walks the samples of a resolved part until an event is found. Sample 0 becomes the one at its end. */
 static int walk(lag_sim *s, double ta, double tb, int *found)
 {
   size_t bytes = (size_t)s->scene->model->nev * sizeof(double);
@@ -248,8 +248,7 @@ static int walk(lag_sim *s, double ta, double tb, int *found)
   return rc;
 }
 
-/* The first event in [a, b]; value 0 is that at a. Part i of 2^level equal ones follows part i - 1, or is half of what was too
- * long. */
+/* The first event in [a, b]; sample 0 is the one at a. Part i of 2^level equal parts follows part i - 1, or is half of an unresolved one. */
 static int search(lag_sim *s, double a, double b, int *found)
 {
   int level = 0, known = 0, rc = 0;
@@ -273,8 +272,8 @@ static int search(lag_sim *s, double a, double b, int *found)
   return rc;
 }
 
-/* Where to look first: up to the first probe behind which an event that has just fired is back on its other side; else to
- * the end of the step. Value 0 is that at its start. */
+/* *to := end of the part to search first: the first probe at which an event that has just fired is back on its other side, else the end of the
+ * step. Sample 0 is the one at its start. */
 static int first_part(lag_sim *s, double *to)
 {
   Run *r = s->run;
@@ -311,7 +310,7 @@ static void first_root(lag_sim *s)
   }
 }
 
-/* ---- methods whose dense output is rough */
+/* ---- methods without accurate dense output */
 
 /* Integrates from (a, y) to te itself. y is overwritten. */
 static int integrate_to(lag_sim *s, double a, double te, double *y)
@@ -325,7 +324,7 @@ static int integrate_to(lag_sim *s, double a, double te, double *y)
   return rc;
 }
 
-/* What event k's function grows by in a second along the flow at (t, s->ya): over `dt`, a secant over the last bits of time being noise. Uses yb. */
+/* *slope := rate of event k's function along the flow at (t, s->ya), over `dt`: a secant over the last bits of time would be noise. Uses yb. */
 static int slope_at(lag_sim *s, int k, double t, double dt, double g, double *slope)
 {
   int rc = lag_rhs(&s->pb, t, s->ya, s->yb);
@@ -341,7 +340,7 @@ static int slope_at(lag_sim *s, int k, double t, double dt, double g, double *sl
   return rc;
 }
 
-/* The step that integrate_to has made does not meet the event: it ends before it, and the next one will find it. */
+/* The step of integrate_to does not reach the event: it ends before it, and the next step will find it. */
 static void ends_before(lag_sim *s)
 {
   s->run->pending = 0;
@@ -351,8 +350,8 @@ static void ends_before(lag_sim *s)
   }
 }
 
-/* Replaces the step by one that ends at the event k, by Newton's method between a time before it and one behind it. What is integrated anew may meet
- * the event elsewhere than the step did, or not in this step: a method of many steps begins again with one of order 1. */
+/* Replaces the step by one that ends at event k, by Newton's method within a bracket. The new step may meet the event elsewhere than the old
+ * one, or not at all: a multistep method restarts at order 1. */
 static int refine(lag_sim *s, int k)
 {
   enum { MOST = 100 };
@@ -400,8 +399,8 @@ static int refine_first(lag_sim *s)
   return LAG_OK;
 }
 
-/* An event that has fired leaves 0 to one side, and the step ends on the other: it has happened again, and what the method knows between the ends of
- * its step does not show when. */
+/* Fails where an event that has fired leaves 0 to one side and the step ends on the other: it has fired again, at a time that rough dense output
+ * does not show. */
 static int check_seen(lag_sim *s)
 {
   const lag_model *m = s->scene->model;

@@ -1,5 +1,5 @@
-/* Names that a user may write: exact, or the suffix of one dotted name; and the nearest known one to a name
- * that is wrong. Enters: text; leaves: what it means. */
+/* Look-up of the names that a user may write: exact, or the suffix of one dotted name; and the nearest known name to a wrong one. Enters: text;
+ * leaves: kind, index and description. */
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@ const char *lag_own_name(const char *var)
   return dot && *dot == '.' ? dot + 1 : NULL;
 }
 
-/* The one that is called so inside its effect, and how many are. */
+/* The last variable that is called `name` inside its effect; adds to *count the number of them. */
 static int find_suffix(const lag_var *vars, int n, const char *name, int *count)
 {
   int found = -1;
@@ -39,7 +39,7 @@ static int find_suffix(const lag_var *vars, int n, const char *name, int *count)
   return found;
 }
 
-/* Whether a variable is an input that says which contact is closed: nobody's to set. */
+/* Whether a variable is the input that closes a contact, which nobody may set. */
 static int is_switch(const lag_model *m, const lag_var *var)
 {
   int i = 0;
@@ -50,7 +50,7 @@ static int is_switch(const lag_model *m, const lag_var *var)
   return i < m->ncontacts;
 }
 
-/* Of all names. */
+/* Finds a name, inputs of contacts included. */
 static int find(const lag_model *m, const char *name, int *index, const lag_var **var)
 {
   size_t n = strlen(name);

@@ -1,11 +1,11 @@
-/* Steps over a pole of what constraints demand in time, as x = 1/(t - 1)^2 and x = tan(t) do. Enters: a step whose ends obey the constraints; leaves:
- * whether the motion that they demand goes through infinity in between. No sign tells that of a pole of even order, nor of a step as long as a
- * tangent's branches.
+/* Detects steps across a pole of the motion that constraints prescribe in time, as x = 1/(t - 1)^2 and x = tan(t). Enters: a step whose ends
+ * obey the constraints; leaves: whether the prescribed motion goes through infinity in between. A sign cannot tell: not of a pole of even order,
+ * nor of a step as long as a branch of the tangent.
  *
- * A step is looked at closer where constraints put its middle elsewhere than the cubic through its ends does: for a smooth motion of frequency w the
- * difference is (w step)^3/384 of the way. Then the interval is halved, towards the larger velocity, down to the last digits of t. Over a
- * pole of order p its length times the smaller velocity of its ends grows by 2^p a turn; over anything that is finite, however steep, it falls by 2
- * from some turn on. */
+ * A step is examined where the constraints put its middle elsewhere than the cubic through its ends: for a smooth motion of frequency w the
+ * difference is (w step)^3/384 of the way. Then the interval is bisected towards the larger velocity, down to the last digits of t. Over a pole
+ * of order p its length times the smaller velocity of its ends grows by 2^p a turn; over anything finite, however steep, it falls by 2 from some
+ * turn on. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -15,7 +15,7 @@
 
 enum { MOST_TURNS = 64, LEAST_TURNS = 16, LOOK_BACK = 8 };
 
-/* q and v of y[n] := in the middle of the cubic through the ends of a step, dt long. */
+/* q and v of y[n] := the middle of the cubic through the ends of a step of length dt; z: the mean. */
 static void middle(const lag_problem *pb, double dt, const double *y0, const double *y1, double *y)
 {
   int nq = pb->nq;
@@ -30,9 +30,9 @@ static void middle(const lag_problem *pb, double dt, const double *y0, const dou
   }
 }
 
-/* The coordinate that constraints put farthest, in the middle y of a step at t, from the cubic, beside how far the velocities at its ends lead, or its
- * velocity, as one of both may happen to agree. -1: none is farther than in a smooth motion whose period is more than two steps. c[], r[], d[] and force[]
- * are scratch. */
+/* The coordinate whose position or velocity in the middle y of a step the constraints put farthest from the cubic, relative to the motion of the
+ * step; both are compared, as either may agree by chance. -1: none is farther than in a smooth motion whose period is more than two steps. c[],
+ * r[], d[] and force[] are scratch. */
 static int find_doubtful(lag_problem *pb, double t, double dt, const double *y0, const double *y1, const double *y, double *c, double *r, double *d,
                          double *force)
 {
@@ -57,7 +57,7 @@ static int find_doubtful(lag_problem *pb, double t, double dt, const double *y0,
     }
     for (int i = 0; i < nq; i++) {
       double size = part * fmax(fmax(fabs(y0[nq + i]), fabs(y1[nq + i])), fabs((y1[i] - y0[i]) / dt));
-      double reach = lag_reach(pb, y0, 1, i), lost = 64 * DBL_EPSILON * reach / fabs(dt); /* the latter of the velocity of a short chord */
+      double reach = lag_reach(pb, y0, 1, i), lost = 64 * DBL_EPSILON * reach / fabs(dt); /* lost: rounding of the velocity of a short chord */
       double small = holonomic ? rounding * reach : fmax(rounding * fmax(lag_size_like(pb, y0 + nq, i), lag_size_like(pb, y1 + nq, i)), lost);
       if (fabs(d[i]) > most * size && fabs(d[i]) > small) {
         most = fabs(d[i]) / size;
@@ -68,7 +68,7 @@ static int find_doubtful(lag_problem *pb, double t, double dt, const double *y0,
   return which;
 }
 
-/* The constraint that changes fastest in time at y, where v is 0 then. */
+/* The constraint that changes fastest in time at y; sets v of y to 0. */
 static int find_driver(lag_problem *pb, double t, double *y, double *c, double *r)
 {
   int which = 0;
@@ -97,8 +97,8 @@ static int say(lag_problem *pb, double t, int i, int k)
   return LAG_ERETRY;
 }
 
-/* One turn: of the interval from a at *from to b at *to, the half beside the end where coordinate i is faster. y[n] is scratch. Returns 0; > 0: the
- * constraints have no value in the middle, *t; < 0: Newton's method finds no state there, which says nothing. */
+/* One bisection of the interval from a at *from to b at *to: keeps the half next to the end where coordinate i is faster. y[n] is scratch.
+ * Returns 0; > 0: the constraints have no value in the middle, *t; < 0: Newton's method finds no state there, which proves nothing. */
 static int halve(lag_problem *pb, int i, double *from, double *to, double *t, double *a, double *b, double *y, double *c, double *r)
 {
   static const double parts[] = {0.5, 0.45, 0.55};
@@ -123,11 +123,11 @@ int lag_over_pole(lag_problem *pb, double t0, const double *y0, double t1, const
 {
   const lag_constraints *of = pb->model->constraints;
 
-  if (!of || pb->model->flags & LAG_AUTONOMOUS || lag_not_finite(pb->n, y1) >= 0) { /* the latter is for the method to find */
+  if (!of || pb->model->flags & LAG_AUTONOMOUS || lag_not_finite(pb->n, y1) >= 0) { /* the method reports states that are not finite */
     return LAG_OK;
   }
   int n = pb->n, nq = pb->nq, rc = 0;
-  double *a = pb->held + lag_held_room(pb->model) - 4 * n - 4 * of->n - 2 * nq, *b = a + n, *y = b + n; /* behind it that of lag_rhs_prepare */
+  double *a = pb->held + lag_held_room(pb->model) - 4 * n - 4 * of->n - 2 * nq, *b = a + n, *y = b + n; /* scratch before that of lag_rhs_prepare */
   double *r = y + n, *c = r + of->n, *d = c + of->n, *force = d + nq, *terms = force + nq, from = t0, to = t1, t = t0, sizes[LOOK_BACK] = {0};
   middle(pb, t1 - t0, y0, y1, y);
   int i = find_doubtful(pb, t0 + (t1 - t0) / 2, t1 - t0, y0, y1, y, c, r, d, force);
@@ -137,11 +137,11 @@ int lag_over_pole(lag_problem *pb, double t0, const double *y0, double t1, const
   const char *said = pb->detail;
   lag_copy(n, y0, a);
   lag_copy(n, y1, b);
-  lag_copy(2 * of->n, lag_kept_terms(pb), terms); /* those beside a pole would let anything pass */
+  lag_copy(2 * of->n, lag_kept_terms(pb), terms); /* terms found beside a pole would excuse any residual */
   int pole = 1;
   for (int turn = 0; turn < MOST_TURNS && fabs(to - from) > 8 * DBL_EPSILON * fmax(fabs(from), fabs(to)) && pole && rc == 0; turn++) {
     double now = fabs(to - from) * fmin(fabs(a[nq + i]), fabs(b[nq + i]));
-    pole = turn < LEAST_TURNS || (now > 0 && now >= 0x1p4 * sizes[turn % LOOK_BACK]); /* of 2^6 at least */
+    pole = turn < LEAST_TURNS || (now > 0 && now >= 0x1p4 * sizes[turn % LOOK_BACK]); /* of an expected 2^6 or more */
     sizes[turn % LOOK_BACK] = now;
     rc = halve(pb, i, &from, &to, &t, a, b, y, c, r);
     pole &= rc >= 0;

@@ -1,5 +1,5 @@
-/* Back to the constraints. Enters: a state near them; leaves: the nearest one on them in the mass metric, positions first. Holds: a
- * state that obeys them to rounding stays as it is, bit by bit. */
+/* Projection onto the constraints, and the sizes against which residuals are judged. Enters: a state near the constraints; leaves: the nearest
+ * one on them in the mass metric, positions first. Holds: a state that obeys them to rounding stays as it is, bit by bit. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,11 +9,11 @@
 
 enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
 
-/* pb->held, laid out; behind it, what pole.c has, and a state for lag_rhs_prepare. */
+/* The layout of pb->held; behind it the scratch of pole.c, and a state for lag_rhs_prepare. */
 typedef struct Held {
   const lag_constraints *of;
   double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
-  double *terms[2];               /* [n] of the rates, of the holonomic ones, where they were last met */
+  double *terms[2];               /* [n] sizes of the terms of the rates, and of the holonomic constraints, where they were last met */
   double *d, *force, *step;       /* [nq], [nq], [nq] */
   double *other;                  /* [2 nq + nz] */
   double *M;                      /* [nmass] */
@@ -23,7 +23,7 @@ size_t lag_held_room(const lag_model *m)
 {
   const lag_constraints *of = m->constraints;
 
-  size_t pole = of ? (size_t)(3 * (2 * m->nq + m->nz) + 4 * of->n + 2 * m->nq) : 0; /* of pole.c */
+  size_t pole = of ? (size_t)(3 * (2 * m->nq + m->nz) + 4 * of->n + 2 * m->nq) : 0; /* scratch of pole.c */
   return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz + (2 * m->nq + m->nz)) + pole : 0;
 }
 
@@ -89,9 +89,9 @@ int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, 
   return rc ? rc : (holonomic ? of->position : of->velocity)(t, y, y + nq, y + 2 * nq, pb->p, pb->u, g, d, force, pb->work);
 }
 
-/* ---- how large a residual is */
+/* ---- sizes of residuals */
 
-/* size[n] := what moving each coordinate (each velocity) from 0 to where it is makes of a constraint, to first order. */
+/* size[n] := first-order change of each constraint when every coordinate (velocity) moves from 0 to its value. */
 static int sizes(lag_problem *pb, const Held *w, double t, const double *y, int holonomic, double *size)
 {
   const lag_constraints *of = w->of;
@@ -125,7 +125,7 @@ double lag_size_like(const lag_problem *pb, const double *x, int i)
 double lag_reach(const lag_problem *pb, const double *y, int holonomic, int i)
 {
   const lag_var *q = &pb->model->q[i];
-  const double unknown = 1e-6; /* of the unit: a run from 0 has no length, and what has moved off 0 by rounding is none */
+  const double unknown = 1e-6; /* of the unit: a run from 0 has no length, and what rounding moved off 0 is none */
   int from_zero = pb->begin && !(lag_size_like(pb, pb->begin, i) > 0);
   double time = holonomic ? 1 : pb->span > 0 ? pb->span : 1, most = lag_size_like(pb, holonomic ? y : y + pb->nq, i);
 
@@ -138,18 +138,18 @@ double lag_reach(const lag_problem *pb, const double *y, int holonomic, int i)
   return most <= 0 || (most < 1 && is_angle) ? 1 : most;
 }
 
-/* At least what a state makes of them that is another by as much everywhere: there may be no terms here of first order, as of a folded
- * linkage or a body at rest. */
+/* Raises size[n] to the residuals of a state displaced by typical magnitudes: there may be no terms of first order, as of a folded linkage or a
+ * body at rest. */
 static int other_sizes(lag_problem *pb, const Held *w, double t, const double *y, int holonomic, double *size)
 {
-  const double step = 0.618033988749894848; /* any number, so that nothing cancels */
+  const double step = 0.618033988749894848; /* arbitrary, so that nothing cancels */
   int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : nq;
   double *c = w->c, *r = w->r;
 
   double reach = 0;
   const lag_var *q = pb->model->q;
   memcpy(w->other, y, (size_t)pb->n * sizeof *y);
-  for (int i = 0; i < nq; i++) { /* members of a family have one, and there may be hundreds */
+  for (int i = 0; i < nq; i++) { /* members of a family share their magnitude, and there may be hundreds */
     reach = i > 0 && strcmp(q[i].unit, q[i - 1].unit) == 0 && q[i].periodic == q[i - 1].periodic ? reach : lag_reach(pb, y, holonomic, i);
     w->other[at + i] += reach * (0.5 + fmod(step * (i + 1), 1));
   }
@@ -179,8 +179,8 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
     return -1;
   }
   for (int k = 0; k < n; k++) {
-    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x < DBL_MIN ? 0 : x / (DBL_EPSILON * w.g[k]); /* numbers below that have lost digits: terms as small say nothing */
-    part = isnan(part) ? HUGE_VAL : part; /* it has no value */
+    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x < DBL_MIN ? 0 : x / (DBL_EPSILON * w.g[k]); /* subnormal numbers have lost digits */
+    part = isnan(part) ? HUGE_VAL : part; /* no value */
     if (part > most) {
       most = part;
       which = k;
@@ -228,7 +228,7 @@ static double ratio(double x, double y)
   return x == 0.0 ? 0 : fabs(x / y);
 }
 
-/* Whether what is left after a correction, the part `left` of it, is rounding. */
+/* Whether the rest of a correction d, its part `left`, is rounding of x. */
 static int is_rounding(int n, const double *x, const double *d, double left)
 {
   for (int i = 0; i < n; i++) {
@@ -239,7 +239,7 @@ static int is_rounding(int n, const double *x, const double *d, double left)
   return 1;
 }
 
-/* The largest and the least part that a correction left of a residual. */
+/* The largest, and *least the smallest, ratio of a residual to the one before the correction. */
 static double parts_left(int n, const double *now, const double *before, double *least)
 {
   double most = 0;
@@ -253,7 +253,7 @@ static double parts_left(int n, const double *now, const double *before, double 
   return most;
 }
 
-/* x += d, and what that loses. */
+/* x += d, with the rounding error of that sum in lost, or without (NULL). */
 static void add(int n, double *x, double *lost, const double *d)
 {
   for (int i = 0; i < n; i++) {
@@ -266,7 +266,7 @@ static void add(int n, double *x, double *lost, const double *d)
   }
 }
 
-/* The constraints cannot be met: which is worst. */
+/* Reports the worst of constraints that cannot be met. */
 static int unmet(lag_problem *pb, const Held *w, double t, const double *y, int holonomic)
 {
   int k = lag_worst_constraint(pb, t, y, holonomic, NULL);
@@ -292,8 +292,7 @@ static void opposed(const Held *w, int n, const double *x, double *g)
   }
 }
 
-/* w->before[k] := how far constraint k strays from the straight line that it is, but for rounding, along the change w->d that would take
- * away what is left, -w->g. */
+/* w->before[k] := deviation of constraint k from a straight line along w->d, the change that would remove the residual -w->g: its rounding. */
 static int stray(lag_problem *pb, const Held *w, double t, const double *y, int holonomic)
 {
   static const double parts[] = {0.25, 0.5, 0.75, 1, 1.5, 2};
@@ -313,8 +312,8 @@ static int stray(lag_problem *pb, const Held *w, double t, const double *y, int 
   return rc;
 }
 
-/* Whether what is left of the constraints is what rounding makes of some of them, and what is left of the others takes a smaller change than
- * that. What stands still at 0 shows no size, and 0.6^2 + 0.8^2 - 1 is rounding of terms that no coordinate shows. */
+/* Whether the residual is rounding of some constraints, and removing the rest takes a smaller change than that. Needed where a state at 0 shows
+ * no size: 0.6^2 + 0.8^2 - 1 is rounding of terms that no coordinate shows. */
 static int is_noise(lag_problem *pb, const Held *w, double t, const double *y, int holonomic, const double *residual)
 {
   int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, noise = 0;
@@ -328,14 +327,14 @@ static int is_noise(lag_problem *pb, const Held *w, double t, const double *y, i
     return 0;
   }
   opposed(w, n, w->d, w->before);
-  memset(w->c, 0, (size_t)n * sizeof *w->c); /* sizes of the terms of that */
+  memset(w->c, 0, (size_t)n * sizeof *w->c); /* sizes of the terms of A d */
   for (int e = 0; e < w->of->njacobian; e++) {
     const lag_entry *at_e = &w->of->jacobian[e];
     w->c[at_e->row] += at_e->row < n ? fabs(w->A[e] * w->d[at_e->col]) : 0;
   }
   for (int k = 0; k < n; k++) {
     if (!(fabs(w->before[k] + w->g[k]) <= 1e-3 * fabs(w->g[k]) + 1e-9 * w->c[k])) {
-      return 0; /* no change takes it away: it contradicts others */
+      return 0; /* no change removes it: it contradicts others */
     }
   }
   if (stray(pb, w, t, y, holonomic)) {
@@ -350,12 +349,12 @@ static int is_noise(lag_problem *pb, const Held *w, double t, const double *y, i
     return 0;
   }
   for (int i = 0; i < nq; i++) {
-    noise &= fabs(rest[i]) <= 2 * lag_size_like(pb, w->d, i); /* they may be the same but for rounding */
+    noise &= fabs(rest[i]) <= 2 * lag_size_like(pb, w->d, i); /* they may be equal up to rounding */
   }
   return noise;
 }
 
-/* Whether coordinates of some unit were all 0 at the start, so that nothing tells how large they are. */
+/* Whether the coordinates of some unit were all 0 at the start, so that nothing tells their scale. */
 static int began_at_0(const lag_problem *pb)
 {
   int zero = 0;
@@ -374,7 +373,7 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
   int n = holonomic ? w.of->nholonomic : w.of->n, met = 1;
 
   for (int k = 0; k < n; k++) {
-    met &= fabs(residual[k]) <= rounding * terms[k] / 4; /* what they were will do, where it is clear */
+    met &= fabs(residual[k]) <= rounding * terms[k] / 4; /* terms from the last time suffice where the answer is clear */
   }
   if (met) {
     return 1;
@@ -383,14 +382,14 @@ int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const 
   met = worst <= 0x1p10;
   if (!met && began_at_0(pb)) {
     met = is_noise(pb, &w, t, y, holonomic, residual);
-    met = lag_residuals(pb, t, y, w.c, w.r) == 0 && met; /* which is_noise() has written over, and newton() goes on with */
-  } else if (met) { /* a state that does not obey them may be anywhere, and its terms as large as you like */
+    met = lag_residuals(pb, t, y, w.c, w.r) == 0 && met; /* is_noise() has overwritten the residuals that newton() needs */
+  } else if (met) { /* only where met: terms of a state off the constraints may have any size */
     memcpy(terms, w.g, (size_t)n * sizeof *terms);
   }
   return met;
 }
 
-/* Whether the residuals of y, of which w->c and w->r are left as they are, are what the last digits of their terms make. */
+/* Whether the residuals of y, w->c and w->r, are rounding in the last digits of their terms. */
 static int is_clean(lag_problem *pb, const Held *w, double t, const double *y, int holonomic)
 {
   const double *residual = holonomic ? w->c : w->r;
@@ -405,7 +404,7 @@ static int is_clean(lag_problem *pb, const Held *w, double t, const double *y, i
   return clean;
 }
 
-/* Positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of y, before and after. */
+/* Newton's iteration of positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of y, before and after. */
 static int newton(lag_problem *pb, const Held *w, double t, double *y, double *lost, int holonomic)
 {
   int n = holonomic ? w->of->nholonomic : w->of->n, nq = pb->nq, strikes = 0;
@@ -418,7 +417,7 @@ static int newton(lag_problem *pb, const Held *w, double t, double *y, double *l
       busy |= !(residual[k] == 0.0);
     }
     if (!busy || (turn > holonomic && is_clean(pb, w, t, y, holonomic))) {
-      return LAG_OK; /* the latter: coordinates that are 0 but for rounding never stop moving by more than their last digits */
+      return LAG_OK; /* is_clean: coordinates that are 0 up to rounding never stop moving by more than their last digits */
     }
     for (int k = 0; k < n; k++) {
       w->before[k] = residual[k];
@@ -437,7 +436,7 @@ static int newton(lag_problem *pb, const Held *w, double t, double *y, double *l
     if (lost_in_rounding && most < 0.5) {
       return LAG_OK;
     }
-    if (lost_in_rounding || !(least < 0.5)) { /* nothing shrinks any more, or one that the correction cannot reach does not */
+    if (lost_in_rounding || !(least < 0.5)) { /* no residual shrinks any more, or one that the correction cannot reach does not */
       if (lag_is_met(pb, t, y, holonomic, residual)) {
         return LAG_OK;
       }
@@ -451,7 +450,7 @@ static int newton(lag_problem *pb, const Held *w, double t, double *y, double *l
 
 int lag_project(lag_problem *pb, double t, double *y, double *lost)
 {
-  if (!pb->model->constraints || lag_not_finite(pb->n, y) >= 0) { /* the latter is for the method to find */
+  if (!pb->model->constraints || lag_not_finite(pb->n, y) >= 0) { /* the method reports states that are not finite */
     return LAG_OK;
   }
   Held w = layout(pb);
@@ -464,7 +463,7 @@ int lag_project(lag_problem *pb, double t, double *y, double *lost)
   return rc < LAG_ESINGULAR ? LAG_EMODEL : rc;
 }
 
-/* How far coordinate i is, or has been, from 0; at least 1e-10 of its unit, of which there may be nothing. */
+/* Largest distance of coordinate i from 0, now or at the start; at least 1e-10 of its unit. */
 static double extent(const lag_problem *pb, const double *y0, const double *y, int i)
 {
   double begin = pb->begin ? lag_size_like(pb, pb->begin, i) : 0;

@@ -1,4 +1,5 @@
-/* How independent constraints are, in the coordinates of the solver (lag_scales of lag_kkt.h): units of coordinates do not matter. Holds: rows are taken in the order of the constraints. */
+/* Independence of constraints by Gram-Schmidt orthogonalisation, in the solver's scaled coordinates (lag_scales of lag_kkt.h), so that units of
+ * coordinates do not matter. Holds: rows are taken in the order of the constraints. */
 #include <math.h>
 #include <string.h>
 
@@ -49,7 +50,7 @@ int lag_constraint_rows(lag_problem *pb, double t, const double *y, double *A, d
   return rc;
 }
 
-/* Twice, so that rounding is gone. */
+/* Removes from x its projection on the rows of Q, twice, for the rounding of the first pass; returns |x|. */
 static double remainder_of(int n, int r, const double *Q, double *x)
 {
   double s = 0;
@@ -78,7 +79,7 @@ double lag_own_part(int n, int r, double least, const double *unit, double *Q, d
     row[i] *= unit[i];
     most = fmax(most, fabs(row[i]));
   }
-  for (int i = 0; i < n && most > 0; i++) { /* so that squares have a value */
+  for (int i = 0; i < n && most > 0; i++) { /* squares must not overflow or underflow */
     row[i] /= most;
   }
   double length = remainder_of(n, 0, Q, row);

@@ -1,5 +1,5 @@
-/* The model as y' = f(t, y), the only way in which methods call it. Enters: t, y = [q|v|z]; leaves:
- * y' = [v|a|z']. Holds: an input is the model's formula or table unless a function or a constant replaces it. */
+/* The model as y' = f(t, y): the only way in which methods call it. Enters: t, y = [q|v|z]; leaves: y' = [v|a|z']. Holds: an input is the
+ * model's formula or table unless a function or a constant replaces it. */
 #include <math.h>
 #include <string.h>
 
@@ -116,7 +116,7 @@ int lag_not_finite(int n, const double *x)
   double zero = 0;
 
   for (int i = 0; i < n; i++) {
-    zero += x[i] * 0; /* NaN where x is none, or infinite */
+    zero += x[i] * 0; /* NaN where x[i] is not finite */
   }
   for (int i = 0; i < n && isnan(zero); i++) {
     if (!isfinite(x[i])) {

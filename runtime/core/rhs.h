@@ -1,5 +1,5 @@
-/* What is called so often, for so few numbers, that a call of a function would take as long: the right-hand side as rhs.c and
- * steps with many stages call it, and a copy. */
+/* Inline parts of the right-hand side, called so often, for so few numbers, that a function call would take as long as the work: for rhs.c and
+ * for methods with many stages. */
 #ifndef LAG_CORE_RHS_H
 #define LAG_CORE_RHS_H
 
@@ -28,10 +28,10 @@ LAG_HERE void lag_copy(int n, const double *from, double *to)
   }
 }
 
-/* What few models have: inputs, and constraints that follow from others, for which *y is replaced by the state on them. */
+/* The parts that few models have: pb->u := inputs; where constraints are redundant, *y := its projection onto them. */
 int lag_rhs_prepare(lag_problem *pb, double t, const double **y);
 
-/* As lag_inputs, and as lag_next_row. */
+/* Inline lag_inputs and lag_next_row. */
 LAG_HERE int lag_inputs_here(lag_problem *pb, double t)
 {
   return pb->model->nu ? lag_inputs(pb, t) : 0;
@@ -42,7 +42,7 @@ LAG_HERE double lag_next_row_here(const lag_problem *pb, double t, double *row)
   return pb->model->ntables ? lag_next_row(pb, t, row) : HUGE_VAL;
 }
 
-/* As lag_rhs; nq is the model's, perhaps as a number that the compiler knows. */
+/* Inline lag_rhs; nq is the model's, perhaps a compile-time constant. */
 LAG_HERE int lag_rhs_here(lag_problem *pb, int nq, double t, const double *y, double *dy)
 {
   const lag_model *m = pb->model;

@@ -1,3 +1,4 @@
+/* Work space: one block cut into parts; under the address sanitizer with a poisoned gap behind each part. */
 #include "core/room.h"
 
 #include <stdlib.h>

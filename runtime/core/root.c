@@ -1,5 +1,5 @@
-/* Bracketing root of a continuous function. Enters: a bracket with a change of sign; leaves: its root to the
- * last bits. Holds: the root stays bracketed, and no more than one evaluation beyond bisection is spent. */
+/* Root of a continuous function in a bracket by the ITP method (core.h has its source). Enters: a bracket with a change of sign; leaves: its
+ * root to the last bits. Holds: the root stays bracketed, and at most one evaluation more than bisection is spent. */
 #include <float.h>
 #include <math.h>
 

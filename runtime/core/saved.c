@@ -1,7 +1,6 @@
-/* Saving and loading of a run. Enters: a simulation, or numbers from anywhere; leaves: the numbers, or the run that they describe.
- * Holds: numbers are loaded only when every one of them is in the range of what it means, so that any bytes are safe; a refused load
- * changes nothing. What each number means stands in three tables: the parts of the saved block (lag_parts), Run and Charge here; a method
- * judges its own block (lag_method.sound). */
+/* Saving and loading of a run. Enters: a simulation, or numbers from anywhere; leaves: the numbers, or the run that they describe. Holds:
+ * numbers are loaded only when each is in its range, so that any bytes are safe; a refused load changes nothing. The ranges stand in three
+ * tables: arrays of the saved block (lag_parts), Run and Charge here; a method checks its own block (lag_method.sound). */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -98,7 +97,7 @@ static int parts_are_sound(lag_sim *s)
   return 1;
 }
 
-/* Averages fill bins that double in width, one after the other. */
+/* Bins: full ones below LAG_BINS; width a power of two, more than the samples in the open bin. */
 static int charge_is_sound(const Charge *c)
 {
   int e;
@@ -107,7 +106,7 @@ static int charge_is_sound(const Charge *c)
          (c->width == 0.0 ? c->in_bin == 0.0 && c->bins == 0.0 : frexp(c->width, &e) == 0.5 && c->in_bin < c->width);
 }
 
-/* A step, and where the run is within it. */
+/* Whether times of the step are in order: step_t0, from, t, limit, step_t1. */
 static int step_is_sound(const Run *r)
 {
   const double at[] = {r->step_t0, r->from, r->limit, r->step_t1};
@@ -132,7 +131,7 @@ static int run_is_sound(const lag_sim *s)
          (r->have_step == 0.0 || (r->begun != 0.0 && step_is_sound(r))) && (r->begun == 0.0 || (r->dir != 0.0 && s->options != NULL));
 }
 
-/* Whether the method could have left its block like this; one that has not begun has none yet. LAG_OK, LAG_EINVAL, LAG_ENOMEM. */
+/* Whether the method accepts its block; before the first step the block is cleared. LAG_OK, LAG_EINVAL, LAG_ENOMEM. */
 static int check_method_block(lag_sim *s)
 {
   const lag_method *m = s->method;
@@ -188,7 +187,7 @@ int lag_sim_save(lag_sim *s, double *x)
   return LAG_OK;
 }
 
-/* Values that follow from the saved block. */
+/* Sets the values outside the saved block that follow from it. */
 static void take_over(lag_sim *s)
 {
   const lag_model *m = s->scene->model;
@@ -236,7 +235,7 @@ int lag_sim_load(lag_sim *s, const double *x)
   return rc;
 }
 
-/* FNV-1a over text, with its end, so that "ab","c" and "a","bc" differ. */
+/* FNV-1a hash of text with its final 0, so that "ab","c" and "a","bc" differ. */
 static unsigned long long hash(unsigned long long h, const char *text)
 {
   do {

@@ -1,5 +1,5 @@
-/* A simulation before its first step: memory, parameters, start, method. Enters: a scene and what the caller
- * sets by name; leaves: the state at the start of the span. Holds: a setting that is refused changes nothing. */
+/* Setup of a simulation: memory, parameters, start, method. Enters: a scene and the caller's settings by name; leaves: the state at the start of
+ * the span. Holds: a setting that is refused changes nothing. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -30,8 +30,7 @@ void lag_parts(lag_sim *s, lag_saved_part *part)
   memcpy(part, all, sizeof all);
 }
 
-/* Lays out the blocks for this method, keeping nothing but what the caller has set (p, hold). opt: the values of its options;
- * they must live on. */
+/* Allocates and lays out the blocks for this method, keeping only the settings of the caller (p, hold). opt: option values, which must live on. */
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
 {
   const lag_model *m = s->scene->model;
@@ -115,7 +114,7 @@ static const lag_method *find_method(const char *name)
   return NULL;
 }
 
-/* The values of the options when none is given; NULL: no memory. */
+/* Default values of the options; NULL: no memory. */
 static double *default_options(const lag_method *method)
 {
   double *values = malloc(((size_t)method->noptions + 1) * sizeof *values);
@@ -126,7 +125,7 @@ static double *default_options(const lag_method *method)
   return values;
 }
 
-/* The state at the start as it is set now, so that a simulation can be looked at before it runs. */
+/* Sets the state to the start as it is set now, so that a simulation can be inspected before it runs. */
 static void place(lag_sim *s)
 {
   int nq = s->pb.nq, n = s->pb.n;
@@ -236,7 +235,7 @@ double lag_equal_step(const lag_sim *s)
   return adaptive ? 0 : lag_step_size(&s->pb, step);
 }
 
-/* The value of one option; LAG_EINVAL when it is not allowed. */
+/* *value := the value of one option; LAG_EINVAL when it is not allowed. */
 static int option_value(lag_sim *s, const lag_method *m, const lag_method_option *o, const lag_option *given, double *value)
 {
   *value = given->value;
@@ -285,7 +284,7 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
   return wrong ? lag_fail(s, LAG_EINVAL, "method %s: %s", m->name, wrong) : LAG_OK;
 }
 
-/* A coordinate whose velocity is in no momentum, or else the first. */
+/* The first coordinate whose velocity is in no momentum; if there is none, the first coordinate. */
 static const char *massless(const lag_model *m)
 {
   const lag_constraints *of = m->constraints;
@@ -302,7 +301,7 @@ static const char *massless(const lag_model *m)
   return m->q[0].name;
 }
 
-/* Do the method's coefficients have the digits of the tolerance? */
+/* Refuses a tolerance finer than the digits of the method's coefficients. */
 static int check_digits(lag_sim *s, const lag_method *method)
 {
   if (method->finest < DBL_EPSILON || s->tol >= method->finest) {
@@ -312,7 +311,7 @@ static int check_digits(lag_sim *s, const lag_method *method)
                   "its own", method->name, method->finest, s->tol);
 }
 
-/* May the method integrate this model? If not, the message says why, and which method can. */
+/* Whether the method can integrate this model; if not, the message says why, and which method can. */
 static int check_method(lag_sim *s, const lag_method *method)
 {
   const lag_model *m = s->scene->model;
@@ -444,13 +443,13 @@ static int unknown_name(lag_sim *s, const char *name)
              : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
 }
 
-/* A value in the declared unit of var in SI; a rate of it has no zero of its own. */
+/* A value in the declared unit of var, converted to SI; the offset of a unit does not apply to rates. */
 static double in_si(int kind, const lag_var *var, double value)
 {
   return value * var->factor + (kind == LAG_IS_V ? 0 : var->offset);
 }
 
-/* Whether `value`, in the declared unit, may be given to var. */
+/* Whether var may have `value`, in its declared unit. */
 static int check_value(lag_sim *s, int kind, const lag_var *var, const char *name, double value)
 {
   if (!isfinite(value)) {
@@ -462,7 +461,7 @@ static int check_value(lag_sim *s, int kind, const lag_var *var, const char *nam
   return LAG_OK;
 }
 
-/* value in SI */
+/* Sets parameter, input constant or start i to a value in SI. */
 static void give(lag_sim *s, int kind, int i, double value)
 {
   int nq = s->pb.nq;
@@ -481,7 +480,7 @@ static void give(lag_sim *s, int kind, int i, double value)
   }
 }
 
-/* All members of the family that is called so. 0: there is none; < 0: the value is not allowed. */
+/* Sets all members of the family `name`. 0: no such family; < 0: the value is not allowed. */
 static int set_family(lag_sim *s, const char *name, double value)
 {
   const lag_model *m = s->scene->model;
@@ -509,7 +508,7 @@ static int set_family(lag_sim *s, const char *name, double value)
   return found;
 }
 
-/* The family of one effect that calls it `name`: its name in full. 0 where there is none, or more than one effect has it. */
+/* full := the full name of the family `name` of one effect. 0: no effect, or more than one, has it. */
 static int effects_family(const lag_model *m, const char *name, char *full, size_t nfull)
 {
   int known = 0;
@@ -555,7 +554,7 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
     return rc;
   }
   if (s->scene->params) {
-    s->scene->params(s->p, s->fixed); /* others may follow from this one */
+    s->scene->params(s->p, s->fixed); /* parameters may depend on this one */
   }
   place(s);
   return LAG_OK;
@@ -580,7 +579,7 @@ int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *cont
   }
   lag_signal before = s->signal[i];
   s->signal[i] = (lag_signal){fn, context};
-  if (s->options && (rc = check_method(s, s->method)) != 0) { /* it may need what a function takes away */
+  if (s->options && (rc = check_method(s, s->method)) != 0) { /* the method may need a fact that an input function takes away */
     s->signal[i] = before;
     return rc;
   }
@@ -609,7 +608,7 @@ int lag_setup_start(lag_sim *s)
   if (lag_not_finite(n, s->now) >= 0) {
     return lag_fail(s, LAG_ENAN, "the start is not finite");
   }
-  memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* what is asked for says how large things are */
+  memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */
   if ((rc = lag_consistent(s)) != 0) {
     return rc;
   }

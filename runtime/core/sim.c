@@ -1,6 +1,6 @@
-/* A run: steps of the method, cut by events, looked at where the caller asks. Enters: a time to reach;
- * leaves: the state there. Holds: neither steps nor events depend on the times that the caller asks for
- * (but for STEPS_TO methods), so a run that is split, saved or resumed is the same run. */
+/* A run: steps of the method, cut by events, evaluated where the caller asks. Enters: a time to reach; leaves: the state there. Holds: neither
+ * steps nor events depend on the times that the caller asks for (except with STEPS_TO methods), so a run that is split, saved or resumed is the
+ * same run. */
 #include <float.h>
 #include <math.h>
 #include <stdarg.h>
@@ -52,7 +52,7 @@ int lag_fail(lag_sim *s, int status, const char *format, ...)
   return status;
 }
 
-/* The name of component i of y' as a user knows it. */
+/* text := the name of component i of y', as "x''". */
 static void name_rate(const lag_sim *s, int i, char *text, size_t size)
 {
   const lag_model *m = s->scene->model;
@@ -120,7 +120,7 @@ int lag_explain(lag_sim *s, int status)
                   pb->detail ? ")" : "", advice, s->run->t, text, pb->n > 8 ? ", ..." : "");
 }
 
-/* The first advance: the start of everything. At t0 itself only the state is made: no direction is known. */
+/* Begins the run at the first advance: start, method, monitors, events. At t0 itself only the state is made, as the direction is not known. */
 static int begin(lag_sim *s, double t)
 {
   s->run->dir = s->pb.dir = t < s->scene->t0 ? -1 : 1;
@@ -134,7 +134,7 @@ static int begin(lag_sim *s, double t)
     return lag_fail(s, LAG_EMETHOD, "scene %s asks for the method %s, which is not in liblag.a: set it by lag_sim_set_method, or another", s->scene->name,
                     s->scene->method);
   }
-  if (!s->options) { /* the scene's method was refused, and no other was chosen: refused again, to say why */
+  if (!s->options) { /* the scene's method was refused and not replaced: refuse it again, for the message */
     return lag_sim_set_method(s, s->method, s->scene->options, s->scene->noptions);
   }
   if ((rc = s->method->init(s->method_work, &s->pb, s->options)) != 0) {
@@ -145,7 +145,7 @@ static int begin(lag_sim *s, double t)
   return rc ? rc : lag_events_arm(s);
 }
 
-/* A table jumps between two rows that are next to each other in double precision: from one to the other without a step. */
+/* Passes a jump of a table, two rows next to each other in double precision, without a step. */
 static void pass_jump(lag_sim *s)
 {
   Run *r = s->run;
@@ -157,7 +157,7 @@ static void pass_jump(lag_sim *s)
   }
 }
 
-/* A new step of the method, and the first event in it. */
+/* Makes a step of the method and locates its first event. */
 static int take(lag_sim *s, double t_stop)
 {
   Run *r = s->run;
@@ -192,7 +192,7 @@ int lag_between(lag_sim *s, double t, double *y)
   return rc ? lag_explain(s, rc > 0 ? LAG_EMETHOD : rc) : LAG_OK;
 }
 
-/* `now` := the state at t of the present step. */
+/* `now` := the state at time t of the present step. */
 static int settle(lag_sim *s, double t)
 {
   const Run *r = s->run;
@@ -210,7 +210,7 @@ static int settle(lag_sim *s, double t)
   return LAG_OK;
 }
 
-/* Moves to the end of what is known: an event, or the end of the step. */
+/* Moves to the next event, or to the end of the step. */
 static int pass(lag_sim *s)
 {
   Run *r = s->run;
@@ -229,7 +229,7 @@ static int pass(lag_sim *s)
   return LAG_OK;
 }
 
-/* Whether a run can go on to t; it begins here. */
+/* Begins the run if needed; whether it can advance to t. */
 static int ready(lag_sim *s, double t)
 {
   const Run *r = s->run;
@@ -244,7 +244,7 @@ static int ready(lag_sim *s, double t)
   return (t - r->t) * r->dir < 0 ? lag_fail(s, LAG_EINVAL, "cannot go from t = %g back to %g", r->t, t) : LAG_OK;
 }
 
-/* Ends the step under way, or makes one. */
+/* Ends the present step, or makes a new one. */
 static int go_on(lag_sim *s, double t)
 {
   int rc;

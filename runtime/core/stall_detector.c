@@ -1,17 +1,18 @@
-/* Steps that lead nowhere. Enters: a step that a method has made, from s->now to s->y; leaves: whether the run is to end, and why.
+/* Detects runs without progress. Enters: a step that a method has made, from s->now to s->y; leaves: whether the run is to end, and why.
  *
- * 1. Where a force jumps with the velocities, as dry friction does, and both sides lead back to the place, the motion stays there: Filippov's
- *    sliding mode. Steps of any size then go back and forth, small ones for ever. Across a change of sign of a switching function the derivative is taken on
- *    both sides of the place; of one that is nowhere negative, as |v|, at both ends of a step that leads past its zero. Steps of equal size may stay on one
- *    side, where their stages are on both: by rk4 a body that sticks goes on for ever.
- * 2. Near a position where constraints become dependent, as of bars that come to lie in one line, accelerations have an error of eps/s^2, s being how
- *    independent they are, and a tolerance below that makes steps shrink in front of it, accepted one by one, for ever. So do places where a constraint or a
- *    force jumps with the position. In MOST steps the time went on by less than a hundred-thousandth of the run so far, and at less than a hundredth of its
- *    mean pace: what is fast for a while (a stiff spring that is struck) takes some hundred steps. And there is a reason: constraints that are
- *    nearly dependent there, or a model that jumps.
- * 3. Steps of equal size that are longer than half a period: an implicit method keeps the energy of what swings so fast, and nothing else of it. Along
- *    a step that is -(change of acceleration).(change of position) over the square of the latter, the square of the frequency. It ends no run; the report says so.
- * 4. Coordinates so large that the next number decides about the forces, as of an angle of 1e22. */
+ * 1. Sliding: where a force jumps with the velocities, as dry friction does, and both sides lead back to the place, the motion stays there
+ * (Filippov's sliding mode); steps of any size would go back and forth for ever. Across a sign change of a switching function the derivative is
+ * taken on both sides of the surface; of a function that is nowhere negative, as |v|, at both ends of a step that leads past its zero. Equal
+ * steps may stay on one side with stages on both: by rk4 a body that sticks would creep for ever.
+ * 2. Shrinking steps: near a position where constraints become dependent, with independence s, accelerations have an error of eps/s^2; a
+ * tolerance below that makes steps shrink in front of it, accepted one by one, for ever. So do places where a constraint or a force jumps with
+ * the position. Criterion: in MOST steps the time advanced by less than a hundred-thousandth of the run so far, and at less than a hundredth of
+ * its mean pace (a fast event, as a stiff spring that is struck, takes some hundred steps); and there is a cause, nearly dependent constraints
+ * or a model that jumps.
+ * 3. Equal steps longer than half a period: an implicit method keeps the energy of such an oscillation, and nothing else of it. The square of
+ * the frequency is estimated along a step as -(change of acceleration).(change of position)/|change of position|^2. It ends no run; the report
+ * tells.
+ * 4. Coordinates so large that their last digit changes the forces, as an angle of 1e22. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,7 +22,7 @@
 
 enum { MOST = 10000 };
 
-/* to[nswitch] := the switching functions. 0: they have values. */
+/* to[nswitch] := the switching functions at y, t. 0: they have values. */
 static int sides_at(lag_sim *s, double t, const double *y, double *to)
 {
   const lag_model *m = s->scene->model;
@@ -31,7 +32,7 @@ static int sides_at(lag_sim *s, double t, const double *y, double *to)
   return rc || lag_not_finite(m->nswitch, to) >= 0;
 }
 
-/* to[n] := the state at part x of the line from now at *t to y at t1; *t := its time. */
+/* to[n] := the state at fraction x of the line from now to y at t1; *t := its time. */
 static void on_line(const lag_sim *s, double x, double t1, double *t, double *to)
 {
   for (int i = 0; i < s->pb.n; i++) {
@@ -40,7 +41,7 @@ static void on_line(const lag_sim *s, double x, double t1, double *t, double *to
   *t = s->run->t + x * (t1 - s->run->t);
 }
 
-/* By how much switching function k grows in a second at y at t; NaN: there is no value. Uses yb, yc. */
+/* Rate of switching function k along the flow at y, t; NaN: no value. Uses yb, yc. */
 static double rate_of(lag_sim *s, int k, double t, double dt, const double *y)
 {
   double *now = s->sides + 2 * s->scene->model->nswitch, before, calls = s->pb.rhs_calls;
@@ -56,8 +57,8 @@ static double rate_of(lag_sim *s, int k, double t, double dt, const double *y)
   return sides_at(s, t + dt, s->yc, now) ? NAN : (now[k] - before) / dt;
 }
 
-/* Whether a step of equal size has stayed on one side of a surface that its first derivative leads across and the one there leads back to: it has made
- * another way than the derivatives at its ends, r0 and r1. */
+/* Whether a step of equal size has stayed on one side of a surface although its first derivative leads across and the derivative there leads
+ * back: its path is not that of the derivatives at its ends, r0 and r1. */
 static int hovers(lag_sim *s, int k, double t, double dt)
 {
   const double part = 0.25;
@@ -73,7 +74,7 @@ static int hovers(lag_sim *s, int k, double t, double dt)
   return fabs(last - first - whole * (r0 + r1) / 2) > part * fabs(whole * r0) && rate_of(s, k, t, dt, s->ya) * first * whole > 0;
 }
 
-/* Whether a motion that meets the surface of switching function k within the step to t stays there. */
+/* Whether a motion that meets the surface of switching function k within the step to t stays on it. */
 static int stays(lag_sim *s, int k, double t)
 {
   const double near = 0x1p-6;
@@ -94,7 +95,7 @@ static int stays(lag_sim *s, int k, double t)
     if (sides_at(s, when, s->ya, at)) {
       return 0;
     }
-    on_it = at[k] == 0.0 ? on_it + 1 : 0; /* both ends are beside it: sign(0) is neither */
+    on_it = at[k] == 0.0 ? on_it + 1 : 0; /* exactly on the surface, where sign(0) belongs to neither side */
     if (!on_it) {
       *(at[k] * first[k] > 0 ? &a : &b) = mid;
     }
@@ -120,7 +121,7 @@ static void say_switch(lag_sim *s, int k, double t)
   s->pb.bad_t = t;
 }
 
-/* Rule 1. */
+/* Criterion 1: a sliding motion. */
 static int slides(lag_sim *s, double t)
 {
   const lag_model *m = s->scene->model;
@@ -137,7 +138,7 @@ static int slides(lag_sim *s, double t)
   return 0;
 }
 
-/* The switching function that a motion has been next to for so long: it has gone through less than it grows by in that time. -1: none. */
+/* The switching function near whose surface the motion has been: its value is less than its growth in the time `led`. -1: none. */
 static int hangs_at(lag_sim *s, double t, double led)
 {
   int k = s->scene->model->nswitch - 1;
@@ -148,7 +149,7 @@ static int hangs_at(lag_sim *s, double t, double led)
   return k;
 }
 
-/* Rule 2. */
+/* Criterion 2: shrinking steps. */
 static int creeps(lag_sim *s, double t)
 {
   const double pace = 1e-5, mean = 1e-2, dependent = 1e-2;
@@ -185,7 +186,7 @@ static int creeps(lag_sim *s, double t)
   return LAG_ESTEP;
 }
 
-/* Rule 3. */
+/* Criterion 3: counts equal steps longer than half a period. */
 static void look_for_period(lag_sim *s, double t)
 {
   const double half_turn = 3.141592653589793;
@@ -210,7 +211,7 @@ static void look_for_period(lag_sim *s, double t)
   }
 }
 
-/* Rule 4: coordinates whose next number is a thousandth away (a small part of a turn), where it changes the derivatives by a tenth. */
+/* Criterion 4: coordinates whose last digit is more than a thousandth and changes the derivatives by a tenth. */
 static int is_too_coarse(lag_sim *s, double t)
 {
   const double small = 1e-3, part = 0.1;
@@ -256,7 +257,7 @@ int lag_stalls(lag_sim *s, double t)
   if (steps % MOST == 0 && (rc = creeps(s, t)) != 0) {
     return rc;
   }
-  if ((steps & (steps - 1)) != 0) { /* the rest is asked after 1, 2, 4, 8, ... steps */
+  if ((steps & (steps - 1)) != 0) { /* criteria 3 and 4 are tested after 1, 2, 4, 8, ... steps */
     return LAG_OK;
   }
   look_for_period(s, t);

@@ -1,12 +1,11 @@
-/* The tangent of a run: small changes of the state, carried along. Enters: what they are at one time; leaves: what has become
- * of them. Holds: the run itself is the same, bit by bit, with a tangent or without: steps are differentiated after they
- * were taken, and the counts of the run do not include what that costs.
+/* The tangent of a run: small changes of the state, carried along the motion. Enters: Y at one time; leaves: Y at a later time. Holds: the run
+ * itself is the same, bit by bit, with a tangent or without: steps are differentiated after they were made, and the counts of the run exclude
+ * that cost.
  *
- * An event that changes the state from y to y+ = R(t, y) where g(t, y) = 0 moves in time when y moves; so what becomes of small
- * changes is, with f and f+ the rates before and after it,
- *   S = R_y + (f+ - R_y f - R_t) g_y / (g_y f + g_t),
- * the saltation matrix: R.I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004), ch. 7, DOI
- * 10.1007/978-3-540-44398-8. */
+ * An event changes the state from y to y+ = R(t, y) where g(t, y) = 0; its time moves with y. With the rates f and f+ before and after it, small
+ * changes are multiplied by the saltation matrix
+ *   S = R_y + (f+ - R_y f - R_t) g_y / (g_y f + g_t):
+ * R.I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004), ch. 7, DOI 10.1007/978-3-540-44398-8. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +25,7 @@ void lag_tangent_free(lag_sim *s)
   s->tangent_columns = 0;
 }
 
-/* May steps be differentiated? If not, the message says what to do. */
+/* Whether steps of the method can be differentiated; if not, the message says what to do. */
 static int check(lag_sim *s)
 {
   const lag_model *m = s->scene->model;
@@ -55,7 +54,7 @@ static int njump(const lag_sim *s)
   return l && l->jumps ? l->njump : 0;
 }
 
-/* What a jump takes: its entries, S[n n] and a copy, four vectors and a copy of Y[n k]. */
+/* Scratch of a jump: its entries, S[n n] and a copy, four vectors and a copy of Y[n k]. */
 static size_t jump_size(const lag_sim *s, int k)
 {
   size_t n = (size_t)s->pb.n;
@@ -63,7 +62,7 @@ static size_t jump_size(const lag_sim *s, int k)
   return njump(s) ? (size_t)njump(s) + 2 * n * n + 4 * (n + 1) + n * (size_t)k : 0;
 }
 
-/* Room for k columns, when there is another number of them. */
+/* Allocates k columns, when there is another number of them. */
 static int make_room(lag_sim *s, int k)
 {
   size_t n = (size_t)s->pb.n, size = n * (size_t)k;
@@ -113,7 +112,7 @@ int lag_sim_set_tangent(lag_sim *s, int k, const double *Y)
   return LAG_OK;
 }
 
-/* Y := what the last step, up to t, makes of it. */
+/* Y := D Y, with D the derivative of the last step up to t. */
 static int carry(lag_sim *s, double t, double *Y)
 {
   lag_problem *pb = &s->pb;
@@ -146,7 +145,7 @@ static int refuse(lag_sim *s, int k, const char *why)
 }
 
 typedef struct Jump {
-  double *d, *S, *g, *Rt, *before, *after, *Y, *copy; /* entries; S[n n]; gradient of g, and g_t; dR/dt; f and f+; copies of the tangent and of S */
+  double *d, *S, *g, *Rt, *before, *after, *Y, *copy; /* entries; S[n n]; gradient of g and g_t; R_t; f and f+; copies of the tangent and of S */
 } Jump;
 
 static Jump parts(const lag_sim *s)
@@ -165,7 +164,7 @@ static Jump parts(const lag_sim *s)
   return j;
 }
 
-/* R_y into S, R_t, and the gradient of g with g_t behind it, of event k. 0: the model has none. */
+/* S := R_y, and R_t, gradient of g and g_t of event k. 0: the model lists none. */
 static int gather(const lag_sim *s, int k, const Jump *j)
 {
   const lag_linear *l = s->scene->model->linear;
@@ -177,7 +176,7 @@ static int gather(const lag_sim *s, int k, const Jump *j)
   for (int i = 0; i < n; i++) {
     j->S[i * n + i] = 1;
   }
-  for (int e = 0; e < njump(s); e++) { /* the entry of its own component is there for each that is set */
+  for (int e = 0; e < njump(s); e++) { /* each component that is set has an entry for itself */
     const lag_jump *at = &l->jump[e];
     if (at->event == k) {
       double *to = at->row < 0 ? &j->g[at->col] : at->col < n ? &j->S[at->row * n + at->col] : &j->Rt[at->row];
@@ -188,7 +187,7 @@ static int gather(const lag_sim *s, int k, const Jump *j)
   return listed;
 }
 
-/* S and the copy of Y are known: Y := S Y. */
+/* Y := S Y; returns whether it is finite. */
 static int apply(lag_sim *s, const Jump *j)
 {
   int n = s->pb.n, k = s->tangent_columns;
@@ -205,7 +204,7 @@ static int apply(lag_sim *s, const Jump *j)
   return lag_not_finite(n * k, s->tangent) < 0;
 }
 
-/* log |det S|, by elimination in `a`, of which S is a copy then. */
+/* log |det S| by Gaussian elimination in `a`, a copy of S. */
 static double log_det(int n, const double *S, double *a)
 {
   double log_of = 0;
@@ -232,8 +231,7 @@ static double log_det(int n, const double *S, double *a)
   return log_of;
 }
 
-/* Whether event k, whose function changes at this rate, goes through zero with no slope to speak of beside its values at the ends of the
- * step. */
+/* Whether event k only touches zero: its rate there is negligible relative to its values at the ends of the step. */
 static int only_touches(lag_sim *s, int k, double rate)
 {
   const Run *r = s->run;

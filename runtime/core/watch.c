@@ -1,6 +1,5 @@
-/* What a run keeps an eye on: charges (charges.c) and monitors. Enters: states that are part of the run; leaves: largest
- * drifts, and a failure when one passes its limit.
- * Holds: what an event does to a quantity is not drift: the reference moves by the jump. */
+/* Monitors of a run: charges (charges.c), outputs and residuals of constraints. Enters: states of the run; leaves: largest drifts, and a failure
+ * when one passes its limit. Holds: the change of a quantity at an event is not drift: the reference moves by the jump. */
 #include <math.h>
 
 #include "core/core.h"
@@ -21,7 +20,7 @@ static int watches_outputs(const lag_scene *c)
   return 0;
 }
 
-/* The largest residuals of the constraints so far. */
+/* Updates the largest residuals of the constraints. */
 static void see_constraints(lag_sim *s, double t, const double *y)
 {
   const lag_constraints *of = s->scene->model->constraints;
@@ -57,7 +56,7 @@ static double larger(double x, double y)
   return y > x || isnan(y) ? y : x;
 }
 
-/* A quantity that begins at zero has no size of its own: judged in its declared unit. */
+/* Drift relative to the first value; of a quantity that begins at 0, in its declared unit. */
 static double relative(const lag_sim *s, int i, double peak)
 {
   double unit = s->scene->outputs[s->scene->monitors[i].output].factor, size = fabs(s->mon_first[i]);
@@ -84,7 +83,7 @@ double lag_sim_monitor_drift(lag_sim *s, int i)
   return relative(s, i, peak);
 }
 
-/* What passes its limit fails the run. */
+/* Fails the run where monitor i passes its limit. */
 static int judge(lag_sim *s, int i, double drift)
 {
   const lag_monitor *m = &s->scene->monitors[i];
@@ -98,8 +97,8 @@ static int judge(lag_sim *s, int i, double drift)
                   rough ? " tells too little between its steps: take dop853" : "");
 }
 
-/* Equations of motion may have values past the end of L's domain, as those of log(x) where x < 0, and equal steps may go over that end: the energy
- * alone tells. */
+/* Reports that the energy has no value. The equations of motion may still have one past the end of L's domain, as those of log(x) at x < 0, and
+ * equal steps may cross that end. */
 static int left_domain(lag_sim *s, double t)
 {
   s->pb.bad_t = t;
@@ -149,7 +148,7 @@ int lag_watch_see(lag_sim *s, double t, const double *y)
     }
   }
   int rc = LAG_OK;
-  for (int i = 0; i < c->nmonitors && rc == 0; i++) { /* when all are known: a report shows them all */
+  for (int i = 0; i < c->nmonitors && rc == 0; i++) { /* after all are updated: a report shows them all */
     int k = c->monitors[i].output;
     rc = judge(s, i, k < 0 ? lag_charge_drift(s, -1 - k) : relative(s, i, s->mon_peak[i]));
   }

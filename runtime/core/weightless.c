@@ -1,5 +1,5 @@
-/* Where inertia is missing. Enters: a state; leaves: the condition of its mass matrix on the directions that constraints allow, and the coordinate that the
- * direction of least inertia changes most. */
+/* Missing inertia. Enters: a state; leaves: the condition of its mass matrix on the directions that constraints allow, and the coordinate that
+ * moves most along the direction of least inertia. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@ static void swap(double *a, double *b)
   *b = x;
 }
 
-/* The largest element of the rest of K comes to k, k. Returns its size. */
+/* Brings the largest element of the remaining K to (k, k), by swaps. Returns its size. */
 static double bring_pivot(int n, int k, double *K, int *column)
 {
   int row = k, col = k;
@@ -61,7 +61,7 @@ int lag_weightless(int n, double *K, double *x, int *column, double *part)
   }
   *part = first > 0 ? size / first : 0;
   int most = r;
-  x[r] = 1; /* of the directions that are left: along the first */
+  x[r] = 1; /* the first of the remaining directions */
   for (int i = r - 1; i >= 0; i--) {
     x[i] = -K[i * n + r];
     for (int j = i + 1; j < r; j++) {
@@ -73,7 +73,7 @@ int lag_weightless(int n, double *K, double *x, int *column, double *part)
   return column[most];
 }
 
-/* E(q, v, z) of y, less E at rest there. */
+/* Kinetic energy: E at y less E at rest there. */
 static double kinetic(lag_problem *pb, double t, const double *y, double rest)
 {
   double e[2];
@@ -81,8 +81,8 @@ static double kinetic(lag_problem *pb, double t, const double *y, double rest)
   return pb->model->energy(t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, e, pb->work) ? NAN : e[0] - rest;
 }
 
-/* M[nq nq] by second differences of the energy p.v - L over velocities, from rest: exact but for rounding where L is quadratic in them. Speeds are doubled, as
- * long as it is, until the energy at rest costs no digits. unit[nq] := 1/sqrt of the diagonal. y[n of the state] is scratch. */
+/* M[nq nq] by second differences of the energy p.v - L over velocities, from rest: exact up to rounding where L is quadratic in them. Speeds are
+ * doubled, as long as it stays quadratic, until the energy at rest costs no digits. unit[nq] := 1/sqrt of the diagonal. y[pb->n] is scratch. */
 static int mass_by_energy(lag_problem *pb, double t, double *y, double *M, double *unit)
 {
   int n = pb->nq;
@@ -135,7 +135,7 @@ double lag_mass_condition(lag_problem *pb, double t, const double *y, int *which
   if (M && column && n > 0) {
     memcpy(at, y, (size_t)pb->n * sizeof *at);
     int rc = of ? lag_constraint_rows(pb, t, y, A, unit, M) : mass_by_energy(pb, t, at, M, unit);
-    if (rc == 0 && pb->begin) { /* in coordinates whose inertia was 1 at the start, if there was any: what has vanished since then shows */
+    if (rc == 0 && pb->begin) { /* scaled to inertia 1 at the start, if there was any, so that inertia that has vanished since then shows */
       double *then = calloc(n * n + m * n, sizeof *then);
       memcpy(at, pb->begin, (size_t)pb->n * sizeof *at);
       memcpy(x, unit, n * sizeof *x);
@@ -153,7 +153,7 @@ double lag_mass_condition(lag_problem *pb, double t, const double *y, int *which
         A[k * n + i] *= unit[i];
         size = fmax(size, fabs(A[k * n + i]));
       }
-      for (size_t i = 0; i < n * n && size > 0; i++) { /* a part of each that no inertia cancels */
+      for (size_t i = 0; i < n * n && size > 0; i++) { /* a multiple of each constraint that no inertia cancels */
         M[i] += (0.5 + fmod(0.618033988749894848 * (double)(k + 1), 1)) * (A[k * n + i / n] / size) * (A[k * n + i % n] / size);
       }
     }

@@ -1,7 +1,6 @@
-/* The linear algebra of liblag's analysis, by the GNU Scientific Library. Enters and leaves: row-major arrays. Holds:
- * GSL's abort handler is off while it runs, and what it allocates is freed on every way out.
- * Sources: GSL Reference Manual, "Eigensystems", "Linear Algebra" and "Nonlinear Least-Squares Fitting", and the papers named
- * there. */
+/* lag_algebra by the GNU Scientific Library. Enters and leaves: row-major arrays. Holds: GSL's abort handler is off while it runs, and its
+ * allocations are freed on every way out. Sources: GSL Reference Manual, "Eigensystems", "Linear Algebra" and "Nonlinear Least-Squares Fitting",
+ * and the papers named there. */
 #include <float.h>
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
@@ -22,7 +21,7 @@ typedef struct Problem {
   double *f, *J; /* scratch */
 } Problem;
 
-/* Where there are no values the equations are said to be very wrong, so that the step is refused. */
+/* Residuals; 1e100 each where the equations have no values, so that the step is refused. */
 static int equations_f(const gsl_vector *x, void *context, gsl_vector *f)
 {
   Problem *p = context;
@@ -46,8 +45,7 @@ static int equations_df(const gsl_vector *x, void *context, gsl_matrix *J)
   return gsl_matrix_memcpy(J, &view.matrix);
 }
 
-/* Dogleg steps (Powell, 1970) from a QR decomposition with column pivoting, which a singular Jacobian does
- * not stop. */
+/* Dogleg steps (Powell, 1970) with QR and column pivoting, which a singular Jacobian does not stop. */
 static int iterate(gsl_multifit_nlinear_workspace *w, gsl_multifit_nlinear_fdf *fdf, double *x, int most, int *steps)
 {
   gsl_vector_view start = gsl_vector_view_array(x, fdf->p);
@@ -59,7 +57,7 @@ static int iterate(gsl_multifit_nlinear_workspace *w, gsl_multifit_nlinear_fdf *
   }
   for (*steps = 0; *steps < most && gsl_blas_dnrm2(gsl_multifit_nlinear_residual(w)) > 0 && moved > DBL_EPSILON * reach; ++*steps) {
     if (gsl_multifit_nlinear_iterate(w)) {
-      break; /* nothing is gained any more */
+      break; /* no step gains any more */
     }
     moved = gsl_blas_dnrm2(w->dx);
     reach = fmax(reach, gsl_blas_dnrm2(gsl_multifit_nlinear_position(w)));
@@ -118,7 +116,8 @@ static int symmetric(int n, double *K, double *M, double *values, double *vector
   return rc;
 }
 
-/* |x_k| |y_k| / |y_k x_k|: the rows of X^-1 are left eigenvectors with y_k x_k = 1, and |x_k| = 1. X is destroyed. */
+/* Condition numbers |x_k| |y_k| / |y_k x_k| of eigenvalues: the rows of X^-1 are left eigenvectors with y_k x_k = 1, and |x_k| = 1. X is
+ * destroyed. */
 static void sensitivities(gsl_matrix_complex *X, gsl_matrix_complex *inverse, gsl_permutation *perm, double *sensitivity)
 {
   size_t n = X->size1;
@@ -180,7 +179,7 @@ static int balance(int n, double *A, double *scale)
   return rc ? LAG_EMETHOD : LAG_OK;
 }
 
-/* A' P = Q R: what R leaves out of the range of A' is the kernel of A. */
+/* A' P = Q R with column pivoting: columns of Q beyond the rank are orthogonal to the range of A', so they span the kernel of A. */
 static int kernel(int n, const double *A, double tol, double *Q, int *rank)
 {
   size_t size = (size_t)n;

@@ -1,10 +1,10 @@
-/* The steppers of the GNU Scientific Library as methods: independent integrators to check against. Enters: t, y;
- * leaves: the next t, y. Holds: GSL's abort handler is off while it runs; a time of output is reached
- * exactly, because GSL keeps no dense output (dense() here is lag_hermite: rough where steps are long).
+/* The steppers of the GNU Scientific Library as methods: independent integrators to check against. Enters: t, y; leaves: the next t, y. Holds:
+ * GSL's abort handler is off while it runs; a time of output is reached exactly, because GSL has no dense output (dense() here is lag_hermite,
+ * inaccurate where steps are long).
  *
- * Errors are controlled by GSL's y_new control: |err_i| <= tol (1 + |y_i|). gsl-bsimp and gsl-msbdf need the
- * Jacobian: central finite differences of the right-hand side, 2n + 2 calls each, of relative accuracy about 1e-10.
- * Source: GSL Reference Manual, "Ordinary Differential Equations" (gsl_odeiv2), and the papers named there. */
+ * Errors are controlled by GSL's y_new control: |err_i| <= tol (1 + |y_i|). gsl-bsimp and gsl-msbdf need the Jacobian: central finite
+ * differences of the right-hand side, 2n + 2 calls each, of relative accuracy about 1e-10. Source: GSL Reference Manual, "Ordinary Differential
+ * Equations" (gsl_odeiv2), and the papers named there. */
 #include <float.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
@@ -43,7 +43,7 @@ static size_t work_size(const lag_problem *pb)
   return HEAD + NARRAYS * (size_t)pb->n;
 }
 
-/* f for GSL. What is fatal ends GSL's attempts at once; the rest makes it try a smaller step. */
+/* f for GSL. A fatal failure of the model ends GSL's attempts at once; others make it try a smaller step. */
 static int gsl_rhs(double t, const double *y, double *dy, void *params)
 {
   Gsl *w = params;
@@ -84,7 +84,7 @@ static int gsl_jacobian(double t, const double *y, double *dfdy, double *dfdt, v
   return rc;
 }
 
-/* Whether there is memory for more than GSL's largest stepper, bsimp, has. GSL 2.7 does not look at some of what it allocates, and writes to NULL. */
+/* Whether memory suffices for GSL's largest stepper, bsimp: GSL 2.7 does not check some of its allocations, and writes to NULL. */
 static int has_room(size_t n)
 {
   void *room = malloc((8 * n * n + 256 * n + 4096) * sizeof(double));
@@ -117,7 +117,7 @@ static void reset(void *work, lag_problem *pb)
   w->h = w->h_option;
 }
 
-/* What GSL's answer means here. */
+/* The status of liblag for a failure of GSL. */
 static int failure(Gsl *w, int rc, double t)
 {
   w->pb->detail = gsl_strerror(rc);
@@ -158,7 +158,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return failure(w, rc, *t);
 }
 
-/* Mostly events ask for this, so f at the ends waits until then. */
+/* Hermite interpolation. f at the ends is computed on the first call: mostly only events call it. */
 static void dense(void *work, lag_problem *pb, double t, double *y)
 {
   Gsl *w = work;

@@ -24,7 +24,7 @@ extern "C" {
 /* Status codes, beside LAG_OK and LAG_ESINGULAR of lag_model.h. */
 enum {
   LAG_STOPPED = 2,      /* an event ended the run */
-  LAG_INTERRUPTED = 3,  /* the hook asked for it */
+  LAG_INTERRUPTED = 3,  /* the hook of lag_sim_on_step asked for it */
   LAG_ENAN = -2,        /* the model returned NaN or an infinity */
   LAG_EDOMAIN = -3,     /* the model left its domain, and smaller steps did not help */
   LAG_ESTEP = -4,       /* the step became too small for the tolerance */
@@ -35,19 +35,19 @@ enum {
   LAG_EZENO = -9,       /* an event repeats in ever shorter intervals */
   LAG_EMETHOD = -10,    /* the method cannot treat this model, or failed in its own way */
   LAG_EIO = -11,
-  LAG_EDRIFT = -12,     /* the energy has drifted further than its size: the numbers mean nothing */
-  LAG_ESTALL = -13      /* steps lead nowhere: the motion stays where a force jumps, or rounding is larger than the steps */
+  LAG_EDRIFT = -12,     /* the energy has drifted by more than its size: the numbers mean nothing */
+  LAG_ESTALL = -13      /* no progress: the motion stays where a force jumps, or steps are lost in rounding */
 };
 
 /* "ok", "stopped", ... for any of the above. */
 const char *lag_status_name(int status);
 
-/* x as a short text that reads back as x, "0.1"; in text, which it returns. */
+/* text := the shortest decimal that reads back as x, "0.1". Returns text. */
 const char *lag_number_text(double x, char text[64]);
 
 /* ---- Methods --------------------------------------------------------------------------------- */
 
-/* A function of the caller that gives an input its value: in SI, at time t. */
+/* A function of the caller for an input: its value in SI at time t. */
 typedef double lag_input_fn(void *context, double t);
 
 typedef struct lag_signal {
@@ -55,147 +55,148 @@ typedef struct lag_signal {
   void *context;
 } lag_signal;
 
-/* What a method integrates: the model as y' = f(t, y), and where the method leaves its counts. */
+/* The problem that a method integrates: the model as y' = f(t, y), and the method's counts. */
 typedef struct lag_problem {
   const lag_model *model;
   int n, nq, nz;       /* n = 2 nq + nz */
   const double *p;     /* [np + nderived] parameters */
   double *u;           /* [nu] inputs, filled by lag_rhs */
-  const double *hold;  /* [nu] constants that replace inputs; NaN where there is none */
+  const double *hold;  /* [nu] constants that replace inputs; NaN where an input is not replaced */
   const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
-  double *held;        /* [lag_held_room] scratch of the functions for constraints below */
-  double *ranks;       /* [lag_ranks_room] the same, of those that judge how independent they are */
-  const double *begin; /* [n] where the run began, so that sizes are known where all is 0; NULL: not known */
-  const double *kept;  /* [nholonomic] what c is held at, NaN: at nothing yet; NULL: all at 0 */
-  int redundant;       /* constraints follow from others: f is asked for on the constraints only, see lag_rhs */
+  double *held;        /* [lag_held_room] scratch of the constraint functions below */
+  double *ranks;       /* [lag_ranks_room] scratch of the functions that judge ranks of constraints */
+  const double *begin; /* [n] start of the run, the scale of quantities that are 0 now; NULL: not known */
+  const double *kept;  /* [nholonomic] value at which c is held, NaN: free so far; NULL: all at 0 */
+  int redundant;       /* 1: constraints are redundant; f is evaluated on the constraints only, see lag_rhs */
   const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
-  double stretch;      /* steps of methods that stretch are longer by this part of what they would be; mostly 0 */
-  double longest;      /* embedded methods and radau take no longer steps than this [s], 0: no limit */
-  double span;         /* length of the scene's span, 0 when it has none. Not where this run ends */
+  double stretch;      /* relative change of the step size of methods that stretch; mostly 0 */
+  double longest;      /* largest step of embedded methods and radau [s]; 0: no limit */
+  double span;         /* length of the scene's span, 0 when it has none; not the end of this run */
   double rhs_calls;    /* counted by lag_rhs */
   double rejected;     /* counted by the method */
-  double systems;      /* of nonlinear equations solved, */
-  double iterations;   /* and the corrections that took: counted by the method */
-  double bad_t;        /* set before a failure: where, */
-  int bad_index;       /* which component of y' (-1: unknown), */
-  const char *detail;  /* and more words or NULL; a string that lives as long as this object, */
-  char words[320];     /* for example made here */
+  double systems;      /* nonlinear systems solved, */
+  double iterations;   /* and Newton corrections made: counted by the method */
+  double bad_t;        /* set before a failure: time, */
+  int bad_index;       /* component of y' (-1: unknown), */
+  const char *detail;  /* explanation or NULL; a string that lives as long as this object, */
+  char words[320];     /* for example composed here */
 } lag_problem;
 
-/* The model's facts (LAG_AUTONOMOUS, ...) without those that a function in place of an input takes away. */
+/* The model's facts (LAG_AUTONOMOUS, ...) less those that an input function of the caller takes away. */
 unsigned lag_facts(const lag_problem *pb);
 
-/* pb->u at t: by the model's formulas, or the constants of pb->hold. Returns what the model returned. */
+/* pb->u := the inputs at t: the model's formulas, constants of pb->hold or functions of pb->signal. Returns the model's status. */
 int lag_inputs(lag_problem *pb, double t);
 
-/* dy[n] = f(t, y[n]). Returns what the model returned; does not look for NaN. Where constraints follow from others they do so on the
- * constraints alone: beside them, where the stages of a step are, as many are independent as there are, and what they then demand is
- * rounding over rounding. f is that of lag_project(y) there, which is the same on the constraints and as smooth beside them. */
+/* dy[n] = f(t, y[n]). Returns the model's status; does not look for NaN. Where constraints are redundant, f is evaluated at the projection of y
+ * (lag_project): off the constraints, where the stages of a step lie, all rows are independent, and what the redundant ones demand is rounding
+ * divided by rounding. On the constraints this f is the same, and beside them as smooth. */
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
 
-/* How far it is from t to the next row of an input's table in direction pb->dir; HUGE_VAL where there is none. The
- * third derivative of the right-hand side jumps there, and a step over several rows might miss what is between them:
- * a method that chooses its steps ends them at *row, when that is nearer. STEPS_TO methods have it in t_stop. */
+/* Distance from t to the next row of an input's table in direction pb->dir; HUGE_VAL where there is none. The third derivative of the right-hand
+ * side jumps there, and a step over several rows may miss what lies between: an adaptive method ends its step at *row when that is nearer.
+ * STEPS_TO methods get it as t_stop. */
 double lag_next_row(const lag_problem *pb, double t, double *row);
 
-/* Lq = dL/dq, Lv = dL/dv and Q, the forces that are in no L, all [nq]; the values of their derivatives, h[model->nsecond]. For
- * models that have these functions; nz = 0. Return what the model returned. */
+/* Lq = dL/dq, Lv = dL/dv and Q, the forces outside L, all [nq]; and h[model->nsecond], their derivatives. For models that have these functions;
+ * nz = 0. Return the model's status. */
 int lag_variation(lag_problem *pb, double t, const double *q, const double *v, double *Lq, double *Lv, double *Q);
 int lag_second_derivatives(lag_problem *pb, double t, const double *q, const double *v, double *h);
 
-/* Exact derivatives of f, for models emitted with their linearisation (model->linear; lagc --with linear). All
- * matrices are dense and row-major; work[lag_linear_work()] is scratch, 0 doubles for a model without linearisation. Both
- * return what the model returned, or LAG_EMETHOD (and pb->detail) when it has none; LAG_ESINGULAR when M is
- * singular. Neither looks for NaN; after an error the matrices are undefined. */
+/* Derivatives of f, for models emitted with their linearisation (model->linear; lagc --with linear). All matrices are dense and row-major;
+ * work[lag_linear_work()] is scratch, 0 doubles for a model with neither linearisation nor constraints. Both return the model's status, or
+ * LAG_EMETHOD (and pb->detail) without linearisation; LAG_ESINGULAR when M is singular. Neither looks for NaN; after an error the matrices are
+ * undefined. */
 size_t lag_linear_work(const lag_model *model);
 
-/* Of models with constraints differences to half of the digits: good for a simplified Newton's method.
- * J[(nq + nz) * n]: the derivatives of the accelerations and of the rates, the rows of f below the first nq, by
- * y. With the nq rows [0 | 1 | 0] above it J is df/dy. Calls lag_rhs once, and leaves f(t, y) in the first n of work. */
+/* J[(nq + nz) * n]: derivatives by y of the accelerations and of the rates of states, that is the rows of df/dy below the first nq; with the nq
+ * rows [0 | 1 | 0] above it J is df/dy. Exact without constraints; with constraints finite differences, correct to half of the digits, which
+ * suffices for a simplified Newton's method. Calls lag_rhs, and leaves f(t, y) in the first n of work. */
 int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
 
-/* dr[(nq + nz) * n]: the derivatives of the residuals r = (f - M a, flow) by y at given accelerations a[nq] (NULL:
- * 0); M[nq * nq]: the mass matrix. J above is M^-1 dr in its first nq rows. */
+/* dr[(nq + nz) * n]: derivatives of the residuals r = (f - M a, flow) by y at given accelerations a[nq] (NULL: 0); M[nq * nq]: the mass matrix.
+ * J above is M^-1 dr in its first nq rows. */
 int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, double *dr, double *M, double *work);
 
-/* ---- Constraints: for models that have them (model->constraints, in lag_model.h). Return what the model returned. */
+/* ---- Constraints: for models that have them (model->constraints, in lag_model.h). Functions return the model's status. */
 
-/* Doubles that pb->held must have; 0 without constraints. */
+/* Sizes of pb->held and pb->ranks in doubles; 0 without constraints. */
 size_t lag_held_room(const lag_model *model);
 size_t lag_ranks_room(const lag_model *model);
 
-/* c[nholonomic], less what it is held at, and r[n] of the state y[n] at t. */
+/* c[nholonomic], less the value at which it is held, and r[n] of the state y[n] at t. */
 int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r);
 
-/* The least change d[nq] in the mass metric with A d = g, A and M those of y at t, and force[nq] = M d = A^T mu. holonomic: g[nholonomic], and
- * these constraints alone; else g[n], and all. */
+/* The least change d[nq] in the mass metric with A d = g, and force[nq] = M d = A^T mu; A and M at y, t. holonomic: for g[nholonomic] and these
+ * constraints alone; else for g[n] and all. */
 int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, const double *g, double *d, double *force);
 
-/* Brings y[n] back to the constraints at t: positions by Newton's iteration, each correction the least in the mass metric, until
- * what is left is rounding; then velocities. lost[n], or NULL: what y has lost to rounding as a sum of steps
- * (methods/steps.h); it is kept right. > 0: the constraints cannot be met from here, a smaller step may help; pb->detail names the one that is
- * worst. y and lost are then undefined. Does nothing without constraints.
+/* Projects y[n] onto the constraints at t: positions by Newton's iteration, each correction the least in the mass metric, until the residual is
+ * rounding; then velocities. lost[n], or NULL: rounding errors of y as a sum of steps (methods/steps.h), kept up to date. > 0: no solution near
+ * y, a smaller step may help; pb->detail names the worst constraint, y and lost are undefined. Does nothing without constraints.
  *
- * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), IV.4, DOI 10.1007/3-540-30666-8: projection
- * keeps the order of a method. */
+ * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), IV.4, DOI 10.1007/3-540-30666-8: projection keeps the order
+ * of a method. */
 int lag_project(lag_problem *pb, double t, double *y, double *lost);
-/* The same after a step from y0; > 0 also where it would lead farther than the step did: the constraint jumps there, or the step is too long. */
+/* lag_project after a step from y0; > 0 also where the projection would move y farther than the step did: a constraint jumps there, or the step
+ * is too long. */
 int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost);
-/* What lag_project_step calls farther: the first coordinate of a step from y0 to y that constraints moved by moved[nq], more than twice as
- * far as what led there, led[nq], accounts for: its own part, or one of its unit that a constraint ties to it. -1: none. What is rounding near
- * a singular position, a millionth of how far the coordinate has been from 0, is none. */
+/* The test of lag_project_step, for a step from y0 to y that led by led[nq] and was corrected by moved[nq]: the first coordinate whose
+ * correction is more than twice the larger of its own led and of that of coordinates of its unit that share a constraint with it; -1: none.
+ * Corrections below a millionth of the coordinate's largest distance from 0 are rounding near a singular position, and pass. */
 int lag_leaps(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led);
-/* Says so of coordinate i, with the constraint on positions that y breaks most at t; returns LAG_ERETRY. */
+/* pb->detail := the constraint on positions that y breaks most at t, and that meeting it moves coordinate i by `moved`. Returns LAG_ERETRY. */
 int lag_say_leap(lag_problem *pb, double t, const double *y, int i, double moved);
 
-/* > 0: between the ends of a step from y0 at t0 to y1 at t1, both on the constraints, what these demand in time goes through infinity; pb then says
- * which, and when. What is finite is none, however steep; nor is a pole seen that a step's ends and middle show nothing of. (core/pole.c) */
+/* > 0: the motion that the constraints prescribe goes through infinity between the ends of a step, y0 at t0 and y1 at t1, both on the
+ * constraints; pb says which constraint, and when. Finite motions, however steep, give 0; so does a pole that changes neither the ends nor the
+ * middle of the step. (core/pole.c) */
 int lag_over_pole(lag_problem *pb, double t0, const double *y0, double t1, const double *y1);
 
-/* How independent the weakest constraint is where y is at t, from 1 to 0: what is left of its derivatives beside those of the constraints
- * before it, and how large they are beside its terms. *weakest: which, or -1; what follows from others always is left out. (core/forces.c) */
+/* Independence of the weakest constraint at y, t, from 1 to 0: the part of its gradient that is orthogonal to those before it, times the ratio
+ * of its derivatives to its terms. *weakest: its index, or -1. Constraints that are always redundant are left out. (core/forces.c) */
 double lag_independence(lag_problem *pb, double t, const double *y, int *weakest);
 
-/* The largest of |x[j]| over the coordinates (or their velocities) that have the unit of coordinate i: what rounding in it is measured
- * with, where it is small itself. */
+/* The largest |x[j]| over the coordinates (or velocities) j with the unit of coordinate i: the scale of its rounding where x[i] itself is small. */
 double lag_size_like(const lag_problem *pb, const double *x, int i);
-/* How far component i of q (holonomic) or of v may be from 0: as far as one of the same unit is; of an angle, 1. Of a run that began at 0, where
- * there is no length, at least a millionth; all being 0, 1. A velocity at rest is rounding: it is compared with one that leads through such
- * a distance in the time of the run. */
+/* Typical magnitude of component i of q (holonomic) or of v: the largest of that unit; of an angle at least 1. In a run that began at 0, where
+ * there is no length, at least 1e-6; 1 where all are 0. Of a velocity at least that of a motion through such a distance in the time of the run,
+ * as at rest the velocity itself is rounding. */
 double lag_reach(const lag_problem *pb, const double *y, int holonomic, int i);
-/* Takes from a small change e[n] of the state y what lag_project would take back, to first order. */
+/* Projects a small change e[n] of the state y onto the tangent space of the constraints: lag_project to first order. */
 int lag_along_constraints(lag_problem *pb, double t, const double *y, double *e);
 
-/* size[nholonomic], or size[n] of their rates: how large the terms are of which c (holonomic) or r of y at t is the sum. */
+/* size[nholonomic] (holonomic), or size[n] of the rates: sum of the sizes of the terms that make c, or r, at y, t. */
 int lag_constraint_terms(lag_problem *pb, double t, const double *y, int holonomic, double *size);
 
-/* Where the constraints are worst: the index of the one of which c (holonomic) or r of y at t is the largest against its terms; *size, if
- * not NULL: how many times the terms' rounding it is. -1: there is none, or no values. */
+/* The worst constraint: index of the c (holonomic) or r that is largest relative to its terms at y, t; *size, if not NULL: that ratio in units
+ * of DBL_EPSILON. -1: no constraint, or no values. */
 int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonomic, double *size);
 
-/* Whether the residuals of y at t, c (holonomic) or r, are rounding: up to 2^10 times that of their terms. */
+/* Whether the residuals of y at t, c (holonomic) or r, are rounding: at most 2^10 DBL_EPSILON times their terms. */
 int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual);
 
-/* Where a constraint stands, " (line 7)", or nothing where the emitted C does not say; in text, which it returns. */
+/* text := the line of a constraint, " (line 7)", or "" where the emitted C does not say. Returns text. */
 const char *lag_line_of(const lag_constraint *c, char text[32]);
-/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; a residual of NaN: "is not met". holonomic: of c, else of r. */
+/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; for a residual of NaN "is not met". holonomic: a residual of c, else of
+ * r. */
 void lag_say_constraint(lag_problem *pb, int k, int holonomic, double residual, const char *words);
 
-/* The step [s] of a method with steps of equal size: the option, or where that is 0 a 10000th of the scene's span. */
+/* The step [s] of a method with equal steps: the option, or where that is 0 a 10000th of the scene's span. */
 double lag_step_size(const lag_problem *pb, double option);
 
-/* The index of the first of x[n] that is not finite, -1 when all are. */
+/* Index of the first element of x[n] that is not finite, -1 when all are. */
 int lag_not_finite(int n, const double *x);
 
-/* The state between two states: quintic in q, from q, v and a at both ends; cubic in v and z. y0, f0 = f(y0), y1, f1 are [n]; h = t1 - t0; s = (t - t0)/h in [0, 1]; y[n] is the result.
- * With f of order p >= 4 the result has order 4. */
+/* Hermite interpolation y[n] between two states: quintic in q, from q, v and a at both ends; cubic in v and z. y0, f0 = f(y0), y1, f1 are [n]; h
+ * = t1 - t0; s = (t - t0)/h in [0, 1]. With f of order p >= 4 the result has order 4. */
 void lag_hermite(int nq, int nz, double h, double s, const double *y0, const double *f0, const double *y1,
                  const double *f1, double *y);
 
-/* For lag_method.sound: x is whole, 0 to most; 0 or 1; -1, 0 or 1; a[n] has the values of b[n]. NaN is none of it. */
+/* For lag_method.sound: x is an integer from 0 to most; x is 0 or 1; x is -1, 0 or 1; a[n] equals b[n]. False for NaN. */
 int lag_is_count(double x, double most);
 int lag_is_flag(double x);
 int lag_is_sign(double x);
@@ -203,25 +204,25 @@ int lag_same_numbers(const double *a, const double *b, size_t n);
 
 /* Properties of a method. */
 enum {
-  LAG_METHOD_ADAPTIVE = 1,     /* chooses its steps from the tolerance; else steps are of equal size */
+  LAG_METHOD_ADAPTIVE = 1,     /* adaptive steps, from the tolerance; else steps are of equal size */
   LAG_METHOD_SYMPLECTIC = 2,
   LAG_METHOD_SYMMETRIC = 4,
-  LAG_METHOD_VARIATION = 8,    /* needs the model's derivatives of L: lag_model.variation and second */
+  LAG_METHOD_VARIATION = 8,    /* needs derivatives of L: lag_model.variation and second */
   LAG_METHOD_CONSERVATIVE = 16, /* refuses models with forces, dissipation or explicit time */
-  LAG_METHOD_STEPS_TO = 32,    /* dense() is rough: must step exactly to each time of output */
+  LAG_METHOD_STEPS_TO = 32,    /* dense() is inaccurate: must step exactly to each time of output */
   LAG_METHOD_NO_SAVE = 64,     /* work holds pointers: its state cannot be saved */
-  LAG_METHOD_NO_STATES = 128,  /* refuses models with nz > 0 */
-  LAG_METHOD_SPLITS = 512,     /* explicit for models with LAG_SEPARABLE, which then need no derivatives */
-  LAG_METHOD_TAYLOR = 256,     /* needs the model's Taylor coefficients: lag_model.taylor */
-  LAG_METHOD_JACOBIAN = 2048,  /* needs the model's linearisation: lag_model.linear */
+  LAG_METHOD_NO_STATES = 128,  /* refuses models with states (nz > 0) */
+  LAG_METHOD_SPLITS = 512,     /* explicit splitting for models with LAG_SEPARABLE, which then need no derivatives */
+  LAG_METHOD_TAYLOR = 256,     /* needs Taylor coefficients: lag_model.taylor */
+  LAG_METHOD_JACOBIAN = 2048,  /* needs the linearisation: lag_model.linear */
   LAG_METHOD_CONSTRAINTS = 4096, /* steps end on the constraints of a model that has them */
-  LAG_METHOD_STRETCHES = 16384, /* with constraints: a step that lag_problem.stretch says is of another size */
-  LAG_METHOD_LANDS = 32768,    /* stretches steps of equal size alone (option `adapt`): those that it chooses land by themselves */
-  LAG_METHOD_FLOWS = 8192,     /* takes models of states alone (nq = 0), with the linearisation in place of derivatives of L */
-  LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS where it does not split */
+  LAG_METHOD_STRETCHES = 16384, /* with constraints: makes its step longer or shorter by lag_problem.stretch */
+  LAG_METHOD_LANDS = 32768,    /* stretches only steps of equal size (adapt = off): its adaptive steps avoid singular positions by themselves */
+  LAG_METHOD_FLOWS = 8192,     /* takes models of first order (nq = 0), with the linearisation in place of derivatives of L */
+  LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS only where it does not split */
 };
 
-/* An option of a method. With choices (NULL-terminated) the value is the index of the choice. */
+/* An option of a method. With choices (NULL-terminated) the value is the index of a choice. */
 typedef struct lag_method_option {
   const char *name;
   const char *doc;
@@ -236,20 +237,20 @@ enum { LAG_WORK_ALIGN = 64 };
 
 typedef struct lag_method {
   const char *name;
-  int order, dense_order;      /* of the steps and between them, the options at their defaults */
-  int order_least, order_most; /* of both, where options choose; else 0 */
+  int order, dense_order;      /* order of the steps, and between them, with default options */
+  int order_least, order_most; /* range of orders that options choose; else 0 */
   const char *doc;  /* one line, then the source of the algorithm */
   unsigned flags;
   int noptions;
   const lag_method_option *options;
 
-  /* What is wrong with these values of the options, and what to write; NULL when they fit together. May itself be NULL. */
+  /* NULL when these option values fit together; else why not, and what to write. May itself be NULL. */
   const char *(*check)(const double *opt);
 
-  /* The order that steps have with these values; NULL: order. */
+  /* Order of the steps with these option values; NULL: order. */
   int (*order_of)(const double *opt);
 
-  /* Why it cannot integrate this model with these values, and what to write; NULL when it can. May itself be NULL. */
+  /* NULL when the method can integrate this model with these option values; else why not, and what to write. May itself be NULL. */
   const char *(*refuses)(const lag_model *model, const double *opt);
 
   /* Doubles of work that init needs with the options pb->opt. */
@@ -266,28 +267,26 @@ typedef struct lag_method {
   /* y[n] at t within the last step. May call the model; the next step does not depend on whether it was called. */
   void (*dense)(void *work, lag_problem *pb, double t, double *y);
 
-  /* Forgets the past: the caller is about to step from another state. */
+  /* Forgets earlier steps: the caller is about to step from another state. */
   void (*reset)(void *work, lag_problem *pb);
 
   /* Frees what init allocated; NULL when it allocates nothing. */
   void (*fini)(void *work);
 
-  /* Y[n * k] := D Y, where D is the derivative by y0 of the step that leads from the beginning of the last step to t. At its
-   * end that is the derivative of the step itself, at fixed step size (of taylor, of the flow, to the tolerance); before it,
-   * of a shorter one. scratch has
-   * tangent_size(pb, k) doubles. 0, or < 0 as step. Later steps do not depend on whether it was called. NULL: the method
-   * has none. */
+  /* Y[n * k] := D Y, with D the derivative by y0 of the step from the beginning of the last step to t: at the step's end the derivative of the
+   * step itself, at fixed step size (for taylor, of the flow, to the tolerance); before it, of a shorter step. scratch has tangent_size(pb, k)
+   * doubles. 0, or < 0 as step. Later steps do not depend on whether it was called. NULL: the method has no tangent. */
   size_t (*tangent_size)(const lag_problem *pb, int k);
   int (*tangent)(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
 
-  /* Whether work, which comes from a file, is a block that the method can go on from: flags, counts and indices in their ranges, times finite,
-   * settings as in fresh, which is what init makes with the same options. NULL: any numbers will do. */
+  /* Whether work, read from a file, is a block from which the method can continue: flags, counts and indices in range, times finite, settings as
+   * in `fresh`, which init has made with the same options. NULL: any numbers are safe. */
   int (*sound)(const void *work, const void *fresh, const lag_problem *pb);
 
-  double finest; /* tolerances below it are below what the digits of its coefficients give; 0: they have all that a scalar has */
+  double finest; /* the smallest tolerance that the digits of its coefficients support; 0: coefficients have all digits of the scalar */
 } lag_method;
 
-/* Classical Runge-Kutta, fixed step. */
+/* Classical Runge-Kutta method of order 4, fixed step. */
 extern const lag_method lag_rk4;
 /* Dormand-Prince 5(4), adaptive: the default. */
 extern const lag_method lag_rk45;
@@ -297,9 +296,9 @@ extern const lag_method lag_dop853;
 extern const lag_method lag_symplectic_euler, lag_verlet, lag_verlet4, lag_verlet6, lag_verlet8;
 /* Symplectic, fixed step, implicit, for any L: from a discrete Lagrangian, and Gauss collocation, of order 2 to 8. */
 extern const lag_method lag_variational, lag_gauss;
-/* Radau IIA of order 5, implicit, adaptive: for stiff models; of a model that holds its linearisation. */
+/* Radau IIA of order 5, implicit, adaptive: for stiff models; needs the linearisation. */
 extern const lag_method lag_radau;
-/* The model's own Taylor series, adaptive, for tolerances below about 1e-9; of a model that holds them (lag_model.taylor). */
+/* The model's own Taylor series, adaptive, for tolerances below about 1e-9; needs lag_model.taylor. */
 extern const lag_method lag_taylor_method;
 /* The methods of liblag.a, the default first. */
 extern const lag_method *const lag_methods[];
@@ -315,87 +314,85 @@ typedef struct lag_sim lag_sim;
 typedef struct lag_stats {
   double t;
   long long steps, rejected, rhs_calls, events;
-  long long systems, iterations; /* of nonlinear equations solved within steps, and the corrections that took */
+  long long systems, iterations; /* nonlinear systems solved within steps, and Newton corrections */
   double energy;        /* now */
-  double energy_drift;  /* that of charge 0 below. NaN when the model has no energy */
+  double energy_drift;  /* drift of charge 0 below; NaN when the model has no energy */
   double constraint, constraint_rate; /* largest |c| of a holonomic constraint and |r| of any (lag_model.h) at ends of steps [SI];
                          * NaN without constraints */
-  double unresolved;    /* a period that steps of equal size are longer than half of [s]; NaN: none was seen */
+  double unresolved;    /* a period shorter than two steps of equal size [s]; NaN: none was seen */
 } lag_stats;
 
-/* What a run makes of a charge: of its energy (number 0) and of those of its symmetries. */
+/* Trend of a charge along a run: of its energy (number 0), or of the charge of a symmetry. */
 enum {
   LAG_TREND_UNKNOWN,    /* too few steps */
-  LAG_TREND_ROUNDING,   /* the drift is no more than what rounding adds up to in so many steps */
-  LAG_TREND_OSCILLATES, /* a line does not explain what it varies by, averaged over parts of the run */
-  LAG_TREND_GROWS       /* it does */
+  LAG_TREND_ROUNDING,   /* the drift is within the rounding that so many steps accumulate */
+  LAG_TREND_OSCILLATES, /* a line does not explain the variation of its averages over parts of the run */
+  LAG_TREND_GROWS       /* a line explains the variation */
 };
 
 typedef struct lag_charge_stats {
-  const char *name, *unit; /* of SI; as long as the scene lives */
-  unsigned flags;       /* LAG_CONSERVED, LAG_BALANCED (lag_model.h); neither: how it changes is not known, or not integrated (lag_sim_balance) */
+  const char *name, *unit; /* SI unit; strings of the scene */
+  unsigned flags;       /* LAG_CONSERVED, LAG_BALANCED (lag_model.h); neither: its rate is not known, or not integrated (lag_sim_balance) */
   double begin, now;    /* Q */
   double work;          /* int P dt, where P = dQ/dt is known and not 0 */
-  double drift;         /* largest |Q - int P dt - Q0| over the run, relative to the larger of |Q0| and the median over the run of the sum of
-                         * the sizes of the terms of Q, which a motion that blows up at last does not raise; what events do to it is not counted */
-  double absolute;      /* the same, in `unit` */
-  double slope, slope_error; /* of a line fitted to Q - int P dt, relative as drift [1/s], and its standard error; NaN: too few steps */
+  double drift;         /* largest |Q - int P dt - Q0| over the run, without jumps at events, relative to the larger of |Q0| and the median over
+                         * the run of the sum of the sizes of the terms of Q (a median, as a blow-up at the end would raise the maximum) */
+  double absolute;      /* drift in `unit` */
+  double slope, slope_error; /* slope of a line fitted to Q - int P dt, relative as drift [1/s], and its standard error; NaN: too few steps */
   int trend;
-  double jolt, jolt_t;  /* of the energy: its largest change in a step, relative as drift, and when that was; 0: no more than rounding, or not asked (a mass
-                         * matrix that is constant, more than 64 coordinates) */
-  double strain;        /* the condition of the mass matrix there, about; NaN: not known */
+  double jolt, jolt_t;  /* of the energy: largest change in one step, relative as drift, and its time; 0: rounding, or not computed (constant
+                         * mass matrix, more than 64 coordinates) */
+  double strain;        /* estimated condition of the mass matrix there; NaN: not known */
   const char *strain_of; /* the coordinate of least inertia there */
 } lag_charge_stats;
 
-/* How many charges the model has; 0 without a Lagrangian. And what has become of charge k so far. */
+/* Number of charges of the model; 0 without a Lagrangian. *stats := the monitor of charge k so far. */
 int lag_sim_ncharges(const lag_sim *sim);
 void lag_sim_charge(lag_sim *sim, int k, lag_charge_stats *stats);
 
-/* All functions below: a NULL that is not said to be allowed, a time that is not finite, an index out of range give LAG_EINVAL and change nothing; those that return
- * a number give NAN, or 0 where it is whole, those that return a pointer NULL. */
+/* All functions below: a NULL that is not allowed explicitly, a time that is not finite, or an index out of range gives LAG_EINVAL and changes
+ * nothing; functions that return a number then return NAN, or 0 for an integer, and functions that return a pointer NULL. */
 
-/* A simulation of the scene at the start of its span, with the scene's method, tolerance and options. The scene must outlive it. NULL: no memory,
- * or a model of another ABI or scalar type. A method that cannot integrate the model, or is not in liblag.a, is refused by the first advance,
- * unless another one is set.
- * Free with lag_sim_free (NULL allowed). */
+/* A simulation of the scene at the start of its span, with the scene's method, tolerance and options. The scene must outlive it. NULL: no
+ * memory, or a model of another ABI or scalar type. A method that cannot integrate the model, or is not in liblag.a, is refused by the first
+ * advance, unless another one is set. Free with lag_sim_free (NULL allowed). */
 lag_sim *lag_sim_new(const lag_scene *scene);
 void lag_sim_free(lag_sim *sim);
 
 /* The settings below are made before the first advance; later they return LAG_EINVAL. After an error the
  * simulation is unchanged and lag_sim_message() says what to write instead. */
 
-/* Chooses a method. opt[nopt] are options by name; the others have their defaults. */
+/* Chooses a method. opt[nopt] are options by name; the others keep their defaults. */
 int lag_sim_set_method(lag_sim *sim, const lag_method *method, const lag_option *opt, int nopt);
-/* tol > 0; not below 4.5 times the rounding of a number: 1e-15. */
+/* tol > 0; at least 4.5 DBL_EPSILON, 1e-15. */
 int lag_sim_set_tolerance(lag_sim *sim, double tol);
 /* Sets by name, in the declared unit: a parameter ("m", "drag.c", or "c" when nothing else ends in ".c"), the start of
  * a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that replaces an input; of a family one
  * member ("m[2]", "r[1].x'") or all ("m", "r.x'"). A parameter of the wrong sign is an error. */
 int lag_sim_set(lag_sim *sim, const char *name, double value);
-/* Of a model with constraints the first advance brings the start to them: the nearest position in the mass metric, and then the nearest
- * velocity, at which what was not set gives way, and all only where that does not suffice. LAG_EINVAL: there is none near, or the
- * scene says `exactly` and its start is another; the message names the constraint that is worst. Component i of [q|v|z] as it was set,
- * in its declared unit: lag_sim_begin of it is where the run began. */
+/* Component i of [q|v|z] in its declared unit: asked, as it was set; begin, where the run began. With constraints they differ: the first advance
+ * moves the start to the nearest position in the mass metric, then to the nearest velocity, changing first what was not set, and everything only
+ * where that does not suffice. LAG_EINVAL then: no start is near, or the scene says `exactly` and its start is another; the message names the
+ * worst constraint. */
 double lag_sim_asked(const lag_sim *sim, int i);
 double lag_sim_begin(const lag_sim *sim, int i);
-/* How many constraints are independent at the start; whether number k follows from others there (not before the first advance). */
+/* Rank of the constraints at the start; whether constraint k follows from others there (not before the first advance). */
 int lag_sim_rank(const lag_sim *sim);
 int lag_sim_is_redundant(const lag_sim *sim, int k);
-/* How many are independent a hundredth beside the start, if that is more: a singular start, as of bars in one line. Whether the velocity of
- * coordinate i is determined there and not at the start, which then decides on which of several branches the motion goes on. */
+/* Rank of the constraints a hundredth away from the start, if larger: a singular start, as of bars in one line. is_loose: whether the velocity
+ * of coordinate i is free at the start but determined nearby; the start then chooses the branch of the motion. */
 int lag_sim_rank_beside(const lag_sim *sim);
 int lag_sim_is_loose(const lag_sim *sim, int i);
-/* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI units
- * unlike lag_sim_set; fn NULL: as the model says again. It must be a function of t alone: methods, events and outputs
- * call it for times that go forth and back, more than once for some. What depends on the motion is a force of the
- * model. For full accuracy fn has two continuous derivatives, or steps that are short beside what it does. A value
- * that is not finite ends the run with LAG_ENAN. context must outlive the run. A saved state does not hold fn: set it
- * again before lag_sim_load. */
+/* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI units unlike lag_sim_set; fn
+ * NULL: as the model says again. It must be a function of t alone: methods, events and outputs call it for times that go back and forth, more
+ * than once for some. A quantity that depends on the motion is a force of the model. For full accuracy fn has two continuous derivatives, or
+ * steps are short beside its changes. A value that is not finite ends the run with LAG_ENAN. context must outlive the run. A saved state does
+ * not hold fn: set it again before lag_sim_load. */
 int lag_sim_set_input(lag_sim *sim, const char *name, lag_input_fn *fn, void *context);
-/* Integrates, along the run, what forces do to charges, so that lag_sim_charge tells balances. Not done by itself, but where the scene
- * watches a charge: it takes dense output at up to 8 places in each step. */
+/* Integrates, along the run, the work of forces on charges, so that lag_sim_charge gives balances. Off by default, unless the scene monitors a
+ * charge: it takes dense output at up to 8 places in each step. */
 int lag_sim_balance(lag_sim *sim);
-/* Whether a method knows enough of what lies between the ends of its steps for that; otherwise it is not done. */
+/* Whether the method's dense output is accurate enough for balances; otherwise they are not integrated. */
 int lag_method_balances(const lag_method *method);
 
 /* Integrates to time t, before or after t0, but always in one direction. The steps do not depend on
@@ -404,13 +401,12 @@ int lag_method_balances(const lag_method *method);
  * LAG_OK: the state is at t. LAG_STOPPED, LAG_INTERRUPTED: at lag_sim_time(). < 0: failure. */
 int lag_sim_advance(lag_sim *sim, double t);
 
-/* Makes the step that leads on from the present state towards t, unless it is made: up to *reach, lag_sim_eval and
- * lag_sim_outputs_at know the motion. *reach is t, the step's end or the next event, whichever is first. An event at the
- * present time happens here. Returns what lag_sim_advance would; then *reach is lag_sim_time(). */
+/* Makes the next step towards t, unless it is made: up to *reach, lag_sim_eval and lag_sim_outputs_at know the motion. *reach is t, the step's
+ * end or the next event, whichever is first. An event at the present time happens here. Returns what lag_sim_advance would; after an error or
+ * stop *reach is lag_sim_time(). */
 int lag_sim_reach(lag_sim *sim, double t, double *reach);
 
-/* y[n] at time t within the last step and not after the next event, else LAG_EINVAL. Moves nothing; may call the
- * model. */
+/* y[n] at time t within the last step and not after the next event, else LAG_EINVAL. Does not change the present state; may call the model. */
 int lag_sim_eval(lag_sim *sim, double t, double *y);
 
 /* The present state and parameters: pointers that stay valid until lag_sim_free. */
@@ -425,47 +421,47 @@ double lag_sim_tolerance(const lag_sim *sim);
 /* The values of the method's options, [method->noptions]. */
 const double *lag_sim_options(const lag_sim *sim);
 
-/* Columns of output besides t: the scene's outputs, or q, v, z when it names none. */
+/* Number of columns of output besides t: the scene's outputs, or q, v, z when it names none. */
 int lag_sim_noutputs(const lag_sim *sim);
-/* Component i of the state q, v, z: name, with a prime for a velocity, and declared unit; buffers of the caller, cut to fit, either may be
- * NULL. Returns what a difference of one declared unit is in SI. */
+/* Component i of the state q, v, z: name, with a prime for a velocity, and declared unit; buffers of the caller, cut to fit, either may be NULL.
+ * Returns the size of one declared unit in SI. */
 double lag_sim_state_info(const lag_sim *sim, int i, char *name, size_t nname, char *unit, size_t nunit);
-/* A value in SI of component i, in its declared unit. */
+/* An SI value of component i, converted to its declared unit. */
 double lag_sim_declared(const lag_sim *sim, int i, double value);
 /* Component i of the state q, v, z now, in its declared unit. */
 double lag_sim_state_value(const lag_sim *sim, int i);
-/* Name and unit of output i, and what lag_sim_state_info returns. */
+/* Name and unit of output i; returns as lag_sim_state_info. */
 double lag_sim_output_info(const lag_sim *sim, int i, char *name, size_t nname, char *unit, size_t nunit);
 /* out[noutputs] at the present state, in declared units. */
 int lag_sim_outputs(lag_sim *sim, double *out);
-/* The same at a time that lag_sim_eval knows; y[n] is the state there. */
+/* out[noutputs] at a time that lag_sim_eval knows, in declared units; y[n] := the state there. */
 int lag_sim_outputs_at(lag_sim *sim, double t, double *y, double *out);
 
-/* The tangent of the flow: Y[n * k], row by row, of which each column is a small change of the state, carried along exactly, as
- * the derivative of what the method computes. From here on Y is what it is now, NULL (k = n): the identity, so that it
- * becomes dy(t)/dy(0); k = 0: nothing any more. Before the first advance, after the method is set; later at ends of steps
- * only, as in the function of lag_sim_on_step. Needs the model's linearisation, or what an implicit method needs itself.
- * LAG_EMETHOD: method or model have no such derivatives; the message names a method that has. Over an event that
- * changes the state it goes by the saltation matrix; the run fails (LAG_EMETHOD) where there is none: the event depends on an input, another one
- * changes the state at the same time, or the motion only touches it. Nothing can be loaded. At a branch of if, abs, sign, min, max the
- * derivative is that of the branch taken. */
+/* The tangent of the flow: Y[n * k], row-major; each column is a small change of the state, carried along exactly, as the derivative of what the
+ * method computes. It begins at Y here, NULL (k = n): the identity, so that it becomes dy(t)/dy(0); k = 0: ends the tangent. Call it before the
+ * first advance, after the method is set; later at ends of steps only, as in the hook of lag_sim_on_step. Needs the model's linearisation, or
+ * the derivatives that an implicit method needs itself.
+ * LAG_EMETHOD: method or model have no such derivatives; the message names a method that has. At an event that changes the state the tangent is
+ * multiplied by the saltation matrix; the run fails (LAG_EMETHOD) where that does not exist: the event depends on an input, another one changes
+ * the state at the same time, or the motion only touches it. A saved state cannot be loaded into a run with a tangent. At a branch of if, abs,
+ * sign, min, max the derivative is that of the branch taken. */
 int lag_sim_set_tangent(lag_sim *sim, int k, const double *Y);
-/* Y[n * k] at the present time. Between the ends of steps: by one shorter step of the method. */
+/* Y[n * k] at the present time; between the ends of steps, by one shorter step of the method. */
 int lag_sim_tangent(lag_sim *sim, double *Y);
 
 void lag_sim_stats(lag_sim *sim, lag_stats *stats);
 /* The drift of monitor i so far, as judged against its limit: at ends of steps, and at the present time. */
 double lag_sim_monitor_drift(lag_sim *sim, int i);
-/* Judges monitors and the energy at the present time, too: advancing judges them at ends of steps, whatever times are asked for. LAG_OK; LAG_EMONITOR,
- * LAG_EDRIFT where half of an energy that is conserved or balanced is lost or made, with a message; the run can go on as if it had not been asked. */
+/* Judges monitors and the energy at the present time; advancing judges them only at ends of steps, whatever times are asked for. LAG_OK;
+ * LAG_EMONITOR; LAG_EDRIFT where half of an energy that is conserved or balanced is lost or created; both with a message. The run itself can
+ * continue unchanged. */
 int lag_sim_watch(lag_sim *sim);
-/* Closed form k of the scene (k < lag_sim_scene(sim)->nexact): the largest |motion - closed form| at the ends of steps so
- * far, and the difference now, both in the declared unit (of degC: K); of angles, the nearest way around. NaN: the closed form is no
- * number. */
+/* Closed form k of the scene (k < lag_sim_scene(sim)->nexact): the largest |motion - closed form| at the ends of steps so far, and the
+ * difference now, both in the declared unit (of degC: K); of angles modulo 2 pi. NaN: the closed form is not finite. */
 void lag_sim_exact(lag_sim *sim, int k, double *largest, double *now);
-/* How often event k has fired. */
+/* Number of firings of event k. */
 long long lag_sim_event_count(const lag_sim *sim, int k);
-/* The same, and the times of the first and the last; NaN when there was none. */
+/* Number of firings of event k, and the times of the first and the last; NaN when there was none. */
 long long lag_sim_event_times(const lag_sim *sim, int k, double *first, double *last);
 /* The last error, "" when there was none. */
 const char *lag_sim_message(const lag_sim *sim);
@@ -477,58 +473,54 @@ void lag_sim_on_step(lag_sim *sim, int (*hook)(void *context, const lag_sim *sim
 typedef void lag_event_fn(void *context, int k, double t, const double *before, const double *after);
 void lag_sim_on_event(lag_sim *sim, lag_event_fn *hook, void *context);
 
-/* Everything that a later run needs, as x[lag_sim_save_size()] doubles. LAG_EINVAL when the method cannot
- * be saved. load takes it into a simulation of the same scene, method and options; x may come from anywhere: numbers that cannot be such a
- * state are refused (LAG_EINVAL), and the simulation stays as it was. */
+/* save: x[lag_sim_save_size()] := everything that a later run needs. LAG_EINVAL when the method cannot be saved. load: into a simulation of the
+ * same scene, method and options; x may come from anywhere: numbers that cannot be such a state are refused (LAG_EINVAL), and the simulation
+ * stays as it was. */
 size_t lag_sim_save_size(const lag_sim *sim);
 int lag_sim_save(lag_sim *sim, double *x);
 int lag_sim_load(lag_sim *sim, const double *x);
-/* A checksum of the scene's names, sizes and method: of what must agree between save and load. */
+/* A checksum of everything that must agree between save and load: the scene's names, sizes, equations and method. */
 unsigned long long lag_sim_signature(const lag_sim *sim);
 
 /* ---- Linear algebra -------------------------------------------------------------------------- */
 
-/* n equations in n unknowns: f[n] at x[n] and, where J is not NULL, J[n*n], row-major, their derivatives. Not 0: there
- * are no values at x. */
+/* n equations in n unknowns: f[n] at x[n] and, where J is not NULL, J[n*n], row-major, their derivatives. Not 0: no values at x. */
 typedef int lag_equations(void *context, const double *x, double *f, double *J);
 
-/* What the analysis of equilibria needs of a library: dense, row-major; eigenvectors are columns. All return LAG_OK,
- * LAG_ENOMEM, or what is said; none prints or aborts. */
+/* The dense linear algebra that the analysis of equilibria takes from a library: row-major; eigenvectors are columns. All return LAG_OK,
+ * LAG_ENOMEM, or the status given below; none prints or aborts. */
 typedef struct lag_algebra {
   const char *name;
 
-  /* Moves x[n] towards a root by a trust region whose first radius is 0.3 max(1, |x|), in at most `most`
-   * steps, until nothing is gained. The Jacobian may be singular. Whether x is a root is for the caller to see.
-   * *steps: how many were made. LAG_EDOMAIN: there are no values at the start. */
+  /* Moves x[n] towards a root by a trust region whose first radius is 0.3 max(1, |x|), in at most `most` steps, until no step gains. The
+   * Jacobian may be singular. The caller checks whether x is a root. *steps: steps made. LAG_EDOMAIN: no values at the start. */
   int (*root)(int n, double *x, lag_equations *equations, void *context, int most, int *steps);
 
   /* K x = value M x; values ascending, x' M x = 1. K and M are symmetric (lower triangles are read) and destroyed. LAG_EINVAL:
    * M is not positive definite. */
   int (*symmetric)(int n, double *K, double *M, double *values, double *vectors);
 
-  /* A x = (re + i im) x, |x| = 1. A is destroyed. sensitivity[k] = |x_k| |y_k| / |y_k x_k| with the left eigenvector y_k:
-   * how much of a change of A the eigenvalue may take over; huge where it is defective. LAG_EMETHOD: no
-   * convergence. */
+  /* A x = (re + i im) x, |x| = 1. A is destroyed. sensitivity[k] = |x_k| |y_k| / |y_k x_k| with the left eigenvector y_k: the condition number
+   * of the eigenvalue; huge where it is defective. LAG_EMETHOD: no convergence. */
   int (*general)(int n, double *A, double *re, double *im, double *vre, double *vim, double *sensitivity);
 
-  /* A := D^-1 A D with D = diag(scale[n]) of powers of 2, so that its rows and columns are alike in size. */
+  /* Balancing: A := D^-1 A D with D = diag(scale[n]) of powers of 2, so that rows and columns have like norms. */
   int (*balance)(int n, double *A, double *scale);
 
-  /* Orthogonal Q[n*n] with A Q = [B | 0]: its columns from *rank on span the kernel of A, where what is not above
-   * tol counts as 0. */
+  /* Orthogonal Q[n*n] with A Q = [B | 0]: its columns from *rank on span the kernel of A; pivots up to tol count as 0. */
   int (*kernel)(int n, const double *A, double tol, double *Q, int *rank);
 } lag_algebra;
 
 /* ---- Simulators ------------------------------------------------------------------------------ */
 
-/* What a simulator has besides liblag.a. */
+/* Parts of a simulator outside liblag.a. */
 typedef struct lag_extras {
   const lag_method *const *methods; /* [nmethods] */
   int nmethods;
   const lag_algebra *algebra;       /* or NULL */
 } lag_extras;
 
-/* What liblag_gsl.a brings, by the GNU Scientific Library. */
+/* The contents of liblag_gsl.a, by the GNU Scientific Library. */
 extern const lag_algebra lag_gsl_algebra;
 extern const lag_extras lag_gsl;
 

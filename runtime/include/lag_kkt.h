@@ -1,24 +1,24 @@
-/* lag_kkt.h: accelerations, or changes of a state, that obey constraints. Includes only <math.h>.
+/* lag_kkt.h: accelerations, or changes of a state, under constraints. Includes only <math.h>.
  *
  *   M x - A^T l = f        M[n*n] symmetric, A[m*n]
  *   A x         = g
  *
- * for any A, redundant or not, and any M that is regular on the kernel of A: x is unique then; of the multipliers l those
- * of least norm are given, the sum of squares of l as it stands, each in the unit of its constraint. A^T P = Q R is factored by Householder's
- * reflections with exchange of columns, which are the constraints, scaled to a like size, in coordinates in which the whole system is about 1, so that it
- * does not matter how each was written (lag_scales): what is left of a constraint beside
- * those before it decides whether it is counted (Golub & Van Loan, Matrix Computations, 4th ed. (2013), 5.4.2). In the
- * coordinates Q^T x the first r components follow from g, and the others from M without constraints (the null space method: Benzi, Golub,
- * Liesen, Acta Numerica 14 (2005) 1, section 6, DOI 10.1017/S0962492904000212); l is the least solution of R l = what M x - f is there,
- * by a second factorization where r < m. Where M is positive definite and the constraints are far from dependent, as they mostly are,
- * Schur's complement is as good, and cheaper; and so is, for large systems, elimination within a band.
+ * for any A, of full rank or not, and any M that is regular on the kernel of A: x is then unique, and l the multipliers of least norm (sum of
+ * l_k^2, each in the unit of its constraint).
+ * Null space method (Benzi, Golub, Liesen, Acta Numerica 14 (2005) 1, section 6, DOI 10.1017/S0962492904000212): A^T P = Q R by Householder
+ * reflections with column pivoting (Golub & Van Loan, Matrix Computations, 4th ed. (2013), 5.4.2), where the part of a constraint that is
+ * independent of those before it decides the rank. Rows and columns of the whole system are scaled to about 1 first (lag_scales), so that units
+ * and factors of constraints do not matter. In the coordinates Q^T x the first r components follow from g, the others from M without
+ * constraints; l is the least-norm solution of R l = M x - f there, by a second factorization where r < m. Cheaper methods come first where they
+ * are as good: Schur's complement where M is positive definite and the constraints are far from dependent, as they mostly are; elimination
+ * within a band for large systems.
  *
- * Near a position where constraints become dependent, a coarse rank is the right one for corrections of a state, whose right-hand
- * side is little more than rounding: what is 1e-16 there moves a position by 1e-16/s, where s is how independent the weakest
- * constraint still is, and that turns the directions which constraints allow by 1e-16/s^2.
+ * Near a position where constraints become dependent, a coarse rank is the right one for corrections of a state, whose right-hand side is little
+ * more than rounding: with s the independence of the weakest constraint, a residual of 1e-16 moves a position by 1e-16/s, and turns the
+ * directions which constraints allow by 1e-16/s^2.
  *
- * lagc copies the sections below into what it emits, with LAG_ and lag_ replaced by the prefix of an emitted header. There
- * LAG_REAL may be a vector; LAG_LANE is the scalar that it is made of. */
+ * lagc copies the sections below into what it emits, with LAG_ and lag_ replaced by the prefix of an emitted header. There LAG_REAL may be a
+ * vector; LAG_LANE is its scalar. */
 #ifndef LAG_KKT_H
 #define LAG_KKT_H
 
@@ -45,20 +45,20 @@
 #endif
 
 /* ---- band ---- */
-/* The whole system [M A^T; A 0] within a band, for systems of some size: along chains, ladders and loops of any number of links its work grows linearly,
- * also where M is not diagonal, so that M^-1 has no zeros, or is singular. Unknowns are put in the order of Cuthill and McKee (ACM '69:
- * Proc. 24th nat. conf., 157, DOI 10.1145/800195.805928), begun at an end; the factorization is L U with exchange of rows, which widens a
- * band by its half at most, where the pivots of L D L^T would fill it (Golub & Van Loan, 4.3 and 4.4). All scratch is of LAG_LANE. */
+/* The whole system [M A^T; A 0] within a band, for large systems: along chains, ladders and loops of any number of links its work grows
+ * linearly, also where M is singular, or M^-1 full. Unknowns are in the order of Cuthill and McKee (ACM '69: Proc. 24th nat. conf., 157, DOI
+ * 10.1145/800195.805928), begun at an end; the factorization is L U with row exchanges, which widen the band by half at most, where the pivots
+ * of L D L^T would fill it (Golub & Van Loan, 4.3 and 4.4). All scratch is of LAG_LANE. */
 #define LAG_BAND_LEAST 62
 #define LAG_BAND_EDGES 6
 
-/* Where the unknowns stand: those beside unknown i are next[first[i]] to next[first[i + 1]]; order[place[i]] = i. */
+/* The adjacency graph and the order of the unknowns: neighbours of unknown i are next[first[i]] to next[first[i + 1]]; order[place[i]] = i. */
 typedef struct lag_band {
-  int all, edges, half; /* half: the largest difference of places */
+  int all, edges, half; /* half: half bandwidth, the largest difference of neighbours' places */
   LAG_LANE *edge, *first, *next, *order, *place, *scale, *rows, *pivot;
 } lag_band;
 
-/* Unknowns that stand beside each other, i > j, as numbers i*all + j. Returns 0 where there are too many for a band. */
+/* Lists the edges of the graph, i > j, as numbers i*all + j, and the neighbours of each unknown. Returns 0 where there are too many for a band. */
 static int lag_edges(int n, int m, const LAG_LANE *M, const LAG_LANE *A, lag_band *b) {
   b->edges = 0;
   for (int i = 0; i < b->all; i++) {
@@ -83,7 +83,7 @@ static int lag_edges(int n, int m, const LAG_LANE *M, const LAG_LANE *A, lag_ban
   return m <= n;
 }
 
-/* Gives the places from `at` on to unknown i, to those beside it, and so on. Returns the first place that is free. */
+/* Breadth-first numbering: places from `at` on go to unknown i, its neighbours, and so on. Returns the first free place. */
 static int lag_walk(const lag_band *b, int i, int at) {
   int end = at;
   b->order[end] = (LAG_LANE)i, b->place[i] = (LAG_LANE)end++;
@@ -97,7 +97,7 @@ static int lag_walk(const lag_band *b, int i, int at) {
   return end;
 }
 
-/* Each connected part is walked from the last unknown of a walk from the last of another one: from one end to the other. */
+/* Cuthill-McKee order: each connected component is numbered from its far end, found by two earlier walks; sets half. */
 static void lag_places(lag_band *b) {
   int at = 0;
   for (int i = 0; i < b->all; i++) b->place[i] = -1;
@@ -119,14 +119,14 @@ static void lag_places(lag_band *b) {
     }
 }
 
-/* Element e of the matrix; its unknowns in *i and *j. */
+/* Matrix element of edge e; *i, *j: its unknowns. */
 static LAG_LANE lag_element(int n, const lag_band *b, int e, const LAG_LANE *M, const LAG_LANE *A, int *i, int *j) {
   *i = (int)(b->edge[e]/(LAG_LANE)b->all), *j = (int)(b->edge[e] - (LAG_LANE)*i*(LAG_LANE)b->all);
   return *i < n ? M[*i*n + *j] : A[(*i - n)*n + *j];
 }
 
-/* The rows of the band, of 3 half + 1 elements of which the last `half` are for exchanges: scaled so that M has ones along its diagonal and
- * each constraint a largest element of 1. Then L U. Returns 0 where a pivot is 0. */
+/* Fills and factors the band, L U with row exchanges: rows of 3 half + 1 elements, the last `half` for exchanges; scaled so that M has ones on
+ * its diagonal and each constraint a largest element of 1. Returns 0 where a pivot is 0. */
 static int lag_band_factor(int n, const lag_band *b, const LAG_LANE *M, const LAG_LANE *A) {
   const int h = b->half, width = 3*h + 1;
   int i, j;
@@ -166,7 +166,7 @@ static int lag_band_factor(int n, const lag_band *b, const LAG_LANE *M, const LA
   return 1;
 }
 
-/* y[all] := the solution for the right-hand side y, both in the order of places, and scaled. */
+/* y[all] := the solution for the right-hand side y, both scaled and in the order of places. */
 static void lag_band_solve(const lag_band *b, LAG_LANE *y) {
   const int h = b->half, width = 3*h + 1;
   for (int k = 0; k < b->all; k++) {
@@ -182,8 +182,8 @@ static void lag_band_solve(const lag_band *b, LAG_LANE *y) {
   }
 }
 
-/* An estimate of the norm of the inverse, the sum of sizes along a column (W. Hager, SIAM J. Sci. Stat. Comput. 5 (1984) 311, DOI
- * 10.1137/0905023), of a symmetric matrix. y[all] and z[all] are scratch. */
+/* Estimate of the 1-norm of the inverse of a symmetric matrix (W. Hager, SIAM J. Sci. Stat. Comput. 5 (1984) 311, DOI 10.1137/0905023). y[all]
+ * and z[all] are scratch. */
 static LAG_LANE lag_band_inverse(const lag_band *b, LAG_LANE *y, LAG_LANE *z) {
   LAG_LANE size = 0;
   int at = -1;
@@ -203,7 +203,7 @@ static LAG_LANE lag_band_inverse(const lag_band *b, LAG_LANE *y, LAG_LANE *z) {
   return size;
 }
 
-/* y := the right-hand sides f, g without what x and l make of them, in the order of places, and scaled. */
+/* y := residual of the right-hand side (f, g) for the solution (x, l), scaled and in the order of places. */
 static void lag_band_rest(int n, const lag_band *b, const LAG_LANE *M, const LAG_LANE *A, const LAG_LANE *side, const LAG_LANE *x, LAG_LANE *y) {
   int i, j;
   for (int k = 0; k < b->all; k++) y[(int)b->place[k]] = side[k] - (k < n ? M[k*n + k]*x[k] : 0);
@@ -215,9 +215,9 @@ static void lag_band_rest(int n, const lag_band *b, const LAG_LANE *M, const LAG
   for (int k = 0; k < b->all; k++) y[(int)b->place[k]] *= b->scale[k];
 }
 
-/* The system of lag_kkt, where it has a band that fits into w[room], and is so far from singular (its condition is at most 1e8, so a part of some
- * 1e-4 of each constraint is independent of the others) that neither a rank nor least multipliers are in question. Two solutions, the second of
- * what the first has left. x and l hold f and g. Returns whether it has solved the system; M and A stay. */
+/* Solves the system of lag_kkt if its band fits into w[room] and its condition is at most 1e8 (each constraint has a part of some 1e-4 of its
+ * own, so neither rank nor least norm is in question), with one step of refinement. x and l hold f and g. Returns whether it has solved the
+ * system; M and A stay. */
 static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w, int room) {
   const int all = n + m;
   lag_band b = {all, 0, 0, w, w + LAG_BAND_EDGES*all, 0, 0, 0, 0, 0, 0};
@@ -239,7 +239,7 @@ static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LA
 
 /* ---- kkt ---- */
 
-/* The last digit of 1. */
+/* The rounding unit DBL_EPSILON of LAG_LANE. */
 static LAG_LANE lag_rounding(void) {
   const LAG_LANE third = (LAG_LANE)4/3 - 1;
   return LAG_LANE_FN(fabs)(3*third - 1);
@@ -253,7 +253,7 @@ static void lag_reflect(int n, const LAG_LANE *v, LAG_LANE beta, LAG_LANE *x, in
   for (int i = 0; i < n; i++) x[i*stride] -= s*v[i];
 }
 
-/* v[n] becomes the vector of a reflection that leads what it was to (alpha, 0, ...). */
+/* v[n] := the vector of the Householder reflection that maps v to (alpha, 0, ...), *beta its factor. Returns alpha. */
 static LAG_LANE lag_reflector(int n, LAG_LANE *v, LAG_LANE *beta) {
   LAG_LANE size = 0, s = 0;
   for (int i = 0; i < n; i++) size = LAG_LANE_FN(fabs)(v[i]) > size ? LAG_LANE_FN(fabs)(v[i]) : size;
@@ -266,10 +266,11 @@ static LAG_LANE lag_reflector(int n, LAG_LANE *v, LAG_LANE *beta) {
   return alpha;
 }
 
-/* scale[m + n], powers of two, for the constraints and then for the coordinates: [M A^T; A 0], scaled by them, has elements as near to 1 as can be, by least squares
- * of their exponents (A. R. Curtis, J. K. Reid, IMA J. Appl. Math. 10 (1972) 118, DOI 10.1093/imamat/10.1.118). So ranks depend on no
- * unit: another one of a constraint or of a coordinate changes its scale and nothing else. An element that is rounding beside the largest of its row and
- * of its column has no say; inertia counts 16 times, so that a constraint that comes to follow from others is seen to, and not scaled up. top[m + n] and size[(m + n) n] are scratch. */
+/* scale[m + n], powers of two, of the constraints and then of the coordinates: [M A^T; A 0], scaled by them, has elements as near to 1 as least
+ * squares of their exponents allow (A. R. Curtis, J. K. Reid, IMA J. Appl. Math. 10 (1972) 118, DOI 10.1093/imamat/10.1.118). So ranks depend on
+ * no unit: another unit of a constraint or coordinate changes its scale and nothing else. Elements that are rounding beside the largest of their
+ * row and column do not count; inertia counts 16 times, so that a constraint that becomes dependent is seen to, and not scaled up. top[m + n]
+ * and size[(m + n) n] are scratch. */
 static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *scale, LAG_LANE *top, LAG_LANE *size) {
   const LAG_LANE none = (LAG_LANE)1e9;
   const int all = m + n;
@@ -285,14 +286,16 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
       if (here < none && here > top[k]) top[k] = here;
       if (here < none && here > top[m + j]) top[m + j] = here;
     }
-  LAG_LANE least = none, most = -none; /* of rows and columns of A: where they are of like size nothing is scaled, and nothing changes from call to call */
+  LAG_LANE least = none, most = -none; /* range of row and column sizes of A: where it is small nothing is scaled, so nothing changes from call
+                                        * to call */
   for (int k = 0; k < m; k++) least = top[k] > -none && top[k] < least ? top[k] : least, most = top[k] > most ? top[k] : most;
   for (int j = 0; j < n; j++) {
     LAG_LANE column = -none;
     for (int k = 0; k < m; k++) column = size[k*n + j] < none && size[k*n + j] > column ? size[k*n + j] : column;
     least = column > -none && column < least ? column : least;
   }
-  LAG_LANE light = none, heavy = -none; /* inertia, likewise: it goes with the square of a coordinate's size, of which one without inertia says nothing */
+  LAG_LANE light = none, heavy = -none; /* range of inertia, which goes with the square of a coordinate's unit; coordinates without inertia do
+                                         * not count */
   for (int j = 0; j < n; j++) {
     const LAG_LANE here = size[(m + j)*n + j] < none ? size[(m + j)*n + j] : -none;
     light = here < light ? here : light, heavy = here > heavy ? here : heavy;
@@ -309,7 +312,7 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
     for (int k = 0; k < all; k++) {
       LAG_LANE sum = 0, weight = 0;
       for (int j = 0; j < n; j++) {
-        const LAG_LANE here = size[k*n + j], twice = (LAG_LANE)(j == k - m ? 2 : 1); /* of the diagonal: its exponent and twice the scale */
+        const LAG_LANE here = size[k*n + j], twice = (LAG_LANE)(j == k - m ? 2 : 1); /* diagonal: the scale enters twice */
         const LAG_LANE counts = (LAG_LANE)(j == k - m ? 16 : 1);
         if (here < none) sum += counts*twice*(here + (j == k - m ? 0 : scale[m + j])), weight += counts*twice*twice;
       }
@@ -323,9 +326,9 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
   for (int k = 0; k < all; k++) scale[k] = LAG_LANE_FN(ldexp)((LAG_LANE)1, (int)LAG_LANE_FN(floor)(scale[k] + (LAG_LANE)0.5));
 }
 
-/* A P = R^T Q^T, row by row: row k of A[m*n] is left as [R^T | vector k], diag[k] and beta[k] beside it; order[m]: which row
- * stands where; scale[m]: what each was divided by. Returns the rank: a row of which less than eps^(2/3), or eps^(1/3) where it is
- * coarse, is independent of those before it does not count. */
+/* QR factorization of A^T with column pivoting, A P = R^T Q^T, stored by rows: row k of A[m*n] becomes [R^T | Householder vector k], with
+ * diag[k] and beta[k] beside it; order[m]: permutation of the rows; scale[m]: divisor of each. Returns the rank: a row counts only if more than
+ * eps^(2/3) of it, or eps^(1/3) if coarse, is independent of those before it. */
 static int lag_rank(int n, int m, int coarse, LAG_LANE *A, LAG_LANE *diag, LAG_LANE *beta, LAG_LANE *scale, LAG_LANE *order) {
   const LAG_LANE root = LAG_LANE_FN(cbrt)(lag_rounding()), least = coarse ? root : root*root;
   int rank = 0;
@@ -360,7 +363,7 @@ static int lag_rank(int n, int m, int coarse, LAG_LANE *A, LAG_LANE *diag, LAG_L
   return rank;
 }
 
-/* The multipliers mu[m], in the order of rows, with R (scaled back) mu = s[r] and of least norm; S[m*r] is scratch. */
+/* mu[m] := the least-norm solution of R (scaled back) mu = s[r], in the order of rows; S[m*r] is scratch. */
 static void lag_multipliers(int n, int m, int r, const LAG_LANE *A, const LAG_LANE *diag, const LAG_LANE *scale,
                             LAG_LANE *s, LAG_LANE *mu, LAG_LANE *S) {
   if (r == m) {
@@ -388,7 +391,7 @@ static void lag_multipliers(int n, int m, int r, const LAG_LANE *A, const LAG_LA
   for (int k = r - 1; k >= 0; k--) lag_reflect(m - k, S + k*m + k, beta[k], mu + k, 1);
 }
 
-/* The first, or the last, element of x[n] that is not zero; none: n, or -1. */
+/* Index of the first, and of the last, element of x[n] that is not zero; none: n, and -1. */
 static int lag_first(int n, const LAG_LANE *x) {
   int i = 0;
   while (i < n && !(x[i] < 0 || x[i] > 0)) i++;
@@ -400,8 +403,8 @@ static int lag_last(int n, const LAG_LANE *x) {
   return n - 1;
 }
 
-/* M = L L^T within the envelope of M's lower triangle, which L replaces: row i begins at from[i]. Returns whether each pivot is more
- * than `least` of what stood there. */
+/* Cholesky's factorization within the envelope of M's lower triangle: L replaces M, row i begins at from[i]. Returns whether each pivot is more
+ * than `least` of its diagonal element. */
 static int lag_cholesky(int n, LAG_LANE *M, const LAG_LANE *from, LAG_LANE least) {
   for (int i = 0; i < n; i++) {
     const int begin = (int)from[i];
@@ -416,7 +419,7 @@ static int lag_cholesky(int n, LAG_LANE *M, const LAG_LANE *from, LAG_LANE least
   return 1;
 }
 
-/* x := L^-1 x, of which the elements before `begin` are zero; x := L^-T x. */
+/* x := L^-1 x, where elements of x before `begin` are zero; and x := L^-T x. */
 static void lag_forward(int n, const LAG_LANE *L, const LAG_LANE *from, int begin, LAG_LANE *x) {
   for (int i = begin; i < n; i++) {
     for (int k = (int)from[i] > begin ? (int)from[i] : begin; k < i; k++) x[i] -= L[i*n + k]*x[k];
@@ -431,10 +434,10 @@ static void lag_backward(int n, const LAG_LANE *L, const LAG_LANE *from, LAG_LAN
   }
 }
 
-/* By Schur's complement S = A M^-1 A^T, where M is positive definite and the constraints are far from dependent (a part of 1e-2 of
- * each is independent of the others: S has lost no more than 4 digits), with one step of refinement. x and l hold f and g. Returns
- * whether it has solved the system; M and A stay. w[n*n + m*n + m*m + 2*n + 5*m] is scratch. The work follows the envelopes of M, L^-1 A^T and S:
- * along a chain whose coordinates stand in its order it grows linearly. */
+/* Solves by Schur's complement S = A M^-1 A^T, with one step of refinement, if M is positive definite and the constraints are far from dependent
+ * (a part of 1e-2 of each is independent of the others, so S has lost at most 4 digits). x and l hold f and g. Returns whether it has solved the
+ * system; M and A stay. w[n*n + m*n + m*m + 2*n + 5*m] is scratch. The work follows the envelopes of M, L^-1 A^T and S: along a chain with
+ * coordinates in its order it grows linearly. */
 static int lag_schur(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
   LAG_LANE *const L = w, *const W = L + n*n, *const S = W + m*n, *const from = S + m*m, *const y = from + n;
   LAG_LANE *const begin = y + n, *const end = begin + m, *const row = end + m, *const mu = row + m, *const rest = mu + m;
@@ -485,8 +488,8 @@ static int lag_schur(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LAN
   return 1;
 }
 
-/* From row r on: x := the solution for the right-hand side x and the matrix that stands in M from there, and z the same, by elimination with
- * partial pivoting. Returns the largest element of z or of the inverses of pivots, or -1 where a pivot is 0. */
+/* Gaussian elimination with partial pivoting of the lower right block of M from row r: x and z := the solutions for the right-hand sides x and
+ * z. Returns the largest |z| or |1/pivot|, a lower bound of the inverse, or -1 where a pivot is 0. */
 static LAG_LANE lag_eliminate(int n, int r, LAG_LANE *M, LAG_LANE *x, LAG_LANE *z) {
   LAG_LANE most = 0;
   for (int k = r; k < n; k++) {
@@ -518,9 +521,10 @@ static LAG_LANE lag_eliminate(int n, int r, LAG_LANE *M, LAG_LANE *x, LAG_LANE *
   return most;
 }
 
-/* x[n], l[m] hold f and g, and become the solution, without numbers where M or A has an element that is not finite; M and A are destroyed. w[n*n + m*n + m*m + 2*n + 9*m] is scratch. Returns
- * whether M is regular on the kernel of A, by more than rounding: pivots, and what becomes of any right-hand side, show how large the inverse is
- * (J. D. Dixon, SIAM J. Numer. Anal. 20 (1983) 812, DOI 10.1137/0720053), which is to be less than a hundredth of 1 by the rounding of M. */
+/* x[n], l[m] hold f and g, and become the solution; NaN where M or A has an element that is not finite. M and A are destroyed. w[n*n + m*n + m*m
+ * + 2*n + 9*m] is scratch. Returns whether M is regular on the kernel of A, by more than rounding: pivots and the solution for an arbitrary
+ * right-hand side bound the inverse from below (J. D. Dixon, SIAM J. Numer. Anal. 20 (1983) 812, DOI 10.1137/0720053); its norm times the
+ * rounding of M is to be below a hundredth. */
 static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
 #ifdef LAG_BAND_LEAST
   if (n + m >= LAG_BAND_LEAST && lag_banded(n, m, M, A, x, l, w, n*n + m*n + m*m + 2*n + 9*m)) return 1;
@@ -528,7 +532,7 @@ static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_
   if (lag_schur(n, m, M, A, x, l, w)) return 1;
   LAG_LANE any = 0;
   for (int i = 0; i < n*n + m*n; i++) any += (i < n*n ? M[i] : A[i - n*n])*0;
-  for (int i = 0; i < n + m && !(any == 0); i++) *(i < n ? x + i : l + i - n) = any; /* no number, as that is */
+  for (int i = 0; i < n + m && !(any == 0); i++) *(i < n ? x + i : l + i - n) = any; /* NaN, like that element */
   if (!(any == 0)) return 1;
   LAG_LANE *const diag = w, *const beta = w + m, *const scale = w + 2*m, *const order = w + 3*m;
   LAG_LANE *const y = w + 4*m, *const s = w + 5*m, *const mu = w + 6*m, *const S = w + 7*m, *const z = S + m*m + m, *const unit = z + n + m;
@@ -541,7 +545,7 @@ static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_
     }
     for (int j = 0; j < m; j++) A[j*n + i] *= unit[i];
     x[i] *= unit[i];
-    u += (LAG_LANE)0.618033988749894848; /* any numbers, so that nothing cancels */
+    u += (LAG_LANE)0.618033988749894848; /* an arbitrary right-hand side, so that nothing cancels */
     if (u > 1) u -= 1;
     z[i] = i % 2 ? -u : u;
   }
@@ -580,7 +584,7 @@ static inline LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w) {
   return lag_kkt_lane(n, m, coarse, w, A, x, x + n, x + n + m);
 }
 #else
-/* The same, lane by lane: each has pivots, and a rank, of its own. */
+/* lag_kkt lane by lane: each has its own pivots and rank. */
 static inline LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w) {
   const int used = n*n + m*n + n + m;
   LAG_MASK regular;

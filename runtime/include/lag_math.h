@@ -1,23 +1,23 @@
-/* lag_math.h: sincos, sin, cos, exp, log and the reciprocal square root, inline, of a double or of each lane of a vector of
- * 4 or 8 doubles; lag_sincos2 and lag_sincos4 take two or four angles at once, and give the bits that lag_sincos gives.
- * Includes only <math.h> and its own section lag_sincos.h; for C99 and C++ with GCC, Clang or any compiler that has IEEE doubles.
+/* lag_math.h: sincos, sin, cos, exp, log and the reciprocal square root, inline, of a double or of each lane of a vector of 4 or 8 doubles;
+ * lag_sincos2 and lag_sincos4 take two or four angles at once, and give the same bits as lag_sincos. Includes only <math.h> and its own section
+ * lag_sincos.h; for C99 and C++ with GCC, Clang or any compiler that has IEEE doubles.
  *
- * LAG_REAL is double, or, with LAG_LANES defined as 4 or 8, the type of a vector with so many lanes (GCC and Clang; arrays of it
- * are aligned to its size: aligned_alloc; -Wno-psabi silences GCC on how it passes them). Eight lanes want AVX-512, four AVX2
- * with FMA. Largest errors seen at a million points, in units in the last place (tests/math measures them against
- * libquadmath, and fails where one is more than 1):
+ * LAG_REAL is double, or, with LAG_LANES defined as 4 or 8, the type of a vector with so many lanes (GCC and Clang; arrays of it are aligned to
+ * its size: aligned_alloc; -Wno-psabi silences GCC on how it passes them). Eight lanes need AVX-512 to be fast, four AVX2 with FMA. Largest
+ * errors seen at a million points, in units in the last place (tests/math measures them against libquadmath, and fails where one is more than
+ * 1):
  *
  *   sin, cos   0.86    all finite x; Payne and Hanek's reduction where x is large
  *   exp        0.77
  *   log        0.83
  *   rsqrt      0.51
  *
- * All lanes, of 4 or of 8, get the same bits. Where the processor multiplies and adds in one instruction these functions use it,
- * by name: results differ there in the last place from those of a processor without, but not from one compiler to another.
- * A compiler may contract products and sums besides (-ffp-contract=fast): the bounds hold.
+ * All lanes, of 4 or of 8, get the same bits. Fused multiply-add is used by name where the processor has it: results then differ in the last
+ * place from those of a processor without, but not from one compiler to another. A compiler may contract further products and sums
+ * (-ffp-contract=fast): the bounds hold.
  *
- * lagc copies the sections below, from a line `---- NAME ----` to the next, into what it emits, with LAG_ and lag_ replaced by
- * the prefix of an emitted header. */
+ * lagc copies the sections below, from a line `---- NAME ----` to the next, into what it emits, with LAG_ and lag_ replaced by the prefix of an
+ * emitted header. */
 #ifndef LAG_MATH_H
 #define LAG_MATH_H
 
@@ -34,7 +34,7 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 
 /* ---- lanes ---- */
 #ifdef LAG_LANES
-/* Vectors of doubles: what choices, logic and functions mean for them. */
+/* Selection, logic and functions of vectors of doubles. */
 #if !defined(__GNUC__) || (LAG_LANES != 4 && LAG_LANES != 8)
 #error "LAG_LANES must be 4 or 8, and the compiler GCC or Clang"
 #endif
@@ -77,7 +77,7 @@ LAG_INLINE int lag_lanes_any(lag_lanes_mask c) {
 #endif
 }
 
-/* Whether a lane is 2^bit or more. */
+/* Whether any lane is 2^bit or more. */
 LAG_INLINE int lag_lanes_reach(lag_lanes_word w, int bit) {
 #if defined(__AVX512F__) && LAG_LANES == 8 && !defined(__clang__)
   const lag_lanes_mask no = {0}, all = no + (long long)(~0ULL << bit);
@@ -107,7 +107,7 @@ LAG_INLINE LAG_REAL lag_lanes_sqrt(LAG_REAL x) {
 #endif
 }
 
-/* Functions without a form for lanes, one lane after the other. */
+/* Functions without a vector form: one lane after the other. */
 #define LAG_LANES_1(f) \
   LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x) { \
     for (int k = 0; k < LAG_LANES; k++) x[k] = f(x[k]); \
@@ -131,11 +131,12 @@ LAG_LANES_2(pow) LAG_LANES_2(atan2) LAG_LANES_2(hypot)
 #define LAG_AND(a, b) ((a) & (b))
 #define LAG_OR(a, b) ((a) | (b))
 #define LAG_ANY(c) lag_lanes_any(c)
-/* A lane with a singular matrix stops no other: it has no numbers (nor has one whose matrix has none), and its bit in the status, which is negative then. */
+/* Checks of pivots. A lane with a singular matrix does not stop the others: its results are not finite, and its bit is set in the negative of
+ * the status; so for a lane whose matrix is not finite. */
 #if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
 #define LAG_PIVOTS int singular __attribute__((unused)) = 0
 #define LAG_PIVOT(c) singular |= lag_lanes_bits(~(c))
-#define LAG_POSITIVE(d) singular |= (unsigned char)__builtin_ia32_cmppd512_mask(d, LAG_C(0.0), 26 /* not greater, or none */, (char)-1, 4)
+#define LAG_POSITIVE(d) singular |= (unsigned char)__builtin_ia32_cmppd512_mask(d, LAG_C(0.0), 26 /* not greater, or unordered */, (char)-1, 4)
 #define LAG_PIVOTS_STATUS -singular
 #else
 #define LAG_PIVOTS LAG_MASK singular __attribute__((unused)) = {0}
@@ -146,7 +147,7 @@ LAG_LANES_2(pow) LAG_LANES_2(atan2) LAG_LANES_2(hypot)
 #endif
 
 /* ---- own ---- */
-/* Whether LAG_REAL is what the functions below are for; for other scalars, and with LAG_LIBM defined, they are the C library's. */
+/* LAG_OWN: 1 where the functions below are used; for scalars other than double, and with LAG_LIBM defined, those of the C library are. */
 #define LAG_JOIN2(a, b) a##b
 #define LAG_JOIN(a, b) LAG_JOIN2(a, b)
 #define LAG_IS_double 1
@@ -190,7 +191,7 @@ LAG_INLINE double lag_to_real(lag_word w) {
 #else
 #define LAG_FMA 0
 #endif
-/* a*b + c, in one rounding where the processor has an instruction for it. */
+/* a*b + c, fused where the processor has an instruction for it. */
 LAG_INLINE LAG_REAL lag_mad(LAG_REAL a, LAG_REAL b, LAG_REAL c) {
 #if !LAG_FMA
   return a*b + c;
@@ -222,7 +223,7 @@ LAG_LANES_1(sin) LAG_LANES_1(cos) LAG_LANES_1(exp) LAG_LANES_1(log)
 
 /* ---- exp ---- */
 #if LAG_OWN
-/* 2^k e^y, x = k log 2 + y - tail: Cody and Waite's reduction, log 2 in two parts, and a minimax polynomial (tests/math/remez.py).
+/* exp x = 2^k e^y, x = k log 2 + y - tail: Cody and Waite's reduction with log 2 in two parts, and a minimax polynomial (tests/math/remez.py).
  * 2^k is multiplied in two halves, so that results below the normal range are rounded once. */
 LAG_INLINE LAG_REAL lag_exp(LAG_REAL x) {
 #ifdef LAG_LANES
@@ -255,7 +256,7 @@ LAG_INLINE LAG_REAL lag_exp(LAG_REAL x) {
 
 /* ---- log ---- */
 #if LAG_OWN
-/* x = 2^k m, m between sqrt(1/2) and sqrt(2); log m = 2 artanh s with s = (m - 1)/(m + 1), of which m - 1 - (m - 1)^2/2 is taken
+/* log x = k log 2 + log m, x = 2^k m, m between sqrt(1/2) and sqrt(2); log m = 2 artanh s with s = (m - 1)/(m + 1). m - 1 - (m - 1)^2/2 is split
  * off, as in P. Tang's and the FDLIBM's logarithms, so that the polynomial (tests/math/remez.py) adds little. */
 LAG_INLINE LAG_REAL lag_log(LAG_REAL x) {
   LAG_REAL from = x, less = LAG_K(4503599627370496.0 + 1023);
@@ -301,7 +302,7 @@ LAG_INLINE LAG_REAL lag_log(LAG_REAL x) {
 
 /* ---- rsqrt ---- */
 #if LAG_OWN
-/* a*b - p, where p is a*b rounded (T. Dekker, Numer. Math. 18 (1971) 224, where there is no instruction). */
+/* The rounding error a*b - p of the product p = a*b, exactly (T. Dekker, Numer. Math. 18 (1971) 224, where there is no fused multiply-add). */
 LAG_INLINE LAG_REAL lag_lost(LAG_REAL a, LAG_REAL b, LAG_REAL p) {
 #if LAG_FMA
   return lag_mad(a, b, -p);
@@ -312,8 +313,8 @@ LAG_INLINE LAG_REAL lag_lost(LAG_REAL a, LAG_REAL b, LAG_REAL p) {
 #endif
 }
 
-/* 1/sqrt(x): a quotient, and one step of Newton's method with a residual that is exact. lagc does not use it: a double's
- * 1/sqrt(x) by the processor is as fast, and 1.5 units off at most. */
+/* 1/sqrt(x): a quotient, and one step of Newton's method with an exact residual. lagc does not use it: the processor's 1/sqrt(x) is as fast, and
+ * 1.5 units off at most. */
 LAG_INLINE LAG_REAL lag_rsqrt(LAG_REAL x) {
 #ifdef LAG_LANES
   const LAG_MASK tiny = x < 1e-200, huge = x > 1e200;

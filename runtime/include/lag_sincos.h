@@ -1,10 +1,10 @@
-/* The section `sincos` of lag_math.h, which includes it: not for inclusion by others. */
+/* Section `sincos` of lag_math.h, which includes it; others must not. Sine and cosine of a double by a table of multiples of pi/32, of vectors
+ * of lanes by longer polynomials. */
 #if LAG_OWN
-/* x modulo pi/2 as y - *lo with |y| <= pi/4, and *quarter, how many of them, modulo 4: for x of any size, and for those next
- * to a multiple of pi/2. The bits of 2/pi whose products with x are multiples of 4 are left out; of the others the next
- * 192 are enough, as no double is nearer than 2^-62 to a multiple (M. Payne, R. Hanek, Radian reduction for trigonometric
- * functions, SIGNUM Newsletter 18 (1983), doi:10.1145/1057600.1057602; J.-M. Muller, Elementary Functions, 3rd ed., 2016,
- * section 11.4). */
+/* Payne and Hanek's reduction: returns y, with x modulo pi/2 = y - *lo, |y| <= pi/4, and *quarter, the number of quarter turns modulo 4, for x
+ * of any size and next to a multiple of pi/2. Bits of 2/pi whose products with x are multiples of 4 are left out; the next 192 suffice, as no
+ * double is nearer than 2^-62 to a multiple (M. Payne, R. Hanek, Radian reduction for trigonometric functions, SIGNUM Newsletter 18 (1983),
+ * doi:10.1145/1057600.1057602; J.-M. Muller, Elementary Functions, 3rd ed., 2016, section 11.4). */
 #if defined(__GNUC__)
 __attribute__((cold, noinline, unused))
 #endif
@@ -64,8 +64,8 @@ static double lag_reduce(double x, double *lo, unsigned long long *quarter) {
 }
 
 #ifdef LAG_LANES
-/* Sine and cosine of x - k pi/2 - lo, |x - k pi/2| <= pi/4, in quarter `quarter`, that is k modulo 4. The polynomials are minimax, by
- * tests/math/remez.py; they are bracketed for a short way. */
+/* Sine and cosine of x = k pi/2 + y - lo, |y| <= pi/4, where quarter is k modulo 4. Minimax polynomials by tests/math/remez.py, bracketed for a
+ * short critical path. */
 LAG_INLINE void lag_sincos_turned(LAG_REAL y, LAG_REAL lo, lag_word quarter, LAG_REAL *s, LAG_REAL *c) {
   const LAG_REAL z = y*y, zz = z*z, w = lag_mad(z, LAG_K(-0.5), LAG_K(1.0)), rest = lag_mad(z, LAG_K(-0.5), LAG_K(1.0) - w);
   const LAG_REAL p = lag_mad(zz, lag_mad(zz, lag_mad(z, LAG_K(-1.5895432975868974e-10), LAG_K(2.5050734385284707e-08)),
@@ -81,15 +81,15 @@ LAG_INLINE void lag_sincos_turned(LAG_REAL y, LAG_REAL lo, lag_word quarter, LAG
   *c = lag_to_real(b ^ swap ^ minus ^ odd);
 }
 
-/* x in quarters, made an integer by what is added: 1.5 2^52, and 2^17, so that the bits of all integers from -2^17 to 2^17 - 1 begin
- * alike. */
+/* x in quarter turns, rounded to an integer by adding 1.5 2^52; and 2^17, so that all integers from -2^17 to 2^17 - 1 have the same leading
+ * bits. */
 LAG_INLINE LAG_REAL lag_quarters(LAG_REAL x) { return lag_mad(x, LAG_K(0.63661977236758138), LAG_K(6755399441186816.0)); }
-/* From 2^18 on in lanes with others. */
+/* 2^18 or more in lanes where x is outside that range. */
 LAG_INLINE lag_word lag_quarters_far(LAG_REAL sum) { return lag_to_word(sum) ^ lag_to_word(LAG_K(6755399441055744.0)); }
 
-/* y - *lo = x - k pi/2 for |k| <= 2^17. W. Cody, W. Waite, Software Manual for the Elementary Functions, 1980, with pi/2 in three parts:
- * the products of k with the first two are exact. What is lost is known, to 2^-129 |x|, and enters to first order; no double in this
- * range is so near to a multiple of pi/2 that it would matter. */
+/* y - *lo = x - k pi/2 for |k| <= 2^17. W. Cody, W. Waite, Software Manual for the Elementary Functions, 1980, with pi/2 in three parts: the
+ * products of k with the first two are exact. The error of the reduction is known to 2^-129 |x| and enters to first order; no double in this
+ * range is so near to a multiple of pi/2 that more would matter. */
 LAG_INLINE LAG_REAL lag_sincos_reduce(LAG_REAL x, LAG_REAL sum, LAG_REAL *lo) {
   const LAG_REAL k = sum - LAG_K(6755399441186816.0);
   const LAG_REAL first = lag_mad(k, LAG_K(-1.5707963267923333), x);
@@ -98,7 +98,7 @@ LAG_INLINE LAG_REAL lag_sincos_reduce(LAG_REAL x, LAG_REAL sum, LAG_REAL *lo) {
   return y;
 }
 
-/* The same for any x. Apart, and by address, so that what is near keeps the registers. */
+/* Sine and cosine for any x. A function of its own, with arguments by address, so that the common case keeps its registers. */
 __attribute__((cold, noinline, unused)) static void lag_sincos_far(const LAG_REAL *x, LAG_REAL *s, LAG_REAL *c) {
   const LAG_REAL sum = lag_quarters(*x);
   LAG_REAL lo, y = lag_sincos_reduce(*x, sum, &lo);
@@ -132,7 +132,7 @@ LAG_INLINE void lag_sincos(LAG_REAL x, LAG_REAL *s, LAG_REAL *c) {
   lag_sincos_near(x, sum, s, c);
 }
 
-/* Two angles: one question whether they are near. */
+/* Two angles: one branch decides for both whether they are in the short range. */
 #define LAG_SINCOS_2 1
 LAG_INLINE void lag_sincos2(LAG_REAL a, LAG_REAL *sin_a, LAG_REAL *cos_a, LAG_REAL b, LAG_REAL *sin_b, LAG_REAL *cos_b) {
   const LAG_REAL sum_a = lag_quarters(a), sum_b = lag_quarters(b);
@@ -151,8 +151,8 @@ typedef struct lag_pair {
   double s, c;
 } lag_pair;
 
-/* sines: of k pi/32, and what rounding added to it, and so on; those of the cosine are 32 numbers further. The 0 is negative for the sake
- * of -0. The other numbers stand here twice, as LAG_SINCOS_NEAR takes them for two angles at a time. */
+/* sines: pairs of sin(k pi/32) and its rounding error; cosines stand 32 numbers further. The first 0 is negative for sin(-0) = -0. The other
+ * constants stand here twice, as LAG_SINCOS_NEAR takes them for two angles at a time. */
 #define LAG_TWICE(x) {x, x}
 static const struct lag_sincos_table {
   double sines[160], per_unit[2], whole[2], part1[2], part2[2], part3[2], s3[2], s5[2], s7[2], c2[2], c4[2], c6[2], c8[2];
@@ -198,16 +198,16 @@ LAG_INLINE const double *lag_sines(lag_word k) { return lag_sincos_table.sines +
 #if LAG_FMA
 #define LAG_SINCOS_SUM(real, mad, K) const real sine = S + mad(C, r, -t), cosine = C - mad(S, r, u)
 #else
-#define LAG_SINCOS_SUM(real, mad, K) /* near: 0 or 1; so much of C r is not rounded */ \
+#define LAG_SINCOS_SUM(real, mad, K) /* near_S, near_C: S and C rounded to integers, so that near_C*r is exact */ \
   const real near_S = (S + K(whole)) - K(whole), near_C = (C + K(whole)) - K(whole); \
   const real sine = S + (near_C*r + ((C - near_C)*r - t)), cosine = C - (near_S*r + ((S - near_S)*r + u))
 #endif
-/* Sine and cosine of x, of a double or of some side by side, by the same operations: of a multiple of pi/32 from the table (S, C and
- * what to add to them: S_add, C_add), and of what is left, after W. Cody and W. Waite (Software Manual for the Elementary
- * Functions, 1980) with pi/32 in three parts, from minimax polynomials (tests/math/remez.py); P. Tang, ACM Trans. Math. Softw. 15
- * (1989) 144, doi:10.1145/63522.214389, has the idea. sum: x in units of pi/32, made an integer by what LAG_SINCOS_INTEGER adds; its
- * products with the first two parts are exact; lost is 2^-130 |x|, and no double with |x| <= 2^18 pi/32 is so near to a multiple of
- * pi/2 that it would matter. Sums are bracketed for a short way from x to the end: a stage of an integrator waits for it. */
+/* Sine and cosine of x, of a double or of several side by side, by the same operations: sine and cosine of a multiple of pi/32 from the table
+ * (S, C and their errors S_add, C_add), and of the rest by minimax polynomials (tests/math/remez.py), after W. Cody and W. Waite (Software
+ * Manual for the Elementary Functions, 1980) with pi/32 in three parts; the idea is P. Tang's, ACM Trans. Math. Softw. 15 (1989) 144,
+ * doi:10.1145/63522.214389. sum: x in units of pi/32, rounded to an integer by LAG_SINCOS_INTEGER; its products with the first two parts are
+ * exact, the error is 2^-130 |x|, and no double with |x| <= 2^18 pi/32 is so near to a multiple of pi/2 that it would matter. Sums are bracketed
+ * for a short critical path from x: a stage of an integrator waits for it. */
 #define LAG_SINCOS_INTEGER(x, mad, K) mad(x, K(per_unit), K(whole))
 #define LAG_SINCOS_NEAR(real, mad, K, rest) \
   const real k = sum - K(whole); \
@@ -216,16 +216,16 @@ LAG_INLINE const double *lag_sines(lag_word k) { return lag_sincos_table.sines +
   const real z = r*r, zz = z*z; \
   const real p = mad(zz, K(s7), mad(z, K(s5), K(s3))); \
   const real q = mad(zz, mad(z, K(c8), K(c6)), mad(z, K(c4), K(c2))); \
-  const real less_s = mad(r*z, p, low); /* r - sin of what is left; z q is 1 - cos */ \
+  const real less_s = mad(r*z, p, low); /* r - sin r, with the low part; z q is 1 - cos r */ \
   const real t = mad(C, less_s, mad(S*z, q, S_add)), u = mad(-S, less_s, mad(C*z, q, C_add)); \
   LAG_SINCOS_SUM(real, mad, K)
 
-/* Whether sum is not 1.5 2^52 + k with |k| <= 2^18, that is |x| < 25735: asked of its bits, which the table wants anyway, of one or of
- * several put together by `|`. */
+/* Whether sum is not 1.5 2^52 + k with |k| <= 2^18, that is |x| < 25735: tested on its bits, which the table index needs anyway, for one angle
+ * or several joined by `|`. */
 #define LAG_SINCOS_OFF(word) ((word) - 0x4337fffffffc0000ULL)
 #define LAG_SINCOS_FAR(off) (((off) & ~0x7ffffULL) != 0)
 
-/* Of x - *lo (lo may be 0) and so many quarters. */
+/* Sine and cosine of x - *lo (lo may be NULL) plus `quarters` quarter turns. */
 LAG_INLINE lag_pair lag_sincos_near(double x, double sum, const double *lo, lag_word quarters) {
   const double *at = lag_sines(lag_to_word(sum) + 16*quarters), S = at[0], C = at[32], S_add = at[1], C_add = at[33];
   LAG_SINCOS_NEAR(double, lag_mad, LAG_SINCOS_K, lo ? third + *lo : third);
@@ -256,7 +256,7 @@ LAG_INLINE void lag_sincos(double x, double *s, double *c) {
   *c = y.c;
 }
 
-/* Two angles, or four, side by side in a register: the same bits as one after the other, in little more time than one takes. */
+/* Two or four angles side by side in a register: the same bits as one after the other, in little more time than one angle takes. */
 #if defined(__GNUC__) && defined(__SSE2__) && (defined(__FMA__) || !LAG_FMA)
 #define LAG_SINCOS_2 1
 #if LAG_FMA && defined(__has_builtin)
@@ -286,8 +286,8 @@ typedef unsigned long long lag_two_words_there __attribute__((vector_size(16), a
 #define LAG_TWO_K(name) (*(const lag_two_there *)table->name)
 #define LAG_TWO_WORDS(name) (*(const lag_two_words_there *)table->name)
 
-/* The upper of two. Compilers take it by movhlps where there is no better instruction, which waits for what its target held before: calls
- * one after the other would wait for each other. */
+/* The upper element. Without SSE4.1 compilers would take it by movhlps, which waits for the old value of its target: calls in a row would wait
+ * for each other. */
 LAG_INLINE lag_word lag_two_upper(lag_two_words x) {
 #if defined(__SSE4_1__)
   return x[1];
@@ -298,7 +298,7 @@ LAG_INLINE lag_word lag_two_upper(lag_two_words x) {
 #endif
 }
 
-/* LAG_SINCOS_FAR of either. */
+/* LAG_SINCOS_FAR of either angle. */
 LAG_INLINE int lag_two_far(const struct lag_sincos_table *table, lag_two_words sum) {
   const lag_two_words off = sum - LAG_TWO_WORDS(off);
 #if defined(__SSE4_1__)
@@ -310,14 +310,14 @@ LAG_INLINE int lag_two_far(const struct lag_sincos_table *table, lag_two_words s
 
 LAG_INLINE void lag_sincos2(double a, double *sin_a, double *cos_a, double b, double *sin_b, double *cos_b) {
   const struct lag_sincos_table *table = &lag_sincos_table;
-  __asm__("" : "+r"(table)); /* or compilers make the numbers again, where a processor would take them from memory as it computes */
+  __asm__("" : "+r"(table)); /* hides the address: compilers would build the constants anew, where the processor can load them while it computes */
   const lag_two x = {a, b}, sum = LAG_SINCOS_INTEGER(x, lag_two_mad, LAG_TWO_K);
   if (__builtin_expect(lag_two_far(table, (lag_two_words)sum), 0)) {
     const lag_pair y = lag_sincos_any(a), z = lag_sincos_any(b);
     *sin_a = y.s, *cos_a = y.c, *sin_b = z.s, *cos_b = z.c;
     return;
   }
-  const lag_two_words row = (lag_two_words)sum << 4 & LAG_TWO_WORDS(row); /* in bytes, as lag_sines in numbers */
+  const lag_two_words row = (lag_two_words)sum << 4 & LAG_TWO_WORDS(row); /* row offset in bytes; lag_sines has it in numbers */
   const lag_two_there *const A = (const lag_two_there *)((const char *)table + row[0]);
   const lag_two_there *const B = (const lag_two_there *)((const char *)table + lag_two_upper(row));
   const lag_two sin_a_row = A[0], sin_b_row = B[0], cos_a_row = A[16], cos_b_row = B[16];
