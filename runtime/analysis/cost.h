@@ -12,11 +12,11 @@ typedef struct Samples {
   double uncertainty;
 } Samples;
 
-/* Zeros; LAG_OK or LAG_ENOMEM. Free with lag_samples_free, also after an error. */
+/* Allocates samples of zeros. LAG_OK or LAG_ENOMEM. Free with lag_samples_free, also after an error. */
 int lag_samples_init(Samples *s, int rows, int n);
 void lag_samples_free(Samples *s);
 
-/* A simulation at its start, with the user's values, method and tolerance still to choose; NULL: not to be had. */
+/* A source of simulations at their start, with the user's values, method and tolerance still to choose; fresh returns NULL where it fails. */
 typedef struct CostScene {
   lag_sim *(*fresh)(void *context);
   void *context;
@@ -37,9 +37,9 @@ double lag_cost_error(const Samples *a, const Samples *b, const double *scale);
 typedef struct CostRun {
   double knob;
   double error;
-  double time, spread; /* processor time [s]: the median; the middle half of the times, relative to it, NaN for one run */
+  double time, spread; /* median processor time [s] of the repeats; their interquartile range relative to it, NaN for one run */
   long long steps, calls;
-  int best;            /* no other run of any method is both faster and more accurate */
+  int best;            /* Pareto-optimal: no other run of any method is both faster and more accurate */
 } CostRun;
 
 enum { LAG_COST_MOST_RUNS = 40 };

@@ -45,7 +45,7 @@ void lag_lyapunov_end(Lyapunov *l);
 
 /* Exponent i, or for i = k the sum of all; NaN without a measurement. */
 double lag_lyapunov_exponent(const Lyapunov *l, int i);
-/* Its standard error from the means of blocks, as if these were independent; NaN where there are fewer than two. */
+/* Standard error of exponent i from the means of blocks, as if these were independent; NaN where there are fewer than two. */
 double lag_lyapunov_spread(const Lyapunov *l, int i);
 
 /* Mean of the trace of Df along the motion, and of log |det S| at events: by Liouville the sum of all exponents, estimated independently by the

@@ -19,7 +19,7 @@ typedef struct Variant {
   char why[200];     /* why there is no run; "": there is one */
 } Variant;
 
-/* For a simulation at its start; the variant must not be moved before it is freed. LAG_OK or LAG_ENOMEM. */
+/* Prepares a variant of a simulation at its start; it must not be moved before it is freed. LAG_OK or LAG_ENOMEM. */
 int lag_variant_init(Variant *v, lag_sim *sim);
 void lag_variant_free(Variant *v); /* not its sim */
 

@@ -7,7 +7,7 @@
 
 #include "core/core.h"
 
-/* The parts of `work`. */
+/* Layout of `work`. */
 typedef struct Parts {
   double *rate; /* [n] y' */
   double *dr;   /* [ndr] sparse */

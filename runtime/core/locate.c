@@ -31,7 +31,7 @@ static double sign_of(double g)
   return (g > 0) - (g < 0);
 }
 
-/* The state at t of the step, exactly at its ends. */
+/* y[n] := the state at time t of the step, exact at its ends. */
 static int state_at(lag_sim *s, double t, double *y)
 {
   size_t bytes = (size_t)s->pb.n * sizeof *y;
@@ -46,7 +46,7 @@ static int state_at(lag_sim *s, double t, double *y)
   return LAG_OK;
 }
 
-/* g[nev] at t of the step. */
+/* g[nev] := the event functions at time t of the step. */
 static int g_at(lag_sim *s, double t, double *g)
 {
   int rc = state_at(s, t, s->yc);

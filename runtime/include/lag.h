@@ -39,7 +39,7 @@ enum {
   LAG_ESTALL = -13      /* no progress: the motion stays where a force jumps, or steps are lost in rounding */
 };
 
-/* "ok", "stopped", ... for any of the above. */
+/* The name of a status: "ok", "stopped", ... */
 const char *lag_status_name(int status);
 
 /* text := the shortest decimal that reads back as x, "0.1". Returns text. */

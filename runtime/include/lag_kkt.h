@@ -231,7 +231,7 @@ static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LA
   for (int turn = 0; turn < 2; turn++) {
     lag_band_rest(n, &b, M, A, side, z, y);
     lag_band_solve(&b, y);
-    for (int i = 0; i < all; i++) z[i] += (i < n ? 1 : -1)*b.scale[i]*y[(int)b.place[i]]; /* the matrix is symmetric for -l */
+    for (int i = 0; i < all; i++) z[i] += (i < n ? 1 : -1)*b.scale[i]*y[(int)b.place[i]]; /* the symmetric system is that of (x, -l) */
   }
   for (int i = 0; i < all; i++) *(i < n ? x + i : l + i - n) = z[i];
   return 1;

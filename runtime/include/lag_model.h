@@ -41,7 +41,7 @@ enum {
   LAG_ESINGULAR = -1  /* the mass matrix is singular at this state, or not positive definite as elsewhere; with LAG_FIRST_ORDER, the two-form */
 };
 
-/* Facts about a model, with the inputs that it gives itself, that the compiler proved. */
+/* Facts that the compiler has proved of a model with its own formulas and tables of inputs. */
 enum {
   LAG_CONSERVES_ENERGY = 1, /* no t in L, no force, no dissipation, no input */
   LAG_CONSTANT_MASS = 2,    /* d2L/dq'2 depends on no coordinate, velocity or time */
@@ -119,7 +119,7 @@ typedef struct lag_linear {
 typedef struct lag_constraint {
   const char *name; /* "rod", "rod[2]", "grip.x" */
   int holonomic;    /* 1: stated as c(q, t) = 0; 0: as r(q, v, t) = 0, linear in v */
-  const char *unit; /* of c, or of r; "" when none */
+  const char *unit; /* unit of c, or of r; "" when none */
   int line;         /* line of the model's text; 0: not known, as in C that `lagc emit` writes */
 } lag_constraint;
 
